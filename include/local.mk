@@ -1,0 +1,12 @@
+nevhincludedir = $(includedir)/nevh
+nevhinclude_HEADERS = \
+	include/nevh/diagnose.h \
+	include/nevh/extend.h \
+	include/nevh/gradient.h \
+	include/nevh/gsl.h \
+	include/nevh/integrator.h \
+	include/nevh/models.h \
+	include/nevh/nevh.h \
+	include/nevh/run.h \
+	include/nevh/status.h \
+	include/nevh/system.h

@@ -1,0 +1,82 @@
+/* nevh: what a run did to the energy, and what a step does to phase space.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_DIAGNOSE_H
+#define NEVH_DIAGNOSE_H
+
+#include <nevh/run.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Watches the energy of a run. */
+typedef struct nevh_energy nevh_energy;
+
+/* width    orbits side by side, as in the stepper's options; 0 means 1
+   returns  the observer's data, to be freed with nevh_energy_free; NULL only
+            when memory is out; carries the system's status otherwise */
+NEVH_API nevh_energy *nevh_energy_new(const nevh_system *, size_t width);
+NEVH_API void nevh_energy_free(nevh_energy *); /* NULL is allowed */
+/* The status of planning or of the last call; NEVH_ENOMEM for NULL. */
+NEVH_API int nevh_energy_status(const nevh_energy *);
+/* The message to that status, or ""; never NULL. */
+NEVH_API const char *nevh_energy_message(const nevh_energy *);
+
+/* A nevh_observe_fn; data is the nevh_energy.  The first call sets H0 and the
+   scale.  A value of H that is not finite stops the run. */
+NEVH_API int nevh_energy_observe(void *energy, size_t step, double t,
+                                 const double q[], const double p[]);
+
+typedef enum {
+    NEVH_BOUNDED,     /* no larger at the end than at the beginning */
+    NEVH_RANDOM_WALK, /* grows, but not along a line: rounding, or chaos */
+    NEVH_DRIFTS,      /* grows along a line */
+    NEVH_UNSTABLE     /* larger than the scale of the energy itself */
+} nevh_verdict;
+NEVH_API const char *nevh_verdict_name(nevh_verdict);
+
+/* Errors are of H(t) - H(0), relative to `scale`: |H0| without the terms that
+   read nothing; where that is below 1e-6 of the largest |effect| at the start,
+   that largest one. */
+typedef struct {
+    size_t samples;
+    double initial; /* H0, all terms */
+    double scale;
+    double max, rms, final; /* |error|, root mean square, signed last error */
+    double drift;           /* slope of a straight line, per unit of time */
+    double drift_error;     /* standard error of that slope */
+    double straightness;    /* share of the slow changes that the line explains:
+                               1 for a steady loss, 0 for a level series */
+    double first_fifth, last_fifth; /* largest |error| there */
+    nevh_verdict verdict; /* UNSTABLE: max > 1; BOUNDED: last_fifth at most
+                             twice first_fifth, or max at rounding (16
+                             epsilon); DRIFTS: straightness at least 0.8;
+                             RANDOM_WALK otherwise */
+} nevh_energy_report;
+
+/* lane < width.  All zeros before the first observation. */
+NEVH_API nevh_energy_report nevh_energy_result(const nevh_energy *,
+                                               size_t lane);
+
+/* How far one step is from a canonical map: the largest element of
+   |M' J M - J|, where M is the step's derivative with respect to (q, p) in
+   units of `scale`, by sixth-order differences.
+   q, p     in, n each; the stepper's width must be 1
+   scale    in, 2n; NULL: ones
+   returns  NEVH_OK, NEVH_ENOMEM, NEVH_EINVAL, or what the step returned
+   cost     12 n steps, each from a fresh memory */
+NEVH_API int nevh_symplecticity_defect(nevh_stepper *, double t, double h,
+                                       const double q[], const double p[],
+                                       const double scale[], double *defect);
+
+/* `steps` steps of h and as many of -h: the largest difference to the start,
+   in units of `scale`.  Arguments as above. */
+NEVH_API int nevh_reversal_defect(nevh_stepper *, double t, double h,
+                                  size_t steps, const double q[],
+                                  const double p[], const double scale[],
+                                  double *defect);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

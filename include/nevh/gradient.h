@@ -1,0 +1,109 @@
+/* nevh: gradients of H from its values.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_GRADIENT_H
+#define NEVH_GRADIENT_H
+
+#include <nevh/system.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct nevh_gradient nevh_gradient;
+
+/* Central differences of order 2, 4, 6, 8 at x +- delta, x +- 2 delta, ...;
+   and the derivatives that the terms bring themselves. */
+NEVH_API extern const nevh_gradient *const nevh_central2;
+NEVH_API extern const nevh_gradient *const nevh_central4;
+NEVH_API extern const nevh_gradient *const nevh_central6;
+NEVH_API extern const nevh_gradient *const nevh_central8;
+NEVH_API extern const nevh_gradient *const nevh_exact;
+
+/* All methods, ended by NULL. */
+NEVH_API const nevh_gradient *const *nevh_gradients(void);
+/* NULL when there is none of that name. */
+NEVH_API const nevh_gradient *nevh_gradient_named(const char *name);
+NEVH_API const char *nevh_gradient_name(const nevh_gradient *);
+/* Order of the difference; 0 for derivatives without truncation error. */
+NEVH_API int nevh_gradient_order(const nevh_gradient *);
+
+/* How to plan a field or a stepper; zeros and NULLs are the defaults. */
+typedef struct {
+    const nevh_gradient *gradient; /* NULL: nevh_central4 */
+    double gradient_step;          /* the half-spread delta of every coordinate
+                                      and momentum; 0: chosen from the scale */
+    const double *gradient_steps;  /* 2n of them, coordinates first, 0: as
+                                      gradient_step; NULL: all as that */
+    const double *scale; /* 2n lengths over which H varies; NULL: from q, p */
+    double t;            /* the state to plan at, best the one to start from: */
+    const double *q, *p; /* n x width each; NULL: scales are 1 */
+    size_t width;        /* orbits side by side; 0 means 1 */
+    double tolerance;    /* of adaptive schemes, relative; 0: fixed steps */
+} nevh_options;
+
+/* A field is the gradient of H, planned: a system, a gradient method with its
+   steps, and workspace.  Everything that can fail for lack of memory or
+   structure has happened once it is made.  One thread at a time may use it;
+   several fields may share one system that is not changed meanwhile. */
+typedef struct nevh_field nevh_field;
+
+/* options   NULL: the defaults
+   returns   the field, to be freed with nevh_field_free; NULL only when memory
+             is out.  A field that could not be planned carries its status:
+             NEVH_ENOGRAD (exact, and a term without gradient), NEVH_EINVAL,
+             or the system's own status. */
+NEVH_API nevh_field *nevh_field_new(const nevh_system *, const nevh_options *);
+NEVH_API void nevh_field_free(nevh_field *); /* NULL is allowed */
+/* The status of planning or of the last call; NEVH_ENOMEM for NULL. */
+NEVH_API int nevh_field_status(const nevh_field *);
+/* The message to that status, or ""; never NULL. */
+NEVH_API const char *nevh_field_message(const nevh_field *);
+
+/* The gradient of the sum of the enabled terms.
+   width    states side by side, any number from 1; lanes innermost
+   t        in, width
+   q, p     in, n x width each
+   dh_dq    out, n x width, overwritten; NULL when not wanted
+   dh_dp    out, n x width, overwritten; NULL when not wanted
+   cost     order * (nq + np) values an instance and state (central)
+   returns  NEVH_OK; NEVH_EDOM when a value is not finite (the message names
+            the term; outputs are undefined); NEVH_ESTALE; the status of a
+            field that could not be planned */
+NEVH_API int nevh_field_gradient(nevh_field *, size_t width, const double t[],
+                                 const double q[], const double p[],
+                                 double dh_dq[], double dh_dp[]);
+
+/* The values of H at `width` states: h[lane].  Summed with compensation. */
+NEVH_API int nevh_field_value(nevh_field *, size_t width, const double t[],
+                              const double q[], const double p[], double h[]);
+
+/* The value of each effect at one state: h[i] for nevh_system_effect_name(i),
+   0 for those that are off.  h has nevh_system_effect_count elements. */
+NEVH_API int nevh_field_effects(nevh_field *, double t, const double q[],
+                                const double p[], double h[]);
+
+/* The step delta that central differences take in coordinate i (i < n) or
+   momentum i - n of the given term instance; 0 if it does not read it. */
+NEVH_API double nevh_field_step(const nevh_field *, const char *term,
+                                size_t instance, size_t i);
+
+/* What a field has been asked for since it was made.  The counts depend only
+   on what was computed, never on padding or on the machine. */
+typedef struct {
+    uint64_t values;     /* evaluations of term instances */
+    uint64_t gradients;  /* evaluations of dH/dq of all enabled terms; where H
+                            is not separable, of the whole gradient */
+    uint64_t sweeps;     /* iterations over the stages of implicit steps */
+    uint64_t rescues;    /* implicit steps that needed more than fixed point */
+    double hamiltonians; /* values over the number of enabled instances */
+} nevh_counts;
+NEVH_API nevh_counts nevh_field_counts(const nevh_field *);
+/* Evaluations of instances of the terms of one effect; 0 if unknown or off. */
+NEVH_API uint64_t nevh_field_effect_values(const nevh_field *,
+                                           const char *effect);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,66 @@
+/* nevh: the schemes and what is known of them.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_INTEGRATOR_H
+#define NEVH_INTEGRATOR_H
+
+#include <nevh/status.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct nevh_integrator nevh_integrator;
+
+/* What is claimed of a scheme.  UNPROVEN is an answer. */
+typedef enum { NEVH_NO, NEVH_YES, NEVH_UNPROVEN } nevh_claim;
+
+/* Explicit, for H = T(p) + V(q). */
+NEVH_API extern const nevh_integrator *const nevh_symplectic_euler_a;
+NEVH_API extern const nevh_integrator *const nevh_symplectic_euler_b;
+NEVH_API extern const nevh_integrator *const nevh_verlet;
+NEVH_API extern const nevh_integrator *const nevh_position_verlet;
+/* Implicit, for any H: Gauss-Legendre, named by order (twice the stages). */
+NEVH_API extern const nevh_integrator *const nevh_midpoint;
+NEVH_API extern const nevh_integrator *const nevh_gauss4;
+NEVH_API extern const nevh_integrator *const nevh_gauss6;
+NEVH_API extern const nevh_integrator *const nevh_gauss8;
+NEVH_API extern const nevh_integrator *const nevh_gauss10;
+NEVH_API extern const nevh_integrator *const nevh_gauss12;
+NEVH_API extern const nevh_integrator *const nevh_gauss14;
+NEVH_API extern const nevh_integrator *const nevh_gauss16;
+NEVH_API extern const nevh_integrator *const nevh_gauss18;
+NEVH_API extern const nevh_integrator *const nevh_gauss20;
+/* Not symplectic: the references.  GSL's take one step of h where the
+   tolerance is 0, and as many as the tolerance needs where it is not. */
+NEVH_API extern const nevh_integrator *const nevh_euler;
+NEVH_API extern const nevh_integrator *const nevh_rk4;
+NEVH_API extern const nevh_integrator *const nevh_gsl_rkf45;
+NEVH_API extern const nevh_integrator *const nevh_gsl_rk8pd;
+
+/* All schemes, ended by NULL. */
+NEVH_API const nevh_integrator *const *nevh_integrators(void);
+/* By name or alias; NULL when there is none. */
+NEVH_API const nevh_integrator *nevh_integrator_named(const char *name);
+
+NEVH_API const char *nevh_integrator_name(const nevh_integrator *);
+/* Names in other packages, separated by commas; "" if there are none. */
+NEVH_API const char *nevh_integrator_aliases(const nevh_integrator *);
+/* Paper and equation. */
+NEVH_API const char *nevh_integrator_source(const nevh_integrator *);
+NEVH_API int nevh_integrator_order(const nevh_integrator *);
+NEVH_API int nevh_integrator_stages(const nevh_integrator *);
+/* Evaluations of dH/dq in one step of a long run; 0 where it depends on the
+   iterations that the step needs. */
+NEVH_API int nevh_integrator_gradients(const nevh_integrator *);
+NEVH_API nevh_claim nevh_integrator_symplectic(const nevh_integrator *);
+NEVH_API nevh_claim nevh_integrator_symmetric(const nevh_integrator *);
+NEVH_API nevh_claim nevh_integrator_explicit(const nevh_integrator *);
+NEVH_API nevh_claim nevh_integrator_preserves_energy(const nevh_integrator *);
+/* The traits of H that it needs, an or of nevh_trait. */
+NEVH_API unsigned nevh_integrator_needs(const nevh_integrator *);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,17 @@
+/* nevh: write the Hamiltonian, get the motion.
+   SPDX-License-Identifier: GPL-3.0-or-later
+
+   The umbrella header.  Apart from it: <nevh/gsl.h> for users of GSL's
+   solvers, <nevh/extend.h> for authors of integrators. */
+#ifndef NEVH_H
+#define NEVH_H
+
+#include <nevh/diagnose.h>
+#include <nevh/gradient.h>
+#include <nevh/integrator.h>
+#include <nevh/models.h>
+#include <nevh/run.h>
+#include <nevh/status.h>
+#include <nevh/system.h>
+
+#endif

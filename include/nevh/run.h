@@ -1,0 +1,95 @@
+/* nevh: steps and runs.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_RUN_H
+#define NEVH_RUN_H
+
+#include <nevh/gradient.h>
+#include <nevh/integrator.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A system and a scheme, planned: structure checked, gradient steps chosen,
+   workspace allocated.  Stepping allocates nothing, prints nothing and touches
+   no globals, so one stepper a thread works, over one system that nobody
+   changes meanwhile. */
+typedef struct nevh_stepper nevh_stepper;
+
+/* options   NULL: the defaults.  The state in it is that of the plan (scales,
+             probes), best the one to start from.
+   returns   the stepper, to be freed with nevh_stepper_free; NULL only when
+             memory is out.  A scheme that does not fit the system gives a
+             stepper that carries the refusal: NEVH_ESTRUCT with a message
+             that names the term and schemes that fit, NEVH_ENOGRAD,
+             NEVH_EINVAL, or the system's own status. */
+NEVH_API nevh_stepper *nevh_stepper_new(const nevh_system *,
+                                        const nevh_integrator *,
+                                        const nevh_options *options);
+NEVH_API void nevh_stepper_free(nevh_stepper *); /* NULL is allowed */
+/* The status of planning or of the last call; NEVH_ENOMEM for NULL. */
+NEVH_API int nevh_stepper_status(const nevh_stepper *);
+/* The message to that status, or ""; never NULL. */
+NEVH_API const char *nevh_stepper_message(const nevh_stepper *);
+
+/* One step from t to t + h.
+   q, p     in and out, n x width each, lanes innermost (q[k*width + lane])
+   returns  NEVH_OK; NEVH_EDOM (a value of H or the new state is not finite),
+            NEVH_EMAXITER (the stage equations of an implicit scheme were not
+            solved), NEVH_ESTALE, NEVH_EINVAL (h not finite), or the refusal of
+            a stepper that could not be planned.  On failure q, p and the
+            stepper's memory are as before the step.
+
+   A stepper remembers what it last returned (sums of rounding errors, the
+   last gradient, a first guess for the stages).  Where q, p or t differ from
+   that, the lane's memory is started afresh: to jump is allowed. */
+NEVH_API int nevh_stepper_apply(nevh_stepper *, double t, double h, double q[],
+                                double p[]);
+
+/* Forgets the memory, as if no step had been taken.  Counts go on. */
+NEVH_API void nevh_stepper_reset(nevh_stepper *);
+/* A second stepper with the same memory, for branch-offs that leave the first
+   untouched.  Its counts start at 0.  NULL when memory is out. */
+NEVH_API nevh_stepper *nevh_stepper_copy(const nevh_stepper *);
+/* Bytes that nevh_stepper_save writes. */
+NEVH_API size_t nevh_stepper_save_size(const nevh_stepper *);
+/* Writes the memory to a buffer, so that after nevh_stepper_load into a
+   stepper planned alike a run continues bit for bit. */
+NEVH_API void nevh_stepper_save(const nevh_stepper *, void *buffer);
+/* returns  NEVH_OK; NEVH_EINVAL when the buffer was saved by another scheme,
+            size of system or width, or is cut short */
+NEVH_API int nevh_stepper_load(nevh_stepper *, const void *buffer, size_t size);
+
+NEVH_API nevh_counts nevh_stepper_counts(const nevh_stepper *);
+/* The field that the stepper takes its gradients from: its counts, steps and
+   values.  Owned by the stepper. */
+NEVH_API nevh_field *nevh_stepper_field(nevh_stepper *);
+
+/* Is called with the state after `step` steps, at time t.  A result other
+   than 0 stops the run. */
+typedef int (*nevh_observe_fn)(void *data, size_t step, double t,
+                               const double q[], const double p[]);
+typedef struct {
+    nevh_observe_fn observe;
+    void *data;
+    size_t every; /* steps between calls; 0 means 1.  The first and the last
+                     state are always shown. */
+} nevh_observer;
+
+/* `steps` steps of h from t0, the time of step i being t0 + i*h.
+   q, p       in and out, n x width each
+   observers  n_observers of them; NULL when that is 0.  The orbit does not
+              depend on them, to the last bit.
+   returns    as nevh_stepper_apply; NEVH_STOPPED when an observer stopped the
+              run.  q and p are the last good state; nevh_stepper_taken tells
+              after how many steps. */
+NEVH_API int nevh_run(nevh_stepper *, double t0, double h, size_t steps,
+                      double q[], double p[], const nevh_observer observers[],
+                      size_t n_observers);
+/* Steps that the last nevh_run completed. */
+NEVH_API size_t nevh_stepper_taken(const nevh_stepper *);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

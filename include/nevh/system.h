@@ -1,0 +1,144 @@
+/* nevh: a Hamiltonian as a sum of terms.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_SYSTEM_H
+#define NEVH_SYSTEM_H
+
+#include <nevh/status.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* H(t, q, p) in the user's own words: all that is needed to begin.
+   q and p have as many elements as the system has degrees of freedom. */
+typedef double (*nevh_value_fn)(double t, const double q[], const double p[],
+                                const void *params);
+
+/* The value of one instance of a term.  q, p and c hold what the instance
+   declared to read, in that order: q[k] is its k-th coordinate, not the
+   system's. */
+typedef double (*nevh_term_fn)(double t, const double q[], const double p[],
+                               const double c[], const void *params);
+
+/* The same for `width` states (or instances) at once, lanes innermost:
+   q[k*width + lane], p, c likewise, t[lane], h[lane].  width is a multiple
+   of 8.  A lane must not depend on its neighbours. */
+typedef void (*nevh_block_fn)(size_t width, const double t[], const double q[],
+                              const double p[], const double c[],
+                              const void *params, double h[]);
+
+/* Exact derivatives in the same layout: dh_dq[k*width + lane] is the
+   derivative with respect to the instance's k-th coordinate.  Either output
+   is NULL when it is not wanted. */
+typedef void (*nevh_block_gradient_fn)(size_t width, const double t[],
+                                       const double q[], const double p[],
+                                       const double c[], const void *params,
+                                       double dh_dq[], double dh_dp[]);
+
+/* A term of H: `count` instances of one function (a spring between each pair
+   of neighbours is one term).  It is handed only what it declares to read, so
+   a declaration cannot lie; from the declarations follow separability, sparse
+   gradients, and that what is off is never evaluated. */
+typedef struct {
+    const char *effect;  /* the effect it belongs to; required */
+    const char *name;    /* unique in the system; NULL: the effect's name, made
+                            unique by a number */
+    size_t nq, np, nc;   /* coordinates, momenta, constants of one instance */
+    const size_t *q;     /* count x nq indices; NULL: 0 ... nq-1 */
+    const size_t *p;     /* count x np indices; NULL: 0 ... np-1 */
+    const double *c;     /* count x nc constants; NULL when nc is 0 */
+    size_t count;        /* instances; 0 means 1 */
+    bool time;           /* reads t; a term that does not is handed t = 0 */
+    nevh_term_fn value;  /* may be NULL when block is given */
+    nevh_block_fn block; /* NULL: value, lane by lane */
+    nevh_block_gradient_fn gradient; /* NULL: no exact gradient */
+    const void *params;              /* borrowed; outlives the system */
+} nevh_term;
+
+/* What is known of the sum of the enabled terms. */
+enum nevh_trait {
+    NEVH_SEPARABLE = 1,  /* H = T(t, p) + V(t, q) */
+    NEVH_AUTONOMOUS = 2, /* H does not read t */
+};
+
+typedef struct nevh_system nevh_system;
+
+/* A system of n degrees of freedom without terms.
+   returns  the system, to be freed with nevh_system_free; NULL only when
+            memory is out.  With n = 0 the system is there but carries
+            NEVH_EINVAL. */
+NEVH_API nevh_system *nevh_system_new(size_t n);
+
+/* A system whose H is one function that reads everything (effect "H").
+   params   borrowed; may be NULL
+   returns  as nevh_system_new; carries NEVH_EINVAL when H is NULL */
+NEVH_API nevh_system *nevh_system_from(size_t n, nevh_value_fn H,
+                                       const void *params);
+
+/* NULL is allowed.  Steppers and fields made from it must be freed before. */
+NEVH_API void nevh_system_free(nevh_system *);
+
+/* Adds a term.  The description, its indices and constants are copied.
+   An index may be read only once by one instance.
+   returns  NEVH_OK; NEVH_EINVAL (indices out of range or repeated, no
+            function, a name used twice, an empty effect name), NEVH_ENOMEM.
+            The system is as before on failure, but carries the status: no
+            stepper is made from a system that lacks what it was meant to
+            have. */
+NEVH_API int nevh_system_add(nevh_system *, const nevh_term *);
+
+/* Switches an effect, that is all terms of that effect name, on or off.
+   Steppers and fields made before notice, and refuse to go on.
+   returns  NEVH_OK; NEVH_EINVAL when no term has that effect */
+NEVH_API int nevh_system_enable(nevh_system *, const char *effect, bool on);
+
+/* The first error of this system, or NEVH_OK; NEVH_ENOMEM for NULL. */
+NEVH_API int nevh_system_status(const nevh_system *);
+/* The message of that error, or ""; never NULL. */
+NEVH_API const char *nevh_system_message(const nevh_system *);
+
+/* Degrees of freedom. */
+NEVH_API size_t nevh_system_dof(const nevh_system *);
+
+/* Effects in the order in which they were first named. */
+NEVH_API size_t nevh_system_effect_count(const nevh_system *);
+/* NULL when i is out of range. */
+NEVH_API const char *nevh_system_effect_name(const nevh_system *, size_t i);
+/* false for an unknown effect, too. */
+NEVH_API bool nevh_system_effect_on(const nevh_system *, const char *effect);
+
+/* The traits that follow from the declarations of the enabled terms alone,
+   an or of nevh_trait.  A term that reads coordinates and momenta makes the
+   sum non-separable here; nevh_system_probe looks into it.
+   cost     one pass over the terms; thread-safe */
+NEVH_API unsigned nevh_system_traits(const nevh_system *);
+
+/* What values of H alone say about separability. */
+typedef struct {
+    bool separable;
+    const char *term; /* the term with the largest mixed part; NULL if no term
+                         reads coordinates and momenta */
+    double mixed;     /* |H(q1,p1) + H(q2,p2) - H(q1,p2) - H(q2,p1)| of that
+                         term over the size of its four values; rounding
+                         where the term is a sum T(p) + V(q) */
+    size_t states;    /* pairs of states the term could be evaluated at */
+} nevh_separability;
+
+/* Evaluates every enabled term that reads coordinates and momenta at pairs of
+   states around (t, q, p), to see whether it is a sum T(p) + V(q).
+   q, p     in, n each; NULL: zeros
+   scale    in, 2n lengths over which coordinates and then momenta vary;
+            NULL: the size of q and p, 1 where all are 0
+   returns  NEVH_OK; NEVH_EDOM when a term could be evaluated at no pair (then
+            separable is false); NEVH_ENOMEM; the system's own status
+   cost     64 values of each such term instance, thread-safe */
+NEVH_API int nevh_system_probe(const nevh_system *, double t, const double q[],
+                               const double p[], const double scale[],
+                               nevh_separability *result);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,22 @@
+/* nevh: the explicit Euler method.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "schemes_private.h"
+
+static const double a[] = {0}, b[] = {1}, c[] = {0};
+static const nevh_butcher table = {1, a, b, c};
+
+const nevh_integrator nevh__euler = {
+    .name = "euler",
+    .aliases = "forward-euler, explicit-euler",
+    .source = "L. Euler, Institutiones calculi integralis I (1768), sec. 650",
+    .order = 1,
+    .stages = 1,
+    .gradients = 1,
+    .symplectic = NEVH_NO,
+    .symmetric = NEVH_NO,
+    .explicit_form = NEVH_YES,
+    .preserves_energy = NEVH_NO,
+    .kernel = &nevh_runge_kutta_kernel,
+    .table = &table,
+};
+NEVH__PUBLISH(euler);

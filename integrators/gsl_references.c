@@ -1,0 +1,38 @@
+/* nevh: reference steppers that come with GSL.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gsl_private.h"
+#include "schemes_private.h"
+
+const nevh_integrator nevh__gsl_rkf45 = {
+    .name = "gsl-rkf45",
+    .aliases = "gsl_odeiv2_step_rkf45, fehlberg45",
+    .source = "E. Fehlberg, NASA TR R-315 (1969), table III; as in GSL, which "
+              "goes on with the solution of order 5",
+    .order = 5,
+    .stages = 6,
+    .gradients = 6,
+    .symplectic = NEVH_NO,
+    .symmetric = NEVH_NO,
+    .explicit_form = NEVH_YES,
+    .preserves_energy = NEVH_NO,
+    .kernel = &nevh__gsl_kernel,
+    .table = &gsl_odeiv2_step_rkf45,
+};
+NEVH__PUBLISH(gsl_rkf45);
+
+const nevh_integrator nevh__gsl_rk8pd = {
+    .name = "gsl-rk8pd",
+    .aliases = "gsl_odeiv2_step_rk8pd, prince-dormand8",
+    .source = "P. J. Prince, J. R. Dormand, High order embedded Runge-Kutta "
+              "formulae, J. Comput. Appl. Math. 7 (1981) 67-75; as in GSL",
+    .order = 8,
+    .stages = 13,
+    .gradients = 13,
+    .symplectic = NEVH_NO,
+    .symmetric = NEVH_NO,
+    .explicit_form = NEVH_YES,
+    .preserves_energy = NEVH_NO,
+    .kernel = &nevh__gsl_kernel,
+    .table = &gsl_odeiv2_step_rk8pd,
+};
+NEVH__PUBLISH(gsl_rk8pd);

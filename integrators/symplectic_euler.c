@@ -1,0 +1,45 @@
+/* nevh: the symplectic Euler method, in both orders.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "schemes_private.h"
+
+static const double weights[] = {1, 1};
+static const nevh_splitting kick_drift = {NEVH_KICK, 2, weights};
+static const nevh_splitting drift_kick = {NEVH_DRIFT, 2, weights};
+
+const nevh_integrator nevh__symplectic_euler_a = {
+    .name = "symplectic-euler-a",
+    .aliases = "SymplecticEulerA, ARKODE_SPRK_EULER_1_1",
+    .source = "R. de Vogelaere, Methods of integration which preserve the "
+              "contact transformation property of the Hamilton equations, "
+              "Notre Dame report 4 (1956); kick, then drift",
+    .order = 1,
+    .stages = 1,
+    .gradients = 1,
+    .symplectic = NEVH_YES,
+    .symmetric = NEVH_NO,
+    .explicit_form = NEVH_YES,
+    .preserves_energy = NEVH_NO,
+    .needs = NEVH_SEPARABLE,
+    .kernel = &nevh_splitting_kernel,
+    .table = &kick_drift,
+};
+NEVH__PUBLISH(symplectic_euler_a);
+
+const nevh_integrator nevh__symplectic_euler_b = {
+    .name = "symplectic-euler-b",
+    .aliases = "SymplecticEulerB",
+    .source = "R. de Vogelaere, Methods of integration which preserve the "
+              "contact transformation property of the Hamilton equations, "
+              "Notre Dame report 4 (1956); drift, then kick",
+    .order = 1,
+    .stages = 1,
+    .gradients = 1,
+    .symplectic = NEVH_YES,
+    .symmetric = NEVH_NO,
+    .explicit_form = NEVH_YES,
+    .preserves_energy = NEVH_NO,
+    .needs = NEVH_SEPARABLE,
+    .kernel = &nevh_splitting_kernel,
+    .table = &drift_kick,
+};
+NEVH__PUBLISH(symplectic_euler_b);

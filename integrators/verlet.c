@@ -1,0 +1,45 @@
+/* nevh: the Stoermer-Verlet method (leapfrog), in both orders.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "schemes_private.h"
+
+static const double weights[] = {0.5, 1, 0.5};
+static const nevh_splitting kick_first = {NEVH_KICK, 3, weights};
+static const nevh_splitting drift_first = {NEVH_DRIFT, 3, weights};
+
+const nevh_integrator nevh__verlet = {
+    .name = "verlet",
+    .aliases = "stormer-verlet, velocity-verlet, leapfrog",
+    .source = "E. Hairer, C. Lubich, G. Wanner, Geometric numerical "
+              "integration illustrated by the Stoermer-Verlet method, Acta "
+              "Numerica 12 (2003) 399, eq. (1.15); kick, drift, kick",
+    .order = 2,
+    .stages = 1,
+    .gradients = 1,
+    .symplectic = NEVH_YES,
+    .symmetric = NEVH_YES,
+    .explicit_form = NEVH_YES,
+    .preserves_energy = NEVH_NO,
+    .needs = NEVH_SEPARABLE,
+    .kernel = &nevh_splitting_kernel,
+    .table = &kick_first,
+};
+NEVH__PUBLISH(verlet);
+
+const nevh_integrator nevh__position_verlet = {
+    .name = "position-verlet",
+    .aliases = "PseudoVerletLeapfrog, ARKODE_SPRK_PSEUDO_LEAPFROG_2_2",
+    .source = "M. Tuckerman, B. J. Berne, G. J. Martyna, Reversible multiple "
+              "time scale molecular dynamics, J. Chem. Phys. 97 (1992) 1990, "
+              "eq. (2.22); drift, kick, drift",
+    .order = 2,
+    .stages = 1,
+    .gradients = 1,
+    .symplectic = NEVH_YES,
+    .symmetric = NEVH_YES,
+    .explicit_form = NEVH_YES,
+    .preserves_energy = NEVH_NO,
+    .needs = NEVH_SEPARABLE,
+    .kernel = &nevh_splitting_kernel,
+    .table = &drift_first,
+};
+NEVH__PUBLISH(position_verlet);

@@ -1,0 +1,61 @@
+/* nevh: the tools of a kernel.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "work_private.h"
+#include "system/system_private.h"
+
+int nevh_work_fail(nevh_work *w, int status, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    nevh__vfail(w->report, status, format, arguments);
+    va_end(arguments);
+    return status;
+}
+
+int nevh__fail_range(nevh_work *w, double t, double h) {
+    return nevh_work_fail(w, NEVH_EDOM,
+                          "the step from t = %.9g by h = %g leaves the range "
+                          "of numbers: take a smaller one",
+                          t, h);
+}
+
+int nevh_work_gradient(nevh_work *w, size_t points, const double t[],
+                       const double q[], const double p[], double dh_dq[],
+                       double dh_dp[]) {
+    int status = nevh_field_gradient(w->field, points, t, q, p, dh_dq, dh_dp);
+    if (status)
+        nevh_work_fail(w, status, "%s", nevh_field_message(w->field));
+    return status;
+}
+
+/* The sum of x - x over the new values: 0 if all are finite, NaN otherwise. */
+static double check(size_t count, const double y[], const double d[],
+                    const double carry[]) {
+    double sum = 0;
+    for (size_t i = 0; i < count; i++) {
+        double next = y[i] + (d[i] + carry[i]);
+        sum += next - next;
+    }
+    return sum;
+}
+
+/* What d + carry loses by rounding is let go: it is below the last bit of the
+   carry.  The sum with y is exact in two parts, whichever is larger. */
+static void add(size_t count, double y[], const double d[], double carry[]) {
+    for (size_t i = 0; i < count; i++) {
+        double x = d[i] + carry[i], next = y[i] + x, part = next - y[i];
+        carry[i] = (y[i] - (next - part)) + (x - part);
+        y[i] = next;
+    }
+}
+
+int nevh_work_commit(nevh_work *w, size_t count, double q[], const double dq[],
+                     double carry_q[], double p[], const double dp[],
+                     double carry_p[]) {
+    if (check(count, q, dq, carry_q) + check(count, p, dp, carry_p) != 0)
+        return nevh_work_fail(w, NEVH_EDOM,
+                              "the new state is not a finite number: take a "
+                              "smaller step");
+    add(count, q, dq, carry_q);
+    add(count, p, dp, carry_p);
+    return NEVH_OK;
+}

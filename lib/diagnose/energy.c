@@ -1,0 +1,141 @@
+/* nevh: the energy observer.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradient/field_private.h"
+#include "diagnose/trend_private.h"
+#include <math.h>
+#include <stdlib.h>
+
+/* Below this part of the largest effect, H0 is no measure of the energy. */
+static const double cancelled = 1e-6;
+
+struct nevh_energy {
+    nevh_field *field; /* for values only */
+    size_t n, width;
+    bool begun;
+    double *t, *h, *initial, *scale; /* width each */
+    double *effects;
+    double *state; /* 2n: one lane */
+    nevh__trend *trend;
+    nevh__report report;
+};
+
+static int plan(nevh_energy *e, const nevh_system *s) {
+    size_t width = e->width;
+    e->n = s->n;
+    /* Values need no steps; the method only must not ask for gradients. */
+    e->field = nevh_field_new(
+        s, &(nevh_options){.gradient = nevh_central2, .width = width});
+    if (!e->field)
+        return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
+    if (e->field->report.status)
+        return nevh__fail_as(&e->report, &e->field->report);
+    e->t = nevh__array(width, sizeof *e->t);
+    e->h = nevh__array(width, sizeof *e->h);
+    e->initial = nevh__array(width, sizeof *e->initial);
+    e->scale = nevh__array(width, sizeof *e->scale);
+    e->trend = nevh__array(width, sizeof *e->trend);
+    e->effects = nevh__array(s->n_effects, sizeof *e->effects);
+    e->state = nevh__array(2 * s->n, sizeof *e->state);
+    if (e->t && e->h && e->initial && e->scale && e->trend && e->effects &&
+        e->state)
+        return NEVH_OK;
+    return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
+}
+
+nevh_energy *nevh_energy_new(const nevh_system *system, size_t width) {
+    nevh_energy *e = system ? nevh__array(1, sizeof *e) : NULL;
+    if (!e)
+        return NULL;
+    e->width = width ? width : 1;
+    if (plan(e, system) != NEVH_ENOMEM)
+        return e;
+    nevh_energy_free(e);
+    return NULL;
+}
+
+void nevh_energy_free(nevh_energy *e) {
+    if (!e)
+        return;
+    nevh_field_free(e->field);
+    free(e->t);
+    free(e->h);
+    free(e->initial);
+    free(e->scale);
+    free(e->trend);
+    free(e->effects);
+    free(e->state);
+    free(e);
+}
+
+int nevh_energy_status(const nevh_energy *e) {
+    return e ? e->report.status : NEVH_ENOMEM;
+}
+
+const char *nevh_energy_message(const nevh_energy *e) {
+    return e ? e->report.text : "out of memory";
+}
+
+/* |H0| of what reads something, or the largest of its effects. */
+static int find_scale(nevh_energy *e, size_t lane, double t, const double q[],
+                      const double p[]) {
+    double sum = 0, most = 0;
+    for (size_t k = 0; k < e->n; k++) {
+        e->state[k] = q[k * e->width + lane];
+        e->state[e->n + k] = p[k * e->width + lane];
+    }
+    int status = nevh__field_moving_effects(e->field, t, e->state,
+                                            e->state + e->n, e->effects);
+    for (size_t i = 0; !status && i < e->field->system->n_effects; i++) {
+        sum += e->effects[i];
+        most = fmax(most, fabs(e->effects[i]));
+    }
+    e->scale[lane] = fabs(sum) >= cancelled * most ? fabs(sum) : most;
+    if (e->scale[lane] == 0)
+        e->scale[lane] = 1; /* H is 0 at the start: errors are absolute */
+    return status;
+}
+
+static int begin(nevh_energy *e, double t, const double q[], const double p[]) {
+    int status = NEVH_OK;
+    for (size_t lane = 0; !status && lane < e->width; lane++) {
+        e->initial[lane] = e->h[lane];
+        status = find_scale(e, lane, t, q, p);
+    }
+    e->begun = !status;
+    return status;
+}
+
+int nevh_energy_observe(void *energy, size_t step, double t, const double q[],
+                        const double p[]) {
+    nevh_energy *e = energy;
+    (void)step;
+    if (e->report.status)
+        return e->report.status;
+    for (size_t lane = 0; lane < e->width; lane++)
+        e->t[lane] = t;
+    int status = nevh_field_value(e->field, e->width, e->t, q, p, e->h);
+    if (!status && !e->begun)
+        status = begin(e, t, q, p);
+    if (status)
+        return nevh__fail_as(&e->report, &e->field->report);
+    for (size_t lane = 0; lane < e->width; lane++)
+        nevh__trend_add(&e->trend[lane], t,
+                        (e->h[lane] - e->initial[lane]) / e->scale[lane]);
+    return NEVH_OK;
+}
+
+nevh_energy_report nevh_energy_result(const nevh_energy *e, size_t lane) {
+    nevh_energy_report report = {0};
+    if (!e || !e->begun || lane >= e->width)
+        return report;
+    report.initial = e->initial[lane];
+    report.scale = e->scale[lane];
+    nevh__trend_report(&e->trend[lane], &report);
+    return report;
+}
+
+const char *nevh_verdict_name(nevh_verdict verdict) {
+    static const char *const names[] = {"bounded", "random-walk", "drifts",
+                                        "unstable"};
+    return verdict <= NEVH_UNSTABLE ? names[verdict] : "unknown";
+}

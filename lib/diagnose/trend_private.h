@@ -1,0 +1,29 @@
+/* nevh: does a series grow?
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_TREND_PRIVATE_H
+#define NEVH_TREND_PRIVATE_H
+
+#include <nevh/diagnose.h>
+
+/* The series is kept as bins of equally many samples; when all are full,
+   neighbours are merged.  So any length takes the same memory, and there are
+   always between NEVH__BINS / 2 and NEVH__BINS of them in a long run. */
+enum { NEVH__BINS = 200 };
+
+typedef struct {
+    double t, e, most; /* sums of time and error, largest |error| */
+    size_t samples;
+} nevh__bin;
+
+typedef struct {
+    size_t samples, bins, per_bin; /* per_bin: samples of a full bin */
+    double squares, most, last;
+    double mean_t, mean_e, tt, te; /* for the straight line */
+    nevh__bin bin[NEVH__BINS];
+} nevh__trend;
+
+void nevh__trend_add(nevh__trend *, double t, double e);
+/* Everything of the report but initial and scale. */
+void nevh__trend_report(const nevh__trend *, nevh_energy_report *);
+
+#endif

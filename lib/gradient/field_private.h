@@ -1,0 +1,127 @@
+/* nevh: inside a field.
+   SPDX-License-Identifier: GPL-3.0-or-later
+
+   Every kernel works on blocks.  A *cell* is one instance of a term at one
+   lane; a *column* is one point at which a term is evaluated; columns stand
+   side by side in rows, one row a variable that the term reads:
+
+       column = (group * copies + copy) * lanes + lane
+
+   where a group is an instance (values, exact gradients: one copy) or a
+   variable of an instance (differences: one copy a stencil point).  Blocks
+   are padded to whole vectors; the padding repeats column 0. */
+#ifndef NEVH_FIELD_PRIVATE_H
+#define NEVH_FIELD_PRIVATE_H
+
+#include "system/system_private.h"
+#include <nevh/gradient.h>
+
+struct nevh_gradient {
+    const char *name;
+    int order;         /* 0: without truncation error */
+    size_t offsets;    /* points x +- delta, ... on each side; 0: exact */
+    double weights[4]; /* dH/dx = sum of weights[j] times the slope of the
+                          chord from x - (j+1) delta to x + (j+1) delta */
+};
+
+/* Terms are evaluated in blocks of about this many columns. */
+enum { NEVH__COLUMNS = 128 };
+
+typedef struct {
+    const nevh__term *term;
+    size_t nq, np, nv; /* variables of an instance: coordinates, momenta */
+    double *delta;     /* count x nv; NULL without differences */
+    uint64_t values;
+} nevh__planned;
+
+struct nevh_field {
+    const nevh_system *system;
+    unsigned long revision;
+    const nevh_gradient *gradient;
+    size_t n;
+    double *scale; /* 2n */
+    nevh__planned *terms;
+    size_t n_terms, instances;
+    size_t capacity;  /* columns that the rows below have room for */
+    double *rows;     /* variables and constants of a block */
+    double *slopes;   /* exact derivatives of a block */
+    double *times;    /* capacity */
+    double *zeros;    /* capacity */
+    double *h;        /* capacity */
+    double *sums;     /* 2 x capacity */
+    double *one;      /* one state of a scalar term */
+    double *jacobian; /* 6n, made by nevh_gsl_system */
+    uint64_t gradients;
+    nevh__report report;
+};
+
+/* Where the states are, and which of them a block takes.  The first seven are
+   given; nevh__block_next sets the rest. */
+typedef struct {
+    size_t width; /* of q and p: the distance between their rows */
+    size_t until; /* lanes to be done */
+    const double *t, *q, *p;
+    size_t copies;        /* columns of a group and lane */
+    size_t per_instance;  /* groups an instance has */
+    size_t lane, lanes;   /* the lanes of this block */
+    size_t group, groups; /* and its groups */
+    size_t used, stride;  /* columns; the same padded: the rows' length */
+} nevh__block;
+
+/* Fills rows and times for the next block of a term; false after the last. */
+bool nevh__block_next(nevh_field *, const nevh__planned *, nevh__block *);
+/* Evaluates the term on the filled block, counts, and checks that every value
+   is finite. */
+int nevh__block_values(nevh_field *, nevh__planned *, const nevh__block *);
+/* Records that a term is not finite in a column; `what` is its value. */
+int nevh__block_fail(nevh_field *, const nevh__planned *, const nevh__block *,
+                     size_t column, double what);
+
+/* All lanes of states side by side. */
+static inline nevh__block nevh__block_over(size_t width, const double t[],
+                                           const double q[], const double p[],
+                                           size_t copies, size_t per_instance) {
+    return (nevh__block){.width = width,
+                         .until = width,
+                         .t = t,
+                         .q = q,
+                         .p = p,
+                         .copies = copies,
+                         .per_instance = per_instance};
+}
+
+static inline const double *nevh__row(const nevh_field *f, const nevh__block *b,
+                                      size_t k) {
+    return f->rows + k * b->stride;
+}
+/* The index of an instance's variable among the system's coordinates (first
+   nq of them) or momenta. */
+static inline size_t nevh__index(const nevh__planned *term, size_t instance,
+                                 size_t k) {
+    const nevh_term *is = &term->term->is;
+    return k < term->nq ? is->q[instance * term->nq + k]
+                        : is->p[instance * term->np + k - term->nq];
+}
+
+/* The two kernels.  Outputs are zeroed before; either may be NULL. */
+int nevh__central(nevh_field *, nevh__planned *, size_t width, const double t[],
+                  const double q[], const double p[], double dh_dq[],
+                  double dh_dp[]);
+int nevh__exact(nevh_field *, nevh__planned *, size_t width, const double t[],
+                const double q[], const double p[], double dh_dq[],
+                double dh_dp[]);
+
+/* How far rounding in the values of H may move dH/dq and dH/dp at one state
+   (width 1): the sum of epsilon |h| / delta over what reads each variable, n
+   each.  Zeros where gradients are exact. */
+int nevh__field_noise(nevh_field *, double t, const double q[],
+                      const double p[], double noise_q[], double noise_p[]);
+
+/* As nevh_field_effects, leaving out terms that read nothing. */
+int nevh__field_moving_effects(nevh_field *, double t, const double q[],
+                               const double p[], double h[]);
+
+/* NEVH_OK, or why the field cannot be used (again). */
+int nevh__field_ready(nevh_field *);
+
+#endif

@@ -1,0 +1,109 @@
+/* nevh: values of H, of its effects, and their rounding.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradient/field_private.h"
+#include <float.h>
+#include <math.h>
+
+/* Neumaier's compensated sum. */
+static void add(double *sum, double *lost, double x) {
+    double next = *sum + x;
+    *lost += fabs(*sum) >= fabs(x) ? (*sum - next) + x : (x - next) + *sum;
+    *sum = next;
+}
+
+/* Adds all instances of a term at a few lanes to sums and lost digits. */
+static int add_term(nevh_field *f, nevh__planned *term, nevh__block b,
+                    double *sum, double *lost) {
+    int status = NEVH_OK;
+    while (!status && nevh__block_next(f, term, &b)) {
+        status = nevh__block_values(f, term, &b);
+        for (size_t k = 0; !status && k < b.used; k++)
+            add(sum + b.lane + k % b.lanes, lost + b.lane + k % b.lanes,
+                f->h[k]);
+    }
+    return status;
+}
+
+/* `lanes` values of H from the first of those given; lanes <= capacity. */
+static int value_lanes(nevh_field *f, size_t lanes, const nevh__block *from,
+                       double h[]) {
+    double *sum = f->sums, *lost = sum + f->capacity;
+    for (size_t lane = 0; lane < lanes; lane++)
+        sum[lane] = lost[lane] = 0;
+    int status = NEVH_OK;
+    for (size_t i = 0; !status && i < f->n_terms; i++)
+        status = add_term(f, &f->terms[i], *from, sum, lost);
+    for (size_t lane = 0; lane < lanes; lane++)
+        h[lane] = sum[lane] + lost[lane];
+    return status;
+}
+
+int nevh_field_value(nevh_field *f, size_t width, const double t[],
+                     const double q[], const double p[], double h[]) {
+    int status = nevh__field_ready(f);
+    for (size_t lane = 0, lanes; !status && lane < width; lane += lanes) {
+        lanes = width - lane < f->capacity ? width - lane : f->capacity;
+        nevh__block b =
+            nevh__block_over(width, t + lane, q + lane, p + lane, 1, 1);
+        b.until = lanes;
+        status = value_lanes(f, lanes, &b, h + lane);
+    }
+    return status;
+}
+
+static int effects(nevh_field *f, bool constants, double t, const double q[],
+                   const double p[], double h[]) {
+    int status = nevh__field_ready(f);
+    for (size_t i = 0; !status && i < f->system->n_effects; i++)
+        h[i] = 0;
+    for (size_t i = 0; !status && i < f->n_terms; i++) {
+        nevh__planned *term = &f->terms[i];
+        double sum = 0, lost = 0;
+        nevh__block b = nevh__block_over(1, &t, q, p, 1, 1);
+        if (!constants && !term->nv && !term->term->is.time)
+            continue;
+        status = add_term(f, term, b, &sum, &lost);
+        h[term->term->effect] += sum + lost;
+    }
+    return status;
+}
+
+int nevh_field_effects(nevh_field *f, double t, const double q[],
+                       const double p[], double h[]) {
+    return effects(f, true, t, q, p, h);
+}
+
+int nevh__field_moving_effects(nevh_field *f, double t, const double q[],
+                               const double p[], double h[]) {
+    return effects(f, false, t, q, p, h);
+}
+
+static int add_noise(nevh_field *f, nevh__planned *term, nevh__block b,
+                     double noise_q[], double noise_p[]) {
+    int status = NEVH_OK;
+    while (!status && nevh__block_next(f, term, &b)) {
+        status = nevh__block_values(f, term, &b);
+        for (size_t i = 0; !status && i < b.groups * term->nv; i++) {
+            size_t at = i / term->nv, k = i % term->nv;
+            size_t instance = b.group + at;
+            double *noise = k < term->nq ? noise_q : noise_p;
+            noise[nevh__index(term, instance, k)] +=
+                DBL_EPSILON * fabs(f->h[at]) /
+                term->delta[instance * term->nv + k];
+        }
+    }
+    return status;
+}
+
+int nevh__field_noise(nevh_field *f, double t, const double q[],
+                      const double p[], double noise_q[], double noise_p[]) {
+    for (size_t i = 0; i < f->n; i++)
+        noise_q[i] = noise_p[i] = 0;
+    int status = NEVH_OK;
+    for (size_t i = 0; !status && i < f->n_terms; i++) {
+        nevh__block b = nevh__block_over(1, &t, q, p, 1, 1);
+        if (f->terms[i].delta)
+            status = add_noise(f, &f->terms[i], b, noise_q, noise_p);
+    }
+    return status;
+}

@@ -1,0 +1,42 @@
+# Every object is in libnevh_core.la.  libnevh.la is all of it with only
+# NEVH_API visible; tests that look inside link libnevh_core.la itself.
+noinst_LTLIBRARIES += libnevh_core.la
+libnevh_core_la_LIBADD = $(GSL_LIBS)
+libnevh_core_la_SOURCES = \
+	lib/system/system_private.h \
+	lib/system/status.c \
+	lib/system/memory.c \
+	lib/system/system.c \
+	lib/system/values.c \
+	lib/system/probe.c \
+	lib/gradient/field_private.h \
+	lib/gradient/methods.c \
+	lib/gradient/field.c \
+	lib/gradient/block.c \
+	lib/gradient/central.c \
+	lib/gradient/exact.c \
+	lib/gradient/value.c \
+	lib/gradient/gsl_system.c \
+	lib/implicit/implicit_private.h \
+	lib/implicit/fixed_point.c \
+	lib/implicit/rescue.c \
+	lib/run/stepper_private.h \
+	lib/run/structure.c \
+	lib/run/stepper.c \
+	lib/run/save.c \
+	lib/run/run.c \
+	lib/diagnose/energy.c \
+	lib/diagnose/trend_private.h \
+	lib/diagnose/trend.c \
+	lib/diagnose/symplecticity.c
+
+# -version-info C:R:A, at each release, beginning with that of the last one:
+#   the library's code changed at all          R + 1
+#   functions or data added, changed, removed  C + 1, R = 0
+#   of these, some added, none changed         A + 1
+#   of these, some changed or removed          A = 0
+# 0.1.0  0:0:0
+lib_LTLIBRARIES += libnevh.la
+libnevh_la_SOURCES =
+libnevh_la_LIBADD = libnevh_core.la
+libnevh_la_LDFLAGS = -version-info 0:0:0 -no-undefined $(SANITIZE_FLAGS)

@@ -1,0 +1,39 @@
+/* nevh: the driver.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "run/stepper_private.h"
+
+/* Shows the state to the observers whose turn it is. */
+static int show(nevh_stepper *s, size_t step, size_t steps, double t,
+                const double q[], const double p[],
+                const nevh_observer observers[], size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        size_t every = observers[i].every ? observers[i].every : 1;
+        if (step % every != 0 && step != steps)
+            continue;
+        if (observers[i].observe(observers[i].data, step, t, q, p))
+            return nevh__fail(&s->report, NEVH_STOPPED,
+                              "observer %zu stopped the run at t = %.9g", i, t);
+    }
+    return NEVH_OK;
+}
+
+int nevh_run(nevh_stepper *s, double t0, double h, size_t steps, double q[],
+             double p[], const nevh_observer observers[], size_t count) {
+    if (!s)
+        return NEVH_ENOMEM;
+    s->taken = 0;
+    int status = nevh__begin(s, t0, h, q, p);
+    if (!status)
+        status = show(s, 0, steps, t0, q, p, observers, count);
+    while (!status && s->taken < steps) {
+        status = nevh__advance(s, t0 + (double)s->taken * h, h, q, p);
+        if (status)
+            break;
+        s->taken++;
+        status = show(s, s->taken, steps, t0 + (double)s->taken * h, q, p,
+                      observers, count);
+    }
+    if (s->planned && s->taken > 0)
+        nevh__remember(s, q, p);
+    return status;
+}

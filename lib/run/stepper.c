@@ -1,0 +1,200 @@
+/* nevh: a stepper is planned once and applied many times.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "run/stepper_private.h"
+#include "gradient/field_private.h"
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool copy_array(const double **array, size_t count) {
+    return !*array || (*array = nevh__copy(*array, count, sizeof **array));
+}
+
+/* All four are taken over first, so that none is left borrowed. */
+static bool own_options(nevh_options *o, size_t n) {
+    bool all = copy_array(&o->gradient_steps, 2 * n);
+    all = copy_array(&o->scale, 2 * n) && all;
+    all = copy_array(&o->q, n * o->width) && all;
+    return copy_array(&o->p, n * o->width) && all;
+}
+
+static int plan_memory(nevh_stepper *s) {
+    nevh_work *w = &s->work;
+    w->memory = nevh__array(w->memory_rows * w->width, sizeof(double));
+    w->scratch = nevh__array(w->scratch_size, sizeof(double));
+    s->last_q = nevh__array(w->size, sizeof(double));
+    s->last_p = nevh__array(w->size, sizeof(double));
+    if (w->memory && w->scratch && s->last_q && s->last_p)
+        return NEVH_OK;
+    return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
+}
+
+static int plan_field(nevh_stepper *s) {
+    nevh_work *w = &s->work;
+    w->field = nevh_field_new(w->system, &s->options);
+    if (!w->field)
+        return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
+    w->scale = w->field->scale;
+    return w->field->report.status
+               ? nevh__fail_as(&s->report, &w->field->report)
+               : NEVH_OK;
+}
+
+static int plan(nevh_stepper *s, const nevh_integrator *integrator) {
+    nevh_work *w = &s->work;
+    if (w->system->report.status)
+        return nevh__fail_as(&s->report, &w->system->report);
+    if (!integrator)
+        return nevh__fail(&s->report, NEVH_EINVAL,
+                          "the integrator is NULL: is its name spelt right?");
+    if (!(s->options.tolerance >= 0 && s->options.tolerance <= DBL_MAX))
+        return nevh__fail(&s->report, NEVH_EINVAL,
+                          "the tolerance %g is not a positive number",
+                          s->options.tolerance);
+    int status = nevh__check_structure(s);
+    if (!status)
+        status = plan_field(s);
+    if (!status)
+        status = integrator->kernel->plan(w);
+    return status ? status : plan_memory(s);
+}
+
+nevh_stepper *nevh_stepper_new(const nevh_system *system,
+                               const nevh_integrator *integrator,
+                               const nevh_options *options) {
+    nevh_stepper *s = system ? nevh__array(1, sizeof *s) : NULL;
+    if (!s)
+        return NULL;
+    if (options)
+        s->options = *options;
+    s->options.width = s->options.width ? s->options.width : 1;
+    size_t n = system->n, width = s->options.width;
+    bool owned = own_options(&s->options, system->report.status ? 0 : n);
+    s->work = (nevh_work){.integrator = integrator,
+                          .system = system,
+                          .options = &s->options,
+                          .n = n,
+                          .width = width,
+                          .size = n * width,
+                          .report = &s->report};
+    int status = owned ? plan(s, integrator) : NEVH_ENOMEM;
+    s->planned = status == NEVH_OK;
+    if (status != NEVH_ENOMEM)
+        return s;
+    nevh_stepper_free(s);
+    return NULL;
+}
+
+void nevh_stepper_free(nevh_stepper *s) {
+    if (!s)
+        return;
+    if (s->work.plan && s->work.integrator->kernel->unplan)
+        s->work.integrator->kernel->unplan(&s->work);
+    nevh_field_free(s->work.field);
+    free((double *)s->options.gradient_steps);
+    free((double *)s->options.scale);
+    free((double *)s->options.q);
+    free((double *)s->options.p);
+    free(s->work.memory);
+    free(s->work.scratch);
+    free(s->last_q);
+    free(s->last_p);
+    free(s);
+}
+
+int nevh_stepper_status(const nevh_stepper *s) {
+    return s ? s->report.status : NEVH_ENOMEM;
+}
+
+const char *nevh_stepper_message(const nevh_stepper *s) {
+    return s ? s->report.text : "out of memory";
+}
+
+static void forget_lane(nevh_stepper *s, size_t lane) {
+    nevh_work *w = &s->work;
+    for (size_t row = 0; row < w->memory_rows; row++)
+        w->memory[row * w->width + lane] = 0;
+}
+
+void nevh_stepper_reset(nevh_stepper *s) {
+    for (size_t lane = 0; s->planned && lane < s->work.width; lane++)
+        forget_lane(s, lane);
+    s->has_last = false;
+}
+
+static bool same_lane(const nevh_stepper *s, size_t lane, const double q[],
+                      const double p[]) {
+    size_t width = s->work.width;
+    for (size_t i = lane; i < s->work.size; i += width)
+        if (memcmp(&q[i], &s->last_q[i], sizeof *q) ||
+            memcmp(&p[i], &s->last_p[i], sizeof *p))
+            return false;
+    return true;
+}
+
+/* t0 + i h and the sum of steps agree to a few roundings. */
+static bool same_time(const nevh_stepper *s, double t, double h) {
+    double slack = 8 * DBL_EPSILON * (fabs(t) + fabs(s->last_t) + fabs(h));
+    return fabs(t - s->last_t) <= slack;
+}
+
+int nevh__begin(nevh_stepper *s, double t, double h, const double q[],
+                const double p[]) {
+    if (!s->planned)
+        return s->report.status;
+    s->report.status = NEVH_OK;
+    s->report.text[0] = '\0';
+    if (!isfinite(t) || !isfinite(h))
+        return nevh__fail(&s->report, NEVH_EINVAL,
+                          "time %g or step %g is not a finite number", t, h);
+    if (!s->has_last || !same_time(s, t, h))
+        nevh_stepper_reset(s);
+    else
+        for (size_t lane = 0; lane < s->work.width; lane++)
+            if (!same_lane(s, lane, q, p))
+                forget_lane(s, lane);
+    return NEVH_OK;
+}
+
+int nevh__advance(nevh_stepper *s, double t, double h, double q[], double p[]) {
+    nevh_work *w = &s->work;
+    int status = w->integrator->kernel->step(w, t, h, q, p);
+    if (!status)
+        s->last_t = t + h;
+    return status;
+}
+
+/* Called where the state leaves the library's hands. */
+void nevh__remember(nevh_stepper *s, const double q[], const double p[]) {
+    s->has_last = true;
+    memcpy(s->last_q, q, s->work.size * sizeof *q);
+    memcpy(s->last_p, p, s->work.size * sizeof *p);
+}
+
+int nevh_stepper_apply(nevh_stepper *s, double t, double h, double q[],
+                       double p[]) {
+    int status = nevh__begin(s, t, h, q, p);
+    if (!status)
+        status = nevh__advance(s, t, h, q, p);
+    if (!status)
+        nevh__remember(s, q, p);
+    return status;
+}
+
+nevh_counts nevh_stepper_counts(const nevh_stepper *s) {
+    nevh_counts counts = {0};
+    if (s->work.field)
+        counts = nevh_field_counts(s->work.field);
+    counts.sweeps = s->work.sweeps;
+    counts.rescues = s->work.rescues;
+    return counts;
+}
+
+nevh_field *nevh_stepper_field(nevh_stepper *s) {
+    return s->work.field;
+}
+
+size_t nevh_stepper_taken(const nevh_stepper *s) {
+    return s->taken;
+}

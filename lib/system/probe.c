@@ -1,0 +1,138 @@
+/* nevh: is H a sum T(p) + V(q)?  Asked of its values alone.
+
+   For two states (q1, p1) and (q2, p2) the mixed difference
+   D = H(q1,p1) + H(q2,p2) - H(q1,p2) - H(q2,p1) vanishes if and only if H is
+   such a sum.  A term is tried at pairs of states around the one given, near
+   and far, since a far one may lie outside the domain of H.  What is called
+   rounding here is kept tight: to take a separable H for a coupled one leads
+   to a refusal that says why, the opposite to a wrong orbit.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "system/system_private.h"
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PAIRS = 16 }; /* two of them, four values each, fill a block */
+static const double roundings = 16;
+
+typedef struct {
+    double t;
+    const double *q, *p, *scale; /* q, p or scale may be NULL */
+    size_t n;
+    uint64_t random;
+} origin;
+
+/* Between -1 and 1, the same on every run. */
+static double random_number(uint64_t *state) {
+    *state = *state * 6364136223846793005u + 1442695040888963407u;
+    return (double)(*state >> 11) * 0x1p-52 - 1;
+}
+
+static double largest(const double x[], size_t n) {
+    double most = 0;
+    for (size_t i = 0; x && i < n; i++)
+        most = fmax(most, fabs(x[i]));
+    return most;
+}
+
+/* The length over which variable i of kind x is varied. */
+static double spread(const origin *o, const double x[], size_t first,
+                     size_t i) {
+    if (o->scale)
+        return o->scale[first + i];
+    double most = x && x[i] != 0 ? fabs(x[i]) : largest(x, o->n);
+    return most > 0 ? most : 1;
+}
+
+/* Writes one variable of both pairs: lanes 0 ... 3 are the first pair's
+   (1,1) (2,2) (1,2) (2,1), lanes 4 ... 7 the second's.  `second` says which
+   lanes take the second state. */
+static void write_row(origin *o, const double x[], size_t first, size_t i,
+                      const double amplitude[2], const bool second[8],
+                      double row[8]) {
+    for (size_t pair = 0; pair < 2; pair++) {
+        double width = amplitude[pair] * spread(o, x, first, i);
+        double base = x ? x[i] : 0;
+        double one = base + width * random_number(&o->random);
+        double two = base + width * random_number(&o->random);
+        for (size_t k = 4 * pair; k < 4 * pair + 4; k++)
+            row[k] = second[k] ? two : one;
+    }
+}
+
+/* The largest mixed difference of an instance, relative; adds to *states. */
+static double probe_instance(const nevh__term *term, size_t instance, origin *o,
+                             double *rows, size_t *states) {
+    static const bool second_q[8] = {0, 1, 0, 1, 0, 1, 0, 1};
+    static const bool second_p[8] = {0, 1, 1, 0, 0, 1, 1, 0};
+    const nevh_term *is = &term->is;
+    double *q = rows, *p = q + 8 * is->nq, *c = p + 8 * is->np;
+    double *t = c + 8 * is->nc, *h = t + 8, *one = h + 8, most = 0;
+    for (size_t k = 0; k < 8 * is->nc; k++)
+        c[k] = is->c[instance * is->nc + k / 8];
+    for (size_t k = 0; k < 8; k++)
+        t[k] = is->time ? o->t : 0;
+    for (size_t round = 0; round < PAIRS / 2; round++) {
+        double amplitude[2] = {ldexp(1, -(int)round), ldexp(0.7, -(int)round)};
+        for (size_t k = 0; k < is->nq; k++)
+            write_row(o, o->q, 0, is->q[instance * is->nq + k], amplitude,
+                      second_q, q + 8 * k);
+        for (size_t k = 0; k < is->np; k++)
+            write_row(o, o->p, o->n, is->p[instance * is->np + k], amplitude,
+                      second_p, p + 8 * k);
+        nevh__term_values(term, 8, 8, t, q, p, c, h, one);
+        for (double *v = h; v < h + 8; v += 4) {
+            double size = fabs(v[0]) + fabs(v[1]) + fabs(v[2]) + fabs(v[3]);
+            if (!isfinite(size))
+                continue;
+            ++*states;
+            if (size > 0)
+                most = fmax(most, fabs((v[0] - v[2]) + (v[1] - v[3])) / size);
+        }
+    }
+    return most;
+}
+
+static int probe_term(const nevh__term *term, origin *o,
+                      nevh_separability *result) {
+    const nevh_term *is = &term->is;
+    double *rows =
+        nevh__array(9 * (is->nq + is->np + is->nc) + 16, sizeof *rows);
+    if (!rows)
+        return NEVH_ENOMEM;
+    double mixed = 0;
+    size_t states = 0;
+    for (size_t i = 0; i < is->count; i++)
+        mixed = fmax(mixed, probe_instance(term, i, o, rows, &states));
+    free(rows);
+    bool separable = states > 0 && mixed <= roundings * DBL_EPSILON;
+    if (!result->term || (result->separable && !separable) ||
+        (result->separable == separable && mixed > result->mixed)) {
+        result->term = is->name;
+        result->mixed = mixed;
+        result->states = states;
+    }
+    result->separable = result->separable && separable;
+    return states ? NEVH_OK : NEVH_EDOM;
+}
+
+int nevh_system_probe(const nevh_system *s, double t, const double q[],
+                      const double p[], const double scale[],
+                      nevh_separability *result) {
+    *result = (nevh_separability){.separable = true};
+    if (nevh_system_status(s))
+        return nevh_system_status(s);
+    origin o = {.t = t, .q = q, .p = p, .scale = scale, .n = s->n, .random = 1};
+    int status = NEVH_OK;
+    for (size_t i = 0; i < s->n_terms && status != NEVH_ENOMEM; i++) {
+        const nevh__term *term = s->terms[i];
+        if (!nevh__term_on(s, term) || !term->is.nq || !term->is.np)
+            continue;
+        int one = probe_term(term, &o, result);
+        status = one ? one : status;
+    }
+    result->separable = result->separable && !status;
+    return status;
+}

@@ -1,0 +1,280 @@
+/* nevh: a system is a list of terms, grouped into effects.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "system/system_private.h"
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+static nevh__effect *effect_named(const nevh_system *s, const char *name) {
+    for (size_t i = 0; i < s->n_effects; i++)
+        if (name && strcmp(s->effects[i].name, name) == 0)
+            return &s->effects[i];
+    return NULL;
+}
+
+static const nevh__term *term_named(const nevh_system *s, const char *name) {
+    for (size_t i = 0; i < s->n_terms; i++)
+        if (strcmp(s->terms[i]->is.name, name) == 0)
+            return s->terms[i];
+    return NULL;
+}
+
+static void term_free(nevh__term *term) {
+    if (!term)
+        return;
+    free((char *)term->is.name);
+    free((size_t *)term->is.q);
+    free((size_t *)term->is.p);
+    free((double *)term->is.c);
+    free(term);
+}
+
+/* Checks one table of indices; `read` is n flags, all false before and after.
+   What is at fault goes to the report. */
+static int check_indices(nevh_system *s, const nevh_term *term, char kind,
+                         const size_t *indices, size_t each, bool *read) {
+    if (each > s->n)
+        return nevh__fail(&s->report, NEVH_EINVAL,
+                          "effect %s: a term reads %zu of %c, but the system "
+                          "has %zu degrees of freedom",
+                          term->effect, each, kind, s->n);
+    for (size_t i = 0; indices && i < term->count; i++) {
+        const size_t *row = indices + i * each;
+        size_t k = 0;
+        while (k < each && row[k] < s->n && !read[row[k]])
+            read[row[k++]] = true;
+        for (size_t done = 0; done < k; done++)
+            read[row[done]] = false;
+        if (k < each)
+            return nevh__fail(
+                &s->report, NEVH_EINVAL,
+                "effect %s, instance %zu: %c[%zu] %s (%zu degrees of freedom, "
+                "counted from 0)",
+                term->effect, i, kind, row[k],
+                row[k] < s->n ? "is read twice" : "is out of range", s->n);
+    }
+    return NEVH_OK;
+}
+
+static int check_tables(nevh_system *s, const nevh_term *term) {
+    bool *read = nevh__array(s->n, sizeof *read);
+    if (!read)
+        return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
+    int status = check_indices(s, term, 'q', term->q, term->nq, read);
+    if (!status)
+        status = check_indices(s, term, 'p', term->p, term->np, read);
+    free(read);
+    return status;
+}
+
+/* `term` with count filled in. */
+static int check_term(nevh_system *s, const nevh_term *term) {
+    if (!term->effect || !term->effect[0])
+        return nevh__fail(&s->report, NEVH_EINVAL,
+                          "a term needs the name of its effect");
+    if (!term->value && !term->block)
+        return nevh__fail(&s->report, NEVH_EINVAL,
+                          "effect %s: a term needs a value or block function",
+                          term->effect);
+    if (term->nc && !term->c)
+        return nevh__fail(&s->report, NEVH_EINVAL,
+                          "effect %s: nc is %zu but c is NULL", term->effect,
+                          term->nc);
+    if (term->name && (!term->name[0] || term_named(s, term->name)))
+        return nevh__fail(&s->report, NEVH_EINVAL,
+                          "effect %s: the term name \"%s\" is %s", term->effect,
+                          term->name, term->name[0] ? "used twice" : "empty");
+    size_t most = term->nq > term->np ? term->nq : term->np;
+    most = term->nc > most ? term->nc : most;
+    if (most && term->count > SIZE_MAX / sizeof(double) / most)
+        return nevh__fail(&s->report, NEVH_EINVAL,
+                          "effect %s: %zu instances are too many", term->effect,
+                          term->count);
+    return check_tables(s, term);
+}
+
+/* count x each indices; 0 ... each-1 for every instance where given none. */
+static size_t *copy_indices(const size_t *from, size_t count, size_t each) {
+    if (from)
+        return nevh__copy(from, count * each, sizeof *from);
+    size_t *to = nevh__array(count * each, sizeof *to);
+    for (size_t i = 0; to && i < count * each; i++)
+        to[i] = i % each;
+    return to;
+}
+
+/* The effect's name, or with the first number that makes it unique. */
+static char *free_name(const nevh_system *s, const char *effect) {
+    char *name = nevh__text("%s", effect);
+    for (size_t k = 2; name && term_named(s, name); k++) {
+        free(name);
+        name = nevh__text("%s %zu", effect, k);
+    }
+    return name;
+}
+
+static nevh__term *copy_term(const nevh_system *s, const nevh_term *from) {
+    nevh__term *term = nevh__array(1, sizeof *term);
+    if (!term)
+        return NULL;
+    term->is = *from;
+    term->is.effect = NULL;
+    term->is.name =
+        from->name ? nevh__text("%s", from->name) : free_name(s, from->effect);
+    term->is.q = copy_indices(from->q, from->count, from->nq);
+    term->is.p = copy_indices(from->p, from->count, from->np);
+    term->is.c = nevh__copy(from->c, from->count * from->nc, sizeof *from->c);
+    if (term->is.name && term->is.q && term->is.p && term->is.c)
+        return term;
+    term_free(term);
+    return NULL;
+}
+
+/* The index of an effect, new if need be; SIZE_MAX when memory is out. */
+static size_t effect_index(nevh_system *s, const char *name) {
+    nevh__effect *effect = effect_named(s, name);
+    if (effect)
+        return (size_t)(effect - s->effects);
+    nevh__effect *effects =
+        nevh__grow(s->effects, s->n_effects + 1, sizeof *effects);
+    if (!effects)
+        return SIZE_MAX;
+    s->effects = effects;
+    char *copy = nevh__text("%s", name);
+    if (!copy)
+        return SIZE_MAX;
+    effects[s->n_effects] = (nevh__effect){.name = copy, .on = true};
+    return s->n_effects++;
+}
+
+/* Makes room first, so that the system is as before when memory is out. */
+static int append(nevh_system *s, const nevh_term *from) {
+    nevh__term **terms =
+        nevh__grow(s->terms, s->n_terms + 1, sizeof(nevh__term *));
+    if (!terms)
+        return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
+    s->terms = terms;
+    nevh__term *term = copy_term(s, from);
+    size_t effect = term ? effect_index(s, from->effect) : SIZE_MAX;
+    if (effect == SIZE_MAX) {
+        term_free(term);
+        return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
+    }
+    term->effect = effect;
+    term->is.effect = s->effects[effect].name;
+    s->terms[s->n_terms++] = term;
+    s->revision++;
+    return NEVH_OK;
+}
+
+int nevh_system_add(nevh_system *s, const nevh_term *from) {
+    if (s->report.status)
+        return s->report.status;
+    nevh_term term = *from;
+    if (!term.count)
+        term.count = 1;
+    int status = check_term(s, &term);
+    return status ? status : append(s, &term);
+}
+
+int nevh_system_enable(nevh_system *s, const char *name, bool on) {
+    if (s->report.status)
+        return s->report.status;
+    nevh__effect *effect = effect_named(s, name);
+    if (!effect)
+        return nevh__fail(&s->report, NEVH_EINVAL, "there is no effect \"%s\"",
+                          name ? name : "");
+    if (effect->on != on)
+        s->revision++;
+    effect->on = on;
+    return NEVH_OK;
+}
+
+nevh_system *nevh_system_new(size_t n) {
+    nevh_system *s = nevh__array(1, sizeof *s);
+    if (!s)
+        return NULL;
+    s->n = n;
+    if (n == 0 || n > SIZE_MAX / sizeof(double) / 4)
+        nevh__fail(&s->report, NEVH_EINVAL,
+                   "a system needs between 1 and %zu degrees of freedom",
+                   SIZE_MAX / sizeof(double) / 4);
+    return s;
+}
+
+/* params is the system itself, which knows the user's function. */
+static double whole_value(double t, const double q[], const double p[],
+                          const double c[], const void *params) {
+    (void)c;
+    const nevh_system *s = params;
+    return s->whole(t, q, p, s->whole_params);
+}
+
+nevh_system *nevh_system_from(size_t n, nevh_value_fn H, const void *params) {
+    nevh_system *s = nevh_system_new(n);
+    if (!s || s->report.status)
+        return s;
+    s->whole = H;
+    s->whole_params = params;
+    if (!H)
+        nevh__fail(&s->report, NEVH_EINVAL, "the function H is NULL");
+    else
+        nevh_system_add(s, &(nevh_term){.effect = "H",
+                                        .nq = n,
+                                        .np = n,
+                                        .time = true,
+                                        .value = whole_value,
+                                        .params = s});
+    return s;
+}
+
+void nevh_system_free(nevh_system *s) {
+    if (!s)
+        return;
+    for (size_t i = 0; i < s->n_terms; i++)
+        term_free(s->terms[i]);
+    for (size_t i = 0; i < s->n_effects; i++)
+        free(s->effects[i].name);
+    free(s->terms);
+    free(s->effects);
+    free(s);
+}
+
+int nevh_system_status(const nevh_system *s) {
+    return s ? s->report.status : NEVH_ENOMEM;
+}
+
+const char *nevh_system_message(const nevh_system *s) {
+    return s ? s->report.text : "out of memory";
+}
+
+size_t nevh_system_dof(const nevh_system *s) {
+    return s->n;
+}
+
+size_t nevh_system_effect_count(const nevh_system *s) {
+    return s->n_effects;
+}
+
+const char *nevh_system_effect_name(const nevh_system *s, size_t i) {
+    return i < s->n_effects ? s->effects[i].name : NULL;
+}
+
+bool nevh_system_effect_on(const nevh_system *s, const char *name) {
+    const nevh__effect *effect = effect_named(s, name);
+    return effect && effect->on;
+}
+
+unsigned nevh_system_traits(const nevh_system *s) {
+    unsigned traits = NEVH_SEPARABLE | NEVH_AUTONOMOUS;
+    for (size_t i = 0; i < s->n_terms; i++) {
+        const nevh_term *term = &s->terms[i]->is;
+        if (!nevh__term_on(s, s->terms[i]))
+            continue;
+        if (term->nq && term->np)
+            traits &= ~(unsigned)NEVH_SEPARABLE;
+        if (term->time)
+            traits &= ~(unsigned)NEVH_AUTONOMOUS;
+    }
+    return traits;
+}

@@ -1,0 +1,70 @@
+/* nevh: inside a system.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_SYSTEM_PRIVATE_H
+#define NEVH_SYSTEM_PRIVATE_H
+
+#include <nevh/system.h>
+#include <stdarg.h>
+
+/* Block callbacks always get a multiple of this many lanes. */
+#define NEVH__LANES 8
+
+static inline size_t nevh__padded(size_t width) {
+    return (width + NEVH__LANES - 1) / NEVH__LANES * NEVH__LANES;
+}
+
+/* A status and its message, part of every object that can fail. */
+typedef struct nevh_report {
+    int status;
+    char text[400];
+} nevh__report;
+
+/* Records and returns the status. */
+int nevh__fail(nevh__report *, int status, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+int nevh__vfail(nevh__report *, int status, const char *format, va_list);
+/* Takes over another object's failure. */
+int nevh__fail_as(nevh__report *, const nevh__report *other);
+
+/* Memory; each returns NULL when it is out or the size overflows.  A request
+   for nothing gives memory all the same. */
+void *nevh__array(size_t count, size_t size); /* zeroed */
+void *nevh__copy(const void *from, size_t count, size_t size);
+void *nevh__grow(void *array, size_t count, size_t size);
+char *nevh__text(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+typedef struct {
+    char *name;
+    bool on;
+} nevh__effect;
+
+typedef struct {
+    nevh_term is;  /* names, indices and constants are the system's own copies;
+                      q and p are never NULL when something is read */
+    size_t effect; /* index into the effects */
+} nevh__term;
+
+struct nevh_system {
+    size_t n;
+    nevh__term **terms; /* pointers, so that terms stay where they are */
+    size_t n_terms;
+    nevh__effect *effects;
+    size_t n_effects;
+    unsigned long revision; /* counts changes */
+    nevh_value_fn whole;    /* of nevh_system_from */
+    const void *whole_params;
+    nevh__report report;
+};
+
+static inline bool nevh__term_on(const nevh_system *s, const nevh__term *term) {
+    return s->effects[term->effect].on;
+}
+
+/* Values of a term in `width` columns (a multiple of NEVH__LANES) of which
+   `used` count; rows of `width` doubles as in nevh_block_fn.  A scalar value
+   is called for the used columns only.  one: nq + np + nc doubles. */
+void nevh__term_values(const nevh__term *, size_t width, size_t used,
+                       const double t[], const double q[], const double p[],
+                       const double c[], double h[], double one[]);
+
+#endif

@@ -1,0 +1,146 @@
+/* nevh: the planar double pendulum of two equal bobs on two equal rods.
+   SPDX-License-Identifier: GPL-3.0-or-later
+
+   H = (p1^2 + w p2^2 - 2 p1 p2 cos d) / (2 m l^2 (1 + sin^2 d))
+       - m g l (2 cos q1 + cos q2),  d = q1 - q2;
+
+   both angles are measured from straight down.  The inverse of the mass matrix
+   m l^2 ((2, cos d), (cos d, 1)) gives w = 2.  Amoreira & Amoreira, Numerical
+   Evolution from the Hamiltonian, eq. dph, prints w = 1, which is no double
+   pendulum; that model is here to reproduce their figure. */
+#include "models_private.h"
+#include <math.h>
+
+static const double CORRECT = 2, AS_PRINTED = 1;
+
+/* q1, q2, p1, p2; c: w and 2 m l^2 */
+static void kinetic_block(size_t width, const double t[], const double q[],
+                          const double p[], const double c[],
+                          const void *params, double h[]) {
+    const double *q2 = q + width, *p2 = p + width, *scale = c + width;
+    (void)t, (void)params;
+    for (size_t i = 0; i < width; i++) {
+        double cosine = cos(q[i] - q2[i]), sine = sin(q[i] - q2[i]);
+        double form =
+            p[i] * p[i] + c[i] * (p2[i] * p2[i]) - 2 * p[i] * p2[i] * cosine;
+        h[i] = form / (scale[i] * (1 + sine * sine));
+    }
+}
+
+static void kinetic_dq(size_t width, const double q[], const double p[],
+                       const double c[], double dh_dq[]) {
+    const double *q2 = q + width, *p2 = p + width, *scale = c + width;
+    for (size_t i = 0; i < width; i++) {
+        double cosine = cos(q[i] - q2[i]), sine = sin(q[i] - q2[i]);
+        double form =
+            p[i] * p[i] + c[i] * (p2[i] * p2[i]) - 2 * p[i] * p2[i] * cosine;
+        double root = 1 + sine * sine;
+        dh_dq[i] = 2 * sine * (p[i] * p2[i] - form * cosine / root) /
+                   (scale[i] * root);
+        dh_dq[width + i] = -dh_dq[i];
+    }
+}
+
+static void kinetic_dp(size_t width, const double q[], const double p[],
+                       const double c[], double dh_dp[]) {
+    const double *q2 = q + width, *p2 = p + width, *scale = c + width;
+    for (size_t i = 0; i < width; i++) {
+        double cosine = cos(q[i] - q2[i]), sine = sin(q[i] - q2[i]);
+        double half = scale[i] * (1 + sine * sine) / 2;
+        dh_dp[i] = (p[i] - p2[i] * cosine) / half;
+        dh_dp[width + i] = (c[i] * p2[i] - p[i] * cosine) / half;
+    }
+}
+
+static void kinetic_gradient(size_t width, const double t[], const double q[],
+                             const double p[], const double c[],
+                             const void *params, double dh_dq[],
+                             double dh_dp[]) {
+    (void)t, (void)params;
+    if (dh_dq)
+        kinetic_dq(width, q, p, c, dh_dq);
+    if (dh_dp)
+        kinetic_dp(width, q, p, c, dh_dp);
+}
+
+NEVH__VALUE_OF_BLOCK(kinetic)
+
+static nevh_system *new_system(const nevh_double_pendulum *a, double w) {
+    static const size_t both[] = {0, 1};
+    double weight = a->m * a->g * a->l;
+    nevh_term terms[] = {
+        {.effect = "kinetic",
+         .nq = 2,
+         .np = 2,
+         .nc = 2,
+         .c = (const double[]){w, 2 * a->m * (a->l * a->l)},
+         .value = kinetic_value,
+         .block = kinetic_block,
+         .gradient = kinetic_gradient},
+        nevh__cosine_term,
+    };
+    terms[1].count = 2;
+    terms[1].q = both;
+    terms[1].c = (const double[]){2 * weight, weight};
+    return nevh__model_system(2, terms, 2);
+}
+
+static double energy(const double q[], const double p[],
+                     const nevh_double_pendulum *a, double w) {
+    double d = q[0] - q[1], sine = sin(d);
+    double form = p[0] * p[0] + w * (p[1] * p[1]) - 2 * p[0] * p[1] * cos(d);
+    return form / (2 * a->m * (a->l * a->l) * (1 + sine * sine)) -
+           a->m * a->g * a->l * (2 * cos(q[0]) + cos(q[1]));
+}
+
+static nevh_system *correct_system(const void *params) {
+    return new_system(params, CORRECT);
+}
+
+static double correct_hamiltonian(double t, const double q[], const double p[],
+                                  const void *params) {
+    (void)t;
+    return energy(q, p, params, CORRECT);
+}
+
+static nevh_system *printed_system(const void *params) {
+    return new_system(params, AS_PRINTED);
+}
+
+static double printed_hamiltonian(double t, const double q[], const double p[],
+                                  const void *params) {
+    (void)t;
+    return energy(q, p, params, AS_PRINTED);
+}
+
+static const nevh_double_pendulum defaults = {.m = 1, .l = 1, .g = 9.8};
+static const double start_q[] = {1.5707963267948966, 0}; /* pi/2 */
+static const double start_p[] = {0, 0};
+static const char *const coords[] = {"phi1", "phi2"};
+
+const nevh_model nevh__double_pendulum = {
+    .name = "double-pendulum",
+    .title = "Double pendulum",
+    .n = 2,
+    .defaults = &defaults,
+    .q = start_q,
+    .p = start_p,
+    .coords = coords,
+    .system = correct_system,
+    .hamiltonian = correct_hamiltonian,
+};
+const nevh_model *const nevh_double_pendulum_model = &nevh__double_pendulum;
+
+const nevh_model nevh__double_pendulum_as_printed = {
+    .name = "double-pendulum-as-printed",
+    .title = "Double pendulum with the paper's misprinted H",
+    .n = 2,
+    .defaults = &defaults,
+    .q = start_q,
+    .p = start_p,
+    .coords = coords,
+    .system = printed_system,
+    .hamiltonian = printed_hamiltonian,
+};
+const nevh_model *const nevh_double_pendulum_as_printed_model =
+    &nevh__double_pendulum_as_printed;

@@ -1,0 +1,8 @@
+libnevh_core_la_SOURCES += \
+	models/models_private.h \
+	models/list.c \
+	models/oscillator.c \
+	models/pendulum.c \
+	models/double_pendulum.c \
+	models/elastic_pendulum.c \
+	models/coupled_oscillators.c

@@ -1,0 +1,45 @@
+/* nevh: what the models share.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_MODELS_PRIVATE_H
+#define NEVH_MODELS_PRIVATE_H
+
+#include <nevh/models.h>
+
+extern const nevh_model nevh__oscillator, nevh__pendulum, nevh__double_pendulum,
+    nevh__double_pendulum_as_printed, nevh__elastic_pendulum,
+    nevh__coupled_oscillators;
+
+/* All numbers a model's term needs are constants of its instances, taken from
+   the parameters when the system is made.  So a system of a model does not
+   follow later changes of its parameters, and its terms read no params. */
+
+/* Patterns to be copied; `c` remains to be set, and where they are not the
+   first ones, the indices.  The effects named are defaults. */
+extern const nevh_term nevh__kinetic_term; /* p^2 / (2 c0) */
+extern const nevh_term nevh__spring_term;  /* c0/2 (q - c1)^2 */
+extern const nevh_term nevh__cosine_term;  /* -c0 cos q, effect "gravity" */
+
+/* Defines NAME_value, a nevh_term_fn, as the block NAME_block one lane wide. */
+#define NEVH__VALUE_OF_BLOCK(name)                                             \
+    static double name##_value(double t, const double q[], const double p[],   \
+                               const double c[], const void *params) {         \
+        double h;                                                              \
+        name##_block(1, &t, q, p, c, params, &h);                              \
+        return h;                                                              \
+    }
+
+/* A system of these terms; whatever fails stays in its status. */
+nevh_system *nevh__model_system(size_t n, const nevh_term terms[],
+                                size_t count);
+
+/* Carries one normal mode, x'' = -w2 x with w2 of any sign, on by t.  NaN when
+   t is so long that not one digit of the phase would be known. */
+void nevh__normal_mode(long double w2, long double t, long double *x,
+                       long double *v);
+
+/* Rounds a state to double.  Returns NEVH_OK; NEVH_EDOM when it is not finite,
+   and q and p are left as they were. */
+int nevh__model_state(size_t n, const long double from_q[],
+                      const long double from_p[], double q[], double p[]);
+
+#endif

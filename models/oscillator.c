@@ -1,0 +1,120 @@
+/* nevh: the harmonic oscillator, H = p^2/(2m) + k q^2/2, and the quadratic
+   terms that other models are made of, too.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "models_private.h"
+#include <float.h>
+#include <math.h>
+
+static void kinetic_block(size_t width, const double t[], const double q[],
+                          const double p[], const double c[],
+                          const void *params, double h[]) {
+    (void)t, (void)q, (void)params;
+    for (size_t i = 0; i < width; i++)
+        h[i] = p[i] * p[i] / (2 * c[i]);
+}
+
+static void kinetic_gradient(size_t width, const double t[], const double q[],
+                             const double p[], const double c[],
+                             const void *params, double dh_dq[],
+                             double dh_dp[]) {
+    (void)t, (void)q, (void)params, (void)dh_dq;
+    if (!dh_dp)
+        return;
+    for (size_t i = 0; i < width; i++)
+        dh_dp[i] = p[i] / c[i];
+}
+
+NEVH__VALUE_OF_BLOCK(kinetic)
+
+const nevh_term nevh__kinetic_term = {.effect = "kinetic",
+                                      .np = 1,
+                                      .nc = 1,
+                                      .value = kinetic_value,
+                                      .block = kinetic_block,
+                                      .gradient = kinetic_gradient};
+
+static void spring_block(size_t width, const double t[], const double q[],
+                         const double p[], const double c[], const void *params,
+                         double h[]) {
+    (void)t, (void)p, (void)params;
+    const double *rest = c + width;
+    for (size_t i = 0; i < width; i++)
+        h[i] = c[i] / 2 * ((q[i] - rest[i]) * (q[i] - rest[i]));
+}
+
+static void spring_gradient(size_t width, const double t[], const double q[],
+                            const double p[], const double c[],
+                            const void *params, double dh_dq[],
+                            double dh_dp[]) {
+    (void)t, (void)p, (void)params, (void)dh_dp;
+    const double *rest = c + width;
+    if (!dh_dq)
+        return;
+    for (size_t i = 0; i < width; i++)
+        dh_dq[i] = c[i] * (q[i] - rest[i]);
+}
+
+NEVH__VALUE_OF_BLOCK(spring)
+
+const nevh_term nevh__spring_term = {.effect = "spring",
+                                     .nq = 1,
+                                     .nc = 2,
+                                     .value = spring_value,
+                                     .block = spring_block,
+                                     .gradient = spring_gradient};
+
+void nevh__normal_mode(long double w2, long double t, long double *x,
+                       long double *v) {
+    long double w = sqrtl(fabsl(w2)), wt = w * t, x0 = *x, v0 = *v;
+    long double c = 1, s = t; /* s = sin(wt)/w */
+    if (!(fabsl(wt) < 1 / LDBL_EPSILON)) {
+        c = s = NAN;
+    } else if (w2 > 0) {
+        c = cosl(wt);
+        s = sinl(wt) / w;
+    } else if (w2 < 0) {
+        c = coshl(wt);
+        s = sinhl(wt) / w;
+    }
+    *x = x0 * c + v0 * s;
+    *v = v0 * c - w2 * x0 * s;
+}
+
+static nevh_system *oscillator_system(const void *params) {
+    const nevh_oscillator *a = params;
+    nevh_term terms[] = {nevh__kinetic_term, nevh__spring_term};
+    terms[0].c = &a->m;
+    terms[1].c = (const double[]){a->k, 0};
+    return nevh__model_system(1, terms, 2);
+}
+
+static double oscillator_hamiltonian(double t, const double q[],
+                                     const double p[], const void *params) {
+    const nevh_oscillator *a = params;
+    (void)t;
+    return p[0] * p[0] / (2 * a->m) + a->k / 2 * (q[0] * q[0]);
+}
+
+static int oscillator_exact(const void *params, double t, const double q0[],
+                            const double p0[], double q[], double p[]) {
+    const nevh_oscillator *a = params;
+    long double m = a->m, x = q0[0], v = p0[0] / m;
+    nevh__normal_mode(a->k / m, t, &x, &v);
+    v *= m;
+    return nevh__model_state(1, &x, &v, q, p);
+}
+
+const nevh_model nevh__oscillator = {
+    .name = "harmonic-oscillator",
+    .title = "Harmonic oscillator",
+    .n = 1,
+    /* k = 4 pi^2: the period is 1. */
+    .defaults = &(const nevh_oscillator){.m = 1, .k = 39.478417604357434},
+    .q = (const double[]){1},
+    .p = (const double[]){0},
+    .coords = (const char *const[]){"x"},
+    .system = oscillator_system,
+    .hamiltonian = oscillator_hamiltonian,
+    .exact = oscillator_exact,
+};
+const nevh_model *const nevh_oscillator_model = &nevh__oscillator;

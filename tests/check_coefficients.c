@@ -1,0 +1,185 @@
+/* nevh tests: coefficients satisfy their conditions, algebraically.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gauss_private.h"
+#include "support.h"
+#include <float.h>
+#include <gsl/gsl_integration.h>
+#include <math.h>
+#include <nevh/extend.h>
+
+enum { MOST_STAGES = 24 };
+
+START_TEST(gauss_nodes_are_gsls) {
+    size_t s = (size_t)_i;
+    nevh__gauss *g = nevh__gauss_new(s);
+    gsl_integration_glfixed_table *table =
+        gsl_integration_glfixed_table_alloc(s);
+    for (size_t i = 0; i < s; i++) {
+        double c, b;
+        gsl_integration_glfixed_point(0, 1, i, &c, &b, table);
+        ck_assert_double_eq_tol(g->c[i], c, 2 * DBL_EPSILON);
+        ck_assert_double_eq_tol(g->b[i], b, 2 * DBL_EPSILON);
+    }
+    gsl_integration_glfixed_table_free(table);
+    nevh__gauss_free(g);
+}
+END_TEST
+
+/* mu_ij + mu_ji = 1 without any rounding: symplectic; and symmetric in time. */
+START_TEST(gauss_is_exactly_symplectic) {
+    size_t s = (size_t)_i;
+    nevh__gauss *g = nevh__gauss_new(s);
+    for (size_t i = 0; i < s; i++)
+        for (size_t j = 0; j < s; j++) {
+            double mu = g->mu[j * s + i], mirror = g->mu[i * s + j];
+            ck_assert(mu + mirror == 1);
+            ck_assert(1 - mu == mirror);
+            ck_assert(g->mu[(s - 1 - j) * s + s - 1 - i] == mirror);
+            ck_assert(g->b[i] == g->b[s - 1 - i]);
+        }
+    nevh__gauss_free(g);
+}
+END_TEST
+
+/* The contrast: with a_ij rounded as usual the same condition does not hold to
+   the last bit, so that the test above can fail. */
+START_TEST(rounded_a_is_not_exactly_symplectic) {
+    size_t s = 6;
+    nevh__gauss *g = nevh__gauss_new(s);
+    int violations = 0;
+    for (size_t i = 0; i < s; i++)
+        for (size_t j = 0; j < i; j++) {
+            double a = g->mu[j * s + i] * g->b[j];
+            double b = g->mu[i * s + j] * g->b[i];
+            violations += g->b[i] * a + g->b[j] * b != g->b[i] * g->b[j];
+        }
+    ck_assert_int_gt(violations, 0);
+    nevh__gauss_free(g);
+}
+END_TEST
+
+/* B(2s), C(s) and D(s), from which order 2s follows [Butcher 1964]. */
+START_TEST(gauss_has_order_2s) {
+    size_t s = (size_t)_i;
+    nevh__gauss *g = nevh__gauss_new(s);
+    for (size_t k = 1; k <= 2 * s; k++) {
+        double sum = 0;
+        for (size_t i = 0; i < s; i++)
+            sum += g->b[i] * pow(g->c[i], (double)k - 1);
+        ck_assert_double_eq_tol(sum, 1. / (double)k, 1e-15);
+    }
+    for (size_t k = 1; k <= s; k++)
+        for (size_t i = 0; i < s; i++) {
+            double rows = 0, columns = 0, c = pow(g->c[i], (double)k);
+            for (size_t j = 0; j < s; j++) {
+                double power = pow(g->c[j], (double)k - 1);
+                rows += g->mu[j * s + i] * g->b[j] * power;
+                columns += g->b[j] * power * g->mu[i * s + j];
+            }
+            ck_assert_double_eq_tol(rows, c / (double)k, 4e-15);
+            ck_assert_double_eq_tol(columns, (1 - c) / (double)k, 4e-15);
+        }
+    nevh__gauss_free(g);
+}
+END_TEST
+
+/* The continued polynomial is exact for polynomials of degree s - 1. */
+START_TEST(gauss_guess_extrapolates) {
+    size_t s = (size_t)_i;
+    nevh__gauss *g = nevh__gauss_new(s);
+    for (size_t k = 0; k < s; k++)
+        for (size_t i = 0; i < s; i++) {
+            double sum = 0, size = 0;
+            for (size_t j = 0; j < s; j++) {
+                sum += g->guess[j * s + i] * pow(g->c[j], (double)k);
+                size += fabs(g->guess[j * s + i]);
+            }
+            ck_assert_double_eq_tol(sum, pow(1 + g->c[i], (double)k),
+                                    1e-15 * size);
+        }
+    nevh__gauss_free(g);
+}
+END_TEST
+
+START_TEST(gauss_order_rises) {
+    size_t s = (size_t)_i, seen = 0;
+    nevh__gauss *g = nevh__gauss_new(s);
+    for (size_t m = 0; m < s; m++) {
+        seen += g->order[m];
+        if (m > 0)
+            ck_assert(g->b[g->order[m - 1]] <= g->b[g->order[m]]);
+    }
+    ck_assert_uint_eq(seen, s * (s - 1) / 2);
+    nevh__gauss_free(g);
+}
+END_TEST
+
+static void check_splitting(const nevh_integrator *scheme) {
+    const nevh_splitting *table = scheme->table;
+    double sums[2] = {0, 0};
+    bool palindrome = table->count % 2 == 1;
+    for (size_t i = 0; i < table->count; i++) {
+        sums[i % 2] += table->weights[i];
+        palindrome &= table->weights[i] == table->weights[table->count - 1 - i];
+    }
+    double slack = DBL_EPSILON * (double)table->count;
+    ck_assert_double_eq_tol(sums[0], 1, slack);
+    ck_assert_double_eq_tol(sums[1], 1, slack);
+    ck_assert_int_eq(palindrome, scheme->symmetric == NEVH_YES);
+}
+
+/* Sums over rooted trees up to order 4. */
+static void check_runge_kutta(const nevh_integrator *scheme) {
+    const nevh_butcher *table = scheme->table;
+    size_t s = table->stages;
+    double sum[8] = {0};
+    static const double due[8] = {1,      1. / 2, 1. / 3,  1. / 6,
+                                  1. / 4, 1. / 8, 1. / 12, 1. / 24};
+    static const int order[8] = {1, 2, 3, 3, 4, 4, 4, 4};
+    for (size_t i = 0; i < s; i++) {
+        double b = table->b[i], c = table->c[i], row = 0, ac = 0, acc = 0,
+               aac = 0;
+        for (size_t j = 0; j < i; j++) {
+            double a = table->a[i * s + j], cj = table->c[j];
+            row += a;
+            ac += a * cj;
+            acc += a * cj * cj;
+            for (size_t k = 0; k < j; k++)
+                aac += a * table->a[j * s + k] * table->c[k];
+        }
+        ck_assert_double_eq_tol(row, c, DBL_EPSILON);
+        const double parts[8] = {1, c, c * c, ac, c * c * c, c * ac, acc, aac};
+        for (int k = 0; k < 8; k++)
+            sum[k] += b * parts[k];
+    }
+    for (int k = 0; k < 8; k++) {
+        if (order[k] <= scheme->order)
+            ck_assert_double_eq_tol(sum[k], due[k], 4 * DBL_EPSILON);
+    }
+}
+
+START_TEST(explicit_tables) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    if (scheme->kernel == &nevh_splitting_kernel)
+        check_splitting(scheme);
+    else if (scheme->kernel == &nevh_runge_kutta_kernel)
+        check_runge_kutta(scheme);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("coefficients");
+    TCase *cases = tcase_create("gauss");
+    tcase_add_loop_test(cases, gauss_nodes_are_gsls, 1, MOST_STAGES);
+    tcase_add_loop_test(cases, gauss_is_exactly_symplectic, 1,
+                        NEVH__MOST_STAGES + 1);
+    tcase_add_test(cases, rounded_a_is_not_exactly_symplectic);
+    tcase_add_loop_test(cases, gauss_has_order_2s, 1, MOST_STAGES);
+    tcase_add_loop_test(cases, gauss_guess_extrapolates, 1, MOST_STAGES);
+    tcase_add_loop_test(cases, gauss_order_rises, 1, MOST_STAGES);
+    suite_add_tcase(suite, cases);
+    cases = tcase_create("tables");
+    tcase_add_loop_test(cases, explicit_tables, 0, scheme_count());
+    suite_add_tcase(suite, cases);
+    return run_suite(suite);
+}

@@ -1,0 +1,119 @@
+/* nevh tests: the energy over long runs, and figures known from elsewhere.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "support.h"
+#include <float.h>
+#include <math.h>
+
+/* Autonomous and mildly nonlinear, so that energy is to be conserved. */
+static nevh_system *make_pendulum(void) {
+    static const nevh_pendulum params = {1, 1, 1};
+    return nevh_pendulum_model->system(&params);
+}
+static const problem pendulum = {"pendulum", 1,   true,         0, 100, 4,
+                                 {2},        {0}, make_pendulum};
+static nevh_system *make_plain_double_pendulum(void) {
+    return nevh_double_pendulum_model->system(
+        nevh_double_pendulum_model->defaults);
+}
+static const problem released = {"double pendulum",
+                                 2,
+                                 false,
+                                 0,
+                                 10,
+                                 4,
+                                 {1.5707963267948966, 0},
+                                 {0, 0},
+                                 make_plain_double_pendulum};
+
+/* Largest energy errors, measured for this project by other programs; pendulum
+   h = 0.05, t = 100; double pendulum h = 0.01, t = 10. */
+typedef struct {
+    const problem *problem;
+    const nevh_integrator *const *scheme;
+    double h, most, allowed; /* allowed: relative deviation */
+} figure;
+
+static const figure figures[] = {
+    {&pendulum, &nevh_position_verlet, 0.05, 1.123e-3, 0.01},
+    {&pendulum, &nevh_verlet, 0.05, 1.625e-3, 0.01},
+    {&pendulum, &nevh_midpoint, 0.05, 5.02e-4, 0.01},
+    {&pendulum, &nevh_gauss4, 0.05, 3.52e-8, 0.01},
+    {&pendulum, &nevh_gauss6, 0.05, 3.727e-12, 0.02},
+    {&pendulum, &nevh_rk4, 0.05, 8.706e-7, 0.01},
+    {&released, &nevh_midpoint, 0.01, 3.333e-3, 0.01},
+    {&released, &nevh_gauss4, 0.01, 2.394e-6, 0.01},
+    {&released, &nevh_gauss6, 0.01, 8.369e-9, 0.01},
+    {&released, &nevh_gauss8, 0.01, 1.022e-11, 0.02},
+    {&released, &nevh_rk4, 0.01, 2.112e-5, 0.01},
+};
+
+START_TEST(known_figures) {
+    const figure *f = &figures[_i];
+    size_t steps = (size_t)lround(f->problem->span / f->h);
+    const nevh_gradient *const gradients[] = {nevh_exact, nevh_central8};
+    for (int k = 0; k < 2; k++) {
+        nevh_energy_report r =
+            energy_of(f->problem, *f->scheme, gradients[k], f->h, steps);
+        ck_assert_msg(fabs(r.max / f->most - 1) <= f->allowed,
+                      "%s on %s, %s: %.4e instead of %.4e",
+                      nevh_integrator_name(*f->scheme), f->problem->name,
+                      nevh_gradient_name(gradients[k]), r.max, f->most);
+    }
+}
+END_TEST
+
+START_TEST(gauss8_at_rounding) {
+    const nevh_gradient *const gradients[] = {nevh_exact, nevh_central8};
+    for (int k = 0; k < 2; k++)
+        ck_assert_double_lt(
+            energy_of(&pendulum, nevh_gauss8, gradients[k], 0.05, 2000).max,
+            2e-14);
+}
+END_TEST
+
+/* Where truncation is seen, symplectic schemes do not lose energy in 1e5 steps
+   and the others do. */
+START_TEST(claim_over_long_runs) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    int order = nevh_integrator_order(scheme);
+    if (order > 8)
+        return; /* below rounding at any step that converges */
+    double h = order <= 2 ? 0.05 : order <= 4 ? 0.1 : order <= 6 ? 0.2 : 0.4;
+    nevh_energy_report r = energy_of(&pendulum, scheme, NULL, h, 100000);
+    if (nevh_integrator_symplectic(scheme) == NEVH_YES)
+        ck_assert_msg(r.verdict == NEVH_BOUNDED && r.max > 1e-12 &&
+                          fabs(r.drift) * 1e5 * h < 0.02 * r.max,
+                      "%s: max %.2e, drift %.2e", nevh_integrator_name(scheme),
+                      r.max, r.drift * 1e5 * h);
+    else
+        ck_assert_msg(r.verdict >= NEVH_DRIFTS, "%s: max %.2e, drift %.2e",
+                      nevh_integrator_name(scheme), r.max, r.drift * 1e5 * h);
+}
+END_TEST
+
+/* A million steps: 50 000 seconds. */
+START_TEST(a_million_steps) {
+    const size_t steps = 1000000;
+    nevh_energy_report r = energy_of(&pendulum, nevh_verlet, NULL, 0.05, steps);
+    ck_assert_int_eq(r.verdict, NEVH_BOUNDED);
+    ck_assert_double_eq_tol(r.max, 1.625e-3, 2e-5);
+    r = energy_of(&pendulum, nevh_gauss4, NULL, 0.05, steps);
+    ck_assert_int_eq(r.verdict, NEVH_BOUNDED);
+    ck_assert_double_eq_tol(r.max, 3.52e-8, 1e-9);
+    r = energy_of(&pendulum, nevh_rk4, NULL, 0.05, steps);
+    ck_assert_int_eq(r.verdict, NEVH_DRIFTS);
+    ck_assert_double_eq_tol(r.max, 3.857e-4, 1e-5);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("drift");
+    TCase *cases = tcase_create("drift");
+    tcase_add_loop_test(cases, known_figures, 0,
+                        sizeof figures / sizeof *figures);
+    tcase_add_test(cases, gauss8_at_rounding);
+    tcase_add_loop_test(cases, claim_over_long_runs, 0, scheme_count());
+    tcase_add_test(cases, a_million_steps);
+    suite_add_tcase(suite, cases);
+    return run_suite(suite);
+}

@@ -1,0 +1,103 @@
+/* nevh tests: every evaluation is counted, and none is wasted.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "support.h"
+#include <nevh/extend.h>
+#include <stdint.h>
+
+enum { STEPS = 50 };
+static const double h = 0.03;
+
+static nevh_counts counts_of(const problem *b, const nevh_integrator *scheme,
+                             const nevh_gradient *g, size_t width,
+                             const nevh_observer *watch, size_t watchers) {
+    nevh_system *s = b->make();
+    nevh_options options = {.gradient = g, .width = width};
+    nevh_stepper *stepper = nevh_stepper_new(s, scheme, &options);
+    double q[MOST_DOF * 4], p[MOST_DOF * 4];
+    for (size_t i = 0; i < b->n * width; i++) {
+        q[i] = b->q[i / width];
+        p[i] = b->p[i / width];
+    }
+    ck_assert_int_eq(nevh_run(stepper, b->t0, h, STEPS, q, p, watch, watchers),
+                     NEVH_OK);
+    nevh_counts counts = nevh_stepper_counts(stepper);
+    nevh_stepper_free(stepper);
+    nevh_system_free(s);
+    return counts;
+}
+
+/* Whether a step's last kick is the next one's first. */
+static uint64_t first_kick(const nevh_integrator *scheme) {
+    if (scheme->kernel != &nevh_splitting_kernel)
+        return 0;
+    const nevh_splitting *table = scheme->table;
+    return table->count % 2 == 1 && table->first == NEVH_KICK;
+}
+
+START_TEST(gradients_of_a_step) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    uint64_t each = (uint64_t)nevh_integrator_gradients(scheme);
+    nevh_counts c = counts_of(&henon_heiles, scheme, nevh_central2, 1, NULL, 0);
+    if (each)
+        ck_assert_uint_eq(c.gradients, each * STEPS + first_kick(scheme));
+    else
+        ck_assert_uint_eq(c.gradients,
+                          c.sweeps * (uint64_t)nevh_integrator_stages(scheme));
+    ck_assert_uint_eq(c.rescues, 0);
+}
+END_TEST
+
+/* Henon-Heiles: 2 instances of p^2/2m, one of V(x, y).  Order 2 takes 2 values
+   for each variable read, order 2m m times as many; exact takes none. */
+START_TEST(values_of_a_gradient) {
+    const nevh_gradient *const *g = nevh_gradients() + _i;
+    uint64_t order = (uint64_t)nevh_gradient_order(*g);
+    nevh_counts c = counts_of(&henon_heiles, nevh_rk4, *g, 1, NULL, 0);
+    ck_assert_uint_eq(c.gradients, 4 * STEPS);
+    ck_assert_uint_eq(c.values, 4 * STEPS * 4 * order);
+    ck_assert_double_eq(c.hamiltonians, (double)c.values / 3);
+}
+END_TEST
+
+/* Kicks ask for dH/dq alone, drifts for dH/dp alone. */
+START_TEST(kicks_and_drifts_ask_for_half) {
+    nevh_counts c =
+        counts_of(&henon_heiles, nevh_verlet, nevh_central2, 1, NULL, 0);
+    ck_assert_uint_eq(c.values, (STEPS + 1) * 4 + STEPS * 4);
+    c = counts_of(&henon_heiles, nevh_position_verlet, nevh_central2, 1, NULL,
+                  0);
+    ck_assert_uint_eq(c.values, STEPS * 4 + (STEPS + 1) * 4);
+}
+END_TEST
+
+START_TEST(runs_count_alike) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    nevh_system *s = henon_heiles.make();
+    nevh_energy *energy = nevh_energy_new(s, 1);
+    nevh_observer watch = {nevh_energy_observe, energy, 3};
+    nevh_counts a = counts_of(&henon_heiles, scheme, nevh_central4, 1, NULL, 0);
+    nevh_counts b =
+        counts_of(&henon_heiles, scheme, nevh_central4, 1, &watch, 1);
+    nevh_counts four =
+        counts_of(&henon_heiles, scheme, nevh_central4, 4, NULL, 0);
+    ck_assert_uint_eq(a.values, b.values);
+    ck_assert_uint_eq(a.gradients, b.gradients);
+    ck_assert_uint_eq(a.sweeps, b.sweeps);
+    ck_assert_uint_eq(4 * a.values, four.values);
+    ck_assert_uint_eq(4 * a.gradients, four.gradients);
+    ck_assert_uint_eq(4 * a.sweeps, four.sweeps);
+    nevh_energy_free(energy);
+    nevh_system_free(s);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("evaluations");
+    TCase *cases = tcase_create("registry");
+    tcase_add_loop_test(cases, gradients_of_a_step, 0, scheme_count());
+    tcase_add_loop_test(cases, values_of_a_gradient, 0, 5);
+    tcase_add_test(cases, kicks_and_drifts_ask_for_half);
+    tcase_add_loop_test(cases, runs_count_alike, 0, scheme_count());
+    suite_add_tcase(suite, cases);
+    return run_suite(suite);
+}

@@ -1,0 +1,108 @@
+/* nevh tests: what the registries say.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "support.h"
+#include <nevh/extend.h>
+#include <string.h>
+
+START_TEST(scheme_is_described) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    ck_assert_int_gt((int)strlen(nevh_integrator_name(scheme)), 0);
+    ck_assert_int_gt((int)strlen(nevh_integrator_source(scheme)), 10);
+    ck_assert_ptr_nonnull(nevh_integrator_aliases(scheme));
+    ck_assert_int_ge(nevh_integrator_order(scheme), 1);
+    ck_assert_int_ge(nevh_integrator_stages(scheme), 1);
+    ck_assert_ptr_nonnull(scheme->kernel);
+    if (nevh_integrator_explicit(scheme) == NEVH_YES)
+        ck_assert_int_ge(nevh_integrator_gradients(scheme), 1);
+}
+END_TEST
+
+START_TEST(scheme_is_found_by_its_names) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    ck_assert_ptr_eq(nevh_integrator_named(nevh_integrator_name(scheme)),
+                     scheme);
+    char names[200];
+    strcpy(names, nevh_integrator_aliases(scheme));
+    for (char *name = strtok(names, ","); name; name = strtok(NULL, ","))
+        ck_assert_ptr_eq(nevh_integrator_named(name + strspn(name, " ")),
+                         scheme);
+}
+END_TEST
+
+START_TEST(unknown_names) {
+    const char *const names[] = {"", "verlot", "verle", "verlet2", ",", " "};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        ck_assert_ptr_null(nevh_integrator_named(names[i]));
+        ck_assert_ptr_null(nevh_gradient_named(names[i]));
+        ck_assert_ptr_null(nevh_model_named(names[i]));
+    }
+    ck_assert_ptr_null(nevh_integrator_named(NULL));
+    ck_assert_ptr_null(nevh_gradient_named(NULL));
+    ck_assert_ptr_null(nevh_model_named(NULL));
+}
+END_TEST
+
+START_TEST(public_pointers_are_listed) {
+    const nevh_integrator *const schemes[] = {nevh_symplectic_euler_a,
+                                              nevh_symplectic_euler_b,
+                                              nevh_verlet,
+                                              nevh_position_verlet,
+                                              nevh_midpoint,
+                                              nevh_gauss4,
+                                              nevh_gauss6,
+                                              nevh_gauss8,
+                                              nevh_gauss10,
+                                              nevh_gauss12,
+                                              nevh_gauss14,
+                                              nevh_gauss16,
+                                              nevh_gauss18,
+                                              nevh_gauss20,
+                                              nevh_euler,
+                                              nevh_rk4,
+                                              nevh_gsl_rkf45,
+                                              nevh_gsl_rk8pd};
+    int count = sizeof schemes / sizeof *schemes;
+    ck_assert_int_eq(scheme_count(), count);
+    for (int i = 0; i < count; i++)
+        ck_assert_ptr_eq(nevh_integrators()[i], schemes[i]);
+}
+END_TEST
+
+START_TEST(gradients_are_listed) {
+    const nevh_gradient *const methods[] = {
+        nevh_central2, nevh_central4, nevh_central6, nevh_central8, nevh_exact};
+    const char *const names[] = {"central2", "central4", "central6", "central8",
+                                 "exact"};
+    for (int i = 0; i < 5; i++) {
+        ck_assert_ptr_eq(nevh_gradients()[i], methods[i]);
+        ck_assert_str_eq(nevh_gradient_name(methods[i]), names[i]);
+        ck_assert_ptr_eq(nevh_gradient_named(names[i]), methods[i]);
+        ck_assert_int_eq(nevh_gradient_order(methods[i]),
+                         i < 4 ? 2 * i + 2 : 0);
+    }
+    ck_assert_ptr_null(nevh_gradients()[5]);
+}
+END_TEST
+
+START_TEST(statuses_have_texts) {
+    ck_assert_str_eq(nevh_status_text(NEVH_OK), "no error");
+    ck_assert_str_eq(nevh_status_text(-7), "unknown status");
+#define DIFFERS(name, number, text)                                            \
+    ck_assert_str_eq(nevh_status_text(number), text);
+    NEVH_STATUS_LIST(DIFFERS)
+#undef DIFFERS
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("registry");
+    TCase *cases = tcase_create("registry");
+    tcase_add_loop_test(cases, scheme_is_described, 0, scheme_count());
+    tcase_add_loop_test(cases, scheme_is_found_by_its_names, 0, scheme_count());
+    tcase_add_test(cases, unknown_names);
+    tcase_add_test(cases, public_pointers_are_listed);
+    tcase_add_test(cases, gradients_are_listed);
+    tcase_add_test(cases, statuses_have_texts);
+    suite_add_tcase(suite, cases);
+    return run_suite(suite);
+}

@@ -1,0 +1,70 @@
+/* nevh tests: forth and back.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "support.h"
+#include <float.h>
+#include <math.h>
+
+enum { STEPS = 500 };
+
+static double defect(const problem *b, const nevh_integrator *scheme,
+                     const nevh_gradient *g, double h) {
+    nevh_system *s = b->make();
+    nevh_stepper *stepper = planned(s, b, scheme, g);
+    double found = NAN;
+    int status = nevh_reversal_defect(stepper, b->t0, h, STEPS, b->q, b->p,
+                                      NULL, &found);
+    ck_assert_msg(status == NEVH_OK, "%s", nevh_stepper_message(stepper));
+    nevh_stepper_free(stepper);
+    nevh_system_free(s);
+    return found;
+}
+
+/* Rounding grows with the root of the steps, and on an orbit with shear with
+   another factor; a thousandth of what is no return at all. */
+START_TEST(symmetric_schemes_return) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    for (const problem *const *b = problems; *b; b++) {
+        if (!fits(scheme, *b))
+            continue;
+        double found = defect(*b, scheme, nevh_exact, 0.02);
+        bool returns = found <= 300 * DBL_EPSILON * sqrt(STEPS);
+        if (nevh_integrator_symmetric(scheme) == NEVH_YES)
+            ck_assert_msg(returns, "%s on %s: %.2e",
+                          nevh_integrator_name(scheme), (*b)->name, found);
+    }
+}
+END_TEST
+
+/* Those that are not symmetric must be caught, at a step large enough for
+   their truncation to be seen. */
+START_TEST(others_do_not_return) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    if (nevh_integrator_symmetric(scheme) != NEVH_NO)
+        return;
+    int order = nevh_integrator_order(scheme);
+    double h = order > 4 ? 0.4 : order > 1 ? 0.1 : 0.02;
+    double found = defect(&henon_heiles, scheme, nevh_exact, h);
+    ck_assert_msg(found > 1e-9, "%s: %.2e", nevh_integrator_name(scheme),
+                  found);
+}
+END_TEST
+
+/* A fixed difference step keeps the symmetry, however wrong the gradient. */
+START_TEST(differences_return) {
+    const nevh_gradient *const *g = nevh_gradients();
+    for (; nevh_gradient_order(*g) > 0; g++) {
+        double found = defect(&henon_heiles, nevh_verlet, *g, 0.05);
+        ck_assert_msg(found < 1e-10, "%s: %.2e", nevh_gradient_name(*g), found);
+    }
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("reversal");
+    TCase *cases = tcase_create("registry");
+    tcase_add_loop_test(cases, symmetric_schemes_return, 0, scheme_count());
+    tcase_add_loop_test(cases, others_do_not_return, 0, scheme_count());
+    tcase_add_test(cases, differences_return);
+    suite_add_tcase(suite, cases);
+    return run_suite(suite);
+}

@@ -1,0 +1,241 @@
+/* nevh tests: steppers, their memory, and the driver.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "support.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A problem that the scheme fits, with time in it where possible. */
+static const problem *problem_for(const nevh_integrator *scheme) {
+    return nevh_integrator_needs(scheme) ? &driven_pendulum : &double_pendulum;
+}
+
+typedef struct {
+    double q[MOST_DOF], p[MOST_DOF];
+} state;
+
+static state start(const problem *b) {
+    state z;
+    memcpy(z.q, b->q, sizeof z.q);
+    memcpy(z.p, b->p, sizeof z.p);
+    return z;
+}
+
+static void assert_same(const problem *b, const state *x, const state *y) {
+    ck_assert_mem_eq(x->q, y->q, b->n * sizeof(double));
+    ck_assert_mem_eq(x->p, y->p, b->n * sizeof(double));
+}
+
+typedef struct {
+    size_t calls, last_step, stop_at;
+    double t0, h;
+} log_book;
+
+/* Times are t0 + i h to the last bit. */
+static int record(void *data, size_t step, double t, const double q[],
+                  const double p[]) {
+    log_book *book = data;
+    (void)q, (void)p;
+    book->calls++;
+    book->last_step = step;
+    ck_assert(t == book->t0 + (double)step * book->h);
+    return book->stop_at && step == book->stop_at;
+}
+
+START_TEST(watching_changes_nothing) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    const problem *b = problem_for(scheme);
+    const double h = 0.01;
+    nevh_system *s = b->make();
+    nevh_stepper *plain = planned(s, b, scheme, nevh_central4);
+    nevh_stepper *watched = planned(s, b, scheme, nevh_central4);
+    nevh_energy *energy = nevh_energy_new(s, 1);
+    log_book book = {.t0 = b->t0, .h = h};
+    nevh_observer watch[] = {{nevh_energy_observe, energy, 1},
+                             {record, &book, 7}};
+    state x = start(b), y = start(b);
+    ck_assert_int_eq(nevh_run(plain, b->t0, h, 100, x.q, x.p, NULL, 0), 0);
+    ck_assert_int_eq(nevh_run(watched, b->t0, h, 100, y.q, y.p, watch, 2), 0);
+    assert_same(b, &x, &y);
+    ck_assert_uint_eq(book.calls, 1 + 14 + 1);
+    ck_assert_uint_eq(book.last_step, 100);
+    nevh_energy_free(energy);
+    nevh_stepper_free(plain);
+    nevh_stepper_free(watched);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* One run, two runs in a row, and single steps are the same orbit. */
+START_TEST(pieces_make_the_whole) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    const problem *b = problem_for(scheme);
+    const double h = 0.0078125; /* so that t0 + i h is the sum of steps */
+    nevh_system *s = b->make();
+    nevh_stepper *stepper[3];
+    state z[3];
+    for (int k = 0; k < 3; k++) {
+        stepper[k] = planned(s, b, scheme, nevh_central2);
+        z[k] = start(b);
+    }
+    nevh_run(stepper[0], 0.25, h, 60, z[0].q, z[0].p, NULL, 0);
+    nevh_run(stepper[1], 0.25, h, 25, z[1].q, z[1].p, NULL, 0);
+    nevh_run(stepper[1], 0.25 + 25 * h, h, 35, z[1].q, z[1].p, NULL, 0);
+    for (int i = 0; i < 60; i++)
+        nevh_stepper_apply(stepper[2], 0.25 + i * h, h, z[2].q, z[2].p);
+    assert_same(b, &z[0], &z[1]);
+    assert_same(b, &z[0], &z[2]);
+    for (int k = 0; k < 3; k++)
+        nevh_stepper_free(stepper[k]);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* A copy branches off and leaves the first alone; a saved memory continues bit
+   for bit in another stepper; without the memory the last bits differ. */
+START_TEST(memory_can_be_kept) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    const problem *b = problem_for(scheme);
+    const double h = 0.02, t1 = b->t0 + 40 * h;
+    nevh_system *s = b->make();
+    nevh_stepper *first = planned(s, b, scheme, nevh_central4);
+    nevh_stepper *other = planned(s, b, scheme, nevh_central4);
+    state x = start(b);
+    nevh_run(first, b->t0, h, 40, x.q, x.p, NULL, 0);
+    state y = x, z = x, branch = x;
+    size_t size = nevh_stepper_save_size(first);
+    void *buffer = malloc(size);
+    nevh_stepper_save(first, buffer);
+    nevh_stepper *copy = nevh_stepper_copy(first);
+    nevh_run(copy, t1, h / 3, 5, branch.q, branch.p, NULL, 0);
+    nevh_run(first, t1, h, 40, x.q, x.p, NULL, 0);
+    ck_assert_int_eq(nevh_stepper_load(other, buffer, size), NEVH_OK);
+    nevh_run(other, t1, h, 40, y.q, y.p, NULL, 0);
+    assert_same(b, &x, &y);
+    ck_assert_int_eq(nevh_stepper_load(copy, buffer, size), NEVH_OK);
+    nevh_run(copy, t1, h, 40, z.q, z.p, NULL, 0);
+    assert_same(b, &x, &z);
+    ck_assert_int_eq(nevh_stepper_load(other, buffer, size - 1), NEVH_EINVAL);
+    memset(buffer, 1, size);
+    ck_assert_int_eq(nevh_stepper_load(other, buffer, size), NEVH_EINVAL);
+    free(buffer);
+    nevh_stepper_free(first);
+    nevh_stepper_free(other);
+    nevh_stepper_free(copy);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* A stepper that is moved to another state starts afresh there. */
+START_TEST(jumps_start_afresh) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    const problem *b = problem_for(scheme);
+    nevh_system *s = b->make();
+    nevh_stepper *used = planned(s, b, scheme, nevh_central4);
+    nevh_stepper *fresh = planned(s, b, scheme, nevh_central4);
+    state x = start(b), y;
+    nevh_run(used, b->t0, 0.02, 30, x.q, x.p, NULL, 0);
+    x.q[0] += 0.125;
+    y = x;
+    nevh_run(used, b->t0 + 0.6, 0.02, 30, x.q, x.p, NULL, 0);
+    nevh_run(fresh, b->t0 + 0.6, 0.02, 30, y.q, y.p, NULL, 0);
+    assert_same(b, &x, &y);
+    nevh_stepper_free(used);
+    nevh_stepper_free(fresh);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* Lane 1 of three is the orbit that runs alone, to the last bit. */
+START_TEST(lanes_are_alone) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    const problem *b = problem_for(scheme);
+    enum { WIDTH = 3 };
+    nevh_system *s = b->make();
+    nevh_options options = {
+        .gradient = nevh_central4, .gradient_step = 0x1p-9, .width = WIDTH};
+    nevh_stepper *three = nevh_stepper_new(s, scheme, &options);
+    options.width = 1;
+    nevh_stepper *one = nevh_stepper_new(s, scheme, &options);
+    double q[MOST_DOF * WIDTH], p[MOST_DOF * WIDTH];
+    for (size_t i = 0; i < b->n * WIDTH; i++) {
+        q[i] = b->q[i / WIDTH] * (1 + 0.3 * ((double)(i % WIDTH) - 1));
+        p[i] = b->p[i / WIDTH] * (1 - 0.4 * ((double)(i % WIDTH) - 1));
+    }
+    state x = start(b);
+    ck_assert_int_eq(nevh_run(three, b->t0, 0.02, 60, q, p, NULL, 0), 0);
+    ck_assert_int_eq(nevh_run(one, b->t0, 0.02, 60, x.q, x.p, NULL, 0), 0);
+    for (size_t k = 0; k < b->n; k++) {
+        ck_assert(q[k * WIDTH + 1] == x.q[k]);
+        ck_assert(p[k * WIDTH + 1] == x.p[k]);
+    }
+    nevh_stepper_free(three);
+    nevh_stepper_free(one);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* Also a lane whose neighbour has jumped. */
+START_TEST(a_neighbours_jump_changes_nothing) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    const problem *b = problem_for(scheme);
+    nevh_system *s = b->make();
+    nevh_options options = {.gradient_step = 0x1p-9, .width = 2};
+    nevh_stepper *two = nevh_stepper_new(s, scheme, &options);
+    nevh_stepper *quiet = nevh_stepper_new(s, scheme, &options);
+    double q[2 * MOST_DOF], p[2 * MOST_DOF], q1[2 * MOST_DOF], p1[2 * MOST_DOF];
+    for (size_t i = 0; i < 2 * b->n; i++) {
+        q[i] = q1[i] = b->q[i / 2];
+        p[i] = p1[i] = b->p[i / 2];
+    }
+    for (int i = 0; i < 20; i++) {
+        q[1] += i == 10 ? 0.25 : 0;
+        ck_assert_int_eq(nevh_stepper_apply(two, 0.02 * i, 0.02, q, p), 0);
+        ck_assert_int_eq(nevh_stepper_apply(quiet, 0.02 * i, 0.02, q1, p1), 0);
+    }
+    for (size_t k = 0; k < b->n; k++) {
+        ck_assert(q[2 * k] == q1[2 * k]);
+        ck_assert(p[2 * k] == p1[2 * k]);
+        ck_assert(q[2 * k + 1] != q1[2 * k + 1]);
+    }
+    nevh_stepper_free(two);
+    nevh_stepper_free(quiet);
+    nevh_system_free(s);
+}
+END_TEST
+
+START_TEST(an_observer_stops_the_run) {
+    const problem *b = &henon_heiles;
+    nevh_system *s = b->make();
+    nevh_stepper *stepper = planned(s, b, nevh_verlet, nevh_exact);
+    log_book book = {.stop_at = 12, .t0 = 1, .h = -0.05};
+    nevh_observer watch = {record, &book, 1};
+    state x = start(b), y = start(b);
+    int status = nevh_run(stepper, 1, -0.05, 40, x.q, x.p, &watch, 1);
+    ck_assert_int_eq(status, NEVH_STOPPED);
+    ck_assert_uint_eq(nevh_stepper_taken(stepper), 12);
+    ck_assert_int_gt((int)strlen(nevh_stepper_message(stepper)), 0);
+    nevh_stepper_reset(stepper);
+    nevh_run(stepper, 1, -0.05, 12, y.q, y.p, NULL, 0);
+    assert_same(b, &x, &y);
+    ck_assert_int_eq(nevh_run(stepper, 0, 1, 0, x.q, x.p, &watch, 0), NEVH_OK);
+    assert_same(b, &x, &y);
+    nevh_stepper_free(stepper);
+    nevh_system_free(s);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("run");
+    TCase *cases = tcase_create("registry");
+    int count = scheme_count();
+    tcase_add_loop_test(cases, watching_changes_nothing, 0, count);
+    tcase_add_loop_test(cases, pieces_make_the_whole, 0, count);
+    tcase_add_loop_test(cases, memory_can_be_kept, 0, count);
+    tcase_add_loop_test(cases, jumps_start_afresh, 0, count);
+    tcase_add_loop_test(cases, lanes_are_alone, 0, count);
+    tcase_add_loop_test(cases, a_neighbours_jump_changes_nothing, 0, count);
+    tcase_add_test(cases, an_observer_stops_the_run);
+    suite_add_tcase(suite, cases);
+    return run_suite(suite);
+}

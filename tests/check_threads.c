@@ -1,0 +1,56 @@
+/* nevh tests: one stepper a thread over one system.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "support.h"
+#include <pthread.h>
+#include <string.h>
+
+enum { THREADS = 2, STEPS = 3000 };
+
+typedef struct {
+    const nevh_system *system;
+    const problem *problem;
+    const nevh_integrator *scheme;
+    double q[MOST_DOF], p[MOST_DOF];
+    int status;
+} job;
+
+static void *run(void *data) {
+    job *j = data;
+    memcpy(j->q, j->problem->q, sizeof j->q);
+    memcpy(j->p, j->problem->p, sizeof j->p);
+    nevh_stepper *stepper = nevh_stepper_new(j->system, j->scheme, NULL);
+    j->status = nevh_run(stepper, 0, 0.002, STEPS, j->q, j->p, NULL, 0);
+    nevh_stepper_free(stepper);
+    return NULL;
+}
+
+START_TEST(threads_agree_with_serial) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    const problem *b =
+        fits(scheme, &double_pendulum) ? &double_pendulum : &henon_heiles;
+    nevh_system *s = b->make();
+    pthread_t thread[THREADS];
+    job jobs[THREADS], serial = {s, b, scheme, {0}, {0}, 0};
+    run(&serial);
+    ck_assert_int_eq(serial.status, NEVH_OK);
+    for (int i = 0; i < THREADS; i++) {
+        jobs[i] = (job){s, b, scheme, {0}, {0}, 0};
+        ck_assert_int_eq(pthread_create(&thread[i], NULL, run, &jobs[i]), 0);
+    }
+    for (int i = 0; i < THREADS; i++) {
+        pthread_join(thread[i], NULL);
+        ck_assert_int_eq(jobs[i].status, NEVH_OK);
+        ck_assert_mem_eq(jobs[i].q, serial.q, b->n * sizeof(double));
+        ck_assert_mem_eq(jobs[i].p, serial.p, b->n * sizeof(double));
+    }
+    nevh_system_free(s);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("threads");
+    TCase *cases = tcase_create("threads");
+    tcase_add_loop_test(cases, threads_agree_with_serial, 0, scheme_count());
+    suite_add_tcase(suite, cases);
+    return run_suite(suite);
+}

@@ -1,0 +1,86 @@
+# Check suites, one file each, tests/check_NAME.c.
+suites = \
+	tests/check_system \
+	tests/check_gradient \
+	tests/check_registry \
+	tests/check_coefficients \
+	tests/check_order \
+	tests/check_reversal \
+	tests/check_symplecticity \
+	tests/check_drift \
+	tests/check_evaluations \
+	tests/check_run \
+	tests/check_energy \
+	tests/check_models \
+	tests/check_failures \
+	tests/check_threads \
+	tests/check_gsl
+TEST_LIBS = tests/libsupport.la libnevh.la $(CHECK_LIBS)
+# These look inside, so they link what is not visible in libnevh.la.
+INSIDE_LIBS = tests/libsupport.la libnevh_core.la $(CHECK_LIBS)
+tests_check_coefficients_LDADD = $(INSIDE_LIBS)
+tests_check_threads_CFLAGS = $(AM_CFLAGS) -pthread
+tests_check_threads_LDFLAGS = $(AM_LDFLAGS) -pthread
+
+check_PROGRAMS = tests/steps
+tests_steps_LDADD = libnevh.la
+check_LTLIBRARIES =
+if HAVE_CHECK
+check_PROGRAMS += $(suites)
+check_LTLIBRARIES += tests/libsupport.la
+tests_libsupport_la_SOURCES = tests/support.c tests/support.h
+if HAVE_WRAP
+memory_suite = tests/check_memory
+check_PROGRAMS += $(memory_suite)
+tests_check_memory_LDADD = $(INSIDE_LIBS)
+tests_check_memory_LDFLAGS = $(AM_LDFLAGS) \
+	-Wl,--wrap=malloc -Wl,--wrap=calloc -Wl,--wrap=realloc
+endif
+all_suites = $(suites) $(memory_suite)
+endif
+
+dist_check_SCRIPTS = \
+	tests/symbols.sh \
+	tests/cplusplus.sh \
+	tests/examples.sh \
+	tests/pkgconfig.sh \
+	tests/valgrind.sh
+
+TESTS = $(all_suites) $(dist_check_SCRIPTS)
+TEST_EXTENSIONS = .sh
+SH_LOG_COMPILER = $(SHELL)
+
+# Tests with the tag slow are for make check-slow.
+CHECK_TAGS = CK_EXCLUDE_TAGS
+TEST_TIMEOUT = 60
+AM_TESTS_ENVIRONMENT = \
+	$(CHECK_TAGS)=slow; export $(CHECK_TAGS); \
+	CK_DEFAULT_TIMEOUT=$(TEST_TIMEOUT); export CK_DEFAULT_TIMEOUT; \
+	CC='$(CC)'; export CC; \
+	NM='$(NM)'; export NM; \
+	LIBTOOL='$(LIBTOOL)'; export LIBTOOL; \
+	PKG_CONFIG='$(PKG_CONFIG)'; export PKG_CONFIG; \
+	PKG_CONFIG_PATH='$(PKG_CONFIG_PATH)'; export PKG_CONFIG_PATH; \
+	GSL_CFLAGS='$(GSL_CFLAGS)'; export GSL_CFLAGS; \
+	SANITIZE_FLAGS='$(SANITIZE_FLAGS)'; export SANITIZE_FLAGS; \
+	EXAMPLES='$(examples)'; export EXAMPLES;
+
+check-local:
+if !HAVE_CHECK
+	@echo "*** The Check suites were SKIPPED: Check >= 0.15 was not found" \
+	  "when nevh was configured."
+endif
+
+check-slow:
+	$(MAKE) $(AM_MAKEFLAGS) check TESTS='$(all_suites)' \
+	  CHECK_TAGS=CK_INCLUDE_TAGS TEST_TIMEOUT=3600
+
+VALGRIND = valgrind -q --leak-check=full --error-exitcode=9
+check-valgrind: all $(check_LTLIBRARIES) $(check_PROGRAMS)
+	@failed=; for suite in $(all_suites); do \
+	  CK_FORK=no CK_EXCLUDE_TAGS=slow $(LIBTOOL) --mode=execute \
+	    $(VALGRIND) ./$$suite || failed="$$failed $$suite"; \
+	done; \
+	test -z "$$failed" || { echo "failed under valgrind:$$failed"; exit 1; }
+
+.PHONY: check-slow check-valgrind

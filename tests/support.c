@@ -1,0 +1,298 @@
+/* nevh tests: problems and measurements.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "support.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define EACH(lane) for (size_t lane = 0; lane < width; lane++)
+
+/* p^2/(2m), the mass being the instance's constant. */
+static double kinetic(double t, const double q[], const double p[],
+                      const double c[], const void *params) {
+    (void)t, (void)q, (void)params;
+    return p[0] * p[0] / (2 * c[0]);
+}
+
+static void kinetic_gradient(size_t width, const double t[], const double q[],
+                             const double p[], const double c[],
+                             const void *params, double dq[], double dp[]) {
+    (void)t, (void)q, (void)params, (void)dq;
+    if (dp)
+        EACH(i) dp[i] = p[i] / c[i];
+}
+
+static const double masses[] = {1.3, 2.1};
+
+static void add_kinetic(nevh_system *s, size_t n) {
+    static const size_t momenta[] = {0, 1};
+    nevh_system_add(s, &(nevh_term){.effect = "kinetic",
+                                    .np = 1,
+                                    .nc = 1,
+                                    .p = momenta,
+                                    .c = masses,
+                                    .count = n,
+                                    .value = kinetic,
+                                    .gradient = kinetic_gradient});
+}
+
+static nevh_system *with_potential(size_t n, bool time, nevh_term_fn value,
+                                   nevh_block_gradient_fn gradient) {
+    nevh_system *s = nevh_system_new(n);
+    add_kinetic(s, n);
+    nevh_system_add(s, &(nevh_term){.effect = "potential",
+                                    .nq = n,
+                                    .time = time,
+                                    .value = value,
+                                    .gradient = gradient});
+    return s;
+}
+
+/* A pendulum whose gravity is shaken: time must be right in every stage. */
+static double driven(double t, const double q[], const double p[],
+                     const double c[], const void *params) {
+    (void)p, (void)c, (void)params;
+    return -(2 + 0.7 * sin(1.9 * t)) * cos(q[0]);
+}
+
+static void driven_gradient(size_t width, const double t[], const double q[],
+                            const double p[], const double c[],
+                            const void *params, double dq[], double dp[]) {
+    (void)p, (void)c, (void)params, (void)dp;
+    if (dq)
+        EACH(i) dq[i] = (2 + 0.7 * sin(1.9 * t[i])) * sin(q[i]);
+}
+
+static nevh_system *make_driven(void) {
+    return with_potential(1, true, driven, driven_gradient);
+}
+
+static double gravity(double t, const double q[], const double p[],
+                      const double c[], const void *params) {
+    (void)t, (void)p, (void)c, (void)params;
+    return -1.3 / sqrt(q[0] * q[0] + q[1] * q[1]);
+}
+
+static void gravity_gradient(size_t width, const double t[], const double q[],
+                             const double p[], const double c[],
+                             const void *params, double dq[], double dp[]) {
+    (void)t, (void)p, (void)c, (void)params, (void)dp;
+    const double *x = q, *y = q + width;
+    if (dq)
+        EACH(i) {
+            double r2 = x[i] * x[i] + y[i] * y[i], k = 1.3 / (r2 * sqrt(r2));
+            dq[i] = k * x[i];
+            dq[width + i] = k * y[i];
+        }
+}
+
+static nevh_system *make_kepler(void) {
+    return with_potential(2, false, gravity, gravity_gradient);
+}
+
+static double henon(double t, const double q[], const double p[],
+                    const double c[], const void *params) {
+    (void)t, (void)p, (void)c, (void)params;
+    double x = q[0], y = q[1];
+    return (x * x + y * y) / 2 + x * x * y - y * y * y / 3;
+}
+
+static void henon_gradient(size_t width, const double t[], const double q[],
+                           const double p[], const double c[],
+                           const void *params, double dq[], double dp[]) {
+    (void)t, (void)p, (void)c, (void)params, (void)dp;
+    const double *x = q, *y = q + width;
+    if (dq)
+        EACH(i) {
+            dq[i] = x[i] + 2 * x[i] * y[i];
+            dq[width + i] = y[i] + x[i] * x[i] - y[i] * y[i];
+        }
+}
+
+static nevh_system *make_henon_heiles(void) {
+    return with_potential(2, false, henon, henon_gradient);
+}
+
+static nevh_system *make_double_pendulum(void) {
+    static const nevh_double_pendulum params = {1.2, 0.9, 9.8};
+    return nevh_double_pendulum_model->system(&params);
+}
+
+const problem driven_pendulum = {
+    "driven pendulum", 1, true, 0.3, 10, 5, {0.9}, {0.3}, make_driven};
+const problem kepler = {"Kepler", 2,          true,       0,          5,
+                        6,        {0.7, 0.1}, {0.1, 1.6}, make_kepler};
+const problem henon_heiles = {
+    "Henon-Heiles",   2, true, 0, 24, 8, {0.31, -0.22}, {0.27, 0.33},
+    make_henon_heiles};
+const problem double_pendulum = {
+    "double pendulum",   2, false, 0, 3, 8, {0.5, 0.9}, {1.2, 0.4},
+    make_double_pendulum};
+const problem *const problems[] = {&driven_pendulum, &kepler, &henon_heiles,
+                                   &double_pendulum, NULL};
+
+bool fits(const nevh_integrator *scheme, const problem *b) {
+    return b->separable || !(nevh_integrator_needs(scheme) & NEVH_SEPARABLE);
+}
+
+nevh_stepper *planned(nevh_system *s, const problem *b,
+                      const nevh_integrator *scheme, const nevh_gradient *g) {
+    nevh_options options = {.gradient = g, .t = b->t0, .q = b->q, .p = b->p};
+    nevh_stepper *stepper = nevh_stepper_new(s, scheme, &options);
+    ck_assert_msg(nevh_stepper_status(stepper) == NEVH_OK, "%s on %s: %s",
+                  nevh_integrator_name(scheme), b->name,
+                  nevh_stepper_message(stepper));
+    return stepper;
+}
+
+/* Starting states side by side, taken along the problem's orbit, so that the
+   sign changes of one orbit's error constant average out. */
+enum { LANES = 24 };
+typedef struct {
+    double q[MOST_DOF * LANES], p[MOST_DOF * LANES];
+} bundle;
+
+static bundle start_of(const problem *b) {
+    bundle z;
+    nevh_system *s = b->make();
+    nevh_stepper *stepper = planned(s, b, nevh_gauss16, nevh_exact);
+    double q[MOST_DOF], p[MOST_DOF], h = b->span / 4 / LANES;
+    memcpy(q, b->q, sizeof q);
+    memcpy(p, b->p, sizeof p);
+    for (size_t lane = 0; lane < LANES; lane++) {
+        for (size_t k = 0; k < b->n; k++) {
+            z.q[k * LANES + lane] = q[k];
+            z.p[k * LANES + lane] = p[k];
+        }
+        nevh_run(stepper, b->t0, h, 4, q, p, NULL, 0);
+    }
+    nevh_stepper_free(stepper);
+    nevh_system_free(s);
+    return z;
+}
+
+/* The bundle after the problem's span; false where a step fails. */
+static bool run_bundle(const problem *b, const nevh_integrator *scheme,
+                       const nevh_gradient *g, double steps, bundle *z) {
+    nevh_system *s = b->make();
+    nevh_options options = {
+        .gradient = g, .t = b->t0, .q = z->q, .p = z->p, .width = LANES};
+    nevh_stepper *stepper = nevh_stepper_new(s, scheme, &options);
+    int status = nevh_run(stepper, b->t0, b->span / steps, (size_t)steps, z->q,
+                          z->p, NULL, 0);
+    nevh_stepper_free(stepper);
+    nevh_system_free(s);
+    return status == NEVH_OK;
+}
+
+static double distance(const problem *b, const bundle *x, const bundle *y) {
+    double sum = 0;
+    for (size_t i = 0; i < b->n * LANES; i++)
+        sum += (x->q[i] - y->q[i]) * (x->q[i] - y->q[i]) +
+               (x->p[i] - y->p[i]) * (x->p[i] - y->p[i]);
+    return sqrt(sum / (double)LANES);
+}
+
+/* A log-log line. */
+enum { POINTS = 40, STRETCH = 5 };
+typedef struct {
+    int count;
+    double x[POINTS], y[POINTS];
+} line;
+
+/* The slope through a few neighbouring points; their scatter by reference. */
+static double slope(int points, const double x[], const double y[],
+                    double *scatter) {
+    double mx = 0, my = 0, xx = 0, xy = 0, yy = 0;
+    for (int i = 0; i < points; i++) {
+        mx += x[i] / points;
+        my += y[i] / points;
+    }
+    for (int i = 0; i < points; i++) {
+        xx += (x[i] - mx) * (x[i] - mx);
+        xy += (x[i] - mx) * (y[i] - my);
+        yy += (y[i] - my) * (y[i] - my);
+    }
+    *scatter = yy - xy * xy / xx;
+    return xy / xx;
+}
+
+/* Of the straightest stretch: large steps do not obey the power law yet, small
+   ones are lost in rounding, and both scatter. */
+static double straightest(const line *l, int stretch) {
+    double best = INFINITY, found = NAN, scatter;
+    for (int i = 0; i + stretch <= l->count; i++) {
+        double one = slope(stretch, l->x + i, l->y + i, &scatter);
+        if (scatter < best) {
+            best = scatter;
+            found = one;
+        }
+    }
+    return found;
+}
+
+double measured_order(const problem *b, const nevh_integrator *scheme,
+                      const nevh_gradient *g) {
+    const int order = nevh_integrator_order(scheme);
+    const double above = order == 1 ? 2e-1 : order <= 8 ? 1e-4 : 1e-6;
+    const double below = order <= 5 ? 1e-9 : 1e-13;
+    const double factor = fmin(1.6, pow(10, 0.5 / order));
+    const int most = order <= 2 ? STRETCH + 1 : POINTS;
+    bundle z, start = start_of(b), reference = start;
+    ck_assert(run_bundle(b, nevh_gauss16, nevh_exact, 400, &reference));
+    line l = {0};
+    for (double steps = b->fewest; steps < 4e5 && l.count < most;
+         steps = fmax(steps * factor, steps + 1)) {
+        double count = round(steps), error = INFINITY;
+        z = start;
+        if (run_bundle(b, scheme, g, count, &z))
+            error = distance(b, &z, &reference);
+        if (error < below)
+            break;
+        if (error < above) {
+            l.x[l.count] = -log(count);
+            l.y[l.count++] = log(error);
+        }
+    }
+    ck_assert_msg(l.count >= (order <= 8 ? STRETCH : 4),
+                  "%s on %s: only %d points", nevh_integrator_name(scheme),
+                  b->name, l.count);
+    return straightest(&l, order <= 8 ? STRETCH : l.count);
+}
+
+nevh_energy_report energy_of(const problem *b, const nevh_integrator *scheme,
+                             const nevh_gradient *g, double h, size_t steps) {
+    nevh_system *s = b->make();
+    nevh_stepper *stepper = planned(s, b, scheme, g ? g : nevh_exact);
+    nevh_energy *energy = nevh_energy_new(s, 1);
+    nevh_observer watch = {nevh_energy_observe, energy, 1};
+    double q[MOST_DOF], p[MOST_DOF];
+    for (size_t k = 0; k < b->n; k++) {
+        q[k] = b->q[k];
+        p[k] = b->p[k];
+    }
+    int status = nevh_run(stepper, b->t0, h, steps, q, p, &watch, 1);
+    ck_assert_msg(status == NEVH_OK, "%s on %s: %s",
+                  nevh_integrator_name(scheme), b->name,
+                  nevh_stepper_message(stepper));
+    nevh_energy_report report = nevh_energy_result(energy, 0);
+    nevh_energy_free(energy);
+    nevh_stepper_free(stepper);
+    nevh_system_free(s);
+    return report;
+}
+
+int scheme_count(void) {
+    int count = 0;
+    while (nevh_integrators()[count])
+        count++;
+    return count;
+}
+
+int run_suite(Suite *suite) {
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_ENV);
+    int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}

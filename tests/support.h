@@ -1,0 +1,47 @@
+/* nevh tests: problems that can reveal an error, and measurements.
+   SPDX-License-Identifier: GPL-3.0-or-later
+
+   All problems are nonlinear, coupled where they can be, and have masses other
+   than 1; an oscillator would hide half of the order conditions. */
+#ifndef NEVH_TESTS_SUPPORT_H
+#define NEVH_TESTS_SUPPORT_H
+
+#include <check.h>
+#include <nevh/nevh.h>
+#include <stddef.h>
+
+enum { MOST_DOF = 2 };
+
+typedef struct {
+    const char *name;
+    size_t n;
+    bool separable;
+    double t0, span; /* where slopes are measured */
+    double fewest;   /* steps over that span that begin to make sense */
+    double q[MOST_DOF], p[MOST_DOF];
+    nevh_system *(*make)(void); /* terms with value, block and gradient */
+} problem;
+
+extern const problem driven_pendulum, kepler, henon_heiles, double_pendulum;
+/* The four of them, ended by NULL. */
+extern const problem *const problems[];
+
+/* Whether a scheme takes the problem's H. */
+bool fits(const nevh_integrator *, const problem *);
+/* A stepper on a new system of the problem; fails the test when refused. */
+nevh_stepper *planned(nevh_system *, const problem *, const nevh_integrator *,
+                      const nevh_gradient *);
+/* The order at which the state's error (root mean square over a few orbits)
+   falls over at least four step sizes, by least squares; the reference is
+   gauss16 at a small step. */
+double measured_order(const problem *, const nevh_integrator *,
+                      const nevh_gradient *);
+/* Energy errors of `steps` steps of h, with exact gradients where g is NULL. */
+nevh_energy_report energy_of(const problem *, const nevh_integrator *,
+                             const nevh_gradient *g, double h, size_t steps);
+/* Number of registered schemes. */
+int scheme_count(void);
+/* Runs a suite and returns main's result. */
+int run_suite(Suite *);
+
+#endif
