@@ -46,7 +46,8 @@ static int plan(nevh_work *w) {
     g->evolve = gsl_odeiv2_evolve_alloc(2 * w->n);
     if (tolerance > 0)
         g->control = gsl_odeiv2_control_y_new(0, tolerance);
-    if (!g->step || !g->evolve || (tolerance > 0 && !g->control))
+    if (!g->system.jacobian || !g->step || !g->evolve ||
+        (tolerance > 0 && !g->control))
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     w->memory_rows = 1;
     w->scratch_size = 2 * w->n * (w->width + 1) + w->width;
@@ -101,7 +102,7 @@ static int step_lane(nevh_work *w, double t, double h, size_t lane,
         y[k] = q[k * w->width + lane];
         y[w->n + k] = p[k * w->width + lane];
     }
-    if (*size == 0 || *size * h < 0)
+    if (*size == 0 || (*size > 0) != (h > 0))
         *size = h;
     int status = take(w, t, h, y, size);
     double check = 0;

@@ -1,7 +1,9 @@
 # Check suites, one file each, tests/check_NAME.c.
 suites = \
 	tests/check_system \
+	tests/check_structure \
 	tests/check_gradient \
+	tests/check_lanes \
 	tests/check_registry \
 	tests/check_coefficients \
 	tests/check_order \
@@ -13,6 +15,7 @@ suites = \
 	tests/check_energy \
 	tests/check_models \
 	tests/check_failures \
+	tests/check_hard_steps \
 	tests/check_threads \
 	tests/check_gsl
 TEST_LIBS = tests/libsupport.la libnevh.la $(CHECK_LIBS)

@@ -37,6 +37,14 @@ typedef void (*nevh_block_gradient_fn)(size_t width, const double t[],
                                        const double c[], const void *params,
                                        double dh_dq[], double dh_dp[]);
 
+/* The value of one instance over complex numbers, for the complex step: pairs
+   of real and imaginary part, so that C++ can include this header.  Imaginary
+   parts are tiny (1e-100 of the variables): absolute values, comparisons and
+   conjugation must look at the real part alone. */
+typedef void (*nevh_complex_fn)(double t, const double q[][2],
+                                const double p[][2], const double c[],
+                                const void *params, double h[2]);
+
 /* A term of H: `count` instances of one function (a spring between each pair
    of neighbours is one term).  It is handed only what it declares to read, so
    a declaration cannot lie; from the declarations follow separability, sparse
@@ -54,6 +62,7 @@ typedef struct {
     nevh_term_fn value;  /* may be NULL when block is given */
     nevh_block_fn block; /* NULL: value, lane by lane */
     nevh_block_gradient_fn gradient; /* NULL: no exact gradient */
+    nevh_complex_fn complex_value;   /* NULL: no complex step */
     const void *params;              /* borrowed; outlives the system */
 } nevh_term;
 
@@ -91,7 +100,9 @@ NEVH_API int nevh_system_add(nevh_system *, const nevh_term *);
 
 /* Switches an effect, that is all terms of that effect name, on or off.
    Steppers and fields made before notice, and refuse to go on.
-   returns  NEVH_OK; NEVH_EINVAL when no term has that effect */
+   returns  NEVH_OK; NEVH_EINVAL when no term has that effect, and the system
+            carries that status from then on, as after nevh_system_add: ask
+            nevh_system_effect_name first where names come from a user */
 NEVH_API int nevh_system_enable(nevh_system *, const char *effect, bool on);
 
 /* The first error of this system, or NEVH_OK; NEVH_ENOMEM for NULL. */

@@ -92,7 +92,8 @@ static void describe(const nevh_field *f, const nevh__planned *term,
 }
 
 int nevh__block_fail(nevh_field *f, const nevh__planned *term,
-                     const nevh__block *b, size_t column, double what) {
+                     const nevh__block *b, size_t column, const char *what,
+                     double value) {
     const nevh_term *is = &term->term->is;
     size_t lane = b->lane + column % b->lanes;
     size_t group = column / (b->copies * b->lanes);
@@ -104,9 +105,9 @@ int nevh__block_fail(nevh_field *f, const nevh__planned *term,
                  lane);
     return nevh__fail(
         &f->report, NEVH_EDOM,
-        "term \"%s\" of effect \"%s\"%s is %g at t = %.9g, %s: keep the orbit "
+        "%sterm \"%s\" of effect \"%s\"%s is %g at t = %.9g, %s: keep the orbit "
         "away from there, or take a smaller step",
-        is->name, is->effect, which, what, b->t[lane], where);
+        what, is->name, is->effect, which, value, b->t[lane], where);
 }
 
 /* Whether all are finite: x - x is 0 then, and NaN otherwise. */
@@ -129,5 +130,5 @@ int nevh__block_values(nevh_field *f, nevh__planned *term,
     size_t column = 0;
     while (column + 1 < b->used && isfinite(f->h[column]))
         column++;
-    return nevh__block_fail(f, term, b, column, f->h[column]);
+    return nevh__block_fail(f, term, b, column, "", f->h[column]);
 }

@@ -32,7 +32,8 @@ static int exact_block(nevh_field *f, nevh__planned *term, nevh__block *b,
         const double *row = f->slopes + k * b->stride;
         size_t bad = add_row(term, b, k, row, k < term->nq ? dh_dq : dh_dp);
         if (bad < b->used)
-            return nevh__block_fail(f, term, b, bad, row[bad]);
+            return nevh__block_fail(f, term, b, bad, "a derivative of ",
+                                    row[bad]);
     }
     return NEVH_OK;
 }

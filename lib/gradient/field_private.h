@@ -73,9 +73,10 @@ bool nevh__block_next(nevh_field *, const nevh__planned *, nevh__block *);
 /* Evaluates the term on the filled block, counts, and checks that every value
    is finite. */
 int nevh__block_values(nevh_field *, nevh__planned *, const nevh__block *);
-/* Records that a term is not finite in a column; `what` is its value. */
+/* Records that something of a term ("", "a derivative of ") is not finite in
+   a column. */
 int nevh__block_fail(nevh_field *, const nevh__planned *, const nevh__block *,
-                     size_t column, double what);
+                     size_t column, const char *what, double value);
 
 /* All lanes of states side by side. */
 static inline nevh__block nevh__block_over(size_t width, const double t[],

@@ -12,10 +12,12 @@
    Their rule is believed only once the changes are small, since in the first
    sweeps of a hard step they may rise before they fall.  Small is 1e-10 of
    the unknown's scale, or what the rounding of H makes of a difference
-   quotient.  Lanes are independent of each other: one that is done is left
-   alone.  A lane that makes no progress at large changes, that is still under
-   way after `most_sweeps`, or that leaves the domain of H with growing changes
-   is handed to the rescue.
+   quotient.  Under differences unknowns go on improving by chance, each drawing
+   new noise in every sweep; there the iteration also ends when all changes are
+   within that noise and the largest of them has ceased to fall.  Lanes are
+   independent of each other: one that is done is left alone.  A lane that makes
+   no progress at large changes, that is still under way after `most_sweeps`, or
+   that leaves the domain of H with growing changes is handed to the rescue.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "implicit/implicit_private.h"
 #include "gradient/field_private.h"
@@ -26,6 +28,7 @@
 enum { MOST_SWEEPS = 100, MOST_STALLS = 8 };
 static const double small = 1e-10;
 static const double noise_margin = 16;
+static const double may_be_noise = 1e-4; /* not worth a look above */
 
 nevh__stage_solver *nevh__stage_solver_new(nevh_work *w, size_t stages) {
     nevh__stage_solver *s = nevh__array(1, sizeof *s);
@@ -74,7 +77,8 @@ static void begin(nevh__stage_solver *s) {
         s->least[i] = INFINITY;
     for (size_t lane = 0; lane < w->width; lane++) {
         s->lanes[lane] = lane;
-        s->lane[lane] = (nevh__stage_lane){.change = INFINITY};
+        s->lane[lane] =
+            (nevh__stage_lane){.change = INFINITY, .least = INFINITY};
     }
 }
 
@@ -88,32 +92,51 @@ static bool find_noise(nevh__stage_solver *s, size_t lane) {
         q[k] = e->q[k * w->width + lane];
         p[k] = e->p[k * w->width + lane];
     }
-    return nevh__field_noise(w->field, e->t, q, p, s->noise + w->n, s->noise) ==
-           NEVH_OK;
-}
-
-bool nevh__stage_small(nevh__stage_solver *s, size_t lane, double change,
-                       const double *out, size_t stride, const double *x) {
-    if (change <= small)
-        return true;
-    if (!(change < INFINITY) || !find_noise(s, lane))
-        return false;
-    size_t width = s->work->width;
-    double h = fabs(s->problem->h);
-    for (size_t row = 0; row < s->rows; row++) {
-        size_t k = row / s->stages;
-        double allowed =
-            small * s->scale[k * width + lane] + noise_margin * h * s->noise[k];
-        if (!(h * fabs(out[row * stride] - x[row * width]) <= allowed))
-            return false;
-    }
-    return true;
+    s->status =
+        nevh__field_noise(w->field, e->t, q, p, s->noise + w->n, s->noise);
+    if (s->status)
+        nevh_work_fail(s->work, s->status, "%s", nevh_field_message(w->field));
+    return s->status == NEVH_OK;
 }
 
 typedef struct {
     bool moved, improved;
     double change;
 } progress;
+
+/* Whether every change of a lane is within `share` of its scale and `margin`
+   times its gradient's noise. */
+static bool within(nevh__stage_solver *s, size_t lane, double share,
+                   double margin, const double *out, size_t stride,
+                   const double *x) {
+    size_t width = s->work->width;
+    double h = fabs(s->problem->h);
+    if (!find_noise(s, lane))
+        return false;
+    for (size_t row = 0; row < s->rows; row++) {
+        size_t k = row / s->stages;
+        double allowed =
+            share * s->scale[k * width + lane] + margin * h * s->noise[k];
+        if (!(h * fabs(out[row * stride] - x[row * width]) <= allowed))
+            return false;
+    }
+    return true;
+}
+
+bool nevh__stage_small(nevh__stage_solver *s, size_t lane, double change,
+                       const double *out, size_t stride, const double *x) {
+    return change <= small ||
+           (change < INFINITY &&
+            within(s, lane, small, noise_margin, out, stride, x));
+}
+
+/* Differences only: the last sweep drew noise and nothing else. */
+static bool drowned(nevh__stage_solver *s, size_t lane, const progress *made,
+                    const double *out, size_t stride, const double *x) {
+    return s->work->field->gradient->offsets && made->change < may_be_noise &&
+           made->change >= s->lane[lane].least &&
+           within(s, lane, 2 * DBL_EPSILON, 1, out, stride, x);
+}
 
 /* Compares one lane's sweep with the one before. */
 static progress compare(nevh__stage_solver *s, size_t lane, size_t stride,
@@ -153,10 +176,12 @@ static lane_state judge(nevh__stage_solver *s, size_t lane, size_t stride,
                         const double *out) {
     nevh__stage_lane *l = &s->lane[lane];
     progress made = compare(s, lane, stride, out);
-    l->grew |= made.change > l->change;
+    l->grew |= made.change > l->change && made.change > small;
     l->change = made.change;
-    if (!made.moved)
+    if (!made.moved ||
+        drowned(s, lane, &made, out, stride, s->problem->x + lane))
         return DONE;
+    l->least = fmin(l->least, made.change);
     if (made.improved) {
         l->grace = false;
         return GO_ON;
@@ -169,39 +194,59 @@ static lane_state judge(nevh__stage_solver *s, size_t lane, size_t stride,
     return l->stalls < MOST_STALLS ? GO_ON : STUCK;
 }
 
-/* One sweep over the lanes under way; those that are stuck are rescued. */
-static int sweep(nevh__stage_solver *s, size_t *active, bool last) {
-    size_t left = 0, count = *active;
-    int status = s->problem->map(s->problem->data, count, s->lanes,
-                                 s->problem->x, s->out);
-    bool grew = false;
-    for (size_t a = 0; a < count; a++)
-        grew |= s->lane[s->lanes[a]].grew;
-    if (status && (status != NEVH_EDOM || !grew))
+static int sweep_alone(nevh__stage_solver *, size_t lanes[], size_t count,
+                       size_t *active, bool last);
+
+/* One sweep over lanes under way; those that remain so move to the front.
+   Those that are stuck are rescued.  Where H is not defined for one, each is
+   swept alone, lest it decide over the others. */
+static int sweep(nevh__stage_solver *s, size_t lanes[], size_t *active,
+                 bool last) {
+    size_t count = *active;
+    int status =
+        s->problem->map(s->problem->data, count, lanes, s->problem->x, s->out);
+    *active = 0;
+    if (status == NEVH_EDOM && count > 1)
+        return sweep_alone(s, lanes, count, active, last);
+    bool lost = status == NEVH_EDOM && s->lane[lanes[0]].grew;
+    if (status && !lost)
         return status;
-    bool lost = status == NEVH_EDOM;
     s->work->sweeps += count;
     for (size_t a = 0; a < count; a++) {
-        size_t lane = s->lanes[a];
+        size_t lane = lanes[a];
         lane_state state = lost ? STUCK : judge(s, lane, count, s->out + a);
+        if (s->status)
+            return s->status;
         if (!lost)
             take(s, lane, count, s->out + a);
         if (state == GO_ON && !last)
-            s->lanes[left++] = lane;
+            lanes[(*active)++] = lane;
         else if (state != DONE && (status = nevh__rescue_lane(s, lane)))
             return status;
     }
-    *active = left;
     return NEVH_OK;
+}
+
+static int sweep_alone(nevh__stage_solver *s, size_t lanes[], size_t count,
+                       size_t *active, bool last) {
+    int status = NEVH_OK;
+    for (size_t a = 0; !status && a < count; a++) {
+        size_t lane = lanes[a], one = 1;
+        status = sweep(s, &lane, &one, last);
+        if (one)
+            lanes[(*active)++] = lane;
+    }
+    return status;
 }
 
 int nevh__stage_solve(nevh__stage_solver *s,
                       const nevh__stage_problem *problem) {
     s->problem = problem;
+    s->status = NEVH_OK;
     begin(s);
     size_t active = s->work->width;
     int status = NEVH_OK;
     for (size_t i = 1; !status && active > 0; i++)
-        status = sweep(s, &active, i >= MOST_SWEEPS);
+        status = sweep(s, s->lanes, &active, i >= MOST_SWEEPS);
     return status;
 }

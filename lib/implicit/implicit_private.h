@@ -44,6 +44,7 @@ struct nevh__stage_solver {
     struct nevh__stage_lane *lane;
     struct nevh__rescue *rescue; /* NULL for large systems */
     const nevh__stage_problem *problem;
+    int status; /* of the noise, where it was asked for */
 };
 
 /* What is known of the iteration of one lane. */
@@ -52,6 +53,7 @@ typedef struct nevh__stage_lane {
     bool grew;       /* the largest change grew from one sweep to another */
     unsigned stalls; /* sweeps without progress while changes are large */
     double change;   /* largest of the last sweep, in units of scale */
+    double least;    /* the smallest of those so far */
 } nevh__stage_lane;
 
 /* Whether changes of x no larger than these are rounding: `change` is in units

@@ -14,8 +14,8 @@
 enum { MOST_ITERATIONS = 200, MOST_IDLE = 5 };
 
 struct nevh__rescue {
-    gsl_multiroot_fsolver *gsl;
-    gsl_vector *start;
+    gsl_multiroot_fdfsolver *gsl;
+    gsl_vector *start, *moved, *f, *f_moved; /* the latter for differences */
     double *best, *g; /* rows: the best x so far; G of a trial x */
     double residual;  /* of the best, largest, in units of scale */
     size_t lane;
@@ -38,10 +38,13 @@ struct nevh__rescue *nevh__rescue_new(nevh__stage_solver *s) {
     }
     r->best = nevh__array(s->rows, sizeof *r->best);
     r->g = nevh__array(s->rows, sizeof *r->g);
-    r->gsl =
-        gsl_multiroot_fsolver_alloc(gsl_multiroot_fsolver_hybrids, s->rows);
+    r->gsl = gsl_multiroot_fdfsolver_alloc(gsl_multiroot_fdfsolver_hybridsj,
+                                           s->rows);
     r->start = gsl_vector_calloc(s->rows);
-    if (r->best && r->g && r->gsl && r->start)
+    r->moved = gsl_vector_calloc(s->rows);
+    r->f = gsl_vector_calloc(s->rows);
+    r->f_moved = gsl_vector_calloc(s->rows);
+    if (r->best && r->g && r->gsl && r->start && r->moved && r->f && r->f_moved)
         return r;
     nevh__rescue_free(r);
     return NULL;
@@ -51,8 +54,11 @@ void nevh__rescue_free(struct nevh__rescue *r) {
     if (!r)
         return;
     if (r->gsl)
-        gsl_multiroot_fsolver_free(r->gsl);
+        gsl_multiroot_fdfsolver_free(r->gsl);
     gsl_vector_free(r->start);
+    gsl_vector_free(r->moved);
+    gsl_vector_free(r->f);
+    gsl_vector_free(r->f_moved);
     free(r->best);
     free(r->g);
     free(r);
@@ -89,17 +95,49 @@ static int residual(const gsl_vector *u, void *params, gsl_vector *f) {
     return most < INFINITY ? GSL_SUCCESS : GSL_EBADFUNC;
 }
 
+/* The Jacobian at u, where the residual is f.  gsl_multiroot_fdjacobian does
+   the same, but allocates on every call. */
+static int differences(const gsl_vector *u, const gsl_vector *f,
+                       nevh__stage_solver *s, gsl_matrix *jacobian) {
+    struct nevh__rescue *r = s->rescue;
+    int status = GSL_SUCCESS;
+    gsl_vector_memcpy(r->moved, u);
+    for (size_t j = 0; !status && j < s->rows; j++) {
+        double x = gsl_vector_get(u, j);
+        double dx = GSL_SQRT_DBL_EPSILON * (x != 0 ? fabs(x) : 1);
+        gsl_vector_set(r->moved, j, x + dx);
+        status = residual(r->moved, s, r->f_moved);
+        gsl_vector_set(r->moved, j, x);
+        gsl_vector_sub(r->f_moved, f);
+        gsl_vector_scale(r->f_moved, 1 / dx);
+        gsl_matrix_set_col(jacobian, j, r->f_moved);
+    }
+    return status;
+}
+
+static int slopes(const gsl_vector *u, void *params, gsl_matrix *jacobian) {
+    nevh__stage_solver *s = params;
+    int status = residual(u, s, s->rescue->f);
+    return status ? status : differences(u, s->rescue->f, s, jacobian);
+}
+
+static int both(const gsl_vector *u, void *params, gsl_vector *f,
+                gsl_matrix *jacobian) {
+    int status = residual(u, params, f);
+    return status ? status : differences(u, f, params, jacobian);
+}
+
 static void iterate(nevh__stage_solver *s) {
     struct nevh__rescue *r = s->rescue;
-    gsl_multiroot_function f = {residual, s->rows, s};
+    gsl_multiroot_function_fdf f = {residual, slopes, both, s->rows, s};
     r->residual = INFINITY;
     gsl_vector_set_zero(r->start);
-    int status = gsl_multiroot_fsolver_set(r->gsl, &f, r->start);
+    int status = gsl_multiroot_fdfsolver_set(r->gsl, &f, r->start);
     for (int i = 0, idle = 0;
          !status && i < MOST_ITERATIONS && idle < MOST_IDLE && r->residual > 0;
          i++) {
         double before = r->residual;
-        status = gsl_multiroot_fsolver_iterate(r->gsl);
+        status = gsl_multiroot_fdfsolver_iterate(r->gsl);
         s->work->sweeps++;
         idle = r->residual < before ? 0 : idle + 1;
     }
@@ -137,5 +175,5 @@ int nevh__rescue_lane(nevh__stage_solver *s, size_t lane) {
         s->problem->map(s->problem->data, 1, &lane, s->problem->x, r->g);
     if (status || nevh__stage_small(s, lane, r->residual, r->g, 1, x))
         return status;
-    return give_up(s, lane);
+    return s->status ? s->status : give_up(s, lane);
 }

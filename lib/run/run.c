@@ -19,12 +19,12 @@ static int show(nevh_stepper *s, size_t step, size_t steps, double t,
 
 int nevh_run(nevh_stepper *s, double t0, double h, size_t steps, double q[],
              double p[], const nevh_observer observers[], size_t count) {
-    if (!s)
-        return NEVH_ENOMEM;
-    s->taken = 0;
     int status = nevh__begin(s, t0, h, q, p);
-    if (!status)
-        status = show(s, 0, steps, t0, q, p, observers, count);
+    if (s)
+        s->taken = 0;
+    if (status)
+        return status;
+    status = show(s, 0, steps, t0, q, p, observers, count);
     while (!status && s->taken < steps) {
         status = nevh__advance(s, t0 + (double)s->taken * h, h, q, p);
         if (status)
@@ -33,7 +33,9 @@ int nevh_run(nevh_stepper *s, double t0, double h, size_t steps, double q[],
         status = show(s, s->taken, steps, t0 + (double)s->taken * h, q, p,
                       observers, count);
     }
-    if (s->planned && s->taken > 0)
+    if (s->taken > 0)
         nevh__remember(s, q, p);
+    else
+        nevh__undo(s);
     return status;
 }

@@ -25,7 +25,8 @@ static int plan_memory(nevh_stepper *s) {
     w->scratch = nevh__array(w->scratch_size, sizeof(double));
     s->last_q = nevh__array(w->size, sizeof(double));
     s->last_p = nevh__array(w->size, sizeof(double));
-    if (w->memory && w->scratch && s->last_q && s->last_p)
+    s->before = nevh__array(w->memory_rows * w->width, sizeof(double));
+    if (w->memory && w->scratch && s->last_q && s->last_p && s->before)
         return NEVH_OK;
     return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
 }
@@ -52,9 +53,9 @@ static int plan(nevh_stepper *s, const nevh_integrator *integrator) {
         return nevh__fail(&s->report, NEVH_EINVAL,
                           "the tolerance %g is not a positive number",
                           s->options.tolerance);
-    int status = nevh__check_structure(s);
+    int status = plan_field(s);
     if (!status)
-        status = plan_field(s);
+        status = nevh__check_structure(s);
     if (!status)
         status = integrator->kernel->plan(w);
     return status ? status : plan_memory(s);
@@ -100,6 +101,7 @@ void nevh_stepper_free(nevh_stepper *s) {
     free(s->work.scratch);
     free(s->last_q);
     free(s->last_p);
+    free(s->before);
     free(s);
 }
 
@@ -139,30 +141,45 @@ static bool same_time(const nevh_stepper *s, double t, double h) {
     return fabs(t - s->last_t) <= slack;
 }
 
+static size_t memory_size(const nevh_stepper *s) {
+    return s->work.memory_rows * s->work.width * sizeof *s->work.memory;
+}
+
 int nevh__begin(nevh_stepper *s, double t, double h, const double q[],
                 const double p[]) {
-    if (!s->planned)
-        return s->report.status;
+    if (!s || !s->planned)
+        return nevh_stepper_status(s);
     s->report.status = NEVH_OK;
     s->report.text[0] = '\0';
+    s->forgot = false;
     if (!isfinite(t) || !isfinite(h))
         return nevh__fail(&s->report, NEVH_EINVAL,
                           "time %g or step %g is not a finite number", t, h);
-    if (!s->has_last || !same_time(s, t, h))
-        nevh_stepper_reset(s);
-    else
-        for (size_t lane = 0; lane < s->work.width; lane++)
-            if (!same_lane(s, lane, q, p))
-                forget_lane(s, lane);
+    bool same = s->has_last && same_time(s, t, h);
+    for (size_t lane = 0; lane < s->work.width; lane++)
+        if (!same || !same_lane(s, lane, q, p)) {
+            if (!s->forgot)
+                memcpy(s->before, s->work.memory, memory_size(s));
+            s->forgot = true;
+            forget_lane(s, lane);
+        }
     return NEVH_OK;
+}
+
+void nevh__undo(nevh_stepper *s) {
+    if (s->forgot)
+        memcpy(s->work.memory, s->before, memory_size(s));
 }
 
 int nevh__advance(nevh_stepper *s, double t, double h, double q[], double p[]) {
     nevh_work *w = &s->work;
     int status = w->integrator->kernel->step(w, t, h, q, p);
-    if (!status)
-        s->last_t = t + h;
-    return status;
+    if (status)
+        return status;
+    s->last_t = t + h;
+    s->report.status = NEVH_OK; /* a rescued step has failed before */
+    s->report.text[0] = '\0';
+    return NEVH_OK;
 }
 
 /* Called where the state leaves the library's hands. */
@@ -175,9 +192,12 @@ void nevh__remember(nevh_stepper *s, const double q[], const double p[]) {
 int nevh_stepper_apply(nevh_stepper *s, double t, double h, double q[],
                        double p[]) {
     int status = nevh__begin(s, t, h, q, p);
-    if (!status)
-        status = nevh__advance(s, t, h, q, p);
-    if (!status)
+    if (status)
+        return status;
+    status = nevh__advance(s, t, h, q, p);
+    if (status)
+        nevh__undo(s);
+    else
         nevh__remember(s, q, p);
     return status;
 }

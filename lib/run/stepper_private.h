@@ -14,6 +14,8 @@ struct nevh_stepper {
     /* What the last step returned. */
     bool has_last;
     double last_t, *last_q, *last_p;
+    bool forgot;    /* the last step or run began with less than `before` */
+    double *before; /* the memory before that */
     size_t taken;
 };
 
@@ -25,6 +27,8 @@ int nevh__advance(nevh_stepper *, double t, double h, double q[], double p[]);
 int nevh__begin(nevh_stepper *, double t, double h, const double q[],
                 const double p[]);
 
+/* No step was taken: the memory is what it was before nevh__begin. */
+void nevh__undo(nevh_stepper *);
 /* Keeps the state that a step or run returns. */
 void nevh__remember(nevh_stepper *, const double q[], const double p[]);
 

@@ -53,7 +53,10 @@ int nevh__check_structure(nevh_stepper *s) {
         return NEVH_OK;
     nevh_separability probe;
     double *q = first_lane(w, s->options.q), *p = first_lane(w, s->options.p);
-    int status = nevh_system_probe(w->system, s->options.t, q, p,
+    int status = NEVH_ENOMEM;
+    probe.separable = false;
+    if ((q || !s->options.q) && (p || !s->options.p))
+        status = nevh_system_probe(w->system, s->options.t, q, p,
                                    s->options.scale, &probe);
     free(q);
     free(p);

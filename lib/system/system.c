@@ -168,8 +168,8 @@ static int append(nevh_system *s, const nevh_term *from) {
 }
 
 int nevh_system_add(nevh_system *s, const nevh_term *from) {
-    if (s->report.status)
-        return s->report.status;
+    if (nevh_system_status(s))
+        return nevh_system_status(s);
     nevh_term term = *from;
     if (!term.count)
         term.count = 1;
@@ -178,8 +178,8 @@ int nevh_system_add(nevh_system *s, const nevh_term *from) {
 }
 
 int nevh_system_enable(nevh_system *s, const char *name, bool on) {
-    if (s->report.status)
-        return s->report.status;
+    if (nevh_system_status(s))
+        return nevh_system_status(s);
     nevh__effect *effect = effect_named(s, name);
     if (!effect)
         return nevh__fail(&s->report, NEVH_EINVAL, "there is no effect \"%s\"",

@@ -1,0 +1,316 @@
+/* nevh tests: steps that cannot be taken, or hardly.
+   SPDX-License-Identifier: GPL-3.0-or-later
+
+   GSL's error handler is its default one, which aborts: nothing may reach it.
+ */
+#include "support.h"
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#define assert_says(message, word)                                             \
+    ck_assert_msg(strstr(message, word), "no \"%s\" in: %s", word, message)
+
+static double pendulum(double t, const double q[], const double p[],
+                       const void *params) {
+    (void)t, (void)params;
+    return p[0] * p[0] / 2.6 - 1.7 * cos(q[0]);
+}
+
+static double quartic(double t, const double q[], const double p[],
+                      const void *params) {
+    (void)t, (void)params;
+    return p[0] * p[0] / 2 + q[0] * q[0] * q[0] * q[0];
+}
+
+static const double start_q = 0.7, start_p = 0.4;
+static const double absurd[] = {1e300, -1e300,   DBL_MAX,  1e150,   1e20,
+                                -1e8,  0,        1e-300,   -1e-300, DBL_MIN,
+                                NAN,   INFINITY, -INFINITY};
+enum { ABSURD = sizeof absurd / sizeof *absurd };
+
+static bool finite_state(const double z[2]) {
+    return isfinite(z[0]) && isfinite(z[1]);
+}
+
+/* One step of any size, and a usual one after it. */
+static void try_step(const nevh_system *s, const nevh_integrator *scheme,
+                     double tolerance, double h) {
+    nevh_options options = {
+        .q = &start_q, .p = &start_p, .tolerance = tolerance};
+    nevh_stepper *m = nevh_stepper_new(s, scheme, &options);
+    nevh_stepper *fresh = nevh_stepper_new(s, scheme, &options);
+    const double start[] = {start_q, start_p};
+    double z[] = {start_q, start_p}, y[] = {start_q, start_p};
+    int status = nevh_stepper_apply(m, 0, h, z, z + 1);
+    ck_assert_int_eq(nevh_stepper_status(m), status);
+    ck_assert_msg(finite_state(z), "%s, h = %g", nevh_integrator_name(scheme),
+                  h);
+    ck_assert(isfinite(h) || status == NEVH_EINVAL);
+    ck_assert_int_ne(status, NEVH_EFAILED);
+    if (fabs(h) < 1e-100) {
+        ck_assert_int_eq(status, NEVH_OK);
+        ck_assert_mem_eq(z, start, sizeof z);
+    }
+    if (status) {
+        ck_assert(strlen(nevh_stepper_message(m)) > 20);
+        ck_assert_mem_eq(z, start, sizeof z);
+        ck_assert_int_eq(nevh_stepper_apply(m, 0, 0.1, z, z + 1), NEVH_OK);
+        ck_assert_int_eq(nevh_stepper_apply(fresh, 0, 0.1, y, y + 1), NEVH_OK);
+        ck_assert_mem_eq(z, y, sizeof z);
+    }
+    nevh_stepper_free(m);
+    nevh_stepper_free(fresh);
+}
+
+START_TEST(absurd_steps) {
+    const nevh_integrator *scheme = nevh_integrators()[_i / 2];
+    nevh_system *s = nevh_system_from(1, _i % 2 ? quartic : pendulum, NULL);
+    for (int i = 0; i < ABSURD; i++)
+        try_step(s, scheme, 0, absurd[i]);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* Under GSL's step control; 1e20 would take that many steps. */
+START_TEST(absurd_adaptive_steps) {
+    const nevh_integrator *schemes[] = {nevh_gsl_rkf45, nevh_gsl_rk8pd};
+    nevh_system *s = nevh_system_from(1, quartic, NULL);
+    for (int i = 0; i < ABSURD; i++)
+        if (!(fabs(absurd[i]) > 1 && fabs(absurd[i]) < 1e200))
+            try_step(s, schemes[_i], 1e-9, absurd[i]);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* There and back, however short the way. */
+START_TEST(tiny_steps_turn_round) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    nevh_system *s = nevh_system_from(1, pendulum, NULL);
+    for (int adaptive = 0; adaptive < 2; adaptive++) {
+        nevh_options options = {.tolerance = adaptive ? 1e-9 : 0};
+        nevh_stepper *m = nevh_stepper_new(s, scheme, &options);
+        double z[] = {start_q, start_p};
+        ck_assert_int_eq(nevh_stepper_apply(m, 0, 1e-200, z, z + 1), NEVH_OK);
+        ck_assert_int_eq(nevh_stepper_apply(m, 1e-200, -1e-200, z, z + 1),
+                         NEVH_OK);
+        ck_assert_double_eq(z[0], start_q);
+        ck_assert_double_eq(z[1], start_p);
+        nevh_stepper_free(m);
+    }
+    nevh_system_free(s);
+}
+END_TEST
+
+static double stiff(double t, const double q[], const double p[],
+                    const void *params) {
+    double k = *(const double *)params, x = q[0] * q[0];
+    (void)t;
+    return p[0] * p[0] / 2 + k * (x + x * x) / 2;
+}
+
+/* What a step of the midpoint rule lacks of solving its equations. */
+static double midpoint_residual(const nevh_system *s, const nevh_options *o,
+                                double h, const double z[2]) {
+    nevh_field *f = nevh_field_new(s, o);
+    double q = (start_q + z[0]) / 2, p = (start_p + z[1]) / 2, t = 0, dq, dp;
+    ck_assert_int_eq(nevh_field_gradient(f, 1, &t, &q, &p, &dq, &dp), NEVH_OK);
+    nevh_field_free(f);
+    double lack_q = fabs(z[0] - start_q - h * dp) / (fabs(h * dp) + start_q);
+    double lack_p = fabs(z[1] - start_p + h * dq) / (fabs(h * dq) + start_p);
+    return fmax(lack_q, lack_p);
+}
+
+/* Never a hang, never NaN, and what is called solved is solved. */
+START_TEST(stiff_steps) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    for (double k = 1e2; k < 1e13; k *= 1e5) {
+        nevh_system *s = nevh_system_from(1, stiff, &k);
+        for (double h = 0.001; h < 11; h *= 10) {
+            nevh_options o = {.q = &start_q, .p = &start_p};
+            nevh_stepper *m = nevh_stepper_new(s, scheme, &o);
+            double z[] = {start_q, start_p};
+            int status = nevh_stepper_apply(m, 0, h, z, z + 1);
+            ck_assert(finite_state(z));
+            ck_assert(status == NEVH_OK || status == NEVH_EMAXITER ||
+                      status == NEVH_EDOM);
+            ck_assert(!status || (z[0] == start_q && z[1] == start_p));
+            if (!status && scheme == nevh_midpoint)
+                ck_assert_double_le(midpoint_residual(s, &o, h, z), 1e-8);
+            nevh_stepper_free(m);
+        }
+        nevh_system_free(s);
+    }
+}
+END_TEST
+
+/* Its values are noise: no difference quotient means anything. */
+static double noisy(double t, const double q[], const double p[],
+                    const void *params) {
+    uint64_t bits;
+    memcpy(&bits, q, sizeof bits);
+    bits = (bits ^ bits >> 29) * 0x9e3779b97f4a7c15u;
+    return quartic(t, q, p, params) + (double)(bits >> 40) * 0x1p-24;
+}
+
+START_TEST(noise_is_not_solved) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    if (nevh_integrator_explicit(scheme) == NEVH_YES)
+        return;
+    nevh_system *s = nevh_system_from(1, noisy, NULL);
+    nevh_stepper *m = nevh_stepper_new(s, scheme, NULL);
+    double z[] = {start_q, start_p};
+    ck_assert_int_eq(nevh_stepper_apply(m, 0, 0.1, z, z + 1), NEVH_EMAXITER);
+    assert_says(nevh_stepper_message(m), nevh_integrator_name(scheme));
+    assert_says(nevh_stepper_message(m), "smaller step");
+    ck_assert(z[0] == start_q && z[1] == start_p);
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* A spring that ends at q = 1: fixed-point iteration jumps over the end. */
+static double ending(double t, const double q[], const double p[],
+                     const void *params) {
+    (void)t, (void)params;
+    return p[0] * p[0] / 2 - 5 * log(1 - q[0] * q[0]);
+}
+
+/* The rescued step is a success, and is reported as one. */
+START_TEST(rescue_after_leaving_the_domain) {
+    static const double q = 0.9, p = 0;
+    nevh_system *s = nevh_system_from(1, ending, NULL);
+    nevh_stepper *m =
+        nevh_stepper_new(s, nevh_midpoint, &(nevh_options){.q = &q, .p = &p});
+    double x = q, y = p;
+    ck_assert_int_eq(nevh_stepper_apply(m, 0, 0.3, &x, &y), NEVH_OK);
+    ck_assert_uint_eq(nevh_stepper_counts(m).rescues, 1);
+    ck_assert_int_eq(nevh_stepper_status(m), NEVH_OK);
+    ck_assert_str_eq(nevh_stepper_message(m), "");
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* A lane beside one that is rescued is what it is alone. */
+START_TEST(rescue_of_a_neighbour) {
+    static const double scale[] = {1, 1};
+    nevh_system *s = nevh_system_from(1, ending, NULL);
+    nevh_options o = {.scale = scale, .width = 2};
+    nevh_stepper *both = nevh_stepper_new(s, nevh_midpoint, &o);
+    o.width = 1;
+    nevh_stepper *alone = nevh_stepper_new(s, nevh_midpoint, &o);
+    double q[] = {0.9, 0.2}, p[] = {0, 0.1}, x = 0.2, y = 0.1;
+    ck_assert_int_eq(nevh_stepper_apply(both, 0, 0.3, q, p), NEVH_OK);
+    ck_assert_int_eq(nevh_stepper_apply(alone, 0, 0.3, &x, &y), NEVH_OK);
+    ck_assert_uint_eq(nevh_stepper_counts(alone).rescues, 0);
+    ck_assert_uint_eq(nevh_stepper_counts(both).rescues, 1);
+    ck_assert_double_eq(q[1], x);
+    ck_assert_double_eq(p[1], y);
+    nevh_stepper_free(both);
+    nevh_stepper_free(alone);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* 1e308 q + 1e-308 p: values and derivatives are finite, the momentum after a
+   step is not. */
+static double force(double t, const double q[], const double p[],
+                    const double c[], const void *params) {
+    (void)t, (void)p, (void)c, (void)params;
+    return 1e308 * q[0];
+}
+
+static double drift(double t, const double q[], const double p[],
+                    const double c[], const void *params) {
+    (void)t, (void)q, (void)c, (void)params;
+    return 1e-308 * p[0];
+}
+
+static void force_gradient(size_t width, const double t[], const double q[],
+                           const double p[], const double c[],
+                           const void *params, double dq[], double dp[]) {
+    (void)t, (void)q, (void)p, (void)c, (void)params, (void)dp;
+    for (size_t i = 0; dq && i < width; i++)
+        dq[i] = 1e308;
+}
+
+static void drift_gradient(size_t width, const double t[], const double q[],
+                           const double p[], const double c[],
+                           const void *params, double dq[], double dp[]) {
+    (void)t, (void)q, (void)p, (void)c, (void)params, (void)dq;
+    for (size_t i = 0; dp && i < width; i++)
+        dp[i] = 1e-308;
+}
+
+START_TEST(leaves_the_range_of_numbers) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    nevh_system *s = nevh_system_new(1);
+    nevh_system_add(s, &(nevh_term){.effect = "force",
+                                    .nq = 1,
+                                    .value = force,
+                                    .gradient = force_gradient});
+    nevh_system_add(s, &(nevh_term){.effect = "drift",
+                                    .np = 1,
+                                    .value = drift,
+                                    .gradient = drift_gradient});
+    nevh_stepper *m =
+        nevh_stepper_new(s, scheme, &(nevh_options){.gradient = nevh_exact});
+    double z[] = {0, -1e308};
+    ck_assert_int_eq(nevh_stepper_apply(m, 0, 1, z, z + 1), NEVH_EDOM);
+    assert_says(nevh_stepper_message(m), "smaller");
+    ck_assert(z[0] == 0 && z[1] == -1e308);
+    ck_assert_int_eq(nevh_stepper_apply(m, 0, -1, z, z + 1), NEVH_OK);
+    ck_assert(fabs(z[1]) <= 1e293);
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
+START_TEST(refused_plans) {
+    nevh_system *s = nevh_system_from(1, pendulum, NULL);
+    const struct {
+        const char *name, *word;
+        double tolerance;
+    } plans[] = {{"verlot", "integrator", 0},
+                 {NULL, "integrator", 0},
+                 {"verlet", "tolerance", -1},
+                 {"gsl-rkf45", "tolerance", NAN}};
+    double z[] = {start_q, start_p}, start[] = {start_q, start_p};
+    ck_assert_ptr_null(nevh_integrator_named("verlot"));
+    for (int i = 0; i < 4; i++) {
+        nevh_options o = {.tolerance = plans[i].tolerance};
+        nevh_stepper *m =
+            nevh_stepper_new(s, nevh_integrator_named(plans[i].name), &o);
+        ck_assert_int_eq(nevh_stepper_status(m), NEVH_EINVAL);
+        assert_says(nevh_stepper_message(m), plans[i].word);
+        ck_assert_int_eq(nevh_stepper_apply(m, 0, 0.1, z, z + 1), NEVH_EINVAL);
+        ck_assert_int_eq(nevh_run(m, 0, 0.1, 2, z, z + 1, NULL, 0),
+                         NEVH_EINVAL);
+        ck_assert_uint_eq(nevh_stepper_taken(m), 0);
+        ck_assert_mem_eq(z, start, sizeof z);
+        nevh_stepper_reset(m);
+        nevh_stepper_free(m);
+    }
+    ck_assert_ptr_null(nevh_stepper_new(NULL, nevh_verlet, NULL));
+    nevh_system_free(s);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("hard_steps");
+    TCase *cases = tcase_create("hard steps");
+    int schemes = scheme_count();
+    tcase_add_loop_test(cases, absurd_steps, 0, 2 * schemes);
+    tcase_add_loop_test(cases, absurd_adaptive_steps, 0, 2);
+    tcase_add_loop_test(cases, tiny_steps_turn_round, 0, schemes);
+    tcase_add_loop_test(cases, stiff_steps, 0, schemes);
+    tcase_add_loop_test(cases, noise_is_not_solved, 0, schemes);
+    tcase_add_test(cases, rescue_after_leaving_the_domain);
+    tcase_add_test(cases, rescue_of_a_neighbour);
+    tcase_add_loop_test(cases, leaves_the_range_of_numbers, 0, schemes);
+    tcase_add_test(cases, refused_plans);
+    suite_add_tcase(suite, cases);
+    return run_suite(suite);
+}

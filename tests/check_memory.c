@@ -1,0 +1,311 @@
+/* nevh tests: memory that is out, and steps that take none.
+   SPDX-License-Identifier: GPL-3.0-or-later
+
+   Linked with --wrap, so that every request of the library's own objects comes
+   through here.  What GSL requests is its own affair: it aborts when refused,
+   which is why the library asks for as much before it calls GSL. */
+#include "support.h"
+#include <math.h>
+#include <nevh/gsl.h>
+#include <stdlib.h>
+#include <string.h>
+
+void *__real_malloc(size_t);
+void *__real_calloc(size_t, size_t);
+void *__real_realloc(void *, size_t);
+void *__wrap_malloc(size_t);
+void *__wrap_calloc(size_t, size_t);
+void *__wrap_realloc(void *, size_t);
+
+/* Requests since `watch`, of which number `refused` gets nothing. */
+static bool watching;
+static size_t requests, refused;
+
+static void watch(size_t refuse) {
+    requests = 0;
+    refused = refuse;
+    watching = true;
+}
+
+static bool refuse_this(void) {
+    return watching && ++requests == refused;
+}
+
+void *__wrap_malloc(size_t size) {
+    return refuse_this() ? NULL : __real_malloc(size);
+}
+
+void *__wrap_calloc(size_t count, size_t size) {
+    return refuse_this() ? NULL : __real_calloc(count, size);
+}
+
+void *__wrap_realloc(void *memory, size_t size) {
+    return refuse_this() ? NULL : __real_realloc(memory, size);
+}
+
+static double whole(double t, const double q[], const double p[],
+                    const void *params) {
+    (void)t, (void)params;
+    return p[0] * p[0] / 2.6 + p[1] * p[1] / 2 - 1.7 * cos(q[0]) +
+           sqrt(q[1]) * q[1];
+}
+
+static double kinetic(double t, const double q[], const double p[],
+                      const double c[], const void *params) {
+    (void)t, (void)q, (void)params;
+    return c[0] * p[0] * p[0];
+}
+
+static void kinetic_gradient(size_t width, const double t[], const double q[],
+                             const double p[], const double c[],
+                             const void *params, double dq[], double dp[]) {
+    (void)t, (void)q, (void)params, (void)dq;
+    for (size_t i = 0; dp && i < width; i++)
+        dp[i] = 2 * c[i] * p[i];
+}
+
+static double cosine(double t, const double q[], const double p[],
+                     const double c[], const void *params) {
+    (void)t, (void)p, (void)c, (void)params;
+    return -1.7 * cos(q[0] - q[1]);
+}
+
+static void cosine_gradient(size_t width, const double t[], const double q[],
+                            const double p[], const double c[],
+                            const void *params, double dq[], double dp[]) {
+    (void)t, (void)p, (void)c, (void)params, (void)dp;
+    for (size_t i = 0; dq && i < width; i++) {
+        dq[i] = 1.7 * sin(q[i] - q[width + i]);
+        dq[width + i] = -dq[i];
+    }
+}
+
+static const size_t both[] = {0, 1};
+static const double masses[] = {0.7, 0.3};
+static const nevh_term terms[] = {
+    {"kinetic", "T", 0, 1, 1, NULL, both, masses, 2, false, kinetic, NULL,
+     kinetic_gradient, NULL},
+    {"potential", NULL, 2, 0, 0, NULL, NULL, NULL, 1, false, cosine, NULL,
+     cosine_gradient, NULL}};
+
+static nevh_system *pendulums(void) {
+    nevh_system *s = nevh_system_new(2);
+    nevh_system_add(s, &terms[0]);
+    nevh_system_add(s, &terms[1]);
+    return s;
+}
+
+/* What is tried with less and less memory: makes a thing and frees it.
+   Returns its status; its message goes to `text`. */
+typedef struct {
+    const nevh_system *system;
+    const nevh_integrator *scheme;
+    nevh_options options;
+    nevh_stepper *stepper;
+} setting;
+static char text[400];
+
+static int make_system(const setting *a) {
+    (void)a;
+    nevh_system *s = nevh_system_new(2);
+    int status = nevh_system_status(s);
+    strcpy(text, nevh_system_message(s));
+    nevh_system_free(s);
+    return status;
+}
+
+static int make_whole(const setting *a) {
+    (void)a;
+    nevh_system *s = nevh_system_from(2, whole, NULL);
+    int status = nevh_system_status(s);
+    strcpy(text, nevh_system_message(s));
+    nevh_system_free(s);
+    return status;
+}
+
+/* Adds to an effect that is there, and a new one. */
+static int add_terms(const setting *a) {
+    watching = false;
+    (void)a;
+    nevh_system *s = nevh_system_new(2);
+    nevh_system_add(s, &terms[0]);
+    watching = true;
+    nevh_term more = terms[1];
+    more.effect = "kinetic";
+    int status = nevh_system_add(s, &more);
+    size_t effects = nevh_system_effect_count(s);
+    if (!status && (status = nevh_system_add(s, &terms[1])) != 0 &&
+        nevh_system_effect_count(s) != effects)
+        status = -1;
+    if (status != nevh_system_status(s) ||
+        (status && nevh_system_add(s, &terms[1]) != status))
+        status = -1;
+    strcpy(text, nevh_system_message(s));
+    nevh_system_free(s);
+    return status;
+}
+
+static int make_field(const setting *a) {
+    nevh_field *f = nevh_field_new(a->system, &a->options);
+    int status = nevh_field_status(f);
+    strcpy(text, nevh_field_message(f));
+    nevh_field_free(f);
+    return status;
+}
+
+static int make_stepper(const setting *a) {
+    nevh_stepper *m = nevh_stepper_new(a->system, a->scheme, &a->options);
+    int status = nevh_stepper_status(m);
+    strcpy(text, nevh_stepper_message(m));
+    nevh_stepper_free(m);
+    return status;
+}
+
+static int copy_stepper(const setting *a) {
+    nevh_stepper *m = nevh_stepper_copy(a->stepper);
+    int status = nevh_stepper_status(m);
+    strcpy(text, nevh_stepper_message(m));
+    nevh_stepper_free(m);
+    return status;
+}
+
+static int make_energy(const setting *a) {
+    nevh_energy *e = nevh_energy_new(a->system, 3);
+    int status = nevh_energy_status(e);
+    strcpy(text, nevh_energy_message(e));
+    nevh_energy_free(e);
+    return status;
+}
+
+static int find_defects(const setting *a) {
+    double defect, q[] = {0.3, 0.5}, p[] = {0.7, 1.1};
+    strcpy(text, "out of memory");
+    int status =
+        nevh_symplecticity_defect(a->stepper, 0, 0.1, q, p, NULL, &defect);
+    return status ? status
+                  : nevh_reversal_defect(a->stepper, 0, 0.1, 3, q, p, NULL,
+                                         &defect);
+}
+
+/* Refuses the first request, then the second, until all are granted.  Returns
+   how many there are. */
+static size_t starve(int (*attempt)(const setting *), const setting *a) {
+    for (size_t k = 1; k < 1000; k++) {
+        watch(k);
+        int status = attempt(a);
+        watching = false;
+        if (requests < k) {
+            ck_assert_msg(status == NEVH_OK, "%d: %s", status, text);
+            return requests;
+        }
+        ck_assert_msg(status == NEVH_ENOMEM, "%s, request %zu refused: %d, %s",
+                      a->scheme ? nevh_integrator_name(a->scheme) : "no scheme",
+                      k, status, text);
+        ck_assert_str_eq(text, "out of memory");
+    }
+    ck_abort_msg("no end of requests");
+}
+
+START_TEST(systems) {
+    const setting none = {0};
+    ck_assert_uint_ge(starve(make_system, &none), 1);
+    ck_assert_uint_ge(starve(make_whole, &none), 5);
+    ck_assert_uint_ge(starve(add_terms, &none), 9);
+}
+END_TEST
+
+START_TEST(fields) {
+    nevh_system *s = pendulums();
+    setting a = {.system = s, .options = {.gradient = nevh_gradients()[_i]}};
+    ck_assert_uint_ge(starve(make_field, &a), 9);
+    ck_assert_uint_ge(starve(make_energy, &a), 15);
+    nevh_system_free(s);
+}
+END_TEST
+
+static const double start_q[] = {1.7, 0.4}, start_p[] = {0.3, 0.5};
+static const double ones[] = {1, 1, 1, 1}, steps[] = {1e-3, 1e-3, 0, 1e-3};
+
+/* Where every option is given, a whole H has to be probed. */
+START_TEST(steppers) {
+    nevh_system *s = nevh_system_from(2, whole, NULL);
+    setting a = {.system = s, .scheme = nevh_integrators()[_i / 2]};
+    a.options = (nevh_options){.gradient_steps = steps,
+                               .scale = _i % 2 ? ones : NULL,
+                               .q = start_q,
+                               .p = start_p,
+                               .tolerance = _i % 2 ? 0 : 1e-6};
+    ck_assert_uint_ge(starve(make_stepper, &a), 15);
+    a.stepper = nevh_stepper_new(s, a.scheme, &a.options);
+    ck_assert_uint_ge(starve(copy_stepper, &a), 15);
+    nevh_stepper_free(a.stepper);
+    nevh_system_free(s);
+}
+END_TEST
+
+START_TEST(defects) {
+    nevh_system *s = pendulums();
+    setting a = {.system = s,
+                 .stepper = nevh_stepper_new(s, nevh_gauss4, NULL)};
+    ck_assert_uint_ge(starve(find_defects, &a), 4);
+    nevh_stepper_free(a.stepper);
+    nevh_system_free(s);
+}
+END_TEST
+
+START_TEST(steps_take_no_memory) {
+    const nevh_gradient *gradients[] = {nevh_central2, nevh_central8,
+                                        nevh_exact};
+    const nevh_integrator *scheme = nevh_integrators()[_i / 3];
+    nevh_system *s = pendulums();
+    nevh_options o = {
+        .gradient = gradients[_i % 3], .q = start_q, .p = start_p};
+    nevh_stepper *m = nevh_stepper_new(s, scheme, &o);
+    nevh_energy *e = nevh_energy_new(s, 1);
+    nevh_observer energy = {nevh_energy_observe, e, 1};
+    double q[] = {1.7, 0.4}, p[] = {0.3, 0.5};
+    int status = 0;
+    ck_assert(m && e);
+    watch(0);
+    for (int i = 0; i < 100; i++)
+        status |= nevh_stepper_apply(m, 0.05 * i, 0.05, q, p);
+    status |= nevh_run(m, 5, 0.05, 100, q, p, &energy, 1);
+    nevh_stepper_reset(m);
+    status |= nevh_run(m, 10, -0.05, 10, q, p, &energy, 1);
+    watching = false;
+    ck_assert_msg(status == NEVH_OK, "%s", nevh_stepper_message(m));
+    ck_assert_uint_eq(requests, 0);
+    ck_assert_uint_gt(nevh_energy_result(e, 0).samples, 100);
+    nevh_energy_free(e);
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* GSL's solvers without a Jacobian, where there is no room for one. */
+START_TEST(gsl_system_without_memory) {
+    nevh_system *s = pendulums();
+    nevh_field *f = nevh_field_new(s, NULL);
+    watch(1);
+    gsl_odeiv2_system without = nevh_gsl_system(f);
+    watching = false;
+    ck_assert(!without.jacobian && without.function);
+    ck_assert(nevh_gsl_system(f).jacobian);
+    nevh_field_free(f);
+    nevh_system_free(s);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("memory");
+    TCase *cases = tcase_create("memory");
+    int schemes = scheme_count();
+    tcase_add_test(cases, systems);
+    tcase_add_loop_test(cases, fields, 0, 5);
+    tcase_add_loop_test(cases, steppers, 0, 2 * schemes);
+    tcase_add_test(cases, defects);
+    tcase_add_loop_test(cases, steps_take_no_memory, 0, 3 * schemes);
+    tcase_add_test(cases, gsl_system_without_memory);
+    suite_add_tcase(suite, cases);
+    return run_suite(suite);
+}

@@ -1,0 +1,258 @@
+/* nevh tests: is H separable, and which schemes fit it?
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "support.h"
+#include <math.h>
+#include <string.h>
+
+#define assert_says(message, word)                                             \
+    ck_assert_msg(strstr(message, word), "no \"%s\" in: %s", word, message)
+
+static double cosine(double t, const double q[], const double p[],
+                     const double c[], const void *params) {
+    (void)t, (void)p, (void)c, (void)params;
+    return -1.7 * cos(q[0]);
+}
+
+static const nevh_term gravity = {
+    .effect = "gravity", .nq = 1, .value = cosine};
+
+static double any(double t, const double q[], const double p[],
+                  const double c[], const void *params) {
+    (void)q, (void)p, (void)c, (void)params;
+    return t;
+}
+
+/* Every combination of effects that read q, p, both, t and q, nothing, t. */
+START_TEST(traits) {
+    static const struct {
+        const char *name;
+        size_t nq, np;
+        bool time;
+    } effects[] = {{"q", 2, 0, false},     {"p", 0, 1, false},
+                   {"mixed", 1, 1, false}, {"qt", 1, 0, true},
+                   {"none", 0, 0, false},  {"t", 0, 0, true}};
+    nevh_system *s = nevh_system_new(2);
+    unsigned expected = NEVH_SEPARABLE | NEVH_AUTONOMOUS;
+    for (int i = 0; i < 6; i++) {
+        bool on = _i >> i & 1;
+        nevh_system_add(s, &(nevh_term){.effect = effects[i].name,
+                                        .nq = effects[i].nq,
+                                        .np = effects[i].np,
+                                        .time = effects[i].time,
+                                        .value = any});
+        ck_assert_int_eq(nevh_system_enable(s, effects[i].name, on), NEVH_OK);
+    }
+    if (_i & 4)
+        expected &= ~(unsigned)NEVH_SEPARABLE;
+    if (_i & (8 + 32))
+        expected &= ~(unsigned)NEVH_AUTONOMOUS;
+    ck_assert_uint_eq(nevh_system_traits(s), expected);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* Whole functions; params is a constant that is added. */
+static double one_pendulum(double t, const double q[], const double p[],
+                           const void *params) {
+    (void)t;
+    return p[0] * p[0] / 2.6 - 9.8 * cos(q[0]) + *(const double *)params;
+}
+
+static double two_pendulums(double t, const double q[], const double p[],
+                            const void *params) {
+    return one_pendulum(t, q, p, params) +
+           one_pendulum(t, q + 1, p + 1, params);
+}
+
+static double double_pendulum_h(double t, const double q[], const double p[],
+                                const void *params) {
+    (void)t;
+    double d = q[0] - q[1];
+    return (p[0] * p[0] + 2 * p[1] * p[1] - 2 * p[0] * p[1] * cos(d)) /
+               (2 * (1 + sin(d) * sin(d))) -
+           9.8 * (2 * cos(q[0]) + cos(q[1])) + *(const double *)params;
+}
+
+/* Probe and stepper come to the same answer. */
+static void assert_separable(const nevh_system *s, const nevh_options *o,
+                             bool expected) {
+    nevh_separability found;
+    ck_assert_int_eq(nevh_system_probe(s, 0, o->q, o->p, o->scale, &found),
+                     NEVH_OK);
+    ck_assert_msg(found.separable == expected, "mixed part %g", found.mixed);
+    ck_assert_str_eq(found.term, "H");
+    ck_assert_uint_gt(found.states, 0);
+    nevh_stepper *m = nevh_stepper_new(s, nevh_verlet, o);
+    ck_assert_int_eq(nevh_stepper_status(m), expected ? NEVH_OK : NEVH_ESTRUCT);
+    if (!expected) {
+        assert_says(nevh_stepper_message(m), "\"H\"");
+        assert_says(nevh_stepper_message(m), "midpoint");
+    }
+    nevh_stepper_free(m);
+}
+
+START_TEST(whole_functions) {
+    static const nevh_value_fn functions[] = {one_pendulum, two_pendulums,
+                                              double_pendulum_h};
+    static const double q[] = {1.1, -0.4}, p[] = {0.3, 0.5};
+    const double offset = _i < 3 ? 0 : 1e12;
+    const bool separable = _i % 3 != 2;
+    size_t n = _i % 3 ? 2 : 1;
+    nevh_system *s = nevh_system_from(n, functions[_i % 3], &offset);
+    assert_separable(s, &(nevh_options){0}, separable);
+    assert_separable(s, &(nevh_options){.q = q, .p = p}, separable);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* Coupled only within 1e-10 and 1e-24 of the origin, as in an atom. */
+static double atom(double t, const double q[], const double p[],
+                   const void *params) {
+    (void)t, (void)params;
+    double x = q[0] / 1e-10, y = p[0] / 1e-24;
+    return 1e-18 * (x * x + y * y * (1 + exp(-x * x - y * y)));
+}
+
+static double small_oscillator(double t, const double q[], const double p[],
+                               const void *params) {
+    (void)t, (void)params;
+    return p[0] * p[0] / 1.8e-30 + 1e2 * q[0] * q[0];
+}
+
+START_TEST(follows_scales) {
+    static const double q[] = {0.7e-10}, p[] = {1.1e-24};
+    static const double scale[] = {1e-10, 1e-24};
+    nevh_options by_scale = {.scale = scale}, by_state = {.q = q, .p = p};
+    nevh_system *s = nevh_system_from(1, _i ? atom : small_oscillator, NULL);
+    assert_separable(s, _i == 2 ? &by_state : &by_scale, _i == 0);
+    nevh_system_free(s);
+}
+END_TEST
+
+static double root(double t, const double q[], const double p[],
+                   const void *params) {
+    (void)t, (void)params;
+    return p[0] * p[0] + sqrt(q[0]);
+}
+
+static double coupled_root(double t, const double q[], const double p[],
+                           const void *params) {
+    (void)t, (void)params;
+    return p[0] * p[0] * sqrt(q[0]);
+}
+
+START_TEST(undefined_in_part) {
+    static const double q[] = {0.5}, p[] = {0.3}, scale[] = {2, 1};
+    nevh_separability found;
+    nevh_system *s = nevh_system_from(1, _i ? coupled_root : root, NULL);
+    assert_separable(s, &(nevh_options){.q = q, .p = p, .scale = scale}, !_i);
+    ck_assert_int_eq(nevh_system_probe(s, 0, q, p, scale, &found), NEVH_OK);
+    ck_assert_uint_lt(found.states, 16);
+    nevh_system_free(s);
+}
+END_TEST
+
+START_TEST(undefined_everywhere) {
+    static const double q[] = {-9};
+    nevh_separability found;
+    nevh_system *s = nevh_system_from(1, root, NULL);
+    nevh_options options = {.q = q, .scale = (const double[]){1, 1}};
+    nevh_stepper *m = nevh_stepper_new(s, nevh_verlet, &options);
+    ck_assert_int_eq(nevh_system_probe(s, 0, q, NULL, options.scale, &found),
+                     NEVH_EDOM);
+    ck_assert(!found.separable && found.states == 0);
+    ck_assert_int_eq(nevh_stepper_status(m), NEVH_ESTRUCT);
+    assert_says(nevh_stepper_message(m), "\"H\"");
+    assert_says(nevh_stepper_message(m), "not finite");
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
+static double product(double t, const double q[], const double p[],
+                      const double c[], const void *params) {
+    (void)t, (void)params;
+    return q[0] * q[0] + p[0] * p[0] + c[0] * q[0] * p[0];
+}
+
+static nevh_system *three_mixtures(void) {
+    nevh_system *s = nevh_system_new(2);
+    const char *names[] = {"none", "weak", "strong"};
+    for (int i = 0; i < 3; i++)
+        nevh_system_add(s, &(nevh_term){.effect = names[i],
+                                        .nq = 1,
+                                        .np = 1,
+                                        .nc = 1,
+                                        .value = product,
+                                        .c = (double[]){0.05 * i}});
+    return s;
+}
+
+START_TEST(names_the_worst_term) {
+    const char *worst[] = {"strong", "weak", "none", NULL};
+    nevh_system *s = three_mixtures();
+    nevh_system_add(s, &gravity);
+    for (int i = 0; i < 4; i++) {
+        nevh_separability found;
+        ck_assert_int_eq(nevh_system_probe(s, 0, NULL, NULL, NULL, &found),
+                         NEVH_OK);
+        ck_assert_int_eq(found.separable, i > 1);
+        if (worst[i])
+            ck_assert_str_eq(found.term, worst[i]);
+        else
+            ck_assert_ptr_null(found.term);
+        ck_assert_uint_eq(found.states, worst[i] ? 16 : 0);
+        if (worst[i])
+            nevh_system_enable(s, worst[i], false);
+    }
+    nevh_system_free(s);
+}
+END_TEST
+
+/* A scheme that fits is suggested; what is off is no reason to refuse. */
+START_TEST(verlet_refuses_a_mixed_term) {
+    nevh_system *s = three_mixtures();
+    nevh_stepper *m = nevh_stepper_new(s, nevh_verlet, NULL);
+    ck_assert_int_eq(nevh_stepper_status(m), NEVH_ESTRUCT);
+    assert_says(nevh_stepper_message(m), "verlet");
+    assert_says(nevh_stepper_message(m), "\"strong\"");
+    assert_says(nevh_stepper_message(m), "midpoint, gauss4");
+    nevh_stepper_free(m);
+    nevh_system_enable(s, "weak", false);
+    nevh_system_enable(s, "strong", false);
+    m = nevh_stepper_new(s, nevh_verlet, NULL);
+    ck_assert_int_eq(nevh_stepper_status(m), NEVH_OK);
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* An invalid option is the reason given, not what the probe makes of it. */
+START_TEST(invalid_scale) {
+    static const double offset = 0, bad[] = {NAN, 0, -1, INFINITY};
+    nevh_system *s = nevh_system_from(1, one_pendulum, &offset);
+    for (int i = 0; i < 4; i++) {
+        nevh_options options = {.scale = (double[]){1, bad[i]}};
+        nevh_stepper *m = nevh_stepper_new(s, nevh_verlet, &options);
+        ck_assert_int_eq(nevh_stepper_status(m), NEVH_EINVAL);
+        assert_says(nevh_stepper_message(m), "scale 1");
+        nevh_stepper_free(m);
+    }
+    nevh_system_free(s);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("structure");
+    TCase *cases = tcase_create("structure");
+    tcase_add_loop_test(cases, traits, 0, 64);
+    tcase_add_loop_test(cases, whole_functions, 0, 6);
+    tcase_add_loop_test(cases, follows_scales, 0, 3);
+    tcase_add_loop_test(cases, undefined_in_part, 0, 2);
+    tcase_add_test(cases, undefined_everywhere);
+    tcase_add_test(cases, names_the_worst_term);
+    tcase_add_test(cases, verlet_refuses_a_mixed_term);
+    tcase_add_test(cases, invalid_scale);
+    suite_add_tcase(suite, cases);
+    return run_suite(suite);
+}
