@@ -116,7 +116,7 @@ START_TEST(failure_reaches_gsl) {
 END_TEST
 
 /* With a tolerance the step is GSL's, whatever h is; tighter is better. */
-START_TEST(tolerance) {
+START_TEST(tighter_is_better) {
     const nevh_integrator *scheme = _i ? nevh_gsl_rk8pd : nevh_gsl_rkf45;
     const problem *b = &kepler;
     nevh_system *s = b->make();
@@ -166,7 +166,7 @@ int main(void) {
     tcase_add_test(cases, jacobian);
     tcase_add_test(cases, solver_with_jacobian);
     tcase_add_test(cases, failure_reaches_gsl);
-    tcase_add_loop_test(cases, tolerance, 0, 2);
+    tcase_add_loop_test(cases, tighter_is_better, 0, 2);
     tcase_add_test(cases, bad_tolerance);
     suite_add_tcase(suite, cases);
     return run_suite(suite);
