@@ -10,7 +10,14 @@ libnevh_core_la_SOURCES = \
 	lib/system/values.c \
 	lib/system/probe.c \
 	lib/gradient/field_private.h \
+	lib/gradient/explore_private.h \
 	lib/gradient/methods.c \
+	lib/gradient/plan.c \
+	lib/gradient/explore.c \
+	lib/gradient/lengths.c \
+	lib/gradient/pilot.c \
+	lib/gradient/ladder.c \
+	lib/gradient/complex.c \
 	lib/gradient/field.c \
 	lib/gradient/block.c \
 	lib/gradient/central.c \

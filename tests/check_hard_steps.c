@@ -128,7 +128,8 @@ START_TEST(stiff_steps) {
     for (double k = 1e2; k < 1e13; k *= 1e5) {
         nevh_system *s = nevh_system_from(1, stiff, &k);
         for (double h = 0.001; h < 11; h *= 10) {
-            nevh_options o = {.q = &start_q, .p = &start_p};
+            nevh_options o = {
+                .gradient_step = 0x1p-11, .q = &start_q, .p = &start_p};
             nevh_stepper *m = nevh_stepper_new(s, scheme, &o);
             double z[] = {start_q, start_p};
             int status = nevh_stepper_apply(m, 0, h, z, z + 1);

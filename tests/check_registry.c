@@ -69,18 +69,19 @@ START_TEST(public_pointers_are_listed) {
 END_TEST
 
 START_TEST(gradients_are_listed) {
-    const nevh_gradient *const methods[] = {
-        nevh_central2, nevh_central4, nevh_central6, nevh_central8, nevh_exact};
-    const char *const names[] = {"central2", "central4", "central6", "central8",
-                                 "exact"};
-    for (int i = 0; i < 5; i++) {
+    const nevh_gradient *const methods[] = {nevh_central2,     nevh_central4,
+                                            nevh_central6,     nevh_central8,
+                                            nevh_complex_step, nevh_exact};
+    const char *const names[] = {"central2", "central4",     "central6",
+                                 "central8", "complex-step", "exact"};
+    for (int i = 0; i < 6; i++) {
         ck_assert_ptr_eq(nevh_gradients()[i], methods[i]);
         ck_assert_str_eq(nevh_gradient_name(methods[i]), names[i]);
         ck_assert_ptr_eq(nevh_gradient_named(names[i]), methods[i]);
         ck_assert_int_eq(nevh_gradient_order(methods[i]),
                          i < 4 ? 2 * i + 2 : 0);
     }
-    ck_assert_ptr_null(nevh_gradients()[5]);
+    ck_assert_ptr_null(nevh_gradients()[6]);
 }
 END_TEST
 

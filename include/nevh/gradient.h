@@ -13,11 +13,13 @@ extern "C" {
 typedef struct nevh_gradient nevh_gradient;
 
 /* Central differences of order 2, 4, 6, 8 at x +- delta, x +- 2 delta, ...;
-   and the derivatives that the terms bring themselves. */
+   the complex step, for terms that bring a complex form; and the derivatives
+   that the terms bring themselves. */
 NEVH_API extern const nevh_gradient *const nevh_central2;
 NEVH_API extern const nevh_gradient *const nevh_central4;
 NEVH_API extern const nevh_gradient *const nevh_central6;
 NEVH_API extern const nevh_gradient *const nevh_central8;
+NEVH_API extern const nevh_gradient *const nevh_complex_step;
 NEVH_API extern const nevh_gradient *const nevh_exact;
 
 /* All methods, ended by NULL. */
@@ -32,12 +34,13 @@ NEVH_API int nevh_gradient_order(const nevh_gradient *);
 typedef struct {
     const nevh_gradient *gradient; /* NULL: nevh_central4 */
     double gradient_step;          /* the half-spread delta of every coordinate
-                                      and momentum; 0: chosen from the scale */
+                                      and momentum; 0: chosen by trial around
+                                      the state to plan at */
     const double *gradient_steps;  /* 2n of them, coordinates first, 0: as
                                       gradient_step; NULL: all as that */
-    const double *scale; /* 2n lengths over which H varies; NULL: from q, p */
+    const double *scale; /* 2n lengths over which H varies; NULL: found out */
     double t;            /* the state to plan at, best the one to start from: */
-    const double *q, *p; /* n x width each; NULL: scales are 1 */
+    const double *q, *p; /* n x width each; NULL: states around zero */
     size_t width;        /* orbits side by side; 0 means 1 */
     double tolerance;    /* of adaptive schemes, relative; 0: fixed steps */
 } nevh_options;

@@ -22,9 +22,8 @@ struct nevh_energy {
 static int plan(nevh_energy *e, const nevh_system *s) {
     size_t width = e->width;
     e->n = s->n;
-    /* Values need no steps; the method only must not ask for gradients. */
     e->field = nevh_field_new(
-        s, &(nevh_options){.gradient = nevh_central2, .width = width});
+        s, &(nevh_options){.gradient = &nevh__no_gradient, .width = width});
     if (!e->field)
         return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
     if (e->field->report.status)

@@ -15,9 +15,10 @@
 #include "gradient/field_private.h"
 #include <math.h>
 
-/* The differenced variables: first ... first + count - 1 of each instance. */
+/* The differenced variables of each instance, and the points on each side. */
 typedef struct {
-    size_t first, count;
+    const size_t *vars;
+    size_t count, pairs;
 } selection;
 
 /* Columns of one group come in pairs, + before -, nearest first. */
@@ -65,18 +66,19 @@ static int fail_slope(nevh_field *f, const nevh__planned *term,
 
 static int difference_block(nevh_field *f, nevh__planned *term, nevh__block *b,
                             selection s, double dh_dq[], double dh_dp[]) {
-    const nevh_gradient *g = f->gradient;
+    /* One pair is the difference of order 2, whatever the method. */
+    const nevh_gradient *g = s.pairs == 1 ? nevh_central2 : f->gradient;
     size_t columns = b->copies * b->lanes;
     for (size_t group = 0; group < b->groups; group++) {
         size_t instance = (b->group + group) / s.count;
-        size_t k = s.first + (b->group + group) % s.count;
+        size_t k = s.vars[(b->group + group) % s.count];
         perturb(f->rows + k * b->stride + group * columns, g->offsets, b->lanes,
                 term->delta[instance * term->nv + k]);
     }
     int status = nevh__block_values(f, term, b);
     for (size_t group = 0; !status && group < b->groups; group++) {
         size_t instance = (b->group + group) / s.count;
-        size_t k = s.first + (b->group + group) % s.count;
+        size_t k = s.vars[(b->group + group) % s.count];
         double *out = k < term->nq ? dh_dq : dh_dp;
         out += nevh__index(term, instance, k) * b->width + b->lane;
         if (!add_slopes(g, b->lanes, nevh__row(f, b, k) + group * columns,
@@ -86,15 +88,23 @@ static int difference_block(nevh_field *f, nevh__planned *term, nevh__block *b,
     return status;
 }
 
+/* The part of a pass that is wanted. */
+static selection select_vars(const nevh__planned *term, const nevh__pass *pass,
+                             bool q, bool p) {
+    size_t begin = q ? pass->begin : pass->first_p;
+    size_t end = p ? pass->end : pass->first_p;
+    return (selection){term->vars + begin, end - begin, pass->pairs};
+}
+
 int nevh__central(nevh_field *f, nevh__planned *term, size_t width,
                   const double t[], const double q[], const double p[],
                   double dh_dq[], double dh_dp[]) {
-    selection s = {.first = dh_dq ? 0 : term->nq};
-    s.count = (dh_dp ? term->nv : term->nq) - s.first;
-    nevh__block b =
-        nevh__block_over(width, t, q, p, 2 * f->gradient->offsets, s.count);
     int status = NEVH_OK;
-    while (!status && nevh__block_next(f, term, &b))
-        status = difference_block(f, term, &b, s, dh_dq, dh_dp);
+    for (int i = 0; i < 2; i++) {
+        selection s = select_vars(term, &term->pass[i], dh_dq, dh_dp);
+        nevh__block b = nevh__block_over(width, t, q, p, 2 * s.pairs, s.count);
+        while (!status && nevh__block_next(f, term, &b))
+            status = difference_block(f, term, &b, s, dh_dq, dh_dp);
+    }
     return status;
 }

@@ -16,23 +16,52 @@
 #include "system/system_private.h"
 #include <nevh/gradient.h>
 
+/* Terms are evaluated in blocks of about this many columns. */
+enum { NEVH__COLUMNS = 128 };
+
+/* The step of one variable, how it was found, and the worst estimates of its
+   errors over the states that were tried. */
+typedef struct {
+    double delta;
+    bool given, blind;                 /* by the user; nothing was to be seen */
+    bool quadratic;                    /* order 2 is as good as it gets */
+    double truncation, rounding, size; /* of the derivative, and its own */
+} nevh__step;
+
+/* Variables that are differenced alike. */
+typedef struct {
+    size_t pairs;      /* points on each side */
+    size_t first_p;    /* in vars: coordinates come before momenta */
+    size_t begin, end; /* in vars */
+} nevh__pass;
+
+typedef struct {
+    const nevh__term *term;
+    size_t nq, np, nv;  /* variables of an instance: coordinates, momenta */
+    double *delta;      /* count x nv; NULL without differences */
+    nevh__step *steps;  /* nevh__step_rows x nv */
+    size_t *vars;       /* nv variables in the order of the passes */
+    nevh__pass pass[2]; /* full order; order 2 */
+    uint64_t values;
+} nevh__planned;
+
+/* Adds a term's gradient to dh_dq and dh_dp, n x width each; either may be
+   NULL. */
+typedef int (*nevh__gradient_fn)(nevh_field *, nevh__planned *, size_t width,
+                                 const double t[], const double q[],
+                                 const double p[], double dh_dq[],
+                                 double dh_dp[]);
+
 struct nevh_gradient {
     const char *name;
+    nevh__gradient_fn evaluate;
     int order;         /* 0: without truncation error */
     size_t offsets;    /* points x +- delta, ... on each side; 0: exact */
     double weights[4]; /* dH/dx = sum of weights[j] times the slope of the
                           chord from x - (j+1) delta to x + (j+1) delta */
+    bool (*has)(const nevh_term *); /* NULL: any term will do */
+    const char *wants;              /* what a term then lacks */
 };
-
-/* Terms are evaluated in blocks of about this many columns. */
-enum { NEVH__COLUMNS = 128 };
-
-typedef struct {
-    const nevh__term *term;
-    size_t nq, np, nv; /* variables of an instance: coordinates, momenta */
-    double *delta;     /* count x nv; NULL without differences */
-    uint64_t values;
-} nevh__planned;
 
 struct nevh_field {
     const nevh_system *system;
@@ -49,7 +78,7 @@ struct nevh_field {
     double *zeros;    /* capacity */
     double *h;        /* capacity */
     double *sums;     /* 2 x capacity */
-    double *one;      /* one state of a scalar term */
+    double *one;      /* one state of a scalar or complex term */
     double *jacobian; /* 6n, made by nevh_gsl_system */
     uint64_t gradients;
     nevh__report report;
@@ -104,13 +133,16 @@ static inline size_t nevh__index(const nevh__planned *term, size_t instance,
                         : is->p[instance * term->np + k - term->nq];
 }
 
-/* The two kernels.  Outputs are zeroed before; either may be NULL. */
+/* The kernels; nevh__gradient_fn. */
 int nevh__central(nevh_field *, nevh__planned *, size_t width, const double t[],
                   const double q[], const double p[], double dh_dq[],
                   double dh_dp[]);
 int nevh__exact(nevh_field *, nevh__planned *, size_t width, const double t[],
                 const double q[], const double p[], double dh_dq[],
                 double dh_dp[]);
+int nevh__complex(nevh_field *, nevh__planned *, size_t width, const double t[],
+                  const double q[], const double p[], double dh_dq[],
+                  double dh_dp[]);
 
 /* How far rounding in the values of H may move dH/dq and dH/dp at one state
    (width 1): the sum of epsilon |h| / delta over what reads each variable, n
@@ -121,6 +153,18 @@ int nevh__field_noise(nevh_field *, double t, const double q[],
 /* As nevh_field_effects, leaving out terms that read nothing. */
 int nevh__field_moving_effects(nevh_field *, double t, const double q[],
                                const double p[], double h[]);
+
+/* Values only: no gradients are asked for, and none are planned. */
+extern const nevh_gradient nevh__no_gradient;
+/* Plans the terms and the workspace. */
+int nevh__field_plan(nevh_field *, const nevh_options *);
+/* Chooses the steps that the user does not give, and the scales; false when
+   memory is out. */
+bool nevh__field_explore(nevh_field *, const nevh_options *);
+/* Steps are kept for a part of the instances: the rows of term->steps, and
+   where the step of variable k of an instance is. */
+size_t nevh__step_rows(const nevh__planned *);
+size_t nevh__step_at(const nevh__planned *, size_t instance, size_t k);
 
 /* NEVH_OK, or why the field cannot be used (again). */
 int nevh__field_ready(nevh_field *);

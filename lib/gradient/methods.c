@@ -8,22 +8,44 @@
 #include "gradient/field_private.h"
 #include <string.h>
 
-static const nevh_gradient central2 = {"central2", 2, 1, {1}};
-static const nevh_gradient central4 = {"central4", 4, 2, {4. / 3, -1. / 3}};
-static const nevh_gradient central6 = {
-    "central6", 6, 3, {3. / 2, -3. / 5, 1. / 10}};
-static const nevh_gradient central8 = {
-    "central8", 8, 4, {8. / 5, -4. / 5, 8. / 35, -1. / 35}};
-static const nevh_gradient exact = {"exact", 0, 0, {0}};
+#define CENTRAL(id, accuracy, ...)                                             \
+    static const nevh_gradient id = {.name = #id,                              \
+                                     .evaluate = nevh__central,                \
+                                     .order = (accuracy),                      \
+                                     .offsets = (accuracy) / 2,                \
+                                     .weights = __VA_ARGS__}
+CENTRAL(central2, 2, {1});
+CENTRAL(central4, 4, {4. / 3, -1. / 3});
+CENTRAL(central6, 6, {3. / 2, -3. / 5, 1. / 10});
+CENTRAL(central8, 8, {8. / 5, -4. / 5, 8. / 35, -1. / 35});
+
+static bool has_gradient(const nevh_term *term) {
+    return term->gradient;
+}
+
+static bool has_complex_value(const nevh_term *term) {
+    return term->complex_value;
+}
+
+static const nevh_gradient complex_step = {.name = "complex-step",
+                                           .evaluate = nevh__complex,
+                                           .has = has_complex_value,
+                                           .wants = "complex form"};
+static const nevh_gradient exact = {.name = "exact",
+                                    .evaluate = nevh__exact,
+                                    .has = has_gradient,
+                                    .wants = "exact gradient"};
+const nevh_gradient nevh__no_gradient = {.name = "none"};
 
 const nevh_gradient *const nevh_central2 = &central2;
 const nevh_gradient *const nevh_central4 = &central4;
 const nevh_gradient *const nevh_central6 = &central6;
 const nevh_gradient *const nevh_central8 = &central8;
+const nevh_gradient *const nevh_complex_step = &complex_step;
 const nevh_gradient *const nevh_exact = &exact;
 
 static const nevh_gradient *const all[] = {
-    &central2, &central4, &central6, &central8, &exact, NULL,
+    &central2, &central4, &central6, &central8, &complex_step, &exact, NULL,
 };
 
 const nevh_gradient *const *nevh_gradients(void) {

@@ -1,0 +1,76 @@
+/* nevh: a field looks around.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradient/explore_private.h"
+#include <math.h>
+#include <stdlib.h>
+
+enum { MOST_LANES = 4, LARGE = 65536 };
+
+size_t nevh__stride(size_t count) {
+    return (count + NEVH__PROBED - 1) / NEVH__PROBED;
+}
+
+size_t nevh__probed(const nevh__planned *term, size_t k) {
+    size_t first = k < term->nq ? 0 : term->nq;
+    size_t stride = nevh__stride(k < term->nq ? term->nq : term->np);
+    return k - (k - first) % stride;
+}
+
+size_t nevh__step_rows(const nevh__planned *term) {
+    size_t count = term->term->is.count, stride = nevh__stride(count);
+    return (count + stride - 1) / stride;
+}
+
+size_t nevh__step_at(const nevh__planned *term, size_t instance, size_t k) {
+    return instance / nevh__stride(term->term->is.count) * term->nv + k;
+}
+
+/* The states given: the first, and a few more lanes. */
+static void begin(nevh__explorer *e) {
+    const nevh_options *o = e->options;
+    nevh__samples *s = &e->samples;
+    size_t n = e->field->n, width = o->width ? o->width : 1;
+    size_t lanes = width < MOST_LANES ? width : MOST_LANES;
+    for (size_t i = 0; i < lanes && s->count < s->most; i++, s->count++) {
+        size_t lane = i * width / lanes;
+        s->t[i] = o->t;
+        for (size_t k = 0; k < n; k++) {
+            s->q[i * n + k] = o->q ? o->q[k * width + lane] : 0;
+            s->p[i * n + k] = o->p ? o->p[k * width + lane] : 0;
+        }
+    }
+}
+
+/* The largest sizes met; the length where that is 0. */
+static void set_scales(nevh__explorer *e) {
+    nevh_field *f = e->field;
+    size_t n = f->n;
+    for (size_t i = 0; i < 2 * n && !e->options->scale; i++) {
+        const double *x = i < n ? e->samples.q : e->samples.p;
+        double most = 0;
+        for (size_t at = 0; at < e->samples.count; at++)
+            most = fmax(most, fabs(x[at * n + i % n]));
+        f->scale[i] = most > 0 && isfinite(most) ? most : e->length[i];
+    }
+}
+
+bool nevh__field_explore(nevh_field *f, const nevh_options *o) {
+    size_t n = f->n, most = n > LARGE ? 4 : NEVH__MOST_SAMPLES;
+    nevh__explorer e = {.field = f, .options = o, .samples.most = most};
+    e.length = nevh__array(2 * n, sizeof *e.length);
+    e.samples.q = nevh__array(most * n, sizeof *e.samples.q);
+    e.samples.p = nevh__array(most * n, sizeof *e.samples.p);
+    bool done = e.length && e.samples.q && e.samples.p;
+    if (done) {
+        begin(&e);
+        nevh__find_lengths(&e);
+        done = nevh__find_samples(&e);
+        set_scales(&e);
+    }
+    for (size_t i = 0; done && i < f->n_terms; i++)
+        nevh__climb(&e, &f->terms[i]);
+    free(e.length);
+    free(e.samples.q);
+    free(e.samples.p);
+    return done;
+}

@@ -1,0 +1,63 @@
+/* nevh: how a field chooses its difference steps.
+   SPDX-License-Identifier: GPL-3.0-or-later
+
+   A step must suit the states of the run, of which at most the start is known.
+   So the plan looks around, in three parts:
+
+   lengths.c  how far may each variable move before H is no longer quadratic in
+              it?  Found by doubling, without any idea of the user's units.
+              Where H is quadratic in a variable (a momentum, often), the
+              length is that over which H varies as much as over the others.
+   pilot.c    states to try steps at: those given; some of a coarse adaptive
+              run from there, so that a pericentre is seen before it is
+              reached; and a few displaced at random by a part of those
+              lengths, because at an equilibrium, or where a momentum is
+              exactly zero, H hides how it varies.
+   ladder.c   for each variable of each term, powers of two as steps, at all
+              those states: the one whose worst error, by estimate, is least. */
+#ifndef NEVH_EXPLORE_PRIVATE_H
+#define NEVH_EXPLORE_PRIVATE_H
+
+#include "gradient/field_private.h"
+
+/* Of a term with many instances, or an instance with many variables, about
+   this many are looked at; the others take the step of the last one before
+   them that was. */
+enum { NEVH__PROBED = 64 };
+
+/* States, n doubles of q and of p each. */
+enum { NEVH__MOST_SAMPLES = 32 };
+typedef struct {
+    size_t count, most;
+    double t[NEVH__MOST_SAMPLES];
+    double *q, *p; /* most x n */
+} nevh__samples;
+
+/* What the plan knows while it looks around. */
+typedef struct {
+    nevh_field *field;
+    const nevh_options *options;
+    double *length; /* 2n */
+    nevh__samples samples;
+} nevh__explorer;
+
+/* Distances between the instances, and between the variables of one kind, that
+   are looked at. */
+size_t nevh__stride(size_t count);
+/* The variable whose step variable k takes. */
+size_t nevh__probed(const nevh__planned *, size_t k);
+
+/* Values of an instance at sample `at`, its variable k moved by each of
+   `count` (up to the field's capacity) amounts; x: the moved variable. */
+void nevh__along(const nevh__explorer *, const nevh__planned *, size_t instance,
+                 size_t k, size_t at, size_t count, const double move[],
+                 double x[], double h[]);
+
+/* Fills length, at sample 0. */
+void nevh__find_lengths(nevh__explorer *);
+/* Adds samples; false when memory is out. */
+bool nevh__find_samples(nevh__explorer *);
+/* Chooses the steps of a term. */
+void nevh__climb(nevh__explorer *, nevh__planned *);
+
+#endif

@@ -1,0 +1,137 @@
+/* nevh: the difference step of each variable, by a ladder.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradient/explore_private.h"
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Rungs are powers of two times the variable's length. */
+enum { LOWEST = -30, HIGHEST = 3, RUNGS = HIGHEST - LOWEST + 1, MOST = 8 };
+static const double as_good = 2; /* order 2 is taken if it is, up to this */
+
+/* Estimates on one rung, worst over the samples: how much the difference
+   changed from half the step, and what rounding may do to it. */
+typedef struct {
+    double truncation, rounding, size;
+} estimate;
+
+typedef struct {
+    estimate two[RUNGS], full[RUNGS]; /* of order 2 and of the method's */
+} ladder;
+
+/* The difference from values in pairs, + before -; its rounding to *noise. */
+static double difference(const nevh_gradient *g, const double x[],
+                         const double h[], double *noise) {
+    double slope = 0, most = 0, reach = 0;
+    for (size_t j = 0; j < g->offsets; j++) {
+        double width = x[2 * j] - x[2 * j + 1];
+        slope += g->weights[j] * ((h[2 * j] - h[2 * j + 1]) / width);
+        most = fmax(most, fmax(fabs(h[2 * j]), fabs(h[2 * j + 1])));
+        reach += fabs(g->weights[j] / width);
+    }
+    *noise = 2 * DBL_EPSILON * most * reach;
+    return slope;
+}
+
+static void take(estimate *rung, double now, double before, double noise) {
+    double change = fabs(now - before);
+    rung->truncation =
+        fmax(rung->truncation, isfinite(change) ? change : INFINITY);
+    rung->rounding = fmax(rung->rounding, isfinite(noise) ? noise : INFINITY);
+    rung->size = fmax(rung->size, isfinite(now) ? fabs(now) : 0);
+}
+
+/* Climbs from the shortest step at one sample. */
+static void climb_at(const nevh__explorer *e, const nevh__planned *term,
+                     size_t instance, size_t k, size_t at, double unit,
+                     ladder *l) {
+    const nevh_gradient *g = e->field->gradient;
+    double move[MOST], x[MOST], h[MOST], noise, two = 0, full = 0;
+    for (int rung = -1; rung < RUNGS; rung++) {
+        double delta = ldexp(unit, LOWEST + rung);
+        for (size_t j = 0; j < g->offsets; j++) {
+            move[2 * j] = (double)(j + 1) * delta;
+            move[2 * j + 1] = -move[2 * j];
+        }
+        nevh__along(e, term, instance, k, at, 2 * g->offsets, move, x, h);
+        double before = two;
+        two = difference(nevh_central2, x, h, &noise);
+        if (rung >= 0)
+            take(&l->two[rung], two, before, noise);
+        before = full;
+        full = difference(g, x, h, &noise);
+        if (rung >= 0)
+            take(&l->full[rung], full, before, noise);
+    }
+}
+
+static double worst(const estimate *e) {
+    return e->truncation + e->rounding;
+}
+
+/* Truncation on other states of the orbit may be larger than on those tried:
+   it is weighed as if steps were longer by the root of two. */
+static double weighed(const estimate *e, int order) {
+    return ldexp(e->truncation, order / 2) + e->rounding;
+}
+
+/* The rung of the least error, the longest step of equal ones. */
+static int best_rung(const estimate rungs[RUNGS], int order) {
+    int best = 0;
+    for (int i = 1; i < RUNGS; i++)
+        if (weighed(&rungs[i], order) <= weighed(&rungs[best], order))
+            best = i;
+    return best;
+}
+
+/* Nothing varied, or nothing was finite: the rule for a smooth function. */
+static bool blind(const estimate *best) {
+    return !(worst(best) < INFINITY) || best->size == 0;
+}
+
+static nevh__step choose(const nevh_gradient *g, const ladder *l, double unit) {
+    int two = best_rung(l->two, 2), full = best_rung(l->full, g->order);
+    const estimate *best = &l->full[full];
+    if (blind(best))
+        return (nevh__step){
+            .delta =
+                exp2(round(log2(unit * pow(DBL_EPSILON, 1. / (g->order + 1))))),
+            .blind = true};
+    bool quadratic = worst(&l->two[two]) <= as_good * worst(best);
+    if (quadratic) {
+        best = &l->two[two];
+        full = two;
+    }
+    return (nevh__step){.delta = ldexp(unit, LOWEST + full),
+                        .quadratic = quadratic,
+                        .truncation = best->truncation,
+                        .rounding = best->rounding,
+                        .size = best->size};
+}
+
+static nevh__step climb(const nevh__explorer *e, const nevh__planned *term,
+                        size_t instance, size_t k) {
+    size_t i = nevh__index(term, instance, k);
+    double length = e->length[k < term->nq ? i : e->field->n + i];
+    double unit = exp2(round(log2(length)));
+    ladder l;
+    memset(&l, 0, sizeof l);
+    for (size_t at = 0; at < e->samples.count; at++)
+        climb_at(e, term, instance, k, at, unit, &l);
+    return choose(e->field->gradient, &l, unit);
+}
+
+void nevh__climb(nevh__explorer *e, nevh__planned *term) {
+    size_t count = term->term->is.count, stride = nevh__stride(count);
+    for (size_t at = 0; at < count * term->nv; at++) {
+        size_t instance = at / term->nv, k = at % term->nv;
+        size_t from = nevh__probed(term, k);
+        nevh__step *own = &term->steps[nevh__step_at(term, instance, k)];
+        if (instance % stride == 0 && from == k)
+            *own = climb(e, term, instance, k);
+        else if (instance % stride == 0)
+            *own = term->steps[nevh__step_at(term, instance, from)];
+        term->delta[at] = own->delta;
+    }
+}

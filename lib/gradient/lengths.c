@@ -1,0 +1,172 @@
+/* nevh: over which lengths does H vary?
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradient/explore_private.h"
+#include <float.h>
+#include <math.h>
+
+/* A length is where this part of a variation is not that of a quadratic. */
+static const double not_quadratic = 0.2;
+enum { FARTHEST = 120, LEAP = 4 }; /* powers of two from the first guess */
+
+void nevh__along(const nevh__explorer *e, const nevh__planned *term,
+                 size_t instance, size_t k, size_t at, size_t count,
+                 const double move[], double x[], double h[]) {
+    nevh_field *f = e->field;
+    const nevh_term *is = &term->term->is;
+    size_t stride = nevh__padded(count), n = f->n;
+    const double *q = e->samples.q + at * n, *p = e->samples.p + at * n;
+    double *row = f->rows;
+    for (size_t j = 0; j < term->nv + is->nc; j++, row += stride) {
+        double value = j >= term->nv  ? is->c[instance * is->nc + j - term->nv]
+                       : j < term->nq ? q[nevh__index(term, instance, j)]
+                                      : p[nevh__index(term, instance, j)];
+        for (size_t i = 0; i < stride; i++)
+            row[i] = value + (j == k && i < count ? move[i] : 0);
+    }
+    for (size_t i = 0; i < stride; i++)
+        f->times[i] = e->samples.t[at];
+    double *rows_p = f->rows + term->nq * stride;
+    nevh__term_values(term->term, stride, count, is->time ? f->times : f->zeros,
+                      f->rows, rows_p, rows_p + term->np * stride, f->h,
+                      f->one);
+    for (size_t i = 0; i < count; i++) {
+        x[i] = f->rows[k * stride + i];
+        h[i] = f->h[i];
+    }
+}
+
+/* How h varies within one distance: as a whole, what a quadratic through the
+   half distance does not explain of it, and what may be rounding. */
+typedef struct {
+    double whole, rest, rounding;
+} variation;
+
+static variation vary(const nevh__explorer *e, const nevh__planned *term,
+                      size_t instance, size_t k, double distance) {
+    const double move[5] = {0, distance / 2, -distance / 2, distance,
+                            -distance};
+    double x[5], h[5], most = 0;
+    nevh__along(e, term, instance, k, 0, 5, move, x, h);
+    for (int i = 0; i < 5; i++)
+        most = fmax(most, fabs(h[i]));
+    double even = (h[3] - h[0]) + (h[4] - h[0]), odd = h[3] - h[4];
+    double near_even = (h[1] - h[0]) + (h[2] - h[0]), near_odd = h[1] - h[2];
+    return (variation){
+        fmax(fabs(h[3] - h[0]), fabs(h[4] - h[0])),
+        fmax(fabs(even - 4 * near_even), fabs(odd - 2 * near_odd)),
+        32 * DBL_EPSILON * most};
+}
+
+/* Beyond the length, or outside the domain. */
+static bool too_far(const variation *v) {
+    return !(v->rest <= not_quadratic * v->whole + v->rounding);
+}
+
+/* The length of one variable of one instance: INFINITY where it is quadratic
+   as far as one can see, NAN where nothing is to be seen. */
+static double curve_length(const nevh__explorer *e, const nevh__planned *term,
+                           size_t instance, size_t k, double guess) {
+    double distance = guess;
+    int leaps = 0;
+    variation v = vary(e, term, instance, k, distance);
+    while (too_far(&v) && leaps++ < FARTHEST / LEAP) {
+        distance = ldexp(distance, -LEAP);
+        v = vary(e, term, instance, k, distance);
+    }
+    if (too_far(&v))
+        return NAN;
+    bool seen = false;
+    for (int i = 0; i < (leaps ? LEAP : FARTHEST); i++) {
+        v = vary(e, term, instance, k, 2 * distance);
+        seen |= v.whole > v.rounding;
+        if (too_far(&v))
+            return distance;
+        distance *= 2;
+    }
+    return seen ? INFINITY : NAN;
+}
+
+/* The distance over which an instance varies by `energy`. */
+static double energy_length(const nevh__explorer *e, const nevh__planned *term,
+                            size_t instance, size_t k, double guess,
+                            double energy) {
+    double distance = guess;
+    for (int i = 0;
+         i < FARTHEST && vary(e, term, instance, k, distance).whole > energy;
+         i++)
+        distance /= 2;
+    for (int i = 0; i < 2 * FARTHEST &&
+                    vary(e, term, instance, k, distance).whole < energy;
+         i++)
+        distance *= 2;
+    return distance;
+}
+
+/* A first guess that only saves time: the variable's size, or 1. */
+static double first_guess(const nevh__explorer *e, size_t i) {
+    size_t n = e->field->n;
+    double x = fabs(i < n ? e->samples.q[i] : e->samples.p[i - n]);
+    if (e->options->scale)
+        x = e->options->scale[i];
+    return x > 0 && isfinite(x) ? exp2(floor(log2(x))) : 1;
+}
+
+typedef void (*visit_fn)(nevh__explorer *, const nevh__planned *,
+                         size_t instance, size_t k, size_t i, double *energy);
+
+static void visit_all(nevh__explorer *e, visit_fn visit, double *energy) {
+    for (size_t j = 0; j < e->field->n_terms; j++) {
+        const nevh__planned *term = &e->field->terms[j];
+        size_t count = term->term->is.count, stride = nevh__stride(count);
+        for (size_t instance = 0; instance < count; instance += stride)
+            for (size_t k = 0; k < term->nv; k++) {
+                size_t i = nevh__index(term, instance, k);
+                if (nevh__probed(term, k) == k)
+                    visit(e, term, instance, k,
+                          k < term->nq ? i : e->field->n + i, energy);
+            }
+    }
+}
+
+/* Finite lengths, and the largest variation of H within them. */
+static void find_curved(nevh__explorer *e, const nevh__planned *term,
+                        size_t instance, size_t k, size_t i, double *energy) {
+    double length = curve_length(e, term, instance, k, first_guess(e, i));
+    if (!isfinite(length))
+        return;
+    *energy = fmax(*energy, vary(e, term, instance, k, length).whole);
+    e->length[i] = e->length[i] > 0 ? fmin(e->length[i], length) : length;
+}
+
+/* Nothing is curved: variations over the variables' own sizes. */
+static void find_energy(nevh__explorer *e, const nevh__planned *term,
+                        size_t instance, size_t k, size_t i, double *energy) {
+    size_t n = e->field->n;
+    double x = i < n ? e->samples.q[i] : e->samples.p[i - n];
+    double whole = vary(e, term, instance, k, fabs(x)).whole;
+    *energy = fmax(*energy, isfinite(whole) ? whole : 0);
+}
+
+/* The rest: where H varies by that energy. */
+static void find_straight(nevh__explorer *e, const nevh__planned *term,
+                          size_t instance, size_t k, size_t i, double *energy) {
+    double guess = first_guess(e, i), length = guess;
+    bool curved = e->length[i] > 0;
+    if (curved)
+        return;
+    if (*energy > 0 && vary(e, term, instance, k, guess).whole > 0)
+        length = energy_length(e, term, instance, k, guess, *energy);
+    e->length[i] = e->length[i] < 0 ? -fmin(-e->length[i], length) : -length;
+}
+
+void nevh__find_lengths(nevh__explorer *e) {
+    double energy = 0, last = 1;
+    visit_all(e, find_curved, &energy);
+    if (energy == 0)
+        visit_all(e, find_energy, &energy);
+    visit_all(e, find_straight, &energy); /* kept apart by their sign */
+    for (size_t i = 0; i < 2 * e->field->n; i++) {
+        last = e->length[i] != 0 ? fabs(e->length[i]) : last;
+        e->length[i] = e->options->scale ? e->options->scale[i] : last;
+    }
+}

@@ -1,0 +1,135 @@
+/* nevh: states to try difference steps at.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradient/explore_private.h"
+#include <float.h>
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_odeiv2.h>
+#include <math.h>
+#include <nevh/gsl.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_STEPS = 240, PILOT_SAMPLES = 24, RANDOM_SAMPLES = 4 };
+static const double tolerance = 1e-3;
+static const double near_by = 0.3, anywhere = 1; /* of the lengths */
+static const double most_work = 4e6;             /* values times variables */
+
+/* Between -1 and 1, the same on every run. */
+static double random_number(uint64_t *state) {
+    *state = *state * 6364136223846793005u + 1442695040888963407u;
+    return (double)(*state >> 11) * 0x1p-52 - 1;
+}
+
+static void add_sample(nevh__explorer *e, double t, const double q[],
+                       const double p[]) {
+    nevh__samples *s = &e->samples;
+    size_t n = e->field->n;
+    if (s->count == s->most)
+        return;
+    s->t[s->count] = t;
+    memcpy(s->q + s->count * n, q, n * sizeof *q);
+    memcpy(s->p + s->count * n, p, n * sizeof *p);
+    s->count++;
+}
+
+/* Displaced from sample 0. */
+static void add_random(nevh__explorer *e, double part, uint64_t *random) {
+    nevh__samples *s = &e->samples;
+    size_t n = e->field->n;
+    if (s->count == s->most)
+        return;
+    double *q = s->q + s->count * n, *p = s->p + s->count * n;
+    for (size_t i = 0; i < n; i++) {
+        q[i] = s->q[i] + part * e->length[i] * random_number(random);
+        p[i] = s->p[i] + part * e->length[n + i] * random_number(random);
+    }
+    s->t[s->count++] = s->t[0];
+}
+
+/* Crude steps, for the pilot. */
+static void set_crude_steps(nevh__explorer *e) {
+    nevh_field *f = e->field;
+    double part = pow(DBL_EPSILON, 1. / (f->gradient->order + 1));
+    for (size_t j = 0; j < f->n_terms; j++) {
+        nevh__planned *term = &f->terms[j];
+        for (size_t at = 0; at < term->term->is.count * term->nv; at++) {
+            size_t k = at % term->nv, i = nevh__index(term, at / term->nv, k);
+            double length = e->length[k < term->nq ? i : f->n + i];
+            term->delta[at] = exp2(round(log2(part * length)));
+        }
+    }
+}
+
+/* The time in which the fastest variable moves a hundredth of its length. */
+static double first_step(const nevh__explorer *e, gsl_odeiv2_system *ode,
+                         const double y[], double dydt[]) {
+    double step = INFINITY;
+    if (ode->function(e->samples.t[0], y, dydt, ode->params))
+        return 0;
+    for (size_t i = 0; i < ode->dimension; i++)
+        if (dydt[i] != 0)
+            step = fmin(step, 0.01 * e->length[i] / fabs(dydt[i]));
+    return isfinite(step) ? step : 0;
+}
+
+/* y: room for 4n doubles. */
+static void fly(nevh__explorer *e, int steps, gsl_odeiv2_system *ode,
+                gsl_odeiv2_step *step, gsl_odeiv2_control *control,
+                gsl_odeiv2_evolve *evolve, double *y) {
+    size_t n = e->field->n;
+    memcpy(y, e->samples.q, n * sizeof *y);
+    memcpy(y + n, e->samples.p, n * sizeof *y);
+    double t = e->samples.t[0], h = first_step(e, ode, y, y + 2 * n);
+    int status = h > 0 ? GSL_SUCCESS : GSL_FAILURE;
+    for (int i = 1; !status && i <= steps; i++) {
+        status = gsl_odeiv2_evolve_apply(evolve, control, step, ode, &t,
+                                         0.5 * DBL_MAX, &h, y);
+        if (!status && i % (steps / PILOT_SAMPLES) == 0)
+            add_sample(e, t, y, y + n);
+    }
+}
+
+/* False when memory is out. */
+static bool run_pilot(nevh__explorer *e, int steps) {
+    nevh_field *f = e->field;
+    double *y = nevh__array(24 * f->n, sizeof *y); /* what GSL will take, too */
+    gsl_odeiv2_system ode = nevh_gsl_system(f);
+    if (!y || !ode.jacobian) {
+        free(y);
+        return false;
+    }
+    gsl_odeiv2_step *step =
+        gsl_odeiv2_step_alloc(gsl_odeiv2_step_rkf45, ode.dimension);
+    gsl_odeiv2_control *control =
+        gsl_odeiv2_control_standard_new(0, tolerance, 1, 1);
+    gsl_odeiv2_evolve *evolve = gsl_odeiv2_evolve_alloc(ode.dimension);
+    if (step && control && evolve)
+        fly(e, steps, &ode, step, control, evolve, y);
+    gsl_odeiv2_step_free(step);
+    gsl_odeiv2_control_free(control);
+    gsl_odeiv2_evolve_free(evolve);
+    free(y);
+    return step && control && evolve;
+}
+
+/* As many steps as most_work allows: a step takes six gradients. */
+static int pilot_steps(const nevh_field *f) {
+    double work = 0;
+    for (size_t j = 0; j < f->n_terms; j++)
+        work += (double)f->terms[j].term->is.count *
+                (double)(f->terms[j].nv * f->terms[j].nv);
+    work *= 6 * f->gradient->order;
+    return work * MOST_STEPS > most_work ? (int)(most_work / work) : MOST_STEPS;
+}
+
+bool nevh__find_samples(nevh__explorer *e) {
+    uint64_t random = 1;
+    bool given = e->options->q || e->options->p;
+    int steps = pilot_steps(e->field);
+    set_crude_steps(e);
+    if (given && steps >= PILOT_SAMPLES && !run_pilot(e, steps))
+        return false;
+    for (int i = 0; i < (given ? RANDOM_SAMPLES : 2 * RANDOM_SAMPLES); i++)
+        add_random(e, given ? near_by : anywhere, &random);
+    return true;
+}

@@ -1,0 +1,179 @@
+/* nevh: a field is planned.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradient/explore_private.h"
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The length over which variable i varies (from n: momenta): what the user
+   says, else the largest size in the state to plan at, else 1. */
+static double choose_scale(const nevh_options *o, size_t n, size_t i) {
+    if (o->scale)
+        return o->scale[i];
+    const double *x = i < n ? o->q : o->p;
+    size_t width = o->width ? o->width : 1;
+    double most = 0;
+    for (size_t lane = 0; x && lane < width; lane++)
+        most = fmax(most, fabs(x[i % n * width + lane]));
+    return most > 0 && isfinite(most) ? most : 1;
+}
+
+/* The step that the user gives for variable i, or 0. */
+static double given_step(const nevh_options *o, size_t i) {
+    if (o->gradient_steps && o->gradient_steps[i] > 0)
+        return o->gradient_steps[i];
+    return o->gradient_step;
+}
+
+static int check_options(nevh_field *f, const nevh_options *o) {
+    if (!(o->gradient_step >= 0 && o->gradient_step <= DBL_MAX))
+        return nevh__fail(&f->report, NEVH_EINVAL,
+                          "the gradient step %g is not a positive number",
+                          o->gradient_step);
+    for (size_t i = 0; i < 2 * f->n; i++) {
+        double step = o->gradient_steps ? o->gradient_steps[i] : 0;
+        double scale = o->scale ? o->scale[i] : 1;
+        if (!(step >= 0 && step <= DBL_MAX))
+            return nevh__fail(&f->report, NEVH_EINVAL,
+                              "gradient step %zu, %g, is not a positive number",
+                              i, step);
+        if (!(scale > 0 && scale <= DBL_MAX))
+            return nevh__fail(&f->report, NEVH_EINVAL,
+                              "scale %zu, %g, is not a positive number", i,
+                              scale);
+    }
+    return NEVH_OK;
+}
+
+static int check_gradient(nevh_field *f, const nevh_term *term) {
+    if (!f->gradient->has || f->gradient->has(term) || !(term->nq + term->np))
+        return NEVH_OK;
+    return nevh__fail(&f->report, NEVH_ENOGRAD,
+                      "term \"%s\" of effect \"%s\" has no %s: take central4, "
+                      "or give it one",
+                      term->name, term->effect, f->gradient->wants);
+}
+
+static int plan_term(nevh_field *f, const nevh__term *term) {
+    const nevh_term *is = &term->is;
+    nevh__planned *plan = &f->terms[f->n_terms++];
+    *plan = (nevh__planned){
+        .term = term, .nq = is->nq, .np = is->np, .nv = is->nq + is->np};
+    f->instances += is->count;
+    if (!f->gradient->offsets)
+        return check_gradient(f, is);
+    size_t rows = nevh__step_rows(plan);
+    plan->delta = nevh__array(is->count * plan->nv, sizeof *plan->delta);
+    plan->steps = nevh__array(rows * plan->nv, sizeof *plan->steps);
+    plan->vars = nevh__array(plan->nv, sizeof *plan->vars);
+    if (plan->delta && plan->steps && plan->vars)
+        return NEVH_OK;
+    return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+}
+
+static int plan_workspace(nevh_field *f) {
+    size_t variables = 0, reads = 0;
+    for (size_t i = 0; i < f->n_terms; i++) {
+        const nevh__planned *term = &f->terms[i];
+        size_t all = term->nv + term->term->is.nc;
+        variables = term->nv > variables ? term->nv : variables;
+        reads = all > reads ? all : reads;
+    }
+    size_t columns = f->capacity = NEVH__COLUMNS;
+    f->rows = nevh__array(reads * columns, sizeof(double));
+    f->slopes = nevh__array(variables * columns, sizeof(double));
+    f->times = nevh__array(columns, sizeof(double));
+    f->zeros = nevh__array(columns, sizeof(double));
+    f->h = nevh__array(columns, sizeof(double));
+    f->sums = nevh__array(2 * columns, sizeof(double));
+    f->one = nevh__array(2 * reads, sizeof(double));
+    if (f->rows && f->slopes && f->times && f->zeros && f->h && f->sums &&
+        f->one)
+        return NEVH_OK;
+    return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+}
+
+/* The user's steps win, and are differenced at full order. */
+static void take_given(nevh_field *f, nevh__planned *term,
+                       const nevh_options *o) {
+    for (size_t at = 0; at < term->term->is.count * term->nv; at++) {
+        size_t instance = at / term->nv, k = at % term->nv;
+        size_t i = nevh__index(term, instance, k);
+        double given = given_step(o, k < term->nq ? i : f->n + i);
+        nevh__step *step = &term->steps[nevh__step_at(term, instance, k)];
+        if (!(given > 0))
+            continue;
+        term->delta[at] = given;
+        if (instance % nevh__stride(term->term->is.count) == 0)
+            *step = (nevh__step){.delta = given, .given = true};
+    }
+}
+
+/* Whether order 2 is enough for variable k of every instance. */
+static bool quadratic(const nevh__planned *term, size_t k) {
+    for (size_t row = 0; row < nevh__step_rows(term); row++)
+        if (!term->steps[row * term->nv + k].quadratic)
+            return false;
+    return true;
+}
+
+/* Sorts the variables into passes: full order, then order 2, coordinates
+   before momenta. */
+static void arrange(const nevh_field *f, nevh__planned *term) {
+    size_t at = 0;
+    for (int i = 0; i < 2; i++) {
+        nevh__pass *pass = &term->pass[i];
+        pass->pairs = i ? 1 : f->gradient->offsets;
+        pass->begin = at;
+        for (size_t k = 0; k < term->nq; k++)
+            if (quadratic(term, k) == i)
+                term->vars[at++] = k;
+        pass->first_p = at;
+        for (size_t k = term->nq; k < term->nv; k++)
+            if (quadratic(term, k) == i)
+                term->vars[at++] = k;
+        pass->end = at;
+    }
+}
+
+static bool all_given(const nevh_field *f, const nevh_options *o) {
+    for (size_t i = 0; i < 2 * f->n; i++)
+        if (!(given_step(o, i) > 0))
+            return false;
+    return true;
+}
+
+static int plan_steps(nevh_field *f, const nevh_options *o) {
+    if (!f->gradient->offsets)
+        return NEVH_OK;
+    for (size_t i = 0; i < f->n_terms; i++)
+        arrange(f, &f->terms[i]); /* for the pilot */
+    if (!all_given(f, o) && !nevh__field_explore(f, o))
+        return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+    for (size_t i = 0; i < f->n_terms; i++) {
+        take_given(f, &f->terms[i], o);
+        arrange(f, &f->terms[i]);
+        f->terms[i].values = 0; /* what planning took is not counted */
+    }
+    f->gradients = 0;
+    f->report = (nevh__report){0};
+    return NEVH_OK;
+}
+
+int nevh__field_plan(nevh_field *f, const nevh_options *o) {
+    const nevh_system *s = f->system;
+    if (s->report.status)
+        return nevh__fail_as(&f->report, &s->report);
+    int status = check_options(f, o);
+    if (!status && !(f->scale = nevh__array(2 * f->n, sizeof(double))))
+        status = nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+    for (size_t i = 0; !status && i < 2 * f->n; i++)
+        f->scale[i] = choose_scale(o, f->n, i);
+    for (size_t i = 0; !status && i < s->n_terms; i++)
+        if (nevh__term_on(s, s->terms[i]))
+            status = plan_term(f, s->terms[i]);
+    if (!status)
+        status = plan_workspace(f);
+    return status ? status : plan_steps(f, o);
+}
