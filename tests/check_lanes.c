@@ -136,7 +136,8 @@ static nevh_system *whole_chain(bool block) {
 
 /* With a step given: the same for all fields, whatever the terms. */
 static nevh_field *field_of(const nevh_system *s, const nevh_gradient *g) {
-    double step = pow(DBL_EPSILON, 1. / (nevh_gradient_order(g) + 1));
+    int order = nevh_gradient_order(g ? g : nevh_central4);
+    double step = pow(DBL_EPSILON, 1. / (order + 1));
     nevh_options o = {.gradient = g, .gradient_step = exp2(round(log2(step)))};
     nevh_field *f = nevh_field_new(s, &o);
     ck_assert_msg(!nevh_field_status(f), "%s", nevh_field_message(f));

@@ -33,7 +33,9 @@ for example in $EXAMPLES; do
     test "$rows" -ge 2 || fails "prints no table"
     echo "$example: $rows rows"
 
-    if grep -E '#[[:space:]]*include[[:space:]]*"' "$srcdir/$example.c"; then
+    # Only installed headers, and what examples share.
+    if grep -E '#[[:space:]]*include[[:space:]]*"' "$srcdir/$example.c" |
+        grep -v '"energy_table.h"'; then
         fails "includes more than installed headers"
     fi
 done
