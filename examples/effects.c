@@ -23,7 +23,7 @@ static result run(const nevh_system *system) {
     result r = {.q = {model->q[0], model->q[1]}, .p = {model->p[0], 0.5}};
     nevh_options options = {.q = r.q, .p = r.p};
     nevh_stepper *stepper = nevh_stepper_new(system, nevh_gauss6, &options);
-    nevh_energy *energy = nevh_energy_new(system, 1);
+    nevh_energy *energy = nevh_energy_new(system, NULL);
     nevh_observer watch = {nevh_energy_observe, energy, 1};
     r.status = nevh_run(stepper, 0, 0.02, 500, r.q, r.p, &watch, 1);
     if (r.status)

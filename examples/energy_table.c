@@ -53,7 +53,7 @@ static int run(const nevh_system *system, const nevh_integrator *scheme,
 row energy_row(const nevh_system *system, const nevh_integrator *scheme,
                const double q[], const double p[], double dt, double t_end) {
     row r = {0};
-    nevh_energy *energy = nevh_energy_new(system, 1);
+    nevh_energy *energy = nevh_energy_new(system, NULL);
     if (!run(system, scheme, q, p, dt, t_end, energy, &r)) {
         r.energy = nevh_energy_result(energy, 0);
         if (!run(system, scheme, q, p, dt, t_end, NULL, &r))

@@ -18,6 +18,8 @@ libnevh_core_la_SOURCES = \
 	lib/gradient/pilot.c \
 	lib/gradient/ladder.c \
 	lib/gradient/complex.c \
+	lib/gradient/report.c \
+	lib/gradient/verify.c \
 	lib/gradient/field.c \
 	lib/gradient/block.c \
 	lib/gradient/central.c \

@@ -16,7 +16,7 @@ enum { SAMPLES = 20000 };
 /* The report on H0 = 1 with errors from `error`. */
 static nevh_energy_report report_on(double (*error)(double), double dt) {
     nevh_system *s = nevh_system_from(1, coordinate, NULL);
-    nevh_energy *energy = nevh_energy_new(s, 1);
+    nevh_energy *energy = nevh_energy_new(s, NULL);
     double p = 0;
     for (size_t i = 0; i <= SAMPLES; i++) {
         double t = 5 + (double)i * dt, q = 1 + (i ? error(t - 5) : 0);
@@ -106,7 +106,7 @@ static nevh_energy_report scale_of(parts h) {
     nevh_system_add(
         s,
         &(nevh_term){.effect = "potential", .value = constant, .params = &h});
-    nevh_energy *energy = nevh_energy_new(s, 1);
+    nevh_energy *energy = nevh_energy_new(s, NULL);
     double q = 1, p = 1;
     ck_assert_int_eq(nevh_energy_observe(energy, 0, 0, &q, &p), NEVH_OK);
     nevh_energy_report r = nevh_energy_result(energy, 0);
@@ -136,7 +136,7 @@ END_TEST
 /* Each lane has its own series. */
 START_TEST(lanes) {
     nevh_system *s = nevh_system_from(1, coordinate, NULL);
-    nevh_energy *energy = nevh_energy_new(s, 2);
+    nevh_energy *energy = nevh_energy_new(s, &(nevh_options){.width = 2});
     double p[2] = {0, 0}, first[2] = {1, 4}, second[2] = {1.5, 3};
     nevh_energy_observe(energy, 0, 0, first, p);
     nevh_energy_observe(energy, 1, 1, second, p);
@@ -156,7 +156,7 @@ static double root(double t, const double q[], const double p[],
 
 START_TEST(failures) {
     nevh_system *s = nevh_system_from(1, root, NULL);
-    nevh_energy *energy = nevh_energy_new(s, 1);
+    nevh_energy *energy = nevh_energy_new(s, NULL);
     double good = 4, bad = -1, p = 0;
     ck_assert_uint_eq(nevh_energy_result(energy, 0).samples, 0);
     ck_assert_int_eq(nevh_energy_observe(energy, 0, 0, &good, &p), NEVH_OK);
@@ -167,7 +167,7 @@ START_TEST(failures) {
     nevh_energy_free(energy);
     nevh_system_free(s);
     nevh_system *none = nevh_system_new(0);
-    energy = nevh_energy_new(none, 1);
+    energy = nevh_energy_new(none, NULL);
     ck_assert_int_eq(nevh_energy_status(energy), NEVH_EINVAL);
     nevh_energy_free(energy);
     nevh_energy_free(NULL);
@@ -178,7 +178,7 @@ END_TEST
 /* Effects switched after the observer was made are noticed. */
 START_TEST(stale) {
     nevh_system *s = henon_heiles.make();
-    nevh_energy *energy = nevh_energy_new(s, 1);
+    nevh_energy *energy = nevh_energy_new(s, NULL);
     nevh_system_enable(s, "potential", false);
     ck_assert_int_eq(
         nevh_energy_observe(energy, 0, 0, henon_heiles.q, henon_heiles.p),

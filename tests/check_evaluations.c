@@ -75,7 +75,7 @@ END_TEST
 START_TEST(runs_count_alike) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     nevh_system *s = henon_heiles.make();
-    nevh_energy *energy = nevh_energy_new(s, 1);
+    nevh_energy *energy = nevh_energy_new(s, NULL);
     nevh_observer watch = {nevh_energy_observe, energy, 3};
     nevh_counts a = counts_of(&henon_heiles, scheme, nevh_central4, 1, NULL, 0);
     nevh_counts b =

@@ -179,7 +179,7 @@ START_TEST(energy_that_fails_stops_the_run) {
     fuse f = {.fault = 1, .value = INFINITY}, *params = &f;
     nevh_system *s = system_of(gravity, &params);
     nevh_stepper *m = stepper_of(s, nevh_verlet);
-    nevh_energy *e = nevh_energy_new(s, 1);
+    nevh_energy *e = nevh_energy_new(s, NULL);
     double z[] = {start_q, start_p};
     nevh_observer watch = {nevh_energy_observe, e, 1};
     ck_assert_int_eq(nevh_run(m, 0, step, 9, z, z + 1, &watch, 1),

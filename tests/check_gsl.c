@@ -125,7 +125,7 @@ START_TEST(tighter_is_better) {
     for (double tolerance = 1e-4; tolerance > 1e-11; tolerance /= 100) {
         nevh_options options = {.gradient = nevh_exact, .tolerance = tolerance};
         nevh_stepper *stepper = nevh_stepper_new(s, scheme, &options);
-        nevh_energy *energy = nevh_energy_new(s, 1);
+        nevh_energy *energy = nevh_energy_new(s, NULL);
         nevh_observer watch = {nevh_energy_observe, energy, 1};
         double q[2], p[2];
         memcpy(q, b->q, sizeof q);

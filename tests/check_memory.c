@@ -170,7 +170,7 @@ static int copy_stepper(const setting *a) {
 }
 
 static int make_energy(const setting *a) {
-    nevh_energy *e = nevh_energy_new(a->system, 3);
+    nevh_energy *e = nevh_energy_new(a->system, &(nevh_options){.width = 3});
     int status = nevh_energy_status(e);
     strcpy(text, nevh_energy_message(e));
     nevh_energy_free(e);
@@ -263,7 +263,7 @@ START_TEST(steps_take_no_memory) {
     nevh_options o = {
         .gradient = gradients[_i % 3], .q = start_q, .p = start_p};
     nevh_stepper *m = nevh_stepper_new(s, scheme, &o);
-    nevh_energy *e = nevh_energy_new(s, 1);
+    nevh_energy *e = nevh_energy_new(s, NULL);
     nevh_observer energy = {nevh_energy_observe, e, 1};
     double q[] = {1.7, 0.4}, p[] = {0.3, 0.5};
     int status = 0;

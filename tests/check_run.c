@@ -49,7 +49,7 @@ START_TEST(watching_changes_nothing) {
     nevh_system *s = b->make();
     nevh_stepper *plain = planned(s, b, scheme, nevh_central4);
     nevh_stepper *watched = planned(s, b, scheme, nevh_central4);
-    nevh_energy *energy = nevh_energy_new(s, 1);
+    nevh_energy *energy = nevh_energy_new(s, NULL);
     log_book book = {.t0 = b->t0, .h = h};
     nevh_observer watch[] = {{nevh_energy_observe, energy, 1},
                              {record, &book, 7}};

@@ -45,7 +45,7 @@ static void assert_useless(nevh_system *s, int status) {
     double z[8] = {0}, t = 0;
     nevh_field *f = nevh_field_new(s, NULL);
     nevh_stepper *m = nevh_stepper_new(s, nevh_verlet, NULL);
-    nevh_energy *e = nevh_energy_new(s, 1);
+    nevh_energy *e = nevh_energy_new(s, NULL);
     ck_assert(f && m && e);
     ck_assert_int_eq(nevh_field_status(f), status);
     ck_assert_str_eq(nevh_field_message(f), nevh_system_message(s));

@@ -38,7 +38,7 @@ static int run(const nevh_integrator *scheme, size_t steps) {
     double q[] = {model->q[0], model->q[1]}, p[] = {model->p[0], model->p[1]};
     nevh_options options = {.q = q, .p = p};
     nevh_stepper *stepper = nevh_stepper_new(s, scheme, &options);
-    nevh_energy *energy = nevh_energy_new(s, 1);
+    nevh_energy *energy = nevh_energy_new(s, NULL);
     nevh_observer watch = {nevh_energy_observe, energy, 1};
     int status = nevh_run(stepper, 0, 0.01, steps, q, p, &watch, 1);
     if (status)

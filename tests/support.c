@@ -264,7 +264,7 @@ nevh_energy_report energy_of(const problem *b, const nevh_integrator *scheme,
                              const nevh_gradient *g, double h, size_t steps) {
     nevh_system *s = b->make();
     nevh_stepper *stepper = planned(s, b, scheme, g ? g : nevh_exact);
-    nevh_energy *energy = nevh_energy_new(s, 1);
+    nevh_energy *energy = nevh_energy_new(s, NULL);
     nevh_observer watch = {nevh_energy_observe, energy, 1};
     double q[MOST_DOF], p[MOST_DOF];
     for (size_t k = 0; k < b->n; k++) {

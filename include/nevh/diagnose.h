@@ -12,10 +12,12 @@ extern "C" {
 /* Watches the energy of a run. */
 typedef struct nevh_energy nevh_energy;
 
-/* width    orbits side by side, as in the stepper's options; 0 means 1
+/* options  as the stepper's, of which only width and portable matter; NULL: the
+            defaults
    returns  the observer's data, to be freed with nevh_energy_free; NULL only
             when memory is out; carries the system's status otherwise */
-NEVH_API nevh_energy *nevh_energy_new(const nevh_system *, size_t width);
+NEVH_API nevh_energy *nevh_energy_new(const nevh_system *,
+                                      const nevh_options *options);
 NEVH_API void nevh_energy_free(nevh_energy *); /* NULL is allowed */
 /* The status of planning or of the last call; NEVH_ENOMEM for NULL. */
 NEVH_API int nevh_energy_status(const nevh_energy *);

@@ -43,6 +43,9 @@ typedef struct {
     const double *q, *p; /* n x width each; NULL: states around zero */
     size_t width;        /* orbits side by side; 0 means 1 */
     double tolerance;    /* of adaptive schemes, relative; 0: fixed steps */
+    bool portable;       /* terms with a scalar value are evaluated through it,
+                            never in SIMD blocks: the same digits on machines
+                            with the same libm and instruction-set class */
 } nevh_options;
 
 /* A field is the gradient of H, planned: a system, a gradient method with its
@@ -54,8 +57,14 @@ typedef struct nevh_field nevh_field;
 /* options   NULL: the defaults
    returns   the field, to be freed with nevh_field_free; NULL only when memory
              is out.  A field that could not be planned carries its status:
-             NEVH_ENOGRAD (exact, and a term without gradient), NEVH_EINVAL,
-             or the system's own status. */
+             NEVH_ENOGRAD (a term lacks the gradient or complex form asked
+             for, or its own gradient is not that of its values: the message
+             names term, variable and both numbers), NEVH_EINVAL, or the
+             system's own status.
+   cost      of a few thousand values a variable, where steps are chosen by
+             trial: some milliseconds for a small system.  Of terms with many
+             instances and instances of many variables, 64 are tried.  A step
+             given for all costs nothing. */
 NEVH_API nevh_field *nevh_field_new(const nevh_system *, const nevh_options *);
 NEVH_API void nevh_field_free(nevh_field *); /* NULL is allowed */
 /* The status of planning or of the last call; NEVH_ENOMEM for NULL. */
@@ -69,7 +78,8 @@ NEVH_API const char *nevh_field_message(const nevh_field *);
    q, p     in, n x width each
    dh_dq    out, n x width, overwritten; NULL when not wanted
    dh_dp    out, n x width, overwritten; NULL when not wanted
-   cost     order * (nq + np) values an instance and state (central)
+   cost     order values a variable, instance and state (central), 2 where H
+            was found to be quadratic in the variable
    returns  NEVH_OK; NEVH_EDOM when a value is not finite (the message names
             the term; outputs are undefined); NEVH_ESTALE; the status of a
             field that could not be planned */
@@ -90,6 +100,37 @@ NEVH_API int nevh_field_effects(nevh_field *, double t, const double q[],
    momentum i - n of the given term instance; 0 if it does not read it. */
 NEVH_API double nevh_field_step(const nevh_field *, const char *term,
                                 size_t instance, size_t i);
+
+/* How the step of one variable of one term instance came about, and which
+   errors of the derivative to expect: estimates, the worst over the states
+   that were tried when the field was planned. */
+typedef struct {
+    const char *term, *effect;
+    size_t instance;
+    bool momentum; /* of p[index]; else of q[index] */
+    size_t index;
+    double step;                 /* delta; a power of two unless given */
+    int order;                   /* 2 where H is quadratic, else the method's */
+    bool given;                  /* by the user: no estimates were made */
+    bool blind;                  /* nothing varied: a guess from the scale */
+    bool rough;                  /* no step is good: a kink, or noise in H */
+    double truncation, rounding; /* of the derivative */
+    double size;                 /* largest derivative met */
+} nevh_step_report;
+
+/* Reports on the steps of a field, one a variable of every instance that was
+   tried; 0 of them where there are no differences. */
+NEVH_API size_t nevh_field_step_count(const nevh_field *);
+/* i < nevh_field_step_count. */
+NEVH_API nevh_step_report nevh_field_step_report(const nevh_field *, size_t i);
+
+/* The part of an energy error that rounding in the differences makes
+   inevitable: an estimate of |H(t) - H(0)| after `steps` steps of h from
+   around (t, q, p), n each; a random walk, so it grows with the root of steps.
+   returns  NEVH_OK, or as nevh_field_value */
+NEVH_API int nevh_field_energy_floor(nevh_field *, double t, const double q[],
+                                     const double p[], double h, size_t steps,
+                                     double *floor);
 
 /* What a field has been asked for since it was made.  The counts depend only
    on what was computed, never on padding or on the machine. */

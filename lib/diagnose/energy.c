@@ -19,11 +19,12 @@ struct nevh_energy {
     nevh__report report;
 };
 
-static int plan(nevh_energy *e, const nevh_system *s) {
+static int plan(nevh_energy *e, const nevh_system *s, bool portable) {
     size_t width = e->width;
     e->n = s->n;
-    e->field = nevh_field_new(
-        s, &(nevh_options){.gradient = &nevh__no_gradient, .width = width});
+    nevh_options values = {
+        .gradient = &nevh__no_gradient, .width = width, .portable = portable};
+    e->field = nevh_field_new(s, &values);
     if (!e->field)
         return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
     if (e->field->report.status)
@@ -41,12 +42,13 @@ static int plan(nevh_energy *e, const nevh_system *s) {
     return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
 }
 
-nevh_energy *nevh_energy_new(const nevh_system *system, size_t width) {
+nevh_energy *nevh_energy_new(const nevh_system *system,
+                             const nevh_options *options) {
     nevh_energy *e = system ? nevh__array(1, sizeof *e) : NULL;
     if (!e)
         return NULL;
-    e->width = width ? width : 1;
-    if (plan(e, system) != NEVH_ENOMEM)
+    e->width = options && options->width ? options->width : 1;
+    if (plan(e, system, options && options->portable) != NEVH_ENOMEM)
         return e;
     nevh_energy_free(e);
     return NULL;

@@ -123,7 +123,8 @@ int nevh__block_values(nevh_field *f, nevh__planned *term,
     const double *q = f->rows, *p = q + term->nq * b->stride;
     const double *c = p + term->np * b->stride;
     const double *t = term->term->is.time ? f->times : f->zeros;
-    nevh__term_values(term->term, b->stride, b->used, t, q, p, c, f->h, f->one);
+    nevh__term_values(term->term, f->portable, b->stride, b->used, t, q, p, c,
+                      f->h, f->one);
     term->values += b->used;
     if (all_finite(f->h, b->used))
         return NEVH_OK;

@@ -54,23 +54,47 @@ static void set_scales(nevh__explorer *e) {
     }
 }
 
-bool nevh__field_explore(nevh_field *f, const nevh_options *o) {
+static int open_explorer(nevh__explorer *e, nevh_field *f,
+                         const nevh_options *o) {
     size_t n = f->n, most = n > LARGE ? 4 : NEVH__MOST_SAMPLES;
-    nevh__explorer e = {.field = f, .options = o, .samples.most = most};
-    e.length = nevh__array(2 * n, sizeof *e.length);
-    e.samples.q = nevh__array(most * n, sizeof *e.samples.q);
-    e.samples.p = nevh__array(most * n, sizeof *e.samples.p);
-    bool done = e.length && e.samples.q && e.samples.p;
-    if (done) {
-        begin(&e);
-        nevh__find_lengths(&e);
-        done = nevh__find_samples(&e);
+    *e = (nevh__explorer){.field = f, .options = o, .samples.most = most};
+    e->length = nevh__array(2 * n, sizeof *e->length);
+    e->samples.q = nevh__array(most * n, sizeof *e->samples.q);
+    e->samples.p = nevh__array(most * n, sizeof *e->samples.p);
+    if (!e->length || !e->samples.q || !e->samples.p)
+        return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+    begin(e);
+    nevh__find_lengths(e);
+    return NEVH_OK;
+}
+
+static void close_explorer(nevh__explorer *e) {
+    free(e->length);
+    free(e->samples.q);
+    free(e->samples.p);
+}
+
+int nevh__field_explore(nevh_field *f, const nevh_options *o) {
+    nevh__explorer e;
+    int status = open_explorer(&e, f, o);
+    if (!status && !nevh__find_samples(&e))
+        status = nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+    if (!status)
         set_scales(&e);
-    }
-    for (size_t i = 0; done && i < f->n_terms; i++)
+    for (size_t i = 0; !status && i < f->n_terms; i++)
         nevh__climb(&e, &f->terms[i]);
-    free(e.length);
-    free(e.samples.q);
-    free(e.samples.p);
-    return done;
+    close_explorer(&e);
+    return status;
+}
+
+int nevh__field_verify(nevh_field *f, const nevh_options *o) {
+    nevh__explorer e;
+    int status = open_explorer(&e, f, o);
+    if (!status)
+        nevh__find_neighbours(&e);
+    for (size_t i = 0; !status && i < f->n_terms; i++)
+        if (f->terms[i].nv)
+            status = nevh__verify(&e, &f->terms[i]);
+    close_explorer(&e);
+    return status;
 }

@@ -57,6 +57,10 @@ void nevh__along(const nevh__explorer *, const nevh__planned *, size_t instance,
 void nevh__find_lengths(nevh__explorer *);
 /* Adds samples; false when memory is out. */
 bool nevh__find_samples(nevh__explorer *);
+/* Adds only those displaced at random. */
+void nevh__find_neighbours(nevh__explorer *);
+/* Checks a term's own gradient. */
+int nevh__verify(nevh__explorer *, const nevh__planned *);
 /* Chooses the steps of a term. */
 void nevh__climb(nevh__explorer *, nevh__planned *);
 

@@ -13,6 +13,7 @@ nevh_field *nevh_field_new(const nevh_system *s, const nevh_options *options) {
     f->system = s;
     f->revision = s->revision;
     f->n = s->n;
+    f->portable = o->portable;
     f->gradient = o->gradient ? o->gradient : nevh_central4;
     f->terms = nevh__array(s->n_terms, sizeof *f->terms);
     if (f->terms && nevh__field_plan(f, o) != NEVH_ENOMEM)
@@ -51,7 +52,7 @@ const char *nevh_field_message(const nevh_field *f) {
 }
 
 int nevh__field_ready(nevh_field *f) {
-    if (!f->one) /* could not be planned */
+    if (!f->planned)
         return f->report.status;
     f->report.status = NEVH_OK;
     f->report.text[0] = '\0';

@@ -67,6 +67,7 @@ struct nevh_field {
     const nevh_system *system;
     unsigned long revision;
     const nevh_gradient *gradient;
+    bool portable, planned;
     size_t n;
     double *scale; /* 2n */
     nevh__planned *terms;
@@ -158,9 +159,10 @@ int nevh__field_moving_effects(nevh_field *, double t, const double q[],
 extern const nevh_gradient nevh__no_gradient;
 /* Plans the terms and the workspace. */
 int nevh__field_plan(nevh_field *, const nevh_options *);
-/* Chooses the steps that the user does not give, and the scales; false when
-   memory is out. */
-bool nevh__field_explore(nevh_field *, const nevh_options *);
+/* Chooses the steps that the user does not give, and the scales. */
+int nevh__field_explore(nevh_field *, const nevh_options *);
+/* Compares exact gradients with differences. */
+int nevh__field_verify(nevh_field *, const nevh_options *);
 /* Steps are kept for a part of the instances: the rows of term->steps, and
    where the step of variable k of an instance is. */
 size_t nevh__step_rows(const nevh__planned *);

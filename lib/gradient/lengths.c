@@ -26,9 +26,9 @@ void nevh__along(const nevh__explorer *e, const nevh__planned *term,
     for (size_t i = 0; i < stride; i++)
         f->times[i] = e->samples.t[at];
     double *rows_p = f->rows + term->nq * stride;
-    nevh__term_values(term->term, stride, count, is->time ? f->times : f->zeros,
-                      f->rows, rows_p, rows_p + term->np * stride, f->h,
-                      f->one);
+    nevh__term_values(term->term, f->portable, stride, count,
+                      is->time ? f->times : f->zeros, f->rows, rows_p,
+                      rows_p + term->np * stride, f->h, f->one);
     for (size_t i = 0; i < count; i++) {
         x[i] = f->rows[k * stride + i];
         h[i] = f->h[i];

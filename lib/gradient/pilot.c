@@ -122,14 +122,19 @@ static int pilot_steps(const nevh_field *f) {
     return work * MOST_STEPS > most_work ? (int)(most_work / work) : MOST_STEPS;
 }
 
-bool nevh__find_samples(nevh__explorer *e) {
+void nevh__find_neighbours(nevh__explorer *e) {
     uint64_t random = 1;
     bool given = e->options->q || e->options->p;
-    int steps = pilot_steps(e->field);
-    set_crude_steps(e);
-    if (given && steps >= PILOT_SAMPLES && !run_pilot(e, steps))
-        return false;
     for (int i = 0; i < (given ? RANDOM_SAMPLES : 2 * RANDOM_SAMPLES); i++)
         add_random(e, given ? near_by : anywhere, &random);
+}
+
+bool nevh__find_samples(nevh__explorer *e) {
+    int steps = pilot_steps(e->field);
+    set_crude_steps(e);
+    if ((e->options->q || e->options->p) && steps >= PILOT_SAMPLES &&
+        !run_pilot(e, steps))
+        return false;
+    nevh__find_neighbours(e);
     return true;
 }

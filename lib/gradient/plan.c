@@ -3,8 +3,6 @@
 #include "gradient/explore_private.h"
 #include <float.h>
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* The length over which variable i varies (from n: momenta): what the user
    says, else the largest size in the state to plan at, else 1. */
@@ -145,20 +143,31 @@ static bool all_given(const nevh_field *f, const nevh_options *o) {
 }
 
 static int plan_steps(nevh_field *f, const nevh_options *o) {
-    if (!f->gradient->offsets)
-        return NEVH_OK;
+    int status = NEVH_OK;
     for (size_t i = 0; i < f->n_terms; i++)
         arrange(f, &f->terms[i]); /* for the pilot */
-    if (!all_given(f, o) && !nevh__field_explore(f, o))
-        return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
-    for (size_t i = 0; i < f->n_terms; i++) {
+    if (!all_given(f, o))
+        status = nevh__field_explore(f, o);
+    for (size_t i = 0; !status && i < f->n_terms; i++) {
         take_given(f, &f->terms[i], o);
         arrange(f, &f->terms[i]);
-        f->terms[i].values = 0; /* what planning took is not counted */
     }
+    return status;
+}
+
+/* What planning evaluates is not counted, and its failures are forgotten. */
+static int plan_gradient(nevh_field *f, const nevh_options *o) {
+    int status = NEVH_OK;
+    if (f->gradient->offsets)
+        status = plan_steps(f, o);
+    else if (f->gradient == nevh_exact)
+        status = nevh__field_verify(f, o);
+    for (size_t i = 0; i < f->n_terms; i++)
+        f->terms[i].values = 0;
     f->gradients = 0;
-    f->report = (nevh__report){0};
-    return NEVH_OK;
+    if (!status)
+        f->report = (nevh__report){0};
+    return status;
 }
 
 int nevh__field_plan(nevh_field *f, const nevh_options *o) {
@@ -175,5 +184,10 @@ int nevh__field_plan(nevh_field *f, const nevh_options *o) {
             status = plan_term(f, s->terms[i]);
     if (!status)
         status = plan_workspace(f);
-    return status ? status : plan_steps(f, o);
+    if (status)
+        return status;
+    f->planned = true; /* it can be asked, and planning does */
+    status = plan_gradient(f, o);
+    f->planned = !status;
+    return status;
 }

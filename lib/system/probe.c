@@ -82,7 +82,7 @@ static double probe_instance(const nevh__term *term, size_t instance, origin *o,
         for (size_t k = 0; k < is->np; k++)
             write_row(o, o->p, o->n, is->p[instance * is->np + k], amplitude,
                       second_p, p + 8 * k);
-        nevh__term_values(term, 8, 8, t, q, p, c, h, one);
+        nevh__term_values(term, false, 8, 8, t, q, p, c, h, one);
         for (double *v = h; v < h + 8; v += 4) {
             double size = fabs(v[0]) + fabs(v[1]) + fabs(v[2]) + fabs(v[3]);
             if (!isfinite(size))

@@ -62,9 +62,11 @@ static inline bool nevh__term_on(const nevh_system *s, const nevh__term *term) {
 
 /* Values of a term in `width` columns (a multiple of NEVH__LANES) of which
    `used` count; rows of `width` doubles as in nevh_block_fn.  A scalar value
-   is called for the used columns only.  one: nq + np + nc doubles. */
-void nevh__term_values(const nevh__term *, size_t width, size_t used,
-                       const double t[], const double q[], const double p[],
-                       const double c[], double h[], double one[]);
+   is called for the used columns only; with `scalar` it is taken even where
+   there is a block.  one: nq + np + nc doubles. */
+void nevh__term_values(const nevh__term *, bool scalar, size_t width,
+                       size_t used, const double t[], const double q[],
+                       const double p[], const double c[], double h[],
+                       double one[]);
 
 #endif

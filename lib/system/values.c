@@ -2,11 +2,12 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "system/system_private.h"
 
-void nevh__term_values(const nevh__term *term, size_t width, size_t used,
-                       const double t[], const double q[], const double p[],
-                       const double c[], double h[], double one[]) {
+void nevh__term_values(const nevh__term *term, bool scalar, size_t width,
+                       size_t used, const double t[], const double q[],
+                       const double p[], const double c[], double h[],
+                       double one[]) {
     const nevh_term *is = &term->is;
-    if (is->block) {
+    if (is->block && !(scalar && is->value)) {
         is->block(width, t, q, p, c, is->params, h);
         return;
     }

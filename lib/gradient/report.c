@@ -1,0 +1,76 @@
+/* nevh: what a field says about its steps.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradient/explore_private.h"
+#include <math.h>
+#include <stdlib.h>
+
+/* Above this part of a derivative its error is no longer a matter of rounding
+   and smoothness. */
+static const double rough = 1e-5;
+
+size_t nevh_field_step_count(const nevh_field *f) {
+    size_t count = 0;
+    for (size_t i = 0; i < f->n_terms; i++)
+        if (f->terms[i].steps)
+            count += nevh__step_rows(&f->terms[i]) * f->terms[i].nv;
+    return count;
+}
+
+static nevh_step_report describe(const nevh_field *f, const nevh__planned *term,
+                                 size_t at) {
+    size_t row = at / term->nv, k = at % term->nv;
+    size_t instance = row * nevh__stride(term->term->is.count);
+    const nevh__step *s = &term->steps[at];
+    double error = s->truncation + s->rounding;
+    return (nevh_step_report){.term = term->term->is.name,
+                              .effect = term->term->is.effect,
+                              .instance = instance,
+                              .momentum = k >= term->nq,
+                              .index = nevh__index(term, instance, k),
+                              .step = s->delta,
+                              .order = s->quadratic ? 2 : f->gradient->order,
+                              .given = s->given,
+                              .blind = s->blind,
+                              .rough = !s->given && !s->blind &&
+                                       !(error <= rough * s->size),
+                              .truncation = s->truncation,
+                              .rounding = s->rounding,
+                              .size = s->size};
+}
+
+nevh_step_report nevh_field_step_report(const nevh_field *f, size_t i) {
+    for (size_t j = 0; j < f->n_terms; j++) {
+        const nevh__planned *term = &f->terms[j];
+        size_t count = term->steps ? nevh__step_rows(term) * term->nv : 0;
+        if (i < count)
+            return describe(f, term, i);
+        i -= count;
+    }
+    return (nevh_step_report){.term = ""};
+}
+
+/* Power of the noise, a sum over variables of (velocity times noise in the
+   force)^2; the bound epsilon |h| / delta is about four times the rms. */
+static double noise_power(const nevh_field *f, const double *v) {
+    const double *dq = v, *dp = dq + f->n, *nq = dp + f->n, *np = nq + f->n;
+    double sum = 0;
+    for (size_t k = 0; k < f->n; k++)
+        sum += (dp[k] * nq[k]) * (dp[k] * nq[k]) +
+               (dq[k] * np[k]) * (dq[k] * np[k]);
+    return sum / 16;
+}
+
+int nevh_field_energy_floor(nevh_field *f, double t, const double q[],
+                            const double p[], double h, size_t steps,
+                            double *energy) {
+    double *v = nevh__array(4 * f->n, sizeof *v);
+    if (!v)
+        return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+    int status = nevh_field_gradient(f, 1, &t, q, p, v, v + f->n);
+    if (!status)
+        status = nevh__field_noise(f, t, q, p, v + 2 * f->n, v + 3 * f->n);
+    if (!status)
+        *energy = fabs(h) * sqrt((double)steps * noise_power(f, v));
+    free(v);
+    return status;
+}

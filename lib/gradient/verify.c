@@ -1,0 +1,90 @@
+/* nevh: is a term's own gradient that of its values?
+
+   Compared with differences of order 8 at two steps, at a few states.  Where
+   the two steps do not agree (a kink, the edge of the domain) or something is
+   not finite, nothing is said.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradient/explore_private.h"
+#include <math.h>
+#include <stdlib.h>
+
+static const double tolerance = 1e-6;
+static const double long_step = 0x1p-6, short_step = 0x1p-8; /* of lengths */
+
+typedef struct {
+    nevh__explorer *explorer;
+    const nevh__planned *term;
+    size_t instance;
+    double *own; /* nv derivatives of the term's own */
+} check;
+
+static double by_difference(const check *c, size_t k, size_t at, double delta) {
+    double move[8], x[8], h[8], slope = 0;
+    for (size_t j = 0; j < 4; j++) {
+        move[2 * j] = (double)(j + 1) * delta;
+        move[2 * j + 1] = -move[2 * j];
+    }
+    nevh__along(c->explorer, c->term, c->instance, k, at, 8, move, x, h);
+    for (size_t j = 0; j < 4; j++)
+        slope += nevh_central8->weights[j] *
+                 ((h[2 * j] - h[2 * j + 1]) / (x[2 * j] - x[2 * j + 1]));
+    return slope;
+}
+
+/* The term's own derivatives at one sample, from a block of equal lanes. */
+static void ask_term(const check *c, size_t at) {
+    nevh_field *f = c->explorer->field;
+    const nevh__planned *term = c->term;
+    const nevh_term *is = &term->term->is;
+    double move[NEVH__LANES] = {0}, x[NEVH__LANES], h[NEVH__LANES];
+    nevh__along(c->explorer, term, c->instance, 0, at, NEVH__LANES, move, x, h);
+    double *q = f->rows, *p = q + term->nq * NEVH__LANES;
+    double *dp = f->slopes + term->nq * NEVH__LANES;
+    is->gradient(NEVH__LANES, is->time ? f->times : f->zeros, q, p,
+                 p + term->np * NEVH__LANES, is->params, f->slopes, dp);
+    for (size_t k = 0; k < term->nv; k++)
+        c->own[k] = f->slopes[k * NEVH__LANES];
+}
+
+static int wrong(const check *c, size_t k, double own, double difference) {
+    const nevh_term *is = &c->term->term->is;
+    return nevh__fail(
+        &c->explorer->field->report, NEVH_ENOGRAD,
+        "the exact gradient of term \"%s\" of effect \"%s\" is wrong: its "
+        "derivative with respect to %c[%zu] is %.9g where differences of its "
+        "values give %.9g",
+        is->name, is->effect, k < c->term->nq ? 'q' : 'p',
+        nevh__index(c->term, c->instance, k), own, difference);
+}
+
+static int check_sample(const check *c, size_t at) {
+    const nevh__planned *term = c->term;
+    size_t n = c->explorer->field->n;
+    ask_term(c, at);
+    for (size_t k = 0; k < term->nv; k++) {
+        size_t i = nevh__index(term, c->instance, k);
+        double length = c->explorer->length[k < term->nq ? i : n + i];
+        double near = by_difference(c, k, at, short_step * length);
+        double far = by_difference(c, k, at, long_step * length);
+        double allowed = tolerance * fmax(fabs(near), fabs(c->own[k])) +
+                         64 * fabs(near - far);
+        bool defined = isfinite(near) && isfinite(far) && isfinite(c->own[k]);
+        if (defined && nevh__probed(term, k) == k &&
+            !(fabs(c->own[k] - near) <= allowed))
+            return wrong(c, k, c->own[k], near);
+    }
+    return NEVH_OK;
+}
+
+int nevh__verify(nevh__explorer *e, const nevh__planned *term) {
+    size_t count = term->term->is.count, stride = nevh__stride(count);
+    check c = {e, term, 0, nevh__array(term->nv, sizeof *c.own)};
+    if (!c.own)
+        return nevh__fail(&e->field->report, NEVH_ENOMEM, "out of memory");
+    int status = NEVH_OK;
+    for (; !status && c.instance < count; c.instance += stride)
+        for (size_t at = 0; !status && at < e->samples.count; at++)
+            status = check_sample(&c, at);
+    free(c.own);
+    return status;
+}
