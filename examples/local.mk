@@ -1,9 +1,12 @@
-# One file each, and nothing but the installed headers and libnevh.la.
+# One file each or with one that several share, and nothing but the installed
+# headers and libnevh.la.
 examples = \
 	examples/first_hamiltonian \
 	examples/pendulum_energy \
 	examples/double_pendulum_energy \
-	examples/effects
+	examples/effects \
+	examples/gradient_error \
+	examples/gradient_cost
 noinst_PROGRAMS += $(examples)
 examples_first_hamiltonian_LDADD = libnevh.la
 examples_pendulum_energy_SOURCES = examples/pendulum_energy.c $(energy_table)
@@ -13,3 +16,10 @@ energy_table = examples/energy_table.c examples/energy_table.h
 examples_pendulum_energy_LDADD = libnevh.la
 examples_double_pendulum_energy_LDADD = libnevh.la
 examples_effects_LDADD = libnevh.la
+gradient_systems = \
+	examples/gradient_systems.c examples/gradient_systems.h
+examples_gradient_error_SOURCES = \
+	examples/gradient_error.c $(gradient_systems)
+examples_gradient_cost_SOURCES = examples/gradient_cost.c $(gradient_systems)
+examples_gradient_error_LDADD = libnevh.la
+examples_gradient_cost_LDADD = libnevh.la

@@ -1,5 +1,6 @@
 nevhincludedir = $(includedir)/nevh
 nevhinclude_HEADERS = \
+	include/nevh/body.h \
 	include/nevh/diagnose.h \
 	include/nevh/extend.h \
 	include/nevh/gradient.h \
@@ -7,6 +8,7 @@ nevhinclude_HEADERS = \
 	include/nevh/integrator.h \
 	include/nevh/models.h \
 	include/nevh/nevh.h \
+	include/nevh/probe.h \
 	include/nevh/run.h \
 	include/nevh/status.h \
 	include/nevh/system.h

@@ -18,6 +18,7 @@
 #include "implicit/implicit_private.h"
 #include "system/system_private.h"
 #include <math.h>
+#include <nevh/body.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -95,9 +96,26 @@ static void weigh(gauss_plan *g, double h) {
     g->hb[0] = g->hb[s - 1] = s > 1 ? rest / 2 : rest;
 }
 
+/* The same for one lane, where the stages stand side by side. */
+NEVH_SIMD static void multiply_one(size_t stages, const double m[],
+                                   const double x[], double out[]) {
+    double sum[NEVH__MOST_STAGES];
+    for (size_t i = 0; i < stages; i++)
+        sum[i] = 0;
+    for (size_t j = 0; j < stages; j++)
+        for (size_t i = 0; i < stages; i++)
+            sum[i] += m[j * stages + i] * x[j];
+    for (size_t i = 0; i < stages; i++)
+        out[i] = sum[i];
+}
+
 /* out[i] = sum_j m[j*stages + i] x[j], for `active` lanes side by side. */
 static void multiply(size_t stages, size_t active, const double m[],
                      const double x[], double out[]) {
+    if (active == 1) {
+        multiply_one(stages, m, x, out);
+        return;
+    }
     for (size_t i = 0; i < stages * active; i++)
         out[i] = 0;
     for (size_t j = 0; j < stages; j++, m += stages)

@@ -19,10 +19,12 @@ libnevh_core_la_SOURCES = \
 	lib/gradient/ladder.c \
 	lib/gradient/complex.c \
 	lib/gradient/report.c \
+	lib/gradient/findings.c \
 	lib/gradient/verify.c \
 	lib/gradient/field.c \
 	lib/gradient/block.c \
 	lib/gradient/central.c \
+	lib/gradient/stencil.c \
 	lib/gradient/exact.c \
 	lib/gradient/value.c \
 	lib/gradient/gsl_system.c \

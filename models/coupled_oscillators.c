@@ -8,16 +8,12 @@
 #include "models_private.h"
 #include <math.h>
 
-static void coupling_block(size_t width, const double t[], const double q[],
-                           const double p[], const double c[],
-                           const void *params, double h[]) {
-    (void)t, (void)p, (void)params;
-    for (size_t i = 0; i < width; i++) {
-        double stretch = q[i] - q[width + i];
-        h[i] = c[i] / 2 * (stretch * stretch);
-    }
-}
+NEVH_BODY(coupling, void, {
+    nevh_num stretch = nevh_q(0) - nevh_q(1);
+    return nevh_c(0) / 2 * (stretch * stretch);
+})
 
+NEVH_SIMD
 static void coupling_gradient(size_t width, const double t[], const double q[],
                               const double p[], const double c[],
                               const void *params, double dh_dq[],
@@ -25,13 +21,11 @@ static void coupling_gradient(size_t width, const double t[], const double q[],
     (void)t, (void)p, (void)params, (void)dh_dp;
     if (!dh_dq)
         return;
-    for (size_t i = 0; i < width; i++) {
+    NEVH_LANES(i, width) {
         dh_dq[i] = c[i] * (q[i] - q[width + i]);
         dh_dq[width + i] = -dh_dq[i];
     }
 }
-
-NEVH__VALUE_OF_BLOCK(coupling)
 
 static nevh_system *coupled_system(const void *params) {
     const nevh_coupled_oscillators *a = params;
@@ -42,8 +36,7 @@ static nevh_system *coupled_system(const void *params) {
                           .nq = 2,
                           .nc = 1,
                           .c = &a->coupling,
-                          .value = coupling_value,
-                          .block = coupling_block,
+                          NEVH_FORMS(coupling),
                           .gradient = coupling_gradient}};
     terms[0].count = 2;
     terms[0].p = both;

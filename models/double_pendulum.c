@@ -14,24 +14,20 @@
 static const double CORRECT = 2, AS_PRINTED = 1;
 
 /* q1, q2, p1, p2; c: w and 2 m l^2 */
-static void kinetic_block(size_t width, const double t[], const double q[],
-                          const double p[], const double c[],
-                          const void *params, double h[]) {
-    const double *q2 = q + width, *p2 = p + width, *scale = c + width;
-    (void)t, (void)params;
-    for (size_t i = 0; i < width; i++) {
-        double cosine = cos(q[i] - q2[i]), sine = sin(q[i] - q2[i]);
-        double form =
-            p[i] * p[i] + c[i] * (p2[i] * p2[i]) - 2 * p[i] * p2[i] * cosine;
-        h[i] = form / (scale[i] * (1 + sine * sine));
-    }
-}
+NEVH_BODY(kinetic, void, {
+    nevh_num p1 = nevh_p(0), p2 = nevh_p(1), d = nevh_q(0) - nevh_q(1);
+    nevh_num sine = nevh_sin(d), cosine = nevh_cos(d);
+    nevh_num form = p1 * p1 + nevh_c(0) * (p2 * p2) - 2 * p1 * p2 * cosine;
+    return form / (nevh_c(1) * (1 + sine * sine));
+})
 
+NEVH_SIMD
 static void kinetic_dq(size_t width, const double q[], const double p[],
                        const double c[], double dh_dq[]) {
     const double *q2 = q + width, *p2 = p + width, *scale = c + width;
-    for (size_t i = 0; i < width; i++) {
-        double cosine = cos(q[i] - q2[i]), sine = sin(q[i] - q2[i]);
+    NEVH_LANES(i, width) {
+        double d = q[i] - q2[i];
+        double cosine = nevh_simd_cos(d), sine = nevh_simd_sin(d);
         double form =
             p[i] * p[i] + c[i] * (p2[i] * p2[i]) - 2 * p[i] * p2[i] * cosine;
         double root = 1 + sine * sine;
@@ -41,11 +37,13 @@ static void kinetic_dq(size_t width, const double q[], const double p[],
     }
 }
 
+NEVH_SIMD
 static void kinetic_dp(size_t width, const double q[], const double p[],
                        const double c[], double dh_dp[]) {
     const double *q2 = q + width, *p2 = p + width, *scale = c + width;
-    for (size_t i = 0; i < width; i++) {
-        double cosine = cos(q[i] - q2[i]), sine = sin(q[i] - q2[i]);
+    NEVH_LANES(i, width) {
+        double d = q[i] - q2[i];
+        double cosine = nevh_simd_cos(d), sine = nevh_simd_sin(d);
         double half = scale[i] * (1 + sine * sine) / 2;
         dh_dp[i] = (p[i] - p2[i] * cosine) / half;
         dh_dp[width + i] = (c[i] * p2[i] - p[i] * cosine) / half;
@@ -63,8 +61,6 @@ static void kinetic_gradient(size_t width, const double t[], const double q[],
         kinetic_dp(width, q, p, c, dh_dp);
 }
 
-NEVH__VALUE_OF_BLOCK(kinetic)
-
 static nevh_system *new_system(const nevh_double_pendulum *a, double w) {
     static const size_t both[] = {0, 1};
     double weight = a->m * a->g * a->l;
@@ -74,8 +70,7 @@ static nevh_system *new_system(const nevh_double_pendulum *a, double w) {
          .np = 2,
          .nc = 2,
          .c = (const double[]){w, 2 * a->m * (a->l * a->l)},
-         .value = kinetic_value,
-         .block = kinetic_block,
+         NEVH_FORMS(kinetic),
          .gradient = kinetic_gradient},
         nevh__cosine_term,
     };

@@ -7,38 +7,33 @@
 #include "models_private.h"
 #include <math.h>
 
-static void angular_block(size_t width, const double t[], const double q[],
-                          const double p[], const double c[],
-                          const void *params, double h[]) {
-    (void)t, (void)params;
-    for (size_t i = 0; i < width; i++)
-        h[i] = p[i] * p[i] / (2 * c[i] * (q[i] * q[i]));
-}
+NEVH_BODY(angular, void, {
+    nevh_num r = nevh_q(0), p = nevh_p(0);
+    return p * p / (2 * nevh_c(0) * (r * r));
+})
 
+NEVH_SIMD
 static void angular_gradient(size_t width, const double t[], const double q[],
                              const double p[], const double c[],
                              const void *params, double dh_dq[],
                              double dh_dp[]) {
     (void)t, (void)params;
-    for (size_t i = 0; i < width; i++) {
-        double velocity = p[i] / (c[i] * (q[i] * q[i])); /* of theta */
-        if (dh_dq)
-            dh_dq[i] = -p[i] * velocity / q[i];
-        if (dh_dp)
-            dh_dp[i] = velocity;
-    }
+    if (dh_dq)
+        NEVH_LANES(i, width) {
+            dh_dq[i] = -p[i] * p[i] / (c[i] * (q[i] * q[i]) * q[i]);
+        }
+    if (dh_dp)
+        NEVH_LANES(i, width) {
+            dh_dp[i] = p[i] / (c[i] * (q[i] * q[i]));
+        }
 }
 
-NEVH__VALUE_OF_BLOCK(angular)
+NEVH_BODY(weight, void, {
+    nevh_num r = nevh_q(0), theta = nevh_q(1);
+    return -nevh_c(0) * r * nevh_cos(theta);
+})
 
-static void weight_block(size_t width, const double t[], const double q[],
-                         const double p[], const double c[], const void *params,
-                         double h[]) {
-    (void)t, (void)p, (void)params;
-    for (size_t i = 0; i < width; i++)
-        h[i] = -c[i] * q[i] * cos(q[width + i]);
-}
-
+NEVH_SIMD
 static void weight_gradient(size_t width, const double t[], const double q[],
                             const double p[], const double c[],
                             const void *params, double dh_dq[],
@@ -46,14 +41,12 @@ static void weight_gradient(size_t width, const double t[], const double q[],
     (void)t, (void)p, (void)params, (void)dh_dp;
     if (!dh_dq)
         return;
-    for (size_t i = 0; i < width; i++) {
+    NEVH_LANES(i, width) {
         double theta = q[width + i];
-        dh_dq[i] = -c[i] * cos(theta);
-        dh_dq[width + i] = c[i] * q[i] * sin(theta);
+        dh_dq[i] = -c[i] * nevh_simd_cos(theta);
+        dh_dq[width + i] = c[i] * q[i] * nevh_simd_sin(theta);
     }
 }
-
-NEVH__VALUE_OF_BLOCK(weight)
 
 enum { R, THETA };
 
@@ -69,16 +62,14 @@ static nevh_system *elastic_system(const void *params) {
                           .q = r,
                           .p = theta,
                           .c = &a->m,
-                          .value = angular_value,
-                          .block = angular_block,
+                          NEVH_FORMS(angular),
                           .gradient = angular_gradient},
                          nevh__spring_term,
                          {.effect = "gravity",
                           .nq = 2,
                           .nc = 1,
                           .c = (const double[]){a->m * a->g},
-                          .value = weight_value,
-                          .block = weight_block,
+                          NEVH_FORMS(weight),
                           .gradient = weight_gradient}};
     terms[0].name = "radial";
     terms[0].c = &a->m;

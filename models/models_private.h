@@ -3,6 +3,7 @@
 #ifndef NEVH_MODELS_PRIVATE_H
 #define NEVH_MODELS_PRIVATE_H
 
+#include <nevh/body.h>
 #include <nevh/models.h>
 
 extern const nevh_model nevh__oscillator, nevh__pendulum, nevh__double_pendulum,
@@ -18,15 +19,6 @@ extern const nevh_model nevh__oscillator, nevh__pendulum, nevh__double_pendulum,
 extern const nevh_term nevh__kinetic_term; /* p^2 / (2 c0) */
 extern const nevh_term nevh__spring_term;  /* c0/2 (q - c1)^2 */
 extern const nevh_term nevh__cosine_term;  /* -c0 cos q, effect "gravity" */
-
-/* Defines NAME_value, a nevh_term_fn, as the block NAME_block one lane wide. */
-#define NEVH__VALUE_OF_BLOCK(name)                                             \
-    static double name##_value(double t, const double q[], const double p[],   \
-                               const double c[], const void *params) {         \
-        double h;                                                              \
-        name##_block(1, &t, q, p, c, params, &h);                              \
-        return h;                                                              \
-    }
 
 /* A system of these terms; whatever fails stays in its status. */
 nevh_system *nevh__model_system(size_t n, const nevh_term terms[],

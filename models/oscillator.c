@@ -5,14 +5,9 @@
 #include <float.h>
 #include <math.h>
 
-static void kinetic_block(size_t width, const double t[], const double q[],
-                          const double p[], const double c[],
-                          const void *params, double h[]) {
-    (void)t, (void)q, (void)params;
-    for (size_t i = 0; i < width; i++)
-        h[i] = p[i] * p[i] / (2 * c[i]);
-}
+NEVH_BODY(kinetic, void, { return nevh_p(0) * nevh_p(0) / (2 * nevh_c(0)); })
 
+NEVH_SIMD
 static void kinetic_gradient(size_t width, const double t[], const double q[],
                              const double p[], const double c[],
                              const void *params, double dh_dq[],
@@ -20,28 +15,23 @@ static void kinetic_gradient(size_t width, const double t[], const double q[],
     (void)t, (void)q, (void)params, (void)dh_dq;
     if (!dh_dp)
         return;
-    for (size_t i = 0; i < width; i++)
+    NEVH_LANES(i, width) {
         dh_dp[i] = p[i] / c[i];
+    }
 }
-
-NEVH__VALUE_OF_BLOCK(kinetic)
 
 const nevh_term nevh__kinetic_term = {.effect = "kinetic",
                                       .np = 1,
                                       .nc = 1,
-                                      .value = kinetic_value,
-                                      .block = kinetic_block,
+                                      NEVH_FORMS(kinetic),
                                       .gradient = kinetic_gradient};
 
-static void spring_block(size_t width, const double t[], const double q[],
-                         const double p[], const double c[], const void *params,
-                         double h[]) {
-    (void)t, (void)p, (void)params;
-    const double *rest = c + width;
-    for (size_t i = 0; i < width; i++)
-        h[i] = c[i] / 2 * ((q[i] - rest[i]) * (q[i] - rest[i]));
-}
+NEVH_BODY(spring, void, {
+    nevh_num stretch = nevh_q(0) - nevh_c(1);
+    return nevh_c(0) / 2 * (stretch * stretch);
+})
 
+NEVH_SIMD
 static void spring_gradient(size_t width, const double t[], const double q[],
                             const double p[], const double c[],
                             const void *params, double dh_dq[],
@@ -50,17 +40,15 @@ static void spring_gradient(size_t width, const double t[], const double q[],
     const double *rest = c + width;
     if (!dh_dq)
         return;
-    for (size_t i = 0; i < width; i++)
+    NEVH_LANES(i, width) {
         dh_dq[i] = c[i] * (q[i] - rest[i]);
+    }
 }
-
-NEVH__VALUE_OF_BLOCK(spring)
 
 const nevh_term nevh__spring_term = {.effect = "spring",
                                      .nq = 1,
                                      .nc = 2,
-                                     .value = spring_value,
-                                     .block = spring_block,
+                                     NEVH_FORMS(spring),
                                      .gradient = spring_gradient};
 
 void nevh__normal_mode(long double w2, long double t, long double *x,

@@ -19,14 +19,9 @@
 
 #define PI 3.141592653589793238462643383279502884L
 
-static void cosine_block(size_t width, const double t[], const double q[],
-                         const double p[], const double c[], const void *params,
-                         double h[]) {
-    (void)t, (void)p, (void)params;
-    for (size_t i = 0; i < width; i++)
-        h[i] = -c[i] * cos(q[i]);
-}
+NEVH_BODY(cosine, void, { return -nevh_c(0) * nevh_cos(nevh_q(0)); })
 
+NEVH_SIMD
 static void cosine_gradient(size_t width, const double t[], const double q[],
                             const double p[], const double c[],
                             const void *params, double dh_dq[],
@@ -34,17 +29,15 @@ static void cosine_gradient(size_t width, const double t[], const double q[],
     (void)t, (void)p, (void)params, (void)dh_dp;
     if (!dh_dq)
         return;
-    for (size_t i = 0; i < width; i++)
-        dh_dq[i] = c[i] * sin(q[i]);
+    NEVH_LANES(i, width) {
+        dh_dq[i] = c[i] * nevh_simd_sin(q[i]);
+    }
 }
-
-NEVH__VALUE_OF_BLOCK(cosine)
 
 const nevh_term nevh__cosine_term = {.effect = "gravity",
                                      .nq = 1,
                                      .nc = 1,
-                                     .value = cosine_value,
-                                     .block = cosine_block,
+                                     NEVH_FORMS(cosine),
                                      .gradient = cosine_gradient};
 
 static nevh_system *pendulum_system(const void *params) {

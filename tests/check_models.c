@@ -122,6 +122,7 @@ START_TEST(structure) {
 }
 END_TEST
 
+/* Vector cosines are within 4 ulp, and those of one effect may cancel. */
 START_TEST(terms_sum_to_the_hamiltonian) {
     const nevh_model *model = nevh_models()[_i];
     setup s = set_up(model, known[_i].params, nevh_exact);
@@ -130,14 +131,15 @@ START_TEST(terms_sum_to_the_hamiltonian) {
     make_states(model, many_q, many_p);
     ck_assert_int_eq(nevh_field_value(s.field, STATES, t, many_q, many_p, h),
                      NEVH_OK);
+    double size = 0, error = 0;
     for (size_t i = 0; i < STATES; i++) {
         take_lane(model->n, i, many_q, q);
         take_lane(model->n, i, many_p, p);
-        double size =
-            size_of(s.field, nevh_system_effect_count(s.system), q, p);
-        ck_assert_double_eq_tol(h[i], model->hamiltonian(0, q, p, s.params),
-                                4 * DBL_EPSILON * size);
+        size = fmax(size,
+                    size_of(s.field, nevh_system_effect_count(s.system), q, p));
+        error = fmax(error, fabs(h[i] - model->hamiltonian(0, q, p, s.params)));
     }
+    ck_assert_double_le(error, 4 * DBL_EPSILON * size);
     tear_down(s);
 }
 END_TEST

@@ -3,7 +3,9 @@ suites = \
 	tests/check_system \
 	tests/check_structure \
 	tests/check_gradient \
+	tests/check_body \
 	tests/check_lanes \
+	tests/check_probe \
 	tests/check_registry \
 	tests/check_coefficients \
 	tests/check_order \
@@ -49,6 +51,8 @@ dist_check_SCRIPTS = \
 	tests/examples.sh \
 	tests/pkgconfig.sh \
 	tests/valgrind.sh
+
+EXTRA_DIST += tests/outside.c
 
 TESTS = $(all_suites) $(dist_check_SCRIPTS)
 TEST_EXTENSIONS = .sh

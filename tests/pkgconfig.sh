@@ -1,6 +1,7 @@
 #!/bin/sh
 # A user's way: make install, then compile with what pkg-config says.  The
-# program is the first one of README.md, so that what we print there works.
+# programs are the first one of README.md, so that what we print there works,
+# and tests/outside.c, whose blocks become vector code without any flags.
 
 srcdir=${srcdir:-.}
 pkgconfig=${PKG_CONFIG:-pkg-config}
@@ -61,6 +62,48 @@ if grep -Eiw '[-+]?(nan|inf|infinity)' "$dest/out"; then
     fails "the program of README.md prints a number that is not finite"
 fi
 
+# builds_body COMPILER FLAGS...: and runs it.
+builds_body() {
+    # shellcheck disable=SC2086
+    "$@" -Wall -Wextra -pedantic -Werror -o "$dest/outside" \
+        "$srcdir/tests/outside.c" $flags ||
+        fails "a user of <nevh/body.h> does not compile: $*"
+    "$dest/outside" || fails "a user of <nevh/body.h> fails: $*"
+}
+
+# Whether the header says that it has vector functions.
+has_vectors() {
+    # shellcheck disable=SC2086
+    printf '#include <nevh/body.h>\nvectors: NEVH__VECTORS\n' |
+        "$@" -E - $flags 2>/dev/null | grep -q '^vectors: 1'
+}
+
+# The sanitizers of two compilers do not mix.
+compilers="${CC:-cc}"
+test -n "$SANITIZE_FLAGS" || for name in gcc clang; do
+    test "$name" != "$CC" && command -v "$name" >/dev/null 2>&1 &&
+        compilers="$compilers
+$name"
+done
+tried=
+while read -r compiler; do
+    for flag in -std=c11 -std=gnu11 -std=gnu17 -DNEVH_PORTABLE -O0 -O3; do
+        # shellcheck disable=SC2086
+        builds_body $compiler -O2 $SANITIZE_FLAGS $flag
+        # shellcheck disable=SC2086
+        if has_vectors $compiler -O2 $SANITIZE_FLAGS $flag; then
+            tried="$tried $compiler $flag;"
+            for name in _ZGVbN2v_sin _ZGVdN4v_cos _ZGVeN8v_sin; do
+                ${NM:-nm} "$dest/outside" | grep -q $name ||
+                    fails "$compiler $flag: nothing calls $name"
+            done
+        fi
+    done
+done <<END
+$compilers
+END
+echo "vector code:${tried:- none}"
+
 cxx=
 for name in $CXX c++ g++ clang++; do
     if command -v "$name" >/dev/null 2>&1; then
@@ -71,12 +114,21 @@ done
 test -n "$cxx" || { echo "no C++ compiler: the rest is well"; exit 0; }
 cat >"$dest/user.cc" <<'END'
 #include <nevh/nevh.h>
+#include <nevh/body.h>
 #include <nevh/gsl.h>
 #include <nevh/extend.h>
 
+NEVH_SIMD static void sines(size_t width, const double *q, double *h)
+{
+    NEVH_LANES(i, width) { h[i] = nevh_simd_sin(q[i]); }
+}
+
 int main()
 {
-    return nevh_status_text(NEVH_OK) == 0 || nevh_integrators()[0] == 0;
+    double q[8] = {0}, h[8];
+    sines(8, q, h);
+    return nevh_status_text(NEVH_OK) == 0 || nevh_integrators()[0] == 0 ||
+           h[7] != 0;
 }
 END
 # The sanitizers of two compilers do not mix.

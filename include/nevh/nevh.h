@@ -1,8 +1,9 @@
 /* nevh: write the Hamiltonian, get the motion.
    SPDX-License-Identifier: GPL-3.0-or-later
 
-   The umbrella header.  Apart from it: <nevh/gsl.h> for users of GSL's
-   solvers, <nevh/extend.h> for authors of integrators. */
+   The umbrella header.  Apart from it: <nevh/body.h>, by which a term gets its
+   SIMD and complex forms, <nevh/gsl.h> for users of GSL's solvers,
+   <nevh/extend.h> for authors of integrators. */
 #ifndef NEVH_H
 #define NEVH_H
 
@@ -10,6 +11,7 @@
 #include <nevh/gradient.h>
 #include <nevh/integrator.h>
 #include <nevh/models.h>
+#include <nevh/probe.h>
 #include <nevh/run.h>
 #include <nevh/status.h>
 #include <nevh/system.h>

@@ -5,57 +5,101 @@
 #include <stdio.h>
 #include <string.h>
 
-/* One value for each lane, `copies` times for one group. */
-static void spread(const nevh__block *b, size_t group, const double *from,
-                   double *row) {
-    row += group * b->copies * b->lanes;
-    if (b->lanes == 1)
-        for (size_t k = 0; k < b->copies; k++)
-            row[k] = from[0];
-    else
-        for (size_t k = 0; k < b->copies; k++)
-            memcpy(row + k * b->lanes, from, b->lanes * sizeof *row);
-}
-
-static void pad(const nevh__block *b, double *row) {
-    for (size_t k = b->used; k < b->stride; k++)
-        row[k] = row[0];
-}
-
-static void fill_group(nevh_field *f, const nevh__planned *term,
-                       const nevh__block *b, size_t group) {
-    size_t instance = (b->group + group) / b->per_instance, k = 0;
-    for (; k < term->nv; k++) {
-        const double *x = k < term->nq ? b->q : b->p;
-        size_t i = nevh__index(term, instance, k);
-        spread(b, group, x + i * b->width + b->lane, f->rows + k * b->stride);
+/* The first copy of a row whose entries are from[index[instance * step]] of
+   each lane. */
+static void fill_first(const nevh__block *b, const double *from,
+                       const size_t *index, size_t step, double *row) {
+    nevh__cursor at = nevh__first_group(b);
+    for (size_t group = 0; group < b->groups; group++, row += b->lanes) {
+        const double *x = from + index[at.instance * step] * b->width;
+        if (b->lanes == 1)
+            row[0] = x[b->lane];
+        else
+            memcpy(row, x + b->lane, b->lanes * sizeof *row);
+        nevh__next_group(b, &at);
     }
-    const nevh_term *is = &term->term->is;
-    for (size_t j = 0; j < is->nc; j++, k++) {
-        double *row = f->rows + k * b->stride + group * b->copies * b->lanes;
-        for (size_t column = 0; column < b->copies * b->lanes; column++)
-            row[column] = is->c[instance * is->nc + j];
-    }
-    if (is->time)
-        spread(b, group, b->t + b->lane, f->times);
 }
 
-static void fill(nevh_field *f, const nevh__planned *term, nevh__block *b) {
+/* The other copies, and the padding. */
+static void fill_rest(const nevh__block *b, double *row) {
+    size_t one = b->groups * b->lanes;
+    for (size_t i = one; i < b->used; i += one)
+        memcpy(row + i, row, one * sizeof *row);
+    for (size_t i = b->used; i < b->stride; i++)
+        row[i] = row[0];
+}
+
+static void fill_all(const nevh__block *b, double x, double *row) {
+    for (const double *end = row + b->stride; row < end; row += NEVH__LANES)
+        for (size_t i = 0; i < NEVH__LANES; i++)
+            row[i] = x;
+}
+
+/* One instance, one lane: each row is one number. */
+static void fill_one(nevh_field *f, const nevh__planned *term,
+                     const nevh__block *b) {
     const nevh_term *is = &term->term->is;
-    b->used = b->groups * b->copies * b->lanes;
-    b->stride = nevh__padded(b->used);
-    for (size_t group = 0; group < b->groups; group++)
-        fill_group(f, term, b, group);
-    if (b->used == b->stride)
-        return;
-    for (size_t k = 0; k < term->nv + is->nc; k++)
-        pad(b, f->rows + k * b->stride);
+    double *row = f->rows;
+    for (size_t k = 0; k < term->nq; k++, row += b->stride)
+        fill_all(b, b->q[is->q[k] * b->width + b->lane], row);
+    for (size_t k = 0; k < term->np; k++, row += b->stride)
+        fill_all(b, b->p[is->p[k] * b->width + b->lane], row);
+    for (size_t k = 0; k < is->nc; k++, row += b->stride)
+        fill_all(b, is->c[k], row);
     if (is->time)
-        pad(b, f->times);
+        fill_all(b, b->t[b->lane], f->times);
+}
+
+static void fill_constants(const nevh__planned *term, const nevh__block *b,
+                           double *row) {
+    const nevh_term *is = &term->term->is;
+    for (size_t k = 0; k < is->nc; k++, row += b->stride) {
+        nevh__cursor at = nevh__first_group(b);
+        for (size_t group = 0; group < b->groups; group++) {
+            for (size_t lane = 0; lane < b->lanes; lane++)
+                row[group * b->lanes + lane] = is->c[at.instance * is->nc + k];
+            nevh__next_group(b, &at);
+        }
+        fill_rest(b, row);
+    }
+}
+
+static void fill_many(nevh_field *f, const nevh__planned *term,
+                      const nevh__block *b) {
+    const nevh_term *is = &term->term->is;
+    static const size_t zero = 0;
+    double *row = f->rows;
+    for (size_t k = 0; k < term->nq; k++, row += b->stride) {
+        fill_first(b, b->q, is->q + k, term->nq, row);
+        fill_rest(b, row);
+    }
+    for (size_t k = 0; k < term->np; k++, row += b->stride) {
+        fill_first(b, b->p, is->p + k, term->np, row);
+        fill_rest(b, row);
+    }
+    fill_constants(term, b, row);
+    if (is->time) {
+        fill_first(b, b->t, &zero, 0, f->times);
+        fill_rest(b, f->times);
+    }
 }
 
 static size_t smaller(size_t a, size_t b) {
     return a < b ? a : b;
+}
+
+/* As many lanes, and then groups, as there is room for.  Most often all; the
+   comparison saves divisions. */
+static void set_size(const nevh_field *f, nevh__block *b, size_t total) {
+    size_t lanes = b->until - b->lane, groups = total - b->group;
+    if (groups * b->copies * lanes > f->capacity) {
+        lanes = smaller(f->capacity / b->copies, lanes);
+        groups = smaller(f->capacity / (b->copies * lanes), groups);
+    }
+    b->lanes = lanes;
+    b->groups = groups;
+    b->used = groups * b->copies * lanes;
+    b->stride = nevh__padded(b->used);
 }
 
 bool nevh__block_next(nevh_field *f, const nevh__planned *term,
@@ -68,9 +112,11 @@ bool nevh__block_next(nevh_field *f, const nevh__planned *term,
     }
     if (b->lane >= b->until || total == 0)
         return false;
-    b->lanes = smaller(f->capacity / b->copies, b->until - b->lane);
-    b->groups = smaller(f->capacity / (b->copies * b->lanes), total - b->group);
-    fill(f, term, b);
+    set_size(f, b, total);
+    if (b->lanes == 1 && term->term->is.count == 1)
+        fill_one(f, term, b);
+    else
+        fill_many(f, term, b);
     return true;
 }
 
@@ -96,7 +142,7 @@ int nevh__block_fail(nevh_field *f, const nevh__planned *term,
                      double value) {
     const nevh_term *is = &term->term->is;
     size_t lane = b->lane + column % b->lanes;
-    size_t group = column / (b->copies * b->lanes);
+    size_t group = column % (b->groups * b->lanes) / b->lanes;
     size_t instance = (b->group + group) / b->per_instance;
     char where[200], which[80] = "";
     describe(f, term, b, instance, column, where, sizeof where);
@@ -118,18 +164,28 @@ static bool all_finite(const double x[], size_t n) {
     return sum == 0;
 }
 
-int nevh__block_values(nevh_field *f, nevh__planned *term,
-                       const nevh__block *b) {
+void nevh__block_evaluate(nevh_field *f, nevh__planned *term,
+                          const nevh__block *b) {
     const double *q = f->rows, *p = q + term->nq * b->stride;
     const double *c = p + term->np * b->stride;
     const double *t = term->term->is.time ? f->times : f->zeros;
     nevh__term_values(term->term, f->portable, b->stride, b->used, t, q, p, c,
                       f->h, f->one);
     term->values += b->used;
+}
+
+int nevh__block_check(nevh_field *f, const nevh__planned *term,
+                      const nevh__block *b) {
     if (all_finite(f->h, b->used))
         return NEVH_OK;
     size_t column = 0;
     while (column + 1 < b->used && isfinite(f->h[column]))
         column++;
     return nevh__block_fail(f, term, b, column, "", f->h[column]);
+}
+
+int nevh__block_values(nevh_field *f, nevh__planned *term,
+                       const nevh__block *b) {
+    nevh__block_evaluate(f, term, b);
+    return nevh__block_check(f, term, b);
 }

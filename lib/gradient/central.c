@@ -13,7 +13,7 @@
    field: one that followed the state would break time reversal.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/field_private.h"
-#include <math.h>
+#include <nevh/body.h>
 
 /* The differenced variables of each instance, and the points on each side. */
 typedef struct {
@@ -21,39 +21,50 @@ typedef struct {
     size_t count, pairs;
 } selection;
 
-/* Columns of one group come in pairs, + before -, nearest first. */
-static void perturb(double *row, size_t pairs, size_t lanes, double delta) {
+/* Copies come in pairs, + before -, nearest first; `row` and `h` begin at the
+   group's first lane, `apart` is the distance between copies. */
+NEVH_SIMD static void perturb(double *row, size_t pairs, size_t apart,
+                              size_t lanes, double delta) {
     for (size_t j = 0; j < pairs; j++) {
         double shift = (double)(j + 1) * delta;
-        double *plus = row + 2 * j * lanes, *minus = plus + lanes;
-        for (size_t lane = 0; lane < lanes; lane++) {
+        double *plus = row + 2 * j * apart, *minus = plus + apart;
+        for (size_t lane = 0; lane < lanes; lane++)
             plus[lane] += shift;
+        for (size_t lane = 0; lane < lanes; lane++)
             minus[lane] -= shift;
-        }
     }
 }
 
 /* Adds the weighted chord slopes of one group to `out`, a value a lane.
-   Returns whether all are finite. */
-static bool add_slopes(const nevh_gradient *g, size_t lanes, const double *x,
-                       const double *h, double *out) {
-    double check = 0;
-    for (size_t lane = 0; lane < lanes; lane++) {
-        double slope = 0;
-        for (size_t j = 0; j < g->offsets; j++) {
-            size_t plus = 2 * j * lanes + lane, minus = plus + lanes;
-            slope +=
-                g->weights[j] * ((h[plus] - h[minus]) / (x[plus] - x[minus]));
-        }
-        out[lane] += slope;
-        check += slope - slope;
+   Returns whether one is not finite. */
+NEVH_SIMD static bool add_slopes(const nevh_gradient *g, size_t apart,
+                                 size_t lanes, const double *x, const double *h,
+                                 double *out) {
+    double slope[NEVH__COLUMNS];
+    int64_t bad = 0;
+    for (size_t lane = 0; lane < lanes; lane++)
+        slope[lane] = 0;
+    for (size_t j = 0; j < g->offsets; j++) {
+        const double *plus = h + 2 * j * apart, *minus = plus + apart;
+        const double *above = x + 2 * j * apart, *below = above + apart;
+        double weight = g->weights[j];
+        for (size_t lane = 0; lane < lanes; lane++)
+            slope[lane] += weight * ((plus[lane] - minus[lane]) /
+                                     (above[lane] - below[lane]));
     }
-    return check == 0;
+    for (size_t lane = 0; lane < lanes; lane++) {
+        out[lane] += slope[lane];
+        bad |= slope[lane] - slope[lane] != 0;
+    }
+    return bad != 0;
 }
 
-static int fail_slope(nevh_field *f, const nevh__planned *term,
-                      const nevh__block *b, size_t instance, size_t k) {
+int nevh__central_fail(nevh_field *f, const nevh__planned *term,
+                       const nevh__block *b, size_t instance, size_t k) {
     const nevh_term *is = &term->term->is;
+    int status = nevh__block_check(f, term, b);
+    if (status)
+        return status;
     return nevh__fail(
         &f->report, NEVH_EDOM,
         "the derivative of term \"%s\" of effect \"%s\" with respect to "
@@ -64,28 +75,42 @@ static int fail_slope(nevh_field *f, const nevh__planned *term,
         term->delta[instance * term->nv + k]);
 }
 
+static void perturb_block(nevh_field *f, const nevh__planned *term,
+                          const nevh__block *b, selection s) {
+    nevh__cursor at = nevh__first_group(b);
+    size_t apart = b->groups * b->lanes;
+    for (size_t group = 0; group < b->groups; group++) {
+        size_t k = s.vars[at.v];
+        perturb(f->rows + k * b->stride + group * b->lanes, s.pairs, apart,
+                b->lanes, term->delta[at.instance * term->nv + k]);
+        nevh__next_group(b, &at);
+    }
+}
+
+/* One pair is the difference of order 2, whatever the method. */
+static const nevh_gradient *weights_of(const nevh_field *f, size_t pairs) {
+    return pairs == 1 ? nevh_central2 : f->gradient;
+}
+
 static int difference_block(nevh_field *f, nevh__planned *term, nevh__block *b,
                             selection s, double dh_dq[], double dh_dp[]) {
-    /* One pair is the difference of order 2, whatever the method. */
-    const nevh_gradient *g = s.pairs == 1 ? nevh_central2 : f->gradient;
-    size_t columns = b->copies * b->lanes;
+    const nevh_gradient *g = weights_of(f, s.pairs);
+    size_t apart = b->groups * b->lanes;
+    perturb_block(f, term, b, s);
+    nevh__block_evaluate(f, term, b);
+    nevh__cursor at = nevh__first_group(b);
     for (size_t group = 0; group < b->groups; group++) {
-        size_t instance = (b->group + group) / s.count;
-        size_t k = s.vars[(b->group + group) % s.count];
-        perturb(f->rows + k * b->stride + group * columns, g->offsets, b->lanes,
-                term->delta[instance * term->nv + k]);
-    }
-    int status = nevh__block_values(f, term, b);
-    for (size_t group = 0; !status && group < b->groups; group++) {
-        size_t instance = (b->group + group) / s.count;
-        size_t k = s.vars[(b->group + group) % s.count];
+        size_t k = s.vars[at.v], first = group * b->lanes;
         double *out = k < term->nq ? dh_dq : dh_dp;
-        out += nevh__index(term, instance, k) * b->width + b->lane;
-        if (!add_slopes(g, b->lanes, nevh__row(f, b, k) + group * columns,
-                        f->h + group * columns, out))
-            status = fail_slope(f, term, b, instance, k);
+        out += nevh__index(term, at.instance, k) * b->width + b->lane;
+        bool bad =
+            add_slopes(g, apart, b->lanes, f->rows + k * b->stride + first,
+                       f->h + first, out);
+        if (bad)
+            return nevh__central_fail(f, term, b, at.instance, k);
+        nevh__next_group(b, &at);
     }
-    return status;
+    return NEVH_OK;
 }
 
 /* The part of a pass that is wanted. */
@@ -96,14 +121,21 @@ static selection select_vars(const nevh__planned *term, const nevh__pass *pass,
     return (selection){term->vars + begin, end - begin, pass->pairs};
 }
 
-int nevh__central(nevh_field *f, nevh__planned *term, size_t width,
-                  const double t[], const double q[], const double p[],
-                  double dh_dq[], double dh_dp[]) {
+int nevh__gradient_central(nevh_field *f, nevh__planned *term, size_t width,
+                           const double t[], const double q[], const double p[],
+                           double dh_dq[], double dh_dp[]) {
     int status = NEVH_OK;
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; !status && i < 2; i++) {
         selection s = select_vars(term, &term->pass[i], dh_dq, dh_dp);
+        const nevh__stencil *stencil =
+            width == 1 ? nevh__stencil_for(term, i, dh_dq, dh_dp) : NULL;
+        if (s.count == 0)
+            continue;
         nevh__block b = nevh__block_over(width, t, q, p, 2 * s.pairs, s.count);
-        while (!status && nevh__block_next(f, term, &b))
+        if (stencil)
+            status = nevh__stencil_difference(
+                f, term, stencil, weights_of(f, s.pairs), &b, dh_dq, dh_dp);
+        while (!stencil && !status && nevh__block_next(f, term, &b))
             status = difference_block(f, term, &b, s, dh_dq, dh_dp);
     }
     return status;

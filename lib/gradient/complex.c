@@ -44,9 +44,9 @@ static int add_column(nevh_field *f, nevh__planned *term, const nevh__block *b,
                                   isfinite(h[0]) ? slope : h[0]);
 }
 
-int nevh__complex(nevh_field *f, nevh__planned *term, size_t width,
-                  const double t[], const double q[], const double p[],
-                  double dh_dq[], double dh_dp[]) {
+int nevh__gradient_complex(nevh_field *f, nevh__planned *term, size_t width,
+                           const double t[], const double q[], const double p[],
+                           double dh_dq[], double dh_dp[]) {
     nevh__block b = nevh__block_over(width, t, q, p, 1, 1);
     size_t first = dh_dq ? 0 : term->nq, end = dh_dp ? term->nv : term->nq;
     int status = NEVH_OK;

@@ -54,8 +54,8 @@ static void set_scales(nevh__explorer *e) {
     }
 }
 
-static int open_explorer(nevh__explorer *e, nevh_field *f,
-                         const nevh_options *o) {
+int nevh__explorer_open(nevh__explorer *e, nevh_field *f,
+                        const nevh_options *o) {
     size_t n = f->n, most = n > LARGE ? 4 : NEVH__MOST_SAMPLES;
     *e = (nevh__explorer){.field = f, .options = o, .samples.most = most};
     e->length = nevh__array(2 * n, sizeof *e->length);
@@ -68,7 +68,7 @@ static int open_explorer(nevh__explorer *e, nevh_field *f,
     return NEVH_OK;
 }
 
-static void close_explorer(nevh__explorer *e) {
+void nevh__explorer_close(nevh__explorer *e) {
     free(e->length);
     free(e->samples.q);
     free(e->samples.p);
@@ -76,25 +76,27 @@ static void close_explorer(nevh__explorer *e) {
 
 int nevh__field_explore(nevh_field *f, const nevh_options *o) {
     nevh__explorer e;
-    int status = open_explorer(&e, f, o);
+    int status = nevh__explorer_open(&e, f, o);
+    if (!status)
+        nevh__set_crude_steps(&e);
     if (!status && !nevh__find_samples(&e))
         status = nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
     if (!status)
         set_scales(&e);
     for (size_t i = 0; !status && i < f->n_terms; i++)
         nevh__climb(&e, &f->terms[i]);
-    close_explorer(&e);
+    nevh__explorer_close(&e);
     return status;
 }
 
 int nevh__field_verify(nevh_field *f, const nevh_options *o) {
     nevh__explorer e;
-    int status = open_explorer(&e, f, o);
+    int status = nevh__explorer_open(&e, f, o);
     if (!status)
         nevh__find_neighbours(&e);
     for (size_t i = 0; !status && i < f->n_terms; i++)
         if (f->terms[i].nv)
             status = nevh__verify(&e, &f->terms[i]);
-    close_explorer(&e);
+    nevh__explorer_close(&e);
     return status;
 }

@@ -53,8 +53,13 @@ void nevh__along(const nevh__explorer *, const nevh__planned *, size_t instance,
                  size_t k, size_t at, size_t count, const double move[],
                  double x[], double h[]);
 
+/* Takes the states given and fills length; a status, recorded in the field. */
+int nevh__explorer_open(nevh__explorer *, nevh_field *, const nevh_options *);
+void nevh__explorer_close(nevh__explorer *);
 /* Fills length, at sample 0. */
 void nevh__find_lengths(nevh__explorer *);
+/* Steps that will do for a pilot, from the lengths. */
+void nevh__set_crude_steps(nevh__explorer *);
 /* Adds samples; false when memory is out. */
 bool nevh__find_samples(nevh__explorer *);
 /* Adds only those displaced at random. */

@@ -29,6 +29,7 @@ void nevh_field_free(nevh_field *f) {
         free(f->terms[i].delta);
         free(f->terms[i].steps);
         free(f->terms[i].vars);
+        nevh__stencil_free(&f->terms[i]);
     }
     free(f->terms);
     free(f->scale);

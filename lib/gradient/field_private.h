@@ -1,11 +1,11 @@
 /* nevh: inside a field.
    SPDX-License-Identifier: GPL-3.0-or-later
 
-   Every kernel works on blocks.  A *cell* is one instance of a term at one
-   lane; a *column* is one point at which a term is evaluated; columns stand
-   side by side in rows, one row a variable that the term reads:
+   Every kernel works on blocks.  A *column* is one point at which a term is
+   evaluated; columns stand side by side in rows, one row a variable that the
+   term reads:
 
-       column = (group * copies + copy) * lanes + lane
+       column = (copy * groups + group) * lanes + lane
 
    where a group is an instance (values, exact gradients: one copy) or a
    variable of an instance (differences: one copy a stencil point).  Blocks
@@ -35,6 +35,14 @@ typedef struct {
     size_t begin, end; /* in vars */
 } nevh__pass;
 
+/* A pass over the coordinates, the momenta or both of a term with one instance
+   at one state; see stencil.c. */
+typedef struct {
+    const size_t *vars;
+    size_t groups, pairs, used, stride;
+    double *shift; /* nv x stride; NULL: there is no such stencil */
+} nevh__stencil;
+
 typedef struct {
     const nevh__term *term;
     size_t nq, np, nv;  /* variables of an instance: coordinates, momenta */
@@ -42,6 +50,7 @@ typedef struct {
     nevh__step *steps;  /* nevh__step_rows x nv */
     size_t *vars;       /* nv variables in the order of the passes */
     nevh__pass pass[2]; /* full order; order 2 */
+    nevh__stencil stencil[2][3];
     uint64_t values;
 } nevh__planned;
 
@@ -98,11 +107,30 @@ typedef struct {
     size_t used, stride;  /* columns; the same padded: the rows' length */
 } nevh__block;
 
+/* A group as a variable of an instance. */
+typedef struct {
+    size_t instance, v; /* v < per_instance */
+} nevh__cursor;
+
+static inline nevh__cursor nevh__first_group(const nevh__block *b) {
+    if (b->group == 0)
+        return (nevh__cursor){0, 0};
+    return (nevh__cursor){b->group / b->per_instance,
+                          b->group % b->per_instance};
+}
+static inline void nevh__next_group(const nevh__block *b, nevh__cursor *c) {
+    if (++c->v == b->per_instance)
+        *c = (nevh__cursor){c->instance + 1, 0};
+}
+
 /* Fills rows and times for the next block of a term; false after the last. */
 bool nevh__block_next(nevh_field *, const nevh__planned *, nevh__block *);
-/* Evaluates the term on the filled block, counts, and checks that every value
-   is finite. */
+/* Evaluates the term on the filled block, and counts. */
+void nevh__block_evaluate(nevh_field *, nevh__planned *, const nevh__block *);
+/* The same, and checks that every value is finite. */
 int nevh__block_values(nevh_field *, nevh__planned *, const nevh__block *);
+/* NEVH_OK if every value is finite. */
+int nevh__block_check(nevh_field *, const nevh__planned *, const nevh__block *);
 /* Records that something of a term ("", "a derivative of ") is not finite in
    a column. */
 int nevh__block_fail(nevh_field *, const nevh__planned *, const nevh__block *,
@@ -135,15 +163,30 @@ static inline size_t nevh__index(const nevh__planned *term, size_t instance,
 }
 
 /* The kernels; nevh__gradient_fn. */
-int nevh__central(nevh_field *, nevh__planned *, size_t width, const double t[],
-                  const double q[], const double p[], double dh_dq[],
-                  double dh_dp[]);
-int nevh__exact(nevh_field *, nevh__planned *, size_t width, const double t[],
-                const double q[], const double p[], double dh_dq[],
-                double dh_dp[]);
-int nevh__complex(nevh_field *, nevh__planned *, size_t width, const double t[],
-                  const double q[], const double p[], double dh_dq[],
-                  double dh_dp[]);
+int nevh__gradient_central(nevh_field *, nevh__planned *, size_t width,
+                           const double t[], const double q[], const double p[],
+                           double dh_dq[], double dh_dp[]);
+int nevh__gradient_exact(nevh_field *, nevh__planned *, size_t width,
+                         const double t[], const double q[], const double p[],
+                         double dh_dq[], double dh_dp[]);
+int nevh__gradient_complex(nevh_field *, nevh__planned *, size_t width,
+                           const double t[], const double q[], const double p[],
+                           double dh_dq[], double dh_dp[]);
+
+/* Stencils: planned (false when memory is out), freed, chosen (NULL if there
+   is none), and put to use. */
+bool nevh__stencil_plan(const nevh_field *, nevh__planned *);
+void nevh__stencil_free(nevh__planned *);
+const nevh__stencil *nevh__stencil_for(const nevh__planned *, int pass,
+                                       const double dh_dq[],
+                                       const double dh_dp[]);
+int nevh__stencil_difference(nevh_field *, nevh__planned *,
+                             const nevh__stencil *, const nevh_gradient *,
+                             nevh__block *, double dh_dq[], double dh_dp[]);
+/* Tells what is not finite in a block of differences: a value, or else the
+   derivative by variable k of an instance. */
+int nevh__central_fail(nevh_field *, const nevh__planned *, const nevh__block *,
+                       size_t instance, size_t k);
 
 /* How far rounding in the values of H may move dH/dq and dH/dp at one state
    (width 1): the sum of epsilon |h| / delta over what reads each variable, n

@@ -85,6 +85,15 @@ static int best_rung(const estimate rungs[RUNGS], int order) {
     return best;
 }
 
+/* A smooth H obeys a power law where steps are a part of its length; a kink
+   within reach of one of the states does not.  Then the error is that. */
+static double kink(const estimate rungs[RUNGS], int order) {
+    const estimate *far = &rungs[-2 - LOWEST], *near = &rungs[-5 - LOWEST];
+    bool lawful = near->truncation <= ldexp(far->truncation, -3 * order / 2) ||
+                  near->truncation <= 1e3 * near->rounding;
+    return lawful || !(near->truncation < INFINITY) ? 0 : near->truncation;
+}
+
 /* Nothing varied, or nothing was finite: the rule for a smooth function. */
 static bool blind(const estimate *best) {
     return !(worst(best) < INFINITY) || best->size == 0;
@@ -105,7 +114,8 @@ static nevh__step choose(const nevh_gradient *g, const ladder *l, double unit) {
     }
     return (nevh__step){.delta = ldexp(unit, LOWEST + full),
                         .quadratic = quadratic,
-                        .truncation = best->truncation,
+                        .truncation =
+                            fmax(best->truncation, kink(l->full, g->order)),
                         .rounding = best->rounding,
                         .size = best->size};
 }

@@ -6,7 +6,7 @@
 
 /* A length is where this part of a variation is not that of a quadratic. */
 static const double not_quadratic = 0.2;
-enum { FARTHEST = 120, LEAP = 4 }; /* powers of two from the first guess */
+enum { FARTHEST = 400, LEAP = 8 }; /* powers of two from the first guess */
 
 void nevh__along(const nevh__explorer *e, const nevh__planned *term,
                  size_t instance, size_t k, size_t at, size_t count,
@@ -86,19 +86,22 @@ static double curve_length(const nevh__explorer *e, const nevh__planned *term,
     return seen ? INFINITY : NAN;
 }
 
-/* The distance over which an instance varies by `energy`. */
+/* The distance over which an instance varies by `energy`: in leaps below it,
+   then up by twos. */
 static double energy_length(const nevh__explorer *e, const nevh__planned *term,
                             size_t instance, size_t k, double guess,
                             double energy) {
     double distance = guess;
-    for (int i = 0;
-         i < FARTHEST && vary(e, term, instance, k, distance).whole > energy;
-         i++)
-        distance /= 2;
-    for (int i = 0; i < 2 * FARTHEST &&
-                    vary(e, term, instance, k, distance).whole < energy;
-         i++)
+    for (int i = 0; i < FARTHEST / LEAP; i++) {
+        if (!(vary(e, term, instance, k, distance).whole >= energy))
+            break;
+        distance = ldexp(distance, -LEAP);
+    }
+    for (int i = 0; i < FARTHEST; i++) {
+        if (!(vary(e, term, instance, k, distance).whole < energy))
+            break;
         distance *= 2;
+    }
     return distance;
 }
 
@@ -154,7 +157,7 @@ static void find_straight(nevh__explorer *e, const nevh__planned *term,
     bool curved = e->length[i] > 0;
     if (curved)
         return;
-    if (*energy > 0 && vary(e, term, instance, k, guess).whole > 0)
+    if (*energy > 0)
         length = energy_length(e, term, instance, k, guess, *energy);
     e->length[i] = e->length[i] < 0 ? -fmin(-e->length[i], length) : -length;
 }

@@ -10,7 +10,7 @@
 
 #define CENTRAL(id, accuracy, ...)                                             \
     static const nevh_gradient id = {.name = #id,                              \
-                                     .evaluate = nevh__central,                \
+                                     .evaluate = nevh__gradient_central,       \
                                      .order = (accuracy),                      \
                                      .offsets = (accuracy) / 2,                \
                                      .weights = __VA_ARGS__}
@@ -28,11 +28,11 @@ static bool has_complex_value(const nevh_term *term) {
 }
 
 static const nevh_gradient complex_step = {.name = "complex-step",
-                                           .evaluate = nevh__complex,
+                                           .evaluate = nevh__gradient_complex,
                                            .has = has_complex_value,
                                            .wants = "complex form"};
 static const nevh_gradient exact = {.name = "exact",
-                                    .evaluate = nevh__exact,
+                                    .evaluate = nevh__gradient_exact,
                                     .has = has_gradient,
                                     .wants = "exact gradient"};
 const nevh_gradient nevh__no_gradient = {.name = "none"};

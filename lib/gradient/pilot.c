@@ -11,7 +11,7 @@
 
 enum { MOST_STEPS = 240, PILOT_SAMPLES = 24, RANDOM_SAMPLES = 4 };
 static const double tolerance = 1e-3;
-static const double near_by = 0.3, anywhere = 1; /* of the lengths */
+static const double near_by = 0.3, anywhere = 2; /* of the lengths */
 static const double most_work = 4e6;             /* values times variables */
 
 /* Between -1 and 1, the same on every run. */
@@ -46,8 +46,7 @@ static void add_random(nevh__explorer *e, double part, uint64_t *random) {
     s->t[s->count++] = s->t[0];
 }
 
-/* Crude steps, for the pilot. */
-static void set_crude_steps(nevh__explorer *e) {
+void nevh__set_crude_steps(nevh__explorer *e) {
     nevh_field *f = e->field;
     double part = pow(DBL_EPSILON, 1. / (f->gradient->order + 1));
     for (size_t j = 0; j < f->n_terms; j++) {
@@ -125,13 +124,13 @@ static int pilot_steps(const nevh_field *f) {
 void nevh__find_neighbours(nevh__explorer *e) {
     uint64_t random = 1;
     bool given = e->options->q || e->options->p;
-    for (int i = 0; i < (given ? RANDOM_SAMPLES : 2 * RANDOM_SAMPLES); i++)
+    size_t count = given ? RANDOM_SAMPLES : e->samples.most;
+    for (size_t i = 0; i < count; i++)
         add_random(e, given ? near_by : anywhere, &random);
 }
 
 bool nevh__find_samples(nevh__explorer *e) {
     int steps = pilot_steps(e->field);
-    set_crude_steps(e);
     if ((e->options->q || e->options->p) && steps >= PILOT_SAMPLES &&
         !run_pilot(e, steps))
         return false;

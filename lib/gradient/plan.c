@@ -151,6 +151,8 @@ static int plan_steps(nevh_field *f, const nevh_options *o) {
     for (size_t i = 0; !status && i < f->n_terms; i++) {
         take_given(f, &f->terms[i], o);
         arrange(f, &f->terms[i]);
+        if (!nevh__stencil_plan(f, &f->terms[i]))
+            status = nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
     }
     return status;
 }

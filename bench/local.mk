@@ -1,0 +1,14 @@
+# Programs that only make bench builds and runs.  Results are of one machine:
+# they stay in the build tree.
+EXTRA_PROGRAMS += bench/gradient
+bench_gradient_SOURCES = bench/gradient.c $(gradient_systems)
+bench_gradient_CPPFLAGS = $(AM_CPPFLAGS) -I$(top_srcdir)/examples
+bench_gradient_LDADD = libnevh.la
+CLEANFILES += bench/gradient$(EXEEXT) bench/results-gradient.csv
+
+bench: bench/gradient$(EXEEXT)
+	@commit=`git -C $(srcdir) describe --always --dirty 2>/dev/null`; \
+	./bench/gradient$(EXEEXT) "$${commit:-unknown}" \
+	  bench/results-gradient.csv
+
+.PHONY: bench

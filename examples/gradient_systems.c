@@ -1,0 +1,264 @@
+/* Systems with every form of H, for what measures gradients.  NEVH_BODY makes
+   value, SIMD block and complex form from one text; the exact derivatives are
+   written by hand.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradient_systems.h"
+#include <math.h>
+#include <nevh/body.h>
+#include <stdlib.h>
+#include <time.h>
+
+#define G 9.8
+
+NEVH_BODY(power, int, {
+    nevh_num x = nevh_q(0);
+    return (*params ? nevh_pow(x, *params) : nevh_cos(x)) +
+           nevh_p(0) * nevh_p(0) / 2;
+})
+
+static void power_gradient(size_t width, const double t[], const double q[],
+                           const double p[], const double c[],
+                           const void *params, double dh_dq[], double dh_dp[]) {
+    int n = *(const int *)params;
+    (void)t, (void)c;
+    for (size_t i = 0; dh_dq && i < width; i++)
+        dh_dq[i] = n ? n * pow(q[i], n - 1) : -sin(q[i]);
+    for (size_t i = 0; dh_dp && i < width; i++)
+        dh_dp[i] = p[i];
+}
+
+NEVH_BODY(pendulum, void,
+          { return nevh_p(0) * nevh_p(0) / 2 - G * nevh_cos(nevh_q(0)); })
+
+NEVH_SIMD static void pendulum_gradient(size_t width, const double t[],
+                                        const double q[], const double p[],
+                                        const double c[], const void *params,
+                                        double dh_dq[], double dh_dp[]) {
+    (void)t, (void)c, (void)params;
+    if (dh_dq)
+        NEVH_LANES(i, width)
+    dh_dq[i] = G * nevh_simd_sin(q[i]);
+    if (dh_dp)
+        NEVH_LANES(i, width)
+    dh_dp[i] = p[i];
+}
+
+NEVH_BODY(double_pendulum, void, {
+    nevh_num d = nevh_q(0) - nevh_q(1);
+    nevh_num p1 = nevh_p(0);
+    nevh_num p2 = nevh_p(1);
+    nevh_num sine = nevh_sin(d);
+    return (p1 * p1 + 2 * p2 * p2 - 2 * p1 * p2 * nevh_cos(d)) /
+               (2 * (1 + sine * sine)) -
+           G * (2 * nevh_cos(nevh_q(0)) + nevh_cos(nevh_q(1)));
+})
+
+NEVH_SIMD static void
+double_pendulum_gradient(size_t width, const double t[], const double q[],
+                         const double p[], const double c[], const void *params,
+                         double dh_dq[], double dh_dp[]) {
+    const double *q2 = q + width, *p2 = p + width;
+    (void)t, (void)c, (void)params;
+    if (dh_dq)
+        NEVH_LANES(i, width) {
+            double s = nevh_simd_sin(q[i] - q2[i]);
+            double k = nevh_simd_cos(q[i] - q2[i]), root = 1 + s * s;
+            double form =
+                p[i] * p[i] + 2 * p2[i] * p2[i] - 2 * p[i] * p2[i] * k;
+            double both = s * (p[i] * p2[i] - form * k / root) / root;
+            dh_dq[i] = both + 2 * G * nevh_simd_sin(q[i]);
+            dh_dq[width + i] = -both + G * nevh_simd_sin(q2[i]);
+        }
+    if (dh_dp)
+        NEVH_LANES(i, width) {
+            double s = nevh_simd_sin(q[i] - q2[i]);
+            double k = nevh_simd_cos(q[i] - q2[i]), root = 1 + s * s;
+            dh_dp[i] = (p[i] - p2[i] * k) / root;
+            dh_dp[width + i] = (2 * p2[i] - p[i] * k) / root;
+        }
+}
+
+NEVH_BODY(kepler, void, {
+    return (nevh_p(0) * nevh_p(0) + nevh_p(1) * nevh_p(1)) / 2 -
+           1 / nevh_sqrt(nevh_q(0) * nevh_q(0) + nevh_q(1) * nevh_q(1));
+})
+
+NEVH_SIMD static void kepler_gradient(size_t width, const double t[],
+                                      const double q[], const double p[],
+                                      const double c[], const void *params,
+                                      double dh_dq[], double dh_dp[]) {
+    (void)t, (void)c, (void)params;
+    if (dh_dq)
+        NEVH_LANES(i, width) {
+            double y = q[width + i], r2 = q[i] * q[i] + y * y;
+            double r3 = r2 * nevh_simd_sqrt(r2);
+            dh_dq[i] = q[i] / r3;
+            dh_dq[width + i] = y / r3;
+        }
+    if (dh_dp)
+        for (size_t row = 0; row < 2 * width; row += width)
+            NEVH_LANES(i, width)
+    dh_dp[row + i] = p[row + i];
+}
+
+NEVH_BODY(kinetic, void, { return nevh_p(0) * nevh_p(0) / 2; })
+
+NEVH_SIMD static void kinetic_gradient(size_t width, const double t[],
+                                       const double q[], const double p[],
+                                       const double c[], const void *params,
+                                       double dh_dq[], double dh_dp[]) {
+    (void)t, (void)q, (void)c, (void)params, (void)dh_dq;
+    if (dh_dp)
+        NEVH_LANES(i, width)
+    dh_dp[i] = p[i];
+}
+
+NEVH_BODY(spring, void, {
+    nevh_num r = nevh_q(1) - nevh_q(0);
+    return nevh_exp(-r) + r - 1;
+})
+
+NEVH_SIMD static void spring_gradient(size_t width, const double t[],
+                                      const double q[], const double p[],
+                                      const double c[], const void *params,
+                                      double dh_dq[], double dh_dp[]) {
+    (void)t, (void)p, (void)c, (void)params, (void)dh_dp;
+    if (dh_dq)
+        NEVH_LANES(i, width) {
+            double pull = 1 - nevh_simd_exp(q[i] - q[width + i]);
+            dh_dq[i] = -pull;
+            dh_dq[width + i] = pull;
+        }
+}
+
+/* The caller asks the system for its status when it plans. */
+static nevh_system *from_term(size_t n, const nevh_term *term) {
+    nevh_system *system = nevh_system_new(n);
+    if (system)
+        nevh_system_add(system, term);
+    return system;
+}
+
+nevh_system *power_system(const int *n) {
+    return from_term(1, &(nevh_term){.effect = "all",
+                                     .nq = 1,
+                                     .np = 1,
+                                     NEVH_FORMS(power),
+                                     .gradient = power_gradient,
+                                     .params = n});
+}
+
+nevh_system *pendulum_system(void) {
+    return from_term(1, &(nevh_term){.effect = "all",
+                                     .nq = 1,
+                                     .np = 1,
+                                     NEVH_FORMS(pendulum),
+                                     .gradient = pendulum_gradient});
+}
+
+nevh_system *double_pendulum_system(void) {
+    return from_term(2, &(nevh_term){.effect = "all",
+                                     .nq = 2,
+                                     .np = 2,
+                                     NEVH_FORMS(double_pendulum),
+                                     .gradient = double_pendulum_gradient});
+}
+
+nevh_system *kepler_system(void) {
+    return from_term(2, &(nevh_term){.effect = "all",
+                                     .nq = 2,
+                                     .np = 2,
+                                     NEVH_FORMS(kepler),
+                                     .gradient = kepler_gradient});
+}
+
+nevh_system *chain_system(size_t masses) {
+    nevh_term terms[] = {{.effect = "kinetic",
+                          .np = 1,
+                          .count = masses,
+                          NEVH_FORMS(kinetic),
+                          .gradient = kinetic_gradient},
+                         {.effect = "springs",
+                          .nq = 2,
+                          .count = masses - 1,
+                          NEVH_FORMS(spring),
+                          .gradient = spring_gradient}};
+    nevh_system *system = nevh_system_new(masses);
+    size_t *ends = malloc(2 * masses * sizeof *ends);
+    for (size_t i = 0; ends && i < masses; i++)
+        ends[i] = i;
+    terms[0].p = ends;
+    bool made = system && ends && !nevh_system_add(system, &terms[0]);
+    for (size_t i = 0; ends && i < 2 * (masses - 1); i++)
+        ends[i] = (i + 1) / 2;
+    terms[1].q = ends;
+    made = made && !nevh_system_add(system, &terms[1]);
+    free(ends);
+    if (made)
+        return system;
+    nevh_system_free(system);
+    return NULL;
+}
+
+/* Numbers from -1 to 1 that look random. */
+static double scatter(size_t k) {
+    return 2 * fmod((double)(k + 1) * 0.6180339887498949, 1) - 1;
+}
+
+gradient_states gradient_states_new(size_t n, size_t width, const double q[],
+                                    const double p[], double spread) {
+    size_t size = n * width;
+    gradient_states s = {.n = n, .width = width};
+    s.t = calloc(width + 4 * size, sizeof *s.t);
+    if (!s.t)
+        return s;
+    s.q = s.t + width;
+    s.p = s.q + size;
+    s.dh_dq = s.p + size;
+    s.dh_dp = s.dh_dq + size;
+    for (size_t i = 0; i < size; i++) {
+        s.q[i] = (q ? q[i / width] : 0) + spread * scatter(i);
+        s.p[i] = (p ? p[i / width] : 0) + spread * scatter(size + i);
+    }
+    return s;
+}
+
+void gradient_states_free(gradient_states *s) {
+    free(s->t);
+    s->t = NULL;
+}
+
+int gradient_states_evaluate(nevh_field *field, gradient_states *s) {
+    return nevh_field_gradient(field, s->width, s->t, s->q, s->p, s->dh_dq,
+                               s->dh_dp);
+}
+
+static int by_size(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+double gradient_states_time(nevh_field *field, gradient_states *s) {
+    enum { ROUNDS = 5, BATCH = 4096 };
+    const double least = 0.004 * CLOCKS_PER_SEC;
+    double ns[ROUNDS], count;
+    for (int i = 0; i < ROUNDS; i++) {
+        clock_t start = clock(), now = start;
+        for (count = 0; (double)(now - start) < least; now = clock())
+            for (size_t k = 0; k < BATCH; k += s->n * s->width, count++)
+                gradient_states_evaluate(field, s);
+        ns[i] = 1e9 / CLOCKS_PER_SEC * (double)(now - start) / count;
+    }
+    qsort(ns, ROUNDS, sizeof *ns, by_size);
+    return ns[ROUNDS / 2];
+}
+
+double gradient_states_error(const gradient_states *s,
+                             const gradient_states *exact) {
+    double size = 0, most = 0;
+    for (size_t i = 0; i < 2 * s->n * s->width; i++) { /* dh_dp follows dh_dq */
+        size = fmax(size, fabs(exact->dh_dq[i]));
+        most = fmax(most, fabs(s->dh_dq[i] - exact->dh_dq[i]));
+    }
+    return most / size;
+}

@@ -1,0 +1,199 @@
+/* nevh: what can be known of H from its values.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradient/explore_private.h"
+#include <float.h>
+#include <math.h>
+#include <nevh/probe.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double roundings = 64 * DBL_EPSILON;
+static const double smooth_limit = 1e-5;
+
+struct nevh_probe {
+    nevh_field *field;
+    nevh__explorer explorer;
+    nevh_options options;
+    double *start; /* 2n: lane 0 of the state */
+    double *state; /* 2n: a trial state */
+    nevh_finding finding[NEVH_FINDINGS];
+    size_t finite; /* samples at which H is */
+    nevh__report report;
+};
+
+/* Keeps the largest violation. */
+static void violate(nevh_probe *b, nevh_question question, double violation,
+                    double size, size_t at) {
+    nevh_finding *f = &b->finding[question];
+    const nevh__samples *s = &b->explorer.samples;
+    size_t n = b->field->n;
+    if (!isfinite(violation) || !(size > 0) || violation / size < f->evidence)
+        return;
+    f->evidence = violation / size;
+    f->t = s->t[at];
+    f->q = s->q + at * n;
+    f->p = s->p + at * n;
+}
+
+/* H at sample `at`, with momenta times `factor` and time moved. */
+static double energy(nevh_probe *b, size_t at, double factor, double later) {
+    const nevh__samples *s = &b->explorer.samples;
+    size_t n = b->field->n;
+    double t = s->t[at] + later, h;
+    for (size_t k = 0; k < n; k++)
+        b->state[k] = factor * s->p[at * n + k];
+    return nevh_field_value(b->field, 1, &t, s->q + at * n, b->state, &h) ? NAN
+                                                                          : h;
+}
+
+static void try_momenta(nevh_probe *b, size_t at) {
+    const double none = energy(b, at, 0, 0), one = energy(b, at, 1, 0);
+    const double two = energy(b, at, 2, 0), three = energy(b, at, 3, 0);
+    const double back = energy(b, at, -1, 0);
+    b->finite += isfinite(one);
+    violate(b, NEVH_IS_REVERSIBLE, fabs(one - back), fabs(one) + fabs(back),
+            at);
+    violate(b, NEVH_IS_QUADRATIC, fabs((three - none) - 3 * (two - one)),
+            fabs(three) + 3 * (fabs(two) + fabs(one)) + fabs(none), at);
+}
+
+/* Periods of the driving are not known: many spans, none a simple fraction of
+   another. */
+static void try_times(nevh_probe *b, size_t at) {
+    double now = energy(b, at, 1, 0);
+    for (int i = -10; i <= 10; i++) {
+        double later = energy(b, at, 1, 1.618 * exp2(2 * i));
+        violate(b, NEVH_IS_AUTONOMOUS, fabs(later - now),
+                fabs(later) + fabs(now), at);
+    }
+}
+
+static void try_separable(nevh_probe *b) {
+    nevh_separability s;
+    nevh_finding *f = &b->finding[NEVH_IS_SEPARABLE];
+    size_t n = b->field->n;
+    nevh_system_probe(b->field->system, b->options.t, b->start, b->start + n,
+                      b->explorer.length, &s);
+    f->holds = s.separable;
+    f->evidence = s.mixed;
+    f->term = s.term;
+    f->limit = 16 * DBL_EPSILON;
+    f->t = b->options.t;
+    f->q = b->start;
+    f->p = b->start + n;
+}
+
+static void try_smooth(nevh_probe *b) {
+    nevh_finding *f = &b->finding[NEVH_IS_SMOOTH];
+    for (size_t i = 0; i < nevh_field_step_count(b->field); i++) {
+        nevh_step_report r = nevh_field_step_report(b->field, i);
+        double error = r.truncation + r.rounding;
+        if (r.blind || !(error / r.size >= f->evidence))
+            continue;
+        f->evidence = error / r.size;
+        f->term = r.term;
+    }
+    f->limit = smooth_limit;
+    f->holds = f->evidence <= f->limit;
+    f->t = b->options.t;
+    f->q = b->start;
+    f->p = b->start + b->field->n;
+}
+
+static bool reads_time(const nevh_system *s) {
+    return !(nevh_system_traits(s) & NEVH_AUTONOMOUS);
+}
+
+static int ask(nevh_probe *b) {
+    for (nevh_question i = 0; i < NEVH_FINDINGS; i++)
+        b->finding[i].limit = roundings;
+    for (size_t at = 0; at < b->explorer.samples.count; at++) {
+        try_momenta(b, at);
+        if (reads_time(b->field->system))
+            try_times(b, at);
+    }
+    for (nevh_question i = 0; i < NEVH_FINDINGS; i++)
+        b->finding[i].holds = b->finding[i].evidence <= b->finding[i].limit;
+    try_separable(b);
+    try_smooth(b);
+    if (b->finite)
+        return NEVH_OK;
+    return nevh__fail(&b->report, NEVH_EDOM,
+                      "H is not finite at any state around the one given");
+}
+
+static void take_start(nevh_probe *b) {
+    const nevh_options *o = &b->options;
+    size_t n = b->field->n, width = o->width ? o->width : 1;
+    for (size_t k = 0; k < n; k++) {
+        b->start[k] = o->q ? o->q[k * width] : 0;
+        b->start[n + k] = o->p ? o->p[k * width] : 0;
+    }
+}
+
+static int open_probe(nevh_probe *b, const nevh_system *s) {
+    if (s->report.status)
+        return nevh__fail_as(&b->report, &s->report);
+    b->options.gradient = nevh_central4;
+    b->options.gradient_step = 0;
+    b->options.gradient_steps = NULL;
+    b->field = nevh_field_new(s, &b->options);
+    b->start = nevh__array(2 * s->n, sizeof *b->start);
+    b->state = nevh__array(2 * s->n, sizeof *b->state);
+    if (!b->field || !b->start || !b->state)
+        return nevh__fail(&b->report, NEVH_ENOMEM, "out of memory");
+    if (b->field->report.status)
+        return nevh__fail_as(&b->report, &b->field->report);
+    take_start(b);
+    if (nevh__explorer_open(&b->explorer, b->field, &b->options) ||
+        !nevh__find_samples(&b->explorer))
+        return nevh__fail(&b->report, NEVH_ENOMEM, "out of memory");
+    return ask(b);
+}
+
+nevh_probe *nevh_probe_new(const nevh_system *s, const nevh_options *options) {
+    nevh_probe *b = s ? nevh__array(1, sizeof *b) : NULL;
+    if (!b)
+        return NULL;
+    if (options)
+        b->options = *options;
+    if (open_probe(b, s) != NEVH_ENOMEM)
+        return b;
+    nevh_probe_free(b);
+    return NULL;
+}
+
+void nevh_probe_free(nevh_probe *b) {
+    if (!b)
+        return;
+    nevh__explorer_close(&b->explorer);
+    nevh_field_free(b->field);
+    free(b->start);
+    free(b->state);
+    free(b);
+}
+
+int nevh_probe_status(const nevh_probe *b) {
+    return b ? b->report.status : NEVH_ENOMEM;
+}
+
+const char *nevh_probe_message(const nevh_probe *b) {
+    return b ? b->report.text : "out of memory";
+}
+
+nevh_finding nevh_probe_finding(const nevh_probe *b, nevh_question question) {
+    if (!b || question >= NEVH_FINDINGS)
+        return (nevh_finding){0};
+    return b->finding[question];
+}
+
+const char *nevh_question_name(nevh_question question) {
+    static const char *const names[] = {"separable", "autonomous",
+                                        "quadratic in the momenta",
+                                        "reversible", "smooth"};
+    return question < NEVH_FINDINGS ? names[question] : "unknown";
+}
+
+const double *nevh_probe_lengths(const nevh_probe *b) {
+    return b->explorer.length;
+}
