@@ -275,7 +275,7 @@ int main(int argc, char **argv) {
     all[count++] =
         pendulums("central2; the model", model_system, nevh_central2, 0, 8, 1);
     all[count++] = pendulums("central2; the model", model_system, nevh_central2,
-                             0, ORBITS, 0);
+                             0, ORBITS, 1);
     chains = count;
     for (size_t masses = 100; masses <= 1000000; masses *= 10)
         all[count++] = chain(masses, chains);

@@ -72,6 +72,25 @@ START_TEST(kicks_and_drifts_ask_for_half) {
 }
 END_TEST
 
+/* Noise is not iterated on: with differences a step takes hardly more sweeps
+   than with exact gradients. */
+START_TEST(noise_costs_no_sweeps) {
+    const nevh_integrator *const schemes[] = {nevh_midpoint, nevh_gauss4,
+                                              nevh_gauss8, nevh_gauss16};
+    uint64_t exact =
+        counts_of(&double_pendulum, schemes[_i], nevh_exact, 1, NULL, 0).sweeps;
+    for (int k = 0; k < 4; k++) {
+        uint64_t sweeps = counts_of(&double_pendulum, schemes[_i],
+                                    nevh_gradients()[k], 1, NULL, 0)
+                              .sweeps;
+        ck_assert_msg(sweeps <= exact + exact / 4, "%s, %s: %lu of %lu",
+                      nevh_integrator_name(schemes[_i]),
+                      nevh_gradient_name(nevh_gradients()[k]),
+                      (unsigned long)sweeps, (unsigned long)exact);
+    }
+}
+END_TEST
+
 START_TEST(runs_count_alike) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     nevh_system *s = henon_heiles.make();
@@ -99,6 +118,7 @@ int main(void) {
     tcase_add_loop_test(cases, gradients_of_a_step, 0, scheme_count());
     tcase_add_loop_test(cases, values_of_a_gradient, 0, 5);
     tcase_add_test(cases, kicks_and_drifts_ask_for_half);
+    tcase_add_loop_test(cases, noise_costs_no_sweeps, 0, 4);
     tcase_add_loop_test(cases, runs_count_alike, 0, scheme_count());
     suite_add_tcase(suite, cases);
     return run_suite(suite);

@@ -82,12 +82,13 @@ static void begin(nevh__stage_solver *s) {
     }
 }
 
-/* The noise of one lane's gradients at the start of the step; in slope order:
-   dH/dp first.  Needs a lane's state in one piece. */
-static bool find_noise(nevh__stage_solver *s, size_t lane) {
+/* What the noise of one lane's gradients makes of a step, in units of scale:
+   the largest over all variables, since each draws the others along.  Taken at
+   the start of the step, whose state it needs in one piece. */
+static double noise_level(nevh__stage_solver *s, size_t lane) {
     const nevh_work *w = s->work;
     const nevh__stage_problem *e = s->problem;
-    double *q = s->noise + 2 * w->n, *p = q + w->n;
+    double *q = s->noise + 2 * w->n, *p = q + w->n, most = 0;
     for (size_t k = 0; k < w->n; k++) {
         q[k] = e->q[k * w->width + lane];
         p[k] = e->p[k * w->width + lane];
@@ -96,7 +97,15 @@ static bool find_noise(nevh__stage_solver *s, size_t lane) {
         nevh__field_noise(w->field, e->t, q, p, s->noise + w->n, s->noise);
     if (s->status)
         nevh_work_fail(s->work, s->status, "%s", nevh_field_message(w->field));
-    return s->status == NEVH_OK;
+    for (size_t k = 0; !s->status && k < 2 * w->n; k++)
+        most = fmax(most, s->noise[k] / s->scale[k * w->width + lane]);
+    return fabs(e->h) * most;
+}
+
+bool nevh__stage_small(nevh__stage_solver *s, size_t lane, double change) {
+    return change <= small ||
+           (change < INFINITY &&
+            change <= small + noise_margin * noise_level(s, lane));
 }
 
 typedef struct {
@@ -104,38 +113,11 @@ typedef struct {
     double change;
 } progress;
 
-/* Whether every change of a lane is within `share` of its scale and `margin`
-   times its gradient's noise. */
-static bool within(nevh__stage_solver *s, size_t lane, double share,
-                   double margin, const double *out, size_t stride,
-                   const double *x) {
-    size_t width = s->work->width;
-    double h = fabs(s->problem->h);
-    if (!find_noise(s, lane))
-        return false;
-    for (size_t row = 0; row < s->rows; row++) {
-        size_t k = row / s->stages;
-        double allowed =
-            share * s->scale[k * width + lane] + margin * h * s->noise[k];
-        if (!(h * fabs(out[row * stride] - x[row * width]) <= allowed))
-            return false;
-    }
-    return true;
-}
-
-bool nevh__stage_small(nevh__stage_solver *s, size_t lane, double change,
-                       const double *out, size_t stride, const double *x) {
-    return change <= small ||
-           (change < INFINITY &&
-            within(s, lane, small, noise_margin, out, stride, x));
-}
-
 /* Differences only: the last sweep drew noise and nothing else. */
-static bool drowned(nevh__stage_solver *s, size_t lane, const progress *made,
-                    const double *out, size_t stride, const double *x) {
+static bool drowned(nevh__stage_solver *s, size_t lane, const progress *made) {
     return s->work->field->gradient->offsets && made->change < may_be_noise &&
            made->change >= s->lane[lane].least &&
-           within(s, lane, 2 * DBL_EPSILON, 1, out, stride, x);
+           made->change <= 2 * DBL_EPSILON + noise_level(s, lane);
 }
 
 /* Compares one lane's sweep with the one before. */
@@ -178,16 +160,14 @@ static lane_state judge(nevh__stage_solver *s, size_t lane, size_t stride,
     progress made = compare(s, lane, stride, out);
     l->grew |= made.change > l->change && made.change > small;
     l->change = made.change;
-    if (!made.moved ||
-        drowned(s, lane, &made, out, stride, s->problem->x + lane))
+    if (!made.moved || drowned(s, lane, &made))
         return DONE;
     l->least = fmin(l->least, made.change);
     if (made.improved) {
         l->grace = false;
         return GO_ON;
     }
-    if (l->grace && nevh__stage_small(s, lane, l->change, out, stride,
-                                      s->problem->x + lane))
+    if (l->grace && nevh__stage_small(s, lane, l->change))
         return DONE;
     l->stalls += l->grace;
     l->grace = true;

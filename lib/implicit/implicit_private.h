@@ -56,10 +56,8 @@ typedef struct nevh__stage_lane {
     double least;    /* the smallest of those so far */
 } nevh__stage_lane;
 
-/* Whether changes of x no larger than these are rounding: `change` is in units
-   of scale, `lane_out` and x are compared where that is not enough. */
-bool nevh__stage_small(nevh__stage_solver *, size_t lane, double change,
-                       const double *out, size_t stride, const double *x);
+/* Whether a change, in units of scale, is no more than rounding. */
+bool nevh__stage_small(nevh__stage_solver *, size_t lane, double change);
 
 struct nevh__rescue *nevh__rescue_new(nevh__stage_solver *);
 void nevh__rescue_free(struct nevh__rescue *);

@@ -171,9 +171,7 @@ int nevh__rescue_lane(nevh__stage_solver *s, size_t lane) {
         return give_up(s, lane);
     for (size_t row = 0; row < s->rows; row++)
         x[row * width] = r->best[row];
-    int status =
-        s->problem->map(s->problem->data, 1, &lane, s->problem->x, r->g);
-    if (status || nevh__stage_small(s, lane, r->residual, r->g, 1, x))
-        return status;
+    if (nevh__stage_small(s, lane, r->residual))
+        return NEVH_OK;
     return s->status ? s->status : give_up(s, lane);
 }
