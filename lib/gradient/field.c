@@ -34,13 +34,7 @@ void nevh_field_free(nevh_field *f) {
     free(f->terms);
     free(f->scale);
     free(f->jacobian);
-    free(f->rows);
-    free(f->slopes);
-    free(f->times);
-    free(f->zeros);
-    free(f->h);
-    free(f->sums);
-    free(f->one);
+    free(f->workspace);
     free(f);
 }
 

@@ -81,15 +81,16 @@ struct nevh_field {
     double *scale; /* 2n */
     nevh__planned *terms;
     size_t n_terms, instances;
-    size_t capacity;  /* columns that the rows below have room for */
-    double *rows;     /* variables and constants of a block */
-    double *slopes;   /* exact derivatives of a block */
-    double *times;    /* capacity */
-    double *zeros;    /* capacity */
-    double *h;        /* capacity */
-    double *sums;     /* 2 x capacity */
-    double *one;      /* one state of a scalar or complex term */
-    double *jacobian; /* 6n, made by nevh_gsl_system */
+    size_t capacity;   /* columns that the rows below have room for */
+    double *workspace; /* holds all below but the Jacobian */
+    double *rows;      /* variables and constants of a block */
+    double *slopes;    /* exact derivatives of a block */
+    double *times;     /* capacity */
+    double *zeros;     /* capacity */
+    double *h;         /* capacity */
+    double *sums;      /* 2 x capacity */
+    double *one;       /* one state of a scalar or complex term */
+    double *jacobian;  /* 6n, made by nevh_gsl_system */
     uint64_t gradients;
     nevh__report report;
 };

@@ -11,13 +11,17 @@ enum { LOWEST = -30, HIGHEST = 3, RUNGS = HIGHEST - LOWEST + 1, MOST = 8 };
 static const double as_good = 2; /* order 2 is taken if it is, up to this */
 
 /* Estimates on one rung, worst over the samples: how much the difference
-   changed from half the step, and what rounding may do to it. */
+   changed from half the step, and what rounding may do to it; both also over
+   the derivative there, or the usual one where that is larger, so that a state
+   far away, where all is large, does not decide for the others. */
 typedef struct {
     double truncation, rounding, size;
+    double share_truncation, share_rounding;
 } estimate;
 
 typedef struct {
     estimate two[RUNGS], full[RUNGS]; /* of order 2 and of the method's */
+    double usual;                     /* size of the derivative */
 } ladder;
 
 /* The difference from values in pairs, + before -; its rounding to *noise. */
@@ -34,12 +38,22 @@ static double difference(const nevh_gradient *g, const double x[],
     return slope;
 }
 
-static void take(estimate *rung, double now, double before, double noise) {
-    double change = fabs(now - before);
-    rung->truncation =
-        fmax(rung->truncation, isfinite(change) ? change : INFINITY);
-    rung->rounding = fmax(rung->rounding, isfinite(noise) ? noise : INFINITY);
+static double finite_or_huge(double x) {
+    return isfinite(x) ? x : INFINITY;
+}
+
+static void take(estimate *rung, double usual, double now, double before,
+                 double noise) {
+    double change = finite_or_huge(fabs(now - before));
+    double size = fmax(usual, isfinite(now) ? fabs(now) : 0);
+    noise = finite_or_huge(noise);
+    rung->truncation = fmax(rung->truncation, change);
+    rung->rounding = fmax(rung->rounding, noise);
     rung->size = fmax(rung->size, isfinite(now) ? fabs(now) : 0);
+    if (size > 0) {
+        rung->share_truncation = fmax(rung->share_truncation, change / size);
+        rung->share_rounding = fmax(rung->share_rounding, noise / size);
+    }
 }
 
 /* Climbs from the shortest step at one sample. */
@@ -58,22 +72,22 @@ static void climb_at(const nevh__explorer *e, const nevh__planned *term,
         double before = two;
         two = difference(nevh_central2, x, h, &noise);
         if (rung >= 0)
-            take(&l->two[rung], two, before, noise);
+            take(&l->two[rung], l->usual, two, before, noise);
         before = full;
         full = difference(g, x, h, &noise);
         if (rung >= 0)
-            take(&l->full[rung], full, before, noise);
+            take(&l->full[rung], l->usual, full, before, noise);
     }
 }
 
 static double worst(const estimate *e) {
-    return e->truncation + e->rounding;
+    return e->share_truncation + e->share_rounding;
 }
 
 /* Truncation on other states of the orbit may be larger than on those tried:
    it is weighed as if steps were longer by the root of two. */
 static double weighed(const estimate *e, int order) {
-    return ldexp(e->truncation, order / 2) + e->rounding;
+    return ldexp(e->share_truncation, order / 2) + e->share_rounding;
 }
 
 /* The rung of the least error, the longest step of equal ones. */
@@ -120,6 +134,25 @@ static nevh__step choose(const nevh_gradient *g, const ladder *l, double unit) {
                         .size = best->size};
 }
 
+/* The median of the derivative's sizes at all samples. */
+static double usual_slope(const nevh__explorer *e, const nevh__planned *term,
+                          size_t instance, size_t k, double unit) {
+    const double move[2] = {ldexp(unit, -8), -ldexp(unit, -8)};
+    double x[2], h[2], noise, sorted[NEVH__MOST_SAMPLES];
+    size_t count = 0;
+    for (size_t at = 0; at < e->samples.count; at++) {
+        nevh__along(e, term, instance, k, at, 2, move, x, h);
+        double slope = fabs(difference(nevh_central2, x, h, &noise));
+        size_t i = count;
+        if (!isfinite(slope))
+            continue;
+        for (count++; i > 0 && sorted[i - 1] > slope; i--)
+            sorted[i] = sorted[i - 1];
+        sorted[i] = slope;
+    }
+    return count ? sorted[count / 2] : 0;
+}
+
 static nevh__step climb(const nevh__explorer *e, const nevh__planned *term,
                         size_t instance, size_t k) {
     size_t i = nevh__index(term, instance, k);
@@ -127,6 +160,7 @@ static nevh__step climb(const nevh__explorer *e, const nevh__planned *term,
     double unit = exp2(round(log2(length)));
     ladder l;
     memset(&l, 0, sizeof l);
+    l.usual = usual_slope(e, term, instance, k, unit);
     for (size_t at = 0; at < e->samples.count; at++)
         climb_at(e, term, instance, k, at, unit, &l);
     return choose(e->field->gradient, &l, unit);

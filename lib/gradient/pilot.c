@@ -12,7 +12,8 @@
 enum { MOST_STEPS = 240, PILOT_SAMPLES = 24, RANDOM_SAMPLES = 4 };
 static const double tolerance = 1e-3;
 static const double near_by = 0.3, anywhere = 2; /* of the lengths */
-static const double most_work = 4e6;             /* values times variables */
+static const double far_off = 64;
+static const double most_work = 4e6; /* values times variables */
 
 /* Between -1 and 1, the same on every run. */
 static double random_number(uint64_t *state) {
@@ -71,6 +72,18 @@ static double first_step(const nevh__explorer *e, gsl_odeiv2_system *ode,
     return isfinite(step) ? step : 0;
 }
 
+/* Whether a variable has left the neighbourhood of the start, as it may where
+   H is not bounded below. */
+static bool runs_away(const nevh__explorer *e, const double y[]) {
+    size_t n = e->field->n;
+    for (size_t i = 0; i < 2 * n; i++) {
+        double start = i < n ? e->samples.q[i] : e->samples.p[i - n];
+        if (!(fabs(y[i]) <= far_off * (fabs(start) + e->length[i])))
+            return true;
+    }
+    return false;
+}
+
 /* y: room for 4n doubles. */
 static void fly(nevh__explorer *e, int steps, gsl_odeiv2_system *ode,
                 gsl_odeiv2_step *step, gsl_odeiv2_control *control,
@@ -83,6 +96,8 @@ static void fly(nevh__explorer *e, int steps, gsl_odeiv2_system *ode,
     for (int i = 1; !status && i <= steps; i++) {
         status = gsl_odeiv2_evolve_apply(evolve, control, step, ode, &t,
                                          0.5 * DBL_MAX, &h, y);
+        if (!status && runs_away(e, y))
+            break;
         if (!status && i % (steps / PILOT_SAMPLES) == 0)
             add_sample(e, t, y, y + n);
     }

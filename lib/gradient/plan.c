@@ -70,6 +70,12 @@ static int plan_term(nevh_field *f, const nevh__term *term) {
     return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
 }
 
+/* The next address at which a vector of eight lies within a cache line. */
+static double *aligned(double *from) {
+    const uintptr_t line = NEVH__LANES * sizeof *from;
+    return from + (line - (uintptr_t)from % line) % line / sizeof *from;
+}
+
 static int plan_workspace(nevh_field *f) {
     size_t variables = 0, reads = 0;
     for (size_t i = 0; i < f->n_terms; i++) {
@@ -79,17 +85,19 @@ static int plan_workspace(nevh_field *f) {
         reads = all > reads ? all : reads;
     }
     size_t columns = f->capacity = NEVH__COLUMNS;
-    f->rows = nevh__array(reads * columns, sizeof(double));
-    f->slopes = nevh__array(variables * columns, sizeof(double));
-    f->times = nevh__array(columns, sizeof(double));
-    f->zeros = nevh__array(columns, sizeof(double));
-    f->h = nevh__array(columns, sizeof(double));
-    f->sums = nevh__array(2 * columns, sizeof(double));
-    f->one = nevh__array(2 * reads, sizeof(double));
-    if (f->rows && f->slopes && f->times && f->zeros && f->h && f->sums &&
-        f->one)
-        return NEVH_OK;
-    return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+    size_t rows = reads + variables + 5; /* and three of columns, two sums */
+    f->workspace = nevh__array(rows * columns + 2 * reads + NEVH__LANES,
+                               sizeof *f->workspace);
+    if (!f->workspace)
+        return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+    f->rows = aligned(f->workspace);
+    f->slopes = f->rows + reads * columns;
+    f->times = f->slopes + variables * columns;
+    f->zeros = f->times + columns;
+    f->h = f->zeros + columns;
+    f->sums = f->h + columns;
+    f->one = f->sums + 2 * columns;
+    return NEVH_OK;
 }
 
 /* The user's steps win, and are differenced at full order. */
