@@ -35,11 +35,9 @@ NEVH_SIMD static void perturb(double *row, size_t pairs, size_t apart,
     }
 }
 
-/* Adds the weighted chord slopes of one group to `out`, a value a lane.
-   Returns whether one is not finite. */
-NEVH_SIMD static bool add_slopes(const nevh_gradient *g, size_t apart,
-                                 size_t lanes, const double *x, const double *h,
-                                 double *out) {
+NEVH_SIMD bool nevh__add_slopes(const nevh_gradient *g, size_t apart,
+                                size_t lanes, const double *x, const double *h,
+                                double *out) {
     double slope[NEVH__COLUMNS];
     int64_t bad = 0;
     for (size_t lane = 0; lane < lanes; lane++)
@@ -103,9 +101,9 @@ static int difference_block(nevh_field *f, nevh__planned *term, nevh__block *b,
         size_t k = s.vars[at.v], first = group * b->lanes;
         double *out = k < term->nq ? dh_dq : dh_dp;
         out += nevh__index(term, at.instance, k) * b->width + b->lane;
-        bool bad =
-            add_slopes(g, apart, b->lanes, f->rows + k * b->stride + first,
-                       f->h + first, out);
+        bool bad = nevh__add_slopes(g, apart, b->lanes,
+                                    f->rows + k * b->stride + first,
+                                    f->h + first, out);
         if (bad)
             return nevh__central_fail(f, term, b, at.instance, k);
         nevh__next_group(b, &at);
@@ -127,8 +125,7 @@ int nevh__gradient_central(nevh_field *f, nevh__planned *term, size_t width,
     int status = NEVH_OK;
     for (int i = 0; !status && i < 2; i++) {
         selection s = select_vars(term, &term->pass[i], dh_dq, dh_dp);
-        const nevh__stencil *stencil =
-            width == 1 ? nevh__stencil_for(term, i, dh_dq, dh_dp) : NULL;
+        const nevh__stencil *stencil = nevh__stencil_for(term, i, dh_dq, dh_dp);
         if (s.count == 0)
             continue;
         nevh__block b = nevh__block_over(width, t, q, p, 2 * s.pairs, s.count);

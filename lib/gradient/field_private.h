@@ -35,8 +35,8 @@ typedef struct {
     size_t begin, end; /* in vars */
 } nevh__pass;
 
-/* A pass over the coordinates, the momenta or both of a term with one instance
-   at one state; see stencil.c. */
+/* A pass over the coordinates, the momenta or both of a term with one instance;
+   see stencil.c. */
 typedef struct {
     const size_t *vars;
     size_t groups, pairs, used, stride;
@@ -184,6 +184,10 @@ const nevh__stencil *nevh__stencil_for(const nevh__planned *, int pass,
 int nevh__stencil_difference(nevh_field *, nevh__planned *,
                              const nevh__stencil *, const nevh_gradient *,
                              nevh__block *, double dh_dq[], double dh_dp[]);
+/* Adds the weighted chord slopes of one group to `out`, a value a lane; copies
+   are `apart` from each other.  Returns whether one is not finite. */
+bool nevh__add_slopes(const nevh_gradient *, size_t apart, size_t lanes,
+                      const double *x, const double *h, double *out);
 /* Tells what is not finite in a block of differences: a value, or else the
    derivative by variable k of an instance. */
 int nevh__central_fail(nevh_field *, const nevh__planned *, const nevh__block *,

@@ -1,6 +1,6 @@
 /* nevh: the stencil of a term with one instance, laid out when planned.
 
-   For a single orbit most time would go into bookkeeping, and into waiting for
+   For a few orbits most time would go into bookkeeping, and into waiting for
    single numbers just written to be read back as vectors.  So the points are
    made whole: each row is its variable plus a row of shifts, -0 where the
    variable is not moved (x + -0 is x to the last bit, also for -0).
@@ -73,54 +73,106 @@ const nevh__stencil *nevh__stencil_for(const nevh__planned *term, int pass,
     return s->shift ? s : NULL;
 }
 
-NEVH_SIMD static void add_shift(size_t stride, double x, const double *shift,
+/* One lane: a row is a number plus a row of shifts, padding and all. */
+NEVH_SIMD static void shift_one(size_t stride, double x, const double *shift,
                                 double *row) {
     NEVH_LANES(i, stride)
     row[i] = x + shift[i];
 }
 
+/* Many: each point is a row of numbers plus a shift. */
+NEVH_SIMD static void shift_many(size_t points, size_t lanes, const double *x,
+                                 const double *shift, double *row) {
+    for (size_t i = 0; i < points; i++, row += lanes)
+        for (size_t lane = 0; lane < lanes; lane++)
+            row[lane] = x[lane] + shift[i];
+}
+
+static void fill_row(const nevh__block *b, const nevh__stencil *s,
+                     const double *x, const double *shift, double *row) {
+    if (b->lanes == 1) {
+        shift_one(b->stride, *x, shift, row);
+        return;
+    }
+    shift_many(s->used, b->lanes, x, shift, row);
+    for (size_t i = b->used; i < b->stride; i++)
+        row[i] = row[0];
+}
+
+static void fill_times(const nevh__block *b, double *times) {
+    for (size_t i = 0; i < b->stride; i++)
+        times[i] = b->t[b->lane + i % b->lanes];
+}
+
 static void fill(nevh_field *f, const nevh__planned *term, const nevh__block *b,
                  const nevh__stencil *s) {
     const nevh_term *is = &term->term->is;
-    const double *shift = s->shift;
+    const double *q = b->q + b->lane, *p = b->p + b->lane, *shift = s->shift;
     double *row = f->rows;
-    size_t stride = s->stride;
-    for (size_t k = 0; k < term->nq; k++, row += stride, shift += stride)
-        add_shift(stride, b->q[is->q[k]], shift, row);
-    for (size_t k = 0; k < term->np; k++, row += stride, shift += stride)
-        add_shift(stride, b->p[is->p[k]], shift, row);
+    size_t stride = b->stride;
+    for (size_t k = 0; k < term->nq; k++, row += stride, shift += s->stride)
+        fill_row(b, s, q + is->q[k] * b->width, shift, row);
+    for (size_t k = 0; k < term->np; k++, row += stride, shift += s->stride)
+        fill_row(b, s, p + is->p[k] * b->width, shift, row);
     for (size_t k = 0; k < is->nc; k++, row += stride)
         for (size_t i = 0; i < stride; i++)
             row[i] = is->c[k];
-    for (size_t i = 0; is->time && i < stride; i++)
-        f->times[i] = b->t[0];
+    if (is->time)
+        fill_times(b, f->times);
+}
+
+/* Lanes that fit into one block: all, or whole vectors of them. */
+static void set_size(const nevh_field *f, const nevh__stencil *s,
+                     nevh__block *b) {
+    b->lanes = b->until - b->lane;
+    if (b->lanes * s->used > f->capacity) {
+        size_t most = f->capacity / s->used;
+        b->lanes = most > NEVH__LANES ? most / NEVH__LANES * NEVH__LANES : most;
+    }
+    b->groups = s->groups;
+    b->used = s->used * b->lanes;
+    b->stride = nevh__padded(b->used);
+}
+
+static double slope_of(const nevh_gradient *g, size_t apart, const double *x,
+                       const double *h) {
+    double slope = 0;
+    for (size_t j = 0; j < g->offsets; j++) {
+        size_t plus = 2 * j * apart, minus = plus + apart;
+        slope += g->weights[j] * ((h[plus] - h[minus]) / (x[plus] - x[minus]));
+    }
+    return slope;
+}
+
+static int add_group(nevh_field *f, const nevh__planned *term,
+                     const nevh__block *b, const nevh_gradient *g, size_t group,
+                     size_t k, double *out) {
+    size_t apart = b->groups * b->lanes, first = group * b->lanes;
+    const double *x = f->rows + k * b->stride + first, *h = f->h + first;
+    bool bad;
+    out += nevh__index(term, 0, k) * b->width + b->lane;
+    if (b->lanes == 1) {
+        double slope = slope_of(g, apart, x, h);
+        *out += slope;
+        bad = slope - slope != 0;
+    } else
+        bad = nevh__add_slopes(g, apart, b->lanes, x, h, out);
+    return bad ? nevh__central_fail(f, term, b, 0, k) : (int)NEVH_OK;
 }
 
 int nevh__stencil_difference(nevh_field *f, nevh__planned *term,
                              const nevh__stencil *s, const nevh_gradient *g,
                              nevh__block *b, double dh_dq[], double dh_dp[]) {
-    b->lanes = 1;
-    b->groups = s->groups;
-    b->used = s->used;
-    b->stride = s->stride;
-    fill(f, term, b, s);
-    nevh__block_evaluate(f, term, b);
-    const nevh_term *is = &term->term->is;
-    for (size_t i = 0; i < s->groups; i++) {
-        size_t k = s->vars[i];
-        const double *x = f->rows + k * s->stride + i, *h = f->h + i;
-        double slope = 0;
-        for (size_t j = 0; j < s->pairs; j++) {
-            size_t plus = 2 * j * s->groups, minus = plus + s->groups;
-            slope +=
-                g->weights[j] * ((h[plus] - h[minus]) / (x[plus] - x[minus]));
+    int status = NEVH_OK;
+    for (; !status && b->lane < b->until; b->lane += b->lanes) {
+        set_size(f, s, b);
+        fill(f, term, b, s);
+        nevh__block_evaluate(f, term, b);
+        for (size_t i = 0; !status && i < s->groups; i++) {
+            size_t k = s->vars[i];
+            status =
+                add_group(f, term, b, g, i, k, k < term->nq ? dh_dq : dh_dp);
         }
-        if (k < term->nq)
-            dh_dq[is->q[k]] += slope;
-        else
-            dh_dp[is->p[k - term->nq]] += slope;
-        if (slope - slope != 0)
-            return nevh__central_fail(f, term, b, 0, k);
     }
-    return NEVH_OK;
+    return status;
 }
