@@ -106,6 +106,55 @@ START_TEST(a_million_steps) {
 }
 END_TEST
 
+/* Largest energy error of gauss8 at h = 0.02 on the double pendulum. */
+static double largest_error(const double q0[], const double p0[],
+                            const nevh_gradient *g, double delta,
+                            size_t steps) {
+    nevh_system *s = make_plain_double_pendulum();
+    double q[] = {q0[0], q0[1]}, p[] = {p0[0], p0[1]};
+    nevh_options options = {
+        .gradient = g, .gradient_step = delta, .q = q, .p = p};
+    nevh_stepper *stepper = nevh_stepper_new(s, nevh_gauss8, &options);
+    nevh_energy *energy = nevh_energy_new(s, NULL);
+    nevh_observer watch = {nevh_energy_observe, energy, 1};
+    ck_assert_int_eq(nevh_run(stepper, 0, 0.02, steps, q, p, &watch, 1),
+                     NEVH_OK);
+    double most = nevh_energy_result(energy, 0).max;
+    nevh_energy_free(energy);
+    nevh_stepper_free(stepper);
+    nevh_system_free(s);
+    return most;
+}
+
+static const double regular_q[] = {1.1, 0}, regular_p[] = {0, 2.7746};
+static const double chaotic_q[] = {1.5707963267948966, 0}, at_rest[] = {0, 0};
+
+/* With steps chosen by trial, orders 4 to 8 cannot be told from exact ones. */
+START_TEST(differences_are_as_good_as_exact) {
+    double exact = largest_error(regular_q, regular_p, nevh_exact, 0, 5000);
+    const nevh_gradient *g = nevh_gradients()[1 + _i];
+    double found = largest_error(regular_q, regular_p, g, 0, 5000);
+    ck_assert_msg(fabs(found / exact - 1) < 0.01, "%s: %.3e instead of %.3e",
+                  nevh_gradient_name(g), found, exact);
+}
+END_TEST
+
+/* The paper's differences are not those of any H: on a regular orbit the error
+   that they bring stays, on a chaotic one it grows. */
+START_TEST(coarse_differences) {
+    const nevh_gradient *g = nevh_central2;
+    double soon = largest_error(regular_q, regular_p, g, 0.01, 1000);
+    double late = largest_error(regular_q, regular_p, g, 0.01, 25000);
+    ck_assert_double_gt(soon, 1e-5);
+    ck_assert_double_lt(late / soon, 1.02);
+    soon = largest_error(chaotic_q, at_rest, g, 0.01, 1000);
+    late = largest_error(chaotic_q, at_rest, g, 0.01, 25000);
+    ck_assert_double_gt(late / soon, 1.1);
+    ck_assert_double_gt(late, 2000 * largest_error(chaotic_q, at_rest,
+                                                   nevh_central6, 0.01, 25000));
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("drift");
     TCase *cases = tcase_create("drift");
@@ -114,6 +163,8 @@ int main(void) {
     tcase_add_test(cases, gauss8_at_rounding);
     tcase_add_loop_test(cases, claim_over_long_runs, 0, scheme_count());
     tcase_add_test(cases, a_million_steps);
+    tcase_add_loop_test(cases, differences_are_as_good_as_exact, 0, 3);
+    tcase_add_test(cases, coarse_differences);
     suite_add_tcase(suite, cases);
     return run_suite(suite);
 }

@@ -13,7 +13,7 @@ enum { MOST_STEPS = 240, PILOT_SAMPLES = 24, RANDOM_SAMPLES = 4 };
 static const double tolerance = 1e-3;
 static const double near_by = 0.3, anywhere = 2; /* of the lengths */
 static const double far_off = 64;
-static const double most_work = 4e6; /* values times variables */
+static const double most_work = 1e6; /* values times variables */
 
 /* Between -1 and 1, the same on every run. */
 static double random_number(uint64_t *state) {
