@@ -6,8 +6,6 @@
    and one function of them more variables, than are tried. */
 #include "support.h"
 #include <math.h>
-#include <stdio.h>
-#define SHOW(...) printf(__VA_ARGS__)
 #include <stdlib.h>
 
 #define EACH(lane) for (size_t lane = 0; lane < width; lane++)
@@ -172,7 +170,6 @@ START_TEST(solar_system) {
     nevh_system *whole = nevh_system_from(SOLAR, whole_solar, NULL);
     double apart = solar_error(terms, nevh_central4);
     double together = solar_error(whole, nevh_central4);
-    SHOW("solar terms %.2g %.2g %.2g %.2g whole %.2g %.2g %.2g %.2g\n",solar_error(terms,nevh_central2),apart,solar_error(terms,nevh_central6),solar_error(terms,nevh_central8),solar_error(whole,nevh_central2),together,solar_error(whole,nevh_central6),solar_error(whole,nevh_central8));
     ck_assert_double_le(apart, 1e-10);
     ck_assert_double_ge(together, 1e-8);
     nevh_system_free(whole);
@@ -273,7 +270,6 @@ static void assert_good(const char *name, const nevh_system *s) {
         double best = INFINITY, chosen = chain_error(s, g, 0);
         for (int power = -26; power <= 0; power++)
             best = fmin(best, chain_error(s, g, ldexp(1, power)));
-        SHOW("%s %s %.2g x%.2g\n",name,nevh_gradient_name(g),best,chosen/best);
         ck_assert_msg(chosen <= 10 * best, "%s, %s: error %.1e, best %.1e",
                       name, nevh_gradient_name(g), chosen, best);
     }

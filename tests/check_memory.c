@@ -220,7 +220,7 @@ START_TEST(fields) {
         .system = s,
         .options = {.gradient = _i == 4 ? nevh_exact : nevh_gradients()[_i]}};
     ck_assert_uint_ge(starve(make_field, &a), 9);
-    ck_assert_uint_ge(starve(make_energy, &a), 15);
+    ck_assert_uint_ge(starve(make_energy, &a), 12);
     nevh_system_free(s);
 }
 END_TEST

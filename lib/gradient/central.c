@@ -35,9 +35,10 @@ NEVH_SIMD static void perturb(double *row, size_t pairs, size_t apart,
     }
 }
 
-NEVH_SIMD bool nevh__add_slopes(const nevh_gradient *g, size_t apart,
-                                size_t lanes, const double *x, const double *h,
-                                double *out) {
+/* Static, since what finds the clone to call would be exported otherwise. */
+NEVH_SIMD static bool add_slopes(const nevh_gradient *g, size_t apart,
+                                 size_t lanes, const double *x, const double *h,
+                                 double *out) {
     double slope[NEVH__COLUMNS];
     int64_t bad = 0;
     for (size_t lane = 0; lane < lanes; lane++)
@@ -55,6 +56,11 @@ NEVH_SIMD bool nevh__add_slopes(const nevh_gradient *g, size_t apart,
         bad |= slope[lane] - slope[lane] != 0;
     }
     return bad != 0;
+}
+
+bool nevh__add_slopes(const nevh_gradient *g, size_t apart, size_t lanes,
+                      const double *x, const double *h, double *out) {
+    return add_slopes(g, apart, lanes, x, h, out);
 }
 
 int nevh__central_fail(nevh_field *f, const nevh__planned *term,
