@@ -98,6 +98,7 @@ static void measure(const problem *b, nevh_field *f, double error[]) {
     nevh_system_free(s);
 }
 
+/* From above, and by no more than the worst case asks for. */
 START_TEST(estimates_bound_errors) {
     const problem *b = problem_of(_i);
     const nevh_gradient *g = method_of(_i);
@@ -110,10 +111,11 @@ START_TEST(estimates_bound_errors) {
         estimate[r.index + (r.momentum ? b->n : 0)] +=
             r.truncation + r.rounding;
     }
-    for (size_t k = 0; k < 2 * b->n; k++){        ck_assert_msg(error[k] <= 3 * estimate[k] &&
-                          estimate[k] <= 300 * error[k],
+    for (size_t k = 0; k < 2 * b->n; k++)
+        ck_assert_msg(error[k] <= estimate[k] &&
+                          estimate[k] <= 50 * error[k],
                       "%s, %s, variable %zu: error %.1e, estimate %.1e",
-                      b->name, nevh_gradient_name(g), k, error[k], estimate[k]);}
+                      b->name, nevh_gradient_name(g), k, error[k], estimate[k]);
     nevh_field_free(f);
     nevh_system_free(s);
 }
@@ -229,7 +231,8 @@ END_TEST
 static const double regular_q[] = {1.1, 0}, regular_p[] = {0, 2.7746};
 
 /* The root mean square of the energy error over what is predicted for the end;
-   of a random walk it is expected to be 1/sqrt(2). */
+   of a random walk it is expected to be 1/sqrt(2).  The truncation of order 2
+   adds nothing that grows: it is the gradient of a nearby H. */
 static double wandering(const nevh_gradient *g, size_t steps) {
     const nevh_options o = {.gradient = g, .q = regular_q, .p = regular_p};
     double q[] = {1.1, 0}, p[] = {0, 2.7746}, floor;
@@ -251,7 +254,7 @@ static double wandering(const nevh_gradient *g, size_t steps) {
 
 static void assert_floor(const nevh_gradient *g, size_t steps) {
     double ratio = wandering(g, steps);
-    ck_assert_msg(ratio > 0.1 && ratio < 10, "%s, %zu steps: %.1e times",
+    ck_assert_msg(ratio > 0.1 && ratio < 5, "%s, %zu steps: %.1e times",
                   nevh_gradient_name(g), steps, ratio);
 }
 

@@ -15,12 +15,6 @@ static const double near_by = 0.3, anywhere = 2; /* of the lengths */
 static const double far_off = 64;
 static const double most_work = 1e6; /* values times variables */
 
-/* Between -1 and 1, the same on every run. */
-static double random_number(uint64_t *state) {
-    *state = *state * 6364136223846793005u + 1442695040888963407u;
-    return (double)(*state >> 11) * 0x1p-52 - 1;
-}
-
 static void add_sample(nevh__explorer *e, double t, const double q[],
                        const double p[]) {
     nevh__samples *s = &e->samples;
@@ -41,8 +35,8 @@ static void add_random(nevh__explorer *e, double part, uint64_t *random) {
         return;
     double *q = s->q + s->count * n, *p = s->p + s->count * n;
     for (size_t i = 0; i < n; i++) {
-        q[i] = s->q[i] + part * e->length[i] * random_number(random);
-        p[i] = s->p[i] + part * e->length[n + i] * random_number(random);
+        q[i] = s->q[i] + part * e->length[i] * nevh__random(random);
+        p[i] = s->p[i] + part * e->length[n + i] * nevh__random(random);
     }
     s->t[s->count++] = s->t[0];
 }

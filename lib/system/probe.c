@@ -24,12 +24,6 @@ typedef struct {
     uint64_t random;
 } origin;
 
-/* Between -1 and 1, the same on every run. */
-static double random_number(uint64_t *state) {
-    *state = *state * 6364136223846793005u + 1442695040888963407u;
-    return (double)(*state >> 11) * 0x1p-52 - 1;
-}
-
 static double largest(const double x[], size_t n) {
     double most = 0;
     for (size_t i = 0; x && i < n; i++)
@@ -55,8 +49,8 @@ static void write_row(origin *o, const double x[], size_t first, size_t i,
     for (size_t pair = 0; pair < 2; pair++) {
         double width = amplitude[pair] * spread(o, x, first, i);
         double base = x ? x[i] : 0;
-        double one = base + width * random_number(&o->random);
-        double two = base + width * random_number(&o->random);
+        double one = base + width * nevh__random(&o->random);
+        double two = base + width * nevh__random(&o->random);
         for (size_t k = 4 * pair; k < 4 * pair + 4; k++)
             row[k] = second[k] ? two : one;
     }

@@ -5,12 +5,19 @@
 
 #include <nevh/system.h>
 #include <stdarg.h>
+#include <stdint.h>
 
 /* Block callbacks always get a multiple of this many lanes. */
 #define NEVH__LANES 8
 
 static inline size_t nevh__padded(size_t width) {
     return (width + NEVH__LANES - 1) / NEVH__LANES * NEVH__LANES;
+}
+
+/* Between -1 and 1, the same on every run. */
+static inline double nevh__random(uint64_t *state) {
+    *state = *state * 6364136223846793005u + 1442695040888963407u;
+    return (double)(*state >> 11) * 0x1p-52 - 1;
 }
 
 /* A status and its message, part of every object that can fail. */
