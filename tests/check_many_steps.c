@@ -46,17 +46,17 @@ static void add_kinetic(nevh_system *s, size_t n, const double mass[]) {
    Hairer, Lubich, Wanner, "Geometric Numerical Integration", I.2.4. */
 enum { BODIES = 6, PAIRS = 15, SOLAR = 3 * BODIES };
 static const double G = 2.95912208286e-4;
-static const double mass[] = {1.00000597682,   0.000954786104043,
-                              0.000285583733151, 0.0000437273164546,
+static const double mass[] = {1.00000597682,      0.000954786104043,
+                              0.000285583733151,  0.0000437273164546,
                               0.0000517759138449, 1 / 1.3e8};
 static const double position[SOLAR] = {
     0,          0,           0,           -3.5023653,  -3.8169847,  -1.5507963,
     9.0755314,  -3.0458353,  -1.6483708,  8.3101420,   -16.2901086, -7.2521278,
     11.4707666, -25.7294829, -10.8169456, -15.5387357, -25.2225594, -3.1902382};
 static const double velocity[SOLAR] = {
-    0,          0,           0,           0.00565429, -0.00412490, -0.00190589,
-    0.00168318, 0.00483525,  0.00192462,  0.00354178, 0.00137102,  0.00055029,
-    0.00288930, 0.00114527,  0.00039677,  0.00276725, -0.00170702, -0.00136504};
+    0,          0,          0,          0.00565429, -0.00412490, -0.00190589,
+    0.00168318, 0.00483525, 0.00192462, 0.00354178, 0.00137102,  0.00055029,
+    0.00288930, 0.00114527, 0.00039677, 0.00276725, -0.00170702, -0.00136504};
 
 /* q: two bodies; c: G m_i m_j. */
 static double pair(double t, const double q[], const double p[],
@@ -250,11 +250,9 @@ static double chain_error(const nevh_system *s, const nevh_gradient *g,
     static double d[2 * LONG_CHAIN];
     size_t n = nevh_system_dof(s);
     double error = 0, size = 0;
-    nevh_field *f =
-        nevh_field_new(s, &(nevh_options){.gradient = g,
-                                          .gradient_step = step,
-                                          .q = q0,
-                                          .p = p0});
+    nevh_field *f = nevh_field_new(
+        s, &(nevh_options){
+               .gradient = g, .gradient_step = step, .q = q0, .p = p0});
     ck_assert(!nevh_field_gradient(f, 1, &now, q0, p0, d, d + n));
     for (size_t i = 0; i < 2 * n; i++) {
         error = fmax(error, fabs(d[i] - exact[i]));

@@ -53,8 +53,8 @@ static nevh_system *make_ellipse(void) {
 
 /* Kepler orbits that stay what they are: `kepler` has two inertial masses,
    and will come close to collisions. */
-static const problem ellipse = {"ellipse", 2,        true,   0,           12, 6,
-                                {0.4, 0},  {0, 2}, make_ellipse};
+static const problem ellipse = {"ellipse", 2,        true,   0,           12,
+                                6,         {0.4, 0}, {0, 2}, make_ellipse};
 static const problem comet = {
     "comet", 2, true, 0, 12, 6, {1.95, 0}, {0, 0.160128154}, make_ellipse};
 
@@ -112,8 +112,7 @@ START_TEST(estimates_bound_errors) {
             r.truncation + r.rounding;
     }
     for (size_t k = 0; k < 2 * b->n; k++)
-        ck_assert_msg(error[k] <= estimate[k] &&
-                          estimate[k] <= 50 * error[k],
+        ck_assert_msg(error[k] <= estimate[k] && estimate[k] <= 50 * error[k],
                       "%s, %s, variable %zu: error %.1e, estimate %.1e",
                       b->name, nevh_gradient_name(g), k, error[k], estimate[k]);
     nevh_field_free(f);
@@ -147,8 +146,7 @@ START_TEST(quadratic_is_seen) {
         nevh_step_report r = nevh_field_step_report(f, i);
         bool x = b == &henon_heiles && r.index == 0;
         ck_assert_str_eq(r.effect, r.term);
-        ck_assert_int_eq(r.order,
-                         r.momentum || x ? 2 : nevh_gradient_order(g));
+        ck_assert_int_eq(r.order, r.momentum || x ? 2 : nevh_gradient_order(g));
     }
     nevh_field_free(f);
     nevh_system_free(s);

@@ -3,6 +3,11 @@ suites = \
 	tests/check_system \
 	tests/check_structure \
 	tests/check_gradient \
+	tests/check_steps \
+	tests/check_many_steps \
+	tests/check_step_reports \
+	tests/check_exact \
+	tests/check_portable \
 	tests/check_body \
 	tests/check_lanes \
 	tests/check_probe \

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { MOST_LANES = 4, LARGE = 65536 };
+enum { LARGE = 65536 };
 
 size_t nevh__stride(size_t count) {
     return (count + NEVH__PROBED - 1) / NEVH__PROBED;
@@ -23,22 +23,6 @@ size_t nevh__step_rows(const nevh__planned *term) {
 
 size_t nevh__step_at(const nevh__planned *term, size_t instance, size_t k) {
     return instance / nevh__stride(term->term->is.count) * term->nv + k;
-}
-
-/* The states given: the first, and a few more lanes. */
-static void begin(nevh__explorer *e) {
-    const nevh_options *o = e->options;
-    nevh__samples *s = &e->samples;
-    size_t n = e->field->n, width = o->width ? o->width : 1;
-    size_t lanes = width < MOST_LANES ? width : MOST_LANES;
-    for (size_t i = 0; i < lanes && s->count < s->most; i++, s->count++) {
-        size_t lane = i * width / lanes;
-        s->t[i] = o->t;
-        for (size_t k = 0; k < n; k++) {
-            s->q[i * n + k] = o->q ? o->q[k * width + lane] : 0;
-            s->p[i * n + k] = o->p ? o->p[k * width + lane] : 0;
-        }
-    }
 }
 
 /* The largest sizes met; the length where that is 0. */
@@ -63,7 +47,6 @@ int nevh__explorer_open(nevh__explorer *e, nevh_field *f,
     e->samples.p = nevh__array(most * n, sizeof *e->samples.p);
     if (!e->length || !e->samples.q || !e->samples.p)
         return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
-    begin(e);
     nevh__find_lengths(e);
     return NEVH_OK;
 }

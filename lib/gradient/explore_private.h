@@ -39,6 +39,10 @@ typedef struct {
     const nevh_options *options;
     double *length; /* 2n */
     nevh__samples samples;
+    size_t lanes;      /* of them, given by the user: the first ones */
+    size_t at;         /* the one whose lengths are looked for */
+    bool shortened;    /* a length, there */
+    size_t neighbours; /* the first sample displaced at random */
 } nevh__explorer;
 
 /* Distances between the instances, and between the variables of one kind, that
@@ -56,7 +60,8 @@ void nevh__along(const nevh__explorer *, const nevh__planned *, size_t instance,
 /* Takes the states given and fills length; a status, recorded in the field. */
 int nevh__explorer_open(nevh__explorer *, nevh_field *, const nevh_options *);
 void nevh__explorer_close(nevh__explorer *);
-/* Fills length, at sample 0. */
+/* Fills length with the shortest over the lanes, of which it makes those
+   samples that matter. */
 void nevh__find_lengths(nevh__explorer *);
 /* Steps that will do for a pilot, from the lengths. */
 void nevh__set_crude_steps(nevh__explorer *);

@@ -25,6 +25,7 @@ typedef struct {
     double delta;
     bool given, blind;                 /* by the user; nothing was to be seen */
     bool quadratic;                    /* order 2 is as good as it gets */
+    bool noisy;                        /* values are worse than rounded */
     double truncation, rounding, size; /* of the derivative, and its own */
 } nevh__step;
 

@@ -8,6 +8,9 @@
 
 /* Rungs are powers of two times the variable's length. */
 enum { LOWEST = -30, HIGHEST = 3, RUNGS = HIGHEST - LOWEST + 1, MOST = 8 };
+/* At the best step the two errors balance, unless values are worse than
+   rounded. */
+static const double out_of_balance = 1e4;
 static const double as_good = 2; /* order 2 is taken if it is, up to this */
 
 /* Estimates on one rung, worst over the samples: how much the difference
@@ -99,13 +102,16 @@ static int best_rung(const estimate rungs[RUNGS], int order) {
     return best;
 }
 
-/* A smooth H obeys a power law where steps are a part of its length; a kink
-   within reach of one of the states does not.  Then the error is that. */
-static double kink(const estimate rungs[RUNGS], int order) {
-    const estimate *far = &rungs[-2 - LOWEST], *near = &rungs[-5 - LOWEST];
-    bool lawful = near->truncation <= ldexp(far->truncation, -3 * order / 2) ||
-                  near->truncation <= 1e3 * near->rounding;
-    return lawful || !(near->truncation < INFINITY) ? 0 : near->truncation;
+/* Of a smooth H, also near a singularity, the error of order 2 falls by no more
+   than some 16 where steps are halved twice.  Where a kink comes out of their
+   reach it falls at once.  Then the error is that of steps within reach. */
+static double kink(const estimate two[RUNGS]) {
+    for (int i = -2 - LOWEST; i >= 2; i--) {
+        double far = two[i].truncation, near = two[i - 2].truncation;
+        if (far < INFINITY && far > 1e5 * two[i].rounding && far > 200 * near)
+            return far;
+    }
+    return 0;
 }
 
 /* Nothing varied, or nothing was finite: the rule for a smooth function. */
@@ -128,8 +134,9 @@ static nevh__step choose(const nevh_gradient *g, const ladder *l, double unit) {
     }
     return (nevh__step){.delta = ldexp(unit, LOWEST + full),
                         .quadratic = quadratic,
-                        .truncation =
-                            fmax(best->truncation, kink(l->full, g->order)),
+                        .noisy =
+                            best->truncation > out_of_balance * best->rounding,
+                        .truncation = fmax(best->truncation, kink(l->two)),
                         .rounding = best->rounding,
                         .size = best->size};
 }
@@ -139,13 +146,13 @@ static size_t sample_stride(const nevh__planned *term) {
     return term->nv > NEVH__PROBED ? 4 : 1;
 }
 
-/* The median of the derivative's sizes at all samples. */
+/* The median of the derivative's sizes at samples from `at` on. */
 static double usual_slope(const nevh__explorer *e, const nevh__planned *term,
-                          size_t instance, size_t k, double unit) {
+                          size_t instance, size_t k, double unit, size_t at) {
     const double move[2] = {ldexp(unit, -8), -ldexp(unit, -8)};
     double x[2], h[2], noise, sorted[NEVH__MOST_SAMPLES];
     size_t count = 0;
-    for (size_t at = 0; at < e->samples.count; at += sample_stride(term)) {
+    for (; at < e->samples.count; at += sample_stride(term)) {
         nevh__along(e, term, instance, k, at, 2, move, x, h);
         double slope = fabs(difference(nevh_central2, x, h, &noise));
         size_t i = count;
@@ -165,7 +172,9 @@ static nevh__step climb(const nevh__explorer *e, const nevh__planned *term,
     double unit = exp2(round(log2(length)));
     ladder l;
     memset(&l, 0, sizeof l);
-    l.usual = usual_slope(e, term, instance, k, unit);
+    /* The pilot may linger where symmetry makes the derivative vanish. */
+    l.usual = fmax(usual_slope(e, term, instance, k, unit, 0),
+                   usual_slope(e, term, instance, k, unit, e->neighbours));
     for (size_t at = 0; at < e->samples.count; at += sample_stride(term))
         climb_at(e, term, instance, k, at, unit, &l);
     return choose(e->field->gradient, &l, unit);

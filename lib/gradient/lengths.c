@@ -7,6 +7,8 @@
 /* A length is where this part of a variation is not that of a quadratic. */
 static const double not_quadratic = 0.2;
 enum { FARTHEST = 400, LEAP = 8 }; /* powers of two from the first guess */
+static const double overflowing = 0x1p500;
+enum { MOST_LANES = 4, TRIED_LANES = 64 };
 
 void nevh__along(const nevh__explorer *e, const nevh__planned *term,
                  size_t instance, size_t k, size_t at, size_t count,
@@ -46,7 +48,7 @@ static variation vary(const nevh__explorer *e, const nevh__planned *term,
     const double move[5] = {0, distance / 2, -distance / 2, distance,
                             -distance};
     double x[5], h[5], most = 0;
-    nevh__along(e, term, instance, k, 0, 5, move, x, h);
+    nevh__along(e, term, instance, k, e->at, 5, move, x, h);
     for (int i = 0; i < 5; i++)
         most = fmax(most, fabs(h[i]));
     double even = (h[3] - h[0]) + (h[4] - h[0]), odd = h[3] - h[4];
@@ -76,7 +78,8 @@ static double curve_length(const nevh__explorer *e, const nevh__planned *term,
     if (too_far(&v))
         return NAN;
     bool seen = false;
-    for (int i = 0; i < (leaps ? LEAP : FARTHEST); i++) {
+    for (int i = 0; i < (leaps ? LEAP : FARTHEST) && v.whole < overflowing;
+         i++) {
         v = vary(e, term, instance, k, 2 * distance);
         seen |= v.whole > v.rounding;
         if (too_far(&v))
@@ -108,7 +111,8 @@ static double energy_length(const nevh__explorer *e, const nevh__planned *term,
 /* A first guess that only saves time: the variable's size, or 1. */
 static double first_guess(const nevh__explorer *e, size_t i) {
     size_t n = e->field->n;
-    double x = fabs(i < n ? e->samples.q[i] : e->samples.p[i - n]);
+    const nevh__samples *s = &e->samples;
+    double x = fabs(i < n ? s->q[e->at * n + i] : s->p[e->at * n + i - n]);
     if (e->options->scale)
         x = e->options->scale[i];
     return x > 0 && isfinite(x) ? exp2(floor(log2(x))) : 1;
@@ -138,14 +142,18 @@ static void find_curved(nevh__explorer *e, const nevh__planned *term,
     if (!isfinite(length))
         return;
     *energy = fmax(*energy, vary(e, term, instance, k, length).whole);
-    e->length[i] = e->length[i] > 0 ? fmin(e->length[i], length) : length;
+    if (e->length[i] > 0 && e->length[i] <= length)
+        return;
+    e->length[i] = length;
+    e->shortened = true;
 }
 
 /* Nothing is curved: variations over the variables' own sizes. */
 static void find_energy(nevh__explorer *e, const nevh__planned *term,
                         size_t instance, size_t k, size_t i, double *energy) {
     size_t n = e->field->n;
-    double x = i < n ? e->samples.q[i] : e->samples.p[i - n];
+    const nevh__samples *s = &e->samples;
+    double x = i < n ? s->q[e->at * n + i] : s->p[e->at * n + i - n];
     double whole = vary(e, term, instance, k, fabs(x)).whole;
     *energy = fmax(*energy, isfinite(whole) ? whole : 0);
 }
@@ -162,9 +170,39 @@ static void find_straight(nevh__explorer *e, const nevh__planned *term,
     e->length[i] = e->length[i] < 0 ? -fmin(-e->length[i], length) : -length;
 }
 
+/* Copies a lane of the states given to sample `at`. */
+static void load(nevh__explorer *e, size_t lane, size_t at) {
+    const nevh_options *o = e->options;
+    size_t n = e->field->n, width = o->width ? o->width : 1;
+    e->samples.t[at] = o->t;
+    for (size_t k = 0; k < n; k++) {
+        e->samples.q[at * n + k] = o->q ? o->q[k * width + lane] : 0;
+        e->samples.p[at * n + k] = o->p ? o->p[k * width + lane] : 0;
+    }
+}
+
+/* The first lane becomes a sample, and the last ones that have a shorter length
+   than those before. */
+static void find_over_lanes(nevh__explorer *e, double *energy) {
+    size_t width = e->options->width ? e->options->width : 1;
+    size_t stride = (width + TRIED_LANES - 1) / TRIED_LANES;
+    for (size_t lane = 0; lane < width; lane += stride) {
+        e->at = e->lanes;
+        e->shortened = lane == 0;
+        load(e, lane, e->at);
+        visit_all(e, find_curved, energy);
+        if (e->shortened && e->lanes < MOST_LANES - 1)
+            e->lanes++;
+        else if (e->shortened)
+            load(e, lane, e->lanes - 1);
+    }
+    e->samples.count = e->lanes;
+    e->at = 0;
+}
+
 void nevh__find_lengths(nevh__explorer *e) {
     double energy = 0, last = 1;
-    visit_all(e, find_curved, &energy);
+    find_over_lanes(e, &energy);
     if (energy == 0)
         visit_all(e, find_energy, &energy);
     visit_all(e, find_straight, &energy); /* kept apart by their sign */

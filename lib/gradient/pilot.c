@@ -27,18 +27,19 @@ static void add_sample(nevh__explorer *e, double t, const double q[],
     s->count++;
 }
 
-/* Displaced from sample 0. */
-static void add_random(nevh__explorer *e, double part, uint64_t *random) {
+/* Displaced from one of the lanes given. */
+static void add_random(nevh__explorer *e, size_t lane, double part,
+                       uint64_t *random) {
     nevh__samples *s = &e->samples;
-    size_t n = e->field->n;
+    size_t n = e->field->n, from = lane * n;
     if (s->count == s->most)
         return;
     double *q = s->q + s->count * n, *p = s->p + s->count * n;
     for (size_t i = 0; i < n; i++) {
-        q[i] = s->q[i] + part * e->length[i] * nevh__random(random);
-        p[i] = s->p[i] + part * e->length[n + i] * nevh__random(random);
+        q[i] = s->q[from + i] + part * e->length[i] * nevh__random(random);
+        p[i] = s->p[from + i] + part * e->length[n + i] * nevh__random(random);
     }
-    s->t[s->count++] = s->t[0];
+    s->t[s->count++] = s->t[lane];
 }
 
 void nevh__set_crude_steps(nevh__explorer *e) {
@@ -132,10 +133,11 @@ static int pilot_steps(const nevh_field *f) {
 
 void nevh__find_neighbours(nevh__explorer *e) {
     uint64_t random = 1;
+    e->neighbours = e->samples.count;
     bool given = e->options->q || e->options->p;
     size_t count = given ? RANDOM_SAMPLES : e->samples.most;
     for (size_t i = 0; i < count; i++)
-        add_random(e, given ? near_by : anywhere, &random);
+        add_random(e, i % e->lanes, given ? near_by : anywhere, &random);
 }
 
 bool nevh__find_samples(nevh__explorer *e) {

@@ -31,8 +31,9 @@ static nevh_step_report describe(const nevh_field *f, const nevh__planned *term,
                               .order = s->quadratic ? 2 : f->gradient->order,
                               .given = s->given,
                               .blind = s->blind,
-                              .rough = !s->given && !s->blind &&
-                                       !(error <= rough * s->size),
+                              .rough =
+                                  !s->given && !s->blind &&
+                                  (s->noisy || !(error <= rough * s->size)),
                               .truncation = s->truncation,
                               .rounding = s->rounding,
                               .size = s->size};

@@ -5,6 +5,7 @@
    not finite, nothing is said.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/explore_private.h"
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -18,16 +19,21 @@ typedef struct {
     double *own; /* nv derivatives of the term's own */
 } check;
 
-static double by_difference(const check *c, size_t k, size_t at, double delta) {
+/* Adds to *noise what rounding of values may do to the difference. */
+static double by_difference(const check *c, size_t k, size_t at, double delta,
+                            double *noise) {
     double move[8], x[8], h[8], slope = 0;
     for (size_t j = 0; j < 4; j++) {
         move[2 * j] = (double)(j + 1) * delta;
         move[2 * j + 1] = -move[2 * j];
     }
     nevh__along(c->explorer, c->term, c->instance, k, at, 8, move, x, h);
-    for (size_t j = 0; j < 4; j++)
-        slope += nevh_central8->weights[j] *
-                 ((h[2 * j] - h[2 * j + 1]) / (x[2 * j] - x[2 * j + 1]));
+    for (size_t j = 0; j < 4; j++) {
+        double weight = nevh_central8->weights[j] / (x[2 * j] - x[2 * j + 1]);
+        slope += weight * (h[2 * j] - h[2 * j + 1]);
+        *noise += 4 * DBL_EPSILON * fabs(weight) *
+                  fmax(fabs(h[2 * j]), fabs(h[2 * j + 1]));
+    }
     return slope;
 }
 
@@ -64,10 +70,11 @@ static int check_sample(const check *c, size_t at) {
     for (size_t k = 0; k < term->nv; k++) {
         size_t i = nevh__index(term, c->instance, k);
         double length = c->explorer->length[k < term->nq ? i : n + i];
-        double near = by_difference(c, k, at, short_step * length);
-        double far = by_difference(c, k, at, long_step * length);
+        double noise = 0;
+        double near = by_difference(c, k, at, short_step * length, &noise);
+        double far = by_difference(c, k, at, long_step * length, &noise);
         double allowed = tolerance * fmax(fabs(near), fabs(c->own[k])) +
-                         64 * fabs(near - far);
+                         64 * fabs(near - far) + noise;
         bool defined = isfinite(near) && isfinite(far) && isfinite(c->own[k]);
         if (defined && nevh__probed(term, k) == k &&
             !(fabs(c->own[k] - near) <= allowed))

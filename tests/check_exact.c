@@ -1,0 +1,392 @@
+/* nevh tests: derivatives without differences.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "support.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static void assert_says(const char *message, const char *word) {
+    ck_assert_msg(strstr(message, word), "no \"%s\" in: %s", word, message);
+}
+
+/* H of two degrees of freedom that is singular at 0 and mixes all it reads. */
+static double mixed(double t, const double q[], const double p[],
+                    const double c[], const void *params) {
+    (void)params;
+    return c[0] * p[0] * p[0] / (q[0] * q[0]) + sin(q[1]) * p[0] +
+           q[0] * q[1] * t;
+}
+
+/* The right gradient, and how it is spoiled. */
+typedef enum {
+    RIGHT,
+    SIGN,    /* of one coordinate's derivative */
+    FACTOR,  /* in one momentum's */
+    SWAPPED, /* two coordinates */
+    FAR_OFF, /* wrong except near the usual state to plan at */
+    SLIGHT   /* by 1e-4 */
+} spoil;
+
+static void mixed_gradient(size_t width, const double t[], const double q[],
+                           const double p[], const double c[],
+                           const void *params, double dq[], double dp[]) {
+    const spoil how = *(const spoil *)params;
+    const double *x = q, *y = q + width;
+    for (size_t i = 0; i < width; i++) {
+        double r2 = x[i] * x[i];
+        double dx = -2 * c[i] * p[i] * p[i] / (r2 * x[i]) + y[i] * t[i];
+        double dy = cos(y[i]) * p[i] + x[i] * t[i];
+        if (how == FAR_OFF && fabs(y[i] - 0.4) > 0.05)
+            dy += 0.1;
+        if (dq) {
+            dq[i] = how == SWAPPED ? dy : how == SLIGHT ? dx * 1.0001 : dx;
+            dq[width + i] = how == SWAPPED ? dx : how == SIGN ? -dy : dy;
+        }
+        if (dp)
+            dp[i] = (how == FACTOR ? 1 : 2) * c[i] * p[i] / r2 + sin(y[i]);
+    }
+}
+
+/* The second of two terms; it reads q[2], q[1] and p[1] of three. */
+static nevh_system *make_mixed(const spoil *how) {
+    static const size_t q[] = {2, 1}, p[] = {1};
+    static const double c[] = {0.8};
+    static const spoil right = RIGHT;
+    nevh_system *s = nevh_system_new(3);
+    nevh_system_add(s, &(nevh_term){.effect = "good",
+                                    .nq = 2,
+                                    .np = 1,
+                                    .nc = 1,
+                                    .c = c,
+                                    .time = true,
+                                    .value = mixed,
+                                    .gradient = mixed_gradient,
+                                    .params = &right});
+    nevh_system_add(s, &(nevh_term){.effect = "tried",
+                                    .nq = 2,
+                                    .np = 1,
+                                    .nc = 1,
+                                    .q = q,
+                                    .p = p,
+                                    .c = c,
+                                    .time = true,
+                                    .value = mixed,
+                                    .gradient = mixed_gradient,
+                                    .params = how});
+    return s;
+}
+
+static nevh_field *planned_exact(const nevh_system *s, const double q[],
+                                 const double p[]) {
+    return nevh_field_new(
+        s, &(nevh_options){.gradient = nevh_exact, .t = 0.7, .q = q, .p = p});
+}
+
+/* Planning states: usual, at rest, on the singularity, and none. */
+static const struct {
+    bool none;
+    double q[3], p[3];
+} starts[] = {
+    {false, {0.9, 0.4, 1.1}, {0.5, 0.7, 0.3}},
+    {false, {0.9, 0.4, 1.1}, {0, 0, 0}},
+    {false, {0, 0.4, 0}, {0.5, 0.7, 0.3}},
+    {false, {0, 0, 0}, {0, 0, 0}},
+    {true, {0}, {0}},
+};
+enum { STARTS = sizeof starts / sizeof *starts };
+
+static nevh_field *planned_at(const nevh_system *s, int i) {
+    return planned_exact(s, starts[i].none ? NULL : starts[i].q,
+                         starts[i].none ? NULL : starts[i].p);
+}
+
+static const char *const wrong_variable[] = {[SIGN] = "q[1]",
+                                             [FACTOR] = "p[1]",
+                                             [SWAPPED] = "q[",
+                                             [FAR_OFF] = "q[1]",
+                                             [SLIGHT] = "q[2]"};
+
+/* On a singularity no length can be found, and a slight error not either. */
+START_TEST(wrong_gradients_are_refused) {
+    const spoil how = 1 + _i % SLIGHT;
+    if (how == SLIGHT && starts[_i / SLIGHT].q[0] == 0 &&
+        !starts[_i / SLIGHT].none)
+        return;
+    double q[] = {0.9, 0.4, 1.1}, p[] = {0.5, 0.7, 0.3}, t = 0.7, d[6];
+    nevh_system *s = make_mixed(&how);
+    nevh_field *f = planned_at(s, _i / SLIGHT);
+    const char *message = nevh_field_message(f);
+    ck_assert_msg(nevh_field_status(f) == NEVH_ENOGRAD, "%d at start %d: %s",
+                  (int)how, _i / SLIGHT, message);
+    assert_says(message, "\"tried\"");
+    assert_says(message, wrong_variable[how]);
+    ck_assert_int_eq(nevh_field_gradient(f, 1, &t, q, p, d, d + 3),
+                     NEVH_ENOGRAD);
+    nevh_field_free(f);
+    nevh_stepper *m = nevh_stepper_new(
+        s, nevh_gauss4,
+        &(nevh_options){.gradient = nevh_exact, .q = q, .p = p});
+    ck_assert_int_eq(nevh_stepper_status(m), NEVH_ENOGRAD);
+    ck_assert_int_eq(nevh_stepper_apply(m, 0.7, 0.1, q, p), NEVH_ENOGRAD);
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* Both numbers: at the state given, the first that is tried. */
+START_TEST(both_values_are_told) {
+    const spoil how = SIGN;
+    double right = cos(0.4) * 0.7 + 1.1 * 0.7;
+    char number[40];
+    nevh_system *s = make_mixed(&how);
+    nevh_field *f = planned_at(s, 0);
+    snprintf(number, sizeof number, "is %.6g", -right);
+    assert_says(nevh_field_message(f), number);
+    snprintf(number, sizeof number, "give %.6g", right);
+    assert_says(nevh_field_message(f), number);
+    nevh_field_free(f);
+    nevh_system_free(s);
+}
+END_TEST
+
+START_TEST(right_gradients_pass) {
+    const spoil how = RIGHT;
+    nevh_system *s = make_mixed(&how);
+    nevh_field *f = planned_at(s, _i);
+    ck_assert_msg(!nevh_field_status(f), "%s", nevh_field_message(f));
+    ck_assert_uint_eq(nevh_field_counts(f).values, 0);
+    nevh_field_free(f);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* On all models and problems, at their own states and around zero. */
+START_TEST(right_gradients_of_models_pass) {
+    for (const nevh_model *const *m = nevh_models(); *m; m++) {
+        nevh_system *s = (*m)->system((*m)->defaults);
+        nevh_field *f = planned_exact(s, (*m)->q, (*m)->p);
+        nevh_field *zero = planned_exact(s, NULL, NULL);
+        ck_assert_msg(!nevh_field_status(f), "%s", nevh_field_message(f));
+        ck_assert_msg(!nevh_field_status(zero), "%s", nevh_field_message(zero));
+        nevh_field_free(f);
+        nevh_field_free(zero);
+        nevh_system_free(s);
+    }
+    for (int i = 0; problems[i]; i++) {
+        nevh_system *s = problems[i]->make();
+        nevh_field *f = planned_exact(s, problems[i]->q, problems[i]->p);
+        ck_assert_msg(!nevh_field_status(f), "%s", nevh_field_message(f));
+        nevh_field_free(f);
+        nevh_system_free(s);
+    }
+}
+END_TEST
+
+/* The complex step.  A pendulum that is shaken, and Kepler's problem. */
+
+static double shaken(double t, const double q[], const double p[],
+                     const double c[], const void *params) {
+    (void)params;
+    return p[0] * p[0] / (2 * c[0]) - c[1] * (1 + 0.3 * sin(t)) * cos(q[0]);
+}
+
+/* With an imaginary part below rounding, cosh is 1 and sinh its argument. */
+static void shaken_complex(double t, const double q[][2], const double p[][2],
+                           const double c[], const void *params, double h[2]) {
+    double weight = c[1] * (1 + 0.3 * sin(t));
+    (void)params;
+    h[0] = p[0][0] * p[0][0] / (2 * c[0]) - weight * cos(q[0][0]);
+    h[1] = p[0][0] * p[0][1] / c[0] + weight * sin(q[0][0]) * q[0][1];
+}
+
+static void shaken_gradient(size_t width, const double t[], const double q[],
+                            const double p[], const double c[],
+                            const void *params, double dq[], double dp[]) {
+    (void)params;
+    for (size_t i = 0; i < width; i++) {
+        if (dq)
+            dq[i] = c[width + i] * (1 + 0.3 * sin(t[i])) * sin(q[i]);
+        if (dp)
+            dp[i] = p[i] / c[i];
+    }
+}
+
+static double kepler_value(double t, const double q[], const double p[],
+                           const double c[], const void *params) {
+    (void)t, (void)params;
+    return (p[0] * p[0] + p[1] * p[1]) / (2 * c[0]) -
+           1 / sqrt(q[0] * q[0] + q[1] * q[1]);
+}
+
+/* 1/sqrt(z) is 1/r (1 - i Im z / (2 r^2)). */
+static void kepler_complex(double t, const double q[][2], const double p[][2],
+                           const double c[], const void *params, double h[2]) {
+    double r2 = q[0][0] * q[0][0] + q[1][0] * q[1][0], r = sqrt(r2);
+    double cross = q[0][0] * q[0][1] + q[1][0] * q[1][1];
+    (void)t, (void)params;
+    h[0] = (p[0][0] * p[0][0] + p[1][0] * p[1][0]) / (2 * c[0]) - 1 / r;
+    h[1] = (p[0][0] * p[0][1] + p[1][0] * p[1][1]) / c[0] + cross / (r2 * r);
+}
+
+static void kepler_gradient(size_t width, const double t[], const double q[],
+                            const double p[], const double c[],
+                            const void *params, double dq[], double dp[]) {
+    (void)t, (void)params;
+    for (size_t i = 0; i < width; i++) {
+        double r2 = q[i] * q[i] + q[width + i] * q[width + i];
+        for (size_t k = i; dq && k < 2 * width; k += width)
+            dq[k] = q[k] / (r2 * sqrt(r2));
+        for (size_t k = i; dp && k < 2 * width; k += width)
+            dp[k] = p[k] / c[i];
+    }
+}
+
+/* Five shaken pendula, of constants of their own, and two planets. */
+enum { N = 9, PENDULA = 5, WIDEST = 200 };
+
+static nevh_system *make_zoo(void) {
+    static const size_t five[] = {0, 2, 4, 6, 8}, two[] = {1, 3, 5, 7};
+    static const double c[] = {1,   2,   1.5, 3,   0.7, 2,
+                               0.4, 1.1, 2,   1.9, 1.3, 0.6};
+    nevh_system *s = nevh_system_new(N);
+    nevh_system_add(s, &(nevh_term){.effect = "pendula",
+                                    .nq = 1,
+                                    .np = 1,
+                                    .nc = 2,
+                                    .q = five,
+                                    .p = five,
+                                    .c = c,
+                                    .count = PENDULA,
+                                    .time = true,
+                                    .value = shaken,
+                                    .gradient = shaken_gradient,
+                                    .complex_value = shaken_complex});
+    nevh_system_add(s, &(nevh_term){.effect = "planets",
+                                    .nq = 2,
+                                    .np = 2,
+                                    .nc = 1,
+                                    .q = two,
+                                    .p = two,
+                                    .c = c + 10,
+                                    .count = 2,
+                                    .value = kepler_value,
+                                    .gradient = kepler_gradient,
+                                    .complex_value = kepler_complex});
+    return s;
+}
+
+static double zoo_t[WIDEST], zoo_q[N * WIDEST], zoo_p[N * WIDEST];
+
+static void set_zoo(size_t width) {
+    for (size_t lane = 0; lane < width; lane++) {
+        zoo_t[lane] = 0.1 * (double)lane;
+        for (size_t k = 0; k < N; k++) {
+            double x = (double)(lane * N + k);
+            zoo_q[k * width + lane] = 0.3 + 2 * fabs(sin(1.7 * x));
+            zoo_p[k * width + lane] = 1.3 * cos(2.3 * x);
+        }
+    }
+}
+
+/* Planned around zero, where 1/r drowns the momenta: that must not make their
+   derivatives wrong ones. */
+START_TEST(complex_equals_exact) {
+    const size_t width = (size_t)_i;
+    static double d[2 * N * WIDEST], e[2 * N * WIDEST];
+    nevh_system *s = make_zoo();
+    nevh_field *f =
+        nevh_field_new(s, &(nevh_options){.gradient = nevh_complex_step});
+    nevh_field *exact =
+        nevh_field_new(s, &(nevh_options){.gradient = nevh_exact});
+    size_t size = N * width;
+    set_zoo(width);
+    ck_assert(!nevh_field_gradient(f, width, zoo_t, zoo_q, zoo_p, d, d + size));
+    ck_assert(
+        !nevh_field_gradient(exact, width, zoo_t, zoo_q, zoo_p, e, e + size));
+    for (size_t i = 0; i < 2 * size; i++)
+        ck_assert_double_eq_tol(d[i], e[i], 1e-14 * fmax(1, fabs(e[i])));
+    /* One value a variable; none of them for what is not asked for. */
+    const size_t both = 2 * PENDULA + 2 * 4, half = both / 2;
+    ck_assert_uint_eq(nevh_field_counts(f).values, both * width);
+    ck_assert_uint_eq(nevh_field_effect_values(f, "planets"), 8 * width);
+    nevh_field_gradient(f, width, zoo_t, zoo_q, zoo_p, d, NULL);
+    nevh_field_gradient(f, width, zoo_t, zoo_q, zoo_p, NULL, d + size);
+    ck_assert_uint_eq(nevh_field_counts(f).values, (both + 2 * half) * width);
+    nevh_field_free(f);
+    nevh_field_free(exact);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* Each lane as if it were alone, to the last bit, with either method. */
+START_TEST(lanes_agree) {
+    static const size_t widths[] = {1, 3, 17, 200};
+    const size_t width = widths[_i / 2];
+    const nevh_gradient *g = _i % 2 ? nevh_exact : nevh_complex_step;
+    static double d[2 * N * WIDEST];
+    double q[N], p[N], one[2 * N];
+    nevh_system *s = make_zoo();
+    nevh_field *f = nevh_field_new(s, &(nevh_options){.gradient = g});
+    set_zoo(width);
+    ck_assert(
+        !nevh_field_gradient(f, width, zoo_t, zoo_q, zoo_p, d, d + N * width));
+    for (size_t lane = 0; lane < width; lane++) {
+        for (size_t k = 0; k < N; k++) {
+            q[k] = zoo_q[k * width + lane];
+            p[k] = zoo_p[k * width + lane];
+        }
+        ck_assert(!nevh_field_gradient(f, 1, &zoo_t[lane], q, p, one, one + N));
+        for (size_t k = 0; k < 2 * N; k++)
+            ck_assert(d[k * width + lane] == one[k]);
+    }
+    nevh_field_free(f);
+    nevh_system_free(s);
+}
+END_TEST
+
+START_TEST(complex_failures) {
+    nevh_system *s = make_zoo();
+    const nevh_options o = {.gradient = nevh_complex_step};
+    nevh_field *f = nevh_field_new(s, &o);
+    double d[N];
+    set_zoo(1);
+    zoo_q[5] = zoo_q[7] = 0; /* the second planet in the sun */
+    ck_assert_int_eq(nevh_field_gradient(f, 1, zoo_t, zoo_q, zoo_p, d, NULL),
+                     NEVH_EDOM);
+    assert_says(nevh_field_message(f), "\"planets\"");
+    assert_says(nevh_field_message(f), "instance 1");
+    set_zoo(1);
+    ck_assert(!nevh_field_gradient(f, 1, zoo_t, zoo_q, zoo_p, d, NULL));
+    nevh_field_free(f);
+    nevh_system_add(s, &(nevh_term){.effect = "bare",
+                                    .nq = 1,
+                                    .np = 1,
+                                    .nc = 2,
+                                    .c = (const double[]){1, 1},
+                                    .value = shaken});
+    f = nevh_field_new(s, &o);
+    ck_assert_int_eq(nevh_field_status(f), NEVH_ENOGRAD);
+    assert_says(nevh_field_message(f), "\"bare\"");
+    assert_says(nevh_field_message(f), "complex form");
+    nevh_field_free(f);
+    nevh_system_enable(s, "bare", false);
+    f = nevh_field_new(s, &o);
+    ck_assert_int_eq(nevh_field_status(f), NEVH_OK);
+    nevh_field_free(f);
+    nevh_system_free(s);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("exact");
+    TCase *cases = tcase_create("exact");
+    tcase_add_loop_test(cases, wrong_gradients_are_refused, 0, STARTS * SLIGHT);
+    tcase_add_test(cases, both_values_are_told);
+    tcase_add_loop_test(cases, right_gradients_pass, 0, STARTS);
+    tcase_add_test(cases, right_gradients_of_models_pass);
+    tcase_add_loop_test(cases, complex_equals_exact, 1, WIDEST + 1);
+    tcase_add_loop_test(cases, lanes_agree, 0, 8);
+    tcase_add_test(cases, complex_failures);
+    suite_add_tcase(suite, cases);
+    return run_suite(suite);
+}

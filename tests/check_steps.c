@@ -1,0 +1,400 @@
+/* nevh tests: difference steps that nobody gave are good ones.
+   SPDX-License-Identifier: GPL-3.0-or-later
+
+   The yardstick is the best of all powers of two, for all states of an orbit;
+   the error is the largest of any component of the gradient over the largest
+   component, in the units of the problem. */
+#include "support.h"
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+
+#define EACH(lane) for (size_t lane = 0; lane < width; lane++)
+
+enum { STATES = 40, SHORTEST = -42, LONGEST = 0 };
+
+/* A problem in units of length L and mass M; the unit of time stays. */
+typedef struct {
+    const char *name;
+    size_t n;
+    nevh_system *(*make)(double L, double M);
+    bool length[2];    /* which coordinates are; the others are angles */
+    double q[2], p[2]; /* where an orbit starts, in units of 1 */
+} example;
+
+static nevh_system *make_pendulum(double L, double M) {
+    static nevh_pendulum params;
+    params = (nevh_pendulum){M, L, 9.8 * L};
+    return nevh_pendulum_model->system(&params);
+}
+
+static nevh_system *make_double_pendulum(double L, double M) {
+    static nevh_double_pendulum params;
+    params = (nevh_double_pendulum){M, L, 9.8 * L};
+    return nevh_double_pendulum_model->system(&params);
+}
+
+static nevh_system *make_elastic(double L, double M) {
+    static nevh_elastic_pendulum params;
+    params = (nevh_elastic_pendulum){M, 40 * M, L, 9.8 * L};
+    return nevh_elastic_pendulum_model->system(&params);
+}
+
+static double kinetic(double t, const double q[], const double p[],
+                      const double c[], const void *params) {
+    (void)t, (void)q, (void)params;
+    return p[0] * p[0] / (2 * c[0]);
+}
+
+static void kinetic_gradient(size_t width, const double t[], const double q[],
+                             const double p[], const double c[],
+                             const void *params, double dq[], double dp[]) {
+    (void)t, (void)q, (void)params, (void)dq;
+    if (dp)
+        EACH(i) dp[i] = p[i] / c[i];
+}
+
+static nevh_system *in_plane(double mass, const nevh_term *potential) {
+    nevh_system *s = nevh_system_new(2);
+    nevh_system_add(s, &(nevh_term){.effect = "kinetic",
+                                    .np = 1,
+                                    .nc = 1,
+                                    .p = (const size_t[]){0, 1},
+                                    .c = (const double[]){mass, mass},
+                                    .count = 2,
+                                    .value = kinetic,
+                                    .gradient = kinetic_gradient});
+    nevh_system_add(s, potential);
+    return s;
+}
+
+static double gravity(double t, const double q[], const double p[],
+                      const double c[], const void *params) {
+    (void)t, (void)p, (void)params;
+    return -c[0] / sqrt(q[0] * q[0] + q[1] * q[1]);
+}
+
+static void gravity_gradient(size_t width, const double t[], const double q[],
+                             const double p[], const double c[],
+                             const void *params, double dq[], double dp[]) {
+    (void)t, (void)p, (void)params, (void)dp;
+    if (dq)
+        EACH(i) {
+            double r = sqrt(q[i] * q[i] + q[width + i] * q[width + i]);
+            dq[i] = c[i] / r / r * (q[i] / r);
+            dq[width + i] = c[i] / r / r * (q[width + i] / r);
+        }
+}
+
+static nevh_system *make_kepler(double L, double M) {
+    return in_plane(M, &(nevh_term){.effect = "potential",
+                                    .nq = 2,
+                                    .nc = 1,
+                                    .c = (const double[]){M * L * L * L},
+                                    .value = gravity,
+                                    .gradient = gravity_gradient});
+}
+
+static double henon(double t, const double q[], const double p[],
+                    const double c[], const void *params) {
+    double x = q[0] / c[1], y = q[1] / c[1];
+    (void)t, (void)p, (void)params;
+    return c[0] * ((x * x + y * y) / 2 + x * x * y - y * y * y / 3);
+}
+
+static void henon_gradient(size_t width, const double t[], const double q[],
+                           const double p[], const double c[],
+                           const void *params, double dq[], double dp[]) {
+    (void)t, (void)p, (void)params, (void)dp;
+    if (dq)
+        EACH(i) {
+            double L = c[width + i], x = q[i] / L, y = q[width + i] / L;
+            dq[i] = c[i] / L * (x + 2 * x * y);
+            dq[width + i] = c[i] / L * (y + x * x - y * y);
+        }
+}
+
+static nevh_system *make_henon_heiles(double L, double M) {
+    return in_plane(M, &(nevh_term){.effect = "potential",
+                                    .nq = 2,
+                                    .nc = 2,
+                                    .c = (const double[]){M * L * L, L},
+                                    .value = henon,
+                                    .gradient = henon_gradient});
+}
+
+static const example pendulum = {"pendulum", 1, make_pendulum, {0}, {2}, {0}};
+static const example twofold = {
+    "double pendulum", 2, make_double_pendulum, {0, 0}, {1.5707963, 0}, {0, 0}};
+static const example kepler6 = {"Kepler", 2,        make_kepler,
+                                {1, 1},   {0.4, 0}, {0, 2}};
+static const example henon_h = {"Henon-Heiles", 2,        make_henon_heiles,
+                                {1, 1},         {0, 0.1}, {0.4905, 0}};
+static const example elastic = {"elastic pendulum", 2,     make_elastic, {1, 0},
+                                {1.5, 1},           {0, 0}};
+
+/* Where to plan.  In equilibrium H does not say how far the orbit will go;
+   nowhere means around zero, so not where H is singular. */
+typedef struct {
+    const example *of;
+    const char *where;
+    enum { MOVING, STILL, NOWHERE } how;
+    double q[2], p[2];
+} plan;
+
+static const plan plans[] = {
+    {&pendulum, "turning", MOVING, {2}, {0}},
+    {&pendulum, "at the bottom", MOVING, {0}, {6}},
+    {&pendulum, "hanging", STILL, {0}, {0}},
+    {&pendulum, "nowhere", NOWHERE, {0}, {0}},
+    {&twofold, "turning", MOVING, {1.5707963, 0}, {0, 0}},
+    {&twofold, "at the bottom", MOVING, {0, 0}, {7, 3}},
+    {&twofold, "hanging", STILL, {0, 0}, {0, 0}},
+    {&twofold, "nowhere", NOWHERE, {0, 0}, {0, 0}},
+    {&kepler6, "at pericentre", MOVING, {0.4, 0}, {0, 2}},
+    {&kepler6, "at apocentre", MOVING, {1.6, 0}, {0, 0.5}},
+    {&henon_h, "at its start", MOVING, {0, 0.1}, {0.4905, 0}},
+    {&henon_h, "turning", MOVING, {0.3, 0.4}, {0, 0}},
+    {&henon_h, "at its minimum", STILL, {0, 0}, {0, 0}},
+    {&henon_h, "nowhere", NOWHERE, {0, 0}, {0, 0}},
+    {&elastic, "turning", MOVING, {1.5, 1}, {0, 0}},
+    {&elastic, "hanging", STILL, {1.245, 0}, {0, 0}},
+};
+enum { PLANS = sizeof plans / sizeof *plans };
+
+/* An example in some units: the states of an orbit, and exact gradients. */
+typedef struct {
+    size_t n;
+    double unit[4]; /* 2n */
+    double q[STATES][2], p[STATES][2], exact[STATES][4];
+} orbit;
+
+static const double now = 0;
+
+static orbit orbit_of(const example *b, double L, double M) {
+    const nevh_options o = {.gradient = nevh_exact};
+    orbit z = {.n = b->n};
+    nevh_system *one = b->make(1, 1), *s = b->make(L, M);
+    nevh_stepper *stepper = nevh_stepper_new(one, nevh_gauss8, &o);
+    nevh_field *f = nevh_field_new(s, &o);
+    double q[2] = {b->q[0], b->q[1]}, p[2] = {b->p[0], b->p[1]};
+    for (size_t k = 0; k < b->n; k++) {
+        z.unit[k] = b->length[k] ? L : 1;
+        z.unit[b->n + k] = M * L * L / z.unit[k];
+    }
+    for (size_t i = 0; i < STATES; i++) {
+        for (size_t k = 0; k < b->n; k++) {
+            z.q[i][k] = q[k] * z.unit[k];
+            z.p[i][k] = p[k] * z.unit[b->n + k];
+        }
+        ck_assert(!nevh_field_gradient(f, 1, &now, z.q[i], z.p[i], z.exact[i],
+                                       z.exact[i] + b->n));
+        ck_assert(!nevh_run(stepper, 0, 0.0137, 23, q, p, NULL, 0));
+    }
+    nevh_field_free(f);
+    nevh_stepper_free(stepper);
+    nevh_system_free(one);
+    nevh_system_free(s);
+    return z;
+}
+
+/* The worst relative error over the orbit of a field with these options. */
+static double error_of(const nevh_system *s, const orbit *z,
+                       const nevh_options *o) {
+    nevh_field *f = nevh_field_new(s, o);
+    double worst = 0, d[4];
+    ck_assert_msg(!nevh_field_status(f), "%s", nevh_field_message(f));
+    for (size_t i = 0; i < STATES; i++) {
+        double error = 0, size = 0;
+        if (nevh_field_gradient(f, 1, &now, z->q[i], z->p[i], d, d + z->n))
+            error = INFINITY;
+        for (size_t k = 0; k < 2 * z->n; k++) {
+            error = fmax(error, fabs(d[k] - z->exact[i][k]) * z->unit[k]);
+            size = fmax(size, fabs(z->exact[i][k]) * z->unit[k]);
+        }
+        worst = fmax(worst, error / size);
+    }
+    nevh_field_free(f);
+    return worst;
+}
+
+static double best_error(const nevh_system *s, const orbit *z,
+                         const nevh_gradient *g) {
+    double best = INFINITY, steps[4];
+    const nevh_options o = {.gradient = g, .gradient_steps = steps};
+    for (int power = SHORTEST; power <= LONGEST; power++) {
+        for (size_t k = 0; k < 2 * z->n; k++)
+            steps[k] = ldexp(z->unit[k], power);
+        best = fmin(best, error_of(s, z, &o));
+    }
+    return best;
+}
+
+static double chosen_error(const nevh_system *s, const orbit *z,
+                           const nevh_gradient *g, const plan *at) {
+    double q[2], p[2];
+    for (size_t k = 0; k < z->n; k++) {
+        q[k] = at->q[k] * z->unit[k];
+        p[k] = at->p[k] * z->unit[z->n + k];
+    }
+    return error_of(s, z,
+                    &(nevh_options){.gradient = g,
+                                    .q = at->how == NOWHERE ? NULL : q,
+                                    .p = at->how == NOWHERE ? NULL : p});
+}
+
+static const double lengths[] = {1, 1e-10, 1e11, 1e-10, 1e11};
+static const double masses[] = {1, 1e-27, 1e30, 1e30, 1e-27};
+enum { UNITS = sizeof lengths / sizeof *lengths };
+
+static void assert_good(const char *what, const plan *at,
+                        const nevh_gradient *g, double chosen, double best) {
+    double factor = at->how == STILL ? 30 : 10;
+    ck_assert_msg(chosen <= factor * best,
+                  "%s%s, planned %s, %s: error %.1e, best %.1e", what,
+                  at->of->name, at->where, nevh_gradient_name(g), chosen, best);
+}
+
+START_TEST(near_the_best) {
+    const plan *at = &plans[_i % PLANS];
+    double L = lengths[_i / PLANS], M = masses[_i / PLANS];
+    orbit z = orbit_of(at->of, L, M);
+    nevh_system *s = at->of->make(L, M);
+    char units[40];
+    snprintf(units, sizeof units, "in %g, %g: ", L, M);
+    for (int i = 0; i < 4; i++) {
+        const nevh_gradient *g = nevh_gradients()[i];
+        assert_good(units, at, g, chosen_error(s, &z, g, at),
+                    best_error(s, &z, g));
+    }
+    nevh_system_free(s);
+}
+END_TEST
+
+/* H as one function, with a constant added. */
+typedef struct {
+    nevh_field *terms;
+    double constant;
+} shifted;
+
+static double whole(double t, const double q[], const double p[],
+                    const void *params) {
+    const shifted *h = params;
+    double value = NAN;
+    nevh_field_value(h->terms, 1, &t, q, p, &value);
+    return value + h->constant;
+}
+
+/* The error may grow as theory says: as the power m/(m+1) of the rounding of
+   values, for order m.  The pericentre takes most of the factor. */
+START_TEST(constant_in_h) {
+    const plan *at = &plans[_i];
+    orbit z = orbit_of(at->of, 1, 1);
+    nevh_system *terms = at->of->make(1, 1);
+    shifted h = {nevh_field_new(terms, NULL), 0};
+    nevh_system *s = nevh_system_from(z.n, whole, &h);
+    for (int i = 0; i < 4; i++) {
+        const nevh_gradient *g = nevh_gradients()[i];
+        double m = nevh_gradient_order(g);
+        h.constant = 0;
+        assert_good("whole ", at, g, chosen_error(s, &z, g, at),
+                    best_error(s, &z, g));
+        h.constant = 1e6;
+        double error = chosen_error(s, &z, g, at);
+        assert_good("shifted ", at, g, error, best_error(s, &z, g));
+        ck_assert(error < 20 * pow(1e6 * DBL_EPSILON, m / (m + 1)));
+    }
+    nevh_system_free(s);
+    nevh_field_free(h.terms);
+    nevh_system_free(terms);
+}
+END_TEST
+
+/* What is not given is a power of two, and the same each time. */
+START_TEST(powers_of_two) {
+    const plan *at = &plans[_i];
+    nevh_system *s = at->of->make(1, 1);
+    nevh_options o = {.q = at->q, .p = at->p};
+    nevh_field *f = nevh_field_new(s, &o), *again = nevh_field_new(s, &o);
+    size_t count = nevh_field_step_count(f);
+    ck_assert_uint_ge(count, 2 * at->of->n);
+    for (size_t i = 0; i < count; i++) {
+        nevh_step_report a = nevh_field_step_report(f, i);
+        nevh_step_report b = nevh_field_step_report(again, i);
+        size_t var = a.index + (a.momentum ? at->of->n : 0);
+        int power;
+        ck_assert(!a.given && frexp(a.step, &power) == 0.5);
+        ck_assert_double_eq(a.step,
+                            nevh_field_step(f, a.term, a.instance, var));
+        ck_assert(a.step == b.step && a.order == b.order);
+        ck_assert(a.truncation == b.truncation && a.rounding == b.rounding);
+    }
+    nevh_field_free(f);
+    nevh_field_free(again);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* One variable's step is given; then all are. */
+START_TEST(given_steps_win) {
+    const plan *at = &plans[_i];
+    size_t n = at->of->n;
+    nevh_system *s = at->of->make(1, 1);
+    for (size_t k = 0; k <= 2 * n; k++) {
+        double steps[4] = {0};
+        nevh_options o = {.gradient_steps = steps, .q = at->q, .p = at->p};
+        *(k < 2 * n ? &steps[k] : &o.gradient_step) = 0.0123;
+        nevh_field *f = nevh_field_new(s, &o);
+        for (size_t i = 0; i < nevh_field_step_count(f); i++) {
+            nevh_step_report r = nevh_field_step_report(f, i);
+            bool given = k == 2 * n || r.index + (r.momentum ? n : 0) == k;
+            ck_assert(r.given == given && (r.step == 0.0123) == given);
+        }
+        nevh_field_free(f);
+    }
+    nevh_system_free(s);
+}
+END_TEST
+
+/* Circles, one of them much smaller than the others: its lane decides. */
+enum { WIDEST = 20 };
+static const double small = 1e-3;
+static double inner_error(const nevh_system *s, size_t width, size_t inner) {
+    double q[2 * WIDEST] = {0}, p[2 * WIDEST] = {0}, d[4] = {0};
+    for (size_t lane = 0; lane < width; lane++) {
+        q[lane] = lane == inner ? small : 1;
+        p[width + lane] = 1 / sqrt(q[lane]);
+    }
+    const nevh_options o = {.q = q, .p = p, .width = width};
+    nevh_field *f = nevh_field_new(s, &o);
+    const double at[] = {0.6 * small, 0.8 * small};
+    int status = nevh_field_gradient(f, 1, &now, at, at, d, d + 2);
+    double error =
+        hypot(d[0] * small * small - 0.6, d[1] * small * small - 0.8);
+    nevh_field_free(f);
+    return status ? INFINITY : error;
+}
+
+START_TEST(all_lanes_are_seen) {
+    size_t width = (size_t)_i;
+    nevh_system *s = make_kepler(1, 1);
+    ck_assert_double_lt(inner_error(s, 1, 0), 1e-11);
+    ck_assert_double_gt(inner_error(s, width, width), 1e-4);
+    for (size_t lane = 0; lane < width; lane++)
+        ck_assert_msg(inner_error(s, width, lane) < 1e-11,
+                      "lane %zu of %zu is not seen", lane, width);
+    nevh_system_free(s);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("steps");
+    TCase *cases = tcase_create("steps");
+    tcase_add_loop_test(cases, near_the_best, 0, PLANS * UNITS);
+    tcase_add_loop_test(cases, constant_in_h, 0, PLANS);
+    tcase_add_loop_test(cases, powers_of_two, 0, PLANS);
+    tcase_add_loop_test(cases, given_steps_win, 0, PLANS);
+    tcase_add_loop_test(cases, all_lanes_are_seen, 2, WIDEST + 1);
+    suite_add_tcase(suite, cases);
+    return run_suite(suite);
+}
