@@ -17,7 +17,7 @@ static double mixed(double t, const double q[], const double p[],
            q[0] * q[1] * t;
 }
 
-/* The right gradient, and how it is spoiled. */
+/* The right gradient, and how it is spoiled, in instances of large c. */
 typedef enum {
     RIGHT,
     SIGN,    /* of one coordinate's derivative */
@@ -30,9 +30,9 @@ typedef enum {
 static void mixed_gradient(size_t width, const double t[], const double q[],
                            const double p[], const double c[],
                            const void *params, double dq[], double dp[]) {
-    const spoil how = *(const spoil *)params;
     const double *x = q, *y = q + width;
     for (size_t i = 0; i < width; i++) {
+        const spoil how = c[i] > 0.85 ? *(const spoil *)params : RIGHT;
         double r2 = x[i] * x[i];
         double dx = -2 * c[i] * p[i] * p[i] / (r2 * x[i]) + y[i] * t[i];
         double dy = cos(y[i]) * p[i] + x[i] * t[i];
@@ -47,10 +47,11 @@ static void mixed_gradient(size_t width, const double t[], const double q[],
     }
 }
 
-/* The second of two terms; it reads q[2], q[1] and p[1] of three. */
+/* The second instance of the second of two terms is tried; it reads q[2], q[1]
+   and p[1] of three. */
 static nevh_system *make_mixed(const spoil *how) {
-    static const size_t q[] = {2, 1}, p[] = {1};
-    static const double c[] = {0.8};
+    static const size_t q[] = {0, 1, 2, 1}, p[] = {0, 1};
+    static const double c[] = {0.8, 0.9};
     static const spoil right = RIGHT;
     nevh_system *s = nevh_system_new(3);
     nevh_system_add(s, &(nevh_term){.effect = "good",
@@ -69,6 +70,7 @@ static nevh_system *make_mixed(const spoil *how) {
                                     .q = q,
                                     .p = p,
                                     .c = c,
+                                    .count = 2,
                                     .time = true,
                                     .value = mixed,
                                     .gradient = mixed_gradient,
@@ -190,13 +192,13 @@ static double shaken(double t, const double q[], const double p[],
     return p[0] * p[0] / (2 * c[0]) - c[1] * (1 + 0.3 * sin(t)) * cos(q[0]);
 }
 
-/* With an imaginary part below rounding, cosh is 1 and sinh its argument. */
+/* Where the imaginary part is below rounding, its cosh is 1. */
 static void shaken_complex(double t, const double q[][2], const double p[][2],
                            const double c[], const void *params, double h[2]) {
     double weight = c[1] * (1 + 0.3 * sin(t));
     (void)params;
     h[0] = p[0][0] * p[0][0] / (2 * c[0]) - weight * cos(q[0][0]);
-    h[1] = p[0][0] * p[0][1] / c[0] + weight * sin(q[0][0]) * q[0][1];
+    h[1] = p[0][0] * p[0][1] / c[0] + weight * sin(q[0][0]) * sinh(q[0][1]);
 }
 
 static void shaken_gradient(size_t width, const double t[], const double q[],

@@ -188,6 +188,34 @@ START_TEST(steps_are_used) {
 }
 END_TEST
 
+/* More lanes than any block holds, and one that is at fault near their end. */
+START_TEST(very_many_lanes) {
+    enum { WIDTH = 1301, BAD = 1290 };
+    const nevh_gradient *g = nevh_gradients()[_i < 4 ? _i : 5];
+    const nevh_model *model = nevh_pendulum_model;
+    nevh_system *s = model->system(model->defaults);
+    nevh_field *f = nevh_field_new(s, &(nevh_options){.gradient = g});
+    static double t[WIDTH], q[WIDTH], p[WIDTH], dq[WIDTH], dp[WIDTH], h[WIDTH];
+    for (int i = 0; i < WIDTH; i++) {
+        q[i] = 0.01 * i - 5;
+        p[i] = 1 - 0.003 * i;
+    }
+    ck_assert_int_eq(nevh_field_value(f, WIDTH, t, q, p, h), NEVH_OK);
+    ck_assert_int_eq(nevh_field_gradient(f, WIDTH, t, q, p, dq, dp), NEVH_OK);
+    for (int i = 0; i < WIDTH; i++) {
+        double one, one_q, one_p;
+        nevh_field_value(f, 1, t, q + i, p + i, &one);
+        nevh_field_gradient(f, 1, t, q + i, p + i, &one_q, &one_p);
+        ck_assert(one == h[i] && one_q == dq[i] && one_p == dp[i]);
+    }
+    q[BAD] = INFINITY;
+    ck_assert_int_eq(nevh_field_gradient(f, WIDTH, t, q, p, dq, dp), NEVH_EDOM);
+    ck_assert_ptr_nonnull(strstr(nevh_field_message(f), "lane 1290"));
+    nevh_field_free(f);
+    nevh_system_free(s);
+}
+END_TEST
+
 static const double bad[] = {-1e-3, NAN, INFINITY, -INFINITY, 0};
 
 /* A step of 0 is the default; a scale of 0 is none. */
@@ -329,6 +357,7 @@ int main(void) {
     Suite *suite = suite_create("gradient");
     TCase *cases = tcase_create("accuracy");
     tcase_add_test(cases, methods);
+    tcase_add_loop_test(cases, very_many_lanes, 0, 5);
     tcase_add_loop_test(cases, moments, 0, 4);
     tcase_add_loop_test(cases, order_of_the_error, 0, 4);
     tcase_add_loop_test(cases, quadratic_is_exact, 0, 4);

@@ -16,8 +16,9 @@
 #include "system/system_private.h"
 #include <nevh/gradient.h>
 
-/* Terms are evaluated in blocks of about this many columns. */
-enum { NEVH__COLUMNS = 128 };
+/* Terms are evaluated in blocks of at most so many columns, and of fewer where
+   a term reads so much that the rows would leave the cache. */
+enum { NEVH__COLUMNS = 512, NEVH__FEWEST_COLUMNS = 64, NEVH__ROOM = 16384 };
 
 /* The step of one variable, how it was found, and the worst estimates of its
    errors over the states that were tried. */

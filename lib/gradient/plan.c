@@ -70,6 +70,12 @@ static int plan_term(nevh_field *f, const nevh__term *term) {
     return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
 }
 
+static size_t block_columns(size_t reads) {
+    size_t fit = NEVH__ROOM / (reads ? reads : 1) / NEVH__LANES * NEVH__LANES;
+    fit = fit < NEVH__COLUMNS ? fit : NEVH__COLUMNS;
+    return fit > NEVH__FEWEST_COLUMNS ? fit : NEVH__FEWEST_COLUMNS;
+}
+
 /* The next address at which a vector of eight lies within a cache line. */
 static double *aligned(double *from) {
     const uintptr_t line = NEVH__LANES * sizeof *from;
@@ -84,7 +90,7 @@ static int plan_workspace(nevh_field *f) {
         variables = term->nv > variables ? term->nv : variables;
         reads = all > reads ? all : reads;
     }
-    size_t columns = f->capacity = NEVH__COLUMNS;
+    size_t columns = f->capacity = block_columns(reads);
     size_t rows = reads + variables + 5; /* and three of columns, two sums */
     f->workspace = nevh__array(rows * columns + 2 * reads + NEVH__LANES,
                                sizeof *f->workspace);
