@@ -147,11 +147,16 @@ START_TEST(coarse_differences) {
     double late = largest_error(regular_q, regular_p, g, 0.01, 25000);
     ck_assert_double_gt(soon, 1e-5);
     ck_assert_double_lt(late / soon, 1.02);
-    soon = largest_error(chaotic_q, at_rest, g, 0.01, 1000);
-    late = largest_error(chaotic_q, at_rest, g, 0.01, 25000);
-    ck_assert_double_gt(late / soon, 1.1);
-    ck_assert_double_gt(late, 2000 * largest_error(chaotic_q, at_rest,
-                                                   nevh_central6, 0.01, 25000));
+    double growth = 0; /* chaos: which orbit it is depends on the last bits */
+    for (int i = 0; i < 4; i++) {
+        const double q[] = {chaotic_q[0] + 0.1 * i, 0};
+        soon = largest_error(q, at_rest, g, 0.01, 1000);
+        late = largest_error(q, at_rest, g, 0.01, 25000);
+        growth += late / soon / 4;
+    }
+    ck_assert_double_gt(growth, 1.3);
+    ck_assert_double_gt(late, 500 * largest_error(chaotic_q, at_rest,
+                                                  nevh_central6, 0.01, 25000));
 }
 END_TEST
 
