@@ -9,6 +9,8 @@
 #include <nevh/body.h>
 #include <stdlib.h>
 
+enum { MOST_VARIABLES = 16 };
+
 /* Which part of a pass a stencil is for. */
 static size_t part_of(const double dh_dq[], const double dh_dp[]) {
     return dh_dq && dh_dp ? 2 : dh_dp ? 1 : 0;
@@ -40,7 +42,7 @@ static bool plan_part(const nevh_field *f, const nevh__planned *term,
     s->pairs = pass->pairs;
     s->used = 2 * s->groups * s->pairs;
     s->stride = nevh__padded(s->used);
-    if (s->groups == 0 || s->used > f->capacity || term->nv > 16)
+    if (s->groups == 0 || s->used > f->capacity || term->nv > MOST_VARIABLES)
         return true;
     s->shift = nevh__array(term->nv * s->stride, sizeof *s->shift);
     if (!s->shift)
@@ -73,11 +75,14 @@ const nevh__stencil *nevh__stencil_for(const nevh__planned *term, int pass,
     return s->shift ? s : NULL;
 }
 
-/* One lane: a row is a number plus a row of shifts, padding and all. */
-NEVH_SIMD static void shift_one(size_t stride, double x, const double *shift,
-                                double *row) {
-    NEVH_LANES(i, stride)
-    row[i] = x + shift[i];
+/* One lane: each row is a number plus a row of shifts, padding and all. */
+NEVH_SIMD static void shift_one(size_t rows, size_t stride, const double *x,
+                                const double *shift, double *row) {
+    for (size_t k = 0; k < rows; k++, shift += stride, row += stride) {
+        double value = x[k];
+        NEVH_LANES(i, stride)
+        row[i] = value + shift[i];
+    }
 }
 
 /* Many: each point is a row of numbers plus a shift. */
@@ -88,15 +93,29 @@ NEVH_SIMD static void shift_many(size_t points, size_t lanes, const double *x,
             row[lane] = x[lane] + shift[i];
 }
 
-static void fill_row(const nevh__block *b, const nevh__stencil *s,
-                     const double *x, const double *shift, double *row) {
-    if (b->lanes == 1) {
-        shift_one(b->stride, *x, shift, row);
-        return;
+static void fill_one(nevh_field *f, const nevh__planned *term,
+                     const nevh__block *b, const nevh__stencil *s) {
+    const nevh_term *is = &term->term->is;
+    const double *q = b->q + b->lane, *p = b->p + b->lane;
+    double x[MOST_VARIABLES];
+    for (size_t k = 0; k < term->nq; k++)
+        x[k] = q[is->q[k] * b->width];
+    for (size_t k = 0; k < term->np; k++)
+        x[term->nq + k] = p[is->p[k] * b->width];
+    shift_one(term->nv, s->stride, x, s->shift, f->rows);
+}
+
+static void fill_many(nevh_field *f, const nevh__planned *term,
+                      const nevh__block *b, const nevh__stencil *s) {
+    double *row = f->rows;
+    for (size_t k = 0; k < term->nv; k++, row += b->stride) {
+        const double *x = k < term->nq ? b->q : b->p;
+        shift_many(s->used, b->lanes,
+                   x + nevh__index(term, 0, k) * b->width + b->lane,
+                   s->shift + k * s->stride, row);
+        for (size_t i = b->used; i < b->stride; i++)
+            row[i] = row[0];
     }
-    shift_many(s->used, b->lanes, x, shift, row);
-    for (size_t i = b->used; i < b->stride; i++)
-        row[i] = row[0];
 }
 
 static void fill_times(const nevh__block *b, double *times) {
@@ -107,15 +126,13 @@ static void fill_times(const nevh__block *b, double *times) {
 static void fill(nevh_field *f, const nevh__planned *term, const nevh__block *b,
                  const nevh__stencil *s) {
     const nevh_term *is = &term->term->is;
-    const double *q = b->q + b->lane, *p = b->p + b->lane, *shift = s->shift;
-    double *row = f->rows;
-    size_t stride = b->stride;
-    for (size_t k = 0; k < term->nq; k++, row += stride, shift += s->stride)
-        fill_row(b, s, q + is->q[k] * b->width, shift, row);
-    for (size_t k = 0; k < term->np; k++, row += stride, shift += s->stride)
-        fill_row(b, s, p + is->p[k] * b->width, shift, row);
-    for (size_t k = 0; k < is->nc; k++, row += stride)
-        for (size_t i = 0; i < stride; i++)
+    double *row = f->rows + term->nv * b->stride;
+    if (b->lanes == 1)
+        fill_one(f, term, b, s);
+    else
+        fill_many(f, term, b, s);
+    for (size_t k = 0; k < is->nc; k++, row += b->stride)
+        for (size_t i = 0; i < b->stride; i++)
             row[i] = is->c[k];
     if (is->time)
         fill_times(b, f->times);
@@ -144,35 +161,55 @@ static double slope_of(const nevh_gradient *g, size_t apart, const double *x,
     return slope;
 }
 
-static int add_group(nevh_field *f, const nevh__planned *term,
-                     const nevh__block *b, const nevh_gradient *g, size_t group,
-                     size_t k, double *out) {
-    size_t apart = b->groups * b->lanes, first = group * b->lanes;
-    const double *x = f->rows + k * b->stride + first, *h = f->h + first;
-    bool bad;
-    out += nevh__index(term, 0, k) * b->width + b->lane;
-    if (b->lanes == 1) {
-        double slope = slope_of(g, apart, x, h);
-        *out += slope;
-        bad = slope - slope != 0;
-    } else
-        bad = nevh__add_slopes(g, apart, b->lanes, x, h, out);
-    return bad ? nevh__central_fail(f, term, b, 0, k) : (int)NEVH_OK;
+static double *target(const nevh__planned *term, const nevh__block *b, size_t k,
+                      double dh_dq[], double dh_dp[]) {
+    const nevh_term *is = &term->term->is;
+    double *out = k < term->nq ? dh_dq + is->q[k] * b->width
+                               : dh_dp + is->p[k - term->nq] * b->width;
+    return out + b->lane;
+}
+
+/* Both add the slopes of all groups, and return the first of them at which one
+   is not finite; the number of groups if there is none. */
+static size_t add_one(const nevh_field *f, const nevh__planned *term,
+                      const nevh__block *b, const nevh__stencil *s,
+                      const nevh_gradient *g, double dh_dq[], double dh_dp[]) {
+    size_t groups = s->groups, bad = groups;
+    for (size_t i = 0; i < groups; i++) {
+        size_t k = s->vars[i];
+        const double *x = f->rows + k * s->stride + i;
+        double slope = slope_of(g, groups, x, f->h + i);
+        *target(term, b, k, dh_dq, dh_dp) += slope;
+        bad = slope - slope != 0 && bad == groups ? i : bad;
+    }
+    return bad;
+}
+
+static size_t add_many(const nevh_field *f, const nevh__planned *term,
+                       const nevh__block *b, const nevh__stencil *s,
+                       const nevh_gradient *g, double dh_dq[], double dh_dp[]) {
+    size_t apart = s->groups * b->lanes;
+    for (size_t i = 0; i < s->groups; i++) {
+        size_t k = s->vars[i], first = i * b->lanes;
+        const double *x = f->rows + k * b->stride + first;
+        if (nevh__add_slopes(g, apart, b->lanes, x, f->h + first,
+                             target(term, b, k, dh_dq, dh_dp)))
+            return i;
+    }
+    return s->groups;
 }
 
 int nevh__stencil_difference(nevh_field *f, nevh__planned *term,
                              const nevh__stencil *s, const nevh_gradient *g,
                              nevh__block *b, double dh_dq[], double dh_dp[]) {
-    int status = NEVH_OK;
-    for (; !status && b->lane < b->until; b->lane += b->lanes) {
+    for (; b->lane < b->until; b->lane += b->lanes) {
         set_size(f, s, b);
         fill(f, term, b, s);
         nevh__block_evaluate(f, term, b);
-        for (size_t i = 0; !status && i < s->groups; i++) {
-            size_t k = s->vars[i];
-            status =
-                add_group(f, term, b, g, i, k, k < term->nq ? dh_dq : dh_dp);
-        }
+        size_t bad = (b->lanes == 1 ? add_one : add_many)(f, term, b, s, g,
+                                                          dh_dq, dh_dp);
+        if (bad < s->groups)
+            return nevh__central_fail(f, term, b, 0, s->vars[bad]);
     }
-    return status;
+    return NEVH_OK;
 }
