@@ -12,21 +12,6 @@
 
 static const double now = 0;
 
-/* p^2/(2m), the mass being the instance's constant. */
-static double kinetic(double t, const double q[], const double p[],
-                      const double c[], const void *params) {
-    (void)t, (void)q, (void)params;
-    return p[0] * p[0] / (2 * c[0]);
-}
-
-static void kinetic_gradient(size_t width, const double t[], const double q[],
-                             const double p[], const double c[],
-                             const void *params, double dq[], double dp[]) {
-    (void)t, (void)q, (void)params, (void)dq;
-    if (dp)
-        EACH(i) dp[i] = p[i] / c[i];
-}
-
 static void add_kinetic(nevh_system *s, size_t n, const double mass[]) {
     size_t *index = calloc(n, sizeof *index);
     for (size_t i = 0; i < n; i++)
@@ -37,8 +22,8 @@ static void add_kinetic(nevh_system *s, size_t n, const double mass[]) {
                                     .p = index,
                                     .c = mass,
                                     .count = n,
-                                    .value = kinetic,
-                                    .gradient = kinetic_gradient});
+                                    .value = mass_kinetic,
+                                    .gradient = mass_kinetic_gradient});
     free(index);
 }
 
@@ -113,7 +98,7 @@ static double whole_solar(double t, const double q[], const double p[],
                           const void *params) {
     double sum = 0;
     for (size_t i = 0; i < SOLAR; i++)
-        sum += kinetic(t, NULL, p + i, &mass[i / 3], params);
+        sum += mass_kinetic(t, NULL, p + i, &mass[i / 3], params);
     for (size_t i = 0; i < BODIES; i++)
         for (size_t j = i + 1; j < BODIES; j++) {
             const double *a = q + 3 * i, *b = q + 3 * j;
@@ -223,7 +208,7 @@ static double whole_chain(double t, const double q[], const double p[],
     double sum = 0, m = 1.3;
     for (size_t i = 0; i < SHORT_CHAIN; i++) {
         const double two[] = {q[i], q[(i + 1) % SHORT_CHAIN]};
-        sum += kinetic(t, NULL, p + i, &m, params);
+        sum += mass_kinetic(t, NULL, p + i, &m, params);
         sum += spring(t, two, NULL, NULL, params);
     }
     return sum;

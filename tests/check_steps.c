@@ -40,20 +40,6 @@ static nevh_system *make_elastic(double L, double M) {
     return nevh_elastic_pendulum_model->system(&params);
 }
 
-static double kinetic(double t, const double q[], const double p[],
-                      const double c[], const void *params) {
-    (void)t, (void)q, (void)params;
-    return p[0] * p[0] / (2 * c[0]);
-}
-
-static void kinetic_gradient(size_t width, const double t[], const double q[],
-                             const double p[], const double c[],
-                             const void *params, double dq[], double dp[]) {
-    (void)t, (void)q, (void)params, (void)dq;
-    if (dp)
-        EACH(i) dp[i] = p[i] / c[i];
-}
-
 static nevh_system *in_plane(double mass, const nevh_term *potential) {
     nevh_system *s = nevh_system_new(2);
     nevh_system_add(s, &(nevh_term){.effect = "kinetic",
@@ -62,8 +48,8 @@ static nevh_system *in_plane(double mass, const nevh_term *potential) {
                                     .p = (const size_t[]){0, 1},
                                     .c = (const double[]){mass, mass},
                                     .count = 2,
-                                    .value = kinetic,
-                                    .gradient = kinetic_gradient});
+                                    .value = mass_kinetic,
+                                    .gradient = mass_kinetic_gradient});
     nevh_system_add(s, potential);
     return s;
 }

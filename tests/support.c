@@ -7,16 +7,15 @@
 
 #define EACH(lane) for (size_t lane = 0; lane < width; lane++)
 
-/* p^2/(2m), the mass being the instance's constant. */
-static double kinetic(double t, const double q[], const double p[],
-                      const double c[], const void *params) {
+double mass_kinetic(double t, const double q[], const double p[],
+                    const double c[], const void *params) {
     (void)t, (void)q, (void)params;
     return p[0] * p[0] / (2 * c[0]);
 }
 
-static void kinetic_gradient(size_t width, const double t[], const double q[],
-                             const double p[], const double c[],
-                             const void *params, double dq[], double dp[]) {
+void mass_kinetic_gradient(size_t width, const double t[], const double q[],
+                           const double p[], const double c[],
+                           const void *params, double dq[], double dp[]) {
     (void)t, (void)q, (void)params, (void)dq;
     if (dp)
         EACH(i) dp[i] = p[i] / c[i];
@@ -32,8 +31,8 @@ static void add_kinetic(nevh_system *s, size_t n) {
                                     .p = momenta,
                                     .c = masses,
                                     .count = n,
-                                    .value = kinetic,
-                                    .gradient = kinetic_gradient});
+                                    .value = mass_kinetic,
+                                    .gradient = mass_kinetic_gradient});
 }
 
 static nevh_system *with_potential(size_t n, bool time, nevh_term_fn value,

@@ -22,6 +22,14 @@ typedef struct {
     nevh_system *(*make)(void); /* terms with value, block and gradient */
 } problem;
 
+/* p^2/(2m), the mass being the instance's constant; a nevh_term_fn and its
+   nevh_block_gradient_fn. */
+double mass_kinetic(double t, const double q[], const double p[],
+                    const double c[], const void *params);
+void mass_kinetic_gradient(size_t width, const double t[], const double q[],
+                           const double p[], const double c[],
+                           const void *params, double dq[], double dp[]);
+
 extern const problem driven_pendulum, kepler, henon_heiles, double_pendulum;
 /* The four of them, ended by NULL. */
 extern const problem *const problems[];
