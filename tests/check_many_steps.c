@@ -296,9 +296,33 @@ START_TEST(variables_between) {
 }
 END_TEST
 
+/* A step given for one mass, of those that no trial looks at, keeps that
+   variable of all of them at full order. */
+START_TEST(given_between_trials) {
+    enum { N = 200, GIVEN = 3 };
+    static double mass[N], steps[2 * N], p[N], dp[N], t;
+    for (int i = 0; i < N; i++)
+        mass[i] = p[i] = 1 + 0.01 * i;
+    nevh_system *s = nevh_system_new(N);
+    add_kinetic(s, N, mass);
+    nevh_options o = {.gradient_steps = steps};
+    for (int given = 0; given < 2; given++) {
+        steps[N + GIVEN] = given ? 0.125 : 0;
+        nevh_field *f = nevh_field_new(s, &o);
+        ck_assert_int_eq(nevh_field_gradient(f, 1, &t, p, p, NULL, dp), 0);
+        ck_assert_uint_eq(nevh_field_counts(f).values, N * (given ? 4 : 2));
+        if (given)
+            ck_assert(nevh_field_step(f, "kinetic", GIVEN, N + GIVEN) == 0.125);
+        nevh_field_free(f);
+    }
+    nevh_system_free(s);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("many_steps");
     TCase *cases = tcase_create("sums");
+    tcase_add_test(cases, given_between_trials);
     tcase_add_test(cases, solar_system);
     tcase_add_test(cases, instances_between);
     tcase_add_test(cases, variables_between);

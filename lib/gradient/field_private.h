@@ -186,6 +186,17 @@ const nevh__stencil *nevh__stencil_for(const nevh__planned *, int pass,
 int nevh__stencil_difference(nevh_field *, nevh__planned *,
                              const nevh__stencil *, const nevh_gradient *,
                              nevh__block *, double dh_dq[], double dh_dp[]);
+/* The derivative from values at x +- j delta, copies being `apart` from each
+   other: + before -, nearest first. */
+static inline double nevh__chord_slope(const nevh_gradient *g, size_t apart,
+                                       const double *x, const double *h) {
+    double slope = 0;
+    for (size_t j = 0; j < g->offsets; j++) {
+        size_t plus = 2 * j * apart, minus = plus + apart;
+        slope += g->weights[j] * ((h[plus] - h[minus]) / (x[plus] - x[minus]));
+    }
+    return slope;
+}
 /* Adds the weighted chord slopes of one group to `out`, a value a lane; copies
    are `apart` from each other.  Returns whether one is not finite. */
 bool nevh__add_slopes(const nevh_gradient *, size_t apart, size_t lanes,

@@ -30,15 +30,14 @@ typedef struct {
 /* The difference from values in pairs, + before -; its rounding to *noise. */
 static double difference(const nevh_gradient *g, const double x[],
                          const double h[], double *noise) {
-    double slope = 0, most = 0, reach = 0;
+    double most = 0, reach = 0;
     for (size_t j = 0; j < g->offsets; j++) {
         double width = x[2 * j] - x[2 * j + 1];
-        slope += g->weights[j] * ((h[2 * j] - h[2 * j + 1]) / width);
         most = fmax(most, fmax(fabs(h[2 * j]), fabs(h[2 * j + 1])));
         reach += fabs(g->weights[j] / width);
     }
     *noise = 2 * DBL_EPSILON * most * reach;
-    return slope;
+    return nevh__chord_slope(g, 1, x, h);
 }
 
 static double finite_or_huge(double x) {

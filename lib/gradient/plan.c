@@ -117,6 +117,7 @@ static void take_given(nevh_field *f, nevh__planned *term,
         if (!(given > 0))
             continue;
         term->delta[at] = given;
+        step->quadratic = false;
         if (instance % nevh__stride(term->term->is.count) == 0)
             *step = (nevh__step){.delta = given, .given = true};
     }

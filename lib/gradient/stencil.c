@@ -151,16 +151,6 @@ static void set_size(const nevh_field *f, const nevh__stencil *s,
     b->stride = nevh__padded(b->used);
 }
 
-static double slope_of(const nevh_gradient *g, size_t apart, const double *x,
-                       const double *h) {
-    double slope = 0;
-    for (size_t j = 0; j < g->offsets; j++) {
-        size_t plus = 2 * j * apart, minus = plus + apart;
-        slope += g->weights[j] * ((h[plus] - h[minus]) / (x[plus] - x[minus]));
-    }
-    return slope;
-}
-
 static double *target(const nevh__planned *term, const nevh__block *b, size_t k,
                       double dh_dq[], double dh_dp[]) {
     const nevh_term *is = &term->term->is;
@@ -178,7 +168,7 @@ static size_t add_one(const nevh_field *f, const nevh__planned *term,
     for (size_t i = 0; i < groups; i++) {
         size_t k = s->vars[i];
         const double *x = f->rows + k * s->stride + i;
-        double slope = slope_of(g, groups, x, f->h + i);
+        double slope = nevh__chord_slope(g, groups, x, f->h + i);
         *target(term, b, k, dh_dq, dh_dp) += slope;
         bad = slope - slope != 0 && bad == groups ? i : bad;
     }

@@ -22,7 +22,7 @@ typedef struct {
 /* Adds to *noise what rounding of values may do to the difference. */
 static double by_difference(const check *c, size_t k, size_t at, double delta,
                             double *noise) {
-    double move[8], x[8], h[8], slope = 0;
+    double move[8], x[8], h[8];
     for (size_t j = 0; j < 4; j++) {
         move[2 * j] = (double)(j + 1) * delta;
         move[2 * j + 1] = -move[2 * j];
@@ -30,11 +30,10 @@ static double by_difference(const check *c, size_t k, size_t at, double delta,
     nevh__along(c->explorer, c->term, c->instance, k, at, 8, move, x, h);
     for (size_t j = 0; j < 4; j++) {
         double weight = nevh_central8->weights[j] / (x[2 * j] - x[2 * j + 1]);
-        slope += weight * (h[2 * j] - h[2 * j + 1]);
         *noise += 4 * DBL_EPSILON * fabs(weight) *
                   fmax(fabs(h[2 * j]), fabs(h[2 * j + 1]));
     }
-    return slope;
+    return nevh__chord_slope(nevh_central8, 1, x, h);
 }
 
 /* The term's own derivatives at one sample, from a block of equal lanes. */

@@ -16,7 +16,7 @@
    new noise in every sweep; there the iteration also ends when all changes are
    within that noise and the largest of them has ceased to fall.  Lanes are
    independent of each other: one that is done is left alone.  A lane that makes
-   no progress at large changes, that is still under way after `most_sweeps`, or
+   no progress at large changes, that is still under way after MOST_SWEEPS, or
    that leaves the domain of H with growing changes is handed to the rescue.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "implicit/implicit_private.h"
