@@ -300,11 +300,11 @@ END_TEST
    variable of all of them at full order. */
 START_TEST(given_between_trials) {
     enum { N = 200, GIVEN = 3 };
-    static double mass[N], steps[2 * N], p[N], dp[N], t;
+    static double masses[N], steps[2 * N], p[N], dp[N], t;
     for (int i = 0; i < N; i++)
-        mass[i] = p[i] = 1 + 0.01 * i;
+        masses[i] = p[i] = 1 + 0.01 * i;
     nevh_system *s = nevh_system_new(N);
-    add_kinetic(s, N, mass);
+    add_kinetic(s, N, masses);
     nevh_options o = {.gradient_steps = steps};
     for (int given = 0; given < 2; given++) {
         steps[N + GIVEN] = given ? 0.125 : 0;
