@@ -11,6 +11,7 @@
                   "schemes for Hamiltonian systems, BIT 28 (1988) 877-883",    \
         .order = 2 * (count),                                                  \
         .stages = (count),                                                     \
+        .sweep_gradients = (count),                                            \
         .symplectic = NEVH_YES,                                                \
         .symmetric = NEVH_YES,                                                 \
         .explicit_form = NEVH_NO,                                              \

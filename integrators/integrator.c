@@ -26,6 +26,23 @@ int nevh_integrator_gradients(const nevh_integrator *i) {
     return i->gradients;
 }
 
+int nevh_integrator_sweep_gradients(const nevh_integrator *i) {
+    return i->sweep_gradients;
+}
+
+bool nevh_integrator_adaptive(const nevh_integrator *i) {
+    return i->adaptive;
+}
+
+bool nevh_integrator_own_time(const nevh_integrator *i) {
+    return i->own_time;
+}
+
+const char *nevh_claim_name(nevh_claim claim) {
+    static const char *const names[] = {"no", "yes", "unproven", "doubled"};
+    return claim <= NEVH_DOUBLED ? names[claim] : "unknown";
+}
+
 nevh_claim nevh_integrator_symplectic(const nevh_integrator *i) {
     return i->symplectic;
 }

@@ -41,8 +41,10 @@ START_TEST(gradients_of_a_step) {
     if (each)
         ck_assert_uint_eq(c.gradients, each * STEPS + first_kick(scheme));
     else
-        ck_assert_uint_eq(c.gradients,
-                          c.sweeps * (uint64_t)nevh_integrator_stages(scheme));
+        ck_assert_uint_eq(
+            c.gradients,
+            c.sweeps * (uint64_t)nevh_integrator_sweep_gradients(scheme));
+    ck_assert_uint_eq(c.newtons, 0);
     ck_assert_uint_eq(c.rescues, 0);
 }
 END_TEST

@@ -13,7 +13,8 @@ START_TEST(scheme_is_described) {
     ck_assert_int_ge(nevh_integrator_stages(scheme), 1);
     ck_assert_ptr_nonnull(scheme->kernel);
     if (nevh_integrator_explicit(scheme) == NEVH_YES)
-        ck_assert_int_ge(nevh_integrator_gradients(scheme), 1);
+        ck_assert(nevh_integrator_gradients(scheme) >= 1 ||
+                  nevh_integrator_adaptive(scheme));
 }
 END_TEST
 
@@ -85,6 +86,15 @@ START_TEST(gradients_are_listed) {
 }
 END_TEST
 
+START_TEST(claims_have_names) {
+    ck_assert_str_eq(nevh_claim_name(NEVH_NO), "no");
+    ck_assert_str_eq(nevh_claim_name(NEVH_YES), "yes");
+    ck_assert_str_eq(nevh_claim_name(NEVH_UNPROVEN), "unproven");
+    ck_assert_str_eq(nevh_claim_name(NEVH_DOUBLED), "doubled");
+    ck_assert_str_eq(nevh_claim_name((nevh_claim)9), "unknown");
+}
+END_TEST
+
 START_TEST(statuses_have_texts) {
     ck_assert_str_eq(nevh_status_text(NEVH_OK), "no error");
     ck_assert_str_eq(nevh_status_text(-7), "unknown status");
@@ -103,6 +113,7 @@ int main(void) {
     tcase_add_test(cases, unknown_names);
     tcase_add_test(cases, public_pointers_are_listed);
     tcase_add_test(cases, gradients_are_listed);
+    tcase_add_test(cases, claims_have_names);
     tcase_add_test(cases, statuses_have_texts);
     suite_add_tcase(suite, cases);
     return run_suite(suite);

@@ -53,10 +53,28 @@ static nevh_system *make_ellipse(void) {
 
 /* Kepler orbits that stay what they are: `kepler` has two inertial masses,
    and will come close to collisions. */
-static const problem ellipse = {"ellipse", 2,        true,   0,           12,
-                                6,         {0.4, 0}, {0, 2}, make_ellipse};
+static const problem ellipse = {
+    .name = "ellipse",
+    .n = 2,
+    .separable = true,
+    .quadratic = true,
+    .span = 12,
+    .fewest = 6,
+    .q = {0.4, 0},
+    .p = {0, 2},
+    .make = make_ellipse,
+};
 static const problem comet = {
-    "comet", 2, true, 0, 12, 6, {1.95, 0}, {0, 0.160128154}, make_ellipse};
+    .name = "comet",
+    .n = 2,
+    .separable = true,
+    .quadratic = true,
+    .span = 12,
+    .fewest = 6,
+    .q = {1.95, 0},
+    .p = {0, 0.160128154},
+    .make = make_ellipse,
+};
 
 /* By _i: problem and order.  The last two are only known to be smooth. */
 static const problem *problem_of(int i) {

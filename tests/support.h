@@ -15,9 +15,9 @@ enum { MOST_DOF = 2 };
 typedef struct {
     const char *name;
     size_t n;
-    bool separable;
-    double t0, span; /* where slopes are measured */
-    double fewest;   /* steps over that span that begin to make sense */
+    bool separable, quadratic; /* T(p) + V(q); T quadratic */
+    double t0, span;           /* where slopes are measured */
+    double fewest; /* steps over that span that begin to make sense */
     double q[MOST_DOF], p[MOST_DOF];
     nevh_system *(*make)(void); /* terms with value, block and gradient */
 } problem;
@@ -30,8 +30,9 @@ void mass_kinetic_gradient(size_t width, const double t[], const double q[],
                            const double p[], const double c[],
                            const void *params, double dq[], double dp[]);
 
-extern const problem driven_pendulum, kepler, henon_heiles, double_pendulum;
-/* The four of them, ended by NULL. */
+extern const problem driven_pendulum, kepler, henon_heiles, relativistic,
+    double_pendulum;
+/* The five of them, ended by NULL. */
 extern const problem *const problems[];
 
 /* Whether a scheme takes the problem's H. */

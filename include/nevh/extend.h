@@ -26,12 +26,21 @@ typedef struct {
     int (*step)(nevh_work *, double t, double h, double q[], double p[]);
     /* Frees `plan`; NULL when there is nothing to free. */
     void (*unplan)(nevh_work *);
+    /* Friction has multiplied p by factor[k] (n of them) since the last step:
+       memory that depends on p is scaled or dropped.  NULL: none does. */
+    void (*damp)(nevh_work *, const double factor[]);
+    /* The kernel takes friction into its own slopes, dp/dt = -dH/dq - rate p
+       with w->friction; otherwise it is split off and put around the step. */
+    bool damps;
 } nevh_kernel;
 
 struct nevh_integrator {
     const char *name, *aliases, *source; /* aliases: NULL or comma-separated */
     int order, stages;
     int gradients; /* dH/dq evaluations a step in a long run; 0: it depends */
+    int sweep_gradients; /* the same, of a sweep of an implicit scheme */
+    bool adaptive;       /* with a tolerance, takes its own steps within h */
+    bool own_time;       /* h is nominal: the step sets w->elapsed */
     nevh_claim symplectic, symmetric, explicit_form, preserves_energy;
     unsigned needs;
     const nevh_kernel *kernel;
@@ -54,7 +63,10 @@ struct nevh_work {
     size_t scratch_size; /* doubles */
     double *scratch;
     void *plan;
-    uint64_t sweeps, rescues;
+    uint64_t sweeps, newtons, rescues;
+    double elapsed; /* time that the step takes: h, unless own_time sets it */
+    const double *friction;     /* n rates; NULL: none */
+    struct nevh_ledger *ledger; /* NULL: nobody asked; see nevh_work_account */
 
     struct nevh_report *report; /* written by nevh_work_fail */
 };
@@ -70,6 +82,15 @@ NEVH_API int nevh_work_fail(nevh_work *, int status, const char *format, ...)
 NEVH_API int nevh_work_gradient(nevh_work *, size_t points, const double t[],
                                 const double q[], const double p[],
                                 double dh_dq[], double dh_dp[]);
+/* The evaluations that moved the state, for the balance of the energy: where
+   w->ledger is not NULL a kernel calls this once for each group of `width`
+   points at which it took dH/dq or dH/dp, with the weight (a part of h) that
+   the group has in the step.  `reads`: of which of the two, an or of
+   nevh_part.  Nothing counts before the step returns NEVH_OK. */
+typedef enum { NEVH_OF_Q = 1, NEVH_OF_P = 2 } nevh_part;
+NEVH_API int nevh_work_account(nevh_work *, unsigned parts, double weight,
+                               const double t[], const double q[],
+                               const double p[]);
 /* Adds increments to a state with compensation: y + d + carry, of which the
    rounded sum goes to y and the rest to carry; count elements each.  Nothing
    is written when a sum is not finite.  Returns NEVH_OK or NEVH_EDOM. */

@@ -139,7 +139,9 @@ typedef struct {
     uint64_t gradients;  /* evaluations of dH/dq of all enabled terms; where H
                             is not separable, of the whole gradient */
     uint64_t sweeps;     /* iterations over the stages of implicit steps */
-    uint64_t rescues;    /* implicit steps that needed more than fixed point */
+    uint64_t newtons;    /* implicit steps that fixed-point iteration did not
+                            solve, or too slowly: simplified Newton took over */
+    uint64_t rescues;    /* those that needed GSL's multiroot solver as well */
     double hamiltonians; /* values over the number of enabled instances */
 } nevh_counts;
 NEVH_API nevh_counts nevh_field_counts(const nevh_field *);

@@ -4,6 +4,7 @@
 #define NEVH_INTEGRATOR_H
 
 #include <nevh/status.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 #ifdef __cplusplus
@@ -12,8 +13,11 @@ extern "C" {
 
 typedef struct nevh_integrator nevh_integrator;
 
-/* What is claimed of a scheme.  UNPROVEN is an answer. */
-typedef enum { NEVH_NO, NEVH_YES, NEVH_UNPROVEN } nevh_claim;
+/* What is claimed of a scheme.  UNPROVEN is an answer; DOUBLED holds in the
+   doubled phase space that the scheme works in, not for (q, p) alone. */
+typedef enum { NEVH_NO, NEVH_YES, NEVH_UNPROVEN, NEVH_DOUBLED } nevh_claim;
+/* "no", "yes", "unproven", "doubled". */
+NEVH_API const char *nevh_claim_name(nevh_claim);
 
 /* Explicit, for H = T(p) + V(q). */
 NEVH_API extern const nevh_integrator *const nevh_symplectic_euler_a;
@@ -53,6 +57,14 @@ NEVH_API int nevh_integrator_stages(const nevh_integrator *);
 /* Evaluations of dH/dq in one step of a long run; 0 where it depends on the
    iterations that the step needs. */
 NEVH_API int nevh_integrator_gradients(const nevh_integrator *);
+/* Of an implicit scheme: evaluations of dH/dq in one sweep of the iteration;
+   0 where it asks for values of H alone, or does not iterate. */
+NEVH_API int nevh_integrator_sweep_gradients(const nevh_integrator *);
+/* Whether with a tolerance it takes as many steps within h as that needs. */
+NEVH_API bool nevh_integrator_adaptive(const nevh_integrator *);
+/* Whether h is a nominal step, and the time that a step takes the scheme's
+   own: see nevh_stepper_time. */
+NEVH_API bool nevh_integrator_own_time(const nevh_integrator *);
 NEVH_API nevh_claim nevh_integrator_symplectic(const nevh_integrator *);
 NEVH_API nevh_claim nevh_integrator_symmetric(const nevh_integrator *);
 NEVH_API nevh_claim nevh_integrator_explicit(const nevh_integrator *);

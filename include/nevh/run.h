@@ -46,6 +46,10 @@ NEVH_API const char *nevh_stepper_message(const nevh_stepper *);
 NEVH_API int nevh_stepper_apply(nevh_stepper *, double t, double h, double q[],
                                 double p[]);
 
+/* The time after the last step: t + h, but for schemes that choose their own
+   time (nevh_integrator_own_time). */
+NEVH_API double nevh_stepper_time(const nevh_stepper *);
+
 /* Forgets the memory, as if no step had been taken.  Counts go on. */
 NEVH_API void nevh_stepper_reset(nevh_stepper *);
 /* A second stepper with the same memory, for branch-offs that leave the first
@@ -76,7 +80,8 @@ typedef struct {
                      state are always shown. */
 } nevh_observer;
 
-/* `steps` steps of h from t0, the time of step i being t0 + i*h.
+/* `steps` steps of h from t0, the time of step i being t0 + i*h (the sum of
+   their times where the scheme chooses them).
    q, p       in and out, n x width each
    observers  n_observers of them; NULL when that is 0.  The orbit does not
               depend on them, to the last bit.

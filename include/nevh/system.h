@@ -68,8 +68,10 @@ typedef struct {
 
 /* What is known of the sum of the enabled terms. */
 enum nevh_trait {
-    NEVH_SEPARABLE = 1,  /* H = T(t, p) + V(t, q) */
-    NEVH_AUTONOMOUS = 2, /* H does not read t */
+    NEVH_SEPARABLE = 1,         /* H = T(t, p) + V(t, q) */
+    NEVH_AUTONOMOUS = 2,        /* H does not read t */
+    NEVH_QUADRATIC_KINETIC = 4, /* T is quadratic in p; no declaration says so:
+                                   where a scheme needs it, H is probed */
 };
 
 typedef struct nevh_system nevh_system;

@@ -17,6 +17,16 @@ static int show(nevh_stepper *s, size_t step, size_t steps, double t,
     return NEVH_OK;
 }
 
+/* The time after one more step: t0 + i h, or the sum of the times that the
+   scheme took, with compensation. */
+static double next_time(nevh_stepper *s, double t0, double h, double t) {
+    if (!s->work.integrator->own_time)
+        return t0 + (double)s->taken * h;
+    double step = s->work.elapsed + s->time_lost, next = t + step;
+    s->time_lost = step - (next - t);
+    return s->last_t = next;
+}
+
 int nevh_run(nevh_stepper *s, double t0, double h, size_t steps, double q[],
              double p[], const nevh_observer observers[], size_t count) {
     int status = nevh__begin(s, t0, h, q, p);
@@ -24,14 +34,16 @@ int nevh_run(nevh_stepper *s, double t0, double h, size_t steps, double q[],
         s->taken = 0;
     if (status)
         return status;
-    status = show(s, 0, steps, t0, q, p, observers, count);
+    double t = t0;
+    s->time_lost = 0;
+    status = show(s, 0, steps, t, q, p, observers, count);
     while (!status && s->taken < steps) {
-        status = nevh__advance(s, t0 + (double)s->taken * h, h, q, p);
+        status = nevh__advance(s, t, h, q, p);
         if (status)
             break;
         s->taken++;
-        status = show(s, s->taken, steps, t0 + (double)s->taken * h, q, p,
-                      observers, count);
+        t = next_time(s, t0, h, t);
+        status = show(s, s->taken, steps, t, q, p, observers, count);
     }
     if (s->taken > 0)
         nevh__remember(s, q, p);

@@ -53,6 +53,11 @@ static int plan(nevh_stepper *s, const nevh_integrator *integrator) {
         return nevh__fail(&s->report, NEVH_EINVAL,
                           "the tolerance %g is not a positive number",
                           s->options.tolerance);
+    if (integrator->own_time && w->width > 1)
+        return nevh__fail(&s->report, NEVH_EINVAL,
+                          "%s chooses its own times and takes one orbit, not "
+                          "%zu side by side: make a stepper for each",
+                          integrator->name, w->width);
     int status = plan_field(s);
     if (!status)
         status = nevh__check_structure(s);
@@ -173,10 +178,11 @@ void nevh__undo(nevh_stepper *s) {
 
 int nevh__advance(nevh_stepper *s, double t, double h, double q[], double p[]) {
     nevh_work *w = &s->work;
+    w->elapsed = h;
     int status = w->integrator->kernel->step(w, t, h, q, p);
     if (status)
         return status;
-    s->last_t = t + h;
+    s->last_t = t + w->elapsed;
     s->report.status = NEVH_OK; /* a rescued step has failed before */
     s->report.text[0] = '\0';
     return NEVH_OK;
@@ -207,12 +213,17 @@ nevh_counts nevh_stepper_counts(const nevh_stepper *s) {
     if (s->work.field)
         counts = nevh_field_counts(s->work.field);
     counts.sweeps = s->work.sweeps;
+    counts.newtons = s->work.newtons;
     counts.rescues = s->work.rescues;
     return counts;
 }
 
 nevh_field *nevh_stepper_field(nevh_stepper *s) {
     return s->work.field;
+}
+
+double nevh_stepper_time(const nevh_stepper *s) {
+    return s->last_t;
 }
 
 size_t nevh_stepper_taken(const nevh_stepper *s) {

@@ -17,6 +17,7 @@ struct nevh_stepper {
     bool forgot;    /* the last step or run began with less than `before` */
     double *before; /* the memory before that */
     size_t taken;
+    double time_lost; /* by the sum of the run's times, where steps vary */
 };
 
 /* Why a scheme does not fit the system, or NEVH_OK. */
