@@ -11,4 +11,5 @@ nevhinclude_HEADERS = \
 	include/nevh/probe.h \
 	include/nevh/run.h \
 	include/nevh/status.h \
-	include/nevh/system.h
+	include/nevh/system.h \
+	include/nevh/transform.h

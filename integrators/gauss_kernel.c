@@ -222,6 +222,24 @@ static int commit(const gauss_step *s, const gauss_plan *g, double q[],
     return NEVH_OK;
 }
 
+static int account(const gauss_step *s, const gauss_plan *g) {
+    nevh_work *w = s->work;
+    size_t stages = g->gauss->stages, lane = 0;
+    int status = NEVH_OK;
+    for (size_t k = 0; k < 2 * w->n; k++)
+        find_points(s, g, k, 1, &lane, s->slopes);
+    for (size_t i = 0; !status && i < stages; i++) {
+        double q[16], p[16];
+        for (size_t k = 0; k < w->n; k++) {
+            q[k] = s->points[k * stages + i];
+            p[k] = s->points[(w->n + k) * stages + i];
+        }
+        double t = s->t + g->gauss->c[i] * s->h;
+        status = nevh_work_account(w, 3, g->hb[i], &t, q, p);
+    }
+    return status;
+}
+
 static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     gauss_plan *g = w->plan;
     gauss_step s = lay_out(w, t, h, q, p);
@@ -229,6 +247,8 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     guess(&s, g);
     nevh__stage_problem problem = {t, h, q, p, s.slopes, map, &s};
     int status = nevh__stage_solve(g->solver, &problem);
+    if (!status && w->accounts)
+        status = account(&s, g);
     return status ? status : commit(&s, g, q, p);
 }
 

@@ -4,9 +4,14 @@ libnevh_core_la_SOURCES += \
 	integrators/list.c \
 	integrators/work_private.h \
 	integrators/work.c \
+	integrators/transform_private.h \
+	integrators/transform.c \
 	integrators/splitting_kernel.c \
 	integrators/symplectic_euler.c \
 	integrators/verlet.c \
+	integrators/adaptive_verlet_private.h \
+	integrators/adaptive_verlet_kernel.c \
+	integrators/adaptive_verlet.c \
 	integrators/runge_kutta_kernel.c \
 	integrators/euler.c \
 	integrators/rk4.c \

@@ -20,6 +20,8 @@
     X(gauss16)                                                                 \
     X(gauss18)                                                                 \
     X(gauss20)                                                                 \
+    X(adaptive_verlet)                                                         \
+    X(naive_adaptive_verlet)                                                   \
     X(euler)                                                                   \
     X(rk4)                                                                     \
     X(gsl_rkf45)                                                               \

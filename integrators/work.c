@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "work_private.h"
 #include "system/system_private.h"
+#include "transform_private.h"
 
 int nevh_work_fail(nevh_work *w, int status, const char *format, ...) {
     va_list arguments;
@@ -18,13 +19,27 @@ int nevh__fail_range(nevh_work *w, double t, double h) {
                           t, h);
 }
 
+static int fail_field(nevh_work *w, int status) {
+    return nevh_work_fail(w, status, "%s", nevh_field_message(w->field));
+}
+
 int nevh_work_gradient(nevh_work *w, size_t points, const double t[],
                        const double q[], const double p[], double dh_dq[],
                        double dh_dp[]) {
     int status = nevh_field_gradient(w->field, points, t, q, p, dh_dq, dh_dp);
     if (status)
-        nevh_work_fail(w, status, "%s", nevh_field_message(w->field));
-    return status;
+        return fail_field(w, status);
+    return w->transform
+               ? nevh__transform_gradient(w, points, t, q, p, dh_dq, dh_dp)
+               : NEVH_OK;
+}
+
+int nevh_work_value(nevh_work *w, size_t points, const double t[],
+                    const double q[], const double p[], double h[]) {
+    if (w->transform)
+        return nevh__transform_value(w, points, t, q, p, h);
+    int status = nevh_field_value(w->field, points, t, q, p, h);
+    return status ? fail_field(w, status) : NEVH_OK;
 }
 
 /* The sum of x - x over the new values: 0 if all are finite, NaN otherwise. */
@@ -62,6 +77,10 @@ int nevh_work_commit(nevh_work *w, size_t count, double q[], const double dq[],
 
 int nevh_work_account(nevh_work *w, unsigned parts, double weight,
                       const double t[], const double q[], const double p[]) {
-    (void)w, (void)parts, (void)weight, (void)t, (void)q, (void)p;
-    return NEVH_OK;
+    double rate = 0;
+    int status =
+        w->transform ? nevh__transform_rate(w, t, q, p, &rate) : NEVH_OK;
+    w->elapsed += weight * rate;
+    (void)parts;
+    return status;
 }

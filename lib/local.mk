@@ -8,6 +8,7 @@ libnevh_core_la_SOURCES = \
 	lib/system/memory.c \
 	lib/system/system.c \
 	lib/system/values.c \
+	lib/system/closeness.c \
 	lib/system/probe.c \
 	lib/gradient/field_private.h \
 	lib/gradient/explore_private.h \
@@ -36,6 +37,7 @@ libnevh_core_la_SOURCES = \
 	lib/run/stepper.c \
 	lib/run/save.c \
 	lib/run/run.c \
+	lib/run/until.c \
 	lib/diagnose/energy.c \
 	lib/diagnose/trend_private.h \
 	lib/diagnose/trend.c \

@@ -58,6 +58,8 @@ START_TEST(public_pointers_are_listed) {
                                               nevh_gauss16,
                                               nevh_gauss18,
                                               nevh_gauss20,
+                                              nevh_adaptive_verlet,
+                                              nevh_naive_adaptive_verlet,
                                               nevh_euler,
                                               nevh_rk4,
                                               nevh_gsl_rkf45,

@@ -32,6 +32,9 @@ typedef struct {
     /* The kernel takes friction into its own slopes, dp/dt = -dH/dq - rate p
        with w->friction; otherwise it is split off and put around the step. */
     bool damps;
+    /* Takes its gradients around nevh_work_gradient and accounts for nothing:
+       no transform and no balance of the energy go with it. */
+    bool foreign;
 } nevh_kernel;
 
 struct nevh_integrator {
@@ -65,8 +68,10 @@ struct nevh_work {
     void *plan;
     uint64_t sweeps, newtons, rescues;
     double elapsed; /* time that the step takes: h, unless own_time sets it */
-    const double *friction;     /* n rates; NULL: none */
-    struct nevh_ledger *ledger; /* NULL: nobody asked; see nevh_work_account */
+    const double *friction;            /* n rates; NULL: none */
+    struct nevh__transform *transform; /* of H; NULL: there is none */
+    struct nevh_ledger *ledger;        /* NULL: nobody asked for the balance */
+    bool accounts;                     /* nevh_work_account is to be called */
 
     struct nevh_report *report; /* written by nevh_work_fail */
 };
@@ -77,16 +82,19 @@ NEVH_API int nevh_work_fail(nevh_work *, int status, const char *format, ...)
     __attribute__((format(printf, 3, 4)))
 #endif
     ;
-/* The gradient at `points` states side by side, as nevh_field_gradient; a
+/* The gradient at `points` states side by side, as nevh_field_gradient, and
+   values, as nevh_field_value: of H, or of K where time is transformed.  A
    failure is recorded. */
 NEVH_API int nevh_work_gradient(nevh_work *, size_t points, const double t[],
                                 const double q[], const double p[],
                                 double dh_dq[], double dh_dp[]);
-/* The evaluations that moved the state, for the balance of the energy: where
-   w->ledger is not NULL a kernel calls this once for each group of `width`
-   points at which it took dH/dq or dH/dp, with the weight (a part of h) that
-   the group has in the step.  `reads`: of which of the two, an or of
-   nevh_part.  Nothing counts before the step returns NEVH_OK. */
+NEVH_API int nevh_work_value(nevh_work *, size_t points, const double t[],
+                             const double q[], const double p[], double h[]);
+/* The evaluations that moved the state, for the balance of the energy and for
+   transformed time: where w->accounts is set a kernel calls this once for each
+   group of `width` points at which it took dH/dq or dH/dp, with the weight (a
+   part of h) that the group has in the step.  `reads`: of which of the two, an
+   or of nevh_part.  Nothing counts before the step returns NEVH_OK. */
 typedef enum { NEVH_OF_Q = 1, NEVH_OF_P = 2 } nevh_part;
 NEVH_API int nevh_work_account(nevh_work *, unsigned parts, double weight,
                                const double t[], const double q[],

@@ -43,9 +43,11 @@ typedef struct {
     const double *q, *p; /* n x width each; NULL: states around zero */
     size_t width;        /* orbits side by side; 0 means 1 */
     double tolerance;    /* of adaptive schemes, relative; 0: fixed steps */
-    bool portable;       /* terms with a scalar value are evaluated through it,
-                            never in SIMD blocks: the same digits on machines
-                            with the same libm and instruction-set class */
+    const nevh_system *transform; /* of time: s(q, p) > 0 as a system, borrowed;
+                                     NULL: none; see <nevh/transform.h> */
+    bool portable; /* terms with a scalar value are evaluated through it,
+                      never in SIMD blocks: the same digits on machines
+                      with the same libm and instruction-set class */
 } nevh_options;
 
 /* A field is the gradient of H, planned: a system, a gradient method with its

@@ -35,6 +35,10 @@ NEVH_API extern const nevh_integrator *const nevh_gauss14;
 NEVH_API extern const nevh_integrator *const nevh_gauss16;
 NEVH_API extern const nevh_integrator *const nevh_gauss18;
 NEVH_API extern const nevh_integrator *const nevh_gauss20;
+/* Verlet with steps of their own length, h being nominal; the second destroys
+   what the first keeps. */
+NEVH_API extern const nevh_integrator *const nevh_adaptive_verlet;
+NEVH_API extern const nevh_integrator *const nevh_naive_adaptive_verlet;
 /* Not symplectic: the references.  GSL's take one step of h where the
    tolerance is 0, and as many as the tolerance needs where it is not. */
 NEVH_API extern const nevh_integrator *const nevh_euler;

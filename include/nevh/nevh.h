@@ -15,5 +15,6 @@
 #include <nevh/run.h>
 #include <nevh/status.h>
 #include <nevh/system.h>
+#include <nevh/transform.h>
 
 #endif

@@ -133,7 +133,7 @@ int nevh_reversal_defect(nevh_stepper *s, double t, double h, size_t steps,
     nevh_stepper_reset(s);
     int status = nevh_run(s, t, h, steps, b.z, b.z + n, NULL, 0);
     if (!status)
-        status = nevh_run(s, t + (double)steps * h, -h, steps, b.z, b.z + n,
+        status = nevh_run(s, nevh__next_time(s, t, h), -h, steps, b.z, b.z + n,
                           NULL, 0);
     if (!status)
         *defect = distance(&b);

@@ -9,16 +9,17 @@ typedef struct {
     char magic[8];
     char integrator[32];
     uint64_t n, width, rows, has_last;
-    double last_t;
+    double last_t, time_lost;
 } header;
 
 static header describe(const nevh_stepper *s) {
-    header h = {.magic = "nevh-1", .has_last = s->has_last};
+    header h = {.magic = "nevh-2", .has_last = s->has_last};
     strncpy(h.integrator, s->work.integrator->name, sizeof h.integrator - 1);
     h.n = s->work.n;
     h.width = s->work.width;
     h.rows = s->work.memory_rows;
     h.last_t = s->last_t;
+    h.time_lost = s->time_lost;
     return h;
 }
 
@@ -64,6 +65,7 @@ int nevh_stepper_load(nevh_stepper *s, const void *buffer, size_t size) {
     memcpy(&h, buffer, sizeof h);
     own.has_last = h.has_last;
     own.last_t = h.last_t;
+    own.time_lost = h.time_lost;
     if (memcmp(&own, &h, sizeof h) != 0)
         return nevh__fail(&s->report, NEVH_EINVAL,
                           "the memory was saved by another scheme or system");
@@ -75,6 +77,7 @@ int nevh_stepper_load(nevh_stepper *s, const void *buffer, size_t size) {
         memcpy(part[i], from, each[i]);
     s->has_last = h.has_last != 0;
     s->last_t = h.last_t;
+    s->time_lost = h.time_lost;
     return NEVH_OK;
 }
 
@@ -92,5 +95,6 @@ nevh_stepper *nevh_stepper_copy(const nevh_stepper *s) {
         memcpy(to[i], from[i], size[i]);
     copy->has_last = s->has_last;
     copy->last_t = s->last_t;
+    copy->time_lost = s->time_lost;
     return copy;
 }

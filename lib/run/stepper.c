@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/stepper_private.h"
 #include "gradient/field_private.h"
+#include "transform_private.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -53,16 +54,25 @@ static int plan(nevh_stepper *s, const nevh_integrator *integrator) {
         return nevh__fail(&s->report, NEVH_EINVAL,
                           "the tolerance %g is not a positive number",
                           s->options.tolerance);
-    if (integrator->own_time && w->width > 1)
+    s->own_time = integrator->own_time || s->options.transform;
+    if (s->own_time && w->width > 1)
         return nevh__fail(&s->report, NEVH_EINVAL,
-                          "%s chooses its own times and takes one orbit, not "
+                          "%s%s chooses its own times and takes one orbit, not "
                           "%zu side by side: make a stepper for each",
-                          integrator->name, w->width);
+                          integrator->name,
+                          s->options.transform ? " under a transform" : "",
+                          w->width);
     int status = plan_field(s);
     if (!status)
         status = nevh__check_structure(s);
+    if (!status && s->options.transform && !integrator->own_time)
+        status = nevh__transform_plan(w);
+    w->accounts = w->transform != NULL;
     if (!status)
         status = integrator->kernel->plan(w);
+    s->kernel_rows = w->memory_rows;
+    if (w->transform)
+        w->memory_rows += NEVH__TRANSFORM_ROWS;
     return status ? status : plan_memory(s);
 }
 
@@ -98,6 +108,7 @@ void nevh_stepper_free(nevh_stepper *s) {
     if (s->work.plan && s->work.integrator->kernel->unplan)
         s->work.integrator->kernel->unplan(&s->work);
     nevh_field_free(s->work.field);
+    nevh__transform_free(s->work.transform);
     free((double *)s->options.gradient_steps);
     free((double *)s->options.scale);
     free((double *)s->options.q);
@@ -161,6 +172,7 @@ int nevh__begin(nevh_stepper *s, double t, double h, const double q[],
         return nevh__fail(&s->report, NEVH_EINVAL,
                           "time %g or step %g is not a finite number", t, h);
     bool same = s->has_last && same_time(s, t, h);
+    s->time_lost = same ? s->time_lost : 0;
     for (size_t lane = 0; lane < s->work.width; lane++)
         if (!same || !same_lane(s, lane, q, p)) {
             if (!s->forgot)
@@ -178,11 +190,17 @@ void nevh__undo(nevh_stepper *s) {
 
 int nevh__advance(nevh_stepper *s, double t, double h, double q[], double p[]) {
     nevh_work *w = &s->work;
-    w->elapsed = h;
-    int status = w->integrator->kernel->step(w, t, h, q, p);
+    w->elapsed = w->transform ? 0 : h;
+    int status = NEVH_OK;
+    if (w->transform)
+        status = nevh__transform_begin(w, w->memory + s->kernel_rows, t, q, p);
+    if (!status)
+        status = w->integrator->kernel->step(w, t, h, q, p);
     if (status)
         return status;
-    s->last_t = t + w->elapsed;
+    double passed = w->elapsed + (s->own_time ? s->time_lost : 0);
+    s->last_t = t + passed;
+    s->time_lost = passed - (s->last_t - t);
     s->report.status = NEVH_OK; /* a rescued step has failed before */
     s->report.text[0] = '\0';
     return NEVH_OK;

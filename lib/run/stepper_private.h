@@ -10,14 +10,15 @@ struct nevh_stepper {
     nevh_work work;
     nevh_options options; /* arrays are the stepper's own */
     nevh__report report;
-    bool planned;
+    bool planned, own_time;
+    size_t kernel_rows; /* of the memory; those of the transform follow */
     /* What the last step returned. */
     bool has_last;
     double last_t, *last_q, *last_p;
     bool forgot;    /* the last step or run began with less than `before` */
     double *before; /* the memory before that */
     size_t taken;
-    double time_lost; /* by the sum of the run's times, where steps vary */
+    double time_lost; /* of last_t, where steps vary, by rounding */
 };
 
 /* Why a scheme does not fit the system, or NEVH_OK. */
@@ -27,6 +28,22 @@ int nevh__advance(nevh_stepper *, double t, double h, double q[], double p[]);
 /* Forgets what does not belong to the state; NEVH_OK if the step may begin. */
 int nevh__begin(nevh_stepper *, double t, double h, const double q[],
                 const double p[]);
+
+/* The parts of a run.  Shows the state to the observers whose turn it is, and
+   the last one to all. */
+int nevh__show(nevh_stepper *, size_t step, bool last, double t,
+               const double q[], const double p[],
+               const nevh_observer observers[], size_t count);
+/* The time after the step just taken: t0 + i h, or the sum of the times that
+   the scheme took, with compensation. */
+double nevh__next_time(const nevh_stepper *, double t0, double h);
+int nevh__begin_run(nevh_stepper *, double t0, double h, const double q[],
+                    const double p[]);
+/* ends: the last of the steps is the last of the run. */
+int nevh__run_steps(nevh_stepper *, double t0, double h, size_t steps,
+                    bool ends, double q[], double p[],
+                    const nevh_observer observers[], size_t count);
+void nevh__end_run(nevh_stepper *, const double q[], const double p[]);
 
 /* No step was taken: the memory is what it was before nevh__begin. */
 void nevh__undo(nevh_stepper *);

@@ -1,0 +1,14 @@
+/* nevh: Verlet with steps that vary.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_ADAPTIVE_VERLET_PRIVATE_H
+#define NEVH_ADAPTIVE_VERLET_PRIVATE_H
+
+#include <nevh/extend.h>
+
+/* The table. */
+typedef struct {
+    bool reversible; /* the density is integrated; else s is taken as it is */
+} nevh__step_control;
+extern const nevh_kernel nevh__adaptive_verlet_kernel;
+
+#endif

@@ -1,0 +1,201 @@
+/* nevh: the time transform of a step's Hamiltonian; see <nevh/transform.h>.
+   SPDX-License-Identifier: GPL-3.0-or-later
+
+   grad K = s grad H + (H - H0) grad s, all over s0, from the gradient of H, one
+   value of it, and a field of its own for s. */
+#include "transform_private.h"
+#include "system/system_private.h"
+#include <math.h>
+#include <stdlib.h>
+
+static int plan_arrays(nevh_work *w, nevh__transform *f) {
+    size_t stages = (size_t)w->integrator->stages, n = w->n;
+    f->capacity = 4 * n + 1 > stages ? 4 * n + 1 : stages;
+    f->h = nevh__array(f->capacity, sizeof *f->h);
+    f->s = nevh__array(f->capacity, sizeof *f->s);
+    f->ds_dq = nevh__array(n * f->capacity, sizeof *f->ds_dq);
+    f->ds_dp = nevh__array(n * f->capacity, sizeof *f->ds_dp);
+    if (f->h && f->s && f->ds_dq && f->ds_dp)
+        return NEVH_OK;
+    return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
+}
+
+int nevh__transform_fail(nevh_work *w, const nevh_field *s) {
+    return nevh_work_fail(w, nevh_field_status(s), "the transform: %s",
+                          nevh_field_message(s));
+}
+
+/* grad s is multiplied by H - H0, which is next to nothing: where s has no
+   exact gradient, differences are good enough under any method of H's. */
+static const nevh_gradient *method(const nevh_system *s) {
+    for (size_t i = 0; i < s->n_terms; i++)
+        if (!s->terms[i]->is.gradient)
+            return nevh_central6;
+    return nevh_exact;
+}
+
+int nevh__transform_field(nevh_work *w, nevh_field **field) {
+    const nevh_system *s = w->options->transform;
+    nevh_options own = *w->options;
+    if (s->report.status)
+        return nevh_work_fail(w, s->report.status, "the transform: %s",
+                              s->report.text);
+    if (s->n != w->n)
+        return nevh_work_fail(w, NEVH_EINVAL,
+                              "the transform has %zu degrees of freedom, H %zu",
+                              s->n, w->n);
+    if (!(nevh_system_traits(s) & NEVH_AUTONOMOUS))
+        return nevh_work_fail(w, NEVH_EINVAL, "the transform reads the time");
+    own.gradient = method(s);
+    own.gradient_step = 0;
+    own.gradient_steps = NULL;
+    own.scale = w->scale;
+    *field = nevh_field_new(s, &own);
+    if (!*field)
+        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
+    return nevh_field_status(*field) ? nevh__transform_fail(w, *field)
+                                     : NEVH_OK;
+}
+
+static int refuse(nevh_work *w, const char *why) {
+    return nevh_work_fail(w, NEVH_ESTRUCT,
+                          "%s cannot take a time transform: %s; midpoint, "
+                          "gauss4 and the other schemes for any H can",
+                          w->integrator->name, why);
+}
+
+static int check(nevh_work *w) {
+    const nevh_integrator *scheme = w->integrator;
+    if (scheme->needs)
+        return refuse(w, "it needs H = T(p) + V(q), and s(q, p) (H - H0) is "
+                         "no such sum");
+    if (scheme->kernel->foreign)
+        return refuse(w, "it takes its gradients on its own");
+    if (!(nevh_system_traits(w->system) & NEVH_AUTONOMOUS))
+        return nevh_work_fail(w, NEVH_ESTRUCT,
+                              "H depends on time, but the time transform "
+                              "s (H - H0) needs an energy that is conserved");
+    return NEVH_OK;
+}
+
+int nevh__transform_plan(nevh_work *w) {
+    int status = check(w);
+    if (status)
+        return status;
+    nevh__transform *f = w->transform = nevh__array(1, sizeof *f);
+    if (!f)
+        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
+    status = nevh__transform_field(w, &f->field);
+    return status ? status : plan_arrays(w, f);
+}
+
+void nevh__transform_free(nevh__transform *f) {
+    if (!f)
+        return;
+    nevh_field_free(f->field);
+    free(f->h);
+    free(f->s);
+    free(f->ds_dq);
+    free(f->ds_dp);
+    free(f);
+}
+
+/* s at the points, all of it positive. */
+static int find_s(nevh_work *w, size_t points, const double t[],
+                  const double q[], const double p[]) {
+    nevh__transform *f = w->transform;
+    if (points > f->capacity)
+        return nevh_work_fail(w, NEVH_EFAILED,
+                              "%s: %zu points, where the transform planned %zu",
+                              w->integrator->name, points, f->capacity);
+    if (nevh_field_value(f->field, points, t, q, p, f->s))
+        return nevh__transform_fail(w, f->field);
+    for (size_t i = 0; i < points; i++)
+        if (!(f->s[i] > 0))
+            return nevh_work_fail(w, NEVH_EDOM,
+                                  "the transform s is %g, not positive, at t = "
+                                  "%.9g, q[0] = %.9g, p[0] = %.9g",
+                                  f->s[i], t[i], q[i], p[i]);
+    return NEVH_OK;
+}
+
+/* s and H - H0 at the points. */
+static int find_both(nevh_work *w, size_t points, const double t[],
+                     const double q[], const double p[]) {
+    nevh__transform *f = w->transform;
+    int status = find_s(w, points, t, q, p);
+    if (status)
+        return status;
+    if (nevh_field_value(w->field, points, t, q, p, f->h))
+        return nevh_work_fail(w, nevh_field_status(w->field), "%s",
+                              nevh_field_message(w->field));
+    for (size_t i = 0; i < points; i++)
+        f->h[i] -= f->memory[NEVH__ENERGY];
+    return NEVH_OK;
+}
+
+int nevh__transform_begin(nevh_work *w, double memory[], double t,
+                          const double q[], const double p[]) {
+    nevh__transform *f = w->transform;
+    f->memory = memory;
+    if (memory[NEVH__BEGUN] != 0)
+        return NEVH_OK;
+    memory[NEVH__ENERGY] = 0;
+    int status = find_both(w, 1, &t, q, p);
+    if (status)
+        return status;
+    memory[NEVH__BEGUN] = 1;
+    memory[NEVH__ENERGY] = f->h[0];
+    memory[NEVH__UNIT] = f->s[0];
+    return NEVH_OK;
+}
+
+/* One half: dh = (s dh + (H - H0) ds) / s0. */
+static void combine(const nevh_work *w, size_t points, const double ds[],
+                    double dh[]) {
+    const nevh__transform *f = w->transform;
+    double unit = f->memory[NEVH__UNIT];
+    for (size_t k = 0; dh && k < w->n; k++)
+        for (size_t i = 0; i < points; i++) {
+            double *out = &dh[k * points + i];
+            *out = (f->s[i] * *out + f->h[i] * ds[k * points + i]) / unit;
+        }
+}
+
+int nevh__transform_gradient(nevh_work *w, size_t points, const double t[],
+                             const double q[], const double p[], double dh_dq[],
+                             double dh_dp[]) {
+    nevh__transform *f = w->transform;
+    int status = find_both(w, points, t, q, p);
+    if (status)
+        return status;
+    if (nevh_field_gradient(f->field, points, t, q, p, dh_dq ? f->ds_dq : NULL,
+                            dh_dp ? f->ds_dp : NULL))
+        return nevh__transform_fail(w, f->field);
+    combine(w, points, f->ds_dq, dh_dq);
+    combine(w, points, f->ds_dp, dh_dp);
+    return NEVH_OK;
+}
+
+int nevh__transform_value(nevh_work *w, size_t points, const double t[],
+                          const double q[], const double p[], double h[]) {
+    const nevh__transform *f = w->transform;
+    int status = find_both(w, points, t, q, p);
+    for (size_t i = 0; !status && i < points; i++)
+        h[i] = f->s[i] * f->h[i] / f->memory[NEVH__UNIT];
+    return status;
+}
+
+int nevh__transform_rate(nevh_work *w, const double t[], const double q[],
+                         const double p[], double *rate) {
+    int status = find_s(w, 1, t, q, p);
+    if (status)
+        return status;
+    *rate = w->transform->s[0] / w->transform->memory[NEVH__UNIT];
+    if (*rate > NEVH__LEAST_RATE)
+        return NEVH_OK;
+    return nevh_work_fail(w, NEVH_EDOM,
+                          "the transform s has fallen to %g of its value at "
+                          "the start (a collision?) at t = %.9g",
+                          *rate, t[0]);
+}
