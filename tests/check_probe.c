@@ -18,7 +18,7 @@ static double driven(double t, const double q[], const double p[],
                      const void *x) {
     return plain(t, q, p, x) + 1e-9 * sin(2 * t) * q[0];
 }
-static double relativistic(double t, const double q[], const double p[],
+static double fast_kinetic(double t, const double q[], const double p[],
                            const void *x) {
     (void)t, (void)x;
     return 3 * sqrt(1 + p[0] * p[0] / 9) - 1.7 * cos(q[0]);
@@ -44,7 +44,7 @@ typedef struct {
 
 static const trial trials[] = {
     {plain, NEVH_FINDINGS},        {mixed, NEVH_IS_SEPARABLE},
-    {driven, NEVH_IS_AUTONOMOUS},  {relativistic, NEVH_IS_QUADRATIC},
+    {driven, NEVH_IS_AUTONOMOUS},  {fast_kinetic, NEVH_IS_QUADRATIC},
     {one_way, NEVH_IS_REVERSIBLE}, {kinked, NEVH_IS_SMOOTH},
 };
 
