@@ -22,15 +22,15 @@ typedef struct {
     size_t count;
     bool same_ends; /* the last operation is of the first one's kind */
     double *weights;
+    double *times; /* parts of h that the half at rest has gone through */
 } operations;
 
 /* One half of the state under way: q under drifts, p under kicks. */
 typedef struct {
-    double *start;   /* the state at the start of the step */
-    double *change;  /* its increment so far */
-    double *carry;   /* lost digits of earlier steps */
-    double *point;   /* start + (change + carry) */
-    double fraction; /* of h that has passed for it */
+    double *start;  /* the state at the start of the step */
+    double *change; /* its increment so far */
+    double *carry;  /* lost digits of earlier steps */
+    double *point;  /* start + (change + carry) */
 } half;
 
 typedef struct {
@@ -41,8 +41,8 @@ typedef struct {
 static layout lay_out(const nevh_work *w, double q[], double p[]) {
     double *m = w->memory, *s = w->scratch;
     size_t n = w->size;
-    return (layout){.q = {q, s, m, s + n, 0},
-                    .p = {p, s + 2 * n, m + n, s + 3 * n, 0},
+    return (layout){.q = {q, s, m, s + n},
+                    .p = {p, s + 2 * n, m + n, s + 3 * n},
                     .slope = s + 4 * n,
                     .time = s + 5 * n,
                     .kept = m + 2 * n,
@@ -52,8 +52,19 @@ static layout lay_out(const nevh_work *w, double q[], double p[]) {
 static void unplan(nevh_work *w) {
     operations *o = w->plan;
     free(o->weights);
+    free(o->times);
     free(o);
     w->plan = NULL;
+}
+
+/* A kick takes dH/dq at the drifts' time, a drift dH/dp at the kicks'. */
+static void fill(operations *o, const nevh_splitting *table) {
+    double passed[2] = {0, 0};
+    nevh__splitting_expand(table, o->weights);
+    for (size_t i = 0; i < o->count; i++) {
+        o->times[i] = passed[1 - i % 2];
+        passed[i % 2] += o->weights[i];
+    }
 }
 
 static int plan(nevh_work *w) {
@@ -65,22 +76,23 @@ static int plan(nevh_work *w) {
     o->count = nevh__splitting_operations(table);
     o->same_ends = o->count % 2 == 1;
     o->weights = nevh__array(o->count, sizeof *o->weights);
-    if (!o->weights)
+    o->times = nevh__array(o->count, sizeof *o->times);
+    if (!o->weights || !o->times)
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
-    nevh__splitting_expand(table, o->weights);
+    fill(o, table);
     w->memory_rows = 3 * w->n + 1;
     w->scratch_size = 5 * w->size + w->width;
     return NEVH_OK;
 }
 
-static void begin(const nevh_work *w, half *x) {
+static void begin(const nevh_work *w, const half *x) {
     for (size_t i = 0; i < w->size; i++) {
         x->change[i] = 0;
         x->point[i] = x->start[i] + x->carry[i];
     }
 }
 
-static void advance(const nevh_work *w, half *x, double step,
+static void advance(const nevh_work *w, const half *x, double step,
                     const double slope[]) {
     for (size_t i = 0; i < w->size; i++) {
         x->change[i] += step * slope[i];
@@ -95,26 +107,24 @@ static bool all_kept(const nevh_work *w, const layout *l) {
     return true;
 }
 
-/* A kick takes dH/dq at the drifts' time, a drift dH/dp at the kicks'. */
-static int operate(nevh_work *w, layout *l, nevh_operation operation, double t,
-                   double h, double weight, bool kept) {
+/* Moves p at time t by the part dt of the step, or q. */
+static int operate(nevh_work *w, const layout *l, nevh_operation operation,
+                   double t, double dt, bool kept) {
     bool kick = operation == NEVH_KICK;
-    half *moves = kick ? &l->p : &l->q, *rests = kick ? &l->q : &l->p;
     int status = NEVH_OK;
     for (size_t lane = 0; lane < w->width; lane++)
-        l->time[lane] = t + rests->fraction * h;
+        l->time[lane] = t;
     if (!kept)
         status =
             nevh_work_gradient(w, w->width, l->time, l->q.point, l->p.point,
                                kick ? l->slope : NULL, kick ? NULL : l->slope);
     if (!status && w->ledger)
-        status = nevh_work_account(w, kick ? NEVH_OF_Q : NEVH_OF_P, weight * h,
-                                   l->time, l->q.point, l->p.point);
-    if (status)
-        return status;
-    advance(w, moves, (kick ? -weight : weight) * h, kept ? l->kept : l->slope);
-    moves->fraction += weight;
-    return NEVH_OK;
+        status = nevh_work_account(w, kick ? NEVH_OF_Q : NEVH_OF_P, dt, l->time,
+                                   l->q.point, l->p.point);
+    if (!status)
+        advance(w, kick ? &l->p : &l->q, kick ? -dt : dt,
+                kept ? l->kept : l->slope);
+    return status;
 }
 
 static void keep(const nevh_work *w, const layout *l) {
@@ -131,8 +141,9 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     bool kept = o->same_ends && all_kept(w, &l);
     int status = NEVH_OK;
     for (size_t i = 0; !status && i < o->count; i++)
-        status = operate(w, &l, i % 2 ? !o->first : o->first, t, h,
-                         o->weights[i], i == 0 && kept);
+        status =
+            operate(w, &l, i % 2 ? !o->first : o->first, t + o->times[i] * h,
+                    o->weights[i] * h, i == 0 && kept);
     if (!status)
         status = nevh_work_commit(w, w->size, q, l.q.change, l.q.carry, p,
                                   l.p.change, l.p.carry);

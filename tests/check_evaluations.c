@@ -31,7 +31,7 @@ static uint64_t first_kick(const nevh_integrator *scheme) {
     if (scheme->kernel != &nevh_splitting_kernel)
         return 0;
     const nevh_splitting *table = scheme->table;
-    return table->count % 2 == 1 && table->first == NEVH_KICK;
+    return table->pattern != NEVH_LISTED && table->first == NEVH_KICK;
 }
 
 START_TEST(gradients_of_a_step) {
