@@ -2,8 +2,8 @@
 
    The harmonic oscillator k = m = 1 from q = 1, p = 0, with h = 0.2 until
    t = 500: the largest error of the energy, which is 1/2.  All but the last are
-   those of the library Principia (documentation of its benchmarks), which
-   begins with a kick wherever a scheme may begin with either.
+   those that Principia's tests of its symplectic integrators expect.  What may
+   begin with either begins with a kick.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "support.h"
 #include <math.h>
