@@ -260,11 +260,12 @@ static double offset(double t, const double q[], const double p[],
     return plain(t, q, p, (const double[]){0.7}, params) + c[0];
 }
 
-/* At p = -c[0] its two parts cancel, and its rounding is that of either. */
+/* At p = -c[0] its parts cancel, and its rounding is that of each. */
 static double moving(double t, const double q[], const double p[],
                      const double c[], const void *params) {
     (void)t, (void)q, (void)params;
-    return p[0] * p[0] / 2 + c[0] * p[0] + (p[1] - c[0]) * (p[1] - c[0]) / 2;
+    return p[0] * p[0] / 2 + c[0] * p[0] + c[0] * c[0] / 2 +
+           (p[1] - c[0]) * (p[1] - c[0]) / 2;
 }
 
 static double relativistic_mass(double t, const double q[], const double p[],
@@ -296,6 +297,7 @@ static const kinetic_energy other[] = {
     {"electron", relativistic_mass, 9.1e-31, 1e-22},
     {"slow electron", relativistic_mass, 9.1e-31, 5e-25},
     {"quartic", anharmonic, 1e-9, 1},
+    {"fast quartic", anharmonic, 1e-20, 1e6},
     {"lattice", lattice, 1, 1},
     {"fine lattice", lattice, 1e24, 1e-24}};
 

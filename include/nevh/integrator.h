@@ -19,7 +19,8 @@ typedef enum { NEVH_NO, NEVH_YES, NEVH_UNPROVEN, NEVH_DOUBLED } nevh_claim;
 /* "no", "yes", "unproven", "doubled". */
 NEVH_API const char *nevh_claim_name(nevh_claim);
 
-/* Explicit, for H = T(p) + V(q). */
+/* Explicit, for H = T(p) + V(q); mclachlan_atela4, rkn11b and rkn14a need a T
+   quadratic in p. */
 NEVH_API extern const nevh_integrator *const nevh_symplectic_euler_a;
 NEVH_API extern const nevh_integrator *const nevh_symplectic_euler_b;
 NEVH_API extern const nevh_integrator *const nevh_verlet;

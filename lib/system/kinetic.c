@@ -3,7 +3,7 @@
    On a line through the momenta, at fixed coordinates, a quadratic T has no
    third difference.  What is found of one is compared with the values that it
    was taken of, and with the largest change that the term shows on any line:
-   p^2/2 + c p is rounded like p^2, also where it is small.
+   (p + c)^2/2, multiplied out, is rounded like p^2 where it is small, too.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "system/probe_private.h"
 #include <float.h>
@@ -24,8 +24,7 @@ static void write_row(nevh__origin *o, const double x[], size_t first, size_t i,
                       const double amplitude[2], double row[8]) {
     bool moves = first > 0;
     for (size_t line = 0; line < 2; line++) {
-        double part = moves ? amplitude[line] : fmin(amplitude[line], 1);
-        double width = part * nevh__spread(o, x, first, i);
+        double width = amplitude[line] * nevh__spread(o, x, first, i);
         double base = (x ? x[i] : 0) + width * nevh__random(&o->random);
         double step = moves ? width * nevh__random(&o->random) : 0;
         for (size_t k = 0; k < 4; k++)
@@ -43,7 +42,8 @@ static void add_line(lines *l, const double h[4]) {
         l->change = fmax(l->change, fabs(h[k] - h[0]));
 }
 
-/* The lines of an instance: from four times the momenta to a fiftieth. */
+/* The lines of an instance, from four times the lengths of its variables down
+   to a fiftieth. */
 static lines find_lines(const nevh__term *term, size_t instance,
                         nevh__origin *o, double *rows) {
     const nevh_term *is = &term->is;
