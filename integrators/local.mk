@@ -12,6 +12,19 @@ libnevh_core_la_SOURCES += \
 	integrators/adaptive_verlet_private.h \
 	integrators/adaptive_verlet_kernel.c \
 	integrators/adaptive_verlet.c \
+	integrators/splitting_private.h \
+	integrators/splitting_expand.c \
+	integrators/ruth3.c \
+	integrators/mclachlan_atela.c \
+	integrators/forest_ruth.c \
+	integrators/pefrl.c \
+	integrators/suzuki.c \
+	integrators/blanes_moan.c \
+	integrators/blanes_moan_rkn.c \
+	integrators/yoshida.c \
+	integrators/kahan_li.c \
+	integrators/suzuki_umeno.c \
+	integrators/sofroniou_spaletta.c \
 	integrators/runge_kutta_kernel.c \
 	integrators/euler.c \
 	integrators/rk4.c \

@@ -10,6 +10,21 @@
     X(symplectic_euler_b)                                                      \
     X(verlet)                                                                  \
     X(position_verlet)                                                         \
+    X(ruth3)                                                                   \
+    X(mclachlan_atela4)                                                        \
+    X(forest_ruth)                                                             \
+    X(pefrl)                                                                   \
+    X(suzuki4)                                                                 \
+    X(blanes_moan4)                                                            \
+    X(blanes_moan6)                                                            \
+    X(rkn6b)                                                                   \
+    X(rkn11b)                                                                  \
+    X(rkn14a)                                                                  \
+    X(yoshida6)                                                                \
+    X(kahan_li6)                                                               \
+    X(kahan_li8)                                                               \
+    X(suzuki_umeno8)                                                           \
+    X(sofroniou_spaletta10)                                                    \
     X(midpoint)                                                                \
     X(gauss4)                                                                  \
     X(gauss6)                                                                  \

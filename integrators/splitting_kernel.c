@@ -12,16 +12,25 @@
 
    In V(q, t) time is that of the drifts, in T(p, t) that of the kicks.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include <nevh/extend.h>
+#include "splitting_private.h"
+#include "system/system_private.h"
+#include <stdlib.h>
 #include <string.h>
+
+typedef struct {
+    nevh_operation first;
+    size_t count;
+    bool same_ends; /* the last operation is of the first one's kind */
+    double *weights;
+    double *times; /* parts of h that the half at rest has gone through */
+} operations;
 
 /* One half of the state under way: q under drifts, p under kicks. */
 typedef struct {
-    double *start;   /* the state at the start of the step */
-    double *change;  /* its increment so far */
-    double *carry;   /* lost digits of earlier steps */
-    double *point;   /* start + (change + carry) */
-    double fraction; /* of h that has passed for it */
+    double *start;  /* the state at the start of the step */
+    double *change; /* its increment so far */
+    double *carry;  /* lost digits of earlier steps */
+    double *point;  /* start + (change + carry) */
 } half;
 
 typedef struct {
@@ -32,28 +41,58 @@ typedef struct {
 static layout lay_out(const nevh_work *w, double q[], double p[]) {
     double *m = w->memory, *s = w->scratch;
     size_t n = w->size;
-    return (layout){.q = {q, s, m, s + n, 0},
-                    .p = {p, s + 2 * n, m + n, s + 3 * n, 0},
+    return (layout){.q = {q, s, m, s + n},
+                    .p = {p, s + 2 * n, m + n, s + 3 * n},
                     .slope = s + 4 * n,
                     .time = s + 5 * n,
                     .kept = m + 2 * n,
                     .has_kept = m + 3 * n};
 }
 
+static void unplan(nevh_work *w) {
+    operations *o = w->plan;
+    free(o->weights);
+    free(o->times);
+    free(o);
+    w->plan = NULL;
+}
+
+/* A kick takes dH/dq at the drifts' time, a drift dH/dp at the kicks'. */
+static void fill(operations *o, const nevh_splitting *table) {
+    double passed[2] = {0, 0};
+    nevh__splitting_expand(table, o->weights);
+    for (size_t i = 0; i < o->count; i++) {
+        o->times[i] = passed[1 - i % 2];
+        passed[i % 2] += o->weights[i];
+    }
+}
+
 static int plan(nevh_work *w) {
+    const nevh_splitting *table = w->integrator->table;
+    operations *o = w->plan = nevh__array(1, sizeof *o);
+    if (!o)
+        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
+    o->first = table->first;
+    o->count = nevh__splitting_operations(table);
+    o->same_ends = o->count % 2 == 1;
+    o->weights = nevh__array(o->count, sizeof *o->weights);
+    o->times = nevh__array(o->count, sizeof *o->times);
+    if (!o->weights || !o->times)
+        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
+    fill(o, table);
     w->memory_rows = 3 * w->n + 1;
     w->scratch_size = 5 * w->size + w->width;
     return NEVH_OK;
 }
 
-static void begin(const nevh_work *w, half *x) {
+static void begin(const nevh_work *w, const half *x) {
     for (size_t i = 0; i < w->size; i++) {
         x->change[i] = 0;
         x->point[i] = x->start[i] + x->carry[i];
     }
 }
 
-static void advance(const nevh_work *w, half *x, double step,
+static void advance(const nevh_work *w, const half *x, double step,
                     const double slope[]) {
     for (size_t i = 0; i < w->size; i++) {
         x->change[i] += step * slope[i];
@@ -68,22 +107,24 @@ static bool all_kept(const nevh_work *w, const layout *l) {
     return true;
 }
 
-/* A kick takes dH/dq at the drifts' time, a drift dH/dp at the kicks'. */
-static int operate(nevh_work *w, layout *l, nevh_operation operation, double t,
-                   double h, double weight, bool kept) {
+/* Moves p at time t by the part dt of the step, or q. */
+static int operate(nevh_work *w, const layout *l, nevh_operation operation,
+                   double t, double dt, bool kept) {
     bool kick = operation == NEVH_KICK;
-    half *moves = kick ? &l->p : &l->q, *rests = kick ? &l->q : &l->p;
+    int status = NEVH_OK;
     for (size_t lane = 0; lane < w->width; lane++)
-        l->time[lane] = t + rests->fraction * h;
-    int status = kept ? NEVH_OK
-                      : nevh_work_gradient(w, w->width, l->time, l->q.point,
-                                           l->p.point, kick ? l->slope : NULL,
-                                           kick ? NULL : l->slope);
-    if (status)
-        return status;
-    advance(w, moves, (kick ? -weight : weight) * h, kept ? l->kept : l->slope);
-    moves->fraction += weight;
-    return NEVH_OK;
+        l->time[lane] = t;
+    if (!kept)
+        status =
+            nevh_work_gradient(w, w->width, l->time, l->q.point, l->p.point,
+                               kick ? l->slope : NULL, kick ? NULL : l->slope);
+    if (!status && w->accounts)
+        status = nevh_work_account(w, kick ? NEVH_OF_Q : NEVH_OF_P, dt, l->time,
+                                   l->q.point, l->p.point);
+    if (!status)
+        advance(w, kick ? &l->p : &l->q, kick ? -dt : dt,
+                kept ? l->kept : l->slope);
+    return status;
 }
 
 static void keep(const nevh_work *w, const layout *l) {
@@ -93,22 +134,36 @@ static void keep(const nevh_work *w, const layout *l) {
 }
 
 static int step(nevh_work *w, double t, double h, double q[], double p[]) {
-    const nevh_splitting *table = w->integrator->table;
+    const operations *o = w->plan;
     layout l = lay_out(w, q, p);
     begin(w, &l.q);
     begin(w, &l.p);
-    bool same_ends = table->count % 2 == 1 && table->count > 1;
-    bool kept = same_ends && all_kept(w, &l);
+    bool kept = o->same_ends && all_kept(w, &l);
     int status = NEVH_OK;
-    for (size_t i = 0; !status && i < table->count; i++)
-        status = operate(w, &l, i % 2 ? !table->first : table->first, t, h,
-                         table->weights[i], i == 0 && kept);
+    for (size_t i = 0; !status && i < o->count; i++)
+        status =
+            operate(w, &l, i % 2 ? !o->first : o->first, t + o->times[i] * h,
+                    o->weights[i] * h, i == 0 && kept);
     if (!status)
         status = nevh_work_commit(w, w->size, q, l.q.change, l.q.carry, p,
                                   l.p.change, l.p.carry);
-    if (!status && same_ends)
+    if (!status && o->same_ends)
         keep(w, &l);
     return status;
 }
 
-const nevh_kernel nevh_splitting_kernel = {.plan = plan, .step = step};
+/* What is kept is a dH/dp, or a dH/dq that may read p, unless declarations say
+   that it does not. */
+static void damp(nevh_work *w, const double factor[]) {
+    const operations *o = w->plan;
+    layout l = lay_out(w, NULL, NULL);
+    for (size_t i = 0; i < w->size; i++)
+        l.p.carry[i] *= factor[i / w->width];
+    if (o->first == NEVH_KICK && nevh_system_traits(w->system) & NEVH_SEPARABLE)
+        return;
+    for (size_t lane = 0; lane < w->width; lane++)
+        l.has_kept[lane] = 0;
+}
+
+const nevh_kernel nevh_splitting_kernel = {
+    .plan = plan, .step = step, .unplan = unplan, .damp = damp};

@@ -2,9 +2,9 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "schemes_private.h"
 
-static const double weights[] = {1, 1};
-static const nevh_splitting kick_drift = {NEVH_KICK, 2, weights};
-static const nevh_splitting drift_kick = {NEVH_DRIFT, 2, weights};
+/* Both weights are 1, and follow. */
+static const nevh_splitting kick_drift = {NEVH_KICK, NEVH_LISTED, 0, NULL};
+static const nevh_splitting drift_kick = {NEVH_DRIFT, NEVH_LISTED, 0, NULL};
 
 const nevh_integrator nevh__symplectic_euler_a = {
     .name = "symplectic-euler-a",

@@ -2,9 +2,10 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "schemes_private.h"
 
-static const double weights[] = {0.5, 1, 0.5};
-static const nevh_splitting kick_first = {NEVH_KICK, 3, weights};
-static const nevh_splitting drift_first = {NEVH_DRIFT, 3, weights};
+/* 1/2, 1, 1/2 follow. */
+static const nevh_splitting kick_first = {NEVH_KICK, NEVH_PALINDROME, 0, NULL};
+static const nevh_splitting drift_first = {NEVH_DRIFT, NEVH_PALINDROME, 0,
+                                           NULL};
 
 const nevh_integrator nevh__verlet = {
     .name = "verlet",

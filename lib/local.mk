@@ -9,7 +9,9 @@ libnevh_core_la_SOURCES = \
 	lib/system/system.c \
 	lib/system/values.c \
 	lib/system/closeness.c \
+	lib/system/probe_private.h \
 	lib/system/probe.c \
+	lib/system/kinetic.c \
 	lib/gradient/field_private.h \
 	lib/gradient/explore_private.h \
 	lib/gradient/methods.c \

@@ -81,13 +81,13 @@ END_TEST
 START_TEST(claim_over_long_runs) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     int order = nevh_integrator_order(scheme);
-    if (order > 8)
+    if (order > 10)
         return; /* below rounding at any step that converges */
-    double h = order <= 2 ? 0.05 : order <= 4 ? 0.1 : order <= 6 ? 0.2 : 0.4;
+    double h = order <= 2 ? 0.05 : order <= 4 ? 0.1 : order <= 6 ? 0.25 : 0.4;
     nevh_energy_report r = energy_of(&pendulum, scheme, NULL, h, 100000);
     nevh_claim symplectic = nevh_integrator_symplectic(scheme);
     if (symplectic == NEVH_YES || symplectic == NEVH_DOUBLED)
-        ck_assert_msg(r.verdict == NEVH_BOUNDED && r.max > 1e-12 &&
+        ck_assert_msg(r.verdict == NEVH_BOUNDED && r.max > 1e-11 &&
                           fabs(r.drift) * 1e5 * h < 0.02 * r.max,
                       "%s: max %.2e, drift %.2e", nevh_integrator_name(scheme),
                       r.max, r.drift * 1e5 * h);

@@ -3,12 +3,12 @@
 #include "support.h"
 #include <math.h>
 
-/* Five per cent up to order 6, twelve above.  Beyond order 8 only the gentle
+/* Five per cent up to order 6, twelve above.  Beyond order 10 only the gentle
    Henon-Heiles problem shows the power law clear of rounding; on the others
    the last steps before it still overshoot, by up to a quarter.  That these
    orders are exact is proved algebraically in check_coefficients. */
 static double allowance(const problem *b, int order) {
-    if (order > 8 && b != &henon_heiles)
+    if (order > 10 && b != &henon_heiles)
         return 0.3;
     return order > 6 ? 0.12 : 0.05;
 }

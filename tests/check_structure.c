@@ -242,6 +242,225 @@ START_TEST(invalid_scale) {
 }
 END_TEST
 
+/* Kinetic energies of two momenta; c[0] is what makes them differ. */
+typedef struct {
+    const char *name;
+    nevh_term_fn value;
+    double c, scale; /* scale: of the momenta to plan at */
+} kinetic_energy;
+
+static double plain(double t, const double q[], const double p[],
+                    const double c[], const void *params) {
+    (void)t, (void)q, (void)params;
+    return (p[0] * p[0] / 1.3 + 0.4 * p[0] * p[1] + p[1] * p[1]) / (2 * c[0]);
+}
+
+static double offset(double t, const double q[], const double p[],
+                     const double c[], const void *params) {
+    return plain(t, q, p, (const double[]){0.7}, params) + c[0];
+}
+
+/* At p = -c[0] its parts cancel, and its rounding is that of each. */
+static double moving(double t, const double q[], const double p[],
+                     const double c[], const void *params) {
+    (void)t, (void)q, (void)params;
+    return p[0] * p[0] / 2 + c[0] * p[0] + c[0] * c[0] / 2 +
+           (p[1] - c[0]) * (p[1] - c[0]) / 2;
+}
+
+static double relativistic_mass(double t, const double q[], const double p[],
+                                const double c[], const void *params) {
+    (void)t, (void)q, (void)params;
+    const double light = 2.99792458e8, rest = c[0] * light * light;
+    double x = p[0] * light, y = p[1] * light;
+    return sqrt(rest * rest + x * x + y * y);
+}
+
+static double anharmonic(double t, const double q[], const double p[],
+                         const double c[], const void *params) {
+    return plain(t, q, p, (const double[]){0.7}, params) +
+           c[0] * p[1] * p[1] * p[1] * p[1];
+}
+
+static double lattice(double t, const double q[], const double p[],
+                      const double c[], const void *params) {
+    (void)t, (void)q, (void)params;
+    return -cos(c[0] * p[0]) - cos(c[0] * p[1]);
+}
+
+static const kinetic_energy quadratic[] = {
+    {"plain", plain, 0.7, 1},       {"in SI units", plain, 1e-27, 1e-22},
+    {"heavy", plain, 2e30, 6e34},   {"offset", offset, 1e12, 1},
+    {"small", offset, 1e12, 1e-3},  {"moving", moving, 1, 1},
+    {"moving fast", moving, 1e8, 1}};
+static const kinetic_energy other[] = {
+    {"electron", relativistic_mass, 9.1e-31, 1e-22},
+    {"slow electron", relativistic_mass, 9.1e-31, 5e-25},
+    {"quartic", anharmonic, 1e-9, 1},
+    {"fast quartic", anharmonic, 1e-20, 1e6},
+    {"lattice", lattice, 1, 1},
+    {"fine lattice", lattice, 1e24, 1e-24}};
+
+/* With a potential; as a whole H the term reads coordinates, too. */
+static nevh_system *system_with(const kinetic_energy *kinetic, bool mixed) {
+    nevh_system *s = nevh_system_new(2);
+    nevh_system_add(s, &gravity);
+    nevh_system_add(s, &(nevh_term){.effect = "kinetic",
+                                    .name = "T",
+                                    .nq = mixed ? 2 : 0,
+                                    .np = 2,
+                                    .nc = 1,
+                                    .c = &kinetic->c,
+                                    .value = kinetic->value});
+    return s;
+}
+
+/* At rest, moving, and where `moving` is small. */
+static void assert_kinetic(const kinetic_energy *kinetic, bool expected) {
+    const double x = kinetic->scale, c = kinetic->c;
+    const double p[][2] = {{0.7 * x, -0.4 * x}, {0, x}, {-c, c}};
+    const double q[] = {0.3, 0.9};
+    int states = kinetic->value == moving ? 3 : 2;
+    for (int i = 0; i < 2 * states; i++) {
+        nevh_system *s = system_with(kinetic, i % 2);
+        nevh_options options = {.q = q, .p = p[i / 2]};
+        nevh_stepper *m = nevh_stepper_new(s, nevh_rkn14a, &options);
+        ck_assert_msg(nevh_stepper_status(m) ==
+                          (expected ? NEVH_OK : NEVH_ESTRUCT),
+                      "%s, %d: %s", kinetic->name, i, nevh_stepper_message(m));
+        if (!expected)
+            assert_says(nevh_stepper_message(m), "\"T\" is not");
+        nevh_stepper_free(m);
+        nevh_system_free(s);
+    }
+}
+
+START_TEST(quadratic_kinetic_energies) {
+    assert_kinetic(&quadratic[_i], true);
+}
+END_TEST
+
+START_TEST(other_kinetic_energies) {
+    assert_kinetic(&other[_i], false);
+}
+END_TEST
+
+/* A thousand degrees of freedom in one function. */
+static double long_chain(double t, const double q[], const double p[],
+                         const void *params) {
+    double h = 0;
+    (void)t, (void)params;
+    for (size_t i = 0; i < 1000; i++) {
+        double d = i ? q[i] - q[i - 1] : q[i];
+        h += p[i] * p[i] / (2 + 0.01 * (double)i) + d * d / 2 + d * d * d * d;
+    }
+    return h;
+}
+
+START_TEST(large_systems) {
+    nevh_system *s = nevh_system_from(1000, long_chain, NULL);
+    nevh_options options = {.gradient_step = 0x1p-10};
+    nevh_stepper *m = nevh_stepper_new(s, nevh_rkn11b, &options);
+    ck_assert_msg(!nevh_stepper_status(m), "%s", nevh_stepper_message(m));
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* What is off is no reason; what needs no such T takes it. */
+START_TEST(only_where_it_is_needed) {
+    nevh_system *s = system_with(&quadratic[0], false);
+    nevh_system_add(s, &(nevh_term){.effect = "fast",
+                                    .np = 2,
+                                    .nc = 1,
+                                    .c = &other[2].c,
+                                    .value = anharmonic});
+    nevh_stepper *m = nevh_stepper_new(s, nevh_mclachlan_atela4, NULL);
+    ck_assert_int_eq(nevh_stepper_status(m), NEVH_ESTRUCT);
+    assert_says(nevh_stepper_message(m), "\"fast\" is not");
+    assert_says(nevh_stepper_message(m), "order 3 instead of 4");
+    assert_says(nevh_stepper_message(m), "blanes-moan4");
+    nevh_stepper_free(m);
+    m = nevh_stepper_new(s, nevh_rkn11b, NULL);
+    assert_says(nevh_stepper_message(m), "order 4 instead of 6");
+    assert_says(nevh_stepper_message(m), "blanes-moan6");
+    nevh_stepper_free(m);
+    m = nevh_stepper_new(s, nevh_rkn6b, NULL);
+    ck_assert_int_eq(nevh_stepper_status(m), NEVH_OK);
+    nevh_stepper_free(m);
+    nevh_system_enable(s, "fast", false);
+    m = nevh_stepper_new(s, nevh_rkn11b, NULL);
+    ck_assert_int_eq(nevh_stepper_status(m), NEVH_OK);
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
+static double positive(double t, const double q[], const double p[],
+                       const double c[], const void *params) {
+    (void)t, (void)q, (void)params;
+    return sqrt(p[0] - c[0]);
+}
+
+/* Separability comes first; then what cannot be evaluated. */
+START_TEST(other_reasons) {
+    const double beyond = 99;
+    nevh_system *s = three_mixtures();
+    nevh_options options = {.gradient_step = 0x1p-10};
+    nevh_stepper *m = nevh_stepper_new(s, nevh_rkn14a, &options);
+    assert_says(nevh_stepper_message(m), "\"strong\" mixes");
+    nevh_stepper_free(m);
+    nevh_system_enable(s, "weak", false);
+    nevh_system_enable(s, "strong", false);
+    nevh_system_add(s, &(nevh_term){.effect = "positive",
+                                    .np = 1,
+                                    .nc = 1,
+                                    .c = &beyond,
+                                    .value = positive});
+    m = nevh_stepper_new(s, nevh_rkn14a, &options);
+    ck_assert_int_eq(nevh_stepper_status(m), NEVH_ESTRUCT);
+    assert_says(nevh_stepper_message(m), "\"positive\"");
+    assert_says(nevh_stepper_message(m), "could not be probed");
+    assert_says(nevh_stepper_message(m), "blanes-moan6");
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* Each scheme that is suggested takes the system, at no lower order. */
+static void assert_suggestions(const nevh_integrator *scheme,
+                               const problem *b) {
+    nevh_system *s = b->make();
+    nevh_options options = {.q = b->q, .p = b->p};
+    nevh_stepper *m = nevh_stepper_new(s, scheme, &options);
+    ck_assert_int_eq(nevh_stepper_status(m), NEVH_ESTRUCT);
+    char text[400];
+    int count = 0;
+    strcpy(text, nevh_stepper_message(m));
+    nevh_stepper_free(m);
+    for (char *name = strtok(strrchr(text, ':') + 1, ", "); name;
+         name = strtok(NULL, ", ")) {
+        const nevh_integrator *other_scheme = nevh_integrator_named(name);
+        m = nevh_stepper_new(s, other_scheme, &options);
+        ck_assert_msg(!nevh_stepper_status(m), "%s for %s: %s", name,
+                      nevh_integrator_name(scheme), nevh_stepper_message(m));
+        ck_assert_int_ge(nevh_integrator_order(other_scheme),
+                         nevh_integrator_order(scheme));
+        nevh_stepper_free(m);
+        count++;
+    }
+    ck_assert_int_eq(count, 3);
+    nevh_system_free(s);
+}
+
+START_TEST(suggestions_fit) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    for (const problem *const *b = problems; *b; b++)
+        if (!fits(scheme, *b))
+            assert_suggestions(scheme, *b);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("structure");
     TCase *cases = tcase_create("structure");
@@ -253,6 +472,16 @@ int main(void) {
     tcase_add_test(cases, names_the_worst_term);
     tcase_add_test(cases, verlet_refuses_a_mixed_term);
     tcase_add_test(cases, invalid_scale);
+    suite_add_tcase(suite, cases);
+    cases = tcase_create("kinetic energy");
+    tcase_add_loop_test(cases, quadratic_kinetic_energies, 0,
+                        sizeof quadratic / sizeof *quadratic);
+    tcase_add_loop_test(cases, other_kinetic_energies, 0,
+                        sizeof other / sizeof *other);
+    tcase_add_test(cases, large_systems);
+    tcase_add_test(cases, only_where_it_is_needed);
+    tcase_add_test(cases, other_reasons);
+    tcase_add_loop_test(cases, suggestions_fit, 0, scheme_count());
     suite_add_tcase(suite, cases);
     return run_suite(suite);
 }

@@ -108,12 +108,21 @@ NEVH_API int nevh_work_commit(nevh_work *, size_t count, double q[],
 
 /* The kernels that come with nevh, and their tables. */
 
-/* Kicks p -= c h dV/dq and drifts q += c h dT/dp in turn. */
+/* Kicks p -= w h dV/dq and drifts q += w h dT/dp in turn.  A table holds the
+   independent weights as they were published, in long double; the others
+   follow when a stepper is made, since kicks and drifts sum up to 1 each. */
 typedef enum { NEVH_KICK, NEVH_DRIFT } nevh_operation;
+typedef enum {
+    NEVH_LISTED,     /* given: all operations in turn but the last two */
+    NEVH_PALINDROME, /* the first half's, but the two in the middle */
+    NEVH_COMPOSITION /* of Verlet steps that begin with `first`, a palindrome
+                        in their sizes: the first half's, but the middle one */
+} nevh_pattern;
 typedef struct {
     nevh_operation first;
-    size_t count;          /* operations */
-    const double *weights; /* count weights, alternating from `first` */
+    nevh_pattern pattern;
+    size_t count;               /* weights given; 0: Verlet, or Euler's */
+    const long double *weights; /* count; NULL when there are none */
 } nevh_splitting;
 NEVH_API extern const nevh_kernel nevh_splitting_kernel;
 

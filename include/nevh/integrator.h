@@ -19,11 +19,27 @@ typedef enum { NEVH_NO, NEVH_YES, NEVH_UNPROVEN, NEVH_DOUBLED } nevh_claim;
 /* "no", "yes", "unproven", "doubled". */
 NEVH_API const char *nevh_claim_name(nevh_claim);
 
-/* Explicit, for H = T(p) + V(q). */
+/* Explicit, for H = T(p) + V(q); mclachlan_atela4, rkn11b and rkn14a need a T
+   quadratic in p. */
 NEVH_API extern const nevh_integrator *const nevh_symplectic_euler_a;
 NEVH_API extern const nevh_integrator *const nevh_symplectic_euler_b;
 NEVH_API extern const nevh_integrator *const nevh_verlet;
 NEVH_API extern const nevh_integrator *const nevh_position_verlet;
+NEVH_API extern const nevh_integrator *const nevh_ruth3;
+NEVH_API extern const nevh_integrator *const nevh_mclachlan_atela4;
+NEVH_API extern const nevh_integrator *const nevh_forest_ruth;
+NEVH_API extern const nevh_integrator *const nevh_pefrl;
+NEVH_API extern const nevh_integrator *const nevh_suzuki4;
+NEVH_API extern const nevh_integrator *const nevh_blanes_moan4;
+NEVH_API extern const nevh_integrator *const nevh_blanes_moan6;
+NEVH_API extern const nevh_integrator *const nevh_rkn6b;
+NEVH_API extern const nevh_integrator *const nevh_rkn11b;
+NEVH_API extern const nevh_integrator *const nevh_rkn14a;
+NEVH_API extern const nevh_integrator *const nevh_yoshida6;
+NEVH_API extern const nevh_integrator *const nevh_kahan_li6;
+NEVH_API extern const nevh_integrator *const nevh_kahan_li8;
+NEVH_API extern const nevh_integrator *const nevh_suzuki_umeno8;
+NEVH_API extern const nevh_integrator *const nevh_sofroniou_spaletta10;
 /* Implicit, for any H: Gauss-Legendre, named by order (twice the stages). */
 NEVH_API extern const nevh_integrator *const nevh_midpoint;
 NEVH_API extern const nevh_integrator *const nevh_gauss4;

@@ -1,19 +1,47 @@
 /* nevh: does a scheme fit a Hamiltonian?
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/stepper_private.h"
+#include "system/probe_private.h"
 #include <stdio.h>
 #include <stdlib.h>
 
-/* "midpoint, gauss4, ..." of schemes that take any H. */
-static void suggest(char *text, size_t size) {
-    size_t at = 0, found = 0;
-    text[0] = '\0';
-    for (const nevh_integrator *const *i = nevh_integrators(); *i; i++) {
-        if ((*i)->needs || (*i)->symplectic != NEVH_YES || ++found > 3)
-            continue;
-        int length =
-            snprintf(text + at, size - at, "%s%s", at ? ", " : "", (*i)->name);
-        at += length > 0 && (size_t)length < size - at ? (size_t)length : 0;
+typedef const nevh_integrator *const *entry; /* in the registry */
+
+/* Lower orders first; among equals those that spend more evaluations on their
+   order, which are the more accurate ones. */
+static bool precedes(entry a, entry b) {
+    if ((*a)->order != (*b)->order)
+        return (*a)->order < (*b)->order;
+    return (*a)->gradients != (*b)->gradients
+               ? (*a)->gradients > (*b)->gradients
+               : a < b;
+}
+
+/* The next after `last` of the symplectic schemes that are of no lower order
+   than the refused one, and do not need what is lacking. */
+static entry next_fit(const nevh_integrator *refused, unsigned lacking,
+                      entry last) {
+    entry best = NULL;
+    for (entry i = nevh_integrators(); *i; i++) {
+        bool fits = (*i)->symplectic == NEVH_YES && !((*i)->needs & lacking) &&
+                    (*i)->order >= refused->order;
+        if (fits && (!last || precedes(last, i)) &&
+            (!best || precedes(i, best)))
+            best = i;
+    }
+    return best;
+}
+
+/* "gauss4, gauss6, gauss8". */
+static void suggest(const nevh_integrator *refused, unsigned lacking,
+                    char *text, size_t size) {
+    size_t at = 0;
+    entry fit = next_fit(refused, lacking, NULL);
+    snprintf(text, size, "none of this order");
+    for (int i = 0; fit && i < 3 && at < size; i++) {
+        at += (size_t)snprintf(text + at, size - at, "%s%s", at ? ", " : "",
+                               (*fit)->name);
+        fit = next_fit(refused, lacking, fit);
     }
 }
 
@@ -26,39 +54,82 @@ static double *first_lane(const nevh_work *w, const double x[]) {
     return lane;
 }
 
-static int refuse(nevh_stepper *s, const nevh_separability *probe, int status) {
+static int refuse_mixed(nevh_stepper *s, const nevh_separability *probe,
+                        int status) {
     char fit[80];
-    const char *name = s->work.integrator->name;
-    suggest(fit, sizeof fit);
-    if (status == NEVH_ENOMEM)
-        return nevh__fail(&s->report, status, "out of memory");
+    const nevh_integrator *scheme = s->work.integrator;
+    suggest(scheme, NEVH_SEPARABLE, fit, sizeof fit);
     if (status == NEVH_EDOM)
         return nevh__fail(&s->report, NEVH_ESTRUCT,
                           "%s needs H = T(p) + V(q), but term \"%s\", which "
                           "reads coordinates and momenta, could not be probed: "
                           "it is not finite around the state to plan at; "
                           "schemes that fit any H: %s",
-                          name, probe->term, fit);
+                          scheme->name, probe->term, fit);
     return nevh__fail(&s->report, NEVH_ESTRUCT,
                       "%s needs H = T(p) + V(q), but term \"%s\" mixes "
                       "coordinates and momenta (mixed difference %.2g of its "
                       "size, where rounding gives 1e-16); schemes that fit: %s",
-                      name, probe->term, probe->mixed, fit);
+                      scheme->name, probe->term, probe->mixed, fit);
+}
+
+/* Below degree 4 the conditions for any T are those for a quadratic one, and
+   symmetric schemes are of even order. */
+static int refuse_kinetic(nevh_stepper *s, const nevh__kinetic *probe,
+                          int status) {
+    char fit[80];
+    const nevh_integrator *scheme = s->work.integrator;
+    suggest(scheme, NEVH_QUADRATIC_KINETIC, fit, sizeof fit);
+    if (status == NEVH_EDOM)
+        return nevh__fail(&s->report, NEVH_ESTRUCT,
+                          "%s needs a T quadratic in p, but term \"%s\", which "
+                          "reads momenta, could not be probed: it is not "
+                          "finite around the state to plan at; schemes that "
+                          "fit any T(p): %s",
+                          scheme->name, probe->term, fit);
+    return nevh__fail(&s->report, NEVH_ESTRUCT,
+                      "%s needs a T quadratic in p, but term \"%s\" is not "
+                      "(third difference %.2g of its size, where rounding "
+                      "gives 1e-16): it would be of order %d instead of %d; "
+                      "schemes that fit: %s",
+                      scheme->name, probe->term, probe->third,
+                      scheme->symmetric == NEVH_YES ? 4 : 3, scheme->order,
+                      fit);
+}
+
+static int check_separable(nevh_stepper *s, const double q[],
+                           const double p[]) {
+    nevh_separability probe;
+    int status = nevh_system_probe(s->work.system, s->options.t, q, p,
+                                   s->options.scale, &probe);
+    if (status == NEVH_ENOMEM)
+        return nevh__fail(&s->report, status, "out of memory");
+    return probe.separable ? NEVH_OK : refuse_mixed(s, &probe, status);
+}
+
+static int check_kinetic(nevh_stepper *s, const double q[], const double p[]) {
+    nevh__kinetic probe;
+    int status = nevh__system_probe_kinetic(s->work.system, s->options.t, q, p,
+                                            s->options.scale, &probe);
+    if (status == NEVH_ENOMEM)
+        return nevh__fail(&s->report, status, "out of memory");
+    return probe.quadratic ? NEVH_OK : refuse_kinetic(s, &probe, status);
 }
 
 int nevh__check_structure(nevh_stepper *s) {
     const nevh_work *w = &s->work;
     unsigned missing = w->integrator->needs & ~nevh_system_traits(w->system);
-    if (!(missing & NEVH_SEPARABLE))
+    if (!(missing & (NEVH_SEPARABLE | NEVH_QUADRATIC_KINETIC)))
         return NEVH_OK;
-    nevh_separability probe;
     double *q = first_lane(w, s->options.q), *p = first_lane(w, s->options.p);
-    int status = NEVH_ENOMEM;
-    probe.separable = false;
-    if ((q || !s->options.q) && (p || !s->options.p))
-        status = nevh_system_probe(w->system, s->options.t, q, p,
-                                   s->options.scale, &probe);
+    int status = NEVH_OK;
+    if ((s->options.q && !q) || (s->options.p && !p))
+        status = nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
+    if (!status && missing & NEVH_SEPARABLE)
+        status = check_separable(s, q, p);
+    if (!status && missing & NEVH_QUADRATIC_KINETIC)
+        status = check_kinetic(s, q, p);
     free(q);
     free(p);
-    return probe.separable ? NEVH_OK : refuse(s, &probe, status);
+    return status;
 }

@@ -7,22 +7,14 @@
    rounding here is kept tight: to take a separable H for a coupled one leads
    to a refusal that says why, the opposite to a wrong orbit.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "system/system_private.h"
+#include "system/probe_private.h"
 #include <float.h>
 #include <math.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { PAIRS = 16 }; /* two of them, four values each, fill a block */
 static const double roundings = 16;
-
-typedef struct {
-    double t;
-    const double *q, *p, *scale; /* q, p or scale may be NULL */
-    size_t n;
-    uint64_t random;
-} origin;
 
 static double largest(const double x[], size_t n) {
     double most = 0;
@@ -31,9 +23,8 @@ static double largest(const double x[], size_t n) {
     return most;
 }
 
-/* The length over which variable i of kind x is varied. */
-static double spread(const origin *o, const double x[], size_t first,
-                     size_t i) {
+double nevh__spread(const nevh__origin *o, const double x[], size_t first,
+                    size_t i) {
     if (o->scale)
         return o->scale[first + i];
     double most = x && x[i] != 0 ? fabs(x[i]) : largest(x, o->n);
@@ -43,11 +34,11 @@ static double spread(const origin *o, const double x[], size_t first,
 /* Writes one variable of both pairs: lanes 0 ... 3 are the first pair's
    (1,1) (2,2) (1,2) (2,1), lanes 4 ... 7 the second's.  `second` says which
    lanes take the second state. */
-static void write_row(origin *o, const double x[], size_t first, size_t i,
+static void write_row(nevh__origin *o, const double x[], size_t first, size_t i,
                       const double amplitude[2], const bool second[8],
                       double row[8]) {
     for (size_t pair = 0; pair < 2; pair++) {
-        double width = amplitude[pair] * spread(o, x, first, i);
+        double width = amplitude[pair] * nevh__spread(o, x, first, i);
         double base = x ? x[i] : 0;
         double one = base + width * nevh__random(&o->random);
         double two = base + width * nevh__random(&o->random);
@@ -57,8 +48,8 @@ static void write_row(origin *o, const double x[], size_t first, size_t i,
 }
 
 /* The largest mixed difference of an instance, relative; adds to *states. */
-static double probe_instance(const nevh__term *term, size_t instance, origin *o,
-                             double *rows, size_t *states) {
+static double probe_instance(const nevh__term *term, size_t instance,
+                             nevh__origin *o, double *rows, size_t *states) {
     static const bool second_q[8] = {0, 1, 0, 1, 0, 1, 0, 1};
     static const bool second_p[8] = {0, 1, 1, 0, 0, 1, 1, 0};
     const nevh_term *is = &term->is;
@@ -89,7 +80,7 @@ static double probe_instance(const nevh__term *term, size_t instance, origin *o,
     return most;
 }
 
-static int probe_term(const nevh__term *term, origin *o,
+static int probe_term(const nevh__term *term, nevh__origin *o,
                       nevh_separability *result) {
     const nevh_term *is = &term->is;
     double *rows =
@@ -118,7 +109,8 @@ int nevh_system_probe(const nevh_system *s, double t, const double q[],
     *result = (nevh_separability){.separable = true};
     if (nevh_system_status(s))
         return nevh_system_status(s);
-    origin o = {.t = t, .q = q, .p = p, .scale = scale, .n = s->n, .random = 1};
+    nevh__origin o = {
+        .t = t, .q = q, .p = p, .scale = scale, .n = s->n, .random = 1};
     int status = NEVH_OK;
     for (size_t i = 0; i < s->n_terms && status != NEVH_ENOMEM; i++) {
         const nevh__term *term = s->terms[i];

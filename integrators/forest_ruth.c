@@ -1,0 +1,28 @@
+/* nevh: the method of Forest and Ruth: three Verlet steps.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "schemes_private.h"
+
+/* 1/(2 - 2^(1/3)); the middle step is 1 - 2/(2 - 2^(1/3)) < 0. */
+static const long double steps[] = {
+    1.351207191959657634047687808971460826922L,
+};
+static const nevh_splitting table = {NEVH_KICK, NEVH_COMPOSITION, 1, steps};
+
+const nevh_integrator nevh__forest_ruth = {
+    .name = "forest-ruth",
+    .aliases = "yoshida4, CandyRoz4, ARKODE_SPRK_CANDY_ROZMUS_4_4, "
+               "CandyRozmus1991ForestRuth1990, TripleJump",
+    .source = "E. Forest, R. D. Ruth, Fourth-order symplectic integration, "
+              "Physica D 43 (1990) 105-117, eq. (4.8); kick first",
+    .order = 4,
+    .stages = 3,
+    .gradients = 3,
+    .symplectic = NEVH_YES,
+    .symmetric = NEVH_YES,
+    .explicit_form = NEVH_YES,
+    .preserves_energy = NEVH_NO,
+    .needs = NEVH_SEPARABLE,
+    .kernel = &nevh_splitting_kernel,
+    .table = &table,
+};
+NEVH__PUBLISH(forest_ruth);
