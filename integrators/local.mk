@@ -7,9 +7,13 @@ libnevh_core_la_SOURCES += \
 	integrators/splitting_kernel.c \
 	integrators/symplectic_euler.c \
 	integrators/verlet.c \
+	integrators/runge_kutta_private.h \
 	integrators/runge_kutta_kernel.c \
+	integrators/runge_kutta_adaptive.c \
 	integrators/euler.c \
 	integrators/rk4.c \
+	integrators/dopri5.c \
+	integrators/dop853.c \
 	integrators/gauss_private.h \
 	integrators/gauss_kernel.c \
 	integrators/gauss_coefficients.c \

@@ -22,6 +22,8 @@
     X(gauss20)                                                                 \
     X(euler)                                                                   \
     X(rk4)                                                                     \
+    X(dopri5)                                                                  \
+    X(dop853)                                                                  \
     X(gsl_rkf45)                                                               \
     X(gsl_rk8pd)
 

@@ -60,6 +60,8 @@ START_TEST(public_pointers_are_listed) {
                                               nevh_gauss20,
                                               nevh_euler,
                                               nevh_rk4,
+                                              nevh_dopri5,
+                                              nevh_dop853,
                                               nevh_gsl_rkf45,
                                               nevh_gsl_rk8pd};
     int count = sizeof schemes / sizeof *schemes;

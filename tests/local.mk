@@ -13,6 +13,7 @@ suites = \
 	tests/check_probe \
 	tests/check_registry \
 	tests/check_coefficients \
+	tests/check_trees \
 	tests/check_order \
 	tests/check_reversal \
 	tests/check_symplecticity \
@@ -24,6 +25,7 @@ suites = \
 	tests/check_failures \
 	tests/check_hard_steps \
 	tests/check_threads \
+	tests/check_adaptive \
 	tests/check_gsl
 TEST_LIBS = tests/libsupport.la libnevh.la $(CHECK_LIBS)
 # These look inside, so they link what is not visible in libnevh.la.

@@ -115,6 +115,16 @@ typedef struct {
     const double *a; /* stages x stages, row by row; only below the diagonal */
     const double *b; /* stages */
     const double *c; /* stages */
+    /* For steps that adapt to a tolerance: h sum_i error[i] k_i is an estimate
+       of the step's error; error: stages, b less the embedded weights, or NULL
+       where there are none.  With `coarse`, of a second embedded method of
+       lower order, or NULL, the norms of the two make one estimate:
+       |error|^2 / sqrt(|error|^2 + |coarse|^2 / 100) [E. Hairer, S. P.
+       Norsett, G. Wanner, Solving Ordinary Differential Equations I (1993),
+       II.10]. */
+    const double *error, *coarse;
+    int error_power;    /* the power of h with which the estimate falls */
+    bool last_is_first; /* the last stage is the next step's first */
 } nevh_butcher;
 NEVH_API extern const nevh_kernel nevh_runge_kutta_kernel;
 

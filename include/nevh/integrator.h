@@ -39,6 +39,8 @@ NEVH_API extern const nevh_integrator *const nevh_gauss20;
    tolerance is 0, and as many as the tolerance needs where it is not. */
 NEVH_API extern const nevh_integrator *const nevh_euler;
 NEVH_API extern const nevh_integrator *const nevh_rk4;
+NEVH_API extern const nevh_integrator *const nevh_dopri5;
+NEVH_API extern const nevh_integrator *const nevh_dop853;
 NEVH_API extern const nevh_integrator *const nevh_gsl_rkf45;
 NEVH_API extern const nevh_integrator *const nevh_gsl_rk8pd;
 
