@@ -38,9 +38,10 @@ struct nevh_integrator {
     const char *name, *aliases, *source; /* aliases: NULL or comma-separated */
     int order, stages;
     int gradients; /* dH/dq evaluations a step in a long run; 0: it depends */
-    int sweep_gradients; /* the same, of a sweep of an implicit scheme */
-    bool adaptive;       /* with a tolerance, takes its own steps within h */
-    bool own_time;       /* h is nominal: the step sets w->elapsed */
+    int sweep_gradients;  /* the same, of a sweep of an implicit scheme */
+    bool adaptive;        /* with a tolerance, takes its own steps within h */
+    bool needs_tolerance; /* it has no steps of its own */
+    bool own_time;        /* h is nominal: the step sets w->elapsed */
     nevh_claim symplectic, symmetric, explicit_form, preserves_energy;
     unsigned needs;
     const nevh_kernel *kernel;
