@@ -101,12 +101,15 @@ static double *errors(const nevh_work *w) {
 
 /* GSL would begin with all of h, from which H may be far beyond its domain. */
 static int choose_size(nevh_work *w, double h, const double y[], double *size) {
-    double length = *size;
+    gsl_plan *g = w->plan;
+    int order = (int)gsl_odeiv2_step_order(g->step);
+    bool anew = w->integrator->needs_tolerance; /* from order 1 */
+    double length = anew ? 0 : *size;
     if (length == 0 && slopes(0, y, errors(w), w))
         return GSL_EBADFUNC;
     if (length == 0)
         length =
-            nevh__first_substep(w, w->integrator->order, h, 1, y, errors(w));
+            nevh__first_substep(w, order > 1 ? order : 2, h, 1, y, errors(w));
     *size = copysign(length, h);
     return fabs(length) > DBL_EPSILON * fabs(h) ? GSL_SUCCESS : GSL_EMAXITER;
 }
