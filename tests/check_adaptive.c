@@ -203,6 +203,21 @@ START_TEST(short_steps_cost_no_more) {
 }
 END_TEST
 
+/* A step begins with the substep that the last one arrived at: all that it
+   costs is to land at its end. */
+START_TEST(substeps_are_remembered) {
+    const nevh_integrator *scheme = adaptive(_i);
+    if (!scheme || nevh_integrator_needs_tolerance(scheme))
+        return; /* which begin anew */
+    uint64_t each = (uint64_t)nevh_integrator_stages(scheme);
+    orbit whole = travel(&henon_heiles, scheme, 1e-11, 300, 1);
+    orbit z = travel(&henon_heiles, scheme, 1e-11, 300, 150);
+    ck_assert_msg(z.gradients <= whole.gradients + 150 * each,
+                  "%s: %lu instead of %lu", nevh_integrator_name(scheme),
+                  (unsigned long)z.gradients, (unsigned long)whole.gradients);
+}
+END_TEST
+
 START_TEST(there_and_back) {
     const nevh_integrator *scheme = adaptive(_i);
     if (!scheme)
@@ -527,6 +542,7 @@ int main(void) {
     tcase_add_loop_test(cases, time_goes_with_the_substeps, 0, count);
     tcase_add_test(cases, work_is_that_of_others);
     tcase_add_test(cases, short_steps_cost_no_more);
+    tcase_add_loop_test(cases, substeps_are_remembered, 0, count);
     tcase_add_loop_test(cases, there_and_back, 0, count);
     tcase_add_loop_test(cases, units_do_not_matter, 0, count);
     tcase_add_loop_test(cases, late_is_as_early, 0, count);
