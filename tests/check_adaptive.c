@@ -478,6 +478,51 @@ START_TEST(lanes_are_alone) {
 }
 END_TEST
 
+/* Also where H reads t: each lane has its own. */
+START_TEST(lanes_have_their_own_time) {
+    const nevh_integrator *scheme = adaptive(_i);
+    if (!scheme)
+        return;
+    nevh_system *s = driven_pendulum.make();
+    nevh_options o = {.gradient = nevh_exact, .tolerance = 1e-8, .width = 3};
+    nevh_stepper *all = nevh_stepper_new(s, scheme, &o);
+    double q[] = {0.9, 0.1, 2.8}, p[] = {0.3, 0, 0.1};
+    double x[] = {0.9, 0.1, 2.8}, y[] = {0.3, 0, 0.1};
+    ck_assert_int_eq(nevh_run(all, 0.3, 5, 3, q, p, NULL, 0), NEVH_OK);
+    o.width = 1;
+    for (int i = 0; i < 3; i++) {
+        nevh_stepper *alone = nevh_stepper_new(s, scheme, &o);
+        ck_assert_int_eq(nevh_run(alone, 0.3, 5, 3, x + i, y + i, NULL, 0),
+                         NEVH_OK);
+        nevh_stepper_free(alone);
+    }
+    ck_assert_mem_eq(q, x, sizeof q);
+    ck_assert_mem_eq(p, y, sizeof p);
+    nevh_stepper_free(all);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* What a substep loses to rounding is added to the next one: a hundred
+   thousand of them, whose truncation is nothing, leave the last digit. */
+START_TEST(rounding_is_carried_on) {
+    const nevh_integrator *scheme = _i ? nevh_dop853 : nevh_dopri5;
+    nevh_system *s = henon_heiles.make();
+    nevh_stepper *m = stepper_of(s, &henon_heiles, scheme, 1e-9);
+    nevh_energy *e = nevh_energy_new(s, NULL);
+    nevh_observer watch = {nevh_energy_observe, e, 1000};
+    double q[2], p[2];
+    memcpy(q, henon_heiles.q, sizeof q);
+    memcpy(p, henon_heiles.p, sizeof p);
+    ck_assert_int_eq(nevh_run(m, 0, 0x1p-10, 100000, q, p, &watch, 1), NEVH_OK);
+    double rms = nevh_energy_result(e, 0).rms;
+    ck_assert_msg(rms < 1e-15, "%s: %.2e", nevh_integrator_name(scheme), rms);
+    nevh_energy_free(e);
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
 static int look(void *data, size_t step, double t, const double q[],
                 const double p[]) {
     (void)step, (void)t, (void)q, (void)p;
@@ -553,6 +598,8 @@ int main(void) {
     tcase_add_loop_test(cases, an_end_of_the_domain, 0, count);
     tcase_add_loop_test(cases, walls_are_not_run_through, 0, 2);
     tcase_add_loop_test(cases, lanes_are_alone, 0, count);
+    tcase_add_loop_test(cases, lanes_have_their_own_time, 0, count);
+    tcase_add_loop_test(cases, rounding_is_carried_on, 0, 2);
     tcase_add_loop_test(cases, memory_is_all, 0, count);
     tcase_add_test(cases, a_tolerance_is_needed);
     suite_add_tcase(suite, cases);
