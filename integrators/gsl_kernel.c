@@ -61,6 +61,17 @@ static void plan_control(nevh_work *w) {
         gsl_odeiv2_step_set_driver(g->step, &g->driver);
 }
 
+/* An error of 0 over one of 0 is good enough for GSL. */
+static int check_tolerance(nevh_work *w) {
+    double tolerance = w->options->tolerance;
+    for (size_t i = 0; tolerance > 0 && i < 2 * w->n; i++)
+        if (!(tolerance * w->scale[i] > 0))
+            return nevh_work_fail(w, NEVH_EINVAL,
+                                  "the tolerance %g of a length of %g is 0",
+                                  tolerance, w->scale[i]);
+    return NEVH_OK;
+}
+
 /* Memory: the size of the last step within a step. */
 static int plan(nevh_work *w) {
     const gsl_odeiv2_step_type *const *type = w->integrator->table;
@@ -69,6 +80,9 @@ static int plan(nevh_work *w) {
         return nevh_work_fail(w, NEVH_EINVAL,
                               "%s has no fixed steps: it needs a tolerance",
                               w->integrator->name);
+    int status = check_tolerance(w);
+    if (status)
+        return status;
     gsl_plan *g = w->plan = nevh__array(1, sizeof *g);
     void *trial = nevh__array(2 * w->n, 64 * sizeof(double));
     free(trial); /* GSL aborts where memory is out: ask first */

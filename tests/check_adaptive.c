@@ -565,6 +565,23 @@ START_TEST(memory_is_all) {
 }
 END_TEST
 
+/* GSL would take errors that are 0/0 for good ones. */
+START_TEST(a_tolerance_of_nothing) {
+    const nevh_integrator *scheme = adaptive(_i);
+    if (!scheme || strncmp(nevh_integrator_name(scheme), "gsl-", 4) != 0)
+        return;
+    const double scale[] = {0.01, 0.01, 0.01, 0.01};
+    nevh_system *s = ellipse.make();
+    nevh_options o = {
+        .gradient = nevh_exact, .scale = scale, .tolerance = 0x1p-1074};
+    nevh_stepper *m = nevh_stepper_new(s, scheme, &o);
+    ck_assert_int_eq(nevh_stepper_status(m), NEVH_EINVAL);
+    assert_says(nevh_stepper_message(m), "tolerance");
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
 START_TEST(a_tolerance_is_needed) {
     nevh_system *s = ellipse.make();
     nevh_stepper *m = nevh_stepper_new(s, nevh_gsl_msadams, NULL);
@@ -601,6 +618,7 @@ int main(void) {
     tcase_add_loop_test(cases, lanes_have_their_own_time, 0, count);
     tcase_add_loop_test(cases, rounding_is_carried_on, 0, 2);
     tcase_add_loop_test(cases, memory_is_all, 0, count);
+    tcase_add_loop_test(cases, a_tolerance_of_nothing, 0, count);
     tcase_add_test(cases, a_tolerance_is_needed);
     suite_add_tcase(suite, cases);
     tcase_set_tags(slow, "slow");
