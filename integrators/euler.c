@@ -3,7 +3,7 @@
 #include "schemes_private.h"
 
 static const double a[] = {0}, b[] = {1}, c[] = {0};
-static const nevh_butcher table = {1, a, b, c};
+static const nevh_butcher table = {.stages = 1, .a = a, .b = b, .c = c};
 
 const nevh_integrator nevh__euler = {
     .name = "euler",

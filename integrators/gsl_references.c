@@ -11,6 +11,7 @@ const nevh_integrator nevh__gsl_rkf45 = {
     .order = 5,
     .stages = 6,
     .gradients = 6,
+    .adaptive = true,
     .symplectic = NEVH_NO,
     .symmetric = NEVH_NO,
     .explicit_form = NEVH_YES,
@@ -28,6 +29,7 @@ const nevh_integrator nevh__gsl_rk8pd = {
     .order = 8,
     .stages = 13,
     .gradients = 13,
+    .adaptive = true,
     .symplectic = NEVH_NO,
     .symmetric = NEVH_NO,
     .explicit_form = NEVH_YES,
@@ -36,3 +38,22 @@ const nevh_integrator nevh__gsl_rk8pd = {
     .table = &gsl_odeiv2_step_rk8pd,
 };
 NEVH__PUBLISH(gsl_rk8pd);
+
+const nevh_integrator nevh__gsl_msadams = {
+    .name = "gsl-msadams",
+    .aliases = "gsl_odeiv2_step_msadams, adams",
+    .source = "G. D. Byrne, A. C. Hindmarsh, A polyalgorithm for the numerical "
+              "solution of ordinary differential equations, ACM Trans. Math. "
+              "Software 1 (1975) 71-96; as in GSL, orders 1 to 12, P(EC)^m",
+    .order = 12,
+    .stages = 1,
+    .adaptive = true,
+    .needs_tolerance = true,
+    .symplectic = NEVH_NO,
+    .symmetric = NEVH_NO,
+    .explicit_form = NEVH_YES,
+    .preserves_energy = NEVH_NO,
+    .kernel = &nevh__gsl_kernel,
+    .table = &gsl_odeiv2_step_msadams,
+};
+NEVH__PUBLISH(gsl_msadams);

@@ -34,6 +34,10 @@ bool nevh_integrator_adaptive(const nevh_integrator *i) {
     return i->adaptive;
 }
 
+bool nevh_integrator_needs_tolerance(const nevh_integrator *i) {
+    return i->needs_tolerance;
+}
+
 bool nevh_integrator_own_time(const nevh_integrator *i) {
     return i->own_time;
 }

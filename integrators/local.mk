@@ -25,9 +25,13 @@ libnevh_core_la_SOURCES += \
 	integrators/kahan_li.c \
 	integrators/suzuki_umeno.c \
 	integrators/sofroniou_spaletta.c \
+	integrators/runge_kutta_private.h \
 	integrators/runge_kutta_kernel.c \
+	integrators/runge_kutta_adaptive.c \
 	integrators/euler.c \
 	integrators/rk4.c \
+	integrators/dopri5.c \
+	integrators/dop853.c \
 	integrators/gauss_private.h \
 	integrators/gauss_kernel.c \
 	integrators/gauss_coefficients.c \

@@ -10,7 +10,7 @@ static const double a[] = {
 };
 static const double b[] = {1. / 6, 1. / 3, 1. / 3, 1. / 6};
 static const double c[] = {0, 0.5, 0.5, 1};
-static const nevh_butcher table = {4, a, b, c};
+static const nevh_butcher table = {.stages = 4, .a = a, .b = b, .c = c};
 
 const nevh_integrator nevh__rk4 = {
     .name = "rk4",

@@ -1,62 +1,121 @@
 /* nevh: explicit Runge-Kutta methods, the non-symplectic reference.
 
    Slopes k_i = f(t + c_i h, y + h sum_j a_ij k_j), y += h sum_i b_i k_i, the
-   sum added to the state with compensation.
+   sum added to the state with compensation.  Friction is a part of f.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include <nevh/extend.h>
+#include "runge_kutta_private.h"
 
+/* Without a tolerance, memory is the carry alone, and a last stage that is the
+   next step's first is left to that step. */
 static int plan(nevh_work *w) {
     const nevh_butcher *table = w->integrator->table;
+    if (table->error && w->options->tolerance > 0)
+        return nevh__adaptive_plan(w);
     w->memory_rows = 2 * w->n;
-    w->scratch_size = (table->stages + 2) * 2 * w->size + w->width;
+    w->scratch_size = (table->stages + 2) * 2 * w->size + 3 * w->width;
     return NEVH_OK;
 }
 
-/* sum = sum over stages of weights[j] * slopes of stage j. */
-static void combine(size_t size, size_t stages, const double weights[],
-                    const double slopes[], double h, double sum[]) {
+void nevh__stages_sum(const nevh__stages *s, size_t count,
+                      const double weights[], double sum[]) {
+    size_t columns = s->columns, size = 2 * s->work->n * columns;
     for (size_t i = 0; i < size; i++)
         sum[i] = 0;
-    for (size_t j = 0; j < stages; j++)
+    for (size_t j = 0; j < count; j++)
         for (size_t i = 0; weights[j] != 0 && i < size; i++)
-            sum[i] += weights[j] * slopes[j * size + i];
-    for (size_t i = 0; i < size; i++)
-        sum[i] *= h;
+            sum[i] += weights[j] * s->slopes[j * size + i];
+    for (size_t i = 0; i < size; i += columns)
+        for (size_t c = 0; c < columns; c++)
+            sum[i + c] *= s->h[c];
 }
 
-/* The slopes of (q, p): dH/dp, then -dH/dq. */
-static int take_slopes(nevh_work *w, double t, const double point[],
-                       double slopes[], double time[]) {
-    size_t n = w->size;
-    for (size_t lane = 0; lane < w->width; lane++)
-        time[lane] = t;
-    int status = nevh_work_gradient(w, w->width, time, point, point + n,
-                                    slopes + n, slopes);
-    for (size_t i = n; i < 2 * n; i++)
-        slopes[i] = -slopes[i];
+/* The stage's state, to point, and its time. */
+static void place(const nevh__stages *s, size_t stage) {
+    const nevh_butcher *table = s->work->integrator->table;
+    size_t n = s->work->n * s->columns;
+    nevh__stages_sum(s, stage, table->a + stage * table->stages, s->change);
+    for (size_t i = 0; i < n; i++) {
+        s->point[i] = s->q[i] + (s->change[i] + s->carry[i]);
+        s->point[n + i] = s->p[i] + (s->change[n + i] + s->carry[n + i]);
+    }
+    for (size_t c = 0; c < s->columns; c++)
+        s->time[c] = s->t[c] + table->c[stage] * s->h[c];
+}
+
+/* dp/dt = -dH/dq - rate p. */
+static void rub(const nevh__stages *s, double slopes[]) {
+    const double *rates = s->work->friction, *p = s->point;
+    size_t n = s->work->n, columns = s->columns;
+    for (size_t k = 0; k < n; k++)
+        for (size_t i = (n + k) * columns; i < (n + k + 1) * columns; i++)
+            slopes[i] -= rates[k] * p[i];
+}
+
+int nevh__stages_take(const nevh__stages *s, size_t first, size_t until) {
+    nevh_work *w = s->work;
+    size_t n = w->n * s->columns;
+    for (size_t stage = first; stage < until; stage++) {
+        double *slopes = s->slopes + 2 * n * stage;
+        place(s, stage);
+        int status = nevh_work_gradient(w, s->columns, s->time, s->point,
+                                        s->point + n, slopes + n, slopes);
+        if (status)
+            return status;
+        for (size_t i = n; i < 2 * n; i++)
+            slopes[i] = -slopes[i];
+        if (w->friction)
+            rub(s, slopes);
+    }
+    return NEVH_OK;
+}
+
+/* All columns take the same h. */
+int nevh__stages_account(const nevh__stages *s) {
+    nevh_work *w = s->work;
+    const nevh_butcher *table = w->integrator->table;
+    int status = NEVH_OK;
+    for (size_t i = 0; w->accounts && !status && i < table->stages; i++)
+        if (table->b[i] != 0) {
+            place(s, i);
+            status = nevh_work_account(w, NEVH_OF_Q | NEVH_OF_P,
+                                       table->b[i] * s->h[0], s->time, s->point,
+                                       s->point + w->n * s->columns);
+        }
     return status;
 }
 
 static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     const nevh_butcher *table = w->integrator->table;
-    size_t n = w->size, s = table->stages;
-    double *slopes = w->scratch, *point = slopes + 2 * n * s;
-    double *change = point + 2 * n, *time = change + 2 * n;
-    int status = NEVH_OK;
-    for (size_t i = 0; !status && i < s; i++) {
-        combine(2 * n, i, table->a + i * s, slopes, h, change);
-        for (size_t k = 0; k < n; k++) {
-            point[k] = q[k] + (change[k] + w->memory[k]);
-            point[n + k] = p[k] + (change[n + k] + w->memory[n + k]);
-        }
-        status = take_slopes(w, t + table->c[i] * h, point, slopes + 2 * n * i,
-                             time);
+    size_t n = w->size, stages = table->stages - table->last_is_first;
+    if (w->plan)
+        return nevh__adaptive_step(w, t, h, q, p);
+    double *change = w->scratch + 2 * n * table->stages;
+    double *times = change + 4 * n, *begin = times + w->width;
+    double *each = begin + w->width;
+    nevh__stages s = {.work = w,
+                      .columns = w->width,
+                      .t = begin,
+                      .h = each,
+                      .q = q,
+                      .p = p,
+                      .carry = w->memory,
+                      .slopes = w->scratch,
+                      .change = change,
+                      .point = change + 2 * n,
+                      .time = times};
+    for (size_t lane = 0; lane < w->width; lane++) {
+        begin[lane] = t;
+        each[lane] = h;
     }
+    int status = nevh__stages_take(&s, 0, stages);
+    if (!status)
+        status = nevh__stages_account(&s);
     if (status)
         return status;
-    combine(2 * n, s, table->b, slopes, h, change);
+    nevh__stages_sum(&s, stages, table->b, change);
     return nevh_work_commit(w, n, q, change, w->memory, p, change + n,
                             w->memory + n);
 }
 
-const nevh_kernel nevh_runge_kutta_kernel = {.plan = plan, .step = step};
+const nevh_kernel nevh_runge_kutta_kernel = {
+    .plan = plan, .step = step, .unplan = nevh__adaptive_unplan, .damps = true};

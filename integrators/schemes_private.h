@@ -39,8 +39,11 @@
     X(naive_adaptive_verlet)                                                   \
     X(euler)                                                                   \
     X(rk4)                                                                     \
+    X(dopri5)                                                                  \
+    X(dop853)                                                                  \
     X(gsl_rkf45)                                                               \
-    X(gsl_rk8pd)
+    X(gsl_rk8pd)                                                               \
+    X(gsl_msadams)
 
 /* nevh__verlet is the descriptor, nevh_verlet the public pointer to it. */
 #define NEVH__DECLARE(id) extern const nevh_integrator nevh__##id;

@@ -5,7 +5,16 @@
 
 #include <nevh/extend.h>
 
+/* Trials that step control may make within one step of a lane. */
+enum { NEVH__MOST_SUBSTEPS = 1000000 };
+
 /* NEVH_EDOM: the new state is not finite. */
 int nevh__fail_range(nevh_work *, double t, double h);
+/* A careful first length, without sign, of substeps whose error falls with
+   `power`: a part of the time in which y, 2n apart by `stride`, changes by
+   max(|y|, scale). */
+double nevh__first_substep(const nevh_work *, int power, double h,
+                           size_t stride, const double y[],
+                           const double slopes[]);
 
 #endif

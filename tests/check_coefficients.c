@@ -131,42 +131,11 @@ static void check_splitting(const nevh_integrator *scheme) {
     ck_assert_int_eq(palindrome, scheme->symmetric == NEVH_YES);
 }
 
-/* Sums over rooted trees up to order 4. */
-static void check_runge_kutta(const nevh_integrator *scheme) {
-    const nevh_butcher *table = scheme->table;
-    size_t s = table->stages;
-    double sum[8] = {0};
-    static const double due[8] = {1,      1. / 2, 1. / 3,  1. / 6,
-                                  1. / 4, 1. / 8, 1. / 12, 1. / 24};
-    static const int order[8] = {1, 2, 3, 3, 4, 4, 4, 4};
-    for (size_t i = 0; i < s; i++) {
-        double b = table->b[i], c = table->c[i], row = 0, ac = 0, acc = 0,
-               aac = 0;
-        for (size_t j = 0; j < i; j++) {
-            double a = table->a[i * s + j], cj = table->c[j];
-            row += a;
-            ac += a * cj;
-            acc += a * cj * cj;
-            for (size_t k = 0; k < j; k++)
-                aac += a * table->a[j * s + k] * table->c[k];
-        }
-        ck_assert_double_eq_tol(row, c, DBL_EPSILON);
-        const double parts[8] = {1, c, c * c, ac, c * c * c, c * ac, acc, aac};
-        for (int k = 0; k < 8; k++)
-            sum[k] += b * parts[k];
-    }
-    for (int k = 0; k < 8; k++) {
-        if (order[k] <= scheme->order)
-            ck_assert_double_eq_tol(sum[k], due[k], 4 * DBL_EPSILON);
-    }
-}
-
+/* Runge-Kutta tables: check_trees. */
 START_TEST(explicit_tables) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     if (scheme->kernel == &nevh_splitting_kernel)
         check_splitting(scheme);
-    else if (scheme->kernel == &nevh_runge_kutta_kernel)
-        check_runge_kutta(scheme);
 }
 END_TEST
 

@@ -47,10 +47,12 @@ static nevh_system *system_of(nevh_term_fn potential, const void *params) {
 /* With steps given, so that planning evaluates nothing. */
 static nevh_stepper *stepper_of(const nevh_system *s,
                                 const nevh_integrator *scheme) {
-    nevh_stepper *m = nevh_stepper_new(s, scheme,
-                                       &(nevh_options){.gradient_step = 0x1p-10,
-                                                       .q = &start_q,
-                                                       .p = &start_p});
+    nevh_stepper *m =
+        nevh_stepper_new(s, scheme,
+                         &(nevh_options){.gradient_step = 0x1p-10,
+                                         .tolerance = tolerance_for(scheme),
+                                         .q = &start_q,
+                                         .p = &start_p});
     ck_assert_int_eq(nevh_stepper_status(m), NEVH_OK);
     return m;
 }

@@ -37,8 +37,10 @@ static bool finite_state(const double z[2]) {
 /* One step of any size, and a usual one after it. */
 static void try_step(const nevh_system *s, const nevh_integrator *scheme,
                      double tolerance, double h) {
-    nevh_options options = {
-        .q = &start_q, .p = &start_p, .tolerance = tolerance};
+    nevh_options options = {.q = &start_q,
+                            .p = &start_p,
+                            .tolerance =
+                                fmax(tolerance, tolerance_for(scheme))};
     nevh_stepper *m = nevh_stepper_new(s, scheme, &options);
     nevh_stepper *fresh = nevh_stepper_new(s, scheme, &options);
     const double start[] = {start_q, start_p};
@@ -48,7 +50,7 @@ static void try_step(const nevh_system *s, const nevh_integrator *scheme,
     ck_assert_msg(finite_state(z), "%s, h = %g", nevh_integrator_name(scheme),
                   h);
     ck_assert(isfinite(h) || status == NEVH_EINVAL);
-    ck_assert_int_ne(status, NEVH_EFAILED);
+    ck_assert(status != NEVH_EFAILED || options.tolerance > 0);
     if (fabs(h) < 1e-100) {
         ck_assert_int_eq(status, NEVH_OK);
         ck_assert_mem_eq(z, start, sizeof z);
@@ -73,13 +75,15 @@ START_TEST(absurd_steps) {
 }
 END_TEST
 
-/* Under GSL's step control; 1e20 would take that many steps. */
+/* Under step control; 1e20 would take that many steps. */
 START_TEST(absurd_adaptive_steps) {
-    const nevh_integrator *schemes[] = {nevh_gsl_rkf45, nevh_gsl_rk8pd};
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    if (!nevh_integrator_adaptive(scheme))
+        return;
     nevh_system *s = nevh_system_from(1, quartic, NULL);
     for (int i = 0; i < ABSURD; i++)
         if (!(fabs(absurd[i]) > 1 && fabs(absurd[i]) < 1e200))
-            try_step(s, schemes[_i], 1e-9, absurd[i]);
+            try_step(s, scheme, 1e-9, absurd[i]);
     nevh_system_free(s);
 }
 END_TEST
@@ -89,7 +93,8 @@ START_TEST(tiny_steps_turn_round) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     nevh_system *s = nevh_system_from(1, pendulum, NULL);
     for (int adaptive = 0; adaptive < 2; adaptive++) {
-        nevh_options options = {.tolerance = adaptive ? 1e-9 : 0};
+        nevh_options options = {.tolerance =
+                                    adaptive ? 1e-9 : tolerance_for(scheme)};
         nevh_stepper *m = nevh_stepper_new(s, scheme, &options);
         double z[] = {start_q, start_p};
         ck_assert_int_eq(nevh_stepper_apply(m, 0, 1e-200, z, z + 1), NEVH_OK);
@@ -128,14 +133,17 @@ START_TEST(stiff_steps) {
     for (double k = 1e2; k < 1e13; k *= 1e5) {
         nevh_system *s = nevh_system_from(1, stiff, &k);
         for (double h = 0.001; h < 11; h *= 10) {
-            nevh_options o = {
-                .gradient_step = 0x1p-11, .q = &start_q, .p = &start_p};
+            nevh_options o = {.gradient_step = 0x1p-11,
+                              .q = &start_q,
+                              .p = &start_p,
+                              .tolerance = tolerance_for(scheme)};
             nevh_stepper *m = nevh_stepper_new(s, scheme, &o);
             double z[] = {start_q, start_p};
             int status = nevh_stepper_apply(m, 0, h, z, z + 1);
             ck_assert(finite_state(z));
             ck_assert(status == NEVH_OK || status == NEVH_EMAXITER ||
-                      status == NEVH_EDOM);
+                      status == NEVH_EDOM ||
+                      (status == NEVH_EFAILED && o.tolerance > 0));
             ck_assert(!status || (z[0] == start_q && z[1] == start_p));
             if (!status && scheme == nevh_midpoint)
                 ck_assert_double_le(midpoint_residual(s, &o, h, z), 1e-8);
@@ -215,55 +223,71 @@ START_TEST(rescue_of_a_neighbour) {
 }
 END_TEST
 
-/* 1e308 q + 1e-308 p: values and derivatives are finite, the momentum after a
-   step is not. */
+/* F q + p/F: values and derivatives are finite, the momentum after a step is
+   not. */
 static double force(double t, const double q[], const double p[],
                     const double c[], const void *params) {
-    (void)t, (void)p, (void)c, (void)params;
-    return 1e308 * q[0];
+    (void)t, (void)p, (void)params;
+    return c[0] * q[0];
 }
 
 static double drift(double t, const double q[], const double p[],
                     const double c[], const void *params) {
-    (void)t, (void)q, (void)c, (void)params;
-    return 1e-308 * p[0];
+    (void)t, (void)q, (void)params;
+    return p[0] / c[0];
 }
 
 static void force_gradient(size_t width, const double t[], const double q[],
                            const double p[], const double c[],
                            const void *params, double dq[], double dp[]) {
-    (void)t, (void)q, (void)p, (void)c, (void)params, (void)dp;
+    (void)t, (void)q, (void)p, (void)params, (void)dp;
     for (size_t i = 0; dq && i < width; i++)
-        dq[i] = 1e308;
+        dq[i] = c[i];
 }
 
 static void drift_gradient(size_t width, const double t[], const double q[],
                            const double p[], const double c[],
                            const void *params, double dq[], double dp[]) {
-    (void)t, (void)q, (void)p, (void)c, (void)params, (void)dq;
+    (void)t, (void)q, (void)p, (void)params, (void)dq;
     for (size_t i = 0; dp && i < width; i++)
-        dp[i] = 1e-308;
+        dp[i] = 1 / c[i];
 }
 
-START_TEST(leaves_the_range_of_numbers) {
-    const nevh_integrator *scheme = nevh_integrators()[_i];
+static nevh_system *steep(const double *strength) {
     nevh_system *s = nevh_system_new(1);
     nevh_system_add(s, &(nevh_term){.effect = "force",
                                     .nq = 1,
+                                    .nc = 1,
+                                    .c = strength,
                                     .value = force,
                                     .gradient = force_gradient});
     nevh_system_add(s, &(nevh_term){.effect = "drift",
                                     .np = 1,
+                                    .nc = 1,
+                                    .c = strength,
                                     .value = drift,
                                     .gradient = drift_gradient});
+    return s;
+}
+
+/* The coefficients of dop853 add up to 100, and so its slopes must be that
+   far from the end of the range. */
+START_TEST(leaves_the_range_of_numbers) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    const double strength = scheme == nevh_dop853 ? 1e306 : 1e308;
+    const double start = scheme == nevh_dop853 ? -1.7975e308 : -1e308;
+    const double back = start + strength;
+    nevh_system *s = steep(&strength);
     nevh_stepper *m =
-        nevh_stepper_new(s, scheme, &(nevh_options){.gradient = nevh_exact});
-    double z[] = {0, -1e308};
+        nevh_stepper_new(s, scheme,
+                         &(nevh_options){.gradient = nevh_exact,
+                                         .tolerance = tolerance_for(scheme)});
+    double z[] = {0, start};
     ck_assert_int_eq(nevh_stepper_apply(m, 0, 1, z, z + 1), NEVH_EDOM);
     assert_says(nevh_stepper_message(m), "smaller");
-    ck_assert(z[0] == 0 && z[1] == -1e308);
+    ck_assert(z[0] == 0 && z[1] == start);
     ck_assert_int_eq(nevh_stepper_apply(m, 0, -1, z, z + 1), NEVH_OK);
-    ck_assert(fabs(z[1]) <= 1e293);
+    ck_assert(fabs(z[1] - back) <= 1e293);
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
@@ -304,7 +328,7 @@ int main(void) {
     TCase *cases = tcase_create("hard steps");
     int schemes = scheme_count();
     tcase_add_loop_test(cases, absurd_steps, 0, 2 * schemes);
-    tcase_add_loop_test(cases, absurd_adaptive_steps, 0, 2);
+    tcase_add_loop_test(cases, absurd_adaptive_steps, 0, schemes);
     tcase_add_loop_test(cases, tiny_steps_turn_round, 0, schemes);
     tcase_add_loop_test(cases, stiff_steps, 0, schemes);
     tcase_add_loop_test(cases, noise_is_not_solved, 0, schemes);

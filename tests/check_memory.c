@@ -232,11 +232,12 @@ static const double ones[] = {1, 1, 1, 1}, steps[] = {1e-3, 1e-3, 0, 1e-3};
 START_TEST(steppers) {
     nevh_system *s = nevh_system_from(2, whole, NULL);
     setting a = {.system = s, .scheme = nevh_integrators()[_i / 2]};
-    a.options = (nevh_options){.gradient_steps = steps,
-                               .scale = _i % 2 ? ones : NULL,
-                               .q = start_q,
-                               .p = start_p,
-                               .tolerance = _i % 2 ? 0 : 1e-6};
+    a.options =
+        (nevh_options){.gradient_steps = steps,
+                       .scale = _i % 2 ? ones : NULL,
+                       .q = start_q,
+                       .p = start_p,
+                       .tolerance = _i % 2 ? tolerance_for(a.scheme) : 1e-6};
     ck_assert_uint_ge(starve(make_stepper, &a), 15);
     a.stepper = nevh_stepper_new(s, a.scheme, &a.options);
     ck_assert_uint_ge(starve(copy_stepper, &a), 15);
@@ -260,8 +261,10 @@ START_TEST(steps_take_no_memory) {
                                         nevh_exact};
     const nevh_integrator *scheme = nevh_integrators()[_i / 3];
     nevh_system *s = pendulums();
-    nevh_options o = {
-        .gradient = gradients[_i % 3], .q = start_q, .p = start_p};
+    nevh_options o = {.gradient = gradients[_i % 3],
+                      .q = start_q,
+                      .p = start_p,
+                      .tolerance = tolerance_for(scheme)};
     nevh_stepper *m = nevh_stepper_new(s, scheme, &o);
     nevh_energy *e = nevh_energy_new(s, NULL);
     nevh_observer energy = {nevh_energy_observe, e, 1};

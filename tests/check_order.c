@@ -5,10 +5,12 @@
 
 /* Five per cent up to order 6, twelve above.  Beyond order 10 only the gentle
    Henon-Heiles problem shows the power law clear of rounding; on the others
-   the last steps before it still overshoot, by up to a quarter.  That these
-   orders are exact is proved algebraically in check_coefficients. */
-static double allowance(const problem *b, int order) {
-    if (order > 10 && b != &henon_heiles)
+   the last steps before it still overshoot, by up to a quarter; so with dop853,
+   whose error begins with very small coefficients.  That these orders are exact
+   is proved algebraically in check_coefficients and check_trees. */
+static double allowance(const problem *b, const nevh_integrator *scheme) {
+    int order = nevh_integrator_order(scheme);
+    if ((order > 10 || scheme == nevh_dop853) && b != &henon_heiles)
         return 0.3;
     return order > 6 ? 0.12 : 0.05;
 }
@@ -16,13 +18,15 @@ static double allowance(const problem *b, int order) {
 static void assert_order(const problem *b, const nevh_integrator *scheme) {
     int order = nevh_integrator_order(scheme);
     double slope = measured_order(b, scheme, nevh_exact);
-    ck_assert_msg(fabs(slope - order) <= allowance(b, order) * order,
+    ck_assert_msg(fabs(slope - order) <= allowance(b, scheme) * order,
                   "%s on %s: order %d, measured %.3f",
                   nevh_integrator_name(scheme), b->name, order, slope);
 }
 
 START_TEST(order_of_scheme) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
+    if (nevh_integrator_needs_tolerance(scheme))
+        return; /* the error falls with that, not with h: check_adaptive */
     int measured = 0;
     for (const problem *const *b = problems; *b; b++)
         if (fits(scheme, *b)) {

@@ -77,8 +77,11 @@ START_TEST(public_pointers_are_listed) {
                                               nevh_naive_adaptive_verlet,
                                               nevh_euler,
                                               nevh_rk4,
+                                              nevh_dopri5,
+                                              nevh_dop853,
                                               nevh_gsl_rkf45,
-                                              nevh_gsl_rk8pd};
+                                              nevh_gsl_rk8pd,
+                                              nevh_gsl_msadams};
     int count = sizeof schemes / sizeof *schemes;
     ck_assert_int_eq(scheme_count(), count);
     for (int i = 0; i < count; i++)

@@ -161,8 +161,10 @@ START_TEST(lanes_are_alone) {
     if (nevh_integrator_own_time(scheme))
         return; /* see own_time_takes_one_orbit */
     nevh_system *s = b->make();
-    nevh_options options = {
-        .gradient = nevh_central4, .gradient_step = 0x1p-9, .width = WIDTH};
+    nevh_options options = {.gradient = nevh_central4,
+                            .gradient_step = 0x1p-9,
+                            .width = WIDTH,
+                            .tolerance = tolerance_for(scheme)};
     nevh_stepper *three = nevh_stepper_new(s, scheme, &options);
     options.width = 1;
     nevh_stepper *one = nevh_stepper_new(s, scheme, &options);
@@ -191,7 +193,9 @@ START_TEST(a_neighbours_jump_changes_nothing) {
     if (nevh_integrator_own_time(scheme))
         return;
     nevh_system *s = b->make();
-    nevh_options options = {.gradient_step = 0x1p-9, .width = 2};
+    nevh_options options = {.gradient_step = 0x1p-9,
+                            .width = 2,
+                            .tolerance = tolerance_for(scheme)};
     nevh_stepper *two = nevh_stepper_new(s, scheme, &options);
     nevh_stepper *quiet = nevh_stepper_new(s, scheme, &options);
     double q[2 * MOST_DOF], p[2 * MOST_DOF], q1[2 * MOST_DOF], p1[2 * MOST_DOF];

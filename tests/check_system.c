@@ -332,7 +332,8 @@ static double counted(double t, const double q[], const double p[],
 
 static void run_scheme(nevh_system *s, const nevh_integrator *scheme,
                        double z[2], nevh_counts *counts) {
-    nevh_stepper *m = nevh_stepper_new(s, scheme, NULL);
+    nevh_options options = {.tolerance = tolerance_for(scheme)};
+    nevh_stepper *m = nevh_stepper_new(s, scheme, &options);
     z[0] = 0.7;
     z[1] = 0.4;
     ck_assert_int_eq(nevh_run(m, 0, 0.1, 20, z, z + 1, NULL, 0), NEVH_OK);

@@ -18,7 +18,8 @@ static void *run(void *data) {
     job *j = data;
     memcpy(j->q, j->problem->q, sizeof j->q);
     memcpy(j->p, j->problem->p, sizeof j->p);
-    nevh_stepper *stepper = nevh_stepper_new(j->system, j->scheme, NULL);
+    nevh_options options = {.tolerance = tolerance_for(j->scheme)};
+    nevh_stepper *stepper = nevh_stepper_new(j->system, j->scheme, &options);
     j->status = nevh_run(stepper, 0, 0.002, STEPS, j->q, j->p, NULL, 0);
     nevh_stepper_free(stepper);
     return NULL;

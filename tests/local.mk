@@ -15,6 +15,7 @@ suites = \
 	tests/check_coefficients \
 	tests/check_splitting \
 	tests/check_published \
+	tests/check_trees \
 	tests/check_order \
 	tests/check_reversal \
 	tests/check_symplecticity \
@@ -26,12 +27,15 @@ suites = \
 	tests/check_failures \
 	tests/check_hard_steps \
 	tests/check_threads \
+	tests/check_adaptive \
+	tests/check_damped \
 	tests/check_gsl
 TEST_LIBS = tests/libsupport.la libnevh.la $(CHECK_LIBS)
 # These look inside, so they link what is not visible in libnevh.la.
 INSIDE_LIBS = tests/libsupport.la libnevh_core.la $(CHECK_LIBS)
 tests_check_coefficients_LDADD = $(INSIDE_LIBS)
 tests_check_splitting_LDADD = $(INSIDE_LIBS)
+tests_check_damped_LDADD = $(INSIDE_LIBS)
 tests_check_gsl_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_threads_CFLAGS = $(AM_CFLAGS) -pthread
 tests_check_threads_LDFLAGS = $(AM_LDFLAGS) -pthread

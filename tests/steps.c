@@ -36,7 +36,8 @@ static int run(const nevh_integrator *scheme, size_t steps) {
     const nevh_model *model = nevh_coupled_oscillators_model;
     nevh_system *s = model->system(model->defaults);
     double q[] = {model->q[0], model->q[1]}, p[] = {model->p[0], model->p[1]};
-    nevh_options options = {.q = q, .p = p};
+    bool needs = nevh_integrator_needs_tolerance(scheme);
+    nevh_options options = {.q = q, .p = p, .tolerance = needs ? 1e-12 : 0};
     nevh_stepper *stepper = nevh_stepper_new(s, scheme, &options);
     nevh_energy *energy = nevh_energy_new(s, NULL);
     nevh_observer watch = {nevh_energy_observe, energy, 1};

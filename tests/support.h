@@ -37,6 +37,8 @@ extern const problem *const problems[];
 
 /* Whether a scheme takes the problem's H. */
 bool fits(const nevh_integrator *, const problem *);
+/* The tolerance to plan with: 0, or a tight one for schemes that need one. */
+double tolerance_for(const nevh_integrator *);
 /* A stepper on a new system of the problem; fails the test when refused. */
 nevh_stepper *planned(nevh_system *, const problem *, const nevh_integrator *,
                       const nevh_gradient *);

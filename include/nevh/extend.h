@@ -41,9 +41,10 @@ struct nevh_integrator {
     const char *name, *aliases, *source; /* aliases: NULL or comma-separated */
     int order, stages;
     int gradients; /* dH/dq evaluations a step in a long run; 0: it depends */
-    int sweep_gradients; /* the same, of a sweep of an implicit scheme */
-    bool adaptive;       /* with a tolerance, takes its own steps within h */
-    bool own_time;       /* h is nominal: the step sets w->elapsed */
+    int sweep_gradients;  /* the same, of a sweep of an implicit scheme */
+    bool adaptive;        /* with a tolerance, takes its own steps within h */
+    bool needs_tolerance; /* it has no steps of its own */
+    bool own_time;        /* h is nominal: the step sets w->elapsed */
     nevh_claim symplectic, symmetric, explicit_form, preserves_energy;
     unsigned needs;
     const nevh_kernel *kernel;
@@ -132,6 +133,16 @@ typedef struct {
     const double *a; /* stages x stages, row by row; only below the diagonal */
     const double *b; /* stages */
     const double *c; /* stages */
+    /* For steps that adapt to a tolerance: h sum_i error[i] k_i is an estimate
+       of the step's error; error: stages, b less the embedded weights, or NULL
+       where there are none.  With `coarse`, of a second embedded method of
+       lower order, or NULL, the norms of the two make one estimate:
+       |error|^2 / sqrt(|error|^2 + |coarse|^2 / 100) [E. Hairer, S. P.
+       Norsett, G. Wanner, Solving Ordinary Differential Equations I (1993),
+       II.10]. */
+    const double *error, *coarse;
+    int error_power;    /* the power of h with which the estimate falls */
+    bool last_is_first; /* the last stage is the next step's first */
 } nevh_butcher;
 NEVH_API extern const nevh_kernel nevh_runge_kutta_kernel;
 

@@ -55,12 +55,18 @@ NEVH_API extern const nevh_integrator *const nevh_gauss20;
    what the first keeps. */
 NEVH_API extern const nevh_integrator *const nevh_adaptive_verlet;
 NEVH_API extern const nevh_integrator *const nevh_naive_adaptive_verlet;
-/* Not symplectic: the references.  GSL's take one step of h where the
-   tolerance is 0, and as many as the tolerance needs where it is not. */
+/* Not symplectic: the references.  Those that adapt take one step of h where
+   the tolerance is 0, and as many as the tolerance needs where it is not: the
+   end of a step of h is landed on exactly, so that smaller h, where they cut
+   such steps short, change the last digits.  nevh_gsl_msadams, whose order
+   goes from 1 to 12, needs a tolerance, and begins anew with every step. */
 NEVH_API extern const nevh_integrator *const nevh_euler;
 NEVH_API extern const nevh_integrator *const nevh_rk4;
+NEVH_API extern const nevh_integrator *const nevh_dopri5;
+NEVH_API extern const nevh_integrator *const nevh_dop853;
 NEVH_API extern const nevh_integrator *const nevh_gsl_rkf45;
 NEVH_API extern const nevh_integrator *const nevh_gsl_rk8pd;
+NEVH_API extern const nevh_integrator *const nevh_gsl_msadams;
 
 /* All schemes, ended by NULL. */
 NEVH_API const nevh_integrator *const *nevh_integrators(void);
@@ -82,6 +88,8 @@ NEVH_API int nevh_integrator_gradients(const nevh_integrator *);
 NEVH_API int nevh_integrator_sweep_gradients(const nevh_integrator *);
 /* Whether with a tolerance it takes as many steps within h as that needs. */
 NEVH_API bool nevh_integrator_adaptive(const nevh_integrator *);
+/* Whether it has no fixed steps: without a tolerance its plan is refused. */
+NEVH_API bool nevh_integrator_needs_tolerance(const nevh_integrator *);
 /* Whether h is a nominal step, and the time that a step takes the scheme's
    own: see nevh_stepper_time. */
 NEVH_API bool nevh_integrator_own_time(const nevh_integrator *);

@@ -36,9 +36,11 @@ NEVH_API const char *nevh_stepper_message(const nevh_stepper *);
    q, p     in and out, n x width each, lanes innermost (q[k*width + lane])
    returns  NEVH_OK; NEVH_EDOM (a value of H or the new state is not finite),
             NEVH_EMAXITER (the stage equations of an implicit scheme were not
-            solved), NEVH_ESTALE, NEVH_EINVAL (h not finite), or the refusal of
-            a stepper that could not be planned.  On failure q, p and the
-            stepper's memory are as before the step.
+            solved), NEVH_EFAILED (an adaptive scheme would need more than a
+            million substeps, or shorter ones than there are), NEVH_ESTALE,
+            NEVH_EINVAL (h not finite), or the refusal of a stepper that could
+            not be planned.  On failure q, p and the stepper's memory are as
+            before the step.
 
    A stepper remembers what it last returned (sums of rounding errors, the
    last gradient, a first guess for the stages).  Where q, p or t differ from

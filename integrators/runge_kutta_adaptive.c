@@ -1,0 +1,364 @@
+/* nevh: Runge-Kutta steps as many as a tolerance needs.
+
+   Every lane goes from t to t + h in substeps of its own; lanes that are under
+   way take their slopes together.  Step control is that of E. Hairer, S. P.
+   Norsett, G. Wanner, Solving Ordinary Differential Equations I (1993), II.4:
+   with err the estimate over the tolerance, a root mean square of components
+   relative to max(|y|, scale),
+
+       next = size * 0.9 err^(-1/k + 3/4 beta) err_last^beta,  beta = 1/(5k),
+
+   where the estimate falls with size^k; between a fifth and six times of size,
+   and not above it after a rejection.  Where H is not finite at a trial's
+   stages, the trial is rejected as well.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "runge_kutta_private.h"
+#include "work_private.h"
+#include "system/system_private.h"
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Lengths are without sign: done and size go from t towards t + h. */
+typedef struct {
+    double done;
+    double size;    /* of the next substep; 0: not known */
+    double step;    /* under trial: size, or what is left */
+    double last;    /* err of the last accepted one; 0: there is none */
+    bool has_first; /* the slope at the state is known */
+    bool held;      /* the last trial was rejected */
+    bool ends;      /* this one ends the step */
+    unsigned trials;
+} lane_walk;
+
+typedef struct {
+    lane_walk *lanes;  /* width */
+    size_t *under_way; /* width */
+    size_t *unknown;   /* width: those of them without a first slope */
+} adaptive_plan;
+
+/* The step of all lanes: rows of `width`. */
+typedef struct {
+    nevh_work *work;
+    const nevh_butcher *table;
+    double t, h;
+    lane_walk *lanes;
+    double *y, *lost, *first; /* 2n rows: state, its carry, its slope */
+    nevh__stages trial;       /* of some lanes, their columns side by side */
+    double *begin, *each;     /* the trial's t and h */
+    double *old;              /* the trial's state, 2n x columns as all below */
+    double *carry, *next, *next_carry, *error, *coarse;
+} walk;
+
+enum { ROWS = 11 }; /* of 2n x width in a walk, besides the slopes */
+
+void nevh__adaptive_unplan(nevh_work *w) {
+    adaptive_plan *a = w->plan;
+    if (!a)
+        return;
+    free(a->lanes);
+    free(a->under_way);
+    free(a->unknown);
+    free(a);
+    w->plan = NULL;
+}
+
+/* Memory: carry, size, err; where the last stage is the next first one, also
+   that slope and whether it is there. */
+int nevh__adaptive_plan(nevh_work *w) {
+    const nevh_butcher *table = w->integrator->table;
+    adaptive_plan *a = w->plan = nevh__array(1, sizeof *a);
+    if (!a)
+        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
+    a->lanes = nevh__array(w->width, sizeof *a->lanes);
+    a->under_way = nevh__array(w->width, sizeof *a->under_way);
+    a->unknown = nevh__array(w->width, sizeof *a->unknown);
+    if (!a->lanes || !a->under_way || !a->unknown)
+        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
+    w->memory_rows = 2 * w->n + 2;
+    if (table->last_is_first)
+        w->memory_rows += 2 * w->n + 1;
+    w->scratch_size = (table->stages + ROWS) * 2 * w->size + 3 * w->width;
+    return NEVH_OK;
+}
+
+static walk lay_out(nevh_work *w, double t, double h) {
+    adaptive_plan *a = w->plan;
+    walk s = {.work = w,
+              .table = w->integrator->table,
+              .t = t,
+              .h = h,
+              .lanes = a->lanes};
+    size_t each = 2 * w->size;
+    double *at = w->scratch;
+    double **const rows[ROWS] = {
+        &s.y,      &s.lost,         &s.first,      &s.old,
+        &s.carry,  &s.next,         &s.next_carry, &s.error,
+        &s.coarse, &s.trial.change, &s.trial.point};
+    for (int i = 0; i < ROWS; i++, at += each)
+        *rows[i] = at;
+    s.trial.slopes = at;
+    s.begin = at + s.table->stages * each;
+    s.each = s.begin + w->width;
+    s.trial.time = s.each + w->width;
+    s.trial.work = w;
+    s.trial.t = s.begin;
+    s.trial.h = s.each;
+    s.trial.q = s.old;
+    s.trial.carry = s.carry;
+    return s;
+}
+
+static void load(walk *s, const double q[], const double p[]) {
+    const nevh_work *w = s->work;
+    size_t n = w->size, width = w->width;
+    const double *size = w->memory + 2 * n, *last = size + width;
+    const double *first = last + width, *has_first = first + 2 * n;
+    bool keeps = s->table->last_is_first;
+    memcpy(s->y, q, n * sizeof *q);
+    memcpy(s->y + n, p, n * sizeof *p);
+    memcpy(s->lost, w->memory, 2 * n * sizeof *s->lost);
+    if (keeps)
+        memcpy(s->first, first, 2 * n * sizeof *first);
+    for (size_t lane = 0; lane < width; lane++)
+        s->lanes[lane] =
+            (lane_walk){.size = size[lane],
+                        .last = last[lane],
+                        .has_first = keeps && has_first[lane] != 0};
+}
+
+static void store(const walk *s, double q[], double p[]) {
+    const nevh_work *w = s->work;
+    size_t n = w->size, width = w->width;
+    double *size = w->memory + 2 * n, *last = size + width;
+    double *first = last + width, *has_first = first + 2 * n;
+    bool keeps = s->table->last_is_first;
+    memcpy(q, s->y, n * sizeof *q);
+    memcpy(p, s->y + n, n * sizeof *p);
+    memcpy(w->memory, s->lost, 2 * n * sizeof *s->lost);
+    if (keeps)
+        memcpy(first, s->first, 2 * n * sizeof *first);
+    for (size_t lane = 0; lane < width; lane++) {
+        size[lane] = s->lanes[lane].size;
+        last[lane] = s->lanes[lane].last;
+        if (keeps)
+            has_first[lane] = s->lanes[lane].has_first;
+    }
+}
+
+/* Columns of the lanes, out of rows of all and back. */
+static void gather(const walk *s, const size_t lanes[], const double all[],
+                   double out[]) {
+    size_t columns = s->trial.columns, width = s->work->width;
+    for (size_t k = 0; k < 2 * s->work->n; k++)
+        for (size_t c = 0; c < columns; c++)
+            out[k * columns + c] = all[k * width + lanes[c]];
+}
+
+static void scatter(const walk *s, size_t column, size_t lane,
+                    const double from[], double all[]) {
+    size_t columns = s->trial.columns, width = s->work->width;
+    for (size_t k = 0; k < 2 * s->work->n; k++)
+        all[k * width + lane] = from[k * columns + column];
+}
+
+static void gather_states(walk *s, size_t count, const size_t lanes[]) {
+    s->trial.columns = count;
+    s->trial.p = s->old + s->work->n * count;
+    gather(s, lanes, s->y, s->old);
+    gather(s, lanes, s->lost, s->carry);
+    for (size_t c = 0; c < count; c++) {
+        const lane_walk *l = &s->lanes[lanes[c]];
+        s->begin[c] = s->t + copysign(l->done, s->h);
+        s->each[c] = copysign(l->step, s->h);
+    }
+}
+
+/* The slopes at the states of those lanes that do not know them. */
+static int take_first_slopes(walk *s, size_t count, const size_t lanes[]) {
+    size_t *unknown = ((adaptive_plan *)s->work->plan)->unknown, some = 0;
+    for (size_t i = 0; i < count; i++)
+        if (!s->lanes[lanes[i]].has_first)
+            unknown[some++] = lanes[i];
+    if (some == 0)
+        return NEVH_OK;
+    gather_states(s, some, unknown);
+    int status = nevh__stages_take(&s->trial, 0, 1);
+    for (size_t c = 0; c < some; c++) {
+        scatter(s, c, unknown[c], s->trial.slopes, s->first);
+        s->lanes[unknown[c]].has_first = true;
+    }
+    return status;
+}
+
+double nevh__first_substep(const nevh_work *w, int power, double h,
+                           size_t stride, const double y[],
+                           const double slopes[]) {
+    double sum = 0;
+    for (size_t i = 0; i < 2 * w->n; i++) {
+        double rate =
+            slopes[i * stride] / fmax(fabs(y[i * stride]), w->scale[i]);
+        sum += rate * rate;
+    }
+    double rate = sqrt(sum / (2 * (double)w->n));
+    double size = 0.5 * pow(w->options->tolerance, 1. / power) / rate;
+    return size <= DBL_MAX ? size : fabs(h);
+}
+
+/* The root mean square of estimates over max(|y|, scale), squared. */
+static double square(const walk *s, size_t column, const double estimate[]) {
+    const nevh_work *w = s->work;
+    double sum = 0;
+    for (size_t k = 0; k < 2 * w->n; k++) {
+        size_t i = k * s->trial.columns + column;
+        double most = fmax(fabs(s->old[i]), fabs(s->next[i]));
+        double x = estimate[i] / fmax(most, w->scale[k]);
+        sum += x * x;
+    }
+    return sum / (2 * (double)w->n);
+}
+
+/* The estimate over the tolerance; NaN where it is beyond numbers. */
+static double judge(const walk *s, size_t column) {
+    double error = square(s, column, s->error), all = error;
+    if (s->table->coarse)
+        all += 0.01 * square(s, column, s->coarse);
+    double err = s->table->coarse && all > 0 ? error / sqrt(all) : sqrt(error);
+    return err / s->work->options->tolerance;
+}
+
+static int give_up(const walk *s, const lane_walk *l, const char *why) {
+    const nevh_work *w = s->work;
+    return nevh_work_fail(s->work, NEVH_EFAILED,
+                          "%s gave up at t = %.9g: the step of %g takes %s at "
+                          "a tolerance of %g",
+                          w->integrator->name, s->t + copysign(l->done, s->h),
+                          s->h, why, w->options->tolerance);
+}
+
+static bool too_short(const walk *s, const lane_walk *l) {
+    return !(l->size > DBL_EPSILON * fabs(s->h)) && l->size < fabs(s->h);
+}
+
+/* How much longer the next substep may be. */
+static double factor(const walk *s, const lane_walk *l, double err) {
+    double k = s->table->error_power, beta = 0.2 / k;
+    double last = l->last > 0 ? l->last : 1e-4;
+    return 0.9 * pow(err, 0.75 * beta - 1 / k) * pow(last, beta);
+}
+
+static int reject(const walk *s, lane_walk *l, double err) {
+    double wanted = 0.9 * pow(err, -1. / s->table->error_power);
+    l->size = l->step * (wanted > 0.2 ? fmin(wanted, 0.9) : 0.2);
+    l->held = true;
+    return too_short(s, l) ? give_up(s, l, "substeps too short to be taken")
+                           : NEVH_OK;
+}
+
+/* A substep cut short by the end of the step says nothing against longer
+   ones. */
+static int accept(walk *s, size_t column, size_t lane, double err) {
+    lane_walk *l = &s->lanes[lane];
+    double next = l->step * fmin(fmax(factor(s, l, err), 0.2), l->held ? 1 : 6);
+    l->size = l->ends ? fmax(next, l->size) : next;
+    l->done = l->ends ? fabs(s->h) : l->done + l->step;
+    l->last = fmax(err, 1e-4);
+    l->held = false;
+    l->has_first = s->table->last_is_first;
+    scatter(s, column, lane, s->next, s->y);
+    scatter(s, column, lane, s->next_carry, s->lost);
+    size_t final = 2 * s->work->n * s->trial.columns * (s->table->stages - 1);
+    if (l->has_first)
+        scatter(s, column, lane, s->trial.slopes + final, s->first);
+    return s->work->accounts ? nevh__stages_account(&s->trial) : NEVH_OK;
+}
+
+/* Stages, estimates and new states of a trial. */
+static int take_trial(walk *s, size_t count, const size_t lanes[]) {
+    const nevh_butcher *table = s->table;
+    const nevh__stages *trial = &s->trial;
+    size_t n = s->work->n * count;
+    gather_states(s, count, lanes);
+    gather(s, lanes, s->first, trial->slopes);
+    int status = nevh__stages_take(trial, 1, table->stages);
+    if (status)
+        return status;
+    nevh__stages_sum(trial, table->stages, table->error, s->error);
+    if (table->coarse)
+        nevh__stages_sum(trial, table->stages, table->coarse, s->coarse);
+    nevh__stages_sum(trial, table->stages, table->b, trial->change);
+    memcpy(s->next, s->old, 2 * n * sizeof *s->next);
+    memcpy(s->next_carry, s->carry, 2 * n * sizeof *s->next_carry);
+    return nevh_work_commit(s->work, n, s->next, trial->change, s->next_carry,
+                            s->next + n, trial->change + n, s->next_carry + n);
+}
+
+/* One substep of each of the lanes, accepted or not.  Where together they
+   fail, each goes alone, so that none depends on its neighbours. */
+static int try(walk *s, size_t count, const size_t lanes[]) {
+    int status = take_trial(s, count, lanes);
+    if (status == NEVH_EDOM && count > 1) {
+        status = NEVH_OK;
+        for (size_t i = 0; !status && i < count; i++)
+            status = try(s, 1, lanes + i);
+        return status;
+    }
+    if (status == NEVH_EDOM) {
+        lane_walk *l = &s->lanes[*lanes];
+        l->size = 0.2 * l->step;
+        l->held = true;
+        return too_short(s, l) ? status : NEVH_OK;
+    }
+    for (size_t c = 0; !status && c < count; c++) {
+        double err = judge(s, c);
+        status = err <= 1 ? accept(s, c, lanes[c], err)
+                          : reject(s, &s->lanes[lanes[c]], err);
+    }
+    return status;
+}
+
+/* The next substep; the last one may stretch by a hundredth. */
+static int choose(const walk *s, size_t lane) {
+    lane_walk *l = &s->lanes[lane];
+    double length = fabs(s->h), left = length - l->done;
+    if (l->size == 0)
+        l->size =
+            nevh__first_substep(s->work, s->table->error_power, s->h,
+                                s->work->width, s->y + lane, s->first + lane);
+    if (too_short(s, l))
+        return give_up(s, l, "substeps too short to be taken");
+    if (++l->trials > NEVH__MOST_SUBSTEPS)
+        return give_up(s, l, "more than a million substeps");
+    double next = l->done + l->size; /* so that the sum of steps is exact */
+    l->ends = 1.01 * l->size >= left;
+    l->step = l->ends ? left : next - l->done;
+    return NEVH_OK;
+}
+
+int nevh__adaptive_step(nevh_work *w, double t, double h, double q[],
+                        double p[]) {
+    size_t *lanes = ((adaptive_plan *)w->plan)->under_way, count;
+    walk s = lay_out(w, t, h);
+    int status = NEVH_OK;
+    if (w->accounts && w->width > 1)
+        return nevh_work_fail(w, NEVH_EINVAL,
+                              "the balance of the energy under step control is "
+                              "kept for one orbit, not for %zu side by side",
+                              w->width);
+    load(&s, q, p);
+    do {
+        count = 0;
+        for (size_t lane = 0; lane < w->width; lane++)
+            if (s.lanes[lane].done < fabs(h))
+                lanes[count++] = lane;
+        status = take_first_slopes(&s, count, lanes);
+        for (size_t i = 0; !status && i < count; i++)
+            status = choose(&s, lanes[i]);
+        if (!status && count)
+            status = try(&s, count, lanes);
+    } while (!status && count);
+    if (!status)
+        store(&s, q, p);
+    return status;
+}

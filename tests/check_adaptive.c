@@ -1,0 +1,628 @@
+/* nevh tests: steps that adapt to a tolerance.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "support.h"
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define assert_says(message, word)                                             \
+    ck_assert_msg(strstr(message, word), "no \"%s\" in: %s", word, message)
+
+static const double two_pi = 6.283185307179586;
+
+/* Attraction by c[0]/r. */
+static double gravity(double t, const double q[], const double p[],
+                      const double c[], const void *params) {
+    (void)t, (void)p, (void)params;
+    return -c[0] / sqrt(q[0] * q[0] + q[1] * q[1]);
+}
+
+static void gravity_gradient(size_t width, const double t[], const double q[],
+                             const double p[], const double c[],
+                             const void *params, double dq[], double dp[]) {
+    (void)t, (void)p, (void)params, (void)dp;
+    for (size_t i = 0; dq && i < width; i++) {
+        double x = q[i], y = q[width + i], r2 = x * x + y * y;
+        dq[i] = c[i] * x / (r2 * sqrt(r2));
+        dq[width + i] = c[i] * y / (r2 * sqrt(r2));
+    }
+}
+
+/* A body of mass 2.1 around one at rest, G M = 1, in other units. */
+static nevh_system *make_orbit_in(double length, double mass, double time) {
+    static const size_t momenta[] = {0, 1};
+    const double masses[] = {2.1 * mass, 2.1 * mass};
+    double rate = length / time, pull = 2.1 * mass * length * rate * rate;
+    nevh_system *s = nevh_system_new(2);
+    nevh_system_add(s, &(nevh_term){.effect = "kinetic",
+                                    .np = 1,
+                                    .nc = 1,
+                                    .p = momenta,
+                                    .c = masses,
+                                    .count = 2,
+                                    .value = mass_kinetic,
+                                    .gradient = mass_kinetic_gradient});
+    nevh_system_add(s, &(nevh_term){.effect = "gravity",
+                                    .nq = 2,
+                                    .nc = 1,
+                                    .c = &pull,
+                                    .value = gravity,
+                                    .gradient = gravity_gradient});
+    return s;
+}
+
+static nevh_system *make_orbit(void) {
+    return make_orbit_in(1, 1, 1);
+}
+
+/* From the perihelion, eccentricity 0.6; closed after every 2 pi. */
+static const problem ellipse = {
+    .name = "ellipse",
+    .n = 2,
+    .separable = true,
+    .quadratic = true,
+    .q = {0.4, 0},
+    .p = {0, 4.2},
+    .make = make_orbit,
+};
+
+/* The scheme with this index, or NULL where it does not adapt. */
+static const nevh_integrator *adaptive(int i) {
+    const nevh_integrator *scheme = nevh_integrators()[i];
+    return nevh_integrator_adaptive(scheme) ? scheme : NULL;
+}
+
+static nevh_stepper *stepper_of(const nevh_system *s, const problem *b,
+                                const nevh_integrator *scheme,
+                                double tolerance) {
+    nevh_options o = {.gradient = nevh_exact,
+                      .t = b->t0,
+                      .q = b->q,
+                      .p = b->p,
+                      .tolerance = tolerance};
+    nevh_stepper *m = nevh_stepper_new(s, scheme, &o);
+    ck_assert_msg(!nevh_stepper_status(m), "%s", nevh_stepper_message(m));
+    return m;
+}
+
+typedef struct {
+    double q[2], p[2];
+    uint64_t gradients;
+} orbit;
+
+/* `steps` steps over `span`. */
+static orbit travel(const problem *b, const nevh_integrator *scheme,
+                    double tolerance, double span, size_t steps) {
+    orbit z;
+    nevh_system *s = b->make();
+    nevh_stepper *m = stepper_of(s, b, scheme, tolerance);
+    memcpy(z.q, b->q, sizeof z.q);
+    memcpy(z.p, b->p, sizeof z.p);
+    int status =
+        nevh_run(m, b->t0, span / (double)steps, steps, z.q, z.p, NULL, 0);
+    ck_assert_msg(!status, "%s", nevh_stepper_message(m));
+    z.gradients = nevh_stepper_counts(m).gradients;
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+    return z;
+}
+
+static double distance(const orbit *x, const double q[], const double p[]) {
+    double sum = 0;
+    for (int k = 0; k < 2; k++)
+        sum += (x->q[k] - q[k]) * (x->q[k] - q[k]) +
+               (x->p[k] - p[k]) * (x->p[k] - p[k]);
+    return sqrt(sum);
+}
+
+/* The slope of a log-log line of ten errors or so. */
+static double slope(int count, const double x[], const double y[]) {
+    double mx = 0, my = 0, xx = 0, xy = 0;
+    for (int i = 0; i < count; i++) {
+        mx += log(x[i]) / count;
+        my += log(y[i]) / count;
+    }
+    for (int i = 0; i < count; i++) {
+        xx += (log(x[i]) - mx) * (log(x[i]) - mx);
+        xy += (log(x[i]) - mx) * (log(y[i]) - my);
+    }
+    return xy / xx;
+}
+
+/* One step over all of span: the error is in proportion to the tolerance, and
+   the work grows. */
+static void assert_proportion(const problem *b, const nevh_integrator *scheme,
+                              double span, const orbit *end, double most) {
+    double tolerance[9], error[9];
+    uint64_t work = 0;
+    int count = 0;
+    for (double x = 1e-4; x > 0.9e-12; x /= 10, count++) {
+        orbit z = travel(b, scheme, x, span, 1);
+        tolerance[count] = x;
+        error[count] = distance(&z, end->q, end->p);
+        ck_assert_msg(error[count] < most * x || error[count] > 0.03,
+                      "%s on %s, %.0e: %.2e", nevh_integrator_name(scheme),
+                      b->name, x, error[count]);
+        ck_assert_uint_gt(z.gradients, work);
+        work = z.gradients;
+    }
+    double found = slope(count - 2, tolerance + 2, error + 2);
+    ck_assert_msg(found > 0.7 && found < 1.3, "%s on %s: %.2f",
+                  nevh_integrator_name(scheme), b->name, found);
+}
+
+START_TEST(error_falls_with_the_tolerance) {
+    const nevh_integrator *scheme = adaptive(_i);
+    if (!scheme)
+        return;
+    orbit end;
+    memcpy(end.q, ellipse.q, sizeof end.q);
+    memcpy(end.p, ellipse.p, sizeof end.p);
+    assert_proportion(&ellipse, scheme, 10 * two_pi, &end, 2e6);
+    end = travel(&henon_heiles, nevh_gauss16, 0, 100, 2000);
+    assert_proportion(&henon_heiles, scheme, 100, &end, 2e3);
+}
+END_TEST
+
+/* Time is right in every stage of every substep. */
+START_TEST(time_goes_with_the_substeps) {
+    const nevh_integrator *scheme = adaptive(_i);
+    if (!scheme)
+        return;
+    const problem *b = &driven_pendulum;
+    orbit end = travel(b, nevh_gauss16, 0, 10, 500);
+    orbit z = travel(b, scheme, 1e-11, 10, 3);
+    ck_assert_double_eq_tol(z.q[0], end.q[0], 3e-8);
+    ck_assert_double_eq_tol(z.p[0], end.p[0], 3e-8);
+}
+END_TEST
+
+/* A control of the same kind but without memory, written separately, takes
+   7009 evaluations for errors of 1e-9 (1 + |y|). */
+START_TEST(work_is_that_of_others) {
+    orbit z = travel(&ellipse, nevh_dopri5, 1e-9, 10 * two_pi, 1);
+    ck_assert(z.gradients > 6500 && z.gradients < 9000);
+    ck_assert_uint_eq(z.gradients % 6,
+                      1); /* the last stage is the next first */
+    orbit other = travel(&ellipse, nevh_gsl_rkf45, 1e-9, 10 * two_pi, 1);
+    ck_assert_uint_lt(z.gradients, other.gradients);
+    z = travel(&ellipse, nevh_dop853, 1e-9, 10 * two_pi, 1);
+    other = travel(&ellipse, nevh_gsl_rk8pd, 1e-9, 10 * two_pi, 1);
+    ck_assert_uint_lt(z.gradients, other.gradients);
+}
+END_TEST
+
+/* Where one substep a step is enough, steps cost what they do without control:
+   the slope at their end is kept. */
+START_TEST(short_steps_cost_no_more) {
+    orbit z = travel(&ellipse, nevh_dopri5, 1e-6, 1, 500);
+    ck_assert_uint_eq(z.gradients, 500 * 6 + 1);
+    z = travel(&ellipse, nevh_dop853, 1e-6, 1, 500);
+    ck_assert_uint_eq(z.gradients, 500 * 12);
+}
+END_TEST
+
+/* A step begins with the substep that the last one arrived at: all that it
+   costs is to land at its end. */
+START_TEST(substeps_are_remembered) {
+    const nevh_integrator *scheme = adaptive(_i);
+    if (!scheme || nevh_integrator_needs_tolerance(scheme))
+        return; /* which begin anew */
+    uint64_t each = (uint64_t)nevh_integrator_stages(scheme);
+    orbit whole = travel(&henon_heiles, scheme, 1e-11, 300, 1);
+    orbit z = travel(&henon_heiles, scheme, 1e-11, 300, 150);
+    ck_assert_msg(z.gradients <= whole.gradients + 150 * each,
+                  "%s: %lu instead of %lu", nevh_integrator_name(scheme),
+                  (unsigned long)z.gradients, (unsigned long)whole.gradients);
+}
+END_TEST
+
+START_TEST(there_and_back) {
+    const nevh_integrator *scheme = adaptive(_i);
+    if (!scheme)
+        return;
+    nevh_system *s = ellipse.make();
+    nevh_stepper *m = stepper_of(s, &ellipse, scheme, 1e-11);
+    double q[] = {0.4, 0}, p[] = {0, 4.2};
+    ck_assert_int_eq(nevh_stepper_apply(m, 3, 5, q, p), NEVH_OK);
+    ck_assert_double_eq(nevh_stepper_time(m), 8);
+    ck_assert_int_eq(nevh_stepper_apply(m, 8, -5, q, p), NEVH_OK);
+    ck_assert_double_eq_tol(q[0], 0.4, 1e-6);
+    ck_assert_double_eq_tol(q[1], 0, 1e-6);
+    ck_assert_double_eq_tol(p[1], 4.2, 1e-6);
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* Other units, by powers of two, are the same orbit to the last bit. */
+START_TEST(units_do_not_matter) {
+    const nevh_integrator *scheme = adaptive(_i);
+    if (!scheme)
+        return;
+    const double length = 0x1p20, mass = 0x1p-30, time = 0x1p9;
+    const double scale[] = {1, 1, 1, 1}, kick = mass * length / time;
+    const double scaled[] = {length, length, kick, kick};
+    nevh_system *plain = make_orbit(),
+                *other = make_orbit_in(length, mass, time);
+    nevh_options o = {
+        .gradient = nevh_exact, .scale = scale, .tolerance = 1e-8};
+    nevh_stepper *m = nevh_stepper_new(plain, scheme, &o);
+    o.scale = scaled;
+    nevh_stepper *u = nevh_stepper_new(other, scheme, &o);
+    double q[] = {0.4, 0}, p[] = {0, 4.2};
+    double x[] = {0.4 * length, 0}, y[] = {0, 4.2 * kick};
+    ck_assert_int_eq(nevh_run(m, 0, 3, 4, q, p, NULL, 0), NEVH_OK);
+    ck_assert_int_eq(nevh_run(u, 0, 3 * time, 4, x, y, NULL, 0), NEVH_OK);
+    for (int k = 0; k < 2; k++) {
+        ck_assert(x[k] == q[k] * length);
+        ck_assert(y[k] == p[k] * kick);
+    }
+    nevh_stepper_free(m);
+    nevh_stepper_free(u);
+    nevh_system_free(plain);
+    nevh_system_free(other);
+}
+END_TEST
+
+/* Late on the clock, where t + substep is t, an H without time moves on. */
+START_TEST(late_is_as_early) {
+    const nevh_integrator *scheme = adaptive(_i);
+    if (!scheme)
+        return;
+    nevh_system *s = ellipse.make();
+    double q[2][2] = {{0.4, 0}, {0.4, 0}}, p[2][2] = {{0, 4.2}, {0, 4.2}};
+    for (int late = 0; late < 2; late++) {
+        nevh_stepper *m = stepper_of(s, &ellipse, scheme, 1e-9);
+        ck_assert_int_eq(
+            nevh_stepper_apply(m, late ? 1e17 : 0, 7, q[late], p[late]),
+            NEVH_OK);
+        nevh_stepper_free(m);
+    }
+    ck_assert_mem_eq(q[0], q[1], sizeof q[0]);
+    ck_assert_mem_eq(p[0], p[1], sizeof p[0]);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* Falls towards the left, slowly, up a wall that overflows. */
+static double steep(double t, const double q[], const double p[],
+                    const void *params) {
+    (void)t, (void)params;
+    return p[0] * p[0] / 2.6 + exp(q[0]) + exp(-2 * q[0]);
+}
+
+/* A first substep of all h would be far beyond numbers. */
+START_TEST(h_is_not_the_first_substep) {
+    const nevh_integrator *scheme = adaptive(_i);
+    if (!scheme)
+        return;
+    nevh_system *s = nevh_system_from(1, steep, NULL);
+    nevh_options o = {.tolerance = 1e-9};
+    nevh_stepper *m = nevh_stepper_new(s, scheme, &o);
+    double q[] = {0.3}, p[] = {1.2}, t = 0, before, after;
+    nevh_field *f = nevh_stepper_field(m);
+    ck_assert_int_eq(nevh_field_value(f, 1, &t, q, p, &before), NEVH_OK);
+    ck_assert_int_eq(nevh_stepper_apply(m, 0, 1000, q, p), NEVH_OK);
+    ck_assert_int_eq(nevh_field_value(f, 1, &t, q, p, &after), NEVH_OK);
+    ck_assert_double_eq_tol(after, before, 1e-4);
+    ck_assert(q[0] != 0.3);
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* A million time units are no many substeps where nothing happens fast. */
+START_TEST(a_long_way) {
+    const nevh_integrator *scheme = adaptive(_i);
+    if (!scheme)
+        return;
+    nevh_system *s = make_orbit_in(1, 1, 0x1p15);
+    nevh_options o = {.gradient = nevh_exact, .tolerance = 1e-7};
+    nevh_stepper *m = nevh_stepper_new(s, scheme, &o);
+    double q[] = {0.4, 0}, p[] = {0, 4.2 * 0x1p-15};
+    ck_assert_int_eq(nevh_stepper_apply(m, 0, 1e6, q, p), NEVH_OK);
+    ck_assert_uint_lt(nevh_stepper_counts(m).gradients, 5000);
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
+static void assert_usual_step(nevh_stepper *used, const nevh_system *s,
+                              const nevh_integrator *scheme, double tolerance) {
+    nevh_stepper *fresh = stepper_of(s, &ellipse, scheme, tolerance);
+    double q[] = {0.4, 0}, p[] = {0, 4.2}, x[] = {0.4, 0}, y[] = {0, 4.2};
+    ck_assert_int_eq(nevh_stepper_apply(used, 0, 2, q, p), NEVH_OK);
+    ck_assert_int_eq(nevh_stepper_apply(fresh, 0, 2, x, y), NEVH_OK);
+    ck_assert_mem_eq(q, x, sizeof q);
+    ck_assert_mem_eq(p, y, sizeof p);
+    nevh_stepper_free(fresh);
+}
+
+static void go_too_far(const nevh_integrator *scheme, double h,
+                       const char *word) {
+    nevh_system *s = ellipse.make();
+    nevh_stepper *m = stepper_of(s, &ellipse, scheme, 1e-7);
+    double q[] = {0.4, 0}, p[] = {0, 4.2};
+    ck_assert_int_eq(nevh_stepper_apply(m, 0, h, q, p), NEVH_EFAILED);
+    assert_says(nevh_stepper_message(m), nevh_integrator_name(scheme));
+    assert_says(nevh_stepper_message(m), word);
+    ck_assert(q[0] == 0.4 && q[1] == 0 && p[0] == 0 && p[1] == 4.2);
+    assert_usual_step(m, s, scheme, 1e-7);
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+
+START_TEST(a_way_too_long) {
+    const nevh_integrator *scheme = adaptive(_i);
+    if (scheme)
+        go_too_far(scheme, 1e30, "gave up");
+}
+END_TEST
+
+START_TEST(too_many_substeps) {
+    const nevh_integrator *scheme = adaptive(_i);
+    if (scheme)
+        go_too_far(scheme, -1e8, "gave up");
+}
+END_TEST
+
+START_TEST(the_budget_is_named) {
+    go_too_far(nevh_dopri5, 1e30, "too short");
+    go_too_far(nevh_dopri5, 1e8, "million");
+}
+END_TEST
+
+/* Ends at q = 2, where the orbit goes. */
+static double edge(double t, const double q[], const double p[],
+                   const double c[], const void *params) {
+    (void)t, (void)p, (void)c, (void)params;
+    return sqrt(2 - q[0]);
+}
+
+static const double one = 1;
+
+static nevh_system *cliff(nevh_term_fn potential) {
+    nevh_system *s = nevh_system_new(1);
+    nevh_system_add(s, &(nevh_term){.effect = "kinetic",
+                                    .np = 1,
+                                    .nc = 1,
+                                    .c = &one,
+                                    .value = mass_kinetic});
+    nevh_system_add(
+        s, &(nevh_term){.effect = "cliff", .nq = 1, .value = potential});
+    return s;
+}
+
+START_TEST(an_end_of_the_domain) {
+    const nevh_integrator *scheme = adaptive(_i);
+    if (!scheme)
+        return;
+    nevh_system *s = cliff(edge);
+    nevh_options o = {.gradient_step = 0x1p-14, .tolerance = 1e-6};
+    nevh_stepper *m = nevh_stepper_new(s, scheme, &o);
+    double q = 1, p = 0.5, x = 1, y = 0.5;
+    ck_assert_int_eq(nevh_stepper_apply(m, 0, 0.5, &q, &p), NEVH_OK);
+    double before[] = {q, p};
+    ck_assert_int_eq(nevh_stepper_apply(m, 0.5, 5, &q, &p), NEVH_EDOM);
+    assert_says(nevh_stepper_message(m), "cliff");
+    ck_assert(q == before[0] && p == before[1]);
+    ck_assert_int_eq(nevh_stepper_apply(m, 0.5, 0.25, &q, &p), NEVH_OK);
+    nevh_stepper_reset(m);
+    ck_assert_int_eq(nevh_stepper_apply(m, 0, 0.5, &x, &y), NEVH_OK);
+    ck_assert_int_eq(nevh_stepper_apply(m, 0.5, 0.25, &x, &y), NEVH_OK);
+    ck_assert(x == q && y == p);
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* Ends at q = -1 and 1, but throws back. */
+static double walls(double t, const double q[], const double p[],
+                    const double c[], const void *params) {
+    (void)t, (void)p, (void)c, (void)params;
+    return -1e-4 * log(1 - q[0] * q[0]);
+}
+
+/* Trials that leave the domain are taken back. */
+START_TEST(walls_are_not_run_through) {
+    const nevh_integrator *scheme = _i ? nevh_dop853 : nevh_dopri5;
+    nevh_system *s = cliff(walls);
+    nevh_options o = {.gradient_step = 0x1p-20, .tolerance = 1e-5};
+    nevh_stepper *m = nevh_stepper_new(s, scheme, &o);
+    double q = 0.2, p = 0.03, t = 0, before, after;
+    nevh_field *f = nevh_stepper_field(m);
+    ck_assert_int_eq(nevh_field_value(f, 1, &t, &q, &p, &before), NEVH_OK);
+    ck_assert_msg(!nevh_stepper_apply(m, 0, 2000, &q, &p), "%s",
+                  nevh_stepper_message(m));
+    ck_assert_int_eq(nevh_field_value(f, 1, &t, &q, &p, &after), NEVH_OK);
+    ck_assert_double_eq_tol(after, before, 1e-5);
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* Lanes take substeps of their own, and none knows of the others: also where
+   one runs into a wall. */
+START_TEST(lanes_are_alone) {
+    const nevh_integrator *scheme = adaptive(_i);
+    if (!scheme)
+        return;
+    enum { WIDTH = 5 };
+    bool rough = scheme == nevh_dopri5 || scheme == nevh_dop853;
+    nevh_system *s = rough ? cliff(walls) : nevh_system_from(1, steep, NULL);
+    nevh_options o = {.gradient_step = 0x1p-20,
+                      .scale = (const double[]){1, 1},
+                      .tolerance = 1e-5,
+                      .width = WIDTH};
+    nevh_stepper *all = nevh_stepper_new(s, scheme, &o);
+    double q[WIDTH], p[WIDTH];
+    for (int i = 0; i < WIDTH; i++) {
+        q[i] = 0.2 * i;
+        p[i] = 0.02 * (i - 2);
+    }
+    ck_assert_int_eq(nevh_run(all, 0, 150, 6, q, p, NULL, 0), NEVH_OK);
+    o.width = 1;
+    for (int i = 0; i < WIDTH; i++) {
+        nevh_stepper *one_lane = nevh_stepper_new(s, scheme, &o);
+        double x = 0.2 * i, y = 0.02 * (i - 2);
+        ck_assert_int_eq(nevh_run(one_lane, 0, 150, 6, &x, &y, NULL, 0),
+                         NEVH_OK);
+        ck_assert_msg(x == q[i] && y == p[i], "%s, lane %d",
+                      nevh_integrator_name(scheme), i);
+        nevh_stepper_free(one_lane);
+    }
+    nevh_stepper_free(all);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* Also where H reads t: each lane has its own. */
+START_TEST(lanes_have_their_own_time) {
+    const nevh_integrator *scheme = adaptive(_i);
+    if (!scheme)
+        return;
+    nevh_system *s = driven_pendulum.make();
+    nevh_options o = {.gradient = nevh_exact, .tolerance = 1e-8, .width = 3};
+    nevh_stepper *all = nevh_stepper_new(s, scheme, &o);
+    double q[] = {0.9, 0.1, 2.8}, p[] = {0.3, 0, 0.1};
+    double x[] = {0.9, 0.1, 2.8}, y[] = {0.3, 0, 0.1};
+    ck_assert_int_eq(nevh_run(all, 0.3, 5, 3, q, p, NULL, 0), NEVH_OK);
+    o.width = 1;
+    for (int i = 0; i < 3; i++) {
+        nevh_stepper *alone = nevh_stepper_new(s, scheme, &o);
+        ck_assert_int_eq(nevh_run(alone, 0.3, 5, 3, x + i, y + i, NULL, 0),
+                         NEVH_OK);
+        nevh_stepper_free(alone);
+    }
+    ck_assert_mem_eq(q, x, sizeof q);
+    ck_assert_mem_eq(p, y, sizeof p);
+    nevh_stepper_free(all);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* What a substep loses to rounding is added to the next one: a hundred
+   thousand of them, whose truncation is nothing, leave the last digit. */
+START_TEST(rounding_is_carried_on) {
+    const nevh_integrator *scheme = _i ? nevh_dop853 : nevh_dopri5;
+    nevh_system *s = henon_heiles.make();
+    nevh_stepper *m = stepper_of(s, &henon_heiles, scheme, 1e-9);
+    nevh_energy *e = nevh_energy_new(s, NULL);
+    nevh_observer watch = {nevh_energy_observe, e, 1000};
+    double q[2], p[2];
+    memcpy(q, henon_heiles.q, sizeof q);
+    memcpy(p, henon_heiles.p, sizeof p);
+    ck_assert_int_eq(nevh_run(m, 0, 0x1p-10, 100000, q, p, &watch, 1), NEVH_OK);
+    double rms = nevh_energy_result(e, 0).rms;
+    ck_assert_msg(rms < 1e-15, "%s: %.2e", nevh_integrator_name(scheme), rms);
+    nevh_energy_free(e);
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
+static int look(void *data, size_t step, double t, const double q[],
+                const double p[]) {
+    (void)step, (void)t, (void)q, (void)p;
+    ++*(int *)data;
+    return 0;
+}
+
+/* Watched, in pieces, from a copy, from what was saved, and after a trial
+   elsewhere that failed: the same orbit to the last bit. */
+START_TEST(memory_is_all) {
+    const nevh_integrator *scheme = adaptive(_i);
+    if (!scheme)
+        return;
+    const double h = 0.375;
+    nevh_system *s = ellipse.make();
+    nevh_stepper *m = stepper_of(s, &ellipse, scheme, 1e-7);
+    nevh_stepper *other = stepper_of(s, &ellipse, scheme, 1e-7);
+    orbit whole = travel(&ellipse, scheme, 1e-7, 30 * h, 30), z[3];
+    double q[] = {0.4, 0}, p[] = {0, 4.2}, far[] = {0, 0}, fast[] = {1, 1};
+    int looks = 0;
+    nevh_observer watch = {look, &looks, 1};
+    ck_assert_int_eq(nevh_run(m, 0, h, 11, q, p, &watch, 1), NEVH_OK);
+    void *buffer = malloc(nevh_stepper_save_size(m));
+    nevh_stepper_save(m, buffer);
+    nevh_stepper *copy = nevh_stepper_copy(m);
+    nevh_stepper_load(other, buffer, nevh_stepper_save_size(m));
+    ck_assert_int_eq(nevh_stepper_apply(m, 0, h, far, fast), NEVH_EDOM);
+    nevh_stepper *const each[] = {m, copy, other};
+    for (int i = 0; i < 3; i++) {
+        memcpy(z[i].q, q, sizeof q);
+        memcpy(z[i].p, p, sizeof p);
+        nevh_run(each[i], 11 * h, h, 19, z[i].q, z[i].p, NULL, 0);
+        ck_assert_mem_eq(z[i].q, whole.q, sizeof q);
+        ck_assert_mem_eq(z[i].p, whole.p, sizeof p);
+        nevh_stepper_free(each[i]);
+    }
+    ck_assert_int_eq(looks, 12);
+    free(buffer);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* GSL would take errors that are 0/0 for good ones. */
+START_TEST(a_tolerance_of_nothing) {
+    const nevh_integrator *scheme = adaptive(_i);
+    if (!scheme || strncmp(nevh_integrator_name(scheme), "gsl-", 4) != 0)
+        return;
+    const double scale[] = {0.01, 0.01, 0.01, 0.01};
+    nevh_system *s = ellipse.make();
+    nevh_options o = {
+        .gradient = nevh_exact, .scale = scale, .tolerance = 0x1p-1074};
+    nevh_stepper *m = nevh_stepper_new(s, scheme, &o);
+    ck_assert_int_eq(nevh_stepper_status(m), NEVH_EINVAL);
+    assert_says(nevh_stepper_message(m), "tolerance");
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
+START_TEST(a_tolerance_is_needed) {
+    nevh_system *s = ellipse.make();
+    nevh_stepper *m = nevh_stepper_new(s, nevh_gsl_msadams, NULL);
+    ck_assert_int_eq(nevh_stepper_status(m), NEVH_EINVAL);
+    assert_says(nevh_stepper_message(m), "gsl-msadams");
+    assert_says(nevh_stepper_message(m), "tolerance");
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+    for (int i = 0; i < scheme_count(); i++)
+        ck_assert(!nevh_integrator_needs_tolerance(nevh_integrators()[i]) ||
+                  adaptive(i));
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("adaptive");
+    TCase *cases = tcase_create("adaptive"), *slow = tcase_create("slow");
+    int count = scheme_count();
+    tcase_add_loop_test(cases, error_falls_with_the_tolerance, 0, count);
+    tcase_add_loop_test(cases, time_goes_with_the_substeps, 0, count);
+    tcase_add_test(cases, work_is_that_of_others);
+    tcase_add_test(cases, short_steps_cost_no_more);
+    tcase_add_loop_test(cases, substeps_are_remembered, 0, count);
+    tcase_add_loop_test(cases, there_and_back, 0, count);
+    tcase_add_loop_test(cases, units_do_not_matter, 0, count);
+    tcase_add_loop_test(cases, late_is_as_early, 0, count);
+    tcase_add_loop_test(cases, h_is_not_the_first_substep, 0, count);
+    tcase_add_loop_test(cases, a_long_way, 0, count);
+    tcase_add_loop_test(cases, a_way_too_long, 0, count);
+    tcase_add_test(cases, the_budget_is_named);
+    tcase_add_loop_test(cases, an_end_of_the_domain, 0, count);
+    tcase_add_loop_test(cases, walls_are_not_run_through, 0, 2);
+    tcase_add_loop_test(cases, lanes_are_alone, 0, count);
+    tcase_add_loop_test(cases, lanes_have_their_own_time, 0, count);
+    tcase_add_loop_test(cases, rounding_is_carried_on, 0, 2);
+    tcase_add_loop_test(cases, memory_is_all, 0, count);
+    tcase_add_loop_test(cases, a_tolerance_of_nothing, 0, count);
+    tcase_add_test(cases, a_tolerance_is_needed);
+    suite_add_tcase(suite, cases);
+    tcase_set_tags(slow, "slow");
+    tcase_add_loop_test(slow, too_many_substeps, 0, count);
+    suite_add_tcase(suite, slow);
+    return run_suite(suite);
+}

@@ -1,0 +1,277 @@
+/* nevh tests: Runge-Kutta tables satisfy their order conditions.
+
+   One condition for each rooted tree: sum_i b_i phi_i(t) = 1/gamma(t)
+   [J. C. Butcher, Coefficients for the study of Runge-Kutta integration
+   processes, J. Austral. Math. Soc. 3 (1963) 185-201].  The trees are
+   generated: one of order n is a multiset of smaller ones, put on a root.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "support.h"
+#include <math.h>
+#include <nevh/extend.h>
+#include <string.h>
+
+enum { MOST_ORDER = 9, MOST_TREES = 486, MOST_STAGES = 12, MOST_ENTRIES = 256 };
+
+/* Children are earlier trees, from late to early. */
+typedef struct {
+    int order, children, child[MOST_ORDER];
+    long double density;
+} tree;
+
+static tree trees[MOST_TREES];
+static int tree_count, order_end[MOST_ORDER + 1]; /* trees up to an order */
+
+/* Adds all trees that have these children and more, of `left` vertices and not
+   later than `latest`. */
+static void grow(tree t, int left, int latest) {
+    if (left == 0) {
+        trees[tree_count++] = t;
+        return;
+    }
+    for (int i = latest; i >= 0; i--) {
+        if (trees[i].order > left)
+            continue;
+        tree more = t;
+        more.child[more.children++] = i;
+        more.density *= trees[i].density;
+        grow(more, left - trees[i].order, i);
+    }
+}
+
+static void plant(void) {
+    tree_count = 0;
+    for (int order = 1; order <= MOST_ORDER; order++) {
+        grow((tree){.order = order, .density = order}, order - 1,
+             tree_count - 1);
+        order_end[order] = tree_count;
+    }
+}
+
+/* A table with entries that may be changed. */
+typedef struct {
+    size_t stages;
+    long double a[MOST_STAGES][MOST_STAGES], b[MOST_STAGES], c[MOST_STAGES],
+        error[MOST_STAGES], coarse[MOST_STAGES];
+    bool has_error, has_coarse, last_is_first;
+} tableau;
+
+static void copy(size_t stages, const double from[], long double to[]) {
+    for (size_t i = 0; from && i < stages; i++)
+        to[i] = from[i];
+}
+
+static tableau tableau_of(const nevh_butcher *table) {
+    tableau x = {.stages = table->stages,
+                 .has_error = table->error,
+                 .has_coarse = table->coarse,
+                 .last_is_first = table->last_is_first};
+    ck_assert_uint_le(x.stages, MOST_STAGES);
+    for (size_t i = 0; i < x.stages; i++)
+        copy(i, table->a + i * x.stages, x.a[i]);
+    copy(x.stages, table->b, x.b);
+    copy(x.stages, table->c, x.c);
+    copy(x.stages, table->error, x.error);
+    copy(x.stages, table->coarse, x.coarse);
+    return x;
+}
+
+/* The elementary weights of every stage. */
+static void weigh(const tableau *x, long double phi[][MOST_STAGES]) {
+    static long double above[MOST_TREES][MOST_STAGES]; /* sum_j a_ij phi_j */
+    for (int t = 0; t < tree_count; t++)
+        for (size_t i = 0; i < x->stages; i++) {
+            phi[t][i] = 1;
+            for (int k = 0; k < trees[t].children; k++)
+                phi[t][i] *= above[trees[t].child[k]][i];
+            above[t][i] = 0;
+            for (size_t j = 0; j < i; j++)
+                above[t][i] += x->a[i][j] * phi[t][j];
+        }
+}
+
+/* How far the trees of orders `from` to `to` are off: of a method's weights
+   (whole = 1), or of weights that should give 0. */
+static long double defect(const tableau *x, const long double weights[],
+                          long double whole, int from, int to) {
+    static long double phi[MOST_TREES][MOST_STAGES];
+    long double worst = 0;
+    weigh(x, phi);
+    for (int t = order_end[from - 1]; t < order_end[to]; t++) {
+        long double sum = 0;
+        for (size_t i = 0; i < x->stages; i++)
+            sum += weights[i] * phi[t][i];
+        worst = fmaxl(worst, fabsl(sum * trees[t].density - whole));
+    }
+    return worst;
+}
+
+/* Coefficients are doubles, and those of dop853 cancel. */
+static const long double rounding = 2e-13L;
+static const long double seen = 1e-6L;
+
+static long double row_defect(const tableau *x) {
+    long double worst = 0;
+    for (size_t i = 0; i < x->stages; i++) {
+        long double sum = -x->c[i];
+        for (size_t j = 0; j < i; j++)
+            sum += x->a[i][j];
+        worst = fmaxl(worst, fabsl(sum));
+    }
+    return worst;
+}
+
+/* The last stage stands at the new state. */
+static long double last_defect(const tableau *x) {
+    long double worst = 0;
+    for (size_t j = 0; x->last_is_first && j < x->stages; j++)
+        worst = fmaxl(worst, fabsl(x->a[x->stages - 1][j] - x->b[j]));
+    return worst;
+}
+
+/* The orders up to which the estimates are blind. */
+static int error_order(const nevh_integrator *scheme) {
+    return scheme == nevh_dop853 ? 5 : scheme->order - 1;
+}
+enum { COARSE_ORDER = 3 };
+
+static bool holds(const nevh_integrator *scheme, const tableau *x) {
+    long double worst = fmaxl(row_defect(x), last_defect(x));
+    worst = fmaxl(worst, defect(x, x->b, 1, 1, scheme->order));
+    worst = fmaxl(worst, defect(x, x->error, 0, 1, error_order(scheme)));
+    worst = fmaxl(worst, defect(x, x->coarse, 0, 1, COARSE_ORDER));
+    return worst <= rounding;
+}
+
+static const nevh_integrator *scheme_at(int i) {
+    const nevh_integrator *schemes[] = {nevh_euler, nevh_rk4, nevh_dopri5,
+                                        nevh_dop853};
+    return schemes[i];
+}
+enum { SCHEMES = 4 };
+
+/* None is forgotten above. */
+START_TEST(all_tables_are_checked) {
+    int count = 0;
+    for (int i = 0; i < scheme_count(); i++)
+        count += nevh_integrators()[i]->kernel == &nevh_runge_kutta_kernel;
+    ck_assert_int_eq(count, SCHEMES);
+}
+END_TEST
+
+/* Sloane's A000081. */
+START_TEST(number_of_trees) {
+    static const int known[] = {1, 1, 2, 4, 9, 20, 48, 115, 286};
+    plant();
+    for (int order = 1; order <= MOST_ORDER; order++)
+        ck_assert_int_eq(order_end[order] - order_end[order - 1],
+                         known[order - 1]);
+    ck_assert_int_eq(order_end[8], 200);
+    long double bushy = 1, tall = 1; /* n and n! */
+    for (int t = 0; t < order_end[8]; t++) {
+        bushy = fminl(bushy, trees[t].density / trees[t].order);
+        tall = fmaxl(tall, trees[t].density);
+    }
+    ck_assert(bushy == 1 && tall == 40320);
+}
+END_TEST
+
+START_TEST(conditions_hold) {
+    const nevh_integrator *scheme = scheme_at(_i);
+    plant();
+    tableau x = tableau_of(scheme->table);
+    long double worst = defect(&x, x.b, 1, 1, scheme->order);
+    ck_assert_msg(worst <= rounding, "%s: %.2Le", scheme->name, worst);
+    ck_assert(row_defect(&x) <= rounding && last_defect(&x) <= rounding / 100);
+    ck_assert(holds(scheme, &x));
+    int next = scheme->order + 1;
+    ck_assert(defect(&x, x.b, 1, next, next) > seen);
+}
+END_TEST
+
+/* An estimate is blind up to its method's order and no further, and falls with
+   the power that is said. */
+START_TEST(estimates_have_their_orders) {
+    const nevh_integrator *scheme = scheme_at(_i);
+    const nevh_butcher *table = scheme->table;
+    plant();
+    tableau x = tableau_of(table);
+    ck_assert_int_eq(scheme->adaptive, x.has_error);
+    if (!x.has_error)
+        return;
+    int order = error_order(scheme), power = order + 1;
+    ck_assert(defect(&x, x.error, 0, 1, order) <= rounding);
+    ck_assert(defect(&x, x.error, 0, order + 1, order + 1) > seen);
+    if (x.has_coarse) {
+        ck_assert(defect(&x, x.coarse, 0, 1, COARSE_ORDER) <= rounding);
+        ck_assert(defect(&x, x.coarse, 0, COARSE_ORDER + 1, COARSE_ORDER + 1) >
+                  seen);
+        power = 2 * power - (COARSE_ORDER + 1);
+    }
+    ck_assert_int_eq(table->error_power, power);
+}
+END_TEST
+
+/* Where the entries are that are not 0. */
+static int list_entries(tableau *x, long double *entries[]) {
+    long double *const rows[] = {x->b, x->c, x->error, x->coarse};
+    int count = 0;
+    for (size_t i = 0; i < x->stages; i++) {
+        for (size_t j = 0; j < i; j++)
+            if (x->a[i][j] != 0)
+                entries[count++] = &x->a[i][j];
+        for (size_t k = 0; k < 4; k++)
+            if (rows[k][i] != 0)
+                entries[count++] = &rows[k][i];
+    }
+    return count;
+}
+
+/* Every entry counts: a change by a millionth is noticed. */
+START_TEST(every_entry_counts) {
+    const nevh_integrator *scheme = scheme_at(_i);
+    plant();
+    tableau x = tableau_of(scheme->table);
+    long double *entries[MOST_ENTRIES];
+    int count = list_entries(&x, entries);
+    ck_assert_int_ge(count, (int)x.stages);
+    for (int i = 0; i < count; i++) {
+        long double before = *entries[i];
+        *entries[i] = before * (1 + 1e-6L);
+        ck_assert_msg(!holds(scheme, &x), "%s: entry %d, %.10Lg", scheme->name,
+                      i, before);
+        *entries[i] = before;
+    }
+    ck_assert(holds(scheme, &x));
+}
+END_TEST
+
+/* Of the a_ij the trees notice it without the row sums. */
+START_TEST(trees_see_the_matrix) {
+    const nevh_integrator *scheme = scheme_at(_i);
+    plant();
+    tableau x = tableau_of(scheme->table);
+    size_t stages = x.stages - x.last_is_first;
+    for (size_t i = 0; i < stages; i++)
+        for (size_t j = 0; j < i; j++) {
+            long double before = x.a[i][j];
+            x.a[i][j] = before * (1 + 1e-6L);
+            if (before != 0)
+                ck_assert_msg(defect(&x, x.b, 1, 1, scheme->order) > rounding,
+                              "%s: a[%zu][%zu]", scheme->name, i, j);
+            x.a[i][j] = before;
+        }
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("trees");
+    TCase *cases = tcase_create("trees");
+    tcase_add_test(cases, all_tables_are_checked);
+    tcase_add_test(cases, number_of_trees);
+    tcase_add_loop_test(cases, conditions_hold, 0, SCHEMES);
+    tcase_add_loop_test(cases, estimates_have_their_orders, 0, SCHEMES);
+    tcase_add_loop_test(cases, every_entry_counts, 0, SCHEMES);
+    tcase_add_loop_test(cases, trees_see_the_matrix, 0, SCHEMES);
+    suite_add_tcase(suite, cases);
+    return run_suite(suite);
+}
