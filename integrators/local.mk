@@ -10,9 +10,11 @@ libnevh_core_la_SOURCES += \
 	integrators/runge_kutta_kernel.c \
 	integrators/euler.c \
 	integrators/rk4.c \
-	integrators/gauss_private.h \
-	integrators/gauss_kernel.c \
+	integrators/tableau_private.h \
+	integrators/tableau.c \
 	integrators/gauss_coefficients.c \
+	integrators/lobatto_coefficients.c \
+	integrators/implicit_kernel.c \
 	integrators/gauss.c \
 	integrators/gsl_private.h \
 	integrators/gsl_kernel.c \

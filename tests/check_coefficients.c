@@ -1,6 +1,6 @@
 /* nevh tests: coefficients satisfy their conditions, algebraically.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "gauss_private.h"
+#include "tableau_private.h"
 #include "support.h"
 #include <float.h>
 #include <gsl/gsl_integration.h>
@@ -11,7 +11,7 @@ enum { MOST_STAGES = 24 };
 
 START_TEST(gauss_nodes_are_gsls) {
     size_t s = (size_t)_i;
-    nevh__gauss *g = nevh__gauss_new(s);
+    nevh__tableau *g = nevh__gauss_new(s);
     gsl_integration_glfixed_table *table =
         gsl_integration_glfixed_table_alloc(s);
     for (size_t i = 0; i < s; i++) {
@@ -21,23 +21,23 @@ START_TEST(gauss_nodes_are_gsls) {
         ck_assert_double_eq_tol(g->b[i], b, 2 * DBL_EPSILON);
     }
     gsl_integration_glfixed_table_free(table);
-    nevh__gauss_free(g);
+    nevh__tableau_free(g);
 }
 END_TEST
 
 /* mu_ij + mu_ji = 1 without any rounding: symplectic; and symmetric in time. */
 START_TEST(gauss_is_exactly_symplectic) {
     size_t s = (size_t)_i;
-    nevh__gauss *g = nevh__gauss_new(s);
+    nevh__tableau *g = nevh__gauss_new(s);
     for (size_t i = 0; i < s; i++)
         for (size_t j = 0; j < s; j++) {
-            double mu = g->mu[j * s + i], mirror = g->mu[i * s + j];
+            double mu = g->mu_q[j * s + i], mirror = g->mu_q[i * s + j];
             ck_assert(mu + mirror == 1);
             ck_assert(1 - mu == mirror);
-            ck_assert(g->mu[(s - 1 - j) * s + s - 1 - i] == mirror);
+            ck_assert(g->mu_q[(s - 1 - j) * s + s - 1 - i] == mirror);
             ck_assert(g->b[i] == g->b[s - 1 - i]);
         }
-    nevh__gauss_free(g);
+    nevh__tableau_free(g);
 }
 END_TEST
 
@@ -45,23 +45,23 @@ END_TEST
    the last bit, so that the test above can fail. */
 START_TEST(rounded_a_is_not_exactly_symplectic) {
     size_t s = 6;
-    nevh__gauss *g = nevh__gauss_new(s);
+    nevh__tableau *g = nevh__gauss_new(s);
     int violations = 0;
     for (size_t i = 0; i < s; i++)
         for (size_t j = 0; j < i; j++) {
-            double a = g->mu[j * s + i] * g->b[j];
-            double b = g->mu[i * s + j] * g->b[i];
+            double a = g->mu_q[j * s + i] * g->b[j];
+            double b = g->mu_q[i * s + j] * g->b[i];
             violations += g->b[i] * a + g->b[j] * b != g->b[i] * g->b[j];
         }
     ck_assert_int_gt(violations, 0);
-    nevh__gauss_free(g);
+    nevh__tableau_free(g);
 }
 END_TEST
 
 /* B(2s), C(s) and D(s), from which order 2s follows [Butcher 1964]. */
 START_TEST(gauss_has_order_2s) {
     size_t s = (size_t)_i;
-    nevh__gauss *g = nevh__gauss_new(s);
+    nevh__tableau *g = nevh__gauss_new(s);
     for (size_t k = 1; k <= 2 * s; k++) {
         double sum = 0;
         for (size_t i = 0; i < s; i++)
@@ -73,20 +73,20 @@ START_TEST(gauss_has_order_2s) {
             double rows = 0, columns = 0, c = pow(g->c[i], (double)k);
             for (size_t j = 0; j < s; j++) {
                 double power = pow(g->c[j], (double)k - 1);
-                rows += g->mu[j * s + i] * g->b[j] * power;
-                columns += g->b[j] * power * g->mu[i * s + j];
+                rows += g->mu_q[j * s + i] * g->b[j] * power;
+                columns += g->b[j] * power * g->mu_q[i * s + j];
             }
             ck_assert_double_eq_tol(rows, c / (double)k, 4e-15);
             ck_assert_double_eq_tol(columns, (1 - c) / (double)k, 4e-15);
         }
-    nevh__gauss_free(g);
+    nevh__tableau_free(g);
 }
 END_TEST
 
 /* The continued polynomial is exact for polynomials of degree s - 1. */
 START_TEST(gauss_guess_extrapolates) {
     size_t s = (size_t)_i;
-    nevh__gauss *g = nevh__gauss_new(s);
+    nevh__tableau *g = nevh__gauss_new(s);
     for (size_t k = 0; k < s; k++)
         for (size_t i = 0; i < s; i++) {
             double sum = 0, size = 0;
@@ -97,20 +97,20 @@ START_TEST(gauss_guess_extrapolates) {
             ck_assert_double_eq_tol(sum, pow(1 + g->c[i], (double)k),
                                     1e-15 * size);
         }
-    nevh__gauss_free(g);
+    nevh__tableau_free(g);
 }
 END_TEST
 
 START_TEST(gauss_order_rises) {
     size_t s = (size_t)_i, seen = 0;
-    nevh__gauss *g = nevh__gauss_new(s);
+    nevh__tableau *g = nevh__gauss_new(s);
     for (size_t m = 0; m < s; m++) {
         seen += g->order[m];
         if (m > 0)
             ck_assert(g->b[g->order[m - 1]] <= g->b[g->order[m]]);
     }
     ck_assert_uint_eq(seen, s * (s - 1) / 2);
-    nevh__gauss_free(g);
+    nevh__tableau_free(g);
 }
 END_TEST
 

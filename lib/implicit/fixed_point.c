@@ -30,13 +30,16 @@ static const double small = 1e-10;
 static const double noise_margin = 16;
 static const double may_be_noise = 1e-4; /* not worth a look above */
 
-nevh__stage_solver *nevh__stage_solver_new(nevh_work *w, size_t stages) {
+nevh__stage_solver *nevh__stage_solver_new(nevh_work *w,
+                                           const nevh__stage_shape *shape) {
     nevh__stage_solver *s = nevh__array(1, sizeof *s);
     if (!s)
         return NULL;
     s->work = w;
-    s->stages = stages;
-    s->rows = 2 * w->n * stages;
+    s->shape = *shape;
+    s->stages = shape->stages;
+    s->first = shape->partitioned ? w->n : 0;
+    s->rows = (2 * w->n - s->first) * s->stages;
     s->scale = nevh__array(2 * w->size, sizeof *s->scale);
     s->out = nevh__array(s->rows * w->width, sizeof *s->out);
     s->least = nevh__array(s->rows * w->width, sizeof *s->least);
@@ -129,7 +132,7 @@ static progress compare(nevh__stage_solver *s, size_t lane, size_t stride,
     const double *scale = s->scale + lane;
     double h = fabs(s->problem->h);
     progress made = {false, false, 0};
-    for (size_t k = 0, row = 0; k < 2 * s->work->n; k++) {
+    for (size_t k = s->first, row = 0; k < 2 * s->work->n; k++) {
         double most = 0;
         for (size_t end = row + s->stages; row < end; row++) {
             double change = fabs(out[row * stride] - x[row * width]);

@@ -6,7 +6,8 @@
 
        x[(k * stages + stage) * width + lane],
 
-   k < n for slopes of coordinates, then of momenta. */
+   k < n for slopes of coordinates, then of momenta; in the partitioned form,
+   for H = T(p) + V(q), unknown are the slopes of momenta alone, k < n. */
 #ifndef NEVH_IMPLICIT_PRIVATE_H
 #define NEVH_IMPLICIT_PRIVATE_H
 
@@ -14,6 +15,15 @@
 #include <stdbool.h>
 
 typedef struct nevh__stage_solver nevh__stage_solver;
+
+/* How states of stages follow from slopes, for Newton's iteration:
+   Q_i = q + h sum_j a_q[j*stages + i] (slope of q at j), P_i with a_p.  In the
+   partitioned form G takes the slopes of q from P_j. */
+typedef struct {
+    size_t stages;
+    bool partitioned;
+    const double *a_q, *a_p; /* may be one array; outlive the solver */
+} nevh__stage_shape;
 
 /* One step's equations. */
 typedef struct {
@@ -24,10 +34,15 @@ typedef struct {
     int (*map)(void *data, size_t active, const size_t lanes[],
                const double x[], double out[]);
     void *data;
+    /* width, in and out: steps for which a lane is given to Newton's iteration
+       at once, from the step before and for the next.  To be kept in memory,
+       but not before the step is certain.  NULL: nothing is known. */
+    double *hold;
 } nevh__stage_problem;
 
 /* For the work's n and width.  NULL when memory is out. */
-nevh__stage_solver *nevh__stage_solver_new(nevh_work *, size_t stages);
+nevh__stage_solver *nevh__stage_solver_new(nevh_work *,
+                                           const nevh__stage_shape *);
 void nevh__stage_solver_free(nevh__stage_solver *);
 /* Solves to the rounding floor, or fails with a message. */
 int nevh__stage_solve(nevh__stage_solver *, const nevh__stage_problem *);
@@ -35,12 +50,14 @@ int nevh__stage_solve(nevh__stage_solver *, const nevh__stage_problem *);
 /* For the two halves of the solver. */
 struct nevh__stage_solver {
     nevh_work *work;
-    size_t stages, rows; /* rows = 2 n stages: unknowns of a lane */
-    double *scale;       /* 2n x width: sizes that changes are held against */
-    double *out;         /* rows x width */
-    double *least;       /* rows x width: smallest change so far */
-    double *noise;       /* 2n, of one lane */
-    size_t *lanes;       /* lanes under way */
+    nevh__stage_shape shape;
+    size_t stages, first; /* first: the variable that row 0 belongs to */
+    size_t rows;          /* 2 n stages or n stages: unknowns of a lane */
+    double *scale;        /* 2n x width: sizes that changes are held against */
+    double *out;          /* rows x width */
+    double *least;        /* rows x width: smallest change so far */
+    double *noise;        /* 2n, of one lane */
+    size_t *lanes;        /* lanes under way */
     struct nevh__stage_lane *lane;
     struct nevh__rescue *rescue; /* NULL for large systems */
     const nevh__stage_problem *problem;

@@ -67,7 +67,7 @@ void nevh__rescue_free(struct nevh__rescue *r) {
 /* GSL's unknowns are slopes times |h| over scale. */
 static double unit(const nevh__stage_solver *s, size_t row) {
     size_t width = s->work->width;
-    return s->scale[row / s->stages * width + s->rescue->lane] /
+    return s->scale[(s->first + row / s->stages) * width + s->rescue->lane] /
            fabs(s->problem->h);
 }
 
