@@ -38,5 +38,5 @@ void nevh__gauss_rule(size_t s, nevh__rule *r) {
 nevh__tableau *nevh__gauss_new(size_t stages) {
     nevh__rule r;
     nevh__gauss_rule(stages, &r);
-    return nevh__tableau_new(&r);
+    return nevh__tableau_new(&r, true);
 }

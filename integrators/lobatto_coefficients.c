@@ -31,5 +31,5 @@ nevh__tableau *nevh__lobatto_new(size_t stages) {
         find_node(&r, i);
     if (stages % 2)
         r.c[stages / 2] = 0.5L;
-    return nevh__tableau_new(&r);
+    return nevh__tableau_new(&r, false);
 }

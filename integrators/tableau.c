@@ -31,7 +31,7 @@ static void mirror(nevh__tableau *a, size_t i, size_t j, double mu) {
     a->mu_p[i * s + j] = a->mu_q[across_j * s + across_i] = 1 - mu;
 }
 
-static void fill_matrices(nevh__tableau *a, const nevh__rule *r) {
+static void fill_matrices(nevh__tableau *a, const nevh__rule *r, bool alike) {
     const long double half = 0.5L - 1e-12L; /* 1/2 itself may have come less */
     size_t s = a->stages;
     nevh__rule gauss;
@@ -41,6 +41,8 @@ static void fill_matrices(nevh__tableau *a, const nevh__rule *r) {
             long double mu = ratio(r, &gauss, i, j);
             if (mu >= half)
                 mirror(a, i, j, (double)mu);
+            if (mu >= half && alike)
+                mirror(a, s - 1 - j, s - 1 - i, (double)mu);
         }
     for (size_t m = 0; m < s * s; m++) {
         a->a_q[m] = a->mu_q[m] * a->b[m / s];
@@ -57,7 +59,7 @@ static void fill_order(nevh__tableau *a) {
     }
 }
 
-static void fill(nevh__tableau *a, const nevh__rule *r) {
+static void fill(nevh__tableau *a, const nevh__rule *r, bool alike) {
     size_t s = a->stages;
     for (size_t i = 0; i < s; i++) {
         a->c[i] = (double)r->c[i];
@@ -65,11 +67,11 @@ static void fill(nevh__tableau *a, const nevh__rule *r) {
         for (size_t j = 0; j < s; j++)
             a->guess[j * s + i] = (double)lagrange(r, j, 1 + r->c[i]);
     }
-    fill_matrices(a, r);
+    fill_matrices(a, r, alike);
     fill_order(a);
 }
 
-nevh__tableau *nevh__tableau_new(const nevh__rule *r) {
+nevh__tableau *nevh__tableau_new(const nevh__rule *r, bool alike) {
     size_t s = r->stages;
     nevh__tableau *a = nevh__array(1, sizeof *a);
     double *all = nevh__array(s * (5 * s + 2), sizeof *all);
@@ -86,7 +88,7 @@ nevh__tableau *nevh__tableau_new(const nevh__rule *r) {
     a->a_q = a->mu_p + s * s;
     a->a_p = a->a_q + s * s;
     a->guess = a->a_p + s * s;
-    fill(a, r);
+    fill(a, r, alike);
     return a;
 }
 

@@ -12,6 +12,7 @@
 #ifndef NEVH_TABLEAU_PRIVATE_H
 #define NEVH_TABLEAU_PRIVATE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 enum { NEVH__MOST_STAGES = 64 };
@@ -40,8 +41,9 @@ nevh__tableau *nevh__gauss_new(size_t stages);
 nevh__tableau *nevh__lobatto_new(size_t stages);
 void nevh__tableau_free(nevh__tableau *);
 
-/* Collocation on the rule's nodes for coordinates, its mirror for momenta. */
-nevh__tableau *nevh__tableau_new(const nevh__rule *);
+/* Collocation on the rule's nodes for coordinates, its mirror for momenta;
+   `alike`: they are the same but for rounding, and are to be so exactly. */
+nevh__tableau *nevh__tableau_new(const nevh__rule *, bool alike);
 void nevh__gauss_rule(size_t stages, nevh__rule *);
 /* P_s(x) and its derivative, |x| < 1; s from 1. */
 long double nevh__legendre(size_t s, long double x, long double *slope);
