@@ -38,7 +38,7 @@ static void fill_matrices(nevh__tableau *a, const nevh__rule *r, bool alike) {
     nevh__gauss_rule(s, &gauss);
     for (size_t i = 0; i < s; i++)
         for (size_t j = 0; j < s; j++) {
-            long double mu = ratio(r, &gauss, i, j);
+            long double mu = alike && i == j ? 0.5L : ratio(r, &gauss, i, j);
             if (mu >= half)
                 mirror(a, i, j, (double)mu);
             if (mu >= half && alike)
