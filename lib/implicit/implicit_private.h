@@ -7,7 +7,11 @@
        x[(k * stages + stage) * width + lane],
 
    k < n for slopes of coordinates, then of momenta; in the partitioned form,
-   for H = T(p) + V(q), unknown are the slopes of momenta alone, k < n. */
+   for H = T(p) + V(q), unknown are the slopes of momenta alone, k < n.
+
+   Lanes are swept side by side (fixed_point.c).  One that does not get on is
+   given to simplified Newton (newton.c), one that does not get on there to GSL
+   (rescue.c); judge.c tells whether it gets on. */
 #ifndef NEVH_IMPLICIT_PRIVATE_H
 #define NEVH_IMPLICIT_PRIVATE_H
 
@@ -47,7 +51,7 @@ void nevh__stage_solver_free(nevh__stage_solver *);
 /* Solves to the rounding floor, or fails with a message. */
 int nevh__stage_solve(nevh__stage_solver *, const nevh__stage_problem *);
 
-/* For the two halves of the solver. */
+/* For the parts of the solver. */
 struct nevh__stage_solver {
     nevh_work *work;
     nevh__stage_shape shape;
@@ -59,7 +63,8 @@ struct nevh__stage_solver {
     double *noise;        /* 2n, of one lane */
     size_t *lanes;        /* lanes under way */
     struct nevh__stage_lane *lane;
-    struct nevh__rescue *rescue; /* NULL for large systems */
+    struct nevh__newton *newton; /* these two: NULL for large systems */
+    struct nevh__rescue *rescue;
     const nevh__stage_problem *problem;
     int status; /* of the noise, where it was asked for */
 };
@@ -69,16 +74,52 @@ typedef struct nevh__stage_lane {
     bool grace;      /* the last sweep was a grace sweep */
     bool grew;       /* the largest change grew from one sweep to another */
     unsigned stalls; /* sweeps without progress while changes are large */
+    unsigned slow;   /* sweeps on end that contracted too little */
     double change;   /* largest of the last sweep, in units of scale */
+    double before;   /* that of the sweep before */
     double least;    /* the smallest of those so far */
 } nevh__stage_lane;
 
+/* Slopes times |h| over this are in units of the state's scales. */
+static inline double nevh__stage_unit(const nevh__stage_solver *s, size_t row,
+                                      size_t lane) {
+    size_t k = s->first + row / s->stages;
+    double h = s->problem->h < 0 ? -s->problem->h : s->problem->h;
+    return s->scale[k * s->work->width + lane] / h;
+}
+
+/* Forgets what is known of a lane's iteration. */
+void nevh__stage_begin(nevh__stage_solver *, size_t lane);
+/* A change of so much, in units of scale, need not be rounding. */
+extern const double nevh__stage_tiny;
 /* Whether a change, in units of scale, is no more than rounding. */
 bool nevh__stage_small(nevh__stage_solver *, size_t lane, double change);
+
+typedef enum { NEVH__GO_ON, NEVH__DONE, NEVH__STUCK } nevh__stage_state;
+/* Compares one lane's sweep, out[row*stride], with the one before.  Up to
+   `chance` unknowns improve by chance alone. */
+nevh__stage_state nevh__stage_judge(nevh__stage_solver *, size_t lane,
+                                    size_t stride, const double out[],
+                                    size_t chance);
+/* Makes that sweep the lane's slopes. */
+void nevh__stage_take(nevh__stage_solver *, size_t lane, size_t stride,
+                      const double out[]);
+
+struct nevh__newton *nevh__newton_new(nevh__stage_solver *);
+void nevh__newton_free(struct nevh__newton *);
+/* One lane by simplified Newton, or else by GSL's multiroot solver. */
+int nevh__newton_lane(nevh__stage_solver *, size_t lane);
 
 struct nevh__rescue *nevh__rescue_new(nevh__stage_solver *);
 void nevh__rescue_free(struct nevh__rescue *);
 /* One lane by GSL's multiroot solver. */
 int nevh__rescue_lane(nevh__stage_solver *, size_t lane);
+
+/* Factors of a square matrix, row by row, whose rows are exchanged as `pivot`
+   says; false where it is singular or not finite.  GSL's own allocates. */
+bool nevh__factor(size_t rows, double matrix[], size_t pivot[]);
+/* x = matrix^-1 x, of the factors. */
+void nevh__solve(size_t rows, const double matrix[], const size_t pivot[],
+                 double x[]);
 
 #endif
