@@ -16,6 +16,7 @@ libnevh_core_la_SOURCES += \
 	integrators/lobatto_coefficients.c \
 	integrators/implicit_kernel.c \
 	integrators/gauss.c \
+	integrators/lobatto.c \
 	integrators/gsl_private.h \
 	integrators/gsl_kernel.c \
 	integrators/gsl_references.c

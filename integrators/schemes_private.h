@@ -20,6 +20,9 @@
     X(gauss16)                                                                 \
     X(gauss18)                                                                 \
     X(gauss20)                                                                 \
+    X(lobatto2)                                                                \
+    X(lobatto4)                                                                \
+    X(lobatto6)                                                                \
     X(euler)                                                                   \
     X(rk4)                                                                     \
     X(gsl_rkf45)                                                               \

@@ -35,6 +35,11 @@ NEVH_API extern const nevh_integrator *const nevh_gauss14;
 NEVH_API extern const nevh_integrator *const nevh_gauss16;
 NEVH_API extern const nevh_integrator *const nevh_gauss18;
 NEVH_API extern const nevh_integrator *const nevh_gauss20;
+/* Implicit, for any H: Lobatto IIIA-IIIB pairs, named by order (twice the
+   stages, less 2).  lobatto2 is the general Stoermer-Verlet method. */
+NEVH_API extern const nevh_integrator *const nevh_lobatto2;
+NEVH_API extern const nevh_integrator *const nevh_lobatto4;
+NEVH_API extern const nevh_integrator *const nevh_lobatto6;
 /* Not symplectic: the references.  GSL's take one step of h where the
    tolerance is 0, and as many as the tolerance needs where it is not. */
 NEVH_API extern const nevh_integrator *const nevh_euler;

@@ -89,8 +89,9 @@ static bool too_slow(nevh__stage_solver *s, size_t lane, double before) {
 /* What becomes of a lane whose sweep is out[row*stride]. */
 static nevh__stage_state proceed(nevh__stage_solver *s, size_t lane,
                                  size_t stride, const double out[]) {
+    static const nevh__stage_rule rule = {1, 0, nevh__stage_small};
     double before = s->lane[lane].before;
-    nevh__stage_state state = nevh__stage_judge(s, lane, stride, out, 0);
+    nevh__stage_state state = nevh__stage_judge(s, lane, stride, out, &rule);
     nevh__stage_take(s, lane, stride, out);
     return state == NEVH__GO_ON && too_slow(s, lane, before) ? NEVH__STUCK
                                                              : state;

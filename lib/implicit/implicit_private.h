@@ -90,17 +90,29 @@ static inline double nevh__stage_unit(const nevh__stage_solver *s, size_t row,
 
 /* Forgets what is known of a lane's iteration. */
 void nevh__stage_begin(nevh__stage_solver *, size_t lane);
-/* A change of so much, in units of scale, need not be rounding. */
-extern const double nevh__stage_tiny;
+/* Changes, in units of scale, that need not be looked at; and how many times
+   its estimate noise may be. */
+extern const double nevh__stage_tiny, nevh__stage_margin;
 /* Whether a change, in units of scale, is no more than rounding. */
 bool nevh__stage_small(nevh__stage_solver *, size_t lane, double change);
 
 typedef enum { NEVH__GO_ON, NEVH__DONE, NEVH__STUCK } nevh__stage_state;
-/* Compares one lane's sweep, out[row*stride], with the one before.  Up to
-   `chance` unknowns improve by chance alone. */
+/* To s->noise, 2n: what noise of differences, at the start of the step, adds to
+   a lane's slopes.  Sets s->status. */
+void nevh__stage_noise(nevh__stage_solver *, size_t lane);
+
+/* Progress is that the changes of more than `chance` unknowns fall below `by`
+   times their smallest so far.  It is believed to have ended where changes are
+   small. */
+typedef struct {
+    double by;
+    size_t chance;
+    bool (*small)(nevh__stage_solver *, size_t lane, double change);
+} nevh__stage_rule;
+/* Compares one lane's sweep, out[row*stride], with those before. */
 nevh__stage_state nevh__stage_judge(nevh__stage_solver *, size_t lane,
                                     size_t stride, const double out[],
-                                    size_t chance);
+                                    const nevh__stage_rule *);
 /* Makes that sweep the lane's slopes. */
 void nevh__stage_take(nevh__stage_solver *, size_t lane, size_t stride,
                       const double out[]);

@@ -23,7 +23,7 @@
 
 enum { MOST_STALLS = 8 };
 const double nevh__stage_tiny = 1e-10;
-static const double noise_margin = 16;
+const double nevh__stage_margin = 16;
 static const double may_be_noise = 1e-4; /* not worth a look above */
 
 void nevh__stage_begin(nevh__stage_solver *s, size_t lane) {
@@ -34,13 +34,10 @@ void nevh__stage_begin(nevh__stage_solver *s, size_t lane) {
         .change = INFINITY, .before = INFINITY, .least = INFINITY};
 }
 
-/* What the noise of one lane's gradients makes of a step, in units of scale:
-   the largest over all variables, since each draws the others along.  Taken at
-   the start of the step, whose state it needs in one piece. */
-static double noise_level(nevh__stage_solver *s, size_t lane) {
+void nevh__stage_noise(nevh__stage_solver *s, size_t lane) {
     const nevh_work *w = s->work;
     const nevh__stage_problem *e = s->problem;
-    double *q = s->noise + 2 * w->n, *p = q + w->n, most = 0;
+    double *q = s->noise + 2 * w->n, *p = q + w->n;
     for (size_t k = 0; k < w->n; k++) {
         q[k] = e->q[k * w->width + lane];
         p[k] = e->p[k * w->width + lane];
@@ -49,15 +46,24 @@ static double noise_level(nevh__stage_solver *s, size_t lane) {
         nevh__field_noise(w->field, e->t, q, p, s->noise + w->n, s->noise);
     if (s->status)
         nevh_work_fail(s->work, s->status, "%s", nevh_field_message(w->field));
+}
+
+/* What the noise of one lane's gradients makes of a step, in units of scale:
+   the largest over all variables, since each draws the others along. */
+static double noise_level(nevh__stage_solver *s, size_t lane) {
+    const nevh_work *w = s->work;
+    double most = 0;
+    nevh__stage_noise(s, lane);
     for (size_t k = 0; !s->status && k < 2 * w->n; k++)
         most = fmax(most, s->noise[k] / s->scale[k * w->width + lane]);
-    return fabs(e->h) * most;
+    return fabs(s->problem->h) * most;
 }
 
 bool nevh__stage_small(nevh__stage_solver *s, size_t lane, double change) {
     return change <= nevh__stage_tiny ||
            (change < INFINITY &&
-            change <= nevh__stage_tiny + noise_margin * noise_level(s, lane));
+            change <=
+                nevh__stage_tiny + nevh__stage_margin * noise_level(s, lane));
 }
 
 typedef struct {
@@ -74,7 +80,7 @@ static bool drowned(nevh__stage_solver *s, size_t lane, const progress *made) {
 }
 
 static progress compare(nevh__stage_solver *s, size_t lane, size_t stride,
-                        const double *out) {
+                        const double *out, double by) {
     size_t width = s->work->width;
     const double *x = s->problem->x + lane;
     double *least = s->least + lane;
@@ -85,7 +91,7 @@ static progress compare(nevh__stage_solver *s, size_t lane, size_t stride,
         double most = 0;
         for (size_t end = row + s->stages; row < end; row++) {
             double change = fabs(out[row * stride] - x[row * width]);
-            bool better = change > 0 && change < least[row * width];
+            bool better = change > 0 && change < by * least[row * width];
             least[row * width] = better ? change : least[row * width];
             made.improved += better;
             made.moved |= change != 0;
@@ -98,20 +104,20 @@ static progress compare(nevh__stage_solver *s, size_t lane, size_t stride,
 
 nevh__stage_state nevh__stage_judge(nevh__stage_solver *s, size_t lane,
                                     size_t stride, const double out[],
-                                    size_t chance) {
+                                    const nevh__stage_rule *rule) {
     nevh__stage_lane *l = &s->lane[lane];
-    progress made = compare(s, lane, stride, out);
+    progress made = compare(s, lane, stride, out, rule->by);
     l->grew |= made.change > l->change && made.change > nevh__stage_tiny;
     l->before = l->change;
     l->change = made.change;
     if (!made.moved || drowned(s, lane, &made))
         return NEVH__DONE;
     l->least = fmin(l->least, made.change);
-    if (made.improved > chance) {
+    if (made.improved > rule->chance) {
         l->grace = false;
         return NEVH__GO_ON;
     }
-    if (l->grace && nevh__stage_small(s, lane, l->change))
+    if (l->grace && rule->small(s, lane, l->change))
         return NEVH__DONE;
     l->stalls += l->grace;
     l->grace = true;

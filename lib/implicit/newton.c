@@ -11,12 +11,14 @@
    sweep, again at the mean of the stages.  One lane at a time, from a standing
    start, since polynomials continued through stiff slopes lead far astray.
 
-   The rule that ends it is that of fixed-point iteration, but the rounding of
-   G, which M^-1 mixes, makes unknowns improve by chance: progress is what moves
-   more than a quarter of them.
+   The rule that ends it is that of fixed-point iteration, but progress is what
+   halves the changes of more than a quarter of the unknowns: rounding in G,
+   which M^-1 mixes, makes some improve by chance, and where it makes a stiff G
+   a flight of stairs, M^-1 goes down by tiny steps.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "implicit/implicit_private.h"
 #include "system/system_private.h"
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -231,10 +233,50 @@ static int improve(nevh__stage_solver *s, size_t lane) {
     return check == 0 ? NEVH_OK : NEVH_EDOM;
 }
 
+/* Rounding of the stages' states, and of what the slopes are computed from,
+   moves the slopes by epsilon times |J| |y|, or |V''| |q|, variable by
+   variable; in units of scale.  Added to what differences bring. */
+static void find_noise(nevh__stage_solver *s, size_t lane) {
+    const struct nevh__newton *m = s->newton;
+    const double *scale = s->work->scale;
+    size_t n = s->work->n, all = s->shape.partitioned ? n : 2 * n;
+    nevh__stage_noise(s, lane);
+    for (size_t k = s->first; !s->status && k < 2 * n; k++) {
+        double sum = s->noise[k] / scale[k];
+        for (size_t l = 0; l < all; l++)
+            sum += DBL_EPSILON * fabs(m->jacobian[(k - s->first) * all + l]) *
+                   fabs(m->mean[l]) / scale[l];
+        s->noise[k] = sum;
+    }
+}
+
+/* What such noise, of either sign, makes of the unknowns: no change within that
+   can be told from rounding. */
+static bool no_more_than_noise(nevh__stage_solver *s, size_t lane,
+                               double change) {
+    struct nevh__newton *m = s->newton;
+    double h = fabs(s->problem->h), most = 0;
+    if (change <= nevh__stage_tiny)
+        return true;
+    find_noise(s, lane);
+    for (size_t row = 0; row < s->rows; row++) {
+        double noise = s->noise[s->first + row / s->stages];
+        m->g[row] = row * 5 % 7 < 3 ? noise : -noise;
+    }
+    nevh__solve(s->rows, m->matrix, m->pivot, m->g);
+    for (size_t row = 0; row < s->rows; row++) {
+        size_t k = s->first + row / s->stages;
+        most = fmax(most, h * fabs(m->g[row]) * s->work->scale[k] /
+                              s->scale[k * s->work->width + lane]);
+    }
+    return !s->status && change <= nevh__stage_tiny + nevh__stage_margin * most;
+}
+
 /* NEVH_OK; NEVH_EMAXITER or NEVH_EDOM when it does not get there. */
 static int iterate(nevh__stage_solver *s, size_t lane) {
     struct nevh__newton *m = s->newton;
     const nevh__stage_lane *l = &s->lane[lane];
+    const nevh__stage_rule rule = {0.5, s->rows / 4, no_more_than_noise};
     nevh__stage_begin(s, lane);
     for (size_t row = 0; row < s->rows; row++)
         s->problem->x[row * s->work->width + lane] = 0;
@@ -243,8 +285,7 @@ static int iterate(nevh__stage_solver *s, size_t lane) {
         status = improve(s, lane);
         if (status)
             return status;
-        nevh__stage_state state =
-            nevh__stage_judge(s, lane, 1, m->out, s->rows / 4);
+        nevh__stage_state state = nevh__stage_judge(s, lane, 1, m->out, &rule);
         nevh__stage_take(s, lane, 1, m->out);
         if (state != NEVH__GO_ON || s->status)
             return state == NEVH__DONE ? s->status : NEVH_EMAXITER;
