@@ -27,7 +27,7 @@
 #include <string.h>
 
 typedef struct {
-    nevh__tableau *tableau;
+    nevh__tableau *tableau; /* first, where tests look for it */
     nevh__stage_solver *solver;
     bool partitioned;
     size_t unknown; /* slopes of a lane that are solved for */
