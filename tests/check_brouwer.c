@@ -156,7 +156,7 @@ START_TEST(a_million_steps) {
 END_TEST
 
 START_TEST(ten_million_steps) {
-    check_one(&all[_i], 10000000, _i < 3 ? 5e-14 : 1.5e-13);
+    check_one(&all[_i], 10000000, _i < 2 ? 5e-14 : 1e-13);
 }
 END_TEST
 

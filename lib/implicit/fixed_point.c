@@ -2,9 +2,9 @@
 
    Lanes are independent of each other: one that is done is left alone.  One
    that contracts too slowly, makes no progress at large changes, is still under
-   way after MOST_SWEEPS, or leaves the domain of H with growing changes is
-   given to Newton's iteration, and where that had to be done, at once for the
-   next HOLD steps, lest each waste the sweeps that fail.
+   way after MOST_SWEEPS, or leaves the domain of H with changes that grow or
+   exceed the scale is given to Newton's iteration, and where that had to be
+   done, at once for the next HOLD steps, lest each waste the sweeps that fail.
 
    Too slowly: in a small system, more than 1/2 a sweep, which would take 50
    sweeps from scratch; 2 n stages plus about as many evaluations as stages buy
@@ -117,7 +117,7 @@ static int sweep(nevh__stage_solver *s, size_t lanes[], size_t *active,
     *active = 0;
     if (status == NEVH_EDOM && count > 1)
         return sweep_alone(s, lanes, count, active, last);
-    bool lost = status == NEVH_EDOM && s->lane[lanes[0]].grew;
+    bool lost = status == NEVH_EDOM && s->lane[lanes[0]].strays;
     if (status && !lost)
         return status;
     s->work->sweeps += count;

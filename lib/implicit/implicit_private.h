@@ -72,7 +72,7 @@ struct nevh__stage_solver {
 /* What is known of the iteration of one lane. */
 typedef struct nevh__stage_lane {
     bool grace;      /* the last sweep was a grace sweep */
-    bool grew;       /* the largest change grew from one sweep to another */
+    bool strays;     /* the largest change has grown, or exceeds the scale */
     unsigned stalls; /* sweeps without progress while changes are large */
     unsigned slow;   /* sweeps on end that contracted too little */
     double change;   /* largest of the last sweep, in units of scale */

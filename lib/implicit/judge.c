@@ -107,7 +107,8 @@ nevh__stage_state nevh__stage_judge(nevh__stage_solver *s, size_t lane,
                                     const nevh__stage_rule *rule) {
     nevh__stage_lane *l = &s->lane[lane];
     progress made = compare(s, lane, stride, out, rule->by);
-    l->grew |= made.change > l->change && made.change > nevh__stage_tiny;
+    l->strays |= made.change > 1 ||
+                 (made.change > l->change && made.change > nevh__stage_tiny);
     l->before = l->change;
     l->change = made.change;
     if (!made.moved || drowned(s, lane, &made))
