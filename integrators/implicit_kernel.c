@@ -6,8 +6,8 @@
        y  += sum_j L_j,
 
    where e is what earlier sums lost to rounding, the mu of coordinates and of
-   momenta add up to 1 exactly across the diagonal, and the h b_j add up to h
-   exactly: the form of Antonana, Makazaga and Murua, in which rounding leaves
+   momenta add up to 1 exactly across the diagonal, and the h b_j add up to h:
+   the form of Antonana, Makazaga and Murua, in which rounding leaves
    the map symplectic.  The sum goes from small weights to large ones with
    compensation, the products' own rounding included.  First guess: the
    collocation polynomial of the previous step, continued.

@@ -277,6 +277,69 @@ START_TEST(rescue_in_both_forms) {
 }
 END_TEST
 
+static double steep_alone(double t, const double q[], const double p[],
+                          const double c[], const void *params) {
+    (void)t, (void)p, (void)c, (void)params;
+    return 40 * pow(fabs(q[0]), 1.3);
+}
+
+static double ending_alone(double t, const double q[], const double p[],
+                           const double c[], const void *params) {
+    (void)t, (void)p, (void)c, (void)params;
+    return -5 * log(1 - q[0] * q[0]);
+}
+
+static void half_square_gradient(size_t width, const double t[],
+                                 const double q[], const double p[],
+                                 const double c[], const void *params,
+                                 double dq[], double dp[]) {
+    (void)t, (void)q, (void)c, (void)params, (void)dq;
+    for (size_t i = 0; dp && i < width; i++)
+        dp[i] = p[i];
+}
+
+static void steep_gradient(size_t width, const double t[], const double q[],
+                           const double p[], const double c[],
+                           const void *params, double dq[], double dp[]) {
+    (void)t, (void)p, (void)c, (void)params, (void)dp;
+    for (size_t i = 0; dq && i < width; i++)
+        dq[i] = copysign(52 * pow(fabs(q[i]), 0.3), q[i]);
+}
+
+static void ending_gradient(size_t width, const double t[], const double q[],
+                            const double p[], const double c[],
+                            const void *params, double dq[], double dp[]) {
+    (void)t, (void)p, (void)c, (void)params, (void)dp;
+    for (size_t i = 0; dq && i < width; i++)
+        dq[i] = fabs(q[i]) < 1 ? 10 * q[i] / (1 - q[i] * q[i]) : NAN;
+}
+
+/* In a step that Newton's iteration (i = 0, after the first sweep has left the
+   domain) or GSL solves for the slopes of momenta, those of coordinates are the
+   ones that go with them: q1 - q0 = h (p0 + p1) / 2 without any loss. */
+START_TEST(coordinates_go_along) {
+    const nevh_term potentials[] = {
+        {.effect = "V", .nq = 1, .value = ending_alone},
+        {.effect = "V", .nq = 1, .value = steep_alone}};
+    nevh_term kinetic = {.effect = "T", .np = 1, .value = half_square};
+    nevh_term potential = potentials[_i > 0];
+    kinetic.gradient = half_square_gradient;
+    potential.gradient = _i > 0 ? steep_gradient : ending_gradient;
+    nevh_system *s = nevh_system_new(1);
+    nevh_system_add(s, &kinetic);
+    nevh_system_add(s, &potential);
+    nevh_options o = {.gradient = nevh_exact, .q = &start_q, .p = &start_p};
+    nevh_stepper *m = nevh_stepper_new(s, nevh_midpoint, &o);
+    double z[] = {start_q, start_p}, h = _i > 0 ? 0.4 + 0.05 * _i : 0.6;
+    ck_assert_int_eq(nevh_stepper_apply(m, 0, h, z, z + 1), NEVH_OK);
+    ck_assert_uint_eq(nevh_stepper_counts(m).newtons, 1);
+    ck_assert_uint_eq(nevh_stepper_counts(m).rescues, _i > 0);
+    ck_assert_double_eq_tol(z[0], start_q + h * (start_p + z[1]) / 2, 5e-16);
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
 /* A lane beside one that is rescued is what it is alone. */
 START_TEST(rescue_of_a_neighbour) {
     static const double scale[] = {1, 1};
@@ -396,6 +459,7 @@ int main(void) {
     tcase_add_loop_test(cases, solved_after_leaving_the_domain, 0, 2);
     tcase_add_test(cases, solved_where_newton_fails);
     tcase_add_test(cases, rescue_in_both_forms);
+    tcase_add_loop_test(cases, coordinates_go_along, 0, 6);
     tcase_add_loop_test(cases, rescue_of_a_neighbour, 0, 2);
     tcase_add_loop_test(cases, leaves_the_range_of_numbers, 0, schemes);
     tcase_add_test(cases, refused_plans);

@@ -1,5 +1,6 @@
 /* nevh tests: the forms in which implicit stages are solved.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "implicit/implicit_private.h"
 #include "support.h"
 #include <float.h>
 #include <math.h>
@@ -157,6 +158,48 @@ START_TEST(stages_of_ones_own) {
 }
 END_TEST
 
+/* Motion without forces is exact: the weights of a step add up to h, but for
+   the last bit where they are many. */
+START_TEST(free_motion) {
+    static const double mass[] = {1};
+    static const double steps[] = {0.1, 0.3, 1 / 3., 0.7, 1e-3, 123.4};
+    nevh_system *s = nevh_system_new(1);
+    nevh_system_add(s, &(nevh_term){.effect = "kinetic",
+                                    .np = 1,
+                                    .nc = 1,
+                                    .c = mass,
+                                    .value = mass_kinetic,
+                                    .gradient = mass_kinetic_gradient});
+    nevh_options options = {.gradient = nevh_exact};
+    for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {
+        nevh_stepper *m = nevh_stepper_new(s, *schemes[_i], &options);
+        double q = 0, p = 1;
+        ck_assert_int_eq(nevh_stepper_apply(m, 0, steps[i], &q, &p), NEVH_OK);
+        double slack = nevh_integrator_stages(*schemes[_i]) > 4 ? DBL_EPSILON * q : 0;
+        ck_assert(fabs(q - steps[i]) <= slack && p == 1);
+        nevh_stepper_free(m);
+    }
+    nevh_system_free(s);
+}
+END_TEST
+
+/* Newton's linear equations. */
+START_TEST(factors) {
+    double matrix[] = {0, 1, 2, 1, 0, 3, 4, -3, 8};
+    double singular[] = {1, 2, 3, 2, 4, 6, 1, 0, 1};
+    double x[] = {1 * 2 + 2 * 5, 3 + 3 * 5, 4 * 3 - 3 * 2 + 8 * 5};
+    double wrong[] = {1, 2, NAN, 4};
+    size_t pivot[3];
+    ck_assert(nevh__factor(3, matrix, pivot));
+    nevh__solve(3, matrix, pivot, x);
+    ck_assert_double_eq_tol(x[0], 3, 1e-14);
+    ck_assert_double_eq_tol(x[1], 2, 1e-14);
+    ck_assert_double_eq_tol(x[2], 5, 1e-14);
+    ck_assert(!nevh__factor(3, singular, pivot));
+    ck_assert(!nevh__factor(2, wrong, pivot));
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("implicit");
     TCase *cases = tcase_create("implicit");
@@ -164,6 +207,8 @@ int main(void) {
     tcase_add_loop_test(cases, lobatto2_is_verlet, 0, 3);
     tcase_add_test(cases, lobatto2_is_the_generalized_leapfrog);
     tcase_add_loop_test(cases, stages_of_ones_own, 0, 2);
+    tcase_add_loop_test(cases, free_motion, 0, SCHEMES);
+    tcase_add_test(cases, factors);
     suite_add_tcase(suite, cases);
     return run_suite(suite);
 }

@@ -33,6 +33,7 @@ TEST_LIBS = tests/libsupport.la libnevh.la $(CHECK_LIBS)
 INSIDE_LIBS = tests/libsupport.la libnevh_core.la $(CHECK_LIBS)
 tests_check_coefficients_LDADD = $(INSIDE_LIBS)
 tests_check_brouwer_LDADD = $(INSIDE_LIBS)
+tests_check_implicit_LDADD = $(INSIDE_LIBS)
 tests_check_gsl_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_threads_CFLAGS = $(AM_CFLAGS) -pthread
 tests_check_threads_LDFLAGS = $(AM_LDFLAGS) -pthread
