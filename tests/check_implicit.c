@@ -175,7 +175,8 @@ START_TEST(free_motion) {
         nevh_stepper *m = nevh_stepper_new(s, *schemes[_i], &options);
         double q = 0, p = 1;
         ck_assert_int_eq(nevh_stepper_apply(m, 0, steps[i], &q, &p), NEVH_OK);
-        double slack = nevh_integrator_stages(*schemes[_i]) > 4 ? DBL_EPSILON * q : 0;
+        double slack =
+            nevh_integrator_stages(*schemes[_i]) > 4 ? DBL_EPSILON * q : 0;
         ck_assert(fabs(q - steps[i]) <= slack && p == 1);
         nevh_stepper_free(m);
     }
