@@ -6,14 +6,11 @@ libnevh_core_la_SOURCES += \
 	integrators/work.c \
 	integrators/transform_private.h \
 	integrators/transform.c \
+	integrators/splitting_private.h \
+	integrators/splitting_expand.c \
 	integrators/splitting_kernel.c \
 	integrators/symplectic_euler.c \
 	integrators/verlet.c \
-	integrators/adaptive_verlet_private.h \
-	integrators/adaptive_verlet_kernel.c \
-	integrators/adaptive_verlet.c \
-	integrators/splitting_private.h \
-	integrators/splitting_expand.c \
 	integrators/ruth3.c \
 	integrators/mclachlan_atela.c \
 	integrators/forest_ruth.c \
@@ -25,6 +22,9 @@ libnevh_core_la_SOURCES += \
 	integrators/kahan_li.c \
 	integrators/suzuki_umeno.c \
 	integrators/sofroniou_spaletta.c \
+	integrators/adaptive_verlet_private.h \
+	integrators/adaptive_verlet_kernel.c \
+	integrators/adaptive_verlet.c \
 	integrators/runge_kutta_private.h \
 	integrators/runge_kutta_kernel.c \
 	integrators/runge_kutta_adaptive.c \
@@ -32,10 +32,13 @@ libnevh_core_la_SOURCES += \
 	integrators/rk4.c \
 	integrators/dopri5.c \
 	integrators/dop853.c \
-	integrators/gauss_private.h \
-	integrators/gauss_kernel.c \
+	integrators/tableau_private.h \
+	integrators/tableau.c \
 	integrators/gauss_coefficients.c \
+	integrators/lobatto_coefficients.c \
+	integrators/implicit_kernel.c \
 	integrators/gauss.c \
+	integrators/lobatto.c \
 	integrators/gsl_private.h \
 	integrators/gsl_kernel.c \
 	integrators/gsl_references.c

@@ -35,6 +35,9 @@
     X(gauss16)                                                                 \
     X(gauss18)                                                                 \
     X(gauss20)                                                                 \
+    X(lobatto2)                                                                \
+    X(lobatto4)                                                                \
+    X(lobatto6)                                                                \
     X(adaptive_verlet)                                                         \
     X(naive_adaptive_verlet)                                                   \
     X(euler)                                                                   \

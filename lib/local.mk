@@ -33,6 +33,9 @@ libnevh_core_la_SOURCES = \
 	lib/gradient/gsl_system.c \
 	lib/implicit/implicit_private.h \
 	lib/implicit/fixed_point.c \
+	lib/implicit/judge.c \
+	lib/implicit/newton.c \
+	lib/implicit/factor.c \
 	lib/implicit/rescue.c \
 	lib/run/stepper_private.h \
 	lib/run/structure.c \

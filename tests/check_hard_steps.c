@@ -157,10 +157,12 @@ END_TEST
 /* Its values are noise: no difference quotient means anything. */
 static double noisy(double t, const double q[], const double p[],
                     const void *params) {
-    uint64_t bits;
+    uint64_t bits, more;
     memcpy(&bits, q, sizeof bits);
+    memcpy(&more, p, sizeof more);
+    bits ^= more << 1;
     bits = (bits ^ bits >> 29) * 0x9e3779b97f4a7c15u;
-    return quartic(t, q, p, params) + (double)(bits >> 40) * 0x1p-24;
+    return quartic(t, q, p, params) + (double)(bits >> 40) * 0x1p-34;
 }
 
 START_TEST(noise_is_not_solved) {
@@ -186,17 +188,161 @@ static double ending(double t, const double q[], const double p[],
     return p[0] * p[0] / 2 - 5 * log(1 - q[0] * q[0]);
 }
 
-/* The rescued step is a success, and is reported as one. */
-START_TEST(rescue_after_leaving_the_domain) {
+/* Steps from (0.9, 0) that Newton's iteration solves, and one that takes GSL's
+   solver. */
+static const struct {
+    const nevh_integrator *const *scheme;
+    double h;
+    uint64_t rescues;
+} hard[] = {{&nevh_midpoint, 0.3, 0}, {&nevh_gauss4, 1.73, 1}};
+
+/* The step is a success, and is reported as one. */
+START_TEST(solved_after_leaving_the_domain) {
     static const double q = 0.9, p = 0;
     nevh_system *s = nevh_system_from(1, ending, NULL);
-    nevh_stepper *m =
-        nevh_stepper_new(s, nevh_midpoint, &(nevh_options){.q = &q, .p = &p});
+    nevh_stepper *m = nevh_stepper_new(s, *hard[_i].scheme,
+                                       &(nevh_options){.q = &q, .p = &p});
     double x = q, y = p;
-    ck_assert_int_eq(nevh_stepper_apply(m, 0, 0.3, &x, &y), NEVH_OK);
-    ck_assert_uint_eq(nevh_stepper_counts(m).rescues, 1);
+    ck_assert_int_eq(nevh_stepper_apply(m, 0, hard[_i].h, &x, &y), NEVH_OK);
+    ck_assert_uint_eq(nevh_stepper_counts(m).newtons, 1);
+    ck_assert_uint_eq(nevh_stepper_counts(m).rescues, hard[_i].rescues);
     ck_assert_int_eq(nevh_stepper_status(m), NEVH_OK);
     ck_assert_str_eq(nevh_stepper_message(m), "");
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* The steepness changes too much within a step for one matrix: GSL's solver,
+   and what it finds is a solution. */
+static double steep(double t, const double q[], const double p[],
+                    const void *params) {
+    (void)t, (void)params;
+    return p[0] * p[0] / 2 + 40 * pow(fabs(q[0]), 1.3);
+}
+
+START_TEST(solved_where_newton_fails) {
+    nevh_system *s = nevh_system_from(1, steep, NULL);
+    nevh_options o = {.gradient_step = 0x1p-10, .q = &start_q, .p = &start_p};
+    uint64_t rescues = 0;
+    for (double h = 0.5; h < 2; h += 0.25) {
+        nevh_stepper *m = nevh_stepper_new(s, nevh_midpoint, &o);
+        double z[] = {start_q, start_p};
+        ck_assert_int_eq(nevh_stepper_apply(m, 0, h, z, z + 1), NEVH_OK);
+        ck_assert_double_le(midpoint_residual(s, &o, h, z), 1e-8);
+        rescues += nevh_stepper_counts(m).rescues;
+        ck_assert_uint_eq(nevh_stepper_counts(m).newtons, 1);
+        nevh_stepper_free(m);
+    }
+    ck_assert_uint_ge(rescues, 4);
+    nevh_system_free(s);
+}
+END_TEST
+
+static double half_square(double t, const double q[], const double p[],
+                          const double c[], const void *params) {
+    (void)t, (void)q, (void)c, (void)params;
+    return p[0] * p[0] / 2;
+}
+
+static double fourth_power(double t, const double q[], const double p[],
+                           const double c[], const void *params) {
+    (void)t, (void)p, (void)c, (void)params;
+    return 1000 * q[0] * q[0] * q[0] * q[0];
+}
+
+static double both(double t, const double q[], const double p[],
+                   const void *params) {
+    return half_square(t, q, p, NULL, params) +
+           fourth_power(t, q, p, NULL, params);
+}
+
+/* T(p) + V(q), where slopes of momenta alone are solved for, and H as a whole:
+   GSL finds the same step. */
+START_TEST(rescue_in_both_forms) {
+    nevh_options o = {.gradient_step = 0x1p-10, .q = &start_q, .p = &start_p};
+    nevh_system *forms[] = {nevh_system_new(1),
+                            nevh_system_from(1, both, NULL)};
+    nevh_system_add(
+        forms[0],
+        &(nevh_term){.effect = "kinetic", .np = 1, .value = half_square});
+    nevh_system_add(
+        forms[0],
+        &(nevh_term){.effect = "potential", .nq = 1, .value = fourth_power});
+    double z[2][2];
+    for (int i = 0; i < 2; i++) {
+        nevh_stepper *m = nevh_stepper_new(forms[i], nevh_gauss4, &o);
+        z[i][0] = start_q;
+        z[i][1] = start_p;
+        ck_assert_int_eq(nevh_stepper_apply(m, 0, 0.1, z[i], z[i] + 1),
+                         NEVH_OK);
+        ck_assert_uint_eq(nevh_stepper_counts(m).rescues, 1);
+        nevh_stepper_free(m);
+        nevh_system_free(forms[i]);
+    }
+    ck_assert_double_eq_tol(z[0][0], z[1][0], 1e-8);
+    ck_assert_double_eq_tol(z[0][1], z[1][1], 1e-8);
+}
+END_TEST
+
+static double steep_alone(double t, const double q[], const double p[],
+                          const double c[], const void *params) {
+    (void)t, (void)p, (void)c, (void)params;
+    return 40 * pow(fabs(q[0]), 1.3);
+}
+
+static double ending_alone(double t, const double q[], const double p[],
+                           const double c[], const void *params) {
+    (void)t, (void)p, (void)c, (void)params;
+    return -5 * log(1 - q[0] * q[0]);
+}
+
+static void half_square_gradient(size_t width, const double t[],
+                                 const double q[], const double p[],
+                                 const double c[], const void *params,
+                                 double dq[], double dp[]) {
+    (void)t, (void)q, (void)c, (void)params, (void)dq;
+    for (size_t i = 0; dp && i < width; i++)
+        dp[i] = p[i];
+}
+
+static void steep_gradient(size_t width, const double t[], const double q[],
+                           const double p[], const double c[],
+                           const void *params, double dq[], double dp[]) {
+    (void)t, (void)p, (void)c, (void)params, (void)dp;
+    for (size_t i = 0; dq && i < width; i++)
+        dq[i] = copysign(52 * pow(fabs(q[i]), 0.3), q[i]);
+}
+
+static void ending_gradient(size_t width, const double t[], const double q[],
+                            const double p[], const double c[],
+                            const void *params, double dq[], double dp[]) {
+    (void)t, (void)p, (void)c, (void)params, (void)dp;
+    for (size_t i = 0; dq && i < width; i++)
+        dq[i] = fabs(q[i]) < 1 ? 10 * q[i] / (1 - q[i] * q[i]) : NAN;
+}
+
+/* In a step that Newton's iteration (i = 0, after the first sweep has left the
+   domain) or GSL solves for the slopes of momenta, those of coordinates are the
+   ones that go with them: q1 - q0 = h (p0 + p1) / 2 without any loss. */
+START_TEST(coordinates_go_along) {
+    const nevh_term potentials[] = {
+        {.effect = "V", .nq = 1, .value = ending_alone},
+        {.effect = "V", .nq = 1, .value = steep_alone}};
+    nevh_term kinetic = {.effect = "T", .np = 1, .value = half_square};
+    nevh_term potential = potentials[_i > 0];
+    kinetic.gradient = half_square_gradient;
+    potential.gradient = _i > 0 ? steep_gradient : ending_gradient;
+    nevh_system *s = nevh_system_new(1);
+    nevh_system_add(s, &kinetic);
+    nevh_system_add(s, &potential);
+    nevh_options o = {.gradient = nevh_exact, .q = &start_q, .p = &start_p};
+    nevh_stepper *m = nevh_stepper_new(s, nevh_midpoint, &o);
+    double z[] = {start_q, start_p}, h = _i > 0 ? 0.4 + 0.05 * _i : 0.6;
+    ck_assert_int_eq(nevh_stepper_apply(m, 0, h, z, z + 1), NEVH_OK);
+    ck_assert_uint_eq(nevh_stepper_counts(m).newtons, 1);
+    ck_assert_uint_eq(nevh_stepper_counts(m).rescues, _i > 0);
+    ck_assert_double_eq_tol(z[0], start_q + h * (start_p + z[1]) / 2, 5e-16);
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
@@ -207,14 +353,16 @@ START_TEST(rescue_of_a_neighbour) {
     static const double scale[] = {1, 1};
     nevh_system *s = nevh_system_from(1, ending, NULL);
     nevh_options o = {.scale = scale, .width = 2};
-    nevh_stepper *both = nevh_stepper_new(s, nevh_midpoint, &o);
+    nevh_stepper *both = nevh_stepper_new(s, *hard[_i].scheme, &o);
     o.width = 1;
-    nevh_stepper *alone = nevh_stepper_new(s, nevh_midpoint, &o);
-    double q[] = {0.9, 0.2}, p[] = {0, 0.1}, x = 0.2, y = 0.1;
-    ck_assert_int_eq(nevh_stepper_apply(both, 0, 0.3, q, p), NEVH_OK);
-    ck_assert_int_eq(nevh_stepper_apply(alone, 0, 0.3, &x, &y), NEVH_OK);
-    ck_assert_uint_eq(nevh_stepper_counts(alone).rescues, 0);
-    ck_assert_uint_eq(nevh_stepper_counts(both).rescues, 1);
+    nevh_stepper *alone = nevh_stepper_new(s, *hard[_i].scheme, &o);
+    double q[] = {0.9, 0.2}, p[] = {0, 0.1}, x = 0.2, y = 0.1, h = hard[_i].h;
+    ck_assert_int_eq(nevh_stepper_apply(both, 0, h, q, p), NEVH_OK);
+    ck_assert_int_eq(nevh_stepper_apply(alone, 0, h, &x, &y), NEVH_OK);
+    nevh_counts a = nevh_stepper_counts(alone), b = nevh_stepper_counts(both);
+    ck_assert_uint_eq(a.rescues, 0);
+    ck_assert_uint_eq(b.newtons, a.newtons + 1);
+    ck_assert_uint_eq(b.rescues, hard[_i].rescues);
     ck_assert_double_eq(q[1], x);
     ck_assert_double_eq(p[1], y);
     nevh_stepper_free(both);
@@ -332,8 +480,11 @@ int main(void) {
     tcase_add_loop_test(cases, tiny_steps_turn_round, 0, schemes);
     tcase_add_loop_test(cases, stiff_steps, 0, schemes);
     tcase_add_loop_test(cases, noise_is_not_solved, 0, schemes);
-    tcase_add_test(cases, rescue_after_leaving_the_domain);
-    tcase_add_test(cases, rescue_of_a_neighbour);
+    tcase_add_loop_test(cases, solved_after_leaving_the_domain, 0, 2);
+    tcase_add_test(cases, solved_where_newton_fails);
+    tcase_add_test(cases, rescue_in_both_forms);
+    tcase_add_loop_test(cases, coordinates_go_along, 0, 6);
+    tcase_add_loop_test(cases, rescue_of_a_neighbour, 0, 2);
     tcase_add_loop_test(cases, leaves_the_range_of_numbers, 0, schemes);
     tcase_add_test(cases, refused_plans);
     suite_add_tcase(suite, cases);

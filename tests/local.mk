@@ -26,6 +26,9 @@ suites = \
 	tests/check_models \
 	tests/check_failures \
 	tests/check_hard_steps \
+	tests/check_implicit \
+	tests/check_stiff \
+	tests/check_brouwer \
 	tests/check_threads \
 	tests/check_adaptive \
 	tests/check_damped \
@@ -36,6 +39,8 @@ INSIDE_LIBS = tests/libsupport.la libnevh_core.la $(CHECK_LIBS)
 tests_check_coefficients_LDADD = $(INSIDE_LIBS)
 tests_check_splitting_LDADD = $(INSIDE_LIBS)
 tests_check_damped_LDADD = $(INSIDE_LIBS)
+tests_check_brouwer_LDADD = $(INSIDE_LIBS)
+tests_check_implicit_LDADD = $(INSIDE_LIBS)
 tests_check_gsl_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_threads_CFLAGS = $(AM_CFLAGS) -pthread
 tests_check_threads_LDFLAGS = $(AM_LDFLAGS) -pthread

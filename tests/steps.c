@@ -14,19 +14,21 @@ static double wall(double t, const double q[], const double p[],
 }
 
 /* Steps that need more than fixed-point iteration. */
-static int rescue(size_t steps) {
+static int rescue(const nevh_integrator *scheme, double h, size_t steps,
+                  size_t rescues) {
     nevh_system *s = nevh_system_from(1, wall, NULL);
     nevh_options options = {.gradient_step = 0x1p-10};
-    nevh_stepper *stepper = nevh_stepper_new(s, nevh_midpoint, &options);
+    nevh_stepper *stepper = nevh_stepper_new(s, scheme, &options);
     int status = NEVH_OK;
     for (size_t i = 0; !status && i < steps; i++) {
         double q[] = {0.9}, p[] = {0};
-        status = nevh_stepper_apply(stepper, 0, 0.3, q, p);
+        status = nevh_stepper_apply(stepper, 0, h, q, p);
     }
     if (status)
         puts(nevh_stepper_message(stepper));
-    if (nevh_stepper_counts(stepper).rescues != steps)
-        status = puts("no rescue was needed");
+    nevh_counts counts = nevh_stepper_counts(stepper);
+    if (counts.newtons != steps || counts.rescues != rescues)
+        status = puts("not the rescues that were expected");
     nevh_stepper_free(stepper);
     nevh_system_free(s);
     return status;
@@ -55,5 +57,8 @@ int main(int argc, char **argv) {
     for (const nevh_integrator *const *i = nevh_integrators(); *i; i++)
         if (run(*i, steps))
             return EXIT_FAILURE;
-    return rescue(steps) ? EXIT_FAILURE : EXIT_SUCCESS;
+    return rescue(nevh_midpoint, 0.3, steps, 0) ||
+                   rescue(nevh_gauss4, 1.73, steps, steps)
+               ? EXIT_FAILURE
+               : EXIT_SUCCESS;
 }

@@ -148,6 +148,8 @@ NEVH_API extern const nevh_kernel nevh_runge_kutta_kernel;
 
 /* Gauss-Legendre with `stages` stages from the descriptor; no table. */
 NEVH_API extern const nevh_kernel nevh_gauss_kernel;
+/* Lobatto IIIA for coordinates with IIIB for momenta, alike; from 2 stages. */
+NEVH_API extern const nevh_kernel nevh_lobatto_kernel;
 
 #ifdef __cplusplus
 }

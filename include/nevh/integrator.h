@@ -51,6 +51,12 @@ NEVH_API extern const nevh_integrator *const nevh_gauss14;
 NEVH_API extern const nevh_integrator *const nevh_gauss16;
 NEVH_API extern const nevh_integrator *const nevh_gauss18;
 NEVH_API extern const nevh_integrator *const nevh_gauss20;
+/* Implicit, for any H: Lobatto IIIA-IIIB pairs, named by order (twice the
+   stages, less 2).  lobatto2 is the general Stoermer-Verlet method; like that,
+   and unlike Gauss, they are unstable where h steps over fast oscillations. */
+NEVH_API extern const nevh_integrator *const nevh_lobatto2;
+NEVH_API extern const nevh_integrator *const nevh_lobatto4;
+NEVH_API extern const nevh_integrator *const nevh_lobatto6;
 /* Verlet with steps of their own length, h being nominal; the second destroys
    what the first keeps. */
 NEVH_API extern const nevh_integrator *const nevh_adaptive_verlet;

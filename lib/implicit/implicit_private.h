@@ -6,7 +6,12 @@
 
        x[(k * stages + stage) * width + lane],
 
-   k < n for slopes of coordinates, then of momenta. */
+   k < n for slopes of coordinates, then of momenta; in the partitioned form,
+   for H = T(p) + V(q), unknown are the slopes of momenta alone, k < n.
+
+   Lanes are swept side by side (fixed_point.c).  One that does not get on is
+   given to simplified Newton (newton.c), one that does not get on there to GSL
+   (rescue.c); judge.c tells whether it gets on. */
 #ifndef NEVH_IMPLICIT_PRIVATE_H
 #define NEVH_IMPLICIT_PRIVATE_H
 
@@ -14,6 +19,15 @@
 #include <stdbool.h>
 
 typedef struct nevh__stage_solver nevh__stage_solver;
+
+/* How states of stages follow from slopes, for Newton's iteration:
+   Q_i = q + h sum_j a_q[j*stages + i] (slope of q at j), P_i with a_p.  In the
+   partitioned form G takes the slopes of q from P_j. */
+typedef struct {
+    size_t stages;
+    bool partitioned;
+    const double *a_q, *a_p; /* may be one array; outlive the solver */
+} nevh__stage_shape;
 
 /* One step's equations. */
 typedef struct {
@@ -24,25 +38,33 @@ typedef struct {
     int (*map)(void *data, size_t active, const size_t lanes[],
                const double x[], double out[]);
     void *data;
+    /* width, in and out: steps for which a lane is given to Newton's iteration
+       at once, from the step before and for the next.  To be kept in memory,
+       but not before the step is certain.  NULL: nothing is known. */
+    double *hold;
 } nevh__stage_problem;
 
 /* For the work's n and width.  NULL when memory is out. */
-nevh__stage_solver *nevh__stage_solver_new(nevh_work *, size_t stages);
+nevh__stage_solver *nevh__stage_solver_new(nevh_work *,
+                                           const nevh__stage_shape *);
 void nevh__stage_solver_free(nevh__stage_solver *);
 /* Solves to the rounding floor, or fails with a message. */
 int nevh__stage_solve(nevh__stage_solver *, const nevh__stage_problem *);
 
-/* For the two halves of the solver. */
+/* For the parts of the solver. */
 struct nevh__stage_solver {
     nevh_work *work;
-    size_t stages, rows; /* rows = 2 n stages: unknowns of a lane */
-    double *scale;       /* 2n x width: sizes that changes are held against */
-    double *out;         /* rows x width */
-    double *least;       /* rows x width: smallest change so far */
-    double *noise;       /* 2n, of one lane */
-    size_t *lanes;       /* lanes under way */
+    nevh__stage_shape shape;
+    size_t stages, first; /* first: the variable that row 0 belongs to */
+    size_t rows;          /* 2 n stages or n stages: unknowns of a lane */
+    double *scale;        /* 2n x width: sizes that changes are held against */
+    double *out;          /* rows x width */
+    double *least;        /* rows x width: smallest change so far */
+    double *noise;        /* 2n, of one lane */
+    size_t *lanes;        /* lanes under way */
     struct nevh__stage_lane *lane;
-    struct nevh__rescue *rescue; /* NULL for large systems */
+    struct nevh__newton *newton; /* these two: NULL for large systems */
+    struct nevh__rescue *rescue;
     const nevh__stage_problem *problem;
     int status; /* of the noise, where it was asked for */
 };
@@ -50,18 +72,66 @@ struct nevh__stage_solver {
 /* What is known of the iteration of one lane. */
 typedef struct nevh__stage_lane {
     bool grace;      /* the last sweep was a grace sweep */
-    bool grew;       /* the largest change grew from one sweep to another */
+    bool strays;     /* the largest change has grown, or exceeds the scale */
     unsigned stalls; /* sweeps without progress while changes are large */
+    unsigned slow;   /* sweeps on end that contracted too little */
     double change;   /* largest of the last sweep, in units of scale */
+    double before;   /* that of the sweep before */
     double least;    /* the smallest of those so far */
 } nevh__stage_lane;
 
+/* Slopes times |h| over this are in units of the state's scales. */
+static inline double nevh__stage_unit(const nevh__stage_solver *s, size_t row,
+                                      size_t lane) {
+    size_t k = s->first + row / s->stages;
+    double h = s->problem->h < 0 ? -s->problem->h : s->problem->h;
+    return s->scale[k * s->work->width + lane] / h;
+}
+
+/* Forgets what is known of a lane's iteration. */
+void nevh__stage_begin(nevh__stage_solver *, size_t lane);
+/* Changes, in units of scale, that need not be looked at; and how many times
+   its estimate noise may be. */
+extern const double nevh__stage_tiny, nevh__stage_margin;
 /* Whether a change, in units of scale, is no more than rounding. */
 bool nevh__stage_small(nevh__stage_solver *, size_t lane, double change);
+
+typedef enum { NEVH__GO_ON, NEVH__DONE, NEVH__STUCK } nevh__stage_state;
+/* To s->noise, 2n: what noise of differences, at the start of the step, adds to
+   a lane's slopes.  Sets s->status. */
+void nevh__stage_noise(nevh__stage_solver *, size_t lane);
+
+/* Progress is that the changes of more than `chance` unknowns fall below `by`
+   times their smallest so far.  It is believed to have ended where changes are
+   small. */
+typedef struct {
+    double by;
+    size_t chance;
+    bool (*small)(nevh__stage_solver *, size_t lane, double change);
+} nevh__stage_rule;
+/* Compares one lane's sweep, out[row*stride], with those before. */
+nevh__stage_state nevh__stage_judge(nevh__stage_solver *, size_t lane,
+                                    size_t stride, const double out[],
+                                    const nevh__stage_rule *);
+/* Makes that sweep the lane's slopes. */
+void nevh__stage_take(nevh__stage_solver *, size_t lane, size_t stride,
+                      const double out[]);
+
+struct nevh__newton *nevh__newton_new(nevh__stage_solver *);
+void nevh__newton_free(struct nevh__newton *);
+/* One lane by simplified Newton, or else by GSL's multiroot solver. */
+int nevh__newton_lane(nevh__stage_solver *, size_t lane);
 
 struct nevh__rescue *nevh__rescue_new(nevh__stage_solver *);
 void nevh__rescue_free(struct nevh__rescue *);
 /* One lane by GSL's multiroot solver. */
 int nevh__rescue_lane(nevh__stage_solver *, size_t lane);
+
+/* Factors of a square matrix, row by row, whose rows are exchanged as `pivot`
+   says; false where it is singular or not finite.  GSL's own allocates. */
+bool nevh__factor(size_t rows, double matrix[], size_t pivot[]);
+/* x = matrix^-1 x, of the factors. */
+void nevh__solve(size_t rows, const double matrix[], const size_t pivot[],
+                 double x[]);
 
 #endif

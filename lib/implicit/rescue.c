@@ -1,4 +1,4 @@
-/* nevh: stages that fixed-point iteration does not reach.
+/* nevh: stages that neither fixed-point iteration nor Newton's reaches.
 
    GSL's hybrid multiroot solver on x - G(x) = 0, one lane at a time, in units
    of the state's scales, from a standing start.  It is iterated until the
@@ -66,9 +66,7 @@ void nevh__rescue_free(struct nevh__rescue *r) {
 
 /* GSL's unknowns are slopes times |h| over scale. */
 static double unit(const nevh__stage_solver *s, size_t row) {
-    size_t width = s->work->width;
-    return s->scale[row / s->stages * width + s->rescue->lane] /
-           fabs(s->problem->h);
+    return nevh__stage_unit(s, row, s->rescue->lane);
 }
 
 static int residual(const gsl_vector *u, void *params, gsl_vector *f) {
@@ -154,8 +152,8 @@ static int give_up(const nevh__stage_solver *s, size_t lane) {
         "%zu): fixed-point iteration does not contract, and %s: take a "
         "smaller step",
         s->work->integrator->name, e->t, e->h, lane,
-        r ? "GSL's hybrid solver found no root"
-          : "the system is too large for GSL's hybrid solver");
+        r ? "neither simplified Newton nor GSL's hybrid solver found a root"
+          : "the system is too large for Newton's and GSL's solvers");
 }
 
 int nevh__rescue_lane(nevh__stage_solver *s, size_t lane) {

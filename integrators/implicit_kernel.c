@@ -1,0 +1,366 @@
+/* nevh: Gauss-Legendre methods and Lobatto IIIA-IIIB pairs, for any H.
+
+   With slopes F_j at the stages and increments L_j = h b_j F_j,
+
+       Y_i = y + (sum_j mu_ij L_j + e),   F_i = f(t + c_i h, Y_i),
+       y  += sum_j L_j,
+
+   where e is what earlier sums lost to rounding, the mu of coordinates and of
+   momenta add up to 1 exactly across the diagonal, and the h b_j add up to h:
+   the form of Antonana, Makazaga and Murua, in which rounding leaves
+   the map symplectic.  The sum goes from small weights to large ones with
+   compensation, the products' own rounding included.  First guess: the
+   collocation polynomial of the previous step, continued.
+
+   For H = T(p) + V(q) unknown are the slopes of the momenta alone: a sweep
+   takes the momenta from them, the slopes of the coordinates at these momenta,
+   the coordinates, and new slopes there.  That halves the number of sweeps.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include <nevh/extend.h>
+#include "tableau_private.h"
+#include "work_private.h"
+#include "implicit/implicit_private.h"
+#include "system/system_private.h"
+#include <math.h>
+#include <nevh/body.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct {
+    nevh__tableau *tableau; /* first, where tests look for it */
+    nevh__stage_solver *solver;
+    bool partitioned;
+    size_t unknown; /* slopes of a lane that are solved for */
+    double *hb;     /* h b_j of this step */
+    size_t *lanes;  /* all of them */
+} family_plan;
+
+/* One step under way. */
+typedef struct {
+    nevh_work *work;
+    double t, h;
+    const double *q, *p;
+    double *slopes;     /* 2n x stages x width */
+    double *unknown;    /* the part of the slopes that is solved for */
+    double *increments; /* 2n x stages x width */
+    double *points;     /* 2n x stages x width */
+    double *times;      /* stages x width */
+    double *sum;        /* 2n x width: the new state */
+    double *lost;       /* 2n x width: what that lost */
+    double *hold;       /* width; see nevh__stage_problem */
+} family_step;
+
+/* Memory: carry, slopes of the last step that were solved for, their h (0:
+   there are none), and how long Newton's iteration goes first. */
+typedef struct {
+    double *carry, *slopes, *h, *hold;
+} family_memory;
+
+static family_memory recall(const nevh_work *w) {
+    const family_plan *g = w->plan;
+    family_memory m = {w->memory, .slopes = w->memory + 2 * w->size};
+    m.h = m.slopes + g->unknown * w->width;
+    m.hold = m.h + w->width;
+    return m;
+}
+
+static void unplan(nevh_work *w) {
+    family_plan *g = w->plan;
+    if (!g)
+        return;
+    nevh__tableau_free(g->tableau);
+    nevh__stage_solver_free(g->solver);
+    free(g->hb);
+    free(g->lanes);
+    free(g);
+    w->plan = NULL;
+}
+
+static bool plan_solver(nevh_work *w, family_plan *g) {
+    nevh__tableau *a = g->tableau;
+    if (!a)
+        return false;
+    g->partitioned =
+        !w->transform && (nevh_system_traits(w->system) & NEVH_SEPARABLE);
+    g->unknown = (g->partitioned ? 1 : 2) * w->n * a->stages;
+    g->hb = nevh__array(a->stages, sizeof *g->hb);
+    g->lanes = nevh__array(w->width, sizeof *g->lanes);
+    g->solver = nevh__stage_solver_new(
+        w, &(nevh__stage_shape){a->stages, g->partitioned, a->a_q, a->a_p});
+    for (size_t lane = 0; g->lanes && lane < w->width; lane++)
+        g->lanes[lane] = lane;
+    return g->hb && g->lanes && g->solver;
+}
+
+static int plan_on(nevh_work *w, size_t fewest,
+                   nevh__tableau *(*make)(size_t stages)) {
+    size_t stages = (size_t)w->integrator->stages;
+    if (stages < fewest || stages > NEVH__MOST_STAGES)
+        return nevh_work_fail(
+            w, NEVH_EINVAL, "%s: %zu stages, where %zu to %d are possible",
+            w->integrator->name, stages, fewest, NEVH__MOST_STAGES);
+    family_plan *g = w->plan = nevh__array(1, sizeof *g);
+    if (g)
+        g->tableau = make(stages);
+    if (!g || !plan_solver(w, g))
+        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
+    w->memory_rows = 2 * w->n + g->unknown + 2;
+    w->scratch_size = (6 * w->n * stages + stages + 1) * w->width + 4 * w->size;
+    return NEVH_OK;
+}
+
+static int plan_gauss(nevh_work *w) {
+    return plan_on(w, 1, nevh__gauss_new);
+}
+
+static int plan_lobatto(nevh_work *w) {
+    return plan_on(w, 2, nevh__lobatto_new);
+}
+
+static family_step lay_out(nevh_work *w, double t, double h, const double q[],
+                           const double p[]) {
+    const family_plan *g = w->plan;
+    size_t stages = g->tableau->stages, all = 2 * w->size * stages;
+    family_step s = {w, t, h, q, p, .slopes = w->scratch};
+    s.unknown = s.slopes + all - g->unknown * w->width;
+    s.increments = s.slopes + all;
+    s.points = s.increments + all;
+    s.times = s.points + all;
+    s.sum = s.times + stages * w->width;
+    s.lost = s.sum + 2 * w->size;
+    s.hold = s.lost + 2 * w->size;
+    return s;
+}
+
+/* h b_j; the outer two share what the rounded others leave of h. */
+static void weigh(family_plan *g, double h) {
+    size_t s = g->tableau->stages;
+    double rest = h;
+    for (size_t j = 1; j + 1 < s; j++) {
+        g->hb[j] = h * g->tableau->b[j];
+        rest -= g->hb[j];
+    }
+    g->hb[0] = g->hb[s - 1] = s > 1 ? rest / 2 : rest;
+}
+
+/* The same for one lane, where the stages stand side by side. */
+NEVH_SIMD static void multiply_one(size_t stages, const double m[],
+                                   const double x[], double out[]) {
+    double sum[NEVH__MOST_STAGES];
+    for (size_t i = 0; i < stages; i++)
+        sum[i] = 0;
+    for (size_t j = 0; j < stages; j++)
+        for (size_t i = 0; i < stages; i++)
+            sum[i] += m[j * stages + i] * x[j];
+    for (size_t i = 0; i < stages; i++)
+        out[i] = sum[i];
+}
+
+/* out[i] = sum_j m[j*stages + i] x[j], for `active` lanes side by side. */
+static void multiply(size_t stages, size_t active, const double m[],
+                     const double x[], double out[]) {
+    if (active == 1) {
+        multiply_one(stages, m, x, out);
+        return;
+    }
+    for (size_t i = 0; i < stages * active; i++)
+        out[i] = 0;
+    for (size_t j = 0; j < stages; j++, m += stages)
+        for (size_t i = 0; i < stages; i++)
+            for (size_t a = 0; a < active; a++)
+                out[i * active + a] += m[i] * x[j * active + a];
+}
+
+/* The stage states of variables from `first` to `last` at some lanes, to
+   points. */
+static void find_points(const family_step *s, size_t first, size_t last,
+                        size_t active, const size_t lanes[]) {
+    const nevh_work *w = s->work;
+    const family_plan *g = w->plan;
+    size_t stages = g->tableau->stages;
+    for (size_t k = first; k < last; k++) {
+        const double *mu = k < w->n ? g->tableau->mu_q : g->tableau->mu_p;
+        const double *slopes = s->slopes + k * stages * w->width;
+        const double *y = (k < w->n ? s->q : s->p) + k % w->n * w->width;
+        const double *carry = w->memory + k * w->width;
+        double *points = s->points + k * stages * active;
+        double *x = s->increments + k * stages * active;
+        for (size_t j = 0; j < stages; j++)
+            for (size_t a = 0; a < active; a++)
+                x[j * active + a] = g->hb[j] * slopes[j * w->width + lanes[a]];
+        multiply(stages, active, mu, x, points);
+        for (size_t i = 0; i < stages; i++)
+            for (size_t a = 0; a < active; a++) {
+                double *point = points + i * active + a;
+                *point = y[lanes[a]] + (*point + carry[lanes[a]]);
+            }
+    }
+}
+
+static void find_times(const family_step *s, size_t active) {
+    const family_plan *g = s->work->plan;
+    for (size_t i = 0; i < g->tableau->stages * active; i++)
+        s->times[i] = s->t + g->tableau->c[i / active] * s->h;
+}
+
+static int map(void *data, size_t active, const size_t lanes[],
+               const double slopes[], double out[]) {
+    const family_step *s = data;
+    nevh_work *w = s->work;
+    const family_plan *g = w->plan;
+    size_t stages = g->tableau->stages, half = w->n * stages * active;
+    (void)slopes; /* are s->unknown */
+    find_points(s, 0, 2 * w->n, active, lanes);
+    find_times(s, active);
+    int status = nevh_work_gradient(w, stages * active, s->times, s->points,
+                                    s->points + half, out + half, out);
+    for (size_t i = half; i < 2 * half; i++)
+        out[i] = -out[i];
+    return status;
+}
+
+/* Slopes of the coordinates at the stages' momenta. */
+static int find_velocities(const family_step *s, size_t active,
+                           const size_t lanes[]) {
+    nevh_work *w = s->work;
+    const family_plan *g = w->plan;
+    size_t stages = g->tableau->stages, half = w->n * stages * active;
+    double *velocities = s->increments; /* of the coordinates */
+    find_points(s, w->n, 2 * w->n, active, lanes);
+    int status = nevh_work_gradient(w, stages * active, s->times, s->points,
+                                    s->points + half, NULL, velocities);
+    for (size_t row = 0; row < w->n * stages; row++)
+        for (size_t a = 0; a < active; a++)
+            s->slopes[row * w->width + lanes[a]] = velocities[row * active + a];
+    return status;
+}
+
+static int map_momenta(void *data, size_t active, const size_t lanes[],
+                       const double slopes[], double out[]) {
+    const family_step *s = data;
+    nevh_work *w = s->work;
+    const family_plan *g = w->plan;
+    size_t stages = g->tableau->stages, half = w->n * stages * active;
+    (void)slopes;
+    find_times(s, active);
+    int status = find_velocities(s, active, lanes);
+    if (status)
+        return status;
+    find_points(s, 0, w->n, active, lanes);
+    status = nevh_work_gradient(w, stages * active, s->times, s->points,
+                                s->points + half, out, NULL);
+    for (size_t i = 0; i < half; i++)
+        out[i] = -out[i];
+    return status;
+}
+
+/* Continues the last step's polynomial where there is one. */
+static void guess(const family_step *s, const family_plan *g) {
+    const nevh_work *w = s->work;
+    size_t stages = g->tableau->stages, each = stages * w->width;
+    family_memory last = recall(w);
+    for (size_t row = 0; row < g->unknown; row += stages) {
+        double *slopes = s->unknown + row * w->width;
+        multiply(stages, w->width, g->tableau->guess,
+                 last.slopes + row * w->width, slopes);
+        for (size_t i = 0; i < each; i++)
+            if (last.h[i % w->width] != s->h)
+                slopes[i] = 0;
+    }
+    memcpy(s->hold, last.hold, w->width * sizeof *s->hold);
+}
+
+/* sum + lost += x, without loss. */
+static void add(double *sum, double *lost, double x) {
+    double d = x + *lost, y = *sum, next = y + d, part = next - y;
+    *lost = (y - (next - part)) + (d - part);
+    *sum = next;
+}
+
+static void sum_up(const family_step *s, const family_plan *g, size_t i,
+                   double y) {
+    const nevh_work *w = s->work;
+    size_t stages = g->tableau->stages, k = i / w->width, lane = i % w->width;
+    const double *slopes = s->slopes + k * stages * w->width + lane;
+    double sum = y, lost = w->memory[i];
+    for (size_t m = 0; m < stages; m++) {
+        size_t j = g->tableau->order[m];
+        double slope = slopes[j * w->width], x = g->hb[j] * slope;
+        add(&sum, &lost, x);
+        lost += fma(g->hb[j], slope, -x);
+    }
+    s->sum[i] = sum;
+    s->lost[i] = lost;
+}
+
+/* The evaluations that moved the state: one a stage. */
+static int account(const family_step *s, const family_plan *g) {
+    nevh_work *w = s->work;
+    size_t stages = g->tableau->stages;
+    double *z = s->increments;
+    int status = NEVH_OK;
+    find_points(s, 0, 2 * w->n, w->width, g->lanes);
+    find_times(s, w->width);
+    for (size_t i = 0; !status && i < stages; i++) {
+        for (size_t k = 0; k < 2 * w->n; k++)
+            memcpy(z + k * w->width, s->points + (k * stages + i) * w->width,
+                   w->width * sizeof *z);
+        status = nevh_work_account(w, NEVH_OF_Q | NEVH_OF_P, g->hb[i],
+                                   s->times + i * w->width, z, z + w->size);
+    }
+    return status;
+}
+
+static int commit(const family_step *s, const family_plan *g, double q[],
+                  double p[]) {
+    nevh_work *w = s->work;
+    size_t n = w->size;
+    double check = 0;
+    for (size_t i = 0; i < 2 * n; i++) {
+        sum_up(s, g, i, i < n ? q[i] : p[i - n]);
+        check += s->sum[i] - s->sum[i];
+    }
+    if (check != 0)
+        return nevh__fail_range(w, s->t, s->h);
+    int status = w->accounts ? account(s, g) : NEVH_OK;
+    if (status)
+        return status;
+    family_memory m = recall(w);
+    memcpy(q, s->sum, n * sizeof *q);
+    memcpy(p, s->sum + n, n * sizeof *p);
+    memcpy(m.carry, s->lost, 2 * n * sizeof *m.carry);
+    memcpy(m.slopes, s->unknown, g->unknown * w->width * sizeof *m.slopes);
+    memcpy(m.hold, s->hold, w->width * sizeof *m.hold);
+    for (size_t lane = 0; lane < w->width; lane++)
+        m.h[lane] = s->h;
+    return NEVH_OK;
+}
+
+static int step(nevh_work *w, double t, double h, double q[], double p[]) {
+    family_plan *g = w->plan;
+    family_step s = lay_out(w, t, h, q, p);
+    weigh(g, h);
+    guess(&s, g);
+    nevh__stage_problem problem = {.t = t,
+                                   .h = h,
+                                   .q = q,
+                                   .p = p,
+                                   .x = s.unknown,
+                                   .map = g->partitioned ? map_momenta : map,
+                                   .data = &s,
+                                   .hold = s.hold};
+    int status = nevh__stage_solve(g->solver, &problem);
+    return status ? status : commit(&s, g, q, p);
+}
+
+/* What sums of momenta lost belongs to momenta; slopes are only a guess. */
+static void damp(nevh_work *w, const double factor[]) {
+    double *carry = recall(w).carry + w->size;
+    for (size_t i = 0; i < w->size; i++)
+        carry[i] *= factor[i / w->width];
+}
+
+const nevh_kernel nevh_gauss_kernel = {
+    .plan = plan_gauss, .step = step, .unplan = unplan, .damp = damp};
+const nevh_kernel nevh_lobatto_kernel = {
+    .plan = plan_lobatto, .step = step, .unplan = unplan, .damp = damp};
