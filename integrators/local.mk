@@ -14,6 +14,10 @@ libnevh_core_la_SOURCES += \
 	integrators/gauss_kernel.c \
 	integrators/gauss_coefficients.c \
 	integrators/gauss.c \
+	integrators/tao_private.h \
+	integrators/tao_binding.c \
+	integrators/tao_kernel.c \
+	integrators/tao.c \
 	integrators/gsl_private.h \
 	integrators/gsl_kernel.c \
 	integrators/gsl_references.c

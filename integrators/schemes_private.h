@@ -20,6 +20,9 @@
     X(gauss16)                                                                 \
     X(gauss18)                                                                 \
     X(gauss20)                                                                 \
+    X(tao2)                                                                    \
+    X(tao4)                                                                    \
+    X(tao6)                                                                    \
     X(euler)                                                                   \
     X(rk4)                                                                     \
     X(gsl_rkf45)                                                               \

@@ -24,11 +24,13 @@ suites = \
 	tests/check_failures \
 	tests/check_hard_steps \
 	tests/check_threads \
+	tests/check_tao \
 	tests/check_gsl
 TEST_LIBS = tests/libsupport.la libnevh.la $(CHECK_LIBS)
 # These look inside, so they link what is not visible in libnevh.la.
 INSIDE_LIBS = tests/libsupport.la libnevh_core.la $(CHECK_LIBS)
 tests_check_coefficients_LDADD = $(INSIDE_LIBS)
+tests_check_tao_LDADD = $(INSIDE_LIBS)
 tests_check_gsl_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_threads_CFLAGS = $(AM_CFLAGS) -pthread
 tests_check_threads_LDFLAGS = $(AM_LDFLAGS) -pthread

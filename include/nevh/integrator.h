@@ -35,6 +35,10 @@ NEVH_API extern const nevh_integrator *const nevh_gauss14;
 NEVH_API extern const nevh_integrator *const nevh_gauss16;
 NEVH_API extern const nevh_integrator *const nevh_gauss18;
 NEVH_API extern const nevh_integrator *const nevh_gauss20;
+/* Explicit, for any H: Tao's, in a doubled phase space; named by order. */
+NEVH_API extern const nevh_integrator *const nevh_tao2;
+NEVH_API extern const nevh_integrator *const nevh_tao4;
+NEVH_API extern const nevh_integrator *const nevh_tao6;
 /* Not symplectic: the references.  GSL's take one step of h where the
    tolerance is 0, and as many as the tolerance needs where it is not. */
 NEVH_API extern const nevh_integrator *const nevh_euler;
