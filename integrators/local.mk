@@ -15,6 +15,7 @@ libnevh_core_la_SOURCES += \
 	integrators/gauss_coefficients.c \
 	integrators/gauss.c \
 	integrators/tao_private.h \
+	integrators/tao_run.c \
 	integrators/tao_binding.c \
 	integrators/tao_kernel.c \
 	integrators/tao.c \

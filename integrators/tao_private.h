@@ -3,6 +3,7 @@
 #ifndef NEVH_TAO_PRIVATE_H
 #define NEVH_TAO_PRIVATE_H
 
+#include "gradient/explore_private.h"
 #include <nevh/extend.h>
 
 /* A symmetric composition of steps of order 2: the parts of h of the first
@@ -24,6 +25,10 @@ typedef struct {
 
 /* Chooses both; a status, of which work keeps the message. */
 int nevh__binding_choose(nevh_work *, nevh__binding *);
+
+/* Adds states of a run from each lane to the samples; false when memory is
+   out. */
+bool nevh__add_run(nevh__explorer *);
 
 /* The rows of a stepper's memory, in blocks of n. */
 enum {
