@@ -109,6 +109,12 @@ static void add_curved(survey *s, size_t at, uint64_t *random) {
     }
 }
 
+/* Rounded to an eighth of an octave: at which states the run is looked at rests
+   on the last digits of its gradients, and the binding should not. */
+static double steady(double x) {
+    return exp2(round(log2(x) * 8) / 8);
+}
+
 static void find_ratios(survey *s, double ratio[]) {
     const double *length = s->explorer.length;
     uint64_t random = 1;
@@ -117,7 +123,7 @@ static void find_ratios(survey *s, double ratio[]) {
     for (size_t k = 0; k < s->n; k++) {
         double part = sqrt(sqrt(s->curved[k] / s->curved[s->n + k]));
         bool trusted = part > 1 / trust && part < trust;
-        ratio[k] = length[s->n + k] / length[k] * (trusted ? part : 1);
+        ratio[k] = length[s->n + k] / length[k] * (trusted ? steady(part) : 1);
     }
 }
 
@@ -160,16 +166,18 @@ static double curvature(survey *s, size_t at, double step, double v[]) {
 /* Of the run; of states beside it, where nothing is curved on it. */
 static double largest_curvature(survey *s, const double ratio[]) {
     const nevh__explorer *e = &s->explorer;
-    double step = INFINITY, most = 0;
+    double step = INFINITY, first = 0, most = 0;
     for (size_t k = 0; k < s->n; k++) {
         s->unit[k] = 1 / sqrt(ratio[k]);
         s->unit[s->n + k] = sqrt(ratio[k]);
         step = fmin(step, sqrt(e->length[k]) * sqrt(e->length[s->n + k]));
     }
-    for (size_t at = 0; at < e->samples.count; at++)
+    for (size_t at = 0; at < e->samples.count; at++) {
         if (at < e->neighbours || most == 0)
             most = fmax(most, curvature(s, at, reach * step, s->curved));
-    return most;
+        first = first > 0 ? first : most;
+    }
+    return first > 0 ? first * steady(most / first) : 0;
 }
 
 /* r from the user's scales. */

@@ -14,8 +14,8 @@
 #include <string.h>
 
 enum { SAMPLES = 24, STRIDE = 8, EACH = 140 /* gradients a sample */ };
-static const double tolerance = 1e-8;
-static const double most_work = 2e7; /* values of terms */
+static const double tolerance = 1e-8; /* of a step, in lengths */
+static const double most_work = 2e7;  /* values of terms */
 
 /* As many samples as most_work allows, and the explorer has room for. */
 static size_t affordable(const nevh__explorer *e) {
@@ -74,16 +74,17 @@ static void run(nevh__explorer *e, machine *m, size_t at, size_t count) {
 
 /* Memory that is out inside GSL ends in its error handler, which aborts, so
    as much is asked for first. */
-static bool assemble(machine *m, nevh_field *f) {
-    size_t d = 2 * f->n;
+static bool assemble(machine *m, const nevh__explorer *e) {
+    size_t d = 2 * e->field->n;
     double *trial = nevh__array(40 * d, sizeof *trial);
     free(trial);
-    *m = (machine){.ode = nevh_gsl_system(f)};
+    *m = (machine){.ode = nevh_gsl_system(e->field)};
     m->y = nevh__array(2 * d, sizeof *m->y);
     if (!trial || !m->y || !m->ode.jacobian)
         return false;
     m->step = gsl_odeiv2_step_alloc(gsl_odeiv2_step_rk8pd, d);
-    m->control = gsl_odeiv2_control_standard_new(0, tolerance, 1, 1);
+    m->control =
+        gsl_odeiv2_control_scaled_new(tolerance, 0, 0, 0, e->length, d);
     m->evolve = gsl_odeiv2_evolve_alloc(d);
     return m->step && m->control && m->evolve;
 }
@@ -104,7 +105,7 @@ bool nevh__add_run(nevh__explorer *e) {
     if (count == 0 || !given)
         return true;
     machine m;
-    bool made = assemble(&m, e->field);
+    bool made = assemble(&m, e);
     for (size_t lane = 0; made && lane < e->lanes; lane++)
         run(e, &m, lane, count);
     dismantle(&m);

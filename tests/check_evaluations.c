@@ -26,8 +26,11 @@ static nevh_counts counts_of(const problem *b, const nevh_integrator *scheme,
     return counts;
 }
 
-/* Whether a step's last kick is the next one's first. */
+/* Whether a step's last kick is the next one's first; Tao's begin as they end.
+ */
 static uint64_t first_kick(const nevh_integrator *scheme) {
+    if (nevh_integrator_symplectic(scheme) == NEVH_DOUBLED)
+        return 1;
     if (scheme->kernel != &nevh_splitting_kernel)
         return 0;
     const nevh_splitting *table = scheme->table;
