@@ -16,7 +16,7 @@ const nevh_integrator nevh__tao2 = {
     .aliases = "",
     .source = "M. Tao, Explicit symplectic approximation of nonseparable "
               "Hamiltonians: algorithm and long time performance, Phys. Rev. "
-              "E 94 (2016) 043303, eq. (2)",
+              "E 94 (2016) 043303, sec. I",
     .order = 2,
     .stages = 1,
     .gradients = 3,
@@ -36,7 +36,7 @@ static const nevh__composition triple_jump = {1, jump};
 const nevh_integrator nevh__tao4 = {
     .name = "tao4",
     .aliases = "",
-    .source = "M. Tao, Phys. Rev. E 94 (2016) 043303, eq. (3): triple jump",
+    .source = "M. Tao, Phys. Rev. E 94 (2016) 043303, sec. I: triple jump",
     .order = 4,
     .stages = 3,
     .gradients = 9,

@@ -12,7 +12,7 @@
        C: (x - q, y - p) turns by 2 omega h, q + x and p + y rest,
 
    and A(h/2) B(h/2) C(h) B(h/2) A(h/2) is a step of order 2 [M. Tao, Phys. Rev.
-   E 94 (2016) 043303, eqs. 1-3], of which higher orders are composed.  The
+   E 94 (2016) 043303, sec. I], of which higher orders are composed.  The
    lengths of p over those of q, r_k, keep the user's units out of the binding;
    they and omega are chosen in tao_binding.c.
 

@@ -133,10 +133,10 @@ START_TEST(one_copy_is_not_symplectic) {
     nevh_system *s = double_pendulum.make();
     nevh_stepper *m = planned(s, &double_pendulum, *schemes[_i], nevh_exact);
     double found = 0;
-    ck_assert_int_eq(nevh_symplecticity_defect(m, 0, 0.04, double_pendulum.q,
+    ck_assert_int_eq(nevh_symplecticity_defect(m, 0, 0.08, double_pendulum.q,
                                                double_pendulum.p, NULL, &found),
                      NEVH_OK);
-    ck_assert_msg(found > 1e-7, "%s: %.2e", nevh_integrator_name(*schemes[_i]),
+    ck_assert_msg(found > 1e-4, "%s: %.2e", nevh_integrator_name(*schemes[_i]),
                   found);
     nevh_stepper_free(m);
     nevh_system_free(s);
@@ -377,6 +377,28 @@ START_TEST(energy_on_taos_problem) {
 }
 END_TEST
 
+/* A lane goes on from the gradient it has kept, whatever others do. */
+START_TEST(neighbours_gradients_are_kept) {
+    const problem *b = &henon_heiles;
+    nevh_system *s = b->make();
+    nevh_options o = {.gradient = nevh_exact, .binding = 5, .width = 2};
+    nevh_stepper *quiet = stepper_on(s, *schemes[_i], &o);
+    nevh_stepper *jumpy = stepper_on(s, *schemes[_i], &o);
+    double z[] = {b->q[0], 0, b->q[1], 0, b->p[0], 0, b->p[1], 0}, y[8];
+    memcpy(y, z, sizeof z);
+    for (int i = 0; i < 3000; i++) {
+        y[1] = 1e-5 * i;
+        ck_assert_int_eq(nevh_stepper_apply(quiet, i * 0.1, 0.1, z, z + 4), 0);
+        ck_assert_int_eq(nevh_stepper_apply(jumpy, i * 0.1, 0.1, y, y + 4), 0);
+        for (int k = 0; k < 8; k += 2)
+            ck_assert_msg(z[k] == y[k], "step %d", i);
+    }
+    nevh_stepper_free(quiet);
+    nevh_stepper_free(jumpy);
+    nevh_system_free(s);
+}
+END_TEST
+
 /* Friction shortens p and y alike, and the gradient kept is no longer that of
    the state; q and x stay. */
 START_TEST(friction_damps_the_memory) {
@@ -412,6 +434,7 @@ int main(void) {
     tcase_add_loop_test(cases, compositions, 0, 3);
     tcase_add_loop_test(cases, agrees_with_gauss, 0, 3);
     tcase_add_loop_test(cases, energy_on_taos_problem, 0, 3);
+    tcase_add_loop_test(cases, neighbours_gradients_are_kept, 0, 3);
     tcase_add_loop_test(cases, friction_damps_the_memory, 0, 3);
     suite_add_tcase(suite, cases);
     return run_suite(suite);
