@@ -6,22 +6,34 @@
 
        r_k^2 = |d2H/dq_k dq| / |d2H/dp_k dp|,
 
-   root mean squares over states along a coarse run from the state to plan at.
-   For an oscillator that is sqrt(k m).  Where a curvature is missing, the
-   lengths over which H varies stand in.
+   root mean squares over states of a run from those to plan at.  For an
+   oscillator that is sqrt(k m).  Where a curvature is missing, the lengths over
+   which H varies stand in.
 
-   omega must be large for the copies to stay together, while the error grows
-   with it from order 4 on, and steps at which 2 omega h is near a multiple of
-   pi may resonate.  In the coordinates q_k sqrt(r_k), p_k / sqrt(r_k) the
-   binding is a circle and the norm of the Hessian of H a frequency.  In units
-   of its largest value along that run, copies were seen to part, in 1e5 steps
-   of pendulum, Tao's own problem, Henon-Heiles, Kepler (e = 0.3, 0.6) and a
-   charged particle, below 0.25, 0.25, 0.25, 0.25, 0.7, 0.125; of the double
-   pendulum, regular and chaotic, below 1.5 to 2.
+   omega must be large for the copies to stay together, while from order 4 on
+   the error grows with it, and steps with 2 omega h near a multiple of pi may
+   resonate.  In the coordinates q_k sqrt(r_k), p_k / sqrt(r_k) the binding is a
+   circle, and the norm of the Hessian of H a frequency.  In units of its
+   largest value N along the run, copies were seen to part within 1e5 steps
+   where omega was below
 
-   Units of q, p and t that are powers of two times others change nothing of
-   all this, and neither do any others where scales are given; else lengths are
-   found in powers of two, and what rests on them shifts slightly.
+                                   h      h N     tao2   tao4   tao6 (2 h)
+       pendulum                    0.1    0.13    0.25   0.25   0.25
+       (q^2 + 1)(p^2 + 1)/2        0.01   0.1     0.2    0.2    0.2
+       Henon-Heiles, E = 1/12      0.1    0.15    0.2    0.2    0.2
+       Kepler, e = 0.3             0.05   0.17    0.8    0.8    0.8
+       Kepler, e = 0.6             0.01   0.09    0.6    0.6    0.6
+       double pendulum, regular    0.01   0.15    1.3    1.3    1.6
+       double pendulum, chaotic    0.01   0.15    1.6    1.3    1.3
+       double pendulum, from rest  0.01   0.17    1.3    1.3    1.3
+       charge in a magnetic field  0.05   0.15    never  never  never
+
+   so twice the most is taken.  An orbit that goes on to where H is curved much
+   more than on the run (some ten periods) wants a binding given.
+
+   Other units of q, p and t change nothing of all this where scales are given,
+   nor where they are powers of two times the first; else, lengths being found
+   in powers of two, ratios may shift by a few per cent.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tao_private.h"
 #include <float.h>
@@ -58,16 +70,18 @@ static bool open_survey(survey *s, nevh_work *w) {
     size_t m = 2 * w->n;
     *s = (survey){.field = w->field, .n = w->n};
     s->move = nevh__array(6 * m, sizeof *s->move);
+    if (!s->move)
+        return false;
     s->point = s->move + m;
     s->ahead = s->point + m;
     s->behind = s->ahead + m;
     s->unit = s->behind + m;
     s->curved = s->unit + m;
-    bool open = !nevh__explorer_open(&s->explorer, w->field, w->options);
-    open = open && s->move && nevh__add_run(&s->explorer);
-    if (open)
-        nevh__find_neighbours(&s->explorer);
-    return open;
+    if (nevh__explorer_open(&s->explorer, w->field, w->options) ||
+        !nevh__add_run(&s->explorer))
+        return false;
+    nevh__find_neighbours(&s->explorer);
+    return true;
 }
 
 static bool gradient_beside(survey *s, size_t at, double sign, double out[]) {

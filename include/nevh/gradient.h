@@ -43,7 +43,7 @@ typedef struct {
     const double *q, *p; /* n x width each; NULL: states around zero */
     size_t width;        /* orbits side by side; 0 means 1 */
     double tolerance;    /* of adaptive schemes, relative; 0: fixed steps */
-    double binding;      /* omega of Tao's schemes, 1/time; 0: chosen */
+    double binding;      /* omega of Tao's schemes, 1/t; 0: chosen */
     bool portable;       /* terms with a scalar value are evaluated through it,
                             never in SIMD blocks: the same digits on machines
                             with the same libm and instruction-set class */
