@@ -7,8 +7,7 @@
        r_k^2 = |d2H/dq_k dq| / |d2H/dp_k dp|,
 
    root mean squares over states of a run from those to plan at.  For an
-   oscillator that is sqrt(k m).  Where a curvature is missing, the lengths over
-   which H varies stand in.
+   oscillator that is sqrt(k m).
 
    omega must be large for the copies to stay together, while from order 4 on
    the error grows with it, and steps with 2 omega h near a multiple of pi may
@@ -42,7 +41,8 @@
 
 static const double firmness = 3;   /* omega over the largest norm */
 static const double reach = 0x1p-7; /* of differences, in lengths */
-static const double trust = 64; /* ratios so far from the lengths' are noise */
+static const double trust =
+    4096; /* a curvature is noise so far below another */
 enum { SWEEPS = 16 };
 
 /* H around the states of a run. */
@@ -129,15 +129,45 @@ static double steady(double x) {
     return exp2(round(log2(x) * 8) / 8);
 }
 
-static void find_ratios(survey *s, double ratio[]) {
+/* Variations of H by its curvature in q_k and in p_k, within their lengths, and
+   the action that the lengths span. */
+typedef struct {
+    double q, p, action;
+    bool both; /* neither is missing */
+} bend;
+
+static bend bend_of(const survey *s, size_t k) {
+    const double *length = s->explorer.length;
+    bend b = {.q = sqrt(s->curved[k]),
+              .p = sqrt(s->curved[s->n + k]),
+              .action = length[k] * length[s->n + k]};
+    b.both = b.q * trust > b.p && b.p * trust > b.q;
+    return b;
+}
+
+/* Where one of the two is missing, as for a coordinate that H does not depend
+   on, the other is made as large as the largest frequency found; where nothing
+   is curved, the scales remain. */
+static void find_ratios(survey *s, const double scale[], double ratio[]) {
     const double *length = s->explorer.length;
     uint64_t random = 1;
+    double frequency = 0;
     for (size_t at = 0; at < s->explorer.neighbours; at++)
         add_curved(s, at, &random);
     for (size_t k = 0; k < s->n; k++) {
-        double part = sqrt(sqrt(s->curved[k] / s->curved[s->n + k]));
-        bool trusted = part > 1 / trust && part < trust;
-        ratio[k] = length[s->n + k] / length[k] * (trusted ? steady(part) : 1);
+        bend b = bend_of(s, k);
+        if (b.both)
+            frequency = fmax(frequency, sqrt(b.q) * sqrt(b.p) / b.action);
+    }
+    for (size_t k = 0; k < s->n; k++) {
+        bend b = bend_of(s, k);
+        double other = frequency * b.action;
+        double part = b.both      ? sqrt(b.q / b.p)
+                      : b.q > b.p ? b.q / other
+                                  : other / b.p;
+        bool usable = part > 0 && part <= DBL_MAX;
+        ratio[k] = usable ? length[s->n + k] / length[k] * steady(part)
+                          : scale[s->n + k] / scale[k];
     }
 }
 
@@ -194,12 +224,6 @@ static double largest_curvature(survey *s, const double ratio[]) {
     return first > 0 ? first * steady(most / first) : 0;
 }
 
-/* r from the user's scales. */
-static void take_ratios(const nevh_work *w, double ratio[]) {
-    for (size_t k = 0; k < w->n; k++)
-        ratio[k] = w->scale[w->n + k] / w->scale[k];
-}
-
 int nevh__binding_choose(nevh_work *w, nevh__binding *b) {
     const nevh_options *o = w->options;
     if (!(o->binding >= 0 && o->binding <= DBL_MAX))
@@ -207,13 +231,14 @@ int nevh__binding_choose(nevh_work *w, nevh__binding *b) {
                               "the binding %g is not a positive number",
                               o->binding);
     b->omega = o->binding;
-    take_ratios(w, b->ratio);
+    for (size_t k = 0; k < w->n; k++)
+        b->ratio[k] = w->scale[w->n + k] / w->scale[k];
     if (o->binding > 0 && o->scale)
         return NEVH_OK;
     survey s;
     bool open = open_survey(&s, w);
     if (open && !o->scale)
-        find_ratios(&s, b->ratio);
+        find_ratios(&s, w->scale, b->ratio);
     if (open && o->binding == 0)
         b->omega = firmness * largest_curvature(&s, b->ratio);
     close_survey(&s);

@@ -290,6 +290,32 @@ START_TEST(binding_of_an_oscillator) {
 }
 END_TEST
 
+/* A charge in a field along z: H does not depend on y, which rests on what
+   bends x. */
+static double charge(double t, const double q[], const double p[],
+                     const void *params) {
+    double v = p[1] - 200 * q[0];
+    (void)t, (void)params;
+    return (p[0] * p[0] + v * v) / 0.2;
+}
+
+START_TEST(binding_of_a_free_coordinate) {
+    static const double q[] = {0.3, 7}, p[] = {5, 90};
+    nevh_system *s = nevh_system_from(2, charge, NULL);
+    nevh_stepper *m =
+        stepper_on(s, *schemes[_i], &(nevh_options){.q = q, .p = p});
+    const nevh__binding *b = binding_of(m);
+    ck_assert_double_eq_tol(b->ratio[0] / 200, 1, 0.3);
+    ck_assert_double_eq_tol(b->ratio[1] / 200, 1, 0.3);
+    ck_assert(b->omega > 3 * 2000 * 0.9 && b->omega < 3 * 4000 * 1.5);
+    double z[] = {q[0], q[1], p[0], p[1]}, start = charge(0, q, p, NULL);
+    ck_assert_int_eq(nevh_run(m, 0, 1e-5, 10000, z, z + 2, NULL, 0), NEVH_OK);
+    ck_assert_double_eq_tol(charge(0, z, z + 2, NULL) / start, 1, 1e-2);
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
 START_TEST(refused_bindings) {
     static const double bindings[] = {-1, NAN, INFINITY};
     nevh_system *s = nevh_system_from(1, oscillator, NULL);
@@ -430,6 +456,7 @@ int main(void) {
     tcase_add_loop_test(cases, units_do_not_matter, 0, 3);
     tcase_add_loop_test(cases, binding_turns, 0, 3);
     tcase_add_loop_test(cases, binding_of_an_oscillator, 0, 4);
+    tcase_add_loop_test(cases, binding_of_a_free_coordinate, 0, 3);
     tcase_add_loop_test(cases, refused_bindings, 0, 3);
     tcase_add_loop_test(cases, compositions, 0, 3);
     tcase_add_loop_test(cases, agrees_with_gauss, 0, 3);
