@@ -189,9 +189,8 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     return status;
 }
 
-const nevh_kernel nevh__gsl_kernel = {
-    .plan = plan,
-    .step = step,
-    .unplan = unplan,
-    .damps = true,
-    .foreign = true};
+const nevh_kernel nevh__gsl_kernel = {.plan = plan,
+                                      .step = step,
+                                      .unplan = unplan,
+                                      .damps = true,
+                                      .foreign = true};

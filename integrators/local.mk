@@ -39,6 +39,11 @@ libnevh_core_la_SOURCES += \
 	integrators/implicit_kernel.c \
 	integrators/gauss.c \
 	integrators/lobatto.c \
+	integrators/tao_private.h \
+	integrators/tao_run.c \
+	integrators/tao_binding.c \
+	integrators/tao_kernel.c \
+	integrators/tao.c \
 	integrators/gsl_private.h \
 	integrators/gsl_kernel.c \
 	integrators/gsl_references.c

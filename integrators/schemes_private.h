@@ -38,6 +38,9 @@
     X(lobatto2)                                                                \
     X(lobatto4)                                                                \
     X(lobatto6)                                                                \
+    X(tao2)                                                                    \
+    X(tao4)                                                                    \
+    X(tao6)                                                                    \
     X(adaptive_verlet)                                                         \
     X(naive_adaptive_verlet)                                                   \
     X(euler)                                                                   \

@@ -71,6 +71,8 @@ static int check(nevh_work *w) {
                          "no such sum");
     if (scheme->kernel->foreign)
         return refuse(w, "it takes its gradients on its own");
+    if (scheme->symplectic == NEVH_DOUBLED)
+        return refuse(w, "its binding is chosen for H, not for s (H - H0)");
     if (!(nevh_system_traits(w->system) & NEVH_AUTONOMOUS))
         return nevh_work_fail(w, NEVH_ESTRUCT,
                               "H depends on time, but the time transform "

@@ -44,7 +44,8 @@ static nevh_system *system_of(nevh_term_fn potential, const void *params) {
     return s;
 }
 
-/* With steps given, so that planning evaluates nothing. */
+/* With steps given, so that planning evaluates next to nothing; fuses are set
+   after it. */
 static nevh_stepper *stepper_of(const nevh_system *s,
                                 const nevh_integrator *scheme) {
     nevh_stepper *m =
@@ -76,6 +77,7 @@ static orbit clean_orbit(const nevh_integrator *scheme) {
     nevh_system *s = system_of(gravity, &params);
     nevh_stepper *m = stepper_of(s, scheme);
     orbit o = {.z = {{start_q, start_p}}};
+    f.calls = 0;
     for (int i = 0; i < STEPS; i++) {
         memcpy(o.z[i + 1], o.z[i], sizeof o.z[i]);
         ck_assert_int_eq(nevh_stepper_apply(m, time_of(m, scheme, i), step,
@@ -91,9 +93,10 @@ static orbit clean_orbit(const nevh_integrator *scheme) {
 /* A step that fails is as if it had not been tried; tried again, it is what
    it would have been. */
 static void fail_once(const nevh_integrator *scheme, const orbit *o, fuse f) {
-    fuse *params = &f;
+    fuse none = {0}, *params = &none;
     nevh_system *s = system_of(gravity, &params);
     nevh_stepper *m = stepper_of(s, scheme);
+    params = &f;
     double z[] = {start_q, start_p};
     int failures = 0;
     for (int i = 0; i < STEPS; i++) {
@@ -135,9 +138,10 @@ END_TEST
 START_TEST(run_keeps_the_last_good_state) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     orbit o = clean_orbit(scheme);
-    fuse f = {.fault = o.calls * 2 / 3, .value = NAN}, *params = &f;
+    fuse f = {0}, *params = &f;
     nevh_system *s = system_of(gravity, &params);
     nevh_stepper *m = stepper_of(s, scheme);
+    f = (fuse){.fault = o.calls * 2 / 3, .value = NAN};
     double z[] = {start_q, start_p};
     ck_assert_int_eq(nevh_run(m, 0, step, STEPS, z, z + 1, NULL, 0), NEVH_EDOM);
     assert_says(nevh_stepper_message(m), "\"weight\"");

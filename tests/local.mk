@@ -32,6 +32,7 @@ suites = \
 	tests/check_threads \
 	tests/check_adaptive \
 	tests/check_damped \
+	tests/check_tao \
 	tests/check_gsl
 TEST_LIBS = tests/libsupport.la libnevh.la $(CHECK_LIBS)
 # These look inside, so they link what is not visible in libnevh.la.
@@ -41,6 +42,7 @@ tests_check_splitting_LDADD = $(INSIDE_LIBS)
 tests_check_damped_LDADD = $(INSIDE_LIBS)
 tests_check_brouwer_LDADD = $(INSIDE_LIBS)
 tests_check_implicit_LDADD = $(INSIDE_LIBS)
+tests_check_tao_LDADD = $(INSIDE_LIBS)
 tests_check_gsl_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_threads_CFLAGS = $(AM_CFLAGS) -pthread
 tests_check_threads_LDFLAGS = $(AM_LDFLAGS) -pthread

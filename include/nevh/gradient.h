@@ -45,6 +45,7 @@ typedef struct {
     double tolerance;    /* of adaptive schemes, relative; 0: fixed steps */
     const nevh_system *transform; /* of time: s(q, p) > 0 as a system, borrowed;
                                      NULL: none; see <nevh/transform.h> */
+    double binding;               /* omega of Tao's schemes, 1/t; 0: chosen */
     bool portable; /* terms with a scalar value are evaluated through it,
                       never in SIMD blocks: the same digits on machines
                       with the same libm and instruction-set class */

@@ -57,6 +57,10 @@ NEVH_API extern const nevh_integrator *const nevh_gauss20;
 NEVH_API extern const nevh_integrator *const nevh_lobatto2;
 NEVH_API extern const nevh_integrator *const nevh_lobatto4;
 NEVH_API extern const nevh_integrator *const nevh_lobatto6;
+/* Explicit, for any H: Tao's, in a doubled phase space; named by order. */
+NEVH_API extern const nevh_integrator *const nevh_tao2;
+NEVH_API extern const nevh_integrator *const nevh_tao4;
+NEVH_API extern const nevh_integrator *const nevh_tao6;
 /* Verlet with steps of their own length, h being nominal; the second destroys
    what the first keeps. */
 NEVH_API extern const nevh_integrator *const nevh_adaptive_verlet;

@@ -1,0 +1,46 @@
+/* nevh: inside Tao's schemes.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_TAO_PRIVATE_H
+#define NEVH_TAO_PRIVATE_H
+
+#include "gradient/explore_private.h"
+#include <nevh/extend.h>
+
+/* A symmetric composition of steps of order 2: the parts of h of the first
+   `outer` ones.  The last ones mirror them, and the one in the middle takes
+   what they leave. */
+typedef struct {
+    size_t outer;
+    const long double *parts;
+} nevh__composition;
+
+/* The part of h that step i of the 2 outer + 1 takes, as a time. */
+double nevh__composition_part(const nevh__composition *, size_t i, double h);
+
+/* What holds the two copies together. */
+typedef struct {
+    double omega;
+    double *ratio; /* n: lengths of p over lengths of q */
+} nevh__binding;
+
+/* Chooses both; a status, of which work keeps the message. */
+int nevh__binding_choose(nevh_work *, nevh__binding *);
+
+/* Adds states of a run from each lane to the samples; false when memory is
+   out. */
+bool nevh__add_run(nevh__explorer *);
+
+/* The rows of a stepper's memory, in blocks of n. */
+enum {
+    NEVH__TAO_CARRY_Q, /* of the first copy */
+    NEVH__TAO_CARRY_P,
+    NEVH__TAO_X, /* the second copy less the first: x - q and y - p */
+    NEVH__TAO_Y,
+    NEVH__TAO_DH_DQ, /* the gradient at (q, y), where the next step begins */
+    NEVH__TAO_DH_DP,
+    NEVH__TAO_BLOCKS /* then one row: whether there is such a gradient */
+};
+
+extern const nevh_kernel nevh__tao_kernel; /* its table: a composition */
+
+#endif
