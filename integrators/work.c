@@ -59,9 +59,3 @@ int nevh_work_commit(nevh_work *w, size_t count, double q[], const double dq[],
     add(count, p, dp, carry_p);
     return NEVH_OK;
 }
-
-int nevh_work_account(nevh_work *w, unsigned parts, double weight,
-                      const double t[], const double q[], const double p[]) {
-    (void)w, (void)parts, (void)weight, (void)t, (void)q, (void)p;
-    return NEVH_OK;
-}

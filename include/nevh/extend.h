@@ -32,6 +32,9 @@ typedef struct {
     /* The kernel takes friction into its own slopes, dp/dt = -dH/dq - rate p
        with w->friction; otherwise it is split off and put around the step. */
     bool damps;
+    /* Its evaluations are out of reach, so that nevh_work_account cannot be
+       called: a stepper that is asked for a balance refuses. */
+    bool opaque;
 } nevh_kernel;
 
 struct nevh_integrator {
@@ -65,7 +68,7 @@ struct nevh_work {
     void *plan;
     uint64_t sweeps, newtons, rescues;
     double elapsed; /* time that the step takes: h, unless own_time sets it */
-    const double *friction;     /* n rates; NULL: none */
+    const double *friction;     /* n rates; NULL: none, or it is split off */
     struct nevh_ledger *ledger; /* NULL: nobody asked; see nevh_work_account */
 
     struct nevh_report *report; /* written by nevh_work_fail */
@@ -85,8 +88,12 @@ NEVH_API int nevh_work_gradient(nevh_work *, size_t points, const double t[],
 /* The evaluations that moved the state, for the balance of the energy: where
    w->ledger is not NULL a kernel calls this once for each group of `width`
    points at which it took dH/dq or dH/dp, with the weight (a part of h) that
-   the group has in the step.  `reads`: of which of the two, an or of
-   nevh_part.  Nothing counts before the step returns NEVH_OK. */
+   the group has in the step.  `parts`: which of the two, an or of nevh_part.
+   The weights of a step add up to the time it takes, of dH/dq and of dH/dp.
+   Terms of V(t, q) and those that read t alone count with dH/dq, terms of
+   T(t, p) with dH/dp; of a term that reads both, but was found to be a sum,
+   each part with its own.  Friction counts with dH/dp. Nothing counts before
+   the step returns NEVH_OK. */
 typedef enum { NEVH_OF_Q = 1, NEVH_OF_P = 2 } nevh_part;
 NEVH_API int nevh_work_account(nevh_work *, unsigned parts, double weight,
                                const double t[], const double q[],

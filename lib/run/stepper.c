@@ -21,11 +21,13 @@ static bool own_options(nevh_options *o, size_t n) {
 
 static int plan_memory(nevh_stepper *s) {
     nevh_work *w = &s->work;
-    w->memory = nevh__array(w->memory_rows * w->width, sizeof(double));
+    s->fresh_rows = w->memory_rows + (s->damping ? w->n : 0);
+    s->rows = s->fresh_rows + (w->ledger ? 2 : 0);
+    w->memory = nevh__array(s->rows * w->width, sizeof(double));
     w->scratch = nevh__array(w->scratch_size, sizeof(double));
     s->last_q = nevh__array(w->size, sizeof(double));
     s->last_p = nevh__array(w->size, sizeof(double));
-    s->before = nevh__array(w->memory_rows * w->width, sizeof(double));
+    s->before = nevh__array(s->rows * w->width, sizeof(double));
     if (w->memory && w->scratch && s->last_q && s->last_p && s->before)
         return NEVH_OK;
     return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
@@ -62,7 +64,13 @@ static int plan(nevh_stepper *s, const nevh_integrator *integrator) {
     if (!status)
         status = nevh__check_structure(s);
     if (!status)
+        status = nevh__plan_friction(s);
+    if (!status)
         status = integrator->kernel->plan(w);
+    if (!status)
+        status = nevh__plan_damping(s);
+    if (!status)
+        status = nevh__plan_ledger(s);
     return status ? status : plan_memory(s);
 }
 
@@ -102,6 +110,9 @@ void nevh_stepper_free(nevh_stepper *s) {
     free((double *)s->options.scale);
     free((double *)s->options.q);
     free((double *)s->options.p);
+    nevh__damping_free(s->damping);
+    nevh__ledger_free(s->work.ledger);
+    free(s->rates);
     free(s->work.memory);
     free(s->work.scratch);
     free(s->last_q);
@@ -120,13 +131,16 @@ const char *nevh_stepper_message(const nevh_stepper *s) {
 
 static void forget_lane(nevh_stepper *s, size_t lane) {
     nevh_work *w = &s->work;
-    for (size_t row = 0; row < w->memory_rows; row++)
+    for (size_t row = 0; row < s->fresh_rows; row++)
         w->memory[row * w->width + lane] = 0;
 }
 
 void nevh_stepper_reset(nevh_stepper *s) {
     for (size_t lane = 0; s->planned && lane < s->work.width; lane++)
         forget_lane(s, lane);
+    for (size_t i = s->fresh_rows * s->work.width;
+         s->planned && i < s->rows * s->work.width; i++)
+        s->work.memory[i] = 0;
     s->has_last = false;
 }
 
@@ -147,7 +161,7 @@ static bool same_time(const nevh_stepper *s, double t, double h) {
 }
 
 static size_t memory_size(const nevh_stepper *s) {
-    return s->work.memory_rows * s->work.width * sizeof *s->work.memory;
+    return s->rows * s->work.width * sizeof *s->work.memory;
 }
 
 int nevh__begin(nevh_stepper *s, double t, double h, const double q[],
@@ -179,9 +193,12 @@ void nevh__undo(nevh_stepper *s) {
 int nevh__advance(nevh_stepper *s, double t, double h, double q[], double p[]) {
     nevh_work *w = &s->work;
     w->elapsed = h;
-    int status = w->integrator->kernel->step(w, t, h, q, p);
+    nevh__ledger_open(w, q, p);
+    int status = s->damping ? nevh__damped_step(s, t, h, q, p)
+                            : w->integrator->kernel->step(w, t, h, q, p);
     if (status)
         return status;
+    nevh__ledger_close(s);
     s->last_t = t + w->elapsed;
     s->report.status = NEVH_OK; /* a rescued step has failed before */
     s->report.text[0] = '\0';
