@@ -10,8 +10,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double reach = 2;      /* of the length, for times to try */
-static const double pace_part = 16; /* steps in the time of the motion */
+static const double reach = 2;         /* of the length, for times to try */
+static const double part = 0x1p-4;     /* of the time of the motion, or of t */
+static const double visible = 0x1p-17; /* of t, for a difference to be seen */
 
 /* Adds the derivative of a filled block; its copies are the stencil. */
 static int difference(nevh_field *f, nevh__planned *term, const nevh__block *b,
@@ -69,7 +70,8 @@ static double find_pace(const nevh__explorer *e, double slopes[]) {
 static double find_length(const nevh__explorer *e, const nevh__planned *term,
                           double pace) {
     size_t count = term->term->is.count;
-    double shortest = NAN, guess = exp2(floor(log2(pace)));
+    double seen = fmax(pace, visible * fabs(e->options->t));
+    double shortest = NAN, guess = exp2(floor(log2(seen)));
     nevh__explorer here = *e;
     for (here.at = 0; here.at < e->lanes; here.at++)
         for (size_t i = 0; i < count; i += nevh__stride(count))
@@ -105,13 +107,15 @@ static nevh__time_step climb(const nevh__explorer *e, const nevh__planned *term,
 
 static nevh__time_step choose(nevh__explorer *e, const nevh__planned *term,
                               double pace) {
-    double length = find_length(e, term, pace);
+    double length = find_length(e, term, pace), size = fabs(e->options->t);
     if (isfinite(length)) {
         spread_times(e, length);
         return climb(e, term, length);
     }
-    return (nevh__time_step){isnan(length) ? nevh_central8 : nevh_central2,
-                             exp2(round(log2(pace / pace_part)))};
+    bool unseen = isnan(length);
+    double delta = fmax(part * pace, (unseen ? visible : part) * size);
+    return (nevh__time_step){unseen ? nevh_central8 : nevh_central2,
+                             exp2(round(log2(delta)))};
 }
 
 int nevh__field_plan_time(nevh_field *f, const nevh_options *o,
