@@ -130,4 +130,4 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
 }
 
 const nevh_kernel nevh__gsl_kernel = {
-    .plan = plan, .step = step, .unplan = unplan};
+    .plan = plan, .step = step, .unplan = unplan, .opaque = true};
