@@ -20,6 +20,8 @@ suites = \
 	tests/check_evaluations \
 	tests/check_run \
 	tests/check_energy \
+	tests/check_friction \
+	tests/check_balance \
 	tests/check_models \
 	tests/check_failures \
 	tests/check_hard_steps \
@@ -29,7 +31,9 @@ TEST_LIBS = tests/libsupport.la libnevh.la $(CHECK_LIBS)
 # These look inside, so they link what is not visible in libnevh.la.
 INSIDE_LIBS = tests/libsupport.la libnevh_core.la $(CHECK_LIBS)
 tests_check_coefficients_LDADD = $(INSIDE_LIBS)
+tests_check_balance_LDADD = $(INSIDE_LIBS)
 tests_check_gsl_LDADD = $(TEST_LIBS) $(GSL_LIBS)
+tests_check_friction_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_threads_CFLAGS = $(AM_CFLAGS) -pthread
 tests_check_threads_LDFLAGS = $(AM_LDFLAGS) -pthread
 
