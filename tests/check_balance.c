@@ -475,6 +475,47 @@ START_TEST(time_alone) {
 }
 END_TEST
 
+/* Sums of many steps are compensated. */
+static double slowly(double t, const double q[], const double p[],
+                     const double c[], const void *params) {
+    (void)q, (void)p, (void)c, (void)params;
+    return 0.7 * t;
+}
+
+START_TEST(many_steps) {
+    nevh_system *s = henon_heiles.make();
+    nevh_system_add(s, &(nevh_term){.effect = "ramp",
+                                    .time = true,
+                                    .value = slowly,
+                                    .gradient = no_gradient});
+    nevh_stepper *m = balanced(s, &henon_heiles, nevh_verlet);
+    state z = start(&henon_heiles);
+    nevh_run(m, 0, 0.01, 50000, z.q, z.p, NULL, 0);
+    ck_assert_double_eq_tol(nevh_stepper_gain(m, 0) / 350, 1, 8e-16);
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* What came in before the first observation does not count. */
+START_TEST(observed_from_the_middle) {
+    const problem *b = &driven_pendulum;
+    nevh_system *s = b->make();
+    nevh_stepper *m = balanced(s, b, nevh_gauss8);
+    nevh_energy *e = nevh_energy_new(s, NULL);
+    nevh_observer watch = {nevh_energy_observe, e, 1};
+    state z = start(b);
+    ck_assert_int_eq(nevh_energy_follow(e, m), NEVH_OK);
+    nevh_run(m, b->t0, 0.05, 40, z.q, z.p, NULL, 0);
+    ck_assert_double_gt(fabs(nevh_stepper_gain(m, 0)), 0.01);
+    nevh_run(m, b->t0 + 2, 0.05, 40, z.q, z.p, &watch, 1);
+    ck_assert_double_lt(nevh_energy_result(e, 0).max, 1e-11);
+    nevh_energy_free(e);
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
 /* Steps that fail leave the sum alone: H is not finite at its k-th value. */
 typedef struct {
     size_t calls, fault;
@@ -764,6 +805,8 @@ int main(void) {
     tcase_add_loop_test(cases, lanes_are_alone, 0, count);
     tcase_add_test(cases, bounded_for_long);
     tcase_add_test(cases, time_alone);
+    tcase_add_test(cases, many_steps);
+    tcase_add_test(cases, observed_from_the_middle);
     tcase_add_loop_test(cases, fails_at_any_evaluation, 0, count);
     tcase_add_loop_test(cases, out_of_reach, 0, count);
     tcase_add_test(cases, incomplete_accounts);
