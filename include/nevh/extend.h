@@ -27,7 +27,10 @@ typedef struct {
     /* Frees `plan`; NULL when there is nothing to free. */
     void (*unplan)(nevh_work *);
     /* Friction has multiplied p by factor[k] (n of them) since the last step:
-       memory that depends on p is scaled or dropped.  NULL: none does. */
+       memory that depends on p is scaled or dropped.  Called twice between
+       steps, for the half behind one and for the half before the next; also
+       where memory is all 0.  Where the next step fails, the stepper restores
+       the memory.  NULL: none depends on p. */
     void (*damp)(nevh_work *, const double factor[]);
     /* The kernel takes friction into its own slopes, dp/dt = -dH/dq - rate p
        with w->friction; otherwise it is split off and put around the step. */
