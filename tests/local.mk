@@ -21,7 +21,11 @@ suites = \
 	tests/check_run \
 	tests/check_energy \
 	tests/check_friction \
+	tests/check_damped_orbits \
+	tests/check_damped_steps \
 	tests/check_balance \
+	tests/check_ledger \
+	tests/check_time_slope \
 	tests/check_models \
 	tests/check_failures \
 	tests/check_hard_steps \
@@ -31,9 +35,9 @@ TEST_LIBS = tests/libsupport.la libnevh.la $(CHECK_LIBS)
 # These look inside, so they link what is not visible in libnevh.la.
 INSIDE_LIBS = tests/libsupport.la libnevh_core.la $(CHECK_LIBS)
 tests_check_coefficients_LDADD = $(INSIDE_LIBS)
-tests_check_balance_LDADD = $(INSIDE_LIBS)
+tests_check_time_slope_LDADD = $(INSIDE_LIBS)
 tests_check_gsl_LDADD = $(TEST_LIBS) $(GSL_LIBS)
-tests_check_friction_LDADD = $(TEST_LIBS) $(GSL_LIBS)
+tests_check_damped_orbits_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_threads_CFLAGS = $(AM_CFLAGS) -pthread
 tests_check_threads_LDFLAGS = $(AM_LDFLAGS) -pthread
 
@@ -43,7 +47,8 @@ check_LTLIBRARIES =
 if HAVE_CHECK
 check_PROGRAMS += $(suites)
 check_LTLIBRARIES += tests/libsupport.la
-tests_libsupport_la_SOURCES = tests/support.c tests/support.h
+tests_libsupport_la_SOURCES = tests/support.c tests/support.h \
+	tests/damped.h tests/driven.h
 if HAVE_WRAP
 memory_suite = tests/check_memory
 check_PROGRAMS += $(memory_suite)
