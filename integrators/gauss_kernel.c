@@ -68,7 +68,7 @@ static int plan(nevh_work *w) {
     if (!g->gauss || !g->hb || !g->solver)
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     w->memory_rows = 2 * w->n * (1 + stages) + 1;
-    w->scratch_size = (6 * w->n * stages + stages) * w->width + 4 * w->size;
+    w->scratch_size = (8 * w->n * stages + stages + 1) * w->width + 4 * w->size;
     return NEVH_OK;
 }
 
@@ -222,6 +222,29 @@ static int commit(const gauss_step *s, const gauss_plan *g, double q[],
     return NEVH_OK;
 }
 
+/* The stages of all lanes, side by side, to the balance. */
+static int account(const gauss_step *s, const gauss_plan *g) {
+    nevh_work *w = s->work;
+    size_t stages = g->gauss->stages, each = 2 * w->size;
+    double *points = s->lost + each, *time = points + stages * each;
+    int status = NEVH_OK;
+    for (size_t lane = 0; w->ledger && lane < w->width; lane++)
+        for (size_t k = 0; k < 2 * w->n; k++) {
+            find_points(s, g, k, 1, &lane, s->slopes);
+            for (size_t i = 0; i < stages; i++)
+                points[i * each + k * w->width + lane] =
+                    s->points[k * stages + i];
+        }
+    for (size_t i = 0; w->ledger && !status && i < stages; i++) {
+        for (size_t lane = 0; lane < w->width; lane++)
+            time[lane] = s->t + g->gauss->c[i] * s->h;
+        status =
+            nevh_work_account(w, NEVH_OF_Q | NEVH_OF_P, g->hb[i], time,
+                              points + i * each, points + i * each + w->size);
+    }
+    return status;
+}
+
 static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     gauss_plan *g = w->plan;
     gauss_step s = lay_out(w, t, h, q, p);
@@ -229,6 +252,8 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     guess(&s, g);
     nevh__stage_problem problem = {t, h, q, p, s.slopes, map, &s};
     int status = nevh__stage_solve(g->solver, &problem);
+    if (!status)
+        status = account(&s, g);
     return status ? status : commit(&s, g, q, p);
 }
 

@@ -79,6 +79,9 @@ static int operate(nevh_work *w, layout *l, nevh_operation operation, double t,
                       : nevh_work_gradient(w, w->width, l->time, l->q.point,
                                            l->p.point, kick ? l->slope : NULL,
                                            kick ? NULL : l->slope);
+    if (!status)
+        status = nevh_work_account(w, kick ? NEVH_OF_Q : NEVH_OF_P, weight * h,
+                                   l->time, l->q.point, l->p.point);
     if (status)
         return status;
     advance(w, moves, (kick ? -weight : weight) * h, kept ? l->kept : l->slope);
@@ -111,4 +114,15 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     return status;
 }
 
-const nevh_kernel nevh_splitting_kernel = {.plan = plan, .step = step};
+/* A kept dT/dp is of another p. */
+static void damp(nevh_work *w, const double factor[]) {
+    const nevh_splitting *table = w->integrator->table;
+    layout l = lay_out(w, NULL, NULL);
+    for (size_t i = 0; i < w->size; i++)
+        l.p.carry[i] *= factor[i / w->width];
+    for (size_t lane = 0; table->first == NEVH_DRIFT && lane < w->width; lane++)
+        l.has_kept[lane] = 0;
+}
+
+const nevh_kernel nevh_splitting_kernel = {
+    .plan = plan, .step = step, .damp = damp};
