@@ -213,6 +213,13 @@ static int choose_step(nevh_work *w, double t, double h, control *c,
                           t, s, h);
 }
 
+/* Of a kick or drift at the state under way. */
+static int account(nevh_work *w, unsigned part, double t, double length) {
+    const plan_data *d = w->plan;
+    return w->accounts ? nevh_work_account(w, part, length, &t, d->q, d->p)
+                       : NEVH_OK;
+}
+
 static void move(size_t n, const double start[], const double carry[],
                  double step, const double slope[], double change[],
                  double point[]) {
@@ -230,12 +237,18 @@ static int leap(nevh_work *w, double t, double step, const double q[],
     const double *carry = w->memory;
     memset(d->dq, 0, n * sizeof *d->dq);
     memset(d->dp, 0, n * sizeof *d->dp);
+    int status = account(w, NEVH_OF_Q, t, step / 2);
     move(n, p, carry + n, -step / 2, d->force, d->dp, d->p);
-    int status = take(w, t, NULL, d->speed);
+    if (!status)
+        status = take(w, t + step / 2, NULL, d->speed);
+    if (!status)
+        status = account(w, NEVH_OF_P, t + step / 2, step);
     if (status)
         return status;
     move(n, q, carry, step, d->speed, d->dq, d->q);
     status = take(w, t + step, d->force, NULL);
+    if (!status)
+        status = account(w, NEVH_OF_Q, t + step, step / 2);
     if (status)
         return status;
     move(n, p, carry + n, -step / 2, d->force, d->dp, d->p);
@@ -285,4 +298,4 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
 }
 
 const nevh_kernel nevh__adaptive_verlet_kernel = {
-    .plan = plan, .step = step, .unplan = unplan, .foreign = true};
+    .plan = plan, .step = step, .unplan = unplan};

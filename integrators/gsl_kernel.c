@@ -193,4 +193,4 @@ const nevh_kernel nevh__gsl_kernel = {.plan = plan,
                                       .step = step,
                                       .unplan = unplan,
                                       .damps = true,
-                                      .foreign = true};
+                                      .opaque = true};

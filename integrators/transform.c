@@ -69,7 +69,7 @@ static int check(nevh_work *w) {
     if (scheme->needs)
         return refuse(w, "it needs H = T(p) + V(q), and s(q, p) (H - H0) is "
                          "no such sum");
-    if (scheme->kernel->foreign)
+    if (scheme->kernel->opaque)
         return refuse(w, "it takes its gradients on its own");
     if (scheme->symplectic == NEVH_DOUBLED)
         return refuse(w, "its binding is chosen for H, not for s (H - H0)");

@@ -74,13 +74,3 @@ int nevh_work_commit(nevh_work *w, size_t count, double q[], const double dq[],
     add(count, p, dp, carry_p);
     return NEVH_OK;
 }
-
-int nevh_work_account(nevh_work *w, unsigned parts, double weight,
-                      const double t[], const double q[], const double p[]) {
-    double rate = 0;
-    int status =
-        w->transform ? nevh__transform_rate(w, t, q, p, &rate) : NEVH_OK;
-    w->elapsed += weight * rate;
-    (void)parts;
-    return status;
-}

@@ -7,6 +7,7 @@ libnevh_core_la_SOURCES = \
 	lib/system/status.c \
 	lib/system/memory.c \
 	lib/system/system.c \
+	lib/system/friction.c \
 	lib/system/values.c \
 	lib/system/closeness.c \
 	lib/system/probe_private.h \
@@ -30,6 +31,7 @@ libnevh_core_la_SOURCES = \
 	lib/gradient/stencil.c \
 	lib/gradient/exact.c \
 	lib/gradient/value.c \
+	lib/gradient/time.c \
 	lib/gradient/gsl_system.c \
 	lib/implicit/implicit_private.h \
 	lib/implicit/fixed_point.c \
@@ -40,6 +42,8 @@ libnevh_core_la_SOURCES = \
 	lib/run/stepper_private.h \
 	lib/run/structure.c \
 	lib/run/stepper.c \
+	lib/run/friction.c \
+	lib/run/ledger.c \
 	lib/run/save.c \
 	lib/run/run.c \
 	lib/run/until.c \

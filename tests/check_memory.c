@@ -145,6 +145,23 @@ static int add_terms(const setting *a) {
     return status;
 }
 
+/* Friction of an effect that is new. */
+static int add_friction(const setting *a) {
+    static const double rates[] = {0.1, 0.2};
+    (void)a;
+    watching = false;
+    nevh_system *s = nevh_system_new(2);
+    nevh_system_add(s, &terms[0]);
+    watching = true;
+    int status = nevh_system_add_friction(s, "drag", rates);
+    if (status != nevh_system_status(s) ||
+        nevh_system_effect_count(s) != (status ? 1 : 2))
+        status = -1;
+    strcpy(text, nevh_system_message(s));
+    nevh_system_free(s);
+    return status;
+}
+
 static int make_field(const setting *a) {
     nevh_field *f = nevh_field_new(a->system, &a->options);
     int status = nevh_field_status(f);
@@ -211,6 +228,7 @@ START_TEST(systems) {
     ck_assert_uint_ge(starve(make_system, &none), 1);
     ck_assert_uint_ge(starve(make_whole, &none), 5);
     ck_assert_uint_ge(starve(add_terms, &none), 9);
+    ck_assert_uint_ge(starve(add_friction, &none), 4);
 }
 END_TEST
 
@@ -242,6 +260,51 @@ START_TEST(steppers) {
     a.stepper = nevh_stepper_new(s, a.scheme, &a.options);
     ck_assert_uint_ge(starve(copy_stepper, &a), 15);
     nevh_stepper_free(a.stepper);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* With friction and a balance, of a term that may read t ... */
+START_TEST(balanced_steppers) {
+    static const double rates[] = {0.1, 0.2};
+    nevh_system *s = nevh_system_from(2, whole, NULL);
+    nevh_system_add_friction(s, "drag", rates);
+    setting a = {.system = s, .scheme = nevh_integrators()[_i]};
+    a.options =
+        (nevh_options){.gradient_step = 1e-3, .q = start_q, .p = start_p};
+    a.options.balance = true;
+    a.stepper = nevh_stepper_new(s, a.scheme, &a.options);
+    if (nevh_stepper_status(a.stepper) != NEVH_ESTRUCT) {
+        ck_assert_uint_ge(starve(make_stepper, &a), 30);
+        ck_assert_uint_ge(starve(copy_stepper, &a), 30);
+    }
+    nevh_stepper_free(a.stepper);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* ... and takes no more when it steps. */
+START_TEST(balanced_steps_take_no_memory) {
+    static const double rates[] = {0.1, 0.2};
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    nevh_system *s = nevh_system_from(2, whole, NULL);
+    nevh_system_add_friction(s, "drag", rates);
+    nevh_options o = {.q = start_q, .p = start_p, .balance = true};
+    nevh_stepper *m = nevh_stepper_new(s, scheme, &o);
+    nevh_energy *e = nevh_energy_new(s, NULL);
+    nevh_observer energy = {nevh_energy_observe, e, 1};
+    double q[] = {1.7, 0.4}, p[] = {0.3, 0.5};
+    int status = nevh_stepper_status(m);
+    if (status != NEVH_ESTRUCT) {
+        status = nevh_energy_follow(e, m);
+        watch(0);
+        status |= nevh_run(m, 0, 0.01, 20, q, p, &energy, 1);
+        watching = false;
+        ck_assert_msg(status == NEVH_OK, "%s", nevh_stepper_message(m));
+        ck_assert_uint_eq(requests, 0);
+    }
+    nevh_energy_free(e);
+    nevh_stepper_free(m);
     nevh_system_free(s);
 }
 END_TEST
@@ -308,6 +371,8 @@ int main(void) {
     tcase_add_test(cases, systems);
     tcase_add_loop_test(cases, fields, 0, 5);
     tcase_add_loop_test(cases, steppers, 0, 2 * schemes);
+    tcase_add_loop_test(cases, balanced_steppers, 0, schemes);
+    tcase_add_loop_test(cases, balanced_steps_take_no_memory, 0, schemes);
     tcase_add_test(cases, defects);
     tcase_add_loop_test(cases, steps_take_no_memory, 0, 3 * schemes);
     tcase_add_test(cases, gsl_system_without_memory);

@@ -23,6 +23,12 @@ suites = \
 	tests/check_evaluations \
 	tests/check_run \
 	tests/check_energy \
+	tests/check_friction \
+	tests/check_damped_orbits \
+	tests/check_damped_steps \
+	tests/check_balance \
+	tests/check_ledger \
+	tests/check_time_slope \
 	tests/check_models \
 	tests/check_failures \
 	tests/check_hard_steps \
@@ -43,7 +49,9 @@ tests_check_damped_LDADD = $(INSIDE_LIBS)
 tests_check_brouwer_LDADD = $(INSIDE_LIBS)
 tests_check_implicit_LDADD = $(INSIDE_LIBS)
 tests_check_tao_LDADD = $(INSIDE_LIBS)
+tests_check_time_slope_LDADD = $(INSIDE_LIBS)
 tests_check_gsl_LDADD = $(TEST_LIBS) $(GSL_LIBS)
+tests_check_damped_orbits_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_threads_CFLAGS = $(AM_CFLAGS) -pthread
 tests_check_threads_LDFLAGS = $(AM_LDFLAGS) -pthread
 
@@ -53,7 +61,8 @@ check_LTLIBRARIES =
 if HAVE_CHECK
 check_PROGRAMS += $(suites)
 check_LTLIBRARIES += tests/libsupport.la
-tests_libsupport_la_SOURCES = tests/support.c tests/support.h
+tests_libsupport_la_SOURCES = tests/support.c tests/support.h \
+	tests/damped.h tests/driven.h
 if HAVE_WRAP
 memory_suite = tests/check_memory
 check_PROGRAMS += $(memory_suite)

@@ -50,8 +50,8 @@ double measured_order(const problem *, const nevh_integrator *,
 /* Energy errors of `steps` steps of h, with exact gradients where g is NULL. */
 nevh_energy_report energy_of(const problem *, const nevh_integrator *,
                              const nevh_gradient *g, double h, size_t steps);
-/* The time to go on from, t + h by the clock: the stepper's own where its scheme
-   has its own time. */
+/* The time to go on from, t + h by the clock: the stepper's own where its
+   scheme has its own time. */
 double time_on(const nevh_stepper *, const nevh_integrator *, double t);
 /* Number of registered schemes. */
 int scheme_count(void);

@@ -24,8 +24,19 @@ NEVH_API int nevh_energy_status(const nevh_energy *);
 /* The message to that status, or ""; never NULL. */
 NEVH_API const char *nevh_energy_message(const nevh_energy *);
 
+/* Makes errors those of the balance: H(t) - H(0) less what the stepper says
+   that came in from outside meanwhile, nevh_stepper_gain.  To be called before
+   the first observation, of a run of that stepper.
+   stepper  borrowed, until the last observation; made with
+            nevh_options.balance where H reads t or there is friction
+   returns  NEVH_OK; NEVH_EINVAL when the stepper keeps no balance, is for
+            another system or width, or the first observation was made;
+            carried by the observer, which then stops the run */
+NEVH_API int nevh_energy_follow(nevh_energy *, const nevh_stepper *stepper);
+
 /* A nevh_observe_fn; data is the nevh_energy.  The first call sets H0 and the
-   scale.  A value of H that is not finite stops the run. */
+   scale.  A value of H, or a balance, that is not finite stops the
+   run. */
 NEVH_API int nevh_energy_observe(void *energy, size_t step, double t,
                                  const double q[], const double p[]);
 
@@ -37,9 +48,9 @@ typedef enum {
 } nevh_verdict;
 NEVH_API const char *nevh_verdict_name(nevh_verdict);
 
-/* Errors are of H(t) - H(0), relative to `scale`: |H0| without the terms that
-   read nothing; where that is below 1e-6 of the largest |effect| at the start,
-   that largest one. */
+/* Errors are of H(t) - H(0), or of the balance, relative to `scale`: |H0|
+   without the terms that read nothing; where that is below 1e-6 of the largest
+   |effect| at the start, that largest one. */
 typedef struct {
     size_t samples;
     double initial; /* H0, all terms */

@@ -27,14 +27,18 @@ typedef struct {
     /* Frees `plan`; NULL when there is nothing to free. */
     void (*unplan)(nevh_work *);
     /* Friction has multiplied p by factor[k] (n of them) since the last step:
-       memory that depends on p is scaled or dropped.  NULL: none does. */
+       memory that depends on p is scaled or dropped.  Called twice between
+       steps, for the half behind one and for the half before the next; also
+       where memory is all 0.  Where the next step fails, the stepper restores
+       the memory.  NULL: none depends on p. */
     void (*damp)(nevh_work *, const double factor[]);
     /* The kernel takes friction into its own slopes, dp/dt = -dH/dq - rate p
        with w->friction; otherwise it is split off and put around the step. */
     bool damps;
-    /* Takes its gradients around nevh_work_gradient and accounts for nothing:
-       no transform and no balance of the energy go with it. */
-    bool foreign;
+    /* Takes its gradients around nevh_work_gradient, so that they can neither
+       be transformed nor accounted for: a stepper that is asked for a transform
+       of time, or for a balance of the energy, refuses. */
+    bool opaque;
 } nevh_kernel;
 
 struct nevh_integrator {
@@ -69,7 +73,7 @@ struct nevh_work {
     void *plan;
     uint64_t sweeps, newtons, rescues;
     double elapsed; /* time that the step takes: h, unless own_time sets it */
-    const double *friction;            /* n rates; NULL: none */
+    const double *friction; /* n rates; NULL: none, or it is split off */
     struct nevh__transform *transform; /* of H; NULL: there is none */
     struct nevh_ledger *ledger;        /* NULL: nobody asked for the balance */
     bool accounts;                     /* nevh_work_account is to be called */
@@ -94,8 +98,12 @@ NEVH_API int nevh_work_value(nevh_work *, size_t points, const double t[],
 /* The evaluations that moved the state, for the balance of the energy and for
    transformed time: where w->accounts is set a kernel calls this once for each
    group of `width` points at which it took dH/dq or dH/dp, with the weight (a
-   part of h) that the group has in the step.  `reads`: of which of the two, an
-   or of nevh_part.  Nothing counts before the step returns NEVH_OK. */
+   part of h) that the group has in the step.  `parts`: which of the two, an or
+   of nevh_part.  The weights of a step add up to the time it takes, of dH/dq
+   and of dH/dp.  Terms of V(t, q) and those that read t alone count with dH/dq,
+   terms of T(t, p) with dH/dp; of a term that reads both, but was found to be a
+   sum, each part with its own.  Friction counts with dH/dp.  Nothing counts
+   before the step returns NEVH_OK. */
 typedef enum { NEVH_OF_Q = 1, NEVH_OF_P = 2 } nevh_part;
 NEVH_API int nevh_work_account(nevh_work *, unsigned parts, double weight,
                                const double t[], const double q[],

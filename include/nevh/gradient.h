@@ -49,6 +49,8 @@ typedef struct {
     bool portable; /* terms with a scalar value are evaluated through it,
                       never in SIMD blocks: the same digits on machines
                       with the same libm and instruction-set class */
+    bool balance;  /* steppers keep account of the energy that comes in from
+                      outside: see nevh_stepper_gain */
 } nevh_options;
 
 /* A field is the gradient of H, planned: a system, a gradient method with its

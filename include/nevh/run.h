@@ -22,7 +22,17 @@ typedef struct nevh_stepper nevh_stepper;
              memory is out.  A scheme that does not fit the system gives a
              stepper that carries the refusal: NEVH_ESTRUCT with a message
              that names the term and schemes that fit, NEVH_ENOGRAD,
-             NEVH_EINVAL, or the system's own status. */
+             NEVH_EINVAL, or the system's own status.
+
+   Friction (nevh_system_add_friction) is taken by the Runge-Kutta references
+   into their slopes.  Around a step of the others p is multiplied by
+   exp(-rate h/2), before and after: with equal rates a symplectic scheme then
+   shrinks the symplectic form by exactly exp(-rate h), and friction alone
+   decays as it should [R. I. McLachlan, M. Perlmutter, Conformal Hamiltonian
+   systems, J. Geom. Phys. 39 (2001) 276-300; A. Bhatt, D. Floyd, B. E. Moore,
+   Second order conformal symplectic schemes for damped Hamiltonian systems, J.
+   Sci. Comput. 66 (2016) 1234-1259].  That fits no scheme that chooses its own
+   times: NEVH_ESTRUCT. */
 NEVH_API nevh_stepper *nevh_stepper_new(const nevh_system *,
                                         const nevh_integrator *,
                                         const nevh_options *options);
@@ -52,7 +62,8 @@ NEVH_API int nevh_stepper_apply(nevh_stepper *, double t, double h, double q[],
    time (nevh_integrator_own_time). */
 NEVH_API double nevh_stepper_time(const nevh_stepper *);
 
-/* Forgets the memory, as if no step had been taken.  Counts go on. */
+/* Forgets the memory and the gain, as if no step had been taken.  Counts go on.
+ */
 NEVH_API void nevh_stepper_reset(nevh_stepper *);
 /* A second stepper with the same memory, for branch-offs that leave the first
    untouched.  Its counts start at 0.  NULL when memory is out. */
@@ -65,6 +76,23 @@ NEVH_API void nevh_stepper_save(const nevh_stepper *, void *buffer);
 /* returns  NEVH_OK; NEVH_EINVAL when the buffer was saved by another scheme,
             size of system or width, or is cut short */
 NEVH_API int nevh_stepper_load(nevh_stepper *, const void *buffer, size_t size);
+
+/* The order to expect: the scheme's own, but at most 2 where friction is put
+   around its steps.  0 where there is no integrator. */
+NEVH_API int nevh_stepper_order(const nevh_stepper *);
+
+/* The energy that lane `lane` gained from outside in all steps since the
+   stepper was made or reset: the integral of dH/dt at fixed q and p, less what
+   friction took, each advanced by the scheme's own quadrature, at the points
+   and with the weights at which it takes the gradient (what friction around a
+   step takes is the difference of H, exactly).  H(t) - H(0) less that is the
+   error that the scheme makes.  A jump to another state leaves the sum as it
+   is.  0 unless nevh_options.balance asked for it, and where H does not read t
+   and there is no friction; NAN where a kernel did not account for a whole
+   step.
+   cost     within a step: 8 values of what reads t a stage, four values of H
+            where friction is put around it; none in nevh_stepper_counts */
+NEVH_API double nevh_stepper_gain(const nevh_stepper *, size_t lane);
 
 NEVH_API nevh_counts nevh_stepper_counts(const nevh_stepper *);
 /* The field that the stepper takes its gradients from: its counts, steps and

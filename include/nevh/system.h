@@ -100,9 +100,21 @@ NEVH_API void nevh_system_free(nevh_system *);
             have. */
 NEVH_API int nevh_system_add(nevh_system *, const nevh_term *);
 
-/* Switches an effect, that is all terms of that effect name, on or off.
-   Steppers and fields made before notice, and refuse to go on.
-   returns  NEVH_OK; NEVH_EINVAL when no term has that effect, and the system
+/* Adds friction: dp_k/dt gains -rates[k] p_k.  It is proportional to momentum,
+   not to velocity, and no term of H: energies do not count it.
+   effect   the effect that it belongs to, on or off by name like any other.
+            Terms and further friction may have the same one: they are switched
+            together.  The rates of all effects that are on add up.
+   rates    in, n rates in 1/time, copied.  Negative ones drive the momentum;
+            with zeros only, orbits are those without friction, bit for bit.
+   returns  NEVH_OK; NEVH_EINVAL (no name, rates NULL or not finite),
+            NEVH_ENOMEM; carried by the system as after nevh_system_add */
+NEVH_API int nevh_system_add_friction(nevh_system *, const char *effect,
+                                      const double rates[]);
+
+/* Switches an effect, that is all terms and friction of that effect name, on or
+   off.  Steppers and fields made before notice, and refuse to go on.
+   returns  NEVH_OK; NEVH_EINVAL when nothing has that effect, and the system
             carries that status from then on, as after nevh_system_add: ask
             nevh_system_effect_name first where names come from a user */
 NEVH_API int nevh_system_enable(nevh_system *, const char *effect, bool on);
@@ -121,6 +133,12 @@ NEVH_API size_t nevh_system_effect_count(const nevh_system *);
 NEVH_API const char *nevh_system_effect_name(const nevh_system *, size_t i);
 /* false for an unknown effect, too. */
 NEVH_API bool nevh_system_effect_on(const nevh_system *, const char *effect);
+
+/* The friction that is on, summed over its effects.
+   rates    out, n; NULL when not wanted
+   returns  whether a rate is not 0
+   cost     n times the frictions added; thread-safe */
+NEVH_API bool nevh_system_friction(const nevh_system *, double rates[]);
 
 /* The traits that follow from the declarations of the enabled terms alone,
    an or of nevh_trait.  A term that reads coordinates and momenta makes the

@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/field_private.h"
 #include "diagnose/trend_private.h"
+#include "run/stepper_private.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -11,8 +12,9 @@ static const double cancelled = 1e-6;
 struct nevh_energy {
     nevh_field *field; /* for values only */
     size_t n, width;
+    const nevh_stepper *followed; /* NULL: errors are of H alone */
     bool begun;
-    double *t, *h, *initial, *scale; /* width each */
+    double *t, *h, *initial, *scale, *gained; /* width each */
     double *effects;
     double *state; /* 2n: one lane */
     nevh__trend *trend;
@@ -32,12 +34,13 @@ static int plan(nevh_energy *e, const nevh_system *s, bool portable) {
     e->t = nevh__array(width, sizeof *e->t);
     e->h = nevh__array(width, sizeof *e->h);
     e->initial = nevh__array(width, sizeof *e->initial);
+    e->gained = nevh__array(width, sizeof *e->gained);
     e->scale = nevh__array(width, sizeof *e->scale);
     e->trend = nevh__array(width, sizeof *e->trend);
     e->effects = nevh__array(s->n_effects, sizeof *e->effects);
     e->state = nevh__array(2 * s->n, sizeof *e->state);
-    if (e->t && e->h && e->initial && e->scale && e->trend && e->effects &&
-        e->state)
+    if (e->t && e->h && e->initial && e->gained && e->scale && e->trend &&
+        e->effects && e->state)
         return NEVH_OK;
     return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
 }
@@ -61,6 +64,7 @@ void nevh_energy_free(nevh_energy *e) {
     free(e->t);
     free(e->h);
     free(e->initial);
+    free(e->gained);
     free(e->scale);
     free(e->trend);
     free(e->effects);
@@ -74,6 +78,35 @@ int nevh_energy_status(const nevh_energy *e) {
 
 const char *nevh_energy_message(const nevh_energy *e) {
     return e ? e->report.text : "out of memory";
+}
+
+int nevh_energy_follow(nevh_energy *e, const nevh_stepper *s) {
+    if (e->report.status)
+        return e->report.status;
+    if (e->begun)
+        return nevh__fail(&e->report, NEVH_EINVAL,
+                          "a stepper is to be followed from the first "
+                          "observation on");
+    if (nevh_stepper_status(s))
+        return nevh__fail(&e->report, NEVH_EINVAL,
+                          "the stepper to follow was refused: %s",
+                          nevh_stepper_message(s));
+    if (s->work.system != e->field->system || s->work.width != e->width)
+        return nevh__fail(&e->report, NEVH_EINVAL,
+                          "the stepper to follow is for another system or for "
+                          "%zu orbits, where %zu are observed",
+                          s->work.width, e->width);
+    if (!nevh__balanced(s))
+        return nevh__fail(&e->report, NEVH_EINVAL,
+                          "the stepper to follow keeps no balance: ask for it "
+                          "with nevh_options.balance");
+    e->followed = s;
+    return NEVH_OK;
+}
+
+/* What came in from outside so far. */
+static double gain(const nevh_energy *e, size_t lane) {
+    return e->followed ? nevh_stepper_gain(e->followed, lane) : 0;
 }
 
 /* |H0| of what reads something, or the largest of its effects. */
@@ -100,10 +133,23 @@ static int begin(nevh_energy *e, double t, const double q[], const double p[]) {
     int status = NEVH_OK;
     for (size_t lane = 0; !status && lane < e->width; lane++) {
         e->initial[lane] = e->h[lane];
+        e->gained[lane] = gain(e, lane);
         status = find_scale(e, lane, t, q, p);
     }
     e->begun = !status;
     return status;
+}
+
+static int add_error(nevh_energy *e, size_t lane, double t) {
+    double came = gain(e, lane) - e->gained[lane];
+    if (!isfinite(came))
+        return nevh__fail(&e->report, NEVH_EDOM,
+                          "the balance of the energy is not finite at t = "
+                          "%.9g: %s does not account for whole steps",
+                          t, e->followed->work.integrator->name);
+    nevh__trend_add(&e->trend[lane], t,
+                    (e->h[lane] - e->initial[lane] - came) / e->scale[lane]);
+    return NEVH_OK;
 }
 
 int nevh_energy_observe(void *energy, size_t step, double t, const double q[],
@@ -119,10 +165,9 @@ int nevh_energy_observe(void *energy, size_t step, double t, const double q[],
         status = begin(e, t, q, p);
     if (status)
         return nevh__fail_as(&e->report, &e->field->report);
-    for (size_t lane = 0; lane < e->width; lane++)
-        nevh__trend_add(&e->trend[lane], t,
-                        (e->h[lane] - e->initial[lane]) / e->scale[lane]);
-    return NEVH_OK;
+    for (size_t lane = 0; !status && lane < e->width; lane++)
+        status = add_error(e, lane, t);
+    return status;
 }
 
 nevh_energy_report nevh_energy_result(const nevh_energy *e, size_t lane) {

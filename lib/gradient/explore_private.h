@@ -51,8 +51,9 @@ size_t nevh__stride(size_t count);
 /* The variable whose step variable k takes. */
 size_t nevh__probed(const nevh__planned *, size_t k);
 
-/* Values of an instance at sample `at`, its variable k moved by each of
-   `count` (up to the field's capacity) amounts; x: the moved variable. */
+/* Values of an instance at sample `at`, its variable k, or the time, moved by
+   each of `count` (up to the field's capacity) amounts; x: what was moved. */
+#define NEVH__TIME SIZE_MAX
 void nevh__along(const nevh__explorer *, const nevh__planned *, size_t instance,
                  size_t k, size_t at, size_t count, const double move[],
                  double x[], double h[]);
@@ -60,6 +61,10 @@ void nevh__along(const nevh__explorer *, const nevh__planned *, size_t instance,
 /* Takes the states given and fills length; a status, recorded in the field. */
 int nevh__explorer_open(nevh__explorer *, nevh_field *, const nevh_options *);
 void nevh__explorer_close(nevh__explorer *);
+/* The length of one variable of one instance, or of time: INFINITY where it is
+   quadratic as far as one can see, NAN where nothing is to be seen. */
+double nevh__curve_length(const nevh__explorer *, const nevh__planned *,
+                          size_t instance, size_t k, double guess);
 /* Fills length with the shortest over the lanes, of which it makes those
    samples that matter. */
 void nevh__find_lengths(nevh__explorer *);
@@ -71,6 +76,11 @@ bool nevh__find_samples(nevh__explorer *);
 void nevh__find_neighbours(nevh__explorer *);
 /* Checks a term's own gradient. */
 int nevh__verify(nevh__explorer *, const nevh__planned *);
+/* Chooses the step of a method in one variable, or the time, that varies over
+   a length. */
+nevh__step nevh__climb_along(const nevh__explorer *, const nevh_gradient *,
+                             const nevh__planned *, size_t instance, size_t k,
+                             double length);
 /* Chooses the steps of a term. */
 void nevh__climb(nevh__explorer *, nevh__planned *);
 

@@ -229,6 +229,19 @@ int nevh__field_verify(nevh_field *, const nevh_options *);
 size_t nevh__step_rows(const nevh__planned *);
 size_t nevh__step_at(const nevh__planned *, size_t instance, size_t k);
 
+/* How dH/dt of a term is differenced; time.c. */
+typedef struct {
+    const nevh_gradient *method; /* NULL: the term does not read t */
+    double delta;
+} nevh__time_step;
+/* Chooses a step for each of the field's terms, to steps. */
+int nevh__field_plan_time(nevh_field *, const nevh_options *,
+                          nevh__time_step steps[]);
+/* Adds the time derivative of one term to dh_dt, a number a state. */
+int nevh__field_time_slope(nevh_field *, size_t term, const nevh__time_step *,
+                           size_t width, const double t[], const double q[],
+                           const double p[], double dh_dt[]);
+
 /* NEVH_OK, or why the field cannot be used (again). */
 int nevh__field_ready(nevh_field *);
 

@@ -59,10 +59,9 @@ static void take(estimate *rung, double usual, double now, double before,
 }
 
 /* Climbs from the shortest step at one sample. */
-static void climb_at(const nevh__explorer *e, const nevh__planned *term,
-                     size_t instance, size_t k, size_t at, double unit,
-                     ladder *l) {
-    const nevh_gradient *g = e->field->gradient;
+static void climb_at(const nevh__explorer *e, const nevh_gradient *g,
+                     const nevh__planned *term, size_t instance, size_t k,
+                     size_t at, double unit, ladder *l) {
     double move[MOST], x[MOST], h[MOST], noise, two = 0, full = 0;
     for (int rung = -1; rung < RUNGS; rung++) {
         double delta = ldexp(unit, LOWEST + rung);
@@ -164,10 +163,9 @@ static double usual_slope(const nevh__explorer *e, const nevh__planned *term,
     return count ? sorted[count / 2] : 0;
 }
 
-static nevh__step climb(const nevh__explorer *e, const nevh__planned *term,
-                        size_t instance, size_t k) {
-    size_t i = nevh__index(term, instance, k);
-    double length = e->length[k < term->nq ? i : e->field->n + i];
+nevh__step nevh__climb_along(const nevh__explorer *e, const nevh_gradient *g,
+                             const nevh__planned *term, size_t instance,
+                             size_t k, double length) {
     double unit = exp2(round(log2(length)));
     ladder l;
     memset(&l, 0, sizeof l);
@@ -175,8 +173,15 @@ static nevh__step climb(const nevh__explorer *e, const nevh__planned *term,
     l.usual = fmax(usual_slope(e, term, instance, k, unit, 0),
                    usual_slope(e, term, instance, k, unit, e->neighbours));
     for (size_t at = 0; at < e->samples.count; at += sample_stride(term))
-        climb_at(e, term, instance, k, at, unit, &l);
-    return choose(e->field->gradient, &l, unit);
+        climb_at(e, g, term, instance, k, at, unit, &l);
+    return choose(g, &l, unit);
+}
+
+static nevh__step climb(const nevh__explorer *e, const nevh__planned *term,
+                        size_t instance, size_t k) {
+    size_t i = nevh__index(term, instance, k);
+    double length = e->length[k < term->nq ? i : e->field->n + i];
+    return nevh__climb_along(e, e->field->gradient, term, instance, k, length);
 }
 
 void nevh__climb(nevh__explorer *e, nevh__planned *term) {

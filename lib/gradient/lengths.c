@@ -26,13 +26,14 @@ void nevh__along(const nevh__explorer *e, const nevh__planned *term,
             row[i] = value + (j == k && i < count ? move[i] : 0);
     }
     for (size_t i = 0; i < stride; i++)
-        f->times[i] = e->samples.t[at];
+        f->times[i] =
+            e->samples.t[at] + (k == NEVH__TIME && i < count ? move[i] : 0);
     double *rows_p = f->rows + term->nq * stride;
     nevh__term_values(term->term, f->portable, stride, count,
                       is->time ? f->times : f->zeros, f->rows, rows_p,
                       rows_p + term->np * stride, f->h, f->one);
     for (size_t i = 0; i < count; i++) {
-        x[i] = f->rows[k * stride + i];
+        x[i] = k == NEVH__TIME ? f->times[i] : f->rows[k * stride + i];
         h[i] = f->h[i];
     }
 }
@@ -64,10 +65,8 @@ static bool too_far(const variation *v) {
     return !(v->rest <= not_quadratic * v->whole + v->rounding);
 }
 
-/* The length of one variable of one instance: INFINITY where it is quadratic
-   as far as one can see, NAN where nothing is to be seen. */
-static double curve_length(const nevh__explorer *e, const nevh__planned *term,
-                           size_t instance, size_t k, double guess) {
+double nevh__curve_length(const nevh__explorer *e, const nevh__planned *term,
+                          size_t instance, size_t k, double guess) {
     double distance = guess;
     int leaps = 0;
     variation v = vary(e, term, instance, k, distance);
@@ -138,7 +137,7 @@ static void visit_all(nevh__explorer *e, visit_fn visit, double *energy) {
 /* Finite lengths, and the largest variation of H within them. */
 static void find_curved(nevh__explorer *e, const nevh__planned *term,
                         size_t instance, size_t k, size_t i, double *energy) {
-    double length = curve_length(e, term, instance, k, first_guess(e, i));
+    double length = nevh__curve_length(e, term, instance, k, first_guess(e, i));
     if (!isfinite(length))
         return;
     *energy = fmax(*energy, vary(e, term, instance, k, length).whole);

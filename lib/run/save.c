@@ -17,7 +17,7 @@ static header describe(const nevh_stepper *s) {
     strncpy(h.integrator, s->work.integrator->name, sizeof h.integrator - 1);
     h.n = s->work.n;
     h.width = s->work.width;
-    h.rows = s->work.memory_rows;
+    h.rows = s->rows;
     h.last_t = s->last_t;
     h.time_lost = s->time_lost;
     return h;
@@ -28,7 +28,7 @@ static void list_parts(const nevh_stepper *s, double *part[3], size_t size[3]) {
     part[0] = s->work.memory;
     part[1] = s->last_q;
     part[2] = s->last_p;
-    size[0] = s->work.memory_rows * s->work.width * sizeof(double);
+    size[0] = s->rows * s->work.width * sizeof(double);
     size[1] = size[2] = s->work.size * sizeof(double);
 }
 
@@ -86,12 +86,14 @@ nevh_stepper *nevh_stepper_copy(const nevh_stepper *s) {
         nevh_stepper_new(s->work.system, s->work.integrator, &s->options);
     if (!copy || !s->planned || !copy->planned)
         return copy;
+    /* Where the system has changed it may have another size, and no use. */
+    bool stale = s->work.field->revision != copy->work.field->revision;
     copy->work.field->revision = s->work.field->revision;
     double *to[3], *from[3];
     size_t size[3];
     list_parts(copy, to, size);
     list_parts(s, from, size);
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; !stale && i < 3; i++)
         memcpy(to[i], from[i], size[i]);
     copy->has_last = s->has_last;
     copy->last_t = s->last_t;

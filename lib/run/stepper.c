@@ -22,11 +22,14 @@ static bool own_options(nevh_options *o, size_t n) {
 
 static int plan_memory(nevh_stepper *s) {
     nevh_work *w = &s->work;
-    w->memory = nevh__array(w->memory_rows * w->width, sizeof(double));
+    s->fresh_rows = w->memory_rows + (s->damping ? w->n : 0) +
+                    (w->transform ? NEVH__TRANSFORM_ROWS : 0);
+    s->rows = s->fresh_rows + (w->ledger ? 2 : 0);
+    w->memory = nevh__array(s->rows * w->width, sizeof(double));
     w->scratch = nevh__array(w->scratch_size, sizeof(double));
     s->last_q = nevh__array(w->size, sizeof(double));
     s->last_p = nevh__array(w->size, sizeof(double));
-    s->before = nevh__array(w->memory_rows * w->width, sizeof(double));
+    s->before = nevh__array(s->rows * w->width, sizeof(double));
     if (w->memory && w->scratch && s->last_q && s->last_p && s->before)
         return NEVH_OK;
     return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
@@ -67,12 +70,15 @@ static int plan(nevh_stepper *s, const nevh_integrator *integrator) {
         status = nevh__check_structure(s);
     if (!status && s->options.transform && !integrator->own_time)
         status = nevh__transform_plan(w);
-    w->accounts = w->transform != NULL;
+    if (!status)
+        status = nevh__plan_friction(s);
     if (!status)
         status = integrator->kernel->plan(w);
-    s->kernel_rows = w->memory_rows;
-    if (w->transform)
-        w->memory_rows += NEVH__TRANSFORM_ROWS;
+    if (!status)
+        status = nevh__plan_damping(s);
+    if (!status)
+        status = nevh__plan_ledger(s);
+    w->accounts = w->transform || w->ledger;
     return status ? status : plan_memory(s);
 }
 
@@ -113,6 +119,9 @@ void nevh_stepper_free(nevh_stepper *s) {
     free((double *)s->options.scale);
     free((double *)s->options.q);
     free((double *)s->options.p);
+    nevh__damping_free(s->damping);
+    nevh__ledger_free(s->work.ledger);
+    free(s->rates);
     free(s->work.memory);
     free(s->work.scratch);
     free(s->last_q);
@@ -131,13 +140,16 @@ const char *nevh_stepper_message(const nevh_stepper *s) {
 
 static void forget_lane(nevh_stepper *s, size_t lane) {
     nevh_work *w = &s->work;
-    for (size_t row = 0; row < w->memory_rows; row++)
+    for (size_t row = 0; row < s->fresh_rows; row++)
         w->memory[row * w->width + lane] = 0;
 }
 
 void nevh_stepper_reset(nevh_stepper *s) {
     for (size_t lane = 0; s->planned && lane < s->work.width; lane++)
         forget_lane(s, lane);
+    for (size_t i = s->fresh_rows * s->work.width;
+         s->planned && i < s->rows * s->work.width; i++)
+        s->work.memory[i] = 0;
     s->has_last = false;
 }
 
@@ -158,7 +170,7 @@ static bool same_time(const nevh_stepper *s, double t, double h) {
 }
 
 static size_t memory_size(const nevh_stepper *s) {
-    return s->work.memory_rows * s->work.width * sizeof *s->work.memory;
+    return s->rows * s->work.width * sizeof *s->work.memory;
 }
 
 int nevh__begin(nevh_stepper *s, double t, double h, const double q[],
@@ -191,13 +203,17 @@ void nevh__undo(nevh_stepper *s) {
 int nevh__advance(nevh_stepper *s, double t, double h, double q[], double p[]) {
     nevh_work *w = &s->work;
     w->elapsed = w->transform ? 0 : h;
+    nevh__ledger_open(w, q, p);
     int status = NEVH_OK;
     if (w->transform)
-        status = nevh__transform_begin(w, w->memory + s->kernel_rows, t, q, p);
+        status = nevh__transform_begin(w, w->memory + w->memory_rows * w->width,
+                                       t, q, p);
     if (!status)
-        status = w->integrator->kernel->step(w, t, h, q, p);
+        status = s->damping ? nevh__damped_step(s, t, h, q, p)
+                            : w->integrator->kernel->step(w, t, h, q, p);
     if (status)
         return status;
+    nevh__ledger_close(s);
     double passed = w->elapsed + (s->own_time ? s->time_lost : 0);
     s->last_t = t + passed;
     s->time_lost = passed - (s->last_t - t);

@@ -11,7 +11,12 @@ struct nevh_stepper {
     nevh_options options; /* arrays are the stepper's own */
     nevh__report report;
     bool planned, own_time;
-    size_t kernel_rows; /* of the memory; those of the transform follow */
+    /* The kernel's memory begins a larger one: then the carry of friction, n
+       rows, or what the transform keeps, and the ledger's two.  A lane that
+       starts afresh keeps the last. */
+    size_t rows, fresh_rows;
+    double *rates;                 /* n of friction; NULL: there is none */
+    struct nevh__damping *damping; /* NULL: no friction around steps */
     /* What the last step returned. */
     bool has_last;
     double last_t, *last_q, *last_p;
@@ -44,6 +49,27 @@ int nevh__run_steps(nevh_stepper *, double t0, double h, size_t steps,
                     bool ends, double q[], double p[],
                     const nevh_observer observers[], size_t count);
 void nevh__end_run(nevh_stepper *, const double q[], const double p[]);
+/* Finds the friction, and whether the scheme takes it. */
+int nevh__plan_friction(nevh_stepper *);
+/* Makes room for friction around steps; after the kernel's plan. */
+int nevh__plan_damping(nevh_stepper *);
+void nevh__damping_free(struct nevh__damping *); /* NULL is allowed */
+/* A step with friction around it. */
+int nevh__damped_step(nevh_stepper *, double t, double h, double q[],
+                      double p[]);
+
+/* The account of the energy, where it was asked for and is not 0. */
+int nevh__plan_ledger(nevh_stepper *);
+void nevh__ledger_free(struct nevh_ledger *); /* NULL is allowed */
+/* A step begins at a state. */
+void nevh__ledger_open(nevh_work *, const double q[], const double p[]);
+/* Adds sign times H to what is pending; NULL is allowed. */
+int nevh__ledger_add(nevh_work *, double sign, double t, const double q[],
+                     const double p[]);
+/* The step was taken: what is pending counts. */
+void nevh__ledger_close(nevh_stepper *);
+/* Whether nevh_stepper_gain is what came in, or nothing does. */
+bool nevh__balanced(const nevh_stepper *);
 
 /* No step was taken: the memory is what it was before nevh__begin. */
 void nevh__undo(nevh_stepper *);

@@ -130,8 +130,7 @@ static nevh__term *copy_term(const nevh_system *s, const nevh_term *from) {
     return NULL;
 }
 
-/* The index of an effect, new if need be; SIZE_MAX when memory is out. */
-static size_t effect_index(nevh_system *s, const char *name) {
+size_t nevh__effect_index(nevh_system *s, const char *name) {
     nevh__effect *effect = effect_named(s, name);
     if (effect)
         return (size_t)(effect - s->effects);
@@ -155,7 +154,7 @@ static int append(nevh_system *s, const nevh_term *from) {
         return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
     s->terms = terms;
     nevh__term *term = copy_term(s, from);
-    size_t effect = term ? effect_index(s, from->effect) : SIZE_MAX;
+    size_t effect = term ? nevh__effect_index(s, from->effect) : SIZE_MAX;
     if (effect == SIZE_MAX) {
         term_free(term);
         return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
@@ -235,8 +234,11 @@ void nevh_system_free(nevh_system *s) {
         term_free(s->terms[i]);
     for (size_t i = 0; i < s->n_effects; i++)
         free(s->effects[i].name);
+    for (size_t i = 0; i < s->n_frictions; i++)
+        free(s->frictions[i].rates);
     free(s->terms);
     free(s->effects);
+    free(s->frictions);
     free(s);
 }
 

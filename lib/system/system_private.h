@@ -51,12 +51,19 @@ typedef struct {
     size_t effect; /* index into the effects */
 } nevh__term;
 
+typedef struct {
+    size_t effect;
+    double *rates; /* n */
+} nevh__friction;
+
 struct nevh_system {
     size_t n;
     nevh__term **terms; /* pointers, so that terms stay where they are */
     size_t n_terms;
     nevh__effect *effects;
     size_t n_effects;
+    nevh__friction *frictions;
+    size_t n_frictions;
     unsigned long revision; /* counts changes */
     nevh_value_fn whole;    /* of nevh_system_from */
     const void *whole_params;
@@ -66,6 +73,10 @@ struct nevh_system {
 static inline bool nevh__term_on(const nevh_system *s, const nevh__term *term) {
     return s->effects[term->effect].on;
 }
+
+/* The index of an effect, new and on if need be; SIZE_MAX when memory is out.
+ */
+size_t nevh__effect_index(nevh_system *, const char *name);
 
 /* Values of a term in `width` columns (a multiple of NEVH__LANES) of which
    `used` count; rows of `width` doubles as in nevh_block_fn.  A scalar value

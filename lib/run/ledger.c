@@ -1,0 +1,238 @@
+/* nevh: the account of the energy that comes in from outside.
+
+   For H(t, q, p) with friction dH = (dH/dt - sum of rate p dH/dp) dt along an
+   orbit.  A scheme integrates the first as the energy E conjugate to t, in the
+   extended phase space where H + E is conserved: E changes with each kick and
+   drift, by dV/dt and dT/dt at the very points that these take.  Where friction
+   is put around a step, it takes the difference of H before and after.
+
+   Everything is asked of a field of its own: the stepper's counts are the
+   orbit's.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradient/field_private.h"
+#include "run/stepper_private.h"
+#include "transform_private.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double incomplete = 1e-9; /* of a step, not accounted for */
+
+struct nevh_ledger {
+    nevh_field *field;
+    nevh__time_step *steps;        /* of the field's terms */
+    double *t, *rate, *h;          /* width each; rate: of the gain */
+    double *slope;                 /* n x width: dH/dp, for friction */
+    double *q, *p;                 /* n x width: where the step began */
+    double *pending, *lost;        /* width each: of the step under way */
+    double kicked, drifted;        /* parts of it that the kernel told */
+    bool driven, mixed, by_kernel; /* reads t; so does a term of q and p; the
+                                      kernel has something to tell */
+};
+
+static int out_of_memory(nevh_stepper *s) {
+    return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
+}
+
+static int allocate(nevh_stepper *s, struct nevh_ledger *l) {
+    size_t width = s->work.width, size = s->work.size;
+    l->t = nevh__array(width, sizeof(double));
+    l->rate = nevh__array(width, sizeof(double));
+    l->h = nevh__array(width, sizeof(double));
+    l->pending = nevh__array(width, sizeof(double));
+    l->lost = nevh__array(width, sizeof(double));
+    l->slope = nevh__array(size, sizeof(double));
+    l->q = nevh__array(size, sizeof(double));
+    l->p = nevh__array(size, sizeof(double));
+    l->steps = nevh__array(s->work.system->n_terms, sizeof *l->steps);
+    bool all = l->t && l->rate && l->h && l->pending && l->lost && l->slope &&
+               l->q && l->p && l->steps;
+    return all ? NEVH_OK : out_of_memory(s);
+}
+
+static int plan_field(nevh_stepper *s, struct nevh_ledger *l) {
+    nevh_work *w = &s->work;
+    l->field = nevh_field_new(w->system, w->options);
+    if (!l->field)
+        return out_of_memory(s);
+    int status = l->field->report.status;
+    if (!status && l->driven)
+        status = nevh__field_plan_time(l->field, w->options, l->steps);
+    for (size_t i = 0; !status && i < l->field->n_terms; i++) {
+        const nevh__planned *term = &l->field->terms[i];
+        l->mixed |= term->term->is.time && term->nq && term->np;
+    }
+    return status ? nevh__fail_as(&s->report, &l->field->report) : NEVH_OK;
+}
+
+int nevh__plan_ledger(nevh_stepper *s) {
+    nevh_work *w = &s->work;
+    bool driven = !(nevh_system_traits(w->system) & NEVH_AUTONOMOUS);
+    if (!w->options->balance || !(driven || s->rates))
+        return NEVH_OK;
+    if ((driven || w->friction) && w->integrator->kernel->opaque)
+        return nevh__fail(&s->report, NEVH_ESTRUCT,
+                          "%s cannot keep the balance of the energy where %s: "
+                          "its stages are out of reach",
+                          w->integrator->name,
+                          driven ? "H reads t" : "there is friction");
+    struct nevh_ledger *l = w->ledger = nevh__array(1, sizeof *l);
+    if (!l)
+        return out_of_memory(s);
+    l->driven = driven;
+    l->by_kernel = driven || w->friction;
+    int status = allocate(s, l);
+    return status ? status : plan_field(s, l);
+}
+
+void nevh__ledger_free(struct nevh_ledger *l) {
+    if (!l)
+        return;
+    nevh_field_free(l->field);
+    free(l->steps);
+    free(l->t);
+    free(l->rate);
+    free(l->h);
+    free(l->pending);
+    free(l->lost);
+    free(l->slope);
+    free(l->q);
+    free(l->p);
+    free(l);
+}
+
+void nevh__ledger_open(nevh_work *w, const double q[], const double p[]) {
+    struct nevh_ledger *l = w->ledger;
+    if (!l)
+        return;
+    l->kicked = l->drifted = 0;
+    for (size_t lane = 0; lane < w->width; lane++)
+        l->pending[lane] = l->lost[lane] = 0;
+    if (!l->mixed)
+        return;
+    memcpy(l->q, q, w->size * sizeof *q);
+    memcpy(l->p, p, w->size * sizeof *p);
+}
+
+/* sum + lost += x, whichever is larger. */
+static void add(double *sum, double *lost, double x) {
+    double next = *sum + x, part = next - *sum;
+    *lost += (*sum - (next - part)) + (x - part);
+    *sum = next;
+}
+
+static int fail(nevh_work *w, int status) {
+    if (status)
+        nevh_work_fail(w, status, "%s", nevh_field_message(w->ledger->field));
+    return status;
+}
+
+int nevh__ledger_add(nevh_work *w, double sign, double t, const double q[],
+                     const double p[]) {
+    struct nevh_ledger *l = w->ledger;
+    if (!l)
+        return NEVH_OK;
+    for (size_t lane = 0; lane < w->width; lane++)
+        l->t[lane] = t;
+    int status = nevh_field_value(l->field, w->width, l->t, q, p, l->h);
+    for (size_t lane = 0; !status && lane < w->width; lane++)
+        add(&l->pending[lane], &l->lost[lane], sign * l->h[lane]);
+    return fail(w, status);
+}
+
+/* Of a term T(t, p) + V(t, q) that is one function: dV/dt + dT/dt(p0) with
+   dH/dq, dT/dt(p) - dT/dt(p0) with dH/dp, p0 being that of the step's start. */
+static int add_half(nevh_work *w, size_t i, bool kick, const double t[],
+                    const double q[], const double p[]) {
+    struct nevh_ledger *l = w->ledger;
+    const nevh__time_step *step = &l->steps[i];
+    if (kick)
+        return nevh__field_time_slope(l->field, i, step, w->width, t, q, l->p,
+                                      l->rate);
+    for (size_t lane = 0; lane < w->width; lane++)
+        l->h[lane] = 0;
+    int status = nevh__field_time_slope(l->field, i, step, w->width, t, l->q,
+                                        l->p, l->h);
+    for (size_t lane = 0; lane < w->width; lane++)
+        l->rate[lane] -= l->h[lane];
+    return status ? status
+                  : nevh__field_time_slope(l->field, i, step, w->width, t, l->q,
+                                           p, l->rate);
+}
+
+/* What the parts asked for have of dH/dt of a term. */
+static int add_term(nevh_work *w, size_t i, unsigned parts, const double t[],
+                    const double q[], const double p[]) {
+    struct nevh_ledger *l = w->ledger;
+    const nevh__planned *term = &l->field->terms[i];
+    const unsigned both = NEVH_OF_Q | NEVH_OF_P;
+    if (!l->steps[i].method)
+        return NEVH_OK;
+    if (term->nq && term->np && parts != both)
+        return add_half(w, i, parts == NEVH_OF_Q, t, q, p);
+    if (!(parts & (term->np && !term->nq ? NEVH_OF_P : NEVH_OF_Q)))
+        return NEVH_OK;
+    return nevh__field_time_slope(l->field, i, &l->steps[i], w->width, t, q, p,
+                                  l->rate);
+}
+
+static int add_friction(nevh_work *w, const double t[], const double q[],
+                        const double p[]) {
+    struct nevh_ledger *l = w->ledger;
+    int status =
+        nevh_field_gradient(l->field, w->width, t, q, p, NULL, l->slope);
+    for (size_t i = 0; !status && i < w->size; i++)
+        l->rate[i % w->width] -= w->friction[i / w->width] * p[i] * l->slope[i];
+    return status;
+}
+
+int nevh_work_account(nevh_work *w, unsigned parts, double weight,
+                      const double t[], const double q[], const double p[]) {
+    struct nevh_ledger *l = w->ledger;
+    double rate = 0;
+    int status =
+        w->transform ? nevh__transform_rate(w, t, q, p, &rate) : NEVH_OK;
+    w->elapsed += weight * rate;
+    if (status || !l || !l->by_kernel || weight == 0)
+        return status;
+    l->kicked += parts & NEVH_OF_Q ? weight : 0;
+    l->drifted += parts & NEVH_OF_P ? weight : 0;
+    for (size_t lane = 0; lane < w->width; lane++)
+        l->rate[lane] = 0;
+    for (size_t i = 0; !status && i < l->field->n_terms; i++)
+        status = add_term(w, i, parts, t, q, p);
+    if (!status && w->friction && parts & NEVH_OF_P)
+        status = add_friction(w, t, q, p);
+    for (size_t lane = 0; !status && lane < w->width; lane++)
+        add(&l->pending[lane], &l->lost[lane], weight * l->rate[lane]);
+    return fail(w, status);
+}
+
+void nevh__ledger_close(nevh_stepper *s) {
+    const nevh_work *w = &s->work;
+    const struct nevh_ledger *l = w->ledger;
+    if (!l)
+        return;
+    double *total = w->memory + s->fresh_rows * w->width;
+    double slack = incomplete * fabs(w->elapsed);
+    bool complete = !l->by_kernel || (fabs(l->kicked - w->elapsed) <= slack &&
+                                      fabs(l->drifted - w->elapsed) <= slack);
+    for (size_t lane = 0; lane < w->width; lane++) {
+        double *lost = total + w->width + lane;
+        add(&total[lane], lost, complete ? l->pending[lane] : NAN);
+        *lost += l->lost[lane];
+    }
+}
+
+double nevh_stepper_gain(const nevh_stepper *s, size_t lane) {
+    const nevh_work *w = &s->work;
+    if (!s->planned || !w->ledger || lane >= w->width)
+        return 0;
+    const double *total = w->memory + s->fresh_rows * w->width;
+    return total[lane] + total[w->width + lane];
+}
+
+bool nevh__balanced(const nevh_stepper *s) {
+    return s->options.balance ||
+           (!s->rates && nevh_system_traits(s->work.system) & NEVH_AUTONOMOUS);
+}

@@ -1,0 +1,138 @@
+/* nevh tests: dH/dt by differences, in any unit of time.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradient/field_private.h"
+#include "support.h"
+#include <math.h>
+#include <string.h>
+
+/* u is the unit, the numbers are those of a
+   pendulum of frequency about 1. */
+typedef struct {
+    double u;
+    double (*f)(double x); /* of t/u */
+} clockwork;
+
+static double wave(double x) {
+    return cos(1.7 * x);
+}
+static double wave_slope(double x) {
+    return -1.7 * sin(1.7 * x);
+}
+static double ramp(double x) {
+    return 3 - 0.2 * x;
+}
+static double ramp_slope(double x) {
+    (void)x;
+    return -0.2;
+}
+static double parabola(double x) {
+    return 0.3 * x * x - x;
+}
+static double parabola_slope(double x) {
+    return 0.6 * x - 1;
+}
+static double pulse(double x) {
+    return exp(-(x - 3) * (x - 3));
+}
+static double pulse_slope(double x) {
+    return -2 * (x - 3) * pulse(x);
+}
+static double overtone(double x) {
+    return sin(x) + 0.1 * sin(37 * x);
+}
+static double overtone_slope(double x) {
+    return cos(x) + 3.7 * cos(37 * x);
+}
+static double fixed(double x) {
+    (void)x;
+    return 5;
+}
+static double zero(double x) {
+    (void)x;
+    return 0;
+}
+static const struct {
+    double (*f)(double), (*slope)(double);
+} clocks[] = {{wave, wave_slope},         {ramp, ramp_slope},
+              {parabola, parabola_slope}, {pulse, pulse_slope},
+              {overtone, overtone_slope}, {fixed, zero}};
+enum { CLOCKS = sizeof clocks / sizeof *clocks };
+
+static double by_clock(double t, const double q[], const double p[],
+                       const double c[], const void *params) {
+    const clockwork *w = params;
+    (void)p;
+    return c[0] * w->f(t / w->u) * q[0] / (w->u * w->u);
+}
+
+static double still(double t, const double q[], const double p[],
+                    const double c[], const void *params) {
+    const clockwork *w = params;
+    (void)t, (void)p, (void)c;
+    return -cos(q[0]) / (w->u * w->u);
+}
+
+static double half_square(double t, const double q[], const double p[],
+                          const double c[], const void *params) {
+    (void)t, (void)q, (void)c, (void)params;
+    return p[0] * p[0] / 2;
+}
+
+static void assert_slope(size_t kind, double u, double from) {
+    const clockwork w = {u, clocks[kind].f};
+    const double constants[] = {1, 0.5, -0.25};
+    const size_t one[] = {0, 0, 0};
+    nevh_system *s = nevh_system_new(1);
+    nevh_system_add(
+        s, &(nevh_term){.effect = "kinetic", .np = 1, .value = half_square});
+    nevh_system_add(
+        s, &(nevh_term){
+               .effect = "gravity", .nq = 1, .value = still, .params = &w});
+    nevh_system_add(s, &(nevh_term){.effect = "clock",
+                                    .nq = 1,
+                                    .nc = 1,
+                                    .q = one,
+                                    .c = constants,
+                                    .count = 3,
+                                    .time = true,
+                                    .value = by_clock,
+                                    .params = &w});
+    double q = 0.9, p = 0.3 / u, worst = 0, size = 0;
+    nevh_options o = {.t = from * u, .q = &q, .p = &p};
+    nevh_field *f = nevh_field_new(s, &o);
+    nevh__time_step steps[3];
+    memset(steps, 0, sizeof steps);
+    ck_assert_int_eq(nevh__field_plan_time(f, &o, steps), NEVH_OK);
+    ck_assert(!steps[0].method && !steps[1].method && steps[2].method);
+    for (int i = 0; i < 200; i++) {
+        double x = from + 0.0713 * i, t = x * u, slope = 0;
+        double exact = 1.25 * clocks[kind].slope(x) * q / u / u / u;
+        ck_assert_int_eq(
+            nevh__field_time_slope(f, 2, &steps[2], 1, &t, &q, &p, &slope),
+            NEVH_OK);
+        worst = fmax(worst, fabs(slope - exact));
+        size = fmax(size, fabs(exact));
+    }
+    ck_assert_msg(worst <= 1e-11 * size, "clock %zu, unit %g, from %g: %.1e",
+                  kind, u, from, worst / size);
+    nevh_field_free(f);
+    nevh_system_free(s);
+}
+
+START_TEST(time_derivative) {
+    const double units[] = {1, 1e-15, 1e12};
+    for (size_t kind = 0; kind < CLOCKS; kind++) {
+        assert_slope(kind, units[_i], 0);
+        assert_slope(kind, units[_i], 2.3);
+        assert_slope(kind, units[_i], -0.7);
+    }
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("time slope");
+    TCase *cases = tcase_create("time slope");
+    tcase_add_loop_test(cases, time_derivative, 0, 3);
+    suite_add_tcase(suite, cases);
+    return run_suite(suite);
+}

@@ -1,0 +1,73 @@
+/* nevh tests: systems with friction.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_TESTS_DAMPED_H
+#define NEVH_TESTS_DAMPED_H
+
+#include "support.h"
+#include <math.h>
+#include <nevh/extend.h>
+#include <string.h>
+
+#define assert_says(message, word)                                             \
+    ck_assert_msg(strstr(message, word), "no \"%s\" in: %s", word, message)
+
+typedef struct {
+    double q[MOST_DOF], p[MOST_DOF];
+} state;
+
+static inline state start(const problem *b) {
+    state z;
+    memcpy(z.q, b->q, sizeof z.q);
+    memcpy(z.p, b->p, sizeof z.p);
+    return z;
+}
+
+static inline bool same(const problem *b, const state *x, const state *y) {
+    return memcmp(x->q, y->q, b->n * sizeof(double)) == 0 &&
+           memcmp(x->p, y->p, b->n * sizeof(double)) == 0;
+}
+
+static const double unequal[] = {0.21, 0.08}, equal[] = {0.13, 0.13};
+
+static inline nevh_system *damped(const problem *b, const double rates[]) {
+    nevh_system *s = b->make();
+    ck_assert_int_eq(nevh_system_add_friction(s, "drag", rates), NEVH_OK);
+    return s;
+}
+
+static inline const problem *problem_for(const nevh_integrator *scheme) {
+    return nevh_integrator_needs(scheme) ? &henon_heiles : &double_pendulum;
+}
+
+/* Whether friction is put around the scheme's steps, or refused. */
+static inline bool splits(const nevh_integrator *scheme) {
+    return !scheme->kernel->damps && !scheme->own_time;
+}
+static inline bool refuses(const nevh_integrator *scheme) {
+    return !scheme->kernel->damps && scheme->own_time;
+}
+
+static inline double distance(const problem *b, const state *x,
+                              const state *y) {
+    double sum = 0;
+    for (size_t k = 0; k < b->n; k++)
+        sum += (x->q[k] - y->q[k]) * (x->q[k] - y->q[k]) +
+               (x->p[k] - y->p[k]) * (x->p[k] - y->p[k]);
+    return sqrt(sum);
+}
+
+/* The slope of a straight line through log-log points. */
+static inline double slope_of(int count, const double x[], const double y[]) {
+    double mx = 0, my = 0, xx = 0, xy = 0;
+    for (int i = 0; i < count; i++) {
+        mx += x[i] / count;
+        my += y[i] / count;
+    }
+    for (int i = 0; i < count; i++) {
+        xx += (x[i] - mx) * (x[i] - mx);
+        xy += (x[i] - mx) * (y[i] - my);
+    }
+    return xy / xx;
+}
+
+#endif
