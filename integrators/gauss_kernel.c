@@ -227,7 +227,7 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     gauss_step s = lay_out(w, t, h, q, p);
     weigh(g, h);
     guess(&s, g);
-    nevh__stage_problem problem = {t, h, q, p, s.slopes, map, &s};
+    nevh__stage_problem problem = {t, h, q, p, s.slopes, map, &s, NULL};
     int status = nevh__stage_solve(g->solver, &problem);
     return status ? status : commit(&s, g, q, p);
 }

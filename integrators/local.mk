@@ -14,6 +14,11 @@ libnevh_core_la_SOURCES += \
 	integrators/gauss_kernel.c \
 	integrators/gauss_coefficients.c \
 	integrators/gauss.c \
+	integrators/discrete_gradient_private.h \
+	integrators/discrete_gradient_kernel.c \
+	integrators/itoh_abe.c \
+	integrators/gonzalez.c \
+	integrators/avf.c \
 	integrators/gsl_private.h \
 	integrators/gsl_kernel.c \
 	integrators/gsl_references.c

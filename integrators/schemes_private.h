@@ -20,6 +20,10 @@
     X(gauss16)                                                                 \
     X(gauss18)                                                                 \
     X(gauss20)                                                                 \
+    X(itoh_abe)                                                                \
+    X(itoh_abe_symmetric)                                                      \
+    X(gonzalez)                                                                \
+    X(avf)                                                                     \
     X(euler)                                                                   \
     X(rk4)                                                                     \
     X(gsl_rkf45)                                                               \

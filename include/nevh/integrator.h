@@ -35,6 +35,12 @@ NEVH_API extern const nevh_integrator *const nevh_gauss14;
 NEVH_API extern const nevh_integrator *const nevh_gauss16;
 NEVH_API extern const nevh_integrator *const nevh_gauss18;
 NEVH_API extern const nevh_integrator *const nevh_gauss20;
+/* Implicit, for any H: they keep the energy instead of the symplectic form.
+   Itoh and Abe's take values of H and no derivative. */
+NEVH_API extern const nevh_integrator *const nevh_itoh_abe;
+NEVH_API extern const nevh_integrator *const nevh_itoh_abe_symmetric;
+NEVH_API extern const nevh_integrator *const nevh_gonzalez;
+NEVH_API extern const nevh_integrator *const nevh_avf;
 /* Not symplectic: the references.  GSL's take one step of h where the
    tolerance is 0, and as many as the tolerance needs where it is not. */
 NEVH_API extern const nevh_integrator *const nevh_euler;

@@ -82,21 +82,31 @@ static void begin(nevh__stage_solver *s) {
     }
 }
 
-/* What the noise of one lane's gradients makes of a step, in units of scale:
-   the largest over all variables, since each draws the others along.  Taken at
-   the start of the step, whose state it needs in one piece. */
-static double noise_level(nevh__stage_solver *s, size_t lane) {
+/* The noise of one lane's gradients, at the start of the step, whose state it
+   needs in one piece. */
+static int gradient_noise(nevh__stage_solver *s, size_t lane) {
     const nevh_work *w = s->work;
     const nevh__stage_problem *e = s->problem;
-    double *q = s->noise + 2 * w->n, *p = q + w->n, most = 0;
+    double *q = s->noise + 2 * w->n, *p = q + w->n;
     for (size_t k = 0; k < w->n; k++) {
         q[k] = e->q[k * w->width + lane];
         p[k] = e->p[k * w->width + lane];
     }
-    s->status =
+    int status =
         nevh__field_noise(w->field, e->t, q, p, s->noise + w->n, s->noise);
-    if (s->status)
-        nevh_work_fail(s->work, s->status, "%s", nevh_field_message(w->field));
+    if (status)
+        nevh_work_fail(s->work, status, "%s", nevh_field_message(w->field));
+    return status;
+}
+
+/* What noise makes of a step of one lane, in units of scale: the largest over
+   all variables, since each draws the others along. */
+static double noise_level(nevh__stage_solver *s, size_t lane) {
+    const nevh_work *w = s->work;
+    const nevh__stage_problem *e = s->problem;
+    double most = 0;
+    s->status =
+        e->noise ? e->noise(e->data, lane, s->noise) : gradient_noise(s, lane);
     for (size_t k = 0; !s->status && k < 2 * w->n; k++)
         most = fmax(most, s->noise[k] / s->scale[k * w->width + lane]);
     return fabs(e->h) * most;
@@ -115,8 +125,8 @@ typedef struct {
 
 /* Differences only: the last sweep drew noise and nothing else. */
 static bool drowned(nevh__stage_solver *s, size_t lane, const progress *made) {
-    return s->work->field->gradient->offsets && made->change < may_be_noise &&
-           made->change >= s->lane[lane].least &&
+    return (s->problem->noise || s->work->field->gradient->offsets) &&
+           made->change < may_be_noise && made->change >= s->lane[lane].least &&
            made->change <= 2 * DBL_EPSILON + noise_level(s, lane);
 }
 

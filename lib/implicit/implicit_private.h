@@ -24,6 +24,9 @@ typedef struct {
     int (*map)(void *data, size_t active, const size_t lanes[],
                const double x[], double out[]);
     void *data;
+    /* How far rounding in H may move each of a lane's 2n slopes; NULL: as far
+       as it moves the field's gradient. */
+    int (*noise)(void *data, size_t lane, double noise[]);
 } nevh__stage_problem;
 
 /* For the work's n and width.  NULL when memory is out. */
