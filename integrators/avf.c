@@ -16,7 +16,7 @@ const nevh_integrator nevh__avf = {
     .aliases = "averaged-vector-field",
     .source = "G. R. W. Quispel, D. I. McLaren, A new class of energy-"
               "preserving numerical integration methods, J. Phys. A 41 (2008) "
-              "045206, eq. (3)",
+              "045206",
     .order = 2,
     .stages = 8,
     .sweep_gradients = 8,

@@ -21,7 +21,7 @@
 
 /* Below this |z' - z|, in units of length, the midpoint rule keeps the energy
    to rounding, and a correction would be 0/0. */
-static const double least_way = 16 * 0x1p-26;
+static const double least_way = 0x1p-34;
 /* Defects of the energy up to so many roundings of H are tolerated, for no
    correction of them means anything. */
 static const double tolerated = 4 * DBL_EPSILON;

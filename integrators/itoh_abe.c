@@ -20,12 +20,16 @@
 
 /* Points that are evaluated at once, where there are so many. */
 enum { MOST_POINTS = 256, FEWEST_POINTS = 8, ROOM = 65536 };
-static const double shortest = 0x1p-17; /* in units of length */
+/* Shorter increments are made longer: in units of length, and of the longest
+   of the step. */
+static const double tiny = 64 * DBL_EPSILON; /* of the variable itself */
+static const double shortest = 0x1p-17, shortest_part = 1. / 64;
 
 /* Where H is evaluated: `room` points at most. */
 typedef struct {
     double *z, *t;
     nevh__values h;
+    double *least; /* of each lane, in units of length */
 } stand;
 
 static size_t most_points(const nevh_work *w) {
@@ -36,13 +40,14 @@ static size_t most_points(const nevh_work *w) {
 }
 
 static size_t own_size(const nevh_work *w) {
-    return most_points(w) * (2 * w->n + 4);
+    return most_points(w) * (2 * w->n + 5);
 }
 
 static stand find_stand(const nevh__gradient_step *s) {
     size_t room = most_points(s->work);
     stand to = {.z = s->own, .t = s->own + room * 2 * s->work->n};
     to.h = (nevh__values){to.t + room, to.t + 2 * room, to.t + 3 * room};
+    to.least = to.h.size + room;
     return to;
 }
 
@@ -52,9 +57,17 @@ static size_t variable_at(const nevh__gradient_step *s, size_t stop) {
     return i % 2 * n + i / 2;
 }
 
-/* The shortest increment of variable k. */
-static double short_way(const nevh__gradient_step *s, size_t k, double z) {
-    return fmax(shortest * s->length[k], 64 * DBL_EPSILON * fabs(z));
+/* The shortest increment of each variable, in units of length. */
+static void find_least(const nevh__gradient_step *s, size_t active,
+                       const size_t lanes[], double least[]) {
+    const nevh_work *w = s->work;
+    for (size_t a = 0; a < active; a++)
+        least[a] = shortest;
+    for (size_t k = 0; k < 2 * w->n; k++)
+        for (size_t a = 0; a < active; a++) {
+            double dz = s->ends[k * active + a] - s->z[k * w->width + lanes[a]];
+            least[a] = fmax(least[a], shortest_part * fabs(dz) / s->length[k]);
+        }
 }
 
 /* A point with what was visited before the stop at its end, and the stop's own
@@ -124,12 +137,11 @@ static int long_ways(const nevh__gradient_step *s, const stand *to,
 }
 
 /* Whether the way is short, and then its ends, made longer. */
-static bool lengthen(const nevh__gradient_step *s, size_t k, double z,
-                     double end, double ends[2]) {
-    double middle = z + (end - z) / 2, least = short_way(s, k, middle);
-    ends[0] = middle - least / 2;
-    ends[1] = middle + least / 2;
-    return !(fabs(end - z) >= least);
+static bool lengthen(double least, double z, double end, double ends[2]) {
+    double middle = z + (end - z) / 2, way = fmax(least, tiny * fabs(middle));
+    ends[0] = middle - way / 2;
+    ends[1] = middle + way / 2;
+    return !(fabs(end - z) >= way);
 }
 
 static int short_ways(const nevh__gradient_step *s, const stand *to,
@@ -137,17 +149,18 @@ static int short_ways(const nevh__gradient_step *s, const stand *to,
                       double out[]) {
     size_t k = variable_at(s, stop), count = 0, width = s->work->width;
     const double *z = s->z + k * width, *end = s->ends + k * active;
-    double ends[2], *slope = out + nevh__conjugate(s->work, k) * active;
+    double ends[2], unit = s->length[k];
+    double *slope = out + nevh__conjugate(s->work, k) * active;
     for (size_t a = 0; a < active; a++)
-        count += 2 * lengthen(s, k, z[lanes[a]], end[a], ends);
+        count += 2 * lengthen(unit * to->least[a], z[lanes[a]], end[a], ends);
     for (size_t a = 0, at = 0; a < active; a++)
-        if (lengthen(s, k, z[lanes[a]], end[a], ends)) {
+        if (lengthen(unit * to->least[a], z[lanes[a]], end[a], ends)) {
             put(s, to, count, at++, stop, ends[0], active, a, lanes[a]);
             put(s, to, count, at++, stop, ends[1], active, a, lanes[a]);
         }
     int status = count ? evaluate(s, to, count) : NEVH_OK;
-    for (size_t a = 0, at = 0; a < active; a++)
-        if (lengthen(s, k, z[lanes[a]], end[a], ends)) {
+    for (size_t a = 0, at = 0; !status && at < count; a++)
+        if (lengthen(unit * to->least[a], z[lanes[a]], end[a], ends)) {
             slope[a] = ((to->h.h[at + 1] - to->h.h[at]) +
                         (to->h.lost[at + 1] - to->h.lost[at])) /
                        (ends[1] - ends[0]);
@@ -160,6 +173,7 @@ static int increments(const nevh__gradient_step *s, size_t active,
                       const size_t lanes[], const double x[], double out[]) {
     const stand to = find_stand(s);
     (void)x;
+    find_least(s, active, lanes, to.least);
     int status = long_ways(s, &to, active, lanes, out);
     for (size_t stop = 0; !status && stop < 2 * s->work->n; stop++)
         status = short_ways(s, &to, stop, active, lanes, out);
@@ -169,9 +183,13 @@ static int increments(const nevh__gradient_step *s, size_t active,
 static int find_noise(void *step, size_t lane, double noise[]) {
     const nevh__gradient_step *s = step;
     const nevh_work *w = s->work;
+    double least = shortest;
+    for (size_t k = 0; k < 2 * w->n; k++)
+        least = fmax(least, shortest_part / s->length[k] *
+                                fabs(s->h * s->x[k * w->width + lane]));
     for (size_t k = 0; k < 2 * w->n; k++) {
         size_t i = k * w->width + lane;
-        double way = fmax(fabs(s->h * s->x[i]), short_way(s, k, s->z[i]));
+        double way = fmax(fabs(s->h * s->x[i]), least * s->length[k]);
         noise[nevh__conjugate(w, k)] = DBL_EPSILON * s->start.size[lane] / way;
     }
     return NEVH_OK;
