@@ -34,11 +34,15 @@ typedef struct {
     bool autonomous;
 } gradient_plan;
 
-/* Memory: what sums lost; slopes of each part, in the last step and in the one
-   before; the h of these two (0: there is none); whether there is an energy;
-   it, in two parts, and the time it was taken at. */
+/* Memory: what sums lost; slopes of each part in the last steps, and the h of
+   these (0: there is none); whether there is an energy; it, in two parts, and
+   the time it was taken at. */
+enum { STEPS = 3 };
 typedef struct {
-    double *carry, *last, *before, *h, *h_before, *known, *energy, *lost, *t;
+    double *carry;         /* 2n x width */
+    double *slopes[STEPS]; /* parts x 2n x width each, the last step first */
+    double *h[STEPS];      /* width */
+    double *known, *energy, *lost, *t; /* width */
 } remembered;
 
 static const nevh__discrete_gradient *table_of(const nevh_work *w) {
@@ -90,30 +94,31 @@ static int plan(nevh_work *w) {
     int status = plan_parts(w, nodes);
     if (status)
         return status;
-    w->memory_rows = 2 * w->n * (1 + 2 * table->parts) + 6;
+    w->memory_rows = 2 * w->n * (1 + STEPS * table->parts) + STEPS + 4;
     w->scratch_size = (w->memory_rows + 8) * w->width + 3 * all +
                       nodes * (2 * all + w->width) +
                       (table->own_size ? table->own_size(w) : 0);
     return NEVH_OK;
 }
 
-static remembered find_memory(const nevh_work *w, double *from) {
-    size_t width = w->width, slopes = 2 * w->size * table_of(w)->parts;
-    remembered m = {.carry = from, .last = from + 2 * w->size};
-    m.before = m.last + slopes;
-    m.h = m.before + slopes;
-    m.h_before = m.h + width;
-    m.known = m.h_before + width;
-    m.energy = m.known + width;
-    m.lost = m.energy + width;
-    m.t = m.lost + width;
-    return m;
-}
-
 static double *take(double **from, size_t count) {
     double *taken = *from;
     *from += count;
     return taken;
+}
+
+static remembered find_memory(const nevh_work *w, double *from) {
+    size_t width = w->width, slopes = 2 * w->size * table_of(w)->parts;
+    remembered m = {.carry = take(&from, 2 * w->size)};
+    for (int i = 0; i < STEPS; i++)
+        m.slopes[i] = take(&from, slopes);
+    for (int i = 0; i < STEPS; i++)
+        m.h[i] = take(&from, width);
+    m.known = take(&from, width);
+    m.energy = take(&from, width);
+    m.lost = take(&from, width);
+    m.t = take(&from, width);
+    return m;
 }
 
 static nevh__values take_values(double **from, size_t count) {
@@ -184,16 +189,19 @@ static int begin_balance(const nevh__gradient_step *s, const remembered *m) {
     return status;
 }
 
-/* Continues the line through the slopes of this part in the last two steps. */
+/* Continues the polynomial through the slopes of this part in the last steps,
+   as far as these were by h. */
 static void guess(const nevh__gradient_step *s, const remembered *m, double h) {
+    static const double weights[STEPS + 1][STEPS] = {
+        {0}, {1}, {2, -1}, {3, -3, 1}};
     const nevh_work *w = s->work;
-    const double *last = m->last + s->part * 2 * w->size;
-    const double *before = m->before + s->part * 2 * w->size;
     for (size_t i = 0; i < 2 * w->size; i++) {
-        size_t lane = i % w->width;
-        double line =
-            m->h_before[lane] == h ? 2 * last[i] - before[i] : last[i];
-        s->x[i] = m->h[lane] == h ? line : 0;
+        size_t lane = i % w->width, at = s->part * 2 * w->size + i, known = 0;
+        while (known < STEPS && m->h[known][lane] == h)
+            known++;
+        s->x[i] = 0;
+        for (size_t k = 0; k < known; k++)
+            s->x[i] += weights[known][k] * m->slopes[k][at];
     }
 }
 
@@ -251,22 +259,27 @@ void nevh__balance_energy(const nevh__gradient_step *s, size_t active,
     }
 }
 
-/* The states at a few nodes, and their times behind them. */
+/* The states at a few nodes, and their times behind them.  Rounding leaves the
+   nodes in symmetry, without which the energy drifts by 1e-18 a step. */
 static void find_points(const nevh__gradient_step *s, size_t first,
                         size_t nodes, size_t active, const size_t lanes[],
                         const double x[]) {
     const nevh_work *w = s->work;
-    const double *c = s->nodes->c + first;
-    size_t count = nodes * active;
+    const double *c = s->nodes->c, *mirrored = c + s->nodes->stages - 1;
     double *point = s->points;
     for (size_t k = 0; k < 2 * w->n; k++)
-        for (size_t j = 0; j < nodes; j++)
+        for (size_t j = first; j < first + nodes; j++) {
+            double from_middle = (c[j] - *(mirrored - j)) / 2;
             for (size_t a = 0; a < active; a++) {
                 size_t i = k * w->width + lanes[a];
-                *point++ = s->z[i] + (c[j] * (s->h * x[i]) + s->carry[i]);
+                double way = s->h * x[i];
+                *point++ =
+                    s->z[i] + ((way / 2 + from_middle * way) + s->carry[i]);
             }
-    for (size_t i = 0; i < count; i++)
-        *point++ = s->t + (c[i / active] - 0.5) * s->h;
+        }
+    for (size_t j = first; j < first + nodes; j++)
+        for (size_t a = 0; a < active; a++)
+            *point++ = s->t + (c[j] - 0.5) * s->h;
 }
 
 int nevh__average_gradient(const nevh__gradient_step *s, size_t active,
@@ -331,8 +344,9 @@ static int take_part(nevh__gradient_step *s, const remembered *m, double h) {
     if (status)
         return status;
     size_t at = s->part * 2 * w->size, size = 2 * w->size * sizeof *s->x;
-    memcpy(m->before + at, m->last + at, size);
-    memcpy(m->last + at, s->x, size);
+    for (int i = STEPS - 1; i > 0; i--)
+        memcpy(m->slopes[i] + at, m->slopes[i - 1] + at, size);
+    memcpy(m->slopes[0] + at, s->x, size);
     advance(s, s->z, m->carry);
     return NEVH_OK;
 }
@@ -346,8 +360,9 @@ static int commit(const nevh__gradient_step *s, const remembered *m, double t,
     if (check != 0)
         return nevh__fail_range(w, t, h);
     for (size_t lane = 0; lane < w->width; lane++) {
-        m->h_before[lane] = m->h[lane];
-        m->h[lane] = h;
+        for (int i = STEPS - 1; i > 0; i--)
+            m->h[i][lane] = m->h[i - 1][lane];
+        m->h[0][lane] = h;
     }
     memcpy(q, s->z, w->size * sizeof *q);
     memcpy(p, s->z + w->size, w->size * sizeof *p);

@@ -5,12 +5,14 @@
    The order is q1, p1, q2, p2, ..., as in the paper; the adjoint goes the way
    in reverse order, and half a step of each is the symmetric scheme.
 
-   Where an increment is so short that rounding of H drowns the quotient, it is
-   taken over a longer one about the same middle.  At the threshold the two are
-   the same; below, the energy is wrong by its cube at most, which is rounding.
+   Over a short increment rounding of H would drown the quotient.  There it is
+   taken over a longer one about the same middle: at the threshold the two are
+   the same, below it the quotient is off by a part of the longest increment's
+   square, 1/64^2 of what the scheme is off anyway, and the energy is balanced
+   by the other increments.
 
-   One sweep takes 2n values of H (and two more for each short increment), a
-   step one more a part.
+   One sweep takes 2n values of H, and two more for each short increment; a part
+   of a step takes one more, two where H reads t.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "discrete_gradient_private.h"
 #include "schemes_private.h"
@@ -20,17 +22,21 @@
 
 /* Points that are evaluated at once, where there are so many. */
 enum { MOST_POINTS = 256, FEWEST_POINTS = 8, ROOM = 65536 };
-/* Shorter increments are made longer: in units of length, and of the longest
-   of the step. */
-static const double tiny = 64 * DBL_EPSILON; /* of the variable itself */
-static const double shortest = 0x1p-17, shortest_part = 1. / 64;
+/* Shorter increments are made longer: parts of the length over which H varies,
+   of the longest increment in that unit, and of the variable itself. */
+static const double shortest = 0x1p-17, shortest_part = 1. / 64,
+                    tiny = 64 * DBL_EPSILON;
 
-/* Where H is evaluated: `room` points at most. */
+/* One sweep's way for the lanes under way, and points on it, at most as many as
+   most_points, where H is evaluated. */
 typedef struct {
+    const nevh__gradient_step *step;
+    size_t active;
+    const size_t *lanes;
+    double *least; /* of each lane, in units of length */
     double *z, *t;
     nevh__values h;
-    double *least; /* of each lane, in units of length */
-} stand;
+} tour;
 
 static size_t most_points(const nevh_work *w) {
     size_t fit = ROOM / (2 * w->n);
@@ -40,15 +46,17 @@ static size_t most_points(const nevh_work *w) {
 }
 
 static size_t own_size(const nevh_work *w) {
-    return most_points(w) * (2 * w->n + 5);
+    return w->width + most_points(w) * (2 * w->n + 4);
 }
 
-static stand find_stand(const nevh__gradient_step *s) {
+static tour set_out(const nevh__gradient_step *s, size_t active,
+                    const size_t lanes[]) {
     size_t room = most_points(s->work);
-    stand to = {.z = s->own, .t = s->own + room * 2 * s->work->n};
-    to.h = (nevh__values){to.t + room, to.t + 2 * room, to.t + 3 * room};
-    to.least = to.h.size + room;
-    return to;
+    tour v = {.step = s, .active = active, .lanes = lanes, .least = s->own};
+    v.z = v.least + s->work->width;
+    v.t = v.z + room * 2 * s->work->n;
+    v.h = (nevh__values){v.t + room, v.t + 2 * room, v.t + 3 * room};
+    return v;
 }
 
 /* The variable that is visited at a stop. */
@@ -57,113 +65,124 @@ static size_t variable_at(const nevh__gradient_step *s, size_t stop) {
     return i % 2 * n + i / 2;
 }
 
-/* The shortest increment of each variable, in units of length. */
-static void find_least(const nevh__gradient_step *s, size_t active,
-                       const size_t lanes[], double least[]) {
-    const nevh_work *w = s->work;
-    for (size_t a = 0; a < active; a++)
-        least[a] = shortest;
-    for (size_t k = 0; k < 2 * w->n; k++)
-        for (size_t a = 0; a < active; a++) {
-            double dz = s->ends[k * active + a] - s->z[k * w->width + lanes[a]];
-            least[a] = fmax(least[a], shortest_part * fabs(dz) / s->length[k]);
+static double start_of(const tour *v, size_t k, size_t a) {
+    return v->step->z[k * v->step->work->width + v->lanes[a]];
+}
+
+static double end_of(const tour *v, size_t k, size_t a) {
+    return v->step->ends[k * v->active + a];
+}
+
+static void find_least(const tour *v) {
+    for (size_t a = 0; a < v->active; a++)
+        v->least[a] = shortest;
+    for (size_t k = 0; k < 2 * v->step->work->n; k++) {
+        double unit = shortest_part / v->step->length[k];
+        for (size_t a = 0; a < v->active; a++) {
+            double way = unit * fabs(end_of(v, k, a) - start_of(v, k, a));
+            v->least[a] = way > v->least[a] ? way : v->least[a];
         }
-}
-
-/* A point with what was visited before the stop at its end, and the stop's own
-   variable at z, to column `at` of `count`. */
-static void put(const nevh__gradient_step *s, const stand *to, size_t count,
-                size_t at, size_t stop, double z, size_t active, size_t a,
-                size_t lane) {
-    const nevh_work *w = s->work;
-    for (size_t i = 0; i < 2 * w->n; i++) {
-        size_t k = variable_at(s, i);
-        to->z[k * count + at] = i < stop    ? s->ends[k * active + a]
-                                : i == stop ? z
-                                            : s->z[k * w->width + lane];
     }
-    to->t[at] = s->t;
 }
 
-static int evaluate(const nevh__gradient_step *s, const stand *to,
-                    size_t count) {
-    nevh_work *w = s->work;
-    int status = nevh__field_moving_values(w->field, count, to->t, to->z,
-                                           to->z + w->n * count, to->h.h,
-                                           to->h.lost, to->h.size);
+static int evaluate(const tour *v, size_t count) {
+    nevh_work *w = v->step->work;
+    for (size_t i = 0; i < count; i++)
+        v->t[i] = v->step->t;
+    int status = nevh__field_moving_values(w->field, count, v->t, v->z,
+                                           v->z + w->n * count, v->h.h,
+                                           v->h.lost, v->h.size);
     if (status)
         nevh_work_fail(w, status, "%s", nevh_field_message(w->field));
     return status;
 }
 
-/* The quotients at the first stops of which there are values; `end` holds H at
-   the stop before, and goes along. */
-static void divide(const nevh__gradient_step *s, const stand *from,
-                   size_t first, size_t stops, size_t active,
-                   const size_t lanes[], double out[]) {
-    const nevh_work *w = s->work;
-    for (size_t i = 0; i < stops; i++)
-        for (size_t a = 0; a < active; a++) {
-            size_t k = variable_at(s, first + i), at = i * active + a;
-            double dz = s->ends[k * active + a] - s->z[k * w->width + lanes[a]];
-            double dh = (from->h.h[at] - s->end.h[a]) +
-                        (from->h.lost[at] - s->end.lost[a]);
-            out[nevh__conjugate(w, k) * active + a] = dh / dz;
-            s->end.h[a] = from->h.h[at];
-            s->end.lost[a] = from->h.lost[at];
-        }
+/* The states at some stops: what has been visited is at its end. */
+static void put_stops(const tour *v, size_t first, size_t stops) {
+    for (size_t i = 0; i < 2 * v->step->work->n; i++) {
+        size_t k = variable_at(v->step, i);
+        double *z = v->z + k * stops * v->active;
+        for (size_t stop = first; stop < first + stops; stop++)
+            for (size_t a = 0; a < v->active; a++)
+                *z++ = i <= stop ? end_of(v, k, a) : start_of(v, k, a);
+    }
 }
 
-static int long_ways(const nevh__gradient_step *s, const stand *to,
-                     size_t active, const size_t lanes[], double out[]) {
-    size_t most = most_points(s->work) / active, all = 2 * s->work->n;
+/* The quotients at some stops; `end` holds H at the stop before, and goes
+   along. */
+static void divide(const tour *v, size_t first, size_t stops, double out[]) {
+    const nevh__values *h = &v->h, *before = &v->step->end;
+    for (size_t i = 0; i < stops; i++) {
+        size_t k = variable_at(v->step, first + i);
+        double *slope = out + nevh__conjugate(v->step->work, k) * v->active;
+        for (size_t a = 0; a < v->active; a++) {
+            size_t at = i * v->active + a;
+            slope[a] =
+                ((h->h[at] - before->h[a]) + (h->lost[at] - before->lost[a])) /
+                (end_of(v, k, a) - start_of(v, k, a));
+            before->h[a] = h->h[at];
+            before->lost[a] = h->lost[at];
+        }
+    }
+}
+
+static int take_quotients(const tour *v, double out[]) {
+    const nevh__values *start = &v->step->start, *before = &v->step->end;
+    size_t most = most_points(v->step->work) / v->active;
+    size_t all = 2 * v->step->work->n;
     int status = NEVH_OK;
-    for (size_t a = 0; a < active; a++) {
-        s->end.h[a] = s->start.h[lanes[a]];
-        s->end.lost[a] = s->start.lost[lanes[a]];
+    for (size_t a = 0; a < v->active; a++) {
+        before->h[a] = start->h[v->lanes[a]];
+        before->lost[a] = start->lost[v->lanes[a]];
     }
     for (size_t first = 0, stops; !status && first < all; first += stops) {
         stops = all - first < most ? all - first : most;
-        for (size_t i = 0; i < stops; i++)
-            for (size_t a = 0; a < active; a++) {
-                size_t stop = first + i, k = variable_at(s, stop);
-                put(s, to, stops * active, i * active + a, stop,
-                    s->ends[k * active + a], active, a, lanes[a]);
-            }
-        status = evaluate(s, to, stops * active);
-        divide(s, to, first, stops, active, lanes, out);
+        put_stops(v, first, stops);
+        status = evaluate(v, stops * v->active);
+        divide(v, first, stops, out);
     }
     return status;
 }
 
-/* Whether the way is short, and then its ends, made longer. */
-static bool lengthen(double least, double z, double end, double ends[2]) {
-    double middle = z + (end - z) / 2, way = fmax(least, tiny * fabs(middle));
+/* Whether a lane's increment is too short, and then a longer one's ends. */
+static bool lengthen(const tour *v, size_t k, size_t a, double ends[2]) {
+    double start = start_of(v, k, a), end = end_of(v, k, a);
+    double middle = start + (end - start) / 2;
+    double way = fmax(v->least[a] * v->step->length[k], tiny * fabs(middle));
     ends[0] = middle - way / 2;
     ends[1] = middle + way / 2;
-    return !(fabs(end - z) >= way);
+    return !(fabs(end - start) >= way);
 }
 
-static int short_ways(const nevh__gradient_step *s, const stand *to,
-                      size_t stop, size_t active, const size_t lanes[],
-                      double out[]) {
-    size_t k = variable_at(s, stop), count = 0, width = s->work->width;
-    const double *z = s->z + k * width, *end = s->ends + k * active;
-    double ends[2], unit = s->length[k];
-    double *slope = out + nevh__conjugate(s->work, k) * active;
-    for (size_t a = 0; a < active; a++)
-        count += 2 * lengthen(unit * to->least[a], z[lanes[a]], end[a], ends);
-    for (size_t a = 0, at = 0; a < active; a++)
-        if (lengthen(unit * to->least[a], z[lanes[a]], end[a], ends)) {
-            put(s, to, count, at++, stop, ends[0], active, a, lanes[a]);
-            put(s, to, count, at++, stop, ends[1], active, a, lanes[a]);
-        }
-    int status = count ? evaluate(s, to, count) : NEVH_OK;
+/* A lane's state just before a stop, but for that stop's variable. */
+static void put_one(const tour *v, size_t count, size_t at, size_t stop,
+                    size_t a, double z) {
+    for (size_t i = 0; i < 2 * v->step->work->n; i++) {
+        size_t k = variable_at(v->step, i);
+        v->z[k * count + at] = i < stop    ? end_of(v, k, a)
+                               : i == stop ? z
+                                           : start_of(v, k, a);
+    }
+}
+
+static int replace_short(const tour *v, size_t stop, double out[]) {
+    const nevh__values *h = &v->h;
+    size_t k = variable_at(v->step, stop), count = 0;
+    double ends[2];
+    double *slope = out + nevh__conjugate(v->step->work, k) * v->active;
+    for (size_t a = 0; a < v->active; a++)
+        count += lengthen(v, k, a, ends) ? 2 : 0;
+    if (count == 0)
+        return NEVH_OK;
+    for (size_t a = 0, at = 0; at < count; a++)
+        for (size_t i = 0; lengthen(v, k, a, ends) && i < 2; i++)
+            put_one(v, count, at++, stop, a, ends[i]);
+    int status = evaluate(v, count);
     for (size_t a = 0, at = 0; !status && at < count; a++)
-        if (lengthen(unit * to->least[a], z[lanes[a]], end[a], ends)) {
-            slope[a] = ((to->h.h[at + 1] - to->h.h[at]) +
-                        (to->h.lost[at + 1] - to->h.lost[at])) /
-                       (ends[1] - ends[0]);
+        if (lengthen(v, k, a, ends)) {
+            slope[a] =
+                ((h->h[at + 1] - h->h[at]) + (h->lost[at + 1] - h->lost[at])) /
+                (ends[1] - ends[0]);
             at += 2;
         }
     return status;
@@ -171,12 +190,12 @@ static int short_ways(const nevh__gradient_step *s, const stand *to,
 
 static int increments(const nevh__gradient_step *s, size_t active,
                       const size_t lanes[], const double x[], double out[]) {
-    const stand to = find_stand(s);
+    const tour v = set_out(s, active, lanes);
     (void)x;
-    find_least(s, active, lanes, to.least);
-    int status = long_ways(s, &to, active, lanes, out);
+    find_least(&v);
+    int status = take_quotients(&v, out);
     for (size_t stop = 0; !status && stop < 2 * s->work->n; stop++)
-        status = short_ways(s, &to, stop, active, lanes, out);
+        status = replace_short(&v, stop, out);
     return status;
 }
 
