@@ -304,13 +304,18 @@ int nevh__average_gradient(const nevh__gradient_step *s, size_t active,
     return status;
 }
 
+/* What the sum a + b has lost. */
+static double lost_by(double sum, double a, double b) {
+    double part = sum - a;
+    return (a - (sum - part)) + (b - part);
+}
+
 /* z + carry += h x, the product's rounding included. */
 static void advance(const nevh__gradient_step *s, double *z, double *carry) {
     for (size_t i = 0; i < 2 * s->work->size; i++) {
-        double way = s->h * s->x[i], d = way + carry[i];
-        double next = z[i] + d, part = next - z[i];
-        carry[i] =
-            (z[i] - (next - part)) + (d - part) + fma(s->h, s->x[i], -way);
+        double way = s->h * s->x[i], d = way + carry[i], next = z[i] + d;
+        double lost = fma(s->h, s->x[i], -way) + lost_by(d, way, carry[i]);
+        carry[i] = lost_by(next, z[i], d) + lost;
         z[i] = next;
     }
 }

@@ -12,7 +12,9 @@
    Their rule is believed only once the changes are small, since in the first
    sweeps of a hard step they may rise before they fall.  Small is 1e-10 of
    the unknown's scale, or what the rounding of H makes of a difference
-   quotient.  Under differences unknowns go on improving by chance, each drawing
+   quotient.  And the largest change counts as one more unknown: where H is
+   separable, sweeps take errors from momenta to coordinates and back in two
+   chains that do not meet, and one of them may be at rounding by chance.  Under differences unknowns go on improving by chance, each drawing
    new noise in every sweep; there the iteration also ends when all changes are
    within that noise and the largest of them has ceased to fall.  Lanes are
    independent of each other: one that is done is left alone.  A lane that makes
@@ -172,8 +174,9 @@ static lane_state judge(nevh__stage_solver *s, size_t lane, size_t stride,
     l->change = made.change;
     if (!made.moved || drowned(s, lane, &made))
         return DONE;
+    bool falls = made.change < l->least;
     l->least = fmin(l->least, made.change);
-    if (made.improved) {
+    if (made.improved || falls) {
         l->grace = false;
         return GO_ON;
     }
