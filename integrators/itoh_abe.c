@@ -23,7 +23,7 @@
 /* Points that are evaluated at once, where there are so many. */
 enum { MOST_POINTS = 256, FEWEST_POINTS = 8, ROOM = 65536 };
 /* Shorter increments are made longer: parts of the length over which H varies,
-   of the longest increment in that unit, and of the variable itself. */
+   of the longest increment in that unit (up to 1), and of the variable. */
 static const double shortest = 0x1p-17, shortest_part = 1. / 64,
                     tiny = 64 * DBL_EPSILON;
 
@@ -73,16 +73,22 @@ static double end_of(const tour *v, size_t k, size_t a) {
     return v->step->ends[k * v->active + a];
 }
 
+static double least_of(double longest) {
+    return fmax(shortest, shortest_part * fmin(longest, 1));
+}
+
 static void find_least(const tour *v) {
     for (size_t a = 0; a < v->active; a++)
-        v->least[a] = shortest;
+        v->least[a] = 0;
     for (size_t k = 0; k < 2 * v->step->work->n; k++) {
-        double unit = shortest_part / v->step->length[k];
+        double unit = v->step->length[k];
         for (size_t a = 0; a < v->active; a++) {
-            double way = unit * fabs(end_of(v, k, a) - start_of(v, k, a));
+            double way = fabs(end_of(v, k, a) - start_of(v, k, a)) / unit;
             v->least[a] = way > v->least[a] ? way : v->least[a];
         }
     }
+    for (size_t a = 0; a < v->active; a++)
+        v->least[a] = least_of(v->least[a]);
 }
 
 static int evaluate(const tour *v, size_t count) {
@@ -202,10 +208,11 @@ static int increments(const nevh__gradient_step *s, size_t active,
 static int find_noise(void *step, size_t lane, double noise[]) {
     const nevh__gradient_step *s = step;
     const nevh_work *w = s->work;
-    double least = shortest;
+    double longest = 0, least;
     for (size_t k = 0; k < 2 * w->n; k++)
-        least = fmax(least, shortest_part / s->length[k] *
-                                fabs(s->h * s->x[k * w->width + lane]));
+        longest = fmax(longest,
+                       fabs(s->h * s->x[k * w->width + lane]) / s->length[k]);
+    least = least_of(longest);
     for (size_t k = 0; k < 2 * w->n; k++) {
         size_t i = k * w->width + lane;
         double way = fmax(fabs(s->h * s->x[i]), least * s->length[k]);
