@@ -30,6 +30,7 @@ typedef struct {
     nevh__gauss *nodes;
     nevh__stage_solver *solver;
     double *length; /* 2n */
+    double *metric; /* 2n */
     size_t *lanes;  /* 0 to width */
     bool autonomous;
 } gradient_plan;
@@ -60,9 +61,21 @@ static void unplan(nevh_work *w) {
     nevh__gauss_free(g->nodes);
     nevh__stage_solver_free(g->solver);
     free(g->length);
+    free(g->metric);
     free(g->lanes);
     free(g);
     w->plan = NULL;
+}
+
+/* The metric of what a term reads. */
+static void measure(const nevh_work *w, const nevh__planned *term) {
+    const gradient_plan *g = w->plan;
+    for (size_t at = 0; at < term->term->is.count * term->nv; at++) {
+        size_t v = at % term->nv;
+        size_t k =
+            nevh__index(term, at / term->nv, v) + (v < term->nq ? 0 : w->n);
+        g->metric[k] = 1 / g->length[k];
+    }
 }
 
 static int plan_parts(nevh_work *w, size_t nodes) {
@@ -71,17 +84,20 @@ static int plan_parts(nevh_work *w, size_t nodes) {
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     g->nodes = nevh__gauss_new(nodes);
     g->length = nevh__array(2 * w->n, sizeof *g->length);
+    g->metric = nevh__array(2 * w->n, sizeof *g->metric);
     g->lanes = nevh__array(w->width, sizeof *g->lanes);
     g->solver = nevh__stage_solver_new(w, 1);
-    if (!g->nodes || !g->length || !g->lanes || !g->solver)
+    if (!g->nodes || !g->length || !g->metric || !g->lanes || !g->solver)
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     g->autonomous = nevh_system_traits(w->system) & NEVH_AUTONOMOUS;
     for (size_t lane = 0; lane < w->width; lane++)
         g->lanes[lane] = lane;
     int status = nevh__field_lengths(w->field, w->options, g->length);
     if (status)
-        nevh_work_fail(w, status, "%s", nevh_field_message(w->field));
-    return status;
+        return nevh_work_fail(w, status, "%s", nevh_field_message(w->field));
+    for (size_t i = 0; i < w->field->n_terms; i++)
+        measure(w, &w->field->terms[i]);
+    return NEVH_OK;
 }
 
 static int plan(nevh_work *w) {
@@ -133,7 +149,8 @@ static nevh__gradient_step lay_out(nevh_work *w, double h) {
     const gradient_plan *g = w->plan;
     size_t width = w->width, all = 2 * w->size, nodes = g->nodes->stages;
     double *at = w->scratch + w->memory_rows * width;
-    nevh__gradient_step s = {.work = w, .nodes = g->nodes, .length = g->length};
+    nevh__gradient_step s = {
+        .work = w, .nodes = g->nodes, .length = g->length, .metric = g->metric};
     s.h = h / (double)table_of(w)->parts;
     s.carry = w->scratch;
     s.z = take(&at, all);
@@ -244,7 +261,7 @@ void nevh__balance_energy(const nevh__gradient_step *s, size_t active,
         for (size_t k = 0; k < 2 * w->n; k++) {
             double dz = s->ends[k * active + a] - s->z[k * w->width + lane];
             lack -= out[nevh__conjugate(w, k) * active + a] * dz;
-            way += dz / s->length[k] * (dz / s->length[k]);
+            way += dz * s->metric[k] * (dz * s->metric[k]);
         }
         if (lack == 0)
             continue;
@@ -254,7 +271,7 @@ void nevh__balance_energy(const nevh__gradient_step *s, size_t active,
         for (size_t k = 0; k < 2 * w->n; k++) {
             double dz = s->ends[k * active + a] - s->z[k * w->width + lane];
             out[nevh__conjugate(w, k) * active + a] +=
-                lack * (dz / s->length[k]) / s->length[k];
+                lack * (dz * s->metric[k]) * s->metric[k];
         }
     }
 }

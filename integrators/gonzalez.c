@@ -12,7 +12,8 @@
 #include <float.h>
 #include <math.h>
 
-/* One lane's, in one piece; in the room of the slopes, free after a sweep. */
+/* The field's; for it, one lane in one piece goes to the room of the ends,
+   which is free after a sweep. */
 static int gradient_noise(const nevh__gradient_step *s, size_t lane,
                           double noise[]) {
     nevh_work *w = s->work;
@@ -30,14 +31,13 @@ static int find_noise(void *step, size_t lane, double noise[]) {
     const nevh__gradient_step *s = step;
     const nevh_work *w = s->work;
     int status = gradient_noise(s, lane, noise);
-    double way = 0;
+    double way = 0, rounding = DBL_EPSILON * s->start.size[lane];
     for (size_t k = 0; k < 2 * w->n; k++)
-        way = fmax(way, fabs(s->h * s->x[k * w->width + lane]) / s->length[k]);
+        way = fmax(way, fabs(s->h * s->x[k * w->width + lane]) * s->metric[k]);
     for (size_t k = 0; way > 0 && k < 2 * w->n; k++) {
-        double part =
-            fabs(s->h * s->x[k * w->width + lane]) / s->length[k] / way;
+        double dz = fabs(s->h * s->x[k * w->width + lane]) * s->metric[k];
         noise[nevh__conjugate(w, k)] +=
-            DBL_EPSILON * s->start.size[lane] * part / (way * s->length[k]);
+            rounding * (dz / way) * s->metric[k] / way;
     }
     return status;
 }

@@ -2,8 +2,9 @@
 
    The way from z to z' goes along one variable after the other; D_k is what H
    gains along z_k, over z'_k - z_k.  So the sum of all D_k dz_k telescopes.
-   The order is q1, p1, q2, p2, ..., as in the paper; the adjoint goes the way
-   in reverse order, and half a step of each is the symmetric scheme.
+   The order is q1, p1, q2, p2, ..., conjugate pairs together: none is the most
+   accurate throughout.  The adjoint goes the way in reverse order, and half a
+   step of each is the symmetric scheme.
 
    Over a short increment rounding of H would drown the quotient.  There it is
    taken over a longer one about the same middle: at the threshold the two are

@@ -313,7 +313,10 @@ static double straightest(const line *l, int stretch) {
 double measured_order(const problem *b, const nevh_integrator *scheme,
                       const nevh_gradient *g) {
     const int order = nevh_integrator_order(scheme);
-    const double above = order == 1 ? 1e-1 : order <= 8 ? 1e-4 : 1e-6;
+    const double above = order == 1   ? 1e-1
+                         : order == 2 ? 1e-3
+                         : order <= 8 ? 1e-4
+                                      : 1e-6;
     const double below = order <= 5 ? 1e-9 : 1e-13;
     const double factor = fmin(1.6, pow(10, 0.5 / order));
     const int most = order <= 2 ? STRETCH + 1 : POINTS;

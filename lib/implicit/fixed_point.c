@@ -14,12 +14,13 @@
    the unknown's scale, or what the rounding of H makes of a difference
    quotient.  And the largest change counts as one more unknown: where H is
    separable, sweeps take errors from momenta to coordinates and back in two
-   chains that do not meet, and one of them may be at rounding by chance.  Under differences unknowns go on improving by chance, each drawing
-   new noise in every sweep; there the iteration also ends when all changes are
-   within that noise and the largest of them has ceased to fall.  Lanes are
-   independent of each other: one that is done is left alone.  A lane that makes
-   no progress at large changes, that is still under way after MOST_SWEEPS, or
-   that leaves the domain of H with growing changes is handed to the rescue.
+   chains that do not meet, and one of them may be at rounding by chance.  Under
+   differences unknowns go on improving by chance, each drawing new noise in
+   every sweep; there the iteration also ends when all changes are within that
+   noise and the largest of them has ceased to fall.  Lanes are independent of
+   each other: one that is done is left alone.  A lane that makes no progress at
+   large changes, that is still under way after MOST_SWEEPS, or that leaves the
+   domain of H with growing changes is handed to the rescue.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "implicit/implicit_private.h"
 #include "gradient/field_private.h"
@@ -31,6 +32,7 @@ enum { MOST_SWEEPS = 100, MOST_STALLS = 8 };
 static const double small = 1e-10;
 static const double noise_margin = 16;
 static const double may_be_noise = 1e-4; /* not worth a look above */
+static const double hardly_less = 0.9;
 
 nevh__stage_solver *nevh__stage_solver_new(nevh_work *w, size_t stages) {
     nevh__stage_solver *s = nevh__array(1, sizeof *s);
@@ -128,7 +130,8 @@ typedef struct {
 /* Differences only: the last sweep drew noise and nothing else. */
 static bool drowned(nevh__stage_solver *s, size_t lane, const progress *made) {
     return (s->problem->noise || s->work->field->gradient->offsets) &&
-           made->change < may_be_noise && made->change >= s->lane[lane].least &&
+           made->change < may_be_noise &&
+           made->change >= hardly_less * s->lane[lane].least &&
            made->change <= 2 * DBL_EPSILON + noise_level(s, lane);
 }
 
