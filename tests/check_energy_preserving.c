@@ -109,6 +109,17 @@ START_TEST(energy_does_not_walk) {
 }
 END_TEST
 
+/* Each step is solved: one among these 200 000 whose sweeps ended early would
+   stand out by 1e-13 and more. */
+START_TEST(no_sweep_too_few) {
+    problem high = pendulum;
+    high.q[0] = 2.6;
+    high.p[0] = 0;
+    const nevh_options o = {.gradient = nevh_exact};
+    ck_assert_double_lt(run(&high, nevh_avf, &o, 0.2, 200000).max, 8e-14);
+}
+END_TEST
+
 /* Gonzalez' scheme keeps H however wrong the gradient is. */
 START_TEST(wrong_gradients) {
     const problem *const all[] = {&pendulum, &double_pendulum};
@@ -414,6 +425,7 @@ int main(void) {
     TCase *cases = tcase_create("energy"), *hard = tcase_create("0/0");
     TCase *slow = tcase_create("slow");
     tcase_add_loop_test(cases, energy_is_kept, 0, KEPT);
+    tcase_add_test(cases, no_sweep_too_few);
     tcase_add_loop_test(cases, wrong_gradients, 0, 2);
     tcase_add_loop_test(cases, too_few_nodes, 0, 3);
     tcase_add_test(cases, symmetric_is_composed);
