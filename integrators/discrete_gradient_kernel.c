@@ -19,9 +19,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Below this |z' - z|, in units of length, the midpoint rule keeps the energy
-   to rounding, and a correction would be 0/0. */
-static const double least_way = 0x1p-34;
+/* The fourth power of a |dz|, in units of length, so short that dz has no
+   direction. */
+static const double nowhere = 0x1p-136;
 /* Defects of the energy up to so many roundings of H are tolerated, for no
    correction of them means anything. */
 static const double tolerated = 4 * DBL_EPSILON;
@@ -232,6 +232,40 @@ static void find_ends(const nevh__gradient_step *s, size_t active,
         }
 }
 
+/* What D . dz lacks of H(ends) - H(z), and of what that lacks; faded out where
+   it is rounding.  Over |dz|^2, for which dz may be 0. */
+static double find_defect(const nevh__gradient_step *s, size_t active, size_t a,
+                          size_t lane, const double out[]) {
+    const nevh_work *w = s->work;
+    double way = 0, lack = (s->end.h[a] - s->start.h[lane]) +
+                           (s->end.lost[a] - s->start.lost[lane]) -
+                           s->lack[lane];
+    for (size_t k = 0; k < 2 * w->n; k++) {
+        double dz = s->ends[k * active + a] - s->z[k * w->width + lane];
+        lack -= out[nevh__conjugate(w, k) * active + a] * dz;
+        way += dz * s->metric[k] * (dz * s->metric[k]);
+    }
+    if (lack == 0)
+        return 0;
+    double noise = tolerated * s->start.size[lane] / lack;
+    return lack / ((1 + noise * noise) * (way + nowhere / way));
+}
+
+/* Where H(ends) is not what D says, adds the smallest vector, in units of
+   length, that makes it so. */
+static void balance(const nevh__gradient_step *s, size_t active,
+                    const size_t lanes[], double out[]) {
+    const nevh_work *w = s->work;
+    for (size_t a = 0; a < active; a++) {
+        double defect = find_defect(s, active, a, lanes[a], out);
+        for (size_t k = 0; k < 2 * w->n; k++) {
+            double dz = s->ends[k * active + a] - s->z[k * w->width + lanes[a]];
+            out[nevh__conjugate(w, k) * active + a] +=
+                defect * (dz * s->metric[k]) * s->metric[k];
+        }
+    }
+}
+
 static int map(void *data, size_t active, const size_t lanes[],
                const double x[], double out[]) {
     const nevh__gradient_step *s = data;
@@ -244,80 +278,9 @@ static int map(void *data, size_t active, const size_t lanes[],
     if (!status)
         status = table->gradient(s, active, lanes, x, out);
     if (!status && table->takes_ends)
-        nevh__balance_energy(s, active, lanes, out);
+        balance(s, active, lanes, out);
     for (size_t i = half; i < 2 * half; i++)
         out[i] = -out[i];
-    return status;
-}
-
-void nevh__balance_energy(const nevh__gradient_step *s, size_t active,
-                          const size_t lanes[], double out[]) {
-    const nevh_work *w = s->work;
-    for (size_t a = 0; a < active; a++) {
-        size_t lane = lanes[a];
-        double way = 0, lack = (s->end.h[a] - s->start.h[lane]) +
-                               (s->end.lost[a] - s->start.lost[lane]) -
-                               s->lack[lane];
-        for (size_t k = 0; k < 2 * w->n; k++) {
-            double dz = s->ends[k * active + a] - s->z[k * w->width + lane];
-            lack -= out[nevh__conjugate(w, k) * active + a] * dz;
-            way += dz * s->metric[k] * (dz * s->metric[k]);
-        }
-        if (lack == 0)
-            continue;
-        double noise = tolerated * s->start.size[lane] / lack;
-        lack /= (1 + noise * noise) *
-                (way + least_way * least_way * least_way * least_way / way);
-        for (size_t k = 0; k < 2 * w->n; k++) {
-            double dz = s->ends[k * active + a] - s->z[k * w->width + lane];
-            out[nevh__conjugate(w, k) * active + a] +=
-                lack * (dz * s->metric[k]) * s->metric[k];
-        }
-    }
-}
-
-/* The states at a few nodes, and their times behind them.  Rounding leaves the
-   nodes in symmetry, without which the energy drifts by 1e-18 a step. */
-static void find_points(const nevh__gradient_step *s, size_t first,
-                        size_t nodes, size_t active, const size_t lanes[],
-                        const double x[]) {
-    const nevh_work *w = s->work;
-    const double *c = s->nodes->c, *mirrored = c + s->nodes->stages - 1;
-    double *point = s->points;
-    for (size_t k = 0; k < 2 * w->n; k++)
-        for (size_t j = first; j < first + nodes; j++) {
-            double from_middle = (c[j] - *(mirrored - j)) / 2;
-            for (size_t a = 0; a < active; a++) {
-                size_t i = k * w->width + lanes[a];
-                double way = s->h * x[i];
-                *point++ =
-                    s->z[i] + ((way / 2 + from_middle * way) + s->carry[i]);
-            }
-        }
-    for (size_t j = first; j < first + nodes; j++)
-        for (size_t a = 0; a < active; a++)
-            *point++ = s->t + (c[j] - 0.5) * s->h;
-}
-
-int nevh__average_gradient(const nevh__gradient_step *s, size_t active,
-                           const size_t lanes[], const double x[],
-                           double out[]) {
-    nevh_work *w = s->work;
-    const nevh__gauss *g = s->nodes;
-    size_t count = g->stages * active, half = w->n * count;
-    find_points(s, 0, g->stages, active, lanes, x);
-    int status =
-        nevh_work_gradient(w, count, s->points + 2 * half, s->points,
-                           s->points + half, s->slopes, s->slopes + half);
-    for (size_t i = 0; i < 2 * w->n * active; i++)
-        out[i] = 0;
-    for (size_t k = 0; !status && k < 2 * w->n; k++)
-        for (size_t m = 0; m < g->stages; m++)
-            for (size_t a = 0; a < active; a++) {
-                size_t j = g->order[m];
-                out[nevh__conjugate(w, k) * active + a] +=
-                    g->b[j] * s->slopes[k * count + j * active + a];
-            }
     return status;
 }
 
@@ -343,7 +306,7 @@ static int account(const nevh__gradient_step *s) {
     const double *q = s->points, *p = q + w->size, *t = p + w->size;
     int status = NEVH_OK;
     for (size_t j = 0; !status && j < g->nodes->stages; j++) {
-        find_points(s, j, 1, w->width, g->lanes, s->x);
+        nevh__find_nodes(s, j, 1, w->width, g->lanes, s->x);
         status = nevh_work_account(w, NEVH_OF_Q | NEVH_OF_P,
                                    g->nodes->b[j] * s->h, t, q, p);
     }

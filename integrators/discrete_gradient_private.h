@@ -59,14 +59,13 @@ static inline size_t nevh__conjugate(const nevh_work *w, size_t k) {
     return k < w->n ? k + w->n : k - w->n;
 }
 
-/* The mean of dH over the nodes on the way from z to ends; nevh__discrete_fn.
- */
+/* The states at a few nodes on the way from z to ends, and behind them their
+   times, to points. */
+void nevh__find_nodes(const nevh__gradient_step *, size_t first, size_t nodes,
+                      size_t active, const size_t lanes[], const double x[]);
+/* The mean of dH over all nodes; a nevh__discrete_fn. */
 int nevh__average_gradient(const nevh__gradient_step *, size_t active,
                            const size_t lanes[], const double x[],
                            double out[]);
-/* Where the value of H at ends is not what D says, adds the smallest vector,
-   in units of length, that makes it so. */
-void nevh__balance_energy(const nevh__gradient_step *, size_t active,
-                          const size_t lanes[], double out[]);
 
 #endif
