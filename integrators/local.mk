@@ -44,6 +44,11 @@ libnevh_core_la_SOURCES += \
 	integrators/tao_binding.c \
 	integrators/tao_kernel.c \
 	integrators/tao.c \
+	integrators/discrete_gradient_private.h \
+	integrators/discrete_gradient_kernel.c \
+	integrators/itoh_abe.c \
+	integrators/gonzalez.c \
+	integrators/avf.c \
 	integrators/gsl_private.h \
 	integrators/gsl_kernel.c \
 	integrators/gsl_references.c

@@ -41,6 +41,10 @@
     X(tao2)                                                                    \
     X(tao4)                                                                    \
     X(tao6)                                                                    \
+    X(itoh_abe)                                                                \
+    X(itoh_abe_symmetric)                                                      \
+    X(gonzalez)                                                                \
+    X(avf)                                                                     \
     X(adaptive_verlet)                                                         \
     X(naive_adaptive_verlet)                                                   \
     X(euler)                                                                   \

@@ -71,6 +71,8 @@ static int check(nevh_work *w) {
                          "no such sum");
     if (scheme->kernel->opaque)
         return refuse(w, "it takes its gradients on its own");
+    if (scheme->preserves_energy == NEVH_YES)
+        return refuse(w, "it is H that it preserves, not s (H - H0)");
     if (scheme->symplectic == NEVH_DOUBLED)
         return refuse(w, "its binding is chosen for H, not for s (H - H0)");
     if (!(nevh_system_traits(w->system) & NEVH_AUTONOMOUS))

@@ -83,6 +83,31 @@ START_TEST(values_of_a_gradient) {
 }
 END_TEST
 
+/* One step of the schemes that take values of H beside, or instead of, its
+   gradient, from a state where no increment is short.  The first sweep of a
+   part knows no slopes, so all increments are. */
+START_TEST(values_of_a_sweep) {
+    static const struct {
+        const nevh_integrator *const *scheme;
+        uint64_t start, first, sweep;
+    } costs[] = {{&nevh_itoh_abe, 1, 8, 4},
+                 {&nevh_itoh_abe_symmetric, 2, 16, 4},
+                 {&nevh_gonzalez, 1, 0, 1},
+                 {&nevh_avf, 0, 0, 0}};
+    const problem *b = &henon_heiles;
+    nevh_system *s = b->make();
+    nevh_stepper *m = planned(s, b, *costs[_i].scheme, nevh_exact);
+    double q[] = {b->q[0], b->q[1]}, p[] = {b->p[0], b->p[1]};
+    ck_assert_int_eq(nevh_stepper_apply(m, 0, h, q, p), NEVH_OK);
+    nevh_counts c = nevh_stepper_counts(m);
+    ck_assert_uint_gt(c.sweeps, 4);
+    ck_assert_uint_eq(c.values, 3 * (costs[_i].start + costs[_i].first +
+                                     costs[_i].sweep * c.sweeps));
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
 /* Kicks ask for dH/dq alone, drifts for dH/dp alone. */
 START_TEST(kicks_and_drifts_ask_for_half) {
     nevh_counts c =
@@ -148,6 +173,7 @@ int main(void) {
     tcase_add_loop_test(cases, gradients_of_a_step, 0, scheme_count());
     tcase_add_test(cases, kept_gradients);
     tcase_add_loop_test(cases, values_of_a_gradient, 0, 5);
+    tcase_add_loop_test(cases, values_of_a_sweep, 0, 4);
     tcase_add_test(cases, kicks_and_drifts_ask_for_half);
     tcase_add_loop_test(cases, noise_costs_no_sweeps, 0, 4);
     tcase_add_loop_test(cases, runs_count_alike, 0, scheme_count());

@@ -401,7 +401,7 @@ static void drift_gradient(size_t width, const double t[], const double q[],
         dp[i] = 1 / c[i];
 }
 
-static nevh_system *steep(const double *strength) {
+static nevh_system *strong(const double *strength) {
     nevh_system *s = nevh_system_new(1);
     nevh_system_add(s, &(nevh_term){.effect = "force",
                                     .nq = 1,
@@ -425,7 +425,7 @@ START_TEST(leaves_the_range_of_numbers) {
     const double strength = scheme == nevh_dop853 ? 1e306 : 1e308;
     const double start = scheme == nevh_dop853 ? -1.7975e308 : -1e308;
     const double back = start + strength;
-    nevh_system *s = steep(&strength);
+    nevh_system *s = strong(&strength);
     nevh_stepper *m =
         nevh_stepper_new(s, scheme,
                          &(nevh_options){.gradient = nevh_exact,

@@ -120,6 +120,8 @@ static const expectation expected[] = {
     {false, &nevh_gauss8, 3e-6, 14},     {false, &nevh_gauss16, 3e-6, 14}};
 enum { EXPECTED = sizeof expected / sizeof *expected, STEPS = 4000 };
 
+/* Rounding of r moves the force by 1e8 epsilon, and with it the energy of a
+   step by some 1e-11: what high orders leave is chance below that. */
 START_TEST(steps_of_ten_fast_periods) {
     const expectation *x = &expected[_i / 2];
     outcome o = run(x->polar, *x->scheme, _i % 2 ? NULL : nevh_exact,
@@ -131,7 +133,7 @@ START_TEST(steps_of_ten_fast_periods) {
     ck_assert_msg(sweeps < x->sweeps, "%g sweeps a step", sweeps);
     ck_assert_msg(o.energy.max < x->error, "%.2e", o.energy.max);
     ck_assert(o.energy.last_fifth < 2 * o.energy.first_fifth ||
-              o.energy.max < 1e-12);
+              o.energy.max < 1e-11);
 }
 END_TEST
 

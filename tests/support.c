@@ -360,7 +360,10 @@ static double least_error(int order) {
 double measured_order(const problem *b, const nevh_integrator *scheme,
                       const nevh_gradient *g) {
     const int order = nevh_integrator_order(scheme);
-    const double above = order == 1 ? 2e-1 : order <= 8 ? 1e-4 : 1e-6;
+    const double above = order == 1   ? 2e-1
+                         : order == 2 ? 1e-3
+                         : order <= 8 ? 1e-4
+                                      : 1e-6;
     const double below = least_error(order);
     const double factor = fmin(1.6, pow(10, 0.5 / order));
     const int most = order == 1   ? STRETCH + 3

@@ -61,6 +61,12 @@ NEVH_API extern const nevh_integrator *const nevh_lobatto6;
 NEVH_API extern const nevh_integrator *const nevh_tao2;
 NEVH_API extern const nevh_integrator *const nevh_tao4;
 NEVH_API extern const nevh_integrator *const nevh_tao6;
+/* Implicit, for any H: they keep the energy instead of the symplectic form.
+   Itoh and Abe's take values of H and no derivative. */
+NEVH_API extern const nevh_integrator *const nevh_itoh_abe;
+NEVH_API extern const nevh_integrator *const nevh_itoh_abe_symmetric;
+NEVH_API extern const nevh_integrator *const nevh_gonzalez;
+NEVH_API extern const nevh_integrator *const nevh_avf;
 /* Verlet with steps of their own length, h being nominal; the second destroys
    what the first keeps. */
 NEVH_API extern const nevh_integrator *const nevh_adaptive_verlet;

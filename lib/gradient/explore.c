@@ -38,6 +38,20 @@ static void set_scales(nevh__explorer *e) {
     }
 }
 
+/* The length of what is 0 in all states given. */
+static void scale_zeros(nevh__explorer *e) {
+    const nevh_options *o = e->options;
+    size_t n = e->field->n, width = o->width ? o->width : 1;
+    for (size_t i = 0; i < 2 * n && !o->scale; i++) {
+        const double *x = i < n ? o->q : o->p;
+        double most = 0;
+        for (size_t lane = 0; x && lane < width; lane++)
+            most = fmax(most, fabs(x[i % n * width + lane]));
+        if (most == 0)
+            e->field->scale[i] = e->length[i];
+    }
+}
+
 int nevh__explorer_open(nevh__explorer *e, nevh_field *f,
                         const nevh_options *o) {
     size_t n = f->n, most = n > LARGE ? 4 : NEVH__MOST_SAMPLES;
@@ -75,8 +89,10 @@ int nevh__field_explore(nevh_field *f, const nevh_options *o) {
 int nevh__field_verify(nevh_field *f, const nevh_options *o) {
     nevh__explorer e;
     int status = nevh__explorer_open(&e, f, o);
-    if (!status)
+    if (!status) {
+        scale_zeros(&e);
         nevh__find_neighbours(&e);
+    }
     for (size_t i = 0; !status && i < f->n_terms; i++)
         if (f->terms[i].nv)
             status = nevh__verify(&e, &f->terms[i]);

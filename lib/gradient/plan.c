@@ -3,6 +3,7 @@
 #include "gradient/explore_private.h"
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 /* The length over which variable i varies (from n: momenta): what the user
    says, else the largest size in the state to plan at, else 1. */
@@ -155,6 +156,20 @@ static bool all_given(const nevh_field *f, const nevh_options *o) {
         if (!(given_step(o, i) > 0))
             return false;
     return true;
+}
+
+int nevh__field_lengths(nevh_field *f, const nevh_options *o, double length[]) {
+    size_t size = 2 * f->n * sizeof *length;
+    if (f->gradient->offsets && all_given(f, o)) {
+        memcpy(length, f->scale, size);
+        return NEVH_OK;
+    }
+    nevh__explorer e;
+    int status = nevh__explorer_open(&e, f, o);
+    if (!status)
+        memcpy(length, e.length, size);
+    nevh__explorer_close(&e);
+    return status;
 }
 
 static int plan_steps(nevh_field *f, const nevh_options *o) {

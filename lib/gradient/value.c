@@ -11,42 +11,63 @@ static void add(double *sum, double *lost, double x) {
     *sum = next;
 }
 
-/* Adds all instances of a term at a few lanes to sums and lost digits. */
+/* Adds all instances of a term at a few lanes to sums, lost digits and, unless
+   that is NULL, sizes. */
 static int add_term(nevh_field *f, nevh__planned *term, nevh__block b,
-                    double *sum, double *lost) {
+                    double *sum, double *lost, double *size) {
     int status = NEVH_OK;
     while (!status && nevh__block_next(f, term, &b)) {
         status = nevh__block_values(f, term, &b);
-        for (size_t k = 0; !status && k < b.used; k++)
-            add(sum + b.lane + k % b.lanes, lost + b.lane + k % b.lanes,
-                f->h[k]);
+        for (size_t k = 0; !status && k < b.used; k++) {
+            size_t lane = b.lane + k % b.lanes;
+            add(sum + lane, lost + lane, f->h[k]);
+            if (size)
+                size[lane] += fabs(f->h[k]);
+        }
     }
     return status;
 }
 
-/* `lanes` values of H from the first of those given; lanes <= capacity. */
-static int value_lanes(nevh_field *f, size_t lanes, const nevh__block *from,
-                       double h[]) {
-    double *sum = f->sums, *lost = sum + f->capacity;
-    for (size_t lane = 0; lane < lanes; lane++)
-        sum[lane] = lost[lane] = 0;
-    int status = NEVH_OK;
-    for (size_t i = 0; !status && i < f->n_terms; i++)
-        status = add_term(f, &f->terms[i], *from, sum, lost);
-    for (size_t lane = 0; lane < lanes; lane++)
-        h[lane] = sum[lane] + lost[lane];
-    return status;
+/* As many lanes as there is room for, from `lane` on. */
+static nevh__block lanes_from(const nevh_field *f, size_t lane, size_t width,
+                              const double t[], const double q[],
+                              const double p[]) {
+    nevh__block b = nevh__block_over(width, t + lane, q + lane, p + lane, 1, 1);
+    size_t rest = width - lane;
+    b.until = rest < f->capacity ? rest : f->capacity;
+    return b;
 }
 
 int nevh_field_value(nevh_field *f, size_t width, const double t[],
                      const double q[], const double p[], double h[]) {
+    double *sum = f->sums, *lost = sum + f->capacity;
     int status = nevh__field_ready(f);
-    for (size_t lane = 0, lanes; !status && lane < width; lane += lanes) {
-        lanes = width - lane < f->capacity ? width - lane : f->capacity;
-        nevh__block b =
-            nevh__block_over(width, t + lane, q + lane, p + lane, 1, 1);
-        b.until = lanes;
-        status = value_lanes(f, lanes, &b, h + lane);
+    for (size_t at = 0, lanes; !status && at < width; at += lanes) {
+        nevh__block b = lanes_from(f, at, width, t, q, p);
+        lanes = b.until;
+        for (size_t lane = 0; lane < lanes; lane++)
+            sum[lane] = lost[lane] = 0;
+        for (size_t i = 0; !status && i < f->n_terms; i++)
+            status = add_term(f, &f->terms[i], b, sum, lost, NULL);
+        for (size_t lane = 0; lane < lanes; lane++)
+            h[at + lane] = sum[lane] + lost[lane];
+    }
+    return status;
+}
+
+int nevh__field_moving_values(nevh_field *f, size_t width, const double t[],
+                              const double q[], const double p[], double h[],
+                              double lost[], double size[]) {
+    int status = nevh__field_ready(f);
+    for (size_t lane = 0; lane < width; lane++)
+        h[lane] = lost[lane] = size[lane] = 0;
+    for (size_t at = 0, lanes; !status && at < width; at += lanes) {
+        nevh__block b = lanes_from(f, at, width, t, q, p);
+        lanes = b.until;
+        for (size_t i = 0; !status && i < f->n_terms; i++)
+            if (f->terms[i].nv)
+                status =
+                    add_term(f, &f->terms[i], b, h + at, lost + at, size + at);
     }
     return status;
 }
@@ -62,7 +83,7 @@ static int effects(nevh_field *f, bool constants, double t, const double q[],
         nevh__block b = nevh__block_over(1, &t, q, p, 1, 1);
         if (!constants && !term->nv && !term->term->is.time)
             continue;
-        status = add_term(f, term, b, &sum, &lost);
+        status = add_term(f, term, b, &sum, &lost, NULL);
         h[term->term->effect] += sum + lost;
     }
     return status;

@@ -42,6 +42,9 @@ typedef struct {
        at once, from the step before and for the next.  To be kept in memory,
        but not before the step is certain.  NULL: nothing is known. */
     double *hold;
+    /* How far rounding in H may move each of a lane's 2n slopes; NULL: as far
+       as it moves the field's gradient. */
+    int (*noise)(void *data, size_t lane, double noise[]);
 } nevh__stage_problem;
 
 /* For the work's n and width.  NULL when memory is out. */

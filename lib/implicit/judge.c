@@ -12,7 +12,10 @@
    Their rule is believed only once the changes are small, since in the first
    sweeps of a hard step they may rise before they fall.  Small is 1e-10 of
    the unknown's scale, or what the rounding of H makes of a difference
-   quotient.  Under differences unknowns go on improving by chance, each drawing
+   quotient.  And the largest change counts as one more unknown: where H is
+   separable, sweeps take errors from momenta to coordinates and back in two
+   chains that do not meet, and one of them may be at rounding by chance.  Under
+   differences unknowns go on improving by chance, each drawing
    new noise in every sweep; there the iteration also ends when all changes are
    within that noise and the largest of them has ceased to fall.
    SPDX-License-Identifier: GPL-3.0-or-later */
@@ -25,6 +28,7 @@ enum { MOST_STALLS = 8 };
 const double nevh__stage_tiny = 1e-10;
 const double nevh__stage_margin = 16;
 static const double may_be_noise = 1e-4; /* not worth a look above */
+static const double hardly_less = 0.9;
 
 void nevh__stage_begin(nevh__stage_solver *s, size_t lane) {
     size_t width = s->work->width;
@@ -48,12 +52,16 @@ void nevh__stage_noise(nevh__stage_solver *s, size_t lane) {
         nevh_work_fail(s->work, s->status, "%s", nevh_field_message(w->field));
 }
 
-/* What the noise of one lane's gradients makes of a step, in units of scale:
-   the largest over all variables, since each draws the others along. */
+/* What noise makes of a step of one lane, in units of scale: the largest over
+   all variables, since each draws the others along. */
 static double noise_level(nevh__stage_solver *s, size_t lane) {
     const nevh_work *w = s->work;
+    const nevh__stage_problem *e = s->problem;
     double most = 0;
-    nevh__stage_noise(s, lane);
+    if (e->noise)
+        s->status = e->noise(e->data, lane, s->noise);
+    else
+        nevh__stage_noise(s, lane);
     for (size_t k = 0; !s->status && k < 2 * w->n; k++)
         most = fmax(most, s->noise[k] / s->scale[k * w->width + lane]);
     return fabs(s->problem->h) * most;
@@ -74,8 +82,9 @@ typedef struct {
 
 /* Differences only: the last sweep drew noise and nothing else. */
 static bool drowned(nevh__stage_solver *s, size_t lane, const progress *made) {
-    return s->work->field->gradient->offsets && made->change < may_be_noise &&
-           made->change >= s->lane[lane].least &&
+    return (s->problem->noise || s->work->field->gradient->offsets) &&
+           made->change < may_be_noise &&
+           made->change >= hardly_less * s->lane[lane].least &&
            made->change <= 2 * DBL_EPSILON + noise_level(s, lane);
 }
 
@@ -113,8 +122,9 @@ nevh__stage_state nevh__stage_judge(nevh__stage_solver *s, size_t lane,
     l->change = made.change;
     if (!made.moved || drowned(s, lane, &made))
         return NEVH__DONE;
+    bool falls = rule->by == 1 && made.change < l->least;
     l->least = fmin(l->least, made.change);
-    if (made.improved > rule->chance) {
+    if (made.improved > rule->chance || falls) {
         l->grace = false;
         return NEVH__GO_ON;
     }
