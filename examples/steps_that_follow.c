@@ -84,13 +84,14 @@ int main(void) {
     nevh_system *comet = nevh_system_new(2);
     int status = nevh_system_add(comet, &terms[0]);
     status |= nevh_system_add(comet, &terms[1]);
-    printf("Kepler's problem, eccentricity %g, %g years from the far end; "
-           "gradient central4\n\n"
-           " integrator            steps  steps   H evals   share    energy   "
-           "drift in  position  energy\n"
-           "                       as s  a year                       error    "
-           "the run     error\n",
-           e, years);
+    printf(
+        "Kepler's problem, eccentricity %g, %g years from the far end; "
+        "gradient central4\n\n"
+        " integrator            s      steps   H evals   share    energy   "
+        "drift in  position  energy\n"
+        "                              a year                       error    "
+        "the run     error\n",
+        e, years);
     for (size_t i = 0; i < sizeof entries / sizeof *entries; i++)
         status |= run(comet, &entries[i]);
     nevh_system_free(comet);
