@@ -54,9 +54,11 @@ look_closer() {
         has '^ midpoint .* no .* yes .* yes$'
         has '^ rk4 .* no .* no .* no$'
         no_row '$4 == "yes" && $3 > 1e-9'
-        no_row '$4 == "no" && $3 < 1e-12'
+        no_row '$4 == "no" && $3 < 1e-13'
         no_row '$6 == "yes" && $5 > 1e-11'
+        no_row '$6 == "no" && $5 < 3e-13'
         no_row '$8 == "yes" && $7 > 1e-11'
+        no_row '$8 == "no" && $7 < 1e-10'
         ;;
     */catalogue)
         has '^ symplectic-euler-a +1 '
