@@ -4,7 +4,11 @@ examples = \
 	examples/first_hamiltonian \
 	examples/pendulum_energy \
 	examples/double_pendulum_energy \
+	examples/integrators \
 	examples/effects \
+	examples/catalogue \
+	examples/conservation \
+	examples/steps_that_follow \
 	examples/gradient_error \
 	examples/gradient_cost
 noinst_PROGRAMS += $(examples)
@@ -15,7 +19,11 @@ examples_double_pendulum_energy_SOURCES = \
 energy_table = examples/energy_table.c examples/energy_table.h
 examples_pendulum_energy_LDADD = libnevh.la
 examples_double_pendulum_energy_LDADD = libnevh.la
+examples_integrators_LDADD = libnevh.la
 examples_effects_LDADD = libnevh.la
+examples_catalogue_LDADD = libnevh.la
+examples_conservation_LDADD = libnevh.la
+examples_steps_that_follow_LDADD = libnevh.la
 gradient_systems = \
 	examples/gradient_systems.c examples/gradient_systems.h
 examples_gradient_error_SOURCES = \

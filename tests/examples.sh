@@ -1,5 +1,6 @@
 #!/bin/sh
-# Each example exits with 0, prints a table, and no number in it is not one.
+# Each example exits with 0, prints a table, and no number in it is not one; and
+# what some of them teach is there.
 
 srcdir=${srcdir:-.}
 limit=
@@ -14,6 +15,58 @@ status=0
 fails() {
     echo "$example: $1"
     status=1
+}
+
+# A line that matches; no row of a table for which awk's condition holds.
+has() {
+    grep -Eq "$1" $work/out || fails "lacks a line '$1'"
+}
+no_row() {
+    awk "$1"' { print; found = 1 } END { exit found }' $work/out ||
+        fails "has a row where $1"
+}
+
+look_closer() {
+    case $example in
+    */integrators)
+        has '^ gauss6 +6 +3 3 a sweep +any +yes +yes +no +no +fixed$'
+        has '^ naive-adaptive-verlet .* no +no +yes +no +its own$'
+        no_row '$1 == "verlet" && $2 != 2'
+        "./$example" leapfrog >$work/out || fails "does not know leapfrog"
+        has '^ verlet +2 '
+        has 'Stoermer-Verlet'
+        "./$example" --sources >$work/out || fails "has no sources"
+        has '^    .*Fehlberg'
+        no_row 'length > 79'
+        "./$example" leapfog >$work/out 2>&1 && fails "knows leapfog"
+        ;;
+    */steps_that_follow)
+        has '^ verlet +fixed .* bounded$'
+        has '^ adaptive-verlet +r.1\.5 .* bounded$'
+        has '^ naive-adaptive-verlet +r.1\.5 .* drifts$'
+        has '^ gauss4 +r.1 .* bounded$'
+        has '^ gauss8 +r.1\.5 .* bounded$'
+        no_row '$2 ~ /^r/ && $5 + 0 > 20'
+        no_row '$1 == "gauss4" && $6 > 1e-5'
+        no_row '$1 == "gauss8" && $6 > 1e-6'
+        ;;
+    */conservation)
+        has '^ midpoint .* no .* yes .* yes$'
+        has '^ rk4 .* no .* no .* no$'
+        no_row '$4 == "yes" && $3 > 1e-9'
+        no_row '$4 == "no" && $3 < 1e-13'
+        no_row '$6 == "yes" && $5 > 1e-11'
+        no_row '$6 == "no" && $5 < 3e-13'
+        no_row '$8 == "yes" && $7 > 1e-11'
+        no_row '$8 == "no" && $7 < 1e-10'
+        ;;
+    */catalogue)
+        has '^ symplectic-euler-a +1 '
+        has '^ gsl-rk8pd +8 '
+        no_row '$1 == "verlet" && ($4 > 1e-3 || $7 > 1e-4)'
+        no_row '$2 ~ /^[0-9]+$/ && $7 > $4'
+        ;;
+    esac
 }
 
 test -n "$EXAMPLES" || { echo "EXAMPLES is empty"; exit 1; }
@@ -32,6 +85,7 @@ for example in $EXAMPLES; do
                 END { print rows + 0 }' $work/out)
     test "$rows" -ge 2 || fails "prints no table"
     echo "$example: $rows rows"
+    look_closer
 
     # Only installed headers, and what examples share.
     if grep -E '#[[:space:]]*include[[:space:]]*"' "$srcdir/$example.c" |
