@@ -15,17 +15,8 @@ static double allowance(const problem *b, const nevh_integrator *scheme) {
     return order > 6 ? 0.12 : 0.05;
 }
 
-/* Where H is a sum of functions of one variable each, coordinate increments do
-   not depend on the order of the coordinates: Itoh and Abe's scheme is its own
-   adjoint there, and so of order 2. */
-static int due_order(const problem *b, const nevh_integrator *scheme) {
-    if (scheme == nevh_itoh_abe && b->n == 1 && b->separable)
-        return 2;
-    return nevh_integrator_order(scheme);
-}
-
 static void assert_order(const problem *b, const nevh_integrator *scheme) {
-    int order = due_order(b, scheme);
+    int order = order_on(b, scheme);
     double slope = measured_order(b, scheme, nevh_exact);
     ck_assert_msg(fabs(slope - order) <= allowance(b, scheme) * order,
                   "%s on %s: order %d, measured %.3f",

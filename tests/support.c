@@ -208,6 +208,12 @@ const problem *const problems[] = {&driven_pendulum, &kepler,
                                    &henon_heiles,    &relativistic,
                                    &double_pendulum, NULL};
 
+int order_on(const problem *b, const nevh_integrator *scheme) {
+    if (scheme == nevh_itoh_abe && b->n == 1 && b->separable)
+        return 2;
+    return nevh_integrator_order(scheme);
+}
+
 bool fits(const nevh_integrator *scheme, const problem *b) {
     unsigned needs = nevh_integrator_needs(scheme);
     return (b->separable || !(needs & NEVH_SEPARABLE)) &&

@@ -39,6 +39,11 @@ extern const problem *const problems[];
 bool fits(const nevh_integrator *, const problem *);
 /* The tolerance to plan with: 0, or a tight one for schemes that need one. */
 double tolerance_for(const nevh_integrator *);
+/* The order of a scheme on a problem: its own, but for Itoh and Abe's where H
+   is a sum of functions of one variable each.  Coordinate increments do not
+   depend on the order of the coordinates there, and the scheme is its own
+   adjoint. */
+int order_on(const problem *, const nevh_integrator *);
 /* A stepper on a new system of the problem; fails the test when refused. */
 nevh_stepper *planned(nevh_system *, const problem *, const nevh_integrator *,
                       const nevh_gradient *);
