@@ -272,6 +272,7 @@ START_TEST(balanced_steppers) {
     setting a = {.system = s, .scheme = nevh_integrators()[_i]};
     a.options =
         (nevh_options){.gradient_step = 1e-3, .q = start_q, .p = start_p};
+    a.options.tolerance = tolerance_for(a.scheme);
     a.options.balance = true;
     a.stepper = nevh_stepper_new(s, a.scheme, &a.options);
     if (nevh_stepper_status(a.stepper) != NEVH_ESTRUCT) {
@@ -289,7 +290,10 @@ START_TEST(balanced_steps_take_no_memory) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     nevh_system *s = nevh_system_from(2, whole, NULL);
     nevh_system_add_friction(s, "drag", rates);
-    nevh_options o = {.q = start_q, .p = start_p, .balance = true};
+    nevh_options o = {.q = start_q,
+                      .p = start_p,
+                      .tolerance = tolerance_for(scheme),
+                      .balance = true};
     nevh_stepper *m = nevh_stepper_new(s, scheme, &o);
     nevh_energy *e = nevh_energy_new(s, NULL);
     nevh_observer energy = {nevh_energy_observe, e, 1};
