@@ -25,30 +25,16 @@ size_t nevh__step_at(const nevh__planned *term, size_t instance, size_t k) {
     return instance / nevh__stride(term->term->is.count) * term->nv + k;
 }
 
-/* The largest sizes met; the length where that is 0. */
+/* The largest sizes met on the way; the length where that is 0. */
 static void set_scales(nevh__explorer *e) {
     nevh_field *f = e->field;
     size_t n = f->n;
     for (size_t i = 0; i < 2 * n && !e->options->scale; i++) {
         const double *x = i < n ? e->samples.q : e->samples.p;
         double most = 0;
-        for (size_t at = 0; at < e->samples.count; at++)
+        for (size_t at = 0; at < e->neighbours; at++)
             most = fmax(most, fabs(x[at * n + i % n]));
         f->scale[i] = most > 0 && isfinite(most) ? most : e->length[i];
-    }
-}
-
-/* The length of what is 0 in all states given. */
-static void scale_zeros(nevh__explorer *e) {
-    const nevh_options *o = e->options;
-    size_t n = e->field->n, width = o->width ? o->width : 1;
-    for (size_t i = 0; i < 2 * n && !o->scale; i++) {
-        const double *x = i < n ? o->q : o->p;
-        double most = 0;
-        for (size_t lane = 0; x && lane < width; lane++)
-            most = fmax(most, fabs(x[i % n * width + lane]));
-        if (most == 0)
-            e->field->scale[i] = e->length[i];
     }
 }
 
@@ -89,13 +75,16 @@ int nevh__field_explore(nevh_field *f, const nevh_options *o) {
 int nevh__field_verify(nevh_field *f, const nevh_options *o) {
     nevh__explorer e;
     int status = nevh__explorer_open(&e, f, o);
-    if (!status) {
-        scale_zeros(&e);
+    if (!status)
         nevh__find_neighbours(&e);
-    }
     for (size_t i = 0; !status && i < f->n_terms; i++)
         if (f->terms[i].nv)
             status = nevh__verify(&e, &f->terms[i]);
+    e.samples.count = e.neighbours;
+    if (!status && !nevh__find_samples(&e))
+        status = nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+    if (!status)
+        set_scales(&e);
     nevh__explorer_close(&e);
     return status;
 }

@@ -109,8 +109,8 @@ static bool run_pilot(nevh__explorer *e, int steps) {
     }
     gsl_odeiv2_step *step =
         gsl_odeiv2_step_alloc(gsl_odeiv2_step_rkf45, ode.dimension);
-    gsl_odeiv2_control *control =
-        gsl_odeiv2_control_standard_new(0, tolerance, 1, 1);
+    gsl_odeiv2_control *control = gsl_odeiv2_control_scaled_new(
+        tolerance, tolerance, 1, 0, e->length, ode.dimension);
     gsl_odeiv2_evolve *evolve = gsl_odeiv2_evolve_alloc(ode.dimension);
     if (step && control && evolve)
         fly(e, steps, &ode, step, control, evolve, y);
