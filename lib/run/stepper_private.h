@@ -19,6 +19,7 @@ struct nevh_stepper {
     double *before; /* the memory before that */
     size_t taken;
     double time_lost; /* of last_t, where steps vary, by rounding */
+    double before_t, before_lost; /* last_t and time_lost before that */
 };
 
 /* Why a scheme does not fit the system, or NEVH_OK. */
@@ -45,7 +46,7 @@ int nevh__run_steps(nevh_stepper *, double t0, double h, size_t steps,
                     const nevh_observer observers[], size_t count);
 void nevh__end_run(nevh_stepper *, const double q[], const double p[]);
 
-/* No step was taken: the memory is what it was before nevh__begin. */
+/* No step was taken: memory and time are what they were before nevh__begin. */
 void nevh__undo(nevh_stepper *);
 /* Keeps the state that a step or run returns. */
 void nevh__remember(nevh_stepper *, const double q[], const double p[]);
