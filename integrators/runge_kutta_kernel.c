@@ -51,6 +51,9 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
         }
         status = take_slopes(w, t + table->c[i] * h, point, slopes + 2 * n * i,
                              time);
+        if (!status && w->accounts)
+            status = nevh_work_account(w, NEVH_OF_Q | NEVH_OF_P,
+                                       table->b[i] * h, time, point, point + n);
     }
     if (status)
         return status;
