@@ -19,6 +19,7 @@ suites = \
 	tests/check_drift \
 	tests/check_evaluations \
 	tests/check_run \
+	tests/check_until \
 	tests/check_energy \
 	tests/check_models \
 	tests/check_failures \
