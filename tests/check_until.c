@@ -3,6 +3,7 @@
 #include "support.h"
 #include <math.h>
 #include <nevh/transform.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct {
@@ -250,6 +251,16 @@ START_TEST(a_short_way_after_a_jump) {
 }
 END_TEST
 
+static void assert_same_memory(const nevh_stepper *a, const nevh_stepper *b) {
+    size_t size = nevh_stepper_save_size(a);
+    char *one = malloc(size), *two = malloc(size);
+    nevh_stepper_save(a, one);
+    nevh_stepper_save(b, two);
+    ck_assert_mem_eq(one, two, size);
+    free(one);
+    free(two);
+}
+
 /* What takes no step leaves the stepper where it was, even if asked from
    elsewhere. */
 START_TEST(nothing_to_do_and_refusals) {
@@ -279,10 +290,10 @@ START_TEST(nothing_to_do_and_refusals) {
         assert_same(&z, &before, a.b);
         ck_assert(nevh_stepper_time(m) == t);
     }
+    assert_same_memory(m, plain);
     nevh_run(m, t, h0, 7, x.q, x.p, NULL, 0);
     nevh_run(plain, t, h0, 7, y.q, y.p, NULL, 0);
     assert_same(&x, &y, a.b);
-    ck_assert(nevh_stepper_time(m) == nevh_stepper_time(plain));
     nevh_stepper_free(m);
     nevh_stepper_free(plain);
     put_away(&a);

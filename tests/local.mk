@@ -20,6 +20,7 @@ suites = \
 	tests/check_evaluations \
 	tests/check_run \
 	tests/check_until \
+	tests/check_closeness \
 	tests/check_energy \
 	tests/check_models \
 	tests/check_failures \
