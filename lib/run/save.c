@@ -87,6 +87,7 @@ nevh_stepper *nevh_stepper_copy(const nevh_stepper *s) {
     if (!copy || !s->planned || !copy->planned)
         return copy;
     copy->work.field->revision = s->work.field->revision;
+    copy->revision = s->revision;
     double *to[3], *from[3];
     size_t size[3];
     list_parts(copy, to, size);

@@ -96,6 +96,7 @@ nevh_stepper *nevh_stepper_new(const nevh_system *system,
                           .report = &s->report};
     int status = owned ? plan(s, integrator) : NEVH_ENOMEM;
     s->planned = status == NEVH_OK;
+    s->revision = s->options.transform ? s->options.transform->revision : 0;
     if (status != NEVH_ENOMEM)
         return s;
     nevh_stepper_free(s);
@@ -171,6 +172,10 @@ int nevh__begin(nevh_stepper *s, double t, double h, const double q[],
     if (!isfinite(t) || !isfinite(h))
         return nevh__fail(&s->report, NEVH_EINVAL,
                           "time %g or step %g is not a finite number", t, h);
+    if (s->options.transform && s->options.transform->revision != s->revision)
+        return nevh__fail(&s->report, NEVH_ESTALE,
+                          "effects of the transform were added or switched "
+                          "since this was planned: make a new stepper");
     bool same = s->has_last && same_time(s, t, h);
     s->before_t = s->last_t;
     s->before_lost = s->time_lost;

@@ -11,14 +11,15 @@ struct nevh_stepper {
     nevh_options options; /* arrays are the stepper's own */
     nevh__report report;
     bool planned, own_time;
-    size_t kernel_rows; /* of the memory; those of the transform follow */
+    unsigned long revision; /* of the transform's system when planned */
+    size_t kernel_rows;     /* of the memory; those of the transform follow */
     /* What the last step returned. */
     bool has_last;
     double last_t, *last_q, *last_p;
     bool forgot;    /* the last step or run began with less than `before` */
     double *before; /* the memory before that */
     size_t taken;
-    double time_lost; /* of last_t, where steps vary, by rounding */
+    double time_lost;             /* of last_t, where steps vary, by rounding */
     double before_t, before_lost; /* last_t and time_lost before that */
 };
 
