@@ -12,10 +12,11 @@
    which is symmetric [E. Hairer, G. Soederlind, Explicit, time reversible,
    adaptive step size control, SIAM J. Sci. Comput. 26 (2005) 1838-1851].
 
-   s is the user's, or else |f|^(-3/4), f being the field in units of the scales
-   of the state: under gravity, where |f| grows as 1/r^2, that is r^1.5.  Where
-   f is nearly zero its length at the start bounds the step.  s is divided by
-   its value at the start.
+   s is the user's, or else |f|^(-3/4), f being the field, coordinates in units
+   of their largest scale and momenta of theirs: under gravity, where |f| grows
+   as 1/r^2, that is r^1.5.  A scale for each would make |f| of a round orbit
+   depend on the direction, and rho lose s.  Where f is nearly zero its length
+   at the start bounds the step.  s is divided by its value at the start.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "adaptive_verlet_private.h"
 #include "system/system_private.h"
@@ -37,6 +38,8 @@ typedef struct {
     double *pair;          /* two states beside each other: q, p, */
     double *pair_slopes;   /* dV/dq, dT/dp */
     double *ds_dq, *ds_dp;
+    double scale_q,
+        scale_p; /* the largest of all coordinates, of all momenta */
 } plan_data;
 
 /* What a step tells the next one, after the carries and dV/dq. */
@@ -74,6 +77,10 @@ static int plan(nevh_work *w) {
     w->scratch_size = 16 * w->n;
     if (!d)
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
+    for (size_t k = 0; k < w->n; k++) {
+        d->scale_q = fmax(d->scale_q, w->scale[k]);
+        d->scale_p = fmax(d->scale_p, w->scale[w->n + k]);
+    }
     return w->options->transform ? nevh__transform_field(w, &d->s) : NEVH_OK;
 }
 
@@ -88,8 +95,8 @@ static double field_size(const nevh_work *w) {
     const plan_data *d = w->plan;
     double size = 0;
     for (size_t k = 0; k < w->n; k++) {
-        size = hypot(size, d->speed[k] / w->scale[k]);
-        size = hypot(size, d->force[k] / w->scale[w->n + k]);
+        size = hypot(size, d->speed[k] / d->scale_q);
+        size = hypot(size, d->force[k] / d->scale_p);
     }
     return size;
 }
@@ -105,12 +112,10 @@ static double guard(double size, double unit) {
 static double along_field(const nevh_work *w, double size, const double force[],
                           const double speed[]) {
     const plan_data *d = w->plan;
-    double sum = 0;
-    for (size_t k = 0; k < w->n; k++) {
-        double q = w->scale[k], p = w->scale[w->n + k];
+    double sum = 0, q = d->scale_q, p = d->scale_p;
+    for (size_t k = 0; k < w->n; k++)
         sum += d->speed[k] / q / size * (speed[2 * k] / q) +
                d->force[k] / p / size * (force[2 * k] / p);
-    }
     return sum;
 }
 

@@ -5,7 +5,7 @@
    value of it, and a field of its own for s. */
 #include "transform_private.h"
 #include "system/system_private.h"
-#include <math.h>
+#include <float.h>
 #include <stdlib.h>
 
 static int plan_arrays(nevh_work *w, nevh__transform *f) {
@@ -196,10 +196,10 @@ int nevh__transform_rate(nevh_work *w, const double t[], const double q[],
     if (status)
         return status;
     *rate = w->transform->s[0] / w->transform->memory[NEVH__UNIT];
-    if (*rate > NEVH__LEAST_RATE)
+    if (*rate > NEVH__LEAST_RATE && *rate <= DBL_MAX)
         return NEVH_OK;
     return nevh_work_fail(w, NEVH_EDOM,
-                          "the transform s has fallen to %g of its value at "
-                          "the start (a collision?) at t = %.9g",
-                          *rate, t[0]);
+                          "the transform s is %g times its value at the start "
+                          "at t = %.9g%s",
+                          *rate, t[0], *rate < 1 ? " (a collision?)" : "");
 }

@@ -23,6 +23,8 @@ suites = \
 	tests/check_energy_preserving \
 	tests/check_evaluations \
 	tests/check_run \
+	tests/check_until \
+	tests/check_closeness \
 	tests/check_energy \
 	tests/check_friction \
 	tests/check_damped_orbits \

@@ -1,6 +1,7 @@
 /* nevh: what a step does to phase space.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/stepper_private.h"
+#include "transform_private.h"
 #include <math.h>
 #include <nevh/diagnose.h>
 #include <stdlib.h>
@@ -27,14 +28,29 @@ static double scale_of(const probe *b, size_t i) {
     return b->scale ? b->scale[i] : 1;
 }
 
+/* A fresh step, of the K of the state probed where time is transformed: its own
+   would be another one for each state. */
+static int take_step(const probe *b) {
+    nevh_stepper *s = b->stepper;
+    nevh_work *w = &s->work;
+    double *q = b->z, *p = b->z + b->n;
+    nevh_stepper_reset(s);
+    int status = nevh__begin(s, b->t, b->h, q, p);
+    if (!status && w->transform)
+        status = nevh__transform_begin(w, w->memory + w->memory_rows * w->width,
+                                       b->t, b->q, b->p);
+    if (!status)
+        status = nevh__advance(s, b->t, b->h, q, p);
+    return status;
+}
+
 /* Adds weight times the step's image of the state with variable j moved. */
 static int add_image(probe *b, size_t j, double move, double weight) {
     size_t n = b->n;
     memcpy(b->z, b->q, n * sizeof *b->z);
     memcpy(b->z + n, b->p, n * sizeof *b->z);
     b->z[j] += move * scale_of(b, j);
-    nevh_stepper_reset(b->stepper);
-    int status = nevh_stepper_apply(b->stepper, b->t, b->h, b->z, b->z + n);
+    int status = take_step(b);
     for (size_t i = 0; !status && i < 2 * n; i++)
         b->m[j * 2 * n + i] += weight * b->z[i] / scale_of(b, i);
     return status;
@@ -102,6 +118,7 @@ int nevh_symplecticity_defect(nevh_stepper *s, double t, double h,
     int status = b.z && b.m && b.tilted ? differentiate(&b) : (int)NEVH_ENOMEM;
     if (!status)
         *defect = find_defect(&b);
+    nevh_stepper_reset(s);
     free(b.z);
     free(b.m);
     free(b.tilted);

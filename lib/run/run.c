@@ -39,7 +39,7 @@ int nevh__run_steps(nevh_stepper *s, double t0, double h, size_t steps,
         if (status)
             break;
         s->taken++;
-        t = nevh__next_time(s, t0, h);
+        t = s->last_t = nevh__next_time(s, t0, h);
         status = nevh__show(s, s->taken, ends && s->taken == steps, t, q, p,
                             observers, count);
     }

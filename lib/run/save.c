@@ -89,6 +89,7 @@ nevh_stepper *nevh_stepper_copy(const nevh_stepper *s) {
     /* Where the system has changed it may have another size, and no use. */
     bool stale = s->work.field->revision != copy->work.field->revision;
     copy->work.field->revision = s->work.field->revision;
+    copy->revision = s->revision;
     double *to[3], *from[3];
     size_t size[3];
     list_parts(copy, to, size);

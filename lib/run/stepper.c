@@ -102,6 +102,7 @@ nevh_stepper *nevh_stepper_new(const nevh_system *system,
                           .report = &s->report};
     int status = owned ? plan(s, integrator) : NEVH_ENOMEM;
     s->planned = status == NEVH_OK;
+    s->revision = s->options.transform ? s->options.transform->revision : 0;
     if (status != NEVH_ENOMEM)
         return s;
     nevh_stepper_free(s);
@@ -183,7 +184,13 @@ int nevh__begin(nevh_stepper *s, double t, double h, const double q[],
     if (!isfinite(t) || !isfinite(h))
         return nevh__fail(&s->report, NEVH_EINVAL,
                           "time %g or step %g is not a finite number", t, h);
+    if (s->options.transform && s->options.transform->revision != s->revision)
+        return nevh__fail(&s->report, NEVH_ESTALE,
+                          "effects of the transform were added or switched "
+                          "since this was planned: make a new stepper");
     bool same = s->has_last && same_time(s, t, h);
+    s->before_t = s->last_t;
+    s->before_lost = s->time_lost;
     s->time_lost = same ? s->time_lost : 0;
     for (size_t lane = 0; lane < s->work.width; lane++)
         if (!same || !same_lane(s, lane, q, p)) {
@@ -198,6 +205,16 @@ int nevh__begin(nevh_stepper *s, double t, double h, const double q[],
 void nevh__undo(nevh_stepper *s) {
     if (s->forgot)
         memcpy(s->work.memory, s->before, memory_size(s));
+    s->last_t = s->before_t;
+    s->time_lost = s->before_lost;
+}
+
+/* The sum with t is exact in two parts, whichever is larger. */
+static void pass_time(nevh_stepper *s, double t) {
+    double passed = s->work.elapsed + (s->own_time ? s->time_lost : 0);
+    double next = t + passed, part = next - t;
+    s->time_lost = (t - (next - part)) + (passed - part);
+    s->last_t = next;
 }
 
 int nevh__advance(nevh_stepper *s, double t, double h, double q[], double p[]) {
@@ -214,9 +231,7 @@ int nevh__advance(nevh_stepper *s, double t, double h, double q[], double p[]) {
     if (status)
         return status;
     nevh__ledger_close(s);
-    double passed = w->elapsed + (s->own_time ? s->time_lost : 0);
-    s->last_t = t + passed;
-    s->time_lost = passed - (s->last_t - t);
+    pass_time(s, t);
     s->report.status = NEVH_OK; /* a rescued step has failed before */
     s->report.text[0] = '\0';
     return NEVH_OK;

@@ -11,6 +11,7 @@ struct nevh_stepper {
     nevh_options options; /* arrays are the stepper's own */
     nevh__report report;
     bool planned, own_time;
+    unsigned long revision; /* of the transform's system when planned */
     /* The kernel's memory begins a larger one: then the carry of friction, n
        rows, or what the transform keeps, and the ledger's two.  A lane that
        starts afresh keeps the last. */
@@ -23,7 +24,8 @@ struct nevh_stepper {
     bool forgot;    /* the last step or run began with less than `before` */
     double *before; /* the memory before that */
     size_t taken;
-    double time_lost; /* of last_t, where steps vary, by rounding */
+    double time_lost;             /* of last_t, where steps vary, by rounding */
+    double before_t, before_lost; /* last_t and time_lost before that */
 };
 
 /* Why a scheme does not fit the system, or NEVH_OK. */
@@ -71,7 +73,7 @@ void nevh__ledger_close(nevh_stepper *);
 /* Whether nevh_stepper_gain is what came in, or nothing does. */
 bool nevh__balanced(const nevh_stepper *);
 
-/* No step was taken: the memory is what it was before nevh__begin. */
+/* No step was taken: memory and time are what they were before nevh__begin. */
 void nevh__undo(nevh_stepper *);
 /* Keeps the state that a step or run returns. */
 void nevh__remember(nevh_stepper *, const double q[], const double p[]);

@@ -19,6 +19,7 @@ enum { MOST_TRIALS = 100 };
 typedef struct {
     nevh_stepper *stepper;
     double t, t_end, h;
+    double lost;            /* of t, by rounding */
     double elapsed;         /* by a step of h */
     double *q, *p, *memory; /* the main orbit's */
     double *q_end, *p_end;  /* after a trial step */
@@ -34,11 +35,18 @@ static size_t memory_size(const nevh_stepper *s) {
     return s->work.memory_rows * s->work.width * sizeof(double);
 }
 
+/* GSL aborts where memory is out: ask first for more than it takes. */
+static bool memory_suffices(void) {
+    void *trial = nevh__array(64, sizeof(double));
+    free(trial);
+    return trial != NULL;
+}
+
 static int branch_open(branch *b, nevh_stepper *s) {
     size_t size = s->work.size, rows = s->work.memory_rows * s->work.width;
     b->stepper = s;
     b->q = nevh__array(4 * size + rows, sizeof *b->q);
-    if (b->q && s->own_time)
+    if (b->q && s->own_time && memory_suffices())
         b->solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
     if (!b->q || (s->own_time && !b->solver))
         return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
@@ -58,9 +66,17 @@ static void branch_close(branch *b) {
 static void keep(branch *b, double t, const double q[], const double p[]) {
     nevh_stepper *s = b->stepper;
     b->t = t;
+    b->lost = s->time_lost;
     memcpy(b->q, q, state_size(s));
     memcpy(b->p, p, state_size(s));
     memcpy(b->memory, s->work.memory, memory_size(s));
+}
+
+static void resume(const branch *b) {
+    nevh_stepper *s = b->stepper;
+    s->last_t = b->t;
+    s->time_lost = b->lost;
+    memcpy(s->work.memory, b->memory, memory_size(s));
 }
 
 /* A step of h from the main orbit's state to q_end, p_end. */
@@ -68,7 +84,7 @@ static int try_step(branch *b, double h) {
     nevh_stepper *s = b->stepper;
     memcpy(b->q_end, b->q, state_size(s));
     memcpy(b->p_end, b->p, state_size(s));
-    memcpy(s->work.memory, b->memory, memory_size(s));
+    resume(b);
     return nevh__advance(s, b->t, h, b->q_end, b->p_end);
 }
 
@@ -101,25 +117,59 @@ static double find_fraction(branch *b) {
     return fraction;
 }
 
+/* The step that ends at t_end. */
+static int step_to_end(branch *b) {
+    nevh_stepper *s = b->stepper;
+    double due = b->t_end - b->t;
+    if (!s->own_time || due / b->elapsed >= 1)
+        return try_step(b, b->h);
+    double fraction = find_fraction(b);
+    int status = b->status ? b->status : try_step(b, fraction * b->h);
+    if (status || fabs(s->work.elapsed - due) <= whole * fabs(due))
+        return status;
+    return nevh__fail(&s->report, NEVH_EMAXITER,
+                      "no part of the step of %g from t = %.9g ends at %.9g: "
+                      "take a smaller one",
+                      b->h, b->t, b->t_end);
+}
+
 /* The last stretch; the stepper stays on the main orbit. */
 static int branch_off(branch *b, double h, double q[], double p[],
                       const nevh_observer observers[], size_t count) {
     nevh_stepper *s = b->stepper;
-    double fraction = 1;
     b->h = h;
-    b->status = NEVH_OK;
-    if (s->own_time && (b->t_end - b->t) / b->elapsed < 1)
-        fraction = find_fraction(b);
-    int status = b->status ? b->status : try_step(b, fraction * h);
-    memcpy(s->work.memory, b->memory, memory_size(s));
+    int status = step_to_end(b);
+    resume(b);
     memcpy(q, status ? b->q : b->q_end, state_size(s));
     memcpy(p, status ? b->p : b->p_end, state_size(s));
+    if (status && s->taken == 0) {
+        nevh__undo(s);
+        return status;
+    }
     nevh__remember(s, b->q, b->p);
-    s->last_t = b->t;
     if (status)
         return status;
     s->taken++;
     return nevh__show(s, s->taken, true, b->t_end, q, p, observers, count);
+}
+
+/* One step of the main orbit; *t in and out. */
+static int own_step(branch *b, double h, double *t, double q[], double p[]) {
+    nevh_stepper *s = b->stepper;
+    keep(b, *t, q, p);
+    int status = nevh__advance(s, *t, h, q, p);
+    if (status)
+        return status;
+    b->elapsed = s->work.elapsed;
+    *t = s->last_t;
+    if (b->elapsed / h > 0)
+        return NEVH_OK;
+    resume(b);
+    memcpy(q, b->q, state_size(s));
+    memcpy(p, b->p, state_size(s));
+    return nevh__fail(&s->report, NEVH_EFAILED,
+                      "%s: no time has passed in the step from t = %.9g by %g",
+                      s->work.integrator->name, b->t, h);
 }
 
 /* Steps of the scheme's own time, until the next one would pass the end. */
@@ -129,12 +179,9 @@ static int run_own(branch *b, double h, double q[], double p[],
     double t = b->t, forward = h > 0 ? 1 : -1;
     int status = nevh__show(s, 0, t == b->t_end, t, q, p, observers, count);
     while (!status && t != b->t_end) {
-        keep(b, t, q, p);
-        status = nevh__advance(s, t, h, q, p);
+        status = own_step(b, h, &t, q, p);
         if (status)
             break;
-        b->elapsed = s->work.elapsed;
-        t = s->last_t;
         if ((t - b->t_end) * forward > 0)
             return branch_off(b, h, q, p, observers, count);
         s->taken++;
@@ -145,22 +192,41 @@ static int run_own(branch *b, double h, double q[], double p[],
     return status;
 }
 
+/* `steps` steps that end at t_end to the last bit. */
+static int run_whole(branch *b, double h, double steps, double q[], double p[],
+                     const nevh_observer observers[], size_t count) {
+    nevh_stepper *s = b->stepper;
+    double t0 = b->t, before = fmax(steps - 1, 0);
+    int status = nevh__run_steps(s, t0, h, (size_t)before, steps == 0, q, p,
+                                 observers, count);
+    if (!status && steps > 0)
+        status = nevh__advance(s, t0 + before * h, h, q, p);
+    if (!status && steps > 0) {
+        s->taken++;
+        s->last_t = b->t_end;
+        status =
+            nevh__show(s, s->taken, true, b->t_end, q, p, observers, count);
+    }
+    nevh__end_run(s, q, p);
+    return status;
+}
+
 /* Whole steps, and what is left. */
 static int run_fixed(branch *b, double h, double q[], double p[],
                      const nevh_observer observers[], size_t count) {
     nevh_stepper *s = b->stepper;
     double t0 = b->t, span = b->t_end - t0, steps = round(span / h);
-    bool ends = fabs(span / h - steps) <= whole * fmax(1, steps) &&
-                (steps > 0 || span == 0);
-    if (ends)
-        h = steps > 0 ? span / steps : h;
-    else
-        steps = floor(span / h);
+    if (span == 0)
+        return run_whole(b, h, 0, q, p, observers, count);
+    if (steps > 0 && fabs(span / h - steps) <= whole * steps)
+        return run_whole(b, span / steps, steps, q, p, observers, count);
+    steps = floor(span / h);
     int status =
-        nevh__run_steps(s, t0, h, (size_t)steps, ends, q, p, observers, count);
-    nevh__end_run(s, q, p);
-    if (status || ends)
+        nevh__run_steps(s, t0, h, (size_t)steps, false, q, p, observers, count);
+    if (status) {
+        nevh__end_run(s, q, p);
         return status;
+    }
     keep(b, t0 + steps * h, q, p);
     return branch_off(b, b->t_end - b->t, q, p, observers, count);
 }
@@ -179,13 +245,15 @@ int nevh_run_until(nevh_stepper *s, double t0, double h, double t_end,
                    double q[], double p[], const nevh_observer observers[],
                    size_t count) {
     int status = nevh__begin_run(s, t0, h, q, p);
-    if (!status)
-        status = check(s, t0, h, t_end);
     if (status)
         return status;
     branch b = {.t = t0, .t_end = t_end};
-    status = branch_open(&b, s);
+    status = check(s, t0, h, t_end);
     if (!status)
+        status = branch_open(&b, s);
+    if (status)
+        nevh__undo(s);
+    else
         status =
             (s->own_time ? run_own : run_fixed)(&b, h, q, p, observers, count);
     branch_close(&b);

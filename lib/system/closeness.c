@@ -5,6 +5,7 @@
    instance say which: the power, and the coordinates of a body. */
 #include <math.h>
 #include <nevh/transform.h>
+#include <stdint.h>
 
 static double distance_squared(size_t width, const double q[], size_t count) {
     double sum = 0;
@@ -119,7 +120,8 @@ static void closeness_gradient(size_t width, const double t[], const double q[],
 
 nevh_system *nevh_closeness_power(size_t bodies, size_t dimensions,
                                   double power) {
-    size_t n = bodies > 1 ? bodies * dimensions : 0;
+    bool sane = bodies > 1 && dimensions <= SIZE_MAX / bodies;
+    size_t n = sane ? bodies * dimensions : 0;
     nevh_system *s = nevh_system_new(n);
     const double c[] = {power, (double)bodies, (double)dimensions};
     if (s)
