@@ -21,6 +21,8 @@ suites = \
 	tests/check_run \
 	tests/check_until \
 	tests/check_closeness \
+	tests/check_transform \
+	tests/check_own_time \
 	tests/check_energy \
 	tests/check_models \
 	tests/check_failures \
@@ -31,6 +33,7 @@ TEST_LIBS = tests/libsupport.la libnevh.la $(CHECK_LIBS)
 # These look inside, so they link what is not visible in libnevh.la.
 INSIDE_LIBS = tests/libsupport.la libnevh_core.la $(CHECK_LIBS)
 tests_check_coefficients_LDADD = $(INSIDE_LIBS)
+tests_check_transform_LDADD = $(INSIDE_LIBS)
 tests_check_gsl_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_threads_CFLAGS = $(AM_CFLAGS) -pthread
 tests_check_threads_LDFLAGS = $(AM_LDFLAGS) -pthread
