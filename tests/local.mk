@@ -25,6 +25,8 @@ suites = \
 	tests/check_run \
 	tests/check_until \
 	tests/check_closeness \
+	tests/check_transform \
+	tests/check_own_time \
 	tests/check_energy \
 	tests/check_friction \
 	tests/check_damped_orbits \
@@ -53,6 +55,7 @@ tests_check_brouwer_LDADD = $(INSIDE_LIBS)
 tests_check_implicit_LDADD = $(INSIDE_LIBS)
 tests_check_tao_LDADD = $(INSIDE_LIBS)
 tests_check_time_slope_LDADD = $(INSIDE_LIBS)
+tests_check_transform_LDADD = $(INSIDE_LIBS)
 tests_check_gsl_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_damped_orbits_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_threads_CFLAGS = $(AM_CFLAGS) -pthread

@@ -191,7 +191,6 @@ int nevh__begin(nevh_stepper *s, double t, double h, const double q[],
     bool same = s->has_last && same_time(s, t, h);
     s->before_t = s->last_t;
     s->before_lost = s->time_lost;
-    s->time_lost = same ? s->time_lost : 0;
     for (size_t lane = 0; lane < s->work.width; lane++)
         if (!same || !same_lane(s, lane, q, p)) {
             if (!s->forgot)
@@ -199,6 +198,8 @@ int nevh__begin(nevh_stepper *s, double t, double h, const double q[],
             s->forgot = true;
             forget_lane(s, lane);
         }
+    if (s->forgot)
+        s->time_lost = 0;
     return NEVH_OK;
 }
 
