@@ -12,13 +12,15 @@
    which is symmetric [E. Hairer, G. Soederlind, Explicit, time reversible,
    adaptive step size control, SIAM J. Sci. Comput. 26 (2005) 1838-1851].
 
-   s is the user's, or else |f|^(-3/4), f being the field, coordinates in units
-   of their largest scale and momenta of theirs: under gravity, where |f| grows
-   as 1/r^2, that is r^1.5.  A scale for each would make |f| of a round orbit
+   s is the user's, or else |f|^(-3/4), f being the field, with coordinates in
+   units of the largest length over which H varies with one, and momenta alike:
+   under gravity, where |f| grows
+   as 1/r^2, that is r^1.5.  A unit for each would make |f| of a round orbit
    depend on the direction, and rho lose s.  Where f is nearly zero its length
    at the start bounds the step.  s is divided by its value at the start.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "adaptive_verlet_private.h"
+#include "gradient/field_private.h"
 #include "system/system_private.h"
 #include "transform_private.h"
 #include <math.h>
@@ -38,8 +40,7 @@ typedef struct {
     double *pair;          /* two states beside each other: q, p, */
     double *pair_slopes;   /* dV/dq, dT/dp */
     double *ds_dq, *ds_dp;
-    double scale_q,
-        scale_p; /* the largest of all coordinates, of all momenta */
+    double unit_q, unit_p; /* of coordinates and of momenta, for |f| */
 } plan_data;
 
 /* What a step tells the next one, after the carries and dV/dq. */
@@ -71,17 +72,32 @@ static void divide(const nevh_work *w, plan_data *d) {
     d->pair_slopes = at + 4 * w->n;
 }
 
+/* Not w->scale, which for an angle that goes round and round is how far it
+   went. */
+static int plan_units(nevh_work *w) {
+    plan_data *d = w->plan;
+    double *length = nevh__array(2 * w->n, sizeof *length);
+    if (!length)
+        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
+    int status = nevh__field_lengths(w->field, w->options, length);
+    for (size_t k = 0; k < w->n; k++) {
+        d->unit_q = fmax(d->unit_q, length[k]);
+        d->unit_p = fmax(d->unit_p, length[w->n + k]);
+    }
+    free(length);
+    return status
+               ? nevh_work_fail(w, status, "%s", nevh_field_message(w->field))
+               : NEVH_OK;
+}
+
 static int plan(nevh_work *w) {
     plan_data *d = w->plan = nevh__array(1, sizeof *d);
     w->memory_rows = 3 * w->n + CONTROL_ROWS;
     w->scratch_size = 16 * w->n;
     if (!d)
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
-    for (size_t k = 0; k < w->n; k++) {
-        d->scale_q = fmax(d->scale_q, w->scale[k]);
-        d->scale_p = fmax(d->scale_p, w->scale[w->n + k]);
-    }
-    return w->options->transform ? nevh__transform_field(w, &d->s) : NEVH_OK;
+    return w->options->transform ? nevh__transform_field(w, &d->s)
+                                 : plan_units(w);
 }
 
 /* dV/dq, dT/dp or both at the state under way. */
@@ -95,8 +111,8 @@ static double field_size(const nevh_work *w) {
     const plan_data *d = w->plan;
     double size = 0;
     for (size_t k = 0; k < w->n; k++) {
-        size = hypot(size, d->speed[k] / d->scale_q);
-        size = hypot(size, d->force[k] / d->scale_p);
+        size = hypot(size, d->speed[k] / d->unit_q);
+        size = hypot(size, d->force[k] / d->unit_p);
     }
     return size;
 }
@@ -112,7 +128,7 @@ static double guard(double size, double unit) {
 static double along_field(const nevh_work *w, double size, const double force[],
                           const double speed[]) {
     const plan_data *d = w->plan;
-    double sum = 0, q = d->scale_q, p = d->scale_p;
+    double sum = 0, q = d->unit_q, p = d->unit_p;
     for (size_t k = 0; k < w->n; k++)
         sum += d->speed[k] / q / size * (speed[2 * k] / q) +
                d->force[k] / p / size * (force[2 * k] / p);

@@ -76,8 +76,11 @@ static void put_away(setting *a) {
 }
 
 static nevh_stepper *stepper_for(const setting *a) {
-    nevh_options o = {
-        .t = a->b->t0, .q = a->b->q, .p = a->b->p, .transform = a->s};
+    nevh_options o = {.t = a->b->t0,
+                      .q = a->b->q,
+                      .p = a->b->p,
+                      .tolerance = tolerance_for(a->scheme),
+                      .transform = a->s};
     nevh_stepper *m = nevh_stepper_new(a->system, a->scheme, &o);
     ck_assert_msg(nevh_stepper_status(m) == NEVH_OK, "%s",
                   nevh_stepper_message(m));
