@@ -23,6 +23,7 @@ suites = \
 	tests/check_closeness \
 	tests/check_transform \
 	tests/check_own_time \
+	tests/check_eccentric \
 	tests/check_energy \
 	tests/check_models \
 	tests/check_failures \
