@@ -27,6 +27,7 @@ suites = \
 	tests/check_closeness \
 	tests/check_transform \
 	tests/check_own_time \
+	tests/check_eccentric \
 	tests/check_energy \
 	tests/check_friction \
 	tests/check_damped_orbits \
