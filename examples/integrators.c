@@ -64,7 +64,7 @@ static void print_table(const nevh_integrator *one) {
             print(width, describe(all[i]));
     puts("\n evaluations: of dH/dq in a step, or in a sweep over its stages"
          "\n *            with T quadratic in p"
-         "\n doubled:     in the larger phase space that the scheme works in");
+         "\n extended:    in the larger phase space that the scheme works in");
 }
 
 /* Indented, in lines of at most LINE characters. */

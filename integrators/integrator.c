@@ -43,8 +43,8 @@ bool nevh_integrator_own_time(const nevh_integrator *i) {
 }
 
 const char *nevh_claim_name(nevh_claim claim) {
-    static const char *const names[] = {"no", "yes", "unproven", "doubled"};
-    return claim <= NEVH_DOUBLED ? names[claim] : "unknown";
+    static const char *const names[] = {"no", "yes", "unproven", "extended"};
+    return claim <= NEVH_EXTENDED ? names[claim] : "unknown";
 }
 
 nevh_claim nevh_integrator_symplectic(const nevh_integrator *i) {

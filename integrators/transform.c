@@ -73,7 +73,7 @@ static int check(nevh_work *w) {
         return refuse(w, "it takes its gradients on its own");
     if (scheme->preserves_energy == NEVH_YES)
         return refuse(w, "it is H that it preserves, not s (H - H0)");
-    if (scheme->symplectic == NEVH_DOUBLED)
+    if (scheme->symplectic == NEVH_EXTENDED)
         return refuse(w, "its binding is chosen for H, not for s (H - H0)");
     if (!(nevh_system_traits(w->system) & NEVH_AUTONOMOUS))
         return nevh_work_fail(w, NEVH_ESTRUCT,

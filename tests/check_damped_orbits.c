@@ -35,7 +35,7 @@ static void assert_decay(const nevh_integrator *scheme, bool moves, double rate,
 START_TEST(decay_is_exact) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     /* Where copies of q and p are bound, rounding of q comes back to p. */
-    if (!splits(scheme) || nevh_integrator_symplectic(scheme) == NEVH_DOUBLED)
+    if (!splits(scheme) || nevh_integrator_symplectic(scheme) == NEVH_EXTENDED)
         return;
     assert_decay(scheme, true, 0.1, 0.01, 10000);
     assert_decay(scheme, false, 0.37, 0.001, 10000);
@@ -148,7 +148,7 @@ static void assert_order(const problem *b, const nevh_integrator *scheme,
     nevh_stepper *m = planned(s, b, scheme, nevh_exact);
     int order = splits(scheme) ? (int)fmin(2, order_on(b, scheme))
                                : nevh_stepper_order(m);
-    bool doubled = nevh_integrator_symplectic(scheme) == NEVH_DOUBLED;
+    bool doubled = nevh_integrator_symplectic(scheme) == NEVH_EXTENDED;
     bool iterates = nevh_integrator_explicit(scheme) != NEVH_YES;
     double above = order == 1 ? (iterates ? 2e-4 : 1e-2)
                    : doubled  ? 1e-7
@@ -272,7 +272,7 @@ START_TEST(symmetric_schemes_return) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     const problem *b = problem_for(scheme);
     nevh_claim claim = nevh_integrator_symmetric(scheme);
-    if (!splits(scheme) || (claim != NEVH_YES && claim != NEVH_DOUBLED))
+    if (!splits(scheme) || (claim != NEVH_YES && claim != NEVH_EXTENDED))
         return;
     nevh_system *s = damped(b, unequal);
     nevh_stepper *m = planned(s, b, scheme, nevh_exact);
@@ -294,7 +294,7 @@ START_TEST(memory_is_a_help_only) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     const problem *b = problem_for(scheme);
     enum { STEPS = 200 };
-    if (refuses(scheme) || nevh_integrator_symplectic(scheme) == NEVH_DOUBLED)
+    if (refuses(scheme) || nevh_integrator_symplectic(scheme) == NEVH_EXTENDED)
         return;
     nevh_system *s = damped(b, unequal);
     nevh_stepper *kept = planned(s, b, scheme, nevh_exact);

@@ -86,7 +86,7 @@ START_TEST(claim_over_long_runs) {
     double h = order <= 2 ? 0.05 : order <= 4 ? 0.1 : order <= 6 ? 0.25 : 0.4;
     nevh_energy_report r = energy_of(&pendulum, scheme, NULL, h, 100000);
     nevh_claim symplectic = nevh_integrator_symplectic(scheme);
-    if (symplectic == NEVH_YES || symplectic == NEVH_DOUBLED)
+    if (symplectic == NEVH_YES || symplectic == NEVH_EXTENDED)
         ck_assert_msg(r.verdict == NEVH_BOUNDED && r.max > 1e-11 &&
                           fabs(r.drift) * 1e5 * h < 0.02 * r.max,
                       "%s: max %.2e, drift %.2e", nevh_integrator_name(scheme),

@@ -120,7 +120,7 @@ START_TEST(claims_have_names) {
     ck_assert_str_eq(nevh_claim_name(NEVH_NO), "no");
     ck_assert_str_eq(nevh_claim_name(NEVH_YES), "yes");
     ck_assert_str_eq(nevh_claim_name(NEVH_UNPROVEN), "unproven");
-    ck_assert_str_eq(nevh_claim_name(NEVH_DOUBLED), "doubled");
+    ck_assert_str_eq(nevh_claim_name(NEVH_EXTENDED), "extended");
     ck_assert_str_eq(nevh_claim_name((nevh_claim)9), "unknown");
 }
 END_TEST

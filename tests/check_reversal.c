@@ -32,7 +32,7 @@ START_TEST(symmetric_schemes_return) {
         double found = defect(*b, scheme, nevh_exact, 0.02);
         bool returns = found <= 300 * DBL_EPSILON * sqrt(STEPS);
         if (nevh_integrator_symmetric(scheme) == NEVH_YES ||
-            nevh_integrator_symmetric(scheme) == NEVH_DOUBLED)
+            nevh_integrator_symmetric(scheme) == NEVH_EXTENDED)
             ck_assert_msg(returns, "%s on %s: %.2e",
                           nevh_integrator_name(scheme), (*b)->name, found);
     }

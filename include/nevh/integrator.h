@@ -13,10 +13,11 @@ extern "C" {
 
 typedef struct nevh_integrator nevh_integrator;
 
-/* What is claimed of a scheme.  UNPROVEN is an answer; DOUBLED holds in the
-   doubled phase space that the scheme works in, not for (q, p) alone. */
-typedef enum { NEVH_NO, NEVH_YES, NEVH_UNPROVEN, NEVH_DOUBLED } nevh_claim;
-/* "no", "yes", "unproven", "doubled". */
+/* What is claimed of a scheme.  UNPROVEN is an answer; EXTENDED holds in the
+   larger space that the scheme works in (with a second copy of the state, or
+   the density of its steps), not for (q, p) alone. */
+typedef enum { NEVH_NO, NEVH_YES, NEVH_UNPROVEN, NEVH_EXTENDED } nevh_claim;
+/* "no", "yes", "unproven", "extended". */
 NEVH_API const char *nevh_claim_name(nevh_claim);
 
 /* Explicit, for H = T(p) + V(q); mclachlan_atela4, rkn11b and rkn14a need a T
