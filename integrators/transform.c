@@ -5,6 +5,7 @@
    value of it, and a field of its own for s. */
 #include "transform_private.h"
 #include "system/system_private.h"
+#include <nevh/probe.h>
 #include <float.h>
 #include <stdlib.h>
 
@@ -64,6 +65,23 @@ static int refuse(nevh_work *w, const char *why) {
                           w->integrator->name, why);
 }
 
+/* Of an H that may read the time, as one function of everything does. */
+static int check_time(nevh_work *w) {
+    nevh_probe *b = nevh_probe_new(w->system, w->options);
+    nevh_finding f = nevh_probe_finding(b, NEVH_IS_AUTONOMOUS);
+    int status = nevh_probe_status(b);
+    if (status)
+        nevh_work_fail(w, status, "%s", nevh_probe_message(b));
+    else if (!f.holds)
+        status = nevh_work_fail(w, NEVH_ESTRUCT,
+                                "H depends on time (by %.2g of its size), but "
+                                "the time transform s (H - H0) needs an energy "
+                                "that is conserved",
+                                f.evidence);
+    nevh_probe_free(b);
+    return status;
+}
+
 static int check(nevh_work *w) {
     const nevh_integrator *scheme = w->integrator;
     if (scheme->needs)
@@ -75,11 +93,8 @@ static int check(nevh_work *w) {
         return refuse(w, "it is H that it preserves, not s (H - H0)");
     if (scheme->symplectic == NEVH_EXTENDED)
         return refuse(w, "its binding is chosen for H, not for s (H - H0)");
-    if (!(nevh_system_traits(w->system) & NEVH_AUTONOMOUS))
-        return nevh_work_fail(w, NEVH_ESTRUCT,
-                              "H depends on time, but the time transform "
-                              "s (H - H0) needs an energy that is conserved");
-    return NEVH_OK;
+    return nevh_system_traits(w->system) & NEVH_AUTONOMOUS ? NEVH_OK
+                                                           : check_time(w);
 }
 
 int nevh__transform_plan(nevh_work *w) {

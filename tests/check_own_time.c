@@ -82,6 +82,36 @@ START_TEST(schemes_take_it_or_refuse) {
 }
 END_TEST
 
+static double whole_kepler(double t, const double q[], const double p[],
+                           const void *params) {
+    (void)params;
+    return (p[0] * p[0] + p[1] * p[1]) / 2 - 1.3 / hypot(q[0], q[1]) +
+           (q[0] > 100 ? t : 0);
+}
+static double shaken_kepler(double t, const double q[], const double p[],
+                            const void *params) {
+    return whole_kepler(t, q, p, params) + 1e-6 * q[0] * sin(t);
+}
+
+/* One function might read the time; whether it does, is found out. */
+START_TEST(whole_functions) {
+    nevh_system *h = nevh_system_from(2, whole_kepler, NULL);
+    nevh_system *shaken = nevh_system_from(2, shaken_kepler, NULL);
+    nevh_system *s = nevh_distance_power(2, 2, 1.5);
+    nevh_options o = {.q = kepler.q, .p = kepler.p, .transform = s};
+    nevh_stepper *m = nevh_stepper_new(h, nevh_gauss4, &o);
+    ck_assert_str_eq(nevh_stepper_message(m), "");
+    nevh_stepper_free(m);
+    m = nevh_stepper_new(shaken, nevh_gauss4, &o);
+    ck_assert_int_eq(nevh_stepper_status(m), NEVH_ESTRUCT);
+    assert_says(nevh_stepper_message(m), "depends on time");
+    nevh_stepper_free(m);
+    nevh_system_free(h);
+    nevh_system_free(shaken);
+    nevh_system_free(s);
+}
+END_TEST
+
 START_TEST(refused_transforms) {
     nevh_system *h = kepler.make(), *driven = driven_pendulum.make();
     nevh_system *other = nevh_distance_power(3, 2, 1);
@@ -359,6 +389,7 @@ int main(void) {
     Suite *suite = suite_create("own_time");
     TCase *cases = tcase_create("own time");
     tcase_add_loop_test(cases, schemes_take_it_or_refuse, 0, scheme_count());
+    tcase_add_test(cases, whole_functions);
     tcase_add_test(cases, refused_transforms);
     tcase_add_test(cases, wrong_gradient_of_s);
     tcase_add_loop_test(cases, s_that_ends, 0, 5 * BADS);

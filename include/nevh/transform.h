@@ -18,6 +18,7 @@
        nevh_system *s = nevh_distance_power(2, 2, 1.5);
        nevh_options options = {.transform = s, ...};
 
+   H must not depend on time: one function of everything is probed for that.
    h is then a step of tau, and nevh_stepper_time the time reached.  The schemes
    adaptive-verlet and naive-adaptive-verlet take s for the length of their
    steps, without transforming H. */
