@@ -8,32 +8,51 @@
 
 #define NEVH__F(f) nevh_simd_##f
 
-/* From whole vector to whole vector; numbers stay where they are. */
-#define CASE(identifier, value, slope_a, slope_b)                              \
+/* Of whole vectors; numbers stay where they are. */
+#define EACH(row, value)                                                       \
+    for (size_t i = 0; i < columns; i += 8) {                                  \
+        const double *x = from_a + i * step_a, *z = from_b + i * step_b;       \
+        NEVH_LANES(lane, 8) {                                                  \
+            double a = x[lane], b = z[lane];                                   \
+            (void)b;                                                           \
+            (row)[i + lane] = value;                                           \
+        }                                                                      \
+    }
+#define CASE(identifier, value, by_a, by_b)                                    \
     case NEVH__##identifier:                                                   \
-        for (double *h = to; h < end; h += 8, x += step_x, z += step_z)        \
-            NEVH_LANES(lane, 8) {                                              \
-                double a = x[lane], b = z[lane];                               \
-                (void)b;                                                       \
-                h[lane] = value;                                               \
-            }                                                                  \
+        EACH(to, value)                                                        \
         break;
+
+static double *log_row(double *log, const double row[], size_t columns) {
+    memcpy(log, row, columns * sizeof *log);
+    return log + columns;
+}
+
 NEVH_SIMD static double *run(const nevh__rows *r, const nevh__instruction *from,
                              const nevh__instruction *until, double *log) {
-    for (const nevh__instruction *i = from; i < until; i++) {
-        const double *x = nevh__rows_at(r, i->a), *z = nevh__rows_at(r, i->b);
-        size_t step_x = i->a.kind == NEVH__NUMBER ? 0 : 8;
-        size_t step_z = i->b.kind == NEVH__NUMBER ? 0 : 8;
-        double *to = r->slots + i->to * r->columns, *end = to + r->columns;
-        if (log && !i->fresh) {
-            memcpy(log, to, r->columns * sizeof *log);
-            log += r->columns;
+    size_t columns = r->columns;
+    for (const nevh__instruction *at = from; at < until; at++) {
+        const double *from_a = nevh__rows_at(r, at->a);
+        const double *from_b = nevh__rows_at(r, at->b);
+        size_t step_a = at->a.kind != NEVH__NUMBER;
+        size_t step_b = at->b.kind != NEVH__NUMBER;
+        double *to = r->slots + at->to * columns;
+        double *also = r->slots + at->also * columns;
+        if (log && !at->fresh)
+            log = log_row(log, to, columns);
+        if (log && !at->also_fresh)
+            log = log_row(log, also, columns);
+        switch (at->operation) {
+            NEVH__FORMULAS(CASE)
+        case NEVH__SINCOS:
+            EACH(to, nevh_simd_sin(a))
+            EACH(also, nevh_simd_cos(a))
         }
-        switch (i->operation) { NEVH__FORMULAS(CASE) }
     }
     return log;
 }
 #undef CASE
+#undef EACH
 
 double *nevh__rows_run(const nevh__rows *r, const nevh__instruction code[],
                        size_t length, double log[]) {

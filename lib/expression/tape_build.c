@@ -42,6 +42,10 @@ static size_t place(const nevh__tape_builder *b, const nevh__node *n) {
     return i;
 }
 
+int nevh__builder_find(const nevh__tape_builder *b, const nevh__node *n) {
+    return b->table[place(b, n)];
+}
+
 static bool grow(nevh__tape_builder *b) {
     if (b->room > INT_MAX / 4)
         return false;

@@ -4,61 +4,62 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/tape_inside_private.h"
 #include "expression/tape_operations_private.h"
-#include <string.h>
 
 #define NEVH__F(f) f
 
-/* What is real stays real, also where f' is infinite or is not. */
-#define TIMES(slope, imaginary)                                                \
-    ((imaginary) == 0 ? 0 : nevh__chain(slope, imaginary))
-#define CASE(identifier, value, slope_a, slope_b)                              \
-    case NEVH__##identifier:                                                   \
-        y = value;                                                             \
-        h[1] = TIMES(slope_a, x[1]) + TIMES(slope_b, z[1]);                    \
-        break;
-static void apply(const nevh__instruction *i, const double x[2],
-                  const double z[2], double h[2]) {
-    double a = x[0], b = z[0], y = NAN;
-    switch (i->operation) {
-        NEVH__FORMULAS(CASE)
-    default:
-        break;
+typedef struct {
+    double re, im;
+} number;
+
+/* What is real stays real, also where the derivative is not finite. */
+#define CASE(identifier, value, by_a, by_b)                                    \
+    case NEVH__##identifier: {                                                 \
+        double y = value, g = u.im, im = g == 0 ? 0 : by_a;                    \
+        g = v.im;                                                              \
+        return (number){y, g == 0 ? im : im + by_b};                           \
     }
-    h[0] = y;
+NEVH__INLINE number apply(unsigned operation, number u, number v,
+                          number *also) {
+    double a = u.re, b = v.re;
+    switch (operation) {
+        NEVH__FORMULAS(CASE)
+    case NEVH__SINCOS: {
+        double sine = sin(a), cosine = cos(a);
+        *also = (number){cosine, -sine * u.im};
+        return (number){sine, cosine * u.im};
+    }
+    default:
+        return (number){NAN, NAN};
+    }
 }
 #undef CASE
 
+/* Real and imaginary parts of each kind of operand, and their distances. */
 typedef struct {
-    const double (*variables[2])[2]; /* q, p */
-    const double *reals[NEVH__KINDS];
-    const double (*slots)[2];
-} state;
+    const double *re[NEVH__KINDS], *im[NEVH__KINDS];
+} parts;
+static const size_t re_pitch[] = {1, 2, 2, 1, 2, 1};
+static const size_t im_pitch[] = {0, 2, 2, 0, 2, 0};
 
-static void fetch(const state *s, nevh__operand o, double x[2]) {
-    const double(*from)[2] = o.kind == NEVH__Q   ? s->variables[0]
-                             : o.kind == NEVH__P ? s->variables[1]
-                                                 : s->slots;
-    if (o.kind == NEVH__Q || o.kind == NEVH__P || o.kind == NEVH__SLOT) {
-        memcpy(x, from[o.at], 2 * sizeof *x);
-    } else {
-        x[0] = s->reals[o.kind][o.at];
-        x[1] = 0;
-    }
+static inline number fetch(const parts *s, nevh__operand o) {
+    return (number){s->re[o.kind][o.at * re_pitch[o.kind]],
+                    s->im[o.kind][o.at * im_pitch[o.kind]]};
 }
 
 void nevh__tape_complex(double t, const double q[][2], const double p[][2],
                         const double c[], const void *tape, double h[2]) {
+    static const double none = 0;
     const struct nevh__tape *of = tape;
-    double slots[NEVH__TAPE_LIVE][2], a[2], b[2];
-    const state s = {
-        .variables = {q, p},
-        .reals = {[NEVH__T] = &t, [NEVH__C] = c, [NEVH__NUMBER] = of->numbers},
-        .slots = (const double(*)[2])slots};
+    number slots[NEVH__TAPE_LIVE];
+    const double *re_q = q ? q[0] : NULL, *re_p = p ? p[0] : NULL;
+    const parts s = {{&t, re_q, re_p, c, &slots->re, of->numbers},
+                     {&none, q ? re_q + 1 : NULL, p ? re_p + 1 : NULL, &none,
+                      &slots->im, &none}};
     const nevh__instruction *end = of->code + of->length;
-    for (const nevh__instruction *i = of->code; i < end; i++) {
-        fetch(&s, i->a, a);
-        fetch(&s, i->b, b);
-        apply(i, a, b, slots[i->to]);
-    }
-    fetch(&s, of->result, h);
+    for (const nevh__instruction *i = of->code; i < end; i++)
+        slots[i->to] = apply(i->operation, fetch(&s, i->a), fetch(&s, i->b),
+                             &slots[i->also]);
+    number result = fetch(&s, of->result);
+    h[0] = result.re;
+    h[1] = result.im;
 }

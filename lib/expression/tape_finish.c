@@ -18,7 +18,10 @@ typedef struct {
     int need;  /* slots held at once */
     int place; /* operations: when; numbers: which of them; or NOWHERE */
     int last;  /* the place of the last operation that takes it */
+    int twin;  /* the cosine that is found together with this sine; NOWHERE */
     int slot;
+    bool fresh; /* the slot was no other's */
+    bool idle;  /* and is not the node's any more */
     uint8_t by;
 } role;
 
@@ -61,7 +64,7 @@ static void find_needs(plan *p) {
     for (int i = 0; i < p->from->used; i++) {
         const nevh__node *n = &p->from->nodes[i];
         role *r = &p->roles[i];
-        r->place = r->slot = NOWHERE;
+        r->place = r->twin = NOWHERE;
         if (!is_operation(p, i))
             continue;
         int a = p->roles[n->a].need, b = p->roles[n->b].need;
@@ -97,6 +100,35 @@ static void put_in_order(plan *p, int result) {
     }
 }
 
+/* The sine of a cosine's argument, or the other way round; or NOWHERE. */
+static int counterpart(const plan *p, int node) {
+    nevh__node n = p->from->nodes[node];
+    if (n.operation != NEVH__SIN && n.operation != NEVH__COS)
+        return NOWHERE;
+    n.operation = n.operation == NEVH__SIN ? NEVH__COS : NEVH__SIN;
+    int found = nevh__builder_find(p->from, &n);
+    return found >= 0 && p->roles[found].place != NOWHERE ? found : NOWHERE;
+}
+
+/* Sine and cosine of one argument become one, where the first of them was. */
+static void join_twins(plan *p) {
+    int length = 0;
+    for (int i = 0; i < p->length; i++) {
+        int node = p->order[i], other = counterpart(p, node);
+        bool is_sine = p->from->nodes[node].operation == NEVH__SIN;
+        int place = length;
+        if (other != NOWHERE && p->roles[other].place < i) {
+            place = p->roles[other].place;
+        } else {
+            p->order[length++] = other == NOWHERE || is_sine ? node : other;
+        }
+        if (other != NOWHERE && is_sine)
+            p->roles[node].twin = other;
+        p->roles[node].place = place;
+    }
+    p->length = length;
+}
+
 static void see_argument(plan *p, int node, int place) {
     role *r = &p->roles[node];
     const nevh__node *n = &p->from->nodes[node];
@@ -115,27 +147,36 @@ static void see_uses(plan *p, int result) {
         const nevh__node *n = &p->from->nodes[p->order[i]];
         see_argument(p, n->a, i);
         see_argument(p, n->b, i);
-        p->roles[p->order[i]].by = p->roles[n->a].by | p->roles[n->b].by;
+        role *r = &p->roles[p->order[i]];
+        r->by = p->roles[n->a].by | p->roles[n->b].by;
+        if (r->twin != NOWHERE)
+            p->roles[r->twin].by = r->by;
     }
     see_argument(p, result, p->length);
 }
 
 static void release(plan *p, int node, int place) {
     role *r = &p->roles[node];
-    if (!is_operation(p, node) || r->last != place)
+    if (!is_operation(p, node) || r->last != place || r->idle)
         return;
     p->idle[p->idle_count++] = r->slot;
-    r->last = NOWHERE; /* not twice where both arguments are one */
+    r->idle = true; /* both arguments may be one */
+}
+
+static void choose_slot(plan *p, int node) {
+    role *r = &p->roles[node];
+    r->fresh = !p->idle_count || p->slots < PLENTY;
+    r->slot = r->fresh ? p->slots++ : p->idle[--p->idle_count];
 }
 
 /* Arguments are released after the result has its slot, so that a gradient
    finds both. */
-static void choose_slots(plan *p, bool fresh[]) {
+static void choose_slots(plan *p) {
     for (int i = 0; i < p->length; i++) {
         const nevh__node *n = &p->from->nodes[p->order[i]];
-        fresh[i] = !p->idle_count || p->slots < PLENTY;
-        p->roles[p->order[i]].slot =
-            fresh[i] ? p->slots++ : p->idle[--p->idle_count];
+        choose_slot(p, p->order[i]);
+        if (p->roles[p->order[i]].twin != NOWHERE)
+            choose_slot(p, p->roles[p->order[i]].twin);
         release(p, n->a, i);
         release(p, n->b, i);
     }
@@ -169,24 +210,44 @@ static void note_read(nevh__tape *tape, nevh__operand o) {
         tape->read[o.kind][o.at] = true;
 }
 
-static void write_code(nevh__tape *tape, const plan *p, const bool fresh[]) {
+static nevh__instruction instruction(const plan *p, int node) {
+    const nevh__node *n = &p->from->nodes[node];
+    const role *r = &p->roles[node];
+    nevh__instruction made = {
+        .a = operand(p, n->a),
+        .b = operand(p, n->b),
+        .to = (uint32_t)r->slot,
+        .also = (uint32_t)r->slot,
+        .operation = n->operation,
+        .fresh = r->fresh,
+        .also_fresh = true,
+    };
+    made.a.last = is_operation(p, n->a) && p->roles[n->a].last == r->place;
+    made.b.last = is_operation(p, n->b) && p->roles[n->b].last == r->place &&
+                  n->a != n->b;
+    if (nevh__operation_arguments(n->operation) == 1)
+        made.b.by = 0;
+    if (r->twin != NOWHERE) {
+        made.operation = NEVH__SINCOS;
+        made.also = (uint32_t)p->roles[r->twin].slot;
+        made.also_fresh = p->roles[r->twin].fresh;
+    }
+    return made;
+}
+
+static void write_code(nevh__tape *tape, const plan *p) {
+    uint32_t logged = 0;
     for (int i = 0; i < p->length; i++) {
-        const nevh__node *n = &p->from->nodes[p->order[i]];
         nevh__instruction *to = &tape->code[i];
-        *to = (nevh__instruction){
-            .a = operand(p, n->a),
-            .b = operand(p, n->b),
-            .to = (uint32_t)p->roles[p->order[i]].slot,
-            .operation = n->operation,
-            .fresh = fresh[i],
-        };
-        if (nevh__operation_arguments(n->operation) == 1)
-            to->b.by = 0;
+        *to = instruction(p, p->order[i]);
+        to->logged = logged;
+        logged += !to->fresh + !to->also_fresh;
         note_read(tape, to->a);
         note_read(tape, to->b);
-        if (!is_smooth(n->operation) && (to->a.by | to->b.by))
+        if (!is_smooth(to->operation) && (to->a.by | to->b.by))
             tape->analytic = false;
     }
+    tape->code[p->length].logged = logged;
 }
 
 static void write_numbers(nevh__tape *tape, const plan *p) {
@@ -213,7 +274,7 @@ static nevh__tape *allocate(const plan *p) {
     nevh__tape *tape = nevh__array(1, sizeof *tape);
     if (!tape)
         return NULL;
-    tape->code = nevh__array((size_t)p->length, sizeof *tape->code);
+    tape->code = nevh__array((size_t)p->length + 1, sizeof *tape->code);
     tape->numbers = nevh__array(numbers, sizeof(double));
     tape->wide_memory =
         nevh__array((numbers + 1) * NEVH__LANES, sizeof(double));
@@ -228,7 +289,7 @@ static nevh__tape *allocate(const plan *p) {
     return tape;
 }
 
-static nevh__tape *write(const plan *p, int result, const bool fresh[]) {
+static nevh__tape *write(const plan *p, int result) {
     nevh__tape *tape = allocate(p);
     if (!tape)
         return NULL;
@@ -237,7 +298,7 @@ static nevh__tape *write(const plan *p, int result, const bool fresh[]) {
     tape->analytic = true;
     tape->result = operand(p, result);
     note_read(tape, tape->result);
-    write_code(tape, p, fresh);
+    write_code(tape, p);
     write_numbers(tape, p);
     return tape;
 }
@@ -245,15 +306,13 @@ static nevh__tape *write(const plan *p, int result, const bool fresh[]) {
 static int finish(plan *p, int result, nevh__tape **tape) {
     find_needs(p);
     put_in_order(p, result);
+    join_twins(p);
     see_uses(p, result);
-    bool *fresh = nevh__array((size_t)p->length, sizeof *fresh);
-    if (!fresh)
-        return NEVH_ENOMEM;
-    choose_slots(p, fresh);
-    bool fits = p->slots <= NEVH__TAPE_LIVE && p->length <= NEVH__TAPE_LENGTH;
-    *tape = fits ? write(p, result, fresh) : NULL;
-    free(fresh);
-    return !fits ? NEVH_EINVAL : *tape ? NEVH_OK : NEVH_ENOMEM;
+    choose_slots(p);
+    if (p->slots > NEVH__TAPE_LIVE || p->length > NEVH__TAPE_LENGTH)
+        return NEVH_EINVAL;
+    *tape = write(p, result);
+    return *tape ? NEVH_OK : NEVH_ENOMEM;
 }
 
 nevh__tape *nevh__tape_finish(nevh__tape_builder *b, int result, int *status) {

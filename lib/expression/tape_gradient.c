@@ -30,54 +30,78 @@ static inline double *adjoint(const sweep *s, nevh__operand o) {
                             : NULL;
 }
 
-/* One operation's adjoints g times its slope by one argument are added to
-   those of the argument, d. */
-#define CASE(slope)                                                            \
-    for (size_t column = 0; column < columns;                                  \
-         column += 8, x += step_x, z += step_z, h += 8, g += 8, d += 8)        \
+/* One operation's adjoints g times its derivative by one argument are added to
+   those of the argument, d; its last use comes first, and adds to nothing. */
+static const double nothing[NEVH__TAPE_COLUMNS];
+#define EACH(product)                                                          \
+    for (size_t i = 0; i < columns; i += 8) {                                  \
+        const double *x = from_a + i * step_a, *z = from_b + i * step_b;       \
         NEVH_LANES(lane, 8) {                                                  \
-            double a = x[lane], b = z[lane], y = h[lane];                      \
-            (void)a, (void)b, (void)y;                                         \
-            d[lane] += nevh__chain(g[lane], slope);                            \
+            double a = x[lane], b = z[lane], y = from_y[i + lane];             \
+            double g = from_g[i + lane];                                       \
+            (void)a, (void)b, (void)y, (void)g;                                \
+            d[i + lane] = sum[i + lane] + product;                             \
         }                                                                      \
+    }                                                                          \
     break;
-#define CASE_A(identifier, value, slope_a, slope_b)                            \
+#define CASE_A(identifier, value, by_a, by_b)                                  \
     case NEVH__##identifier:                                                   \
-        CASE(slope_a)
-#define CASE_B(identifier, value, slope_a, slope_b)                            \
+        EACH(by_a)
+#define CASE_B(identifier, value, by_a, by_b)                                  \
     case NEVH__##identifier:                                                   \
-        CASE(slope_b)
-#define HAND_ON(name, CASES)                                                   \
-    NEVH__INLINE void name(const nevh__rows *r, const nevh__instruction *i,    \
-                           const double *g, double *d) {                       \
-        const double *x = nevh__rows_at(r, i->a);                              \
-        const double *z = nevh__rows_at(r, i->b);                              \
-        const double *h = r->slots + i->to * r->columns;                       \
-        size_t step_x = i->a.kind == NEVH__NUMBER ? 0 : 8;                     \
-        size_t step_z = i->b.kind == NEVH__NUMBER ? 0 : 8;                     \
-        size_t columns = r->columns;                                           \
-        switch (i->operation) { NEVH__FORMULAS(CASES) }                        \
-    }
-HAND_ON(hand_on_a, CASE_A)
-HAND_ON(hand_on_b, CASE_B)
+        EACH(by_b)
+#define ROWS(argument)                                                         \
+    size_t columns = s->rows.columns;                                          \
+    const double *from_a = nevh__rows_at(&s->rows, at->a);                     \
+    const double *from_b = nevh__rows_at(&s->rows, at->b);                     \
+    const double *from_y = s->rows.slots + at->to * columns;                   \
+    const double *from_g = s->base[NEVH__SLOT] + at->to * columns;             \
+    const double *sum = argument.last ? nothing : d;                           \
+    size_t step_a = at->a.kind != NEVH__NUMBER;                                \
+    size_t step_b = at->b.kind != NEVH__NUMBER
 
-/* What an operation hands on is taken off it, where its slot was another's
-   before, and the slot gets back what that one left.  log is where the log
-   ends. */
+NEVH__INLINE void hand_on_a(const sweep *s, const nevh__instruction *at,
+                            double *d) {
+    ROWS(at->a);
+    const double *from_cosine = s->rows.slots + at->also * columns;
+    const double *from_g_cosine = s->base[NEVH__SLOT] + at->also * columns;
+    switch (at->operation) {
+        NEVH__FORMULAS(CASE_A)
+    case NEVH__SINCOS:
+        EACH(nevh__chain(g, from_cosine[i + lane]) -
+             nevh__chain(from_g_cosine[i + lane], y))
+    }
+}
+
+NEVH__INLINE void hand_on_b(const sweep *s, const nevh__instruction *at,
+                            double *d) {
+    ROWS(at->b);
+    switch (at->operation) { NEVH__FORMULAS(CASE_B) }
+}
+
+/* A slot was another's before: it gets back what that one left.  Returns where
+   the log then ends. */
+static const double *put_back(const sweep *s, uint32_t slot,
+                              const double *log) {
+    size_t columns = s->rows.columns, bytes = columns * sizeof *log;
+    memcpy(s->rows.slots + slot * columns, log - columns, bytes);
+    return log - columns;
+}
+
+/* log: where it ends. */
 NEVH_SIMD static void backwards(const sweep *s, size_t from, size_t until,
                                 const double *log) {
-    size_t columns = s->rows.columns, bytes = columns * sizeof *log;
     const nevh__instruction *code = s->tape->code;
-    for (const nevh__instruction *i = code + until; i-- > code + from;) {
-        double *g = s->base[NEVH__SLOT] + i->to * columns, *d;
-        if ((d = adjoint(s, i->a)))
-            hand_on_a(&s->rows, i, g, d);
-        if ((d = adjoint(s, i->b)))
-            hand_on_b(&s->rows, i, g, d);
-        if (!i->fresh) {
-            memset(g, 0, bytes);
-            memcpy(s->rows.slots + i->to * columns, log -= columns, bytes);
-        }
+    for (const nevh__instruction *at = code + until; at-- > code + from;) {
+        double *d_a = adjoint(s, at->a), *d_b = adjoint(s, at->b);
+        if (d_a)
+            hand_on_a(s, at, d_a);
+        if (d_b)
+            hand_on_b(s, at, d_b);
+        if (!at->also_fresh)
+            log = put_back(s, at->also, log);
+        if (!at->fresh)
+            log = put_back(s, at->to, log);
     }
 }
 
@@ -93,8 +117,9 @@ static void seed(const sweep *s) {
 static void run_back(const sweep *s, size_t from, size_t until, double *scratch,
                      size_t room) {
     const nevh__instruction *code = s->tape->code;
-    size_t length = until - from;
-    if (length * s->rows.columns <= room) {
+    size_t length = until - from,
+           logged = code[until].logged - code[from].logged;
+    if (logged * s->rows.columns <= room) {
         double *end = nevh__rows_run(&s->rows, code + from, length, scratch);
         if (until == s->tape->length)
             seed(s);
@@ -134,15 +159,23 @@ static void sweep_columns(const task *is, size_t from, size_t columns,
     s.base[NEVH__Q] = is->dh_dq ? is->dh_dq + from : NULL;
     s.base[NEVH__P] = is->dh_dp ? is->dh_dp + from : NULL;
     s.base[NEVH__SLOT] = scratch + slots;
-    memset(scratch, 0, 2 * slots * sizeof *scratch);
     clear(s.base[NEVH__Q], tape->count[NEVH__Q], is->width, columns);
     clear(s.base[NEVH__P], tape->count[NEVH__P], is->width, columns);
     run_back(&s, 0, tape->length, scratch + 2 * slots, room - 2 * slots);
 }
 
+static size_t smaller(size_t a, size_t b) {
+    return a < b ? a : b;
+}
+
+/* Rows that the log of so many operations takes at most. */
+static size_t most_logged(const nevh__tape *tape, size_t length) {
+    return smaller(tape->code[tape->length].logged, 2 * length);
+}
+
 /* Doubles that `columns` columns take without halves. */
 static size_t whole(const nevh__tape *tape, size_t columns) {
-    return columns * (2 * tape->slots + tape->length);
+    return columns * (2 * tape->slots + most_logged(tape, tape->length));
 }
 
 static void sweep_all(const task *is, double *scratch, size_t room) {
@@ -157,12 +190,11 @@ static void sweep_all(const task *is, double *scratch, size_t room) {
 
 /* Whether halving ends with a log that fits. */
 static bool is_enough(const nevh__tape *tape, size_t room) {
-    size_t kept = NEVH__LANES * tape->slots;
-    size_t log = NEVH__LANES * tape->length;
+    size_t kept = NEVH__LANES * tape->slots, length = tape->length;
     for (size_t used = 2 * kept; used <= room; used += kept) {
-        if (log <= room - used)
+        if (NEVH__LANES * most_logged(tape, length) <= room - used)
             return true;
-        log = log / 2 + NEVH__LANES;
+        length = (length + 1) / 2;
     }
     return false;
 }

@@ -13,20 +13,25 @@ enum { NEVH__SLOT = NEVH__VARIABLES, NEVH__NUMBER, NEVH__KINDS };
 /* By which variables something changes. */
 enum { NEVH__BY_Q = 1, NEVH__BY_P = 2 };
 
+/* sin and cos of one argument, both of which the result depends on. */
+enum { NEVH__SINCOS = NEVH__OPERATION_COUNT };
+
 typedef struct {
     uint8_t kind, by; /* by: an or of the above */
+    bool last;        /* an operation's result that is not used again */
     uint32_t at;
 } nevh__operand;
 
 typedef struct {
     nevh__operand a, b; /* b is a where there is one argument */
-    uint32_t to;        /* a slot, never that of a or b */
+    uint32_t to, also;  /* slots, never that of a or b; also is of cosines */
+    uint32_t logged;    /* slots that were not fresh in all that comes before */
     uint8_t operation;
-    bool fresh; /* the slot held nothing before */
+    bool fresh, also_fresh; /* the slot held nothing before */
 } nevh__instruction;
 
 struct nevh__tape {
-    nevh__instruction *code;
+    nevh__instruction *code; /* one more, for its `logged` */
     size_t length, slots;
     double *numbers;    /* each once */
     const double *wide; /* each NEVH__LANES times, in whole cache lines */
@@ -80,7 +85,9 @@ struct nevh__tape_builder {
     bool failed;
 };
 
-/* The node that is such, made if need be; -1 when memory is out. */
+/* The node that is such, or -1. */
+int nevh__builder_find(const nevh__tape_builder *, const nevh__node *);
+/* The same, made if need be; -1 when memory is out. */
 int nevh__builder_node(nevh__tape_builder *, nevh__node);
 double nevh__node_number(const nevh__node *);
 

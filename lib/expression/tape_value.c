@@ -20,12 +20,17 @@ int nevh__operation_arguments(nevh__operation operation) {
     return argument_counts[operation];
 }
 
-#define CASE(identifier, value, slope_a, slope_b)                              \
+#define CASE(identifier, value, by_a, by_b)                                    \
     case NEVH__##identifier:                                                   \
         return value;
-NEVH__INLINE double apply(unsigned operation, double a, double b) {
+/* also: out, the cosine where the sine is returned. */
+NEVH__INLINE double apply(unsigned operation, double a, double b,
+                          double *also) {
     switch (operation) {
         NEVH__FORMULAS(CASE)
+    case NEVH__SINCOS:
+        *also = cos(a);
+        return sin(a);
     default:
         return NAN;
     }
@@ -33,7 +38,7 @@ NEVH__INLINE double apply(unsigned operation, double a, double b) {
 #undef CASE
 
 double nevh__operation_value(nevh__operation operation, double a, double b) {
-    return apply(operation, a, b);
+    return apply(operation, a, b, NULL);
 }
 
 double nevh__tape_value(double t, const double q[], const double p[],
@@ -44,6 +49,6 @@ double nevh__tape_value(double t, const double q[], const double p[],
     const nevh__instruction *end = of->code + of->length;
     for (const nevh__instruction *i = of->code; i < end; i++)
         slots[i->to] = apply(i->operation, base[i->a.kind][i->a.at],
-                             base[i->b.kind][i->b.at]);
+                             base[i->b.kind][i->b.at], &slots[i->also]);
     return base[of->result.kind][of->result.at];
 }
