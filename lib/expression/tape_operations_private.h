@@ -81,9 +81,9 @@ NEVH__INLINE double nevh__chain(double x, double y) {
     X(ABS, fabs(a), NEVH__G(nevh__sign(a)), 0)                                 \
     X(MIN, nevh__min(a, b), NEVH__G(a < b), NEVH__G(!(a < b)))                 \
     X(MAX, nevh__max(a, b), NEVH__G(a > b), NEVH__G(!(a > b)))                 \
-    X(SIGN, nevh__sign(a), 0, 0)                                               \
+    X(SIGN, nevh__sign(a), NEVH__G(0), 0)                                      \
     X(MOD, nevh__mod(a, b), g, NEVH__G(-rint((a - y) / b)))                    \
-    X(FLOOR, floor(a), 0, 0)                                                   \
+    X(FLOOR, floor(a), NEVH__G(0), 0)                                          \
     X(BESSEL_J0, nevh__bessel_j0(a), NEVH__G(-nevh__bessel_j1(a)), 0)          \
     X(BESSEL_J1, nevh__bessel_j1(a), NEVH__G(nevh__bessel_j1_slope(a)), 0)     \
     X(ELLIPTIC_K, nevh__elliptic_k(a), NEVH__G(nevh__elliptic_k_slope(a)), 0)  \
