@@ -234,7 +234,7 @@ static void compare_all(size_t stride, double error) {
 
 START_TEST(random_formulas) {
     seed = 1000 + (unsigned)_i;
-    make(smooth, sizeof smooth / sizeof *smooth, 40 + 40 * _i, 4 + _i);
+    make(smooth, sizeof smooth / sizeof *smooth, 80 + 40 * _i, 4 + _i);
     compare_all(5, 1e-12);
 }
 END_TEST
