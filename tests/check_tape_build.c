@@ -130,6 +130,14 @@ START_TEST(identities) {
 }
 END_TEST
 
+/* So many halves of an ulp, and those by which powl errs where long double is
+   no more than double, as under valgrind. */
+static double roundings(double count) {
+    volatile long double one = 1;
+    return (one + DBL_EPSILON / 64 != one ? count : count + 128) * DBL_EPSILON /
+           2;
+}
+
 /* Half-integer powers: how exact they are, and how many operations. */
 START_TEST(powers) {
     double exponent = (_i - 17) / 2., whole = trunc(fabs(exponent));
@@ -144,8 +152,7 @@ START_TEST(powers) {
             at = -at;
         long double exact = powl(at, exponent);
         double is = nevh__tape_value(0, &at, NULL, NULL, tape);
-        ck_assert_msg(fabsl(is - exact) <=
-                          rounded * DBL_EPSILON / 2 * fabsl(exact),
+        ck_assert_msg(fabsl(is - exact) <= roundings(rounded) * fabsl(exact),
                       "%.17g^%g = %.17g, not %.17Lg", at, exponent, is, exact);
     }
     nevh__tape_free(tape);
