@@ -29,8 +29,8 @@ enum { NEVH__VARIABLES = 4 };
 
    atan2(y, x).  mod has the sign of its second argument and is exact for
    integers.  Of min and max, an argument that is NaN wins.  bessel_j0 and
-   bessel_j1 are of the first kind; elliptic_k and elliptic_e are complete
-   integrals of the modulus k, |k| < 1 (elliptic_e: also 1).
+   bessel_j1 are of the first kind, |x| < 4e15; elliptic_k and elliptic_e are
+   complete integrals of the modulus k, |k| < 1 (elliptic_e: also 1).
 
    Outside its domain a function is NaN.  Derivatives at a kink: abs has 0 at
    0, hypot at (0, 0); min and max of equals have that of the second argument;
