@@ -11,6 +11,9 @@ suites = \
 	tests/check_body \
 	tests/check_lanes \
 	tests/check_probe \
+	tests/check_tape \
+	tests/check_tape_build \
+	tests/check_tape_terms \
 	tests/check_registry \
 	tests/check_coefficients \
 	tests/check_splitting \
@@ -57,6 +60,9 @@ tests_check_implicit_LDADD = $(INSIDE_LIBS)
 tests_check_tao_LDADD = $(INSIDE_LIBS)
 tests_check_time_slope_LDADD = $(INSIDE_LIBS)
 tests_check_transform_LDADD = $(INSIDE_LIBS)
+tests_check_tape_LDADD = $(INSIDE_LIBS)
+tests_check_tape_build_LDADD = $(INSIDE_LIBS)
+tests_check_tape_terms_LDADD = $(INSIDE_LIBS)
 tests_check_gsl_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_damped_orbits_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_threads_CFLAGS = $(AM_CFLAGS) -pthread

@@ -1,0 +1,165 @@
+/* nevh: formulas as tapes.
+   SPDX-License-Identifier: GPL-3.0-or-later
+
+   A tape is an expression over the variables of one term instance, as a list
+   of operations in static single assignment.  A builder makes it node by node:
+
+       nevh__tape_builder *b = nevh__tape_begin();
+       int p = nevh__tape_variable(b, NEVH__P, 0);
+       int m = nevh__tape_variable(b, NEVH__C, 0);
+       int square = nevh__tape_apply(b, NEVH__POWER, p, nevh__tape_number(b,
+   2)); int twice = nevh__tape_apply(b, NEVH__MULTIPLY, nevh__tape_number(b, 2),
+   m); int h = nevh__tape_apply(b, NEVH__DIVIDE, square, twice); nevh__tape
+   *tape = nevh__tape_finish(b, h, &status);
+
+   A finished tape is const: threads share it.  Evaluation allocates nothing;
+   it takes up to 66 KiB of stack, gradients of tapes that hold many values at
+   once (about 100, and fewer where there are more than 1000 operations) up to
+   520 KiB. */
+#ifndef NEVH_TAPE_PRIVATE_H
+#define NEVH_TAPE_PRIVATE_H
+
+#include <nevh/system.h>
+
+/* Time; the instance's k-th coordinate, momentum and constant. */
+typedef enum { NEVH__T, NEVH__Q, NEVH__P, NEVH__C } nevh__variable;
+enum { NEVH__VARIABLES = 4 };
+
+/* Identifier, name in formulas, number of arguments.
+
+   atan2(y, x).  mod has the sign of its second argument and is exact for
+   integers.  Of min and max, an argument that is NaN wins.  bessel_j0 and
+   bessel_j1 are of the first kind, |x| < 4e15; elliptic_k and elliptic_e are
+   complete integrals of the modulus k, |k| < 1 (elliptic_e: also 1).
+
+   Outside its domain a function is NaN.  Derivatives at a kink: abs has 0 at
+   0, hypot at (0, 0); min and max of equals have that of the second argument;
+   sign and floor have 0 everywhere, mod by its first argument 1.  In the chain
+   rule 0 times infinity is 0, as for x*sqrt(x) at 0. */
+#define NEVH__OPERATIONS(X)                                                    \
+    X(ADD, "+", 2)                                                             \
+    X(SUBTRACT, "-", 2)                                                        \
+    X(MULTIPLY, "*", 2)                                                        \
+    X(DIVIDE, "/", 2)                                                          \
+    X(POWER, "^", 2)                                                           \
+    X(NEGATE, "-", 1)                                                          \
+    X(SIN, "sin", 1)                                                           \
+    X(COS, "cos", 1)                                                           \
+    X(TAN, "tan", 1)                                                           \
+    X(ASIN, "asin", 1)                                                         \
+    X(ACOS, "acos", 1)                                                         \
+    X(ATAN, "atan", 1)                                                         \
+    X(ATAN2, "atan2", 2)                                                       \
+    X(SINH, "sinh", 1)                                                         \
+    X(COSH, "cosh", 1)                                                         \
+    X(TANH, "tanh", 1)                                                         \
+    X(ASINH, "asinh", 1)                                                       \
+    X(ACOSH, "acosh", 1)                                                       \
+    X(ATANH, "atanh", 1)                                                       \
+    X(EXP, "exp", 1)                                                           \
+    X(LOG, "log", 1)                                                           \
+    X(LOG10, "log10", 1)                                                       \
+    X(SQRT, "sqrt", 1)                                                         \
+    X(CBRT, "cbrt", 1)                                                         \
+    X(HYPOT, "hypot", 2)                                                       \
+    X(ABS, "abs", 1)                                                           \
+    X(MIN, "min", 2)                                                           \
+    X(MAX, "max", 2)                                                           \
+    X(SIGN, "sign", 1)                                                         \
+    X(MOD, "mod", 2)                                                           \
+    X(FLOOR, "floor", 1)                                                       \
+    X(BESSEL_J0, "bessel_j0", 1)                                               \
+    X(BESSEL_J1, "bessel_j1", 1)                                               \
+    X(ELLIPTIC_K, "elliptic_k", 1)                                             \
+    X(ELLIPTIC_E, "elliptic_e", 1)
+
+#define NEVH__OPERATION_ENTRY(identifier, name, arguments) NEVH__##identifier,
+typedef enum {
+    NEVH__OPERATIONS(NEVH__OPERATION_ENTRY) NEVH__OPERATION_COUNT
+} nevh__operation;
+#undef NEVH__OPERATION_ENTRY
+
+/* The name in formulas, and 1 or 2.  Names of functions begin with a letter;
+   pow(x, y) is for who reads formulas to map to NEVH__POWER. */
+const char *nevh__operation_name(nevh__operation);
+int nevh__operation_arguments(nevh__operation);
+/* One operation on numbers, as the tape does it one state at a time; b is
+   ignored where there is one argument. */
+double nevh__operation_value(nevh__operation, double a, double b);
+
+typedef struct nevh__tape_builder nevh__tape_builder;
+typedef struct nevh__tape nevh__tape;
+
+/* NULL when memory is out; that may be handed on: each function below then
+   returns -1 or NULL. */
+nevh__tape_builder *nevh__tape_begin(void);
+/* Without a tape having been made of it. */
+void nevh__tape_abandon(nevh__tape_builder *);
+
+/* Each returns a node, at least 0, or -1 when memory is out, now or earlier:
+   -1 may be handed on as an argument.
+
+   The same operation on the same nodes is the same node, for a + b and b + a
+   too.  Numbers are folded.  Rewritten is only what changes no result, be it
+   of rounding or a zero's sign: x*1, x/1, x^1, x - 0, x + (-y), -(-x), x*(-1),
+   (-x)*(-y), x/2^k and the like; not 0*x, which is not 0 where x is infinite.
+   Powers that are numbers are an exception: x^n with a whole |n| <= 8 is
+   multiplied out (|n| - 1 roundings of half an ulp each, and one where n < 0),
+   x^(n + 1/2) with |n + 1/2| < 5 is the same times sqrt(x), so that there a
+   zero keeps its sign and -inf has no root. */
+int nevh__tape_number(nevh__tape_builder *, double);
+int nevh__tape_variable(nevh__tape_builder *, nevh__variable, size_t k);
+/* b is ignored where there is one argument. */
+int nevh__tape_apply(nevh__tape_builder *, nevh__operation, int a, int b);
+/* Whether a node is a number, and which; value may be NULL. */
+bool nevh__tape_is_number(const nevh__tape_builder *, int node, double *value);
+
+/* Makes the tape and frees the builder, whatever happens.
+   status   out, may be NULL: NEVH_OK; NEVH_ENOMEM; NEVH_EINVAL when the
+            expression holds more than NEVH__TAPE_LIVE values at once or
+            has more than NEVH__TAPE_LENGTH operations
+   returns  the tape, to be freed with nevh__tape_free; NULL on failure */
+nevh__tape *nevh__tape_finish(nevh__tape_builder *, int result, int *status);
+enum { NEVH__TAPE_LIVE = 512, NEVH__TAPE_LENGTH = 1 << 20 };
+void nevh__tape_free(nevh__tape *);
+
+/* Whether the result depends on a variable, as far as the operations left
+   tell. */
+bool nevh__tape_reads(const nevh__tape *, nevh__variable, size_t k);
+/* One more than the largest k that the builder was asked for, read or not: what
+   a term must declare as nq, np, nc. */
+size_t nevh__tape_count(const nevh__tape *, nevh__variable);
+/* No abs, min, max, sign, mod, floor of what depends on q or p: fit for the
+   complex step. */
+bool nevh__tape_analytic(const nevh__tape *);
+/* Operations; sine and cosine of one argument are one. */
+size_t nevh__tape_length(const nevh__tape *);
+
+/* The functions of a nevh_term whose params is the tape; nevh_term_fn etc.
+
+   In value and in the real part of complex_value each operation is libm's, in
+   blocks libmvec's (below 4 ulp) where there is one: without trigonometric
+   and other functions, or with NEVH_PORTABLE, the three agree to the bit.
+   Where the value is not finite no derivative is: each by a variable that the
+   tape reads is NaN.
+   cost     gradient: about 2.5 values; with more than about 1000 operations,
+            half a value more for each time the tape is halved to fit into the
+            stack */
+double nevh__tape_value(double t, const double q[], const double p[],
+                        const double c[], const void *tape);
+void nevh__tape_block(size_t width, const double t[], const double q[],
+                      const double p[], const double c[], const void *tape,
+                      double h[]);
+void nevh__tape_block_gradient(size_t width, const double t[], const double q[],
+                               const double p[], const double c[],
+                               const void *tape, double dh_dq[],
+                               double dh_dp[]);
+void nevh__tape_complex(double t, const double q[][2], const double p[][2],
+                        const double c[], const void *tape, double h[2]);
+
+/* Fills in value, block, gradient, complex_value (NULL unless analytic),
+   params, nq, np, nc and time; leaves the rest, so q, p, c and count are the
+   caller's, rows of nq, np and nc. */
+void nevh__tape_shape(nevh_term *, const nevh__tape *);
+
+#endif
