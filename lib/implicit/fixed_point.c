@@ -21,6 +21,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "implicit/implicit_private.h"
 #include "gradient/field_private.h"
+#include "work_private.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -94,9 +95,7 @@ static double noise_level(nevh__stage_solver *s, size_t lane) {
         p[k] = e->p[k * w->width + lane];
     }
     s->status =
-        nevh__field_noise(w->field, e->t, q, p, s->noise + w->n, s->noise);
-    if (s->status)
-        nevh_work_fail(s->work, s->status, "%s", nevh_field_message(w->field));
+        nevh__work_noise(s->work, e->t, q, p, s->noise + w->n, s->noise);
     for (size_t k = 0; !s->status && k < 2 * w->n; k++)
         most = fmax(most, s->noise[k] / s->scale[k * w->width + lane]);
     return fabs(e->h) * most;
