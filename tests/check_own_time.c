@@ -216,7 +216,7 @@ START_TEST(stale_transforms) {
     nevh_stepper *copy = nevh_stepper_copy(m);
     for (int i = 0; i < 2; i++) {
         nevh_stepper *c = i ? copy : m;
-        double t = nevh_stepper_time(m);
+        double t = nevh_stepper_time(c);
         ck_assert_int_eq(nevh_stepper_apply(c, t, 0.02, z.q, z.p), NEVH_ESTALE);
         assert_says(nevh_stepper_message(c), "transform");
         ck_assert_mem_eq(&z, &before, sizeof z);
