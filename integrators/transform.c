@@ -7,6 +7,7 @@
 #include "system/system_private.h"
 #include <nevh/probe.h>
 #include <float.h>
+#include <math.h>
 #include <stdlib.h>
 
 static int plan_arrays(nevh_work *w, nevh__transform *f) {
@@ -16,7 +17,8 @@ static int plan_arrays(nevh_work *w, nevh__transform *f) {
     f->s = nevh__array(f->capacity, sizeof *f->s);
     f->ds_dq = nevh__array(n * f->capacity, sizeof *f->ds_dq);
     f->ds_dp = nevh__array(n * f->capacity, sizeof *f->ds_dp);
-    if (f->h && f->s && f->ds_dq && f->ds_dp)
+    f->effects = nevh__array(w->system->n_effects, sizeof *f->effects);
+    if (f->h && f->s && f->ds_dq && f->ds_dp && f->effects)
         return NEVH_OK;
     return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
 }
@@ -116,6 +118,7 @@ void nevh__transform_free(nevh__transform *f) {
     free(f->s);
     free(f->ds_dq);
     free(f->ds_dp);
+    free(f->effects);
     free(f);
 }
 
@@ -203,6 +206,31 @@ int nevh__transform_value(nevh_work *w, size_t points, const double t[],
     for (size_t i = 0; !status && i < points; i++)
         h[i] = f->s[i] * f->h[i] / f->memory[NEVH__UNIT];
     return status;
+}
+
+/* Of s grad H, and of (H - H0) grad s, where H is a sum of rounded effects. */
+int nevh__transform_noise(nevh_work *w, double t, const double q[],
+                          const double p[], double noise_q[],
+                          double noise_p[]) {
+    nevh__transform *f = w->transform;
+    double unit = f->memory[NEVH__UNIT], rounding = 0;
+    int status = find_s(w, 1, &t, q, p);
+    if (status)
+        return status;
+    if (nevh_field_gradient(f->field, 1, &t, q, p, f->ds_dq, f->ds_dp))
+        return nevh__transform_fail(w, f->field);
+    if (nevh_field_effects(w->field, t, q, p, f->effects))
+        return nevh_work_fail(w, nevh_field_status(w->field), "%s",
+                              nevh_field_message(w->field));
+    for (size_t i = 0; i < w->system->n_effects; i++)
+        rounding += DBL_EPSILON * fabs(f->effects[i]);
+    for (size_t k = 0; k < w->n; k++) {
+        noise_q[k] =
+            (f->s[0] * noise_q[k] + rounding * fabs(f->ds_dq[k])) / unit;
+        noise_p[k] =
+            (f->s[0] * noise_p[k] + rounding * fabs(f->ds_dp[k])) / unit;
+    }
+    return NEVH_OK;
 }
 
 int nevh__transform_rate(nevh_work *w, const double t[], const double q[],

@@ -15,6 +15,7 @@ typedef struct nevh__transform {
     size_t capacity;       /* points that the arrays have room for */
     double *h, *s;         /* capacity */
     double *ds_dq, *ds_dp; /* n x capacity */
+    double *effects;       /* of H, at one state */
     const double *memory;  /* H0 and s0 of the orbit under way */
 } nevh__transform;
 
@@ -35,6 +36,9 @@ int nevh__transform_gradient(nevh_work *, size_t points, const double t[],
                              double dh_dp[]);
 int nevh__transform_value(nevh_work *, size_t points, const double t[],
                           const double q[], const double p[], double h[]);
+/* From the noise of grad H, as nevh__field_noise, to that of grad K. */
+int nevh__transform_noise(nevh_work *, double t, const double q[],
+                          const double p[], double noise_q[], double noise_p[]);
 /* dt/dtau at one state; a failure is recorded. */
 int nevh__transform_rate(nevh_work *, const double t[], const double q[],
                          const double p[], double *rate);

@@ -1,6 +1,7 @@
 /* nevh: the tools of a kernel.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "work_private.h"
+#include "gradient/field_private.h"
 #include "system/system_private.h"
 #include "transform_private.h"
 
@@ -40,6 +41,15 @@ int nevh_work_value(nevh_work *w, size_t points, const double t[],
         return nevh__transform_value(w, points, t, q, p, h);
     int status = nevh_field_value(w->field, points, t, q, p, h);
     return status ? fail_field(w, status) : NEVH_OK;
+}
+
+int nevh__work_noise(nevh_work *w, double t, const double q[], const double p[],
+                     double noise_q[], double noise_p[]) {
+    int status = nevh__field_noise(w->field, t, q, p, noise_q, noise_p);
+    if (status)
+        return fail_field(w, status);
+    return w->transform ? nevh__transform_noise(w, t, q, p, noise_q, noise_p)
+                        : NEVH_OK;
 }
 
 /* The sum of x - x over the new values: 0 if all are finite, NaN otherwise. */

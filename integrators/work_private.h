@@ -17,4 +17,9 @@ double nevh__first_substep(const nevh_work *, int power, double h,
                            size_t stride, const double y[],
                            const double slopes[]);
 
+/* As nevh__field_noise, of H or of K where time is transformed; a failure is
+   recorded. */
+int nevh__work_noise(nevh_work *, double t, const double q[], const double p[],
+                     double noise_q[], double noise_p[]);
+
 #endif

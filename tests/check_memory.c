@@ -8,6 +8,7 @@
 #include "expression/tape_private.h"
 #include <math.h>
 #include <nevh/gsl.h>
+#include <nevh/transform.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -218,6 +219,25 @@ static int make_tape(const setting *a) {
     return status;
 }
 
+static int make_closeness(const setting *a) {
+    (void)a;
+    nevh_system *s = nevh_closeness_power(2, 1, 1);
+    int status = nevh_system_status(s);
+    strcpy(text, nevh_system_message(s));
+    nevh_system_free(s);
+    return status;
+}
+
+/* To an end between two steps; a state far from the stepper's own. */
+static int run_until(const setting *a) {
+    double q[] = {0.3, 0.5}, p[] = {0.7, 1.1};
+    int status = nevh_run_until(a->stepper, 0, 0.1, 0.33, q, p, NULL, 0);
+    strcpy(text, nevh_stepper_message(a->stepper));
+    if (status && (q[0] != 0.3 || p[1] != 1.1))
+        status = -1;
+    return status;
+}
+
 /* Refuses the first request, then the second, until all are granted.  Returns
    how many there are. */
 static size_t starve(int (*attempt)(const setting *), const setting *a) {
@@ -343,6 +363,45 @@ START_TEST(tapes) {
 }
 END_TEST
 
+/* Time of its own: under a transform, and by the step. */
+START_TEST(transforms_and_runs) {
+    const nevh_integrator *schemes[] = {nevh_gauss4, nevh_rk4,
+                                        nevh_adaptive_verlet, nevh_verlet};
+    const setting none = {0};
+    nevh_system *s = pendulums(), *closeness = nevh_closeness_power(2, 1, 1);
+    setting a = {.system = s, .scheme = schemes[_i]};
+    a.options = (nevh_options){
+        .q = start_q, .p = start_p, .transform = _i < 3 ? closeness : NULL};
+    ck_assert_uint_ge(starve(make_closeness, &none), 3);
+    ck_assert_uint_ge(starve(make_stepper, &a), 15);
+    a.stepper = nevh_stepper_new(s, a.scheme, &a.options);
+    ck_assert_uint_ge(starve(copy_stepper, &a), 15);
+    ck_assert_uint_ge(starve(run_until, &a), _i < 3 ? 2 : 1);
+    nevh_stepper_free(a.stepper);
+    nevh_system_free(s);
+    nevh_system_free(closeness);
+}
+END_TEST
+
+/* Under a transform. */
+START_TEST(transformed_steps_take_no_memory) {
+    const nevh_integrator *schemes[] = {nevh_gauss4, nevh_rk4,
+                                        nevh_adaptive_verlet};
+    nevh_system *s = pendulums(), *closeness = nevh_closeness_power(2, 1, 1);
+    nevh_options o = {.q = start_q, .p = start_p, .transform = closeness};
+    nevh_stepper *m = nevh_stepper_new(s, schemes[_i], &o);
+    double q[] = {1.7, 0.4}, p[] = {0.3, 0.5};
+    watch(0);
+    int status = nevh_run(m, 0, 0.01, 50, q, p, NULL, 0);
+    watching = false;
+    ck_assert_msg(status == NEVH_OK, "%s", nevh_stepper_message(m));
+    ck_assert_uint_eq(requests, 0);
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+    nevh_system_free(closeness);
+}
+END_TEST
+
 START_TEST(steps_take_no_memory) {
     const nevh_gradient *gradients[] = {nevh_central2, nevh_central8,
                                         nevh_exact};
@@ -356,14 +415,16 @@ START_TEST(steps_take_no_memory) {
     nevh_energy *e = nevh_energy_new(s, NULL);
     nevh_observer energy = {nevh_energy_observe, e, 1};
     double q[] = {1.7, 0.4}, p[] = {0.3, 0.5};
+    /* Where h is nominal, the longest steps are several of it. */
+    const double h = nevh_integrator_own_time(scheme) ? 0.02 : 0.05;
     int status = 0;
     ck_assert(m && e);
     watch(0);
     for (int i = 0; i < 100; i++)
-        status |= nevh_stepper_apply(m, 0.05 * i, 0.05, q, p);
-    status |= nevh_run(m, 5, 0.05, 100, q, p, &energy, 1);
+        status |= nevh_stepper_apply(m, h * i, h, q, p);
+    status |= nevh_run(m, 5, h, 100, q, p, &energy, 1);
     nevh_stepper_reset(m);
-    status |= nevh_run(m, 10, -0.05, 10, q, p, &energy, 1);
+    status |= nevh_run(m, 10, -h, 10, q, p, &energy, 1);
     watching = false;
     ck_assert_msg(status == NEVH_OK, "%s", nevh_stepper_message(m));
     ck_assert_uint_eq(requests, 0);
@@ -399,6 +460,8 @@ int main(void) {
     tcase_add_loop_test(cases, balanced_steps_take_no_memory, 0, schemes);
     tcase_add_test(cases, defects);
     tcase_add_test(cases, tapes);
+    tcase_add_loop_test(cases, transforms_and_runs, 0, 4);
+    tcase_add_loop_test(cases, transformed_steps_take_no_memory, 0, 3);
     tcase_add_loop_test(cases, steps_take_no_memory, 0, 3 * schemes);
     tcase_add_test(cases, gsl_system_without_memory);
     suite_add_tcase(suite, cases);

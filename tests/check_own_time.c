@@ -247,7 +247,7 @@ START_TEST(stale_transforms) {
     nevh_stepper *copy = nevh_stepper_copy(m);
     for (int i = 0; i < 2; i++) {
         nevh_stepper *c = i ? copy : m;
-        double t = nevh_stepper_time(m);
+        double t = nevh_stepper_time(c);
         ck_assert_int_eq(nevh_stepper_apply(c, t, 0.02, z.q, z.p), NEVH_ESTALE);
         assert_says(nevh_stepper_message(c), "transform");
         ck_assert_mem_eq(&z, &before, sizeof z);
@@ -385,6 +385,46 @@ START_TEST(time_adds_up) {
 }
 END_TEST
 
+/* |f|^(-3/4) over the scales below; |f| as if it were no less than a tenth of
+   that at the start. */
+static double own_s(const state *z, double unit) {
+    double r = hypot(z->q[0], z->q[1]), force = 1.3 / (r * r) / 1.6;
+    double speed = hypot(z->p[0] / 1.3, z->p[1] / 2.1) / 0.7;
+    return pow(hypot(hypot(force, speed), unit / 10), -0.75);
+}
+
+/* Steps stay as long as s says, to a thousandth, wherever the orbit turns. */
+START_TEST(steps_follow_s) {
+    static const double scale[] = {0.7, 0.1, 0.1, 1.6};
+    nevh_system *h = kepler.make();
+    nevh_system *s = _i ? nevh_distance_power(2, 2, 1.5) : NULL;
+    nevh_options o = {.gradient = nevh_exact,
+                      .q = kepler.q,
+                      .p = kepler.p,
+                      .scale = scale,
+                      .transform = s};
+    nevh_stepper *m = nevh_stepper_new(h, nevh_adaptive_verlet, &o);
+    state z = start(&kepler), before;
+    double unit = pow(own_s(&z, 0), -4 / 3.0), at_start = own_s(&z, unit);
+    double r0 = hypot(z.q[0], z.q[1]), t = 0;
+    const double step = 0.002;
+    for (int i = 0; i < 4000; i++) {
+        before = z;
+        ck_assert_int_eq(nevh_stepper_apply(m, t, step, z.q, z.p), NEVH_OK);
+        double taken = (nevh_stepper_time(m) - t) / step, expected;
+        double x = (z.q[0] + before.q[0]) / 2, y = (z.q[1] + before.q[1]) / 2;
+        expected = (own_s(&z, unit) + own_s(&before, unit)) / 2 / at_start;
+        if (s)
+            expected = pow(hypot(x, y) / r0, 1.5);
+        ck_assert_double_eq_tol(taken / expected, 1, 1e-3);
+        t = nevh_stepper_time(m);
+    }
+    nevh_stepper_free(m);
+    nevh_system_free(h);
+    nevh_system_free(s);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("own_time");
     TCase *cases = tcase_create("own time");
@@ -397,6 +437,7 @@ int main(void) {
     tcase_add_loop_test(cases, memory_can_be_kept, 0, RUNS);
     tcase_add_loop_test(cases, a_new_start, 0, RUNS);
     tcase_add_loop_test(cases, time_adds_up, 0, RUNS);
+    tcase_add_loop_test(cases, steps_follow_s, 0, 2);
     suite_add_tcase(suite, cases);
     return run_suite(suite);
 }

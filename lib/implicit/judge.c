@@ -20,6 +20,7 @@
    within that noise and the largest of them has ceased to fall.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "implicit/implicit_private.h"
+#include "work_private.h"
 #include "gradient/field_private.h"
 #include <float.h>
 #include <math.h>
@@ -47,9 +48,7 @@ void nevh__stage_noise(nevh__stage_solver *s, size_t lane) {
         p[k] = e->p[k * w->width + lane];
     }
     s->status =
-        nevh__field_noise(w->field, e->t, q, p, s->noise + w->n, s->noise);
-    if (s->status)
-        nevh_work_fail(s->work, s->status, "%s", nevh_field_message(w->field));
+        nevh__work_noise(s->work, e->t, q, p, s->noise + w->n, s->noise);
 }
 
 /* What noise makes of a step of one lane, in units of scale: the largest over
