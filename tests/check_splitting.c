@@ -13,6 +13,7 @@
 #include "run/stepper_private.h"
 #include "splitting_private.h"
 #include "support.h"
+#include "tao_private.h"
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -102,10 +103,18 @@ static int order_of(const splitting *x, bool quadratic, int most) {
 }
 
 /* The table of scheme number i, or NULL if it is no splitting. */
+/* Tao composes steps of order 2 as others compose Verlet's: the conditions are
+   the same. */
 static const nevh_splitting *table_of(int i) {
+    static nevh_splitting composed;
     const nevh_integrator *scheme = nevh_integrators()[i];
-    bool is = scheme->kernel == &nevh_splitting_kernel;
-    return is ? scheme->table : NULL;
+    if (scheme->kernel == &nevh__tao_kernel) {
+        const nevh__composition *c = scheme->table;
+        composed =
+            (nevh_splitting){NEVH_KICK, NEVH_COMPOSITION, c->outer, c->parts};
+        return &composed;
+    }
+    return scheme->kernel == &nevh_splitting_kernel ? scheme->table : NULL;
 }
 
 static bool needs_quadratic(const nevh_integrator *scheme) {
