@@ -17,10 +17,10 @@
 
 #include "expression/tape_private.h"
 
-/* The first thing that is wrong.  A function that succeeds leaves it alone;
-   it must not be NULL. */
+/* The first thing that is wrong; never NULL.  Every function clears it at
+   first. */
 typedef struct {
-    int status;             /* NEVH_EINVAL, NEVH_EDOM, NEVH_ENOMEM */
+    int status;             /* NEVH_OK, NEVH_EINVAL, NEVH_EDOM, NEVH_ENOMEM */
     size_t column, length;  /* from 1, in characters; 0 and 0: no place */
     const char *definition; /* in whose text the column is, a name that the
                                nevh__names own; NULL: in the text given */
