@@ -4,11 +4,15 @@ EXTRA_PROGRAMS += bench/gradient
 bench_gradient_SOURCES = bench/gradient.c $(gradient_systems)
 bench_gradient_CPPFLAGS = $(AM_CPPFLAGS) -I$(top_srcdir)/examples
 bench_gradient_LDADD = libnevh.la
-CLEANFILES += bench/gradient$(EXEEXT) bench/results-gradient.csv
+EXTRA_PROGRAMS += bench/tape
+bench_tape_LDADD = libnevh_core.la
+CLEANFILES += bench/gradient$(EXEEXT) bench/results-gradient.csv \
+	bench/tape$(EXEEXT)
 
-bench: bench/gradient$(EXEEXT)
+bench: bench/gradient$(EXEEXT) bench/tape$(EXEEXT)
 	@commit=`git -C $(srcdir) describe --always --dirty 2>/dev/null`; \
 	./bench/gradient$(EXEEXT) "$${commit:-unknown}" \
-	  bench/results-gradient.csv
+	  bench/results-gradient.csv && \
+	./bench/tape$(EXEEXT) "$${commit:-unknown}"
 
 .PHONY: bench

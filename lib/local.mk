@@ -31,6 +31,18 @@ libnevh_core_la_SOURCES = \
 	lib/gradient/exact.c \
 	lib/gradient/value.c \
 	lib/gradient/gsl_system.c \
+	lib/expression/tape_private.h \
+	lib/expression/tape_inside_private.h \
+	lib/expression/tape_operations_private.h \
+	lib/expression/tape.c \
+	lib/expression/tape_build.c \
+	lib/expression/tape_rules.c \
+	lib/expression/tape_finish.c \
+	lib/expression/tape_value.c \
+	lib/expression/tape_block.c \
+	lib/expression/tape_gradient.c \
+	lib/expression/tape_complex.c \
+	lib/expression/tape_special.c \
 	lib/implicit/implicit_private.h \
 	lib/implicit/fixed_point.c \
 	lib/implicit/rescue.c \

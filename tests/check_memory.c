@@ -5,6 +5,7 @@
    through here.  What GSL requests is its own affair: it aborts when refused,
    which is why the library asks for as much before it calls GSL. */
 #include "support.h"
+#include "expression/tape_private.h"
 #include <math.h>
 #include <nevh/gsl.h>
 #include <stdlib.h>
@@ -187,6 +188,19 @@ static int find_defects(const setting *a) {
                                          &defect);
 }
 
+/* A tape whose nodes outgrow the builder's first room. */
+static int make_tape(const setting *a) {
+    (void)a;
+    int status;
+    nevh__tape_builder *b = nevh__tape_begin();
+    int h = nevh__tape_variable(b, NEVH__Q, 0);
+    for (double i = 0; i < 50; i++)
+        h = nevh__tape_apply(b, NEVH__ADD, h, nevh__tape_number(b, i));
+    nevh__tape_free(nevh__tape_finish(b, h, &status));
+    strcpy(text, nevh_status_text(status));
+    return status;
+}
+
 /* Refuses the first request, then the second, until all are granted.  Returns
    how many there are. */
 static size_t starve(int (*attempt)(const setting *), const setting *a) {
@@ -255,6 +269,12 @@ START_TEST(defects) {
 }
 END_TEST
 
+START_TEST(tapes) {
+    const setting none = {0};
+    ck_assert_uint_ge(starve(make_tape, &none), 14);
+}
+END_TEST
+
 START_TEST(steps_take_no_memory) {
     const nevh_gradient *gradients[] = {nevh_central2, nevh_central8,
                                         nevh_exact};
@@ -306,6 +326,7 @@ int main(void) {
     tcase_add_loop_test(cases, fields, 0, 5);
     tcase_add_loop_test(cases, steppers, 0, 2 * schemes);
     tcase_add_test(cases, defects);
+    tcase_add_test(cases, tapes);
     tcase_add_loop_test(cases, steps_take_no_memory, 0, 3 * schemes);
     tcase_add_test(cases, gsl_system_without_memory);
     suite_add_tcase(suite, cases);

@@ -11,6 +11,9 @@ suites = \
 	tests/check_body \
 	tests/check_lanes \
 	tests/check_probe \
+	tests/check_tape \
+	tests/check_tape_build \
+	tests/check_tape_terms \
 	tests/check_registry \
 	tests/check_coefficients \
 	tests/check_splitting \
@@ -32,6 +35,9 @@ TEST_LIBS = tests/libsupport.la libnevh.la $(CHECK_LIBS)
 INSIDE_LIBS = tests/libsupport.la libnevh_core.la $(CHECK_LIBS)
 tests_check_coefficients_LDADD = $(INSIDE_LIBS)
 tests_check_splitting_LDADD = $(INSIDE_LIBS)
+tests_check_tape_LDADD = $(INSIDE_LIBS)
+tests_check_tape_build_LDADD = $(INSIDE_LIBS)
+tests_check_tape_terms_LDADD = $(INSIDE_LIBS)
 tests_check_gsl_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_threads_CFLAGS = $(AM_CFLAGS) -pthread
 tests_check_threads_LDFLAGS = $(AM_LDFLAGS) -pthread

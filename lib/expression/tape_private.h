@@ -31,9 +31,10 @@ enum { NEVH__VARIABLES = 4 };
    bessel_j1 are of the first kind; elliptic_k and elliptic_e are complete
    integrals of the modulus k, |k| < 1 (elliptic_e: also 1).
 
-   Outside its domain a function is NaN.  Derivatives at a kink: abs has 1 at
-   0; min and max of equals have that of the second argument; sign and floor
-   have 0 everywhere, mod by its first argument 1; hypot has none at (0, 0). */
+   Outside its domain a function is NaN.  Derivatives at a kink: abs has 0 at
+   0, hypot at (0, 0); min and max of equals have that of the second argument;
+   sign and floor have 0 everywhere, mod by its first argument 1.  In the chain
+   rule 0 times infinity is 0, as for x*sqrt(x) at 0. */
 #define NEVH__OPERATIONS(X)                                                    \
     X(ADD, "+", 2)                                                             \
     X(SUBTRACT, "-", 2)                                                        \

@@ -1,0 +1,31 @@
+/* nevh: what is known of a tape, and a term made of it.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "expression/tape_inside_private.h"
+
+bool nevh__tape_reads(const nevh__tape *tape, nevh__variable v, size_t k) {
+    return k < tape->count[v] && tape->read[v][k];
+}
+
+size_t nevh__tape_count(const nevh__tape *tape, nevh__variable v) {
+    return tape->count[v];
+}
+
+bool nevh__tape_analytic(const nevh__tape *tape) {
+    return tape->analytic;
+}
+
+size_t nevh__tape_length(const nevh__tape *tape) {
+    return tape->length;
+}
+
+void nevh__tape_shape(nevh_term *term, const nevh__tape *tape) {
+    term->value = nevh__tape_value;
+    term->block = nevh__tape_block;
+    term->gradient = nevh__tape_block_gradient;
+    term->complex_value = tape->analytic ? nevh__tape_complex : NULL;
+    term->params = tape;
+    term->nq = tape->count[NEVH__Q];
+    term->np = tape->count[NEVH__P];
+    term->nc = tape->count[NEVH__C];
+    term->time = nevh__tape_reads(tape, NEVH__T, 0);
+}

@@ -1,0 +1,110 @@
+/* nevh: a tape for many states side by side.
+
+   Each operation runs over some columns before the next one begins.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "expression/tape_inside_private.h"
+#include "expression/tape_operations_private.h"
+#include <string.h>
+
+#define NEVH__F(f) nevh_simd_##f
+
+/* Of whole vectors; numbers stay where they are. */
+#define EACH(row, value)                                                       \
+    for (size_t i = 0; i < columns; i += 8) {                                  \
+        const double *x = from_a + i * step_a, *z = from_b + i * step_b;       \
+        NEVH_LANES(lane, 8) {                                                  \
+            double a = x[lane], b = z[lane];                                   \
+            (void)b;                                                           \
+            (row)[i + lane] = value;                                           \
+        }                                                                      \
+    }
+#define CASE(identifier, value, by_a, by_b)                                    \
+    case NEVH__##identifier:                                                   \
+        EACH(to, value)                                                        \
+        break;
+
+static double *log_row(double *log, const double row[], size_t columns) {
+    memcpy(log, row, columns * sizeof *log);
+    return log + columns;
+}
+
+NEVH_SIMD static double *run(const nevh__rows *r, const nevh__instruction *from,
+                             const nevh__instruction *until, double *log) {
+    size_t columns = r->columns;
+    for (const nevh__instruction *at = from; at < until; at++) {
+        const double *from_a = nevh__rows_at(r, at->a);
+        const double *from_b = nevh__rows_at(r, at->b);
+        size_t step_a = at->a.kind != NEVH__NUMBER;
+        size_t step_b = at->b.kind != NEVH__NUMBER;
+        double *to = r->slots + at->to * columns;
+        double *also = r->slots + at->also * columns;
+        if (log && !at->fresh)
+            log = log_row(log, to, columns);
+        if (log && !at->also_fresh)
+            log = log_row(log, also, columns);
+        switch (at->operation) {
+            NEVH__FORMULAS(CASE)
+        case NEVH__SINCOS:
+            EACH(to, nevh_simd_sin(a))
+            EACH(also, nevh_simd_cos(a))
+        }
+    }
+    return log;
+}
+#undef CASE
+#undef EACH
+
+double *nevh__rows_run(const nevh__rows *r, const nevh__instruction code[],
+                       size_t length, double log[]) {
+    return run(r, code, code + length, log);
+}
+
+nevh__rows nevh__rows_of(const nevh__tape *tape, size_t width, size_t from,
+                         size_t columns, const double t[], const double q[],
+                         const double p[], const double c[], double slots[]) {
+    /* Of nothing there may be no array. */
+    const size_t *count = tape->count;
+    return (nevh__rows){
+        .base = {count[NEVH__T] ? t + from : slots,
+                 count[NEVH__Q] ? q + from : slots,
+                 count[NEVH__P] ? p + from : slots,
+                 count[NEVH__C] ? c + from : slots, slots, tape->wide},
+        .pitch = {width, width, width, width, columns, NEVH__LANES},
+        .slots = slots,
+        .columns = columns,
+    };
+}
+
+static void store_result(const nevh__tape *tape, const nevh__rows *r,
+                         double h[]) {
+    const double *from = nevh__rows_at(r, tape->result);
+    if (tape->result.kind != NEVH__NUMBER) {
+        memcpy(h, from, r->columns * sizeof *h);
+        return;
+    }
+    for (size_t i = 0; i < r->columns; i++)
+        h[i] = from[0];
+}
+
+/* As many columns as there is room for. */
+static size_t fitting(const nevh__tape *tape) {
+    size_t columns = NEVH__TAPE_COLUMNS;
+    while (columns * tape->slots > NEVH__TAPE_SCRATCH)
+        columns /= 2;
+    return columns;
+}
+
+void nevh__tape_block(size_t width, const double t[], const double q[],
+                      const double p[], const double c[], const void *tape,
+                      double h[]) {
+    _Alignas(64) double slots[NEVH__TAPE_SCRATCH];
+    size_t most = fitting(tape), columns;
+    for (size_t from = 0; from < width; from += columns) {
+        columns = width - from < most ? width - from : most;
+        nevh__rows r =
+            nevh__rows_of(tape, width, from, columns, t, q, p, c, slots);
+        nevh__tape const *of = tape;
+        nevh__rows_run(&r, of->code, of->length, NULL);
+        store_result(of, &r, h + from);
+    }
+}

@@ -1,0 +1,114 @@
+/* nevh: the nodes of a tape in the making, each of them once.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "expression/tape_inside_private.h"
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FIRST_ROOM = 32 };
+
+nevh__tape_builder *nevh__tape_begin(void) {
+    return nevh__array(1, sizeof(nevh__tape_builder));
+}
+
+void nevh__tape_abandon(nevh__tape_builder *b) {
+    if (!b)
+        return;
+    free(b->nodes);
+    free(b->table);
+    free(b);
+}
+
+static size_t hash(const nevh__node *n) {
+    static const uint64_t odd = 0x9e3779b97f4a7c15u;
+    uint64_t h = n->bits + n->kind;
+    h = (h ^ h >> 32) * odd + n->operation;
+    h = (h ^ h >> 32) * odd + (uint64_t)n->a;
+    h = (h ^ h >> 32) * odd + (uint64_t)n->b;
+    h = (h ^ h >> 32) * odd;
+    return (size_t)(h >> 16);
+}
+
+static bool same(const nevh__node *x, const nevh__node *y) {
+    return x->kind == y->kind && x->operation == y->operation && x->a == y->a &&
+           x->b == y->b && x->bits == y->bits;
+}
+
+/* Where a node is in the table, or where it would go. */
+static size_t place(const nevh__tape_builder *b, const nevh__node *n) {
+    size_t mask = b->table_size - 1, i = hash(n) & mask;
+    while (b->table[i] >= 0 && !same(&b->nodes[b->table[i]], n))
+        i = (i + 1) & mask;
+    return i;
+}
+
+int nevh__builder_find(const nevh__tape_builder *b, const nevh__node *n) {
+    return b->table[place(b, n)];
+}
+
+static bool grow(nevh__tape_builder *b) {
+    if (b->room > INT_MAX / 4)
+        return false;
+    int room = b->room ? 2 * b->room : FIRST_ROOM;
+    nevh__node *nodes = nevh__grow(b->nodes, (size_t)room, sizeof *nodes);
+    if (!nodes)
+        return false;
+    b->nodes = nodes;
+    int *table = nevh__array(2 * (size_t)room, sizeof *table);
+    if (!table)
+        return false;
+    free(b->table);
+    b->table = table;
+    b->table_size = 2 * (size_t)room;
+    b->room = room;
+    memset(table, 0xff, b->table_size * sizeof *table);
+    for (int i = 0; i < b->used; i++)
+        table[place(b, &nodes[i])] = i;
+    return true;
+}
+
+int nevh__builder_node(nevh__tape_builder *b, nevh__node node) {
+    if (!b || b->failed)
+        return -1;
+    if (b->used == b->room && !grow(b)) {
+        b->failed = true;
+        return -1;
+    }
+    int *at = &b->table[place(b, &node)];
+    if (*at < 0) {
+        b->nodes[b->used] = node;
+        *at = b->used++;
+    }
+    return *at;
+}
+
+double nevh__node_number(const nevh__node *n) {
+    double x;
+    memcpy(&x, &n->bits, sizeof x);
+    return x;
+}
+
+int nevh__tape_number(nevh__tape_builder *b, double x) {
+    nevh__node node = {.kind = NEVH__NUMBER};
+    memcpy(&node.bits, &x, sizeof x);
+    return nevh__builder_node(b, node);
+}
+
+int nevh__tape_variable(nevh__tape_builder *b, nevh__variable v, size_t k) {
+    if (!b)
+        return -1;
+    if (k >= UINT32_MAX / 2)
+        b->failed = true;
+    else if (b->count[v] <= k)
+        b->count[v] = k + 1;
+    return nevh__builder_node(b, (nevh__node){.kind = (uint8_t)v, .bits = k});
+}
+
+bool nevh__tape_is_number(const nevh__tape_builder *b, int node,
+                          double *value) {
+    if (node < 0 || b->nodes[node].kind != NEVH__NUMBER)
+        return false;
+    if (value)
+        *value = nevh__node_number(&b->nodes[node]);
+    return true;
+}

@@ -1,0 +1,229 @@
+/* nevh: exact derivatives of a tape by one reverse sweep.
+
+   Operations are carried out forwards; what a result overwrites is logged.
+   Backwards, each hands its adjoint on to its arguments and puts back what its
+   slot held, so that a slot may be used again
+   and again.  Where the log of the whole tape would not fit,
+   the first half is run, its slots are kept, the second half is swept, and the
+   first half is swept after it, halved again if need be [A. Griewank,
+   "Achieving logarithmic growth of temporal and spatial complexity in reverse
+   automatic differentiation", Optim. Methods Softw. 1 (1992) 35-54].
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "expression/tape_inside_private.h"
+#include "expression/tape_operations_private.h"
+#include <string.h>
+
+#define NEVH__F(f) nevh_simd_##f
+
+enum { MUCH_SCRATCH = 8 * NEVH__TAPE_SCRATCH };
+
+typedef struct {
+    const nevh__tape *tape;
+    nevh__rows rows;
+    double *base[NEVH__KINDS]; /* adjoints; pitches are those of the rows */
+    unsigned wanted;           /* an or of NEVH__BY_Q, NEVH__BY_P */
+} sweep;
+
+/* The row of adjoints of an operand; NULL when it is not wanted. */
+static inline double *adjoint(const sweep *s, nevh__operand o) {
+    return o.by & s->wanted ? s->base[o.kind] + o.at * s->rows.pitch[o.kind]
+                            : NULL;
+}
+
+/* One operation's adjoints g times its derivative by one argument are added to
+   those of the argument, d; its last use comes first, and adds to nothing. */
+static const double nothing[NEVH__TAPE_COLUMNS];
+#define EACH(product)                                                          \
+    for (size_t i = 0; i < columns; i += 8) {                                  \
+        const double *x = from_a + i * step_a, *z = from_b + i * step_b;       \
+        NEVH_LANES(lane, 8) {                                                  \
+            double a = x[lane], b = z[lane], y = from_y[i + lane];             \
+            double g = from_g[i + lane];                                       \
+            (void)a, (void)b, (void)y, (void)g;                                \
+            d[i + lane] = sum[i + lane] + product;                             \
+        }                                                                      \
+    }                                                                          \
+    break;
+#define CASE_A(identifier, value, by_a, by_b)                                  \
+    case NEVH__##identifier:                                                   \
+        EACH(by_a)
+#define CASE_B(identifier, value, by_a, by_b)                                  \
+    case NEVH__##identifier:                                                   \
+        EACH(by_b)
+#define ROWS(argument)                                                         \
+    size_t columns = s->rows.columns;                                          \
+    const double *from_a = nevh__rows_at(&s->rows, at->a);                     \
+    const double *from_b = nevh__rows_at(&s->rows, at->b);                     \
+    const double *from_y = s->rows.slots + at->to * columns;                   \
+    const double *from_g = s->base[NEVH__SLOT] + at->to * columns;             \
+    const double *sum = argument.last ? nothing : d;                           \
+    size_t step_a = at->a.kind != NEVH__NUMBER;                                \
+    size_t step_b = at->b.kind != NEVH__NUMBER
+
+NEVH__INLINE void hand_on_a(const sweep *s, const nevh__instruction *at,
+                            double *d) {
+    ROWS(at->a);
+    const double *from_cosine = s->rows.slots + at->also * columns;
+    const double *from_g_cosine = s->base[NEVH__SLOT] + at->also * columns;
+    switch (at->operation) {
+        NEVH__FORMULAS(CASE_A)
+    case NEVH__SINCOS:
+        EACH(nevh__chain(g, from_cosine[i + lane]) -
+             nevh__chain(from_g_cosine[i + lane], y))
+    }
+}
+
+NEVH__INLINE void hand_on_b(const sweep *s, const nevh__instruction *at,
+                            double *d) {
+    ROWS(at->b);
+    switch (at->operation) { NEVH__FORMULAS(CASE_B) }
+}
+
+/* A slot was another's before: it gets back what that one left.  Returns where
+   the log then ends. */
+static const double *put_back(const sweep *s, uint32_t slot,
+                              const double *log) {
+    size_t columns = s->rows.columns, bytes = columns * sizeof *log;
+    memcpy(s->rows.slots + slot * columns, log - columns, bytes);
+    return log - columns;
+}
+
+/* log: where it ends. */
+NEVH_SIMD static void backwards(const sweep *s, size_t from, size_t until,
+                                const double *log) {
+    const nevh__instruction *code = s->tape->code;
+    for (const nevh__instruction *at = code + until; at-- > code + from;) {
+        double *d_a = adjoint(s, at->a), *d_b = adjoint(s, at->b);
+        if (d_a)
+            hand_on_a(s, at, d_a);
+        if (d_b)
+            hand_on_b(s, at, d_b);
+        if (!at->also_fresh)
+            log = put_back(s, at->also, log);
+        if (!at->fresh)
+            log = put_back(s, at->to, log);
+    }
+}
+
+/* 1, but NaN where the value is not finite. */
+static void seed(const sweep *s) {
+    const double *h = nevh__rows_at(&s->rows, s->tape->result);
+    double *d = adjoint(s, s->tape->result);
+    for (size_t i = 0; d && i < s->rows.columns; i++)
+        d[i] = h[i] - h[i] + 1;
+}
+
+/* `room` doubles are free from `scratch` on. */
+static void run_back(const sweep *s, size_t from, size_t until, double *scratch,
+                     size_t room) {
+    const nevh__instruction *code = s->tape->code;
+    size_t length = until - from,
+           logged = code[until].logged - code[from].logged;
+    if (logged * s->rows.columns <= room) {
+        double *end = nevh__rows_run(&s->rows, code + from, length, scratch);
+        if (until == s->tape->length)
+            seed(s);
+        backwards(s, from, until, end);
+        return;
+    }
+    size_t kept = s->tape->slots * s->rows.columns, half = length / 2;
+    memcpy(scratch, s->rows.slots, kept * sizeof *scratch);
+    nevh__rows_run(&s->rows, code + from, half, NULL);
+    run_back(s, from + half, until, scratch + kept, room - kept);
+    memcpy(s->rows.slots, scratch, kept * sizeof *scratch);
+    run_back(s, from, from + half, scratch, room);
+}
+
+static void clear(double d[], size_t rows, size_t width, size_t columns) {
+    for (size_t k = 0; d && k < rows; k++)
+        memset(d + k * width, 0, columns * sizeof *d);
+}
+
+typedef struct {
+    const double *t, *q, *p, *c;
+    double *dh_dq, *dh_dp;
+    const nevh__tape *tape;
+    size_t width;
+} task;
+
+static void sweep_columns(const task *is, size_t from, size_t columns,
+                          double *scratch, size_t room) {
+    const nevh__tape *tape = is->tape;
+    size_t slots = tape->slots * columns;
+    sweep s = {
+        .tape = tape,
+        .rows = nevh__rows_of(tape, is->width, from, columns, is->t, is->q,
+                              is->p, is->c, scratch),
+        .wanted = (is->dh_dq ? NEVH__BY_Q : 0u) | (is->dh_dp ? NEVH__BY_P : 0u),
+    };
+    s.base[NEVH__Q] = is->dh_dq ? is->dh_dq + from : NULL;
+    s.base[NEVH__P] = is->dh_dp ? is->dh_dp + from : NULL;
+    s.base[NEVH__SLOT] = scratch + slots;
+    clear(s.base[NEVH__Q], tape->count[NEVH__Q], is->width, columns);
+    clear(s.base[NEVH__P], tape->count[NEVH__P], is->width, columns);
+    run_back(&s, 0, tape->length, scratch + 2 * slots, room - 2 * slots);
+}
+
+static size_t smaller(size_t a, size_t b) {
+    return a < b ? a : b;
+}
+
+/* Rows that the log of so many operations takes at most. */
+static size_t most_logged(const nevh__tape *tape, size_t length) {
+    return smaller(tape->code[tape->length].logged, 2 * length);
+}
+
+/* Doubles that `columns` columns take without halves. */
+static size_t whole(const nevh__tape *tape, size_t columns) {
+    return columns * (2 * tape->slots + most_logged(tape, tape->length));
+}
+
+static void sweep_all(const task *is, double *scratch, size_t room) {
+    size_t most = NEVH__TAPE_COLUMNS, columns;
+    while (most > NEVH__LANES && whole(is->tape, most) > room)
+        most /= 2;
+    for (size_t from = 0; from < is->width; from += columns) {
+        columns = is->width - from < most ? is->width - from : most;
+        sweep_columns(is, from, columns, scratch, room);
+    }
+}
+
+/* Whether halving ends with a log that fits. */
+static bool is_enough(const nevh__tape *tape, size_t room) {
+    size_t kept = NEVH__LANES * tape->slots, length = tape->length;
+    for (size_t used = 2 * kept; used <= room; used += kept) {
+        if (NEVH__LANES * most_logged(tape, length) <= room - used)
+            return true;
+        length = (length + 1) / 2;
+    }
+    return false;
+}
+
+/* Apart, so that most tapes do with little of the stack. */
+__attribute__((noinline)) static void sweep_small(const task *is) {
+    _Alignas(64) double scratch[NEVH__TAPE_SCRATCH];
+    sweep_all(is, scratch, NEVH__TAPE_SCRATCH);
+}
+
+__attribute__((noinline)) static void sweep_large(const task *is) {
+    _Alignas(64) double scratch[MUCH_SCRATCH];
+    sweep_all(is, scratch, MUCH_SCRATCH);
+}
+
+void nevh__tape_block_gradient(size_t width, const double t[], const double q[],
+                               const double p[], const double c[],
+                               const void *tape, double dh_dq[],
+                               double dh_dp[]) {
+    const task is = {.t = t,
+                     .q = q,
+                     .p = p,
+                     .c = c,
+                     .dh_dq = dh_dq,
+                     .dh_dp = dh_dp,
+                     .tape = tape,
+                     .width = width};
+    if (is_enough(tape, NEVH__TAPE_SCRATCH))
+        sweep_small(&is);
+    else
+        sweep_large(&is);
+}

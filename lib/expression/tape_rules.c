@@ -1,0 +1,188 @@
+/* nevh: how operations are rewritten as a tape is made.  Nothing here changes
+   a result, but for small powers; see nevh__tape_apply.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "expression/tape_inside_private.h"
+#include <math.h>
+
+static const double most_multiplied = 8, most_rooted = 5;
+
+/* The bits count: -0 is not 0. */
+static bool is(const nevh__tape_builder *b, int node, double x) {
+    double y;
+    return nevh__tape_is_number(b, node, &y) && y == x &&
+           !signbit(y) == !signbit(x);
+}
+
+/* Whether a node is -z. */
+static bool is_negated(const nevh__tape_builder *b, int node, int *z) {
+    const nevh__node *n = &b->nodes[node];
+    if (n->kind != NEVH__SLOT || n->operation != NEVH__NEGATE)
+        return false;
+    *z = n->a;
+    return true;
+}
+
+/* Whether a node is c*z, c being a number. */
+static bool is_multiple(const nevh__tape_builder *b, int node, double *c,
+                        int *z) {
+    const nevh__node *n = &b->nodes[node];
+    if (n->kind != NEVH__SLOT || n->operation != NEVH__MULTIPLY)
+        return false;
+    bool first = nevh__tape_is_number(b, n->a, c);
+    *z = first ? n->b : n->a;
+    return first || nevh__tape_is_number(b, n->b, c);
+}
+
+static int operation(nevh__tape_builder *b, nevh__operation of, int x, int y) {
+    return nevh__builder_node(
+        b, (nevh__node){
+               .kind = NEVH__SLOT, .operation = (uint8_t)of, .a = x, .b = y});
+}
+
+static int commutative(nevh__tape_builder *b, nevh__operation of, int x,
+                       int y) {
+    return x < y ? operation(b, of, x, y) : operation(b, of, y, x);
+}
+
+static int add(nevh__tape_builder *b, int x, int y) {
+    int z;
+    if (is(b, y, -0.0))
+        return x;
+    if (is(b, x, -0.0))
+        return y;
+    if (is_negated(b, y, &z))
+        return nevh__tape_apply(b, NEVH__SUBTRACT, x, z);
+    if (is_negated(b, x, &z))
+        return nevh__tape_apply(b, NEVH__SUBTRACT, y, z);
+    return commutative(b, NEVH__ADD, x, y);
+}
+
+static int subtract(nevh__tape_builder *b, int x, int y) {
+    int z;
+    if (is(b, y, 0.0))
+        return x;
+    if (is(b, x, -0.0))
+        return nevh__tape_apply(b, NEVH__NEGATE, y, y);
+    if (is_negated(b, y, &z))
+        return nevh__tape_apply(b, NEVH__ADD, x, z);
+    return operation(b, NEVH__SUBTRACT, x, y);
+}
+
+static int negate(nevh__tape_builder *b, int x) {
+    int z;
+    double c;
+    if (is_negated(b, x, &z))
+        return z;
+    if (is_multiple(b, x, &c, &z))
+        return nevh__tape_apply(b, NEVH__MULTIPLY, nevh__tape_number(b, -c), z);
+    return operation(b, NEVH__NEGATE, x, x);
+}
+
+/* y is not a number unless x is none. */
+static int multiply_number(nevh__tape_builder *b, int number, double c, int y) {
+    int z;
+    if (c == 1)
+        return y;
+    if (c == -1)
+        return negate(b, y);
+    if (is_negated(b, y, &z))
+        return nevh__tape_apply(b, NEVH__MULTIPLY, nevh__tape_number(b, -c), z);
+    return commutative(b, NEVH__MULTIPLY, number, y);
+}
+
+static int multiply(nevh__tape_builder *b, int x, int y) {
+    int z, w;
+    double c;
+    if (nevh__tape_is_number(b, x, &c))
+        return multiply_number(b, x, c, y);
+    if (nevh__tape_is_number(b, y, &c))
+        return multiply_number(b, y, c, x);
+    if (is_negated(b, x, &z) && is_negated(b, y, &w))
+        return nevh__tape_apply(b, NEVH__MULTIPLY, z, w);
+    return commutative(b, NEVH__MULTIPLY, x, y);
+}
+
+/* 2^k whose reciprocal is normal, too. */
+static bool is_power_of_two(double c) {
+    int exponent;
+    return isnormal(c) && fabs(frexp(c, &exponent)) == 0.5 && isnormal(1 / c);
+}
+
+static int divide(nevh__tape_builder *b, int x, int y) {
+    int z, w;
+    double c;
+    if (nevh__tape_is_number(b, y, &c) && is_power_of_two(c))
+        return nevh__tape_apply(b, NEVH__MULTIPLY, x,
+                                nevh__tape_number(b, 1 / c));
+    if (is_negated(b, x, &z) && is_negated(b, y, &w))
+        return nevh__tape_apply(b, NEVH__DIVIDE, z, w);
+    return operation(b, NEVH__DIVIDE, x, y);
+}
+
+/* x^n, n > 0, by squaring. */
+static int multiplied(nevh__tape_builder *b, int x, int n) {
+    if (n == 1)
+        return x;
+    int most = multiplied(b, x, n % 2 ? n - 1 : n / 2);
+    return nevh__tape_apply(b, NEVH__MULTIPLY, n % 2 ? x : most, most);
+}
+
+/* x^c, c > 0, by multiplication and perhaps a root. */
+static int expanded(nevh__tape_builder *b, int x, double c) {
+    int n = (int)c;
+    if (c == n)
+        return multiplied(b, x, n);
+    int root = nevh__tape_apply(b, NEVH__SQRT, x, x);
+    if (n == 0)
+        return root;
+    return nevh__tape_apply(b, NEVH__MULTIPLY, multiplied(b, x, n), root);
+}
+
+static bool is_expandable(double c) {
+    return fabs(c) <= (rint(c) == c ? most_multiplied : most_rooted) &&
+           rint(2 * c) == 2 * c;
+}
+
+static int power(nevh__tape_builder *b, int x, int y) {
+    double c;
+    if (is(b, x, 1))
+        return x;
+    if (!nevh__tape_is_number(b, y, &c) || !is_expandable(c))
+        return operation(b, NEVH__POWER, x, y);
+    if (c == 0)
+        return nevh__tape_number(b, 1);
+    int up = expanded(b, x, fabs(c));
+    if (c > 0)
+        return up;
+    return nevh__tape_apply(b, NEVH__DIVIDE, nevh__tape_number(b, 1), up);
+}
+
+static int rewritten(nevh__tape_builder *b, nevh__operation of, int x, int y) {
+    switch (of) {
+    case NEVH__ADD:
+        return add(b, x, y);
+    case NEVH__SUBTRACT:
+        return subtract(b, x, y);
+    case NEVH__MULTIPLY:
+        return multiply(b, x, y);
+    case NEVH__DIVIDE:
+        return divide(b, x, y);
+    case NEVH__POWER:
+        return power(b, x, y);
+    case NEVH__NEGATE:
+        return negate(b, x);
+    default:
+        return operation(b, of, x, y);
+    }
+}
+
+int nevh__tape_apply(nevh__tape_builder *b, nevh__operation of, int x, int y) {
+    double c, d;
+    if (nevh__operation_arguments(of) == 1)
+        y = x;
+    if (x < 0 || y < 0 || !b || b->failed)
+        return -1;
+    if (nevh__tape_is_number(b, x, &c) && nevh__tape_is_number(b, y, &d))
+        return nevh__tape_number(b, nevh__operation_value(of, c, d));
+    return rewritten(b, of, x, y);
+}

@@ -1,0 +1,54 @@
+/* nevh: a tape for one state.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "expression/tape_inside_private.h"
+#include "expression/tape_operations_private.h"
+
+#define NEVH__F(f) f
+
+#define ENTRY(identifier, name, arguments) name,
+static const char *const names[] = {NEVH__OPERATIONS(ENTRY)};
+#undef ENTRY
+#define ENTRY(identifier, name, arguments) arguments,
+static const int argument_counts[] = {NEVH__OPERATIONS(ENTRY)};
+#undef ENTRY
+
+const char *nevh__operation_name(nevh__operation operation) {
+    return names[operation];
+}
+
+int nevh__operation_arguments(nevh__operation operation) {
+    return argument_counts[operation];
+}
+
+#define CASE(identifier, value, by_a, by_b)                                    \
+    case NEVH__##identifier:                                                   \
+        return value;
+/* also: out, the cosine where the sine is returned. */
+NEVH__INLINE double apply(unsigned operation, double a, double b,
+                          double *also) {
+    switch (operation) {
+        NEVH__FORMULAS(CASE)
+    case NEVH__SINCOS:
+        *also = cos(a);
+        return sin(a);
+    default:
+        return NAN;
+    }
+}
+#undef CASE
+
+double nevh__operation_value(nevh__operation operation, double a, double b) {
+    return apply(operation, a, b, NULL);
+}
+
+double nevh__tape_value(double t, const double q[], const double p[],
+                        const double c[], const void *tape) {
+    const struct nevh__tape *of = tape;
+    double slots[NEVH__TAPE_LIVE];
+    const double *const base[NEVH__KINDS] = {&t, q, p, c, slots, of->numbers};
+    const nevh__instruction *end = of->code + of->length;
+    for (const nevh__instruction *i = of->code; i < end; i++)
+        slots[i->to] = apply(i->operation, base[i->a.kind][i->a.at],
+                             base[i->b.kind][i->b.at], &slots[i->also]);
+    return base[of->result.kind][of->result.at];
+}
