@@ -14,6 +14,8 @@ suites = \
 	tests/check_tape \
 	tests/check_tape_build \
 	tests/check_tape_terms \
+	tests/check_formula \
+	tests/check_formula_terms \
 	tests/check_registry \
 	tests/check_coefficients \
 	tests/check_splitting \
@@ -38,6 +40,8 @@ tests_check_splitting_LDADD = $(INSIDE_LIBS)
 tests_check_tape_LDADD = $(INSIDE_LIBS)
 tests_check_tape_build_LDADD = $(INSIDE_LIBS)
 tests_check_tape_terms_LDADD = $(INSIDE_LIBS)
+tests_check_formula_LDADD = $(INSIDE_LIBS)
+tests_check_formula_terms_LDADD = $(INSIDE_LIBS)
 tests_check_gsl_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_threads_CFLAGS = $(AM_CFLAGS) -pthread
 tests_check_threads_LDFLAGS = $(AM_LDFLAGS) -pthread
@@ -66,7 +70,7 @@ dist_check_SCRIPTS = \
 	tests/pkgconfig.sh \
 	tests/valgrind.sh
 
-EXTRA_DIST += tests/outside.c
+EXTRA_DIST += tests/outside.c tests/formula.h
 
 TESTS = $(all_suites) $(dist_check_SCRIPTS)
 TEST_EXTENSIONS = .sh

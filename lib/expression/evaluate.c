@@ -31,6 +31,13 @@ bool nevh__scope_fail(nevh__scope *s, int status, const nevh__expression *at,
                               text);
 }
 
+bool nevh__scope_finite(nevh__scope *s, double value,
+                        const nevh__expression *at) {
+    return isfinite(value) ||
+           nevh__scope_fail(s, NEVH_EDOM, at, "this is %s",
+                            isnan(value) ? "not a number" : "infinite");
+}
+
 bool nevh__expression_integer(nevh__scope *s, const nevh__expression *e,
                               const char *what, long *value) {
     double number = nevh__expression_value(s, e);

@@ -1,7 +1,6 @@
 /* nevh: what formulas are good for: numbers, tapes, terms.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/formula_inside_private.h"
-#include <math.h>
 #include <stdlib.h>
 
 int nevh__tree_check(const nevh__tree *tree, const nevh__names *names,
@@ -23,10 +22,8 @@ int nevh__tree_number(const nevh__tree *tree, const nevh__names *names,
     *error = (nevh__formula_error){0};
     nevh__pool pool = {0};
     nevh__expression *e = nevh__resolve(tree, names, at, 0, &pool, error);
-    if (e && !isfinite(e->number))
-        nevh__formula_fail(error, NEVH_EDOM, 1, tree->length, "the value is %s",
-                           isnan(e->number) ? "not a number" : "infinite");
-    else if (e)
+    nevh__scope scope = {.error = error};
+    if (e && nevh__scope_finite(&scope, e->number, e))
         *value = e->number;
     nevh__pool_free(&pool);
     return error->status;

@@ -201,6 +201,8 @@ typedef struct {
 bool nevh__scope_fail(nevh__scope *, int status, const nevh__expression *,
                       const char *format, ...)
     __attribute__((format(printf, 4, 5)));
+/* Whether a value is finite; an error at an expression when it is not. */
+bool nevh__scope_finite(nevh__scope *, double, const nevh__expression *);
 /* The number that an expression stands for that reads nothing; NaN, with an
    error, when it has none. */
 double nevh__expression_value(nevh__scope *, const nevh__expression *);

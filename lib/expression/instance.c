@@ -1,7 +1,6 @@
 /* nevh: the instances of a part of a formula become terms of a system.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/formula_inside_private.h"
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -100,9 +99,7 @@ static bool add_value(part_tables *p) {
             value = s->factors[k].inverse ? value / next : value * next;
         }
         p->total += value;
-        if (!scope->error->status && !isfinite(p->total))
-            nevh__scope_fail(scope, NEVH_EDOM, s->factors[s->n - 1].of,
-                             "the value of this constant is %g", p->total);
+        nevh__scope_finite(scope, p->total, s->factors[s->n - 1].of);
     }
     return !scope->error->status;
 }

@@ -43,9 +43,10 @@ static void *refuse_neighbours(nevh__parser *p) {
     const nevh__token *from = &p->previous, *to = &p->token;
     bool numbers = from->kind == NEVH__NUMERAL && to->kind == NEVH__NUMERAL;
     if (numbers)
-        return refuse_both(
-            p, from, to, "%s is no number",
-            from->at + from->bytes == to->at ? "this" : "two numbers in a row");
+        return refuse_both(p, from, to, "%s",
+                           from->at + from->bytes == to->at
+                               ? "this is no number"
+                               : "an operator is missing between two numbers");
     const char *left = from->kind == NEVH__NUMERAL || from->kind == NEVH__WORD
                            ? shown(p, from)
                            : "(...)";

@@ -38,7 +38,7 @@ static void *fail(resolver *r, const nevh__node *node, size_t length,
 
 static void *fail_name(resolver *r, const nevh__node *node, const char *format,
                        const char *b) {
-    return fail(r, node, nevh__characters(node->name), format, node->name, b);
+    return fail(r, node, node->length, format, node->name, b);
 }
 
 static nevh__expression *new_expression(resolver *r, nevh__form form,
@@ -171,17 +171,19 @@ static nevh__expression *resolve_index(resolver *r, const nevh__node *node) {
     return e;
 }
 
+static void *fail_array(resolver *r, const nevh__node *node, size_t count) {
+    char advice[3 * NEVH__NAME_LENGTH];
+    snprintf(advice, sizeof advice, "%s[1], or sum(i = 1..%zu, %s[i])",
+             node->name, count, node->name);
+    return fail_name(r, node, "%s has no index: write %s", advice);
+}
+
 /* Gives an element its index, where the name has any. */
 static bool take_index(resolver *r, const nevh__node *node,
                        nevh__expression *e) {
     bool array = e->count > 0, indexed = node->kind == NEVH__NODE_ELEMENT;
-    char many[40];
-    snprintf(many, sizeof many, "%zu", e->count);
     if (array && !indexed)
-        return fail_name(r, node,
-                         "%s has %s elements: an index is missing, as "
-                         "in sum(i = 1..N, ...[i])",
-                         many);
+        return fail_array(r, node, e->count);
     if (!array && indexed)
         return fail_name(r, node, "%s is a single number: it has no index", "");
     return !indexed ||
@@ -361,7 +363,7 @@ static nevh__expression *resolve_call(resolver *r, const nevh__node *node) {
     }
     if (operands_of(node) != (size_t)nevh__operation_arguments(operation))
         return fail(r, node, node->length,
-                    "a wrong number of arguments: it is %s%s", node->name,
+                    "wrong number of arguments: it is %s%s", node->name,
                     nevh__function_usage(operation));
     return apply(r, node, operation);
 }
@@ -380,10 +382,10 @@ static bool check_bound(resolver *r, const nevh__node *node) {
     if (taken)
         fail_name(r, node,
                   "%s already means something else: take another "
-                  "name for the index%s",
+                  "name for the index",
                   "");
     else if (r->slots == NEVH__INDICES)
-        fail_name(r, node, "the index %s is one too many%s", "");
+        fail_name(r, node, "with the index %s there are too many sums", "");
     return !r->scope.error->status;
 }
 
@@ -428,8 +430,10 @@ static nevh__expression *resolve_node(resolver *r, const nevh__node *node) {
 
 static nevh__expression *resolve(resolver *r, const nevh__node *node) {
     if (r->depth > 2 * NEVH__HEIGHT)
-        return fail(r, node, node->length,
-                    "definitions are nested too deeply%s%s", "", "");
+        return fail(
+            r, node, node->length,
+            "with definitions written out there are too many levels%s%s", "",
+            "");
     r->depth++;
     nevh__expression *e = resolve_node(r, node);
     r->depth--;

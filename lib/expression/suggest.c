@@ -129,8 +129,8 @@ bool nevh__refuse_name(const nevh__names *names, const nevh__bound *bound,
                        nevh__formula_error *error) {
     const char *name = node->name;
     size_t length = nevh__characters(name);
-    search s = {.word = name, .distance = length < 2 ? 1 : length / 3 + 2};
-    s.distance = least(s.distance, length);
+    search s = {.word = name};
+    s.distance = length < 3 ? length : (length + 1) / 3 + 1;
     if (node->kind == NEVH__NODE_CALL)
         return refuse_call(names, node, &s, error);
     if (strcmp(name, "e") == 0)

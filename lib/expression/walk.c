@@ -5,7 +5,6 @@
    constants.  Instances for which these fall into the same pattern have the
    same tape, which a second walk makes by following the notes. */
 #include "expression/formula_inside_private.h"
-#include <math.h>
 #include <stdlib.h>
 
 static int walk(nevh__walk *, nevh__expression *);
@@ -49,9 +48,7 @@ static void note_shape(nevh__walk *w, size_t what) {
 
 static void note_constant(nevh__walk *w, double value,
                           const nevh__expression *at) {
-    if (!isfinite(value))
-        nevh__scope_fail(&w->scope, NEVH_EDOM, at, "this is %s",
-                         isnan(value) ? "not a number" : "infinite");
+    nevh__scope_finite(&w->scope, value, at);
     if (reserve(w, &w->constants, w->n_constants, &w->constants_room,
                 sizeof *w->constants))
         w->constants[w->n_constants++] = value;
@@ -74,9 +71,7 @@ static int walk_constant(nevh__walk *w, const nevh__expression *e) {
     if (e->form != NEVH__FORM_NUMBER)
         return constant(w, noting(w) ? nevh__expression_value(&w->scope, e) : 0,
                         e);
-    if (!isfinite(e->number))
-        nevh__scope_fail(&w->scope, NEVH_EDOM, e, "this is %s",
-                         isnan(e->number) ? "not a number" : "infinite");
+    nevh__scope_finite(&w->scope, e->number, e);
     return number(w, e->number);
 }
 
@@ -133,9 +128,8 @@ static int walk_product(nevh__walk *w, bool negative,
                         const nevh__operand *factors, size_t n) {
     prefix p = take_prefix(w, negative, factors, n);
     size_t i = p.used;
-    if (p.numbers && !isfinite(p.value))
-        nevh__scope_fail(&w->scope, NEVH_EDOM, factors[i - 1].of,
-                         "this constant is %g", p.value);
+    if (p.numbers && p.used)
+        nevh__scope_finite(&w->scope, p.value, factors[i - 1].of);
     int node = -1;
     if (i == 0 && !factors[0].inverse)
         node = walk(w, factors[i++].of);
