@@ -5,6 +5,7 @@
    derivatives by differences of order 6. */
 #include "support.h"
 #include "expression/tape_private.h"
+#include <nevh/body.h>
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -149,6 +150,12 @@ static nevh__tape *tape_of(nevh__operation is) {
     return tape;
 }
 
+/* Whether long double is more than double; under valgrind it is not. */
+static bool is_exact(void) {
+    volatile long double one = 1;
+    return one + DBL_EPSILON / 64 != one;
+}
+
 static double ulp(double x) {
     return nextafter(fabs(x), INFINITY) - fabs(x);
 }
@@ -164,6 +171,7 @@ START_TEST(values) {
     const operation *f = &operations[_i];
     const char *name = nevh__operation_name(f->is);
     double x[WIDTH], y[WIDTH], t[WIDTH] = {0}, h[WIDTH], pair[2];
+    double ulps = f->ulps + (is_exact() ? 0 : 64);
     nevh__tape *tape = tape_of(f->is);
     draw(f, x, y);
     nevh__tape_block(WIDTH, t, x, y, NULL, tape, h);
@@ -171,14 +179,17 @@ START_TEST(values) {
         long double exact = f->reference(x[i], y[i]);
         double one = nevh__tape_value(0, &x[i], &y[i], NULL, tape);
         double unit = fmax(ulp((double)exact), f->ulps > 3 ? DBL_EPSILON : 0);
-        ck_assert_msg(fabsl(one - exact) <= f->ulps * unit,
+        ck_assert_msg(fabsl(one - exact) <= ulps * unit,
                       "%s(%.17g, %.17g) = %.17g, not %.17Lg", name, x[i], y[i],
                       one, exact);
         ck_assert_double_eq(nevh__operation_value(f->is, x[i], y[i]), one);
         ck_assert_msg(fabsl(h[i] - exact) <=
-                          fmax(f->ulps, f->ulps ? 4 : 0) * unit,
+                          (f->ulps ? fmax(ulps, 4) : ulps) * unit,
                       "block %s(%.17g, %.17g) = %.17g, not %.17Lg", name, x[i],
                       y[i], h[i], exact);
+#ifndef NEVH__VECTORS
+        ck_assert_double_eq(h[i], one);
+#endif
         const double q[1][2] = {{x[i], 1e-100}}, p[1][2] = {{y[i], 0}};
         nevh__tape_complex(0, q, p, NULL, tape, pair);
         ck_assert_double_eq(pair[0], one);
@@ -219,7 +230,8 @@ START_TEST(slopes) {
             const double q[1][2] = {{x[i], by_b ? 0 : 0x1p-332}};
             const double p[1][2] = {{y[i], by_b ? 0x1p-332 : 0}};
             long double exact = slope(f, x[i], y[i], by_b);
-            long double allowed = 2e-14L * (1 + 10 * fabsl(exact));
+            long double allowed =
+                (is_exact() ? 2e-14L : 1e-9L) * (1 + 10 * fabsl(exact));
             double reverse = by_b ? dy[i] : dx[i];
             nevh__tape_complex(0, q, p, NULL, tape, pair);
             ck_assert_msg(fabsl(reverse - exact) <= allowed &&

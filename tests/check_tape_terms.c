@@ -99,7 +99,10 @@ static void put_random(const nevh__operation from[], int count, int reach) {
         u = positive(u);
     if (is == NEVH__EXP)
         u = combine(NEVH__NEGATE, u, u);
+    int cosine = is == NEVH__SIN ? combine(NEVH__COS, u, u) : 0;
     u = combine(is, u, v);
+    if (is == NEVH__SIN)
+        u = combine(NEVH__ADD, combine(NEVH__MULTIPLY, u, v), cosine);
     v = put((node){.kind = NUMBER, .number = 0.5});
     nodes[combine(NEVH__MULTIPLY, u, v)].drawn = true;
 }

@@ -23,13 +23,13 @@
         EACH(to, value)                                                        \
         break;
 
-static double *log_row(double *log, const double row[], size_t columns) {
-    memcpy(log, row, columns * sizeof *log);
-    return log + columns;
+static double *write_row(double *journal, const double row[], size_t columns) {
+    memcpy(journal, row, columns * sizeof *journal);
+    return journal + columns;
 }
 
 NEVH_SIMD static double *run(const nevh__rows *r, const nevh__instruction *from,
-                             const nevh__instruction *until, double *log) {
+                             const nevh__instruction *until, double *journal) {
     size_t columns = r->columns;
     for (const nevh__instruction *at = from; at < until; at++) {
         const double *from_a = nevh__rows_at(r, at->a);
@@ -38,10 +38,10 @@ NEVH_SIMD static double *run(const nevh__rows *r, const nevh__instruction *from,
         size_t step_b = at->b.kind != NEVH__NUMBER;
         double *to = r->slots + at->to * columns;
         double *also = r->slots + at->also * columns;
-        if (log && !at->fresh)
-            log = log_row(log, to, columns);
-        if (log && !at->also_fresh)
-            log = log_row(log, also, columns);
+        if (journal && !at->fresh)
+            journal = write_row(journal, to, columns);
+        if (journal && !at->also_fresh)
+            journal = write_row(journal, also, columns);
         switch (at->operation) {
             NEVH__FORMULAS(CASE)
         case NEVH__SINCOS:
@@ -49,14 +49,14 @@ NEVH_SIMD static double *run(const nevh__rows *r, const nevh__instruction *from,
             EACH(also, nevh_simd_cos(a))
         }
     }
-    return log;
+    return journal;
 }
 #undef CASE
 #undef EACH
 
 double *nevh__rows_run(const nevh__rows *r, const nevh__instruction code[],
-                       size_t length, double log[]) {
-    return run(r, code, code + length, log);
+                       size_t length, double journal[]) {
+    return run(r, code, code + length, journal);
 }
 
 nevh__rows nevh__rows_of(const nevh__tape *tape, size_t width, size_t from,

@@ -236,18 +236,18 @@ static nevh__instruction instruction(const plan *p, int node) {
 }
 
 static void write_code(nevh__tape *tape, const plan *p) {
-    uint32_t logged = 0;
+    uint32_t journal = 0;
     for (int i = 0; i < p->length; i++) {
         nevh__instruction *to = &tape->code[i];
         *to = instruction(p, p->order[i]);
-        to->logged = logged;
-        logged += !to->fresh + !to->also_fresh;
+        to->journal = journal;
+        journal += !to->fresh + !to->also_fresh;
         note_read(tape, to->a);
         note_read(tape, to->b);
         if (!is_smooth(to->operation) && (to->a.by | to->b.by))
             tape->analytic = false;
     }
-    tape->code[p->length].logged = logged;
+    tape->code[p->length].journal = journal;
 }
 
 static void write_numbers(nevh__tape *tape, const plan *p) {

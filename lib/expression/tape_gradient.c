@@ -1,14 +1,13 @@
 /* nevh: exact derivatives of a tape by one reverse sweep.
 
-   Operations are carried out forwards; what a result overwrites is logged.
-   Backwards, each hands its adjoint on to its arguments and puts back what its
-   slot held, so that a slot may be used again
-   and again.  Where the log of the whole tape would not fit,
-   the first half is run, its slots are kept, the second half is swept, and the
-   first half is swept after it, halved again if need be [A. Griewank,
-   "Achieving logarithmic growth of temporal and spatial complexity in reverse
-   automatic differentiation", Optim. Methods Softw. 1 (1992) 35-54].
-   SPDX-License-Identifier: GPL-3.0-or-later */
+   Operations are carried out forwards; what a result overwrites goes to a
+   journal. Backwards, each hands its adjoint on to its arguments and puts back
+   what its slot held, so that a slot may be used again and again.  Where the
+   journal of the whole tape would not fit, the first half is run, its slots are
+   kept, the second half is swept, and the first half is swept after it, halved
+   again if need be [A. Griewank, "Achieving logarithmic growth of temporal and
+   spatial complexity in reverse automatic differentiation", Optim. Methods
+   Softw. 1 (1992) 35-54]. SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/tape_inside_private.h"
 #include "expression/tape_operations_private.h"
 #include <string.h>
@@ -80,17 +79,17 @@ NEVH__INLINE void hand_on_b(const sweep *s, const nevh__instruction *at,
 }
 
 /* A slot was another's before: it gets back what that one left.  Returns where
-   the log then ends. */
+   the journal then ends. */
 static const double *put_back(const sweep *s, uint32_t slot,
-                              const double *log) {
-    size_t columns = s->rows.columns, bytes = columns * sizeof *log;
-    memcpy(s->rows.slots + slot * columns, log - columns, bytes);
-    return log - columns;
+                              const double *journal) {
+    size_t columns = s->rows.columns, bytes = columns * sizeof *journal;
+    memcpy(s->rows.slots + slot * columns, journal - columns, bytes);
+    return journal - columns;
 }
 
-/* log: where it ends. */
+/* journal: where it ends. */
 NEVH_SIMD static void backwards(const sweep *s, size_t from, size_t until,
-                                const double *log) {
+                                const double *journal) {
     const nevh__instruction *code = s->tape->code;
     for (const nevh__instruction *at = code + until; at-- > code + from;) {
         double *d_a = adjoint(s, at->a), *d_b = adjoint(s, at->b);
@@ -99,9 +98,9 @@ NEVH_SIMD static void backwards(const sweep *s, size_t from, size_t until,
         if (d_b)
             hand_on_b(s, at, d_b);
         if (!at->also_fresh)
-            log = put_back(s, at->also, log);
+            journal = put_back(s, at->also, journal);
         if (!at->fresh)
-            log = put_back(s, at->to, log);
+            journal = put_back(s, at->to, journal);
     }
 }
 
@@ -118,8 +117,8 @@ static void run_back(const sweep *s, size_t from, size_t until, double *scratch,
                      size_t room) {
     const nevh__instruction *code = s->tape->code;
     size_t length = until - from,
-           logged = code[until].logged - code[from].logged;
-    if (logged * s->rows.columns <= room) {
+           rows = code[until].journal - code[from].journal;
+    if (rows * s->rows.columns <= room) {
         double *end = nevh__rows_run(&s->rows, code + from, length, scratch);
         if (until == s->tape->length)
             seed(s);
@@ -168,14 +167,14 @@ static size_t smaller(size_t a, size_t b) {
     return a < b ? a : b;
 }
 
-/* Rows that the log of so many operations takes at most. */
-static size_t most_logged(const nevh__tape *tape, size_t length) {
-    return smaller(tape->code[tape->length].logged, 2 * length);
+/* Rows that the journal of so many operations takes at most. */
+static size_t longest_journal(const nevh__tape *tape, size_t length) {
+    return smaller(tape->code[tape->length].journal, 2 * length);
 }
 
 /* Doubles that `columns` columns take without halves. */
 static size_t whole(const nevh__tape *tape, size_t columns) {
-    return columns * (2 * tape->slots + most_logged(tape, tape->length));
+    return columns * (2 * tape->slots + longest_journal(tape, tape->length));
 }
 
 static void sweep_all(const task *is, double *scratch, size_t room) {
@@ -188,11 +187,11 @@ static void sweep_all(const task *is, double *scratch, size_t room) {
     }
 }
 
-/* Whether halving ends with a log that fits. */
+/* Whether halving ends with a journal that fits. */
 static bool is_enough(const nevh__tape *tape, size_t room) {
     size_t kept = NEVH__LANES * tape->slots, length = tape->length;
     for (size_t used = 2 * kept; used <= room; used += kept) {
-        if (NEVH__LANES * most_logged(tape, length) <= room - used)
+        if (NEVH__LANES * longest_journal(tape, length) <= room - used)
             return true;
         length = (length + 1) / 2;
     }

@@ -25,13 +25,13 @@ typedef struct {
 typedef struct {
     nevh__operand a, b; /* b is a where there is one argument */
     uint32_t to, also;  /* slots, never that of a or b; also is of cosines */
-    uint32_t logged;    /* slots that were not fresh in all that comes before */
+    uint32_t journal;   /* slots not fresh in all that comes before */
     uint8_t operation;
     bool fresh, also_fresh; /* the slot held nothing before */
 } nevh__instruction;
 
 struct nevh__tape {
-    nevh__instruction *code; /* one more, for its `logged` */
+    nevh__instruction *code; /* one more, for its `journal` */
     size_t length, slots;
     double *numbers;    /* each once */
     const double *wide; /* each NEVH__LANES times, in whole cache lines */
@@ -63,10 +63,10 @@ static inline const double *nevh__rows_at(const nevh__rows *r,
 nevh__rows nevh__rows_of(const nevh__tape *, size_t width, size_t from,
                          size_t columns, const double t[], const double q[],
                          const double p[], const double c[], double slots[]);
-/* Carries out operations.  What was in a slot that is not fresh goes to log
-   first, row by row, unless log is NULL; returns where the log then ends. */
+/* Carries out operations.  What was in a slot that is not fresh is written to
+   the journal first, row by row, unless it is NULL; returns where it ends. */
 double *nevh__rows_run(const nevh__rows *, const nevh__instruction code[],
-                       size_t length, double log[]);
+                       size_t length, double journal[]);
 
 /* Building. */
 

@@ -37,7 +37,8 @@ NEVH__INLINE double nevh__mod(double x, double y) {
 /* In the chain rule 0 times infinity is 0. */
 NEVH__INLINE double nevh__chain(double x, double y) {
     double product = x * y;
-    return (product != product) & !isunordered(x, y) ? 0 : product;
+    bool undecided = (product != product) & !isunordered(x, y);
+    return undecided ? 0 : product;
 }
 #define NEVH__G(slope) nevh__chain(g, slope)
 

@@ -13,8 +13,9 @@
    *tape = nevh__tape_finish(b, h, &status);
 
    A finished tape is const: threads share it.  Evaluation allocates nothing;
-   it takes up to 80 KiB of stack, gradients of tapes that are long or hold
-   many values at once up to 520 KiB. */
+   it takes up to 66 KiB of stack, gradients of tapes that hold many values at
+   once (about 100, and fewer where there are more than 1000 operations) up to
+   520 KiB. */
 #ifndef NEVH_TAPE_PRIVATE_H
 #define NEVH_TAPE_PRIVATE_H
 
@@ -28,8 +29,8 @@ enum { NEVH__VARIABLES = 4 };
 
    atan2(y, x).  mod has the sign of its second argument and is exact for
    integers.  Of min and max, an argument that is NaN wins.  bessel_j0 and
-   bessel_j1 are of the first kind; elliptic_k and elliptic_e are complete
-   integrals of the modulus k, |k| < 1 (elliptic_e: also 1).
+   bessel_j1 are of the first kind, |x| < 4e15; elliptic_k and elliptic_e are
+   complete integrals of the modulus k, |k| < 1 (elliptic_e: also 1).
 
    Outside its domain a function is NaN.  Derivatives at a kink: abs has 0 at
    0, hypot at (0, 0); min and max of equals have that of the second argument;
@@ -131,7 +132,7 @@ size_t nevh__tape_count(const nevh__tape *, nevh__variable);
 /* No abs, min, max, sign, mod, floor of what depends on q or p: fit for the
    complex step. */
 bool nevh__tape_analytic(const nevh__tape *);
-/* Operations. */
+/* Operations; sine and cosine of one argument are one. */
 size_t nevh__tape_length(const nevh__tape *);
 
 /* The functions of a nevh_term whose params is the tape; nevh_term_fn etc.
@@ -141,8 +142,9 @@ size_t nevh__tape_length(const nevh__tape *);
    and other functions, or with NEVH_PORTABLE, the three agree to the bit.
    Where the value is not finite no derivative is: each by a variable that the
    tape reads is NaN.
-   cost     gradient: about 2 to 3 values; a long tape, whose values do not all
-            fit on the stack, is evaluated up to log2(length/500) times more */
+   cost     gradient: about 2.5 values; with more than about 1000 operations,
+            half a value more for each time the tape is halved to fit into the
+            stack */
 double nevh__tape_value(double t, const double q[], const double p[],
                         const double c[], const void *tape);
 void nevh__tape_block(size_t width, const double t[], const double q[],

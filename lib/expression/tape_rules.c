@@ -102,10 +102,10 @@ static int multiply(nevh__tape_builder *b, int x, int y) {
     return commutative(b, NEVH__MULTIPLY, x, y);
 }
 
-/* 2^k whose reciprocal is normal, too. */
+/* 2^k whose reciprocal is normal. */
 static bool is_power_of_two(double c) {
     int exponent;
-    return isnormal(c) && fabs(frexp(c, &exponent)) == 0.5 && isnormal(1 / c);
+    return fabs(frexp(c, &exponent)) == 0.5 && isnormal(1 / c);
 }
 
 static int divide(nevh__tape_builder *b, int x, int y) {

@@ -32,7 +32,7 @@ double nevh__bessel_j1_slope(double x) {
     return nevh__bessel_j0(x) - nevh__bessel_j1(x) / x;
 }
 
-/* GSL takes k^2 = 1 - tiny; closer than that its integrals are refused. */
+/* The square may round to 1, which GSL refuses. */
 static bool inside(double k) {
     return fabs(k) < 1 && k * k < 1;
 }
