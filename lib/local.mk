@@ -55,7 +55,10 @@ libnevh_core_la_SOURCES = \
 	lib/expression/head.c \
 	lib/expression/names.c \
 	lib/expression/suggest.c \
+	lib/expression/resolve_private.h \
 	lib/expression/resolve.c \
+	lib/expression/meaning.c \
+	lib/expression/expression.c \
 	lib/expression/evaluate.c \
 	lib/expression/variables.c \
 	lib/expression/split.c \

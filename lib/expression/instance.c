@@ -28,8 +28,10 @@ static bool no_memory(const part_tables *p) {
 }
 
 static bool fits(const table *t, const nevh__walk *w) {
-    return t->n_shape == w->n_shape && t->nc == w->n_constants &&
-           memcmp(t->shape, w->shape, t->n_shape * sizeof *t->shape) == 0;
+    if (t->n_shape != w->n_shape || t->nc != w->n_constants)
+        return false;
+    size_t bytes = t->n_shape * sizeof *t->shape;
+    return bytes == 0 || memcmp(t->shape, w->shape, bytes) == 0;
 }
 
 /* The table for the instance that was noted, or NULL. */
@@ -203,8 +205,10 @@ static bool add_term(nevh__adder *a, const table *t, nevh__tape *tape) {
     term.c = t->c;
     term.count = t->count;
     char *name = term_name(a);
+    if (!name)
+        return nevh__formula_no_memory(error);
     term.name = name;
-    int status = name ? nevh_system_add(a->system, &term) : NEVH_ENOMEM;
+    int status = nevh_system_add(a->system, &term);
     free(name);
     if (status)
         return nevh__formula_fail(error, status, 0, 0, "%s",
