@@ -109,6 +109,7 @@ static const struct {
     {"vx", 1, 2, "the velocity of x is v_x", NULL},
     {"2*e", 3, 1, "write exp(1)", NULL},
     {"masss + 1", 1, 5, "did you mean mass?", NULL},
+    {"2 - amss", 5, 4, "did you mean mass?", NULL},
     {"Sin(x)", 1, 3, "did you mean sin?", NULL},
     {"sine(x)", 1, 4, "did you mean sin?", NULL},
     {"2*banana", 3, 6, "name banana is not known", NULL},
@@ -444,6 +445,9 @@ START_TEST(doubling_definitions) {
     ck_assert_msg(!s.error.status, "%s", s.error.text);
     system_done(&s);
     s = system_of("c900", names, FORMULA_DOF);
+    ck_assert_msg(strstr(s.error.text, "levels"), "%s", s.error.text);
+    system_done(&s);
+    s = system_of("c300 + c700", names, FORMULA_DOF);
     ck_assert_msg(strstr(s.error.text, "levels"), "%s", s.error.text);
     system_done(&s);
     s = system_of("c500", names, FORMULA_DOF);

@@ -76,7 +76,8 @@ static nevh__part *new_part(nevh__parts *parts, const around *a) {
     return &parts->parts[parts->n++];
 }
 
-/* The part that reads the same over the same loops, or a new one. */
+/* The part that reads the same over the same loops, or a new one.  The hash
+   says so; `reads` makes sure that no accident of hashes joins T and V. */
 static nevh__part *part_for(nevh__parts *parts, const around *a,
                             const nevh__summand *s) {
     unsigned reads = 0;
