@@ -5,7 +5,7 @@
    through here.  What GSL requests is its own affair: it aborts when refused,
    which is why the library asks for as much before it calls GSL. */
 #include "support.h"
-#include "expression/tape_private.h"
+#include "expression/formula_private.h"
 #include <math.h>
 #include <nevh/gsl.h>
 #include <nevh/transform.h>
@@ -238,6 +238,51 @@ static int run_until(const setting *a) {
     return status;
 }
 
+/* Names, and terms of every kind: scalars, instances, a constant, what is
+   written out, several shapes. */
+static int add_formula(nevh__names *names, nevh_system *s, nevh__owned *owned,
+                       nevh__formula_error *e) {
+    static const double four = 4, w[] = {2, 3, 5, 7};
+    nevh__names_add_parameter(names, "N", 0, &four, e);
+    if (!e->status)
+        nevh__names_add_parameter(names, "w", 4, w, e);
+    if (!e->status)
+        nevh__names_add_coordinate(names, "q", 4, 0, e);
+    nevh__tree *tree = e->status ? NULL : nevh__tree_parse("q[1] - q[2]", e);
+    if (tree)
+        nevh__names_add_definition(names, "d", tree, e);
+    tree = e->status ? NULL
+                     : nevh__tree_parse("d^2/2 + cos(d) - 3 - sum(i = 1..N, "
+                                        "j = 1..N, w[i]*q[i]*q[j]) + "
+                                        "sqrt(sum(i = 1..N, q[i]^2 + p_q[i]))",
+                                        e);
+    if (tree)
+        nevh__tree_add_terms(tree, names, s, "H", owned, e);
+    nevh__tape *tape =
+        e->status ? NULL : nevh__tree_tape(tree, names, NEVH__READS_STATE, e);
+    nevh__tape_free(tape);
+    nevh__tree_free(tree);
+    return e->status;
+}
+
+static int make_formula(const setting *a) {
+    (void)a;
+    nevh__formula_error e = {0};
+    nevh__head head;
+    nevh__owned owned = {0};
+    nevh__names *names = nevh__names_new();
+    nevh_system *s = nevh_system_new(4);
+    bool made = names && s;
+    if (made && !add_formula(names, s, &owned, &e) &&
+        !nevh__head_parse("q[i = 1..N]", &head, &e))
+        nevh__head_free(&head);
+    nevh_system_free(s);
+    nevh__owned_free(&owned);
+    nevh__names_free(names);
+    strcpy(text, made ? e.text : "out of memory");
+    return made ? e.status : NEVH_ENOMEM;
+}
+
 /* Refuses the first request, then the second, until all are granted.  Returns
    how many there are. */
 static size_t starve(int (*attempt)(const setting *), const setting *a) {
@@ -402,6 +447,12 @@ START_TEST(transformed_steps_take_no_memory) {
 }
 END_TEST
 
+START_TEST(formulas) {
+    const setting none = {0};
+    ck_assert_uint_ge(starve(make_formula, &none), 100);
+}
+END_TEST
+
 START_TEST(steps_take_no_memory) {
     const nevh_gradient *gradients[] = {nevh_central2, nevh_central8,
                                         nevh_exact};
@@ -462,6 +513,7 @@ int main(void) {
     tcase_add_test(cases, tapes);
     tcase_add_loop_test(cases, transforms_and_runs, 0, 4);
     tcase_add_loop_test(cases, transformed_steps_take_no_memory, 0, 3);
+    tcase_add_test(cases, formulas);
     tcase_add_loop_test(cases, steps_take_no_memory, 0, 3 * schemes);
     tcase_add_test(cases, gsl_system_without_memory);
     suite_add_tcase(suite, cases);
