@@ -14,6 +14,8 @@ suites = \
 	tests/check_tape \
 	tests/check_tape_build \
 	tests/check_tape_terms \
+	tests/check_formula \
+	tests/check_formula_terms \
 	tests/check_registry \
 	tests/check_coefficients \
 	tests/check_splitting \
@@ -63,6 +65,8 @@ tests_check_transform_LDADD = $(INSIDE_LIBS)
 tests_check_tape_LDADD = $(INSIDE_LIBS)
 tests_check_tape_build_LDADD = $(INSIDE_LIBS)
 tests_check_tape_terms_LDADD = $(INSIDE_LIBS)
+tests_check_formula_LDADD = $(INSIDE_LIBS)
+tests_check_formula_terms_LDADD = $(INSIDE_LIBS)
 tests_check_gsl_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_damped_orbits_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_threads_CFLAGS = $(AM_CFLAGS) -pthread
@@ -93,7 +97,7 @@ dist_check_SCRIPTS = \
 	tests/pkgconfig.sh \
 	tests/valgrind.sh
 
-EXTRA_DIST += tests/outside.c
+EXTRA_DIST += tests/outside.c tests/formula.h
 
 TESTS = $(all_suites) $(dist_check_SCRIPTS)
 TEST_EXTENSIONS = .sh
