@@ -185,7 +185,7 @@ static const struct {
     {"sum(i = 1..N, i = 1..N, x)", 15, 1, "i already means", NULL},
     {"sum(i = i..N, x)", 9, 1, "index i is not known", NULL},
     {"sum(i = 1..N, i[2])", 15, 4, "i is an index", NULL},
-    {"x + 1/(m - 1.3)", 8, 7, "infinite", NULL},
+    {"x + 1/(m - 1.3)", 5, 11, "infinite", NULL},
     {"sqrt(m - 2)*x", 1, 11, "not a number", NULL},
     {"x^2*log(m - 2)", 5, 10, "not a number", NULL},
     {"sum(i = 1..N, q[i]/(i - 2)*log(i - 2))", 28, 10, "(i = 1)", NULL},

@@ -80,6 +80,7 @@ bool nevh__scope_loop(nevh__scope *s, const nevh__expression *loop,
         !nevh__expression_integer(s, loop->operands[1].of,
                                   "the end of the range", &to))
         return false;
+    double outer = s->value[loop->slot];
     s->running[s->depth++] = loop;
     bool fine = true;
     for (long k = from; fine && k <= to; k++) {
@@ -90,6 +91,7 @@ bool nevh__scope_loop(nevh__scope *s, const nevh__expression *loop,
         fine = fine && visit(context);
     }
     s->depth--;
+    s->value[loop->slot] = outer;
     return fine;
 }
 

@@ -188,10 +188,12 @@ nevh__expression *nevh__resolve(const nevh__tree *, const nevh__names *,
                                 const nevh__index *at, unsigned allowed,
                                 nevh__pool *, nevh__formula_error *);
 
-/* Values of index variables, and the sums that are running. */
+/* Values of index variables, and the sums that are running; the sum(...) of a
+   definition may run within itself, where one is written out and the other
+   makes instances. */
 typedef struct {
     double value[NEVH__INDICES];
-    const nevh__expression *running[NEVH__INDICES];
+    const nevh__expression *running[2 * NEVH__INDICES];
     size_t depth;
     size_t work; /* passes through loops so far */
     nevh__formula_error *error;
