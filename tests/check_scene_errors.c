@@ -13,8 +13,8 @@
 static const struct {
     const char *text, *place, *words;
 } wrong[] = {
-    {"", "1:1", "no [effects]"},
-    {"# nothing\n\n", "2:1", "no [effects]"},
+    {"", "1:1", "no [coordinates]"},
+    {"# nothing\n\n", "2:1", "no [coordinates]"},
     {EFFECTS, "2:1", "no [coordinates]"},
     {COORDINATES, "2:1", "no [effects]"},
     {"x = 1\n", "1:1", "a section must come first"},
@@ -58,10 +58,10 @@ static const struct {
     {"[coordinates]\ny[1..2] = 1\nx = 0\nv_y = 2\n" EFFECTS, "4:1", "array"},
     {"[coordinates]\nx = x\n" EFFECTS, "2:5", "x"},
     {COORDINATES "[definitions]\nd = x + z\n" EFFECTS, "4:9", "name z"},
-    {COORDINATES "[definitions]\nd = e2\ne2 = d\n" EFFECTS, "5:6", "itself"},
+    {COORDINATES "[definitions]\nd = e2\ne2 = d\n" EFFECTS, "4:5", "itself"},
     {COORDINATES "[definitions]\nd = 1 +\n" EFFECTS, "4:7", "after"},
-    {COORDINATES "[definitions]\nd = v_x\n" EFFECTS "V = x*d\n", "4:5",
-     "velocity"},
+    {COORDINATES "[definitions]\nd = v_x\n" EFFECTS "V = x*d\n", "7:7",
+     "velocities"},
     {COORDINATES "[effects]\nH = px^2\n", "4:5", "p_x"},
     {COORDINATES "[effects]\nH = p_x^2 + 2x\n", "4:13", "2*x"},
     {COORDINATES "[effects]\nH = 1\nV = 2\nH = 3\n", "6:1", "line 4"},
