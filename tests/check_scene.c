@@ -274,9 +274,5 @@ int main(void) {
     tcase_add_test(cases, velocities_out_of_reach);
     tcase_add_test(cases, ends_of_lines);
     suite_add_tcase(suite, cases);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed > 0;
+    return run_suite(suite);
 }
