@@ -287,6 +287,19 @@ START_TEST(velocities_of_many) {
 }
 END_TEST
 
+START_TEST(velocities_of_a_chain) {
+    nevh_scene *s = scene_of(moving_chain);
+    double q[4], p[4], c = cos(0) / 3;
+    int status = nevh_scene_start(s, q, p);
+    ck_assert_msg(!status, "%s", nevh_scene_message(s));
+    assert_close(p[0] / (4 / 3.) + c * p[3], 0.2);
+    assert_close(p[1] / (5 / 3.), 0.4);
+    assert_close(p[2] / 2, 0.6);
+    assert_close(p[3] / sqrt(1 + p[3] * p[3]) + c * p[0], -0.3);
+    nevh_scene_free(s);
+}
+END_TEST
+
 START_TEST(velocities_out_of_reach) {
     nevh_scene *s = scene_of("[coordinates]\nx = 0\nv_x = 2\n"
                              "[effects]\nT = sqrt(1 + p_x^2)\n");
@@ -333,6 +346,7 @@ int main(void) {
     tcase_add_test(cases, velocities);
     tcase_add_test(cases, velocities_of_others);
     tcase_add_test(cases, velocities_of_many);
+    tcase_add_test(cases, velocities_of_a_chain);
     tcase_add_test(cases, velocities_out_of_reach);
     tcase_add_test(cases, ends_of_lines);
     suite_add_tcase(suite, cases);

@@ -233,7 +233,7 @@ START_TEST(mutations) {
     double q[64], p[64];
     for (int i = 0; i < 4000; i++) {
         char text[2 * sizeof shaken_pendulum] = "";
-        strcpy(text, shaken_pendulum);
+        strcpy(text, i % 2 ? shaken_pendulum : moving_chain);
         for (size_t k = 1 + below(3); k > 0; k--)
             mutate(text);
         nevh_scene *s = nevh_scene_parse("f", text);
@@ -244,7 +244,7 @@ START_TEST(mutations) {
         if (!status && nevh_scene_dof(s) < 64)
             nevh_scene_start(s, q, p);
         if (i % 5 == 0)
-            nevh_scene_set(s, "w = 1/m");
+            nevh_scene_set(s, i % 2 ? "w = 1/m" : "N = 2");
         nevh_scene_free(s);
     }
 }
