@@ -1,17 +1,12 @@
 /* nevh: text to lines, sections and statements.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/scene_private.h"
-#include <stdlib.h>
 #include <string.h>
 
 static const char *const section_names[NEVH__SECTION_COUNT] = {
     "scene",   "parameters", "coordinates", "definitions",
     "effects", "friction",   "invariants",  "observables",
     "picture", "sections",   "labels",      "run"};
-
-const char *nevh__section_name(nevh__section section) {
-    return section_names[section];
-}
 
 static size_t line_bytes(const char *text, size_t left) {
     const char *end = memchr(text, '\n', left);
@@ -108,21 +103,24 @@ static bool cut_key(nevh_scene *s, const nevh__piece *all,
     return stop || nevh__scene_fail(s, NEVH_EINVAL, all, "\"=\" is missing");
 }
 
+/* A line without its comment. */
+static bool cut_comment(nevh_scene *s, const nevh__line *line,
+                        nevh__piece *all) {
+    const char *comment = memchr(line->text, '#', line->bytes);
+    size_t end = comment ? (size_t)(comment - line->text) : line->bytes;
+    return nevh__piece_take(s, &s->pool, line, 0, end, all);
+}
+
 bool nevh__statement_parse(nevh_scene *s, const nevh__line *line,
                            nevh__statement *statement) {
     nevh__piece all;
-    const char *comment = memchr(line->text, '#', line->bytes);
-    size_t end = comment ? (size_t)(comment - line->text) : line->bytes;
-    return nevh__piece_take(s, &s->pool, line, 0, end, &all) &&
-           cut_key(s, &all, statement);
+    return cut_comment(s, line, &all) && cut_key(s, &all, statement);
 }
 
 static bool cut_line(nevh_scene *s, const nevh__line *line, bool *begun,
                      nevh__section *section) {
     nevh__piece all;
-    const char *comment = memchr(line->text, '#', line->bytes);
-    size_t end = comment ? (size_t)(comment - line->text) : line->bytes;
-    if (!nevh__piece_take(s, &s->pool, line, 0, end, &all) || !all.text[0])
+    if (!cut_comment(s, line, &all) || !all.text[0])
         return !s->status;
     if (all.text[0] == '[') {
         *begun = true;

@@ -109,7 +109,6 @@ bool nevh__scene_fail_word(nevh_scene *, const nevh__piece *, const char *what,
 bool nevh__scene_cut(nevh_scene *, const char *text, size_t bytes);
 /* One KEY = VALUE; the line is the caller's. */
 bool nevh__statement_parse(nevh_scene *, const nevh__line *, nevh__statement *);
-const char *nevh__section_name(nevh__section);
 
 /* Pieces.  Memory is the pool's. */
 bool nevh__piece_take(nevh_scene *, nevh__pool *, const nevh__line *,

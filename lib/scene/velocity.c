@@ -4,7 +4,6 @@
    momenta are not known yet.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/scene_private.h"
-#include <stdlib.h>
 #include <string.h>
 
 enum { WIDTH = NEVH__LANES };
