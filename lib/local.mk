@@ -84,7 +84,21 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/energy.c \
 	lib/diagnose/trend_private.h \
 	lib/diagnose/trend.c \
-	lib/diagnose/symplecticity.c
+	lib/diagnose/symplecticity.c \
+	lib/scene/scene_private.h \
+	lib/scene/lines.c \
+	lib/scene/piece.c \
+	lib/scene/message.c \
+	lib/scene/values.c \
+	lib/scene/coordinates.c \
+	lib/scene/shown.c \
+	lib/scene/system.c \
+	lib/scene/friction.c \
+	lib/scene/run.c \
+	lib/scene/velocity.c \
+	lib/scene/start.c \
+	lib/scene/access.c \
+	lib/scene/scene.c
 
 # -version-info C:R:A, at each release, beginning with that of the last one:
 #   the library's code changed at all          R + 1

@@ -16,6 +16,8 @@ suites = \
 	tests/check_tape_terms \
 	tests/check_formula \
 	tests/check_formula_terms \
+	tests/check_scene \
+	tests/check_scene_errors \
 	tests/check_registry \
 	tests/check_coefficients \
 	tests/check_splitting \
@@ -97,7 +99,7 @@ dist_check_SCRIPTS = \
 	tests/pkgconfig.sh \
 	tests/valgrind.sh
 
-EXTRA_DIST += tests/outside.c tests/formula.h
+EXTRA_DIST += tests/outside.c tests/formula.h tests/scene.h
 
 TESTS = $(all_suites) $(dist_check_SCRIPTS)
 TEST_EXTENSIONS = .sh

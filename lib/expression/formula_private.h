@@ -44,6 +44,10 @@ typedef struct {
 int nevh__head_parse(const char *text, nevh__head *, nevh__formula_error *);
 void nevh__head_free(nevh__head *);
 
+/* Insertions, deletions, replacements and swaps of neighbours that lead from
+   one word to another, whatever the case; SIZE_MAX where one is very long. */
+size_t nevh__words_apart(const char *, const char *);
+
 /* Bytes until the first of the ASCII characters `stops` that stands outside
    all parentheses and brackets, or until the end. */
 size_t nevh__formula_extent(const char *text, const char *stops);

@@ -13,12 +13,12 @@ static size_t least(size_t a, size_t b) {
     return a < b ? a : b;
 }
 
-/* Insertions, deletions, replacements and swaps of neighbours that lead from
-   one word to the other, whatever the case; both at most WORD bytes. */
-static size_t distance(const char *from, const char *to) {
+size_t nevh__words_apart(const char *from, const char *to) {
     size_t rows[3][WORD + 1], *before = rows[0], *above = rows[1],
                               *row = rows[2];
     size_t length = strlen(to);
+    if (length > WORD || strlen(from) > WORD)
+        return SIZE_MAX;
     for (size_t j = 0; j <= length; j++)
         above[j] = j;
     for (size_t i = 1; from[i - 1]; i++) {
@@ -50,7 +50,7 @@ static void try_name(search *s, const char *prefix, const char *name) {
     if (strlen(prefix) + strlen(name) > WORD)
         return;
     strcat(strcat(whole, prefix), name);
-    size_t far = distance(s->word, whole);
+    size_t far = nevh__words_apart(s->word, whole);
     if (far >= s->distance)
         return;
     s->distance = far;
