@@ -10,6 +10,7 @@ nevhinclude_HEADERS = \
 	include/nevh/nevh.h \
 	include/nevh/probe.h \
 	include/nevh/run.h \
+	include/nevh/scene.h \
 	include/nevh/status.h \
 	include/nevh/system.h \
 	include/nevh/transform.h

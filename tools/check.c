@@ -8,7 +8,7 @@
 static void tell_finding(const nevh_probe *probe, nevh_question question,
                          list *notes) {
     nevh_finding f = nevh_probe_finding(probe, question);
-    list_print(notes, "  %-11s %-3s  largest violation %.1e, limit %.1e%s%s",
+    list_print(notes, "  %-24s %-3s  largest violation %.1e, limit %.1e%s%s",
                nevh_question_name(question), f.holds ? "yes" : "no", f.evidence,
                f.limit, f.term && !f.holds ? ", by " : "",
                f.term && !f.holds ? f.term : "");

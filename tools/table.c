@@ -124,30 +124,38 @@ static bool to_the_right(const table *t, size_t j) {
     return false;
 }
 
-static void pad(FILE *f, size_t count) {
-    while (count--)
-        fputc(' ', f);
+/* Spaces are held back until something follows them. */
+static void print_padded(const char *text, size_t *spaces, FILE *f) {
+    size_t bytes = strcspn(text, "\n");
+    if (bytes == 0)
+        return;
+    fprintf(f, "%*s%.*s", (int)*spaces, "", (int)bytes, text);
+    *spaces = 0;
 }
 
-static void print_cell(const table *t, size_t j, const char *text, FILE *f) {
-    size_t length = characters(text), bytes = strcspn(text, "\n");
-    size_t space = column_width(t, j) - length;
-    bool right = to_the_right(t, j), last = j + 1 == t->title.count;
-    pad(f, (j ? 2 : 1) + (right ? space : 0));
-    fwrite(text, 1, bytes, f);
-    pad(f, right || last ? 0 : space);
+static void print_cell(const table *t, size_t j, const char *text,
+                       size_t *spaces, FILE *f) {
+    size_t space = column_width(t, j) - characters(text);
+    bool right = to_the_right(t, j);
+    *spaces += (j ? 2 : 1) + (right ? space : 0);
+    print_padded(text, spaces, f);
+    *spaces += right ? 0 : space;
+}
+
+static void print_header(const table *t, FILE *f) {
+    for (size_t k = 0; k < lines(t); k++, fputc('\n', f))
+        for (size_t j = 0, spaces = 0; j < t->title.count; j++)
+            print_cell(t, j, line_of(t->title.item[j], k), &spaces, f);
 }
 
 static void print_table(const table *t, FILE *f) {
     size_t columns = t->title.count;
-    for (size_t k = 0; k < lines(t); k++, fputc('\n', f))
-        for (size_t j = 0; j < columns; j++)
-            print_cell(t, j, line_of(t->title.item[j], k), f);
+    print_header(t, f);
     for (size_t i = 0; i < rows(t); i++, fputc('\n', f)) {
         if (t->group[i * columns])
             fputc('\n', f);
-        for (size_t j = 0; j < columns; j++)
-            print_cell(t, j, t->cell.item[i * columns + j], f);
+        for (size_t j = 0, spaces = 0; j < columns; j++)
+            print_cell(t, j, t->cell.item[i * columns + j], &spaces, f);
     }
 }
 
@@ -229,6 +237,23 @@ static void print_lines(const char *prefix, const list *l, FILE *f) {
         fprintf(f, "%s%s\n", prefix, l->item[i]);
 }
 
+/* At spaces, so that lines have at most 80 characters; further lines of a text
+   are set in. */
+static void print_wrapped(const char *text, FILE *f) {
+    enum { WIDTH = 80 };
+    for (size_t in = 0; *text; in = 2) {
+        size_t end = strlen(text), last = 0;
+        if (in + end > WIDTH) {
+            for (size_t i = 0; i + in <= WIDTH; i++)
+                last = text[i] == ' ' ? i : last;
+            end = last ? last : strcspn(text, " ");
+        }
+        fprintf(f, "%*s%.*s\n", (int)in, "", (int)end, text);
+        text += end;
+        text += strspn(text, " ");
+    }
+}
+
 void page_print(const page *p, table_format as, FILE *f) {
     if (as == FORMAT_JSON) {
         print_json(p, f);
@@ -240,7 +265,8 @@ void page_print(const page *p, table_format as, FILE *f) {
         fputs(p->before.count ? "\n" : "", f);
         print_table(p->table, f);
         fputs(p->after.count ? "\n" : "", f);
-        print_lines("", &p->after, f);
+        for (size_t i = 0; i < p->after.count; i++)
+            print_wrapped(p->after.item[i], f);
     }
 }
 
