@@ -49,34 +49,84 @@ static void tell_state(const plan *p, list *notes) {
     nevh_field_free(field);
 }
 
-static void add_scheme(const plan *p, const nevh_integrator *scheme, table *t) {
+typedef struct {
+    list names, reasons; /* reasons[i] is why names[i] do not fit */
+} refusals;
+
+/* The message without the scheme's name and the schemes to take instead, which
+   are the rest of the table. */
+static char *reason(const char *scheme, const char *message) {
+    size_t own = strlen(scheme);
+    if (strncmp(message, scheme, own) == 0 && message[own] == ' ')
+        message += own + 1;
+    const char *end = strstr(message, "; schemes that fit");
+    size_t length = end ? (size_t)(end - message) : strlen(message);
+    return text_print("%.*s", (int)length, message);
+}
+
+static void add_refusal(refusals *r, const char *scheme, const char *message) {
+    char *why = reason(scheme, message);
+    size_t i = 0;
+    while (i < r->reasons.count && strcmp(r->reasons.item[i], why) != 0)
+        i++;
+    if (i == r->reasons.count) {
+        list_add(&r->reasons, why);
+        list_add(&r->names, scheme);
+    } else {
+        char *longer = text_print("%s, %s", r->names.item[i], scheme);
+        free(r->names.item[i]);
+        r->names.item[i] = longer;
+    }
+    free(why);
+}
+
+static void add_scheme(const plan *p, const nevh_integrator *scheme, bool why,
+                       table *t, refusals *r) {
     nevh_options o = plan_options(p, p->gradients.item[0]);
+    const char *name = nevh_integrator_name(scheme);
     if (o.gradient_step == 0)
         o.gradient_step = 1e-3; /* nothing is run: no need to choose it */
     if (nevh_integrator_needs_tolerance(scheme))
         o.tolerance = 1e-6;
     nevh_stepper *s = nevh_stepper_new(p->system, scheme, &o);
     int status = nevh_stepper_status(s);
-    table_text(t, nevh_integrator_name(scheme));
+    table_text(t, name);
     table_number(t, status ? nevh_integrator_order(scheme)
                            : nevh_stepper_order(s));
     table_text(t, status ? "no" : "yes");
-    table_text(t, status ? nevh_stepper_message(s) : NULL);
+    if (why)
+        table_text(t, status ? nevh_stepper_message(s) : NULL);
+    if (status)
+        add_refusal(r, name, nevh_stepper_message(s));
     nevh_stepper_free(s);
+}
+
+/* Reasons are a column where programs read, and below the table where people
+   do. */
+static void add_schemes(const plan *p, bool why, page *result) {
+    static const char *const columns[] = {"integrator", "order", "fits", "why"};
+    refusals r = {0};
+    for (size_t i = 0; i < (why ? 4 : 3); i++)
+        table_column(result->table, columns[i]);
+    for (size_t i = 0; nevh_integrators()[i]; i++)
+        add_scheme(p, nevh_integrators()[i], why, result->table, &r);
+    for (size_t i = 0; !why && i < r.names.count; i++) {
+        list_print(&result->after, "%s: %s", r.names.item[i],
+                   r.reasons.item[i]);
+    }
+    list_free(&r.names);
+    list_free(&r.reasons);
 }
 
 static int check_plan(const options *o, const plan *p) {
     page result = {.table = table_new()};
-    static const char *const columns[] = {"integrator", "order", "fits", "why"};
-    for (size_t i = 0; i < sizeof columns / sizeof *columns; i++)
-        table_column(result.table, columns[i]);
-    if (!o->quiet || o->format != FORMAT_TABLE) {
+    bool is_table = o->format == FORMAT_TABLE;
+    if (!o->quiet || !is_table) {
         plan_notes(p, &result.before);
         tell_state(p, &result.before);
         tell_probes(p, &result.before);
     }
-    for (size_t i = 0; nevh_integrators()[i]; i++)
-        add_scheme(p, nevh_integrators()[i], result.table);
+    add_schemes(p, !is_table, &result);
     int status = output_page(o, &result, TOOL_OK);
     page_free(&result);
     return status;
