@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tool.h"
 #include <errno.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -14,21 +15,61 @@ static void allow_as_usual(int file) {
     fchmod(file, 0666 & ~mask);
 }
 
+/* The temporary file to remove when a signal ends the program. */
+static const char *volatile unfinished;
+
+static void remove_and_end(int number) {
+    if (unfinished)
+        unlink(unfinished);
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
+static void mind_signals(void) {
+    static const int numbers[] = {SIGHUP, SIGINT, SIGTERM};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        if (signal(numbers[i], remove_and_end) == SIG_IGN)
+            signal(numbers[i], SIG_IGN);
+}
+
+/* A device or a pipe is written to as it is. */
+static bool can_be_replaced(const char *name) {
+    struct stat found;
+    return stat(name, &found) != 0 || S_ISREG(found.st_mode);
+}
+
+static void open_temporary(output *o) {
+    o->temporary = text_print("%s.XXXXXX", o->name);
+    int file = mkstemp(o->temporary);
+    o->stream = file < 0 ? NULL : fdopen(file, "w");
+    if (!o->stream)
+        return;
+    allow_as_usual(file);
+    unfinished = o->temporary;
+    mind_signals();
+}
+
+static void forget(output *o) {
+    unfinished = NULL;
+    free(o->name);
+    free(o->temporary);
+}
+
 int output_open(output *o, const char *name) {
     *o = (output){.stream = stdout};
     if (!name)
         return TOOL_OK;
-    o->name = text_print("%s", name);
-    o->temporary = text_print("%s.XXXXXX", name);
-    int file = mkstemp(o->temporary);
-    o->stream = file < 0 ? NULL : fdopen(file, "w");
-    if (o->stream) {
-        allow_as_usual(file);
+    o->name = realpath(name, NULL); /* what a symbolic link stands for */
+    if (!o->name)
+        o->name = text_print("%s", name);
+    if (can_be_replaced(o->name))
+        open_temporary(o);
+    else
+        o->stream = fopen(o->name, "w");
+    if (o->stream)
         return TOOL_OK;
-    }
     tool_refuse("%s cannot be written: %s", name, strerror(errno));
-    free(o->name);
-    free(o->temporary);
+    forget(o);
     return TOOL_USAGE;
 }
 
@@ -40,15 +81,14 @@ static int write_all(output *o) {
 int output_close(output *o, int status) {
     errno = 0;
     int wrong = write_all(o);
-    if (o->name && !wrong && status != TOOL_USAGE)
+    if (o->temporary && !wrong && status != TOOL_USAGE)
         wrong = rename(o->temporary, o->name);
     if (wrong)
         status = tool_refuse("%s cannot be written: %s",
                              o->name ? o->name : "the output", strerror(errno));
-    if (o->name && status == TOOL_USAGE)
+    if (o->temporary && status == TOOL_USAGE)
         unlink(o->temporary);
-    free(o->name);
-    free(o->temporary);
+    forget(o);
     return status;
 }
 

@@ -187,7 +187,7 @@ char *plan_structure(const plan *p) {
     if (found.separable)
         return text_print("H = T(p) + V(%sq), as its values tell", t);
     return text_print("H(%sq, p) is not separable: %s mixes coordinates and "
-                      "momenta, and explicit splitting schemes do not fit",
+                      "momenta",
                       t, found.term);
 }
 

@@ -232,9 +232,9 @@ static void print_json(const page *p, FILE *f) {
     fputs("\n}\n", f);
 }
 
-static void print_lines(const char *prefix, const list *l, FILE *f) {
+static void print_comments(const list *l, FILE *f) {
     for (size_t i = 0; i < l->count; i++)
-        fprintf(f, "%s%s\n", prefix, l->item[i]);
+        fprintf(f, "# %s\n", l->item[i]);
 }
 
 /* At spaces, so that lines have at most 80 characters; further lines of a text
@@ -254,19 +254,23 @@ static void print_wrapped(const char *text, FILE *f) {
     }
 }
 
+static void print_all_wrapped(const list *l, FILE *f) {
+    for (size_t i = 0; i < l->count; i++)
+        print_wrapped(l->item[i], f);
+}
+
 void page_print(const page *p, table_format as, FILE *f) {
     if (as == FORMAT_JSON) {
         print_json(p, f);
     } else if (as == FORMAT_CSV) {
-        print_lines("# ", &p->before, f);
+        print_comments(&p->before, f);
         print_csv(p->table, f);
     } else {
-        print_lines("", &p->before, f);
+        print_all_wrapped(&p->before, f);
         fputs(p->before.count ? "\n" : "", f);
         print_table(p->table, f);
         fputs(p->after.count ? "\n" : "", f);
-        for (size_t i = 0; i < p->after.count; i++)
-            print_wrapped(p->after.item[i], f);
+        print_all_wrapped(&p->after, f);
     }
 }
 
