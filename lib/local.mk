@@ -45,6 +45,25 @@ libnevh_core_la_SOURCES = \
 	lib/expression/tape_gradient.c \
 	lib/expression/tape_complex.c \
 	lib/expression/tape_special.c \
+	lib/expression/formula_private.h \
+	lib/expression/formula_inside_private.h \
+	lib/expression/pool.c \
+	lib/expression/character.c \
+	lib/expression/formula_error.c \
+	lib/expression/token.c \
+	lib/expression/function.c \
+	lib/expression/parse.c \
+	lib/expression/refuse.c \
+	lib/expression/head.c \
+	lib/expression/names.c \
+	lib/expression/suggest.c \
+	lib/expression/resolve.c \
+	lib/expression/evaluate.c \
+	lib/expression/variables.c \
+	lib/expression/split.c \
+	lib/expression/walk.c \
+	lib/expression/instance.c \
+	lib/expression/formula.c \
 	lib/implicit/implicit_private.h \
 	lib/implicit/fixed_point.c \
 	lib/implicit/judge.c \
@@ -62,7 +81,21 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/energy.c \
 	lib/diagnose/trend_private.h \
 	lib/diagnose/trend.c \
-	lib/diagnose/symplecticity.c
+	lib/diagnose/symplecticity.c \
+	lib/scene/scene_private.h \
+	lib/scene/lines.c \
+	lib/scene/piece.c \
+	lib/scene/message.c \
+	lib/scene/values.c \
+	lib/scene/coordinates.c \
+	lib/scene/shown.c \
+	lib/scene/system.c \
+	lib/scene/friction.c \
+	lib/scene/run.c \
+	lib/scene/velocity.c \
+	lib/scene/start.c \
+	lib/scene/access.c \
+	lib/scene/scene.c
 
 # -version-info C:R:A, at each release, beginning with that of the last one:
 #   the library's code changed at all          R + 1

@@ -14,6 +14,10 @@ suites = \
 	tests/check_tape \
 	tests/check_tape_build \
 	tests/check_tape_terms \
+	tests/check_formula \
+	tests/check_formula_terms \
+	tests/check_scene \
+	tests/check_scene_errors \
 	tests/check_registry \
 	tests/check_coefficients \
 	tests/check_splitting \
@@ -63,6 +67,8 @@ tests_check_transform_LDADD = $(INSIDE_LIBS)
 tests_check_tape_LDADD = $(INSIDE_LIBS)
 tests_check_tape_build_LDADD = $(INSIDE_LIBS)
 tests_check_tape_terms_LDADD = $(INSIDE_LIBS)
+tests_check_formula_LDADD = $(INSIDE_LIBS)
+tests_check_formula_terms_LDADD = $(INSIDE_LIBS)
 tests_check_gsl_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_damped_orbits_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_threads_CFLAGS = $(AM_CFLAGS) -pthread
@@ -94,7 +100,7 @@ dist_check_SCRIPTS = \
 	tests/pkgconfig.sh \
 	tests/valgrind.sh
 
-EXTRA_DIST += tests/outside.c
+EXTRA_DIST += tests/outside.c tests/formula.h tests/scene.h
 
 TESTS = $(all_suites) $(dist_check_SCRIPTS)
 TEST_EXTENSIONS = .sh

@@ -13,6 +13,7 @@
 #include <nevh/models.h>
 #include <nevh/probe.h>
 #include <nevh/run.h>
+#include <nevh/scene.h>
 #include <nevh/status.h>
 #include <nevh/system.h>
 #include <nevh/transform.h>

@@ -1,0 +1,186 @@
+/* nevh: what the names in formulas mean.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "expression/formula_inside_private.h"
+#include <stdlib.h>
+#include <string.h>
+
+nevh__names *nevh__names_new(void) {
+    return nevh__array(1, sizeof(nevh__names));
+}
+
+static void entry_free(nevh__entry *entry) {
+    free(entry->name);
+    free(entry->values);
+    nevh__tree_free(entry->tree);
+}
+
+void nevh__names_free(nevh__names *names) {
+    for (size_t i = 0; names && i < names->count; i++)
+        entry_free(&names->entries[i]);
+    if (names)
+        free(names->entries);
+    free(names);
+}
+
+static nevh__entry *entry_exactly(const nevh__names *names, const char *name) {
+    for (size_t i = 0; i < names->count; i++)
+        if (strcmp(names->entries[i].name, name) == 0)
+            return &names->entries[i];
+    return NULL;
+}
+
+const nevh__entry *nevh__entry_named(const nevh__names *names, const char *name,
+                                     nevh__meaning *meaning) {
+    const nevh__entry *entry = entry_exactly(names, name);
+    bool prefixed = !entry && (name[0] == 'p' || name[0] == 'v') &&
+                    name[1] == '_' && name[2];
+    if (prefixed)
+        entry = entry_exactly(names, name + 2);
+    if (prefixed && entry && entry->meaning != NEVH__COORDINATE)
+        entry = NULL;
+    *meaning = !entry           ? NEVH__UNKNOWN
+               : !prefixed      ? entry->meaning
+               : name[0] == 'p' ? NEVH__MOMENTUM
+                                : NEVH__VELOCITY;
+    return entry;
+}
+
+nevh__meaning nevh__names_find(const nevh__names *names, const char *name,
+                               size_t *count, size_t *first) {
+    nevh__meaning meaning;
+    const nevh__entry *entry = nevh__entry_named(names, name, &meaning);
+    if (entry && count)
+        *count = entry->count;
+    if (entry && first)
+        *first = entry->first;
+    return meaning;
+}
+
+size_t nevh__names_extent(const nevh__names *names) {
+    size_t extent = 1;
+    for (size_t i = 0; i < names->count; i++) {
+        const nevh__entry *entry = &names->entries[i];
+        size_t end = entry->first + (entry->count ? entry->count : 1);
+        extent = end > extent ? end : extent;
+    }
+    return extent;
+}
+
+/* Whether it is one name, spelt as formulas want it. */
+static bool is_word(const char *name) {
+    nevh__formula_error ignored = {0};
+    nevh__scanner scanner = {name, 1, &ignored};
+    nevh__token token = nevh__scan(&scanner);
+    return token.kind == NEVH__WORD && token.at == name && !name[token.bytes] &&
+           token.bytes + 2 <= NEVH__NAME_LENGTH;
+}
+
+static bool refuse(const char *name, nevh__formula_error *error,
+                   const char *format) {
+    char part[NEVH__NAME_LENGTH + 1] = "";
+    strncat(part, name, NEVH__NAME_LENGTH);
+    return nevh__formula_fail(error, NEVH_EINVAL, 1, nevh__characters(name),
+                              format, part, part + 2);
+}
+
+/* Whether a name may be given a meaning. */
+static bool check_name(const nevh__names *names, const char *name,
+                       nevh__formula_error *error) {
+    if (!is_word(name))
+        return refuse(name, error,
+                      "\"%s\" is no name: a letter, then letters, digits "
+                      "and _");
+    if (strcmp(name, "t") == 0)
+        return refuse(name, error, "%s is the time");
+    if (strcmp(name, "pi") == 0)
+        return refuse(name, error, "%s is a constant");
+    if (strcmp(name, "sum") == 0 ||
+        nevh__function_named(name, strlen(name)) != NEVH__OPERATION_COUNT)
+        return refuse(name, error, "%s is a function");
+    if (strncmp(name, "p_", 2) == 0)
+        return refuse(name, error,
+                      "%s would be the momentum of a coordinate %s");
+    if (strncmp(name, "v_", 2) == 0)
+        return refuse(name, error,
+                      "%s would be the velocity of a coordinate %s");
+    if (entry_exactly(names, name))
+        return refuse(name, error, "the name %s is taken");
+    return true;
+}
+
+/* A new entry of that name, or NULL. */
+static nevh__entry *new_entry(nevh__names *names, const char *name,
+                              nevh__formula_error *error) {
+    *error = (nevh__formula_error){0};
+    if (!check_name(names, name, error))
+        return NULL;
+    nevh__entry *entries =
+        nevh__grow(names->entries, names->count + 1, sizeof *entries);
+    char *copy = nevh__text("%s", name);
+    if (entries)
+        names->entries = entries;
+    if (!entries || !copy) {
+        free(copy);
+        nevh__formula_no_memory(error);
+        return NULL;
+    }
+    entries[names->count] = (nevh__entry){.name = copy};
+    return &entries[names->count++];
+}
+
+int nevh__names_add_parameter(nevh__names *names, const char *name,
+                              size_t count, const double values[],
+                              nevh__formula_error *error) {
+    double *copy = nevh__copy(values, count ? count : 1, sizeof *values);
+    nevh__entry *entry = new_entry(names, name, error);
+    if (!entry || !copy) {
+        if (entry)
+            free(names->entries[--names->count].name);
+        free(copy);
+        if (!copy)
+            nevh__formula_no_memory(error);
+        return error->status;
+    }
+    entry->meaning = NEVH__PARAMETER;
+    entry->count = count;
+    entry->values = copy;
+    return NEVH_OK;
+}
+
+int nevh__names_set_parameter(nevh__names *names, const char *name,
+                              const double values[],
+                              nevh__formula_error *error) {
+    *error = (nevh__formula_error){0};
+    nevh__entry *entry = entry_exactly(names, name);
+    if (!entry || entry->meaning != NEVH__PARAMETER) {
+        refuse(name, error, "there is no parameter %s");
+        return error->status;
+    }
+    memcpy(entry->values, values,
+           (entry->count ? entry->count : 1) * sizeof *values);
+    return NEVH_OK;
+}
+
+int nevh__names_add_coordinate(nevh__names *names, const char *name,
+                               size_t count, size_t first,
+                               nevh__formula_error *error) {
+    nevh__entry *entry = new_entry(names, name, error);
+    if (!entry)
+        return error->status;
+    entry->meaning = NEVH__COORDINATE;
+    entry->count = count;
+    entry->first = first;
+    return NEVH_OK;
+}
+
+int nevh__names_add_definition(nevh__names *names, const char *name,
+                               nevh__tree *tree, nevh__formula_error *error) {
+    nevh__entry *entry = new_entry(names, name, error);
+    if (!entry) {
+        nevh__tree_free(tree);
+        return error->status;
+    }
+    entry->meaning = NEVH__DEFINITION;
+    entry->tree = tree;
+    return NEVH_OK;
+}

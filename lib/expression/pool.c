@@ -1,0 +1,46 @@
+/* nevh: memory that is freed as a whole.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "expression/formula_inside_private.h"
+#include <stddef.h>
+#include <stdlib.h>
+
+enum { CHUNK = 16 << 10 };
+
+struct nevh__chunk {
+    struct nevh__chunk *next;
+    size_t used, size;
+    max_align_t bytes[];
+};
+
+static struct nevh__chunk *new_chunk(nevh__pool *pool, size_t bytes) {
+    size_t size = bytes > CHUNK ? bytes : CHUNK;
+    struct nevh__chunk *chunk = nevh__array(1, sizeof *chunk + size);
+    if (!chunk)
+        return NULL;
+    chunk->next = pool->chunks;
+    chunk->size = size;
+    return pool->chunks = chunk;
+}
+
+void *nevh__pool_take(nevh__pool *pool, size_t count, size_t size) {
+    const size_t unit = sizeof(max_align_t);
+    if (count > (SIZE_MAX / 2 - unit) / size)
+        return NULL;
+    size_t bytes = (count * size + unit - 1) / unit * unit;
+    struct nevh__chunk *chunk = pool->chunks;
+    if (!chunk || chunk->size - chunk->used < bytes)
+        chunk = new_chunk(pool, bytes);
+    if (!chunk)
+        return NULL;
+    void *taken = (char *)chunk->bytes + chunk->used;
+    chunk->used += bytes;
+    return taken;
+}
+
+void nevh__pool_free(nevh__pool *pool) {
+    while (pool->chunks) {
+        struct nevh__chunk *next = pool->chunks->next;
+        free(pool->chunks);
+        pool->chunks = next;
+    }
+}

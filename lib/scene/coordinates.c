@@ -1,0 +1,185 @@
+/* nevh: coordinates: names, and the state to start from.
+
+   Names and numbers of elements come first, since formulas of values may call
+   definitions; values follow once those are known.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "scene/scene_private.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* Whether a statement is p_NAME = ... or v_NAME = ... */
+static bool is_motion(const nevh__statement *statement) {
+    const char *name = statement->head.name;
+    return (name[0] == 'p' || name[0] == 'v') && name[1] == '_' && name[2];
+}
+
+static bool add_coordinate(nevh_scene *s, nevh__model *m,
+                           const nevh__statement *statement) {
+    nevh__shape shape;
+    nevh__formula_error error = {0};
+    if (is_motion(statement))
+        return true;
+    if (!nevh__head_shape(s, m, statement, &shape))
+        return false;
+    if (nevh__names_add_coordinate(m->names, statement->head.name,
+                                   shape.array ? shape.count : 0, m->n, &error))
+        return nevh__scene_fail_formula(s, &statement->key, &error);
+    m->coordinates[m->n_coordinates++] =
+        (nevh__coordinate){statement, shape.array ? shape.count : 0, m->n};
+    m->n += shape.count;
+    return true;
+}
+
+static char *name_of(nevh_scene *s, nevh__model *m, const nevh__coordinate *c,
+                     size_t k) {
+    const char *name = c->statement->head.name;
+    char *full =
+        c->count ? nevh__text("%s[%zu]", name, k + 1) : nevh__text("%s", name);
+    char *copy = full ? nevh__pool_take(&m->pool, strlen(full) + 1, 1) : NULL;
+    if (copy)
+        strcpy(copy, full);
+    else
+        nevh__scene_no_memory(s);
+    free(full);
+    return copy;
+}
+
+static bool add_names(nevh_scene *s, nevh__model *m,
+                      const nevh__coordinate *c) {
+    for (size_t k = 0; k < (c->count ? c->count : 1); k++)
+        if (!(m->coordinate_names[c->first + k] = name_of(s, m, c, k)))
+            return false;
+    return true;
+}
+
+static bool make_room(nevh_scene *s, nevh__model *m) {
+    m->coordinate_names = nevh__pool_take(&m->pool, m->n, sizeof(char *));
+    m->q = nevh__pool_take(&m->pool, m->n, sizeof *m->q);
+    m->p = nevh__pool_take(&m->pool, m->n, sizeof *m->p);
+    m->v = nevh__pool_take(&m->pool, m->n, sizeof *m->v);
+    m->period = nevh__pool_take(&m->pool, m->n, sizeof *m->period);
+    m->moving = nevh__pool_take(&m->pool, m->n, sizeof *m->moving);
+    m->by_velocity = nevh__pool_take(&m->pool, m->n, sizeof *m->by_velocity);
+    return (m->coordinate_names && m->q && m->p && m->v && m->period &&
+            m->moving && m->by_velocity) ||
+           nevh__scene_no_memory(s);
+}
+
+bool nevh__model_coordinates(nevh_scene *s, nevh__model *m) {
+    m->coordinates =
+        nevh__pool_take(&m->pool, s->n_statements, sizeof *m->coordinates);
+    if (!m->coordinates)
+        return nevh__scene_no_memory(s);
+    if (!nevh__scene_each(s, m, NEVH__COORDINATES, add_coordinate))
+        return false;
+    if (!m->n)
+        return nevh__scene_fail_at(s, NEVH_EINVAL, &s->lines[s->n_lines - 1], 1,
+                                   0, "there are no [coordinates]");
+    if (!make_room(s, m))
+        return false;
+    for (size_t i = 0; i < m->n_coordinates; i++)
+        if (!add_names(s, m, &m->coordinates[i]))
+            return false;
+    return true;
+}
+
+/* period FORMULA */
+static bool take_period(nevh_scene *s, nevh__model *m,
+                        const nevh__coordinate *c, const nevh__piece *clause) {
+    const char *text = clause->text;
+    nevh__piece formula;
+    size_t word = strcspn(text, " \t"),
+           at = (size_t)(clause->at - clause->line->text);
+    double period;
+    if (word != 6 || strncmp(text, "period", 6) != 0)
+        return nevh__scene_fail(s, NEVH_EINVAL, clause,
+                                "what may follow \";\" is: period FORMULA");
+    if (!nevh__piece_take(s, &m->pool, clause->line, at + word,
+                          at + strlen(text), &formula) ||
+        !nevh__piece_number(s, m, &formula, &period))
+        return false;
+    if (period <= 0)
+        return nevh__scene_fail(s, NEVH_EINVAL, &formula,
+                                "a period is greater than 0, not %g", period);
+    for (size_t k = 0; k < (c->count ? c->count : 1); k++)
+        m->period[c->first + k] = period;
+    return true;
+}
+
+/* Notes that momenta are given; they must not be twice. */
+static bool claim(nevh_scene *s, nevh__model *m, size_t first, size_t count,
+                  const nevh__statement *by) {
+    if (m->moving[first])
+        return nevh__scene_fail(s, NEVH_EINVAL, &by->key,
+                                "momentum or velocity of %s: given in line %zu "
+                                "already",
+                                m->coordinate_names[first],
+                                m->moving[first]->key.line->number);
+    for (size_t k = 0; k < count; k++)
+        m->moving[first + k] = by;
+    return true;
+}
+
+/* VALUE or VALUE, MOMENTUM */
+static bool take_pair(nevh_scene *s, nevh__model *m, const nevh__coordinate *c,
+                      const nevh__piece *value) {
+    size_t given, k = c->first;
+    nevh__piece *parts = nevh__piece_list(s, &m->pool, value, &given);
+    if (!parts || !nevh__piece_number(s, m, &parts[0], &m->q[k]))
+        return false;
+    if (given > 2)
+        return nevh__scene_fail(s, NEVH_EINVAL, &parts[2],
+                                "a coordinate takes VALUE, or VALUE, MOMENTUM");
+    return given == 1 || (nevh__piece_number(s, m, &parts[1], &m->p[k]) &&
+                          claim(s, m, k, 1, c->statement));
+}
+
+static bool take_coordinate(nevh_scene *s, nevh__model *m,
+                            const nevh__coordinate *c) {
+    nevh__piece rest = c->statement->value, value, clause;
+    char stop;
+    if (!nevh__piece_split(s, &m->pool, &rest, ";", &value, &stop))
+        return false;
+    bool fine = c->count ? nevh__head_values(s, m, c->statement, &value,
+                                             c->count, m->q + c->first)
+                         : take_pair(s, m, c, &value);
+    while (fine && stop)
+        fine = nevh__piece_split(s, &m->pool, &rest, ";", &clause, &stop) &&
+               take_period(s, m, c, &clause);
+    return fine;
+}
+
+/* p_NAME = ..., v_NAME = ... */
+static bool take_motion(nevh_scene *s, nevh__model *m,
+                        const nevh__statement *statement) {
+    size_t count, first;
+    nevh__shape shape;
+    const char *name = statement->head.name;
+    if (!is_motion(statement))
+        return true;
+    nevh__meaning meaning = nevh__names_find(m->names, name, &count, &first);
+    if (meaning != NEVH__MOMENTUM && meaning != NEVH__VELOCITY)
+        return nevh__scene_fail(s, NEVH_EINVAL, &statement->key,
+                                "there is no coordinate %s", name + 2);
+    if (!nevh__head_shape(s, m, statement, &shape))
+        return false;
+    if (shape.array != (count > 0) || (count && shape.count != count))
+        return nevh__scene_fail(s, NEVH_EINVAL, &statement->key,
+                                count ? "%s is an array: write %s[1..%zu] = ..."
+                                      : "%s has no index",
+                                name + 2, name, count);
+    bool velocity = meaning == NEVH__VELOCITY;
+    if (!claim(s, m, first, shape.count, statement))
+        return false;
+    for (size_t k = 0; k < shape.count; k++)
+        m->by_velocity[first + k] = velocity;
+    return nevh__head_values(s, m, statement, &statement->value, shape.count,
+                             (velocity ? m->v : m->p) + first);
+}
+
+bool nevh__model_values(nevh_scene *s, nevh__model *m) {
+    for (size_t i = 0; i < m->n_coordinates; i++)
+        if (!take_coordinate(s, m, &m->coordinates[i]))
+            return false;
+    return nevh__scene_each(s, m, NEVH__COORDINATES, take_motion);
+}

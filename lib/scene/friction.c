@@ -1,0 +1,107 @@
+/* nevh: friction: NAME = COORDINATE: RATE, ... or all: RATE.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "scene/scene_private.h"
+#include <string.h>
+
+typedef struct {
+    double *rates;
+    bool *given;
+    nevh__statement one; /* COORDINATE: RATE */
+} damping;
+
+/* Which coordinates x, x[3], x[2..N], x[i = 1..N] or all are. */
+static bool find_range(nevh_scene *s, const nevh__model *m,
+                       const nevh__statement *one, size_t *from, size_t *to) {
+    const nevh__head *head = &one->head;
+    size_t count = m->n, first = 0;
+    bool all = strcmp(head->name, "all") == 0;
+    if (!all && nevh__names_find(m->names, head->name, &count, &first) !=
+                    NEVH__COORDINATE)
+        return nevh__scene_fail(s, NEVH_EINVAL, &one->key,
+                                "there is no coordinate %s", head->name);
+    count = count ? count : 1;
+    long low = 1, high = (long)count;
+    if (head->from && !nevh__head_bound(s, m, &one->key, head->from, &low))
+        return false;
+    if (head->from && !head->to)
+        high = low;
+    if (head->to && !nevh__head_bound(s, m, &one->key, head->to, &high))
+        return false;
+    if (low < 1 || high > (long)count || low > high ||
+        (head->from &&
+         (all || strcmp(m->coordinate_names[first], head->name) == 0)))
+        return nevh__scene_fail(s, NEVH_EINVAL, &one->key,
+                                "%s has no such elements", head->name);
+    *from = first + (size_t)low - 1;
+    *to = first + (size_t)high;
+    return true;
+}
+
+static bool set_rate(nevh_scene *s, nevh__model *m, damping *d, size_t k,
+                     const nevh__tree *tree, long index) {
+    nevh__formula_error error = {0};
+    nevh__index at = {d->one.head.index, index};
+    if (d->given[k])
+        return nevh__scene_fail(s, NEVH_EINVAL, &d->one.key,
+                                "a rate of %s is given twice",
+                                m->coordinate_names[k]);
+    d->given[k] = true;
+    return !nevh__tree_number(tree, m->names, at.name ? &at : NULL,
+                              &d->rates[k], &error) ||
+           nevh__scene_fail_formula(s, &d->one.value, &error);
+}
+
+static bool take_rates(nevh_scene *s, nevh__model *m, damping *d) {
+    size_t from = 0, to = 0, first = 0;
+    const nevh__head *head = &d->one.head;
+    if (!find_range(s, m, &d->one, &from, &to))
+        return false;
+    nevh__tree *tree = nevh__piece_tree(s, &d->one.value);
+    nevh__names_find(m->names, head->name, NULL, &first);
+    bool fine = tree;
+    for (size_t k = from; fine && k < to; k++)
+        fine = set_rate(s, m, d, k, tree, (long)(k - first) + 1);
+    nevh__tree_free(tree);
+    return fine;
+}
+
+static bool take_part(nevh_scene *s, nevh__model *m, damping *d,
+                      const nevh__piece *part) {
+    char stop;
+    nevh__formula_error error;
+    d->one = (nevh__statement){.value = *part};
+    if (!nevh__piece_split(s, &m->pool, &d->one.value, ":", &d->one.key, &stop))
+        return false;
+    if (!stop)
+        return nevh__scene_fail(s, NEVH_EINVAL, part,
+                                "friction is written COORDINATE: RATE, or all: "
+                                "RATE");
+    if (nevh__head_parse(d->one.key.text, &d->one.head, &error))
+        return nevh__scene_fail_formula(s, &d->one.key, &error);
+    bool fine = take_rates(s, m, d);
+    nevh__head_free(&d->one.head);
+    return fine;
+}
+
+static bool add_friction(nevh_scene *s, nevh__model *m,
+                         const nevh__statement *statement) {
+    size_t count;
+    damping d = {.rates = nevh__pool_take(&m->pool, m->n, sizeof *d.rates),
+                 .given = nevh__pool_take(&m->pool, m->n, sizeof *d.given)};
+    if (!d.rates || !d.given)
+        return nevh__scene_no_memory(s);
+    nevh__piece *parts =
+        nevh__piece_list(s, &m->pool, &statement->value, &count);
+    if (!parts)
+        return false;
+    for (size_t i = 0; i < count; i++)
+        if (!take_part(s, m, &d, &parts[i]))
+            return false;
+    return !nevh_system_add_friction(m->system, statement->head.name,
+                                     d.rates) ||
+           nevh__scene_no_memory(s);
+}
+
+bool nevh__model_friction(nevh_scene *s, nevh__model *m) {
+    return nevh__scene_each(s, m, NEVH__FRICTION, add_friction);
+}

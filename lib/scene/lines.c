@@ -1,0 +1,153 @@
+/* nevh: text to lines, sections and statements.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "scene/scene_private.h"
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const section_names[NEVH__SECTION_COUNT] = {
+    "scene",   "parameters", "coordinates", "definitions",
+    "effects", "friction",   "invariants",  "observables",
+    "picture", "sections",   "labels",      "run"};
+
+const char *nevh__section_name(nevh__section section) {
+    return section_names[section];
+}
+
+static size_t line_bytes(const char *text, size_t left) {
+    const char *end = memchr(text, '\n', left);
+    return end ? (size_t)(end - text) : left;
+}
+
+static size_t count_lines(const char *text, size_t bytes) {
+    size_t count = 1;
+    for (size_t i = 0; i < bytes; i++)
+        count += text[i] == '\n';
+    return count;
+}
+
+/* Refuses what is not UTF-8, and NUL. */
+static bool check_characters(nevh_scene *s, const nevh__line *line) {
+    size_t column = 1;
+    uint32_t code;
+    for (size_t i = 0; i < line->bytes; column++) {
+        size_t bytes = nevh__character(line->text + i, &code);
+        if (!bytes || !code || i + bytes > line->bytes)
+            return nevh__scene_fail_at(s, NEVH_EINVAL, line, column, 1,
+                                       code || !bytes
+                                           ? "this is not UTF-8"
+                                           : "a NUL character: is this text?");
+        i += bytes;
+    }
+    return true;
+}
+
+static bool cut_lines(nevh_scene *s, const char *text, size_t bytes) {
+    char *copy = nevh__pool_take(&s->pool, bytes + 1, 1);
+    s->lines =
+        nevh__pool_take(&s->pool, count_lines(text, bytes), sizeof *s->lines);
+    if (!copy || !s->lines)
+        return nevh__scene_no_memory(s);
+    memcpy(copy, text, bytes);
+    bool more = true;
+    for (size_t at = 0; more && !s->status;) {
+        size_t length = line_bytes(copy + at, bytes - at);
+        nevh__line *line = &s->lines[s->n_lines++];
+        more = at + length < bytes;
+        bool carriage = length && copy[at + length - 1] == '\r';
+        *line = (nevh__line){s->n_lines, copy + at, length - carriage};
+        check_characters(s, line);
+        at += length + 1;
+    }
+    return !s->status;
+}
+
+/* [NAME] */
+static bool cut_section(nevh_scene *s, const nevh__piece *all,
+                        nevh__section *section) {
+    size_t bytes = strlen(all->text),
+           from = (size_t)(all->at - all->line->text);
+    if (bytes < 2 || all->text[bytes - 1] != ']')
+        return nevh__scene_fail(s, NEVH_EINVAL, all,
+                                "a section is a line of its own: [NAME]");
+    nevh__piece name;
+    if (!nevh__piece_take(s, &s->pool, all->line, from + 1, from + bytes - 1,
+                          &name))
+        return false;
+    for (size_t i = 0; i < NEVH__SECTION_COUNT; i++)
+        if (strcmp(section_names[i], name.text) == 0) {
+            *section = (nevh__section)i;
+            return true;
+        }
+    return nevh__scene_fail_word(s, &name, "section", name.text, section_names,
+                                 NEVH__SECTION_COUNT);
+}
+
+static bool cut_key(nevh_scene *s, const nevh__piece *all,
+                    nevh__statement *statement) {
+    char stop;
+    statement->value = *all;
+    if (!nevh__piece_split(s, &s->pool, &statement->value, "=", &statement->key,
+                           &stop))
+        return false;
+    if (!stop && !strchr(all->text, '='))
+        return nevh__scene_fail(s, NEVH_EINVAL, all,
+                                "this is neither NAME = VALUE nor [SECTION]");
+    nevh__formula_error error;
+    if (nevh__head_parse(statement->key.text, &statement->head, &error))
+        return nevh__scene_fail_formula(s, &statement->key, &error);
+    return stop || nevh__scene_fail(s, NEVH_EINVAL, all, "\"=\" is missing");
+}
+
+bool nevh__statement_parse(nevh_scene *s, const nevh__line *line,
+                           nevh__statement *statement) {
+    nevh__piece all;
+    const char *comment = memchr(line->text, '#', line->bytes);
+    size_t end = comment ? (size_t)(comment - line->text) : line->bytes;
+    return nevh__piece_take(s, &s->pool, line, 0, end, &all) &&
+           cut_key(s, &all, statement);
+}
+
+static bool cut_line(nevh_scene *s, const nevh__line *line, bool *begun,
+                     nevh__section *section) {
+    nevh__piece all;
+    const char *comment = memchr(line->text, '#', line->bytes);
+    size_t end = comment ? (size_t)(comment - line->text) : line->bytes;
+    if (!nevh__piece_take(s, &s->pool, line, 0, end, &all) || !all.text[0])
+        return !s->status;
+    if (all.text[0] == '[') {
+        *begun = true;
+        return cut_section(s, &all, section);
+    }
+    if (!*begun)
+        return nevh__scene_fail(s, NEVH_EINVAL, &all,
+                                "a section must come first, such as "
+                                "[parameters]");
+    nevh__statement *statement = &s->statements[s->n_statements++];
+    statement->section = *section;
+    return cut_key(s, &all, statement);
+}
+
+bool nevh__scene_cut(nevh_scene *s, const char *text, size_t bytes) {
+    bool mark = bytes >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0;
+    if (!cut_lines(s, text + 3 * mark, bytes - 3 * mark))
+        return false;
+    s->statements =
+        nevh__pool_take(&s->pool, s->n_lines, sizeof *s->statements);
+    if (!s->statements)
+        return nevh__scene_no_memory(s);
+    bool begun = false;
+    nevh__section section = NEVH__SCENE;
+    for (size_t i = 0; i < s->n_lines; i++)
+        if (!cut_line(s, &s->lines[i], &begun, &section))
+            return false;
+    return true;
+}
+
+bool nevh__scene_each(nevh_scene *s, nevh__model *m, nevh__section section,
+                      nevh__visitor visit) {
+    for (size_t i = 0; i < s->n_statements; i++)
+        if (s->statements[i].section == section &&
+            !visit(s, m, &s->statements[i]))
+            return false;
+    return true;
+}

@@ -1,0 +1,139 @@
+/* nevh: FILE:LINE:COLUMN: error: ..., the line, and a caret.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "scene/scene_private.h"
+#include <stdio.h>
+#include <string.h>
+
+enum { SHOWN = 120, BEFORE = 60, TEXT = 500 }; /* characters of a line */
+
+typedef struct {
+    char *text;
+    size_t size, used;
+} buffer;
+
+static void append(buffer *b, const char *bytes, size_t count) {
+    size_t room = b->size - b->used - 1;
+    count = count < room ? count : room;
+    memcpy(b->text + b->used, bytes, count);
+    b->used += count;
+    b->text[b->used] = '\0';
+}
+
+/* Bytes of the character at `text`; one of what is none. */
+static size_t step(const char *text) {
+    uint32_t code;
+    size_t bytes = nevh__character(text, &code);
+    return bytes ? bytes : 1;
+}
+
+/* What is safe to print in its place. */
+static const char *shown(const char *at) {
+    uint32_t code;
+    bool control = (unsigned char)*at < ' ' && *at != '\t';
+    bool broken = nevh__character(at, &code) == 0;
+    return control || broken || code == 0x7F ? "?" : at;
+}
+
+/* The line around a column, then the same width of space and a caret. */
+static void append_line(buffer *b, const nevh__line *line, size_t column,
+                        size_t length) {
+    const char *end = line->text + line->bytes, *at = line->text;
+    size_t skip = column > SHOWN ? column - BEFORE : 0, here = 1;
+    for (; here <= skip && at < end; here++)
+        at += step(at);
+    const char *from = at;
+    append(b, "\n", 1);
+    append(b, "...", skip ? 3 : 0);
+    for (size_t k = 0; k < SHOWN && at < end; k++, at += step(at))
+        append(b, shown(at), *shown(at) == '?' ? 1 : step(at));
+    append(b, "\n", 1);
+    append(b, "   ", skip ? 3 : 0);
+    const char *last = at;
+    for (at = from; here < column; here++) {
+        append(b, at < last && *at == '\t' ? "\t" : " ", 1);
+        at += at < last ? step(at) : 0;
+    }
+    append(b, "^", 1);
+    at += at < last ? step(at) : 0;
+    for (; length > 1 && at < last; length--, at += step(at))
+        append(b, "~", 1);
+}
+
+bool nevh__scene_fail_at(nevh_scene *s, int status, const nevh__line *line,
+                         size_t column, size_t length, const char *text) {
+    if (s->status)
+        return false;
+    s->status = status;
+    buffer b = {s->message, sizeof s->message, 0};
+    char place[64];
+    snprintf(place, sizeof place,
+             ":%zu:%zu: error: ", line->number ? line->number : 1, column);
+    size_t room = strlen(s->name);
+    append(&b, line->number ? s->name : "assignment",
+           line->number ? (room < TEXT ? room : TEXT) : strlen("assignment"));
+    append(&b, place, strlen(place));
+    append(&b, text, strlen(text));
+    append_line(&b, line, column, length);
+    return false;
+}
+
+bool nevh__scene_fail(nevh_scene *s, int status, const nevh__piece *piece,
+                      const char *format, ...) {
+    char text[TEXT];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    return nevh__scene_fail_at(s, status, piece->line,
+                               nevh__piece_column(piece),
+                               nevh__characters(piece->text), text);
+}
+
+bool nevh__scene_no_memory(nevh_scene *s) {
+    if (!s->status)
+        snprintf(s->message, sizeof s->message, "out of memory");
+    s->status = s->status ? s->status : NEVH_ENOMEM;
+    return false;
+}
+
+/* The formula that is a definition's or an observable's. */
+static const nevh__piece *definition_of(const nevh_scene *s, const char *name) {
+    for (size_t i = 0; i < s->n_statements; i++) {
+        const nevh__statement *one = &s->statements[i];
+        bool named = one->section == NEVH__DEFINITIONS ||
+                     one->section == NEVH__OBSERVABLES;
+        if (named && strcmp(one->head.name, name) == 0)
+            return &one->value;
+    }
+    return NULL;
+}
+
+bool nevh__scene_fail_formula(nevh_scene *s, const nevh__piece *piece,
+                              const nevh__formula_error *error) {
+    if (error->status == NEVH_ENOMEM)
+        return nevh__scene_no_memory(s);
+    const nevh__piece *inside =
+        error->definition ? definition_of(s, error->definition) : NULL;
+    piece = inside ? inside : piece;
+    size_t first = error->column ? error->column : 1;
+    return nevh__scene_fail_at(s, error->status, piece->line,
+                               nevh__piece_column(piece) + first - 1,
+                               error->length, error->text);
+}
+
+bool nevh__scene_fail_word(nevh_scene *s, const nevh__piece *at,
+                           const char *what, const char *word,
+                           const char *const known[], size_t count) {
+    const char *best = NULL;
+    size_t most = nevh__characters(word) / 3 + 2;
+    for (size_t i = 0; i < count; i++) {
+        size_t far = nevh__words_apart(word, known[i]);
+        if (far < most) {
+            most = far;
+            best = known[i];
+        }
+    }
+    return nevh__scene_fail(s, NEVH_EINVAL, at, "there is no %s %s%s%s%s", what,
+                            word, best ? "; did you mean " : "",
+                            best ? best : "", best ? "?" : "");
+}

@@ -1,0 +1,236 @@
+/* nevh: the settings of [run] and the keys of [scene].
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "scene/scene_private.h"
+#include <math.h>
+#include <nevh/integrator.h>
+#include <string.h>
+
+static bool take_number(nevh_scene *s, const nevh__model *m,
+                        const nevh__piece *value, bool positive,
+                        double *number) {
+    if (!nevh__piece_number(s, m, value, number))
+        return false;
+    return !positive || *number > 0 ||
+           nevh__scene_fail(s, NEVH_EINVAL, value,
+                            "this must be greater than 0, not %g", *number);
+}
+
+/* A list of numbers greater than 0. */
+static bool take_numbers(nevh_scene *s, nevh__model *m,
+                         const nevh__piece *value, const double **numbers,
+                         size_t *count) {
+    nevh__piece *list = nevh__piece_list(s, &m->pool, value, count);
+    if (!list)
+        return false;
+    double *all = nevh__pool_take(&m->pool, *count, sizeof *all);
+    if (!all)
+        return nevh__scene_no_memory(s);
+    for (size_t i = 0; i < *count; i++)
+        if (!take_number(s, m, &list[i], true, &all[i]))
+            return false;
+    *numbers = all;
+    return true;
+}
+
+static bool check_gradient(nevh_scene *s, const nevh__piece *name) {
+    const nevh_gradient *const *all = nevh_gradients();
+    const char *known[16];
+    size_t count = 0;
+    for (; all[count] && count < sizeof known / sizeof *known; count++)
+        known[count] = nevh_gradient_name(all[count]);
+    return nevh_gradient_named(name->text) ||
+           nevh__scene_fail_word(s, name, "gradient", name->text, known, count);
+}
+
+/* NAME or NAME+transform */
+static bool check_integrator(nevh_scene *s, const nevh__piece *name) {
+    char plain[NEVH__NAME_LENGTH];
+    const char *known[128];
+    size_t count = 0, bytes = strcspn(name->text, "+");
+    const nevh_integrator *const *all = nevh_integrators();
+    for (; all[count] && count < sizeof known / sizeof *known; count++)
+        known[count] = nevh_integrator_name(all[count]);
+    bytes = bytes < sizeof plain ? bytes : sizeof plain - 1;
+    memcpy(plain, name->text, bytes);
+    plain[bytes] = '\0';
+    const char *tail = strchr(name->text, '+');
+    if (nevh_integrator_named(plain) &&
+        (!tail || strcmp(tail, "+transform") == 0))
+        return true;
+    return nevh__scene_fail_word(s, name, "integrator", plain, known, count);
+}
+
+typedef bool (*checker)(nevh_scene *, const nevh__piece *);
+
+static bool take_names(nevh_scene *s, nevh__model *m, const nevh__piece *value,
+                       checker check, const char *const **names,
+                       size_t *count) {
+    nevh__piece *list = nevh__piece_list(s, &m->pool, value, count);
+    if (!list)
+        return false;
+    const char **all = nevh__pool_take(&m->pool, *count, sizeof *all);
+    if (!all)
+        return nevh__scene_no_memory(s);
+    for (size_t i = 0; i < *count; i++) {
+        if (!list[i].text[0])
+            return nevh__scene_fail(s, NEVH_EINVAL, &list[i],
+                                    "a name is missing here");
+        if (!check(s, &list[i]))
+            return false;
+        all[i] = list[i].text;
+    }
+    *names = all;
+    return true;
+}
+
+static bool take_t_start(nevh_scene *s, nevh__model *m, const nevh__piece *v) {
+    return take_number(s, m, v, false, &m->run.t_start);
+}
+
+static bool take_t_end(nevh_scene *s, nevh__model *m, const nevh__piece *v) {
+    return take_number(s, m, v, false, &m->run.t_end);
+}
+
+static bool take_dt(nevh_scene *s, nevh__model *m, const nevh__piece *v) {
+    return take_numbers(s, m, v, &m->run.dt, &m->run.dts);
+}
+
+static bool take_tolerance(nevh_scene *s, nevh__model *m,
+                           const nevh__piece *v) {
+    return take_numbers(s, m, v, &m->run.tolerance, &m->run.tolerances);
+}
+
+static bool take_integrators(nevh_scene *s, nevh__model *m,
+                             const nevh__piece *v) {
+    return take_names(s, m, v, check_integrator, &m->run.integrator,
+                      &m->run.integrators);
+}
+
+static bool take_gradient(nevh_scene *s, nevh__model *m, const nevh__piece *v) {
+    return take_names(s, m, v, check_gradient, &m->run.gradient,
+                      &m->run.gradients);
+}
+
+static bool take_gradient_step(nevh_scene *s, nevh__model *m,
+                               const nevh__piece *v) {
+    return strcmp(v->text, "auto") == 0 ||
+           take_number(s, m, v, true, &m->run.gradient_step);
+}
+
+static bool take_energy_scale(nevh_scene *s, nevh__model *m,
+                              const nevh__piece *v) {
+    return take_number(s, m, v, true, &m->run.energy_scale);
+}
+
+static bool take_reference(nevh_scene *s, nevh__model *m,
+                           const nevh__piece *v) {
+    m->run.reference = v->text;
+    return strcmp(v->text, "exact") == 0 || check_integrator(s, v);
+}
+
+static bool take_match(nevh_scene *s, nevh__model *m, const nevh__piece *v) {
+    m->run.match_work = strcmp(v->text, "work") == 0;
+    return m->run.match_work || strcmp(v->text, "steps") == 0 ||
+           nevh__scene_fail(s, NEVH_EINVAL, v, "match is steps or work");
+}
+
+static bool take_transform(nevh_scene *s, nevh__model *m,
+                           const nevh__piece *v) {
+    nevh__formula_error error = {0};
+    m->run.transform = v->text;
+    if (!nevh__piece_check(s, m, v, NEVH__READS_STATE))
+        return false;
+    nevh__tree *tree = nevh__piece_tree(s, v);
+    m->transform = nevh_system_new(m->n);
+    if (!tree || !m->transform) {
+        nevh__tree_free(tree);
+        return nevh__scene_no_memory(s);
+    }
+    int status = nevh__tree_add_terms(tree, m->names, m->transform, "transform",
+                                      &m->owned_transform, &error);
+    nevh__tree_free(tree);
+    return !status || nevh__scene_fail_formula(s, v, &error);
+}
+
+/* FORMULA < VALUE */
+static bool take_stop(nevh_scene *s, nevh__model *m, const nevh__piece *v) {
+    nevh__piece rest = *v, formula;
+    char stop;
+    double value;
+    if (!nevh__piece_split(s, &m->pool, &rest, "<", &formula, &stop))
+        return false;
+    if (!stop)
+        return nevh__scene_fail(s, NEVH_EINVAL, v,
+                                "stop is written FORMULA < VALUE");
+    return nevh__piece_check(s, m, &formula,
+                             NEVH__READS_TIME | NEVH__READS_STATE |
+                                 NEVH__READS_V) &&
+           nevh__piece_number(s, m, &rest, &value);
+}
+
+#define RUN_KEYS(X)                                                            \
+    X(t_start)                                                                 \
+    X(t_end)                                                                   \
+    X(dt)                                                                      \
+    X(integrators)                                                             \
+    X(gradient)                                                                \
+    X(gradient_step)                                                           \
+    X(reference)                                                               \
+    X(transform)                                                               \
+    X(match)                                                                   \
+    X(tolerance)                                                               \
+    X(energy_scale)                                                            \
+    X(stop)
+#define RUN_NAME(key) #key,
+#define RUN_TAKE(key) take_##key,
+static const char *const run_keys[] = {RUN_KEYS(RUN_NAME)};
+static bool (*const run_takers[])(nevh_scene *, nevh__model *,
+                                  const nevh__piece *) = {RUN_KEYS(RUN_TAKE)};
+static const char *const scene_keys[] = {"title", "source", "effects"};
+
+/* The number of a key; that of keys when it is none, or there already. */
+static size_t key_index(nevh_scene *s, const nevh__statement *statement,
+                        const char *const keys[], size_t count) {
+    const char *name = statement->head.name;
+    size_t k = 0;
+    if (!nevh__head_plain(s, statement))
+        return count;
+    for (const nevh__statement *one = s->statements; one < statement; one++)
+        if (one->section == statement->section &&
+            strcmp(one->head.name, name) == 0) {
+            nevh__scene_fail(s, NEVH_EINVAL, &statement->key,
+                             "%s is there already, in line %zu", name,
+                             one->key.line->number);
+            return count;
+        }
+    while (k < count && strcmp(keys[k], name) != 0)
+        k++;
+    if (k == count)
+        nevh__scene_fail_word(s, &statement->key, "setting", name, keys, count);
+    return k;
+}
+
+static bool take_setting(nevh_scene *s, nevh__model *m,
+                         const nevh__statement *statement) {
+    const size_t count = sizeof run_keys / sizeof *run_keys;
+    size_t k = key_index(s, statement, run_keys, count);
+    return k < count && run_takers[k](s, m, &statement->value);
+}
+
+static bool check_heading(nevh_scene *s, nevh__model *m,
+                          const nevh__statement *statement) {
+    (void)m;
+    return key_index(s, statement, scene_keys, 3) < 3;
+}
+
+bool nevh__model_run(nevh_scene *s, nevh__model *m) {
+    static const double tolerances[] = {1e-6, 1e-9, 1e-12};
+    static const char *const gradients[] = {"central4"};
+    m->run = (nevh_scene_run){.t_end = NAN,
+                              .gradients = 1,
+                              .gradient = gradients,
+                              .tolerances = 3,
+                              .tolerance = tolerances};
+    return nevh__scene_each(s, m, NEVH__SCENE, check_heading) &&
+           nevh__scene_each(s, m, NEVH__RUN, take_setting);
+}

@@ -1,0 +1,204 @@
+/* nevh: scenes.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "scene/scene_private.h"
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_BYTES = 1 << 24 };
+
+void nevh__model_free(nevh__model *m) {
+    if (!m)
+        return;
+    nevh_system_free(m->system);
+    nevh_system_free(m->transform);
+    nevh__owned_free(&m->owned);
+    nevh__owned_free(&m->owned_transform);
+    nevh__names_free(m->names);
+    nevh__pool_free(&m->pool);
+    free(m);
+}
+
+static nevh__model *new_model(nevh_scene *s) {
+    nevh__model *m = nevh__array(1, sizeof *m);
+    if (!m || !(m->names = nevh__names_new())) {
+        free(m);
+        nevh__scene_no_memory(s);
+        return NULL;
+    }
+    if (nevh__model_parameters(s, m) && nevh__model_coordinates(s, m) &&
+        nevh__model_definitions(s, m) && nevh__model_values(s, m) &&
+        nevh__model_terms(s, m) && nevh__model_shown(s, m) &&
+        nevh__model_labels(s, m) && nevh__model_run(s, m))
+        return m;
+    nevh__model_free(m);
+    return NULL;
+}
+
+static nevh_scene *new_scene(const char *name) {
+    nevh_scene *s = nevh__array(1, sizeof *s);
+    char *copy = s ? nevh__pool_take(&s->pool, strlen(name) + 1, 1) : NULL;
+    if (!copy) {
+        free(s);
+        return NULL;
+    }
+    s->name = strcpy(copy, name);
+    return s;
+}
+
+static void begin(nevh_scene *s, const char *text, size_t bytes) {
+    if (nevh__scene_cut(s, text, bytes) && nevh__scene_effects(s))
+        s->model = new_model(s);
+}
+
+nevh_scene *nevh_scene_parse(const char *name, const char *text) {
+    nevh_scene *s = new_scene(name);
+    if (s)
+        begin(s, text, strlen(text));
+    return s;
+}
+
+static void unreadable(nevh_scene *s, const char *why) {
+    s->status = NEVH_EFAILED;
+    snprintf(s->message, sizeof s->message, "%.1000s: error: %s", s->name, why);
+}
+
+/* All of a file, freed by the caller; NULL when it is not to be read. */
+static char *read_all(nevh_scene *s, FILE *file, size_t *bytes) {
+    size_t room = 1 << 12;
+    char *text = malloc(room);
+    *bytes = 0;
+    while (text && !s->status) {
+        *bytes += fread(text + *bytes, 1, room - *bytes, file);
+        if (ferror(file))
+            unreadable(s, strerror(errno));
+        else if (*bytes < room)
+            return text;
+        else if (room >= MOST_BYTES)
+            unreadable(s, "the file is too large for a scene");
+        char *grown = nevh__grow(text, room *= 2, 1);
+        if (!grown)
+            nevh__scene_no_memory(s);
+        text = grown ? grown : text;
+    }
+    if (!text)
+        nevh__scene_no_memory(s);
+    free(text);
+    return NULL;
+}
+
+nevh_scene *nevh_scene_read(const char *path) {
+    nevh_scene *s = new_scene(path);
+    FILE *file = s ? fopen(path, "rb") : NULL;
+    if (!file) {
+        if (s)
+            unreadable(s, strerror(errno));
+        return s;
+    }
+    size_t bytes;
+    char *text = read_all(s, file, &bytes);
+    fclose(file);
+    if (text)
+        begin(s, text, bytes);
+    free(text);
+    return s;
+}
+
+void nevh_scene_free(nevh_scene *s) {
+    if (!s)
+        return;
+    nevh__model_free(s->model);
+    for (size_t i = 0; i < s->n_statements; i++)
+        nevh__head_free(&s->statements[i].head);
+    for (size_t i = 0; i < s->n_assignments; i++)
+        nevh__head_free(&s->assignments[i]->head);
+    nevh__pool_free(&s->pool);
+    free(s->assignments);
+    free(s);
+}
+
+int nevh_scene_status(const nevh_scene *s) {
+    return s ? s->status : NEVH_ENOMEM;
+}
+
+const char *nevh_scene_message(const nevh_scene *s) {
+    return s ? s->message : "out of memory";
+}
+
+/* A scene that was read starts each change afresh. */
+static bool may_change(nevh_scene *s) {
+    if (!s->model)
+        return false;
+    s->status = NEVH_OK;
+    s->message[0] = '\0';
+    return true;
+}
+
+/* NAME = FORMULA as a statement of its own; NULL on failure. */
+static nevh__statement *new_assignment(nevh_scene *s, const char *text) {
+    size_t bytes = strlen(text);
+    nevh__statement *statement =
+        nevh__pool_take(&s->pool, 1, sizeof *statement);
+    nevh__line *line = nevh__pool_take(&s->pool, 1, sizeof *line);
+    char *copy = nevh__pool_take(&s->pool, bytes + 1, 1);
+    nevh__statement **all =
+        nevh__grow(s->assignments, s->n_assignments + 1, sizeof *all);
+    s->assignments = all ? all : s->assignments;
+    if (!statement || !line || !copy || !all) {
+        nevh__scene_no_memory(s);
+        return NULL;
+    }
+    *line = (nevh__line){0, strcpy(copy, text), bytes};
+    return nevh__statement_parse(s, line, statement) ? statement : NULL;
+}
+
+static bool check_assignment(nevh_scene *s, const nevh__statement *statement) {
+    size_t count = 0;
+    const char **known =
+        nevh__pool_take(&s->pool, s->n_statements, sizeof *known);
+    if (!known)
+        return nevh__scene_no_memory(s);
+    if (!nevh__head_plain(s, statement))
+        return false;
+    for (size_t i = 0; i < s->n_statements; i++)
+        if (s->statements[i].section == NEVH__PARAMETERS)
+            known[count++] = s->statements[i].head.name;
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(known[i], statement->head.name) == 0)
+            return true;
+    return nevh__scene_fail_word(s, &statement->key, "parameter",
+                                 statement->head.name, known, count);
+}
+
+int nevh_scene_set(nevh_scene *s, const char *assignment) {
+    if (!may_change(s))
+        return s->status;
+    nevh__statement *statement = new_assignment(s, assignment);
+    if (!statement)
+        return s->status;
+    s->assignments[s->n_assignments++] = statement;
+    nevh__model *model = check_assignment(s, statement) ? new_model(s) : NULL;
+    if (!model) {
+        s->n_assignments--;
+        nevh__head_free(&statement->head);
+        return s->status;
+    }
+    nevh__model_free(s->model);
+    s->model = model;
+    return NEVH_OK;
+}
+
+int nevh_scene_enable(nevh_scene *s, const char *effect, bool on) {
+    if (!may_change(s))
+        return s->status;
+    nevh__switch *found = nevh__scene_effect(s, effect);
+    if (found) {
+        found->on = on;
+        return nevh_system_enable(s->model->system, effect, on);
+    }
+    nevh__line line = {0, effect, strlen(effect)};
+    nevh__piece piece = {&line, effect, effect};
+    nevh__scene_fail_effect(s, &piece);
+    return s->status;
+}

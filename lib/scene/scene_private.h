@@ -1,0 +1,181 @@
+/* nevh: inside a scene.
+
+   A text is cut into statements (KEY = VALUE under a section) once, by
+   nevh__scene_cut.  What they mean is made of them as a whole, the model: when
+   the scene is read, and again when a parameter is set.  A scene whose text
+   was refused has no model.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_SCENE_PRIVATE_H
+#define NEVH_SCENE_PRIVATE_H
+
+#include "expression/formula_inside_private.h"
+#include <nevh/scene.h>
+
+typedef struct {
+    size_t number; /* from 1; 0: an assignment from outside */
+    const char *text;
+    size_t bytes;
+} nevh__line;
+
+/* A part of a line, without space at its ends. */
+typedef struct {
+    const nevh__line *line;
+    const char *at;   /* within the line's text */
+    const char *text; /* a copy that ends where the part ends */
+} nevh__piece;
+
+typedef enum {
+    NEVH__SCENE,
+    NEVH__PARAMETERS,
+    NEVH__COORDINATES,
+    NEVH__DEFINITIONS,
+    NEVH__EFFECTS,
+    NEVH__FRICTION,
+    NEVH__INVARIANTS,
+    NEVH__OBSERVABLES,
+    NEVH__PICTURE,
+    NEVH__SECTIONS,
+    NEVH__LABELS,
+    NEVH__RUN,
+    NEVH__SECTION_COUNT
+} nevh__section;
+
+typedef struct {
+    nevh__section section;
+    nevh__head head;
+    nevh__piece key, value;
+} nevh__statement;
+
+/* An effect, of terms or friction or both. */
+typedef struct {
+    const char *name;
+    bool on;
+} nevh__switch;
+
+/* The values of one coordinate, which may be an array. */
+typedef struct {
+    const nevh__statement *statement;
+    size_t count, first;
+} nevh__coordinate;
+
+typedef struct {
+    nevh__pool pool;
+    nevh__names *names;
+    nevh__coordinate *coordinates;
+    size_t n_coordinates, n;
+    char **coordinate_names;        /* n */
+    double *q, *p, *v;              /* n; v: initial velocities */
+    double *period;                 /* n; 0: none */
+    const nevh__statement **moving; /* n: what gave p[k] or v[k], or NULL */
+    bool *by_velocity;              /* n: v[k] is given, p[k] follows */
+    nevh_system *system, *transform;
+    nevh__owned owned, owned_transform;
+    nevh_scene_run run;
+} nevh__model;
+
+struct nevh_scene {
+    nevh__pool pool;
+    const char *name;
+    nevh__line *lines;
+    size_t n_lines;
+    nevh__statement *statements;
+    size_t n_statements;
+    nevh__switch *effects; /* in order of appearance */
+    size_t n_effects;
+    nevh__statement **assignments; /* from outside, the newest last */
+    size_t n_assignments;
+    nevh__model *model;
+    int status;
+    char message[2000];
+};
+
+/* Messages; each returns false.  The first one stays. */
+bool nevh__scene_fail(nevh_scene *, int status, const nevh__piece *,
+                      const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+/* At a column of a line, over `length` characters. */
+bool nevh__scene_fail_at(nevh_scene *, int status, const nevh__line *,
+                         size_t column, size_t length, const char *text);
+/* What is wrong with a formula that is this piece. */
+bool nevh__scene_fail_formula(nevh_scene *, const nevh__piece *,
+                              const nevh__formula_error *);
+bool nevh__scene_no_memory(nevh_scene *);
+/* Says that a word is none of those that are known, with the closest. */
+bool nevh__scene_fail_word(nevh_scene *, const nevh__piece *, const char *what,
+                           const char *word, const char *const known[],
+                           size_t count);
+
+/* Text to statements. */
+bool nevh__scene_cut(nevh_scene *, const char *text, size_t bytes);
+/* One KEY = VALUE; the line is the caller's. */
+bool nevh__statement_parse(nevh_scene *, const nevh__line *, nevh__statement *);
+const char *nevh__section_name(nevh__section);
+
+/* Pieces.  Memory is the pool's. */
+bool nevh__piece_take(nevh_scene *, nevh__pool *, const nevh__line *,
+                      size_t from, size_t to, nevh__piece *);
+/* Takes what is before the first of `stops` outside of parentheses off the
+   front of `rest`; what followed it remains.
+   stop     out: which one it was; '\0' at the end, then rest is empty */
+bool nevh__piece_split(nevh_scene *, nevh__pool *, nevh__piece *rest,
+                       const char *stops, nevh__piece *part, char *stop);
+/* The parts of a list, separated by commas; NULL on failure. */
+nevh__piece *nevh__piece_list(nevh_scene *, nevh__pool *, const nevh__piece *,
+                              size_t *count);
+size_t nevh__piece_column(const nevh__piece *);
+
+/* Formulas that stand in pieces. */
+nevh__tree *nevh__piece_tree(nevh_scene *, const nevh__piece *);
+bool nevh__piece_number(nevh_scene *, const nevh__model *, const nevh__piece *,
+                        double *value);
+bool nevh__piece_check(nevh_scene *, const nevh__model *, const nevh__piece *,
+                       unsigned allowed);
+
+/* What NAME[...] = ... gives to each element. */
+typedef struct {
+    bool array;
+    size_t count; /* at least 1 */
+} nevh__shape;
+/* The shape that NAME, NAME[1..N] or NAME[i = 1..N] has. */
+bool nevh__head_shape(nevh_scene *, const nevh__model *,
+                      const nevh__statement *, nevh__shape *);
+/* Values: a list of `count`, one for all, or a formula of the index. */
+bool nevh__head_values(nevh_scene *, nevh__model *, const nevh__statement *,
+                       const nevh__piece *value, size_t count, double values[]);
+/* A bound of a range. */
+bool nevh__head_bound(nevh_scene *, const nevh__model *, const nevh__piece *key,
+                      const nevh__tree *, long *);
+/* Refuses an index where none belongs. */
+bool nevh__head_plain(nevh_scene *, const nevh__statement *);
+
+/* Sections, in the order in which the model needs them. */
+bool nevh__model_parameters(nevh_scene *, nevh__model *);
+bool nevh__model_coordinates(nevh_scene *, nevh__model *);
+bool nevh__model_definitions(nevh_scene *, nevh__model *);
+bool nevh__model_values(nevh_scene *, nevh__model *);
+bool nevh__model_terms(nevh_scene *, nevh__model *);
+bool nevh__model_friction(nevh_scene *, nevh__model *);
+bool nevh__model_shown(nevh_scene *, nevh__model *); /* and monitored */
+bool nevh__model_labels(nevh_scene *, nevh__model *);
+bool nevh__model_run(nevh_scene *, nevh__model *);
+void nevh__model_free(nevh__model *);
+
+/* v = dH/dp at one state, n each; every term brings its gradient.
+   room     of nevh__velocity_room, to be freed; NULL when memory is out */
+double *nevh__velocity_room(const nevh_system *);
+void nevh__velocities(const nevh_system *, double t, const double q[],
+                      const double p[], double room[], double v[]);
+
+/* Which effects there are and which are on. */
+bool nevh__scene_effects(nevh_scene *);
+nevh__switch *nevh__scene_effect(const nevh_scene *, const char *name);
+/* Says that there is no effect of that name. */
+bool nevh__scene_fail_effect(nevh_scene *, const nevh__piece *);
+
+/* Calls visit for each statement of a section, until one fails. */
+typedef bool (*nevh__visitor)(nevh_scene *, nevh__model *,
+                              const nevh__statement *);
+bool nevh__scene_each(nevh_scene *, nevh__model *, nevh__section,
+                      nevh__visitor);
+
+#endif

@@ -1,0 +1,66 @@
+/* nevh: v = dH/dp of a system of tapes, by their own derivatives.
+
+   A field would do the same, but it is planned around a state, and here the
+   momenta are not known yet.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "scene/scene_private.h"
+#include <stdlib.h>
+#include <string.h>
+
+enum { WIDTH = NEVH__LANES };
+
+/* Doubles that one block of a term takes. */
+static size_t block_size(const nevh_term *is) {
+    return WIDTH * (is->nq + 2 * is->np + is->nc + 1);
+}
+
+double *nevh__velocity_room(const nevh_system *system) {
+    size_t most = 0;
+    for (size_t i = 0; i < system->n_terms; i++) {
+        size_t size = block_size(&system->terms[i]->is);
+        most = size > most ? size : most;
+    }
+    return nevh__array(most, sizeof(double));
+}
+
+/* Columns of a block are instances; those beyond the last repeat it. */
+static void gather(const double from[], const size_t indices[], size_t each,
+                   size_t first, size_t count, double rows[]) {
+    for (size_t lane = 0; lane < WIDTH; lane++) {
+        size_t i = first + lane < count ? first + lane : count - 1;
+        for (size_t k = 0; k < each; k++)
+            rows[k * WIDTH + lane] =
+                from[indices ? indices[i * each + k] : i * each + k];
+    }
+}
+
+static void add_block(const nevh_term *is, size_t first, double t,
+                      const double q[], const double p[], double room[],
+                      double v[]) {
+    double *times = room, *block_q = times + WIDTH,
+           *block_p = block_q + WIDTH * is->nq,
+           *block_c = block_p + WIDTH * is->np,
+           *slope = block_c + WIDTH * is->nc;
+    for (size_t lane = 0; lane < WIDTH; lane++)
+        times[lane] = is->time ? t : 0;
+    gather(q, is->q, is->nq, first, is->count, block_q);
+    gather(p, is->p, is->np, first, is->count, block_p);
+    gather(is->c, NULL, is->nc, first, is->count, block_c);
+    is->gradient(WIDTH, times, block_q, block_p, block_c, is->params, NULL,
+                 slope);
+    for (size_t lane = 0; lane < WIDTH && first + lane < is->count; lane++)
+        for (size_t k = 0; k < is->np; k++)
+            v[is->p[(first + lane) * is->np + k]] += slope[k * WIDTH + lane];
+}
+
+void nevh__velocities(const nevh_system *system, double t, const double q[],
+                      const double p[], double room[], double v[]) {
+    memset(v, 0, system->n * sizeof *v);
+    for (size_t i = 0; i < system->n_terms; i++) {
+        const nevh_term *is = &system->terms[i]->is;
+        if (!nevh__term_on(system, system->terms[i]) || !is->np)
+            continue;
+        for (size_t first = 0; first < is->count; first += WIDTH)
+            add_block(is, first, t, q, p, room, v);
+    }
+}

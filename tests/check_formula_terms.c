@@ -1,0 +1,544 @@
+/* nevh tests: formulas become terms.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "formula.h"
+#include <math.h>
+#include <nevh/models.h>
+#include <stdio.h>
+
+static unsigned long long seed = 11;
+
+static unsigned random_below(unsigned most) {
+    seed = seed * 6364136223846793005ULL + 1442695040888963407ULL;
+    return (unsigned)(seed >> 33) % most;
+}
+
+static double uniform(double from, double to) {
+    return from + (to - from) * random_below(1 << 24) / (1 << 24);
+}
+
+static formula_system made(const char *text, const nevh__names *names,
+                           size_t n) {
+    formula_system s = system_of(text, names, n);
+    ck_assert_msg(!s.error.status, "%s: column %zu: %s", text, s.error.column,
+                  s.error.text);
+    ck_assert_int_eq(nevh_system_status(s.system), NEVH_OK);
+    return s;
+}
+
+/* Value and gradient (q, then p) of one instance, added up; `size` is what the
+   values are without their signs. */
+static void add_instance(const nevh_term *is, size_t i, double t,
+                         const double q[], const double p[], double *h,
+                         double *size, double dq[], double dp[]) {
+    enum { W = 8, MOST_READ = 64 };
+    static double rows[5 * MOST_READ * W], one[3 * MOST_READ], ts[W];
+    double *rows_p = rows + is->nq * W, *rows_c = rows_p + is->np * W,
+           *out_q = rows_c + is->nc * W, *out_p = out_q + is->nq * W;
+    double *one_p = one + is->nq, *one_c = one_p + is->np;
+    ck_assert(is->nq <= MOST_READ && is->np <= MOST_READ);
+    for (size_t k = 0; k < is->nq; k++)
+        one[k] = q[is->q[i * is->nq + k]];
+    for (size_t k = 0; k < is->np; k++)
+        one_p[k] = p[is->p[i * is->np + k]];
+    for (size_t k = 0; k < is->nc; k++)
+        one_c[k] = is->c[i * is->nc + k];
+    for (size_t k = 0; k < (is->nq + is->np + is->nc) * W; k++)
+        rows[k] = one[k / W];
+    for (size_t lane = 0; lane < W; lane++)
+        ts[lane] = is->time ? t : 0;
+    double value = is->value(ts[0], one, one_p, one_c, is->params);
+    *h += value;
+    *size += fabs(value);
+    is->gradient(W, ts, rows, rows_p, rows_c, is->params, out_q, out_p);
+    for (size_t k = 0; k < is->nq; k++)
+        dq[is->q[i * is->nq + k]] += out_q[k * W];
+    for (size_t k = 0; k < is->np; k++)
+        dp[is->p[i * is->np + k]] += out_p[k * W];
+}
+
+/* The same of a system; a field would refuse gradients that differences of a
+   wild formula do not confirm. */
+static double evaluate(const nevh_system *s, double t, const double q[],
+                       const double p[], double *h, double slopes[]) {
+    size_t n = nevh_system_dof(s);
+    double size = 0;
+    *h = 0;
+    memset(slopes, 0, 2 * n * sizeof *slopes);
+    for (size_t k = 0; k < s->n_terms; k++)
+        for (size_t i = 0; i < s->terms[k]->is.count; i++)
+            add_instance(&s->terms[k]->is, i, t, q, p, h, &size, slopes,
+                         slopes + n);
+    return size;
+}
+
+/* The same of the formula as one tape. */
+static void evaluate_whole(const char *text, const nevh__names *names, size_t n,
+                           double t, const double q[], const double p[],
+                           double *h, double slopes[]) {
+    enum { W = 8 };
+    nevh__formula_error e;
+    nevh__tree *tree = nevh__tree_parse(text, &e);
+    nevh__tape *tape =
+        nevh__tree_tape(tree, names, NEVH__READS_TIME | NEVH__READS_STATE, &e);
+    ck_assert_msg(tape != NULL, "%s: %s", text, e.text);
+    *h = nevh__tape_value(t, q, p, NULL, tape);
+    double *rows = calloc(4 * n * W, sizeof *rows), ts[W];
+    for (size_t i = 0; i < n * W; i++) {
+        rows[i] = q[i / W];
+        rows[n * W + i] = p[i / W];
+        ts[i % W] = t;
+    }
+    nevh__tape_block_gradient(W, ts, rows, rows + n * W, NULL, tape,
+                              rows + 2 * n * W, rows + 3 * n * W);
+    for (size_t k = 0; k < 2 * n; k++)
+        slopes[k] = rows[(2 * n + k) * W];
+    for (size_t k = 0; k < n; k++) {
+        if (k >= nevh__tape_count(tape, NEVH__Q))
+            slopes[k] = 0;
+        if (k >= nevh__tape_count(tape, NEVH__P))
+            slopes[n + k] = 0;
+    }
+    free(rows);
+    nevh__tape_free(tape);
+    nevh__tree_free(tree);
+}
+
+static void random_state(size_t n, double q[], double p[]) {
+    for (size_t k = 0; k < n; k++) {
+        q[k] = uniform(-1.5, 1.5);
+        p[k] = uniform(-1.5, 1.5);
+    }
+}
+
+enum { MOST = 64 };
+static int compared; /* formulas that were not too wild */
+
+/* Terms and tape of one formula agree in value and gradient, as far as its
+   condition lets them. */
+static void compare_with_whole(const char *text, const nevh__names *names,
+                               size_t n) {
+    formula_system s = made(text, names, n);
+    double q[MOST], p[MOST], h[2], slopes[2][2 * MOST] = {{0}};
+    random_state(n, q, p);
+    evaluate_whole(text, names, n, 0.7, q, p, &h[1], slopes[1]);
+    double size = evaluate(s.system, 0.7, q, p, &h[0], slopes[0]);
+    for (size_t k = 0; k < 2 * n; k++)
+        size += fabs(slopes[1][k]);
+    compared += size < 1e4;
+    if (size < 1e4) {
+        ck_assert_msg(fabs(h[0] - h[1]) <= 1e-12 * (1 + size),
+                      "%s: %.17g, not %.17g", text, h[0], h[1]);
+        for (size_t k = 0; k < 2 * n; k++)
+            ck_assert_msg(fabs(slopes[0][k] - slopes[1][k]) <=
+                              1e-12 * (1 + size * size),
+                          "%s: slope %zu: %.17g, not %.17g", text, k,
+                          slopes[0][k], slopes[1][k]);
+    }
+    system_done(&s);
+}
+
+/* What is split, and into how many terms. */
+
+static const struct {
+    const char *text;
+    bool separable, autonomous;
+    size_t terms;
+} table[] = {
+    {"p_x^2/(2*m) + p_y^2/(2*m) - k*(cos(x) + y^2)/2", true, true, 4},
+    {"p_x^2/2 - cos(x)", true, true, 2},
+    {"kinetic - cos(d)", true, true, 3},
+    {"-(p_x^2/2 - cos(x))", true, true, 2},
+    {"-k*-(p_x^2 - (x^2 + x^4))/m", true, true, 2},
+    {"2*(3*(p_x^2 + x^2)/4)/5", true, true, 2},
+    {"(p_x^2 + x^2)^1", true, true, 2},
+    {"(m + k)*(p_x^2 + x^2)*(m - k)", true, true, 2},
+    {"cos(2*t)*(p_x^2 + x^2)", true, false, 2},
+    {"p_x^2 + cos(t)*x + x^2", true, false, 3},
+    {"x^2 + y^2 + x^4 + 3*y", true, true, 2},
+    {"x^2 + x^2*y + y*x^3 + y", true, true, 3},
+    {"(p_x^2 + x^2)*(p_x^2 + x^2)", false, true, 1},
+    {"(p_x^2 + x^2)^2", false, true, 1},
+    {"x*(p_x + y)", false, true, 1},
+    {"(p_x^2 + 2*p_y^2 - p_x*p_y*cos(d))/(1 + sin(d)^2)", false, true, 1},
+    {"1/(x + 2) + p_x", true, true, 2},
+    {"m/(p_x + x)", false, true, 1},
+    {"5 + m", true, true, 1},
+    {"p_x + 5 - k", true, true, 2},
+    {"sin(t)", true, false, 1},
+    {"sum(i = 1..0, q[i])", true, true, 1},
+    {"sum(i = 1..0, q[i]) + x", true, true, 1},
+    {"sum(i = 1..N, p_q[i]^2/2 + q[i]^2/2)", true, true, 2},
+    {"sum(i = 1..N, p_q[i]^2/(2*w[i])) + k/2*sum(i = 1..N, q[i]^2)", true, true,
+     2},
+    {"-sum(i = 1..N-1, (q[i+1] - q[i])^2 + w[i]*(q[i+1] - q[i])^4)/2", true,
+     true, 1},
+    {"k*(x + sum(i = 1..N, q[i]))", true, true, 2},
+    {"x*(y + sum(i = 1..N, p_q[i]))", false, true, 2},
+    {"sum(i = 1..N, q[i])/x", true, true, 1},
+    {"sum(i = 1..N, w[i]*sum(j = i+1..N, q[i]*q[j]))", true, true, 1},
+    {"sum(i = 1..N, j = 1..N, q[i]*q[j])", true, true, 2},
+    {"sum(i = 1..N, q[i]^2 + w[i])", true, true, 2},
+    {"sqrt(sum(i = 1..N, q[i]^2))", true, true, 1},
+    {"all^2", true, true, 1},
+    {"all", true, true, 1},
+    {"sum(i = 1..N, w[i]*cos(w[i]*t))", true, false, 1},
+    {"sum(i = 1..N, q[i])*sum(i = 1..N, p_q[i])", false, true, 1},
+    {"sum(i = 1..N, sqrt(sum(j = i..N, q[j]^2)))", true, true, 4},
+};
+
+START_TEST(split) {
+    nevh__names *names = formula_names();
+    formula_system s = made(table[_i].text, names, FORMULA_DOF);
+    unsigned traits = nevh_system_traits(s.system);
+    ck_assert_msg(s.system->n_terms == table[_i].terms, "%s: %zu terms",
+                  table[_i].text, s.system->n_terms);
+    ck_assert_uint_eq(s.owned.count, s.system->n_terms);
+    ck_assert_msg(!(traits & NEVH_SEPARABLE) == !table[_i].separable, "%s",
+                  table[_i].text);
+    ck_assert_msg(!(traits & NEVH_AUTONOMOUS) == !table[_i].autonomous, "%s",
+                  table[_i].text);
+    system_done(&s);
+    for (int i = 0; i < 3; i++)
+        compare_with_whole(table[_i].text, names, FORMULA_DOF);
+    nevh__names_free(names);
+}
+END_TEST
+
+/* Terms come in the order of the text, with names of the effect; constants
+   that vary are the only ones kept. */
+START_TEST(order_and_tables) {
+    nevh__names *names = formula_names();
+    formula_system s =
+        made("y^2 + sum(i = 1..N, w[i]*q[i]^2/k + w[i]^2*q[i]*m) + x^2 + y^4",
+             names, FORMULA_DOF);
+    ck_assert_uint_eq(s.system->n_terms, 3);
+    const nevh_term *a = &s.system->terms[0]->is, *b = &s.system->terms[1]->is,
+                    *c = &s.system->terms[2]->is;
+    ck_assert_str_eq(a->name, "H");
+    ck_assert_str_eq(b->name, "H 2");
+    ck_assert_str_eq(c->name, "H 3");
+    ck_assert_uint_eq(a->q[0], 1);
+    ck_assert_uint_eq(c->q[0], 0);
+    ck_assert_uint_eq(a->nc + c->nc, 0);
+    ck_assert_uint_eq(b->count, 4);
+    ck_assert(b->nq == 1 && b->np == 0 && b->nc == 2 && !b->time);
+    for (size_t i = 0; i < 4; i++) {
+        ck_assert_uint_eq(b->q[i], 2 + i);
+        ck_assert_double_eq(b->c[2 * i], formula_w[i]);
+        ck_assert_double_eq(b->c[2 * i + 1], formula_w[i] * formula_w[i]);
+    }
+    system_done(&s);
+    s = made("sum(i = 1..N, k*q[i]^2/2)", names, FORMULA_DOF);
+    ck_assert_uint_eq(s.system->terms[0]->is.nc, 0);
+    system_done(&s);
+    nevh__names_free(names);
+}
+END_TEST
+
+START_TEST(pairs) {
+    nevh__names *names = formula_names();
+    formula_system s =
+        made("sum(i = 1..N, j = 1..N, i*q[i]*q[j]*p_q[i])", names, FORMULA_DOF);
+    ck_assert_uint_eq(s.system->n_terms, 2);
+    const nevh_term *diagonal = &s.system->terms[0]->is,
+                    *others = &s.system->terms[1]->is;
+    ck_assert(diagonal->count == 4 && diagonal->nq == 1 && diagonal->np == 1);
+    ck_assert(others->count == 12 && others->nq == 2 && others->np == 1);
+    system_done(&s);
+    nevh__names_free(names);
+}
+END_TEST
+
+/* Chains and rings of any length. */
+
+static nevh__names *chain_names(size_t n, double w[]) {
+    nevh__formula_error e;
+    nevh__names *names = nevh__names_new();
+    double count = (double)n, a = 0.25;
+    for (size_t i = 0; w && i < n; i++)
+        w[i] = 1 + (double)(i % 7) / 8;
+    int status = nevh__names_add_parameter(names, "N", 0, &count, &e);
+    status |= nevh__names_add_parameter(names, "a", 0, &a, &e);
+    if (w)
+        status |= nevh__names_add_parameter(names, "w", n, w, &e);
+    status |= nevh__names_add_coordinate(names, "x", n, 0, &e);
+    ck_assert_int_eq(status, NEVH_OK);
+    return names;
+}
+
+/* A bond from each mass to the next; bond 0 of a ring closes it. */
+static double ring_value(size_t n, const double q[], double dq[]) {
+    double h = 0;
+    memset(dq, 0, n * sizeof *dq);
+    for (size_t i = 0; i < n; i++) {
+        size_t next = (i + 1) % n;
+        double d = q[next] - q[i], f = d + d * d * d + 0.5;
+        h += d * d / 2 + d * d * d * d / 4 + d / 2 - 2 * cos(q[i]) +
+             q[i] * q[next];
+        dq[next] += f + q[i];
+        dq[i] += 2 * sin(q[i]) - f + q[next];
+    }
+    return h;
+}
+
+START_TEST(rings) {
+    static const char text[] =
+        "sum(i = 1..N, (x[mod(i, N) + 1] - x[i])^2/2"
+        " + (x[mod(i, N) + 1] - x[i])^4/4 + (x[mod(i, N) + 1] - x[i])/2"
+        " - 2*cos(x[i]) + x[i]*x[mod(i, N) + 1])";
+    size_t n = (size_t)_i;
+    nevh__names *names = chain_names(n, NULL);
+    double q[8], p[8], dq[8], h, slopes[16];
+    random_state(n, q, p);
+    formula_system s = made(text, names, n);
+    evaluate(s.system, 0, q, p, &h, slopes);
+    ck_assert_double_eq_tol(h, ring_value(n, q, dq), 1e-13);
+    for (size_t k = 0; k < n; k++) {
+        ck_assert_double_eq_tol(slopes[k], dq[k], 1e-13);
+        ck_assert_double_eq(slopes[n + k], 0);
+    }
+    system_done(&s);
+    compare_with_whole(text, names, n);
+    nevh__names_free(names);
+}
+END_TEST
+
+/* Fermi, Pasta, Ulam and Tsingou, between walls. */
+START_TEST(long_chain) {
+    enum { N = 100000 };
+    static double w[N], q[N], p[N], slopes[2 * N];
+    nevh__names *names = chain_names(N, w);
+    formula_system s = made("sum(i = 1..N, p_x[i]^2/(2*w[i]))"
+                            " + x[1]^2/2 + x[N]^2/2"
+                            " + sum(i = 1..N-1, (x[i+1] - x[i])^2/2"
+                            " + a/3*(x[i+1] - x[i])^3)",
+                            names, N);
+    ck_assert_uint_eq(s.system->n_terms, 4);
+    ck_assert_uint_eq(s.system->terms[0]->is.count, N);
+    ck_assert_uint_eq(s.system->terms[3]->is.count, N - 1);
+    ck_assert_uint_eq(s.system->terms[3]->is.nq, 2);
+    random_state(N, q, p);
+    double h, sum = q[0] * q[0] / 2 + q[N - 1] * q[N - 1] / 2;
+    for (size_t i = 0; i < N; i++) {
+        double d = i + 1 < N ? q[i + 1] - q[i] : 0;
+        sum += p[i] * p[i] / (2 * w[i]) + d * d / 2 + 0.25 / 3 * d * d * d;
+    }
+    evaluate(s.system, 0, q, p, &h, slopes);
+    ck_assert_double_eq_tol(h, sum, 1e-11 * fabs(sum));
+    for (size_t i = 1; i < N - 1; i++) {
+        double left = q[i] - q[i - 1], right = q[i + 1] - q[i];
+        double force = left + 0.25 * left * left - right - 0.25 * right * right;
+        ck_assert_double_eq_tol(slopes[i], force, 1e-12);
+        ck_assert_double_eq_tol(slopes[N + i], p[i] / w[i], 1e-14);
+    }
+    system_done(&s);
+    nevh__names_free(names);
+}
+END_TEST
+
+/* Every pair of 40 bodies with three coordinates each. */
+START_TEST(many_bodies) {
+    enum { N = 20 };
+    static double w[3 * N];
+    nevh__names *names = chain_names(3 * N, w);
+    compare_with_whole(
+        "sum(i = 1..60, p_x[i]^2/(2*w[i]))"
+        " - sum(i = 1..20, j = i+1..20, w[i]*w[j]/sqrt(0.1 + (x[3*i-2] - "
+        "x[3*j-2])^2 + (x[3*i-1] - x[3*j-1])^2 + (x[3*i] - x[3*j])^2))",
+        names, 3 * N);
+    compare_with_whole(
+        "-sum(i = 1..20, j = i+1..20, w[i]*w[j]/sqrt(0.1 + sum(k = 0..2, "
+        "(x[3*i-k] - x[3*j-k])^2)))",
+        names, 3 * N);
+    formula_system s = made("sum(i = 1..20, j = i+1..20, 1/(1 + sum(k = 0..2, "
+                            "(x[3*i-k] - x[3*j-k])^2)))",
+                            names, 3 * N);
+    ck_assert_uint_eq(s.system->n_terms, 1);
+    ck_assert_uint_eq(s.system->terms[0]->is.count, 190);
+    ck_assert_uint_eq(s.system->terms[0]->is.nq, 6);
+    system_done(&s);
+    nevh__names_free(names);
+}
+END_TEST
+
+/* The model in text. */
+START_TEST(double_pendulum_in_text) {
+    nevh__formula_error e;
+    nevh__names *names = nevh__names_new();
+    const nevh_model *model = nevh_double_pendulum_model;
+    const nevh_double_pendulum *a = model->defaults;
+    nevh__names_add_parameter(names, "m", 0, &a->m, &e);
+    nevh__names_add_parameter(names, "l", 0, &a->l, &e);
+    nevh__names_add_parameter(names, "g", 0, &a->g, &e);
+    nevh__names_add_coordinate(names, "phi1", 0, 0, &e);
+    nevh__names_add_coordinate(names, "phi2", 0, 1, &e);
+    define(names, "d", "phi1 - phi2");
+    formula_system s =
+        made("(p_phi1^2 + 2*p_phi2^2 - 2*p_phi1*p_phi2*cos(d))"
+             " / (2*m*l^2*(1 + sin(d)^2)) - m*g*l*(2*cos(phi1) + cos(phi2))",
+             names, 2);
+    ck_assert_uint_eq(s.system->n_terms, 3);
+    nevh_system *reference = model->system(a);
+    for (int i = 0; i < 100; i++) {
+        double q[2], p[2], h[2], slopes[2][4];
+        random_state(2, q, p);
+        evaluate(s.system, 0, q, p, &h[0], slopes[0]);
+        evaluate(reference, 0, q, p, &h[1], slopes[1]);
+        ck_assert_double_eq_tol(h[0], h[1], 1e-14 * (1 + fabs(h[1])));
+        for (int k = 0; k < 4; k++)
+            ck_assert_double_eq_tol(slopes[0][k], slopes[1][k],
+                                    1e-13 * (1 + fabs(slopes[1][k])));
+    }
+    nevh_system_free(reference);
+    system_done(&s);
+    nevh__names_free(names);
+}
+END_TEST
+
+/* Observables may read velocities, which are constants of the tape. */
+START_TEST(velocities) {
+    nevh__names *names = formula_names();
+    nevh__formula_error e;
+    nevh__tree *tree = nevh__tree_parse("x*v_y + v_q[3]^2 + p_x", &e);
+    unsigned reads = 0;
+    ck_assert_int_eq(nevh__tree_check(tree, names, 15, &reads, &e), NEVH_OK);
+    ck_assert_uint_eq(reads, NEVH__READS_STATE | NEVH__READS_V);
+    nevh__tape *tape = nevh__tree_tape(tree, names, 15, &e);
+    ck_assert(tape != NULL);
+    const double q[6] = {2}, p[6] = {5}, v[6] = {0, 3, 0, 0, 7};
+    ck_assert_double_eq(nevh__tape_value(0, q, p, v, tape), 6 + 49 + 5);
+    nevh__tape_free(tape);
+    ck_assert(!nevh__tree_tape(tree, names, NEVH__READS_STATE, &e));
+    ck_assert_uint_eq(e.column, 3);
+    nevh__tree_free(tree);
+    nevh__names_free(names);
+}
+END_TEST
+
+/* Formulas drawn at random: what is split and gathered is the same function. */
+
+static char text[4000];
+static unsigned loops; /* indices in force: i0, i1, ... */
+
+static void put(const char *piece) {
+    ck_assert_uint_lt(strlen(text) + strlen(piece), sizeof text);
+    strcat(text, piece);
+}
+
+static void put_number(void) {
+    static const char *const numbers[] = {"2", "0.5", "m", "k", "w[2]", "3"};
+    char index[20];
+    if (loops && random_below(2)) {
+        snprintf(index, sizeof index, random_below(2) ? "w[i%u]" : "i%u",
+                 random_below(loops));
+        put(index);
+    } else {
+        put(numbers[random_below(6)]);
+    }
+}
+
+static void put_variable(void) {
+    static const char *const variables[] = {
+        "x", "y", "p_x", "q[2]", "p_y", "d", "p_q[3]", "t", "all", "kinetic"};
+    char element[40];
+    unsigned i = loops ? random_below(loops) : 0;
+    if (!loops || random_below(3) == 0)
+        put(variables[random_below(10)]);
+    else {
+        snprintf(element, sizeof element,
+                 random_below(2) ? "%s[i%u]" : "%s[mod(i%u, N) + 1]",
+                 random_below(2) ? "q" : "p_q", i);
+        put(element);
+    }
+}
+
+static void put_sum(unsigned depth);
+
+static void put_loop(unsigned depth) {
+    char head[80];
+    if (loops == 2) {
+        put_variable();
+        return;
+    }
+    snprintf(head, sizeof head,
+             loops && random_below(2) ? "sum(i%u = i0..N, "
+                                      : "sum(i%u = 1..%u, ",
+             loops, 1 + random_below(4));
+    put(head);
+    loops++;
+    put_sum(depth);
+    loops--;
+    put(")");
+}
+
+static void put_factor(unsigned depth) {
+    static const char *const functions[][2] = {
+        {"(", ")"},    {"(", ")"},     {"-(", ")"},          {"sin(", ")"},
+        {"cos(", ")"}, {"tanh(", ")"}, {"1/(2 + sin(", "))"}};
+    unsigned kind = random_below(depth ? 10 : 4);
+    if (kind < 2)
+        put_number();
+    else if (kind < 4)
+        put_variable();
+    else if (kind < 6)
+        put_loop(depth - 1);
+    else {
+        unsigned i = random_below(sizeof functions / sizeof *functions);
+        put(functions[i][0]);
+        put_sum(depth - 1);
+        put(functions[i][1]);
+    }
+}
+
+static void put_product(unsigned depth) {
+    unsigned count = 1 + random_below(3);
+    for (unsigned i = 0; i < count; i++) {
+        if (i)
+            put("*");
+        put_factor(depth);
+    }
+    if (random_below(3) == 0)
+        put(random_below(2) ? "/m" : "/(2*k)");
+    if (random_below(8) == 0)
+        put("^1");
+}
+
+static void put_sum(unsigned depth) {
+    unsigned count = 1 + random_below(3);
+    if (random_below(5) == 0)
+        put("-");
+    for (unsigned i = 0; i < count; i++) {
+        if (i)
+            put(random_below(2) ? " + " : " - ");
+        put_product(depth);
+    }
+}
+
+START_TEST(random_formulas) {
+    nevh__names *names = formula_names();
+    seed = 100 + (unsigned)_i;
+    for (int i = 0; i < 100; i++) {
+        text[0] = '\0';
+        put_sum(1 + random_below(3));
+        compare_with_whole(text, names, FORMULA_DOF);
+    }
+    ck_assert_int_ge(compared, 60);
+    nevh__names_free(names);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("formula_terms");
+    TCase *cases = tcase_create("terms");
+    tcase_add_loop_test(cases, split, 0, sizeof table / sizeof *table);
+    tcase_add_test(cases, order_and_tables);
+    tcase_add_test(cases, pairs);
+    tcase_add_loop_test(cases, rings, 1, 7);
+    tcase_add_test(cases, long_chain);
+    tcase_add_test(cases, many_bodies);
+    tcase_add_test(cases, double_pendulum_in_text);
+    tcase_add_test(cases, velocities);
+    tcase_add_loop_test(cases, random_formulas, 0, 10);
+    suite_add_tcase(suite, cases);
+    return run_suite(suite);
+}
