@@ -163,7 +163,8 @@ has '^ double-pendulum +2 '
 exits 0 check double-pendulum
 has 'separable +no'
 has '^ verlet +2 +no$'
-has 'needs H = T\(p\) \+ V\(q\)'
+has 'adaptive-verlet: needs H = '
+has 'mixes coordinates'
 has '^ gauss4 +4 +yes'
 exits 0 effects pendulum --t-end 1
 has '^ kinetic +on +momenta '

@@ -8,9 +8,9 @@
 static void tell_finding(const nevh_probe *probe, nevh_question question,
                          list *notes) {
     nevh_finding f = nevh_probe_finding(probe, question);
-    list_print(notes, "  %-24s %-3s  largest violation %.1e, limit %.1e%s%s",
+    list_print(notes, "  %-24s %-3s  %.1e  %.1e%s%s",
                nevh_question_name(question), f.holds ? "yes" : "no", f.evidence,
-               f.limit, f.term && !f.holds ? ", by " : "",
+               f.limit, f.term && !f.holds ? "  " : "",
                f.term && !f.holds ? f.term : "");
 }
 
@@ -23,7 +23,9 @@ static void tell_probes(const plan *p, list *notes) {
                    nevh_probe_message(probe));
     } else {
         const double *lengths = nevh_probe_lengths(probe);
-        list_add(notes, "From values of H:");
+        list_add(notes,
+                 "From values of H (largest violation met, and what rounding "
+                 "would allow):");
         for (int i = 0; i < NEVH_FINDINGS; i++)
             tell_finding(probe, (nevh_question)i, notes);
         list_add(notes, "Lengths over which H varies:");

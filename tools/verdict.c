@@ -53,11 +53,11 @@ static void tell_drift(const plan *p, const row rows[], size_t count,
                        const row *r, list *words) {
     const row *b = bounded_beside(rows, count, r);
     double span = p->t_end - p->run->t_start;
-    char *text = text_print("%s at dt = %g %s energy steadily, %.2g %% of the "
-                            "scale over the run",
-                            r->integrator, r->dt,
-                            r->energy.drift < 0 ? "loses" : "gains",
-                            100 * fabs(r->energy.drift) * span);
+    char *text = text_print(
+        "%s at dt = %.4g %s energy steadily, %.2g %% of the "
+        "scale over the run",
+        r->integrator, r->dt, r->energy.drift < 0 ? "loses" : "gains",
+        100 * fabs(r->energy.drift) * span);
     double passes = b ? b->energy.max / fabs(r->energy.drift) : 0;
     double t = p->run->t_start + passes;
     if (!b)
@@ -84,7 +84,7 @@ static void tell_mixed(const row rows[], size_t count, size_t i, list *words) {
     for (size_t k = 0; k < count; k++)
         if (strcmp(rows[k].integrator, rows[i].integrator) == 0 &&
             !is(&rows[k], verdict)) {
-            list_print(words, "%s at dt = %g %s.", rows[i].integrator,
+            list_print(words, "%s at dt = %.4g %s.", rows[i].integrator,
                        rows[i].dt, text[verdict]);
             return;
         }
