@@ -151,6 +151,18 @@ fi
 exits 0 compare pendulum --integrators verlet --t-end 1 --quiet
 lacks '^#|effects|bounded:'
 
+# A scale of the scene's own: 10 of 0.5, so that errors are 20 times smaller.
+sed 's/^t_end .*/&\nenergy_scale = 10*k/' "$srcdir/scenes/oscillator.nevh" \
+    >$work/scaled.nevh
+for scene in oscillator $work/scaled.nevh; do
+    exits 0 compare $scene --integrators verlet --dt 0.1 --format csv
+    grep -v '^#' $work/out | awk -F, 'NR == 2 { print $9, $12 }' >>$work/scales
+done
+awk 'NR == 1 { max = $1; drift = $2 }
+     NR == 2 { wrong = $1 * 20 / max - 1; wrong += $2 * 20 / drift - 1 }
+     END { exit !(NR == 2 && wrong < 1e-9 && wrong > -1e-9) }' $work/scales ||
+    { fails "takes another scale"; cat $work/scales; }
+
 # The other commands.
 exits 0 list integrators
 has '^ verlet +2 '

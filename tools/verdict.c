@@ -49,6 +49,28 @@ static const row *bounded_beside(const row rows[], size_t count,
     return NULL;
 }
 
+/* When the drifting error passes, or would pass, the bounded one. */
+static void tell_crossing(const plan *p, const row *r, const row *b,
+                          const char *text, list *words) {
+    static const double long_after = 1e4; /* runs: of no practical meaning */
+    double span = p->t_end - p->run->t_start;
+    double passes = b ? b->energy.max / fabs(r->energy.drift) : 0;
+    double t = p->run->t_start + passes;
+    if (!b)
+        list_print(words, "%s.", text);
+    else if (passes < span)
+        list_print(words, "%s; it passed %s's %.1e near t = %.4g.", text,
+                   b->integrator, b->energy.max, t);
+    else if (passes < long_after * span)
+        list_print(words,
+                   "%s; still below %s's %.1e, which it would pass near t = "
+                   "%.4g.",
+                   text, b->integrator, b->energy.max, t);
+    else
+        list_print(words, "%s; that is far below %s's %.1e.", text,
+                   b->integrator, b->energy.max);
+}
+
 static void tell_drift(const plan *p, const row rows[], size_t count,
                        const row *r, list *words) {
     const row *b = bounded_beside(rows, count, r);
@@ -58,18 +80,7 @@ static void tell_drift(const plan *p, const row rows[], size_t count,
         "scale over the run",
         r->integrator, r->dt, r->energy.drift < 0 ? "loses" : "gains",
         100 * fabs(r->energy.drift) * span);
-    double passes = b ? b->energy.max / fabs(r->energy.drift) : 0;
-    double t = p->run->t_start + passes;
-    if (!b)
-        list_add(words, text);
-    else if (passes < span)
-        list_print(words, "%s; it passed %s's %.1e near t = %.4g.", text,
-                   b->integrator, b->energy.max, t);
-    else
-        list_print(words,
-                   "%s; still below %s's %.1e, which it would pass near t = "
-                   "%.4g.",
-                   text, b->integrator, b->energy.max, t);
+    tell_crossing(p, r, b, text, words);
     free(text);
 }
 
