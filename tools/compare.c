@@ -177,7 +177,7 @@ static void show_numbers(table *t, const plan *p, const row *r) {
     if (r->energy.verdict >= NEVH_DRIFTS)
         table_shown(t, "%+.1e", r->energy.drift * span);
     else
-        table_text(t, "-");
+        table_shown(t, "-");
     table_shown(t, "%+.1e", r->energy.final);
     show_count(t, r->counts.hamiltonians);
     table_shown(t, "%.3g", 1000 * r->seconds);
