@@ -37,8 +37,8 @@ int nevh__tree_integer(const nevh__tree *tree, const nevh__names *names,
         return error->status;
     nevh__expression whole = {.form = NEVH__FORM_NUMBER,
                               .number = number,
-                              .column = 1,
-                              .length = tree->length};
+                              .column = tree->root->column,
+                              .length = tree->root->length};
     nevh__scope scope = {.error = error};
     nevh__expression_integer(&scope, &whole, "the value", value);
     return error->status;

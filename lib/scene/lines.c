@@ -52,7 +52,7 @@ static bool cut_lines(nevh_scene *s, const char *text, size_t bytes) {
     for (size_t at = 0; more && !s->status;) {
         size_t length = line_bytes(copy + at, bytes - at);
         nevh__line *line = &s->lines[s->n_lines++];
-        more = at + length < bytes;
+        more = at + length + 1 < bytes;
         bool carriage = length && copy[at + length - 1] == '\r';
         *line = (nevh__line){s->n_lines, copy + at, length - carriage};
         check_characters(s, line);
@@ -82,16 +82,26 @@ static bool cut_section(nevh_scene *s, const nevh__piece *all,
                                  NEVH__SECTION_COUNT);
 }
 
+/* A key whose bracket is not closed has no end but the first "=". */
+static bool cut_open_key(nevh_scene *s, const nevh__piece *all,
+                         nevh__piece *key) {
+    const char *end = strchr(all->text, '=');
+    size_t from = (size_t)(all->at - all->line->text);
+    if (!end)
+        return nevh__scene_fail(s, NEVH_EINVAL, all,
+                                "this is neither NAME = VALUE nor [SECTION]");
+    return nevh__piece_take(s, &s->pool, all->line, from,
+                            from + (size_t)(end - all->text), key);
+}
+
 static bool cut_key(nevh_scene *s, const nevh__piece *all,
                     nevh__statement *statement) {
     char stop;
     statement->value = *all;
     if (!nevh__piece_split(s, &s->pool, &statement->value, "=", &statement->key,
-                           &stop))
+                           &stop) ||
+        (!stop && !cut_open_key(s, all, &statement->key)))
         return false;
-    if (!stop && !strchr(all->text, '='))
-        return nevh__scene_fail(s, NEVH_EINVAL, all,
-                                "this is neither NAME = VALUE nor [SECTION]");
     nevh__formula_error error;
     if (nevh__head_parse(statement->key.text, &statement->head, &error))
         return nevh__scene_fail_formula(s, &statement->key, &error);

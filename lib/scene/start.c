@@ -12,7 +12,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { RESCALINGS = 60, MOST_ITERATIONS = 200, MOST_IDLE = 5, MOST_ROWS = 500 };
+enum {
+    RESCALINGS = 1000,
+    MOST_ITERATIONS = 200,
+    MOST_IDLE = 20,
+    MOST_ROWS = 500
+};
 
 static const double CLOSE = 1e-10; /* residual that counts as solved */
 
@@ -22,20 +27,26 @@ typedef struct {
     size_t rows, *row; /* which of the n momenta are sought */
     const double *q;
     double *p, *slope, *rest; /* n; slope: dH/dp at p, rest: at p = 0 */
-    double *unit, *best;      /* rows */
-    double scale, residual;   /* of velocities; of the best, largest */
+    double *scale;            /* rows: of velocities */
+    double *unit, *best;      /* rows: of momenta */
+    double residual;          /* of the best, largest */
     gsl_multiroot_fdfsolver *gsl;
     gsl_vector *u, *moved, *f, *f_moved;
 } search;
 
-/* The velocities at p, and how far they are off at most, over the scale. */
+/* How far the velocity of a row is off, over its scale. */
+static double offset(const search *s, size_t j) {
+    size_t k = s->row[j];
+    return (s->slope[k] - s->m->v[k]) / s->scale[j];
+}
+
+/* The velocities at p, and how far they are off at most. */
 static double measure(search *s) {
     double most = 0;
     nevh__velocities(s->m->system, s->m->run.t_start, s->q, s->p, s->room,
                      s->slope);
     for (size_t j = 0; j < s->rows; j++) {
-        size_t k = s->row[j];
-        double off = fabs(s->slope[k] - s->m->v[k]) / s->scale;
+        double off = fabs(offset(s, j));
         most = fmax(most, isfinite(off) ? off : INFINITY);
     }
     if (most < s->residual) {
@@ -53,8 +64,7 @@ static int residual(const gsl_vector *u, void *params, gsl_vector *f) {
     if (!(measure(s) < INFINITY))
         return GSL_EBADFUNC;
     for (size_t j = 0; j < s->rows; j++)
-        gsl_vector_set(f, j,
-                       (s->slope[s->row[j]] - s->m->v[s->row[j]]) / s->scale);
+        gsl_vector_set(f, j, offset(s, j));
     return GSL_SUCCESS;
 }
 
@@ -89,10 +99,10 @@ static int both(const gsl_vector *u, void *params, gsl_vector *f,
     return status ? status : differences(u, f, params, jacobian);
 }
 
-static void iterate(search *s) {
+static void iterate(search *s, bool from_best) {
     gsl_multiroot_function_fdf f = {residual, slopes, both, s->rows, s};
     for (size_t j = 0; j < s->rows; j++)
-        gsl_vector_set(s->u, j, s->best[j] / s->unit[j]);
+        gsl_vector_set(s->u, j, from_best ? s->best[j] / s->unit[j] : 0);
     int status = gsl_multiroot_fdfsolver_set(s->gsl, &f, s->u);
     for (int i = 0, idle = 0;
          !status && i < MOST_ITERATIONS && idle < MOST_IDLE && s->residual > 0;
@@ -103,28 +113,61 @@ static void iterate(search *s) {
     }
 }
 
+/* What to multiply a momentum by; 1 where that is not known. */
+static double factor_of(double wanted, double has) {
+    double factor = wanted / has;
+    if (wanted == 0 || has == 0 || !isfinite(factor))
+        return wanted == 0 ? 0 : 1;
+    return copysign(fmin(fmax(fabs(factor), 1e-3), 1e3), factor);
+}
+
 /* Each momentum times the velocity wanted over the one that it has, both
    counted from rest. */
 static void rescale(search *s) {
+    bool moves = true;
     for (size_t j = 0; j < s->rows; j++)
         s->p[s->row[j]] = 1;
-    for (int i = 0; i < RESCALINGS && measure(s) > DBL_EPSILON; i++)
+    for (int i = 0; moves && i < RESCALINGS && measure(s) > DBL_EPSILON; i++) {
+        moves = false;
         for (size_t j = 0; j < s->rows; j++) {
             size_t k = s->row[j];
-            double has = s->slope[k] - s->rest[k];
-            double factor = (s->m->v[k] - s->rest[k]) / has;
-            if (has != 0 && isfinite(factor))
-                s->p[k] *= fmin(fmax(factor, -1e30), 1e30);
+            double p = s->p[k] * factor_of(s->m->v[k] - s->rest[k],
+                                           s->slope[k] - s->rest[k]);
+            bool fine = p == 0 || (fabs(p) > 1e-200 && fabs(p) < 1e200);
+            moves |= fine && p != s->p[k];
+            s->p[k] = fine ? p : s->p[k];
         }
+    }
 }
 
+/* The size of each momentum: its velocity is a quarter of the scale, about,
+   while the others are at rest.  A quarter since velocities may have a limit,
+   such as that of light. */
 static void choose_units(search *s) {
+    for (size_t j = 0; j < s->rows; j++)
+        s->p[s->row[j]] = 0;
+    for (size_t j = 0; j < s->rows; j++) {
+        double *p = &s->p[s->row[j]], factor = 0;
+        *p = 1;
+        for (int i = 0; i < RESCALINGS && !(factor > 0.5 && factor < 2); i++) {
+            measure(s);
+            factor = factor_of(s->scale[j] / 4,
+                               fabs(s->slope[s->row[j]] - s->rest[s->row[j]]));
+            *p *= factor;
+        }
+        s->unit[j] = *p > 1e-200 && *p < 1e200 ? *p : 1;
+        *p = 0;
+    }
+}
+
+/* Velocities that are zero are compared with the largest. */
+static void choose_scales(search *s) {
     double most = 0;
     for (size_t j = 0; j < s->rows; j++)
-        most = fmax(most, fabs(s->best[j]));
+        most = fmax(most, fabs(s->m->v[s->row[j]]));
     for (size_t j = 0; j < s->rows; j++) {
-        double size = fabs(s->best[j]);
-        s->unit[j] = size > 0 ? size : most > 0 ? most : 1;
+        double size = fabs(s->m->v[s->row[j]]);
+        s->scale[j] = size > 0 ? size : most > 0 ? most : 1;
     }
 }
 
@@ -149,9 +192,11 @@ static bool take_memory(search *s) {
     s->row = nevh__array(n, sizeof *s->row);
     s->slope = nevh__array(n, sizeof *s->slope);
     s->rest = nevh__array(n, sizeof *s->rest);
+    s->scale = nevh__array(n, sizeof *s->scale);
     s->unit = nevh__array(n, sizeof *s->unit);
     s->best = nevh__array(n, sizeof *s->best);
-    return s->room && s->row && s->slope && s->rest && s->unit && s->best;
+    return s->room && s->row && s->slope && s->rest && s->scale && s->unit &&
+           s->best;
 }
 
 static void done(search *s) {
@@ -165,28 +210,33 @@ static void done(search *s) {
     free(s->row);
     free(s->slope);
     free(s->rest);
+    free(s->scale);
     free(s->unit);
     free(s->best);
 }
 
-static int solve(search *s) {
-    for (size_t k = 0; k < s->m->n; k++) {
-        s->scale = fmax(s->scale, s->m->by_velocity[k] ? fabs(s->m->v[k]) : 0);
+static void choose_rows(search *s) {
+    for (size_t k = 0; k < s->m->n; k++)
         if (s->m->by_velocity[k])
             s->row[s->rows++] = k;
-    }
-    s->scale = s->scale > 0 ? s->scale : 1;
+    choose_scales(s);
     s->residual = INFINITY;
-    measure(s); /* momenta are zero here */
+    measure(s); /* the momenta sought are zero here */
     for (size_t k = 0; k < s->m->n; k++)
         s->rest[k] = isfinite(s->slope[k]) ? s->slope[k] : 0;
+}
+
+static int solve(search *s) {
+    choose_rows(s);
     rescale(s);
     if (s->residual > DBL_EPSILON && s->residual < INFINITY &&
         s->rows <= MOST_ROWS) {
-        choose_units(s);
         if (!take_gsl(s))
             return NEVH_ENOMEM;
-        iterate(s);
+        choose_units(s);
+        iterate(s, false);
+        if (s->residual > CLOSE)
+            iterate(s, true);
     }
     for (size_t j = 0; j < s->rows; j++)
         s->p[s->row[j]] = s->best[j];

@@ -74,9 +74,6 @@ bool nevh__scene_effects(nevh_scene *s) {
         return nevh__scene_no_memory(s);
     if (!nevh__scene_each(s, NULL, NEVH__EFFECTS, add_switch))
         return false;
-    if (!s->n_effects)
-        return nevh__scene_fail_at(s, NEVH_EINVAL, &s->lines[s->n_lines - 1], 1,
-                                   0, "there are no [effects]");
     return nevh__scene_each(s, NULL, NEVH__FRICTION, add_switch) &&
            nevh__scene_each(s, NULL, NEVH__SCENE, choose);
 }
@@ -98,6 +95,9 @@ static bool add_terms(nevh_scene *s, nevh__model *m,
 }
 
 bool nevh__model_terms(nevh_scene *s, nevh__model *m) {
+    if (!s->n_effects)
+        return nevh__scene_fail_at(s, NEVH_EINVAL, &s->lines[s->n_lines - 1], 1,
+                                   0, "there are no [effects]");
     m->system = nevh_system_new(m->n);
     if (!m->system)
         return nevh__scene_no_memory(s);

@@ -1,6 +1,7 @@
 /* nevh: numbers and arrays of numbers; parameters.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/scene_private.h"
+#include <stdio.h>
 #include <string.h>
 
 enum { MOST_ELEMENTS = 1 << 22 };
@@ -60,6 +61,13 @@ bool nevh__head_shape(nevh_scene *s, const nevh__model *m,
     return true;
 }
 
+/* Says for which index it was. */
+static void add_index(nevh__formula_error *error, const nevh__index *index) {
+    size_t used = strlen(error->text);
+    snprintf(error->text + used, sizeof error->text - used, " (%s = %ld)",
+             index->name, index->value);
+}
+
 static bool values_by_index(nevh_scene *s, const nevh__model *m,
                             const nevh__statement *statement,
                             const nevh__piece *value, size_t count,
@@ -70,6 +78,8 @@ static bool values_by_index(nevh_scene *s, const nevh__model *m,
     for (size_t k = 0; tree && !status && k < count; k++) {
         nevh__index index = {statement->head.index, (long)k + 1};
         status = nevh__tree_number(tree, m->names, &index, &values[k], &error);
+        if (status)
+            add_index(&error, &index);
     }
     nevh__tree_free(tree);
     return tree && (!status || nevh__scene_fail_formula(s, value, &error));
