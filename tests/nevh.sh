@@ -178,6 +178,18 @@ awk 'NR == 1 { max = $1; drift = $2 }
      END { exit !(NR == 2 && wrong < 1e-9 && wrong > -1e-9) }' $work/scales ||
     { fails "takes another scale"; cat $work/scales; }
 
+# Steps that follow the orbit.
+sed -e 's/^dt .*/dt = 2*pi\/50\ntransform = (x^2 + y^2)^(3\/4)/' \
+    -e 's/^x = .*/x = 1 + e/; s/^p_y = .*/p_y = sqrt((1 - e)\/(1 + e))/' \
+    "$srcdir/scenes/kepler-0.9.nevh" >$work/comet.nevh
+exits 0 compare $work/comet.nevh --t-end 20 \
+    --integrators gauss8,gauss8+transform,adaptive-verlet
+has '^ gauss8 .* [0-9.]+e[-+]0[01] '
+has '^ gauss8\+transform .* [0-9.]+e-(09|1[0-9]) .*bounded$'
+has '^ adaptive-verlet .*bounded$'
+exits 2 compare kepler --integrators gauss8+transform
+says 'has no transform'
+
 # The other commands.
 exits 0 list integrators
 has '^ verlet +2 '

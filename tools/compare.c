@@ -252,25 +252,49 @@ static void note_scale(const plan *p, const rows *r, list *notes) {
         }
 }
 
-static void note_rest(const plan *p, const rows *r, list *notes) {
+static void note_balance(const plan *p, list *notes) {
+    const char *why = !p->friction ? "H reads the time"
+                      : p->time    ? "H reads the time, and there is friction"
+                                   : "there is friction";
     if (p->balance)
         list_print(notes,
                    "%s: energy columns hold the error of the balance "
                    "H(t) - H(0) - what came in from outside",
-                   p->friction ? p->time ? "H reads the time, and there is "
-                                           "friction"
-                                         : "there is friction"
-                               : "H reads the time");
-    for (size_t i = 0; i < r->count; i++)
-        if (r->row[i].order < nevh_integrator_order(r->row[i].scheme)) {
-            list_add(notes, "friction is put around the steps of geometric "
-                            "schemes, which limits them to order 2");
-            break;
-        }
-    for (size_t k = 0; r->count && k < p->tolerances; k++)
-        if (r->row[r->count - 1].tolerance == p->tolerance[k])
-            list_add(notes, "adaptive schemes have a row a tolerance of [run], "
-                            "in its order; dt is their mean step");
+                   why);
+}
+
+static bool is_limited(const plan *p, const row *r) {
+    (void)p;
+    return r->order < nevh_integrator_order(r->scheme);
+}
+
+static bool has_nominal_steps(const plan *p, const row *r) {
+    return plan_transform(p, r->integrator) ||
+           nevh_integrator_own_time(r->scheme);
+}
+
+static bool has_tolerance(const plan *p, const row *r) {
+    (void)p;
+    return r->tolerance > 0;
+}
+
+/* What is to be said where it holds for a row. */
+static void note_rows(const plan *p, const rows *r, list *notes) {
+    static const struct {
+        bool (*holds)(const plan *, const row *);
+        const char *text;
+    } note[] = {{is_limited, "friction is put around the steps of geometric "
+                             "schemes, which limits them to order 2"},
+                {has_nominal_steps, "dt is nominal where time is transformed, "
+                                    "or the scheme chooses its own"},
+                {has_tolerance, "adaptive schemes have a row a tolerance of "
+                                "[run], in its order; dt is their mean step"}};
+    for (size_t k = 0; k < sizeof note / sizeof *note; k++)
+        for (size_t i = 0; i < r->count; i++)
+            if (note[k].holds(p, &r->row[i])) {
+                list_add(notes, note[k].text);
+                break;
+            }
     if (p->run->match_work)
         list_add(notes, "match = work is not there yet: rows are matched by "
                         "steps");
@@ -304,7 +328,8 @@ static page make_page(const options *o, const plan *p, const rows *r) {
     note_settings(o, &result.before);
     note_gradients(p, &result.before);
     note_scale(p, r, &result.before);
-    note_rest(p, r, &result.before);
+    note_balance(p, &result.before);
+    note_rows(p, r, &result.before);
     verdict_words(p, r->row, r->count, &result.after);
     if (is_table)
         list_reasons(r, &result.after);

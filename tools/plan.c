@@ -146,13 +146,20 @@ nevh_options plan_options(const plan *p, const char *gradient) {
                           .portable = p->portable};
 }
 
+const nevh_system *plan_transform(const plan *p, const char *name) {
+    bool transformed;
+    const nevh_integrator *scheme = plan_scheme(name, &transformed);
+    return transformed || nevh_integrator_own_time(scheme)
+               ? nevh_scene_transform(p->scene)
+               : NULL;
+}
+
 nevh_stepper *plan_first(const plan *p, const nevh_integrator **scheme) {
     for (size_t i = 0; i < p->integrators.count; i++) {
         nevh_options o = plan_options(p, p->gradients.item[0]);
         bool transformed;
         *scheme = plan_scheme(p->integrators.item[i], &transformed);
-        if (transformed)
-            o.transform = nevh_scene_transform(p->scene);
+        o.transform = plan_transform(p, p->integrators.item[i]);
         if (nevh_integrator_needs_tolerance(*scheme) && p->tolerances)
             o.tolerance = p->tolerance[0];
         nevh_stepper *s = nevh_stepper_new(p->system, *scheme, &o);

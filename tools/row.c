@@ -35,11 +35,8 @@ static int stop_when_unstable(void *data, size_t step, double t,
 }
 
 static nevh_stepper *new_stepper(const work *w, bool balance) {
-    bool transformed;
     nevh_options o = plan_options(w->plan, w->row->gradient);
-    plan_scheme(w->row->integrator, &transformed);
-    if (transformed)
-        o.transform = nevh_scene_transform(w->plan->scene);
+    o.transform = plan_transform(w->plan, w->row->integrator);
     o.tolerance = w->row->tolerance;
     o.balance = balance;
     return nevh_stepper_new(w->plan->system, w->row->scheme, &o);

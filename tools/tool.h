@@ -113,6 +113,9 @@ void plan_free(plan *);
 nevh_options plan_options(const plan *, const char *gradient);
 /* The scheme of "gauss4" or "gauss4+transform"; NULL for other names. */
 const nevh_integrator *plan_scheme(const char *name, bool *transformed);
+/* The transform that it is to be planned with: of names with "+transform", and
+   of schemes that choose their own times; NULL: none. */
+const nevh_system *plan_transform(const plan *, const char *name);
 /* The first integrator that fits, planned for the first gradient; NULL, with a
    message, when none does. */
 nevh_stepper *plan_first(const plan *, const nevh_integrator **);
