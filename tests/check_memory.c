@@ -218,10 +218,37 @@ static int make_tape(const setting *a) {
     return status;
 }
 
+/* Read, changed, and momenta sought. */
+static int make_scene(const setting *a) {
+    (void)a;
+    double q[3], p[3];
+    nevh_scene *s = nevh_scene_parse(
+        "f", "[scene]\ntitle = x\neffects = T, V, d\n"
+             "[parameters]\na = 2\nb[1..2] = a, 1\n"
+             "[coordinates]\nx[1..2] = 1\nv_x[1..2] = 0.5\n"
+             "y = 1, 2 ; period pi\n[definitions]\nc = x[1]*y\n"
+             "[effects]\nT = sum(i = 1..2, p_x[i]^2/b[i]) + "
+             "p_x[1]*p_x[2]*cos(c) + p_y^2\nV = c^2\n"
+             "[friction]\nd = x: 0.1, y: 0.2\n"
+             "[invariants]\nL = x[1] ; without V\n"
+             "[observables]\no = v_y\n[picture]\nbob = x[1], x[2]\n"
+             "[sections]\ns = when y = 0, both: c\n[labels]\ny = m\n"
+             "[run]\ndt = 0.1\nintegrators = verlet, rk4\ntransform = "
+             "1 + c^2\n");
+    int status = nevh_scene_status(s);
+    if (!status)
+        status = nevh_scene_set(s, "a = 3");
+    if (!status)
+        status = nevh_scene_start(s, q, p);
+    strcpy(text, nevh_scene_message(s));
+    nevh_scene_free(s);
+    return status;
+}
+
 /* Refuses the first request, then the second, until all are granted.  Returns
    how many there are. */
 static size_t starve(int (*attempt)(const setting *), const setting *a) {
-    for (size_t k = 1; k < 1000; k++) {
+    for (size_t k = 1; k < 10000; k++) {
         watch(k);
         int status = attempt(a);
         watching = false;
@@ -343,6 +370,12 @@ START_TEST(tapes) {
 }
 END_TEST
 
+START_TEST(scenes) {
+    const setting none = {0};
+    ck_assert_uint_ge(starve(make_scene, &none), 100);
+}
+END_TEST
+
 START_TEST(steps_take_no_memory) {
     const nevh_gradient *gradients[] = {nevh_central2, nevh_central8,
                                         nevh_exact};
@@ -399,6 +432,7 @@ int main(void) {
     tcase_add_loop_test(cases, balanced_steps_take_no_memory, 0, schemes);
     tcase_add_test(cases, defects);
     tcase_add_test(cases, tapes);
+    tcase_add_test(cases, scenes);
     tcase_add_loop_test(cases, steps_take_no_memory, 0, 3 * schemes);
     tcase_add_test(cases, gsl_system_without_memory);
     suite_add_tcase(suite, cases);

@@ -231,6 +231,45 @@ START_TEST(velocities) {
 }
 END_TEST
 
+/* No velocity depends on its own momentum alone; many instances. */
+START_TEST(velocities_of_others) {
+    nevh_scene *s =
+        scene_of("[coordinates]\nx[1..11] = 0\nv_x[i = 1..11] = i/7\n"
+                 "u = 0\nv_u = 2\nw = 0\nv_w = -0.5\n"
+                 "[effects]\nT = sum(i = 1..11, j = 1..11, p_x[i]*p_x[j]) + "
+                 "sum(i = 1..11, i*p_x[i]^2)\nO = p_u*p_w + p_u^3/5\n");
+    double q[13], p[13], sum = 0;
+    int status = nevh_scene_start(s, q, p);
+    ck_assert_msg(!status, "%s", nevh_scene_message(s));
+    for (int i = 0; i < 11; i++)
+        sum += p[i];
+    for (int i = 1; i <= 11; i++)
+        assert_close(2 * sum + 2 * i * p[i - 1], i / 7.);
+    assert_close(p[11], -0.5);
+    assert_close(p[12], 2 - 0.6 * 0.25);
+    nevh_scene_free(s);
+}
+END_TEST
+
+/* Too many for a dense solver. */
+START_TEST(velocities_of_many) {
+    nevh_scene *s =
+        scene_of("[coordinates]\nx[1..3000] = 0\nv_x[i = 1..3000] = i\n"
+                 "[effects]\nT = sum(i = 1..3000, i^2*sqrt(1 + p_x[i]^2))\n");
+    static double q[3000], p[3000];
+    int status = nevh_scene_start(s, q, p);
+    ck_assert_int_eq(status, NEVH_EMAXITER); /* v_x[1] = 1 is the limit */
+    nevh_scene_free(s);
+    s = scene_of("[coordinates]\nx[1..3000] = 0\nv_x[i = 1..3000] = i/2\n"
+                 "[effects]\nT = sum(i = 1..3000, i^2*sqrt(1 + p_x[i]^2))\n");
+    status = nevh_scene_start(s, q, p);
+    ck_assert_msg(!status, "%s", nevh_scene_message(s));
+    for (int i = 1; i <= 3000; i++)
+        assert_close(i * p[i - 1] / sqrt(1 + p[i - 1] * p[i - 1]), 0.5);
+    nevh_scene_free(s);
+}
+END_TEST
+
 START_TEST(velocities_out_of_reach) {
     nevh_scene *s = scene_of("[coordinates]\nx = 0\nv_x = 2\n"
                              "[effects]\nT = sqrt(1 + p_x^2)\n");
@@ -271,12 +310,10 @@ int main(void) {
     tcase_add_test(cases, parameters_are_set);
     tcase_add_test(cases, arrays);
     tcase_add_test(cases, velocities);
+    tcase_add_test(cases, velocities_of_others);
+    tcase_add_test(cases, velocities_of_many);
     tcase_add_test(cases, velocities_out_of_reach);
     tcase_add_test(cases, ends_of_lines);
     suite_add_tcase(suite, cases);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed > 0;
+    return run_suite(suite);
 }

@@ -45,6 +45,7 @@ static const struct {
     {"[parameters]\na = 1\nm[a = 1..3] = a\n", "3:1", "something else"},
     {"[parameters]\na = 1/0\n", "2:5", "infinite"},
     {"[parameters]\nm = \xCE\xB1\xCE\xB2 + 2 3\n", "2:10", "operator"},
+    {"[parameters]\n\xCE\xB1 = 2*zz\n", "2:7", "zz"},
     {"[parameters]\nm = \xFF\n", "2:5", "UTF-8"},
     {"[coordinates]\nx = 1, 2, 3\n" EFFECTS, "2:11", "VALUE, MOMENTUM"},
     {"[coordinates]\nx = 1 ; periode 2\n" EFFECTS, "2:9", "period FORMULA"},
@@ -59,6 +60,7 @@ static const struct {
     {"[coordinates]\nx = x\n" EFFECTS, "2:5", "x"},
     {COORDINATES "[definitions]\nd = x + z\n" EFFECTS, "4:9", "name z"},
     {COORDINATES "[definitions]\nd = e2\ne2 = d\n" EFFECTS, "4:5", "itself"},
+    {COORDINATES "[definitions]\nd = 10*e2\ne2 = zz\n" EFFECTS, "5:6", "zz"},
     {COORDINATES "[definitions]\nd = 1 +\n" EFFECTS, "4:7", "after"},
     {COORDINATES "[definitions]\nd = v_x\n" EFFECTS "V = x*d\n", "7:7",
      "velocities"},
@@ -135,6 +137,16 @@ START_TEST(caret_keeps_tabs) {
                      "f:2:8: error: the name \xCE\xB1z is not known\n"
                      "\tm\t= 2*\xCE\xB1z\n"
                      "\t \t    ^~");
+    nevh_scene_free(s);
+}
+END_TEST
+
+START_TEST(carriage_returns_are_not_shown) {
+    nevh_scene *s = nevh_scene_parse("f", "[parameters]\r\nm = zz\r\n");
+    ck_assert_str_eq(nevh_scene_message(s),
+                     "f:2:5: error: the name zz is not known\n"
+                     "m = zz\n"
+                     "    ^~");
     nevh_scene_free(s);
 }
 END_TEST
@@ -244,13 +256,10 @@ int main(void) {
     TCase *cases = tcase_create("scene errors");
     tcase_add_loop_test(cases, errors, 0, sizeof wrong / sizeof *wrong);
     tcase_add_test(cases, caret_keeps_tabs);
+    tcase_add_test(cases, carriage_returns_are_not_shown);
     tcase_add_test(cases, caret_in_a_long_line);
     tcase_add_test(cases, files);
     tcase_add_test(cases, mutations);
     suite_add_tcase(suite, cases);
-    SRunner *runner = srunner_create(suite);
-    srunner_run_all(runner, CK_NORMAL);
-    int failed = srunner_ntests_failed(runner);
-    srunner_free(runner);
-    return failed > 0;
+    return run_suite(suite);
 }

@@ -1,9 +1,15 @@
 /* nevh: scenes: H as text, with everything a run needs.
    SPDX-License-Identifier: GPL-3.0-or-later
 
-   A scene is a text file of sections [scene], [parameters], [coordinates],
-   [definitions], [effects], [friction], [invariants], [observables],
-   [picture], [sections], [labels], [run]; see scenes/pendulum.nevh. */
+   A scene is a text file (UTF-8) of sections [scene], [parameters],
+   [coordinates], [definitions], [effects], [friction], [invariants],
+   [observables], [picture], [sections], [labels], [run], each with lines
+   KEY = VALUE; # begins a comment.  [coordinates] and [effects] there must be.
+   All formulas are checked when the scene is read, also those that only some
+   commands ask for.
+
+   One thread at a time may use a scene; its system may be shared while the
+   scene is not changed. */
 #ifndef NEVH_SCENE_H
 #define NEVH_SCENE_H
 
@@ -19,46 +25,66 @@ typedef struct nevh_scene nevh_scene;
    returns  the scene, to be freed with nevh_scene_free; NULL only when memory
             is out; carries NEVH_EINVAL or NEVH_EFAILED (not readable)
             otherwise: the message is FILE:LINE:COLUMN: error: ..., the line,
-            and a caret under the column */
+            and a caret under the column, or FILE: error: ... where the file
+            cannot be read
+   name     instead of FILE; copied, as the text is
+   cost     linear in the text and in the instances of all sums */
 NEVH_API nevh_scene *nevh_scene_read(const char *path);
 NEVH_API nevh_scene *nevh_scene_parse(const char *name, const char *text);
 NEVH_API void nevh_scene_free(nevh_scene *); /* NULL is allowed */
+/* The status of reading or of the last call that can fail (set, enable,
+   start); NEVH_ENOMEM for NULL. */
 NEVH_API int nevh_scene_status(const nevh_scene *);
+/* The message to that status, or ""; never NULL.  Lines are separated by
+   newlines; none is at the end. */
 NEVH_API const char *nevh_scene_message(const nevh_scene *);
 
 /* Changes that make the system anew: a parameter ("NAME=FORMULA"; what depends
-   on it follows), and an effect on or off.  NEVH_EINVAL when there is none. */
+   on it follows), and an effect on or off.  An array takes a list, or one value
+   for all.
+   returns  NEVH_OK; NEVH_EINVAL when there is none of that name or the formula
+            is wrong (the message calls the line `assignment`), NEVH_EDOM,
+            NEVH_ENOMEM.  On failure the scene is as before and can still be
+            used.  A scene that was not read keeps its status.
+   cost     of set: as that of reading; all that was borrowed from the scene,
+            apart from texts of lines, is made anew */
 NEVH_API int nevh_scene_set(nevh_scene *, const char *assignment);
 NEVH_API int nevh_scene_enable(nevh_scene *, const char *effect, bool on);
 
 NEVH_API const char *nevh_scene_title(const nevh_scene *);  /* "" if none */
 NEVH_API const char *nevh_scene_source(const nevh_scene *); /* "" if none */
+/* 0 when the scene was not read. */
 NEVH_API size_t nevh_scene_dof(const nevh_scene *);
 /* "phi", "x[3]"; NULL when k is out of range. */
 NEVH_API const char *nevh_scene_coordinate(const nevh_scene *, size_t k);
-/* The text of a label ("t", "energy", a coordinate); "" if there is none. */
+/* The text of a label ("t", "energy", a coordinate); "" if there is none.
+   x[3] has that of x unless it has one of its own. */
 NEVH_API const char *nevh_scene_label(const nevh_scene *, const char *name);
 
 /* The system, effects switched as the scene says, friction included.  Owned by
-   the scene and valid until it is changed or freed; NULL when it could not be
-   made (the scene carries the status). */
+   the scene and valid until it is changed or freed; NULL when the scene was not
+   read.  Every term brings values, blocks and an exact gradient. */
 NEVH_API const nevh_system *nevh_scene_system(nevh_scene *);
-/* The state at t_start, n each; initial velocities are solved for momenta. */
+/* The state at t_start, n each; initial velocities are solved for momenta, with
+   the effects that are on.
+   returns  NEVH_OK; NEVH_EMAXITER when no momenta give these velocities (the
+            message says which line asks for them); NEVH_ENOMEM */
 NEVH_API int nevh_scene_start(nevh_scene *, double q[], double p[]);
 
-/* [run], with defaults filled in; names are as written.  Lists may be empty
-   where the default depends on H. */
+/* [run], with defaults filled in; names are as written.  Lists are empty where
+   nothing is given and the default depends on H: dt and integrators. */
 typedef struct {
-    double t_start, t_end;
+    double t_start, t_end; /* t_end: NAN where none is given */
     size_t dts, integrators, gradients, tolerances;
     const double *dt, *tolerance;
     const char *const *integrator, *const *gradient;
-    double gradient_step;   /* 0: auto */
-    double energy_scale;    /* 0: from H */
-    bool match_work;        /* match = work */
-    const char *reference;  /* NULL: none named */
-    const char *transform;  /* formula; NULL: none */
+    double gradient_step;  /* 0: auto */
+    double energy_scale;   /* 0: from H */
+    bool match_work;       /* match = work */
+    const char *reference; /* NULL: none named */
+    const char *transform; /* formula; NULL: none */
 } nevh_scene_run;
+/* Valid as long as the system; NULL when the scene was not read. */
 NEVH_API const nevh_scene_run *nevh_scene_run_settings(nevh_scene *);
 /* s(q, p) of the transform as a system; NULL if there is none. */
 NEVH_API const nevh_system *nevh_scene_transform(nevh_scene *);
