@@ -179,6 +179,23 @@ static double chain_energy(const double q[], const double p[]) {
     return h;
 }
 
+/* Reading is linear in the text. */
+START_TEST(long_lists) {
+    enum { COUNT = 40000 };
+    static char text[COUNT * 8 + 200];
+    char *to = text + sprintf(text, "[coordinates]\nx[1..%d] = 0", COUNT);
+    for (int i = 1; i < COUNT; i++)
+        to += sprintf(to, ", %d", i);
+    sprintf(to, "\n[effects]\nV = sum(i = 1..%d, x[i])\n", COUNT);
+    static double q[COUNT], p[COUNT];
+    nevh_scene *s = scene_of(text);
+    ck_assert_int_eq(nevh_scene_start(s, q, p), NEVH_OK);
+    for (int i = 0; i < COUNT; i++)
+        ck_assert(q[i] == i && p[i] == 0);
+    nevh_scene_free(s);
+}
+END_TEST
+
 START_TEST(arrays) {
     nevh_scene *s = scene_of(chain);
     double q[32], p[32], rates[32];
@@ -270,12 +287,28 @@ START_TEST(velocities_of_many) {
 }
 END_TEST
 
+START_TEST(velocities_of_a_chain) {
+    nevh_scene *s = scene_of(moving_chain);
+    double q[4], p[4], c = cos(0) / 3;
+    int status = nevh_scene_start(s, q, p);
+    ck_assert_msg(!status, "%s", nevh_scene_message(s));
+    assert_close(p[0] / (4 / 3.) + c * p[3], 0.2);
+    assert_close(p[1] / (5 / 3.), 0.4);
+    assert_close(p[2] / 2, 0.6);
+    assert_close(p[3] / sqrt(1 + p[3] * p[3]) + c * p[0], -0.3);
+    nevh_scene_free(s);
+}
+END_TEST
+
 START_TEST(velocities_out_of_reach) {
     nevh_scene *s = scene_of("[coordinates]\nx = 0\nv_x = 2\n"
                              "[effects]\nT = sqrt(1 + p_x^2)\n");
     double q, p;
     ck_assert_int_eq(nevh_scene_start(s, &q, &p), NEVH_EMAXITER);
     ck_assert_ptr_nonnull(strstr(nevh_scene_message(s), "test:3:1: error:"));
+    ck_assert_int_eq(nevh_scene_status(s), NEVH_EMAXITER);
+    ck_assert_int_eq(nevh_scene_enable(s, "T", true), NEVH_OK);
+    ck_assert_str_eq(nevh_scene_message(s), "");
     nevh_scene_free(s);
 }
 END_TEST
@@ -309,9 +342,11 @@ int main(void) {
     tcase_add_test(cases, effects_are_switched);
     tcase_add_test(cases, parameters_are_set);
     tcase_add_test(cases, arrays);
+    tcase_add_test(cases, long_lists);
     tcase_add_test(cases, velocities);
     tcase_add_test(cases, velocities_of_others);
     tcase_add_test(cases, velocities_of_many);
+    tcase_add_test(cases, velocities_of_a_chain);
     tcase_add_test(cases, velocities_out_of_reach);
     tcase_add_test(cases, ends_of_lines);
     suite_add_tcase(suite, cases);

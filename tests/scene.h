@@ -69,4 +69,23 @@ static const char shaken_pendulum[] =
     "match       = work\n"
     "stop        = cos(phi2) < -2\n";
 
+/* Arrays, and momenta that are to be found. */
+static const char moving_chain[] =
+    "[parameters]\n"
+    "N = 3\n"
+    "m[i = 1..N] = 1 + i/N\n"
+    "[coordinates]\n"
+    "x[1..N] = 0.1, 0, -0.1\n"
+    "v_x[i = 1..N] = i/5\n"
+    "y = 1 ; period 4\n"
+    "v_y = -0.3\n"
+    "[effects]\n"
+    "T = sum(i = 1..N, p_x[i]^2/(2*m[i])) + sqrt(1 + p_y^2) + "
+    "p_x[1]*p_y*cos(x[2])/3\n"
+    "V = sum(i = 1..N-1, (x[i+1] - x[i])^4) + y*x[N]\n"
+    "[friction]\n"
+    "drag = x[1]: 0.5, x[2..N]: 0.1, y: 0\n"
+    "[run]\n"
+    "transform = 1 + sum(i = 1..N, x[i]^2)\n";
+
 #endif

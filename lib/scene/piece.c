@@ -32,22 +32,31 @@ bool nevh__piece_split(nevh_scene *s, nevh__pool *pool, nevh__piece *rest,
            nevh__piece_take(s, pool, line, to + (to < end), end, rest);
 }
 
+static size_t count_commas(const char *text) {
+    size_t count = 0;
+    for (; *text; text++)
+        count += *text == ',';
+    return count;
+}
+
 nevh__piece *nevh__piece_list(nevh_scene *s, nevh__pool *pool,
                               const nevh__piece *value, size_t *count) {
-    nevh__piece rest = *value;
-    size_t most = 1;
-    for (const char *at = value->text; *at; at++)
-        most += *at == ',';
-    nevh__piece *parts = nevh__pool_take(pool, most, sizeof *parts);
-    if (!parts) {
+    const char *text = value->text;
+    size_t from = (size_t)(value->at - value->line->text), at = 0;
+    nevh__piece *parts =
+        nevh__pool_take(pool, count_commas(text) + 1, sizeof *parts);
+    if (!parts)
         nevh__scene_no_memory(s);
-        return NULL;
-    }
-    char stop = ',';
-    for (*count = 0; stop; ++*count)
-        if (!nevh__piece_split(s, pool, &rest, ",", &parts[*count], &stop))
+    for (*count = 0; parts;) {
+        size_t end = at + nevh__formula_extent(text + at, ",");
+        if (!nevh__piece_take(s, pool, value->line, from + at, from + end,
+                              &parts[(*count)++]))
             return NULL;
-    return parts;
+        if (!text[end])
+            return parts;
+        at = end + 1;
+    }
+    return NULL;
 }
 
 size_t nevh__piece_column(const nevh__piece *piece) {

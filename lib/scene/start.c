@@ -260,6 +260,8 @@ int nevh_scene_start(nevh_scene *scene, double q[], double p[]) {
     bool any = false;
     if (!m)
         return scene->status;
+    scene->status = NEVH_OK;
+    scene->message[0] = '\0';
     for (size_t k = 0; k < m->n; k++) {
         q[k] = m->q[k];
         p[k] = m->p[k];
@@ -267,7 +269,6 @@ int nevh_scene_start(nevh_scene *scene, double q[], double p[]) {
     }
     if (!any)
         return NEVH_OK;
-    scene->status = NEVH_OK;
     search s = {.m = m, .q = q, .p = p};
     int status = take_memory(&s) ? solve(&s) : NEVH_ENOMEM;
     if (status)
