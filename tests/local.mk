@@ -96,6 +96,7 @@ dist_check_SCRIPTS = \
 	tests/symbols.sh \
 	tests/cplusplus.sh \
 	tests/examples.sh \
+	tests/nevh.sh \
 	tests/pkgconfig.sh \
 	tests/valgrind.sh
 

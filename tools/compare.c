@@ -1,0 +1,366 @@
+/* nevh compare: a table of energy errors, a row an integrator and dt.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tool.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+typedef struct {
+    row *row;
+    size_t count;
+} rows;
+
+static void add_row(const plan *p, rows *r, size_t gradient, const char *name,
+                    double dt, double tolerance) {
+    bool transformed;
+    const nevh_integrator *scheme = plan_scheme(name, &transformed);
+    bool same = r->count &&
+                r->row[r->count - 1].gradient == p->gradients.item[gradient] &&
+                r->row[r->count - 1].dt == dt &&
+                (r->row[r->count - 1].tolerance > 0) == (tolerance > 0);
+    size_t group = r->count ? r->row[r->count - 1].group + !same : 0;
+    r->row[r->count++] = (row){.integrator = name,
+                               .gradient = p->gradients.item[gradient],
+                               .scheme = scheme,
+                               .dt = dt,
+                               .tolerance = tolerance,
+                               .group = group};
+}
+
+static bool adapts(const char *name) {
+    bool transformed;
+    return nevh_integrator_adaptive(plan_scheme(name, &transformed));
+}
+
+/* Adaptive schemes land on the ends of the longest dt. */
+static void add_adaptive(const plan *p, rows *r, size_t gradient) {
+    double longest = 0;
+    for (size_t j = 0; j < p->dts; j++)
+        longest = fmax(longest, p->dt[j]);
+    for (size_t i = 0; i < p->integrators.count; i++)
+        for (size_t k = 0; k < p->tolerances; k++)
+            if (adapts(p->integrators.item[i]))
+                add_row(p, r, gradient, p->integrators.item[i], longest,
+                        p->tolerance[k]);
+}
+
+static rows list_rows(const plan *p) {
+    size_t most =
+        p->gradients.count * p->integrators.count * (p->dts + p->tolerances);
+    rows r = {tool_allocate(most, sizeof *r.row), 0};
+    for (size_t g = 0; g < p->gradients.count; g++) {
+        for (size_t j = 0; j < p->dts; j++)
+            for (size_t i = 0; i < p->integrators.count; i++)
+                if (!adapts(p->integrators.item[i]))
+                    add_row(p, &r, g, p->integrators.item[i], p->dt[j], 0);
+        add_adaptive(p, &r, g);
+    }
+    return r;
+}
+
+/* Where stderr is a terminal and the work takes longer than a second. */
+static void progress(const rows *r, size_t i, double seconds, bool last) {
+    if (seconds < 1 || !isatty(STDERR_FILENO))
+        return;
+    if (last)
+        fputs("\r\033[K", stderr);
+    else
+        fprintf(stderr, "\r\033[K%zu of %zu: %s, dt = %g", i + 1, r->count,
+                r->row[i].integrator, r->row[i].dt);
+    fflush(stderr);
+}
+
+static void run_rows(const plan *p, rows *r, bool quiet) {
+    time_t start = time(NULL);
+    for (size_t i = 0; i < r->count; i++) {
+        if (!quiet)
+            progress(r, i, difftime(time(NULL), start), false);
+        row_run(p, &r->row[i]);
+    }
+    if (!quiet)
+        progress(r, r->count, difftime(time(NULL), start), true);
+}
+
+static bool measures_order(const row *r) {
+    return r->ran && r->energy.verdict != NEVH_UNSTABLE && r->tolerance == 0 &&
+           r->energy.max > 1e-13;
+}
+
+/* From the row of the same scheme and the dt before. */
+static void observe_orders(rows *r) {
+    for (size_t i = 0; i < r->count; i++)
+        for (size_t k = i; k-- > 0;) {
+            row *b = &r->row[i];
+            const row *a = &r->row[k];
+            if (a->integrator != b->integrator || a->gradient != b->gradient)
+                continue;
+            if (measures_order(a) && measures_order(b) && a->dt != b->dt)
+                b->observed_order =
+                    log(a->energy.max / b->energy.max) / log(a->dt / b->dt);
+            break;
+        }
+}
+
+static void columns(table *t, const char *const names[], size_t count) {
+    for (size_t i = 0; i < count; i++)
+        table_column(t, names[i]);
+}
+
+static double when(bool condition, double value) {
+    return condition ? value : NAN;
+}
+
+static void add_record(table *t, const plan *p, const row *r) {
+    const nevh_energy_report *e = &r->energy;
+    table_text(t, p->name);
+    table_text(t, r->integrator);
+    table_number(t, r->order);
+    table_text(t, nevh_claim_name(nevh_integrator_symplectic(r->scheme)));
+    table_text(t, r->gradient);
+    table_number(t, r->dt);
+    table_number(t, when(r->ran, (double)r->steps));
+    table_text(t, r->status);
+    table_number(t, when(r->ran, e->max));
+    table_number(t, when(r->ran, e->rms));
+    table_number(t, when(r->ran, e->final));
+    table_number(t, when(r->ran, e->drift));
+    table_text(t, NULL);
+    table_number(t, when(r->ran, r->counts.hamiltonians));
+    table_number(t, when(r->ran, (double)r->counts.gradients));
+    table_number(t, when(r->ran, (double)r->counts.sweeps));
+    table_number(t, when(r->ran, r->seconds));
+    table_text(t, r->ran ? nevh_verdict_name(e->verdict) : NULL);
+    table_number(t, r->observed_order);
+}
+
+static table *records(const plan *p, const rows *r) {
+    static const char *const names[] = {"scene",
+                                        "integrator",
+                                        "order",
+                                        "symplectic",
+                                        "gradient",
+                                        "dt",
+                                        "steps",
+                                        "status",
+                                        "max_energy_error",
+                                        "rms_energy_error",
+                                        "final_energy_error",
+                                        "energy_drift",
+                                        "state_error",
+                                        "hamiltonian_evals",
+                                        "gradient_evals",
+                                        "sweeps",
+                                        "seconds",
+                                        "verdict",
+                                        "observed_order"};
+    table *t = table_new();
+    columns(t, names, sizeof names / sizeof *names);
+    for (size_t i = 0; i < r->count; i++)
+        add_record(t, p, &r->row[i]);
+    return t;
+}
+
+static void show_count(table *t, double count) {
+    if (count < 1e4)
+        table_shown(t, "%.0f", count);
+    else if (count < 1e7)
+        table_shown(t, "%.0fk", count / 1e3);
+    else
+        table_shown(t, "%.0fM", count / 1e6);
+}
+
+static void show_numbers(table *t, const plan *p, const row *r) {
+    double span = p->t_end - p->run->t_start;
+    table_shown(t, "%.1e", r->energy.max);
+    if (r->energy.verdict >= NEVH_DRIFTS)
+        table_shown(t, "%+.1e", r->energy.drift * span);
+    else
+        table_shown(t, "-");
+    table_shown(t, "%+.1e", r->energy.final);
+    show_count(t, r->counts.hamiltonians);
+    table_shown(t, "%.3g", 1000 * r->seconds);
+    table_text(t, nevh_verdict_name(r->energy.verdict));
+}
+
+static void show_row(table *t, const plan *p, const row *r) {
+    table_text(t, r->integrator);
+    table_shown(t, "%d", r->order);
+    table_text(t, nevh_claim_name(nevh_integrator_symplectic(r->scheme)));
+    if (p->gradients.count > 1)
+        table_text(t, r->gradient);
+    table_shown(t, "%.4g", r->dt);
+    if (r->ran) {
+        show_numbers(t, p, r);
+        return;
+    }
+    for (int i = 0; i < 5; i++)
+        table_text(t, NULL);
+    table_text(t, r->failed ? "failed" : "refused");
+}
+
+static table *shown(const plan *p, const rows *r) {
+    table *t = table_new();
+    const char *unit = nevh_scene_label(p->scene, "t");
+    char *dt = text_print(*unit ? "dt/%s" : "dt%s", unit);
+    static const char *const first[] = {"integrator", "order", "sympl."};
+    static const char *const last[] = {"max energy\nerror",
+                                       "drift over\nthe run",
+                                       "final\nerror",
+                                       "H evals",
+                                       "ms",
+                                       "energy"};
+    columns(t, first, sizeof first / sizeof *first);
+    if (p->gradients.count > 1)
+        table_column(t, "gradient");
+    table_column(t, dt);
+    columns(t, last, sizeof last / sizeof *last);
+    for (size_t i = 0; i < r->count; i++) {
+        if (i && r->row[i].group != r->row[i - 1].group)
+            table_group(t);
+        show_row(t, p, &r->row[i]);
+    }
+    free(dt);
+    return t;
+}
+
+static void note_gradients(const plan *p, list *notes) {
+    for (size_t i = 0; i < p->gradients.count; i++) {
+        const char *name = p->gradients.item[i];
+        const char *from = strcmp(name, "exact") == 0
+                               ? "derived from the formulas of H"
+                               : "from values of H alone";
+        if (p->gradient_step > 0 && strncmp(name, "central", 7) == 0)
+            list_print(notes, "gradient: %s, %s, half-spread %g", name, from,
+                       p->gradient_step);
+        else
+            list_print(notes, "gradient: %s, %s", name, from);
+    }
+}
+
+static void note_scale(const plan *p, const rows *r, list *notes) {
+    const char *unit = nevh_scene_label(p->scene, "energy");
+    for (size_t i = 0; i < r->count; i++)
+        if (r->row[i].ran) {
+            list_print(notes,
+                       "energy_scale: %.9g%s%s (errors are relative to "
+                       "it; H at the start is %.9g)",
+                       r->row[i].energy.scale, *unit ? " " : "", unit,
+                       r->row[i].energy.initial);
+            return;
+        }
+}
+
+static void note_balance(const plan *p, list *notes) {
+    const char *why = !p->friction ? "H reads the time"
+                      : p->time    ? "H reads the time, and there is friction"
+                                   : "there is friction";
+    if (p->balance)
+        list_print(notes,
+                   "%s: energy columns hold the error of the balance "
+                   "H(t) - H(0) - what came in from outside",
+                   why);
+}
+
+static bool is_limited(const plan *p, const row *r) {
+    (void)p;
+    return r->order < nevh_integrator_order(r->scheme);
+}
+
+static bool has_nominal_steps(const plan *p, const row *r) {
+    return plan_transform(p, r->integrator) ||
+           nevh_integrator_own_time(r->scheme);
+}
+
+static bool has_tolerance(const plan *p, const row *r) {
+    (void)p;
+    return r->tolerance > 0;
+}
+
+/* What is to be said where it holds for a row. */
+static void note_rows(const plan *p, const rows *r, list *notes) {
+    static const struct {
+        bool (*holds)(const plan *, const row *);
+        const char *text;
+    } note[] = {{is_limited, "friction is put around the steps of geometric "
+                             "schemes, which limits them to order 2"},
+                {has_nominal_steps, "dt is nominal where time is transformed, "
+                                    "or the scheme chooses its own"},
+                {has_tolerance, "adaptive schemes have a row a tolerance of "
+                                "[run], in its order; dt is their mean step"}};
+    for (size_t k = 0; k < sizeof note / sizeof *note; k++)
+        for (size_t i = 0; i < r->count; i++)
+            if (note[k].holds(p, &r->row[i])) {
+                list_add(notes, note[k].text);
+                break;
+            }
+    if (p->run->match_work)
+        list_add(notes, "match = work is not there yet: rows are matched by "
+                        "steps");
+}
+
+static void note_settings(const options *o, list *notes) {
+    for (size_t i = 0; i < o->settings.count; i++)
+        if (o->settings.item[i][0] == '=')
+            list_print(notes, "set: %s", o->settings.item[i] + 1);
+}
+
+/* Messages of rows without numbers, each once. */
+static void list_reasons(const rows *r, list *words) {
+    for (size_t i = 0; i < r->count; i++) {
+        bool told = r->row[i].ran;
+        for (size_t k = 0; !told && k < i; k++)
+            told = r->row[k].integrator == r->row[i].integrator &&
+                   strcmp(r->row[k].status, r->row[i].status) == 0;
+        if (!told)
+            list_print(words, "%s %s", r->row[i].integrator, r->row[i].status);
+    }
+}
+
+static page make_page(const options *o, const plan *p, const rows *r) {
+    page result = {0};
+    bool is_table = o->format == FORMAT_TABLE;
+    result.table = is_table ? shown(p, r) : records(p, r);
+    if (is_table && o->quiet)
+        return result;
+    plan_notes(p, &result.before);
+    note_settings(o, &result.before);
+    note_gradients(p, &result.before);
+    note_scale(p, r, &result.before);
+    note_balance(p, &result.before);
+    note_rows(p, r, &result.before);
+    verdict_words(p, r->row, r->count, &result.after);
+    if (is_table)
+        list_reasons(r, &result.after);
+    return result;
+}
+
+static int compare_plan(const options *o, const plan *p) {
+    output out;
+    int status = TOOL_OK;
+    if (output_open(&out, o->file))
+        return TOOL_USAGE;
+    rows r = list_rows(p);
+    run_rows(p, &r, o->quiet);
+    observe_orders(&r);
+    page result = make_page(o, p, &r);
+    page_print(&result, o->format, out.stream);
+    page_free(&result);
+    for (size_t i = 0; i < r.count; i++) {
+        if (r.row[i].failed)
+            status = TOOL_FAILED;
+        free(r.row[i].status);
+    }
+    free(r.row);
+    return output_close(&out, status);
+}
+
+int compare(const options *o) {
+    plan p;
+    int status = plan_make(&p, o);
+    if (!status)
+        status = compare_plan(o, &p);
+    plan_free(&p);
+    return status;
+}

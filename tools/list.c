@@ -1,0 +1,136 @@
+/* nevh list: what there is.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tool.h"
+#include <stdlib.h>
+#include <string.h>
+
+static void columns(table *t, const char *const names[], size_t count) {
+    for (size_t i = 0; i < count; i++)
+        table_column(t, names[i]);
+}
+#define COLUMNS(t, names) columns(t, names, sizeof(names) / sizeof *(names))
+
+static const char *fits(const nevh_integrator *s) {
+    unsigned needs = nevh_integrator_needs(s);
+    if (needs & NEVH_QUADRATIC_KINETIC)
+        return "T(p) + V(q), T quadratic";
+    if (needs & NEVH_SEPARABLE)
+        return "T(p) + V(q)";
+    return needs & NEVH_AUTONOMOUS ? "H(q, p)" : "any";
+}
+
+static void add_integrator(table *t, const nevh_integrator *s, bool all) {
+    int gradients = nevh_integrator_gradients(s);
+    table_text(t, nevh_integrator_name(s));
+    table_number(t, nevh_integrator_order(s));
+    table_text(t, nevh_claim_name(nevh_integrator_symplectic(s)));
+    table_text(t, nevh_claim_name(nevh_integrator_symmetric(s)));
+    table_text(t, nevh_claim_name(nevh_integrator_explicit(s)));
+    table_text(t, nevh_claim_name(nevh_integrator_preserves_energy(s)));
+    table_text(t, nevh_integrator_adaptive(s) ? "yes" : "no");
+    if (gradients)
+        table_number(t, gradients);
+    else
+        table_text(t, NULL);
+    table_text(t, fits(s));
+    if (!all)
+        return;
+    table_text(t, nevh_integrator_aliases(s));
+    table_text(t, nevh_integrator_source(s));
+}
+
+static void list_integrators(table *t, bool all) {
+    static const char *const names[] = {
+        "integrator",  "order",    "symplectic", "symmetric", "explicit",
+        "energy kept", "adaptive", "gradients",  "needs H ="};
+    COLUMNS(t, names);
+    if (all) {
+        table_column(t, "elsewhere");
+        table_column(t, "source");
+    }
+    for (size_t i = 0; nevh_integrators()[i]; i++)
+        add_integrator(t, nevh_integrators()[i], all);
+}
+
+static void list_gradients(table *t, bool all) {
+    static const char *const names[] = {"gradient", "order", "from"};
+    (void)all;
+    COLUMNS(t, names);
+    for (size_t i = 0; nevh_gradients()[i]; i++) {
+        const nevh_gradient *g = nevh_gradients()[i];
+        int order = nevh_gradient_order(g);
+        table_text(t, nevh_gradient_name(g));
+        if (order)
+            table_number(t, order);
+        else
+            table_text(t, NULL);
+        table_text(t, order             ? "values of H"
+                      : g == nevh_exact ? "derivatives of H"
+                                        : "values of H over complex "
+                                          "numbers");
+    }
+}
+
+static void list_models(table *t, bool all) {
+    static const char *const names[] = {"model", "degrees of freedom", "title"};
+    (void)all;
+    COLUMNS(t, names);
+    for (size_t i = 0; nevh_models()[i]; i++) {
+        const nevh_model *m = nevh_models()[i];
+        table_text(t, m->name);
+        table_number(t, (double)m->n);
+        table_text(t, m->title);
+    }
+}
+
+static void list_scenes(table *t, bool all) {
+    static const char *const titles[] = {"scene", "degrees of freedom",
+                                         "title"};
+    list names = {0}, files = {0};
+    COLUMNS(t, titles);
+    if (all)
+        table_column(t, "source");
+    scenes_installed(&names, &files);
+    for (size_t i = 0; i < names.count; i++) {
+        nevh_scene *scene = nevh_scene_read(files.item[i]);
+        bool good = nevh_scene_status(scene) == NEVH_OK;
+        table_text(t, names.item[i]);
+        table_number(t, good ? (double)nevh_scene_dof(scene) : 0);
+        table_text(t, good ? nevh_scene_title(scene) : "has errors");
+        if (all)
+            table_text(t, good ? nevh_scene_source(scene) : NULL);
+        nevh_scene_free(scene);
+    }
+    list_free(&names);
+    list_free(&files);
+}
+
+int list_what(const options *o) {
+    static const struct {
+        const char *name;
+        void (*list)(table *, bool all);
+    } kinds[] = {{"integrators", list_integrators},
+                 {"gradients", list_gradients},
+                 {"models", list_models},
+                 {"scenes", list_scenes}};
+    list names = {0};
+    page p = {.table = table_new()};
+    const char *name = o->operands.count > 1 ? o->operands.item[1] : NULL;
+    int status = TOOL_USAGE;
+    bool found = false;
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        list_add(&names, kinds[i].name);
+        if (name && o->operands.count == 2 && strcmp(name, kinds[i].name) == 0)
+            kinds[i].list(p.table, o->all), found = true;
+    }
+    if (found)
+        status = output_page(o, &p, TOOL_OK);
+    else if (o->operands.count == 2)
+        tool_unknown("kind", name, &names);
+    else
+        tool_refuse("nevh list takes one of integrators, gradients, models, "
+                    "scenes");
+    list_free(&names);
+    page_free(&p);
+    return status;
+}

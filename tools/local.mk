@@ -1,0 +1,19 @@
+bin_PROGRAMS += tools/nevh
+tools_nevh_SOURCES = \
+	tools/tool.h \
+	tools/nevh.c \
+	tools/options.c \
+	tools/words.c \
+	tools/table.c \
+	tools/output.c \
+	tools/scenes.c \
+	tools/plan.c \
+	tools/row.c \
+	tools/compare.c \
+	tools/verdict.c \
+	tools/effects.c \
+	tools/check.c \
+	tools/list.c
+tools_nevh_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE \
+	-DNEVH_SCENES='"$(scenesdir)"'
+tools_nevh_LDADD = libnevh.la

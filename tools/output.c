@@ -1,0 +1,101 @@
+/* nevh: files that are there when they are whole.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tool.h"
+#include <errno.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* mkstemp lets only the owner read. */
+static void allow_as_usual(int file) {
+    mode_t mask = umask(0);
+    umask(mask);
+    fchmod(file, 0666 & ~mask);
+}
+
+/* The temporary file to remove when a signal ends the program. */
+static const char *volatile unfinished;
+
+static void remove_and_end(int number) {
+    if (unfinished)
+        unlink(unfinished);
+    signal(number, SIG_DFL);
+    raise(number);
+}
+
+static void mind_signals(void) {
+    static const int numbers[] = {SIGHUP, SIGINT, SIGTERM};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        if (signal(numbers[i], remove_and_end) == SIG_IGN)
+            signal(numbers[i], SIG_IGN);
+}
+
+/* A device or a pipe is written to as it is. */
+static bool can_be_replaced(const char *name) {
+    struct stat found;
+    return stat(name, &found) != 0 || S_ISREG(found.st_mode);
+}
+
+static void open_temporary(output *o) {
+    o->temporary = text_print("%s.XXXXXX", o->name);
+    int file = mkstemp(o->temporary);
+    o->stream = file < 0 ? NULL : fdopen(file, "w");
+    if (!o->stream)
+        return;
+    allow_as_usual(file);
+    unfinished = o->temporary;
+    mind_signals();
+}
+
+static void forget(output *o) {
+    unfinished = NULL;
+    free(o->name);
+    free(o->temporary);
+}
+
+int output_open(output *o, const char *name) {
+    *o = (output){.stream = stdout};
+    if (!name)
+        return TOOL_OK;
+    o->name = realpath(name, NULL); /* what a symbolic link stands for */
+    if (!o->name)
+        o->name = text_print("%s", name);
+    if (can_be_replaced(o->name))
+        open_temporary(o);
+    else
+        o->stream = fopen(o->name, "w");
+    if (o->stream)
+        return TOOL_OK;
+    tool_refuse("%s cannot be written: %s", name, strerror(errno));
+    forget(o);
+    return TOOL_USAGE;
+}
+
+static int write_all(output *o) {
+    bool wrong = ferror(o->stream);
+    return (o->name ? fclose(o->stream) : fflush(o->stream)) || wrong;
+}
+
+int output_close(output *o, int status) {
+    errno = 0;
+    int wrong = write_all(o);
+    if (o->temporary && !wrong && status != TOOL_USAGE)
+        wrong = rename(o->temporary, o->name);
+    if (wrong)
+        status = tool_refuse("%s cannot be written: %s",
+                             o->name ? o->name : "the output", strerror(errno));
+    if (o->temporary && status == TOOL_USAGE)
+        unlink(o->temporary);
+    forget(o);
+    return status;
+}
+
+int output_page(const options *o, const page *p, int status) {
+    output out;
+    if (output_open(&out, o->file))
+        return TOOL_USAGE;
+    page_print(p, o->format, out.stream);
+    return output_close(&out, status);
+}

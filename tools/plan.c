@@ -1,0 +1,222 @@
+/* nevh: what is to be run, from options, scene and defaults.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tool.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const nevh_integrator *plan_scheme(const char *name, bool *transformed) {
+    const char *plus = strchr(name, '+');
+    *transformed = plus && strcmp(plus, "+transform") == 0;
+    if (plus && !*transformed)
+        return NULL;
+    char *own = text_print("%.*s", (int)strcspn(name, "+"), name);
+    const nevh_integrator *scheme = nevh_integrator_named(own);
+    free(own);
+    return scheme;
+}
+
+static void take_names(list *l, const list *given, const char *const scene[],
+                       size_t count) {
+    for (size_t i = 0; i < given->count; i++)
+        list_add(l, given->item[i]);
+    for (size_t i = 0; given->count == 0 && i < count; i++)
+        list_add(l, scene[i]);
+}
+
+static void default_integrators(plan *p) {
+    nevh_separability found = {0};
+    if (!(nevh_system_traits(p->system) & NEVH_SEPARABLE))
+        nevh_system_probe(p->system, p->run->t_start, p->q, p->p, NULL, &found);
+    else
+        found.separable = true;
+    if (found.separable)
+        list_add(&p->integrators, "verlet");
+    list_split(&p->integrators, "midpoint,gauss4,rk4");
+}
+
+static int check_integrators(const plan *p) {
+    list names = {0};
+    int status = TOOL_OK;
+    for (size_t i = 0; nevh_integrators()[i]; i++)
+        list_add(&names, nevh_integrator_name(nevh_integrators()[i]));
+    for (size_t i = 0; !status && i < p->integrators.count; i++) {
+        bool transformed;
+        const char *name = p->integrators.item[i];
+        if (!plan_scheme(name, &transformed))
+            status = tool_unknown("integrator", name, &names);
+        else if (transformed && !nevh_scene_transform(p->scene))
+            status = tool_refuse("%s: the scene has no transform", name);
+    }
+    list_free(&names);
+    return status;
+}
+
+static int check_gradients(const plan *p) {
+    list names = {0};
+    int status = TOOL_OK;
+    for (size_t i = 0; nevh_gradients()[i]; i++)
+        list_add(&names, nevh_gradient_name(nevh_gradients()[i]));
+    for (size_t i = 0; !status && i < p->gradients.count; i++)
+        if (!nevh_gradient_named(p->gradients.item[i]))
+            status = tool_unknown("gradient", p->gradients.item[i], &names);
+    list_free(&names);
+    return status;
+}
+
+static int check_times(const plan *p) {
+    if (p->dts == 0)
+        return tool_refuse("%s: no time step: give dt in [run], or --dt",
+                           p->name);
+    if (p->t_end == p->run->t_start)
+        return tool_refuse("%s: the run ends where it begins, at t = %g; give "
+                           "t_end in [run], or --t-end",
+                           p->name, p->t_end);
+    if (p->t_end < p->run->t_start)
+        return tool_refuse("%s: the run ends at t = %g, before it begins at "
+                           "t = %g",
+                           p->name, p->t_end, p->run->t_start);
+    return TOOL_OK;
+}
+
+static int start(plan *p) {
+    p->n = nevh_scene_dof(p->scene);
+    p->q = tool_allocate(p->n, sizeof *p->q);
+    p->p = tool_allocate(p->n, sizeof *p->p);
+    if (!nevh_scene_start(p->scene, p->q, p->p))
+        return TOOL_OK;
+    fprintf(stderr, "%s\n", nevh_scene_message(p->scene));
+    return TOOL_USAGE;
+}
+
+static void take_lists(plan *p, const options *o) {
+    take_names(&p->gradients, &o->gradients, p->run->gradient,
+               p->run->gradients);
+    if (p->gradients.count == 0)
+        list_add(&p->gradients, "central4");
+    take_names(&p->integrators, &o->integrators, p->run->integrator,
+               p->run->integrators);
+    if (p->integrators.count == 0)
+        default_integrators(p);
+    p->dt = o->dts ? o->dt : p->run->dt;
+    p->dts = o->dts ? o->dts : p->run->dts;
+    p->tolerance = p->run->tolerance;
+    p->tolerances = p->run->tolerances;
+}
+
+static void take_settings(plan *p, const options *o) {
+    p->system = nevh_scene_system(p->scene);
+    p->run = nevh_scene_run_settings(p->scene);
+    p->t_end = isnan(o->t_end) ? p->run->t_end : o->t_end;
+    p->gradient_step =
+        o->gradient_step > 0 ? o->gradient_step : p->run->gradient_step;
+    p->portable = o->portable;
+    p->friction = nevh_system_friction(p->system, NULL);
+    p->time = !(nevh_system_traits(p->system) & NEVH_AUTONOMOUS);
+    p->balance = p->friction || p->time;
+}
+
+int plan_make(plan *p, const options *o) {
+    *p = (plan){.name = o->operands.count > 1 ? o->operands.item[1] : ""};
+    if (scene_open(&p->scene, o))
+        return TOOL_USAGE;
+    take_settings(p, o);
+    if (start(p))
+        return TOOL_USAGE;
+    take_lists(p, o);
+    if (check_integrators(p) || check_gradients(p))
+        return TOOL_USAGE;
+    return check_times(p);
+}
+
+void plan_free(plan *p) {
+    list_free(&p->integrators);
+    list_free(&p->gradients);
+    free(p->q);
+    free(p->p);
+    nevh_scene_free(p->scene);
+}
+
+nevh_options plan_options(const plan *p, const char *gradient) {
+    return (nevh_options){.gradient = nevh_gradient_named(gradient),
+                          .gradient_step = p->gradient_step,
+                          .t = p->run->t_start,
+                          .q = p->q,
+                          .p = p->p,
+                          .portable = p->portable};
+}
+
+const nevh_system *plan_transform(const plan *p, const char *name) {
+    bool transformed;
+    const nevh_integrator *scheme = plan_scheme(name, &transformed);
+    return transformed || nevh_integrator_own_time(scheme)
+               ? nevh_scene_transform(p->scene)
+               : NULL;
+}
+
+nevh_stepper *plan_first(const plan *p, const nevh_integrator **scheme) {
+    for (size_t i = 0; i < p->integrators.count; i++) {
+        nevh_options o = plan_options(p, p->gradients.item[0]);
+        bool transformed;
+        *scheme = plan_scheme(p->integrators.item[i], &transformed);
+        o.transform = plan_transform(p, p->integrators.item[i]);
+        if (nevh_integrator_needs_tolerance(*scheme) && p->tolerances)
+            o.tolerance = p->tolerance[0];
+        nevh_stepper *s = nevh_stepper_new(p->system, *scheme, &o);
+        if (!nevh_stepper_status(s))
+            return s;
+        nevh_stepper_free(s);
+    }
+    tool_refuse("%s: none of the integrators fits; see nevh check", p->name);
+    return NULL;
+}
+
+static char *effects_that_are(const nevh_system *s, bool on) {
+    char *names = text_print("%s", "");
+    for (size_t i = 0; i < nevh_system_effect_count(s); i++) {
+        const char *name = nevh_system_effect_name(s, i);
+        if (nevh_system_effect_on(s, name) != on)
+            continue;
+        char *longer = text_print(*names ? "%s, %s" : "%s%s", names, name);
+        free(names);
+        names = longer;
+    }
+    return names;
+}
+
+char *plan_structure(const plan *p) {
+    nevh_separability found = {0};
+    const char *t = p->time ? "t, " : "";
+    if (nevh_system_traits(p->system) & NEVH_SEPARABLE)
+        return text_print("H = T(p) + V(%sq)", t);
+    if (nevh_system_probe(p->system, p->run->t_start, p->q, p->p, NULL, &found))
+        return text_print("H(%sq, p), of unknown structure", t);
+    if (found.separable)
+        return text_print("H = T(p) + V(%sq), as its values tell", t);
+    return text_print("H(%sq, p) is not separable: %s mixes coordinates and "
+                      "momenta",
+                      t, found.term);
+}
+
+static void note_effects(const plan *p, list *notes) {
+    char *on = effects_that_are(p->system, true);
+    char *off = effects_that_are(p->system, false);
+    list_print(notes,
+               *off ? "effects on: %s    off: %s (never evaluated)"
+                    : "effects on: %s",
+               on, off);
+    free(on);
+    free(off);
+}
+
+void plan_notes(const plan *p, list *notes) {
+    const char *title = nevh_scene_title(p->scene);
+    const char *unit = nevh_scene_label(p->scene, "t");
+    char *structure = plan_structure(p);
+    list_add(notes, *title ? title : p->name);
+    note_effects(p, notes);
+    list_add(notes, structure);
+    list_print(notes, "t = %g ... %g%s%s", p->run->t_start, p->t_end,
+               *unit ? " " : "", unit);
+    free(structure);
+}

@@ -1,0 +1,183 @@
+/* nevh: one run of compare, watched, and once more for its time.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tool.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+static const double unstable_above = 1; /* as nevh_energy_report says */
+static const double time_enough = 0.1;  /* seconds */
+enum { REPEATS = 5 };
+
+typedef struct {
+    const plan *plan;
+    row *row;
+    double *q, *p;
+    double factor; /* from the library's scale to the scene's */
+} work;
+
+typedef struct {
+    nevh_energy *energy;
+    double factor, since;
+} watch;
+
+/* Errors are asked for after every step, which costs more than a step may: this
+   is for a run that is known to become unstable. */
+static int stop_when_unstable(void *data, size_t step, double t,
+                              const double q[], const double p[]) {
+    watch *w = data;
+    int status = nevh_energy_observe(w->energy, step, t, q, p);
+    nevh_energy_report r = nevh_energy_result(w->energy, 0);
+    if (!status && fabs(r.final * w->factor) > unstable_above)
+        return w->since = t, NEVH_STOPPED;
+    return status;
+}
+
+static nevh_stepper *new_stepper(const work *w, bool balance) {
+    nevh_options o = plan_options(w->plan, w->row->gradient);
+    o.transform = plan_transform(w->plan, w->row->integrator);
+    o.tolerance = w->row->tolerance;
+    o.balance = balance;
+    return nevh_stepper_new(w->plan->system, w->row->scheme, &o);
+}
+
+static int run(const work *w, nevh_stepper *s, const nevh_observer *observer) {
+    const plan *p = w->plan;
+    memcpy(w->q, p->q, p->n * sizeof *w->q);
+    memcpy(w->p, p->p, p->n * sizeof *w->p);
+    return nevh_run_until(s, p->run->t_start, w->row->dt, p->t_end, w->q, w->p,
+                          observer, observer ? 1 : 0);
+}
+
+static nevh_energy *new_energy(const work *w, const nevh_stepper *s) {
+    nevh_options o = plan_options(w->plan, w->row->gradient);
+    nevh_energy *energy = nevh_energy_new(w->plan->system, &o);
+    if (w->plan->balance)
+        nevh_energy_follow(energy, s);
+    return energy;
+}
+
+/* The verdict's rule again, where errors are relative to the scene's scale. */
+static nevh_verdict judge(const nevh_energy_report *e) {
+    if (!(e->max <= unstable_above))
+        return NEVH_UNSTABLE;
+    if (e->verdict != NEVH_UNSTABLE)
+        return e->verdict;
+    if (e->last_fifth <= 2 * e->first_fifth)
+        return NEVH_BOUNDED;
+    return e->straightness >= 0.8 ? NEVH_DRIFTS : NEVH_RANDOM_WALK;
+}
+
+static void rescale(work *w, nevh_energy_report *e) {
+    double wanted = w->plan->run->energy_scale;
+    if (!(wanted > 0) || !(e->scale > 0))
+        return;
+    w->factor = e->scale / wanted;
+    e->max *= w->factor, e->rms *= w->factor, e->final *= w->factor;
+    e->drift *= w->factor, e->drift_error *= w->factor;
+    e->first_fifth *= w->factor, e->last_fifth *= w->factor;
+    e->scale = wanted;
+    e->verdict = judge(e);
+}
+
+static void unstable_since(work *w) {
+    nevh_stepper *s = new_stepper(w, w->plan->balance);
+    watch unstable = {new_energy(w, s), w->factor, NAN};
+    run(w, s, &(nevh_observer){stop_when_unstable, &unstable, 1});
+    free(w->row->status);
+    w->row->status = text_print("unstable: since t = %.9g", unstable.since);
+    nevh_energy_free(unstable.energy);
+    nevh_stepper_free(s);
+}
+
+static int by_size(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static nevh_counts difference(nevh_counts a, nevh_counts b) {
+    a.values -= b.values, a.gradients -= b.gradients, a.sweeps -= b.sweeps;
+    a.newtons -= b.newtons, a.rescues -= b.rescues;
+    a.hamiltonians -= b.hamiltonians;
+    return a;
+}
+
+/* The median of a few runs that nobody watches. */
+static void measure(const work *w) {
+    double seconds[REPEATS], sum = 0;
+    size_t count = 0;
+    nevh_stepper *s = new_stepper(w, false);
+    nevh_counts before = nevh_stepper_counts(s);
+    while (count < REPEATS && sum < time_enough) {
+        nevh_stepper_reset(s);
+        clock_t start = clock();
+        run(w, s, NULL);
+        sum += seconds[count] = (double)(clock() - start) / CLOCKS_PER_SEC;
+        if (count++ == 0)
+            w->row->counts = difference(nevh_stepper_counts(s), before);
+    }
+    qsort(seconds, count, sizeof *seconds, by_size);
+    w->row->seconds = seconds[count / 2];
+    nevh_stepper_free(s);
+}
+
+/* Of all steps tried, those that were too long for the tolerance included. */
+static double mean_step(const work *w) {
+    int each = nevh_integrator_gradients(w->row->scheme);
+    double evaluations = (double)w->row->counts.gradients;
+    if (each == 0 || evaluations == 0)
+        return w->row->dt;
+    return (w->plan->t_end - w->plan->run->t_start) * each / evaluations;
+}
+
+static void watched(work *w, nevh_stepper *s) {
+    row *r = w->row;
+    nevh_energy *energy = new_energy(w, s);
+    int status = run(w, s, &(nevh_observer){nevh_energy_observe, energy, 1});
+    const char *why = status == NEVH_STOPPED ? nevh_energy_message(energy)
+                                             : nevh_stepper_message(s);
+    r->energy = nevh_energy_result(energy, 0);
+    r->steps = nevh_stepper_taken(s);
+    rescale(w, &r->energy);
+    r->ran = !status || r->energy.verdict == NEVH_UNSTABLE;
+    r->failed = !r->ran;
+    r->status = status ? text_print("failed: %s", why) : text_print("ok");
+    nevh_energy_free(energy);
+}
+
+static bool is_refusal(int status) {
+    return status == NEVH_ESTRUCT || status == NEVH_ENOGRAD ||
+           status == NEVH_EINVAL;
+}
+
+static bool refused(row *r, const nevh_stepper *s) {
+    int status = nevh_stepper_status(s);
+    r->order =
+        status ? nevh_integrator_order(r->scheme) : nevh_stepper_order(s);
+    if (!status)
+        return false;
+    r->failed = !is_refusal(status);
+    r->status = text_print(r->failed ? "failed: %s" : "refused: %s",
+                           nevh_stepper_message(s));
+    return true;
+}
+
+void row_run(const plan *p, row *r) {
+    work w = {p, r, tool_allocate(p->n, sizeof *w.q),
+              tool_allocate(p->n, sizeof *w.p), 1};
+    r->observed_order = NAN;
+    nevh_stepper *s = new_stepper(&w, p->balance);
+    if (!refused(r, s)) {
+        watched(&w, s);
+        if (r->ran)
+            measure(&w);
+        if (r->ran && r->energy.verdict == NEVH_UNSTABLE)
+            unstable_since(&w);
+        if (r->ran && r->tolerance > 0)
+            r->dt = mean_step(&w);
+    }
+    nevh_stepper_free(s);
+    free(w.q);
+    free(w.p);
+}

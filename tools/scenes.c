@@ -1,0 +1,112 @@
+/* nevh: scenes by file or name.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tool.h"
+#include <dirent.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static const char ending[] = ".nevh";
+
+/* Where scenes are, for tests and in the build tree given by the
+   environment. */
+static const char *folder(void) {
+    const char *given = getenv("NEVH_SCENES");
+    return given && *given ? given : NEVH_SCENES;
+}
+
+static int is_scene(const struct dirent *entry) {
+    size_t length = strlen(entry->d_name), tail = sizeof ending - 1;
+    return length > tail && entry->d_name[0] != '.' &&
+           strcmp(entry->d_name + length - tail, ending) == 0;
+}
+
+void scenes_installed(list *names, list *files) {
+    struct dirent **entry = NULL;
+    int count = scandir(folder(), &entry, is_scene, alphasort);
+    for (int i = 0; i < count; i++) {
+        const char *file = entry[i]->d_name;
+        list_print(names, "%.*s", (int)(strlen(file) - sizeof ending + 1),
+                   file);
+        if (files)
+            list_print(files, "%s/%s", folder(), file);
+        free(entry[i]);
+    }
+    free(entry);
+}
+
+static bool is_file(const char *name) {
+    struct stat found;
+    return stat(name, &found) == 0 && !S_ISDIR(found.st_mode);
+}
+
+static int not_found(const char *name) {
+    list names = {0};
+    scenes_installed(&names, NULL);
+    const char *closest = list_closest(&names, name);
+    int status =
+        closest ? tool_refuse("there is no file and no scene %s; did you mean "
+                              "%s?",
+                              name, closest)
+                : tool_refuse("there is no file and no scene %s; see nevh list "
+                              "scenes",
+                              name);
+    list_free(&names);
+    return status;
+}
+
+/* The file of a scene; NULL, with a message, when there is none. */
+static char *find(const char *name) {
+    char *file = text_print("%s", name);
+    if (!is_file(file) && !strchr(name, '/')) {
+        free(file);
+        file = text_print("%s/%s%s", folder(), name, ending);
+    }
+    if (is_file(file))
+        return file;
+    free(file);
+    not_found(name);
+    return NULL;
+}
+
+static int change(nevh_scene *scene, const char *setting) {
+    return *setting == '='
+               ? nevh_scene_set(scene, setting + 1)
+               : nevh_scene_enable(scene, setting + 1, *setting == '+');
+}
+
+/* The scene's own messages have file, line and column; the line and the caret
+   come after that. */
+static int report(const nevh_scene *scene) {
+    fprintf(stderr, "%s\n", nevh_scene_message(scene));
+    return TOOL_USAGE;
+}
+
+static int read(nevh_scene *scene, const options *o) {
+    if (nevh_scene_status(scene))
+        return report(scene);
+    for (size_t i = 0; i < o->settings.count; i++)
+        if (change(scene, o->settings.item[i]))
+            return report(scene);
+    return nevh_scene_system(scene) ? TOOL_OK : report(scene);
+}
+
+int scene_open(nevh_scene **scene, const options *o) {
+    *scene = NULL;
+    if (o->operands.count != 2)
+        return tool_refuse("nevh %s takes one scene: a file, or a name of nevh "
+                           "list scenes",
+                           o->operands.item[0]);
+    char *file = find(o->operands.item[1]);
+    if (!file)
+        return TOOL_USAGE;
+    *scene = nevh_scene_read(file);
+    free(file);
+    if (*scene && !read(*scene, o))
+        return TOOL_OK;
+    if (!*scene)
+        tool_refuse("out of memory");
+    nevh_scene_free(*scene);
+    *scene = NULL;
+    return TOOL_USAGE;
+}

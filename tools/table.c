@@ -1,0 +1,281 @@
+/* nevh: tables as aligned text, CSV (RFC 4180) and JSON (RFC 8259).
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tool.h"
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef enum { EMPTY, TEXT, NUMBER } kind;
+struct table {
+    list title, cell; /* cells row by row */
+    kind *kind;
+    bool *group; /* whether the row that begins with this cell begins a group */
+    bool begins;
+};
+
+table *table_new(void) {
+    return tool_allocate(1, sizeof(table));
+}
+
+void table_free(table *t) {
+    if (!t)
+        return;
+    list_free(&t->title);
+    list_free(&t->cell);
+    free(t->kind);
+    free(t->group);
+    free(t);
+}
+
+void table_column(table *t, const char *title) {
+    list_add(&t->title, title);
+}
+
+void table_group(table *t) {
+    t->begins = t->cell.count > 0;
+}
+
+static void add(table *t, kind k, const char *text) {
+    size_t i = t->cell.count;
+    list_add(&t->cell, text);
+    t->kind = realloc(t->kind, (i + 1) * sizeof *t->kind);
+    t->group = realloc(t->group, (i + 1) * sizeof *t->group);
+    if (!t->kind || !t->group)
+        abort();
+    t->kind[i] = k;
+    t->group[i] = t->begins;
+    t->begins = false;
+}
+
+void table_text(table *t, const char *text) {
+    add(t, text ? TEXT : EMPTY, text ? text : "");
+}
+
+/* The shortest of 15 to 17 digits that is the number again. */
+void table_number(table *t, double number) {
+    char text[40] = "";
+    for (int digits = 15; digits <= 17; digits++) {
+        snprintf(text, sizeof text, "%.*g", digits, number);
+        if (strtod(text, NULL) == number)
+            break;
+    }
+    bool there = isfinite(number);
+    add(t, there ? NUMBER : EMPTY, there ? text : "");
+}
+
+void table_shown(table *t, const char *format, ...) {
+    char text[80];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    add(t, NUMBER, text);
+}
+
+/* Characters of UTF-8 up to the end of a line, whatever the locale. */
+static size_t characters(const char *text) {
+    size_t count = 0;
+    for (; *text && *text != '\n'; text++)
+        count += ((unsigned char)*text & 0xC0) != 0x80;
+    return count;
+}
+
+static const char *line_of(const char *text, size_t line) {
+    while (line-- && text)
+        text = (text = strchr(text, '\n')) ? text + 1 : NULL;
+    return text ? text : "";
+}
+
+static size_t lines(const table *t) {
+    size_t most = 0;
+    for (size_t j = 0; j < t->title.count; j++) {
+        size_t count = 1;
+        for (const char *c = t->title.item[j]; *c; c++)
+            count += *c == '\n';
+        most = count > most ? count : most;
+    }
+    return most;
+}
+
+static size_t rows(const table *t) {
+    return t->title.count ? t->cell.count / t->title.count : 0;
+}
+
+static size_t wider(size_t width, const char *text) {
+    size_t w = characters(text);
+    return w > width ? w : width;
+}
+
+static size_t column_width(const table *t, size_t j) {
+    size_t width = 0, columns = t->title.count;
+    for (size_t k = 0; k < lines(t); k++)
+        width = wider(width, line_of(t->title.item[j], k));
+    for (size_t i = j; i < t->cell.count; i += columns)
+        width = wider(width, t->cell.item[i]);
+    return width;
+}
+
+/* Columns without a number are set to the left. */
+static bool to_the_right(const table *t, size_t j) {
+    for (size_t i = j; i < t->cell.count; i += t->title.count)
+        if (t->kind[i] == NUMBER)
+            return true;
+    return false;
+}
+
+/* Spaces are held back until something follows them. */
+static void print_padded(const char *text, size_t *spaces, FILE *f) {
+    size_t bytes = strcspn(text, "\n");
+    if (bytes == 0)
+        return;
+    fprintf(f, "%*s%.*s", (int)*spaces, "", (int)bytes, text);
+    *spaces = 0;
+}
+
+static void print_cell(const table *t, size_t j, const char *text,
+                       size_t *spaces, FILE *f) {
+    size_t space = column_width(t, j) - characters(text);
+    bool right = to_the_right(t, j);
+    *spaces += (j ? 2 : 1) + (right ? space : 0);
+    print_padded(text, spaces, f);
+    *spaces += right ? 0 : space;
+}
+
+static void print_header(const table *t, FILE *f) {
+    for (size_t k = 0; k < lines(t); k++, fputc('\n', f))
+        for (size_t j = 0, spaces = 0; j < t->title.count; j++)
+            print_cell(t, j, line_of(t->title.item[j], k), &spaces, f);
+}
+
+static void print_table(const table *t, FILE *f) {
+    size_t columns = t->title.count;
+    print_header(t, f);
+    for (size_t i = 0; i < rows(t); i++, fputc('\n', f)) {
+        if (t->group[i * columns])
+            fputc('\n', f);
+        for (size_t j = 0, spaces = 0; j < columns; j++)
+            print_cell(t, j, t->cell.item[i * columns + j], &spaces, f);
+    }
+}
+
+static void print_quoted(const char *text, FILE *f) {
+    if (!strpbrk(text, ",\"\r\n")) {
+        fputs(text, f);
+        return;
+    }
+    fputc('"', f);
+    for (; *text; text++)
+        fputs(*text == '"' ? "\"\"" : (char[]){*text, 0}, f);
+    fputc('"', f);
+}
+
+/* Lines end with a line feed, as all text here does. */
+static void print_csv(const table *t, FILE *f) {
+    size_t columns = t->title.count;
+    for (size_t j = 0; j < columns; j++) {
+        print_quoted(t->title.item[j], f);
+        fputc(j + 1 < columns ? ',' : '\n', f);
+    }
+    for (size_t i = 0; i < t->cell.count; i++) {
+        print_quoted(t->cell.item[i], f);
+        fputc((i + 1) % columns ? ',' : '\n', f);
+    }
+}
+
+static void print_string(const char *text, FILE *f) {
+    fputc('"', f);
+    for (; *text; text++)
+        if ((unsigned char)*text < ' ')
+            fprintf(f, "\\u%04x", (unsigned)*text);
+        else
+            fprintf(f, *text == '"' || *text == '\\' ? "\\%c" : "%c", *text);
+    fputc('"', f);
+}
+
+static void print_value(const table *t, size_t i, FILE *f) {
+    if (t->kind[i] == TEXT)
+        print_string(t->cell.item[i], f);
+    else
+        fputs(t->kind[i] == NUMBER ? t->cell.item[i] : "null", f);
+}
+
+static void print_rows(const table *t, FILE *f) {
+    size_t columns = t->title.count;
+    fputs("  \"rows\": [", f);
+    for (size_t i = 0; i < t->cell.count; i++) {
+        fputs(i % columns ? ", " : i ? ",\n    {" : "\n    {", f);
+        print_string(t->title.item[i % columns], f);
+        fputs(": ", f);
+        print_value(t, i, f);
+        fputs((i + 1) % columns ? "" : "}", f);
+    }
+    fputs("\n  ]", f);
+}
+
+static void print_strings(const char *name, const list *l, FILE *f) {
+    fprintf(f, "  \"%s\": [", name);
+    for (size_t i = 0; i < l->count; i++) {
+        fputs(i ? ",\n    " : "\n    ", f);
+        print_string(l->item[i], f);
+    }
+    fputs("\n  ]", f);
+}
+
+static void print_json(const page *p, FILE *f) {
+    fputs("{\n", f);
+    print_strings("notes", &p->before, f);
+    fputs(",\n", f);
+    print_rows(p->table, f);
+    fputs(",\n", f);
+    print_strings("verdict", &p->after, f);
+    fputs("\n}\n", f);
+}
+
+static void print_comments(const list *l, FILE *f) {
+    for (size_t i = 0; i < l->count; i++)
+        fprintf(f, "# %s\n", l->item[i]);
+}
+
+/* At spaces, so that lines have at most 80 characters; further lines of a text
+   are set in. */
+static void print_wrapped(const char *text, FILE *f) {
+    enum { WIDTH = 80 };
+    for (size_t in = 0; *text; in = 2) {
+        size_t end = strlen(text), last = 0;
+        if (in + end > WIDTH) {
+            for (size_t i = 0; i + in <= WIDTH; i++)
+                last = text[i] == ' ' ? i : last;
+            end = last ? last : strcspn(text, " ");
+        }
+        fprintf(f, "%*s%.*s\n", (int)in, "", (int)end, text);
+        text += end;
+        text += strspn(text, " ");
+    }
+}
+
+static void print_all_wrapped(const list *l, FILE *f) {
+    for (size_t i = 0; i < l->count; i++)
+        print_wrapped(l->item[i], f);
+}
+
+void page_print(const page *p, table_format as, FILE *f) {
+    if (as == FORMAT_JSON) {
+        print_json(p, f);
+    } else if (as == FORMAT_CSV) {
+        print_comments(&p->before, f);
+        print_csv(p->table, f);
+    } else {
+        print_all_wrapped(&p->before, f);
+        fputs(p->before.count ? "\n" : "", f);
+        print_table(p->table, f);
+        fputs(p->after.count ? "\n" : "", f);
+        print_all_wrapped(&p->after, f);
+    }
+}
+
+void page_free(page *p) {
+    list_free(&p->before);
+    list_free(&p->after);
+    table_free(p->table);
+}

@@ -1,0 +1,147 @@
+/* nevh: what the parts of the command share.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_TOOL_H
+#define NEVH_TOOL_H
+
+#include <nevh/nevh.h>
+#include <nevh/scene.h>
+#include <stdio.h>
+
+/* Exit statuses. */
+enum { TOOL_OK, TOOL_FAILED, TOOL_USAGE };
+
+/* words.c: texts and lists of them.  Where memory is out the program ends. */
+typedef struct {
+    char **item;
+    size_t count;
+} list;
+void list_add(list *, const char *text); /* a copy */
+__attribute__((format(printf, 2, 3))) void list_print(list *,
+                                                      const char *format, ...);
+void list_split(list *, const char *text); /* at commas */
+void list_free(list *);
+void *tool_allocate(size_t count, size_t size); /* zeros */
+__attribute__((format(printf, 1, 2))) char *text_print(const char *format, ...);
+/* The item that `name` may have been meant for; NULL when none is close. */
+const char *list_closest(const list *, const char *name);
+/* "nevh: " and the message on stderr; returns TOOL_USAGE. */
+__attribute__((format(printf, 1, 2))) int tool_refuse(const char *format, ...);
+/* The same for a name that is none of the list: "unknown KIND NAME", and the
+   closest. */
+int tool_unknown(const char *kind, const char *name, const list *known);
+
+/* table.c: rows of texts and numbers. */
+typedef enum { FORMAT_TABLE, FORMAT_CSV, FORMAT_JSON } table_format;
+typedef struct table table;
+table *table_new(void);
+void table_free(table *);
+/* The next column; lines of the title are separated by \n. */
+void table_column(table *, const char *title);
+/* The next cell of the row.  NULL, and numbers that are not finite, leave it
+   empty. */
+void table_text(table *, const char *text);
+void table_number(table *, double number); /* all its digits */
+/* A number as it is to be shown, set to the right. */
+__attribute__((format(printf, 2, 3))) void table_shown(table *,
+                                                       const char *format, ...);
+/* Begins a group of rows, set off by an empty line. */
+void table_group(table *);
+/* The whole: lines before and after are set off by "# " in CSV (those after
+   are left out there), and called notes and verdict in JSON. */
+typedef struct {
+    list before, after;
+    table *table;
+} page;
+void page_print(const page *, table_format, FILE *);
+void page_free(page *);
+
+/* options.c: the command line. */
+typedef struct {
+    list operands, settings, integrators, gradients; /* settings: see below */
+    double *dt;
+    size_t dts;
+    double t_end; /* NAN: the scene's */
+    double gradient_step;
+    table_format format;
+    const char *file;
+    bool quiet, portable, all, help, version;
+} options;
+/* A setting is '+', '-' or '=' and an effect to switch on or off, or an
+   assignment, in the order given.
+   returns  TOOL_OK or TOOL_USAGE, the message being printed */
+int options_read(options *, int argc, char **argv);
+void options_free(options *);
+void options_help(FILE *);
+
+/* output.c: a file that is there when it is whole, or stdout. */
+typedef struct {
+    FILE *stream;
+    char *name, *temporary;
+} output;
+int output_open(output *, const char *name); /* NULL: stdout */
+/* Renames, or, unless it is to be kept, removes.  Returns `status`, or
+   TOOL_USAGE when writing failed. */
+int output_close(output *, int status);
+/* Opens what -o says, prints, closes. */
+int output_page(const options *, const page *, int status);
+
+/* scenes.c: scenes by file or name, changed as the options say. */
+/* returns  TOOL_OK, or TOOL_USAGE with the message printed and *scene NULL */
+int scene_open(nevh_scene **scene, const options *);
+/* Names of installed scenes, sorted; with their files when `files` is not
+   NULL. */
+void scenes_installed(list *names, list *files);
+
+/* plan.c: the rows to run, from options, scene and defaults. */
+typedef struct {
+    nevh_scene *scene;
+    const nevh_system *system;
+    const nevh_scene_run *run;
+    const char *name;
+    size_t n;
+    double *q, *p; /* at t_start */
+    double t_end;
+    const double *dt, *tolerance;
+    size_t dts, tolerances;
+    list integrators, gradients;
+    double gradient_step;
+    bool portable, friction, time, balance;
+} plan;
+/* returns  TOOL_OK, or TOOL_USAGE with the message printed */
+int plan_make(plan *, const options *);
+void plan_free(plan *);
+nevh_options plan_options(const plan *, const char *gradient);
+/* The scheme of "gauss4" or "gauss4+transform"; NULL for other names. */
+const nevh_integrator *plan_scheme(const char *name, bool *transformed);
+/* The transform that it is to be planned with: of names with "+transform", and
+   of schemes that choose their own times; NULL: none. */
+const nevh_system *plan_transform(const plan *, const char *name);
+/* The first integrator that fits, planned for the first gradient; NULL, with a
+   message, when none does. */
+nevh_stepper *plan_first(const plan *, const nevh_integrator **);
+/* Title, effects, structure of H, span. */
+void plan_notes(const plan *, list *notes);
+char *plan_structure(const plan *);
+
+/* row.c: one run of compare. */
+typedef struct {
+    const char *integrator, *gradient;
+    const nevh_integrator *scheme;
+    double dt, tolerance; /* 0: fixed steps */
+    size_t group;         /* rows of one gradient and dt */
+    int order, failed;    /* failed: of the exit status */
+    size_t steps;
+    char *status;
+    bool ran; /* there are numbers */
+    nevh_energy_report energy;
+    nevh_counts counts;
+    double seconds, observed_order; /* NAN: unknown */
+} row;
+void row_run(const plan *, row *);
+/* compare.c, verdict.c */
+void verdict_words(const plan *, const row rows[], size_t count, list *words);
+
+typedef int command(const options *);
+command compare, list_what, check, effects;
+
+#endif

@@ -1,0 +1,123 @@
+/* nevh compare: the table in words.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tool.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static char *append(char *names, const char *name) {
+    char *longer = text_print(*names ? "%s, %s" : "%s%s", names, name);
+    free(names);
+    return longer;
+}
+
+static bool is(const row *r, nevh_verdict verdict) {
+    return r->ran && r->energy.verdict == verdict;
+}
+
+/* Whether all rows of that integrator have the verdict, and this is the first
+   of them. */
+static bool always(const row rows[], size_t count, size_t i,
+                   nevh_verdict verdict) {
+    for (size_t k = 0; k < count; k++)
+        if (strcmp(rows[k].integrator, rows[i].integrator) == 0 &&
+            (!is(&rows[k], verdict) || k < i))
+            return false;
+    return true;
+}
+
+static void tell_all(const row rows[], size_t count, nevh_verdict verdict,
+                     const char *one, const char *many, list *words) {
+    char *names = text_print("%s", "");
+    size_t found = 0;
+    for (size_t i = 0; i < count; i++)
+        if (always(rows, count, i, verdict))
+            names = append(names, rows[i].integrator), found++;
+    if (found)
+        list_print(words, "%s %s", names, found == 1 ? one : many);
+    free(names);
+}
+
+/* The bounded row that a drifting one is to be compared with: symplectic, in
+   the same group. */
+static const row *bounded_beside(const row rows[], size_t count,
+                                 const row *drifting) {
+    for (size_t i = 0; i < count; i++)
+        if (rows[i].group == drifting->group && is(&rows[i], NEVH_BOUNDED) &&
+            nevh_integrator_symplectic(rows[i].scheme) == NEVH_YES)
+            return &rows[i];
+    return NULL;
+}
+
+/* When the drifting error passes, or would pass, the bounded one. */
+static void tell_crossing(const plan *p, const row *r, const row *b,
+                          const char *text, list *words) {
+    static const double long_after = 1e4; /* runs: of no practical meaning */
+    double span = p->t_end - p->run->t_start;
+    double passes = b ? b->energy.max / fabs(r->energy.drift) : 0;
+    double t = p->run->t_start + passes;
+    if (!b)
+        list_print(words, "%s.", text);
+    else if (passes < span)
+        list_print(words, "%s; it passed %s's %.1e near t = %.4g.", text,
+                   b->integrator, b->energy.max, t);
+    else if (passes < long_after * span)
+        list_print(words,
+                   "%s; still below %s's %.1e, which it would pass near t = "
+                   "%.4g.",
+                   text, b->integrator, b->energy.max, t);
+    else
+        list_print(words, "%s; that is far below %s's %.1e.", text,
+                   b->integrator, b->energy.max);
+}
+
+static void tell_drift(const plan *p, const row rows[], size_t count,
+                       const row *r, list *words) {
+    const row *b = bounded_beside(rows, count, r);
+    double span = p->t_end - p->run->t_start;
+    char *text = text_print(
+        "%s at dt = %.4g %s energy steadily, %.2g %% of the "
+        "scale over the run",
+        r->integrator, r->dt, r->energy.drift < 0 ? "loses" : "gains",
+        100 * fabs(r->energy.drift) * span);
+    tell_crossing(p, r, b, text, words);
+    free(text);
+}
+
+static void tell_mixed(const row rows[], size_t count, size_t i, list *words) {
+    static const char *const text[] = {
+        [NEVH_BOUNDED] = "keeps the energy bounded",
+        [NEVH_RANDOM_WALK] = "lets the energy wander",
+        [NEVH_UNSTABLE] = "is unstable"};
+    nevh_verdict verdict = rows[i].energy.verdict;
+    if (!rows[i].ran || verdict == NEVH_DRIFTS)
+        return;
+    for (size_t k = 0; k < count; k++)
+        if (strcmp(rows[k].integrator, rows[i].integrator) == 0 &&
+            !is(&rows[k], verdict)) {
+            list_print(words, "%s at dt = %.4g %s.", rows[i].integrator,
+                       rows[i].dt, text[verdict]);
+            return;
+        }
+}
+
+void verdict_words(const plan *p, const row rows[], size_t count, list *words) {
+    tell_all(rows, count, NEVH_BOUNDED,
+             "keeps the energy bounded: its error is no larger at the end of "
+             "the run than at the beginning.",
+             "keep the energy bounded: their errors are no larger at the end "
+             "of the run than at the beginning.",
+             words);
+    tell_all(rows, count, NEVH_RANDOM_WALK,
+             "lets the energy wander: the error grows, but not along a line.",
+             "let the energy wander: their errors grow, but not along a line.",
+             words);
+    for (size_t i = 0; i < count; i++)
+        if (is(&rows[i], NEVH_DRIFTS))
+            tell_drift(p, rows, count, &rows[i], words);
+    tell_all(rows, count, NEVH_UNSTABLE,
+             "is unstable: its error exceeds the energy itself.",
+             "are unstable: their errors exceed the energy itself.", words);
+    for (size_t i = 0; i < count; i++)
+        tell_mixed(rows, count, i, words);
+}

@@ -1,0 +1,129 @@
+/* nevh: texts, lists of them, and messages.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tool.h"
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void *owned(void *memory) {
+    if (!memory) {
+        fputs("nevh: out of memory\n", stderr);
+        exit(TOOL_FAILED);
+    }
+    return memory;
+}
+
+void *tool_allocate(size_t count, size_t size) {
+    return owned(calloc(count ? count : 1, size));
+}
+
+static char *print(const char *format, va_list arguments) {
+    va_list again;
+    va_copy(again, arguments);
+    int length = vsnprintf(NULL, 0, format, again);
+    va_end(again);
+    char *text = tool_allocate((size_t)length + 1, 1);
+    vsnprintf(text, (size_t)length + 1, format, arguments);
+    return text;
+}
+
+char *text_print(const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    char *text = print(format, arguments);
+    va_end(arguments);
+    return text;
+}
+
+static void take(list *l, char *text) {
+    l->item = owned(realloc(l->item, (l->count + 1) * sizeof *l->item));
+    l->item[l->count++] = text;
+}
+
+void list_add(list *l, const char *text) {
+    take(l, text_print("%s", text));
+}
+
+void list_print(list *l, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    take(l, print(format, arguments));
+    va_end(arguments);
+}
+
+void list_split(list *l, const char *text) {
+    for (;;) {
+        text += strspn(text, " ");
+        size_t length = strcspn(text, ",");
+        const char *next = text + length;
+        while (length && text[length - 1] == ' ')
+            length--;
+        take(l, text_print("%.*s", (int)length, text));
+        if (!*next)
+            return;
+        text = next + 1;
+    }
+}
+
+void list_free(list *l) {
+    for (size_t i = 0; i < l->count; i++)
+        free(l->item[i]);
+    free(l->item);
+    *l = (list){0};
+}
+
+static size_t least(size_t a, size_t b) {
+    return a < b ? a : b;
+}
+
+/* Letters to insert, delete or replace. */
+static size_t distance(const char *a, const char *b) {
+    size_t width = strlen(b), last = 0;
+    size_t *edits = tool_allocate(width + 1, sizeof *edits);
+    for (size_t j = 0; j <= width; j++)
+        edits[j] = j;
+    for (size_t i = 0; a[i]; i++) {
+        last = edits[0]++;
+        for (size_t j = 0; j < width; j++) {
+            size_t replaced = last + (a[i] != b[j]);
+            last = edits[j + 1];
+            edits[j + 1] = least(replaced, least(last, edits[j]) + 1);
+        }
+    }
+    size_t result = edits[width];
+    free(edits);
+    return result;
+}
+
+const char *list_closest(const list *l, const char *name) {
+    size_t length = strlen(name), best = length < 4 ? 2 : length / 3 + 2;
+    const char *closest = NULL;
+    for (size_t i = 0; i < l->count; i++) {
+        const char *item = l->item[i];
+        size_t d = distance(name, item);
+        if (length > 2 && strncmp(name, item, length) == 0)
+            d = 1;
+        if (d < best)
+            best = d, closest = item;
+    }
+    return closest;
+}
+
+int tool_refuse(const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    fflush(stdout);
+    fputs("nevh: ", stderr);
+    vfprintf(stderr, format, arguments);
+    fputc('\n', stderr);
+    va_end(arguments);
+    return TOOL_USAGE;
+}
+
+int tool_unknown(const char *kind, const char *name, const list *known) {
+    const char *closest = list_closest(known, name);
+    if (closest)
+        return tool_refuse("unknown %s %s; did you mean %s?", kind, name,
+                           closest);
+    return tool_refuse("unknown %s %s", kind, name);
+}
