@@ -185,7 +185,8 @@ sed -e 's/^dt .*/dt = 2*pi\/50\ntransform = (x^2 + y^2)^(3\/4)/' \
 exits 0 compare $work/comet.nevh --t-end 20 \
     --integrators gauss8,gauss8+transform,adaptive-verlet
 has '^ gauss8 .* [0-9.]+e[-+]0[01] '
-has '^ gauss8\+transform .* [0-9.]+e-(09|1[0-9]) .*bounded$'
+# At the noise of differences the last bits decide whether it wanders.
+has '^ gauss8\+transform .* [0-9.]+e-(09|1[0-9]) .*(bounded|random-walk)$'
 has '^ adaptive-verlet .*bounded$'
 exits 2 compare kepler --integrators gauss8+transform
 says 'has no transform'
