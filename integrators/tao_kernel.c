@@ -110,9 +110,9 @@ static int move(const doubled *z, const group *g, double h) {
         p[i] -= h * g->dh_dq[i];
         q[i] += h * g->dh_dp[i];
     }
-    return z->work->ledger ? nevh_work_account(z->work, NEVH_OF_Q | NEVH_OF_P,
-                                               h / 2, g->t, g->q, g->p)
-                           : NEVH_OK;
+    return z->work->accounts ? nevh_work_account(z->work, NEVH_OF_Q | NEVH_OF_P,
+                                                 h / 2, g->t, g->q, g->p)
+                             : NEVH_OK;
 }
 
 /* Turns (x - q, y - p) about the middle of the two. */

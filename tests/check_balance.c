@@ -187,6 +187,53 @@ START_TEST(observed_from_the_middle) {
 }
 END_TEST
 
+/* An end between two steps is reached by a step that branches off: it counts in
+   what is shown there, and leaves the account of the orbit, and what friction
+   has rounded off, as they were. */
+START_TEST(ends_between_steps) {
+    static const struct {
+        const problem *b;
+        const nevh_integrator *const *scheme;
+    } all[] = {{&driven_pendulum, &nevh_verlet},
+               {&driven_pendulum, &nevh_gauss4},
+               {&driven_pendulum, &nevh_adaptive_verlet},
+               {&damped, &nevh_verlet},
+               {&driven_damped, &nevh_gauss4},
+               {&driven_damped, &nevh_rk4}};
+    const problem *b = all[_i].b;
+    const nevh_integrator *scheme = *all[_i].scheme;
+    const double h = 0.05;
+    nevh_system *s = b->make();
+    nevh_stepper *m = balanced(s, b, scheme), *plain = balanced(s, b, scheme);
+    nevh_energy *e = nevh_energy_new(s, NULL);
+    ck_assert_int_eq(nevh_energy_follow(e, m), NEVH_OK);
+    nevh_observer watch = {nevh_energy_observe, e, 1};
+    state x = start(b), y = x;
+    nevh_run(plain, b->t0, h, 20, y.q, y.p, NULL, 0);
+    double before = nevh_stepper_time(plain);
+    nevh_run(plain, before, h, 1, y.q, y.p, NULL, 0);
+    double t = nevh_stepper_time(plain), part = 0.4 * (t - before);
+    int status = nevh_run_until(m, b->t0, h, t + part, x.q, x.p, &watch, 1);
+    ck_assert_msg(status == NEVH_OK, "%s", nevh_stepper_message(m));
+    ck_assert_uint_eq(nevh_stepper_taken(m), 22);
+    nevh_energy_report r = nevh_energy_result(e, 0);
+    ck_assert_uint_eq(r.samples, 23);
+    ck_assert_msg(r.max < 2e-3, "%s on %s: %.2e", nevh_integrator_name(scheme),
+                  b->name, r.max);
+    ck_assert(nevh_stepper_gain(m, 0) == nevh_stepper_gain(plain, 0));
+    x = y;
+    nevh_run(m, t, h, 30, x.q, x.p, NULL, 0);
+    nevh_run(plain, t, h, 30, y.q, y.p, NULL, 0);
+    ck_assert_mem_eq(x.q, y.q, b->n * sizeof(double));
+    ck_assert_mem_eq(x.p, y.p, b->n * sizeof(double));
+    ck_assert(nevh_stepper_gain(m, 0) == nevh_stepper_gain(plain, 0));
+    nevh_energy_free(e);
+    nevh_stepper_free(m);
+    nevh_stepper_free(plain);
+    nevh_system_free(s);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("balance");
     TCase *cases = tcase_create("balance"), *slow = tcase_create("slow");
@@ -196,6 +243,7 @@ int main(void) {
     tcase_add_test(cases, time_alone);
     tcase_add_test(cases, many_steps);
     tcase_add_test(cases, observed_from_the_middle);
+    tcase_add_loop_test(cases, ends_between_steps, 0, 6);
     suite_add_tcase(suite, cases);
     tcase_set_tags(slow, "slow");
     tcase_add_test(slow, bounded_for_very_long);

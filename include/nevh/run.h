@@ -124,12 +124,11 @@ NEVH_API int nevh_run(nevh_stepper *, double t0, double h, size_t steps,
 /* From t0 to t_end in steps of h, of which the last may be shorter.  Where
    t_end - t0 is within 1e-9 of a whole number of steps, h is adjusted to it;
    else the end is reached by one step more that branches off: the steps before
-   it are those of nevh_run, bit for bit, and the stepper's memory stays with
-   the state before the end.  For schemes of own time the length of that last
-   step is found by GSL's root finding.
-   returns    as nevh_run; NEVH_EINVAL when h leads away from t_end, or when
-              there would be more than 2^53 steps; NEVH_ENOMEM
-   cost       allocates a few copies of the state */
+   it are those of nevh_run, bit for bit, and the stepper's memory, time and
+   gain stay with the state before the end.  For schemes of own time the length
+   of that last step is found by GSL's root finding. returns    as nevh_run;
+   NEVH_EINVAL when h leads away from t_end, or when there would be more than
+   2^53 steps; NEVH_ENOMEM cost       allocates a few copies of the state */
 NEVH_API int nevh_run_until(nevh_stepper *, double t0, double h, double t_end,
                             double q[], double p[],
                             const nevh_observer observers[],

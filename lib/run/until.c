@@ -32,7 +32,7 @@ static size_t state_size(const nevh_stepper *s) {
 }
 
 static size_t memory_size(const nevh_stepper *s) {
-    return s->work.memory_rows * s->work.width * sizeof(double);
+    return s->rows * s->work.width * sizeof(double);
 }
 
 /* GSL aborts where memory is out: ask first for more than it takes. */
@@ -43,9 +43,9 @@ static bool memory_suffices(void) {
 }
 
 static int branch_open(branch *b, nevh_stepper *s) {
-    size_t size = s->work.size, rows = s->work.memory_rows * s->work.width;
+    size_t size = s->work.size, memory = s->rows * s->work.width;
     b->stepper = s;
-    b->q = nevh__array(4 * size + rows, sizeof *b->q);
+    b->q = nevh__array(4 * size + memory, sizeof *b->q);
     if (b->q && s->own_time && memory_suffices())
         b->solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
     if (!b->q || (s->own_time && !b->solver))
@@ -139,18 +139,19 @@ static int branch_off(branch *b, double h, double q[], double p[],
     nevh_stepper *s = b->stepper;
     b->h = h;
     int status = step_to_end(b);
-    resume(b);
     memcpy(q, status ? b->q : b->q_end, state_size(s));
     memcpy(p, status ? b->p : b->p_end, state_size(s));
-    if (status && s->taken == 0) {
-        nevh__undo(s);
-        return status;
+    if (!status) { /* what is shown includes what the last step gained */
+        s->taken++;
+        status =
+            nevh__show(s, s->taken, true, b->t_end, q, p, observers, count);
     }
-    nevh__remember(s, b->q, b->p);
-    if (status)
-        return status;
-    s->taken++;
-    return nevh__show(s, s->taken, true, b->t_end, q, p, observers, count);
+    resume(b);
+    if (status && s->taken == 0)
+        nevh__undo(s);
+    else
+        nevh__remember(s, b->q, b->p);
+    return status;
 }
 
 /* One step of the main orbit; *t in and out. */
