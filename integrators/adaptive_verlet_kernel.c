@@ -14,11 +14,10 @@
 
    s is the user's, or else |f|^(-3/4), f being the field, with coordinates in
    units of the largest length over which H varies with one, and momenta alike:
-   under gravity, where |f| grows
-   as 1/r^2, that is r^1.5.  A unit for each would make |f| of a round orbit
-   depend on the direction, and rho lose s.  Where f is nearly zero its length
-   at the start bounds the step.  s is divided by its value at the start.
-   SPDX-License-Identifier: GPL-3.0-or-later */
+   under gravity, where |f| grows as 1/r^2, that is r^1.5.  A unit for each
+   would make |f| of a round orbit depend on the direction, and rho lose s.
+   Where f is nearly zero its length at the start bounds the step.  s is divided
+   by its value at the start. SPDX-License-Identifier: GPL-3.0-or-later */
 #include "adaptive_verlet_private.h"
 #include "gradient/field_private.h"
 #include "system/system_private.h"
@@ -29,8 +28,7 @@
 
 static const double power = 0.75;
 static const double most_stretch = 10; /* of |f|, from its size at the start */
-static const double spread = 1e-2; /* of differences along the orbit, in units
-                                      of the scales */
+static const double spread = 1e-2;     /* of differences along the orbit */
 
 typedef struct {
     nevh_field *s;         /* of the user's s; NULL: |f| is taken */
@@ -106,7 +104,7 @@ static int take(nevh_work *w, double t, double force[], double speed[]) {
     return nevh_work_gradient(w, 1, &t, d->q, d->p, force, speed);
 }
 
-/* |f|, in units of the scales. */
+/* |f|, in those units. */
 static double field_size(const nevh_work *w) {
     const plan_data *d = w->plan;
     double size = 0;
@@ -123,8 +121,7 @@ static double guard(double size, double unit) {
     return 1 / (1 + least * least);
 }
 
-/* The part along the unit vector of f of another field, both in units of the
-   scales. */
+/* The part of another field along the unit vector of f. */
 static double along_field(const nevh_work *w, double size, const double force[],
                           const double speed[]) {
     const plan_data *d = w->plan;
@@ -160,49 +157,57 @@ static int change_of_field(nevh_work *w, double t, double unit, double *g) {
     return NEVH_OK;
 }
 
-/* -(ds/dt)/s for the user's s; s by reference. */
-static int change_of_s(nevh_work *w, double t, double *s, double *g) {
+/* The user's s. */
+static int value_of_s(nevh_work *w, double t, double *s) {
     const plan_data *d = w->plan;
-    if (nevh_field_value(d->s, 1, &t, d->q, d->p, s) ||
-        nevh_field_gradient(d->s, 1, &t, d->q, d->p, d->ds_dq, d->ds_dp))
+    if (nevh_field_value(d->s, 1, &t, d->q, d->p, s))
         return nevh__transform_fail(w, d->s);
-    if (!(*s > 0))
-        return nevh_work_fail(w, NEVH_EDOM,
-                              "the step function s is %g, not positive, at t = "
-                              "%.9g, q[0] = %.9g, p[0] = %.9g",
-                              *s, t, d->q[0], d->p[0]);
-    double sum = 0;
+    if (*s > 0)
+        return NEVH_OK;
+    return nevh_work_fail(w, NEVH_EDOM,
+                          "the step function s is %g, not positive, at t = "
+                          "%.9g, q[0] = %.9g, p[0] = %.9g",
+                          *s, t, d->q[0], d->p[0]);
+}
+
+/* -(ds/dt)/s for it. */
+static int change_of_s(nevh_work *w, double t, double *g) {
+    const plan_data *d = w->plan;
+    double s, sum = 0;
+    int status = value_of_s(w, t, &s);
+    if (status)
+        return status;
+    if (nevh_field_gradient(d->s, 1, &t, d->q, d->p, d->ds_dq, d->ds_dp))
+        return nevh__transform_fail(w, d->s);
     for (size_t k = 0; k < w->n; k++)
         sum += d->ds_dq[k] * d->speed[k] - d->ds_dp[k] * d->force[k];
-    *g = -sum / *s;
+    *g = -sum / s;
     return NEVH_OK;
 }
 
 static int find_change(nevh_work *w, double t, control *c) {
     const plan_data *d = w->plan;
-    double s;
-    return d->s ? change_of_s(w, t, &s, &c->change)
+    return d->s ? change_of_s(w, t, &c->change)
                 : change_of_field(w, t, c->unit, &c->change);
 }
 
 /* Where an orbit begins; dV/dq and dT/dp are known. */
 static int begin(nevh_work *w, double t, control *c) {
     const plan_data *d = w->plan;
+    const nevh__step_control *table = w->integrator->table;
     int status = NEVH_OK;
     c->begun = c->density = 1;
     c->unit = field_size(w);
     if (d->s)
-        status = change_of_s(w, t, &c->unit, &c->change);
-    else if (((const nevh__step_control *)w->integrator->table)->reversible)
-        status = change_of_field(w, t, c->unit, &c->change);
-    return status;
+        status = value_of_s(w, t, &c->unit);
+    return status || !table->reversible ? status : find_change(w, t, c);
 }
 
 /* s over its value at the start, at the state under way. */
-static int stretch(nevh_work *w, double t, control *c, double *s) {
+static int stretch(nevh_work *w, double t, const control *c, double *s) {
     const plan_data *d = w->plan;
     if (d->s) {
-        int status = change_of_s(w, t, s, &c->change);
+        int status = value_of_s(w, t, s);
         *s /= c->unit;
         return status;
     }

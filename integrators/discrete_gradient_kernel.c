@@ -288,18 +288,12 @@ static int map(void *data, size_t active, const size_t lanes[],
     return status;
 }
 
-/* What the sum a + b has lost. */
-static double lost_by(double sum, double a, double b) {
-    double part = sum - a;
-    return (a - (sum - part)) + (b - part);
-}
-
 /* z + carry += h x, the product's rounding included. */
 static void advance(const nevh__gradient_step *s, double *z, double *carry) {
     for (size_t i = 0; i < 2 * s->work->size; i++) {
         double way = s->h * s->x[i], d = way + carry[i], next = z[i] + d;
-        double lost = fma(s->h, s->x[i], -way) + lost_by(d, way, carry[i]);
-        carry[i] = lost_by(next, z[i], d) + lost;
+        double lost = fma(s->h, s->x[i], -way) + nevh__lost(d, way, carry[i]);
+        carry[i] = nevh__lost(next, z[i], d) + lost;
         z[i] = next;
     }
 }

@@ -272,8 +272,8 @@ static void guess(const family_step *s, const family_plan *g) {
 
 /* sum + lost += x, without loss. */
 static void add(double *sum, double *lost, double x) {
-    double d = x + *lost, y = *sum, next = y + d, part = next - y;
-    *lost = (y - (next - part)) + (d - part);
+    double d = x + *lost, next = *sum + d;
+    *lost = nevh__lost(next, *sum, d);
     *sum = next;
 }
 

@@ -9,7 +9,7 @@
 #include "schemes_private.h"
 #include "tao_private.h"
 
-static const nevh__composition once = {0, NULL};
+static const nevh_splitting once = {NEVH_KICK, NEVH_COMPOSITION, 0, NULL};
 
 const nevh_integrator nevh__tao2 = {
     .name = "tao2",
@@ -31,7 +31,8 @@ NEVH__PUBLISH(tao2);
 
 /* 1 / (2 - 2^(1/3)) */
 static const long double jump[] = {1.351207191959657634047687808971460826922L};
-static const nevh__composition triple_jump = {1, jump};
+static const nevh_splitting triple_jump = {NEVH_KICK, NEVH_COMPOSITION, 1,
+                                           jump};
 
 const nevh_integrator nevh__tao4 = {
     .name = "tao4",
@@ -55,7 +56,7 @@ static const long double kahan_li[] = {
     -0.7062461725576393598099648195492564593955L,
     0.08221359629355080023149044810205633110329L,
 };
-static const nevh__composition nine = {4, kahan_li};
+static const nevh_splitting nine = {NEVH_KICK, NEVH_COMPOSITION, 4, kahan_li};
 
 const nevh_integrator nevh__tao6 = {
     .name = "tao6",

@@ -172,23 +172,23 @@ static int commit(const doubled *z, double q[], double p[]) {
     return NEVH_OK;
 }
 
-double nevh__composition_part(const nevh__composition *c, size_t i, double h) {
-    if (i > c->outer)
-        i = 2 * c->outer - i;
-    if (i < c->outer)
-        return h * (double)c->parts[i];
+double nevh__composition_part(const nevh_splitting *c, size_t i, double h) {
+    if (i > c->count)
+        i = 2 * c->count - i;
+    if (i < c->count)
+        return h * (double)c->weights[i];
     double rest = h;
-    for (size_t k = 0; k < c->outer; k++)
-        rest -= 2 * (h * (double)c->parts[k]);
+    for (size_t k = 0; k < c->count; k++)
+        rest -= 2 * (h * (double)c->weights[k]);
     return rest;
 }
 
 static int step(nevh_work *w, double t, double h, double q[], double p[]) {
-    const nevh__composition *table = w->integrator->table;
+    const nevh_splitting *table = w->integrator->table;
     doubled z = begin(w, q, p);
     double passed = 0, last = 0;
     int status = recall(&z, t);
-    for (size_t i = 0; !status && i <= 2 * table->outer; i++) {
+    for (size_t i = 0; !status && i <= 2 * table->count; i++) {
         double part = nevh__composition_part(table, i, h);
         status = move(&z, &z.a, (last + part) / 2);
         if (!status)

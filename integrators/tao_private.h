@@ -6,16 +6,9 @@
 #include "gradient/explore_private.h"
 #include <nevh/extend.h>
 
-/* A symmetric composition of steps of order 2: the parts of h of the first
-   `outer` ones.  The last ones mirror them, and the one in the middle takes
-   what they leave. */
-typedef struct {
-    size_t outer;
-    const long double *parts;
-} nevh__composition;
-
-/* The part of h that step i of the 2 outer + 1 takes, as a time. */
-double nevh__composition_part(const nevh__composition *, size_t i, double h);
+/* The part of h that step i of the 2 count + 1 of a NEVH_COMPOSITION takes, as
+   a time; its `first` does not matter. */
+double nevh__composition_part(const nevh_splitting *, size_t i, double h);
 
 /* What holds the two copies together. */
 typedef struct {
@@ -41,6 +34,6 @@ enum {
     NEVH__TAO_BLOCKS /* then one row: whether there is such a gradient */
 };
 
-extern const nevh_kernel nevh__tao_kernel; /* its table: a composition */
+extern const nevh_kernel nevh__tao_kernel; /* its table composes */
 
 #endif

@@ -67,8 +67,8 @@ static double check(size_t count, const double y[], const double d[],
    carry.  The sum with y is exact in two parts, whichever is larger. */
 static void add(size_t count, double y[], const double d[], double carry[]) {
     for (size_t i = 0; i < count; i++) {
-        double x = d[i] + carry[i], next = y[i] + x, part = next - y[i];
-        carry[i] = (y[i] - (next - part)) + (x - part);
+        double x = d[i] + carry[i], next = y[i] + x;
+        carry[i] = nevh__lost(next, y[i], x);
         y[i] = next;
     }
 }

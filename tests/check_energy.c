@@ -133,6 +133,29 @@ START_TEST(scale_rule) {
 }
 END_TEST
 
+/* A scale that is given replaces the one that is found; none but a positive
+   number is taken. */
+START_TEST(given_scale) {
+    nevh_system *s = nevh_system_from(1, coordinate, NULL);
+    nevh_energy *energy = nevh_energy_new(s, NULL);
+    double p = 0, first = 1, second = 1.5;
+    ck_assert_int_eq(nevh_energy_set_scale(energy, 4), NEVH_OK);
+    nevh_energy_observe(energy, 0, 0, &first, &p);
+    nevh_energy_observe(energy, 1, 1, &second, &p);
+    ck_assert_double_eq(nevh_energy_result(energy, 0).scale, 4);
+    ck_assert_double_eq(nevh_energy_result(energy, 0).final, 0.125);
+    nevh_energy_free(energy);
+    const double wrong[] = {0, -1, NAN, INFINITY};
+    for (int i = 0; i < 4; i++) {
+        energy = nevh_energy_new(s, NULL);
+        ck_assert_int_eq(nevh_energy_set_scale(energy, wrong[i]), NEVH_EINVAL);
+        ck_assert_ptr_nonnull(strstr(nevh_energy_message(energy), "scale"));
+        nevh_energy_free(energy);
+    }
+    nevh_system_free(s);
+}
+END_TEST
+
 /* Each lane has its own series. */
 START_TEST(lanes) {
     nevh_system *s = nevh_system_from(1, coordinate, NULL);
@@ -194,6 +217,7 @@ int main(void) {
     tcase_add_test(cases, slope_of_a_line);
     tcase_add_test(cases, verdicts);
     tcase_add_test(cases, scale_rule);
+    tcase_add_test(cases, given_scale);
     tcase_add_test(cases, lanes);
     tcase_add_test(cases, failures);
     tcase_add_test(cases, stale);

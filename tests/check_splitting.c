@@ -106,15 +106,10 @@ static int order_of(const splitting *x, bool quadratic, int most) {
 /* Tao composes steps of order 2 as others compose Verlet's: the conditions are
    the same. */
 static const nevh_splitting *table_of(int i) {
-    static nevh_splitting composed;
     const nevh_integrator *scheme = nevh_integrators()[i];
-    if (scheme->kernel == &nevh__tao_kernel) {
-        const nevh__composition *c = scheme->table;
-        composed =
-            (nevh_splitting){NEVH_KICK, NEVH_COMPOSITION, c->outer, c->parts};
-        return &composed;
-    }
-    return scheme->kernel == &nevh_splitting_kernel ? scheme->table : NULL;
+    bool is = scheme->kernel == &nevh_splitting_kernel ||
+              scheme->kernel == &nevh__tao_kernel;
+    return is ? scheme->table : NULL;
 }
 
 static bool needs_quadratic(const nevh_integrator *scheme) {

@@ -331,8 +331,8 @@ END_TEST
 /* Sums of powers over the parts: 1, then 0 for odd powers below the order. */
 START_TEST(compositions) {
     const nevh_integrator *scheme = *schemes[_i];
-    const nevh__composition *c = scheme->table;
-    size_t count = 2 * c->outer + 1;
+    const nevh_splitting *c = scheme->table;
+    size_t count = 2 * c->count + 1;
     ck_assert_int_eq(scheme->stages, (int)count);
     ck_assert_int_eq(scheme->gradients, 3 * (int)count);
     for (int power = 1; power < scheme->order; power += 2) {

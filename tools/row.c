@@ -14,12 +14,11 @@ typedef struct {
     const plan *plan;
     row *row;
     double *q, *p;
-    double factor; /* from the library's scale to the scene's */
 } work;
 
 typedef struct {
     nevh_energy *energy;
-    double factor, since;
+    double since;
 } watch;
 
 /* Errors are asked for after every step, which costs more than a step may: this
@@ -29,7 +28,7 @@ static int stop_when_unstable(void *data, size_t step, double t,
     watch *w = data;
     int status = nevh_energy_observe(w->energy, step, t, q, p);
     nevh_energy_report r = nevh_energy_result(w->energy, 0);
-    if (!status && fabs(r.final * w->factor) > unstable_above)
+    if (!status && fabs(r.final) > unstable_above)
         return w->since = t, NEVH_STOPPED;
     return status;
 }
@@ -55,35 +54,14 @@ static nevh_energy *new_energy(const work *w, const nevh_stepper *s) {
     nevh_energy *energy = nevh_energy_new(w->plan->system, &o);
     if (w->plan->balance)
         nevh_energy_follow(energy, s);
+    if (w->plan->run->energy_scale > 0)
+        nevh_energy_set_scale(energy, w->plan->run->energy_scale);
     return energy;
-}
-
-/* The verdict's rule again, where errors are relative to the scene's scale. */
-static nevh_verdict judge(const nevh_energy_report *e) {
-    if (!(e->max <= unstable_above))
-        return NEVH_UNSTABLE;
-    if (e->verdict != NEVH_UNSTABLE)
-        return e->verdict;
-    if (e->last_fifth <= 2 * e->first_fifth)
-        return NEVH_BOUNDED;
-    return e->straightness >= 0.8 ? NEVH_DRIFTS : NEVH_RANDOM_WALK;
-}
-
-static void rescale(work *w, nevh_energy_report *e) {
-    double wanted = w->plan->run->energy_scale;
-    if (!(wanted > 0) || !(e->scale > 0))
-        return;
-    w->factor = e->scale / wanted;
-    e->max *= w->factor, e->rms *= w->factor, e->final *= w->factor;
-    e->drift *= w->factor, e->drift_error *= w->factor;
-    e->first_fifth *= w->factor, e->last_fifth *= w->factor;
-    e->scale = wanted;
-    e->verdict = judge(e);
 }
 
 static void unstable_since(work *w) {
     nevh_stepper *s = new_stepper(w, w->plan->balance);
-    watch unstable = {new_energy(w, s), w->factor, NAN};
+    watch unstable = {new_energy(w, s), NAN};
     run(w, s, &(nevh_observer){stop_when_unstable, &unstable, 1});
     free(w->row->status);
     w->row->status = text_print("unstable: since t = %.9g", unstable.since);
@@ -139,7 +117,6 @@ static void watched(work *w, nevh_stepper *s) {
                                              : nevh_stepper_message(s);
     r->energy = nevh_energy_result(energy, 0);
     r->steps = nevh_stepper_taken(s);
-    rescale(w, &r->energy);
     r->ran = !status || r->energy.verdict == NEVH_UNSTABLE;
     r->failed = !r->ran;
     r->status = status ? text_print("failed: %s", why) : text_print("ok");
@@ -165,7 +142,7 @@ static bool refused(row *r, const nevh_stepper *s) {
 
 void row_run(const plan *p, row *r) {
     work w = {p, r, tool_allocate(p->n, sizeof *w.q),
-              tool_allocate(p->n, sizeof *w.p), 1};
+              tool_allocate(p->n, sizeof *w.p)};
     r->observed_order = NAN;
     nevh_stepper *s = new_stepper(&w, p->balance);
     if (!refused(r, s)) {

@@ -34,6 +34,11 @@ NEVH_API const char *nevh_energy_message(const nevh_energy *);
             carried by the observer, which then stops the run */
 NEVH_API int nevh_energy_follow(nevh_energy *, const nevh_stepper *stepper);
 
+/* Errors are to be relative to that energy, a positive number, instead of the
+   one found at the first observation, before which it is given.
+   returns  NEVH_OK; NEVH_EINVAL when it is not finite and positive */
+NEVH_API int nevh_energy_set_scale(nevh_energy *, double scale);
+
 /* A nevh_observe_fn; data is the nevh_energy.  The first call sets H0 and the
    scale.  A value of H, or a balance, that is not finite stops the
    run. */

@@ -14,6 +14,7 @@ struct nevh_energy {
     size_t n, width;
     const nevh_stepper *followed; /* NULL: errors are of H alone */
     bool begun;
+    double given_scale;                       /* by the user; 0: found */
     double *t, *h, *initial, *scale, *gained; /* width each */
     double *effects;
     double *state; /* 2n: one lane */
@@ -109,6 +110,16 @@ static double gain(const nevh_energy *e, size_t lane) {
     return e->followed ? nevh_stepper_gain(e->followed, lane) : 0;
 }
 
+int nevh_energy_set_scale(nevh_energy *e, double scale) {
+    if (!(scale > 0 && isfinite(scale)))
+        return nevh__fail(&e->report, NEVH_EINVAL,
+                          "the scale of the energy, %g, is not a positive "
+                          "number",
+                          scale);
+    e->given_scale = scale;
+    return NEVH_OK;
+}
+
 /* |H0| of what reads something, or the largest of its effects. */
 static int find_scale(nevh_energy *e, size_t lane, double t, const double q[],
                       const double p[]) {
@@ -134,7 +145,9 @@ static int begin(nevh_energy *e, double t, const double q[], const double p[]) {
     for (size_t lane = 0; !status && lane < e->width; lane++) {
         e->initial[lane] = e->h[lane];
         e->gained[lane] = gain(e, lane);
-        status = find_scale(e, lane, t, q, p);
+        e->scale[lane] = e->given_scale;
+        if (e->given_scale == 0)
+            status = find_scale(e, lane, t, q, p);
     }
     e->begun = !status;
     return status;

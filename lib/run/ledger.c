@@ -116,8 +116,8 @@ void nevh__ledger_open(nevh_work *w, const double q[], const double p[]) {
 
 /* sum + lost += x, whichever is larger. */
 static void add(double *sum, double *lost, double x) {
-    double next = *sum + x, part = next - *sum;
-    *lost += (*sum - (next - part)) + (x - part);
+    double next = *sum + x;
+    *lost += nevh__lost(next, *sum, x);
     *sum = next;
 }
 

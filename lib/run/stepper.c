@@ -210,12 +210,10 @@ void nevh__undo(nevh_stepper *s) {
     s->time_lost = s->before_lost;
 }
 
-/* The sum with t is exact in two parts, whichever is larger. */
 static void pass_time(nevh_stepper *s, double t) {
     double passed = s->work.elapsed + (s->own_time ? s->time_lost : 0);
-    double next = t + passed, part = next - t;
-    s->time_lost = (t - (next - part)) + (passed - part);
-    s->last_t = next;
+    s->last_t = t + passed;
+    s->time_lost = nevh__lost(s->last_t, t, passed);
 }
 
 int nevh__advance(nevh_stepper *s, double t, double h, double q[], double p[]) {

@@ -20,6 +20,12 @@ static inline double nevh__random(uint64_t *state) {
     return (double)(*state >> 11) * 0x1p-52 - 1;
 }
 
+/* What rounding has lost of a + b, exactly, whichever is larger. */
+static inline double nevh__lost(double sum, double a, double b) {
+    double part = sum - a;
+    return (a - (sum - part)) + (b - part);
+}
+
 /* A status and its message, part of every object that can fail. */
 typedef struct nevh_report {
     int status;
