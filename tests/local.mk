@@ -100,7 +100,8 @@ dist_check_SCRIPTS = \
 	tests/pkgconfig.sh \
 	tests/valgrind.sh
 
-EXTRA_DIST += tests/outside.c tests/formula.h tests/scene.h
+EXTRA_DIST += tests/outside.c tests/formula.h tests/scene.h \
+	tests/nevh_support.sh
 
 TESTS = $(all_suites) $(dist_check_SCRIPTS)
 TEST_EXTENSIONS = .sh

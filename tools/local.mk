@@ -2,7 +2,9 @@ bin_PROGRAMS += tools/nevh
 tools_nevh_SOURCES = \
 	tools/tool.h \
 	tools/nevh.c \
+	tools/options_private.h \
 	tools/options.c \
+	tools/arguments.c \
 	tools/words.c \
 	tools/table.c \
 	tools/output.c \

@@ -7,28 +7,38 @@
 static const struct {
     const char *name;
     command *run;
+    unsigned bit;
     const char *operand, *help;
-} commands[] = {
-    {"compare", compare, "SCENE",
+} known[] = {
+    {"compare", compare, FOR_COMPARE, "SCENE",
      "energy errors, a row an integrator and dt, and the verdict in words"},
-    {"check", check, "SCENE",
+    {"check", check, FOR_CHECK, "SCENE",
      "errors, structure of H with evidence, and which schemes fit"},
-    {"effects", effects, "SCENE",
+    {"effects", effects, FOR_EFFECTS, "SCENE",
      "each effect: on or off, what it reads, evaluations"},
-    {"list", list_what, "WHAT", "integrators, gradients, models or scenes"},
+    {"list", list_what, FOR_LIST, "WHAT",
+     "integrators, gradients, models or scenes"},
 };
-enum { COMMANDS = sizeof commands / sizeof *commands };
+enum { KNOWN = sizeof known / sizeof *known };
 
-static int help(void) {
+static int help_all(void) {
     puts("Usage: nevh COMMAND SCENE [OPTION]...\n"
          "Compares symplectic integrators on a Hamiltonian, its gradient taken "
          "from its values.\n");
-    for (size_t i = 0; i < COMMANDS; i++)
-        printf("  nevh %-7s %s  %s\n", commands[i].name, commands[i].operand,
-               commands[i].help);
-    options_help(stdout);
-    puts("\nSCENE is a file, or a name of nevh list scenes.  Exit status: 0; 1 "
-         "when a row\nfailed numerically; 2 for bad input or usage.");
+    for (size_t i = 0; i < KNOWN; i++)
+        printf("  nevh %-9s %-5s  %s\n", known[i].name, known[i].operand,
+               known[i].help);
+    options_help(stdout, ~0u);
+    puts("\nSCENE is a file, or a name of nevh list scenes.  nevh COMMAND "
+         "--help names the\noptions of one command.  Exit status: 0; 1 when a "
+         "row failed numerically; 2 for\nbad input or usage.");
+    return TOOL_OK;
+}
+
+static int help(size_t i) {
+    printf("Usage: nevh %s %s [OPTION]...\n%s\n", known[i].name,
+           known[i].operand, known[i].help);
+    options_help(stdout, known[i].bit);
     return TOOL_OK;
 }
 
@@ -40,24 +50,29 @@ static int version(void) {
 
 static int unknown_command(const char *name) {
     list names = {0};
-    for (size_t i = 0; i < COMMANDS; i++)
-        list_add(&names, commands[i].name);
+    for (size_t i = 0; i < KNOWN; i++)
+        list_add(&names, known[i].name);
     int status = tool_unknown("command", name, &names);
     list_free(&names);
     return status;
 }
 
 static int obey(const options *o) {
-    if (o->help)
-        return help();
+    const char *word = o->operands.count ? o->operands.item[0] : NULL;
+    size_t i = 0;
     if (o->version)
         return version();
-    if (o->operands.count == 0)
-        return tool_refuse("no command; see nevh --help");
-    for (size_t i = 0; i < COMMANDS; i++)
-        if (strcmp(o->operands.item[0], commands[i].name) == 0)
-            return commands[i].run(o);
-    return unknown_command(o->operands.item[0]);
+    if (!word)
+        return o->help ? help_all()
+                       : tool_refuse("no command; see nevh --help");
+    while (i < KNOWN && strcmp(word, known[i].name) != 0)
+        i++;
+    if (i == KNOWN)
+        return unknown_command(word);
+    if (o->help)
+        return help(i);
+    int status = options_check(o, known[i].bit);
+    return status ? status : known[i].run(o);
 }
 
 int main(int argc, char **argv) {

@@ -55,23 +55,45 @@ typedef struct {
 void page_print(const page *, table_format, FILE *);
 void page_free(page *);
 
+/* The commands, as bits. */
+enum {
+    FOR_COMPARE = 1,
+    FOR_CHECK = 2,
+    FOR_EFFECTS = 4,
+    FOR_LIST = 8,
+    FOR_RUN = 16,
+    FOR_NEW = 32,
+    FOR_COST = 64,
+    FOR_GRADIENTS = 128,
+    FOR_RECOMMEND = 256,
+    FOR_SECTION = 512,
+    FOR_HARD = 1024
+};
+
 /* options.c: the command line. */
+typedef enum { MATCH_SCENE, MATCH_STEPS, MATCH_WORK } matching;
 typedef struct {
     list operands, settings, integrators, gradients; /* settings: see below */
-    double *dt;
-    size_t dts;
-    double t_end; /* NAN: the scene's */
-    double gradient_step;
+    double *dt, *at;
+    size_t dts, ats;
+    double t_end;                                    /* NAN: the scene's */
+    double gradient_step, energy_error, state_error; /* 0: not given */
+    size_t every, samples, repeats;                  /* 0: not given */
     table_format format;
-    const char *file;
-    bool quiet, portable, all, help, version;
+    matching match;
+    const char *file, *plot, *plot_script, *transform, *resume, *from;
+    bool quiet, portable, all, by_state, diagnostics, impact, allow_code;
+    bool help, version;
+    unsigned long long used; /* a bit an option */
 } options;
 /* A setting is '+', '-' or '=' and an effect to switch on or off, or an
    assignment, in the order given.
    returns  TOOL_OK or TOOL_USAGE, the message being printed */
 int options_read(options *, int argc, char **argv);
+/* That all options given are for this command. */
+int options_check(const options *, unsigned which);
 void options_free(options *);
-void options_help(FILE *);
+void options_help(FILE *, unsigned which);
 
 /* output.c: a file that is there when it is whole, or stdout. */
 typedef struct {

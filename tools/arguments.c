@@ -1,0 +1,234 @@
+/* nevh: what the arguments of options mean.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "options_private.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+int read_with(options *o, const char *argument) {
+    list_print(&o->settings, "+%s", argument);
+    return TOOL_OK;
+}
+
+int read_without(options *o, const char *argument) {
+    list_print(&o->settings, "-%s", argument);
+    return TOOL_OK;
+}
+
+int read_set(options *o, const char *argument) {
+    list_print(&o->settings, "=%s", argument);
+    return TOOL_OK;
+}
+
+int read_integrators(options *o, const char *argument) {
+    list_split(&o->integrators, argument);
+    return TOOL_OK;
+}
+
+int read_gradient(options *o, const char *argument) {
+    list_split(&o->gradients, argument);
+    return TOOL_OK;
+}
+
+static int read_number(const char *option, const char *text, double *number) {
+    char *end;
+    *number = strtod(text, &end);
+    if (end != text && !*end && isfinite(*number))
+        return TOOL_OK;
+    return tool_refuse("--%s takes numbers, not \"%s\"", option, text);
+}
+
+static int read_positive(const char *option, const char *text, double *number) {
+    if (read_number(option, text, number))
+        return TOOL_USAGE;
+    if (*number > 0)
+        return TOOL_OK;
+    return tool_refuse("--%s takes numbers above 0, not %s", option, text);
+}
+
+static int read_numbers(const char *option, const char *argument,
+                        double **numbers, size_t *count,
+                        int (*read)(const char *, const char *, double *)) {
+    list texts = {0};
+    int status = TOOL_OK;
+    list_split(&texts, argument);
+    free(*numbers);
+    *numbers = tool_allocate(texts.count, sizeof **numbers);
+    *count = texts.count;
+    for (size_t i = 0; !status && i < texts.count; i++)
+        status = read(option, texts.item[i], &(*numbers)[i]);
+    list_free(&texts);
+    return status;
+}
+
+int read_dt(options *o, const char *argument) {
+    return read_numbers("dt", argument, &o->dt, &o->dts, read_positive);
+}
+
+int read_at(options *o, const char *argument) {
+    return read_numbers("at", argument, &o->at, &o->ats, read_number);
+}
+
+int read_t_end(options *o, const char *argument) {
+    return read_number("t-end", argument, &o->t_end);
+}
+
+int read_gradient_step(options *o, const char *argument) {
+    return read_positive("gradient-step", argument, &o->gradient_step);
+}
+
+int read_energy_error(options *o, const char *argument) {
+    return read_positive("energy-error", argument, &o->energy_error);
+}
+
+int read_state_error(options *o, const char *argument) {
+    return read_positive("state-error", argument, &o->state_error);
+}
+
+static int read_count(const char *option, const char *text, size_t *count) {
+    double number;
+    if (read_positive(option, text, &number))
+        return TOOL_USAGE;
+    if (number != floor(number) || number > 0x1p53)
+        return tool_refuse("--%s takes a whole number, not %s", option, text);
+    *count = (size_t)number;
+    return TOOL_OK;
+}
+
+int read_every(options *o, const char *argument) {
+    return read_count("every", argument, &o->every);
+}
+
+int read_samples(options *o, const char *argument) {
+    return read_count("samples", argument, &o->samples);
+}
+
+int read_repeat(options *o, const char *argument) {
+    return read_count("repeat", argument, &o->repeats);
+}
+
+/* "a, b or c" */
+static char *either(const char *const names[]) {
+    char *text = text_print("%s", names[0]);
+    for (size_t i = 1; names[i]; i++) {
+        char *longer =
+            text_print(names[i + 1] ? "%s, %s" : "%s or %s", text, names[i]);
+        free(text);
+        text = longer;
+    }
+    return text;
+}
+
+/* Which of the names, as a number from 0. */
+static int read_name(const char *option, const char *text,
+                     const char *const names[], int *which) {
+    for (*which = 0; names[*which]; ++*which)
+        if (strcmp(text, names[*which]) == 0)
+            return TOOL_OK;
+    char *known = either(names);
+    int status = tool_refuse("--%s is %s, not \"%s\"", option, known, text);
+    free(known);
+    return status;
+}
+
+int read_match(options *o, const char *argument) {
+    static const char *const names[] = {"steps", "work", NULL};
+    int which;
+    int status = read_name("match", argument, names, &which);
+    o->match = which == 1 ? MATCH_WORK : MATCH_STEPS;
+    return status;
+}
+
+int read_by(options *o, const char *argument) {
+    static const char *const names[] = {"energy", "state", NULL};
+    int which;
+    int status = read_name("by", argument, names, &which);
+    o->by_state = which == 1;
+    return status;
+}
+
+int read_format(options *o, const char *argument) {
+    static const char *const names[] = {"table", "csv", "json", NULL};
+    int which;
+    int status = read_name("format", argument, names, &which);
+    o->format = (table_format)which;
+    return status;
+}
+
+int read_file(options *o, const char *argument) {
+    o->file = argument;
+    return TOOL_OK;
+}
+
+int read_plot(options *o, const char *argument) {
+    o->plot = argument;
+    return TOOL_OK;
+}
+
+int read_plot_script(options *o, const char *argument) {
+    o->plot_script = argument;
+    return TOOL_OK;
+}
+
+int read_transform(options *o, const char *argument) {
+    o->transform = argument;
+    return TOOL_OK;
+}
+
+int read_resume(options *o, const char *argument) {
+    o->resume = argument;
+    return TOOL_OK;
+}
+
+int read_from(options *o, const char *argument) {
+    o->from = argument;
+    return TOOL_OK;
+}
+
+int read_quiet(options *o, const char *argument) {
+    (void)argument;
+    o->quiet = true;
+    return TOOL_OK;
+}
+
+int read_portable(options *o, const char *argument) {
+    (void)argument;
+    o->portable = true;
+    return TOOL_OK;
+}
+
+int read_all(options *o, const char *argument) {
+    (void)argument;
+    o->all = true;
+    return TOOL_OK;
+}
+
+int read_allow_code(options *o, const char *argument) {
+    (void)argument;
+    o->allow_code = true;
+    return TOOL_OK;
+}
+
+int read_diagnostics(options *o, const char *argument) {
+    (void)argument;
+    o->diagnostics = true;
+    return TOOL_OK;
+}
+
+int read_impact(options *o, const char *argument) {
+    (void)argument;
+    o->impact = true;
+    return TOOL_OK;
+}
+
+int read_help(options *o, const char *argument) {
+    (void)argument;
+    o->help = true;
+    return TOOL_OK;
+}
+
+int read_version(options *o, const char *argument) {
+    (void)argument;
+    o->version = true;
+    return TOOL_OK;
+}
