@@ -19,3 +19,5 @@ tools_nevh_SOURCES = \
 tools_nevh_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE \
 	-DNEVH_SCENES='"$(scenesdir)"'
 tools_nevh_LDADD = libnevh.la
+
+dist_completions_DATA = tools/completion/nevh
