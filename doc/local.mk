@@ -11,8 +11,8 @@ dist_man3_MANS = doc/nevh.3
 if HAVE_PAGE
 dist_man1_MANS = doc/nevh.1
 MAINTAINERCLEANFILES = doc/nevh.1
-doc/nevh.1: $(tools_nevh_SOURCES) doc/nevh.h2m configure.ac
-	$(AM_V_at)$(MAKE) $(AM_MAKEFLAGS) tools/nevh$(EXEEXT)
+doc/nevh.1: $(tools_nevh_SOURCES) doc/nevh.h2m configure.ac \
+  | tools/nevh$(EXEEXT)
 	$(AM_V_GEN)$(MKDIR_P) doc && \
 	  $(HELP2MAN) --name 'compare symplectic integrators on a Hamiltonian' \
 	    --include $(srcdir)/doc/nevh.h2m --output $@ ./tools/nevh$(EXEEXT)
