@@ -97,12 +97,13 @@ dist_check_SCRIPTS = \
 	tests/cplusplus.sh \
 	tests/examples.sh \
 	tests/nevh.sh \
+	tests/bad_scenes.sh \
 	tests/completion.sh \
 	tests/pkgconfig.sh \
 	tests/valgrind.sh
 
 EXTRA_DIST += tests/outside.c tests/formula.h tests/scene.h \
-	tests/nevh_support.sh
+	tests/nevh_support.sh tests/bad
 
 TESTS = $(all_suites) $(dist_check_SCRIPTS)
 TEST_EXTENSIONS = .sh

@@ -64,9 +64,28 @@ static int check_gradients(const plan *p) {
     return status;
 }
 
+/* The time between two numbers is counted in steps by a double. */
+static int check_steps(const plan *p) {
+    double span = p->t_end - p->run->t_start;
+    for (size_t i = 0; i < p->dts; i++) {
+        if (p->dt[i] > span * (1 + 1e-9))
+            return tool_refuse("%s: dt = %g is longer than the run, from t = "
+                               "%g to %g",
+                               p->name, p->dt[i], p->run->t_start, p->t_end);
+        if (!(span / p->dt[i] <= 0x1p53))
+            return tool_refuse("%s: dt = %g makes %g steps, more than can be "
+                               "counted",
+                               p->name, p->dt[i], span / p->dt[i]);
+    }
+    return TOOL_OK;
+}
+
 static int check_times(const plan *p) {
     if (p->dts == 0)
         return tool_refuse("%s: no time step: give dt in [run], or --dt",
+                           p->name);
+    if (isnan(p->t_end))
+        return tool_refuse("%s: no end: give t_end in [run], or --t-end",
                            p->name);
     if (p->t_end == p->run->t_start)
         return tool_refuse("%s: the run ends where it begins, at t = %g; give "
@@ -76,7 +95,7 @@ static int check_times(const plan *p) {
         return tool_refuse("%s: the run ends at t = %g, before it begins at "
                            "t = %g",
                            p->name, p->t_end, p->run->t_start);
-    return TOOL_OK;
+    return check_steps(p);
 }
 
 static int start(plan *p) {

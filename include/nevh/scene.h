@@ -68,7 +68,8 @@ NEVH_API const nevh_system *nevh_scene_system(nevh_scene *);
 /* The state at t_start, n each; initial velocities are solved for momenta, with
    the effects that are on.
    returns  NEVH_OK; NEVH_EMAXITER when no momenta give these velocities (the
-            message says which line asks for them); NEVH_ENOMEM */
+            message says which line asks for them); NEVH_EDOM when an effect
+            that is on is not finite there; NEVH_ENOMEM */
 NEVH_API int nevh_scene_start(nevh_scene *, double q[], double p[]);
 
 /* [run], with defaults filled in; names are as written.  Lists are empty where

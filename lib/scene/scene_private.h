@@ -164,6 +164,11 @@ void nevh__model_free(nevh__model *);
 double *nevh__velocity_room(const nevh_system *);
 void nevh__velocities(const nevh_system *, double t, const double q[],
                       const double p[], double room[], double v[]);
+/* The first effect that is on and has a value that is not finite; NULL: none.
+ */
+const char *nevh__effect_not_finite(const nevh_system *, double t,
+                                    const double q[], const double p[],
+                                    double room[]);
 
 /* Which effects there are and which are on. */
 bool nevh__scene_effects(nevh_scene *);

@@ -11,6 +11,7 @@
 #include <gsl/gsl_multiroots.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum {
     RESCALINGS = 1000,
@@ -255,6 +256,40 @@ static bool fail(nevh_scene *scene, const search *s, int status) {
         "no momenta were found that give the initial velocities");
 }
 
+static int find_momenta(nevh_scene *scene, double q[], double p[]) {
+    search s = {.m = scene->model, .q = q, .p = p};
+    int status = take_memory(&s) ? solve(&s) : NEVH_ENOMEM;
+    if (status)
+        fail(scene, &s, status);
+    done(&s);
+    return status;
+}
+
+/* The statement of an effect: a scene that begins where H is not finite is
+   wrong there. */
+static bool fail_effect(nevh_scene *scene, const char *effect) {
+    for (size_t i = 0; i < scene->n_statements; i++) {
+        const nevh__statement *s = &scene->statements[i];
+        if (s->section == NEVH__EFFECTS && strcmp(s->head.name, effect) == 0)
+            return nevh__scene_fail(scene, NEVH_EDOM, &s->value,
+                                    "this is not finite in the initial state");
+    }
+    return true;
+}
+
+static int check_values(nevh_scene *scene, const double q[], const double p[]) {
+    const nevh__model *m = scene->model;
+    double *room = nevh__velocity_room(m->system);
+    if (!room)
+        return nevh__scene_no_memory(scene), NEVH_ENOMEM;
+    const char *effect =
+        nevh__effect_not_finite(m->system, m->run.t_start, q, p, room);
+    free(room);
+    if (effect)
+        fail_effect(scene, effect);
+    return scene->status;
+}
+
 int nevh_scene_start(nevh_scene *scene, double q[], double p[]) {
     const nevh__model *m = scene->model;
     bool any = false;
@@ -267,12 +302,6 @@ int nevh_scene_start(nevh_scene *scene, double q[], double p[]) {
         p[k] = m->p[k];
         any |= m->by_velocity[k];
     }
-    if (!any)
-        return NEVH_OK;
-    search s = {.m = m, .q = q, .p = p};
-    int status = take_memory(&s) ? solve(&s) : NEVH_ENOMEM;
-    if (status)
-        fail(scene, &s, status);
-    done(&s);
-    return status;
+    int status = any ? find_momenta(scene, q, p) : NEVH_OK;
+    return status ? status : check_values(scene, q, p);
 }

@@ -1,16 +1,17 @@
-/* nevh: v = dH/dp of a system of tapes, by their own derivatives.
+/* nevh: values and v = dH/dp of a system of tapes, by themselves.
 
    A field would do the same, but it is planned around a state, and here the
-   momenta are not known yet.
+   momenta are not known yet, or H is not finite.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/scene_private.h"
+#include <math.h>
 #include <string.h>
 
 enum { WIDTH = NEVH__LANES };
 
 /* Doubles that one block of a term takes. */
 static size_t block_size(const nevh_term *is) {
-    return WIDTH * (is->nq + 2 * is->np + is->nc + 1);
+    return WIDTH * (is->nq + 2 * is->np + is->nc + 2);
 }
 
 double *nevh__velocity_room(const nevh_system *system) {
@@ -33,23 +34,33 @@ static void gather(const double from[], const size_t indices[], size_t each,
     }
 }
 
+/* What a block of instances reads, and room for what comes of them. */
+typedef struct {
+    double *t, *q, *p, *c, *result;
+} block;
+
+static block read_block(const nevh_term *is, size_t first, double t,
+                        const double q[], const double p[], double room[]) {
+    block b = {.t = room, .q = room + WIDTH};
+    b.p = b.q + WIDTH * is->nq;
+    b.c = b.p + WIDTH * is->np;
+    b.result = b.c + WIDTH * is->nc;
+    for (size_t lane = 0; lane < WIDTH; lane++)
+        b.t[lane] = is->time ? t : 0;
+    gather(q, is->q, is->nq, first, is->count, b.q);
+    gather(p, is->p, is->np, first, is->count, b.p);
+    gather(is->c, NULL, is->nc, first, is->count, b.c);
+    return b;
+}
+
 static void add_block(const nevh_term *is, size_t first, double t,
                       const double q[], const double p[], double room[],
                       double v[]) {
-    double *times = room, *block_q = times + WIDTH,
-           *block_p = block_q + WIDTH * is->nq,
-           *block_c = block_p + WIDTH * is->np,
-           *slope = block_c + WIDTH * is->nc;
-    for (size_t lane = 0; lane < WIDTH; lane++)
-        times[lane] = is->time ? t : 0;
-    gather(q, is->q, is->nq, first, is->count, block_q);
-    gather(p, is->p, is->np, first, is->count, block_p);
-    gather(is->c, NULL, is->nc, first, is->count, block_c);
-    is->gradient(WIDTH, times, block_q, block_p, block_c, is->params, NULL,
-                 slope);
+    block b = read_block(is, first, t, q, p, room);
+    is->gradient(WIDTH, b.t, b.q, b.p, b.c, is->params, NULL, b.result);
     for (size_t lane = 0; lane < WIDTH && first + lane < is->count; lane++)
         for (size_t k = 0; k < is->np; k++)
-            v[is->p[(first + lane) * is->np + k]] += slope[k * WIDTH + lane];
+            v[is->p[(first + lane) * is->np + k]] += b.result[k * WIDTH + lane];
 }
 
 void nevh__velocities(const nevh_system *system, double t, const double q[],
@@ -62,4 +73,28 @@ void nevh__velocities(const nevh_system *system, double t, const double q[],
         for (size_t first = 0; first < is->count; first += WIDTH)
             add_block(is, first, t, q, p, room, v);
     }
+}
+
+static bool is_finite(const nevh_term *is, double t, const double q[],
+                      const double p[], double room[]) {
+    for (size_t first = 0; first < is->count; first += WIDTH) {
+        block b = read_block(is, first, t, q, p, room);
+        is->block(WIDTH, b.t, b.q, b.p, b.c, is->params, b.result);
+        for (size_t lane = 0; lane < WIDTH; lane++)
+            if (!isfinite(b.result[lane]))
+                return false;
+    }
+    return true;
+}
+
+const char *nevh__effect_not_finite(const nevh_system *system, double t,
+                                    const double q[], const double p[],
+                                    double room[]) {
+    for (size_t i = 0; i < system->n_terms; i++) {
+        const nevh_term *is = &system->terms[i]->is;
+        if (nevh__term_on(system, system->terms[i]) && is->block &&
+            !is_finite(is, t, q, p, room))
+            return is->effect;
+    }
+    return NULL;
 }
