@@ -16,6 +16,7 @@ suites = \
 	tests/check_tape_terms \
 	tests/check_formula \
 	tests/check_formula_terms \
+	tests/check_random_formulas \
 	tests/check_scene \
 	tests/check_scene_errors \
 	tests/check_registry \
@@ -56,6 +57,8 @@ suites = \
 TEST_LIBS = tests/libsupport.la libnevh.la $(CHECK_LIBS)
 # These look inside, so they link what is not visible in libnevh.la.
 INSIDE_LIBS = tests/libsupport.la libnevh_core.la $(CHECK_LIBS)
+tests_check_random_formulas_LDADD = $(INSIDE_LIBS) $(MUPARSER_LIBS)
+tests_check_random_formulas_CPPFLAGS = $(AM_CPPFLAGS) $(MUPARSER_CFLAGS)
 tests_check_coefficients_LDADD = $(INSIDE_LIBS)
 tests_check_splitting_LDADD = $(INSIDE_LIBS)
 tests_check_damped_LDADD = $(INSIDE_LIBS)
@@ -103,7 +106,7 @@ dist_check_SCRIPTS = \
 	tests/valgrind.sh
 
 EXTRA_DIST += tests/outside.c tests/formula.h tests/scene.h \
-	tests/nevh_support.sh tests/bad
+	tests/nevh_support.sh tests/bad tests/fuzz
 
 TESTS = $(all_suites) $(dist_check_SCRIPTS)
 TEST_EXTENSIONS = .sh
@@ -133,6 +136,13 @@ endif
 check-slow:
 	$(MAKE) $(AM_MAKEFLAGS) check TESTS='$(all_suites)' \
 	  CHECK_TAGS=CK_INCLUDE_TAGS TEST_TIMEOUT=3600
+	$(MAKE) $(AM_MAKEFLAGS) fuzz FUZZ_SECONDS=60
+
+# With clang; 77 is for what cannot be run here.
+FUZZ_SECONDS = 1800
+fuzz:
+	srcdir=$(srcdir) GSL_CFLAGS='$(GSL_CFLAGS)' GSL_LIBS='$(GSL_LIBS)' \
+	  $(SHELL) $(srcdir)/tests/fuzz/run.sh $(FUZZ_SECONDS) || test $$? = 77
 
 VALGRIND = valgrind -q --leak-check=full --error-exitcode=9
 check-valgrind: all $(check_LTLIBRARIES) $(check_PROGRAMS)
