@@ -152,4 +152,4 @@ check-valgrind: all $(check_LTLIBRARIES) $(check_PROGRAMS)
 	done; \
 	test -z "$$failed" || { echo "failed under valgrind:$$failed"; exit 1; }
 
-.PHONY: check-slow check-valgrind
+.PHONY: check-slow check-valgrind fuzz
