@@ -29,18 +29,6 @@ static size_t affordable(const nevh__explorer *e) {
     return (size_t)fmin(most, (double)room);
 }
 
-/* The time in which the fastest variable moves a hundredth of its length. */
-static double first_step(const nevh__explorer *e, const gsl_odeiv2_system *ode,
-                         double t, const double y[], double dydt[]) {
-    double step = INFINITY;
-    if (ode->function(t, y, dydt, ode->params))
-        return 0;
-    for (size_t i = 0; i < ode->dimension; i++)
-        if (dydt[i] != 0)
-            step = fmin(step, 0.01 * e->length[i] / fabs(dydt[i]));
-    return isfinite(step) ? step : 0;
-}
-
 /* What GSL works with; y: room for four states. */
 typedef struct {
     gsl_odeiv2_system ode;
@@ -57,7 +45,7 @@ static void run(nevh__explorer *e, machine *m, size_t at, size_t count) {
     double *y = m->y, t = s->t[at];
     memcpy(y, s->q + at * n, n * sizeof *y);
     memcpy(y + n, s->p + at * n, n * sizeof *y);
-    double h = first_step(e, &m->ode, t, y, y + 2 * n);
+    double h = nevh__first_step(e, &m->ode, t, y, y + 2 * n);
     int status = h > 0 ? GSL_SUCCESS : GSL_FAILURE;
     gsl_odeiv2_evolve_reset(m->evolve);
     for (size_t i = 1; !status && i <= count * STRIDE; i++) {

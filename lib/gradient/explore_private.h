@@ -70,6 +70,13 @@ double nevh__curve_length(const nevh__explorer *, const nevh__planned *,
 void nevh__find_lengths(nevh__explorer *);
 /* Steps that will do for a pilot, from the lengths. */
 void nevh__set_crude_steps(nevh__explorer *);
+/* The time in which the fastest variable moves a hundredth of its length; 0 if
+   none moves.
+   ode      a gsl_odeiv2_system of the field
+   y        q and p
+   dydt     out, 2n */
+double nevh__first_step(const nevh__explorer *, const void *ode, double t,
+                        const double y[], double dydt[]);
 /* Adds samples; false when memory is out. */
 bool nevh__find_samples(nevh__explorer *);
 /* Adds only those displaced at random. */

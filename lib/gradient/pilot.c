@@ -55,11 +55,11 @@ void nevh__set_crude_steps(nevh__explorer *e) {
     }
 }
 
-/* The time in which the fastest variable moves a hundredth of its length. */
-static double first_step(const nevh__explorer *e, gsl_odeiv2_system *ode,
-                         const double y[], double dydt[]) {
+double nevh__first_step(const nevh__explorer *e, const void *system, double t,
+                        const double y[], double dydt[]) {
+    const gsl_odeiv2_system *ode = system;
     double step = INFINITY;
-    if (ode->function(e->samples.t[0], y, dydt, ode->params))
+    if (ode->function(t, y, dydt, ode->params))
         return 0;
     for (size_t i = 0; i < ode->dimension; i++)
         if (dydt[i] != 0)
@@ -86,7 +86,7 @@ static void fly(nevh__explorer *e, int steps, gsl_odeiv2_system *ode,
     size_t n = e->field->n;
     memcpy(y, e->samples.q, n * sizeof *y);
     memcpy(y + n, e->samples.p, n * sizeof *y);
-    double t = e->samples.t[0], h = first_step(e, ode, y, y + 2 * n);
+    double t = e->samples.t[0], h = nevh__first_step(e, ode, t, y, y + 2 * n);
     int status = h > 0 ? GSL_SUCCESS : GSL_FAILURE;
     for (int i = 1; !status && i <= steps; i++) {
         status = gsl_odeiv2_evolve_apply(evolve, control, step, ode, &t,
