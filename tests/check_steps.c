@@ -323,6 +323,37 @@ START_TEST(no_whole_periods) {
 }
 END_TEST
 
+/* A power of a variable has no length of its own where it is 0: that of others
+   must do. */
+static double cubic(double t, const double q[], const double p[],
+                    const void *params) {
+    (void)t, (void)params;
+    return p[0] * p[0] / 2 + q[0] * q[0] * q[0];
+}
+
+static double level(double t, const double q[], const double p[],
+                    const void *params) {
+    return cubic(t, q, p, params) + p[1] * p[1] / 2 + cos(q[1]);
+}
+
+START_TEST(powers_at_zero) {
+    nevh_system *s = nevh_system_from(2, _i % 2 ? level : cubic, NULL);
+    double q[] = {0, 0.5}, p[] = {0.1, 0.2}, t = 0, dq[2];
+    for (int g = 0; g < 4; g++) {
+        nevh_options o = {.gradient = nevh_gradients()[g]};
+        if (_i / 2)
+            o.q = q, o.p = p;
+        nevh_field *f = nevh_field_new(s, &o);
+        ck_assert_double_gt(nevh_field_step(f, "H", 0, 0), 1e-9);
+        double away[] = {0.3, 0.5};
+        ck_assert_int_eq(nevh_field_gradient(f, 1, &t, away, p, dq, NULL), 0);
+        ck_assert_double_eq_tol(dq[0], 0.27, g ? 1e-9 : 1e-5);
+        nevh_field_free(f);
+    }
+    nevh_system_free(s);
+}
+END_TEST
+
 /* What is not given is a power of two, and the same each time. */
 START_TEST(powers_of_two) {
     const plan *at = &plans[_i];
@@ -406,6 +437,7 @@ int main(void) {
     tcase_add_loop_test(cases, near_the_best, 0, PLANS * UNITS);
     tcase_add_loop_test(cases, constant_in_h, 0, PLANS);
     tcase_add_loop_test(cases, no_whole_periods, 0, 16);
+    tcase_add_loop_test(cases, powers_at_zero, 0, 4);
     tcase_add_loop_test(cases, powers_of_two, 0, PLANS);
     tcase_add_loop_test(cases, given_steps_win, 0, PLANS);
     tcase_add_loop_test(cases, all_lanes_are_seen, 2, WIDEST + 1);

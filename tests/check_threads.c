@@ -69,6 +69,7 @@ START_TEST(scenes) {
     nevh_scene_free(s);
 }
 END_TEST
+
 int main(void) {
     Suite *suite = suite_create("threads");
     TCase *cases = tcase_create("threads");

@@ -67,6 +67,13 @@ static bool too_far(const variation *v) {
     return !(v->rest <= not_quadratic * v->whole + v->rounding);
 }
 
+/* A power of the distance has no length: its parts stay the same. */
+static bool alike(const variation *a, const variation *b) {
+    double share = b->rest / b->whole, noise = b->rounding / b->whole;
+    return fabs(a->rest / a->whole - share) <= 1e-9 * share + noise &&
+           noise < 0.1;
+}
+
 double nevh__curve_length(const nevh__explorer *e, const nevh__planned *term,
                           size_t instance, size_t k, double guess) {
     variation v = vary(e, term, instance, k, guess);
@@ -74,8 +81,11 @@ double nevh__curve_length(const nevh__explorer *e, const nevh__planned *term,
     int leaps = 0;
     v = vary(e, term, instance, k, distance);
     while (too_far(&v) && leaps++ < FARTHEST / LEAP) {
+        variation before = v;
         distance = ldexp(distance, -LEAP);
         v = vary(e, term, instance, k, distance);
+        if (alike(&before, &v))
+            return NAN;
     }
     if (too_far(&v))
         return NAN;

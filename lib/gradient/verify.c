@@ -19,7 +19,7 @@ typedef struct {
     double *own; /* nv derivatives of the term's own */
 } check;
 
-/* Adds to *noise what rounding of values may do to the difference. */
+/* Adds to *noise what rounding or underflow of values may do to it. */
 static double by_difference(const check *c, size_t k, size_t at, double delta,
                             double *noise) {
     double move[8], x[8], h[8];
@@ -30,8 +30,8 @@ static double by_difference(const check *c, size_t k, size_t at, double delta,
     nevh__along(c->explorer, c->term, c->instance, k, at, 8, move, x, h);
     for (size_t j = 0; j < 4; j++) {
         double weight = nevh_central8->weights[j] / (x[2 * j] - x[2 * j + 1]);
-        *noise += 4 * DBL_EPSILON * fabs(weight) *
-                  fmax(fabs(h[2 * j]), fabs(h[2 * j + 1]));
+        double size = fmax(fabs(h[2 * j]), fabs(h[2 * j + 1]));
+        *noise += 4 * fabs(weight) * (DBL_EPSILON * size + DBL_MIN);
     }
     return nevh__chord_slope(nevh_central8, 1, x, h);
 }
