@@ -19,6 +19,7 @@ suites = \
 	tests/check_random_formulas \
 	tests/check_scene \
 	tests/check_scene_errors \
+	tests/check_scene_shown \
 	tests/check_registry \
 	tests/check_coefficients \
 	tests/check_splitting \

@@ -152,6 +152,7 @@ int read_format(options *o, const char *argument) {
     int which;
     int status = read_name("format", argument, names, &which);
     o->format = (table_format)which;
+    o->formatted = true;
     return status;
 }
 

@@ -7,7 +7,7 @@
 #include <string.h>
 
 enum {
-    OF_SCENES = FOR_COMPARE | FOR_CHECK | FOR_EFFECTS,
+    OF_SCENES = FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_RUN,
     OF_TABLES = OF_SCENES | FOR_LIST
 };
 
@@ -29,6 +29,12 @@ static const struct {
      "central2, central4, ...; see nevh list gradients"},
     {"gradient-step", "D", OF_SCENES, read_gradient_step,
      "half-spread of the differences; chosen by trial if not given"},
+    {"every", "K", FOR_RUN, read_every, "a row each K steps, and at the end"},
+    {"samples", "N", FOR_RUN, read_samples,
+     "N rows at equal times, the first and the last included"},
+    {"at", "T1,T2", FOR_RUN, read_at, "rows at these times alone"},
+    {"resume", "FILE", FOR_RUN, read_resume,
+     "go on with FILE, which nevh run -o FILE left unfinished"},
     {"portable", NULL, OF_SCENES, read_portable,
      "no vector code: the same digits with the same libm"},
     {"all", NULL, FOR_LIST, read_all,

@@ -82,6 +82,7 @@ typedef struct {
     table_format format;
     matching match;
     const char *file, *plot, *plot_script, *transform, *resume, *from;
+    bool formatted; /* --format was given */
     bool quiet, portable, all, by_state, diagnostics, impact, allow_code;
     bool help, version;
     unsigned long long used; /* a bit an option */
@@ -138,6 +139,8 @@ const nevh_integrator *plan_scheme(const char *name, bool *transformed);
 /* The transform that it is to be planned with: of names with "+transform", and
    of schemes that choose their own times; NULL: none. */
 const nevh_system *plan_transform(const plan *, const char *name);
+/* The integrator of that name, planned for the first gradient. */
+nevh_stepper *plan_stepper(const plan *, const char *name);
 /* The first integrator that fits, planned for the first gradient; NULL, with a
    message, when none does. */
 nevh_stepper *plan_first(const plan *, const nevh_integrator **);
@@ -164,6 +167,6 @@ void row_run(const plan *, row *);
 void verdict_words(const plan *, const row rows[], size_t count, list *words);
 
 typedef int command(const options *);
-command compare, list_what, check, effects;
+command compare, list_what, check, effects, run_scene;
 
 #endif
