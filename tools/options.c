@@ -7,7 +7,7 @@
 #include <string.h>
 
 enum {
-    OF_SCENES = FOR_COMPARE | FOR_CHECK | FOR_EFFECTS,
+    OF_SCENES = FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_SECTION,
     OF_TABLES = OF_SCENES | FOR_LIST
 };
 
@@ -31,6 +31,7 @@ static const struct {
      "half-spread of the differences; chosen by trial if not given"},
     {"portable", NULL, OF_SCENES, read_portable,
      "no vector code: the same digits with the same libm"},
+    {"section", "A,B", FOR_SECTION, read_section, "these alone, by name"},
     {"all", NULL, FOR_LIST, read_all,
      "with names in other packages and sources"},
     {"format", "table|csv|json", OF_TABLES, read_format, ""},
@@ -119,6 +120,7 @@ void options_free(options *o) {
     list_free(&o->settings);
     list_free(&o->integrators);
     list_free(&o->gradients);
+    list_free(&o->sections);
     free(o->dt);
     free(o->at);
 }

@@ -74,6 +74,7 @@ enum {
 typedef enum { MATCH_SCENE, MATCH_STEPS, MATCH_WORK } matching;
 typedef struct {
     list operands, settings, integrators, gradients; /* settings: see below */
+    list sections;
     double *dt, *at;
     size_t dts, ats;
     double t_end;                                    /* NAN: the scene's */
@@ -83,6 +84,7 @@ typedef struct {
     matching match;
     const char *file, *plot, *plot_script, *transform, *resume, *from;
     bool quiet, portable, all, by_state, diagnostics, impact, allow_code;
+    bool formatted; /* --format was given */
     bool help, version;
     unsigned long long used; /* a bit an option */
 } options;
@@ -164,6 +166,6 @@ void row_run(const plan *, row *);
 void verdict_words(const plan *, const row rows[], size_t count, list *words);
 
 typedef int command(const options *);
-command compare, list_what, check, effects;
+command compare, list_what, check, effects, section;
 
 #endif
