@@ -8,7 +8,8 @@
 
 enum { MOST_TRIALS = 100 };
 static const double certain = 4 * DBL_EPSILON; /* part of a step */
-static const double jump = 0.01; /* of the value's range over the step */
+static const double jump = 0.01;     /* of the difference of the ends */
+static const double rounding = 1e-8; /* of what slopes make of a step */
 
 int nevh__section_step(nevh_sections *x, double h) {
     nevh_stepper *s = x->branch;
@@ -49,6 +50,7 @@ int nevh__section_value(nevh_sections *x, const nevh__track *k, double t,
 
 int nevh__section_sample(nevh_sections *x, const nevh__track *k, double s,
                          double *value) {
+    *value = NAN;
     int status = nevh__section_step(x, s * x->h);
     return status ? status
                   : nevh__section_value(x, k, x->branch->last_t, x->q_try,
@@ -65,14 +67,14 @@ static void keep(nevh_sections *x, nevh__track *k, double s, double t,
     memcpy(k->p, p, size);
 }
 
-int nevh__section_take(nevh_sections *x, nevh__track *k, double s) {
+int nevh__section_take(nevh_sections *x, nevh__track *k, double h) {
     int status = NEVH_OK;
-    if (s == 0)
-        keep(x, k, s, x->t, x->q, x->p);
-    else if (s == 1)
-        keep(x, k, s, x->t_after, x->q_after, x->p_after);
-    else if (!(status = nevh__section_step(x, s * x->h)))
-        keep(x, k, s, x->branch->last_t, x->q_try, x->p_try);
+    if (h == 0)
+        keep(x, k, 0, x->t, x->q, x->p);
+    else if (h == x->h)
+        keep(x, k, 1, x->t_after, x->q_after, x->p_after);
+    else if (!(status = nevh__section_step(x, h)))
+        keep(x, k, h / x->h, x->branch->last_t, x->q_try, x->p_try);
     return status;
 }
 
@@ -81,7 +83,19 @@ typedef struct {
     nevh__track *k;
     nevh__node a, b; /* less the level */
     double level, best;
+    bool pole; /* the value was infinite */
 } search;
+
+/* Infinity is no failure here. */
+static int sample(search *r, double s, double *value) {
+    nevh_sections *x = r->x;
+    int status = nevh__section_sample(x, r->k, s, value);
+    if (status != NEVH_EDOM || !isinf(*value))
+        return status;
+    r->pole = true;
+    x->report = (nevh__report){0};
+    return status;
+}
 
 /* Finite whatever happens, since GSL aborts otherwise; the ends are known. */
 static double miss(double s, void *data) {
@@ -92,7 +106,7 @@ static double miss(double s, void *data) {
         return r->a.value;
     if (s == r->b.s)
         return r->b.value;
-    if (nevh__section_sample(x, r->k, s, &value))
+    if (sample(r, s, &value))
         return r->a.value;
     value -= r->level;
     if (fabs(value) < r->best) {
@@ -108,9 +122,9 @@ static void narrow(search *r) {
     int status = gsl_root_fsolver_set(root, &f, r->a.s, r->b.s);
     for (int i = 0; !status && r->best > 0 && i < MOST_TRIALS; i++) {
         status = gsl_root_fsolver_iterate(root);
-        if (r->x->report.status ||
-            gsl_root_fsolver_x_upper(root) - gsl_root_fsolver_x_lower(root) <=
-                certain)
+        double low = gsl_root_fsolver_x_lower(root);
+        double high = gsl_root_fsolver_x_upper(root);
+        if (r->pole || r->x->report.status || high - low <= certain)
             break;
     }
 }
@@ -119,15 +133,14 @@ static double known(double x) {
     return isfinite(x) ? fabs(x) : 0;
 }
 
-/* How much the value changes in the step, of which the bracket is a part. */
-static double range(const nevh_sections *x, const search *r) {
+/* Whether the value still jumps where the bracket is as narrow as can be.  Both
+   of its ends may have been at rounding, which slopes tell. */
+static bool jumps(const search *r) {
     const nevh__track *k = r->k;
     double slopes = known(k->slope) + known(k->slope_after);
-    double ends = fabs(r->a.value) + fabs(r->b.value);
-    if (!k->is.value)
-        return ends;
-    return ends + fabs(k->value - r->level) + fabs(k->value_after - r->level) +
-           slopes * fabs(x->t_after - x->t);
+    double change = slopes * fabs(r->x->t_after - r->x->t);
+    double range = fabs(r->a.value) + fabs(r->b.value);
+    return r->pole || r->best > jump * range + rounding * change;
 }
 
 int nevh__section_search(nevh_sections *x, nevh__track *k, nevh__node a,
@@ -138,6 +151,6 @@ int nevh__section_search(nevh_sections *x, nevh__track *k, nevh__node a,
     r.best = INFINITY;
     k->found = false;
     narrow(&r);
-    k->found &= r.best <= jump * range(x, &r);
+    k->found &= !jumps(&r);
     return x->report.status;
 }

@@ -68,9 +68,9 @@ static int locate(nevh_sections *x, nevh__track *k) {
     double level = k->level * k->is.period;
     int status;
     if (a.value == level)
-        status = nevh__section_take(x, k, a.s);
+        status = nevh__section_take(x, k, a.s * x->h);
     else if (b.value == level)
-        status = nevh__section_take(x, k, b.s);
+        status = nevh__section_take(x, k, b.s * x->h);
     else
         status = nevh__section_search(x, k, a, b, level);
     if (x->first && k->s <= at_start)
@@ -102,7 +102,7 @@ static int next_crossing(nevh_sections *x, nevh__track *k) {
 static int meet(nevh_sections *x, nevh__track *k, double due) {
     nevh__node a = {0, x->t - due}, b = {1, x->t_after - due};
     if (!x->branch->own_time)
-        return nevh__section_take(x, k, -a.value / x->h);
+        return nevh__section_take(x, k, due - x->t);
     int status = nevh__section_search(x, k, a, b, 0);
     if (status || fabs(k->t - due) <= met * fabs(b.value - a.value))
         return status;
@@ -118,7 +118,8 @@ static int next_strobe(nevh_sections *x, nevh__track *k) {
     double past = (x->t_after - due) * forward;
     if (past < -near)
         return NEVH_OK;
-    int status = past <= near ? nevh__section_take(x, k, 1) : meet(x, k, due);
+    int status =
+        past <= near ? nevh__section_take(x, k, x->h) : meet(x, k, due);
     k->t = due;
     k->direction = 0;
     k->points++;

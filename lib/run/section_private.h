@@ -78,8 +78,8 @@ int nevh__section_value(nevh_sections *, const nevh__track *, double t,
 /* The value after a part s of the step at hand. */
 int nevh__section_sample(nevh_sections *, const nevh__track *, double s,
                          double *value);
-/* The state after that part becomes the track's point. */
-int nevh__section_take(nevh_sections *, nevh__track *, double s);
+/* The state after a step of h becomes the track's point. */
+int nevh__section_take(nevh_sections *, nevh__track *, double h);
 /* Where between two nodes, on different sides of it, the value is `level`.  No
    point is found where the value jumps. */
 int nevh__section_search(nevh_sections *, nevh__track *, nevh__node a,

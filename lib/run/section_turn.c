@@ -34,17 +34,15 @@ static bool level_within(const nevh__track *k, double low, double high) {
     return nevh__section_index(k, high) * k->is.period >= low;
 }
 
-/* Whether the value, where it turns near `turn` instead of going straight, may
-   be on another side of a level. */
+/* Whether there is a level that the value, which turns near `turn` instead of
+   going straight, may pass. */
 static bool matters(const nevh__track *k, double turn) {
     double low = fmin(k->value, k->value_after);
     double high = fmax(k->value, k->value_after);
     double more = slack * (high - low);
-    if (turn >= high)
-        return level_within(k, high, turn + doubt * (turn - high) + more);
-    if (turn <= low)
-        return level_within(k, turn - doubt * (low - turn) - more, low);
-    return level_within(k, low, high);
+    double top = turn >= high ? turn + doubt * (turn - high) + more : high;
+    double bottom = turn <= low ? turn - doubt * (low - turn) - more : low;
+    return level_within(k, bottom, top);
 }
 
 typedef struct {
