@@ -156,6 +156,11 @@ int read_format(options *o, const char *argument) {
     return status;
 }
 
+int read_section(options *o, const char *argument) {
+    list_split(&o->sections, argument);
+    return TOOL_OK;
+}
+
 int read_file(options *o, const char *argument) {
     o->file = argument;
     return TOOL_OK;

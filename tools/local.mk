@@ -20,6 +20,7 @@ tools_nevh_SOURCES = \
 	tools/trajectory.c \
 	tools/run.c \
 	tools/check.c \
+	tools/section.c \
 	tools/list.c
 tools_nevh_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE \
 	-DNEVH_SCENES='"$(scenesdir)"'

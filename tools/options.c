@@ -7,7 +7,7 @@
 #include <string.h>
 
 enum {
-    OF_SCENES = FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_RUN,
+    OF_SCENES = FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_RUN | FOR_SECTION,
     OF_TABLES = OF_SCENES | FOR_LIST
 };
 
@@ -37,6 +37,7 @@ static const struct {
      "go on with FILE, which nevh run -o FILE left unfinished"},
     {"portable", NULL, OF_SCENES, read_portable,
      "no vector code: the same digits with the same libm"},
+    {"section", "A,B", FOR_SECTION, read_section, "these alone, by name"},
     {"all", NULL, FOR_LIST, read_all,
      "with names in other packages and sources"},
     {"format", "table|csv|json", OF_TABLES, read_format, ""},
@@ -125,6 +126,7 @@ void options_free(options *o) {
     list_free(&o->settings);
     list_free(&o->integrators);
     list_free(&o->gradients);
+    list_free(&o->sections);
     free(o->dt);
     free(o->at);
 }

@@ -74,6 +74,7 @@ enum {
 typedef enum { MATCH_SCENE, MATCH_STEPS, MATCH_WORK } matching;
 typedef struct {
     list operands, settings, integrators, gradients; /* settings: see below */
+    list sections;
     double *dt, *at;
     size_t dts, ats;
     double t_end;                                    /* NAN: the scene's */
@@ -167,6 +168,6 @@ void row_run(const plan *, row *);
 void verdict_words(const plan *, const row rows[], size_t count, list *words);
 
 typedef int command(const options *);
-command compare, list_what, check, effects, run_scene;
+command compare, list_what, check, effects, run_scene, section;
 
 #endif
