@@ -296,6 +296,33 @@ START_TEST(constant_in_h) {
 }
 END_TEST
 
+/* Steps that are whole periods would see no slope anywhere. */
+static double lattice(double t, const double q[], const double p[],
+                      const void *params) {
+    (void)t;
+    return p[0] * p[0] / 2 + cos(2 * acos(-1) * q[0] / *(const double *)params);
+}
+
+START_TEST(no_whole_periods) {
+    double period = ldexp(1, _i - 8), wave = 2 * acos(-1) / period, t = 0;
+    nevh_system *s = nevh_system_from(1, lattice, &period);
+    for (int i = 0; i < 4; i++) {
+        double start = i, p = 0.3, dq;
+        nevh_options o = {
+            .gradient = nevh_gradients()[_i % 4], .q = &start, .p = &p};
+        nevh_field *f = nevh_field_new(s, &o);
+        for (double x = 0.1; x < 3; x += 0.31) {
+            double q = x * period;
+            nevh_field_gradient(f, 1, &t, &q, &p, &dq, NULL);
+            ck_assert_msg(fabs(dq / wave + sin(2 * acos(-1) * x)) < 1e-4,
+                          "period %g, from %g: %g", period, start, dq / wave);
+        }
+        nevh_field_free(f);
+    }
+    nevh_system_free(s);
+}
+END_TEST
+
 /* What is not given is a power of two, and the same each time. */
 START_TEST(powers_of_two) {
     const plan *at = &plans[_i];
@@ -378,6 +405,7 @@ int main(void) {
     TCase *cases = tcase_create("steps");
     tcase_add_loop_test(cases, near_the_best, 0, PLANS * UNITS);
     tcase_add_loop_test(cases, constant_in_h, 0, PLANS);
+    tcase_add_loop_test(cases, no_whole_periods, 0, 16);
     tcase_add_loop_test(cases, powers_of_two, 0, PLANS);
     tcase_add_loop_test(cases, given_steps_win, 0, PLANS);
     tcase_add_loop_test(cases, all_lanes_are_seen, 2, WIDEST + 1);

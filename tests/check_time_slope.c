@@ -43,6 +43,13 @@ static double overtone(double x) {
 static double overtone_slope(double x) {
     return cos(x) + 3.7 * cos(37 * x);
 }
+/* A difference over a whole number sees nothing, nor does one from its top. */
+static double tick(double x) {
+    return cos(2 * 3.14159265358979323846 * x);
+}
+static double tick_slope(double x) {
+    return -2 * 3.14159265358979323846 * sin(2 * 3.14159265358979323846 * x);
+}
 static double fixed(double x) {
     (void)x;
     return 5;
@@ -53,9 +60,13 @@ static double zero(double x) {
 }
 static const struct {
     double (*f)(double), (*slope)(double);
-} clocks[] = {{wave, wave_slope},         {ramp, ramp_slope},
-              {parabola, parabola_slope}, {pulse, pulse_slope},
-              {overtone, overtone_slope}, {fixed, zero}};
+} clocks[] = {{wave, wave_slope},
+              {ramp, ramp_slope},
+              {parabola, parabola_slope},
+              {pulse, pulse_slope},
+              {overtone, overtone_slope},
+              {tick, tick_slope},
+              {fixed, zero}};
 enum { CLOCKS = sizeof clocks / sizeof *clocks };
 
 static double by_clock(double t, const double q[], const double p[],

@@ -11,6 +11,7 @@ enum { LOWEST = -30, HIGHEST = 3, RUNGS = HIGHEST - LOWEST + 1, MOST = 8 };
 /* At the best step the two errors balance, unless values are worse than
    rounded. */
 static const double out_of_balance = 1e4;
+static const double good = 0.1, no_good = 0.5; /* of the derivative */
 static const double as_good = 2; /* order 2 is taken if it is, up to this */
 
 /* Estimates on one rung, worst over the samples: how much the difference
@@ -91,12 +92,17 @@ static double weighed(const estimate *e, int order) {
     return ldexp(e->share_truncation, order / 2) + e->share_rounding;
 }
 
-/* The rung of the least error, the longest step of equal ones. */
+/* The rung of the least error, the longest step of equal ones.  Where steps
+   were good and then are no good at all, longer ones are not looked at: they
+   may be whole periods, and agree with each other that there is no slope. */
 static int best_rung(const estimate rungs[RUNGS], int order) {
     int best = 0;
-    for (int i = 1; i < RUNGS; i++)
+    for (int i = 1; i < RUNGS; i++) {
         if (weighed(&rungs[i], order) <= weighed(&rungs[best], order))
             best = i;
+        if (rungs[i].share_truncation > no_good && worst(&rungs[best]) < good)
+            break;
+    }
     return best;
 }
 

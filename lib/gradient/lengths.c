@@ -9,6 +9,8 @@ static const double not_quadratic = 0.2;
 enum { FARTHEST = 400, LEAP = 8 }; /* powers of two from the first guess */
 static const double overflowing = 0x1p500;
 enum { MOST_LANES = 4, TRIED_LANES = 64 };
+/* Powers of two may be whole periods, over which nothing varies. */
+static const double askew = 0.618;
 
 void nevh__along(const nevh__explorer *e, const nevh__planned *term,
                  size_t instance, size_t k, size_t at, size_t count,
@@ -67,9 +69,10 @@ static bool too_far(const variation *v) {
 
 double nevh__curve_length(const nevh__explorer *e, const nevh__planned *term,
                           size_t instance, size_t k, double guess) {
-    double distance = guess;
+    variation v = vary(e, term, instance, k, guess);
+    double distance = v.whole > v.rounding ? guess : askew * guess;
     int leaps = 0;
-    variation v = vary(e, term, instance, k, distance);
+    v = vary(e, term, instance, k, distance);
     while (too_far(&v) && leaps++ < FARTHEST / LEAP) {
         distance = ldexp(distance, -LEAP);
         v = vary(e, term, instance, k, distance);
