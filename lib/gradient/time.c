@@ -12,7 +12,6 @@
 
 static const double reach = 2;         /* of the length, for times to try */
 static const double part = 0x1p-4;     /* of the time of the motion, or of t */
-static const double askew = 0.618;     /* no whole number of periods */
 static const double visible = 0x1p-17; /* of t, for a difference to be seen */
 
 /* Adds the derivative of a filled block; its copies are the stencil. */
