@@ -101,6 +101,7 @@ dist_check_SCRIPTS = \
 	tests/cplusplus.sh \
 	tests/examples.sh \
 	tests/nevh.sh \
+	tests/nevh_new.sh \
 	tests/pkgconfig.sh \
 	tests/valgrind.sh
 

@@ -15,6 +15,8 @@ tools_nevh_SOURCES = \
 	tools/verdict.c \
 	tools/effects.c \
 	tools/check.c \
+	tools/new.c \
+	tools/sample.c \
 	tools/list.c
 tools_nevh_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE \
 	-DNEVH_SCENES='"$(scenesdir)"'

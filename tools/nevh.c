@@ -16,6 +16,8 @@ static const struct {
      "errors, structure of H with evidence, and which schemes fit"},
     {"effects", effects, FOR_EFFECTS, "SCENE",
      "each effect: on or off, what it reads, evaluations"},
+    {"new", new_scene, FOR_NEW, "FILE",
+     "makes a scene to start from, FILE.nevh"},
     {"list", list_what, FOR_LIST, "WHAT",
      "integrators, gradients, models or scenes"},
 };

@@ -18,9 +18,10 @@ static const struct {
     reader *read;
     const char *help;
 } known[] = {
-    {"with", "EFFECT", OF_SCENES, read_with, "switch an effect on"},
-    {"without", "EFFECT", OF_SCENES, read_without, "switch an effect off"},
-    {"set", "NAME=VALUE", OF_SCENES, read_set, "change a parameter"},
+    {"with", "EFFECT", OF_SCENES | FOR_NEW, read_with, "switch an effect on"},
+    {"without", "EFFECT", OF_SCENES | FOR_NEW, read_without,
+     "switch an effect off"},
+    {"set", "NAME=VALUE", OF_SCENES | FOR_NEW, read_set, "change a parameter"},
     {"integrators", "A,B", OF_SCENES, read_integrators,
      "instead of the scene's"},
     {"dt", "A,B", OF_SCENES, read_dt, "time steps, instead of the scene's"},
@@ -31,12 +32,14 @@ static const struct {
      "half-spread of the differences; chosen by trial if not given"},
     {"portable", NULL, OF_SCENES, read_portable,
      "no vector code: the same digits with the same libm"},
+    {"from", "SCENE", FOR_NEW, read_from, "the scene to begin with"},
     {"all", NULL, FOR_LIST, read_all,
      "with names in other packages and sources"},
     {"format", "table|csv|json", OF_TABLES, read_format, ""},
     {"output", "FILE", OF_TABLES, read_file,
      "write there (-o), when it is whole"},
-    {"quiet", NULL, OF_TABLES, read_quiet, "the table alone, and no progress"},
+    {"quiet", NULL, OF_TABLES | FOR_NEW, read_quiet,
+     "the table alone, and no progress"},
     {"help", NULL, ~0u, read_help, ""},
     {"version", NULL, ~0u, read_version, ""},
 };
