@@ -14,6 +14,7 @@ tools_nevh_SOURCES = \
 	tools/compare.c \
 	tools/verdict.c \
 	tools/effects.c \
+	tools/impact.c \
 	tools/check.c \
 	tools/new.c \
 	tools/sample.c \

@@ -33,6 +33,8 @@ static const struct {
     {"portable", NULL, OF_SCENES, read_portable,
      "no vector code: the same digits with the same libm"},
     {"from", "SCENE", FOR_NEW, read_from, "the scene to begin with"},
+    {"impact", NULL, FOR_EFFECTS, read_impact,
+     "what each effect changes in the orbit, costs, and rules out"},
     {"all", NULL, FOR_LIST, read_all,
      "with names in other packages and sources"},
     {"format", "table|csv|json", OF_TABLES, read_format, ""},

@@ -149,6 +149,9 @@ nevh_stepper *plan_first(const plan *, const nevh_integrator **);
 void plan_notes(const plan *, list *notes);
 char *plan_structure(const plan *);
 
+/* impact.c */
+int impact(const options *, plan *);
+
 /* row.c: one run of compare. */
 typedef struct {
     const char *integrator, *gradient;
