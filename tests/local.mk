@@ -102,6 +102,7 @@ dist_check_SCRIPTS = \
 	tests/examples.sh \
 	tests/nevh.sh \
 	tests/nevh_new.sh \
+	tests/nevh_effects.sh \
 	tests/pkgconfig.sh \
 	tests/valgrind.sh
 

@@ -170,6 +170,7 @@ static void add_choice(choice *c, const plan *p, const char *name) {
     const nevh_integrator *scheme = plan_scheme(name, &transformed);
     nevh_options o = plan_options(p, p->gradients.item[0]);
     o.gradient_step = o.gradient_step > 0 ? o.gradient_step : 1e-3;
+    o.binding = 1; /* nothing runs: what planning would find out is spared */
     o.transform = plan_transform(p, name);
     if (nevh_integrator_needs_tolerance(scheme))
         o.tolerance = 1e-6;
@@ -220,25 +221,19 @@ typedef struct {
     bool ran;
 } both;
 
-/* Switches an effect; the plan follows.  False where the scene then has no
-   start, with the message printed. */
-static bool switch_effect(plan *p, const char *effect, bool on) {
-    if (nevh_scene_enable(p->scene, effect, on) ||
-        nevh_scene_start(p->scene, p->q, p->p)) {
-        fprintf(stderr, "%s\n", nevh_scene_message(p->scene));
-        return false;
-    }
+/* Switches an effect; the plan follows.  The start stays that of the scene as
+   it is, also where initial velocities would give other momenta. */
+static void switch_effect(plan *p, const char *effect, bool on) {
+    nevh_scene_enable(p->scene, effect, on);
     p->system = nevh_scene_system(p->scene);
     p->friction = nevh_system_friction(p->system, NULL);
     p->time = !(nevh_system_traits(p->system) & NEVH_AUTONOMOUS);
     p->balance = p->friction || p->time;
-    return true;
 }
 
-static bool look(plan *p, const char *effect, both *b) {
+static void look(plan *p, const char *effect, both *b) {
     for (int on = 0; on < 2; on++) {
-        if (!switch_effect(p, effect, on))
-            return false;
+        switch_effect(p, effect, on);
         b->choice[on] = choices(p);
         b->structure[on] = plan_structure(p);
         b->time[on] = p->time;
@@ -250,11 +245,10 @@ static bool look(plan *p, const char *effect, both *b) {
             b->integrator = p->integrators.item[i];
     b->ran = b->integrator;
     for (int on = 0; b->integrator && on < 2; on++) {
-        b->ran &= switch_effect(p, effect, on);
+        switch_effect(p, effect, on);
         b->orbit[on] = run(p, b->integrator);
         b->ran &= !b->orbit[on].status;
     }
-    return true;
 }
 
 static void free_both(both *b) {
@@ -311,17 +305,21 @@ static void say(const char *effect, const both *b, const char *names,
                        on ? "With" : "Without", effect, b->orbit[on].message);
 }
 
-static void put_shown(table *t, bool known, const char *format, double x) {
-    if (known && isfinite(x))
-        table_shown(t, format, x);
+/* All digits, but for what is to be read. */
+static void put(const page *result, bool known, const char *format, double x) {
+    if (known && isfinite(x) && format)
+        table_shown(result->table, format, x);
+    else if (known && isfinite(x))
+        table_number(result->table, x);
     else
-        table_text(t, NULL);
+        table_text(result->table, NULL);
 }
 
 static void put_row(const options *o, const char *effect, bool on,
                     const both *b, double scale, page *result) {
     table *t = result->table;
     const orbit *a = &b->orbit[0], *c = &b->orbit[1];
+    const bool shown = o->format == FORMAT_TABLE;
     difference d = {0};
     size_t count;
     char *names = ruled_out(b, &count);
@@ -330,13 +328,16 @@ static void put_row(const options *o, const char *effect, bool on,
     table_text(t, effect);
     table_text(t, on ? "on" : "off");
     table_text(t, b->integrator);
-    put_shown(t, b->ran, "%.1e", d.at_end);
-    put_shown(t, b->ran, "%.1e", d.largest);
-    put_shown(t, b->ran, "%.4g", d.since);
-    put_shown(t, b->ran, "%+.1e", (c->energy - a->energy) / scale);
-    put_shown(t, b->ran && a->work > 0, "%.2f", c->work / a->work);
-    put_shown(t, b->ran && a->seconds > 0, "%.2f", c->seconds / a->seconds);
-    if (o->format == FORMAT_TABLE)
+    put(result, b->ran, shown ? "%.1e" : NULL, d.at_end);
+    put(result, b->ran, shown ? "%.1e" : NULL, d.largest);
+    put(result, b->ran, shown ? "%.4g" : NULL, d.since);
+    put(result, b->ran, shown ? "%+.1e" : NULL,
+        (c->energy - a->energy) / scale);
+    put(result, b->ran && a->work > 0, shown ? "%.2f" : NULL,
+        c->work / a->work);
+    put(result, b->ran && a->seconds > 0, shown ? "%.2f" : NULL,
+        c->seconds / a->seconds);
+    if (shown)
         table_number(t, (double)count);
     else
         table_text(t, names);
@@ -370,22 +371,19 @@ static void columns(table *t) {
         table_column(t, titles[i]);
 }
 
-static int add_all(const options *o, plan *p, page *result) {
+static void add_all(const options *o, plan *p, page *result) {
     size_t count = nevh_system_effect_count(p->system);
     double scale = scale_of(p);
-    bool fine = true;
-    for (size_t i = 0; fine && i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         char *effect = text_print("%s", nevh_system_effect_name(p->system, i));
         bool on = nevh_system_effect_on(p->system, effect);
         both b = {0};
-        fine = look(p, effect, &b);
-        if (fine)
-            put_row(o, effect, on, &b, scale, result);
+        look(p, effect, &b);
+        put_row(o, effect, on, &b, scale, result);
         free_both(&b);
-        fine &= switch_effect(p, effect, on);
+        switch_effect(p, effect, on);
         free(effect);
     }
-    return fine ? TOOL_OK : TOOL_USAGE;
 }
 
 int impact(const options *o, plan *p) {
@@ -399,12 +397,10 @@ int impact(const options *o, plan *p) {
              "differences of the state over the range of each variable; of "
              "the energy over its scale; work: evaluations of H");
     columns(result.table);
-    int status = add_all(o, p, &result);
-    if (!status) {
-        if (o->quiet && o->format == FORMAT_TABLE)
-            list_free(&result.before);
-        status = output_page(o, &result, status);
-    }
+    add_all(o, p, &result);
+    if (o->quiet && o->format == FORMAT_TABLE)
+        list_free(&result.before);
+    int status = output_page(o, &result, TOOL_OK);
     page_free(&result);
     return status;
 }
