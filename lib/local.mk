@@ -106,6 +106,7 @@ libnevh_core_la_SOURCES = \
 	lib/scene/velocity.c \
 	lib/scene/start.c \
 	lib/scene/access.c \
+	lib/scene/write.c \
 	lib/scene/scene.c
 
 # -version-info C:R:A, at each release, beginning with that of the last one:

@@ -19,6 +19,9 @@ suites = \
 	tests/check_random_formulas \
 	tests/check_scene \
 	tests/check_scene_errors \
+	tests/check_scene_write \
+	tests/check_scene_effects \
+	tests/check_shipped \
 	tests/check_scene_shown \
 	tests/check_registry \
 	tests/check_coefficients \
@@ -104,10 +107,12 @@ dist_check_SCRIPTS = \
 	tests/nevh.sh \
 	tests/bad_scenes.sh \
 	tests/completion.sh \
+	tests/nevh_new.sh \
+	tests/nevh_effects.sh \
 	tests/pkgconfig.sh \
 	tests/valgrind.sh
 
-EXTRA_DIST += tests/outside.c tests/formula.h tests/scene.h \
+EXTRA_DIST += tests/outside.c tests/formula.h tests/scene.h tests/shipped.h \
 	tests/nevh_support.sh tests/bad tests/fuzz
 
 TESTS = $(all_suites) $(dist_check_SCRIPTS)
@@ -149,7 +154,7 @@ fuzz:
 VALGRIND = valgrind -q --leak-check=full --error-exitcode=9
 check-valgrind: all $(check_LTLIBRARIES) $(check_PROGRAMS)
 	@failed=; for suite in $(all_suites); do \
-	  CK_FORK=no CK_EXCLUDE_TAGS=slow $(LIBTOOL) --mode=execute \
+	  srcdir='$(srcdir)' CK_FORK=no CK_EXCLUDE_TAGS=slow $(LIBTOOL) --mode=execute \
 	    $(VALGRIND) ./$$suite || failed="$$failed $$suite"; \
 	done; \
 	test -z "$$failed" || { echo "failed under valgrind:$$failed"; exit 1; }

@@ -21,6 +21,10 @@ tools_nevh_SOURCES = \
 	tools/run.c \
 	tools/check.c \
 	tools/section.c \
+	tools/impact.c \
+	tools/check.c \
+	tools/new.c \
+	tools/sample.c \
 	tools/list.c
 tools_nevh_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE \
 	-DNEVH_SCENES='"$(scenesdir)"'

@@ -17,9 +17,11 @@ static const struct {
     {"check", check, FOR_CHECK, "SCENE",
      "errors, structure of H with evidence, and which schemes fit"},
     {"effects", effects, FOR_EFFECTS, "SCENE",
-     "each effect: on or off, what it reads, evaluations"},
+     "each effect: on or off, what it reads, evaluations, time; --impact"},
     {"section", section, FOR_SECTION, "SCENE",
      "points of Poincare and stroboscopic sections, as CSV"},
+    {"new", new_scene, FOR_NEW, "FILE",
+     "makes a scene to start from, FILE.nevh"},
     {"list", list_what, FOR_LIST, "WHAT",
      "integrators, gradients, models or scenes"},
 };

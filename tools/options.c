@@ -18,9 +18,10 @@ static const struct {
     reader *read;
     const char *help;
 } known[] = {
-    {"with", "EFFECT", OF_SCENES, read_with, "switch an effect on"},
-    {"without", "EFFECT", OF_SCENES, read_without, "switch an effect off"},
-    {"set", "NAME=VALUE", OF_SCENES, read_set, "change a parameter"},
+    {"with", "EFFECT", OF_SCENES | FOR_NEW, read_with, "switch an effect on"},
+    {"without", "EFFECT", OF_SCENES | FOR_NEW, read_without,
+     "switch an effect off"},
+    {"set", "NAME=VALUE", OF_SCENES | FOR_NEW, read_set, "change a parameter"},
     {"integrators", "A,B", OF_SCENES, read_integrators,
      "instead of the scene's"},
     {"dt", "A,B", OF_SCENES, read_dt, "time steps, instead of the scene's"},
@@ -38,12 +39,16 @@ static const struct {
     {"portable", NULL, OF_SCENES, read_portable,
      "no vector code: the same digits with the same libm"},
     {"section", "A,B", FOR_SECTION, read_section, "these alone, by name"},
+    {"from", "SCENE", FOR_NEW, read_from, "the scene to begin with"},
+    {"impact", NULL, FOR_EFFECTS, read_impact,
+     "what each effect changes in the orbit, costs, and rules out"},
     {"all", NULL, FOR_LIST, read_all,
      "with names in other packages and sources"},
     {"format", "table|csv|json", OF_TABLES, read_format, ""},
     {"output", "FILE", OF_TABLES, read_file,
      "write there (-o), when it is whole"},
-    {"quiet", NULL, OF_TABLES, read_quiet, "the table alone, and no progress"},
+    {"quiet", NULL, OF_TABLES | FOR_NEW, read_quiet,
+     "the table alone, and no progress"},
     {"help", NULL, ~0u, read_help, ""},
     {"version", NULL, ~0u, read_version, ""},
 };

@@ -93,11 +93,16 @@ static int read(nevh_scene *scene, const options *o) {
 
 int scene_open(nevh_scene **scene, const options *o) {
     *scene = NULL;
-    if (o->operands.count != 2)
-        return tool_refuse("nevh %s takes one scene: a file, or a name of nevh "
-                           "list scenes",
-                           o->operands.item[0]);
-    char *file = find(o->operands.item[1]);
+    if (o->operands.count == 2)
+        return scene_open_named(scene, o->operands.item[1], o);
+    return tool_refuse("nevh %s takes one scene: a file, or a name of nevh "
+                       "list scenes",
+                       o->operands.item[0]);
+}
+
+int scene_open_named(nevh_scene **scene, const char *name, const options *o) {
+    *scene = NULL;
+    char *file = find(name);
     if (!file)
         return TOOL_USAGE;
     *scene = nevh_scene_read(file);

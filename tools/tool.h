@@ -55,6 +55,9 @@ typedef struct {
 void page_print(const page *, table_format, FILE *);
 void page_free(page *);
 
+/* sample.c */
+extern const char scene_sample[];
+
 /* The commands, as bits. */
 enum {
     FOR_COMPARE = 1,
@@ -112,6 +115,7 @@ int output_page(const options *, const page *, int status);
 /* scenes.c: scenes by file or name, changed as the options say. */
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed and *scene NULL */
 int scene_open(nevh_scene **scene, const options *);
+int scene_open_named(nevh_scene **scene, const char *name, const options *);
 /* Names of installed scenes, sorted; with their files when `files` is not
    NULL. */
 void scenes_installed(list *names, list *files);
@@ -149,6 +153,9 @@ nevh_stepper *plan_first(const plan *, const nevh_integrator **);
 void plan_notes(const plan *, list *notes);
 char *plan_structure(const plan *);
 
+/* impact.c */
+int impact(const options *, plan *);
+
 /* row.c: one run of compare. */
 typedef struct {
     const char *integrator, *gradient;
@@ -168,6 +175,6 @@ void row_run(const plan *, row *);
 void verdict_words(const plan *, const row rows[], size_t count, list *words);
 
 typedef int command(const options *);
-command compare, list_what, check, effects, run_scene, section;
+command compare, list_what, check, effects, run_scene, section, new_scene;
 
 #endif

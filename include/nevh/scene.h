@@ -52,6 +52,13 @@ NEVH_API const char *nevh_scene_message(const nevh_scene *);
 NEVH_API int nevh_scene_set(nevh_scene *, const char *assignment);
 NEVH_API int nevh_scene_enable(nevh_scene *, const char *effect, bool on);
 
+/* The scene as text: its own lines with their comments, in which parameters
+   that were set and effects that were switched have what they have now.  Read
+   again it is the same scene, to the last bit of its orbits.
+   returns  text, to be freed with free(); lines end with newlines; NULL when
+            memory is out, or the scene was not read */
+NEVH_API char *nevh_scene_write(const nevh_scene *);
+
 NEVH_API const char *nevh_scene_title(const nevh_scene *);  /* "" if none */
 NEVH_API const char *nevh_scene_source(const nevh_scene *); /* "" if none */
 /* 0 when the scene was not read. */

@@ -153,6 +153,11 @@ static nevh__statement *new_assignment(nevh_scene *s, const char *text) {
         return NULL;
     }
     *line = (nevh__line){0, strcpy(copy, text), bytes};
+    if (strpbrk(text, "\r\n")) {
+        nevh__scene_fail_at(s, NEVH_EINVAL, line, 1, 1,
+                            "an assignment is one line");
+        return NULL;
+    }
     return nevh__statement_parse(s, line, statement) ? statement : NULL;
 }
 
@@ -198,6 +203,7 @@ int nevh_scene_enable(nevh_scene *s, const char *effect, bool on) {
     nevh__switch *found = nevh__scene_effect(s, effect);
     if (found) {
         found->on = on;
+        s->switched = true;
         return nevh_system_enable(s->model->system, effect, on);
     }
     nevh__line line = {0, effect, strlen(effect)};

@@ -127,6 +127,7 @@ struct nevh_scene {
     size_t n_statements;
     nevh__switch *effects; /* in order of appearance */
     size_t n_effects;
+    bool switched;                 /* from outside */
     nevh__statement **assignments; /* from outside, the newest last */
     size_t n_assignments;
     nevh__model *model;
@@ -202,6 +203,9 @@ bool nevh__head_shape(nevh_scene *, const nevh__model *,
 /* Values: a list of `count`, one for all, or a formula of the index. */
 bool nevh__head_values(nevh_scene *, nevh__model *, const nevh__statement *,
                        const nevh__piece *value, size_t count, double values[]);
+/* What a parameter was set to from outside, or NULL. */
+const nevh__statement *nevh__scene_assignment(const nevh_scene *,
+                                              const char *name);
 /* A bound of a range. */
 bool nevh__head_bound(nevh_scene *, const nevh__model *, const nevh__piece *key,
                       const nevh__tree *, long *);

@@ -31,9 +31,10 @@ static bool add_switch(nevh_scene *s, nevh__model *m,
             return nevh__scene_fail(s, NEVH_EINVAL, &statement->key,
                                     "%s is there already, in line %zu", name,
                                     one->key.line->number);
-    if (strcmp(name, "all") == 0)
+    if (strcmp(name, "all") == 0 || strcmp(name, "none") == 0)
         return nevh__scene_fail(s, NEVH_EINVAL, &statement->key,
-                                "all stands for all effects");
+                                "%s stands for %s effects", name,
+                                name[0] == 'a' ? "all" : "no");
     if (!nevh__scene_effect(s, name))
         s->effects[s->n_effects++] = (nevh__switch){name, true};
     return nevh__head_plain(s, statement);
@@ -50,7 +51,7 @@ static bool switch_on(nevh_scene *s, const nevh__piece *name) {
     return true;
 }
 
-/* effects = NAME, NAME | all */
+/* effects = NAME, NAME | all | none */
 static bool choose(nevh_scene *s, nevh__model *m,
                    const nevh__statement *statement) {
     (void)m;
@@ -62,6 +63,8 @@ static bool choose(nevh_scene *s, nevh__model *m,
         nevh__piece_list(s, &s->pool, &statement->value, &count);
     for (size_t i = 0; names && i < s->n_effects; i++)
         s->effects[i].on = false;
+    if (names && strcmp(statement->value.text, "none") == 0)
+        return true;
     for (size_t i = 0; names && i < count; i++)
         if (!switch_on(s, &names[i]))
             return false;

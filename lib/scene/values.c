@@ -108,9 +108,8 @@ bool nevh__head_values(nevh_scene *s, nevh__model *m,
     return true;
 }
 
-/* What was set from outside, or NULL. */
-static const nevh__statement *assignment_of(const nevh_scene *s,
-                                            const char *name) {
+const nevh__statement *nevh__scene_assignment(const nevh_scene *s,
+                                              const char *name) {
     for (size_t i = s->n_assignments; i-- > 0;)
         if (strcmp(s->assignments[i]->head.name, name) == 0)
             return s->assignments[i];
@@ -121,7 +120,7 @@ static bool add_parameter(nevh_scene *s, nevh__model *m,
                           const nevh__statement *statement) {
     nevh__shape shape;
     const char *name = statement->head.name;
-    const nevh__statement *from = assignment_of(s, name);
+    const nevh__statement *from = nevh__scene_assignment(s, name);
     from = from ? from : statement;
     if (!nevh__head_shape(s, m, statement, &shape))
         return false;

@@ -1,0 +1,406 @@
+/* nevh effects --impact: what each effect changes in the orbit, what it costs,
+   and what it makes impossible.
+
+   Each is switched, and the run repeated by one integrator that fits both ways;
+   the others stay as they are.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tool.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { SAMPLES = 500, REPEATS = 5 };
+static const double time_enough = 0.05; /* seconds */
+static const double noticed = 0.01;     /* of the range */
+
+/* A run, and where it came by: `kept` states after every `every` steps. */
+typedef struct {
+    const plan *plan;
+    size_t every, kept;
+    double *states, *last, t;     /* SAMPLES x 2n, 2n */
+    double *low, *high;           /* 2n */
+    double energy, seconds, work; /* energy at the end; work: evaluations */
+    int status;
+    char *message;
+} orbit;
+
+typedef struct {
+    double at_end, largest, since; /* of the range; since: NAN */
+} difference;
+
+static int keep(void *data, size_t step, double t, const double q[],
+                const double p[]) {
+    orbit *o = data;
+    size_t n = o->plan->n;
+    o->t = t;
+    memcpy(o->last, q, n * sizeof *q);
+    memcpy(o->last + n, p, n * sizeof *p);
+    for (size_t k = 0; k < 2 * n; k++) {
+        o->low[k] = fmin(o->low[k], o->last[k]);
+        o->high[k] = fmax(o->high[k], o->last[k]);
+    }
+    if (step % o->every == 0 && step / o->every < SAMPLES) {
+        memcpy(o->states + step / o->every * 2 * n, o->last, 2 * n * sizeof *q);
+        o->kept = step / o->every + 1;
+    }
+    return 0;
+}
+
+static orbit new_orbit(const plan *p) {
+    size_t n = 2 * p->n;
+    double steps = (p->t_end - p->run->t_start) / p->dt[0];
+    orbit o = {.plan = p,
+               .every = (size_t)(steps / SAMPLES) + 1,
+               .states = tool_allocate(SAMPLES * n, sizeof(double)),
+               .last = tool_allocate(n, sizeof(double)),
+               .low = tool_allocate(n, sizeof(double)),
+               .high = tool_allocate(n, sizeof(double))};
+    for (size_t k = 0; k < n; k++) {
+        o.low[k] = INFINITY;
+        o.high[k] = -INFINITY;
+    }
+    return o;
+}
+
+static void free_orbit(orbit *o) {
+    free(o->states);
+    free(o->last);
+    free(o->low);
+    free(o->high);
+    free(o->message);
+}
+
+static nevh_stepper *new_stepper(const plan *p, const char *integrator) {
+    bool transformed;
+    const nevh_integrator *scheme = plan_scheme(integrator, &transformed);
+    nevh_options o = plan_options(p, p->gradients.item[0]);
+    o.transform = plan_transform(p, integrator);
+    if (nevh_integrator_needs_tolerance(scheme) && p->tolerances)
+        o.tolerance = p->tolerance[0];
+    return nevh_stepper_new(p->system, scheme, &o);
+}
+
+static int go(orbit *o, nevh_stepper *s, const nevh_observer *observer) {
+    const plan *p = o->plan;
+    double *state = tool_allocate(2 * p->n, sizeof *state);
+    memcpy(state, p->q, p->n * sizeof *state);
+    memcpy(state + p->n, p->p, p->n * sizeof *state);
+    int status = nevh_run_until(s, p->run->t_start, p->dt[0], p->t_end, state,
+                                state + p->n, observer, observer ? 1 : 0);
+    free(state);
+    return status;
+}
+
+/* The shortest of a few runs that nobody watches. */
+static void measure(orbit *o, nevh_stepper *s) {
+    double sum = 0;
+    o->seconds = INFINITY;
+    for (int i = 0; i < REPEATS && sum < time_enough; i++) {
+        nevh_counts before = nevh_stepper_counts(s);
+        nevh_stepper_reset(s);
+        clock_t start = clock();
+        go(o, s, NULL);
+        double spent = (double)(clock() - start) / CLOCKS_PER_SEC;
+        o->seconds = fmin(o->seconds, spent);
+        sum += spent;
+        o->work = (double)(nevh_stepper_counts(s).values - before.values);
+    }
+}
+
+static orbit run(const plan *p, const char *integrator) {
+    orbit o = new_orbit(p);
+    nevh_stepper *s = new_stepper(p, integrator);
+    o.status = go(&o, s, &(nevh_observer){keep, &o, 1});
+    if (o.status)
+        o.message = text_print("%s", nevh_stepper_message(s));
+    else
+        measure(&o, s);
+    nevh_field *field = nevh_stepper_field(s);
+    o.energy = NAN;
+    nevh_field_value(field, 1, &o.t, o.last, o.last + p->n, &o.energy);
+    nevh_stepper_free(s);
+    return o;
+}
+
+/* The larger of the ranges over both orbits; where a variable does not move,
+   that of the others of its kind. */
+static double range_of(const orbit *a, const orbit *b, size_t k) {
+    size_t n = a->plan->n;
+    double own = fmax(a->high[k] - a->low[k], b->high[k] - b->low[k]);
+    for (size_t i = k < n ? 0 : n; !(own > 0) && i < (k < n ? n : 2 * n); i++)
+        own = fmax(own, fmax(a->high[i] - a->low[i], b->high[i] - b->low[i]));
+    return own;
+}
+
+static double apart(const orbit *a, const orbit *b, const double x[],
+                    const double y[]) {
+    double most = 0;
+    for (size_t k = 0; k < 2 * a->plan->n; k++) {
+        double gap = fabs(x[k] - y[k]);
+        if (gap > 0)
+            most = fmax(most, gap / range_of(a, b, k));
+    }
+    return most;
+}
+
+static difference compare_orbits(const orbit *a, const orbit *b) {
+    size_t n = 2 * a->plan->n, kept = a->kept < b->kept ? a->kept : b->kept;
+    difference d = {apart(a, b, a->last, b->last), 0, NAN};
+    for (size_t i = 0; i < kept; i++) {
+        double gap = apart(a, b, a->states + i * n, b->states + i * n);
+        d.largest = fmax(d.largest, gap);
+        if (gap > noticed && isnan(d.since))
+            d.since =
+                a->plan->run->t_start + (double)(i * a->every) * a->plan->dt[0];
+    }
+    d.largest = fmax(d.largest, d.at_end);
+    return d;
+}
+
+/* Whether schemes fit: of all, and once more with a transform. */
+typedef struct {
+    size_t count;
+    char **name;
+    bool *fits;
+} choice;
+
+static void add_choice(choice *c, const plan *p, const char *name) {
+    bool transformed;
+    const nevh_integrator *scheme = plan_scheme(name, &transformed);
+    nevh_options o = plan_options(p, p->gradients.item[0]);
+    o.gradient_step = o.gradient_step > 0 ? o.gradient_step : 1e-3;
+    o.binding = 1; /* nothing runs: what planning would find out is spared */
+    o.transform = plan_transform(p, name);
+    if (nevh_integrator_needs_tolerance(scheme))
+        o.tolerance = 1e-6;
+    nevh_stepper *s = nevh_stepper_new(p->system, scheme, &o);
+    c->name[c->count] = text_print("%s", name);
+    c->fits[c->count++] = !nevh_stepper_status(s);
+    nevh_stepper_free(s);
+}
+
+static choice choices(const plan *p) {
+    size_t most = 0;
+    while (nevh_integrators()[most])
+        most++;
+    choice c = {0, tool_allocate(2 * most, sizeof *c.name),
+                tool_allocate(2 * most, sizeof *c.fits)};
+    for (size_t i = 0; i < most; i++) {
+        const char *name = nevh_integrator_name(nevh_integrators()[i]);
+        char *transformed = text_print("%s+transform", name);
+        add_choice(&c, p, name);
+        if (nevh_scene_transform(p->scene))
+            add_choice(&c, p, transformed);
+        free(transformed);
+    }
+    return c;
+}
+
+static void free_choice(choice *c) {
+    for (size_t i = 0; i < c->count; i++)
+        free(c->name[i]);
+    free(c->name);
+    free(c->fits);
+}
+
+static bool fits(const choice *c, const char *name) {
+    for (size_t i = 0; i < c->count; i++)
+        if (strcmp(c->name[i], name) == 0)
+            return c->fits[i];
+    return false;
+}
+
+/* Both ways: [0] without the effect, [1] with it. */
+typedef struct {
+    choice choice[2];
+    char *structure[2];
+    bool time[2], friction[2];
+    const char *integrator; /* NULL: none of the scene's fits both ways */
+    orbit orbit[2];
+    bool ran;
+} both;
+
+/* Switches an effect; the plan follows.  The start stays that of the scene as
+   it is, also where initial velocities would give other momenta. */
+static void switch_effect(plan *p, const char *effect, bool on) {
+    nevh_scene_enable(p->scene, effect, on);
+    p->system = nevh_scene_system(p->scene);
+    p->friction = nevh_system_friction(p->system, NULL);
+    p->time = !(nevh_system_traits(p->system) & NEVH_AUTONOMOUS);
+    p->balance = p->friction || p->time;
+}
+
+static void look(plan *p, const char *effect, both *b) {
+    for (int on = 0; on < 2; on++) {
+        switch_effect(p, effect, on);
+        b->choice[on] = choices(p);
+        b->structure[on] = plan_structure(p);
+        b->time[on] = p->time;
+        b->friction[on] = p->friction;
+    }
+    for (size_t i = 0; !b->integrator && i < p->integrators.count; i++)
+        if (fits(&b->choice[0], p->integrators.item[i]) &&
+            fits(&b->choice[1], p->integrators.item[i]))
+            b->integrator = p->integrators.item[i];
+    b->ran = b->integrator;
+    for (int on = 0; b->integrator && on < 2; on++) {
+        switch_effect(p, effect, on);
+        b->orbit[on] = run(p, b->integrator);
+        b->ran &= !b->orbit[on].status;
+    }
+}
+
+static void free_both(both *b) {
+    for (int on = 0; on < 2; on++) {
+        free_choice(&b->choice[on]);
+        free(b->structure[on]);
+        if (b->integrator)
+            free_orbit(&b->orbit[on]);
+    }
+}
+
+/* Schemes that fit without, but not with it: names, and how many. */
+static char *ruled_out(const both *b, size_t *count) {
+    char *names = text_print("%s", "");
+    *count = 0;
+    for (size_t i = 0; i < b->choice[0].count; i++) {
+        if (!b->choice[0].fits[i] || b->choice[1].fits[i])
+            continue;
+        char *longer = text_print("%s%s%s", names, *names ? ", " : "",
+                                  b->choice[0].name[i]);
+        free(names);
+        names = longer;
+        ++*count;
+    }
+    return names;
+}
+
+static void say(const char *effect, const both *b, const char *names,
+                size_t count, list *words) {
+    if (count)
+        list_print(words, "%s rules out %zu integrator%s: %s.", effect, count,
+                   count > 1 ? "s" : "", names);
+    if (strcmp(b->structure[0], b->structure[1]) != 0)
+        list_print(words, "With %s %s; without it %s.", effect, b->structure[1],
+                   b->structure[0]);
+    if (b->time[1] && !b->time[0])
+        list_print(words,
+                   "With %s H reads the time: no energy is conserved, and "
+                   "errors are those of a balance.",
+                   effect);
+    if (b->friction[1] && !b->friction[0])
+        list_print(words,
+                   "%s is friction: steps of geometric schemes are split "
+                   "around it, which is of order 2 at most.",
+                   effect);
+    if (!b->integrator)
+        list_print(words,
+                   "%s: none of the scene's integrators fits with and without "
+                   "it; give others with --integrators.",
+                   effect);
+    for (int on = 0; b->integrator && on < 2; on++)
+        if (b->orbit[on].status)
+            list_print(words, "%s %s the run fails: %s",
+                       on ? "With" : "Without", effect, b->orbit[on].message);
+}
+
+/* All digits, but for what is to be read. */
+static void put(const page *result, bool known, const char *format, double x) {
+    if (known && isfinite(x) && format)
+        table_shown(result->table, format, x);
+    else if (known && isfinite(x))
+        table_number(result->table, x);
+    else
+        table_text(result->table, NULL);
+}
+
+static void put_row(const options *o, const char *effect, bool on,
+                    const both *b, double scale, page *result) {
+    table *t = result->table;
+    const orbit *a = &b->orbit[0], *c = &b->orbit[1];
+    const bool shown = o->format == FORMAT_TABLE;
+    difference d = {0};
+    size_t count;
+    char *names = ruled_out(b, &count);
+    if (b->ran)
+        d = compare_orbits(a, c);
+    table_text(t, effect);
+    table_text(t, on ? "on" : "off");
+    table_text(t, b->integrator);
+    put(result, b->ran, shown ? "%.1e" : NULL, d.at_end);
+    put(result, b->ran, shown ? "%.1e" : NULL, d.largest);
+    put(result, b->ran, shown ? "%.4g" : NULL, d.since);
+    put(result, b->ran, shown ? "%+.1e" : NULL,
+        (c->energy - a->energy) / scale);
+    put(result, b->ran && a->work > 0, shown ? "%.2f" : NULL,
+        c->work / a->work);
+    put(result, b->ran && a->seconds > 0, shown ? "%.2f" : NULL,
+        c->seconds / a->seconds);
+    if (shown)
+        table_number(t, (double)count);
+    else
+        table_text(t, names);
+    say(effect, b, names, count, &result->after);
+    free(names);
+}
+
+static double scale_of(const plan *p) {
+    nevh_options o = {.gradient_step = 1e-3, .q = p->q, .p = p->p};
+    nevh_energy *e = nevh_energy_new(p->system, &o);
+    if (p->run->energy_scale > 0)
+        nevh_energy_set_scale(e, p->run->energy_scale);
+    nevh_energy_observe(e, 0, p->run->t_start, p->q, p->p);
+    double scale = nevh_energy_result(e, 0).scale;
+    nevh_energy_free(e);
+    return scale;
+}
+
+static void columns(table *t) {
+    static const char *const titles[] = {"effect",
+                                         "state",
+                                         "integrator",
+                                         "difference\nat the end",
+                                         "largest\ndifference",
+                                         "1 %\nat t =",
+                                         "energy\nat the end",
+                                         "work\nratio",
+                                         "time\nratio",
+                                         "rules\nout"};
+    for (size_t i = 0; i < sizeof titles / sizeof *titles; i++)
+        table_column(t, titles[i]);
+}
+
+static void add_all(const options *o, plan *p, page *result) {
+    size_t count = nevh_system_effect_count(p->system);
+    double scale = scale_of(p);
+    for (size_t i = 0; i < count; i++) {
+        char *effect = text_print("%s", nevh_system_effect_name(p->system, i));
+        bool on = nevh_system_effect_on(p->system, effect);
+        both b = {0};
+        look(p, effect, &b);
+        put_row(o, effect, on, &b, scale, result);
+        free_both(&b);
+        switch_effect(p, effect, on);
+        free(effect);
+    }
+}
+
+int impact(const options *o, plan *p) {
+    page result = {.table = table_new()};
+    plan_notes(p, &result.before);
+    list_print(&result.before,
+               "with each effect against without it, the others as they are; "
+               "dt = %g",
+               p->dt[0]);
+    list_add(&result.before,
+             "differences of the state over the range of each variable; of "
+             "the energy over its scale; work: evaluations of H");
+    columns(result.table);
+    add_all(o, p, &result);
+    if (o->quiet && o->format == FORMAT_TABLE)
+        list_free(&result.before);
+    int status = output_page(o, &result, TOOL_OK);
+    page_free(&result);
+    return status;
+}
