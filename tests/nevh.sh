@@ -175,7 +175,7 @@ has '^ gravity +on +coordinates '
 count=0
 for scene in "$srcdir"/scenes/*.nevh; do
     name=$(basename "$scene" .nevh)
-    exits 0 compare "$name" --t-end 0.5 --format csv
+    exits 0 compare "$name" --t-end 0.5 --dt 0.1 --format csv
     lacks ',failed'
     grep -q "/$name\.nevh" "$srcdir/scenes/local.mk" ||
         fails "is not in scenes/local.mk"
