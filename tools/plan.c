@@ -111,6 +111,9 @@ static void take_settings(plan *p, const options *o) {
     p->gradient_step =
         o->gradient_step > 0 ? o->gradient_step : p->run->gradient_step;
     p->portable = o->portable;
+    p->diagnostics = o->diagnostics;
+    p->match_work = o->match == MATCH_WORK ||
+                    (o->match == MATCH_SCENE && p->run->match_work);
     p->friction = nevh_system_friction(p->system, NULL);
     p->time = !(nevh_system_traits(p->system) & NEVH_AUTONOMOUS);
     p->balance = p->friction || p->time;
@@ -134,6 +137,8 @@ void plan_free(plan *p) {
     list_free(&p->gradients);
     free(p->q);
     free(p->p);
+    nevh_reference_free(p->reference);
+    free(p->no_reference);
     nevh_scene_free(p->scene);
 }
 
