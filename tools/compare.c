@@ -299,6 +299,8 @@ static void note_rows(const plan *p, const rows *r, list *notes) {
                                     "or the scheme chooses its own"},
                 {match_unmatched, "schemes that take no gradients, but values "
                                   "of H alone, keep the dt given"},
+                {match_dearer, "no dt makes some implicit schemes as cheap: "
+                               "theirs is the cheapest"},
                 {has_tolerance, "adaptive schemes have a row a tolerance of "
                                 "[run], in its order; dt is their mean step"}};
     for (size_t k = 0; k < sizeof note / sizeof *note; k++)

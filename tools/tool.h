@@ -153,6 +153,7 @@ typedef struct {
     const char *integrator, *gradient;
     const nevh_integrator *scheme;
     double dt, tolerance; /* 0: fixed steps */
+    double nominal_dt;    /* before match_row */
     size_t group;         /* rows of one gradient and dt */
     int order, failed;    /* failed: of the exit status */
     size_t steps;
@@ -182,8 +183,9 @@ void state_words(const row rows[], size_t count, list *words);
 /* match.c: the dt with which the row costs as much as verlet with its dt, where
    the plan asks for that. */
 void match_row(const plan *, row *);
-/* Whether that cannot be told. */
+/* Whether that cannot be told, or no dt is as cheap. */
 bool match_unmatched(const plan *, const row *);
+bool match_dearer(const plan *, const row *);
 
 /* diagnostics.c: of a plan that asks for them. */
 typedef struct invariants invariants;

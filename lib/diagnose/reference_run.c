@@ -20,6 +20,7 @@ static const double hopeless =
 static const double chaotic = 1e-3; /* as the header says */
 static const double nudge = 1e-13;  /* of the start, that tells chaos */
 static const double most_gradients = 1e7, most_values = 2e8;
+static const double shorter = 0.4; /* the next step, where one is too long */
 enum { MOST_RUNS = 16 };
 
 /* Two orbits side by side. */
@@ -283,7 +284,7 @@ static double shorter_step(const outcome *o, int order) {
     if (o->status)
         return o->h / 2;
     if (!o->whole)
-        return 0.4 * o->h;
+        return shorter * o->h;
     double ratio = 0.85 * pow(target / o->error, 1. / order);
     return o->h * fmin(fmax(ratio, 0.2), 0.7);
 }
@@ -308,8 +309,16 @@ static bool has_stalled(progress *p, const outcome *o) {
     return p->stalled >= 2;
 }
 
-/* Whether that was the last run. */
-static bool is_enough(pair *b, const outcome *o, progress *p) {
+/* So that rounding alone separates the runs, where that can be afforded: they
+   will go on for longer than the last, at most to the end. */
+static double chaos_step(const pair *b, const outcome *o, double cost) {
+    const nevh_reference *r = b->reference;
+    double longer = fmin(3, (r->t1 - r->t0) / o->reached);
+    return cost * longer / shorter < 1 - spent(b) ? shorter * o->h : o->h;
+}
+
+/* Whether that was the last run; `cost` is its own. */
+static bool is_enough(pair *b, const outcome *o, double cost, progress *p) {
     if (o->status == NEVH_ENOMEM || spent(b) >= 1)
         return true;
     if (o->status)
@@ -317,7 +326,7 @@ static bool is_enough(pair *b, const outcome *o, progress *p) {
     if (!o->whole) {
         bool chaos = has_stalled(p, o) || is_chaos(b, o);
         if (chaos)
-            keep_chaos(b, o->h);
+            keep_chaos(b, chaos_step(b, o, cost));
         return chaos;
     }
     bool floor = o->error > p->error / 8;
@@ -339,7 +348,7 @@ static int find_run(pair *b) {
             break; /* good as it is */
         o = run_pair(b, h, hopeless);
         last = spent(b) - before;
-        if (is_enough(b, &o, &p))
+        if (is_enough(b, &o, last, &p))
             break;
         h = affordable_step(b, &o, last, shorter_step(&o, order));
     }
