@@ -44,6 +44,7 @@ suites = \
 	tests/check_ledger \
 	tests/check_time_slope \
 	tests/check_models \
+	tests/check_reference \
 	tests/check_failures \
 	tests/check_hard_steps \
 	tests/check_implicit \
@@ -98,6 +99,7 @@ dist_check_SCRIPTS = \
 	tests/cplusplus.sh \
 	tests/examples.sh \
 	tests/nevh.sh \
+	tests/nevh_compare.sh \
 	tests/pkgconfig.sh \
 	tests/valgrind.sh
 
