@@ -471,10 +471,10 @@ START_TEST(long_runs_keep_every_other_checkpoint) {
     ck_assert_str_eq(nevh_scene_message(s.scene), "");
     s.system = nevh_scene_system(s.scene);
     nevh_scene_start(s.scene, q, p);
-    s.reference = nevh_reference_new(s.system, NULL, 0, 400, q, p);
+    s.reference = nevh_reference_new(s.system, NULL, 0, 100, q, p);
     ck_assert_str_eq(nevh_reference_message(s.reference), "");
     for (int i = 0; i < 20; i++) {
-        double t = fmod(i * 247.2135955, 400);
+        double t = fmod(i * 61.803398875, 100);
         ck_assert_int_eq(nevh_reference_state(s.reference, t, q, p), NEVH_OK);
         for (int k = 0; k < N; k++) {
             double shape = sin(acos(-1) * 300 * (k + 1) / (N + 1));

@@ -35,7 +35,7 @@ typedef struct nevh_reference nevh_reference;
    A run is repeated with smaller steps until runs with h and h/2 agree to 1e-11
    of the range of each variable, or to rounding, or as well as can be afforded:
    1e7 gradients, or 2e8 evaluations of term instances, whichever is less.  The
-   one with h/2 is kept, as checkpoints (at most 8 MB).  Gradients are exact
+   one with h/2 is kept, as checkpoints (at most 2 MB).  Gradients are exact
    where all terms bring them, else central8.
    cost        of an exact solution some milliseconds; of a run up to the
                bounds above, some seconds */
@@ -68,7 +68,8 @@ NEVH_API double nevh_reference_horizon(const nevh_reference *);
             horizon; what a step returned
    cost     of an exact solution about a microsecond; of a run, steps from the
             last checkpoint, which are few where times are asked for in order.
-            States are kept, so that asking again costs nothing (8 MB). */
+            States are kept, so that asking again costs nothing (at most 32 MB).
+ */
 NEVH_API int nevh_reference_state(nevh_reference *, double t, double q[],
                                   double p[]);
 

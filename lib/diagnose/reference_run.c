@@ -77,7 +77,7 @@ static void track_thin(nevh__track *k, size_t n) {
 /* The state after so many steps. */
 static int track_add(nevh__track *k, size_t n, size_t step,
                      const double state[]) {
-    size_t most = NEVH__MOST_STATES / sizeof(double) / (2 * n);
+    size_t most = NEVH__MOST_TRACK / sizeof(double) / (2 * n);
     if (step % k->every)
         return NEVH_OK;
     if (k->count >= 2 && k->count >= most)

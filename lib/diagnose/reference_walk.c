@@ -27,7 +27,7 @@ nevh_stepper *nevh__reference_stepper(const nevh_reference *r) {
 static void memo_open(nevh__memo *m, size_t n) {
     size_t slots = MOST_SLOTS;
     while (slots > FEWEST_SLOTS &&
-           slots * 2 * n * sizeof *m->states > NEVH__MOST_STATES)
+           slots * 2 * n * sizeof *m->states > NEVH__MOST_MEMO)
         slots /= 2;
     m->keys = nevh__array(slots, sizeof *m->keys);
     m->states = nevh__array(slots * 2 * n, sizeof *m->states);
