@@ -52,18 +52,25 @@ double *invariants_result(invariants *v) {
     return change;
 }
 
-/* Of the first steps, in units of the ranges of the reference, where there is
-   one. */
+/* A part of the ranges of the reference, where there is one. */
+static void set_scale(const plan *p, double part, double scale[]) {
+    for (size_t k = 0; k < 2 * p->n; k++)
+        scale[k] =
+            part * (p->reference ? nevh_reference_range(p->reference, k) : 1);
+}
+
+/* Of the first steps.  The derivative of the first one is taken over a small
+   part of the ranges: orbits may begin where H varies most. */
 void diagnose_row(const plan *p, row *r) {
     double t = p->run->t_start, *scale = tool_allocate(2 * p->n, sizeof *scale);
     size_t steps = r->steps < REVERSED_STEPS ? r->steps : REVERSED_STEPS;
     nevh_stepper *s = row_stepper(p, r, false);
-    for (size_t k = 0; k < 2 * p->n; k++)
-        scale[k] = p->reference ? nevh_reference_range(p->reference, k) : 1;
     r->symplecticity_error = r->reversal_error = NAN;
+    set_scale(p, 1. / 16, scale);
     if (p->n <= MOST_DOF)
         nevh_symplecticity_defect(s, t, r->dt, p->q, p->p, scale,
                                   &r->symplecticity_error);
+    set_scale(p, 1, scale);
     nevh_reversal_defect(s, t, r->dt, steps, p->q, p->p, scale,
                          &r->reversal_error);
     nevh_stepper_free(s);
