@@ -49,6 +49,7 @@ suites = \
 	tests/check_ledger \
 	tests/check_time_slope \
 	tests/check_models \
+	tests/check_reference \
 	tests/check_failures \
 	tests/check_hard_steps \
 	tests/check_implicit \
@@ -109,6 +110,7 @@ dist_check_SCRIPTS = \
 	tests/completion.sh \
 	tests/nevh_new.sh \
 	tests/nevh_effects.sh \
+	tests/nevh_compare.sh \
 	tests/pkgconfig.sh \
 	tests/valgrind.sh
 

@@ -175,7 +175,9 @@ has '^ gravity +on +coordinates '
 count=0
 for scene in "$srcdir"/scenes/*.nevh; do
     name=$(basename "$scene" .nevh)
-    exits 0 compare "$name" --t-end 0.5 --dt 0.1 --format csv
+    end=0.5
+    test "$name" = outer-solar-system && end=500 # days
+    exits 0 compare "$name" --t-end $end --format csv
     lacks ',failed'
     grep -q "/$name\.nevh" "$srcdir/scenes/local.mk" ||
         fails "is not in scenes/local.mk"

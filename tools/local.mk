@@ -13,6 +13,9 @@ tools_nevh_SOURCES = \
 	tools/row.c \
 	tools/compare.c \
 	tools/verdict.c \
+	tools/state.c \
+	tools/match.c \
+	tools/diagnostics.c \
 	tools/effects.c \
 	tools/trajectory.h \
 	tools/lines.c \

@@ -1,0 +1,571 @@
+/* nevh tests: references: which solutions are recognised, how accurate they and
+   runs are, and where they end.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "support.h"
+#include <float.h>
+#include <math.h>
+#include <nevh/scene.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MOST = 4 };
+
+/* H as text, from (q, p) at time t0 to t1. */
+typedef struct {
+    const char *coordinates, *effects;
+    double t0, t1;
+} orbit;
+
+typedef struct {
+    nevh_scene *scene;
+    const nevh_system *system;
+    size_t n;
+    double q[MOST], p[MOST];
+    nevh_reference *reference;
+} setup;
+
+static setup set_up(const char *coordinates, const char *effects) {
+    char text[2000];
+    setup s = {0};
+    snprintf(text, sizeof text, "[coordinates]\n%s\n[effects]\n%s\n",
+             coordinates, effects);
+    s.scene = nevh_scene_parse("test", text);
+    ck_assert_str_eq(nevh_scene_message(s.scene), "");
+    s.system = nevh_scene_system(s.scene);
+    s.n = nevh_scene_dof(s.scene);
+    ck_assert_uint_le(s.n, MOST);
+    ck_assert_int_eq(nevh_scene_start(s.scene, s.q, s.p), NEVH_OK);
+    return s;
+}
+
+static void refer(setup *s, const nevh_integrator *integrator, double t0,
+                  double t1) {
+    s->reference =
+        nevh_reference_new(s->system, integrator, t0, t1, s->q, s->p);
+    ck_assert_str_eq(nevh_reference_message(s->reference), "");
+    ck_assert_int_eq(nevh_reference_status(s->reference), NEVH_OK);
+}
+
+static setup refer_to(const orbit *o, const nevh_integrator *integrator) {
+    setup s = set_up(o->coordinates, o->effects);
+    refer(&s, integrator, o->t0, o->t1);
+    return s;
+}
+
+static void tear_down(setup *s) {
+    nevh_reference_free(s->reference);
+    nevh_scene_free(s->scene);
+}
+
+/* The largest difference at time t, over the ranges of `a`. */
+static double difference(nevh_reference *a, nevh_reference *b, size_t n,
+                         double t) {
+    double x[2 * MOST], y[2 * MOST], most = 0;
+    ck_assert_int_eq(nevh_reference_state(a, t, x, x + n), NEVH_OK);
+    ck_assert_int_eq(nevh_reference_state(b, t, y, y + n), NEVH_OK);
+    for (size_t k = 0; k < 2 * n; k++)
+        most = fmax(most, fabs(x[k] - y[k]) / nevh_reference_range(a, k));
+    return most;
+}
+
+/* Hamiltonians whose motion is known, in units from atoms to planets. */
+static const struct {
+    orbit orbit;
+    const char *text;
+} recognised[] = {
+    {{"x = 1", "T = p_x^2/2\nV = x^2/2", 0, 100}, "exact solution (cosine)"},
+    {{"x = 3, -2", "H = 7 + p_x^2/2.6 + 1.9*(x - 0.7)^2 - x/3", -3, 80},
+     "exact solution (cosine)"},
+    {{"x = 0, 3e-24", "T = p_x^2/3.3e-27\nV = 290*x^2", 0, 1e-12},
+     "exact solution (cosine)"},
+    {{"q = 2", "T = p_q^2/2\nV = -cos(q)", 0, 100},
+     "exact solution (Jacobi sn)"},
+    {{"q = 0.3, 7", "T = p_q^2/2.6\nV = 1e3 - 2.2*sin(q + 0.4)", 5, 95},
+     "exact solution (Jacobi sn)"},
+    {{"q = 1, -4e-34", "T = p_q^2/3.1e-46\nV = 2e-22*cos(q)", 0, 1e-10},
+     "exact solution (Jacobi sn)"},
+    {{"x = 0.4\ny = 0\np_y = 2", "T = (p_x^2 + p_y^2)/2\nV = -1/hypot(x, y)", 0,
+      100},
+     "exact solution (Kepler's equation)"},
+    {{"x = 1.2e11\ny = 3e10\nz = -4e10\np_x = 2e28\np_y = 1e29\np_z = 1.3e29",
+      "T = (p_x^2 + p_y^2 + p_z^2)/1.2e25\n"
+      "V = -7.9e44*(x^2 + y^2 + z^2)^(-1/2)",
+      0, 1e8},
+     "exact solution (Kepler's equation)"},
+};
+enum { RECOGNISED = sizeof recognised / sizeof *recognised };
+
+/* What is recognised is also what a Gauss method finds. */
+START_TEST(exact_solutions_are_recognised) {
+    const orbit *o = &recognised[_i].orbit;
+    setup a = refer_to(o, NULL), b = refer_to(o, nevh_gauss12);
+    ck_assert_str_eq(nevh_reference_text(a.reference), recognised[_i].text);
+    ck_assert(strncmp(nevh_reference_text(b.reference), "gauss12 at", 10) == 0);
+    ck_assert_double_lt(nevh_reference_error(a.reference), 1e-11);
+    ck_assert_double_lt(nevh_reference_error(b.reference), 2e-11);
+    ck_assert_double_eq(nevh_reference_horizon(a.reference), INFINITY);
+    for (int i = 0; i <= 50; i++) {
+        double t = o->t1 - (o->t1 - o->t0) * i / 50;
+        ck_assert_double_lt(difference(a.reference, b.reference, a.n, t),
+                            3e-11);
+    }
+    tear_down(&a);
+    tear_down(&b);
+}
+END_TEST
+
+/* Nearly the same, or no such motion. */
+static const struct {
+    const char *coordinates, *effects;
+} near_misses[] = {
+    {"q = 2", "T = p_q^2/2\nV = -cos(q) + 1e-9*q^4"},
+    {"q = 2", "T = p_q^2/2\nV = -cos(1.0000001*q)"},
+    {"q = 2", "T = p_q^2/2 + 1e-9*p_q^4\nV = -cos(q)"},
+    {"q = 2", "T = p_q^2/2\nV = -cos(q)*(1 + 1e-9*cos(t))"},
+    {"q = 2", "T = p_q^2/2\nV = -cos(q)\nW = 1e-9*p_q*q"},
+    {"x = 1", "T = p_x^2/2\nV = x^2/2 + 1e-9*x^3"},
+    {"x = 1", "T = sqrt(1e6 + p_x^2)\nV = x^2/2"},
+    {"x = 1", "T = p_x^2/2\nV = x^2/2 + 1e-9*t*x"},
+    {"x = 1", "T = p_x^2/2\nV = -x^2/2"},
+    {"x = 1", "T = p_x^2/2\nV = x^2/2\n[friction]\ndrag = all: 1e-9"},
+    {"x = 0.4\ny = 0\np_y = 2",
+     "T = (p_x^2 + p_y^2)/2\nV = -1/hypot(x, y) - 1e-9/(x^2 + y^2)"},
+    {"x = 0.4\ny = 0\np_y = 2",
+     "T = (p_x^2 + p_y^2)/2\nV = -1/sqrt(x^2 + y^2 + 1e-9)"},
+    {"x = 0.4\ny = 0\np_y = 2",
+     "T = (p_x^2 + 1.00000001*p_y^2)/2\nV = -1/hypot(x, y)"},
+    {"x = 0.4\ny = 0\np_y = 2.3", "T = (p_x^2 + p_y^2)/2\nV = -1/hypot(x, y)"},
+    {"x = 0.4\ny = 0\np_y = 0.7", "T = (p_x^2 + p_y^2)/2\nV = 1/hypot(x, y)"},
+    {"x = 1\ny = 2", "T = (p_x^2 + p_y^2)/2\nV = (x^2 + y^2)/2"},
+};
+enum { NEAR_MISSES = sizeof near_misses / sizeof *near_misses };
+
+START_TEST(near_misses_are_refused) {
+    setup s = set_up(near_misses[_i].coordinates, near_misses[_i].effects);
+    refer(&s, NULL, 0, 3);
+    ck_assert_ptr_null(strstr(nevh_reference_text(s.reference), "exact"));
+    tear_down(&s);
+}
+END_TEST
+
+/* States of another program in quadruple precision, good to 20 digits and more;
+   coordinates first.  H as a function has no exact gradient. */
+static const struct {
+    orbit orbit;
+    bool exact;
+    double state[2 * MOST];
+} states[] = {
+    {{"q = 2", "T = p_q^2/2\nV = -cos(q)", 0, 100},
+     true,
+     {1.982325653157030515982941, 0.1796407425909401978724921}},
+    {{"x = 1", "T = p_x^2/2\nV = x^2/2", 0, 100},
+     true,
+     {0.8623188722876839341019385, 0.5063656411097587936565576}},
+    {{"x = 0.4\ny = 0\np_y = 2", "T = (p_x^2 + p_y^2)/2\nV = -1/hypot(x, y)", 0,
+      100},
+     true,
+     {-0.1041832044342322840550464, -0.6947417155679742850149844,
+      1.23617776268706369627367, 0.564623251085780902059137}},
+    {{"x = 1 - 0.9\ny = 0\np_y = sqrt(19)",
+      "T = (p_x^2 + p_y^2)/2\nV = -1/hypot(x, y)", 0, 100},
+     true,
+     {-0.7506333330295163847347385, -0.4310000275773126803319831,
+      1.142347674435544008437918, 0.07521912809634178298936333}},
+    {{"a = pi/2\nb = 0",
+      "T = (p_a^2 + 2*p_b^2 - 2*p_a*p_b*cos(a - b))/(2*(1 + sin(a - b)^2))\n"
+      "V = -9.8*(2*cos(a) + cos(b))",
+      0, 10},
+     false,
+     {0.1137118256716568201221664, -2.223609077492791711139523,
+      -3.802044137210631439898684, 1.721351498235191875262862}},
+    {{"x = 0\ny = 0.1\np_x = 0.49057789051960615",
+      "T = (p_x^2 + p_y^2)/2\nV = (x^2 + y^2)/2 + x^2*y - y^3/3", 0, 100},
+     false,
+     {0.1329957183343852788967454, 0.3760189573811590740470609,
+      0.2953954457827294417819349, -0.1606396034768338961890406}},
+};
+enum { STATES = sizeof states / sizeof *states };
+
+static double error_at_end(const setup *s, double t1, const double state[]) {
+    double z[2 * MOST], most = 0;
+    ck_assert_int_eq(nevh_reference_state(s->reference, t1, z, z + s->n),
+                     NEVH_OK);
+    for (size_t k = 0; k < 2 * s->n; k++)
+        most = fmax(most, fabs(z[k] - state[k]) /
+                              nevh_reference_range(s->reference, k));
+    return most;
+}
+
+START_TEST(states_in_quadruple_precision) {
+    setup s = refer_to(&states[_i].orbit, NULL);
+    double error = error_at_end(&s, states[_i].orbit.t1, states[_i].state);
+    bool exact = strncmp(nevh_reference_text(s.reference), "exact", 5) == 0;
+    ck_assert_int_eq(exact, states[_i].exact);
+    ck_assert_double_lt(error, 5e-13);
+    ck_assert_double_le(error, nevh_reference_error(s.reference) + 1e-15);
+    tear_down(&s);
+}
+END_TEST
+
+static double pendulum_value(double t, const double q[], const double p[],
+                             const void *params) {
+    (void)t, (void)params;
+    return p[0] * p[0] / 2 - cos(q[0]);
+}
+
+/* From values alone, by differences: for what its own error says. */
+START_TEST(values_alone_are_enough) {
+    nevh_system *system = nevh_system_from(1, pendulum_value, NULL);
+    double q[] = {2}, p[] = {0};
+    setup s = {.system = system, .n = 1};
+    s.reference = nevh_reference_new(system, NULL, 0, 100, q, p);
+    ck_assert_str_eq(nevh_reference_text(s.reference),
+                     "exact solution (Jacobi sn)");
+    double error = error_at_end(&s, 100, states[0].state);
+    ck_assert_double_lt(error, 1e-12);
+    ck_assert_double_le(error, nevh_reference_error(s.reference));
+    nevh_reference_free(s.reference);
+    nevh_system_free(system);
+}
+END_TEST
+
+/* A run that is exact but for rounding, so that its checkpoints are put to
+   the test: asked for in any order, near to steps and between them. */
+START_TEST(states_come_in_any_order) {
+    const orbit *o = &states[0].orbit;
+    setup a = refer_to(o, NULL), b = refer_to(o, nevh_gauss16);
+    for (size_t i = 0; i < 400; i++) {
+        double t = fmod((double)i * 61.803398874989, 100);
+        ck_assert_double_lt(difference(a.reference, b.reference, 1, t), 1e-11);
+    }
+    ck_assert_double_lt(difference(a.reference, b.reference, 1, 0), 1e-15);
+    ck_assert_double_lt(difference(a.reference, b.reference, 1, 100), 1e-11);
+    tear_down(&a);
+    tear_down(&b);
+}
+END_TEST
+
+/* Back in time. */
+START_TEST(backwards) {
+    const nevh_integrator *const by[] = {NULL, nevh_gauss12};
+    for (int i = 0; i < 2; i++) {
+        setup s = set_up("q = 1.982325653157030516, 0.1796407425909401979",
+                         "T = p_q^2/2\nV = -cos(q)");
+        refer(&s, by[i], 100, 0);
+        double start[] = {2, 0};
+        ck_assert_double_lt(error_at_end(&s, 0, start), 1e-12);
+        ck_assert_double_eq(nevh_reference_horizon(s.reference), -INFINITY);
+        tear_down(&s);
+    }
+}
+END_TEST
+
+START_TEST(ranges) {
+    setup s = refer_to(&recognised[6].orbit, NULL);
+    /* e = 0.6: x from 0.4 to -1.6, |y| up to sqrt(1 - e^2); p_y from 2 at the
+       near end to -0.5, |p_x| up to 1/sqrt(1 - e^2). */
+    const double known[] = {2, 1.6, 2.5, 2.5};
+    for (size_t k = 0; k < 4; k++)
+        ck_assert_double_eq_tol(nevh_reference_range(s.reference, k), known[k],
+                                1e-4 * known[k]);
+    tear_down(&s);
+    /* z does not move. */
+    s = set_up("x = 0.4\ny = 0\nz = 0\np_y = 2",
+               "T = (p_x^2 + p_y^2 + p_z^2)/2\nV = -1/sqrt(x^2 + y^2 + z^2)");
+    refer(&s, NULL, 0, 100);
+    ck_assert_double_eq(nevh_reference_range(s.reference, 2),
+                        nevh_reference_range(s.reference, 0));
+    ck_assert_double_eq(nevh_reference_range(s.reference, 5),
+                        fmax(nevh_reference_range(s.reference, 3),
+                             nevh_reference_range(s.reference, 4)));
+    tear_down(&s);
+    /* Nothing does. */
+    s = set_up("x = 0", "T = p_x^2/2\nV = x^2/2");
+    refer(&s, NULL, 0, 100);
+    ck_assert_double_eq(nevh_reference_range(s.reference, 0), 1);
+    tear_down(&s);
+}
+END_TEST
+
+#define RODS                                                                   \
+    "T = (p_a^2 + 2*p_b^2 - 2*p_a*p_b*cos(a - b))/(2*(1 + sin(a - b)^2))\n"    \
+    "V = -9.8*(2*cos(a) + cos(b))"
+
+/* The chaotic one separates, wherever it is to end and whatever the method; a
+   regular one does not. */
+START_TEST(chaos_has_a_horizon) {
+    const orbit chaos = {"a = 3\nb = 3", RODS, 0, 500};
+    const orbit regular = {"a = 1.1\nb = 0\np_b = 2.7746", RODS, 0, 100};
+    setup s = refer_to(&chaos, NULL);
+    double t = nevh_reference_horizon(s.reference), z[4];
+    ck_assert_double_gt(t, 20);
+    ck_assert_double_lt(t, 45);
+    ck_assert_ptr_nonnull(strstr(nevh_reference_text(s.reference), "chaos"));
+    ck_assert_int_eq(nevh_reference_state(s.reference, t, z, z + 2), NEVH_OK);
+    ck_assert_int_eq(nevh_reference_state(s.reference, t + 0.1, z, z + 2),
+                     NEVH_EDOM);
+    setup other = set_up(chaos.coordinates, chaos.effects);
+    refer(&other, nevh_gauss16, 0, 80);
+    double ratio = nevh_reference_horizon(other.reference) / t;
+    ck_assert_double_gt(ratio, 0.7);
+    ck_assert_double_lt(ratio, 1.4);
+    /* Well before, they are the same orbit. */
+    ck_assert_double_lt(difference(s.reference, other.reference, 2, t / 4),
+                        1e-9);
+    tear_down(&other);
+    tear_down(&s);
+    s = refer_to(&regular, NULL);
+    ck_assert_double_eq(nevh_reference_horizon(s.reference), INFINITY);
+    ck_assert_double_lt(nevh_reference_error(s.reference), 1e-9);
+    tear_down(&s);
+}
+END_TEST
+
+/* A comet that comes near only after a while: steps that are good at its start
+   are not, and that is no chaos. */
+START_TEST(a_close_pass_is_no_chaos) {
+    setup s = set_up("x = -1.95\ny = 0\np_y = 0.05/sqrt(0.0975)",
+                     "T = (p_x^2 + p_y^2)/2\nV = -1/hypot(x, y)");
+    refer(&s, nevh_gauss12, 0, 20);
+    setup exact = set_up("x = -1.95\ny = 0\np_y = 0.05/sqrt(0.0975)",
+                         "T = (p_x^2 + p_y^2)/2\nV = -1/hypot(x, y)");
+    refer(&exact, NULL, 0, 20);
+    ck_assert_double_eq(nevh_reference_horizon(s.reference), INFINITY);
+    ck_assert_double_lt(difference(exact.reference, s.reference, 2, 20), 1e-9);
+    tear_down(&s);
+    tear_down(&exact);
+}
+END_TEST
+
+/* State error of a run with so many steps. */
+static double error_of_run(const setup *s, const nevh_integrator *scheme,
+                           double t0, double t1, double steps) {
+    double q[MOST], p[MOST];
+    nevh_options o = {.gradient = nevh_exact, .q = s->q, .p = s->p};
+    nevh_stepper *stepper = nevh_stepper_new(s->system, scheme, &o);
+    nevh_state_error *error = nevh_state_error_new(s->reference);
+    memcpy(q, s->q, sizeof q);
+    memcpy(p, s->p, sizeof p);
+    ck_assert_int_eq(
+        nevh_run_until(stepper, t0, (t1 - t0) / steps, t1, q, p,
+                       &(nevh_observer){nevh_state_error_observe, error, 1}, 1),
+        NEVH_OK);
+    double result = nevh_state_error_result(error);
+    nevh_state_error_free(error);
+    nevh_stepper_free(stepper);
+    return result;
+}
+
+/* Its slope is the order, with exact references, runs, and friction. */
+static const struct {
+    orbit orbit;
+    const char *scheme;
+    double steps, order;
+} slopes[] = {
+    {{"q = 2", "T = p_q^2/2\nV = -cos(q)", 0, 30}, "verlet", 3000, 2},
+    {{"q = 2", "T = p_q^2/2\nV = -cos(q)", 0, 30}, "gauss6", 150, 6},
+    {{"x = 0.4\ny = 0\np_y = 2", "T = (p_x^2 + p_y^2)/2\nV = -1/hypot(x, y)", 0,
+      20},
+     "blanes-moan4",
+     2000,
+     4},
+    {{"x = 0\ny = 0.1\np_x = 0.49057789051960615",
+      "T = (p_x^2 + p_y^2)/2\nV = (x^2 + y^2)/2 + x^2*y - y^3/3", 0, 30},
+     "kahan-li6",
+     100,
+     6},
+    {{"q = 2",
+      "T = p_q^2/2\nV = -cos(q)*(1 + 0.3*cos(2*t))\n"
+      "[friction]\ndrag = all: 0.1",
+      1, 21},
+     "rk4",
+     400,
+     4},
+    {{"q = 2",
+      "T = p_q^2/2\nV = -cos(q)*(1 + 0.3*cos(2*t))\n"
+      "[friction]\ndrag = all: 0.1",
+      1, 21},
+     "verlet",
+     1000,
+     2},
+};
+enum { SLOPES = sizeof slopes / sizeof *slopes };
+
+START_TEST(slope_of_the_state_error_is_the_order) {
+    const orbit *o = &slopes[_i].orbit;
+    const nevh_integrator *scheme = nevh_integrator_named(slopes[_i].scheme);
+    setup s = refer_to(o, NULL);
+    double n = slopes[_i].steps;
+    double a = error_of_run(&s, scheme, o->t0, o->t1, n);
+    double b = error_of_run(&s, scheme, o->t0, o->t1, 2 * n);
+    ck_assert_double_lt(a, 0.1);
+    ck_assert_double_gt(b, 10 * nevh_reference_error(s.reference));
+    ck_assert_double_eq_tol(log2(a / b), slopes[_i].order, 0.15);
+    tear_down(&s);
+}
+END_TEST
+
+/* The state, and nothing but it, over the range of each variable. */
+START_TEST(state_error_is_that_of_the_worst_variable) {
+    setup s = refer_to(&states[1].orbit, NULL);
+    nevh_state_error *e = nevh_state_error_new(s.reference);
+    ck_assert(isnan(nevh_state_error_result(e)));
+    for (size_t i = 0; i <= 100; i++) {
+        double t = (double)i, q = cos(t), p = -sin(t) + (i == 60 ? 3e-3 : 0);
+        ck_assert_int_eq(nevh_state_error_observe(e, i, t, &q, &p), NEVH_OK);
+    }
+    ck_assert_double_eq_tol(nevh_state_error_result(e), 1.5e-3, 1e-8);
+    double last = 1;
+    nevh_state_error_free(e);
+    e = nevh_state_error_new(s.reference);
+    nevh_state_error_observe(e, 0, 0, &last, &(double){NAN});
+    ck_assert_double_eq(nevh_state_error_result(e), INFINITY);
+    nevh_state_error_free(e);
+    ck_assert(isnan(nevh_state_error_result(NULL)));
+    ck_assert_ptr_null(nevh_state_error_new(NULL));
+    tear_down(&s);
+}
+END_TEST
+
+/* Of a million observations no more than 1025 ask the reference; the last one
+   always does. */
+START_TEST(observations_are_spread_over_the_run) {
+    setup s = refer_to(&states[1].orbit, NULL);
+    nevh_state_error *e = nevh_state_error_new(s.reference);
+    size_t count = 0, most = 1000000;
+    for (size_t i = 0; i <= most; i++) {
+        double t = 100 * ((double)i / (double)most), q = cos(t), p = -sin(t);
+        double before = nevh_state_error_result(e);
+        q += 1e-3 * (double)(count + 1);
+        nevh_state_error_observe(e, i, t, &q, &p);
+        count += nevh_state_error_result(e) != before;
+    }
+    ck_assert_uint_eq(count, 1025);
+    ck_assert_double_eq_tol(nevh_state_error_result(e), 1e-3 * 1025 / 2, 1e-6);
+    nevh_state_error_free(e);
+    tear_down(&s);
+}
+END_TEST
+
+START_TEST(runs_beyond_the_horizon_have_no_state_error) {
+    const orbit chaos = {"a = 3\nb = 3", RODS, 0, 60};
+    setup s = refer_to(&chaos, NULL);
+    ck_assert(isnan(error_of_run(&s, nevh_gauss8, 0, 60, 6000)));
+    ck_assert_double_lt(error_of_run(&s, nevh_gauss8, 0, 8, 800), 1e-3);
+    tear_down(&s);
+}
+END_TEST
+
+/* More steps than checkpoints are kept: a chain in one of its modes. */
+START_TEST(long_runs_keep_every_other_checkpoint) {
+    enum { N = 400 };
+    char text[400];
+    static double q[N], p[N];
+    double w = 2 * sin(acos(-1) * 300 / (2 * (N + 1)));
+    snprintf(text, sizeof text,
+             "[coordinates]\nx[i = 1..%d] = sin(300*pi*i/%d)\n[effects]\n"
+             "T = sum(i = 1..%d, p_x[i]^2/2)\n"
+             "V = x[1]^2/2 + x[%d]^2/2 + sum(i = 1..%d, (x[i+1] - x[i])^2/2)\n",
+             N, N + 1, N, N, N - 1);
+    setup s = {.scene = nevh_scene_parse("chain", text), .n = N};
+    ck_assert_str_eq(nevh_scene_message(s.scene), "");
+    s.system = nevh_scene_system(s.scene);
+    nevh_scene_start(s.scene, q, p);
+    s.reference = nevh_reference_new(s.system, NULL, 0, 100, q, p);
+    ck_assert_str_eq(nevh_reference_message(s.reference), "");
+    for (int i = 0; i < 20; i++) {
+        double t = fmod(i * 61.803398875, 100);
+        ck_assert_int_eq(nevh_reference_state(s.reference, t, q, p), NEVH_OK);
+        for (int k = 0; k < N; k++) {
+            double shape = sin(acos(-1) * 300 * (k + 1) / (N + 1));
+            ck_assert_double_eq_tol(q[k], shape * cos(w * t), 1e-9);
+        }
+    }
+    tear_down(&s);
+}
+END_TEST
+
+START_TEST(bad_input) {
+    setup s = set_up("x = 1", "T = p_x^2/2\nV = x^4/4");
+    double q, p, bad = NAN;
+    const double ends[] = {0, NAN, INFINITY};
+    for (int i = 0; i < 3; i++) {
+        nevh_reference *r =
+            nevh_reference_new(s.system, NULL, 0, ends[i], s.q, s.p);
+        ck_assert_int_eq(nevh_reference_status(r), NEVH_EINVAL);
+        ck_assert_str_eq(nevh_reference_text(r), "");
+        ck_assert_int_eq(nevh_reference_state(r, 0, &q, &p), NEVH_EINVAL);
+        nevh_reference_free(r);
+    }
+    nevh_reference *r = nevh_reference_new(s.system, NULL, 0, 1, &bad, s.p);
+    ck_assert_int_eq(nevh_reference_status(r), NEVH_EINVAL);
+    nevh_reference_free(r);
+    r = nevh_reference_new(s.system, nevh_adaptive_verlet, 0, 1, s.q, s.p);
+    ck_assert_int_eq(nevh_reference_status(r), NEVH_EINVAL);
+    nevh_reference_free(r);
+    refer(&s, NULL, 0, 1);
+    ck_assert_int_eq(nevh_reference_state(s.reference, 1.1, &q, &p),
+                     NEVH_EINVAL);
+    ck_assert_int_eq(nevh_reference_state(s.reference, -0.1, &q, &p),
+                     NEVH_EINVAL);
+    ck_assert_int_eq(nevh_reference_state(s.reference, NAN, &q, &p),
+                     NEVH_EINVAL);
+    ck_assert_int_eq(nevh_reference_state(s.reference, 1, &q, &p), NEVH_OK);
+    ck_assert_int_eq(nevh_reference_status(s.reference), NEVH_OK);
+    tear_down(&s);
+    ck_assert_int_eq(nevh_reference_status(NULL), NEVH_ENOMEM);
+    nevh_reference_free(NULL);
+    nevh_state_error_free(NULL);
+}
+END_TEST
+
+/* What cannot be stepped has no reference: the ball falls into the centre. */
+START_TEST(failures_are_told) {
+    setup s = set_up("x = 1", "T = p_x^2/2\nV = -1/abs(x)");
+    s.reference = nevh_reference_new(s.system, NULL, 0, 2, s.q, s.p);
+    ck_assert_int_ne(nevh_reference_status(s.reference), NEVH_OK);
+    ck_assert_str_ne(nevh_reference_message(s.reference), "");
+    ck_assert_str_eq(nevh_reference_text(s.reference), "");
+    tear_down(&s);
+}
+END_TEST
+
+static void add_exact(Suite *suite) {
+    TCase *cases = tcase_create("exact");
+    tcase_add_loop_test(cases, exact_solutions_are_recognised, 0, RECOGNISED);
+    tcase_add_loop_test(cases, near_misses_are_refused, 0, NEAR_MISSES);
+    tcase_add_loop_test(cases, states_in_quadruple_precision, 0, STATES);
+    tcase_add_test(cases, values_alone_are_enough);
+    suite_add_tcase(suite, cases);
+}
+
+static void add_runs(Suite *suite) {
+    TCase *cases = tcase_create("runs");
+    tcase_add_test(cases, states_come_in_any_order);
+    tcase_add_test(cases, backwards);
+    tcase_add_test(cases, ranges);
+    tcase_add_test(cases, chaos_has_a_horizon);
+    tcase_add_test(cases, a_close_pass_is_no_chaos);
+    tcase_add_test(cases, long_runs_keep_every_other_checkpoint);
+    tcase_add_test(cases, bad_input);
+    tcase_add_test(cases, failures_are_told);
+    suite_add_tcase(suite, cases);
+}
+
+static void add_state_errors(Suite *suite) {
+    TCase *cases = tcase_create("state errors");
+    tcase_add_loop_test(cases, slope_of_the_state_error_is_the_order, 0,
+                        SLOPES);
+    tcase_add_test(cases, state_error_is_that_of_the_worst_variable);
+    tcase_add_test(cases, observations_are_spread_over_the_run);
+    tcase_add_test(cases, runs_beyond_the_horizon_have_no_state_error);
+    suite_add_tcase(suite, cases);
+}
+
+int main(void) {
+    Suite *suite = suite_create("reference");
+    add_exact(suite);
+    add_runs(suite);
+    add_state_errors(suite);
+    return run_suite(suite);
+}

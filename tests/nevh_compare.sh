@@ -1,0 +1,121 @@
+#!/bin/sh
+# nevh compare: state errors, equal work, transforms, diagnostics, the verdict.
+
+. "${srcdir:-.}/tests/nevh_support.sh"
+
+# field NAME: of CSV, the column's values, row by row; no field before the
+# status may hold a comma.
+field() {
+    grep -v '^#' $work/out | awk -F, -v name="$1" '
+        NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) column = i; next }
+        { print $column }'
+}
+# A condition on the values of a column: $1, $2, ... are the rows.
+holds() {
+    field "$1" | tr '\n' ' ' | awk "{ exit !($2) }" ||
+        { fails "$1: not $2"; cat $work/out; }
+}
+
+# The reference is named; the table says what is out of step.
+exits 0 compare pendulum --dt 0.1,0.05 --integrators verlet,gauss4,rk4 \
+    --gradient exact
+has '^state error against the exact solution \(Jacobi sn\)'
+has '^ verlet +2 +yes +0\.1 .* out of step .*bounded$'
+has '^ gauss4 +4 +yes +0\.05 .* 4e-04 +4\.0 .*bounded$'
+has 'Bounded energy is not an accurate orbit: verlet is out of step'
+has 'loses energy steadily.*'
+has 'slope'
+has 'R\^2 = '
+exits 0 compare pendulum --dt 0.1,0.05 --integrators verlet,gauss4,rk4 \
+    --format csv --gradient exact
+has '^# state error against the exact solution \(Jacobi sn\)'
+holds state_error '$1 > 0.5 && $2 > 5e-3 && $2 < 7e-3 && $5 > 3e-4 && $5 < 5e-4'
+exits 0 compare kepler --t-end 20 --integrators gauss8 --dt 0.02 --format csv
+has "exact solution \(Kepler's equation\)"
+holds state_error '$1 > 0 && $1 < 1e-9'
+
+# No exact solution: a run, whose own error is told.
+exits 0 compare henon-heiles --t-end 30 --integrators gauss8 --dt 0.1 \
+    --format csv
+has '^# state error against gauss12 at dt = [0-9.]+, own error [0-9]e-1[0-9]'
+holds state_error '$1 > 0 && $1 < 1e-7'
+
+# A named one, by the scene.
+sed 's/^t_end .*/&\nreference = gauss16/' "$srcdir/scenes/pendulum.nevh" \
+    >$work/named.nevh
+exits 0 compare $work/named.nevh --t-end 30 --integrators verlet
+has '^state error against gauss16 at dt = '
+sed 's/^t_end .*/&\nreference = exact/' "$srcdir/scenes/henon-heiles.nevh" \
+    >$work/unknown.nevh
+exits 0 compare $work/unknown.nevh --t-end 30 --integrators verlet --format csv
+has '^# no state errors: no exact solution of this H is known'
+holds state_error '$1 == ""'
+sed 's/^t_end .*/&\nreference = gauss8+transform/' \
+    "$srcdir/scenes/kepler.nevh" >$work/wrong.nevh
+exits 2 compare $work/wrong.nevh
+says 'without \+transform'
+
+# Chaos: no number after the horizon.
+exits 0 compare double-pendulum-chaotic --t-end 60 --integrators gauss4 \
+    --dt 0.02
+has '^state errors mean nothing after t = [23][0-9]'
+has '^ gauss4 .* meaningless '
+exits 0 compare double-pendulum-chaotic --t-end 60 --integrators gauss4 \
+    --dt 0.02 --format csv
+holds state_error '$1 == ""'
+exits 0 compare double-pendulum-chaotic --t-end 4 --integrators gauss6 \
+    --dt 0.01 --format csv
+holds state_error '$1 > 0 && $1 < 1e-3'
+
+# At equal numbers of gradients verlet beats rk4 over a long run.
+exits 0 compare pendulum --match work --dt 0.025 --t-end 1000 \
+    --integrators verlet,midpoint,blanes-moan4,rk4 --format csv
+has '^# match = work: '
+holds dt '$1 == 0.025 && $2 > 0.4 && $2 < 0.5 && $3 > 0.1499 && $4 == 0.1'
+holds gradient_evals '$2 > 0.93 * $1 && $2 < 1.07 * $1'
+holds gradient_evals '$3 > 0.99 * $1 && $3 < 1.01 * $1 && $4 == 40000'
+holds max_energy_error '$1 > 3.5e-3 && $1 < 4.5e-3 && $4 > 0.19 && $4 < 0.25'
+holds verdict '$1 == "bounded" && $4 == "drifts"'
+sed 's/^t_end .*/&\nmatch = work/' "$srcdir/scenes/pendulum.nevh" \
+    >$work/matched.nevh
+exits 0 compare $work/matched.nevh --dt 0.025 --t-end 5 --format csv \
+    --integrators verlet,rk4
+holds dt '$1 == 0.025 && $2 == 0.1'
+exits 0 compare $work/matched.nevh --dt 0.025 --t-end 5 --format csv \
+    --match steps --integrators verlet,rk4
+holds dt '$1 == 0.025 && $2 == 0.025'
+exits 0 compare pendulum --match work --dt 0.025 --t-end 5 \
+    --integrators itoh-abe
+has 'keep the dt given'
+exits 2 compare pendulum --match wok
+says 'steps or work'
+
+# A transform from the command line: rows beside those without.
+exits 0 compare kepler-0.9 --t-end 10 --dt 0.02 --integrators gauss4,verlet \
+    --transform '(x^2 + y^2)^(3/4)' --format csv --gradient exact
+holds integrator \
+    '$1 == "gauss4" && $2 == "verlet" && $3 == "gauss4+transform"'
+holds state_error '$3 < $1 && $1 > 0'
+exits 2 compare kepler --t-end 10 --transform '(x^2 + z^2)^(3/4)'
+says '^assignment:1:8: error: the name z is not known'
+exits 2 compare kepler --t-end 10 --transform 't*x'
+exits 2 compare kepler --t-end 10 --transform ''
+
+# What a step does to phase space, and what became of invariants.
+exits 0 compare kepler --t-end 10 --dt 0.02 --integrators gauss4,rk4 \
+    --diagnostics --format csv --gradient exact
+holds symplecticity_error '$1 < 1e-11 && $2 > 1e-9'
+holds reversal_error '$1 < 1e-12 && $2 > 1e-8'
+holds newtons '$1 == 0 && $2 == 0'
+holds change_momentum '$1 < 1e-12 && $2 > 1e-8'
+holds straightness '$1 >= 0 && $1 <= 1'
+exits 0 compare kepler --t-end 10 --dt 0.02 --integrators gauss4 --diagnostics
+has 'symplecticity'
+has 'change of'
+
+# A dt that decides the verdict.
+exits 0 compare pendulum --integrators euler,rk4 --dt 0.5,0.05
+has 'Warning: a smaller dt changes the verdict of rk4: unstable at dt = 0.5'
+lacks 'verdict of euler'
+
+exit $status
