@@ -35,7 +35,8 @@ static const struct {
      "N rows at equal times, the first and the last included"},
     {"at", "T1,T2", FOR_RUN, read_at, "rows at these times alone"},
     {"resume", "FILE", FOR_RUN, read_resume,
-     "go on with FILE, which nevh run -o FILE left unfinished"},
+     "go on with FILE, which nevh run -o FILE left unfinished,\n"
+     "                            from FILE.state, as if never interrupted"},
     {"transform", "FORMULA", FOR_COMPARE, read_transform,
      "of time, for rows NAME+transform; instead of the scene's"},
     {"match", "steps|work", FOR_COMPARE, read_match,
@@ -52,7 +53,7 @@ static const struct {
      "with names in other packages and sources"},
     {"format", "table|csv|json", OF_TABLES, read_format, ""},
     {"output", "FILE", OF_TABLES, read_file,
-     "write there (-o), when it is whole"},
+     "write there (-o): run line by line, others when it is whole"},
     {"quiet", NULL, OF_TABLES | FOR_NEW, read_quiet,
      "the table alone, and no progress"},
     {"help", NULL, ~0u, read_help, ""},
