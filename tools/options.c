@@ -7,7 +7,7 @@
 #include <string.h>
 
 enum {
-    OF_SCENES = FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_SECTION,
+    OF_SCENES = FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_RUN | FOR_SECTION,
     OF_TABLES = OF_SCENES | FOR_LIST
 };
 
@@ -29,6 +29,13 @@ static const struct {
      "central2, central4, ...; see nevh list gradients"},
     {"gradient-step", "D", OF_SCENES, read_gradient_step,
      "half-spread of the differences; chosen by trial if not given"},
+    {"every", "K", FOR_RUN, read_every, "a row each K steps, and at the end"},
+    {"samples", "N", FOR_RUN, read_samples,
+     "N rows at equal times, the first and the last included"},
+    {"at", "T1,T2", FOR_RUN, read_at, "rows at these times alone"},
+    {"resume", "FILE", FOR_RUN, read_resume,
+     "go on with FILE, which nevh run -o FILE left unfinished,\n"
+     "                            from FILE.state, as if never interrupted"},
     {"portable", NULL, OF_SCENES, read_portable,
      "no vector code: the same digits with the same libm"},
     {"section", "A,B", FOR_SECTION, read_section, "these alone, by name"},
@@ -36,7 +43,7 @@ static const struct {
      "with names in other packages and sources"},
     {"format", "table|csv|json", OF_TABLES, read_format, ""},
     {"output", "FILE", OF_TABLES, read_file,
-     "write there (-o), when it is whole"},
+     "write there (-o): run line by line, others when it is whole"},
     {"quiet", NULL, OF_TABLES, read_quiet, "the table alone, and no progress"},
     {"help", NULL, ~0u, read_help, ""},
     {"version", NULL, ~0u, read_version, ""},

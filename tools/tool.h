@@ -140,6 +140,8 @@ const nevh_integrator *plan_scheme(const char *name, bool *transformed);
 /* The transform that it is to be planned with: of names with "+transform", and
    of schemes that choose their own times; NULL: none. */
 const nevh_system *plan_transform(const plan *, const char *name);
+/* The integrator of that name, planned for the first gradient. */
+nevh_stepper *plan_stepper(const plan *, const char *name);
 /* The first integrator that fits, planned for the first gradient; NULL, with a
    message, when none does. */
 nevh_stepper *plan_first(const plan *, const nevh_integrator **);
@@ -166,6 +168,6 @@ void row_run(const plan *, row *);
 void verdict_words(const plan *, const row rows[], size_t count, list *words);
 
 typedef int command(const options *);
-command compare, list_what, check, effects, section;
+command compare, list_what, check, effects, run_scene, section;
 
 #endif
