@@ -99,6 +99,7 @@ dist_check_SCRIPTS = \
 	tests/cplusplus.sh \
 	tests/examples.sh \
 	tests/nevh.sh \
+	tests/nevh_section.sh \
 	tests/nevh_run.sh \
 	tests/pkgconfig.sh \
 	tests/valgrind.sh
