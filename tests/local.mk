@@ -111,6 +111,7 @@ dist_check_SCRIPTS = \
 	tests/nevh_new.sh \
 	tests/nevh_effects.sh \
 	tests/nevh_compare.sh \
+	tests/nevh_section.sh \
 	tests/nevh_run.sh \
 	tests/pkgconfig.sh \
 	tests/valgrind.sh

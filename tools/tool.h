@@ -86,7 +86,6 @@ typedef struct {
     table_format format;
     matching match;
     const char *file, *plot, *plot_script, *transform, *resume, *from;
-    bool formatted; /* --format was given */
     bool quiet, portable, all, by_state, diagnostics, impact, allow_code;
     bool help, version;
     unsigned long long used; /* a bit an option */
