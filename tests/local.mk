@@ -104,6 +104,7 @@ dist_check_SCRIPTS = \
 	tests/nevh.sh \
 	tests/nevh_new.sh \
 	tests/nevh_effects.sh \
+	tests/nevh_code.sh \
 	tests/pkgconfig.sh \
 	tests/effects_off.sh \
 	tests/valgrind.sh

@@ -33,6 +33,8 @@ static const struct {
     {"portable", NULL, OF_SCENES, read_portable,
      "no vector code: the same digits with the same libm"},
     {"from", "SCENE", FOR_NEW, read_from, "the scene to begin with"},
+    {"allow-code", NULL, OF_SCENES | FOR_NEW, read_allow_code,
+     "compile and run C code that the scene names"},
     {"impact", NULL, FOR_EFFECTS, read_impact,
      "what each effect changes in the orbit, costs, and rules out"},
     {"all", NULL, FOR_LIST, read_all,
