@@ -131,6 +131,7 @@ typedef struct {
     size_t dts, tolerances;
     list integrators, gradients;
     double gradient_step;
+    const double *gradient_steps; /* as in nevh_options */
     bool portable, friction, time, balance;
 } plan;
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed */

@@ -215,6 +215,10 @@ const nevh__statement *nevh__scene_assignment(const nevh_scene *,
 /* A bound of a range. */
 bool nevh__head_bound(nevh_scene *, const nevh__model *, const nevh__piece *key,
                       const nevh__tree *, long *);
+/* The coordinates that x, x[3], x[2..N] or x[i = 1..N] are, or those of p_x:
+   from the first to before the last. */
+bool nevh__head_range(nevh_scene *, const nevh__model *,
+                      const nevh__statement *, size_t *from, size_t *to);
 /* Refuses an index where none belongs. */
 bool nevh__head_plain(nevh_scene *, const nevh__statement *);
 
