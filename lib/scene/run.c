@@ -111,29 +111,41 @@ static bool take_gradient(nevh_scene *s, nevh__model *m, const nevh__piece *v) {
                       &m->run.gradients);
 }
 
+/* The step of one element, index being its own. */
+static bool set_step(nevh_scene *s, const nevh__model *m,
+                     const nevh__statement *one, const nevh__tree *tree,
+                     long index, double *step) {
+    nevh__formula_error error = {0};
+    nevh__index at = {one->head.index, index};
+    if (*step > 0)
+        return nevh__scene_fail(s, NEVH_EINVAL, &one->key,
+                                "a step of %s is given twice", one->head.name);
+    if (nevh__tree_number(tree, m->names, at.name ? &at : NULL, step, &error))
+        return nevh__scene_fail_formula(s, &one->value, &error);
+    return *step > 0 ||
+           nevh__scene_fail(s, NEVH_EINVAL, &one->value,
+                            "this must be greater than 0, not %g", *step);
+}
+
 /* Steps of what a head names: of coordinates, or after those of momenta. */
 static bool set_steps(nevh_scene *s, nevh__model *m, const nevh__statement *one,
                       double steps[]) {
-    size_t from, to;
-    double step;
+    size_t from, to, first;
     nevh__meaning meaning =
-        nevh__names_find(m->names, one->head.name, NULL, NULL);
+        nevh__names_find(m->names, one->head.name, NULL, &first);
     if (meaning != NEVH__COORDINATE && meaning != NEVH__MOMENTUM)
         return nevh__scene_fail(s, NEVH_EINVAL, &one->key,
                                 "there is no coordinate or momentum %s",
                                 one->head.name);
-    if (!nevh__head_range(s, m, one, &from, &to) ||
-        !take_number(s, m, &one->value, true, &step))
+    if (!nevh__head_range(s, m, one, &from, &to))
         return false;
-    double *first = steps + (meaning == NEVH__MOMENTUM ? m->n : 0);
-    for (size_t k = from; k < to; k++) {
-        if (first[k] > 0)
-            return nevh__scene_fail(s, NEVH_EINVAL, &one->key,
-                                    "a step of %s is given twice",
-                                    one->head.name);
-        first[k] = step;
-    }
-    return true;
+    nevh__tree *tree = nevh__piece_tree(s, &one->value);
+    double *kind = steps + (meaning == NEVH__MOMENTUM ? m->n : 0);
+    bool fine = tree;
+    for (size_t k = from; fine && k < to; k++)
+        fine = set_step(s, m, one, tree, (long)(k - first) + 1, &kind[k]);
+    nevh__tree_free(tree);
+    return fine;
 }
 
 /* NAME: STEP */
