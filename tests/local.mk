@@ -105,6 +105,7 @@ dist_check_SCRIPTS = \
 	tests/nevh_new.sh \
 	tests/nevh_effects.sh \
 	tests/nevh_code.sh \
+	tests/nevh_units.sh \
 	tests/pkgconfig.sh \
 	tests/effects_off.sh \
 	tests/valgrind.sh
