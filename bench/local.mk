@@ -6,13 +6,16 @@ bench_gradient_CPPFLAGS = $(AM_CPPFLAGS) -I$(top_srcdir)/examples
 bench_gradient_LDADD = libnevh.la
 EXTRA_PROGRAMS += bench/tape
 bench_tape_LDADD = libnevh_core.la
+EXTRA_PROGRAMS += bench/scenes
+bench_scenes_LDADD = libnevh.la
 CLEANFILES += bench/gradient$(EXEEXT) bench/results-gradient.csv \
-	bench/tape$(EXEEXT)
+	bench/tape$(EXEEXT) bench/scenes$(EXEEXT)
 
-bench: bench/gradient$(EXEEXT) bench/tape$(EXEEXT)
+bench: bench/gradient$(EXEEXT) bench/tape$(EXEEXT) bench/scenes$(EXEEXT)
 	@commit=`git -C $(srcdir) describe --always --dirty 2>/dev/null`; \
 	./bench/gradient$(EXEEXT) "$${commit:-unknown}" \
 	  bench/results-gradient.csv && \
-	./bench/tape$(EXEEXT) "$${commit:-unknown}"
+	./bench/tape$(EXEEXT) "$${commit:-unknown}" && \
+	./bench/scenes$(EXEEXT) $(srcdir)/scenes/*.nevh
 
 .PHONY: bench

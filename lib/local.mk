@@ -119,6 +119,9 @@ libnevh_core_la_SOURCES = \
 	lib/scene/start.c \
 	lib/scene/access.c \
 	lib/scene/write.c \
+	lib/scene/code_private.h \
+	lib/scene/code.c \
+	lib/scene/code_term.c \
 	lib/scene/scene.c
 
 # -version-info C:R:A, at each release, beginning with that of the last one:

@@ -87,6 +87,27 @@ START_TEST(run_settings) {
 }
 END_TEST
 
+/* Of coordinates, then of momenta; 0 where it is to be found out. */
+START_TEST(gradient_steps_by_name) {
+    nevh_scene *s =
+        scene_of("[parameters]\nm[1..3] = 1, 2, 4\n"
+                 "[coordinates]\ny = 1\nx[1..3] = 1\n"
+                 "[effects]\nH = p_y^2 + sum(i = 1..3, p_x[i]^2 + x[i]^2*y^2)\n"
+                 "[run]\ngradient_step = x[2..3]: 1/4, p_x[i = 1..3]: m[i]/8, "
+                 "p_y: 0.5\n");
+    const nevh_scene_run *run = nevh_scene_run_settings(s);
+    const double steps[] = {0, 0, 0.25, 0.25, 0.5, 0.125, 0.25, 0.5};
+    ck_assert(run->gradient_step == 0 && run->gradient_steps);
+    for (int k = 0; k < 8; k++)
+        ck_assert_msg(run->gradient_steps[k] == steps[k], "%d: %g", k,
+                      run->gradient_steps[k]);
+    nevh_scene_free(s);
+    s = scene_of(shaken_pendulum);
+    ck_assert_ptr_null(nevh_scene_run_settings(s)->gradient_steps);
+    nevh_scene_free(s);
+}
+END_TEST
+
 static const char small[] = "[coordinates]\nx = 1\n[effects]\nH = p_x^2/2\n";
 
 START_TEST(run_defaults) {
@@ -339,6 +360,7 @@ int main(void) {
     tcase_add_test(cases, texts_and_names);
     tcase_add_test(cases, run_settings);
     tcase_add_test(cases, run_defaults);
+    tcase_add_test(cases, gradient_steps_by_name);
     tcase_add_test(cases, effects_are_switched);
     tcase_add_test(cases, parameters_are_set);
     tcase_add_test(cases, arrays);

@@ -3,6 +3,7 @@
 #include "shipped.h"
 #include <float.h>
 #include <math.h>
+#include <time.h>
 
 /* In [-1, 1). */
 static double uniform(void) {
@@ -261,6 +262,33 @@ START_TEST(separatrix_is_near) {
 }
 END_TEST
 
+/* CPU seconds to read a chain, to plan for it and to take some steps. */
+static double chain_seconds(int masses) {
+    char text[40];
+    clock_t start = clock();
+    nevh_scene *s = read_shipped("fput-1000.nevh");
+    snprintf(text, sizeof text, "N = %d", masses);
+    ck_assert_int_eq(nevh_scene_set(s, text), NEVH_OK);
+    size_t n = nevh_scene_dof(s);
+    double *q = calloc(2 * n, sizeof *q);
+    ck_assert_int_eq(nevh_scene_start(s, q, q + n), NEVH_OK);
+    nevh_options o = {.gradient_step = 0.1, .q = q, .p = q + n};
+    nevh_stepper *by = nevh_stepper_new(nevh_scene_system(s), nevh_verlet, &o);
+    ck_assert_int_eq(nevh_run(by, 0, 0.25, 40, q, q + n, NULL, 0), NEVH_OK);
+    nevh_stepper_free(by);
+    nevh_scene_free(s);
+    free(q);
+    return (double)(clock() - start) / CLOCKS_PER_SEC;
+}
+
+START_TEST(long_chains_cost_in_proportion) {
+    double short_one = chain_seconds(10000), long_one = chain_seconds(100000);
+    ck_assert_msg(long_one < 20 * short_one, "%g s, but %g s of 10 times more",
+                  short_one, long_one);
+    ck_assert_double_lt(long_one, 30);
+}
+END_TEST
+
 /* Each has what a student needs. */
 START_TEST(scenes_are_complete) {
     for (size_t i = 0; i < n_shipped; i++) {
@@ -287,6 +315,10 @@ int main(void) {
     tcase_add_test(cases, halley_returns);
     tcase_add_test(cases, separatrix_is_near);
     tcase_add_test(cases, scenes_are_complete);
+    suite_add_tcase(suite, cases);
+    cases = tcase_create("slow");
+    tcase_set_tags(cases, "slow");
+    tcase_add_test(cases, long_chains_cost_in_proportion);
     suite_add_tcase(suite, cases);
     return run_suite(suite);
 }

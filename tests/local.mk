@@ -83,8 +83,9 @@ tests_check_damped_orbits_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_threads_CFLAGS = $(AM_CFLAGS) -pthread
 tests_check_threads_LDFLAGS = $(AM_LDFLAGS) -pthread
 
-check_PROGRAMS = tests/steps
+check_PROGRAMS = tests/steps tests/steps_of
 tests_steps_LDADD = libnevh.la
+tests_steps_of_LDADD = libnevh.la
 check_LTLIBRARIES =
 if HAVE_CHECK
 check_PROGRAMS += $(suites)
@@ -113,7 +114,10 @@ dist_check_SCRIPTS = \
 	tests/nevh_compare.sh \
 	tests/nevh_section.sh \
 	tests/nevh_run.sh \
+	tests/nevh_code.sh \
+	tests/nevh_units.sh \
 	tests/pkgconfig.sh \
+	tests/effects_off.sh \
 	tests/valgrind.sh
 
 EXTRA_DIST += tests/outside.c tests/formula.h tests/scene.h tests/shipped.h \

@@ -70,4 +70,36 @@ has "none of the scene's integrators fits"
 exits 0 effects sun-earth-moon --impact --t-end 0.1
 exits 2 compare pendulum --impact
 says 'no option of nevh compare'
+
+# What is off is as if its line were deleted: all columns but seconds.
+table() { grep -v '^#' $work/out | cut -d, -f2-16,18,19; }
+while read -r scene effect end; do
+    exits 0 compare "$scene" --without "$effect" --t-end "$end" --format csv
+    table >$work/off
+    sed -e '/^effects = /d' \
+        -e "/^\[effects\]/,/^\$/{/^$effect *=/d}" \
+        -e "/^\[friction\]/,/^\$/{/^$effect *=/d}" \
+        -e '/^\[effects\]/,/^$/{/^\(earth\|jupiter\|relativity\) *=/d}' \
+        "$srcdir/scenes/$scene.nevh" >$work/less.nevh
+    exits 0 compare $work/less.nevh --t-end "$end" --format csv
+    lacks "effects on: .*$effect"
+    table >$work/less
+    test "$(wc -l <$work/less)" -gt 3 || fails "has too few rows"
+    cmp -s $work/off $work/less ||
+        { fails "leaves a trace of $effect"; diff $work/off $work/less; }
+done <<END
+coupled-pendulums coupling 20
+coupled-oscillators springs 20
+damped-driven-pendulum drag 20
+damped-driven-pendulum drive 20
+double-pendulum gravity 2
+earth-halley relativity 40
+elastic-pendulum gravity 2
+fput cubic 20
+henon-heiles cubic 20
+kapitza shaking 1
+magnetic trap 5
+outer-solar-system planets 20000
+sun-earth-moon moon 0.5
+END
 exit $status

@@ -223,17 +223,20 @@ typedef struct {
 
 /* Switches an effect; the plan follows.  The start stays that of the scene as
    it is, also where initial velocities would give other momenta. */
-static void switch_effect(plan *p, const char *effect, bool on) {
-    nevh_scene_enable(p->scene, effect, on);
+static bool switch_effect(plan *p, const char *effect, bool on) {
+    if (nevh_scene_enable(p->scene, effect, on))
+        return false;
     p->system = nevh_scene_system(p->scene);
     p->friction = nevh_system_friction(p->system, NULL);
     p->time = !(nevh_system_traits(p->system) & NEVH_AUTONOMOUS);
     p->balance = p->friction || p->time;
+    return true;
 }
 
-static void look(plan *p, const char *effect, both *b) {
+static bool look(plan *p, const char *effect, both *b) {
     for (int on = 0; on < 2; on++) {
-        switch_effect(p, effect, on);
+        if (!switch_effect(p, effect, on))
+            return false;
         b->choice[on] = choices(p);
         b->structure[on] = plan_structure(p);
         b->time[on] = p->time;
@@ -249,13 +252,14 @@ static void look(plan *p, const char *effect, both *b) {
         b->orbit[on] = run(p, b->integrator);
         b->ran &= !b->orbit[on].status;
     }
+    return true;
 }
 
 static void free_both(both *b) {
     for (int on = 0; on < 2; on++) {
         free_choice(&b->choice[on]);
         free(b->structure[on]);
-        if (b->integrator)
+        if (b->orbit[on].states)
             free_orbit(&b->orbit[on]);
     }
 }
@@ -378,8 +382,11 @@ static void add_all(const options *o, plan *p, page *result) {
         char *effect = text_print("%s", nevh_system_effect_name(p->system, i));
         bool on = nevh_system_effect_on(p->system, effect);
         both b = {0};
-        look(p, effect, &b);
-        put_row(o, effect, on, &b, scale, result);
+        if (look(p, effect, &b))
+            put_row(o, effect, on, &b, scale, result);
+        else
+            list_print(&result->after, "%s cannot be switched on: %s", effect,
+                       nevh_scene_message(p->scene));
         free_both(&b);
         switch_effect(p, effect, on);
         free(effect);

@@ -47,6 +47,8 @@ static const struct {
      "no vector code: the same digits with the same libm"},
     {"section", "A,B", FOR_SECTION, read_section, "these alone, by name"},
     {"from", "SCENE", FOR_NEW, read_from, "the scene to begin with"},
+    {"allow-code", NULL, OF_SCENES | FOR_NEW, read_allow_code,
+     "compile and run C code that the scene names"},
     {"impact", NULL, FOR_EFFECTS, read_impact,
      "what each effect changes in the orbit, costs, and rules out"},
     {"all", NULL, FOR_LIST, read_all,

@@ -149,6 +149,7 @@ static void take_settings(plan *p, const options *o) {
     p->t_end = isnan(o->t_end) ? p->run->t_end : o->t_end;
     p->gradient_step =
         o->gradient_step > 0 ? o->gradient_step : p->run->gradient_step;
+    p->gradient_steps = o->gradient_step > 0 ? NULL : p->run->gradient_steps;
     p->portable = o->portable;
     p->diagnostics = o->diagnostics;
     p->match_work = o->match == MATCH_WORK ||
@@ -184,6 +185,7 @@ void plan_free(plan *p) {
 nevh_options plan_options(const plan *p, const char *gradient) {
     return (nevh_options){.gradient = nevh_gradient_named(gradient),
                           .gradient_step = p->gradient_step,
+                          .gradient_steps = p->gradient_steps,
                           .t = p->run->t_start,
                           .q = p->q,
                           .p = p->p,

@@ -107,7 +107,8 @@ int scene_open_named(nevh_scene **scene, const char *name, const options *o) {
     char *file = find(name);
     if (!file)
         return TOOL_USAGE;
-    *scene = nevh_scene_read(file);
+    *scene = nevh_scene_read_with(
+        file, &(nevh_scene_options){.allow_code = o->allow_code});
     free(file);
     if (*scene && !read(*scene, o))
         return TOOL_OK;

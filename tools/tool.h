@@ -86,6 +86,7 @@ typedef struct {
     table_format format;
     matching match;
     const char *file, *plot, *plot_script, *transform, *resume, *from;
+    bool formatted; /* --format was given */
     bool quiet, portable, all, by_state, diagnostics, impact, allow_code;
     bool help, version;
     unsigned long long used; /* a bit an option */
@@ -132,6 +133,7 @@ typedef struct {
     size_t dts, tolerances;
     list integrators, gradients;
     double gradient_step;
+    const double *gradient_steps; /* as in nevh_options */
     bool portable, friction, time, balance;
     bool match_work, diagnostics;
     nevh_reference *reference; /* NULL: not asked for, or there is none */

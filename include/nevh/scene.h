@@ -33,6 +33,33 @@ typedef struct nevh_scene nevh_scene;
 NEVH_API nevh_scene *nevh_scene_read(const char *path);
 NEVH_API nevh_scene *nevh_scene_parse(const char *name, const char *text);
 NEVH_API void nevh_scene_free(nevh_scene *); /* NULL is allowed */
+
+/* Effects may be written in C: NAME = file("term.c", WHAT, IT, READS).  That
+   file, beside the scene, defines
+
+       double value(double t, const double q[], const double p[],
+                    const double c[]);
+
+   and may define derivatives, which the gradient `exact` asks for:
+
+       void gradient(double t, const double q[], const double p[],
+                     const double c[], double dh_dq[], double dh_dp[]);
+
+   q, p and c are the coordinates, momenta and parameters that are listed (x,
+   x[2], all of an array), each in the order of the list; t is 0 unless it is
+   listed.  file("term.c") alone is handed all coordinates and momenta.
+
+   Such an effect runs what the scene's author wrote: it is refused unless the
+   reader allows it.  The file is compiled by what the environment's CC says,
+   else cc, when its effect is on, or first switched on; a compiler's errors are
+   part of the message.  Functions must be thread-safe where steppers of several
+   threads share the system. */
+typedef struct {
+    bool allow_code; /* compile and run C code that the scene names */
+} nevh_scene_options;
+/* As nevh_scene_read; NULL options are zeros. */
+NEVH_API nevh_scene *nevh_scene_read_with(const char *path,
+                                          const nevh_scene_options *);
 /* The status of reading or of the last call that can fail (set, enable,
    start); NEVH_ENOMEM for NULL. */
 NEVH_API int nevh_scene_status(const nevh_scene *);
@@ -74,7 +101,8 @@ NEVH_API uint64_t nevh_scene_digest(const nevh_scene *);
 
 /* The system, effects switched as the scene says, friction included.  Owned by
    the scene and valid until it is changed or freed; NULL when the scene was not
-   read.  Every term brings values, blocks and an exact gradient. */
+   read.  Every term brings values, blocks and an exact gradient; C code has
+   what it defines. */
 NEVH_API const nevh_system *nevh_scene_system(nevh_scene *);
 /* The state at t_start, n each; initial velocities are solved for momenta, with
    the effects that are on.
@@ -90,11 +118,12 @@ typedef struct {
     size_t dts, integrators, gradients, tolerances;
     const double *dt, *tolerance;
     const char *const *integrator, *const *gradient;
-    double gradient_step;  /* 0: auto */
-    double energy_scale;   /* 0: from H */
-    bool match_work;       /* match = work */
-    const char *reference; /* NULL: none named */
-    const char *transform; /* formula; NULL: none */
+    double gradient_step;         /* 0: auto, or by name: */
+    const double *gradient_steps; /* 2n, coordinates first, 0: auto; or NULL */
+    double energy_scale;          /* 0: from H */
+    bool match_work;              /* match = work */
+    const char *reference;        /* NULL: none named */
+    const char *transform;        /* formula; NULL: none */
 } nevh_scene_run;
 /* Valid as long as the system; NULL when the scene was not read. */
 NEVH_API const nevh_scene_run *nevh_scene_run_settings(nevh_scene *);

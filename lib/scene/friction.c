@@ -12,29 +12,15 @@ typedef struct {
 /* Which coordinates x, x[3], x[2..N], x[i = 1..N] or all are. */
 static bool find_range(nevh_scene *s, const nevh__model *m,
                        const nevh__statement *one, size_t *from, size_t *to) {
-    const nevh__head *head = &one->head;
-    size_t count = m->n, first = 0;
-    bool all = strcmp(head->name, "all") == 0;
-    if (!all && nevh__names_find(m->names, head->name, &count, &first) !=
-                    NEVH__COORDINATE)
+    const char *name = one->head.name;
+    *from = 0;
+    *to = m->n;
+    if (strcmp(name, "all") == 0 && !one->head.from)
+        return true;
+    if (nevh__names_find(m->names, name, NULL, NULL) != NEVH__COORDINATE)
         return nevh__scene_fail(s, NEVH_EINVAL, &one->key,
-                                "there is no coordinate %s", head->name);
-    count = count ? count : 1;
-    long low = 1, high = (long)count;
-    if (head->from && !nevh__head_bound(s, m, &one->key, head->from, &low))
-        return false;
-    if (head->from && !head->to)
-        high = low;
-    if (head->to && !nevh__head_bound(s, m, &one->key, head->to, &high))
-        return false;
-    if (low < 1 || high > (long)count || low > high ||
-        (head->from &&
-         (all || strcmp(m->coordinate_names[first], head->name) == 0)))
-        return nevh__scene_fail(s, NEVH_EINVAL, &one->key,
-                                "%s has no such elements", head->name);
-    *from = first + (size_t)low - 1;
-    *to = first + (size_t)high;
-    return true;
+                                "there is no coordinate %s", name);
+    return nevh__head_range(s, m, one, from, to);
 }
 
 static bool set_rate(nevh_scene *s, nevh__model *m, damping *d, size_t k,

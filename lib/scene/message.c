@@ -77,6 +77,12 @@ bool nevh__scene_fail_at(nevh_scene *s, int status, const nevh__line *line,
     return false;
 }
 
+void nevh__scene_quote(nevh_scene *s, const char *text) {
+    buffer b = {s->message, sizeof s->message, strlen(s->message)};
+    append(&b, "\n", 1);
+    append(&b, text, strlen(text));
+}
+
 bool nevh__scene_fail(nevh_scene *s, int status, const nevh__piece *piece,
                       const char *format, ...) {
     char text[TEXT];

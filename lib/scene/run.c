@@ -111,10 +111,78 @@ static bool take_gradient(nevh_scene *s, nevh__model *m, const nevh__piece *v) {
                       &m->run.gradients);
 }
 
+/* The step of one element, index being its own. */
+static bool set_step(nevh_scene *s, const nevh__model *m,
+                     const nevh__statement *one, const nevh__tree *tree,
+                     long index, double *step) {
+    nevh__formula_error error = {0};
+    nevh__index at = {one->head.index, index};
+    if (*step > 0)
+        return nevh__scene_fail(s, NEVH_EINVAL, &one->key,
+                                "a step of %s is given twice", one->head.name);
+    if (nevh__tree_number(tree, m->names, at.name ? &at : NULL, step, &error))
+        return nevh__scene_fail_formula(s, &one->value, &error);
+    return *step > 0 ||
+           nevh__scene_fail(s, NEVH_EINVAL, &one->value,
+                            "this must be greater than 0, not %g", *step);
+}
+
+/* Steps of what a head names: of coordinates, or after those of momenta. */
+static bool set_steps(nevh_scene *s, nevh__model *m, const nevh__statement *one,
+                      double steps[]) {
+    size_t from, to, first;
+    nevh__meaning meaning =
+        nevh__names_find(m->names, one->head.name, NULL, &first);
+    if (meaning != NEVH__COORDINATE && meaning != NEVH__MOMENTUM)
+        return nevh__scene_fail(s, NEVH_EINVAL, &one->key,
+                                "there is no coordinate or momentum %s",
+                                one->head.name);
+    if (!nevh__head_range(s, m, one, &from, &to))
+        return false;
+    nevh__tree *tree = nevh__piece_tree(s, &one->value);
+    double *kind = steps + (meaning == NEVH__MOMENTUM ? m->n : 0);
+    bool fine = tree;
+    for (size_t k = from; fine && k < to; k++)
+        fine = set_step(s, m, one, tree, (long)(k - first) + 1, &kind[k]);
+    nevh__tree_free(tree);
+    return fine;
+}
+
+/* NAME: STEP */
+static bool take_named_step(nevh_scene *s, nevh__model *m,
+                            const nevh__piece *part, double steps[]) {
+    char stop;
+    nevh__formula_error error;
+    nevh__statement one = {.value = *part};
+    if (!nevh__piece_split(s, &m->pool, &one.value, ":", &one.key, &stop))
+        return false;
+    if (!stop)
+        return nevh__scene_fail(s, NEVH_EINVAL, part,
+                                "gradient_step is auto, a number for all, or "
+                                "NAME: STEP, ...");
+    if (nevh__head_parse(one.key.text, &one.head, &error))
+        return nevh__scene_fail_formula(s, &one.key, &error);
+    bool fine = set_steps(s, m, &one, steps);
+    nevh__head_free(&one.head);
+    return fine;
+}
+
 static bool take_gradient_step(nevh_scene *s, nevh__model *m,
                                const nevh__piece *v) {
-    return strcmp(v->text, "auto") == 0 ||
-           take_number(s, m, v, true, &m->run.gradient_step);
+    size_t count;
+    if (strcmp(v->text, "auto") == 0)
+        return true;
+    if (!v->text[nevh__formula_extent(v->text, ":,")])
+        return take_number(s, m, v, true, &m->run.gradient_step);
+    nevh__piece *parts = nevh__piece_list(s, &m->pool, v, &count);
+    double *steps = nevh__pool_take(&m->pool, 2 * m->n, sizeof *steps);
+    if (!parts || !steps)
+        return nevh__scene_no_memory(s);
+    m->run.gradient_steps = steps;
+    for (size_t i = 0; i < count; i++)
+        if (!take_named_step(s, m, &parts[i], steps))
+            return false;
+    return true;
 }
 
 static bool take_energy_scale(nevh_scene *s, nevh__model *m,

@@ -92,7 +92,14 @@ static char *read_all(nevh_scene *s, FILE *file, size_t *bytes) {
 }
 
 nevh_scene *nevh_scene_read(const char *path) {
+    return nevh_scene_read_with(path, NULL);
+}
+
+nevh_scene *nevh_scene_read_with(const char *path,
+                                 const nevh_scene_options *options) {
     nevh_scene *s = new_scene(path);
+    if (s && options)
+        s->allow_code = options->allow_code;
     FILE *file = s ? fopen(path, "rb") : NULL;
     if (!file) {
         if (s)
@@ -112,6 +119,7 @@ void nevh_scene_free(nevh_scene *s) {
     if (!s)
         return;
     nevh__model_free(s->model);
+    nevh__scene_unload_code(s);
     for (size_t i = 0; i < s->n_statements; i++)
         nevh__head_free(&s->statements[i].head);
     for (size_t i = 0; i < s->n_assignments; i++)
@@ -233,6 +241,8 @@ int nevh_scene_enable(nevh_scene *s, const char *effect, bool on) {
         return s->status;
     nevh__switch *found = nevh__scene_effect(s, effect);
     if (found) {
+        if (on && !nevh__scene_load_code(s, effect))
+            return s->status;
         found->on = on;
         s->switched = true;
         return nevh_system_enable(s->model->system, effect, on);

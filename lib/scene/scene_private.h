@@ -118,8 +118,12 @@ typedef struct {
     double *velocities, *velocity_room; /* n; NULL until asked for */
 } nevh__model;
 
+typedef struct nevh__code nevh__code; /* "scene/code_private.h" */
+
 struct nevh_scene {
     nevh__pool pool;
+    bool allow_code;
+    nevh__code **codes; /* by statement; NULL, or NULL where there is none */
     const char *name;
     nevh__line *lines;
     size_t n_lines;
@@ -147,6 +151,8 @@ bool nevh__scene_fail_at(nevh_scene *, int status, const nevh__line *,
 bool nevh__scene_fail_formula(nevh_scene *, const nevh__piece *,
                               const nevh__formula_error *);
 bool nevh__scene_no_memory(nevh_scene *);
+/* Adds what somebody else said, as further lines. */
+void nevh__scene_quote(nevh_scene *, const char *text);
 /* Says that a word is none of those that are known, with the closest. */
 bool nevh__scene_fail_word(nevh_scene *, const nevh__piece *, const char *what,
                            const char *word, const char *const known[],
@@ -210,6 +216,10 @@ const nevh__statement *nevh__scene_assignment(const nevh_scene *,
 /* A bound of a range. */
 bool nevh__head_bound(nevh_scene *, const nevh__model *, const nevh__piece *key,
                       const nevh__tree *, long *);
+/* The coordinates that x, x[3], x[2..N] or x[i = 1..N] are, or those of p_x:
+   from the first to before the last. */
+bool nevh__head_range(nevh_scene *, const nevh__model *,
+                      const nevh__statement *, size_t *from, size_t *to);
 /* Refuses an index where none belongs. */
 bool nevh__head_plain(nevh_scene *, const nevh__statement *);
 
@@ -243,6 +253,12 @@ bool nevh__scene_begin(nevh_scene *);
 /* Which effects there are and which are on. */
 bool nevh__scene_effects(nevh_scene *);
 nevh__switch *nevh__scene_effect(const nevh_scene *, const char *name);
+/* NAME = file("term.c", ...): adds its term. */
+bool nevh__is_code(const nevh__statement *);
+bool nevh__model_code(nevh_scene *, nevh__model *, const nevh__statement *);
+/* Loads the code of an effect, if it has any, before that is switched on. */
+bool nevh__scene_load_code(nevh_scene *, const char *effect);
+void nevh__scene_unload_code(nevh_scene *);
 /* Says that there is no effect of that name. */
 bool nevh__scene_fail_effect(nevh_scene *, const nevh__piece *);
 

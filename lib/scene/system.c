@@ -85,9 +85,8 @@ static bool add_terms(nevh_scene *s, nevh__model *m,
                       const nevh__statement *statement) {
     const nevh__piece *value = &statement->value;
     nevh__formula_error error = {0};
-    if (strncmp(value->text, "file(", 5) == 0)
-        return nevh__scene_fail(s, NEVH_EINVAL, value,
-                                "terms in files of C are not read yet");
+    if (nevh__is_code(statement))
+        return nevh__model_code(s, m, statement);
     nevh__tree *tree = nevh__piece_tree(s, value);
     if (!tree)
         return false;

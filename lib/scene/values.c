@@ -61,6 +61,28 @@ bool nevh__head_shape(nevh_scene *s, const nevh__model *m,
     return true;
 }
 
+bool nevh__head_range(nevh_scene *s, const nevh__model *m,
+                      const nevh__statement *one, size_t *from, size_t *to) {
+    const nevh__head *head = &one->head;
+    size_t count = 0, first = 0;
+    nevh__names_find(m->names, head->name, &count, &first);
+    bool array = count > 0;
+    long low = 1, high = array ? (long)count : 1;
+    if (head->from && !nevh__head_bound(s, m, &one->key, head->from, &low))
+        return false;
+    if (head->from && !head->to)
+        high = low;
+    if (head->to && !nevh__head_bound(s, m, &one->key, head->to, &high))
+        return false;
+    if (low < 1 || high > (long)(array ? count : 1) || low > high ||
+        (head->from && !array))
+        return nevh__scene_fail(s, NEVH_EINVAL, &one->key,
+                                "%s has no such elements", head->name);
+    *from = first + (size_t)low - 1;
+    *to = first + (size_t)high;
+    return true;
+}
+
 /* Says for which index it was. */
 static void add_index(nevh__formula_error *error, const nevh__index *index) {
     size_t used = strlen(error->text);

@@ -1,7 +1,9 @@
 /* nevh: values and v = dH/dp of a system of tapes, by themselves.
 
-   A field would do the same, but it is planned around a state, and here the
-   momenta are not known yet, or H is not finite.
+   Code that brings none is differenced; a kinetic energy is quadratic as a
+   rule, and then any step will do.  A field would do the same, but it is
+   planned around a state, and here the momenta are not known yet, or H is not
+   finite.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/scene_private.h"
 #include <math.h>
@@ -53,6 +55,33 @@ static block read_block(const nevh_term *is, size_t first, double t,
     return b;
 }
 
+static const double part = 0x1p-10; /* of a momentum: a step */
+
+/* d/dp[k] of order 4 of one instance; p is as before afterwards. */
+static double difference(const nevh_term *is, double t, const double q[],
+                         double p[], const double c[], size_t k) {
+    const double at = p[k], step = at != 0 ? part * fabs(at) : part;
+    double h[4];
+    for (int i = 0; i < 4; i++) {
+        p[k] = at + (i < 2 ? i - 2 : i - 1) * step;
+        h[i] = is->value(t, q, p, c, is->params);
+    }
+    p[k] = at;
+    return (8 * (h[2] - h[1]) - (h[3] - h[0])) / (12 * step);
+}
+
+/* Of terms without a gradient; they have one instance. */
+static void add_differences(const nevh_term *is, double t, const double q[],
+                            const double p[], double room[], double v[]) {
+    double *own_q = room, *own_p = own_q + is->nq;
+    for (size_t k = 0; k < is->nq; k++)
+        own_q[k] = q[is->q[k]];
+    for (size_t k = 0; k < is->np; k++)
+        own_p[k] = p[is->p[k]];
+    for (size_t k = 0; k < is->np; k++)
+        v[is->p[k]] += difference(is, is->time ? t : 0, own_q, own_p, is->c, k);
+}
+
 static void add_block(const nevh_term *is, size_t first, double t,
                       const double q[], const double p[], double room[],
                       double v[]) {
@@ -70,7 +99,10 @@ void nevh__velocities(const nevh_system *system, double t, const double q[],
         const nevh_term *is = &system->terms[i]->is;
         if (!nevh__term_on(system, system->terms[i]) || !is->np)
             continue;
-        for (size_t first = 0; first < is->count; first += WIDTH)
+        if (!is->gradient)
+            add_differences(is, t, q, p, room, v);
+        for (size_t first = 0; is->gradient && first < is->count;
+             first += WIDTH)
             add_block(is, first, t, q, p, room, v);
     }
 }

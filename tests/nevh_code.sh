@@ -1,0 +1,148 @@
+#!/bin/sh
+# Effects that are C code: refused unless allowed, compiled, quoted where they
+# do not compile, and cleaned up.
+
+. "${srcdir:-.}/tests/nevh_support.sh"
+
+mkdir $work/tmp "$work/a b"
+TMPDIR=$PWD/$work/tmp
+export TMPDIR
+clean() {
+    test -z "$(ls -A $work/tmp)" || { fails "leaves $(ls $work/tmp)"; }
+}
+table() {
+    grep -v '^#' $work/out |
+        awk -F, '{ print $2, $6, $7, $8, sprintf("%.3e", $9), $18 }'
+}
+
+# scene FILE EFFECT: a pendulum whose gravity is that.
+scene() {
+    cat >"$1" <<END
+[scene]
+effects = kinetic, gravity
+[parameters]
+m = 1
+l[1..2] = 1, 7
+g = 9.8
+[coordinates]
+phi = 2
+v_phi = 0.5
+[effects]
+kinetic = p_phi^2/(2*m*l[1]^2)
+gravity = $2
+[run]
+t_end = 20
+dt = 0.05
+integrators = verlet, gauss4
+END
+}
+scene $work/text.nevh '-m*g*l[1]*cos(phi)'
+scene $work/code.nevh 'file("term.c", phi, m, l, g)'
+scene $work/off.nevh 'file("term.c", phi, m, l, g)'
+sed -i.old 's/^effects = .*/effects = kinetic/' $work/off.nevh
+
+# Not allowed; not even looked for.
+exits 2 compare $work/code.nevh
+says 'code.nevh:12:17: error: term\.c is code.*--allow-code$'
+says '^                \^~~~~~$'
+exits 0 compare $work/off.nevh
+exits 2 compare $work/off.nevh --with gravity
+says 'off.nevh:12:17: error: .*--allow-code'
+exits 2 compare $work/code.nevh --allow-code
+says 'code.nevh:12:17: error: .*term\.c cannot be read'
+exits 0 compare $work/off.nevh --allow-code
+
+cat >$work/term.c <<END
+#include <math.h>
+double value(double t, const double q[], const double p[], const double c[]);
+double value(double t, const double q[], const double p[], const double c[])
+{
+    return t != 0 ? NAN : -c[0]*c[3]*c[1]*cos(q[0]);
+}
+END
+CC=/nowhere/cc exits 2 compare $work/code.nevh --allow-code
+says 'code.nevh:12:17: error: term\.c needs a C compiler, and there is none'
+clean
+command -v ${CC:-cc} >/dev/null 2>&1 || { echo "no C compiler"; exit $status; }
+
+# The same rows as of text; parameters follow.
+for set in g=9.8 g=1.62 l=0.5; do
+    exits 0 compare $work/text.nevh --set $set --format csv
+    table >$work/rows
+    exits 0 compare $work/code.nevh --set $set --format csv --allow-code
+    table >$work/other
+    clean
+    cmp -s $work/rows $work/other ||
+        { fails "has other rows"; diff $work/rows $work/other; }
+done
+exits 0 compare $work/off.nevh --with gravity --format csv --allow-code
+has ',verlet,.*,ok,'
+exits 0 effects $work/off.nevh --allow-code
+has '^ gravity +off +coordinates +1 '
+exits 0 effects $work/off.nevh --impact
+has 'gravity cannot be switched on'
+exits 0 effects $work/off.nevh --impact --allow-code
+has '^ gravity +off +verlet +[0-9]'
+clean
+
+# Derivatives of its own.
+exits 0 compare $work/code.nevh --allow-code --gradient exact --format csv
+has 'refused: .*gravity'
+cat >>$work/term.c <<END
+void gradient(double t, const double q[], const double p[], const double c[],
+              double dh_dq[], double dh_dp[])
+{
+    dh_dq[0] = c[0]*c[3]*c[1]*sin(q[0]);
+}
+END
+exits 0 compare $work/code.nevh --allow-code --gradient exact --format csv
+lacks 'refused'
+exits 0 compare $work/off.nevh --with gravity --allow-code --gradient exact \
+    --format csv
+lacks 'refused'
+sed 's/dh_dq\[0\] = /&1.001*/' $work/term.c >$work/wrong.c
+scene $work/wrong.nevh 'file("wrong.c", phi, m, l, g)'
+exits 0 compare $work/wrong.nevh --allow-code --gradient exact --format csv
+has 'refused: .*gravity'
+
+# Everything, probed; the time where it is listed; other folders and names.
+cat >"$work/a b/it's.c" <<END
+double value(double t, const double q[], const double p[], const double c[])
+{
+    return (p[0]*p[0] + q[0]*q[0])/2 + t*q[0];
+}
+END
+scene "$work/a b/all.nevh" 'file("it'"'"'s.c")'
+exits 0 check "$work/a b/all.nevh" --allow-code
+has 'as its values tell'
+has 'autonomous +yes'
+scene "$work/a b/timed.nevh" 'file("it'"'"'s.c", t, phi, p_phi)'
+exits 0 check "$work/a b/timed.nevh" --allow-code
+has 'autonomous +no'
+clean
+
+# A compiler's errors, and code without a function.
+sed 's/return/retrun/' $work/term.c >$work/wrong.c
+exits 2 compare $work/wrong.nevh --allow-code -o $work/never
+says 'wrong.nevh:12:17: error: wrong\.c does not compile:$'
+says 'retrun'
+echo 'int none;' >$work/wrong.c
+exits 2 compare $work/wrong.nevh --allow-code
+says 'wrong\.c defines no function double value\(double t, const double q'
+sed 's/cos(/nocosine(/' $work/term.c >$work/wrong.c
+exits 2 compare $work/wrong.nevh --allow-code
+says 'wrong.nevh:12:17: error: wrong\.c (cannot be loaded|does not compile):$'
+says 'nocosine'
+clean
+test -e $work/never && fails "wrote a file in spite of an error"
+
+# What it reads.
+for wrong in '"term.c", psi' '"term.c", phi, phi' '"term.c" phi' '"term.c' \
+    'term.c' '""' '"term.c", l[3]' '"term.c", l[1..2]' '"term.c", m[1]' \
+    '"term.c", v_phi' '"term.c",'; do
+    scene $work/list.nevh "file($wrong)"
+    exits 2 compare $work/list.nevh --allow-code
+    says 'list.nevh:12:[0-9]+: error: '
+done
+clean
+exit $status
