@@ -310,6 +310,23 @@ static int make_scene(const setting *a) {
     return status;
 }
 
+/* Made, and asked for a state between steps. */
+static int make_reference(const setting *a) {
+    static const double q[] = {0.3, 0.5}, p[] = {0.7, 1.1};
+    double to_q[2], to_p[2];
+    nevh_reference *r = nevh_reference_new(a->system, a->scheme, 0, 1, q, p);
+    nevh_state_error *e = nevh_state_error_new(r);
+    int status = nevh_reference_state(r, 0.37, to_q, to_p);
+    strcpy(text, nevh_reference_message(r));
+    if (r && !e && !status) {
+        status = NEVH_ENOMEM;
+        strcpy(text, "out of memory");
+    }
+    nevh_state_error_free(e);
+    nevh_reference_free(r);
+    return status;
+}
+
 /* Refuses the first request, then the second, until all are granted.  Returns
    how many there are. */
 static size_t starve(int (*attempt)(const setting *), const setting *a) {
@@ -519,6 +536,21 @@ START_TEST(steps_take_no_memory) {
 }
 END_TEST
 
+static double attraction(double t, const double q[], const double p[],
+                         const void *params) {
+    (void)t, (void)params;
+    return (p[0] * p[0] + p[1] * p[1]) / 2 - 1 / hypot(q[0], q[1]);
+}
+
+START_TEST(references) {
+    const nevh_integrator *const by[] = {NULL, nevh_gauss12};
+    nevh_system *s = nevh_system_from(2, attraction, NULL);
+    setting a = {.system = s, .scheme = by[_i]};
+    ck_assert_uint_ge(starve(make_reference, &a), 10);
+    nevh_system_free(s);
+}
+END_TEST
+
 /* GSL's solvers without a Jacobian, where there is no room for one. */
 START_TEST(gsl_system_without_memory) {
     nevh_system *s = pendulums();
@@ -548,6 +580,7 @@ int main(void) {
     tcase_add_loop_test(cases, transformed_steps_take_no_memory, 0, 3);
     tcase_add_test(cases, formulas);
     tcase_add_test(cases, scenes);
+    tcase_add_loop_test(cases, references, 0, 2);
     tcase_add_loop_test(cases, steps_take_no_memory, 0, 3 * schemes);
     tcase_add_test(cases, gsl_system_without_memory);
     suite_add_tcase(suite, cases);

@@ -123,6 +123,8 @@ static const struct {
     {"q = 2", "T = p_q^2/2 + 1e-9*p_q^4\nV = -cos(q)"},
     {"q = 2", "T = p_q^2/2\nV = -cos(q)*(1 + 1e-9*cos(t))"},
     {"q = 2", "T = p_q^2/2\nV = -cos(q)\nW = 1e-9*p_q*q"},
+    {"q = 0, 7", "T = p_q^2/2\nV = -cos(q) + 0.001*exp(-(q - 12)^2)"},
+    {"q = 0, -7", "T = p_q^2/2\nV = -cos(q) + 0.001*exp(-(q + 12)^2)"},
     {"x = 1", "T = p_x^2/2\nV = x^2/2 + 1e-9*x^3"},
     {"x = 1", "T = sqrt(1e6 + p_x^2)\nV = x^2/2"},
     {"x = 1", "T = p_x^2/2\nV = x^2/2 + 1e-9*t*x"},

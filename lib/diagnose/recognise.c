@@ -370,8 +370,8 @@ int nevh__exact_recognise(nevh__exact **exact, const nevh_system *s, double t0,
         return NEVH_OK;
     b.field = make_field(s, &b);
     int status = b.field ? NEVH_OK : NEVH_ENOMEM;
-    b.rounding =
-        nevh_field_step_count(b.field) ? difference_rounding : exact_rounding;
+    b.rounding = status || nevh_field_step_count(b.field) ? difference_rounding
+                                                          : exact_rounding;
     if (!status && !nevh_field_status(b.field))
         status = try_all(&b, exact);
     nevh_field_free(b.field);

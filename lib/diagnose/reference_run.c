@@ -352,7 +352,7 @@ static int find_run(pair *b) {
             break;
         h = affordable_step(b, &o, last, shorter_step(&o, order));
     }
-    return *r->text ? NEVH_OK : give_up(b, &o);
+    return *r->text && o.status != NEVH_ENOMEM ? NEVH_OK : give_up(b, &o);
 }
 
 static int open_pair(pair *b) {
@@ -361,7 +361,7 @@ static int open_pair(pair *b) {
     b->coarse = nevh__reference_stepper(r);
     b->fine = nevh__reference_stepper(r);
     b->memory = nevh__array(12 * n, sizeof *b->memory);
-    if (!b->coarse || !b->fine || !b->memory)
+    if (!b->coarse || !b->fine || !b->memory || !track_grow(&b->track, n))
         return nevh__fail(&r->report, NEVH_ENOMEM, "out of memory");
     b->a = b->memory;
     b->b = b->a + 2 * n;

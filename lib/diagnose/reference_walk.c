@@ -22,16 +22,16 @@ nevh_stepper *nevh__reference_stepper(const nevh_reference *r) {
     return nevh_stepper_new(r->system, r->integrator, &o);
 }
 
-/* Remembering is a matter of speed: where there is no memory for it, nothing
-   is remembered. */
-static void memo_open(nevh__memo *m, size_t n) {
-    size_t slots = MOST_SLOTS;
-    while (slots > FEWEST_SLOTS &&
-           slots * 2 * n * sizeof *m->states > NEVH__MOST_MEMO)
-        slots /= 2;
-    m->keys = nevh__array(slots, sizeof *m->keys);
-    m->states = nevh__array(slots * 2 * n, sizeof *m->states);
-    m->slots = m->keys && m->states ? slots : 0;
+static bool memo_open(nevh__memo *m, size_t n) {
+    m->slots = MOST_SLOTS;
+    while (m->slots > FEWEST_SLOTS &&
+           m->slots * 2 * n * sizeof *m->states > NEVH__MOST_MEMO)
+        m->slots /= 2;
+    if (!m->keys)
+        m->keys = nevh__array(m->slots, sizeof *m->keys);
+    if (!m->states)
+        m->states = nevh__array(m->slots * 2 * n, sizeof *m->states);
+    return m->keys && m->states;
 }
 
 static uint64_t key_of(double t) {
@@ -51,15 +51,13 @@ static size_t slot_of(const nevh__memo *m, uint64_t key) {
 
 static const double *recall(const nevh_reference *r, double t) {
     const nevh__memo *m = &r->memo;
-    size_t i = m->slots ? slot_of(m, key_of(t)) : 0;
-    return m->slots && m->keys[i] ? m->states + 2 * r->n * i : NULL;
+    size_t i = slot_of(m, key_of(t));
+    return m->keys[i] ? m->states + 2 * r->n * i : NULL;
 }
 
 static void remember(nevh_reference *r, double t, const double q[],
                      const double p[]) {
     nevh__memo *m = &r->memo;
-    if (!m->slots)
-        return;
     if (++m->used > m->slots / 4 * 3) {
         memset(m->keys, 0, m->slots * sizeof *m->keys);
         m->used = 1;
@@ -75,10 +73,8 @@ static int open_walk(nevh_reference *r) {
         r->walker = nevh__reference_stepper(r);
     if (!r->branch)
         r->branch = nevh__reference_stepper(r);
-    if (!r->walker || !r->branch)
+    if (!r->walker || !r->branch || !memo_open(&r->memo, r->n))
         return nevh__fail(&r->report, NEVH_ENOMEM, "out of memory");
-    if (!r->memo.keys)
-        memo_open(&r->memo, r->n);
     return NEVH_OK;
 }
 

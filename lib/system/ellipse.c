@@ -12,7 +12,7 @@
 
 #define PI 3.141592653589793238462643383279502884L
 
-enum { MOST_TRIALS = 100, POLISHINGS = 3 };
+enum { MOST_TRIALS = 100 };
 
 /* E - ec sin E + es (1 - cos E) = M, where ec = e cos E0, es = e sin E0. */
 typedef struct {
@@ -28,8 +28,7 @@ static double miss(double E, void *data) {
     return (double)excess(data, E);
 }
 
-/* GSL's root to double precision, then Newton's method to the last digits. */
-static long double solve(gsl_root_fsolver *solver, equation *k) {
+static double solve(gsl_root_fsolver *solver, equation *k) {
     gsl_function f = {miss, k};
     double M = (double)k->M, wide = (double)(2 * hypotl(k->ec, k->es)) + 1e-9;
     double root = M;
@@ -42,10 +41,7 @@ static long double solve(gsl_root_fsolver *solver, equation *k) {
             4 * DBL_EPSILON * fabs(root))
             break;
     }
-    long double E = root;
-    for (int i = 0; i < POLISHINGS; i++)
-        E -= excess(k, E) / (1 - k->ec * cosl(E) + k->es * sinl(E));
-    return E;
+    return root;
 }
 
 static long double dot(size_t n, const long double a[], const long double b[]) {
