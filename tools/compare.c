@@ -89,11 +89,11 @@ static bool measures_order(const row *r) {
 }
 
 /* From the row of the same scheme and the dt before. */
-static void observe_orders(rows *r) {
-    for (size_t i = 0; i < r->count; i++)
+void observe_orders(row rows[], size_t count) {
+    for (size_t i = 0; i < count; i++)
         for (size_t k = i; k-- > 0;) {
-            row *b = &r->row[i];
-            const row *a = &r->row[k];
+            row *b = &rows[i];
+            const row *a = &rows[k];
             if (a->integrator != b->integrator || a->gradient != b->gradient)
                 continue;
             if (measures_order(a) && measures_order(b) && a->dt != b->dt)
@@ -106,60 +106,6 @@ static void observe_orders(rows *r) {
 static void columns(table *t, const char *const names[], size_t count) {
     for (size_t i = 0; i < count; i++)
         table_column(t, names[i]);
-}
-
-static double when(bool condition, double value) {
-    return condition ? value : NAN;
-}
-
-static void add_record(table *t, const plan *p, const row *r) {
-    const nevh_energy_report *e = &r->energy;
-    table_text(t, p->name);
-    table_text(t, r->integrator);
-    table_number(t, r->order);
-    table_text(t, nevh_claim_name(nevh_integrator_symplectic(r->scheme)));
-    table_text(t, r->gradient);
-    table_number(t, r->dt);
-    table_number(t, when(r->ran, (double)r->steps));
-    table_text(t, r->status);
-    table_number(t, when(r->ran, e->max));
-    table_number(t, when(r->ran, e->rms));
-    table_number(t, when(r->ran, e->final));
-    table_number(t, when(r->ran, e->drift));
-    table_text(t, NULL);
-    table_number(t, when(r->ran, r->counts.hamiltonians));
-    table_number(t, when(r->ran, (double)r->counts.gradients));
-    table_number(t, when(r->ran, (double)r->counts.sweeps));
-    table_number(t, when(r->ran, r->seconds));
-    table_text(t, r->ran ? nevh_verdict_name(e->verdict) : NULL);
-    table_number(t, r->observed_order);
-}
-
-static table *records(const plan *p, const rows *r) {
-    static const char *const names[] = {"scene",
-                                        "integrator",
-                                        "order",
-                                        "symplectic",
-                                        "gradient",
-                                        "dt",
-                                        "steps",
-                                        "status",
-                                        "max_energy_error",
-                                        "rms_energy_error",
-                                        "final_energy_error",
-                                        "energy_drift",
-                                        "state_error",
-                                        "hamiltonian_evals",
-                                        "gradient_evals",
-                                        "sweeps",
-                                        "seconds",
-                                        "verdict",
-                                        "observed_order"};
-    table *t = table_new();
-    columns(t, names, sizeof names / sizeof *names);
-    for (size_t i = 0; i < r->count; i++)
-        add_record(t, p, &r->row[i]);
-    return t;
 }
 
 static void show_count(table *t, double count) {
@@ -239,15 +185,16 @@ static void note_gradients(const plan *p, list *notes) {
     }
 }
 
-static void note_scale(const plan *p, const rows *r, list *notes) {
+static void note_scale(const plan *p, const row rows[], size_t count,
+                       list *notes) {
     const char *unit = nevh_scene_label(p->scene, "energy");
-    for (size_t i = 0; i < r->count; i++)
-        if (r->row[i].ran) {
+    for (size_t i = 0; i < count; i++)
+        if (rows[i].ran) {
             list_print(notes,
                        "energy_scale: %.9g%s%s (errors are relative to "
                        "it; H at the start is %.9g)",
-                       r->row[i].energy.scale, *unit ? " " : "", unit,
-                       r->row[i].energy.initial);
+                       rows[i].energy.scale, *unit ? " " : "", unit,
+                       rows[i].energy.initial);
             return;
         }
 }
@@ -279,7 +226,8 @@ static bool has_tolerance(const plan *p, const row *r) {
 }
 
 /* What is to be said where it holds for a row. */
-static void note_rows(const plan *p, const rows *r, list *notes) {
+static void note_rows(const plan *p, const row rows[], size_t count,
+                      list *notes) {
     static const struct {
         bool (*holds)(const plan *, const row *);
         const char *text;
@@ -290,8 +238,8 @@ static void note_rows(const plan *p, const rows *r, list *notes) {
                 {has_tolerance, "adaptive schemes have a row a tolerance of "
                                 "[run], in its order; dt is their mean step"}};
     for (size_t k = 0; k < sizeof note / sizeof *note; k++)
-        for (size_t i = 0; i < r->count; i++)
-            if (note[k].holds(p, &r->row[i])) {
+        for (size_t i = 0; i < count; i++)
+            if (note[k].holds(p, &rows[i])) {
                 list_add(notes, note[k].text);
                 break;
             }
@@ -304,6 +252,15 @@ static void note_settings(const options *o, list *notes) {
     for (size_t i = 0; i < o->settings.count; i++)
         if (o->settings.item[i][0] == '=')
             list_print(notes, "set: %s", o->settings.item[i] + 1);
+}
+
+void row_notes(const options *o, const plan *p, const row rows[], size_t count,
+               list *notes) {
+    note_settings(o, notes);
+    note_gradients(p, notes);
+    note_scale(p, rows, count, notes);
+    note_balance(p, notes);
+    note_rows(p, rows, count, notes);
 }
 
 /* Messages of rows without numbers, each once. */
@@ -321,15 +278,11 @@ static void list_reasons(const rows *r, list *words) {
 static page make_page(const options *o, const plan *p, const rows *r) {
     page result = {0};
     bool is_table = o->format == FORMAT_TABLE;
-    result.table = is_table ? shown(p, r) : records(p, r);
+    result.table = is_table ? shown(p, r) : records(p, r->row, r->count);
     if (is_table && o->quiet)
         return result;
     plan_notes(p, &result.before);
-    note_settings(o, &result.before);
-    note_gradients(p, &result.before);
-    note_scale(p, r, &result.before);
-    note_balance(p, &result.before);
-    note_rows(p, r, &result.before);
+    row_notes(o, p, r->row, r->count, &result.before);
     verdict_words(p, r->row, r->count, &result.after);
     if (is_table)
         list_reasons(r, &result.after);
@@ -343,7 +296,7 @@ static int compare_plan(const options *o, const plan *p) {
         return TOOL_USAGE;
     rows r = list_rows(p);
     run_rows(p, &r, o->quiet);
-    observe_orders(&r);
+    observe_orders(r.row, r.count);
     page result = make_page(o, p, &r);
     page_print(&result, o->format, out.stream);
     page_free(&result);

@@ -11,6 +11,15 @@ tools_nevh_SOURCES = \
 	tools/scenes.c \
 	tools/plan.c \
 	tools/row.c \
+	tools/records.c \
+	tools/ladder.h \
+	tools/grid.c \
+	tools/fit.c \
+	tools/ladder.c \
+	tools/cost_private.h \
+	tools/cost.c \
+	tools/cost_table.c \
+	tools/cost_words.c \
 	tools/compare.c \
 	tools/verdict.c \
 	tools/effects.c \

@@ -81,22 +81,35 @@ static nevh_counts difference(nevh_counts a, nevh_counts b) {
     return a;
 }
 
-/* The median of a few runs that nobody watches. */
+static double cpu_seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static void set_seconds(row *r, double seconds[], size_t count) {
+    qsort(seconds, count, sizeof *seconds, by_size);
+    r->seconds = seconds[count / 2];
+    r->spread = (seconds[(3 * count) / 4] - seconds[count / 4]) / 2;
+}
+
+/* A few runs that nobody watches: as many as asked for, or until their time is
+   enough. */
 static void measure(const work *w) {
-    double seconds[REPEATS], sum = 0;
-    size_t count = 0;
+    size_t most = w->plan->repeats ? w->plan->repeats : REPEATS, count = 0;
+    double *seconds = tool_allocate(most, sizeof *seconds), sum = 0;
     nevh_stepper *s = new_stepper(w, false);
     nevh_counts before = nevh_stepper_counts(s);
-    while (count < REPEATS && sum < time_enough) {
+    while (count < most && (w->plan->repeats || sum < time_enough)) {
         nevh_stepper_reset(s);
-        clock_t start = clock();
+        double start = cpu_seconds();
         run(w, s, NULL);
-        sum += seconds[count] = (double)(clock() - start) / CLOCKS_PER_SEC;
+        sum += seconds[count] = cpu_seconds() - start;
         if (count++ == 0)
             w->row->counts = difference(nevh_stepper_counts(s), before);
     }
-    qsort(seconds, count, sizeof *seconds, by_size);
-    w->row->seconds = seconds[count / 2];
+    set_seconds(w->row, seconds, count);
+    free(seconds);
     nevh_stepper_free(s);
 }
 

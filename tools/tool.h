@@ -74,8 +74,8 @@ enum {
 typedef enum { MATCH_SCENE, MATCH_STEPS, MATCH_WORK } matching;
 typedef struct {
     list operands, settings, integrators, gradients; /* settings: see below */
-    double *dt, *at;
-    size_t dts, ats;
+    double *dt, *at, *tolerance;
+    size_t dts, ats, tolerances;
     double t_end;                                    /* NAN: the scene's */
     double gradient_step, energy_error, state_error; /* 0: not given */
     size_t every, samples, repeats;                  /* 0: not given */
@@ -127,6 +127,7 @@ typedef struct {
     size_t dts, tolerances;
     list integrators, gradients;
     double gradient_step;
+    size_t repeats; /* of timed runs; 0: chosen */
     bool portable, friction, time, balance;
 } plan;
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed */
@@ -157,13 +158,21 @@ typedef struct {
     bool ran; /* there are numbers */
     nevh_energy_report energy;
     nevh_counts counts;
-    double seconds, observed_order; /* NAN: unknown */
+    double seconds, spread; /* median, and half of what the middle half spans */
+    double observed_order;  /* NAN: unknown */
 } row;
 void row_run(const plan *, row *);
+/* records.c: rows as the columns of CSV and JSON. */
+table *records(const plan *, const row rows[], size_t count);
+/* compare.c: observed_order, of rows with the same scheme beside each other;
+   notes of settings, gradients, scale and what holds for some rows. */
+void observe_orders(row rows[], size_t count);
+void row_notes(const options *, const plan *, const row rows[], size_t count,
+               list *notes);
 /* compare.c, verdict.c */
 void verdict_words(const plan *, const row rows[], size_t count, list *words);
 
 typedef int command(const options *);
-command compare, list_what, check, effects;
+command compare, list_what, check, effects, cost;
 
 #endif

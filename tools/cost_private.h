@@ -1,0 +1,28 @@
+/* nevh: what the parts of nevh cost share.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_COST_PRIVATE_H
+#define NEVH_COST_PRIVATE_H
+
+#include "ladder.h"
+
+enum { COST_TARGETS = 6 };
+extern const double cost_target[COST_TARGETS];
+
+typedef struct {
+    search search;
+    ladder *ladder;
+    size_t count;
+    bool all; /* ladders are shown, not only those that are cheap somewhere */
+} costs;
+/* Whether its errors are to be compared with others'. */
+bool costs_count(const costs *, const ladder *);
+/* The cheapest for cost_target[target]; NULL: none keeps it. */
+const ladder *costs_cheapest(const costs *, size_t target);
+bool cost_shows(const costs *, const ladder *);
+
+/* cost_table.c, cost_words.c */
+table *cost_table(const costs *);
+void cost_notes(const costs *, list *notes);
+void cost_words(costs *, list *words);
+
+#endif
