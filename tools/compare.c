@@ -10,10 +10,10 @@
 typedef struct {
     row *row;
     size_t count;
-} rows;
+} row_list;
 
-static void add_row(const plan *p, rows *r, size_t gradient, const char *name,
-                    double dt, double tolerance) {
+static void add_row(const plan *p, row_list *r, size_t gradient,
+                    const char *name, double dt, double tolerance) {
     bool transformed;
     const nevh_integrator *scheme = plan_scheme(name, &transformed);
     bool same = r->count &&
@@ -35,7 +35,7 @@ static bool adapts(const char *name) {
 }
 
 /* Adaptive schemes land on the ends of the longest dt. */
-static void add_adaptive(const plan *p, rows *r, size_t gradient) {
+static void add_adaptive(const plan *p, row_list *r, size_t gradient) {
     double longest = 0;
     for (size_t j = 0; j < p->dts; j++)
         longest = fmax(longest, p->dt[j]);
@@ -46,10 +46,10 @@ static void add_adaptive(const plan *p, rows *r, size_t gradient) {
                         p->tolerance[k]);
 }
 
-static rows list_rows(const plan *p) {
+static row_list list_rows(const plan *p) {
     size_t most =
         p->gradients.count * p->integrators.count * (p->dts + p->tolerances);
-    rows r = {tool_allocate(most, sizeof *r.row), 0};
+    row_list r = {tool_allocate(most, sizeof *r.row), 0};
     for (size_t g = 0; g < p->gradients.count; g++) {
         for (size_t j = 0; j < p->dts; j++)
             for (size_t i = 0; i < p->integrators.count; i++)
@@ -61,7 +61,7 @@ static rows list_rows(const plan *p) {
 }
 
 /* Where stderr is a terminal and the work takes longer than a second. */
-static void progress(const rows *r, size_t i, double seconds, bool last) {
+static void progress(const row_list *r, size_t i, double seconds, bool last) {
     if (seconds < 1 || !isatty(STDERR_FILENO))
         return;
     if (last)
@@ -72,7 +72,7 @@ static void progress(const rows *r, size_t i, double seconds, bool last) {
     fflush(stderr);
 }
 
-static void run_rows(const plan *p, rows *r, bool quiet) {
+static void run_rows(const plan *p, row_list *r, bool quiet) {
     time_t start = time(NULL);
     for (size_t i = 0; i < r->count; i++) {
         if (!quiet)
@@ -146,7 +146,7 @@ static void show_row(table *t, const plan *p, const row *r) {
     table_text(t, r->failed ? "failed" : "refused");
 }
 
-static table *shown(const plan *p, const rows *r) {
+static table *shown(const plan *p, const row_list *r) {
     table *t = table_new();
     const char *unit = nevh_scene_label(p->scene, "t");
     char *dt = text_print(*unit ? "dt/%s" : "dt%s", unit);
@@ -264,7 +264,7 @@ void row_notes(const options *o, const plan *p, const row rows[], size_t count,
 }
 
 /* Messages of rows without numbers, each once. */
-static void list_reasons(const rows *r, list *words) {
+static void list_reasons(const row_list *r, list *words) {
     for (size_t i = 0; i < r->count; i++) {
         bool told = r->row[i].ran;
         for (size_t k = 0; !told && k < i; k++)
@@ -275,7 +275,7 @@ static void list_reasons(const rows *r, list *words) {
     }
 }
 
-static page make_page(const options *o, const plan *p, const rows *r) {
+static page make_page(const options *o, const plan *p, const row_list *r) {
     page result = {0};
     bool is_table = o->format == FORMAT_TABLE;
     result.table = is_table ? shown(p, r) : records(p, r->row, r->count);
@@ -294,7 +294,7 @@ static int compare_plan(const options *o, const plan *p) {
     int status = TOOL_OK;
     if (output_open(&out, o->file))
         return TOOL_USAGE;
-    rows r = list_rows(p);
+    row_list r = list_rows(p);
     run_rows(p, &r, o->quiet);
     observe_orders(r.row, r.count);
     page result = make_page(o, p, &r);

@@ -21,31 +21,83 @@ void plan_search(plan *p, const options *o) {
     }
 }
 
+static bool is_beaten(const costs *c, const ladder *l) {
+    return !c->all && !cost_is_yardstick(l) &&
+           ladder_is_behind(&c->search, l, c->ladder, c->count);
+}
+
 static void descend_all(costs *c) {
-    static const double share = 0.6; /* the rest is for targets */
+    static const double share = 0.5; /* the rest is for targets and times */
     ladder *next;
     for (size_t i = 0; i < c->count; i++)
         ladder_begin(&c->search, &c->ladder[i]);
     while ((next = ladder_next(c->ladder, c->count)) &&
            !search_is_over(&c->search, share))
-        ladder_descend(&c->search, next);
+        if (is_beaten(c, next))
+            next->end = LADDER_LIMIT;
+        else
+            ladder_descend(&c->search, next);
     for (size_t i = 0; i < c->count; i++)
         if (c->ladder[i].end == LADDER_OPEN)
             c->ladder[i].end = LADDER_LIMIT;
 }
 
+static void time_cells(costs *c) {
+    for (size_t i = 0; i < c->count; i++)
+        for (size_t k = 0; k < COST_TARGETS; k++) {
+            const ladder *l = &c->ladder[i];
+            const row *r =
+                ladder_cheapest(l, cost_target[k], c->search.by_state);
+            if (r && cost_shows(c, l))
+                ladder_time(&c->search, &c->ladder[i], (size_t)(r - l->rung));
+        }
+}
+
+/* While there is time for it. */
+static void time_others(costs *c) {
+    for (size_t i = 0; i < c->count; i++)
+        for (size_t k = 0; k < c->ladder[i].count; k++)
+            if (c->search.repeats || !search_is_over(&c->search, 1))
+                ladder_time(&c->search, &c->ladder[i], k);
+}
+
+/* Whether the coarsest step that keeps the target may be a cheap one: it costs
+   more than the last rung that does not. */
+static bool is_promising(const costs *c, const ladder *l, double target) {
+    static const double nearly = 1.5;
+    const ladder *best = costs_cheapest(c, target);
+    const row *cheapest =
+        best ? ladder_cheapest(best, target, c->search.by_state) : NULL;
+    size_t i = 0;
+    while (i < l->count &&
+           ladder_error(&l->rung[i], c->search.by_state) > target)
+        i++;
+    return i == 0 || !cheapest ||
+           l->rung[i - 1].seconds < nearly * cheapest->seconds;
+}
+
+static void refine_all(costs *c) {
+    for (size_t k = 0; k < COST_TARGETS; k++)
+        for (size_t i = 0; i < c->count; i++) {
+            ladder *l = &c->ladder[i];
+            if (c->all || cost_is_yardstick(l) ||
+                is_promising(c, l, cost_target[k]))
+                ladder_refine(&c->search, l, cost_target[k]);
+        }
+}
+
 static void run_ladders(costs *c) {
     enum { RUNGS = 8 };
     descend_all(c);
-    for (size_t i = 0; i < c->count; i++)
-        for (size_t k = 0; k < COST_TARGETS; k++)
-            ladder_refine(&c->search, &c->ladder[i], cost_target[k]);
+    refine_all(c);
+    time_cells(c);
     for (size_t i = 0; i < c->count; i++)
         ladder_fill(&c->search, &c->ladder[i], RUNGS);
+    time_others(c);
 }
 
 static void make_ladders(costs *c) {
-    const plan *p = c->search.plan;
+    const plan *p = &c->search.plan;
     c->ladder = tool_allocate(p->gradients.count * p->integrators.count,
                               sizeof *c->ladder);
     for (size_t g = 0; g < p->gradients.count; g++)
@@ -58,13 +110,12 @@ bool costs_count(const costs *c, const ladder *l) {
     return !l->count || c->search.by_state || !ladder_keeps_energy(l);
 }
 
-const ladder *costs_cheapest(const costs *c, size_t target) {
+const ladder *costs_cheapest(const costs *c, double target) {
     const ladder *best = NULL;
     double least = INFINITY;
     for (size_t i = 0; i < c->count; i++) {
         const ladder *l = &c->ladder[i];
-        const row *r =
-            ladder_cheapest(l, cost_target[target], c->search.by_state);
+        const row *r = ladder_cheapest(l, target, c->search.by_state);
         if (costs_count(c, l) && r && r->seconds < least)
             least = r->seconds, best = l;
     }
@@ -89,10 +140,10 @@ static page make_page(const options *o, costs *c) {
     row *rows = all_rows(c, &count);
     observe_orders(rows, count);
     result.table =
-        is_table ? cost_table(c) : records(c->search.plan, rows, count);
+        is_table ? cost_table(c) : records(&c->search.plan, rows, count);
     if (!is_table || !o->quiet) {
-        plan_notes(c->search.plan, &result.before);
-        row_notes(o, c->search.plan, rows, count, &result.before);
+        plan_notes(&c->search.plan, &result.before);
+        row_notes(o, &c->search.plan, rows, count, &result.before);
         cost_notes(c, &result.before);
         cost_words(c, &result.after);
     }
@@ -111,7 +162,7 @@ static int status_of(const costs *c) {
 }
 
 static int cost_plan(const options *o, plan *p) {
-    static const double budget = 20; /* seconds */
+    static const double budget = 25; /* seconds */
     output out;
     if (output_open(&out, o->file))
         return TOOL_USAGE;

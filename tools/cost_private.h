@@ -16,8 +16,9 @@ typedef struct {
 } costs;
 /* Whether its errors are to be compared with others'. */
 bool costs_count(const costs *, const ladder *);
-/* The cheapest for cost_target[target]; NULL: none keeps it. */
-const ladder *costs_cheapest(const costs *, size_t target);
+/* NULL: none keeps the target. */
+const ladder *costs_cheapest(const costs *, double target);
+bool cost_is_yardstick(const ladder *);
 bool cost_shows(const costs *, const ladder *);
 
 /* cost_table.c, cost_words.c */

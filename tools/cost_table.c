@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool is_yardstick(const ladder *l) {
+bool cost_is_yardstick(const ladder *l) {
     static const char *const names[] = {"verlet", "midpoint", "rk4"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (strcmp(l->integrator, names[i]) == 0)
@@ -17,7 +17,7 @@ static bool is_yardstick(const ladder *l) {
 static bool is_cheap(const costs *c, const ladder *l) {
     static const double nearly = 1.1;
     for (size_t k = 0; k < COST_TARGETS; k++) {
-        const ladder *best = costs_cheapest(c, k);
+        const ladder *best = costs_cheapest(c, cost_target[k]);
         const row *r = ladder_cheapest(l, cost_target[k], c->search.by_state);
         if (best && r &&
             r->seconds <= nearly * ladder_cheapest(best, cost_target[k],
@@ -32,13 +32,13 @@ bool cost_shows(const costs *c, const ladder *l) {
     if (c->all)
         return l->count > 0;
     return l->end != LADDER_REFUSED && costs_count(c, l) &&
-           (is_yardstick(l) || is_cheap(c, l));
+           (cost_is_yardstick(l) || is_cheap(c, l));
 }
 
 static void show_cell(const costs *c, const ladder *l, size_t target,
                       table *t) {
     const row *r = ladder_cheapest(l, cost_target[target], c->search.by_state);
-    bool star = costs_cheapest(c, target) == l;
+    bool star = costs_cheapest(c, cost_target[target]) == l;
     char *text;
     if (l->end == LADDER_REFUSED)
         text = text_print("  refused");
@@ -64,7 +64,7 @@ static bool drifts(const ladder *l) {
 
 table *cost_table(const costs *c) {
     table *t = table_new();
-    bool gradients = c->search.plan->gradients.count > 1;
+    bool gradients = c->search.plan.gradients.count > 1;
     table_column(t, "integrator");
     if (gradients)
         table_column(t, "gradient");

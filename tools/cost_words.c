@@ -6,7 +6,7 @@
 #include <string.h>
 
 void cost_notes(const costs *c, list *notes) {
-    const plan *p = c->search.plan;
+    const plan *p = &c->search.plan;
     const char *unit = nevh_scene_label(p->scene, "t");
     list_print(notes,
                "cost: the largest %s error over the run; CPU ms (dt%s%s); * "

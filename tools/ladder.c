@@ -34,12 +34,15 @@ static double *ordered(const double numbers[], size_t count) {
 }
 
 search search_begin(const plan *p, const options *o, double budget) {
-    search s = {.plan = p,
+    search s = {.plan = *p,
+                .repeats = o->repeats,
                 .by_state = o->by_state,
                 .quiet = o->quiet,
                 .budget = budget,
                 .started = seconds_used(),
                 .landing = grid_dt(grid_dt_place(8 * longest_dt(p)))};
+    s.plan.hurried = true;
+    s.plan.repeats = 1;
     if (o->dts) {
         s.dt = ordered(p->dt, s.dts = p->dts);
         s.tolerance = ordered(p->tolerance, s.tolerances = p->tolerances);
@@ -140,7 +143,7 @@ size_t ladder_run(search *s, ladder *l, int k) {
              .scheme = l->scheme};
     set_step(s, &r, k);
     progress(s, &r);
-    row_run(s->plan, &r);
+    row_run(&s->plan, &r);
     s->runs++;
     return insert(l, i, k, r);
 }
@@ -152,7 +155,7 @@ static bool is_usable(const ladder *l, size_t i, bool by_state) {
 /* To coarser ones, of which only those that are usable stay. */
 static void ascend(search *s, ladder *l) {
     enum { STRIDES = 6, STEPS = 8 };
-    double span = s->plan->t_end - s->plan->run->t_start;
+    double span = s->plan.t_end - s->plan.run->t_start;
     for (int i = 0; i < STRIDES && !search_is_over(s, 1); i++) {
         int k = l->k[0] - GRID_STRIDE;
         if (grid_dt(k) * STEPS > span)
@@ -172,6 +175,12 @@ static void run_given(search *s, ladder *l) {
     l->end = LADDER_GIVEN;
 }
 
+/* By what the scheme claims. */
+static bool is_kept(const search *s, const ladder *l) {
+    return !s->by_state &&
+           nevh_integrator_preserves_energy(l->scheme) == NEVH_YES;
+}
+
 void ladder_begin(search *s, ladder *l) {
     enum { FIRST_TOLERANCE = 6 };
     bool adapts = nevh_integrator_adaptive(l->scheme);
@@ -179,12 +188,14 @@ void ladder_begin(search *s, ladder *l) {
         run_given(s, l);
         return;
     }
-    int k = adapts ? FIRST_TOLERANCE : grid_dt_place(longest_dt(s->plan));
+    int k = adapts ? FIRST_TOLERANCE : grid_dt_place(longest_dt(&s->plan));
     size_t i = ladder_run(s, l, k);
     if (!l->rung[i].ran && !l->rung[i].failed)
         l->end = LADDER_REFUSED;
-    else if (!adapts && is_usable(l, i, s->by_state))
+    else if (!adapts && is_usable(l, i, s->by_state) && !is_kept(s, l))
         ascend(s, l);
+    if (!s->by_state && ladder_keeps_energy(l))
+        l->end = LADDER_FLOOR;
 }
 
 static double work(const row *r) {
@@ -244,6 +255,36 @@ void ladder_descend(search *s, ladder *l) {
         ladder_run(s, l, l->k[l->count - 1] + GRID_STRIDE);
         drop_useless(l, s->by_state);
     }
+}
+
+bool ladder_is_behind(const search *s, const ladder *l, const ladder others[],
+                      size_t count) {
+    static const double behind = 2, far_behind = 8;
+    const row *last = &l->rung[l->count - 1];
+    double error = ladder_error(last, s->by_state);
+    for (size_t i = 0; i < count; i++) {
+        const ladder *m = &others[i];
+        double factor =
+            nevh_integrator_order(m->scheme) >= nevh_integrator_order(l->scheme)
+                ? behind
+                : far_behind;
+        for (size_t k = 0; k < m->count; k++)
+            if (m->gradient == l->gradient &&
+                (s->by_state || !ladder_keeps_energy(m)) &&
+                ladder_error(&m->rung[k], s->by_state) <= error &&
+                factor * work(&m->rung[k]) < work(last))
+                return true;
+    }
+    return false;
+}
+
+void ladder_time(const search *s, ladder *l, size_t i) {
+    row *r = &l->rung[i];
+    row again = *r;
+    if (!r->ran || r->spread > 0)
+        return;
+    set_step(s, &again, l->k[i]);
+    row_finish(&s->plan, r, again.dt, s->repeats);
 }
 
 /* The first rung that keeps the target. */

@@ -41,9 +41,10 @@ typedef struct {
     ladder_end end;
 } ladder;
 typedef struct {
-    const plan *plan;
+    plan plan; /* a copy, in a hurry */
     bool by_state, quiet;
-    double budget; /* seconds for all, from `started` on */
+    size_t repeats; /* 0: chosen */
+    double budget;  /* seconds for all, from `started` on */
     double started;
     double landing;         /* dt of adaptive schemes */
     double *dt, *tolerance; /* coarse to fine; NULL: those of the grid */
@@ -61,6 +62,11 @@ void ladder_begin(search *, ladder *);
 /* Next: the one with the least work in its next rung; NULL: none is open. */
 ladder *ladder_next(ladder ladders[], size_t count);
 void ladder_descend(search *, ladder *);
+/* Whether another is so far ahead that shorter steps will not change it. */
+bool ladder_is_behind(const search *, const ladder *, const ladder others[],
+                      size_t count);
+/* Measures the time of a rung again, as often as asked for. */
+void ladder_time(const search *, ladder *, size_t rung);
 /* Rungs between those there are, so that the coarsest on the grid that keeps
    the target is one of them. */
 void ladder_refine(search *, ladder *, double target);

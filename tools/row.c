@@ -95,12 +95,12 @@ static void set_seconds(row *r, double seconds[], size_t count) {
 
 /* A few runs that nobody watches: as many as asked for, or until their time is
    enough. */
-static void measure(const work *w) {
-    size_t most = w->plan->repeats ? w->plan->repeats : REPEATS, count = 0;
+static void measure(const work *w, size_t repeats) {
+    size_t most = repeats ? repeats : REPEATS, count = 0;
     double *seconds = tool_allocate(most, sizeof *seconds), sum = 0;
     nevh_stepper *s = new_stepper(w, false);
     nevh_counts before = nevh_stepper_counts(s);
-    while (count < most && (w->plan->repeats || sum < time_enough)) {
+    while (count < most && (repeats || sum < time_enough)) {
         nevh_stepper_reset(s);
         double start = cpu_seconds();
         run(w, s, NULL);
@@ -153,21 +153,40 @@ static bool refused(row *r, const nevh_stepper *s) {
     return true;
 }
 
+static work work_new(const plan *p, row *r) {
+    return (work){p, r, tool_allocate(p->n, sizeof(double)),
+                  tool_allocate(p->n, sizeof(double))};
+}
+
+static void work_free(work *w) {
+    free(w->q);
+    free(w->p);
+}
+
 void row_run(const plan *p, row *r) {
-    work w = {p, r, tool_allocate(p->n, sizeof *w.q),
-              tool_allocate(p->n, sizeof *w.p)};
+    work w = work_new(p, r);
     r->observed_order = NAN;
     nevh_stepper *s = new_stepper(&w, p->balance);
     if (!refused(r, s)) {
         watched(&w, s);
         if (r->ran)
-            measure(&w);
-        if (r->ran && r->energy.verdict == NEVH_UNSTABLE)
+            measure(&w, p->repeats);
+        if (r->ran && r->energy.verdict == NEVH_UNSTABLE && !p->hurried)
             unstable_since(&w);
         if (r->ran && r->tolerance > 0)
             r->dt = mean_step(&w);
     }
     nevh_stepper_free(s);
-    free(w.q);
-    free(w.p);
+    work_free(&w);
+}
+
+void row_finish(const plan *p, row *r, double dt, size_t repeats) {
+    double mean = r->dt;
+    work w = work_new(p, r);
+    r->dt = dt;
+    measure(&w, repeats);
+    if (r->energy.verdict == NEVH_UNSTABLE)
+        unstable_since(&w);
+    r->dt = mean;
+    work_free(&w);
 }

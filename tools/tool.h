@@ -129,6 +129,7 @@ typedef struct {
     double gradient_step;
     size_t repeats; /* of timed runs; 0: chosen */
     bool portable, friction, time, balance;
+    bool hurried; /* rows are to be finished later */
 } plan;
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int plan_make(plan *, const options *);
@@ -162,6 +163,10 @@ typedef struct {
     double observed_order;  /* NAN: unknown */
 } row;
 void row_run(const plan *, row *);
+/* Of a row that ran in a hurry: its time again, and when it became unstable.
+   dt       as the row was run with
+   repeats  0: chosen */
+void row_finish(const plan *, row *, double dt, size_t repeats);
 /* records.c: rows as the columns of CSV and JSON. */
 table *records(const plan *, const row rows[], size_t count);
 /* compare.c: observed_order, of rows with the same scheme beside each other;
