@@ -86,11 +86,14 @@ static void refine_all(costs *c) {
         }
 }
 
-static void run_ladders(costs *c) {
+/* Those that the table does not show are for programs to read. */
+static void run_ladders(costs *c, bool for_people) {
     enum { RUNGS = 8 };
     descend_all(c);
     refine_all(c);
     time_cells(c);
+    if (for_people && !c->all)
+        return;
     for (size_t i = 0; i < c->count; i++)
         ladder_fill(&c->search, &c->ladder[i], RUNGS);
     time_others(c);
@@ -123,13 +126,19 @@ const ladder *costs_cheapest(const costs *c, double target) {
 }
 
 /* Rows side by side, in the order of the ladders. */
-static row *all_rows(const costs *c, size_t *count) {
-    *count = 0;
+static row *list_rows(const costs *c, bool shown, size_t *count) {
+    size_t most = 0;
     for (size_t i = 0; i < c->count; i++)
-        *count += c->ladder[i].count;
-    row *rows = tool_allocate(*count, sizeof *rows);
-    for (size_t i = 0, at = 0; i < c->count; at += c->ladder[i++].count)
-        memcpy(rows + at, c->ladder[i].rung, c->ladder[i].count * sizeof *rows);
+        most += c->ladder[i].count;
+    row *rows = tool_allocate(most, sizeof *rows);
+    *count = 0;
+    for (size_t i = 0; i < c->count; i++) {
+        const ladder *l = &c->ladder[i];
+        if (!l->count || (shown && !cost_shows(c, l)))
+            continue;
+        memcpy(rows + *count, l->rung, l->count * sizeof *rows);
+        *count += l->count;
+    }
     return rows;
 }
 
@@ -137,7 +146,7 @@ static page make_page(const options *o, costs *c) {
     page result = {0};
     bool is_table = o->format == FORMAT_TABLE;
     size_t count;
-    row *rows = all_rows(c, &count);
+    row *rows = list_rows(c, is_table, &count);
     observe_orders(rows, count);
     result.table =
         is_table ? cost_table(c) : records(&c->search.plan, rows, count);
@@ -169,7 +178,7 @@ static int cost_plan(const options *o, plan *p) {
     costs c = {.search = search_begin(p, o, budget),
                .all = o->integrators.count > 0};
     make_ladders(&c);
-    run_ladders(&c);
+    run_ladders(&c, o->format == FORMAT_TABLE);
     page result = make_page(o, &c);
     search_end(&c.search);
     page_print(&result, o->format, out.stream);

@@ -21,8 +21,13 @@ const ladder *costs_cheapest(const costs *, double target);
 bool cost_is_yardstick(const ladder *);
 bool cost_shows(const costs *, const ladder *);
 
-/* cost_table.c, cost_words.c */
+/* cost_table.c */
 table *cost_table(const costs *);
+char *cost_milliseconds(double seconds);
+bool cost_drifts(const ladder *); /* at most of its steps */
+/* cost_price.c: more rungs, with other gradients. */
+void cost_price(costs *, list *words);
+/* cost_words.c */
 void cost_notes(const costs *, list *notes);
 void cost_words(costs *, list *words);
 

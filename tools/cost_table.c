@@ -35,6 +35,24 @@ bool cost_shows(const costs *c, const ladder *l) {
            (cost_is_yardstick(l) || is_cheap(c, l));
 }
 
+char *cost_milliseconds(double seconds) {
+    return text_print(seconds < 0.0995 ? "%.2g" : "%.0f", 1000 * seconds);
+}
+
+bool cost_drifts(const ladder *l) {
+    size_t count = 0;
+    for (size_t i = 0; i < l->count; i++)
+        count += l->rung[i].ran && l->rung[i].energy.verdict == NEVH_DRIFTS;
+    return 2 * count > l->count;
+}
+
+static char *cell_text(const row *r, bool star) {
+    char *time = cost_milliseconds(r->seconds);
+    char *text = text_print("%s %s (%.3g)", star ? "*" : " ", time, r->dt);
+    free(time);
+    return text;
+}
+
 static void show_cell(const costs *c, const ladder *l, size_t target,
                       table *t) {
     const row *r = ladder_cheapest(l, cost_target[target], c->search.by_state);
@@ -49,17 +67,9 @@ static void show_cell(const costs *c, const ladder *l, size_t target,
                                   : l->end == LADDER_GIVEN ? "-"
                                                            : "floor");
     else
-        text = text_print("%s %.2g (%.3g)", star ? "*" : " ", 1000 * r->seconds,
-                          r->dt);
+        text = cell_text(r, star);
     table_text(t, text);
     free(text);
-}
-
-static bool drifts(const ladder *l) {
-    size_t count = 0;
-    for (size_t i = 0; i < l->count; i++)
-        count += l->rung[i].ran && l->rung[i].energy.verdict == NEVH_DRIFTS;
-    return 2 * count > l->count;
 }
 
 table *cost_table(const costs *c) {
@@ -78,7 +88,7 @@ table *cost_table(const costs *c) {
         if (!cost_shows(c, l))
             continue;
         char *name =
-            text_print("%s%s", l->integrator, drifts(l) ? ", drifts" : "");
+            text_print("%s%s", l->integrator, cost_drifts(l) ? ", drifts" : "");
         table_text(t, name);
         free(name);
         if (gradients)

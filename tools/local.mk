@@ -19,7 +19,11 @@ tools_nevh_SOURCES = \
 	tools/cost_private.h \
 	tools/cost.c \
 	tools/cost_table.c \
+	tools/cost_price.c \
 	tools/cost_words.c \
+	tools/recommend_private.h \
+	tools/recommend.c \
+	tools/advice.c \
 	tools/compare.c \
 	tools/verdict.c \
 	tools/effects.c \
