@@ -163,7 +163,7 @@ static const ladder *most_exact(const advice *a, double *least) {
     return best;
 }
 
-static const char *reason(const advice *a, const ladder *l, double least) {
+static const char *reason(const ladder *l, double least) {
     if (l->end == LADDER_GIVEN)
         return "these steps do not reach it";
     if (l->end != LADDER_FLOOR)
@@ -185,6 +185,6 @@ int advice_none(const advice *a) {
         tool_refuse("%s: nothing keeps the %s error below %g.  The least, %.1e,"
                     " is that of %s with the %s gradient; %s",
                     a->search.plan.name, what, a->target, least, l->integrator,
-                    l->gradient, reason(a, l, least));
+                    l->gradient, reason(l, least));
     return TOOL_FAILED;
 }

@@ -24,6 +24,7 @@ tools_nevh_SOURCES = \
 	tools/recommend_private.h \
 	tools/recommend.c \
 	tools/advice.c \
+	tools/gradients.c \
 	tools/compare.c \
 	tools/verdict.c \
 	tools/effects.c \

@@ -178,6 +178,6 @@ void row_notes(const options *, const plan *, const row rows[], size_t count,
 void verdict_words(const plan *, const row rows[], size_t count, list *words);
 
 typedef int command(const options *);
-command compare, list_what, check, effects, cost, recommend;
+command compare, list_what, check, effects, cost, recommend, gradients;
 
 #endif
