@@ -139,6 +139,7 @@ void advice_print(const advice *a, const options *o, FILE *f) {
     page p = {.table = is_table ? shown(a) : recorded(a)};
     if (!is_table || !o->quiet) {
         plan_notes(&a->search.plan, &p.before);
+        state_notes(&a->search.plan, &p.before);
         tell_answer(a, o, &p.after);
     }
     page_print(&p, o->format, f);

@@ -153,6 +153,7 @@ static page make_page(const options *o, costs *c) {
     if (!is_table || !o->quiet) {
         plan_notes(&c->search.plan, &result.before);
         row_notes(o, &c->search.plan, rows, count, &result.before);
+        state_notes(&c->search.plan, &result.before);
         cost_notes(c, &result.before);
         cost_words(c, &result.after);
     }
@@ -193,6 +194,10 @@ static int cost_plan(const options *o, plan *p) {
 int cost(const options *o) {
     plan p;
     int status = plan_make(&p, o);
+    if (!status && o->by_state)
+        status = state_errors_mean_something(&p);
+    else if (!status && o->format != FORMAT_TABLE)
+        status = plan_reference(&p);
     if (!status) {
         plan_search(&p, o);
         status = cost_plan(o, &p);

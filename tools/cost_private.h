@@ -23,6 +23,8 @@ bool cost_shows(const costs *, const ladder *);
 
 /* cost_table.c */
 table *cost_table(const costs *);
+/* The reference is not good enough for these digits. */
+bool cost_is_beyond(const costs *, size_t target);
 char *cost_milliseconds(double seconds);
 bool cost_drifts(const ladder *); /* at most of its steps */
 /* cost_price.c: more rungs, with other gradients. */

@@ -46,6 +46,11 @@ bool cost_drifts(const ladder *l) {
     return 2 * count > l->count;
 }
 
+bool cost_is_beyond(const costs *c, size_t target) {
+    return c->search.by_state &&
+           cost_target[target] < nevh_reference_error(c->search.plan.reference);
+}
+
 static char *cell_text(const row *r, bool star) {
     char *time = cost_milliseconds(r->seconds);
     char *text = text_print("%s %s (%.3g)", star ? "*" : " ", time, r->dt);
@@ -58,7 +63,9 @@ static void show_cell(const costs *c, const ladder *l, size_t target,
     const row *r = ladder_cheapest(l, cost_target[target], c->search.by_state);
     bool star = costs_cheapest(c, cost_target[target]) == l;
     char *text;
-    if (l->end == LADDER_REFUSED)
+    if (cost_is_beyond(c, target))
+        text = text_print("  -");
+    else if (l->end == LADDER_REFUSED)
         text = text_print("  refused");
     else if (!costs_count(c, l))
         text = text_print("  -");

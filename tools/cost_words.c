@@ -95,7 +95,7 @@ static const row *cell(const costs *c, const ladder *l, size_t target) {
 /* The last of the targets from `first` on that have the same cheapest. */
 static size_t last_alike(const costs *c, size_t first) {
     const ladder *best = costs_cheapest(c, cost_target[first]);
-    while (first + 1 < COST_TARGETS &&
+    while (first + 1 < COST_TARGETS && !cost_is_beyond(c, first + 1) &&
            costs_cheapest(c, cost_target[first + 1]) == best)
         first++;
     return first;
@@ -123,7 +123,7 @@ static void tell_best(const costs *c, size_t first, size_t last, list *words) {
 /* At the most digits that both reach. */
 static void tell_yardstick(const costs *c, const char *name, list *words) {
     for (size_t k = COST_TARGETS; k-- > 0;)
-        for (size_t i = 0; i < c->count; i++) {
+        for (size_t i = 0; i < c->count && !cost_is_beyond(c, k); i++) {
             const ladder *l = &c->ladder[i];
             const ladder *best = costs_cheapest(c, cost_target[k]);
             if (strcmp(l->integrator, name) != 0 || !best || best == l ||
@@ -137,7 +137,7 @@ static void tell_yardstick(const costs *c, const char *name, list *words) {
 }
 
 static void tell_winners(const costs *c, list *words) {
-    for (size_t k = 0; k < COST_TARGETS; k++) {
+    for (size_t k = 0; k < COST_TARGETS && !cost_is_beyond(c, k); k++) {
         size_t last = last_alike(c, k);
         if (costs_cheapest(c, cost_target[k]))
             tell_best(c, k, last, words);

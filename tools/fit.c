@@ -32,3 +32,19 @@ bool gradient_fits(const plan *p, const char *gradient, char **why) {
     nevh_field_free(field);
     return !status;
 }
+
+int state_errors_mean_something(plan *p) {
+    int status = plan_reference(p);
+    if (status)
+        return status;
+    if (!p->reference)
+        tool_refuse("%s: no state errors: %s", p->name, p->no_reference);
+    else if (p->t_end > nevh_reference_horizon(p->reference))
+        tool_refuse("%s: state errors mean nothing after t = %.4g, where "
+                    "orbits that differ in the last digits have separated; "
+                    "--t-end shortens the run",
+                    p->name, nevh_reference_horizon(p->reference));
+    else
+        return TOOL_OK;
+    return TOOL_FAILED;
+}

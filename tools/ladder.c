@@ -91,8 +91,7 @@ void ladder_free(ladder *l) {
 }
 
 double ladder_error(const row *r, bool by_state) {
-    (void)by_state;
-    double error = r->energy.max;
+    double error = by_state ? r->state_error : r->energy.max;
     return r->ran && isfinite(error) ? error : INFINITY;
 }
 
@@ -262,6 +261,8 @@ bool ladder_is_behind(const search *s, const ladder *l, const ladder others[],
     static const double behind = 2, far_behind = 8;
     const row *last = &l->rung[l->count - 1];
     double error = ladder_error(last, s->by_state);
+    if (error >= usable_below)
+        return false;
     for (size_t i = 0; i < count; i++) {
         const ladder *m = &others[i];
         double factor =

@@ -82,6 +82,9 @@ bool ladder_keeps_energy(const ladder *);
 /* fit.c: names of the schemes, and of the gradients, that fit. */
 void fitting_integrators(const plan *, const char *gradient, list *names);
 bool gradient_fits(const plan *, const char *gradient, char **why);
+/* Makes the reference.  Otherwise the message is printed and the exit status
+   returned. */
+int state_errors_mean_something(plan *);
 
 /* cost.c: every scheme that fits, and the gradient that costs least, unless
    others are asked for. */

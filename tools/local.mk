@@ -27,6 +27,9 @@ tools_nevh_SOURCES = \
 	tools/gradients.c \
 	tools/compare.c \
 	tools/verdict.c \
+	tools/state.c \
+	tools/match.c \
+	tools/diagnostics.c \
 	tools/effects.c \
 	tools/check.c \
 	tools/list.c

@@ -201,11 +201,24 @@ static int check_target(const options *o) {
     return TOOL_OK;
 }
 
+static int check_reference(plan *p, double target) {
+    int status = state_errors_mean_something(p);
+    if (status || target >= nevh_reference_error(p->reference))
+        return status;
+    tool_refuse("%s: a state error of %g cannot be told: that of the reference "
+                "is %.1e (%s)",
+                p->name, target, nevh_reference_error(p->reference),
+                nevh_reference_text(p->reference));
+    return TOOL_FAILED;
+}
+
 int recommend(const options *o) {
     plan p;
     if (check_target(o))
         return TOOL_USAGE;
     int status = plan_make(&p, o);
+    if (!status && o->state_error > 0)
+        status = check_reference(&p, o->state_error);
     if (!status) {
         plan_search(&p, o);
         status = advise(o, &p);

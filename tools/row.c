@@ -33,20 +33,25 @@ static int stop_when_unstable(void *data, size_t step, double t,
     return status;
 }
 
-static nevh_stepper *new_stepper(const work *w, bool balance) {
-    nevh_options o = plan_options(w->plan, w->row->gradient);
-    o.transform = plan_transform(w->plan, w->row->integrator);
-    o.tolerance = w->row->tolerance;
+nevh_stepper *row_stepper(const plan *p, const row *r, bool balance) {
+    nevh_options o = plan_options(p, r->gradient);
+    o.transform = plan_transform(p, r->integrator);
+    o.tolerance = r->tolerance;
     o.balance = balance;
-    return nevh_stepper_new(w->plan->system, w->row->scheme, &o);
+    return nevh_stepper_new(p->system, r->scheme, &o);
 }
 
-static int run(const work *w, nevh_stepper *s, const nevh_observer *observer) {
+static nevh_stepper *new_stepper(const work *w, bool balance) {
+    return row_stepper(w->plan, w->row, balance);
+}
+
+static int run(const work *w, nevh_stepper *s, const nevh_observer observers[],
+               size_t count) {
     const plan *p = w->plan;
     memcpy(w->q, p->q, p->n * sizeof *w->q);
     memcpy(w->p, p->p, p->n * sizeof *w->p);
     return nevh_run_until(s, p->run->t_start, w->row->dt, p->t_end, w->q, w->p,
-                          observer, observer ? 1 : 0);
+                          observers, count);
 }
 
 static nevh_energy *new_energy(const work *w, const nevh_stepper *s) {
@@ -62,7 +67,7 @@ static nevh_energy *new_energy(const work *w, const nevh_stepper *s) {
 static void unstable_since(work *w) {
     nevh_stepper *s = new_stepper(w, w->plan->balance);
     watch unstable = {new_energy(w, s), NAN};
-    run(w, s, &(nevh_observer){stop_when_unstable, &unstable, 1});
+    run(w, s, &(nevh_observer){stop_when_unstable, &unstable, 1}, 1);
     free(w->row->status);
     w->row->status = text_print("unstable: since t = %.9g", unstable.since);
     nevh_energy_free(unstable.energy);
@@ -103,7 +108,7 @@ static void measure(const work *w, size_t repeats) {
     while (count < most && (repeats || sum < time_enough)) {
         nevh_stepper_reset(s);
         double start = cpu_seconds();
-        run(w, s, NULL);
+        run(w, s, NULL, 0);
         sum += seconds[count] = cpu_seconds() - start;
         if (count++ == 0)
             w->row->counts = difference(nevh_stepper_counts(s), before);
@@ -125,7 +130,16 @@ static double mean_step(const work *w) {
 static void watched(work *w, nevh_stepper *s) {
     row *r = w->row;
     nevh_energy *energy = new_energy(w, s);
-    int status = run(w, s, &(nevh_observer){nevh_energy_observe, energy, 1});
+    nevh_state_error *state = nevh_state_error_new(w->plan->reference);
+    invariants *kept = w->plan->diagnostics ? invariants_new(w->plan) : NULL;
+    nevh_observer observers[3] = {{nevh_energy_observe, energy, 1}};
+    size_t count = 1;
+    if (state)
+        observers[count++] =
+            (nevh_observer){nevh_state_error_observe, state, 1};
+    if (kept)
+        observers[count++] = (nevh_observer){invariants_observe, kept, 1};
+    int status = run(w, s, observers, count);
     const char *why = status == NEVH_STOPPED ? nevh_energy_message(energy)
                                              : nevh_stepper_message(s);
     r->energy = nevh_energy_result(energy, 0);
@@ -133,6 +147,9 @@ static void watched(work *w, nevh_stepper *s) {
     r->ran = !status || r->energy.verdict == NEVH_UNSTABLE;
     r->failed = !r->ran;
     r->status = status ? text_print("failed: %s", why) : text_print("ok");
+    r->state_error = nevh_state_error_result(state);
+    r->changes = kept ? invariants_result(kept) : NULL;
+    nevh_state_error_free(state);
     nevh_energy_free(energy);
 }
 
@@ -165,12 +182,14 @@ static void work_free(work *w) {
 
 void row_run(const plan *p, row *r) {
     work w = work_new(p, r);
-    r->observed_order = NAN;
+    r->observed_order = r->state_error = NAN;
     nevh_stepper *s = new_stepper(&w, p->balance);
     if (!refused(r, s)) {
         watched(&w, s);
         if (r->ran)
             measure(&w, p->repeats);
+        if (r->ran && p->diagnostics)
+            diagnose_row(p, r);
         if (r->ran && r->energy.verdict == NEVH_UNSTABLE && !p->hurried)
             unstable_since(&w);
         if (r->ran && r->tolerance > 0)

@@ -130,6 +130,9 @@ typedef struct {
     size_t repeats; /* of timed runs; 0: chosen */
     bool portable, friction, time, balance;
     bool hurried; /* rows are to be finished later */
+    bool match_work, diagnostics;
+    nevh_reference *reference; /* NULL: not asked for, or there is none */
+    char *no_reference;        /* why there is none */
 } plan;
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int plan_make(plan *, const options *);
@@ -152,6 +155,7 @@ typedef struct {
     const char *integrator, *gradient;
     const nevh_integrator *scheme;
     double dt, tolerance; /* 0: fixed steps */
+    double nominal_dt;    /* before match_row */
     size_t group;         /* rows of one gradient and dt */
     int order, failed;    /* failed: of the exit status */
     size_t steps;
@@ -161,12 +165,17 @@ typedef struct {
     nevh_counts counts;
     double seconds, spread; /* median, and half of what the middle half spans */
     double observed_order;  /* NAN: unknown */
+    double state_error;     /* NAN: unknown or meaningless */
+    double symplecticity_error, reversal_error;
+    double *changes; /* of invariants, the largest; NULL: not asked for */
 } row;
 void row_run(const plan *, row *);
 /* Of a row that ran in a hurry: its time again, and when it became unstable.
    dt       as the row was run with
    repeats  0: chosen */
 void row_finish(const plan *, row *, double dt, size_t repeats);
+/* Planned as for that row. */
+nevh_stepper *row_stepper(const plan *, const row *, bool balance);
 /* records.c: rows as the columns of CSV and JSON. */
 table *records(const plan *, const row rows[], size_t count);
 /* compare.c: observed_order, of rows with the same scheme beside each other;
@@ -176,6 +185,32 @@ void row_notes(const options *, const plan *, const row rows[], size_t count,
                list *notes);
 /* compare.c, verdict.c */
 void verdict_words(const plan *, const row rows[], size_t count, list *words);
+
+/* state.c: makes the reference of a plan, after which rows have state errors;
+   TOOL_OK, or TOOL_USAGE with the message printed. */
+int plan_reference(plan *);
+void state_notes(const plan *, list *notes);
+bool state_out_of_step(const row *);
+void state_show(table *, const plan *, const row *);
+void state_words(const row rows[], size_t count, list *words);
+
+/* match.c: the dt with which the row costs as much as verlet with its dt, where
+   the plan asks for that. */
+void match_row(const plan *, row *);
+/* Whether that cannot be told, or no dt is as cheap. */
+bool match_unmatched(const plan *, const row *);
+bool match_dearer(const plan *, const row *);
+
+/* diagnostics.c: of a plan that asks for them. */
+typedef struct invariants invariants;
+invariants *invariants_new(const plan *);
+int invariants_observe(void *, size_t step, double t, const double q[],
+                       const double p[]);
+double *invariants_result(invariants *); /* frees it */
+void diagnose_row(const plan *, row *);
+void diagnostics_columns(table *, const plan *, bool is_table);
+void diagnostics_record(table *, const plan *, const row *);
+void diagnostics_show(table *, const plan *, const row *);
 
 typedef int command(const options *);
 command compare, list_what, check, effects, cost, recommend, gradients;

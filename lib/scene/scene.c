@@ -15,6 +15,9 @@ void nevh__model_free(nevh__model *m) {
     nevh_system_free(m->transform);
     nevh__owned_free(&m->owned);
     nevh__owned_free(&m->owned_transform);
+    nevh__owned_free(&m->owned_shown);
+    free(m->velocities);
+    free(m->velocity_room);
     nevh__names_free(m->names);
     nevh__pool_free(&m->pool);
     free(m);
@@ -127,7 +130,7 @@ const char *nevh_scene_message(const nevh_scene *s) {
 }
 
 /* A scene that was read starts each change afresh. */
-static bool may_change(nevh_scene *s) {
+bool nevh__scene_begin(nevh_scene *s) {
     if (!s->model)
         return false;
     s->status = NEVH_OK;
@@ -172,7 +175,7 @@ static bool check_assignment(nevh_scene *s, const nevh__statement *statement) {
 }
 
 int nevh_scene_set(nevh_scene *s, const char *assignment) {
-    if (!may_change(s))
+    if (!nevh__scene_begin(s))
         return s->status;
     nevh__statement *statement = new_assignment(s, assignment);
     if (!statement)
@@ -189,8 +192,39 @@ int nevh_scene_set(nevh_scene *s, const char *assignment) {
     return NEVH_OK;
 }
 
+static nevh__piece *new_piece(nevh_scene *s, const char *text) {
+    size_t bytes = strlen(text);
+    nevh__line *line = nevh__pool_take(&s->pool, 1, sizeof *line);
+    nevh__piece *piece = nevh__pool_take(&s->pool, 1, sizeof *piece);
+    char *copy = nevh__pool_take(&s->pool, bytes + 1, 1);
+    if (!line || !piece || !copy) {
+        nevh__scene_no_memory(s);
+        return NULL;
+    }
+    *line = (nevh__line){0, strcpy(copy, text), bytes};
+    return nevh__piece_take(s, &s->pool, line, 0, bytes, piece) ? piece : NULL;
+}
+
+int nevh_scene_set_transform(nevh_scene *s, const char *formula) {
+    if (!nevh__scene_begin(s))
+        return s->status;
+    const nevh__piece *before = s->transform;
+    nevh__piece *piece = new_piece(s, formula);
+    if (!piece)
+        return s->status;
+    s->transform = piece;
+    nevh__model *model = new_model(s);
+    if (!model) {
+        s->transform = before;
+        return s->status;
+    }
+    nevh__model_free(s->model);
+    s->model = model;
+    return NEVH_OK;
+}
+
 int nevh_scene_enable(nevh_scene *s, const char *effect, bool on) {
-    if (!may_change(s))
+    if (!nevh__scene_begin(s))
         return s->status;
     nevh__switch *found = nevh__scene_effect(s, effect);
     if (found) {
