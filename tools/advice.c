@@ -73,7 +73,7 @@ static char *append_number(char *text, const char *name, double value) {
 /* As the rows were run. */
 static char *command_line(const advice *a, const options *o, const row *r) {
     const plan *p = &a->search.plan;
-    char *text = text_print("nevh compare %s", p->name);
+    char *text = text_print("  nevh compare %s", p->name);
     for (size_t i = 0; i < o->settings.count; i++) {
         const char *setting = o->settings.item[i];
         text = append(text,
@@ -96,13 +96,13 @@ static char *command_line(const advice *a, const options *o, const row *r) {
 }
 
 static void tell_lines(const advice *a, const row *r, list *words) {
-    list_add(words, "[run]");
-    list_print(words, "integrators = %s", r->integrator);
-    list_print(words, "gradient = %s", r->gradient);
-    list_print(words, "dt = %.6g",
+    list_add(words, "  [run]");
+    list_print(words, "  integrators = %s", r->integrator);
+    list_print(words, "  gradient = %s", r->gradient);
+    list_print(words, "  dt = %.6g",
                r->tolerance > 0 ? a->search.landing : r->dt);
     if (r->tolerance > 0)
-        list_print(words, "tolerance = %.6g", r->tolerance);
+        list_print(words, "  tolerance = %.6g", r->tolerance);
 }
 
 static void tell_answer(const advice *a, const options *o, list *words) {

@@ -26,7 +26,7 @@ table *cost_table(const costs *);
 /* The reference is not good enough for these digits. */
 bool cost_is_beyond(const costs *, size_t target);
 char *cost_milliseconds(double seconds);
-bool cost_drifts(const ladder *); /* at most of its steps */
+bool cost_drifts(const ladder *); /* its energy */
 /* cost_price.c: more rungs, with other gradients. */
 void cost_price(costs *, list *words);
 /* cost_words.c */

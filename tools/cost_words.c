@@ -106,7 +106,12 @@ static void tell_best(const costs *c, size_t first, size_t last, list *words) {
     const row *a = cell(c, best, first), *b = cell(c, best, last);
     char *from = cost_milliseconds(a->seconds),
          *to = cost_milliseconds(b->seconds);
-    if (a == b)
+    if (a == b && first < last)
+        list_print(words,
+                   "For %.0f to %.0f digits take %s at dt = %.4g: %s ms.",
+                   -log10(cost_target[first]), -log10(cost_target[last]),
+                   best->integrator, b->dt, to);
+    else if (a == b)
         list_print(words, "For %.0f digits take %s at dt = %.4g: %s ms.",
                    -log10(cost_target[last]), best->integrator, b->dt, to);
     else
@@ -129,9 +134,13 @@ static void tell_yardstick(const costs *c, const char *name, list *words) {
             if (strcmp(l->integrator, name) != 0 || !best || best == l ||
                 !cell(c, l, k))
                 continue;
-            list_print(words, "%.0f digits by %s take %.2g times as long.",
-                       -log10(cost_target[k]), name,
-                       cell(c, l, k)->seconds / cell(c, best, k)->seconds);
+            double factor = cell(c, l, k)->seconds / cell(c, best, k)->seconds;
+            list_print(words,
+                       factor < 9.5 ? "%.0f digits by %s take %.1f times as "
+                                      "long."
+                                    : "%.0f digits by %s take %.0f times as "
+                                      "long.",
+                       -log10(cost_target[k]), name, factor);
             return;
         }
 }
