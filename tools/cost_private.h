@@ -12,6 +12,7 @@ typedef struct {
     search search;
     ladder *ladder;
     size_t count;
+    double whole; /* t_end before it was shortened; NAN: as asked for */
     bool all; /* ladders are shown, not only those that are cheap somewhere */
 } costs;
 /* Whether its errors are to be compared with others'. */

@@ -8,6 +8,11 @@
 void cost_notes(const costs *c, list *notes) {
     const plan *p = &c->search.plan;
     const char *unit = nevh_scene_label(p->scene, "t");
+    if (c->whole > p->t_end)
+        list_print(notes,
+                   "shortened, so that all schemes can be tried; --t-end %g "
+                   "takes the whole",
+                   c->whole);
     list_print(notes,
                "cost: steps that keep the largest %s error of the run below "
                "10^-digits; CPU ms (dt%s%s), * cheapest",

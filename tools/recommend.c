@@ -167,18 +167,56 @@ static void choose(advice *a) {
     free(taken);
 }
 
-static int advise(const options *o, plan *p) {
-    static const double budget = 20; /* seconds */
+/* The pilot's choice on the whole run, with shorter steps where that is not
+   enough. */
+static ladder verified(advice *a, const ladder *l) {
+    enum { FINER = 9 };
+    ladder full = ladder_new(l->integrator, l->gradient);
+    int k = l->k[keeps(a, l) - l->rung];
+    for (int finer = 0; finer <= FINER; finer++) {
+        size_t i = ladder_run(&a->search, &full, k + finer);
+        if (ladder_error(&full.rung[i], a->search.by_state) <= a->target ||
+            full.rung[i].late)
+            break;
+    }
+    full.end = LADDER_LIMIT;
+    return full;
+}
+
+static void verify(advice *a) {
+    enum { MOST = 3 };
+    ladder *const pilots[MOST] = {a->best, a->second, a->alone};
+    ladder *full = tool_allocate(MOST, sizeof *full);
+    size_t count = 0;
+    a->search.plan.t_end = a->whole;
+    a->search.plan.patience *= 2;
+    for (size_t i = 0; i < MOST; i++)
+        if (pilots[i] &&
+            (i < 2 || (pilots[i] != a->best && pilots[i] != a->second)))
+            full[count++] = verified(a, pilots[i]);
+    for (size_t i = 0; i < a->count; i++)
+        ladder_free(&a->ladder[i]);
+    free(a->ladder);
+    a->ladder = full, a->count = count;
+    a->best = a->second = a->alone = NULL;
+    time_best(a);
+    choose(a);
+}
+
+static int advise(const options *o, plan *p, double whole) {
     output out;
     if (output_open(&out, o->file))
         return TOOL_USAGE;
-    advice a = {.search = search_begin(p, o, budget),
+    advice a = {.search = search_begin(p, o, SEARCH_BUDGET),
+                .whole = whole,
                 .target = o->state_error > 0 ? o->state_error : o->energy_error,
                 .named = o->integrators.count > 0};
     a.search.by_state = o->state_error > 0;
     take_gradients(&a, o);
     search_all(&a);
     choose(&a);
+    if (a.best && whole > p->t_end)
+        verify(&a);
     int status = a.best ? TOOL_OK : advice_none(&a);
     search_end(&a.search);
     if (a.best)
@@ -214,15 +252,18 @@ static int check_reference(plan *p, double target) {
 
 int recommend(const options *o) {
     plan p;
+    double whole = NAN;
     if (check_target(o))
         return TOOL_USAGE;
     int status = plan_make(&p, o);
+    if (!status)
+        status = plan_search(&p, o);
+    if (!status && !o->dts)
+        whole = plan_shorten(&p, SEARCH_BUDGET);
     if (!status && o->state_error > 0)
         status = check_reference(&p, o->state_error);
-    if (!status) {
-        plan_search(&p, o);
-        status = advise(o, &p);
-    }
+    if (!status)
+        status = advise(o, &p, whole);
     plan_free(&p);
     return status;
 }

@@ -8,7 +8,8 @@
 typedef struct {
     search search;
     double target;
-    bool named; /* by the user: those that keep any energy count, too */
+    double whole; /* t_end, where that of the plan is a pilot's; or NAN */
+    bool named;   /* by the user: those that keep any energy count, too */
     list gradients;
     ladder *ladder;
     size_t count;

@@ -127,24 +127,43 @@ static double mean_step(const work *w) {
     return (w->plan->t_end - w->plan->run->t_start) * each / evaluations;
 }
 
+/* Whoever waits for a row no longer than that. */
+typedef struct {
+    double deadline;
+    bool late;
+} patience;
+
+static int mind_time(void *data, size_t step, double t, const double q[],
+                     const double p[]) {
+    patience *wait = data;
+    (void)step, (void)t, (void)q, (void)p;
+    wait->late = cpu_seconds() > wait->deadline;
+    return wait->late ? NEVH_STOPPED : NEVH_OK;
+}
+
 static void watched(work *w, nevh_stepper *s) {
     row *r = w->row;
+    patience wait = {cpu_seconds() + w->plan->patience, false};
     nevh_energy *energy = new_energy(w, s);
     nevh_state_error *state = nevh_state_error_new(w->plan->reference);
     invariants *kept = w->plan->diagnostics ? invariants_new(w->plan) : NULL;
-    nevh_observer observers[3] = {{nevh_energy_observe, energy, 1}};
+    nevh_observer observers[4] = {{nevh_energy_observe, energy, 1}};
     size_t count = 1;
     if (state)
         observers[count++] =
             (nevh_observer){nevh_state_error_observe, state, 1};
     if (kept)
         observers[count++] = (nevh_observer){invariants_observe, kept, 1};
+    if (w->plan->patience > 0)
+        observers[count++] = (nevh_observer){mind_time, &wait, 64};
     int status = run(w, s, observers, count);
-    const char *why = status == NEVH_STOPPED ? nevh_energy_message(energy)
-                                             : nevh_stepper_message(s);
+    const char *why = wait.late                ? "it takes too long"
+                      : status == NEVH_STOPPED ? nevh_energy_message(energy)
+                                               : nevh_stepper_message(s);
     r->energy = nevh_energy_result(energy, 0);
     r->steps = nevh_stepper_taken(s);
-    r->ran = !status || r->energy.verdict == NEVH_UNSTABLE;
+    r->late = wait.late;
+    r->ran = !r->late && (!status || r->energy.verdict == NEVH_UNSTABLE);
     r->failed = !r->ran;
     r->status = status ? text_print("failed: %s", why) : text_print("ok");
     r->state_error = nevh_state_error_result(state);

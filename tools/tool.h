@@ -129,7 +129,8 @@ typedef struct {
     double gradient_step;
     size_t repeats; /* of timed runs; 0: chosen */
     bool portable, friction, time, balance;
-    bool hurried; /* rows are to be finished later */
+    bool hurried;    /* rows are to be finished later */
+    double patience; /* seconds that a row may take; 0: any */
     bool match_work, diagnostics;
     nevh_reference *reference; /* NULL: not asked for, or there is none */
     char *no_reference;        /* why there is none */
@@ -160,7 +161,7 @@ typedef struct {
     int order, failed;    /* failed: of the exit status */
     size_t steps;
     char *status;
-    bool ran; /* there are numbers */
+    bool ran, late; /* there are numbers; patience was at its end */
     nevh_energy_report energy;
     nevh_counts counts;
     double seconds, spread; /* median, and half of what the middle half spans */
