@@ -9,6 +9,27 @@ static const row *chosen(const advice *a, const ladder *l) {
     return ladder_cheapest(l, a->target, a->search.by_state);
 }
 
+size_t advice_list(const advice *a, const ladder *found[ADVICE_MOST]) {
+    const ladder *const all[ADVICE_MOST] = {a->best, a->second, a->alone,
+                                            a->steady};
+    size_t count = 0;
+    for (size_t i = 0; i < ADVICE_MOST; i++) {
+        bool known = !all[i];
+        for (size_t k = 0; k < count; k++)
+            known |= found[k] == all[i];
+        if (!known)
+            found[count++] = all[i];
+    }
+    return count;
+}
+
+static const char *name_of(const advice *a, const ladder *l) {
+    return l == a->best     ? "cheapest"
+           : l == a->second ? "runner-up"
+           : l == a->alone  ? "from H alone"
+                            : "no drift";
+}
+
 static void show(const advice *a, const ladder *l, const char *what, table *t) {
     const row *r = chosen(a, l);
     table_text(t, what);
@@ -32,22 +53,19 @@ static table *shown(const advice *a) {
         table_column(t, titles[i]            ? titles[i]
                         : a->search.by_state ? "state error"
                                              : "energy error");
-    show(a, a->best, "cheapest", t);
-    if (a->second)
-        show(a, a->second, "runner-up", t);
-    if (a->alone && a->alone != a->best && a->alone != a->second)
-        show(a, a->alone, "from H alone", t);
+    const ladder *found[ADVICE_MOST];
+    size_t count = advice_list(a, found);
+    for (size_t i = 0; i < count; i++)
+        show(a, found[i], name_of(a, found[i]), t);
     return t;
 }
 
 static table *recorded(const advice *a) {
-    const ladder *const ladders[] = {a->best, a->second, a->alone};
-    row rows[3];
-    size_t count = 0;
-    for (size_t i = 0; i < 3; i++)
-        if (ladders[i] &&
-            (i < 2 || (ladders[i] != a->best && ladders[i] != a->second)))
-            rows[count++] = *chosen(a, ladders[i]);
+    const ladder *found[ADVICE_MOST];
+    row rows[ADVICE_MOST];
+    size_t count = advice_list(a, found);
+    for (size_t i = 0; i < count; i++)
+        rows[i] = *chosen(a, found[i]);
     return records(&a->search.plan, rows, count);
 }
 
@@ -110,15 +128,20 @@ static void tell_answer(const advice *a, const options *o, list *words) {
     const char *what = a->search.by_state ? "state" : "energy";
     char *line = command_line(a, o, r);
     list_print(words,
-               "Take %s with the %s gradient at dt = %.4g: the largest %s "
+               "Take %s with the %s gradient at %s = %.4g: the largest %s "
                "error over the whole run is %.1e, of the %.1e allowed.",
-               r->integrator, r->gradient, r->dt, what,
+               r->integrator, r->gradient,
+               r->tolerance > 0 ? "tolerance" : "dt",
+               r->tolerance > 0 ? r->tolerance : r->dt, what,
                ladder_error(r, a->search.by_state), a->target);
+    if (isfinite(a->whole) && a->pilot < a->whole)
+        list_print(words, "Chosen by runs until t = %g, and verified until %g.",
+                   a->pilot, a->whole);
     if (a->second)
         list_print(words, "%s, the runner-up, takes %.2f times as long.",
                    a->second->integrator,
                    chosen(a, a->second)->seconds / r->seconds);
-    if (a->alone && a->alone != a->best)
+    if (a->alone && a->alone != a->best && a->alone != a->second)
         list_print(words,
                    "From values of H alone %s with %s takes %.2f times as "
                    "long.",
@@ -126,6 +149,10 @@ static void tell_answer(const advice *a, const options *o, list *words) {
                    chosen(a, a->alone)->seconds / r->seconds);
     if (r->energy.verdict == NEVH_DRIFTS)
         list_add(words, "Its energy drifts: for longer runs ask again.");
+    if (a->steady && a->steady != a->best)
+        list_print(words, "Without drift %s takes %.2f times as long.",
+                   a->steady->integrator,
+                   chosen(a, a->steady)->seconds / r->seconds);
     list_print(words, "%zu runs were tried.", a->search.runs);
     list_add(words, " ");
     list_add(words, line);

@@ -106,28 +106,34 @@ static size_t last_alike(const costs *c, size_t first) {
     return first;
 }
 
+/* "dt = 0.1", "tolerance = 0.001". */
+static char *step_text(const row *r) {
+    return r->tolerance > 0 ? text_print("tolerance = %.3g", r->tolerance)
+                            : text_print("dt = %.4g", r->dt);
+}
+
 static void tell_best(const costs *c, size_t first, size_t last, list *words) {
     const ladder *best = costs_cheapest(c, cost_target[first]);
     const row *a = cell(c, best, first), *b = cell(c, best, last);
+    char *digits =
+        text_print(first < last ? "%.0f to %.0f" : "%.0f",
+                   -log10(cost_target[first]), -log10(cost_target[last]));
     char *from = cost_milliseconds(a->seconds),
-         *to = cost_milliseconds(b->seconds);
-    if (a == b && first < last)
-        list_print(words,
-                   "For %.0f to %.0f digits take %s at dt = %.4g: %s ms.",
-                   -log10(cost_target[first]), -log10(cost_target[last]),
-                   best->integrator, b->dt, to);
-    else if (a == b)
-        list_print(words, "For %.0f digits take %s at dt = %.4g: %s ms.",
-                   -log10(cost_target[last]), best->integrator, b->dt, to);
+         *to = cost_milliseconds(b->seconds), *begin = step_text(a),
+         *end = step_text(b);
+    if (a == b)
+        list_print(words, "For %s digits take %s at %s: %s ms.", digits,
+                   best->integrator, end, to);
     else
-        list_print(
-            words,
-            "For %.0f to %.0f digits take %s at dt = %.4g to %.4g: %s to "
-            "%s ms.",
-            -log10(cost_target[first]), -log10(cost_target[last]),
-            best->integrator, a->dt, b->dt, from, to);
+        list_print(words,
+                   "For %s digits take %s, from %s (%s ms) to %s (%s "
+                   "ms).",
+                   digits, best->integrator, begin, from, end, to);
+    free(digits);
     free(from);
     free(to);
+    free(begin);
+    free(end);
 }
 
 /* At the most digits that both reach. */

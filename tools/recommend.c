@@ -151,7 +151,6 @@ static void search_all(advice *a) {
     time_best(a);
 }
 
-/* The best; with another integrator; without derivatives. */
 static void choose(advice *a) {
     bool *taken = tool_allocate(a->count, sizeof *taken);
     for (ladder *l; (l = next_best(a, taken));) {
@@ -163,6 +162,8 @@ static void choose(advice *a) {
             a->second = l;
         if (!a->alone && strcmp(l->gradient, "exact") != 0)
             a->alone = l;
+        if (!a->steady && keeps(a, l)->energy.verdict != NEVH_DRIFTS)
+            a->steady = l;
     }
     free(taken);
 }
@@ -183,22 +184,26 @@ static ladder verified(advice *a, const ladder *l) {
     return full;
 }
 
-static void verify(advice *a) {
-    enum { MOST = 3 };
-    ladder *const pilots[MOST] = {a->best, a->second, a->alone};
-    ladder *full = tool_allocate(MOST, sizeof *full);
-    size_t count = 0;
-    a->search.plan.t_end = a->whole;
+/* A reference for the whole is a plan's own. */
+static void verify(advice *a, plan *p) {
+    const ladder *pilots[ADVICE_MOST];
+    size_t count = advice_list(a, pilots);
+    ladder *full = tool_allocate(count, sizeof *full);
+    p->t_end = a->search.plan.t_end = a->whole;
+    if (p->reference) {
+        nevh_reference_free(p->reference);
+        p->reference = NULL;
+        plan_reference(p);
+        a->search.plan.reference = p->reference;
+    }
     a->search.plan.patience *= 2;
-    for (size_t i = 0; i < MOST; i++)
-        if (pilots[i] &&
-            (i < 2 || (pilots[i] != a->best && pilots[i] != a->second)))
-            full[count++] = verified(a, pilots[i]);
+    for (size_t i = 0; i < count; i++)
+        full[i] = verified(a, pilots[i]);
     for (size_t i = 0; i < a->count; i++)
         ladder_free(&a->ladder[i]);
     free(a->ladder);
     a->ladder = full, a->count = count;
-    a->best = a->second = a->alone = NULL;
+    a->best = a->second = a->alone = a->steady = NULL;
     time_best(a);
     choose(a);
 }
@@ -208,6 +213,7 @@ static int advise(const options *o, plan *p, double whole) {
     if (output_open(&out, o->file))
         return TOOL_USAGE;
     advice a = {.search = search_begin(p, o, SEARCH_BUDGET),
+                .pilot = p->t_end,
                 .whole = whole,
                 .target = o->state_error > 0 ? o->state_error : o->energy_error,
                 .named = o->integrators.count > 0};
@@ -216,7 +222,7 @@ static int advise(const options *o, plan *p, double whole) {
     search_all(&a);
     choose(&a);
     if (a.best && whole > p->t_end)
-        verify(&a);
+        verify(&a, p);
     int status = a.best ? TOOL_OK : advice_none(&a);
     search_end(&a.search);
     if (a.best)
