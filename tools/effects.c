@@ -1,4 +1,4 @@
-/* nevh effects: what each effect reads and costs.
+/* nevh effects: what each effect reads and prices.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tool.h"
 #include <math.h>
@@ -21,7 +21,7 @@ typedef struct {
     alone alone;
     bool on;
     double values, seconds; /* in the run; the latter an estimate */
-} cost;
+} price;
 
 /* The system with that effect alone; NULL when memory is out. */
 static const nevh_system *leave_alone(plan *p, size_t effect) {
@@ -101,29 +101,29 @@ static void look_at(plan *p, size_t effect, alone *a) {
     p->system = s;
 }
 
-static void look_at_all(plan *p, cost costs[], size_t count) {
+static void look_at_all(plan *p, price prices[], size_t count) {
     for (size_t i = 0; i < count; i++)
-        costs[i].on = nevh_system_effect_on(
+        prices[i].on = nevh_system_effect_on(
             p->system, nevh_system_effect_name(p->system, i));
     for (size_t i = 0; i < count; i++)
-        look_at(p, i, &costs[i].alone);
+        look_at(p, i, &prices[i].alone);
     for (size_t i = 0; i < count; i++) {
         char *name = text_print("%s", nevh_system_effect_name(p->system, i));
-        nevh_scene_enable(p->scene, name, costs[i].on);
+        nevh_scene_enable(p->scene, name, prices[i].on);
         free(name);
     }
     p->system = nevh_scene_system(p->scene);
 }
 
 /* Derivatives that a term brings are no evaluations: then gradients count. */
-static double seconds_of(const cost *c, double gradients) {
+static double seconds_of(const price *c, double gradients) {
     if (!c->on)
         return 0;
     return c->values > 0 ? c->values * c->alone.each
                          : gradients * c->alone.gradient;
 }
 
-static int run(const plan *p, cost costs[], size_t count, list *notes) {
+static int run(const plan *p, price prices[], size_t count, list *notes) {
     const nevh_integrator *scheme;
     nevh_stepper *s = plan_first(p, &scheme);
     if (!s)
@@ -133,9 +133,9 @@ static int run(const plan *p, cost costs[], size_t count, list *notes) {
                                 p->p, NULL, 0);
     double gradients = (double)(nevh_stepper_counts(s).gradients - before);
     for (size_t i = 0; i < count; i++) {
-        costs[i].values = (double)nevh_field_effect_values(
+        prices[i].values = (double)nevh_field_effect_values(
             nevh_stepper_field(s), nevh_system_effect_name(p->system, i));
-        costs[i].seconds = seconds_of(&costs[i], gradients);
+        prices[i].seconds = seconds_of(&prices[i], gradients);
     }
     list_print(notes,
                "evaluations of term instances by %s, dt = %g, gradient "
@@ -181,8 +181,8 @@ static void put_share(table *t, double part, double whole) {
         table_text(t, NULL);
 }
 
-static void put_row(table *t, const char *name, const cost *c,
-                    const cost *sum) {
+static void put_row(table *t, const char *name, const price *c,
+                    const price *sum) {
     table_text(t, name);
     table_text(t, c->on ? "on" : "off");
     put_text(t, reading(&c->alone));
@@ -197,36 +197,36 @@ static void put_row(table *t, const char *name, const cost *c,
     put_share(t, c->seconds, sum->seconds);
 }
 
-static void fill(const plan *p, const cost costs[], size_t count, table *t) {
+static void fill(const plan *p, const price prices[], size_t count, table *t) {
     static const char *const columns[] = {
         "effect",      "state", "reads",   "friction",     "instances",
         "evaluations", "share", "ns each", "share of time"};
-    cost sum = {0};
+    price sum = {0};
     for (size_t i = 0; i < sizeof columns / sizeof *columns; i++)
         table_column(t, columns[i]);
     for (size_t i = 0; i < count; i++) {
-        sum.values += costs[i].values;
-        if (costs[i].seconds > 0)
-            sum.seconds += costs[i].seconds;
+        sum.values += prices[i].values;
+        if (prices[i].seconds > 0)
+            sum.seconds += prices[i].seconds;
     }
     for (size_t i = 0; i < count; i++)
-        put_row(t, nevh_system_effect_name(p->system, i), &costs[i], &sum);
+        put_row(t, nevh_system_effect_name(p->system, i), &prices[i], &sum);
 }
 
 static int effects_of(const options *o, plan *p) {
     page result = {.table = table_new()};
     size_t count = nevh_system_effect_count(p->system);
-    cost *costs = tool_allocate(count, sizeof *costs);
+    price *prices = tool_allocate(count, sizeof *prices);
     plan_notes(p, &result.before);
-    look_at_all(p, costs, count);
-    int status = run(p, costs, count, &result.before);
+    look_at_all(p, prices, count);
+    int status = run(p, prices, count, &result.before);
     if (status != TOOL_USAGE) {
-        fill(p, costs, count, result.table);
+        fill(p, prices, count, result.table);
         if (o->quiet && o->format == FORMAT_TABLE)
             list_free(&result.before);
         status = output_page(o, &result, status);
     }
-    free(costs);
+    free(prices);
     page_free(&result);
     return status;
 }

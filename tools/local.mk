@@ -11,6 +11,20 @@ tools_nevh_SOURCES = \
 	tools/scenes.c \
 	tools/plan.c \
 	tools/row.c \
+	tools/records.c \
+	tools/ladder.h \
+	tools/grid.c \
+	tools/fit.c \
+	tools/ladder.c \
+	tools/cost_private.h \
+	tools/cost.c \
+	tools/cost_table.c \
+	tools/cost_price.c \
+	tools/cost_words.c \
+	tools/recommend_private.h \
+	tools/recommend.c \
+	tools/advice.c \
+	tools/gradients.c \
 	tools/compare.c \
 	tools/verdict.c \
 	tools/state.c \

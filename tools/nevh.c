@@ -12,6 +12,12 @@ static const struct {
 } known[] = {
     {"compare", compare, FOR_COMPARE, "SCENE",
      "energy errors, a row an integrator and dt, and the verdict in words"},
+    {"cost", cost, FOR_COST, "SCENE",
+     "what a digit costs: target errors, a row an integrator"},
+    {"recommend", recommend, FOR_RECOMMEND, "SCENE",
+     "the cheapest integrator, gradient and step that keep an error"},
+    {"gradients", gradients, FOR_GRADIENTS, "SCENE",
+     "error and cost of each gradient method and step along the orbit"},
     {"run", run_scene, FOR_RUN, "SCENE",
      "the trajectory as CSV: t, coordinates, momenta, observables, energy"},
     {"check", check, FOR_CHECK, "SCENE",

@@ -7,7 +7,9 @@
 #include <string.h>
 
 enum {
-    OF_SCENES = FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_RUN | FOR_SECTION,
+    OF_COST = FOR_COST | FOR_GRADIENTS | FOR_RECOMMEND,
+    OF_SCENES =
+        FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_RUN | FOR_SECTION | OF_COST,
     OF_TABLES = OF_SCENES | FOR_LIST
 };
 
@@ -25,6 +27,8 @@ static const struct {
     {"integrators", "A,B", OF_SCENES, read_integrators,
      "instead of the scene's"},
     {"dt", "A,B", OF_SCENES, read_dt, "time steps, instead of the scene's"},
+    {"tolerance", "A,B", FOR_COMPARE, read_tolerance,
+     "of adaptive schemes, instead of the scene's"},
     {"t-end", "T", OF_SCENES, read_t_end, "the end, instead of the scene's"},
     {"gradient", "A,B", OF_SCENES, read_gradient,
      "central2, central4, ...; see nevh list gradients"},
@@ -37,6 +41,14 @@ static const struct {
     {"resume", "FILE", FOR_RUN, read_resume,
      "go on with FILE, which nevh run -o FILE left unfinished,\n"
      "                            from FILE.state, as if never interrupted"},
+    {"by", "energy|state", FOR_COST, read_by,
+     "which error digits are of; energy if not given"},
+    {"energy-error", "X", FOR_RECOMMEND, read_energy_error,
+     "the largest that the energy may have"},
+    {"state-error", "X", FOR_RECOMMEND, read_state_error,
+     "the largest that the orbit may have"},
+    {"repeat", "N", FOR_COMPARE | FOR_COST | FOR_RECOMMEND, read_repeat,
+     "timed runs, of which the median counts"},
     {"transform", "FORMULA", FOR_COMPARE, read_transform,
      "of time, for rows NAME+transform; instead of the scene's"},
     {"match", "steps|work", FOR_COMPARE, read_match,
@@ -143,4 +155,5 @@ void options_free(options *o) {
     list_free(&o->sections);
     free(o->dt);
     free(o->at);
+    free(o->tolerance);
 }

@@ -139,8 +139,8 @@ static void take_lists(plan *p, const options *o) {
     add_transformed(p, o);
     p->dt = o->dts ? o->dt : p->run->dt;
     p->dts = o->dts ? o->dts : p->run->dts;
-    p->tolerance = p->run->tolerance;
-    p->tolerances = p->run->tolerances;
+    p->tolerance = o->tolerances ? o->tolerance : p->run->tolerance;
+    p->tolerances = o->tolerances ? o->tolerances : p->run->tolerances;
 }
 
 static void take_settings(plan *p, const options *o) {
@@ -151,6 +151,7 @@ static void take_settings(plan *p, const options *o) {
         o->gradient_step > 0 ? o->gradient_step : p->run->gradient_step;
     p->gradient_steps = o->gradient_step > 0 ? NULL : p->run->gradient_steps;
     p->portable = o->portable;
+    p->repeats = o->repeats;
     p->diagnostics = o->diagnostics;
     p->match_work = o->match == MATCH_WORK ||
                     (o->match == MATCH_SCENE && p->run->match_work);

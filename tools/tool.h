@@ -78,8 +78,8 @@ typedef enum { MATCH_SCENE, MATCH_STEPS, MATCH_WORK } matching;
 typedef struct {
     list operands, settings, integrators, gradients; /* settings: see below */
     list sections;
-    double *dt, *at;
-    size_t dts, ats;
+    double *dt, *at, *tolerance;
+    size_t dts, ats, tolerances;
     double t_end;                                    /* NAN: the scene's */
     double gradient_step, energy_error, state_error; /* 0: not given */
     size_t every, samples, repeats;                  /* 0: not given */
@@ -134,7 +134,10 @@ typedef struct {
     list integrators, gradients;
     double gradient_step;
     const double *gradient_steps; /* as in nevh_options */
+    size_t repeats; /* of timed runs; 0: chosen */
     bool portable, friction, time, balance;
+    bool hurried;    /* rows are to be finished later */
+    double patience; /* seconds that a row may take; 0: any */
     bool match_work, diagnostics;
     nevh_reference *reference; /* NULL: not asked for, or there is none */
     char *no_reference;        /* why there is none */
@@ -170,17 +173,29 @@ typedef struct {
     int order, failed;    /* failed: of the exit status */
     size_t steps;
     char *status;
-    bool ran; /* there are numbers */
+    bool ran, late; /* there are numbers; patience was at its end */
     nevh_energy_report energy;
     nevh_counts counts;
-    double seconds, observed_order; /* NAN: unknown */
-    double state_error;             /* NAN: unknown or meaningless */
+    double seconds, spread; /* median, and half of what the middle half spans */
+    double observed_order;  /* NAN: unknown */
+    double state_error;     /* NAN: unknown or meaningless */
     double symplecticity_error, reversal_error;
     double *changes; /* of invariants, the largest; NULL: not asked for */
 } row;
 void row_run(const plan *, row *);
+/* Of a row that ran in a hurry: its time again, and when it became unstable.
+   dt       as the row was run with
+   repeats  0: chosen */
+void row_finish(const plan *, row *, double dt, size_t repeats);
 /* Planned as for that row. */
 nevh_stepper *row_stepper(const plan *, const row *, bool balance);
+/* records.c: rows as the columns of CSV and JSON. */
+table *records(const plan *, const row rows[], size_t count);
+/* compare.c: observed_order, of rows with the same scheme beside each other;
+   notes of settings, gradients, scale and what holds for some rows. */
+void observe_orders(row rows[], size_t count);
+void row_notes(const options *, const plan *, const row rows[], size_t count,
+               list *notes);
 /* compare.c, verdict.c */
 void verdict_words(const plan *, const row rows[], size_t count, list *words);
 
@@ -212,5 +227,6 @@ void diagnostics_show(table *, const plan *, const row *);
 
 typedef int command(const options *);
 command compare, list_what, check, effects, run_scene, section, new_scene;
+command cost, recommend, gradients;
 
 #endif
