@@ -97,6 +97,7 @@ dist_check_SCRIPTS = \
 	tests/cplusplus.sh \
 	tests/examples.sh \
 	tests/nevh.sh \
+	tests/nevh_plot.sh \
 	tests/pkgconfig.sh \
 	tests/valgrind.sh
 

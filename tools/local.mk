@@ -15,7 +15,17 @@ tools_nevh_SOURCES = \
 	tools/verdict.c \
 	tools/effects.c \
 	tools/check.c \
-	tools/list.c
+	tools/list.c \
+	tools/plot.h \
+	tools/plot_private.h \
+	tools/plot.c \
+	tools/plot_range.c \
+	tools/plot_script.c \
+	tools/plot_gnuplot.c \
+	tools/plot_write.c \
+	tools/envelope.h \
+	tools/envelope.c \
+	tools/compare_plot.c
 tools_nevh_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE \
 	-DNEVH_SCENES='"$(scenesdir)"'
 tools_nevh_LDADD = libnevh.la

@@ -8,7 +8,8 @@
 
 enum {
     OF_SCENES = FOR_COMPARE | FOR_CHECK | FOR_EFFECTS,
-    OF_TABLES = OF_SCENES | FOR_LIST
+    OF_TABLES = OF_SCENES | FOR_LIST,
+    OF_PLOTS = FOR_COMPARE
 };
 
 /* The commands that each option is for, as an or. */
@@ -31,6 +32,10 @@ static const struct {
      "half-spread of the differences; chosen by trial if not given"},
     {"portable", NULL, OF_SCENES, read_portable,
      "no vector code: the same digits with the same libm"},
+    {"plot", "FILE", OF_PLOTS, read_plot,
+     "draw FILE.svg, .png or .pdf, or - in the terminal"},
+    {"keep-plot-script", "FILE", OF_PLOTS, read_plot_script,
+     "write what gnuplot is told, data included"},
     {"all", NULL, FOR_LIST, read_all,
      "with names in other packages and sources"},
     {"format", "table|csv|json", OF_TABLES, read_format, ""},

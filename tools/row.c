@@ -1,6 +1,6 @@
 /* nevh: one run of compare, watched, and once more for its time.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tool.h"
+#include "envelope.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,12 +41,13 @@ static nevh_stepper *new_stepper(const work *w, bool balance) {
     return nevh_stepper_new(w->plan->system, w->row->scheme, &o);
 }
 
-static int run(const work *w, nevh_stepper *s, const nevh_observer *observer) {
+static int run(const work *w, nevh_stepper *s, const nevh_observer observers[],
+               size_t count) {
     const plan *p = w->plan;
     memcpy(w->q, p->q, p->n * sizeof *w->q);
     memcpy(w->p, p->p, p->n * sizeof *w->p);
     return nevh_run_until(s, p->run->t_start, w->row->dt, p->t_end, w->q, w->p,
-                          observer, observer ? 1 : 0);
+                          observers, count);
 }
 
 static nevh_energy *new_energy(const work *w, const nevh_stepper *s) {
@@ -62,7 +63,7 @@ static nevh_energy *new_energy(const work *w, const nevh_stepper *s) {
 static void unstable_since(work *w) {
     nevh_stepper *s = new_stepper(w, w->plan->balance);
     watch unstable = {new_energy(w, s), NAN};
-    run(w, s, &(nevh_observer){stop_when_unstable, &unstable, 1});
+    run(w, s, &(nevh_observer){stop_when_unstable, &unstable, 1}, 1);
     free(w->row->status);
     w->row->status = text_print("unstable: since t = %.9g", unstable.since);
     nevh_energy_free(unstable.energy);
@@ -90,7 +91,7 @@ static void measure(const work *w) {
     while (count < REPEATS && sum < time_enough) {
         nevh_stepper_reset(s);
         clock_t start = clock();
-        run(w, s, NULL);
+        run(w, s, NULL, 0);
         sum += seconds[count] = (double)(clock() - start) / CLOCKS_PER_SEC;
         if (count++ == 0)
             w->row->counts = difference(nevh_stepper_counts(s), before);
@@ -112,7 +113,10 @@ static double mean_step(const work *w) {
 static void watched(work *w, nevh_stepper *s) {
     row *r = w->row;
     nevh_energy *energy = new_energy(w, s);
-    int status = run(w, s, &(nevh_observer){nevh_energy_observe, energy, 1});
+    energy_trace trace = {r->errors, energy};
+    const nevh_observer observers[] = {{nevh_energy_observe, energy, 1},
+                                       {energy_trace_observe, &trace, 1}};
+    int status = run(w, s, observers, r->errors ? 2 : 1);
     const char *why = status == NEVH_STOPPED ? nevh_energy_message(energy)
                                              : nevh_stepper_message(s);
     r->energy = nevh_energy_result(energy, 0);

@@ -101,6 +101,9 @@ typedef struct {
     char *name, *temporary;
 } output;
 int output_open(output *, const char *name); /* NULL: stdout */
+/* That it can be opened, as far as can be told without changing it.  To be
+   called while none is open. */
+int output_check(const char *name);
 /* Renames, or, unless it is to be kept, removes.  Returns `status`, or
    TOOL_USAGE when writing failed. */
 int output_close(output *, int status);
@@ -158,10 +161,14 @@ typedef struct {
     nevh_energy_report energy;
     nevh_counts counts;
     double seconds, observed_order; /* NAN: unknown */
+    struct envelope *errors;        /* of the energy; NULL: not asked for */
 } row;
 void row_run(const plan *, row *);
 /* compare.c, verdict.c */
 void verdict_words(const plan *, const row rows[], size_t count, list *words);
+
+/* compare_plot.c: as plot_write. */
+int compare_plot(const options *, const plan *, const row rows[], size_t count);
 
 typedef int command(const options *);
 command compare, list_what, check, effects;

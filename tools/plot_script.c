@@ -1,0 +1,406 @@
+/* nevh: plots in the language of gnuplot.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "plot_private.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* M. Okabe, K. Ito, Color Universal Design (2008), but for yellow, which is
+   lost on white; each with a dash and a marker of its own, for grey print. */
+static const char *const colours[] = {"#0072B2", "#D55E00", "#009E73",
+                                      "#CC79A7", "#000000", "#E69F00",
+                                      "#56B4E9"};
+static const char *const dashes[] = {"solid", "(12,5)", "(3,3)", "(14,4,3,4)",
+                                     "(20,6)"};
+static const int markers[] = {7, 5, 9, 13, 4, 6, 8, 12, 2};
+enum {
+    COLOURS = sizeof colours / sizeof *colours,
+    DASHES = sizeof dashes / sizeof *dashes,
+    MARKERS = sizeof markers / sizeof *markers,
+    LONGEST_NAME = 48,
+    MARKS = 9, /* of a PLOT_MARKED line */
+    FONT = 14
+};
+
+/* Lengths in pixels, or in letters and lines of text. */
+typedef struct {
+    double width, height, letter, line, legend;
+    double panel_width, panel_height;
+    double left, right, top, bottom; /* around a panel */
+    double title;
+    size_t columns, rows;
+} layout;
+
+/* Bytes of the letter, as UTF-8 has them; 0 where it is none. */
+static size_t letter_bytes(const unsigned char *c) {
+    size_t more = *c >= 0xf0 && *c < 0xf5   ? 3
+                  : *c >= 0xe0 && *c < 0xf0 ? 2
+                  : *c >= 0xc2 && *c < 0xe0 ? 1
+                                            : 0;
+    if (*c >= 0x80 && more == 0)
+        return 0;
+    for (size_t i = 1; i <= more; i++)
+        if ((c[i] & 0xc0) != 0x80)
+            return 0;
+    return more + 1;
+}
+
+static size_t letters(const char *text) {
+    size_t count = 0;
+    for (const char *c = text; *c; count++) {
+        size_t bytes = letter_bytes((const unsigned char *)c);
+        c += bytes ? bytes : 1;
+    }
+    return count;
+}
+
+static void quote_letter(FILE *f, const char *c, size_t bytes) {
+    if (bytes == 0)
+        fputc('?', f);
+    else if ((unsigned char)*c < ' ' || *c == 0x7f)
+        fputc(' ', f);
+    else if (*c == '\'')
+        fputs("''", f);
+    else
+        fwrite(c, 1, bytes, f);
+}
+
+/* In single quotes gnuplot changes nothing, and runs nothing. */
+static void quote(FILE *f, const char *text, size_t longest) {
+    bool cut = letters(text) > longest;
+    size_t most = cut ? longest - 3 : longest;
+    fputc('\'', f);
+    while (*text && most--) {
+        size_t bytes = letter_bytes((const unsigned char *)text);
+        quote_letter(f, text, bytes);
+        text += bytes ? bytes : 1;
+    }
+    fputs(cut ? "...'" : "'", f);
+}
+
+static void quote_line(FILE *f, const char *before, const char *text,
+                       double length) {
+    fputs(before, f);
+    quote(f, text ? text : "", (size_t)fmax(length, 8));
+    fputs(" noenhanced\n", f);
+}
+
+static bool is_namesake(const plot *p, size_t i) {
+    for (size_t k = 0; k < i; k++)
+        if (p->series[k].name && p->series[i].name &&
+            strcmp(p->series[k].name, p->series[i].name) == 0)
+            return true;
+    return false;
+}
+
+/* Whether the series is the one that the legend shows. */
+static bool in_legend(const plot *p, size_t i) {
+    return p->series[i].name && !is_namesake(p, i);
+}
+
+static size_t legend_lines(const plot *p, size_t *longest) {
+    size_t lines = 0;
+    *longest = 0;
+    for (size_t i = 0; i < p->count; i++)
+        if (in_legend(p, i)) {
+            size_t length = letters(p->series[i].name);
+            *longest = length > *longest ? length : *longest;
+            lines++;
+        }
+    if (*longest > LONGEST_NAME)
+        *longest = LONGEST_NAME;
+    return lines;
+}
+
+static bool has_headings(const plot *p) {
+    for (size_t i = 0; i < p->panels; i++)
+        if (p->panel[i].heading)
+            return true;
+    return false;
+}
+
+static void choose_panels(layout *l, const plot *p, const target *t) {
+    static const struct {
+        size_t columns;
+        double width, height;
+    } few[] = {{1, 640, 420}, {2, 400, 320}, {3, 320, 280}, {2, 400, 280}},
+      many = {3, 300, 230};
+    size_t last = sizeof few / sizeof *few;
+    l->columns = p->panels > last ? many.columns : few[p->panels - 1].columns;
+    l->panel_width = p->panels > last ? many.width : few[p->panels - 1].width;
+    l->panel_height =
+        p->panels > last ? many.height : few[p->panels - 1].height;
+    if (p->panels == 1 && p->panel->equal)
+        l->panel_width = l->panel_height = 520;
+    if (t->medium == PLOT_TEXT) {
+        double beside = l->left + l->right + l->legend;
+        l->columns = 1;
+        l->panel_width = fmax((double)t->columns - beside, 20);
+        l->panel_height = fmin(fmax(floor(l->panel_width / 3), 10),
+                               fmax((double)t->lines - 7, 10));
+    }
+    l->rows = (p->panels + l->columns - 1) / l->columns;
+}
+
+static layout lay_out(const plot *p, const target *t) {
+    bool text = t->medium == PLOT_TEXT;
+    size_t longest, lines = legend_lines(p, &longest);
+    layout l = {.letter = text ? 1 : 8, .line = text ? 1 : 18};
+    l.legend = lines ? l.letter * (double)(longest + 8) : 0;
+    l.left = (text ? 9 : 11) * l.letter;
+    l.right = 2 * l.letter;
+    l.top = (text || has_headings(p) ? 1.7 : 0.5) * l.line;
+    l.bottom = (text ? 3 : 4) * l.line;
+    l.title = (p->title && *p->title ? 2.3 : 0.5) * l.line;
+    choose_panels(&l, p, t);
+    l.width = (l.left + l.panel_width + l.right) * (double)l.columns + l.legend;
+    l.height = (l.top + l.panel_height + l.bottom) * (double)l.rows + l.title;
+    l.height = fmax(l.height, l.title + l.top + l.line * (double)(lines + 2));
+    return l;
+}
+
+static void print_terminal(FILE *f, const target *t, const layout *l) {
+    double w = ceil(l->width), h = ceil(l->height);
+    switch (t->medium) {
+    case PLOT_SVG:
+        fprintf(f,
+                "set terminal svg size %g,%g dynamic enhanced font "
+                "'sans-serif,%d' background '#ffffff'\n",
+                w, h, FONT);
+        break;
+    case PLOT_PNG: /* twice the size, for screens of today */
+        fprintf(f,
+                "set terminal pngcairo size %g,%g enhanced font "
+                "'sans-serif,%g' fontscale 2 linewidth 2 pointscale 2 "
+                "background '#ffffff'\n",
+                2 * w, 2 * h, FONT * 0.75); /* at 96 a inch */
+        break;
+    case PLOT_PDF:
+        fprintf(f,
+                "set terminal pdfcairo size %gin,%gin enhanced font "
+                "'sans-serif,%d' fontscale 0.72 linewidth 1.5\n",
+                w / 72, h / 72, FONT);
+        break;
+    case PLOT_TEXT:
+        fprintf(f, "set terminal dumb nofeed size %g,%g enhanced %s\n", w, h,
+                t->colours ? "ansi256" : "mono");
+        break;
+    case PLOT_SCREEN:
+        break; /* gnuplot's default */
+    }
+}
+
+/* A name that begins with | would be a command, and one that a line cannot hold
+   is left to the shell's redirection. */
+static void print_output(FILE *f, const char *file) {
+    for (const char *c = file; *c; c++)
+        if ((unsigned char)*c < ' ')
+            return;
+    fputs("set output '", f);
+    if (*file == '|')
+        fputs("./", f);
+    for (const char *c = file; *c; c++)
+        fputs(*c == '\'' ? "''" : (char[]){*c, 0}, f);
+    fputs("'\n", f);
+}
+
+static void print_points(FILE *f, const series *s, size_t number) {
+    fprintf(f, "$series%zu << EOD\n", number);
+    for (size_t k = 0; k < s->count; k++)
+        if (isnan(s->point[k].x))
+            fputc('\n', f);
+        else
+            fprintf(f, "%.9g %.9g\n", s->point[k].x, s->point[k].y);
+    fputs("EOD\n", f);
+}
+
+static void print_looks(FILE *f, const plot *p) {
+    size_t looks = 0;
+    for (size_t i = 0; i < p->count; i++)
+        if (p->series[i].look >= looks)
+            looks = p->series[i].look + 1;
+    for (size_t k = 0; k < looks; k++)
+        fprintf(f,
+                "set linetype %zu linecolor rgb '%s' linewidth 1.5 dashtype %s "
+                "pointtype %d pointsize 0.7\n",
+                k + 1, colours[k % COLOURS], dashes[k % DASHES],
+                markers[k % MARKERS]);
+}
+
+static void print_form(FILE *f, const series *s) {
+    size_t number = s->look + 1;
+    switch (s->form) {
+    case PLOT_LINES:
+        fprintf(f, " with lines linetype %zu", number);
+        break;
+    case PLOT_MARKED:
+        fprintf(f, " with linespoints linetype %zu pointinterval %zu", number,
+                s->count / MARKS + 1 + s->look);
+        break;
+    case PLOT_BOTH:
+        fprintf(f, " with linespoints linetype %zu", number);
+        break;
+    case PLOT_POINTS:
+        fprintf(f, " with points linetype %zu", number);
+        break;
+    case PLOT_DOTS:
+        fprintf(f, " with points linetype %zu pointtype 7 pointsize 0.25",
+                number);
+        break;
+    case PLOT_RODS:
+        fputs(" with lines linecolor rgb '#777777' linewidth 4 dashtype solid",
+              f);
+        break;
+    case PLOT_BOBS:
+        fprintf(f, " with points linetype %zu pointtype 7 pointsize 2.2",
+                number);
+        break;
+    }
+}
+
+static void separate(FILE *f, size_t *printed) {
+    fputs((*printed)++ ? ", \\\n    " : "plot ", f);
+}
+
+/* A series without points is an entry of the legend at most. */
+static void print_series(FILE *f, const plot *p, size_t i, bool here,
+                         bool titled, size_t *printed) {
+    bool drawn = here && p->series[i].count;
+    if (!drawn && !titled)
+        return;
+    separate(f, printed);
+    if (drawn)
+        fprintf(f, "$series%zu using 1:2", i + 1);
+    else
+        fputs("NaN", f);
+    print_form(f, &p->series[i]);
+    if (!titled) {
+        fputs(" notitle", f);
+        return;
+    }
+    fputs(" title ", f);
+    quote(f, p->series[i].name, LONGEST_NAME);
+    fputs(" noenhanced", f);
+}
+
+static void print_plots(FILE *f, const plot *p, size_t number) {
+    size_t printed = 0;
+    for (size_t i = 0; i < p->count; i++)
+        print_series(f, p, i, p->series[i].panel == number,
+                     number == 0 && in_legend(p, i), &printed);
+    if (!printed)
+        fputs("plot NaN notitle", f);
+    fputc('\n', f);
+}
+
+static void print_decades(FILE *f, char axis, range r, double labels,
+                          bool text) {
+    double step = ceil(log10(r.high / r.low) / fmax(floor(labels), 1));
+    fprintf(f,
+            "set logscale %c\nset format %c '%s'\nset %ctics 1e%g nomirror "
+            "out\nset m%ctics %d\n",
+            axis, axis, text ? "1e%T" : "10^{%T}", axis, step, axis,
+            log10(r.high / r.low) > 8 ? 1 : 10);
+}
+
+static void print_axis(FILE *f, char axis, bool log, range r, double labels,
+                       bool text) {
+    if (log)
+        print_decades(f, axis, r, labels, text);
+    else
+        fprintf(f,
+                "unset logscale %c\nset format %c '%s'\nset %ctics autofreq "
+                "nomirror out\nset m%ctics default\n",
+                axis, axis, text ? "%g" : "%h", axis, axis);
+    fprintf(f, "set %crange [%.9g:%.9g]\n", axis, r.low, r.high);
+}
+
+/* Text has no letters that lie on their side. */
+static void print_texts(FILE *f, const panel *on, const layout *l, bool text) {
+    double width = l->panel_width / l->letter;
+    const char *between = on->heading && on->y ? ", " : "";
+    quote_line(f, "set xlabel ", on->x, width);
+    if (!text) {
+        quote_line(f, "set ylabel ", on->y, l->panel_height / l->letter);
+        quote_line(f, "set title ", on->heading, width);
+        return;
+    }
+    char *title = text_print("%s%s%s", on->y ? on->y : "", between,
+                             on->heading ? on->heading : "");
+    quote_line(f, "set title ", title, width + l->left);
+    free(title);
+}
+
+static void print_axes(FILE *f, const plot *p, size_t number, const layout *l,
+                       bool text) {
+    const panel *on = &p->panel[number];
+    range x = plot_range_x(p, number), y = plot_range_y(p, number);
+    double letter = text ? 2 : 1; /* is as high as so many are wide */
+    if (on->equal)
+        plot_range_equal(&x, &y, l->panel_width, l->panel_height * letter);
+    print_axis(f, 'x', on->log_x, x, l->panel_width / (6 * l->letter), text);
+    print_axis(f, 'y', on->log_y, y, l->panel_height / (1.3 * l->line), text);
+    print_texts(f, on, l, text);
+}
+
+static void print_place(FILE *f, size_t number, const layout *l) {
+    double left = l->left + (double)(number % l->columns) *
+                                (l->left + l->panel_width + l->right);
+    double top =
+        l->height - l->title - l->top -
+        (double)(number / l->columns) * (l->top + l->panel_height + l->bottom);
+    fprintf(f,
+            "set lmargin at screen %.6f\nset rmargin at screen %.6f\n"
+            "set tmargin at screen %.6f\nset bmargin at screen %.6f\n",
+            left / l->width, (left + l->panel_width) / l->width,
+            top / l->height, (top - l->panel_height) / l->height);
+}
+
+static void print_frame(FILE *f, const plot *p, const layout *l, bool text) {
+    fputs("set encoding utf8\nset border 3 linecolor rgb '#555555'\n"
+          "set tics textcolor rgb '#000000'\n",
+          f);
+    if (!text)
+        fputs("set grid linetype 1 linecolor rgb '#dddddd' linewidth 0.5 "
+              "dashtype solid, linetype 1 linecolor rgb '#dddddd' linewidth "
+              "0.5 dashtype solid\n",
+              f);
+    if (l->legend > 0)
+        fprintf(f,
+                "set key at screen %.6f,%.6f left top vertical maxcols 1 Left "
+                "reverse samplen %d spacing 1.2 noautotitle\n",
+                (l->width - l->legend) / l->width,
+                1 - (l->title + l->top) / l->height, text ? 3 : 2);
+    else
+        fputs("unset key\n", f);
+    if (p->title && *p->title) {
+        fputs("set label 1 ", f);
+        quote(f, p->title, (size_t)(l->width / (1.25 * l->letter)));
+        fprintf(f, " at screen 0.5,%.6f center noenhanced font ',%d'\n",
+                1 - 0.55 * l->title / l->height, FONT * 6 / 5);
+    }
+}
+
+void plot_script(const plot *p, const target *t, FILE *f) {
+    bool text = t->medium == PLOT_TEXT;
+    layout l = lay_out(p, t);
+    print_terminal(f, t, &l);
+    if (t->file)
+        print_output(f, t->file);
+    print_frame(f, p, &l, text);
+    print_looks(f, p);
+    for (size_t i = 0; i < p->count; i++)
+        if (p->series[i].count)
+            print_points(f, &p->series[i], i + 1);
+    if (p->panels > 1)
+        fputs("set multiplot\n", f);
+    for (size_t i = 0; i < p->panels; i++) {
+        print_place(f, i, &l);
+        print_axes(f, p, i, &l, text);
+        print_plots(f, p, i);
+        if (i == 0)
+            fputs("unset label 1\n", f);
+    }
+    if (p->panels > 1)
+        fputs("unset multiplot\n", f);
+}
