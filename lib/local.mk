@@ -91,7 +91,10 @@ libnevh_core_la_SOURCES = \
 	lib/scene/message.c \
 	lib/scene/values.c \
 	lib/scene/coordinates.c \
+	lib/scene/formula.c \
 	lib/scene/shown.c \
+	lib/scene/values_shown.c \
+	lib/scene/section.c \
 	lib/scene/system.c \
 	lib/scene/friction.c \
 	lib/scene/run.c \

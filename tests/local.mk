@@ -18,6 +18,7 @@ suites = \
 	tests/check_formula_terms \
 	tests/check_scene \
 	tests/check_scene_errors \
+	tests/check_scene_shown \
 	tests/check_registry \
 	tests/check_coefficients \
 	tests/check_splitting \

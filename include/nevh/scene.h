@@ -89,6 +89,71 @@ NEVH_API const nevh_scene_run *nevh_scene_run_settings(nevh_scene *);
 /* s(q, p) of the transform as a system; NULL if there is none. */
 NEVH_API const nevh_system *nevh_scene_transform(nevh_scene *);
 
+/* What is shown, drawn and monitored, at a state: n coordinates and momenta.
+
+   Formulas become tapes when their values are first asked for; that allocates,
+   later calls do not.  v_NAME is dH/dp_NAME of the effects that are on.  A
+   value outside of a function's domain is NAN.
+   returns  NEVH_OK; NEVH_EINVAL where i is out of range, or with a message
+            where a formula has more than 2^20 operations; NEVH_ENOMEM; the
+            status of a scene that was not read */
+typedef enum {
+    NEVH_OBSERVABLES,
+    NEVH_INVARIANTS /* without those that an effect which is on breaks */
+} nevh_shown;
+NEVH_API size_t nevh_scene_shown_count(const nevh_scene *, nevh_shown);
+/* In the order of the scene; NULL when i is out of range. */
+NEVH_API const char *nevh_scene_shown_name(const nevh_scene *, nevh_shown,
+                                           size_t i);
+/* All of them, as many as nevh_scene_shown_count says. */
+NEVH_API int nevh_scene_shown_values(nevh_scene *, nevh_shown, double t,
+                                     const double q[], const double p[],
+                                     double values[]);
+
+/* The period of coordinate k; 0 where none is declared. */
+NEVH_API double nevh_scene_period(const nevh_scene *, size_t k);
+
+/* NAME = when LEFT = RIGHT, rising: ITEM, ..., or NAME = every TIME: ... */
+typedef struct {
+    const char *name;
+    int direction; /* 1: rising, -1: falling, 0: both */
+    double every;  /* greater than 0: stroboscopic, from t_start on */
+    double period; /* that the crossing value is taken modulo: that of the
+                      coordinate that LEFT is, or TIME; 0: none */
+    size_t items;
+    const char *const *item; /* their texts */
+} nevh_scene_section;
+NEVH_API size_t nevh_scene_section_count(const nevh_scene *);
+/* Valid as long as the system; NULL when i is out of range. */
+NEVH_API const nevh_scene_section *nevh_scene_section_at(nevh_scene *,
+                                                         size_t i);
+/* LEFT - RIGHT, or the time since t_start: a crossing is where this goes
+   through a multiple of the period, or through 0. */
+NEVH_API int nevh_scene_section_cross(nevh_scene *, size_t i, double t,
+                                      const double q[], const double p[],
+                                      double *value);
+NEVH_API int nevh_scene_section_items(nevh_scene *, size_t i, double t,
+                                      const double q[], const double p[],
+                                      double values[]);
+
+/* [picture]: "rod" from x, y to x, y; "bob" at x, y. */
+typedef struct {
+    const char *kind; /* NULL: i was out of range */
+    size_t count;     /* of its values */
+} nevh_scene_part;
+NEVH_API size_t nevh_scene_part_count(const nevh_scene *);
+NEVH_API nevh_scene_part nevh_scene_part_at(const nevh_scene *, size_t i);
+NEVH_API int nevh_scene_part_values(nevh_scene *, size_t i, double t,
+                                    const double q[], const double p[],
+                                    double values[]);
+
+/* stop = FORMULA < VALUE, or with >: the text as written, or NULL, and whether
+   a run is to end at a state. */
+NEVH_API bool nevh_scene_stops(nevh_scene *);
+NEVH_API const char *nevh_scene_stop_text(const nevh_scene *);
+NEVH_API int nevh_scene_stop_reached(nevh_scene *, double t, const double q[],
+                                     const double p[], bool *reached);
+
 #ifdef __cplusplus
 }
 #endif

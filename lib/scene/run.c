@@ -152,20 +152,19 @@ static bool take_transform(nevh_scene *s, nevh__model *m,
     return !status || nevh__scene_fail_formula(s, v, &error);
 }
 
-/* FORMULA < VALUE */
+/* FORMULA < VALUE, or with > */
 static bool take_stop(nevh_scene *s, nevh__model *m, const nevh__piece *v) {
     nevh__piece rest = *v, formula;
     char stop;
-    double value;
-    if (!nevh__piece_split(s, &m->pool, &rest, "<", &formula, &stop))
+    if (!nevh__piece_split(s, &m->pool, &rest, "<>", &formula, &stop))
         return false;
     if (!stop)
         return nevh__scene_fail(s, NEVH_EINVAL, v,
-                                "stop is written FORMULA < VALUE");
-    return nevh__piece_check(s, m, &formula,
-                             NEVH__READS_TIME | NEVH__READS_STATE |
-                                 NEVH__READS_V) &&
-           nevh__piece_number(s, m, &rest, &value);
+                                "stop is written FORMULA < VALUE, or with >");
+    m->stop.text = v->text;
+    m->stop.below = stop == '<';
+    return nevh__formula_check(s, m, &formula, &m->stop.formula) &&
+           nevh__piece_number(s, m, &rest, &m->stop.value);
 }
 
 #define RUN_KEYS(X)                                                            \

@@ -15,6 +15,9 @@ void nevh__model_free(nevh__model *m) {
     nevh_system_free(m->transform);
     nevh__owned_free(&m->owned);
     nevh__owned_free(&m->owned_transform);
+    nevh__owned_free(&m->owned_shown);
+    free(m->velocities);
+    free(m->velocity_room);
     nevh__names_free(m->names);
     nevh__pool_free(&m->pool);
     free(m);
@@ -127,7 +130,7 @@ const char *nevh_scene_message(const nevh_scene *s) {
 }
 
 /* A scene that was read starts each change afresh. */
-static bool may_change(nevh_scene *s) {
+bool nevh__scene_begin(nevh_scene *s) {
     if (!s->model)
         return false;
     s->status = NEVH_OK;
@@ -172,7 +175,7 @@ static bool check_assignment(nevh_scene *s, const nevh__statement *statement) {
 }
 
 int nevh_scene_set(nevh_scene *s, const char *assignment) {
-    if (!may_change(s))
+    if (!nevh__scene_begin(s))
         return s->status;
     nevh__statement *statement = new_assignment(s, assignment);
     if (!statement)
@@ -190,7 +193,7 @@ int nevh_scene_set(nevh_scene *s, const char *assignment) {
 }
 
 int nevh_scene_enable(nevh_scene *s, const char *effect, bool on) {
-    if (!may_change(s))
+    if (!nevh__scene_begin(s))
         return s->status;
     nevh__switch *found = nevh__scene_effect(s, effect);
     if (found) {

@@ -58,6 +58,43 @@ typedef struct {
     size_t count, first;
 } nevh__coordinate;
 
+/* A formula over the whole state, whose tape is made when it is first asked
+   for. */
+typedef struct {
+    nevh__piece piece;
+    nevh__tape *tape;
+} nevh__formula;
+
+/* An observable or an invariant. */
+typedef struct {
+    const char *name;
+    nevh__formula formula;
+    const nevh__piece *without; /* effects that must be off */
+    size_t n_without;
+} nevh__item;
+typedef struct {
+    nevh__item *items;
+    size_t count;
+} nevh__items;
+
+typedef struct {
+    nevh_scene_section is;
+    nevh__formula left, right; /* what crosses, and where */
+    nevh__formula *items;
+} nevh__crossing;
+
+typedef struct {
+    nevh_scene_part is;
+    nevh__formula *values;
+} nevh__drawn;
+
+typedef struct {
+    const char *text; /* NULL: nothing stops a run */
+    nevh__formula formula;
+    bool below; /* that it is, else above */
+    double value;
+} nevh__stop;
+
 typedef struct {
     nevh__pool pool;
     nevh__names *names;
@@ -71,6 +108,14 @@ typedef struct {
     nevh_system *system, *transform;
     nevh__owned owned, owned_transform;
     nevh_scene_run run;
+    nevh__items shown[2]; /* by nevh_shown */
+    nevh__crossing *crossings;
+    size_t n_crossings;
+    nevh__drawn *drawn;
+    size_t n_drawn;
+    nevh__stop stop;
+    nevh__owned owned_shown;
+    double *velocities, *velocity_room; /* n; NULL until asked for */
 } nevh__model;
 
 struct nevh_scene {
@@ -130,6 +175,22 @@ bool nevh__piece_number(nevh_scene *, const nevh__model *, const nevh__piece *,
 bool nevh__piece_check(nevh_scene *, const nevh__model *, const nevh__piece *,
                        unsigned allowed);
 
+/* Formulas of time, state and velocities, and their values at one state. */
+typedef struct {
+    double t;
+    const double *q, *p;
+    bool moving; /* the model's velocities are those of this state */
+} nevh__state;
+bool nevh__formula_check(nevh_scene *, const nevh__model *, const nevh__piece *,
+                         nevh__formula *);
+bool nevh__formula_value(nevh_scene *, nevh__formula *, nevh__state *,
+                         double *value);
+bool nevh__formula_values(nevh_scene *, nevh__formula[], size_t count,
+                          nevh__state, double values[]);
+/* The parts of a list; NULL on failure. */
+nevh__formula *nevh__formula_list(nevh_scene *, nevh__model *,
+                                  const nevh__piece *, size_t *count);
+
 /* What NAME[...] = ... gives to each element. */
 typedef struct {
     bool array;
@@ -155,6 +216,7 @@ bool nevh__model_values(nevh_scene *, nevh__model *);
 bool nevh__model_terms(nevh_scene *, nevh__model *);
 bool nevh__model_friction(nevh_scene *, nevh__model *);
 bool nevh__model_shown(nevh_scene *, nevh__model *); /* and monitored */
+bool nevh__model_crossings(nevh_scene *, nevh__model *);
 bool nevh__model_labels(nevh_scene *, nevh__model *);
 bool nevh__model_run(nevh_scene *, nevh__model *);
 void nevh__model_free(nevh__model *);
@@ -164,6 +226,9 @@ void nevh__model_free(nevh__model *);
 double *nevh__velocity_room(const nevh_system *);
 void nevh__velocities(const nevh_system *, double t, const double q[],
                       const double p[], double room[], double v[]);
+
+/* Whether a scene may be asked; its last failure is forgotten then. */
+bool nevh__scene_begin(nevh_scene *);
 
 /* Which effects there are and which are on. */
 bool nevh__scene_effects(nevh_scene *);

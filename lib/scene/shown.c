@@ -6,8 +6,6 @@
 #include "scene/scene_private.h"
 #include <string.h>
 
-enum { ANYTHING = NEVH__READS_TIME | NEVH__READS_STATE | NEVH__READS_V };
-
 static bool add_definition(nevh_scene *s, nevh__model *m,
                            const nevh__statement *statement) {
     nevh__formula_error error = {0};
@@ -21,21 +19,43 @@ static bool add_definition(nevh_scene *s, nevh__model *m,
 
 static bool check_definition(nevh_scene *s, nevh__model *m,
                              const nevh__statement *statement) {
-    return nevh__piece_check(s, m, &statement->value, ANYTHING);
+    nevh__formula formula;
+    return nevh__formula_check(s, m, &statement->value, &formula);
+}
+
+/* Room for one item more; NULL when memory is out. */
+static nevh__item *add_item(nevh_scene *s, nevh__model *m, nevh_shown which,
+                            const nevh__statement *statement) {
+    nevh__items *all = &m->shown[which];
+    if (!all->items)
+        all->items =
+            nevh__pool_take(&m->pool, s->n_statements, sizeof *all->items);
+    if (!all->items) {
+        nevh__scene_no_memory(s);
+        return NULL;
+    }
+    all->items[all->count].name = statement->head.name;
+    return &all->items[all->count++];
+}
+
+static bool add_observable(nevh_scene *s, nevh__model *m,
+                           const nevh__statement *statement) {
+    nevh__item *item = add_item(s, m, NEVH_OBSERVABLES, statement);
+    return item && nevh__formula_check(s, m, &statement->value, &item->formula);
 }
 
 bool nevh__model_definitions(nevh_scene *s, nevh__model *m) {
     return nevh__scene_each(s, m, NEVH__DEFINITIONS, add_definition) &&
            nevh__scene_each(s, m, NEVH__OBSERVABLES, add_definition) &&
            nevh__scene_each(s, m, NEVH__DEFINITIONS, check_definition) &&
-           nevh__scene_each(s, m, NEVH__OBSERVABLES, check_definition);
+           nevh__scene_each(s, m, NEVH__OBSERVABLES, add_observable);
 }
 
 /* FORMULA, or FORMULA ; without EFFECT, EFFECT */
-static bool check_without(nevh_scene *s, nevh__model *m,
-                          const nevh__piece *clause) {
+static bool take_without(nevh_scene *s, nevh__model *m,
+                         const nevh__piece *clause, nevh__item *item) {
     const size_t word = strlen("without");
-    size_t at = (size_t)(clause->at - clause->line->text), count;
+    size_t at = (size_t)(clause->at - clause->line->text);
     nevh__piece names;
     if (strncmp(clause->text, "without", word) != 0 ||
         !strchr(" \t", clause->text[word]))
@@ -44,36 +64,38 @@ static bool check_without(nevh_scene *s, nevh__model *m,
     if (!nevh__piece_take(s, &m->pool, clause->line, at + word,
                           at + strlen(clause->text), &names))
         return false;
-    nevh__piece *list = nevh__piece_list(s, &m->pool, &names, &count);
-    for (size_t i = 0; list && i < count; i++)
+    nevh__piece *list = nevh__piece_list(s, &m->pool, &names, &item->n_without);
+    item->without = list;
+    for (size_t i = 0; list && i < item->n_without; i++)
         if (!nevh__scene_effect(s, list[i].text))
             return nevh__scene_fail_effect(s, &list[i]);
     return list;
 }
 
-static bool check_invariant(nevh_scene *s, nevh__model *m,
-                            const nevh__statement *statement) {
+static bool add_invariant(nevh_scene *s, nevh__model *m,
+                          const nevh__statement *statement) {
     nevh__piece rest = statement->value, formula;
     char stop;
-    return nevh__head_plain(s, statement) &&
+    if (!nevh__head_plain(s, statement))
+        return false;
+    nevh__item *item = add_item(s, m, NEVH_INVARIANTS, statement);
+    return item &&
            nevh__piece_split(s, &m->pool, &rest, ";", &formula, &stop) &&
-           nevh__piece_check(s, m, &formula, ANYTHING) &&
-           (!stop || check_without(s, m, &rest));
+           nevh__formula_check(s, m, &formula, &item->formula) &&
+           (!stop || take_without(s, m, &rest, item));
 }
 
-/* Each of a list of formulas; returns how many, 0 when one is wrong. */
-static size_t check_list(nevh_scene *s, nevh__model *m,
-                         const nevh__piece *value) {
-    size_t count;
-    nevh__piece *list = nevh__piece_list(s, &m->pool, value, &count);
-    for (size_t i = 0; list && i < count; i++)
-        if (!nevh__piece_check(s, m, &list[i], ANYTHING))
-            return 0;
-    return list ? count : 0;
+/* Room for one drawn shape more; NULL when memory is out. */
+static nevh__drawn *add_part(nevh_scene *s, nevh__model *m) {
+    if (!m->drawn)
+        m->drawn = nevh__pool_take(&m->pool, s->n_statements, sizeof *m->drawn);
+    if (!m->drawn)
+        nevh__scene_no_memory(s);
+    return m->drawn ? &m->drawn[m->n_drawn++] : NULL;
 }
 
-static bool check_drawn(nevh_scene *s, nevh__model *m,
-                        const nevh__statement *statement) {
+static bool add_drawn(nevh_scene *s, nevh__model *m,
+                      const nevh__statement *statement) {
     static const char *const known[] = {"rod", "bob"};
     static const size_t numbers[] = {4, 2};
     const char *name = statement->head.name;
@@ -82,65 +104,23 @@ static bool check_drawn(nevh_scene *s, nevh__model *m,
     for (size_t i = 0; i < 2; i++) {
         if (strcmp(known[i], name) != 0)
             continue;
-        size_t count = check_list(s, m, &statement->value);
-        return count && (count == numbers[i] ||
-                         nevh__scene_fail(s, NEVH_EINVAL, &statement->value,
-                                          "a %s takes %zu numbers, not %zu",
-                                          name, numbers[i], count));
+        nevh__drawn *part = add_part(s, m);
+        if (!part || !(part->values = nevh__formula_list(
+                           s, m, &statement->value, &part->is.count)))
+            return false;
+        part->is.kind = name;
+        return part->is.count == numbers[i] ||
+               nevh__scene_fail(s, NEVH_EINVAL, &statement->value,
+                                "a %s takes %zu numbers, not %zu", name,
+                                numbers[i], part->is.count);
     }
     return nevh__scene_fail_word(s, &statement->key, "shape", name, known, 2);
 }
 
-/* FORMULA = FORMULA, rising */
-static bool check_when(nevh_scene *s, nevh__model *m, nevh__piece *rest) {
-    nevh__piece left, right;
-    char stop;
-    if (!nevh__piece_split(s, &m->pool, rest, "=", &left, &stop))
-        return false;
-    if (!stop)
-        return nevh__scene_fail(s, NEVH_EINVAL, &left,
-                                "\"=\" is missing: when FORMULA = VALUE, "
-                                "rising: ...");
-    if (!nevh__piece_split(s, &m->pool, rest, ",", &right, &stop) ||
-        !nevh__piece_check(s, m, &left, ANYTHING) ||
-        !nevh__piece_check(s, m, &right, ANYTHING))
-        return false;
-    return strcmp(rest->text, "rising") == 0 ||
-           strcmp(rest->text, "falling") == 0 ||
-           strcmp(rest->text, "both") == 0 ||
-           nevh__scene_fail(s, NEVH_EINVAL, stop ? rest : &right,
-                            "a section says rising, falling or both");
-}
-
-/* when FORMULA = FORMULA, rising: LIST, or every FORMULA: LIST */
-static bool check_section(nevh_scene *s, nevh__model *m,
-                          const nevh__statement *statement) {
-    const nevh__piece *value = &statement->value;
-    nevh__piece shown = *value, front, condition;
-    char stop;
-    if (!nevh__head_plain(s, statement) ||
-        !nevh__piece_split(s, &m->pool, &shown, ":", &front, &stop))
-        return false;
-    size_t word = strcspn(front.text, " \t"),
-           at = (size_t)(front.at - front.line->text);
-    bool when = word == 4 && strncmp(front.text, "when", word) == 0;
-    bool every = word == 5 && strncmp(front.text, "every", word) == 0;
-    if (!stop || (!when && !every))
-        return nevh__scene_fail(s, NEVH_EINVAL, value,
-                                "a section is written when FORMULA = VALUE, "
-                                "rising: ..., or every TIME: ...");
-    double every_time;
-    return nevh__piece_take(s, &m->pool, front.line, at + word,
-                            at + strlen(front.text), &condition) &&
-           (when ? check_when(s, m, &condition)
-                 : nevh__piece_number(s, m, &condition, &every_time)) &&
-           check_list(s, m, &shown);
-}
-
 bool nevh__model_shown(nevh_scene *s, nevh__model *m) {
-    return nevh__scene_each(s, m, NEVH__INVARIANTS, check_invariant) &&
-           nevh__scene_each(s, m, NEVH__PICTURE, check_drawn) &&
-           nevh__scene_each(s, m, NEVH__SECTIONS, check_section);
+    return nevh__scene_each(s, m, NEVH__INVARIANTS, add_invariant) &&
+           nevh__scene_each(s, m, NEVH__PICTURE, add_drawn) &&
+           nevh__model_crossings(s, m);
 }
 
 /* Whether something has that name: t, energy, or what a section names. */
