@@ -25,7 +25,12 @@ tools_nevh_SOURCES = \
 	tools/plot_write.c \
 	tools/envelope.h \
 	tools/envelope.c \
-	tools/compare_plot.c
+	tools/energy_plot.h \
+	tools/energy_plot.c \
+	tools/compare_plot.c \
+	tools/thinned.h \
+	tools/thinned.c \
+	tools/run_plot.c
 tools_nevh_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE \
 	-DNEVH_SCENES='"$(scenesdir)"'
 tools_nevh_LDADD = libnevh.la

@@ -34,6 +34,8 @@ static const struct {
      "no vector code: the same digits with the same libm"},
     {"plot", "FILE", OF_PLOTS, read_plot,
      "draw FILE.svg, .png or .pdf, or - in the terminal"},
+    {"plot-kind", "KIND", FOR_RUN, read_plot_kind,
+     "phase (the default), energy or configuration"},
     {"keep-plot-script", "FILE", OF_PLOTS, read_plot_script,
      "write what gnuplot is told, data included"},
     {"all", NULL, FOR_LIST, read_all,

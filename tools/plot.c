@@ -92,6 +92,10 @@ void plot_style(plot *p, size_t number, plot_form form) {
     p->series[number].form = form;
 }
 
+void plot_like(plot *p, size_t number, size_t other) {
+    p->series[number].look = p->series[other].look;
+}
+
 static void add(series *s, pair point) {
     if (s->count == s->room) {
         s->room = 2 * s->room + 64;

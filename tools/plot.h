@@ -41,6 +41,7 @@ void plot_same_ranges(plot *);
    look the same, and are in the legend once; NULL: not at all. */
 size_t plot_series(plot *, const char *name);
 void plot_style(plot *, size_t series, plot_form);
+void plot_like(plot *, size_t series, size_t other); /* the same colour */
 void plot_point(plot *, size_t series, double x, double y);
 void plot_break(plot *, size_t series); /* the line ends */
 

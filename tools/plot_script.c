@@ -119,6 +119,15 @@ static bool has_headings(const plot *p) {
     return false;
 }
 
+/* As the picture is. */
+static void shape_panel(layout *l, const plot *p) {
+    static const double width = 560;
+    range x = plot_range_x(p, 0), y = plot_range_y(p, 0);
+    double height = width * (y.high - y.low) / (x.high - x.low);
+    l->panel_width = width;
+    l->panel_height = fmin(fmax(height, 0.4 * width), width);
+}
+
 static void choose_panels(layout *l, const plot *p, const target *t) {
     static const struct {
         size_t columns;
@@ -131,7 +140,7 @@ static void choose_panels(layout *l, const plot *p, const target *t) {
     l->panel_height =
         p->panels > last ? many.height : few[p->panels - 1].height;
     if (p->panels == 1 && p->panel->equal)
-        l->panel_width = l->panel_height = 520;
+        shape_panel(l, p);
     if (t->medium == PLOT_TEXT) {
         double beside = l->left + l->right + l->legend;
         l->columns = 1;
@@ -148,7 +157,7 @@ static layout lay_out(const plot *p, const target *t) {
     layout l = {.letter = text ? 1 : 8, .line = text ? 1 : 18};
     l.legend = lines ? l.letter * (double)(longest + 8) : 0;
     l.left = (text ? 9 : 11) * l.letter;
-    l.right = 2 * l.letter;
+    l.right = 3 * l.letter;
     l.top = (text || has_headings(p) ? 1.7 : 0.5) * l.line;
     l.bottom = (text ? 3 : 4) * l.line;
     l.title = (p->title && *p->title ? 2.3 : 0.5) * l.line;
@@ -168,12 +177,12 @@ static void print_terminal(FILE *f, const target *t, const layout *l) {
                 "'sans-serif,%d' background '#ffffff'\n",
                 w, h, FONT);
         break;
-    case PLOT_PNG: /* twice the size, for screens of today */
+    case PLOT_PNG: /* of twice the size */
         fprintf(f,
                 "set terminal pngcairo size %g,%g enhanced font "
-                "'sans-serif,%g' fontscale 2 linewidth 2 pointscale 2 "
+                "'sans-serif,%d' fontscale 1.5 linewidth 2 pointscale 2 "
                 "background '#ffffff'\n",
-                2 * w, 2 * h, FONT * 0.75); /* at 96 a inch */
+                2 * w, 2 * h, FONT); /* fonts: 96 pixels an inch */
         break;
     case PLOT_PDF:
         fprintf(f,
@@ -262,6 +271,16 @@ static void separate(FILE *f, size_t *printed) {
     fputs((*printed)++ ? ", \\\n    " : "plot ", f);
 }
 
+static void print_name(FILE *f, const char *name) {
+    if (!name) {
+        fputs(" notitle", f);
+        return;
+    }
+    fputs(" title ", f);
+    quote(f, name, LONGEST_NAME);
+    fputs(" noenhanced", f);
+}
+
 /* A series without points is an entry of the legend at most. */
 static void print_series(FILE *f, const plot *p, size_t i, bool here,
                          bool titled, size_t *printed) {
@@ -274,13 +293,12 @@ static void print_series(FILE *f, const plot *p, size_t i, bool here,
     else
         fputs("NaN", f);
     print_form(f, &p->series[i]);
-    if (!titled) {
-        fputs(" notitle", f);
-        return;
-    }
-    fputs(" title ", f);
-    quote(f, p->series[i].name, LONGEST_NAME);
-    fputs(" noenhanced", f);
+    print_name(f, titled ? p->series[i].name : NULL);
+    if (drawn && p->series[i].form == PLOT_BOBS)
+        fprintf(f,
+                ", \\\n    $series%zu using 1:2 with points linecolor rgb "
+                "'#000000' linewidth 1.5 pointtype 6 pointsize 2.2 notitle",
+                i + 1);
 }
 
 static void print_plots(FILE *f, const plot *p, size_t number) {
@@ -356,6 +374,19 @@ static void print_place(FILE *f, size_t number, const layout *l) {
             top / l->height, (top - l->panel_height) / l->height);
 }
 
+/* As large as it fits, but not too small. */
+static void print_title(FILE *f, const char *title, const layout *l) {
+    static const double letter = 0.63, smallest = 0.8, largest = 1.2;
+    double fitting = l->width / (letter * FONT * (double)letters(title));
+    double scale = fmin(fmax(fitting, smallest), largest);
+    double most =
+        l->letter == 1 ? l->width : l->width / (letter * FONT * scale);
+    fputs("set label 1 ", f);
+    quote(f, title, (size_t)most);
+    fprintf(f, " at screen 0.5,%.6f center noenhanced font ',%.3g'\n",
+            1 - 0.55 * l->title / l->height, FONT * scale);
+}
+
 static void print_frame(FILE *f, const plot *p, const layout *l, bool text) {
     fputs("set encoding utf8\nset border 3 linecolor rgb '#555555'\n"
           "set tics textcolor rgb '#000000'\n",
@@ -373,12 +404,8 @@ static void print_frame(FILE *f, const plot *p, const layout *l, bool text) {
                 1 - (l->title + l->top) / l->height, text ? 3 : 2);
     else
         fputs("unset key\n", f);
-    if (p->title && *p->title) {
-        fputs("set label 1 ", f);
-        quote(f, p->title, (size_t)(l->width / (1.25 * l->letter)));
-        fprintf(f, " at screen 0.5,%.6f center noenhanced font ',%d'\n",
-                1 - 0.55 * l->title / l->height, FONT * 6 / 5);
-    }
+    if (p->title && *p->title)
+        print_title(f, p->title, l);
 }
 
 void plot_script(const plot *p, const target *t, FILE *f) {

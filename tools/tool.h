@@ -72,6 +72,7 @@ enum {
 
 /* options.c: the command line. */
 typedef enum { MATCH_SCENE, MATCH_STEPS, MATCH_WORK } matching;
+typedef enum { PLOT_PHASE, PLOT_ENERGY, PLOT_CONFIGURATION } plot_kind;
 typedef struct {
     list operands, settings, integrators, gradients; /* settings: see below */
     double *dt, *at;
@@ -81,6 +82,7 @@ typedef struct {
     size_t every, samples, repeats;                  /* 0: not given */
     table_format format;
     matching match;
+    plot_kind plot_kind;
     const char *file, *plot, *plot_script, *transform, *resume, *from;
     bool quiet, portable, all, by_state, diagnostics, impact, allow_code;
     bool help, version;
@@ -167,8 +169,10 @@ void row_run(const plan *, row *);
 /* compare.c, verdict.c */
 void verdict_words(const plan *, const row rows[], size_t count, list *words);
 
-/* compare_plot.c: as plot_write. */
+/* compare_plot.c, run_plot.c: as plot_write.  The latter makes a run of its
+   own, with the first dt and gradient. */
 int compare_plot(const options *, const plan *, const row rows[], size_t count);
+int run_plot(const options *, const plan *, const char *integrator);
 
 typedef int command(const options *);
 command compare, list_what, check, effects;
