@@ -11,6 +11,7 @@ nevhinclude_HEADERS = \
 	include/nevh/probe.h \
 	include/nevh/run.h \
 	include/nevh/scene.h \
+	include/nevh/section.h \
 	include/nevh/status.h \
 	include/nevh/system.h \
 	include/nevh/transform.h

@@ -81,6 +81,11 @@ libnevh_core_la_SOURCES = \
 	lib/run/save.c \
 	lib/run/run.c \
 	lib/run/until.c \
+	lib/run/section_private.h \
+	lib/run/section.c \
+	lib/run/section_branch.c \
+	lib/run/section_turn.c \
+	lib/run/section_level.c \
 	lib/diagnose/energy.c \
 	lib/diagnose/trend_private.h \
 	lib/diagnose/trend.c \

@@ -32,6 +32,7 @@ suites = \
 	tests/check_evaluations \
 	tests/check_run \
 	tests/check_until \
+	tests/check_section \
 	tests/check_closeness \
 	tests/check_transform \
 	tests/check_own_time \

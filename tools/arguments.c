@@ -152,7 +152,13 @@ int read_format(options *o, const char *argument) {
     int which;
     int status = read_name("format", argument, names, &which);
     o->format = (table_format)which;
+    o->formatted = true;
     return status;
+}
+
+int read_section(options *o, const char *argument) {
+    list_split(&o->sections, argument);
+    return TOOL_OK;
 }
 
 int read_file(options *o, const char *argument) {

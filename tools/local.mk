@@ -15,6 +15,7 @@ tools_nevh_SOURCES = \
 	tools/verdict.c \
 	tools/effects.c \
 	tools/check.c \
+	tools/section.c \
 	tools/list.c \
 	tools/plot.h \
 	tools/plot_private.h \
@@ -30,7 +31,8 @@ tools_nevh_SOURCES = \
 	tools/compare_plot.c \
 	tools/thinned.h \
 	tools/thinned.c \
-	tools/run_plot.c
+	tools/run_plot.c \
+	tools/section_plot.c
 tools_nevh_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE \
 	-DNEVH_SCENES='"$(scenesdir)"'
 tools_nevh_LDADD = libnevh.la

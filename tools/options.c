@@ -7,9 +7,9 @@
 #include <string.h>
 
 enum {
-    OF_SCENES = FOR_COMPARE | FOR_CHECK | FOR_EFFECTS,
+    OF_SCENES = FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_SECTION,
     OF_TABLES = OF_SCENES | FOR_LIST,
-    OF_PLOTS = FOR_COMPARE
+    OF_PLOTS = FOR_COMPARE | FOR_SECTION
 };
 
 /* The commands that each option is for, as an or. */
@@ -38,6 +38,7 @@ static const struct {
      "phase (the default), energy or configuration"},
     {"keep-plot-script", "FILE", OF_PLOTS, read_plot_script,
      "write what gnuplot is told, data included"},
+    {"section", "A,B", FOR_SECTION, read_section, "these alone, by name"},
     {"all", NULL, FOR_LIST, read_all,
      "with names in other packages and sources"},
     {"format", "table|csv|json", OF_TABLES, read_format, ""},
@@ -126,6 +127,7 @@ void options_free(options *o) {
     list_free(&o->settings);
     list_free(&o->integrators);
     list_free(&o->gradients);
+    list_free(&o->sections);
     free(o->dt);
     free(o->at);
 }

@@ -48,6 +48,11 @@ void plot_break(plot *, size_t series); /* the line ends */
 /* "NAME (UNIT)", the unit being the scene's label of `of`; to be freed. */
 char *plot_label(const plan *, const char *name, const char *of);
 
+/* section_plot.c: a panel, the first making the plot.
+   numbers  of each point t, direction, and the items of the section */
+void section_plot(plot **, const plan *, const nevh_scene_section *,
+                  size_t points, const double numbers[]);
+
 bool plot_wanted(const options *); /* --plot or --keep-plot-script */
 /* That plot_write will work as far as can be told: known ending, files that can
    be written, gnuplot at hand.  To be called before the long work, and before

@@ -253,7 +253,7 @@ static void print_form(FILE *f, const series *s) {
         fprintf(f, " with points linetype %zu", number);
         break;
     case PLOT_DOTS:
-        fprintf(f, " with points linetype %zu pointtype 7 pointsize 0.25",
+        fprintf(f, " with points linetype %zu pointtype 7 pointsize 0.2",
                 number);
         break;
     case PLOT_RODS:

@@ -75,6 +75,7 @@ typedef enum { MATCH_SCENE, MATCH_STEPS, MATCH_WORK } matching;
 typedef enum { PLOT_PHASE, PLOT_ENERGY, PLOT_CONFIGURATION } plot_kind;
 typedef struct {
     list operands, settings, integrators, gradients; /* settings: see below */
+    list sections;
     double *dt, *at;
     size_t dts, ats;
     double t_end;                                    /* NAN: the scene's */
@@ -85,6 +86,7 @@ typedef struct {
     plot_kind plot_kind;
     const char *file, *plot, *plot_script, *transform, *resume, *from;
     bool quiet, portable, all, by_state, diagnostics, impact, allow_code;
+    bool formatted; /* --format was given */
     bool help, version;
     unsigned long long used; /* a bit an option */
 } options;
@@ -175,6 +177,6 @@ int compare_plot(const options *, const plan *, const row rows[], size_t count);
 int run_plot(const options *, const plan *, const char *integrator);
 
 typedef int command(const options *);
-command compare, list_what, check, effects;
+command compare, list_what, check, effects, section;
 
 #endif

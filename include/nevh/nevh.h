@@ -14,6 +14,7 @@
 #include <nevh/probe.h>
 #include <nevh/run.h>
 #include <nevh/scene.h>
+#include <nevh/section.h>
 #include <nevh/status.h>
 #include <nevh/system.h>
 #include <nevh/transform.h>

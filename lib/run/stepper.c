@@ -218,6 +218,7 @@ static void pass_time(nevh_stepper *s, double t) {
 
 int nevh__advance(nevh_stepper *s, double t, double h, double q[], double p[]) {
     nevh_work *w = &s->work;
+    s->last_h = h;
     w->elapsed = w->transform ? 0 : h;
     nevh__ledger_open(w, q, p);
     int status = NEVH_OK;

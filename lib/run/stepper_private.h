@@ -21,6 +21,7 @@ struct nevh_stepper {
     /* What the last step returned. */
     bool has_last;
     double last_t, *last_q, *last_p;
+    double last_h;  /* asked of it; not saved */
     bool forgot;    /* the last step or run began with less than `before` */
     double *before; /* the memory before that */
     size_t taken;

@@ -1,0 +1,156 @@
+/* nevh: shorter steps that branch off, and root finding on their length.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "run/section_private.h"
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MOST_TRIALS = 100 };
+static const double certain = 4 * DBL_EPSILON; /* part of a step */
+static const double jump = 0.01;     /* of the difference of the ends */
+static const double rounding = 1e-8; /* of what slopes make of a step */
+
+int nevh__section_step(nevh_sections *x, double h) {
+    nevh_stepper *s = x->branch;
+    size_t size = s->work.size * sizeof(double);
+    memcpy(x->q_try, x->q, size);
+    memcpy(x->p_try, x->p, size);
+    memcpy(s->work.memory, x->memory, s->rows * s->work.width * sizeof(double));
+    s->last_t = x->t;
+    s->time_lost = x->lost;
+    int status = nevh__advance(s, x->t, h, x->q_try, x->p_try);
+    return status ? nevh__fail_as(&x->report, &s->report) : NEVH_OK;
+}
+
+double nevh__section_due(const nevh_sections *x, const nevh__track *k) {
+    double forward = x->h < 0 ? -1 : 1;
+    return x->origin + forward * (k->points + 1) * k->is.every;
+}
+
+int nevh__section_value(nevh_sections *x, const nevh__track *k, double t,
+                        const double q[], const double p[], double *value) {
+    char number[24];
+    const char *name = k->is.name;
+    if (!k->is.value) {
+        *value = t - nevh__section_due(x, k);
+        return NEVH_OK;
+    }
+    snprintf(number, sizeof number, "%zu", k->number);
+    *value = NAN;
+    int status = k->is.value(k->is.data, t, q, p, value);
+    if (!status && isfinite(*value))
+        return NEVH_OK;
+    return nevh__fail(&x->report, status ? status : NEVH_EDOM,
+                      status ? "the value of section %s failed at t = %.9g"
+                             : "the value of section %s is not finite at "
+                               "t = %.9g",
+                      name ? name : number, t);
+}
+
+int nevh__section_sample(nevh_sections *x, const nevh__track *k, double s,
+                         double *value) {
+    *value = NAN;
+    int status = nevh__section_step(x, s * x->h);
+    return status ? status
+                  : nevh__section_value(x, k, x->branch->last_t, x->q_try,
+                                        x->p_try, value);
+}
+
+static void keep(nevh_sections *x, nevh__track *k, double s, double t,
+                 const double q[], const double p[]) {
+    size_t size = x->branch->work.size * sizeof(double);
+    k->found = true;
+    k->s = s;
+    k->t = t;
+    memcpy(k->q, q, size);
+    memcpy(k->p, p, size);
+}
+
+int nevh__section_take(nevh_sections *x, nevh__track *k, double h) {
+    int status = NEVH_OK;
+    if (h == 0)
+        keep(x, k, 0, x->t, x->q, x->p);
+    else if (h == x->h)
+        keep(x, k, 1, x->t_after, x->q_after, x->p_after);
+    else if (!(status = nevh__section_step(x, h)))
+        keep(x, k, h / x->h, x->branch->last_t, x->q_try, x->p_try);
+    return status;
+}
+
+typedef struct {
+    nevh_sections *x;
+    nevh__track *k;
+    nevh__node a, b; /* less the level */
+    double level, best;
+    bool pole; /* the value was infinite */
+} search;
+
+/* Infinity is no failure here. */
+static int sample(search *r, double s, double *value) {
+    nevh_sections *x = r->x;
+    int status = nevh__section_sample(x, r->k, s, value);
+    if (status != NEVH_EDOM || !isinf(*value))
+        return status;
+    r->pole = true;
+    x->report = (nevh__report){0};
+    return status;
+}
+
+/* Finite whatever happens, since GSL aborts otherwise; the ends are known. */
+static double miss(double s, void *data) {
+    search *r = data;
+    nevh_sections *x = r->x;
+    double value;
+    if (x->report.status || s == r->a.s)
+        return r->a.value;
+    if (s == r->b.s)
+        return r->b.value;
+    if (sample(r, s, &value))
+        return r->a.value;
+    value -= r->level;
+    if (fabs(value) < r->best) {
+        r->best = fabs(value);
+        keep(x, r->k, s, x->branch->last_t, x->q_try, x->p_try);
+    }
+    return value;
+}
+
+static void narrow(search *r) {
+    gsl_root_fsolver *root = r->x->root;
+    gsl_function f = {miss, r};
+    int status = gsl_root_fsolver_set(root, &f, r->a.s, r->b.s);
+    for (int i = 0; !status && r->best > 0 && i < MOST_TRIALS; i++) {
+        status = gsl_root_fsolver_iterate(root);
+        double low = gsl_root_fsolver_x_lower(root);
+        double high = gsl_root_fsolver_x_upper(root);
+        if (r->pole || r->x->report.status || high - low <= certain)
+            break;
+    }
+}
+
+static double known(double x) {
+    return isfinite(x) ? fabs(x) : 0;
+}
+
+/* Whether the value still jumps where the bracket is as narrow as can be.  Both
+   of its ends may have been at rounding, which slopes tell. */
+static bool jumps(const search *r) {
+    const nevh__track *k = r->k;
+    double slopes = known(k->slope) + known(k->slope_after);
+    double change = slopes * fabs(r->x->t_after - r->x->t);
+    double range = fabs(r->a.value) + fabs(r->b.value);
+    return r->pole || r->best > jump * range + rounding * change;
+}
+
+int nevh__section_search(nevh_sections *x, nevh__track *k, nevh__node a,
+                         nevh__node b, double level) {
+    search r = {.x = x, .k = k, .a = a, .b = b, .level = level};
+    r.a.value -= level;
+    r.b.value -= level;
+    r.best = INFINITY;
+    k->found = false;
+    narrow(&r);
+    k->found &= !jumps(&r);
+    return x->report.status;
+}

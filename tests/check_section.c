@@ -1,0 +1,729 @@
+/* nevh tests: points of sections.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "support.h"
+#include <math.h>
+#include <nevh/section.h>
+#include <nevh/transform.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What was found. */
+enum { MOST_POINTS = 4000 };
+typedef struct {
+    size_t count, stop_at; /* 0: never */
+    struct {
+        size_t section;
+        int direction;
+        double t, q[MOST_DOF], p[MOST_DOF];
+    } at[MOST_POINTS];
+    size_t n;
+} album;
+
+static int record(void *data, const nevh_point *point) {
+    album *a = data;
+    ck_assert_uint_lt(a->count, MOST_POINTS);
+    a->at[a->count].section = point->section;
+    a->at[a->count].direction = point->direction;
+    a->at[a->count].t = point->t;
+    memcpy(a->at[a->count].q, point->q, a->n * sizeof(double));
+    memcpy(a->at[a->count].p, point->p, a->n * sizeof(double));
+    return ++a->count == a->stop_at;
+}
+
+static size_t count_of(const album *a, size_t section, int direction) {
+    size_t count = 0;
+    for (size_t i = 0; i < a->count; i++)
+        count += a->at[i].section == section && a->at[i].direction == direction;
+    return count;
+}
+
+typedef struct {
+    nevh_system *system;
+    nevh_stepper *stepper;
+    nevh_sections *sections;
+    nevh_observer observer;
+    album found;
+    double t, q[MOST_DOF], p[MOST_DOF];
+} orbit;
+
+static orbit *look_at(nevh_system *system, const nevh_integrator *scheme,
+                      const double q[], const double p[],
+                      const nevh_section sections[], size_t count) {
+    orbit *o = calloc(1, sizeof *o);
+    nevh_options options = {.gradient = nevh_exact, .q = q, .p = p};
+    size_t n = nevh_system_dof(system);
+    ck_assert_ptr_nonnull(o);
+    o->system = system;
+    o->stepper = nevh_stepper_new(system, scheme, &options);
+    ck_assert_msg(!nevh_stepper_status(o->stepper), "%s",
+                  nevh_stepper_message(o->stepper));
+    o->found.n = n;
+    o->sections =
+        nevh_sections_new(o->stepper, sections, count, record, &o->found);
+    ck_assert_msg(!nevh_sections_status(o->sections), "%s",
+                  nevh_sections_message(o->sections));
+    o->observer = (nevh_observer){nevh_sections_observe, o->sections, 1};
+    memcpy(o->q, q, n * sizeof *q);
+    memcpy(o->p, p, n * sizeof *p);
+    return o;
+}
+
+static int go(orbit *o, double h, double t_end) {
+    int status =
+        nevh_run_until(o->stepper, o->t, h, t_end, o->q, o->p, &o->observer, 1);
+    o->t = t_end;
+    return status;
+}
+
+static void put_away(orbit *o) {
+    nevh_sections_free(o->sections);
+    nevh_stepper_free(o->stepper);
+    nevh_system_free(o->system);
+    free(o);
+}
+
+/* Sections. */
+static int coordinate(void *data, double t, const double q[], const double p[],
+                      double *value) {
+    (void)t, (void)p;
+    *value = q[0] - (data ? *(const double *)data : 0);
+    return NEVH_OK;
+}
+static int second(void *data, double t, const double q[], const double p[],
+                  double *value) {
+    (void)t, (void)p;
+    *value = q[1] - *(const double *)data;
+    return NEVH_OK;
+}
+static int power(void *data, double t, const double q[], const double p[],
+                 double *value) {
+    (void)t, (void)p;
+    *value = pow(q[0] - 0.3, *(const double *)data);
+    return NEVH_OK;
+}
+/* Zeros in time, ended by NAN. */
+static int zeros(void *data, double t, const double q[], const double p[],
+                 double *value) {
+    (void)q, (void)p;
+    *value = 1;
+    for (const double *zero = data; !isnan(*zero); zero++)
+        *value *= t - *zero;
+    return NEVH_OK;
+}
+static int flat(void *data, double t, const double q[], const double p[],
+                double *value) {
+    (void)data, (void)q, (void)p;
+    *value = t < 0.5 ? t - 0.5 : t > 1 ? t - 1 : 0;
+    return NEVH_OK;
+}
+static int sawtooth(void *data, double t, const double q[], const double p[],
+                    double *value) {
+    (void)data, (void)t, (void)p;
+    *value = remainder(q[0], 2 * M_PI);
+    return NEVH_OK;
+}
+static int pole(void *data, double t, const double q[], const double p[],
+                double *value) {
+    (void)data, (void)t, (void)p;
+    *value = 1 / q[0];
+    return NEVH_OK;
+}
+static int breaking(void *data, double t, const double q[], const double p[],
+                    double *value) {
+    const int *status = data;
+    (void)p;
+    *value = t > 1 && !*status ? NAN : q[0];
+    return t > 1 ? *status : NEVH_OK;
+}
+
+static const nevh_oscillator unit_spring = {1, 1};
+static const nevh_pendulum unit_pendulum = {1, 1, 1}, rotor = {1, 1, 0};
+
+/* x = cos t, by a scheme that keeps the circle. */
+static orbit *on_circle(double t0, const nevh_section sections[],
+                        size_t count) {
+    const double q = cos(t0), p = -sin(t0);
+    orbit *o = look_at(nevh_oscillator_model->system(&unit_spring),
+                       nevh_gauss20, &q, &p, sections, count);
+    o->t = t0;
+    return o;
+}
+
+static orbit *pendulum(const nevh_pendulum *params, double q, double p,
+                       const nevh_section sections[], size_t count) {
+    return look_at(nevh_pendulum_model->system(params), nevh_gauss8, &q, &p,
+                   sections, count);
+}
+
+static orbit *of_problem(const problem *b, const nevh_integrator *scheme,
+                         const nevh_section sections[], size_t count) {
+    orbit *o = look_at(b->make(), scheme, b->q, b->p, sections, count);
+    o->t = b->t0;
+    return o;
+}
+
+/* All of them, at their times, in their directions; whatever the step. */
+START_TEST(an_oscillator_crosses_twice_a_period) {
+    static const double steps[] = {0.01, 0.3, 1.1};
+    const nevh_section is[] = {{.value = coordinate},
+                               {.value = coordinate, .direction = 1},
+                               {.value = coordinate, .direction = -1}};
+    orbit *o = on_circle(0, is, 3);
+    enum { turns = 50 };
+    ck_assert_int_eq(go(o, steps[_i], turns * 2 * M_PI), NEVH_OK);
+    for (size_t section = 0; section < 3; section++) {
+        const int only = is[section].direction;
+        ck_assert_uint_eq(count_of(&o->found, section, 1),
+                          only == -1 ? 0 : turns);
+        ck_assert_uint_eq(count_of(&o->found, section, -1),
+                          only == 1 ? 0 : turns);
+    }
+    for (size_t i = 0; i < o->found.count; i++) {
+        const double t = M_PI / 2 + (double)(i / 2) * M_PI;
+        ck_assert_double_eq_tol(o->found.at[i].t, t, 1e-11);
+        ck_assert_double_le(fabs(o->found.at[i].q[0]), 1e-15);
+        ck_assert(o->found.at[i].direction * o->found.at[i].p[0] > 0.99);
+    }
+    put_away(o);
+}
+END_TEST
+
+/* A level just below the largest x is crossed twice within a step, one just
+   above never; x turns anywhere within a step and close to its ends. */
+START_TEST(touching_and_grazing) {
+    static const double distances[] = {1e-3, 1e-6, 1e-9, 1e-12};
+    static const double steps[] = {0.9, 2 * M_PI / 8 * (1 + 1e-7), 0.05};
+    const double d = distances[_i % 4], h = steps[_i / 4];
+    double below = 1 - d, above = 1 + d;
+    const nevh_section is[] = {{.value = coordinate, .data = &below},
+                               {.value = coordinate, .data = &above}};
+    orbit *o = on_circle(1, is, 2);
+    const int turns = h < 0.1 ? 20 : 100;
+    ck_assert_int_eq(go(o, h, 1 + turns * 2 * M_PI), NEVH_OK);
+    ck_assert_uint_eq(count_of(&o->found, 0, 1), turns);
+    ck_assert_uint_eq(count_of(&o->found, 0, -1), turns);
+    ck_assert_uint_eq(o->found.count, 2 * turns);
+    const double apart = 2 * acos(below);
+    for (int i = 0; i < turns; i++)
+        ck_assert_double_eq_tol(o->found.at[2 * i + 1].t - o->found.at[2 * i].t,
+                                apart, 1e-2 * apart + 1e-12);
+    put_away(o);
+}
+END_TEST
+
+/* A square is touched, a cube crossed, however flat. */
+START_TEST(zeros_of_any_multiplicity) {
+    static const double powers[] = {2, 3, 4, 5};
+    double power_of = powers[_i];
+    const nevh_section is = {.value = power, .data = &power_of};
+    orbit *o = on_circle(0, &is, 1);
+    ck_assert_int_eq(go(o, 0.3, 20 * 2 * M_PI), NEVH_OK);
+    ck_assert_uint_eq(o->found.count, _i % 2 ? 40 : 0);
+    for (size_t i = 0; i < o->found.count; i++)
+        ck_assert_double_eq_tol(o->found.at[i].q[0], 0.3, 1e-9);
+    put_away(o);
+}
+END_TEST
+
+static orbit *in_time(double t0, nevh_section_fn value, const double at[]) {
+    const nevh_section is = {.value = value, .data = (void *)at};
+    const double q = 0.4, p = 0.3;
+    orbit *o = look_at(nevh_pendulum_model->system(&unit_pendulum), nevh_verlet,
+                       &q, &p, &is, 1);
+    o->t = t0;
+    return o;
+}
+
+static void assert_times(const orbit *o, const double at[], double tolerance) {
+    size_t count = 0;
+    for (; !isnan(at[count]); count++) {
+        ck_assert_uint_lt(count, o->found.count);
+        ck_assert_double_le(fabs(o->found.at[count].t - at[count]), tolerance);
+    }
+    ck_assert_uint_eq(o->found.count, count);
+}
+
+START_TEST(two_and_three_within_one_step) {
+    static const double at[][4] = {{1.1, 1.3, NAN},       {1.01, 1.5, 1.99},
+                                   {1.4, 1.5, 1.6},       {1.001, 1.002, NAN},
+                                   {1.2, 1.2000001, NAN}, {0.5, 1.7, 1.9},
+                                   {1.5, 1.99, 2.3}};
+    double with_end[5] = {at[_i][0], at[_i][1],
+                          isnan(at[_i][2]) ? NAN : at[_i][2], NAN, NAN};
+    orbit *o = in_time(0, zeros, with_end);
+    ck_assert_int_eq(go(o, 1, 4), NEVH_OK);
+    assert_times(o, with_end, 1e-9);
+    put_away(o);
+}
+END_TEST
+
+/* Zeros on steps count once, with the very state of the orbit, also where it
+   ends; where it begins they do not count, even if it only begins there to
+   rounding. */
+START_TEST(zeros_on_steps) {
+    static const double at[] = {0.75, 1.25, 1.5, 2.75, NAN};
+    orbit *o = in_time(0, zeros, at), *plain = in_time(0, zeros, at);
+    for (int i = 1; i <= 3; i++)
+        ck_assert_int_eq(nevh_stepper_apply(plain->stepper, (i - 1) * 0.25,
+                                            0.25, plain->q, plain->p),
+                         NEVH_OK);
+    ck_assert_int_eq(go(o, 0.25, 2.75), NEVH_OK);
+    assert_times(o, at, 0);
+    ck_assert(o->found.at[0].q[0] == plain->q[0] &&
+              o->found.at[0].p[0] == plain->p[0]);
+    ck_assert_int_eq(go(o, 0.25, 4), NEVH_OK);
+    ck_assert_uint_eq(o->found.count, 4);
+    put_away(o);
+    put_away(plain);
+}
+END_TEST
+
+START_TEST(a_start_on_a_zero) {
+    static const double starts[] = {0.75, 0.75 - 1e-16, 0.75 + 1e-16};
+    static const double at[] = {0.75, 1.3, NAN};
+    orbit *o = in_time(starts[_i], zeros, at);
+    ck_assert_int_eq(go(o, 0.25, 3), NEVH_OK);
+    assert_times(o, at + 1, 1e-12);
+    put_away(o);
+}
+END_TEST
+
+START_TEST(zeros_that_touch_on_steps) {
+    static const double touched[] = {0.75, 0.75, NAN},
+                        flat_cube[] = {0.75, 0.75, 0.75, NAN};
+    static const double none[] = {NAN}, one[] = {0.75, NAN}, end[] = {1, NAN};
+    orbit *o = in_time(0, zeros, touched);
+    ck_assert_int_eq(go(o, 0.25, 2), NEVH_OK);
+    assert_times(o, none, 0);
+    put_away(o);
+    o = in_time(0, zeros, flat_cube);
+    ck_assert_int_eq(go(o, 0.25, 2), NEVH_OK);
+    assert_times(o, one, 0);
+    put_away(o);
+    o = in_time(0, flat, NULL);
+    ck_assert_int_eq(go(o, 0.25, 2), NEVH_OK);
+    assert_times(o, end, 0);
+    put_away(o);
+}
+END_TEST
+
+/* A free rotor passes several multiples of the period in a step, forward and
+   backward; what rises, rises with t. */
+START_TEST(multiples_of_a_period) {
+    const double turn = 2 * M_PI, p = _i < 2 ? 20 : -20, h = _i % 2 ? -1 : 1;
+    const nevh_section is[] = {
+        {.value = coordinate, .period = turn},
+        {.value = coordinate, .period = turn, .direction = 1}};
+    orbit *o = pendulum(&rotor, 1, p, is, 2);
+    ck_assert_int_eq(go(o, h, 30.5 * h), NEVH_OK);
+    const double end = 1 + p * 30.5 * h;
+    const size_t count = (size_t)fabs(floor(end / turn));
+    ck_assert_uint_eq(count_of(&o->found, 0, p > 0 ? 1 : -1), count);
+    ck_assert_uint_eq(count_of(&o->found, 1, 1), p > 0 ? count : 0);
+    ck_assert_uint_eq(o->found.count, p > 0 ? 2 * count : count);
+    for (size_t i = 0; i < o->found.count; i++) {
+        ck_assert_double_le(fabs(remainder(o->found.at[i].q[0], turn)), 1e-12);
+        ck_assert_double_eq_tol(o->found.at[i].t, (o->found.at[i].q[0] - 1) / p,
+                                1e-12);
+    }
+    put_away(o);
+}
+END_TEST
+
+/* A pendulum that swings to 2 and, after a push, goes round: only the multiples
+   that it passes; a sawtooth's jumps and poles are none. */
+START_TEST(no_crossing_at_jumps) {
+    const nevh_section is[] = {{.value = coordinate, .period = 2 * M_PI},
+                               {.value = sawtooth},
+                               {.value = pole}};
+    orbit *swings = pendulum(&unit_pendulum, 2, 0, is, 3);
+    orbit *turns = pendulum(&unit_pendulum, 0.1, 2.1, is, 3);
+    ck_assert_int_eq(go(swings, 0.3, 200), NEVH_OK);
+    size_t count = count_of(&swings->found, 0, 1);
+    ck_assert_uint_gt(count, 20);
+    ck_assert_uint_eq(count_of(&swings->found, 1, 1), count);
+    ck_assert_uint_eq(swings->found.count,
+                      count_of(&swings->found, 0, -1) * 2 + count * 2);
+    ck_assert_int_eq(go(turns, 0.3, 200), NEVH_OK);
+    count = count_of(&turns->found, 0, 1);
+    ck_assert_uint_eq(count, (size_t)(turns->q[0] / (2 * M_PI)));
+    ck_assert_uint_eq(count_of(&turns->found, 1, 1), count);
+    ck_assert_uint_eq(turns->found.count, 2 * count);
+    put_away(swings);
+    put_away(turns);
+}
+END_TEST
+
+/* Points of a coarse orbit against sign changes along a fine one, for sections
+   all over the range, some of which the orbit only just reaches. */
+enum { COMB = 60 };
+START_TEST(none_is_missed) {
+    static double levels[COMB];
+    static int last[COMB];
+    nevh_section is[COMB];
+    size_t changes[COMB] = {0};
+    for (int i = 0; i < COMB; i++) {
+        levels[i] = -0.6 + 1.2 * (i + 0.37) / COMB;
+        is[i] = (nevh_section){.value = second, .data = &levels[i]};
+    }
+    orbit *coarse = of_problem(&henon_heiles, nevh_gauss16, is, COMB);
+    orbit *fine = of_problem(&henon_heiles, nevh_blanes_moan6, NULL, 0);
+    const double span = 100, t0 = coarse->t;
+    ck_assert_int_eq(go(coarse, 0.8, t0 + span), NEVH_OK);
+    for (int step = 0; step <= 20000; step++) {
+        for (int i = 0; i < COMB; i++) {
+            int side = fine->q[1] > levels[i] ? 1 : -1;
+            changes[i] += step > 0 && side != last[i];
+            last[i] = side;
+        }
+        nevh_stepper_apply(fine->stepper, t0 + step * span / 20000,
+                           span / 20000, fine->q, fine->p);
+    }
+    size_t met = 0;
+    for (size_t i = 0; i < COMB; i++) {
+        ck_assert_uint_eq(count_of(&coarse->found, i, 1) +
+                              count_of(&coarse->found, i, -1),
+                          changes[i]);
+        met += changes[i] > 0;
+    }
+    ck_assert_uint_gt(met, 20);
+    for (size_t i = 1; i < coarse->found.count; i++)
+        ck_assert(coarse->found.at[i].t >= coarse->found.at[i - 1].t);
+    put_away(coarse);
+    put_away(fine);
+}
+END_TEST
+
+/* The largest difference of the points to those of a better orbit, in units of
+   what the states themselves differ by at the end of each of ten spans. */
+static double worst_of(const orbit *a, const orbit *b) {
+    double worst = 0;
+    ck_assert_uint_eq(a->found.count, b->found.count);
+    for (size_t i = 0; i < a->found.count; i++) {
+        ck_assert_int_eq(a->found.at[i].direction, b->found.at[i].direction);
+        worst = fmax(worst, fabs(a->found.at[i].q[1] - b->found.at[i].q[1]));
+        worst = fmax(worst, fabs(a->found.at[i].p[1] - b->found.at[i].p[1]));
+    }
+    return worst;
+}
+
+/* Points of two schemes agree to the error of the worse one's states. */
+START_TEST(points_are_as_good_as_states) {
+    static const struct {
+        const nevh_integrator *const *scheme;
+        double h;
+    } rough[] = {{&nevh_verlet, 0.1},    {&nevh_verlet, 0.02},
+                 {&nevh_midpoint, 0.05}, {&nevh_blanes_moan4, 0.2},
+                 {&nevh_gauss6, 0.3},    {&nevh_rk4, 0.1},
+                 {&nevh_gauss8, 0.2}};
+    const nevh_section is = {.value = coordinate, .direction = 1};
+    orbit *good = of_problem(&henon_heiles, nevh_gauss16, &is, 1);
+    orbit *a = of_problem(&henon_heiles, *rough[_i].scheme, &is, 1);
+    const double t0 = a->t;
+    double error = 0;
+    for (int span = 1; span <= 25; span++) {
+        ck_assert_int_eq(go(good, 0.25, t0 + 2 * span), NEVH_OK);
+        ck_assert_int_eq(go(a, rough[_i].h, t0 + 2 * span), NEVH_OK);
+        for (int k = 0; k < 2; k++) {
+            error = fmax(error, fabs(a->q[k] - good->q[k]));
+            error = fmax(error, fabs(a->p[k] - good->p[k]));
+        }
+    }
+    ck_assert_uint_ge(a->found.count, 5);
+    const double worst = worst_of(a, good);
+    ck_assert_double_le(worst, 3 * error);
+    ck_assert_double_ge(worst, error / 300);
+    for (size_t i = 0; i < a->found.count; i++)
+        ck_assert_double_le(fabs(a->found.at[i].q[0]), 1e-16);
+    put_away(good);
+    put_away(a);
+}
+END_TEST
+
+/* A scheme on a problem that it fits, with time in it where possible; the last
+   is gauss4 under a transform. */
+static int setting_count(void) {
+    return scheme_count() + 1;
+}
+static nevh_stepper *stepper_on(int i, nevh_system **system,
+                                nevh_system **transform, const problem **b) {
+    bool transformed = i == scheme_count();
+    const nevh_integrator *scheme =
+        transformed ? nevh_gauss4 : nevh_integrators()[i];
+    *b = transformed || !fits(scheme, &double_pendulum) ? &driven_pendulum
+                                                        : &double_pendulum;
+    *b = transformed ? &henon_heiles : *b;
+    *transform = transformed ? nevh_distance_power(2, 2, 0.5) : NULL;
+    *system = (*b)->make();
+    nevh_options options = {.t = (*b)->t0,
+                            .q = (*b)->q,
+                            .p = (*b)->p,
+                            .tolerance = tolerance_for(scheme),
+                            .transform = *transform};
+    nevh_stepper *s = nevh_stepper_new(*system, scheme, &options);
+    ck_assert_msg(!nevh_stepper_status(s), "%s", nevh_stepper_message(s));
+    return s;
+}
+
+/* No orbit changes when it is looked at; points are on the section, and those
+   in time where they are due, of every scheme. */
+START_TEST(every_scheme_the_same_orbit) {
+    const problem *b;
+    nevh_system *system, *transform;
+    nevh_stepper *seen = stepper_on(_i, &system, &transform, &b);
+    nevh_stepper *alone = nevh_stepper_copy(seen);
+    double level = b->q[0] + 0.02, q[2][MOST_DOF], p[2][MOST_DOF];
+    const double every = 0.17;
+    const nevh_section is[] = {{.value = coordinate, .data = &level},
+                               {.every = every}};
+    album found = {.n = b->n};
+    nevh_sections *x = nevh_sections_new(seen, is, 2, record, &found);
+    nevh_observer observer = {nevh_sections_observe, x, 1};
+    for (int i = 0; i < 2; i++) {
+        memcpy(q[i], b->q, sizeof q[i]);
+        memcpy(p[i], b->p, sizeof p[i]);
+    }
+    const double t0 = b->t0, ends[] = {t0, t0 + 3.1, t0 + 7.013};
+    for (int i = 1; i < 3; i++) {
+        nevh_run_until(alone, ends[i - 1], 0.05, ends[i], q[0], p[0], NULL, 0);
+        ck_assert_int_eq(nevh_run_until(seen, ends[i - 1], 0.05, ends[i], q[1],
+                                        p[1], &observer, 1),
+                         NEVH_OK);
+        ck_assert_mem_eq(q[0], q[1], b->n * sizeof(double));
+        ck_assert_mem_eq(p[0], p[1], b->n * sizeof(double));
+    }
+    ck_assert(nevh_stepper_counts(alone).values ==
+              nevh_stepper_counts(seen).values);
+    ck_assert_uint_gt(nevh_sections_counts(x).values, 0);
+    ck_assert_uint_eq(count_of(&found, 1, 0), 41);
+    ck_assert_uint_ge(found.count, 42);
+    size_t strobes = 0;
+    for (size_t i = 0; i < found.count; i++)
+        if (found.at[i].section == 0)
+            ck_assert_double_eq_tol(found.at[i].q[0], level, 1e-12);
+        else
+            ck_assert(found.at[i].t == t0 + (double)++strobes * every);
+    nevh_sections_free(x);
+    nevh_stepper_free(seen);
+    nevh_stepper_free(alone);
+    nevh_system_free(system);
+    nevh_system_free(transform);
+}
+END_TEST
+
+/* Those of a run that ends there, bit for bit; on a step, between steps, and
+   several within one. */
+START_TEST(strobes_are_states) {
+    static const double every[] = {0.125, 0.3, 0.01, 0.375};
+    const nevh_section is = {.every = every[_i]};
+    const problem *b = &driven_pendulum;
+    orbit *o = of_problem(b, nevh_verlet, &is, 1);
+    const double t0 = o->t, h = 0.125;
+    ck_assert_int_eq(go(o, h, t0 + 3), NEVH_OK);
+    ck_assert_uint_eq(o->found.count, (size_t)(3 / every[_i] + 1e-9));
+    for (size_t i = 0; i < o->found.count; i++) {
+        const double t = t0 + (double)(i + 1) * every[_i];
+        nevh_stepper *s = planned(b->make(), b, nevh_verlet, nevh_exact);
+        double q = b->q[0], p = b->p[0];
+        nevh_run_until(s, t0, h, t, &q, &p, NULL, 0);
+        ck_assert(o->found.at[i].t == t);
+        ck_assert_double_eq_tol(o->found.at[i].q[0], q, 1e-15);
+        ck_assert_double_eq_tol(o->found.at[i].p[0], p, 1e-15);
+        nevh_stepper_free(s);
+    }
+    put_away(o);
+}
+END_TEST
+
+/* Forward and backward again: the same points, in the same directions. */
+START_TEST(backward_the_same_points) {
+    const nevh_section is = {.value = coordinate, .direction = 1};
+    orbit *o = of_problem(&henon_heiles, nevh_gauss8, &is, 1);
+    const double t0 = o->t, t_end = t0 + 40.3;
+    ck_assert_int_eq(go(o, 0.1, t_end), NEVH_OK);
+    const size_t count = o->found.count;
+    ck_assert_uint_ge(count, 5);
+    ck_assert_int_eq(go(o, -0.1, t0), NEVH_OK);
+    ck_assert_uint_eq(o->found.count, 2 * count);
+    for (size_t i = 0; i < count; i++) {
+        size_t back = 2 * count - 1 - i;
+        ck_assert_int_eq(o->found.at[back].direction, 1);
+        ck_assert_double_eq_tol(o->found.at[back].t, o->found.at[i].t, 1e-9);
+        ck_assert_double_eq_tol(o->found.at[back].q[1], o->found.at[i].q[1],
+                                1e-9);
+    }
+    put_away(o);
+}
+END_TEST
+
+/* In pieces, one of which ends at a point, as in one run. */
+START_TEST(runs_that_go_on) {
+    const nevh_section is[] = {{.value = coordinate}, {.every = 0.7}};
+    orbit *whole = of_problem(&henon_heiles, nevh_gauss8, is, 2);
+    orbit *parts = of_problem(&henon_heiles, nevh_gauss8, is, 2);
+    const double t0 = whole->t;
+    ck_assert_int_eq(go(whole, 0.1, t0 + 60), NEVH_OK);
+    size_t crossing = 9;
+    while (whole->found.at[crossing].section != 0 ||
+           whole->found.at[crossing].t < t0 + 20)
+        crossing++;
+    const double ends[] = {1.1, 7, 7 + 1e-9, 13.37};
+    for (size_t i = 0; i < 4; i++)
+        ck_assert_int_eq(go(parts, 0.1, t0 + ends[i]), NEVH_OK);
+    while (parts->t < whole->found.at[crossing].t - 0.05)
+        ck_assert_int_eq(go(parts, 0.1, parts->t + 0.05), NEVH_OK);
+    ck_assert_int_eq(go(parts, 0.1, whole->found.at[crossing].t), NEVH_OK);
+    ck_assert_int_eq(go(parts, 0.1, t0 + 60), NEVH_OK);
+    ck_assert_uint_eq(parts->found.count, whole->found.count);
+    for (size_t i = 0; i < whole->found.count; i++) {
+        ck_assert_uint_eq(parts->found.at[i].section,
+                          whole->found.at[i].section);
+        ck_assert_double_eq_tol(parts->found.at[i].t, whole->found.at[i].t,
+                                1e-9);
+    }
+    put_away(whole);
+    put_away(parts);
+}
+END_TEST
+
+/* A value that is not a number, or fails, stops the run and says which. */
+START_TEST(values_that_fail) {
+    static int statuses[] = {NEVH_OK, NEVH_EFAILED};
+    const nevh_section is = {
+        .name = "broken", .value = breaking, .data = &statuses[_i]};
+    orbit *o = on_circle(0, &is, 1);
+    ck_assert_int_eq(go(o, 0.3, 10), NEVH_STOPPED);
+    ck_assert_int_eq(nevh_sections_status(o->sections),
+                     _i ? NEVH_EFAILED : NEVH_EDOM);
+    ck_assert_ptr_nonnull(
+        strstr(nevh_sections_message(o->sections), "section broken"));
+    ck_assert_ptr_nonnull(
+        strstr(nevh_sections_message(o->sections), "t = 1.2"));
+    ck_assert_double_eq_tol(o->q[0], cos(1.2), 1e-9);
+    put_away(o);
+}
+END_TEST
+
+/* One that fails at the start, and one that fails in between: beyond x = 0.999
+   there is no value. */
+static int edge(void *data, double t, const double q[], const double p[],
+                double *value) {
+    (void)data, (void)t, (void)p;
+    *value = sqrt(0.999 - q[0]) - 0.01;
+    return NEVH_OK;
+}
+START_TEST(values_that_fail_within_a_step) {
+    const nevh_section is = {.value = edge};
+    orbit *o = on_circle(-0.5, &is, 1);
+    ck_assert_int_eq(go(o, 1, 0.5), NEVH_STOPPED);
+    ck_assert_int_eq(nevh_sections_status(o->sections), NEVH_EDOM);
+    ck_assert_ptr_nonnull(
+        strstr(nevh_sections_message(o->sections), "section 0"));
+    put_away(o);
+    o = on_circle(0, &is, 1);
+    ck_assert_int_eq(go(o, 0.1, 1), NEVH_STOPPED);
+    ck_assert_ptr_nonnull(strstr(nevh_sections_message(o->sections), "t = 0"));
+    put_away(o);
+}
+END_TEST
+
+START_TEST(a_point_may_stop_the_run) {
+    const nevh_section is = {.value = coordinate};
+    orbit *o = on_circle(0, &is, 1);
+    o->found.stop_at = 3;
+    ck_assert_int_eq(go(o, 0.3, 100), NEVH_STOPPED);
+    ck_assert_int_eq(nevh_sections_status(o->sections), NEVH_STOPPED);
+    ck_assert_uint_eq(o->found.count, 3);
+    ck_assert_uint_eq(nevh_stepper_taken(o->stepper), 27);
+    put_away(o);
+}
+END_TEST
+
+START_TEST(sections_that_make_no_sense) {
+    const nevh_section wrong[] = {
+        {.every = 0},
+        {.every = -1},
+        {.every = INFINITY},
+        {.value = coordinate, .every = 1},
+        {.value = coordinate, .direction = 2},
+        {.value = coordinate, .period = -1},
+        {.value = coordinate, .period = NAN},
+    };
+    orbit *o = on_circle(0, NULL, 0);
+    nevh_sections *x = nevh_sections_new(o->stepper, &wrong[_i], 1, record, o);
+    nevh_observer observer = {nevh_sections_observe, x, 1};
+    ck_assert_int_eq(nevh_sections_status(x), NEVH_EINVAL);
+    ck_assert_ptr_nonnull(strstr(nevh_sections_message(x), "section 0"));
+    ck_assert_int_eq(nevh_run(o->stepper, 0, 0.1, 3, o->q, o->p, &observer, 1),
+                     NEVH_STOPPED);
+    nevh_sections_free(x);
+    put_away(o);
+}
+END_TEST
+
+START_TEST(refusals) {
+    const nevh_section is = {.value = coordinate};
+    const double pair[] = {1, 1};
+    nevh_system *s = nevh_oscillator_model->system(&unit_spring);
+    nevh_options options = {.q = pair, .p = pair, .width = 2};
+    nevh_stepper *two = nevh_stepper_new(s, nevh_verlet, &options);
+    nevh_stepper *none = nevh_stepper_new(s, NULL, NULL);
+    nevh_sections *x = nevh_sections_new(two, &is, 1, record, NULL);
+    nevh_sections *y = nevh_sections_new(none, &is, 1, record, NULL);
+    ck_assert_int_eq(nevh_sections_status(x), NEVH_EINVAL);
+    ck_assert_int_eq(nevh_sections_status(y), NEVH_EINVAL);
+    ck_assert_str_eq(nevh_sections_message(y), nevh_stepper_message(none));
+    ck_assert_int_eq(nevh_sections_status(NULL), NEVH_ENOMEM);
+    nevh_sections_free(NULL);
+    nevh_sections_free(x);
+    nevh_sections_free(y);
+    nevh_stepper_free(two);
+    nevh_stepper_free(none);
+    nevh_system_free(s);
+    orbit *o = on_circle(0, &is, 1);
+    o->observer.every = 2;
+    ck_assert_int_eq(go(o, 0.1, 1), NEVH_STOPPED);
+    ck_assert_int_eq(nevh_sections_status(o->sections), NEVH_EINVAL);
+    put_away(o);
+}
+END_TEST
+
+/* Periods without number in a step end in a message, not in a search without
+   end. */
+START_TEST(too_many_periods) {
+    const nevh_section is = {.value = coordinate, .period = 1e-300};
+    orbit *o = on_circle(0, &is, 1);
+    ck_assert_int_eq(go(o, 0.1, 1), NEVH_STOPPED);
+    ck_assert_int_eq(nevh_sections_status(o->sections), NEVH_EFAILED);
+    put_away(o);
+}
+END_TEST
+
+int main(void) {
+    Suite *s = suite_create("section");
+    TCase *found = tcase_create("found"), *limits = tcase_create("limits");
+    tcase_add_loop_test(found, an_oscillator_crosses_twice_a_period, 0, 3);
+    tcase_add_loop_test(found, touching_and_grazing, 0, 12);
+    tcase_add_loop_test(found, zeros_of_any_multiplicity, 0, 4);
+    tcase_add_loop_test(found, two_and_three_within_one_step, 0, 7);
+    tcase_add_test(found, zeros_on_steps);
+    tcase_add_loop_test(found, a_start_on_a_zero, 0, 3);
+    tcase_add_test(found, zeros_that_touch_on_steps);
+    tcase_add_loop_test(found, multiples_of_a_period, 0, 4);
+    tcase_add_test(found, no_crossing_at_jumps);
+    tcase_add_test(found, none_is_missed);
+    tcase_add_loop_test(found, points_are_as_good_as_states, 0, 7);
+    tcase_add_loop_test(found, every_scheme_the_same_orbit, 0, setting_count());
+    tcase_add_loop_test(found, strobes_are_states, 0, 4);
+    tcase_add_test(found, backward_the_same_points);
+    tcase_add_test(found, runs_that_go_on);
+    suite_add_tcase(s, found);
+    tcase_add_loop_test(limits, values_that_fail, 0, 2);
+    tcase_add_test(limits, values_that_fail_within_a_step);
+    tcase_add_test(limits, a_point_may_stop_the_run);
+    tcase_add_loop_test(limits, sections_that_make_no_sense, 0, 7);
+    tcase_add_test(limits, refusals);
+    tcase_add_test(limits, too_many_periods);
+    suite_add_tcase(s, limits);
+    return run_suite(s);
+}

@@ -1,0 +1,290 @@
+/* nevh section: points of Poincare and stroboscopic sections.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "plot.h"
+#include <math.h>
+#include <nevh/section.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A section of the scene and its points, of 2 + items numbers each: t,
+   direction, items. */
+typedef struct {
+    nevh_scene *scene;
+    size_t number, points, room;
+    const nevh_scene_section *is;
+    double *periods; /* of items that are coordinates; 0: none */
+    double *numbers;
+} series;
+
+typedef struct {
+    const plan *plan;
+    series *all;
+    size_t count;
+    bool stopped; /* by the scene's own condition */
+    double t_stop;
+} job;
+
+/* Of what is shown: that of the coordinate that it is. */
+static double period_of(nevh_scene *scene, const char *item) {
+    for (size_t k = 0; k < nevh_scene_dof(scene); k++)
+        if (strcmp(nevh_scene_coordinate(scene, k), item) == 0)
+            return nevh_scene_period(scene, k);
+    return 0;
+}
+
+/* Into (-period/2, period/2]. */
+static double wrapped(double x, double period) {
+    if (period == 0)
+        return x;
+    x = remainder(x, period);
+    return x <= -period / 2 ? x + period : x;
+}
+
+static double *new_point(series *s) {
+    size_t width = 2 + s->is->items;
+    if (s->points == s->room) {
+        s->room = s->room ? 2 * s->room : 64;
+        double *more = tool_allocate(s->room * width, sizeof *more);
+        if (s->points)
+            memcpy(more, s->numbers, s->points * width * sizeof *more);
+        free(s->numbers);
+        s->numbers = more;
+    }
+    return s->numbers + width * s->points++;
+}
+
+static int keep(void *data, const nevh_point *point) {
+    job *j = data;
+    series *s = &j->all[point->section];
+    double *numbers = new_point(s), *items = numbers + 2;
+    numbers[0] = point->t;
+    numbers[1] = point->direction;
+    if (nevh_scene_section_items(s->scene, s->number, point->t, point->q,
+                                 point->p, items)) {
+        s->points--;
+        return 1;
+    }
+    for (size_t i = 0; i < s->is->items; i++)
+        items[i] = wrapped(items[i], s->periods[i]);
+    return 0;
+}
+
+static int value(void *data, double t, const double q[], const double p[],
+                 double *result) {
+    const series *s = data;
+    return nevh_scene_section_cross(s->scene, s->number, t, q, p, result);
+}
+
+static int stop(void *data, size_t step, double t, const double q[],
+                const double p[]) {
+    job *j = data;
+    (void)step;
+    j->t_stop = t;
+    return nevh_scene_stop_reached(j->plan->scene, t, q, p, &j->stopped) ||
+           j->stopped;
+}
+
+static void add_series(job *j, size_t number) {
+    series *s = &j->all[j->count++];
+    s->scene = j->plan->scene;
+    s->number = number;
+    s->is = nevh_scene_section_at(s->scene, number);
+    s->periods = tool_allocate(s->is->items, sizeof *s->periods);
+    for (size_t i = 0; i < s->is->items; i++)
+        s->periods[i] = period_of(s->scene, s->is->item[i]);
+}
+
+static bool asked_for(const list *names, const char *name) {
+    for (size_t i = 0; i < names->count; i++)
+        if (strcmp(names->item[i], name) == 0)
+            return true;
+    return names->count == 0;
+}
+
+static int check_names(const plan *p, const list *names) {
+    list known = {0};
+    int status = TOOL_OK;
+    size_t count = nevh_scene_section_count(p->scene);
+    for (size_t i = 0; i < count; i++)
+        list_add(&known, nevh_scene_section_at(p->scene, i)->name);
+    for (size_t i = 0; !status && i < names->count; i++)
+        if (!asked_for(&known, names->item[i]) || known.count == 0)
+            status = tool_unknown("section", names->item[i], &known);
+    if (!status && count == 0)
+        status = tool_refuse("%s: the scene has no [sections], as: swing = "
+                             "when phi = 0, rising: phi, p_phi",
+                             p->name);
+    list_free(&known);
+    return status;
+}
+
+static int choose(job *j, const plan *p, const options *o) {
+    size_t count = nevh_scene_section_count(p->scene);
+    j->plan = p;
+    if (check_names(p, &o->sections))
+        return TOOL_USAGE;
+    j->all = tool_allocate(count, sizeof *j->all);
+    for (size_t i = 0; i < count; i++)
+        if (asked_for(&o->sections, nevh_scene_section_at(p->scene, i)->name))
+            add_series(j, i);
+    return TOOL_OK;
+}
+
+static void forget(job *j) {
+    for (size_t i = 0; i < j->count; i++) {
+        free(j->all[i].periods);
+        free(j->all[i].numbers);
+    }
+    free(j->all);
+}
+
+static nevh_sections *watch(job *j, const nevh_stepper *s) {
+    nevh_section *is = tool_allocate(j->count, sizeof *is);
+    for (size_t i = 0; i < j->count; i++) {
+        const nevh_scene_section *from = j->all[i].is;
+        is[i] = from->every > 0
+                    ? (nevh_section){.name = from->name, .every = from->every}
+                    : (nevh_section){.name = from->name,
+                                     .value = value,
+                                     .data = &j->all[i],
+                                     .direction = from->direction,
+                                     .period = from->period};
+    }
+    nevh_sections *x = nevh_sections_new(s, is, j->count, keep, j);
+    free(is);
+    return x;
+}
+
+/* Why the run did not come to its end, if it failed. */
+static int explain(const job *j, int status, const nevh_stepper *s,
+                   const nevh_sections *x) {
+    const char *scene = nevh_scene_message(j->plan->scene);
+    int looking = nevh_sections_status(x);
+    if (!status || (j->stopped && !looking))
+        return TOOL_OK;
+    if (*scene)
+        fprintf(stderr, "%s\n", scene);
+    else
+        tool_refuse("%s: %s", j->plan->name,
+                    looking ? nevh_sections_message(x)
+                            : nevh_stepper_message(s));
+    return TOOL_FAILED;
+}
+
+static int run(job *j, nevh_stepper *s) {
+    const plan *p = j->plan;
+    nevh_sections *x = watch(j, s);
+    nevh_observer observers[2] = {{nevh_sections_observe, x, 1}, {stop, j, 1}};
+    size_t count = nevh_scene_stops(p->scene) ? 2 : 1;
+    int status = nevh_sections_status(x);
+    if (!status)
+        status = nevh_run_until(s, p->run->t_start, p->dt[0], p->t_end, p->q,
+                                p->p, observers, count);
+    status = explain(j, status, s, x);
+    nevh_sections_free(x);
+    return status;
+}
+
+/* The columns that sections show, each once. */
+static void list_items(const job *j, list *items) {
+    for (size_t i = 0; i < j->count; i++)
+        for (size_t k = 0; k < j->all[i].is->items; k++)
+            if (items->count == 0 || !asked_for(items, j->all[i].is->item[k]))
+                list_add(items, j->all[i].is->item[k]);
+}
+
+static double number_of(const series *s, const double *point,
+                        const char *item) {
+    for (size_t k = 0; k < s->is->items; k++)
+        if (strcmp(s->is->item[k], item) == 0)
+            return point[2 + k];
+    return NAN;
+}
+
+static void fill(table *t, const job *j, const list *items) {
+    for (size_t i = 0; i < j->count; i++, table_group(t)) {
+        const series *s = &j->all[i];
+        for (size_t k = 0; k < s->points; k++) {
+            const double *point = s->numbers + k * (2 + s->is->items);
+            table_text(t, s->is->name);
+            table_number(t, point[0]);
+            table_number(t, point[1]);
+            for (size_t c = 0; c < items->count; c++)
+                table_number(t, number_of(s, point, items->item[c]));
+        }
+    }
+}
+
+static void note(const job *j, const nevh_integrator *scheme, list *notes) {
+    const plan *p = j->plan;
+    plan_notes(p, notes);
+    list_print(notes,
+               "%s at dt = %.9g: the first integrator that fits, and "
+               "the first dt",
+               nevh_integrator_name(scheme), p->dt[0]);
+    for (size_t i = 0; i < j->count; i++)
+        list_print(notes, "section %s: %zu points", j->all[i].is->name,
+                   j->all[i].points);
+    if (j->stopped)
+        list_print(notes, "stopped at t = %.9g: %s", j->t_stop,
+                   nevh_scene_stop_text(p->scene));
+}
+
+static int draw(const job *j, const options *o) {
+    plot *to = NULL;
+    for (size_t i = 0; i < j->count; i++)
+        section_plot(&to, j->plan, j->all[i].is, j->all[i].points,
+                     j->all[i].numbers);
+    int status = plot_write(to, o);
+    plot_free(to);
+    return status;
+}
+
+static options with_format(const options *o) {
+    options as = *o;
+    as.format = o->formatted ? o->format : FORMAT_CSV;
+    return as;
+}
+
+static int print(const job *j, const nevh_integrator *scheme, const options *o,
+                 int status) {
+    static const char *const columns[] = {"section", "t", "direction"};
+    page result = {.table = table_new()};
+    options as = with_format(o);
+    list items = {0};
+    if (!o->quiet)
+        note(j, scheme, &result.before);
+    for (size_t i = 0; i < 3; i++)
+        table_column(result.table, columns[i]);
+    list_items(j, &items);
+    for (size_t i = 0; i < items.count; i++)
+        table_column(result.table, items.item[i]);
+    fill(result.table, j, &items);
+    status = output_page(&as, &result, status);
+    list_free(&items);
+    page_free(&result);
+    return status;
+}
+
+int section(const options *o) {
+    plan p;
+    job j = {0};
+    const nevh_integrator *scheme;
+    nevh_stepper *s = NULL;
+    options as = with_format(o);
+    int status = plan_make(&p, o);
+    if (!status)
+        status = choose(&j, &p, o);
+    if (!status)
+        status = plot_check(&as);
+    if (!status && !(s = plan_first(&p, &scheme)))
+        status = TOOL_USAGE;
+    if (!status)
+        status = print(&j, scheme, o, run(&j, s));
+    if (plot_wanted(o) && status == TOOL_OK)
+        status = draw(&j, o);
+    nevh_stepper_free(s);
+    forget(&j);
+    plan_free(&p);
+    return status;
+}
