@@ -156,7 +156,7 @@ static layout lay_out(const plot *p, const target *t) {
     size_t longest, lines = legend_lines(p, &longest);
     layout l = {.letter = text ? 1 : 8, .line = text ? 1 : 18};
     l.legend = lines ? l.letter * (double)(longest + 8) : 0;
-    l.left = (text ? 9 : 11) * l.letter;
+    l.left = (text ? 9 : 12) * l.letter;
     l.right = 3 * l.letter;
     l.top = (text || has_headings(p) ? 1.7 : 0.5) * l.line;
     l.bottom = (text ? 3 : 4) * l.line;
