@@ -9,6 +9,7 @@ nevhinclude_HEADERS = \
 	include/nevh/models.h \
 	include/nevh/nevh.h \
 	include/nevh/probe.h \
+	include/nevh/reference.h \
 	include/nevh/run.h \
 	include/nevh/scene.h \
 	include/nevh/section.h \

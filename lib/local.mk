@@ -13,6 +13,10 @@ libnevh_core_la_SOURCES = \
 	lib/system/probe_private.h \
 	lib/system/probe.c \
 	lib/system/kinetic.c \
+	lib/system/motion_private.h \
+	lib/system/normal_mode.c \
+	lib/system/swing.c \
+	lib/system/ellipse.c \
 	lib/gradient/field_private.h \
 	lib/gradient/explore_private.h \
 	lib/gradient/methods.c \
@@ -90,6 +94,14 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/trend_private.h \
 	lib/diagnose/trend.c \
 	lib/diagnose/symplecticity.c \
+	lib/diagnose/exact_private.h \
+	lib/diagnose/exact.c \
+	lib/diagnose/recognise.c \
+	lib/diagnose/reference_private.h \
+	lib/diagnose/reference.c \
+	lib/diagnose/reference_run.c \
+	lib/diagnose/reference_walk.c \
+	lib/diagnose/state_error.c \
 	lib/scene/scene_private.h \
 	lib/scene/lines.c \
 	lib/scene/piece.c \

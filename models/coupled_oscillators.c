@@ -6,6 +6,7 @@
 
    each q is measured from where its mass rests, both to the same side. */
 #include "models_private.h"
+#include "system/motion_private.h"
 #include <math.h>
 
 NEVH_BODY(coupling, void, {

@@ -24,11 +24,6 @@ extern const nevh_term nevh__cosine_term;  /* -c0 cos q, effect "gravity" */
 nevh_system *nevh__model_system(size_t n, const nevh_term terms[],
                                 size_t count);
 
-/* Carries one normal mode, x'' = -w2 x with w2 of any sign, on by t.  NaN when
-   t is so long that not one digit of the phase would be known. */
-void nevh__normal_mode(long double w2, long double t, long double *x,
-                       long double *v);
-
 /* Rounds a state to double.  Returns NEVH_OK; NEVH_EDOM when it is not finite,
    and q and p are left as they were. */
 int nevh__model_state(size_t n, const long double from_q[],

@@ -2,7 +2,7 @@
    terms that other models are made of, too.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "models_private.h"
-#include <float.h>
+#include "system/motion_private.h"
 #include <math.h>
 
 NEVH_BODY(kinetic, void, { return nevh_p(0) * nevh_p(0) / (2 * nevh_c(0)); })
@@ -50,23 +50,6 @@ const nevh_term nevh__spring_term = {.effect = "spring",
                                      .nc = 2,
                                      NEVH_FORMS(spring),
                                      .gradient = spring_gradient};
-
-void nevh__normal_mode(long double w2, long double t, long double *x,
-                       long double *v) {
-    long double w = sqrtl(fabsl(w2)), wt = w * t, x0 = *x, v0 = *v;
-    long double c = 1, s = t; /* s = sin(wt)/w */
-    if (!(fabsl(wt) < 1 / LDBL_EPSILON)) {
-        c = s = NAN;
-    } else if (w2 > 0) {
-        c = cosl(wt);
-        s = sinl(wt) / w;
-    } else if (w2 < 0) {
-        c = coshl(wt);
-        s = sinhl(wt) / w;
-    }
-    *x = x0 * c + v0 * s;
-    *v = v0 * c - w2 * x0 * s;
-}
 
 static nevh_system *oscillator_system(const void *params) {
     const nevh_oscillator *a = params;

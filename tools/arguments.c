@@ -65,6 +65,11 @@ int read_dt(options *o, const char *argument) {
     return read_numbers("dt", argument, &o->dt, &o->dts, read_positive);
 }
 
+int read_tolerance(options *o, const char *argument) {
+    return read_numbers("tolerance", argument, &o->tolerance, &o->tolerances,
+                        read_positive);
+}
+
 int read_at(options *o, const char *argument) {
     return read_numbers("at", argument, &o->at, &o->ats, read_number);
 }

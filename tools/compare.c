@@ -11,10 +11,10 @@
 typedef struct {
     row *row;
     size_t count;
-} rows;
+} row_list;
 
-static void add_row(const plan *p, rows *r, size_t gradient, const char *name,
-                    double dt, double tolerance) {
+static void add_row(const plan *p, row_list *r, size_t gradient,
+                    const char *name, double dt, double tolerance) {
     bool transformed;
     const nevh_integrator *scheme = plan_scheme(name, &transformed);
     bool same = r->count &&
@@ -36,7 +36,7 @@ static bool adapts(const char *name) {
 }
 
 /* Adaptive schemes land on the ends of the longest dt. */
-static void add_adaptive(const plan *p, rows *r, size_t gradient) {
+static void add_adaptive(const plan *p, row_list *r, size_t gradient) {
     double longest = 0;
     for (size_t j = 0; j < p->dts; j++)
         longest = fmax(longest, p->dt[j]);
@@ -47,10 +47,10 @@ static void add_adaptive(const plan *p, rows *r, size_t gradient) {
                         p->tolerance[k]);
 }
 
-static rows list_rows(const plan *p) {
+static row_list list_rows(const plan *p) {
     size_t most =
         p->gradients.count * p->integrators.count * (p->dts + p->tolerances);
-    rows r = {tool_allocate(most, sizeof *r.row), 0};
+    row_list r = {tool_allocate(most, sizeof *r.row), 0};
     for (size_t g = 0; g < p->gradients.count; g++) {
         for (size_t j = 0; j < p->dts; j++)
             for (size_t i = 0; i < p->integrators.count; i++)
@@ -62,7 +62,7 @@ static rows list_rows(const plan *p) {
 }
 
 /* Where stderr is a terminal and the work takes longer than a second. */
-static void progress(const rows *r, size_t i, double seconds, bool last) {
+static void progress(const row_list *r, size_t i, double seconds, bool last) {
     if (seconds < 1 || !isatty(STDERR_FILENO))
         return;
     if (last)
@@ -73,7 +73,7 @@ static void progress(const rows *r, size_t i, double seconds, bool last) {
     fflush(stderr);
 }
 
-static void run_rows(const plan *p, rows *r, bool quiet) {
+static void run_rows(const plan *p, row_list *r, bool quiet) {
     time_t start = time(NULL);
     for (size_t i = 0; i < r->count; i++) {
         if (!quiet)
@@ -90,11 +90,11 @@ static bool measures_order(const row *r) {
 }
 
 /* From the row of the same scheme and the dt before. */
-static void observe_orders(rows *r) {
-    for (size_t i = 0; i < r->count; i++)
+void observe_orders(row rows[], size_t count) {
+    for (size_t i = 0; i < count; i++)
         for (size_t k = i; k-- > 0;) {
-            row *b = &r->row[i];
-            const row *a = &r->row[k];
+            row *b = &rows[i];
+            const row *a = &rows[k];
             if (a->integrator != b->integrator || a->gradient != b->gradient)
                 continue;
             if (measures_order(a) && measures_order(b) && a->dt != b->dt)
@@ -107,60 +107,6 @@ static void observe_orders(rows *r) {
 static void columns(table *t, const char *const names[], size_t count) {
     for (size_t i = 0; i < count; i++)
         table_column(t, names[i]);
-}
-
-static double when(bool condition, double value) {
-    return condition ? value : NAN;
-}
-
-static void add_record(table *t, const plan *p, const row *r) {
-    const nevh_energy_report *e = &r->energy;
-    table_text(t, p->name);
-    table_text(t, r->integrator);
-    table_number(t, r->order);
-    table_text(t, nevh_claim_name(nevh_integrator_symplectic(r->scheme)));
-    table_text(t, r->gradient);
-    table_number(t, r->dt);
-    table_number(t, when(r->ran, (double)r->steps));
-    table_text(t, r->status);
-    table_number(t, when(r->ran, e->max));
-    table_number(t, when(r->ran, e->rms));
-    table_number(t, when(r->ran, e->final));
-    table_number(t, when(r->ran, e->drift));
-    table_text(t, NULL);
-    table_number(t, when(r->ran, r->counts.hamiltonians));
-    table_number(t, when(r->ran, (double)r->counts.gradients));
-    table_number(t, when(r->ran, (double)r->counts.sweeps));
-    table_number(t, when(r->ran, r->seconds));
-    table_text(t, r->ran ? nevh_verdict_name(e->verdict) : NULL);
-    table_number(t, r->observed_order);
-}
-
-static table *records(const plan *p, const rows *r) {
-    static const char *const names[] = {"scene",
-                                        "integrator",
-                                        "order",
-                                        "symplectic",
-                                        "gradient",
-                                        "dt",
-                                        "steps",
-                                        "status",
-                                        "max_energy_error",
-                                        "rms_energy_error",
-                                        "final_energy_error",
-                                        "energy_drift",
-                                        "state_error",
-                                        "hamiltonian_evals",
-                                        "gradient_evals",
-                                        "sweeps",
-                                        "seconds",
-                                        "verdict",
-                                        "observed_order"};
-    table *t = table_new();
-    columns(t, names, sizeof names / sizeof *names);
-    for (size_t i = 0; i < r->count; i++)
-        add_record(t, p, &r->row[i]);
-    return t;
 }
 
 static void show_count(table *t, double count) {
@@ -201,7 +147,7 @@ static void show_row(table *t, const plan *p, const row *r) {
     table_text(t, r->failed ? "failed" : "refused");
 }
 
-static table *shown(const plan *p, const rows *r) {
+static table *shown(const plan *p, const row_list *r) {
     table *t = table_new();
     const char *unit = nevh_scene_label(p->scene, "t");
     char *dt = text_print(*unit ? "dt/%s" : "dt%s", unit);
@@ -240,15 +186,16 @@ static void note_gradients(const plan *p, list *notes) {
     }
 }
 
-static void note_scale(const plan *p, const rows *r, list *notes) {
+static void note_scale(const plan *p, const row rows[], size_t count,
+                       list *notes) {
     const char *unit = nevh_scene_label(p->scene, "energy");
-    for (size_t i = 0; i < r->count; i++)
-        if (r->row[i].ran) {
+    for (size_t i = 0; i < count; i++)
+        if (rows[i].ran) {
             list_print(notes,
                        "energy_scale: %.9g%s%s (errors are relative to "
                        "it; H at the start is %.9g)",
-                       r->row[i].energy.scale, *unit ? " " : "", unit,
-                       r->row[i].energy.initial);
+                       rows[i].energy.scale, *unit ? " " : "", unit,
+                       rows[i].energy.initial);
             return;
         }
 }
@@ -280,7 +227,8 @@ static bool has_tolerance(const plan *p, const row *r) {
 }
 
 /* What is to be said where it holds for a row. */
-static void note_rows(const plan *p, const rows *r, list *notes) {
+static void note_rows(const plan *p, const row rows[], size_t count,
+                      list *notes) {
     static const struct {
         bool (*holds)(const plan *, const row *);
         const char *text;
@@ -291,8 +239,8 @@ static void note_rows(const plan *p, const rows *r, list *notes) {
                 {has_tolerance, "adaptive schemes have a row a tolerance of "
                                 "[run], in its order; dt is their mean step"}};
     for (size_t k = 0; k < sizeof note / sizeof *note; k++)
-        for (size_t i = 0; i < r->count; i++)
-            if (note[k].holds(p, &r->row[i])) {
+        for (size_t i = 0; i < count; i++)
+            if (note[k].holds(p, &rows[i])) {
                 list_add(notes, note[k].text);
                 break;
             }
@@ -307,8 +255,17 @@ static void note_settings(const options *o, list *notes) {
             list_print(notes, "set: %s", o->settings.item[i] + 1);
 }
 
+void row_notes(const options *o, const plan *p, const row rows[], size_t count,
+               list *notes) {
+    note_settings(o, notes);
+    note_gradients(p, notes);
+    note_scale(p, rows, count, notes);
+    note_balance(p, notes);
+    note_rows(p, rows, count, notes);
+}
+
 /* Messages of rows without numbers, each once. */
-static void list_reasons(const rows *r, list *words) {
+static void list_reasons(const row_list *r, list *words) {
     for (size_t i = 0; i < r->count; i++) {
         bool told = r->row[i].ran;
         for (size_t k = 0; !told && k < i; k++)
@@ -319,25 +276,21 @@ static void list_reasons(const rows *r, list *words) {
     }
 }
 
-static page make_page(const options *o, const plan *p, const rows *r) {
+static page make_page(const options *o, const plan *p, const row_list *r) {
     page result = {0};
     bool is_table = o->format == FORMAT_TABLE;
-    result.table = is_table ? shown(p, r) : records(p, r);
+    result.table = is_table ? shown(p, r) : records(p, r->row, r->count);
     if (is_table && o->quiet)
         return result;
     plan_notes(p, &result.before);
-    note_settings(o, &result.before);
-    note_gradients(p, &result.before);
-    note_scale(p, r, &result.before);
-    note_balance(p, &result.before);
-    note_rows(p, r, &result.before);
+    row_notes(o, p, r->row, r->count, &result.before);
     verdict_words(p, r->row, r->count, &result.after);
     if (is_table)
         list_reasons(r, &result.after);
     return result;
 }
 
-static void free_rows(rows *r) {
+static void free_rows(row_list *r) {
     for (size_t i = 0; i < r->count; i++) {
         free(r->row[i].status);
         free(r->row[i].errors);
@@ -350,11 +303,11 @@ static int compare_plan(const options *o, const plan *p) {
     int status = TOOL_OK;
     if (plot_check(o) || output_open(&out, o->file))
         return TOOL_USAGE;
-    rows r = list_rows(p);
+    row_list r = list_rows(p);
     for (size_t i = 0; plot_wanted(o) && i < r.count; i++)
         r.row[i].errors = envelope_new(p->run->t_start, p->t_end);
     run_rows(p, &r, o->quiet);
-    observe_orders(&r);
+    observe_orders(r.row, r.count);
     page result = make_page(o, p, &r);
     page_print(&result, o->format, out.stream);
     page_free(&result);

@@ -11,6 +11,19 @@ tools_nevh_SOURCES = \
 	tools/scenes.c \
 	tools/plan.c \
 	tools/row.c \
+	tools/records.c \
+	tools/ladder.h \
+	tools/grid.c \
+	tools/fit.c \
+	tools/ladder.c \
+	tools/cost_private.h \
+	tools/cost.c \
+	tools/cost_table.c \
+	tools/cost_price.c \
+	tools/cost_words.c \
+	tools/recommend_private.h \
+	tools/recommend.c \
+	tools/advice.c \
 	tools/compare.c \
 	tools/verdict.c \
 	tools/effects.c \
@@ -32,7 +45,8 @@ tools_nevh_SOURCES = \
 	tools/thinned.h \
 	tools/thinned.c \
 	tools/run_plot.c \
-	tools/section_plot.c
+	tools/section_plot.c \
+	tools/cost_plot.c
 tools_nevh_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE \
 	-DNEVH_SCENES='"$(scenesdir)"'
 tools_nevh_LDADD = libnevh.la

@@ -12,6 +12,10 @@ static const struct {
 } known[] = {
     {"compare", compare, FOR_COMPARE, "SCENE",
      "energy errors, a row an integrator and dt, and the verdict in words"},
+    {"cost", cost, FOR_COST, "SCENE",
+     "what a digit costs: target errors, a row an integrator"},
+    {"recommend", recommend, FOR_RECOMMEND, "SCENE",
+     "the cheapest integrator, gradient and step that keep an error"},
     {"check", check, FOR_CHECK, "SCENE",
      "errors, structure of H with evidence, and which schemes fit"},
     {"effects", effects, FOR_EFFECTS, "SCENE",

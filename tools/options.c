@@ -7,9 +7,10 @@
 #include <string.h>
 
 enum {
-    OF_SCENES = FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_SECTION,
+    OF_COST = FOR_COST | FOR_GRADIENTS | FOR_RECOMMEND,
+    OF_SCENES = FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_SECTION | OF_COST,
     OF_TABLES = OF_SCENES | FOR_LIST,
-    OF_PLOTS = FOR_COMPARE | FOR_SECTION
+    OF_PLOTS = FOR_COMPARE | FOR_SECTION | FOR_COST
 };
 
 /* The commands that each option is for, as an or. */
@@ -25,11 +26,21 @@ static const struct {
     {"integrators", "A,B", OF_SCENES, read_integrators,
      "instead of the scene's"},
     {"dt", "A,B", OF_SCENES, read_dt, "time steps, instead of the scene's"},
+    {"tolerance", "A,B", FOR_COMPARE, read_tolerance,
+     "of adaptive schemes, instead of the scene's"},
     {"t-end", "T", OF_SCENES, read_t_end, "the end, instead of the scene's"},
     {"gradient", "A,B", OF_SCENES, read_gradient,
      "central2, central4, ...; see nevh list gradients"},
     {"gradient-step", "D", OF_SCENES, read_gradient_step,
      "half-spread of the differences; chosen by trial if not given"},
+    {"by", "energy|state", FOR_COST, read_by,
+     "which error digits are of; energy if not given"},
+    {"energy-error", "X", FOR_RECOMMEND, read_energy_error,
+     "the largest that the energy may have"},
+    {"state-error", "X", FOR_RECOMMEND, read_state_error,
+     "the largest that the orbit may have"},
+    {"repeat", "N", FOR_COMPARE | FOR_COST | FOR_RECOMMEND, read_repeat,
+     "timed runs, of which the median counts"},
     {"portable", NULL, OF_SCENES, read_portable,
      "no vector code: the same digits with the same libm"},
     {"plot", "FILE", OF_PLOTS, read_plot,
@@ -130,4 +141,5 @@ void options_free(options *o) {
     list_free(&o->sections);
     free(o->dt);
     free(o->at);
+    free(o->tolerance);
 }

@@ -100,8 +100,8 @@ static void take_lists(plan *p, const options *o) {
         default_integrators(p);
     p->dt = o->dts ? o->dt : p->run->dt;
     p->dts = o->dts ? o->dts : p->run->dts;
-    p->tolerance = p->run->tolerance;
-    p->tolerances = p->run->tolerances;
+    p->tolerance = o->tolerances ? o->tolerance : p->run->tolerance;
+    p->tolerances = o->tolerances ? o->tolerances : p->run->tolerances;
 }
 
 static void take_settings(plan *p, const options *o) {
@@ -111,6 +111,7 @@ static void take_settings(plan *p, const options *o) {
     p->gradient_step =
         o->gradient_step > 0 ? o->gradient_step : p->run->gradient_step;
     p->portable = o->portable;
+    p->repeats = o->repeats;
     p->friction = nevh_system_friction(p->system, NULL);
     p->time = !(nevh_system_traits(p->system) & NEVH_AUTONOMOUS);
     p->balance = p->friction || p->time;

@@ -82,22 +82,35 @@ static nevh_counts difference(nevh_counts a, nevh_counts b) {
     return a;
 }
 
-/* The median of a few runs that nobody watches. */
-static void measure(const work *w) {
-    double seconds[REPEATS], sum = 0;
-    size_t count = 0;
+static double cpu_seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static void set_seconds(row *r, double seconds[], size_t count) {
+    qsort(seconds, count, sizeof *seconds, by_size);
+    r->seconds = seconds[count / 2];
+    r->spread = (seconds[(3 * count) / 4] - seconds[count / 4]) / 2;
+}
+
+/* A few runs that nobody watches: as many as asked for, or until their time is
+   enough. */
+static void measure(const work *w, size_t repeats) {
+    size_t most = repeats ? repeats : REPEATS, count = 0;
+    double *seconds = tool_allocate(most, sizeof *seconds), sum = 0;
     nevh_stepper *s = new_stepper(w, false);
     nevh_counts before = nevh_stepper_counts(s);
-    while (count < REPEATS && sum < time_enough) {
+    while (count < most && (repeats || sum < time_enough)) {
         nevh_stepper_reset(s);
-        clock_t start = clock();
+        double start = cpu_seconds();
         run(w, s, NULL, 0);
-        sum += seconds[count] = (double)(clock() - start) / CLOCKS_PER_SEC;
+        sum += seconds[count] = cpu_seconds() - start;
         if (count++ == 0)
             w->row->counts = difference(nevh_stepper_counts(s), before);
     }
-    qsort(seconds, count, sizeof *seconds, by_size);
-    w->row->seconds = seconds[count / 2];
+    set_seconds(w->row, seconds, count);
+    free(seconds);
     nevh_stepper_free(s);
 }
 
@@ -144,21 +157,40 @@ static bool refused(row *r, const nevh_stepper *s) {
     return true;
 }
 
+static work work_new(const plan *p, row *r) {
+    return (work){p, r, tool_allocate(p->n, sizeof(double)),
+                  tool_allocate(p->n, sizeof(double))};
+}
+
+static void work_free(work *w) {
+    free(w->q);
+    free(w->p);
+}
+
 void row_run(const plan *p, row *r) {
-    work w = {p, r, tool_allocate(p->n, sizeof *w.q),
-              tool_allocate(p->n, sizeof *w.p)};
+    work w = work_new(p, r);
     r->observed_order = NAN;
     nevh_stepper *s = new_stepper(&w, p->balance);
     if (!refused(r, s)) {
         watched(&w, s);
         if (r->ran)
-            measure(&w);
-        if (r->ran && r->energy.verdict == NEVH_UNSTABLE)
+            measure(&w, p->repeats);
+        if (r->ran && r->energy.verdict == NEVH_UNSTABLE && !p->hurried)
             unstable_since(&w);
         if (r->ran && r->tolerance > 0)
             r->dt = mean_step(&w);
     }
     nevh_stepper_free(s);
-    free(w.q);
-    free(w.p);
+    work_free(&w);
+}
+
+void row_finish(const plan *p, row *r, double dt, size_t repeats) {
+    double mean = r->dt;
+    work w = work_new(p, r);
+    r->dt = dt;
+    measure(&w, repeats);
+    if (r->energy.verdict == NEVH_UNSTABLE)
+        unstable_since(&w);
+    r->dt = mean;
+    work_free(&w);
 }

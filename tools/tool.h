@@ -76,8 +76,8 @@ typedef enum { PLOT_PHASE, PLOT_ENERGY, PLOT_CONFIGURATION } plot_kind;
 typedef struct {
     list operands, settings, integrators, gradients; /* settings: see below */
     list sections;
-    double *dt, *at;
-    size_t dts, ats;
+    double *dt, *at, *tolerance;
+    size_t dts, ats, tolerances;
     double t_end;                                    /* NAN: the scene's */
     double gradient_step, energy_error, state_error; /* 0: not given */
     size_t every, samples, repeats;                  /* 0: not given */
@@ -134,7 +134,9 @@ typedef struct {
     size_t dts, tolerances;
     list integrators, gradients;
     double gradient_step;
+    size_t repeats; /* of timed runs; 0: chosen */
     bool portable, friction, time, balance;
+    bool hurried; /* rows are to be finished later */
 } plan;
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int plan_make(plan *, const options *);
@@ -164,10 +166,22 @@ typedef struct {
     bool ran; /* there are numbers */
     nevh_energy_report energy;
     nevh_counts counts;
-    double seconds, observed_order; /* NAN: unknown */
-    struct envelope *errors;        /* of the energy; NULL: not asked for */
+    double seconds, spread; /* median, and half of what the middle half spans */
+    double observed_order;  /* NAN: unknown */
+    struct envelope *errors; /* of the energy; NULL: not asked for */
 } row;
 void row_run(const plan *, row *);
+/* Of a row that ran in a hurry: its time again, and when it became unstable.
+   dt       as the row was run with
+   repeats  0: chosen */
+void row_finish(const plan *, row *, double dt, size_t repeats);
+/* records.c: rows as the columns of CSV and JSON. */
+table *records(const plan *, const row rows[], size_t count);
+/* compare.c: observed_order, of rows with the same scheme beside each other;
+   notes of settings, gradients, scale and what holds for some rows. */
+void observe_orders(row rows[], size_t count);
+void row_notes(const options *, const plan *, const row rows[], size_t count,
+               list *notes);
 /* compare.c, verdict.c */
 void verdict_words(const plan *, const row rows[], size_t count, list *words);
 
@@ -177,6 +191,6 @@ int compare_plot(const options *, const plan *, const row rows[], size_t count);
 int run_plot(const options *, const plan *, const char *integrator);
 
 typedef int command(const options *);
-command compare, list_what, check, effects, section;
+command compare, list_what, check, effects, section, cost, recommend;
 
 #endif

@@ -12,6 +12,7 @@
 #include <nevh/integrator.h>
 #include <nevh/models.h>
 #include <nevh/probe.h>
+#include <nevh/reference.h>
 #include <nevh/run.h>
 #include <nevh/scene.h>
 #include <nevh/section.h>

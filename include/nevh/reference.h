@@ -1,0 +1,100 @@
+/* nevh: the orbit that others are measured against.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_REFERENCE_H
+#define NEVH_REFERENCE_H
+
+#include <nevh/run.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The orbit from a state, as it should be: an exact solution, or a run of its
+   own with small steps whose error is known.  One thread at a time. */
+typedef struct nevh_reference nevh_reference;
+
+/* The orbit through (q, p) at t0, until t1 on either side of it.
+   integrator  NULL: an exact solution where H is recognised to have one, else
+               gauss12, or dop853 where there is friction, which Gauss methods
+               only take to second order.  Not NULL: a run of that one.  Schemes
+               that choose their own times are refused with NEVH_EINVAL.
+   returns     the reference, to be freed with nevh_reference_free; NULL only
+               when memory is out.  Otherwise it carries NEVH_EINVAL, what
+               planning or a step returned, or NEVH_EFAILED where no reference
+               can be afforded; the message says why.
+   The system is borrowed and must not be changed.
+
+   H is recognised by its gradient at some thousand states in and around the
+   region of the orbit, to rounding, never by a name.  Known are, without
+   friction and without time,
+       p^2/(2 M) + k/2 (q - c)^2 + const     n = 1, k > 0
+       p^2/(2 M) - A cos(q - c) + const      n = 1, Jacobi's functions
+       p^2/(2 m) - k/|q| + const             n = 2, 3, bound orbits
+   in any units; the constants are fitted.
+
+   A run is repeated with smaller steps until runs with h and h/2 agree to 1e-11
+   of the range of each variable, or to rounding, or as well as can be afforded:
+   2e6 gradients, or 1e8 evaluations of term instances, whichever is less.  The
+   one with h/2 is kept, as checkpoints (at most 32 MB).  Gradients are exact
+   where all terms bring them, else central8.
+   cost        of an exact solution some milliseconds; of a run up to the
+               bounds above, some seconds */
+NEVH_API nevh_reference *nevh_reference_new(const nevh_system *,
+                                            const nevh_integrator *integrator,
+                                            double t0, double t1,
+                                            const double q[], const double p[]);
+NEVH_API void nevh_reference_free(nevh_reference *); /* NULL is allowed */
+/* The status of making it or of the last call; NEVH_ENOMEM for NULL. */
+NEVH_API int nevh_reference_status(const nevh_reference *);
+/* The message to that status, or ""; never NULL. */
+NEVH_API const char *nevh_reference_message(const nevh_reference *);
+
+/* What it is: "exact solution (Jacobi sn)", "gauss12 at dt = 0.005, own error
+   3e-12"; "" where there is none.  Never NULL. */
+NEVH_API const char *nevh_reference_text(const nevh_reference *);
+/* Its own error in the units of state errors, the largest over its time:
+   of an exact solution, what the last digits of the fitted constants do to the
+   state; of a run, the difference of those with h and h/2.  Smaller state
+   errors mean nothing. */
+NEVH_API double nevh_reference_error(const nevh_reference *);
+/* The time after which state errors mean nothing, because runs that differ in
+   the last digits have separated by more than 1e-3 of the range of a variable:
+   chaos.  INFINITY (-INFINITY where t1 < t0) where that does not happen. */
+NEVH_API double nevh_reference_horizon(const nevh_reference *);
+
+/* The state at a time between t0 and t1.
+   q, p     out, n each
+   returns  NEVH_OK; NEVH_EINVAL for times outside; NEVH_EDOM after the
+            horizon; what a step returned
+   cost     of an exact solution about a microsecond; of a run, steps from the
+            last checkpoint, which are few where times are asked for in order.
+            States are kept, so that asking again costs nothing (32 MB). */
+NEVH_API int nevh_reference_state(nevh_reference *, double t, double q[],
+                                  double p[]);
+
+/* The difference of the largest and the smallest value over the time, of q[k]
+   for k < n, else of p[k - n].  Where that is 0 or rounding, the largest one
+   among the variables of the same kind; 1 where all are. */
+NEVH_API double nevh_reference_range(const nevh_reference *, size_t k);
+
+/* Watches a run: the largest |difference to the reference| / range over
+   coordinates and momenta, at up to 1024 of the run's own times spread over
+   that of the reference, the one at its end among them. */
+typedef struct nevh_state_error nevh_state_error;
+
+/* The reference is borrowed.  NULL when memory is out, or for NULL. */
+NEVH_API nevh_state_error *nevh_state_error_new(nevh_reference *);
+NEVH_API void nevh_state_error_free(nevh_state_error *); /* NULL is allowed */
+/* A nevh_observe_fn for runs of one orbit; data is the nevh_state_error.  It
+   never stops a run: where the reference has no state there is no result. */
+NEVH_API int nevh_state_error_observe(void *state_error, size_t step, double t,
+                                      const double q[], const double p[]);
+/* INFINITY when a state was not finite.  NAN: unknown, because nothing was
+   observed or the reference failed, or meaningless, because the run went on
+   after the horizon. */
+NEVH_API double nevh_state_error_result(const nevh_state_error *);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

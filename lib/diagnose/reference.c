@@ -1,0 +1,235 @@
+/* nevh: references: exact solutions and runs.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "diagnose/reference_private.h"
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { TIMES = 4096, DOUBTED = 64 };
+static const double golden = 0.6180339887498949;
+
+void nevh__reference_widen(const nevh_reference *r, double low[], double high[],
+                           const double state[]) {
+    for (size_t k = 0; k < 2 * r->n; k++) {
+        low[k] = fmin(low[k], state[k]);
+        high[k] = fmax(high[k], state[k]);
+    }
+}
+
+/* Of the variables of one kind. */
+static void scale_kind(size_t n, const double low[], const double high[],
+                       double scale[]) {
+    static const double rounding = 1e-12; /* of the largest value */
+    double widest = 0, largest = 0;
+    for (size_t k = 0; k < n; k++) {
+        largest = fmax(largest, fmax(fabs(low[k]), fabs(high[k])));
+        widest = fmax(widest, high[k] - low[k]);
+    }
+    for (size_t k = 0; k < n; k++) {
+        scale[k] = high[k] - low[k];
+        if (scale[k] <= rounding * largest)
+            scale[k] = widest > 0 ? widest : 1;
+    }
+}
+
+void nevh__reference_scale(const nevh_reference *r, const double low[],
+                           const double high[], double scale[]) {
+    scale_kind(r->n, low, high, scale);
+    scale_kind(r->n, low + r->n, high + r->n, scale + r->n);
+}
+
+static int exact_state(const nevh_reference *r, const nevh__exact *e, double t,
+                       double state[]) {
+    return nevh__exact_state(e, t, r->start, r->start + r->n, state,
+                             state + r->n);
+}
+
+static double exact_time(const nevh_reference *r, size_t i) {
+    double u = (double)i * golden;
+    return nevh__exact_time(r->exact, r->t1 - r->t0, u - floor(u), r->start,
+                            r->start + r->n);
+}
+
+static int exact_ranges(nevh_reference *r) {
+    double state[2 * NEVH__EXACT_DOF];
+    int status = exact_state(r, r->exact, r->t1 - r->t0, state);
+    if (!status)
+        nevh__reference_widen(r, r->low, r->high, state);
+    for (size_t i = 0; !status && i < TIMES; i++) {
+        status = exact_state(r, r->exact, exact_time(r, i), state);
+        if (!status)
+            nevh__reference_widen(r, r->low, r->high, state);
+    }
+    nevh__reference_scale(r, r->low, r->high, r->range);
+    return status;
+}
+
+static double distance(const nevh_reference *r, const double a[],
+                       const double b[]) {
+    double most = 0;
+    for (size_t k = 0; k < 2 * r->n; k++)
+        most = fmax(most, fabs(a[k] - b[k]) / r->range[k]);
+    return most;
+}
+
+/* What the doubt in the constants does to the state; no less than the rounding
+   of the state itself. */
+static double doubted(const nevh_reference *r) {
+    double most = DBL_EPSILON, a[2 * NEVH__EXACT_DOF], b[2 * NEVH__EXACT_DOF];
+    nevh__exact other = *r->exact;
+    other.a *= 1 + (long double)other.doubt;
+    other.b *= 1 + (long double)other.doubt;
+    for (size_t i = 0; i <= DOUBTED; i++) {
+        double t = i ? exact_time(r, i) : r->t1 - r->t0;
+        if (!exact_state(r, r->exact, t, a) && !exact_state(r, &other, t, b))
+            most = fmax(most, distance(r, a, b));
+    }
+    return most;
+}
+
+static int use_exact(nevh_reference *r) {
+    if (exact_ranges(r))
+        return nevh__fail(&r->report, NEVH_EFAILED,
+                          "the exact solution (%s) loses its phase before "
+                          "t = %.9g",
+                          nevh__exact_name(r->exact), r->t1);
+    r->error = doubted(r);
+    snprintf(r->text, sizeof r->text, "exact solution (%s)",
+             nevh__exact_name(r->exact));
+    return NEVH_OK;
+}
+
+static int use_run(nevh_reference *r) {
+    if (!r->integrator)
+        r->integrator =
+            nevh_system_friction(r->system, NULL) ? nevh_dop853 : nevh_gauss12;
+    return nevh__reference_run(r);
+}
+
+static int make(nevh_reference *r) {
+    int status = nevh_system_status(r->system);
+    if (status)
+        return nevh__fail(&r->report, status, "%s",
+                          nevh_system_message(r->system));
+    for (size_t k = 0; k < 2 * r->n; k++)
+        if (!isfinite(r->start[k]))
+            return nevh__fail(&r->report, NEVH_EINVAL,
+                              "the start of the reference is not finite");
+    if (!isfinite(r->t0) || !isfinite(r->t1) || r->t0 == r->t1)
+        return nevh__fail(&r->report, NEVH_EINVAL,
+                          "a reference from t = %g to %g has no length", r->t0,
+                          r->t1);
+    if (!r->integrator)
+        status = nevh__exact_recognise(&r->exact, r->system, r->t0, r->t1,
+                                       r->start, r->start + r->n);
+    if (status)
+        return nevh__fail(&r->report, status, "out of memory");
+    return r->exact ? use_exact(r) : use_run(r);
+}
+
+static bool allocate(nevh_reference *r, const double q[], const double p[]) {
+    size_t n = r->n;
+    r->start = nevh__array(10 * n, sizeof *r->start);
+    if (!r->start)
+        return false;
+    r->low = r->start + 2 * n;
+    r->high = r->low + 2 * n;
+    r->range = r->high + 2 * n;
+    r->walked = r->range + 2 * n;
+    memcpy(r->start, q, n * sizeof *q);
+    memcpy(r->start + n, p, n * sizeof *p);
+    memcpy(r->low, r->start, 2 * n * sizeof *q);
+    memcpy(r->high, r->start, 2 * n * sizeof *q);
+    return true;
+}
+
+nevh_reference *nevh_reference_new(const nevh_system *s,
+                                   const nevh_integrator *integrator, double t0,
+                                   double t1, const double q[],
+                                   const double p[]) {
+    nevh_reference *r = s ? nevh__array(1, sizeof *r) : NULL;
+    if (!r)
+        return NULL;
+    r->system = s;
+    r->n = nevh_system_dof(s);
+    r->t0 = t0;
+    r->t1 = t1;
+    r->horizon = copysign(INFINITY, t1 - t0);
+    r->error = NAN;
+    r->integrator = integrator;
+    if (allocate(r, q, p) && make(r) != NEVH_ENOMEM)
+        return r;
+    nevh_reference_free(r);
+    return NULL;
+}
+
+void nevh_reference_free(nevh_reference *r) {
+    if (!r)
+        return;
+    nevh__exact_free(r->exact);
+    nevh_stepper_free(r->walker);
+    nevh_stepper_free(r->branch);
+    free(r->track.states);
+    free(r->memo.keys);
+    free(r->memo.states);
+    free(r->start);
+    free(r);
+}
+
+int nevh_reference_status(const nevh_reference *r) {
+    return r ? r->report.status : NEVH_ENOMEM;
+}
+
+const char *nevh_reference_message(const nevh_reference *r) {
+    return r ? r->report.text : "out of memory";
+}
+
+const char *nevh_reference_text(const nevh_reference *r) {
+    return r ? r->text : "";
+}
+
+double nevh_reference_error(const nevh_reference *r) {
+    return r->error;
+}
+
+double nevh_reference_horizon(const nevh_reference *r) {
+    return r->horizon;
+}
+
+double nevh_reference_range(const nevh_reference *r, size_t k) {
+    return k < 2 * r->n ? r->range[k] : NAN;
+}
+
+static int check_time(nevh_reference *r, double t) {
+    double forward = r->t1 > r->t0 ? 1 : -1;
+    if (!((t - r->t0) * forward >= 0 && (r->t1 - t) * forward >= 0))
+        return nevh__fail(&r->report, NEVH_EINVAL,
+                          "the reference goes from t = %.9g to %.9g, not to "
+                          "%.9g",
+                          r->t0, r->t1, t);
+    if ((t - r->horizon) * forward > 0)
+        return nevh__fail(&r->report, NEVH_EDOM,
+                          "the reference means nothing after t = %.9g: chaos",
+                          r->horizon);
+    return NEVH_OK;
+}
+
+/* A reference that was not made keeps its status; others forget a failure. */
+int nevh_reference_state(nevh_reference *r, double t, double q[], double p[]) {
+    if (!r || !*r->text)
+        return nevh_reference_status(r);
+    r->report.status = NEVH_OK;
+    r->report.text[0] = '\0';
+    int status = check_time(r, t);
+    if (status)
+        return status;
+    if (!r->exact)
+        return nevh__reference_walk(r, t, q, p);
+    status = nevh__exact_state(r->exact, (long double)t - r->t0, r->start,
+                               r->start + r->n, q, p);
+    return status ? nevh__fail(&r->report, status,
+                               "the exact solution has no state at t = %.9g", t)
+                  : NEVH_OK;
+}

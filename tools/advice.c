@@ -1,0 +1,190 @@
+/* nevh recommend: the answer, with its evidence.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "recommend_private.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const row *chosen(const advice *a, const ladder *l) {
+    return ladder_cheapest(l, a->target, a->search.by_state);
+}
+
+static void show(const advice *a, const ladder *l, const char *what, table *t) {
+    const row *r = chosen(a, l);
+    table_text(t, what);
+    table_text(t, r->integrator);
+    table_text(t, r->gradient);
+    table_shown(t, "%.4g", r->dt);
+    table_shown(t, "%.1e", ladder_error(r, a->search.by_state));
+    table_shown(t, "%.3g", 1000 * r->seconds);
+    table_shown(t, "%.2g", 1000 * r->spread);
+    table_shown(t, "%llu", (unsigned long long)r->counts.gradients);
+    table_shown(t, "%.0f", r->counts.hamiltonians);
+    table_text(t, nevh_verdict_name(r->energy.verdict));
+}
+
+static table *shown(const advice *a) {
+    static const char *const titles[] = {
+        "",   "integrator", "gradient",  "dt",      NULL,
+        "ms", "+-",         "gradients", "H evals", "energy"};
+    table *t = table_new();
+    for (size_t i = 0; i < sizeof titles / sizeof *titles; i++)
+        table_column(t, titles[i]            ? titles[i]
+                        : a->search.by_state ? "state error"
+                                             : "energy error");
+    show(a, a->best, "cheapest", t);
+    if (a->second)
+        show(a, a->second, "runner-up", t);
+    if (a->alone && a->alone != a->best && a->alone != a->second)
+        show(a, a->alone, "from H alone", t);
+    return t;
+}
+
+static table *recorded(const advice *a) {
+    const ladder *const ladders[] = {a->best, a->second, a->alone};
+    row rows[3];
+    size_t count = 0;
+    for (size_t i = 0; i < 3; i++)
+        if (ladders[i] &&
+            (i < 2 || (ladders[i] != a->best && ladders[i] != a->second)))
+            rows[count++] = *chosen(a, ladders[i]);
+    return records(&a->search.plan, rows, count);
+}
+
+static char *append(char *text, const char *name, const char *value) {
+    char *longer = text_print("%s --%s %s", text, name, value);
+    free(text);
+    return longer;
+}
+
+static char *append_number(char *text, const char *name, double value) {
+    char *number = text_print("%.17g", value);
+    for (int digits = 6; digits < 17; digits++) {
+        free(number);
+        number = text_print("%.*g", digits, value);
+        if (strtod(number, NULL) == value)
+            break;
+    }
+    text = append(text, name, number);
+    free(number);
+    return text;
+}
+
+/* As the rows were run. */
+static char *command_line(const advice *a, const options *o, const row *r) {
+    const plan *p = &a->search.plan;
+    char *text = text_print("nevh compare %s", p->name);
+    for (size_t i = 0; i < o->settings.count; i++) {
+        const char *setting = o->settings.item[i];
+        text = append(text,
+                      *setting == '+'   ? "with"
+                      : *setting == '-' ? "without"
+                                        : "set",
+                      setting + 1);
+    }
+    text = append(text, "integrators", r->integrator);
+    text = append(text, "gradient", r->gradient);
+    if (p->gradient_step > 0)
+        text = append_number(text, "gradient-step", p->gradient_step);
+    text =
+        append_number(text, "dt", r->tolerance > 0 ? a->search.landing : r->dt);
+    if (r->tolerance > 0)
+        text = append_number(text, "tolerance", r->tolerance);
+    if (!isnan(o->t_end))
+        text = append_number(text, "t-end", o->t_end);
+    return text;
+}
+
+static void tell_lines(const advice *a, const row *r, list *words) {
+    list_add(words, "[run]");
+    list_print(words, "integrators = %s", r->integrator);
+    list_print(words, "gradient = %s", r->gradient);
+    list_print(words, "dt = %.6g",
+               r->tolerance > 0 ? a->search.landing : r->dt);
+    if (r->tolerance > 0)
+        list_print(words, "tolerance = %.6g", r->tolerance);
+}
+
+static void tell_answer(const advice *a, const options *o, list *words) {
+    const row *r = chosen(a, a->best);
+    const char *what = a->search.by_state ? "state" : "energy";
+    char *line = command_line(a, o, r);
+    list_print(words,
+               "Take %s with the %s gradient at dt = %.4g: the largest %s "
+               "error over the whole run is %.1e, of the %.1e allowed.",
+               r->integrator, r->gradient, r->dt, what,
+               ladder_error(r, a->search.by_state), a->target);
+    if (a->second)
+        list_print(words, "%s, the runner-up, takes %.2f times as long.",
+                   a->second->integrator,
+                   chosen(a, a->second)->seconds / r->seconds);
+    if (a->alone && a->alone != a->best)
+        list_print(words,
+                   "From values of H alone %s with %s takes %.2f times as "
+                   "long.",
+                   a->alone->integrator, a->alone->gradient,
+                   chosen(a, a->alone)->seconds / r->seconds);
+    if (r->energy.verdict == NEVH_DRIFTS)
+        list_add(words, "Its energy drifts: for longer runs ask again.");
+    list_print(words, "%zu runs were tried.", a->search.runs);
+    list_add(words, " ");
+    list_add(words, line);
+    list_add(words, " ");
+    tell_lines(a, r, words);
+    free(line);
+}
+
+void advice_print(const advice *a, const options *o, FILE *f) {
+    bool is_table = o->format == FORMAT_TABLE;
+    page p = {.table = is_table ? shown(a) : recorded(a)};
+    if (!is_table || !o->quiet) {
+        plan_notes(&a->search.plan, &p.before);
+        tell_answer(a, o, &p.after);
+    }
+    page_print(&p, o->format, f);
+    page_free(&p);
+}
+
+static bool counts(const advice *a, size_t i) {
+    return a->named || a->search.by_state ||
+           !ladder_keeps_energy(&a->ladder[i]);
+}
+
+static const ladder *most_exact(const advice *a, double *least) {
+    const ladder *best = NULL;
+    *least = INFINITY;
+    for (size_t i = 0; i < a->count; i++)
+        for (size_t k = 0; counts(a, i) && k < a->ladder[i].count; k++) {
+            double error =
+                ladder_error(&a->ladder[i].rung[k], a->search.by_state);
+            if (error < *least)
+                *least = error, best = &a->ladder[i];
+        }
+    return best;
+}
+
+static const char *reason(const advice *a, const ladder *l, double least) {
+    if (l->end == LADDER_GIVEN)
+        return "these steps do not reach it";
+    if (l->end != LADDER_FLOOR)
+        return "shorter steps take longer than was tried; --t-end shortens the "
+               "run";
+    if (least > 1e-11 && strcmp(l->gradient, "exact") != 0)
+        return "shorter steps do not lessen it: the gradient ends there";
+    return "shorter steps do not lessen it: rounding ends there";
+}
+
+int advice_none(const advice *a) {
+    double least;
+    const ladder *l = most_exact(a, &least);
+    const char *what = a->search.by_state ? "state" : "energy";
+    if (!l)
+        tool_refuse("%s: no integrator runs; see nevh check",
+                    a->search.plan.name);
+    else
+        tool_refuse("%s: nothing keeps the %s error below %g.  The least, %.1e,"
+                    " is that of %s with the %s gradient; %s",
+                    a->search.plan.name, what, a->target, least, l->integrator,
+                    l->gradient, reason(a, l, least));
+    return TOOL_FAILED;
+}

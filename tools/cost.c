@@ -1,0 +1,205 @@
+/* nevh cost: what a digit costs.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cost_private.h"
+#include "plot.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const double cost_target[COST_TARGETS] = {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
+
+/* Every scheme that fits, and the gradient that costs least, unless asked for
+   others. */
+void plan_search(plan *p, const options *o) {
+    if (o->gradients.count == 0) {
+        list_free(&p->gradients);
+        list_add(&p->gradients,
+                 gradient_fits(p, "exact", NULL) ? "exact" : "central4");
+    }
+    if (o->integrators.count == 0) {
+        list_free(&p->integrators);
+        fitting_integrators(p, p->gradients.item[0], &p->integrators);
+    }
+}
+
+static bool is_beaten(const costs *c, const ladder *l) {
+    return !c->all && !cost_is_yardstick(l) &&
+           ladder_is_behind(&c->search, l, c->ladder, c->count);
+}
+
+static void descend_all(costs *c) {
+    static const double share = 0.5; /* the rest is for targets and times */
+    ladder *next;
+    for (size_t i = 0; i < c->count; i++)
+        ladder_begin(&c->search, &c->ladder[i]);
+    while ((next = ladder_next(c->ladder, c->count)) &&
+           !search_is_over(&c->search, share))
+        if (is_beaten(c, next))
+            next->end = LADDER_LIMIT;
+        else
+            ladder_descend(&c->search, next);
+    for (size_t i = 0; i < c->count; i++)
+        if (c->ladder[i].end == LADDER_OPEN)
+            c->ladder[i].end = LADDER_LIMIT;
+}
+
+static void time_cells(costs *c) {
+    for (size_t i = 0; i < c->count; i++)
+        for (size_t k = 0; k < COST_TARGETS; k++) {
+            const ladder *l = &c->ladder[i];
+            const row *r =
+                ladder_cheapest(l, cost_target[k], c->search.by_state);
+            if (r && cost_shows(c, l))
+                ladder_time(&c->search, &c->ladder[i], (size_t)(r - l->rung));
+        }
+}
+
+/* While there is time for it. */
+static void time_others(costs *c) {
+    for (size_t i = 0; i < c->count; i++)
+        for (size_t k = 0; k < c->ladder[i].count; k++)
+            if (c->search.repeats || !search_is_over(&c->search, 1))
+                ladder_time(&c->search, &c->ladder[i], k);
+}
+
+/* Whether the coarsest step that keeps the target may be a cheap one: it costs
+   more than the last rung that does not. */
+static bool is_promising(const costs *c, const ladder *l, double target) {
+    static const double nearly = 1.5;
+    const ladder *best = costs_cheapest(c, target);
+    const row *cheapest =
+        best ? ladder_cheapest(best, target, c->search.by_state) : NULL;
+    size_t i = 0;
+    while (i < l->count &&
+           ladder_error(&l->rung[i], c->search.by_state) > target)
+        i++;
+    return i == 0 || !cheapest ||
+           l->rung[i - 1].seconds < nearly * cheapest->seconds;
+}
+
+static void refine_all(costs *c) {
+    for (size_t k = 0; k < COST_TARGETS; k++)
+        for (size_t i = 0; i < c->count; i++) {
+            ladder *l = &c->ladder[i];
+            if (c->all || cost_is_yardstick(l) ||
+                is_promising(c, l, cost_target[k]))
+                ladder_refine(&c->search, l, cost_target[k]);
+        }
+}
+
+/* Those that the table does not show are for programs to read. */
+static void run_ladders(costs *c, bool for_people) {
+    enum { RUNGS = 8 };
+    descend_all(c);
+    refine_all(c);
+    time_cells(c);
+    if (for_people && !c->all)
+        return;
+    for (size_t i = 0; i < c->count; i++)
+        ladder_fill(&c->search, &c->ladder[i], RUNGS);
+    time_others(c);
+}
+
+static void make_ladders(costs *c) {
+    const plan *p = &c->search.plan;
+    c->ladder = tool_allocate(p->gradients.count * p->integrators.count,
+                              sizeof *c->ladder);
+    for (size_t g = 0; g < p->gradients.count; g++)
+        for (size_t i = 0; i < p->integrators.count; i++)
+            c->ladder[c->count++] =
+                ladder_new(p->integrators.item[i], p->gradients.item[g]);
+}
+
+bool costs_count(const costs *c, const ladder *l) {
+    return !l->count || c->search.by_state || !ladder_keeps_energy(l);
+}
+
+const ladder *costs_cheapest(const costs *c, double target) {
+    const ladder *best = NULL;
+    double least = INFINITY;
+    for (size_t i = 0; i < c->count; i++) {
+        const ladder *l = &c->ladder[i];
+        const row *r = ladder_cheapest(l, target, c->search.by_state);
+        if (costs_count(c, l) && r && r->seconds < least)
+            least = r->seconds, best = l;
+    }
+    return best;
+}
+
+/* Rows side by side, in the order of the ladders. */
+static row *list_rows(const costs *c, bool shown, size_t *count) {
+    size_t most = 0;
+    for (size_t i = 0; i < c->count; i++)
+        most += c->ladder[i].count;
+    row *rows = tool_allocate(most, sizeof *rows);
+    *count = 0;
+    for (size_t i = 0; i < c->count; i++) {
+        const ladder *l = &c->ladder[i];
+        if (!l->count || (shown && !cost_shows(c, l)))
+            continue;
+        memcpy(rows + *count, l->rung, l->count * sizeof *rows);
+        *count += l->count;
+    }
+    return rows;
+}
+
+static page make_page(const options *o, costs *c) {
+    page result = {0};
+    bool is_table = o->format == FORMAT_TABLE;
+    size_t count;
+    row *rows = list_rows(c, is_table, &count);
+    observe_orders(rows, count);
+    result.table =
+        is_table ? cost_table(c) : records(&c->search.plan, rows, count);
+    if (!is_table || !o->quiet) {
+        plan_notes(&c->search.plan, &result.before);
+        row_notes(o, &c->search.plan, rows, count, &result.before);
+        cost_notes(c, &result.before);
+        cost_words(c, &result.after);
+    }
+    free(rows);
+    return result;
+}
+
+static int status_of(const costs *c) {
+    bool ran = false, failed = false;
+    for (size_t i = 0; i < c->count; i++)
+        for (size_t k = 0; k < c->ladder[i].count; k++) {
+            ran |= c->ladder[i].rung[k].ran;
+            failed |= c->ladder[i].rung[k].failed;
+        }
+    return failed && (!ran || c->search.dt) ? TOOL_FAILED : TOOL_OK;
+}
+
+static int cost_plan(const options *o, plan *p) {
+    static const double budget = 25; /* seconds */
+    output out;
+    if (plot_check(o) || output_open(&out, o->file))
+        return TOOL_USAGE;
+    costs c = {.search = search_begin(p, o, budget),
+               .all = o->integrators.count > 0};
+    make_ladders(&c);
+    run_ladders(&c, o->format == FORMAT_TABLE);
+    page result = make_page(o, &c);
+    search_end(&c.search);
+    page_print(&result, o->format, out.stream);
+    page_free(&result);
+    int status = output_close(&out, status_of(&c));
+    if (plot_wanted(o) && cost_plot(o, &c))
+        status = TOOL_USAGE;
+    for (size_t i = 0; i < c.count; i++)
+        ladder_free(&c.ladder[i]);
+    free(c.ladder);
+    return status;
+}
+
+int cost(const options *o) {
+    plan p;
+    int status = plan_make(&p, o);
+    if (!status) {
+        plan_search(&p, o);
+        status = cost_plan(o, &p);
+    }
+    plan_free(&p);
+    return status;
+}

@@ -1,0 +1,100 @@
+/* nevh cost: target digits beside each other, a row an integrator.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cost_private.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool cost_is_yardstick(const ladder *l) {
+    static const char *const names[] = {"verlet", "midpoint", "rk4"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (strcmp(l->integrator, names[i]) == 0)
+            return true;
+    return false;
+}
+
+/* Cheapest, or nearly so, for some target. */
+static bool is_cheap(const costs *c, const ladder *l) {
+    static const double nearly = 1.1;
+    for (size_t k = 0; k < COST_TARGETS; k++) {
+        const ladder *best = costs_cheapest(c, cost_target[k]);
+        const row *r = ladder_cheapest(l, cost_target[k], c->search.by_state);
+        if (best && r &&
+            r->seconds <= nearly * ladder_cheapest(best, cost_target[k],
+                                                   c->search.by_state)
+                                       ->seconds)
+            return true;
+    }
+    return false;
+}
+
+bool cost_shows(const costs *c, const ladder *l) {
+    if (c->all)
+        return l->count > 0;
+    return l->end != LADDER_REFUSED && costs_count(c, l) &&
+           (cost_is_yardstick(l) || is_cheap(c, l));
+}
+
+char *cost_milliseconds(double seconds) {
+    return text_print(seconds < 0.0995 ? "%.2g" : "%.0f", 1000 * seconds);
+}
+
+bool cost_drifts(const ladder *l) {
+    size_t count = 0;
+    for (size_t i = 0; i < l->count; i++)
+        count += l->rung[i].ran && l->rung[i].energy.verdict == NEVH_DRIFTS;
+    return 2 * count > l->count;
+}
+
+static char *cell_text(const row *r, bool star) {
+    char *time = cost_milliseconds(r->seconds);
+    char *text = text_print("%s %s (%.3g)", star ? "*" : " ", time, r->dt);
+    free(time);
+    return text;
+}
+
+static void show_cell(const costs *c, const ladder *l, size_t target,
+                      table *t) {
+    const row *r = ladder_cheapest(l, cost_target[target], c->search.by_state);
+    bool star = costs_cheapest(c, cost_target[target]) == l;
+    char *text;
+    if (l->end == LADDER_REFUSED)
+        text = text_print("  refused");
+    else if (!costs_count(c, l))
+        text = text_print("  -");
+    else if (!r)
+        text = text_print("  %s", l->end == LADDER_LIMIT   ? "> limit"
+                                  : l->end == LADDER_GIVEN ? "-"
+                                                           : "floor");
+    else
+        text = cell_text(r, star);
+    table_text(t, text);
+    free(text);
+}
+
+table *cost_table(const costs *c) {
+    table *t = table_new();
+    bool gradients = c->search.plan.gradients.count > 1;
+    table_column(t, "integrator");
+    if (gradients)
+        table_column(t, "gradient");
+    for (size_t k = 0; k < COST_TARGETS; k++) {
+        char *title = text_print("  %.0e", cost_target[k]);
+        table_column(t, title);
+        free(title);
+    }
+    for (size_t i = 0; i < c->count; i++) {
+        const ladder *l = &c->ladder[i];
+        if (!cost_shows(c, l))
+            continue;
+        char *name =
+            text_print("%s%s", l->integrator, cost_drifts(l) ? ", drifts" : "");
+        table_text(t, name);
+        free(name);
+        if (gradients)
+            table_text(t, l->gradient);
+        for (size_t k = 0; k < COST_TARGETS; k++)
+            show_cell(c, l, k, t);
+    }
+    return t;
+}

@@ -1,0 +1,269 @@
+/* nevh cost: time for one more digit, and the table in words.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cost_private.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void cost_notes(const costs *c, list *notes) {
+    const plan *p = &c->search.plan;
+    const char *unit = nevh_scene_label(p->scene, "t");
+    list_print(notes,
+               "cost: steps that keep the largest %s error of the run below "
+               "10^-digits; CPU ms (dt%s%s), * cheapest",
+               c->search.by_state ? "state" : "energy", *unit ? "/" : "", unit);
+}
+
+/* Rungs whose errors are neither coarse nor at rounding. */
+typedef struct {
+    double *error, *seconds, *evaluations, *frequency;
+    size_t count;
+} slope;
+
+static slope slope_new(const ladder *l, bool by_state) {
+    static const double coarse = 2e-2, floors = 30;
+    slope s = {tool_allocate(l->count, sizeof(double)),
+               tool_allocate(l->count, sizeof(double)),
+               tool_allocate(l->count, sizeof(double)),
+               tool_allocate(l->count, sizeof(double)), 0};
+    double least = INFINITY;
+    for (size_t i = 0; i < l->count; i++)
+        least = fmin(least, ladder_error(&l->rung[i], by_state));
+    least = l->end == LADDER_FLOOR ? fmax(floors * least, 1e-13) : least;
+    for (size_t i = 0; i < l->count; i++) {
+        const row *r = &l->rung[i];
+        double error = ladder_error(r, by_state);
+        if (error > coarse || error < least || r->seconds <= 0)
+            continue;
+        s.error[s.count] = error;
+        s.seconds[s.count] = r->seconds;
+        s.evaluations[s.count] =
+            fmax((double)r->counts.gradients, r->counts.hamiltonians);
+        s.frequency[s.count++] = 1 / r->dt;
+    }
+    return s;
+}
+
+static void slope_free(slope *s) {
+    free(s->error);
+    free(s->seconds);
+    free(s->evaluations);
+    free(s->frequency);
+}
+
+static const char *remark(const ladder *l, double time, double theory) {
+    bool is_implicit = nevh_integrator_explicit(l->scheme) == NEVH_NO &&
+                       !nevh_integrator_adaptive(l->scheme);
+    if (time < 0.95 * theory && is_implicit)
+        return " fewer sweeps";
+    if (time < 0.95 * theory && cost_drifts(l))
+        return " drift falls faster";
+    return "";
+}
+
+static void tell_digit(const costs *c, const ladder *l, list *words) {
+    slope s = slope_new(l, c->search.by_state);
+    double time = grid_digit_factor(s.error, s.seconds, s.count);
+    double evaluations = grid_digit_factor(s.error, s.evaluations, s.count);
+    double steps = grid_digit_factor(s.error, s.frequency, s.count);
+    double theory = pow(10, 1.0 / l->rung[0].order);
+    if (s.count > 2 && isfinite(time))
+        list_print(words,
+                   " %-21s x %-5.3g  x %-5.3g        x %-5.3g  x %-5.3g%s",
+                   l->integrator, time, evaluations, steps, theory,
+                   remark(l, evaluations, theory));
+    slope_free(&s);
+}
+
+static void tell_digits(const costs *c, list *words) {
+    list lines = {0};
+    for (size_t i = 0; i < c->count; i++)
+        if (cost_shows(c, &c->ladder[i]) && c->ladder[i].count)
+            tell_digit(c, &c->ladder[i], &lines);
+    if (lines.count)
+        list_add(words, " one more digit         time     evaluations    "
+                        "steps    10^(1/order)");
+    for (size_t i = 0; i < lines.count; i++)
+        list_add(words, lines.item[i]);
+    list_free(&lines);
+}
+
+static const row *cell(const costs *c, const ladder *l, size_t target) {
+    return ladder_cheapest(l, cost_target[target], c->search.by_state);
+}
+
+/* The last of the targets from `first` on that have the same cheapest. */
+static size_t last_alike(const costs *c, size_t first) {
+    const ladder *best = costs_cheapest(c, cost_target[first]);
+    while (first + 1 < COST_TARGETS &&
+           costs_cheapest(c, cost_target[first + 1]) == best)
+        first++;
+    return first;
+}
+
+static void tell_best(const costs *c, size_t first, size_t last, list *words) {
+    const ladder *best = costs_cheapest(c, cost_target[first]);
+    const row *a = cell(c, best, first), *b = cell(c, best, last);
+    char *from = cost_milliseconds(a->seconds),
+         *to = cost_milliseconds(b->seconds);
+    if (a == b)
+        list_print(words, "For %.0f digits take %s at dt = %.4g: %s ms.",
+                   -log10(cost_target[last]), best->integrator, b->dt, to);
+    else
+        list_print(
+            words,
+            "For %.0f to %.0f digits take %s at dt = %.4g to %.4g: %s to "
+            "%s ms.",
+            -log10(cost_target[first]), -log10(cost_target[last]),
+            best->integrator, a->dt, b->dt, from, to);
+    free(from);
+    free(to);
+}
+
+/* At the most digits that both reach. */
+static void tell_yardstick(const costs *c, const char *name, list *words) {
+    for (size_t k = COST_TARGETS; k-- > 0;)
+        for (size_t i = 0; i < c->count; i++) {
+            const ladder *l = &c->ladder[i];
+            const ladder *best = costs_cheapest(c, cost_target[k]);
+            if (strcmp(l->integrator, name) != 0 || !best || best == l ||
+                !cell(c, l, k))
+                continue;
+            list_print(words, "%.0f digits by %s take %.2g times as long.",
+                       -log10(cost_target[k]), name,
+                       cell(c, l, k)->seconds / cell(c, best, k)->seconds);
+            return;
+        }
+}
+
+static void tell_winners(const costs *c, list *words) {
+    for (size_t k = 0; k < COST_TARGETS; k++) {
+        size_t last = last_alike(c, k);
+        if (costs_cheapest(c, cost_target[k]))
+            tell_best(c, k, last, words);
+        else
+            list_print(words, "%.0f digits are reached by none.",
+                       -log10(cost_target[k]));
+        k = last;
+    }
+    tell_yardstick(c, "verlet", words);
+    tell_yardstick(c, "rk4", words);
+}
+
+static char *names_where(const costs *c,
+                         bool (*holds)(const costs *, const ladder *)) {
+    char *names = text_print("%s", "");
+    for (size_t i = 0; i < c->count; i++) {
+        const ladder *l = &c->ladder[i];
+        if (!l->count || !holds(c, l) || strstr(names, l->integrator))
+            continue;
+        char *longer =
+            text_print(*names ? "%s, %s" : "%s%s", names, l->integrator);
+        free(names);
+        names = longer;
+    }
+    return names;
+}
+
+static bool drifts_here(const costs *c, const ladder *l) {
+    return cost_shows(c, l) && cost_drifts(l);
+}
+
+static bool says_nothing(const costs *c, const ladder *l) {
+    return l->end != LADDER_REFUSED && !costs_count(c, l);
+}
+
+static void tell_names(const costs *c, list *words, const char *format,
+                       bool (*holds)(const costs *, const ladder *)) {
+    char *names = names_where(c, holds);
+    char *text = text_print("%s: %s", names, format);
+    if (*names)
+        list_add(words, text);
+    free(text);
+    free(names);
+}
+
+static void tell_hidden(const costs *c, list *words) {
+    size_t count = 0;
+    for (size_t i = 0; i < c->count; i++)
+        count += c->ladder[i].end != LADDER_REFUSED &&
+                 costs_count(c, &c->ladder[i]) && !cost_shows(c, &c->ladder[i]);
+    if (count)
+        list_print(words,
+                   "%zu others fit and are nowhere cheapest: --integrators "
+                   "shows them, --format csv all.",
+                   count);
+}
+
+static double longest_cell(const costs *c) {
+    double longest = 0;
+    for (size_t i = 0; i < c->count; i++)
+        for (size_t k = 0; k < c->ladder[i].count; k++)
+            longest = fmax(longest, c->ladder[i].rung[k].seconds);
+    return longest;
+}
+
+static int by_size(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The median of what was repeated. */
+static double typical_spread(const costs *c) {
+    size_t most = 0, count = 0;
+    for (size_t i = 0; i < c->count; i++)
+        most += c->ladder[i].count;
+    double *part = tool_allocate(most, sizeof *part);
+    for (size_t i = 0; i < c->count; i++)
+        for (size_t k = 0; k < c->ladder[i].count; k++) {
+            const row *r = &c->ladder[i].rung[k];
+            if (r->ran && r->spread > 0)
+                part[count++] = r->spread / r->seconds;
+        }
+    qsort(part, count, sizeof *part, by_size);
+    double median = count ? part[count / 2] : 0;
+    free(part);
+    return median;
+}
+
+static bool any_end(const costs *c, ladder_end end) {
+    for (size_t i = 0; i < c->count; i++)
+        if (c->ladder[i].end == end && cost_shows(c, &c->ladder[i]) &&
+            !cell(c, &c->ladder[i], COST_TARGETS - 1))
+            return true;
+    return false;
+}
+
+static void tell_legend(const costs *c, list *words) {
+    char *longest = cost_milliseconds(longest_cell(c));
+    if (any_end(c, LADDER_LIMIT))
+        list_print(words,
+                   "> limit: its steps were not followed so far (the longest "
+                   "run took %s ms).",
+                   longest);
+    if (any_end(c, LADDER_FLOOR))
+        list_add(words, "floor: shorter steps do not lessen the error, for "
+                        "rounding or what the gradient lacks.");
+    list_print(words,
+               "ms are this machine's: medians of repeated runs, half of which "
+               "lie within %.1g %% of them; evaluations are exact.",
+               100 * typical_spread(c));
+    free(longest);
+}
+
+void cost_words(costs *c, list *words) {
+    tell_digits(c, words);
+    cost_price(c, words);
+    list_add(words, " ");
+    tell_winners(c, words);
+    tell_names(c, words,
+               "the error grows with the run, so that more digits are needed "
+               "where it is longer.",
+               drifts_here);
+    tell_names(c, words,
+               "keep the energy at any step, which says nothing of their "
+               "orbits.",
+               says_nothing);
+    tell_hidden(c, words);
+    tell_legend(c, words);
+}

@@ -1,0 +1,59 @@
+/* nevh: step sizes to choose from, and what errors over them tell.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "ladder.h"
+#include <math.h>
+
+static int floor_of(int k, int count) {
+    return k >= 0 ? k / count : -((-k + count - 1) / count);
+}
+
+/* Short decimals, so that a dt can be typed again. */
+static double shortened(const double digits[], int count, int k) {
+    int decade = floor_of(k, count);
+    double digit = digits[k - decade * count];
+    return decade < 0 ? digit * pow(10, -decade) : digit / pow(10, decade);
+}
+
+double grid_dt(int k) {
+    /* Renard's, but for 3.2 and 6.4, so that most are doubled in three. */
+    static const double digits[] = {1,    0.8,  0.64, 0.5,  0.4,
+                                    0.32, 0.25, 0.2,  0.16, 0.125};
+    return shortened(digits, 10, k);
+}
+
+double grid_tolerance(int k) {
+    static const double digits[] = {1, 0.5, 0.2};
+    return shortened(digits, 3, k);
+}
+
+int grid_dt_place(double dt) {
+    int k = (int)floor(-10 * log10(dt)) - 2;
+    while (grid_dt(k) > dt * (1 + 1e-9))
+        k++;
+    return k;
+}
+
+double grid_between(const double dt[2], const double error[2], double target) {
+    double slope = log(error[1] / error[0]) / log(dt[1] / dt[0]);
+    return dt[0] * exp(log(target / error[0]) / slope);
+}
+
+double grid_digit_factor(const double error[], const double work[],
+                         size_t count) {
+    double n = (double)count, x = 0, y = 0, xx = 0, xy = 0;
+    for (size_t i = 0; i < count; i++) {
+        double digits = -log10(error[i]), cost = log10(work[i]);
+        x += digits, y += cost, xx += digits * digits, xy += digits * cost;
+    }
+    double spread = n * xx - x * x;
+    return spread > 1e-6 ? pow(10, (n * xy - x * y) / spread) : NAN;
+}
+
+size_t grid_cheapest(const double error[], const double work[], size_t count,
+                     double target) {
+    size_t best = count;
+    for (size_t i = 0; i < count; i++)
+        if (error[i] <= target && (best == count || work[i] < work[best]))
+            best = i;
+    return best;
+}

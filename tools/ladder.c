@@ -1,0 +1,361 @@
+/* nevh: one integrator and gradient at many steps.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "ladder.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+static const double rounding = 1e-13;
+static const double usable_below = 0.5; /* of the scale of errors */
+
+static double seconds_used(void) {
+    return (double)clock() / CLOCKS_PER_SEC;
+}
+
+static double longest_dt(const plan *p) {
+    double longest = 0;
+    for (size_t i = 0; i < p->dts; i++)
+        longest = fmax(longest, p->dt[i]);
+    return longest;
+}
+
+static int coarse_to_fine(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x < y) - (x > y);
+}
+
+static double *ordered(const double numbers[], size_t count) {
+    double *copy = tool_allocate(count, sizeof *copy);
+    memcpy(copy, numbers, count * sizeof *copy);
+    qsort(copy, count, sizeof *copy, coarse_to_fine);
+    return copy;
+}
+
+search search_begin(const plan *p, const options *o, double budget) {
+    search s = {.plan = *p,
+                .repeats = o->repeats,
+                .by_state = o->by_state,
+                .quiet = o->quiet,
+                .budget = budget,
+                .started = seconds_used(),
+                .landing = grid_dt(grid_dt_place(8 * longest_dt(p)))};
+    s.plan.hurried = true;
+    s.plan.repeats = 1;
+    if (o->dts) {
+        s.dt = ordered(p->dt, s.dts = p->dts);
+        s.tolerance = ordered(p->tolerance, s.tolerances = p->tolerances);
+        s.landing = longest_dt(p);
+    }
+    return s;
+}
+
+bool search_is_over(const search *s, double share) {
+    return seconds_used() - s->started > share * s->budget;
+}
+
+static bool shows_progress(const search *s) {
+    return !s->quiet && seconds_used() - s->started > 1 &&
+           isatty(STDERR_FILENO);
+}
+
+static void progress(const search *s, const row *r) {
+    if (!shows_progress(s))
+        return;
+    fprintf(stderr, "\r\033[K%zu runs: %s, %s, %s = %g", s->runs, r->integrator,
+            r->gradient, r->tolerance > 0 ? "tolerance" : "dt",
+            r->tolerance > 0 ? r->tolerance : r->dt);
+    fflush(stderr);
+}
+
+void search_end(search *s) {
+    if (shows_progress(s))
+        fputs("\r\033[K", stderr);
+    free(s->dt);
+    free(s->tolerance);
+}
+
+ladder ladder_new(const char *integrator, const char *gradient) {
+    bool transformed;
+    return (ladder){.integrator = integrator,
+                    .gradient = gradient,
+                    .scheme = plan_scheme(integrator, &transformed)};
+}
+
+void ladder_free(ladder *l) {
+    for (size_t i = 0; i < l->count; i++)
+        free(l->rung[i].status);
+    free(l->rung);
+    free(l->k);
+}
+
+double ladder_error(const row *r, bool by_state) {
+    (void)by_state;
+    double error = r->energy.max;
+    return r->ran && isfinite(error) ? error : INFINITY;
+}
+
+static double grid_step(const ladder *l, int k) {
+    return nevh_integrator_adaptive(l->scheme) ? grid_tolerance(k) : grid_dt(k);
+}
+
+static void set_step(const search *s, row *r, int k) {
+    if (nevh_integrator_adaptive(r->scheme)) {
+        r->dt = s->landing;
+        r->tolerance = s->dt ? s->tolerance[k] : grid_tolerance(k);
+    } else {
+        r->dt = s->dt ? s->dt[k] : grid_dt(k);
+    }
+}
+
+static size_t insert(ladder *l, size_t i, int k, row r) {
+    row *rung = tool_allocate(l->count + 1, sizeof *rung);
+    int *place = tool_allocate(l->count + 1, sizeof *place);
+    if (l->count) {
+        memcpy(rung, l->rung, i * sizeof *rung);
+        memcpy(place, l->k, i * sizeof *place);
+        memcpy(rung + i + 1, l->rung + i, (l->count - i) * sizeof *rung);
+        memcpy(place + i + 1, l->k + i, (l->count - i) * sizeof *place);
+    }
+    free(l->rung);
+    free(l->k);
+    rung[i] = r, place[i] = k;
+    l->rung = rung, l->k = place, l->count++;
+    return i;
+}
+
+static void forget(ladder *l, size_t i) {
+    free(l->rung[i].status);
+    l->count--;
+    memmove(l->rung + i, l->rung + i + 1, (l->count - i) * sizeof *l->rung);
+    memmove(l->k + i, l->k + i + 1, (l->count - i) * sizeof *l->k);
+}
+
+size_t ladder_run(search *s, ladder *l, int k) {
+    size_t i = 0;
+    while (i < l->count && l->k[i] < k)
+        i++;
+    if (i < l->count && l->k[i] == k)
+        return i;
+    row r = {.integrator = l->integrator,
+             .gradient = l->gradient,
+             .scheme = l->scheme};
+    set_step(s, &r, k);
+    progress(s, &r);
+    row_run(&s->plan, &r);
+    s->runs++;
+    return insert(l, i, k, r);
+}
+
+static bool is_usable(const ladder *l, size_t i, bool by_state) {
+    return ladder_error(&l->rung[i], by_state) < usable_below;
+}
+
+/* To coarser ones, of which only those that are usable stay. */
+static void ascend(search *s, ladder *l) {
+    enum { STRIDES = 6, STEPS = 8 };
+    double span = s->plan.t_end - s->plan.run->t_start;
+    for (int i = 0; i < STRIDES && !search_is_over(s, 1); i++) {
+        int k = l->k[0] - GRID_STRIDE;
+        if (grid_dt(k) * STEPS > span)
+            return;
+        ladder_run(s, l, k);
+        if (!is_usable(l, 0, s->by_state)) {
+            forget(l, 0);
+            return;
+        }
+    }
+}
+
+static void run_given(search *s, ladder *l) {
+    size_t count = nevh_integrator_adaptive(l->scheme) ? s->tolerances : s->dts;
+    for (size_t i = 0; i < count; i++)
+        ladder_run(s, l, (int)i);
+    l->end = LADDER_GIVEN;
+}
+
+/* By what the scheme claims. */
+static bool is_kept(const search *s, const ladder *l) {
+    return !s->by_state &&
+           nevh_integrator_preserves_energy(l->scheme) == NEVH_YES;
+}
+
+void ladder_begin(search *s, ladder *l) {
+    enum { FIRST_TOLERANCE = 6 };
+    bool adapts = nevh_integrator_adaptive(l->scheme);
+    if (s->dt) {
+        run_given(s, l);
+        return;
+    }
+    int k = adapts ? FIRST_TOLERANCE : grid_dt_place(longest_dt(&s->plan));
+    size_t i = ladder_run(s, l, k);
+    if (!l->rung[i].ran && !l->rung[i].failed)
+        l->end = LADDER_REFUSED;
+    else if (!adapts && is_usable(l, i, s->by_state) && !is_kept(s, l))
+        ascend(s, l);
+    if (!s->by_state && ladder_keeps_energy(l))
+        l->end = LADDER_FLOOR;
+}
+
+static double work(const row *r) {
+    return (double)r->counts.gradients + r->counts.hamiltonians +
+           (double)r->steps;
+}
+
+static double next_work(const ladder *l) {
+    double stretch = nevh_integrator_adaptive(l->scheme)
+                         ? pow(10, 1.0 / nevh_integrator_order(l->scheme))
+                         : 2;
+    return stretch * work(&l->rung[l->count - 1]);
+}
+
+ladder *ladder_next(ladder ladders[], size_t count) {
+    ladder *next = NULL;
+    for (size_t i = 0; i < count; i++)
+        if (ladders[i].end == LADDER_OPEN &&
+            (!next || next_work(&ladders[i]) < next_work(next)))
+            next = &ladders[i];
+    return next;
+}
+
+/* Whether the last two rungs brought nothing, after others had. */
+static bool is_level(const ladder *l, bool by_state) {
+    static const double level = 0.7;
+    size_t n = l->count;
+    if (n < 2)
+        return false;
+    double last = ladder_error(&l->rung[n - 1], by_state);
+    double before = ladder_error(&l->rung[n - 2], by_state);
+    if (last <= rounding || (before < 1e-11 && last > level * before))
+        return true;
+    return n > 2 && last > level * before &&
+           before > level * ladder_error(&l->rung[n - 3], by_state) &&
+           before < 0.1 * ladder_error(&l->rung[0], by_state);
+}
+
+/* Coarse rungs were of no use once a finer one is of some. */
+static void drop_useless(ladder *l, bool by_state) {
+    while (l->count > 1 && !is_usable(l, 0, by_state) &&
+           is_usable(l, l->count - 1, by_state))
+        forget(l, 0);
+}
+
+void ladder_descend(search *s, ladder *l) {
+    static const double one = 0.1; /* of the budget, for a single rung */
+    enum { WATCHED = 4 };          /* a run that is watched, in runs */
+    const row *last = &l->rung[l->count - 1];
+    double expected = WATCHED * last->seconds * next_work(l) / work(last);
+    bool finest = l->rung[0].tolerance > 0 && last->tolerance < 1e-13;
+    if (finest || is_level(l, s->by_state)) {
+        l->end = LADDER_FLOOR;
+    } else if (expected > one * s->budget) {
+        l->end = LADDER_LIMIT;
+    } else {
+        ladder_run(s, l, l->k[l->count - 1] + GRID_STRIDE);
+        drop_useless(l, s->by_state);
+    }
+}
+
+bool ladder_is_behind(const search *s, const ladder *l, const ladder others[],
+                      size_t count) {
+    static const double behind = 2, far_behind = 8;
+    const row *last = &l->rung[l->count - 1];
+    double error = ladder_error(last, s->by_state);
+    for (size_t i = 0; i < count; i++) {
+        const ladder *m = &others[i];
+        double factor =
+            nevh_integrator_order(m->scheme) >= nevh_integrator_order(l->scheme)
+                ? behind
+                : far_behind;
+        for (size_t k = 0; k < m->count; k++)
+            if (m->gradient == l->gradient &&
+                (s->by_state || !ladder_keeps_energy(m)) &&
+                ladder_error(&m->rung[k], s->by_state) <= error &&
+                factor * work(&m->rung[k]) < work(last))
+                return true;
+    }
+    return false;
+}
+
+void ladder_time(const search *s, ladder *l, size_t i) {
+    row *r = &l->rung[i];
+    row again = *r;
+    if (!r->ran || r->spread > 0)
+        return;
+    set_step(s, &again, l->k[i]);
+    row_finish(&s->plan, r, again.dt, s->repeats);
+}
+
+/* The first rung that keeps the target. */
+static size_t first_below(const ladder *l, double target, bool by_state) {
+    size_t i = 0;
+    while (i < l->count && ladder_error(&l->rung[i], by_state) > target)
+        i++;
+    return i;
+}
+
+/* A place strictly between rungs i - 1 and i: where the target is expected. */
+static int place_between(const ladder *l, size_t i, double target,
+                         bool by_state) {
+    double step[2], error[2];
+    for (size_t j = 0; j < 2; j++) {
+        step[j] = grid_step(l, l->k[i - 1 + j]);
+        error[j] = ladder_error(&l->rung[i - 1 + j], by_state);
+    }
+    int k = l->k[i] - 1;
+    if (isinf(error[0]))
+        return k;
+    double wanted = grid_between(step, error, target);
+    while (k > l->k[i - 1] + 1 && grid_step(l, k) < wanted)
+        k--;
+    return k;
+}
+
+void ladder_refine(search *s, ladder *l, double target) {
+    for (;;) {
+        size_t i = first_below(l, target, s->by_state);
+        if (l->end == LADDER_GIVEN || i == 0 || i == l->count ||
+            l->k[i] - l->k[i - 1] < 2 || search_is_over(s, 1))
+            return;
+        ladder_run(s, l, place_between(l, i, target, s->by_state));
+    }
+}
+
+static size_t widest_gap(const ladder *l) {
+    size_t widest = 0;
+    for (size_t i = 1; i < l->count; i++)
+        if (!widest || l->k[i] - l->k[i - 1] > l->k[widest] - l->k[widest - 1])
+            widest = i;
+    return widest;
+}
+
+void ladder_fill(search *s, ladder *l, size_t count) {
+    while (l->count < count && l->end < LADDER_GIVEN && !search_is_over(s, 1)) {
+        size_t i = widest_gap(l);
+        int gap = i ? l->k[i] - l->k[i - 1] : 0;
+        ladder_run(s, l, gap > 1 ? l->k[i] - gap / 2 : l->k[l->count - 1] + 1);
+    }
+}
+
+const row *ladder_cheapest(const ladder *l, double target, bool by_state) {
+    double *error = tool_allocate(l->count, sizeof *error);
+    double *seconds = tool_allocate(l->count, sizeof *seconds);
+    for (size_t i = 0; i < l->count; i++) {
+        error[i] = ladder_error(&l->rung[i], by_state);
+        seconds[i] = l->rung[i].seconds;
+    }
+    size_t i = grid_cheapest(error, seconds, l->count, target);
+    free(error);
+    free(seconds);
+    return i < l->count ? &l->rung[i] : NULL;
+}
+
+/* So do those that are meant to, and Gauss where H is quadratic. */
+bool ladder_keeps_energy(const ladder *l) {
+    static const double kept = 1e-8;
+    bool adapts = nevh_integrator_adaptive(l->scheme);
+    if (nevh_integrator_preserves_energy(l->scheme) == NEVH_YES)
+        return true;
+    return !adapts && l->count && ladder_error(&l->rung[0], false) < kept;
+}

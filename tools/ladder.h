@@ -1,0 +1,90 @@
+/* nevh: work and precision: what cost and recommend share.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_LADDER_H
+#define NEVH_LADDER_H
+
+#include "tool.h"
+
+/* grid.c: step sizes to choose from, and what errors over them tell.  No run is
+   made here. */
+enum { GRID_STRIDE = 3 }; /* a factor of about 2 in dt, of 10 in tolerance */
+/* Finer with k: ten a decade, 1 at k = 0; tolerances three a decade. */
+double grid_dt(int k);
+double grid_tolerance(int k);
+/* The coarsest k whose step is not longer than dt. */
+int grid_dt_place(double dt);
+/* Where a line through two points, on logarithmic axes, has that error. */
+double grid_between(const double dt[2], const double error[2], double target);
+/* What one digit more multiplies the work by: the slope of a line through log
+   work over -log error; NAN where fewer than two errors differ. */
+double grid_digit_factor(const double error[], const double work[],
+                         size_t count);
+/* Where the error is at most the target, the index of the least work; `count`
+   where it is nowhere. */
+size_t grid_cheapest(const double error[], const double work[], size_t count,
+                     double target);
+
+/* ladder.c: one integrator and gradient at many steps. */
+typedef enum {
+    LADDER_OPEN,
+    LADDER_FLOOR, /* shorter steps do not lessen the error */
+    LADDER_LIMIT, /* they would take longer than allowed */
+    LADDER_GIVEN, /* the steps asked for, and no others */
+    LADDER_REFUSED
+} ladder_end;
+typedef struct {
+    const char *integrator, *gradient;
+    const nevh_integrator *scheme;
+    row *rung; /* coarse to fine */
+    int *k;    /* their places on the grid */
+    size_t count;
+    ladder_end end;
+} ladder;
+typedef struct {
+    plan plan; /* a copy, in a hurry */
+    bool by_state, quiet;
+    size_t repeats; /* 0: chosen */
+    double budget;  /* seconds for all, from `started` on */
+    double started;
+    double landing;         /* dt of adaptive schemes */
+    double *dt, *tolerance; /* coarse to fine; NULL: those of the grid */
+    size_t dts, tolerances;
+    size_t runs;
+} search;
+/* With --dt, only these steps, and the tolerances of the plan. */
+search search_begin(const plan *, const options *, double budget);
+bool search_is_over(const search *, double share); /* of the budget */
+void search_end(search *);
+ladder ladder_new(const char *integrator, const char *gradient);
+void ladder_free(ladder *);
+/* Finds the coarsest usable step, from the scene's on. */
+void ladder_begin(search *, ladder *);
+/* Next: the one with the least work in its next rung; NULL: none is open. */
+ladder *ladder_next(ladder ladders[], size_t count);
+void ladder_descend(search *, ladder *);
+/* Whether another is so far ahead that shorter steps will not change it. */
+bool ladder_is_behind(const search *, const ladder *, const ladder others[],
+                      size_t count);
+/* Measures the time of a rung again, as often as asked for. */
+void ladder_time(const search *, ladder *, size_t rung);
+/* Rungs between those there are, so that the coarsest on the grid that keeps
+   the target is one of them. */
+void ladder_refine(search *, ladder *, double target);
+/* Rungs in the widest gaps until there are so many. */
+void ladder_fill(search *, ladder *, size_t count);
+size_t ladder_run(search *, ladder *, int k);    /* index of the rung */
+double ladder_error(const row *, bool by_state); /* INFINITY: none */
+/* The cheapest rung by seconds; NULL: none keeps the target. */
+const row *ladder_cheapest(const ladder *, double target, bool by_state);
+/* Whether the energy says nothing of its orbits, being kept at any step. */
+bool ladder_keeps_energy(const ladder *);
+
+/* fit.c: names of the schemes, and of the gradients, that fit. */
+void fitting_integrators(const plan *, const char *gradient, list *names);
+bool gradient_fits(const plan *, const char *gradient, char **why);
+
+/* cost.c: every scheme that fits, and the gradient that costs least, unless
+   others are asked for. */
+void plan_search(plan *, const options *);
+
+#endif

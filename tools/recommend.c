@@ -1,0 +1,215 @@
+/* nevh recommend: the cheapest integrator, gradient and step that keep an
+   error.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "recommend_private.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The cheapest rung that keeps the target, of the ladders that count. */
+static const row *keeps(const advice *a, const ladder *l) {
+    bool counts = a->named || a->search.by_state || !ladder_keeps_energy(l);
+    return counts ? ladder_cheapest(l, a->target, a->search.by_state) : NULL;
+}
+
+static double least_seconds(const advice *a) {
+    double least = INFINITY;
+    for (size_t i = 0; i < a->count; i++) {
+        const row *r = keeps(a, &a->ladder[i]);
+        if (r)
+            least = fmin(least, r->seconds);
+    }
+    return least;
+}
+
+/* A shorter step costs more, but for the sweeps that it saves. */
+static bool is_hopeless(const advice *a, const ladder *l) {
+    static const double nearly = 1.5;
+    return l->rung[l->count - 1].seconds > nearly * least_seconds(a);
+}
+
+static void descend(advice *a) {
+    static const double share = 0.6;
+    ladder *next;
+    for (size_t i = 0; i < a->count; i++)
+        ladder_begin(&a->search, &a->ladder[i]);
+    while ((next = ladder_next(a->ladder, a->count)) &&
+           !search_is_over(&a->search, share))
+        if (keeps(a, next) || is_hopeless(a, next))
+            next->end = LADDER_LIMIT;
+        else
+            ladder_descend(&a->search, next);
+}
+
+static void refine(advice *a) {
+    static const double nearly = 1.5;
+    for (size_t i = 0; i < a->count; i++) {
+        ladder *l = &a->ladder[i];
+        size_t k = 0;
+        while (k < l->count &&
+               ladder_error(&l->rung[k], a->search.by_state) > a->target)
+            k++;
+        if (keeps(a, l) &&
+            (k == 0 || l->rung[k - 1].seconds < nearly * least_seconds(a)))
+            ladder_refine(&a->search, l, a->target);
+    }
+}
+
+/* Of those not yet taken. */
+static ladder *next_best(const advice *a, const bool taken[]) {
+    ladder *best = NULL;
+    for (size_t i = 0; i < a->count; i++) {
+        const row *r = taken[i] ? NULL : keeps(a, &a->ladder[i]);
+        if (r && (!best || r->seconds < keeps(a, best)->seconds))
+            best = &a->ladder[i];
+    }
+    return best;
+}
+
+static void add_ladder(advice *a, ladder l) {
+    a->ladder = realloc(a->ladder, (a->count + 1) * sizeof *a->ladder);
+    if (!a->ladder)
+        abort();
+    a->ladder[a->count++] = l;
+}
+
+/* The same steps with another gradient, and finer ones where that is not
+   enough. */
+static ladder with_gradient(advice *a, const ladder *l, int k,
+                            const char *gradient) {
+    ladder other = ladder_new(l->integrator, gradient);
+    for (int finer = 0; finer <= GRID_STRIDE; finer++) {
+        size_t i = ladder_run(&a->search, &other, k + finer);
+        if (ladder_error(&other.rung[i], a->search.by_state) <= a->target)
+            break;
+    }
+    other.end = LADDER_LIMIT;
+    return other;
+}
+
+/* Other gradients for the best few schemes: they change the price of a step,
+   and where errors end, but hardly the step that is needed. */
+static void vary_gradients(advice *a) {
+    enum { FEW = 4 };
+    bool *taken = tool_allocate(a->count, sizeof *taken);
+    size_t count = a->count;
+    for (int n = 0; n < FEW; n++) {
+        const ladder *best = NULL;
+        for (size_t i = 0; i < count; i++) {
+            const row *r = taken[i] ? NULL : keeps(a, &a->ladder[i]);
+            if (r && (!best || r->seconds < keeps(a, best)->seconds))
+                best = &a->ladder[i];
+        }
+        if (!best)
+            break;
+        ladder model = *best;
+        int k = model.k[keeps(a, best) - best->rung];
+        taken[best - a->ladder] = true;
+        for (size_t g = 1; g < a->gradients.count; g++)
+            if (!search_is_over(&a->search, 1))
+                add_ladder(a,
+                           with_gradient(a, &model, k, a->gradients.item[g]));
+    }
+    free(taken);
+}
+
+/* Medians for those that may win. */
+static void time_best(advice *a) {
+    enum { FEW = 8 };
+    bool *taken = tool_allocate(a->count, sizeof *taken);
+    for (int n = 0; n < FEW; n++) {
+        ladder *l = next_best(a, taken);
+        if (!l)
+            break;
+        taken[l - a->ladder] = true;
+        ladder_time(&a->search, l, (size_t)(keeps(a, l) - l->rung));
+    }
+    free(taken);
+}
+
+static void take_gradients(advice *a, const options *o) {
+    static const char *const names[] = {"exact",    "central4", "central2",
+                                        "central6", "central8", "complex-step"};
+    const plan *p = &a->search.plan;
+    for (size_t i = 0; i < o->gradients.count; i++)
+        list_add(&a->gradients, o->gradients.item[i]);
+    for (size_t i = 0; !o->gradients.count && i < sizeof names / sizeof *names;
+         i++)
+        if (gradient_fits(p, names[i], NULL))
+            list_add(&a->gradients, names[i]);
+}
+
+static void search_all(advice *a) {
+    const plan *p = &a->search.plan;
+    a->ladder = tool_allocate(p->integrators.count, sizeof *a->ladder);
+    for (size_t i = 0; i < p->integrators.count; i++)
+        a->ladder[a->count++] =
+            ladder_new(p->integrators.item[i], a->gradients.item[0]);
+    descend(a);
+    refine(a);
+    vary_gradients(a);
+    time_best(a);
+}
+
+/* The best; with another integrator; without derivatives. */
+static void choose(advice *a) {
+    bool *taken = tool_allocate(a->count, sizeof *taken);
+    for (ladder *l; (l = next_best(a, taken));) {
+        const char *name = l->integrator;
+        taken[l - a->ladder] = true;
+        if (!a->best)
+            a->best = l;
+        else if (!a->second && strcmp(name, a->best->integrator) != 0)
+            a->second = l;
+        if (!a->alone && strcmp(l->gradient, "exact") != 0)
+            a->alone = l;
+    }
+    free(taken);
+}
+
+static int advise(const options *o, plan *p) {
+    static const double budget = 20; /* seconds */
+    output out;
+    if (output_open(&out, o->file))
+        return TOOL_USAGE;
+    advice a = {.search = search_begin(p, o, budget),
+                .target = o->state_error > 0 ? o->state_error : o->energy_error,
+                .named = o->integrators.count > 0};
+    a.search.by_state = o->state_error > 0;
+    take_gradients(&a, o);
+    search_all(&a);
+    choose(&a);
+    int status = a.best ? TOOL_OK : advice_none(&a);
+    search_end(&a.search);
+    if (a.best)
+        advice_print(&a, o, out.stream);
+    for (size_t i = 0; i < a.count; i++)
+        ladder_free(&a.ladder[i]);
+    free(a.ladder);
+    list_free(&a.gradients);
+    return output_close(&out, status);
+}
+
+static int check_target(const options *o) {
+    bool energy = o->energy_error > 0, state = o->state_error > 0;
+    if (energy && state)
+        return tool_refuse("nevh recommend takes one of --energy-error and "
+                           "--state-error, not both");
+    if (!energy && !state)
+        return tool_refuse("nevh recommend needs --energy-error X or "
+                           "--state-error X");
+    return TOOL_OK;
+}
+
+int recommend(const options *o) {
+    plan p;
+    if (check_target(o))
+        return TOOL_USAGE;
+    int status = plan_make(&p, o);
+    if (!status) {
+        plan_search(&p, o);
+        status = advise(o, &p);
+    }
+    plan_free(&p);
+    return status;
+}

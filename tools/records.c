@@ -1,0 +1,61 @@
+/* nevh: rows as records: the columns of CSV and JSON.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tool.h"
+#include <math.h>
+
+static double when(bool condition, double value) {
+    return condition ? value : NAN;
+}
+
+static void add_record(table *t, const plan *p, const row *r) {
+    const nevh_energy_report *e = &r->energy;
+    table_text(t, p->name);
+    table_text(t, r->integrator);
+    table_number(t, r->order);
+    table_text(t, nevh_claim_name(nevh_integrator_symplectic(r->scheme)));
+    table_text(t, r->gradient);
+    table_number(t, r->dt);
+    table_number(t, when(r->ran, (double)r->steps));
+    table_text(t, r->status);
+    table_number(t, when(r->ran, e->max));
+    table_number(t, when(r->ran, e->rms));
+    table_number(t, when(r->ran, e->final));
+    table_number(t, when(r->ran, e->drift));
+    table_text(t, NULL);
+    table_number(t, when(r->ran, r->counts.hamiltonians));
+    table_number(t, when(r->ran, (double)r->counts.gradients));
+    table_number(t, when(r->ran, (double)r->counts.sweeps));
+    table_number(t, when(r->ran, r->seconds));
+    table_text(t, r->ran ? nevh_verdict_name(e->verdict) : NULL);
+    table_number(t, r->observed_order);
+    table_number(t, when(r->ran, r->spread));
+}
+
+table *records(const plan *p, const row rows[], size_t count) {
+    static const char *const names[] = {"scene",
+                                        "integrator",
+                                        "order",
+                                        "symplectic",
+                                        "gradient",
+                                        "dt",
+                                        "steps",
+                                        "status",
+                                        "max_energy_error",
+                                        "rms_energy_error",
+                                        "final_energy_error",
+                                        "energy_drift",
+                                        "state_error",
+                                        "hamiltonian_evals",
+                                        "gradient_evals",
+                                        "sweeps",
+                                        "seconds",
+                                        "verdict",
+                                        "observed_order",
+                                        "seconds_spread"};
+    table *t = table_new();
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        table_column(t, names[i]);
+    for (size_t i = 0; i < count; i++)
+        add_record(t, p, &rows[i]);
+    return t;
+}
