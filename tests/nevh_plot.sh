@@ -27,6 +27,12 @@ series() {
     sed -n "/<title>$1<\/title>/,/<g id=/p" $svg
 }
 
+# points N: how many of the series N the script that was kept last has.
+points() {
+    awk -v name="\$series$1" '$1 == name && $2 == "<<" { on = 1 } /^EOD/ { on = 0 }
+        on && NF == 2 { n++ } END { print n + 0 }' $work/out.gp
+}
+
 # The errors of two integrators, each at two dt: two panels of one legend.
 draws compare pendulum --integrators verlet,rk4,euler --dt 0.1,0.05 \
     --t-end 300 --plot $svg --keep-plot-script $work/out.gp
@@ -67,6 +73,33 @@ draws compare oscillator --t-end 9 --dt 0.1 --keep-plot-script $work/alone.gp
 gnuplot -e "set terminal dumb" $work/alone.gp | grep -q verlet ||
     fails "keeps a script that draws nothing"
 
+# Sections, and work and precision.
+draws section damped-driven-pendulum --t-end 4000 --plot $svg \
+    --keep-plot-script $work/out.gp
+shows strobe
+shows 'phi (rad)'
+shows p_phi
+test "$(points 1)" = "$(grep -c '^strobe,' $work/out)" ||
+    fails "does not draw each point"
+draws cost pendulum --gradient central4 --integrators verlet,rk4 \
+    --dt 0.2,0.1,0.05,0.025 --t-end 20 --plot $svg \
+    --keep-plot-script $work/out.gp
+shows 'CPU time (ms)'
+shows 'evaluations of H'
+shows 'largest energy error, relative'
+shows verlet
+test "$(points 1) $(points 4)" = "4 4" || fails "does not draw each run"
+# An eighth of the step: 8 times as many H, and 8^4 to 8^5 times less error.
+awk '/^\$series4 <</ { on = 1 } /^EOD/ { on = 0 }
+    on && NF == 2 { if (++n == 1) { h = $1; e = $2 } else { x = $1 / h; y = e / $2 } }
+    END { exit !(x > 7.9 && x < 8.1 && y > 4e3 && y < 4e4) }' $work/out.gp ||
+    fails "draws other numbers"
+test "$(grep -c '^set logscale [xy]' $work/out.gp)" = 4 ||
+    fails "has axes that are not logarithmic"
+draws cost pendulum --gradient exact --integrators verlet --dt 0.2,0.1 \
+    --t-end 20 --plot $svg
+shows 'evaluations of the gradient'
+
 # Other media; files are there when they are whole.
 for medium in png pdf; do
     draws compare oscillator --t-end 9 --dt 0.1 --plot $work/x.$medium
@@ -80,7 +113,7 @@ has '^ +1e-16 '
 has '\*verlet *$'
 lacks '^.{81}.*[*#|]'
 COLUMNS=120 draws compare oscillator --t-end 9 --dt 0.1 --quiet --plot -
-has '^.{120}$'
+has '^.{105,120}$'
 lacks '^.{121}.*[*#|]'
 
 # Texts are no more than texts.

@@ -5,7 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double largest = 1e300; /* gnuplot computes with ranges */
+/* gnuplot computes with ranges. */
+static const double largest = 1e300, smallest = 1e-300;
 
 static char *copy(const char *text) {
     return text ? text_print("%s", text) : NULL;
@@ -115,7 +116,7 @@ void plot_break(plot *p, size_t number) {
 }
 
 static bool shown(const panel *on, double x, double y) {
-    return (x > 0 || !on->log_x) && (y > 0 || !on->log_y);
+    return (x > smallest || !on->log_x) && (y > smallest || !on->log_y);
 }
 
 void plot_point(plot *p, size_t number, double x, double y) {

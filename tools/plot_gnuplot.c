@@ -66,11 +66,6 @@ static int refuse_end(int status, FILE *messages) {
     return refused;
 }
 
-/* Whoever reads what is drawn in the terminal may have seen enough. */
-static bool is_unread(int status) {
-    return WIFSIGNALED(status) && WTERMSIG(status) == SIGPIPE;
-}
-
 static int run(char *const arguments[], FILE *in, FILE *out, FILE *messages) {
     pid_t child;
     int wrong =
@@ -81,8 +76,7 @@ static int run(char *const arguments[], FILE *in, FILE *out, FILE *messages) {
     if (wrong)
         return tool_refuse("gnuplot cannot be run: %s", strerror(wrong));
     int status = await(child);
-    return status && !is_unread(status) ? refuse_end(status, messages)
-                                        : TOOL_OK;
+    return status ? refuse_end(status, messages) : TOOL_OK;
 }
 
 /* Runs it with a file for its messages. */
@@ -114,9 +108,8 @@ static bool is_empty(FILE *f) {
 int gnuplot_draw(FILE *script, FILE *drawing) {
     /* Without the user's own settings. */
     char *const arguments[] = {"gnuplot", "--default-settings", NULL};
-    fflush(drawing);
     int status = run_heard(arguments, script, drawing);
-    if (!status && drawing != stdout && is_empty(drawing))
+    if (!status && is_empty(drawing))
         return tool_refuse("gnuplot drew nothing");
     return status;
 }

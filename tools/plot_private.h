@@ -54,6 +54,24 @@ typedef struct {
 } target;
 void plot_script(const plot *, const target *, FILE *);
 
+/* plot_layout.c */
+enum { PLOT_LONGEST_NAME = 48 };
+/* Lengths in pixels, or in letters and lines of text. */
+typedef struct {
+    double width, height, letter, line, legend;
+    double panel_width, panel_height;
+    double left, right, top, bottom; /* around a panel */
+    double title;
+    size_t columns, rows;
+} layout;
+
+layout plot_lay_out(const plot *, const target *);
+/* Whether the series is the one of its name that the legend shows. */
+bool plot_in_legend(const plot *, size_t series);
+/* Bytes of the letter, as UTF-8 has them; 0 where it is none. */
+size_t plot_letter_bytes(const unsigned char *);
+size_t plot_letters(const char *text);
+
 /* plot_gnuplot.c: gnuplot --version, and a script to be drawn to a file.
    returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int gnuplot_check(void);

@@ -3,7 +3,8 @@
 #include "plot_private.h"
 #include <math.h>
 
-static const double room = 0.04; /* of a linear axis, at either end */
+static const double room = 0.04;       /* of a linear axis, at either end */
+static const double few_digits = 1e-9; /* what is less counts as level */
 
 typedef double coordinate(const pair *);
 static double x_of(const pair *p) {
@@ -43,7 +44,7 @@ static range with_room(range r) {
     if (r.low > r.high)
         return (range){-1, 1};
     double more = room * (r.high - r.low);
-    if (more <= 1e-12 * fmax(fabs(r.low), fabs(r.high)))
+    if (more <= few_digits * fmax(fabs(r.low), fabs(r.high)))
         more = fmax(0.1 * fabs(r.low), 1e-300);
     if (r.low == 0 && r.high == 0)
         more = 1;

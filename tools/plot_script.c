@@ -17,42 +17,9 @@ enum {
     COLOURS = sizeof colours / sizeof *colours,
     DASHES = sizeof dashes / sizeof *dashes,
     MARKERS = sizeof markers / sizeof *markers,
-    LONGEST_NAME = 48,
     MARKS = 9, /* of a PLOT_MARKED line */
     FONT = 14
 };
-
-/* Lengths in pixels, or in letters and lines of text. */
-typedef struct {
-    double width, height, letter, line, legend;
-    double panel_width, panel_height;
-    double left, right, top, bottom; /* around a panel */
-    double title;
-    size_t columns, rows;
-} layout;
-
-/* Bytes of the letter, as UTF-8 has them; 0 where it is none. */
-static size_t letter_bytes(const unsigned char *c) {
-    size_t more = *c >= 0xf0 && *c < 0xf5   ? 3
-                  : *c >= 0xe0 && *c < 0xf0 ? 2
-                  : *c >= 0xc2 && *c < 0xe0 ? 1
-                                            : 0;
-    if (*c >= 0x80 && more == 0)
-        return 0;
-    for (size_t i = 1; i <= more; i++)
-        if ((c[i] & 0xc0) != 0x80)
-            return 0;
-    return more + 1;
-}
-
-static size_t letters(const char *text) {
-    size_t count = 0;
-    for (const char *c = text; *c; count++) {
-        size_t bytes = letter_bytes((const unsigned char *)c);
-        c += bytes ? bytes : 1;
-    }
-    return count;
-}
 
 static void quote_letter(FILE *f, const char *c, size_t bytes) {
     if (bytes == 0)
@@ -67,11 +34,11 @@ static void quote_letter(FILE *f, const char *c, size_t bytes) {
 
 /* In single quotes gnuplot changes nothing, and runs nothing. */
 static void quote(FILE *f, const char *text, size_t longest) {
-    bool cut = letters(text) > longest;
+    bool cut = plot_letters(text) > longest;
     size_t most = cut ? longest - 3 : longest;
     fputc('\'', f);
     while (*text && most--) {
-        size_t bytes = letter_bytes((const unsigned char *)text);
+        size_t bytes = plot_letter_bytes((const unsigned char *)text);
         quote_letter(f, text, bytes);
         text += bytes ? bytes : 1;
     }
@@ -83,89 +50,6 @@ static void quote_line(FILE *f, const char *before, const char *text,
     fputs(before, f);
     quote(f, text ? text : "", (size_t)fmax(length, 8));
     fputs(" noenhanced\n", f);
-}
-
-static bool is_namesake(const plot *p, size_t i) {
-    for (size_t k = 0; k < i; k++)
-        if (p->series[k].name && p->series[i].name &&
-            strcmp(p->series[k].name, p->series[i].name) == 0)
-            return true;
-    return false;
-}
-
-/* Whether the series is the one that the legend shows. */
-static bool in_legend(const plot *p, size_t i) {
-    return p->series[i].name && !is_namesake(p, i);
-}
-
-static size_t legend_lines(const plot *p, size_t *longest) {
-    size_t lines = 0;
-    *longest = 0;
-    for (size_t i = 0; i < p->count; i++)
-        if (in_legend(p, i)) {
-            size_t length = letters(p->series[i].name);
-            *longest = length > *longest ? length : *longest;
-            lines++;
-        }
-    if (*longest > LONGEST_NAME)
-        *longest = LONGEST_NAME;
-    return lines;
-}
-
-static bool has_headings(const plot *p) {
-    for (size_t i = 0; i < p->panels; i++)
-        if (p->panel[i].heading)
-            return true;
-    return false;
-}
-
-/* As the picture is. */
-static void shape_panel(layout *l, const plot *p) {
-    static const double width = 560;
-    range x = plot_range_x(p, 0), y = plot_range_y(p, 0);
-    double height = width * (y.high - y.low) / (x.high - x.low);
-    l->panel_width = width;
-    l->panel_height = fmin(fmax(height, 0.4 * width), width);
-}
-
-static void choose_panels(layout *l, const plot *p, const target *t) {
-    static const struct {
-        size_t columns;
-        double width, height;
-    } few[] = {{1, 640, 420}, {2, 400, 320}, {3, 320, 280}, {2, 400, 280}},
-      many = {3, 300, 230};
-    size_t last = sizeof few / sizeof *few;
-    l->columns = p->panels > last ? many.columns : few[p->panels - 1].columns;
-    l->panel_width = p->panels > last ? many.width : few[p->panels - 1].width;
-    l->panel_height =
-        p->panels > last ? many.height : few[p->panels - 1].height;
-    if (p->panels == 1 && p->panel->equal)
-        shape_panel(l, p);
-    if (t->medium == PLOT_TEXT) {
-        double beside = l->left + l->right + l->legend;
-        l->columns = 1;
-        l->panel_width = fmax((double)t->columns - beside, 20);
-        l->panel_height = fmin(fmax(floor(l->panel_width / 3), 10),
-                               fmax((double)t->lines - 7, 10));
-    }
-    l->rows = (p->panels + l->columns - 1) / l->columns;
-}
-
-static layout lay_out(const plot *p, const target *t) {
-    bool text = t->medium == PLOT_TEXT;
-    size_t longest, lines = legend_lines(p, &longest);
-    layout l = {.letter = text ? 1 : 8, .line = text ? 1 : 18};
-    l.legend = lines ? l.letter * (double)(longest + 8) : 0;
-    l.left = (text ? 9 : 12) * l.letter;
-    l.right = 3 * l.letter;
-    l.top = (text || has_headings(p) ? 1.7 : 0.5) * l.line;
-    l.bottom = (text ? 3 : 4) * l.line;
-    l.title = (p->title && *p->title ? 2.3 : 0.5) * l.line;
-    choose_panels(&l, p, t);
-    l.width = (l.left + l.panel_width + l.right) * (double)l.columns + l.legend;
-    l.height = (l.top + l.panel_height + l.bottom) * (double)l.rows + l.title;
-    l.height = fmax(l.height, l.title + l.top + l.line * (double)(lines + 2));
-    return l;
 }
 
 static void print_terminal(FILE *f, const target *t, const layout *l) {
@@ -199,14 +83,14 @@ static void print_terminal(FILE *f, const target *t, const layout *l) {
     }
 }
 
-/* A name that begins with | would be a command, and one that a line cannot hold
-   is left to the shell's redirection. */
+/* A name that begins with | would be a command, with ~ a user's home, and one
+   that a line cannot hold is left to the shell's redirection. */
 static void print_output(FILE *f, const char *file) {
     for (const char *c = file; *c; c++)
         if ((unsigned char)*c < ' ')
             return;
     fputs("set output '", f);
-    if (*file == '|')
+    if (*file == '|' || *file == '~')
         fputs("./", f);
     for (const char *c = file; *c; c++)
         fputs(*c == '\'' ? "''" : (char[]){*c, 0}, f);
@@ -219,7 +103,7 @@ static void print_points(FILE *f, const series *s, size_t number) {
         if (isnan(s->point[k].x))
             fputc('\n', f);
         else
-            fprintf(f, "%.9g %.9g\n", s->point[k].x, s->point[k].y);
+            fprintf(f, "%.10g %.10g\n", s->point[k].x, s->point[k].y);
     fputs("EOD\n", f);
 }
 
@@ -277,7 +161,7 @@ static void print_name(FILE *f, const char *name) {
         return;
     }
     fputs(" title ", f);
-    quote(f, name, LONGEST_NAME);
+    quote(f, name, PLOT_LONGEST_NAME);
     fputs(" noenhanced", f);
 }
 
@@ -305,7 +189,7 @@ static void print_plots(FILE *f, const plot *p, size_t number) {
     size_t printed = 0;
     for (size_t i = 0; i < p->count; i++)
         print_series(f, p, i, p->series[i].panel == number,
-                     number == 0 && in_legend(p, i), &printed);
+                     number == 0 && plot_in_legend(p, i), &printed);
     if (!printed)
         fputs("plot NaN notitle", f);
     fputc('\n', f);
@@ -330,7 +214,7 @@ static void print_axis(FILE *f, char axis, bool log, range r, double labels,
                 "unset logscale %c\nset format %c '%s'\nset %ctics autofreq "
                 "nomirror out\nset m%ctics default\n",
                 axis, axis, text ? "%g" : "%h", axis, axis);
-    fprintf(f, "set %crange [%.9g:%.9g]\n", axis, r.low, r.high);
+    fprintf(f, "set %crange [%.12g:%.12g]\n", axis, r.low, r.high);
 }
 
 /* Text has no letters that lie on their side. */
@@ -377,7 +261,7 @@ static void print_place(FILE *f, size_t number, const layout *l) {
 /* As large as it fits, but not too small. */
 static void print_title(FILE *f, const char *title, const layout *l) {
     static const double letter = 0.63, smallest = 0.8, largest = 1.2;
-    double fitting = l->width / (letter * FONT * (double)letters(title));
+    double fitting = l->width / (letter * FONT * (double)plot_letters(title));
     double scale = fmin(fmax(fitting, smallest), largest);
     double most =
         l->letter == 1 ? l->width : l->width / (letter * FONT * scale);
@@ -410,7 +294,7 @@ static void print_frame(FILE *f, const plot *p, const layout *l, bool text) {
 
 void plot_script(const plot *p, const target *t, FILE *f) {
     bool text = t->medium == PLOT_TEXT;
-    layout l = lay_out(p, t);
+    layout l = plot_lay_out(p, t);
     print_terminal(f, t, &l);
     if (t->file)
         print_output(f, t->file);

@@ -111,14 +111,44 @@ static int draw_to(const plot *p, const target *t, FILE *drawing) {
     return status;
 }
 
+/* Without the form feed at the beginning, and blanks at the ends of lines. */
+static void show(FILE *drawing) {
+    int blanks = 0, c;
+    rewind(drawing);
+    while ((c = getc(drawing)) != EOF) {
+        if (c == ' ') {
+            blanks++;
+            continue;
+        }
+        if (c != '\n')
+            printf("%*s", blanks, "");
+        blanks = 0;
+        if (c != '\f')
+            putchar(c);
+    }
+    putchar('\n');
+}
+
+static int draw_in_terminal(const plot *p, const target *t) {
+    FILE *drawing = tmpfile();
+    if (!drawing)
+        return tool_refuse("no temporary file: %s", strerror(errno));
+    int status = draw_to(p, t, drawing);
+    if (!status)
+        show(drawing);
+    fclose(drawing);
+    if (!status && (fflush(stdout) || ferror(stdout)))
+        return tool_refuse("the plot cannot be written: %s", strerror(errno));
+    return status;
+}
+
 static int draw(const plot *p, const options *o, const target *t) {
     output out;
-    if (output_open(&out, in_terminal(o) ? NULL : o->plot))
+    if (in_terminal(o))
+        return draw_in_terminal(p, t);
+    if (output_open(&out, o->plot))
         return TOOL_USAGE;
-    int status = draw_to(p, t, out.stream);
-    if (!status && in_terminal(o))
-        fputc('\n', out.stream);
-    return output_close(&out, status);
+    return output_close(&out, draw_to(p, t, out.stream));
 }
 
 static bool is_empty(const plot *p) {
