@@ -27,6 +27,11 @@ tools_nevh_SOURCES = \
 	tools/compare.c \
 	tools/verdict.c \
 	tools/effects.c \
+	tools/trajectory.h \
+	tools/lines.c \
+	tools/resume.c \
+	tools/trajectory.c \
+	tools/run.c \
 	tools/check.c \
 	tools/section.c \
 	tools/list.c \

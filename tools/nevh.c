@@ -12,6 +12,8 @@ static const struct {
 } known[] = {
     {"compare", compare, FOR_COMPARE, "SCENE",
      "energy errors, a row an integrator and dt, and the verdict in words"},
+    {"run", run_scene, FOR_RUN, "SCENE",
+     "the trajectory as CSV: t, coordinates, momenta, observables, energy"},
     {"cost", cost, FOR_COST, "SCENE",
      "what a digit costs: target errors, a row an integrator"},
     {"recommend", recommend, FOR_RECOMMEND, "SCENE",

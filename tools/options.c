@@ -8,9 +8,10 @@
 
 enum {
     OF_COST = FOR_COST | FOR_GRADIENTS | FOR_RECOMMEND,
-    OF_SCENES = FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_SECTION | OF_COST,
+    OF_SCENES =
+        FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_SECTION | FOR_RUN | OF_COST,
     OF_TABLES = OF_SCENES | FOR_LIST,
-    OF_PLOTS = FOR_COMPARE | FOR_SECTION | FOR_COST
+    OF_PLOTS = FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_COST
 };
 
 /* The commands that each option is for, as an or. */
@@ -41,6 +42,12 @@ static const struct {
      "the largest that the orbit may have"},
     {"repeat", "N", FOR_COMPARE | FOR_COST | FOR_RECOMMEND, read_repeat,
      "timed runs, of which the median counts"},
+    {"every", "K", FOR_RUN, read_every, "a row each K steps, and at the end"},
+    {"samples", "N", FOR_RUN, read_samples,
+     "N rows at equal times, the first and the last included"},
+    {"at", "T1,T2", FOR_RUN, read_at, "rows at these times alone"},
+    {"resume", "FILE", FOR_RUN, read_resume,
+     "go on with FILE, which nevh run -o FILE left unfinished"},
     {"portable", NULL, OF_SCENES, read_portable,
      "no vector code: the same digits with the same libm"},
     {"plot", "FILE", OF_PLOTS, read_plot,

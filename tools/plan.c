@@ -155,15 +155,22 @@ const nevh_system *plan_transform(const plan *p, const char *name) {
                : NULL;
 }
 
+nevh_stepper *plan_stepper(const plan *p, const char *name) {
+    nevh_options o = plan_options(p, p->gradients.item[0]);
+    bool transformed;
+    const nevh_integrator *scheme = plan_scheme(name, &transformed);
+    o.transform = plan_transform(p, name);
+    if (nevh_integrator_needs_tolerance(scheme) && p->tolerances)
+        o.tolerance = p->tolerance[0];
+    return nevh_stepper_new(p->system, scheme, &o);
+}
+
 nevh_stepper *plan_first(const plan *p, const nevh_integrator **scheme) {
     for (size_t i = 0; i < p->integrators.count; i++) {
-        nevh_options o = plan_options(p, p->gradients.item[0]);
+        const char *name = p->integrators.item[i];
         bool transformed;
-        *scheme = plan_scheme(p->integrators.item[i], &transformed);
-        o.transform = plan_transform(p, p->integrators.item[i]);
-        if (nevh_integrator_needs_tolerance(*scheme) && p->tolerances)
-            o.tolerance = p->tolerance[0];
-        nevh_stepper *s = nevh_stepper_new(p->system, *scheme, &o);
+        *scheme = plan_scheme(name, &transformed);
+        nevh_stepper *s = plan_stepper(p, name);
         if (!nevh_stepper_status(s))
             return s;
         nevh_stepper_free(s);

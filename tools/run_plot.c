@@ -200,10 +200,6 @@ static void draw_bobs(plot *to, const orbit *o, const size_t trails[]) {
 static plot *plot_configuration(orbit *o) {
     nevh_scene *s = o->plan->scene;
     size_t bobs = count_bobs(s), trails[MOST_BOBS];
-    if (nevh_scene_part_count(s) == 0) {
-        tool_refuse("%s has no [picture] to plot", o->plan->name);
-        return NULL;
-    }
     nevh_observer observers[2] = {{keep_bobs, o, 1}};
     o->rows = thinned_new(2 * bobs);
     follow(o, observers, 2);
@@ -264,6 +260,18 @@ static double *copy(const double from[], size_t count) {
     return to;
 }
 
+int run_plot_check(const options *o, const plan *p) {
+    options as = *o;
+    as.file = o->resume ? o->resume : o->file;
+    as.format = o->formatted ? o->format : FORMAT_CSV;
+    if (plot_wanted(o) && o->plot_kind == PLOT_CONFIGURATION &&
+        nevh_scene_part_count(p->scene) == 0)
+        return tool_refuse("%s: the scene has no [picture] to plot, as: bob = "
+                           "x, y",
+                           p->name);
+    return plot_check(&as);
+}
+
 int run_plot(const options *given, const plan *p, const char *integrator) {
     static plot *(*const draw[])(orbit *) = {[PLOT_PHASE] = plot_phase,
                                              [PLOT_CONFIGURATION] =
@@ -275,7 +283,7 @@ int run_plot(const options *given, const plan *p, const char *integrator) {
                .q = copy(p->q, p->n),
                .p = copy(p->p, p->n)};
     plot *to = draw[given->plot_kind](&o);
-    int status = to ? plot_write(to, given) : TOOL_USAGE;
+    int status = plot_write(to, given);
     plot_free(to);
     thinned_free(&o.rows);
     nevh_stepper_free(o.stepper);

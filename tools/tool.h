@@ -85,8 +85,8 @@ typedef struct {
     matching match;
     plot_kind plot_kind;
     const char *file, *plot, *plot_script, *transform, *resume, *from;
-    bool quiet, portable, all, by_state, diagnostics, impact, allow_code;
     bool formatted; /* --format was given */
+    bool quiet, portable, all, by_state, diagnostics, impact, allow_code;
     bool help, version;
     unsigned long long used; /* a bit an option */
 } options;
@@ -147,6 +147,8 @@ const nevh_integrator *plan_scheme(const char *name, bool *transformed);
 /* The transform that it is to be planned with: of names with "+transform", and
    of schemes that choose their own times; NULL: none. */
 const nevh_system *plan_transform(const plan *, const char *name);
+/* The integrator of that name, planned for the first gradient. */
+nevh_stepper *plan_stepper(const plan *, const char *name);
 /* The first integrator that fits, planned for the first gradient; NULL, with a
    message, when none does. */
 nevh_stepper *plan_first(const plan *, const nevh_integrator **);
@@ -189,8 +191,9 @@ void verdict_words(const plan *, const row rows[], size_t count, list *words);
    own, with the first dt and gradient. */
 int compare_plot(const options *, const plan *, const row rows[], size_t count);
 int run_plot(const options *, const plan *, const char *integrator);
+int run_plot_check(const options *, const plan *); /* as plot_check */
 
 typedef int command(const options *);
-command compare, list_what, check, effects, section, cost, recommend;
+command compare, list_what, check, effects, section, cost, recommend, run_scene;
 
 #endif

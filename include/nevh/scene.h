@@ -14,6 +14,7 @@
 #define NEVH_SCENE_H
 
 #include <nevh/gradient.h>
+#include <stdint.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -60,6 +61,9 @@ NEVH_API const char *nevh_scene_coordinate(const nevh_scene *, size_t k);
 /* The text of a label ("t", "energy", a coordinate); "" if there is none.
    x[3] has that of x unless it has one of its own. */
 NEVH_API const char *nevh_scene_label(const nevh_scene *, const char *name);
+/* A number that scenes share which say the same, up to comments and space, with
+   the same parameters set and effects on; others hardly do. */
+NEVH_API uint64_t nevh_scene_digest(const nevh_scene *);
 
 /* The system, effects switched as the scene says, friction included.  Owned by
    the scene and valid until it is changed or freed; NULL when the scene was not

@@ -1,0 +1,137 @@
+/* nevh: a file that only ever holds whole lines.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "trajectory.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { MUCH = 1 << 15 };
+
+/* FNV-1a, 64 bits [G. Fowler, L. C. Noll, K.-P. Vo; draft-eastlake-fnv]: a
+   change of one byte always shows. */
+uint64_t digest_begin(void) {
+    return 0xCBF29CE484222325u;
+}
+
+uint64_t digest_add(uint64_t digest, const void *bytes, size_t count) {
+    const unsigned char *at = bytes;
+    while (count--)
+        digest = (digest ^ *at++) * 0x100000001B3u;
+    return digest;
+}
+
+static int unwritten(line_file *l) {
+    l->stuck = true;
+    return tool_refuse("%s cannot be written: %s",
+                       l->name ? l->name : "the output", strerror(errno));
+}
+
+static bool is_regular(int file) {
+    struct stat found;
+    return fstat(file, &found) == 0 && S_ISREG(found.st_mode);
+}
+
+static int open_file(line_file *l, const char *name, int how) {
+    *l = (line_file){.name = name,
+                     .file = name ? open(name, how, 0666) : STDOUT_FILENO,
+                     .digest = digest_begin()};
+    if (l->file < 0)
+        return unwritten(l);
+    l->regular = name && is_regular(l->file);
+    signal(SIGXFSZ, SIG_IGN); /* a limit of size is an error like another */
+    if (l->regular && flock(l->file, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK)
+        return tool_refuse("%s: another run is writing it", name);
+    return TOOL_OK;
+}
+
+int lines_open(line_file *l, const char *name) {
+    if (open_file(l, name, O_WRONLY | O_CREAT | O_CLOEXEC))
+        return TOOL_USAGE;
+    return l->regular && ftruncate(l->file, 0) ? unwritten(l) : TOOL_OK;
+}
+
+/* Of the first bytes; false when there are less. */
+static bool digest_file(int file, uint64_t bytes, uint64_t *digest) {
+    char block[1 << 14];
+    *digest = digest_begin();
+    while (bytes) {
+        size_t most = bytes < sizeof block ? (size_t)bytes : sizeof block;
+        ssize_t count = read(file, block, most);
+        if (count <= 0)
+            return false;
+        *digest = digest_add(*digest, block, (size_t)count);
+        bytes -= (uint64_t)count;
+    }
+    return true;
+}
+
+int lines_reopen(line_file *l, const char *name, uint64_t bytes,
+                 uint64_t digest) {
+    if (open_file(l, name, O_RDWR | O_CLOEXEC))
+        return TOOL_USAGE;
+    if (!l->regular || !digest_file(l->file, bytes, &l->digest) ||
+        l->digest != digest)
+        return tool_refuse("%s is not as the interrupted run left it: nothing "
+                           "was changed",
+                           name);
+    l->bytes = bytes;
+    return ftruncate(l->file, (off_t)bytes) ? unwritten(l) : TOOL_OK;
+}
+
+void lines_print(line_file *l, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    int length = vsnprintf(NULL, 0, format, arguments);
+    va_end(arguments);
+    if (length < 0 || l->used + (size_t)length >= l->room) {
+        l->room = 2 * l->room + (size_t)length + MUCH;
+        l->text = realloc(l->text, l->room);
+        if (!l->text)
+            abort();
+    }
+    va_start(arguments, format);
+    vsnprintf(l->text + l->used, l->room - l->used, format, arguments);
+    va_end(arguments);
+    l->used += (size_t)length;
+}
+
+/* What was written of a line that is not whole. */
+static size_t broken(const char *text, size_t written) {
+    size_t end = written;
+    while (end && text[end - 1] != '\n')
+        end--;
+    return written - end;
+}
+
+int lines_flush(line_file *l) {
+    size_t written = 0;
+    while (!l->stuck && written < l->used) {
+        ssize_t count = write(l->file, l->text + written, l->used - written);
+        if (count >= 0)
+            written += (size_t)count;
+        else if (errno != EINTR)
+            unwritten(l);
+    }
+    size_t rest = broken(l->text, written);
+    l->digest = digest_add(l->digest, l->text, written - rest);
+    l->bytes += written - rest;
+    l->used = 0;
+    if (rest && l->regular && ftruncate(l->file, (off_t)l->bytes))
+        unwritten(l);
+    return l->stuck ? TOOL_USAGE : TOOL_OK;
+}
+
+int lines_end(line_file *l) {
+    return l->used >= MUCH ? lines_flush(l) : TOOL_OK;
+}
+
+void lines_close(line_file *l) {
+    if (l->name && l->file >= 0)
+        close(l->file);
+    free(l->text);
+}

@@ -1,0 +1,304 @@
+/* nevh run: the trajectory.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "config.h"
+#include "plot.h"
+#include "trajectory.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { MOST_ROWS = 1000 }; /* where nobody says how many */
+
+typedef struct {
+    const options *options;
+    plan plan;
+    const char *integrator;
+    nevh_stepper *stepper;
+    row_times rows;
+    char *rows_text;
+    list notes;
+    line_file lines;
+    trajectory *trajectory;
+    char *state, *settings; /* NULL: nothing is saved */
+} job;
+
+static volatile sig_atomic_t interrupted;
+
+static void note_signal(int number) {
+    interrupted = number;
+}
+
+/* The second one ends the program. */
+static void mind_signals(void) {
+    static const int numbers[] = {SIGHUP, SIGINT, SIGTERM};
+    struct sigaction mind = {.sa_handler = note_signal,
+                             .sa_flags = (int)SA_RESETHAND};
+    struct sigaction found;
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        if (sigaction(numbers[i], NULL, &found) == 0 &&
+            found.sa_handler != SIG_IGN)
+            sigaction(numbers[i], &mind, NULL);
+}
+
+/* What to run. */
+
+static int by_size(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static int take_times(job *j) {
+    const options *o = j->options;
+    const plan *p = &j->plan;
+    qsort(o->at, o->ats, sizeof *o->at, by_size);
+    for (size_t i = 0; i < o->ats; i++) {
+        double t = o->at[i];
+        if (t < p->run->t_start || t > p->t_end)
+            return tool_refuse("--at %g: the run is from t = %g to %g", t,
+                               p->run->t_start, p->t_end);
+        if (j->rows.count == 0 || t != o->at[j->rows.count - 1])
+            o->at[j->rows.count++] = t;
+    }
+    j->rows.by = BY_TIMES;
+    j->rows.time = o->at;
+    j->rows_text = text_print("%s", "at the times asked for");
+    return TOOL_OK;
+}
+
+static void take_samples(job *j, size_t count, const char *why) {
+    j->rows.by = BY_SAMPLES;
+    j->rows.count = count;
+    j->rows_text = text_print("%zu at equal times%s", count, why);
+}
+
+static void take_every(job *j, size_t every) {
+    j->rows.by = BY_STEPS;
+    j->rows.every = every;
+    j->rows_text = every == 1 ? text_print("after every step")
+                              : text_print("after every %zu steps", every);
+}
+
+static int choose_rows(job *j) {
+    const options *o = j->options;
+    double span = j->plan.t_end - j->plan.run->t_start;
+    if ((o->every > 0) + (o->samples > 0) + (o->ats > 0) > 1)
+        return tool_refuse("--every, --samples and --at: only one of them");
+    if (o->samples == 1)
+        return tool_refuse("--samples takes at least 2: the first row and the "
+                           "last");
+    if (o->ats)
+        return take_times(j);
+    if (o->every)
+        take_every(j, o->every);
+    else if (o->samples)
+        take_samples(j, o->samples, "");
+    else if (span / j->plan.dt[0] <= MOST_ROWS)
+        take_every(j, 1);
+    else
+        take_samples(j, MOST_ROWS, "; see --every, --samples and --at");
+    return TOOL_OK;
+}
+
+/* The first that fits. */
+static int choose_integrator(job *j) {
+    const list *names = &j->plan.integrators;
+    for (size_t i = 0; i < names->count; i++) {
+        j->integrator = names->item[i];
+        j->stepper = plan_stepper(&j->plan, j->integrator);
+        if (!nevh_stepper_status(j->stepper))
+            return TOOL_OK;
+        if (names->count == 1)
+            return tool_refuse("%s: %s", j->plan.name,
+                               nevh_stepper_message(j->stepper));
+        nevh_stepper_free(j->stepper);
+        j->stepper = NULL;
+    }
+    return tool_refuse("%s: none of the integrators fits; see nevh check",
+                       j->plan.name);
+}
+
+static int check_options(const options *o) {
+    bool other = o->formatted && o->format != FORMAT_CSV;
+    if (o->resume && o->file)
+        return tool_refuse("--resume names the file: leave -o out");
+    if (o->resume && other)
+        return tool_refuse("only CSV is resumed");
+    return TOOL_OK;
+}
+
+static void note(job *j) {
+    const plan *p = &j->plan;
+    const options *o = j->options;
+    bool first = p->integrators.count > 1 || p->dts > 1;
+    plan_notes(p, &j->notes);
+    list_print(&j->notes, "scene: %s", p->name);
+    for (size_t i = 0; i < o->settings.count; i++)
+        if (o->settings.item[i][0] == '=')
+            list_print(&j->notes, "set: %s", o->settings.item[i] + 1);
+    list_print(&j->notes, "integrator: %s, dt = %.9g%s", j->integrator,
+               p->dt[0],
+               first ? ": the first integrator of the list that fits, and the "
+                       "first dt"
+                     : "");
+    list_print(&j->notes, "gradient: %s", p->gradients.item[0]);
+    list_print(&j->notes, "rows: %s", j->rows_text);
+    if (nevh_scene_stops(p->scene))
+        list_print(&j->notes, "stop: %s", nevh_scene_stop_text(p->scene));
+}
+
+/* All that the orbit and its rows depend on. */
+static char *describe(const job *j) {
+    const plan *p = &j->plan;
+    char *times = text_print("%s", "");
+    for (size_t i = 0; j->rows.by == BY_TIMES && i < j->rows.count; i++) {
+        char *longer = text_print("%s %.17g", times, j->rows.time[i]);
+        free(times);
+        times = longer;
+    }
+    char *all = text_print(
+        "nevh = %s\nscene = %016llx\nintegrator = %s\ndt = %.17g\n"
+        "t_end = %.17g\ngradient = %s\ngradient step = %.17g\n"
+        "tolerance = %.17g\nportable = %s\nrows = %s%s\n",
+        PACKAGE_VERSION, (unsigned long long)nevh_scene_digest(p->scene),
+        j->integrator, p->dt[0], p->t_end, p->gradients.item[0],
+        p->gradient_step, p->tolerances ? p->tolerance[0] : 0,
+        p->portable ? "yes" : "no", j->rows_text, times);
+    free(times);
+    return all;
+}
+
+/* Saving. */
+
+static int save(job *j, bool lasting) {
+    run_state *s = trajectory_state(j->trajectory);
+    if (lines_flush(&j->lines))
+        return TOOL_USAGE;
+    if (!j->state)
+        return TOOL_OK;
+    if (lasting)
+        fdatasync(j->lines.file);
+    s->at.bytes = j->lines.bytes;
+    s->at.digest = j->lines.digest;
+    if (state_save(j->state, j->settings, s, lasting)) {
+        free(j->state);
+        j->state = NULL; /* said once; the run goes on */
+    }
+    return TOOL_OK;
+}
+
+static int save_often(void *data) {
+    return save(data, true);
+}
+
+static void begin_saving(job *j, const char *name) {
+    j->state = text_print("%s.state", name);
+    j->settings = describe(j);
+    mind_signals();
+}
+
+/* Output. */
+
+static int open_new(job *j) {
+    const options *o = j->options;
+    if (lines_open(&j->lines, o->file))
+        return TOOL_USAGE;
+    for (size_t i = 0; i < j->notes.count; i++)
+        lines_print(&j->lines, "# %s\n", j->notes.item[i]);
+    trajectory_header(j->trajectory);
+    if (!j->lines.regular)
+        return TOOL_OK;
+    begin_saving(j, o->file);
+    return save(j, false);
+}
+
+static int open_again(job *j) {
+    const char *name = j->options->resume;
+    run_state *s = trajectory_state(j->trajectory);
+    begin_saving(j, name);
+    if (state_load(j->state, j->settings, s) ||
+        lines_reopen(&j->lines, name, s->at.bytes, s->at.digest))
+        return TOOL_USAGE;
+    return trajectory_restore(j->trajectory);
+}
+
+/* The rest of a run that was told to end. */
+static int give_up(job *j) {
+    int number = interrupted;
+    const char *name =
+        j->options->resume ? j->options->resume : j->options->file;
+    if (save(j, true))
+        return TOOL_USAGE;
+    if (!j->options->quiet && j->state)
+        fprintf(stderr, "nevh: interrupted; to go on: --resume %s\n", name);
+    lines_close(&j->lines);
+    signal(number, SIG_DFL);
+    raise(number);
+    return TOOL_FAILED;
+}
+
+static int write_lines(job *j) {
+    int status = j->options->resume ? open_again(j) : open_new(j);
+    if (!status)
+        status = trajectory_follow(j->trajectory, &interrupted, save_often, j);
+    if (!status && !trajectory_finished(j->trajectory))
+        return give_up(j);
+    if (status == TOOL_USAGE || lines_flush(&j->lines))
+        return TOOL_USAGE;
+    if (j->state)
+        state_remove(j->state);
+    return status;
+}
+
+static int write_page(job *j, page *result) {
+    result->table = table_new();
+    trajectory_header(j->trajectory);
+    int status = trajectory_follow(j->trajectory, &interrupted, NULL, NULL);
+    if (status == TOOL_USAGE)
+        return status;
+    if (!(j->options->quiet && j->options->format == FORMAT_TABLE))
+        for (size_t i = 0; i < j->notes.count; i++)
+            list_add(&result->before, j->notes.item[i]);
+    return output_page(j->options, result, status);
+}
+
+static int write_rows(job *j) {
+    const options *o = j->options;
+    page result = {0};
+    bool pages = o->formatted && o->format != FORMAT_CSV;
+    j->trajectory =
+        trajectory_new(&j->plan, j->integrator, j->stepper, &j->rows,
+                       (sink){&j->lines, pages ? &result : NULL});
+    note(j);
+    int status = pages ? write_page(j, &result) : write_lines(j);
+    trajectory_free(j->trajectory);
+    page_free(&result);
+    return status;
+}
+
+static int run_job(job *j) {
+    const options *o = j->options;
+    if (choose_rows(j) || choose_integrator(j) || run_plot_check(o, &j->plan))
+        return TOOL_USAGE;
+    int status = write_rows(j);
+    if (plot_wanted(o) && status != TOOL_USAGE)
+        return run_plot(o, &j->plan, j->integrator) ? TOOL_USAGE : status;
+    return status;
+}
+
+int run_scene(const options *o) {
+    job j = {.options = o, .lines.file = -1};
+    int status = check_options(o);
+    if (!status)
+        status = plan_make(&j.plan, o);
+    if (!status)
+        status = run_job(&j);
+    nevh_stepper_free(j.stepper);
+    plan_free(&j.plan);
+    lines_close(&j.lines);
+    list_free(&j.notes);
+    free(j.rows_text);
+    free(j.state);
+    free(j.settings);
+    return status;
+}
