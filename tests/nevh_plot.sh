@@ -100,6 +100,53 @@ draws cost pendulum --gradient exact --integrators verlet --dt 0.2,0.1 \
     --t-end 20 --plot $svg
 shows 'evaluations of the gradient'
 
+# Orbits: an angle that goes round stays within its period, lines end there.
+draws run pendulum-rotating --t-end 50 --dt 0.05 --every 1 --plot $svg \
+    --keep-plot-script $work/out.gp
+shows 'phi (rad)'
+shows p_phi
+grep -q '^set xrange \[-3.14159265359:3.14159265359\]' $work/out.gp ||
+    fails "shows another range"
+rounds=$(awk -F, '/^[0-9]/ { t = int(($2 + 3.14159265) / 6.2831853)
+    n += t != last; last = t } END { print n }' $work/out)
+breaks=$(awk '/^\$series1 <</ { on = 1 } /^EOD/ { on = 0 } on && NF == 0 { n++ }
+    END { print n }' $work/out.gp)
+test $rounds -gt 40 || fails "goes round $rounds times"
+test "$rounds" = "$breaks" || fails "wraps $breaks times, not $rounds"
+draws run kepler --t-end 5 --dt 0.05 --plot-kind energy --plot $svg
+shows '|energy error|, relative'
+
+# Rods and bobs are where the last row says.
+draws run double-pendulum --t-end 5 --dt 0.02 --plot-kind configuration \
+    --plot $svg --keep-plot-script $work/out.gp
+shows 'bob 1'
+shows 'bob 2'
+test "$(points 1)" = 251 || fails "does not draw the trail"
+awk -F, '/^t,/ { for (i = 1; i <= NF; i++) if ($i == "x1") k = i }
+    /^[0-9]/ { for (i = 0; i < 4; i++) last[i] = $(k + i) }
+    END { printf("%.6f %.6f\n%.6f %.6f\n", last[0], last[1], last[2], last[3]) }
+    ' $work/out >$work/rows
+awk '/^\$series[56] <</ { getline; printf("%.6f %.6f\n", $1, $2) }' \
+    $work/out.gp >$work/drawn
+cmp $work/rows $work/drawn || fails "draws bobs elsewhere"
+# A unit is as long on both axes.
+awk '/^set [xy]range/ { gsub("[^0-9.e xyrange-]", " "); l[substr($2, 1, 1)] = $4 - $3 }
+    /^set [lrbt]margin/ { m[substr($2, 1, 1)] = $5 }
+    /^set terminal/ { split($5, size, ",") }
+    END { x = l["x"] / (m["r"] - m["l"]) / size[1]
+          y = l["y"] / (m["t"] - m["b"]) / size[2]
+          exit !(x / y > 0.999 && x / y < 1.001) }' $work/out.gp ||
+    fails "distorts the picture"
+exits 2 run henon-heiles --plot-kind configuration --plot $svg
+says 'no \[picture\]'
+test -s $work/out && fails "runs before it looks for a picture"
+exits 2 run pendulum --plot-kind portrait --plot $svg
+says 'phase, energy or configuration'
+exits 2 run pendulum --plot -
+says 'with -o'
+exits 0 run pendulum -o $work/rows.csv --t-end 5 --plot -
+has 'p_phi'
+
 # Other media; files are there when they are whole.
 for medium in png pdf; do
     draws compare oscillator --t-end 9 --dt 0.1 --plot $work/x.$medium

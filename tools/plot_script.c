@@ -205,15 +205,26 @@ static void print_decades(FILE *f, char axis, range r, double labels,
             log10(r.high / r.low) > 8 ? 1 : 10);
 }
 
+/* 1, 2 or 5 times a power of 10. */
+static double round_step(double step) {
+    double power = pow(10, floor(log10(step))), digits = step / power;
+    return power * (digits <= 1 ? 1 : digits <= 2 ? 2 : digits <= 5 ? 5 : 10);
+}
+
+static void print_tics(FILE *f, char axis, range r, double labels, bool text) {
+    fprintf(f,
+            "unset logscale %c\nset format %c '%s'\nset %ctics %.3g nomirror "
+            "out\nset m%ctics 1\n",
+            axis, axis, text ? "%g" : "%h", axis,
+            round_step((r.high - r.low) / fmax(labels, 2)), axis);
+}
+
 static void print_axis(FILE *f, char axis, bool log, range r, double labels,
                        bool text) {
     if (log)
         print_decades(f, axis, r, labels, text);
     else
-        fprintf(f,
-                "unset logscale %c\nset format %c '%s'\nset %ctics autofreq "
-                "nomirror out\nset m%ctics default\n",
-                axis, axis, text ? "%g" : "%h", axis, axis);
+        print_tics(f, axis, r, labels, text);
     fprintf(f, "set %crange [%.12g:%.12g]\n", axis, r.low, r.high);
 }
 
@@ -238,10 +249,11 @@ static void print_axes(FILE *f, const plot *p, size_t number, const layout *l,
     const panel *on = &p->panel[number];
     range x = plot_range_x(p, number), y = plot_range_y(p, number);
     double letter = text ? 2 : 1; /* is as high as so many are wide */
+    double lines = on->log_y ? 1.3 : 2;
     if (on->equal)
         plot_range_equal(&x, &y, l->panel_width, l->panel_height * letter);
-    print_axis(f, 'x', on->log_x, x, l->panel_width / (6 * l->letter), text);
-    print_axis(f, 'y', on->log_y, y, l->panel_height / (1.3 * l->line), text);
+    print_axis(f, 'x', on->log_x, x, l->panel_width / (7 * l->letter), text);
+    print_axis(f, 'y', on->log_y, y, l->panel_height / (lines * l->line), text);
     print_texts(f, on, l, text);
 }
 

@@ -39,12 +39,12 @@ static void follow(orbit *o, nevh_observer observers[], size_t count) {
                    observers, count);
 }
 
-static char *title_of(const orbit *o) {
+static char *title_of(const orbit *o, const char *more) {
     const plan *p = o->plan;
     const char *title = nevh_scene_title(p->scene);
     const char *unit = nevh_scene_label(p->scene, "t");
-    return text_print("%s (%s, dt = %.4g%s%s)", *title ? title : p->name,
-                      o->integrator, p->dt[0], *unit ? " " : "", unit);
+    return text_print("%s (%s, dt = %.4g%s%s%s)", *title ? title : p->name,
+                      o->integrator, p->dt[0], *unit ? " " : "", unit, more);
 }
 
 /* Phase portraits: rows of coordinates and momenta. */
@@ -73,20 +73,28 @@ static double wrapping(const orbit *o, size_t k) {
     return high - low > period ? period : 0;
 }
 
+/* A line leaves the panel at one side, and comes in at the other. */
+static void turn_over(plot *to, size_t series, const double from[],
+                      const double at[], double old, double new) {
+    plot_point(to, series, at[0] - old, at[1]);
+    plot_break(to, series);
+    plot_point(to, series, from[0] - new, from[1]);
+}
+
 static void draw_phase(plot *to, const orbit *o, size_t k) {
-    double period = wrapping(o, k), turn = 0, last = 0;
-    size_t series = plot_series(to, NULL);
-    plot_style(to, series, o->rows.part < 1 ? PLOT_DOTS : PLOT_LINES);
+    double period = wrapping(o, k), shift = 0, last = 0;
+    bool whole = o->rows.part == 1;
+    size_t series = plot_series(to, NULL), width = o->rows.columns;
+    plot_style(to, series, whole ? PLOT_LINES : PLOT_DOTS);
     if (period > 0)
         plot_span_x(to, -period / 2, period / 2);
-    for (size_t i = 0; i < o->rows.count; i++) {
-        const double *at = o->rows.row + i * o->rows.columns + 2 * k;
+    for (size_t i = 0; i < o->rows.count; i++, last = shift) {
+        const double *at = o->rows.row + i * width + 2 * k;
         if (period > 0)
-            turn = floor(at[0] / period + 0.5);
-        if (turn != last)
-            plot_break(to, series);
-        last = turn;
-        plot_point(to, series, at[0] - turn * period, at[1]);
+            shift = period * floor(at[0] / period + 0.5);
+        if (i && shift != last && whole)
+            turn_over(to, series, at - width, at, last, shift);
+        plot_point(to, series, at[0] - shift, at[1]);
     }
 }
 
@@ -96,7 +104,7 @@ static plot *plot_phase(orbit *o) {
     nevh_observer observers[2] = {{keep_phase, o, 1}};
     o->rows = thinned_new(2 * panels);
     follow(o, observers, 2);
-    char *title = title_of(o);
+    char *title = title_of(o, p->n > panels ? "; the first of more" : "");
     plot *to = NULL;
     for (size_t k = 0; k < panels; k++) {
         const char *name = nevh_scene_coordinate(p->scene, k);
@@ -203,7 +211,7 @@ static plot *plot_configuration(orbit *o) {
     nevh_observer observers[2] = {{keep_bobs, o, 1}};
     o->rows = thinned_new(2 * bobs);
     follow(o, observers, 2);
-    char *title = title_of(o);
+    char *title = title_of(o, "");
     plot *to = plot_new(title, "x", "y");
     plot_equal(to);
     for (size_t bob = 0; bob < bobs; bob++)
@@ -234,7 +242,7 @@ static plot *plot_energy(orbit *o) {
     nevh_observer observers[3] = {{nevh_energy_observe, energy, 1},
                                   {energy_trace_observe, &trace, 1}};
     follow(o, observers, 3);
-    char *title = title_of(o);
+    char *title = title_of(o, "");
     plot *to = energy_plot_new(p, title, NULL);
     energy_plot_add(to, NULL, trace.envelope);
     nevh_energy_free(energy);
