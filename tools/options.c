@@ -47,7 +47,8 @@ static const struct {
      "N rows at equal times, the first and the last included"},
     {"at", "T1,T2", FOR_RUN, read_at, "rows at these times alone"},
     {"resume", "FILE", FOR_RUN, read_resume,
-     "go on with FILE, which nevh run -o FILE left unfinished"},
+     "go on with FILE, which nevh run -o FILE left unfinished,\n"
+     "                            from FILE.state, as if never interrupted"},
     {"portable", NULL, OF_SCENES, read_portable,
      "no vector code: the same digits with the same libm"},
     {"plot", "FILE", OF_PLOTS, read_plot,
@@ -61,7 +62,7 @@ static const struct {
      "with names in other packages and sources"},
     {"format", "table|csv|json", OF_TABLES, read_format, ""},
     {"output", "FILE", OF_TABLES, read_file,
-     "write there (-o), when it is whole"},
+     "write there (-o): run line by line, others when it is whole"},
     {"quiet", NULL, OF_TABLES, read_quiet, "the table alone, and no progress"},
     {"help", NULL, ~0u, read_help, ""},
     {"version", NULL, ~0u, read_version, ""},

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MOST_ROWS = 1000 }; /* where nobody says how many */
+enum { INTERVALS = 1000 }; /* at most, where nobody says how many */
 
 typedef struct {
     const options *options;
@@ -93,10 +93,10 @@ static int choose_rows(job *j) {
         take_every(j, o->every);
     else if (o->samples)
         take_samples(j, o->samples, "");
-    else if (span / j->plan.dt[0] <= MOST_ROWS)
+    else if (span / j->plan.dt[0] <= INTERVALS)
         take_every(j, 1);
     else
-        take_samples(j, MOST_ROWS, "; see --every, --samples and --at");
+        take_samples(j, INTERVALS + 1, "; see --every, --samples and --at");
     return TOOL_OK;
 }
 
@@ -237,10 +237,16 @@ static int give_up(job *j) {
     return TOOL_FAILED;
 }
 
+static int follow(job *j, int (*save)(void *)) {
+    bool progress = !j->options->quiet && isatty(STDERR_FILENO);
+    return trajectory_follow(
+        j->trajectory, &(trajectory_watch){&interrupted, save, j, progress});
+}
+
 static int write_lines(job *j) {
     int status = j->options->resume ? open_again(j) : open_new(j);
     if (!status)
-        status = trajectory_follow(j->trajectory, &interrupted, save_often, j);
+        status = follow(j, save_often);
     if (!status && !trajectory_finished(j->trajectory))
         return give_up(j);
     if (status == TOOL_USAGE || lines_flush(&j->lines))
@@ -253,7 +259,7 @@ static int write_lines(job *j) {
 static int write_page(job *j, page *result) {
     result->table = table_new();
     trajectory_header(j->trajectory);
-    int status = trajectory_follow(j->trajectory, &interrupted, NULL, NULL);
+    int status = follow(j, NULL);
     if (status == TOOL_USAGE)
         return status;
     if (!(j->options->quiet && j->options->format == FORMAT_TABLE))

@@ -124,6 +124,19 @@ static bool to_the_right(const table *t, size_t j) {
     return false;
 }
 
+/* How each column is set, found once. */
+typedef struct {
+    size_t width;
+    bool right;
+} setting;
+
+static setting *set_columns(const table *t) {
+    setting *all = tool_allocate(t->title.count, sizeof *all);
+    for (size_t j = 0; j < t->title.count; j++)
+        all[j] = (setting){column_width(t, j), to_the_right(t, j)};
+    return all;
+}
+
 /* Spaces are held back until something follows them. */
 static void print_padded(const char *text, size_t *spaces, FILE *f) {
     size_t bytes = strcspn(text, "\n");
@@ -133,30 +146,33 @@ static void print_padded(const char *text, size_t *spaces, FILE *f) {
     *spaces = 0;
 }
 
-static void print_cell(const table *t, size_t j, const char *text,
+static void print_cell(const setting *column, bool first, const char *text,
                        size_t *spaces, FILE *f) {
-    size_t space = column_width(t, j) - characters(text);
-    bool right = to_the_right(t, j);
-    *spaces += (j ? 2 : 1) + (right ? space : 0);
+    size_t space = column->width - characters(text);
+    *spaces += (first ? 1 : 2) + (column->right ? space : 0);
     print_padded(text, spaces, f);
-    *spaces += right ? 0 : space;
+    *spaces += column->right ? 0 : space;
 }
 
-static void print_header(const table *t, FILE *f) {
+static void print_header(const table *t, const setting set[], FILE *f) {
     for (size_t k = 0; k < lines(t); k++, fputc('\n', f))
         for (size_t j = 0, spaces = 0; j < t->title.count; j++)
-            print_cell(t, j, line_of(t->title.item[j], k), &spaces, f);
+            print_cell(&set[j], j == 0, line_of(t->title.item[j], k), &spaces,
+                       f);
 }
 
 static void print_table(const table *t, FILE *f) {
     size_t columns = t->title.count;
-    print_header(t, f);
+    setting *set = set_columns(t);
+    print_header(t, set, f);
     for (size_t i = 0; i < rows(t); i++, fputc('\n', f)) {
         if (t->group[i * columns])
             fputc('\n', f);
         for (size_t j = 0, spaces = 0; j < columns; j++)
-            print_cell(t, j, t->cell.item[i * columns + j], &spaces, f);
+            print_cell(&set[j], j == 0, t->cell.item[i * columns + j], &spaces,
+                       f);
     }
+    free(set);
 }
 
 static void print_quoted(const char *text, FILE *f) {

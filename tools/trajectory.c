@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 static const double whole_steps = 1e-9;    /* as nevh_run_until */
-static const double between_saves = 0.5;   /* seconds */
+static const double between_saves = 0.25;  /* seconds */
 static const double share_of_saves = 0.05; /* of the time, at most */
 
 struct trajectory {
@@ -199,8 +199,7 @@ static double next_row(const trajectory *r) {
 
 /* Times that only rounding makes different.  Nothing is close to infinity. */
 static bool same(const trajectory *r, double a, double b) {
-    return a == b ||
-           fabs(a - b) < 8 * DBL_EPSILON * (fabs(a) + fabs(b) + r->h);
+    return a == b || fabs(a - b) < 8 * DBL_EPSILON * (fabs(a) + fabs(b) + r->h);
 }
 
 static bool is_before(const trajectory *r, double a, double b) {
@@ -313,12 +312,11 @@ bool trajectory_finished(const trajectory *r) {
     return r->finished;
 }
 
-/* Work between steps, twice a second. */
+/* Work between steps, a few times a second. */
 typedef struct {
     double next;
-    int (*save)(void *);
-    void *data;
-    bool shown; /* progress, on a terminal */
+    const trajectory_watch *watch;
+    bool shown;
 } clockwork;
 
 static double seconds(void) {
@@ -328,32 +326,33 @@ static double seconds(void) {
 }
 
 static int tick(const trajectory *r, clockwork *c) {
+    const trajectory_watch *w = c->watch;
     double now = seconds();
     if (now < c->next)
         return TOOL_OK;
-    int status = c->save ? c->save(c->data) : TOOL_OK;
+    int status = w->save ? w->save(w->data) : TOOL_OK;
     double took = seconds() - now;
     c->next = now + took + fmax(between_saves, took / share_of_saves);
+    c->shown = w->progress;
     if (c->shown)
         fprintf(stderr, "\r\033[Kt = %.6g of %g", r->now.at.t, r->plan->t_end);
     return status;
 }
 
-int trajectory_follow(trajectory *r, const volatile sig_atomic_t *signal,
-                      int (*save)(void *), void *data) {
-    clockwork c = {seconds() + between_saves, save, data,
-                   isatty(STDERR_FILENO)};
-    int status = show_here(r);
-    if (!status && !r->finished)
-        status = check_stop(r);
-    while (!status && !r->finished && !*signal) {
-        status = step(r);
-        if (!status && !r->finished)
-            status = show_here(r);
+int trajectory_follow(trajectory *r, const trajectory_watch *watch) {
+    clockwork c = {seconds() + between_saves, watch, false};
+    int status = TOOL_OK;
+    while (!status) {
+        status = show_here(r);
         if (!status && !r->finished)
             status = check_stop(r);
         if (!status && !r->finished)
             status = tick(r, &c);
+        if (status || r->finished || *watch->signal)
+            break;
+        status = step(r);
+        if (r->finished)
+            break;
     }
     if (c.shown)
         fputs("\r\033[K", stderr);

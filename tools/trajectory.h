@@ -77,12 +77,16 @@ trajectory *trajectory_new(const plan *, const char *integrator, nevh_stepper *,
 void trajectory_free(trajectory *);
 /* All columns' names. */
 void trajectory_header(trajectory *);
-/* Runs until the rows are written, `stop` is reached, a step fails, or
-   *signal is not 0.
-   save     NULL, or is called about twice a second
+typedef struct {
+    const volatile sig_atomic_t *signal; /* not 0: the run is to end */
+    int (*save)(void *data); /* called a few times a second; NULL: none */
+    void *data;
+    bool progress; /* to be shown on stderr */
+} trajectory_watch;
+/* Runs until the rows are written, `stop` is reached, a step fails, or a signal
+   came.
    returns  TOOL_OK, TOOL_FAILED, TOOL_USAGE; messages are printed */
-int trajectory_follow(trajectory *, const volatile sig_atomic_t *signal,
-                      int (*save)(void *), void *data);
+int trajectory_follow(trajectory *, const trajectory_watch *);
 /* Whether that was for another reason than a signal. */
 bool trajectory_finished(const trajectory *);
 /* To and from what is saved; arrays are the trajectory's. */
