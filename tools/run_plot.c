@@ -101,10 +101,14 @@ static void draw_phase(plot *to, const orbit *o, size_t k) {
 static plot *plot_phase(orbit *o) {
     const plan *p = o->plan;
     size_t panels = p->n < MOST_PANELS ? p->n : MOST_PANELS;
+    char *more = p->n > panels
+                     ? text_print("; %zu of %zu coordinates", panels, p->n)
+                     : text_print("%s", "");
     nevh_observer observers[2] = {{keep_phase, o, 1}};
     o->rows = thinned_new(2 * panels);
     follow(o, observers, 2);
-    char *title = title_of(o, p->n > panels ? "; the first of more" : "");
+    char *title = title_of(o, more);
+    free(more);
     plot *to = NULL;
     for (size_t k = 0; k < panels; k++) {
         const char *name = nevh_scene_coordinate(p->scene, k);
