@@ -248,6 +248,32 @@ START_TEST(an_element_that_is_not_there) {
 }
 END_TEST
 
+static uint64_t digest_of(const char *text, const char *off, const char *set) {
+    nevh_scene *s = scene_of(text);
+    if (off)
+        nevh_scene_enable(s, off, false);
+    if (set)
+        nevh_scene_set(s, set);
+    uint64_t digest = nevh_scene_digest(s);
+    nevh_scene_free(s);
+    return digest;
+}
+
+#define SPRING   "[coordinates]\nx = 1\n[effects]\nT = p_x^2\n"
+#define STRENGTH "[parameters]\nk = 1\n"
+START_TEST(digests_tell_scenes_apart) {
+    uint64_t one = digest_of(STRENGTH SPRING "V = k*x^2\n", NULL, NULL);
+    ck_assert(digest_of("# a comment\n" STRENGTH SPRING "V  =  k*x^2 # more\n",
+                        NULL, NULL) == one);
+    ck_assert(digest_of(STRENGTH SPRING "V = k*x^3\n", NULL, NULL) != one);
+    ck_assert(digest_of(STRENGTH SPRING "W = k*x^2\n", NULL, NULL) != one);
+    ck_assert(digest_of(STRENGTH SPRING "V = k*x^2\n", "V", NULL) != one);
+    ck_assert(digest_of(STRENGTH SPRING "V = k*x^2\n", NULL, "k = 2") != one);
+    ck_assert(digest_of(STRENGTH SPRING "V = k*x^2\n[run]\ndt = 1\n", NULL,
+                        NULL) != one);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("scene shown");
     TCase *cases = tcase_create("scene shown");
@@ -263,6 +289,7 @@ int main(void) {
     tcase_add_test(cases, stops_below_and_above);
     tcase_add_test(cases, nothing_in_a_scene_that_was_not_read);
     tcase_add_test(cases, an_element_that_is_not_there);
+    tcase_add_test(cases, digests_tell_scenes_apart);
     suite_add_tcase(suite, cases);
     return run_suite(suite);
 }

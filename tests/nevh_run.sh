@@ -199,7 +199,6 @@ again() {
         test -e $work/$name.state || break
         part $work/$name $work/$name.whole || fails "left a broken line"
         interrupted=$((interrupted + 1))
-        says 'interrupted; to go on: --resume'
         timeout -s TERM 0.0$(($(random 5) + 1)) "$nevh" run "$@" \
             --resume $work/$name 2>$work/err
     done
@@ -215,7 +214,12 @@ again c $work/comet.nevh --integrators gauss8+transform --t-end 700 \
 again d figure-eight --integrators gauss8 --t-end 50 --at 1,2.5,20.1,33,49.999
 test $interrupted -ge 8 || { echo "only $interrupted interruptions"; status=1; }
 
-# Ends that ask nobody.
+# Ends that ask nobody.  There Linux may cut a line that goes over the end of a
+# page, in the moment in which it is written.
+cut() {
+    count=$(wc -c <"$1")
+    test $((count % 4096)) -eq 0 && head -c "$count" "$2" | cmp -s - "$1"
+}
 i=0
 while test $i -lt 50; do
     i=$((i + 1))
@@ -223,7 +227,8 @@ while test $i -lt 50; do
     sleep 0.0$(random 5)$(random 9)
     kill -s KILL $!
     wait $! 2>/dev/null
-    test ! -s $work/killed.csv || part $work/killed.csv $work/whole.csv ||
+    part $work/killed.csv $work/whole.csv ||
+        cut $work/killed.csv $work/whole.csv ||
         fails "left a broken line when killed"
 done
 if test -e $work/killed.csv.state; then
@@ -246,7 +251,8 @@ fi
 
 # States that are not those of the run are refused, and nothing is touched.
 run='double-pendulum --dt 0.001 --every 100 --t-end 40'
-timeout -s TERM 0.05 "$nevh" run $run -o $work/x.csv 2>/dev/null
+timeout -s TERM 0.1 "$nevh" run $run -o $work/x.csv 2>$work/err
+says 'interrupted; to go on: --resume .*x.csv'
 cp $work/x.csv $work/x.kept
 cp $work/x.csv.state $work/x.state
 untouched() {

@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { MUCH = 1 << 15 };
+enum { MUCH = 1 << 15, PAGE = 1 << 12 };
 
 /* FNV-1a, 64 bits [G. Fowler, L. C. Noll, K.-P. Vo; draft-eastlake-fnv]: a
    change of one byte always shows. */
@@ -100,28 +100,48 @@ void lines_print(line_file *l, const char *format, ...) {
     l->used += (size_t)length;
 }
 
-/* What was written of a line that is not whole. */
-static size_t broken(const char *text, size_t written) {
-    size_t end = written;
-    while (end && text[end - 1] != '\n')
-        end--;
-    return written - end;
+/* Bytes of whole lines up to the end of a page of the file, or of the one line
+   that goes beyond.  Linux cuts a write short between two pages when the
+   process is killed meanwhile; so but few bytes are written where that may
+   break a line. */
+static size_t next_part(const line_file *l, size_t from) {
+    const char *text = l->text + from;
+    size_t count = l->used - from, room = PAGE - (l->bytes + from) % PAGE;
+    if (!l->regular || count <= room)
+        return count;
+    const char *end = memrchr(text, '\n', room);
+    end = end ? end : memchr(text + room, '\n', count - room);
+    return end ? (size_t)(end - text) + 1 : count;
+}
+
+static size_t write_part(line_file *l, size_t from, size_t count) {
+    size_t written = 0;
+    while (!l->stuck && written < count) {
+        ssize_t now = write(l->file, l->text + from + written, count - written);
+        if (now >= 0)
+            written += (size_t)now;
+        else if (errno != EINTR)
+            unwritten(l);
+    }
+    return written;
+}
+
+/* Bytes up to the last end of a line. */
+static size_t whole_lines(const char *text, size_t count) {
+    while (count && text[count - 1] != '\n')
+        count--;
+    return count;
 }
 
 int lines_flush(line_file *l) {
     size_t written = 0;
-    while (!l->stuck && written < l->used) {
-        ssize_t count = write(l->file, l->text + written, l->used - written);
-        if (count >= 0)
-            written += (size_t)count;
-        else if (errno != EINTR)
-            unwritten(l);
-    }
-    size_t rest = broken(l->text, written);
-    l->digest = digest_add(l->digest, l->text, written - rest);
-    l->bytes += written - rest;
+    while (!l->stuck && written < l->used)
+        written += write_part(l, written, next_part(l, written));
+    size_t whole = whole_lines(l->text, written);
+    l->digest = digest_add(l->digest, l->text, whole);
+    l->bytes += whole;
     l->used = 0;
-    if (rest && l->regular && ftruncate(l->file, (off_t)l->bytes))
+    if (whole < written && l->regular && ftruncate(l->file, (off_t)l->bytes))
         unwritten(l);
     return l->stuck ? TOOL_USAGE : TOOL_OK;
 }

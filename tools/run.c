@@ -237,10 +237,10 @@ static int give_up(job *j) {
     return TOOL_FAILED;
 }
 
-static int follow(job *j, int (*save)(void *)) {
+static int follow(job *j, int (*saver)(void *)) {
     bool progress = !j->options->quiet && isatty(STDERR_FILENO);
     return trajectory_follow(
-        j->trajectory, &(trajectory_watch){&interrupted, save, j, progress});
+        j->trajectory, &(trajectory_watch){&interrupted, saver, j, progress});
 }
 
 static int write_lines(job *j) {

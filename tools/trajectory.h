@@ -9,7 +9,8 @@
 /* lines.c: a file that only ever holds whole lines, or stdout.
 
    Each write(2) ends with a line; where one fails the file is cut back to the
-   last whole line. */
+   last whole line.  (A process that is killed in such a write may leave part of
+   a line that goes over the end of a page; reopen cuts that off.) */
 typedef struct {
     const char *name; /* NULL: stdout */
     int file;
