@@ -101,6 +101,12 @@ static int power(void *data, double t, const double q[], const double p[],
     *value = pow(q[0] - 0.3, *(const double *)data);
     return NEVH_OK;
 }
+static int momentum(void *data, double t, const double q[], const double p[],
+                    double *value) {
+    (void)t, (void)q;
+    *value = p[0] - *(const double *)data;
+    return NEVH_OK;
+}
 /* Zeros in time, ended by NAN. */
 static int zeros(void *data, double t, const double q[], const double p[],
                  double *value) {
@@ -126,6 +132,12 @@ static int pole(void *data, double t, const double q[], const double p[],
                 double *value) {
     (void)data, (void)t, (void)p;
     *value = 1 / q[0];
+    return NEVH_OK;
+}
+static int proportional(void *data, double t, const double q[],
+                        const double p[], double *value) {
+    (void)q, (void)p;
+    *value = t * *(const double *)data;
     return NEVH_OK;
 }
 static int breaking(void *data, double t, const double q[], const double p[],
@@ -196,8 +208,9 @@ START_TEST(touching_and_grazing) {
     const double d = distances[_i % 4], h = steps[_i / 4];
     double below = 1 - d, above = 1 + d;
     const nevh_section is[] = {{.value = coordinate, .data = &below},
-                               {.value = coordinate, .data = &above}};
-    orbit *o = on_circle(1, is, 2);
+                               {.value = coordinate, .data = &above},
+                               {.value = momentum, .data = &above}};
+    orbit *o = on_circle(1, is, 3);
     const int turns = h < 0.1 ? 20 : 100;
     ck_assert_int_eq(go(o, h, 1 + turns * 2 * M_PI), NEVH_OK);
     ck_assert_uint_eq(count_of(&o->found, 0, 1), turns);
@@ -326,6 +339,107 @@ START_TEST(multiples_of_a_period) {
         ck_assert_double_eq_tol(o->found.at[i].t, (o->found.at[i].q[0] - 1) / p,
                                 1e-12);
     }
+    put_away(o);
+}
+END_TEST
+
+/* Just below 3 periods of 1.3 at t = 1, by less than division can tell. */
+START_TEST(a_step_just_before_a_multiple) {
+    double slope = nextafter(3 * 1.3, 0);
+    const nevh_section is = {
+        .value = proportional, .data = &slope, .period = 1.3};
+    orbit *o = on_circle(0, &is, 1);
+    ck_assert(slope < 3 * 1.3 && slope / 1.3 >= 3);
+    ck_assert_int_eq(go(o, 0.25, 1.5), NEVH_OK);
+    ck_assert_uint_eq(o->found.count, 4);
+    ck_assert_double_eq_tol(o->found.at[2].t, 1, 1e-12);
+    put_away(o);
+}
+END_TEST
+
+/* The value s into a step of h, by a stepper that knows nothing of it. */
+typedef struct {
+    orbit *o;
+    double t, h, q, p;
+    bool of_p;
+} part;
+static double after_part(const part *a, double s) {
+    double q = a->q, p = a->p;
+    nevh_stepper_reset(a->o->stepper);
+    ck_assert_int_eq(nevh_stepper_apply(a->o->stepper, a->t, s * a->h, &q, &p),
+                     NEVH_OK);
+    return a->of_p ? p : q;
+}
+
+/* Where the value is largest, or 0 at an end; the step is looked at closely
+   there. */
+static double turn_of(const part *a) {
+    enum { SAMPLES = 64 };
+    double best = 0, most = after_part(a, 0), low = 0, high = 1;
+    for (int i = 1; i <= SAMPLES; i++) {
+        double s = (1 - cos(M_PI * i / SAMPLES)) / 2, value = after_part(a, s);
+        if (value > most) {
+            most = value;
+            best = s;
+            low = (1 - cos(M_PI * (i - 1) / SAMPLES)) / 2;
+            high = (1 - cos(M_PI * (i + 1) / SAMPLES)) / 2;
+        }
+    }
+    if (best == 0 || best == 1)
+        return 0;
+    while (high - low > 1e-7) {
+        double left = low + (high - low) / 3, right = high - (high - low) / 3;
+        if (after_part(a, left) > after_part(a, right))
+            high = right;
+        else
+            low = left;
+    }
+    return low;
+}
+
+/* A level just below the turn is crossed twice in the step, wherever in it the
+   turn is, and whatever the flow's slopes at its ends say of that, which are
+   not quite the scheme's. */
+START_TEST(turns_anywhere_in_a_step) {
+    static const double rates[] = {0.5};
+    const bool of_p = _i % 2, damped = _i / 2;
+    double level = 0;
+    const nevh_section is = {.value = of_p ? momentum : coordinate,
+                             .data = &level};
+    const problem *b = &driven_pendulum;
+    nevh_system *system = b->make();
+    if (damped)
+        nevh_system_add_friction(system, "drag", rates);
+    orbit *o = look_at(system, nevh_verlet, b->q, b->p, &is, 1);
+    int turns = 0, near = 0;
+    double t = 0, h = 0.3;
+    for (int i = 0; i < 3000; i++, t += h / 7) {
+        double x = 0.001 * (i % 700), y = 0.0003 * i;
+        part a = {o,
+                  t,
+                  h,
+                  of_p ? y - 0.7 : x + 0.8,
+                  of_p ? x + (damped ? 0.5 : 1) : y - 0.1,
+                  of_p};
+        double s = turn_of(&a), ends[] = {after_part(&a, 0), after_part(&a, 1)};
+        double most = after_part(&a, s), least = fmax(ends[0], ends[1]);
+        if (s == 0 || most - least < 1e-9)
+            continue;
+        level = (most + least) / 2;
+        o->found.count = 0;
+        nevh_stepper_reset(o->stepper);
+        ck_assert(!nevh_sections_observe(o->sections, 0, t, &a.q, &a.p));
+        nevh_stepper_apply(o->stepper, t, h, &a.q, &a.p);
+        ck_assert_msg(!nevh_sections_observe(o->sections, 1, t + h, &a.q, &a.p),
+                      "%s", nevh_sections_message(o->sections));
+        ck_assert_msg(
+            o->found.count == 2, "%zu at s = %g of step %d; ends %g %g most %g",
+            o->found.count, s, i, ends[0] - most, ends[1] - most, most);
+        turns++;
+        near += s < 0.01 || s > 0.99;
+    }
+    ck_assert_msg(turns > 100 && near > 3, "%d turns, %d near ends", turns,
+                  near);
     put_away(o);
 }
 END_TEST
@@ -503,6 +617,20 @@ START_TEST(every_scheme_the_same_orbit) {
             ck_assert_double_eq_tol(found.at[i].q[0], level, 1e-12);
         else
             ck_assert(found.at[i].t == t0 + (double)++strobes * every);
+    for (size_t i = 2; i < found.count; i += 5) {
+        if (found.at[i].t > ends[1])
+            break;
+        memcpy(q[0], b->q, sizeof q[0]);
+        memcpy(p[0], b->p, sizeof p[0]);
+        nevh_stepper_reset(alone);
+        ck_assert_int_eq(
+            nevh_run_until(alone, t0, 0.05, found.at[i].t, q[0], p[0], NULL, 0),
+            NEVH_OK);
+        for (size_t k = 0; k < b->n; k++) {
+            ck_assert_double_eq_tol(q[0][k], found.at[i].q[k], 1e-9);
+            ck_assert_double_eq_tol(p[0][k], found.at[i].p[k], 1e-9);
+        }
+    }
     nevh_sections_free(x);
     nevh_stepper_free(seen);
     nevh_stepper_free(alone);
@@ -531,6 +659,45 @@ START_TEST(strobes_are_states) {
         ck_assert_double_eq_tol(o->found.at[i].p[0], p, 1e-15);
         nevh_stepper_free(s);
     }
+    put_away(o);
+}
+END_TEST
+
+/* By the clock 0.1 + 0.1 + 0.1 is not 0.3, and both are met. */
+START_TEST(strobes_on_steps) {
+    const nevh_section is[] = {{.every = 0.1}, {.every = 0.3}};
+    const double start[] = {0.4, 0.3};
+    double q = start[0], p = start[1];
+    orbit *o = look_at(nevh_pendulum_model->system(&unit_pendulum), nevh_verlet,
+                       &start[0], &start[1], is, 2);
+    nevh_stepper *plain = nevh_stepper_copy(o->stepper);
+    ck_assert_int_eq(go(o, 0.1, 0.3), NEVH_OK);
+    nevh_run_until(plain, 0, 0.1, 0.3, &q, &p, NULL, 0);
+    ck_assert_uint_eq(o->found.count, 4);
+    for (int i = 2; i < 4; i++)
+        ck_assert(o->found.at[i].q[0] == q && o->found.at[i].p[0] == p);
+    put_away(o);
+    o = look_at(nevh_pendulum_model->system(&unit_pendulum), nevh_verlet,
+                &start[0], &start[1], is, 2);
+    ck_assert_int_eq(
+        nevh_run(o->stepper, 0, 0.1, 4, o->q, o->p, &o->observer, 1), NEVH_OK);
+    ck_assert_uint_eq(o->found.count, 5);
+    for (int i = 2; i < 4; i++)
+        ck_assert(o->found.at[i].q[0] == q && o->found.at[i].p[0] == p);
+    nevh_stepper_free(plain);
+    put_away(o);
+}
+END_TEST
+
+/* A run that begins at the same state, but at another time, is another. */
+START_TEST(the_same_state_at_another_time) {
+    const nevh_section is = {.every = 0.7};
+    orbit *o = on_circle(0, &is, 1);
+    ck_assert_int_eq(go(o, 0.1, 1), NEVH_OK);
+    o->t = 10;
+    ck_assert_int_eq(go(o, 0.1, 11), NEVH_OK);
+    ck_assert_uint_eq(o->found.count, 2);
+    ck_assert_double_eq(o->found.at[1].t, 10.7);
     put_away(o);
 }
 END_TEST
@@ -710,11 +877,15 @@ int main(void) {
     tcase_add_loop_test(found, a_start_on_a_zero, 0, 3);
     tcase_add_test(found, zeros_that_touch_on_steps);
     tcase_add_loop_test(found, multiples_of_a_period, 0, 4);
+    tcase_add_test(found, a_step_just_before_a_multiple);
+    tcase_add_loop_test(found, turns_anywhere_in_a_step, 0, 4);
     tcase_add_test(found, no_crossing_at_jumps);
     tcase_add_test(found, none_is_missed);
     tcase_add_loop_test(found, points_are_as_good_as_states, 0, 7);
     tcase_add_loop_test(found, every_scheme_the_same_orbit, 0, setting_count());
     tcase_add_loop_test(found, strobes_are_states, 0, 4);
+    tcase_add_test(found, strobes_on_steps);
+    tcase_add_test(found, the_same_state_at_another_time);
     tcase_add_test(found, backward_the_same_points);
     tcase_add_test(found, runs_that_go_on);
     suite_add_tcase(s, found);

@@ -100,6 +100,7 @@ dist_check_SCRIPTS = \
 	tests/examples.sh \
 	tests/nevh.sh \
 	tests/nevh_plot.sh \
+	tests/nevh_section.sh \
 	tests/nevh_run.sh \
 	tests/pkgconfig.sh \
 	tests/valgrind.sh

@@ -20,8 +20,10 @@ typedef struct {
     const plan *plan;
     series *all;
     size_t count;
-    bool stopped; /* by the scene's own condition */
-    double t_stop;
+    const char *integrator;
+    bool stopped; /* by the scene's own condition, at t */
+    double t;
+    char *ended; /* how, where the run came to no end of its own; or NULL */
 } job;
 
 /* Of what is shown: that of the coordinate that it is. */
@@ -79,7 +81,7 @@ static int stop(void *data, size_t step, double t, const double q[],
                 const double p[]) {
     job *j = data;
     (void)step;
-    j->t_stop = t;
+    j->t = t;
     return nevh_scene_stop_reached(j->plan->scene, t, q, p, &j->stopped) ||
            j->stopped;
 }
@@ -136,6 +138,7 @@ static void forget(job *j) {
         free(j->all[i].numbers);
     }
     free(j->all);
+    free(j->ended);
 }
 
 static nevh_sections *watch(job *j, const nevh_stepper *s) {
@@ -155,19 +158,22 @@ static nevh_sections *watch(job *j, const nevh_stepper *s) {
     return x;
 }
 
-/* Why the run did not come to its end, if it failed. */
-static int explain(const job *j, int status, const nevh_stepper *s,
+/* How a run ended. */
+static int explain(job *j, int status, const nevh_stepper *s,
                    const nevh_sections *x) {
-    const char *scene = nevh_scene_message(j->plan->scene);
+    const char *why = nevh_scene_message(j->plan->scene);
     int looking = nevh_sections_status(x);
-    if (!status || (j->stopped && !looking))
+    if (!status)
         return TOOL_OK;
-    if (*scene)
-        fprintf(stderr, "%s\n", scene);
-    else
-        tool_refuse("%s: %s", j->plan->name,
-                    looking ? nevh_sections_message(x)
-                            : nevh_stepper_message(s));
+    if (j->stopped && !looking) {
+        j->ended = text_print("stopped at t = %.9g: %s", j->t,
+                              nevh_scene_stop_text(j->plan->scene));
+        return TOOL_OK;
+    }
+    if (!*why)
+        why = looking ? nevh_sections_message(x) : nevh_stepper_message(s);
+    j->ended = text_print("failed: %s", why);
+    tool_refuse("%s: %s", j->plan->name, j->ended);
     return TOOL_FAILED;
 }
 
@@ -215,19 +221,24 @@ static void fill(table *t, const job *j, const list *items) {
     }
 }
 
-static void note(const job *j, const nevh_integrator *scheme, list *notes) {
+static void note(const job *j, const options *o, list *notes) {
     const plan *p = j->plan;
+    bool first = p->integrators.count > 1 || p->dts > 1;
     plan_notes(p, notes);
-    list_print(notes,
-               "%s at dt = %.9g: the first integrator that fits, and "
-               "the first dt",
-               nevh_integrator_name(scheme), p->dt[0]);
+    list_print(notes, "scene: %s", p->name);
+    for (size_t i = 0; i < o->settings.count; i++)
+        if (o->settings.item[i][0] == '=')
+            list_print(notes, "set: %s", o->settings.item[i] + 1);
+    list_print(notes, "integrator: %s, dt = %.9g%s", j->integrator, p->dt[0],
+               first ? ": the first integrator of the list that fits, and the "
+                       "first dt"
+                     : "");
+    list_print(notes, "gradient: %s", p->gradients.item[0]);
     for (size_t i = 0; i < j->count; i++)
         list_print(notes, "section %s: %zu points", j->all[i].is->name,
                    j->all[i].points);
-    if (j->stopped)
-        list_print(notes, "stopped at t = %.9g: %s", j->t_stop,
-                   nevh_scene_stop_text(p->scene));
+    if (j->ended)
+        list_print(notes, "%s", j->ended);
 }
 
 static int draw(const job *j, const options *o) {
@@ -246,14 +257,13 @@ static options with_format(const options *o) {
     return as;
 }
 
-static int print(const job *j, const nevh_integrator *scheme, const options *o,
-                 int status) {
+static int print(const job *j, const options *o, int status) {
     static const char *const columns[] = {"section", "t", "direction"};
     page result = {.table = table_new()};
     options as = with_format(o);
     list items = {0};
-    if (!o->quiet)
-        note(j, scheme, &result.before);
+    if (!(o->quiet && as.format == FORMAT_TABLE))
+        note(j, o, &result.before);
     for (size_t i = 0; i < 3; i++)
         table_column(result.table, columns[i]);
     list_items(j, &items);
@@ -266,10 +276,27 @@ static int print(const job *j, const nevh_integrator *scheme, const options *o,
     return status;
 }
 
+/* The first integrator that fits. */
+static nevh_stepper *fitting(job *j) {
+    const list *names = &j->plan->integrators;
+    for (size_t i = 0; i < names->count; i++) {
+        j->integrator = names->item[i];
+        nevh_stepper *s = plan_stepper(j->plan, j->integrator);
+        if (!nevh_stepper_status(s))
+            return s;
+        if (names->count == 1)
+            tool_refuse("%s: %s", j->plan->name, nevh_stepper_message(s));
+        nevh_stepper_free(s);
+    }
+    if (names->count > 1)
+        tool_refuse("%s: none of the integrators fits; see nevh check",
+                    j->plan->name);
+    return NULL;
+}
+
 int section(const options *o) {
     plan p;
     job j = {0};
-    const nevh_integrator *scheme;
     nevh_stepper *s = NULL;
     options as = with_format(o);
     int status = plan_make(&p, o);
@@ -277,12 +304,12 @@ int section(const options *o) {
         status = choose(&j, &p, o);
     if (!status)
         status = plot_check(&as);
-    if (!status && !(s = plan_first(&p, &scheme)))
+    if (!status && !(s = fitting(&j)))
         status = TOOL_USAGE;
     if (!status)
-        status = print(&j, scheme, o, run(&j, s));
-    if (plot_wanted(o) && status == TOOL_OK)
-        status = draw(&j, o);
+        status = print(&j, o, run(&j, s));
+    if (plot_wanted(o) && status != TOOL_USAGE && draw(&j, o))
+        status = TOOL_USAGE;
     nevh_stepper_free(s);
     forget(&j);
     plan_free(&p);

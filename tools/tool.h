@@ -85,7 +85,6 @@ typedef struct {
     matching match;
     plot_kind plot_kind;
     const char *file, *plot, *plot_script, *transform, *resume, *from;
-    bool formatted; /* --format was given */
     bool quiet, portable, all, by_state, diagnostics, impact, allow_code;
     bool help, version;
     unsigned long long used; /* a bit an option */

@@ -137,7 +137,6 @@ static void keep(nevh_sections *x, double t, const double q[],
     const nevh_stepper *s = x->stepper;
     size_t size = s->work.size * sizeof(double);
     x->t = t;
-    x->lost = s->time_lost;
     memcpy(x->q, q, size);
     memcpy(x->p, p, size);
     memcpy(x->memory, s->work.memory, s->rows * s->work.width * sizeof(double));

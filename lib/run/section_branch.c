@@ -8,8 +8,7 @@
 
 enum { MOST_TRIALS = 100 };
 static const double certain = 4 * DBL_EPSILON; /* part of a step */
-static const double jump = 0.01;     /* of the difference of the ends */
-static const double rounding = 1e-8; /* of what slopes make of a step */
+static const double jump = 0.01; /* of the difference of the ends */
 
 int nevh__section_step(nevh_sections *x, double h) {
     nevh_stepper *s = x->branch;
@@ -17,8 +16,6 @@ int nevh__section_step(nevh_sections *x, double h) {
     memcpy(x->q_try, x->q, size);
     memcpy(x->p_try, x->p, size);
     memcpy(s->work.memory, x->memory, s->rows * s->work.width * sizeof(double));
-    s->last_t = x->t;
-    s->time_lost = x->lost;
     int status = nevh__advance(s, x->t, h, x->q_try, x->p_try);
     return status ? nevh__fail_as(&x->report, &s->report) : NEVH_OK;
 }
@@ -81,9 +78,9 @@ int nevh__section_take(nevh_sections *x, nevh__track *k, double h) {
 typedef struct {
     nevh_sections *x;
     nevh__track *k;
-    nevh__node a, b; /* less the level */
-    double level, best;
-    bool pole; /* the value was infinite */
+    nevh__node a, b;          /* less the level */
+    double level, best, last; /* |value| */
+    bool pole;                /* the value was infinite */
 } search;
 
 /* Infinity is no failure here. */
@@ -109,8 +106,9 @@ static double miss(double s, void *data) {
     if (sample(r, s, &value))
         return r->a.value;
     value -= r->level;
-    if (fabs(value) < r->best) {
-        r->best = fabs(value);
+    r->last = fabs(value);
+    if (r->last <= r->best) {
+        r->best = r->last;
         keep(x, r->k, s, x->branch->last_t, x->q_try, x->p_try);
     }
     return value;
@@ -129,20 +127,6 @@ static void narrow(search *r) {
     }
 }
 
-static double known(double x) {
-    return isfinite(x) ? fabs(x) : 0;
-}
-
-/* Whether the value still jumps where the bracket is as narrow as can be.  Both
-   of its ends may have been at rounding, which slopes tell. */
-static bool jumps(const search *r) {
-    const nevh__track *k = r->k;
-    double slopes = known(k->slope) + known(k->slope_after);
-    double change = slopes * fabs(r->x->t_after - r->x->t);
-    double range = fabs(r->a.value) + fabs(r->b.value);
-    return r->pole || r->best > jump * range + rounding * change;
-}
-
 int nevh__section_search(nevh_sections *x, nevh__track *k, nevh__node a,
                          nevh__node b, double level) {
     search r = {.x = x, .k = k, .a = a, .b = b, .level = level};
@@ -151,6 +135,7 @@ int nevh__section_search(nevh_sections *x, nevh__track *k, nevh__node a,
     r.best = INFINITY;
     k->found = false;
     narrow(&r);
-    k->found &= !jumps(&r);
+    k->found &= !r.pole && r.last <= jump * (fabs(a.value - level) +
+                                             fabs(b.value - level));
     return x->report.status;
 }

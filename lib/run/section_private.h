@@ -55,7 +55,7 @@ struct nevh_sections {
     bool begun, first; /* first: no step has been seen yet */
     size_t step;
     double origin; /* time at which the run began */
-    double t, lost, *q, *p, *memory;
+    double t, *q, *p, *memory;
     /* Where it ends, and its length. */
     double t_after, h;
     const double *q_after, *p_after;

@@ -7,21 +7,29 @@
 #include <gsl/gsl_poly.h>
 #include <math.h>
 
-enum { MOST_NARROWINGS = 14, MOST_TRIALS = 40 };
-static const double beyond = 0.1;  /* the model's turns this far off count */
+enum { MOST_TRIALS = 40 };
+/* The slope of a straight line between the ends times this much, at both ends:
+   the value does not turn (it cannot from 0 to 3, for a cubic). */
+static const double least_slope = 0.5, most_slope = 2;
+static const double beyond = 0.1; /* the model's turns this far off count */
+/* Levels are near a turn within these parts of the range over the step, and of
+   what the turn adds to it. */
+static const double slack = 0.01, doubt = 3;
 static const double inside = 0.02; /* first guesses keep off the ends */
-static const double doubt = 3;     /* factor on what a turn adds to the range */
-static const double slack = 1e-3;  /* of the range */
-static const double narrow = 1e-9; /* part of a step: rounding, in a minimum */
+static const double close = 1e-6;  /* to an end, */
+static const double behind = 1e-4; /* for a slope, */
+static const double narrow = 1e-9; /* rounding in a minimum: parts of a step */
 
 typedef struct {
     double a, b, c, d; /* a s^3 + b s^2 + c s + d */
 } cubic;
 
-static cubic model_of(const nevh_sections *x, const nevh__track *k) {
-    double span = x->t_after - x->t, change = k->value_after - k->value;
-    double c = k->slope * span, end = k->slope_after * span;
-    return (cubic){c + end - 2 * change, 3 * change - 2 * c - end, c, k->value};
+static cubic model_of(double begin, double end, double slope_at_begin,
+                      double slope_at_end) {
+    double change = end - begin;
+    return (cubic){slope_at_begin + slope_at_end - 2 * change,
+                   3 * change - 2 * slope_at_begin - slope_at_end,
+                   slope_at_begin, begin};
 }
 
 static double at(const cubic *m, double s) {
@@ -45,6 +53,18 @@ static bool matters(const nevh__track *k, double turn) {
     return level_within(k, bottom, top);
 }
 
+/* Whether the value may turn near a level, as far as the flow tells. */
+static bool may_turn(const nevh__track *k, double begin, double end) {
+    double change = k->value_after - k->value;
+    double reach = (fabs(begin) + fabs(end)) / 4;
+    double low = fmin(k->value, k->value_after) - reach;
+    double high = fmax(k->value, k->value_after) + reach;
+    bool straight = begin / change > least_slope &&
+                    begin / change < most_slope && end / change > least_slope &&
+                    end / change < most_slope;
+    return !straight && level_within(k, low, high);
+}
+
 typedef struct {
     nevh_sections *x;
     nevh__track *k;
@@ -57,26 +77,18 @@ static bool same_side(const dip *d, double value) {
            nevh__section_index(d->k, d->least.value);
 }
 
-/* Where the minimum is next to an end, closes in on it until there is a point
-   below both ends, or beyond the level. */
+/* Where the minimum is next to an end, a point very close to that end is below
+   both neighbours; else there is no minimum. */
 static int enclose(dip *d) {
-    nevh__node *low = &d->low, *least = &d->least, *high = &d->high;
-    for (int i = 0; i < MOST_NARROWINGS; i++) {
-        double below = d->sign * (low->value - least->value);
-        double above = d->sign * (high->value - least->value);
-        if ((below > 0 && above > 0) || (below <= 0 && above <= 0))
-            return NEVH_OK;
-        nevh__node *end = below > 0 ? high : low;
-        nevh__node next = {least->s + 0.75 * (end->s - least->s), 0};
-        if (nevh__section_sample(d->x, d->k, next.s, &next.value))
-            return d->x->report.status;
-        *(below > 0 ? low : high) = *least;
-        bool through = !same_side(d, next.value);
-        *least = next;
-        if (through)
-            return NEVH_OK;
-    }
-    return NEVH_OK;
+    double below = d->sign * (d->low.value - d->least.value);
+    double above = d->sign * (d->high.value - d->least.value);
+    if ((below > 0) == (above > 0))
+        return NEVH_OK;
+    nevh__node end = below > 0 ? d->high : d->low;
+    nevh__node next = {end.s + (below > 0 ? -close : close), 0};
+    *(below > 0 ? &d->low : &d->high) = d->least;
+    d->least = next;
+    return nevh__section_sample(d->x, d->k, next.s, &d->least.value);
 }
 
 static double height(double s, void *data) {
@@ -115,9 +127,9 @@ static int dig(nevh_sections *x, nevh__track *k, size_t i, double sign) {
     dip d = {x, k, sign, k->nodes[i - 1], k->nodes[i], k->nodes[i + 1]};
     if (!same_side(&d, d.low.value) || !same_side(&d, d.high.value))
         return NEVH_OK;
-    nevh__node before = d.least;
+    double before = d.least.value;
     int status = enclose(&d);
-    if (!status && same_side(&d, before.value))
+    if (!status && same_side(&d, before))
         status = descend(&d);
     k->nodes[i] = d.least;
     return status;
@@ -134,23 +146,45 @@ static int add_node(nevh_sections *x, nevh__track *k, double s) {
     return status;
 }
 
-int nevh__section_nodes(nevh_sections *x, nevh__track *k) {
-    cubic m = model_of(x, k);
-    double turn[2], sign[NEVH__MOST_NODES];
-    int status = NEVH_OK, turns = 0;
-    k->nodes[0] = (nevh__node){0, k->value};
-    k->n_nodes = 1;
-    if (isfinite(m.a) && isfinite(m.b) && isfinite(m.c))
-        turns =
-            gsl_poly_solve_quadratic(3 * m.a, 2 * m.b, m.c, &turn[0], &turn[1]);
+/* Nodes within the step, and what makes each a minimum. */
+static int add_nodes(nevh_sections *x, nevh__track *k, const cubic *m,
+                     double sign[]) {
+    double turn[2];
+    int status = NEVH_OK;
+    int turns =
+        gsl_poly_solve_quadratic(3 * m->a, 2 * m->b, m->c, &turn[0], &turn[1]);
     for (int i = 0; !status && i < turns; i++)
         if (turn[i] >= -beyond && turn[i] <= 1 + beyond &&
-            matters(k, at(&m, fmin(fmax(turn[i], 0), 1)))) {
-            sign[k->n_nodes] = 6 * m.a * turn[i] + 2 * m.b < 0 ? -1 : 1;
+            matters(k, at(m, fmin(fmax(turn[i], 0), 1)))) {
+            sign[k->n_nodes] = 6 * m->a * turn[i] + 2 * m->b < 0 ? -1 : 1;
             status = add_node(x, k, turn[i]);
         }
+    return status;
+}
+
+/* At its end the step's own slope is taken: the flow's is that of the next
+   step, from which it differs by the scheme's error. */
+static int look_for_turns(nevh_sections *x, nevh__track *k, double begin) {
+    double sign[NEVH__MOST_NODES], before;
+    int status = nevh__section_sample(x, k, 1 - behind, &before);
+    if (status)
+        return status;
+    cubic m = model_of(k->value, k->value_after, begin,
+                       (k->value_after - before) / behind);
+    status = add_nodes(x, k, &m, sign);
     k->nodes[k->n_nodes++] = (nevh__node){1, k->value_after};
     for (size_t i = 1; !status && i + 1 < k->n_nodes; i++)
         status = dig(x, k, i, sign[i]);
     return status;
+}
+
+int nevh__section_nodes(nevh_sections *x, nevh__track *k) {
+    double span = x->t_after - x->t;
+    double begin = k->slope * span, end = k->slope_after * span;
+    k->nodes[0] = (nevh__node){0, k->value};
+    k->n_nodes = 1;
+    if (isfinite(begin) && isfinite(end) && may_turn(k, begin, end))
+        return look_for_turns(x, k, begin);
+    k->nodes[k->n_nodes++] = (nevh__node){1, k->value_after};
+    return NEVH_OK;
 }
