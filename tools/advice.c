@@ -9,6 +9,27 @@ static const row *chosen(const advice *a, const ladder *l) {
     return ladder_cheapest(l, a->target, a->search.by_state);
 }
 
+size_t advice_list(const advice *a, const ladder *found[ADVICE_MOST]) {
+    const ladder *const all[ADVICE_MOST] = {a->best, a->second, a->alone,
+                                            a->steady};
+    size_t count = 0;
+    for (size_t i = 0; i < ADVICE_MOST; i++) {
+        bool known = !all[i];
+        for (size_t k = 0; k < count; k++)
+            known |= found[k] == all[i];
+        if (!known)
+            found[count++] = all[i];
+    }
+    return count;
+}
+
+static const char *name_of(const advice *a, const ladder *l) {
+    return l == a->best     ? "cheapest"
+           : l == a->second ? "runner-up"
+           : l == a->alone  ? "from H alone"
+                            : "no drift";
+}
+
 static void show(const advice *a, const ladder *l, const char *what, table *t) {
     const row *r = chosen(a, l);
     table_text(t, what);
@@ -32,22 +53,19 @@ static table *shown(const advice *a) {
         table_column(t, titles[i]            ? titles[i]
                         : a->search.by_state ? "state error"
                                              : "energy error");
-    show(a, a->best, "cheapest", t);
-    if (a->second)
-        show(a, a->second, "runner-up", t);
-    if (a->alone && a->alone != a->best && a->alone != a->second)
-        show(a, a->alone, "from H alone", t);
+    const ladder *found[ADVICE_MOST];
+    size_t count = advice_list(a, found);
+    for (size_t i = 0; i < count; i++)
+        show(a, found[i], name_of(a, found[i]), t);
     return t;
 }
 
 static table *recorded(const advice *a) {
-    const ladder *const ladders[] = {a->best, a->second, a->alone};
-    row rows[3];
-    size_t count = 0;
-    for (size_t i = 0; i < 3; i++)
-        if (ladders[i] &&
-            (i < 2 || (ladders[i] != a->best && ladders[i] != a->second)))
-            rows[count++] = *chosen(a, ladders[i]);
+    const ladder *found[ADVICE_MOST];
+    row rows[ADVICE_MOST];
+    size_t count = advice_list(a, found);
+    for (size_t i = 0; i < count; i++)
+        rows[i] = *chosen(a, found[i]);
     return records(&a->search.plan, rows, count);
 }
 
@@ -73,7 +91,7 @@ static char *append_number(char *text, const char *name, double value) {
 /* As the rows were run. */
 static char *command_line(const advice *a, const options *o, const row *r) {
     const plan *p = &a->search.plan;
-    char *text = text_print("nevh compare %s", p->name);
+    char *text = text_print("  nevh compare %s", p->name);
     for (size_t i = 0; i < o->settings.count; i++) {
         const char *setting = o->settings.item[i];
         text = append(text,
@@ -96,13 +114,13 @@ static char *command_line(const advice *a, const options *o, const row *r) {
 }
 
 static void tell_lines(const advice *a, const row *r, list *words) {
-    list_add(words, "[run]");
-    list_print(words, "integrators = %s", r->integrator);
-    list_print(words, "gradient = %s", r->gradient);
-    list_print(words, "dt = %.6g",
+    list_add(words, "  [run]");
+    list_print(words, "  integrators = %s", r->integrator);
+    list_print(words, "  gradient = %s", r->gradient);
+    list_print(words, "  dt = %.6g",
                r->tolerance > 0 ? a->search.landing : r->dt);
     if (r->tolerance > 0)
-        list_print(words, "tolerance = %.6g", r->tolerance);
+        list_print(words, "  tolerance = %.6g", r->tolerance);
 }
 
 static void tell_answer(const advice *a, const options *o, list *words) {
@@ -110,15 +128,20 @@ static void tell_answer(const advice *a, const options *o, list *words) {
     const char *what = a->search.by_state ? "state" : "energy";
     char *line = command_line(a, o, r);
     list_print(words,
-               "Take %s with the %s gradient at dt = %.4g: the largest %s "
+               "Take %s with the %s gradient at %s = %.4g: the largest %s "
                "error over the whole run is %.1e, of the %.1e allowed.",
-               r->integrator, r->gradient, r->dt, what,
+               r->integrator, r->gradient,
+               r->tolerance > 0 ? "tolerance" : "dt",
+               r->tolerance > 0 ? r->tolerance : r->dt, what,
                ladder_error(r, a->search.by_state), a->target);
+    if (isfinite(a->whole) && a->pilot < a->whole)
+        list_print(words, "Chosen by runs until t = %g, and verified until %g.",
+                   a->pilot, a->whole);
     if (a->second)
         list_print(words, "%s, the runner-up, takes %.2f times as long.",
                    a->second->integrator,
                    chosen(a, a->second)->seconds / r->seconds);
-    if (a->alone && a->alone != a->best)
+    if (a->alone && a->alone != a->best && a->alone != a->second)
         list_print(words,
                    "From values of H alone %s with %s takes %.2f times as "
                    "long.",
@@ -126,6 +149,10 @@ static void tell_answer(const advice *a, const options *o, list *words) {
                    chosen(a, a->alone)->seconds / r->seconds);
     if (r->energy.verdict == NEVH_DRIFTS)
         list_add(words, "Its energy drifts: for longer runs ask again.");
+    if (a->steady && a->steady != a->best)
+        list_print(words, "Without drift %s takes %.2f times as long.",
+                   a->steady->integrator,
+                   chosen(a, a->steady)->seconds / r->seconds);
     list_print(words, "%zu runs were tried.", a->search.runs);
     list_add(words, " ");
     list_add(words, line);
@@ -139,6 +166,7 @@ void advice_print(const advice *a, const options *o, FILE *f) {
     page p = {.table = is_table ? shown(a) : recorded(a)};
     if (!is_table || !o->quiet) {
         plan_notes(&a->search.plan, &p.before);
+        state_notes(&a->search.plan, &p.before);
         tell_answer(a, o, &p.after);
     }
     page_print(&p, o->format, f);
@@ -163,7 +191,7 @@ static const ladder *most_exact(const advice *a, double *least) {
     return best;
 }
 
-static const char *reason(const advice *a, const ladder *l, double least) {
+static const char *reason(const ladder *l, double least) {
     if (l->end == LADDER_GIVEN)
         return "these steps do not reach it";
     if (l->end != LADDER_FLOOR)
@@ -185,6 +213,6 @@ int advice_none(const advice *a) {
         tool_refuse("%s: nothing keeps the %s error below %g.  The least, %.1e,"
                     " is that of %s with the %s gradient; %s",
                     a->search.plan.name, what, a->target, least, l->integrator,
-                    l->gradient, reason(a, l, least));
+                    l->gradient, reason(l, least));
     return TOOL_FAILED;
 }

@@ -78,6 +78,7 @@ static void run_rows(const plan *p, row_list *r, bool quiet) {
     for (size_t i = 0; i < r->count; i++) {
         if (!quiet)
             progress(r, i, difftime(time(NULL), start), false);
+        match_row(p, &r->row[i]);
         row_run(p, &r->row[i]);
     }
     if (!quiet)
@@ -125,10 +126,15 @@ static void show_numbers(table *t, const plan *p, const row *r) {
         table_shown(t, "%+.1e", r->energy.drift * span);
     else
         table_shown(t, "-");
-    table_shown(t, "%+.1e", r->energy.final);
+    state_show(t, p, r);
+    if (p->dts > 1 && isfinite(r->observed_order))
+        table_shown(t, "%.1f", r->observed_order);
+    else if (p->dts > 1)
+        table_text(t, NULL);
     show_count(t, r->counts.hamiltonians);
     table_shown(t, "%.3g", 1000 * r->seconds);
     table_text(t, nevh_verdict_name(r->energy.verdict));
+    diagnostics_show(t, p, r);
 }
 
 static void show_row(table *t, const plan *p, const row *r) {
@@ -142,9 +148,10 @@ static void show_row(table *t, const plan *p, const row *r) {
         show_numbers(t, p, r);
         return;
     }
-    for (int i = 0; i < 5; i++)
+    for (int i = 0; i < (p->dts > 1 ? 6 : 5); i++)
         table_text(t, NULL);
     table_text(t, r->failed ? "failed" : "refused");
+    diagnostics_show(t, p, r);
 }
 
 static table *shown(const plan *p, const row_list *r) {
@@ -152,17 +159,18 @@ static table *shown(const plan *p, const row_list *r) {
     const char *unit = nevh_scene_label(p->scene, "t");
     char *dt = text_print(*unit ? "dt/%s" : "dt%s", unit);
     static const char *const first[] = {"integrator", "order", "sympl."};
-    static const char *const last[] = {"max energy\nerror",
-                                       "drift over\nthe run",
-                                       "final\nerror",
-                                       "H evals",
-                                       "ms",
-                                       "energy"};
+    static const char *const errors[] = {"max energy\nerror",
+                                         "drift over\nthe run", "state\nerror"};
+    static const char *const last[] = {"H evals", "ms", "energy"};
     columns(t, first, sizeof first / sizeof *first);
     if (p->gradients.count > 1)
         table_column(t, "gradient");
     table_column(t, dt);
+    columns(t, errors, sizeof errors / sizeof *errors);
+    if (p->dts > 1)
+        table_column(t, "order\nseen");
     columns(t, last, sizeof last / sizeof *last);
+    diagnostics_columns(t, p, true);
     for (size_t i = 0; i < r->count; i++) {
         if (i && r->row[i].group != r->row[i - 1].group)
             table_group(t);
@@ -236,6 +244,10 @@ static void note_rows(const plan *p, const row rows[], size_t count,
                              "schemes, which limits them to order 2"},
                 {has_nominal_steps, "dt is nominal where time is transformed, "
                                     "or the scheme chooses its own"},
+                {match_unmatched, "schemes that take no gradients, but values "
+                                  "of H alone, keep the dt given"},
+                {match_dearer, "no dt makes some implicit schemes as cheap: "
+                               "theirs is the cheapest"},
                 {has_tolerance, "adaptive schemes have a row a tolerance of "
                                 "[run], in its order; dt is their mean step"}};
     for (size_t k = 0; k < sizeof note / sizeof *note; k++)
@@ -244,9 +256,9 @@ static void note_rows(const plan *p, const row rows[], size_t count,
                 list_add(notes, note[k].text);
                 break;
             }
-    if (p->run->match_work)
-        list_add(notes, "match = work is not there yet: rows are matched by "
-                        "steps");
+    if (p->match_work)
+        list_add(notes, "match = work: rows of one dt cost as many gradients "
+                        "as verlet with that dt; dt is what they take");
 }
 
 static void note_settings(const options *o, list *notes) {
@@ -284,6 +296,7 @@ static page make_page(const options *o, const plan *p, const row_list *r) {
         return result;
     plan_notes(p, &result.before);
     row_notes(o, p, r->row, r->count, &result.before);
+    state_notes(p, &result.before);
     verdict_words(p, r->row, r->count, &result.after);
     if (is_table)
         list_reasons(r, &result.after);
@@ -293,6 +306,7 @@ static page make_page(const options *o, const plan *p, const row_list *r) {
 static void free_rows(row_list *r) {
     for (size_t i = 0; i < r->count; i++) {
         free(r->row[i].status);
+        free(r->row[i].changes);
         free(r->row[i].errors);
     }
     free(r->row);
@@ -324,6 +338,8 @@ static int compare_plan(const options *o, const plan *p) {
 int compare(const options *o) {
     plan p;
     int status = plan_make(&p, o);
+    if (!status)
+        status = plan_reference(&p);
     if (!status)
         status = compare_plan(o, &p);
     plan_free(&p);

@@ -8,20 +8,6 @@
 
 const double cost_target[COST_TARGETS] = {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
 
-/* Every scheme that fits, and the gradient that costs least, unless asked for
-   others. */
-void plan_search(plan *p, const options *o) {
-    if (o->gradients.count == 0) {
-        list_free(&p->gradients);
-        list_add(&p->gradients,
-                 gradient_fits(p, "exact", NULL) ? "exact" : "central4");
-    }
-    if (o->integrators.count == 0) {
-        list_free(&p->integrators);
-        fitting_integrators(p, p->gradients.item[0], &p->integrators);
-    }
-}
-
 static bool is_beaten(const costs *c, const ladder *l) {
     return !c->all && !cost_is_yardstick(l) &&
            ladder_is_behind(&c->search, l, c->ladder, c->count);
@@ -154,6 +140,7 @@ static page make_page(const options *o, costs *c) {
     if (!is_table || !o->quiet) {
         plan_notes(&c->search.plan, &result.before);
         row_notes(o, &c->search.plan, rows, count, &result.before);
+        state_notes(&c->search.plan, &result.before);
         cost_notes(c, &result.before);
         cost_words(c, &result.after);
     }
@@ -171,12 +158,12 @@ static int status_of(const costs *c) {
     return failed && (!ran || c->search.dt) ? TOOL_FAILED : TOOL_OK;
 }
 
-static int cost_plan(const options *o, plan *p) {
-    static const double budget = 25; /* seconds */
+static int cost_plan(const options *o, plan *p, double whole) {
     output out;
     if (plot_check(o) || output_open(&out, o->file))
         return TOOL_USAGE;
-    costs c = {.search = search_begin(p, o, budget),
+    costs c = {.search = search_begin(p, o, SEARCH_BUDGET),
+               .whole = whole,
                .all = o->integrators.count > 0};
     make_ladders(&c);
     run_ladders(&c, o->format == FORMAT_TABLE);
@@ -195,11 +182,18 @@ static int cost_plan(const options *o, plan *p) {
 
 int cost(const options *o) {
     plan p;
+    double whole = NAN;
     int status = plan_make(&p, o);
-    if (!status) {
-        plan_search(&p, o);
-        status = cost_plan(o, &p);
-    }
+    if (!status)
+        status = plan_search(&p, o);
+    if (!status && isnan(o->t_end) && !o->dts)
+        whole = plan_shorten(&p, SEARCH_BUDGET);
+    if (!status && o->by_state)
+        status = state_errors_mean_something(&p);
+    else if (!status && o->format != FORMAT_TABLE)
+        status = plan_reference(&p);
+    if (!status)
+        status = cost_plan(o, &p, whole);
     plan_free(&p);
     return status;
 }

@@ -9,7 +9,7 @@
 static const row *most_digits(const costs *c, const ladder **l) {
     for (size_t k = COST_TARGETS; k-- > 0;) {
         *l = costs_cheapest(c, cost_target[k]);
-        if (*l)
+        if (*l && !cost_is_beyond(c, k))
             return ladder_cheapest(*l, cost_target[k], c->search.by_state);
     }
     return NULL;

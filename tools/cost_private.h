@@ -12,6 +12,7 @@ typedef struct {
     search search;
     ladder *ladder;
     size_t count;
+    double whole; /* t_end before it was shortened; NAN: as asked for */
     bool all; /* ladders are shown, not only those that are cheap somewhere */
 } costs;
 /* Whether its errors are to be compared with others'. */
@@ -23,8 +24,10 @@ bool cost_shows(const costs *, const ladder *);
 
 /* cost_table.c */
 table *cost_table(const costs *);
+/* The reference is not good enough for these digits. */
+bool cost_is_beyond(const costs *, size_t target);
 char *cost_milliseconds(double seconds);
-bool cost_drifts(const ladder *); /* at most of its steps */
+bool cost_drifts(const ladder *); /* its energy */
 /* cost_price.c: more rungs, with other gradients. */
 void cost_price(costs *, list *words);
 /* cost_plot.c: as plot_write. */

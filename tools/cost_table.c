@@ -39,11 +39,22 @@ char *cost_milliseconds(double seconds) {
     return text_print(seconds < 0.0995 ? "%.2g" : "%.0f", 1000 * seconds);
 }
 
+/* At most of the steps that keep some digits and are above rounding. */
 bool cost_drifts(const ladder *l) {
-    size_t count = 0;
-    for (size_t i = 0; i < l->count; i++)
-        count += l->rung[i].ran && l->rung[i].energy.verdict == NEVH_DRIFTS;
-    return 2 * count > l->count;
+    size_t count = 0, drifting = 0;
+    for (size_t i = 0; i < l->count; i++) {
+        const nevh_energy_report *e = &l->rung[i].energy;
+        bool counts =
+            l->rung[i].ran && e->max < cost_target[0] && e->max > 1e-12;
+        count += counts;
+        drifting += counts && e->verdict == NEVH_DRIFTS;
+    }
+    return 2 * drifting > count;
+}
+
+bool cost_is_beyond(const costs *c, size_t target) {
+    return c->search.by_state &&
+           cost_target[target] < nevh_reference_error(c->search.plan.reference);
 }
 
 static char *cell_text(const row *r, bool star) {
@@ -58,7 +69,9 @@ static void show_cell(const costs *c, const ladder *l, size_t target,
     const row *r = ladder_cheapest(l, cost_target[target], c->search.by_state);
     bool star = costs_cheapest(c, cost_target[target]) == l;
     char *text;
-    if (l->end == LADDER_REFUSED)
+    if (cost_is_beyond(c, target))
+        text = text_print("  -");
+    else if (l->end == LADDER_REFUSED)
         text = text_print("  refused");
     else if (!costs_count(c, l))
         text = text_print("  -");
@@ -79,7 +92,7 @@ table *cost_table(const costs *c) {
     if (gradients)
         table_column(t, "gradient");
     for (size_t k = 0; k < COST_TARGETS; k++) {
-        char *title = text_print("  %.0e", cost_target[k]);
+        char *title = text_print("  1e%.0f", log10(cost_target[k]));
         table_column(t, title);
         free(title);
     }

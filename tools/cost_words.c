@@ -8,6 +8,11 @@
 void cost_notes(const costs *c, list *notes) {
     const plan *p = &c->search.plan;
     const char *unit = nevh_scene_label(p->scene, "t");
+    if (c->whole > p->t_end)
+        list_print(notes,
+                   "shortened, so that all schemes can be tried; --t-end %g "
+                   "takes the whole",
+                   c->whole);
     list_print(notes,
                "cost: steps that keep the largest %s error of the run below "
                "10^-digits; CPU ms (dt%s%s), * cheapest",
@@ -95,49 +100,64 @@ static const row *cell(const costs *c, const ladder *l, size_t target) {
 /* The last of the targets from `first` on that have the same cheapest. */
 static size_t last_alike(const costs *c, size_t first) {
     const ladder *best = costs_cheapest(c, cost_target[first]);
-    while (first + 1 < COST_TARGETS &&
+    while (first + 1 < COST_TARGETS && !cost_is_beyond(c, first + 1) &&
            costs_cheapest(c, cost_target[first + 1]) == best)
         first++;
     return first;
 }
 
+/* "dt = 0.1", "tolerance = 0.001". */
+static char *step_text(const row *r) {
+    return r->tolerance > 0 ? text_print("tolerance = %.3g", r->tolerance)
+                            : text_print("dt = %.4g", r->dt);
+}
+
 static void tell_best(const costs *c, size_t first, size_t last, list *words) {
     const ladder *best = costs_cheapest(c, cost_target[first]);
     const row *a = cell(c, best, first), *b = cell(c, best, last);
+    char *digits =
+        text_print(first < last ? "%.0f to %.0f" : "%.0f",
+                   -log10(cost_target[first]), -log10(cost_target[last]));
     char *from = cost_milliseconds(a->seconds),
-         *to = cost_milliseconds(b->seconds);
+         *to = cost_milliseconds(b->seconds), *begin = step_text(a),
+         *end = step_text(b);
     if (a == b)
-        list_print(words, "For %.0f digits take %s at dt = %.4g: %s ms.",
-                   -log10(cost_target[last]), best->integrator, b->dt, to);
+        list_print(words, "For %s digits take %s at %s: %s ms.", digits,
+                   best->integrator, end, to);
     else
-        list_print(
-            words,
-            "For %.0f to %.0f digits take %s at dt = %.4g to %.4g: %s to "
-            "%s ms.",
-            -log10(cost_target[first]), -log10(cost_target[last]),
-            best->integrator, a->dt, b->dt, from, to);
+        list_print(words,
+                   "For %s digits take %s, from %s (%s ms) to %s (%s "
+                   "ms).",
+                   digits, best->integrator, begin, from, end, to);
+    free(digits);
     free(from);
     free(to);
+    free(begin);
+    free(end);
 }
 
 /* At the most digits that both reach. */
 static void tell_yardstick(const costs *c, const char *name, list *words) {
     for (size_t k = COST_TARGETS; k-- > 0;)
-        for (size_t i = 0; i < c->count; i++) {
+        for (size_t i = 0; i < c->count && !cost_is_beyond(c, k); i++) {
             const ladder *l = &c->ladder[i];
             const ladder *best = costs_cheapest(c, cost_target[k]);
             if (strcmp(l->integrator, name) != 0 || !best || best == l ||
                 !cell(c, l, k))
                 continue;
-            list_print(words, "%.0f digits by %s take %.2g times as long.",
-                       -log10(cost_target[k]), name,
-                       cell(c, l, k)->seconds / cell(c, best, k)->seconds);
+            double factor = cell(c, l, k)->seconds / cell(c, best, k)->seconds;
+            list_print(words,
+                       factor < 9.5 ? "%.0f digits by %s take %.1f times as "
+                                      "long."
+                                    : "%.0f digits by %s take %.0f times as "
+                                      "long.",
+                       -log10(cost_target[k]), name, factor);
             return;
         }
 }
 
 static void tell_winners(const costs *c, list *words) {
-    for (size_t k = 0; k < COST_TARGETS; k++) {
+    for (size_t k = 0; k < COST_TARGETS && !cost_is_beyond(c, k); k++) {
         size_t last = last_alike(c, k);
         if (costs_cheapest(c, cost_target[k]))
             tell_best(c, k, last, words);

@@ -2,6 +2,9 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "ladder.h"
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
 
 static bool fits(const plan *p, const char *gradient,
                  const nevh_integrator *scheme) {
@@ -31,4 +34,77 @@ bool gradient_fits(const plan *p, const char *gradient, char **why) {
         *why = text_print("%s", nevh_field_message(field));
     nevh_field_free(field);
     return !status;
+}
+
+int state_errors_mean_something(plan *p) {
+    int status = plan_reference(p);
+    if (status)
+        return status;
+    if (!p->reference)
+        tool_refuse("%s: no state errors: %s", p->name, p->no_reference);
+    else if (p->t_end > nevh_reference_horizon(p->reference))
+        tool_refuse("%s: state errors mean nothing after t = %.4g, where "
+                    "orbits that differ in the last digits have separated; "
+                    "--t-end shortens the run",
+                    p->name, nevh_reference_horizon(p->reference));
+    else
+        return TOOL_OK;
+    return TOOL_FAILED;
+}
+
+/* Of one step at the shortest dt, from a few. */
+static double step_seconds(const plan *p, double dt) {
+    enum { STEPS = 64 };
+    const nevh_integrator *scheme;
+    nevh_stepper *s = plan_first(p, &scheme);
+    double *q = tool_allocate(p->n, sizeof *q);
+    double *m = tool_allocate(p->n, sizeof *m);
+    memcpy(q, p->q, p->n * sizeof *q);
+    memcpy(m, p->p, p->n * sizeof *m);
+    clock_t start = clock();
+    if (s)
+        nevh_run(s, p->run->t_start, dt, STEPS, q, m, NULL, 0);
+    double seconds = (double)(clock() - start) / CLOCKS_PER_SEC / STEPS;
+    nevh_stepper_free(s);
+    free(q);
+    free(m);
+    return seconds;
+}
+
+/* 1, 0.5, 0.2, 0.1, ...: the largest that is not above x. */
+static double share_below(double x) {
+    int k = 0;
+    while (grid_tolerance(k) > x)
+        k++;
+    return grid_tolerance(k);
+}
+
+double plan_shorten(plan *p, double budget) {
+    enum { RUNS = 8 }; /* of the kind that is measured, an integrator */
+    double whole = p->t_end, span = whole - p->run->t_start;
+    double dt = p->dt[0];
+    for (size_t i = 1; i < p->dts; i++)
+        dt = fmin(dt, p->dt[i]);
+    double runs = (double)(RUNS * p->integrators.count);
+    double share = budget / (runs * step_seconds(p, dt) * span / dt);
+    if (share < 1)
+        p->t_end = p->run->t_start + share_below(share) * span;
+    return whole;
+}
+
+int plan_search(plan *p, const options *o) {
+    if (o->gradients.count == 0) {
+        list_free(&p->gradients);
+        list_add(&p->gradients,
+                 gradient_fits(p, "exact", NULL) ? "exact" : "central4");
+    }
+    if (o->integrators.count == 0) {
+        list_free(&p->integrators);
+        fitting_integrators(p, p->gradients.item[0], &p->integrators);
+    }
+    const nevh_integrator *scheme;
+    nevh_stepper *s = plan_first(p, &scheme);
+    int status = s ? TOOL_OK : TOOL_USAGE;
+    nevh_stepper_free(s);
+    return status;
 }

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 static const double rounding = 1e-13;
+static const double one_row = 0.1;      /* of the budget */
 static const double usable_below = 0.5; /* of the scale of errors */
 
 static double seconds_used(void) {
@@ -42,6 +43,7 @@ search search_begin(const plan *p, const options *o, double budget) {
                 .started = seconds_used(),
                 .landing = grid_dt(grid_dt_place(8 * longest_dt(p)))};
     s.plan.hurried = true;
+    s.plan.patience = one_row * budget;
     s.plan.repeats = 1;
     if (o->dts) {
         s.dt = ordered(p->dt, s.dts = p->dts);
@@ -91,8 +93,7 @@ void ladder_free(ladder *l) {
 }
 
 double ladder_error(const row *r, bool by_state) {
-    (void)by_state;
-    double error = r->energy.max;
+    double error = by_state ? r->state_error : r->energy.max;
     return r->ran && isfinite(error) ? error : INFINITY;
 }
 
@@ -152,8 +153,10 @@ static bool is_usable(const ladder *l, size_t i, bool by_state) {
     return ladder_error(&l->rung[i], by_state) < usable_below;
 }
 
-/* To coarser ones, of which only those that are usable stay. */
+/* To coarser ones, of which only those that are usable stay, as long as they
+   save something: sweeps may cost more than steps save. */
 static void ascend(search *s, ladder *l) {
+    static const double saves = 0.9;
     enum { STRIDES = 6, STEPS = 8 };
     double span = s->plan.t_end - s->plan.run->t_start;
     for (int i = 0; i < STRIDES && !search_is_over(s, 1); i++) {
@@ -165,6 +168,8 @@ static void ascend(search *s, ladder *l) {
             forget(l, 0);
             return;
         }
+        if (l->rung[0].seconds > saves * l->rung[1].seconds)
+            return;
     }
 }
 
@@ -190,7 +195,9 @@ void ladder_begin(search *s, ladder *l) {
     }
     int k = adapts ? FIRST_TOLERANCE : grid_dt_place(longest_dt(&s->plan));
     size_t i = ladder_run(s, l, k);
-    if (!l->rung[i].ran && !l->rung[i].failed)
+    if (l->rung[i].late)
+        l->end = LADDER_LIMIT;
+    else if (!l->rung[i].ran && !l->rung[i].failed)
         l->end = LADDER_REFUSED;
     else if (!adapts && is_usable(l, i, s->by_state) && !is_kept(s, l))
         ascend(s, l);
@@ -241,18 +248,26 @@ static void drop_useless(ladder *l, bool by_state) {
         forget(l, 0);
 }
 
+/* The rung that took too long has no numbers. */
+static void give_up(ladder *l) {
+    l->end = LADDER_LIMIT;
+    if (l->count > 1)
+        forget(l, l->count - 1);
+}
+
 void ladder_descend(search *s, ladder *l) {
-    static const double one = 0.1; /* of the budget, for a single rung */
-    enum { WATCHED = 4 };          /* a run that is watched, in runs */
+    enum { WATCHED = 4 }; /* a run that is watched, in runs */
     const row *last = &l->rung[l->count - 1];
     double expected = WATCHED * last->seconds * next_work(l) / work(last);
     bool finest = l->rung[0].tolerance > 0 && last->tolerance < 1e-13;
     if (finest || is_level(l, s->by_state)) {
         l->end = LADDER_FLOOR;
-    } else if (expected > one * s->budget) {
+    } else if (expected > one_row * s->budget) {
         l->end = LADDER_LIMIT;
     } else {
         ladder_run(s, l, l->k[l->count - 1] + GRID_STRIDE);
+        if (l->rung[l->count - 1].late)
+            give_up(l);
         drop_useless(l, s->by_state);
     }
 }
@@ -262,6 +277,8 @@ bool ladder_is_behind(const search *s, const ladder *l, const ladder others[],
     static const double behind = 2, far_behind = 8;
     const row *last = &l->rung[l->count - 1];
     double error = ladder_error(last, s->by_state);
+    if (error >= usable_below)
+        return false;
     for (size_t i = 0; i < count; i++) {
         const ladder *m = &others[i];
         double factor =

@@ -82,9 +82,18 @@ bool ladder_keeps_energy(const ladder *);
 /* fit.c: names of the schemes, and of the gradients, that fit. */
 void fitting_integrators(const plan *, const char *gradient, list *names);
 bool gradient_fits(const plan *, const char *gradient, char **why);
+/* Makes the reference.  Otherwise the message is printed and the exit status
+   returned. */
+int state_errors_mean_something(plan *);
 
-/* cost.c: every scheme that fits, and the gradient that costs least, unless
-   others are asked for. */
-void plan_search(plan *, const options *);
+/* Ends the plan earlier where runs of its integrators would take too long;
+   returns the end that it had. */
+double plan_shorten(plan *, double budget);
+/* How long a search may take: seconds. */
+enum { SEARCH_BUDGET = 25 };
+
+/* Every scheme that fits, and the gradient that costs least, unless others are
+   asked for; TOOL_USAGE, with a message, when none fits. */
+int plan_search(plan *, const options *);
 
 #endif

@@ -24,8 +24,12 @@ tools_nevh_SOURCES = \
 	tools/recommend_private.h \
 	tools/recommend.c \
 	tools/advice.c \
+	tools/gradients.c \
 	tools/compare.c \
 	tools/verdict.c \
+	tools/state.c \
+	tools/match.c \
+	tools/diagnostics.c \
 	tools/effects.c \
 	tools/trajectory.h \
 	tools/lines.c \

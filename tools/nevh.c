@@ -18,6 +18,8 @@ static const struct {
      "what a digit costs: target errors, a row an integrator"},
     {"recommend", recommend, FOR_RECOMMEND, "SCENE",
      "the cheapest integrator, gradient and step that keep an error"},
+    {"gradients", gradients, FOR_GRADIENTS, "SCENE",
+     "error and cost of each gradient method and step along the orbit"},
     {"check", check, FOR_CHECK, "SCENE",
      "errors, structure of H with evidence, and which schemes fit"},
     {"effects", effects, FOR_EFFECTS, "SCENE",

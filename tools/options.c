@@ -49,6 +49,12 @@ static const struct {
     {"resume", "FILE", FOR_RUN, read_resume,
      "go on with FILE, which nevh run -o FILE left unfinished,\n"
      "                            from FILE.state, as if never interrupted"},
+    {"transform", "FORMULA", FOR_COMPARE, read_transform,
+     "of time, for rows NAME+transform; instead of the scene's"},
+    {"match", "steps|work", FOR_COMPARE, read_match,
+     "work: equal numbers of gradients, not of steps"},
+    {"diagnostics", NULL, FOR_COMPARE, read_diagnostics,
+     "symplecticity, reversal, solvers, invariants"},
     {"portable", NULL, OF_SCENES, read_portable,
      "no vector code: the same digits with the same libm"},
     {"plot", "FILE", OF_PLOTS, read_plot,

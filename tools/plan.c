@@ -35,6 +35,25 @@ static void default_integrators(plan *p) {
     list_split(&p->integrators, "midpoint,gauss4,rk4");
 }
 
+/* A transform that is given is used: by those that fit, beside themselves. */
+static void add_transformed(plan *p, const options *o) {
+    size_t count = p->integrators.count;
+    bool used = !o->transform;
+    for (size_t i = 0; i < count; i++) {
+        const nevh_integrator *scheme =
+            nevh_integrator_named(p->integrators.item[i]);
+        used = used || strchr(p->integrators.item[i], '+') ||
+               (scheme && nevh_integrator_own_time(scheme));
+    }
+    for (size_t i = 0; !used && i < count; i++) {
+        const char *name = p->integrators.item[i];
+        const nevh_integrator *scheme = nevh_integrator_named(name);
+        if (scheme && nevh_integrator_needs(scheme) == 0 &&
+            nevh_integrator_symplectic(scheme) == NEVH_YES)
+            list_print(&p->integrators, "%s+transform", name);
+    }
+}
+
 static int check_integrators(const plan *p) {
     list names = {0};
     int status = TOOL_OK;
@@ -98,6 +117,7 @@ static void take_lists(plan *p, const options *o) {
                p->run->integrators);
     if (p->integrators.count == 0)
         default_integrators(p);
+    add_transformed(p, o);
     p->dt = o->dts ? o->dt : p->run->dt;
     p->dts = o->dts ? o->dts : p->run->dts;
     p->tolerance = o->tolerances ? o->tolerance : p->run->tolerance;
@@ -112,6 +132,9 @@ static void take_settings(plan *p, const options *o) {
         o->gradient_step > 0 ? o->gradient_step : p->run->gradient_step;
     p->portable = o->portable;
     p->repeats = o->repeats;
+    p->diagnostics = o->diagnostics;
+    p->match_work = o->match == MATCH_WORK ||
+                    (o->match == MATCH_SCENE && p->run->match_work);
     p->friction = nevh_system_friction(p->system, NULL);
     p->time = !(nevh_system_traits(p->system) & NEVH_AUTONOMOUS);
     p->balance = p->friction || p->time;
@@ -135,6 +158,8 @@ void plan_free(plan *p) {
     list_free(&p->gradients);
     free(p->q);
     free(p->p);
+    nevh_reference_free(p->reference);
+    free(p->no_reference);
     nevh_scene_free(p->scene);
 }
 

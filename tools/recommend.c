@@ -151,7 +151,6 @@ static void search_all(advice *a) {
     time_best(a);
 }
 
-/* The best; with another integrator; without derivatives. */
 static void choose(advice *a) {
     bool *taken = tool_allocate(a->count, sizeof *taken);
     for (ladder *l; (l = next_best(a, taken));) {
@@ -163,22 +162,67 @@ static void choose(advice *a) {
             a->second = l;
         if (!a->alone && strcmp(l->gradient, "exact") != 0)
             a->alone = l;
+        if (!a->steady && keeps(a, l)->energy.verdict != NEVH_DRIFTS)
+            a->steady = l;
     }
     free(taken);
 }
 
-static int advise(const options *o, plan *p) {
-    static const double budget = 20; /* seconds */
+/* The pilot's choice on the whole run, with shorter steps where that is not
+   enough. */
+static ladder verified(advice *a, const ladder *l) {
+    enum { FINER = 9 };
+    ladder full = ladder_new(l->integrator, l->gradient);
+    int k = l->k[keeps(a, l) - l->rung];
+    for (int finer = 0; finer <= FINER; finer++) {
+        size_t i = ladder_run(&a->search, &full, k + finer);
+        if (ladder_error(&full.rung[i], a->search.by_state) <= a->target ||
+            full.rung[i].late)
+            break;
+    }
+    full.end = LADDER_LIMIT;
+    return full;
+}
+
+/* A reference for the whole is a plan's own. */
+static void verify(advice *a, plan *p) {
+    const ladder *pilots[ADVICE_MOST];
+    size_t count = advice_list(a, pilots);
+    ladder *full = tool_allocate(count, sizeof *full);
+    p->t_end = a->search.plan.t_end = a->whole;
+    if (p->reference) {
+        nevh_reference_free(p->reference);
+        p->reference = NULL;
+        plan_reference(p);
+        a->search.plan.reference = p->reference;
+    }
+    a->search.plan.patience *= 2;
+    for (size_t i = 0; i < count; i++)
+        full[i] = verified(a, pilots[i]);
+    for (size_t i = 0; i < a->count; i++)
+        ladder_free(&a->ladder[i]);
+    free(a->ladder);
+    a->ladder = full, a->count = count;
+    a->best = a->second = a->alone = a->steady = NULL;
+    time_best(a);
+    choose(a);
+}
+
+static int advise(const options *o, plan *p, double whole) {
     output out;
     if (output_open(&out, o->file))
         return TOOL_USAGE;
-    advice a = {.search = search_begin(p, o, budget),
+    advice a = {.search = search_begin(p, o, SEARCH_BUDGET),
+                .pilot = p->t_end,
+                .whole = whole,
                 .target = o->state_error > 0 ? o->state_error : o->energy_error,
                 .named = o->integrators.count > 0};
     a.search.by_state = o->state_error > 0;
     take_gradients(&a, o);
     search_all(&a);
     choose(&a);
+    if (a.best && whole > p->t_end)
+        verify(&a, p);
     int status = a.best ? TOOL_OK : advice_none(&a);
     search_end(&a.search);
     if (a.best)
@@ -201,15 +245,31 @@ static int check_target(const options *o) {
     return TOOL_OK;
 }
 
+static int check_reference(plan *p, double target) {
+    int status = state_errors_mean_something(p);
+    if (status || target >= nevh_reference_error(p->reference))
+        return status;
+    tool_refuse("%s: a state error of %g cannot be told: that of the reference "
+                "is %.1e (%s)",
+                p->name, target, nevh_reference_error(p->reference),
+                nevh_reference_text(p->reference));
+    return TOOL_FAILED;
+}
+
 int recommend(const options *o) {
     plan p;
+    double whole = NAN;
     if (check_target(o))
         return TOOL_USAGE;
     int status = plan_make(&p, o);
-    if (!status) {
-        plan_search(&p, o);
-        status = advise(o, &p);
-    }
+    if (!status)
+        status = plan_search(&p, o);
+    if (!status && !o->dts)
+        whole = plan_shorten(&p, SEARCH_BUDGET);
+    if (!status && o->state_error > 0)
+        status = check_reference(&p, o->state_error);
+    if (!status)
+        status = advise(o, &p, whole);
     plan_free(&p);
     return status;
 }

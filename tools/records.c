@@ -21,7 +21,7 @@ static void add_record(table *t, const plan *p, const row *r) {
     table_number(t, when(r->ran, e->rms));
     table_number(t, when(r->ran, e->final));
     table_number(t, when(r->ran, e->drift));
-    table_text(t, NULL);
+    table_number(t, when(r->ran, r->state_error));
     table_number(t, when(r->ran, r->counts.hamiltonians));
     table_number(t, when(r->ran, (double)r->counts.gradients));
     table_number(t, when(r->ran, (double)r->counts.sweeps));
@@ -29,6 +29,7 @@ static void add_record(table *t, const plan *p, const row *r) {
     table_text(t, r->ran ? nevh_verdict_name(e->verdict) : NULL);
     table_number(t, r->observed_order);
     table_number(t, when(r->ran, r->spread));
+    diagnostics_record(t, p, r);
 }
 
 table *records(const plan *p, const row rows[], size_t count) {
@@ -55,6 +56,7 @@ table *records(const plan *p, const row rows[], size_t count) {
     table *t = table_new();
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         table_column(t, names[i]);
+    diagnostics_columns(t, p, false);
     for (size_t i = 0; i < count; i++)
         add_record(t, p, &rows[i]);
     return t;

@@ -33,12 +33,16 @@ static int stop_when_unstable(void *data, size_t step, double t,
     return status;
 }
 
-static nevh_stepper *new_stepper(const work *w, bool balance) {
-    nevh_options o = plan_options(w->plan, w->row->gradient);
-    o.transform = plan_transform(w->plan, w->row->integrator);
-    o.tolerance = w->row->tolerance;
+nevh_stepper *row_stepper(const plan *p, const row *r, bool balance) {
+    nevh_options o = plan_options(p, r->gradient);
+    o.transform = plan_transform(p, r->integrator);
+    o.tolerance = r->tolerance;
     o.balance = balance;
-    return nevh_stepper_new(w->plan->system, w->row->scheme, &o);
+    return nevh_stepper_new(p->system, r->scheme, &o);
+}
+
+static nevh_stepper *new_stepper(const work *w, bool balance) {
+    return row_stepper(w->plan, w->row, balance);
 }
 
 static int run(const work *w, nevh_stepper *s, const nevh_observer observers[],
@@ -123,20 +127,51 @@ static double mean_step(const work *w) {
     return (w->plan->t_end - w->plan->run->t_start) * each / evaluations;
 }
 
+/* Whoever waits for a row no longer than that. */
+typedef struct {
+    double deadline;
+    bool late;
+} patience;
+
+static int mind_time(void *data, size_t step, double t, const double q[],
+                     const double p[]) {
+    patience *wait = data;
+    (void)step, (void)t, (void)q, (void)p;
+    wait->late = cpu_seconds() > wait->deadline;
+    return wait->late ? NEVH_STOPPED : NEVH_OK;
+}
+
 static void watched(work *w, nevh_stepper *s) {
     row *r = w->row;
+    patience wait = {cpu_seconds() + w->plan->patience, false};
     nevh_energy *energy = new_energy(w, s);
+    nevh_state_error *state = nevh_state_error_new(w->plan->reference);
+    invariants *kept = w->plan->diagnostics ? invariants_new(w->plan) : NULL;
+    nevh_observer observers[5] = {{nevh_energy_observe, energy, 1}};
     energy_trace trace = {r->errors, energy};
-    const nevh_observer observers[] = {{nevh_energy_observe, energy, 1},
-                                       {energy_trace_observe, &trace, 1}};
-    int status = run(w, s, observers, r->errors ? 2 : 1);
-    const char *why = status == NEVH_STOPPED ? nevh_energy_message(energy)
-                                             : nevh_stepper_message(s);
+    size_t count = 1;
+    if (r->errors)
+        observers[count++] = (nevh_observer){energy_trace_observe, &trace, 1};
+    if (state)
+        observers[count++] =
+            (nevh_observer){nevh_state_error_observe, state, 1};
+    if (kept)
+        observers[count++] = (nevh_observer){invariants_observe, kept, 1};
+    if (w->plan->patience > 0)
+        observers[count++] = (nevh_observer){mind_time, &wait, 64};
+    int status = run(w, s, observers, count);
+    const char *why = wait.late                ? "it takes too long"
+                      : status == NEVH_STOPPED ? nevh_energy_message(energy)
+                                               : nevh_stepper_message(s);
     r->energy = nevh_energy_result(energy, 0);
     r->steps = nevh_stepper_taken(s);
-    r->ran = !status || r->energy.verdict == NEVH_UNSTABLE;
+    r->late = wait.late;
+    r->ran = !r->late && (!status || r->energy.verdict == NEVH_UNSTABLE);
     r->failed = !r->ran;
     r->status = status ? text_print("failed: %s", why) : text_print("ok");
+    r->state_error = nevh_state_error_result(state);
+    r->changes = kept ? invariants_result(kept) : NULL;
+    nevh_state_error_free(state);
     nevh_energy_free(energy);
 }
 
@@ -169,12 +204,14 @@ static void work_free(work *w) {
 
 void row_run(const plan *p, row *r) {
     work w = work_new(p, r);
-    r->observed_order = NAN;
+    r->observed_order = r->state_error = NAN;
     nevh_stepper *s = new_stepper(&w, p->balance);
     if (!refused(r, s)) {
         watched(&w, s);
         if (r->ran)
             measure(&w, p->repeats);
+        if (r->ran && p->diagnostics)
+            diagnose_row(p, r);
         if (r->ran && r->energy.verdict == NEVH_UNSTABLE && !p->hurried)
             unstable_since(&w);
         if (r->ran && r->tolerance > 0)

@@ -88,6 +88,8 @@ static int read(nevh_scene *scene, const options *o) {
     for (size_t i = 0; i < o->settings.count; i++)
         if (change(scene, o->settings.item[i]))
             return report(scene);
+    if (o->transform && nevh_scene_set_transform(scene, o->transform))
+        return report(scene);
     return nevh_scene_system(scene) ? TOOL_OK : report(scene);
 }
 

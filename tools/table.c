@@ -254,9 +254,13 @@ static void print_comments(const list *l, FILE *f) {
 }
 
 /* At spaces, so that lines have at most 80 characters; further lines of a text
-   are set in. */
+   are set in.  What begins with a space is as it is. */
 static void print_wrapped(const char *text, FILE *f) {
     enum { WIDTH = 80 };
+    if (*text == ' ') {
+        fprintf(f, "%s\n", text);
+        return;
+    }
     for (size_t in = 0; *text; in = 2) {
         size_t end = strlen(text), last = 0;
         if (in + end > WIDTH) {

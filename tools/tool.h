@@ -86,6 +86,7 @@ typedef struct {
     plot_kind plot_kind;
     const char *file, *plot, *plot_script, *transform, *resume, *from;
     bool quiet, portable, all, by_state, diagnostics, impact, allow_code;
+    bool formatted; /* --format was given */
     bool help, version;
     unsigned long long used; /* a bit an option */
 } options;
@@ -135,7 +136,11 @@ typedef struct {
     double gradient_step;
     size_t repeats; /* of timed runs; 0: chosen */
     bool portable, friction, time, balance;
-    bool hurried; /* rows are to be finished later */
+    bool hurried;    /* rows are to be finished later */
+    double patience; /* seconds that a row may take; 0: any */
+    bool match_work, diagnostics;
+    nevh_reference *reference; /* NULL: not asked for, or there is none */
+    char *no_reference;        /* why there is none */
 } plan;
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int plan_make(plan *, const options *);
@@ -160,15 +165,19 @@ typedef struct {
     const char *integrator, *gradient;
     const nevh_integrator *scheme;
     double dt, tolerance; /* 0: fixed steps */
+    double nominal_dt;    /* before match_row */
     size_t group;         /* rows of one gradient and dt */
     int order, failed;    /* failed: of the exit status */
     size_t steps;
     char *status;
-    bool ran; /* there are numbers */
+    bool ran, late; /* there are numbers; patience was at its end */
     nevh_energy_report energy;
     nevh_counts counts;
     double seconds, spread; /* median, and half of what the middle half spans */
     double observed_order;  /* NAN: unknown */
+    double state_error;     /* NAN: unknown or meaningless */
+    double symplecticity_error, reversal_error;
+    double *changes; /* of invariants, the largest; NULL: not asked for */
     struct envelope *errors; /* of the energy; NULL: not asked for */
 } row;
 void row_run(const plan *, row *);
@@ -176,6 +185,8 @@ void row_run(const plan *, row *);
    dt       as the row was run with
    repeats  0: chosen */
 void row_finish(const plan *, row *, double dt, size_t repeats);
+/* Planned as for that row. */
+nevh_stepper *row_stepper(const plan *, const row *, bool balance);
 /* records.c: rows as the columns of CSV and JSON. */
 table *records(const plan *, const row rows[], size_t count);
 /* compare.c: observed_order, of rows with the same scheme beside each other;
@@ -186,6 +197,32 @@ void row_notes(const options *, const plan *, const row rows[], size_t count,
 /* compare.c, verdict.c */
 void verdict_words(const plan *, const row rows[], size_t count, list *words);
 
+/* state.c: makes the reference of a plan, after which rows have state errors;
+   TOOL_OK, or TOOL_USAGE with the message printed. */
+int plan_reference(plan *);
+void state_notes(const plan *, list *notes);
+bool state_out_of_step(const row *);
+void state_show(table *, const plan *, const row *);
+void state_words(const row rows[], size_t count, list *words);
+
+/* match.c: the dt with which the row costs as much as verlet with its dt, where
+   the plan asks for that. */
+void match_row(const plan *, row *);
+/* Whether that cannot be told, or no dt is as cheap. */
+bool match_unmatched(const plan *, const row *);
+bool match_dearer(const plan *, const row *);
+
+/* diagnostics.c: of a plan that asks for them. */
+typedef struct invariants invariants;
+invariants *invariants_new(const plan *);
+int invariants_observe(void *, size_t step, double t, const double q[],
+                       const double p[]);
+double *invariants_result(invariants *); /* frees it */
+void diagnose_row(const plan *, row *);
+void diagnostics_columns(table *, const plan *, bool is_table);
+void diagnostics_record(table *, const plan *, const row *);
+void diagnostics_show(table *, const plan *, const row *);
+
 /* compare_plot.c, run_plot.c: as plot_write.  The latter makes a run of its
    own, with the first dt and gradient. */
 int compare_plot(const options *, const plan *, const row rows[], size_t count);
@@ -193,6 +230,7 @@ int run_plot(const options *, const plan *, const char *integrator);
 int run_plot_check(const options *, const plan *); /* as plot_check */
 
 typedef int command(const options *);
-command compare, list_what, check, effects, section, cost, recommend, run_scene;
+command compare, list_what, check, effects, section, cost, recommend, gradients,
+    run_scene;
 
 #endif

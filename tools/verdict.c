@@ -77,9 +77,10 @@ static void tell_drift(const plan *p, const row rows[], size_t count,
     double span = p->t_end - p->run->t_start;
     char *text = text_print(
         "%s at dt = %.4g %s energy steadily, %.2g %% of the "
-        "scale over the run",
+        "scale over the run (slope %.3g +- %.1g, R^2 = %.4f)",
         r->integrator, r->dt, r->energy.drift < 0 ? "loses" : "gains",
-        100 * fabs(r->energy.drift) * span);
+        100 * fabs(r->energy.drift) * span, r->energy.drift,
+        r->energy.drift_error, r->energy.straightness);
     tell_crossing(p, r, b, text, words);
     free(text);
 }
@@ -101,6 +102,31 @@ static void tell_mixed(const row rows[], size_t count, size_t i, list *words) {
         }
 }
 
+/* The row of the same scheme with the next longer dt. */
+static const row *longer(const row rows[], const row *r) {
+    for (const row *k = r; k-- > rows;)
+        if (strcmp(k->integrator, r->integrator) == 0 &&
+            strcmp(k->gradient, r->gradient) == 0)
+            return k->ran && r->ran && k->tolerance == 0 && r->tolerance == 0 &&
+                           k->dt > r->dt
+                       ? k
+                       : NULL;
+    return NULL;
+}
+
+static void warn_of_changes(const row rows[], size_t count, list *words) {
+    for (size_t i = 0; i < count; i++) {
+        const row *b = &rows[i], *a = longer(rows, b);
+        if (a && a->energy.verdict != b->energy.verdict)
+            list_print(words,
+                       "Warning: a smaller dt changes the verdict of %s: %s at "
+                       "dt = %.4g, %s at %.4g.  Trust it when yet another "
+                       "does not.",
+                       b->integrator, nevh_verdict_name(a->energy.verdict),
+                       a->dt, nevh_verdict_name(b->energy.verdict), b->dt);
+    }
+}
+
 void verdict_words(const plan *p, const row rows[], size_t count, list *words) {
     tell_all(rows, count, NEVH_BOUNDED,
              "keeps the energy bounded: its error is no larger at the end of "
@@ -120,4 +146,6 @@ void verdict_words(const plan *p, const row rows[], size_t count, list *words) {
              "are unstable: their errors exceed the energy itself.", words);
     for (size_t i = 0; i < count; i++)
         tell_mixed(rows, count, i, words);
+    state_words(rows, count, words);
+    warn_of_changes(rows, count, words);
 }

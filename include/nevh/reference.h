@@ -34,7 +34,7 @@ typedef struct nevh_reference nevh_reference;
 
    A run is repeated with smaller steps until runs with h and h/2 agree to 1e-11
    of the range of each variable, or to rounding, or as well as can be afforded:
-   2e6 gradients, or 1e8 evaluations of term instances, whichever is less.  The
+   1e7 gradients, or 2e8 evaluations of term instances, whichever is less.  The
    one with h/2 is kept, as checkpoints (at most 32 MB).  Gradients are exact
    where all terms bring them, else central8.
    cost        of an exact solution some milliseconds; of a run up to the

@@ -92,6 +92,9 @@ typedef struct {
 NEVH_API const nevh_scene_run *nevh_scene_run_settings(nevh_scene *);
 /* s(q, p) of the transform as a system; NULL if there is none. */
 NEVH_API const nevh_system *nevh_scene_transform(nevh_scene *);
+/* Another transform than that of the scene, if it has one.
+   returns  as nevh_scene_set; all that was borrowed is made anew */
+NEVH_API int nevh_scene_set_transform(nevh_scene *, const char *formula);
 
 /* What is shown, drawn and monitored, at a state: n coordinates and momenta.
 

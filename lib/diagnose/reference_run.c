@@ -19,7 +19,8 @@ static const double hopeless =
     1e-6;                           /* there is no use in going on to the end */
 static const double chaotic = 1e-3; /* as the header says */
 static const double nudge = 1e-13;  /* of the start, that tells chaos */
-static const double most_gradients = 2e6, most_values = 1e8;
+static const double most_gradients = 1e7, most_values = 2e8;
+static const double shorter = 0.4; /* the next step, where one is too long */
 enum { MOST_RUNS = 16 };
 
 /* Two orbits side by side. */
@@ -218,19 +219,21 @@ static double first_step(pair *b, int order) {
     return h * fmin(fmax(longer, 0.5), 2);
 }
 
-static int give_up(pair *b, const outcome *o, const nevh_stepper *s) {
+static int give_up(pair *b, const outcome *o) {
     nevh__report *report = &b->reference->report;
-    double t = b->reference->t0 + (o ? o->reached : 0);
+    double t = b->reference->t0 + o->reached;
     const char *name = nevh_integrator_name(b->reference->integrator);
-    if (o && o->status == NEVH_ENOMEM)
+    const nevh_stepper *s =
+        nevh_stepper_status(b->coarse) ? b->coarse : b->fine;
+    if (o->status == NEVH_ENOMEM)
         return nevh__fail(report, NEVH_ENOMEM, "out of memory");
-    if (o && o->status)
+    if (o->status)
         return nevh__fail(report, o->status, "%s as a reference: %s", name,
                           nevh_stepper_message(s));
     return nevh__fail(report, NEVH_EFAILED,
-                      "no reference: within %g gradients %s comes to t = %.4g "
-                      "only",
-                      most_gradients, name, t);
+                      "%s is accurate until t = %.4g only, within %.0g "
+                      "gradients or %.0g evaluations of terms",
+                      name, t, most_gradients, most_values);
 }
 
 /* The pair's fine orbit becomes the reference. */
@@ -244,19 +247,23 @@ static void keep(pair *b, const outcome *o) {
     memcpy(r->high, b->high, size);
     memcpy(r->range, b->scale, size);
     r->error = fmax(o->error, DBL_EPSILON);
-    if (!o->whole)
-        r->horizon = r->t0 + o->reached;
     snprintf(r->text, sizeof r->text, "%s at dt = %.3g, own error %.0e",
              nevh_integrator_name(r->integrator), fabs(o->h) / 2, r->error);
 }
 
 /* As far as runs with differences in the last digits stay together. */
-static bool keep_chaos(pair *b, double h) {
+static void keep_chaos(pair *b, double h) {
+    nevh_reference *r = b->reference;
     outcome o = run_pair(b, h, chaotic);
     if (o.status || (!o.whole && spent(b) >= 1))
-        return false;
+        return;
     keep(b, &o);
-    return true;
+    if (o.whole)
+        return;
+    r->horizon = r->t0 + o.reached;
+    snprintf(r->text, sizeof r->text,
+             "%s at dt = %.3g, until chaos at t = %.4g",
+             nevh_integrator_name(r->integrator), fabs(o.h) / 2, r->horizon);
 }
 
 /* Whether rounding explains that they have separated. */
@@ -266,43 +273,86 @@ static bool is_chaos(pair *b, const outcome *o) {
     return blow_up(b, o->h, o->reached) * DBL_EPSILON * 30 > hopeless;
 }
 
+/* What is known from the runs so far. */
+typedef struct {
+    double error;   /* of the last that came to the end */
+    double reached; /* by the others, at most */
+    int stalled;    /* of these, in turn, how many came no further */
+} progress;
+
 static double shorter_step(const outcome *o, int order) {
     if (o->status)
         return o->h / 2;
     if (!o->whole)
-        return 0.4 * o->h;
+        return shorter * o->h;
     double ratio = 0.85 * pow(target / o->error, 1. / order);
     return o->h * fmin(fmax(ratio, 0.2), 0.7);
+}
+
+/* Longer again where a run to the end would cost more than is left, if `cost`
+   is what the last one did. */
+static double affordable_step(const pair *b, const outcome *o, double cost,
+                              double h) {
+    double span = b->reference->t1 - b->reference->t0;
+    double whole = o->reached != 0 ? cost * span / o->reached : 0;
+    double fitting = 1.1 * o->h * whole / (1 - spent(b));
+    if (fabs(fitting) < fabs(h))
+        return h;
+    return copysign(fmin(fabs(fitting), 0.9 * fabs(o->h)), h);
+}
+
+/* Two shorter steps, 4e9 times better at order 12, should have come further. */
+static bool has_stalled(progress *p, const outcome *o) {
+    bool further = fabs(o->reached) > 1.1 * p->reached;
+    p->stalled = further ? 0 : p->stalled + 1;
+    p->reached = fmax(p->reached, fabs(o->reached));
+    return p->stalled >= 2;
+}
+
+/* So that rounding alone separates the runs, where that can be afforded: they
+   will go on for longer than the last, at most to the end. */
+static double chaos_step(const pair *b, const outcome *o, double cost) {
+    const nevh_reference *r = b->reference;
+    double longer = fmin(3, (r->t1 - r->t0) / o->reached);
+    return cost * longer / shorter < 1 - spent(b) ? shorter * o->h : o->h;
+}
+
+/* Whether that was the last run; `cost` is its own. */
+static bool is_enough(pair *b, const outcome *o, double cost, progress *p) {
+    if (o->status == NEVH_ENOMEM || spent(b) >= 1)
+        return true;
+    if (o->status)
+        return false;
+    if (!o->whole) {
+        bool chaos = has_stalled(p, o) || is_chaos(b, o);
+        if (chaos)
+            keep_chaos(b, chaos_step(b, o, cost));
+        return chaos;
+    }
+    bool floor = o->error > p->error / 8;
+    if (o->error < p->error)
+        keep(b, o);
+    p->error = fmin(p->error, o->error);
+    return floor || o->error <= target;
 }
 
 static int find_run(pair *b) {
     nevh_reference *r = b->reference;
     int order = nevh_stepper_order(b->coarse);
-    outcome o = {.h = first_step(b, order), .error = INFINITY};
-    double h = o.h, last = INFINITY, cost = 0;
+    double h = first_step(b, order), last = 0;
+    progress p = {.error = INFINITY};
+    outcome o = {0};
     for (int i = 0; h != 0 && i < MOST_RUNS; i++) {
         double before = spent(b);
-        if (*r->text && cost * fabs(o.h / h) > 1 - before)
+        if (*r->text && last * o.h / h > 1 - before)
             break; /* good as it is */
         o = run_pair(b, h, hopeless);
-        cost = (spent(b) - before);
-        if (o.whole) {
-            bool better = o.error < last;
-            if (better)
-                keep(b, &o);
-            if (o.error <= target || o.error > last / 8)
-                return NEVH_OK;
-            last = o.error;
-        } else if (o.status == NEVH_ENOMEM || spent(b) >= 1) {
+        last = spent(b) - before;
+        if (is_enough(b, &o, last, &p))
             break;
-        } else if (!o.status && is_chaos(b, &o)) {
-            if (keep_chaos(b, o.h))
-                return NEVH_OK;
-            break;
-        }
-        h = shorter_step(&o, order);
+        h = affordable_step(b, &o, last, shorter_step(&o, order));
     }
-    return *r->text ? NEVH_OK : give_up(b, &o, b->coarse);
+    return *r->text ? NEVH_OK : give_up(b, &o);
 }
 
 static int open_pair(pair *b) {

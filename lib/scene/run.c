@@ -137,6 +137,8 @@ static bool take_match(nevh_scene *s, nevh__model *m, const nevh__piece *v) {
 static bool take_transform(nevh_scene *s, nevh__model *m,
                            const nevh__piece *v) {
     nevh__formula_error error = {0};
+    if (s->transform)
+        v = s->transform;
     m->run.transform = v->text;
     if (!nevh__piece_check(s, m, v, NEVH__READS_STATE))
         return false;
@@ -231,5 +233,7 @@ bool nevh__model_run(nevh_scene *s, nevh__model *m) {
                               .tolerances = 3,
                               .tolerance = tolerances};
     return nevh__scene_each(s, m, NEVH__SCENE, check_heading) &&
-           nevh__scene_each(s, m, NEVH__RUN, take_setting);
+           nevh__scene_each(s, m, NEVH__RUN, take_setting) &&
+           (!s->transform || m->transform ||
+            take_transform(s, m, s->transform));
 }

@@ -192,6 +192,37 @@ int nevh_scene_set(nevh_scene *s, const char *assignment) {
     return NEVH_OK;
 }
 
+static nevh__piece *new_piece(nevh_scene *s, const char *text) {
+    size_t bytes = strlen(text);
+    nevh__line *line = nevh__pool_take(&s->pool, 1, sizeof *line);
+    nevh__piece *piece = nevh__pool_take(&s->pool, 1, sizeof *piece);
+    char *copy = nevh__pool_take(&s->pool, bytes + 1, 1);
+    if (!line || !piece || !copy) {
+        nevh__scene_no_memory(s);
+        return NULL;
+    }
+    *line = (nevh__line){0, strcpy(copy, text), bytes};
+    return nevh__piece_take(s, &s->pool, line, 0, bytes, piece) ? piece : NULL;
+}
+
+int nevh_scene_set_transform(nevh_scene *s, const char *formula) {
+    if (!nevh__scene_begin(s))
+        return s->status;
+    const nevh__piece *before = s->transform;
+    nevh__piece *piece = new_piece(s, formula);
+    if (!piece)
+        return s->status;
+    s->transform = piece;
+    nevh__model *model = new_model(s);
+    if (!model) {
+        s->transform = before;
+        return s->status;
+    }
+    nevh__model_free(s->model);
+    s->model = model;
+    return NEVH_OK;
+}
+
 int nevh_scene_enable(nevh_scene *s, const char *effect, bool on) {
     if (!nevh__scene_begin(s))
         return s->status;

@@ -129,6 +129,7 @@ struct nevh_scene {
     size_t n_effects;
     nevh__statement **assignments; /* from outside, the newest last */
     size_t n_assignments;
+    const nevh__piece *transform; /* from outside; NULL: the scene's */
     nevh__model *model;
     int status;
     char message[2000];

@@ -1,0 +1,114 @@
+/* nevh: state errors: the reference of a plan, and how they are shown.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tool.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double out_of_step = 0.5;
+
+/* Why there is no reference, or NULL. */
+static char *refusal(const plan *p, const char *name) {
+    const char *text = nevh_reference_text(p->reference);
+    if (!p->reference)
+        return text_print("out of memory");
+    if (nevh_reference_status(p->reference))
+        return text_print("%s", nevh_reference_message(p->reference));
+    if (name && strcmp(name, "exact") == 0 && strncmp(text, "exact", 5) != 0)
+        return text_print("no exact solution of this H is known");
+    return NULL;
+}
+
+int plan_reference(plan *p) {
+    const char *name = p->run->reference;
+    const nevh_integrator *scheme = NULL;
+    bool transformed = false;
+    if (p->reference || p->no_reference)
+        return TOOL_OK;
+    if (name && strcmp(name, "exact") != 0)
+        scheme = plan_scheme(name, &transformed);
+    if (transformed)
+        return tool_refuse("reference = %s: its steps must have the same "
+                           "length; take it without +transform",
+                           name);
+    p->reference = nevh_reference_new(p->system, scheme, p->run->t_start,
+                                      p->t_end, p->q, p->p);
+    p->no_reference = refusal(p, name);
+    if (!p->no_reference)
+        return TOOL_OK;
+    nevh_reference_free(p->reference);
+    p->reference = NULL;
+    return TOOL_OK;
+}
+
+static bool is_chaos(const plan *p) {
+    return p->reference && p->t_end > nevh_reference_horizon(p->reference);
+}
+
+void state_notes(const plan *p, list *notes) {
+    const char *text = nevh_reference_text(p->reference);
+    if (p->no_reference)
+        list_print(notes, "no state errors: %s", p->no_reference);
+    else if (is_chaos(p))
+        list_print(notes,
+                   "state errors mean nothing after t = %.4g, where orbits "
+                   "that differ in the last digits have separated (%s)",
+                   nevh_reference_horizon(p->reference), text);
+    else if (p->reference)
+        list_print(notes, "state error against %s%s%s",
+                   strncmp(text, "exact", 5) == 0 ? "the " : "", text,
+                   ", the largest over coordinates and momenta, over the range "
+                   "of each");
+}
+
+bool state_out_of_step(const row *r) {
+    return r->ran && r->state_error > out_of_step;
+}
+
+void state_show(table *t, const plan *p, const row *r) {
+    if (!p->reference || !r->ran)
+        table_text(t, NULL);
+    else if (state_out_of_step(r))
+        table_shown(t, "out of step");
+    else if (is_chaos(p))
+        table_shown(t, "meaningless");
+    else if (isnan(r->state_error))
+        table_text(t, NULL);
+    else
+        table_shown(t, "%.0e", r->state_error);
+}
+
+static char *names_out_of_step(const row rows[], size_t count, size_t *found) {
+    list names = {0};
+    char *text = text_print("%s", "");
+    for (size_t i = 0; i < count; i++) {
+        bool known = false;
+        const row *r = &rows[i];
+        if (!state_out_of_step(r) || r->energy.verdict != NEVH_BOUNDED)
+            continue;
+        for (size_t k = 0; k < names.count; k++)
+            known = known || strcmp(names.item[k], r->integrator) == 0;
+        if (!known)
+            list_add(&names, r->integrator);
+    }
+    *found = names.count;
+    for (size_t k = 0; k < names.count; k++) {
+        const char *join = k == 0 ? "" : k + 1 == names.count ? " and " : ", ";
+        char *longer = text_print("%s%s%s", text, join, names.item[k]);
+        free(text);
+        text = longer;
+    }
+    list_free(&names);
+    return text;
+}
+
+void state_words(const row rows[], size_t count, list *words) {
+    size_t found;
+    char *names = names_out_of_step(rows, count, &found);
+    if (found)
+        list_print(
+            words,
+            "Bounded energy is not an accurate orbit: %s %s out of step.",
+            names, found == 1 ? "is" : "are");
+    free(names);
+}
