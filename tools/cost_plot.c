@@ -15,7 +15,7 @@ static double milliseconds(const row *r) {
 static double values(const row *r) {
     return r->counts.hamiltonians;
 }
-static double gradients(const row *r) {
+static double slopes(const row *r) {
     return (double)r->counts.gradients;
 }
 
@@ -61,7 +61,7 @@ int cost_plot(const options *o, const costs *c) {
     draw_panel(to, c, milliseconds);
     plot_panel(to, NULL, h ? "evaluations of H" : "evaluations of the gradient",
                error);
-    draw_panel(to, c, h ? values : gradients);
+    draw_panel(to, c, h ? values : slopes);
     int status = plot_write(to, o);
     plot_free(to);
     return status;
