@@ -1,6 +1,7 @@
 /* nevh compare: a table of energy errors, a row an integrator and dt.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tool.h"
+#include "envelope.h"
+#include "plot.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -302,25 +303,36 @@ static page make_page(const options *o, const plan *p, const row_list *r) {
     return result;
 }
 
+static void free_rows(row_list *r) {
+    for (size_t i = 0; i < r->count; i++) {
+        free(r->row[i].status);
+        free(r->row[i].changes);
+        free(r->row[i].errors);
+    }
+    free(r->row);
+}
+
 static int compare_plan(const options *o, const plan *p) {
     output out;
     int status = TOOL_OK;
-    if (output_open(&out, o->file))
+    if (plot_check(o) || output_open(&out, o->file))
         return TOOL_USAGE;
     row_list r = list_rows(p);
+    for (size_t i = 0; plot_wanted(o) && i < r.count; i++)
+        r.row[i].errors = envelope_new(p->run->t_start, p->t_end);
     run_rows(p, &r, o->quiet);
     observe_orders(r.row, r.count);
     page result = make_page(o, p, &r);
     page_print(&result, o->format, out.stream);
     page_free(&result);
-    for (size_t i = 0; i < r.count; i++) {
+    for (size_t i = 0; i < r.count; i++)
         if (r.row[i].failed)
             status = TOOL_FAILED;
-        free(r.row[i].status);
-        free(r.row[i].changes);
-    }
-    free(r.row);
-    return output_close(&out, status);
+    status = output_close(&out, status);
+    if (plot_wanted(o) && compare_plot(o, p, r.row, r.count))
+        status = TOOL_USAGE;
+    free_rows(&r);
+    return status;
 }
 
 int compare(const options *o) {

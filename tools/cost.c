@@ -1,6 +1,7 @@
 /* nevh cost: what a digit costs.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cost_private.h"
+#include "plot.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -159,7 +160,7 @@ static int status_of(const costs *c) {
 
 static int cost_plan(const options *o, plan *p, double whole) {
     output out;
-    if (output_open(&out, o->file))
+    if (plot_check(o) || output_open(&out, o->file))
         return TOOL_USAGE;
     costs c = {.search = search_begin(p, o, SEARCH_BUDGET),
                .whole = whole,
@@ -170,11 +171,13 @@ static int cost_plan(const options *o, plan *p, double whole) {
     search_end(&c.search);
     page_print(&result, o->format, out.stream);
     page_free(&result);
-    int status = status_of(&c);
+    int status = output_close(&out, status_of(&c));
+    if (plot_wanted(o) && cost_plot(o, &c))
+        status = TOOL_USAGE;
     for (size_t i = 0; i < c.count; i++)
         ladder_free(&c.ladder[i]);
     free(c.ladder);
-    return output_close(&out, status);
+    return status;
 }
 
 int cost(const options *o) {

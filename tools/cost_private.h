@@ -30,6 +30,8 @@ char *cost_milliseconds(double seconds);
 bool cost_drifts(const ladder *); /* its energy */
 /* cost_price.c: more rungs, with other gradients. */
 void cost_price(costs *, list *words);
+/* cost_plot.c: as plot_write. */
+int cost_plot(const options *, const costs *);
 /* cost_words.c */
 void cost_notes(const costs *, list *notes);
 void cost_words(costs *, list *words);

@@ -1,4 +1,4 @@
-/* nevh effects: what each effect reads and prices.
+/* nevh effects: what each effect reads and costs.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tool.h"
 #include <math.h>

@@ -42,7 +42,25 @@ tools_nevh_SOURCES = \
 	tools/check.c \
 	tools/new.c \
 	tools/sample.c \
-	tools/list.c
+	tools/list.c \
+	tools/plot.h \
+	tools/plot_private.h \
+	tools/plot.c \
+	tools/plot_range.c \
+	tools/plot_layout.c \
+	tools/plot_script.c \
+	tools/plot_gnuplot.c \
+	tools/plot_write.c \
+	tools/envelope.h \
+	tools/envelope.c \
+	tools/energy_plot.h \
+	tools/energy_plot.c \
+	tools/compare_plot.c \
+	tools/thinned.h \
+	tools/thinned.c \
+	tools/run_plot.c \
+	tools/section_plot.c \
+	tools/cost_plot.c
 tools_nevh_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE \
 	-DNEVH_SCENES='"$(scenesdir)"'
 tools_nevh_LDADD = libnevh.la

@@ -10,7 +10,8 @@ enum {
     OF_COST = FOR_COST | FOR_GRADIENTS | FOR_RECOMMEND,
     OF_SCENES =
         FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_RUN | FOR_SECTION | OF_COST,
-    OF_TABLES = OF_SCENES | FOR_LIST
+    OF_TABLES = OF_SCENES | FOR_LIST,
+    OF_PLOTS = FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_COST
 };
 
 /* The commands that each option is for, as an or. */
@@ -49,6 +50,13 @@ static const struct {
      "the largest that the orbit may have"},
     {"repeat", "N", FOR_COMPARE | FOR_COST | FOR_RECOMMEND, read_repeat,
      "timed runs, of which the median counts"},
+    {"every", "K", FOR_RUN, read_every, "a row each K steps, and at the end"},
+    {"samples", "N", FOR_RUN, read_samples,
+     "N rows at equal times, the first and the last included"},
+    {"at", "T1,T2", FOR_RUN, read_at, "rows at these times alone"},
+    {"resume", "FILE", FOR_RUN, read_resume,
+     "go on with FILE, which nevh run -o FILE left unfinished,\n"
+     "                            from FILE.state, as if never interrupted"},
     {"transform", "FORMULA", FOR_COMPARE, read_transform,
      "of time, for rows NAME+transform; instead of the scene's"},
     {"match", "steps|work", FOR_COMPARE, read_match,
@@ -57,6 +65,12 @@ static const struct {
      "symplecticity, reversal, solvers, invariants"},
     {"portable", NULL, OF_SCENES, read_portable,
      "no vector code: the same digits with the same libm"},
+    {"plot", "FILE", OF_PLOTS, read_plot,
+     "draw FILE.svg, .png or .pdf, or - in the terminal"},
+    {"plot-kind", "KIND", FOR_RUN, read_plot_kind,
+     "phase (the default), energy or configuration"},
+    {"keep-plot-script", "FILE", OF_PLOTS, read_plot_script,
+     "write what gnuplot is told, data included"},
     {"section", "A,B", FOR_SECTION, read_section, "these alone, by name"},
     {"from", "SCENE", FOR_NEW, read_from, "the scene to begin with"},
     {"allow-code", NULL, OF_SCENES | FOR_NEW, read_allow_code,

@@ -73,6 +73,21 @@ int output_open(output *o, const char *name) {
     return TOOL_USAGE;
 }
 
+int output_check(const char *name) {
+    output o;
+    if (!can_be_replaced(name)) {
+        if (access(name, W_OK) == 0)
+            return TOOL_OK;
+        return tool_refuse("%s cannot be written: %s", name, strerror(errno));
+    }
+    if (output_open(&o, name))
+        return TOOL_USAGE;
+    fclose(o.stream);
+    unlink(o.temporary);
+    forget(&o);
+    return TOOL_OK;
+}
+
 static int write_all(output *o) {
     bool wrong = ferror(o->stream);
     return (o->name ? fclose(o->stream) : fflush(o->stream)) || wrong;

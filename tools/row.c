@@ -1,6 +1,6 @@
 /* nevh: one run of compare, watched, and once more for its time.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tool.h"
+#include "envelope.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -147,8 +147,11 @@ static void watched(work *w, nevh_stepper *s) {
     nevh_energy *energy = new_energy(w, s);
     nevh_state_error *state = nevh_state_error_new(w->plan->reference);
     invariants *kept = w->plan->diagnostics ? invariants_new(w->plan) : NULL;
-    nevh_observer observers[4] = {{nevh_energy_observe, energy, 1}};
+    nevh_observer observers[5] = {{nevh_energy_observe, energy, 1}};
+    energy_trace trace = {r->errors, energy};
     size_t count = 1;
+    if (r->errors)
+        observers[count++] = (nevh_observer){energy_trace_observe, &trace, 1};
     if (state)
         observers[count++] =
             (nevh_observer){nevh_state_error_observe, state, 1};

@@ -1,6 +1,7 @@
 /* nevh run: the trajectory.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "config.h"
+#include "plot.h"
 #include "trajectory.h"
 #include <math.h>
 #include <stdlib.h>
@@ -282,9 +283,13 @@ static int write_rows(job *j) {
 }
 
 static int run_job(job *j) {
-    if (choose_rows(j) || choose_integrator(j))
+    const options *o = j->options;
+    if (choose_rows(j) || choose_integrator(j) || run_plot_check(o, &j->plan))
         return TOOL_USAGE;
-    return write_rows(j);
+    int status = write_rows(j);
+    if (plot_wanted(o) && status != TOOL_USAGE)
+        return run_plot(o, &j->plan, j->integrator) ? TOOL_USAGE : status;
+    return status;
 }
 
 int run_scene(const options *o) {

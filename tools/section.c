@@ -1,6 +1,6 @@
 /* nevh section: points of Poincare and stroboscopic sections.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tool.h"
+#include "plot.h"
 #include <math.h>
 #include <nevh/section.h>
 #include <stdlib.h>
@@ -241,12 +241,27 @@ static void note(const job *j, const options *o, list *notes) {
         list_print(notes, "%s", j->ended);
 }
 
+static int draw(const job *j, const options *o) {
+    plot *to = NULL;
+    for (size_t i = 0; i < j->count; i++)
+        section_plot(&to, j->plan, j->all[i].is, j->all[i].points,
+                     j->all[i].numbers);
+    int status = plot_write(to, o);
+    plot_free(to);
+    return status;
+}
+
+static options with_format(const options *o) {
+    options as = *o;
+    as.format = o->formatted ? o->format : FORMAT_CSV;
+    return as;
+}
+
 static int print(const job *j, const options *o, int status) {
     static const char *const columns[] = {"section", "t", "direction"};
     page result = {.table = table_new()};
-    options as = *o;
+    options as = with_format(o);
     list items = {0};
-    as.format = o->formatted ? o->format : FORMAT_CSV;
     if (!(o->quiet && as.format == FORMAT_TABLE))
         note(j, o, &result.before);
     for (size_t i = 0; i < 3; i++)
@@ -283,13 +298,18 @@ int section(const options *o) {
     plan p;
     job j = {0};
     nevh_stepper *s = NULL;
+    options as = with_format(o);
     int status = plan_make(&p, o);
     if (!status)
         status = choose(&j, &p, o);
+    if (!status)
+        status = plot_check(&as);
     if (!status && !(s = fitting(&j)))
         status = TOOL_USAGE;
     if (!status)
         status = print(&j, o, run(&j, s));
+    if (plot_wanted(o) && status != TOOL_USAGE && draw(&j, o))
+        status = TOOL_USAGE;
     nevh_stepper_free(s);
     forget(&j);
     plan_free(&p);

@@ -75,6 +75,7 @@ enum {
 
 /* options.c: the command line. */
 typedef enum { MATCH_SCENE, MATCH_STEPS, MATCH_WORK } matching;
+typedef enum { PLOT_PHASE, PLOT_ENERGY, PLOT_CONFIGURATION } plot_kind;
 typedef struct {
     list operands, settings, integrators, gradients; /* settings: see below */
     list sections;
@@ -85,6 +86,7 @@ typedef struct {
     size_t every, samples, repeats;                  /* 0: not given */
     table_format format;
     matching match;
+    plot_kind plot_kind;
     const char *file, *plot, *plot_script, *transform, *resume, *from;
     bool formatted; /* --format was given */
     bool quiet, portable, all, by_state, diagnostics, impact, allow_code;
@@ -106,6 +108,9 @@ typedef struct {
     char *name, *temporary;
 } output;
 int output_open(output *, const char *name); /* NULL: stdout */
+/* That it can be opened, as far as can be told without changing it.  To be
+   called while none is open. */
+int output_check(const char *name);
 /* Renames, or, unless it is to be kept, removes.  Returns `status`, or
    TOOL_USAGE when writing failed. */
 int output_close(output *, int status);
@@ -181,6 +186,7 @@ typedef struct {
     double state_error;     /* NAN: unknown or meaningless */
     double symplecticity_error, reversal_error;
     double *changes; /* of invariants, the largest; NULL: not asked for */
+    struct envelope *errors; /* of the energy; NULL: not asked for */
 } row;
 void row_run(const plan *, row *);
 /* Of a row that ran in a hurry: its time again, and when it became unstable.
@@ -224,6 +230,12 @@ void diagnose_row(const plan *, row *);
 void diagnostics_columns(table *, const plan *, bool is_table);
 void diagnostics_record(table *, const plan *, const row *);
 void diagnostics_show(table *, const plan *, const row *);
+
+/* compare_plot.c, run_plot.c: as plot_write.  The latter makes a run of its
+   own, with the first dt and gradient. */
+int compare_plot(const options *, const plan *, const row rows[], size_t count);
+int run_plot(const options *, const plan *, const char *integrator);
+int run_plot_check(const options *, const plan *); /* as plot_check */
 
 typedef int command(const options *);
 command compare, list_what, check, effects, run_scene, section, new_scene;

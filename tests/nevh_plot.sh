@@ -1,0 +1,261 @@
+#!/bin/sh
+# Plots: what is in them, and what is said when they cannot be drawn.
+
+. "${srcdir:-.}/tests/nevh_support.sh"
+
+command -v gnuplot >/dev/null 2>&1 ||
+    { echo "gnuplot is missing"; exit 77; }
+case $nevh in
+/*) ;;
+*) nevh=$(pwd)/$nevh ;;
+esac
+
+draws() {
+    exits 0 "$@"
+    test -s $work/err && { fails "says something"; cat $work/err; }
+}
+# In the SVG that was drawn last, texts one a line.
+svg=$work/out.svg
+texts() {
+    sed -n 's/.*<text>\(.*\)<\/text>.*/\1/p' $svg | sed 's/<[^>]*>//g'
+}
+shows() {
+    texts | grep -Fqx -e "$1" || { fails "does not show '$1'"; texts; }
+}
+# series NAME: the drawing of that series.
+series() {
+    sed -n "/<title>$1<\/title>/,/<g id=/p" $svg
+}
+
+# points N: how many of the series N the script that was kept last has.
+points() {
+    awk -v name="\$series$1" '$1 == name && $2 == "<<" { on = 1 } /^EOD/ { on = 0 }
+        on && NF == 2 { n++ } END { print n + 0 }' $work/out.gp
+}
+
+# The errors of two integrators, each at two dt: two panels of one legend.
+draws compare pendulum --integrators verlet,rk4,euler --dt 0.1,0.05 \
+    --t-end 1000 --plot $svg --keep-plot-script $work/out.gp
+has '^ verlet .*bounded$'
+shows 'Pendulum released at rest from 2 rad'
+shows 'dt = 0.1 s'
+shows 'dt = 0.05 s'
+shows 't (s)'
+shows '|energy error|, relative'
+for name in verlet rk4 euler; do
+    test "$(texts | grep -cx $name)" = 1 ||
+        fails "does not have $name in the legend once"
+    series $name | grep -q '<path ' || fails "draws no line of $name"
+done
+test "$(grep -c "id='plot_spacer\|<title>gnuplot_plot_[0-9]b</title>" $svg)" \
+    = 3 || fails "does not draw 3 series in the second panel"
+# Decades, on one axis of each panel; a legend beside what is drawn.
+for decade in -5 -1 1; do
+    test "$(texts | grep -cx "10$decade")" = 2 || fails "lacks 10^$decade"
+done
+shows 1000
+if command -v xmllint >/dev/null 2>&1; then
+    xmllint --noout $svg || fails "is no XML"
+fi
+# The largest errors of each while, as the table has them: level for verlet,
+# and what rk4 has lost at the end.
+awk '/^\$series/ { n++ } n == 1 && NF == 2 { if ($2 > max) max = $2
+        if (!min || $2 < min) min = $2 }
+    n == 2 && NF == 2 && $1 > 990 { last = $2 } /^EOD/ && n == 2 { exit }
+    END { exit !(max > 6.3e-2 && max < 6.5e-2 && min > 0.9 * max &&
+        last > 0.21 && last < 0.22) }' $work/out.gp || fails "draws other errors"
+test "$(wc -l <$work/out.gp)" -lt 2200 || fails "draws too many points"
+
+# The script draws the same again, from its own data.
+cp $svg $work/first.svg
+rm $svg
+gnuplot $work/out.gp >$work/again 2>&1 || { fails "keeps a script that fails";
+    cat $work/again; }
+cmp $svg $work/first.svg || fails "keeps a script that draws something else"
+draws compare oscillator --t-end 9 --dt 0.1 --keep-plot-script $work/alone.gp
+gnuplot -e "set terminal dumb" $work/alone.gp | grep -q verlet ||
+    fails "keeps a script that draws nothing"
+
+# Sections, and work and precision.
+draws section damped-driven-pendulum --t-end 4000 --plot $svg \
+    --keep-plot-script $work/out.gp
+shows strobe
+shows 'phi (rad)'
+shows p_phi
+test "$(points 1)" = "$(grep -c '^strobe,' $work/out)" ||
+    fails "does not draw each point"
+draws cost pendulum --gradient central4 --integrators verlet,rk4 \
+    --dt 0.2,0.1,0.05,0.025 --t-end 20 --plot $svg \
+    --keep-plot-script $work/out.gp
+shows 'CPU time (ms)'
+shows 'evaluations of H'
+shows 'largest energy error, relative'
+shows verlet
+test "$(points 1) $(points 4)" = "4 4" || fails "does not draw each run"
+# An eighth of the step: 8 times as many H, and 8^4 to 8^5 times less error.
+awk '/^\$series4 <</ { on = 1 } /^EOD/ { on = 0 }
+    on && NF == 2 { if (++n == 1) { h = $1; e = $2 } else { x = $1 / h; y = e / $2 } }
+    END { exit !(x > 7.9 && x < 8.1 && y > 4e3 && y < 4e4) }' $work/out.gp ||
+    fails "draws other numbers"
+test "$(grep -c '^set logscale [xy]' $work/out.gp)" = 4 ||
+    fails "has axes that are not logarithmic"
+draws cost pendulum --gradient exact --integrators verlet --dt 0.2,0.1 \
+    --t-end 20 --plot $svg
+shows 'evaluations of the gradient'
+
+# Orbits: an angle that goes round stays within its period, lines end there.
+draws run pendulum-rotating --t-end 50 --dt 0.05 --every 1 --plot $svg \
+    --keep-plot-script $work/out.gp
+shows 'phi (rad)'
+shows p_phi
+grep -q '^set xrange \[-3.14159265359:3.14159265359\]' $work/out.gp ||
+    fails "shows another range"
+rounds=$(awk -F, '/^[0-9]/ { t = int(($2 + 3.14159265) / 6.2831853)
+    n += t != last; last = t } END { print n }' $work/out)
+breaks=$(awk '/^\$series1 <</ { on = 1 } /^EOD/ { on = 0 } on && NF == 0 { n++ }
+    END { print n }' $work/out.gp)
+test $rounds -gt 40 || fails "goes round $rounds times"
+test "$rounds" = "$breaks" || fails "wraps $breaks times, not $rounds"
+draws run kepler --t-end 5 --dt 0.05 --plot-kind energy --plot $svg
+shows '|energy error|, relative'
+
+# Rods and bobs are where the last row says.
+draws run double-pendulum --t-end 5 --dt 0.02 --plot-kind configuration \
+    --plot $svg --keep-plot-script $work/out.gp
+shows 'bob 1'
+shows 'bob 2'
+test "$(points 1)" = 251 || fails "does not draw the trail"
+awk -F, '/^t,/ { for (i = 1; i <= NF; i++) if ($i == "x1") k = i }
+    /^[0-9]/ { for (i = 0; i < 4; i++) last[i] = $(k + i) }
+    END { printf("%.6f %.6f\n%.6f %.6f\n", last[0], last[1], last[2], last[3]) }
+    ' $work/out >$work/rows
+awk '/^\$series[56] <</ { getline; printf("%.6f %.6f\n", $1, $2) }' \
+    $work/out.gp >$work/drawn
+cmp $work/rows $work/drawn || fails "draws bobs elsewhere"
+# A unit is as long on both axes.
+awk '/^set [xy]range/ { gsub("[^0-9.e xyrange-]", " "); l[substr($2, 1, 1)] = $4 - $3 }
+    /^set [lrbt]margin/ { m[substr($2, 1, 1)] = $5 }
+    /^set terminal/ { split($5, size, ",") }
+    END { x = l["x"] / (m["r"] - m["l"]) / size[1]
+          y = l["y"] / (m["t"] - m["b"]) / size[2]
+          exit !(x / y > 0.999 && x / y < 1.001) }' $work/out.gp ||
+    fails "distorts the picture"
+exits 2 run henon-heiles --plot-kind configuration --plot $svg
+says 'no \[picture\]'
+test -s $work/out && fails "runs before it looks for a picture"
+exits 2 run pendulum --plot-kind portrait --plot $svg
+says 'phase, energy or configuration'
+exits 2 run pendulum --plot -
+says 'with -o'
+exits 0 run pendulum -o $work/rows.csv --t-end 5 --plot -
+has 'p_phi'
+
+# Other media; files are there when they are whole.
+for medium in png pdf; do
+    draws compare oscillator --t-end 9 --dt 0.1 --plot $work/x.$medium
+    head -c 4 $work/x.$medium | tr -d '\211' |
+        grep -aqi "^%\{0,1\}$medium" || fails "draws no $medium"
+done
+test "$(echo $work/x.p*)" = "$work/x.pdf $work/x.png" ||
+    fails "leaves other files"
+draws compare oscillator --t-end 9 --dt 0.1 --quiet --plot -
+has '^ +1e-16 '
+has '\*verlet *$'
+lacks '^.{81}.*[*#|]'
+COLUMNS=120 draws compare oscillator --t-end 9 --dt 0.1 --quiet --plot -
+has '^.{105,120}$'
+lacks '^.{121}.*[*#|]'
+
+# Texts are no more than texts.
+cat >$work/weird.nevh <<'END'
+[scene]
+title = it's `touch HERE` "$(touch HERE)" {/S a}_b^2 %d \n <b>&é @x \
+[coordinates]
+x = 1
+[effects]
+kinetic = p_x^2/2
+spring = x^2/2
+[labels]
+t = 'y_r'\
+[run]
+t_end = 1
+dt = 0.1
+integrators = verlet
+END
+for name in "it's.svg" '|touch touched;.svg' '$(touch touched) `touch touched`.svg'; do
+    (cd $work && NEVH_SCENES= && "$nevh" compare weird.nevh --plot "$name" \
+        --keep-plot-script weird.gp >out 2>err) || { fails "fails at $name";
+        cat $work/err; }
+    test -s "$work/$name" || fails "does not draw $name"
+    svg=$work/drawn.svg
+    mv "$work/$name" $svg
+    shows "it's \`touch HERE\` \"\$(touch HERE)\" {/S a}_b^2 %d \\n &lt;b>&amp;é @x \\"
+    shows "t ('y_r'\\)"
+    (cd $work && gnuplot weird.gp 2>err) || fails "keeps a script that fails"
+    cmp $svg "$work/$name" || fails "keeps a script that draws elsewhere"
+done
+test -e $work/HERE && fails "ran a title"
+test -e $work/touched && fails "ran the name of a file"
+
+# Wrong use is told before anything runs.
+before=$(ls $work)
+for name in plot.gif plot svg ''; do
+    exits 2 compare pendulum --plot "$name"
+    says 'FILE\.svg'
+done
+exits 2 compare pendulum --plot $work/nowhere/x.svg
+says 'nowhere/x\.svg cannot be written: No such file'
+exits 2 compare pendulum --keep-plot-script $work/nowhere/x.gp
+says 'nowhere/x\.gp cannot be written'
+mkdir $work/folder.svg
+exits 2 compare pendulum --plot $work/folder.svg
+says 'folder\.svg cannot be written'
+rmdir $work/folder.svg
+exits 2 compare pendulum --plot $work/x.svg -o $work/x.svg
+says 'same name'
+exits 2 compare pendulum --plot - --format csv
+says 'with -o'
+exits 2 check pendulum --plot $work/x.svg
+says 'no option of nevh check'
+test "$(ls $work)" = "$before" || fails "leaves files: $(ls $work)"
+exits 2 compare double-pendulum --integrators verlet --t-end 1 --plot $work/x.svg
+says 'nothing to plot'
+test -e $work/x.svg && fails "draws nothing to a file"
+
+# gnuplot is missing, or fails, at once or at the end.
+mkdir $work/bin
+fake() {
+    printf '#!/bin/sh\n%s\n' "$1" >$work/bin/gnuplot
+    chmod +x $work/bin/gnuplot
+}
+fakes() {
+    command="compare with a gnuplot that does: $1"
+    PATH=$(pwd)/$work/bin $limit "$nevh" compare oscillator --t-end 9 \
+        --dt 0.1 --plot $work/fake.svg >$work/out 2>$work/err </dev/null
+    code=$?
+    test $code = 2 || { fails "exit status $code"; cat $work/err; }
+    test "$(wc -l <$work/err)" = 1 || { fails "says more"; cat $work/err; }
+    test "$(echo $work/fake*)" = "$work/fake*" || fails "leaves a file"
+}
+limit= # is not in that PATH
+fakes 'not exist'
+says 'gnuplot-nox'
+test -s $work/out && fails "runs before it looks for gnuplot"
+fake 'echo "  what is" >&2; echo this? >&2; exit 1'
+fakes 'exit 1'
+says 'gnuplot failed \(exit status 1\): what is this\?$'
+test -s $work/out && fails "runs before it tries gnuplot"
+fake 'exec <&-; test "$1" = --version'
+fakes 'not read'
+says 'gnuplot failed \(exit status 1\)$'
+has 'verlet'
+fake 'exit 0'
+fakes 'draw nothing'
+says 'gnuplot drew nothing'
+fake 'test "$1" = --version || kill -9 $$'
+fakes 'die'
+says 'signal 9'
+fake 'test "$1" = --version && exit; while read x; do echo $x >&2; done; exit 3'
+fakes 'talk much'
+says 'exit status 3\): set terminal svg'
+exit $status

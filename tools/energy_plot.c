@@ -1,0 +1,52 @@
+/* nevh: energy errors against time.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "energy_plot.h"
+#include <stdlib.h>
+
+static const double absurd = 100; /* of an error relative to the energy */
+enum { MOST_POINTS = 300 };       /* of a line */
+
+static const char *quantity(const plan *p) {
+    return p->balance ? "|error of the balance|, relative"
+                      : "|energy error|, relative";
+}
+
+static void set_axes(plot *to, const plan *p) {
+    plot_log(to, false, true);
+    plot_span_x(to, p->run->t_start, p->t_end);
+    plot_limit_y(to, 0, absurd);
+}
+
+plot *energy_plot_new(const plan *p, const char *title, const char *heading) {
+    char *x = plot_label(p, "t", "t");
+    plot *to = plot_new(title, x, quantity(p));
+    plot_heading(to, heading);
+    set_axes(to, p);
+    free(x);
+    return to;
+}
+
+void energy_plot_panel(plot *to, const plan *p, const char *heading) {
+    char *x = plot_label(p, "t", "t");
+    plot_panel(to, heading, x, quantity(p));
+    set_axes(to, p);
+    free(x);
+}
+
+/* The largest of a few parts each where there are many, so that oscillations
+   do not fill the panel. */
+void energy_plot_add(plot *to, const char *name, const envelope *e) {
+    size_t parts = 0, largest = 0, seen = 0, series = plot_series(to, name);
+    plot_style(to, series, PLOT_MARKED);
+    for (size_t i = 0; i < ENVELOPE_PARTS; i++)
+        parts += e->part[i].value >= 0;
+    size_t each = parts / MOST_POINTS + 1;
+    for (size_t i = 0; i < ENVELOPE_PARTS; i++) {
+        if (e->part[i].value < 0)
+            continue;
+        if (seen++ % each == 0 || e->part[i].value > e->part[largest].value)
+            largest = i;
+        if (seen % each == 0 || seen == parts)
+            plot_point(to, series, e->part[largest].t, e->part[largest].value);
+    }
+}

@@ -1,0 +1,15 @@
+/* nevh: energy errors against time.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_ENERGY_PLOT_H
+#define NEVH_ENERGY_PLOT_H
+
+#include "envelope.h"
+#include "plot.h"
+
+/* A plot, or one more panel. */
+plot *energy_plot_new(const plan *, const char *title, const char *heading);
+void energy_plot_panel(plot *, const plan *, const char *heading);
+/* A line in the current panel; name: NULL is none. */
+void energy_plot_add(plot *, const char *name, const envelope *);
+
+#endif

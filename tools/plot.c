@@ -1,0 +1,151 @@
+/* nevh: plots: panels, series and points.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "plot_private.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* gnuplot computes with ranges. */
+static const double largest = 1e300, smallest = 1e-300;
+
+static char *copy(const char *text) {
+    return text ? text_print("%s", text) : NULL;
+}
+
+/* An array, to which one is to be added. */
+static void *grown(void *items, size_t count, size_t size) {
+    void *more = tool_allocate(count + 1, size);
+    if (count)
+        memcpy(more, items, count * size);
+    free(items);
+    return more;
+}
+
+plot *plot_new(const char *title, const char *x, const char *y) {
+    plot *p = tool_allocate(1, sizeof *p);
+    p->title = copy(title);
+    plot_panel(p, NULL, x, y);
+    return p;
+}
+
+void plot_panel(plot *p, const char *heading, const char *x, const char *y) {
+    p->panel = grown(p->panel, p->panels, sizeof *p->panel);
+    p->panel[p->panels++] = (panel){.heading = copy(heading),
+                                    .x = copy(x),
+                                    .y = copy(y),
+                                    .span_x = {NAN, NAN},
+                                    .limit_y = {-largest, largest}};
+}
+
+void plot_heading(plot *p, const char *text) {
+    free(p->panel->heading);
+    p->panel->heading = copy(text);
+}
+
+static panel *current(const plot *p) {
+    return &p->panel[p->panels - 1];
+}
+
+void plot_log(plot *p, bool x, bool y) {
+    current(p)->log_x = x;
+    current(p)->log_y = y;
+}
+
+void plot_equal(plot *p) {
+    current(p)->equal = true;
+}
+
+void plot_span_x(plot *p, double low, double high) {
+    current(p)->span_x = (range){low, high};
+}
+
+void plot_limit_y(plot *p, double low, double high) {
+    current(p)->limit_y = (range){low, high};
+}
+
+void plot_same_ranges(plot *p) {
+    p->same_ranges = true;
+}
+
+/* Of a namesake; else the first that is free: in the panel for those without
+   a name, in the plot for the others. */
+static size_t find_look(const plot *p, const char *name) {
+    size_t look = 0;
+    for (size_t i = 0; i < p->count; i++) {
+        const series *s = &p->series[i];
+        if (name && s->name && strcmp(name, s->name) == 0)
+            return s->look;
+        if ((name || s->panel == p->panels - 1) && look <= s->look)
+            look = s->look + 1;
+    }
+    return look;
+}
+
+size_t plot_series(plot *p, const char *name) {
+    size_t look = find_look(p, name);
+    p->series = grown(p->series, p->count, sizeof *p->series);
+    p->series[p->count] =
+        (series){.name = copy(name), .panel = p->panels - 1, .look = look};
+    return p->count++;
+}
+
+void plot_style(plot *p, size_t number, plot_form form) {
+    p->series[number].form = form;
+}
+
+void plot_like(plot *p, size_t number, size_t other) {
+    p->series[number].look = p->series[other].look;
+}
+
+static void add(series *s, pair point) {
+    if (s->count == s->room) {
+        s->room = 2 * s->room + 64;
+        pair *more = tool_allocate(s->room, sizeof *more);
+        if (s->count)
+            memcpy(more, s->point, s->count * sizeof *more);
+        free(s->point);
+        s->point = more;
+    }
+    s->point[s->count++] = point;
+}
+
+void plot_break(plot *p, size_t number) {
+    series *s = &p->series[number];
+    if (s->count && !isnan(s->point[s->count - 1].x))
+        add(s, (pair){NAN, NAN});
+}
+
+static bool shown(const panel *on, double x, double y) {
+    return (x > smallest || !on->log_x) && (y > smallest || !on->log_y);
+}
+
+void plot_point(plot *p, size_t number, double x, double y) {
+    series *s = &p->series[number];
+    if (!(fabs(x) < largest && fabs(y) < largest))
+        plot_break(p, number);
+    else if (shown(&p->panel[s->panel], x, y))
+        add(s, (pair){x, y});
+}
+
+void plot_free(plot *p) {
+    for (size_t i = 0; p && i < p->panels; i++) {
+        free(p->panel[i].heading);
+        free(p->panel[i].x);
+        free(p->panel[i].y);
+    }
+    for (size_t i = 0; p && i < p->count; i++) {
+        free(p->series[i].name);
+        free(p->series[i].point);
+    }
+    if (!p)
+        return;
+    free(p->title);
+    free(p->panel);
+    free(p->series);
+    free(p);
+}
+
+char *plot_label(const plan *p, const char *name, const char *of) {
+    const char *unit = nevh_scene_label(p->scene, of);
+    return text_print(*unit ? "%s (%s)" : "%s%s", name, unit);
+}

@@ -1,0 +1,115 @@
+/* nevh: gnuplot as a child.  No shell takes part, and scripts and messages pass
+   through files, not pipes: whoever ends early leaves nobody waiting, and no
+   SIGPIPE.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "plot_private.h"
+#include <errno.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char **environ;
+
+static int start(char *const arguments[], int in, int out, int messages,
+                 pid_t *child) {
+    posix_spawn_file_actions_t files;
+    int wrong = posix_spawn_file_actions_init(&files);
+    if (wrong)
+        return wrong;
+    posix_spawn_file_actions_adddup2(&files, in, STDIN_FILENO);
+    posix_spawn_file_actions_adddup2(&files, out, STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&files, messages, STDERR_FILENO);
+    wrong = posix_spawnp(child, arguments[0], &files, NULL, arguments, environ);
+    posix_spawn_file_actions_destroy(&files);
+    return wrong;
+}
+
+static int await(pid_t child) {
+    int status = 0;
+    while (waitpid(child, &status, 0) < 0)
+        if (errno != EINTR)
+            return -1;
+    return status;
+}
+
+/* In one line, of which no more than `size`. */
+static void read_message(FILE *messages, char text[], size_t size) {
+    size_t length = 0;
+    int c;
+    rewind(messages);
+    while ((c = getc(messages)) != EOF && length + 1 < size) {
+        bool blank = c <= ' ' || c == 0x7f;
+        if (!blank)
+            text[length++] = (char)c;
+        else if (length && text[length - 1] != ' ')
+            text[length++] = ' ';
+    }
+    while (length && text[length - 1] == ' ')
+        length--;
+    text[length] = '\0';
+}
+
+static int refuse_end(int status, FILE *messages) {
+    char text[400], *how;
+    read_message(messages, text, sizeof text);
+    if (WIFSIGNALED(status))
+        how = text_print("signal %d", WTERMSIG(status));
+    else
+        how = text_print("exit status %d", WEXITSTATUS(status));
+    int refused = tool_refuse(
+        *text ? "gnuplot failed (%s): %s" : "gnuplot failed (%s)", how, text);
+    free(how);
+    return refused;
+}
+
+static int run(char *const arguments[], FILE *in, FILE *out, FILE *messages) {
+    pid_t child;
+    int wrong =
+        start(arguments, fileno(in), fileno(out), fileno(messages), &child);
+    if (wrong == ENOENT)
+        return tool_refuse("plots need gnuplot, which was not found (Debian "
+                           "has it as gnuplot-nox)");
+    if (wrong)
+        return tool_refuse("gnuplot cannot be run: %s", strerror(wrong));
+    int status = await(child);
+    return status ? refuse_end(status, messages) : TOOL_OK;
+}
+
+/* Runs it with a file for its messages. */
+static int run_heard(char *const arguments[], FILE *in, FILE *out) {
+    FILE *messages = tmpfile();
+    if (!messages)
+        return tool_refuse("no temporary file: %s", strerror(errno));
+    int status = run(arguments, in, out, messages);
+    fclose(messages);
+    return status;
+}
+
+int gnuplot_check(void) {
+    char *const arguments[] = {"gnuplot", "--version", NULL};
+    FILE *nothing = fopen("/dev/null", "r+");
+    if (!nothing)
+        return tool_refuse("/dev/null cannot be opened: %s", strerror(errno));
+    int status = run_heard(arguments, nothing, nothing);
+    fclose(nothing);
+    return status;
+}
+
+static bool is_empty(FILE *f) {
+    struct stat found;
+    return fstat(fileno(f), &found) == 0 && S_ISREG(found.st_mode) &&
+           found.st_size == 0;
+}
+
+int gnuplot_draw(FILE *script, FILE *drawing) {
+    /* Without the user's own settings. */
+    char *const arguments[] = {"gnuplot", "--default-settings", NULL};
+    int status = run_heard(arguments, script, drawing);
+    if (!status && is_empty(drawing))
+        return tool_refuse("gnuplot drew nothing");
+    return status;
+}

@@ -1,0 +1,80 @@
+/* nevh: plots: what is in them, and what draws them.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_PLOT_PRIVATE_H
+#define NEVH_PLOT_PRIVATE_H
+
+#include "plot.h"
+
+typedef struct {
+    double low, high;
+} range;
+
+typedef struct {
+    double x, y; /* NAN: a break */
+} pair;
+
+typedef struct {
+    char *name; /* NULL: not in the legend */
+    size_t panel, look;
+    plot_form form;
+    size_t count, room;
+    pair *point;
+} series;
+
+typedef struct {
+    char *heading, *x, *y;
+    bool log_x, log_y, equal;
+    range span_x; /* NAN: found */
+    range limit_y;
+} panel;
+
+struct plot {
+    char *title;
+    panel *panel;
+    series *series;
+    size_t panels, count; /* count: of series */
+    bool same_ranges;
+};
+
+/* plot_range.c: what an axis of a panel shows: the points, with some room, or
+   whole decades. */
+range plot_range_x(const plot *, size_t panel);
+range plot_range_y(const plot *, size_t panel);
+/* Makes one of them longer, so that a unit has the same length on both where
+   the panel is `width` by `height`. */
+void plot_range_equal(range *x, range *y, double width, double height);
+
+/* plot_script.c: the whole in the language of gnuplot. */
+typedef enum { PLOT_SVG, PLOT_PNG, PLOT_PDF, PLOT_TEXT, PLOT_SCREEN } medium;
+typedef struct {
+    medium medium;
+    size_t columns, lines; /* of PLOT_TEXT */
+    bool colours;          /* of PLOT_TEXT */
+    const char *file;      /* NULL: gnuplot's stdout */
+} target;
+void plot_script(const plot *, const target *, FILE *);
+
+/* plot_layout.c */
+enum { PLOT_LONGEST_NAME = 48 };
+/* Lengths in pixels, or in letters and lines of text. */
+typedef struct {
+    double width, height, letter, line, legend;
+    double panel_width, panel_height;
+    double left, right, top, bottom; /* around a panel */
+    double title;
+    size_t columns, rows;
+} layout;
+
+layout plot_lay_out(const plot *, const target *);
+/* Whether the series is the one of its name that the legend shows. */
+bool plot_in_legend(const plot *, size_t series);
+/* Bytes of the letter, as UTF-8 has them; 0 where it is none. */
+size_t plot_letter_bytes(const unsigned char *);
+size_t plot_letters(const char *text);
+
+/* plot_gnuplot.c: gnuplot --version, and a script to be drawn to a file.
+   returns  TOOL_OK, or TOOL_USAGE with the message printed */
+int gnuplot_check(void);
+int gnuplot_draw(FILE *script, FILE *drawing);
+
+#endif

@@ -1,0 +1,81 @@
+/* nevh: plots: what axes show.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "plot_private.h"
+#include <math.h>
+
+static const double room = 0.04;       /* of a linear axis, at either end */
+static const double few_digits = 1e-9; /* what is less counts as level */
+
+typedef double coordinate(const pair *);
+static double x_of(const pair *p) {
+    return p->x;
+}
+static double y_of(const pair *p) {
+    return p->y;
+}
+
+static void widen(range *r, double value) {
+    r->low = fmin(r->low, value);
+    r->high = fmax(r->high, value);
+}
+
+/* Of the points of a panel, or of all; empty where there are none. */
+static range extent(const plot *p, size_t number, coordinate *of) {
+    range r = {INFINITY, -INFINITY};
+    for (size_t i = 0; i < p->count; i++) {
+        const series *s = &p->series[i];
+        for (size_t k = 0; k < s->count; k++)
+            if ((s->panel == number || p->same_ranges) && !isnan(s->point[k].x))
+                widen(&r, of(&s->point[k]));
+    }
+    return r;
+}
+
+static range decades(range r) {
+    if (r.low > r.high)
+        return (range){0.1, 10};
+    double low = floor(log10(r.low)), high = ceil(log10(r.high));
+    if (low == high)
+        low -= 1, high += 1;
+    return (range){pow(10, low), pow(10, high)};
+}
+
+static range with_room(range r) {
+    if (r.low > r.high)
+        return (range){-1, 1};
+    double more = room * (r.high - r.low);
+    if (more <= few_digits * fmax(fabs(r.low), fabs(r.high)))
+        more = fmax(0.1 * fabs(r.low), 1e-300);
+    if (r.low == 0 && r.high == 0)
+        more = 1;
+    return (range){r.low - more, r.high + more};
+}
+
+range plot_range_x(const plot *p, size_t number) {
+    const panel *on = &p->panel[number];
+    if (on->span_x.low < on->span_x.high)
+        return on->span_x;
+    range r = extent(p, number, x_of);
+    return on->log_x ? decades(r) : with_room(r);
+}
+
+range plot_range_y(const plot *p, size_t number) {
+    const panel *on = &p->panel[number];
+    range r = extent(p, number, y_of);
+    if (r.low <= r.high) {
+        r.low = fmin(fmax(r.low, on->limit_y.low), on->limit_y.high);
+        r.high = fmax(fmin(r.high, on->limit_y.high), on->limit_y.low);
+    }
+    return on->log_y ? decades(r) : with_room(r);
+}
+
+static void lengthen(range *r, double length) {
+    double middle = (r->low + r->high) / 2;
+    *r = (range){middle - length / 2, middle + length / 2};
+}
+
+void plot_range_equal(range *x, range *y, double width, double height) {
+    double unit = fmax((x->high - x->low) / width, (y->high - y->low) / height);
+    lengthen(x, unit * width);
+    lengthen(y, unit * height);
+}

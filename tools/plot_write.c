@@ -1,0 +1,171 @@
+/* nevh: where plots go: --plot and --keep-plot-script.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "plot_private.h"
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+enum { USUAL_COLUMNS = 80, USUAL_LINES = 24 };
+
+static bool in_terminal(const options *o) {
+    return o->plot && strcmp(o->plot, "-") == 0;
+}
+
+static int find_medium(const options *o, medium *m) {
+    static const struct {
+        const char *ending;
+        medium medium;
+    } known[] = {{"svg", PLOT_SVG}, {"png", PLOT_PNG}, {"pdf", PLOT_PDF}};
+    const char *dot = o->plot ? strrchr(o->plot, '.') : NULL;
+    *m = o->plot ? PLOT_TEXT : PLOT_SCREEN;
+    if (!o->plot || in_terminal(o))
+        return TOOL_OK;
+    for (size_t i = 0; dot && i < sizeof known / sizeof *known; i++)
+        if (strcmp(dot + 1, known[i].ending) == 0) {
+            *m = known[i].medium;
+            return TOOL_OK;
+        }
+    return tool_refuse("--plot takes FILE.svg, FILE.png, FILE.pdf or -, not "
+                       "\"%s\"",
+                       o->plot);
+}
+
+static size_t columns_named(void) {
+    const char *text = getenv("COLUMNS");
+    long columns = text ? strtol(text, NULL, 10) : 0;
+    return columns > 0 && columns < 10000 ? (size_t)columns : USUAL_COLUMNS;
+}
+
+static void measure_terminal(target *t) {
+    struct winsize window = {0};
+    bool is_terminal = ioctl(STDOUT_FILENO, TIOCGWINSZ, &window) == 0;
+    bool known = is_terminal && window.ws_col > 0 && window.ws_row > 0;
+    t->columns = known ? window.ws_col : columns_named();
+    t->lines = known ? window.ws_row : USUAL_LINES;
+    t->colours = is_terminal && !getenv("NO_COLOR");
+}
+
+static int find_target(const options *o, target *t) {
+    *t = (target){0};
+    if (find_medium(o, &t->medium))
+        return TOOL_USAGE;
+    if (t->medium == PLOT_TEXT)
+        measure_terminal(t);
+    return TOOL_OK;
+}
+
+bool plot_wanted(const options *o) {
+    return o->plot || o->plot_script;
+}
+
+static bool same(const char *a, const char *b) {
+    return a && b && strcmp(a, b) == 0;
+}
+
+static int check_names(const options *o) {
+    target t;
+    if (find_target(o, &t))
+        return TOOL_USAGE;
+    if (same(o->plot, o->plot_script) || same(o->plot, o->file) ||
+        same(o->plot_script, o->file))
+        return tool_refuse("two outputs would have the same name, %s",
+                           same(o->plot, o->file) ? o->plot : o->plot_script);
+    if (in_terminal(o) && !o->file && o->format != FORMAT_TABLE)
+        return tool_refuse("--plot - would draw among the rows; give them a "
+                           "file with -o");
+    return TOOL_OK;
+}
+
+int plot_check(const options *o) {
+    if (check_names(o) || (o->plot && gnuplot_check()) ||
+        (o->plot && !in_terminal(o) && output_check(o->plot)) ||
+        (o->plot_script && output_check(o->plot_script)))
+        return TOOL_USAGE;
+    return TOOL_OK;
+}
+
+static int keep_script(const plot *p, const options *o, target t) {
+    output out;
+    if (output_open(&out, o->plot_script))
+        return TOOL_USAGE;
+    t.file = in_terminal(o) ? NULL : o->plot;
+    plot_script(p, &t, out.stream);
+    return output_close(&out, TOOL_OK);
+}
+
+static int draw_to(const plot *p, const target *t, FILE *drawing) {
+    FILE *script = tmpfile();
+    if (!script)
+        return tool_refuse("no temporary file: %s", strerror(errno));
+    int status = TOOL_OK;
+    plot_script(p, t, script);
+    if (fflush(script) || ferror(script))
+        status = tool_refuse("the script for gnuplot cannot be written: %s",
+                             strerror(errno));
+    rewind(script);
+    if (!status)
+        status = gnuplot_draw(script, drawing);
+    fclose(script);
+    return status;
+}
+
+/* Without the form feed at the beginning, and blanks at the ends of lines. */
+static void show(FILE *drawing) {
+    int blanks = 0, c;
+    rewind(drawing);
+    while ((c = getc(drawing)) != EOF) {
+        if (c == ' ') {
+            blanks++;
+            continue;
+        }
+        if (c != '\n')
+            printf("%*s", blanks, "");
+        blanks = 0;
+        if (c != '\f')
+            putchar(c);
+    }
+    putchar('\n');
+}
+
+static int draw_in_terminal(const plot *p, const target *t) {
+    FILE *drawing = tmpfile();
+    if (!drawing)
+        return tool_refuse("no temporary file: %s", strerror(errno));
+    int status = draw_to(p, t, drawing);
+    if (!status)
+        show(drawing);
+    fclose(drawing);
+    if (!status && (fflush(stdout) || ferror(stdout)))
+        return tool_refuse("the plot cannot be written: %s", strerror(errno));
+    return status;
+}
+
+static int draw(const plot *p, const options *o, const target *t) {
+    output out;
+    if (in_terminal(o))
+        return draw_in_terminal(p, t);
+    if (output_open(&out, o->plot))
+        return TOOL_USAGE;
+    return output_close(&out, draw_to(p, t, out.stream));
+}
+
+static bool is_empty(const plot *p) {
+    for (size_t i = 0; i < p->count; i++)
+        if (p->series[i].count)
+            return false;
+    return true;
+}
+
+int plot_write(plot *p, const options *o) {
+    target t;
+    if (find_target(o, &t))
+        return TOOL_USAGE;
+    if (is_empty(p))
+        return tool_refuse("there is nothing to plot");
+    int status = o->plot_script ? keep_script(p, o, t) : TOOL_OK;
+    if (!status && o->plot)
+        status = draw(p, o, &t);
+    return status;
+}

@@ -1,0 +1,94 @@
+/* nevh section --plot: points.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "plot.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MANY = 300 };
+
+/* One of the numbers of all points. */
+typedef struct {
+    const double *number;
+    size_t points, width;
+    double period; /* 0: none */
+    double begin;  /* of the period to show */
+} column;
+
+static double period_of(nevh_scene *scene, const char *name) {
+    for (size_t k = 0; k < nevh_scene_dof(scene); k++)
+        if (strcmp(nevh_scene_coordinate(scene, k), name) == 0)
+            return nevh_scene_period(scene, k);
+    return 0;
+}
+
+static int by_size(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* An angle that stays in one half turn is not to be cut there. */
+static double find_begin(const column *c) {
+    double *sorted = tool_allocate(c->points, sizeof *sorted);
+    double begin = -c->period / 2;
+    for (size_t k = 0; k < c->points; k++)
+        sorted[k] = c->number[k * c->width];
+    qsort(sorted, c->points, sizeof *sorted, by_size);
+    for (size_t k = 1; k < c->points; k++)
+        if (sorted[k] - sorted[k - 1] > c->period / 2)
+            begin = (sorted[k] + sorted[k - 1]) / 2;
+    free(sorted);
+    return begin;
+}
+
+static column column_of(const plan *p, const char *name, size_t points,
+                        const double numbers[], size_t width, size_t place) {
+    column c = {numbers + place, points, width, period_of(p->scene, name), 0};
+    if (c.period > 0 && points)
+        c.begin = find_begin(&c);
+    return c;
+}
+
+static double value(const column *c, size_t k) {
+    static const double nothing = 1e-12; /* of a turn: rounding */
+    double x = c->number[k * c->width];
+    if (c->period > 0 && x < c->begin)
+        x += c->period;
+    return fabs(x) < nothing * c->period ? 0 : x;
+}
+
+static size_t new_series(plot *to, const char *name, size_t points) {
+    size_t series = plot_series(to, name);
+    plot_style(to, series, points > MANY ? PLOT_DOTS : PLOT_POINTS);
+    return series;
+}
+
+static void add_panel(plot **to, const plan *p, const nevh_scene_section *is,
+                      const char *across, const char *up) {
+    const char *title = nevh_scene_title(p->scene);
+    char *x = plot_label(p, across, across), *y = plot_label(p, up, up);
+    if (!*to) {
+        *to = plot_new(*title ? title : p->name, x, y);
+        plot_heading(*to, is->name);
+    } else
+        plot_panel(*to, is->name, x, y);
+    free(x);
+    free(y);
+}
+
+/* The first item and the second; a single one against the time. */
+void section_plot(plot **to, const plan *p, const nevh_scene_section *is,
+                  size_t points, const double numbers[]) {
+    bool two_ways = is->direction == 0 && is->every == 0;
+    bool items = is->items > 1;
+    size_t width = 2 + is->items;
+    const char *across = items ? is->item[0] : "t", *up = is->item[items];
+    column x = column_of(p, across, points, numbers, width, items ? 2 : 0);
+    column y = column_of(p, up, points, numbers, width, items ? 3 : 2);
+    add_panel(to, p, is, across, up);
+    size_t rising = new_series(*to, two_ways ? "rising" : NULL, points);
+    size_t falling = two_ways ? new_series(*to, "falling", points) : rising;
+    for (size_t k = 0; k < points; k++)
+        plot_point(*to, numbers[k * width + 1] < 0 ? falling : rising,
+                   value(&x, k), value(&y, k));
+}
