@@ -85,6 +85,8 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/trend_private.h \
 	lib/diagnose/trend.c \
 	lib/diagnose/symplecticity.c \
+	lib/diagnose/stability.c \
+	lib/diagnose/rates.c \
 	lib/scene/scene_private.h \
 	lib/scene/lines.c \
 	lib/scene/piece.c \

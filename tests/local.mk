@@ -27,6 +27,7 @@ suites = \
 	tests/check_reversal \
 	tests/check_symplecticity \
 	tests/check_drift \
+	tests/check_stability \
 	tests/check_energy_preserving \
 	tests/check_evaluations \
 	tests/check_run \
