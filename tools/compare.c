@@ -332,6 +332,8 @@ static page make_page(const options *o, const plan *p, const rows *r) {
     note_rows(p, r, &result.before);
     verdict_words(p, r->row, r->count, &result.after);
     if (is_table)
+        stability_words(p, r->row, r->count, &result.after);
+    if (is_table)
         list_reasons(r, &result.after);
     return result;
 }

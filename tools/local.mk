@@ -14,6 +14,13 @@ tools_nevh_SOURCES = \
 	tools/compare.c \
 	tools/verdict.c \
 	tools/effects.c \
+	tools/stability.c \
+	tools/hard_private.h \
+	tools/hard_cases.c \
+	tools/hard_subject.c \
+	tools/hard_run.c \
+	tools/hard_judge.c \
+	tools/hard.c \
 	tools/check.c \
 	tools/list.c
 tools_nevh_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE \

@@ -16,6 +16,8 @@ static const struct {
      "errors, structure of H with evidence, and which schemes fit"},
     {"effects", effects, FOR_EFFECTS, "SCENE",
      "each effect: on or off, what it reads, evaluations"},
+    {"hard", hard, FOR_HARD, "",
+     "every scheme on cases that are hard to integrate, and the verdicts"},
     {"list", list_what, FOR_LIST, "WHAT",
      "integrators, gradients, models or scenes"},
 };

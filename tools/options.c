@@ -8,7 +8,7 @@
 
 enum {
     OF_SCENES = FOR_COMPARE | FOR_CHECK | FOR_EFFECTS,
-    OF_TABLES = OF_SCENES | FOR_LIST
+    OF_TABLES = OF_SCENES | FOR_LIST | FOR_HARD
 };
 
 /* The commands that each option is for, as an or. */
@@ -21,18 +21,18 @@ static const struct {
     {"with", "EFFECT", OF_SCENES, read_with, "switch an effect on"},
     {"without", "EFFECT", OF_SCENES, read_without, "switch an effect off"},
     {"set", "NAME=VALUE", OF_SCENES, read_set, "change a parameter"},
-    {"integrators", "A,B", OF_SCENES, read_integrators,
+    {"integrators", "A,B", OF_SCENES | FOR_HARD, read_integrators,
      "instead of the scene's"},
     {"dt", "A,B", OF_SCENES, read_dt, "time steps, instead of the scene's"},
     {"t-end", "T", OF_SCENES, read_t_end, "the end, instead of the scene's"},
-    {"gradient", "A,B", OF_SCENES, read_gradient,
+    {"gradient", "A,B", OF_SCENES | FOR_HARD, read_gradient,
      "central2, central4, ...; see nevh list gradients"},
     {"gradient-step", "D", OF_SCENES, read_gradient_step,
      "half-spread of the differences; chosen by trial if not given"},
     {"portable", NULL, OF_SCENES, read_portable,
      "no vector code: the same digits with the same libm"},
-    {"all", NULL, FOR_LIST, read_all,
-     "with names in other packages and sources"},
+    {"all", NULL, FOR_LIST | FOR_HARD, read_all,
+     "list: with names in other packages and sources; hard: each run"},
     {"format", "table|csv|json", OF_TABLES, read_format, ""},
     {"output", "FILE", OF_TABLES, read_file,
      "write there (-o), when it is whole"},

@@ -113,6 +113,9 @@ int scene_open(nevh_scene **scene, const options *);
 /* Names of installed scenes, sorted; with their files when `files` is not
    NULL. */
 void scenes_installed(list *names, list *files);
+/* The file of a scene in a folder given from that of the installed ones; NULL
+   when there is none. */
+char *scene_file(const char *beside, const char *name);
 
 /* plan.c: the rows to run, from options, scene and defaults. */
 typedef struct {
@@ -163,7 +166,28 @@ void row_run(const plan *, row *);
 /* compare.c, verdict.c */
 void verdict_words(const plan *, const row rows[], size_t count, list *words);
 
+/* stability.c: why a run became unstable. */
+/* The largest frequency that an orbit's states have, and when. */
+typedef struct {
+    nevh_rates *rates;
+    double frequency, t;
+} pace;
+/* A nevh_observe_fn; data is the pace. */
+int pace_observe(void *, size_t step, double t, const double q[],
+                 const double p[]);
+/* That of a run up to its end, its failure, or an energy error above `scale`
+   (0: that of the energy); with the options of the run, whose q and p are its
+   start.  Its rates are gone. */
+pace stability_pace(const nevh_system *, const nevh_integrator *,
+                    const nevh_options *, double scale, double dt,
+                    double t_end);
+/* The likely cause of trouble at that pace, and a step or schemes to take; NULL
+   where none is known. */
+char *stability_cause(const nevh_integrator *, double dt, const pace *);
+/* The same of each unstable row of compare. */
+void stability_words(const plan *, const row rows[], size_t count, list *words);
+
 typedef int command(const options *);
-command compare, list_what, check, effects;
+command compare, list_what, check, effects, hard;
 
 #endif

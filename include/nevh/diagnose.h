@@ -103,6 +103,11 @@ NEVH_API int nevh_reversal_defect(nevh_stepper *, double t, double h,
    below that, of which 2 pi/3 and pi/2 per step matter most.
    cost     some thousand steps of one degree of freedom; thread-safe */
 NEVH_API double nevh_stability_limit(const nevh_integrator *);
+/* The angle, 0 ... pi, by which a step of h omega = x turns that oscillator's
+   phase: x and an error of the scheme's order.  Steps that make a third or a
+   quarter of a turn resonate with the terms of H beyond the quadratic.  NAN
+   beyond the limit, and where there is none. */
+NEVH_API double nevh_stability_angle(const nevh_integrator *, double x);
 
 /* How fast small displacements from an orbit turn round and grow: from the
    eigenvalues of the linearised motion. */

@@ -133,13 +133,29 @@ static double search(const oscillator *o) {
     return INFINITY;
 }
 
+/* Whether its steps are matrices. */
+static bool is_linear(const nevh_integrator *scheme) {
+    return scheme && !nevh_integrator_needs_tolerance(scheme) &&
+           !nevh_integrator_own_time(scheme) &&
+           nevh_integrator_symplectic(scheme) != NEVH_EXTENDED;
+}
+
 double nevh_stability_limit(const nevh_integrator *scheme) {
-    if (!scheme || nevh_integrator_needs_tolerance(scheme) ||
-        nevh_integrator_own_time(scheme) ||
-        nevh_integrator_symplectic(scheme) == NEVH_EXTENDED)
+    if (!is_linear(scheme))
         return NAN;
     oscillator o = begin(scheme);
     double limit = nevh_stepper_status(o.stepper) ? NAN : search(&o);
     end(&o);
     return limit;
+}
+
+double nevh_stability_angle(const nevh_integrator *scheme, double x) {
+    double q[2] = {1, 0}, p[2] = {0, 1};
+    if (!is_linear(scheme))
+        return NAN;
+    oscillator o = begin(scheme);
+    int status = nevh_stepper_apply(o.stepper, 0, x, q, p);
+    end(&o);
+    double determinant = q[0] * p[1] - q[1] * p[0];
+    return status ? NAN : acos((q[0] + p[1]) / 2 / sqrt(determinant));
 }
