@@ -449,17 +449,32 @@ END_TEST
 /* x'' = 6 x^2, x = 1/(1 - t)^2: gone at t = 1, up to which the substeps shrink
    as long as times tell them apart. */
 static double fleeing(double t, const double q[], const double p[],
-                      const void *params) {
-    (void)t, (void)params;
+                      const double c[], const void *params) {
+    (void)t, (void)c, (void)params;
     return p[0] * p[0] / 2 - 2 * q[0] * q[0] * q[0];
+}
+
+static void fleeing_gradient(size_t width, const double t[], const double q[],
+                             const double p[], const double c[],
+                             const void *params, double dq[], double dp[]) {
+    (void)t, (void)c, (void)params;
+    for (size_t i = 0; dq && i < width; i++)
+        dq[i] = -6 * q[i] * q[i];
+    for (size_t i = 0; dp && i < width; i++)
+        dp[i] = p[i];
 }
 
 START_TEST(orbits_that_end_in_time) {
     const nevh_integrator *scheme = _i % 2 ? nevh_dop853 : nevh_dopri5;
-    nevh_system *s = nevh_system_from(1, fleeing, NULL);
+    nevh_system *s = nevh_system_new(1);
+    nevh_system_add(s, &(nevh_term){.effect = "H",
+                                    .nq = 1,
+                                    .np = 1,
+                                    .value = fleeing,
+                                    .gradient = fleeing_gradient});
     double x = 1, y = 2, h = 1 + 0.1 * (_i / 2);
     nevh_options o = {
-        .q = &x, .p = &y, .tolerance = 1e-9, .gradient_step = 0x1p-8};
+        .gradient = nevh_exact, .q = &x, .p = &y, .tolerance = 1e-9};
     nevh_stepper *m = nevh_stepper_new(s, scheme, &o);
     int status = nevh_stepper_apply(m, 0, h, &x, &y);
     ck_assert(status == NEVH_EFAILED || status == NEVH_EDOM);
