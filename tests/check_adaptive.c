@@ -472,7 +472,7 @@ START_TEST(orbits_that_end_in_time) {
                                     .np = 1,
                                     .value = fleeing,
                                     .gradient = fleeing_gradient});
-    double x = 1, y = 2, h = 1 + 0.1 * (_i / 2);
+    double x = 1, y = 2, h = 1.05 + 0.1 * (_i / 2);
     nevh_options o = {
         .gradient = nevh_exact, .q = &x, .p = &y, .tolerance = 1e-9};
     nevh_stepper *m = nevh_stepper_new(s, scheme, &o);

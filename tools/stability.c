@@ -15,8 +15,10 @@ int pace_observe(void *data, size_t step, double t, const double q[],
     pace *fastest = data;
     double frequency, growth;
     (void)step;
-    if (!nevh_rates_at(fastest->rates, t, q, p, &frequency, &growth) &&
-        frequency > fastest->frequency)
+    if (nevh_rates_at(fastest->rates, t, q, p, &frequency, &growth))
+        return NEVH_OK;
+    frequency = fmax(frequency, growth); /* of whatever kind */
+    if (frequency > fastest->frequency)
         fastest->frequency = frequency, fastest->t = t;
     return NEVH_OK;
 }

@@ -167,7 +167,8 @@ void row_run(const plan *, row *);
 void verdict_words(const plan *, const row rows[], size_t count, list *words);
 
 /* stability.c: why a run became unstable. */
-/* The largest frequency that an orbit's states have, and when. */
+/* The largest frequency, or rate of growth, that an orbit's states have, and
+   when. */
 typedef struct {
     nevh_rates *rates;
     double frequency, t;
