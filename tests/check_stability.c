@@ -40,6 +40,14 @@ START_TEST(published_limits) {
 }
 END_TEST
 
+/* Its two copies of the orbit leave each other. */
+START_TEST(limit_of_an_extended_space) {
+    double limit = nevh_stability_limit(nevh_tao4);
+    ck_assert_double_gt(limit, 0.3);
+    ck_assert_double_lt(limit, 1);
+}
+END_TEST
+
 static const double mass = 1.3, spring = 2.2;
 
 static double oscillator(double t, const double q[], const double p[],
@@ -89,7 +97,6 @@ END_TEST
 
 START_TEST(no_limit_is_told) {
     ck_assert_double_nan(nevh_stability_limit(NULL));
-    ck_assert_double_nan(nevh_stability_limit(nevh_tao4));
     ck_assert_double_nan(nevh_stability_limit(nevh_adaptive_verlet));
     ck_assert_double_nan(nevh_stability_limit(nevh_gsl_msadams));
 }
@@ -216,6 +223,7 @@ int main(void) {
     TCase *cases = tcase_create("limits and rates");
     tcase_add_loop_test(cases, published_limits, 0, PUBLISHED);
     tcase_add_loop_test(cases, limits_are_limits, 0, scheme_count());
+    tcase_add_test(cases, limit_of_an_extended_space);
     tcase_add_test(cases, no_limit_is_told);
     tcase_add_loop_test(cases, rates_of_a_pendulum, 0, 3);
     tcase_add_test(cases, rates_of_a_charge);

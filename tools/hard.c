@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-static const double budget = 2; /* seconds of a run */
+static const double budget = 0.25; /* seconds of a run */
 
 typedef struct {
     hard_result *result;
@@ -18,6 +18,7 @@ typedef struct {
 typedef struct {
     list gradients;
     const nevh_integrator **schemes;
+    double *limits; /* of stability, a scheme each */
     size_t n_schemes, n_cases;
     case_results *cases;
 } suite;
@@ -31,9 +32,11 @@ static int take_schemes(suite *all, const options *o) {
     size_t wanted = o->integrators.count;
     all->n_schemes = wanted ? wanted : count;
     all->schemes = tool_allocate(all->n_schemes, sizeof *all->schemes);
+    all->limits = tool_allocate(all->n_schemes, sizeof *all->limits);
     for (size_t i = 0; !status && i < all->n_schemes; i++) {
         const char *name = wanted ? o->integrators.item[i] : names.item[i];
         all->schemes[i] = nevh_integrator_named(name);
+        all->limits[i] = nevh_stability_limit(all->schemes[i]);
         if (!all->schemes[i])
             status = tool_unknown("integrator", name, &names);
     }
@@ -92,6 +95,7 @@ static void run_case(const suite *all, hard_subject *s, case_results *c) {
         hard_result *r = &c->result[i];
         r->gradient = all->gradients.item[i / all->n_schemes];
         r->scheme = all->schemes[i % all->n_schemes];
+        r->limit = all->limits[i % all->n_schemes];
         hard_run(s, budget, r);
         hard_judge(s, r);
     }
@@ -266,6 +270,7 @@ static void suite_free(suite *all) {
     }
     free(all->cases);
     free(all->schemes);
+    free(all->limits);
     list_free(&all->gradients);
 }
 

@@ -140,7 +140,8 @@ static void run_planned(const hard_subject *s, nevh_stepper *m,
     r->floor = find_floor(s, r, m);
     if (s->is->facts & HARD_RETURN && !r->status)
         turn_back(s, m, r);
-    if (!stops && (r->status || r->energy.max > unstable_above))
+    if (!stops && o->tolerance == 0 &&
+        (r->status || r->energy.max > unstable_above))
         find_pace(s, o, r);
 }
 
@@ -153,7 +154,6 @@ void hard_run(const hard_subject *s, double budget, hard_result *r) {
     r->defect = NAN;
     r->frequency = s->frequency;
     r->fastest_at = s->fastest_at;
-    r->limit = nevh_stability_limit(r->scheme);
     if (r->planned)
         run_planned(s, m, &o, budget, r);
     else

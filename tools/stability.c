@@ -38,9 +38,9 @@ static const char *resonance(const nevh_integrator *scheme, double x) {
     return fabs(angle - M_PI / 2) < near_by ? "four" : NULL;
 }
 
-char *stability_cause(const nevh_integrator *scheme, double dt,
+char *stability_cause(const nevh_integrator *scheme, double limit, double dt,
                       const pace *fastest) {
-    double limit = nevh_stability_limit(scheme), w = fastest->frequency;
+    double w = fastest->frequency;
     double x = fabs(dt) * w;
     const char *name = nevh_integrator_name(scheme);
     const char *turn = resonance(scheme, x);
@@ -134,7 +134,8 @@ static void tell_cause(const plan *p, const row *r, list *words) {
     o.balance = p->balance;
     pace fastest = stability_pace(p->system, r->scheme, &o,
                                   p->run->energy_scale, r->dt, p->t_end);
-    char *cause = stability_cause(r->scheme, r->dt, &fastest);
+    char *cause = stability_cause(r->scheme, nevh_stability_limit(r->scheme),
+                                  r->dt, &fastest);
     if (cause)
         list_print(words, "%s at dt = %.4g: %s.", r->integrator, r->dt, cause);
     free(cause);

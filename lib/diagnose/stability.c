@@ -133,6 +133,26 @@ static double search(const oscillator *o) {
     return INFINITY;
 }
 
+/* Of methods with a space of their own: the largest of an orbit in it. */
+static double longest(const oscillator *o, double x) {
+    enum { STEPS = 2000 };
+    double q[2] = {1, 0}, p[2] = {0, 1}, most = 0;
+    nevh_stepper_reset(o->stepper);
+    for (int i = 0; i < STEPS && most < 100; i++) {
+        if (nevh_stepper_apply(o->stepper, i * x, x, q, p))
+            return INFINITY;
+        most = fmax(most, fmax(hypot(q[0], p[0]), hypot(q[1], p[1])));
+    }
+    return most;
+}
+
+static double search_extended(const oscillator *o) {
+    for (double x = spacing; x <= 2; x += spacing)
+        if (longest(o, x) >= 100)
+            return x - spacing;
+    return INFINITY;
+}
+
 /* Whether its steps are matrices. */
 static bool is_linear(const nevh_integrator *scheme) {
     return scheme && !nevh_integrator_needs_tolerance(scheme) &&
@@ -141,10 +161,15 @@ static bool is_linear(const nevh_integrator *scheme) {
 }
 
 double nevh_stability_limit(const nevh_integrator *scheme) {
-    if (!is_linear(scheme))
+    bool extended = scheme &&
+                    nevh_integrator_symplectic(scheme) == NEVH_EXTENDED &&
+                    !nevh_integrator_own_time(scheme);
+    if (!extended && !is_linear(scheme))
         return NAN;
     oscillator o = begin(scheme);
-    double limit = nevh_stepper_status(o.stepper) ? NAN : search(&o);
+    double limit = nevh_stepper_status(o.stepper) ? NAN
+                   : extended                     ? search_extended(&o)
+                                                  : search(&o);
     end(&o);
     return limit;
 }
