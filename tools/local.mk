@@ -15,6 +15,7 @@ tools_nevh_SOURCES = \
 	tools/verdict.c \
 	tools/effects.c \
 	tools/stability.c \
+	tools/preflight.c \
 	tools/hard_private.h \
 	tools/hard_cases.c \
 	tools/hard_subject.c \
