@@ -248,12 +248,16 @@ static double factor(const walk *s, const lane_walk *l, double err) {
     return 0.9 * pow(err, 0.75 * beta - 1 / k) * pow(last, beta);
 }
 
+/* Near the end of an orbit the times themselves may be too coarse for a shorter
+   substep: it would be rejected for ever. */
 static int reject(const walk *s, lane_walk *l, double err) {
     double wanted = 0.9 * pow(err, -1. / s->table->error_power);
     l->size = l->step * (wanted > 0.2 ? fmin(wanted, 0.9) : 0.2);
     l->held = true;
-    return too_short(s, l) ? give_up(s, l, "substeps too short to be taken")
-                           : NEVH_OK;
+    bool shorter = l->done + l->size < l->done + l->step;
+    return too_short(s, l) || !shorter
+               ? give_up(s, l, "substeps too short to be taken")
+               : NEVH_OK;
 }
 
 /* A substep cut short by the end of the step says nothing against longer

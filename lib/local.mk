@@ -102,6 +102,8 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/reference_run.c \
 	lib/diagnose/reference_walk.c \
 	lib/diagnose/state_error.c \
+	lib/diagnose/stability.c \
+	lib/diagnose/rates.c \
 	lib/scene/scene_private.h \
 	lib/scene/lines.c \
 	lib/scene/piece.c \

@@ -446,6 +446,45 @@ START_TEST(walls_are_not_run_through) {
 }
 END_TEST
 
+/* x'' = 6 x^2, x = 1/(1 - t)^2: gone at t = 1, up to which the substeps shrink
+   as long as times tell them apart. */
+static double fleeing(double t, const double q[], const double p[],
+                      const double c[], const void *params) {
+    (void)t, (void)c, (void)params;
+    return p[0] * p[0] / 2 - 2 * q[0] * q[0] * q[0];
+}
+
+static void fleeing_gradient(size_t width, const double t[], const double q[],
+                             const double p[], const double c[],
+                             const void *params, double dq[], double dp[]) {
+    (void)t, (void)c, (void)params;
+    for (size_t i = 0; dq && i < width; i++)
+        dq[i] = -6 * q[i] * q[i];
+    for (size_t i = 0; dp && i < width; i++)
+        dp[i] = p[i];
+}
+
+START_TEST(orbits_that_end_in_time) {
+    const nevh_integrator *scheme = _i % 2 ? nevh_dop853 : nevh_dopri5;
+    nevh_system *s = nevh_system_new(1);
+    nevh_system_add(s, &(nevh_term){.effect = "H",
+                                    .nq = 1,
+                                    .np = 1,
+                                    .value = fleeing,
+                                    .gradient = fleeing_gradient});
+    double x = 1, y = 2, h = 1.05 + 0.1 * (_i / 2);
+    nevh_options o = {
+        .gradient = nevh_exact, .q = &x, .p = &y, .tolerance = 1e-9};
+    nevh_stepper *m = nevh_stepper_new(s, scheme, &o);
+    int status = nevh_stepper_apply(m, 0, h, &x, &y);
+    ck_assert(status == NEVH_EFAILED || status == NEVH_EDOM);
+    ck_assert(x == 1 && y == 2);
+    ck_assert_uint_le(nevh_stepper_counts(m).gradients, 30000);
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
 /* Lanes take substeps of their own, and none knows of the others: also where
    one runs into a wall. */
 START_TEST(lanes_are_alone) {
@@ -617,6 +656,7 @@ int main(void) {
     tcase_add_test(cases, the_budget_is_named);
     tcase_add_loop_test(cases, an_end_of_the_domain, 0, count);
     tcase_add_loop_test(cases, walls_are_not_run_through, 0, 2);
+    tcase_add_loop_test(cases, orbits_that_end_in_time, 0, 20);
     tcase_add_loop_test(cases, lanes_are_alone, 0, count);
     tcase_add_loop_test(cases, lanes_have_their_own_time, 0, count);
     tcase_add_loop_test(cases, rounding_is_carried_on, 0, 2);

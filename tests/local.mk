@@ -32,6 +32,7 @@ suites = \
 	tests/check_reversal \
 	tests/check_symplecticity \
 	tests/check_drift \
+	tests/check_stability \
 	tests/check_energy_preserving \
 	tests/check_evaluations \
 	tests/check_run \
@@ -52,6 +53,7 @@ suites = \
 	tests/check_reference \
 	tests/check_failures \
 	tests/check_hard_steps \
+	tests/check_hard \
 	tests/check_implicit \
 	tests/check_stiff \
 	tests/check_brouwer \
@@ -78,6 +80,7 @@ tests_check_tape_build_LDADD = $(INSIDE_LIBS)
 tests_check_tape_terms_LDADD = $(INSIDE_LIBS)
 tests_check_formula_LDADD = $(INSIDE_LIBS)
 tests_check_formula_terms_LDADD = $(INSIDE_LIBS)
+tests_check_hard_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_gsl_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_damped_orbits_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_threads_CFLAGS = $(AM_CFLAGS) -pthread
@@ -102,6 +105,31 @@ endif
 all_suites = $(suites) $(memory_suite)
 endif
 
+# What nevh hard runs, beside the scenes.
+harddir = $(pkgdatadir)/hard
+dist_hard_DATA = \
+	tests/hard/double-pendulum.nevh \
+	tests/hard/earth.nevh \
+	tests/hard/edge.nevh \
+	tests/hard/elastic-pendulum.nevh \
+	tests/hard/fput.nevh \
+	tests/hard/head-on.nevh \
+	tests/hard/henon-heiles.nevh \
+	tests/hard/kepler.nevh \
+	tests/hard/kink.nevh \
+	tests/hard/late-start.nevh \
+	tests/hard/magnetic-mirror.nevh \
+	tests/hard/molecule.nevh \
+	tests/hard/offset.nevh \
+	tests/hard/outer-planets.nevh \
+	tests/hard/pendulum-modulus.nevh \
+	tests/hard/pythagorean.nevh \
+	tests/hard/resonance.nevh \
+	tests/hard/schwarzschild.nevh \
+	tests/hard/swinging-atwood.nevh \
+	tests/hard/toda.nevh \
+	tests/hard/uniform-field.nevh
+
 dist_check_SCRIPTS = \
 	tests/symbols.sh \
 	tests/cplusplus.sh \
@@ -117,6 +145,8 @@ dist_check_SCRIPTS = \
 	tests/nevh_run.sh \
 	tests/nevh_code.sh \
 	tests/nevh_units.sh \
+	tests/nevh_check.sh \
+	tests/nevh_hard.sh \
 	tests/pkgconfig.sh \
 	tests/effects_off.sh \
 	tests/valgrind.sh

@@ -82,8 +82,24 @@ static void add_refusal(refusals *r, const char *scheme, const char *message) {
     free(why);
 }
 
+/* dt times the fastest frequency, against what the scheme bears. */
+static void add_preflight(const plan *p, const nevh_integrator *scheme,
+                          bool fits, const preflight *ahead, table *t) {
+    double limit = fits ? nevh_stability_limit(scheme) : NAN;
+    double x = fits ? p->dt[0] * ahead->frequency : NAN;
+    if (isfinite(limit))
+        table_shown(t, "%.3g", limit);
+    else
+        table_text(t, isinf(limit) ? "-" : NULL);
+    if (x > 0)
+        table_shown(t, "%.3g", x);
+    else
+        table_text(t, NULL);
+    table_text(t, fits ? preflight_verdict(limit, x) : NULL);
+}
+
 static void add_scheme(const plan *p, const nevh_integrator *scheme, bool why,
-                       table *t, refusals *r) {
+                       const preflight *ahead, table *t, refusals *r) {
     nevh_options o = plan_options(p, p->gradients.item[0]);
     const char *name = nevh_integrator_name(scheme);
     if (o.gradient_step == 0)
@@ -98,6 +114,7 @@ static void add_scheme(const plan *p, const nevh_integrator *scheme, bool why,
     table_text(t, status ? "no" : "yes");
     if (why)
         table_text(t, status ? nevh_stepper_message(s) : NULL);
+    add_preflight(p, scheme, !status, ahead, t);
     if (status)
         add_refusal(r, name, nevh_stepper_message(s));
     nevh_stepper_free(s);
@@ -105,13 +122,17 @@ static void add_scheme(const plan *p, const nevh_integrator *scheme, bool why,
 
 /* Reasons are a column where programs read, and below the table where people
    do. */
-static void add_schemes(const plan *p, bool why, page *result) {
+static void add_schemes(const plan *p, bool why, const preflight *ahead,
+                        page *result) {
     static const char *const columns[] = {"integrator", "order", "fits", "why"};
     refusals r = {0};
     for (size_t i = 0; i < (why ? 4 : 3); i++)
         table_column(result->table, columns[i]);
+    table_column(result->table, why ? "stable_below" : "stable\nbelow");
+    table_column(result->table, why ? "h_omega" : "h w");
+    table_column(result->table, why ? "preflight" : "");
     for (size_t i = 0; nevh_integrators()[i]; i++)
-        add_scheme(p, nevh_integrators()[i], why, result->table, &r);
+        add_scheme(p, nevh_integrators()[i], why, ahead, result->table, &r);
     for (size_t i = 0; !why && i < r.names.count; i++) {
         list_print(&result->after, "%s: %s", r.names.item[i],
                    r.reasons.item[i]);
@@ -123,12 +144,15 @@ static void add_schemes(const plan *p, bool why, page *result) {
 static int check_plan(const options *o, const plan *p) {
     page result = {.table = table_new()};
     bool is_table = o->format == FORMAT_TABLE;
+    preflight ahead = preflight_fly(p);
     if (!o->quiet || !is_table) {
         plan_notes(p, &result.before);
         tell_state(p, &result.before);
         tell_probes(p, &result.before);
+        preflight_words(p, &ahead, &result.before);
     }
-    add_schemes(p, !is_table, &result);
+    add_schemes(p, !is_table, &ahead, &result);
+    free(ahead.failure);
     int status = output_page(o, &result, TOOL_OK);
     page_free(&result);
     return status;

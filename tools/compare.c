@@ -299,6 +299,8 @@ static page make_page(const options *o, const plan *p, const row_list *r) {
     state_notes(p, &result.before);
     verdict_words(p, r->row, r->count, &result.after);
     if (is_table)
+        stability_words(p, r->row, r->count, &result.after);
+    if (is_table)
         list_reasons(r, &result.after);
     return result;
 }

@@ -36,10 +36,17 @@ tools_nevh_SOURCES = \
 	tools/resume.c \
 	tools/trajectory.c \
 	tools/run.c \
+	tools/stability.c \
+	tools/preflight.c \
+	tools/hard_private.h \
+	tools/hard_cases.c \
+	tools/hard_subject.c \
+	tools/hard_run.c \
+	tools/hard_judge.c \
+	tools/hard.c \
 	tools/check.c \
 	tools/section.c \
 	tools/impact.c \
-	tools/check.c \
 	tools/new.c \
 	tools/sample.c \
 	tools/list.c \

@@ -26,6 +26,8 @@ static const struct {
      "each effect: on or off, what it reads, evaluations, time; --impact"},
     {"section", section, FOR_SECTION, "SCENE",
      "points of Poincare and stroboscopic sections, as CSV"},
+    {"hard", hard, FOR_HARD, "",
+     "every scheme on cases that are hard to integrate, and the verdicts"},
     {"new", new_scene, FOR_NEW, "FILE",
      "makes a scene to start from, FILE.nevh"},
     {"list", list_what, FOR_LIST, "WHAT",

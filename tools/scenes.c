@@ -55,18 +55,22 @@ static int not_found(const char *name) {
     return status;
 }
 
-/* The file of a scene; NULL, with a message, when there is none. */
-static char *find(const char *name) {
-    char *file = text_print("%s", name);
-    if (!is_file(file) && !strchr(name, '/')) {
-        free(file);
-        file = text_print("%s/%s%s", folder(), name, ending);
-    }
+char *scene_file(const char *beside, const char *name) {
+    char *file = text_print("%s/%s/%s%s", folder(), beside, name, ending);
     if (is_file(file))
         return file;
     free(file);
-    not_found(name);
     return NULL;
+}
+
+/* The file of a scene; NULL, with a message, when there is none. */
+static char *find(const char *name) {
+    if (is_file(name))
+        return text_print("%s", name);
+    char *file = strchr(name, '/') ? NULL : scene_file(".", name);
+    if (!file)
+        not_found(name);
+    return file;
 }
 
 static int change(nevh_scene *scene, const char *setting) {

@@ -124,6 +124,9 @@ int scene_open_named(nevh_scene **scene, const char *name, const options *);
 /* Names of installed scenes, sorted; with their files when `files` is not
    NULL. */
 void scenes_installed(list *names, list *files);
+/* The file of a scene in a folder given from that of the installed ones; NULL
+   when there is none. */
+char *scene_file(const char *beside, const char *name);
 
 /* plan.c: the rows to run, from options, scene and defaults. */
 typedef struct {
@@ -139,7 +142,7 @@ typedef struct {
     list integrators, gradients;
     double gradient_step;
     const double *gradient_steps; /* as in nevh_options */
-    size_t repeats; /* of timed runs; 0: chosen */
+    size_t repeats;               /* of timed runs; 0: chosen */
     bool portable, friction, time, balance;
     bool hurried;    /* rows are to be finished later */
     double patience; /* seconds that a row may take; 0: any */
@@ -237,8 +240,50 @@ int compare_plot(const options *, const plan *, const row rows[], size_t count);
 int run_plot(const options *, const plan *, const char *integrator);
 int run_plot_check(const options *, const plan *); /* as plot_check */
 
+/* stability.c: why a run became unstable. */
+/* The largest frequency, or rate of growth, that an orbit's states have, and
+   when. */
+typedef struct {
+    nevh_rates *rates;
+    double frequency, t;
+} pace;
+/* A nevh_observe_fn; data is the pace. */
+int pace_observe(void *, size_t step, double t, const double q[],
+                 const double p[]);
+/* That of a run up to its end, its failure, or an energy error above `scale`
+   (0: that of the energy); with the options of the run, whose q and p are its
+   start.  Its rates are gone. */
+pace stability_pace(const nevh_system *, const nevh_integrator *,
+                    const nevh_options *, double scale, double dt,
+                    double t_end);
+/* The likely cause of trouble at that pace, the scheme's limit of stability
+   given, and a step or schemes to take; NULL
+   where none is known. */
+char *stability_cause(const nevh_integrator *, double limit, double dt,
+                      const pace *);
+/* The same of each unstable row of compare. */
+void stability_words(const plan *, const row rows[], size_t count, list *words);
+
+/* preflight.c: what a short flight ahead says of a run. */
+typedef struct {
+    double frequency, fastest_at; /* as a pace; 0: nothing is known */
+    double growth;                /* largest Lyapunov exponent; 0: no chaos */
+    double flown;                 /* time */
+    double noise; /* of the gradient: relative energy error; NAN */
+    double edge;  /* of H: distance in lengths; INFINITY: none is near */
+    size_t edge_variable; /* coordinates first */
+    double edge_at, edge_time;
+    char *failure; /* NULL, or why the orbit could not be followed */
+} preflight;
+/* failure is to be freed.
+   cost     about a second at most */
+preflight preflight_fly(const plan *);
+void preflight_words(const plan *, const preflight *, list *notes);
+/* Of a scheme, its limit of stability given, at h w = x; NULL: nothing. */
+const char *preflight_verdict(double limit, double x);
+
 typedef int command(const options *);
 command compare, list_what, check, effects, run_scene, section, new_scene;
-command cost, recommend, gradients;
+command cost, recommend, gradients, hard;
 
 #endif

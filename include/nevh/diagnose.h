@@ -94,6 +94,49 @@ NEVH_API int nevh_reversal_defect(nevh_stepper *, double t, double h,
                                   const double p[], const double scale[],
                                   double *defect);
 
+/* The largest h omega up to which steps of h stay bounded on an oscillator of
+   frequency omega, H = (p^2 + omega^2 q^2)/2: there the spectral radius of the
+   step's matrix first passes 1 + 1e-5.  2 for Verlet's method, 2 sqrt(2) for
+   rk4; next to nothing for euler, whose orbits always grow; INFINITY where none
+   is found up to 16, as with Gauss-Legendre.  Of Tao's methods, in a space of
+   their own, what 2000 steps show, to 1/64.  NAN for schemes that take no fixed
+   step.  A nonlinear H has resonances
+   below that, of which 2 pi/3 and pi/2 per step matter most.
+   cost     some thousand steps of one degree of freedom; thread-safe */
+NEVH_API double nevh_stability_limit(const nevh_integrator *);
+/* The angle, 0 ... pi, by which a step of h omega = x turns that oscillator's
+   phase: x and an error of the scheme's order.  Steps that make a third or a
+   quarter of a turn resonate with the terms of H beyond the quadratic.  NAN
+   beyond the limit, and where there is none. */
+NEVH_API double nevh_stability_angle(const nevh_integrator *, double x);
+
+/* How fast small displacements from an orbit turn round and grow: from the
+   eigenvalues of the linearised motion. */
+typedef struct nevh_rates nevh_rates;
+
+/* options  t, q, p: a state to plan at; scale: 2n lengths to difference over,
+            NULL: probed; gradient: NULL: exact derivatives where all terms
+            bring them, else central6; gradient_step(s) as in a field
+   returns  to be freed with nevh_rates_free; NULL only when memory is out;
+            carries a status otherwise */
+NEVH_API nevh_rates *nevh_rates_new(const nevh_system *,
+                                    const nevh_options *options);
+NEVH_API void nevh_rates_free(nevh_rates *); /* NULL is allowed */
+NEVH_API int nevh_rates_status(const nevh_rates *);
+/* The message to that status, or ""; never NULL. */
+NEVH_API const char *nevh_rates_message(const nevh_rates *);
+/* At one state, n each.
+   frequency  out: the largest angular frequency, |Im| of an eigenvalue
+   growth     out: the largest rate of growth, Re of an eigenvalue: above 0
+              where neighbours part exponentially; NAN for more than 48 degrees
+              of freedom, where `frequency` is the largest |eigenvalue|
+   returns    NEVH_OK; NEVH_EDOM (H is not finite near by), NEVH_EFAILED (the
+              eigenvalues were not found), NEVH_ESTALE, NEVH_ENOMEM
+   cost       12n gradients and the eigenvalues of a 2n x 2n matrix; of large
+              systems 360 gradients */
+NEVH_API int nevh_rates_at(nevh_rates *, double t, const double q[],
+                           const double p[], double *frequency, double *growth);
+
 #ifdef __cplusplus
 }
 #endif

@@ -1,0 +1,186 @@
+/* nevh: up to which steps a scheme is stable on an oscillator.
+
+   On H = (p^2 + q^2)/2 a step of a scheme is a matrix, read off from two steps;
+   orbits stay bounded where its eigenvalues stay on or within the unit circle
+   [S. Blanes, F. Casas, A. Murua, On the linear stability of splitting methods,
+   Found. Comput. Math. 8 (2008) 357-393].
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "system/system_private.h"
+#include <math.h>
+#include <nevh/diagnose.h>
+#include <stdlib.h>
+
+/* Beyond that many radians a step no scheme is asked; the grid there; what is
+   growth, in a step. */
+static const double farthest = 16, spacing = 1. / 64;
+static const double growing = 1e-5;
+
+typedef struct {
+    nevh_system *system;
+    nevh_stepper *stepper;
+    bool symplectic;
+} oscillator;
+
+static double half_square(double t, const double q[], const double p[],
+                          const double c[], const void *params) {
+    double x = *(const bool *)params ? q[0] : p[0];
+    (void)t, (void)c;
+    return x * x / 2;
+}
+
+static void half_square_slope(size_t width, const double t[], const double q[],
+                              const double p[], const double c[],
+                              const void *params, double dq[], double dp[]) {
+    const bool of_q = *(const bool *)params;
+    const double *x = of_q ? q : p;
+    double *slope = of_q ? dq : dp;
+    (void)t, (void)c;
+    for (size_t i = 0; slope && i < width; i++)
+        slope[i] = x[i];
+}
+
+static nevh_system *new_system(void) {
+    static const bool of_p = false, of_q = true;
+    nevh_term kinetic = {.effect = "kinetic",
+                         .np = 1,
+                         .value = half_square,
+                         .gradient = half_square_slope,
+                         .params = &of_p};
+    nevh_term spring = {.effect = "spring",
+                        .nq = 1,
+                        .value = half_square,
+                        .gradient = half_square_slope,
+                        .params = &of_q};
+    nevh_system *s = nevh_system_new(1);
+    if (s && !nevh_system_add(s, &kinetic))
+        nevh_system_add(s, &spring);
+    return s;
+}
+
+static oscillator begin(const nevh_integrator *scheme) {
+    static const double q[2] = {1, 0}, p[2] = {0, 1};
+    nevh_options options = {.gradient = nevh_exact, .width = 2, .q = q, .p = p};
+    nevh_system *s = new_system();
+    return (oscillator){s, nevh_stepper_new(s, scheme, &options),
+                        nevh_integrator_symplectic(scheme) == NEVH_YES};
+}
+
+static void end(const oscillator *o) {
+    nevh_stepper_free(o->stepper);
+    nevh_system_free(o->system);
+}
+
+/* The spectral radius of a step of x, less 1; INFINITY where no step is. */
+static double excess(const oscillator *o, double x) {
+    double q[2] = {1, 0}, p[2] = {0, 1};
+    nevh_stepper_reset(o->stepper);
+    if (nevh_stepper_apply(o->stepper, 0, x, q, p))
+        return INFINITY;
+    double determinant = o->symplectic ? 1 : q[0] * p[1] - q[1] * p[0];
+    double half = fabs(q[0] + p[1]) / 2, rest = half * half - determinant;
+    return rest < 0 ? sqrt(determinant) - 1 : half + sqrt(rest) - 1;
+}
+
+/* Half the trace's distance to 1 from below, which the tips of narrow unstable
+   windows between points of the grid reach through. */
+static double closeness(const oscillator *o, double x) {
+    double q[2] = {1, 0}, p[2] = {0, 1};
+    nevh_stepper_reset(o->stepper);
+    if (nevh_stepper_apply(o->stepper, 0, x, q, p))
+        return INFINITY;
+    return fabs(q[0] + p[1]) / 2 - 1;
+}
+
+/* The largest closeness between a and b, by trisection. */
+static double tip(const oscillator *o, double a, double b) {
+    for (int i = 0; i < 60; i++) {
+        double c = a + (b - a) / 3, d = b - (b - a) / 3;
+        if (closeness(o, c) > closeness(o, d))
+            b = d;
+        else
+            a = c;
+    }
+    return (a + b) / 2;
+}
+
+/* Where growth begins between a, stable, and b. */
+static double bisect(const oscillator *o, double a, double b) {
+    while (b - a > 1e-9 * b) {
+        double middle = (a + b) / 2;
+        if (excess(o, middle) > growing)
+            b = middle;
+        else
+            a = middle;
+    }
+    return a;
+}
+
+static double search(const oscillator *o) {
+    double before[2] = {-1, -1};
+    for (double x = spacing; x <= farthest; x += spacing) {
+        double near = closeness(o, x);
+        if (excess(o, x) > growing)
+            return bisect(o, x - spacing, x);
+        if (o->symplectic && before[1] > -0.1 && before[1] >= before[0] &&
+            before[1] >= near) {
+            double top = tip(o, x - 2 * spacing, x);
+            if (excess(o, top) > growing)
+                return bisect(o, x - 2 * spacing, top);
+        }
+        before[0] = before[1];
+        before[1] = near;
+    }
+    return INFINITY;
+}
+
+/* Of methods with a space of their own: the largest of an orbit in it. */
+static double longest(const oscillator *o, double x) {
+    enum { STEPS = 2000 };
+    double q[2] = {1, 0}, p[2] = {0, 1}, most = 0;
+    nevh_stepper_reset(o->stepper);
+    for (int i = 0; i < STEPS && most < 100; i++) {
+        if (nevh_stepper_apply(o->stepper, i * x, x, q, p))
+            return INFINITY;
+        most = fmax(most, fmax(hypot(q[0], p[0]), hypot(q[1], p[1])));
+    }
+    return most;
+}
+
+static double search_extended(const oscillator *o) {
+    for (double x = spacing; x <= 2; x += spacing)
+        if (longest(o, x) >= 100)
+            return x - spacing;
+    return INFINITY;
+}
+
+/* Whether its steps are matrices. */
+static bool is_linear(const nevh_integrator *scheme) {
+    return scheme && !nevh_integrator_needs_tolerance(scheme) &&
+           !nevh_integrator_own_time(scheme) &&
+           nevh_integrator_symplectic(scheme) != NEVH_EXTENDED;
+}
+
+double nevh_stability_limit(const nevh_integrator *scheme) {
+    bool extended = scheme &&
+                    nevh_integrator_symplectic(scheme) == NEVH_EXTENDED &&
+                    !nevh_integrator_own_time(scheme);
+    if (!extended && !is_linear(scheme))
+        return NAN;
+    oscillator o = begin(scheme);
+    double limit = nevh_stepper_status(o.stepper) ? NAN
+                   : extended                     ? search_extended(&o)
+                                                  : search(&o);
+    end(&o);
+    return limit;
+}
+
+double nevh_stability_angle(const nevh_integrator *scheme, double x) {
+    double q[2] = {1, 0}, p[2] = {0, 1};
+    if (!is_linear(scheme))
+        return NAN;
+    oscillator o = begin(scheme);
+    int status = nevh_stepper_apply(o.stepper, 0, x, q, p);
+    end(&o);
+    double determinant = q[0] * p[1] - q[1] * p[0];
+    return status ? NAN : acos((q[0] + p[1]) / 2 / sqrt(determinant));
+}

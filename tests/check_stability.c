@@ -1,0 +1,234 @@
+/* nevh tests: limits of stability, and how fast neighbours turn and part.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "support.h"
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+/* Verlet's and Euler's: h omega = 2.  Runge-Kutta of order 4: R(ix) = 1 - x^2/2
+   + x^4/24 + i (x - x^3/6) has modulus 1 at 2 sqrt(2).  Lobatto IIIA-IIIB of 3
+   stages: 2 sqrt(2) [L. O. Jay, L. R. Petzold, Highly oscillatory systems and
+   periodic stability (1995)].  Forest and Ruth: a step of Verlet's at x has the
+   trace 2 - x^2; where three of them reach -2.  Euler: sqrt(1 + x^2) = 1 +
+   1e-5. */
+static const struct {
+    const nevh_integrator *const *scheme;
+    double limit, tolerance;
+} published[] = {{&nevh_symplectic_euler_a, 2, 1e-7},
+                 {&nevh_symplectic_euler_b, 2, 1e-7},
+                 {&nevh_verlet, 2, 1e-7},
+                 {&nevh_position_verlet, 2, 1e-7},
+                 {&nevh_lobatto2, 2, 1e-7},
+                 {&nevh_lobatto4, 2.8284271247, 1e-7},
+                 {&nevh_rk4, 2.8284271247, 1e-5},
+                 {&nevh_forest_ruth, 1.573401947, 1e-6},
+                 {&nevh_pefrl, 2.98945, 1e-4},
+                 {&nevh_midpoint, INFINITY, 0},
+                 {&nevh_gauss4, INFINITY, 0},
+                 {&nevh_gauss8, INFINITY, 0},
+                 {&nevh_gonzalez, INFINITY, 0},
+                 {&nevh_euler, 4.47215e-3, 1e-7}};
+enum { PUBLISHED = sizeof published / sizeof *published };
+
+START_TEST(published_limits) {
+    double limit = nevh_stability_limit(*published[_i].scheme);
+    if (isinf(published[_i].limit))
+        ck_assert_double_infinite(limit);
+    else
+        ck_assert_double_eq_tol(limit, published[_i].limit,
+                                published[_i].tolerance);
+}
+END_TEST
+
+/* Its two copies of the orbit leave each other. */
+START_TEST(limit_of_an_extended_space) {
+    double limit = nevh_stability_limit(nevh_tao4);
+    ck_assert_double_gt(limit, 0.3);
+    ck_assert_double_lt(limit, 1);
+}
+END_TEST
+
+static const double mass = 1.3, spring = 2.2;
+
+static double oscillator(double t, const double q[], const double p[],
+                         const void *params) {
+    (void)t, (void)params;
+    return p[0] * p[0] / (2 * mass) + spring * q[0] * q[0] / 2;
+}
+
+static double largest_after(const nevh_integrator *scheme, double x) {
+    nevh_system *s = nevh_system_from(1, oscillator, NULL);
+    nevh_options o = {.gradient_step = 0x1p-3};
+    nevh_stepper *m = nevh_stepper_new(s, scheme, &o);
+    double q = 1, p = 0.3, most = 0, h = x / sqrt(spring / mass);
+    for (int i = 0; i < 20000 && most < 1e3; i++) {
+        ck_assert_int_eq(nevh_stepper_apply(m, i * h, h, &q, &p), NEVH_OK);
+        most = fmax(most, fabs(q));
+    }
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+    return most;
+}
+
+/* Unstable windows around pi are as narrow as the error of the scheme there. */
+static double largest_above(const nevh_integrator *scheme, double limit) {
+    double most = 0;
+    for (double part = 1e-5; part < 2e-3 && most < 5; part *= 2)
+        most = fmax(most, largest_after(scheme, limit * (1 + part)));
+    return most;
+}
+
+/* On another oscillator: bounded right below every limit, not right above. */
+START_TEST(limits_are_limits) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    double limit = nevh_stability_limit(scheme);
+    if (nevh_integrator_symplectic(scheme) != NEVH_YES) {
+        ck_assert(isnan(limit) || limit >= 0);
+        return;
+    }
+    if (isinf(limit)) {
+        ck_assert_double_le(largest_after(scheme, 9), 10);
+        return;
+    }
+    ck_assert_double_le(largest_after(scheme, limit * (1 - 1e-4)), 1e2);
+    ck_assert_double_ge(largest_above(scheme, limit), 5);
+}
+END_TEST
+
+START_TEST(no_limit_is_told) {
+    ck_assert_double_nan(nevh_stability_limit(NULL));
+    ck_assert_double_nan(nevh_stability_limit(nevh_adaptive_verlet));
+    ck_assert_double_nan(nevh_stability_limit(nevh_gsl_msadams));
+}
+END_TEST
+
+static void assert_rates(const nevh_system *s, const nevh_options *o,
+                         const double q[], const double p[], double frequency,
+                         double growth, double tolerance) {
+    nevh_rates *r = nevh_rates_new(s, o);
+    double f, g;
+    ck_assert_msg(!nevh_rates_status(r), "%s", nevh_rates_message(r));
+    ck_assert_int_eq(nevh_rates_at(r, 0.3, q, p, &f, &g), NEVH_OK);
+    ck_assert_double_eq_tol(f, frequency, tolerance * fmax(frequency, 1));
+    if (isnan(growth))
+        ck_assert_double_nan(g);
+    else
+        ck_assert_double_eq_tol(g, growth, tolerance * fmax(growth, 1));
+    nevh_rates_free(r);
+}
+
+static double pendulum(double t, const double q[], const double p[],
+                       const void *params) {
+    (void)t;
+    double unit = *(const double *)params;
+    return unit * (p[0] * p[0] / (unit * unit * 2.6) - 1.7 * cos(q[0]));
+}
+
+/* omega^2 = (1.7/1.3) cos(q), whatever the units of the momentum. */
+START_TEST(rates_of_a_pendulum) {
+    static const double units[] = {1, 1e30, 1e-34};
+    double unit = units[_i], c = 1.7 / 1.3;
+    nevh_system *s = nevh_system_from(1, pendulum, &unit);
+    const double down = 0.4, up = M_PI - 0.1;
+    double p = 0.5 * unit;
+    nevh_options o = {.q = &down, .p = &p};
+    assert_rates(s, &o, &down, &p, sqrt(c * cos(0.4)), 0, 1e-6);
+    assert_rates(s, &o, &up, &p, 0, sqrt(c * cos(0.1)), 1e-6);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* A charge in a uniform field turns with omega = B, its guiding centre does not
+   move: momenta and coordinates mix. */
+static double charge(double t, const double q[], const double p[],
+                     const void *params) {
+    (void)t, (void)params;
+    double vx = p[0] + 1.5 * q[1], vy = p[1] - 1.5 * q[0];
+    return (vx * vx + vy * vy) / 2;
+}
+
+START_TEST(rates_of_a_charge) {
+    nevh_system *s = nevh_system_from(2, charge, NULL);
+    static const double q[] = {0.3, 0.2}, p[] = {1, -0.5};
+    nevh_options o = {.q = q, .p = p};
+    assert_rates(s, &o, q, p, 3, 0, 1e-4);
+    nevh_system_free(s);
+}
+END_TEST
+
+static const double chain_springs = 2.5;
+enum { CHAIN = 60 };
+
+static double link(double t, const double q[], const double p[],
+                   const double c[], const void *params) {
+    (void)t, (void)p, (void)c, (void)params;
+    return chain_springs * (q[1] - q[0]) * (q[1] - q[0]) / 2;
+}
+
+static double own_kinetic(double t, const double q[], const double p[],
+                          const double c[], const void *params) {
+    (void)t, (void)q, (void)c, (void)params;
+    return p[0] * p[0] / 2;
+}
+
+/* A ring: omega = 2 sqrt(k) |sin(pi j/N)|; dense up to 48 bodies. */
+START_TEST(rates_of_a_ring) {
+    size_t n = _i ? CHAIN : 12, pairs[2 * CHAIN], own[CHAIN];
+    double z[CHAIN] = {0.1, -0.2};
+    for (size_t i = 0; i < n; i++) {
+        own[i] = pairs[2 * i] = i;
+        pairs[2 * i + 1] = (i + 1) % n;
+    }
+    nevh_system *s = nevh_system_new(n);
+    nevh_system_add(s, &(nevh_term){.effect = "kinetic",
+                                    .np = 1,
+                                    .p = own,
+                                    .count = n,
+                                    .value = own_kinetic});
+    nevh_system_add(s, &(nevh_term){.effect = "springs",
+                                    .nq = 2,
+                                    .q = pairs,
+                                    .count = n,
+                                    .value = link});
+    nevh_options o = {.q = z, .p = z};
+    assert_rates(s, &o, z, z, 2 * sqrt(chain_springs), _i ? NAN : 0,
+                 _i ? 1e-2 : 1e-3);
+    nevh_system_free(s);
+}
+END_TEST
+
+static double rooted(double t, const double q[], const double p[],
+                     const void *params) {
+    (void)t, (void)params;
+    return p[0] * p[0] / 2 - sqrt(q[0]);
+}
+
+START_TEST(outside_there_are_no_rates) {
+    nevh_system *s = nevh_system_from(1, rooted, NULL);
+    static const double q = 1, p = 0, outside = -1;
+    nevh_options o = {.q = &q, .p = &p};
+    nevh_rates *r = nevh_rates_new(s, &o);
+    double f, g;
+    ck_assert_int_eq(nevh_rates_at(r, 0, &outside, &p, &f, &g), NEVH_EDOM);
+    ck_assert_int_eq(nevh_rates_at(r, 0, &q, &p, &f, &g), NEVH_OK);
+    nevh_rates_free(r);
+    ck_assert_int_eq(nevh_rates_status(NULL), NEVH_ENOMEM);
+    nevh_rates_free(NULL);
+    nevh_system_free(s);
+}
+END_TEST
+
+int main(void) {
+    Suite *s = suite_create("stability");
+    TCase *cases = tcase_create("limits and rates");
+    tcase_add_loop_test(cases, published_limits, 0, PUBLISHED);
+    tcase_add_loop_test(cases, limits_are_limits, 0, scheme_count());
+    tcase_add_test(cases, limit_of_an_extended_space);
+    tcase_add_test(cases, no_limit_is_told);
+    tcase_add_loop_test(cases, rates_of_a_pendulum, 0, 3);
+    tcase_add_test(cases, rates_of_a_charge);
+    tcase_add_loop_test(cases, rates_of_a_ring, 0, 2);
+    tcase_add_test(cases, outside_there_are_no_rates);
+    suite_add_tcase(s, cases);
+    return run_suite(s);
+}

@@ -1,0 +1,186 @@
+/* nevh hard: what a result means, by what is known of scheme and case.
+
+   Theory: steps of order r conserve an energy that differs from H by a part
+   (h omega)^r of what the orbit exchanges, if they are symplectic, or symmetric
+   and the orbit reversible [E. Hairer, C. Lubich, G. Wanner, Geometric
+   Numerical Integration, chapters IX and XI]; those of other methods add an
+   error of (h omega)^(r+1) in each step.  Constants are taken to be below 10.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "hard_private.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double constant = 10, tolerance = 1e-9, returned = 1e-8;
+
+const char *hard_verdict_name(hard_verdict v) {
+    static const char *const names[] = {"none",     "bounded", "drifts",
+                                        "unstable", "refused", "failed"};
+    return v < HARD_VERDICTS ? names[v] : "none";
+}
+
+static bool is(const hard_subject *s, unsigned facts) {
+    return s->is->facts & facts;
+}
+
+static double pace_of(const hard_subject *s, const hard_result *r) {
+    return s->dt * r->frequency;
+}
+
+/* Whether theory keeps the energy in bounds. */
+static bool keeps(const hard_result *r) {
+    return nevh_integrator_symplectic(r->scheme) != NEVH_NO ||
+           nevh_integrator_preserves_energy(r->scheme) == NEVH_YES ||
+           nevh_integrator_symmetric(r->scheme) != NEVH_NO;
+}
+
+/* What is preserved for any step: of H itself, by Itoh and Abe's and by
+   Gonzalez's; by averaging, as far as its quadrature is exact. */
+static bool preserves(const hard_subject *s, const hard_result *r) {
+    return nevh_integrator_preserves_energy(r->scheme) == NEVH_YES &&
+           !s->balance && r->scheme != nevh_avf;
+}
+
+/* Tao's methods turn by their binding, too, which is faster than the orbit. */
+static double kept_bound(const hard_subject *s, const hard_result *r) {
+    double x = pace_of(s, r), order = nevh_integrator_order(r->scheme);
+    bool bound = nevh_integrator_symplectic(r->scheme) == NEVH_EXTENDED;
+    if (preserves(s, r))
+        return 0;
+    return constant * (bound ? 10 : 1) * s->peak * pow(x, order);
+}
+
+static double drift_bound(const hard_subject *s, const hard_result *r) {
+    double x = pace_of(s, r), steps = (double)r->steps;
+    if (nevh_integrator_adaptive(r->scheme))
+        return 100 * tolerance * s->peak * steps * fmax(1, x);
+    return constant * s->peak * steps *
+           pow(x, nevh_integrator_order(r->scheme) + 1);
+}
+
+/* Of stages solved to the last digits, some forty epsilon a step. */
+static double rounding(const hard_subject *s, const hard_result *r) {
+    return 1e-14 * s->peak * (double)r->steps;
+}
+
+static double find_bound(const hard_subject *s, const hard_result *r) {
+    double error =
+        keeps(r) ? kept_bound(s, r) : fmax(kept_bound(s, r), drift_bound(s, r));
+    return fmin(1, error + r->floor + rounding(s, r));
+}
+
+/* Why a scheme may refuse a case, told apart by what the case is. */
+static bool refuses_rightly(const hard_subject *s, const hard_result *r) {
+    unsigned needs = nevh_integrator_needs(r->scheme);
+    bool exact = strcmp(r->gradient, "exact") == 0;
+    if (!r->reason || strlen(r->reason) < 20)
+        return false;
+    if (r->status == NEVH_ENOGRAD)
+        return exact && is(s, HARD_BLACK_BOX);
+    if (r->status != NEVH_ESTRUCT)
+        return false;
+    /* GSL's own evaluations are out of reach, so that they cannot be balanced.
+     */
+    if (s->balance && strncmp(nevh_integrator_name(r->scheme), "gsl-", 4) == 0)
+        return true;
+    return (needs && is(s, HARD_MIXED | HARD_NOISE)) ||
+           (needs & NEVH_QUADRATIC_KINETIC && is(s, HARD_MIXED)) ||
+           (nevh_integrator_own_time(r->scheme) && s->balance);
+}
+
+/* Schemes that measure the state by its own size. */
+static bool scales_by_state(const nevh_integrator *scheme) {
+    return nevh_integrator_symplectic(scheme) == NEVH_EXTENDED ||
+           nevh_integrator_own_time(scheme);
+}
+
+/* Whether a run that ended, or lost its energy, had a reason to. */
+static bool is_explained(const hard_subject *s, const hard_result *r) {
+    double x = pace_of(s, r);
+    if (is(s, HARD_FAR) && scales_by_state(r->scheme))
+        return true;
+    return is(s, HARD_EDGE | HARD_ESCAPE | HARD_NOISE | HARD_ANY_STEP) ||
+           x > r->limit || x > 1 || (!keeps(r) && drift_bound(s, r) > 0.1);
+}
+
+static char *tell_cause(const hard_subject *s, const hard_result *r) {
+    pace fastest = {.frequency = r->frequency, .t = r->fastest_at};
+    char *cause = stability_cause(r->scheme, r->limit, s->dt, &fastest);
+    if (is(s, HARD_FAR) && scales_by_state(r->scheme)) {
+        free(cause);
+        return text_print("%s measures coordinates by their size, which is "
+                          "far more than the lengths over which H varies: "
+                          "count them from near by",
+                          nevh_integrator_name(r->scheme));
+    }
+    if (cause)
+        return cause;
+    return text_print(is(s, HARD_EDGE) ? "the orbit meets a singularity, or "
+                                         "the end of H"
+                      : is(s, HARD_ESCAPE) ? "the orbit escapes"
+                      : is(s, HARD_NOISE)  ? "values of H are noise"
+                      : kept_bound(s, r) > 1
+                          ? "the orbit exchanges more than its energy, which "
+                            "theory bounds no better at this order and step"
+                          : "no cause was found");
+}
+
+static hard_verdict judge_return(hard_result *r) {
+    bool symmetric = nevh_integrator_symmetric(r->scheme) == NEVH_YES;
+    r->happened = text_print("comes back to %.1e", r->defect);
+    if (r->defect <= returned)
+        return HARD_BOUNDED;
+    return symmetric ? HARD_NONE : HARD_DRIFTS;
+}
+
+static hard_verdict judge_energy(hard_result *r) {
+    double most = r->energy.max;
+    bool level = r->energy.verdict == NEVH_BOUNDED;
+    r->happened = text_print(
+        r->whole ? "energy error %.1e"
+                 : "energy error %.1e; stopped by the budget after %zu of %.0e "
+                   "steps",
+        most, r->steps, r->asked);
+    if (most > r->bound)
+        return HARD_NONE;
+    return level || keeps(r) ? HARD_BOUNDED : HARD_DRIFTS;
+}
+
+static hard_verdict judge_explosion(const hard_subject *s, hard_result *r) {
+    char *cause = tell_cause(s, r);
+    r->happened = text_print("energy error %.1e: %s", r->energy.max, cause);
+    free(cause);
+    return is_explained(s, r) ? HARD_UNSTABLE : HARD_NONE;
+}
+
+static hard_verdict judge_failure(const hard_subject *s, hard_result *r) {
+    char *cause = tell_cause(s, r);
+    r->happened =
+        text_print("after %zu steps: %s; %s", r->steps, r->reason, cause);
+    free(cause);
+    return is_explained(s, r) ? HARD_FAILED : HARD_NONE;
+}
+
+static hard_verdict judge(const hard_subject *s, hard_result *r) {
+    if (!r->planned) {
+        r->happened = text_print("%s", r->reason);
+        return refuses_rightly(s, r) ? HARD_REFUSED : HARD_NONE;
+    }
+    if (!r->sound) {
+        r->happened = text_print("numbers are not finite: %s",
+                                 r->reason ? r->reason : "");
+        return HARD_NONE;
+    }
+    if (r->status)
+        return judge_failure(s, r);
+    if (r->energy.max > 1)
+        return judge_explosion(s, r);
+    if (is(s, HARD_RETURN))
+        return judge_return(r);
+    return judge_energy(r);
+}
+
+void hard_judge(const hard_subject *s, hard_result *r) {
+    r->bound = r->planned ? find_bound(s, r) : NAN;
+    r->verdict = judge(s, r);
+}

@@ -1,0 +1,167 @@
+/* nevh hard: one case with one scheme and gradient, within a budget.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "hard_private.h"
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+static const double tolerance = 1e-9; /* of adaptive schemes */
+static const double endless = 0.01;   /* seconds for what has no end */
+static const double unstable_above = 1;
+
+typedef struct {
+    nevh_energy *energy;
+    struct timespec begin;
+    double budget;
+    bool spent, unstable;
+} guard;
+
+static double seconds_since(const struct timespec *begin) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return difftime(now.tv_sec, begin->tv_sec) +
+           1e-9 * (double)(now.tv_nsec - begin->tv_nsec);
+}
+
+static int watch(void *data, size_t step, double t, const double q[],
+                 const double p[]) {
+    guard *g = data;
+    int status = nevh_energy_observe(g->energy, step, t, q, p);
+    g->unstable = fabs(nevh_energy_result(g->energy, 0).final) > unstable_above;
+    g->spent = seconds_since(&g->begin) > g->budget;
+    return status ? status : g->spent ? (int)NEVH_STOPPED : NEVH_OK;
+}
+
+static nevh_options plan_with(const hard_subject *s, const hard_result *r) {
+    nevh_options o = {.gradient = nevh_gradient_named(r->gradient),
+                      .gradient_step = s->gradient_step,
+                      .t = s->t,
+                      .q = s->q,
+                      .p = s->p,
+                      .balance = s->balance};
+    if (nevh_integrator_adaptive(r->scheme))
+        o.tolerance = tolerance;
+    return o;
+}
+
+/* What differences and rounding alone may do to the energy: a random walk, and
+   what the gradient lacks, at its worst all along. */
+static double find_floor(const hard_subject *s, const hard_result *r,
+                         nevh_stepper *m) {
+    nevh_field *f = nevh_stepper_field(m);
+    double noise = 0, rough = 0;
+    nevh_field_energy_floor(f, s->t, s->q, s->p, s->dt, (size_t)r->asked,
+                            &noise);
+    for (size_t i = 0; i < nevh_field_step_count(f); i++) {
+        nevh_step_report step = nevh_field_step_report(f, i);
+        if (!step.given && step.size > 0)
+            rough = fmax(rough, (step.truncation + step.rounding) / step.size);
+    }
+    return 10 * noise / r->energy.scale + 10 * s->rounding * sqrt(r->asked) +
+           (rough + 16 * DBL_EPSILON) * s->peak *
+               fmax(1, r->asked * s->dt * s->frequency);
+}
+
+static bool finite_state(const hard_subject *s, const double q[],
+                         const double p[]) {
+    for (size_t k = 0; k < s->n; k++)
+        if (!isfinite(q[k]) || !isfinite(p[k]))
+            return false;
+    return true;
+}
+
+static void take(hard_result *r, const guard *g, nevh_stepper *m) {
+    r->steps = nevh_stepper_taken(m);
+    r->energy = nevh_energy_result(g->energy, 0);
+    r->seconds = seconds_since(&g->begin);
+    r->whole = !r->status;
+    if (r->status == NEVH_STOPPED && g->spent)
+        r->status = NEVH_OK;
+    if (r->status == NEVH_STOPPED)
+        r->status = nevh_energy_status(g->energy),
+        r->reason = text_print("%s", nevh_energy_message(g->energy));
+    else if (r->status)
+        r->reason = text_print("%s", nevh_stepper_message(m));
+}
+
+static void fly(const hard_subject *s, nevh_stepper *m, const nevh_options *o,
+                double budget, hard_result *r) {
+    double *q = tool_allocate(s->n, sizeof *q);
+    double *p = tool_allocate(s->n, sizeof *p);
+    guard g = {.energy = nevh_energy_new(s->system, o), .budget = budget};
+    memcpy(q, s->q, s->n * sizeof *q);
+    memcpy(p, s->p, s->n * sizeof *p);
+    if (s->balance)
+        nevh_energy_follow(g.energy, m);
+    clock_gettime(CLOCK_MONOTONIC, &g.begin);
+    r->status = nevh_run_until(m, s->t, s->dt, s->t_end, q, p,
+                               &(nevh_observer){watch, &g, 1}, 1);
+    take(r, &g, m);
+    r->sound = finite_state(s, q, p) && !isnan(r->energy.max) &&
+               (!r->status || strlen(r->reason) > 10);
+    nevh_energy_free(g.energy);
+    free(q);
+    free(p);
+}
+
+/* In units of the largest coordinate and momentum at the start. */
+static void turn_back(const hard_subject *s, nevh_stepper *m, hard_result *r) {
+    double largest = 0;
+    double *scale = tool_allocate(2 * s->n, sizeof *scale);
+    for (size_t k = 0; k < s->n; k++)
+        largest = fmax(largest, fmax(fabs(s->q[k]), fabs(s->p[k])));
+    for (size_t k = 0; k < 2 * s->n; k++)
+        scale[k] = largest;
+    nevh_stepper_reset(m);
+    if (nevh_reversal_defect(m, s->t, s->dt, (size_t)r->asked, s->q, s->p,
+                             scale, &r->defect))
+        r->sound = false;
+    free(scale);
+}
+
+/* Where it is fastest, should the run have gone elsewhere than the case. */
+static void find_pace(const hard_subject *s, const nevh_options *o,
+                      hard_result *r) {
+    nevh_options own = *o;
+    own.gradient_step = s->own ? 0x1p-6 : o->gradient_step;
+    pace fastest =
+        stability_pace(s->system, r->scheme, &own, 0, s->dt,
+                       s->t + s->dt * fmin((double)r->steps + 1, r->asked));
+    if (fastest.frequency > r->frequency)
+        r->frequency = fastest.frequency, r->fastest_at = fastest.t;
+}
+
+static void run_planned(const hard_subject *s, nevh_stepper *m,
+                        const nevh_options *o, double budget, hard_result *r) {
+    bool stops = s->is->facts & HARD_ENDLESS;
+    fly(s, m, o, stops ? fmin(budget, endless) : budget, r);
+    r->floor = find_floor(s, r, m);
+    if (s->is->facts & HARD_RETURN && !r->status)
+        turn_back(s, m, r);
+    if (!stops && o->tolerance == 0 &&
+        (r->status || r->energy.max > unstable_above))
+        find_pace(s, o, r);
+}
+
+void hard_run(const hard_subject *s, double budget, hard_result *r) {
+    nevh_options o = plan_with(s, r);
+    nevh_stepper *m = nevh_stepper_new(s->system, r->scheme, &o);
+    r->status = nevh_stepper_status(m);
+    r->planned = !r->status;
+    r->asked = ceil((s->t_end - s->t) / s->dt * (1 - 1e-9));
+    r->defect = NAN;
+    r->frequency = s->frequency;
+    r->fastest_at = s->fastest_at;
+    if (r->planned)
+        run_planned(s, m, &o, budget, r);
+    else
+        r->reason = text_print("%s", nevh_stepper_message(m));
+    nevh_stepper_free(m);
+}
+
+void hard_result_free(hard_result *r) {
+    free(r->reason);
+    free(r->happened);
+}

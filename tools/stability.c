@@ -1,0 +1,150 @@
+/* nevh: why a run became unstable, and what to do.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tool.h"
+#include <math.h>
+#include <stdlib.h>
+
+enum { SAMPLES = 64 };
+static const double unstable_above = 1; /* as nevh_energy_report says */
+/* Parts of a turn, in a step, at which a nonlinear H throws an orbit out: of
+   three and of four steps. */
+static const double near_by = 0.06;
+
+int pace_observe(void *data, size_t step, double t, const double q[],
+                 const double p[]) {
+    pace *fastest = data;
+    double frequency, growth;
+    (void)step;
+    if (nevh_rates_at(fastest->rates, t, q, p, &frequency, &growth))
+        return NEVH_OK;
+    frequency = fmax(frequency, growth); /* of whatever kind */
+    if (frequency > fastest->frequency)
+        fastest->frequency = frequency, fastest->t = t;
+    return NEVH_OK;
+}
+
+/* Half of it, in two digits. */
+static double safe_step(double limit, double frequency) {
+    double h = limit / frequency / 2, unit = pow(10, floor(log10(h)) - 1);
+    return floor(h / unit) * unit;
+}
+
+/* The turn of a step on an oscillator: the angle by which steps of h omega = x
+   turn the phase. */
+static const char *resonance(const nevh_integrator *scheme, double x) {
+    double angle = nevh_stability_angle(scheme, x);
+    if (fabs(angle - 2 * M_PI / 3) < near_by)
+        return "three";
+    return fabs(angle - M_PI / 2) < near_by ? "four" : NULL;
+}
+
+char *stability_cause(const nevh_integrator *scheme, double limit, double dt,
+                      const pace *fastest) {
+    double w = fastest->frequency;
+    double x = fabs(dt) * w;
+    const char *name = nevh_integrator_name(scheme);
+    const char *turn = resonance(scheme, x);
+    if (!(x > 0) || !isfinite(x))
+        return NULL;
+    char *where = text_print("h w = %.3g near t = %.4g, where the orbit is "
+                             "fastest (w = %.3g)",
+                             x, fastest->t, w);
+    char *text = NULL;
+    if (x > limit)
+        text = text_print("%s, and %s is stable up to %.3g: take dt below "
+                          "%.2g%s",
+                          where, name, limit, safe_step(fmin(limit, 2), w),
+                          nevh_integrator_symplectic(scheme) == NEVH_YES
+                              ? ", or midpoint or gauss4, which have no limit"
+                              : ", or a symplectic scheme");
+    else if (x > 1)
+        text = text_print("%s: a turn has %.2g steps; take dt below %.2g",
+                          where, 2 * M_PI / x, safe_step(1, w));
+    else if (nevh_integrator_symplectic(scheme) == NEVH_NO)
+        text = text_print("%s is not symplectic, and errors add up at h w = "
+                          "%.3g; take dt below %.2g, or a symplectic scheme",
+                          name, x, safe_step(x, w));
+    if (turn && (x <= limit)) {
+        char *longer =
+            text_print("%s%s%s steps make a turn: a resonance",
+                       text ? text : where, text ? "; " : ": ", turn);
+        free(text);
+        text = longer;
+    }
+    free(where);
+    return text;
+}
+
+typedef struct {
+    nevh_energy *energy;
+    bool unstable;
+} explosion;
+
+static int stop_at_explosion(void *data, size_t step, double t,
+                             const double q[], const double p[]) {
+    explosion *e = data;
+    int status = nevh_energy_observe(e->energy, step, t, q, p);
+    e->unstable = fabs(nevh_energy_result(e->energy, 0).final) > unstable_above;
+    return e->unstable ? (int)NEVH_STOPPED : status;
+}
+
+pace stability_pace(const nevh_system *system, const nevh_integrator *scheme,
+                    const nevh_options *o, double scale, double dt,
+                    double t_end) {
+    size_t n = nevh_system_dof(system);
+    nevh_stepper *s = nevh_stepper_new(system, scheme, o);
+    double *q = tool_allocate(n, sizeof *q), *p = tool_allocate(n, sizeof *p);
+    nevh_options own = *o;
+    own.gradient = NULL;
+    own.gradient_step = 0;
+    explosion e = {.energy = nevh_energy_new(system, o)};
+    pace fastest = {.rates = nevh_rates_new(system, &own)};
+    size_t every = (size_t)fmin(1e9, fabs((t_end - o->t) / dt) / SAMPLES);
+    if (o->balance)
+        nevh_energy_follow(e.energy, s);
+    if (scale > 0)
+        nevh_energy_set_scale(e.energy, scale);
+    for (size_t k = 0; k < n; k++)
+        q[k] = o->q[k], p[k] = o->p[k];
+    nevh_run_until(s, o->t, dt, t_end, q, p,
+                   (nevh_observer[]){{pace_observe, &fastest, every},
+                                     {stop_at_explosion, &e, 1}},
+                   2);
+    nevh_rates_free(fastest.rates);
+    nevh_energy_free(e.energy);
+    nevh_stepper_free(s);
+    free(q);
+    free(p);
+    return fastest;
+}
+
+/* Whether it is the first such row of its integrator and dt. */
+static bool is_first(const row rows[], size_t i) {
+    for (size_t k = 0; k < i; k++)
+        if (rows[k].scheme == rows[i].scheme && rows[k].dt == rows[i].dt &&
+            rows[k].ran && rows[k].energy.verdict == NEVH_UNSTABLE)
+            return false;
+    return true;
+}
+
+static void tell_cause(const plan *p, const row *r, list *words) {
+    nevh_options o = plan_options(p, r->gradient);
+    o.transform = plan_transform(p, r->integrator);
+    o.tolerance = r->tolerance;
+    o.balance = p->balance;
+    pace fastest = stability_pace(p->system, r->scheme, &o,
+                                  p->run->energy_scale, r->dt, p->t_end);
+    char *cause = stability_cause(r->scheme, nevh_stability_limit(r->scheme),
+                                  r->dt, &fastest);
+    if (cause)
+        list_print(words, "%s at dt = %.4g: %s.", r->integrator, r->dt, cause);
+    free(cause);
+}
+
+void stability_words(const plan *p, const row rows[], size_t count,
+                     list *words) {
+    for (size_t i = 0; i < count; i++)
+        if (rows[i].ran && rows[i].energy.verdict == NEVH_UNSTABLE &&
+            rows[i].tolerance == 0 && is_first(rows, i))
+            tell_cause(p, &rows[i], words);
+}
