@@ -157,7 +157,7 @@ static void add_record(table *t, const case_results *c, const hard_result *r) {
     free(what);
 }
 
-static table *records(const suite *all) {
+static table *runs(const suite *all) {
     static const char *const names[] = {
         "case",    "integrator",   "gradient", "asked",
         "h_omega", "stable_below", "steps",    "max_energy_error",
@@ -253,7 +253,7 @@ static int print_suite(const suite *all, const options *o) {
     size_t counts[HARD_VERDICTS] = {0};
     size_t sum = count_verdicts(all, counts);
     bool each = o->all || o->format != FORMAT_TABLE;
-    page result = {.table = each ? records(all) : shown(all)};
+    page result = {.table = each ? runs(all) : shown(all)};
     tell_counts(all, counts, sum,
                 o->format == FORMAT_CSV ? &result.before : &result.after);
     int status = counts[HARD_NONE] ? TOOL_FAILED : TOOL_OK;
