@@ -96,6 +96,16 @@ exits 0 compare kepler-0.9 --t-end 10 --dt 0.02 --integrators gauss4,verlet \
 holds integrator \
     '$1 == "gauss4" && $2 == "verlet" && $3 == "gauss4+transform"'
 holds state_error '$3 < $1 && $1 > 0'
+# Instead of the scene's.
+sed 's/^t_end .*/&\ntransform = 1 + x^2/' "$srcdir/scenes/kepler-0.9.nevh" \
+    >$work/other.nevh
+for scene in kepler-0.9 $work/other.nevh; do
+    exits 0 compare $scene --t-end 10 --dt 0.02 --gradient exact --format csv \
+        --integrators gauss4 --transform '(x^2 + y^2)^(3/4)'
+    field state_error | tail -n 1 >>$work/transformed
+done
+test "$(sort -u $work/transformed | wc -l)" -eq 1 ||
+    { fails "takes the scene's transform"; cat $work/transformed; }
 exits 2 compare kepler --t-end 10 --transform '(x^2 + z^2)^(3/4)'
 says '^assignment:1:8: error: the name z is not known'
 exits 2 compare kepler --t-end 10 --transform 't*x'
