@@ -204,7 +204,7 @@ START_TEST(comets_keep_their_momentum) {
     double energy, rotation;
     comet(nevh_gauss8, 4, &energy, &rotation);
     ck_assert_double_le(rotation, 1e-13);
-    ck_assert_double_le(energy, 0.05);
+    ck_assert_double_le(energy, 1e-3);
     comet(nevh_rk4, 4, &energy, &rotation);
     ck_assert_double_ge(rotation, 1e-3);
     ck_assert_double_ge(energy, 0.5);
@@ -228,9 +228,9 @@ static double eight(const nevh_integrator *scheme, double steps) {
 }
 
 START_TEST(the_eight_stays) {
-    ck_assert_double_le(eight(nevh_rkn14a, 120), 0.05);
-    ck_assert_double_le(eight(nevh_blanes_moan6, 150), 0.05);
-    ck_assert_double_ge(eight(nevh_rk4, 300), 0.05);
+    ck_assert_double_le(eight(nevh_rkn14a, 60), 1e-3);
+    ck_assert_double_le(eight(nevh_blanes_moan6, 100), 1e-3);
+    ck_assert_double_ge(eight(nevh_rk4, 300), 0.1);
 }
 END_TEST
 
@@ -252,10 +252,10 @@ static double turned(const nevh_integrator *scheme, double h, size_t steps,
 START_TEST(a_million_turns) {
     double period = 2 * gsl_sf_ellint_Kcomp(0.5, GSL_PREC_DOUBLE) / 2;
     double h = period / 16, energy;
-    double angle = turned(nevh_blanes_moan6, h, 16000000, &energy);
+    double angle = turned(nevh_blanes_moan4, h, 16000000, &energy);
     ck_assert_double_eq_tol(angle / (2 * M_PI), 1e6, 0.5);
     ck_assert_double_le(energy, 1e-7);
-    turned(nevh_rk4, h, 16000000, &energy);
+    turned(nevh_rk4, h, 160000, &energy);
     ck_assert_double_ge(energy, 1e-2);
 }
 END_TEST

@@ -19,7 +19,7 @@ exits 0 check "$srcdir/tests/hard/double-pendulum.nevh" --t-end 1000
 lacks 'cannot be foretold'
 printf '%s\n' 's/^phi = .*/phi = 0/' 's/^p2 = .*/p2 = 3.873/' >$work/edit
 sed -f $work/edit "$srcdir/tests/hard/double-pendulum.nevh" >$work/chaos.nevh
-exits 0 check $work/chaos.nevh --t-end 1000
+exits 0 check $work/chaos.nevh --t-end 1000 --format csv
 has 'cannot be foretold beyond t = [0-9]+'
 
 # The floor of the gradient, and where H ends.

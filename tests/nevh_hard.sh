@@ -35,6 +35,13 @@ has '^"1e9 steps, one output",verlet,.*stopped by the budget.*,bounded$'
 has '^dt = 1e300,rk4,.*,(failed|unstable)$'
 has '^dt = 1e-300,verlet,.*,bounded$'
 
+# compare names the cause, and a step to take.
+exits 0 compare "$srcdir/tests/hard/elastic-pendulum.nevh" --dt 0.025 \
+    --t-end 2 --integrators verlet,midpoint
+has '^verlet at dt = 0.025: h w = 2\.5 near'
+has 'stable up to 2: take'
+lacks '^midpoint at dt = 0.025:'
+
 # For people: the counts, and one line a case and verdict.
 exits 0 hard 'Kepler e = 0.6' 'H changes from call to call' \
     --integrators verlet,euler,gauss4

@@ -12,7 +12,7 @@
 #include <time.h>
 
 enum { SAMPLES = 256, EDGE_EVERY = 8, MOST_DOF = 48 };
-static const double enough = 1;    /* seconds */
+static const double enough = 0.5;  /* seconds */
 static const double beside = 1e-7; /* of the lengths */
 static const double told = 12;     /* e-foldings that are no straight line */
 static const double tolerance = 1e-10;
