@@ -184,24 +184,27 @@ command -v timeout >/dev/null 2>&1 && timeout -s TERM 5 true || exit $status
 # Interruptions anywhere: the same file in the end.  Schemes that remember the
 # last step, times between steps, friction, and steps of their own length.
 seed=$$
-random() { # random N: from 1 to N
+random() { # random N: $number from 1 to N
     seed=$(((seed * 1103515245 + 12345) % 2147483648))
-    echo $((seed / 65536 % $1 + 1))
+    number=$((seed / 65536 % $1 + 1))
 }
 interrupted=0
 again() {
     name=$1
     shift
     exits 0 run "$@" -o $work/$name.whole
-    timeout -s TERM 0.0$(($(random 5) + 1)) "$nevh" run "$@" -o $work/$name \
+    random 5
+    timeout -s TERM 0.0$((number + 1)) "$nevh" run "$@" -o $work/$name \
         2>$work/err
     for i in 1 2 3 4 5; do
         test -e $work/$name.state || break
         part $work/$name $work/$name.whole || fails "left a broken line"
         interrupted=$((interrupted + 1))
-        timeout -s TERM 0.0$(($(random 5) + 1)) "$nevh" run "$@" \
+        random 5
+        timeout -s TERM 0.0$((number + 1)) "$nevh" run "$@" \
             --resume $work/$name 2>$work/err
     done
+    test -e $work/$name || exits 0 run "$@" -o $work/$name
     test -e $work/$name.state && exits 0 run "$@" --resume $work/$name
     cmp $work/$name $work/$name.whole >$work/cmp ||
         { fails "is another run when interrupted"; cat $work/cmp; }
@@ -224,7 +227,8 @@ i=0
 while test $i -lt 50; do
     i=$((i + 1))
     "$nevh" run pendulum --every 1 -o $work/killed.csv >/dev/null 2>&1 &
-    sleep 0.0$(random 5)$(random 9)
+    random 50
+    sleep 0.0$((number + 9))
     kill -s KILL $!
     wait $! 2>/dev/null
     part $work/killed.csv $work/whole.csv ||
@@ -281,13 +285,15 @@ size=$(wc -c <$work/x.state)
 i=0
 while test $i -lt 200; do
     i=$((i + 1))
-    at=$((($(random 32768) * 37 + i) % size))
+    random 32768
+    at=$(((number * 37 + i) % size))
     if test $((i % 2)) -eq 0; then
         head -c $at $work/x.state >$work/x.csv.state
     else
         cp $work/x.state $work/x.csv.state
         old=$(od -An -tu1 -j $at -N 1 $work/x.state | tr -d ' ')
-        new=$(((old + $(random 255)) % 256))
+        random 255
+        new=$(((old + number) % 256))
         printf "\\$(printf %03o $new)" |
             dd of=$work/x.csv.state bs=1 seek=$at conv=notrunc 2>/dev/null
     fi

@@ -193,13 +193,14 @@ static int save_often(void *data) {
 static void begin_saving(job *j, const char *name) {
     j->state = text_print("%s.state", name);
     j->settings = describe(j);
-    mind_signals();
 }
 
 /* Output. */
 
 static int open_new(job *j) {
     const options *o = j->options;
+    if (o->file)
+        mind_signals();
     if (lines_open(&j->lines, o->file))
         return TOOL_USAGE;
     for (size_t i = 0; i < j->notes.count; i++)
@@ -214,6 +215,7 @@ static int open_new(job *j) {
 static int open_again(job *j) {
     const char *name = j->options->resume;
     run_state *s = trajectory_state(j->trajectory);
+    mind_signals();
     begin_saving(j, name);
     if (state_load(j->state, j->settings, s) ||
         lines_reopen(&j->lines, name, s->at.bytes, s->at.digest))
