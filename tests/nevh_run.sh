@@ -240,6 +240,7 @@ again a double-pendulum --dt 0.001 --every 100 --t-end 40
 again b damped-driven-pendulum --dt 0.0003 --samples 300 --t-end 60
 again c $work/comet.nevh --integrators gauss8+transform --t-end 700 \
     --samples 200
+again e pendulum --every 1
 again d figure-eight --integrators gauss8 --t-end 50 --at 1,2.5,20.1,33,49.999
 test $interrupted -ge 8 || { echo "only $interrupted interruptions"; status=1; }
 
