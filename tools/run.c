@@ -20,7 +20,8 @@ typedef struct {
     list notes;
     line_file lines;
     trajectory *trajectory;
-    char *state, *settings; /* NULL: nothing is saved */
+    char *state, *settings; /* NULL: there is nothing to save */
+    bool saves;             /* so far it could be saved */
 } job;
 
 static volatile sig_atomic_t interrupted;
@@ -159,11 +160,12 @@ static char *describe(const job *j) {
     char *all = text_print(
         "nevh = %s\nscene = %016llx\nintegrator = %s\ndt = %.17g\n"
         "t_end = %.17g\ngradient = %s\ngradient step = %.17g\n"
-        "tolerance = %.17g\nportable = %s\nrows = %s%s\n",
+        "tolerance = %.17g\nportable = %s\ntransform = %s\nrows = %s%s\n",
         PACKAGE_VERSION, (unsigned long long)nevh_scene_digest(p->scene),
         j->integrator, p->dt[0], p->t_end, p->gradients.item[0],
         p->gradient_step, p->tolerances ? p->tolerance[0] : 0,
-        p->portable ? "yes" : "no", j->rows_text, times);
+        p->portable ? "yes" : "no",
+        p->run->transform ? p->run->transform : "none", j->rows_text, times);
     free(times);
     return all;
 }
@@ -174,17 +176,14 @@ static int save(job *j, bool lasting) {
     run_state *s = trajectory_state(j->trajectory);
     if (lines_flush(&j->lines))
         return TOOL_USAGE;
-    if (!j->state)
+    if (!j->saves)
         return TOOL_OK;
     if (lasting)
         fdatasync(j->lines.file);
     s->at.bytes = j->lines.bytes;
     s->at.digest = j->lines.digest;
-    if (state_save(j->state, j->settings, s, lasting)) {
-        free(j->state);
-        j->state = NULL; /* said once; the run goes on */
-    }
-    return TOOL_OK;
+    j->saves = !state_save(j->state, j->settings, s, lasting);
+    return TOOL_OK; /* what went wrong was said once; the run goes on */
 }
 
 static int save_often(void *data) {
@@ -194,13 +193,15 @@ static int save_often(void *data) {
 static void begin_saving(job *j, const char *name) {
     j->state = text_print("%s.state", name);
     j->settings = describe(j);
-    mind_signals();
+    j->saves = true;
 }
 
 /* Output. */
 
 static int open_new(job *j) {
     const options *o = j->options;
+    if (o->file)
+        mind_signals();
     if (lines_open(&j->lines, o->file))
         return TOOL_USAGE;
     for (size_t i = 0; i < j->notes.count; i++)
@@ -215,11 +216,13 @@ static int open_new(job *j) {
 static int open_again(job *j) {
     const char *name = j->options->resume;
     run_state *s = trajectory_state(j->trajectory);
+    mind_signals();
     begin_saving(j, name);
     if (state_load(j->state, j->settings, s) ||
         lines_reopen(&j->lines, name, s->at.bytes, s->at.digest))
         return TOOL_USAGE;
-    return trajectory_restore(j->trajectory);
+    int status = trajectory_restore(j->trajectory);
+    return status ? status : save(j, false);
 }
 
 /* The rest of a run that was told to end. */
@@ -229,7 +232,7 @@ static int give_up(job *j) {
         j->options->resume ? j->options->resume : j->options->file;
     if (save(j, true))
         return TOOL_USAGE;
-    if (!j->options->quiet && j->state)
+    if (!j->options->quiet && j->saves)
         fprintf(stderr, "nevh: interrupted; to go on: --resume %s\n", name);
     lines_close(&j->lines);
     signal(number, SIG_DFL);
