@@ -196,6 +196,31 @@ static int make_energy(const setting *a) {
     return status;
 }
 
+static int first_angle(void *data, double t, const double q[], const double p[],
+                       double *value) {
+    (void)data, (void)t, (void)p;
+    *value = q[0];
+    return NEVH_OK;
+}
+static int count_point(void *data, const nevh_point *point) {
+    (void)point;
+    ++*(size_t *)data;
+    return 0;
+}
+static nevh_sections *sections_of(const nevh_stepper *m, size_t *points) {
+    const nevh_section is[] = {{.name = "swing", .value = first_angle},
+                               {.name = "clock", .every = 0.11}};
+    return nevh_sections_new(m, is, 2, count_point, points);
+}
+
+static int make_sections(const setting *a) {
+    nevh_sections *x = sections_of(a->stepper, NULL);
+    int status = nevh_sections_status(x);
+    strcpy(text, nevh_sections_message(x));
+    nevh_sections_free(x);
+    return status;
+}
+
 static int find_defects(const setting *a) {
     double defect, q[] = {0.3, 0.5}, p[] = {0.7, 1.1};
     strcpy(text, "out of memory");
@@ -382,6 +407,7 @@ START_TEST(steppers) {
     ck_assert_uint_ge(starve(make_stepper, &a), 15);
     a.stepper = nevh_stepper_new(s, a.scheme, &a.options);
     ck_assert_uint_ge(starve(copy_stepper, &a), 15);
+    ck_assert_uint_ge(starve(make_sections, &a), 25);
     nevh_stepper_free(a.stepper);
     nevh_system_free(s);
 }
@@ -514,7 +540,10 @@ START_TEST(steps_take_no_memory) {
                       .tolerance = tolerance_for(scheme)};
     nevh_stepper *m = nevh_stepper_new(s, scheme, &o);
     nevh_energy *e = nevh_energy_new(s, NULL);
-    nevh_observer energy = {nevh_energy_observe, e, 1};
+    size_t points = 0;
+    nevh_sections *x = sections_of(m, &points);
+    nevh_observer watchers[] = {{nevh_energy_observe, e, 1},
+                                {nevh_sections_observe, x, 1}};
     double q[] = {1.7, 0.4}, p[] = {0.3, 0.5};
     /* Where h is nominal, the longest steps are several of it. */
     const double h = nevh_integrator_own_time(scheme) ? 0.02 : 0.05;
@@ -523,13 +552,15 @@ START_TEST(steps_take_no_memory) {
     watch(0);
     for (int i = 0; i < 100; i++)
         status |= nevh_stepper_apply(m, h * i, h, q, p);
-    status |= nevh_run(m, 5, h, 100, q, p, &energy, 1);
+    status |= nevh_run(m, 5, h, 100, q, p, watchers, 2);
     nevh_stepper_reset(m);
-    status |= nevh_run(m, 10, -h, 10, q, p, &energy, 1);
+    status |= nevh_run(m, 10, -h, 10, q, p, watchers, 2);
     watching = false;
     ck_assert_msg(status == NEVH_OK, "%s", nevh_stepper_message(m));
     ck_assert_uint_eq(requests, 0);
     ck_assert_uint_gt(nevh_energy_result(e, 0).samples, 100);
+    ck_assert_uint_gt(points, 10);
+    nevh_sections_free(x);
     nevh_energy_free(e);
     nevh_stepper_free(m);
     nevh_system_free(s);

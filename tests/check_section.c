@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const double pi = 3.14159265358979323846;
+
 /* What was found. */
 enum { MOST_POINTS = 4000 };
 typedef struct {
@@ -125,7 +127,7 @@ static int flat(void *data, double t, const double q[], const double p[],
 static int sawtooth(void *data, double t, const double q[], const double p[],
                     double *value) {
     (void)data, (void)t, (void)p;
-    *value = remainder(q[0], 2 * M_PI);
+    *value = remainder(q[0], 2 * pi);
     return NEVH_OK;
 }
 static int pole(void *data, double t, const double q[], const double p[],
@@ -182,7 +184,7 @@ START_TEST(an_oscillator_crosses_twice_a_period) {
                                {.value = coordinate, .direction = -1}};
     orbit *o = on_circle(0, is, 3);
     enum { turns = 50 };
-    ck_assert_int_eq(go(o, steps[_i], turns * 2 * M_PI), NEVH_OK);
+    ck_assert_int_eq(go(o, steps[_i], turns * 2 * pi), NEVH_OK);
     for (size_t section = 0; section < 3; section++) {
         const int only = is[section].direction;
         ck_assert_uint_eq(count_of(&o->found, section, 1),
@@ -191,7 +193,7 @@ START_TEST(an_oscillator_crosses_twice_a_period) {
                           only == 1 ? 0 : turns);
     }
     for (size_t i = 0; i < o->found.count; i++) {
-        const double t = M_PI / 2 + (double)(i / 2) * M_PI;
+        const double t = pi / 2 + (double)(i / 2) * pi;
         ck_assert_double_eq_tol(o->found.at[i].t, t, 1e-11);
         ck_assert_double_le(fabs(o->found.at[i].q[0]), 1e-15);
         ck_assert(o->found.at[i].direction * o->found.at[i].p[0] > 0.99);
@@ -204,7 +206,7 @@ END_TEST
    above never; x turns anywhere within a step and close to its ends. */
 START_TEST(touching_and_grazing) {
     static const double distances[] = {1e-3, 1e-6, 1e-9, 1e-12};
-    static const double steps[] = {0.9, 2 * M_PI / 8 * (1 + 1e-7), 0.05};
+    static const double steps[] = {0.9, 2 * pi / 8 * (1 + 1e-7), 0.05};
     const double d = distances[_i % 4], h = steps[_i / 4];
     double below = 1 - d, above = 1 + d;
     const nevh_section is[] = {{.value = coordinate, .data = &below},
@@ -212,7 +214,7 @@ START_TEST(touching_and_grazing) {
                                {.value = momentum, .data = &above}};
     orbit *o = on_circle(1, is, 3);
     const int turns = h < 0.1 ? 20 : 100;
-    ck_assert_int_eq(go(o, h, 1 + turns * 2 * M_PI), NEVH_OK);
+    ck_assert_int_eq(go(o, h, 1 + turns * 2 * pi), NEVH_OK);
     ck_assert_uint_eq(count_of(&o->found, 0, 1), turns);
     ck_assert_uint_eq(count_of(&o->found, 0, -1), turns);
     ck_assert_uint_eq(o->found.count, 2 * turns);
@@ -230,7 +232,7 @@ START_TEST(zeros_of_any_multiplicity) {
     double power_of = powers[_i];
     const nevh_section is = {.value = power, .data = &power_of};
     orbit *o = on_circle(0, &is, 1);
-    ck_assert_int_eq(go(o, 0.3, 20 * 2 * M_PI), NEVH_OK);
+    ck_assert_int_eq(go(o, 0.3, 20 * 2 * pi), NEVH_OK);
     ck_assert_uint_eq(o->found.count, _i % 2 ? 40 : 0);
     for (size_t i = 0; i < o->found.count; i++)
         ck_assert_double_eq_tol(o->found.at[i].q[0], 0.3, 1e-9);
@@ -323,7 +325,7 @@ END_TEST
 /* A free rotor passes several multiples of the period in a step, forward and
    backward; what rises, rises with t. */
 START_TEST(multiples_of_a_period) {
-    const double turn = 2 * M_PI, p = _i < 2 ? 20 : -20, h = _i % 2 ? -1 : 1;
+    const double turn = 2 * pi, p = _i < 2 ? 20 : -20, h = _i % 2 ? -1 : 1;
     const nevh_section is[] = {
         {.value = coordinate, .period = turn},
         {.value = coordinate, .period = turn, .direction = 1}};
@@ -377,12 +379,12 @@ static double turn_of(const part *a) {
     enum { SAMPLES = 64 };
     double best = 0, most = after_part(a, 0), low = 0, high = 1;
     for (int i = 1; i <= SAMPLES; i++) {
-        double s = (1 - cos(M_PI * i / SAMPLES)) / 2, value = after_part(a, s);
+        double s = (1 - cos(pi * i / SAMPLES)) / 2, value = after_part(a, s);
         if (value > most) {
             most = value;
             best = s;
-            low = (1 - cos(M_PI * (i - 1) / SAMPLES)) / 2;
-            high = (1 - cos(M_PI * (i + 1) / SAMPLES)) / 2;
+            low = (1 - cos(pi * (i - 1) / SAMPLES)) / 2;
+            high = (1 - cos(pi * (i + 1) / SAMPLES)) / 2;
         }
     }
     if (best == 0 || best == 1)
@@ -447,7 +449,7 @@ END_TEST
 /* A pendulum that swings to 2 and, after a push, goes round: only the multiples
    that it passes; a sawtooth's jumps and poles are none. */
 START_TEST(no_crossing_at_jumps) {
-    const nevh_section is[] = {{.value = coordinate, .period = 2 * M_PI},
+    const nevh_section is[] = {{.value = coordinate, .period = 2 * pi},
                                {.value = sawtooth},
                                {.value = pole}};
     orbit *swings = pendulum(&unit_pendulum, 2, 0, is, 3);
@@ -460,7 +462,7 @@ START_TEST(no_crossing_at_jumps) {
                       count_of(&swings->found, 0, -1) * 2 + count * 2);
     ck_assert_int_eq(go(turns, 0.3, 200), NEVH_OK);
     count = count_of(&turns->found, 0, 1);
-    ck_assert_uint_eq(count, (size_t)(turns->q[0] / (2 * M_PI)));
+    ck_assert_uint_eq(count, (size_t)(turns->q[0] / (2 * pi)));
     ck_assert_uint_eq(count_of(&turns->found, 1, 1), count);
     ck_assert_uint_eq(turns->found.count, 2 * count);
     put_away(swings);

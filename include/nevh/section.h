@@ -56,7 +56,10 @@ typedef int (*nevh_point_fn)(void *data, const nevh_point *);
    turns more often than that.
 
    A run that begins at the state, and at the time, at which the last one ended
-   goes on: no point is lost or doubled there. */
+   goes on: no point is lost or doubled there.
+
+   Works with schemes that adapt and that choose their own times, too; with the
+   former a point is off by what their tolerance lets pass. */
 typedef struct nevh_sections nevh_sections;
 
 /* stepper   whose runs are to be observed; borrowed
@@ -67,8 +70,9 @@ typedef struct nevh_sections nevh_sections;
              no sense, or the stepper takes more than one orbit, or the
              stepper's own refusal.
    cost      a second stepper, planned like the first.  Along a run, a gradient
-             and two values of each section a step; some six to twelve short
-             steps a point.  Observing allocates nothing. */
+             and two values of each section a step; some five short steps a
+             point, a few more where a value turns near 0.  Observing allocates
+             nothing. */
 NEVH_API nevh_sections *nevh_sections_new(const nevh_stepper *stepper,
                                           const nevh_section sections[],
                                           size_t count, nevh_point_fn tell,

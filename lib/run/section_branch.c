@@ -80,19 +80,7 @@ typedef struct {
     nevh__track *k;
     nevh__node a, b;          /* less the level */
     double level, best, last; /* |value| */
-    bool pole;                /* the value was infinite */
 } search;
-
-/* Infinity is no failure here. */
-static int sample(search *r, double s, double *value) {
-    nevh_sections *x = r->x;
-    int status = nevh__section_sample(x, r->k, s, value);
-    if (status != NEVH_EDOM || !isinf(*value))
-        return status;
-    r->pole = true;
-    x->report = (nevh__report){0};
-    return status;
-}
 
 /* Finite whatever happens, since GSL aborts otherwise; the ends are known. */
 static double miss(double s, void *data) {
@@ -103,15 +91,17 @@ static double miss(double s, void *data) {
         return r->a.value;
     if (s == r->b.s)
         return r->b.value;
-    if (sample(r, s, &value))
+    int status = nevh__section_sample(x, r->k, s, &value);
+    r->last = fabs(value - r->level);
+    if (status == NEVH_EDOM && isinf(value)) /* a pole is no failure */
+        x->report = (nevh__report){0};
+    if (status)
         return r->a.value;
-    value -= r->level;
-    r->last = fabs(value);
     if (r->last <= r->best) {
         r->best = r->last;
         keep(x, r->k, s, x->branch->last_t, x->q_try, x->p_try);
     }
-    return value;
+    return value - r->level;
 }
 
 static void narrow(search *r) {
@@ -122,7 +112,7 @@ static void narrow(search *r) {
         status = gsl_root_fsolver_iterate(root);
         double low = gsl_root_fsolver_x_lower(root);
         double high = gsl_root_fsolver_x_upper(root);
-        if (r->pole || r->x->report.status || high - low <= certain)
+        if (r->x->report.status || high - low <= certain)
             break;
     }
 }
@@ -135,7 +125,7 @@ int nevh__section_search(nevh_sections *x, nevh__track *k, nevh__node a,
     r.best = INFINITY;
     k->found = false;
     narrow(&r);
-    k->found &= !r.pole && r.last <= jump * (fabs(a.value - level) +
-                                             fabs(b.value - level));
+    k->found &=
+        r.last <= jump * (fabs(a.value - level) + fabs(b.value - level));
     return x->report.status;
 }

@@ -11,10 +11,8 @@ enum { MOST_TRIALS = 40 };
 /* The slope of a straight line between the ends times this much, at both ends:
    the value does not turn (it cannot from 0 to 3, for a cubic). */
 static const double least_slope = 0.5, most_slope = 2;
-static const double beyond = 0.1; /* the model's turns this far off count */
-/* Levels are near a turn within these parts of the range over the step, and of
-   what the turn adds to it. */
-static const double slack = 0.01, doubt = 3;
+static const double beyond = 0.1;  /* the model's turns this far off count */
+static const double doubt = 3;     /* factor on what a turn adds to the range */
 static const double inside = 0.02; /* first guesses keep off the ends */
 static const double close = 1e-6;  /* to an end, */
 static const double behind = 1e-4; /* for a slope, */
@@ -47,9 +45,8 @@ static bool level_within(const nevh__track *k, double low, double high) {
 static bool matters(const nevh__track *k, double turn) {
     double low = fmin(k->value, k->value_after);
     double high = fmax(k->value, k->value_after);
-    double more = slack * (high - low);
-    double top = turn >= high ? turn + doubt * (turn - high) + more : high;
-    double bottom = turn <= low ? turn - doubt * (low - turn) - more : low;
+    double top = turn >= high ? turn + doubt * (turn - high) : high;
+    double bottom = turn <= low ? turn - doubt * (low - turn) : low;
     return level_within(k, bottom, top);
 }
 
