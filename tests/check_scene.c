@@ -89,12 +89,12 @@ END_TEST
 
 /* Of coordinates, then of momenta; 0 where it is to be found out. */
 START_TEST(gradient_steps_by_name) {
-    nevh_scene *s =
-        scene_of("[parameters]\nm[1..3] = 1, 2, 4\n"
-                 "[coordinates]\ny = 1\nx[1..3] = 1\n"
-                 "[effects]\nH = p_y^2 + sum(i = 1..3, p_x[i]^2 + x[i]^2*y^2)\n"
-                 "[run]\ngradient_step = x[2..3]: 1/4, p_x[i = 1..3]: m[i]/8, "
-                 "p_y: 0.5\n");
+    nevh_scene *s = scene_of(
+        "[parameters]\nm[1..3] = 1, 2, 4\n"
+        "[coordinates]\ny = 1\nx[1..3] = 1\n"
+        "[effects]\nH = p_y^2 + sum(i = 1..3, p_x[i]^2 + x[i]^2*y^2)\n"
+        "[run]\ngradient_step = x[2..3]: 1/4, p_x[i = 2..3]: m[i]/8, p_x[1]: 1/8, "
+        "p_y: 0.5\n");
     const nevh_scene_run *run = nevh_scene_run_settings(s);
     const double steps[] = {0, 0, 0.25, 0.25, 0.5, 0.125, 0.25, 0.5};
     ck_assert(run->gradient_step == 0 && run->gradient_steps);

@@ -153,6 +153,10 @@ static const struct {
       "0.25/3*sum(i = 1..5, (x[i+1] - x[i])^3)", "x[1]^2/2 + x[6]^2/2",
       "0.1*sum(i = 1..6, cos(x[i]))"},
      "1 + x[1]^2"},
+    /* Separable by its values only. */
+    {"x = 0.7, 0.2\ny = -0.4, 0.5\n",
+     {"p_x^2/2", "(p_y + x)^2 - 2*x*p_y", "cos(x) + y^2"},
+     "1 + x^2"},
 };
 enum { PROBLEMS = sizeof problems_as_text / sizeof *problems_as_text };
 
@@ -166,9 +170,15 @@ static nevh_scene *many(int which, const char *friction) {
                   problems_as_text[which].coordinates);
     for (int i = 0; problems_as_text[which].parts[i]; i++)
         to += sprintf(to, "part%d = %s\n", i, problems_as_text[which].parts[i]);
-    sprintf(to, "trap = log(-1 - t^2)\n%s", friction);
+    const char *coordinates = problems_as_text[which].coordinates;
+    const char *last = strstr(coordinates, "..") ? "x[1]*p_x[2]"
+                       : *coordinates == 'a'     ? "a*p_b"
+                                                 : "x*p_y";
+    sprintf(to, "trap = log(-1 - t^2)\nmixed = sqrt(1 + (%s)^2)\n%s", last,
+            friction);
     nevh_scene *s = scene_of(text);
     ck_assert_int_eq(nevh_scene_enable(s, "trap", false), NEVH_OK);
+    ck_assert_int_eq(nevh_scene_enable(s, "mixed", false), NEVH_OK);
     return s;
 }
 

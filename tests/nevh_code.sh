@@ -85,6 +85,26 @@ exits 0 effects $work/off.nevh --impact --allow-code
 has '^ gravity +off +verlet +[0-9]'
 clean
 
+# One element of an array; velocities by differences of code.
+scene $work/element.nevh 'file("term.c", phi, m, l[2], l[1], g)'
+sed -i.old -e 's/c\[3\]\*c\[1\]/c[3]*c[2]\/7*c[1]/' $work/term.c
+sed -i.old -e 's/^kinetic = .*/kinetic = file("kinetic.c", p_phi)/' \
+    $work/element.nevh
+cat >$work/kinetic.c <<END
+double value(double t, const double q[], const double p[], const double c[])
+{
+    return p[0]*p[0]/2;
+}
+END
+exits 0 compare $work/text.nevh --format csv
+table >$work/rows
+exits 0 compare $work/element.nevh --format csv --allow-code
+table >$work/other
+cmp -s $work/rows $work/other ||
+    { fails "has other rows"; diff $work/rows $work/other; }
+mv $work/term.c.old $work/term.c
+clean
+
 # Derivatives of its own.
 exits 0 compare $work/code.nevh --allow-code --gradient exact --format csv
 has 'refused: .*gravity'

@@ -15,10 +15,11 @@ has '^springs,on,coordinates,,33,'
 # CSV: shares add up to 1, of time, too; off is 0 evaluations.
 exits 0 effects earth-halley --with relativity --format csv
 grep -v '^#' $work/out | sed 's/"[^"]*"/text/' | awk -F, 'NR > 1 {
-    share += $7; time += $9
+    share += $7; time += $9; each[NR] = $6*$8; all += $6*$8; part[NR] = $9
     if ($2 == "off" && $6 + $7 + $8 + $9 != 0) wrong = 1
     if ($2 == "on" && $8 <= 0) wrong = 1 }
-    END { exit wrong || share < 0.99 || share > 1.01 || time < 0.99 ||
+    END { for (i in part) if ((each[i]/all - part[i])^2 > 1e-4) wrong = 1
+          exit wrong || share < 0.99 || share > 1.01 || time < 0.99 ||
           time > 1.01 }' || { fails "has other shares"; cat $work/out; }
 exits 0 effects pendulum --gradient exact --t-end 10 --format csv
 grep -v '^#' $work/out | awk -F, 'NR > 1 { time += $9 }
