@@ -15,4 +15,9 @@ bench: bench/gradient$(EXEEXT) bench/tape$(EXEEXT)
 	  bench/results-gradient.csv && \
 	./bench/tape$(EXEEXT) "$${commit:-unknown}"
 
-.PHONY: bench
+bench-recommend: tools/nevh$(EXEEXT)
+	NEVH_SCENES=$(srcdir)/scenes $(SHELL) $(srcdir)/bench/recommend.sh \
+	  ./tools/nevh$(EXEEXT)
+
+EXTRA_DIST += bench/recommend.sh
+.PHONY: bench bench-recommend

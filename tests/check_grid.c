@@ -12,7 +12,8 @@ START_TEST(steps_double_and_can_be_typed) {
         snprintf(text, sizeof text, "%.4g", dt);
         ck_assert(strtod(text, NULL) == dt);
         ck_assert(ratio > 1.19 && ratio < 1.29);
-        ck_assert_double_eq_tol(dt / grid_dt(k + GRID_STRIDE), 2, 0.05);
+        if ((k + 40) % 10 != 9) /* 0.125 to 0.064 */
+            ck_assert_double_eq_tol(dt / grid_dt(k + GRID_STRIDE), 2, 1e-12);
         ck_assert_double_eq_tol(dt / grid_dt(k + 10), 10, 1e-12);
     }
     ck_assert(grid_dt(0) == 1 && grid_dt(7) == 0.2 && grid_dt(-3) == 2);
