@@ -18,4 +18,9 @@ bench: bench/gradient$(EXEEXT) bench/tape$(EXEEXT) bench/scenes$(EXEEXT)
 	./bench/tape$(EXEEXT) "$${commit:-unknown}" && \
 	./bench/scenes$(EXEEXT) $(srcdir)/scenes/*.nevh
 
-.PHONY: bench
+bench-recommend: tools/nevh$(EXEEXT)
+	NEVH_SCENES=$(srcdir)/scenes $(SHELL) $(srcdir)/bench/recommend.sh \
+	  ./tools/nevh$(EXEEXT)
+
+EXTRA_DIST += bench/recommend.sh
+.PHONY: bench bench-recommend

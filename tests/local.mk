@@ -43,6 +43,7 @@ suites = \
 	tests/check_own_time \
 	tests/check_eccentric \
 	tests/check_energy \
+	tests/check_grid \
 	tests/check_friction \
 	tests/check_damped_orbits \
 	tests/check_damped_steps \
@@ -81,6 +82,7 @@ tests_check_tape_terms_LDADD = $(INSIDE_LIBS)
 tests_check_formula_LDADD = $(INSIDE_LIBS)
 tests_check_formula_terms_LDADD = $(INSIDE_LIBS)
 tests_check_hard_LDADD = $(TEST_LIBS) $(GSL_LIBS)
+tests_check_grid_SOURCES = tests/check_grid.c tools/grid.c
 tests_check_gsl_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_damped_orbits_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_threads_CFLAGS = $(AM_CFLAGS) -pthread
@@ -147,6 +149,7 @@ dist_check_SCRIPTS = \
 	tests/nevh_units.sh \
 	tests/nevh_check.sh \
 	tests/nevh_hard.sh \
+	tests/nevh_cost.sh \
 	tests/pkgconfig.sh \
 	tests/effects_off.sh \
 	tests/valgrind.sh

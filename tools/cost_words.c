@@ -284,6 +284,9 @@ void cost_words(costs *c, list *words) {
                "keep the energy at any step, which says nothing of their "
                "orbits.",
                says_nothing);
+    if (c->search.plan.friction && !c->search.by_state)
+        list_add(words, "Friction around a step is exact in the balance, "
+                        "though not in the orbit: compare --by state.");
     tell_hidden(c, words);
     tell_legend(c, words);
 }

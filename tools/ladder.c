@@ -226,19 +226,26 @@ ladder *ladder_next(ladder ladders[], size_t count) {
     return next;
 }
 
-/* Whether the last two rungs brought nothing, after others had. */
-static bool is_level(const ladder *l, bool by_state) {
+/* Rungs at the end that brought next to nothing. */
+static size_t count_level(const ladder *l, bool by_state) {
     static const double level = 0.7;
-    size_t n = l->count;
-    if (n < 2)
-        return false;
-    double last = ladder_error(&l->rung[n - 1], by_state);
-    double before = ladder_error(&l->rung[n - 2], by_state);
-    if (last <= rounding || (before < 1e-11 && last > level * before))
-        return true;
-    return n > 2 && last > level * before &&
-           before > level * ladder_error(&l->rung[n - 3], by_state) &&
-           before < 0.1 * ladder_error(&l->rung[0], by_state);
+    size_t count = 0;
+    for (size_t i = l->count; i-- > 1; count++)
+        if (!(ladder_error(&l->rung[i], by_state) >
+              level * ladder_error(&l->rung[i - 1], by_state)))
+            break;
+    return count;
+}
+
+/* Whether shorter steps are of no use: at rounding at once, elsewhere when a
+   few were of none, since errors of coarse steps may be level, too. */
+static bool is_level(const ladder *l, bool by_state) {
+    static const double small = 1e-11, usual = 1e-2;
+    size_t count = count_level(l, by_state);
+    double last = ladder_error(&l->rung[l->count - 1], by_state);
+    double first = ladder_error(&l->rung[0], by_state);
+    return last <= rounding || (count > 0 && last < small) ||
+           (count > 1 && last < 0.1 * first) || (count > 2 && last < usual);
 }
 
 /* Coarse rungs were of no use once a finer one is of some. */
