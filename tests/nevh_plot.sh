@@ -93,9 +93,9 @@ shows 'largest energy error, relative'
 shows verlet
 test "$(points 1) $(points 4)" = "4 4" || fails "does not draw each run"
 # An eighth of the step: 8 times as many H, and 8^4 to 8^5 times less error.
-awk '/^\$series4 <</ { on = 1 } /^EOD/ { on = 0 }
+awk '/^\$series2 <</ { getline; t = $1 } /^\$series4 <</ { on = 1 } /^EOD/ { on = 0 }
     on && NF == 2 { if (++n == 1) { h = $1; e = $2 } else { x = $1 / h; y = e / $2 } }
-    END { exit !(x > 7.9 && x < 8.1 && y > 4e3 && y < 4e4) }' $work/out.gp ||
+    END { exit !(t != h && h == 1200 && x > 7.9 && x < 8.1 && y > 4e3 && y < 4e4) }' $work/out.gp ||
     fails "draws other numbers"
 test "$(grep -c '^set logscale [xy]' $work/out.gp)" = 4 ||
     fails "has axes that are not logarithmic"
@@ -132,7 +132,9 @@ awk -F, '/^t,/ { for (i = 1; i <= NF; i++) if ($i == "x1") k = i }
 awk '/^\$series[56] <</ { getline; printf("%.6f %.6f\n", $1, $2) }' \
     $work/out.gp >$work/drawn
 cmp $work/rows $work/drawn || fails "draws bobs elsewhere"
-# A unit is as long on both axes.
+# A unit is as long on both axes, also where the picture is wide.
+draws run figure-eight --t-end 7 --dt 0.05 --plot-kind configuration \
+    --plot $svg --keep-plot-script $work/out.gp
 awk '/^set [xy]range/ { gsub("[^0-9.e xyrange-]", " "); l[substr($2, 1, 1)] = $4 - $3 }
     /^set [lrbt]margin/ { m[substr($2, 1, 1)] = $5 }
     /^set terminal/ { split($5, size, ",") }
@@ -162,6 +164,7 @@ draws compare oscillator --t-end 9 --dt 0.1 --quiet --plot -
 has '^ +1e-16 '
 has '\*verlet *$'
 lacks '^.{81}.*[*#|]'
+lacks "$(printf '\f')"
 COLUMNS=120 draws compare oscillator --t-end 9 --dt 0.1 --quiet --plot -
 has '^.{105,120}$'
 lacks '^.{121}.*[*#|]'
@@ -205,13 +208,17 @@ for name in plot.gif plot svg ''; do
 done
 exits 2 compare pendulum --plot $work/nowhere/x.svg
 says 'nowhere/x\.svg cannot be written: No such file'
+test -s $work/out && fails "runs before it looks at the file"
 exits 2 compare pendulum --keep-plot-script $work/nowhere/x.gp
 says 'nowhere/x\.gp cannot be written'
+test -s $work/out && fails "runs before it looks at the script's file"
 mkdir $work/folder.svg
 exits 2 compare pendulum --plot $work/folder.svg
 says 'folder\.svg cannot be written'
 rmdir $work/folder.svg
 exits 2 compare pendulum --plot $work/x.svg -o $work/x.svg
+says 'same name'
+exits 2 compare pendulum --plot $work/x.svg --keep-plot-script $work/x.svg
 says 'same name'
 exits 2 compare pendulum --plot - --format csv
 says 'with -o'

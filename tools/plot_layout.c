@@ -105,5 +105,7 @@ layout plot_lay_out(const plot *p, const target *t) {
     l.width = (l.left + l.panel_width + l.right) * (double)l.columns + l.legend;
     l.height = (l.top + l.panel_height + l.bottom) * (double)l.rows + l.title;
     l.height = fmax(l.height, l.title + l.top + l.line * (double)(lines + 2));
+    l.width = ceil(l.width); /* gnuplot takes whole pixels */
+    l.height = ceil(l.height);
     return l;
 }

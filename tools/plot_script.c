@@ -53,7 +53,7 @@ static void quote_line(FILE *f, const char *before, const char *text,
 }
 
 static void print_terminal(FILE *f, const target *t, const layout *l) {
-    double w = ceil(l->width), h = ceil(l->height);
+    double w = l->width, h = l->height;
     switch (t->medium) {
     case PLOT_SVG:
         fprintf(f,
