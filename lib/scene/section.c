@@ -16,24 +16,26 @@ static bool take_direction(nevh_scene *s, const nevh__piece *word,
 }
 
 /* The period of the coordinate that a text names, as x or x[3]; 0 when it is
-   none. */
-static double period_of(const nevh__model *m, const char *text) {
+   none.  False when memory is out. */
+static bool find_period(nevh_scene *s, const nevh__model *m, const char *text,
+                        double *period) {
     nevh__formula_error error;
     nevh__head head;
     size_t count, first;
-    double period = 0;
     long index = 1;
-    if (nevh__head_parse(text, &head, &error))
-        return 0;
+    int status = nevh__head_parse(text, &head, &error);
+    *period = 0;
+    if (status)
+        return status != NEVH_ENOMEM || nevh__scene_no_memory(s);
     nevh__meaning meaning =
         nevh__names_find(m->names, head.name, &count, &first);
     bool element = head.from && !head.to;
-    if (meaning == NEVH__COORDINATE && element == (count > 0) &&
-        (!element ||
-         !nevh__tree_integer(head.from, m->names, NULL, &index, &error)))
-        period = m->period[first + (size_t)index - 1];
+    if (element)
+        status = nevh__tree_integer(head.from, m->names, NULL, &index, &error);
+    if (meaning == NEVH__COORDINATE && element == (count > 0) && !status)
+        *period = m->period[first + (size_t)index - 1];
     nevh__head_free(&head);
-    return period;
+    return status != NEVH_ENOMEM || nevh__scene_no_memory(s);
 }
 
 /* FORMULA = FORMULA, rising */
@@ -51,8 +53,8 @@ static bool take_when(nevh_scene *s, nevh__model *m, nevh__piece *rest,
         !nevh__formula_check(s, m, &left, &crossing->left) ||
         !nevh__formula_check(s, m, &right, &crossing->right))
         return false;
-    crossing->is.period = period_of(m, left.text);
-    return take_direction(s, rest, &right, &crossing->is.direction);
+    return find_period(s, m, left.text, &crossing->is.period) &&
+           take_direction(s, rest, &right, &crossing->is.direction);
 }
 
 static bool take_every(nevh_scene *s, nevh__model *m, const nevh__piece *value,
