@@ -9,6 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const double pi = 3.14159265358979323846;
+
 static nevh_scene *read_scene(const char *folder, const char *name) {
     const char *source = getenv("srcdir");
     char file[500];
@@ -54,13 +56,13 @@ static bool falls(const nevh_integrator *scheme, double steps, double length,
     snprintf(text, sizeof text, "w = %.17g", w);
     ck_assert_int_eq(nevh_scene_set(scene, text), NEVH_OK);
     orbit o = begin(scene, scheme);
-    double h = 2 * M_PI / w / steps, off = 0;
-    o.q[0] = M_PI + 1e-6;
+    double h = 2 * pi / w / steps, off = 0;
+    o.q[0] = pi + 1e-6;
     o.p[0] = 0;
     for (double i = 0; i * h < 100 && off < 0.1; i++) {
         ck_assert_int_eq(nevh_stepper_apply(o.stepper, i * h, h, o.q, o.p),
                          NEVH_OK);
-        off = fabs(o.q[0] - M_PI);
+        off = fabs(o.q[0] - pi);
     }
     end(&o);
     return off >= 0.1;
@@ -104,9 +106,9 @@ enum { SPRINGS = 32 };
 
 /* Of the lowest mode. */
 static double mode_energy(const orbit *o) {
-    double a = 0, b = 0, w = 2 * sin(M_PI / 2 / SPRINGS);
+    double a = 0, b = 0, w = 2 * sin(pi / 2 / SPRINGS);
     for (size_t i = 0; i < o->n; i++) {
-        double s = sqrt(2. / SPRINGS) * sin(M_PI * (double)(i + 1) / SPRINGS);
+        double s = sqrt(2. / SPRINGS) * sin(pi * (double)(i + 1) / SPRINGS);
         a += s * o->q[i];
         b += s * o->p[i];
     }
@@ -117,7 +119,7 @@ static double mode_energy(const orbit *o) {
 static double recurrence(const nevh_integrator *scheme, double h,
                          double *share) {
     orbit o = begin(read_scene("tests/hard", "fput"), scheme);
-    double period = 2 * M_PI / (2 * sin(M_PI / 2 / SPRINGS));
+    double period = 2 * pi / (2 * sin(pi / 2 / SPRINGS));
     double start = mode_energy(&o), best = 0, when = 0;
     for (double i = 0; i * h < 175 * period; i++) {
         ck_assert_int_eq(nevh_stepper_apply(o.stepper, i * h, h, o.q, o.p),
@@ -186,7 +188,7 @@ static void comet(const nevh_integrator *scheme, double orbits, double *energy,
     nevh_scene *scene = read_scene("tests/hard", "kepler");
     ck_assert_int_eq(nevh_scene_set(scene, "e = 0.99"), NEVH_OK);
     orbit o = begin(scene, scheme);
-    double h = 2 * M_PI / 6000, start = momentum(&o);
+    double h = 2 * pi / 6000, start = momentum(&o);
     *energy = *rotation = 0;
     for (double i = 0; i < 6000 * orbits; i++) {
         ck_assert_int_eq(nevh_stepper_apply(o.stepper, i * h, h, o.q, o.p),
@@ -253,7 +255,7 @@ START_TEST(a_million_turns) {
     double period = 2 * gsl_sf_ellint_Kcomp(0.5, GSL_PREC_DOUBLE) / 2;
     double h = period / 16, energy;
     double angle = turned(nevh_blanes_moan4, h, 16000000, &energy);
-    ck_assert_double_eq_tol(angle / (2 * M_PI), 1e6, 0.5);
+    ck_assert_double_eq_tol(angle / (2 * pi), 1e6, 0.5);
     ck_assert_double_le(energy, 1e-7);
     turned(nevh_rk4, h, 160000, &energy);
     ck_assert_double_ge(energy, 1e-2);
