@@ -13,7 +13,7 @@ has '^kinetic,on,momenta,,32,'
 has '^springs,on,coordinates,,33,'
 
 # CSV: shares add up to 1, of time, too; off is 0 evaluations.
-exits 0 effects earth-halley --with relativity --format csv
+exits 0 effects damped-driven-pendulum --without drag --t-end 20 --format csv
 grep -v '^#' $work/out | sed 's/"[^"]*"/text/' | awk -F, 'NR > 1 {
     share += $7; time += $9; each[NR] = $6*$8; all += $6*$8; part[NR] = $9
     if ($2 == "off" && $6 + $7 + $8 + $9 != 0) wrong = 1
