@@ -172,7 +172,7 @@ lacks '^.{121}.*[*#|]'
 # Texts are no more than texts.
 cat >$work/weird.nevh <<'END'
 [scene]
-title = it's `touch HERE` "$(touch HERE)" {/S a}_b^2 %d \n <b>&é @x \
+title = it's `touch HERE` "$(touch HERE)" {/S a}_b^2 %d \n <b>&ACUTE @x \
 [coordinates]
 x = 1
 [effects]
@@ -185,6 +185,8 @@ t_end = 1
 dt = 0.1
 integrators = verlet
 END
+acute=$(printf '\303\251') # in UTF-8
+sed -i.old "s/ACUTE/$acute/" $work/weird.nevh
 for name in "it's.svg" '|touch touched;.svg' '$(touch touched) `touch touched`.svg'; do
     (cd $work && NEVH_SCENES= && "$nevh" compare weird.nevh --plot "$name" \
         --keep-plot-script weird.gp >out 2>err) || { fails "fails at $name";
@@ -192,7 +194,7 @@ for name in "it's.svg" '|touch touched;.svg' '$(touch touched) `touch touched`.s
     test -s "$work/$name" || fails "does not draw $name"
     svg=$work/drawn.svg
     mv "$work/$name" $svg
-    shows "it's \`touch HERE\` \"\$(touch HERE)\" {/S a}_b^2 %d \\n &lt;b>&amp;é @x \\"
+    shows "it's \`touch HERE\` \"\$(touch HERE)\" {/S a}_b^2 %d \\n &lt;b>&amp;$acute @x \\"
     shows "t ('y_r'\\)"
     (cd $work && gnuplot weird.gp 2>err) || fails "keeps a script that fails"
     cmp $svg "$work/$name" || fails "keeps a script that draws elsewhere"
