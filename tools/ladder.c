@@ -153,15 +153,19 @@ static bool is_usable(const ladder *l, size_t i, bool by_state) {
     return ladder_error(&l->rung[i], by_state) < usable_below;
 }
 
+static bool has_steps(const search *s, int k) {
+    static const double least = 8;
+    return grid_dt(k) * least <= s->plan.t_end - s->plan.run->t_start;
+}
+
 /* To coarser ones, of which only those that are usable stay, as long as they
    save something: sweeps may cost more than steps save. */
 static void ascend(search *s, ladder *l) {
     static const double saves = 0.9;
-    enum { STRIDES = 6, STEPS = 8 };
-    double span = s->plan.t_end - s->plan.run->t_start;
+    enum { STRIDES = 6 };
     for (int i = 0; i < STRIDES && !search_is_over(s, 1); i++) {
         int k = l->k[0] - GRID_STRIDE;
-        if (grid_dt(k) * STEPS > span)
+        if (!has_steps(s, k))
             return;
         ladder_run(s, l, k);
         if (!is_usable(l, 0, s->by_state)) {
@@ -336,7 +340,27 @@ static int place_between(const ladder *l, size_t i, double target,
     return k;
 }
 
+/* Where the coarsest rung keeps the target, those up to the next stride, which
+   was unusable or too long for the run. */
+static void refine_top(search *s, ladder *l, double target) {
+    for (int i = 1; i < GRID_STRIDE && !search_is_over(s, 1); i++) {
+        if (ladder_error(&l->rung[0], s->by_state) > target ||
+            !has_steps(s, l->k[0] - 1))
+            return;
+        ladder_run(s, l, l->k[0] - 1);
+        if (!is_usable(l, 0, s->by_state)) {
+            forget(l, 0);
+            return;
+        }
+    }
+}
+
 void ladder_refine(search *s, ladder *l, double target) {
+    if (l->end < LADDER_GIVEN && l->count &&
+        !nevh_integrator_adaptive(l->scheme) && !l->topped) {
+        refine_top(s, l, target);
+        l->topped = true;
+    }
     for (;;) {
         size_t i = first_below(l, target, s->by_state);
         if (l->end == LADDER_GIVEN || i == 0 || i == l->count ||
