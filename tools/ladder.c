@@ -197,6 +197,10 @@ void ladder_begin(search *s, ladder *l) {
         run_given(s, l);
         return;
     }
+    if (search_is_over(s, 0.5)) {
+        l->end = LADDER_LIMIT;
+        return;
+    }
     int k = adapts ? FIRST_TOLERANCE : grid_dt_place(longest_dt(&s->plan));
     size_t i = ladder_run(s, l, k);
     if (l->rung[i].late)
@@ -379,7 +383,8 @@ static size_t widest_gap(const ladder *l) {
 }
 
 void ladder_fill(search *s, ladder *l, size_t count) {
-    while (l->count < count && l->end < LADDER_GIVEN && !search_is_over(s, 1)) {
+    while (l->count && l->count < count && l->end < LADDER_GIVEN &&
+           !search_is_over(s, 1)) {
         size_t i = widest_gap(l);
         int gap = i ? l->k[i] - l->k[i - 1] : 0;
         ladder_run(s, l, gap > 1 ? l->k[i] - gap / 2 : l->k[l->count - 1] + 1);
