@@ -21,12 +21,13 @@ field() { # NAME of the last row of $work
         !n++ { for (i = 1; i <= NF; i++) if ($i == name) column = i; next }
         { value = $column } END { print value }' $work
 }
-# The grid, ten steps a decade, around what was recommended.
+# The grid, ten steps a decade, around what was recommended; a run has at least
+# eight steps.
 grid() {
-    awk -v dt="$1" 'BEGIN { split("1 1.25 1.6 2 2.5 3.2 4 5 6.4 8", digit, " ")
+    awk -v dt="$1" -v end="$2" 'BEGIN { split("1 1.25 1.6 2 2.5 3.2 4 5 6.4 8", digit, " ")
         for (d = 2; d >= -6; d--) for (i = 10; i > 0; i--) {
             x = digit[i] * 10 ^ d
-            if (x < 5 * dt && x > dt / 100)
+            if (x < 5 * dt && x > dt / 100 && 8 * x <= end)
                 printf "%s%.6g", n++ ? "," : "", x } }'
 }
 schemes() { # those that fit, have steps of their own, and do not keep the
@@ -52,7 +53,7 @@ for pair; do
         --integrators "$all" --format csv | sed '/^#/!{n;q}' >$work
     mine="$(field integrator) $(field gradient) $(field dt)"
     "$nevh" compare "$scene" --t-end "$end" --integrators "$all" --repeat 1 \
-        --gradient exact,central2,central4,central6,central8 --dt "$(grid "$(field dt)")" \
+        --gradient exact,central2,central4,central6,central8 --dt "$(grid "$(field dt)" "$end")" \
         --format csv >$work
     other=$(awk -F, -v by=$by -v target="$target" '/^#/ || $8 != "ok" { next }
         { e = by == "state" ? $13 : $9 }

@@ -63,10 +63,10 @@ records | awk -F, 'NR > 1 { n[$2]++; dt[$2, n[$2]] = $6; e[$2, n[$2]] = $9 }
             if (n[name] < 8) exit 1
             for (i = 2; i <= n[name]; i++) {
                 if (dt[name, i] >= dt[name, i - 1]) exit 2
-                if (e[name, i - 1] < 1e-3 && e[name, i] > 1e-11) {
+                if (e[name, i - 1] < 5e-8 && e[name, i] > 1e-12) {
                     found = log(e[name, i - 1] / e[name, i]) / \
                         log(dt[name, i - 1] / dt[name, i])
-                    if (found < order[name] - 1 || found > order[name] + 3)
+                    if (found < order[name] - 0.5 || found > order[name] + 1)
                         exit 3
                 }
                 for (target = 1e-2; target > 1e-11; target /= 100)

@@ -204,15 +204,23 @@ static void tell_names(const costs *c, list *words, const char *format,
 }
 
 static void tell_hidden(const costs *c, list *words) {
-    size_t count = 0;
-    for (size_t i = 0; i < c->count; i++)
-        count += c->ladder[i].end != LADDER_REFUSED &&
-                 costs_count(c, &c->ladder[i]) && !cost_shows(c, &c->ladder[i]);
-    if (count)
+    size_t dear = 0, untried = 0;
+    for (size_t i = 0; i < c->count; i++) {
+        const ladder *l = &c->ladder[i];
+        untried += l->end == LADDER_LIMIT && !l->count;
+        dear += l->end != LADDER_REFUSED && l->count && costs_count(c, l) &&
+                !cost_shows(c, l);
+    }
+    if (dear)
         list_print(words,
                    "%zu others fit and are nowhere cheapest: --integrators "
                    "shows them, --format csv all.",
-                   count);
+                   dear);
+    if (untried)
+        list_print(words,
+                   "%zu were not tried, for lack of time: --t-end shortens the "
+                   "run, --integrators names those that matter.",
+                   untried);
 }
 
 static double longest_cell(const costs *c) {

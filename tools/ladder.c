@@ -153,15 +153,19 @@ static bool is_usable(const ladder *l, size_t i, bool by_state) {
     return ladder_error(&l->rung[i], by_state) < usable_below;
 }
 
+static bool has_steps(const search *s, int k) {
+    static const double least = 8;
+    return grid_dt(k) * least <= s->plan.t_end - s->plan.run->t_start;
+}
+
 /* To coarser ones, of which only those that are usable stay, as long as they
    save something: sweeps may cost more than steps save. */
 static void ascend(search *s, ladder *l) {
     static const double saves = 0.9;
-    enum { STRIDES = 6, STEPS = 8 };
-    double span = s->plan.t_end - s->plan.run->t_start;
+    enum { STRIDES = 6 };
     for (int i = 0; i < STRIDES && !search_is_over(s, 1); i++) {
         int k = l->k[0] - GRID_STRIDE;
-        if (grid_dt(k) * STEPS > span)
+        if (!has_steps(s, k))
             return;
         ladder_run(s, l, k);
         if (!is_usable(l, 0, s->by_state)) {
@@ -191,6 +195,10 @@ void ladder_begin(search *s, ladder *l) {
     bool adapts = nevh_integrator_adaptive(l->scheme);
     if (s->dt) {
         run_given(s, l);
+        return;
+    }
+    if (search_is_over(s, 0.5)) {
+        l->end = LADDER_LIMIT;
         return;
     }
     int k = adapts ? FIRST_TOLERANCE : grid_dt_place(longest_dt(&s->plan));
@@ -336,7 +344,27 @@ static int place_between(const ladder *l, size_t i, double target,
     return k;
 }
 
+/* Where the coarsest rung keeps the target, those up to the next stride, which
+   was unusable or too long for the run. */
+static void refine_top(search *s, ladder *l, double target) {
+    for (int i = 1; i < GRID_STRIDE && !search_is_over(s, 1); i++) {
+        if (ladder_error(&l->rung[0], s->by_state) > target ||
+            !has_steps(s, l->k[0] - 1))
+            return;
+        ladder_run(s, l, l->k[0] - 1);
+        if (!is_usable(l, 0, s->by_state)) {
+            forget(l, 0);
+            return;
+        }
+    }
+}
+
 void ladder_refine(search *s, ladder *l, double target) {
+    if (l->end < LADDER_GIVEN && l->count &&
+        !nevh_integrator_adaptive(l->scheme) && !l->topped) {
+        refine_top(s, l, target);
+        l->topped = true;
+    }
     for (;;) {
         size_t i = first_below(l, target, s->by_state);
         if (l->end == LADDER_GIVEN || i == 0 || i == l->count ||
@@ -355,7 +383,8 @@ static size_t widest_gap(const ladder *l) {
 }
 
 void ladder_fill(search *s, ladder *l, size_t count) {
-    while (l->count < count && l->end < LADDER_GIVEN && !search_is_over(s, 1)) {
+    while (l->count && l->count < count && l->end < LADDER_GIVEN &&
+           !search_is_over(s, 1)) {
         size_t i = widest_gap(l);
         int gap = i ? l->k[i] - l->k[i - 1] : 0;
         ladder_run(s, l, gap > 1 ? l->k[i] - gap / 2 : l->k[l->count - 1] + 1);

@@ -38,6 +38,7 @@ typedef struct {
     row *rung; /* coarse to fine */
     int *k;    /* their places on the grid */
     size_t count;
+    bool topped; /* steps coarser than the first stride were tried */
     ladder_end end;
 } ladder;
 typedef struct {

@@ -158,7 +158,7 @@ static void watched(work *w, nevh_stepper *s) {
     if (kept)
         observers[count++] = (nevh_observer){invariants_observe, kept, 1};
     if (w->plan->patience > 0)
-        observers[count++] = (nevh_observer){mind_time, &wait, 64};
+        observers[count++] = (nevh_observer){mind_time, &wait, 8};
     int status = run(w, s, observers, count);
     const char *why = wait.late                ? "it takes too long"
                       : status == NEVH_STOPPED ? nevh_energy_message(energy)
