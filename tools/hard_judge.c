@@ -100,7 +100,8 @@ static bool is_explained(const hard_subject *s, const hard_result *r) {
     if (is(s, HARD_FAR) && scales_by_state(r->scheme))
         return true;
     return is(s, HARD_EDGE | HARD_ESCAPE | HARD_NOISE | HARD_ANY_STEP) ||
-           x > r->limit || x > 1 || (!keeps(r) && drift_bound(s, r) > 0.1);
+           x > r->limit || x > 1 || kept_bound(s, r) > 1 ||
+           (!keeps(r) && drift_bound(s, r) > 0.1);
 }
 
 static char *tell_cause(const hard_subject *s, const hard_result *r) {
@@ -125,10 +126,14 @@ static char *tell_cause(const hard_subject *s, const hard_result *r) {
                           : "no cause was found");
 }
 
-static hard_verdict judge_return(hard_result *r) {
+/* An error of the energy that is there all along puts the phase off by about
+   its size times the angle gone through, there and back. */
+static hard_verdict judge_return(const hard_subject *s, hard_result *r) {
+    double angle = 2 * r->asked * pace_of(s, r);
+    double allowed = fmax(returned, r->floor * angle);
     bool symmetric = nevh_integrator_symmetric(r->scheme) == NEVH_YES;
     r->happened = text_print("comes back to %.1e", r->defect);
-    if (r->defect <= returned)
+    if (r->defect <= allowed)
         return HARD_BOUNDED;
     return symmetric ? HARD_NONE : HARD_DRIFTS;
 }
@@ -176,7 +181,7 @@ static hard_verdict judge(const hard_subject *s, hard_result *r) {
     if (r->energy.max > 1)
         return judge_explosion(s, r);
     if (is(s, HARD_RETURN))
-        return judge_return(r);
+        return judge_return(s, r);
     return judge_energy(r);
 }
 
