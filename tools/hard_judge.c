@@ -11,6 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Stage equations are sure to have a solution for short steps alone. */
+static const double solvable = 0.1;
 static const double constant = 10, tolerance = 1e-9, returned = 1e-8;
 
 const char *hard_verdict_name(hard_verdict v) {
@@ -100,8 +102,8 @@ static bool is_explained(const hard_subject *s, const hard_result *r) {
     if (is(s, HARD_FAR) && scales_by_state(r->scheme))
         return true;
     return is(s, HARD_EDGE | HARD_ESCAPE | HARD_NOISE | HARD_ANY_STEP) ||
-           x > r->limit || x > 1 || kept_bound(s, r) > 1 ||
-           (!keeps(r) && drift_bound(s, r) > 0.1);
+           stability_exceeded(r->scheme, r->limit, x) || x > 1 ||
+           kept_bound(s, r) > 1 || (!keeps(r) && drift_bound(s, r) > 0.1);
 }
 
 static char *tell_cause(const hard_subject *s, const hard_result *r) {
@@ -120,6 +122,9 @@ static char *tell_cause(const hard_subject *s, const hard_result *r) {
                                          "the end of H"
                       : is(s, HARD_ESCAPE) ? "the orbit escapes"
                       : is(s, HARD_NOISE)  ? "values of H are noise"
+                      : r->status == NEVH_EMAXITER
+                          ? "stage equations need not have a solution that "
+                            "can be found, but for short steps"
                       : kept_bound(s, r) > 1
                           ? "the orbit exchanges more than its energy, which "
                             "theory bounds no better at this order and step"
