@@ -103,7 +103,8 @@ static bool is_explained(const hard_subject *s, const hard_result *r) {
         return true;
     return is(s, HARD_EDGE | HARD_ESCAPE | HARD_NOISE | HARD_ANY_STEP) ||
            stability_exceeded(r->scheme, r->limit, x) || x > 1 ||
-           kept_bound(s, r) > 1 || (!keeps(r) && drift_bound(s, r) > 0.1);
+           kept_bound(s, r) > 1 || (!keeps(r) && drift_bound(s, r) > 0.1) ||
+           (r->status == NEVH_EMAXITER && x > solvable);
 }
 
 static char *tell_cause(const hard_subject *s, const hard_result *r) {
