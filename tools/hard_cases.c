@@ -78,7 +78,8 @@ const hard_case hard_cases[] = {
     {"Kepler, there and back", "kepler", NULL, 0, 0, HARD_RETURN, NULL},
     {"Henon-Heiles at 1/12", "henon-heiles", NULL, 0, 0, 0, NULL},
     {"Henon-Heiles at 1/6", "henon-heiles", "E=1/6", 0, 0, HARD_ESCAPE, NULL},
-    {"Henon-Heiles above escape", "henon-heiles", "E=0.3", 0, 0, HARD_ESCAPE,
+    /* gone at t = 13.94 */
+    {"Henon-Heiles above escape", "henon-heiles", "E=0.3", 0, 13.8, HARD_ESCAPE,
      NULL},
     {"three bodies, Pythagorean", "pythagorean", NULL, 0, 0, HARD_EDGE, NULL},
     {"three bodies, figure of eight", "figure-eight", NULL, 0, 12.65182796, 0,

@@ -11,6 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Stage equations are sure to have a solution for short steps alone. */
+static const double solvable = 0.1;
 static const double constant = 10, tolerance = 1e-9, returned = 1e-8;
 
 const char *hard_verdict_name(hard_verdict v) {
@@ -100,7 +102,9 @@ static bool is_explained(const hard_subject *s, const hard_result *r) {
     if (is(s, HARD_FAR) && scales_by_state(r->scheme))
         return true;
     return is(s, HARD_EDGE | HARD_ESCAPE | HARD_NOISE | HARD_ANY_STEP) ||
-           x > r->limit || x > 1 || (!keeps(r) && drift_bound(s, r) > 0.1);
+           stability_exceeded(r->scheme, r->limit, x) || x > 1 ||
+           kept_bound(s, r) > 1 || (!keeps(r) && drift_bound(s, r) > 0.1) ||
+           (r->status == NEVH_EMAXITER && x > solvable);
 }
 
 static char *tell_cause(const hard_subject *s, const hard_result *r) {
@@ -119,16 +123,23 @@ static char *tell_cause(const hard_subject *s, const hard_result *r) {
                                          "the end of H"
                       : is(s, HARD_ESCAPE) ? "the orbit escapes"
                       : is(s, HARD_NOISE)  ? "values of H are noise"
+                      : r->status == NEVH_EMAXITER
+                          ? "stage equations need not have a solution that "
+                            "can be found, but for short steps"
                       : kept_bound(s, r) > 1
                           ? "the orbit exchanges more than its energy, which "
                             "theory bounds no better at this order and step"
                           : "no cause was found");
 }
 
-static hard_verdict judge_return(hard_result *r) {
+/* An error of the energy that is there all along puts the phase off by about
+   its size times the angle gone through, there and back. */
+static hard_verdict judge_return(const hard_subject *s, hard_result *r) {
+    double angle = 2 * r->asked * pace_of(s, r);
+    double allowed = fmax(returned, r->floor * angle);
     bool symmetric = nevh_integrator_symmetric(r->scheme) == NEVH_YES;
     r->happened = text_print("comes back to %.1e", r->defect);
-    if (r->defect <= returned)
+    if (r->defect <= allowed)
         return HARD_BOUNDED;
     return symmetric ? HARD_NONE : HARD_DRIFTS;
 }
@@ -176,7 +187,7 @@ static hard_verdict judge(const hard_subject *s, hard_result *r) {
     if (r->energy.max > 1)
         return judge_explosion(s, r);
     if (is(s, HARD_RETURN))
-        return judge_return(r);
+        return judge_return(s, r);
     return judge_energy(r);
 }
 

@@ -38,6 +38,12 @@ static const char *resonance(const nevh_integrator *scheme, double x) {
     return fabs(angle - M_PI / 2) < near_by ? "four" : NULL;
 }
 
+/* Of methods with a space of their own limits are known to a tenth. */
+bool stability_exceeded(const nevh_integrator *scheme, double limit, double x) {
+    bool extended = nevh_integrator_symplectic(scheme) == NEVH_EXTENDED;
+    return x > (extended ? 0.9 * limit : limit);
+}
+
 char *stability_cause(const nevh_integrator *scheme, double limit, double dt,
                       const pace *fastest) {
     double w = fastest->frequency;
@@ -50,7 +56,7 @@ char *stability_cause(const nevh_integrator *scheme, double limit, double dt,
                              "fastest (w = %.3g)",
                              x, fastest->t, w);
     char *text = NULL;
-    if (x > limit)
+    if (stability_exceeded(scheme, limit, x))
         text = text_print("%s, and %s is stable up to %.3g: take dt below "
                           "%.2g%s",
                           where, name, limit, safe_step(fmin(limit, 2), w),

@@ -256,8 +256,9 @@ int pace_observe(void *, size_t step, double t, const double q[],
 pace stability_pace(const nevh_system *, const nevh_integrator *,
                     const nevh_options *, double scale, double dt,
                     double t_end);
-/* The likely cause of trouble at that pace, the scheme's limit of stability
-   given, and a step or schemes to take; NULL
+/* Whether h w = x is beyond what a scheme of that limit bears. */
+bool stability_exceeded(const nevh_integrator *, double limit, double x);
+/* The likely cause of trouble at that pace, and a step or schemes to take; NULL
    where none is known. */
 char *stability_cause(const nevh_integrator *, double limit, double dt,
                       const pace *);

@@ -99,7 +99,7 @@ NEVH_API int nevh_reversal_defect(nevh_stepper *, double t, double h,
    step's matrix first passes 1 + 1e-5.  2 for Verlet's method, 2 sqrt(2) for
    rk4; next to nothing for euler, whose orbits always grow; INFINITY where none
    is found up to 16, as with Gauss-Legendre.  Of Tao's methods, in a space of
-   their own, what 2000 steps show, to 1/64.  NAN for schemes that take no fixed
+   their own, what 500 steps show, to 1/32.  NAN for schemes that take no fixed
    step.  A nonlinear H has resonances
    below that, of which 2 pi/3 and pi/2 per step matter most.
    cost     some thousand steps of one degree of freedom; thread-safe */

@@ -135,7 +135,7 @@ static double search(const oscillator *o) {
 
 /* Of methods with a space of their own: the largest of an orbit in it. */
 static double longest(const oscillator *o, double x) {
-    enum { STEPS = 2000 };
+    enum { STEPS = 500 };
     double q[2] = {1, 0}, p[2] = {0, 1}, most = 0;
     nevh_stepper_reset(o->stepper);
     for (int i = 0; i < STEPS && most < 100; i++) {
@@ -147,9 +147,9 @@ static double longest(const oscillator *o, double x) {
 }
 
 static double search_extended(const oscillator *o) {
-    for (double x = spacing; x <= 2; x += spacing)
+    for (double x = 2 * spacing; x <= 2; x += 2 * spacing)
         if (longest(o, x) >= 100)
-            return x - spacing;
+            return x - 2 * spacing;
     return INFINITY;
 }
 
