@@ -188,9 +188,9 @@ static void comet(const nevh_integrator *scheme, double orbits, double *energy,
     nevh_scene *scene = read_scene("tests/hard", "kepler");
     ck_assert_int_eq(nevh_scene_set(scene, "e = 0.99"), NEVH_OK);
     orbit o = begin(scene, scheme);
-    double h = 2 * pi / 6000, start = momentum(&o);
+    double h = 2 * pi / 8000, start = momentum(&o);
     *energy = *rotation = 0;
-    for (double i = 0; i < 6000 * orbits; i++) {
+    for (double i = 0; i < 8000 * orbits; i++) {
         ck_assert_int_eq(nevh_stepper_apply(o.stepper, i * h, h, o.q, o.p),
                          NEVH_OK);
         double H =
