@@ -139,7 +139,7 @@ START_TEST(fput_recurs) {
     double share;
     double when = recurrence(nevh_blanes_moan4, 0.25, &share);
     ck_assert_double_eq_tol(when, 146.5, 1);
-    ck_assert_double_ge(share, 0.97);
+    ck_assert_double_ge(share, 0.98);
     when = recurrence(nevh_verlet, 0.05, &share);
     ck_assert_double_eq_tol(when, 146.5, 1);
     when = recurrence(nevh_verlet, sqrt(0.125), &share);
