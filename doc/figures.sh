@@ -1,18 +1,51 @@
 #!/bin/sh
-# figures.sh SRCDIR NEVH: makes anew what the manual quotes, in SRCDIR/doc.
-# Milliseconds are those of the machine, and of what else it does.
+# figures.sh SRCDIR NEVH EXAMPLES: makes anew what the manual and the README
+# quote, in SRCDIR/doc and between the marks of SRCDIR/README.md.  Milliseconds
+# are those of the machine, and of what else it does meanwhile.
 
-srcdir=$1 nevh=$2
+srcdir=$1 nevh=$2 examples=$3
 NEVH_SCENES=$srcdir/scenes
 export NEVH_SCENES
 
-# quote FILE ARGUMENT...: what nevh prints, below the command.
+# quote NAME COMMAND...: what it prints, below the command.
 quote() {
-    file=$srcdir/doc/$1
+    file=$srcdir/doc/$1.txt
+    shown="nevh $(shift 2 && echo "$*")"
+    test "$2" = "$nevh" || shown=$(basename "$2")
     shift
-    echo "nevh $*"
-    { echo "\$ nevh $*" && $nevh "$@" 2>&1; } >"$file.new"
-    mv "$file.new" "$file"
+    echo "$shown" >&2
+    { echo "\$ $shown" && "$@"; } >"$file.new" 2>&1 && mv "$file.new" "$file"
 }
 
-quote compare-pendulum.txt compare pendulum
+# Puts doc/NAME.txt between <!-- NAME --> and <!-- end -->.
+refresh() {
+    awk -v doc="$srcdir/doc/" '
+        /^<!-- end -->$/ { quoting = 0 }
+        !quoting { print }
+        /^<!-- [a-z-]+ -->$/ && $2 != "end" {
+            quoting = 1
+            print "```"
+            while ((getline line < (doc $2 ".txt")) > 0)
+                print line
+            print "```"
+        }' "$srcdir/README.md" >"$srcdir/README.md.new" &&
+        mv "$srcdir/README.md.new" "$srcdir/README.md"
+}
+
+quote compare-pendulum "$nevh" compare pendulum
+quote cost-pendulum "$nevh" cost pendulum --t-end 100 \
+    --integrators verlet,blanes-moan4,gauss4,gauss8,rk4
+quote recommend-pendulum "$nevh" recommend pendulum --energy-error 1e-8 --t-end 100
+quote gradients-pendulum "$nevh" gradients pendulum --t-end 100
+
+# Of hard cases the counts, a line a case.
+echo "nevh hard" >&2
+"$nevh" hard --all --format csv -o "$srcdir/doc/hard.csv" 2>/dev/null
+awk -f "$srcdir/doc/hard.awk" "$srcdir/doc/hard.csv" >"$srcdir/doc/hard.txt"
+sed -n '1p; $p' "$srcdir/doc/hard.txt" >"$srcdir/doc/hard-all.txt"
+rm -f "$srcdir/doc/hard.csv"
+
+quote gradient-cost "$examples/gradient_cost"
+quote steps-that-follow "$examples/steps_that_follow"
+quote nevh-cost "$examples/nevh_cost"
+refresh

@@ -1,6 +1,11 @@
 # The manual, and pages for man.
 info_TEXINFOS = doc/nevh.texi
-doc_nevh_TEXINFOS = doc/compare-pendulum.txt
+doc_nevh_TEXINFOS = \
+	doc/compare-pendulum.txt \
+	doc/cost-pendulum.txt \
+	doc/recommend-pendulum.txt \
+	doc/gradients-pendulum.txt \
+	doc/hard.txt
 AM_MAKEINFOHTMLFLAGS = --no-split
 # Without TeX; make pdf needs it.
 AM_DISTCHECK_DVI_TARGET = html
@@ -17,8 +22,10 @@ doc/nevh.1: $(tools_nevh_SOURCES) doc/nevh.h2m configure.ac \
 	  $(HELP2MAN) --name 'compare symplectic integrators on a Hamiltonian' \
 	    --include $(srcdir)/doc/nevh.h2m --output $@ ./tools/nevh$(EXEEXT)
 endif
-EXTRA_DIST += doc/nevh.h2m doc/figures.sh
+EXTRA_DIST += doc/nevh.h2m doc/figures.sh doc/hard.awk \
+	doc/gradient-cost.txt doc/steps-that-follow.txt doc/nevh-cost.txt \
+	doc/hard-all.txt
 
 # What the manual and the README quote, made anew.
 figures: all
-	$(SHELL) $(srcdir)/doc/figures.sh $(srcdir) ./tools/nevh$(EXEEXT)
+	$(SHELL) $(srcdir)/doc/figures.sh $(srcdir) ./tools/nevh$(EXEEXT) examples
