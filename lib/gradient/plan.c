@@ -104,6 +104,8 @@ static int plan_workspace(nevh_field *f) {
     f->h = f->zeros + columns;
     f->sums = f->h + columns;
     f->one = f->sums + 2 * columns;
+    if (f->gradient == nevh_exact && !nevh__lean_plan(f))
+        return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
     return NEVH_OK;
 }
 
