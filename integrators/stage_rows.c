@@ -1,0 +1,86 @@
+/* nevh: the stages of one orbit as vectors.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "stage_rows_private.h"
+#include "system/system_private.h"
+#include <math.h>
+#include <nevh/body.h>
+#include <string.h>
+
+NEVH_SIMD void nevh__rows_combine(const nevh__rows *r, const double weights[],
+                                  const double hb[], const double slopes[],
+                                  const double y[], const double carry[],
+                                  double points[]) {
+    size_t stages = r->stages, stride = r->stride;
+    for (size_t k = 0; k < r->count; k++, slopes += stages, points += stride) {
+        double x[NEVH__MOST_STAGES];
+        for (size_t j = 0; j < stages; j++)
+            x[j] = hb[j] * slopes[j];
+        for (size_t from = 0; from < stride; from += NEVH__LANES) {
+            double sum[NEVH__LANES];
+            NEVH_LANES(i, NEVH__LANES) {
+                sum[i] = 0;
+            }
+            for (size_t j = 0; j < stages; j++)
+                NEVH_LANES(i, NEVH__LANES) {
+                    sum[i] += weights[j * stride + from + i] * x[j];
+                }
+            NEVH_LANES(i, NEVH__LANES) {
+                points[from + i] = y[k] + (sum[i] + carry[k]);
+            }
+        }
+    }
+}
+
+NEVH_SIMD void nevh__rows_multiply(const nevh__rows *r, const double weights[],
+                                   const double slopes[], double out[]) {
+    size_t stages = r->stages, stride = r->stride;
+    for (size_t k = 0; k < r->count; k++, slopes += stages, out += stride) {
+        for (size_t from = 0; from < stride; from += NEVH__LANES) {
+            double sum[NEVH__LANES];
+            NEVH_LANES(i, NEVH__LANES) {
+                sum[i] = 0;
+            }
+            for (size_t j = 0; j < stages; j++)
+                NEVH_LANES(i, NEVH__LANES) {
+                    sum[i] += weights[j * stride + from + i] * slopes[j];
+                }
+            NEVH_LANES(i, NEVH__LANES) {
+                out[from + i] = sum[i];
+            }
+        }
+    }
+}
+
+NEVH_SIMD void nevh__rows_negate(const nevh__rows *r, double x[]) {
+    NEVH_LANES(i, r->count * r->stride) {
+        x[i] = -x[i];
+    }
+}
+
+/* sum + lost += h b x, without loss. */
+NEVH__INLINE void add(double hb, double slope, double *sum, double *lost) {
+    double x = hb * slope, d = x + *lost, next = *sum + d, part = next - *sum;
+    *lost = (*sum - (next - part)) + (d - part);
+    *lost += fma(hb, slope, -x);
+    *sum = next;
+}
+
+NEVH_SIMD void nevh__rows_sum(const nevh__tableau *a, size_t count,
+                              size_t width, const double hb[],
+                              const double slopes[], double sum[],
+                              double lost[]) {
+    for (size_t m = 0; m < a->stages; m++) {
+        size_t j = a->order[m];
+        const double *x = slopes + j * width;
+        for (size_t i = 0; i < count; x += a->stages * width)
+            for (size_t lane = 0; lane < width; lane++, i++)
+                add(hb[j], x[lane], &sum[i], &lost[i]);
+    }
+}
+
+void nevh__rows_close(const nevh__rows *r, size_t count, const double from[],
+                      double to[]) {
+    for (size_t k = 0; k < count; k++)
+        memcpy(to + k * r->stages, from + k * r->stride,
+               r->stages * sizeof *to);
+}
