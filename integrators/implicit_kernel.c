@@ -280,7 +280,8 @@ static int map(void *data, size_t active, const size_t lanes[],
         second = first + g->rows.count * g->rows.stride;
     }
     find_points(s, 0, 2 * s->work->n, active, lanes);
-    find_times(s, active);
+    if (!g->vectors)
+        find_times(s, active);
     int status = take_gradient(s, active, second, first);
     negate(s, active, second);
     if (g->padded)
@@ -311,7 +312,8 @@ static int map_momenta(void *data, size_t active, const size_t lanes[],
     const family_plan *g = s->work->plan;
     double *target = g->padded ? s->increments : out;
     (void)slopes;
-    find_times(s, active);
+    if (!g->vectors)
+        find_times(s, active);
     int status = find_velocities(s, active, lanes);
     if (status)
         return status;
@@ -408,6 +410,8 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     family_step s = lay_out(w, t, h, q, p);
     weigh(g, h);
     guess(&s, g);
+    if (g->vectors)
+        find_times(&s, 1);
     nevh__stage_problem problem = {.t = t,
                                    .h = h,
                                    .q = q,

@@ -145,14 +145,25 @@ NEVH_SIMD static bool scatter_vectors(size_t rows, size_t count, size_t width,
     return bad != 0;
 }
 
-/* Slopes that were written in place, as if added to 0. */
-NEVH_SIMD static bool settle(size_t size, double out[]) {
-    int64_t bad = 0;
+/* Whether a number is not finite; *odd: or one is -0. */
+NEVH_SIMD static bool check(size_t size, const double x[], bool *odd) {
+    int64_t bad = 0, zero = 0;
     NEVH_LANES(i, size) {
-        out[i] += 0;
-        bad |= out[i] - out[i] != 0;
+        int64_t bits;
+        memcpy(&bits, &x[i], sizeof bits);
+        bad |= x[i] - x[i] != 0;
+        zero |= bits == INT64_MIN;
     }
+    *odd = zero != 0;
     return bad != 0;
+}
+
+/* Slopes that were written in place, as if added to 0. */
+static bool settle(size_t size, double out[]) {
+    bool odd, bad = check(size, out, &odd);
+    for (size_t i = 0; odd && i < size; i++)
+        out[i] += 0;
+    return bad;
 }
 
 static void fill_constants(nevh__planned *term, size_t width, size_t stride) {

@@ -22,8 +22,11 @@
 #include "implicit/implicit_private.h"
 #include "work_private.h"
 #include "gradient/field_private.h"
+#include "system/system_private.h"
 #include <float.h>
 #include <math.h>
+#include <nevh/body.h>
+#include <string.h>
 
 enum { MOST_STALLS = 8 };
 const double nevh__stage_tiny = 1e-10;
@@ -87,8 +90,43 @@ static bool drowned(nevh__stage_solver *s, size_t lane, const progress *made) {
            made->change <= 2 * DBL_EPSILON + noise_level(s, lane);
 }
 
+/* The largest of numbers that are not negative, whose bits are in their order.
+ */
+NEVH_SIMD static progress compare_vectors(size_t rows, size_t stages,
+                                          const double *out, const double *x,
+                                          const double *scale, double h,
+                                          double by, double *least) {
+    int64_t most = 0, improved = 0, moved = 0;
+    for (size_t k = 0; k < rows / stages; k++)
+        for (size_t end = stages; end > 0; end -= NEVH__LANES) {
+            NEVH_LANES(i, NEVH__LANES) {
+                double change = fabs(out[i] - x[i]);
+                double unit = h * change / scale[k];
+                int64_t bits, better = change > 0 && change < by * least[i];
+                memcpy(&bits, &unit, sizeof bits);
+                least[i] = better ? change : least[i];
+                improved += better;
+                moved |= change != 0;
+                most = bits > most ? bits : most;
+            }
+            out += NEVH__LANES, x += NEVH__LANES, least += NEVH__LANES;
+        }
+    progress made = {.moved = moved != 0, .improved = (size_t)improved};
+    memcpy(&made.change, &most, sizeof most);
+    return made;
+}
+
+/* Whether rows of one orbit are whole vectors. */
+static bool vectors(const nevh__stage_solver *s, size_t stride) {
+    return s->work->width == 1 && stride == 1 && s->stages % NEVH__LANES == 0;
+}
+
 static progress compare(nevh__stage_solver *s, size_t lane, size_t stride,
                         const double *out, double by) {
+    if (vectors(s, stride))
+        return compare_vectors(s->rows, s->stages, out, s->problem->x,
+                               s->scale + s->first, fabs(s->problem->h), by,
+                               s->least);
     size_t width = s->work->width;
     const double *x = s->problem->x + lane;
     double *least = s->least + lane;
@@ -134,10 +172,21 @@ nevh__stage_state nevh__stage_judge(nevh__stage_solver *s, size_t lane,
     return l->stalls < MOST_STALLS ? NEVH__GO_ON : NEVH__STUCK;
 }
 
+NEVH_SIMD static void take_vectors(size_t rows, const double out[],
+                                   double x[]) {
+    NEVH_LANES(row, rows) {
+        x[row] = out[row];
+    }
+}
+
 void nevh__stage_take(nevh__stage_solver *s, size_t lane, size_t stride,
                       const double out[]) {
     size_t width = s->work->width;
     double *x = s->problem->x + lane;
+    if (vectors(s, stride)) {
+        take_vectors(s->rows, out, x);
+        return;
+    }
     for (size_t row = 0; row < s->rows; row++)
         x[row * width] = out[row * stride];
 }
