@@ -6,49 +6,53 @@
 #include <nevh/body.h>
 #include <string.h>
 
+/* One vector of a row: start + (sum_j weights[j * stride] x[j] + carry).  Loops
+   over eight stages, the most frequent number of many, are unrolled. */
+NEVH__INLINE void combine(size_t stages, size_t stride, const double weights[],
+                          const double x[], double start, double carry,
+                          double out[]) {
+    double sum[NEVH__LANES];
+    NEVH_LANES(i, NEVH__LANES) {
+        sum[i] = 0;
+    }
+    NEVH_UNROLL
+    for (size_t j = 0; j < stages; j++)
+        NEVH_LANES(i, NEVH__LANES) {
+            sum[i] += weights[j * stride + i] * x[j];
+        }
+    NEVH_LANES(i, NEVH__LANES) {
+        out[i] = start + (sum[i] + carry);
+    }
+}
+
 NEVH_SIMD void nevh__rows_combine(const nevh__rows *r, const double weights[],
                                   const double hb[], const double slopes[],
                                   const double y[], const double carry[],
                                   double points[]) {
     size_t stages = r->stages, stride = r->stride;
+    double x[NEVH__MOST_STAGES];
     for (size_t k = 0; k < r->count; k++, slopes += stages, points += stride) {
-        double x[NEVH__MOST_STAGES];
+        if (stages == NEVH__LANES) {
+            NEVH_LANES(j, NEVH__LANES) {
+                x[j] = hb[j] * slopes[j];
+            }
+            combine(NEVH__LANES, NEVH__LANES, weights, x, y[k], carry[k],
+                    points);
+            continue;
+        }
         for (size_t j = 0; j < stages; j++)
             x[j] = hb[j] * slopes[j];
-        for (size_t from = 0; from < stride; from += NEVH__LANES) {
-            double sum[NEVH__LANES];
-            NEVH_LANES(i, NEVH__LANES) {
-                sum[i] = 0;
-            }
-            for (size_t j = 0; j < stages; j++)
-                NEVH_LANES(i, NEVH__LANES) {
-                    sum[i] += weights[j * stride + from + i] * x[j];
-                }
-            NEVH_LANES(i, NEVH__LANES) {
-                points[from + i] = y[k] + (sum[i] + carry[k]);
-            }
-        }
+        for (size_t i = 0; i < stride; i += NEVH__LANES)
+            combine(stages, stride, weights + i, x, y[k], carry[k], points + i);
     }
 }
 
 NEVH_SIMD void nevh__rows_multiply(const nevh__rows *r, const double weights[],
                                    const double slopes[], double out[]) {
     size_t stages = r->stages, stride = r->stride;
-    for (size_t k = 0; k < r->count; k++, slopes += stages, out += stride) {
-        for (size_t from = 0; from < stride; from += NEVH__LANES) {
-            double sum[NEVH__LANES];
-            NEVH_LANES(i, NEVH__LANES) {
-                sum[i] = 0;
-            }
-            for (size_t j = 0; j < stages; j++)
-                NEVH_LANES(i, NEVH__LANES) {
-                    sum[i] += weights[j * stride + from + i] * slopes[j];
-                }
-            NEVH_LANES(i, NEVH__LANES) {
-                out[from + i] = sum[i];
-            }
-        }
-    }
+    for (size_t k = 0; k < r->count; k++, slopes += stages, out += stride)
+        for (size_t i = 0; i < stride; i += NEVH__LANES)
+            combine(stages, stride, weights + i, slopes, 0, 0, out + i);
 }
 
 NEVH_SIMD void nevh__rows_negate(const nevh__rows *r, double x[]) {

@@ -100,6 +100,7 @@ struct nevh_field {
     uint64_t gradients;
     size_t most_instances;                    /* of a term; these: lean.c */
     const nevh__planned *writer_q, *writer_p; /* write all rows, and first */
+    nevh__planned *sole_q, *sole_p;           /* and alone */
     bool repeats; /* one state may as well be repeated over a vector */
     nevh__report report;
 };

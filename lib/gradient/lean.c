@@ -39,6 +39,19 @@ static const nevh__planned *writer(const nevh_field *f, bool momenta) {
     return NULL;
 }
 
+/* The writer, if no other term reads a coordinate, or momentum. */
+static nevh__planned *sole(nevh_field *f, bool momenta) {
+    nevh__planned *found = NULL;
+    for (nevh__planned *term = f->terms; term < f->terms + f->n_terms; term++) {
+        if (!(momenta ? term->np : term->nq))
+            continue;
+        if (found || !term->straight)
+            return NULL;
+        found = term;
+    }
+    return found == (momenta ? f->writer_p : f->writer_q) ? found : NULL;
+}
+
 bool nevh__lean_plan(nevh_field *f) {
     bool repeats = true;
     f->most_instances = 0;
@@ -59,6 +72,8 @@ bool nevh__lean_plan(nevh_field *f) {
     f->repeats = repeats && f->n <= MOST_ROWS;
     f->writer_q = writer(f, false);
     f->writer_p = writer(f, true);
+    f->sole_q = sole(f, false);
+    f->sole_p = sole(f, true);
     return true;
 }
 
@@ -254,6 +269,19 @@ static inline bool evaluate_in_place(nevh_field *f, nevh__planned *term,
     return bad;
 }
 
+/* The only term of a half, to it; whether all is finite. */
+static inline bool write(nevh_field *f, nevh__planned *term, const request *r,
+                         size_t variables, double *out) {
+    const nevh_term *is = &term->term->is;
+    size_t stride = is->count * r->width;
+    is->gradient(stride, is->time ? times(f, is, r, stride) : f->zeros,
+                 term->nq ? r->q + is->q[0] * r->width : r->q,
+                 term->np ? r->p + is->p[0] * r->width : r->p,
+                 constants(term, r->width, stride), is->params, r->dh_dq,
+                 r->dh_dp);
+    return !settle(variables * stride, out);
+}
+
 static bool evaluate(nevh_field *f, nevh__planned *term, const request *r) {
     const nevh_term *is = &term->term->is;
     size_t stride = nevh__padded(is->count * r->width);
@@ -285,6 +313,10 @@ bool nevh__gradient_lean(nevh_field *f, size_t width, const double t[],
     size_t size = f->n * width * sizeof *q;
     if (f->gradient != nevh_exact || f->most_instances * width > f->capacity)
         return false;
+    if (r.vectors && !dh_dp && f->sole_q)
+        return write(f, f->sole_q, &r, f->sole_q->nq, dh_dq);
+    if (r.vectors && !dh_dq && f->sole_p)
+        return write(f, f->sole_p, &r, f->sole_p->np, dh_dp);
     if (dh_dq && !(r.vectors && f->writer_q))
         memset(dh_dq, 0, size);
     if (dh_dp && !(r.vectors && f->writer_p))

@@ -160,7 +160,7 @@ nevh__stage_state nevh__stage_judge(nevh__stage_solver *s, size_t lane,
     if (!made.moved || drowned(s, lane, &made))
         return NEVH__DONE;
     bool falls = rule->by == 1 && made.change < l->least;
-    l->least = fmin(l->least, made.change);
+    l->least = made.change < l->least ? made.change : l->least;
     if (made.improved > rule->chance || falls) {
         l->grace = false;
         return NEVH__GO_ON;
