@@ -28,6 +28,10 @@ bool nevh__work_lean(const nevh_work *w) {
     return w->field->gradient == nevh_exact && !w->transform;
 }
 
+bool nevh__work_repeats(const nevh_work *w) {
+    return w->width == 1 && w->field->repeats && !w->accounts && !w->transform;
+}
+
 int nevh_work_gradient(nevh_work *w, size_t points, const double t[],
                        const double q[], const double p[], double dh_dq[],
                        double dh_dp[]) {

@@ -29,5 +29,7 @@ int nevh__work_gradient(nevh_work *, size_t points, size_t used,
 /* Whether such points cost little: gradients are exact, and nobody's but H's.
  */
 bool nevh__work_lean(const nevh_work *);
+/* Whether one orbit may as well be repeated over a vector. */
+bool nevh__work_repeats(const nevh_work *);
 
 #endif
