@@ -20,6 +20,7 @@
 #include "stage_rows_private.h"
 #include "tableau_private.h"
 #include "work_private.h"
+#include "gradient/field_private.h"
 #include "implicit/implicit_private.h"
 #include "system/system_private.h"
 #include <math.h>
@@ -54,6 +55,7 @@ typedef struct {
     double *sum;        /* 2n x width: the new state */
     double *lost;       /* 2n x width: what that lost */
     double *hold;       /* width; see nevh__stage_problem */
+    nevh__call velocities, forces; /* of one orbit, where it can be called */
 } family_step;
 
 /* Memory: carry, slopes of the last step that were solved for, their h (0:
@@ -289,15 +291,36 @@ static int map(void *data, size_t active, const size_t lanes[],
     return status;
 }
 
+/* Where the slopes of coordinates are to be written: in place if they can. */
+static double *velocities_of(const family_step *s) {
+    const family_plan *g = s->work->plan;
+    return g->vectors && !g->padded ? s->slopes : s->increments;
+}
+
+static void prepare_calls(family_step *s, double *forces) {
+    nevh_work *w = s->work;
+    size_t size = row_size(w->plan, 1);
+    const double *p = s->points + w->n * size;
+    s->velocities = nevh__lean_call(w->field, size, s->times, s->points, p,
+                                    NULL, velocities_of(s));
+    s->forces =
+        nevh__lean_call(w->field, size, s->times, s->points, p, forces, NULL);
+}
+
+static bool call(const nevh__call *c, const family_plan *g) {
+    return c->gradient && nevh__lean_take(c, g->rows.stages);
+}
+
 /* Slopes of the coordinates at the stages' momenta. */
 static int find_velocities(const family_step *s, size_t active,
                            const size_t lanes[]) {
     nevh_work *w = s->work;
     const family_plan *g = w->plan;
-    bool in_place = g->vectors && !g->padded;
-    double *velocities = in_place ? s->slopes : s->increments;
+    double *velocities = velocities_of(s);
     find_points(s, w->n, 2 * w->n, active, lanes);
-    int status = take_gradient(s, active, NULL, velocities);
+    int status = call(&s->velocities, g)
+                     ? NEVH_OK
+                     : take_gradient(s, active, NULL, velocities);
     if (g->padded)
         nevh__rows_close(&g->rows, w->n, velocities, s->slopes);
     for (size_t row = 0; !g->vectors && row < w->n * g->rows.stages; row++)
@@ -308,17 +331,20 @@ static int find_velocities(const family_step *s, size_t active,
 
 static int map_momenta(void *data, size_t active, const size_t lanes[],
                        const double slopes[], double out[]) {
-    const family_step *s = data;
+    family_step *s = data;
     const family_plan *g = s->work->plan;
     double *target = g->padded ? s->increments : out;
     (void)slopes;
+    if (g->vectors && s->forces.out != target)
+        prepare_calls(s, target);
     if (!g->vectors)
         find_times(s, active);
     int status = find_velocities(s, active, lanes);
     if (status)
         return status;
     find_points(s, 0, s->work->n, active, lanes);
-    status = take_gradient(s, active, target, NULL);
+    status =
+        call(&s->forces, g) ? NEVH_OK : take_gradient(s, active, target, NULL);
     negate(s, active, target);
     if (g->padded)
         nevh__rows_close(&g->rows, g->rows.count, target, out);

@@ -17,6 +17,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "splitting_private.h"
 #include "system/system_private.h"
+#include "gradient/field_private.h"
 #include "work_private.h"
 #include <nevh/body.h>
 #include <stdlib.h>
@@ -43,6 +44,7 @@ typedef struct {
     bool repeated;
     half q, p;
     double *slope, *kept, *has_kept, *time;
+    nevh__call calls[2]; /* for kicks and drifts, of what is repeated */
 } layout;
 
 static layout lay_out(const nevh_work *w, double q[], double p[]) {
@@ -122,8 +124,8 @@ NEVH_SIMD static void begin_vectors(size_t size, double start[], double carry[],
 }
 
 /* The state, what was lost of it, and the kept slope, repeated. */
-static void begin_repeated(const nevh_work *w, const layout *l,
-                           const double q[], const double p[]) {
+static void begin_repeated(const nevh_work *w, layout *l, const double q[],
+                           const double p[]) {
     const half *const both[] = {&l->q, &l->p};
     for (size_t i = 0; i < 2; i++) {
         const half *x = both[i];
@@ -132,6 +134,10 @@ static void begin_repeated(const nevh_work *w, const layout *l,
         begin_vectors(l->size, x->start, x->carry, x->change, x->point);
     }
     repeat(w->n, w->memory + 2 * w->n, l->kept);
+    l->calls[0] = nevh__lean_call(w->field, l->lanes, l->time, l->q.point,
+                                  l->p.point, l->slope, NULL);
+    l->calls[1] = nevh__lean_call(w->field, l->lanes, l->time, l->q.point,
+                                  l->p.point, NULL, l->slope);
 }
 
 NEVH_SIMD static void advance_vectors(size_t size, double step,
@@ -165,17 +171,23 @@ static bool all_kept(const nevh_work *w, const layout *l) {
     return true;
 }
 
+/* dH/dq for a kick, or else dH/dp, to the slope. */
+static int take_slope(nevh_work *w, const layout *l, bool kick) {
+    const nevh__call *call = &l->calls[!kick];
+    if (call->gradient && nevh__lean_take(call, 1))
+        return NEVH_OK;
+    return nevh__work_gradient(w, l->lanes, w->width, l->time, l->q.point,
+                               l->p.point, kick ? l->slope : NULL,
+                               kick ? NULL : l->slope);
+}
+
 /* Moves p at time t by the part dt of the step, or q. */
 static int operate(nevh_work *w, const layout *l, nevh_operation operation,
                    double t, double dt, bool kept) {
     bool kick = operation == NEVH_KICK;
-    int status = NEVH_OK;
     for (size_t lane = 0; lane < l->lanes; lane++)
         l->time[lane] = t;
-    if (!kept)
-        status = nevh__work_gradient(w, l->lanes, w->width, l->time, l->q.point,
-                                     l->p.point, kick ? l->slope : NULL,
-                                     kick ? NULL : l->slope);
+    int status = kept ? NEVH_OK : take_slope(w, l, kick);
     if (!status && w->accounts)
         status = nevh_work_account(w, kick ? NEVH_OF_Q : NEVH_OF_P, dt, l->time,
                                    l->q.point, l->p.point);

@@ -160,25 +160,31 @@ NEVH_SIMD static bool scatter_vectors(size_t rows, size_t count, size_t width,
     return bad != 0;
 }
 
-/* Whether a number is not finite; *odd: or one is -0. */
-NEVH_SIMD static bool check(size_t size, const double x[], bool *odd) {
-    int64_t bad = 0, zero = 0;
-    NEVH_LANES(i, size) {
-        int64_t bits;
-        memcpy(&bits, &x[i], sizeof bits);
-        bad |= x[i] - x[i] != 0;
-        zero |= bits == INT64_MIN;
+/* 1: a number is not finite; 2: one is -0; or both. */
+NEVH_SIMD static int64_t check(size_t size, const double x[]) {
+    int64_t found[NEVH__LANES], all = 0;
+    NEVH_LANES(lane, NEVH__LANES) {
+        found[lane] = 0;
     }
-    *odd = zero != 0;
-    return bad != 0;
+    for (size_t i = 0; i < size; i += NEVH__LANES)
+        NEVH_LANES(lane, NEVH__LANES) {
+            int64_t bits;
+            memcpy(&bits, &x[i + lane], sizeof bits);
+            found[lane] |= x[i + lane] - x[i + lane] != 0 ? 1 : 0;
+            found[lane] |= bits == INT64_MIN ? 2 : 0;
+        }
+    NEVH_LANES(lane, NEVH__LANES) {
+        all |= found[lane];
+    }
+    return all;
 }
 
 /* Slopes that were written in place, as if added to 0. */
 static bool settle(size_t size, double out[]) {
-    bool odd, bad = check(size, out, &odd);
-    for (size_t i = 0; odd && i < size; i++)
+    int64_t found = check(size, out);
+    for (size_t i = 0; found & 2 && i < size; i++)
         out[i] += 0;
-    return bad;
+    return found & 1;
 }
 
 static void fill_constants(nevh__planned *term, size_t width, size_t stride) {
@@ -327,4 +333,44 @@ bool nevh__gradient_lean(nevh_field *f, size_t width, const double t[],
             bad |= r.vectors && term->straight ? evaluate_in_place(f, term, &r)
                                                : evaluate(f, term, &r);
     return !bad;
+}
+
+nevh__call nevh__lean_call(nevh_field *f, size_t width, const double t[],
+                           const double q[], const double p[], double dh_dq[],
+                           double dh_dp[]) {
+    nevh__planned *term = dh_dq ? f->sole_q : f->sole_p;
+    if (f->gradient != nevh_exact || nevh__field_ready(f) || !term ||
+        width % NEVH__LANES || f->most_instances * width > f->capacity ||
+        (term->term->is.time && term->term->is.count > 1))
+        return (nevh__call){0};
+    const nevh_term *is = &term->term->is;
+    size_t stride = is->count * width;
+    return (nevh__call){
+        .gradient = is->gradient,
+        .field = f,
+        .stride = stride,
+        .size = stride * (dh_dq ? term->nq : term->np),
+        .coordinates = dh_dq,
+        .t = is->time ? t : f->zeros,
+        .q = term->nq ? q + is->q[0] * width : q,
+        .p = term->np ? p + is->p[0] * width : p,
+        .c = constants(term, width, stride),
+        .params = is->params,
+        .dh_dq = dh_dq,
+        .dh_dp = dh_dp,
+        .out = dh_dq ? dh_dq : dh_dp,
+    };
+}
+
+bool nevh__lean_take(const nevh__call *c, size_t used) {
+    double sum = 0;
+    c->gradient(c->stride, c->t, c->q, c->p, c->c, c->params, c->dh_dq,
+                c->dh_dp);
+    for (size_t i = 0; used == 1 && i < c->size; i += NEVH__LANES)
+        sum += c->out[i] - c->out[i];
+    if (sum != 0 || (used > 1 && settle(c->size, c->out)))
+        return false;
+    if (c->coordinates)
+        c->field->gradients += used;
+    return true;
 }
