@@ -6,13 +6,35 @@ bench_gradient_CPPFLAGS = $(AM_CPPFLAGS) -I$(top_srcdir)/examples
 bench_gradient_LDADD = libnevh.la
 EXTRA_PROGRAMS += bench/tape
 bench_tape_LDADD = libnevh_core.la
+# Its peers are used where they are found, and never needed: a script tries.
+peers = bench/peers
+EXTRA_DIST += $(peers)/build $(peers)/paper.py $(peers)/problems.h \
+	$(peers)/problems.c $(peers)/peer.h $(peers)/bench.h $(peers)/peers.c \
+	$(peers)/measure.c $(peers)/results.c $(peers)/nevh_systems.h \
+	$(peers)/nevh_systems.c $(peers)/nevh_peer.c $(peers)/gsl_peer.c \
+	$(peers)/boost_peer.cpp $(peers)/sundials_peer.c $(peers)/scipy_peer.c
+PEERS_ROUNDS = 9
+CLEANFILES += bench/results-peers.csv bench/RESULTS.md
+clean-local:
+	rm -rf $(peers)/*.o $(peers)/.libs $(peers)/peers $(peers)/empty* \
+	  $(peers)/circumstances.h $(peers)/build.log
 CLEANFILES += bench/gradient$(EXEEXT) bench/results-gradient.csv \
 	bench/tape$(EXEEXT)
 
-bench: bench/gradient$(EXEEXT) bench/tape$(EXEEXT)
+bench-peers: libnevh.la
+	@commit=`git -C $(srcdir) describe --always --dirty 2>/dev/null`; \
+	CC="$(CC)" CXX="$${CXX:-c++}" CFLAGS="$(CFLAGS) -ffp-contract=off" \
+	STD=-std=c11 CPPFLAGS="-I$(top_srcdir)/include $(GSL_CFLAGS)" \
+	GSL_LIBS="$(GSL_LIBS)" PYTHON="$${PYTHON:-python3}" \
+	LIBTOOL="$(SHELL) ./libtool" \
+	  $(SHELL) $(srcdir)/$(peers)/build $(srcdir) "$${commit:-unknown}" && \
+	PYTHON="$${PYTHON:-python3}" NEVH_BENCH_PY=$(srcdir)/$(peers)/paper.py \
+	  $(peers)/peers bench/results-peers.csv bench/RESULTS.md $(PEERS_ROUNDS)
+
+bench: bench/gradient$(EXEEXT) bench/tape$(EXEEXT) bench-peers
 	@commit=`git -C $(srcdir) describe --always --dirty 2>/dev/null`; \
 	./bench/gradient$(EXEEXT) "$${commit:-unknown}" \
 	  bench/results-gradient.csv && \
 	./bench/tape$(EXEEXT) "$${commit:-unknown}"
 
-.PHONY: bench
+.PHONY: bench bench-peers

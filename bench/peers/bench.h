@@ -16,7 +16,7 @@ typedef struct {
     const method *method;
     size_t target;
     double setting, error;
-    size_t runs, rounds;  /* runs of a turn; rounds measured */
+    size_t runs, rounds; /* runs of a turn; rounds measured */
     double seconds[MOST_ROUNDS], median, spread; /* of one run */
 } entry;
 

@@ -47,9 +47,8 @@ static void *open_run(const method *m, const problem *p, double setting) {
     *r = (run){.method = m, .problem = p, .setting = setting};
     r->system = (gsl_odeiv2_system){p->slopes, jacobian, 2 * p->n, (void *)p};
     double tolerance = m->adaptive ? setting : 1e-6;
-    r->driver =
-        gsl_odeiv2_driver_alloc_y_new(&r->system, type, p->t_end / 1000,
-                                      p->size * tolerance, tolerance);
+    r->driver = gsl_odeiv2_driver_alloc_y_new(&r->system, type, p->t_end / 1000,
+                                              p->size * tolerance, tolerance);
     gsl_odeiv2_driver_set_nmax(r->driver, MOST_STEPS);
     return r;
 }
@@ -76,16 +75,16 @@ static void close_run(void *data) {
 }
 
 #define METHOD(title, adapts, type, its_order)                                 \
-    {.scheme = title,                                                          \
-     .adaptive = adapts,                                                       \
-     .open = open_run,                                                         \
-     .run = run_driver,                                                        \
-     .close = close_run,                                                       \
-     .data = &gsl_odeiv2_step_##type,                                          \
-     .order = its_order}
+    {                                                                          \
+        .scheme = title, .adaptive = adapts, .open = open_run,                 \
+        .run = run_driver, .close = close_run,                                 \
+        .data = &gsl_odeiv2_step_##type, .order = its_order                    \
+    }
 static const method methods[] = {
-    METHOD("rk4", false, rk4, 4),       METHOD("rk8pd", false, rk8pd, 8),
-    METHOD("rk4imp", false, rk4imp, 4), METHOD("rkf45, adaptive", true, rkf45, 5),
+    METHOD("rk4", false, rk4, 4),
+    METHOD("rk8pd", false, rk8pd, 8),
+    METHOD("rk4imp", false, rk4imp, 4),
+    METHOD("rkf45, adaptive", true, rkf45, 5),
     METHOD("rk8pd, adaptive", true, rk8pd, 8),
     METHOD("msadams, adaptive", true, msadams, 12),
 };

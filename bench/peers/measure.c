@@ -58,20 +58,24 @@ typedef struct {
     const method *method;
     const problem *problem;
     const double *ranges;
-    double longest; /* CPU seconds that a run may take */
+    double longest; /* CPU seconds that a run may take, unless a finer one,
+                       as of implicit schemes, takes less */
     double target;
+    double before; /* what the last run took */
 } search;
 
-static bool good(const search *s, int rung, double *error, bool *too_long) {
+static bool good(search *s, int rung, double *error, bool *too_long) {
     double seconds;
     *error = one_run(s->library, s->method, s->problem,
                      setting_at(s->method, rung), s->ranges, &seconds);
-    *too_long = seconds > s->longest && seconds < INFINITY;
+    *too_long =
+        seconds > s->longest && seconds > s->before && seconds < INFINITY;
+    s->before = seconds;
     return *error <= s->target;
 }
 
 /* The rung, or -1 where there is none, and its error. */
-static int find_rung(const search *s, int from, double *error) {
+static int find_rung(search *s, int from, double *error) {
     bool too_long = false;
     double finer;
     int rung = from;
@@ -98,8 +102,9 @@ void find_entries(contest *c, const problem *p, const double ranges[],
         for (const method *m = l->methods; m < l->methods + l->count; m++) {
             int rung = 0;
             for (size_t k = 0; k < TARGETS && rung >= 0; k++) {
-                entry e = {.problem = p, .library = l, .method = m, .target = k};
-                search s = {l, m, p, ranges, longest, targets[k]};
+                entry e = {
+                    .problem = p, .library = l, .method = m, .target = k};
+                search s = {l, m, p, ranges, longest, targets[k], INFINITY};
                 s.longest *= l->outside ? 20 : 1;
                 rung = find_rung(&s, rung, &e.error);
                 e.setting = setting_at(m, rung);
@@ -181,7 +186,8 @@ const entry *fastest_peer(const contest *c, const problem *p, size_t target) {
     const entry *best = NULL;
     for (size_t i = 0; i < c->library_count; i++) {
         const library *l = c->libraries[i];
-        const entry *e = l->ahead || l->outside ? NULL : fastest(c, l, p, target);
+        const entry *e =
+            l->ahead || l->outside ? NULL : fastest(c, l, p, target);
         if (e && (!best || e->median < best->median))
             best = e;
     }

@@ -59,26 +59,36 @@ static bool run_stepper(void *data, double y[], double *seconds) {
 }
 
 #define METHOD(how, id, adapts, its_order)                                     \
-    {.scheme = #id, .adaptive = adapts,      .open = how,                      \
-     .run = run_stepper,                     .close = close_run,               \
-     .data = &nevh_##id,                     .order = its_order}
+    {                                                                          \
+        .scheme = #id, .adaptive = adapts, .open = how, .run = run_stepper,    \
+        .close = close_run, .data = &nevh_##id, .order = its_order             \
+    }
 #define METHODS(how)                                                           \
     {                                                                          \
-        METHOD(how, verlet, false, 2), METHOD(how, mclachlan_atela4, false, 4),\
-        METHOD(how, blanes_moan4, false, 4), METHOD(how, rkn6b, false, 4),     \
-        METHOD(how, rkn11b, false, 6), METHOD(how, rkn14a, false, 6),          \
-        METHOD(how, kahan_li8, false, 8),                                      \
-        METHOD(how, sofroniou_spaletta10, false, 10),                          \
-        METHOD(how, gauss8, false, 8), METHOD(how, gauss12, false, 12),        \
-        METHOD(how, gauss16, false, 16), METHOD(how, gauss20, false, 20),      \
-        METHOD(how, rk4, false, 4), METHOD(how, dopri5, false, 5),             \
-        METHOD(how, dop853, false, 8),                                         \
-        {.scheme = "dopri5, adaptive", .adaptive = true, .open = how,          \
-         .run = run_stepper, .close = close_run, .data = &nevh_dopri5,         \
-         .order = 5},                                                          \
-        {.scheme = "dop853, adaptive", .adaptive = true, .open = how,          \
-         .run = run_stepper, .close = close_run, .data = &nevh_dop853,         \
-         .order = 8},                                                          \
+        METHOD(how, verlet, false, 2),                                         \
+            METHOD(how, mclachlan_atela4, false, 4),                           \
+            METHOD(how, blanes_moan4, false, 4), METHOD(how, rkn6b, false, 4), \
+            METHOD(how, rkn11b, false, 6), METHOD(how, rkn14a, false, 6),      \
+            METHOD(how, kahan_li8, false, 8),                                  \
+            METHOD(how, sofroniou_spaletta10, false, 10),                      \
+            METHOD(how, gauss8, false, 8), METHOD(how, gauss12, false, 12),    \
+            METHOD(how, gauss16, false, 16), METHOD(how, gauss20, false, 20),  \
+            METHOD(how, rk4, false, 4), METHOD(how, dopri5, false, 5),         \
+            METHOD(how, dop853, false, 8),                                     \
+            {.scheme = "dopri5, adaptive",                                     \
+             .adaptive = true,                                                 \
+             .open = how,                                                      \
+             .run = run_stepper,                                               \
+             .close = close_run,                                               \
+             .data = &nevh_dopri5,                                             \
+             .order = 5},                                                      \
+            {.scheme = "dop853, adaptive",                                     \
+             .adaptive = true,                                                 \
+             .open = how,                                                      \
+             .run = run_stepper,                                               \
+             .close = close_run,                                               \
+             .data = &nevh_dop853,                                             \
+             .order = 8},                                                      \
     }
 static const method exact[] = METHODS(open_exact);
 static const method numerical[] = METHODS(open_numerical);
@@ -88,9 +98,9 @@ const library nevh_library = {.name = "nevh",
                               .ahead = true,
                               .count = sizeof exact / sizeof *exact,
                               .methods = exact};
-const library nevh_numerical_library = {
-    .name = "nevh, differences",
-    .version = NEVH_BENCH_COMMIT,
-    .ahead = true,
-    .count = sizeof numerical / sizeof *numerical,
-    .methods = numerical};
+const library nevh_numerical_library = {.name = "nevh, differences",
+                                        .version = NEVH_BENCH_COMMIT,
+                                        .ahead = true,
+                                        .count = sizeof numerical /
+                                                 sizeof *numerical,
+                                        .methods = numerical};

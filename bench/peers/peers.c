@@ -86,7 +86,8 @@ int main(int argc, char **argv) {
     static contest c;
     static char missing[200];
     if (argc < 3)
-        fail("usage", "peers RESULTS.csv RESULTS.md [rounds [longest [problem]]]");
+        fail("usage",
+             "peers RESULTS.csv RESULTS.md [rounds [longest [problem]]]");
     double rounds = argc > 3 ? atof(argv[3]) : 9;
     double longest = argc > 4 ? atof(argv[4]) : 0.1;
     if (!(rounds >= 1 && rounds <= MOST_ROUNDS && longest > 0))

@@ -33,7 +33,7 @@ extern const size_t problem_count;
    (2006), I.2.4]. */
 static const double sun_gravity = 2.95912208286e-4;
 static const double sun_masses[BODIES] = {
-    1.00000597682,   0.000954786104043, 0.000285583733151,
+    1.00000597682,      0.000954786104043,  0.000285583733151,
     0.0000437273164546, 0.0000517759138449, 1 / 1.3e8};
 
 static inline void pendulum_force(const double q[], double f[]) {
@@ -73,9 +73,8 @@ static inline void outer_sun_force(const double q[], double f[]) {
 
 static inline void outer_sun_velocity(const double p[], double v[]) {
     static const double inverse[BODIES] = {
-        1 / 1.00000597682,       1 / 0.000954786104043,
-        1 / 0.000285583733151,   1 / 0.0000437273164546,
-        1 / 0.0000517759138449, 1.3e8};
+        1 / 1.00000597682,      1 / 0.000954786104043,  1 / 0.000285583733151,
+        1 / 0.0000437273164546, 1 / 0.0000517759138449, 1.3e8};
     for (int i = 0; i < 3 * BODIES; i++)
         v[i] = inverse[i / 3] * p[i];
 }

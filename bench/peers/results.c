@@ -24,16 +24,16 @@ void write_csv(FILE *file, const contest *c, const circumstances *a) {
     for (size_t i = 0; i < c->library_count; i++)
         fprintf(file, "# %s: %s\n", c->libraries[i]->name,
                 c->libraries[i]->version);
-    fprintf(file, "# missing: %s\nproblem,library,scheme,target,setting,"
-                  "adaptive,state_error,seconds,spread,to_nevh\n",
+    fprintf(file,
+            "# missing: %s\nproblem,library,scheme,target,setting,"
+            "adaptive,state_error,seconds,spread,to_nevh\n",
             *a->missing ? a->missing : "none");
     for (const entry *e = c->entries; e < c->entries + c->count; e++) {
-        const entry *ours =
-            fastest(c, c->libraries[0], e->problem, e->target);
-        fprintf(file, "%s,%s,\"%s\",%g,%.9g,%d,%.3g,%.6g,%.3f,", e->problem->name,
-                e->library->name, e->method->scheme, targets[e->target],
-                e->setting, e->method->adaptive, e->error, e->median,
-                e->spread);
+        const entry *ours = fastest(c, c->libraries[0], e->problem, e->target);
+        fprintf(file, "%s,%s,\"%s\",%g,%.9g,%d,%.3g,%.6g,%.3f,",
+                e->problem->name, e->library->name, e->method->scheme,
+                targets[e->target], e->setting, e->method->adaptive, e->error,
+                e->median, e->spread);
         if (ours)
             fprintf(file, "%.4f", ratio(e, ours));
         fputc('\n', file);
@@ -87,8 +87,9 @@ static void write_summary(FILE *file, const contest *c, size_t which) {
             if (times > 0)
                 fprintf(file, " %.2g, %s |", times, theirs->library->name);
             else
-                fputs(ours ? " nevh alone |" : theirs ? " out of reach |"
-                                                       : " - |",
+                fputs(ours     ? " nevh alone |"
+                      : theirs ? " out of reach |"
+                               : " - |",
                       file);
             cells += ours || theirs;
             ahead += ours && (!theirs || times >= 1);
@@ -96,9 +97,8 @@ static void write_summary(FILE *file, const contest *c, size_t which) {
         }
         fputc('\n', file);
     }
-    fprintf(file,
-            "\nAhead in %zu of %zu, at least twice as fast in %zu.\n", ahead,
-            cells, twice);
+    fprintf(file, "\nAhead in %zu of %zu, at least twice as fast in %zu.\n",
+            ahead, cells, twice);
 }
 
 void write_markdown(FILE *file, const contest *c, const circumstances *a) {

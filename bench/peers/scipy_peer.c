@@ -3,6 +3,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #define _POSIX_C_SOURCE 200809L
 #include "peer.h"
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,6 +16,7 @@ typedef struct {
 } run;
 
 static FILE *questions, *answers;
+static bool tried, lives;
 
 static void become_python(const int in[2], const int out[2]) {
     const char *python = getenv("PYTHON"), *script = getenv("NEVH_BENCH_PY");
@@ -29,8 +31,10 @@ static void become_python(const int in[2], const int out[2]) {
 static bool start_python(void) {
     int in[2], out[2];
     char version[100];
-    if (questions || answers)
-        return true;
+    if (tried)
+        return lives;
+    tried = true;
+    signal(SIGPIPE, SIG_IGN); /* it may die */
     if (pipe(in) || pipe(out))
         return false;
     if (fork() == 0)
@@ -39,7 +43,8 @@ static bool start_python(void) {
     close(out[1]);
     questions = fdopen(in[1], "w");
     answers = fdopen(out[0], "r");
-    return questions && answers && fgets(version, sizeof version, answers);
+    lives = questions && answers && fgets(version, sizeof version, answers);
+    return lives;
 }
 
 static void *open_run(const method *m, const problem *p, double setting) {
@@ -59,7 +64,7 @@ static bool ask(void *data, double y[], double *seconds) {
     fputc('\n', questions);
     fflush(questions);
     if (fscanf(answers, "%lf", seconds) != 1)
-        return false;
+        return lives = false;
     for (size_t i = 0; i < 2 * p->n; i++)
         if (fscanf(answers, "%la", &y[i]) != 1)
             return false;

@@ -90,29 +90,36 @@ static bool drowned(nevh__stage_solver *s, size_t lane, const progress *made) {
            made->change <= 2 * DBL_EPSILON + noise_level(s, lane);
 }
 
-/* The largest of numbers that are not negative, whose bits are in their order.
- */
+/* As below, of rows that are whole vectors.  Numbers that are not negative have
+   the order of their bits. */
 NEVH_SIMD static progress compare_vectors(size_t rows, size_t stages,
                                           const double *out, const double *x,
                                           const double *scale, double h,
                                           double by, double *least) {
-    int64_t most = 0, improved = 0, moved = 0;
-    for (size_t k = 0; k < rows / stages; k++)
-        for (size_t end = stages; end > 0; end -= NEVH__LANES) {
-            NEVH_LANES(i, NEVH__LANES) {
-                double change = fabs(out[i] - x[i]);
-                double unit = h * change / scale[k];
-                int64_t bits, better = change > 0 && change < by * least[i];
-                memcpy(&bits, &unit, sizeof bits);
-                least[i] = better ? change : least[i];
-                improved += better;
-                moved |= change != 0;
-                most = bits > most ? bits : most;
-            }
-            out += NEVH__LANES, x += NEVH__LANES, least += NEVH__LANES;
+    int64_t most[NEVH__LANES], improved[NEVH__LANES], moved[NEVH__LANES];
+    NEVH_LANES(i, NEVH__LANES) {
+        most[i] = improved[i] = moved[i] = 0;
+    }
+    for (size_t row = 0; row < rows; row += NEVH__LANES) {
+        double size = scale[row / stages];
+        NEVH_LANES(i, NEVH__LANES) {
+            double change = fabs(out[row + i] - x[row + i]);
+            double unit = h * change / size;
+            int64_t bits, better = change > 0 && change < by * least[row + i];
+            memcpy(&bits, &unit, sizeof bits);
+            least[row + i] = better ? change : least[row + i];
+            improved[i] += better;
+            moved[i] |= change != 0;
+            most[i] = bits > most[i] ? bits : most[i];
         }
-    progress made = {.moved = moved != 0, .improved = (size_t)improved};
-    memcpy(&made.change, &most, sizeof most);
+    }
+    for (size_t i = 1; i < NEVH__LANES; i++) {
+        improved[0] += improved[i];
+        moved[0] |= moved[i];
+        most[0] = most[i] > most[0] ? most[i] : most[0];
+    }
+    progress made = {.moved = moved[0] != 0, .improved = (size_t)improved[0]};
+    memcpy(&made.change, most, sizeof *most);
     return made;
 }
 
