@@ -4,6 +4,7 @@
    from the Hamiltonian).  All orbits take turns, and ratios are medians of
    those within a round; the energy error shows what the price buys.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include <gsl/gsl_sort.h>
 #include <math.h>
 #include <nevh/nevh.h>
 #include <stdio.h>
@@ -72,13 +73,8 @@ static int take_turn(contender *c, size_t round) {
     return status;
 }
 
-static int by_size(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static double median(double x[ROUNDS]) {
-    qsort(x, ROUNDS, sizeof *x, by_size);
+    gsl_sort(x, 1, ROUNDS);
     return x[ROUNDS / 2];
 }
 

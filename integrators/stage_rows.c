@@ -6,8 +6,7 @@
 #include <nevh/body.h>
 #include <string.h>
 
-/* One vector of a row: start + (sum_j weights[j * stride] x[j] + carry).  Loops
-   over eight stages, the most frequent number of many, are unrolled. */
+/* One vector of a row: start + (sum_j weights[j * stride] x[j] + carry). */
 NEVH__INLINE void combine(size_t stages, size_t stride, const double weights[],
                           const double x[], double start, double carry,
                           double out[]) {
@@ -15,7 +14,6 @@ NEVH__INLINE void combine(size_t stages, size_t stride, const double weights[],
     NEVH_LANES(i, NEVH__LANES) {
         sum[i] = 0;
     }
-    NEVH_UNROLL
     for (size_t j = 0; j < stages; j++)
         NEVH_LANES(i, NEVH__LANES) {
             sum[i] += weights[j * stride + i] * x[j];
@@ -25,26 +23,50 @@ NEVH__INLINE void combine(size_t stages, size_t stride, const double weights[],
     }
 }
 
-NEVH_SIMD void nevh__rows_combine(const nevh__rows *r, const double weights[],
+NEVH_SIMD static void combine_eight(size_t count, const double weights[],
+                                    const double hb[], const double slopes[],
+                                    const double y[], const double carry[],
+                                    double points[]) {
+    for (size_t k = 0; k < count; k++) {
+        double sum[NEVH__LANES];
+        NEVH_LANES(i, NEVH__LANES) {
+            sum[i] = 0;
+        }
+        NEVH_UNROLL
+        for (size_t j = 0; j < NEVH__LANES; j++) {
+            double x = hb[j] * slopes[k * NEVH__LANES + j];
+            NEVH_LANES(i, NEVH__LANES) {
+                sum[i] += weights[j * NEVH__LANES + i] * x;
+            }
+        }
+        NEVH_LANES(i, NEVH__LANES) {
+            points[k * NEVH__LANES + i] = y[k] + (sum[i] + carry[k]);
+        }
+    }
+}
+
+NEVH_SIMD static void combine_any(const nevh__rows *r, const double weights[],
                                   const double hb[], const double slopes[],
                                   const double y[], const double carry[],
                                   double points[]) {
     size_t stages = r->stages, stride = r->stride;
     double x[NEVH__MOST_STAGES];
     for (size_t k = 0; k < r->count; k++, slopes += stages, points += stride) {
-        if (stages == NEVH__LANES) {
-            NEVH_LANES(j, NEVH__LANES) {
-                x[j] = hb[j] * slopes[j];
-            }
-            combine(NEVH__LANES, NEVH__LANES, weights, x, y[k], carry[k],
-                    points);
-            continue;
-        }
         for (size_t j = 0; j < stages; j++)
             x[j] = hb[j] * slopes[j];
         for (size_t i = 0; i < stride; i += NEVH__LANES)
             combine(stages, stride, weights + i, x, y[k], carry[k], points + i);
     }
+}
+
+void nevh__rows_combine(const nevh__rows *r, const double weights[],
+                        const double hb[], const double slopes[],
+                        const double y[], const double carry[],
+                        double points[]) {
+    if (r->stages == NEVH__LANES)
+        combine_eight(r->count, weights, hb, slopes, y, carry, points);
+    else
+        combine_any(r, weights, hb, slopes, y, carry, points);
 }
 
 NEVH_SIMD void nevh__rows_multiply(const nevh__rows *r, const double weights[],

@@ -207,7 +207,8 @@ static inline const double *constants(nevh__planned *term, size_t width,
 /* The gradient under way. */
 typedef struct {
     size_t width;
-    bool vectors; /* lanes fill them */
+    bool vectors;  /* lanes fill them */
+    bool trusting; /* results are looked at later */
     const double *t, *q, *p;
     double *dh_dq, *dh_dp;
 } request;
@@ -240,6 +241,8 @@ static const double *rows(const request *r, const nevh_term *is,
 static bool add(const request *r, const nevh_term *is, size_t variables,
                 size_t stride, const size_t index[], const double from[],
                 double out[]) {
+    if (from == out && r->trusting)
+        return false;
     if (from == out)
         return settle(is->count * variables * r->width, out);
     if (r->vectors)
@@ -312,27 +315,68 @@ static bool evaluate(nevh_field *f, nevh__planned *term, const request *r) {
     return bad;
 }
 
+static bool evaluate_all(nevh_field *f, const request *r) {
+    size_t size = f->n * r->width * sizeof *r->q;
+    bool bad = false;
+    if (r->dh_dq && !(r->vectors && f->writer_q))
+        memset(r->dh_dq, 0, size);
+    if (r->dh_dp && !(r->vectors && f->writer_p))
+        memset(r->dh_dp, 0, size);
+    for (nevh__planned *term = f->terms; term < f->terms + f->n_terms; term++)
+        if ((r->dh_dq && term->nq) || (r->dh_dp && term->np))
+            bad |= r->vectors && term->straight ? evaluate_in_place(f, term, r)
+                                                : evaluate(f, term, r);
+    return !bad;
+}
+
+/* n numbers, each in the first lane of its row. */
+static bool take_first(size_t n, const double *row, double *out) {
+    double sum = 0;
+    for (size_t k = 0; k < n; k++, row += NEVH__LANES) {
+        out[k] = 0 + *row;
+        sum += *row - *row;
+    }
+    return sum == 0;
+}
+
+/* One state, repeated over a vector. */
+static bool evaluate_repeated(nevh_field *f, const double *t, const double q[],
+                              const double p[], double dh_dq[],
+                              double dh_dp[]) {
+    enum { SIZE = MOST_ROWS * NEVH__LANES };
+    _Alignas(NEVH__LANES * sizeof(double)) double all[4 * SIZE + NEVH__LANES];
+    double *half[] = {all, all + SIZE, all + 2 * SIZE, all + 3 * SIZE};
+    double *time = all + 4 * SIZE;
+    request r = {.width = NEVH__LANES,
+                 .vectors = true,
+                 .trusting = true,
+                 .t = time,
+                 .q = half[0],
+                 .p = half[1],
+                 .dh_dq = dh_dq ? half[2] : NULL,
+                 .dh_dp = dh_dp ? half[3] : NULL};
+    static const size_t indices[] = {0, 1, 2, 3, 4, 5, 6, 7};
+    repeat(f->n, indices, q, half[0]);
+    repeat(f->n, indices, p, half[1]);
+    repeat(1, indices, t, time);
+    return evaluate_all(f, &r) &&
+           (!dh_dq || take_first(f->n, half[2], dh_dq)) &&
+           (!dh_dp || take_first(f->n, half[3], dh_dp));
+}
+
 bool nevh__gradient_lean(nevh_field *f, size_t width, const double t[],
                          const double q[], const double p[], double dh_dq[],
                          double dh_dp[]) {
-    request r = {width, width % NEVH__LANES == 0, t, q, p, dh_dq, dh_dp};
-    size_t size = f->n * width * sizeof *q;
+    request r = {width, width % NEVH__LANES == 0, false, t, q, p, dh_dq, dh_dp};
     if (f->gradient != nevh_exact || f->most_instances * width > f->capacity)
         return false;
+    if (width == 1 && f->repeats)
+        return evaluate_repeated(f, t, q, p, dh_dq, dh_dp);
     if (r.vectors && !dh_dp && f->sole_q)
         return write(f, f->sole_q, &r, f->sole_q->nq, dh_dq);
     if (r.vectors && !dh_dq && f->sole_p)
         return write(f, f->sole_p, &r, f->sole_p->np, dh_dp);
-    if (dh_dq && !(r.vectors && f->writer_q))
-        memset(dh_dq, 0, size);
-    if (dh_dp && !(r.vectors && f->writer_p))
-        memset(dh_dp, 0, size);
-    bool bad = false;
-    for (nevh__planned *term = f->terms; term < f->terms + f->n_terms; term++)
-        if ((dh_dq && term->nq) || (dh_dp && term->np))
-            bad |= r.vectors && term->straight ? evaluate_in_place(f, term, &r)
-                                               : evaluate(f, term, &r);
-    return !bad;
+    return evaluate_all(f, &r);
 }
 
 nevh__call nevh__lean_call(nevh_field *f, size_t width, const double t[],
