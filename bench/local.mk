@@ -7,14 +7,15 @@ bench_gradient_LDADD = libnevh.la
 EXTRA_PROGRAMS += bench/tape
 bench_tape_LDADD = libnevh_core.la
 # Its peers are used where they are found, and never needed: a script tries.
+# bench/RESULTS.md is a copy of results-peers.md, from a machine at rest.
 peers = bench/peers
-EXTRA_DIST += $(peers)/build $(peers)/paper.py $(peers)/problems.h \
+EXTRA_DIST += bench/RESULTS.md $(peers)/build $(peers)/paper.py $(peers)/problems.h \
 	$(peers)/problems.c $(peers)/peer.h $(peers)/bench.h $(peers)/peers.c \
 	$(peers)/measure.c $(peers)/results.c $(peers)/nevh_systems.h \
 	$(peers)/nevh_systems.c $(peers)/nevh_peer.c $(peers)/gsl_peer.c \
 	$(peers)/boost_peer.cpp $(peers)/sundials_peer.c $(peers)/scipy_peer.c
 PEERS_ROUNDS = 9
-CLEANFILES += bench/results-peers.csv bench/RESULTS.md
+CLEANFILES += bench/results-peers.csv bench/results-peers.md
 clean-local:
 	rm -rf $(peers)/*.o $(peers)/.libs $(peers)/peers $(peers)/empty* \
 	  $(peers)/circumstances.h $(peers)/build.log
@@ -29,7 +30,8 @@ bench-peers: libnevh.la
 	LIBTOOL="$(SHELL) ./libtool" \
 	  $(SHELL) $(srcdir)/$(peers)/build $(srcdir) "$${commit:-unknown}" && \
 	PYTHON="$${PYTHON:-python3}" NEVH_BENCH_PY=$(srcdir)/$(peers)/paper.py \
-	  $(peers)/peers bench/results-peers.csv bench/RESULTS.md $(PEERS_ROUNDS)
+	  $(peers)/peers bench/results-peers.csv bench/results-peers.md \
+	  $(PEERS_ROUNDS)
 
 bench: bench/gradient$(EXEEXT) bench/tape$(EXEEXT) bench-peers
 	@commit=`git -C $(srcdir) describe --always --dirty 2>/dev/null`; \

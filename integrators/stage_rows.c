@@ -1,4 +1,7 @@
 /* nevh: the stages of one orbit as vectors.
+
+   What is NEVH_SIMD is static: else the choice among its versions would be
+   visible outside the library.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "stage_rows_private.h"
 #include "system/system_private.h"
@@ -69,16 +72,16 @@ void nevh__rows_combine(const nevh__rows *r, const double weights[],
         combine_any(r, weights, hb, slopes, y, carry, points);
 }
 
-NEVH_SIMD void nevh__rows_multiply(const nevh__rows *r, const double weights[],
-                                   const double slopes[], double out[]) {
+NEVH_SIMD static void multiply(const nevh__rows *r, const double weights[],
+                               const double slopes[], double out[]) {
     size_t stages = r->stages, stride = r->stride;
     for (size_t k = 0; k < r->count; k++, slopes += stages, out += stride)
         for (size_t i = 0; i < stride; i += NEVH__LANES)
             combine(stages, stride, weights + i, slopes, 0, 0, out + i);
 }
 
-NEVH_SIMD void nevh__rows_negate(const nevh__rows *r, double x[]) {
-    NEVH_LANES(i, r->count * r->stride) {
+NEVH_SIMD static void negate(size_t size, double x[]) {
+    NEVH_LANES(i, size) {
         x[i] = -x[i];
     }
 }
@@ -91,10 +94,9 @@ NEVH__INLINE void add(double hb, double slope, double *sum, double *lost) {
     *sum = next;
 }
 
-NEVH_SIMD void nevh__rows_sum(const nevh__tableau *a, size_t count,
-                              size_t width, const double hb[],
-                              const double slopes[], double sum[],
-                              double lost[]) {
+NEVH_SIMD static void sum_up(const nevh__tableau *a, size_t count, size_t width,
+                             const double hb[], const double slopes[],
+                             double sum[], double lost[]) {
     for (size_t m = 0; m < a->stages; m++) {
         size_t j = a->order[m];
         const double *x = slopes + j * width;
@@ -102,6 +104,21 @@ NEVH_SIMD void nevh__rows_sum(const nevh__tableau *a, size_t count,
             for (size_t lane = 0; lane < width; lane++, i++)
                 add(hb[j], x[lane], &sum[i], &lost[i]);
     }
+}
+
+void nevh__rows_multiply(const nevh__rows *r, const double weights[],
+                         const double slopes[], double out[]) {
+    multiply(r, weights, slopes, out);
+}
+
+void nevh__rows_negate(const nevh__rows *r, double x[]) {
+    negate(r->count * r->stride, x);
+}
+
+void nevh__rows_sum(const nevh__tableau *a, size_t count, size_t width,
+                    const double hb[], const double slopes[], double sum[],
+                    double lost[]) {
+    sum_up(a, count, width, hb, slopes, sum, lost);
 }
 
 void nevh__rows_close(const nevh__rows *r, size_t count, const double from[],

@@ -58,8 +58,8 @@ typedef struct {
     const method *method;
     const problem *problem;
     const double *ranges;
-    double longest; /* CPU seconds that a run may take, unless a finer one,
-                       as of implicit schemes, takes less */
+    double longest; /* CPU seconds that a run may take, unless it fails, or a
+                       coarser one took more: implicit schemes struggle */
     double target;
     double before; /* what the last run took */
 } search;
@@ -69,7 +69,7 @@ static bool good(search *s, int rung, double *error, bool *too_long) {
     *error = one_run(s->library, s->method, s->problem,
                      setting_at(s->method, rung), s->ranges, &seconds);
     *too_long =
-        seconds > s->longest && seconds > s->before && seconds < INFINITY;
+        *error < INFINITY && seconds > s->longest && seconds > s->before;
     s->before = seconds;
     return *error <= s->target;
 }
@@ -105,7 +105,7 @@ void find_entries(contest *c, const problem *p, const double ranges[],
                 entry e = {
                     .problem = p, .library = l, .method = m, .target = k};
                 search s = {l, m, p, ranges, longest, targets[k], INFINITY};
-                s.longest *= l->outside ? 20 : 1;
+                s.longest *= l->outside ? 5 : 1;
                 rung = find_rung(&s, rung, &e.error);
                 e.setting = setting_at(m, rung);
                 if (rung >= 0 && c->count < MOST_ENTRIES)

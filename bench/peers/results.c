@@ -55,6 +55,11 @@ static void write_cell(FILE *file, const contest *c, const problem *p,
 }
 
 static void write_problem(FILE *file, const contest *c, const problem *p) {
+    bool any = false;
+    for (const entry *e = c->entries; e < c->entries + c->count; e++)
+        any |= e->problem == p;
+    if (!any)
+        return;
     fprintf(file, "\n## %s, t = 0 ... %g\n\n| state error |", p->title,
             p->t_end);
     for (size_t i = 0; i < c->library_count; i++)

@@ -179,6 +179,24 @@ NEVH_SIMD static int64_t check(size_t size, const double x[]) {
     return all;
 }
 
+NEVH_SIMD static bool all_finite(size_t size, const double x[]) {
+    int64_t found[NEVH__LANES], all = 0;
+    NEVH_LANES(lane, NEVH__LANES) {
+        found[lane] = 0;
+    }
+    for (size_t i = 0; i < size; i += NEVH__LANES)
+        NEVH_LANES(lane, NEVH__LANES) {
+            double zero = x[i + lane] - x[i + lane];
+            int64_t bits;
+            memcpy(&bits, &zero, sizeof bits);
+            found[lane] |= bits;
+        }
+    NEVH_LANES(lane, NEVH__LANES) {
+        all |= found[lane];
+    }
+    return all == 0;
+}
+
 /* Slopes that were written in place, as if added to 0. */
 static bool settle(size_t size, double out[]) {
     int64_t found = check(size, out);
@@ -412,7 +430,7 @@ bool nevh__lean_take(const nevh__call *c, size_t used) {
                 c->dh_dp);
     for (size_t i = 0; used == 1 && i < c->size; i += NEVH__LANES)
         sum += c->out[i] - c->out[i];
-    if (sum != 0 || (used > 1 && settle(c->size, c->out)))
+    if (sum != 0 || (used > 1 && !all_finite(c->size, c->out)))
         return false;
     if (c->coordinates)
         c->field->gradients += used;
