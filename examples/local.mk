@@ -25,7 +25,7 @@ examples_effects_LDADD = libnevh.la
 examples_catalogue_LDADD = libnevh.la
 examples_conservation_LDADD = libnevh.la
 examples_steps_that_follow_LDADD = libnevh.la
-examples_nevh_cost_LDADD = libnevh.la $(GSL_LIBS)
+examples_nevh_cost_LDADD = libnevh.la
 gradient_systems = \
 	examples/gradient_systems.c examples/gradient_systems.h
 examples_gradient_error_SOURCES = \
