@@ -99,6 +99,8 @@ int main(int argc, char **argv) {
     enter(&c, &boost_library, "Boost.odeint", missing);
     enter(&c, &sundials_library, "SUNDIALS", missing);
     enter(&c, &scipy_library, "SciPy", missing);
+    if (&paper_library)
+        enter(&c, &paper_library, "", missing);
     for (const problem *p = problems; p < problems + problem_count; p++) {
         double ranges[2 * MOST_N];
         if (argc > 5 && strcmp(argv[5], p->name))
