@@ -59,17 +59,21 @@ typedef struct {
     const problem *problem;
     const double *ranges;
     double longest; /* CPU seconds that a run may take, unless it fails, or a
-                       coarser one took more: implicit schemes struggle */
+                       coarser one took more; nevh's implicit schemes, which
+                       struggle where steps are too long, may once */
     double target;
     double before; /* what the last run took */
+    int slow;      /* runs that took too long, one after another */
 } search;
 
 static bool good(search *s, int rung, double *error, bool *too_long) {
     double seconds;
     *error = one_run(s->library, s->method, s->problem,
                      setting_at(s->method, rung), s->ranges, &seconds);
-    *too_long =
+    bool slow =
         *error < INFINITY && seconds > s->longest && seconds > s->before;
+    s->slow = slow ? s->slow + 1 : 0;
+    *too_long = s->slow > (s->library->ahead ? 1 : 0);
     s->before = seconds;
     return *error <= s->target;
 }
@@ -104,7 +108,7 @@ void find_entries(contest *c, const problem *p, const double ranges[],
             for (size_t k = 0; k < TARGETS && rung >= 0; k++) {
                 entry e = {
                     .problem = p, .library = l, .method = m, .target = k};
-                search s = {l, m, p, ranges, longest, targets[k], INFINITY};
+                search s = {l, m, p, ranges, longest, targets[k], INFINITY, 0};
                 s.longest *= l->outside ? 5 : 1;
                 rung = find_rung(&s, rung, &e.error);
                 e.setting = setting_at(m, rung);
