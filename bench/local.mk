@@ -11,7 +11,33 @@ bench_scenes_LDADD = libnevh.la
 CLEANFILES += bench/gradient$(EXEEXT) bench/results-gradient.csv \
 	bench/tape$(EXEEXT) bench/scenes$(EXEEXT)
 
-bench: bench/gradient$(EXEEXT) bench/tape$(EXEEXT) bench/scenes$(EXEEXT)
+# nevh's peers are used where they are found, and never needed: a script tries.
+# bench/RESULTS.md is a copy of results-peers.md, from a machine at rest.
+peers = bench/peers
+EXTRA_DIST += bench/RESULTS.md $(peers)/build $(peers)/paper.py $(peers)/problems.h \
+	$(peers)/problems.c $(peers)/peer.h $(peers)/bench.h $(peers)/peers.c \
+	$(peers)/measure.c $(peers)/results.c $(peers)/nevh_systems.h \
+	$(peers)/nevh_systems.c $(peers)/nevh_peer.c $(peers)/gsl_peer.c \
+	$(peers)/boost_peer.cpp $(peers)/sundials_peer.c $(peers)/scipy_peer.c
+PEERS_ROUNDS = 9
+CLEANFILES += bench/results-peers.csv bench/results-peers.md
+clean-local:
+	rm -rf $(peers)/*.o $(peers)/.libs $(peers)/peers $(peers)/empty* \
+	  $(peers)/circumstances.h $(peers)/build.log
+
+bench-peers: libnevh.la
+	@commit=`git -C $(srcdir) describe --always --dirty 2>/dev/null`; \
+	CC="$(CC)" CXX="$${CXX:-c++}" CFLAGS="$(CFLAGS) -ffp-contract=off" \
+	STD=-std=c11 CPPFLAGS="-I$(top_srcdir)/include $(GSL_CFLAGS)" \
+	GSL_LIBS="$(GSL_LIBS)" PYTHON="$${PYTHON:-python3}" \
+	LIBTOOL="$(SHELL) ./libtool" \
+	  $(SHELL) $(srcdir)/$(peers)/build $(srcdir) "$${commit:-unknown}" && \
+	PYTHON="$${PYTHON:-python3}" NEVH_BENCH_PY=$(srcdir)/$(peers)/paper.py \
+	  $(peers)/peers bench/results-peers.csv bench/results-peers.md \
+	  $(PEERS_ROUNDS)
+
+bench: bench/gradient$(EXEEXT) bench/tape$(EXEEXT) bench/scenes$(EXEEXT) \
+  bench-peers
 	@commit=`git -C $(srcdir) describe --always --dirty 2>/dev/null`; \
 	./bench/gradient$(EXEEXT) "$${commit:-unknown}" \
 	  bench/results-gradient.csv && \
@@ -23,4 +49,4 @@ bench-recommend: tools/nevh$(EXEEXT)
 	  ./tools/nevh$(EXEEXT)
 
 EXTRA_DIST += bench/recommend.sh
-.PHONY: bench bench-recommend
+.PHONY: bench bench-peers bench-recommend

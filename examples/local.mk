@@ -10,7 +10,8 @@ examples = \
 	examples/conservation \
 	examples/steps_that_follow \
 	examples/gradient_error \
-	examples/gradient_cost
+	examples/gradient_cost \
+	examples/nevh_cost
 noinst_PROGRAMS += $(examples)
 examples_first_hamiltonian_LDADD = libnevh.la
 examples_pendulum_energy_SOURCES = examples/pendulum_energy.c $(energy_table)
@@ -24,6 +25,7 @@ examples_effects_LDADD = libnevh.la
 examples_catalogue_LDADD = libnevh.la
 examples_conservation_LDADD = libnevh.la
 examples_steps_that_follow_LDADD = libnevh.la
+examples_nevh_cost_LDADD = libnevh.la
 gradient_systems = \
 	examples/gradient_systems.c examples/gradient_systems.h
 examples_gradient_error_SOURCES = \

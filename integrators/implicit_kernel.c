@@ -17,12 +17,13 @@
    the coordinates, and new slopes there.  That halves the number of sweeps.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include <nevh/extend.h>
+#include "stage_rows_private.h"
 #include "tableau_private.h"
 #include "work_private.h"
+#include "gradient/field_private.h"
 #include "implicit/implicit_private.h"
 #include "system/system_private.h"
 #include <math.h>
-#include <nevh/body.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -33,6 +34,12 @@ typedef struct {
     size_t unknown; /* slopes of a lane that are solved for */
     double *hb;     /* h b_j of this step */
     size_t *lanes;  /* all of them */
+    /* One orbit with exact gradients: rows are vectors; mu and guess as the
+       tableau's, or with room behind them. */
+    bool vectors;
+    nevh__rows rows; /* of a half */
+    double *padded;  /* NULL: no room is needed */
+    const double *mu_q, *mu_p, *guess;
 } family_plan;
 
 /* One step under way. */
@@ -48,6 +55,7 @@ typedef struct {
     double *sum;        /* 2n x width: the new state */
     double *lost;       /* 2n x width: what that lost */
     double *hold;       /* width; see nevh__stage_problem */
+    nevh__call velocities, forces; /* of one orbit, where it can be called */
 } family_step;
 
 /* Memory: carry, slopes of the last step that were solved for, their h (0:
@@ -72,8 +80,35 @@ static void unplan(nevh_work *w) {
     nevh__stage_solver_free(g->solver);
     free(g->hb);
     free(g->lanes);
+    free(g->padded);
     free(g);
     w->plan = NULL;
+}
+
+static const double *pad(const nevh__rows *r, const double from[],
+                         double to[]) {
+    for (size_t i = 0; i < r->stages * r->stages; i++)
+        to[i / r->stages * r->stride + i % r->stages] = from[i];
+    return to;
+}
+
+static bool plan_rows(const nevh_work *w, family_plan *g) {
+    const nevh__tableau *a = g->tableau;
+    size_t stages = a->stages, stride = nevh__padded(stages);
+    g->vectors = w->width == 1 && nevh__work_lean(w);
+    g->rows = (nevh__rows){w->n, stages, g->vectors ? stride : stages};
+    g->mu_q = a->mu_q;
+    g->mu_p = a->mu_p;
+    g->guess = a->guess;
+    if (g->rows.stride == stages)
+        return true;
+    double *to = g->padded = nevh__array(3 * stages * stride, sizeof *to);
+    if (!to)
+        return false;
+    g->mu_q = pad(&g->rows, a->mu_q, to);
+    g->mu_p = pad(&g->rows, a->mu_p, to + stages * stride);
+    g->guess = pad(&g->rows, a->guess, to + 2 * stages * stride);
+    return true;
 }
 
 static bool plan_solver(nevh_work *w, family_plan *g) {
@@ -89,7 +124,12 @@ static bool plan_solver(nevh_work *w, family_plan *g) {
         w, &(nevh__stage_shape){a->stages, g->partitioned, a->a_q, a->a_p});
     for (size_t lane = 0; g->lanes && lane < w->width; lane++)
         g->lanes[lane] = lane;
-    return g->hb && g->lanes && g->solver;
+    return g->hb && g->lanes && g->solver && plan_rows(w, g);
+}
+
+/* Numbers from one row of points to the next. */
+static size_t row_size(const family_plan *g, size_t active) {
+    return g->rows.stride * active;
 }
 
 static int plan_on(nevh_work *w, size_t fewest,
@@ -105,7 +145,8 @@ static int plan_on(nevh_work *w, size_t fewest,
     if (!g || !plan_solver(w, g))
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     w->memory_rows = 2 * w->n + g->unknown + 2;
-    w->scratch_size = (6 * w->n * stages + stages + 1) * w->width + 4 * w->size;
+    w->scratch_size = (6 * w->n + 1) * row_size(g, w->width) + w->width +
+                      4 * w->size + NEVH__LANES;
     return NEVH_OK;
 }
 
@@ -120,13 +161,14 @@ static int plan_lobatto(nevh_work *w) {
 static family_step lay_out(nevh_work *w, double t, double h, const double q[],
                            const double p[]) {
     const family_plan *g = w->plan;
-    size_t stages = g->tableau->stages, all = 2 * w->size * stages;
-    family_step s = {w, t, h, q, p, .slopes = w->scratch};
-    s.unknown = s.slopes + all - g->unknown * w->width;
+    size_t size = row_size(g, w->width), all = 2 * w->n * size;
+    family_step s = {w, t, h, q, p, .slopes = nevh__aligned(w->scratch)};
+    s.unknown =
+        s.slopes + 2 * w->size * g->tableau->stages - g->unknown * w->width;
     s.increments = s.slopes + all;
     s.points = s.increments + all;
     s.times = s.points + all;
-    s.sum = s.times + stages * w->width;
+    s.sum = s.times + size;
     s.lost = s.sum + 2 * w->size;
     s.hold = s.lost + 2 * w->size;
     return s;
@@ -143,32 +185,30 @@ static void weigh(family_plan *g, double h) {
     g->hb[0] = g->hb[s - 1] = s > 1 ? rest / 2 : rest;
 }
 
-/* The same for one lane, where the stages stand side by side. */
-NEVH_SIMD static void multiply_one(size_t stages, const double m[],
-                                   const double x[], double out[]) {
-    double sum[NEVH__MOST_STAGES];
-    for (size_t i = 0; i < stages; i++)
-        sum[i] = 0;
-    for (size_t j = 0; j < stages; j++)
-        for (size_t i = 0; i < stages; i++)
-            sum[i] += m[j * stages + i] * x[j];
-    for (size_t i = 0; i < stages; i++)
-        out[i] = sum[i];
-}
-
 /* out[i] = sum_j m[j*stages + i] x[j], for `active` lanes side by side. */
 static void multiply(size_t stages, size_t active, const double m[],
                      const double x[], double out[]) {
-    if (active == 1) {
-        multiply_one(stages, m, x, out);
-        return;
-    }
     for (size_t i = 0; i < stages * active; i++)
         out[i] = 0;
     for (size_t j = 0; j < stages; j++, m += stages)
         for (size_t i = 0; i < stages; i++)
             for (size_t a = 0; a < active; a++)
                 out[i * active + a] += m[i] * x[j * active + a];
+}
+
+/* The stage states of the half, or halves, from `first` to `last`, of one
+   orbit. */
+static void find_rows(const family_step *s, size_t first, size_t last) {
+    const nevh_work *w = s->work;
+    const family_plan *g = w->plan;
+    size_t n = w->n, size = g->rows.stride;
+    if (first < n)
+        nevh__rows_combine(&g->rows, g->mu_q, g->hb, s->slopes, s->q, w->memory,
+                           s->points);
+    if (last > n)
+        nevh__rows_combine(&g->rows, g->mu_p, g->hb,
+                           s->slopes + n * g->rows.stages, s->p, w->memory + n,
+                           s->points + n * size);
 }
 
 /* The stage states of variables from `first` to `last` at some lanes, to
@@ -178,6 +218,10 @@ static void find_points(const family_step *s, size_t first, size_t last,
     const nevh_work *w = s->work;
     const family_plan *g = w->plan;
     size_t stages = g->tableau->stages;
+    if (g->vectors) {
+        find_rows(s, first, last);
+        return;
+    }
     for (size_t k = first; k < last; k++) {
         const double *mu = k < w->n ? g->tableau->mu_q : g->tableau->mu_p;
         const double *slopes = s->slopes + k * stages * w->width;
@@ -199,24 +243,72 @@ static void find_points(const family_step *s, size_t first, size_t last,
 
 static void find_times(const family_step *s, size_t active) {
     const family_plan *g = s->work->plan;
-    for (size_t i = 0; i < g->tableau->stages * active; i++)
-        s->times[i] = s->t + g->tableau->c[i / active] * s->h;
+    size_t stages = g->tableau->stages;
+    for (size_t i = 0; i < row_size(g, active); i++)
+        s->times[i] =
+            s->t + g->tableau->c[i / active < stages ? i / active : 0] * s->h;
+}
+
+/* The gradient at the points. */
+static int take_gradient(const family_step *s, size_t active, double dh_dq[],
+                         double dh_dp[]) {
+    nevh_work *w = s->work;
+    const family_plan *g = w->plan;
+    size_t size = row_size(g, active);
+    return nevh__work_gradient(w, size, g->tableau->stages * active, s->times,
+                               s->points, s->points + w->n * size, dh_dq,
+                               dh_dp);
+}
+
+static void negate(const family_step *s, size_t active, double x[]) {
+    const family_plan *g = s->work->plan;
+    size_t size = g->rows.count * row_size(g, active);
+    if (g->vectors)
+        nevh__rows_negate(&g->rows, x);
+    else
+        for (size_t i = 0; i < size; i++)
+            x[i] = -x[i];
 }
 
 static int map(void *data, size_t active, const size_t lanes[],
                const double slopes[], double out[]) {
     const family_step *s = data;
-    nevh_work *w = s->work;
-    const family_plan *g = w->plan;
-    size_t stages = g->tableau->stages, half = w->n * stages * active;
+    const family_plan *g = s->work->plan;
+    size_t half = g->rows.count * g->rows.stages * active;
+    double *first = out, *second = out + half;
     (void)slopes; /* are s->unknown */
-    find_points(s, 0, 2 * w->n, active, lanes);
-    find_times(s, active);
-    int status = nevh_work_gradient(w, stages * active, s->times, s->points,
-                                    s->points + half, out + half, out);
-    for (size_t i = half; i < 2 * half; i++)
-        out[i] = -out[i];
+    if (g->padded) {
+        first = s->increments;
+        second = first + g->rows.count * g->rows.stride;
+    }
+    find_points(s, 0, 2 * s->work->n, active, lanes);
+    if (!g->vectors)
+        find_times(s, active);
+    int status = take_gradient(s, active, second, first);
+    negate(s, active, second);
+    if (g->padded)
+        nevh__rows_close(&g->rows, 2 * g->rows.count, s->increments, out);
     return status;
+}
+
+/* Where the slopes of coordinates are to be written: in place if they can. */
+static double *velocities_of(const family_step *s) {
+    const family_plan *g = s->work->plan;
+    return g->vectors && !g->padded ? s->slopes : s->increments;
+}
+
+static void prepare_calls(family_step *s, double *forces) {
+    nevh_work *w = s->work;
+    size_t size = row_size(w->plan, 1);
+    const double *p = s->points + w->n * size;
+    s->velocities = nevh__lean_call(w->field, size, s->times, s->points, p,
+                                    NULL, velocities_of(s));
+    s->forces =
+        nevh__lean_call(w->field, size, s->times, s->points, p, forces, NULL);
+}
+
+static bool call(const nevh__call *c, const family_plan *g) {
+    return c->gradient && nevh__lean_take(c, g->rows.stages);
 }
 
 /* Slopes of the coordinates at the stages' momenta. */
@@ -224,12 +316,14 @@ static int find_velocities(const family_step *s, size_t active,
                            const size_t lanes[]) {
     nevh_work *w = s->work;
     const family_plan *g = w->plan;
-    size_t stages = g->tableau->stages, half = w->n * stages * active;
-    double *velocities = s->increments; /* of the coordinates */
+    double *velocities = velocities_of(s);
     find_points(s, w->n, 2 * w->n, active, lanes);
-    int status = nevh_work_gradient(w, stages * active, s->times, s->points,
-                                    s->points + half, NULL, velocities);
-    for (size_t row = 0; row < w->n * stages; row++)
+    int status = call(&s->velocities, g)
+                     ? NEVH_OK
+                     : take_gradient(s, active, NULL, velocities);
+    if (g->padded)
+        nevh__rows_close(&g->rows, w->n, velocities, s->slopes);
+    for (size_t row = 0; !g->vectors && row < w->n * g->rows.stages; row++)
         for (size_t a = 0; a < active; a++)
             s->slopes[row * w->width + lanes[a]] = velocities[row * active + a];
     return status;
@@ -237,21 +331,38 @@ static int find_velocities(const family_step *s, size_t active,
 
 static int map_momenta(void *data, size_t active, const size_t lanes[],
                        const double slopes[], double out[]) {
-    const family_step *s = data;
-    nevh_work *w = s->work;
-    const family_plan *g = w->plan;
-    size_t stages = g->tableau->stages, half = w->n * stages * active;
+    family_step *s = data;
+    const family_plan *g = s->work->plan;
+    double *target = g->padded ? s->increments : out;
     (void)slopes;
-    find_times(s, active);
+    if (g->vectors && s->forces.out != target)
+        prepare_calls(s, target);
+    if (!g->vectors)
+        find_times(s, active);
     int status = find_velocities(s, active, lanes);
     if (status)
         return status;
-    find_points(s, 0, w->n, active, lanes);
-    status = nevh_work_gradient(w, stages * active, s->times, s->points,
-                                s->points + half, out, NULL);
-    for (size_t i = 0; i < half; i++)
-        out[i] = -out[i];
+    find_points(s, 0, s->work->n, active, lanes);
+    status =
+        call(&s->forces, g) ? NEVH_OK : take_gradient(s, active, target, NULL);
+    negate(s, active, target);
+    if (g->padded)
+        nevh__rows_close(&g->rows, g->rows.count, target, out);
     return status;
+}
+
+static void guess_rows(const family_step *s, const family_plan *g,
+                       const family_memory *last) {
+    nevh__rows rows = g->rows;
+    double *target = g->padded ? s->increments : s->unknown;
+    rows.count = g->unknown / rows.stages;
+    if (*last->h != s->h) {
+        memset(s->unknown, 0, g->unknown * sizeof *s->unknown);
+        return;
+    }
+    nevh__rows_multiply(&rows, g->guess, last->slopes, target);
+    if (g->padded)
+        nevh__rows_close(&rows, rows.count, target, s->unknown);
 }
 
 /* Continues the last step's polynomial where there is one. */
@@ -259,6 +370,11 @@ static void guess(const family_step *s, const family_plan *g) {
     const nevh_work *w = s->work;
     size_t stages = g->tableau->stages, each = stages * w->width;
     family_memory last = recall(w);
+    memcpy(s->hold, last.hold, w->width * sizeof *s->hold);
+    if (g->vectors) {
+        guess_rows(s, g, &last);
+        return;
+    }
     for (size_t row = 0; row < g->unknown; row += stages) {
         double *slopes = s->unknown + row * w->width;
         multiply(stages, w->width, g->tableau->guess,
@@ -267,43 +383,19 @@ static void guess(const family_step *s, const family_plan *g) {
             if (last.h[i % w->width] != s->h)
                 slopes[i] = 0;
     }
-    memcpy(s->hold, last.hold, w->width * sizeof *s->hold);
-}
-
-/* sum + lost += x, without loss. */
-static void add(double *sum, double *lost, double x) {
-    double d = x + *lost, next = *sum + d;
-    *lost = nevh__lost(next, *sum, d);
-    *sum = next;
-}
-
-static void sum_up(const family_step *s, const family_plan *g, size_t i,
-                   double y) {
-    const nevh_work *w = s->work;
-    size_t stages = g->tableau->stages, k = i / w->width, lane = i % w->width;
-    const double *slopes = s->slopes + k * stages * w->width + lane;
-    double sum = y, lost = w->memory[i];
-    for (size_t m = 0; m < stages; m++) {
-        size_t j = g->tableau->order[m];
-        double slope = slopes[j * w->width], x = g->hb[j] * slope;
-        add(&sum, &lost, x);
-        lost += fma(g->hb[j], slope, -x);
-    }
-    s->sum[i] = sum;
-    s->lost[i] = lost;
 }
 
 /* The evaluations that moved the state: one a stage. */
 static int account(const family_step *s, const family_plan *g) {
     nevh_work *w = s->work;
-    size_t stages = g->tableau->stages;
+    size_t stages = g->tableau->stages, size = row_size(g, w->width);
     double *z = s->increments;
     int status = NEVH_OK;
     find_points(s, 0, 2 * w->n, w->width, g->lanes);
     find_times(s, w->width);
     for (size_t i = 0; !status && i < stages; i++) {
         for (size_t k = 0; k < 2 * w->n; k++)
-            memcpy(z + k * w->width, s->points + (k * stages + i) * w->width,
+            memcpy(z + k * w->width, s->points + k * size + i * w->width,
                    w->width * sizeof *z);
         status = nevh_work_account(w, NEVH_OF_Q | NEVH_OF_P, g->hb[i],
                                    s->times + i * w->width, z, z + w->size);
@@ -316,10 +408,13 @@ static int commit(const family_step *s, const family_plan *g, double q[],
     nevh_work *w = s->work;
     size_t n = w->size;
     double check = 0;
-    for (size_t i = 0; i < 2 * n; i++) {
-        sum_up(s, g, i, i < n ? q[i] : p[i - n]);
+    memcpy(s->sum, q, n * sizeof *q);
+    memcpy(s->sum + n, p, n * sizeof *p);
+    memcpy(s->lost, w->memory, 2 * n * sizeof *s->lost);
+    nevh__rows_sum(g->tableau, 2 * n, w->width, g->hb, s->slopes, s->sum,
+                   s->lost);
+    for (size_t i = 0; i < 2 * n; i++)
         check += s->sum[i] - s->sum[i];
-    }
     if (check != 0)
         return nevh__fail_range(w, s->t, s->h);
     int status = w->accounts ? account(s, g) : NEVH_OK;
@@ -341,6 +436,8 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     family_step s = lay_out(w, t, h, q, p);
     weigh(g, h);
     guess(&s, g);
+    if (g->vectors)
+        find_times(&s, 1);
     nevh__stage_problem problem = {.t = t,
                                    .h = h,
                                    .q = q,

@@ -25,6 +25,8 @@ libnevh_core_la_SOURCES += \
 	integrators/adaptive_verlet_private.h \
 	integrators/adaptive_verlet_kernel.c \
 	integrators/adaptive_verlet.c \
+	integrators/stage_rows_private.h \
+	integrators/stage_rows.c \
 	integrators/runge_kutta_private.h \
 	integrators/runge_kutta_kernel.c \
 	integrators/runge_kutta_adaptive.c \

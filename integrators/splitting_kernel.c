@@ -11,9 +11,15 @@
    steps are not merged, so the orbit is the same whether or not anyone looks.
 
    In V(q, t) time is that of the drifts, in T(p, t) that of the kicks.
+
+   One orbit of a small system is repeated over a vector: its blocks are of that
+   size anyway, and what stays in vectors needs no filling and no collecting.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "splitting_private.h"
 #include "system/system_private.h"
+#include "gradient/field_private.h"
+#include "work_private.h"
+#include <nevh/body.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -34,19 +40,28 @@ typedef struct {
 } half;
 
 typedef struct {
+    size_t lanes, size; /* n x lanes: elements of a half */
+    bool repeated;
     half q, p;
     double *slope, *kept, *has_kept, *time;
+    nevh__call calls[2]; /* for kicks and drifts, of what is repeated */
 } layout;
 
 static layout lay_out(const nevh_work *w, double q[], double p[]) {
-    double *m = w->memory, *s = w->scratch;
-    size_t n = w->size;
-    return (layout){.q = {q, s, m, s + n},
-                    .p = {p, s + 2 * n, m + n, s + 3 * n},
-                    .slope = s + 4 * n,
-                    .time = s + 5 * n,
-                    .kept = m + 2 * n,
-                    .has_kept = m + 3 * n};
+    double *m = w->memory, *s = nevh__aligned(w->scratch);
+    bool repeated = nevh__work_repeats(w);
+    size_t lanes = repeated ? NEVH__LANES : w->width, n = w->n * lanes;
+    return (layout){
+        .lanes = lanes,
+        .size = n,
+        .repeated = repeated,
+        .q = {repeated ? s + 6 * n : q, s, repeated ? s + 7 * n : m, s + n},
+        .p = {repeated ? s + 8 * n : p, s + 2 * n,
+              repeated ? s + 9 * n : m + w->size, s + 3 * n},
+        .slope = s + 4 * n,
+        .kept = repeated ? s + 5 * n : m + 2 * w->size,
+        .has_kept = m + 3 * w->size,
+        .time = s + 10 * n};
 }
 
 static void unplan(nevh_work *w) {
@@ -81,20 +96,69 @@ static int plan(nevh_work *w) {
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     fill(o, table);
     w->memory_rows = 3 * w->n + 1;
-    w->scratch_size = 5 * w->size + w->width;
+    size_t lanes = nevh__padded(w->width);
+    w->scratch_size = (10 * w->n + 1) * lanes + NEVH__LANES;
     return NEVH_OK;
 }
 
-static void begin(const nevh_work *w, const half *x) {
-    for (size_t i = 0; i < w->size; i++) {
+static void begin(const layout *l, const half *x) {
+    for (size_t i = 0; i < l->size; i++) {
         x->change[i] = 0;
         x->point[i] = x->start[i] + x->carry[i];
     }
 }
 
-static void advance(const nevh_work *w, const half *x, double step,
+NEVH_SIMD static void repeat(size_t n, const double from[], double to[]) {
+    for (size_t k = 0; k < n; k++, to += NEVH__LANES)
+        NEVH_LANES(lane, NEVH__LANES) {
+            to[lane] = from[k];
+        }
+}
+
+NEVH_SIMD static void begin_vectors(size_t size, double start[], double carry[],
+                                    double change[], double point[]) {
+    NEVH_LANES(i, size) {
+        change[i] = 0;
+        point[i] = start[i] + carry[i];
+    }
+}
+
+/* The state, what was lost of it, and the kept slope, repeated. */
+static void begin_repeated(const nevh_work *w, layout *l, const double q[],
+                           const double p[]) {
+    const half *const both[] = {&l->q, &l->p};
+    for (size_t i = 0; i < 2; i++) {
+        const half *x = both[i];
+        repeat(w->n, i ? p : q, x->start);
+        repeat(w->n, w->memory + i * w->n, x->carry);
+        begin_vectors(l->size, x->start, x->carry, x->change, x->point);
+    }
+    repeat(w->n, w->memory + 2 * w->n, l->kept);
+    l->calls[0] = nevh__lean_call(w->field, l->lanes, l->time, l->q.point,
+                                  l->p.point, l->slope, NULL);
+    l->calls[1] = nevh__lean_call(w->field, l->lanes, l->time, l->q.point,
+                                  l->p.point, NULL, l->slope);
+}
+
+NEVH_SIMD static void advance_vectors(size_t size, double step,
+                                      const double slope[],
+                                      const double start[],
+                                      const double carry[], double change[],
+                                      double point[]) {
+    NEVH_LANES(i, size) {
+        change[i] += step * slope[i];
+        point[i] = start[i] + (change[i] + carry[i]);
+    }
+}
+
+static void advance(const layout *l, const half *x, double step,
                     const double slope[]) {
-    for (size_t i = 0; i < w->size; i++) {
+    if (l->lanes % NEVH__LANES == 0) {
+        advance_vectors(l->size, step, slope, x->start, x->carry, x->change,
+                        x->point);
+        return;
+    }
+    for (size_t i = 0; i < l->size; i++) {
         x->change[i] += step * slope[i];
         x->point[i] = x->start[i] + (x->change[i] + x->carry[i]);
     }
@@ -107,37 +171,58 @@ static bool all_kept(const nevh_work *w, const layout *l) {
     return true;
 }
 
+/* dH/dq for a kick, or else dH/dp, to the slope. */
+static int take_slope(nevh_work *w, const layout *l, bool kick) {
+    const nevh__call *call = &l->calls[!kick];
+    if (call->gradient && nevh__lean_take(call, 1))
+        return NEVH_OK;
+    return nevh__work_gradient(w, l->lanes, w->width, l->time, l->q.point,
+                               l->p.point, kick ? l->slope : NULL,
+                               kick ? NULL : l->slope);
+}
+
 /* Moves p at time t by the part dt of the step, or q. */
 static int operate(nevh_work *w, const layout *l, nevh_operation operation,
                    double t, double dt, bool kept) {
     bool kick = operation == NEVH_KICK;
-    int status = NEVH_OK;
-    for (size_t lane = 0; lane < w->width; lane++)
+    for (size_t lane = 0; lane < l->lanes; lane++)
         l->time[lane] = t;
-    if (!kept)
-        status =
-            nevh_work_gradient(w, w->width, l->time, l->q.point, l->p.point,
-                               kick ? l->slope : NULL, kick ? NULL : l->slope);
+    int status = kept ? NEVH_OK : take_slope(w, l, kick);
     if (!status && w->accounts)
         status = nevh_work_account(w, kick ? NEVH_OF_Q : NEVH_OF_P, dt, l->time,
                                    l->q.point, l->p.point);
     if (!status)
-        advance(w, kick ? &l->p : &l->q, kick ? -dt : dt,
+        advance(l, kick ? &l->p : &l->q, kick ? -dt : dt,
                 kept ? l->kept : l->slope);
     return status;
 }
 
 static void keep(const nevh_work *w, const layout *l) {
-    memcpy(l->kept, l->slope, w->size * sizeof *l->kept);
+    double *kept = w->memory + 2 * w->size;
+    for (size_t i = 0; i < w->size; i++)
+        kept[i] = l->slope[l->repeated ? i * l->lanes : i];
     for (size_t lane = 0; lane < w->width; lane++)
         l->has_kept[lane] = 1;
+}
+
+static int commit(nevh_work *w, const layout *l, double q[], double p[]) {
+    for (size_t k = 1; l->repeated && k < w->n; k++) {
+        l->q.change[k] = l->q.change[k * l->lanes];
+        l->p.change[k] = l->p.change[k * l->lanes];
+    }
+    return nevh_work_commit(w, w->size, q, l->q.change, w->memory, p,
+                            l->p.change, w->memory + w->size);
 }
 
 static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     const operations *o = w->plan;
     layout l = lay_out(w, q, p);
-    begin(w, &l.q);
-    begin(w, &l.p);
+    if (l.repeated) {
+        begin_repeated(w, &l, q, p);
+    } else {
+        begin(&l, &l.q);
+        begin(&l, &l.p);
+    }
     bool kept = o->same_ends && all_kept(w, &l);
     int status = NEVH_OK;
     for (size_t i = 0; !status && i < o->count; i++)
@@ -145,8 +230,7 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
             operate(w, &l, i % 2 ? !o->first : o->first, t + o->times[i] * h,
                     o->weights[i] * h, i == 0 && kept);
     if (!status)
-        status = nevh_work_commit(w, w->size, q, l.q.change, l.q.carry, p,
-                                  l.p.change, l.p.carry);
+        status = commit(w, &l, q, p);
     if (!status && o->same_ends)
         keep(w, &l);
     return status;
@@ -156,13 +240,13 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
    that it does not. */
 static void damp(nevh_work *w, const double factor[]) {
     const operations *o = w->plan;
-    layout l = lay_out(w, NULL, NULL);
+    double *carry = w->memory + w->size, *has_kept = w->memory + 3 * w->size;
     for (size_t i = 0; i < w->size; i++)
-        l.p.carry[i] *= factor[i / w->width];
+        carry[i] *= factor[i / w->width];
     if (o->first == NEVH_KICK && nevh_system_traits(w->system) & NEVH_SEPARABLE)
         return;
     for (size_t lane = 0; lane < w->width; lane++)
-        l.has_kept[lane] = 0;
+        has_kept[lane] = 0;
 }
 
 const nevh_kernel nevh_splitting_kernel = {

@@ -24,10 +24,25 @@ static int fail_field(nevh_work *w, int status) {
     return nevh_work_fail(w, status, "%s", nevh_field_message(w->field));
 }
 
+bool nevh__work_lean(const nevh_work *w) {
+    return w->field->gradient == nevh_exact && !w->transform;
+}
+
+bool nevh__work_repeats(const nevh_work *w) {
+    return w->width == 1 && w->field->repeats && !w->accounts && !w->transform;
+}
+
 int nevh_work_gradient(nevh_work *w, size_t points, const double t[],
                        const double q[], const double p[], double dh_dq[],
                        double dh_dp[]) {
-    int status = nevh_field_gradient(w->field, points, t, q, p, dh_dq, dh_dp);
+    return nevh__work_gradient(w, points, points, t, q, p, dh_dq, dh_dp);
+}
+
+int nevh__work_gradient(nevh_work *w, size_t points, size_t used,
+                        const double t[], const double q[], const double p[],
+                        double dh_dq[], double dh_dp[]) {
+    int status =
+        nevh__field_gradient(w->field, points, used, t, q, p, dh_dq, dh_dp);
     if (status)
         return fail_field(w, status);
     return w->transform

@@ -30,6 +30,7 @@ libnevh_core_la_SOURCES = \
 	lib/gradient/findings.c \
 	lib/gradient/verify.c \
 	lib/gradient/field.c \
+	lib/gradient/lean.c \
 	lib/gradient/block.c \
 	lib/gradient/central.c \
 	lib/gradient/stencil.c \

@@ -50,14 +50,35 @@ static void kinetic_dp(size_t width, const double q[], const double p[],
     }
 }
 
+/* The same bits from one sine and cosine. */
+NEVH_SIMD
+static void kinetic_both(size_t width, const double q[], const double p[],
+                         const double c[], double dh_dq[], double dh_dp[]) {
+    const double *q2 = q + width, *p2 = p + width, *scale = c + width;
+    NEVH_LANES(i, width) {
+        double d = q[i] - q2[i];
+        double cosine = nevh_simd_cos(d), sine = nevh_simd_sin(d);
+        double form =
+            p[i] * p[i] + c[i] * (p2[i] * p2[i]) - 2 * p[i] * p2[i] * cosine;
+        double root = 1 + sine * sine, half = scale[i] * root / 2;
+        dh_dq[i] = 2 * sine * (p[i] * p2[i] - form * cosine / root) /
+                   (scale[i] * root);
+        dh_dq[width + i] = -dh_dq[i];
+        dh_dp[i] = (p[i] - p2[i] * cosine) / half;
+        dh_dp[width + i] = (c[i] * p2[i] - p[i] * cosine) / half;
+    }
+}
+
 static void kinetic_gradient(size_t width, const double t[], const double q[],
                              const double p[], const double c[],
                              const void *params, double dh_dq[],
                              double dh_dp[]) {
     (void)t, (void)params;
-    if (dh_dq)
+    if (dh_dq && dh_dp)
+        kinetic_both(width, q, p, c, dh_dq, dh_dp);
+    else if (dh_dq)
         kinetic_dq(width, q, p, c, dh_dq);
-    if (dh_dp)
+    else if (dh_dp)
         kinetic_dp(width, q, p, c, dh_dp);
 }
 

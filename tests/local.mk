@@ -10,6 +10,7 @@ suites = \
 	tests/check_portable \
 	tests/check_body \
 	tests/check_lanes \
+	tests/check_one_orbit \
 	tests/check_probe \
 	tests/check_tape \
 	tests/check_tape_build \

@@ -29,6 +29,7 @@ void nevh_field_free(nevh_field *f) {
         free(f->terms[i].delta);
         free(f->terms[i].steps);
         free(f->terms[i].vars);
+        free(f->terms[i].constants);
         nevh__stencil_free(&f->terms[i]);
     }
     free(f->terms);
@@ -65,15 +66,23 @@ static bool reads(const nevh__planned *term, bool q, bool p) {
 int nevh_field_gradient(nevh_field *f, size_t width, const double t[],
                         const double q[], const double p[], double dh_dq[],
                         double dh_dp[]) {
+    return nevh__field_gradient(f, width, width, t, q, p, dh_dq, dh_dp);
+}
+
+int nevh__field_gradient(nevh_field *f, size_t width, size_t used,
+                         const double t[], const double q[], const double p[],
+                         double dh_dq[], double dh_dp[]) {
     int status = nevh__field_ready(f);
     if (status)
         return status;
+    if (dh_dq)
+        f->gradients += used;
+    if (nevh__gradient_lean(f, width, t, q, p, dh_dq, dh_dp))
+        return NEVH_OK;
     for (size_t i = 0; dh_dq && i < f->n * width; i++)
         dh_dq[i] = 0;
     for (size_t i = 0; dh_dp && i < f->n * width; i++)
         dh_dp[i] = 0;
-    if (dh_dq)
-        f->gradients += width;
     for (size_t i = 0; !status && i < f->n_terms; i++)
         if (reads(&f->terms[i], dh_dq, dh_dp))
             status = f->gradient->evaluate(f, &f->terms[i], width, t, q, p,

@@ -54,6 +54,10 @@ typedef struct {
     nevh__pass pass[2]; /* full order; order 2 */
     nevh__stencil stencil[2][3];
     uint64_t values;
+    /* Of exact gradients; see lean.c. */
+    bool straight_q, straight_p, straight;
+    double *constants; /* rows of a block of all instances and so many lanes */
+    size_t constants_width;
 } nevh__planned;
 
 /* Adds a term's gradient to dh_dq and dh_dp, n x width each; either may be
@@ -94,6 +98,10 @@ struct nevh_field {
     double *one;       /* one state of a scalar or complex term */
     double *jacobian;  /* 6n, made by nevh_gsl_system */
     uint64_t gradients;
+    size_t most_instances;                    /* of a term; these: lean.c */
+    const nevh__planned *writer_q, *writer_p; /* write all rows, and first */
+    nevh__planned *sole_q, *sole_p;           /* and alone */
+    bool repeats; /* one state may as well be repeated over a vector */
     nevh__report report;
 };
 
@@ -175,6 +183,36 @@ int nevh__gradient_exact(nevh_field *, nevh__planned *, size_t width,
 int nevh__gradient_complex(nevh_field *, nevh__planned *, size_t width,
                            const double t[], const double q[], const double p[],
                            double dh_dq[], double dh_dp[]);
+
+/* Exact gradients of all terms, if each fits into one block and all are finite;
+   else false.  What they need is made when planning: false when memory is
+   out. */
+bool nevh__gradient_lean(nevh_field *, size_t width, const double t[],
+                         const double q[], const double p[], double dh_dq[],
+                         double dh_dp[]);
+bool nevh__lean_plan(nevh_field *);
+/* Half a gradient that is one call of one term, for a kernel that takes it many
+   times at the same place in memory. */
+typedef struct {
+    nevh_block_gradient_fn gradient; /* NULL: it is no such call */
+    nevh_field *field;
+    size_t stride, size; /* size: numbers of the result */
+    bool coordinates;
+    const double *t, *q, *p, *c;
+    const void *params;
+    double *dh_dq, *dh_dp, *out;
+} nevh__call;
+/* One of dh_dq and dh_dp is NULL. */
+nevh__call nevh__lean_call(nevh_field *, size_t width, const double t[],
+                           const double q[], const double p[], double dh_dq[],
+                           double dh_dp[]);
+/* Whether all is finite, or where one lane is used, that one; then as many
+   lanes count.  Where not, nevh__field_gradient tells why. */
+bool nevh__lean_take(const nevh__call *, size_t used);
+/* nevh_field_gradient, of which `used` lanes count. */
+int nevh__field_gradient(nevh_field *, size_t width, size_t used,
+                         const double t[], const double q[], const double p[],
+                         double dh_dq[], double dh_dp[]);
 
 /* Stencils: planned (false when memory is out), freed, chosen (NULL if there
    is none), and put to use. */

@@ -77,12 +77,6 @@ static size_t block_columns(size_t reads) {
     return fit > NEVH__FEWEST_COLUMNS ? fit : NEVH__FEWEST_COLUMNS;
 }
 
-/* The next address at which a vector of eight lies within a cache line. */
-static double *aligned(double *from) {
-    const uintptr_t line = NEVH__LANES * sizeof *from;
-    return from + (line - (uintptr_t)from % line) % line / sizeof *from;
-}
-
 static int plan_workspace(nevh_field *f) {
     size_t variables = 0, reads = 0;
     for (size_t i = 0; i < f->n_terms; i++) {
@@ -97,13 +91,15 @@ static int plan_workspace(nevh_field *f) {
                                sizeof *f->workspace);
     if (!f->workspace)
         return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
-    f->rows = aligned(f->workspace);
+    f->rows = nevh__aligned(f->workspace);
     f->slopes = f->rows + reads * columns;
     f->times = f->slopes + variables * columns;
     f->zeros = f->times + columns;
     f->h = f->zeros + columns;
     f->sums = f->h + columns;
     f->one = f->sums + 2 * columns;
+    if (f->gradient == nevh_exact && !nevh__lean_plan(f))
+        return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
     return NEVH_OK;
 }
 

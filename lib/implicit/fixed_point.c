@@ -37,15 +37,17 @@ nevh__stage_solver *nevh__stage_solver_new(nevh_work *w,
     s->first = shape->partitioned ? w->n : 0;
     s->rows = (2 * w->n - s->first) * s->stages;
     s->scale = nevh__array(2 * w->size, sizeof *s->scale);
-    s->out = nevh__array(s->rows * w->width, sizeof *s->out);
-    s->least = nevh__array(s->rows * w->width, sizeof *s->least);
+    size_t unknowns = nevh__padded(s->rows * w->width);
+    s->room = nevh__array(2 * unknowns + NEVH__LANES, sizeof *s->room);
+    s->out = s->room ? nevh__aligned(s->room) : NULL;
+    s->least = s->room ? s->out + unknowns : NULL;
     s->noise = nevh__array(4 * w->n, sizeof *s->noise);
     s->lanes = nevh__array(w->width, sizeof *s->lanes);
     s->lane = nevh__array(w->width, sizeof *s->lane);
     bool large = 2 * w->n * s->stages > MOST_DENSE;
     s->newton = large ? NULL : nevh__newton_new(s);
     s->rescue = large ? NULL : nevh__rescue_new(s);
-    if (s->scale && s->out && s->least && s->noise && s->lanes && s->lane &&
+    if (s->scale && s->room && s->noise && s->lanes && s->lane &&
         (large || (s->newton && s->rescue)))
         return s;
     nevh__stage_solver_free(s);
@@ -58,8 +60,7 @@ void nevh__stage_solver_free(nevh__stage_solver *s) {
     nevh__newton_free(s->newton);
     nevh__rescue_free(s->rescue);
     free(s->scale);
-    free(s->out);
-    free(s->least);
+    free(s->room);
     free(s->noise);
     free(s->lanes);
     free(s->lane);

@@ -14,6 +14,12 @@ static inline size_t nevh__padded(size_t width) {
     return (width + NEVH__LANES - 1) / NEVH__LANES * NEVH__LANES;
 }
 
+/* The next address at which a vector of eight lies within a cache line. */
+static inline double *nevh__aligned(double *from) {
+    const uintptr_t line = NEVH__LANES * sizeof *from;
+    return from + (line - (uintptr_t)from % line) % line / sizeof *from;
+}
+
 /* Between -1 and 1, the same on every run. */
 static inline double nevh__random(uint64_t *state) {
     *state = *state * 6364136223846793005u + 1442695040888963407u;

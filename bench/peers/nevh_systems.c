@@ -1,0 +1,162 @@
+/* nevh: the problems as a user of nevh would state them.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "nevh_systems.h"
+#include <nevh/body.h>
+
+enum { PAIRS = BODIES * (BODIES - 1) / 2 };
+
+NEVH_BODY(kinetic, void, { return nevh_p(0) * nevh_p(0) / (2 * nevh_c(0)); })
+
+NEVH_SIMD
+static void kinetic_gradient(size_t width, const double t[], const double q[],
+                             const double p[], const double c[],
+                             const void *params, double dh_dq[],
+                             double dh_dp[]) {
+    (void)t, (void)q, (void)params, (void)dh_dq;
+    if (!dh_dp)
+        return;
+    NEVH_LANES(i, width) {
+        dh_dp[i] = p[i] / c[i];
+    }
+}
+
+NEVH_BODY(attraction, void, {
+    return -1 / nevh_sqrt(nevh_q(0) * nevh_q(0) + nevh_q(1) * nevh_q(1));
+})
+
+NEVH_SIMD
+static void attraction_gradient(size_t width, const double t[],
+                                const double q[], const double p[],
+                                const double c[], const void *params,
+                                double dh_dq[], double dh_dp[]) {
+    (void)t, (void)p, (void)c, (void)params, (void)dh_dp;
+    const double *y = q + width;
+    if (!dh_dq)
+        return;
+    NEVH_LANES(i, width) {
+        double square = q[i] * q[i] + y[i] * y[i];
+        double factor = 1 / (square * nevh_simd_sqrt(square));
+        dh_dq[i] = factor * q[i];
+        dh_dq[width + i] = factor * y[i];
+    }
+}
+
+NEVH_BODY(galaxy, void, {
+    nevh_num x = nevh_q(0), y = nevh_q(1);
+    return (x * x + y * y) / 2 + x * x * y - y * y * y / 3;
+})
+
+NEVH_SIMD
+static void galaxy_gradient(size_t width, const double t[], const double q[],
+                            const double p[], const double c[],
+                            const void *params, double dh_dq[],
+                            double dh_dp[]) {
+    (void)t, (void)p, (void)c, (void)params, (void)dh_dp;
+    const double *y = q + width;
+    if (!dh_dq)
+        return;
+    NEVH_LANES(i, width) {
+        dh_dq[i] = q[i] + 2 * q[i] * y[i];
+        dh_dq[width + i] = y[i] + q[i] * q[i] - y[i] * y[i];
+    }
+}
+
+/* Two bodies; c: G m m'. */
+NEVH_BODY(gravity, void, {
+    nevh_num x = nevh_q(3) - nevh_q(0);
+    nevh_num y = nevh_q(4) - nevh_q(1);
+    nevh_num z = nevh_q(5) - nevh_q(2);
+    return -nevh_c(0) / nevh_sqrt(x * x + y * y + z * z);
+})
+
+NEVH_SIMD
+static void gravity_gradient(size_t width, const double t[], const double q[],
+                             const double p[], const double c[],
+                             const void *params, double dh_dq[],
+                             double dh_dp[]) {
+    (void)t, (void)p, (void)params, (void)dh_dp;
+    const double *q1 = q + width, *q2 = q1 + width, *q3 = q2 + width,
+                 *q4 = q3 + width, *q5 = q4 + width;
+    double *d1 = dh_dq + width, *d2 = d1 + width, *d3 = d2 + width,
+           *d4 = d3 + width, *d5 = d4 + width;
+    if (!dh_dq)
+        return;
+    NEVH_LANES(i, width) {
+        double x = q3[i] - q[i], y = q4[i] - q1[i], z = q5[i] - q2[i];
+        double square = x * x + y * y + z * z;
+        double factor = c[i] / (square * nevh_simd_sqrt(square));
+        d3[i] = factor * x;
+        d4[i] = factor * y;
+        d5[i] = factor * z;
+        dh_dq[i] = -d3[i];
+        d1[i] = -d4[i];
+        d2[i] = -d5[i];
+    }
+}
+
+static void add_kinetic(nevh_system *s, size_t n, const double masses[]) {
+    size_t all[MOST_N];
+    for (size_t k = 0; k < n; k++)
+        all[k] = k;
+    nevh_system_add(s, &(nevh_term){.effect = "kinetic",
+                                    .np = 1,
+                                    .nc = 1,
+                                    .p = all,
+                                    .c = masses,
+                                    .count = n,
+                                    NEVH_FORMS(kinetic),
+                                    .gradient = kinetic_gradient});
+}
+
+static nevh_system *planar(nevh_term potential) {
+    nevh_system *s = nevh_system_new(2);
+    potential.effect = "potential";
+    potential.nq = 2;
+    add_kinetic(s, 2, (const double[]){1, 1});
+    nevh_system_add(s, &potential);
+    return s;
+}
+
+static nevh_system *outer_sun(void) {
+    nevh_system *s = nevh_system_new(MOST_N);
+    double masses[MOST_N], c[PAIRS];
+    size_t q[6 * PAIRS], pair = 0;
+    for (size_t i = 0; i < BODIES; i++)
+        for (size_t j = i + 1; j < BODIES; j++, pair++) {
+            c[pair] = sun_gravity * sun_masses[i] * sun_masses[j];
+            for (size_t k = 0; k < 3; k++) {
+                q[6 * pair + k] = 3 * i + k;
+                q[6 * pair + 3 + k] = 3 * j + k;
+            }
+        }
+    for (size_t k = 0; k < MOST_N; k++)
+        masses[k] = sun_masses[k / 3];
+    add_kinetic(s, MOST_N, masses);
+    nevh_system_add(s, &(nevh_term){.effect = "gravity",
+                                    .nq = 6,
+                                    .nc = 1,
+                                    .q = q,
+                                    .c = c,
+                                    .count = PAIRS,
+                                    NEVH_FORMS(gravity),
+                                    .gradient = gravity_gradient});
+    return s;
+}
+
+nevh_system *nevh_system_of(const problem *p) {
+    switch (p - problems) {
+    case PENDULUM:
+        return nevh_pendulum_model->system(&(nevh_pendulum){1, 1, 1});
+    case DOUBLE_PENDULUM:
+        return nevh_double_pendulum_model->system(
+            nevh_double_pendulum_model->defaults);
+    case KEPLER:
+        return planar((nevh_term){NEVH_FORMS(attraction),
+                                  .gradient = attraction_gradient});
+    case HENON_HEILES:
+        return planar(
+            (nevh_term){NEVH_FORMS(galaxy), .gradient = galaxy_gradient});
+    default:
+        return outer_sun();
+    }
+}

@@ -1,0 +1,438 @@
+/* nevh: exact gradients where each term fits into one block, as it does in
+   small systems.
+
+   Constants lie ready.  Where a term's rows stand in the caller's arrays just
+   as a block wants them, they are read in place, and where it is the first of
+   the terms to write them, and writes all, they are written in place.  All
+   else is as in exact.c, operation by operation: the same bits.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradient/field_private.h"
+#include <nevh/body.h>
+#include <string.h>
+
+/* Instances that a state repeated over a vector may have: more of them cost
+   more than to collect one vector of instances. */
+enum { MOST_REPEATED = 2, MOST_ROWS = 8 };
+
+/* Whether variable k of instance i is number i + k: one row after another, in
+   a block of one instance or of one variable. */
+static bool straight(const size_t index[], size_t variables, size_t count) {
+    if (variables != 1 && count != 1)
+        return false;
+    for (size_t i = 0; i < variables * count; i++)
+        if (index[i] != index[0] + i)
+            return false;
+    return variables > 0;
+}
+
+/* The first term that reads some coordinate, or momentum, if it reads all of
+   them straight; NULL: there is none. */
+static const nevh__planned *writer(const nevh_field *f, bool momenta) {
+    for (size_t i = 0; i < f->n_terms; i++) {
+        const nevh__planned *term = &f->terms[i];
+        size_t all = (momenta ? term->np : term->nq) * term->term->is.count;
+        if (all == 0)
+            continue;
+        bool whole = momenta ? term->straight_p : term->straight_q;
+        return whole && all == f->n ? term : NULL;
+    }
+    return NULL;
+}
+
+/* The writer, if no other term reads a coordinate, or momentum. */
+static nevh__planned *sole(nevh_field *f, bool momenta) {
+    nevh__planned *found = NULL;
+    for (nevh__planned *term = f->terms; term < f->terms + f->n_terms; term++) {
+        if (!(momenta ? term->np : term->nq))
+            continue;
+        if (found || !term->straight)
+            return NULL;
+        found = term;
+    }
+    return found == (momenta ? f->writer_p : f->writer_q) ? found : NULL;
+}
+
+bool nevh__lean_plan(nevh_field *f) {
+    bool repeats = true;
+    f->most_instances = 0;
+    for (size_t i = 0; i < f->n_terms; i++) {
+        nevh__planned *term = &f->terms[i];
+        const nevh_term *is = &term->term->is;
+        term->straight_q = straight(is->q, term->nq, is->count);
+        term->straight_p = straight(is->p, term->np, is->count);
+        term->straight =
+            (term->straight_q || !term->nq) && (term->straight_p || !term->np);
+        if (is->count > f->most_instances)
+            f->most_instances = is->count;
+        repeats &= is->count <= MOST_REPEATED && term->straight;
+        if (is->nc && !(term->constants =
+                            nevh__array(is->nc * f->capacity, sizeof(double))))
+            return false;
+    }
+    f->repeats = repeats && f->n <= MOST_ROWS;
+    f->writer_q = writer(f, false);
+    f->writer_p = writer(f, true);
+    f->sole_q = sole(f, false);
+    f->sole_p = sole(f, true);
+    return true;
+}
+
+/* Instances side by side, each with its lanes, in rows of `stride`; padding
+   repeats column 0. */
+NEVH_SIMD static void collect(size_t rows, size_t count, size_t width,
+                              size_t stride, const size_t index[],
+                              const double from[], double to[]) {
+    for (size_t k = 0; k < rows; k++, to += stride) {
+        double *column = to;
+        for (size_t i = 0; i < count; i++, column += width) {
+            const double *x = from + index[i * rows + k] * width;
+            for (size_t lane = 0; lane < width; lane++)
+                column[lane] = x[lane];
+        }
+        for (; column < to + stride; column++)
+            *column = *to;
+    }
+}
+
+/* The same for whole vectors of lanes. */
+NEVH_SIMD static void collect_vectors(size_t rows, size_t count, size_t width,
+                                      const size_t index[], const double from[],
+                                      double to[]) {
+    for (size_t k = 0; k < rows; k++)
+        for (size_t i = 0; i < count; i++, to += width) {
+            const double *x = from + index[i * rows + k] * width;
+            NEVH_LANES(lane, width) {
+                to[lane] = x[lane];
+            }
+        }
+}
+
+/* The same for one instance and lane: a number fills a vector. */
+NEVH_SIMD static void repeat(size_t rows, const size_t index[],
+                             const double from[], double to[]) {
+    for (size_t k = 0; k < rows; k++, to += NEVH__LANES) {
+        double x = from[index[k]];
+        NEVH_LANES(lane, NEVH__LANES) {
+            to[lane] = x;
+        }
+    }
+}
+
+static void fill(size_t rows, size_t count, size_t width, size_t stride,
+                 const size_t index[], const double from[], double to[]) {
+    if (width % NEVH__LANES == 0)
+        collect_vectors(rows, count, width, index, from, to);
+    else if (count * width == 1)
+        repeat(rows, index, from, to);
+    else
+        collect(rows, count, width, stride, index, from, to);
+}
+
+/* Adds slopes to what they belong to; whether one is not finite. */
+NEVH_SIMD static bool scatter(size_t rows, size_t count, size_t width,
+                              size_t stride, const size_t index[],
+                              const double from[], double out[]) {
+    int64_t bad = 0;
+    for (size_t k = 0; k < rows; k++)
+        for (size_t i = 0; i < count; i++) {
+            double *to = out + index[i * rows + k] * width;
+            const double *x = from + k * stride + i * width;
+            for (size_t lane = 0; lane < width; lane++) {
+                to[lane] += x[lane];
+                bad |= x[lane] - x[lane] != 0;
+            }
+        }
+    return bad != 0;
+}
+
+NEVH_SIMD static bool scatter_vectors(size_t rows, size_t count, size_t width,
+                                      const size_t index[], const double from[],
+                                      double out[]) {
+    int64_t bad = 0;
+    for (size_t k = 0; k < rows; k++)
+        for (size_t i = 0; i < count; i++, from += width) {
+            double *to = out + index[i * rows + k] * width;
+            NEVH_LANES(lane, width) {
+                to[lane] += from[lane];
+                bad |= from[lane] - from[lane] != 0;
+            }
+        }
+    return bad != 0;
+}
+
+/* 1: a number is not finite; 2: one is -0; or both. */
+NEVH_SIMD static int64_t check(size_t size, const double x[]) {
+    int64_t found[NEVH__LANES], all = 0;
+    NEVH_LANES(lane, NEVH__LANES) {
+        found[lane] = 0;
+    }
+    for (size_t i = 0; i < size; i += NEVH__LANES)
+        NEVH_LANES(lane, NEVH__LANES) {
+            int64_t bits;
+            memcpy(&bits, &x[i + lane], sizeof bits);
+            found[lane] |= x[i + lane] - x[i + lane] != 0 ? 1 : 0;
+            found[lane] |= bits == INT64_MIN ? 2 : 0;
+        }
+    NEVH_LANES(lane, NEVH__LANES) {
+        all |= found[lane];
+    }
+    return all;
+}
+
+NEVH_SIMD static bool all_finite(size_t size, const double x[]) {
+    int64_t found[NEVH__LANES], all = 0;
+    NEVH_LANES(lane, NEVH__LANES) {
+        found[lane] = 0;
+    }
+    for (size_t i = 0; i < size; i += NEVH__LANES)
+        NEVH_LANES(lane, NEVH__LANES) {
+            double zero = x[i + lane] - x[i + lane];
+            int64_t bits;
+            memcpy(&bits, &zero, sizeof bits);
+            found[lane] |= bits;
+        }
+    NEVH_LANES(lane, NEVH__LANES) {
+        all |= found[lane];
+    }
+    return all == 0;
+}
+
+/* Slopes that were written in place, as if added to 0. */
+static bool settle(size_t size, double out[]) {
+    int64_t found = check(size, out);
+    for (size_t i = 0; found & 2 && i < size; i++)
+        out[i] += 0;
+    return found & 1;
+}
+
+static void fill_constants(nevh__planned *term, size_t width, size_t stride) {
+    const nevh_term *is = &term->term->is;
+    for (size_t k = 0; k < is->nc; k++)
+        for (size_t i = 0; i < stride; i++) {
+            size_t instance = i < is->count * width ? i / width : 0;
+            term->constants[k * stride + i] = is->c[instance * is->nc + k];
+        }
+    term->constants_width = width;
+}
+
+static inline const double *constants(nevh__planned *term, size_t width,
+                                      size_t stride) {
+    if (term->constants_width != width)
+        fill_constants(term, width, stride);
+    return term->constants;
+}
+
+/* The gradient under way. */
+typedef struct {
+    size_t width;
+    bool vectors;  /* lanes fill them */
+    bool trusting; /* results are looked at later */
+    const double *t, *q, *p;
+    double *dh_dq, *dh_dp;
+} request;
+
+static const double *times(nevh_field *f, const nevh_term *is, const request *r,
+                           size_t stride) {
+    static const size_t zeros[MOST_REPEATED] = {0};
+    if (!is->time)
+        return f->zeros;
+    if (r->vectors && is->count == 1)
+        return r->t;
+    if (is->count <= MOST_REPEATED)
+        fill(1, is->count, r->width, stride, zeros, r->t, f->times);
+    else
+        for (size_t i = 0; i < stride; i++)
+            f->times[i] = r->t[i < is->count * r->width ? i % r->width : 0];
+    return f->times;
+}
+
+static const double *rows(const request *r, const nevh_term *is,
+                          size_t variables, bool in_place, size_t stride,
+                          const size_t index[], const double from[],
+                          double to[]) {
+    if (in_place && r->vectors)
+        return from + index[0] * r->width;
+    fill(variables, is->count, r->width, stride, index, from, to);
+    return to;
+}
+
+static bool add(const request *r, const nevh_term *is, size_t variables,
+                size_t stride, const size_t index[], const double from[],
+                double out[]) {
+    if (from == out && r->trusting)
+        return false;
+    if (from == out)
+        return settle(is->count * variables * r->width, out);
+    if (r->vectors)
+        return scatter_vectors(variables, is->count, r->width, index, from,
+                               out);
+    return scatter(variables, is->count, r->width, stride, index, from, out);
+}
+
+/* A term whose rows all stand in place. */
+static inline bool evaluate_in_place(nevh_field *f, nevh__planned *term,
+                                     const request *r) {
+    const nevh_term *is = &term->term->is;
+    size_t stride = is->count * r->width;
+    double *out_q = f->slopes, *out_p = f->slopes + term->nq * stride;
+    const double *q = r->q, *p = r->p, *t = f->zeros;
+    if (term->nq)
+        q += is->q[0] * r->width;
+    if (term->np)
+        p += is->p[0] * r->width;
+    if (term == f->writer_q)
+        out_q = r->dh_dq;
+    if (term == f->writer_p)
+        out_p = r->dh_dp;
+    if (is->time)
+        t = times(f, is, r, stride);
+    is->gradient(stride, t, q, p, constants(term, r->width, stride), is->params,
+                 r->dh_dq ? out_q : NULL, r->dh_dp ? out_p : NULL);
+    bool bad = false;
+    if (r->dh_dq && term->nq)
+        bad |= add(r, is, term->nq, stride, is->q, out_q, r->dh_dq);
+    if (r->dh_dp && term->np)
+        bad |= add(r, is, term->np, stride, is->p, out_p, r->dh_dp);
+    return bad;
+}
+
+/* The only term of a half, to it; whether all is finite. */
+static inline bool write(nevh_field *f, nevh__planned *term, const request *r,
+                         size_t variables, double *out) {
+    const nevh_term *is = &term->term->is;
+    size_t stride = is->count * r->width;
+    is->gradient(stride, is->time ? times(f, is, r, stride) : f->zeros,
+                 term->nq ? r->q + is->q[0] * r->width : r->q,
+                 term->np ? r->p + is->p[0] * r->width : r->p,
+                 constants(term, r->width, stride), is->params, r->dh_dq,
+                 r->dh_dp);
+    return !settle(variables * stride, out);
+}
+
+static bool evaluate(nevh_field *f, nevh__planned *term, const request *r) {
+    const nevh_term *is = &term->term->is;
+    size_t stride = nevh__padded(is->count * r->width);
+    double *to_p = f->rows + term->nq * stride;
+    double *slopes_q = f->slopes, *slopes_p = f->slopes + term->nq * stride;
+    const double *q =
+        rows(r, is, term->nq, term->straight_q, stride, is->q, r->q, f->rows);
+    const double *p =
+        rows(r, is, term->np, term->straight_p, stride, is->p, r->p, to_p);
+    if (r->vectors && term == f->writer_q && r->dh_dq)
+        slopes_q = r->dh_dq;
+    if (r->vectors && term == f->writer_p && r->dh_dp)
+        slopes_p = r->dh_dp;
+    is->gradient(stride, times(f, is, r, stride), q, p,
+                 constants(term, r->width, stride), is->params,
+                 r->dh_dq ? slopes_q : NULL, r->dh_dp ? slopes_p : NULL);
+    bool bad = false;
+    if (r->dh_dq && term->nq)
+        bad |= add(r, is, term->nq, stride, is->q, slopes_q, r->dh_dq);
+    if (r->dh_dp && term->np)
+        bad |= add(r, is, term->np, stride, is->p, slopes_p, r->dh_dp);
+    return bad;
+}
+
+static bool evaluate_all(nevh_field *f, const request *r) {
+    size_t size = f->n * r->width * sizeof *r->q;
+    bool bad = false;
+    if (r->dh_dq && !(r->vectors && f->writer_q))
+        memset(r->dh_dq, 0, size);
+    if (r->dh_dp && !(r->vectors && f->writer_p))
+        memset(r->dh_dp, 0, size);
+    for (nevh__planned *term = f->terms; term < f->terms + f->n_terms; term++)
+        if ((r->dh_dq && term->nq) || (r->dh_dp && term->np))
+            bad |= r->vectors && term->straight ? evaluate_in_place(f, term, r)
+                                                : evaluate(f, term, r);
+    return !bad;
+}
+
+/* n numbers, each in the first lane of its row. */
+static bool take_first(size_t n, const double *row, double *out) {
+    double sum = 0;
+    for (size_t k = 0; k < n; k++, row += NEVH__LANES) {
+        out[k] = 0 + *row;
+        sum += *row - *row;
+    }
+    return sum == 0;
+}
+
+/* One state, repeated over a vector. */
+static bool evaluate_repeated(nevh_field *f, const double *t, const double q[],
+                              const double p[], double dh_dq[],
+                              double dh_dp[]) {
+    enum { SIZE = MOST_ROWS * NEVH__LANES };
+    _Alignas(NEVH__LANES * sizeof(double)) double all[4 * SIZE + NEVH__LANES];
+    double *half[] = {all, all + SIZE, all + 2 * SIZE, all + 3 * SIZE};
+    double *time = all + 4 * SIZE;
+    request r = {.width = NEVH__LANES,
+                 .vectors = true,
+                 .trusting = true,
+                 .t = time,
+                 .q = half[0],
+                 .p = half[1],
+                 .dh_dq = dh_dq ? half[2] : NULL,
+                 .dh_dp = dh_dp ? half[3] : NULL};
+    static const size_t indices[] = {0, 1, 2, 3, 4, 5, 6, 7};
+    repeat(f->n, indices, q, half[0]);
+    repeat(f->n, indices, p, half[1]);
+    repeat(1, indices, t, time);
+    return evaluate_all(f, &r) &&
+           (!dh_dq || take_first(f->n, half[2], dh_dq)) &&
+           (!dh_dp || take_first(f->n, half[3], dh_dp));
+}
+
+bool nevh__gradient_lean(nevh_field *f, size_t width, const double t[],
+                         const double q[], const double p[], double dh_dq[],
+                         double dh_dp[]) {
+    request r = {width, width % NEVH__LANES == 0, false, t, q, p, dh_dq, dh_dp};
+    if (f->gradient != nevh_exact || f->most_instances * width > f->capacity)
+        return false;
+    if (width == 1 && f->repeats)
+        return evaluate_repeated(f, t, q, p, dh_dq, dh_dp);
+    if (r.vectors && !dh_dp && f->sole_q)
+        return write(f, f->sole_q, &r, f->sole_q->nq, dh_dq);
+    if (r.vectors && !dh_dq && f->sole_p)
+        return write(f, f->sole_p, &r, f->sole_p->np, dh_dp);
+    return evaluate_all(f, &r);
+}
+
+nevh__call nevh__lean_call(nevh_field *f, size_t width, const double t[],
+                           const double q[], const double p[], double dh_dq[],
+                           double dh_dp[]) {
+    nevh__planned *term = dh_dq ? f->sole_q : f->sole_p;
+    if (f->gradient != nevh_exact || nevh__field_ready(f) || !term ||
+        width % NEVH__LANES || f->most_instances * width > f->capacity ||
+        (term->term->is.time && term->term->is.count > 1))
+        return (nevh__call){0};
+    const nevh_term *is = &term->term->is;
+    size_t stride = is->count * width;
+    return (nevh__call){
+        .gradient = is->gradient,
+        .field = f,
+        .stride = stride,
+        .size = stride * (dh_dq ? term->nq : term->np),
+        .coordinates = dh_dq,
+        .t = is->time ? t : f->zeros,
+        .q = term->nq ? q + is->q[0] * width : q,
+        .p = term->np ? p + is->p[0] * width : p,
+        .c = constants(term, width, stride),
+        .params = is->params,
+        .dh_dq = dh_dq,
+        .dh_dp = dh_dp,
+        .out = dh_dq ? dh_dq : dh_dp,
+    };
+}
+
+bool nevh__lean_take(const nevh__call *c, size_t used) {
+    double sum = 0;
+    c->gradient(c->stride, c->t, c->q, c->p, c->c, c->params, c->dh_dq,
+                c->dh_dp);
+    for (size_t i = 0; used == 1 && i < c->size; i += NEVH__LANES)
+        sum += c->out[i] - c->out[i];
+    if (sum != 0 || (used > 1 && !all_finite(c->size, c->out)))
+        return false;
+    if (c->coordinates)
+        c->field->gradients += used;
+    return true;
+}
