@@ -212,6 +212,31 @@ static void find_over_lanes(nevh__explorer *e, double *energy) {
     e->at = 0;
 }
 
+/* An instance's share in the curvatures of the variables it reads. */
+static void add_curvatures(const nevh__explorer *e, const nevh__planned *term,
+                           size_t instance, double curvature[]) {
+    double curved = 0;
+    for (size_t k = 0; k < term->nv; k++) {
+        size_t i = nevh__index(term, instance, k);
+        i = k < term->nq ? i : e->field->n + i;
+        double length = e->length[i];
+        if (nevh__probed(term, k) == k)
+            curved =
+                vary(e, term, instance, k, length).whole / (length * length);
+        if (isfinite(curved))
+            curvature[i] = fmax(curvature[i], curved);
+    }
+}
+
+void nevh__find_curvatures(nevh__explorer *e, double curvature[]) {
+    const nevh_field *f = e->field;
+    for (e->at = 0; e->at < e->samples.count; e->at++)
+        for (size_t j = 0; j < f->n_terms; j++)
+            for (size_t i = 0; i < f->terms[j].term->is.count; i++)
+                add_curvatures(e, &f->terms[j], i, curvature);
+    e->at = 0;
+}
+
 void nevh__find_lengths(nevh__explorer *e) {
     double energy = 0, last = 1;
     find_over_lanes(e, &energy);
