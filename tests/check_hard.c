@@ -314,6 +314,53 @@ START_TEST(light_bodies_keep_their_orbits) {
 }
 END_TEST
 
+/* The pendulum of modulus 2 after half a turn or so. */
+static orbit go_round(const nevh_integrator *scheme, const char *turns) {
+    nevh_scene *scene = read_scene("tests/hard", "pendulum-modulus");
+    ck_assert_int_eq(nevh_scene_set(scene, "k = 2"), NEVH_OK);
+    ck_assert_int_eq(nevh_scene_set(scene, turns), NEVH_OK);
+    orbit o = begin(scene, scheme);
+    ck_assert_int_eq(nevh_run(o.stepper, 0, 0.025, 40, o.q, o.p, NULL, 0),
+                     NEVH_OK);
+    end(&o);
+    return o;
+}
+
+/* Where angles are counted from changes nothing but their rounding, which is
+   4.7e-10 after a million turns. */
+START_TEST(turns_do_not_matter) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    if (nevh_integrator_needs_tolerance(scheme))
+        return; /* relative to the angle */
+    orbit here = go_round(scheme, "turns = 0");
+    for (int far = 0; far < 2; far++) {
+        double turns = far ? 1e9 : 1e6, rounding = turns * 0x1p-50;
+        orbit there = go_round(scheme, far ? "turns = 1e9" : "turns = 1e6");
+        double turned = there.q[0] - 2 * pi * turns;
+        ck_assert_msg(fabs(turned - here.q[0]) <= 200 * rounding &&
+                          fabs(there.p[0] - here.p[0]) <= 200 * rounding,
+                      "%s: after %g turns q is off by %.2g, p by %.2g",
+                      nevh_integrator_name(scheme), turns, turned - here.q[0],
+                      there.p[0] - here.p[0]);
+    }
+}
+END_TEST
+
+/* Steps of a turn need Newton's iteration, whose differences of angles must not
+   be as large as these are. */
+START_TEST(newton_after_many_turns) {
+    const nevh_integrator *schemes[] = {nevh_gauss4, nevh_lobatto4};
+    nevh_scene *scene = read_scene("tests/hard", "pendulum-modulus");
+    ck_assert_int_eq(nevh_scene_set(scene, "k = 2"), NEVH_OK);
+    ck_assert_int_eq(nevh_scene_set(scene, "turns = 1e6"), NEVH_OK);
+    orbit o = begin(scene, schemes[_i]);
+    ck_assert_msg(!nevh_run(o.stepper, 0, 2, 200, o.q, o.p, NULL, 0), "%s",
+                  nevh_stepper_message(o.stepper));
+    ck_assert_uint_gt(nevh_stepper_counts(o.stepper).newtons, 0);
+    end(&o);
+}
+END_TEST
+
 int main(void) {
     Suite *s = suite_create("hard");
     TCase *cases = tcase_create("hard"), *slow = tcase_create("long");
@@ -324,6 +371,8 @@ int main(void) {
     tcase_add_test(cases, comets_keep_their_momentum);
     tcase_add_loop_test(cases, light_bodies_keep_their_orbits, 0,
                         scheme_count());
+    tcase_add_loop_test(cases, turns_do_not_matter, 0, scheme_count());
+    tcase_add_loop_test(cases, newton_after_many_turns, 0, 2);
     suite_add_tcase(s, cases);
     tcase_set_tags(slow, "slow");
     tcase_add_test(slow, the_eight_stays);
