@@ -70,8 +70,7 @@ static void divide(const nevh_work *w, plan_data *d) {
     d->pair_slopes = at + 4 * w->n;
 }
 
-/* Not w->scale, which for an angle that goes round and round is how far it
-   went. */
+/* Not w->scale, which is the size of the orbit where that is less. */
 static int plan_units(nevh_work *w) {
     plan_data *d = w->plan;
     double *length = nevh__array(2 * w->n, sizeof *length);

@@ -19,7 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The fourth power of a |dz|, in units of length, so short that dz has no
+/* The fourth power of a |dz|, in units of the metric, so short that dz has no
    direction. */
 static const double nowhere = 0x1p-136;
 /* Defects of the energy up to so many roundings of H are tolerated, for no
@@ -67,15 +67,38 @@ static void unplan(nevh_work *w) {
     w->plan = NULL;
 }
 
-/* The metric of what a term reads. */
-static void measure(const nevh_work *w, const nevh__planned *term) {
+/* The metric of what a term reads; curved[k]: of H, and `energy` is what H
+   varies by, at most. */
+static void measure(const nevh_work *w, const nevh__planned *term,
+                    double energy, const double curved[]) {
     const gradient_plan *g = w->plan;
     for (size_t at = 0; at < term->term->is.count * term->nv; at++) {
         size_t v = at % term->nv;
         size_t k =
             nevh__index(term, at / term->nv, v) + (v < term->nq ? 0 : w->n);
-        g->metric[k] = 1 / g->length[k];
+        g->metric[k] = curved[k] > 0 ? sqrt(curved[k]) / sqrt(energy)
+                                     : 1 / g->length[k];
     }
+}
+
+/* In units of the lengths alone, light bodies would get a part of the energy
+   that heavy ones lack. */
+static int plan_metric(nevh_work *w) {
+    const gradient_plan *g = w->plan;
+    double energy = 0, *curved = nevh__array(2 * w->n, sizeof *curved);
+    if (!curved)
+        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
+    int status = nevh__field_lengths(w->field, w->options, g->length);
+    if (!status)
+        status = nevh__field_curvatures(w->field, w->options, curved);
+    for (size_t k = 0; k < 2 * w->n; k++)
+        energy = fmax(energy, curved[k] * g->length[k] * g->length[k]);
+    for (size_t i = 0; !status && i < w->field->n_terms; i++)
+        measure(w, &w->field->terms[i], energy, curved);
+    free(curved);
+    return status
+               ? nevh_work_fail(w, status, "%s", nevh_field_message(w->field))
+               : NEVH_OK;
 }
 
 /* The slope is that of one stage, near the middle. */
@@ -96,12 +119,7 @@ static int plan_parts(nevh_work *w, size_t nodes) {
     g->autonomous = nevh_system_traits(w->system) & NEVH_AUTONOMOUS;
     for (size_t lane = 0; lane < w->width; lane++)
         g->lanes[lane] = lane;
-    int status = nevh__field_lengths(w->field, w->options, g->length);
-    if (status)
-        return nevh_work_fail(w, status, "%s", nevh_field_message(w->field));
-    for (size_t i = 0; i < w->field->n_terms; i++)
-        measure(w, &w->field->terms[i]);
-    return NEVH_OK;
+    return plan_metric(w);
 }
 
 static int plan(nevh_work *w) {
@@ -255,8 +273,8 @@ static double find_defect(const nevh__gradient_step *s, size_t active, size_t a,
     return lack / ((1 + noise * noise) * (way + nowhere / way));
 }
 
-/* Where H(ends) is not what D says, adds the smallest vector, in units of
-   length, that makes it so. */
+/* Where H(ends) is not what D says, adds the smallest vector, by the
+   metric, that makes it so. */
 static void balance(const nevh__gradient_step *s, size_t active,
                     const size_t lanes[], double out[]) {
     const nevh_work *w = s->work;

@@ -29,8 +29,9 @@ typedef struct {
     double *lack;         /* width: what H(t, z) lacks of the orbit's energy */
     nevh__values end;     /* active: H(t, ends) */
     const double *length; /* 2n: over which H varies */
-    const double *metric; /* 2n: 1 / length, or 0 for what H does not read: its
-                             conjugate is conserved, and is left alone */
+    const double *metric; /* 2n: by which H varies most over lengths of 1; 0 for
+                             what H does not read: its conjugate is conserved,
+                             and is left alone */
     const nevh__tableau *nodes;
     double *points; /* 2n x nodes x active, and times at the nodes */
     double *slopes; /* 2n x nodes x active */

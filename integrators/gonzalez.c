@@ -2,9 +2,11 @@
 
        D = dH(m) + (H(z') - H(z) - dH(m) . dz) / |dz|^2  dz,
 
-   m = (z + z') / 2, dz = z' - z; |.| is taken in units of the lengths over
-   which H varies, so that nothing depends on the user's units.  It keeps H
-   however wrong dH(m) is.
+   m = (z + z') / 2, dz = z' - z; |.| weighs each variable by how H is curved in
+   it, so that nothing depends on the user's units, and that each dH(m)_k is
+   changed by as small a part of it as the others are: a light body among heavy
+   ones would not survive its part of their energy.  It keeps H however wrong
+   dH(m) is.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "discrete_gradient_private.h"
 #include "schemes_private.h"

@@ -263,6 +263,104 @@ START_TEST(a_million_turns) {
 }
 END_TEST
 
+/* The outer solar system after 22 years, whose masses span eight powers of
+   ten. */
+enum { BODIES = 6, JUPITER = 1, PLUTO = 5 };
+static const double while_long = 8000; /* days */
+
+static orbit outer_planets(const nevh_integrator *scheme, double steps) {
+    orbit o = begin(read_scene("tests/hard", "outer-planets"), scheme);
+    if (nevh_run_until(o.stepper, 0, while_long / steps, while_long, o.q, o.p,
+                       NULL, 0))
+        o.q[0] = NAN;
+    end(&o);
+    return o;
+}
+
+/* How far a body is from where it should be, over its distance. */
+static double astray(const orbit *o, const orbit *exact, size_t body) {
+    double sum = 0, size = 0;
+    for (size_t i = body; i < o->n; i += BODIES) {
+        sum = hypot(sum, o->q[i] - exact->q[i]);
+        size = hypot(size, exact->q[i]);
+    }
+    return isnan(o->q[0]) ? INFINITY : sum / size;
+}
+
+/* States converge at the order somewhere above rounding; and Pluto, of which
+   there is nothing to be seen in the energy, is never as far off as Jupiter,
+   which goes round twenty times as fast. */
+START_TEST(light_bodies_keep_their_orbits) {
+    static const double least = 1e-11, factor = 1.5;
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    int order = nevh_integrator_order(scheme);
+    double least_slope = 0.9 * fmin(order, 12); /* others meet rounding first */
+    double most = order == 1 ? 0.1 : 1e-2, before = NAN, slope = 0, error = 1;
+    if (nevh_integrator_needs_tolerance(scheme))
+        return;
+    orbit exact = outer_planets(nevh_gauss16, 200);
+    for (double n = 4; slope < least_slope && error > least; n *= factor) {
+        orbit o = outer_planets(scheme, round(n));
+        error = astray(&o, &exact, JUPITER);
+        ck_assert_msg(error > most || astray(&o, &exact, PLUTO) <= error,
+                      "%s, %.0f steps: Pluto is off by %.2g, Jupiter by %.2g",
+                      nevh_integrator_name(scheme), n,
+                      astray(&o, &exact, PLUTO), error);
+        slope = before < most ? log(before / error) / log(factor) : 0;
+        before = error;
+    }
+    ck_assert_msg(slope >= least_slope, "%s: order %d, measured %.2f at %.2g",
+                  nevh_integrator_name(scheme), order, slope, error);
+}
+END_TEST
+
+/* The pendulum of modulus 2 after half a turn or so. */
+static orbit go_round(const nevh_integrator *scheme, const char *turns) {
+    nevh_scene *scene = read_scene("tests/hard", "pendulum-modulus");
+    ck_assert_int_eq(nevh_scene_set(scene, "k = 2"), NEVH_OK);
+    ck_assert_int_eq(nevh_scene_set(scene, turns), NEVH_OK);
+    orbit o = begin(scene, scheme);
+    ck_assert_int_eq(nevh_run(o.stepper, 0, 0.025, 40, o.q, o.p, NULL, 0),
+                     NEVH_OK);
+    end(&o);
+    return o;
+}
+
+/* Where angles are counted from changes nothing but their rounding, which is
+   4.7e-10 after a million turns. */
+START_TEST(turns_do_not_matter) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    if (nevh_integrator_needs_tolerance(scheme))
+        return; /* relative to the angle */
+    orbit here = go_round(scheme, "turns = 0");
+    for (int far = 0; far < 2; far++) {
+        double turns = far ? 1e9 : 1e6, rounding = turns * 0x1p-50;
+        orbit there = go_round(scheme, far ? "turns = 1e9" : "turns = 1e6");
+        double turned = there.q[0] - 2 * pi * turns;
+        ck_assert_msg(fabs(turned - here.q[0]) <= 200 * rounding &&
+                          fabs(there.p[0] - here.p[0]) <= 200 * rounding,
+                      "%s: after %g turns q is off by %.2g, p by %.2g",
+                      nevh_integrator_name(scheme), turns, turned - here.q[0],
+                      there.p[0] - here.p[0]);
+    }
+}
+END_TEST
+
+/* Steps of a turn need Newton's iteration, whose differences of angles must not
+   be as large as these are. */
+START_TEST(newton_after_many_turns) {
+    const nevh_integrator *schemes[] = {nevh_gauss4, nevh_lobatto4};
+    nevh_scene *scene = read_scene("tests/hard", "pendulum-modulus");
+    ck_assert_int_eq(nevh_scene_set(scene, "k = 2"), NEVH_OK);
+    ck_assert_int_eq(nevh_scene_set(scene, "turns = 1e6"), NEVH_OK);
+    orbit o = begin(scene, schemes[_i]);
+    ck_assert_msg(!nevh_run(o.stepper, 0, 2, 200, o.q, o.p, NULL, 0), "%s",
+                  nevh_stepper_message(o.stepper));
+    ck_assert_uint_gt(nevh_stepper_counts(o.stepper).newtons, 0);
+    end(&o);
+}
+END_TEST
+
 int main(void) {
     Suite *s = suite_create("hard");
     TCase *cases = tcase_create("hard"), *slow = tcase_create("long");
@@ -271,6 +369,10 @@ int main(void) {
     tcase_add_test(cases, fput_recurs);
     tcase_add_test(cases, toda_keeps_three);
     tcase_add_test(cases, comets_keep_their_momentum);
+    tcase_add_loop_test(cases, light_bodies_keep_their_orbits, 0,
+                        scheme_count());
+    tcase_add_loop_test(cases, turns_do_not_matter, 0, scheme_count());
+    tcase_add_loop_test(cases, newton_after_many_turns, 0, 2);
     suite_add_tcase(s, cases);
     tcase_set_tags(slow, "slow");
     tcase_add_test(slow, the_eight_stays);

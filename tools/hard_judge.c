@@ -90,17 +90,9 @@ static bool refuses_rightly(const hard_subject *s, const hard_result *r) {
            (nevh_integrator_own_time(r->scheme) && s->balance);
 }
 
-/* Schemes that measure the state by its own size. */
-static bool scales_by_state(const nevh_integrator *scheme) {
-    return nevh_integrator_symplectic(scheme) == NEVH_EXTENDED ||
-           nevh_integrator_own_time(scheme);
-}
-
 /* Whether a run that ended, or lost its energy, had a reason to. */
 static bool is_explained(const hard_subject *s, const hard_result *r) {
     double x = pace_of(s, r);
-    if (is(s, HARD_FAR) && scales_by_state(r->scheme))
-        return true;
     return is(s, HARD_EDGE | HARD_ESCAPE | HARD_NOISE | HARD_ANY_STEP) ||
            stability_exceeded(r->scheme, r->limit, x) || x > 1 ||
            kept_bound(s, r) > 1 || (!keeps(r) && drift_bound(s, r) > 0.1) ||
@@ -110,13 +102,6 @@ static bool is_explained(const hard_subject *s, const hard_result *r) {
 static char *tell_cause(const hard_subject *s, const hard_result *r) {
     pace fastest = {.frequency = r->frequency, .t = r->fastest_at};
     char *cause = stability_cause(r->scheme, r->limit, s->dt, &fastest);
-    if (is(s, HARD_FAR) && scales_by_state(r->scheme)) {
-        free(cause);
-        return text_print("%s measures coordinates by their size, which is "
-                          "far more than the lengths over which H varies: "
-                          "count them from near by",
-                          nevh_integrator_name(r->scheme));
-    }
     if (cause)
         return cause;
     return text_print(is(s, HARD_EDGE) ? "the orbit meets a singularity, or "

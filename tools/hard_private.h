@@ -17,8 +17,7 @@ enum {
     HARD_RETURN = 64,    /* forward and back again */
     HARD_ENDLESS = 128,  /* more steps than the budget allows */
     HARD_ANY_STEP = 256, /* dt is beyond reason */
-    HARD_KINK = 512,     /* H has no second derivative somewhere */
-    HARD_FAR = 1024      /* coordinates are 1e6 times as large as need be */
+    HARD_KINK = 512      /* H has no second derivative somewhere */
 };
 
 typedef struct {

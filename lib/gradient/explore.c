@@ -25,7 +25,8 @@ size_t nevh__step_at(const nevh__planned *term, size_t instance, size_t k) {
     return instance / nevh__stride(term->term->is.count) * term->nv + k;
 }
 
-/* The largest sizes met on the way; the length where that is 0. */
+/* The largest sizes met on the way, or the lengths, which are where H varies
+   and not where the origin is, if these are shorter. */
 static void set_scales(nevh__explorer *e) {
     nevh_field *f = e->field;
     size_t n = f->n;
@@ -34,7 +35,7 @@ static void set_scales(nevh__explorer *e) {
         double most = 0;
         for (size_t at = 0; at < e->neighbours; at++)
             most = fmax(most, fabs(x[at * n + i % n]));
-        f->scale[i] = most > 0 && isfinite(most) ? most : e->length[i];
+        f->scale[i] = most > 0 ? fmin(most, e->length[i]) : e->length[i];
     }
 }
 

@@ -266,6 +266,12 @@ int nevh__field_moving_values(nevh_field *, size_t width, const double t[],
    evaluates nothing, and the field's scales have to do. */
 int nevh__field_lengths(nevh_field *, const nevh_options *, double length[]);
 
+/* How H varies with each variable, 2n: what it varies by within those lengths,
+   over their squares.  Where H is quadratic that is nearly its second
+   derivative, however much of H others make up. */
+int nevh__field_curvatures(nevh_field *, const nevh_options *,
+                           double curvature[]);
+
 /* Values only: no gradients are asked for, and none are planned. */
 extern const nevh_gradient nevh__no_gradient;
 /* Plans the terms and the workspace. */

@@ -7,6 +7,8 @@
 /* A length is where this part of a variation is not that of a quadratic. */
 static const double not_quadratic = 0.2;
 enum { FARTHEST = 400, LEAP = 8 }; /* powers of two from the first guess */
+enum { NEARER = 3, NEAREST = 24 }; /* below a distance that may be periods */
+static const double as_much = 0.125;
 static const double overflowing = 0x1p500;
 enum { MOST_LANES = 4, TRIED_LANES = 64 };
 /* Powers of two may be whole periods, over which nothing varies. */
@@ -74,21 +76,49 @@ static bool alike(const variation *a, const variation *b) {
            noise < 0.1;
 }
 
+/* Within a distance of many periods, five values may happen to be those of a
+   quadratic.  Somewhere nearer they are not, although they vary as much; little
+   ripples do not count.  Returns where, or else the distance. */
+static double unfold(const nevh__explorer *e, const nevh__planned *term,
+                     size_t instance, size_t k, double distance) {
+    double whole = vary(e, term, instance, k, distance).whole;
+    for (int down = NEARER; whole > 0 && down <= NEAREST; down += NEARER) {
+        double nearer = ldexp(distance, -down);
+        variation v = vary(e, term, instance, k, nearer);
+        if (too_far(&v) && v.whole >= as_much * whole)
+            return nearer;
+    }
+    return distance;
+}
+
+/* In leaps below `distance`, and how many; false where there is no length. */
+static bool leap_down(const nevh__explorer *e, const nevh__planned *term,
+                      size_t instance, size_t k, double *distance, int *leaps) {
+    variation v = vary(e, term, instance, k, *distance);
+    while (too_far(&v) && *leaps < FARTHEST / LEAP) {
+        variation before = v;
+        ++*leaps;
+        *distance = ldexp(*distance, -LEAP);
+        v = vary(e, term, instance, k, *distance);
+        if (alike(&before, &v))
+            return false;
+    }
+    return !too_far(&v);
+}
+
 double nevh__curve_length(const nevh__explorer *e, const nevh__planned *term,
                           size_t instance, size_t k, double guess) {
     variation v = vary(e, term, instance, k, guess);
     double distance = v.whole > v.rounding ? guess : askew * guess;
     int leaps = 0;
-    v = vary(e, term, instance, k, distance);
-    while (too_far(&v) && leaps++ < FARTHEST / LEAP) {
-        variation before = v;
-        distance = ldexp(distance, -LEAP);
-        v = vary(e, term, instance, k, distance);
-        if (alike(&before, &v))
+    double nearer = distance;
+    do {
+        distance = nearer;
+        if (!leap_down(e, term, instance, k, &distance, &leaps))
             return NAN;
-    }
-    if (too_far(&v))
-        return NAN;
+        nearer = unfold(e, term, instance, k, distance);
+    } while (nearer < distance);
+    v = vary(e, term, instance, k, distance);
     bool seen = false;
     for (int i = 0; i < (leaps ? LEAP : FARTHEST) && v.whole < overflowing;
          i++) {
@@ -209,6 +239,31 @@ static void find_over_lanes(nevh__explorer *e, double *energy) {
             load(e, lane, e->lanes - 1);
     }
     e->samples.count = e->lanes;
+    e->at = 0;
+}
+
+/* An instance's share in the curvatures of the variables it reads. */
+static void add_curvatures(const nevh__explorer *e, const nevh__planned *term,
+                           size_t instance, double curvature[]) {
+    double curved = 0;
+    for (size_t k = 0; k < term->nv; k++) {
+        size_t i = nevh__index(term, instance, k);
+        i = k < term->nq ? i : e->field->n + i;
+        double length = e->length[i];
+        if (nevh__probed(term, k) == k)
+            curved =
+                vary(e, term, instance, k, length).whole / (length * length);
+        if (isfinite(curved))
+            curvature[i] = fmax(curvature[i], curved);
+    }
+}
+
+void nevh__find_curvatures(nevh__explorer *e, double curvature[]) {
+    const nevh_field *f = e->field;
+    for (e->at = 0; e->at < e->samples.count; e->at++)
+        for (size_t j = 0; j < f->n_terms; j++)
+            for (size_t i = 0; i < f->terms[j].term->is.count; i++)
+                add_curvatures(e, &f->terms[j], i, curvature);
     e->at = 0;
 }
 

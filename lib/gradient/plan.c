@@ -168,6 +168,19 @@ int nevh__field_lengths(nevh_field *f, const nevh_options *o, double length[]) {
     return status;
 }
 
+int nevh__field_curvatures(nevh_field *f, const nevh_options *o,
+                           double curvature[]) {
+    nevh__explorer e;
+    memset(curvature, 0, 2 * f->n * sizeof *curvature);
+    int status = nevh__explorer_open(&e, f, o);
+    if (!status) {
+        nevh__find_neighbours(&e);
+        nevh__find_curvatures(&e, curvature);
+    }
+    nevh__explorer_close(&e);
+    return status;
+}
+
 static int plan_steps(nevh_field *f, const nevh_options *o) {
     int status = NEVH_OK;
     for (size_t i = 0; i < f->n_terms; i++)
