@@ -120,7 +120,7 @@ static void show_count(table *t, double count) {
 }
 
 static void show_numbers(table *t, const plan *p, const row *r) {
-    double span = p->t_end - p->run->t_start;
+    double span = r->t_end - p->run->t_start;
     table_shown(t, "%.1e", r->energy.max);
     if (r->energy.verdict >= NEVH_DRIFTS)
         table_shown(t, "%+.1e", r->energy.drift * span);
@@ -261,19 +261,14 @@ static void note_rows(const plan *p, const row rows[], size_t count,
                         "as verlet with that dt; dt is what they take");
 }
 
-static void note_settings(const options *o, list *notes) {
-    for (size_t i = 0; i < o->settings.count; i++)
-        if (o->settings.item[i][0] == '=')
-            list_print(notes, "set: %s", o->settings.item[i] + 1);
-}
-
 void row_notes(const options *o, const plan *p, const row rows[], size_t count,
                list *notes) {
-    note_settings(o, notes);
+    settings_notes(o, notes);
     note_gradients(p, notes);
     note_scale(p, rows, count, notes);
     note_balance(p, notes);
     note_rows(p, rows, count, notes);
+    stop_notes(p, rows, count, notes);
 }
 
 /* Messages of rows without numbers, each once. */

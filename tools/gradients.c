@@ -49,8 +49,7 @@ static void orbit_free(orbit *o) {
 
 typedef struct {
     const plan *plan;
-    const nevh_integrator *scheme;
-    const nevh_system *transform;
+    const char *integrator;
     double dt, scale;
     size_t steps;
     orbit exact; /* of the yardstick */
@@ -59,11 +58,19 @@ typedef struct {
     double size;     /* largest component among them */
 } context;
 
+static const nevh_integrator *scheme_of(const context *c) {
+    bool transformed;
+    return plan_scheme(c->integrator, &transformed);
+}
+
 static nevh_options gradient_options(const context *c, const char *gradient,
                                      double step) {
-    nevh_options o = plan_options(c->plan, gradient);
+    const plan *p = c->plan;
+    nevh_options o = plan_options(p, gradient);
     o.gradient_step = step;
-    o.transform = c->transform;
+    o.transform = plan_transform(p, c->integrator);
+    if (nevh_integrator_needs_tolerance(scheme_of(c)) && p->tolerances)
+        o.tolerance = p->tolerance[0];
     return o;
 }
 
@@ -71,7 +78,7 @@ static nevh_options gradient_options(const context *c, const char *gradient,
 static int follow(const context *c, const char *gradient, double step,
                   const nevh_observer *observer) {
     nevh_options o = gradient_options(c, gradient, step);
-    nevh_stepper *s = nevh_stepper_new(c->plan->system, c->scheme, &o);
+    nevh_stepper *s = nevh_stepper_new(c->plan->system, scheme_of(c), &o);
     size_t n = c->plan->n;
     double *q = tool_allocate(n, sizeof *q), *p = tool_allocate(n, sizeof *p);
     memcpy(q, c->plan->q, n * sizeof *q);
@@ -360,12 +367,12 @@ static table *new_table(bool for_people) {
 }
 
 static void tell(const context *c, page *result) {
-    list_print(
-        &result->before,
-        "orbit of %s at dt = %.4g, %zu steps, t = %g ... %g; errors of "
-        "the gradient at %zu states, relative to its largest component",
-        nevh_integrator_name(c->scheme), c->dt, c->steps, c->plan->run->t_start,
-        c->plan->run->t_start + (double)c->steps * c->dt, c->exact.count);
+    list_print(&result->before,
+               "orbit of %s at dt = %.4g, %zu steps, t = %g ... %g; errors of "
+               "the gradient at %zu states, relative to its largest component",
+               c->integrator, c->dt, c->steps, c->plan->run->t_start,
+               c->plan->run->t_start + (double)c->steps * c->dt,
+               c->exact.count);
     list_print(
         &result->after,
         "truncation, rounding: what the choice of half-spreads expected. "
@@ -382,7 +389,7 @@ static void tell(const context *c, page *result) {
         list_print(&result->after,
                    "%s itself makes an energy error of %.1e at this dt: a "
                    "gradient whose part is well below that is good enough.",
-                   nevh_integrator_name(c->scheme), own);
+                   c->integrator, own);
     list_add(&result->after, "ns are this machine's.");
 }
 
@@ -406,25 +413,36 @@ static const char *find_yardstick(const plan *p) {
     return names[2];
 }
 
+/* Up to the end of the run, or to where it stops. */
+static void choose_steps(context *c) {
+    static const double most = 2e4;
+    const plan *p = c->plan;
+    double steps = round((p->t_end - p->run->t_start) / c->dt);
+    stop s = {.scene = p->scene};
+    c->steps = (size_t)fmin(fmax(steps, 1), most);
+    if (nevh_scene_stops(p->scene))
+        follow(c, c->yardstick, 0, &(nevh_observer){stop_observe, &s, 1});
+    if (s.reached && s.step > 0)
+        c->steps = s.step;
+}
+
 static int context_make(context *c, const plan *p) {
-    static const double most_steps = 2e4;
-    nevh_stepper *s = plan_first(p, &c->scheme);
+    nevh_stepper *s = plan_first(p, &c->integrator);
     if (!s)
         return TOOL_USAGE;
     nevh_stepper_free(s);
     c->plan = p;
     c->dt = p->dt[p->dts - 1];
-    c->steps = (size_t)fmin(
-        fmax(round((p->t_end - p->run->t_start) / c->dt), 1), most_steps);
     c->scale = energy_scale(p);
     c->yardstick = find_yardstick(p);
+    choose_steps(c);
     c->exact = orbit_new(p, c->steps);
     if (!follow(c, c->yardstick, 0, &(nevh_observer){record, &c->exact, 1}) &&
         !evaluate_yardstick(c))
         return TOOL_OK;
     tool_refuse("%s: %s at dt = %g fails on this orbit; another integrator or "
                 "a shorter dt may not",
-                p->name, nevh_integrator_name(c->scheme), c->dt);
+                p->name, c->integrator, c->dt);
     return TOOL_FAILED;
 }
 

@@ -21,6 +21,7 @@ typedef struct {
     double *states, *last, t;     /* SAMPLES x 2n, 2n */
     double *low, *high;           /* 2n */
     double energy, seconds, work; /* energy at the end; work: evaluations */
+    double stopped;               /* where the scene's `stop` said; NAN */
     int status;
     char *message;
 } orbit;
@@ -71,23 +72,13 @@ static void free_orbit(orbit *o) {
     free(o->message);
 }
 
-static nevh_stepper *new_stepper(const plan *p, const char *integrator) {
-    bool transformed;
-    const nevh_integrator *scheme = plan_scheme(integrator, &transformed);
-    nevh_options o = plan_options(p, p->gradients.item[0]);
-    o.transform = plan_transform(p, integrator);
-    if (nevh_integrator_needs_tolerance(scheme) && p->tolerances)
-        o.tolerance = p->tolerance[0];
-    return nevh_stepper_new(p->system, scheme, &o);
-}
-
 static int go(orbit *o, nevh_stepper *s, const nevh_observer *observer) {
     const plan *p = o->plan;
     double *state = tool_allocate(2 * p->n, sizeof *state);
     memcpy(state, p->q, p->n * sizeof *state);
     memcpy(state + p->n, p->p, p->n * sizeof *state);
-    int status = nevh_run_until(s, p->run->t_start, p->dt[0], p->t_end, state,
-                                state + p->n, observer, observer ? 1 : 0);
+    int status = plan_run(p, s, p->dt[0], state, state + p->n, observer,
+                          observer ? 1 : 0, &o->stopped);
     free(state);
     return status;
 }
@@ -110,7 +101,7 @@ static void measure(orbit *o, nevh_stepper *s) {
 
 static orbit run(const plan *p, const char *integrator) {
     orbit o = new_orbit(p);
-    nevh_stepper *s = new_stepper(p, integrator);
+    nevh_stepper *s = plan_stepper(p, integrator);
     o.status = go(&o, s, &(nevh_observer){keep, &o, 1});
     if (o.status)
         o.message = text_print("%s", nevh_stepper_message(s));
@@ -280,6 +271,15 @@ static char *ruled_out(const both *b, size_t *count) {
     return names;
 }
 
+static void say_end(const char *effect, bool on, const orbit *o, list *words) {
+    const char *with = on ? "With" : "Without";
+    if (o->status)
+        list_print(words, "%s %s the run fails: %s", with, effect, o->message);
+    else if (isfinite(o->stopped))
+        list_print(words, "%s %s the run stops at t = %.9g.", with, effect,
+                   o->stopped);
+}
+
 static void say(const char *effect, const both *b, const char *names,
                 size_t count, list *words) {
     if (count)
@@ -304,9 +304,7 @@ static void say(const char *effect, const both *b, const char *names,
                    "it; give others with --integrators.",
                    effect);
     for (int on = 0; b->integrator && on < 2; on++)
-        if (b->orbit[on].status)
-            list_print(words, "%s %s the run fails: %s",
-                       on ? "With" : "Without", effect, b->orbit[on].message);
+        say_end(effect, on, &b->orbit[on], words);
 }
 
 /* All digits, but for what is to be read. */

@@ -10,6 +10,7 @@ tools_nevh_SOURCES = \
 	tools/output.c \
 	tools/scenes.c \
 	tools/plan.c \
+	tools/stop.c \
 	tools/row.c \
 	tools/records.c \
 	tools/ladder.h \

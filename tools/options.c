@@ -154,6 +154,12 @@ int options_check(const options *o, unsigned which) {
     return TOOL_OK;
 }
 
+void settings_notes(const options *o, list *notes) {
+    for (size_t i = 0; i < o->settings.count; i++)
+        if (o->settings.item[i][0] == '=')
+            list_print(notes, "set: %s", o->settings.item[i] + 1);
+}
+
 void options_free(options *o) {
     list_free(&o->operands);
     list_free(&o->settings);

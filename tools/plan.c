@@ -211,18 +211,32 @@ nevh_stepper *plan_stepper(const plan *p, const char *name) {
     return nevh_stepper_new(p->system, scheme, &o);
 }
 
-nevh_stepper *plan_first(const plan *p, const nevh_integrator **scheme) {
-    for (size_t i = 0; i < p->integrators.count; i++) {
-        const char *name = p->integrators.item[i];
-        bool transformed;
-        *scheme = plan_scheme(name, &transformed);
-        nevh_stepper *s = plan_stepper(p, name);
+nevh_stepper *plan_first(const plan *p, const char **name) {
+    const list *names = &p->integrators;
+    for (size_t i = 0; i < names->count; i++) {
+        nevh_stepper *s = plan_stepper(p, names->item[i]);
+        if (name)
+            *name = names->item[i];
         if (!nevh_stepper_status(s))
             return s;
+        if (names->count == 1)
+            tool_refuse("%s: %s", p->name, nevh_stepper_message(s));
         nevh_stepper_free(s);
     }
-    tool_refuse("%s: none of the integrators fits; see nevh check", p->name);
+    if (names->count > 1)
+        tool_refuse("%s: none of the integrators fits; see nevh check",
+                    p->name);
     return NULL;
+}
+
+void plan_note_first(const plan *p, const char *integrator, list *notes) {
+    list_print(notes, "integrator: %s, dt = %.9g%s", integrator, p->dt[0],
+               p->integrators.count > 1 || p->dts > 1
+                   ? ": the first integrator of the list that fits, and the "
+                     "first dt"
+                   : "");
+    list_print(notes, "gradient: %s%s", p->gradients.item[0],
+               p->gradients.count > 1 ? ", the first of the list" : "");
 }
 
 static char *effects_that_are(const nevh_system *s, bool on) {
@@ -270,7 +284,10 @@ void plan_notes(const plan *p, list *notes) {
     list_add(notes, *title ? title : p->name);
     note_effects(p, notes);
     list_add(notes, structure);
-    list_print(notes, "t = %g ... %g%s%s", p->run->t_start, p->t_end,
-               *unit ? " " : "", unit);
+    list_print(notes,
+               nevh_scene_stops(p->scene) ? "t = %g ... %g%s%s, or until %s"
+                                          : "t = %g ... %g%s%s",
+               p->run->t_start, p->t_end, *unit ? " " : "", unit,
+               nevh_scene_stop_text(p->scene));
     free(structure);
 }

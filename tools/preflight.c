@@ -91,14 +91,27 @@ static void look_for_noise(flight *f, double t) {
         f->found->noise = fmax(f->found->noise, noise / f->scale);
 }
 
+static void take_first_lane(flight *f) {
+    for (size_t k = 0; k < 2 * f->plan->n; k++)
+        f->trial[k] = f->z[2 * k];
+}
+
 static void look(flight *f, int i, double t) {
     size_t n = f->plan->n;
-    for (size_t k = 0; k < 2 * n; k++)
-        f->trial[k] = f->z[2 * k];
+    take_first_lane(f);
     pace_observe(&f->fastest, 0, t, f->trial, f->trial + n);
     look_for_noise(f, t);
     if (i % EDGE_EVERY == 0 && n <= MOST_DOF)
         look_for_edge(f, t);
+}
+
+/* Whether the run would end here. */
+static bool is_stopped(flight *f, double t) {
+    bool reached;
+    take_first_lane(f);
+    return !nevh_scene_stop_reached(f->plan->scene, t, f->trial,
+                                    f->trial + f->plan->n, &reached) &&
+           reached;
 }
 
 static void fly(flight *f, nevh_stepper *s) {
@@ -114,7 +127,8 @@ static void fly(flight *f, nevh_stepper *s) {
         t = p->run->t_start + i * h;
         bring_back(f);
         look(f, i, t);
-        if ((double)(clock() - f->begin) / CLOCKS_PER_SEC > enough)
+        if (is_stopped(f, t) ||
+            (double)(clock() - f->begin) / CLOCKS_PER_SEC > enough)
             break;
     }
     f->found->flown = t - p->run->t_start;

@@ -99,6 +99,8 @@ typedef struct {
 int options_read(options *, int argc, char **argv);
 /* That all options given are for this command. */
 int options_check(const options *, unsigned which);
+/* What --set gave, a line each. */
+void settings_notes(const options *, list *notes);
 void options_free(options *);
 void options_help(FILE *, unsigned which);
 
@@ -162,11 +164,32 @@ const nevh_system *plan_transform(const plan *, const char *name);
 /* The integrator of that name, planned for the first gradient. */
 nevh_stepper *plan_stepper(const plan *, const char *name);
 /* The first integrator that fits, planned for the first gradient; NULL, with a
-   message, when none does. */
-nevh_stepper *plan_first(const plan *, const nevh_integrator **);
+   message, when none does.
+   name  out: what the plan calls it; NULL: not asked for */
+nevh_stepper *plan_first(const plan *, const char **name);
+/* Of plans with several integrators or dt: which of them is taken. */
+void plan_note_first(const plan *, const char *integrator, list *notes);
 /* Title, effects, structure of H, span. */
 void plan_notes(const plan *, list *notes);
 char *plan_structure(const plan *);
+
+/* stop.c: runs that end early, where the scene's `stop` says. */
+typedef struct {
+    nevh_scene *scene;
+    bool reached;
+    double t; /* of the last state seen */
+    size_t step;
+} stop;
+/* A nevh_observe_fn; data is the stop.  NEVH_STOPPED where it is reached. */
+int stop_observe(void *, size_t step, double t, const double q[],
+                 const double p[]);
+/* nevh_run_until, from the plan's start to its end, or to where it is to stop.
+   q, m     in and out, n each
+   stopped  out: the time where it was to stop; NAN
+   returns  as nevh_run_until; NEVH_OK where the run came to either end */
+int plan_run(const plan *, nevh_stepper *, double dt, double q[], double m[],
+             const nevh_observer[], size_t count, double *stopped);
+char *stop_words(const plan *, double t);
 
 /* impact.c */
 int impact(const options *, plan *);
@@ -185,6 +208,8 @@ typedef struct {
     nevh_energy_report energy;
     nevh_counts counts;
     double seconds, spread; /* median, and half of what the middle half spans */
+    double stopped;         /* where the scene's `stop` said; NAN: nowhere */
+    double t_end;           /* where it ended */
     double observed_order;  /* NAN: unknown */
     double state_error;     /* NAN: unknown or meaningless */
     double symplecticity_error, reversal_error;
@@ -198,6 +223,8 @@ void row_run(const plan *, row *);
 void row_finish(const plan *, row *, double dt, size_t repeats);
 /* Planned as for that row. */
 nevh_stepper *row_stepper(const plan *, const row *, bool balance);
+/* stop.c: of the rows that stopped, how many did, when. */
+void stop_notes(const plan *, const row rows[], size_t count, list *notes);
 /* records.c: rows as the columns of CSV and JSON. */
 table *records(const plan *, const row rows[], size_t count);
 /* compare.c: observed_order, of rows with the same scheme beside each other;

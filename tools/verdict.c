@@ -53,7 +53,7 @@ static const row *bounded_beside(const row rows[], size_t count,
 static void tell_crossing(const plan *p, const row *r, const row *b,
                           const char *text, list *words) {
     static const double long_after = 1e4; /* runs: of no practical meaning */
-    double span = p->t_end - p->run->t_start;
+    double span = r->t_end - p->run->t_start;
     double passes = b ? b->energy.max / fabs(r->energy.drift) : 0;
     double t = p->run->t_start + passes;
     if (!b)
@@ -74,7 +74,7 @@ static void tell_crossing(const plan *p, const row *r, const row *b,
 static void tell_drift(const plan *p, const row rows[], size_t count,
                        const row *r, list *words) {
     const row *b = bounded_beside(rows, count, r);
-    double span = p->t_end - p->run->t_start;
+    double span = r->t_end - p->run->t_start;
     char *text = text_print(
         "%s at dt = %.4g %s energy steadily, %.2g %% of the "
         "scale over the run (slope %.3g +- %.1g, R^2 = %.4f)",
