@@ -141,10 +141,10 @@ static int run(const plan *p, price prices[], size_t count, list *notes) {
                "evaluations of term instances by %s, dt = %g, gradient "
                "%s: the first of each that fits",
                integrator, p->dt[0], p->gradients.item[0]);
+    if (isfinite(stopped))
+        list_print(notes, "the run stopped at t = %.9g", stopped);
     list_add(notes, "time: of the gradients of each effect alone, this "
                     "machine's");
-    if (isfinite(stopped))
-        list_print(notes, "it stopped at t = %.9g", stopped);
     if (status)
         list_print(notes, "the run failed: %s", nevh_stepper_message(s));
     nevh_stepper_free(s);

@@ -27,7 +27,7 @@ typedef struct {
 } orbit;
 
 typedef struct {
-    double at_end, largest, since; /* of the range; since: NAN */
+    double at_end, largest, since; /* of the range; at_end, since: or NAN */
 } difference;
 
 static int keep(void *data, size_t step, double t, const double q[],
@@ -137,7 +137,9 @@ static double apart(const orbit *a, const orbit *b, const double x[],
 
 static difference compare_orbits(const orbit *a, const orbit *b) {
     size_t n = 2 * a->plan->n, kept = a->kept < b->kept ? a->kept : b->kept;
-    difference d = {apart(a, b, a->last, b->last), 0, NAN};
+    difference d = {NAN, 0, NAN};
+    if (a->t == b->t)
+        d.at_end = apart(a, b, a->last, b->last);
     for (size_t i = 0; i < kept; i++) {
         double gap = apart(a, b, a->states + i * n, b->states + i * n);
         d.largest = fmax(d.largest, gap);

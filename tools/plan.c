@@ -39,6 +39,7 @@ static void default_integrators(plan *p) {
 static void add_transformed(plan *p, const options *o) {
     size_t count = p->integrators.count;
     bool used = !o->transform;
+    p->added = used ? 0 : count;
     for (size_t i = 0; i < count; i++) {
         const nevh_integrator *scheme =
             nevh_integrator_named(p->integrators.item[i]);
@@ -211,9 +212,10 @@ nevh_stepper *plan_stepper(const plan *p, const char *name) {
     return nevh_stepper_new(p->system, scheme, &o);
 }
 
-nevh_stepper *plan_first(const plan *p, const char **name) {
+/* The first from there on that fits; NULL: none does. */
+static nevh_stepper *fitting(const plan *p, size_t from, const char **name) {
     const list *names = &p->integrators;
-    for (size_t i = 0; i < names->count; i++) {
+    for (size_t i = from; i < names->count; i++) {
         nevh_stepper *s = plan_stepper(p, names->item[i]);
         if (name)
             *name = names->item[i];
@@ -223,10 +225,17 @@ nevh_stepper *plan_first(const plan *p, const char **name) {
             tool_refuse("%s: %s", p->name, nevh_stepper_message(s));
         nevh_stepper_free(s);
     }
-    if (names->count > 1)
+    return NULL;
+}
+
+nevh_stepper *plan_first(const plan *p, const char **name) {
+    nevh_stepper *s = p->added ? fitting(p, p->added, name) : NULL;
+    if (!s)
+        s = fitting(p, 0, name);
+    if (!s && p->integrators.count > 1)
         tool_refuse("%s: none of the integrators fits; see nevh check",
                     p->name);
-    return NULL;
+    return s;
 }
 
 void plan_note_first(const plan *p, const char *integrator, list *notes) {

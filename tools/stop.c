@@ -56,13 +56,12 @@ void stop_notes(const plan *p, const row rows[], size_t count, list *notes) {
     if (!first)
         return;
     char *until = last->stopped > first->stopped
-                      ? text_print(", to t = %.9g (%s, dt = %.4g)",
-                                   last->stopped, last->integrator, last->dt)
+                      ? text_print(" ... %.9g (%s, dt = %.4g)", last->stopped,
+                                   last->integrator, last->dt)
                       : text_print("%s", "");
-    list_print(
-        notes,
-        "%zu of %zu runs stopped where %s: at t = %.9g (%s, dt = %.4g)%s",
-        found, count, nevh_scene_stop_text(p->scene), first->stopped,
-        first->integrator, first->dt, until);
+    list_print(notes,
+               "%zu of %zu runs stopped where %s: t = %.9g (%s, dt = %.4g)%s",
+               found, count, nevh_scene_stop_text(p->scene), first->stopped,
+               first->integrator, first->dt, until);
     free(until);
 }

@@ -142,6 +142,7 @@ typedef struct {
     const double *dt, *tolerance;
     size_t dts, tolerances;
     list integrators, gradients;
+    size_t added; /* of the integrators, from there on by --transform; or 0 */
     double gradient_step;
     const double *gradient_steps; /* as in nevh_options */
     size_t repeats;               /* of timed runs; 0: chosen */
@@ -163,9 +164,9 @@ const nevh_integrator *plan_scheme(const char *name, bool *transformed);
 const nevh_system *plan_transform(const plan *, const char *name);
 /* The integrator of that name, planned for the first gradient. */
 nevh_stepper *plan_stepper(const plan *, const char *name);
-/* The first integrator that fits, planned for the first gradient; NULL, with a
-   message, when none does.
-   name  out: what the plan calls it; NULL: not asked for */
+/* The first integrator that fits, those of --transform before others, planned
+   for the first gradient; NULL, with a message, when none does. name  out: what
+   the plan calls it; NULL: not asked for */
 nevh_stepper *plan_first(const plan *, const char **name);
 /* Of plans with several integrators or dt: which of them is taken. */
 void plan_note_first(const plan *, const char *integrator, list *notes);
