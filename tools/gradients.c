@@ -69,7 +69,7 @@ static nevh_options gradient_options(const context *c, const char *gradient,
     nevh_options o = plan_options(p, gradient);
     o.gradient_step = step;
     o.transform = plan_transform(p, c->integrator);
-    if (nevh_integrator_needs_tolerance(scheme_of(c)) && p->tolerances)
+    if (nevh_integrator_adaptive(scheme_of(c)) && p->tolerances)
         o.tolerance = p->tolerance[0];
     return o;
 }

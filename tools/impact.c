@@ -257,19 +257,12 @@ static void free_both(both *b) {
     }
 }
 
-/* Schemes that fit without, but not with it: names, and how many. */
-static char *ruled_out(const both *b, size_t *count) {
-    char *names = text_print("%s", "");
-    *count = 0;
-    for (size_t i = 0; i < b->choice[0].count; i++) {
-        if (!b->choice[0].fits[i] || b->choice[1].fits[i])
-            continue;
-        char *longer = text_print("%s%s%s", names, *names ? ", " : "",
-                                  b->choice[0].name[i]);
-        free(names);
-        names = longer;
-        ++*count;
-    }
+/* Schemes that fit without, but not with it. */
+static list ruled_out(const both *b) {
+    list names = {0};
+    for (size_t i = 0; i < b->choice[0].count; i++)
+        if (b->choice[0].fits[i] && !b->choice[1].fits[i])
+            list_add(&names, b->choice[0].name[i]);
     return names;
 }
 
@@ -325,8 +318,9 @@ static void put_row(const options *o, const char *effect, bool on,
     const orbit *a = &b->orbit[0], *c = &b->orbit[1];
     const bool shown = o->format == FORMAT_TABLE;
     difference d = {0};
-    size_t count;
-    char *names = ruled_out(b, &count);
+    list out = ruled_out(b);
+    size_t count = out.count;
+    char *names = list_joined(&out);
     if (b->ran)
         d = compare_orbits(a, c);
     table_text(t, effect);
@@ -346,6 +340,7 @@ static void put_row(const options *o, const char *effect, bool on,
     else
         table_text(t, names);
     say(effect, b, names, count, &result->after);
+    list_free(&out);
     free(names);
 }
 

@@ -207,7 +207,7 @@ nevh_stepper *plan_stepper(const plan *p, const char *name) {
     bool transformed;
     const nevh_integrator *scheme = plan_scheme(name, &transformed);
     o.transform = plan_transform(p, name);
-    if (nevh_integrator_needs_tolerance(scheme) && p->tolerances)
+    if (nevh_integrator_adaptive(scheme) && p->tolerances)
         o.tolerance = p->tolerance[0];
     return nevh_stepper_new(p->system, scheme, &o);
 }
@@ -244,21 +244,25 @@ void plan_note_first(const plan *p, const char *integrator, list *notes) {
                    ? ": the first integrator of the list that fits, and the "
                      "first dt"
                    : "");
+    bool transformed;
+    if (nevh_integrator_adaptive(plan_scheme(integrator, &transformed)) &&
+        p->tolerances)
+        list_print(notes, "tolerance: %.9g%s", p->tolerance[0],
+                   p->tolerances > 1 ? ", the first of the list" : "");
     list_print(notes, "gradient: %s%s", p->gradients.item[0],
                p->gradients.count > 1 ? ", the first of the list" : "");
 }
 
 static char *effects_that_are(const nevh_system *s, bool on) {
-    char *names = text_print("%s", "");
+    list names = {0};
     for (size_t i = 0; i < nevh_system_effect_count(s); i++) {
         const char *name = nevh_system_effect_name(s, i);
-        if (nevh_system_effect_on(s, name) != on)
-            continue;
-        char *longer = text_print(*names ? "%s, %s" : "%s%s", names, name);
-        free(names);
-        names = longer;
+        if (nevh_system_effect_on(s, name) == on)
+            list_add(&names, name);
     }
-    return names;
+    char *text = list_joined(&names);
+    list_free(&names);
+    return text;
 }
 
 char *plan_structure(const plan *p) {

@@ -87,10 +87,7 @@ static void add_series(job *j, size_t number) {
 }
 
 static bool asked_for(const list *names, const char *name) {
-    for (size_t i = 0; i < names->count; i++)
-        if (strcmp(names->item[i], name) == 0)
-            return true;
-    return names->count == 0;
+    return names->count == 0 || list_has(names, name);
 }
 
 static int check_names(const plan *p, const list *names) {
@@ -100,7 +97,7 @@ static int check_names(const plan *p, const list *names) {
     for (size_t i = 0; i < count; i++)
         list_add(&known, nevh_scene_section_at(p->scene, i)->name);
     for (size_t i = 0; !status && i < names->count; i++)
-        if (!asked_for(&known, names->item[i]) || known.count == 0)
+        if (!list_has(&known, names->item[i]))
             status = tool_unknown("section", names->item[i], &known);
     if (!status && count == 0)
         status = tool_refuse("%s: the scene has no [sections], as: swing = "
@@ -181,7 +178,7 @@ static int run(job *j, nevh_stepper *s) {
 static void list_items(const job *j, list *items) {
     for (size_t i = 0; i < j->count; i++)
         for (size_t k = 0; k < j->all[i].is->items; k++)
-            if (items->count == 0 || !asked_for(items, j->all[i].is->item[k]))
+            if (!list_has(items, j->all[i].is->item[k]))
                 list_add(items, j->all[i].is->item[k]);
 }
 

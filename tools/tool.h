@@ -19,6 +19,8 @@ void list_add(list *, const char *text); /* a copy */
 __attribute__((format(printf, 2, 3))) void list_print(list *,
                                                       const char *format, ...);
 void list_split(list *, const char *text); /* at commas */
+bool list_has(const list *, const char *text);
+char *list_joined(const list *); /* with commas */
 void list_free(list *);
 void *tool_allocate(size_t count, size_t size); /* zeros */
 __attribute__((format(printf, 1, 2))) char *text_print(const char *format, ...);
