@@ -1,6 +1,6 @@
 /* nevh effects: what each effect reads and costs.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tool.h"
+#include "plan.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* nevh: what is to be run, from options, scene and defaults.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tool.h"
+#include "plan.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -251,6 +251,23 @@ void plan_note_first(const plan *p, const char *integrator, list *notes) {
                    p->tolerances > 1 ? ", the first of the list" : "");
     list_print(notes, "gradient: %s%s", p->gradients.item[0],
                p->gradients.count > 1 ? ", the first of the list" : "");
+}
+
+double plan_period(const plan *p, const char *shown) {
+    for (size_t k = 0; k < p->n; k++)
+        if (strcmp(nevh_scene_coordinate(p->scene, k), shown) == 0)
+            return nevh_scene_period(p->scene, k);
+    return 0;
+}
+
+double plan_energy_scale(const plan *p) {
+    if (p->run->energy_scale > 0)
+        return p->run->energy_scale;
+    nevh_energy *e = nevh_energy_new(p->system, NULL);
+    nevh_energy_observe(e, 0, p->run->t_start, p->q, p->p);
+    double scale = nevh_energy_result(e, 0).scale;
+    nevh_energy_free(e);
+    return scale;
 }
 
 static char *effects_that_are(const nevh_system *s, bool on) {

@@ -4,7 +4,7 @@
    is brought back to it again and again [G. Benettin, L. Galgani, J.-M.
    Strelcyn, Kolmogorov entropy and numerical experiments, Phys. Rev. A 14
    (1976) 2338-2345]. SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tool.h"
+#include "pace.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -164,14 +164,6 @@ static nevh_stepper *new_stepper(const flight *f) {
     return nevh_stepper_new(p->system, nevh_dop853, &o);
 }
 
-static double energy_scale(const plan *p, const nevh_options *o) {
-    nevh_energy *e = nevh_energy_new(p->system, o);
-    nevh_energy_observe(e, 0, p->run->t_start, p->q, p->p);
-    double scale = nevh_energy_result(e, 0).scale;
-    nevh_energy_free(e);
-    return scale;
-}
-
 preflight preflight_fly(const plan *p) {
     preflight found = {.edge = INFINITY};
     nevh_options given = plan_options(p, p->gradients.item[0]);
@@ -183,7 +175,7 @@ preflight preflight_fly(const plan *p) {
     o.gradient_step = 0;
     f.field = nevh_field_new(p->system, &o);
     f.gradient = nevh_field_new(p->system, &given);
-    f.scale = energy_scale(p, &given);
+    f.scale = plan_energy_scale(p);
     if (take_lengths(&f, &o)) {
         o.scale = f.length;
         f.fastest.rates = nevh_rates_new(p->system, &o);

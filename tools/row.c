@@ -95,11 +95,6 @@ static void unstable_since(work *w) {
     nevh_stepper_free(s);
 }
 
-static int by_size(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static nevh_counts difference(nevh_counts a, nevh_counts b) {
     a.values -= b.values, a.gradients -= b.gradients, a.sweeps -= b.sweeps;
     a.newtons -= b.newtons, a.rescues -= b.rescues;
@@ -107,15 +102,8 @@ static nevh_counts difference(nevh_counts a, nevh_counts b) {
     return a;
 }
 
-static double cpu_seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 static void set_seconds(row *r, double seconds[], size_t count) {
-    qsort(seconds, count, sizeof *seconds, by_size);
-    r->seconds = seconds[count / 2];
+    r->seconds = numbers_median(seconds, count);
     r->spread = (seconds[(3 * count) / 4] - seconds[count / 4]) / 2;
 }
 

@@ -44,15 +44,10 @@ static void mind_signals(void) {
 
 /* What to run. */
 
-static int by_size(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static int take_times(job *j) {
     const options *o = j->options;
     const plan *p = &j->plan;
-    qsort(o->at, o->ats, sizeof *o->at, by_size);
+    numbers_sort(o->at, o->ats);
     for (size_t i = 0; i < o->ats; i++) {
         double t = o->at[i];
         if (t < p->run->t_start || t > p->t_end)

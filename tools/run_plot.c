@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "energy_plot.h"
 #include "thinned.h"
+#include "trajectory.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

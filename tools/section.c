@@ -25,14 +25,6 @@ typedef struct {
     char *ended;    /* how, where that was not at t_end; or NULL */
 } job;
 
-/* Of what is shown: that of the coordinate that it is. */
-static double period_of(nevh_scene *scene, const char *item) {
-    for (size_t k = 0; k < nevh_scene_dof(scene); k++)
-        if (strcmp(nevh_scene_coordinate(scene, k), item) == 0)
-            return nevh_scene_period(scene, k);
-    return 0;
-}
-
 /* Into (-period/2, period/2]. */
 static double wrapped(double x, double period) {
     if (period == 0)
@@ -83,7 +75,7 @@ static void add_series(job *j, size_t number) {
     s->is = nevh_scene_section_at(s->scene, number);
     s->periods = tool_allocate(s->is->items, sizeof *s->periods);
     for (size_t i = 0; i < s->is->items; i++)
-        s->periods[i] = period_of(s->scene, s->is->item[i]);
+        s->periods[i] = plan_period(j->plan, s->is->item[i]);
 }
 
 static bool asked_for(const list *names, const char *name) {

@@ -1,6 +1,6 @@
 /* nevh: why a run became unstable, and what to do.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tool.h"
+#include "pace.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

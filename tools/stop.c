@@ -1,6 +1,6 @@
 /* nevh: runs that end early, where the scene's `stop` says.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tool.h"
+#include "row.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
