@@ -308,29 +308,52 @@ static int make_formula(const setting *a) {
     return made ? e.status : NEVH_ENOMEM;
 }
 
+/* All that is shown of a scene at a state, and its text. */
+static int ask_scene(nevh_scene *s, const double q[], const double p[]) {
+    double values[2];
+    bool reached;
+    int status = nevh_scene_shown_values(s, NEVH_OBSERVABLES, 0, q, p, values);
+    if (!status)
+        status = nevh_scene_section_cross(s, 0, 0, q, p, values);
+    if (!status)
+        status = nevh_scene_part_values(s, 0, 0, q, p, values);
+    if (!status)
+        status = nevh_scene_stop_reached(s, 0, q, p, &reached);
+    return status;
+}
+
 /* Read, changed, and momenta sought. */
 static int make_scene(const setting *a) {
     (void)a;
     double q[3], p[3];
     nevh_scene *s = nevh_scene_parse(
-        "f", "[scene]\ntitle = x\neffects = T, V, d\n"
-             "[parameters]\na = 2\nb[1..2] = a, 1\n"
-             "[coordinates]\nx[1..2] = 1\nv_x[1..2] = 0.5\n"
-             "y = 1, 2 ; period pi\n[definitions]\nc = x[1]*y\n"
-             "[effects]\nT = sum(i = 1..2, p_x[i]^2/b[i]) + "
-             "p_x[1]*p_x[2]*cos(c) + p_y^2\nV = c^2\n"
-             "[friction]\nd = x: 0.1, y: 0.2\n"
-             "[invariants]\nL = x[1] ; without V\n"
-             "[observables]\no = v_y\n[picture]\nbob = x[1], x[2]\n"
-             "[sections]\ns = when y = 0, both: c\n[labels]\ny = m\n"
-             "[run]\ndt = 0.1\nintegrators = verlet, rk4\ntransform = "
-             "1 + c^2\n");
+        "f",
+        "[scene]\ntitle = x\neffects = T, V, d\n"
+        "[parameters]\na = 2\nb[1..2] = a, 1\n"
+        "[coordinates]\nx[1..2] = 1\nv_x[1..2] = 0.5\n"
+        "y = 1, 2 ; period pi\n[definitions]\nc = x[1]*y\n"
+        "[effects]\nC = file(\"none.c\", y, b)\nT = sum(i = 1..2, p_x[i]^2/b[i]) + "
+        "p_x[1]*p_x[2]*cos(c) + p_y^2\nV = c^2\n"
+        "[friction]\nd = x: 0.1, y: 0.2\n"
+        "[invariants]\nL = x[1] ; without V\n"
+        "[observables]\no = v_y\n[picture]\nbob = x[1], x[2]\n"
+        "[sections]\ns = when y = 0, both: c\n[labels]\ny = m\n"
+        "[run]\ndt = 0.1\nintegrators = verlet, rk4\ntransform = "
+        "1 + c^2\nstop = c^2 > 1e9\n");
     int status = nevh_scene_status(s);
     if (!status)
         status = nevh_scene_set(s, "a = 3");
     if (!status)
         status = nevh_scene_start(s, q, p);
+    if (!status)
+        status = ask_scene(s, q, p);
     strcpy(text, nevh_scene_message(s));
+    char *written = status ? NULL : nevh_scene_write(s, "f");
+    if (!status && !written) {
+        status = NEVH_ENOMEM;
+        strcpy(text, "out of memory");
+    }
+    free(written);
     nevh_scene_free(s);
     return status;
 }

@@ -83,7 +83,7 @@ static run run_of(nevh_scene *s) {
 
 /* The scene with effects off, and the text from which they are deleted. */
 static void assert_no_trace(nevh_scene *s, const char *const off[]) {
-    char *text = nevh_scene_write(s), *less = without_lines(text, off);
+    char *text = nevh_scene_write(s, NULL), *less = without_lines(text, off);
     nevh_scene *other = scene_of(less);
     run a = run_of(s), b = run_of(other);
     ck_assert_str_eq(a.message, b.message);

@@ -10,7 +10,7 @@ static nevh_scene *scene_of(const char *text) {
 }
 
 static nevh_scene *written(const nevh_scene *s) {
-    char *text = nevh_scene_write(s);
+    char *text = nevh_scene_write(s, NULL);
     ck_assert_ptr_nonnull(text);
     nevh_scene *copy = scene_of(text);
     free(text);
@@ -77,7 +77,8 @@ static void assert_same(nevh_scene *a, nevh_scene *b) {
 
 static void assert_round_trip(nevh_scene *s) {
     nevh_scene *copy = written(s);
-    char *once = nevh_scene_write(s), *twice = nevh_scene_write(copy);
+    char *once = nevh_scene_write(s, NULL),
+         *twice = nevh_scene_write(copy, NULL);
     assert_same(s, copy);
     ck_assert_str_eq(once, twice);
     free(once);
@@ -106,7 +107,7 @@ static void set(nevh_scene *s, const char *assignment) {
 }
 
 static void assert_written(const nevh_scene *s, const char *line, bool there) {
-    char *text = nevh_scene_write(s);
+    char *text = nevh_scene_write(s, NULL);
     ck_assert_msg(!strstr(text, line) != there, "%s\nin\n%s", line, text);
     free(text);
 }
@@ -134,18 +135,18 @@ END_TEST
 /* What failed to be set is not written. */
 START_TEST(failures_leave_no_trace) {
     nevh_scene *s = scene_of(shaken_pendulum);
-    char *before = nevh_scene_write(s);
+    char *before = nevh_scene_write(s, NULL);
     ck_assert(nevh_scene_set(s, "g = 1/0"));
     ck_assert(nevh_scene_set(s, "gg = 1"));
     ck_assert(nevh_scene_set(s, "g = 1\n+ 2"));
     ck_assert(nevh_scene_enable(s, "wind", true));
-    char *after = nevh_scene_write(s);
+    char *after = nevh_scene_write(s, NULL);
     ck_assert_str_eq(before, after);
     free(before);
     free(after);
     nevh_scene_free(s);
     s = nevh_scene_parse("test", "[effects]\n");
-    ck_assert_ptr_null(nevh_scene_write(s));
+    ck_assert_ptr_null(nevh_scene_write(s, NULL));
     nevh_scene_free(s);
 }
 END_TEST

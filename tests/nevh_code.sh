@@ -48,6 +48,12 @@ says '^                \^~~~~~$'
 exits 0 compare $work/off.nevh
 exits 2 compare $work/off.nevh --with gravity
 says 'off.nevh:12:17: error: .*--allow-code'
+exits 0 compare $work/code.nevh --without gravity
+exits 0 compare $work/code.nevh --with gravity --without gravity
+exits 2 compare $work/code.nevh --without gravity --with gravity
+says 'code.nevh:12:17: error: .*--allow-code'
+exits 2 compare $work/code.nevh --without graviti
+says 'did you mean gravity'
 exits 2 compare $work/code.nevh --allow-code
 says 'code.nevh:12:17: error: .*term\.c cannot be read'
 exits 0 compare $work/off.nevh --allow-code
@@ -84,6 +90,32 @@ has 'gravity cannot be switched on'
 exits 0 effects $work/off.nevh --impact --allow-code
 has '^ gravity +off +verlet +[0-9]'
 clean
+
+# A copy in another folder finds the same code; one beside it keeps the name.
+mkdir $work/copies
+exits 0 new $work/copies/copy.nevh --from $work/code.nevh --allow-code
+exits 0 compare $work/copies/copy.nevh --allow-code
+exits 0 new $work/beside.nevh --from $work/code.nevh --allow-code
+grep -q '^gravity = file("term.c", phi, m, l, g)$' $work/beside.nevh ||
+    fails "changes a name that is right"
+exits 0 new $work/copies/off.nevh --from $work/off.nevh --set g=2
+exits 0 compare $work/copies/off.nevh --with gravity --allow-code
+
+# Neither another text of the code nor another transform is the same run.
+$nevh run $work/code.nevh --allow-code --t-end 1e5 --every 1000 \
+    -o $work/x.csv 2>/dev/null &
+sleep 0.3
+kill -TERM $! && wait $! 2>/dev/null
+if test -e $work/x.csv.state; then
+    cp $work/term.c $work/term.kept
+    echo '/* */' >>$work/term.c
+    exits 2 run $work/code.nevh --allow-code --t-end 1e5 --every 1000 \
+        --resume $work/x.csv
+    says 'or code'
+    mv $work/term.kept $work/term.c
+    exits 0 run $work/code.nevh --allow-code --t-end 1e5 --every 1000 \
+        --resume $work/x.csv
+fi
 
 # One element of an array; velocities by differences of code.
 scene $work/element.nevh 'file("term.c", phi, m, l[2], l[1], g)'

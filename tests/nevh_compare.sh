@@ -128,4 +128,38 @@ exits 0 compare pendulum --integrators euler,rk4 --dt 0.5,0.05
 has 'Warning: a smaller dt changes the verdict of rk4: unstable at dt = 0.5'
 lacks 'verdict of euler'
 
+
+# Where the scene says stop: rows end there, the timed runs too.
+sed 's/^t_end .*/&\nstop = phi < 0.3/' "$srcdir/scenes/pendulum.nevh" \
+    >$work/stop.nevh
+exits 0 compare $work/stop.nevh --integrators verlet,gauss4 --dt 0.1 \
+    --format csv
+has '^# t = 0 \.\.\. 1000 s, or until phi < 0\.3$'
+has '^# 2 of 2 runs stopped where phi < 0\.3: t = 0\.7 \(verlet, dt = 0\.1\)$'
+has ',verlet,2,yes,central4,0\.1,7,ok,'
+has ',verlet,.*,8,0,[^,]*,[a-z-]*,'
+exits 0 compare $work/stop.nevh --integrators verlet,euler --dt 0.1,0.05 \
+    --quiet --set l=1.1
+exits 0 compare $work/stop.nevh --integrators dopri5 --format csv
+has '^# 3 of 3 runs stopped'
+lacks ',(failed|refused)'
+exits 0 gradients $work/stop.nevh --gradient central2
+has '13 steps, t = 0 \.\.\. 0\.65'
+exits 0 effects $work/stop.nevh
+has '^the run stopped at t = 0\.7$'
+exits 0 effects $work/stop.nevh --impact
+has '^With gravity the run stops at t = 0\.7\.$'
+exits 0 check $work/stop.nevh
+has 'Fastest along the orbit: w = 2\.02 '
+
+# Several gradients: verdicts that are alike are said once, others name theirs.
+exits 0 compare pendulum --integrators verlet,rk4 --gradient central2,exact \
+    --dt 0.5,0.25 --t-end 200
+test $(grep -c '^verlet keeps the energy bounded at dt = 0\.25\.$' $work/out) = 1 ||
+    fails "says the same twice"
+has '^rk4 with exact at dt = 0\.25 loses energy steadily'
+has '^Warning: a smaller dt changes the verdict of verlet with central2: '
+test $(grep -c '^Warning' $work/out) = 1 || fails "warns twice"
+exits 0 compare damped-driven-pendulum --integrators rk4 --t-end 500
+has 'gains energy steadily against the balance'
 exit $status

@@ -14,7 +14,7 @@ exits 2 cost pendulum --repeat 1.5
 exits 2 cost pendulum --by speed
 exits 2 cost pendulum --integrators verlat
 exits 2 cost double-pendulum --integrators verlet
-says 'none of the integrators fits'
+says 'verlet needs H = T\(p\) \+ V\(q\), but term'
 exits 2 compare pendulum --by state
 says 'no option of nevh compare'
 exits 2 recommend pendulum

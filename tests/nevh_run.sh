@@ -126,6 +126,16 @@ for end in 5.000000002 7.123; do
         { fails "ends with another energy"; cat $work/errors; }
 done
 
+# A transform: named by an integrator, or for all that it fits.
+exits 0 run kepler --integrators gauss4 --t-end 1 --transform '1 + x^2'
+has '^# integrator: gauss4\+transform, '
+exits 0 section henon-heiles --integrators gauss4,gauss4+transform --t-end 10 --transform 2
+has '^# integrator: gauss4, '
+exits 0 run kepler --integrators dopri5 --tolerance 1e-3 --t-end 1
+cp $work/out $work/loose
+exits 0 run kepler --integrators dopri5 --tolerance 1e-9 --t-end 1
+cmp -s $work/out $work/loose && fails "ignores --tolerance"
+
 # What a scene wants to stop at.
 sed 's/^t_end .*/&\nstop = cos(phi) > 1 - 1e-3/' "$srcdir/scenes/pendulum.nevh" \
     >$work/stop.nevh
@@ -293,6 +303,8 @@ says 'with integrator = midpoint, not integrator = gauss6'
 exits 2 run $run --gradient exact --resume $work/x.csv
 exits 2 run $run --every 50 --resume $work/x.csv
 exits 2 run $run --t-end 41 --resume $work/x.csv
+exits 2 run $run --transform '1 + phi1^2' --resume $work/x.csv
+says 'another scene|with transform'
 exits 2 run pendulum --resume $work/x.csv
 untouched
 sed 's/0/1/2' $work/x.kept >$work/x.csv

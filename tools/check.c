@@ -1,6 +1,6 @@
 /* nevh check: what can be said of a scene before it is run.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tool.h"
+#include "pace.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,7 @@
 /* nevh compare: a table of energy errors, a row an integrator and dt.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "envelope.h"
+#include "pace.h"
 #include "plot.h"
 #include <math.h>
 #include <stdlib.h>
@@ -85,31 +86,6 @@ static void run_rows(const plan *p, row_list *r, bool quiet) {
         progress(r, r->count, difftime(time(NULL), start), true);
 }
 
-static bool measures_order(const row *r) {
-    return r->ran && r->energy.verdict != NEVH_UNSTABLE && r->tolerance == 0 &&
-           r->energy.max > 1e-13;
-}
-
-/* From the row of the same scheme and the dt before. */
-void observe_orders(row rows[], size_t count) {
-    for (size_t i = 0; i < count; i++)
-        for (size_t k = i; k-- > 0;) {
-            row *b = &rows[i];
-            const row *a = &rows[k];
-            if (a->integrator != b->integrator || a->gradient != b->gradient)
-                continue;
-            if (measures_order(a) && measures_order(b) && a->dt != b->dt)
-                b->observed_order =
-                    log(a->energy.max / b->energy.max) / log(a->dt / b->dt);
-            break;
-        }
-}
-
-static void columns(table *t, const char *const names[], size_t count) {
-    for (size_t i = 0; i < count; i++)
-        table_column(t, names[i]);
-}
-
 static void show_count(table *t, double count) {
     if (count < 1e4)
         table_shown(t, "%.0f", count);
@@ -120,7 +96,7 @@ static void show_count(table *t, double count) {
 }
 
 static void show_numbers(table *t, const plan *p, const row *r) {
-    double span = p->t_end - p->run->t_start;
+    double span = r->t_end - p->run->t_start;
     table_shown(t, "%.1e", r->energy.max);
     if (r->energy.verdict >= NEVH_DRIFTS)
         table_shown(t, "%+.1e", r->energy.drift * span);
@@ -162,14 +138,14 @@ static table *shown(const plan *p, const row_list *r) {
     static const char *const errors[] = {"max energy\nerror",
                                          "drift over\nthe run", "state\nerror"};
     static const char *const last[] = {"H evals", "ms", "energy"};
-    columns(t, first, sizeof first / sizeof *first);
+    table_columns(t, first, sizeof first / sizeof *first);
     if (p->gradients.count > 1)
         table_column(t, "gradient");
     table_column(t, dt);
-    columns(t, errors, sizeof errors / sizeof *errors);
+    table_columns(t, errors, sizeof errors / sizeof *errors);
     if (p->dts > 1)
         table_column(t, "order\nseen");
-    columns(t, last, sizeof last / sizeof *last);
+    table_columns(t, last, sizeof last / sizeof *last);
     diagnostics_columns(t, p, true);
     for (size_t i = 0; i < r->count; i++) {
         if (i && r->row[i].group != r->row[i - 1].group)
@@ -178,102 +154,6 @@ static table *shown(const plan *p, const row_list *r) {
     }
     free(dt);
     return t;
-}
-
-static void note_gradients(const plan *p, list *notes) {
-    for (size_t i = 0; i < p->gradients.count; i++) {
-        const char *name = p->gradients.item[i];
-        const char *from = strcmp(name, "exact") == 0
-                               ? "derived from the formulas of H"
-                               : "from values of H alone";
-        if (p->gradient_step > 0 && strncmp(name, "central", 7) == 0)
-            list_print(notes, "gradient: %s, %s, half-spread %g", name, from,
-                       p->gradient_step);
-        else
-            list_print(notes, "gradient: %s, %s", name, from);
-    }
-}
-
-static void note_scale(const plan *p, const row rows[], size_t count,
-                       list *notes) {
-    const char *unit = nevh_scene_label(p->scene, "energy");
-    for (size_t i = 0; i < count; i++)
-        if (rows[i].ran) {
-            list_print(notes,
-                       "energy_scale: %.9g%s%s (errors are relative to "
-                       "it; H at the start is %.9g)",
-                       rows[i].energy.scale, *unit ? " " : "", unit,
-                       rows[i].energy.initial);
-            return;
-        }
-}
-
-static void note_balance(const plan *p, list *notes) {
-    const char *why = !p->friction ? "H reads the time"
-                      : p->time    ? "H reads the time, and there is friction"
-                                   : "there is friction";
-    if (p->balance)
-        list_print(notes,
-                   "%s: energy columns hold the error of the balance "
-                   "H(t) - H(0) - what came in from outside",
-                   why);
-}
-
-static bool is_limited(const plan *p, const row *r) {
-    (void)p;
-    return r->order < nevh_integrator_order(r->scheme);
-}
-
-static bool has_nominal_steps(const plan *p, const row *r) {
-    return plan_transform(p, r->integrator) ||
-           nevh_integrator_own_time(r->scheme);
-}
-
-static bool has_tolerance(const plan *p, const row *r) {
-    (void)p;
-    return r->tolerance > 0;
-}
-
-/* What is to be said where it holds for a row. */
-static void note_rows(const plan *p, const row rows[], size_t count,
-                      list *notes) {
-    static const struct {
-        bool (*holds)(const plan *, const row *);
-        const char *text;
-    } note[] = {{is_limited, "friction is put around the steps of geometric "
-                             "schemes, which limits them to order 2"},
-                {has_nominal_steps, "dt is nominal where time is transformed, "
-                                    "or the scheme chooses its own"},
-                {match_unmatched, "schemes that take no gradients, but values "
-                                  "of H alone, keep the dt given"},
-                {match_dearer, "no dt makes some implicit schemes as cheap: "
-                               "theirs is the cheapest"},
-                {has_tolerance, "adaptive schemes have a row a tolerance of "
-                                "[run], in its order; dt is their mean step"}};
-    for (size_t k = 0; k < sizeof note / sizeof *note; k++)
-        for (size_t i = 0; i < count; i++)
-            if (note[k].holds(p, &rows[i])) {
-                list_add(notes, note[k].text);
-                break;
-            }
-    if (p->match_work)
-        list_add(notes, "match = work: rows of one dt cost as many gradients "
-                        "as verlet with that dt; dt is what they take");
-}
-
-static void note_settings(const options *o, list *notes) {
-    for (size_t i = 0; i < o->settings.count; i++)
-        if (o->settings.item[i][0] == '=')
-            list_print(notes, "set: %s", o->settings.item[i] + 1);
-}
-
-void row_notes(const options *o, const plan *p, const row rows[], size_t count,
-               list *notes) {
-    note_settings(o, notes);
-    note_gradients(p, notes);
-    note_scale(p, rows, count, notes);
-    note_balance(p, notes);
-    note_rows(p, rows, count, notes);
 }
 
 /* Messages of rows without numbers, each once. */

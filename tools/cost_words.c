@@ -231,11 +231,6 @@ static double longest_cell(const costs *c) {
     return longest;
 }
 
-static int by_size(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* The median of what was repeated. */
 static double typical_spread(const costs *c) {
     size_t most = 0, count = 0;
@@ -248,8 +243,7 @@ static double typical_spread(const costs *c) {
             if (r->ran && r->spread > 0)
                 part[count++] = r->spread / r->seconds;
         }
-    qsort(part, count, sizeof *part, by_size);
-    double median = count ? part[count / 2] : 0;
+    double median = numbers_median(part, count);
     free(part);
     return median;
 }

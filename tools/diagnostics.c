@@ -1,7 +1,7 @@
 /* nevh compare --diagnostics: what a step does to phase space, how it was
    solved, and what became of the invariants.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tool.h"
+#include "row.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

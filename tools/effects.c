@@ -1,6 +1,6 @@
 /* nevh effects: what each effect reads and costs.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tool.h"
+#include "plan.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -124,13 +124,13 @@ static double seconds_of(const price *c, double gradients) {
 }
 
 static int run(const plan *p, price prices[], size_t count, list *notes) {
-    const nevh_integrator *scheme;
-    nevh_stepper *s = plan_first(p, &scheme);
+    const char *integrator;
+    double stopped;
+    nevh_stepper *s = plan_first(p, &integrator);
     if (!s)
         return TOOL_USAGE;
     uint64_t before = nevh_stepper_counts(s).gradients;
-    int status = nevh_run_until(s, p->run->t_start, p->dt[0], p->t_end, p->q,
-                                p->p, NULL, 0);
+    int status = plan_run(p, s, p->dt[0], p->q, p->p, NULL, 0, &stopped);
     double gradients = (double)(nevh_stepper_counts(s).gradients - before);
     for (size_t i = 0; i < count; i++) {
         prices[i].values = (double)nevh_field_effect_values(
@@ -140,7 +140,9 @@ static int run(const plan *p, price prices[], size_t count, list *notes) {
     list_print(notes,
                "evaluations of term instances by %s, dt = %g, gradient "
                "%s: the first of each that fits",
-               nevh_integrator_name(scheme), p->dt[0], p->gradients.item[0]);
+               integrator, p->dt[0], p->gradients.item[0]);
+    if (isfinite(stopped))
+        list_print(notes, "the run stopped at t = %.9g", stopped);
     list_add(notes, "time: of the gradients of each effect alone, this "
                     "machine's");
     if (status)

@@ -55,8 +55,7 @@ int state_errors_mean_something(plan *p) {
 /* Of one step at the shortest dt, from a few. */
 static double step_seconds(const plan *p, double dt) {
     enum { STEPS = 64 };
-    const nevh_integrator *scheme;
-    nevh_stepper *s = plan_first(p, &scheme);
+    nevh_stepper *s = plan_first(p, NULL);
     double *q = tool_allocate(p->n, sizeof *q);
     double *m = tool_allocate(p->n, sizeof *m);
     memcpy(q, p->q, p->n * sizeof *q);
@@ -102,8 +101,7 @@ int plan_search(plan *p, const options *o) {
         list_free(&p->integrators);
         fitting_integrators(p, p->gradients.item[0], &p->integrators);
     }
-    const nevh_integrator *scheme;
-    nevh_stepper *s = plan_first(p, &scheme);
+    nevh_stepper *s = plan_first(p, NULL);
     int status = s ? TOOL_OK : TOOL_USAGE;
     nevh_stepper_free(s);
     return status;

@@ -1,273 +1,10 @@
 /* nevh gradients: errors and costs of gradient methods and steps along the
    orbit, and their part in the energy error.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "ladder.h"
+#include "gradients_private.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-
-/* States of the orbit, and energies, at steps evenly apart. */
-enum { STATES = 256 };
-typedef struct {
-    size_t n, count, every;
-    double *t, *q, *p; /* n each state */
-    double *h;
-    nevh_field *field; /* for h */
-} orbit;
-
-static int record(void *data, size_t step, double t, const double q[],
-                  const double p[]) {
-    orbit *o = data;
-    if (step % o->every != 0 || o->count == STATES)
-        return 0;
-    size_t i = o->count++;
-    o->t[i] = t;
-    memcpy(o->q + i * o->n, q, o->n * sizeof *q);
-    memcpy(o->p + i * o->n, p, o->n * sizeof *p);
-    return nevh_field_value(o->field, 1, &t, q, p, &o->h[i]);
-}
-
-static orbit orbit_new(const plan *p, size_t steps) {
-    nevh_options values = {.gradient_step = 1e-3, .portable = p->portable};
-    return (orbit){.n = p->n,
-                   .every = steps / (STATES - 1) + 1,
-                   .t = tool_allocate(STATES, sizeof(double)),
-                   .q = tool_allocate(STATES * p->n, sizeof(double)),
-                   .p = tool_allocate(STATES * p->n, sizeof(double)),
-                   .h = tool_allocate(STATES, sizeof(double)),
-                   .field = nevh_field_new(p->system, &values)};
-}
-
-static void orbit_free(orbit *o) {
-    free(o->t);
-    free(o->q);
-    free(o->p);
-    free(o->h);
-    nevh_field_free(o->field);
-}
-
-typedef struct {
-    const plan *plan;
-    const nevh_integrator *scheme;
-    const nevh_system *transform;
-    double dt, scale;
-    size_t steps;
-    orbit exact; /* of the yardstick */
-    const char *yardstick;
-    double *dq, *dp; /* its gradients, n a state */
-    double size;     /* largest component among them */
-} context;
-
-static nevh_options gradient_options(const context *c, const char *gradient,
-                                     double step) {
-    nevh_options o = plan_options(c->plan, gradient);
-    o.gradient_step = step;
-    o.transform = c->transform;
-    return o;
-}
-
-/* The orbit with that gradient, watched. */
-static int follow(const context *c, const char *gradient, double step,
-                  const nevh_observer *observer) {
-    nevh_options o = gradient_options(c, gradient, step);
-    nevh_stepper *s = nevh_stepper_new(c->plan->system, c->scheme, &o);
-    size_t n = c->plan->n;
-    double *q = tool_allocate(n, sizeof *q), *p = tool_allocate(n, sizeof *p);
-    memcpy(q, c->plan->q, n * sizeof *q);
-    memcpy(p, c->plan->p, n * sizeof *p);
-    int status = nevh_stepper_status(s);
-    if (!status)
-        status = nevh_run(s, c->plan->run->t_start, c->dt, c->steps, q, p,
-                          observer, 1);
-    free(q);
-    free(p);
-    nevh_stepper_free(s);
-    return status;
-}
-
-static int evaluate(const context *c, nevh_field *f, size_t i, double dq[],
-                    double dp[]) {
-    size_t n = c->exact.n;
-    return nevh_field_gradient(f, 1, &c->exact.t[i], c->exact.q + i * n,
-                               c->exact.p + i * n, dq, dp);
-}
-
-/* Exact gradients at all states. */
-static int evaluate_yardstick(context *c) {
-    size_t n = c->exact.n;
-    nevh_options o = gradient_options(c, c->yardstick, 0);
-    nevh_field *f = nevh_field_new(c->plan->system, &o);
-    int status = nevh_field_status(f);
-    c->dq = tool_allocate(n * STATES, sizeof *c->dq);
-    c->dp = tool_allocate(n * STATES, sizeof *c->dp);
-    for (size_t i = 0; !status && i < c->exact.count; i++)
-        status = evaluate(c, f, i, c->dq + i * n, c->dp + i * n);
-    for (size_t k = 0; k < n * c->exact.count; k++)
-        c->size = fmax(c->size, fmax(fabs(c->dq[k]), fabs(c->dp[k])));
-    nevh_field_free(f);
-    return status;
-}
-
-typedef struct {
-    const char *gradient;
-    double step;                        /* 0: auto */
-    double error, truncation, rounding; /* relative to the largest component */
-    double evaluations, nanoseconds;
-    double energy, influx, floor; /* relative to the scale of energies */
-    bool good;
-    char *why;
-} finding;
-
-static double seconds_now(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-static void errors_along(const context *c, nevh_field *f, finding *g) {
-    size_t n = c->exact.n;
-    double *dq = tool_allocate(n, sizeof *dq),
-           *dp = tool_allocate(n, sizeof *dp);
-    nevh_counts before = nevh_field_counts(f);
-    for (size_t i = 0; i < c->exact.count; i++) {
-        if (evaluate(c, f, i, dq, dp))
-            g->good = false;
-        for (size_t k = 0; k < n; k++) {
-            g->error = fmax(g->error, fabs(dq[k] - c->dq[i * n + k]));
-            g->error = fmax(g->error, fabs(dp[k] - c->dp[i * n + k]));
-        }
-    }
-    g->error /= c->size;
-    g->evaluations = (nevh_field_counts(f).hamiltonians - before.hamiltonians) /
-                     (double)c->exact.count;
-    free(dq);
-    free(dp);
-}
-
-static int by_size(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-/* The median of a few passes over the orbit. */
-static double time_of(const context *c, nevh_field *f) {
-    enum { PASSES = 5 };
-    static const double enough = 2e-3; /* seconds a pass */
-    double seconds[PASSES];
-    double *out = tool_allocate(2 * c->exact.n, sizeof *out);
-    for (int pass = 0; pass < PASSES; pass++) {
-        double start = seconds_now(), now = start;
-        size_t count = 0;
-        do {
-            for (size_t i = 0; i < c->exact.count; i++, count++)
-                evaluate(c, f, i, out, out + c->exact.n);
-            now = seconds_now();
-        } while (now - start < enough);
-        seconds[pass] = (now - start) / (double)count;
-    }
-    free(out);
-    qsort(seconds, PASSES, sizeof *seconds, by_size);
-    return 1e9 * seconds[PASSES / 2];
-}
-
-/* What the choice of steps expected, the worst of all variables. */
-static void take_estimates(const context *c, nevh_field *f, finding *g) {
-    for (size_t i = 0; i < nevh_field_step_count(f); i++) {
-        nevh_step_report r = nevh_field_step_report(f, i);
-        if (r.given)
-            continue;
-        g->truncation = fmax(g->truncation, r.truncation / c->size);
-        g->rounding = fmax(g->rounding, r.rounding / c->size);
-    }
-}
-
-/* The energy that errors of a gradient bring in along an orbit: with g = dH + e
-   instead of dH, dH/dt = dH/dq e_p - dH/dp e_q.  Unlike the difference of two
-   orbits that means something where orbits part. */
-typedef struct {
-    nevh_field *exact, *other;
-    size_t n;
-    double *gradient; /* dq, dp; the same of the other: n each */
-    bool begun;
-    double t, rate, sum, most;
-} influx;
-
-static int observe_influx(void *data, size_t step, double t, const double q[],
-                          const double p[]) {
-    influx *f = data;
-    size_t n = f->n;
-    double *dq = f->gradient, *dp = dq + n, *gq = dp + n, *gp = gq + n;
-    double rate = 0;
-    (void)step;
-    int status = nevh_field_gradient(f->exact, 1, &t, q, p, dq, dp);
-    if (!status)
-        status = nevh_field_gradient(f->other, 1, &t, q, p, gq, gp);
-    for (size_t k = 0; k < n; k++)
-        rate += dq[k] * (gp[k] - dp[k]) - dp[k] * (gq[k] - dq[k]);
-    if (f->begun)
-        f->sum += (rate + f->rate) / 2 * (t - f->t);
-    f->most = fmax(f->most, fabs(f->sum));
-    f->begun = true, f->t = t, f->rate = rate;
-    return status;
-}
-
-static double influx_along(const context *c, nevh_field *other) {
-    nevh_options o = gradient_options(c, c->yardstick, 0);
-    size_t n = c->exact.n;
-    influx f = {.exact = nevh_field_new(c->plan->system, &o),
-                .other = other,
-                .n = n,
-                .gradient = tool_allocate(4 * n, sizeof(double))};
-    int status =
-        follow(c, c->yardstick, 0, &(nevh_observer){observe_influx, &f, 1});
-    nevh_field_free(f.exact);
-    free(f.gradient);
-    return status ? NAN : f.most / c->scale;
-}
-
-static double energy_along(const context *c, const finding *g) {
-    orbit o = orbit_new(c->plan, c->steps);
-    double most = 0;
-    int status =
-        follow(c, g->gradient, g->step, &(nevh_observer){record, &o, 1});
-    for (size_t i = 0; i < o.count; i++)
-        most = fmax(most, fabs(o.h[i] - o.h[0]) / c->scale);
-    orbit_free(&o);
-    return status || c->plan->balance ? NAN : most;
-}
-
-/* The mean over some states: where the orbit rests nothing is noisy. */
-static double floor_along(const context *c, nevh_field *f) {
-    size_t n = c->exact.n, apart = c->exact.count / 16 + 1, count = 0;
-    double sum = 0, one;
-    for (size_t i = 0; i < c->exact.count; i += apart, count++) {
-        if (nevh_field_energy_floor(f, c->exact.t[i], c->exact.q + i * n,
-                                    c->exact.p + i * n, c->dt, c->steps, &one))
-            return NAN;
-        sum += one * one;
-    }
-    return sqrt(sum / (double)count) / c->scale;
-}
-
-static finding find(const context *c, const char *gradient, double step) {
-    finding g = {
-        .gradient = gradient, .step = step, .good = true, .floor = NAN};
-    nevh_options o = gradient_options(c, gradient, step);
-    nevh_field *f = nevh_field_new(c->plan->system, &o);
-    g.why = text_print("%s", nevh_field_message(f));
-    g.good = !nevh_field_status(f);
-    if (g.good) {
-        errors_along(c, f, &g);
-        take_estimates(c, f, &g);
-        g.nanoseconds = time_of(c, f);
-        g.energy = energy_along(c, &g);
-        g.influx = influx_along(c, f);
-        g.floor = floor_along(c, f);
-    }
-    nevh_field_free(f);
-    return g;
-}
 
 static void add_numbers(const finding *g, table *t, bool for_people) {
     bool chosen = g->step == 0 && strncmp(g->gradient, "central", 7) == 0;
@@ -305,33 +42,19 @@ static void add_finding(page *result, const finding *g, bool for_people) {
     add_numbers(g, t, for_people);
 }
 
-/* The shortest of those that differences of full order have chosen. */
-static double own_step(const context *c, const char *gradient) {
-    nevh_options o = gradient_options(c, gradient, 0);
-    nevh_field *f = nevh_field_new(c->plan->system, &o);
-    double shortest = INFINITY;
-    for (size_t i = 0; i < nevh_field_step_count(f); i++) {
-        nevh_step_report r = nevh_field_step_report(f, i);
-        if (r.order == nevh_gradient_order(o.gradient) && !r.blind)
-            shortest = fmin(shortest, r.step);
-    }
-    nevh_field_free(f);
-    return shortest;
-}
-
 static void add_method(const context *c, page *result, const char *gradient,
                        bool for_people) {
     enum { DECADES = 2 };
-    finding g = find(c, gradient, c->plan->gradient_step);
+    finding g = gradient_find(c, gradient, c->plan->gradient_step);
     bool good = g.good;
     table_group(result->table);
     add_finding(result, &g, for_people);
     free(g.why);
     if (!good || strncmp(gradient, "central", 7) || c->plan->gradient_step > 0)
         return;
-    double middle = pow(10, round(log10(own_step(c, gradient))));
+    double middle = pow(10, round(log10(gradient_own_step(c, gradient))));
     for (int k = DECADES; isfinite(middle) && k >= -DECADES; k--) {
-        g = find(c, gradient, middle * pow(10, k));
+        g = gradient_find(c, gradient, middle * pow(10, k));
         add_finding(result, &g, for_people);
         free(g.why);
     }
@@ -360,12 +83,12 @@ static table *new_table(bool for_people) {
 }
 
 static void tell(const context *c, page *result) {
-    list_print(
-        &result->before,
-        "orbit of %s at dt = %.4g, %zu steps, t = %g ... %g; errors of "
-        "the gradient at %zu states, relative to its largest component",
-        nevh_integrator_name(c->scheme), c->dt, c->steps, c->plan->run->t_start,
-        c->plan->run->t_start + (double)c->steps * c->dt, c->exact.count);
+    list_print(&result->before,
+               "orbit of %s at dt = %.4g, %zu steps, t = %g ... %g; errors of "
+               "the gradient at %zu states, relative to its largest component",
+               c->integrator, c->dt, c->steps, c->plan->run->t_start,
+               c->plan->run->t_start + (double)c->steps * c->dt,
+               c->exact.count);
     list_print(
         &result->after,
         "truncation, rounding: what the choice of half-spreads expected. "
@@ -382,50 +105,8 @@ static void tell(const context *c, page *result) {
         list_print(&result->after,
                    "%s itself makes an energy error of %.1e at this dt: a "
                    "gradient whose part is well below that is good enough.",
-                   nevh_integrator_name(c->scheme), own);
+                   c->integrator, own);
     list_add(&result->after, "ns are this machine's.");
-}
-
-static double energy_scale(const plan *p) {
-    nevh_options o = {.gradient_step = 1e-3};
-    nevh_energy *e = nevh_energy_new(p->system, &o);
-    if (p->run->energy_scale > 0)
-        nevh_energy_set_scale(e, p->run->energy_scale);
-    nevh_energy_observe(e, 0, p->run->t_start, p->q, p->p);
-    double scale = nevh_energy_result(e, 0).scale;
-    nevh_energy_free(e);
-    return scale;
-}
-
-/* The exact gradient, or the most exact that there is. */
-static const char *find_yardstick(const plan *p) {
-    static const char *const names[] = {"exact", "complex-step", "central8"};
-    for (size_t i = 0; i < 2; i++)
-        if (gradient_fits(p, names[i], NULL))
-            return names[i];
-    return names[2];
-}
-
-static int context_make(context *c, const plan *p) {
-    static const double most_steps = 2e4;
-    nevh_stepper *s = plan_first(p, &c->scheme);
-    if (!s)
-        return TOOL_USAGE;
-    nevh_stepper_free(s);
-    c->plan = p;
-    c->dt = p->dt[p->dts - 1];
-    c->steps = (size_t)fmin(
-        fmax(round((p->t_end - p->run->t_start) / c->dt), 1), most_steps);
-    c->scale = energy_scale(p);
-    c->yardstick = find_yardstick(p);
-    c->exact = orbit_new(p, c->steps);
-    if (!follow(c, c->yardstick, 0, &(nevh_observer){record, &c->exact, 1}) &&
-        !evaluate_yardstick(c))
-        return TOOL_OK;
-    tool_refuse("%s: %s at dt = %g fails on this orbit; another integrator or "
-                "a shorter dt may not",
-                p->name, nevh_integrator_name(c->scheme), c->dt);
-    return TOOL_FAILED;
 }
 
 static int gradients_plan(const options *o, const plan *p) {
@@ -450,9 +131,7 @@ static int gradients_plan(const options *o, const plan *p) {
         status = output_page(o, &result, TOOL_OK);
     }
     page_free(&result);
-    orbit_free(&c.exact);
-    free(c.dq);
-    free(c.dp);
+    context_free(&c);
     return status;
 }
 

@@ -3,7 +3,7 @@
 #ifndef NEVH_HARD_PRIVATE_H
 #define NEVH_HARD_PRIVATE_H
 
-#include "tool.h"
+#include "pace.h"
 
 /* What is known of a case beforehand, an or. */
 enum {

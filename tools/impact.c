@@ -4,159 +4,10 @@
    Each is switched, and the run repeated by one integrator that fits both ways;
    the others stay as they are.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tool.h"
+#include "impact_private.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-
-enum { SAMPLES = 500, REPEATS = 5 };
-static const double time_enough = 0.05; /* seconds */
-static const double noticed = 0.01;     /* of the range */
-
-/* A run, and where it came by: `kept` states after every `every` steps. */
-typedef struct {
-    const plan *plan;
-    size_t every, kept;
-    double *states, *last, t;     /* SAMPLES x 2n, 2n */
-    double *low, *high;           /* 2n */
-    double energy, seconds, work; /* energy at the end; work: evaluations */
-    int status;
-    char *message;
-} orbit;
-
-typedef struct {
-    double at_end, largest, since; /* of the range; since: NAN */
-} difference;
-
-static int keep(void *data, size_t step, double t, const double q[],
-                const double p[]) {
-    orbit *o = data;
-    size_t n = o->plan->n;
-    o->t = t;
-    memcpy(o->last, q, n * sizeof *q);
-    memcpy(o->last + n, p, n * sizeof *p);
-    for (size_t k = 0; k < 2 * n; k++) {
-        o->low[k] = fmin(o->low[k], o->last[k]);
-        o->high[k] = fmax(o->high[k], o->last[k]);
-    }
-    if (step % o->every == 0 && step / o->every < SAMPLES) {
-        memcpy(o->states + step / o->every * 2 * n, o->last, 2 * n * sizeof *q);
-        o->kept = step / o->every + 1;
-    }
-    return 0;
-}
-
-static orbit new_orbit(const plan *p) {
-    size_t n = 2 * p->n;
-    double steps = (p->t_end - p->run->t_start) / p->dt[0];
-    orbit o = {.plan = p,
-               .every = (size_t)(steps / SAMPLES) + 1,
-               .states = tool_allocate(SAMPLES * n, sizeof(double)),
-               .last = tool_allocate(n, sizeof(double)),
-               .low = tool_allocate(n, sizeof(double)),
-               .high = tool_allocate(n, sizeof(double))};
-    for (size_t k = 0; k < n; k++) {
-        o.low[k] = INFINITY;
-        o.high[k] = -INFINITY;
-    }
-    return o;
-}
-
-static void free_orbit(orbit *o) {
-    free(o->states);
-    free(o->last);
-    free(o->low);
-    free(o->high);
-    free(o->message);
-}
-
-static nevh_stepper *new_stepper(const plan *p, const char *integrator) {
-    bool transformed;
-    const nevh_integrator *scheme = plan_scheme(integrator, &transformed);
-    nevh_options o = plan_options(p, p->gradients.item[0]);
-    o.transform = plan_transform(p, integrator);
-    if (nevh_integrator_needs_tolerance(scheme) && p->tolerances)
-        o.tolerance = p->tolerance[0];
-    return nevh_stepper_new(p->system, scheme, &o);
-}
-
-static int go(orbit *o, nevh_stepper *s, const nevh_observer *observer) {
-    const plan *p = o->plan;
-    double *state = tool_allocate(2 * p->n, sizeof *state);
-    memcpy(state, p->q, p->n * sizeof *state);
-    memcpy(state + p->n, p->p, p->n * sizeof *state);
-    int status = nevh_run_until(s, p->run->t_start, p->dt[0], p->t_end, state,
-                                state + p->n, observer, observer ? 1 : 0);
-    free(state);
-    return status;
-}
-
-/* The shortest of a few runs that nobody watches. */
-static void measure(orbit *o, nevh_stepper *s) {
-    double sum = 0;
-    o->seconds = INFINITY;
-    for (int i = 0; i < REPEATS && sum < time_enough; i++) {
-        nevh_counts before = nevh_stepper_counts(s);
-        nevh_stepper_reset(s);
-        clock_t start = clock();
-        go(o, s, NULL);
-        double spent = (double)(clock() - start) / CLOCKS_PER_SEC;
-        o->seconds = fmin(o->seconds, spent);
-        sum += spent;
-        o->work = (double)(nevh_stepper_counts(s).values - before.values);
-    }
-}
-
-static orbit run(const plan *p, const char *integrator) {
-    orbit o = new_orbit(p);
-    nevh_stepper *s = new_stepper(p, integrator);
-    o.status = go(&o, s, &(nevh_observer){keep, &o, 1});
-    if (o.status)
-        o.message = text_print("%s", nevh_stepper_message(s));
-    else
-        measure(&o, s);
-    nevh_field *field = nevh_stepper_field(s);
-    o.energy = NAN;
-    nevh_field_value(field, 1, &o.t, o.last, o.last + p->n, &o.energy);
-    nevh_stepper_free(s);
-    return o;
-}
-
-/* The larger of the ranges over both orbits; where a variable does not move,
-   that of the others of its kind. */
-static double range_of(const orbit *a, const orbit *b, size_t k) {
-    size_t n = a->plan->n;
-    double own = fmax(a->high[k] - a->low[k], b->high[k] - b->low[k]);
-    for (size_t i = k < n ? 0 : n; !(own > 0) && i < (k < n ? n : 2 * n); i++)
-        own = fmax(own, fmax(a->high[i] - a->low[i], b->high[i] - b->low[i]));
-    return own;
-}
-
-static double apart(const orbit *a, const orbit *b, const double x[],
-                    const double y[]) {
-    double most = 0;
-    for (size_t k = 0; k < 2 * a->plan->n; k++) {
-        double gap = fabs(x[k] - y[k]);
-        if (gap > 0)
-            most = fmax(most, gap / range_of(a, b, k));
-    }
-    return most;
-}
-
-static difference compare_orbits(const orbit *a, const orbit *b) {
-    size_t n = 2 * a->plan->n, kept = a->kept < b->kept ? a->kept : b->kept;
-    difference d = {apart(a, b, a->last, b->last), 0, NAN};
-    for (size_t i = 0; i < kept; i++) {
-        double gap = apart(a, b, a->states + i * n, b->states + i * n);
-        d.largest = fmax(d.largest, gap);
-        if (gap > noticed && isnan(d.since))
-            d.since =
-                a->plan->run->t_start + (double)(i * a->every) * a->plan->dt[0];
-    }
-    d.largest = fmax(d.largest, d.at_end);
-    return d;
-}
 
 /* Whether schemes fit: of all, and once more with a transform. */
 typedef struct {
@@ -249,7 +100,7 @@ static bool look(plan *p, const char *effect, both *b) {
     b->ran = b->integrator;
     for (int on = 0; b->integrator && on < 2; on++) {
         switch_effect(p, effect, on);
-        b->orbit[on] = run(p, b->integrator);
+        b->orbit[on] = orbit_run(p, b->integrator);
         b->ran &= !b->orbit[on].status;
     }
     return true;
@@ -260,24 +111,26 @@ static void free_both(both *b) {
         free_choice(&b->choice[on]);
         free(b->structure[on]);
         if (b->orbit[on].states)
-            free_orbit(&b->orbit[on]);
+            orbit_free(&b->orbit[on]);
     }
 }
 
-/* Schemes that fit without, but not with it: names, and how many. */
-static char *ruled_out(const both *b, size_t *count) {
-    char *names = text_print("%s", "");
-    *count = 0;
-    for (size_t i = 0; i < b->choice[0].count; i++) {
-        if (!b->choice[0].fits[i] || b->choice[1].fits[i])
-            continue;
-        char *longer = text_print("%s%s%s", names, *names ? ", " : "",
-                                  b->choice[0].name[i]);
-        free(names);
-        names = longer;
-        ++*count;
-    }
+/* Schemes that fit without, but not with it. */
+static list ruled_out(const both *b) {
+    list names = {0};
+    for (size_t i = 0; i < b->choice[0].count; i++)
+        if (b->choice[0].fits[i] && !b->choice[1].fits[i])
+            list_add(&names, b->choice[0].name[i]);
     return names;
+}
+
+static void say_end(const char *effect, bool on, const orbit *o, list *words) {
+    const char *with = on ? "With" : "Without";
+    if (o->status)
+        list_print(words, "%s %s the run fails: %s", with, effect, o->message);
+    else if (isfinite(o->stopped))
+        list_print(words, "%s %s the run stops at t = %.9g.", with, effect,
+                   o->stopped);
 }
 
 static void say(const char *effect, const both *b, const char *names,
@@ -304,9 +157,7 @@ static void say(const char *effect, const both *b, const char *names,
                    "it; give others with --integrators.",
                    effect);
     for (int on = 0; b->integrator && on < 2; on++)
-        if (b->orbit[on].status)
-            list_print(words, "%s %s the run fails: %s",
-                       on ? "With" : "Without", effect, b->orbit[on].message);
+        say_end(effect, on, &b->orbit[on], words);
 }
 
 /* All digits, but for what is to be read. */
@@ -325,10 +176,11 @@ static void put_row(const options *o, const char *effect, bool on,
     const orbit *a = &b->orbit[0], *c = &b->orbit[1];
     const bool shown = o->format == FORMAT_TABLE;
     difference d = {0};
-    size_t count;
-    char *names = ruled_out(b, &count);
+    list out = ruled_out(b);
+    size_t count = out.count;
+    char *names = list_joined(&out);
     if (b->ran)
-        d = compare_orbits(a, c);
+        d = orbit_difference(a, c);
     table_text(t, effect);
     table_text(t, on ? "on" : "off");
     table_text(t, b->integrator);
@@ -346,18 +198,8 @@ static void put_row(const options *o, const char *effect, bool on,
     else
         table_text(t, names);
     say(effect, b, names, count, &result->after);
+    list_free(&out);
     free(names);
-}
-
-static double scale_of(const plan *p) {
-    nevh_options o = {.gradient_step = 1e-3, .q = p->q, .p = p->p};
-    nevh_energy *e = nevh_energy_new(p->system, &o);
-    if (p->run->energy_scale > 0)
-        nevh_energy_set_scale(e, p->run->energy_scale);
-    nevh_energy_observe(e, 0, p->run->t_start, p->q, p->p);
-    double scale = nevh_energy_result(e, 0).scale;
-    nevh_energy_free(e);
-    return scale;
 }
 
 static void columns(table *t) {
@@ -377,7 +219,7 @@ static void columns(table *t) {
 
 static void add_all(const options *o, plan *p, page *result) {
     size_t count = nevh_system_effect_count(p->system);
-    double scale = scale_of(p);
+    double scale = plan_energy_scale(p);
     for (size_t i = 0; i < count; i++) {
         char *effect = text_print("%s", nevh_system_effect_name(p->system, i));
         bool on = nevh_system_effect_on(p->system, effect);

@@ -4,16 +4,11 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 static const double rounding = 1e-13;
 static const double one_row = 0.1;      /* of the budget */
 static const double usable_below = 0.5; /* of the scale of errors */
-
-static double seconds_used(void) {
-    return (double)clock() / CLOCKS_PER_SEC;
-}
 
 static double longest_dt(const plan *p) {
     double longest = 0;
@@ -40,7 +35,7 @@ search search_begin(const plan *p, const options *o, double budget) {
                 .by_state = o->by_state,
                 .quiet = o->quiet,
                 .budget = budget,
-                .started = seconds_used(),
+                .started = cpu_seconds(),
                 .landing = grid_dt(grid_dt_place(8 * longest_dt(p)))};
     s.plan.hurried = true;
     s.plan.patience = one_row * budget;
@@ -54,12 +49,11 @@ search search_begin(const plan *p, const options *o, double budget) {
 }
 
 bool search_is_over(const search *s, double share) {
-    return seconds_used() - s->started > share * s->budget;
+    return cpu_seconds() - s->started > share * s->budget;
 }
 
 static bool shows_progress(const search *s) {
-    return !s->quiet && seconds_used() - s->started > 1 &&
-           isatty(STDERR_FILENO);
+    return !s->quiet && cpu_seconds() - s->started > 1 && isatty(STDERR_FILENO);
 }
 
 static void progress(const search *s, const row *r) {

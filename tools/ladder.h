@@ -3,7 +3,7 @@
 #ifndef NEVH_LADDER_H
 #define NEVH_LADDER_H
 
-#include "tool.h"
+#include "row.h"
 
 /* grid.c: step sizes to choose from, and what errors over them tell.  No run is
    made here. */

@@ -1,16 +1,22 @@
 bin_PROGRAMS += tools/nevh
 tools_nevh_SOURCES = \
 	tools/tool.h \
+	tools/plan.h \
+	tools/row.h \
+	tools/pace.h \
 	tools/nevh.c \
 	tools/options_private.h \
 	tools/options.c \
 	tools/arguments.c \
 	tools/words.c \
+	tools/numbers.c \
 	tools/table.c \
 	tools/output.c \
 	tools/scenes.c \
 	tools/plan.c \
+	tools/stop.c \
 	tools/row.c \
+	tools/row_notes.c \
 	tools/records.c \
 	tools/ladder.h \
 	tools/grid.c \
@@ -24,7 +30,9 @@ tools_nevh_SOURCES = \
 	tools/recommend_private.h \
 	tools/recommend.c \
 	tools/advice.c \
+	tools/gradients_private.h \
 	tools/gradients.c \
+	tools/gradients_along.c \
 	tools/compare.c \
 	tools/verdict.c \
 	tools/state.c \
@@ -46,7 +54,9 @@ tools_nevh_SOURCES = \
 	tools/hard.c \
 	tools/check.c \
 	tools/section.c \
+	tools/impact_private.h \
 	tools/impact.c \
+	tools/impact_orbit.c \
 	tools/new.c \
 	tools/sample.c \
 	tools/list.c \

@@ -1,6 +1,6 @@
 /* nevh: steps of equal work.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tool.h"
+#include "row.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -79,7 +79,7 @@ bool match_unmatched(const plan *p, const row *r) {
 }
 
 bool match_dearer(const plan *p, const row *r) {
-    double steps = (p->t_end - p->run->t_start) / r->nominal_dt;
+    double steps = (r->t_end - p->run->t_start) / r->nominal_dt;
     return p->match_work && r->ran && r->tolerance == 0 &&
            (double)r->counts.gradients > 1.1 * steps + 1;
 }

@@ -50,8 +50,8 @@ static int help_all(void) {
 }
 
 static int help(size_t i) {
-    printf("Usage: nevh %s %s [OPTION]...\n%s\n", known[i].name,
-           known[i].operand, known[i].help);
+    printf("Usage: nevh %s %s%s[OPTION]...\n%s\n", known[i].name,
+           known[i].operand, *known[i].operand ? " " : "", known[i].help);
     options_help(stdout, known[i].bit);
     return TOOL_OK;
 }

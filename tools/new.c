@@ -11,7 +11,7 @@ static char *text_from(const options *o) {
     nevh_scene *scene;
     if (scene_open_named(&scene, o->from, o))
         return NULL;
-    char *text = nevh_scene_write(scene);
+    char *text = nevh_scene_write(scene, o->operands.item[1]);
     if (!text)
         tool_refuse("out of memory");
     nevh_scene_free(scene);

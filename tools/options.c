@@ -26,9 +26,9 @@ static const struct {
      "switch an effect off"},
     {"set", "NAME=VALUE", OF_SCENES | FOR_NEW, read_set, "change a parameter"},
     {"integrators", "A,B", OF_SCENES | FOR_HARD, read_integrators,
-     "instead of the scene's"},
+     "see nevh list integrators; instead of the scene's"},
     {"dt", "A,B", OF_SCENES, read_dt, "time steps, instead of the scene's"},
-    {"tolerance", "A,B", FOR_COMPARE, read_tolerance,
+    {"tolerance", "A,B", FOR_COMPARE | FOR_RUN | FOR_SECTION, read_tolerance,
      "of adaptive schemes, instead of the scene's"},
     {"t-end", "T", OF_SCENES, read_t_end, "the end, instead of the scene's"},
     {"gradient", "A,B", OF_SCENES | FOR_HARD, read_gradient,
@@ -50,8 +50,9 @@ static const struct {
     {"resume", "FILE", FOR_RUN, read_resume,
      "go on with FILE, which nevh run -o FILE left unfinished,\n"
      "                            from FILE.state, as if never interrupted"},
-    {"transform", "FORMULA", FOR_COMPARE, read_transform,
-     "of time, for rows NAME+transform; instead of the scene's"},
+    {"transform", "FORMULA", FOR_COMPARE | FOR_RUN | FOR_SECTION,
+     read_transform,
+     "of time, for integrators NAME+transform; instead of the scene's"},
     {"match", "steps|work", FOR_COMPARE, read_match,
      "work: equal numbers of gradients, not of steps"},
     {"diagnostics", NULL, FOR_COMPARE, read_diagnostics,
@@ -72,13 +73,14 @@ static const struct {
      "what each effect changes in the orbit, costs, and rules out"},
     {"all", NULL, FOR_LIST | FOR_HARD, read_all,
      "list: with names in other packages and sources; hard: each run"},
-    {"format", "table|csv|json", OF_TABLES, read_format, ""},
+    {"format", "table|csv|json", OF_TABLES, read_format,
+     "csv for run and section, table for others, if not given"},
     {"output", "FILE", OF_TABLES, read_file,
-     "write there (-o): run line by line, others when it is whole"},
+     "-o FILE: write there; run line by line, others when it is whole"},
     {"quiet", NULL, OF_TABLES | FOR_NEW, read_quiet,
      "the table alone, and no progress"},
-    {"help", NULL, ~0u, read_help, ""},
-    {"version", NULL, ~0u, read_version, ""},
+    {"help", NULL, ~0u, read_help, "-h: this"},
+    {"version", NULL, ~0u, read_version, "and the licence"},
 };
 enum { KNOWN = sizeof known / sizeof *known };
 
@@ -90,8 +92,7 @@ void options_help(FILE *f, unsigned which) {
             continue;
         snprintf(text, sizeof text, "--%s %s", known[i].name,
                  known[i].argument ? known[i].argument : "");
-        fprintf(f, *known[i].help ? "  %-25s %s\n" : "  %s\n", text,
-                known[i].help);
+        fprintf(f, "  %-25s %s\n", text, known[i].help);
     }
 }
 
@@ -152,6 +153,12 @@ int options_check(const options *o, unsigned which) {
             return tool_refuse("--%s is no option of nevh %s", known[k].name,
                                o->operands.item[0]);
     return TOOL_OK;
+}
+
+void settings_notes(const options *o, list *notes) {
+    for (size_t i = 0; i < o->settings.count; i++)
+        if (o->settings.item[i][0] == '=')
+            list_print(notes, "set: %s", o->settings.item[i] + 1);
 }
 
 void options_free(options *o) {

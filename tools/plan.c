@@ -1,6 +1,6 @@
 /* nevh: what is to be run, from options, scene and defaults.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tool.h"
+#include "plan.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,6 +39,7 @@ static void default_integrators(plan *p) {
 static void add_transformed(plan *p, const options *o) {
     size_t count = p->integrators.count;
     bool used = !o->transform;
+    p->added = used ? 0 : count;
     for (size_t i = 0; i < count; i++) {
         const nevh_integrator *scheme =
             nevh_integrator_named(p->integrators.item[i]);
@@ -206,36 +207,79 @@ nevh_stepper *plan_stepper(const plan *p, const char *name) {
     bool transformed;
     const nevh_integrator *scheme = plan_scheme(name, &transformed);
     o.transform = plan_transform(p, name);
-    if (nevh_integrator_needs_tolerance(scheme) && p->tolerances)
+    if (nevh_integrator_adaptive(scheme) && p->tolerances)
         o.tolerance = p->tolerance[0];
     return nevh_stepper_new(p->system, scheme, &o);
 }
 
-nevh_stepper *plan_first(const plan *p, const nevh_integrator **scheme) {
-    for (size_t i = 0; i < p->integrators.count; i++) {
-        const char *name = p->integrators.item[i];
-        bool transformed;
-        *scheme = plan_scheme(name, &transformed);
-        nevh_stepper *s = plan_stepper(p, name);
+/* The first from there on that fits; NULL: none does. */
+static nevh_stepper *fitting(const plan *p, size_t from, const char **name) {
+    const list *names = &p->integrators;
+    for (size_t i = from; i < names->count; i++) {
+        nevh_stepper *s = plan_stepper(p, names->item[i]);
+        if (name)
+            *name = names->item[i];
         if (!nevh_stepper_status(s))
             return s;
+        if (names->count == 1)
+            tool_refuse("%s: %s", p->name, nevh_stepper_message(s));
         nevh_stepper_free(s);
     }
-    tool_refuse("%s: none of the integrators fits; see nevh check", p->name);
     return NULL;
 }
 
+nevh_stepper *plan_first(const plan *p, const char **name) {
+    nevh_stepper *s = p->added ? fitting(p, p->added, name) : NULL;
+    if (!s)
+        s = fitting(p, 0, name);
+    if (!s && p->integrators.count > 1)
+        tool_refuse("%s: none of the integrators fits; see nevh check",
+                    p->name);
+    return s;
+}
+
+void plan_note_first(const plan *p, const char *integrator, list *notes) {
+    list_print(notes, "integrator: %s, dt = %.9g%s", integrator, p->dt[0],
+               p->integrators.count > 1 || p->dts > 1
+                   ? ": the first integrator of the list that fits, and the "
+                     "first dt"
+                   : "");
+    bool transformed;
+    if (nevh_integrator_adaptive(plan_scheme(integrator, &transformed)) &&
+        p->tolerances)
+        list_print(notes, "tolerance: %.9g%s", p->tolerance[0],
+                   p->tolerances > 1 ? ", the first of the list" : "");
+    list_print(notes, "gradient: %s%s", p->gradients.item[0],
+               p->gradients.count > 1 ? ", the first of the list" : "");
+}
+
+double plan_period(const plan *p, const char *shown) {
+    for (size_t k = 0; k < p->n; k++)
+        if (strcmp(nevh_scene_coordinate(p->scene, k), shown) == 0)
+            return nevh_scene_period(p->scene, k);
+    return 0;
+}
+
+double plan_energy_scale(const plan *p) {
+    if (p->run->energy_scale > 0)
+        return p->run->energy_scale;
+    nevh_energy *e = nevh_energy_new(p->system, NULL);
+    nevh_energy_observe(e, 0, p->run->t_start, p->q, p->p);
+    double scale = nevh_energy_result(e, 0).scale;
+    nevh_energy_free(e);
+    return scale;
+}
+
 static char *effects_that_are(const nevh_system *s, bool on) {
-    char *names = text_print("%s", "");
+    list names = {0};
     for (size_t i = 0; i < nevh_system_effect_count(s); i++) {
         const char *name = nevh_system_effect_name(s, i);
-        if (nevh_system_effect_on(s, name) != on)
-            continue;
-        char *longer = text_print(*names ? "%s, %s" : "%s%s", names, name);
-        free(names);
-        names = longer;
+        if (nevh_system_effect_on(s, name) == on)
+            list_add(&names, name);
     }
-    return names;
+    char *text = list_joined(&names);
+    list_free(&names);
+    return text;
 }
 
 char *plan_structure(const plan *p) {
@@ -270,7 +314,10 @@ void plan_notes(const plan *p, list *notes) {
     list_add(notes, *title ? title : p->name);
     note_effects(p, notes);
     list_add(notes, structure);
-    list_print(notes, "t = %g ... %g%s%s", p->run->t_start, p->t_end,
-               *unit ? " " : "", unit);
+    list_print(notes,
+               nevh_scene_stops(p->scene) ? "t = %g ... %g%s%s, or until %s"
+                                          : "t = %g ... %g%s%s",
+               p->run->t_start, p->t_end, *unit ? " " : "", unit,
+               nevh_scene_stop_text(p->scene));
     free(structure);
 }

@@ -7,7 +7,7 @@
 #ifndef NEVH_PLOT_H
 #define NEVH_PLOT_H
 
-#include "tool.h"
+#include "plan.h"
 
 typedef struct plot plot;
 typedef enum {

@@ -4,7 +4,7 @@
    is brought back to it again and again [G. Benettin, L. Galgani, J.-M.
    Strelcyn, Kolmogorov entropy and numerical experiments, Phys. Rev. A 14
    (1976) 2338-2345]. SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tool.h"
+#include "pace.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -91,14 +91,27 @@ static void look_for_noise(flight *f, double t) {
         f->found->noise = fmax(f->found->noise, noise / f->scale);
 }
 
+static void take_first_lane(flight *f) {
+    for (size_t k = 0; k < 2 * f->plan->n; k++)
+        f->trial[k] = f->z[2 * k];
+}
+
 static void look(flight *f, int i, double t) {
     size_t n = f->plan->n;
-    for (size_t k = 0; k < 2 * n; k++)
-        f->trial[k] = f->z[2 * k];
+    take_first_lane(f);
     pace_observe(&f->fastest, 0, t, f->trial, f->trial + n);
     look_for_noise(f, t);
     if (i % EDGE_EVERY == 0 && n <= MOST_DOF)
         look_for_edge(f, t);
+}
+
+/* Whether the run would end here. */
+static bool is_stopped(flight *f, double t) {
+    bool reached;
+    take_first_lane(f);
+    return !nevh_scene_stop_reached(f->plan->scene, t, f->trial,
+                                    f->trial + f->plan->n, &reached) &&
+           reached;
 }
 
 static void fly(flight *f, nevh_stepper *s) {
@@ -114,7 +127,8 @@ static void fly(flight *f, nevh_stepper *s) {
         t = p->run->t_start + i * h;
         bring_back(f);
         look(f, i, t);
-        if ((double)(clock() - f->begin) / CLOCKS_PER_SEC > enough)
+        if (is_stopped(f, t) ||
+            (double)(clock() - f->begin) / CLOCKS_PER_SEC > enough)
             break;
     }
     f->found->flown = t - p->run->t_start;
@@ -150,14 +164,6 @@ static nevh_stepper *new_stepper(const flight *f) {
     return nevh_stepper_new(p->system, nevh_dop853, &o);
 }
 
-static double energy_scale(const plan *p, const nevh_options *o) {
-    nevh_energy *e = nevh_energy_new(p->system, o);
-    nevh_energy_observe(e, 0, p->run->t_start, p->q, p->p);
-    double scale = nevh_energy_result(e, 0).scale;
-    nevh_energy_free(e);
-    return scale;
-}
-
 preflight preflight_fly(const plan *p) {
     preflight found = {.edge = INFINITY};
     nevh_options given = plan_options(p, p->gradients.item[0]);
@@ -169,7 +175,7 @@ preflight preflight_fly(const plan *p) {
     o.gradient_step = 0;
     f.field = nevh_field_new(p->system, &o);
     f.gradient = nevh_field_new(p->system, &given);
-    f.scale = energy_scale(p, &given);
+    f.scale = plan_energy_scale(p);
     if (take_lengths(&f, &o)) {
         o.scale = f.length;
         f.fastest.rates = nevh_rates_new(p->system, &o);

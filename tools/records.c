@@ -1,6 +1,6 @@
 /* nevh: rows as records: the columns of CSV and JSON.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tool.h"
+#include "row.h"
 #include <math.h>
 
 static double when(bool condition, double value) {

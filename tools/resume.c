@@ -125,7 +125,7 @@ static int compare_settings(const char *name, const char *saved,
             now += b + (now[b] == '\n');
         } else if (strncmp(now, "scene", 5) == 0) {
             return tool_refuse("%s is of another scene, or of other parameters "
-                               "or effects",
+                               "or effects, or code",
                                name);
         } else {
             return tool_refuse("%s is of a run with %.*s, not %.*s", name, a,

@@ -44,15 +44,10 @@ static void mind_signals(void) {
 
 /* What to run. */
 
-static int by_size(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static int take_times(job *j) {
     const options *o = j->options;
     const plan *p = &j->plan;
-    qsort(o->at, o->ats, sizeof *o->at, by_size);
+    numbers_sort(o->at, o->ats);
     for (size_t i = 0; i < o->ats; i++) {
         double t = o->at[i];
         if (t < p->run->t_start || t > p->t_end)
@@ -101,22 +96,9 @@ static int choose_rows(job *j) {
     return TOOL_OK;
 }
 
-/* The first that fits. */
 static int choose_integrator(job *j) {
-    const list *names = &j->plan.integrators;
-    for (size_t i = 0; i < names->count; i++) {
-        j->integrator = names->item[i];
-        j->stepper = plan_stepper(&j->plan, j->integrator);
-        if (!nevh_stepper_status(j->stepper))
-            return TOOL_OK;
-        if (names->count == 1)
-            return tool_refuse("%s: %s", j->plan.name,
-                               nevh_stepper_message(j->stepper));
-        nevh_stepper_free(j->stepper);
-        j->stepper = NULL;
-    }
-    return tool_refuse("%s: none of the integrators fits; see nevh check",
-                       j->plan.name);
+    j->stepper = plan_first(&j->plan, &j->integrator);
+    return j->stepper ? TOOL_OK : TOOL_USAGE;
 }
 
 static int check_options(const options *o) {
@@ -130,22 +112,11 @@ static int check_options(const options *o) {
 
 static void note(job *j) {
     const plan *p = &j->plan;
-    const options *o = j->options;
-    bool first = p->integrators.count > 1 || p->dts > 1;
     plan_notes(p, &j->notes);
     list_print(&j->notes, "scene: %s", p->name);
-    for (size_t i = 0; i < o->settings.count; i++)
-        if (o->settings.item[i][0] == '=')
-            list_print(&j->notes, "set: %s", o->settings.item[i] + 1);
-    list_print(&j->notes, "integrator: %s, dt = %.9g%s", j->integrator,
-               p->dt[0],
-               first ? ": the first integrator of the list that fits, and the "
-                       "first dt"
-                     : "");
-    list_print(&j->notes, "gradient: %s", p->gradients.item[0]);
+    settings_notes(j->options, &j->notes);
+    plan_note_first(p, j->integrator, &j->notes);
     list_print(&j->notes, "rows: %s", j->rows_text);
-    if (nevh_scene_stops(p->scene))
-        list_print(&j->notes, "stop: %s", nevh_scene_stop_text(p->scene));
 }
 
 /* All that the orbit and its rows depend on. */

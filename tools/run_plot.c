@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "energy_plot.h"
 #include "thinned.h"
+#include "trajectory.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,26 +18,20 @@ typedef struct {
     thinned rows;
 } orbit;
 
-/* A run of its own, which ends where `stop` says. */
-static int stop_where_asked(void *data, size_t step, double t, const double q[],
-                            const double p[]) {
+static int keep_time(void *data, size_t step, double t, const double q[],
+                     const double p[]) {
     orbit *o = data;
-    bool reached = false;
-    (void)step;
+    (void)step, (void)q, (void)p;
     o->t = t;
-    int status =
-        nevh_scene_stops(o->plan->scene)
-            ? nevh_scene_stop_reached(o->plan->scene, t, q, p, &reached)
-            : NEVH_OK;
-    return status ? status : reached ? NEVH_STOPPED : NEVH_OK;
+    return NEVH_OK;
 }
 
 /* What goes wrong shows in the picture, and was said by nevh run. */
 static void follow(orbit *o, nevh_observer observers[], size_t count) {
-    const plan *p = o->plan;
-    observers[count - 1] = (nevh_observer){stop_where_asked, o, 1};
-    nevh_run_until(o->stepper, p->run->t_start, p->dt[0], p->t_end, o->q, o->p,
-                   observers, count);
+    double stopped;
+    observers[count - 1] = (nevh_observer){keep_time, o, 1};
+    plan_run(o->plan, o->stepper, o->plan->dt[0], o->q, o->p, observers, count,
+             &stopped);
 }
 
 static char *title_of(const orbit *o, const char *more) {

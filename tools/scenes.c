@@ -73,12 +73,6 @@ static char *find(const char *name) {
     return file;
 }
 
-static int change(nevh_scene *scene, const char *setting) {
-    return *setting == '='
-               ? nevh_scene_set(scene, setting + 1)
-               : nevh_scene_enable(scene, setting + 1, *setting == '+');
-}
-
 /* The scene's own messages have file, line and column; the line and the caret
    come after that. */
 static int report(const nevh_scene *scene) {
@@ -90,7 +84,8 @@ static int read(nevh_scene *scene, const options *o) {
     if (nevh_scene_status(scene))
         return report(scene);
     for (size_t i = 0; i < o->settings.count; i++)
-        if (change(scene, o->settings.item[i]))
+        if (o->settings.item[i][0] == '=' &&
+            nevh_scene_set(scene, o->settings.item[i] + 1))
             return report(scene);
     if (o->transform && nevh_scene_set_transform(scene, o->transform))
         return report(scene);
@@ -106,13 +101,25 @@ int scene_open(nevh_scene **scene, const options *o) {
                        o->operands.item[0]);
 }
 
+/* Effects are switched first, so that code of those that are off is not asked
+   for. */
+static nevh_scene *read_switched(const char *file, const options *o) {
+    const char **effects = tool_allocate(o->settings.count, sizeof *effects);
+    nevh_scene_options how = {.allow_code = o->allow_code, .effects = effects};
+    for (size_t i = 0; i < o->settings.count; i++)
+        if (o->settings.item[i][0] != '=')
+            effects[how.n_effects++] = o->settings.item[i];
+    nevh_scene *scene = nevh_scene_read_with(file, &how);
+    free(effects);
+    return scene;
+}
+
 int scene_open_named(nevh_scene **scene, const char *name, const options *o) {
     *scene = NULL;
     char *file = find(name);
     if (!file)
         return TOOL_USAGE;
-    *scene = nevh_scene_read_with(
-        file, &(nevh_scene_options){.allow_code = o->allow_code});
+    *scene = read_switched(file, o);
     free(file);
     if (*scene && !read(*scene, o))
         return TOOL_OK;

@@ -21,18 +21,9 @@ typedef struct {
     series *all;
     size_t count;
     const char *integrator;
-    bool stopped; /* by the scene's own condition, at t */
-    double t;
-    char *ended; /* how, where the run came to no end of its own; or NULL */
+    double stopped; /* where the scene's `stop` said; NAN */
+    char *ended;    /* how, where that was not at t_end; or NULL */
 } job;
-
-/* Of what is shown: that of the coordinate that it is. */
-static double period_of(nevh_scene *scene, const char *item) {
-    for (size_t k = 0; k < nevh_scene_dof(scene); k++)
-        if (strcmp(nevh_scene_coordinate(scene, k), item) == 0)
-            return nevh_scene_period(scene, k);
-    return 0;
-}
 
 /* Into (-period/2, period/2]. */
 static double wrapped(double x, double period) {
@@ -77,15 +68,6 @@ static int value(void *data, double t, const double q[], const double p[],
     return nevh_scene_section_cross(s->scene, s->number, t, q, p, result);
 }
 
-static int stop(void *data, size_t step, double t, const double q[],
-                const double p[]) {
-    job *j = data;
-    (void)step;
-    j->t = t;
-    return nevh_scene_stop_reached(j->plan->scene, t, q, p, &j->stopped) ||
-           j->stopped;
-}
-
 static void add_series(job *j, size_t number) {
     series *s = &j->all[j->count++];
     s->scene = j->plan->scene;
@@ -93,14 +75,11 @@ static void add_series(job *j, size_t number) {
     s->is = nevh_scene_section_at(s->scene, number);
     s->periods = tool_allocate(s->is->items, sizeof *s->periods);
     for (size_t i = 0; i < s->is->items; i++)
-        s->periods[i] = period_of(s->scene, s->is->item[i]);
+        s->periods[i] = plan_period(j->plan, s->is->item[i]);
 }
 
 static bool asked_for(const list *names, const char *name) {
-    for (size_t i = 0; i < names->count; i++)
-        if (strcmp(names->item[i], name) == 0)
-            return true;
-    return names->count == 0;
+    return names->count == 0 || list_has(names, name);
 }
 
 static int check_names(const plan *p, const list *names) {
@@ -110,7 +89,7 @@ static int check_names(const plan *p, const list *names) {
     for (size_t i = 0; i < count; i++)
         list_add(&known, nevh_scene_section_at(p->scene, i)->name);
     for (size_t i = 0; !status && i < names->count; i++)
-        if (!asked_for(&known, names->item[i]) || known.count == 0)
+        if (!list_has(&known, names->item[i]))
             status = tool_unknown("section", names->item[i], &known);
     if (!status && count == 0)
         status = tool_refuse("%s: the scene has no [sections], as: swing = "
@@ -163,13 +142,10 @@ static int explain(job *j, int status, const nevh_stepper *s,
                    const nevh_sections *x) {
     const char *why = nevh_scene_message(j->plan->scene);
     int looking = nevh_sections_status(x);
+    if (isfinite(j->stopped))
+        j->ended = stop_words(j->plan, j->stopped);
     if (!status)
         return TOOL_OK;
-    if (j->stopped && !looking) {
-        j->ended = text_print("stopped at t = %.9g: %s", j->t,
-                              nevh_scene_stop_text(j->plan->scene));
-        return TOOL_OK;
-    }
     if (!*why)
         why = looking ? nevh_sections_message(x) : nevh_stepper_message(s);
     j->ended = text_print("failed: %s", why);
@@ -180,12 +156,11 @@ static int explain(job *j, int status, const nevh_stepper *s,
 static int run(job *j, nevh_stepper *s) {
     const plan *p = j->plan;
     nevh_sections *x = watch(j, s);
-    nevh_observer observers[2] = {{nevh_sections_observe, x, 1}, {stop, j, 1}};
-    size_t count = nevh_scene_stops(p->scene) ? 2 : 1;
+    nevh_observer observer = {nevh_sections_observe, x, 1};
     int status = nevh_sections_status(x);
     if (!status)
-        status = nevh_run_until(s, p->run->t_start, p->dt[0], p->t_end, p->q,
-                                p->p, observers, count);
+        status =
+            plan_run(p, s, p->dt[0], p->q, p->p, &observer, 1, &j->stopped);
     status = explain(j, status, s, x);
     nevh_sections_free(x);
     return status;
@@ -195,7 +170,7 @@ static int run(job *j, nevh_stepper *s) {
 static void list_items(const job *j, list *items) {
     for (size_t i = 0; i < j->count; i++)
         for (size_t k = 0; k < j->all[i].is->items; k++)
-            if (items->count == 0 || !asked_for(items, j->all[i].is->item[k]))
+            if (!list_has(items, j->all[i].is->item[k]))
                 list_add(items, j->all[i].is->item[k]);
 }
 
@@ -223,17 +198,10 @@ static void fill(table *t, const job *j, const list *items) {
 
 static void note(const job *j, const options *o, list *notes) {
     const plan *p = j->plan;
-    bool first = p->integrators.count > 1 || p->dts > 1;
     plan_notes(p, notes);
     list_print(notes, "scene: %s", p->name);
-    for (size_t i = 0; i < o->settings.count; i++)
-        if (o->settings.item[i][0] == '=')
-            list_print(notes, "set: %s", o->settings.item[i] + 1);
-    list_print(notes, "integrator: %s, dt = %.9g%s", j->integrator, p->dt[0],
-               first ? ": the first integrator of the list that fits, and the "
-                       "first dt"
-                     : "");
-    list_print(notes, "gradient: %s", p->gradients.item[0]);
+    settings_notes(o, notes);
+    plan_note_first(p, j->integrator, notes);
     for (size_t i = 0; i < j->count; i++)
         list_print(notes, "section %s: %zu points", j->all[i].is->name,
                    j->all[i].points);
@@ -276,27 +244,9 @@ static int print(const job *j, const options *o, int status) {
     return status;
 }
 
-/* The first integrator that fits. */
-static nevh_stepper *fitting(job *j) {
-    const list *names = &j->plan->integrators;
-    for (size_t i = 0; i < names->count; i++) {
-        j->integrator = names->item[i];
-        nevh_stepper *s = plan_stepper(j->plan, j->integrator);
-        if (!nevh_stepper_status(s))
-            return s;
-        if (names->count == 1)
-            tool_refuse("%s: %s", j->plan->name, nevh_stepper_message(s));
-        nevh_stepper_free(s);
-    }
-    if (names->count > 1)
-        tool_refuse("%s: none of the integrators fits; see nevh check",
-                    j->plan->name);
-    return NULL;
-}
-
 int section(const options *o) {
     plan p;
-    job j = {0};
+    job j = {.stopped = NAN};
     nevh_stepper *s = NULL;
     options as = with_format(o);
     int status = plan_make(&p, o);
@@ -304,7 +254,7 @@ int section(const options *o) {
         status = choose(&j, &p, o);
     if (!status)
         status = plot_check(&as);
-    if (!status && !(s = fitting(&j)))
+    if (!status && !(s = plan_first(&p, &j.integrator)))
         status = TOOL_USAGE;
     if (!status)
         status = print(&j, o, run(&j, s));

@@ -15,25 +15,13 @@ typedef struct {
     double begin;  /* of the period to show */
 } column;
 
-static double period_of(nevh_scene *scene, const char *name) {
-    for (size_t k = 0; k < nevh_scene_dof(scene); k++)
-        if (strcmp(nevh_scene_coordinate(scene, k), name) == 0)
-            return nevh_scene_period(scene, k);
-    return 0;
-}
-
-static int by_size(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* An angle that stays in one half turn is not to be cut there. */
 static double find_begin(const column *c) {
     double *sorted = tool_allocate(c->points, sizeof *sorted);
     double begin = -c->period / 2;
     for (size_t k = 0; k < c->points; k++)
         sorted[k] = c->number[k * c->width];
-    qsort(sorted, c->points, sizeof *sorted, by_size);
+    numbers_sort(sorted, c->points);
     for (size_t k = 1; k < c->points; k++)
         if (sorted[k] - sorted[k - 1] > c->period / 2)
             begin = (sorted[k] + sorted[k - 1]) / 2;
@@ -43,7 +31,7 @@ static double find_begin(const column *c) {
 
 static column column_of(const plan *p, const char *name, size_t points,
                         const double numbers[], size_t width, size_t place) {
-    column c = {numbers + place, points, width, period_of(p->scene, name), 0};
+    column c = {numbers + place, points, width, plan_period(p, name), 0};
     if (c.period > 0 && points)
         c.begin = find_begin(&c);
     return c;

@@ -1,8 +1,9 @@
 /* nevh: why a run became unstable, and what to do.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tool.h"
+#include "pace.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { SAMPLES = 64 };
 static const double unstable_above = 1; /* as nevh_energy_report says */
@@ -133,24 +134,47 @@ static bool is_first(const row rows[], size_t i) {
     return true;
 }
 
-static void tell_cause(const plan *p, const row *r, list *words) {
+static char *cause_of(const plan *p, const row *r) {
     nevh_options o = plan_options(p, r->gradient);
     o.transform = plan_transform(p, r->integrator);
     o.tolerance = r->tolerance;
     o.balance = p->balance;
     pace fastest = stability_pace(p->system, r->scheme, &o,
                                   p->run->energy_scale, r->dt, p->t_end);
-    char *cause = stability_cause(r->scheme, nevh_stability_limit(r->scheme),
-                                  r->dt, &fastest);
-    if (cause)
-        list_print(words, "%s at dt = %.4g: %s.", r->integrator, r->dt, cause);
+    return stability_cause(r->scheme, nevh_stability_limit(r->scheme), r->dt,
+                           &fastest);
+}
+
+/* All rows from there on that the same is to be said of; their causes go. */
+static void tell_cause(const row rows[], size_t count, char *causes[],
+                       size_t first, list *words) {
+    list names = {0};
+    char *cause = causes[first];
+    for (size_t i = first; i < count; i++) {
+        if (!causes[i] || rows[i].dt != rows[first].dt ||
+            strcmp(causes[i], cause) != 0)
+            continue;
+        list_add(&names, rows[i].integrator);
+        if (i > first)
+            free(causes[i]);
+        causes[i] = NULL;
+    }
+    char *joined = list_joined(&names);
+    list_print(words, "%s at dt = %.4g: %s.", joined, rows[first].dt, cause);
+    free(joined);
     free(cause);
+    list_free(&names);
 }
 
 void stability_words(const plan *p, const row rows[], size_t count,
                      list *words) {
+    char **causes = tool_allocate(count, sizeof *causes);
     for (size_t i = 0; i < count; i++)
         if (rows[i].ran && rows[i].energy.verdict == NEVH_UNSTABLE &&
             rows[i].tolerance == 0 && is_first(rows, i))
-            tell_cause(p, &rows[i], words);
+            causes[i] = cause_of(p, &rows[i]);
+    for (size_t i = 0; i < count; i++)
+        if (causes[i])
+            tell_cause(rows, count, causes, i, words);
+    free(causes);
 }

@@ -1,6 +1,6 @@
 /* nevh: state errors: the reference of a plan, and how they are shown.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tool.h"
+#include "row.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -78,37 +78,24 @@ void state_show(table *t, const plan *p, const row *r) {
         table_shown(t, "%.0e", r->state_error);
 }
 
-static char *names_out_of_step(const row rows[], size_t count, size_t *found) {
+static list names_out_of_step(const row rows[], size_t count) {
     list names = {0};
-    char *text = text_print("%s", "");
-    for (size_t i = 0; i < count; i++) {
-        bool known = false;
-        const row *r = &rows[i];
-        if (!state_out_of_step(r) || r->energy.verdict != NEVH_BOUNDED)
-            continue;
-        for (size_t k = 0; k < names.count; k++)
-            known = known || strcmp(names.item[k], r->integrator) == 0;
-        if (!known)
-            list_add(&names, r->integrator);
-    }
-    *found = names.count;
-    for (size_t k = 0; k < names.count; k++) {
-        const char *join = k == 0 ? "" : k + 1 == names.count ? " and " : ", ";
-        char *longer = text_print("%s%s%s", text, join, names.item[k]);
-        free(text);
-        text = longer;
-    }
-    list_free(&names);
-    return text;
+    for (size_t i = 0; i < count; i++)
+        if (state_out_of_step(&rows[i]) &&
+            rows[i].energy.verdict == NEVH_BOUNDED &&
+            !list_has(&names, rows[i].integrator))
+            list_add(&names, rows[i].integrator);
+    return names;
 }
 
 void state_words(const row rows[], size_t count, list *words) {
-    size_t found;
-    char *names = names_out_of_step(rows, count, &found);
-    if (found)
+    list names = names_out_of_step(rows, count);
+    char *text = list_joined(&names);
+    if (names.count)
         list_print(
             words,
-            "Bounded energy is not an accurate orbit: %s %s out of step.",
-            names, found == 1 ? "is" : "are");
-    free(names);
+            "Bounded energy is not an accurate orbit: %s %s out of step.", text,
+            names.count == 1 ? "is" : "are");
+    list_free(&names);
+    free(text);
 }

@@ -48,6 +48,11 @@ static void add(table *t, kind k, const char *text) {
     t->begins = false;
 }
 
+void table_columns(table *t, const char *const titles[], size_t count) {
+    for (size_t i = 0; i < count; i++)
+        table_column(t, titles[i]);
+}
+
 void table_text(table *t, const char *text) {
     add(t, text ? TEXT : EMPTY, text ? text : "");
 }

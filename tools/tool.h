@@ -1,4 +1,22 @@
 /* nevh: what the parts of the command share.
+
+   nevh.c calls one function a command, which is given the options:
+
+       compare     compare.c    rows of row.h, a run each
+       run         run.c        an orbit of trajectory.h, line by line
+       section     section.c
+       cost        cost.c       ladders of ladder.h: rows at many steps
+       recommend   recommend.c  the same
+       gradients   gradients.c
+       check       check.c      pace.h: a flight ahead
+       effects     effects.c, impact.c
+       hard        hard.c
+       new, list   new.c, list.c
+
+   All but the last three begin with a plan (plan.h): scene, options and
+   defaults made into what is to be run.  Most end with a page: notes, a table
+   (table.c), words.  Those that draw fill a plot (plot.h), which gnuplot
+   draws.  FILE_private.h is shared by the files that are named FILE_*.c.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef NEVH_TOOL_H
 #define NEVH_TOOL_H
@@ -19,6 +37,8 @@ void list_add(list *, const char *text); /* a copy */
 __attribute__((format(printf, 2, 3))) void list_print(list *,
                                                       const char *format, ...);
 void list_split(list *, const char *text); /* at commas */
+bool list_has(const list *, const char *text);
+char *list_joined(const list *); /* with commas */
 void list_free(list *);
 void *tool_allocate(size_t count, size_t size); /* zeros */
 __attribute__((format(printf, 1, 2))) char *text_print(const char *format, ...);
@@ -30,6 +50,11 @@ __attribute__((format(printf, 1, 2))) int tool_refuse(const char *format, ...);
    closest. */
 int tool_unknown(const char *kind, const char *name, const list *known);
 
+/* numbers.c */
+void numbers_sort(double[], size_t count);
+double numbers_median(double[], size_t count); /* sorts them; 0 of none */
+double cpu_seconds(void);
+
 /* table.c: rows of texts and numbers. */
 typedef enum { FORMAT_TABLE, FORMAT_CSV, FORMAT_JSON } table_format;
 typedef struct table table;
@@ -37,6 +62,7 @@ table *table_new(void);
 void table_free(table *);
 /* The next column; lines of the title are separated by \n. */
 void table_column(table *, const char *title);
+void table_columns(table *, const char *const titles[], size_t count);
 /* The next cell of the row.  NULL, and numbers that are not finite, leave it
    empty. */
 void table_text(table *, const char *text);
@@ -99,6 +125,8 @@ typedef struct {
 int options_read(options *, int argc, char **argv);
 /* That all options given are for this command. */
 int options_check(const options *, unsigned which);
+/* What --set gave, a line each. */
+void settings_notes(const options *, list *notes);
 void options_free(options *);
 void options_help(FILE *, unsigned which);
 
@@ -127,161 +155,6 @@ void scenes_installed(list *names, list *files);
 /* The file of a scene in a folder given from that of the installed ones; NULL
    when there is none. */
 char *scene_file(const char *beside, const char *name);
-
-/* plan.c: the rows to run, from options, scene and defaults. */
-typedef struct {
-    nevh_scene *scene;
-    const nevh_system *system;
-    const nevh_scene_run *run;
-    const char *name;
-    size_t n;
-    double *q, *p; /* at t_start */
-    double t_end;
-    const double *dt, *tolerance;
-    size_t dts, tolerances;
-    list integrators, gradients;
-    double gradient_step;
-    const double *gradient_steps; /* as in nevh_options */
-    size_t repeats;               /* of timed runs; 0: chosen */
-    bool portable, friction, time, balance;
-    bool hurried;    /* rows are to be finished later */
-    double patience; /* seconds that a row may take; 0: any */
-    bool match_work, diagnostics;
-    nevh_reference *reference; /* NULL: not asked for, or there is none */
-    char *no_reference;        /* why there is none */
-} plan;
-/* returns  TOOL_OK, or TOOL_USAGE with the message printed */
-int plan_make(plan *, const options *);
-void plan_free(plan *);
-nevh_options plan_options(const plan *, const char *gradient);
-/* The scheme of "gauss4" or "gauss4+transform"; NULL for other names. */
-const nevh_integrator *plan_scheme(const char *name, bool *transformed);
-/* The transform that it is to be planned with: of names with "+transform", and
-   of schemes that choose their own times; NULL: none. */
-const nevh_system *plan_transform(const plan *, const char *name);
-/* The integrator of that name, planned for the first gradient. */
-nevh_stepper *plan_stepper(const plan *, const char *name);
-/* The first integrator that fits, planned for the first gradient; NULL, with a
-   message, when none does. */
-nevh_stepper *plan_first(const plan *, const nevh_integrator **);
-/* Title, effects, structure of H, span. */
-void plan_notes(const plan *, list *notes);
-char *plan_structure(const plan *);
-
-/* impact.c */
-int impact(const options *, plan *);
-
-/* row.c: one run of compare. */
-typedef struct {
-    const char *integrator, *gradient;
-    const nevh_integrator *scheme;
-    double dt, tolerance; /* 0: fixed steps */
-    double nominal_dt;    /* before match_row */
-    size_t group;         /* rows of one gradient and dt */
-    int order, failed;    /* failed: of the exit status */
-    size_t steps;
-    char *status;
-    bool ran, late; /* there are numbers; patience was at its end */
-    nevh_energy_report energy;
-    nevh_counts counts;
-    double seconds, spread; /* median, and half of what the middle half spans */
-    double observed_order;  /* NAN: unknown */
-    double state_error;     /* NAN: unknown or meaningless */
-    double symplecticity_error, reversal_error;
-    double *changes; /* of invariants, the largest; NULL: not asked for */
-    struct envelope *errors; /* of the energy; NULL: not asked for */
-} row;
-void row_run(const plan *, row *);
-/* Of a row that ran in a hurry: its time again, and when it became unstable.
-   dt       as the row was run with
-   repeats  0: chosen */
-void row_finish(const plan *, row *, double dt, size_t repeats);
-/* Planned as for that row. */
-nevh_stepper *row_stepper(const plan *, const row *, bool balance);
-/* records.c: rows as the columns of CSV and JSON. */
-table *records(const plan *, const row rows[], size_t count);
-/* compare.c: observed_order, of rows with the same scheme beside each other;
-   notes of settings, gradients, scale and what holds for some rows. */
-void observe_orders(row rows[], size_t count);
-void row_notes(const options *, const plan *, const row rows[], size_t count,
-               list *notes);
-/* compare.c, verdict.c */
-void verdict_words(const plan *, const row rows[], size_t count, list *words);
-
-/* state.c: makes the reference of a plan, after which rows have state errors;
-   TOOL_OK, or TOOL_USAGE with the message printed. */
-int plan_reference(plan *);
-void state_notes(const plan *, list *notes);
-bool state_out_of_step(const row *);
-void state_show(table *, const plan *, const row *);
-void state_words(const row rows[], size_t count, list *words);
-
-/* match.c: the dt with which the row costs as much as verlet with its dt, where
-   the plan asks for that. */
-void match_row(const plan *, row *);
-/* Whether that cannot be told, or no dt is as cheap. */
-bool match_unmatched(const plan *, const row *);
-bool match_dearer(const plan *, const row *);
-
-/* diagnostics.c: of a plan that asks for them. */
-typedef struct invariants invariants;
-invariants *invariants_new(const plan *);
-int invariants_observe(void *, size_t step, double t, const double q[],
-                       const double p[]);
-double *invariants_result(invariants *); /* frees it */
-void diagnose_row(const plan *, row *);
-void diagnostics_columns(table *, const plan *, bool is_table);
-void diagnostics_record(table *, const plan *, const row *);
-void diagnostics_show(table *, const plan *, const row *);
-
-/* compare_plot.c, run_plot.c: as plot_write.  The latter makes a run of its
-   own, with the first dt and gradient. */
-int compare_plot(const options *, const plan *, const row rows[], size_t count);
-int run_plot(const options *, const plan *, const char *integrator);
-int run_plot_check(const options *, const plan *); /* as plot_check */
-
-/* stability.c: why a run became unstable. */
-/* The largest frequency, or rate of growth, that an orbit's states have, and
-   when. */
-typedef struct {
-    nevh_rates *rates;
-    double frequency, t;
-} pace;
-/* A nevh_observe_fn; data is the pace. */
-int pace_observe(void *, size_t step, double t, const double q[],
-                 const double p[]);
-/* That of a run up to its end, its failure, or an energy error above `scale`
-   (0: that of the energy); with the options of the run, whose q and p are its
-   start.  Its rates are gone. */
-pace stability_pace(const nevh_system *, const nevh_integrator *,
-                    const nevh_options *, double scale, double dt,
-                    double t_end);
-/* Whether h w = x is beyond what a scheme of that limit bears. */
-bool stability_exceeded(const nevh_integrator *, double limit, double x);
-/* The likely cause of trouble at that pace, and a step or schemes to take; NULL
-   where none is known. */
-char *stability_cause(const nevh_integrator *, double limit, double dt,
-                      const pace *);
-/* The same of each unstable row of compare. */
-void stability_words(const plan *, const row rows[], size_t count, list *words);
-
-/* preflight.c: what a short flight ahead says of a run. */
-typedef struct {
-    double frequency, fastest_at; /* as a pace; 0: nothing is known */
-    double growth;                /* largest Lyapunov exponent; 0: no chaos */
-    double flown;                 /* time */
-    double noise; /* of the gradient: relative energy error; NAN */
-    double edge;  /* of H: distance in lengths; INFINITY: none is near */
-    size_t edge_variable; /* coordinates first */
-    double edge_at, edge_time;
-    char *failure; /* NULL, or why the orbit could not be followed */
-} preflight;
-/* failure is to be freed.
-   cost     about a second at most */
-preflight preflight_fly(const plan *);
-void preflight_words(const plan *, const preflight *, list *notes);
-/* Of a scheme, its limit of stability given, at h w = x; NULL: nothing. */
-const char *preflight_verdict(double limit, double x);
 
 typedef int command(const options *);
 command compare, list_what, check, effects, run_scene, section, new_scene;

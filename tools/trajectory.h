@@ -3,7 +3,7 @@
 #ifndef NEVH_TRAJECTORY_H
 #define NEVH_TRAJECTORY_H
 
-#include "tool.h"
+#include "plan.h"
 #include <signal.h>
 
 /* lines.c: a file that only ever holds whole lines, or stdout.
@@ -93,5 +93,10 @@ bool trajectory_finished(const trajectory *);
 /* To and from what is saved; arrays are the trajectory's. */
 run_state *trajectory_state(trajectory *);
 int trajectory_restore(trajectory *);
+
+/* run_plot.c: as plot_write and plot_check; draws a run of its own, with the
+   first dt and gradient. */
+int run_plot(const options *, const plan *, const char *integrator);
+int run_plot_check(const options *, const plan *);
 
 #endif

@@ -1,15 +1,9 @@
 /* nevh compare: the table in words.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tool.h"
+#include "row.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static char *append(char *names, const char *name) {
-    char *longer = text_print(*names ? "%s, %s" : "%s%s", names, name);
-    free(names);
-    return longer;
-}
 
 static bool is(const row *r, nevh_verdict verdict) {
     return r->ran && r->energy.verdict == verdict;
@@ -28,14 +22,44 @@ static bool always(const row rows[], size_t count, size_t i,
 
 static void tell_all(const row rows[], size_t count, nevh_verdict verdict,
                      const char *one, const char *many, list *words) {
-    char *names = text_print("%s", "");
-    size_t found = 0;
+    list names = {0};
     for (size_t i = 0; i < count; i++)
         if (always(rows, count, i, verdict))
-            names = append(names, rows[i].integrator), found++;
-    if (found)
-        list_print(words, "%s %s", names, found == 1 ? one : many);
-    free(names);
+            list_add(&names, rows[i].integrator);
+    char *text = list_joined(&names);
+    if (names.count)
+        list_print(words, "%s %s", text, names.count == 1 ? one : many);
+    list_free(&names);
+    free(text);
+}
+
+static bool same_place(const row *a, const row *b) {
+    return strcmp(a->integrator, b->integrator) == 0 &&
+           a->tolerance == b->tolerance && (a->tolerance > 0 || a->dt == b->dt);
+}
+
+/* "dt = 0.1", and the gradient where others have another verdict there. */
+static char *place_of(const row rows[], size_t count, const row *r) {
+    bool adapts = r->tolerance > 0, differ = false;
+    for (size_t k = 0; k < count; k++)
+        differ |= same_place(&rows[k], r) && !is(&rows[k], r->energy.verdict);
+    return text_print("%s = %.4g%s%s", adapts ? "tolerance" : "dt",
+                      adapts ? r->tolerance : r->dt, differ ? " with " : "",
+                      differ ? r->gradient : "");
+}
+
+static bool several_gradients(const row rows[], size_t count) {
+    for (size_t k = 1; k < count; k++)
+        if (strcmp(rows[k].gradient, rows[0].gradient) != 0)
+            return true;
+    return false;
+}
+
+/* The integrator, and the gradient where there are several. */
+static char *name_of(const row rows[], size_t count, const row *r) {
+    bool several = several_gradients(rows, count);
+    return text_print("%s%s%s", r->integrator, several ? " with " : "",
+                      several ? r->gradient : "");
 }
 
 /* The bounded row that a drifting one is to be compared with: symplectic, in
@@ -53,7 +77,7 @@ static const row *bounded_beside(const row rows[], size_t count,
 static void tell_crossing(const plan *p, const row *r, const row *b,
                           const char *text, list *words) {
     static const double long_after = 1e4; /* runs: of no practical meaning */
-    double span = p->t_end - p->run->t_start;
+    double span = r->t_end - p->run->t_start;
     double passes = b ? b->energy.max / fabs(r->energy.drift) : 0;
     double t = p->run->t_start + passes;
     if (!b)
@@ -74,32 +98,54 @@ static void tell_crossing(const plan *p, const row *r, const row *b,
 static void tell_drift(const plan *p, const row rows[], size_t count,
                        const row *r, list *words) {
     const row *b = bounded_beside(rows, count, r);
-    double span = p->t_end - p->run->t_start;
-    char *text = text_print(
-        "%s at dt = %.4g %s energy steadily, %.2g %% of the "
-        "scale over the run (slope %.3g +- %.1g, R^2 = %.4f)",
-        r->integrator, r->dt, r->energy.drift < 0 ? "loses" : "gains",
-        100 * fabs(r->energy.drift) * span, r->energy.drift,
-        r->energy.drift_error, r->energy.straightness);
+    char *name = name_of(rows, count, r);
+    double span = r->t_end - p->run->t_start;
+    char *text =
+        text_print("%s at dt = %.4g %s energy steadily%s, %.2g %% of the "
+                   "scale over the run (slope %.3g +- %.1g, R^2 = %.4f)",
+                   name, r->dt, r->energy.drift < 0 ? "loses" : "gains",
+                   p->balance ? " against the balance" : "",
+                   100 * fabs(r->energy.drift) * span, r->energy.drift,
+                   r->energy.drift_error, r->energy.straightness);
     tell_crossing(p, r, b, text, words);
+    free(name);
     free(text);
 }
 
-static void tell_mixed(const row rows[], size_t count, size_t i, list *words) {
+/* Of an integrator with several verdicts, where it has that one. */
+static void tell_some(const row rows[], size_t count, const char *integrator,
+                      nevh_verdict verdict, list *words) {
     static const char *const text[] = {
         [NEVH_BOUNDED] = "keeps the energy bounded",
         [NEVH_RANDOM_WALK] = "lets the energy wander",
         [NEVH_UNSTABLE] = "is unstable"};
-    nevh_verdict verdict = rows[i].energy.verdict;
-    if (!rows[i].ran || verdict == NEVH_DRIFTS)
-        return;
-    for (size_t k = 0; k < count; k++)
-        if (strcmp(rows[k].integrator, rows[i].integrator) == 0 &&
-            !is(&rows[k], verdict)) {
-            list_print(words, "%s at dt = %.4g %s.", rows[i].integrator,
-                       rows[i].dt, text[verdict]);
-            return;
-        }
+    list places = {0};
+    for (size_t k = 0; k < count; k++) {
+        if (strcmp(rows[k].integrator, integrator) != 0 ||
+            !is(&rows[k], verdict))
+            continue;
+        char *place = place_of(rows, count, &rows[k]);
+        if (!list_has(&places, place))
+            list_add(&places, place);
+        free(place);
+    }
+    char *joined = list_joined(&places);
+    if (places.count)
+        list_print(words, "%s %s at %s.", integrator, text[verdict], joined);
+    list_free(&places);
+    free(joined);
+}
+
+/* Row i, where it is the first of its integrator, whose rows differ. */
+static void tell_mixed(const row rows[], size_t count, size_t i, list *words) {
+    static const nevh_verdict told[] = {NEVH_BOUNDED, NEVH_RANDOM_WALK,
+                                        NEVH_UNSTABLE};
+    bool first = true;
+    for (size_t k = 0; k < i; k++)
+        first &= strcmp(rows[k].integrator, rows[i].integrator) != 0;
+    for (size_t v = 0; first && v < sizeof told / sizeof *told; v++)
+        if (!always(rows, count, i, told[v]))
+            tell_some(rows, count, rows[i].integrator, told[v], words);
 }
 
 /* The row of the same scheme with the next longer dt. */
@@ -115,16 +161,27 @@ static const row *longer(const row rows[], const row *r) {
 }
 
 static void warn_of_changes(const row rows[], size_t count, list *words) {
+    char *text = NULL;
     for (size_t i = 0; i < count; i++) {
         const row *b = &rows[i], *a = longer(rows, b);
-        if (a && a->energy.verdict != b->energy.verdict)
-            list_print(words,
-                       "Warning: a smaller dt changes the verdict of %s: %s at "
-                       "dt = %.4g, %s at %.4g.  Trust it when yet another "
-                       "does not.",
-                       b->integrator, nevh_verdict_name(a->energy.verdict),
-                       a->dt, nevh_verdict_name(b->energy.verdict), b->dt);
+        if (!a || a->energy.verdict == b->energy.verdict)
+            continue;
+        char *name = name_of(rows, count, b);
+        char *more = text_print("%s of %s: %s at dt = %.4g, %s at %.4g",
+                                text ? text : "", name,
+                                nevh_verdict_name(a->energy.verdict), a->dt,
+                                nevh_verdict_name(b->energy.verdict), b->dt);
+        free(name);
+        free(text);
+        text = text_print("%s;", more);
+        free(more);
     }
+    if (text)
+        list_print(words,
+                   "Warning: a smaller dt changes the verdict%.*s.  Trust it "
+                   "when yet another does not.",
+                   (int)strlen(text) - 1, text);
+    free(text);
 }
 
 void verdict_words(const plan *p, const row rows[], size_t count, list *words) {

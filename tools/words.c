@@ -65,6 +65,23 @@ void list_split(list *l, const char *text) {
     }
 }
 
+bool list_has(const list *l, const char *text) {
+    for (size_t i = 0; i < l->count; i++)
+        if (strcmp(l->item[i], text) == 0)
+            return true;
+    return false;
+}
+
+char *list_joined(const list *l) {
+    char *text = text_print("%s", l->count ? l->item[0] : "");
+    for (size_t i = 1; i < l->count; i++) {
+        char *longer = text_print("%s, %s", text, l->item[i]);
+        free(text);
+        text = longer;
+    }
+    return text;
+}
+
 void list_free(list *l) {
     for (size_t i = 0; i < l->count; i++)
         free(l->item[i]);

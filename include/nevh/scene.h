@@ -56,6 +56,10 @@ NEVH_API void nevh_scene_free(nevh_scene *); /* NULL is allowed */
    threads share the system. */
 typedef struct {
     bool allow_code; /* compile and run C code that the scene names */
+    /* Effects to switch before any code is compiled, in that order: "+NAME" on,
+       "-NAME" off.  NULL: as the scene says. */
+    const char *const *effects;
+    size_t n_effects;
 } nevh_scene_options;
 /* As nevh_scene_read; NULL options are zeros. */
 NEVH_API nevh_scene *nevh_scene_read_with(const char *path,
@@ -82,9 +86,11 @@ NEVH_API int nevh_scene_enable(nevh_scene *, const char *effect, bool on);
 /* The scene as text: its own lines with their comments, in which parameters
    that were set and effects that were switched have what they have now.  Read
    again it is the same scene, to the last bit of its orbits.
+   path     of the file that it is for: names of C files are changed to be found
+            from its folder, which there must be; NULL: they stay
    returns  text, to be freed with free(); lines end with newlines; NULL when
             memory is out, or the scene was not read */
-NEVH_API char *nevh_scene_write(const nevh_scene *);
+NEVH_API char *nevh_scene_write(const nevh_scene *, const char *path);
 
 NEVH_API const char *nevh_scene_title(const nevh_scene *);  /* "" if none */
 NEVH_API const char *nevh_scene_source(const nevh_scene *); /* "" if none */
@@ -96,7 +102,8 @@ NEVH_API const char *nevh_scene_coordinate(const nevh_scene *, size_t k);
    x[3] has that of x unless it has one of its own. */
 NEVH_API const char *nevh_scene_label(const nevh_scene *, const char *name);
 /* A number that scenes share which say the same, up to comments and space, with
-   the same parameters set and effects on; others hardly do. */
+   the same parameters and transform set, effects on and texts of C code loaded;
+   others hardly do. */
 NEVH_API uint64_t nevh_scene_digest(const nevh_scene *);
 
 /* The system, effects switched as the scene says, friction included.  Owned by

@@ -40,11 +40,10 @@ const char *nevh_scene_label(const nevh_scene *s, const char *name) {
     return text_of(s, NEVH__LABELS, array);
 }
 
-/* FNV-1a, 64 bits [G. Fowler, L. C. Noll, K.-P. Vo; draft-eastlake-fnv], of a
-   text and the zero at its end. */
+/* A text and the zero at its end. */
 static uint64_t digest_text(uint64_t digest, const char *text) {
     do
-        digest = (digest ^ (unsigned char)*text) * 0x100000001B3u;
+        digest = nevh__digest_byte(digest, (unsigned char)*text);
     while (*text++);
     return digest;
 }
@@ -56,7 +55,7 @@ static uint64_t digest_statement(uint64_t digest,
 }
 
 uint64_t nevh_scene_digest(const nevh_scene *s) {
-    uint64_t digest = 0xCBF29CE484222325u;
+    uint64_t digest = nevh__digest_begin;
     for (size_t i = 0; i < s->n_statements; i++)
         digest = digest_statement(digest ^ s->statements[i].section,
                                   &s->statements[i]);
@@ -64,7 +63,9 @@ uint64_t nevh_scene_digest(const nevh_scene *s) {
         digest = digest_statement(digest, s->assignments[i]);
     for (size_t i = 0; i < s->n_effects; i++)
         digest = digest_text(digest, s->effects[i].on ? "on" : "off");
-    return digest;
+    if (s->transform)
+        digest = digest_text(digest, s->transform->text);
+    return nevh__scene_digest_code(s, digest);
 }
 
 const nevh_system *nevh_scene_system(nevh_scene *s) {

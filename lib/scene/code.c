@@ -1,7 +1,7 @@
 /* nevh: a file of C becomes functions: the system's compiler makes a shared
    object of it, in a folder of its own, which is gone once that is loaded.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#define _POSIX_C_SOURCE 200809L
+#define _XOPEN_SOURCE 700
 #include "scene/code_private.h"
 #include <dlfcn.h>
 #include <stdio.h>
@@ -121,6 +121,15 @@ bool nevh__code_load(const char *path, nevh__code *code, const char **what) {
     free(object);
     free(folder);
     return !*what;
+}
+
+char *nevh__folder_of(const char *path) {
+    const char *slash = strrchr(path, '/');
+    char *given = slash ? nevh__text("%.*s", (int)(slash - path) + 1, path)
+                        : nevh__text("%s", ".");
+    char *folder = given ? realpath(given, NULL) : NULL;
+    free(given);
+    return folder;
 }
 
 void nevh__code_unload(nevh__code *code) {

@@ -15,6 +15,7 @@ struct nevh__code {
     void *library;
     nevh__code_value value;
     nevh__code_gradient gradient; /* NULL: none */
+    uint64_t digest;              /* of the file's text */
     char *output;                 /* of the compiler, where it failed */
 };
 

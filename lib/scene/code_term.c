@@ -205,11 +205,15 @@ static char *path_of(const nevh_scene *s, const char *name) {
     return nevh__text("%.*s/%s", (int)(slash - s->name), s->name, name);
 }
 
-static bool is_there(nevh_scene *s, const nevh__piece *name, const char *path) {
+static bool digest_file(nevh_scene *s, const nevh__piece *name,
+                        const char *path, uint64_t *digest) {
     FILE *file = fopen(path, "r");
     if (!file)
         return nevh__scene_fail(s, NEVH_EINVAL, name, "%s cannot be read: %s",
                                 path, strerror(errno));
+    *digest = nevh__digest_begin;
+    for (int c; (c = getc(file)) != EOF;)
+        *digest = nevh__digest_byte(*digest, (unsigned char)c);
     fclose(file);
     return true;
 }
@@ -224,7 +228,9 @@ static bool load(nevh_scene *s, const nevh__piece *name, nevh__code *code) {
     char *path = path_of(s, name->text);
     if (!path)
         return nevh__scene_no_memory(s);
-    if (is_there(s, name, path) && !nevh__code_load(path, code, &what)) {
+    uint64_t digest = 0;
+    if (digest_file(s, name, path, &digest) &&
+        !nevh__code_load(path, code, &what)) {
         char *text = nevh__text(what, name->text);
         nevh__scene_fail(s, NEVH_EINVAL, name, "%s", text ? text : "");
         if (code->output)
@@ -232,6 +238,8 @@ static bool load(nevh_scene *s, const nevh__piece *name, nevh__code *code) {
         nevh__code_unload(code);
         free(text);
     }
+    if (code->value)
+        code->digest = digest;
     free(path);
     return code->value;
 }
@@ -330,6 +338,14 @@ bool nevh__scene_load_code(nevh_scene *s, const char *effect) {
             !load_statement(s, s->model, &s->statements[i]))
             return false;
     return true;
+}
+
+uint64_t nevh__scene_digest_code(const nevh_scene *s, uint64_t digest) {
+    for (size_t i = 0; s->codes && i < s->n_statements; i++)
+        for (size_t k = 0; s->codes[i] && k < sizeof s->codes[i]->digest; k++)
+            digest = nevh__digest_byte(
+                digest, (unsigned char)(s->codes[i]->digest >> 8 * k));
+    return digest;
 }
 
 void nevh__scene_unload_code(nevh_scene *s) {

@@ -50,15 +50,18 @@ static nevh_scene *new_scene(const char *name) {
     return s;
 }
 
-static void begin(nevh_scene *s, const char *text, size_t bytes) {
-    if (nevh__scene_cut(s, text, bytes) && nevh__scene_effects(s))
+static void begin(nevh_scene *s, const nevh_scene_options *options,
+                  const char *text, size_t bytes) {
+    s->allow_code = options->allow_code;
+    if (nevh__scene_cut(s, text, bytes) && nevh__scene_effects(s) &&
+        nevh__scene_switch(s, options))
         s->model = new_model(s);
 }
 
 nevh_scene *nevh_scene_parse(const char *name, const char *text) {
     nevh_scene *s = new_scene(name);
     if (s)
-        begin(s, text, strlen(text));
+        begin(s, &(nevh_scene_options){0}, text, strlen(text));
     return s;
 }
 
@@ -98,8 +101,6 @@ nevh_scene *nevh_scene_read(const char *path) {
 nevh_scene *nevh_scene_read_with(const char *path,
                                  const nevh_scene_options *options) {
     nevh_scene *s = new_scene(path);
-    if (s && options)
-        s->allow_code = options->allow_code;
     FILE *file = s ? fopen(path, "rb") : NULL;
     if (!file) {
         if (s)
@@ -110,7 +111,7 @@ nevh_scene *nevh_scene_read_with(const char *path,
     char *text = read_all(s, file, &bytes);
     fclose(file);
     if (text)
-        begin(s, text, bytes);
+        begin(s, options ? options : &(nevh_scene_options){0}, text, bytes);
     free(text);
     return s;
 }
@@ -239,16 +240,10 @@ int nevh_scene_set_transform(nevh_scene *s, const char *formula) {
 int nevh_scene_enable(nevh_scene *s, const char *effect, bool on) {
     if (!nevh__scene_begin(s))
         return s->status;
-    nevh__switch *found = nevh__scene_effect(s, effect);
-    if (found) {
-        if (on && !nevh__scene_load_code(s, effect))
-            return s->status;
-        found->on = on;
-        s->switched = true;
-        return nevh_system_enable(s->model->system, effect, on);
-    }
-    nevh__line line = {0, effect, strlen(effect)};
-    nevh__piece piece = {&line, effect, effect};
-    nevh__scene_fail_effect(s, &piece);
-    return s->status;
+    nevh__switch *found = nevh__scene_find_effect(s, effect);
+    if (!found || (on && !nevh__scene_load_code(s, effect)))
+        return s->status;
+    found->on = on;
+    s->switched = true;
+    return nevh_system_enable(s->model->system, effect, on);
 }

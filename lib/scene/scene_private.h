@@ -252,15 +252,31 @@ bool nevh__scene_begin(nevh_scene *);
 
 /* Which effects there are and which are on. */
 bool nevh__scene_effects(nevh_scene *);
+/* As is asked for from outside. */
+bool nevh__scene_switch(nevh_scene *, const nevh_scene_options *);
 nevh__switch *nevh__scene_effect(const nevh_scene *, const char *name);
+/* The folder that a file is in, from the root on, to be freed; NULL when there
+   is none, or memory is out. */
+char *nevh__folder_of(const char *path);
 /* NAME = file("term.c", ...): adds its term. */
 bool nevh__is_code(const nevh__statement *);
 bool nevh__model_code(nevh_scene *, nevh__model *, const nevh__statement *);
 /* Loads the code of an effect, if it has any, before that is switched on. */
 bool nevh__scene_load_code(nevh_scene *, const char *effect);
 void nevh__scene_unload_code(nevh_scene *);
+/* With the texts of all code that is loaded. */
+uint64_t nevh__scene_digest_code(const nevh_scene *, uint64_t digest);
+
+/* FNV-1a, 64 bits [G. Fowler, L. C. Noll, K.-P. Vo; draft-eastlake-fnv]. */
+static const uint64_t nevh__digest_begin = 0xCBF29CE484222325u;
+static inline uint64_t nevh__digest_byte(uint64_t digest, unsigned char byte) {
+    return (digest ^ byte) * 0x100000001B3u;
+}
 /* Says that there is no effect of that name. */
 bool nevh__scene_fail_effect(nevh_scene *, const nevh__piece *);
+/* The effect of that name, or NULL after a message: as asked for from outside.
+ */
+nevh__switch *nevh__scene_find_effect(nevh_scene *, const char *name);
 
 /* Calls visit for each statement of a section, until one fails. */
 typedef bool (*nevh__visitor)(nevh_scene *, nevh__model *,

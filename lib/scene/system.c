@@ -20,6 +20,14 @@ bool nevh__scene_fail_effect(nevh_scene *s, const nevh__piece *piece) {
                                  s->n_effects);
 }
 
+nevh__switch *nevh__scene_find_effect(nevh_scene *s, const char *name) {
+    nevh__switch *found = nevh__scene_effect(s, name);
+    nevh__line line = {0, name, strlen(name)};
+    if (!found)
+        nevh__scene_fail_effect(s, &(nevh__piece){&line, name, name});
+    return found;
+}
+
 /* An effect of terms and one of friction may have the same name. */
 static bool add_switch(nevh_scene *s, nevh__model *m,
                        const nevh__statement *statement) {
@@ -79,6 +87,17 @@ bool nevh__scene_effects(nevh_scene *s) {
         return false;
     return nevh__scene_each(s, NULL, NEVH__FRICTION, add_switch) &&
            nevh__scene_each(s, NULL, NEVH__SCENE, choose);
+}
+
+bool nevh__scene_switch(nevh_scene *s, const nevh_scene_options *o) {
+    for (size_t i = 0; i < o->n_effects; i++) {
+        nevh__switch *found = nevh__scene_find_effect(s, o->effects[i] + 1);
+        if (!found)
+            return false;
+        found->on = o->effects[i][0] == '+';
+        s->switched = true;
+    }
+    return true;
 }
 
 static bool add_terms(nevh_scene *s, nevh__model *m,

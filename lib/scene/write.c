@@ -9,6 +9,7 @@ typedef struct {
     char *text;
     size_t used, room;
     bool failed;
+    char *folder; /* that names of C files are put after; NULL: none */
 } writer;
 
 static void put(writer *w, const char *bytes, size_t count) {
@@ -58,6 +59,25 @@ static void put_set(writer *w, const nevh__statement *one, const char *value) {
     put_changed(w, one, equals && !key.failed ? key.text : one->key.text,
                 value);
     free(key.text);
+}
+
+/* file("NAME" ...), the name with its folder. */
+static void put_code(writer *w, const nevh__statement *one) {
+    const char *value = one->value.text, *name = strchr(value, '"') + 1;
+    writer all = {0};
+    put(&all, value, (size_t)(name - value));
+    put_text(&all, w->folder);
+    put_text(&all, "/");
+    put_text(&all, name);
+    w->failed |= all.failed;
+    if (!all.failed)
+        put_changed(w, one, one->key.text, all.text);
+    free(all.text);
+}
+
+static bool moves(const writer *w, const nevh__statement *one) {
+    const char *name = strchr(one->value.text, '"');
+    return w->folder && nevh__is_code(one) && name && name[1] != '/';
 }
 
 /* The names of the effects that are on. */
@@ -128,6 +148,8 @@ static void put_statement(writer *w, const nevh_scene *s,
         put_set(w, one, from->value.text);
     else if (s->switched && one == choice_of(s))
         put_choice(w, s, one);
+    else if (moves(w, one))
+        put_code(w, one);
     else
         put(w, one->key.line->text, one->key.line->bytes);
 }
@@ -150,12 +172,25 @@ static void put_lines(writer *w, const nevh_scene *s) {
     }
 }
 
-char *nevh_scene_write(const nevh_scene *s) {
-    writer w = {0};
+/* The scene's folder, where that is not the one of the path. */
+static char *other_folder(const nevh_scene *s, const char *path) {
+    char *here = nevh__folder_of(s->name);
+    char *there = here ? nevh__folder_of(path) : NULL;
+    bool other = there && strcmp(here, there) != 0;
+    free(there);
+    if (other)
+        return here;
+    free(here);
+    return NULL;
+}
+
+char *nevh_scene_write(const nevh_scene *s, const char *path) {
+    writer w = {.folder = path ? other_folder(s, path) : NULL};
     if (s->model)
         put_lines(&w, s);
     else
         w.failed = true;
+    free(w.folder);
     if (!w.failed)
         return w.text;
     free(w.text);

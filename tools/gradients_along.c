@@ -1,0 +1,298 @@
+/* nevh gradients: errors and costs of one gradient along the orbit.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradients_private.h"
+#include "ladder.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { STATES = 256 };
+
+static int record(void *data, size_t step, double t, const double q[],
+                  const double p[]) {
+    orbit *o = data;
+    if (step % o->every != 0 || o->count == STATES)
+        return 0;
+    size_t i = o->count++;
+    o->t[i] = t;
+    memcpy(o->q + i * o->n, q, o->n * sizeof *q);
+    memcpy(o->p + i * o->n, p, o->n * sizeof *p);
+    return nevh_field_value(o->field, 1, &t, q, p, &o->h[i]);
+}
+
+static orbit orbit_new(const plan *p, size_t steps) {
+    nevh_options values = {.gradient_step = 1e-3, .portable = p->portable};
+    return (orbit){.n = p->n,
+                   .every = steps / (STATES - 1) + 1,
+                   .t = tool_allocate(STATES, sizeof(double)),
+                   .q = tool_allocate(STATES * p->n, sizeof(double)),
+                   .p = tool_allocate(STATES * p->n, sizeof(double)),
+                   .h = tool_allocate(STATES, sizeof(double)),
+                   .field = nevh_field_new(p->system, &values)};
+}
+
+static void orbit_free(orbit *o) {
+    free(o->t);
+    free(o->q);
+    free(o->p);
+    free(o->h);
+    nevh_field_free(o->field);
+}
+
+static const nevh_integrator *scheme_of(const context *c) {
+    bool transformed;
+    return plan_scheme(c->integrator, &transformed);
+}
+
+static nevh_options gradient_options(const context *c, const char *gradient,
+                                     double step) {
+    const plan *p = c->plan;
+    nevh_options o = plan_options(p, gradient);
+    o.gradient_step = step;
+    o.transform = plan_transform(p, c->integrator);
+    if (nevh_integrator_adaptive(scheme_of(c)) && p->tolerances)
+        o.tolerance = p->tolerance[0];
+    return o;
+}
+
+/* The orbit with that gradient, watched. */
+static int follow(const context *c, const char *gradient, double step,
+                  const nevh_observer *observer) {
+    nevh_options o = gradient_options(c, gradient, step);
+    nevh_stepper *s = nevh_stepper_new(c->plan->system, scheme_of(c), &o);
+    size_t n = c->plan->n;
+    double *q = tool_allocate(n, sizeof *q), *p = tool_allocate(n, sizeof *p);
+    memcpy(q, c->plan->q, n * sizeof *q);
+    memcpy(p, c->plan->p, n * sizeof *p);
+    int status = nevh_stepper_status(s);
+    if (!status)
+        status = nevh_run(s, c->plan->run->t_start, c->dt, c->steps, q, p,
+                          observer, 1);
+    free(q);
+    free(p);
+    nevh_stepper_free(s);
+    return status;
+}
+
+static int evaluate(const context *c, nevh_field *f, size_t i, double dq[],
+                    double dp[]) {
+    size_t n = c->exact.n;
+    return nevh_field_gradient(f, 1, &c->exact.t[i], c->exact.q + i * n,
+                               c->exact.p + i * n, dq, dp);
+}
+
+/* Exact gradients at all states. */
+static int evaluate_yardstick(context *c) {
+    size_t n = c->exact.n;
+    nevh_options o = gradient_options(c, c->yardstick, 0);
+    nevh_field *f = nevh_field_new(c->plan->system, &o);
+    int status = nevh_field_status(f);
+    c->dq = tool_allocate(n * STATES, sizeof *c->dq);
+    c->dp = tool_allocate(n * STATES, sizeof *c->dp);
+    for (size_t i = 0; !status && i < c->exact.count; i++)
+        status = evaluate(c, f, i, c->dq + i * n, c->dp + i * n);
+    for (size_t k = 0; k < n * c->exact.count; k++)
+        c->size = fmax(c->size, fmax(fabs(c->dq[k]), fabs(c->dp[k])));
+    nevh_field_free(f);
+    return status;
+}
+
+static void errors_along(const context *c, nevh_field *f, finding *g) {
+    size_t n = c->exact.n;
+    double *dq = tool_allocate(n, sizeof *dq),
+           *dp = tool_allocate(n, sizeof *dp);
+    nevh_counts before = nevh_field_counts(f);
+    for (size_t i = 0; i < c->exact.count; i++) {
+        if (evaluate(c, f, i, dq, dp))
+            g->good = false;
+        for (size_t k = 0; k < n; k++) {
+            g->error = fmax(g->error, fabs(dq[k] - c->dq[i * n + k]));
+            g->error = fmax(g->error, fabs(dp[k] - c->dp[i * n + k]));
+        }
+    }
+    g->error /= c->size;
+    g->evaluations = (nevh_field_counts(f).hamiltonians - before.hamiltonians) /
+                     (double)c->exact.count;
+    free(dq);
+    free(dp);
+}
+
+/* The median of a few passes over the orbit. */
+static double time_of(const context *c, nevh_field *f) {
+    enum { PASSES = 5 };
+    static const double enough = 2e-3; /* seconds a pass */
+    double seconds[PASSES];
+    double *out = tool_allocate(2 * c->exact.n, sizeof *out);
+    for (int pass = 0; pass < PASSES; pass++) {
+        double start = cpu_seconds(), now = start;
+        size_t count = 0;
+        do {
+            for (size_t i = 0; i < c->exact.count; i++, count++)
+                evaluate(c, f, i, out, out + c->exact.n);
+            now = cpu_seconds();
+        } while (now - start < enough);
+        seconds[pass] = (now - start) / (double)count;
+    }
+    free(out);
+    return 1e9 * numbers_median(seconds, PASSES);
+}
+
+/* What the choice of steps expected, the worst of all variables. */
+static void take_estimates(const context *c, nevh_field *f, finding *g) {
+    for (size_t i = 0; i < nevh_field_step_count(f); i++) {
+        nevh_step_report r = nevh_field_step_report(f, i);
+        if (r.given)
+            continue;
+        g->truncation = fmax(g->truncation, r.truncation / c->size);
+        g->rounding = fmax(g->rounding, r.rounding / c->size);
+    }
+}
+
+/* The energy that errors of a gradient bring in along an orbit: with g = dH + e
+   instead of dH, dH/dt = dH/dq e_p - dH/dp e_q.  Unlike the difference of two
+   orbits that means something where orbits part. */
+typedef struct {
+    nevh_field *exact, *other;
+    size_t n;
+    double *gradient; /* dq, dp; the same of the other: n each */
+    bool begun;
+    double t, rate, sum, most;
+} influx;
+
+static int observe_influx(void *data, size_t step, double t, const double q[],
+                          const double p[]) {
+    influx *f = data;
+    size_t n = f->n;
+    double *dq = f->gradient, *dp = dq + n, *gq = dp + n, *gp = gq + n;
+    double rate = 0;
+    (void)step;
+    int status = nevh_field_gradient(f->exact, 1, &t, q, p, dq, dp);
+    if (!status)
+        status = nevh_field_gradient(f->other, 1, &t, q, p, gq, gp);
+    for (size_t k = 0; k < n; k++)
+        rate += dq[k] * (gp[k] - dp[k]) - dp[k] * (gq[k] - dq[k]);
+    if (f->begun)
+        f->sum += (rate + f->rate) / 2 * (t - f->t);
+    f->most = fmax(f->most, fabs(f->sum));
+    f->begun = true, f->t = t, f->rate = rate;
+    return status;
+}
+
+static double influx_along(const context *c, nevh_field *other) {
+    nevh_options o = gradient_options(c, c->yardstick, 0);
+    size_t n = c->exact.n;
+    influx f = {.exact = nevh_field_new(c->plan->system, &o),
+                .other = other,
+                .n = n,
+                .gradient = tool_allocate(4 * n, sizeof(double))};
+    int status =
+        follow(c, c->yardstick, 0, &(nevh_observer){observe_influx, &f, 1});
+    nevh_field_free(f.exact);
+    free(f.gradient);
+    return status ? NAN : f.most / c->scale;
+}
+
+static double energy_along(const context *c, const finding *g) {
+    orbit o = orbit_new(c->plan, c->steps);
+    double most = 0;
+    int status =
+        follow(c, g->gradient, g->step, &(nevh_observer){record, &o, 1});
+    for (size_t i = 0; i < o.count; i++)
+        most = fmax(most, fabs(o.h[i] - o.h[0]) / c->scale);
+    orbit_free(&o);
+    return status || c->plan->balance ? NAN : most;
+}
+
+/* The mean over some states: where the orbit rests nothing is noisy. */
+static double floor_along(const context *c, nevh_field *f) {
+    size_t n = c->exact.n, apart = c->exact.count / 16 + 1, count = 0;
+    double sum = 0, one;
+    for (size_t i = 0; i < c->exact.count; i += apart, count++) {
+        if (nevh_field_energy_floor(f, c->exact.t[i], c->exact.q + i * n,
+                                    c->exact.p + i * n, c->dt, c->steps, &one))
+            return NAN;
+        sum += one * one;
+    }
+    return sqrt(sum / (double)count) / c->scale;
+}
+
+finding gradient_find(const context *c, const char *gradient, double step) {
+    finding g = {
+        .gradient = gradient, .step = step, .good = true, .floor = NAN};
+    nevh_options o = gradient_options(c, gradient, step);
+    nevh_field *f = nevh_field_new(c->plan->system, &o);
+    g.why = text_print("%s", nevh_field_message(f));
+    g.good = !nevh_field_status(f);
+    if (g.good) {
+        errors_along(c, f, &g);
+        take_estimates(c, f, &g);
+        g.nanoseconds = time_of(c, f);
+        g.energy = energy_along(c, &g);
+        g.influx = influx_along(c, f);
+        g.floor = floor_along(c, f);
+    }
+    nevh_field_free(f);
+    return g;
+}
+
+/* The shortest of those that differences of full order have chosen. */
+double gradient_own_step(const context *c, const char *gradient) {
+    nevh_options o = gradient_options(c, gradient, 0);
+    nevh_field *f = nevh_field_new(c->plan->system, &o);
+    double shortest = INFINITY;
+    for (size_t i = 0; i < nevh_field_step_count(f); i++) {
+        nevh_step_report r = nevh_field_step_report(f, i);
+        if (r.order == nevh_gradient_order(o.gradient) && !r.blind)
+            shortest = fmin(shortest, r.step);
+    }
+    nevh_field_free(f);
+    return shortest;
+}
+
+/* The exact gradient, or the most exact that there is. */
+static const char *find_yardstick(const plan *p) {
+    static const char *const names[] = {"exact", "complex-step", "central8"};
+    for (size_t i = 0; i < 2; i++)
+        if (gradient_fits(p, names[i], NULL))
+            return names[i];
+    return names[2];
+}
+
+/* Up to the end of the run, or to where it stops. */
+static void choose_steps(context *c) {
+    static const double most = 2e4;
+    const plan *p = c->plan;
+    double steps = round((p->t_end - p->run->t_start) / c->dt);
+    stop s = {.scene = p->scene};
+    c->steps = (size_t)fmin(fmax(steps, 1), most);
+    if (nevh_scene_stops(p->scene))
+        follow(c, c->yardstick, 0, &(nevh_observer){stop_observe, &s, 1});
+    if (s.reached && s.step > 0)
+        c->steps = s.step;
+}
+
+int context_make(context *c, const plan *p) {
+    nevh_stepper *s = plan_first(p, &c->integrator);
+    if (!s)
+        return TOOL_USAGE;
+    nevh_stepper_free(s);
+    c->plan = p;
+    c->dt = p->dt[p->dts - 1];
+    c->scale = plan_energy_scale(p);
+    c->yardstick = find_yardstick(p);
+    choose_steps(c);
+    c->exact = orbit_new(p, c->steps);
+    if (!follow(c, c->yardstick, 0, &(nevh_observer){record, &c->exact, 1}) &&
+        !evaluate_yardstick(c))
+        return TOOL_OK;
+    tool_refuse("%s: %s at dt = %g fails on this orbit; another integrator or "
+                "a shorter dt may not",
+                p->name, c->integrator, c->dt);
+    return TOOL_FAILED;
+}
+
+void context_free(context *c) {
+    orbit_free(&c->exact);
+    free(c->dq);
+    free(c->dp);
+}

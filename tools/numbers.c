@@ -1,0 +1,25 @@
+/* nevh: numbers in order, and time.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tool.h"
+#include <stdlib.h>
+#include <time.h>
+
+static int by_size(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+void numbers_sort(double numbers[], size_t count) {
+    qsort(numbers, count, sizeof *numbers, by_size);
+}
+
+double numbers_median(double numbers[], size_t count) {
+    numbers_sort(numbers, count);
+    return count ? numbers[count / 2] : 0;
+}
+
+double cpu_seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}

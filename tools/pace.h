@@ -1,0 +1,51 @@
+/* nevh: how fast an orbit is, and what steps bear.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_PACE_H
+#define NEVH_PACE_H
+
+#include "row.h"
+
+/* stability.c: why a run became unstable. */
+/* The largest frequency, or rate of growth, that an orbit's states have, and
+   when. */
+typedef struct {
+    nevh_rates *rates;
+    double frequency, t;
+} pace;
+/* A nevh_observe_fn; data is the pace. */
+int pace_observe(void *, size_t step, double t, const double q[],
+                 const double p[]);
+/* That of a run up to its end, its failure, or an energy error above `scale`
+   (0: that of the energy); with the options of the run, whose q and p are its
+   start.  Its rates are gone. */
+pace stability_pace(const nevh_system *, const nevh_integrator *,
+                    const nevh_options *, double scale, double dt,
+                    double t_end);
+/* Whether h w = x is beyond what a scheme of that limit bears. */
+bool stability_exceeded(const nevh_integrator *, double limit, double x);
+/* The likely cause of trouble at that pace, and a step or schemes to take; NULL
+   where none is known. */
+char *stability_cause(const nevh_integrator *, double limit, double dt,
+                      const pace *);
+/* The same of each unstable row of compare. */
+void stability_words(const plan *, const row rows[], size_t count, list *words);
+
+/* preflight.c: what a short flight ahead says of a run. */
+typedef struct {
+    double frequency, fastest_at; /* as a pace; 0: nothing is known */
+    double growth;                /* largest Lyapunov exponent; 0: no chaos */
+    double flown;                 /* time */
+    double noise; /* of the gradient: relative energy error; NAN */
+    double edge;  /* of H: distance in lengths; INFINITY: none is near */
+    size_t edge_variable; /* coordinates first */
+    double edge_at, edge_time;
+    char *failure; /* NULL, or why the orbit could not be followed */
+} preflight;
+/* failure is to be freed.
+   cost     about a second at most */
+preflight preflight_fly(const plan *);
+void preflight_words(const plan *, const preflight *, list *notes);
+/* Of a scheme, its limit of stability given, at h w = x; NULL: nothing. */
+const char *preflight_verdict(double limit, double x);
+
+#endif

@@ -1,0 +1,78 @@
+/* nevh: one run of compare, and what is said of many.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_ROW_H
+#define NEVH_ROW_H
+
+#include "plan.h"
+
+/* row.c: one run of compare. */
+typedef struct {
+    const char *integrator, *gradient;
+    const nevh_integrator *scheme;
+    double dt, tolerance; /* 0: fixed steps */
+    double nominal_dt;    /* before match_row */
+    size_t group;         /* rows of one gradient and dt */
+    int order, failed;    /* failed: of the exit status */
+    size_t steps;
+    char *status;
+    bool ran, late; /* there are numbers; patience was at its end */
+    nevh_energy_report energy;
+    nevh_counts counts;
+    double seconds, spread; /* median, and half of what the middle half spans */
+    double stopped;         /* where the scene's `stop` said; NAN: nowhere */
+    double t_end;           /* where it ended */
+    double observed_order;  /* NAN: unknown */
+    double state_error;     /* NAN: unknown or meaningless */
+    double symplecticity_error, reversal_error;
+    double *changes; /* of invariants, the largest; NULL: not asked for */
+    struct envelope *errors; /* of the energy; NULL: not asked for */
+} row;
+void row_run(const plan *, row *);
+/* Of a row that ran in a hurry: its time again, and when it became unstable.
+   dt       as the row was run with
+   repeats  0: chosen */
+void row_finish(const plan *, row *, double dt, size_t repeats);
+/* Planned as for that row. */
+nevh_stepper *row_stepper(const plan *, const row *, bool balance);
+/* stop.c: of the rows that stopped, how many did, when. */
+void stop_notes(const plan *, const row rows[], size_t count, list *notes);
+/* records.c: rows as the columns of CSV and JSON. */
+table *records(const plan *, const row rows[], size_t count);
+/* row_notes.c: observed_order, of rows with the same scheme beside each other;
+   notes of settings, gradients, scale and what holds for some rows. */
+void observe_orders(row rows[], size_t count);
+void row_notes(const options *, const plan *, const row rows[], size_t count,
+               list *notes);
+/* verdict.c: the table in words. */
+void verdict_words(const plan *, const row rows[], size_t count, list *words);
+
+/* state.c: makes the reference of a plan, after which rows have state errors;
+   TOOL_OK, or TOOL_USAGE with the message printed. */
+int plan_reference(plan *);
+void state_notes(const plan *, list *notes);
+bool state_out_of_step(const row *);
+void state_show(table *, const plan *, const row *);
+void state_words(const row rows[], size_t count, list *words);
+
+/* match.c: the dt with which the row costs as much as verlet with its dt, where
+   the plan asks for that. */
+void match_row(const plan *, row *);
+/* Whether that cannot be told, or no dt is as cheap. */
+bool match_unmatched(const plan *, const row *);
+bool match_dearer(const plan *, const row *);
+
+/* diagnostics.c: of a plan that asks for them. */
+typedef struct invariants invariants;
+invariants *invariants_new(const plan *);
+int invariants_observe(void *, size_t step, double t, const double q[],
+                       const double p[]);
+double *invariants_result(invariants *); /* frees it */
+void diagnose_row(const plan *, row *);
+void diagnostics_columns(table *, const plan *, bool is_table);
+void diagnostics_record(table *, const plan *, const row *);
+void diagnostics_show(table *, const plan *, const row *);
+
+/* compare_plot.c: as plot_write. */
+int compare_plot(const options *, const plan *, const row rows[], size_t count);
+
+#endif

@@ -1,0 +1,117 @@
+/* nevh: what is said of rows before their table, and their order of
+   convergence.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "row.h"
+#include <math.h>
+#include <string.h>
+
+static bool measures_order(const row *r) {
+    return r->ran && r->energy.verdict != NEVH_UNSTABLE && r->tolerance == 0 &&
+           r->energy.max > 1e-13;
+}
+
+/* From the row of the same scheme and the dt before. */
+void observe_orders(row rows[], size_t count) {
+    for (size_t i = 0; i < count; i++)
+        for (size_t k = i; k-- > 0;) {
+            row *b = &rows[i];
+            const row *a = &rows[k];
+            if (a->integrator != b->integrator || a->gradient != b->gradient)
+                continue;
+            if (measures_order(a) && measures_order(b) && a->dt != b->dt)
+                b->observed_order =
+                    log(a->energy.max / b->energy.max) / log(a->dt / b->dt);
+            break;
+        }
+}
+
+static void note_gradients(const plan *p, list *notes) {
+    for (size_t i = 0; i < p->gradients.count; i++) {
+        const char *name = p->gradients.item[i];
+        const char *from = strcmp(name, "exact") == 0
+                               ? "derived from the formulas of H"
+                               : "from values of H alone";
+        if (p->gradient_step > 0 && strncmp(name, "central", 7) == 0)
+            list_print(notes, "gradient: %s, %s, half-spread %g", name, from,
+                       p->gradient_step);
+        else
+            list_print(notes, "gradient: %s, %s", name, from);
+    }
+}
+
+static void note_scale(const plan *p, const row rows[], size_t count,
+                       list *notes) {
+    const char *unit = nevh_scene_label(p->scene, "energy");
+    for (size_t i = 0; i < count; i++)
+        if (rows[i].ran) {
+            list_print(notes,
+                       "energy_scale: %.9g%s%s (errors are relative to "
+                       "it; H at the start is %.9g)",
+                       rows[i].energy.scale, *unit ? " " : "", unit,
+                       rows[i].energy.initial);
+            return;
+        }
+}
+
+static void note_balance(const plan *p, list *notes) {
+    const char *why = !p->friction ? "H reads the time"
+                      : p->time    ? "H reads the time, and there is friction"
+                                   : "there is friction";
+    if (p->balance)
+        list_print(notes,
+                   "%s: energy columns hold the error of the balance "
+                   "H(t) - H(0) - what came in from outside",
+                   why);
+}
+
+static bool is_limited(const plan *p, const row *r) {
+    (void)p;
+    return r->order < nevh_integrator_order(r->scheme);
+}
+
+static bool has_nominal_steps(const plan *p, const row *r) {
+    return plan_transform(p, r->integrator) ||
+           nevh_integrator_own_time(r->scheme);
+}
+
+static bool has_tolerance(const plan *p, const row *r) {
+    (void)p;
+    return r->tolerance > 0;
+}
+
+/* What is to be said where it holds for a row. */
+static void note_rows(const plan *p, const row rows[], size_t count,
+                      list *notes) {
+    static const struct {
+        bool (*holds)(const plan *, const row *);
+        const char *text;
+    } note[] = {{is_limited, "friction is put around the steps of geometric "
+                             "schemes, which limits them to order 2"},
+                {has_nominal_steps, "dt is nominal where time is transformed, "
+                                    "or the scheme chooses its own"},
+                {match_unmatched, "schemes that take no gradients, but values "
+                                  "of H alone, keep the dt given"},
+                {match_dearer, "no dt makes some implicit schemes as cheap: "
+                               "theirs is the cheapest"},
+                {has_tolerance, "adaptive schemes have a row a tolerance of "
+                                "[run], in its order; dt is their mean step"}};
+    for (size_t k = 0; k < sizeof note / sizeof *note; k++)
+        for (size_t i = 0; i < count; i++)
+            if (note[k].holds(p, &rows[i])) {
+                list_add(notes, note[k].text);
+                break;
+            }
+    if (p->match_work)
+        list_add(notes, "match = work: rows of one dt cost as many gradients "
+                        "as verlet with that dt; dt is what they take");
+}
+
+void row_notes(const options *o, const plan *p, const row rows[], size_t count,
+               list *notes) {
+    settings_notes(o, notes);
+    note_gradients(p, notes);
+    note_scale(p, rows, count, notes);
+    note_balance(p, notes);
+    note_rows(p, rows, count, notes);
+    stop_notes(p, rows, count, notes);
+}
