@@ -1,31 +1,84 @@
 #!/bin/sh
-# run.sh SECONDS: fuzzes the reader of scenes, formulas included, under
-# sanitizers, from the scenes that ship and those that are wrong.
-# Needs clang with libFuzzer; what is found is left in the current folder.
+# run.sh SECONDS [TARGET]...: fuzzes the readers of scenes, of states to resume
+# and of the command line, each so long, under sanitizers.  Needs clang with
+# libFuzzer; what is found is left in the current folder.
 
 srcdir=${srcdir:-.}
+seconds=${1:-60}
+test $# -lt 2 || shift
+test $# -gt 0 && test "$1" != "$seconds" || set -- scene resume arguments
 clang=$(command -v clang || command -v clang-14) ||
     { echo "fuzz: there is no clang"; exit 77; }
 work=fuzz.$$
 trap 'rm -rf $work' EXIT
 trap 'exit 1' HUP INT TERM
-mkdir -p $work/corpus || exit 1
+mkdir -p $work/scene $work/resume $work/arguments || exit 1
+FUZZ_FOLDER=$work
+export FUZZ_FOLDER
 
-# GSL_CFLAGS and the like may be lists.
+sanitized="-fsanitize=address,undefined -fno-sanitize-recover=undefined"
+flags="-std=c11 -O1 -g -D_GNU_SOURCE -DNEVH_PORTABLE -I$srcdir/include
+    -I$srcdir/lib -I$srcdir/integrators -I$srcdir/tools ${GSL_CFLAGS}"
+# Flags are lists.
 # shellcheck disable=SC2086
-"$clang" -std=c11 -O1 -g -fsanitize=fuzzer,address,undefined \
-    -fno-sanitize-recover=undefined -DNEVH_PORTABLE \
-    -I"$srcdir/include" -I"$srcdir/lib" -I"$srcdir/integrators" ${GSL_CFLAGS} \
-    "$srcdir"/tests/fuzz/fuzz_scene.c "$srcdir"/lib/*/*.c \
-    "$srcdir"/integrators/*.c ${GSL_LIBS:--lgsl -lgslcblas} -lm -ldl \
-    -o $work/fuzz_scene >$work/log 2>&1 ||
+compile() {
+    for file in "$srcdir"/lib/*/*.c "$srcdir"/integrators/*.c; do
+        name=$(basename "$(dirname "$file")")_$(basename "$file" .c)
+        "$clang" $flags $sanitized -fsanitize=fuzzer-no-link \
+            -c "$file" -o $work/"$name".o || return 1
+    done
+}
+# link TARGET: with the parts of the command that it looks at.
+# shellcheck disable=SC2086
+link() {
+    parts=
+    test "$1" = scene ||
+        for part in options arguments words plan scenes resume lines; do
+            parts="$parts $srcdir/tools/$part.c"
+        done
+    "$clang" $flags $sanitized -fsanitize=fuzzer '-DNEVH_SCENES="/nowhere"' \
+        "$srcdir/tests/fuzz/fuzz_$1.c" $parts $work/*.o \
+        ${GSL_LIBS:--lgsl -lgslcblas} -lm -ldl -o "$work/fuzz_$1"
+}
+seeds() {
+    cp "$srcdir"/scenes/*.nevh "$srcdir"/tests/bad/*.nevh $work/scene/
+    rm -f $work/scene/fput-1000.nevh # slow
+    for name in pendulum kapitza fput; do
+        { cat "$srcdir/scenes/$name.nevh"; printf '\0g = 2*m'; } \
+            >$work/scene/set-$name
+    done
+    printf 's\001\002\003nevh = 1\n' >$work/resume/short
+    printf 's\002\030\000s%056dnevh = 1\nscene = 01\n' 0 >$work/resume/long
+    printf -- '--dt\n0.1,0.2\n--integrators\nverlet,gauss4+transform' \
+        >$work/arguments/lists
+    printf -- '--set\nk=3\n--without\nspring\n--gradient=exact\n-o\nx' \
+        >$work/arguments/changes
+    sed -n 's/^    {"\([a-z-]*\)", .*/"--\1"/p' "$srcdir/tools/options.c" \
+        >$work/arguments.dict
+    printf '%s\n' '"\x0a"' '"="' '","' '"1e300"' '"nan"' '"+transform"' \
+        >>$work/arguments.dict
+    cp "$srcdir/tests/fuzz/scene.dict" $work/
+}
+
+compile >$work/log 2>&1 ||
     { echo "fuzz: libFuzzer does not work here"; exit 77; }
-cp "$srcdir"/scenes/*.nevh "$srcdir"/tests/bad/*.nevh $work/corpus/
-rm -f $work/corpus/fput-1000.nevh # slow
-$work/fuzz_scene -max_total_time="${1:-60}" -timeout=20 -rss_limit_mb=4096 \
-    -max_len=4096 -dict="$srcdir/tests/fuzz/scene.dict" -print_final_stats=1 \
-    $work/corpus >$work/log 2>&1
-status=$?
-[ $status = 0 ] || cat $work/log
-sed -n '/^stat::number_of_executed_units/p; /^Done/p' $work/log
-exit $status
+seeds
+result=0
+for target in "$@"; do
+    if ! link "$target" >$work/log 2>&1; then
+        cat $work/log
+        exit 1
+    fi
+    dict=$work/$target.dict
+    test ! -e "$dict" || dict=-dict=$dict
+    # stderr has all messages of what is wrong
+    $work/fuzz_"$target" -max_total_time="$seconds" -timeout=20 \
+        -rss_limit_mb=4096 -max_len=4096 ${dict%"$work/$target.dict"} \
+        -close_fd_mask=2 -print_final_stats=1 $work/"$target" \
+        >$work/log 2>&1
+    status=$?
+    test $status = 0 || { cat $work/log; result=$status; }
+    echo "$target:"
+    sed -n '/^stat::number_of_executed_units/p; /^Done/p' $work/log
+done
+exit $result
