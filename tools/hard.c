@@ -152,6 +152,8 @@ static void add_record(table *t, const case_results *c, const hard_result *r) {
     table_number(t, r->planned ? (double)r->steps : NAN);
     table_number(t, ran ? r->energy.max : NAN);
     table_number(t, ran ? r->bound : NAN);
+    table_number(t, r->state_error);
+    table_number(t, r->state_bound);
     table_text(t, r->happened);
     table_text(t, hard_verdict_name(r->verdict));
     free(what);
@@ -161,7 +163,7 @@ static table *runs(const suite *all) {
     static const char *const names[] = {
         "case",    "integrator",   "gradient", "asked",
         "h_omega", "stable_below", "steps",    "max_energy_error",
-        "bound",   "happened",     "verdict"};
+        "bound", "state_error", "state_bound",  "happened",     "verdict"};
     table *t = table_new();
     columns(t, names, sizeof names / sizeof *names);
     for (size_t i = 0; i < all->n_cases; i++)

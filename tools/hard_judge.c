@@ -30,7 +30,7 @@ static double pace_of(const hard_subject *s, const hard_result *r) {
 }
 
 /* Whether theory keeps the energy in bounds. */
-static bool keeps(const hard_result *r) {
+bool hard_keeps(const hard_result *r) {
     return nevh_integrator_symplectic(r->scheme) != NEVH_NO ||
            nevh_integrator_preserves_energy(r->scheme) == NEVH_YES ||
            nevh_integrator_symmetric(r->scheme) != NEVH_NO;
@@ -67,7 +67,7 @@ static double rounding(const hard_subject *s, const hard_result *r) {
 
 static double find_bound(const hard_subject *s, const hard_result *r) {
     double error =
-        keeps(r) ? kept_bound(s, r) : fmax(kept_bound(s, r), drift_bound(s, r));
+        hard_keeps(r) ? kept_bound(s, r) : fmax(kept_bound(s, r), drift_bound(s, r));
     return fmin(1, error + r->floor + rounding(s, r));
 }
 
@@ -103,7 +103,7 @@ static bool is_explained(const hard_subject *s, const hard_result *r) {
         return true;
     return is(s, HARD_EDGE | HARD_ESCAPE | HARD_NOISE | HARD_ANY_STEP) ||
            stability_exceeded(r->scheme, r->limit, x) || x > 1 ||
-           kept_bound(s, r) > 1 || (!keeps(r) && drift_bound(s, r) > 0.1) ||
+           kept_bound(s, r) > 1 || (!hard_keeps(r) && drift_bound(s, r) > 0.1) ||
            (r->status == NEVH_EMAXITER && x > solvable);
 }
 
@@ -154,7 +154,7 @@ static hard_verdict judge_energy(hard_result *r) {
         most, r->steps, r->asked);
     if (most > r->bound)
         return HARD_NONE;
-    return level || keeps(r) ? HARD_BOUNDED : HARD_DRIFTS;
+    return level || hard_keeps(r) ? HARD_BOUNDED : HARD_DRIFTS;
 }
 
 static hard_verdict judge_explosion(const hard_subject *s, hard_result *r) {

@@ -32,6 +32,8 @@ typedef struct {
 /* Ended by one without a name. */
 extern const hard_case hard_cases[];
 
+typedef struct hard_track hard_track;
+
 /* A case made ready, and what its orbit is like. */
 typedef struct {
     const hard_case *is;
@@ -44,8 +46,12 @@ typedef struct {
     bool balance;
     double frequency, fastest_at; /* the largest along the orbit, and when */
     double peak;                  /* largest effect over the energy's scale */
+    double scale;    /* of the energy */
     double rounding; /* of the energy, where q, p and t are rounded once */
+    hard_track *track; /* NULL: nobody knows where the orbit leads */
 } hard_subject;
+/* Of the hard cases, which are beside the scenes, or of the scenes; NULL. */
+nevh_scene *hard_scene(const char *name);
 int hard_open(hard_subject *, const hard_case *); /* as scene_open */
 void hard_close(hard_subject *);
 
@@ -64,6 +70,7 @@ const char *hard_verdict_name(hard_verdict);
 typedef struct {
     const nevh_integrator *scheme;
     const char *gradient;
+    int order;           /* to expect */
     int status;          /* of planning, or of the run */
     bool planned, whole; /* whole: all steps that were asked for */
     bool sound;          /* numbers finite, and the state, and a reason given */
@@ -72,6 +79,9 @@ typedef struct {
     nevh_energy_report energy;
     double defect;     /* HARD_RETURN: distance to the start; NAN */
     double floor;      /* of the energy error, from rounding and gradients */
+    double state_error, state_bound, state_at; /* where it is the largest part
+                                                  of its bound; NAN: unknown */
+    double state_floor; /* from the same, over the time of the track */
     double frequency;  /* at the fastest state that this run went through */
     double fastest_at; /* or the case's */
     double limit;      /* nevh_stability_limit */
@@ -82,7 +92,23 @@ typedef struct {
     char *happened;
 } hard_result;
 void hard_run(const hard_subject *, double budget, hard_result *);
+bool hard_keeps(const hard_result *);
 void hard_judge(const hard_subject *, hard_result *);
 void hard_result_free(hard_result *);
+
+/* hard_state.c: where the orbit of a case leads, and how far a run is off.
+   returns  NULL when no reference can be had */
+hard_track *hard_track_new(const hard_subject *);
+void hard_track_free(hard_track *); /* NULL is allowed */
+typedef struct hard_state hard_state;
+/* To watch a planned run of a scheme, with a tolerance if it adapts.
+   returns  NULL where there is no track */
+hard_state *hard_state_new(const hard_subject *, const hard_result *,
+                           double tolerance);
+size_t hard_state_every(const hard_state *); /* steps between looks */
+/* A nevh_observe_fn; data is the hard_state. */
+int hard_state_observe(void *, size_t step, double t, const double q[],
+                       const double p[]);
+void hard_state_take(hard_state *, hard_result *); /* frees it */
 
 #endif

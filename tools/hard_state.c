@@ -1,0 +1,260 @@
+/* nevh hard: whether a run is where it should be, not only its energy.
+
+   Theory: the errors of all steps, of (h omega)^(order + 1) each, are carried
+   along by the linearised flow and add up ["Lady Windermere's fan": E. Hairer,
+   S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I (1993),
+   II.3].  Where the scheme has a Hamiltonian of its own, near H by
+   (h omega)^order, or is reversible as the orbit is, they do not: it is the
+   difference of a neighbouring orbit, which the flow carries along once, and of
+   its frequencies [E. Hairer, C. Lubich, G. Wanner, Geometric Numerical
+   Integration, X.3 and XI.3].  The flow is linearised at the orbit itself, and
+   omega taken along it.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "hard_private.h"
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SAMPLES = 200, LOOKS = 100 };
+static const double constant = 1;
+static const double most_steps = 1e4;
+static const double displaced = 1e-6; /* of the range of a variable */
+
+/* An orbit as it should be, followed for some time. */
+struct hard_track {
+    nevh_reference *reference;
+    const nevh_system *system;
+    nevh_scene *scene; /* of systems that have no derivatives of their own */
+    size_t n, count;
+    double t_end, *t, *pace, *growth; /* growth: the largest so far */
+};
+
+static nevh_stepper *fine(const hard_track *k, const hard_subject *s) {
+    nevh_options o = {
+        .gradient = nevh_exact, .q = s->q, .p = s->p, .t = s->t};
+    o.tolerance = 1e-12;
+    return nevh_stepper_new(k->system, nevh_dop853, &o);
+}
+
+typedef struct {
+    hard_track *track;
+    double *state, *growth; /* growth: a sum over displacements */
+} spread;
+
+static int look(void *data, size_t step, double t, const double q[],
+                const double p[]) {
+    spread *d = data;
+    const hard_track *k = d->track;
+    double most = 0, *at = d->state;
+    if (nevh_reference_state(k->reference, t, at, at + k->n))
+        return NEVH_OK;
+    for (size_t i = 0; i < k->n; i++) {
+        const nevh_reference *r = k->reference;
+        most = fmax(most, fabs(q[i] - at[i]) / nevh_reference_range(r, i));
+        most = fmax(most, fabs(p[i] - at[k->n + i]) /
+                              nevh_reference_range(r, k->n + i));
+    }
+    if (step < k->count)
+        d->growth[step] += most / displaced;
+    return NEVH_OK;
+}
+
+/* Of an orbit displaced in one variable. */
+static int follow(spread *d, const hard_subject *s, nevh_stepper *m,
+                  size_t variable) {
+    hard_track *k = d->track;
+    double *q = tool_allocate(2 * k->n, sizeof *q), *p = q + k->n;
+    memcpy(q, s->q, k->n * sizeof *q);
+    memcpy(p, s->p, k->n * sizeof *p);
+    q[variable] += displaced * nevh_reference_range(k->reference, variable);
+    nevh_stepper_reset(m);
+    int status =
+        nevh_run(m, s->t, (k->t_end - s->t) / SAMPLES, SAMPLES, q, p,
+                 &(nevh_observer){look, d, 1}, 1);
+    free(q);
+    return status;
+}
+
+static void find_growth(hard_track *k, const hard_subject *s) {
+    spread d = {k, tool_allocate(2 * k->n, sizeof(double)),
+                tool_allocate(k->count, sizeof(double))};
+    nevh_stepper *m = fine(k, s);
+    bool lost = nevh_stepper_status(m);
+    for (size_t i = 0; !lost && i < 2 * k->n; i++)
+        lost = follow(&d, s, m, i);
+    for (size_t i = 0; i < k->count; i++)
+        k->growth[i] = lost ? INFINITY
+                            : fmax(d.growth[i], i ? k->growth[i - 1] : 1);
+    nevh_stepper_free(m);
+    free(d.state);
+    free(d.growth);
+}
+
+static void find_pace(hard_track *k, const hard_subject *s) {
+    double *at = tool_allocate(2 * k->n, sizeof *at), growth;
+    nevh_options o = {.t = s->t, .q = s->q, .p = s->p};
+    nevh_rates *rates = nevh_rates_new(k->system, &o);
+    for (size_t i = 0; i < k->count; i++) {
+        k->pace[i] = INFINITY;
+        if (nevh_reference_state(k->reference, k->t[i], at, at + k->n) ||
+            nevh_rates_at(rates, k->t[i], at, at + k->n, &k->pace[i], &growth))
+            continue;
+        k->pace[i] = fmax(k->pace[i], growth);
+    }
+    nevh_rates_free(rates);
+    free(at);
+}
+
+/* The orbits of H given as values alone are those of the same H in formulas. */
+static void choose_system(hard_track *k, const hard_subject *s) {
+    k->system = s->system;
+    k->n = s->n;
+    if (!s->own)
+        return;
+    k->scene = hard_scene("pendulum-modulus");
+    k->system = nevh_scene_system(k->scene);
+}
+
+hard_track *hard_track_new(const hard_subject *s) {
+    double span = fmin(s->t_end - s->t, most_steps * s->dt);
+    if (span > 1e200) /* nothing can be followed over such a time */
+        return NULL;
+    hard_track *k = tool_allocate(1, sizeof *k);
+    choose_system(k, s);
+    k->t_end = s->t + span;
+    k->reference =
+        nevh_reference_new(k->system, NULL, s->t, k->t_end, s->q, s->p);
+    k->count = SAMPLES + 1;
+    k->t = tool_allocate(3 * k->count, sizeof *k->t);
+    k->pace = k->t + k->count;
+    k->growth = k->pace + k->count;
+    for (size_t i = 0; i < k->count; i++)
+        k->t[i] = i < SAMPLES ? s->t + span * (double)i / SAMPLES : k->t_end;
+    if (nevh_reference_status(k->reference)) {
+        hard_track_free(k);
+        return NULL;
+    }
+    find_pace(k, s);
+    find_growth(k, s);
+    return k;
+}
+
+void hard_track_free(hard_track *k) {
+    if (!k)
+        return;
+    nevh_reference_free(k->reference);
+    nevh_scene_free(k->scene);
+    free(k->t);
+    free(k);
+}
+
+struct hard_state {
+    const hard_track *track;
+    size_t every;
+    double *bound, *state;
+    double error, allowed, t, share; /* where share = error/allowed is most */
+};
+
+/* Of fixed steps. */
+static void allow_steps(hard_state *w, const hard_subject *s,
+                        const hard_result *r) {
+    const hard_track *k = w->track;
+    double turns = 0, most = 0, order = r->order;
+    for (size_t i = 0; i < k->count; i++) {
+        double rate = fmax(k->pace[i], k->pace[i ? i - 1 : 0]), x = s->dt * rate;
+        double time = i ? k->t[i] - k->t[i - 1] : 0;
+        most = fmax(most, x);
+        turns += pow(x, order) * rate * time / (2 * M_PI);
+        double once = pow(most, order);
+        double error = hard_keeps(r) ? turns + once * k->growth[i]
+                                  : (turns + once) * k->growth[i];
+        w->bound[i] = most > 1 ? INFINITY : constant * error;
+    }
+}
+
+static void allow_tolerance(hard_state *w, const hard_subject *s,
+                            double tolerance) {
+    const hard_track *k = w->track;
+    for (size_t i = 0; i < k->count; i++)
+        w->bound[i] = tolerance * k->growth[i] *
+                      (1 + (k->t[i] - s->t) * fmax(1 / s->dt, s->frequency));
+}
+
+/* What does not come from the steps' length. */
+static void allow_rest(hard_state *w, const hard_subject *s,
+                       const hard_result *r) {
+    const hard_track *k = w->track;
+    for (size_t i = 0; i < k->count; i++) {
+        double steps = (k->t[i] - s->t) / s->dt;
+        w->bound[i] += (r->state_floor + 1e-14 * steps) * k->growth[i] +
+                       10 * nevh_reference_error(k->reference);
+    }
+}
+
+hard_state *hard_state_new(const hard_subject *s, const hard_result *r,
+                           double tolerance) {
+    if (!s->track)
+        return NULL;
+    hard_state *w = tool_allocate(1, sizeof *w);
+    w->track = s->track;
+    double steps = (s->track->t_end - s->t) / s->dt;
+    w->every = (size_t)fmax(1, steps / LOOKS);
+    w->bound = tool_allocate(s->track->count, sizeof *w->bound);
+    w->state = tool_allocate(2 * s->n, sizeof *w->state);
+    w->error = w->allowed = w->t = NAN;
+    w->share = -1;
+    if (nevh_integrator_adaptive(r->scheme))
+        allow_tolerance(w, s, tolerance);
+    else
+        allow_steps(w, s, r);
+    allow_rest(w, s, r);
+    return w;
+}
+
+size_t hard_state_every(const hard_state *w) {
+    return w ? w->every : 0;
+}
+
+static double distance(const hard_state *w, const double q[],
+                       const double p[]) {
+    const nevh_reference *r = w->track->reference;
+    size_t n = w->track->n;
+    double most = 0;
+    for (size_t i = 0; i < n; i++) {
+        most = fmax(most,
+                    fabs(q[i] - w->state[i]) / nevh_reference_range(r, i));
+        most = fmax(most, fabs(p[i] - w->state[n + i]) /
+                              nevh_reference_range(r, n + i));
+    }
+    return most;
+}
+
+int hard_state_observe(void *state, size_t step, double t, const double q[],
+                       const double p[]) {
+    hard_state *w = state;
+    const hard_track *k = w->track;
+    double start = k->t[0], span = k->t_end - start;
+    (void)step;
+    if (t > k->t_end ||
+        nevh_reference_state(k->reference, t, w->state, w->state + k->n))
+        return NEVH_OK;
+    double allowed =
+        w->bound[(size_t)ceil((t - start) / span * SAMPLES * (1 - 1e-12))];
+    double error = distance(w, q, p);
+    if (isfinite(allowed) && error / allowed > w->share)
+        w->error = error, w->allowed = allowed, w->t = t,
+        w->share = error / allowed;
+    return NEVH_OK;
+}
+
+void hard_state_take(hard_state *w, hard_result *r) {
+    r->state_error = w ? w->error : NAN;
+    r->state_bound = w ? w->allowed : NAN;
+    r->state_at = w ? w->t : NAN;
+    if (!w)
+        return;
+    free(w->bound);
+    free(w->state);
+    free(w);
+}
