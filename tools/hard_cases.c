@@ -33,7 +33,7 @@ static nevh_system *fickle_box(void) {
 }
 
 const hard_case hard_cases[] = {
-    {"pendulum at rest", "pendulum-modulus", "k=0", 0, 0, 0, NULL},
+    {"pendulum at rest", "pendulum-modulus", "k=0", 0, 0, HARD_REST, NULL},
     {"pendulum k = 0.999", "pendulum-modulus", NULL, 0, 0, 0, NULL},
     {"below the separatrix by 1e-10", "pendulum-modulus", "k=1-1e-10", 0, 0, 0,
      NULL},

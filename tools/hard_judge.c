@@ -16,8 +16,9 @@ static const double solvable = 0.1;
 static const double constant = 10, tolerance = 1e-9, returned = 1e-8;
 
 const char *hard_verdict_name(hard_verdict v) {
-    static const char *const names[] = {"none",     "bounded", "drifts",
-                                        "unstable", "refused", "failed"};
+    static const char *const names[] = {"none",   "wrong orbit", "bounded",
+                                        "drifts", "unstable",    "refused",
+                                        "failed"};
     return v < HARD_VERDICTS ? names[v] : "none";
 }
 
@@ -43,13 +44,11 @@ static bool preserves(const hard_subject *s, const hard_result *r) {
            !s->balance && r->scheme != nevh_avf;
 }
 
-/* Tao's methods turn by their binding, too, which is faster than the orbit. */
 static double kept_bound(const hard_subject *s, const hard_result *r) {
     double x = pace_of(s, r), order = nevh_integrator_order(r->scheme);
-    bool bound = nevh_integrator_symplectic(r->scheme) == NEVH_EXTENDED;
     if (preserves(s, r))
         return 0;
-    return constant * (bound ? 10 : 1) * s->peak * pow(x, order);
+    return constant * hard_haste(r) * s->peak * pow(x, order);
 }
 
 static double drift_bound(const hard_subject *s, const hard_result *r) {
@@ -66,8 +65,8 @@ static double rounding(const hard_subject *s, const hard_result *r) {
 }
 
 static double find_bound(const hard_subject *s, const hard_result *r) {
-    double error =
-        hard_keeps(r) ? kept_bound(s, r) : fmax(kept_bound(s, r), drift_bound(s, r));
+    double error = hard_keeps(r) ? kept_bound(s, r)
+                                 : fmax(kept_bound(s, r), drift_bound(s, r));
     return fmin(1, error + r->floor + rounding(s, r));
 }
 
@@ -103,7 +102,8 @@ static bool is_explained(const hard_subject *s, const hard_result *r) {
         return true;
     return is(s, HARD_EDGE | HARD_ESCAPE | HARD_NOISE | HARD_ANY_STEP) ||
            stability_exceeded(r->scheme, r->limit, x) || x > 1 ||
-           kept_bound(s, r) > 1 || (!hard_keeps(r) && drift_bound(s, r) > 0.1) ||
+           kept_bound(s, r) > 1 ||
+           (!hard_keeps(r) && drift_bound(s, r) > 0.1) ||
            (r->status == NEVH_EMAXITER && x > solvable);
 }
 
@@ -154,6 +154,14 @@ static hard_verdict judge_energy(hard_result *r) {
         most, r->steps, r->asked);
     if (most > r->bound)
         return HARD_NONE;
+    if (r->state_error > r->state_bound) {
+        free(r->happened);
+        r->happened = text_print(
+            "energy error %.1e, but at t = %.4g it is off by %.1e of the "
+            "orbit's size, where theory allows %.1e",
+            most, r->state_at, r->state_error, r->state_bound);
+        return HARD_WRONG;
+    }
     return level || hard_keeps(r) ? HARD_BOUNDED : HARD_DRIFTS;
 }
 

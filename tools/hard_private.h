@@ -18,7 +18,8 @@ enum {
     HARD_ENDLESS = 128,  /* more steps than the budget allows */
     HARD_ANY_STEP = 256, /* dt is beyond reason */
     HARD_KINK = 512,     /* H has no second derivative somewhere */
-    HARD_FAR = 1024      /* coordinates are 1e6 times as large as need be */
+    HARD_FAR = 1024,     /* coordinates are 1e6 times as large as need be */
+    HARD_REST = 2048     /* nothing moves */
 };
 
 typedef struct {
@@ -46,8 +47,8 @@ typedef struct {
     bool balance;
     double frequency, fastest_at; /* the largest along the orbit, and when */
     double peak;                  /* largest effect over the energy's scale */
-    double scale;    /* of the energy */
-    double rounding; /* of the energy, where q, p and t are rounded once */
+    double scale;                 /* of the energy */
+    double rounding;   /* of the energy, where q, p and t are rounded once */
     hard_track *track; /* NULL: nobody knows where the orbit leads */
 } hard_subject;
 /* Of the hard cases, which are beside the scenes, or of the scenes; NULL. */
@@ -56,7 +57,8 @@ int hard_open(hard_subject *, const hard_case *); /* as scene_open */
 void hard_close(hard_subject *);
 
 typedef enum {
-    HARD_NONE, /* not explained: there must be no such row */
+    HARD_NONE,  /* not explained: there must be no such row, */
+    HARD_WRONG, /* nor one that keeps its energy on a wrong orbit */
     HARD_BOUNDED,
     HARD_DRIFTS,
     HARD_UNSTABLE,
@@ -77,22 +79,25 @@ typedef struct {
     size_t steps;
     double asked; /* steps */
     nevh_energy_report energy;
-    double defect;     /* HARD_RETURN: distance to the start; NAN */
-    double floor;      /* of the energy error, from rounding and gradients */
+    double defect; /* HARD_RETURN: distance to the start; NAN */
+    double floor;  /* of the energy error, from rounding and gradients */
     double state_error, state_bound, state_at; /* where it is the largest part
                                                   of its bound; NAN: unknown */
     double state_floor; /* from the same, over the time of the track */
-    double frequency;  /* at the fastest state that this run went through */
-    double fastest_at; /* or the case's */
-    double limit;      /* nevh_stability_limit */
-    double bound;      /* of the energy error, by theory */
+    double frequency;   /* at the fastest state that this run went through */
+    double fastest_at;  /* or the case's */
+    double limit;       /* nevh_stability_limit */
+    double bound;       /* of the energy error, by theory */
     double seconds;
     char *reason; /* the library's */
     hard_verdict verdict;
     char *happened;
 } hard_result;
 void hard_run(const hard_subject *, double budget, hard_result *);
+/* Whether theory keeps the energy in bounds. */
 bool hard_keeps(const hard_result *);
+/* How much larger errors are by what the scheme does besides following H. */
+double hard_haste(const hard_result *);
 void hard_judge(const hard_subject *, hard_result *);
 void hard_result_free(hard_result *);
 
@@ -104,7 +109,7 @@ typedef struct hard_state hard_state;
 /* To watch a planned run of a scheme, with a tolerance if it adapts.
    returns  NULL where there is no track */
 hard_state *hard_state_new(const hard_subject *, const hard_result *,
-                           double tolerance);
+                           nevh_field *, double tolerance);
 size_t hard_state_every(const hard_state *); /* steps between looks */
 /* A nevh_observe_fn; data is the hard_state. */
 int hard_state_observe(void *, size_t step, double t, const double q[],

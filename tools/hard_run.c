@@ -46,21 +46,26 @@ static nevh_options plan_with(const hard_subject *s, const hard_result *r) {
     return o;
 }
 
-/* What differences and rounding alone may do to the energy: a random walk, and
-   what the gradient lacks, at its worst all along. */
+/* What rounding alone may do to the energy, in values of H and in the state: a
+   random walk. */
+static double find_noise(const hard_subject *s, nevh_stepper *m, double steps) {
+    double noise = 0;
+    nevh_field_energy_floor(nevh_stepper_field(m), s->t, s->q, s->p, s->dt,
+                            (size_t)steps, &noise);
+    return 10 * noise / s->scale + 10 * s->rounding * sqrt(steps);
+}
+
+/* And what the gradient lacks, at its worst all along. */
 static double find_floor(const hard_subject *s, nevh_stepper *m, double steps) {
     nevh_field *f = nevh_stepper_field(m);
-    double noise = 0, rough = 0;
-    nevh_field_energy_floor(f, s->t, s->q, s->p, s->dt, (size_t)steps,
-                            &noise);
+    double rough = 0;
     for (size_t i = 0; i < nevh_field_step_count(f); i++) {
         nevh_step_report step = nevh_field_step_report(f, i);
         if (!step.given && step.size > 0)
             rough = fmax(rough, (step.truncation + step.rounding) / step.size);
     }
-    return 10 * noise / s->scale + 10 * s->rounding * sqrt(steps) +
-           (rough + 16 * DBL_EPSILON) * s->peak *
-               fmax(1, steps * s->dt * s->frequency);
+    return find_noise(s, m, steps) + (rough + 16 * DBL_EPSILON) * s->peak *
+                                         fmax(1, steps * s->dt * s->frequency);
 }
 
 static bool finite_state(const hard_subject *s, const double q[],
@@ -94,7 +99,8 @@ static void fly(const hard_subject *s, nevh_stepper *m, const nevh_options *o,
     memcpy(p, s->p, s->n * sizeof *p);
     if (s->balance)
         nevh_energy_follow(g.energy, m);
-    hard_state *state = hard_state_new(s, r, o->tolerance);
+    hard_state *state =
+        hard_state_new(s, r, nevh_stepper_field(m), o->tolerance);
     nevh_observer observers[] = {
         {watch, &g, 1}, {hard_state_observe, state, hard_state_every(state)}};
     clock_gettime(CLOCK_MONOTONIC, &g.begin);
@@ -141,7 +147,7 @@ static void run_planned(const hard_subject *s, nevh_stepper *m,
     bool stops = s->is->facts & HARD_ENDLESS;
     r->order = nevh_stepper_order(m);
     r->floor = find_floor(s, m, r->asked);
-    r->state_floor = find_floor(s, m, fmin(r->asked, 1e4));
+    r->state_floor = find_noise(s, m, fmin(r->asked, 1e4));
     fly(s, m, o, stops ? fmin(budget, endless) : budget, r);
     if (s->is->facts & HARD_RETURN && !r->status)
         turn_back(s, m, r);

@@ -19,7 +19,11 @@
 enum { SAMPLES = 200, LOOKS = 100 };
 static const double constant = 1;
 static const double most_steps = 1e4;
-static const double displaced = 1e-6; /* of the range of a variable */
+static const double displaced = 1e-9; /* of the range of a variable */
+/* What planning says of differences is an estimate. */
+static const double doubt = 10;
+/* Substeps that a tolerance may ask for, in a step or a turn. */
+static const double substeps = 10;
 
 /* An orbit as it should be, followed for some time. */
 struct hard_track {
@@ -28,12 +32,23 @@ struct hard_track {
     nevh_scene *scene; /* of systems that have no derivatives of their own */
     size_t n, count;
     double t_end, *t, *pace, *growth; /* growth: the largest so far */
+    double *range;                    /* 2n */
 };
 
+static double distance(const hard_track *k, const double state[],
+                       const double q[], const double p[]) {
+    double most = 0;
+    for (size_t i = 0; i < k->n; i++) {
+        double dp = p[i] - state[k->n + i];
+        most = fmax(most, fabs(q[i] - state[i]) / k->range[i]);
+        most = fmax(most, fabs(dp) / k->range[k->n + i]);
+    }
+    return most;
+}
+
 static nevh_stepper *fine(const hard_track *k, const hard_subject *s) {
-    nevh_options o = {
-        .gradient = nevh_exact, .q = s->q, .p = s->p, .t = s->t};
-    o.tolerance = 1e-12;
+    nevh_options o = {.gradient = nevh_exact, .q = s->q, .p = s->p, .t = s->t};
+    o.tolerance = 1e-13;
     return nevh_stepper_new(k->system, nevh_dop853, &o);
 }
 
@@ -46,15 +61,9 @@ static int look(void *data, size_t step, double t, const double q[],
                 const double p[]) {
     spread *d = data;
     const hard_track *k = d->track;
-    double most = 0, *at = d->state;
-    if (nevh_reference_state(k->reference, t, at, at + k->n))
+    if (nevh_reference_state(k->reference, t, d->state, d->state + k->n))
         return NEVH_OK;
-    for (size_t i = 0; i < k->n; i++) {
-        const nevh_reference *r = k->reference;
-        most = fmax(most, fabs(q[i] - at[i]) / nevh_reference_range(r, i));
-        most = fmax(most, fabs(p[i] - at[k->n + i]) /
-                              nevh_reference_range(r, k->n + i));
-    }
+    double most = distance(k, d->state, q, p);
     if (step < k->count)
         d->growth[step] += most / displaced;
     return NEVH_OK;
@@ -67,11 +76,10 @@ static int follow(spread *d, const hard_subject *s, nevh_stepper *m,
     double *q = tool_allocate(2 * k->n, sizeof *q), *p = q + k->n;
     memcpy(q, s->q, k->n * sizeof *q);
     memcpy(p, s->p, k->n * sizeof *p);
-    q[variable] += displaced * nevh_reference_range(k->reference, variable);
+    q[variable] += displaced * k->range[variable];
     nevh_stepper_reset(m);
-    int status =
-        nevh_run(m, s->t, (k->t_end - s->t) / SAMPLES, SAMPLES, q, p,
-                 &(nevh_observer){look, d, 1}, 1);
+    int status = nevh_run(m, s->t, (k->t_end - s->t) / SAMPLES, SAMPLES, q, p,
+                          &(nevh_observer){look, d, 1}, 1);
     free(q);
     return status;
 }
@@ -84,15 +92,55 @@ static void find_growth(hard_track *k, const hard_subject *s) {
     for (size_t i = 0; !lost && i < 2 * k->n; i++)
         lost = follow(&d, s, m, i);
     for (size_t i = 0; i < k->count; i++)
-        k->growth[i] = lost ? INFINITY
-                            : fmax(d.growth[i], i ? k->growth[i - 1] : 1);
+        k->growth[i] =
+            lost ? INFINITY : fmax(d.growth[i], i ? k->growth[i - 1] : 1);
     nevh_stepper_free(m);
     free(d.state);
     free(d.growth);
 }
 
+/* Of what H does by itself: gradients at the start, at the times of the track.
+   A sine of amplitude a, a range of 2 a, has slopes of up to a omega. */
+static double find_drive(const hard_track *k, const hard_subject *s) {
+    nevh_options o = {.gradient = nevh_exact, .q = s->q, .p = s->p, .t = s->t};
+    nevh_field *f = nevh_field_new(k->system, &o);
+    double *g = tool_allocate(5 * k->n, sizeof *g), drive = 0;
+    double *low = g + 2 * k->n, *high = low + k->n, *steepest = high + k->n;
+    double dt = 1e-3 * s->dt;
+    for (size_t i = 0; i < k->count; i++) {
+        double t[] = {k->t[i], k->t[i] + dt};
+        for (int m = 0; m < 2; m++)
+            nevh_field_gradient(f, 1, &t[m], s->q, s->p, g + (size_t)m * k->n,
+                                NULL);
+        for (size_t j = 0; j < k->n; j++) {
+            low[j] = i ? fmin(low[j], g[j]) : g[j];
+            high[j] = i ? fmax(high[j], g[j]) : g[j];
+            steepest[j] = fmax(steepest[j], fabs(g[k->n + j] - g[j]) / dt);
+        }
+    }
+    for (size_t j = 0; j < k->n; j++)
+        if (high[j] > low[j])
+            drive = fmax(drive, 2 * steepest[j] / (high[j] - low[j]));
+    nevh_field_free(f);
+    free(g);
+    return drive;
+}
+
+/* Of what the orbit meets: derivatives along it come from its own turning, from
+   time and from friction, whose rates add up. */
+static double find_outside(const hard_track *k, const hard_subject *s) {
+    double *rates = tool_allocate(k->n, sizeof *rates), most = 0;
+    nevh_system_friction(k->system, rates);
+    for (size_t i = 0; i < k->n; i++)
+        most = fmax(most, rates[i]);
+    free(rates);
+    bool driven = !(nevh_system_traits(k->system) & NEVH_AUTONOMOUS);
+    return most + (driven ? find_drive(k, s) : 0);
+}
+
 static void find_pace(hard_track *k, const hard_subject *s) {
     double *at = tool_allocate(2 * k->n, sizeof *at), growth;
+    double outside = find_outside(k, s);
     nevh_options o = {.t = s->t, .q = s->q, .p = s->p};
     nevh_rates *rates = nevh_rates_new(k->system, &o);
     for (size_t i = 0; i < k->count; i++) {
@@ -100,7 +148,7 @@ static void find_pace(hard_track *k, const hard_subject *s) {
         if (nevh_reference_state(k->reference, k->t[i], at, at + k->n) ||
             nevh_rates_at(rates, k->t[i], at, at + k->n, &k->pace[i], &growth))
             continue;
-        k->pace[i] = fmax(k->pace[i], growth);
+        k->pace[i] = fmax(k->pace[i], growth) + outside;
     }
     nevh_rates_free(rates);
     free(at);
@@ -118,7 +166,7 @@ static void choose_system(hard_track *k, const hard_subject *s) {
 
 hard_track *hard_track_new(const hard_subject *s) {
     double span = fmin(s->t_end - s->t, most_steps * s->dt);
-    if (span > 1e200) /* nothing can be followed over such a time */
+    if (span > 1e200 || s->is->facts & HARD_KINK)
         return NULL;
     hard_track *k = tool_allocate(1, sizeof *k);
     choose_system(k, s);
@@ -126,6 +174,11 @@ hard_track *hard_track_new(const hard_subject *s) {
     k->reference =
         nevh_reference_new(k->system, NULL, s->t, k->t_end, s->q, s->p);
     k->count = SAMPLES + 1;
+    k->range = tool_allocate(2 * k->n, sizeof *k->range);
+    for (size_t i = 0; i < 2 * k->n; i++)
+        k->range[i] = s->is->facts & HARD_REST
+                          ? 1
+                          : nevh_reference_range(k->reference, i);
     k->t = tool_allocate(3 * k->count, sizeof *k->t);
     k->pace = k->t + k->count;
     k->growth = k->pace + k->count;
@@ -145,6 +198,7 @@ void hard_track_free(hard_track *k) {
         return;
     nevh_reference_free(k->reference);
     nevh_scene_free(k->scene);
+    free(k->range);
     free(k->t);
     free(k);
 }
@@ -156,45 +210,91 @@ struct hard_state {
     double error, allowed, t, share; /* where share = error/allowed is most */
 };
 
+/* Tao's copies are bound by 3 times the largest frequency of a run, turn by
+   twice that, and errors grow in proportion [M. Tao, Phys. Rev. E 94 (2016)
+   043303, theorem 1]. */
+double hard_haste(const hard_result *r) {
+    return nevh_integrator_symplectic(r->scheme) == NEVH_EXTENDED &&
+                   !nevh_integrator_own_time(r->scheme)
+               ? 7
+               : 1;
+}
+
 /* Of fixed steps. */
 static void allow_steps(hard_state *w, const hard_subject *s,
                         const hard_result *r) {
     const hard_track *k = w->track;
-    double turns = 0, most = 0, order = r->order;
+    double turns = 0, most = 0, order = r->order, haste = hard_haste(r);
     for (size_t i = 0; i < k->count; i++) {
-        double rate = fmax(k->pace[i], k->pace[i ? i - 1 : 0]), x = s->dt * rate;
+        double rate = fmax(k->pace[i], k->pace[i ? i - 1 : 0]);
         double time = i ? k->t[i] - k->t[i - 1] : 0;
-        most = fmax(most, x);
-        turns += pow(x, order) * rate * time / (2 * M_PI);
+        if (haste > 1)
+            rate = fmax(rate, s->frequency);
+        most = fmax(most, s->dt * rate);
+        turns += pow(s->dt * rate, order) * rate * time / (2 * M_PI);
         double once = pow(most, order);
         double error = hard_keeps(r) ? turns + once * k->growth[i]
-                                  : (turns + once) * k->growth[i];
-        w->bound[i] = most > 1 ? INFINITY : constant * error;
+                                     : (turns + once) * k->growth[i];
+        w->bound[i] = most > 1 ? INFINITY : constant * haste * error;
     }
 }
 
+/* Tolerances are relative to coordinates and momenta, not to their ranges. */
 static void allow_tolerance(hard_state *w, const hard_subject *s,
                             double tolerance) {
     const hard_track *k = w->track;
-    for (size_t i = 0; i < k->count; i++)
-        w->bound[i] = tolerance * k->growth[i] *
-                      (1 + (k->t[i] - s->t) * fmax(1 / s->dt, s->frequency));
-}
-
-/* What does not come from the steps' length. */
-static void allow_rest(hard_state *w, const hard_subject *s,
-                       const hard_result *r) {
-    const hard_track *k = w->track;
+    double size = 1;
+    for (size_t i = 0; i < k->n; i++) {
+        size = fmax(size, 1 + fabs(s->q[i]) / k->range[i]);
+        size = fmax(size, 1 + fabs(s->p[i]) / k->range[k->n + i]);
+    }
     for (size_t i = 0; i < k->count; i++) {
-        double steps = (k->t[i] - s->t) / s->dt;
-        w->bound[i] += (r->state_floor + 1e-14 * steps) * k->growth[i] +
-                       10 * nevh_reference_error(k->reference);
+        double time = k->t[i] - s->t;
+        w->bound[i] = tolerance * size * k->growth[i] * substeps *
+                      (1 + time * fmax(1 / s->dt, s->frequency));
     }
 }
 
+/* What differences lack, per unit of time: of dH/dq in p, of dH/dp in q. */
+static double find_lack(const hard_track *k, nevh_field *f) {
+    double *lack = tool_allocate(2 * k->n, sizeof *lack), most = 0;
+    for (size_t i = 0; i < nevh_field_step_count(f); i++) {
+        nevh_step_report step = nevh_field_step_report(f, i);
+        size_t moved = step.index + (step.momentum ? 0 : k->n);
+        if (!step.given)
+            lack[moved] += step.truncation + step.rounding;
+    }
+    for (size_t i = 0; i < 2 * k->n; i++)
+        most = fmax(most, lack[i] / k->range[i]);
+    free(lack);
+    return doubt * most;
+}
+
+/* What does not come from the steps' length.  Increments have a rounding of
+   some epsilon of the state each, the solution of stages of 1e-14. */
+static void allow_rest(hard_state *w, const hard_subject *s,
+                       const hard_result *r, nevh_field *f) {
+    const hard_track *k = w->track;
+    double lack = find_lack(k, f);
+    for (size_t i = 0; i < k->count; i++) {
+        double time = k->t[i] - s->t;
+        double rest = r->state_floor + lack * time + 1e-14 * time / s->dt;
+        w->bound[i] +=
+            rest * k->growth[i] + 10 * nevh_reference_error(k->reference);
+    }
+}
+
+/* Increments of the state take the place of a gradient's steps, and go down to
+   0, where noise in H is divided by them. */
+static bool divides_noise(const hard_subject *s, const hard_result *r) {
+    return s->is->facts & HARD_NOISE &&
+           nevh_integrator_preserves_energy(r->scheme) == NEVH_YES &&
+           nevh_integrator_sweep_gradients(r->scheme) == 0;
+}
+
 hard_state *hard_state_new(const hard_subject *s, const hard_result *r,
-                           double tolerance) {
-    if (!s->track)
+                           nevh_field *f, double tolerance) {
+    if (!s->track || divides_noise(s, r))
         return NULL;
     hard_state *w = tool_allocate(1, sizeof *w);
     w->track = s->track;
@@ -208,26 +308,12 @@ hard_state *hard_state_new(const hard_subject *s, const hard_result *r,
         allow_tolerance(w, s, tolerance);
     else
         allow_steps(w, s, r);
-    allow_rest(w, s, r);
+    allow_rest(w, s, r, f);
     return w;
 }
 
 size_t hard_state_every(const hard_state *w) {
     return w ? w->every : 0;
-}
-
-static double distance(const hard_state *w, const double q[],
-                       const double p[]) {
-    const nevh_reference *r = w->track->reference;
-    size_t n = w->track->n;
-    double most = 0;
-    for (size_t i = 0; i < n; i++) {
-        most = fmax(most,
-                    fabs(q[i] - w->state[i]) / nevh_reference_range(r, i));
-        most = fmax(most, fabs(p[i] - w->state[n + i]) /
-                              nevh_reference_range(r, n + i));
-    }
-    return most;
 }
 
 int hard_state_observe(void *state, size_t step, double t, const double q[],
@@ -241,7 +327,7 @@ int hard_state_observe(void *state, size_t step, double t, const double q[],
         return NEVH_OK;
     double allowed =
         w->bound[(size_t)ceil((t - start) / span * SAMPLES * (1 - 1e-12))];
-    double error = distance(w, q, p);
+    double error = distance(k, w->state, q, p);
     if (isfinite(allowed) && error / allowed > w->share)
         w->error = error, w->allowed = allowed, w->t = t,
         w->share = error / allowed;
