@@ -105,6 +105,8 @@ void hard_result_free(hard_result *);
    returns  NULL when no reference can be had */
 hard_track *hard_track_new(const hard_subject *);
 void hard_track_free(hard_track *); /* NULL is allowed */
+/* By how much the flow enlarges an error at most, over its time; NAN. */
+double hard_track_growth(const hard_track *);
 typedef struct hard_state hard_state;
 /* To watch a planned run of a scheme, with a tolerance if it adapts.
    returns  NULL where there is no track */

@@ -3,13 +3,16 @@
 #include "hard_private.h"
 #include <float.h>
 #include <math.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 static const double tolerance = 1e-9; /* of adaptive schemes */
 static const double endless = 0.01;   /* seconds for what has no end */
 static const double unstable_above = 1;
+static const double patience = 200; /* budgets until a step is stuck */
 
 typedef struct {
     nevh_energy *energy;
@@ -156,8 +159,27 @@ static void run_planned(const hard_subject *s, nevh_stepper *m,
         find_pace(s, o, r);
 }
 
+/* A step that does not return cannot be taken back: the end, with its name. */
+static char stuck[200];
+
+static void tell_stuck(int signal) {
+    (void)signal;
+    _exit(write(STDERR_FILENO, stuck, strlen(stuck)) < 0 ? TOOL_USAGE
+                                                         : TOOL_FAILED);
+}
+
+static void watch_clock(const hard_subject *s, double budget,
+                        const hard_result *r) {
+    snprintf(stuck, sizeof stuck,
+             "nevh hard: %s, %s, %s: a step does not return\n", s->is->name,
+             nevh_integrator_name(r->scheme), r->gradient);
+    signal(SIGALRM, tell_stuck);
+    alarm((unsigned)ceil(patience * budget));
+}
+
 void hard_run(const hard_subject *s, double budget, hard_result *r) {
     nevh_options o = plan_with(s, r);
+    watch_clock(s, budget, r);
     nevh_stepper *m = nevh_stepper_new(s->system, r->scheme, &o);
     r->status = nevh_stepper_status(m);
     r->planned = !r->status;
@@ -170,6 +192,7 @@ void hard_run(const hard_subject *s, double budget, hard_result *r) {
     else
         r->reason = text_print("%s", nevh_stepper_message(m));
     nevh_stepper_free(m);
+    alarm(0);
 }
 
 void hard_result_free(hard_result *r) {

@@ -17,7 +17,8 @@
 #include <string.h>
 
 enum { SAMPLES = 200, LOOKS = 100 };
-static const double constant = 1;
+/* Taylor's remainder at order 1, x^2/2 in a step; less at higher orders. */
+static const double constant = 0.5;
 static const double most_steps = 1e4;
 static const double displaced = 1e-9; /* of the range of a variable */
 /* What planning says of differences is an estimate. */
@@ -210,14 +211,14 @@ struct hard_state {
     double error, allowed, t, share; /* where share = error/allowed is most */
 };
 
-/* Tao's copies are bound by 3 times the largest frequency of a run, turn by
-   twice that, and errors grow in proportion [M. Tao, Phys. Rev. E 94 (2016)
-   043303, theorem 1]. */
+/* Tao's copies are bound by omega = 3 times the largest frequency w of a run,
+   and turn by 2 omega [M. Tao, Phys. Rev. E 94 (2016) 043303]: remainders
+   (7 h w)^(r+1)/(r+1)! instead of (h w)^(r+1). */
 double hard_haste(const hard_result *r) {
-    return nevh_integrator_symplectic(r->scheme) == NEVH_EXTENDED &&
-                   !nevh_integrator_own_time(r->scheme)
-               ? 7
-               : 1;
+    bool bound = nevh_integrator_symplectic(r->scheme) == NEVH_EXTENDED &&
+                 !nevh_integrator_own_time(r->scheme);
+    int order = nevh_integrator_order(r->scheme);
+    return bound ? pow(7, order) / tgamma(order + 2) : 1;
 }
 
 /* Of fixed steps. */
@@ -235,7 +236,9 @@ static void allow_steps(hard_state *w, const hard_subject *s,
         double once = pow(most, order);
         double error = hard_keeps(r) ? turns + once * k->growth[i]
                                      : (turns + once) * k->growth[i];
-        w->bound[i] = most > 1 ? INFINITY : constant * haste * error;
+        w->bound[i] = constant * haste * error;
+        if (most > 1)
+            w->bound[i] = INFINITY;
     }
 }
 
@@ -281,6 +284,8 @@ static void allow_rest(hard_state *w, const hard_subject *s,
         double rest = r->state_floor + lack * time + 1e-14 * time / s->dt;
         w->bound[i] +=
             rest * k->growth[i] + 10 * nevh_reference_error(k->reference);
+        if (w->bound[i] > 0.5) /* half of the orbit's size: no longer linear */
+            w->bound[i] = INFINITY;
     }
 }
 
@@ -310,6 +315,10 @@ hard_state *hard_state_new(const hard_subject *s, const hard_result *r,
         allow_steps(w, s, r);
     allow_rest(w, s, r, f);
     return w;
+}
+
+double hard_track_growth(const hard_track *k) {
+    return k ? k->growth[k->count - 1] : NAN;
 }
 
 size_t hard_state_every(const hard_state *w) {
