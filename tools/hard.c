@@ -152,6 +152,8 @@ static void add_record(table *t, const case_results *c, const hard_result *r) {
     table_number(t, r->planned ? (double)r->steps : NAN);
     table_number(t, ran ? r->energy.max : NAN);
     table_number(t, ran ? r->bound : NAN);
+    table_number(t, r->state_error);
+    table_number(t, r->state_bound);
     table_text(t, r->happened);
     table_text(t, hard_verdict_name(r->verdict));
     free(what);
@@ -159,9 +161,10 @@ static void add_record(table *t, const case_results *c, const hard_result *r) {
 
 static table *runs(const suite *all) {
     static const char *const names[] = {
-        "case",    "integrator",   "gradient", "asked",
-        "h_omega", "stable_below", "steps",    "max_energy_error",
-        "bound",   "happened",     "verdict"};
+        "case",    "integrator",   "gradient",    "asked",
+        "h_omega", "stable_below", "steps",       "max_energy_error",
+        "bound",   "state_error",  "state_bound", "happened",
+        "verdict"};
     table *t = table_new();
     columns(t, names, sizeof names / sizeof *names);
     for (size_t i = 0; i < all->n_cases; i++)
@@ -242,11 +245,12 @@ static void tell_counts(const suite *all, const size_t counts[HARD_VERDICTS],
     list_print(words,
                "%zu cases x %zu schemes x %zu gradients: %zu combinations; %zu "
                "bounded, %zu drift as theory expects, %zu unstable, %zu "
-               "refused, %zu failed with the last good state kept; %zu without "
-               "a verdict.",
+               "refused, %zu failed with the last good state kept; %zu on a "
+               "wrong orbit, %zu without a verdict.",
                all->n_cases, all->n_schemes, all->gradients.count, sum,
                counts[HARD_BOUNDED], counts[HARD_DRIFTS], counts[HARD_UNSTABLE],
-               counts[HARD_REFUSED], counts[HARD_FAILED], counts[HARD_NONE]);
+               counts[HARD_REFUSED], counts[HARD_FAILED], counts[HARD_WRONG],
+               counts[HARD_NONE]);
 }
 
 static int print_suite(const suite *all, const options *o) {
@@ -256,7 +260,7 @@ static int print_suite(const suite *all, const options *o) {
     page result = {.table = each ? runs(all) : shown(all)};
     tell_counts(all, counts, sum,
                 o->format == FORMAT_CSV ? &result.before : &result.after);
-    int status = counts[HARD_NONE] ? TOOL_FAILED : TOOL_OK;
+    int status = counts[HARD_NONE] + counts[HARD_WRONG] ? TOOL_FAILED : TOOL_OK;
     status = output_page(o, &result, status);
     page_free(&result);
     return status;

@@ -33,7 +33,7 @@ static nevh_system *fickle_box(void) {
 }
 
 const hard_case hard_cases[] = {
-    {"pendulum at rest", "pendulum-modulus", "k=0", 0, 0, 0, NULL},
+    {"pendulum at rest", "pendulum-modulus", "k=0", 0, 0, HARD_REST, NULL},
     {"pendulum k = 0.999", "pendulum-modulus", NULL, 0, 0, 0, NULL},
     {"below the separatrix by 1e-10", "pendulum-modulus", "k=1-1e-10", 0, 0, 0,
      NULL},
@@ -77,6 +77,8 @@ const hard_case hard_cases[] = {
     {"Kepler head-on", "head-on", NULL, 0, 0, HARD_EDGE, NULL},
     {"Kepler, there and back", "kepler", NULL, 0, 0, HARD_RETURN, NULL},
     {"Henon-Heiles at 1/12", "henon-heiles", NULL, 0, 0, 0, NULL},
+    /* where bounds are small, and tell one coefficient from another */
+    {"Henon-Heiles, small steps", "henon-heiles", NULL, 0.002, 20, 0, NULL},
     {"Henon-Heiles at 1/6", "henon-heiles", "E=1/6", 0, 0, HARD_ESCAPE, NULL},
     /* gone at t = 13.94 */
     {"Henon-Heiles above escape", "henon-heiles", "E=0.3", 0, 13.8, HARD_ESCAPE,

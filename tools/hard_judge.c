@@ -11,13 +11,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Stage equations are sure to have a solution for short steps alone. */
-static const double solvable = 0.1;
-static const double constant = 10, tolerance = 1e-9, returned = 1e-8;
+static const double constant = 10, tolerance = 1e-9;
 
 const char *hard_verdict_name(hard_verdict v) {
-    static const char *const names[] = {"none",     "bounded", "drifts",
-                                        "unstable", "refused", "failed"};
+    static const char *const names[] = {"none",   "wrong orbit", "bounded",
+                                        "drifts", "unstable",    "refused",
+                                        "failed"};
     return v < HARD_VERDICTS ? names[v] : "none";
 }
 
@@ -25,35 +24,38 @@ static bool is(const hard_subject *s, unsigned facts) {
     return s->is->facts & facts;
 }
 
-static double pace_of(const hard_subject *s, const hard_result *r) {
-    return s->dt * r->frequency;
+/* Of the orbit as it should be: where a run went astray excuses nothing. */
+static double pace_of(const hard_subject *s) {
+    return s->dt * s->frequency;
 }
 
 /* Whether theory keeps the energy in bounds. */
-static bool keeps(const hard_result *r) {
+bool hard_keeps(const hard_result *r) {
     return nevh_integrator_symplectic(r->scheme) != NEVH_NO ||
            nevh_integrator_preserves_energy(r->scheme) == NEVH_YES ||
            nevh_integrator_symmetric(r->scheme) != NEVH_NO;
 }
 
-/* What is preserved for any step: of H itself, by Itoh and Abe's and by
-   Gonzalez's; by averaging, as far as its quadrature is exact. */
-static bool preserves(const hard_subject *s, const hard_result *r) {
-    return nevh_integrator_preserves_energy(r->scheme) == NEVH_YES &&
-           !s->balance && r->scheme != nevh_avf;
+/* What is preserved for any step: H itself, by Itoh and Abe's and by Gonzalez's
+   methods.  Averaging has a quadrature, exact for polynomials of twice as many
+   degrees as there are nodes: an order of its own. */
+static double kept_order(const hard_subject *s, const hard_result *r) {
+    if (nevh_integrator_preserves_energy(r->scheme) != NEVH_YES || s->balance)
+        return nevh_integrator_order(r->scheme);
+    if (r->scheme != nevh_avf)
+        return INFINITY;
+    return 2 * nevh_integrator_stages(r->scheme);
 }
 
-/* Tao's methods turn by their binding, too, which is faster than the orbit. */
 static double kept_bound(const hard_subject *s, const hard_result *r) {
-    double x = pace_of(s, r), order = nevh_integrator_order(r->scheme);
-    bool bound = nevh_integrator_symplectic(r->scheme) == NEVH_EXTENDED;
-    if (preserves(s, r))
+    double x = pace_of(s), order = kept_order(s, r);
+    if (isinf(order))
         return 0;
-    return constant * (bound ? 10 : 1) * s->peak * pow(x, order);
+    return constant * hard_haste(r) * s->peak * pow(x, order);
 }
 
 static double drift_bound(const hard_subject *s, const hard_result *r) {
-    double x = pace_of(s, r), steps = (double)r->steps;
+    double x = pace_of(s), steps = (double)r->steps;
     if (nevh_integrator_adaptive(r->scheme))
         return 100 * tolerance * s->peak * steps * fmax(1, x);
     return constant * s->peak * steps *
@@ -66,8 +68,8 @@ static double rounding(const hard_subject *s, const hard_result *r) {
 }
 
 static double find_bound(const hard_subject *s, const hard_result *r) {
-    double error =
-        keeps(r) ? kept_bound(s, r) : fmax(kept_bound(s, r), drift_bound(s, r));
+    double error = hard_keeps(r) ? kept_bound(s, r)
+                                 : fmax(kept_bound(s, r), drift_bound(s, r));
     return fmin(1, error + r->floor + rounding(s, r));
 }
 
@@ -92,11 +94,10 @@ static bool refuses_rightly(const hard_subject *s, const hard_result *r) {
 
 /* Whether a run that ended, or lost its energy, had a reason to. */
 static bool is_explained(const hard_subject *s, const hard_result *r) {
-    double x = pace_of(s, r);
+    double x = pace_of(s);
     return is(s, HARD_EDGE | HARD_ESCAPE | HARD_NOISE | HARD_ANY_STEP) ||
            stability_exceeded(r->scheme, r->limit, x) || x > 1 ||
-           kept_bound(s, r) > 1 || (!keeps(r) && drift_bound(s, r) > 0.1) ||
-           (r->status == NEVH_EMAXITER && x > solvable);
+           kept_bound(s, r) > 1 || (!hard_keeps(r) && drift_bound(s, r) > 0.1);
 }
 
 static char *tell_cause(const hard_subject *s, const hard_result *r) {
@@ -108,20 +109,17 @@ static char *tell_cause(const hard_subject *s, const hard_result *r) {
                                          "the end of H"
                       : is(s, HARD_ESCAPE) ? "the orbit escapes"
                       : is(s, HARD_NOISE)  ? "values of H are noise"
-                      : r->status == NEVH_EMAXITER
-                          ? "stage equations need not have a solution that "
-                            "can be found, but for short steps"
                       : kept_bound(s, r) > 1
                           ? "the orbit exchanges more than its energy, which "
                             "theory bounds no better at this order and step"
                           : "no cause was found");
 }
 
-/* An error of the energy that is there all along puts the phase off by about
-   its size times the angle gone through, there and back. */
+/* A symmetric method goes back the way it came, whatever its errors and those
+   of its gradients: all but the rounding of each step, carried along. */
 static hard_verdict judge_return(const hard_subject *s, hard_result *r) {
-    double angle = 2 * r->asked * pace_of(s, r);
-    double allowed = fmax(returned, r->floor * angle);
+    double rest = r->state_floor + 1e-14 * 2 * r->asked;
+    double allowed = rest * hard_track_growth(s->track);
     bool symmetric = nevh_integrator_symmetric(r->scheme) == NEVH_YES;
     r->happened = text_print("comes back to %.1e", r->defect);
     if (r->defect <= allowed)
@@ -129,7 +127,13 @@ static hard_verdict judge_return(const hard_subject *s, hard_result *r) {
     return symmetric ? HARD_NONE : HARD_DRIFTS;
 }
 
-static hard_verdict judge_energy(hard_result *r) {
+/* A line all along, above rounding, in a scheme that must not have any. */
+static bool climbs(const hard_subject *s, const hard_result *r) {
+    return hard_keeps(r) && r->energy.verdict == NEVH_DRIFTS &&
+           r->energy.max > r->floor + rounding(s, r);
+}
+
+static hard_verdict judge_energy(const hard_subject *s, hard_result *r) {
     double most = r->energy.max;
     bool level = r->energy.verdict == NEVH_BOUNDED;
     r->happened = text_print(
@@ -137,9 +141,17 @@ static hard_verdict judge_energy(hard_result *r) {
                  : "energy error %.1e; stopped by the budget after %zu of %.0e "
                    "steps",
         most, r->steps, r->asked);
-    if (most > r->bound)
+    if (most > r->bound || climbs(s, r))
         return HARD_NONE;
-    return level || keeps(r) ? HARD_BOUNDED : HARD_DRIFTS;
+    if (r->state_error > r->state_bound) {
+        free(r->happened);
+        r->happened = text_print(
+            "energy error %.1e, but at t = %.4g it is off by %.1e of the "
+            "orbit's size, where theory allows %.1e",
+            most, r->state_at, r->state_error, r->state_bound);
+        return HARD_WRONG;
+    }
+    return level || hard_keeps(r) ? HARD_BOUNDED : HARD_DRIFTS;
 }
 
 static hard_verdict judge_explosion(const hard_subject *s, hard_result *r) {
@@ -173,7 +185,7 @@ static hard_verdict judge(const hard_subject *s, hard_result *r) {
         return judge_explosion(s, r);
     if (is(s, HARD_RETURN))
         return judge_return(s, r);
-    return judge_energy(r);
+    return judge_energy(s, r);
 }
 
 void hard_judge(const hard_subject *s, hard_result *r) {

@@ -17,7 +17,8 @@ enum {
     HARD_RETURN = 64,    /* forward and back again */
     HARD_ENDLESS = 128,  /* more steps than the budget allows */
     HARD_ANY_STEP = 256, /* dt is beyond reason */
-    HARD_KINK = 512      /* H has no second derivative somewhere */
+    HARD_KINK = 512,     /* H has no second derivative somewhere */
+    HARD_REST = 1024     /* nothing moves */
 };
 
 typedef struct {
@@ -31,6 +32,8 @@ typedef struct {
 /* Ended by one without a name. */
 extern const hard_case hard_cases[];
 
+typedef struct hard_track hard_track;
+
 /* A case made ready, and what its orbit is like. */
 typedef struct {
     const hard_case *is;
@@ -43,13 +46,18 @@ typedef struct {
     bool balance;
     double frequency, fastest_at; /* the largest along the orbit, and when */
     double peak;                  /* largest effect over the energy's scale */
-    double rounding; /* of the energy, where q, p and t are rounded once */
+    double scale;                 /* of the energy */
+    double rounding;   /* of the energy, where q, p and t are rounded once */
+    hard_track *track; /* NULL: nobody knows where the orbit leads */
 } hard_subject;
+/* Of the hard cases, which are beside the scenes, or of the scenes; NULL. */
+nevh_scene *hard_scene(const char *name);
 int hard_open(hard_subject *, const hard_case *); /* as scene_open */
 void hard_close(hard_subject *);
 
 typedef enum {
-    HARD_NONE, /* not explained: there must be no such row */
+    HARD_NONE,  /* not explained: there must be no such row, */
+    HARD_WRONG, /* nor one that keeps its energy on a wrong orbit */
     HARD_BOUNDED,
     HARD_DRIFTS,
     HARD_UNSTABLE,
@@ -63,25 +71,50 @@ const char *hard_verdict_name(hard_verdict);
 typedef struct {
     const nevh_integrator *scheme;
     const char *gradient;
+    int order;           /* to expect */
     int status;          /* of planning, or of the run */
     bool planned, whole; /* whole: all steps that were asked for */
     bool sound;          /* numbers finite, and the state, and a reason given */
     size_t steps;
     double asked; /* steps */
     nevh_energy_report energy;
-    double defect;     /* HARD_RETURN: distance to the start; NAN */
-    double floor;      /* of the energy error, from rounding and gradients */
-    double frequency;  /* at the fastest state that this run went through */
-    double fastest_at; /* or the case's */
-    double limit;      /* nevh_stability_limit */
-    double bound;      /* of the energy error, by theory */
+    double defect; /* HARD_RETURN: distance to the start; NAN */
+    double floor;  /* of the energy error, from rounding and gradients */
+    double state_error, state_bound, state_at; /* where it is the largest part
+                                                  of its bound; NAN: unknown */
+    double state_floor; /* from the same, over the time of the track */
+    double frequency;   /* at the fastest state that this run went through */
+    double fastest_at;  /* or the case's */
+    double limit;       /* nevh_stability_limit */
+    double bound;       /* of the energy error, by theory */
     double seconds;
     char *reason; /* the library's */
     hard_verdict verdict;
     char *happened;
 } hard_result;
 void hard_run(const hard_subject *, double budget, hard_result *);
+/* Whether theory keeps the energy in bounds. */
+bool hard_keeps(const hard_result *);
+/* How much larger errors are by what the scheme does besides following H. */
+double hard_haste(const hard_result *);
 void hard_judge(const hard_subject *, hard_result *);
 void hard_result_free(hard_result *);
+
+/* hard_state.c: where the orbit of a case leads, and how far a run is off.
+   returns  NULL when no reference can be had */
+hard_track *hard_track_new(const hard_subject *);
+void hard_track_free(hard_track *); /* NULL is allowed */
+/* By how much the flow enlarges an error at most, over its time; NAN. */
+double hard_track_growth(const hard_track *);
+typedef struct hard_state hard_state;
+/* To watch a planned run of a scheme, with a tolerance if it adapts.
+   returns  NULL where there is no track */
+hard_state *hard_state_new(const hard_subject *, const hard_result *,
+                           nevh_field *, double tolerance);
+size_t hard_state_every(const hard_state *); /* steps between looks */
+/* A nevh_observe_fn; data is the hard_state. */
+int hard_state_observe(void *, size_t step, double t, const double q[],
+                       const double p[]);
+void hard_state_take(hard_state *, hard_result *); /* frees it */
 
 #endif

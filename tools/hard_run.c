@@ -3,13 +3,16 @@
 #include "hard_private.h"
 #include <float.h>
 #include <math.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 static const double tolerance = 1e-9; /* of adaptive schemes */
 static const double endless = 0.01;   /* seconds for what has no end */
 static const double unstable_above = 1;
+static const double patience = 200; /* budgets until a step is stuck */
 
 typedef struct {
     nevh_energy *energy;
@@ -46,22 +49,26 @@ static nevh_options plan_with(const hard_subject *s, const hard_result *r) {
     return o;
 }
 
-/* What differences and rounding alone may do to the energy: a random walk, and
-   what the gradient lacks, at its worst all along. */
-static double find_floor(const hard_subject *s, const hard_result *r,
-                         nevh_stepper *m) {
+/* What rounding alone may do to the energy, in values of H and in the state: a
+   random walk. */
+static double find_noise(const hard_subject *s, nevh_stepper *m, double steps) {
+    double noise = 0;
+    nevh_field_energy_floor(nevh_stepper_field(m), s->t, s->q, s->p, s->dt,
+                            (size_t)steps, &noise);
+    return 10 * noise / s->scale + 10 * s->rounding * sqrt(steps);
+}
+
+/* And what the gradient lacks, at its worst all along. */
+static double find_floor(const hard_subject *s, nevh_stepper *m, double steps) {
     nevh_field *f = nevh_stepper_field(m);
-    double noise = 0, rough = 0;
-    nevh_field_energy_floor(f, s->t, s->q, s->p, s->dt, (size_t)r->asked,
-                            &noise);
+    double rough = 0;
     for (size_t i = 0; i < nevh_field_step_count(f); i++) {
         nevh_step_report step = nevh_field_step_report(f, i);
         if (!step.given && step.size > 0)
             rough = fmax(rough, (step.truncation + step.rounding) / step.size);
     }
-    return 10 * noise / r->energy.scale + 10 * s->rounding * sqrt(r->asked) +
-           (rough + 16 * DBL_EPSILON) * s->peak *
-               fmax(1, r->asked * s->dt * s->frequency);
+    return find_noise(s, m, steps) + (rough + 16 * DBL_EPSILON) * s->peak *
+                                         fmax(1, steps * s->dt * s->frequency);
 }
 
 static bool finite_state(const hard_subject *s, const double q[],
@@ -95,10 +102,15 @@ static void fly(const hard_subject *s, nevh_stepper *m, const nevh_options *o,
     memcpy(p, s->p, s->n * sizeof *p);
     if (s->balance)
         nevh_energy_follow(g.energy, m);
+    hard_state *state =
+        hard_state_new(s, r, nevh_stepper_field(m), o->tolerance);
+    nevh_observer observers[] = {
+        {watch, &g, 1}, {hard_state_observe, state, hard_state_every(state)}};
     clock_gettime(CLOCK_MONOTONIC, &g.begin);
-    r->status = nevh_run_until(m, s->t, s->dt, s->t_end, q, p,
-                               &(nevh_observer){watch, &g, 1}, 1);
+    r->status = nevh_run_until(m, s->t, s->dt, s->t_end, q, p, observers,
+                               state ? 2 : 1);
     take(r, &g, m);
+    hard_state_take(state, r);
     r->sound = finite_state(s, q, p) && !isnan(r->energy.max) &&
                (!r->status || strlen(r->reason) > 10);
     nevh_energy_free(g.energy);
@@ -136,8 +148,10 @@ static void find_pace(const hard_subject *s, const nevh_options *o,
 static void run_planned(const hard_subject *s, nevh_stepper *m,
                         const nevh_options *o, double budget, hard_result *r) {
     bool stops = s->is->facts & HARD_ENDLESS;
+    r->order = nevh_stepper_order(m);
+    r->floor = find_floor(s, m, r->asked);
+    r->state_floor = find_noise(s, m, fmin(r->asked, 1e4));
     fly(s, m, o, stops ? fmin(budget, endless) : budget, r);
-    r->floor = find_floor(s, r, m);
     if (s->is->facts & HARD_RETURN && !r->status)
         turn_back(s, m, r);
     if (!stops && o->tolerance == 0 &&
@@ -145,13 +159,32 @@ static void run_planned(const hard_subject *s, nevh_stepper *m,
         find_pace(s, o, r);
 }
 
+/* A step that does not return cannot be taken back: the end, with its name. */
+static char stuck[200];
+
+static void tell_stuck(int signal) {
+    (void)signal;
+    _exit(write(STDERR_FILENO, stuck, strlen(stuck)) < 0 ? TOOL_USAGE
+                                                         : TOOL_FAILED);
+}
+
+static void watch_clock(const hard_subject *s, double budget,
+                        const hard_result *r) {
+    snprintf(stuck, sizeof stuck,
+             "nevh hard: %s, %s, %s: a step does not return\n", s->is->name,
+             nevh_integrator_name(r->scheme), r->gradient);
+    signal(SIGALRM, tell_stuck);
+    alarm((unsigned)ceil(patience * budget));
+}
+
 void hard_run(const hard_subject *s, double budget, hard_result *r) {
     nevh_options o = plan_with(s, r);
+    watch_clock(s, budget, r);
     nevh_stepper *m = nevh_stepper_new(s->system, r->scheme, &o);
     r->status = nevh_stepper_status(m);
     r->planned = !r->status;
     r->asked = ceil((s->t_end - s->t) / s->dt * (1 - 1e-9));
-    r->defect = NAN;
+    r->defect = r->state_error = r->state_bound = r->state_at = NAN;
     r->frequency = s->frequency;
     r->fastest_at = s->fastest_at;
     if (r->planned)
@@ -159,6 +192,7 @@ void hard_run(const hard_subject *s, double budget, hard_result *r) {
     else
         r->reason = text_print("%s", nevh_stepper_message(m));
     nevh_stepper_free(m);
+    alarm(0);
 }
 
 void hard_result_free(hard_result *r) {

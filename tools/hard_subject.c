@@ -10,12 +10,18 @@
 enum { SAMPLES = 200 };
 static const double survey_seconds = 0.5;
 
-/* Of the hard cases, which are beside the scenes, or of the scenes. */
 static char *find(const char *name) {
     char *file = scene_file("../hard", name);
     if (!file)
         file = scene_file("../tests/hard", name);
     return file ? file : scene_file(".", name);
+}
+
+nevh_scene *hard_scene(const char *name) {
+    char *file = find(name);
+    nevh_scene *scene = file ? nevh_scene_read(file) : NULL;
+    free(file);
+    return scene;
 }
 
 static int change(nevh_scene *scene, const char *settings) {
@@ -28,12 +34,10 @@ static int change(nevh_scene *scene, const char *settings) {
 }
 
 static int open_scene(hard_subject *s) {
-    char *file = find(s->is->scene);
-    if (!file)
+    s->scene = hard_scene(s->is->scene);
+    if (!s->scene)
         return tool_refuse("the scene %s of the hard cases is not there",
                            s->is->scene);
-    s->scene = nevh_scene_read(file);
-    free(file);
     if (!nevh_scene_status(s->scene) && s->is->settings)
         change(s->scene, s->is->settings);
     if (nevh_scene_status(s->scene))
@@ -147,8 +151,9 @@ static void explore(hard_subject *s) {
     fly(s, &v, &o);
     s->frequency = v.fastest.frequency;
     s->fastest_at = v.fastest.t;
-    s->peak = fmax(1, v.largest / energy_scale(s, &o));
-    s->rounding = v.rounding / energy_scale(s, &o);
+    s->scale = energy_scale(s, &o);
+    s->peak = fmax(1, v.largest / s->scale);
+    s->rounding = v.rounding / s->scale;
     if (s->own) /* its offset is nothing that the orbit exchanges */
         s->peak = 1;
     nevh_rates_free(v.fastest.rates);
@@ -167,10 +172,12 @@ int hard_open(hard_subject *s, const hard_case *is) {
         make_own(s);
     start(s);
     explore(s);
+    s->track = hard_track_new(s);
     return TOOL_OK;
 }
 
 void hard_close(hard_subject *s) {
+    hard_track_free(s->track);
     nevh_system_free(s->own);
     nevh_scene_free(s->scene);
     free(s->q);

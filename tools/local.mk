@@ -49,6 +49,7 @@ tools_nevh_SOURCES = \
 	tools/hard_private.h \
 	tools/hard_cases.c \
 	tools/hard_subject.c \
+	tools/hard_state.c \
 	tools/hard_run.c \
 	tools/hard_judge.c \
 	tools/hard.c \

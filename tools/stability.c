@@ -39,10 +39,10 @@ static const char *resonance(const nevh_integrator *scheme, double x) {
     return fabs(angle - M_PI / 2) < near_by ? "four" : NULL;
 }
 
-/* Of methods with a space of their own limits are known to a tenth. */
+/* Of methods with a space of their own limits are known to 1/32. */
 bool stability_exceeded(const nevh_integrator *scheme, double limit, double x) {
     bool extended = nevh_integrator_symplectic(scheme) == NEVH_EXTENDED;
-    return x > (extended ? 0.9 * limit : limit);
+    return x > (extended ? limit - 1. / 32 : limit);
 }
 
 char *stability_cause(const nevh_integrator *scheme, double limit, double dt,
