@@ -144,8 +144,8 @@ typedef struct {
     const double *gradient_steps; /* as in nevh_options */
     size_t repeats;               /* of timed runs; 0: chosen */
     bool portable, friction, time, balance;
-    bool hurried;    /* rows are to be finished later */
-    double patience; /* seconds that a row may take; 0: any */
+    bool hurried;    /* rows are to be finished later, and timed then */
+    double patience; /* work that a row may take; 0: any */
     bool match_work, diagnostics;
     nevh_reference *reference; /* NULL: not asked for, or there is none */
     char *no_reference;        /* why there is none */
@@ -184,6 +184,7 @@ typedef struct {
     bool ran, late; /* there are numbers; patience was at its end */
     nevh_energy_report energy;
     nevh_counts counts;
+    double work;            /* by its counts: the same on every machine */
     double seconds, spread; /* median, and half of what the middle half spans */
     double observed_order;  /* NAN: unknown */
     double state_error;     /* NAN: unknown or meaningless */
@@ -192,10 +193,15 @@ typedef struct {
     struct envelope *errors; /* of the energy; NULL: not asked for */
 } row;
 void row_run(const plan *, row *);
+/* What that many evaluations and steps cost, in seconds of no machine in
+   particular: what is decided by it is decided alike on all. */
+double row_work(const plan *, const nevh_counts *, size_t steps);
 /* Of a row that ran in a hurry: its time again, and when it became unstable.
    dt       as the row was run with
    repeats  0: chosen */
 void row_finish(const plan *, row *, double dt, size_t repeats);
+/* The time of one run more of it. */
+double row_seconds(const plan *, const row *, double dt);
 /* Planned as for that row. */
 nevh_stepper *row_stepper(const plan *, const row *, bool balance);
 /* records.c: rows as the columns of CSV and JSON. */
