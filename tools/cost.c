@@ -14,7 +14,7 @@ static bool is_beaten(const costs *c, const ladder *l) {
 }
 
 static void descend_all(costs *c) {
-    static const double share = 0.5; /* the rest is for targets and times */
+    static const double share = 0.65; /* the rest is for the targets */
     ladder *next;
     for (size_t i = 0; i < c->count; i++)
         ladder_begin(&c->search, &c->ladder[i]);

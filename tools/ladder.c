@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 static const double rounding = 1e-13;
-static const double one_row = 0.02;     /* of the budget */
+static const double one_row = 0.025;    /* of the budget */
 static const double usable_below = 0.5; /* of the scale of errors */
 
 static double seconds_used(void) {
@@ -82,9 +82,6 @@ static void progress(const search *s, const row *r) {
 }
 
 void search_end(search *s) {
-    if (getenv("DBG"))
-        fprintf(stderr, "SPENT %g of %g, cpu %g\n", s->spent, s->budget,
-                seconds_used() - s->started);
     if (shows_progress(s))
         fputs("\r\033[K", stderr);
     free(s->dt);
