@@ -14,7 +14,7 @@ static bool is_beaten(const costs *c, const ladder *l) {
 }
 
 static void descend_all(costs *c) {
-    static const double share = 0.5; /* the rest is for targets and times */
+    static const double share = 0.65; /* the rest is for the targets */
     ladder *next;
     for (size_t i = 0; i < c->count; i++)
         ladder_begin(&c->search, &c->ladder[i]);
@@ -29,38 +29,27 @@ static void descend_all(costs *c) {
             c->ladder[i].end = LADDER_LIMIT;
 }
 
-static void time_cells(costs *c) {
-    for (size_t i = 0; i < c->count; i++)
-        for (size_t k = 0; k < COST_TARGETS; k++) {
-            const ladder *l = &c->ladder[i];
-            const row *r =
-                ladder_cheapest(l, cost_target[k], c->search.by_state);
-            if (r && cost_shows(c, l))
-                ladder_time(&c->search, &c->ladder[i], (size_t)(r - l->rung));
-        }
-}
-
-/* While there is time for it. */
-static void time_others(costs *c) {
-    for (size_t i = 0; i < c->count; i++)
-        for (size_t k = 0; k < c->ladder[i].count; k++)
-            if (c->search.repeats || !search_is_over(&c->search, 1))
-                ladder_time(&c->search, &c->ladder[i], k);
+static double least_work(const costs *c, double target) {
+    double least = INFINITY;
+    for (size_t i = 0; i < c->count; i++) {
+        const ladder *l = &c->ladder[i];
+        const row *r = ladder_least_work(l, target, c->search.by_state);
+        if (costs_count(c, l) && r)
+            least = fmin(least, r->work);
+    }
+    return least;
 }
 
 /* Whether the coarsest step that keeps the target may be a cheap one: it costs
    more than the last rung that does not. */
 static bool is_promising(const costs *c, const ladder *l, double target) {
-    static const double nearly = 1.5;
-    const ladder *best = costs_cheapest(c, target);
-    const row *cheapest =
-        best ? ladder_cheapest(best, target, c->search.by_state) : NULL;
+    static const double nearly = 2;
+    double least = least_work(c, target);
     size_t i = 0;
     while (i < l->count &&
            ladder_error(&l->rung[i], c->search.by_state) > target)
         i++;
-    return i == 0 || !cheapest ||
-           l->rung[i - 1].seconds < nearly * cheapest->seconds;
+    return i == 0 || l->rung[i - 1].work < nearly * least;
 }
 
 static void refine_all(costs *c) {
@@ -73,17 +62,50 @@ static void refine_all(costs *c) {
         }
 }
 
+/* Whether its time may be the least. */
+static bool may_win(const costs *c, const row *r, double target) {
+    static const double nearly = 2.5;
+    return r->work < nearly * least_work(c, target);
+}
+
+static void time_cells(costs *c) {
+    for (size_t k = 0; k < COST_TARGETS; k++)
+        for (size_t i = 0; i < c->count; i++) {
+            ladder *l = &c->ladder[i];
+            const row *r =
+                ladder_least_work(l, cost_target[k], c->search.by_state);
+            if (r && (c->all || cost_is_yardstick(l) ||
+                      (costs_count(c, l) && may_win(c, r, cost_target[k]))))
+                ladder_time(&c->search, l, (size_t)(r - l->rung));
+        }
+    for (size_t k = 0; k < COST_TARGETS; k++)
+        for (size_t i = 0; i < c->count; i++) {
+            ladder *l = &c->ladder[i];
+            const row *r =
+                ladder_least_work(l, cost_target[k], c->search.by_state);
+            if (r && cost_shows(c, l))
+                ladder_time(&c->search, l, (size_t)(r - l->rung));
+        }
+}
+
+static void time_others(costs *c, bool shown) {
+    for (size_t i = 0; i < c->count; i++)
+        for (size_t k = 0; k < c->ladder[i].count; k++)
+            if (!shown || cost_shows(c, &c->ladder[i]))
+                ladder_time(&c->search, &c->ladder[i], k);
+}
+
 /* Those that the table does not show are for programs to read. */
-static void run_ladders(costs *c, bool for_people) {
+static void run_ladders(costs *c, const options *o) {
     enum { RUNGS = 8 };
+    bool for_people = o->format == FORMAT_TABLE;
     descend_all(c);
     refine_all(c);
     time_cells(c);
-    if (for_people && !c->all)
-        return;
-    for (size_t i = 0; i < c->count; i++)
+    for (size_t i = 0; i < c->count && !(for_people && !c->all); i++)
         ladder_fill(&c->search, &c->ladder[i], RUNGS);
-    time_others(c);
+    if (!for_people || c->all || plot_wanted(o))
+        time_others(c, for_people);
 }
 
 static void make_ladders(costs *c) {
@@ -166,7 +188,7 @@ static int cost_plan(const options *o, plan *p, double whole) {
                .whole = whole,
                .all = o->integrators.count > 0};
     make_ladders(&c);
-    run_ladders(&c, o->format == FORMAT_TABLE);
+    run_ladders(&c, o);
     page result = make_page(o, &c);
     search_end(&c.search);
     page_print(&result, o->format, out.stream);

@@ -38,7 +38,7 @@ static slope slope_new(const ladder *l, bool by_state) {
     for (size_t i = 0; i < l->count; i++) {
         const row *r = &l->rung[i];
         double error = ladder_error(r, by_state);
-        if (error > coarse || error < least || r->seconds <= 0)
+        if (error > coarse || error < least || !(r->seconds > 0))
             continue;
         s.error[s.count] = error;
         s.seconds[s.count] = r->seconds;

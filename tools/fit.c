@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 static bool fits(const plan *p, const char *gradient,
                  const nevh_integrator *scheme) {
@@ -52,24 +51,6 @@ int state_errors_mean_something(plan *p) {
     return TOOL_FAILED;
 }
 
-/* Of one step at the shortest dt, from a few. */
-static double step_seconds(const plan *p, double dt) {
-    enum { STEPS = 64 };
-    nevh_stepper *s = plan_first(p, NULL);
-    double *q = tool_allocate(p->n, sizeof *q);
-    double *m = tool_allocate(p->n, sizeof *m);
-    memcpy(q, p->q, p->n * sizeof *q);
-    memcpy(m, p->p, p->n * sizeof *m);
-    clock_t start = clock();
-    if (s)
-        nevh_run(s, p->run->t_start, dt, STEPS, q, m, NULL, 0);
-    double seconds = (double)(clock() - start) / CLOCKS_PER_SEC / STEPS;
-    nevh_stepper_free(s);
-    free(q);
-    free(m);
-    return seconds;
-}
-
 /* 1, 0.5, 0.2, 0.1, ...: the largest that is not above x. */
 static double share_below(double x) {
     int k = 0;
@@ -84,8 +65,9 @@ double plan_shorten(plan *p, double budget) {
     double dt = p->dt[0];
     for (size_t i = 1; i < p->dts; i++)
         dt = fmin(dt, p->dt[i]);
+    nevh_counts step = {.gradients = 1};
     double runs = (double)(RUNS * p->integrators.count);
-    double share = budget / (runs * step_seconds(p, dt) * span / dt);
+    double share = budget / 4 / (runs * row_work(p, &step, 1) * span / dt);
     if (share < 1)
         p->t_end = p->run->t_start + share_below(share) * span;
     return whole;

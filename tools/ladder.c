@@ -7,8 +7,11 @@
 #include <unistd.h>
 
 static const double rounding = 1e-13;
-static const double one_row = 0.1;      /* of the budget */
+static const double one_row = 0.025;    /* of the budget */
 static const double usable_below = 0.5; /* of the scale of errors */
+
+/* As much as a run that is watched costs. */
+enum { RUNS_A_ROW = 2 };
 
 static double longest_dt(const plan *p) {
     double longest = 0;
@@ -39,7 +42,6 @@ search search_begin(const plan *p, const options *o, double budget) {
                 .landing = grid_dt(grid_dt_place(8 * longest_dt(p)))};
     s.plan.hurried = true;
     s.plan.patience = one_row * budget;
-    s.plan.repeats = 1;
     if (o->dts) {
         s.dt = ordered(p->dt, s.dts = p->dts);
         s.tolerance = ordered(p->tolerance, s.tolerances = p->tolerances);
@@ -48,8 +50,16 @@ search search_begin(const plan *p, const options *o, double budget) {
     return s;
 }
 
+/* Where a second is worth less work than anybody expects it ends, too. */
 bool search_is_over(const search *s, double share) {
-    return cpu_seconds() - s->started > share * s->budget;
+    static const double most_seconds = 60;
+    return s->spent > share * s->budget ||
+           cpu_seconds() - s->started > most_seconds;
+}
+
+bool search_may_time(const search *s) {
+    static const double enough = 12;
+    return cpu_seconds() - s->started < enough;
 }
 
 static bool shows_progress(const search *s) {
@@ -139,6 +149,7 @@ size_t ladder_run(search *s, ladder *l, int k) {
     set_step(s, &r, k);
     progress(s, &r);
     row_run(&s->plan, &r);
+    s->spent += RUNS_A_ROW * r.work;
     s->runs++;
     return insert(l, i, k, r);
 }
@@ -166,7 +177,7 @@ static void ascend(search *s, ladder *l) {
             forget(l, 0);
             return;
         }
-        if (l->rung[0].seconds > saves * l->rung[1].seconds)
+        if (l->rung[0].work > saves * l->rung[1].work)
             return;
     }
 }
@@ -180,8 +191,18 @@ static void run_given(search *s, ladder *l) {
 
 /* By what the scheme claims. */
 static bool is_kept(const search *s, const ladder *l) {
-    return !s->by_state &&
+    return !s->by_state && !s->keeping &&
            nevh_integrator_preserves_energy(l->scheme) == NEVH_YES;
+}
+
+/* The scene's dt is one for schemes of order 2 to 4. */
+static int first_place(const search *s, const ladder *l) {
+    int order = nevh_integrator_order(l->scheme);
+    int k = grid_dt_place(longest_dt(&s->plan));
+    for (int coarser = order >= 8 ? 2 : order >= 6; coarser; coarser--)
+        if (has_steps(s, k - GRID_STRIDE))
+            k -= GRID_STRIDE;
+    return k;
 }
 
 void ladder_begin(search *s, ladder *l) {
@@ -195,7 +216,7 @@ void ladder_begin(search *s, ladder *l) {
         l->end = LADDER_LIMIT;
         return;
     }
-    int k = adapts ? FIRST_TOLERANCE : grid_dt_place(longest_dt(&s->plan));
+    int k = adapts ? FIRST_TOLERANCE : first_place(s, l);
     size_t i = ladder_run(s, l, k);
     if (l->rung[i].late)
         l->end = LADDER_LIMIT;
@@ -203,20 +224,15 @@ void ladder_begin(search *s, ladder *l) {
         l->end = LADDER_REFUSED;
     else if (!adapts && is_usable(l, i, s->by_state) && !is_kept(s, l))
         ascend(s, l);
-    if (!s->by_state && ladder_keeps_energy(l))
+    if (!s->by_state && !s->keeping && ladder_keeps_energy(l))
         l->end = LADDER_FLOOR;
-}
-
-static double work(const row *r) {
-    return (double)r->counts.gradients + r->counts.hamiltonians +
-           (double)r->steps;
 }
 
 static double next_work(const ladder *l) {
     double stretch = nevh_integrator_adaptive(l->scheme)
                          ? pow(10, 1.0 / nevh_integrator_order(l->scheme))
                          : 2;
-    return stretch * work(&l->rung[l->count - 1]);
+    return stretch * l->rung[l->count - 1].work;
 }
 
 ladder *ladder_next(ladder ladders[], size_t count) {
@@ -265,13 +281,11 @@ static void give_up(ladder *l) {
 }
 
 void ladder_descend(search *s, ladder *l) {
-    enum { WATCHED = 4 }; /* a run that is watched, in runs */
     const row *last = &l->rung[l->count - 1];
-    double expected = WATCHED * last->seconds * next_work(l) / work(last);
     bool finest = l->rung[0].tolerance > 0 && last->tolerance < 1e-13;
     if (finest || is_level(l, s->by_state)) {
         l->end = LADDER_FLOOR;
-    } else if (expected > one_row * s->budget) {
+    } else if (next_work(l) > s->plan.patience) {
         l->end = LADDER_LIMIT;
     } else {
         ladder_run(s, l, l->k[l->count - 1] + GRID_STRIDE);
@@ -298,7 +312,7 @@ bool ladder_is_behind(const search *s, const ladder *l, const ladder others[],
             if (m->gradient == l->gradient &&
                 (s->by_state || !ladder_keeps_energy(m)) &&
                 ladder_error(&m->rung[k], s->by_state) <= error &&
-                factor * work(&m->rung[k]) < work(last))
+                factor * m->rung[k].work < last->work)
                 return true;
     }
     return false;
@@ -307,10 +321,44 @@ bool ladder_is_behind(const search *s, const ladder *l, const ladder others[],
 void ladder_time(const search *s, ladder *l, size_t i) {
     row *r = &l->rung[i];
     row again = *r;
-    if (!r->ran || r->spread > 0)
+    if (!r->ran || isfinite(r->seconds))
         return;
     set_step(s, &again, l->k[i]);
-    row_finish(&s->plan, r, again.dt, s->repeats);
+    row_finish(&s->plan, r, again.dt,
+               s->repeats           ? s->repeats
+               : search_may_time(s) ? 0
+                                    : 1);
+}
+
+static int by_size(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void take_median(row *r, double seconds[], size_t count) {
+    qsort(seconds, count, sizeof *seconds, by_size);
+    r->seconds = seconds[count / 2];
+    r->spread = (seconds[3 * count / 4] - seconds[count / 4]) / 2;
+}
+
+void ladder_time_in_turn(const search *s, row *rung[], const int k[],
+                         size_t count, size_t repeats) {
+    enum { USUAL = 9, FEW = 3 };
+    static const double enough = 2; /* seconds */
+    double one = 0;
+    for (size_t i = 0; i < count; i++)
+        one += rung[i]->seconds;
+    size_t rounds = repeats ? repeats : USUAL * one < enough ? USUAL : FEW;
+    double *seconds = tool_allocate(count * rounds, sizeof *seconds);
+    for (size_t j = 0; j < rounds; j++)
+        for (size_t i = 0; i < count; i++) {
+            row again = *rung[i];
+            set_step(s, &again, k[i]);
+            seconds[i * rounds + j] = row_seconds(&s->plan, &again, again.dt);
+        }
+    for (size_t i = 0; i < count; i++)
+        take_median(rung[i], seconds + i * rounds, rounds);
+    free(seconds);
 }
 
 /* The first rung that keeps the target. */
@@ -385,17 +433,28 @@ void ladder_fill(search *s, ladder *l, size_t count) {
     }
 }
 
-const row *ladder_cheapest(const ladder *l, double target, bool by_state) {
+static const row *least(const ladder *l, double target, bool by_state,
+                        bool by_work) {
     double *error = tool_allocate(l->count, sizeof *error);
-    double *seconds = tool_allocate(l->count, sizeof *seconds);
+    double *price = tool_allocate(l->count, sizeof *price);
     for (size_t i = 0; i < l->count; i++) {
         error[i] = ladder_error(&l->rung[i], by_state);
-        seconds[i] = l->rung[i].seconds;
+        price[i] = by_work ? l->rung[i].work : l->rung[i].seconds;
+        if (isnan(price[i]))
+            error[i] = INFINITY;
     }
-    size_t i = grid_cheapest(error, seconds, l->count, target);
+    size_t i = grid_cheapest(error, price, l->count, target);
     free(error);
-    free(seconds);
+    free(price);
     return i < l->count ? &l->rung[i] : NULL;
+}
+
+const row *ladder_cheapest(const ladder *l, double target, bool by_state) {
+    return least(l, target, by_state, false);
+}
+
+const row *ladder_least_work(const ladder *l, double target, bool by_state) {
+    return least(l, target, by_state, true);
 }
 
 /* So do those that are meant to, and Gauss where H is quadratic. */

@@ -44,9 +44,11 @@ typedef struct {
 typedef struct {
     plan plan; /* a copy, in a hurry */
     bool by_state, quiet;
+    bool keeping;   /* steps of those that keep the energy at any are of use */
     size_t repeats; /* 0: chosen */
-    double budget;  /* seconds for all, from `started` on */
-    double started;
+    double budget;  /* work for all rows */
+    double spent;
+    double started;         /* seconds */
     double landing;         /* dt of adaptive schemes */
     double *dt, *tolerance; /* coarse to fine; NULL: those of the grid */
     size_t dts, tolerances;
@@ -55,6 +57,8 @@ typedef struct {
 /* With --dt, only these steps, and the tolerances of the plan. */
 search search_begin(const plan *, const options *, double budget);
 bool search_is_over(const search *, double share); /* of the budget */
+/* Whether times may be measured again: seconds, of which no row depends. */
+bool search_may_time(const search *);
 void search_end(search *);
 ladder ladder_new(const char *integrator, const char *gradient);
 void ladder_free(ladder *);
@@ -68,6 +72,9 @@ bool ladder_is_behind(const search *, const ladder *, const ladder others[],
                       size_t count);
 /* Measures the time of a rung again, as often as asked for. */
 void ladder_time(const search *, ladder *, size_t rung);
+/* The same of several rungs, at places k, run in turn; repeats 0: chosen. */
+void ladder_time_in_turn(const search *, row *rung[], const int k[],
+                         size_t count, size_t repeats);
 /* Rungs between those there are, so that the coarsest on the grid that keeps
    the target is one of them. */
 void ladder_refine(search *, ladder *, double target);
@@ -75,8 +82,9 @@ void ladder_refine(search *, ladder *, double target);
 void ladder_fill(search *, ladder *, size_t count);
 size_t ladder_run(search *, ladder *, int k);    /* index of the rung */
 double ladder_error(const row *, bool by_state); /* INFINITY: none */
-/* The cheapest rung by seconds; NULL: none keeps the target. */
+/* The cheapest rung by seconds, or by work; NULL: none keeps the target. */
 const row *ladder_cheapest(const ladder *, double target, bool by_state);
+const row *ladder_least_work(const ladder *, double target, bool by_state);
 /* Whether the energy says nothing of its orbits, being kept at any step. */
 bool ladder_keeps_energy(const ladder *);
 
@@ -90,8 +98,8 @@ int state_errors_mean_something(plan *);
 /* Ends the plan earlier where runs of its integrators would take too long;
    returns the end that it had. */
 double plan_shorten(plan *, double budget);
-/* How long a search may take: seconds. */
-enum { SEARCH_BUDGET = 25 };
+/* How much a search may work. */
+enum { SEARCH_BUDGET = 20 };
 
 /* Every scheme that fits, and the gradient that costs least, unless others are
    asked for; TOOL_USAGE, with a message, when none fits. */

@@ -22,8 +22,8 @@ typedef struct {
     const double *gradient_steps; /* as in nevh_options */
     size_t repeats;               /* of timed runs; 0: chosen */
     bool portable, friction, time, balance;
-    bool hurried;    /* rows are to be finished later */
-    double patience; /* seconds that a row may take; 0: any */
+    bool hurried;    /* rows are to be finished later, and timed then */
+    double patience; /* work that a row may take; 0: any */
     bool match_work, diagnostics;
     nevh_reference *reference; /* NULL: not asked for, or there is none */
     char *no_reference;        /* why there is none */

@@ -6,26 +6,33 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The cheapest rung that keeps the target, of the ladders that count. */
-static const row *keeps(const advice *a, const ladder *l) {
-    bool counts = a->named || a->search.by_state || !ladder_keeps_energy(l);
-    return counts ? ladder_cheapest(l, a->target, a->search.by_state) : NULL;
+static bool counts(const advice *a, const ladder *l) {
+    return a->named || a->search.by_state || !ladder_keeps_energy(l);
 }
 
-static double least_seconds(const advice *a) {
+/* The cheapest rung that keeps the target, of the ladders that count. */
+static const row *keeps(const advice *a, const ladder *l) {
+    return counts(a, l) ? ladder_cheapest(l, a->target, a->search.by_state)
+                        : NULL;
+}
+
+static double least_work(const advice *a) {
     double least = INFINITY;
     for (size_t i = 0; i < a->count; i++) {
-        const row *r = keeps(a, &a->ladder[i]);
-        if (r)
-            least = fmin(least, r->seconds);
+        const ladder *l = &a->ladder[i];
+        const row *r = ladder_least_work(l, a->target, a->search.by_state);
+        if (counts(a, l) && r)
+            least = fmin(least, r->work);
     }
     return least;
 }
 
+/* Times may tell otherwise than work: a factor of 2, at most. */
+static const double nearly = 2.5;
+
 /* A shorter step costs more, but for the sweeps that it saves. */
 static bool is_hopeless(const advice *a, const ladder *l) {
-    static const double nearly = 1.5;
-    return l->rung[l->count - 1].seconds > nearly * least_seconds(a);
+    return l->rung[l->count - 1].work > nearly * least_work(a);
 }
 
 static void descend(advice *a) {
@@ -42,7 +49,6 @@ static void descend(advice *a) {
 }
 
 static void refine(advice *a) {
-    static const double nearly = 1.5;
     for (size_t i = 0; i < a->count; i++) {
         ladder *l = &a->ladder[i];
         size_t k = 0;
@@ -50,8 +56,27 @@ static void refine(advice *a) {
                ladder_error(&l->rung[k], a->search.by_state) > a->target)
             k++;
         if (keeps(a, l) &&
-            (k == 0 || l->rung[k - 1].seconds < nearly * least_seconds(a)))
+            (k == 0 || l->rung[k - 1].work < nearly * least_work(a)))
             ladder_refine(&a->search, l, a->target);
+    }
+}
+
+static const row *least_worked(const advice *a, const ladder *l) {
+    return counts(a, l) ? ladder_least_work(l, a->target, a->search.by_state)
+                        : NULL;
+}
+
+/* One run of each that may win. */
+static void time_once(advice *a) {
+    double least = least_work(a);
+    for (size_t i = 0; i < a->count; i++) {
+        ladder *l = &a->ladder[i];
+        const row *r = least_worked(a, l);
+        if (!r || isfinite(r->seconds) || r->work > nearly * least)
+            continue;
+        row *rung = &l->rung[r - l->rung];
+        int k = l->k[r - l->rung];
+        ladder_time_in_turn(&a->search, &rung, &k, 1, 1);
     }
 }
 
@@ -87,44 +112,56 @@ static ladder with_gradient(advice *a, const ladder *l, int k,
     return other;
 }
 
+/* The best, and those that take less than `factor` times as long; at most
+   `most`. */
+static size_t list_best(const advice *a, double factor, ladder *found[],
+                        size_t most) {
+    bool *taken = tool_allocate(a->count, sizeof *taken);
+    size_t count = 0;
+    for (ladder *l; count < most && (l = next_best(a, taken));) {
+        if (count &&
+            keeps(a, l)->seconds > factor * keeps(a, found[0])->seconds)
+            break;
+        taken[l - a->ladder] = true;
+        found[count++] = l;
+    }
+    free(taken);
+    return count;
+}
+
 /* Other gradients for the best few schemes: they change the price of a step,
    and where errors end, but hardly the step that is needed. */
 static void vary_gradients(advice *a) {
-    enum { FEW = 4 };
-    bool *taken = tool_allocate(a->count, sizeof *taken);
-    size_t count = a->count;
-    for (int n = 0; n < FEW; n++) {
-        const ladder *best = NULL;
-        for (size_t i = 0; i < count; i++) {
-            const row *r = taken[i] ? NULL : keeps(a, &a->ladder[i]);
-            if (r && (!best || r->seconds < keeps(a, best)->seconds))
-                best = &a->ladder[i];
-        }
-        if (!best)
-            break;
-        ladder model = *best;
-        int k = model.k[keeps(a, best) - best->rung];
-        taken[best - a->ladder] = true;
+    enum { FEW = 6 };
+    static const double factor = 2.2;
+    ladder *found[FEW], model[FEW];
+    int k[FEW];
+    size_t count = list_best(a, factor, found, FEW);
+    for (size_t i = 0; i < count; i++) {
+        model[i] = *found[i];
+        k[i] = found[i]->k[keeps(a, found[i]) - found[i]->rung];
+    }
+    for (size_t i = 0; i < count; i++)
         for (size_t g = 1; g < a->gradients.count; g++)
             if (!search_is_over(&a->search, 1))
-                add_ladder(a,
-                           with_gradient(a, &model, k, a->gradients.item[g]));
-    }
-    free(taken);
+                add_ladder(
+                    a, with_gradient(a, &model[i], k[i], a->gradients.item[g]));
 }
 
-/* Medians for those that may win. */
+/* Medians for those that may win, one after the other in turn, so that what
+   else the machine does falls upon all alike. */
 static void time_best(advice *a) {
-    enum { FEW = 8 };
-    bool *taken = tool_allocate(a->count, sizeof *taken);
-    for (int n = 0; n < FEW; n++) {
-        ladder *l = next_best(a, taken);
-        if (!l)
-            break;
-        taken[l - a->ladder] = true;
-        ladder_time(&a->search, l, (size_t)(keeps(a, l) - l->rung));
+    enum { FEW = 16 };
+    static const double factor = 1.7;
+    ladder *found[FEW];
+    row *rung[FEW];
+    int k[FEW];
+    size_t count = list_best(a, factor, found, FEW);
+    for (size_t i = 0; i < count; i++) {
+        rung[i] = &found[i]->rung[keeps(a, found[i]) - found[i]->rung];
+        k[i] = found[i]->k[rung[i] - found[i]->rung];
     }
-    free(taken);
+    ladder_time_in_turn(&a->search, rung, k, count, a->search.repeats);
 }
 
 static void take_gradients(advice *a, const options *o) {
@@ -147,7 +184,10 @@ static void search_all(advice *a) {
             ladder_new(p->integrators.item[i], a->gradients.item[0]);
     descend(a);
     refine(a);
+    time_once(a);
+    time_best(a);
     vary_gradients(a);
+    time_once(a);
     time_best(a);
 }
 
@@ -204,6 +244,7 @@ static void verify(advice *a, plan *p) {
     free(a->ladder);
     a->ladder = full, a->count = count;
     a->best = a->second = a->alone = a->steady = NULL;
+    time_once(a);
     time_best(a);
     choose(a);
 }
@@ -218,6 +259,7 @@ static int advise(const options *o, plan *p, double whole) {
                 .target = o->state_error > 0 ? o->state_error : o->energy_error,
                 .named = o->integrators.count > 0};
     a.search.by_state = o->state_error > 0;
+    a.search.keeping = a.named;
     take_gradients(&a, o);
     search_all(&a);
     choose(&a);

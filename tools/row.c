@@ -8,6 +8,7 @@
 
 static const double unstable_above = 1; /* as nevh_energy_report says */
 static const double time_enough = 0.1;  /* seconds */
+static const double time_in_a_hurry = 0.03;
 enum { REPEATS = 5 };
 
 typedef struct {
@@ -114,7 +115,8 @@ static void measure(const work *w, size_t repeats) {
     double *seconds = tool_allocate(most, sizeof *seconds), sum = 0;
     nevh_stepper *s = new_stepper(w, false);
     nevh_counts before = nevh_stepper_counts(s);
-    while (count < most && (repeats || sum < time_enough)) {
+    double enough = w->plan->hurried ? time_in_a_hurry : time_enough;
+    while (count < most && (repeats || sum < enough)) {
         nevh_stepper_reset(s);
         double start = cpu_seconds();
         repeat(w, s);
@@ -127,6 +129,17 @@ static void measure(const work *w, size_t repeats) {
     nevh_stepper_free(s);
 }
 
+/* Of gradients and values of formulas, as a processor of 2020 takes them, give
+   or take a factor of two; an implicit step that Newton solves factors a matrix
+   as well. */
+double row_work(const plan *p, const nevh_counts *c, size_t steps) {
+    double n = (double)p->n, m = 2 * n;
+    double gradient = c->hamiltonians > 0 ? 100 : 250 + 40 * n;
+    return 1e-9 *
+           (gradient * (double)c->gradients + (100 + 40 * n) * c->hamiltonians +
+            (50 + 10 * n) * (double)steps + m * m * m / 2 * (double)c->newtons);
+}
+
 /* Of all steps tried, those that were too long for the tolerance included. */
 static double mean_step(const work *w) {
     int each = nevh_integrator_gradients(w->row->scheme);
@@ -136,17 +149,21 @@ static double mean_step(const work *w) {
     return (w->row->t_end - w->plan->run->t_start) * each / evaluations;
 }
 
-/* Whoever waits for a row no longer than that. */
+/* Whoever waits for a row no longer than its work is as much as that. */
 typedef struct {
-    double deadline;
+    const plan *plan;
+    const nevh_stepper *stepper;
+    nevh_counts before;
     bool late;
 } patience;
 
-static int mind_time(void *data, size_t step, double t, const double q[],
+static int mind_work(void *data, size_t step, double t, const double q[],
                      const double p[]) {
     patience *wait = data;
-    (void)step, (void)t, (void)q, (void)p;
-    wait->late = cpu_seconds() > wait->deadline;
+    nevh_counts c =
+        difference(nevh_stepper_counts(wait->stepper), wait->before);
+    (void)t, (void)q, (void)p;
+    wait->late = row_work(wait->plan, &c, step) > wait->plan->patience;
     return wait->late ? NEVH_STOPPED : NEVH_OK;
 }
 
@@ -160,7 +177,7 @@ static bool compares_states(const plan *p, const row *r) {
 
 static void watched(work *w, nevh_stepper *s) {
     row *r = w->row;
-    patience wait = {cpu_seconds() + w->plan->patience, false};
+    patience wait = {w->plan, s, nevh_stepper_counts(s), false};
     nevh_energy *energy = new_energy(w, s);
     nevh_state_error *state = nevh_state_error_new(w->plan->reference);
     invariants *kept = w->plan->diagnostics ? invariants_new(w->plan) : NULL;
@@ -175,7 +192,8 @@ static void watched(work *w, nevh_stepper *s) {
     if (kept)
         observers[count++] = (nevh_observer){invariants_observe, kept, 1};
     if (w->plan->patience > 0)
-        observers[count++] = (nevh_observer){mind_time, &wait, 8};
+        observers[count++] =
+            (nevh_observer){mind_work, &wait, w->plan->n < 8 ? 8 : 1};
     int status = run(w, s, observers, count, &r->stopped);
     r->t_end = isfinite(r->stopped) ? r->stopped : w->plan->t_end;
     const char *why = wait.late                ? "it takes too long"
@@ -183,6 +201,7 @@ static void watched(work *w, nevh_stepper *s) {
                                                : nevh_stepper_message(s);
     r->energy = nevh_energy_result(energy, 0);
     r->steps = nevh_stepper_taken(s);
+    r->counts = difference(nevh_stepper_counts(s), wait.before);
     r->late = wait.late;
     r->ran = !r->late && (!status || r->energy.verdict == NEVH_UNSTABLE);
     r->failed = !r->ran;
@@ -223,11 +242,11 @@ static void work_free(work *w) {
 
 void row_run(const plan *p, row *r) {
     work w = work_new(p, r);
-    r->observed_order = r->state_error = r->stopped = NAN;
+    r->observed_order = r->state_error = r->stopped = r->seconds = NAN;
     nevh_stepper *s = new_stepper(&w, p->balance);
     if (!refused(r, s)) {
         watched(&w, s);
-        if (r->ran)
+        if (r->ran && !p->hurried)
             measure(&w, p->repeats);
         if (r->ran && p->diagnostics)
             diagnose_row(p, r);
@@ -236,6 +255,7 @@ void row_run(const plan *p, row *r) {
         if (r->ran && r->tolerance > 0)
             r->dt = mean_step(&w);
     }
+    r->work = row_work(p, &r->counts, r->steps);
     nevh_stepper_free(s);
     work_free(&w);
 }
@@ -249,4 +269,13 @@ void row_finish(const plan *p, row *r, double dt, size_t repeats) {
         unstable_since(&w);
     r->dt = mean;
     work_free(&w);
+}
+
+double row_seconds(const plan *p, const row *r, double dt) {
+    row again = *r;
+    work w = work_new(p, &again);
+    again.dt = dt;
+    measure(&w, 1);
+    work_free(&w);
+    return again.seconds;
 }

@@ -18,6 +18,7 @@ typedef struct {
     bool ran, late; /* there are numbers; patience was at its end */
     nevh_energy_report energy;
     nevh_counts counts;
+    double work;            /* by its counts: the same on every machine */
     double seconds, spread; /* median, and half of what the middle half spans */
     double stopped;         /* where the scene's `stop` said; NAN: nowhere */
     double t_end;           /* where it ended */
@@ -28,10 +29,15 @@ typedef struct {
     struct envelope *errors; /* of the energy; NULL: not asked for */
 } row;
 void row_run(const plan *, row *);
+/* What that many evaluations and steps cost, in seconds of no machine in
+   particular: what is decided by it is decided alike on all. */
+double row_work(const plan *, const nevh_counts *, size_t steps);
 /* Of a row that ran in a hurry: its time again, and when it became unstable.
    dt       as the row was run with
    repeats  0: chosen */
 void row_finish(const plan *, row *, double dt, size_t repeats);
+/* The time of one run more of it. */
+double row_seconds(const plan *, const row *, double dt);
 /* Planned as for that row. */
 nevh_stepper *row_stepper(const plan *, const row *, bool balance);
 /* stop.c: of the rows that stopped, how many did, when. */
