@@ -29,6 +29,7 @@ typedef struct {
     bool same_ends; /* the last operation is of the first one's kind */
     double *weights;
     double *times; /* parts of h that the half at rest has gone through */
+    nevh__call calls[2];
 } operations;
 
 /* One half of the state under way: q under drifts, p under kicks. */
@@ -44,7 +45,7 @@ typedef struct {
     bool repeated;
     half q, p;
     double *slope, *kept, *has_kept, *time;
-    nevh__call calls[2]; /* for kicks and drifts, of what is repeated */
+    nevh__call *calls; /* for kicks and drifts; NULL: not repeated */
 } layout;
 
 static layout lay_out(const nevh_work *w, double q[], double p[]) {
@@ -134,6 +135,7 @@ static void begin_repeated(const nevh_work *w, layout *l, const double q[],
         begin_vectors(l->size, x->start, x->carry, x->change, x->point);
     }
     repeat(w->n, w->memory + 2 * w->n, l->kept);
+    l->calls = ((operations *)w->plan)->calls;
     l->calls[0] = nevh__lean_call(w->field, l->lanes, l->time, l->q.point,
                                   l->p.point, l->slope, NULL);
     l->calls[1] = nevh__lean_call(w->field, l->lanes, l->time, l->q.point,
@@ -171,11 +173,21 @@ static bool all_kept(const nevh_work *w, const layout *l) {
     return true;
 }
 
+static void set_time(const layout *l, double t) {
+    for (size_t lane = 0; lane < l->lanes; lane++)
+        l->time[lane] = t;
+}
+
 /* dH/dq for a kick, or else dH/dp, to the slope. */
-static int take_slope(nevh_work *w, const layout *l, bool kick) {
-    const nevh__call *call = &l->calls[!kick];
-    if (call->gradient && nevh__lean_take(call, 1))
-        return NEVH_OK;
+static int take_slope(nevh_work *w, const layout *l, bool kick, double t) {
+    const nevh__call *call = l->calls ? &l->calls[!kick] : NULL;
+    if (call && call->gradient) {
+        if (call->t == l->time)
+            set_time(l, t);
+        if (nevh__lean_take(call, 1))
+            return NEVH_OK;
+    }
+    set_time(l, t);
     return nevh__work_gradient(w, l->lanes, w->width, l->time, l->q.point,
                                l->p.point, kick ? l->slope : NULL,
                                kick ? NULL : l->slope);
@@ -185,9 +197,9 @@ static int take_slope(nevh_work *w, const layout *l, bool kick) {
 static int operate(nevh_work *w, const layout *l, nevh_operation operation,
                    double t, double dt, bool kept) {
     bool kick = operation == NEVH_KICK;
-    for (size_t lane = 0; lane < l->lanes; lane++)
-        l->time[lane] = t;
-    int status = kept ? NEVH_OK : take_slope(w, l, kick);
+    int status = kept ? NEVH_OK : take_slope(w, l, kick, t);
+    if (w->accounts)
+        set_time(l, t);
     if (!status && w->accounts)
         status = nevh_work_account(w, kick ? NEVH_OF_Q : NEVH_OF_P, dt, l->time,
                                    l->q.point, l->p.point);
