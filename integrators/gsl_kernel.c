@@ -100,12 +100,12 @@ static int plan(nevh_work *w) {
     return NEVH_OK;
 }
 
-static int fail(nevh_work *w, double t, int gsl_status) {
+static int fail(nevh_work *w, double t, const char *why) {
     if (nevh_field_status(w->field))
         return nevh_work_fail(w, nevh_field_status(w->field), "%s",
                               nevh_field_message(w->field));
     return nevh_work_fail(w, NEVH_EFAILED, "%s gave up at t = %.9g: %s",
-                          w->integrator->name, t, gsl_strerror(gsl_status));
+                          w->integrator->name, t, why);
 }
 
 /* Where GSL writes its estimates, behind the states of all lanes. */
@@ -134,15 +134,17 @@ static int adapt(nevh_work *w, double h, double y[], double *size) {
     double t = 0;
     gsl_odeiv2_evolve_reset(g->evolve);
     int status = h == 0 ? GSL_SUCCESS : choose_size(w, h, y, size);
-    for (int i = 0; !status && (h > 0 ? t < h : t > h); i++) {
-        status = i < NEVH__MOST_SUBSTEPS
-                     ? gsl_odeiv2_evolve_apply(g->evolve, g->control, g->step,
-                                               &g->system, &t, h, size, y)
-                     : GSL_EMAXITER;
+    nevh__pace pace = {0};
+    char why[NEVH__WHY];
+    while (!status && (h > 0 ? t < h : t > h)) {
+        if (nevh__too_many(&pace, fabs(h), fabs(t), why))
+            return fail(w, g->start + t, why);
+        status = gsl_odeiv2_evolve_apply(g->evolve, g->control, g->step,
+                                         &g->system, &t, h, size, y);
         if (!status && *size == 0)
             status = GSL_EFAILED;
     }
-    return status ? fail(w, g->start + t, status) : NEVH_OK;
+    return status ? fail(w, g->start + t, gsl_strerror(status)) : NEVH_OK;
 }
 
 static int take(nevh_work *w, double t, double h, double y[], double *size) {
@@ -153,7 +155,7 @@ static int take(nevh_work *w, double t, double h, double y[], double *size) {
         return adapt(w, h, y, size);
     int status = gsl_odeiv2_step_apply(g->step, 0, h, y, errors(w), NULL, NULL,
                                        &g->system);
-    return status ? fail(w, t, status) : NEVH_OK;
+    return status ? fail(w, t, gsl_strerror(status)) : NEVH_OK;
 }
 
 /* One lane, from q, p to y; the result must be finite. */

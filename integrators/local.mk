@@ -4,6 +4,7 @@ libnevh_core_la_SOURCES += \
 	integrators/list.c \
 	integrators/work_private.h \
 	integrators/work.c \
+	integrators/substeps.c \
 	integrators/transform_private.h \
 	integrators/transform.c \
 	integrators/splitting_private.h \

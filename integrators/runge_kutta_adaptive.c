@@ -29,7 +29,7 @@ typedef struct {
     bool has_first; /* the slope at the state is known */
     bool held;      /* the last trial was rejected */
     bool ends;      /* this one ends the step */
-    unsigned trials;
+    nevh__pace pace;
 } lane_walk;
 
 typedef struct {
@@ -332,8 +332,9 @@ static int choose(const walk *s, size_t lane) {
                                 s->work->width, s->y + lane, s->first + lane);
     if (too_short(s, l))
         return give_up(s, l, "substeps too short to be taken");
-    if (++l->trials > NEVH__MOST_SUBSTEPS)
-        return give_up(s, l, "more than a million substeps");
+    char why[NEVH__WHY];
+    if (nevh__too_many(&l->pace, fabs(s->h), l->done, why))
+        return give_up(s, l, why);
     double next = l->done + l->size; /* so that the sum of steps is exact */
     l->ends = 1.01 * l->size >= left;
     l->step = l->ends ? left : next - l->done;

@@ -17,6 +17,21 @@ double nevh__first_substep(const nevh_work *, int power, double h,
                            size_t stride, const double y[],
                            const double slopes[]);
 
+/* How fast substeps of a step get on; zeros at its start. */
+typedef struct {
+    double substeps; /* trials so far */
+    double begun;    /* of them, when the pace was last looked at */
+    double done;     /* of the step, then */
+    double each;     /* what one did, then */
+    int slows;       /* times in a row it was hopeless, and fell */
+} nevh__pace;
+
+/* Counts one more, before it is tried; whether it should not be, and why.
+   length, done: of the step, without sign. */
+enum { NEVH__WHY = 120 };
+bool nevh__too_many(nevh__pace *, double length, double done,
+                    char why[NEVH__WHY]);
+
 /* As nevh__field_noise, of H or of K where time is transformed; a failure is
    recorded. */
 int nevh__work_noise(nevh_work *, double t, const double q[], const double p[],

@@ -46,17 +46,16 @@ static int plan_field(nevh_stepper *s) {
                : NEVH_OK;
 }
 
-static int plan(nevh_stepper *s, const nevh_integrator *integrator) {
-    nevh_work *w = &s->work;
-    if (w->system->report.status)
-        return nevh__fail_as(&s->report, &w->system->report);
+static int check_options(nevh_stepper *s, const nevh_integrator *integrator) {
+    const nevh_work *w = &s->work;
+    double tolerance = s->options.tolerance;
     if (!integrator)
         return nevh__fail(&s->report, NEVH_EINVAL,
                           "the integrator is NULL: is its name spelt right?");
-    if (!(s->options.tolerance >= 0 && s->options.tolerance <= DBL_MAX))
+    if (!(tolerance >= 0 && tolerance <= DBL_MAX))
         return nevh__fail(&s->report, NEVH_EINVAL,
                           "the tolerance %g is not a positive number",
-                          s->options.tolerance);
+                          tolerance);
     s->own_time = integrator->own_time || s->options.transform;
     if (s->own_time && w->width > 1)
         return nevh__fail(&s->report, NEVH_EINVAL,
@@ -65,10 +64,16 @@ static int plan(nevh_stepper *s, const nevh_integrator *integrator) {
                           integrator->name,
                           s->options.transform ? " under a transform" : "",
                           w->width);
-    int status = plan_field(s);
-    if (!status)
-        status = nevh__check_structure(s);
-    if (!status && s->options.transform && !integrator->own_time)
+    return NEVH_OK;
+}
+
+/* What acts on the state, or keeps account of it, besides the scheme: the
+   kernel's plan asks for the first two, and the others for its memory. */
+static int plan_parts(nevh_stepper *s) {
+    nevh_work *w = &s->work;
+    const nevh_integrator *integrator = w->integrator;
+    int status = NEVH_OK;
+    if (s->options.transform && !integrator->own_time)
         status = nevh__transform_plan(w);
     if (!status)
         status = nevh__plan_friction(s);
@@ -79,6 +84,20 @@ static int plan(nevh_stepper *s, const nevh_integrator *integrator) {
     if (!status)
         status = nevh__plan_ledger(s);
     w->accounts = w->transform || w->ledger;
+    return status;
+}
+
+static int plan(nevh_stepper *s) {
+    const nevh_work *w = &s->work;
+    if (w->system->report.status)
+        return nevh__fail_as(&s->report, &w->system->report);
+    int status = check_options(s, w->integrator);
+    if (!status)
+        status = plan_field(s);
+    if (!status)
+        status = nevh__check_structure(s);
+    if (!status)
+        status = plan_parts(s);
     return status ? status : plan_memory(s);
 }
 
@@ -100,7 +119,7 @@ nevh_stepper *nevh_stepper_new(const nevh_system *system,
                           .width = width,
                           .size = n * width,
                           .report = &s->report};
-    int status = owned ? plan(s, integrator) : NEVH_ENOMEM;
+    int status = owned ? plan(s) : NEVH_ENOMEM;
     s->planned = status == NEVH_OK;
     s->revision = s->options.transform ? s->options.transform->revision : 0;
     if (status != NEVH_ENOMEM)
