@@ -98,14 +98,21 @@ static bool scales_by_state(const nevh_integrator *scheme) {
            nevh_integrator_own_time(scheme);
 }
 
+/* Steps beyond the scheme's limit.  To have next to none contradicts the claim
+   to keep the energy. */
+static bool is_too_long(const hard_subject *s, const hard_result *r) {
+    return stability_exceeded(r->scheme, r->limit, pace_of(s)) &&
+           (r->limit > 0.1 || !hard_keeps(r));
+}
+
 /* Whether a run that ended, or lost its energy, had a reason to. */
 static bool is_explained(const hard_subject *s, const hard_result *r) {
     double x = pace_of(s);
     if (is(s, HARD_FAR) && scales_by_state(r->scheme))
         return true;
     return is(s, HARD_EDGE | HARD_ESCAPE | HARD_NOISE | HARD_ANY_STEP) ||
-           stability_exceeded(r->scheme, r->limit, x) || x > 1 ||
-           kept_bound(s, r) > 1 || (!hard_keeps(r) && drift_bound(s, r) > 0.1);
+           is_too_long(s, r) || x > 1 || kept_bound(s, r) > 1 ||
+           (!hard_keeps(r) && drift_bound(s, r) > 0.1);
 }
 
 static char *tell_cause(const hard_subject *s, const hard_result *r) {

@@ -93,6 +93,10 @@ typedef struct {
     hard_verdict verdict;
     char *happened;
 } hard_result;
+/* Between these a scheme has so many seconds; then the tool ends with a
+   message, since a step that does not return cannot be taken back. */
+void hard_begin(const char *name, const nevh_integrator *, double seconds);
+void hard_end(void);
 void hard_run(const hard_subject *, double budget, hard_result *);
 /* Whether theory keeps the energy in bounds. */
 bool hard_keeps(const hard_result *);
