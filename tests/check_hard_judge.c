@@ -74,14 +74,14 @@ END_TEST
    in bounds all the same. */
 static hard_verdict spoiled(const nevh_integrator *scheme, size_t which,
                             long double by, const char *name) {
-    nevh_splitting row = *(const nevh_splitting *)scheme->table;
+    nevh_splitting splitting = *(const nevh_splitting *)scheme->table;
     nevh_integrator bad = *scheme;
     long double weights[40];
-    ck_assert_uint_le(row.count, 40);
-    memcpy(weights, row.weights, row.count * sizeof *weights);
+    ck_assert_uint_le(splitting.count, 40);
+    memcpy(weights, splitting.weights, splitting.count * sizeof *weights);
     weights[which] += by;
-    row.weights = weights;
-    bad.table = &row;
+    splitting.weights = weights;
+    bad.table = &splitting;
     return judge(&bad, name);
 }
 
@@ -96,9 +96,10 @@ END_TEST
 /* Verlet's with a first kick that is too long: sums are right, order is 1. */
 START_TEST(spoiled_verlet) {
     static const long double weights[] = {0.6L};
-    static const nevh_splitting row = {NEVH_KICK, NEVH_LISTED, 1, weights};
+    static const nevh_splitting splitting = {NEVH_KICK, NEVH_LISTED, 1,
+                                             weights};
     nevh_integrator bad = *nevh_verlet;
-    bad.table = &row;
+    bad.table = &splitting;
     ck_assert_int_le(judge(&bad, fine), HARD_WRONG);
 }
 END_TEST

@@ -149,9 +149,13 @@ static hard_verdict judge_return(const hard_subject *s, hard_result *r) {
     return symmetric ? HARD_NONE : HARD_DRIFTS;
 }
 
-/* A line all along, above rounding, in a scheme that must not have any. */
+/* A line all along, above rounding, in a scheme that must not have any where it
+   resolves the orbit: what its energy differs by from H is a function of the
+   state, and states come back.  Of balances nothing is known. */
 static bool climbs(const hard_subject *s, const hard_result *r) {
-    return hard_keeps(r) && r->energy.verdict == NEVH_DRIFTS &&
+    bool known =
+        !s->balance && pace_of(s) <= 1 && !is(s, HARD_KINK | HARD_SHORT);
+    return known && hard_keeps(r) && r->energy.verdict == NEVH_DRIFTS &&
            r->energy.max > r->floor + rounding(s, r);
 }
 

@@ -19,7 +19,8 @@ enum {
     HARD_ANY_STEP = 256, /* dt is beyond reason */
     HARD_KINK = 512,     /* H has no second derivative somewhere */
     HARD_FAR = 1024,     /* coordinates are 1e6 times as large as need be */
-    HARD_REST = 2048     /* nothing moves */
+    HARD_REST = 2048,    /* nothing moves */
+    HARD_SHORT = 4096    /* ends before its slow motion turns */
 };
 
 typedef struct {
