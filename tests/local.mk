@@ -56,6 +56,7 @@ suites = \
 	tests/check_failures \
 	tests/check_hard_steps \
 	tests/check_hard \
+	tests/check_hard_judge \
 	tests/check_implicit \
 	tests/check_stiff \
 	tests/check_brouwer \
@@ -84,6 +85,16 @@ tests_check_formula_LDADD = $(INSIDE_LIBS)
 tests_check_formula_terms_LDADD = $(INSIDE_LIBS)
 tests_check_hard_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_grid_SOURCES = tests/check_grid.c tools/grid.c
+tests_check_hard_judge_SOURCES = tests/check_hard_judge.c \
+	tools/hard_private.h \
+	tools/hard_cases.c \
+	tools/hard_subject.c \
+	tools/hard_state.c \
+	tools/hard_run.c \
+	tools/hard_judge.c \
+	tools/stability.c \
+	tools/words.c
+tests_check_hard_judge_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE
 tests_check_gsl_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_damped_orbits_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_threads_CFLAGS = $(AM_CFLAGS) -pthread
@@ -186,6 +197,7 @@ endif
 check-slow:
 	$(MAKE) $(AM_MAKEFLAGS) check TESTS='$(all_suites)' \
 	  CHECK_TAGS=CK_INCLUDE_TAGS TEST_TIMEOUT=3600
+	tools/nevh hard --quiet -o hard.csv --format csv
 	$(MAKE) $(AM_MAKEFLAGS) fuzz FUZZ_SECONDS=60
 
 # With clang; 77 is for what cannot be run here.

@@ -15,9 +15,9 @@ says 'no option of nevh hard'
 # Every case with a few schemes: no crash, no hang, no row without a verdict.
 exits 0 hard --integrators verlet,gauss4,gonzalez,rk4,adaptive-verlet \
     --gradient central6 --format csv
-has '; 0 without a verdict'
+has '; 0 on a wrong orbit, 0 without a verdict'
 columns=case,integrator,gradient,asked,h_omega,stable_below,steps,\
-max_energy_error,bound,happened,verdict
+max_energy_error,bound,state_error,state_bound,happened,verdict
 test "$(grep -v '^#' $work/out | head -n 1)" = "$columns" ||
     fails "has other columns"
 lacks ',none$'

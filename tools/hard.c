@@ -23,6 +23,13 @@ typedef struct {
     case_results *cases;
 } suite;
 
+static double find_limit(const nevh_integrator *scheme) {
+    hard_begin("oscillator", scheme, 60);
+    double limit = nevh_stability_limit(scheme);
+    hard_end();
+    return limit;
+}
+
 static int take_schemes(suite *all, const options *o) {
     list names = {0};
     size_t count = 0;
@@ -36,9 +43,10 @@ static int take_schemes(suite *all, const options *o) {
     for (size_t i = 0; !status && i < all->n_schemes; i++) {
         const char *name = wanted ? o->integrators.item[i] : names.item[i];
         all->schemes[i] = nevh_integrator_named(name);
-        all->limits[i] = nevh_stability_limit(all->schemes[i]);
         if (!all->schemes[i])
             status = tool_unknown("integrator", name, &names);
+        else
+            all->limits[i] = find_limit(all->schemes[i]);
     }
     list_free(&names);
     return status;

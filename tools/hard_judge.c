@@ -92,12 +92,19 @@ static bool refuses_rightly(const hard_subject *s, const hard_result *r) {
            (nevh_integrator_own_time(r->scheme) && s->balance);
 }
 
+/* Steps beyond the scheme's limit.  To have next to none contradicts the claim
+   to keep the energy. */
+static bool is_too_long(const hard_subject *s, const hard_result *r) {
+    return stability_exceeded(r->scheme, r->limit, pace_of(s)) &&
+           (r->limit > 0.1 || !hard_keeps(r));
+}
+
 /* Whether a run that ended, or lost its energy, had a reason to. */
 static bool is_explained(const hard_subject *s, const hard_result *r) {
     double x = pace_of(s);
     return is(s, HARD_EDGE | HARD_ESCAPE | HARD_NOISE | HARD_ANY_STEP) ||
-           stability_exceeded(r->scheme, r->limit, x) || x > 1 ||
-           kept_bound(s, r) > 1 || (!hard_keeps(r) && drift_bound(s, r) > 0.1);
+           is_too_long(s, r) || x > 1 || kept_bound(s, r) > 1 ||
+           (!hard_keeps(r) && drift_bound(s, r) > 0.1);
 }
 
 static char *tell_cause(const hard_subject *s, const hard_result *r) {
@@ -127,9 +134,13 @@ static hard_verdict judge_return(const hard_subject *s, hard_result *r) {
     return symmetric ? HARD_NONE : HARD_DRIFTS;
 }
 
-/* A line all along, above rounding, in a scheme that must not have any. */
+/* A line all along, above rounding, in a scheme that must not have any where it
+   resolves the orbit: what its energy differs by from H is a function of the
+   state, and states come back.  Of balances nothing is known. */
 static bool climbs(const hard_subject *s, const hard_result *r) {
-    return hard_keeps(r) && r->energy.verdict == NEVH_DRIFTS &&
+    bool known =
+        !s->balance && pace_of(s) <= 1 && !is(s, HARD_KINK | HARD_SHORT);
+    return known && hard_keeps(r) && r->energy.verdict == NEVH_DRIFTS &&
            r->energy.max > r->floor + rounding(s, r);
 }
 

@@ -18,7 +18,8 @@ enum {
     HARD_ENDLESS = 128,  /* more steps than the budget allows */
     HARD_ANY_STEP = 256, /* dt is beyond reason */
     HARD_KINK = 512,     /* H has no second derivative somewhere */
-    HARD_REST = 1024     /* nothing moves */
+    HARD_REST = 1024,    /* nothing moves */
+    HARD_SHORT = 2048    /* ends before its slow motion turns */
 };
 
 typedef struct {
@@ -92,6 +93,10 @@ typedef struct {
     hard_verdict verdict;
     char *happened;
 } hard_result;
+/* Between these a scheme has so many seconds; then the tool ends with a
+   message, since a step that does not return cannot be taken back. */
+void hard_begin(const char *name, const nevh_integrator *, double seconds);
+void hard_end(void);
 void hard_run(const hard_subject *, double budget, hard_result *);
 /* Whether theory keeps the energy in bounds. */
 bool hard_keeps(const hard_result *);

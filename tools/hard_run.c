@@ -168,18 +168,21 @@ static void tell_stuck(int signal) {
                                                          : TOOL_FAILED);
 }
 
-static void watch_clock(const hard_subject *s, double budget,
-                        const hard_result *r) {
-    snprintf(stuck, sizeof stuck,
-             "nevh hard: %s, %s, %s: a step does not return\n", s->is->name,
-             nevh_integrator_name(r->scheme), r->gradient);
+void hard_begin(const char *name, const nevh_integrator *scheme,
+                double seconds) {
+    snprintf(stuck, sizeof stuck, "nevh hard: %s, %s: a step does not return\n",
+             name, nevh_integrator_name(scheme));
     signal(SIGALRM, tell_stuck);
-    alarm((unsigned)ceil(patience * budget));
+    alarm((unsigned)ceil(seconds));
+}
+
+void hard_end(void) {
+    alarm(0);
 }
 
 void hard_run(const hard_subject *s, double budget, hard_result *r) {
     nevh_options o = plan_with(s, r);
-    watch_clock(s, budget, r);
+    hard_begin(s->is->name, r->scheme, patience * budget);
     nevh_stepper *m = nevh_stepper_new(s->system, r->scheme, &o);
     r->status = nevh_stepper_status(m);
     r->planned = !r->status;
@@ -192,7 +195,7 @@ void hard_run(const hard_subject *s, double budget, hard_result *r) {
     else
         r->reason = text_print("%s", nevh_stepper_message(m));
     nevh_stepper_free(m);
-    alarm(0);
+    hard_end();
 }
 
 void hard_result_free(hard_result *r) {

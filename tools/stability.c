@@ -57,7 +57,7 @@ char *stability_cause(const nevh_integrator *scheme, double limit, double dt,
                              "fastest (w = %.3g)",
                              x, fastest->t, w);
     char *text = NULL;
-    if (stability_exceeded(scheme, limit, x))
+    if (limit > 0 && stability_exceeded(scheme, limit, x))
         text = text_print("%s, and %s is stable up to %.3g: take dt below "
                           "%.2g%s",
                           where, name, limit, safe_step(fmin(limit, 2), w),
