@@ -154,11 +154,11 @@ has 'Fastest along the orbit: w = 2\.02 '
 
 # Several gradients: verdicts that are alike are said once, others name theirs.
 exits 0 compare pendulum --integrators verlet,rk4 --gradient central2,exact \
-    --dt 0.5,0.25 --t-end 200
-test $(grep -c '^verlet keeps the energy bounded at dt = 0\.25\.$' $work/out) = 1 ||
+    --dt 0.5,0.1 --t-end 200
+test $(grep -c '^verlet keeps the energy bounded at dt = 0\.1\.$' $work/out) = 1 ||
     fails "says the same twice"
-has '^rk4 with exact at dt = 0\.25 loses energy steadily'
-has '^Warning: a smaller dt changes the verdict of verlet with central2: '
+has '^rk4 with exact at dt = 0\.1 loses energy steadily'
+has '^Warning: a smaller dt changes the verdict of verlet: '
 test $(grep -c '^Warning' $work/out) = 1 || fails "warns twice"
 exits 0 compare damped-driven-pendulum --integrators rk4 --t-end 500
 has 'gains energy steadily against the balance'

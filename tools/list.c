@@ -4,11 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void columns(table *t, const char *const names[], size_t count) {
-    for (size_t i = 0; i < count; i++)
-        table_column(t, names[i]);
-}
-#define COLUMNS(t, names) columns(t, names, sizeof(names) / sizeof *(names))
+#define COLUMNS(t, names)                                                      \
+    table_columns(t, names, sizeof(names) / sizeof *(names))
 
 static const char *fits(const nevh_integrator *s) {
     unsigned needs = nevh_integrator_needs(s);

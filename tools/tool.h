@@ -47,7 +47,7 @@ const char *list_closest(const list *, const char *name);
 /* "nevh: " and the message on stderr; returns TOOL_USAGE. */
 __attribute__((format(printf, 1, 2))) int tool_refuse(const char *format, ...);
 /* The same for a name that is none of the list: "unknown KIND NAME", and the
-   closest. */
+   closest, or all where they are few. */
 int tool_unknown(const char *kind, const char *name, const list *known);
 
 /* numbers.c */

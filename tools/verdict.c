@@ -38,11 +38,17 @@ static bool same_place(const row *a, const row *b) {
            a->tolerance == b->tolerance && (a->tolerance > 0 || a->dt == b->dt);
 }
 
+/* Whether gradients make different verdicts there. */
+static bool differs(const row rows[], size_t count, const row *r) {
+    for (size_t k = 0; k < count; k++)
+        if (same_place(&rows[k], r) && !is(&rows[k], r->energy.verdict))
+            return true;
+    return false;
+}
+
 /* "dt = 0.1", and the gradient where others have another verdict there. */
 static char *place_of(const row rows[], size_t count, const row *r) {
-    bool adapts = r->tolerance > 0, differ = false;
-    for (size_t k = 0; k < count; k++)
-        differ |= same_place(&rows[k], r) && !is(&rows[k], r->energy.verdict);
+    bool adapts = r->tolerance > 0, differ = differs(rows, count, r);
     return text_print("%s = %.4g%s%s", adapts ? "tolerance" : "dt",
                       adapts ? r->tolerance : r->dt, differ ? " with " : "",
                       differ ? r->gradient : "");
@@ -160,18 +166,28 @@ static const row *longer(const row rows[], const row *r) {
     return NULL;
 }
 
+/* Whether the same was said of a gradient before. */
+static bool is_told(const row rows[], const row *r) {
+    for (const row *k = rows; k < r; k++)
+        if (same_place(k, r))
+            return true;
+    return false;
+}
+
 static void warn_of_changes(const row rows[], size_t count, list *words) {
     char *text = NULL;
     for (size_t i = 0; i < count; i++) {
         const row *b = &rows[i], *a = longer(rows, b);
         if (!a || a->energy.verdict == b->energy.verdict)
             continue;
-        char *name = name_of(rows, count, b);
-        char *more = text_print("%s of %s: %s at dt = %.4g, %s at %.4g",
-                                text ? text : "", name,
+        bool own = differs(rows, count, a) || differs(rows, count, b);
+        if (!own && is_told(rows, b))
+            continue;
+        char *more = text_print("%s of %s%s%s: %s at dt = %.4g, %s at %.4g",
+                                text ? text : "", b->integrator,
+                                own ? " with " : "", own ? b->gradient : "",
                                 nevh_verdict_name(a->energy.verdict), a->dt,
                                 nevh_verdict_name(b->energy.verdict), b->dt);
-        free(name);
         free(text);
         text = text_print("%s;", more);
         free(more);

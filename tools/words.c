@@ -138,9 +138,15 @@ int tool_refuse(const char *format, ...) {
 }
 
 int tool_unknown(const char *kind, const char *name, const list *known) {
+    enum { FEW = 12 };
     const char *closest = list_closest(known, name);
     if (closest)
         return tool_refuse("unknown %s %s; did you mean %s?", kind, name,
                            closest);
-    return tool_refuse("unknown %s %s", kind, name);
+    if (known->count > FEW || known->count == 0)
+        return tool_refuse("unknown %s %s", kind, name);
+    char *all = list_joined(known);
+    tool_refuse("unknown %s %s; there are %s", kind, name, all);
+    free(all);
+    return TOOL_USAGE;
 }
