@@ -67,7 +67,7 @@ double plan_shorten(plan *p, double budget) {
         dt = fmin(dt, p->dt[i]);
     nevh_counts step = {.gradients = 1};
     double runs = (double)(RUNS * p->integrators.count);
-    double share = budget / 4 / (runs * row_work(p, &step, 1) * span / dt);
+    double share = budget / 6 / (runs * row_work(p, &step, 1) * span / dt);
     if (share < 1)
         p->t_end = p->run->t_start + share_below(share) * span;
     return whole;

@@ -99,7 +99,7 @@ int state_errors_mean_something(plan *);
    returns the end that it had. */
 double plan_shorten(plan *, double budget);
 /* How much a search may work. */
-enum { SEARCH_BUDGET = 20 };
+enum { SEARCH_BUDGET = 15 };
 
 /* Every scheme that fits, and the gradient that costs least, unless others are
    asked for; TOOL_USAGE, with a message, when none fits. */

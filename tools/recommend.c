@@ -66,17 +66,42 @@ static const row *least_worked(const advice *a, const ladder *l) {
                         : NULL;
 }
 
-/* One run of each that may win. */
-static void time_once(advice *a) {
-    double least = least_work(a);
+static void time_one(advice *a, ladder *l) {
+    const row *r = least_worked(a, l);
+    if (!r || isfinite(r->seconds))
+        return;
+    row *rung = &l->rung[r - l->rung];
+    int k = l->k[r - l->rung];
+    ladder_time_in_turn(&a->search, &rung, &k, 1, 1);
+}
+
+/* The one that works least, of those without drift, or with another integrator
+   than that of all; NULL: there is none. */
+static ladder *least_of(const advice *a, bool steady, const ladder * not ) {
+    ladder *best = NULL;
     for (size_t i = 0; i < a->count; i++) {
         ladder *l = &a->ladder[i];
         const row *r = least_worked(a, l);
-        if (!r || isfinite(r->seconds) || r->work > nearly * least)
-            continue;
-        row *rung = &l->rung[r - l->rung];
-        int k = l->k[r - l->rung];
-        ladder_time_in_turn(&a->search, &rung, &k, 1, 1);
+        if (r && !(steady && r->energy.verdict == NEVH_DRIFTS) &&
+            !(not &&strcmp(not ->integrator, l->integrator) == 0) &&
+            (!best || r->work < least_worked(a, best)->work))
+            best = l;
+    }
+    return best;
+}
+
+/* One run of each that may win, or be the runner-up or other evidence. */
+static void time_once(advice *a) {
+    double least = least_work(a);
+    ladder *second = least_of(a, false, least_of(a, false, NULL));
+    ladder *steady = least_of(a, true, NULL);
+    for (size_t i = 0; i < a->count; i++) {
+        ladder *l = &a->ladder[i];
+        const row *r = least_worked(a, l);
+        bool varied = strcmp(l->gradient, a->gradients.item[0]) != 0;
+        if (r &&
+            (varied || l == second || l == steady || r->work < nearly * least))
+            time_one(a, l);
     }
 }
 
