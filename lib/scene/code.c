@@ -4,6 +4,7 @@
 #define _XOPEN_SOURCE 700
 #include "scene/code_private.h"
 #include <dlfcn.h>
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -123,13 +124,15 @@ bool nevh__code_load(const char *path, nevh__code *code, const char **what) {
     return !*what;
 }
 
-char *nevh__folder_of(const char *path) {
+bool nevh__folder_of(const char *path, char **folder) {
     const char *slash = strrchr(path, '/');
     char *given = slash ? nevh__text("%.*s", (int)(slash - path) + 1, path)
                         : nevh__text("%s", ".");
-    char *folder = given ? realpath(given, NULL) : NULL;
+    errno = 0;
+    *folder = given ? realpath(given, NULL) : NULL;
+    bool starved = !given || (!*folder && errno == ENOMEM);
     free(given);
-    return folder;
+    return !starved;
 }
 
 void nevh__code_unload(nevh__code *code) {

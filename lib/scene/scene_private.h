@@ -256,8 +256,9 @@ bool nevh__scene_effects(nevh_scene *);
 bool nevh__scene_switch(nevh_scene *, const nevh_scene_options *);
 nevh__switch *nevh__scene_effect(const nevh_scene *, const char *name);
 /* The folder that a file is in, from the root on, to be freed; NULL when there
-   is none, or memory is out. */
-char *nevh__folder_of(const char *path);
+   is none.
+   returns  whether there was memory */
+bool nevh__folder_of(const char *path, char **folder);
 /* NAME = file("term.c", ...): adds its term. */
 bool nevh__is_code(const nevh__statement *);
 bool nevh__model_code(nevh_scene *, nevh__model *, const nevh__statement *);

@@ -172,11 +172,12 @@ static void put_lines(writer *w, const nevh_scene *s) {
     }
 }
 
-/* The scene's folder, where that is not the one of the path. */
-static char *other_folder(const nevh_scene *s, const char *path) {
-    char *here = nevh__folder_of(s->name);
-    char *there = here ? nevh__folder_of(path) : NULL;
-    bool other = there && strcmp(here, there) != 0;
+/* The scene's folder, where that is not the one of the path; else NULL. */
+static char *other_folder(writer *w, const nevh_scene *s, const char *path) {
+    char *here = NULL, *there = NULL;
+    w->failed |=
+        !nevh__folder_of(s->name, &here) || !nevh__folder_of(path, &there);
+    bool other = here && there && strcmp(here, there) != 0;
     free(there);
     if (other)
         return here;
@@ -185,7 +186,9 @@ static char *other_folder(const nevh_scene *s, const char *path) {
 }
 
 char *nevh_scene_write(const nevh_scene *s, const char *path) {
-    writer w = {.folder = path ? other_folder(s, path) : NULL};
+    writer w = {0};
+    if (path)
+        w.folder = other_folder(&w, s, path);
     if (s->model)
         put_lines(&w, s);
     else
