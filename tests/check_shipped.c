@@ -251,6 +251,33 @@ START_TEST(halley_returns) {
 }
 END_TEST
 
+/* The Earth, which only pulls where the comet comes by, moves energy; the
+   balance knows by how much. */
+START_TEST(passages_are_balanced) {
+    nevh_scene *s = read_shipped("earth-halley.nevh");
+    ck_assert_int_eq(nevh_scene_enable(s, "earth", true), NEVH_OK);
+    double q[2], p[2];
+    ck_assert_int_eq(nevh_scene_start(s, q, p), NEVH_OK);
+    nevh_options o = {.gradient = nevh_exact,
+                      .q = q,
+                      .p = p,
+                      .tolerance = 1e-10,
+                      .balance = true};
+    const nevh_system *system = nevh_scene_system(s);
+    nevh_stepper *by = nevh_stepper_new(system, nevh_dop853, &o);
+    nevh_energy *energy = nevh_energy_new(system, &o);
+    nevh_energy_follow(energy, by);
+    ck_assert_int_eq(
+        nevh_run_until(by, 0, 0.2, 302, q, p,
+                       &(nevh_observer){nevh_energy_observe, energy, 1}, 1),
+        NEVH_OK);
+    ck_assert_double_le(nevh_energy_result(energy, 0).max, 1e-7);
+    nevh_energy_free(energy);
+    nevh_stepper_free(by);
+    nevh_scene_free(s);
+}
+END_TEST
+
 /* k = sin(start/2), energy above the bottom over that at the top. */
 START_TEST(separatrix_is_near) {
     nevh_scene *s = read_shipped("pendulum-separatrix.nevh");
@@ -313,6 +340,7 @@ int main(void) {
     tcase_add_test(cases, outer_solar_system_gets_there);
     tcase_add_test(cases, sun_earth_moon_start_as_they_are);
     tcase_add_test(cases, halley_returns);
+    tcase_add_test(cases, passages_are_balanced);
     tcase_add_test(cases, separatrix_is_near);
     tcase_add_test(cases, scenes_are_complete);
     suite_add_tcase(suite, cases);

@@ -118,6 +118,22 @@ static nevh__time_step choose(nevh__explorer *e, const nevh__planned *term,
                              exp2(round(log2(delta)))};
 }
 
+/* Steps for the samples that there are, where these are shorter. */
+static void choose_all(nevh__explorer *e, double slopes[],
+                       nevh__time_step steps[]) {
+    const nevh_field *f = e->field;
+    double pace = find_pace(e, slopes);
+    for (size_t i = 0; i < f->n_terms; i++) {
+        if (!f->terms[i].term->is.time)
+            continue;
+        nevh__time_step step = choose(e, &f->terms[i], pace);
+        if (!steps[i].method || step.delta < steps[i].delta)
+            steps[i] = step;
+    }
+}
+
+/* Around the start; then also along the orbit, which may meet what moves: but
+   far from the start times themselves are coarser, and ask for longer steps. */
 int nevh__field_plan_time(nevh_field *f, const nevh_options *o,
                           nevh__time_step steps[]) {
     nevh__explorer e;
@@ -126,12 +142,15 @@ int nevh__field_plan_time(nevh_field *f, const nevh_options *o,
                         : nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
     if (!slopes)
         return status;
-    if (!status)
+    if (!status) {
         nevh__find_neighbours(&e);
-    double pace = status ? 1 : find_pace(&e, slopes);
-    for (size_t i = 0; !status && i < f->n_terms; i++)
-        if (f->terms[i].term->is.time)
-            steps[i] = choose(&e, &f->terms[i], pace);
+        choose_all(&e, slopes, steps);
+        e.samples.count = e.neighbours;
+        if (!nevh__find_samples(&e))
+            status = nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+    }
+    if (!status)
+        choose_all(&e, slopes, steps);
     nevh__explorer_close(&e);
     free(slopes);
     return status;
