@@ -384,6 +384,117 @@ START_TEST(escapes_are_given_up) {
 }
 END_TEST
 
+/* The largest error of a state over four turns of a pendulum that comes
+   within 1e-10 of standing upright, against Jacobi's functions. */
+static double beside_separatrix(const nevh_integrator *scheme,
+                                const char *modulus) {
+    nevh_scene *scene = read_scene("tests/hard", "pendulum-modulus");
+    ck_assert_int_eq(nevh_scene_set(scene, modulus), NEVH_OK);
+    orbit o = begin(scene, scheme);
+    nevh_reference *exact =
+        nevh_reference_new(nevh_scene_system(scene), NULL, 0, 40, o.q, o.p);
+    ck_assert_msg(!nevh_reference_status(exact), "%s",
+                  nevh_reference_message(exact));
+    ck_assert(strncmp(nevh_reference_text(exact), "exact", 5) == 0);
+    nevh_state_error *error = nevh_state_error_new(exact);
+    nevh_observer watch = {nevh_state_error_observe, error, 1};
+    ck_assert_int_eq(nevh_run(o.stepper, 0, 0.05, 800, o.q, o.p, &watch, 1),
+                     NEVH_OK);
+    double most = nevh_state_error_result(error);
+    nevh_state_error_free(error);
+    nevh_reference_free(exact);
+    end(&o);
+    return most;
+}
+
+/* Each passage takes log(1/d) at a distance d in energy: energies that walk
+   by the rounding of 800 steps, 30 epsilon, put it off by 30 epsilon/1e-10,
+   which is 7e-5 in each of two. */
+START_TEST(both_sides_of_the_separatrix) {
+    static const char *const moduli[] = {"k = 1 - 1e-10", "k = 1 + 1e-10"};
+    ck_assert_double_le(beside_separatrix(nevh_gauss12, moduli[_i]), 1.4e-4);
+    ck_assert_double_ge(beside_separatrix(nevh_rk4, moduli[_i]), 0.1);
+}
+END_TEST
+
+/* Over steps of 200 days. */
+static nevh_energy_report planets(const nevh_integrator *scheme, size_t steps) {
+    orbit o = begin(read_scene("tests/hard", "outer-planets"), scheme);
+    nevh_energy *e = nevh_energy_new(nevh_scene_system(o.scene), NULL);
+    nevh_observer watch = {nevh_energy_observe, e, 100};
+    ck_assert_int_eq(nevh_run(o.stepper, 0, 200, steps, o.q, o.p, &watch, 1),
+                     NEVH_OK);
+    nevh_energy_report r = nevh_energy_result(e, 0);
+    nevh_energy_free(e);
+    end(&o);
+    return r;
+}
+
+/* 365.25e6 days, h omega = 0.29 of Jupiter: errors of (h omega)^4 all
+   along, and a line through them that is no more than its own error and
+   what rounding walks, epsilon times the root of the steps. */
+START_TEST(a_million_years) {
+    static const double steps = 1826250;
+    nevh_energy_report r = planets(nevh_blanes_moan4, (size_t)steps);
+    double drift = fabs(r.drift) * 200 * steps;
+    double walk = 2.3e-16 * sqrt(steps);
+    ck_assert_int_eq(r.verdict, NEVH_BOUNDED);
+    ck_assert_double_le(r.max, pow(0.29, 4));
+    ck_assert_double_le(drift, 5 * r.drift_error * 200 * steps + 10 * walk);
+    r = planets(nevh_rk4, 100000);
+    ck_assert_int_ne(r.verdict, NEVH_BOUNDED);
+    ck_assert_double_ge(fabs(r.drift) * 200 * 100000, 100 * walk);
+}
+END_TEST
+
+enum { PENDULUMS = 8 };
+
+/* Energy errors of gauss8 on pendulums over so many steps, a root of their
+   mean square over what planning predicts for that gradient. */
+static double walked(const nevh_gradient *gradient, size_t steps,
+                     double *error) {
+    nevh_scene *scene = read_scene("scenes", "pendulum");
+    const nevh_system *system = nevh_scene_system(scene);
+    double q[PENDULUMS], p[PENDULUMS], h = 0.02, floor, sum = 0;
+    for (size_t i = 0; i < PENDULUMS; i++)
+        q[i] = 2 - 0.01 * (double)i, p[i] = 0;
+    nevh_options options = {
+        .gradient = gradient, .q = q, .p = p, .width = PENDULUMS};
+    nevh_stepper *m = nevh_stepper_new(system, nevh_gauss8, &options);
+    nevh_energy *e = nevh_energy_new(system, &options);
+    nevh_observer watch = {nevh_energy_observe, e, steps};
+    /* half-way down: where it is at rest noise in forces does no work */
+    ck_assert_int_eq(
+        nevh_field_energy_floor(nevh_stepper_field(m), 0, (double[]){1},
+                                (double[]){sqrt(2 * 9.8 * (cos(1) - cos(2)))},
+                                h, steps, &floor),
+        NEVH_OK);
+    ck_assert_int_eq(nevh_run(m, 0, h, steps, q, p, &watch, 1), NEVH_OK);
+    for (size_t i = 0; i < PENDULUMS; i++) {
+        nevh_energy_report r = nevh_energy_result(e, i);
+        sum += r.final * r.final * r.scale * r.scale / PENDULUMS;
+    }
+    nevh_energy_free(e);
+    nevh_stepper_free(m);
+    nevh_scene_free(scene);
+    *error = sqrt(sum);
+    return *error / floor;
+}
+
+START_TEST(gradients_bring_their_noise) {
+    static const nevh_gradient *const *const gradients[] = {
+        &nevh_central4, &nevh_central6, &nevh_central8};
+    double error, exact;
+    walked(nevh_exact, 1000000, &exact);
+    for (int i = 0; i < 3; i++) {
+        double ratio = walked(*gradients[i], 1000000, &error);
+        ck_assert_double_le(ratio, 4);
+        ck_assert_double_ge(ratio, 0.25);
+        ck_assert_double_ge(error, exact);
+    }
+}
+END_TEST
+
 int main(void) {
     Suite *s = suite_create("hard");
     TCase *cases = tcase_create("hard"), *slow = tcase_create("long");
@@ -397,10 +508,13 @@ int main(void) {
     tcase_add_loop_test(cases, turns_do_not_matter, 0, scheme_count());
     tcase_add_loop_test(cases, newton_after_many_turns, 0, 2);
     tcase_add_loop_test(cases, escapes_are_given_up, 0, 4);
+    tcase_add_loop_test(cases, both_sides_of_the_separatrix, 0, 2);
     suite_add_tcase(s, cases);
     tcase_set_tags(slow, "slow");
     tcase_add_test(slow, the_eight_stays);
     tcase_add_test(slow, a_million_turns);
+    tcase_add_test(slow, a_million_years);
+    tcase_add_test(slow, gradients_bring_their_noise);
     suite_add_tcase(s, slow);
     return run_suite(s);
 }

@@ -197,7 +197,7 @@ endif
 check-slow:
 	$(MAKE) $(AM_MAKEFLAGS) check TESTS='$(all_suites)' \
 	  CHECK_TAGS=CK_INCLUDE_TAGS TEST_TIMEOUT=3600
-	tools/nevh hard --quiet -o hard.csv --format csv
+	NEVH_SCENES='$(srcdir)/scenes' tools/nevh hard --quiet
 	$(MAKE) $(AM_MAKEFLAGS) fuzz FUZZ_SECONDS=60
 
 # With clang; 77 is for what cannot be run here.

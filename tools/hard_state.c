@@ -330,8 +330,7 @@ int hard_state_observe(void *state, size_t step, double t, const double q[],
     hard_state *w = state;
     const hard_track *k = w->track;
     double start = k->t[0], span = k->t_end - start;
-    (void)step;
-    if (t > k->t_end ||
+    if (step == 0 || t > k->t_end ||
         nevh_reference_state(k->reference, t, w->state, w->state + k->n))
         return NEVH_OK;
     double allowed =
