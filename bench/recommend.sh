@@ -48,7 +48,7 @@ schemes() { # SCENE T_END energy|state
         $1 !~ /naive/ { print $1 }'
 }
 adapts() {
-    case $1 in dop* | gsl-rk* | gsl-ms* | gsl-bs* | *adaptive*) return 0 ;; esac
+    case $1 in dop* | gsl-rk* | gsl-ms*) return 0 ;; esac
     return 1
 }
 # What runs of $name give: seconds, and the options that make the row again.

@@ -157,7 +157,7 @@ static size_t list_best(const advice *a, double factor, ladder *found[],
 /* Other gradients for the best few schemes: they change the price of a step,
    and where errors end, but hardly the step that is needed. */
 static void vary_gradients(advice *a) {
-    enum { FEW = 6 };
+    enum { FEW = 10 };
     static const double factor = 2.2;
     ladder *found[FEW], model[FEW];
     int k[FEW];
@@ -176,7 +176,7 @@ static void vary_gradients(advice *a) {
 /* Medians for those that may win, one after the other in turn, so that what
    else the machine does falls upon all alike. */
 static void time_best(advice *a) {
-    enum { FEW = 16 };
+    enum { FEW = 24 };
     static const double factor = 1.7;
     ladder *found[FEW];
     row *rung[FEW];
