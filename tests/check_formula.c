@@ -246,7 +246,7 @@ END_TEST
 START_TEST(whole_numbers_and_indices) {
     nevh__names *names = formula_names();
     nevh__formula_error e;
-    nevh__index i = {"i", 3};
+    nevh__index i = {.name = "i", .value = 3};
     long whole;
     double value;
     nevh__tree *tree = nevh__tree_parse("w[i] + 10*i", &e);

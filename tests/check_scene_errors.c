@@ -37,6 +37,8 @@ static const struct {
     {"[parameters]\nm[0..3] = 1\n", "2:1", "indices begin with 1"},
     {"[parameters]\nm[1..0] = 1\n", "2:1", "between 1 and"},
     {"[parameters]\nm[1..1e9] = 1\n", "2:1", "between 1 and"},
+    {"[parameters]\nm[k = 1..1e6] = sum(j = 1..1e6, j*k)\n", "2:21",
+     "too much to add up"},
     {"[parameters]\nm[1..2.5] = 1\n", "2:6", "not a whole number"},
     {"[parameters]\nm[1..N] = 1\n", "2:6", "N"},
     {"[parameters]\nm[2] = 1\n", "2:1", "given at once"},

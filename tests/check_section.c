@@ -653,7 +653,7 @@ START_TEST(strobes_are_states) {
     ck_assert_uint_eq(o->found.count, (size_t)(3 / every[_i] + 1e-9));
     for (size_t i = 0; i < o->found.count; i++) {
         const double t = t0 + (double)(i + 1) * every[_i];
-        nevh_stepper *s = planned(b->make(), b, nevh_verlet, nevh_exact);
+        nevh_stepper *s = planned(o->system, b, nevh_verlet, nevh_exact);
         double q = b->q[0], p = b->p[0];
         nevh_run_until(s, t0, h, t, &q, &p, NULL, 0);
         ck_assert(o->found.at[i].t == t);

@@ -69,7 +69,11 @@ END
 CC=/nowhere/cc exits 2 compare $work/code.nevh --allow-code
 says 'code.nevh:12:17: error: term\.c needs a C compiler, and there is none'
 clean
-command -v ${CC:-cc} >/dev/null 2>&1 || { echo "no C compiler"; exit $status; }
+command -v ${CC:-cc} >/dev/null 2>&1 || {
+    echo "no C compiler"
+    test $status = 0 || exit $status
+    exit 77
+}
 
 # The same rows as of text; parameters follow.
 for set in g=9.8 g=1.62 l=0.5; do

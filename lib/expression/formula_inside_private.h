@@ -117,10 +117,13 @@ typedef struct {
     size_t count, first;
     double *values;
     nevh__tree *tree;
+    size_t next; /* of the same chain, from 1; 0: none */
 } nevh__entry;
+enum { NEVH__CHAINS = 512 };
 struct nevh__names {
     nevh__entry *entries;
     size_t count;
+    size_t chain[NEVH__CHAINS]; /* by name: the last entry, from 1; 0: none */
 };
 /* meaning: also of p_NAME and v_NAME, whose entry is that of NAME. */
 const nevh__entry *nevh__entry_named(const nevh__names *, const char *name,

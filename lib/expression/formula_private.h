@@ -105,6 +105,8 @@ int nevh__tree_check(const nevh__tree *, const nevh__names *, unsigned allowed,
 typedef struct {
     const char *name;
     long value;
+    size_t *work; /* passes through sums so far, of all values that share it;
+                     NULL: each may have as many */
 } nevh__index;
 
 /* The number that a formula of parameters stands for, and of an index (NULL:

@@ -122,12 +122,28 @@ static nevh__expression *resolve_definition(nevh__resolver *r,
     return r->definitions[i] = e;
 }
 
+/* Most formulas, and all of parameters, have none. */
+static bool make_room(nevh__resolver *r) {
+    size_t count = r->names->count;
+    if (!r->definitions)
+        r->definitions =
+            nevh__pool_take(r->pool, count, sizeof *r->definitions);
+    if (!r->open)
+        r->open = nevh__pool_take(r->pool, count, sizeof *r->open);
+    if (r->definitions && r->open)
+        return true;
+    nevh__formula_no_memory(r->scope.error);
+    return false;
+}
+
 static nevh__expression *use_definition(nevh__resolver *r,
                                         const nevh__node *node,
                                         const nevh__entry *entry) {
     if (node->kind == NEVH__NODE_ELEMENT)
         return nevh__resolver_fail_name(
             r, node, "%s is a definition: it has no index", "");
+    if (!make_room(r))
+        return NULL;
     if (r->open[entry - r->names->entries])
         return nevh__resolver_fail_name(r, node, "%s is defined by itself", "");
     nevh__expression *e = resolve_definition(r, entry);

@@ -1,6 +1,7 @@
 /* nevh: what the names in formulas mean.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/formula_inside_private.h"
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,10 +23,18 @@ void nevh__names_free(nevh__names *names) {
     free(names);
 }
 
+static size_t chain_of(const char *name) {
+    uint32_t digest = 0x811C9DC5u; /* FNV-1a */
+    for (; *name; name++)
+        digest = (digest ^ (unsigned char)*name) * 0x01000193u;
+    return digest % NEVH__CHAINS;
+}
+
 static nevh__entry *entry_exactly(const nevh__names *names, const char *name) {
-    for (size_t i = 0; i < names->count; i++)
-        if (strcmp(names->entries[i].name, name) == 0)
-            return &names->entries[i];
+    for (size_t i = names->chain[chain_of(name)]; i;
+         i = names->entries[i - 1].next)
+        if (strcmp(names->entries[i - 1].name, name) == 0)
+            return &names->entries[i - 1];
     return NULL;
 }
 
@@ -124,8 +133,16 @@ static nevh__entry *new_entry(nevh__names *names, const char *name,
         nevh__formula_no_memory(error);
         return NULL;
     }
-    entries[names->count] = (nevh__entry){.name = copy};
+    size_t *chain = &names->chain[chain_of(name)];
+    entries[names->count] = (nevh__entry){.name = copy, .next = *chain};
+    *chain = names->count + 1;
     return &entries[names->count++];
+}
+
+static void drop_last_entry(nevh__names *names) {
+    nevh__entry *last = &names->entries[--names->count];
+    names->chain[chain_of(last->name)] = last->next;
+    free(last->name);
 }
 
 int nevh__names_add_parameter(nevh__names *names, const char *name,
@@ -135,7 +152,7 @@ int nevh__names_add_parameter(nevh__names *names, const char *name,
     nevh__entry *entry = new_entry(names, name, error);
     if (!entry || !copy) {
         if (entry)
-            free(names->entries[--names->count].name);
+            drop_last_entry(names);
         free(copy);
         if (!copy)
             nevh__formula_no_memory(error);

@@ -144,11 +144,9 @@ nevh__expression *nevh__resolve(const nevh__tree *tree,
     nevh__resolver r = {.names = names, .pool = pool};
     r.in = (nevh__place){.allowed = allowed, .at = at};
     r.scope.error = error;
-    r.definitions =
-        nevh__pool_take(pool, names->count + 1, sizeof *r.definitions);
-    r.open = nevh__pool_take(pool, names->count + 1, sizeof *r.open);
-    if (r.definitions && r.open)
-        return nevh__resolve_node(&r, tree->root);
-    nevh__formula_no_memory(error);
-    return NULL;
+    r.scope.work = at && at->work ? *at->work : 0;
+    nevh__expression *e = nevh__resolve_node(&r, tree->root);
+    if (at && at->work)
+        *at->work = r.scope.work;
+    return e;
 }

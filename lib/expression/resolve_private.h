@@ -17,7 +17,8 @@ typedef struct {
 typedef struct {
     const nevh__names *names;
     nevh__place in;
-    nevh__expression **definitions; /* by entry; NULL: not yet */
+    nevh__expression **definitions; /* by entry, NULL: not yet; where
+                                     one was met */
     bool *open;                     /* by entry: being resolved */
     unsigned depth, slots;
     nevh__pool *pool;

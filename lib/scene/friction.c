@@ -24,9 +24,8 @@ static bool find_range(nevh_scene *s, const nevh__model *m,
 }
 
 static bool set_rate(nevh_scene *s, nevh__model *m, damping *d, size_t k,
-                     const nevh__tree *tree, long index) {
+                     const nevh__tree *tree, nevh__index at) {
     nevh__formula_error error = {0};
-    nevh__index at = {d->one.head.index, index};
     if (d->given[k])
         return nevh__scene_fail(s, NEVH_EINVAL, &d->one.key,
                                 "a rate of %s is given twice",
@@ -43,10 +42,13 @@ static bool take_rates(nevh_scene *s, nevh__model *m, damping *d) {
     if (!find_range(s, m, &d->one, &from, &to))
         return false;
     nevh__tree *tree = nevh__piece_tree(s, &d->one.value);
+    size_t work = 0;
     nevh__names_find(m->names, head->name, NULL, &first);
     bool fine = tree;
     for (size_t k = from; fine && k < to; k++)
-        fine = set_rate(s, m, d, k, tree, (long)(k - first) + 1);
+        fine =
+            set_rate(s, m, d, k, tree,
+                     (nevh__index){head->index, (long)(k - first) + 1, &work});
     nevh__tree_free(tree);
     return fine;
 }

@@ -111,12 +111,11 @@ static bool take_gradient(nevh_scene *s, nevh__model *m, const nevh__piece *v) {
                       &m->run.gradients);
 }
 
-/* The step of one element, index being its own. */
+/* The step of one element, whose index is at. */
 static bool set_step(nevh_scene *s, const nevh__model *m,
                      const nevh__statement *one, const nevh__tree *tree,
-                     long index, double *step) {
+                     nevh__index at, double *step) {
     nevh__formula_error error = {0};
-    nevh__index at = {one->head.index, index};
     if (*step > 0)
         return nevh__scene_fail(s, NEVH_EINVAL, &one->key,
                                 "a step of %s is given twice", one->head.name);
@@ -142,8 +141,12 @@ static bool set_steps(nevh_scene *s, nevh__model *m, const nevh__statement *one,
     nevh__tree *tree = nevh__piece_tree(s, &one->value);
     double *kind = steps + (meaning == NEVH__MOMENTUM ? m->n : 0);
     bool fine = tree;
+    size_t work = 0;
     for (size_t k = from; fine && k < to; k++)
-        fine = set_step(s, m, one, tree, (long)(k - first) + 1, &kind[k]);
+        fine = set_step(
+            s, m, one, tree,
+            (nevh__index){one->head.index, (long)(k - first) + 1, &work},
+            &kind[k]);
     nevh__tree_free(tree);
     return fine;
 }

@@ -97,8 +97,9 @@ static bool values_by_index(nevh_scene *s, const nevh__model *m,
     nevh__formula_error error = {0};
     nevh__tree *tree = nevh__piece_tree(s, value);
     int status = 0;
+    size_t work = 0;
     for (size_t k = 0; tree && !status && k < count; k++) {
-        nevh__index index = {statement->head.index, (long)k + 1};
+        nevh__index index = {statement->head.index, (long)k + 1, &work};
         status = nevh__tree_number(tree, m->names, &index, &values[k], &error);
         if (status)
             add_index(&error, &index);

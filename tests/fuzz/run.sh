@@ -1,12 +1,9 @@
 #!/bin/sh
-# run.sh SECONDS [TARGET]...: fuzzes the readers of scenes, of states to resume
-# and of the command line, each so long, under sanitizers.  Needs clang with
+# run.sh SECONDS: fuzzes the readers of scenes, of states to resume and of the
+# command line, in turn, each so long, under sanitizers.  Needs clang with
 # libFuzzer; what is found is left in the current folder.
 
 srcdir=${srcdir:-.}
-seconds=${1:-60}
-test $# -lt 2 || shift
-test $# -gt 0 && test "$1" != "$seconds" || set -- scene resume arguments
 clang=$(command -v clang || command -v clang-14) ||
     { echo "fuzz: there is no clang"; exit 77; }
 work=fuzz.$$
@@ -58,22 +55,21 @@ seeds() {
     printf '%s\n' '"\x0a"' '"="' '","' '"1e300"' '"nan"' '"+transform"' \
         >>$work/arguments.dict
     cp "$srcdir/tests/fuzz/scene.dict" $work/
+    printf '%s\n' '"nevh = 1\x0a"' >$work/resume.dict
 }
 
 compile >$work/log 2>&1 ||
     { echo "fuzz: libFuzzer does not work here"; exit 77; }
 seeds
 result=0
-for target in "$@"; do
+for target in scene resume arguments; do
     if ! link "$target" >$work/log 2>&1; then
         cat $work/log
         exit 1
     fi
-    dict=$work/$target.dict
-    test ! -e "$dict" || dict=-dict=$dict
     # stderr has all messages of what is wrong
-    $work/fuzz_"$target" -max_total_time="$seconds" -timeout=20 \
-        -rss_limit_mb=4096 -max_len=4096 ${dict%"$work/$target.dict"} \
+    $work/fuzz_"$target" -max_total_time="${1:-60}" -timeout=20 \
+        -rss_limit_mb=4096 -max_len=4096 -dict=$work/"$target".dict \
         -close_fd_mask=2 -print_final_stats=1 $work/"$target" \
         >$work/log 2>&1
     status=$?
