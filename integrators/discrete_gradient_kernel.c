@@ -82,14 +82,15 @@ static void measure(const nevh_work *w, const nevh__planned *term,
 }
 
 /* In units of the lengths alone, light bodies would get a part of the energy
-   that heavy ones lack. */
+   that heavy ones lack: where a gradient is corrected, units are of H.  Where
+   quotients of H leave nothing but rounding to correct, lengths do. */
 static int plan_metric(nevh_work *w) {
     const gradient_plan *g = w->plan;
     double energy = 0, *curved = nevh__array(2 * w->n, sizeof *curved);
     if (!curved)
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     int status = nevh__field_lengths(w->field, w->options, g->length);
-    if (!status)
+    if (!status && table_of(w)->averages)
         status = nevh__field_curvatures(w->field, w->options, curved);
     for (size_t k = 0; k < 2 * w->n; k++)
         energy = fmax(energy, curved[k] * g->length[k] * g->length[k]);
