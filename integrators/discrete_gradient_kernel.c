@@ -68,7 +68,8 @@ static void unplan(nevh_work *w) {
 }
 
 /* The metric of what a term reads; curved[k]: of H, and `energy` is what H
-   varies by, at most. */
+   varies by, at most.  Powers of 16 say enough, and neighbours have the same.
+ */
 static void measure(const nevh_work *w, const nevh__planned *term,
                     double energy, const double curved[]) {
     const gradient_plan *g = w->plan;
@@ -76,8 +77,9 @@ static void measure(const nevh_work *w, const nevh__planned *term,
         size_t v = at % term->nv;
         size_t k =
             nevh__index(term, at / term->nv, v) + (v < term->nq ? 0 : w->n);
-        g->metric[k] = curved[k] > 0 ? sqrt(curved[k]) / sqrt(energy)
-                                     : 1 / g->length[k];
+        double rate = sqrt(curved[k]) / sqrt(energy);
+        g->metric[k] =
+            curved[k] > 0 ? exp2(4 * round(log2(rate) / 4)) : 1 / g->length[k];
     }
 }
 

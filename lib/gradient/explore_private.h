@@ -68,9 +68,11 @@ double nevh__curve_length(const nevh__explorer *, const nevh__planned *,
 /* Fills length with the shortest over the lanes, of which it makes those
    samples that matter. */
 void nevh__find_lengths(nevh__explorer *);
-/* Of each variable, the largest over instances and samples of what H varies
-   within its length, over the square of that; 2n, zeros at first. */
-void nevh__find_curvatures(nevh__explorer *, double curvature[]);
+/* Of each variable, the largest over samples of what H varies by within its
+   length, over the square of that; 2n, zeros at first.  changes: room for 4n.
+ */
+void nevh__find_curvatures(nevh__explorer *, double changes[],
+                           double curvature[]);
 /* Steps that will do for a pilot, from the lengths. */
 void nevh__set_crude_steps(nevh__explorer *);
 /* The time in which the fastest variable moves a hundredth of its length; 0 if

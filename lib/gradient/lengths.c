@@ -3,6 +3,7 @@
 #include "gradient/explore_private.h"
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 /* A length is where this part of a variation is not that of a quadratic. */
 static const double not_quadratic = 0.2;
@@ -242,28 +243,41 @@ static void find_over_lanes(nevh__explorer *e, double *energy) {
     e->at = 0;
 }
 
-/* An instance's share in the curvatures of the variables it reads. */
-static void add_curvatures(const nevh__explorer *e, const nevh__planned *term,
-                           size_t instance, double curvature[]) {
-    double curved = 0;
+/* What an instance adds to the changes of H, up and down by the length of each
+   variable. */
+static void add_changes(const nevh__explorer *e, const nevh__planned *term,
+                        size_t instance, double changes[]) {
+    double up = 0, down = 0;
     for (size_t k = 0; k < term->nv; k++) {
         size_t i = nevh__index(term, instance, k);
         i = k < term->nq ? i : e->field->n + i;
-        double length = e->length[i];
-        if (nevh__probed(term, k) == k)
-            curved =
-                vary(e, term, instance, k, length).whole / (length * length);
-        if (isfinite(curved))
-            curvature[i] = fmax(curvature[i], curved);
+        if (nevh__probed(term, k) == k) {
+            const double move[3] = {0, e->length[i], -e->length[i]};
+            double x[3], h[3];
+            nevh__along(e, term, instance, k, e->at, 3, move, x, h);
+            up = h[1] - h[0];
+            down = h[2] - h[0];
+        }
+        changes[2 * i] += up;
+        changes[2 * i + 1] += down;
     }
 }
 
-void nevh__find_curvatures(nevh__explorer *e, double curvature[]) {
+void nevh__find_curvatures(nevh__explorer *e, double changes[],
+                           double curvature[]) {
     const nevh_field *f = e->field;
-    for (e->at = 0; e->at < e->samples.count; e->at++)
+    for (e->at = 0; e->at < e->samples.count; e->at++) {
+        memset(changes, 0, 4 * f->n * sizeof *changes);
         for (size_t j = 0; j < f->n_terms; j++)
             for (size_t i = 0; i < f->terms[j].term->is.count; i++)
-                add_curvatures(e, &f->terms[j], i, curvature);
+                add_changes(e, &f->terms[j], i, changes);
+        for (size_t i = 0; i < 2 * f->n; i++) {
+            double most = fmax(fabs(changes[2 * i]), fabs(changes[2 * i + 1]));
+            double curved = most / (e->length[i] * e->length[i]);
+            if (isfinite(curved))
+                curvature[i] = fmax(curvature[i], curved);
+        }
+    }
     e->at = 0;
 }
 

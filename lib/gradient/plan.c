@@ -3,6 +3,7 @@
 #include "gradient/explore_private.h"
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* The length over which variable i varies (from n: momenta): what the user
@@ -172,12 +173,16 @@ int nevh__field_curvatures(nevh_field *f, const nevh_options *o,
                            double curvature[]) {
     nevh__explorer e;
     memset(curvature, 0, 2 * f->n * sizeof *curvature);
+    double *changes = nevh__array(4 * f->n, sizeof *changes);
+    if (!changes)
+        return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
     int status = nevh__explorer_open(&e, f, o);
     if (!status) {
         nevh__find_neighbours(&e);
-        nevh__find_curvatures(&e, curvature);
+        nevh__find_curvatures(&e, changes, curvature);
     }
     nevh__explorer_close(&e);
+    free(changes);
     return status;
 }
 
