@@ -78,27 +78,28 @@ static void rub(const nevh__stages *s, double slopes[]) {
             slopes[i] -= rates[k] * p[i];
 }
 
-/* dH/dp and dH/dq at the point. */
-static int take_gradient(const nevh__stages *s, double slopes[]) {
+/* The slopes at the point, but for friction. */
+static int take_slopes(const nevh__stages *s, double slopes[]) {
     size_t n = s->work->n * s->columns;
     if (s->wide && nevh__wide_take(s, slopes))
         return NEVH_OK;
-    return nevh_work_gradient(s->work, s->columns, s->time, s->point,
-                              s->point + n, slopes + n, slopes);
+    int status = nevh_work_gradient(s->work, s->columns, s->time, s->point,
+                                    s->point + n, slopes + n, slopes);
+    for (size_t i = n; !status && i < 2 * n; i++)
+        slopes[i] = -slopes[i];
+    return status;
 }
 
 int nevh__stages_take(const nevh__stages *s, size_t first, size_t until) {
-    nevh_work *w = s->work;
-    size_t n = w->n * s->columns;
+    if (s->wide)
+        s->wide->fresh = false;
     for (size_t stage = first; stage < until; stage++) {
         double *slopes = s->slopes + s->stride * stage;
         place(s, stage);
-        int status = take_gradient(s, slopes);
+        int status = take_slopes(s, slopes);
         if (status)
             return status;
-        for (size_t i = n; i < 2 * n; i++)
-            slopes[i] = -slopes[i];
-        if (w->friction)
+        if (s->work->friction)
             rub(s, slopes);
     }
     return NEVH_OK;

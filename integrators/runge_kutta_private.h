@@ -13,6 +13,7 @@ typedef struct {
     double *points, *slopes, *time;
     nevh__call whole, forces, velocities;
     bool calls; /* whole, or else the two others, may be taken in this step */
+    bool fresh; /* slopes are those of the stage before the next one */
 } nevh__wide;
 
 /* A step of some lanes, their columns side by side, each by its own h from
@@ -49,8 +50,9 @@ size_t nevh__stages_stride(const nevh_work *);
 size_t nevh__wide_size(const nevh_work *);
 double *nevh__wide_begin(const nevh_work *);
 nevh__wide *nevh__wide_ready(nevh_work *, nevh__wide *, double *scratch);
-/* As nevh__stages_sum; the stage's state and time; dH/dp and dH/dq there, if
-   calls lead to them and all are finite. */
+/* As nevh__stages_sum; the stage's state and time, not to s->point if calls
+   lead to slopes; the slopes there without friction, if these do and all are
+   finite; else false, with s->point. */
 void nevh__wide_sum(const nevh__stages *, size_t count, const double weights[],
                     double sum[]);
 void nevh__wide_place(const nevh__stages *, size_t stage);

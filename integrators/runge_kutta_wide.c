@@ -41,9 +41,9 @@ nevh__wide *nevh__wide_ready(nevh_work *w, nevh__wide *x, double *scratch) {
     return x;
 }
 
-/* h times the weighted sum of the slopes, a vector of it. */
+/* The weighted sum of the slopes, a vector of it. */
 NEVH__INLINE void sum_eight(size_t stride, size_t count, const double weights[],
-                            const double slopes[], double h, double out[]) {
+                            const double slopes[], double out[]) {
     double sum[NEVH__LANES];
     NEVH_LANES(i, NEVH__LANES) {
         sum[i] = 0;
@@ -54,15 +54,19 @@ NEVH__INLINE void sum_eight(size_t stride, size_t count, const double weights[],
                 sum[i] += weights[j] * slopes[j * stride + i];
             }
     NEVH_LANES(i, NEVH__LANES) {
-        out[i] = sum[i] * h;
+        out[i] = sum[i];
     }
 }
 
 NEVH_SIMD static void sum_vectors(size_t stride, size_t count,
                                   const double weights[], const double slopes[],
                                   double h, double sum[]) {
-    for (size_t i = 0; i < stride; i += NEVH__LANES)
-        sum_eight(stride, count, weights, slopes + i, h, sum + i);
+    for (size_t from = 0; from < stride; from += NEVH__LANES) {
+        sum_eight(stride, count, weights, slopes + from, sum + from);
+        NEVH_LANES(i, NEVH__LANES) {
+            sum[from + i] *= h;
+        }
+    }
 }
 
 void nevh__wide_sum(const nevh__stages *s, size_t count, const double weights[],
@@ -70,25 +74,38 @@ void nevh__wide_sum(const nevh__stages *s, size_t count, const double weights[],
     sum_vectors(s->stride, count, weights, s->slopes, *s->h, sum);
 }
 
-NEVH_SIMD static void place_vectors(size_t stride, size_t count,
-                                    const double weights[],
-                                    const double slopes[], double h,
-                                    const double state[], const double carry[],
-                                    double point[]) {
-    for (size_t from = 0; from < stride; from += NEVH__LANES) {
-        double change[NEVH__LANES];
-        sum_eight(stride, count, weights, slopes + from, h, change);
+/* start + (h (sum + weight slope) + carry), rows repeated over vectors. */
+NEVH__INLINE void place_rows(size_t count, double h, double weight,
+                             const double slopes[], const double sum[],
+                             const double start[], const double carry[],
+                             double points[]) {
+    for (size_t k = 0; k < count; k++)
         NEVH_LANES(i, NEVH__LANES) {
-            point[from + i] = state[from + i] + (change[i] + carry[from + i]);
+            double slope = slopes[k * NEVH__LANES + i];
+            double change = (sum[k] + weight * slope) * h;
+            points[k * NEVH__LANES + i] = start[k] + (change + carry[k]);
         }
-    }
 }
 
-void nevh__wide_place(const nevh__stages *s, size_t stage) {
-    const nevh_butcher *table = s->work->integrator->table;
-    place_vectors(s->stride, stage, table->a + stage * table->stages, s->slopes,
-                  *s->h, s->q, s->carry, s->point);
-    *s->time = *s->t + table->c[stage] * *s->h;
+/* The last slopes are taken from where they are repeated, so that nothing waits
+   for them until they are there. */
+NEVH_SIMD static void place_vectors(const nevh__stages *s, size_t count,
+                                    const double weights[], double last) {
+    size_t n = s->work->n, half = n * NEVH__LANES;
+    double *sum = s->change, *points = s->wide->points;
+    const double *dh_dq = s->wide->slopes, *dh_dp = dh_dq + half;
+    for (size_t from = 0; from < s->stride; from += NEVH__LANES)
+        sum_eight(s->stride, count, weights, s->slopes + from, sum + from);
+    place_rows(n, *s->h, last, dh_dp, sum, s->q, s->carry, points);
+    place_rows(n, *s->h, -last, dh_dq, sum + n, s->p, s->carry + n,
+               points + half);
+}
+
+static void place_narrow(const nevh__stages *s, size_t count,
+                         const double weights[]) {
+    nevh__wide_sum(s, count, weights, s->change);
+    for (size_t k = 0; k < 2 * s->work->n; k++)
+        s->point[k] = s->q[k] + (s->change[k] + s->carry[k]);
 }
 
 NEVH_SIMD static void repeat(size_t count, const double from[], double to[]) {
@@ -100,24 +117,45 @@ NEVH_SIMD static void repeat(size_t count, const double from[], double to[]) {
     }
 }
 
+void nevh__wide_place(const nevh__stages *s, size_t stage) {
+    const nevh_butcher *table = s->work->integrator->table;
+    const double *weights = table->a + stage * table->stages;
+    nevh__wide *x = s->wide;
+    *s->time = *s->t + table->c[stage] * *s->h;
+    if (x->fresh && weights[stage - 1] != 0) {
+        place_vectors(s, stage - 1, weights, weights[stage - 1]);
+        return;
+    }
+    place_narrow(s, stage, weights);
+    if (x->calls)
+        repeat(2 * s->work->n, s->point, x->points);
+}
+
 static bool take(nevh__wide *x, const nevh__call *call, const double *t) {
     if (call->t == x->time)
         repeat(1, t, x->time);
     return nevh__lean_take(call, 1);
 }
 
+static bool take_all(nevh__wide *x, const double *t) {
+    if (!x->calls)
+        return false;
+    return x->whole.gradient
+               ? take(x, &x->whole, t)
+               : take(x, &x->velocities, t) && take(x, &x->forces, t);
+}
+
 bool nevh__wide_take(const nevh__stages *s, double slopes[]) {
     nevh__wide *x = s->wide;
     size_t n = s->work->n;
-    repeat(2 * n, s->point, x->points);
-    if (!x->calls || (x->whole.gradient ? !take(x, &x->whole, s->time)
-                                        : !take(x, &x->velocities, s->time) ||
-                                              !take(x, &x->forces, s->time)))
-        return false;
+    bool taken = take_all(x, s->time), rubs = s->work->friction;
     const double *dh_dq = x->slopes, *dh_dp = dh_dq + n * NEVH__LANES;
-    for (size_t k = 0; k < n; k++) {
+    for (size_t k = 0; x->fresh && (rubs || !taken) && k < 2 * n; k++)
+        s->point[k] = x->points[k * NEVH__LANES];
+    for (size_t k = 0; taken && k < n; k++) {
         slopes[k] = 0 + dh_dp[k * NEVH__LANES];
-        slopes[n + k] = 0 + dh_dq[k * NEVH__LANES];
+        slopes[n + k] = -(0 + dh_dq[k * NEVH__LANES]);
     }
-    return true;
+    x->fresh = taken && !rubs;
+    return taken;
 }
