@@ -29,6 +29,7 @@ libnevh_core_la_SOURCES += \
 	integrators/stage_rows_private.h \
 	integrators/stage_rows.c \
 	integrators/runge_kutta_private.h \
+	integrators/runge_kutta_wide.c \
 	integrators/runge_kutta_kernel.c \
 	integrators/runge_kutta_adaptive.c \
 	integrators/euler.c \

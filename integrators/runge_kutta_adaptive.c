@@ -32,11 +32,11 @@ typedef struct {
     nevh__pace pace;
 } lane_walk;
 
-typedef struct {
+struct nevh__adaptive {
     lane_walk *lanes;  /* width */
     size_t *under_way; /* width */
     size_t *unknown;   /* width: those of them without a first slope */
-} adaptive_plan;
+};
 
 /* The step of all lanes: rows of `width`. */
 typedef struct {
@@ -53,22 +53,26 @@ typedef struct {
 
 enum { ROWS = 11 }; /* of 2n x width in a walk, besides the slopes */
 
+static nevh__adaptive *plan_of(const nevh_work *w) {
+    return ((const nevh__stages_plan *)w->plan)->adaptive;
+}
+
 void nevh__adaptive_unplan(nevh_work *w) {
-    adaptive_plan *a = w->plan;
+    nevh__adaptive *a = plan_of(w);
     if (!a)
         return;
     free(a->lanes);
     free(a->under_way);
     free(a->unknown);
     free(a);
-    w->plan = NULL;
 }
 
 /* Memory: carry, size, err; where the last stage is the next first one, also
    that slope and whether it is there. */
 int nevh__adaptive_plan(nevh_work *w) {
     const nevh_butcher *table = w->integrator->table;
-    adaptive_plan *a = w->plan = nevh__array(1, sizeof *a);
+    nevh__adaptive *a = nevh__array(1, sizeof *a);
+    ((nevh__stages_plan *)w->plan)->adaptive = a;
     if (!a)
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     a->lanes = nevh__array(w->width, sizeof *a->lanes);
@@ -79,19 +83,20 @@ int nevh__adaptive_plan(nevh_work *w) {
     w->memory_rows = 2 * w->n + 2;
     if (table->last_is_first)
         w->memory_rows += 2 * w->n + 1;
-    w->scratch_size = (table->stages + ROWS) * 2 * w->size + 3 * w->width;
+    w->scratch_size = (table->stages + ROWS) * nevh__stages_stride(w) +
+                      3 * w->width + nevh__wide_size(w);
     return NEVH_OK;
 }
 
 static walk lay_out(nevh_work *w, double t, double h) {
-    adaptive_plan *a = w->plan;
+    nevh__stages_plan *plan = w->plan;
     walk s = {.work = w,
               .table = w->integrator->table,
               .t = t,
               .h = h,
-              .lanes = a->lanes};
-    size_t each = 2 * w->size;
-    double *at = w->scratch;
+              .lanes = plan->adaptive->lanes};
+    size_t each = nevh__stages_stride(w);
+    double *at = nevh__wide_begin(w);
     double **const rows[ROWS] = {
         &s.y,      &s.lost,         &s.first,      &s.old,
         &s.carry,  &s.next,         &s.next_carry, &s.error,
@@ -102,6 +107,8 @@ static walk lay_out(nevh_work *w, double t, double h) {
     s.begin = at + s.table->stages * each;
     s.each = s.begin + w->width;
     s.trial.time = s.each + w->width;
+    s.trial.wide = nevh__wide_ready(w, &plan->wide, s.trial.time + w->width);
+    s.trial.stride = each;
     s.trial.work = w;
     s.trial.t = s.begin;
     s.trial.h = s.each;
@@ -177,7 +184,7 @@ static void gather_states(walk *s, size_t count, const size_t lanes[]) {
 
 /* The slopes at the states of those lanes that do not know them. */
 static int take_first_slopes(walk *s, size_t count, const size_t lanes[]) {
-    size_t *unknown = ((adaptive_plan *)s->work->plan)->unknown, some = 0;
+    size_t *unknown = plan_of(s->work)->unknown, some = 0;
     for (size_t i = 0; i < count; i++)
         if (!s->lanes[lanes[i]].has_first)
             unknown[some++] = lanes[i];
@@ -272,7 +279,7 @@ static int accept(walk *s, size_t column, size_t lane, double err) {
     l->has_first = s->table->last_is_first;
     scatter(s, column, lane, s->next, s->y);
     scatter(s, column, lane, s->next_carry, s->lost);
-    size_t final = 2 * s->work->n * s->trial.columns * (s->table->stages - 1);
+    size_t final = s->trial.stride * (s->table->stages - 1);
     if (l->has_first)
         scatter(s, column, lane, s->trial.slopes + final, s->first);
     return s->work->accounts ? nevh__stages_account(&s->trial) : NEVH_OK;
@@ -343,7 +350,7 @@ static int choose(const walk *s, size_t lane) {
 
 int nevh__adaptive_step(nevh_work *w, double t, double h, double q[],
                         double p[]) {
-    size_t *lanes = ((adaptive_plan *)w->plan)->under_way, count;
+    size_t *lanes = plan_of(w)->under_way, count;
     walk s = lay_out(w, t, h);
     int status = NEVH_OK;
     if (w->accounts && w->width > 1)

@@ -4,26 +4,49 @@
    sum added to the state with compensation.  Friction is a part of f.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "runge_kutta_private.h"
+#include "system/system_private.h"
+#include <stdlib.h>
+#include <string.h>
+
+enum { ROWS = 4 }; /* of 2n x width in a step, besides the slopes */
+
+size_t nevh__stages_stride(const nevh_work *w) {
+    return w->width == 1 ? nevh__padded(2 * w->n) : 2 * w->size;
+}
 
 /* Without a tolerance, memory is the carry alone, and a last stage that is the
    next step's first is left to that step. */
 static int plan(nevh_work *w) {
     const nevh_butcher *table = w->integrator->table;
+    w->plan = nevh__array(1, sizeof(nevh__stages_plan));
+    if (!w->plan)
+        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     if (table->error && w->options->tolerance > 0)
         return nevh__adaptive_plan(w);
     w->memory_rows = 2 * w->n;
-    w->scratch_size = (table->stages + 2) * 2 * w->size + 3 * w->width;
+    w->scratch_size = (table->stages + ROWS) * nevh__stages_stride(w) +
+                      3 * w->width + nevh__wide_size(w);
     return NEVH_OK;
+}
+
+static void unplan(nevh_work *w) {
+    nevh__adaptive_unplan(w);
+    free(w->plan);
+    w->plan = NULL;
 }
 
 void nevh__stages_sum(const nevh__stages *s, size_t count,
                       const double weights[], double sum[]) {
     size_t columns = s->columns, size = 2 * s->work->n * columns;
+    if (s->wide) {
+        nevh__wide_sum(s, count, weights, sum);
+        return;
+    }
     for (size_t i = 0; i < size; i++)
         sum[i] = 0;
     for (size_t j = 0; j < count; j++)
         for (size_t i = 0; weights[j] != 0 && i < size; i++)
-            sum[i] += weights[j] * s->slopes[j * size + i];
+            sum[i] += weights[j] * s->slopes[j * s->stride + i];
     for (size_t i = 0; i < size; i += columns)
         for (size_t c = 0; c < columns; c++)
             sum[i + c] *= s->h[c];
@@ -33,6 +56,10 @@ void nevh__stages_sum(const nevh__stages *s, size_t count,
 static void place(const nevh__stages *s, size_t stage) {
     const nevh_butcher *table = s->work->integrator->table;
     size_t n = s->work->n * s->columns;
+    if (s->wide) {
+        nevh__wide_place(s, stage);
+        return;
+    }
     nevh__stages_sum(s, stage, table->a + stage * table->stages, s->change);
     for (size_t i = 0; i < n; i++) {
         s->point[i] = s->q[i] + (s->change[i] + s->carry[i]);
@@ -51,19 +78,28 @@ static void rub(const nevh__stages *s, double slopes[]) {
             slopes[i] -= rates[k] * p[i];
 }
 
+/* The slopes at the point, but for friction. */
+static int take_slopes(const nevh__stages *s, double slopes[]) {
+    size_t n = s->work->n * s->columns;
+    if (s->wide && nevh__wide_take(s, slopes))
+        return NEVH_OK;
+    int status = nevh_work_gradient(s->work, s->columns, s->time, s->point,
+                                    s->point + n, slopes + n, slopes);
+    for (size_t i = n; !status && i < 2 * n; i++)
+        slopes[i] = -slopes[i];
+    return status;
+}
+
 int nevh__stages_take(const nevh__stages *s, size_t first, size_t until) {
-    nevh_work *w = s->work;
-    size_t n = w->n * s->columns;
+    if (s->wide)
+        s->wide->fresh = false;
     for (size_t stage = first; stage < until; stage++) {
-        double *slopes = s->slopes + 2 * n * stage;
+        double *slopes = s->slopes + s->stride * stage;
         place(s, stage);
-        int status = nevh_work_gradient(w, s->columns, s->time, s->point,
-                                        s->point + n, slopes + n, slopes);
+        int status = take_slopes(s, slopes);
         if (status)
             return status;
-        for (size_t i = n; i < 2 * n; i++)
-            slopes[i] = -slopes[i];
-        if (w->friction)
+        if (s->work->friction)
             rub(s, slopes);
     }
     return NEVH_OK;
@@ -84,38 +120,62 @@ int nevh__stages_account(const nevh__stages *s) {
     return status;
 }
 
+static nevh__stages lay_out(nevh_work *w, double q[], double p[]) {
+    const nevh_butcher *table = w->integrator->table;
+    size_t stride = nevh__stages_stride(w);
+    double *slopes = nevh__wide_begin(w);
+    double *change = slopes + stride * table->stages;
+    double *times = change + ROWS * stride;
+    return (nevh__stages){
+        .work = w,
+        .columns = w->width,
+        .t = times + w->width,
+        .h = times + 2 * w->width,
+        .q = q,
+        .p = p,
+        .carry = w->memory,
+        .slopes = slopes,
+        .stride = stride,
+        .change = change,
+        .point = change + stride,
+        .time = times,
+        .wide = nevh__wide_ready(w, &((nevh__stages_plan *)w->plan)->wide,
+                                 times + 3 * w->width)};
+}
+
+/* Takes the state to where rows have room for vectors. */
+static void widen(nevh__stages *s) {
+    size_t n = s->work->n;
+    double *state = s->point + s->stride, *carry = state + s->stride;
+    memcpy(state, s->q, n * sizeof *state);
+    memcpy(state + n, s->p, n * sizeof *state);
+    memcpy(carry, s->carry, 2 * n * sizeof *carry);
+    s->q = state;
+    s->p = state + n;
+    s->carry = carry;
+}
+
 static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     const nevh_butcher *table = w->integrator->table;
     size_t n = w->size, stages = table->stages - table->last_is_first;
-    if (w->plan)
+    if (((nevh__stages_plan *)w->plan)->adaptive)
         return nevh__adaptive_step(w, t, h, q, p);
-    double *change = w->scratch + 2 * n * table->stages;
-    double *times = change + 4 * n, *begin = times + w->width;
-    double *each = begin + w->width;
-    nevh__stages s = {.work = w,
-                      .columns = w->width,
-                      .t = begin,
-                      .h = each,
-                      .q = q,
-                      .p = p,
-                      .carry = w->memory,
-                      .slopes = w->scratch,
-                      .change = change,
-                      .point = change + 2 * n,
-                      .time = times};
+    nevh__stages s = lay_out(w, q, p);
+    if (s.wide)
+        widen(&s);
     for (size_t lane = 0; lane < w->width; lane++) {
-        begin[lane] = t;
-        each[lane] = h;
+        s.time[w->width + lane] = t;
+        s.time[2 * w->width + lane] = h;
     }
     int status = nevh__stages_take(&s, 0, stages);
     if (!status)
         status = nevh__stages_account(&s);
     if (status)
         return status;
-    nevh__stages_sum(&s, stages, table->b, change);
-    return nevh_work_commit(w, n, q, change, w->memory, p, change + n,
+    nevh__stages_sum(&s, stages, table->b, s.change);
+    return nevh_work_commit(w, n, q, s.change, w->memory, p, s.change + n,
                             w->memory + n);
 }
 
 const nevh_kernel nevh_runge_kutta_kernel = {
-    .plan = plan, .step = step, .unplan = nevh__adaptive_unplan, .damps = true};
+    .plan = plan, .step = step, .unplan = unplan, .damps = true};

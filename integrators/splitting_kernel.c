@@ -28,8 +28,9 @@ typedef struct {
     size_t count;
     bool same_ends; /* the last operation is of the first one's kind */
     double *weights;
-    double *times; /* parts of h that the half at rest has gone through */
-    nevh__call calls[2];
+    double *times;       /* parts of h that the half at rest has gone through */
+    nevh__call calls[2]; /* for kicks and drifts of one orbit, repeated */
+    bool prepared, ready[2];
 } operations;
 
 /* One half of the state under way: q under drifts, p under kicks. */
@@ -45,7 +46,7 @@ typedef struct {
     bool repeated;
     half q, p;
     double *slope, *kept, *has_kept, *time;
-    nevh__call *calls; /* for kicks and drifts; NULL: not repeated */
+    const operations *plan;
 } layout;
 
 static layout lay_out(const nevh_work *w, double q[], double p[]) {
@@ -53,6 +54,7 @@ static layout lay_out(const nevh_work *w, double q[], double p[]) {
     bool repeated = nevh__work_repeats(w);
     size_t lanes = repeated ? NEVH__LANES : w->width, n = w->n * lanes;
     return (layout){
+        .plan = w->plan,
         .lanes = lanes,
         .size = n,
         .repeated = repeated,
@@ -125,8 +127,8 @@ NEVH_SIMD static void begin_vectors(size_t size, double start[], double carry[],
 }
 
 /* The state, what was lost of it, and the kept slope, repeated. */
-static void begin_repeated(const nevh_work *w, layout *l, const double q[],
-                           const double p[]) {
+static void begin_repeated(const nevh_work *w, const layout *l,
+                           const double q[], const double p[]) {
     const half *const both[] = {&l->q, &l->p};
     for (size_t i = 0; i < 2; i++) {
         const half *x = both[i];
@@ -135,11 +137,20 @@ static void begin_repeated(const nevh_work *w, layout *l, const double q[],
         begin_vectors(l->size, x->start, x->carry, x->change, x->point);
     }
     repeat(w->n, w->memory + 2 * w->n, l->kept);
-    l->calls = ((operations *)w->plan)->calls;
-    l->calls[0] = nevh__lean_call(w->field, l->lanes, l->time, l->q.point,
-                                  l->p.point, l->slope, NULL);
-    l->calls[1] = nevh__lean_call(w->field, l->lanes, l->time, l->q.point,
-                                  l->p.point, NULL, l->slope);
+}
+
+/* Scratch stays where it is, and so do the calls. */
+static void prepare(const nevh_work *w, const layout *l) {
+    operations *o = w->plan;
+    if (!o->prepared) {
+        o->calls[0] = nevh__lean_call(w->field, l->lanes, l->time, l->q.point,
+                                      l->p.point, l->slope, NULL);
+        o->calls[1] = nevh__lean_call(w->field, l->lanes, l->time, l->q.point,
+                                      l->p.point, NULL, l->slope);
+    }
+    o->prepared = true;
+    for (size_t i = 0; i < 2; i++)
+        o->ready[i] = nevh__lean_renew(&o->calls[i]);
 }
 
 NEVH_SIMD static void advance_vectors(size_t size, double step,
@@ -180,8 +191,8 @@ static void set_time(const layout *l, double t) {
 
 /* dH/dq for a kick, or else dH/dp, to the slope. */
 static int take_slope(nevh_work *w, const layout *l, bool kick, double t) {
-    const nevh__call *call = l->calls ? &l->calls[!kick] : NULL;
-    if (call && call->gradient) {
+    const nevh__call *call = &l->plan->calls[!kick];
+    if (l->plan->ready[!kick]) {
         if (call->t == l->time)
             set_time(l, t);
         if (nevh__lean_take(call, 1))
@@ -231,6 +242,7 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     layout l = lay_out(w, q, p);
     if (l.repeated) {
         begin_repeated(w, &l, q, p);
+        prepare(w, &l);
     } else {
         begin(&l, &l.q);
         begin(&l, &l.p);

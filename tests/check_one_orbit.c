@@ -219,12 +219,62 @@ START_TEST(failures_name_the_term) {
 }
 END_TEST
 
+/* Ten steps, of which the field is asked for other states in between. */
+static void run_asked(const nevh_integrator *scheme, double tolerance,
+                      size_t asked, double q[], double p[]) {
+    static const double masses[] = {2, 3};
+    static const size_t all[] = {0, 1};
+    nevh_system *s = nevh_system_new(2);
+    add_waves(s, 2, all);
+    nevh_system_add(s, &(nevh_term){.effect = "kinetic",
+                                    .np = 1,
+                                    .nc = 1,
+                                    .p = all,
+                                    .c = masses,
+                                    .count = 2,
+                                    .value = mass_kinetic,
+                                    .gradient = mass_kinetic_gradient});
+    nevh_stepper *stepper = nevh_stepper_new(
+        s, scheme,
+        &(nevh_options){.gradient = nevh_exact, .tolerance = tolerance});
+    ck_assert_str_eq(nevh_stepper_message(stepper), "");
+    for (size_t i = 0; i < 10; i++) {
+        double t[WIDEST] = {0}, x[4 * WIDEST] = {0}, g[4 * WIDEST];
+        ck_assert(!nevh_stepper_apply(stepper, 0.5 * (double)i, 0.5, q, p));
+        if (asked)
+            ck_assert(!nevh_field_gradient(nevh_stepper_field(stepper), asked,
+                                           t, x, x + 2 * asked, g,
+                                           g + 2 * asked));
+    }
+    nevh_stepper_free(stepper);
+    nevh_system_free(s);
+}
+
+/* What a stepper keeps ready does not hold for other widths. */
+START_TEST(asking_in_between_changes_nothing) {
+    static const nevh_integrator *const *const schemes[] = {
+        &nevh_verlet, &nevh_gauss6, &nevh_rk4, &nevh_dop853, &nevh_dopri5};
+    static const size_t asked[] = {1, 3, 8, 16};
+    const nevh_integrator *scheme = *schemes[_i];
+    double tolerance = scheme == nevh_dopri5 ? 1e-6 : 0;
+    double q[] = {0.5, -1}, p[] = {1, 0.25};
+    run_asked(scheme, tolerance, 0, q, p);
+    for (size_t i = 0; i < sizeof asked / sizeof *asked; i++) {
+        double other_q[] = {0.5, -1}, other_p[] = {1, 0.25};
+        run_asked(scheme, tolerance, asked[i], other_q, other_p);
+        ck_assert_mem_eq(q, other_q, sizeof q);
+        ck_assert_mem_eq(p, other_p, sizeof p);
+    }
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("one orbit");
     TCase *cases = tcase_create("one orbit");
     tcase_add_loop_test(cases, alone_as_among_others, 0, 5 * scheme_count());
     tcase_add_loop_test(cases, every_width_alike, 0, 5);
     tcase_add_loop_test(cases, failures_name_the_term, 0, 4);
+    tcase_add_loop_test(cases, asking_in_between_changes_nothing, 0, 5);
     suite_add_tcase(suite, cases);
     return run_suite(suite);
 }

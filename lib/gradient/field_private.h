@@ -191,21 +191,26 @@ bool nevh__gradient_lean(nevh_field *, size_t width, const double t[],
                          const double q[], const double p[], double dh_dq[],
                          double dh_dp[]);
 bool nevh__lean_plan(nevh_field *);
-/* Half a gradient that is one call of one term, for a kernel that takes it many
-   times at the same place in memory. */
+/* A gradient, or half of one, that is one call of one term, for a kernel that
+   takes it many times at the same place in memory. */
 typedef struct {
     nevh_block_gradient_fn gradient; /* NULL: it is no such call */
     nevh_field *field;
+    nevh__planned *term;
+    size_t width;
     size_t stride, size; /* size: numbers of the result */
     bool coordinates;
     const double *t, *q, *p, *c;
     const void *params;
     double *dh_dq, *dh_dp, *out;
 } nevh__call;
-/* One of dh_dq and dh_dp is NULL. */
+/* Of dh_dq and dh_dp one is NULL, or dh_dp follows dh_dq. */
 nevh__call nevh__lean_call(nevh_field *, size_t width, const double t[],
                            const double q[], const double p[], double dh_dq[],
                            double dh_dp[]);
+/* Makes a call that was kept ready for another step; whether it may be taken.
+   The field may have been asked for other widths in between. */
+bool nevh__lean_renew(nevh__call *);
 /* Whether all is finite, or where one lane is used, that one; then as many
    lanes count.  Where not, nevh__field_gradient tells why. */
 bool nevh__lean_take(const nevh__call *, size_t used);

@@ -402,7 +402,8 @@ nevh__call nevh__lean_call(nevh_field *f, size_t width, const double t[],
                            double dh_dp[]) {
     nevh__planned *term = dh_dq ? f->sole_q : f->sole_p;
     if (f->gradient != nevh_exact || nevh__field_ready(f) || !term ||
-        width % NEVH__LANES || f->most_instances * width > f->capacity ||
+        (dh_dq && dh_dp && f->sole_p != term) || width % NEVH__LANES ||
+        f->most_instances * width > f->capacity ||
         (term->term->is.time && term->term->is.count > 1))
         return (nevh__call){0};
     const nevh_term *is = &term->term->is;
@@ -410,8 +411,10 @@ nevh__call nevh__lean_call(nevh_field *f, size_t width, const double t[],
     return (nevh__call){
         .gradient = is->gradient,
         .field = f,
+        .term = term,
+        .width = width,
         .stride = stride,
-        .size = stride * (dh_dq ? term->nq : term->np),
+        .size = stride * ((dh_dq ? term->nq : 0) + (dh_dp ? term->np : 0)),
         .coordinates = dh_dq,
         .t = is->time ? t : f->zeros,
         .q = term->nq ? q + is->q[0] * width : q,
@@ -422,6 +425,13 @@ nevh__call nevh__lean_call(nevh_field *f, size_t width, const double t[],
         .dh_dp = dh_dp,
         .out = dh_dq ? dh_dq : dh_dp,
     };
+}
+
+bool nevh__lean_renew(nevh__call *c) {
+    if (!c->gradient || nevh__field_ready(c->field))
+        return false;
+    c->c = constants(c->term, c->width, c->stride);
+    return true;
 }
 
 bool nevh__lean_take(const nevh__call *c, size_t used) {
