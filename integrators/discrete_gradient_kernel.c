@@ -68,8 +68,8 @@ static void unplan(nevh_work *w) {
 }
 
 /* The metric of what a term reads; curved[k]: of H, and `energy` is what H
-   varies by, at most.  Powers of 16 say enough, and neighbours have the same.
- */
+   varies by, at most.  The part of it that a variable has within its length
+   counts where it is small, in powers of 256: neighbours have the same. */
 static void measure(const nevh_work *w, const nevh__planned *term,
                     double energy, const double curved[]) {
     const gradient_plan *g = w->plan;
@@ -77,9 +77,9 @@ static void measure(const nevh_work *w, const nevh__planned *term,
         size_t v = at % term->nv;
         size_t k =
             nevh__index(term, at / term->nv, v) + (v < term->nq ? 0 : w->n);
-        double rate = sqrt(curved[k]) / sqrt(energy);
-        g->metric[k] =
-            curved[k] > 0 ? exp2(4 * round(log2(rate) / 4)) : 1 / g->length[k];
+        double part = curved[k] * g->length[k] * g->length[k] / energy;
+        double weight = part > 0 ? exp2(4 * trunc(log2(part) / 8)) : 1;
+        g->metric[k] = weight / g->length[k];
     }
 }
 

@@ -62,12 +62,9 @@ static double drift_bound(const hard_subject *s, const hard_result *r) {
            pow(x, nevh_integrator_order(r->scheme) + 1);
 }
 
-/* Of stages solved to the last digits, some forty epsilon a step.  Where a step
-   goes over a kink no iteration contracts: the rescue is content with 1e-10,
-   nevh__stage_tiny, and here no more than one of them is needed. */
+/* Of stages solved to the last digits, some forty epsilon a step. */
 static double rounding(const hard_subject *s, const hard_result *r) {
-    double unsolved = is(s, HARD_KINK) ? 1e-10 : 0;
-    return (1e-14 * (double)r->steps + unsolved) * s->peak;
+    return 1e-14 * s->peak * (double)r->steps;
 }
 
 static double find_bound(const hard_subject *s, const hard_result *r) {
