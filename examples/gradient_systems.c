@@ -239,7 +239,7 @@ static int by_size(const void *a, const void *b) {
 }
 
 double gradient_states_time(nevh_field *field, gradient_states *s) {
-    enum { ROUNDS = 5, BATCH = 4096 };
+    enum { ROUNDS = 5, BATCH = 256 };
     const double least = 0.004 * CLOCKS_PER_SEC;
     double ns[ROUNDS], count;
     for (int i = 0; i < ROUNDS; i++) {
