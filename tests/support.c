@@ -372,9 +372,7 @@ double measured_order(const problem *b, const nevh_integrator *scheme,
                                       : 1e-6;
     const double below = least_error(order);
     const double factor = fmin(1.6, pow(10, 0.5 / order));
-    const int most = order == 1   ? STRETCH + 3
-                     : order == 2 ? STRETCH
-                                  : POINTS;
+    const int most = order == 1 ? STRETCH + 3 : order == 2 ? STRETCH : POINTS;
     bundle z, start = start_of(b), reference = start;
     start.every = nevh_integrator_own_time(scheme) ? 3 : 1;
     ck_assert(run_bundle(b, nevh_gauss16, nevh_exact, 400, &reference));
