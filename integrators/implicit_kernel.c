@@ -17,13 +17,13 @@
    the coordinates, and new slopes there.  That halves the number of sweeps.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include <nevh/extend.h>
-#include "stage_rows_private.h"
+#include "stage_sweeps_private.h"
 #include "tableau_private.h"
 #include "work_private.h"
-#include "gradient/field_private.h"
 #include "implicit/implicit_private.h"
 #include "system/system_private.h"
 #include <math.h>
+#include <nevh/body.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -31,15 +31,10 @@ typedef struct {
     nevh__tableau *tableau; /* first, where tests look for it */
     nevh__stage_solver *solver;
     bool partitioned;
-    size_t unknown; /* slopes of a lane that are solved for */
-    double *hb;     /* h b_j of this step */
-    size_t *lanes;  /* all of them */
-    /* One orbit with exact gradients: rows are vectors; mu and guess as the
-       tableau's, or with room behind them. */
-    bool vectors;
-    nevh__rows rows; /* of a half */
-    double *padded;  /* NULL: no room is needed */
-    const double *mu_q, *mu_p, *guess;
+    size_t unknown;       /* slopes of a lane that are solved for */
+    double *hb;           /* h b_j of this step */
+    size_t *lanes;        /* all of them */
+    nevh__sweeps *sweeps; /* of one orbit as vectors, or NULL */
 } family_plan;
 
 /* One step under way. */
@@ -55,7 +50,6 @@ typedef struct {
     double *sum;        /* 2n x width: the new state */
     double *lost;       /* 2n x width: what that lost */
     double *hold;       /* width; see nevh__stage_problem */
-    nevh__call velocities, forces; /* of one orbit, where it can be called */
 } family_step;
 
 /* Memory: carry, slopes of the last step that were solved for, their h (0:
@@ -80,35 +74,9 @@ static void unplan(nevh_work *w) {
     nevh__stage_solver_free(g->solver);
     free(g->hb);
     free(g->lanes);
-    free(g->padded);
+    nevh__sweeps_free(g->sweeps);
     free(g);
     w->plan = NULL;
-}
-
-static const double *pad(const nevh__rows *r, const double from[],
-                         double to[]) {
-    for (size_t i = 0; i < r->stages * r->stages; i++)
-        to[i / r->stages * r->stride + i % r->stages] = from[i];
-    return to;
-}
-
-static bool plan_rows(const nevh_work *w, family_plan *g) {
-    const nevh__tableau *a = g->tableau;
-    size_t stages = a->stages, stride = nevh__padded(stages);
-    g->vectors = w->width == 1 && nevh__work_lean(w);
-    g->rows = (nevh__rows){w->n, stages, g->vectors ? stride : stages};
-    g->mu_q = a->mu_q;
-    g->mu_p = a->mu_p;
-    g->guess = a->guess;
-    if (g->rows.stride == stages)
-        return true;
-    double *to = g->padded = nevh__array(3 * stages * stride, sizeof *to);
-    if (!to)
-        return false;
-    g->mu_q = pad(&g->rows, a->mu_q, to);
-    g->mu_p = pad(&g->rows, a->mu_p, to + stages * stride);
-    g->guess = pad(&g->rows, a->guess, to + 2 * stages * stride);
-    return true;
 }
 
 static bool plan_solver(nevh_work *w, family_plan *g) {
@@ -124,12 +92,10 @@ static bool plan_solver(nevh_work *w, family_plan *g) {
         w, &(nevh__stage_shape){a->stages, g->partitioned, a->a_q, a->a_p});
     for (size_t lane = 0; g->lanes && lane < w->width; lane++)
         g->lanes[lane] = lane;
-    return g->hb && g->lanes && g->solver && plan_rows(w, g);
-}
-
-/* Numbers from one row of points to the next. */
-static size_t row_size(const family_plan *g, size_t active) {
-    return g->rows.stride * active;
+    bool suits = g->hb && nevh__sweeps_suit(w, a->stages);
+    if (suits)
+        g->sweeps = nevh__sweeps_new(w, a, g->hb, g->partitioned);
+    return g->hb && g->lanes && g->solver && (g->sweeps || !suits);
 }
 
 static int plan_on(nevh_work *w, size_t fewest,
@@ -145,8 +111,7 @@ static int plan_on(nevh_work *w, size_t fewest,
     if (!g || !plan_solver(w, g))
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     w->memory_rows = 2 * w->n + g->unknown + 2;
-    w->scratch_size = (6 * w->n + 1) * row_size(g, w->width) + w->width +
-                      4 * w->size + NEVH__LANES;
+    w->scratch_size = ((6 * w->n + 1) * stages + 1 + 4 * w->n) * w->width;
     return NEVH_OK;
 }
 
@@ -161,8 +126,8 @@ static int plan_lobatto(nevh_work *w) {
 static family_step lay_out(nevh_work *w, double t, double h, const double q[],
                            const double p[]) {
     const family_plan *g = w->plan;
-    size_t size = row_size(g, w->width), all = 2 * w->n * size;
-    family_step s = {w, t, h, q, p, .slopes = nevh__aligned(w->scratch)};
+    size_t size = g->tableau->stages * w->width, all = 2 * w->n * size;
+    family_step s = {w, t, h, q, p, .slopes = w->scratch};
     s.unknown =
         s.slopes + 2 * w->size * g->tableau->stages - g->unknown * w->width;
     s.increments = s.slopes + all;
@@ -196,21 +161,6 @@ static void multiply(size_t stages, size_t active, const double m[],
                 out[i * active + a] += m[i] * x[j * active + a];
 }
 
-/* The stage states of the half, or halves, from `first` to `last`, of one
-   orbit. */
-static void find_rows(const family_step *s, size_t first, size_t last) {
-    const nevh_work *w = s->work;
-    const family_plan *g = w->plan;
-    size_t n = w->n, size = g->rows.stride;
-    if (first < n)
-        nevh__rows_combine(&g->rows, g->mu_q, g->hb, s->slopes, s->q, w->memory,
-                           s->points);
-    if (last > n)
-        nevh__rows_combine(&g->rows, g->mu_p, g->hb,
-                           s->slopes + n * g->rows.stages, s->p, w->memory + n,
-                           s->points + n * size);
-}
-
 /* The stage states of variables from `first` to `last` at some lanes, to
    points. */
 static void find_points(const family_step *s, size_t first, size_t last,
@@ -218,10 +168,6 @@ static void find_points(const family_step *s, size_t first, size_t last,
     const nevh_work *w = s->work;
     const family_plan *g = w->plan;
     size_t stages = g->tableau->stages;
-    if (g->vectors) {
-        find_rows(s, first, last);
-        return;
-    }
     for (size_t k = first; k < last; k++) {
         const double *mu = k < w->n ? g->tableau->mu_q : g->tableau->mu_p;
         const double *slopes = s->slopes + k * stages * w->width;
@@ -242,11 +188,9 @@ static void find_points(const family_step *s, size_t first, size_t last,
 }
 
 static void find_times(const family_step *s, size_t active) {
-    const family_plan *g = s->work->plan;
-    size_t stages = g->tableau->stages;
-    for (size_t i = 0; i < row_size(g, active); i++)
-        s->times[i] =
-            s->t + g->tableau->c[i / active < stages ? i / active : 0] * s->h;
+    const nevh__tableau *a = ((const family_plan *)s->work->plan)->tableau;
+    for (size_t i = 0; i < a->stages * active; i++)
+        s->times[i] = s->t + a->c[i / active] * s->h;
 }
 
 /* The gradient at the points. */
@@ -254,76 +198,39 @@ static int take_gradient(const family_step *s, size_t active, double dh_dq[],
                          double dh_dp[]) {
     nevh_work *w = s->work;
     const family_plan *g = w->plan;
-    size_t size = row_size(g, active);
-    return nevh__work_gradient(w, size, g->tableau->stages * active, s->times,
-                               s->points, s->points + w->n * size, dh_dq,
-                               dh_dp);
+    size_t points = g->tableau->stages * active;
+    return nevh__work_gradient(w, points, points, s->times, s->points,
+                               s->points + w->n * points, dh_dq, dh_dp);
 }
 
 static void negate(const family_step *s, size_t active, double x[]) {
     const family_plan *g = s->work->plan;
-    size_t size = g->rows.count * row_size(g, active);
-    if (g->vectors)
-        nevh__rows_negate(&g->rows, x);
-    else
-        for (size_t i = 0; i < size; i++)
-            x[i] = -x[i];
+    for (size_t i = 0; i < s->work->n * g->tableau->stages * active; i++)
+        x[i] = -x[i];
 }
 
 static int map(void *data, size_t active, const size_t lanes[],
                const double slopes[], double out[]) {
     const family_step *s = data;
     const family_plan *g = s->work->plan;
-    size_t half = g->rows.count * g->rows.stages * active;
-    double *first = out, *second = out + half;
+    double *forces = out + s->work->n * g->tableau->stages * active;
     (void)slopes; /* are s->unknown */
-    if (g->padded) {
-        first = s->increments;
-        second = first + g->rows.count * g->rows.stride;
-    }
     find_points(s, 0, 2 * s->work->n, active, lanes);
-    if (!g->vectors)
-        find_times(s, active);
-    int status = take_gradient(s, active, second, first);
-    negate(s, active, second);
-    if (g->padded)
-        nevh__rows_close(&g->rows, 2 * g->rows.count, s->increments, out);
+    find_times(s, active);
+    int status = take_gradient(s, active, forces, out);
+    negate(s, active, forces);
     return status;
-}
-
-/* Where the slopes of coordinates are to be written: in place if they can. */
-static double *velocities_of(const family_step *s) {
-    const family_plan *g = s->work->plan;
-    return g->vectors && !g->padded ? s->slopes : s->increments;
-}
-
-static void prepare_calls(family_step *s, double *forces) {
-    nevh_work *w = s->work;
-    size_t size = row_size(w->plan, 1);
-    const double *p = s->points + w->n * size;
-    s->velocities = nevh__lean_call(w->field, size, s->times, s->points, p,
-                                    NULL, velocities_of(s));
-    s->forces =
-        nevh__lean_call(w->field, size, s->times, s->points, p, forces, NULL);
-}
-
-static bool call(const nevh__call *c, const family_plan *g) {
-    return c->gradient && nevh__lean_take(c, g->rows.stages);
 }
 
 /* Slopes of the coordinates at the stages' momenta. */
 static int find_velocities(const family_step *s, size_t active,
                            const size_t lanes[]) {
-    nevh_work *w = s->work;
+    const nevh_work *w = s->work;
     const family_plan *g = w->plan;
-    double *velocities = velocities_of(s);
+    double *velocities = s->increments;
     find_points(s, w->n, 2 * w->n, active, lanes);
-    int status = call(&s->velocities, g)
-                     ? NEVH_OK
-                     : take_gradient(s, active, NULL, velocities);
-    if (g->padded)
-        nevh__rows_close(&g->rows, w->n, velocities, s->slopes);
-    for (size_t row = 0; !g->vectors && row < w->n * g->rows.stages; row++)
+    int status = take_gradient(s, active, NULL, velocities);
+    for (size_t row = 0; row < w->n * g->tableau->stages; row++)
         for (size_t a = 0; a < active; a++)
             s->slopes[row * w->width + lanes[a]] = velocities[row * active + a];
     return status;
@@ -331,38 +238,28 @@ static int find_velocities(const family_step *s, size_t active,
 
 static int map_momenta(void *data, size_t active, const size_t lanes[],
                        const double slopes[], double out[]) {
-    family_step *s = data;
-    const family_plan *g = s->work->plan;
-    double *target = g->padded ? s->increments : out;
+    const family_step *s = data;
     (void)slopes;
-    if (g->vectors && s->forces.out != target)
-        prepare_calls(s, target);
-    if (!g->vectors)
-        find_times(s, active);
+    find_times(s, active);
     int status = find_velocities(s, active, lanes);
     if (status)
         return status;
     find_points(s, 0, s->work->n, active, lanes);
-    status =
-        call(&s->forces, g) ? NEVH_OK : take_gradient(s, active, target, NULL);
-    negate(s, active, target);
-    if (g->padded)
-        nevh__rows_close(&g->rows, g->rows.count, target, out);
+    status = take_gradient(s, active, out, NULL);
+    negate(s, active, out);
     return status;
 }
 
-static void guess_rows(const family_step *s, const family_plan *g,
-                       const family_memory *last) {
-    nevh__rows rows = g->rows;
-    double *target = g->padded ? s->increments : s->unknown;
-    rows.count = g->unknown / rows.stages;
-    if (*last->h != s->h) {
-        memset(s->unknown, 0, g->unknown * sizeof *s->unknown);
-        return;
-    }
-    nevh__rows_multiply(&rows, g->guess, last->slopes, target);
-    if (g->padded)
-        nevh__rows_close(&rows, rows.count, target, s->unknown);
+static int sweep(void *data, const double unit[], nevh__stage_progress *made) {
+    const family_step *s = data;
+    const family_plan *g = s->work->plan;
+    return nevh__sweeps_sweep(g->sweeps, unit, made);
+}
+
+static void fetch(void *data) {
+    const family_step *s = data;
+    const family_plan *g = s->work->plan;
+    nevh__sweeps_fetch(g->sweeps, s->slopes);
 }
 
 /* Continues the last step's polynomial where there is one. */
@@ -371,8 +268,9 @@ static void guess(const family_step *s, const family_plan *g) {
     size_t stages = g->tableau->stages, each = stages * w->width;
     family_memory last = recall(w);
     memcpy(s->hold, last.hold, w->width * sizeof *s->hold);
-    if (g->vectors) {
-        guess_rows(s, g, &last);
+    if (g->sweeps) {
+        nevh__sweeps_begin(g->sweeps, s->t, s->h, s->q, s->p, last.carry,
+                           *last.h == s->h ? last.slopes : NULL);
         return;
     }
     for (size_t row = 0; row < g->unknown; row += stages) {
@@ -388,7 +286,7 @@ static void guess(const family_step *s, const family_plan *g) {
 /* The evaluations that moved the state: one a stage. */
 static int account(const family_step *s, const family_plan *g) {
     nevh_work *w = s->work;
-    size_t stages = g->tableau->stages, size = row_size(g, w->width);
+    size_t stages = g->tableau->stages, size = stages * w->width;
     double *z = s->increments;
     int status = NEVH_OK;
     find_points(s, 0, 2 * w->n, w->width, g->lanes);
@@ -403,6 +301,27 @@ static int account(const family_step *s, const family_plan *g) {
     return status;
 }
 
+/* sum + lost += h b x, without loss. */
+NEVH__INLINE void add(double hb, double slope, double *sum, double *lost) {
+    double x = hb * slope, d = x + *lost, next = *sum + d, part = next - *sum;
+    *lost = (*sum - (next - part)) + (d - part);
+    *lost += fma(hb, slope, -x);
+    *sum = next;
+}
+
+/* The new state and what it lost, small weights first. */
+NEVH_SIMD static void sum_up(const family_step *s, const nevh__tableau *a,
+                             const double hb[]) {
+    size_t count = 2 * s->work->size, width = s->work->width;
+    for (size_t m = 0; m < a->stages; m++) {
+        size_t j = a->order[m];
+        const double *x = s->slopes + j * width;
+        for (size_t i = 0; i < count; x += a->stages * width)
+            for (size_t lane = 0; lane < width; lane++, i++)
+                add(hb[j], x[lane], &s->sum[i], &s->lost[i]);
+    }
+}
+
 static int commit(const family_step *s, const family_plan *g, double q[],
                   double p[]) {
     nevh_work *w = s->work;
@@ -411,8 +330,7 @@ static int commit(const family_step *s, const family_plan *g, double q[],
     memcpy(s->sum, q, n * sizeof *q);
     memcpy(s->sum + n, p, n * sizeof *p);
     memcpy(s->lost, w->memory, 2 * n * sizeof *s->lost);
-    nevh__rows_sum(g->tableau, 2 * n, w->width, g->hb, s->slopes, s->sum,
-                   s->lost);
+    sum_up(s, g->tableau, g->hb);
     for (size_t i = 0; i < 2 * n; i++)
         check += s->sum[i] - s->sum[i];
     if (check != 0)
@@ -436,14 +354,14 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     family_step s = lay_out(w, t, h, q, p);
     weigh(g, h);
     guess(&s, g);
-    if (g->vectors)
-        find_times(&s, 1);
     nevh__stage_problem problem = {.t = t,
                                    .h = h,
                                    .q = q,
                                    .p = p,
                                    .x = s.unknown,
                                    .map = g->partitioned ? map_momenta : map,
+                                   .sweep = g->sweeps ? sweep : NULL,
+                                   .fetch = fetch,
                                    .data = &s,
                                    .hold = s.hold};
     int status = nevh__stage_solve(g->solver, &problem);

@@ -26,8 +26,8 @@ libnevh_core_la_SOURCES += \
 	integrators/adaptive_verlet_private.h \
 	integrators/adaptive_verlet_kernel.c \
 	integrators/adaptive_verlet.c \
-	integrators/stage_rows_private.h \
-	integrators/stage_rows.c \
+	integrators/stage_sweeps_private.h \
+	integrators/stage_sweeps.c \
 	integrators/runge_kutta_private.h \
 	integrators/runge_kutta_wide.c \
 	integrators/runge_kutta_kernel.c \

@@ -7,13 +7,13 @@
 #include <nevh/extend.h>
 
 /* One orbit of a small system: a state and its slopes (dH/dq, dH/dp), 2n rows
-   each of one number repeated over a vector, and the calls that lead from one
+   each of one number repeated over a vector, and the call that leads from one
    to the other. */
 typedef struct {
     double *points, *slopes, *time;
-    nevh__call whole, forces, velocities;
-    bool calls; /* whole, or else the two others, may be taken in this step */
-    bool fresh; /* slopes are those of the stage before the next one */
+    nevh__call call;
+    bool called; /* the call may be taken in this step */
+    bool fresh;  /* slopes are those of the stage before the next one */
 } nevh__wide;
 
 /* A step of some lanes, their columns side by side, each by its own h from

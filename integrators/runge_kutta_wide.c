@@ -24,10 +24,8 @@ static void lay_out(nevh_work *w, nevh__wide *x, double *scratch) {
     x->time = x->slopes + 2 * half;
     const double *q = x->points, *p = q + half;
     double *dh_dq = x->slopes, *dh_dp = dh_dq + half;
-    nevh_field *f = w->field;
-    x->whole = nevh__lean_call(f, NEVH__LANES, x->time, q, p, dh_dq, dh_dp);
-    x->forces = nevh__lean_call(f, NEVH__LANES, x->time, q, p, dh_dq, NULL);
-    x->velocities = nevh__lean_call(f, NEVH__LANES, x->time, q, p, NULL, dh_dp);
+    x->call =
+        nevh__call_plan(w->field, NEVH__LANES, x->time, q, p, dh_dq, dh_dp);
 }
 
 nevh__wide *nevh__wide_ready(nevh_work *w, nevh__wide *x, double *scratch) {
@@ -35,9 +33,7 @@ nevh__wide *nevh__wide_ready(nevh_work *w, nevh__wide *x, double *scratch) {
         return NULL;
     if (!x->points)
         lay_out(w, x, scratch);
-    x->calls =
-        nevh__lean_renew(&x->whole) ||
-        (nevh__lean_renew(&x->forces) && nevh__lean_renew(&x->velocities));
+    x->called = nevh__call_renew(&x->call);
     return x;
 }
 
@@ -127,28 +123,22 @@ void nevh__wide_place(const nevh__stages *s, size_t stage) {
         return;
     }
     place_narrow(s, stage, weights);
-    if (x->calls)
+    if (x->called)
         repeat(2 * s->work->n, s->point, x->points);
 }
 
-static bool take(nevh__wide *x, const nevh__call *call, const double *t) {
-    if (call->t == x->time)
-        repeat(1, t, x->time);
-    return nevh__lean_take(call, 1);
-}
-
-static bool take_all(nevh__wide *x, const double *t) {
-    if (!x->calls)
+static bool take(nevh__wide *x, const double *t) {
+    if (!x->called)
         return false;
-    return x->whole.gradient
-               ? take(x, &x->whole, t)
-               : take(x, &x->velocities, t) && take(x, &x->forces, t);
+    if (x->call.timed)
+        repeat(1, t, x->time);
+    return nevh__call_take(&x->call);
 }
 
 bool nevh__wide_take(const nevh__stages *s, double slopes[]) {
     nevh__wide *x = s->wide;
     size_t n = s->work->n;
-    bool taken = take_all(x, s->time), rubs = s->work->friction;
+    bool taken = take(x, s->time), rubs = s->work->friction;
     const double *dh_dq = x->slopes, *dh_dp = dh_dq + n * NEVH__LANES;
     for (size_t k = 0; x->fresh && (rubs || !taken) && k < 2 * n; k++)
         s->point[k] = x->points[k * NEVH__LANES];

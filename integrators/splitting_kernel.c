@@ -143,14 +143,14 @@ static void begin_repeated(const nevh_work *w, const layout *l,
 static void prepare(const nevh_work *w, const layout *l) {
     operations *o = w->plan;
     if (!o->prepared) {
-        o->calls[0] = nevh__lean_call(w->field, l->lanes, l->time, l->q.point,
+        o->calls[0] = nevh__call_plan(w->field, l->lanes, l->time, l->q.point,
                                       l->p.point, l->slope, NULL);
-        o->calls[1] = nevh__lean_call(w->field, l->lanes, l->time, l->q.point,
+        o->calls[1] = nevh__call_plan(w->field, l->lanes, l->time, l->q.point,
                                       l->p.point, NULL, l->slope);
     }
     o->prepared = true;
     for (size_t i = 0; i < 2; i++)
-        o->ready[i] = nevh__lean_renew(&o->calls[i]);
+        o->ready[i] = nevh__call_renew(&o->calls[i]);
 }
 
 NEVH_SIMD static void advance_vectors(size_t size, double step,
@@ -193,9 +193,9 @@ static void set_time(const layout *l, double t) {
 static int take_slope(nevh_work *w, const layout *l, bool kick, double t) {
     const nevh__call *call = &l->plan->calls[!kick];
     if (l->plan->ready[!kick]) {
-        if (call->t == l->time)
+        if (call->timed)
             set_time(l, t);
-        if (nevh__lean_take(call, 1))
+        if (nevh__call_take(call))
             return NEVH_OK;
     }
     set_time(l, t);

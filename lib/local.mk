@@ -32,6 +32,7 @@ libnevh_core_la_SOURCES = \
 	lib/gradient/field.c \
 	lib/gradient/lean.c \
 	lib/gradient/block.c \
+	lib/gradient/call.c \
 	lib/gradient/central.c \
 	lib/gradient/stencil.c \
 	lib/gradient/exact.c \

@@ -5,7 +5,10 @@
 
 enum { PAIRS = BODIES * (BODIES - 1) / 2 };
 
-NEVH_BODY(kinetic, void, { return nevh_p(0) * nevh_p(0) / (2 * nevh_c(0)); })
+/* The derivatives are the formulas that peers are given in problems.h. */
+
+/* c: 1 over the mass */
+NEVH_BODY(kinetic, void, { return nevh_c(0) * nevh_p(0) * nevh_p(0) / 2; })
 
 NEVH_SIMD
 static void kinetic_gradient(size_t width, const double t[], const double q[],
@@ -16,7 +19,37 @@ static void kinetic_gradient(size_t width, const double t[], const double q[],
     if (!dh_dp)
         return;
     NEVH_LANES(i, width) {
-        dh_dp[i] = p[i] / c[i];
+        dh_dp[i] = c[i] * p[i];
+    }
+}
+
+/* Of mass 1. */
+NEVH_BODY(unit, void, { return nevh_p(0) * nevh_p(0) / 2; })
+
+NEVH_SIMD
+static void unit_gradient(size_t width, const double t[], const double q[],
+                          const double p[], const double c[],
+                          const void *params, double dh_dq[], double dh_dp[]) {
+    (void)t, (void)q, (void)c, (void)params, (void)dh_dq;
+    if (!dh_dp)
+        return;
+    NEVH_LANES(i, width) {
+        dh_dp[i] = p[i];
+    }
+}
+
+NEVH_BODY(cosine, void, { return -nevh_cos(nevh_q(0)); })
+
+NEVH_SIMD
+static void cosine_gradient(size_t width, const double t[], const double q[],
+                            const double p[], const double c[],
+                            const void *params, double dh_dq[],
+                            double dh_dp[]) {
+    (void)t, (void)p, (void)c, (void)params, (void)dh_dp;
+    if (!dh_dq)
+        return;
+    NEVH_LANES(i, width) {
+        dh_dq[i] = nevh_simd_sin(q[i]);
     }
 }
 
@@ -94,33 +127,25 @@ static void gravity_gradient(size_t width, const double t[], const double q[],
     }
 }
 
-static void add_kinetic(nevh_system *s, size_t n, const double masses[]) {
-    size_t all[MOST_N];
-    for (size_t k = 0; k < n; k++)
-        all[k] = k;
+static nevh_system *unit_mass(size_t n, nevh_term potential) {
+    static const size_t all[] = {0, 1};
+    nevh_system *s = nevh_system_new(n);
     nevh_system_add(s, &(nevh_term){.effect = "kinetic",
                                     .np = 1,
-                                    .nc = 1,
                                     .p = all,
-                                    .c = masses,
                                     .count = n,
-                                    NEVH_FORMS(kinetic),
-                                    .gradient = kinetic_gradient});
-}
-
-static nevh_system *planar(nevh_term potential) {
-    nevh_system *s = nevh_system_new(2);
+                                    NEVH_FORMS(unit),
+                                    .gradient = unit_gradient});
     potential.effect = "potential";
-    potential.nq = 2;
-    add_kinetic(s, 2, (const double[]){1, 1});
+    potential.nq = n;
     nevh_system_add(s, &potential);
     return s;
 }
 
 static nevh_system *outer_sun(void) {
     nevh_system *s = nevh_system_new(MOST_N);
-    double masses[MOST_N], c[PAIRS];
-    size_t q[6 * PAIRS], pair = 0;
+    double inverse[MOST_N], c[PAIRS];
+    size_t all[MOST_N], q[6 * PAIRS], pair = 0;
     for (size_t i = 0; i < BODIES; i++)
         for (size_t j = i + 1; j < BODIES; j++, pair++) {
             c[pair] = sun_gravity * sun_masses[i] * sun_masses[j];
@@ -129,9 +154,18 @@ static nevh_system *outer_sun(void) {
                 q[6 * pair + 3 + k] = 3 * j + k;
             }
         }
-    for (size_t k = 0; k < MOST_N; k++)
-        masses[k] = sun_masses[k / 3];
-    add_kinetic(s, MOST_N, masses);
+    for (size_t k = 0; k < MOST_N; k++) {
+        all[k] = k;
+        inverse[k] = 1 / sun_masses[k / 3];
+    }
+    nevh_system_add(s, &(nevh_term){.effect = "kinetic",
+                                    .np = 1,
+                                    .nc = 1,
+                                    .p = all,
+                                    .c = inverse,
+                                    .count = MOST_N,
+                                    NEVH_FORMS(kinetic),
+                                    .gradient = kinetic_gradient});
     nevh_system_add(s, &(nevh_term){.effect = "gravity",
                                     .nq = 6,
                                     .nc = 1,
@@ -146,16 +180,17 @@ static nevh_system *outer_sun(void) {
 nevh_system *nevh_system_of(const problem *p) {
     switch (p - problems) {
     case PENDULUM:
-        return nevh_pendulum_model->system(&(nevh_pendulum){1, 1, 1});
+        return unit_mass(
+            1, (nevh_term){NEVH_FORMS(cosine), .gradient = cosine_gradient});
     case DOUBLE_PENDULUM:
         return nevh_double_pendulum_model->system(
             nevh_double_pendulum_model->defaults);
     case KEPLER:
-        return planar((nevh_term){NEVH_FORMS(attraction),
-                                  .gradient = attraction_gradient});
+        return unit_mass(2, (nevh_term){NEVH_FORMS(attraction),
+                                        .gradient = attraction_gradient});
     case HENON_HEILES:
-        return planar(
-            (nevh_term){NEVH_FORMS(galaxy), .gradient = galaxy_gradient});
+        return unit_mass(
+            2, (nevh_term){NEVH_FORMS(galaxy), .gradient = galaxy_gradient});
     default:
         return outer_sun();
     }

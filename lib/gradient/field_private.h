@@ -191,29 +191,50 @@ bool nevh__gradient_lean(nevh_field *, size_t width, const double t[],
                          const double q[], const double p[], double dh_dq[],
                          double dh_dp[]);
 bool nevh__lean_plan(nevh_field *);
-/* A gradient, or half of one, that is one call of one term, for a kernel that
-   takes it many times at the same place in memory. */
+/* A term's constants, repeated over so many lanes. */
+const double *nevh__lean_constants(nevh__planned *, size_t width,
+                                   size_t stride);
+
+/* A gradient, or half of one, that a kernel takes many times at the same place
+   in memory: terms whose rows stand there just as their blocks want them. */
+enum { NEVH__MOST_CALLED = 8 };
 typedef struct {
-    nevh_block_gradient_fn gradient; /* NULL: it is no such call */
-    nevh_field *field;
     nevh__planned *term;
-    size_t width;
-    size_t stride, size; /* size: numbers of the result */
-    bool coordinates;
-    const double *t, *q, *p, *c;
+    nevh_block_gradient_fn gradient;
     const void *params;
-    double *dh_dq, *dh_dp, *out;
+    size_t stride, size_q, size_p;
+    const double *t, *q, *p, *c;
+    double *dh_dq, *dh_dp; /* written by the term; NULL: not asked for */
+    double *sum_q, *sum_p; /* what that is added to; NULL: it is there */
+} nevh__called;
+typedef struct {
+    nevh_field *field;
+    size_t count; /* of terms; 0: there is no such call */
+    size_t width;
+    bool timed;      /* time is read, in all lanes */
+    double *half[2]; /* dh_dq, dh_dp; either may be NULL */
+    nevh__called terms[NEVH__MOST_CALLED];
 } nevh__call;
-/* Of dh_dq and dh_dp one is NULL, or dh_dp follows dh_dq. */
-nevh__call nevh__lean_call(nevh_field *, size_t width, const double t[],
+/* width is a multiple of NEVH__LANES; dh_dq or dh_dp may be NULL. */
+nevh__call nevh__call_plan(nevh_field *, size_t width, const double t[],
                            const double q[], const double p[], double dh_dq[],
                            double dh_dp[]);
 /* Makes a call that was kept ready for another step; whether it may be taken.
    The field may have been asked for other widths in between. */
-bool nevh__lean_renew(nevh__call *);
-/* Whether all is finite, or where one lane is used, that one; then as many
-   lanes count.  Where not, nevh__field_gradient tells why. */
-bool nevh__lean_take(const nevh__call *, size_t used);
+bool nevh__call_renew(nevh__call *);
+void nevh__call_add(const nevh__called *);
+/* Takes it, but looks at no result, and counts nothing. */
+static inline void nevh__call_run(const nevh__call *c) {
+    for (const nevh__called *x = c->terms; x < c->terms + c->count; x++) {
+        x->gradient(x->stride, x->t, x->q, x->p, x->c, x->params, x->dh_dq,
+                    x->dh_dp);
+        if (x->sum_q || x->sum_p)
+            nevh__call_add(x);
+    }
+}
+/* Takes it for one lane, counts, and tells whether that is finite.  Where not,
+   nevh__field_gradient says why. */
+bool nevh__call_take(const nevh__call *);
 /* nevh_field_gradient, of which `used` lanes count. */
 int nevh__field_gradient(nevh_field *, size_t width, size_t used,
                          const double t[], const double q[], const double p[],

@@ -179,24 +179,6 @@ NEVH_SIMD static int64_t check(size_t size, const double x[]) {
     return all;
 }
 
-NEVH_SIMD static bool all_finite(size_t size, const double x[]) {
-    int64_t found[NEVH__LANES], all = 0;
-    NEVH_LANES(lane, NEVH__LANES) {
-        found[lane] = 0;
-    }
-    for (size_t i = 0; i < size; i += NEVH__LANES)
-        NEVH_LANES(lane, NEVH__LANES) {
-            double zero = x[i + lane] - x[i + lane];
-            int64_t bits;
-            memcpy(&bits, &zero, sizeof bits);
-            found[lane] |= bits;
-        }
-    NEVH_LANES(lane, NEVH__LANES) {
-        all |= found[lane];
-    }
-    return all == 0;
-}
-
 /* Slopes that were written in place, as if added to 0. */
 static bool settle(size_t size, double out[]) {
     int64_t found = check(size, out);
@@ -215,8 +197,8 @@ static void fill_constants(nevh__planned *term, size_t width, size_t stride) {
     term->constants_width = width;
 }
 
-static inline const double *constants(nevh__planned *term, size_t width,
-                                      size_t stride) {
+const double *nevh__lean_constants(nevh__planned *term, size_t width,
+                                   size_t stride) {
     if (term->constants_width != width)
         fill_constants(term, width, stride);
     return term->constants;
@@ -286,8 +268,8 @@ static inline bool evaluate_in_place(nevh_field *f, nevh__planned *term,
         out_p = r->dh_dp;
     if (is->time)
         t = times(f, is, r, stride);
-    is->gradient(stride, t, q, p, constants(term, r->width, stride), is->params,
-                 r->dh_dq ? out_q : NULL, r->dh_dp ? out_p : NULL);
+    is->gradient(stride, t, q, p, nevh__lean_constants(term, r->width, stride),
+                 is->params, r->dh_dq ? out_q : NULL, r->dh_dp ? out_p : NULL);
     bool bad = false;
     if (r->dh_dq && term->nq)
         bad |= add(r, is, term->nq, stride, is->q, out_q, r->dh_dq);
@@ -304,8 +286,8 @@ static inline bool write(nevh_field *f, nevh__planned *term, const request *r,
     is->gradient(stride, is->time ? times(f, is, r, stride) : f->zeros,
                  term->nq ? r->q + is->q[0] * r->width : r->q,
                  term->np ? r->p + is->p[0] * r->width : r->p,
-                 constants(term, r->width, stride), is->params, r->dh_dq,
-                 r->dh_dp);
+                 nevh__lean_constants(term, r->width, stride), is->params,
+                 r->dh_dq, r->dh_dp);
     return !settle(variables * stride, out);
 }
 
@@ -323,7 +305,7 @@ static bool evaluate(nevh_field *f, nevh__planned *term, const request *r) {
     if (r->vectors && term == f->writer_p && r->dh_dp)
         slopes_p = r->dh_dp;
     is->gradient(stride, times(f, is, r, stride), q, p,
-                 constants(term, r->width, stride), is->params,
+                 nevh__lean_constants(term, r->width, stride), is->params,
                  r->dh_dq ? slopes_q : NULL, r->dh_dp ? slopes_p : NULL);
     bool bad = false;
     if (r->dh_dq && term->nq)
@@ -395,54 +377,4 @@ bool nevh__gradient_lean(nevh_field *f, size_t width, const double t[],
     if (r.vectors && !dh_dq && f->sole_p)
         return write(f, f->sole_p, &r, f->sole_p->np, dh_dp);
     return evaluate_all(f, &r);
-}
-
-nevh__call nevh__lean_call(nevh_field *f, size_t width, const double t[],
-                           const double q[], const double p[], double dh_dq[],
-                           double dh_dp[]) {
-    nevh__planned *term = dh_dq ? f->sole_q : f->sole_p;
-    if (f->gradient != nevh_exact || nevh__field_ready(f) || !term ||
-        (dh_dq && dh_dp && f->sole_p != term) || width % NEVH__LANES ||
-        f->most_instances * width > f->capacity ||
-        (term->term->is.time && term->term->is.count > 1))
-        return (nevh__call){0};
-    const nevh_term *is = &term->term->is;
-    size_t stride = is->count * width;
-    return (nevh__call){
-        .gradient = is->gradient,
-        .field = f,
-        .term = term,
-        .width = width,
-        .stride = stride,
-        .size = stride * ((dh_dq ? term->nq : 0) + (dh_dp ? term->np : 0)),
-        .coordinates = dh_dq,
-        .t = is->time ? t : f->zeros,
-        .q = term->nq ? q + is->q[0] * width : q,
-        .p = term->np ? p + is->p[0] * width : p,
-        .c = constants(term, width, stride),
-        .params = is->params,
-        .dh_dq = dh_dq,
-        .dh_dp = dh_dp,
-        .out = dh_dq ? dh_dq : dh_dp,
-    };
-}
-
-bool nevh__lean_renew(nevh__call *c) {
-    if (!c->gradient || nevh__field_ready(c->field))
-        return false;
-    c->c = constants(c->term, c->width, c->stride);
-    return true;
-}
-
-bool nevh__lean_take(const nevh__call *c, size_t used) {
-    double sum = 0;
-    c->gradient(c->stride, c->t, c->q, c->p, c->c, c->params, c->dh_dq,
-                c->dh_dp);
-    for (size_t i = 0; used == 1 && i < c->size; i += NEVH__LANES)
-        sum += c->out[i] - c->out[i];
-    if (sum != 0 || (used > 1 && !all_finite(c->size, c->out)))
-        return false;
-    if (c->coordinates)
-        c->field->gradients += used;
-    return true;
 }

@@ -41,13 +41,14 @@ nevh__stage_solver *nevh__stage_solver_new(nevh_work *w,
     s->room = nevh__array(2 * unknowns + NEVH__LANES, sizeof *s->room);
     s->out = s->room ? nevh__aligned(s->room) : NULL;
     s->least = s->room ? s->out + unknowns : NULL;
+    s->unit = nevh__array(2 * w->size, sizeof *s->unit);
     s->noise = nevh__array(4 * w->n, sizeof *s->noise);
     s->lanes = nevh__array(w->width, sizeof *s->lanes);
     s->lane = nevh__array(w->width, sizeof *s->lane);
     bool large = 2 * w->n * s->stages > MOST_DENSE;
     s->newton = large ? NULL : nevh__newton_new(s);
     s->rescue = large ? NULL : nevh__rescue_new(s);
-    if (s->scale && s->room && s->noise && s->lanes && s->lane &&
+    if (s->scale && s->unit && s->room && s->noise && s->lanes && s->lane &&
         (large || (s->newton && s->rescue)))
         return s;
     nevh__stage_solver_free(s);
@@ -60,6 +61,7 @@ void nevh__stage_solver_free(nevh__stage_solver *s) {
     nevh__newton_free(s->newton);
     nevh__rescue_free(s->rescue);
     free(s->scale);
+    free(s->unit);
     free(s->room);
     free(s->noise);
     free(s->lanes);
@@ -75,6 +77,8 @@ static void find_scales(nevh__stage_solver *s) {
         s->scale[i] = fmax(w->scale[k], fabs(e->q[i]));
         s->scale[w->size + i] = fmax(w->scale[w->n + k], fabs(e->p[i]));
     }
+    for (size_t i = 0; i < 2 * w->size; i++)
+        s->unit[i] = fabs(e->h) / s->scale[i];
 }
 
 /* Whether the lane would take too long; looked at after a judgement. */
@@ -87,15 +91,24 @@ static bool too_slow(nevh__stage_solver *s, size_t lane, double before) {
            !nevh__stage_small(s, lane, l->change);
 }
 
+static const nevh__stage_rule rule = {1, 0, nevh__stage_small};
+
+static nevh__stage_state judge(nevh__stage_solver *s, size_t lane,
+                               const nevh__stage_progress *made) {
+    double before = s->lane[lane].before;
+    nevh__stage_state state = nevh__stage_judge(s, lane, made, &rule);
+    return state == NEVH__GO_ON && too_slow(s, lane, before) ? NEVH__STUCK
+                                                             : state;
+}
+
 /* What becomes of a lane whose sweep is out[row*stride]. */
 static nevh__stage_state proceed(nevh__stage_solver *s, size_t lane,
                                  size_t stride, const double out[]) {
-    static const nevh__stage_rule rule = {1, 0, nevh__stage_small};
-    double before = s->lane[lane].before;
-    nevh__stage_state state = nevh__stage_judge(s, lane, stride, out, &rule);
+    nevh__stage_progress made =
+        nevh__stage_compare(s, lane, stride, out, &rule);
+    nevh__stage_state state = judge(s, lane, &made);
     nevh__stage_take(s, lane, stride, out);
-    return state == NEVH__GO_ON && too_slow(s, lane, before) ? NEVH__STUCK
-                                                             : state;
+    return state;
 }
 
 static int hand_over(nevh__stage_solver *s, size_t lane) {
@@ -166,12 +179,35 @@ static int begin(nevh__stage_solver *s, size_t *active) {
     return status;
 }
 
+/* One lane that knows how to sweep and compare at once. */
+static int sweep_orbit(nevh__stage_solver *s) {
+    const nevh__stage_problem *e = s->problem;
+    nevh__stage_progress made;
+    nevh__stage_state state = NEVH__GO_ON;
+    for (int i = 0; state == NEVH__GO_ON && i < MOST_SWEEPS; i++) {
+        int status = e->sweep(e->data, s->unit, &made);
+        bool lost = status == NEVH_EDOM && s->lane->strays;
+        if (status && !lost)
+            return status;
+        s->work->sweeps++;
+        state = lost ? NEVH__STUCK : judge(s, 0, &made);
+        if (s->status)
+            return s->status;
+    }
+    if (state != NEVH__DONE)
+        return hand_over(s, 0);
+    e->fetch(e->data);
+    return NEVH_OK;
+}
+
 int nevh__stage_solve(nevh__stage_solver *s,
                       const nevh__stage_problem *problem) {
     size_t active;
     s->problem = problem;
     s->status = NEVH_OK;
     int status = begin(s, &active);
+    if (!status && active > 0 && problem->sweep)
+        return sweep_orbit(s);
     for (size_t i = 1; !status && active > 0; i++)
         status = sweep(s, s->lanes, &active, i >= MOST_SWEEPS);
     return status;

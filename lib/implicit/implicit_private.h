@@ -29,6 +29,13 @@ typedef struct {
     const double *a_q, *a_p; /* may be one array; outlive the solver */
 } nevh__stage_shape;
 
+/* What one sweep did to one lane. */
+typedef struct {
+    bool moved;      /* something changed */
+    size_t improved; /* unknowns whose change was smaller than ever */
+    double change;   /* the largest, in units of scale */
+} nevh__stage_progress;
+
 /* One step's equations. */
 typedef struct {
     double t, h;
@@ -38,6 +45,10 @@ typedef struct {
     int (*map)(void *data, size_t active, const size_t lanes[],
                const double x[], double out[]);
     void *data;
+    /* For one lane: sweeps on from where begun, and what that changed; unit:
+       2n, |h| over scale.  Then fetches x.  NULL: map will do. */
+    int (*sweep)(void *data, const double unit[], nevh__stage_progress *);
+    void (*fetch)(void *data);
     /* width, in and out: steps for which a lane is given to Newton's iteration
        at once, from the step before and for the next.  To be kept in memory,
        but not before the step is certain.  NULL: nothing is known. */
@@ -61,6 +72,7 @@ struct nevh__stage_solver {
     size_t stages, first; /* first: the variable that row 0 belongs to */
     size_t rows;          /* 2 n stages or n stages: unknowns of a lane */
     double *scale;        /* 2n x width: sizes that changes are held against */
+    double *unit;         /* 2n x width: |h| over them */
     double *room;         /* for the next two */
     double *out;          /* rows x width */
     double *least;        /* rows x width: smallest change so far */
@@ -114,8 +126,11 @@ typedef struct {
     bool (*small)(nevh__stage_solver *, size_t lane, double change);
 } nevh__stage_rule;
 /* Compares one lane's sweep, out[row*stride], with those before. */
+nevh__stage_progress nevh__stage_compare(nevh__stage_solver *, size_t lane,
+                                         size_t stride, const double out[],
+                                         const nevh__stage_rule *);
 nevh__stage_state nevh__stage_judge(nevh__stage_solver *, size_t lane,
-                                    size_t stride, const double out[],
+                                    const nevh__stage_progress *,
                                     const nevh__stage_rule *);
 /* Makes that sweep the lane's slopes. */
 void nevh__stage_take(nevh__stage_solver *, size_t lane, size_t stride,

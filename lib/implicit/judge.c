@@ -25,8 +25,6 @@
 #include "system/system_private.h"
 #include <float.h>
 #include <math.h>
-#include <nevh/body.h>
-#include <string.h>
 
 enum { MOST_STALLS = 8 };
 const double nevh__stage_tiny = 1e-10;
@@ -76,99 +74,50 @@ bool nevh__stage_small(nevh__stage_solver *s, size_t lane, double change) {
                 nevh__stage_tiny + nevh__stage_margin * noise_level(s, lane));
 }
 
-typedef struct {
-    bool moved;
-    size_t improved;
-    double change;
-} progress;
-
 /* Differences only: the last sweep drew noise and nothing else. */
-static bool drowned(nevh__stage_solver *s, size_t lane, const progress *made) {
+static bool drowned(nevh__stage_solver *s, size_t lane,
+                    const nevh__stage_progress *made) {
     return (s->problem->noise || s->work->field->gradient->offsets) &&
            made->change < may_be_noise &&
            made->change >= hardly_less * s->lane[lane].least &&
            made->change <= 2 * DBL_EPSILON + noise_level(s, lane);
 }
 
-/* As below, of rows that are whole vectors.  Numbers that are not negative have
-   the order of their bits. */
-NEVH_SIMD static progress compare_vectors(size_t rows, size_t stages,
-                                          const double *out, const double *x,
-                                          const double *scale, double h,
-                                          double by, double *least) {
-    int64_t most[NEVH__LANES], improved[NEVH__LANES], moved[NEVH__LANES];
-    NEVH_LANES(i, NEVH__LANES) {
-        most[i] = improved[i] = moved[i] = 0;
-    }
-    for (size_t row = 0; row < rows; row += NEVH__LANES) {
-        double size = scale[row / stages];
-        NEVH_LANES(i, NEVH__LANES) {
-            double change = fabs(out[row + i] - x[row + i]);
-            double unit = h * change / size;
-            int64_t bits, better = change > 0 && change < by * least[row + i];
-            memcpy(&bits, &unit, sizeof bits);
-            least[row + i] = better ? change : least[row + i];
-            improved[i] += better;
-            moved[i] |= change != 0;
-            most[i] = bits > most[i] ? bits : most[i];
-        }
-    }
-    for (size_t i = 1; i < NEVH__LANES; i++) {
-        improved[0] += improved[i];
-        moved[0] |= moved[i];
-        most[0] = most[i] > most[0] ? most[i] : most[0];
-    }
-    progress made = {.moved = moved[0] != 0, .improved = (size_t)improved[0]};
-    memcpy(&made.change, most, sizeof *most);
-    return made;
-}
-
-/* Whether rows of one orbit are whole vectors. */
-static bool vectors(const nevh__stage_solver *s, size_t stride) {
-    return s->work->width == 1 && stride == 1 && s->stages % NEVH__LANES == 0;
-}
-
-static progress compare(nevh__stage_solver *s, size_t lane, size_t stride,
-                        const double *out, double by) {
-    if (vectors(s, stride))
-        return compare_vectors(s->rows, s->stages, out, s->problem->x,
-                               s->scale + s->first, fabs(s->problem->h), by,
-                               s->least);
+nevh__stage_progress nevh__stage_compare(nevh__stage_solver *s, size_t lane,
+                                         size_t stride, const double out[],
+                                         const nevh__stage_rule *rule) {
     size_t width = s->work->width;
     const double *x = s->problem->x + lane;
     double *least = s->least + lane;
-    const double *scale = s->scale + lane;
-    double h = fabs(s->problem->h);
-    progress made = {false, 0, 0};
+    nevh__stage_progress made = {false, 0, 0};
     for (size_t k = s->first, row = 0; k < 2 * s->work->n; k++) {
         double most = 0;
         for (size_t end = row + s->stages; row < end; row++) {
             double change = fabs(out[row * stride] - x[row * width]);
-            bool better = change > 0 && change < by * least[row * width];
+            bool better = change > 0 && change < rule->by * least[row * width];
             least[row * width] = better ? change : least[row * width];
             made.improved += better;
             made.moved |= change != 0;
             most = change > most ? change : most;
         }
-        made.change = fmax(made.change, h * most / scale[k * width]);
+        made.change = fmax(made.change, most * s->unit[k * width + lane]);
     }
     return made;
 }
 
 nevh__stage_state nevh__stage_judge(nevh__stage_solver *s, size_t lane,
-                                    size_t stride, const double out[],
+                                    const nevh__stage_progress *made,
                                     const nevh__stage_rule *rule) {
     nevh__stage_lane *l = &s->lane[lane];
-    progress made = compare(s, lane, stride, out, rule->by);
-    l->strays |= made.change > 1 ||
-                 (made.change > l->change && made.change > nevh__stage_tiny);
+    l->strays |= made->change > 1 ||
+                 (made->change > l->change && made->change > nevh__stage_tiny);
     l->before = l->change;
-    l->change = made.change;
-    if (!made.moved || drowned(s, lane, &made))
+    l->change = made->change;
+    if (!made->moved || drowned(s, lane, made))
         return NEVH__DONE;
-    bool falls = rule->by == 1 && made.change < l->least;
-    l->least = made.change < l->least ? made.change : l->least;
-    if (made.improved > rule->chance || falls) {
+    bool falls = rule->by == 1 && made->change < l->least;
+    l->least = made->change < l->least ? made->change : l->least;
+    if (made->improved > rule->chance || falls) {
         l->grace = false;
         return NEVH__GO_ON;
     }
@@ -179,21 +128,10 @@ nevh__stage_state nevh__stage_judge(nevh__stage_solver *s, size_t lane,
     return l->stalls < MOST_STALLS ? NEVH__GO_ON : NEVH__STUCK;
 }
 
-NEVH_SIMD static void take_vectors(size_t rows, const double out[],
-                                   double x[]) {
-    NEVH_LANES(row, rows) {
-        x[row] = out[row];
-    }
-}
-
 void nevh__stage_take(nevh__stage_solver *s, size_t lane, size_t stride,
                       const double out[]) {
     size_t width = s->work->width;
     double *x = s->problem->x + lane;
-    if (vectors(s, stride)) {
-        take_vectors(s->rows, out, x);
-        return;
-    }
     for (size_t row = 0; row < s->rows; row++)
         x[row * width] = out[row * stride];
 }

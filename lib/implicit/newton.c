@@ -285,7 +285,9 @@ static int iterate(nevh__stage_solver *s, size_t lane) {
         status = improve(s, lane);
         if (status)
             return status;
-        nevh__stage_state state = nevh__stage_judge(s, lane, 1, m->out, &rule);
+        nevh__stage_progress made =
+            nevh__stage_compare(s, lane, 1, m->out, &rule);
+        nevh__stage_state state = nevh__stage_judge(s, lane, &made, &rule);
         nevh__stage_take(s, lane, 1, m->out);
         if (state != NEVH__GO_ON || s->status)
             return state == NEVH__DONE ? s->status : NEVH_EMAXITER;

@@ -1,0 +1,337 @@
+/* nevh: fixed-point sweeps over the stages of one orbit, as vectors.
+
+   In a small system a sweep is a chain of short operations, each of which
+   waits for the one before, so what counts is how few they are: slopes are
+   compared, negated and weighed as they are passed on.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "stage_sweeps_private.h"
+#include "gradient/field_private.h"
+#include "system/system_private.h"
+#include "work_private.h"
+#include <math.h>
+#include <nevh/body.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct nevh__sweeps {
+    nevh_work *work;
+    size_t n, stages, stride;
+    size_t rows;                   /* of the gradient that are solved for */
+    size_t unknown;                /* the first of them */
+    double *room;                  /* holds all that follow */
+    double *mu_q, *mu_p, *guess;   /* the tableau's */
+    double *c, *times, *hb;        /* a row */
+    double *to_q, *to_p;           /* h b_j, - h b_j: vectors of each */
+    double *points;                /* 2n rows */
+    double *gradient;              /* 2n rows: dH/dp, then dH/dq */
+    double *before;                /* rows: as the last sweep left them */
+    double *least;                 /* rows: smallest change so far */
+    const double *weights;         /* h b_j */
+    const double *q, *p, *carry;   /* of the step */
+    nevh__call whole, drift, kick; /* where H can be called as it is */
+    bool partitioned, prepared;
+};
+
+bool nevh__sweeps_suit(const nevh_work *w, size_t stages) {
+    return w->width == 1 && !w->transform &&
+           (nevh__work_lean(w) || stages % NEVH__LANES == 0);
+}
+
+static void pad(const nevh__sweeps *s, size_t rows, const double from[],
+                double to[]) {
+    for (size_t i = 0; i < rows * s->stride; i++) {
+        size_t stage = i % s->stride;
+        to[i] = from[i / s->stride * s->stages + (stage < s->stages) * stage];
+    }
+}
+
+static double *take(double **from, size_t size) {
+    double *taken = *from;
+    *from += size;
+    return taken;
+}
+
+static bool lay_out(nevh__sweeps *s) {
+    size_t n = s->n, row = s->stride, matrix = s->stages * row;
+    size_t vectors = s->stages * NEVH__LANES;
+    size_t all =
+        3 * matrix + 3 * row + 2 * vectors + (4 * n + 2 * s->rows) * row;
+    s->room = nevh__array(all + NEVH__LANES, sizeof *s->room);
+    if (!s->room)
+        return false;
+    double *from = nevh__aligned(s->room);
+    s->mu_q = take(&from, matrix);
+    s->mu_p = take(&from, matrix);
+    s->guess = take(&from, matrix);
+    s->c = take(&from, row);
+    s->times = take(&from, row);
+    s->hb = take(&from, row);
+    s->to_q = take(&from, vectors);
+    s->to_p = take(&from, vectors);
+    s->points = take(&from, 2 * n * row);
+    s->gradient = take(&from, 2 * n * row);
+    s->before = take(&from, s->rows * row);
+    s->least = from;
+    return true;
+}
+
+static void find_calls(nevh__sweeps *s) {
+    nevh_field *f = s->work->field;
+    size_t half = s->n * s->stride;
+    const double *q = s->points, *p = q + half;
+    double *dh_dp = s->gradient, *dh_dq = dh_dp + half;
+    if (s->partitioned) {
+        s->drift = nevh__call_plan(f, s->stride, s->times, q, p, NULL, dh_dp);
+        s->kick = nevh__call_plan(f, s->stride, s->times, q, p, dh_dq, NULL);
+    } else
+        s->whole = nevh__call_plan(f, s->stride, s->times, q, p, dh_dq, dh_dp);
+}
+
+nevh__sweeps *nevh__sweeps_new(nevh_work *w, const nevh__tableau *a,
+                               const double hb[], bool partitioned) {
+    nevh__sweeps *s = nevh__array(1, sizeof *s);
+    if (!s)
+        return NULL;
+    s->work = w;
+    s->n = w->n;
+    s->stages = a->stages;
+    s->stride = nevh__padded(a->stages);
+    s->rows = (partitioned ? 1 : 2) * w->n;
+    s->unknown = 2 * w->n - s->rows;
+    s->partitioned = partitioned;
+    s->weights = hb;
+    if (!lay_out(s)) {
+        nevh__sweeps_free(s);
+        return NULL;
+    }
+    pad(s, s->stages, a->mu_q, s->mu_q);
+    pad(s, s->stages, a->mu_p, s->mu_p);
+    pad(s, s->stages, a->guess, s->guess);
+    pad(s, 1, a->c, s->c);
+    find_calls(s);
+    return s;
+}
+
+void nevh__sweeps_free(nevh__sweeps *s) {
+    if (s)
+        free(s->room);
+    free(s);
+}
+
+/* One vector of stages, sum_j mu[j * stride] (hb[j] slopes[j]). */
+NEVH__INLINE void sum_up(size_t stages, size_t stride, const double mu[],
+                         const double hb[], const double slopes[],
+                         double sum[]) {
+    NEVH_LANES(i, NEVH__LANES) {
+        sum[i] = 0;
+    }
+    NEVH_UNROLL
+    for (size_t j = 0; j < stages; j++) {
+        double slope = slopes[j];
+        NEVH_LANES(i, NEVH__LANES) {
+            sum[i] += mu[j * stride + i] * (hb[j * NEVH__LANES + i] * slope);
+        }
+    }
+}
+
+/* The same of slopes that are weighed already. */
+NEVH__INLINE void sum_any(size_t stages, size_t stride, const double weights[],
+                          const double x[], double sum[]) {
+    NEVH_LANES(i, NEVH__LANES) {
+        sum[i] = 0;
+    }
+    for (size_t j = 0; j < stages; j++)
+        NEVH_LANES(i, NEVH__LANES) {
+            sum[i] += weights[j * stride + i] * x[j];
+        }
+}
+
+/* The gradient that continues the last slopes. */
+NEVH_SIMD static void begin(const nevh__sweeps *s, double t, double h,
+                            const double last[]) {
+    size_t at = s->unknown * s->stride;
+    NEVH_LANES(i, s->stride) {
+        s->times[i] = t + s->c[i] * h;
+    }
+    for (size_t j = 0; j < s->stages; j++)
+        NEVH_LANES(i, NEVH__LANES) {
+            s->to_q[j * NEVH__LANES + i] = s->weights[j];
+            s->to_p[j * NEVH__LANES + i] = -s->weights[j];
+        }
+    for (size_t k = 0; k < s->rows; k++, last += last ? s->stages : 0)
+        for (size_t from = 0; from < s->stride; from += NEVH__LANES) {
+            double sum[NEVH__LANES], sign = s->unknown + k < s->n ? 1 : -1;
+            sum_any(last ? s->stages : 0, s->stride, s->guess + from, last,
+                    sum);
+            NEVH_LANES(i, NEVH__LANES) {
+                size_t to = k * s->stride + from + i;
+                s->gradient[at + to] = s->before[to] = sign * sum[i];
+                s->least[to] = INFINITY;
+            }
+        }
+}
+
+void nevh__sweeps_begin(nevh__sweeps *s, double t, double h, const double q[],
+                        const double p[], const double carry[],
+                        const double last[]) {
+    s->q = q;
+    s->p = p;
+    s->carry = carry;
+    begin(s, t, h, last);
+    s->prepared = s->partitioned ? nevh__call_renew(&s->drift) &&
+                                       nevh__call_renew(&s->kick)
+                                 : nevh__call_renew(&s->whole);
+}
+
+/* Stages' states, n rows, from the gradient. */
+NEVH__INLINE void place_rows(size_t n, size_t stages, size_t stride,
+                             const double *restrict mu,
+                             const double *restrict hb,
+                             const double *restrict gradient, const double y[],
+                             const double carry[], double *restrict points) {
+    for (size_t k = 0; k < n; k++)
+        for (size_t from = 0; from < stride; from += NEVH__LANES) {
+            double sum[NEVH__LANES], start = y[k], lost = carry[k];
+            sum_up(stages, stride, mu + from, hb, gradient + k * stride, sum);
+            NEVH_LANES(i, NEVH__LANES) {
+                points[k * stride + from + i] = start + (sum[i] + lost);
+            }
+        }
+}
+
+NEVH__INLINE void place(const nevh__sweeps *s, bool q) {
+    size_t n = s->n, half = n * s->stride, eight = NEVH__LANES;
+    const double *mu = q ? s->mu_q : s->mu_p, *hb = q ? s->to_q : s->to_p;
+    const double *slopes = s->gradient + (q ? 0 : half);
+    const double *y = q ? s->q : s->p, *carry = s->carry + (q ? 0 : n);
+    double *points = s->points + (q ? 0 : half);
+    if (s->stages == eight)
+        place_rows(n, eight, eight, mu, hb, slopes, y, carry, points);
+    else
+        place_rows(n, s->stages, s->stride, mu, hb, slopes, y, carry, points);
+}
+
+/* The gradient as it always is taken, which says what is wrong with it. */
+static int ask(const nevh__sweeps *s, bool q, bool p) {
+    double *dh_dp = s->gradient, *dh_dq = dh_dp + s->n * s->stride;
+    return nevh__work_gradient(s->work, s->stride, s->stages, s->times,
+                               s->points, s->points + s->n * s->stride,
+                               q ? dh_dq : NULL, p ? dh_dp : NULL);
+}
+
+/* The gradient, or a half of it; where H can be called as it is, it is not
+   looked at yet. */
+NEVH__INLINE int take_gradient(const nevh__sweeps *s, const nevh__call *c,
+                               bool q, bool p) {
+    if (!s->prepared)
+        return ask(s, q, p);
+    nevh__call_run(c);
+    return NEVH_OK;
+}
+
+NEVH__INLINE double sum_lanes(const double x[]) {
+    return ((x[0] + x[1]) + (x[2] + x[3])) + ((x[4] + x[5]) + (x[6] + x[7]));
+}
+
+NEVH__INLINE double greater(double x, double y) {
+    return x > y ? x : y;
+}
+
+NEVH__INLINE double greatest(const double x[]) {
+    return greater(greater(greater(x[0], x[1]), greater(x[2], x[3])),
+                   greater(greater(x[4], x[5]), greater(x[6], x[7])));
+}
+
+NEVH__INLINE bool all_finite(size_t size, const double x[]) {
+    double bad[NEVH__LANES];
+    NEVH_LANES(i, NEVH__LANES) {
+        bad[i] = 0;
+    }
+    for (size_t from = 0; from < size; from += NEVH__LANES)
+        NEVH_LANES(i, NEVH__LANES) {
+            bad[i] += x[from + i] - x[from + i];
+        }
+    return sum_lanes(bad) == 0;
+}
+
+/* How this sweep differs from the last, of the lanes of all vectors. */
+typedef struct {
+    double all[NEVH__LANES];    /* sum of changes: 0: none; finite or not */
+    double better[NEVH__LANES]; /* sum of those that are smaller than ever */
+    double most[NEVH__LANES];   /* the largest, in units of scale */
+} comparison;
+
+NEVH__INLINE void compare(const nevh__sweeps *s, const double unit[],
+                          comparison *made) {
+    const double *restrict now = s->gradient + s->unknown * s->stride;
+    double *restrict before = s->before, *restrict least = s->least;
+    for (size_t k = s->unknown; k < 2 * s->n; k++)
+        for (size_t from = 0; from < s->stride; from += NEVH__LANES) {
+            double one = unit[k];
+            NEVH_LANES(i, NEVH__LANES) {
+                double change = fabs(now[i] - before[i]), part = change * one;
+                double bar = least[i], gain = change < bar ? change : 0;
+                before[i] = now[i];
+                least[i] = gain > 0 ? gain : bar;
+                made->all[i] += change;
+                made->better[i] += gain;
+                made->most[i] = made->most[i] > part ? made->most[i] : part;
+            }
+            now += NEVH__LANES;
+            before += NEVH__LANES;
+            least += NEVH__LANES;
+        }
+}
+
+/* Slopes of momenta alone are solved for: those of coordinates follow. */
+NEVH__INLINE int find_halves(const nevh__sweeps *s) {
+    place(s, false);
+    int status = take_gradient(s, &s->drift, false, true);
+    if (status)
+        return status;
+    place(s, true);
+    if (s->prepared && !all_finite(s->n * s->stride, s->gradient))
+        return ask(s, false, true);
+    return take_gradient(s, &s->kick, true, false);
+}
+
+NEVH__INLINE int find_whole(const nevh__sweeps *s) {
+    place(s, true);
+    place(s, false);
+    return take_gradient(s, &s->whole, true, true);
+}
+
+NEVH_SIMD static int sweep(const nevh__sweeps *s, const double unit[],
+                           nevh__stage_progress *made) {
+    comparison found;
+    int status = s->partitioned ? find_halves(s) : find_whole(s);
+    if (status)
+        return status;
+    NEVH_LANES(i, NEVH__LANES) {
+        found.all[i] = found.better[i] = found.most[i] = 0;
+    }
+    compare(s, unit, &found);
+    double all = sum_lanes(found.all);
+    made->moved = all != 0;
+    made->improved = sum_lanes(found.better) > 0;
+    made->change = all < INFINITY ? greatest(found.most) : INFINITY;
+    return NEVH_OK;
+}
+
+int nevh__sweeps_sweep(nevh__sweeps *s, const double unit[],
+                       nevh__stage_progress *made) {
+    int status = sweep(s, unit, made);
+    if (!status && !(made->change < INFINITY))
+        return ask(s, true, !s->partitioned);
+    if (!status && s->prepared)
+        s->work->field->gradients += s->stages;
+    return status;
+}
+
+void nevh__sweeps_fetch(const nevh__sweeps *s, double slopes[]) {
+    for (size_t k = 0; k < 2 * s->n; k++)
+        for (size_t i = 0; i < s->stages; i++) {
+            double x = s->gradient[k * s->stride + i];
+            slopes[k * s->stages + i] = k < s->n ? x : -x;
+        }
+}
