@@ -158,11 +158,11 @@ NEVH_SIMD static void begin(const nevh__sweeps *s, double t, double h,
             s->to_q[j * NEVH__LANES + i] = s->weights[j];
             s->to_p[j * NEVH__LANES + i] = -s->weights[j];
         }
-    for (size_t k = 0; k < s->rows; k++, last += last ? s->stages : 0)
+    for (size_t k = 0; k < s->rows; k++)
         for (size_t from = 0; from < s->stride; from += NEVH__LANES) {
             double sum[NEVH__LANES], sign = s->unknown + k < s->n ? 1 : -1;
-            sum_any(last ? s->stages : 0, s->stride, s->guess + from, last,
-                    sum);
+            sum_any(last ? s->stages : 0, s->stride, s->guess + from,
+                    last ? last + k * s->stages : s->guess, sum);
             NEVH_LANES(i, NEVH__LANES) {
                 size_t to = k * s->stride + from + i;
                 s->gradient[at + to] = s->before[to] = sign * sum[i];
