@@ -30,7 +30,7 @@ libnevh_core_la_SOURCES += \
 	integrators/stage_sweeps_private.h \
 	integrators/stage_sweeps.c \
 	integrators/runge_kutta_private.h \
-	integrators/runge_kutta_wide.c \
+	integrators/runge_kutta_repeated.c \
 	integrators/runge_kutta_kernel.c \
 	integrators/runge_kutta_adaptive.c \
 	integrators/euler.c \

@@ -83,20 +83,19 @@ int nevh__adaptive_plan(nevh_work *w) {
     w->memory_rows = 2 * w->n + 2;
     if (table->last_is_first)
         w->memory_rows += 2 * w->n + 1;
-    w->scratch_size = (table->stages + ROWS) * nevh__stages_stride(w) +
-                      3 * w->width + nevh__wide_size(w);
+    w->scratch_size = (table->stages + ROWS) * 2 * w->size + 3 * w->width;
     return NEVH_OK;
 }
 
 static walk lay_out(nevh_work *w, double t, double h) {
-    nevh__stages_plan *plan = w->plan;
+    const nevh__stages_plan *plan = w->plan;
     walk s = {.work = w,
               .table = w->integrator->table,
               .t = t,
               .h = h,
               .lanes = plan->adaptive->lanes};
-    size_t each = nevh__stages_stride(w);
-    double *at = nevh__wide_begin(w);
+    size_t each = 2 * w->size;
+    double *at = w->scratch;
     double **const rows[ROWS] = {
         &s.y,      &s.lost,         &s.first,      &s.old,
         &s.carry,  &s.next,         &s.next_carry, &s.error,
@@ -107,7 +106,8 @@ static walk lay_out(nevh_work *w, double t, double h) {
     s.begin = at + s.table->stages * each;
     s.each = s.begin + w->width;
     s.trial.time = s.each + w->width;
-    s.trial.wide = nevh__wide_ready(w, &plan->wide, s.trial.time + w->width);
+    if (nevh__repeated_stages_ready(plan->repeated))
+        s.trial.repeated = plan->repeated;
     s.trial.stride = each;
     s.trial.work = w;
     s.trial.t = s.begin;
@@ -288,7 +288,7 @@ static int accept(walk *s, size_t column, size_t lane, double err) {
 /* Stages, estimates and new states of a trial. */
 static int take_trial(walk *s, size_t count, const size_t lanes[]) {
     const nevh_butcher *table = s->table;
-    const nevh__stages *trial = &s->trial;
+    nevh__stages *trial = &s->trial;
     size_t n = s->work->n * count;
     gather_states(s, count, lanes);
     gather(s, lanes, s->first, trial->slopes);

@@ -8,11 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ROWS = 4 }; /* of 2n x width in a step, besides the slopes */
-
-size_t nevh__stages_stride(const nevh_work *w) {
-    return w->width == 1 ? nevh__padded(2 * w->n) : 2 * w->size;
-}
+enum { ROWS = 2 }; /* of 2n x width in a step, besides the slopes */
 
 /* Without a tolerance, memory is the carry alone, and a last stage that is the
    next step's first is left to that step. */
@@ -21,25 +17,31 @@ static int plan(nevh_work *w) {
     w->plan = nevh__array(1, sizeof(nevh__stages_plan));
     if (!w->plan)
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
+    nevh__stages_plan *plan = w->plan;
+    if (nevh__repeated_stages_plan(w, &plan->repeated))
+        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     if (table->error && w->options->tolerance > 0)
         return nevh__adaptive_plan(w);
     w->memory_rows = 2 * w->n;
-    w->scratch_size = (table->stages + ROWS) * nevh__stages_stride(w) +
-                      3 * w->width + nevh__wide_size(w);
+    w->scratch_size = (table->stages + ROWS) * 2 * w->size + 3 * w->width;
     return NEVH_OK;
 }
 
 static void unplan(nevh_work *w) {
+    nevh__stages_plan *plan = w->plan;
+    if (!plan)
+        return;
     nevh__adaptive_unplan(w);
-    free(w->plan);
+    nevh__repeated_stages_free(plan->repeated);
+    free(plan);
     w->plan = NULL;
 }
 
 void nevh__stages_sum(const nevh__stages *s, size_t count,
                       const double weights[], double sum[]) {
     size_t columns = s->columns, size = 2 * s->work->n * columns;
-    if (s->wide) {
-        nevh__wide_sum(s, count, weights, sum);
+    if (s->holds) {
+        nevh__repeated_stages_sum(s, weights, sum);
         return;
     }
     for (size_t i = 0; i < size; i++)
@@ -56,10 +58,6 @@ void nevh__stages_sum(const nevh__stages *s, size_t count,
 static void place(const nevh__stages *s, size_t stage) {
     const nevh_butcher *table = s->work->integrator->table;
     size_t n = s->work->n * s->columns;
-    if (s->wide) {
-        nevh__wide_place(s, stage);
-        return;
-    }
     nevh__stages_sum(s, stage, table->a + stage * table->stages, s->change);
     for (size_t i = 0; i < n; i++) {
         s->point[i] = s->q[i] + (s->change[i] + s->carry[i]);
@@ -81,8 +79,6 @@ static void rub(const nevh__stages *s, double slopes[]) {
 /* The slopes at the point, but for friction. */
 static int take_slopes(const nevh__stages *s, double slopes[]) {
     size_t n = s->work->n * s->columns;
-    if (s->wide && nevh__wide_take(s, slopes))
-        return NEVH_OK;
     int status = nevh_work_gradient(s->work, s->columns, s->time, s->point,
                                     s->point + n, slopes + n, slopes);
     for (size_t i = n; !status && i < 2 * n; i++)
@@ -90,9 +86,10 @@ static int take_slopes(const nevh__stages *s, double slopes[]) {
     return status;
 }
 
-int nevh__stages_take(const nevh__stages *s, size_t first, size_t until) {
-    if (s->wide)
-        s->wide->fresh = false;
+int nevh__stages_take(nevh__stages *s, size_t first, size_t until) {
+    s->holds = s->repeated && nevh__repeated_stages_take(s, first, until);
+    if (s->holds)
+        return NEVH_OK;
     for (size_t stage = first; stage < until; stage++) {
         double *slopes = s->slopes + s->stride * stage;
         place(s, stage);
@@ -122,37 +119,24 @@ int nevh__stages_account(const nevh__stages *s) {
 
 static nevh__stages lay_out(nevh_work *w, double q[], double p[]) {
     const nevh_butcher *table = w->integrator->table;
-    size_t stride = nevh__stages_stride(w);
-    double *slopes = nevh__wide_begin(w);
-    double *change = slopes + stride * table->stages;
+    const nevh__stages_plan *plan = w->plan;
+    size_t stride = 2 * w->size;
+    double *change = w->scratch + stride * table->stages;
     double *times = change + ROWS * stride;
-    return (nevh__stages){
-        .work = w,
-        .columns = w->width,
-        .t = times + w->width,
-        .h = times + 2 * w->width,
-        .q = q,
-        .p = p,
-        .carry = w->memory,
-        .slopes = slopes,
-        .stride = stride,
-        .change = change,
-        .point = change + stride,
-        .time = times,
-        .wide = nevh__wide_ready(w, &((nevh__stages_plan *)w->plan)->wide,
-                                 times + 3 * w->width)};
-}
-
-/* Takes the state to where rows have room for vectors. */
-static void widen(nevh__stages *s) {
-    size_t n = s->work->n;
-    double *state = s->point + s->stride, *carry = state + s->stride;
-    memcpy(state, s->q, n * sizeof *state);
-    memcpy(state + n, s->p, n * sizeof *state);
-    memcpy(carry, s->carry, 2 * n * sizeof *carry);
-    s->q = state;
-    s->p = state + n;
-    s->carry = carry;
+    bool ready = nevh__repeated_stages_ready(plan->repeated);
+    return (nevh__stages){.work = w,
+                          .columns = w->width,
+                          .t = times + w->width,
+                          .h = times + 2 * w->width,
+                          .q = q,
+                          .p = p,
+                          .carry = w->memory,
+                          .slopes = w->scratch,
+                          .stride = stride,
+                          .change = change,
+                          .point = change + stride,
+                          .time = times,
+                          .repeated = ready ? plan->repeated : NULL};
 }
 
 static int step(nevh_work *w, double t, double h, double q[], double p[]) {
@@ -161,8 +145,6 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     if (((nevh__stages_plan *)w->plan)->adaptive)
         return nevh__adaptive_step(w, t, h, q, p);
     nevh__stages s = lay_out(w, q, p);
-    if (s.wide)
-        widen(&s);
     for (size_t lane = 0; lane < w->width; lane++) {
         s.time[w->width + lane] = t;
         s.time[2 * w->width + lane] = h;

@@ -30,7 +30,8 @@ static bool add_term(nevh__call *c, nevh__planned *term, const double t[],
                         .stride = stride,
                         .t = is->time ? t : f->zeros,
                         .q = term->nq ? q + is->q[0] * width : q,
-                        .p = term->np ? p + is->p[0] * width : p};
+                        .p = term->np ? p + is->p[0] * width : p,
+                        .c = term->constants};
     c->timed |= is->time;
     if (c->half[0] && term->nq) {
         x->size_q = stride * term->nq;
@@ -64,7 +65,7 @@ bool nevh__call_renew(nevh__call *c) {
     if (!c->count || nevh__field_ready(c->field))
         return false;
     for (nevh__called *x = c->terms; x < c->terms + c->count; x++)
-        x->c = nevh__lean_constants(x->term, c->width, x->stride);
+        nevh__lean_constants(x->term, c->width, x->stride);
     return true;
 }
 
