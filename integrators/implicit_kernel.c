@@ -150,15 +150,17 @@ static void weigh(family_plan *g, double h) {
     g->hb[0] = g->hb[s - 1] = s > 1 ? rest / 2 : rest;
 }
 
-/* out[i] = sum_j m[j*stages + i] x[j], for `active` lanes side by side. */
+/* out[i] = sum_j m[j*stages + i] x[j], for `active` lanes side by side; the
+   sums of even and odd j apart, as in stage_sweeps.c. */
 static void multiply(size_t stages, size_t active, const double m[],
                      const double x[], double out[]) {
-    for (size_t i = 0; i < stages * active; i++)
-        out[i] = 0;
-    for (size_t j = 0; j < stages; j++, m += stages)
-        for (size_t i = 0; i < stages; i++)
-            for (size_t a = 0; a < active; a++)
-                out[i * active + a] += m[i] * x[j * active + a];
+    for (size_t i = 0; i < stages * active; i++) {
+        const double *weight = m + i / active, *slope = x + i % active;
+        double sum[2] = {0, 0};
+        for (size_t j = 0; j < stages; j++)
+            sum[j % 2] += weight[j * stages] * slope[j * active];
+        out[i] = sum[0] + sum[1];
+    }
 }
 
 /* The stage states of variables from `first` to `last` at some lanes, to

@@ -6,16 +6,15 @@
    it is runge_kutta_kernel.c: the same bits.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "runge_kutta_private.h"
-#include "system/system_private.h"
+#include "system/vector_private.h"
 #include "work_private.h"
 #include <nevh/body.h>
 #include <stdlib.h>
 
-#ifdef NEVH__VECTORS
+#ifdef NEVH__HAS_VECTOR
 
-/* A row; of which as many are summed side by side as keep a processor busy. */
-typedef double vector __attribute__((vector_size(NEVH__LANES * sizeof(double)),
-                                     aligned(sizeof(double)), may_alias));
+/* Rows that are summed at once, to keep a processor busy; sums besides those of
+   stages. */
 enum { SIDE_BY_SIDE = 4, ENDS = 3 };
 
 /* Weights that are not 0, and how far the slopes they belong to are from those
@@ -115,27 +114,28 @@ bool nevh__repeated_stages_ready(nevh__repeated_stages *r) {
 
 /* The next `count` rows of sums of weights times slopes. */
 NEVH__INLINE void add_up(const sum *x, size_t count, const double slopes[],
-                         vector rows[]) {
+                         nevh__vector rows[]) {
     for (size_t k = 0; k < count; k++)
-        rows[k] = (vector){0};
+        rows[k] = (nevh__vector){0};
     for (size_t j = 0; j < x->count; j++) {
         const double *slope = slopes + x->offsets[j], weight = x->weights[j];
         NEVH_UNROLL
         for (size_t k = 0; k < count; k++)
-            rows[k] += weight * *(const vector *)(slope + k * NEVH__LANES);
+            rows[k] +=
+                weight * *(const nevh__vector *)(slope + k * NEVH__LANES);
     }
 }
 
 /* State + (h times the sum + carry). */
 NEVH__INLINE void place_rows(const nevh__repeated_stages *r, size_t count,
                              const sum *x, size_t first, const double carry[]) {
-    vector rows[SIDE_BY_SIDE];
+    nevh__vector rows[SIDE_BY_SIDE];
     add_up(x, count, r->slopes + first * NEVH__LANES, rows);
     NEVH_UNROLL
     for (size_t i = 0; i < count; i++) {
         size_t k = first + i;
-        vector change = rows[i] * r->steps[k] + carry[k];
-        *(vector *)(r->points + k * NEVH__LANES) = r->start[k] + change;
+        nevh__vector change = rows[i] * r->steps[k] + carry[k];
+        *(nevh__vector *)(r->points + k * NEVH__LANES) = r->start[k] + change;
     }
 }
 
@@ -223,7 +223,7 @@ bool nevh__repeated_stages_take(const nevh__stages *s, size_t first,
 NEVH_SIMD static void finish(const nevh__repeated_stages *r, const sum *x,
                              double out[]) {
     for (size_t first = 0; first < 2 * r->n; first += 2) {
-        vector rows[2];
+        nevh__vector rows[2];
         add_up(x, 2, r->slopes + first * NEVH__LANES, rows);
         out[first] = rows[0][0] * r->steps[first];
         out[first + 1] = rows[1][0] * r->steps[first + 1];

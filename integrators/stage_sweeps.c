@@ -6,12 +6,14 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "stage_sweeps_private.h"
 #include "gradient/field_private.h"
-#include "system/system_private.h"
+#include "system/vector_private.h"
 #include "work_private.h"
 #include <math.h>
 #include <nevh/body.h>
 #include <stdlib.h>
 #include <string.h>
+
+#ifdef NEVH__HAS_VECTOR
 
 struct nevh__sweeps {
     nevh_work *work;
@@ -118,32 +120,19 @@ void nevh__sweeps_free(nevh__sweeps *s) {
     free(s);
 }
 
-/* One vector of stages, sum_j mu[j * stride] (hb[j] slopes[j]). */
-NEVH__INLINE void sum_up(size_t stages, size_t stride, const double mu[],
-                         const double hb[], const double slopes[],
-                         double sum[]) {
-    NEVH_LANES(i, NEVH__LANES) {
-        sum[i] = 0;
+/* One vector of stages, sum_j weights[j * stride] x[j]: those with even j and
+   those with odd j, which need not wait for each other. */
+NEVH__INLINE void sum_up(size_t stages, size_t stride, const double weights[],
+                         const double x[], nevh__vector *sum) {
+    nevh__vector even = {0}, odd = {0};
+    size_t j = 0;
+    for (; j + 1 < stages; j += 2) {
+        even += *(const nevh__vector *)(weights + j * stride) * x[j];
+        odd += *(const nevh__vector *)(weights + (j + 1) * stride) * x[j + 1];
     }
-    NEVH_UNROLL
-    for (size_t j = 0; j < stages; j++) {
-        double slope = slopes[j];
-        NEVH_LANES(i, NEVH__LANES) {
-            sum[i] += mu[j * stride + i] * (hb[j * NEVH__LANES + i] * slope);
-        }
-    }
-}
-
-/* The same of slopes that are weighed already. */
-NEVH__INLINE void sum_any(size_t stages, size_t stride, const double weights[],
-                          const double x[], double sum[]) {
-    NEVH_LANES(i, NEVH__LANES) {
-        sum[i] = 0;
-    }
-    for (size_t j = 0; j < stages; j++)
-        NEVH_LANES(i, NEVH__LANES) {
-            sum[i] += weights[j * stride + i] * x[j];
-        }
+    if (j < stages)
+        even += *(const nevh__vector *)(weights + j * stride) * x[j];
+    *sum = even + odd;
 }
 
 /* The gradient that continues the last slopes. */
@@ -160,13 +149,16 @@ NEVH_SIMD static void begin(const nevh__sweeps *s, double t, double h,
         }
     for (size_t k = 0; k < s->rows; k++)
         for (size_t from = 0; from < s->stride; from += NEVH__LANES) {
-            double sum[NEVH__LANES], sign = s->unknown + k < s->n ? 1 : -1;
-            sum_any(last ? s->stages : 0, s->stride, s->guess + from,
-                    last ? last + k * s->stages : s->guess, sum);
+            double *to = s->before + k * s->stride + from;
+            double sign = s->unknown + k < s->n ? 1 : -1;
+            nevh__vector sum = {0};
+            if (last)
+                sum_up(s->stages, s->stride, s->guess + from,
+                       last + k * s->stages, &sum);
+            *(nevh__vector *)to = sign * sum;
+            *(nevh__vector *)(to - s->before + s->gradient + at) = sign * sum;
             NEVH_LANES(i, NEVH__LANES) {
-                size_t to = k * s->stride + from + i;
-                s->gradient[at + to] = s->before[to] = sign * sum[i];
-                s->least[to] = INFINITY;
+                s->least[to - s->before + i] = INFINITY;
             }
         }
 }
@@ -183,6 +175,26 @@ void nevh__sweeps_begin(nevh__sweeps *s, double t, double h, const double q[],
                                  : nevh__call_renew(&s->whole);
 }
 
+/* sum_j mu[j * stride] (hb[j] slopes[j]), the same way. */
+NEVH__INLINE void weigh_up(size_t stages, size_t stride, const double mu[],
+                           const double hb[], const double slopes[],
+                           nevh__vector *sum) {
+    nevh__vector even = {0}, odd = {0};
+    const nevh__vector *weights = (const nevh__vector *)hb;
+    size_t j = 0;
+    NEVH_UNROLL
+    for (; j + 1 < stages; j += 2) {
+        even +=
+            *(const nevh__vector *)(mu + j * stride) * (weights[j] * slopes[j]);
+        odd += *(const nevh__vector *)(mu + (j + 1) * stride) *
+               (weights[j + 1] * slopes[j + 1]);
+    }
+    if (j < stages)
+        even +=
+            *(const nevh__vector *)(mu + j * stride) * (weights[j] * slopes[j]);
+    *sum = even + odd;
+}
+
 /* Stages' states, n rows, from the gradient. */
 NEVH__INLINE void place_rows(size_t n, size_t stages, size_t stride,
                              const double *restrict mu,
@@ -191,11 +203,11 @@ NEVH__INLINE void place_rows(size_t n, size_t stages, size_t stride,
                              const double carry[], double *restrict points) {
     for (size_t k = 0; k < n; k++)
         for (size_t from = 0; from < stride; from += NEVH__LANES) {
-            double sum[NEVH__LANES], start = y[k], lost = carry[k];
-            sum_up(stages, stride, mu + from, hb, gradient + k * stride, sum);
-            NEVH_LANES(i, NEVH__LANES) {
-                points[k * stride + from + i] = start + (sum[i] + lost);
-            }
+            nevh__vector sum;
+            weigh_up(stages, stride, mu + from, hb, gradient + k * stride,
+                     &sum);
+            *(nevh__vector *)(points + k * stride + from) =
+                y[k] + (sum + carry[k]);
         }
 }
 
@@ -335,3 +347,38 @@ void nevh__sweeps_fetch(const nevh__sweeps *s, double slopes[]) {
             slopes[k * s->stages + i] = k < s->n ? x : -x;
         }
 }
+
+#else
+
+bool nevh__sweeps_suit(const nevh_work *w, size_t stages) {
+    (void)w, (void)stages;
+    return false;
+}
+
+nevh__sweeps *nevh__sweeps_new(nevh_work *w, const nevh__tableau *a,
+                               const double hb[], bool partitioned) {
+    (void)w, (void)a, (void)hb, (void)partitioned;
+    return NULL;
+}
+
+void nevh__sweeps_free(nevh__sweeps *s) {
+    (void)s;
+}
+
+void nevh__sweeps_begin(nevh__sweeps *s, double t, double h, const double q[],
+                        const double p[], const double carry[],
+                        const double last[]) {
+    (void)s, (void)t, (void)h, (void)q, (void)p, (void)carry, (void)last;
+}
+
+int nevh__sweeps_sweep(nevh__sweeps *s, const double unit[],
+                       nevh__stage_progress *made) {
+    (void)s, (void)unit, (void)made;
+    return NEVH_EINVAL;
+}
+
+void nevh__sweeps_fetch(const nevh__sweeps *s, double slopes[]) {
+    (void)s, (void)slopes;
+}
+
+#endif

@@ -4,6 +4,7 @@ noinst_LTLIBRARIES += libnevh_core.la
 libnevh_core_la_LIBADD = $(GSL_LIBS)
 libnevh_core_la_SOURCES = \
 	lib/system/system_private.h \
+	lib/system/vector_private.h \
 	lib/system/status.c \
 	lib/system/memory.c \
 	lib/system/system.c \

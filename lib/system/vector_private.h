@@ -1,0 +1,19 @@
+/* nevh: numbers side by side, for code in which they must not go through
+   memory. SPDX-License-Identifier: GPL-3.0-or-later
+
+   In sums of several terms GCC keeps an array of lanes in memory, and one
+   operation waits for the other to be stored; a vector it keeps in a register.
+   Arithmetic is that of its lanes, on any processor. */
+#ifndef NEVH_VECTOR_PRIVATE_H
+#define NEVH_VECTOR_PRIVATE_H
+
+#include "system/system_private.h"
+
+#ifdef __GNUC__
+#define NEVH__HAS_VECTOR 1
+typedef double nevh__vector
+    __attribute__((vector_size(NEVH__LANES * sizeof(double)),
+                   aligned(sizeof(double)), may_alias));
+#endif
+
+#endif
