@@ -252,12 +252,6 @@ static int map_momenta(void *data, size_t active, const size_t lanes[],
     return status;
 }
 
-static int sweep(void *data, const double unit[], nevh__stage_progress *made) {
-    const family_step *s = data;
-    const family_plan *g = s->work->plan;
-    return nevh__sweeps_sweep(g->sweeps, unit, made);
-}
-
 static void fetch(void *data) {
     const family_step *s = data;
     const family_plan *g = s->work->plan;
@@ -303,11 +297,10 @@ static int account(const family_step *s, const family_plan *g) {
     return status;
 }
 
-/* sum + lost += h b x, without loss. */
+/* sum + lost += h b x; what that loses is below the last bit of lost. */
 NEVH__INLINE void add(double hb, double slope, double *sum, double *lost) {
-    double x = hb * slope, d = x + *lost, next = *sum + d, part = next - *sum;
-    *lost = (*sum - (next - part)) + (d - part);
-    *lost += fma(hb, slope, -x);
+    double x = hb * slope, next = *sum + x;
+    *lost += nevh__lost(next, *sum, x) + fma(hb, slope, -x);
     *sum = next;
 }
 
@@ -321,6 +314,11 @@ NEVH_SIMD static void sum_up(const family_step *s, const nevh__tableau *a,
         for (size_t i = 0; i < count; x += a->stages * width)
             for (size_t lane = 0; lane < width; lane++, i++)
                 add(hb[j], x[lane], &s->sum[i], &s->lost[i]);
+    }
+    for (size_t i = 0; i < count; i++) {
+        double next = s->sum[i] + s->lost[i];
+        s->lost[i] = nevh__lost(next, s->sum[i], s->lost[i]);
+        s->sum[i] = next;
     }
 }
 
@@ -362,7 +360,9 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
                                    .p = p,
                                    .x = s.unknown,
                                    .map = g->partitioned ? map_momenta : map,
-                                   .sweep = g->sweeps ? sweep : NULL,
+                                   .sweep =
+                                       g->sweeps ? nevh__sweeps_sweep : NULL,
+                                   .sweeps = g->sweeps,
                                    .fetch = fetch,
                                    .data = &s,
                                    .hold = s.hold};

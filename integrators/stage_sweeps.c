@@ -22,13 +22,15 @@ struct nevh__sweeps {
     size_t unknown;                /* the first of them */
     double *room;                  /* holds all that follow */
     double *mu_q, *mu_p, *guess;   /* the tableau's */
-    double *c, *times, *hb;        /* a row */
+    double *c, *times;             /* a row */
     double *to_q, *to_p;           /* h b_j, - h b_j: vectors of each */
     double *points;                /* 2n rows */
     double *gradient;              /* 2n rows: dH/dp, then dH/dq */
     double *before;                /* rows: as the last sweep left them */
     double *least;                 /* rows: smallest change so far */
     const double *weights;         /* h b_j */
+    double h;                      /* for which they were taken over */
+    double lowest;                 /* change of a sweep so far */
     const double *q, *p, *carry;   /* of the step */
     nevh__call whole, drift, kick; /* where H can be called as it is */
     bool partitioned, prepared;
@@ -57,7 +59,7 @@ static bool lay_out(nevh__sweeps *s) {
     size_t n = s->n, row = s->stride, matrix = s->stages * row;
     size_t vectors = s->stages * NEVH__LANES;
     size_t all =
-        3 * matrix + 3 * row + 2 * vectors + (4 * n + 2 * s->rows) * row;
+        3 * matrix + 2 * row + 2 * vectors + (4 * n + 2 * s->rows) * row;
     s->room = nevh__array(all + NEVH__LANES, sizeof *s->room);
     if (!s->room)
         return false;
@@ -67,7 +69,6 @@ static bool lay_out(nevh__sweeps *s) {
     s->guess = take(&from, matrix);
     s->c = take(&from, row);
     s->times = take(&from, row);
-    s->hb = take(&from, row);
     s->to_q = take(&from, vectors);
     s->to_p = take(&from, vectors);
     s->points = take(&from, 2 * n * row);
@@ -142,11 +143,6 @@ NEVH_SIMD static void begin(const nevh__sweeps *s, double t, double h,
     NEVH_LANES(i, s->stride) {
         s->times[i] = t + s->c[i] * h;
     }
-    for (size_t j = 0; j < s->stages; j++)
-        NEVH_LANES(i, NEVH__LANES) {
-            s->to_q[j * NEVH__LANES + i] = s->weights[j];
-            s->to_p[j * NEVH__LANES + i] = -s->weights[j];
-        }
     for (size_t k = 0; k < s->rows; k++)
         for (size_t from = 0; from < s->stride; from += NEVH__LANES) {
             double *to = s->before + k * s->stride + from;
@@ -163,9 +159,20 @@ NEVH_SIMD static void begin(const nevh__sweeps *s, double t, double h,
         }
 }
 
+static void weigh(nevh__sweeps *s, double h) {
+    for (size_t j = 0; j < s->stages * NEVH__LANES; j++) {
+        s->to_q[j] = s->weights[j / NEVH__LANES];
+        s->to_p[j] = -s->weights[j / NEVH__LANES];
+    }
+    s->h = h;
+}
+
 void nevh__sweeps_begin(nevh__sweeps *s, double t, double h, const double q[],
                         const double p[], const double carry[],
                         const double last[]) {
+    if (h != s->h)
+        weigh(s, h);
+    s->lowest = INFINITY;
     s->q = q;
     s->p = p;
     s->carry = carry;
@@ -313,7 +320,7 @@ NEVH__INLINE int find_whole(const nevh__sweeps *s) {
     return take_gradient(s, &s->whole, true, true);
 }
 
-NEVH_SIMD static int sweep(const nevh__sweeps *s, const double unit[],
+NEVH_SIMD static int sweep(nevh__sweeps *s, const double unit[],
                            nevh__stage_progress *made) {
     comparison found;
     int status = s->partitioned ? find_halves(s) : find_whole(s);
@@ -325,13 +332,15 @@ NEVH_SIMD static int sweep(const nevh__sweeps *s, const double unit[],
     compare(s, unit, &found);
     double all = sum_lanes(found.all);
     made->moved = all != 0;
-    made->improved = sum_lanes(found.better) > 0;
     made->change = all < INFINITY ? greatest(found.most) : INFINITY;
+    made->improved = made->change < s->lowest || sum_lanes(found.better) > 0;
+    s->lowest = made->change < s->lowest ? made->change : s->lowest;
     return NEVH_OK;
 }
 
-int nevh__sweeps_sweep(nevh__sweeps *s, const double unit[],
+int nevh__sweeps_sweep(void *sweeps, const double unit[],
                        nevh__stage_progress *made) {
+    nevh__sweeps *s = sweeps;
     int status = sweep(s, unit, made);
     if (!status && !(made->change < INFINITY))
         return ask(s, true, !s->partitioned);
@@ -340,12 +349,24 @@ int nevh__sweeps_sweep(nevh__sweeps *s, const double unit[],
     return status;
 }
 
-void nevh__sweeps_fetch(const nevh__sweeps *s, double slopes[]) {
-    for (size_t k = 0; k < 2 * s->n; k++)
-        for (size_t i = 0; i < s->stages; i++) {
-            double x = s->gradient[k * s->stride + i];
-            slopes[k * s->stages + i] = k < s->n ? x : -x;
+/* Rows without what is behind the stages. */
+NEVH_SIMD static void fetch(const nevh__sweeps *s, size_t first, double sign,
+                            double slopes[]) {
+    const double *from = s->gradient + first * s->stride;
+    double *to = slopes + first * s->stages;
+    if (s->stages == s->stride)
+        NEVH_LANES(i, s->n * s->stages) {
+            to[i] = sign * from[i];
         }
+    else
+        for (size_t k = 0; k < s->n; k++, from += s->stride, to += s->stages)
+            for (size_t i = 0; i < s->stages; i++)
+                to[i] = sign * from[i];
+}
+
+void nevh__sweeps_fetch(const nevh__sweeps *s, double slopes[]) {
+    fetch(s, 0, 1, slopes);
+    fetch(s, s->n, -1, slopes);
 }
 
 #else
@@ -371,9 +392,9 @@ void nevh__sweeps_begin(nevh__sweeps *s, double t, double h, const double q[],
     (void)s, (void)t, (void)h, (void)q, (void)p, (void)carry, (void)last;
 }
 
-int nevh__sweeps_sweep(nevh__sweeps *s, const double unit[],
+int nevh__sweeps_sweep(void *sweeps, const double unit[],
                        nevh__stage_progress *made) {
-    (void)s, (void)unit, (void)made;
+    (void)sweeps, (void)unit, (void)made;
     return NEVH_EINVAL;
 }
 

@@ -28,7 +28,7 @@ void nevh__sweeps_begin(nevh__sweeps *, double t, double h, const double q[],
                         const double p[], const double carry[],
                         const double last[]);
 /* For nevh__stage_problem. */
-int nevh__sweeps_sweep(nevh__sweeps *, const double unit[],
+int nevh__sweeps_sweep(void *sweeps, const double unit[],
                        nevh__stage_progress *);
 /* All slopes, 2n x stages, those that are not solved for as they were in the
    last sweep. */

@@ -168,7 +168,10 @@ static int begin(nevh__stage_solver *s, size_t *active) {
     *active = 0;
     find_scales(s);
     for (size_t lane = 0; !status && lane < s->work->width; lane++) {
-        nevh__stage_begin(s, lane);
+        if (s->problem->sweep)
+            s->lane[lane] = nevh__stage_fresh;
+        else
+            nevh__stage_begin(s, lane);
         if (!hold || !(hold[lane] > 0)) {
             s->lanes[(*active)++] = lane;
             continue;
@@ -185,7 +188,7 @@ static int sweep_orbit(nevh__stage_solver *s) {
     nevh__stage_progress made;
     nevh__stage_state state = NEVH__GO_ON;
     for (int i = 0; state == NEVH__GO_ON && i < MOST_SWEEPS; i++) {
-        int status = e->sweep(e->data, s->unit, &made);
+        int status = e->sweep(e->sweeps, s->unit, &made);
         bool lost = status == NEVH_EDOM && s->lane->strays;
         if (status && !lost)
             return status;

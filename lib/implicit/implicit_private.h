@@ -47,8 +47,9 @@ typedef struct {
     void *data;
     /* For one lane: sweeps on from where begun, and what that changed; unit:
        2n, |h| over scale.  Then fetches x.  NULL: map will do. */
-    int (*sweep)(void *data, const double unit[], nevh__stage_progress *);
+    int (*sweep)(void *sweeps, const double unit[], nevh__stage_progress *);
     void (*fetch)(void *data);
+    void *sweeps;
     /* width, in and out: steps for which a lane is given to Newton's iteration
        at once, from the step before and for the next.  To be kept in memory,
        but not before the step is certain.  NULL: nothing is known. */
@@ -104,7 +105,9 @@ static inline double nevh__stage_unit(const nevh__stage_solver *s, size_t row,
     return s->scale[k * s->work->width + lane] / h;
 }
 
-/* Forgets what is known of a lane's iteration. */
+/* Of a lane of which nothing is known. */
+extern const nevh__stage_lane nevh__stage_fresh;
+/* Forgets what is known of a lane's iteration, and its smallest changes. */
 void nevh__stage_begin(nevh__stage_solver *, size_t lane);
 /* Changes, in units of scale, that need not be looked at; and how many times
    its estimate noise may be. */

@@ -32,12 +32,14 @@ const double nevh__stage_margin = 16;
 static const double may_be_noise = 1e-4; /* not worth a look above */
 static const double hardly_less = 0.9;
 
+const nevh__stage_lane nevh__stage_fresh = {
+    .change = INFINITY, .before = INFINITY, .least = INFINITY};
+
 void nevh__stage_begin(nevh__stage_solver *s, size_t lane) {
     size_t width = s->work->width;
     for (size_t row = 0; row < s->rows; row++)
         s->least[row * width + lane] = INFINITY;
-    s->lane[lane] = (nevh__stage_lane){
-        .change = INFINITY, .before = INFINITY, .least = INFINITY};
+    s->lane[lane] = nevh__stage_fresh;
 }
 
 void nevh__stage_noise(nevh__stage_solver *s, size_t lane) {
