@@ -268,6 +268,92 @@ START_TEST(asking_in_between_changes_nothing) {
 }
 END_TEST
 
+static void add_kinetic(nevh_system *s, size_t count, const size_t *at) {
+    static const double masses[] = {2, 3};
+    ck_assert(
+        !nevh_system_add(s, &(nevh_term){.effect = "kinetic",
+                                         .np = 1,
+                                         .nc = 1,
+                                         .p = at,
+                                         .c = masses,
+                                         .count = count,
+                                         .value = mass_kinetic,
+                                         .gradient = mass_kinetic_gradient}));
+}
+
+/* Both halves of H are sums of two terms. */
+static nevh_system *in_parts(bool rubs) {
+    static const size_t all[] = {0, 1}, one[] = {1};
+    nevh_system *s = nevh_system_new(2);
+    add_waves(s, 2, all);
+    add_kinetic(s, 2, all);
+    add_waves(s, 1, one);
+    add_kinetic(s, 1, one);
+    if (rubs)
+        ck_assert(
+            !nevh_system_add_friction(s, "drag", (const double[]){0.3, 0.1}));
+    return s;
+}
+
+static nevh_stepper *plan_parts(const nevh_system *s,
+                                const nevh_integrator *scheme, size_t width) {
+    static const double q[2 * WIDEST] = {0}, p[2 * WIDEST] = {0};
+    return nevh_stepper_new(
+        s, scheme,
+        &(nevh_options){.gradient = nevh_exact,
+                        .width = width,
+                        .scale = (const double[]){1, 1, 1, 1},
+                        .q = q,
+                        .p = p,
+                        .tolerance = tolerance_for(scheme),
+                        .binding = 2});
+}
+
+/* The second half of the way by another stepper, which is told what the first
+   one knows. */
+static void go_in_two(const nevh_system *s, const nevh_integrator *scheme,
+                      double q[], double p[]) {
+    char saved[8192];
+    nevh_stepper *first = plan_parts(s, scheme, 1);
+    nevh_stepper *second = plan_parts(s, scheme, 1);
+    size_t size = nevh_stepper_save_size(first);
+    ck_assert(size <= sizeof saved);
+    ck_assert(!nevh_run(first, 0, 0.2, STEPS / 2, q, p, NULL, 0));
+    nevh_stepper_save(first, saved);
+    ck_assert(!nevh_stepper_load(second, saved, size));
+    ck_assert(!nevh_run(second, STEPS / 2 * 0.2, 0.2, STEPS - STEPS / 2, q, p,
+                        NULL, 0));
+    nevh_stepper_free(first);
+    nevh_stepper_free(second);
+}
+
+START_TEST(in_parts_and_in_two) {
+    enum { WIDTH = 8 };
+    const nevh_integrator *scheme = nevh_integrators()[_i / 2];
+    double q[2 * WIDTH], p[2 * WIDTH], one_q[] = {0.5, -1}, one_p[] = {1, 0.25};
+    nevh_system *s = in_parts(_i % 2);
+    nevh_stepper *all = plan_parts(s, scheme, WIDTH);
+    ck_assert((nevh_stepper_status(all) != NEVH_OK) ==
+              nevh_integrator_own_time(scheme));
+    if (!nevh_integrator_own_time(scheme)) {
+        for (size_t i = 0; i < 2 * WIDTH; i++) {
+            q[i] = one_q[i / WIDTH] + (i % WIDTH == 5 ? 0 : 0.1);
+            p[i] = one_p[i / WIDTH];
+        }
+        ck_assert(!nevh_run(all, 0, 0.2, STEPS / 2, q, p, NULL, 0));
+        ck_assert(!nevh_run(all, STEPS / 2 * 0.2, 0.2, STEPS - STEPS / 2, q, p,
+                            NULL, 0));
+        go_in_two(s, scheme, one_q, one_p);
+        for (size_t k = 0; k < 2; k++) {
+            ck_assert(q[k * WIDTH + 5] == one_q[k]);
+            ck_assert(p[k * WIDTH + 5] == one_p[k]);
+        }
+    }
+    nevh_stepper_free(all);
+    nevh_system_free(s);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("one orbit");
     TCase *cases = tcase_create("one orbit");
@@ -275,6 +361,7 @@ int main(void) {
     tcase_add_loop_test(cases, every_width_alike, 0, 5);
     tcase_add_loop_test(cases, failures_name_the_term, 0, 4);
     tcase_add_loop_test(cases, asking_in_between_changes_nothing, 0, 5);
+    tcase_add_loop_test(cases, in_parts_and_in_two, 0, 2 * scheme_count());
     suite_add_tcase(suite, cases);
     return run_suite(suite);
 }
