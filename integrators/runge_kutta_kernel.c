@@ -4,7 +4,8 @@
    sum added to the state with compensation.  Friction is a part of f.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "runge_kutta_private.h"
-#include "system/system_private.h"
+#include "system/vector_private.h"
+#include <nevh/body.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -37,6 +38,28 @@ static void unplan(nevh_work *w) {
     w->plan = NULL;
 }
 
+/* sum = the sum over `count` rows of weights[j] rows[j], each in turn. */
+NEVH_SIMD static void sum_up(size_t size, size_t stride, size_t count,
+                             const double weights[], const double rows[],
+                             double sum[]) {
+    size_t i = 0;
+    for (; i + NEVH__IN_VECTOR <= size; i += NEVH__IN_VECTOR) {
+        nevh__vector all = {0};
+        for (size_t j = 0; j < count; j++)
+            if (weights[j] != 0)
+                all +=
+                    weights[j] * *(const nevh__vector *)(rows + j * stride + i);
+        *(nevh__vector *)(sum + i) = all;
+    }
+    for (; i < size; i++) {
+        double all = 0;
+        for (size_t j = 0; j < count; j++)
+            if (weights[j] != 0)
+                all += weights[j] * rows[j * stride + i];
+        sum[i] = all;
+    }
+}
+
 void nevh__stages_sum(const nevh__stages *s, size_t count,
                       const double weights[], double sum[]) {
     size_t columns = s->columns, size = 2 * s->work->n * columns;
@@ -44,11 +67,7 @@ void nevh__stages_sum(const nevh__stages *s, size_t count,
         nevh__repeated_stages_sum(s, weights, sum);
         return;
     }
-    for (size_t i = 0; i < size; i++)
-        sum[i] = 0;
-    for (size_t j = 0; j < count; j++)
-        for (size_t i = 0; weights[j] != 0 && i < size; i++)
-            sum[i] += weights[j] * s->slopes[j * s->stride + i];
+    sum_up(size, s->stride, count, weights, s->slopes, sum);
     for (size_t i = 0; i < size; i += columns)
         for (size_t c = 0; c < columns; c++)
             sum[i + c] *= s->h[c];

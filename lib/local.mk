@@ -30,6 +30,7 @@ libnevh_core_la_SOURCES = \
 	lib/gradient/report.c \
 	lib/gradient/findings.c \
 	lib/gradient/verify.c \
+	lib/gradient/wiring.c \
 	lib/gradient/field.c \
 	lib/gradient/lean.c \
 	lib/gradient/block.c \

@@ -45,6 +45,19 @@ typedef struct {
     double *shift; /* nv x stride; NULL: there is no such stencil */
 } nevh__stencil;
 
+/* How a block of all instances of a term is wired to a half of the state: one
+   row for each variable of an instance.  Lists of a variable's numbers are in
+   their order in the block. */
+typedef struct {
+    size_t rows, count, stride; /* count: instances; stride: padded */
+    size_t *source;             /* rows x stride: of one lane */
+    size_t targets;             /* variables that are written to */
+    size_t *target;
+    size_t *begin;  /* targets + 1: of each list below */
+    size_t *column; /* in rows of `stride`: of one lane */
+    size_t *entry;  /* in rows of `count`: of vectors */
+} nevh__wiring;
+
 typedef struct {
     const nevh__term *term;
     size_t nq, np, nv;  /* variables of an instance: coordinates, momenta */
@@ -58,6 +71,7 @@ typedef struct {
     bool straight_q, straight_p, straight;
     double *constants; /* rows of a block of all instances and so many lanes */
     size_t constants_width;
+    nevh__wiring to_q, to_p; /* no targets: there is none */
 } nevh__planned;
 
 /* Adds a term's gradient to dh_dq and dh_dp, n x width each; either may be
@@ -191,6 +205,20 @@ bool nevh__gradient_lean(nevh_field *, size_t width, const double t[],
                          const double q[], const double p[], double dh_dq[],
                          double dh_dp[]);
 bool nevh__lean_plan(nevh_field *);
+/* For `count` instances whose variable k of instance i is index[i*rows + k] of
+   n; false when memory is out. */
+bool nevh__wiring_plan(nevh__wiring *, size_t n, size_t rows, size_t count,
+                       const size_t index[]);
+void nevh__wiring_free(nevh__wiring *);
+/* The rows of one lane, padded with column 0. */
+void nevh__wiring_collect(const nevh__wiring *, const double from[],
+                          double to[]);
+/* Adds rows of one lane, or of whole vectors of lanes, to what they belong to;
+   whether all are finite. */
+bool nevh__wiring_add(const nevh__wiring *, const double from[], double out[]);
+bool nevh__wiring_add_vectors(const nevh__wiring *, size_t width,
+                              const double from[], double out[]);
+
 /* A term's constants, repeated over so many lanes. */
 const double *nevh__lean_constants(nevh__planned *, size_t width,
                                    size_t stride);

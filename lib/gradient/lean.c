@@ -52,6 +52,15 @@ static nevh__planned *sole(nevh_field *f, bool momenta) {
     return found == (momenta ? f->writer_p : f->writer_q) ? found : NULL;
 }
 
+/* What is not evaluated in one block has no use for it. */
+static bool wire(const nevh_field *f, nevh__planned *term) {
+    const nevh_term *is = &term->term->is;
+    if (is->count > f->capacity)
+        return true;
+    return nevh__wiring_plan(&term->to_q, f->n, term->nq, is->count, is->q) &&
+           nevh__wiring_plan(&term->to_p, f->n, term->np, is->count, is->p);
+}
+
 bool nevh__lean_plan(nevh_field *f) {
     bool repeats = true;
     f->most_instances = 0;
@@ -65,6 +74,8 @@ bool nevh__lean_plan(nevh_field *f) {
         if (is->count > f->most_instances)
             f->most_instances = is->count;
         repeats &= is->count <= MOST_REPEATED && term->straight;
+        if (!wire(f, term))
+            return false;
         if (is->nc && !(term->constants =
                             nevh__array(is->nc * f->capacity, sizeof(double))))
             return false;
@@ -118,16 +129,6 @@ NEVH_SIMD static void repeat(size_t rows, const size_t index[],
     }
 }
 
-static void fill(size_t rows, size_t count, size_t width, size_t stride,
-                 const size_t index[], const double from[], double to[]) {
-    if (width % NEVH__LANES == 0)
-        collect_vectors(rows, count, width, index, from, to);
-    else if (count * width == 1)
-        repeat(rows, index, from, to);
-    else
-        collect(rows, count, width, stride, index, from, to);
-}
-
 /* Adds slopes to what they belong to; whether one is not finite. */
 NEVH_SIMD static bool scatter(size_t rows, size_t count, size_t width,
                               size_t stride, const size_t index[],
@@ -140,21 +141,6 @@ NEVH_SIMD static bool scatter(size_t rows, size_t count, size_t width,
             for (size_t lane = 0; lane < width; lane++) {
                 to[lane] += x[lane];
                 bad |= x[lane] - x[lane] != 0;
-            }
-        }
-    return bad != 0;
-}
-
-NEVH_SIMD static bool scatter_vectors(size_t rows, size_t count, size_t width,
-                                      const size_t index[], const double from[],
-                                      double out[]) {
-    int64_t bad = 0;
-    for (size_t k = 0; k < rows; k++)
-        for (size_t i = 0; i < count; i++, from += width) {
-            double *to = out + index[i * rows + k] * width;
-            NEVH_LANES(lane, width) {
-                to[lane] += from[lane];
-                bad |= from[lane] - from[lane] != 0;
             }
         }
     return bad != 0;
@@ -215,40 +201,42 @@ typedef struct {
 
 static const double *times(nevh_field *f, const nevh_term *is, const request *r,
                            size_t stride) {
-    static const size_t zeros[MOST_REPEATED] = {0};
     if (!is->time)
         return f->zeros;
     if (r->vectors && is->count == 1)
         return r->t;
-    if (is->count <= MOST_REPEATED)
-        fill(1, is->count, r->width, stride, zeros, r->t, f->times);
-    else
-        for (size_t i = 0; i < stride; i++)
-            f->times[i] = r->t[i < is->count * r->width ? i % r->width : 0];
+    for (size_t i = 0; i < stride; i++)
+        f->times[i] = r->t[i < is->count * r->width ? i % r->width : 0];
     return f->times;
 }
 
-static const double *rows(const request *r, const nevh_term *is,
-                          size_t variables, bool in_place, size_t stride,
-                          const size_t index[], const double from[],
-                          double to[]) {
+static const double *rows(const request *r, const nevh__wiring *x,
+                          bool in_place, size_t stride, const size_t index[],
+                          const double from[], double to[]) {
     if (in_place && r->vectors)
         return from + index[0] * r->width;
-    fill(variables, is->count, r->width, stride, index, from, to);
+    if (r->vectors)
+        collect_vectors(x->rows, x->count, r->width, index, from, to);
+    else if (x->count * r->width == 1)
+        repeat(x->rows, index, from, to);
+    else if (r->width == 1)
+        nevh__wiring_collect(x, from, to);
+    else
+        collect(x->rows, x->count, r->width, stride, index, from, to);
     return to;
 }
 
-static bool add(const request *r, const nevh_term *is, size_t variables,
-                size_t stride, const size_t index[], const double from[],
-                double out[]) {
+static bool add(const request *r, const nevh__wiring *x, size_t stride,
+                const size_t index[], const double from[], double out[]) {
     if (from == out && r->trusting)
         return false;
     if (from == out)
-        return settle(is->count * variables * r->width, out);
+        return settle(x->count * x->rows * r->width, out);
     if (r->vectors)
-        return scatter_vectors(variables, is->count, r->width, index, from,
-                               out);
-    return scatter(variables, is->count, r->width, stride, index, from, out);
+        return !nevh__wiring_add_vectors(x, r->width, from, out);
+    if (r->width == 1)
+        return !nevh__wiring_add(x, from, out);
+    return scatter(x->rows, x->count, r->width, stride, index, from, out);
 }
 
 /* A term whose rows all stand in place. */
@@ -272,9 +260,9 @@ static inline bool evaluate_in_place(nevh_field *f, nevh__planned *term,
                  is->params, r->dh_dq ? out_q : NULL, r->dh_dp ? out_p : NULL);
     bool bad = false;
     if (r->dh_dq && term->nq)
-        bad |= add(r, is, term->nq, stride, is->q, out_q, r->dh_dq);
+        bad |= add(r, &term->to_q, stride, is->q, out_q, r->dh_dq);
     if (r->dh_dp && term->np)
-        bad |= add(r, is, term->np, stride, is->p, out_p, r->dh_dp);
+        bad |= add(r, &term->to_p, stride, is->p, out_p, r->dh_dp);
     return bad;
 }
 
@@ -297,9 +285,9 @@ static bool evaluate(nevh_field *f, nevh__planned *term, const request *r) {
     double *to_p = f->rows + term->nq * stride;
     double *slopes_q = f->slopes, *slopes_p = f->slopes + term->nq * stride;
     const double *q =
-        rows(r, is, term->nq, term->straight_q, stride, is->q, r->q, f->rows);
+        rows(r, &term->to_q, term->straight_q, stride, is->q, r->q, f->rows);
     const double *p =
-        rows(r, is, term->np, term->straight_p, stride, is->p, r->p, to_p);
+        rows(r, &term->to_p, term->straight_p, stride, is->p, r->p, to_p);
     if (r->vectors && term == f->writer_q && r->dh_dq)
         slopes_q = r->dh_dq;
     if (r->vectors && term == f->writer_p && r->dh_dp)
@@ -309,9 +297,9 @@ static bool evaluate(nevh_field *f, nevh__planned *term, const request *r) {
                  r->dh_dq ? slopes_q : NULL, r->dh_dp ? slopes_p : NULL);
     bool bad = false;
     if (r->dh_dq && term->nq)
-        bad |= add(r, is, term->nq, stride, is->q, slopes_q, r->dh_dq);
+        bad |= add(r, &term->to_q, stride, is->q, slopes_q, r->dh_dq);
     if (r->dh_dp && term->np)
-        bad |= add(r, is, term->np, stride, is->p, slopes_p, r->dh_dp);
+        bad |= add(r, &term->to_p, stride, is->p, slopes_p, r->dh_dp);
     return bad;
 }
 

@@ -14,6 +14,9 @@
 typedef double nevh__vector
     __attribute__((vector_size(NEVH__LANES * sizeof(double)),
                    aligned(sizeof(double)), may_alias));
+#else
+typedef double nevh__vector;
 #endif
+enum { NEVH__IN_VECTOR = sizeof(nevh__vector) / sizeof(double) };
 
 #endif
