@@ -95,6 +95,35 @@ static void add_waves(nevh_system *s, size_t count, const size_t *at) {
                                                .gradient = wave_gradient}));
 }
 
+static double bond(double t, const double q[], const double p[],
+                   const double c[], const void *params) {
+    (void)t, (void)p, (void)params;
+    return -c[0] * cos(q[0] - q[1]);
+}
+static void bond_gradient(size_t width, const double t[], const double q[],
+                          const double p[], const double c[],
+                          const void *params, double dq[], double dp[]) {
+    (void)t, (void)p, (void)params, (void)dp;
+    for (size_t i = 0; dq && i < width; i++) {
+        dq[i] = c[i] * sin(q[i] - q[width + i]);
+        dq[width + i] = -dq[i];
+    }
+}
+
+/* So many on the second coordinate that the order of their sum shows. */
+static void add_bonds(nevh_system *s) {
+    static const size_t at[] = {0, 1, 1, 2, 2, 1, 1, 0, 2, 0};
+    static const double c[] = {1.25, 0.7, 1e-3, 3.1, 0.9};
+    ck_assert(!nevh_system_add(s, &(nevh_term){.effect = "bonds",
+                                               .nq = 2,
+                                               .nc = 1,
+                                               .q = at,
+                                               .c = c,
+                                               .count = 5,
+                                               .value = bond,
+                                               .gradient = bond_gradient}));
+}
+
 static nevh_system *wavy(int kind) {
     nevh_system *s = nevh_system_new(MOST);
     static const size_t rising[] = {0, 1, 2}, falling[] = {2, 1, 0},
@@ -112,6 +141,10 @@ static nevh_system *wavy(int kind) {
         break;
     case 3:
         add_waves(s, 3, rising);
+        add_waves(s, 1, some);
+        break;
+    case 4:
+        add_bonds(s);
         add_waves(s, 1, some);
         break;
     default:
@@ -358,7 +391,7 @@ int main(void) {
     Suite *suite = suite_create("one orbit");
     TCase *cases = tcase_create("one orbit");
     tcase_add_loop_test(cases, alone_as_among_others, 0, 5 * scheme_count());
-    tcase_add_loop_test(cases, every_width_alike, 0, 5);
+    tcase_add_loop_test(cases, every_width_alike, 0, 6);
     tcase_add_loop_test(cases, failures_name_the_term, 0, 4);
     tcase_add_loop_test(cases, asking_in_between_changes_nothing, 0, 5);
     tcase_add_loop_test(cases, in_parts_and_in_two, 0, 2 * scheme_count());
