@@ -11,6 +11,7 @@ suites = \
 	tests/check_body \
 	tests/check_lanes \
 	tests/check_one_orbit \
+	tests/check_one_orbit_terms \
 	tests/check_probe \
 	tests/check_tape \
 	tests/check_tape_build \

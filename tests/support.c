@@ -21,6 +21,32 @@ void mass_kinetic_gradient(size_t width, const double t[], const double q[],
         EACH(i) dp[i] = p[i] / c[i];
 }
 
+double wave(double t, const double q[], const double p[], const double c[],
+            const void *params) {
+    (void)t, (void)p, (void)params;
+    return -c[0] * cos(q[0]);
+}
+
+void wave_gradient(size_t width, const double t[], const double q[],
+                   const double p[], const double c[], const void *params,
+                   double dq[], double dp[]) {
+    (void)t, (void)p, (void)params, (void)dp;
+    for (size_t i = 0; dq && i < width; i++)
+        dq[i] = c[i] * sin(q[i]);
+}
+
+void add_waves(nevh_system *s, size_t count, const size_t *at) {
+    static const double c[] = {1.25, 0.75, 2.5};
+    ck_assert(!nevh_system_add(s, &(nevh_term){.effect = "waves",
+                                               .nq = 1,
+                                               .nc = 1,
+                                               .q = at,
+                                               .c = c,
+                                               .count = count,
+                                               .value = wave,
+                                               .gradient = wave_gradient}));
+}
+
 static const double masses[] = {1.3, 2.1};
 
 static void add_kinetic(nevh_system *s, size_t n) {

@@ -29,6 +29,14 @@ double mass_kinetic(double t, const double q[], const double p[],
 void mass_kinetic_gradient(size_t width, const double t[], const double q[],
                            const double p[], const double c[],
                            const void *params, double dq[], double dp[]);
+/* -c cos(q), and up to three of them over the coordinates that are given, as a
+   term. */
+double wave(double t, const double q[], const double p[], const double c[],
+            const void *params);
+void wave_gradient(size_t width, const double t[], const double q[],
+                   const double p[], const double c[], const void *params,
+                   double dq[], double dp[]);
+void add_waves(nevh_system *, size_t count, const size_t *at);
 
 extern const problem driven_pendulum, kepler, henon_heiles, relativistic,
     double_pendulum;

@@ -1,0 +1,160 @@
+/* nevh tests: one orbit of an H of several terms.
+
+   Terms that share variables are added up in place, or variable by variable, in
+   ways that depend on how many lanes there are; none of that may be seen.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "support.h"
+#include <math.h>
+
+enum { STEPS = 12, WIDTH = 8 };
+
+static void add_kinetic(nevh_system *s, size_t count, const size_t *at) {
+    static const double masses[] = {2, 3};
+    ck_assert(
+        !nevh_system_add(s, &(nevh_term){.effect = "kinetic",
+                                         .np = 1,
+                                         .nc = 1,
+                                         .p = at,
+                                         .c = masses,
+                                         .count = count,
+                                         .value = mass_kinetic,
+                                         .gradient = mass_kinetic_gradient}));
+}
+
+/* Both halves of H are sums of two terms. */
+static nevh_system *in_parts(bool rubs) {
+    static const size_t all[] = {0, 1}, one[] = {1};
+    nevh_system *s = nevh_system_new(2);
+    add_waves(s, 2, all);
+    add_kinetic(s, 2, all);
+    add_waves(s, 1, one);
+    add_kinetic(s, 1, one);
+    if (rubs)
+        ck_assert(
+            !nevh_system_add_friction(s, "drag", (const double[]){0.3, 0.1}));
+    return s;
+}
+
+static nevh_stepper *plan_parts(const nevh_system *s,
+                                const nevh_integrator *scheme, size_t width) {
+    static const double q[2 * WIDTH] = {0}, p[2 * WIDTH] = {0};
+    return nevh_stepper_new(
+        s, scheme,
+        &(nevh_options){.gradient = nevh_exact,
+                        .width = width,
+                        .scale = (const double[]){1, 1, 1, 1},
+                        .q = q,
+                        .p = p,
+                        .tolerance = tolerance_for(scheme),
+                        .binding = 2});
+}
+
+/* The second half of the way by another stepper, which is told what the first
+   one knows. */
+static void go_in_two(const nevh_system *s, const nevh_integrator *scheme,
+                      double q[], double p[]) {
+    char saved[8192];
+    nevh_stepper *first = plan_parts(s, scheme, 1);
+    nevh_stepper *second = plan_parts(s, scheme, 1);
+    size_t size = nevh_stepper_save_size(first);
+    ck_assert(size <= sizeof saved);
+    ck_assert(!nevh_run(first, 0, 0.2, STEPS / 2, q, p, NULL, 0));
+    nevh_stepper_save(first, saved);
+    ck_assert(!nevh_stepper_load(second, saved, size));
+    ck_assert(!nevh_run(second, STEPS / 2 * 0.2, 0.2, STEPS - STEPS / 2, q, p,
+                        NULL, 0));
+    nevh_stepper_free(first);
+    nevh_stepper_free(second);
+}
+
+START_TEST(in_parts_and_in_two) {
+    const nevh_integrator *scheme = nevh_integrators()[_i / 2];
+    double q[2 * WIDTH], p[2 * WIDTH], one_q[] = {0.5, -1}, one_p[] = {1, 0.25};
+    nevh_system *s = in_parts(_i % 2);
+    nevh_stepper *all = plan_parts(s, scheme, WIDTH);
+    ck_assert((nevh_stepper_status(all) != NEVH_OK) ==
+              nevh_integrator_own_time(scheme));
+    if (!nevh_integrator_own_time(scheme)) {
+        for (size_t i = 0; i < 2 * WIDTH; i++) {
+            q[i] = one_q[i / WIDTH] + (i % WIDTH == 5 ? 0 : 0.1);
+            p[i] = one_p[i / WIDTH];
+        }
+        ck_assert(!nevh_run(all, 0, 0.2, STEPS / 2, q, p, NULL, 0));
+        ck_assert(!nevh_run(all, STEPS / 2 * 0.2, 0.2, STEPS - STEPS / 2, q, p,
+                            NULL, 0));
+        go_in_two(s, scheme, one_q, one_p);
+        for (size_t k = 0; k < 2; k++) {
+            ck_assert(q[k * WIDTH + 5] == one_q[k]);
+            ck_assert(p[k * WIDTH + 5] == one_p[k]);
+        }
+    }
+    nevh_stepper_free(all);
+    nevh_system_free(s);
+}
+END_TEST
+
+static double bond(double t, const double q[], const double p[],
+                   const double c[], const void *params) {
+    (void)t, (void)p, (void)params;
+    return -c[0] * cos(q[0] - q[1]);
+}
+
+static void bond_gradient(size_t width, const double t[], const double q[],
+                          const double p[], const double c[],
+                          const void *params, double dq[], double dp[]) {
+    (void)t, (void)p, (void)params, (void)dp;
+    for (size_t i = 0; dq && i < width; i++) {
+        dq[i] = c[i] * sin(q[i] - q[width + i]);
+        dq[width + i] = -dq[i];
+    }
+}
+
+/* So many on one coordinate, and so unlike, that the order of a sum shows. */
+static nevh_system *bonds(void) {
+    static const size_t at[] = {0, 1, 1, 2, 2, 1, 1, 0, 2, 0};
+    static const double c[] = {1.25, 0.7, 1e-3, 3.1, 0.9};
+    nevh_system *s = nevh_system_new(3);
+    ck_assert(!nevh_system_add(s, &(nevh_term){.effect = "bonds",
+                                               .nq = 2,
+                                               .nc = 1,
+                                               .q = at,
+                                               .c = c,
+                                               .count = 5,
+                                               .value = bond,
+                                               .gradient = bond_gradient}));
+    return s;
+}
+
+/* Each lane has what it would have alone, to the last bit. */
+START_TEST(sums_in_one_order) {
+    static const size_t widths[] = {1, 3, 8, 16};
+    enum { STATES = 40 };
+    size_t width = widths[_i];
+    nevh_system *s = bonds();
+    nevh_field *f = nevh_field_new(s, &(nevh_options){.gradient = nevh_exact});
+    ck_assert_int_eq(nevh_field_status(f), NEVH_OK);
+    for (int state = 0; state < STATES; state++) {
+        double t[16] = {0}, q[48], p[48] = {0}, g[48], x[3];
+        for (size_t k = 0; k < 3; k++)
+            x[k] = sin(1.7 * state + (double)k);
+        for (size_t i = 0; i < 3 * width; i++)
+            q[i] = x[i / width] + (i % width == width - 1 ? 0 : 0.01);
+        double a = sin(x[0] - x[1]), b = sin(x[1] - x[2]);
+        double c = sin(x[2] - x[1]), d = sin(x[1] - x[0]);
+        double second = 0.7 * b + 3.1 * d - 1.25 * a - 1e-3 * c;
+        ck_assert(!nevh_field_gradient(f, width, t, q, p, g, NULL));
+        ck_assert(g[2 * width - 1] == second);
+    }
+    nevh_field_free(f);
+    nevh_system_free(s);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("one orbit of several terms");
+    TCase *cases = tcase_create("one orbit of several terms");
+    tcase_add_loop_test(cases, in_parts_and_in_two, 0, 2 * scheme_count());
+    tcase_add_loop_test(cases, sums_in_one_order, 0, 4);
+    suite_add_tcase(suite, cases);
+    return run_suite(suite);
+}
