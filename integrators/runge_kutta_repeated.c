@@ -165,7 +165,7 @@ NEVH_SIMD static double take(const nevh__repeated_stages *r,
                              const nevh__stages *s, size_t first,
                              size_t until) {
     double bad = 0, t = *s->t, h = *s->h;
-    for (size_t stage = first; stage < until; stage++) {
+    for (size_t stage = first; bad == 0 && stage < until; stage++) {
         const nevh__call *call = &r->calls[stage];
         double *slopes = r->slopes + stage * r->size;
         place(r, &r->sums[stage], s->carry);
