@@ -100,7 +100,8 @@ tests_check_damped_orbits_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_threads_CFLAGS = $(AM_CFLAGS) -pthread
 tests_check_threads_LDFLAGS = $(AM_LDFLAGS) -pthread
 
-check_PROGRAMS = tests/steps tests/steps_of
+check_PROGRAMS = tests/steps tests/steps_of tests/forge
+tests_forge_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE
 tests_steps_LDADD = libnevh.la
 tests_steps_of_LDADD = libnevh.la
 check_LTLIBRARIES =
