@@ -70,7 +70,8 @@ static const char tiny[] = "[coordinates]\n"
                            "dt = 0.1\nt_end = 2\nstop = x < -0.99\n";
 static const double times[] = {0, 0.1, 0.15, 0.7, 2};
 
-static plan plan_of(const char *integrator) {
+/* The options, too, are the plan's as long as it lives. */
+static plan plan_of(const char *integrator, options *o) {
     static char *scene;
     if (!scene) {
         scene = fuzz_file("tiny.nevh");
@@ -79,12 +80,10 @@ static plan plan_of(const char *integrator) {
     char *argv[] = {
         "nevh", "run", scene, "--integrators", (char *)(uintptr_t)integrator,
         NULL};
-    options o;
     plan p;
     optind = 0; /* glibc: from the beginning */
-    insist(options_read(&o, 5, argv) == TOOL_OK);
-    insist(plan_make(&p, &o) == TOOL_OK);
-    options_free(&o);
+    insist(options_read(o, 5, argv) == TOOL_OK);
+    insist(plan_make(&p, o) == TOOL_OK);
     return p;
 }
 
@@ -109,10 +108,11 @@ static void go_on(unsigned how, const uint8_t *bytes, size_t size) {
     static const volatile sig_atomic_t never;
     static plan plans[2]; /* making these takes long */
     static nevh_stepper *steppers[2];
+    static options given[2];
     plan *p = &plans[how >> 3 & 1];
     nevh_stepper **stepper = &steppers[how >> 3 & 1];
     if (!*stepper) {
-        *p = plan_of(name);
+        *p = plan_of(name, &given[how >> 3 & 1]);
         *stepper = plan_stepper(p, name);
     }
     nevh_stepper_reset(*stepper);
