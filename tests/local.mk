@@ -109,7 +109,7 @@ if HAVE_CHECK
 check_PROGRAMS += $(suites)
 check_LTLIBRARIES += tests/libsupport.la
 tests_libsupport_la_SOURCES = tests/support.c tests/support.h \
-	tests/damped.h tests/driven.h
+	tests/damped.h tests/driven.h tests/state.h
 if HAVE_WRAP
 memory_suite = tests/check_memory
 check_PROGRAMS += $(memory_suite)
