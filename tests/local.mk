@@ -56,6 +56,7 @@ suites = \
 	tests/check_failures \
 	tests/check_hard_steps \
 	tests/check_hard \
+	tests/check_hard_pendulum \
 	tests/check_hard_judge \
 	tests/check_implicit \
 	tests/check_stiff \
@@ -83,7 +84,7 @@ tests_check_tape_build_LDADD = $(INSIDE_LIBS)
 tests_check_tape_terms_LDADD = $(INSIDE_LIBS)
 tests_check_formula_LDADD = $(INSIDE_LIBS)
 tests_check_formula_terms_LDADD = $(INSIDE_LIBS)
-tests_check_hard_LDADD = $(TEST_LIBS) $(GSL_LIBS)
+tests_check_hard_pendulum_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_grid_SOURCES = tests/check_grid.c tools/grid.c
 tests_check_hard_judge_SOURCES = tests/check_hard_judge.c \
 	tools/hard_private.h \
@@ -109,7 +110,8 @@ if HAVE_CHECK
 check_PROGRAMS += $(suites)
 check_LTLIBRARIES += tests/libsupport.la
 tests_libsupport_la_SOURCES = tests/support.c tests/support.h \
-	tests/damped.h tests/driven.h tests/state.h
+	tests/damped.h tests/driven.h tests/state.h \
+	tests/hard.h
 if HAVE_WRAP
 memory_suite = tests/check_memory
 check_PROGRAMS += $(memory_suite)
