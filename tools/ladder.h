@@ -53,8 +53,9 @@ typedef struct {
     size_t dts, tolerances;
     size_t runs;
 } search;
-/* search.c: what a search may cost. */
-/* With --dt, only these steps, and the tolerances of the plan. */
+
+/* search.c: what a search may cost.  With --dt, only these steps, and the
+ * tolerances of the plan. */
 search search_begin(const plan *, const options *, double budget);
 bool search_is_over(const search *, double share); /* of the budget */
 /* Whether times may be measured again: seconds, of which no row depends. */
