@@ -305,8 +305,8 @@ END_TEST
 
 int main(void) {
     Suite *s = suite_create("hard");
-    TCase *cases = tcase_create("hard"), *slow = tcase_create("long");
-    tcase_add_loop_test(cases, kapitza_stands, 0, 6);
+    TCase *cases = tcase_create("hard"), *often = tcase_create("many orbits"),
+          *slow = tcase_create("long");
     tcase_add_test(cases, kapitza_needs_steps);
     tcase_add_test(cases, fput_recurs);
     tcase_add_test(cases, toda_keeps_three);
@@ -315,6 +315,9 @@ int main(void) {
                         scheme_count());
     tcase_add_loop_test(cases, escapes_are_given_up, 0, 4);
     suite_add_tcase(s, cases);
+    tcase_set_tags(often, "long");
+    tcase_add_loop_test(often, kapitza_stands, 0, 6);
+    suite_add_tcase(s, often);
     tcase_set_tags(slow, "slow");
     tcase_add_test(slow, the_eight_stays);
     tcase_add_test(slow, a_million_years);

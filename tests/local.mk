@@ -176,7 +176,8 @@ TESTS = $(all_suites) $(dist_check_SCRIPTS)
 TEST_EXTENSIONS = .sh
 SH_LOG_COMPILER = $(SHELL)
 
-# Tests with the tag slow are for make check-slow.
+# Tests with the tag slow are for make check-slow; make check-valgrind leaves out
+# those with the tag long as well, which take orbits that others take, too.
 CHECK_TAGS = CK_EXCLUDE_TAGS
 TEST_TIMEOUT = 60
 AM_TESTS_ENVIRONMENT = \
@@ -212,7 +213,8 @@ fuzz:
 VALGRIND = valgrind -q --leak-check=full --error-exitcode=9
 check-valgrind: all $(check_LTLIBRARIES) $(check_PROGRAMS)
 	@failed=; for suite in $(all_suites); do \
-	  srcdir='$(srcdir)' CK_FORK=no CK_EXCLUDE_TAGS=slow $(LIBTOOL) --mode=execute \
+	  srcdir='$(srcdir)' CK_FORK=no CK_EXCLUDE_TAGS='slow long' \
+	  $(LIBTOOL) --mode=execute \
 	    $(VALGRIND) ./$$suite || failed="$$failed $$suite"; \
 	done; \
 	test -z "$$failed" || { echo "failed under valgrind:$$failed"; exit 1; }
