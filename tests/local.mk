@@ -149,6 +149,7 @@ dist_hard_DATA = \
 
 dist_check_SCRIPTS = \
 	tests/symbols.sh \
+	tests/fuzz_compiles.sh \
 	tests/cplusplus.sh \
 	tests/examples.sh \
 	tests/nevh.sh \

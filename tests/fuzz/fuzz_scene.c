@@ -152,14 +152,14 @@ static void insist_on_same(nevh_scene *a, nevh_scene *b) {
 }
 
 static void write_and_read(nevh_scene *s) {
-    char *text = nevh_scene_write(s);
+    char *text = nevh_scene_write(s, NULL);
     insist(text != NULL);
     nevh_scene *copy = nevh_scene_parse("written", text);
     if (nevh_scene_status(copy))
         printf("%s\n%s\n", nevh_scene_message(copy), text);
     insist(!nevh_scene_status(copy));
     insist_on_same(s, copy);
-    char *again = nevh_scene_write(copy);
+    char *again = nevh_scene_write(copy, NULL);
     insist(!strcmp(text, again));
     free(again);
     free(text);
