@@ -33,20 +33,6 @@ static nevh_energy_report report_on(const problem *b,
     return r;
 }
 
-/* The slope of a straight line through log-log points. */
-static double slope_of(int count, const double x[], const double y[]) {
-    double mx = 0, my = 0, xx = 0, xy = 0;
-    for (int i = 0; i < count; i++) {
-        mx += x[i] / count;
-        my += y[i] / count;
-    }
-    for (int i = 0; i < count; i++) {
-        xx += (x[i] - mx) * (x[i] - mx);
-        xy += (x[i] - mx) * (y[i] - my);
-    }
-    return xy / xx;
-}
-
 /* The error of the balance falls with the scheme's order.  Beyond order 8 the
    power law is hardly seen before rounding; there the error falls to it. */
 static void assert_order(const problem *b, const nevh_integrator *scheme) {
@@ -73,7 +59,7 @@ static void assert_order(const problem *b, const nevh_integrator *scheme) {
         ck_assert_double_lt(error, 3e-13);
         return;
     }
-    double slope = slope_of(count, x, y);
+    double slope = slope_through(count, x, y);
     ck_assert_msg(slope >= (high ? 0.7 : 0.85) * order,
                   "%s on %s: order %d, measured %.3f at %d points",
                   nevh_integrator_name(scheme), b->name, order, slope, count);

@@ -13,42 +13,8 @@
 
 enum { LANES = 16, SHARE = 16 };
 
-static double attraction(double t, const double q[], const double p[],
-                         const double c[], const void *params) {
-    (void)t, (void)p, (void)c, (void)params;
-    return -1 / sqrt(q[0] * q[0] + q[1] * q[1]);
-}
-
-static void attraction_gradient(size_t width, const double t[],
-                                const double q[], const double p[],
-                                const double c[], const void *params,
-                                double dq[], double dp[]) {
-    const double *x = q, *y = q + width;
-    (void)t, (void)p, (void)c, (void)params, (void)dp;
-    for (size_t i = 0; dq && i < width; i++) {
-        double r2 = x[i] * x[i] + y[i] * y[i], r3 = r2 * sqrt(r2);
-        dq[i] = x[i] / r3;
-        dq[width + i] = y[i] / r3;
-    }
-}
-
 static nevh_system *make_kepler(void) {
-    static const size_t momenta[] = {0, 1};
-    static const double masses[] = {1, 1};
-    nevh_system *s = nevh_system_new(2);
-    nevh_system_add(s, &(nevh_term){.effect = "kinetic",
-                                    .np = 1,
-                                    .nc = 1,
-                                    .p = momenta,
-                                    .c = masses,
-                                    .count = 2,
-                                    .value = mass_kinetic,
-                                    .gradient = mass_kinetic_gradient});
-    nevh_system_add(s, &(nevh_term){.effect = "potential",
-                                    .nq = 2,
-                                    .value = attraction,
-                                    .gradient = attraction_gradient});
-    return s;
+    return gravity_system((const double[]){1, 1}, 1);
 }
 
 /* Semi-major axis 1, the eccentricity 0.6 in lane 0, a little less in others;

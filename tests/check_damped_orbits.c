@@ -167,7 +167,7 @@ static void assert_order(const problem *b, const nevh_integrator *scheme,
             y[count++] = log(error);
         }
     }
-    double slope = slope_of(count, x, y), slack = order > 2 ? 0.15 : 0.05;
+    double slope = slope_through(count, x, y), slack = order > 2 ? 0.15 : 0.05;
     ck_assert_msg(count >= 4 && fabs(slope - order) <= slack * order,
                   "%s on %s: order %d, measured %.3f at %d points",
                   nevh_integrator_name(scheme), b->name, order, slope, count);

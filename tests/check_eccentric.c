@@ -7,40 +7,8 @@
 #include <nevh/transform.h>
 #include <string.h>
 
-static double gravity(double t, const double q[], const double p[],
-                      const double c[], const void *params) {
-    (void)t, (void)p, (void)c, (void)params;
-    return -1 / sqrt(q[0] * q[0] + q[1] * q[1]);
-}
-
-static void gravity_gradient(size_t width, const double t[], const double q[],
-                             const double p[], const double c[],
-                             const void *params, double dq[], double dp[]) {
-    (void)t, (void)p, (void)c, (void)params, (void)dp;
-    for (size_t i = 0; dq && i < width; i++) {
-        double x = q[i], y = q[width + i], r = hypot(x, y);
-        dq[i] = x / (r * r * r);
-        dq[width + i] = y / (r * r * r);
-    }
-}
-
 static nevh_system *make_kepler(void) {
-    static const size_t momenta[] = {0, 1};
-    static const double masses[] = {1, 1};
-    nevh_system *s = nevh_system_new(2);
-    nevh_system_add(s, &(nevh_term){.effect = "kinetic",
-                                    .np = 1,
-                                    .nc = 1,
-                                    .p = momenta,
-                                    .c = masses,
-                                    .count = 2,
-                                    .value = mass_kinetic,
-                                    .gradient = mass_kinetic_gradient});
-    nevh_system_add(s, &(nevh_term){.effect = "gravity",
-                                    .nq = 2,
-                                    .value = gravity,
-                                    .gradient = gravity_gradient});
-    return s;
+    return gravity_system((const double[]){1, 1}, 1);
 }
 
 static const double period = 6.283185307179586;

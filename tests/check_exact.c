@@ -5,10 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static void assert_says(const char *message, const char *word) {
-    ck_assert_msg(strstr(message, word), "no \"%s\" in: %s", word, message);
-}
-
 /* H of two degrees of freedom that is singular at 0 and mixes all it reads. */
 static double mixed(double t, const double q[], const double p[],
                     const double c[], const void *params) {

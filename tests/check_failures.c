@@ -8,9 +8,6 @@
 #include <stdint.h>
 #include <string.h>
 
-#define assert_says(message, word)                                             \
-    ck_assert_msg(strstr(message, word), "no \"%s\" in: %s", word, message)
-
 static const double start_q = 1.7, start_p = 0.4;
 
 /* A value that goes wrong once, or H at its k-th evaluation. */

@@ -5,9 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-#define assert_says(message, word)                                             \
-    ck_assert_msg(strstr(message, word), "no \"%s\" in: %s", word, message)
-
 static const double now = 0.3;
 
 /* The central methods, by _i. */

@@ -9,9 +9,6 @@
 #include <stdint.h>
 #include <string.h>
 
-#define assert_says(message, word)                                             \
-    ck_assert_msg(strstr(message, word), "no \"%s\" in: %s", word, message)
-
 static double pendulum(double t, const double q[], const double p[],
                        const void *params) {
     (void)t, (void)params;

@@ -209,6 +209,45 @@ START_TEST(states_in_quadruple_precision) {
 }
 END_TEST
 
+/* Orbits that hang on a constant: at a rounding of it, they are off by no more
+   than the own error. */
+static const struct {
+    orbit orbit;
+    const char *more; /* effects, that make a constant larger by 1e-10 of it */
+} sensitive[] = {
+    {{"x = 0.1\ny = 0\np_y = sqrt(19)",
+      "T = (p_x^2 + p_y^2)/2\nV = -1/hypot(x, y)", 0, 100},
+     "more = -1e-10/hypot(x, y)"},
+    {{"x = 0.1\ny = 0\np_y = sqrt(19)",
+      "T = (p_x^2 + p_y^2)/2\nV = -1/hypot(x, y)", 0, 100},
+     "more = 1e-10*(p_x^2 + p_y^2)/2"},
+    {{"q = 0\np_q = 2 + 1e-4", "T = p_q^2/2\nV = -cos(q)", 0, 100},
+     "more = -1e-10*cos(q)"},
+    {{"q = pi - 1e-3", "T = p_q^2/2\nV = -cos(q)", 0, 100},
+     "more = 1e-10*sin(q)"},
+};
+enum { SENSITIVE = sizeof sensitive / sizeof *sensitive };
+
+START_TEST(constants_are_in_the_own_error) {
+    char effects[400];
+    orbit off = sensitive[_i].orbit;
+    snprintf(effects, sizeof effects, "%s\n%s", off.effects,
+             sensitive[_i].more);
+    off.effects = effects;
+    setup a = refer_to(&sensitive[_i].orbit, NULL), b = refer_to(&off, NULL);
+    ck_assert_ptr_nonnull(strstr(nevh_reference_text(b.reference), "exact"));
+    double most = 0;
+    for (int i = 1; i <= 50; i++)
+        most = fmax(most, difference(a.reference, b.reference, a.n, 2. * i));
+    double rounding = most / 1e-10 * DBL_EPSILON / 8;
+    ck_assert_double_gt(rounding, 1e-15);
+    ck_assert_double_lt(rounding, nevh_reference_error(a.reference));
+    ck_assert_double_lt(nevh_reference_error(a.reference), 1000 * rounding);
+    tear_down(&a);
+    tear_down(&b);
+}
+END_TEST
+
 static double pendulum_value(double t, const double q[], const double p[],
                              const void *params) {
     (void)t, (void)params;
@@ -537,6 +576,7 @@ static void add_exact(Suite *suite) {
     tcase_add_loop_test(cases, exact_solutions_are_recognised, 0, RECOGNISED);
     tcase_add_loop_test(cases, near_misses_are_refused, 0, NEAR_MISSES);
     tcase_add_loop_test(cases, states_in_quadruple_precision, 0, STATES);
+    tcase_add_loop_test(cases, constants_are_in_the_own_error, 0, SENSITIVE);
     tcase_add_test(cases, values_alone_are_enough);
     suite_add_tcase(suite, cases);
 }

@@ -3,6 +3,7 @@
 #include "support.h"
 #include <float.h>
 #include <math.h>
+#include <nevh/extend.h>
 #include <string.h>
 
 static const double pi = 3.14159265358979323846;
@@ -101,6 +102,49 @@ START_TEST(no_limit_is_told) {
     ck_assert_double_nan(nevh_stability_limit(NULL));
     ck_assert_double_nan(nevh_stability_limit(nevh_adaptive_verlet));
     ck_assert_double_nan(nevh_stability_limit(nevh_gsl_msadams));
+}
+END_TEST
+
+/* Steps of no sense, for which there is an answer all the same. */
+static int grow(nevh_work *w, double t, double h, double q[], double p[]) {
+    (void)t;
+    for (size_t k = 0; k < w->n * w->width; k++)
+        q[k] *= h == 0 ? 1 : 2, p[k] *= h == 0 ? 1 : 2;
+    return NEVH_OK;
+}
+
+static int stay(nevh_work *w, double t, double h, double q[], double p[]) {
+    (void)w, (void)t, (void)h, (void)q, (void)p;
+    return NEVH_OK;
+}
+
+static int lose(nevh_work *w, double t, double h, double q[], double p[]) {
+    (void)t, (void)h;
+    for (size_t k = 0; k < w->n * w->width; k++)
+        q[k] = p[k] = NAN;
+    return NEVH_OK;
+}
+
+static int refuse(nevh_work *w, double t, double h, double q[], double p[]) {
+    (void)w, (void)t, (void)h, (void)q, (void)p;
+    return NEVH_EDOM;
+}
+
+START_TEST(schemes_of_no_sense_have_an_answer) {
+    static const struct {
+        int (*step)(nevh_work *, double, double, double[], double[]);
+        double limit;
+    } senseless[] = {{grow, 0}, {stay, INFINITY}, {lose, 0}, {refuse, 0}};
+    nevh_kernel kernel = *nevh_verlet->kernel;
+    nevh_integrator scheme = *nevh_verlet;
+    kernel.step = senseless[_i / 2].step;
+    scheme.kernel = &kernel;
+    scheme.symplectic = _i % 2 ? NEVH_YES : NEVH_NO;
+    double limit = nevh_stability_limit(&scheme);
+    if (isinf(senseless[_i / 2].limit))
+        ck_assert_double_infinite(limit);
+    else
+        ck_assert_double_le(limit, 1e-18);
 }
 END_TEST
 
@@ -227,6 +271,7 @@ int main(void) {
     tcase_add_loop_test(cases, limits_are_limits, 0, scheme_count());
     tcase_add_test(cases, limit_of_an_extended_space);
     tcase_add_test(cases, no_limit_is_told);
+    tcase_add_loop_test(cases, schemes_of_no_sense_have_an_answer, 0, 8);
     tcase_add_loop_test(cases, rates_of_a_pendulum, 0, 3);
     tcase_add_test(cases, rates_of_a_charge);
     tcase_add_loop_test(cases, rates_of_a_ring, 0, 2);

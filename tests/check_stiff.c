@@ -10,9 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define assert_says(message, word)                                             \
-    ck_assert_msg(strstr(message, word), "no \"%s\" in: %s", word, message)
-
 #define PI    3.14159265358979323846
 #define RATIO 1e4
 static const double angle = 1, ten_periods = 10 * 2 * PI / RATIO;

@@ -4,9 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-#define assert_says(message, word)                                             \
-    ck_assert_msg(strstr(message, word), "no \"%s\" in: %s", word, message)
-
 static double cosine(double t, const double q[], const double p[],
                      const double c[], const void *params) {
     (void)t, (void)p, (void)c, (void)params;

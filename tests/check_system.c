@@ -37,9 +37,6 @@ static nevh_system *pendulum(void) {
     return s;
 }
 
-#define assert_says(message, word)                                             \
-    ck_assert_msg(strstr(message, word), "no \"%s\" in: %s", word, message)
-
 /* A system with this error makes nothing that works. */
 static void assert_useless(nevh_system *s, int status) {
     double z[8] = {0}, t = 0;

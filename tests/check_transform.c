@@ -8,9 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define assert_says(message, word)                                             \
-    ck_assert_msg(strstr(message, word), "no \"%s\" in: %s", word, message)
-
 /* A user's s of everything. */
 static double bump(double t, const double q[], const double p[],
                    const double c[], const void *params) {

@@ -3,24 +3,9 @@
 #ifndef NEVH_TESTS_DAMPED_H
 #define NEVH_TESTS_DAMPED_H
 
-#include "support.h"
+#include "state.h"
 #include <math.h>
 #include <nevh/extend.h>
-#include <string.h>
-
-#define assert_says(message, word)                                             \
-    ck_assert_msg(strstr(message, word), "no \"%s\" in: %s", word, message)
-
-typedef struct {
-    double q[MOST_DOF], p[MOST_DOF];
-} state;
-
-static inline state start(const problem *b) {
-    state z;
-    memcpy(z.q, b->q, sizeof z.q);
-    memcpy(z.p, b->p, sizeof z.p);
-    return z;
-}
 
 static inline bool same(const problem *b, const state *x, const state *y) {
     return memcmp(x->q, y->q, b->n * sizeof(double)) == 0 &&
@@ -54,20 +39,6 @@ static inline double distance(const problem *b, const state *x,
         sum += (x->q[k] - y->q[k]) * (x->q[k] - y->q[k]) +
                (x->p[k] - y->p[k]) * (x->p[k] - y->p[k]);
     return sqrt(sum);
-}
-
-/* The slope of a straight line through log-log points. */
-static inline double slope_of(int count, const double x[], const double y[]) {
-    double mx = 0, my = 0, xx = 0, xy = 0;
-    for (int i = 0; i < count; i++) {
-        mx += x[i] / count;
-        my += y[i] / count;
-    }
-    for (int i = 0; i < count; i++) {
-        xx += (x[i] - mx) * (x[i] - mx);
-        xy += (x[i] - mx) * (y[i] - my);
-    }
-    return xy / xx;
 }
 
 #endif

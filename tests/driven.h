@@ -3,24 +3,9 @@
 #ifndef NEVH_TESTS_DRIVEN_H
 #define NEVH_TESTS_DRIVEN_H
 
-#include "support.h"
+#include "state.h"
 #include <math.h>
 #include <nevh/extend.h>
-#include <string.h>
-
-#define assert_says(message, word)                                             \
-    ck_assert_msg(strstr(message, word), "no \"%s\" in: %s", word, message)
-
-typedef struct {
-    double q[MOST_DOF], p[MOST_DOF];
-} state;
-
-static inline state start(const problem *b) {
-    state z;
-    memcpy(z.q, b->q, sizeof z.q);
-    memcpy(z.p, b->p, sizeof z.p);
-    return z;
-}
 
 /* A pendulum whose mass and gravity vary, and a term of t alone. */
 static double breathing(double t, const double q[], const double p[],

@@ -57,6 +57,7 @@ suites = \
 	tests/check_failures \
 	tests/check_hard_steps \
 	tests/check_hard \
+	tests/check_hard_pendulum \
 	tests/check_hard_judge \
 	tests/check_implicit \
 	tests/check_stiff \
@@ -84,7 +85,7 @@ tests_check_tape_build_LDADD = $(INSIDE_LIBS)
 tests_check_tape_terms_LDADD = $(INSIDE_LIBS)
 tests_check_formula_LDADD = $(INSIDE_LIBS)
 tests_check_formula_terms_LDADD = $(INSIDE_LIBS)
-tests_check_hard_LDADD = $(TEST_LIBS) $(GSL_LIBS)
+tests_check_hard_pendulum_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_grid_SOURCES = tests/check_grid.c tools/grid.c
 tests_check_hard_judge_SOURCES = tests/check_hard_judge.c \
 	tools/hard_private.h \
@@ -101,7 +102,8 @@ tests_check_damped_orbits_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_check_threads_CFLAGS = $(AM_CFLAGS) -pthread
 tests_check_threads_LDFLAGS = $(AM_LDFLAGS) -pthread
 
-check_PROGRAMS = tests/steps tests/steps_of
+check_PROGRAMS = tests/steps tests/steps_of tests/forge
+tests_forge_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE
 tests_steps_LDADD = libnevh.la
 tests_steps_of_LDADD = libnevh.la
 check_LTLIBRARIES =
@@ -109,7 +111,8 @@ if HAVE_CHECK
 check_PROGRAMS += $(suites)
 check_LTLIBRARIES += tests/libsupport.la
 tests_libsupport_la_SOURCES = tests/support.c tests/support.h \
-	tests/damped.h tests/driven.h
+	tests/damped.h tests/driven.h tests/state.h \
+	tests/hard.h
 if HAVE_WRAP
 memory_suite = tests/check_memory
 check_PROGRAMS += $(memory_suite)
@@ -147,6 +150,7 @@ dist_hard_DATA = \
 
 dist_check_SCRIPTS = \
 	tests/symbols.sh \
+	tests/fuzz_compiles.sh \
 	tests/cplusplus.sh \
 	tests/examples.sh \
 	tests/nevh.sh \
@@ -174,7 +178,8 @@ TESTS = $(all_suites) $(dist_check_SCRIPTS)
 TEST_EXTENSIONS = .sh
 SH_LOG_COMPILER = $(SHELL)
 
-# Tests with the tag slow are for make check-slow.
+# Tests with the tag slow are for make check-slow; make check-valgrind leaves out
+# those with the tag long as well, which take orbits that others take, too.
 CHECK_TAGS = CK_EXCLUDE_TAGS
 TEST_TIMEOUT = 60
 AM_TESTS_ENVIRONMENT = \
@@ -210,7 +215,8 @@ fuzz:
 VALGRIND = valgrind -q --leak-check=full --error-exitcode=9
 check-valgrind: all $(check_LTLIBRARIES) $(check_PROGRAMS)
 	@failed=; for suite in $(all_suites); do \
-	  srcdir='$(srcdir)' CK_FORK=no CK_EXCLUDE_TAGS=slow $(LIBTOOL) --mode=execute \
+	  srcdir='$(srcdir)' CK_FORK=no CK_EXCLUDE_TAGS='slow long' \
+	  $(LIBTOOL) --mode=execute \
 	    $(VALGRIND) ./$$suite || failed="$$failed $$suite"; \
 	done; \
 	test -z "$$failed" || { echo "failed under valgrind:$$failed"; exit 1; }

@@ -143,6 +143,28 @@ exits 0 compare $work/stop.nevh --integrators verlet,euler --dt 0.1,0.05 \
 exits 0 compare $work/stop.nevh --integrators dopri5 --format csv
 has '^# 3 of 3 runs stopped'
 lacks ',(failed|refused)'
+# Neither the reference nor the pilots of equal work go beyond: of 1e6 s of chaos
+# two, of a ball only until it is about to fall through a hole.
+sed 's/^t_end .*/t_end = 1e6\nstop = t > 2/' \
+    "$srcdir/scenes/double-pendulum-chaotic.nevh" >$work/soon.nevh
+exits 0 compare $work/soon.nevh --integrators gauss4,gauss6 --dt 0.02
+has '^state error against gauss12 at dt'
+lacks 'mean nothing|meaningless'
+cat >$work/hole.nevh <<'END'
+[coordinates]
+x = 1, -10
+[effects]
+kinetic = p_x^2/2
+wall = -sqrt(x)
+[run]
+t_end = 1
+dt = 0.002
+stop = x < 0.5
+END
+exits 0 compare $work/hole.nevh --integrators verlet,gauss4 --match work \
+    --format csv
+has ',verlet,2,yes,central4,0\.002,26,ok,'
+has ',gauss4,4,yes,central4,0\.0[1-9][0-9]*,[3-5],ok,'
 exits 0 gradients $work/stop.nevh --gradient central2
 has '13 steps, t = 0 \.\.\. 0\.65'
 exits 0 effects $work/stop.nevh

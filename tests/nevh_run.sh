@@ -335,7 +335,47 @@ while test $i -lt 200; do
 done
 says 'damaged'
 untouched
+
+# Whole states that no run leaves: numbers that rows and steps are looked up
+# with.  forged MESSAGE NAME=VALUE...
+forged() {
+    message=$1
+    shift
+    cp $work/x.state $work/x.csv.state
+    "${FORGE:-./tests/forge}" $work/x.csv.state "$@" ||
+        { echo "cannot forge $*"; status=1; }
+    exits 2 run $run --resume $work/x.csv
+    says "$message"
+    untouched
+}
+never='where this run never is'
+forged "row 18446744073709551615 at .*$never" row=18446744073709551615
+forged "step 40001 .*$never" step=40001 row=40001 t=40.001
+forged "$never" step=18446744073709551615
+forged "t = 1e\+300, $never" t=1e300
+forged "$never" t=nan
+forged "$never" t=-1
+forged "$never" step=1000 t=1 row=999
+forged "$never" step=1000 t=1 row=1101
+forged 'not as the interrupted run left it' bytes=18446744073709551615
+forged 'not as the interrupted run left it' step=1000 t=1 row=1100 bytes=9999999
 cp $work/x.state $work/x.csv.state
 exits 0 run $run --resume $work/x.csv
 cmp -s $work/x.csv $work/a.whole || fails "does not go on"
+
+# The same where the times of rows are kept in an array, and where steps have
+# their own time.
+for run in "pendulum --integrators gauss8 --dt 0.001 --t-end 100 --at 0.5,1,99" \
+    "$work/comet.nevh --integrators gauss8+transform --t-end 20000 --at 0.5,1,9999"; do
+    stop TERM 0.02 $work/x.csv run $run -o $work/x.csv
+    cp $work/x.csv $work/x.kept
+    cp $work/x.csv.state $work/x.state
+    forged "row 3 .*$never" step=2000 t=2 row=3
+    forged "row 10000000000 .*$never" step=2000 t=2 row=10000000000
+    forged "row 1 .*$never" step=2000 t=2 row=1
+    forged "t = -1, $never" t=-1
+    forged "t = 20001, $never" t=20001
+    cp $work/x.state $work/x.csv.state
+    exits 0 run $run --resume $work/x.csv
+done
 exit $status

@@ -47,9 +47,9 @@ void add_waves(nevh_system *s, size_t count, const size_t *at) {
                                                .gradient = wave_gradient}));
 }
 
-static const double masses[] = {1.3, 2.1};
+static const double unequal_masses[] = {1.3, 2.1};
 
-static void add_kinetic(nevh_system *s, size_t n) {
+static void add_kinetic(nevh_system *s, size_t n, const double masses[]) {
     static const size_t momenta[] = {0, 1};
     nevh_system_add(s, &(nevh_term){.effect = "kinetic",
                                     .np = 1,
@@ -64,7 +64,7 @@ static void add_kinetic(nevh_system *s, size_t n) {
 static nevh_system *with_potential(size_t n, bool time, nevh_term_fn value,
                                    nevh_block_gradient_fn gradient) {
     nevh_system *s = nevh_system_new(n);
-    add_kinetic(s, n);
+    add_kinetic(s, n, unequal_masses);
     nevh_system_add(s, &(nevh_term){.effect = "potential",
                                     .nq = n,
                                     .time = time,
@@ -94,25 +94,37 @@ static nevh_system *make_driven(void) {
 
 static double gravity(double t, const double q[], const double p[],
                       const double c[], const void *params) {
-    (void)t, (void)p, (void)c, (void)params;
-    return -1.3 / sqrt(q[0] * q[0] + q[1] * q[1]);
+    (void)t, (void)p, (void)params;
+    return -c[0] / sqrt(q[0] * q[0] + q[1] * q[1]);
 }
 
 static void gravity_gradient(size_t width, const double t[], const double q[],
                              const double p[], const double c[],
                              const void *params, double dq[], double dp[]) {
-    (void)t, (void)p, (void)c, (void)params, (void)dp;
+    (void)t, (void)p, (void)params, (void)dp;
     const double *x = q, *y = q + width;
     if (dq)
         EACH(i) {
-            double r2 = x[i] * x[i] + y[i] * y[i], k = 1.3 / (r2 * sqrt(r2));
-            dq[i] = k * x[i];
-            dq[width + i] = k * y[i];
+            double r2 = x[i] * x[i] + y[i] * y[i], r3 = r2 * sqrt(r2);
+            dq[i] = c[i] * x[i] / r3;
+            dq[width + i] = c[i] * y[i] / r3;
         }
 }
 
+nevh_system *gravity_system(const double masses[2], double pull) {
+    nevh_system *s = nevh_system_new(2);
+    add_kinetic(s, 2, masses);
+    nevh_system_add(s, &(nevh_term){.effect = "gravity",
+                                    .nq = 2,
+                                    .nc = 1,
+                                    .c = &pull,
+                                    .value = gravity,
+                                    .gradient = gravity_gradient});
+    return s;
+}
+
 static nevh_system *make_kepler(void) {
-    return with_potential(2, false, gravity, gravity_gradient);
+    return gravity_system(unequal_masses, 1.3);
 }
 
 static double henon(double t, const double q[], const double p[],
@@ -446,6 +458,19 @@ nevh_energy_report energy_of(const problem *b, const nevh_integrator *scheme,
 
 double time_on(const nevh_stepper *m, const nevh_integrator *scheme, double t) {
     return nevh_integrator_own_time(scheme) ? nevh_stepper_time(m) : t;
+}
+
+double slope_through(int count, const double x[], const double y[]) {
+    double mx = 0, my = 0, xx = 0, xy = 0;
+    for (int i = 0; i < count; i++) {
+        mx += x[i] / count;
+        my += y[i] / count;
+    }
+    for (int i = 0; i < count; i++) {
+        xx += (x[i] - mx) * (x[i] - mx);
+        xy += (x[i] - mx) * (y[i] - my);
+    }
+    return xy / xx;
 }
 
 int scheme_count(void) {

@@ -9,6 +9,11 @@
 #include <check.h>
 #include <nevh/nevh.h>
 #include <stddef.h>
+#include <string.h>
+
+/* That a message has some words. */
+#define assert_says(message, word)                                             \
+    ck_assert_msg(strstr(message, word), "no \"%s\" in: %s", word, message)
 
 enum { MOST_DOF = 2 };
 
@@ -38,6 +43,9 @@ void wave_gradient(size_t width, const double t[], const double q[],
                    double dq[], double dp[]);
 void add_waves(nevh_system *, size_t count, const size_t *at);
 
+/* Attraction by pull/|q| in the plane, with exact gradients. */
+nevh_system *gravity_system(const double masses[2], double pull);
+
 extern const problem driven_pendulum, kepler, henon_heiles, relativistic,
     double_pendulum;
 /* The five of them, ended by NULL. */
@@ -66,6 +74,8 @@ nevh_energy_report energy_of(const problem *, const nevh_integrator *,
 /* The time to go on from, t + h by the clock: the stepper's own where its
    scheme has its own time. */
 double time_on(const nevh_stepper *, const nevh_integrator *, double t);
+/* The slope of a straight line through points. */
+double slope_through(int count, const double x[], const double y[]);
 /* Number of registered schemes. */
 int scheme_count(void);
 /* Runs a suite and returns main's result. */

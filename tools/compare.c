@@ -79,11 +79,20 @@ static void run_rows(const plan *p, row_list *r, bool quiet) {
     for (size_t i = 0; i < r->count; i++) {
         if (!quiet)
             progress(r, i, difftime(time(NULL), start), false);
-        match_row(p, &r->row[i]);
         row_run(p, &r->row[i]);
     }
     if (!quiet)
         progress(r, r->count, difftime(time(NULL), start), true);
+}
+
+/* Where the last of them will end: as far as a reference is of use. */
+static double last_end(const plan *p, const row_list *r) {
+    double last = p->run->t_start + p->dt[0];
+    if (!nevh_scene_stops(p->scene))
+        return p->t_end;
+    for (size_t i = 0; i < r->count && last < p->t_end; i++)
+        last = fmax(last, row_end(p, &r->row[i]));
+    return fmin(last, p->t_end);
 }
 
 static void show_count(table *t, double count) {
@@ -194,25 +203,34 @@ static void free_rows(row_list *r) {
     free(r->row);
 }
 
-static int compare_plan(const options *o, const plan *p) {
+static int compare_rows(const options *o, const plan *p, row_list *r) {
     output out;
     int status = TOOL_OK;
     if (plot_check(o) || output_open(&out, o->file))
         return TOOL_USAGE;
-    row_list r = list_rows(p);
-    for (size_t i = 0; plot_wanted(o) && i < r.count; i++)
-        r.row[i].errors = envelope_new(p->run->t_start, p->t_end);
-    run_rows(p, &r, o->quiet);
-    observe_orders(r.row, r.count);
-    page result = make_page(o, p, &r);
+    for (size_t i = 0; plot_wanted(o) && i < r->count; i++)
+        r->row[i].errors = envelope_new(p->run->t_start, p->t_end);
+    run_rows(p, r, o->quiet);
+    observe_orders(r->row, r->count);
+    page result = make_page(o, p, r);
     page_print(&result, o->format, out.stream);
     page_free(&result);
-    for (size_t i = 0; i < r.count; i++)
-        if (r.row[i].failed)
+    for (size_t i = 0; i < r->count; i++)
+        if (r->row[i].failed)
             status = TOOL_FAILED;
     status = output_close(&out, status);
-    if (plot_wanted(o) && compare_plot(o, p, r.row, r.count))
+    if (plot_wanted(o) && compare_plot(o, p, r->row, r->count))
         status = TOOL_USAGE;
+    return status;
+}
+
+static int compare_plan(const options *o, plan *p) {
+    row_list r = list_rows(p);
+    for (size_t i = 0; i < r.count; i++)
+        match_row(p, &r.row[i]);
+    int status = plan_reference(p, last_end(p, &r));
+    if (!status)
+        status = compare_rows(o, p, &r);
     free_rows(&r);
     return status;
 }
@@ -220,8 +238,6 @@ static int compare_plan(const options *o, const plan *p) {
 int compare(const options *o) {
     plan p;
     int status = plan_make(&p, o);
-    if (!status)
-        status = plan_reference(&p);
     if (!status)
         status = compare_plan(o, &p);
     plan_free(&p);

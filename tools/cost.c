@@ -213,7 +213,7 @@ int cost(const options *o) {
     if (!status && o->by_state)
         status = state_errors_mean_something(&p);
     else if (!status && o->format != FORMAT_TABLE)
-        status = plan_reference(&p);
+        status = plan_reference(&p, p.t_end);
     if (!status)
         status = cost_plan(o, &p, whole);
     plan_free(&p);

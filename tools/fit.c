@@ -36,7 +36,7 @@ bool gradient_fits(const plan *p, const char *gradient, char **why) {
 }
 
 int state_errors_mean_something(plan *p) {
-    int status = plan_reference(p);
+    int status = plan_reference(p, p->t_end);
     if (status)
         return status;
     if (!p->reference)

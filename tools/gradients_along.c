@@ -10,7 +10,7 @@ enum { STATES = 256 };
 
 static int record(void *data, size_t step, double t, const double q[],
                   const double p[]) {
-    orbit *o = data;
+    orbit_states *o = data;
     if (step % o->every != 0 || o->count == STATES)
         return 0;
     size_t i = o->count++;
@@ -20,18 +20,18 @@ static int record(void *data, size_t step, double t, const double q[],
     return nevh_field_value(o->field, 1, &t, q, p, &o->h[i]);
 }
 
-static orbit orbit_new(const plan *p, size_t steps) {
+static orbit_states states_new(const plan *p, size_t steps) {
     nevh_options values = {.gradient_step = 1e-3, .portable = p->portable};
-    return (orbit){.n = p->n,
-                   .every = steps / (STATES - 1) + 1,
-                   .t = tool_allocate(STATES, sizeof(double)),
-                   .q = tool_allocate(STATES * p->n, sizeof(double)),
-                   .p = tool_allocate(STATES * p->n, sizeof(double)),
-                   .h = tool_allocate(STATES, sizeof(double)),
-                   .field = nevh_field_new(p->system, &values)};
+    return (orbit_states){.n = p->n,
+                          .every = steps / (STATES - 1) + 1,
+                          .t = tool_allocate(STATES, sizeof(double)),
+                          .q = tool_allocate(STATES * p->n, sizeof(double)),
+                          .p = tool_allocate(STATES * p->n, sizeof(double)),
+                          .h = tool_allocate(STATES, sizeof(double)),
+                          .field = nevh_field_new(p->system, &values)};
 }
 
-static void orbit_free(orbit *o) {
+static void states_free(orbit_states *o) {
     free(o->t);
     free(o->q);
     free(o->p);
@@ -193,13 +193,13 @@ static double influx_along(const context *c, nevh_field *other) {
 }
 
 static double energy_along(const context *c, const finding *g) {
-    orbit o = orbit_new(c->plan, c->steps);
+    orbit_states o = states_new(c->plan, c->steps);
     double most = 0;
     int status =
         follow(c, g->gradient, g->step, &(nevh_observer){record, &o, 1});
     for (size_t i = 0; i < o.count; i++)
         most = fmax(most, fabs(o.h[i] - o.h[0]) / c->scale);
-    orbit_free(&o);
+    states_free(&o);
     return status || c->plan->balance ? NAN : most;
 }
 
@@ -281,7 +281,7 @@ int context_make(context *c, const plan *p) {
     c->scale = plan_energy_scale(p);
     c->yardstick = find_yardstick(p);
     choose_steps(c);
-    c->exact = orbit_new(p, c->steps);
+    c->exact = states_new(p, c->steps);
     if (!follow(c, c->yardstick, 0, &(nevh_observer){record, &c->exact, 1}) &&
         !evaluate_yardstick(c))
         return TOOL_OK;
@@ -292,7 +292,7 @@ int context_make(context *c, const plan *p) {
 }
 
 void context_free(context *c) {
-    orbit_free(&c->exact);
+    states_free(&c->exact);
     free(c->dq);
     free(c->dp);
 }

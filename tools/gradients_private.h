@@ -11,14 +11,14 @@ typedef struct {
     double *t, *q, *p; /* n each state */
     double *h;
     nevh_field *field; /* for h */
-} orbit;
+} orbit_states;
 
 typedef struct {
     const plan *plan;
     const char *integrator;
     double dt, scale;
     size_t steps;
-    orbit exact; /* of the yardstick */
+    orbit_states exact; /* of the yardstick */
     const char *yardstick;
     double *dq, *dp; /* its gradients, n a state */
     double size;     /* largest component among them */

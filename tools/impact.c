@@ -68,7 +68,7 @@ typedef struct {
     char *structure[2];
     bool time[2], friction[2];
     const char *integrator; /* NULL: none of the scene's fits both ways */
-    orbit orbit[2];
+    trace trace[2];
     bool ran;
 } both;
 
@@ -100,8 +100,8 @@ static bool look(plan *p, const char *effect, both *b) {
     b->ran = b->integrator;
     for (int on = 0; b->integrator && on < 2; on++) {
         switch_effect(p, effect, on);
-        b->orbit[on] = orbit_run(p, b->integrator);
-        b->ran &= !b->orbit[on].status;
+        b->trace[on] = trace_run(p, b->integrator);
+        b->ran &= !b->trace[on].status;
     }
     return true;
 }
@@ -110,8 +110,8 @@ static void free_both(both *b) {
     for (int on = 0; on < 2; on++) {
         free_choice(&b->choice[on]);
         free(b->structure[on]);
-        if (b->orbit[on].states)
-            orbit_free(&b->orbit[on]);
+        if (b->trace[on].states)
+            trace_free(&b->trace[on]);
     }
 }
 
@@ -124,7 +124,7 @@ static list ruled_out(const both *b) {
     return names;
 }
 
-static void say_end(const char *effect, bool on, const orbit *o, list *words) {
+static void say_end(const char *effect, bool on, const trace *o, list *words) {
     const char *with = on ? "With" : "Without";
     if (o->status)
         list_print(words, "%s %s the run fails: %s", with, effect, o->message);
@@ -157,7 +157,7 @@ static void say(const char *effect, const both *b, const char *names,
                    "it; give others with --integrators.",
                    effect);
     for (int on = 0; b->integrator && on < 2; on++)
-        say_end(effect, on, &b->orbit[on], words);
+        say_end(effect, on, &b->trace[on], words);
 }
 
 /* All digits, but for what is to be read. */
@@ -173,14 +173,14 @@ static void put(const page *result, bool known, const char *format, double x) {
 static void put_row(const options *o, const char *effect, bool on,
                     const both *b, double scale, page *result) {
     table *t = result->table;
-    const orbit *a = &b->orbit[0], *c = &b->orbit[1];
+    const trace *a = &b->trace[0], *c = &b->trace[1];
     const bool shown = o->format == FORMAT_TABLE;
     difference d = {0};
     list out = ruled_out(b);
     size_t count = out.count;
     char *names = list_joined(&out);
     if (b->ran)
-        d = orbit_difference(a, c);
+        d = trace_difference(a, c);
     table_text(t, effect);
     table_text(t, on ? "on" : "off");
     table_text(t, b->integrator);

@@ -12,7 +12,7 @@ static const double noticed = 0.01;     /* of the range */
 
 static int keep(void *data, size_t step, double t, const double q[],
                 const double p[]) {
-    orbit *o = data;
+    trace *o = data;
     size_t n = o->plan->n;
     o->t = t;
     memcpy(o->last, q, n * sizeof *q);
@@ -28,10 +28,10 @@ static int keep(void *data, size_t step, double t, const double q[],
     return 0;
 }
 
-static orbit new_orbit(const plan *p) {
+static trace new_trace(const plan *p) {
     size_t n = 2 * p->n;
     double steps = (p->t_end - p->run->t_start) / p->dt[0];
-    orbit o = {.plan = p,
+    trace o = {.plan = p,
                .every = (size_t)(steps / SAMPLES) + 1,
                .states = tool_allocate(SAMPLES * n, sizeof(double)),
                .last = tool_allocate(n, sizeof(double)),
@@ -44,7 +44,7 @@ static orbit new_orbit(const plan *p) {
     return o;
 }
 
-void orbit_free(orbit *o) {
+void trace_free(trace *o) {
     free(o->states);
     free(o->last);
     free(o->low);
@@ -52,7 +52,7 @@ void orbit_free(orbit *o) {
     free(o->message);
 }
 
-static int go(orbit *o, nevh_stepper *s, const nevh_observer *observer) {
+static int go(trace *o, nevh_stepper *s, const nevh_observer *observer) {
     const plan *p = o->plan;
     double *state = tool_allocate(2 * p->n, sizeof *state);
     memcpy(state, p->q, p->n * sizeof *state);
@@ -64,7 +64,7 @@ static int go(orbit *o, nevh_stepper *s, const nevh_observer *observer) {
 }
 
 /* The shortest of a few runs that nobody watches. */
-static void measure(orbit *o, nevh_stepper *s) {
+static void measure(trace *o, nevh_stepper *s) {
     double sum = 0;
     o->seconds = INFINITY;
     for (int i = 0; i < REPEATS && sum < time_enough; i++) {
@@ -79,8 +79,8 @@ static void measure(orbit *o, nevh_stepper *s) {
     }
 }
 
-orbit orbit_run(const plan *p, const char *integrator) {
-    orbit o = new_orbit(p);
+trace trace_run(const plan *p, const char *integrator) {
+    trace o = new_trace(p);
     nevh_stepper *s = plan_stepper(p, integrator);
     o.status = go(&o, s, &(nevh_observer){keep, &o, 1});
     if (o.status)
@@ -96,7 +96,7 @@ orbit orbit_run(const plan *p, const char *integrator) {
 
 /* The larger of the ranges over both orbits; where a variable does not move,
    that of the others of its kind. */
-static double range_of(const orbit *a, const orbit *b, size_t k) {
+static double range_of(const trace *a, const trace *b, size_t k) {
     size_t n = a->plan->n;
     double own = fmax(a->high[k] - a->low[k], b->high[k] - b->low[k]);
     for (size_t i = k < n ? 0 : n; !(own > 0) && i < (k < n ? n : 2 * n); i++)
@@ -104,7 +104,7 @@ static double range_of(const orbit *a, const orbit *b, size_t k) {
     return own;
 }
 
-static double apart(const orbit *a, const orbit *b, const double x[],
+static double apart(const trace *a, const trace *b, const double x[],
                     const double y[]) {
     double most = 0;
     for (size_t k = 0; k < 2 * a->plan->n; k++) {
@@ -115,7 +115,7 @@ static double apart(const orbit *a, const orbit *b, const double x[],
     return most;
 }
 
-difference orbit_difference(const orbit *a, const orbit *b) {
+difference trace_difference(const trace *a, const trace *b) {
     size_t n = 2 * a->plan->n, kept = a->kept < b->kept ? a->kept : b->kept;
     difference d = {NAN, 0, NAN};
     if (a->t == b->t)

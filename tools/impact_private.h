@@ -15,15 +15,15 @@ typedef struct {
     double stopped;               /* where the scene's `stop` said; NAN */
     int status;
     char *message;
-} orbit;
+} trace;
 
 typedef struct {
     double at_end, largest, since; /* of the range; at_end, since: or NAN */
 } difference;
 
 /* Of one orbit with the first dt and gradient; to be freed. */
-orbit orbit_run(const plan *, const char *integrator);
-void orbit_free(orbit *);
-difference orbit_difference(const orbit *, const orbit *);
+trace trace_run(const plan *, const char *integrator);
+void trace_free(trace *);
+difference trace_difference(const trace *, const trace *);
 
 #endif

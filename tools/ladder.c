@@ -4,83 +4,12 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static const double rounding = 1e-13;
-static const double one_row = 0.025;    /* of the budget */
 static const double usable_below = 0.5; /* of the scale of errors */
 
 /* As much as a run that is watched costs. */
 enum { RUNS_A_ROW = 2 };
-
-static double longest_dt(const plan *p) {
-    double longest = 0;
-    for (size_t i = 0; i < p->dts; i++)
-        longest = fmax(longest, p->dt[i]);
-    return longest;
-}
-
-static int coarse_to_fine(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x < y) - (x > y);
-}
-
-static double *ordered(const double numbers[], size_t count) {
-    double *copy = tool_allocate(count, sizeof *copy);
-    memcpy(copy, numbers, count * sizeof *copy);
-    qsort(copy, count, sizeof *copy, coarse_to_fine);
-    return copy;
-}
-
-search search_begin(const plan *p, const options *o, double budget) {
-    search s = {.plan = *p,
-                .repeats = o->repeats,
-                .by_state = o->by_state,
-                .quiet = o->quiet,
-                .budget = budget,
-                .started = cpu_seconds(),
-                .landing = grid_dt(grid_dt_place(8 * longest_dt(p)))};
-    s.plan.hurried = true;
-    s.plan.patience = one_row * budget;
-    if (o->dts) {
-        s.dt = ordered(p->dt, s.dts = p->dts);
-        s.tolerance = ordered(p->tolerance, s.tolerances = p->tolerances);
-        s.landing = longest_dt(p);
-    }
-    return s;
-}
-
-/* Where a second is worth less work than anybody expects it ends, too. */
-bool search_is_over(const search *s, double share) {
-    static const double most_seconds = 60;
-    return s->spent > share * s->budget ||
-           cpu_seconds() - s->started > most_seconds;
-}
-
-bool search_may_time(const search *s) {
-    static const double enough = 12;
-    return cpu_seconds() - s->started < enough;
-}
-
-static bool shows_progress(const search *s) {
-    return !s->quiet && cpu_seconds() - s->started > 1 && isatty(STDERR_FILENO);
-}
-
-static void progress(const search *s, const row *r) {
-    if (!shows_progress(s))
-        return;
-    fprintf(stderr, "\r\033[K%zu runs: %s, %s, %s = %g", s->runs, r->integrator,
-            r->gradient, r->tolerance > 0 ? "tolerance" : "dt",
-            r->tolerance > 0 ? r->tolerance : r->dt);
-    fflush(stderr);
-}
-
-void search_end(search *s) {
-    if (shows_progress(s))
-        fputs("\r\033[K", stderr);
-    free(s->dt);
-    free(s->tolerance);
-}
 
 ladder ladder_new(const char *integrator, const char *gradient) {
     bool transformed;
@@ -147,7 +76,7 @@ size_t ladder_run(search *s, ladder *l, int k) {
              .gradient = l->gradient,
              .scheme = l->scheme};
     set_step(s, &r, k);
-    progress(s, &r);
+    search_progress(s, &r);
     row_run(&s->plan, &r);
     s->spent += RUNS_A_ROW * r.work;
     s->runs++;
@@ -198,7 +127,7 @@ static bool is_kept(const search *s, const ladder *l) {
 /* The scene's dt is one for schemes of order 2 to 4. */
 static int first_place(const search *s, const ladder *l) {
     int order = nevh_integrator_order(l->scheme);
-    int k = grid_dt_place(longest_dt(&s->plan));
+    int k = grid_dt_place(search_longest_dt(&s->plan));
     for (int coarser = order >= 8 ? 2 : order >= 6; coarser; coarser--)
         if (has_steps(s, k - GRID_STRIDE))
             k -= GRID_STRIDE;

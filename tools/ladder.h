@@ -24,7 +24,6 @@ double grid_digit_factor(const double error[], const double work[],
 size_t grid_cheapest(const double error[], const double work[], size_t count,
                      double target);
 
-/* ladder.c: one integrator and gradient at many steps. */
 typedef enum {
     LADDER_OPEN,
     LADDER_FLOOR, /* shorter steps do not lessen the error */
@@ -54,12 +53,19 @@ typedef struct {
     size_t dts, tolerances;
     size_t runs;
 } search;
-/* With --dt, only these steps, and the tolerances of the plan. */
+
+/* search.c: what a search may cost.  With --dt, only these steps, and the
+ * tolerances of the plan. */
 search search_begin(const plan *, const options *, double budget);
 bool search_is_over(const search *, double share); /* of the budget */
 /* Whether times may be measured again: seconds, of which no row depends. */
 bool search_may_time(const search *);
+/* Says on stderr, after a second, what is running. */
+void search_progress(const search *, const row *);
 void search_end(search *);
+double search_longest_dt(const plan *);
+
+/* ladder.c: one integrator and gradient at many steps. */
 ladder ladder_new(const char *integrator, const char *gradient);
 void ladder_free(ladder *);
 /* Finds the coarsest usable step, from the scene's on. */

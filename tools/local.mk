@@ -21,6 +21,7 @@ tools_nevh_SOURCES = \
 	tools/ladder.h \
 	tools/grid.c \
 	tools/fit.c \
+	tools/search.c \
 	tools/ladder.c \
 	tools/cost_private.h \
 	tools/cost.c \

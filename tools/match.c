@@ -11,7 +11,8 @@ enum { PILOT_STEPS = 64, BISECTIONS = 5 };
 static const double longer = 1.5;
 static const double hopeless = 1.3; /* a price above the least met */
 
-/* Gradients in a step of dt, on the average; NAN where it fails. */
+/* Gradients in a step of dt, on the average, until the scene wants to stop; NAN
+   where it fails. */
 static double work_of_step(const plan *p, const row *r, double dt) {
     size_t size = p->n * sizeof(double), steps = PILOT_STEPS;
     double *q = tool_allocate(2 * p->n, sizeof *q);
@@ -22,13 +23,17 @@ static double work_of_step(const plan *p, const row *r, double dt) {
         steps = most < 1 ? 1 : (size_t)most;
     memcpy(q, p->q, size);
     memcpy(q + p->n, p->p, size);
-    int status = nevh_run(s, p->run->t_start, dt, steps, q, q + p->n, NULL, 0);
+    stop end = {.scene = p->scene};
+    int status = nevh_run(s, p->run->t_start, dt, steps, q, q + p->n,
+                          &(nevh_observer){stop_observe, &end, 1},
+                          nevh_scene_stops(p->scene));
     nevh_counts after = nevh_stepper_counts(s);
+    double taken = (double)nevh_stepper_taken(s);
     nevh_stepper_free(s);
     free(q);
-    return status
+    return (status && !end.reached) || taken == 0
                ? NAN
-               : (double)(after.gradients - before.gradients) / (double)steps;
+               : (double)(after.gradients - before.gradients) / taken;
 }
 
 /* Gradients at dt for one of verlet at `each`, over the same time. */

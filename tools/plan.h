@@ -26,7 +26,8 @@ typedef struct {
     double patience; /* work that a row may take; 0: any */
     bool match_work, diagnostics;
     nevh_reference *reference; /* NULL: not asked for, or there is none */
-    char *no_reference;        /* why there is none */
+    double reference_end;
+    char *no_reference; /* why there is none */
 } plan;
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int plan_make(plan *, const options *);

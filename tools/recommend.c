@@ -258,7 +258,7 @@ static void verify(advice *a, plan *p) {
     if (p->reference) {
         nevh_reference_free(p->reference);
         p->reference = NULL;
-        plan_reference(p);
+        plan_reference(p, p->t_end);
         a->search.plan.reference = p->reference;
     }
     a->search.plan.patience *= 2;

@@ -6,6 +6,7 @@
 #include "trajectory.h"
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -98,7 +99,7 @@ static char *read_all(const char *name, size_t *size) {
 static bool adds_up(const header *h, size_t size) {
     const size_t fixed = sizeof *h + sizeof(uint64_t), state = sizeof(double);
     return h->size == size && h->n <= size / (2 * state) &&
-           h->memory_size <= size && h->settings_size <= size &&
+           h->memory_size <= size && h->settings_size <= INT_MAX &&
            size == fixed + 2 * state * h->n + h->memory_size + h->settings_size;
 }
 

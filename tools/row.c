@@ -171,7 +171,7 @@ static int mind_work(void *data, size_t step, double t, const double q[],
    one that stopped early met too few of them. */
 static bool compares_states(const plan *p, const row *r) {
     static const double least = 1. / 32;
-    double span = p->t_end - p->run->t_start;
+    double span = p->reference_end - p->run->t_start;
     return r->t_end - p->run->t_start >= least * span;
 }
 
@@ -258,6 +258,18 @@ void row_run(const plan *p, row *r) {
     r->work = row_work(p, &r->counts, r->steps);
     nevh_stepper_free(s);
     work_free(&w);
+}
+
+double row_end(const plan *p, const row *r) {
+    double stopped = NAN;
+    row copy = *r;
+    work w = work_new(p, &copy);
+    nevh_stepper *s = new_stepper(&w, false);
+    if (nevh_stepper_status(s) || run(&w, s, NULL, 0, &stopped))
+        stopped = p->run->t_start;
+    nevh_stepper_free(s);
+    work_free(&w);
+    return isnan(stopped) ? p->t_end : stopped;
 }
 
 void row_finish(const plan *p, row *r, double dt, size_t repeats) {

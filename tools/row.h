@@ -29,6 +29,9 @@ typedef struct {
     struct envelope *errors; /* of the energy; NULL: not asked for */
 } row;
 void row_run(const plan *, row *);
+/* Where it will end: by a run that nobody watches; at the start where it has no
+   numbers. */
+double row_end(const plan *, const row *);
 /* What that many evaluations and steps cost, in seconds of no machine in
    particular: what is decided by it is decided alike on all. */
 double row_work(const plan *, const nevh_counts *, size_t steps);
@@ -52,9 +55,9 @@ void row_notes(const options *, const plan *, const row rows[], size_t count,
 /* verdict.c: the table in words. */
 void verdict_words(const plan *, const row rows[], size_t count, list *words);
 
-/* state.c: makes the reference of a plan, after which rows have state errors;
-   TOOL_OK, or TOOL_USAGE with the message printed. */
-int plan_reference(plan *);
+/* state.c: makes the reference of a plan up to some time, after which rows have
+   state errors; TOOL_OK, or TOOL_USAGE with the message printed. */
+int plan_reference(plan *, double end);
 void state_notes(const plan *, list *notes);
 bool state_out_of_step(const row *);
 void state_show(table *, const plan *, const row *);

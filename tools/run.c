@@ -190,10 +190,10 @@ static int open_again(job *j) {
     mind_signals();
     begin_saving(j, name);
     if (state_load(j->state, j->settings, s) ||
+        trajectory_restore(j->trajectory) ||
         lines_reopen(&j->lines, name, s->at.bytes, s->at.digest))
         return TOOL_USAGE;
-    int status = trajectory_restore(j->trajectory);
-    return status ? status : save(j, false);
+    return save(j, false);
 }
 
 /* The rest of a run that was told to end. */

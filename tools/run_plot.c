@@ -16,25 +16,25 @@ typedef struct {
     nevh_stepper *stepper;
     double t, *q, *p;
     thinned rows;
-} orbit;
+} watched_run;
 
 static int keep_time(void *data, size_t step, double t, const double q[],
                      const double p[]) {
-    orbit *o = data;
+    watched_run *o = data;
     (void)step, (void)q, (void)p;
     o->t = t;
     return NEVH_OK;
 }
 
 /* What goes wrong shows in the picture, and was said by nevh run. */
-static void follow(orbit *o, nevh_observer observers[], size_t count) {
+static void follow(watched_run *o, nevh_observer observers[], size_t count) {
     double stopped;
     observers[count - 1] = (nevh_observer){keep_time, o, 1};
     plan_run(o->plan, o->stepper, o->plan->dt[0], o->q, o->p, observers, count,
              &stopped);
 }
 
-static char *title_of(const orbit *o, const char *more) {
+static char *title_of(const watched_run *o, const char *more) {
     const plan *p = o->plan;
     const char *title = nevh_scene_title(p->scene);
     const char *unit = nevh_scene_label(p->scene, "t");
@@ -46,7 +46,7 @@ static char *title_of(const orbit *o, const char *more) {
 
 static int keep_phase(void *data, size_t step, double t, const double q[],
                       const double p[]) {
-    orbit *o = data;
+    watched_run *o = data;
     double *at = thinned_next(&o->rows);
     (void)step, (void)t;
     for (size_t k = 0; at && k < o->rows.columns / 2; k++) {
@@ -57,7 +57,7 @@ static int keep_phase(void *data, size_t step, double t, const double q[],
 }
 
 /* The period to take the coordinate modulo; 0 where it stays within one. */
-static double wrapping(const orbit *o, size_t k) {
+static double wrapping(const watched_run *o, size_t k) {
     double period = nevh_scene_period(o->plan->scene, k);
     double low = INFINITY, high = -INFINITY;
     for (size_t i = 0; i < o->rows.count; i++) {
@@ -76,7 +76,7 @@ static void turn_over(plot *to, size_t series, const double from[],
     plot_point(to, series, from[0] - new, from[1]);
 }
 
-static void draw_phase(plot *to, const orbit *o, size_t k) {
+static void draw_phase(plot *to, const watched_run *o, size_t k) {
     double period = wrapping(o, k), shift = 0, last = 0;
     bool whole = o->rows.part == 1;
     size_t series = plot_series(to, NULL), width = o->rows.columns;
@@ -93,7 +93,7 @@ static void draw_phase(plot *to, const orbit *o, size_t k) {
     }
 }
 
-static plot *plot_phase(orbit *o) {
+static plot *plot_phase(watched_run *o) {
     const plan *p = o->plan;
     size_t panels = p->n < MOST_PANELS ? p->n : MOST_PANELS;
     char *more = p->n > panels
@@ -133,7 +133,7 @@ static size_t count_bobs(nevh_scene *s) {
 }
 
 /* Of part i; NANs where its formulas have no value. */
-static void part(const orbit *o, size_t i, double t, const double q[],
+static void part(const watched_run *o, size_t i, double t, const double q[],
                  const double p[], double values[4]) {
     for (size_t k = 0; k < 4; k++)
         values[k] = NAN;
@@ -142,7 +142,7 @@ static void part(const orbit *o, size_t i, double t, const double q[],
 
 static int keep_bobs(void *data, size_t step, double t, const double q[],
                      const double p[]) {
-    orbit *o = data;
+    watched_run *o = data;
     nevh_scene *s = o->plan->scene;
     double *at = thinned_next(&o->rows), values[4];
     (void)step;
@@ -155,7 +155,7 @@ static int keep_bobs(void *data, size_t step, double t, const double q[],
 }
 
 /* returns  the series */
-static size_t draw_trail(plot *to, const orbit *o, size_t bob) {
+static size_t draw_trail(plot *to, const watched_run *o, size_t bob) {
     size_t series = plot_series(to, NULL);
     plot_style(to, series, o->rows.part < 1 ? PLOT_DOTS : PLOT_LINES);
     for (size_t i = 0; i < o->rows.count; i++) {
@@ -181,7 +181,7 @@ static void draw_bob(plot *to, const char *name, size_t trail,
 }
 
 /* Where all is at the end. */
-static void draw_rods(plot *to, const orbit *o) {
+static void draw_rods(plot *to, const watched_run *o) {
     nevh_scene *s = o->plan->scene;
     double values[4];
     for (size_t i = 0; i < nevh_scene_part_count(s); i++)
@@ -191,7 +191,7 @@ static void draw_rods(plot *to, const orbit *o) {
         }
 }
 
-static void draw_bobs(plot *to, const orbit *o, const size_t trails[]) {
+static void draw_bobs(plot *to, const watched_run *o, const size_t trails[]) {
     nevh_scene *s = o->plan->scene;
     size_t bobs = o->rows.columns / 2, bob = 0;
     double values[4];
@@ -204,7 +204,7 @@ static void draw_bobs(plot *to, const orbit *o, const size_t trails[]) {
         }
 }
 
-static plot *plot_configuration(orbit *o) {
+static plot *plot_configuration(watched_run *o) {
     nevh_scene *s = o->plan->scene;
     size_t bobs = count_bobs(s), trails[MOST_BOBS];
     nevh_observer observers[2] = {{keep_bobs, o, 1}};
@@ -223,7 +223,7 @@ static plot *plot_configuration(orbit *o) {
 
 /* The energy. */
 
-static nevh_energy *new_energy(const orbit *o) {
+static nevh_energy *new_energy(const watched_run *o) {
     const plan *p = o->plan;
     nevh_options planned = plan_options(p, p->gradients.item[0]);
     nevh_energy *energy = nevh_energy_new(p->system, &planned);
@@ -234,7 +234,7 @@ static nevh_energy *new_energy(const orbit *o) {
     return energy;
 }
 
-static plot *plot_energy(orbit *o) {
+static plot *plot_energy(watched_run *o) {
     const plan *p = o->plan;
     nevh_energy *energy = new_energy(o);
     energy_trace trace = {envelope_new(p->run->t_start, p->t_end), energy};
@@ -280,15 +280,15 @@ int run_plot_check(const options *o, const plan *p) {
 }
 
 int run_plot(const options *given, const plan *p, const char *integrator) {
-    static plot *(*const draw[])(orbit *) = {[PLOT_PHASE] = plot_phase,
-                                             [PLOT_CONFIGURATION] =
-                                                 plot_configuration,
-                                             [PLOT_ENERGY] = plot_energy};
-    orbit o = {.plan = p,
-               .integrator = integrator,
-               .stepper = new_stepper(p, integrator),
-               .q = copy(p->q, p->n),
-               .p = copy(p->p, p->n)};
+    static plot *(*const draw[])(watched_run *) = {[PLOT_PHASE] = plot_phase,
+                                                   [PLOT_CONFIGURATION] =
+                                                       plot_configuration,
+                                                   [PLOT_ENERGY] = plot_energy};
+    watched_run o = {.plan = p,
+                     .integrator = integrator,
+                     .stepper = new_stepper(p, integrator),
+                     .q = copy(p->q, p->n),
+                     .p = copy(p->p, p->n)};
     plot *to = draw[given->plot_kind](&o);
     int status = plot_write(to, given);
     plot_free(to);

@@ -19,7 +19,7 @@ static char *refusal(const plan *p, const char *name) {
     return NULL;
 }
 
-int plan_reference(plan *p) {
+int plan_reference(plan *p, double end) {
     const char *name = p->run->reference;
     const nevh_integrator *scheme = NULL;
     bool transformed = false;
@@ -31,8 +31,9 @@ int plan_reference(plan *p) {
         return tool_refuse("reference = %s: its steps must have the same "
                            "length; take it without +transform",
                            name);
-    p->reference = nevh_reference_new(p->system, scheme, p->run->t_start,
-                                      p->t_end, p->q, p->p);
+    p->reference_end = end;
+    p->reference =
+        nevh_reference_new(p->system, scheme, p->run->t_start, end, p->q, p->p);
     p->no_reference = refusal(p, name);
     if (!p->no_reference)
         return TOOL_OK;
@@ -42,7 +43,8 @@ int plan_reference(plan *p) {
 }
 
 static bool is_chaos(const plan *p) {
-    return p->reference && p->t_end > nevh_reference_horizon(p->reference);
+    return p->reference &&
+           p->reference_end > nevh_reference_horizon(p->reference);
 }
 
 void state_notes(const plan *p, list *notes) {

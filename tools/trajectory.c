@@ -95,17 +95,6 @@ void trajectory_free(trajectory *r) {
     free(r);
 }
 
-run_state *trajectory_state(trajectory *r) {
-    nevh_stepper_save(r->stepper, r->now.memory);
-    return &r->now;
-}
-
-int trajectory_restore(trajectory *r) {
-    return nevh_stepper_load(r->stepper, r->now.memory, r->now.memory_size)
-               ? tool_refuse("%s", nevh_stepper_message(r->stepper))
-               : TOOL_OK;
-}
-
 /* Cells. */
 
 static void add_title(trajectory *r, const char *prefix, const char *name) {
@@ -206,6 +195,12 @@ static bool is_before(const trajectory *r, double a, double b) {
     return a < b && !same(r, a, b);
 }
 
+static double time_of_step(const trajectory *r, uint64_t step) {
+    if (r->whole && step == r->last)
+        return r->plan->t_end;
+    return r->plan->run->t_start + (double)step * r->h;
+}
+
 static void count_row(trajectory *r) {
     if (r->rows.by == BY_STEPS)
         r->now.at.row = r->now.at.step + r->rows.every;
@@ -257,12 +252,6 @@ static int show_before(trajectory *r, double limit) {
 
 /* Steps. */
 
-static double time_of_step(const trajectory *r, uint64_t step) {
-    if (r->whole && step == r->last)
-        return r->plan->t_end;
-    return r->plan->run->t_start + (double)step * r->h;
-}
-
 static int advance(trajectory *r) {
     progress_of_run *at = &r->now.at;
     double before = at->t;
@@ -306,6 +295,42 @@ static int check_stop(trajectory *r) {
         at->written == at->t ? TOOL_OK : show(r, at->t, r->now.q, r->now.p);
     remark(r, "stopped at t = %.9g: %s", at->t, nevh_scene_stop_text(scene));
     return status;
+}
+
+/* What is saved. */
+
+run_state *trajectory_state(trajectory *r) {
+    nevh_stepper_save(r->stepper, r->now.memory);
+    return &r->now;
+}
+
+static bool step_is_possible(const trajectory *r, const progress_of_run *at) {
+    double t0 = r->plan->run->t_start, t_end = r->plan->t_end;
+    if (!r->own_time)
+        return at->step <= r->last && same(r, at->t, time_of_step(r, at->step));
+    return (at->t >= t0 && at->t <= t_end) || same(r, at->t, t_end);
+}
+
+/* The next row is not before the state, the last one not after it. */
+static bool row_is_possible(const trajectory *r, const progress_of_run *at) {
+    if (r->rows.by == BY_STEPS)
+        return at->row >= at->step && at->row - at->step <= r->rows.every;
+    return at->row < r->rows.count &&
+           !is_before(r, time_of_row(r, at->row), at->t) &&
+           (at->row == 0 || !is_before(r, at->t, time_of_row(r, at->row - 1)));
+}
+
+/* A file may be whole and of no run. */
+int trajectory_restore(trajectory *r) {
+    const progress_of_run *at = &r->now.at;
+    if (!step_is_possible(r, at) || !row_is_possible(r, at))
+        return tool_refuse("the saved state is of step %llu and row %llu at "
+                           "t = %.9g, where this run never is",
+                           (unsigned long long)at->step,
+                           (unsigned long long)at->row, at->t);
+    return nevh_stepper_load(r->stepper, r->now.memory, r->now.memory_size)
+               ? tool_refuse("%s", nevh_stepper_message(r->stepper))
+               : TOOL_OK;
 }
 
 bool trajectory_finished(const trajectory *r) {

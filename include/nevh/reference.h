@@ -54,8 +54,9 @@ NEVH_API const char *nevh_reference_message(const nevh_reference *);
 NEVH_API const char *nevh_reference_text(const nevh_reference *);
 /* Its own error in the units of state errors, the largest over its time:
    of an exact solution, what the last digits of the fitted constants do to the
-   state; of a run, the difference of those with h and h/2.  Smaller state
-   errors mean nothing. */
+   state, or rounding where long double has no more digits than double; of a
+   run, the difference of those with h and h/2.  Smaller state errors mean
+   nothing. */
 NEVH_API double nevh_reference_error(const nevh_reference *);
 /* The time after which state errors mean nothing, because runs that differ in
    the last digits have separated by more than 1e-3 of the range of a variable:

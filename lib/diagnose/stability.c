@@ -78,6 +78,8 @@ static double excess(const oscillator *o, double x) {
         return INFINITY;
     double determinant = o->symplectic ? 1 : q[0] * p[1] - q[1] * p[0];
     double half = fabs(q[0] + p[1]) / 2, rest = half * half - determinant;
+    if (isnan(rest))
+        return INFINITY;
     return rest < 0 ? sqrt(determinant) - 1 : half + sqrt(rest) - 1;
 }
 
@@ -103,9 +105,10 @@ static double tip(const oscillator *o, double a, double b) {
     return (a + b) / 2;
 }
 
-/* Where growth begins between a, stable, and b. */
+/* Where growth begins between a, stable, and b; next to 0 that is 0. */
 static double bisect(const oscillator *o, double a, double b) {
-    while (b - a > 1e-9 * b) {
+    enum { HALVINGS = 64 };
+    for (int i = 0; i < HALVINGS && b - a > 1e-9 * b; i++) {
         double middle = (a + b) / 2;
         if (excess(o, middle) > growing)
             b = middle;

@@ -4,7 +4,7 @@
 
    For libFuzzer; see run.sh. */
 #include "fuzz.h"
-#include "tool.h"
+#include "plan.h"
 #include <getopt.h>
 #include <math.h>
 

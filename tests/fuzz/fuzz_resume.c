@@ -1,10 +1,12 @@
 /* nevh tests: any bytes are a state to resume, or a message.  Bytes that begin
-   with s get what makes a file whole, so that the checks after it are met.
+   with s get what makes a file whole, so that the checks after it are met;
+   those that begin with r are the numbers of a whole state, and run on.
    SPDX-License-Identifier: GPL-3.0-or-later
 
    For libFuzzer; see run.sh. */
 #include "fuzz.h"
 #include "trajectory.h"
+#include <getopt.h>
 
 enum { N = 2, MEMORY = 24, FIXED = 16 + 5 * 8 };
 static const char settings[] = "nevh = 1\nscene = 01\nintegrator = verlet\n"
@@ -60,6 +62,74 @@ static void load(const char *path) {
     insist(status == TOOL_OK || status == TOOL_USAGE);
 }
 
+static const char tiny[] = "[coordinates]\n"
+                           "x = 1\n"
+                           "[effects]\n"
+                           "T = p_x^2/2\nV = x^4/4\n"
+                           "[run]\n"
+                           "dt = 0.1\nt_end = 2\nstop = x < -0.99\n";
+static const double times[] = {0, 0.1, 0.15, 0.7, 2};
+
+/* The options, too, are the plan's as long as it lives. */
+static plan plan_of(const char *integrator, options *o) {
+    static char *scene;
+    if (!scene) {
+        scene = fuzz_file("tiny.nevh");
+        fuzz_write(scene, tiny, sizeof tiny - 1);
+    }
+    char *argv[] = {
+        "nevh", "run", scene, "--integrators", (char *)(uintptr_t)integrator,
+        NULL};
+    plan p;
+    optind = 0; /* glibc: from the beginning */
+    insist(options_read(o, 5, argv) == TOOL_OK);
+    insist(plan_make(&p, o) == TOOL_OK);
+    return p;
+}
+
+static void take(run_state *s, const uint8_t *bytes, size_t size) {
+    size_t n = s->n * sizeof *s->q, numbers = sizeof s->at;
+    memcpy(&s->at, bytes, size < numbers ? size : numbers);
+    if (size >= numbers + 2 * n + s->memory_size) {
+        memcpy(s->q, bytes + numbers, n);
+        memcpy(s->p, bytes + numbers + n, n);
+        memcpy(s->memory, bytes + numbers + 2 * n, s->memory_size);
+    }
+}
+
+/* how  of rows, two bits; of times, one; of the scheme, one */
+static void go_on(unsigned how, const uint8_t *bytes, size_t size) {
+    static const char *const schemes[] = {"rkn14a", "adaptive-verlet"};
+    const char *name = schemes[how >> 3 & 1];
+    const row_times rows = {.by = (row_choice)((how & 3) % 3),
+                            .every = 3,
+                            .count = sizeof times / sizeof *times,
+                            .time = (double *)(uintptr_t)times};
+    static const volatile sig_atomic_t never;
+    static plan plans[2]; /* making these takes long */
+    static nevh_stepper *steppers[2];
+    static options given[2];
+    plan *p = &plans[how >> 3 & 1];
+    nevh_stepper **stepper = &steppers[how >> 3 & 1];
+    if (!*stepper) {
+        *p = plan_of(name, &given[how >> 3 & 1]);
+        *stepper = plan_stepper(p, name);
+    }
+    nevh_stepper_reset(*stepper);
+    line_file lines;
+    insist(lines_open(&lines, "/dev/null") == TOOL_OK);
+    trajectory *r =
+        trajectory_new(p, name, *stepper, &rows, (sink){.lines = &lines});
+    run_state *s = trajectory_state(r);
+    take(s, bytes, size);
+    if (how >> 2 & 1) /* the time of that step */
+        s->at.t = s->at.step == 20 ? 2 : (double)s->at.step * 0.1;
+    if (trajectory_restore(r) == TOOL_OK)
+        trajectory_follow(r, &(trajectory_watch){.signal = &never});
+    trajectory_free(r);
+    lines_close(&lines);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     static char *path;
     fuzz_hush();
@@ -74,5 +144,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
         free(all);
         save_and_load(path, bytes, size);
     }
+    if (size > 1 && *bytes == 'r')
+        go_on(bytes[1], bytes + 2, size - 2);
     return 0;
 }

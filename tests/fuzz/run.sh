@@ -30,12 +30,23 @@ compile() {
 link() {
     parts=
     test "$1" = scene ||
-        for part in options arguments words plan scenes resume lines; do
+        for part in options arguments words plan scenes resume lines \
+            trajectory table stop; do
             parts="$parts $srcdir/tools/$part.c"
         done
     "$clang" $flags $sanitized -fsanitize=fuzzer '-DNEVH_SCENES="/nowhere"' \
         "$srcdir/tests/fuzz/fuzz_$1.c" $parts $work/*.o \
         ${GSL_LIBS:--lgsl -lgslcblas} -lm -ldl -o "$work/fuzz_$1"
+}
+# row ROW HOW: a state after 10 steps, as fuzz_resume.c takes it.
+# shellcheck disable=SC2059
+row() {
+    printf "r$2"
+    head -c 16 /dev/zero
+    printf '\012'
+    head -c 7 /dev/zero
+    printf "$1"
+    head -c 23 /dev/zero
 }
 seeds() {
     cp "$srcdir"/scenes/*.nevh "$srcdir"/tests/bad/*.nevh $work/scene/
@@ -46,6 +57,9 @@ seeds() {
     done
     printf 's\001\002\003nevh = 1\n' >$work/resume/short
     printf 's\002\030\000s%056dnevh = 1\nscene = 01\n' 0 >$work/resume/long
+    for how in '\004 \014' '\005 \003' '\006 \004' '\014 \014' '\016 \004'; do
+        row "${how#* }" "${how% *}" >$work/resume/row-"$(echo "$how" | tr -d ' \\')"
+    done
     printf -- '--dt\n0.1,0.2\n--integrators\nverlet,gauss4+transform' \
         >$work/arguments/lists
     printf -- '--set\nk=3\n--without\nspring\n--gradient=exact\n-o\nx' \
