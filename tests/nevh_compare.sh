@@ -129,6 +129,16 @@ has 'Warning: a smaller dt changes the verdict of rk4: unstable at dt = 0.5'
 lacks 'verdict of euler'
 
 
+# Of a long run a part is timed, with --repeat the whole: nothing else differs.
+for repeat in '' '--repeat 2'; do
+    exits 0 compare pendulum --integrators verlet,gauss4,dopri5 --dt 0.02 \
+        --t-end 2000 --tolerance 1e-6 --format csv $repeat
+    holds seconds '$1 > 0 && $2 > 0 && $3 > 0'
+    grep -v '^#' $work/out | cut -d, -f 1-16,18,19 >>$work/timed
+done
+test "$(sort -u $work/timed | wc -l)" -eq 4 ||
+    { fails "has other rows where all is timed"; cat $work/timed; }
+
 # Where the scene says stop: rows end there, the timed runs too.
 sed 's/^t_end .*/&\nstop = phi < 0.3/' "$srcdir/scenes/pendulum.nevh" \
     >$work/stop.nevh

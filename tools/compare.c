@@ -74,6 +74,16 @@ static void progress(const row_list *r, size_t i, double seconds, bool last) {
     fflush(stderr);
 }
 
+static void time_rows(const plan *p, row_list *r) {
+    row **ran = tool_allocate(r->count, sizeof *ran);
+    size_t count = 0;
+    for (size_t i = 0; i < r->count; i++)
+        if (r->row[i].ran)
+            ran[count++] = &r->row[i];
+    rows_time(p, ran, count, p->repeats ? p->repeats : ROUNDS, p->repeats > 0);
+    free(ran);
+}
+
 static void run_rows(const plan *p, row_list *r, bool quiet) {
     time_t start = time(NULL);
     for (size_t i = 0; i < r->count; i++) {
@@ -82,6 +92,7 @@ static void run_rows(const plan *p, row_list *r, bool quiet) {
         match_row(p, &r->row[i]);
         row_run(p, &r->row[i]);
     }
+    time_rows(p, r);
     if (!quiet)
         progress(r, r->count, difftime(time(NULL), start), true);
 }

@@ -320,45 +320,14 @@ bool ladder_is_behind(const search *s, const ladder *l, const ladder others[],
 
 void ladder_time(const search *s, ladder *l, size_t i) {
     row *r = &l->rung[i];
-    row again = *r;
     if (!r->ran || isfinite(r->seconds))
         return;
-    set_step(s, &again, l->k[i]);
-    row_finish(&s->plan, r, again.dt,
-               s->repeats           ? s->repeats
-               : search_may_time(s) ? 0
-                                    : 1);
-}
-
-static int by_size(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static void take_median(row *r, double seconds[], size_t count) {
-    qsort(seconds, count, sizeof *seconds, by_size);
-    r->seconds = seconds[count / 2];
-    r->spread = (seconds[3 * count / 4] - seconds[count / 4]) / 2;
-}
-
-void ladder_time_in_turn(const search *s, row *rung[], const int k[],
-                         size_t count, size_t repeats) {
-    enum { USUAL = 9, FEW = 3 };
-    static const double enough = 2; /* seconds */
-    double one = 0;
-    for (size_t i = 0; i < count; i++)
-        one += rung[i]->seconds;
-    size_t rounds = repeats ? repeats : USUAL * one < enough ? USUAL : FEW;
-    double *seconds = tool_allocate(count * rounds, sizeof *seconds);
-    for (size_t j = 0; j < rounds; j++)
-        for (size_t i = 0; i < count; i++) {
-            row again = *rung[i];
-            set_step(s, &again, k[i]);
-            seconds[i * rounds + j] = row_seconds(&s->plan, &again, again.dt);
-        }
-    for (size_t i = 0; i < count; i++)
-        take_median(rung[i], seconds + i * rounds, rounds);
-    free(seconds);
+    row_finish(&s->plan, r);
+    rows_time(&s->plan, &r, 1,
+              s->repeats           ? s->repeats
+              : search_may_time(s) ? ROUNDS
+                                   : 1,
+              s->repeats > 0);
 }
 
 /* The first rung that keeps the target. */

@@ -16,6 +16,7 @@ tools_nevh_SOURCES = \
 	tools/plan.c \
 	tools/stop.c \
 	tools/row.c \
+	tools/row_time.c \
 	tools/row_notes.c \
 	tools/records.c \
 	tools/ladder.h \

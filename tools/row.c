@@ -1,4 +1,4 @@
-/* nevh: one run of compare, watched, and once more for its time.
+/* nevh: one run of compare, watched.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "envelope.h"
 #include <math.h>
@@ -7,9 +7,6 @@
 #include <time.h>
 
 static const double unstable_above = 1; /* as nevh_energy_report says */
-static const double time_enough = 0.1;  /* seconds */
-static const double time_in_a_hurry = 0.03;
-enum { REPEATS = 5 };
 
 typedef struct {
     const plan *plan;
@@ -54,25 +51,8 @@ static void go_to_start(const work *w) {
 static int run(const work *w, nevh_stepper *s, const nevh_observer observers[],
                size_t count, double *stopped) {
     go_to_start(w);
-    return plan_run(w->plan, s, w->row->dt, w->q, w->p, observers, count,
+    return plan_run(w->plan, s, w->row->step, w->q, w->p, observers, count,
                     stopped);
-}
-
-static int stop_after(void *data, size_t step, double t, const double q[],
-                      const double p[]) {
-    const size_t *steps = data;
-    (void)t, (void)q, (void)p;
-    return step < *steps ? NEVH_OK : NEVH_STOPPED;
-}
-
-/* As many steps as the run took that was watched, and nothing else. */
-static void repeat(const work *w, nevh_stepper *s) {
-    const plan *p = w->plan;
-    row *r = w->row;
-    go_to_start(w);
-    nevh_run_until(s, p->run->t_start, r->dt, p->t_end, w->q, w->p,
-                   &(nevh_observer){stop_after, &r->steps, r->steps},
-                   isfinite(r->stopped));
 }
 
 static nevh_energy *new_energy(const work *w, const nevh_stepper *s) {
@@ -96,37 +76,13 @@ static void unstable_since(work *w) {
     nevh_stepper_free(s);
 }
 
-static nevh_counts difference(nevh_counts a, nevh_counts b) {
-    a.values -= b.values, a.gradients -= b.gradients, a.sweeps -= b.sweeps;
-    a.newtons -= b.newtons, a.rescues -= b.rescues;
-    a.hamiltonians -= b.hamiltonians;
-    return a;
-}
-
-static void set_seconds(row *r, double seconds[], size_t count) {
-    r->seconds = numbers_median(seconds, count);
-    r->spread = (seconds[(3 * count) / 4] - seconds[count / 4]) / 2;
-}
-
-/* A few runs that nobody watches: as many as asked for, or until their time is
-   enough. */
-static void measure(const work *w, size_t repeats) {
-    size_t most = repeats ? repeats : REPEATS, count = 0;
-    double *seconds = tool_allocate(most, sizeof *seconds), sum = 0;
-    nevh_stepper *s = new_stepper(w, false);
-    nevh_counts before = nevh_stepper_counts(s);
-    double enough = w->plan->hurried ? time_in_a_hurry : time_enough;
-    while (count < most && (repeats || sum < enough)) {
-        nevh_stepper_reset(s);
-        double start = cpu_seconds();
-        repeat(w, s);
-        sum += seconds[count] = cpu_seconds() - start;
-        if (count++ == 0)
-            w->row->counts = difference(nevh_stepper_counts(s), before);
-    }
-    set_seconds(w->row, seconds, count);
-    free(seconds);
-    nevh_stepper_free(s);
+nevh_counts row_counts(const nevh_stepper *s, nevh_counts before) {
+    nevh_counts c = nevh_stepper_counts(s);
+    c.values -= before.values, c.gradients -= before.gradients;
+    c.sweeps -= before.sweeps;
+    c.newtons -= before.newtons, c.rescues -= before.rescues;
+    c.hamiltonians -= before.hamiltonians;
+    return c;
 }
 
 /* Of gradients and values of formulas, as a processor of 2020 takes them, give
@@ -160,8 +116,7 @@ typedef struct {
 static int mind_work(void *data, size_t step, double t, const double q[],
                      const double p[]) {
     patience *wait = data;
-    nevh_counts c =
-        difference(nevh_stepper_counts(wait->stepper), wait->before);
+    nevh_counts c = row_counts(wait->stepper, wait->before);
     (void)t, (void)q, (void)p;
     wait->late = row_work(wait->plan, &c, step) > wait->plan->patience;
     return wait->late ? NEVH_STOPPED : NEVH_OK;
@@ -194,14 +149,16 @@ static void watched(work *w, nevh_stepper *s) {
     if (w->plan->patience > 0)
         observers[count++] =
             (nevh_observer){mind_work, &wait, w->plan->n < 8 ? 8 : 1};
+    double begin = cpu_seconds();
     int status = run(w, s, observers, count, &r->stopped);
+    r->watched = cpu_seconds() - begin;
     r->t_end = isfinite(r->stopped) ? r->stopped : w->plan->t_end;
     const char *why = wait.late                ? "it takes too long"
                       : status == NEVH_STOPPED ? nevh_energy_message(energy)
                                                : nevh_stepper_message(s);
     r->energy = nevh_energy_result(energy, 0);
     r->steps = nevh_stepper_taken(s);
-    r->counts = difference(nevh_stepper_counts(s), wait.before);
+    r->counts = row_counts(s, wait.before);
     r->late = wait.late;
     r->ran = !r->late && (!status || r->energy.verdict == NEVH_UNSTABLE);
     r->failed = !r->ran;
@@ -242,12 +199,11 @@ static void work_free(work *w) {
 
 void row_run(const plan *p, row *r) {
     work w = work_new(p, r);
+    r->step = r->dt;
     r->observed_order = r->state_error = r->stopped = r->seconds = NAN;
     nevh_stepper *s = new_stepper(&w, p->balance);
     if (!refused(r, s)) {
         watched(&w, s);
-        if (r->ran && !p->hurried)
-            measure(&w, p->repeats);
         if (r->ran && p->diagnostics)
             diagnose_row(p, r);
         if (r->ran && r->energy.verdict == NEVH_UNSTABLE && !p->hurried)
@@ -260,22 +216,9 @@ void row_run(const plan *p, row *r) {
     work_free(&w);
 }
 
-void row_finish(const plan *p, row *r, double dt, size_t repeats) {
-    double mean = r->dt;
+void row_finish(const plan *p, row *r) {
     work w = work_new(p, r);
-    r->dt = dt;
-    measure(&w, repeats);
     if (r->energy.verdict == NEVH_UNSTABLE)
         unstable_since(&w);
-    r->dt = mean;
     work_free(&w);
-}
-
-double row_seconds(const plan *p, const row *r, double dt) {
-    row again = *r;
-    work w = work_new(p, &again);
-    again.dt = dt;
-    measure(&w, 1);
-    work_free(&w);
-    return again.seconds;
 }
