@@ -5,8 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double part = 0.01; /* seconds, of a row that takes longer */
-static const double part_in_a_hurry = 0.006;
+static const double part = 0.006; /* seconds, of a row that takes longer */
 
 typedef struct {
     const plan *plan;
@@ -74,13 +73,13 @@ static double time_once(const stopwatch *w, double *spent) {
 }
 
 /* So much of the run as takes long enough, by what a first try took. */
-static void choose_share(stopwatch *w, double enough) {
+static void choose_share(stopwatch *w) {
     double spent;
-    w->share = fmin(1, enough / w->row->watched);
+    w->share = fmin(1, part / w->row->watched);
     if (w->share >= 1)
         return;
     time_once(w, &spent);
-    w->share = fmin(1, w->share * enough / spent);
+    w->share = fmin(1, w->share * part / spent);
 }
 
 static void finish(const stopwatch *w, row *r, size_t rounds) {
@@ -95,7 +94,7 @@ void rows_time(const plan *p, row *const rows[], size_t count, size_t rounds,
     for (size_t i = 0; i < count; i++) {
         w[i] = stopwatch_new(p, rows[i], rounds);
         if (!whole)
-            choose_share(&w[i], p->hurried ? part_in_a_hurry : part);
+            choose_share(&w[i]);
     }
     for (size_t k = 0; k < rounds; k++)
         for (size_t i = 0; i < count; i++)
