@@ -86,7 +86,7 @@ const row *ladder_least_work(const ladder *, double target, bool by_state);
 bool ladder_keeps_energy(const ladder *);
 
 /* fit.c: names of the schemes, and of the gradients, that fit. */
-void fitting_integrators(const plan *, const char *gradient, list *names);
+void fitting_integrators(const plan *, list *names);
 bool gradient_fits(const plan *, const char *gradient, char **why);
 /* Makes the reference.  Otherwise the message is printed and the exit status
    returned. */

@@ -17,6 +17,7 @@ tools_nevh_SOURCES = \
 	tools/stop.c \
 	tools/row.c \
 	tools/row_time.c \
+	tools/shelf.c \
 	tools/row_notes.c \
 	tools/records.c \
 	tools/ladder.h \

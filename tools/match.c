@@ -24,7 +24,7 @@ static double work_of_step(const plan *p, const row *r, double dt) {
     memcpy(q + p->n, p->p, size);
     int status = nevh_run(s, p->run->t_start, dt, steps, q, q + p->n, NULL, 0);
     nevh_counts after = nevh_stepper_counts(s);
-    nevh_stepper_free(s);
+    row_shelve(p, r, false, s);
     free(q);
     return status
                ? NAN
@@ -91,7 +91,7 @@ void match_row(const plan *p, row *r) {
         return;
     nevh_stepper *s = row_stepper(p, r, false);
     bool refused = nevh_stepper_status(s) != NEVH_OK;
-    nevh_stepper_free(s);
+    row_shelve(p, r, false, s);
     if (refused)
         return;
     r->dt = gradients > 0 ? r->dt * gradients : piloted(p, r, r->dt);

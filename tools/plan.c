@@ -162,7 +162,8 @@ static void take_settings(plan *p, const options *o) {
 }
 
 int plan_make(plan *p, const options *o) {
-    *p = (plan){.name = o->operands.count > 1 ? o->operands.item[1] : ""};
+    *p = (plan){.name = o->operands.count > 1 ? o->operands.item[1] : "",
+                .shelf = shelf_new()};
     if (scene_open(&p->scene, o))
         return TOOL_USAGE;
     take_settings(p, o);
@@ -180,6 +181,7 @@ void plan_free(plan *p) {
     free(p->q);
     free(p->p);
     nevh_reference_free(p->reference);
+    shelf_free(p->shelf);
     free(p->no_reference);
     nevh_scene_free(p->scene);
 }

@@ -31,18 +31,6 @@ static int stop_when_unstable(void *data, size_t step, double t,
     return status;
 }
 
-nevh_stepper *row_stepper(const plan *p, const row *r, bool balance) {
-    nevh_options o = plan_options(p, r->gradient);
-    o.transform = plan_transform(p, r->integrator);
-    o.tolerance = r->tolerance;
-    o.balance = balance;
-    return nevh_stepper_new(p->system, r->scheme, &o);
-}
-
-static nevh_stepper *new_stepper(const work *w, bool balance) {
-    return row_stepper(w->plan, w->row, balance);
-}
-
 static void go_to_start(const work *w) {
     memcpy(w->q, w->plan->q, w->plan->n * sizeof *w->q);
     memcpy(w->p, w->plan->p, w->plan->n * sizeof *w->p);
@@ -66,22 +54,26 @@ static nevh_energy *new_energy(const work *w, const nevh_stepper *s) {
 }
 
 static void unstable_since(work *w) {
-    nevh_stepper *s = new_stepper(w, w->plan->balance);
+    bool balance = w->plan->balance;
+    nevh_stepper *s = row_stepper(w->plan, w->row, balance);
     watch unstable = {new_energy(w, s), NAN};
     double stopped;
     run(w, s, &(nevh_observer){stop_when_unstable, &unstable, 1}, 1, &stopped);
     free(w->row->status);
     w->row->status = text_print("unstable: since t = %.9g", unstable.since);
     nevh_energy_free(unstable.energy);
-    nevh_stepper_free(s);
+    row_shelve(w->plan, w->row, balance, s);
 }
 
+/* Values over instances, of which there is a whole number. */
 nevh_counts row_counts(const nevh_stepper *s, nevh_counts before) {
     nevh_counts c = nevh_stepper_counts(s);
+    double instances = round((double)c.values / c.hamiltonians);
     c.values -= before.values, c.gradients -= before.gradients;
     c.sweeps -= before.sweeps;
     c.newtons -= before.newtons, c.rescues -= before.rescues;
-    c.hamiltonians -= before.hamiltonians;
+    if (c.hamiltonians > 0)
+        c.hamiltonians = (double)c.values / instances;
     return c;
 }
 
@@ -201,7 +193,7 @@ void row_run(const plan *p, row *r) {
     work w = work_new(p, r);
     r->step = r->dt;
     r->observed_order = r->state_error = r->stopped = r->seconds = NAN;
-    nevh_stepper *s = new_stepper(&w, p->balance);
+    nevh_stepper *s = row_stepper(p, r, p->balance);
     if (!refused(r, s)) {
         watched(&w, s);
         if (r->ran && p->diagnostics)
@@ -212,7 +204,7 @@ void row_run(const plan *p, row *r) {
             r->dt = mean_step(&w);
     }
     r->work = row_work(p, &r->counts, r->steps);
-    nevh_stepper_free(s);
+    row_shelve(p, r, p->balance, s);
     work_free(&w);
 }
 

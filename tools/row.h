@@ -38,8 +38,9 @@ double row_work(const plan *, const nevh_counts *, size_t steps);
 void row_finish(const plan *, row *);
 /* Since those before. */
 nevh_counts row_counts(const nevh_stepper *, nevh_counts before);
-/* Planned as for that row. */
+/* shelf.c: planned for that row, by whom it is given back. */
 nevh_stepper *row_stepper(const plan *, const row *, bool balance);
+void row_shelve(const plan *, const row *, bool balance, nevh_stepper *);
 /* row_time.c: the seconds of rows that ran, medians of so many rounds, in which
    they are run one after the other, so that what else the machine does falls
    upon all alike.
