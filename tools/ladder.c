@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 static const double rounding = 1e-13;
-static const double one_row = 0.025;    /* of the budget */
+static const double one_row = 0.0125;   /* of the budget */
 static const double usable_below = 0.5; /* of the scale of errors */
 
 /* As much as a run that is watched costs. */
@@ -295,23 +295,29 @@ void ladder_descend(search *s, ladder *l) {
     }
 }
 
+/* How much less the other must work. */
+static double lead(const ladder *l, const ladder *other, bool useless) {
+    static const double behind = 2, far_behind = 8;
+    bool higher = nevh_integrator_order(other->scheme) >=
+                  nevh_integrator_order(l->scheme);
+    if (useless)
+        return higher ? far_behind : INFINITY;
+    return higher ? behind : far_behind;
+}
+
 bool ladder_is_behind(const search *s, const ladder *l, const ladder others[],
                       size_t count) {
-    static const double behind = 2, far_behind = 8;
     const row *last = &l->rung[l->count - 1];
     double error = ladder_error(last, s->by_state);
-    if (error >= usable_below)
-        return false;
+    bool useless = error >= usable_below;
     for (size_t i = 0; i < count; i++) {
         const ladder *m = &others[i];
-        double factor =
-            nevh_integrator_order(m->scheme) >= nevh_integrator_order(l->scheme)
-                ? behind
-                : far_behind;
+        double factor = lead(l, m, useless);
         for (size_t k = 0; k < m->count; k++)
             if (m->gradient == l->gradient &&
                 (s->by_state || !ladder_keeps_energy(m)) &&
-                ladder_error(&m->rung[k], s->by_state) <= error &&
+                ladder_error(&m->rung[k], s->by_state) <=
+                    fmin(error, usable_below) &&
                 factor * m->rung[k].work < last->work)
                 return true;
     }
