@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* With a gradient that takes no time to plan: what a scheme needs is asked of H,
-   and whether a gradient fits is another question. */
+/* With a gradient that takes no time to plan: what a scheme needs is asked of
+   H, and whether a gradient fits is another question. */
 static bool fits(const plan *p, const nevh_integrator *scheme) {
     nevh_options o = plan_options(p, "central2");
     o.gradient_step = 1e-3;
@@ -68,7 +68,8 @@ double plan_shorten(plan *p, double budget) {
         dt = fmin(dt, p->dt[i]);
     nevh_counts step = {.gradients = 1};
     double runs = (double)(RUNS * p->integrators.count);
-    double share = budget / 6 / (runs * row_work(p, &step, 1) * span / dt);
+    double share =
+        budget / 6 / (runs * row_work(p, nevh_verlet, &step, 1) * span / dt);
     if (share < 1)
         p->t_end = p->run->t_start + share_below(share) * span;
     return whole;

@@ -77,15 +77,26 @@ nevh_counts row_counts(const nevh_stepper *s, nevh_counts before) {
     return c;
 }
 
+/* What a gradient costs of many stages that are taken side by side, a single
+   one being 1. */
+static double side_by_side(const nevh_integrator *scheme) {
+    static const double least = 0.15;
+    double stages = nevh_integrator_sweep_gradients(scheme);
+    return stages > 1 ? least + (1 - least) / stages : 1;
+}
+
 /* Of gradients and values of formulas, as a processor of 2020 takes them, give
    or take a factor of two; an implicit step that Newton solves factors a matrix
    as well. */
-double row_work(const plan *p, const nevh_counts *c, size_t steps) {
+double row_work(const plan *p, const nevh_integrator *scheme,
+                const nevh_counts *c, size_t steps) {
     double n = (double)p->n, m = 2 * n;
     double gradient = c->hamiltonians > 0 ? 100 : 250 + 40 * n;
+    double evaluations =
+        gradient * (double)c->gradients + (100 + 40 * n) * c->hamiltonians;
     return 1e-9 *
-           (gradient * (double)c->gradients + (100 + 40 * n) * c->hamiltonians +
-            (50 + 10 * n) * (double)steps + m * m * m / 2 * (double)c->newtons);
+           (side_by_side(scheme) * evaluations + (50 + 10 * n) * (double)steps +
+            m * m * m / 2 * (double)c->newtons);
 }
 
 /* Of all steps tried, those that were too long for the tolerance included. */
@@ -100,6 +111,7 @@ static double mean_step(const work *w) {
 /* Whoever waits for a row no longer than its work is as much as that. */
 typedef struct {
     const plan *plan;
+    const nevh_integrator *scheme;
     const nevh_stepper *stepper;
     nevh_counts before;
     bool late;
@@ -110,7 +122,8 @@ static int mind_work(void *data, size_t step, double t, const double q[],
     patience *wait = data;
     nevh_counts c = row_counts(wait->stepper, wait->before);
     (void)t, (void)q, (void)p;
-    wait->late = row_work(wait->plan, &c, step) > wait->plan->patience;
+    wait->late =
+        row_work(wait->plan, wait->scheme, &c, step) > wait->plan->patience;
     return wait->late ? NEVH_STOPPED : NEVH_OK;
 }
 
@@ -124,7 +137,7 @@ static bool compares_states(const plan *p, const row *r) {
 
 static void watched(work *w, nevh_stepper *s) {
     row *r = w->row;
-    patience wait = {w->plan, s, nevh_stepper_counts(s), false};
+    patience wait = {w->plan, r->scheme, s, nevh_stepper_counts(s), false};
     nevh_energy *energy = new_energy(w, s);
     nevh_state_error *state = nevh_state_error_new(w->plan->reference);
     invariants *kept = w->plan->diagnostics ? invariants_new(w->plan) : NULL;
@@ -203,7 +216,7 @@ void row_run(const plan *p, row *r) {
         if (r->ran && r->tolerance > 0)
             r->dt = mean_step(&w);
     }
-    r->work = row_work(p, &r->counts, r->steps);
+    r->work = row_work(p, r->scheme, &r->counts, r->steps);
     row_shelve(p, r, p->balance, s);
     work_free(&w);
 }

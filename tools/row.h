@@ -33,7 +33,8 @@ typedef struct {
 void row_run(const plan *, row *);
 /* What that many evaluations and steps cost, in seconds of no machine in
    particular: what is decided by it is decided alike on all. */
-double row_work(const plan *, const nevh_counts *, size_t steps);
+double row_work(const plan *, const nevh_integrator *, const nevh_counts *,
+                size_t steps);
 /* Of a row that ran in a hurry: when it became unstable. */
 void row_finish(const plan *, row *);
 /* Since those before. */

@@ -68,8 +68,8 @@ static double time_once(const stopwatch *w, double *spent) {
     run(w);
     *spent = cpu_seconds() - begin;
     nevh_counts c = row_counts(w->stepper, before);
-    double work = row_work(p, &c, nevh_stepper_taken(w->stepper));
-    return *spent * row_work(p, &r->counts, r->steps) / work;
+    double work = row_work(p, r->scheme, &c, nevh_stepper_taken(w->stepper));
+    return *spent * row_work(p, r->scheme, &r->counts, r->steps) / work;
 }
 
 /* So much of the run as takes long enough, by what a first try took. */
