@@ -107,7 +107,15 @@ done
 test "$(sort -u $work/transformed | wc -l)" -eq 1 ||
     { fails "takes the scene's transform"; cat $work/transformed; }
 exits 2 compare kepler --t-end 10 --transform '(x^2 + z^2)^(3/4)'
-says '^assignment:1:8: error: the name z is not known'
+says '^nevh: --transform: the name z is not known'
+says '^\(x\^2 \+ z\^2\)'
+for option in '--with foo' '--without foo' '--set foo=1'; do
+    exits 2 compare kepler $option
+    says "^nevh: ${option% *}: there is no (effect|parameter) foo"
+done
+exits 2 compare pendulum --set l=2 --set 'm=2*mm'
+says '^nevh: --set: .*mm'
+says '^m=2\*mm$'
 exits 2 compare kepler --t-end 10 --transform 't*x'
 exits 2 compare kepler --t-end 10 --transform ''
 

@@ -146,6 +146,8 @@ int output_close(output *, int status);
 int output_page(const options *, const page *, int status);
 
 /* scenes.c: scenes by file or name, changed as the options say. */
+/* Its message on stderr; TOOL_USAGE. */
+int scene_report(const nevh_scene *, const options *);
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed and *scene NULL */
 int scene_open(nevh_scene **scene, const options *);
 int scene_open_named(nevh_scene **scene, const char *name, const options *);
