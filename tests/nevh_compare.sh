@@ -130,6 +130,15 @@ holds straightness '$1 >= 0 && $1 <= 1'
 exits 0 compare kepler --t-end 10 --dt 0.02 --integrators gauss4 --diagnostics
 has 'symplecticity'
 has 'change of'
+# As text no wider than 100 columns: what is more goes below, row by row.
+exits 0 compare sun-earth-moon --t-end 0.1 --dt 0.01,0.005 --diagnostics \
+    --integrators verlet,gauss4 --gradient exact,central2
+awk 'length($0) > 100 { exit 1 }' $work/out || fails "is wider than 100 columns"
+has '^ integrator +gradient +dt/year .*symplecticity .*change of$'
+has '^ gauss4 +central2 +0\.005 .*[0-9]e-[0-9]+$'
+test "$(grep -c '^ verlet ' $work/out)" -eq 8 || fails "does not show rows again"
+exits 0 compare sun-earth-moon --t-end 0.1 --dt 0.01 --integrators verlet
+lacks 'symplecticity|^ integrator +dt'
 
 # A dt that decides the verdict.
 exits 0 compare pendulum --integrators euler,rk4 --dt 0.5,0.05

@@ -149,14 +149,21 @@ static table *shown(const plan *p, const row_list *r) {
     static const char *const errors[] = {"max energy\nerror",
                                          "drift over\nthe run", "state\nerror"};
     static const char *const last[] = {"H evals", "ms", "energy"};
-    table_columns(t, first, sizeof first / sizeof *first);
-    if (p->gradients.count > 1)
+    table_column(t, first[0]);
+    table_key(t);
+    table_columns(t, first + 1, sizeof first / sizeof *first - 1);
+    if (p->gradients.count > 1) {
         table_column(t, "gradient");
+        table_key(t);
+    }
     table_column(t, dt);
+    table_key(t);
     table_columns(t, errors, sizeof errors / sizeof *errors);
     if (p->dts > 1)
         table_column(t, "order\nseen");
     table_columns(t, last, sizeof last / sizeof *last);
+    if (p->diagnostics)
+        table_break(t);
     diagnostics_columns(t, p, true);
     for (size_t i = 0; i < r->count; i++) {
         if (i && r->row[i].group != r->row[i - 1].group)

@@ -63,6 +63,11 @@ void table_free(table *);
 /* The next column; lines of the title are separated by \n. */
 void table_column(table *, const char *title);
 void table_columns(table *, const char *const titles[], size_t count);
+/* The next column and those after it may go below, where they are more than fit
+   beside each other. */
+void table_break(table *);
+/* The last column says which row it is: it is shown again there. */
+void table_key(table *);
 /* The next cell of the row.  NULL, and numbers that are not finite, leave it
    empty. */
 void table_text(table *, const char *text);
