@@ -229,7 +229,7 @@ static panel panel_from(const table *t, const setting set[], size_t first) {
     panel p = {set, first, t->title.count, 2};
     if (!t->breaking)
         return p;
-    if (panel_width(t, &p) > MOST && first < t->breaking)
+    if (panel_width(t, &p) > MOST && first == 0)
         p.last = t->breaking;
     if (panel_width(t, &p) > MOST)
         p.gap = 1;
