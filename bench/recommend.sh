@@ -60,22 +60,41 @@ candidates() { # BY TARGET TOLERANCES
           if ($8 == "ok" && e != "" && e + 0 <= target + 0)
               print $17, "--integrators", $2, "--gradient", $5, "--dt", step }'
 }
+# What a run takes at a coarse step, or at a finer one where the scheme is not
+# stable, tells the shortest step that may win: runs take 1.5 times as long as
+# what is recommended, or less.
+shortest() { # SCENE T_END SECONDS
+    for part in 200 800 3200 12800; do
+        fine=$(rows "$1" "$2" --integrators $name --gradient exact --repeat 3 \
+            --dt $(awk "BEGIN { print $2 / $part }") |
+            awk -F, -v most="$3" '$8 == "ok" {
+                print 0.6 * $6 * $17 / (1.5 * most) }')
+        test -z "$fine" || break
+    done
+    echo "${fine:-1e9}"
+}
+# As rows, but for no longer than many times what they should take together.
+limited() { # SECONDS SCENE T_END, and options
+    most=$(awk "BEGIN { print int(20 + 5000 * $1) }")
+    shift
+    (ulimit -t "$most" && rows "$@") >$work.rows
+    tail -n 1 $work.rows | grep -q , ||
+        echo "$name: no rows within $most s" >&2
+    cat $work.rows
+}
 brute_force() { # SCENE BY TARGET T_END SECONDS: candidates, best first
     gradients=exact,central2,central4,central6,central8,complex-step
     for name in $(schemes "$1" "$4" "$2"); do
         if adapts $name; then
-            rows "$1" "$4" --integrators $name --gradient $gradients \
-                --dt $landing --tolerance "$(tolerances 1e-13)" --repeat 1 |
+            limited "$5" "$1" "$4" --integrators $name \
+                --gradient $gradients --dt $landing \
+                --tolerance "$(tolerances 1e-13)" --repeat 1 |
                 candidates $2 $3 "$(tolerances 1e-13)"
             continue
         fi
-        # What a run takes at a coarse step tells which steps may win.
-        probe=$(awk "BEGIN { print $4 / 200 }")
-        fine=$(rows "$1" "$4" --integrators $name --gradient exact \
-            --dt $probe --repeat 3 | awk -F, -v most="$5" -v dt=$probe '
-                { print 0.6 * dt * $17 / (1.5 * most) }')
-        steps=$(grid $(awk "BEGIN { print $4 / 8 }") "${fine:-1e9}" "$4")
-        test -z "$steps" || rows "$1" "$4" --integrators $name \
+        steps=$(grid $(awk "BEGIN { print $4 / 8 }") \
+            "$(shortest "$1" "$4" "$5")" "$4")
+        test -z "$steps" || limited "$5" "$1" "$4" --integrators $name \
             --gradient $gradients --dt "$steps" --repeat 1 |
             candidates $2 $3 ""
     done | sort -g

@@ -289,7 +289,8 @@ START_TEST(separatrix_is_near) {
 }
 END_TEST
 
-/* CPU seconds to read a chain, to plan for it and to take some steps. */
+/* CPU seconds to read a chain, to plan for it, also for a scheme that asks what
+   kind of T it has, and to take some steps. */
 static double chain_seconds(int masses) {
     char text[40];
     clock_t start = clock();
@@ -302,6 +303,9 @@ static double chain_seconds(int masses) {
     nevh_options o = {.gradient_step = 0.1, .q = q, .p = q + n};
     nevh_stepper *by = nevh_stepper_new(nevh_scene_system(s), nevh_verlet, &o);
     ck_assert_int_eq(nevh_run(by, 0, 0.25, 40, q, q + n, NULL, 0), NEVH_OK);
+    nevh_stepper_free(by);
+    by = nevh_stepper_new(nevh_scene_system(s), nevh_rkn6b, &o);
+    ck_assert_int_eq(nevh_stepper_status(by), NEVH_OK);
     nevh_stepper_free(by);
     nevh_scene_free(s);
     free(q);

@@ -107,7 +107,15 @@ done
 test "$(sort -u $work/transformed | wc -l)" -eq 1 ||
     { fails "takes the scene's transform"; cat $work/transformed; }
 exits 2 compare kepler --t-end 10 --transform '(x^2 + z^2)^(3/4)'
-says '^assignment:1:8: error: the name z is not known'
+says '^nevh: --transform: the name z is not known'
+says '^\(x\^2 \+ z\^2\)'
+for option in '--with foo' '--without foo' '--set foo=1'; do
+    exits 2 compare kepler $option
+    says "^nevh: ${option% *}: there is no (effect|parameter) foo"
+done
+exits 2 compare pendulum --set l=2 --set 'm=2*mm'
+says '^nevh: --set: .*mm'
+says '^m=2\*mm$'
 exits 2 compare kepler --t-end 10 --transform 't*x'
 exits 2 compare kepler --t-end 10 --transform ''
 
@@ -122,12 +130,31 @@ holds straightness '$1 >= 0 && $1 <= 1'
 exits 0 compare kepler --t-end 10 --dt 0.02 --integrators gauss4 --diagnostics
 has 'symplecticity'
 has 'change of'
+# As text no wider than 100 columns: what is more goes below, row by row.
+exits 0 compare sun-earth-moon --t-end 0.1 --dt 0.01,0.005 --diagnostics \
+    --integrators verlet,gauss4 --gradient exact,central2
+awk 'length($0) > 100 { exit 1 }' $work/out || fails "is wider than 100 columns"
+has '^ integrator +gradient +dt/year .*symplecticity .*change of$'
+has '^ gauss4 +central2 +0\.005 .*[0-9]e-[0-9]+$'
+test "$(grep -c '^ verlet ' $work/out)" -eq 8 || fails "does not show rows again"
+exits 0 compare sun-earth-moon --t-end 0.1 --dt 0.01 --integrators verlet
+lacks 'symplecticity|^ integrator +dt'
 
 # A dt that decides the verdict.
 exits 0 compare pendulum --integrators euler,rk4 --dt 0.5,0.05
 has 'Warning: a smaller dt changes the verdict of rk4: unstable at dt = 0.5'
 lacks 'verdict of euler'
 
+
+# Of a long run a part is timed, with --repeat the whole: nothing else differs.
+for repeat in '' '--repeat 2'; do
+    exits 0 compare pendulum --integrators verlet,gauss4,dopri5 --dt 0.02 \
+        --t-end 2000 --tolerance 1e-6 --format csv $repeat
+    holds seconds '$1 > 0 && $2 > 0 && $3 > 0'
+    grep -v '^#' $work/out | cut -d, -f 1-16,18,19 >>$work/timed
+done
+test "$(sort -u $work/timed | wc -l)" -eq 4 ||
+    { fails "has other rows where all is timed"; cat $work/timed; }
 
 # Where the scene says stop: rows end there, the timed runs too.
 sed 's/^t_end .*/&\nstop = phi < 0.3/' "$srcdir/scenes/pendulum.nevh" \

@@ -74,6 +74,16 @@ static void progress(const row_list *r, size_t i, double seconds, bool last) {
     fflush(stderr);
 }
 
+static void time_rows(const plan *p, row_list *r) {
+    row **ran = tool_allocate(r->count, sizeof *ran);
+    size_t count = 0;
+    for (size_t i = 0; i < r->count; i++)
+        if (r->row[i].ran)
+            ran[count++] = &r->row[i];
+    rows_time(p, ran, count, p->repeats ? p->repeats : ROUNDS, p->repeats > 0);
+    free(ran);
+}
+
 static void run_rows(const plan *p, row_list *r, bool quiet) {
     time_t start = time(NULL);
     for (size_t i = 0; i < r->count; i++) {
@@ -81,6 +91,7 @@ static void run_rows(const plan *p, row_list *r, bool quiet) {
             progress(r, i, difftime(time(NULL), start), false);
         row_run(p, &r->row[i]);
     }
+    time_rows(p, r);
     if (!quiet)
         progress(r, r->count, difftime(time(NULL), start), true);
 }
@@ -147,14 +158,21 @@ static table *shown(const plan *p, const row_list *r) {
     static const char *const errors[] = {"max energy\nerror",
                                          "drift over\nthe run", "state\nerror"};
     static const char *const last[] = {"H evals", "ms", "energy"};
-    table_columns(t, first, sizeof first / sizeof *first);
-    if (p->gradients.count > 1)
+    table_column(t, first[0]);
+    table_key(t);
+    table_columns(t, first + 1, sizeof first / sizeof *first - 1);
+    if (p->gradients.count > 1) {
         table_column(t, "gradient");
+        table_key(t);
+    }
     table_column(t, dt);
+    table_key(t);
     table_columns(t, errors, sizeof errors / sizeof *errors);
     if (p->dts > 1)
         table_column(t, "order\nseen");
     table_columns(t, last, sizeof last / sizeof *last);
+    if (p->diagnostics)
+        table_break(t);
     diagnostics_columns(t, p, true);
     for (size_t i = 0; i < r->count; i++) {
         if (i && r->row[i].group != r->row[i - 1].group)

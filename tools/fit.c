@@ -5,11 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool fits(const plan *p, const char *gradient,
-                 const nevh_integrator *scheme) {
-    nevh_options o = plan_options(p, gradient);
-    if (o.gradient_step == 0)
-        o.gradient_step = 1e-3; /* nothing is run: no need to choose it */
+/* With a gradient that takes no time to plan: what a scheme needs is asked of
+   H, and whether a gradient fits is another question. */
+static bool fits(const plan *p, const nevh_integrator *scheme) {
+    nevh_options o = plan_options(p, "central2");
+    o.gradient_step = 1e-3;
+    o.gradient_steps = NULL;
     o.transform = plan_transform(p, nevh_integrator_name(scheme));
     if (nevh_integrator_adaptive(scheme))
         o.tolerance = 1e-6;
@@ -19,9 +20,9 @@ static bool fits(const plan *p, const char *gradient,
     return !status;
 }
 
-void fitting_integrators(const plan *p, const char *gradient, list *names) {
+void fitting_integrators(const plan *p, list *names) {
     for (size_t i = 0; nevh_integrators()[i]; i++)
-        if (fits(p, gradient, nevh_integrators()[i]))
+        if (fits(p, nevh_integrators()[i]))
             list_add(names, nevh_integrator_name(nevh_integrators()[i]));
 }
 
@@ -67,7 +68,8 @@ double plan_shorten(plan *p, double budget) {
         dt = fmin(dt, p->dt[i]);
     nevh_counts step = {.gradients = 1};
     double runs = (double)(RUNS * p->integrators.count);
-    double share = budget / 6 / (runs * row_work(p, &step, 1) * span / dt);
+    double share =
+        budget / 6 / (runs * row_work(p, nevh_verlet, &step, 1) * span / dt);
     if (share < 1)
         p->t_end = p->run->t_start + share_below(share) * span;
     return whole;
@@ -81,7 +83,7 @@ int plan_search(plan *p, const options *o) {
     }
     if (o->integrators.count == 0) {
         list_free(&p->integrators);
-        fitting_integrators(p, p->gradients.item[0], &p->integrators);
+        fitting_integrators(p, &p->integrators);
     }
     nevh_stepper *s = plan_first(p, NULL);
     int status = s ? TOOL_OK : TOOL_USAGE;

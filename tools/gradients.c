@@ -42,22 +42,50 @@ static void add_finding(page *result, const finding *g, bool for_people) {
     add_numbers(g, t, for_people);
 }
 
-static void add_method(const context *c, page *result, const char *gradient,
-                       bool for_people) {
-    enum { DECADES = 2 };
-    finding g = gradient_find(c, gradient, c->plan->gradient_step);
-    bool good = g.good;
-    table_group(result->table);
-    add_finding(result, &g, for_people);
-    free(g.why);
-    if (!good || strncmp(gradient, "central", 7) || c->plan->gradient_step > 0)
+enum { DECADES = 2, MOST = 1 + 2 * DECADES + 1 };
+
+typedef struct {
+    finding *item;
+    size_t count;
+} findings;
+
+/* With the step that it chooses, and with steps around it. */
+static void find_method(const context *c, findings *f, const char *gradient) {
+    finding *g = &f->item[f->count++];
+    *g = gradient_find(c, gradient, c->plan->gradient_step);
+    g->first = true;
+    if (!g->good || strncmp(gradient, "central", 7) ||
+        c->plan->gradient_step > 0)
         return;
     double middle = pow(10, round(log10(gradient_own_step(c, gradient))));
-    for (int k = DECADES; isfinite(middle) && k >= -DECADES; k--) {
-        g = gradient_find(c, gradient, middle * pow(10, k));
-        add_finding(result, &g, for_people);
-        free(g.why);
+    for (int k = DECADES; isfinite(middle) && k >= -DECADES; k--)
+        f->item[f->count++] = gradient_find(c, gradient, middle * pow(10, k));
+}
+
+static bool is_wanted(const options *o, const char *gradient) {
+    return o->gradients.count == 0 || list_has(&o->gradients, gradient);
+}
+
+static findings find_all(const context *c, const options *o) {
+    size_t methods = 0;
+    while (nevh_gradients()[methods])
+        methods++;
+    findings f = {tool_allocate(methods * MOST, sizeof *f.item), 0};
+    for (size_t i = 0; i < methods; i++)
+        if (is_wanted(o, nevh_gradient_name(nevh_gradients()[i])))
+            find_method(c, &f, nevh_gradient_name(nevh_gradients()[i]));
+    gradients_influx(c, f.item, f.count);
+    return f;
+}
+
+static void add_all(page *result, findings *f, bool for_people) {
+    for (size_t i = 0; i < f->count; i++) {
+        if (f->item[i].first)
+            table_group(result->table);
+        add_finding(result, &f->item[i], for_people);
+        finding_free(&f->item[i]);
     }
+    free(f->item);
 }
 
 static table *new_table(bool for_people) {
@@ -116,14 +144,8 @@ static int gradients_plan(const options *o, const plan *p) {
     int status = context_make(&c, p);
     if (!status) {
         result.table = new_table(for_people);
-        for (size_t i = 0; nevh_gradients()[i]; i++) {
-            const char *name = nevh_gradient_name(nevh_gradients()[i]);
-            bool wanted = o->gradients.count == 0;
-            for (size_t k = 0; k < o->gradients.count; k++)
-                wanted |= strcmp(name, o->gradients.item[k]) == 0;
-            if (wanted)
-                add_method(&c, &result, name, for_people);
-        }
+        findings f = find_all(&c, o);
+        add_all(&result, &f, for_people);
         if (!o->quiet || !for_people) {
             plan_notes(p, &result.before);
             tell(&c, &result);

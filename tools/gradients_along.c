@@ -117,24 +117,25 @@ static void errors_along(const context *c, nevh_field *f, finding *g) {
     free(dp);
 }
 
-/* The median of a few passes over the orbit. */
+/* The median of a few rounds, each of which goes on along the orbit. */
 static double time_of(const context *c, nevh_field *f) {
-    enum { PASSES = 5 };
-    static const double enough = 2e-3; /* seconds a pass */
-    double seconds[PASSES];
+    enum { ROUNDS_TIMED = 5, AT_ONCE = 16 };
+    static const double enough = 2e-3; /* seconds a round */
+    double seconds[ROUNDS_TIMED];
     double *out = tool_allocate(2 * c->exact.n, sizeof *out);
-    for (int pass = 0; pass < PASSES; pass++) {
+    size_t at = 0;
+    for (int round = 0; round < ROUNDS_TIMED; round++) {
         double start = cpu_seconds(), now = start;
         size_t count = 0;
         do {
-            for (size_t i = 0; i < c->exact.count; i++, count++)
-                evaluate(c, f, i, out, out + c->exact.n);
+            for (int i = 0; i < AT_ONCE; i++, count++, at++)
+                evaluate(c, f, at % c->exact.count, out, out + c->exact.n);
             now = cpu_seconds();
         } while (now - start < enough);
-        seconds[pass] = (now - start) / (double)count;
+        seconds[round] = (now - start) / (double)count;
     }
     free(out);
-    return 1e9 * numbers_median(seconds, PASSES);
+    return 1e9 * numbers_median(seconds, ROUNDS_TIMED);
 }
 
 /* What the choice of steps expected, the worst of all variables. */
@@ -152,44 +153,63 @@ static void take_estimates(const context *c, nevh_field *f, finding *g) {
    instead of dH, dH/dt = dH/dq e_p - dH/dp e_q.  Unlike the difference of two
    orbits that means something where orbits part. */
 typedef struct {
-    nevh_field *exact, *other;
-    size_t n;
-    double *gradient; /* dq, dp; the same of the other: n each */
-    bool begun;
-    double t, rate, sum, most;
+    double rate, sum, most;
 } influx;
 
-static int observe_influx(void *data, size_t step, double t, const double q[],
-                          const double p[]) {
-    influx *f = data;
+typedef struct {
+    nevh_field *exact;
+    const finding *findings;
+    influx *influx; /* of each */
+    size_t count, n;
+    double *gradient; /* dq, dp; the same of another: n each */
+    bool begun;
+    double t;
+} inflow;
+
+static int add_influx(inflow *f, influx *sum, nevh_field *other, double t,
+                      const double q[], const double p[]) {
     size_t n = f->n;
     double *dq = f->gradient, *dp = dq + n, *gq = dp + n, *gp = gq + n;
     double rate = 0;
-    (void)step;
-    int status = nevh_field_gradient(f->exact, 1, &t, q, p, dq, dp);
-    if (!status)
-        status = nevh_field_gradient(f->other, 1, &t, q, p, gq, gp);
+    int status = nevh_field_gradient(other, 1, &t, q, p, gq, gp);
     for (size_t k = 0; k < n; k++)
         rate += dq[k] * (gp[k] - dp[k]) - dp[k] * (gq[k] - dq[k]);
     if (f->begun)
-        f->sum += (rate + f->rate) / 2 * (t - f->t);
-    f->most = fmax(f->most, fabs(f->sum));
-    f->begun = true, f->t = t, f->rate = rate;
+        sum->sum += (rate + sum->rate) / 2 * (t - f->t);
+    sum->most = status ? NAN : fmax(sum->most, fabs(sum->sum));
+    sum->rate = rate;
     return status;
 }
 
-static double influx_along(const context *c, nevh_field *other) {
+static int observe_influx(void *data, size_t step, double t, const double q[],
+                          const double p[]) {
+    inflow *f = data;
+    (void)step;
+    int status = nevh_field_gradient(f->exact, 1, &t, q, p, f->gradient,
+                                     f->gradient + f->n);
+    for (size_t i = 0; !status && i < f->count; i++)
+        if (f->findings[i].good && isfinite(f->influx[i].most))
+            add_influx(f, &f->influx[i], f->findings[i].field, t, q, p);
+    f->begun = true, f->t = t;
+    return status;
+}
+
+void gradients_influx(const context *c, finding findings[], size_t count) {
     nevh_options o = gradient_options(c, c->yardstick, 0);
     size_t n = c->exact.n;
-    influx f = {.exact = nevh_field_new(c->plan->system, &o),
-                .other = other,
+    inflow f = {.exact = nevh_field_new(c->plan->system, &o),
+                .findings = findings,
+                .influx = tool_allocate(count, sizeof(influx)),
+                .count = count,
                 .n = n,
                 .gradient = tool_allocate(4 * n, sizeof(double))};
     int status =
         follow(c, c->yardstick, 0, &(nevh_observer){observe_influx, &f, 1});
+    for (size_t i = 0; i < count; i++)
+        findings[i].influx = status ? NAN : f.influx[i].most / c->scale;
     nevh_field_free(f.exact);
+    free(f.influx);
     free(f.gradient);
-    return status ? NAN : f.most / c->scale;
 }
 
 static double energy_along(const context *c, const finding *g) {
@@ -228,11 +248,15 @@ finding gradient_find(const context *c, const char *gradient, double step) {
         take_estimates(c, f, &g);
         g.nanoseconds = time_of(c, f);
         g.energy = energy_along(c, &g);
-        g.influx = influx_along(c, f);
         g.floor = floor_along(c, f);
     }
-    nevh_field_free(f);
+    g.field = f;
     return g;
+}
+
+void finding_free(finding *g) {
+    nevh_field_free(g->field);
+    free(g->why);
 }
 
 /* The shortest of those that differences of full order have chosen. */
@@ -258,13 +282,35 @@ static const char *find_yardstick(const plan *p) {
     return names[2];
 }
 
-/* Up to the end of the run, or to where it stops. */
+/* What a step costs with differences, by a pilot of a few. */
+static double step_work(const context *c) {
+    enum { PILOT = 32 };
+    nevh_options o = gradient_options(c, "central4", 0);
+    nevh_stepper *s = nevh_stepper_new(c->plan->system, scheme_of(c), &o);
+    size_t n = c->plan->n;
+    double *state = tool_allocate(2 * n, sizeof *state);
+    memcpy(state, c->plan->q, n * sizeof *state);
+    memcpy(state + n, c->plan->p, n * sizeof *state);
+    nevh_counts before = nevh_stepper_counts(s);
+    int status = nevh_run(s, c->plan->run->t_start, c->dt, PILOT, state,
+                          state + n, NULL, 0);
+    nevh_counts spent = row_counts(s, before);
+    double work = row_work(c->plan, scheme_of(c), &spent, PILOT) / PILOT;
+    nevh_stepper_free(s);
+    free(state);
+    return status ? 0 : work;
+}
+
+/* Up to the end of the run, or to where it stops, or as far as the runs of all
+   gradients and steps come in about a second. */
 static void choose_steps(context *c) {
-    static const double most = 2e4;
+    enum { RUNS = 40 };
+    static const double most = 2e4, least = 256, budget = 1.2;
     const plan *p = c->plan;
     double steps = round((p->t_end - p->run->t_start) / c->dt);
+    double few = fmax(budget / (RUNS * step_work(c)), least);
     stop s = {.scene = p->scene};
-    c->steps = (size_t)fmin(fmax(steps, 1), most);
+    c->steps = (size_t)fmin(fmax(steps, 1), fmin(few, most));
     if (nevh_scene_stops(p->scene))
         follow(c, c->yardstick, 0, &(nevh_observer){stop_observe, &s, 1});
     if (s.reached && s.step > 0)

@@ -36,12 +36,17 @@ typedef struct {
     double error, truncation, rounding; /* relative to the largest component */
     double evaluations, nanoseconds;
     double energy, influx, floor; /* relative to the scale of energies */
-    bool good;
+    bool good, first;             /* first: of its method */
     char *why;
+    nevh_field *field;
 } finding;
 
-/* step  0: chosen.  `why` is to be freed */
+/* All but the influx.
+   step  0: chosen */
 finding gradient_find(const context *, const char *gradient, double step);
+/* The influx of all, along one orbit. */
+void gradients_influx(const context *, finding[], size_t count);
+void finding_free(finding *);
 /* The shortest half-spread chosen by differences of full order; INFINITY. */
 double gradient_own_step(const context *, const char *gradient);
 

@@ -14,7 +14,7 @@ static char *find(const char *name) {
     char *file = scene_file("../hard", name);
     if (!file)
         file = scene_file("../tests/hard", name);
-    return file ? file : scene_file(".", name);
+    return file ? file : scene_file("", name);
 }
 
 nevh_scene *hard_scene(const char *name) {

@@ -224,23 +224,29 @@ void ladder_descend(search *s, ladder *l) {
     }
 }
 
+/* How much less the other must work. */
+static double lead(const ladder *l, const ladder *other, bool useless) {
+    static const double behind = 2, far_behind = 8;
+    bool higher = nevh_integrator_order(other->scheme) >=
+                  nevh_integrator_order(l->scheme);
+    if (useless)
+        return higher ? far_behind : INFINITY;
+    return higher ? behind : far_behind;
+}
+
 bool ladder_is_behind(const search *s, const ladder *l, const ladder others[],
                       size_t count) {
-    static const double behind = 2, far_behind = 8;
     const row *last = &l->rung[l->count - 1];
     double error = ladder_error(last, s->by_state);
-    if (error >= usable_below)
-        return false;
+    bool useless = error >= usable_below;
     for (size_t i = 0; i < count; i++) {
         const ladder *m = &others[i];
-        double factor =
-            nevh_integrator_order(m->scheme) >= nevh_integrator_order(l->scheme)
-                ? behind
-                : far_behind;
+        double factor = lead(l, m, useless);
         for (size_t k = 0; k < m->count; k++)
             if (m->gradient == l->gradient &&
                 (s->by_state || !ladder_keeps_energy(m)) &&
-                ladder_error(&m->rung[k], s->by_state) <= error &&
+                ladder_error(&m->rung[k], s->by_state) <=
+                    fmin(error, usable_below) &&
                 factor * m->rung[k].work < last->work)
                 return true;
     }
@@ -249,45 +255,14 @@ bool ladder_is_behind(const search *s, const ladder *l, const ladder others[],
 
 void ladder_time(const search *s, ladder *l, size_t i) {
     row *r = &l->rung[i];
-    row again = *r;
     if (!r->ran || isfinite(r->seconds))
         return;
-    set_step(s, &again, l->k[i]);
-    row_finish(&s->plan, r, again.dt,
-               s->repeats           ? s->repeats
-               : search_may_time(s) ? 0
-                                    : 1);
-}
-
-static int by_size(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static void take_median(row *r, double seconds[], size_t count) {
-    qsort(seconds, count, sizeof *seconds, by_size);
-    r->seconds = seconds[count / 2];
-    r->spread = (seconds[3 * count / 4] - seconds[count / 4]) / 2;
-}
-
-void ladder_time_in_turn(const search *s, row *rung[], const int k[],
-                         size_t count, size_t repeats) {
-    enum { USUAL = 9, FEW = 3 };
-    static const double enough = 2; /* seconds */
-    double one = 0;
-    for (size_t i = 0; i < count; i++)
-        one += rung[i]->seconds;
-    size_t rounds = repeats ? repeats : USUAL * one < enough ? USUAL : FEW;
-    double *seconds = tool_allocate(count * rounds, sizeof *seconds);
-    for (size_t j = 0; j < rounds; j++)
-        for (size_t i = 0; i < count; i++) {
-            row again = *rung[i];
-            set_step(s, &again, k[i]);
-            seconds[i * rounds + j] = row_seconds(&s->plan, &again, again.dt);
-        }
-    for (size_t i = 0; i < count; i++)
-        take_median(rung[i], seconds + i * rounds, rounds);
-    free(seconds);
+    row_finish(&s->plan, r);
+    rows_time(&s->plan, &r, 1,
+              s->repeats           ? s->repeats
+              : search_may_time(s) ? ROUNDS
+                                   : 1,
+              s->repeats > 0);
 }
 
 /* The first rung that keeps the target. */

@@ -78,9 +78,6 @@ bool ladder_is_behind(const search *, const ladder *, const ladder others[],
                       size_t count);
 /* Measures the time of a rung again, as often as asked for. */
 void ladder_time(const search *, ladder *, size_t rung);
-/* The same of several rungs, at places k, run in turn; repeats 0: chosen. */
-void ladder_time_in_turn(const search *, row *rung[], const int k[],
-                         size_t count, size_t repeats);
 /* Rungs between those there are, so that the coarsest on the grid that keeps
    the target is one of them. */
 void ladder_refine(search *, ladder *, double target);
@@ -95,7 +92,7 @@ const row *ladder_least_work(const ladder *, double target, bool by_state);
 bool ladder_keeps_energy(const ladder *);
 
 /* fit.c: names of the schemes, and of the gradients, that fit. */
-void fitting_integrators(const plan *, const char *gradient, list *names);
+void fitting_integrators(const plan *, list *names);
 bool gradient_fits(const plan *, const char *gradient, char **why);
 /* Makes the reference.  Otherwise the message is printed and the exit status
    returned. */

@@ -16,6 +16,8 @@ tools_nevh_SOURCES = \
 	tools/plan.c \
 	tools/stop.c \
 	tools/row.c \
+	tools/row_time.c \
+	tools/shelf.c \
 	tools/row_notes.c \
 	tools/records.c \
 	tools/ladder.h \

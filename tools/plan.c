@@ -118,14 +118,13 @@ static int check_times(const plan *p) {
     return check_steps(p);
 }
 
-static int start(plan *p) {
+static int start(plan *p, const options *o) {
     p->n = nevh_scene_dof(p->scene);
     p->q = tool_allocate(p->n, sizeof *p->q);
     p->p = tool_allocate(p->n, sizeof *p->p);
     if (!nevh_scene_start(p->scene, p->q, p->p))
         return TOOL_OK;
-    fprintf(stderr, "%s\n", nevh_scene_message(p->scene));
-    return TOOL_USAGE;
+    return scene_report(p->scene, o);
 }
 
 static void take_lists(plan *p, const options *o) {
@@ -162,11 +161,12 @@ static void take_settings(plan *p, const options *o) {
 }
 
 int plan_make(plan *p, const options *o) {
-    *p = (plan){.name = o->operands.count > 1 ? o->operands.item[1] : ""};
+    *p = (plan){.name = o->operands.count > 1 ? o->operands.item[1] : "",
+                .shelf = shelf_new()};
     if (scene_open(&p->scene, o))
         return TOOL_USAGE;
     take_settings(p, o);
-    if (start(p))
+    if (start(p, o))
         return TOOL_USAGE;
     take_lists(p, o);
     if (check_integrators(p) || check_gradients(p))
@@ -180,6 +180,7 @@ void plan_free(plan *p) {
     free(p->q);
     free(p->p);
     nevh_reference_free(p->reference);
+    shelf_free(p->shelf);
     free(p->no_reference);
     nevh_scene_free(p->scene);
 }

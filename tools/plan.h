@@ -5,6 +5,8 @@
 
 #include "tool.h"
 
+typedef struct shelf shelf;
+
 /* plan.c: the rows to run, from options, scene and defaults. */
 typedef struct {
     nevh_scene *scene;
@@ -28,6 +30,7 @@ typedef struct {
     nevh_reference *reference; /* NULL: not asked for, or there is none */
     double reference_end;
     char *no_reference; /* why there is none */
+    shelf *shelf;       /* of steppers */
 } plan;
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int plan_make(plan *, const options *);
@@ -49,6 +52,10 @@ void plan_note_first(const plan *, const char *integrator, list *notes);
 /* Title, effects, structure of H, span. */
 void plan_notes(const plan *, list *notes);
 char *plan_structure(const plan *);
+
+/* shelf.c */
+shelf *shelf_new(void);
+void shelf_free(shelf *); /* NULL is allowed */
 
 /* stop.c: runs that end early, where the scene's `stop` says. */
 typedef struct {

@@ -172,8 +172,10 @@ preflight preflight_fly(const plan *p) {
     f.length = tool_allocate(2 * p->n, sizeof *f.length);
     f.z = tool_allocate(4 * p->n, sizeof *f.z);
     f.trial = tool_allocate(2 * p->n, sizeof *f.trial);
+    nevh_options values = plan_options(p, "central2");
+    values.gradient_step = 1e-3; /* unused: H alone is asked for */
     o.gradient_step = 0;
-    f.field = nevh_field_new(p->system, &o);
+    f.field = nevh_field_new(p->system, &values);
     f.gradient = nevh_field_new(p->system, &given);
     f.scale = plan_energy_scale(p);
     if (take_lengths(&f, &o)) {

@@ -71,8 +71,7 @@ static void time_one(advice *a, ladder *l) {
     if (!r || isfinite(r->seconds))
         return;
     row *rung = &l->rung[r - l->rung];
-    int k = l->k[r - l->rung];
-    ladder_time_in_turn(&a->search, &rung, &k, 1, 1);
+    rows_time(&a->search.plan, &rung, 1, 1, a->search.repeats > 0);
 }
 
 /* The one that works least, of those without drift, or with another integrator
@@ -173,20 +172,18 @@ static void vary_gradients(advice *a) {
                     a, with_gradient(a, &model[i], k[i], a->gradients.item[g]));
 }
 
-/* Medians for those that may win, one after the other in turn, so that what
-   else the machine does falls upon all alike. */
+/* Medians for those that may win. */
 static void time_best(advice *a) {
-    enum { FEW = 24 };
+    enum { FEW = 24, USUAL = 9 };
     static const double factor = 1.7;
     ladder *found[FEW];
     row *rung[FEW];
-    int k[FEW];
     size_t count = list_best(a, factor, found, FEW);
-    for (size_t i = 0; i < count; i++) {
+    size_t repeats = a->search.repeats;
+    for (size_t i = 0; i < count; i++)
         rung[i] = &found[i]->rung[keeps(a, found[i]) - found[i]->rung];
-        k[i] = found[i]->k[rung[i] - found[i]->rung];
-    }
-    ladder_time_in_turn(&a->search, rung, k, count, a->search.repeats);
+    rows_time(&a->search.plan, rung, count, repeats ? repeats : USUAL,
+              repeats > 0);
 }
 
 static void take_gradients(advice *a, const options *o) {

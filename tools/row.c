@@ -1,4 +1,4 @@
-/* nevh: one run of compare, watched, and once more for its time.
+/* nevh: one run of compare, watched.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "envelope.h"
 #include <math.h>
@@ -7,9 +7,6 @@
 #include <time.h>
 
 static const double unstable_above = 1; /* as nevh_energy_report says */
-static const double time_enough = 0.1;  /* seconds */
-static const double time_in_a_hurry = 0.03;
-enum { REPEATS = 5 };
 
 typedef struct {
     const plan *plan;
@@ -34,18 +31,6 @@ static int stop_when_unstable(void *data, size_t step, double t,
     return status;
 }
 
-nevh_stepper *row_stepper(const plan *p, const row *r, bool balance) {
-    nevh_options o = plan_options(p, r->gradient);
-    o.transform = plan_transform(p, r->integrator);
-    o.tolerance = r->tolerance;
-    o.balance = balance;
-    return nevh_stepper_new(p->system, r->scheme, &o);
-}
-
-static nevh_stepper *new_stepper(const work *w, bool balance) {
-    return row_stepper(w->plan, w->row, balance);
-}
-
 static void go_to_start(const work *w) {
     memcpy(w->q, w->plan->q, w->plan->n * sizeof *w->q);
     memcpy(w->p, w->plan->p, w->plan->n * sizeof *w->p);
@@ -54,25 +39,8 @@ static void go_to_start(const work *w) {
 static int run(const work *w, nevh_stepper *s, const nevh_observer observers[],
                size_t count, double *stopped) {
     go_to_start(w);
-    return plan_run(w->plan, s, w->row->dt, w->q, w->p, observers, count,
+    return plan_run(w->plan, s, w->row->step, w->q, w->p, observers, count,
                     stopped);
-}
-
-static int stop_after(void *data, size_t step, double t, const double q[],
-                      const double p[]) {
-    const size_t *steps = data;
-    (void)t, (void)q, (void)p;
-    return step < *steps ? NEVH_OK : NEVH_STOPPED;
-}
-
-/* As many steps as the run took that was watched, and nothing else. */
-static void repeat(const work *w, nevh_stepper *s) {
-    const plan *p = w->plan;
-    row *r = w->row;
-    go_to_start(w);
-    nevh_run_until(s, p->run->t_start, r->dt, p->t_end, w->q, w->p,
-                   &(nevh_observer){stop_after, &r->steps, r->steps},
-                   isfinite(r->stopped));
 }
 
 static nevh_energy *new_energy(const work *w, const nevh_stepper *s) {
@@ -86,58 +54,49 @@ static nevh_energy *new_energy(const work *w, const nevh_stepper *s) {
 }
 
 static void unstable_since(work *w) {
-    nevh_stepper *s = new_stepper(w, w->plan->balance);
+    bool balance = w->plan->balance;
+    nevh_stepper *s = row_stepper(w->plan, w->row, balance);
     watch unstable = {new_energy(w, s), NAN};
     double stopped;
     run(w, s, &(nevh_observer){stop_when_unstable, &unstable, 1}, 1, &stopped);
     free(w->row->status);
     w->row->status = text_print("unstable: since t = %.9g", unstable.since);
     nevh_energy_free(unstable.energy);
-    nevh_stepper_free(s);
+    row_shelve(w->plan, w->row, balance, s);
 }
 
-static nevh_counts difference(nevh_counts a, nevh_counts b) {
-    a.values -= b.values, a.gradients -= b.gradients, a.sweeps -= b.sweeps;
-    a.newtons -= b.newtons, a.rescues -= b.rescues;
-    a.hamiltonians -= b.hamiltonians;
-    return a;
+/* Values over instances, of which there is a whole number. */
+nevh_counts row_counts(const nevh_stepper *s, nevh_counts before) {
+    nevh_counts c = nevh_stepper_counts(s);
+    double instances = round((double)c.values / c.hamiltonians);
+    c.values -= before.values, c.gradients -= before.gradients;
+    c.sweeps -= before.sweeps;
+    c.newtons -= before.newtons, c.rescues -= before.rescues;
+    if (c.hamiltonians > 0)
+        c.hamiltonians = (double)c.values / instances;
+    return c;
 }
 
-static void set_seconds(row *r, double seconds[], size_t count) {
-    r->seconds = numbers_median(seconds, count);
-    r->spread = (seconds[(3 * count) / 4] - seconds[count / 4]) / 2;
-}
-
-/* A few runs that nobody watches: as many as asked for, or until their time is
-   enough. */
-static void measure(const work *w, size_t repeats) {
-    size_t most = repeats ? repeats : REPEATS, count = 0;
-    double *seconds = tool_allocate(most, sizeof *seconds), sum = 0;
-    nevh_stepper *s = new_stepper(w, false);
-    nevh_counts before = nevh_stepper_counts(s);
-    double enough = w->plan->hurried ? time_in_a_hurry : time_enough;
-    while (count < most && (repeats || sum < enough)) {
-        nevh_stepper_reset(s);
-        double start = cpu_seconds();
-        repeat(w, s);
-        sum += seconds[count] = cpu_seconds() - start;
-        if (count++ == 0)
-            w->row->counts = difference(nevh_stepper_counts(s), before);
-    }
-    set_seconds(w->row, seconds, count);
-    free(seconds);
-    nevh_stepper_free(s);
+/* What a gradient costs of many stages that are taken side by side, a single
+   one being 1. */
+static double side_by_side(const nevh_integrator *scheme) {
+    static const double least = 0.15;
+    double stages = nevh_integrator_sweep_gradients(scheme);
+    return stages > 1 ? least + (1 - least) / stages : 1;
 }
 
 /* Of gradients and values of formulas, as a processor of 2020 takes them, give
    or take a factor of two; an implicit step that Newton solves factors a matrix
    as well. */
-double row_work(const plan *p, const nevh_counts *c, size_t steps) {
+double row_work(const plan *p, const nevh_integrator *scheme,
+                const nevh_counts *c, size_t steps) {
     double n = (double)p->n, m = 2 * n;
     double gradient = c->hamiltonians > 0 ? 100 : 250 + 40 * n;
+    double evaluations =
+        gradient * (double)c->gradients + (100 + 40 * n) * c->hamiltonians;
     return 1e-9 *
-           (gradient * (double)c->gradients + (100 + 40 * n) * c->hamiltonians +
-            (50 + 10 * n) * (double)steps + m * m * m / 2 * (double)c->newtons);
+           (side_by_side(scheme) * evaluations + (50 + 10 * n) * (double)steps +
+            m * m * m / 2 * (double)c->newtons);
 }
 
 /* Of all steps tried, those that were too long for the tolerance included. */
@@ -152,6 +111,7 @@ static double mean_step(const work *w) {
 /* Whoever waits for a row no longer than its work is as much as that. */
 typedef struct {
     const plan *plan;
+    const nevh_integrator *scheme;
     const nevh_stepper *stepper;
     nevh_counts before;
     bool late;
@@ -160,10 +120,10 @@ typedef struct {
 static int mind_work(void *data, size_t step, double t, const double q[],
                      const double p[]) {
     patience *wait = data;
-    nevh_counts c =
-        difference(nevh_stepper_counts(wait->stepper), wait->before);
+    nevh_counts c = row_counts(wait->stepper, wait->before);
     (void)t, (void)q, (void)p;
-    wait->late = row_work(wait->plan, &c, step) > wait->plan->patience;
+    wait->late =
+        row_work(wait->plan, wait->scheme, &c, step) > wait->plan->patience;
     return wait->late ? NEVH_STOPPED : NEVH_OK;
 }
 
@@ -177,7 +137,7 @@ static bool compares_states(const plan *p, const row *r) {
 
 static void watched(work *w, nevh_stepper *s) {
     row *r = w->row;
-    patience wait = {w->plan, s, nevh_stepper_counts(s), false};
+    patience wait = {w->plan, r->scheme, s, nevh_stepper_counts(s), false};
     nevh_energy *energy = new_energy(w, s);
     nevh_state_error *state = nevh_state_error_new(w->plan->reference);
     invariants *kept = w->plan->diagnostics ? invariants_new(w->plan) : NULL;
@@ -194,14 +154,16 @@ static void watched(work *w, nevh_stepper *s) {
     if (w->plan->patience > 0)
         observers[count++] =
             (nevh_observer){mind_work, &wait, w->plan->n < 8 ? 8 : 1};
+    double begin = cpu_seconds();
     int status = run(w, s, observers, count, &r->stopped);
+    r->watched = cpu_seconds() - begin;
     r->t_end = isfinite(r->stopped) ? r->stopped : w->plan->t_end;
     const char *why = wait.late                ? "it takes too long"
                       : status == NEVH_STOPPED ? nevh_energy_message(energy)
                                                : nevh_stepper_message(s);
     r->energy = nevh_energy_result(energy, 0);
     r->steps = nevh_stepper_taken(s);
-    r->counts = difference(nevh_stepper_counts(s), wait.before);
+    r->counts = row_counts(s, wait.before);
     r->late = wait.late;
     r->ran = !r->late && (!status || r->energy.verdict == NEVH_UNSTABLE);
     r->failed = !r->ran;
@@ -242,12 +204,11 @@ static void work_free(work *w) {
 
 void row_run(const plan *p, row *r) {
     work w = work_new(p, r);
+    r->step = r->dt;
     r->observed_order = r->state_error = r->stopped = r->seconds = NAN;
-    nevh_stepper *s = new_stepper(&w, p->balance);
+    nevh_stepper *s = row_stepper(p, r, p->balance);
     if (!refused(r, s)) {
         watched(&w, s);
-        if (r->ran && !p->hurried)
-            measure(&w, p->repeats);
         if (r->ran && p->diagnostics)
             diagnose_row(p, r);
         if (r->ran && r->energy.verdict == NEVH_UNSTABLE && !p->hurried)
@@ -255,8 +216,8 @@ void row_run(const plan *p, row *r) {
         if (r->ran && r->tolerance > 0)
             r->dt = mean_step(&w);
     }
-    r->work = row_work(p, &r->counts, r->steps);
-    nevh_stepper_free(s);
+    r->work = row_work(p, r->scheme, &r->counts, r->steps);
+    row_shelve(p, r, p->balance, s);
     work_free(&w);
 }
 
@@ -264,30 +225,17 @@ double row_end(const plan *p, const row *r) {
     double stopped = NAN;
     row copy = *r;
     work w = work_new(p, &copy);
-    nevh_stepper *s = new_stepper(&w, false);
+    nevh_stepper *s = row_stepper(p, r, false);
     if (nevh_stepper_status(s) || run(&w, s, NULL, 0, &stopped))
         stopped = p->run->t_start;
-    nevh_stepper_free(s);
+    row_shelve(p, r, false, s);
     work_free(&w);
     return isnan(stopped) ? p->t_end : stopped;
 }
 
-void row_finish(const plan *p, row *r, double dt, size_t repeats) {
-    double mean = r->dt;
+void row_finish(const plan *p, row *r) {
     work w = work_new(p, r);
-    r->dt = dt;
-    measure(&w, repeats);
     if (r->energy.verdict == NEVH_UNSTABLE)
         unstable_since(&w);
-    r->dt = mean;
     work_free(&w);
-}
-
-double row_seconds(const plan *p, const row *r, double dt) {
-    row again = *r;
-    work w = work_new(p, &again);
-    again.dt = dt;
-    measure(&w, 1);
-    work_free(&w);
-    return again.seconds;
 }

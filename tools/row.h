@@ -11,6 +11,7 @@ typedef struct {
     const nevh_integrator *scheme;
     double dt, tolerance; /* 0: fixed steps */
     double nominal_dt;    /* before match_row */
+    double step;          /* that the run was given, dt being the mean */
     size_t group;         /* rows of one gradient and dt */
     int order, failed;    /* failed: of the exit status */
     size_t steps;
@@ -19,6 +20,7 @@ typedef struct {
     nevh_energy_report energy;
     nevh_counts counts;
     double work;            /* by its counts: the same on every machine */
+    double watched;         /* seconds, with all that watches */
     double seconds, spread; /* median, and half of what the middle half spans */
     double stopped;         /* where the scene's `stop` said; NAN: nowhere */
     double t_end;           /* where it ended */
@@ -34,15 +36,23 @@ void row_run(const plan *, row *);
 double row_end(const plan *, const row *);
 /* What that many evaluations and steps cost, in seconds of no machine in
    particular: what is decided by it is decided alike on all. */
-double row_work(const plan *, const nevh_counts *, size_t steps);
-/* Of a row that ran in a hurry: its time again, and when it became unstable.
-   dt       as the row was run with
-   repeats  0: chosen */
-void row_finish(const plan *, row *, double dt, size_t repeats);
-/* The time of one run more of it. */
-double row_seconds(const plan *, const row *, double dt);
-/* Planned as for that row. */
+double row_work(const plan *, const nevh_integrator *, const nevh_counts *,
+                size_t steps);
+/* Of a row that ran in a hurry: when it became unstable. */
+void row_finish(const plan *, row *);
+/* Since those before. */
+nevh_counts row_counts(const nevh_stepper *, nevh_counts before);
+/* shelf.c: planned for that row, by whom it is given back. */
 nevh_stepper *row_stepper(const plan *, const row *, bool balance);
+void row_shelve(const plan *, const row *, bool balance, nevh_stepper *);
+/* row_time.c: the seconds of rows that ran, medians of so many rounds, in which
+   they are run one after the other, so that what else the machine does falls
+   upon all alike.
+   whole  else of each a first part that takes long enough, as much longer as
+          the whole works more */
+enum { ROUNDS = 5 };
+void rows_time(const plan *, row *const rows[], size_t count, size_t rounds,
+               bool whole);
 /* stop.c: of the rows that stopped, how many did, when. */
 void stop_notes(const plan *, const row rows[], size_t count, list *notes);
 /* records.c: rows as the columns of CSV and JSON. */

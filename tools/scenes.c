@@ -56,7 +56,8 @@ static int not_found(const char *name) {
 }
 
 char *scene_file(const char *beside, const char *name) {
-    char *file = text_print("%s/%s/%s%s", folder(), beside, name, ending);
+    char *file = text_print("%s%s%s/%s%s", folder(), *beside ? "/" : "", beside,
+                            name, ending);
     if (is_file(file))
         return file;
     free(file);
@@ -67,29 +68,49 @@ char *scene_file(const char *beside, const char *name) {
 static char *find(const char *name) {
     if (is_file(name))
         return text_print("%s", name);
-    char *file = strchr(name, '/') ? NULL : scene_file(".", name);
+    char *file = strchr(name, '/') ? NULL : scene_file("", name);
     if (!file)
         not_found(name);
     return file;
 }
 
+/* The option that was given that text. */
+static const char *option_of(const options *o, const char *text,
+                             size_t length) {
+    if (o->transform && strlen(o->transform) == length &&
+        strncmp(o->transform, text, length) == 0)
+        return "--transform";
+    for (size_t i = 0; i < o->settings.count; i++) {
+        const char *one = o->settings.item[i];
+        if (strlen(one + 1) == length && strncmp(one + 1, text, length) == 0)
+            return *one == '+' ? "--with" : *one == '-' ? "--without" : "--set";
+    }
+    return "--set";
+}
+
 /* The scene's own messages have file, line and column; the line and the caret
-   come after that. */
-static int report(const nevh_scene *scene) {
-    fprintf(stderr, "%s\n", nevh_scene_message(scene));
-    return TOOL_USAGE;
+   come after that.  Of what was said by an option there is no file. */
+int scene_report(const nevh_scene *scene, const options *o) {
+    const char *message = nevh_scene_message(scene);
+    const char *what = strstr(message, ": error: "),
+               *line = strchr(message, '\n');
+    if (strncmp(message, "assignment:", 11) != 0 || !what || !line)
+        return fprintf(stderr, "%s\n", message), TOOL_USAGE;
+    return tool_refuse("%s: %s",
+                       option_of(o, line + 1, strcspn(line + 1, "\n")),
+                       what + strlen(": error: "));
 }
 
 static int read(nevh_scene *scene, const options *o) {
     if (nevh_scene_status(scene))
-        return report(scene);
+        return scene_report(scene, o);
     for (size_t i = 0; i < o->settings.count; i++)
         if (o->settings.item[i][0] == '=' &&
             nevh_scene_set(scene, o->settings.item[i] + 1))
-            return report(scene);
+            return scene_report(scene, o);
     if (o->transform && nevh_scene_set_transform(scene, o->transform))
-        return report(scene);
-    return nevh_scene_system(scene) ? TOOL_OK : report(scene);
+        return scene_report(scene, o);
+    return nevh_scene_system(scene) ? TOOL_OK : scene_report(scene, o);
 }
 
 int scene_open(nevh_scene **scene, const options *o) {

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-static const double one_row = 0.025; /* of the budget */
+static const double one_row = 0.0125; /* of the budget */
 
 double search_longest_dt(const plan *p) {
     double longest = 0;

@@ -12,6 +12,8 @@ struct table {
     kind *kind;
     bool *group; /* whether the row that begins with this cell begins a group */
     bool begins;
+    bool *key;       /* of each column */
+    size_t breaking; /* the first column that may go below; 0: none may */
 };
 
 table *table_new(void) {
@@ -25,11 +27,24 @@ void table_free(table *t) {
     list_free(&t->cell);
     free(t->kind);
     free(t->group);
+    free(t->key);
     free(t);
 }
 
 void table_column(table *t, const char *title) {
     list_add(&t->title, title);
+    t->key = realloc(t->key, t->title.count * sizeof *t->key);
+    if (!t->key)
+        abort();
+    t->key[t->title.count - 1] = false;
+}
+
+void table_key(table *t) {
+    t->key[t->title.count - 1] = true;
+}
+
+void table_break(table *t) {
+    t->breaking = t->title.count;
 }
 
 void table_group(table *t) {
@@ -151,31 +166,86 @@ static void print_padded(const char *text, size_t *spaces, FILE *f) {
     *spaces = 0;
 }
 
-static void print_cell(const setting *column, bool first, const char *text,
+static void print_cell(const setting *column, size_t gap, const char *text,
                        size_t *spaces, FILE *f) {
     size_t space = column->width - characters(text);
-    *spaces += (first ? 1 : 2) + (column->right ? space : 0);
+    *spaces += gap + (column->right ? space : 0);
     print_padded(text, spaces, f);
     *spaces += column->right ? 0 : space;
 }
 
-static void print_header(const table *t, const setting set[], FILE *f) {
-    for (size_t k = 0; k < lines(t); k++, fputc('\n', f))
-        for (size_t j = 0, spaces = 0; j < t->title.count; j++)
-            print_cell(&set[j], j == 0, line_of(t->title.item[j], k), &spaces,
-                       f);
+/* Columns beside each other: those from `first` to before `last`, after the
+   keys among those before. */
+typedef struct {
+    const setting *set;
+    size_t first, last, gap;
+} panel;
+
+static bool is_shown(const table *t, const panel *p, size_t j) {
+    return j < p->last && (j >= p->first || t->key[j]);
+}
+
+static void print_row(const table *t, const panel *p, const char *const text[],
+                      FILE *f) {
+    bool first = true;
+    for (size_t j = 0, spaces = 0; j < p->last; j++)
+        if (is_shown(t, p, j)) {
+            print_cell(&p->set[j], first ? 1 : p->gap, text[j], &spaces, f);
+            first = false;
+        }
+    fputc('\n', f);
+}
+
+static void print_panel(const table *t, const panel *p, FILE *f) {
+    size_t columns = t->title.count;
+    const char **text = tool_allocate(columns, sizeof *text);
+    for (size_t k = 0; k < lines(t); k++) {
+        for (size_t j = 0; j < columns; j++)
+            text[j] = line_of(t->title.item[j], k);
+        print_row(t, p, text, f);
+    }
+    for (size_t i = 0; i < rows(t); i++) {
+        if (t->group[i * columns])
+            fputc('\n', f);
+        for (size_t j = 0; j < columns; j++)
+            text[j] = t->cell.item[i * columns + j];
+        print_row(t, p, text, f);
+    }
+    free(text);
+}
+
+static size_t panel_width(const table *t, const panel *p) {
+    size_t width = 0;
+    for (size_t j = 0; j < p->last; j++)
+        if (is_shown(t, p, j))
+            width += p->set[j].width + (width ? p->gap : 1);
+    return width;
+}
+
+/* All columns; of a table that may be broken as many as fit, closer to each
+   other if need be. */
+static panel panel_from(const table *t, const setting set[], size_t first) {
+    enum { MOST = 100 };
+    panel p = {set, first, t->title.count, 2};
+    if (!t->breaking)
+        return p;
+    if (panel_width(t, &p) > MOST && first == 0)
+        p.last = t->breaking;
+    if (panel_width(t, &p) > MOST)
+        p.gap = 1;
+    while (p.last > first + 1 && panel_width(t, &p) > MOST)
+        p.last--;
+    return p;
 }
 
 static void print_table(const table *t, FILE *f) {
-    size_t columns = t->title.count;
     setting *set = set_columns(t);
-    print_header(t, set, f);
-    for (size_t i = 0; i < rows(t); i++, fputc('\n', f)) {
-        if (t->group[i * columns])
+    for (size_t first = 0; first < t->title.count;) {
+        panel p = panel_from(t, set, first);
+        if (first)
             fputc('\n', f);
-        for (size_t j = 0, spaces = 0; j < columns; j++)
-            print_cell(&set[j], j == 0, t->cell.item[i * columns + j], &spaces,
-                       f);
+        print_panel(t, &p, f);
+        first = p.last;
     }
     free(set);
 }

@@ -63,6 +63,11 @@ void table_free(table *);
 /* The next column; lines of the title are separated by \n. */
 void table_column(table *, const char *title);
 void table_columns(table *, const char *const titles[], size_t count);
+/* The next column and those after it may go below, where they are more than fit
+   beside each other. */
+void table_break(table *);
+/* The last column says which row it is: it is shown again there. */
+void table_key(table *);
 /* The next cell of the row.  NULL, and numbers that are not finite, leave it
    empty. */
 void table_text(table *, const char *text);
@@ -146,6 +151,8 @@ int output_close(output *, int status);
 int output_page(const options *, const page *, int status);
 
 /* scenes.c: scenes by file or name, changed as the options say. */
+/* Its message on stderr; TOOL_USAGE. */
+int scene_report(const nevh_scene *, const options *);
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed and *scene NULL */
 int scene_open(nevh_scene **scene, const options *);
 int scene_open_named(nevh_scene **scene, const char *name, const options *);

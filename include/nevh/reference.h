@@ -33,10 +33,11 @@ typedef struct nevh_reference nevh_reference;
    in any units; the constants are fitted.
 
    A run is repeated with smaller steps until runs with h and h/2 agree to 1e-11
-   of the range of each variable, or to rounding, or as well as can be afforded:
-   1e7 gradients, or 2e8 evaluations of term instances, whichever is less.  The
-   one with h/2 is kept, as checkpoints (at most 2 MB).  Gradients are exact
-   where all terms bring them, else central8.
+   of the range of each variable, or to rounding, or to 1e-9 where they cost
+   more than a twentieth of the following, or as well as can be afforded: 1e7
+   gradients, or 2e8 evaluations of term instances, whichever is less.  The one
+   with h/2 is kept, as checkpoints (at most 16 MB).  Gradients are exact where
+   all terms bring them, else central8.
    cost        of an exact solution some milliseconds; of a run up to the
                bounds above, some seconds */
 NEVH_API nevh_reference *nevh_reference_new(const nevh_system *,

@@ -41,7 +41,7 @@ struct nevh_reference {
 };
 
 /* Bytes of checkpoints, and of remembered states. */
-enum { NEVH__MOST_TRACK = 2 << 20, NEVH__MOST_MEMO = 32 << 20 };
+enum { NEVH__MOST_TRACK = 16 << 20, NEVH__MOST_MEMO = 32 << 20 };
 
 /* An exact gradient where all terms bring one, else central8; NULL when memory
    is out. */

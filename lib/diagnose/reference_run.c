@@ -15,6 +15,8 @@
 #include <string.h>
 
 static const double target = 1e-11; /* of the runs' difference */
+static const double fair = 1e-9; /* where more would cost more than `little` */
+static const double little = 0.05; /* of what may be spent */
 static const double hopeless =
     1e-6;                           /* there is no use in going on to the end */
 static const double chaotic = 1e-3; /* as the header says */
@@ -333,7 +335,7 @@ static bool is_enough(pair *b, const outcome *o, double cost, progress *p) {
     if (o->error < p->error)
         keep(b, o);
     p->error = fmin(p->error, o->error);
-    return floor || o->error <= target;
+    return floor || o->error <= target || (o->error <= fair && cost > little);
 }
 
 static int find_run(pair *b) {

@@ -102,8 +102,7 @@ static int probe_term(const nevh__term *term, nevh__origin *o,
 int nevh__system_probe_kinetic(const nevh_system *s, double t, const double q[],
                                const double p[], const double scale[],
                                nevh__kinetic *result) {
-    nevh__origin o = {
-        .t = t, .q = q, .p = p, .scale = scale, .n = s->n, .random = 1};
+    nevh__origin o = nevh__origin_at(s->n, t, q, p, scale);
     *result = (nevh__kinetic){.quadratic = false};
     for (size_t i = 0; i < s->n_terms; i++) {
         const nevh__term *term = s->terms[i];

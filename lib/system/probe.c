@@ -23,11 +23,22 @@ static double largest(const double x[], size_t n) {
     return most;
 }
 
+nevh__origin nevh__origin_at(size_t n, double t, const double q[],
+                             const double p[], const double scale[]) {
+    return (nevh__origin){.t = t,
+                          .q = q,
+                          .p = p,
+                          .scale = scale,
+                          .n = n,
+                          .random = 1,
+                          .largest = {largest(q, n), largest(p, n)}};
+}
+
 double nevh__spread(const nevh__origin *o, const double x[], size_t first,
                     size_t i) {
     if (o->scale)
         return o->scale[first + i];
-    double most = x && x[i] != 0 ? fabs(x[i]) : largest(x, o->n);
+    double most = x && x[i] != 0 ? fabs(x[i]) : o->largest[first > 0];
     return most > 0 ? most : 1;
 }
 
@@ -109,8 +120,7 @@ int nevh_system_probe(const nevh_system *s, double t, const double q[],
     *result = (nevh_separability){.separable = true};
     if (nevh_system_status(s))
         return nevh_system_status(s);
-    nevh__origin o = {
-        .t = t, .q = q, .p = p, .scale = scale, .n = s->n, .random = 1};
+    nevh__origin o = nevh__origin_at(s->n, t, q, p, scale);
     int status = NEVH_OK;
     for (size_t i = 0; i < s->n_terms && status != NEVH_ENOMEM; i++) {
         const nevh__term *term = s->terms[i];

@@ -11,7 +11,11 @@ typedef struct {
     const double *q, *p, *scale; /* q, p or scale may be NULL */
     size_t n;
     uint64_t random;
+    double largest[2]; /* of q, and of p */
 } nevh__origin;
+
+nevh__origin nevh__origin_at(size_t n, double t, const double q[],
+                             const double p[], const double scale[]);
 
 /* The length over which variable i of kind x is varied; `first` is 0 for
    coordinates, n for momenta. */
