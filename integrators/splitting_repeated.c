@@ -7,7 +7,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "splitting_private.h"
 #include "gradient/field_private.h"
-#include "system/system_private.h"
+#include "system/vector_private.h"
 #include "work_private.h"
 #include <nevh/body.h>
 #include <stdlib.h>
@@ -30,17 +30,11 @@ struct nevh__repeated {
     nevh__call kick, drift;
 };
 
-static double *take(double **from, size_t size) {
-    double *taken = *from;
-    *from += size;
-    return taken;
-}
-
 static half take_half(double **from, size_t size) {
-    half x = {.state = take(from, size)};
-    x.carry = take(from, size);
-    x.change = take(from, size);
-    x.point = take(from, size);
+    half x = {.state = nevh__take(from, size)};
+    x.carry = nevh__take(from, size);
+    x.change = nevh__take(from, size);
+    x.point = nevh__take(from, size);
     return x;
 }
 
@@ -51,8 +45,8 @@ static bool lay_out(nevh__repeated *r) {
     double *from = nevh__aligned(r->room);
     r->q = take_half(&from, r->size);
     r->p = take_half(&from, r->size);
-    r->slope = take(&from, r->size);
-    r->kept = take(&from, r->size);
+    r->slope = nevh__take(&from, r->size);
+    r->kept = nevh__take(&from, r->size);
     r->time = from;
     return true;
 }

@@ -1,9 +1,9 @@
 /* nevh: fixed-point sweeps over the stages of one orbit, as vectors.
 
    In a small system a sweep is a chain of short operations, each of which
-   waits for the one before, so what counts is how few they are: slopes are
-   compared, negated and weighed as they are passed on.
-   SPDX-License-Identifier: GPL-3.0-or-later */
+   waits for the one before, so what counts is how few they are.  Unknown are
+   the derivatives of H, as they are written; signs and weights come in with the
+   sums over stages. SPDX-License-Identifier: GPL-3.0-or-later */
 #include "stage_sweeps_private.h"
 #include "gradient/field_private.h"
 #include "system/vector_private.h"
@@ -49,12 +49,6 @@ static void pad(const nevh__sweeps *s, size_t rows, const double from[],
     }
 }
 
-static double *take(double **from, size_t size) {
-    double *taken = *from;
-    *from += size;
-    return taken;
-}
-
 static bool lay_out(nevh__sweeps *s) {
     size_t n = s->n, row = s->stride, matrix = s->stages * row;
     size_t vectors = s->stages * NEVH__LANES;
@@ -64,16 +58,16 @@ static bool lay_out(nevh__sweeps *s) {
     if (!s->room)
         return false;
     double *from = nevh__aligned(s->room);
-    s->mu_q = take(&from, matrix);
-    s->mu_p = take(&from, matrix);
-    s->guess = take(&from, matrix);
-    s->c = take(&from, row);
-    s->times = take(&from, row);
-    s->to_q = take(&from, vectors);
-    s->to_p = take(&from, vectors);
-    s->points = take(&from, 2 * n * row);
-    s->gradient = take(&from, 2 * n * row);
-    s->before = take(&from, s->rows * row);
+    s->mu_q = nevh__take(&from, matrix);
+    s->mu_p = nevh__take(&from, matrix);
+    s->guess = nevh__take(&from, matrix);
+    s->c = nevh__take(&from, row);
+    s->times = nevh__take(&from, row);
+    s->to_q = nevh__take(&from, vectors);
+    s->to_p = nevh__take(&from, vectors);
+    s->points = nevh__take(&from, 2 * n * row);
+    s->gradient = nevh__take(&from, 2 * n * row);
+    s->before = nevh__take(&from, s->rows * row);
     s->least = from;
     return true;
 }

@@ -17,6 +17,13 @@ typedef double nevh__vector
 #else
 typedef double nevh__vector;
 #endif
+/* A part of room that is laid out. */
+static inline double *nevh__take(double **from, size_t size) {
+    double *taken = *from;
+    *from += size;
+    return taken;
+}
+
 enum { NEVH__IN_VECTOR = sizeof(nevh__vector) / sizeof(double) };
 
 #endif
