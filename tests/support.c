@@ -21,8 +21,8 @@ void mass_kinetic_gradient(size_t width, const double t[], const double q[],
         EACH(i) dp[i] = p[i] / c[i];
 }
 
-double wave(double t, const double q[], const double p[], const double c[],
-            const void *params) {
+double wave_value(double t, const double q[], const double p[],
+                  const double c[], const void *params) {
     (void)t, (void)p, (void)params;
     return -c[0] * cos(q[0]);
 }
@@ -43,7 +43,7 @@ void add_waves(nevh_system *s, size_t count, const size_t *at) {
                                                .q = at,
                                                .c = c,
                                                .count = count,
-                                               .value = wave,
+                                               .value = wave_value,
                                                .gradient = wave_gradient}));
 }
 

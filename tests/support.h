@@ -36,8 +36,8 @@ void mass_kinetic_gradient(size_t width, const double t[], const double q[],
                            const void *params, double dq[], double dp[]);
 /* -c cos(q), and up to three of them over the coordinates that are given, as a
    term. */
-double wave(double t, const double q[], const double p[], const double c[],
-            const void *params);
+double wave_value(double t, const double q[], const double p[],
+                  const double c[], const void *params);
 void wave_gradient(size_t width, const double t[], const double q[],
                    const double p[], const double c[], const void *params,
                    double dq[], double dp[]);
