@@ -7,6 +7,7 @@ libnevh_core_la_SOURCES = \
 	lib/system/vector_private.h \
 	lib/system/status.c \
 	lib/system/memory.c \
+	lib/system/register.c \
 	lib/system/system.c \
 	lib/system/friction.c \
 	lib/system/values.c \

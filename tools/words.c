@@ -73,12 +73,12 @@ bool list_has(const list *l, const char *text) {
 }
 
 char *list_joined(const list *l) {
-    char *text = text_print("%s", l->count ? l->item[0] : "");
-    for (size_t i = 1; i < l->count; i++) {
-        char *longer = text_print("%s, %s", text, l->item[i]);
-        free(text);
-        text = longer;
-    }
+    size_t bytes = 1;
+    for (size_t i = 0; i < l->count; i++)
+        bytes += strlen(l->item[i]) + 2;
+    char *text = tool_allocate(bytes, 1), *end = text;
+    for (size_t i = 0; i < l->count; i++)
+        end += sprintf(end, "%s%s", i ? ", " : "", l->item[i]);
     return text;
 }
 

@@ -6,17 +6,12 @@
 #include <string.h>
 
 static nevh__effect *effect_named(const nevh_system *s, const char *name) {
-    for (size_t i = 0; i < s->n_effects; i++)
-        if (name && strcmp(s->effects[i].name, name) == 0)
-            return &s->effects[i];
-    return NULL;
+    size_t i = nevh__register_find(&s->effect_names, name);
+    return i < s->n_effects ? &s->effects[i] : NULL;
 }
 
-static const nevh__term *term_named(const nevh_system *s, const char *name) {
-    for (size_t i = 0; i < s->n_terms; i++)
-        if (strcmp(s->terms[i]->is.name, name) == 0)
-            return s->terms[i];
-    return NULL;
+static bool is_term(const nevh_system *s, const char *name) {
+    return nevh__register_find(&s->term_names, name) < s->n_terms;
 }
 
 static void term_free(nevh__term *term) {
@@ -80,7 +75,7 @@ static int check_term(nevh_system *s, const nevh_term *term) {
         return nevh__fail(&s->report, NEVH_EINVAL,
                           "effect %s: nc is %zu but c is NULL", term->effect,
                           term->nc);
-    if (term->name && (!term->name[0] || term_named(s, term->name)))
+    if (term->name && (!term->name[0] || is_term(s, term->name)))
         return nevh__fail(&s->report, NEVH_EINVAL,
                           "effect %s: the term name \"%s\" is %s", term->effect,
                           term->name, term->name[0] ? "used twice" : "empty");
@@ -106,7 +101,7 @@ static size_t *copy_indices(const size_t *from, size_t count, size_t each) {
 /* The effect's name, or with the first number that makes it unique. */
 static char *free_name(const nevh_system *s, const char *effect) {
     char *name = nevh__text("%s", effect);
-    for (size_t k = 2; name && term_named(s, name); k++) {
+    for (size_t k = 2; name && is_term(s, name); k++) {
         free(name);
         name = nevh__text("%s %zu", effect, k);
     }
@@ -139,10 +134,13 @@ size_t nevh__effect_index(nevh_system *s, const char *name) {
     if (!effects)
         return SIZE_MAX;
     s->effects = effects;
-    char *copy = nevh__text("%s", name);
+    char *copy = nevh__register_reserve(&s->effect_names)
+                     ? nevh__text("%s", name)
+                     : NULL;
     if (!copy)
         return SIZE_MAX;
     effects[s->n_effects] = (nevh__effect){.name = copy, .on = true};
+    nevh__register_put(&s->effect_names, copy, s->n_effects);
     return s->n_effects++;
 }
 
@@ -153,7 +151,8 @@ static int append(nevh_system *s, const nevh_term *from) {
     if (!terms)
         return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
     s->terms = terms;
-    nevh__term *term = copy_term(s, from);
+    nevh__term *term =
+        nevh__register_reserve(&s->term_names) ? copy_term(s, from) : NULL;
     size_t effect = term ? nevh__effect_index(s, from->effect) : SIZE_MAX;
     if (effect == SIZE_MAX) {
         term_free(term);
@@ -161,6 +160,7 @@ static int append(nevh_system *s, const nevh_term *from) {
     }
     term->effect = effect;
     term->is.effect = s->effects[effect].name;
+    nevh__register_put(&s->term_names, term->is.name, s->n_terms);
     s->terms[s->n_terms++] = term;
     s->revision++;
     return NEVH_OK;
@@ -238,6 +238,8 @@ void nevh_system_free(nevh_system *s) {
         free(s->frictions[i].rates);
     free(s->terms);
     free(s->effects);
+    free(s->term_names.entries);
+    free(s->effect_names.entries);
     free(s->frictions);
     free(s);
 }

@@ -52,6 +52,23 @@ void *nevh__copy(const void *from, size_t count, size_t size);
 void *nevh__grow(void *array, size_t count, size_t size);
 char *nevh__text(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
+/* Numbers by name; the names are borrowed.  Zeros are an empty one, of which
+   the entries are to be freed. */
+typedef struct {
+    const char *name;
+    size_t at;
+} nevh__registered;
+typedef struct {
+    nevh__registered *entries; /* at least half of them without a name */
+    size_t room, count;        /* room: a power of two, or 0 */
+} nevh__register;
+size_t nevh__register_find(const nevh__register *,
+                           const char *name); /* SIZE_MAX */
+/* Makes room for one more; false when memory is out. */
+bool nevh__register_reserve(nevh__register *);
+/* A name that is not there yet, where there is room. */
+void nevh__register_put(nevh__register *, const char *name, size_t at);
+
 typedef struct {
     char *name;
     bool on;
@@ -74,6 +91,7 @@ struct nevh_system {
     size_t n_terms;
     nevh__effect *effects;
     size_t n_effects;
+    nevh__register term_names, effect_names;
     nevh__friction *frictions;
     size_t n_frictions;
     unsigned long revision; /* counts changes */
