@@ -30,7 +30,7 @@ size_t nevh__step_at(const nevh__planned *term, size_t instance, size_t k) {
 static void set_scales(nevh__explorer *e) {
     nevh_field *f = e->field;
     size_t n = f->n;
-    for (size_t i = 0; i < 2 * n && !e->options->scale; i++) {
+    for (size_t i = 0; i < 2 * n; i++) {
         const double *x = i < n ? e->samples.q : e->samples.p;
         double most = 0;
         for (size_t at = 0; at < e->neighbours; at++)
@@ -65,7 +65,7 @@ int nevh__field_explore(nevh_field *f, const nevh_options *o) {
         nevh__set_crude_steps(&e);
     if (!status && !nevh__find_samples(&e))
         status = nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
-    if (!status)
+    if (!status && !o->scale)
         set_scales(&e);
     for (size_t i = 0; !status && i < f->n_terms; i++)
         nevh__climb(&e, &f->terms[i]);
@@ -82,9 +82,9 @@ int nevh__field_verify(nevh_field *f, const nevh_options *o) {
         if (f->terms[i].nv)
             status = nevh__verify(&e, &f->terms[i]);
     e.samples.count = e.neighbours;
-    if (!status && !nevh__find_samples(&e))
+    if (!status && !o->scale && !nevh__find_samples(&e))
         status = nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
-    if (!status)
+    if (!status && !o->scale)
         set_scales(&e);
     nevh__explorer_close(&e);
     return status;
