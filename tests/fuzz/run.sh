@@ -31,7 +31,7 @@ link() {
     parts=
     test "$1" = scene ||
         for part in options arguments words plan scenes resume lines \
-            trajectory table stop; do
+            trajectory table stop shelf; do
             parts="$parts $srcdir/tools/$part.c"
         done
     "$clang" $flags $sanitized -fsanitize=fuzzer '-DNEVH_SCENES="/nowhere"' \
