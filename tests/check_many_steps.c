@@ -164,10 +164,14 @@ END_TEST
 
 /* A ring of n particles with Toda's springs, exp(d) - d. */
 enum { LONG_CHAIN = 2000, SHORT_CHAIN = 100 };
+enum { PLAN_VALUES = 500000 };
+
+static size_t springs_asked;
 
 static double spring(double t, const double q[], const double p[],
                      const double c[], const void *params) {
     (void)t, (void)p, (void)c, (void)params;
+    springs_asked++;
     return exp(q[1] - q[0]) - (q[1] - q[0]);
 }
 
@@ -282,6 +286,28 @@ START_TEST(instances_between) {
 }
 END_TEST
 
+static size_t asked_to_plan(size_t n) {
+    set_chain(n);
+    nevh_system *s = make_chain(n);
+    springs_asked = 0;
+    nevh_field *f = nevh_field_new(s, &(nevh_options){.q = q0, .p = p0});
+    ck_assert(!nevh_field_status(f));
+    nevh_field_free(f);
+    nevh_system_free(s);
+    return springs_asked;
+}
+
+/* However long the chain, a plan has its budget of values. */
+START_TEST(price_of_a_plan) {
+    static const size_t chains[] = {8, 32, 33, 64, 100, 250, 1000, LONG_CHAIN};
+    for (size_t i = 0; i < sizeof chains / sizeof *chains; i++) {
+        size_t asked = asked_to_plan(chains[i]);
+        ck_assert_msg(asked <= PLAN_VALUES, "%zu springs: %zu values",
+                      chains[i], asked);
+    }
+}
+END_TEST
+
 /* One function of 200 variables, half of which are tried. */
 START_TEST(variables_between) {
     const size_t n = SHORT_CHAIN;
@@ -325,6 +351,7 @@ int main(void) {
     tcase_add_test(cases, given_between_trials);
     tcase_add_test(cases, solar_system);
     tcase_add_test(cases, instances_between);
+    tcase_add_test(cases, price_of_a_plan);
     tcase_add_test(cases, variables_between);
     suite_add_tcase(suite, cases);
     return run_suite(suite);

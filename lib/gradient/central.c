@@ -96,7 +96,62 @@ static const nevh_gradient *weights_of(const nevh_field *f, size_t pairs) {
     return pairs == 1 ? nevh_central2 : f->gradient;
 }
 
-static int difference_block(nevh_field *f, nevh__planned *term, nevh__block *b,
+/* One lane: the groups take the place of lanes.  Weighted slopes of chords,
+   whose widths stand as the values do. */
+NEVH_SIMD static bool find_slopes(const nevh_gradient *g, size_t groups,
+                                  const double *width, const double *h,
+                                  double *slope) {
+    int64_t bad = 0;
+    for (size_t i = 0; i < groups; i++)
+        slope[i] = 0;
+    for (size_t j = 0; j < g->offsets; j++) {
+        const double *plus = h + 2 * j * groups, *minus = plus + groups;
+        double weight = g->weights[j];
+        for (size_t i = 0; i < groups; i++)
+            slope[i] += weight * ((plus[i] - minus[i]) / width[j * groups + i]);
+    }
+    for (size_t i = 0; i < groups; i++)
+        bad |= slope[i] - slope[i] != 0;
+    return bad != 0;
+}
+
+/* As perturb, of one lane; also the widths of the chords. */
+static void perturb_one(double *row, size_t pairs, size_t apart, double delta,
+                        double *width) {
+    for (size_t j = 0; j < pairs; j++, row += 2 * apart) {
+        double shift = (double)(j + 1) * delta;
+        row[0] += shift;
+        row[apart] -= shift;
+        width[j * apart] = row[0] - row[apart];
+    }
+}
+
+/* Where there are many instances the way from group to group has to be short;
+   bit for bit what difference_lanes gives. */
+static int difference_one(nevh_field *f, nevh__planned *term, nevh__block *b,
+                          selection s, double dh_dq[], double dh_dp[]) {
+    const nevh_gradient *g = weights_of(f, s.pairs);
+    double width[NEVH__COLUMNS], slope[NEVH__COLUMNS];
+    nevh__cursor at = nevh__first_group(b);
+    for (size_t i = 0; i < b->groups; i++, nevh__next_group(b, &at)) {
+        size_t k = s.vars[at.v];
+        perturb_one(f->rows + k * b->stride + i, s.pairs, b->groups,
+                    term->delta[at.instance * term->nv + k], width + i);
+    }
+    nevh__block_evaluate(f, term, b);
+    bool bad = find_slopes(g, b->groups, width, f->h, slope);
+    at = nevh__first_group(b);
+    for (size_t i = 0; i < b->groups; i++, nevh__next_group(b, &at)) {
+        size_t k = s.vars[at.v];
+        if (bad && slope[i] - slope[i] != 0)
+            return nevh__central_fail(f, term, b, at.instance, k);
+        double *out = k < term->nq ? dh_dq : dh_dp;
+        out[nevh__index(term, at.instance, k) * b->width + b->lane] += slope[i];
+    }
+    return NEVH_OK;
+}
+
+static int difference_lanes(nevh_field *f, nevh__planned *term, nevh__block *b,
                             selection s, double dh_dq[], double dh_dp[]) {
     const nevh_gradient *g = weights_of(f, s.pairs);
     size_t apart = b->groups * b->lanes;
@@ -139,7 +194,8 @@ int nevh__gradient_central(nevh_field *f, nevh__planned *term, size_t width,
             status = nevh__stencil_difference(
                 f, term, stencil, weights_of(f, s.pairs), &b, dh_dq, dh_dp);
         while (!stencil && !status && nevh__block_next(f, term, &b))
-            status = difference_block(f, term, &b, s, dh_dq, dh_dp);
+            status = (b.lanes == 1 ? difference_one : difference_lanes)(
+                f, term, &b, s, dh_dq, dh_dp);
     }
     return status;
 }

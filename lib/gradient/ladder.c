@@ -7,7 +7,9 @@
 #include <string.h>
 
 /* Rungs are powers of two times the variable's length. */
-enum { LOWEST = -30, HIGHEST = 3, RUNGS = HIGHEST - LOWEST + 1, MOST = 8 };
+enum { LOWEST = -30, HIGHEST = 3, RUNGS = HIGHEST - LOWEST + 1 };
+enum { FEW = 16 };
+enum { ROOM = 8 * (RUNGS + 1) }; /* for differences of order 8 */
 /* At the best step the two errors balance, unless values are worse than
    rounded. */
 static const double out_of_balance = 1e4;
@@ -28,17 +30,30 @@ typedef struct {
     double usual;                     /* size of the derivative */
 } ladder;
 
-/* The difference from values in pairs, + before -; its rounding to *noise. */
-static double difference(const nevh_gradient *g, const double x[],
-                         const double h[], double *noise) {
-    double most = 0, reach = 0;
-    for (size_t j = 0; j < g->offsets; j++) {
-        double width = x[2 * j] - x[2 * j + 1];
-        most = fmax(most, fmax(fabs(h[2 * j]), fabs(h[2 * j + 1])));
-        reach += fabs(g->weights[j] / width);
+/* Differences at one sample, from half the lowest step on; rounding in them. */
+typedef struct {
+    double slope[RUNGS + 1], noise[RUNGS + 1];
+} differences;
+
+/* A number that is not one is no larger. */
+static inline double larger(double a, double b) {
+    return b > a ? b : a;
+}
+
+/* Of `count` steps, whose values stand `count` apart. */
+static void difference(const nevh_gradient *g, size_t count, const double *x,
+                       const double *h, double *slope, double *noise) {
+    memset(slope, 0, count * sizeof *slope);
+    nevh__add_slopes(g, count, count, x, h, slope);
+    for (size_t i = 0; i < count; i++) {
+        double most = 0, reach = 0;
+        for (size_t j = 0; j < g->offsets; j++) {
+            size_t plus = 2 * j * count + i, minus = plus + count;
+            most = larger(most, larger(fabs(h[plus]), fabs(h[minus])));
+            reach += fabs(g->weights[j] / (x[plus] - x[minus]));
+        }
+        noise[i] = 2 * DBL_EPSILON * most * reach;
     }
-    *noise = 2 * DBL_EPSILON * most * reach;
-    return nevh__chord_slope(g, 1, x, h);
 }
 
 static double finite_or_huge(double x) {
@@ -48,37 +63,52 @@ static double finite_or_huge(double x) {
 static void take(estimate *rung, double usual, double now, double before,
                  double noise) {
     double change = finite_or_huge(fabs(now - before));
-    double size = fmax(usual, isfinite(now) ? fabs(now) : 0);
+    double here = isfinite(now) ? fabs(now) : 0, size = larger(usual, here);
     noise = finite_or_huge(noise);
-    rung->truncation = fmax(rung->truncation, change);
-    rung->rounding = fmax(rung->rounding, noise);
-    rung->size = fmax(rung->size, isfinite(now) ? fabs(now) : 0);
+    rung->truncation = larger(rung->truncation, change);
+    rung->rounding = larger(rung->rounding, noise);
+    rung->size = larger(rung->size, here);
     if (size > 0) {
-        rung->share_truncation = fmax(rung->share_truncation, change / size);
-        rung->share_rounding = fmax(rung->share_rounding, noise / size);
+        rung->share_truncation = larger(rung->share_truncation, change / size);
+        rung->share_rounding = larger(rung->share_rounding, noise / size);
     }
+}
+
+/* As many steps as there is room for, from `from` on; returns how many. */
+static size_t try_steps(const nevh__explorer *e, const nevh_gradient *g,
+                        const nevh__planned *term, size_t instance, size_t k,
+                        size_t at, double unit, size_t from, differences *two,
+                        differences *full) {
+    double move[ROOM], x[ROOM], h[ROOM];
+    size_t fit = e->field->capacity / (2 * g->offsets);
+    size_t rest = RUNGS + 1 - from, count = rest < fit ? rest : fit;
+    double power = ldexp(1, LOWEST - 1 + (int)from);
+    for (size_t i = 0; i < count; i++, power *= 2) {
+        double delta = power * unit;
+        for (size_t j = 0; j < g->offsets; j++) {
+            move[2 * j * count + i] = (double)(j + 1) * delta;
+            move[(2 * j + 1) * count + i] = -(double)(j + 1) * delta;
+        }
+    }
+    nevh__along(e, term, instance, k, at, 2 * g->offsets * count, move, x, h);
+    difference(nevh_central2, count, x, h, two->slope + from,
+               two->noise + from);
+    difference(g, count, x, h, full->slope + from, full->noise + from);
+    return count;
 }
 
 /* Climbs from the shortest step at one sample. */
 static void climb_at(const nevh__explorer *e, const nevh_gradient *g,
                      const nevh__planned *term, size_t instance, size_t k,
                      size_t at, double unit, ladder *l) {
-    double move[MOST], x[MOST], h[MOST], noise, two = 0, full = 0;
-    for (int rung = -1; rung < RUNGS; rung++) {
-        double delta = ldexp(unit, LOWEST + rung);
-        for (size_t j = 0; j < g->offsets; j++) {
-            move[2 * j] = (double)(j + 1) * delta;
-            move[2 * j + 1] = -move[2 * j];
-        }
-        nevh__along(e, term, instance, k, at, 2 * g->offsets, move, x, h);
-        double before = two;
-        two = difference(nevh_central2, x, h, &noise);
-        if (rung >= 0)
-            take(&l->two[rung], l->usual, two, before, noise);
-        before = full;
-        full = difference(g, x, h, &noise);
-        if (rung >= 0)
-            take(&l->full[rung], l->usual, full, before, noise);
+    differences two, full;
+    for (size_t from = 0; from <= RUNGS;)
+        from += try_steps(e, g, term, instance, k, at, unit, from, &two, &full);
+    for (size_t i = 0; i < RUNGS; i++) {
+        take(&l->two[i], l->usual, two.slope[i + 1], two.slope[i],
+             two.noise[i + 1]);
+        take(&l->full[i], l->usual, full.slope[i + 1], full.slope[i],
+             full.noise[i + 1]);
     }
 }
 
@@ -145,20 +175,25 @@ static nevh__step choose(const nevh_gradient *g, const ladder *l, double unit) {
                         .size = best->size};
 }
 
-/* Values of a function of very many variables are dear. */
+/* Where very many variables of instances are looked at, each is at fewer of
+   the states: never at less than a quarter. */
 static size_t sample_stride(const nevh__planned *term) {
-    return term->nv > NEVH__PROBED ? 4 : 1;
+    size_t rows = nevh__step_rows(term), looked_at = 0;
+    for (size_t k = 0; k < term->nv; k++)
+        looked_at += nevh__probed(term, k) == k ? rows : 0;
+    size_t stride = 1 + looked_at / FEW;
+    return stride < 4 ? stride : 4;
 }
 
 /* The median of the derivative's sizes at samples from `at` on. */
 static double usual_slope(const nevh__explorer *e, const nevh__planned *term,
                           size_t instance, size_t k, double unit, size_t at) {
     const double move[2] = {ldexp(unit, -8), -ldexp(unit, -8)};
-    double x[2], h[2], noise, sorted[NEVH__MOST_SAMPLES];
+    double x[2], h[2], sorted[NEVH__MOST_SAMPLES];
     size_t count = 0;
     for (; at < e->samples.count; at += sample_stride(term)) {
         nevh__along(e, term, instance, k, at, 2, move, x, h);
-        double slope = fabs(difference(nevh_central2, x, h, &noise));
+        double slope = fabs(nevh__chord_slope(nevh_central2, 1, x, h));
         size_t i = count;
         if (!isfinite(slope))
             continue;

@@ -8,12 +8,22 @@
 /* A length is where this part of a variation is not that of a quadratic. */
 static const double not_quadratic = 0.2;
 enum { FARTHEST = 400, LEAP = 8 }; /* powers of two from the first guess */
+enum { FEWEST_AHEAD = 2, MOST_AHEAD = 30 }; /* distances at once */
 enum { NEARER = 3, NEAREST = 24 }; /* below a distance that may be periods */
 static const double as_much = 0.125;
 static const double overflowing = 0x1p500;
 enum { MOST_LANES = 4, TRIED_LANES = 64 };
 /* Powers of two may be whole periods, over which nothing varies. */
 static const double askew = 0.618;
+
+/* A row of equal numbers, its first ones moved. */
+static void fill(double *row, size_t stride, double value, size_t count,
+                 const double move[]) {
+    for (size_t i = 0; i < count; i++)
+        row[i] = value + move[i];
+    for (size_t i = count; i < stride; i++)
+        row[i] = value;
+}
 
 void nevh__along(const nevh__explorer *e, const nevh__planned *term,
                  size_t instance, size_t k, size_t at, size_t count,
@@ -27,20 +37,16 @@ void nevh__along(const nevh__explorer *e, const nevh__planned *term,
         double value = j >= term->nv  ? is->c[instance * is->nc + j - term->nv]
                        : j < term->nq ? q[nevh__index(term, instance, j)]
                                       : p[nevh__index(term, instance, j)];
-        for (size_t i = 0; i < stride; i++)
-            row[i] = value + (j == k && i < count ? move[i] : 0);
+        fill(row, stride, value, j == k ? count : 0, move);
     }
-    for (size_t i = 0; i < stride; i++)
-        f->times[i] =
-            e->samples.t[at] + (k == NEVH__TIME && i < count ? move[i] : 0);
+    fill(f->times, stride, e->samples.t[at], k == NEVH__TIME ? count : 0, move);
     double *rows_p = f->rows + term->nq * stride;
     nevh__term_values(term->term, f->portable, stride, count,
                       is->time ? f->times : f->zeros, f->rows, rows_p,
                       rows_p + term->np * stride, f->h, f->one);
-    for (size_t i = 0; i < count; i++) {
-        x[i] = k == NEVH__TIME ? f->times[i] : f->rows[k * stride + i];
-        h[i] = f->h[i];
-    }
+    memcpy(x, k == NEVH__TIME ? f->times : f->rows + k * stride,
+           count * sizeof *x);
+    memcpy(h, f->h, count * sizeof *h);
 }
 
 /* How h varies within one distance: as a whole, what a quadratic through the
@@ -49,20 +55,47 @@ typedef struct {
     double whole, rest, rounding;
 } variation;
 
+/* A number that is not one is no larger. */
+static inline double larger(double a, double b) {
+    return b > a ? b : a;
+}
+
+/* h: at a place, and on both sides of it at half the distance and at all. */
+static variation compare(double here, const double half[2],
+                         const double all[2]) {
+    double most =
+        larger(fabs(here), larger(larger(fabs(half[0]), fabs(half[1])),
+                                  larger(fabs(all[0]), fabs(all[1]))));
+    double even = (all[0] - here) + (all[1] - here), odd = all[0] - all[1];
+    double near_even = (half[0] - here) + (half[1] - here);
+    double near_odd = half[0] - half[1];
+    return (variation){
+        larger(fabs(all[0] - here), fabs(all[1] - here)),
+        larger(fabs(even - 4 * near_even), fabs(odd - 2 * near_odd)),
+        32 * DBL_EPSILON * most};
+}
+
+/* Within a distance, twice that, and so on. */
+static void vary_on(const nevh__explorer *e, const nevh__planned *term,
+                    size_t instance, size_t k, double distance, size_t count,
+                    variation v[]) {
+    double move[3 + 2 * MOST_AHEAD], x[3 + 2 * MOST_AHEAD];
+    double h[3 + 2 * MOST_AHEAD];
+    move[0] = 0;
+    for (size_t i = 1; i <= count + 1; i++) {
+        move[2 * i - 1] = i > 1 ? 2 * move[2 * i - 3] : distance / 2;
+        move[2 * i] = -move[2 * i - 1];
+    }
+    nevh__along(e, term, instance, k, e->at, 3 + 2 * count, move, x, h);
+    for (size_t i = 0; i < count; i++)
+        v[i] = compare(h[0], h + 1 + 2 * i, h + 3 + 2 * i);
+}
+
 static variation vary(const nevh__explorer *e, const nevh__planned *term,
                       size_t instance, size_t k, double distance) {
-    const double move[5] = {0, distance / 2, -distance / 2, distance,
-                            -distance};
-    double x[5], h[5], most = 0;
-    nevh__along(e, term, instance, k, e->at, 5, move, x, h);
-    for (int i = 0; i < 5; i++)
-        most = fmax(most, fabs(h[i]));
-    double even = (h[3] - h[0]) + (h[4] - h[0]), odd = h[3] - h[4];
-    double near_even = (h[1] - h[0]) + (h[2] - h[0]), near_odd = h[1] - h[2];
-    return (variation){
-        fmax(fabs(h[3] - h[0]), fabs(h[4] - h[0])),
-        fmax(fabs(even - 4 * near_even), fabs(odd - 2 * near_odd)),
-        32 * DBL_EPSILON * most};
+    variation v;
+    vary_on(e, term, instance, k, distance, 1, &v);
+    return v;
 }
 
 /* Beyond the length, or outside the domain. */
@@ -107,6 +140,31 @@ static bool leap_down(const nevh__explorer *e, const nevh__planned *term,
     return !too_far(&v);
 }
 
+/* Twice the distance again and again, at most so often, until that is too far.
+   Several are asked for at once, the more the longer it takes. */
+static double double_up(const nevh__explorer *e, const nevh__planned *term,
+                        size_t instance, size_t k, double distance,
+                        const variation *here, int most) {
+    variation v[MOST_AHEAD];
+    size_t ahead = FEWEST_AHEAD;
+    double whole = here->whole;
+    bool seen = false;
+    for (int done = 0; done < most;
+         ahead = 2 * ahead < MOST_AHEAD ? 2 * ahead : MOST_AHEAD) {
+        vary_on(e, term, instance, k, 2 * distance, ahead, v);
+        for (size_t i = 0; i < ahead && done < most; i++, done++) {
+            if (!(whole < overflowing))
+                return seen ? INFINITY : NAN;
+            seen |= v[i].whole > v[i].rounding;
+            if (too_far(&v[i]))
+                return distance;
+            distance *= 2;
+            whole = v[i].whole;
+        }
+    }
+    return seen ? INFINITY : NAN;
+}
+
 double nevh__curve_length(const nevh__explorer *e, const nevh__planned *term,
                           size_t instance, size_t k, double guess) {
     variation v = vary(e, term, instance, k, guess);
@@ -120,16 +178,8 @@ double nevh__curve_length(const nevh__explorer *e, const nevh__planned *term,
         nearer = unfold(e, term, instance, k, distance);
     } while (nearer < distance);
     v = vary(e, term, instance, k, distance);
-    bool seen = false;
-    for (int i = 0; i < (leaps ? LEAP : FARTHEST) && v.whole < overflowing;
-         i++) {
-        v = vary(e, term, instance, k, 2 * distance);
-        seen |= v.whole > v.rounding;
-        if (too_far(&v))
-            return distance;
-        distance *= 2;
-    }
-    return seen ? INFINITY : NAN;
+    return double_up(e, term, instance, k, distance, &v,
+                     leaps ? LEAP : FARTHEST);
 }
 
 /* The distance over which an instance varies by `energy`: in leaps below it,

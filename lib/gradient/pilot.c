@@ -13,7 +13,7 @@ enum { MOST_STEPS = 240, PILOT_SAMPLES = 24, RANDOM_SAMPLES = 4 };
 static const double tolerance = 1e-3;
 static const double near_by = 0.3, anywhere = 2; /* of the lengths */
 static const double far_off = 64;
-static const double most_work = 1e6; /* values times variables */
+static const double most_work = 4e5; /* values times variables */
 
 static void add_sample(nevh__explorer *e, double t, const double q[],
                        const double p[]) {
