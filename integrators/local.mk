@@ -27,6 +27,7 @@ libnevh_core_la_SOURCES += \
 	integrators/adaptive_verlet_private.h \
 	integrators/adaptive_verlet_kernel.c \
 	integrators/adaptive_verlet.c \
+	integrators/stage_sums_private.h \
 	integrators/stage_sweeps_private.h \
 	integrators/stage_sweeps.c \
 	integrators/runge_kutta_private.h \
@@ -37,6 +38,10 @@ libnevh_core_la_SOURCES += \
 	integrators/rk4.c \
 	integrators/dopri5.c \
 	integrators/dop853.c \
+	integrators/dprkn12.c \
+	integrators/nystrom_private.h \
+	integrators/nystrom_stages.c \
+	integrators/nystrom_kernel.c \
 	integrators/tableau_private.h \
 	integrators/tableau.c \
 	integrators/gauss_coefficients.c \

@@ -41,7 +41,7 @@ struct nevh__adaptive {
 /* The step of all lanes: rows of `width`. */
 typedef struct {
     nevh_work *work;
-    const nevh_butcher *table;
+    const nevh__family *family;
     double t, h;
     lane_walk *lanes;
     double *y, *lost, *first; /* 2n rows: state, its carry, its slope */
@@ -70,9 +70,9 @@ void nevh__adaptive_unplan(nevh_work *w) {
 /* Memory: carry, size, err; where the last stage is the next first one, also
    that slope and whether it is there. */
 int nevh__adaptive_plan(nevh_work *w) {
-    const nevh_butcher *table = w->integrator->table;
-    nevh__adaptive *a = nevh__array(1, sizeof *a);
-    ((nevh__stages_plan *)w->plan)->adaptive = a;
+    nevh__stages_plan *plan = w->plan;
+    const nevh__family *family = &plan->family;
+    nevh__adaptive *a = plan->adaptive = nevh__array(1, sizeof *a);
     if (!a)
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     a->lanes = nevh__array(w->width, sizeof *a->lanes);
@@ -81,16 +81,16 @@ int nevh__adaptive_plan(nevh_work *w) {
     if (!a->lanes || !a->under_way || !a->unknown)
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     w->memory_rows = 2 * w->n + 2;
-    if (table->last_is_first)
+    if (family->last_is_first)
         w->memory_rows += 2 * w->n + 1;
-    w->scratch_size = (table->stages + ROWS) * 2 * w->size + 3 * w->width;
+    w->scratch_size = (family->rows + ROWS) * 2 * w->size + 3 * w->width;
     return NEVH_OK;
 }
 
 static walk lay_out(nevh_work *w, double t, double h) {
     const nevh__stages_plan *plan = w->plan;
     walk s = {.work = w,
-              .table = w->integrator->table,
+              .family = &plan->family,
               .t = t,
               .h = h,
               .lanes = plan->adaptive->lanes};
@@ -103,7 +103,7 @@ static walk lay_out(nevh_work *w, double t, double h) {
     for (int i = 0; i < ROWS; i++, at += each)
         *rows[i] = at;
     s.trial.slopes = at;
-    s.begin = at + s.table->stages * each;
+    s.begin = at + s.family->rows * each;
     s.each = s.begin + w->width;
     s.trial.time = s.each + w->width;
     if (nevh__repeated_stages_ready(plan->repeated))
@@ -122,7 +122,7 @@ static void load(walk *s, const double q[], const double p[]) {
     size_t n = w->size, width = w->width;
     const double *size = w->memory + 2 * n, *last = size + width;
     const double *first = last + width, *has_first = first + 2 * n;
-    bool keeps = s->table->last_is_first;
+    bool keeps = s->family->last_is_first;
     memcpy(s->y, q, n * sizeof *q);
     memcpy(s->y + n, p, n * sizeof *p);
     memcpy(s->lost, w->memory, 2 * n * sizeof *s->lost);
@@ -140,7 +140,7 @@ static void store(const walk *s, double q[], double p[]) {
     size_t n = w->size, width = w->width;
     double *size = w->memory + 2 * n, *last = size + width;
     double *first = last + width, *has_first = first + 2 * n;
-    bool keeps = s->table->last_is_first;
+    bool keeps = s->family->last_is_first;
     memcpy(q, s->y, n * sizeof *q);
     memcpy(p, s->y + n, n * sizeof *p);
     memcpy(w->memory, s->lost, 2 * n * sizeof *s->lost);
@@ -191,7 +191,7 @@ static int take_first_slopes(walk *s, size_t count, const size_t lanes[]) {
     if (some == 0)
         return NEVH_OK;
     gather_states(s, some, unknown);
-    int status = nevh__stages_take(&s->trial, 0, 1);
+    int status = s->family->take(&s->trial, 0, 1);
     for (size_t c = 0; c < some; c++) {
         scatter(s, c, unknown[c], s->trial.slopes, s->first);
         s->lanes[unknown[c]].has_first = true;
@@ -229,9 +229,9 @@ static double square(const walk *s, size_t column, const double estimate[]) {
 /* The estimate over the tolerance; NaN where it is beyond numbers. */
 static double judge(const walk *s, size_t column) {
     double error = square(s, column, s->error), all = error;
-    if (s->table->coarse)
+    if (s->family->coarse)
         all += 0.01 * square(s, column, s->coarse);
-    double err = s->table->coarse && all > 0 ? error / sqrt(all) : sqrt(error);
+    double err = s->family->coarse && all > 0 ? error / sqrt(all) : sqrt(error);
     return err / s->work->options->tolerance;
 }
 
@@ -250,7 +250,7 @@ static bool too_short(const walk *s, const lane_walk *l) {
 
 /* How much longer the next substep may be. */
 static double factor(const walk *s, const lane_walk *l, double err) {
-    double k = s->table->error_power, beta = 0.2 / k;
+    double k = s->family->error_power, beta = 0.2 / k;
     double last = l->last > 0 ? l->last : 1e-4;
     return 0.9 * pow(err, 0.75 * beta - 1 / k) * pow(last, beta);
 }
@@ -258,7 +258,7 @@ static double factor(const walk *s, const lane_walk *l, double err) {
 /* Near the end of an orbit the times themselves may be too coarse for a shorter
    substep: it would be rejected for ever. */
 static int reject(const walk *s, lane_walk *l, double err) {
-    double wanted = 0.9 * pow(err, -1. / s->table->error_power);
+    double wanted = 0.9 * pow(err, -1. / s->family->error_power);
     l->size = l->step * (wanted > 0.2 ? fmin(wanted, 0.9) : 0.2);
     l->held = true;
     bool shorter = l->done + l->size < l->done + l->step;
@@ -276,29 +276,27 @@ static int accept(walk *s, size_t column, size_t lane, double err) {
     l->done = l->ends ? fabs(s->h) : l->done + l->step;
     l->last = fmax(err, 1e-4);
     l->held = false;
-    l->has_first = s->table->last_is_first;
+    l->has_first = s->family->last_is_first;
     scatter(s, column, lane, s->next, s->y);
     scatter(s, column, lane, s->next_carry, s->lost);
-    size_t final = s->trial.stride * (s->table->stages - 1);
+    size_t final = s->trial.stride * (s->family->rows - 1);
     if (l->has_first)
         scatter(s, column, lane, s->trial.slopes + final, s->first);
-    return s->work->accounts ? nevh__stages_account(&s->trial) : NEVH_OK;
+    return s->work->accounts ? s->family->account(&s->trial) : NEVH_OK;
 }
 
 /* Stages, estimates and new states of a trial. */
 static int take_trial(walk *s, size_t count, const size_t lanes[]) {
-    const nevh_butcher *table = s->table;
+    const nevh__family *family = s->family;
     nevh__stages *trial = &s->trial;
     size_t n = s->work->n * count;
     gather_states(s, count, lanes);
     gather(s, lanes, s->first, trial->slopes);
-    int status = nevh__stages_take(trial, 1, table->stages);
+    int status = family->take(trial, 1, family->stages);
+    if (!status)
+        status = family->finish(trial, trial->change, s->error, s->coarse);
     if (status)
         return status;
-    nevh__stages_sum(trial, table->stages, table->error, s->error);
-    if (table->coarse)
-        nevh__stages_sum(trial, table->stages, table->coarse, s->coarse);
-    nevh__stages_sum(trial, table->stages, table->b, trial->change);
     memcpy(s->next, s->old, 2 * n * sizeof *s->next);
     memcpy(s->next_carry, s->carry, 2 * n * sizeof *s->next_carry);
     return nevh_work_commit(s->work, n, s->next, trial->change, s->next_carry,
@@ -335,7 +333,7 @@ static int choose(const walk *s, size_t lane) {
     double length = fabs(s->h), left = length - l->done;
     if (l->size == 0)
         l->size =
-            nevh__first_substep(s->work, s->table->error_power, s->h,
+            nevh__first_substep(s->work, s->family->error_power, s->h,
                                 s->work->width, s->y + lane, s->first + lane);
     if (too_short(s, l))
         return give_up(s, l, "substeps too short to be taken");

@@ -11,23 +11,6 @@
 
 enum { ROWS = 2 }; /* of 2n x width in a step, besides the slopes */
 
-/* Without a tolerance, memory is the carry alone, and a last stage that is the
-   next step's first is left to that step. */
-static int plan(nevh_work *w) {
-    const nevh_butcher *table = w->integrator->table;
-    w->plan = nevh__array(1, sizeof(nevh__stages_plan));
-    if (!w->plan)
-        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
-    nevh__stages_plan *plan = w->plan;
-    if (nevh__repeated_stages_plan(w, &plan->repeated))
-        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
-    if (table->error && w->options->tolerance > 0)
-        return nevh__adaptive_plan(w);
-    w->memory_rows = 2 * w->n;
-    w->scratch_size = (table->stages + ROWS) * 2 * w->size + 3 * w->width;
-    return NEVH_OK;
-}
-
 static void unplan(nevh_work *w) {
     nevh__stages_plan *plan = w->plan;
     if (!plan)
@@ -60,8 +43,9 @@ NEVH_SIMD static void sum_up(size_t size, size_t stride, size_t count,
     }
 }
 
-void nevh__stages_sum(const nevh__stages *s, size_t count,
-                      const double weights[], double sum[]) {
+/* h times the sum over `count` stages of weights[j] slopes[j]. */
+static void sum_stages(const nevh__stages *s, size_t count,
+                       const double weights[], double sum[]) {
     size_t columns = s->columns, size = 2 * s->work->n * columns;
     if (s->holds) {
         nevh__repeated_stages_sum(s, weights, sum);
@@ -77,7 +61,7 @@ void nevh__stages_sum(const nevh__stages *s, size_t count,
 static void place(const nevh__stages *s, size_t stage) {
     const nevh_butcher *table = s->work->integrator->table;
     size_t n = s->work->n * s->columns;
-    nevh__stages_sum(s, stage, table->a + stage * table->stages, s->change);
+    sum_stages(s, stage, table->a + stage * table->stages, s->change);
     for (size_t i = 0; i < n; i++) {
         s->point[i] = s->q[i] + (s->change[i] + s->carry[i]);
         s->point[n + i] = s->p[i] + (s->change[n + i] + s->carry[n + i]);
@@ -105,7 +89,7 @@ static int take_slopes(const nevh__stages *s, double slopes[]) {
     return status;
 }
 
-int nevh__stages_take(nevh__stages *s, size_t first, size_t until) {
+static int take(nevh__stages *s, size_t first, size_t until) {
     s->holds = s->repeated && nevh__repeated_stages_take(s, first, until);
     if (s->holds)
         return NEVH_OK;
@@ -122,7 +106,7 @@ int nevh__stages_take(nevh__stages *s, size_t first, size_t until) {
 }
 
 /* All columns take the same h. */
-int nevh__stages_account(const nevh__stages *s) {
+static int account(const nevh__stages *s) {
     nevh_work *w = s->work;
     const nevh_butcher *table = w->integrator->table;
     int status = NEVH_OK;
@@ -134,6 +118,41 @@ int nevh__stages_account(const nevh__stages *s) {
                                        s->point + w->n * s->columns);
         }
     return status;
+}
+
+static int finish(const nevh__stages *s, double change[], double error[],
+                  double coarse[]) {
+    const nevh_butcher *table = s->work->integrator->table;
+    sum_stages(s, table->stages, table->error, error);
+    if (table->coarse)
+        sum_stages(s, table->stages, table->coarse, coarse);
+    sum_stages(s, table->stages, table->b, change);
+    return NEVH_OK;
+}
+
+/* Without a tolerance, memory is the carry alone, and a last stage that is the
+   next step's first is left to that step. */
+static int plan(nevh_work *w) {
+    const nevh_butcher *table = w->integrator->table;
+    w->plan = nevh__array(1, sizeof(nevh__stages_plan));
+    if (!w->plan)
+        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
+    nevh__stages_plan *plan = w->plan;
+    if (nevh__repeated_stages_plan(w, &plan->repeated))
+        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
+    plan->family = (nevh__family){.stages = table->stages,
+                                  .rows = table->stages,
+                                  .error_power = table->error_power,
+                                  .last_is_first = table->last_is_first,
+                                  .coarse = table->coarse,
+                                  .take = take,
+                                  .finish = finish,
+                                  .account = account};
+    if (table->error && w->options->tolerance > 0)
+        return nevh__adaptive_plan(w);
+    w->memory_rows = 2 * w->n;
+    w->scratch_size = (table->stages + ROWS) * 2 * w->size + 3 * w->width;
+    return NEVH_OK;
 }
 
 static nevh__stages lay_out(nevh_work *w, double q[], double p[]) {
@@ -168,12 +187,12 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
         s.time[w->width + lane] = t;
         s.time[2 * w->width + lane] = h;
     }
-    int status = nevh__stages_take(&s, 0, stages);
+    int status = take(&s, 0, stages);
     if (!status)
-        status = nevh__stages_account(&s);
+        status = account(&s);
     if (status)
         return status;
-    nevh__stages_sum(&s, stages, table->b, s.change);
+    sum_stages(&s, stages, table->b, s.change);
     return nevh_work_commit(w, n, q, s.change, w->memory, p, s.change + n,
                             w->memory + n);
 }

@@ -25,14 +25,6 @@ typedef struct {
     bool holds;                      /* the slopes are there */
 } nevh__stages;
 
-/* The slopes of stages `first` to `until` - 1; those before are there. */
-int nevh__stages_take(nevh__stages *, size_t first, size_t until);
-/* sum = h times the sum over `count` stages of weights[j] slopes[j]. */
-void nevh__stages_sum(const nevh__stages *, size_t count,
-                      const double weights[], double sum[]);
-/* Hands the stages to the balance of the energy, where one is kept. */
-int nevh__stages_account(const nevh__stages *);
-
 /* Stages of one orbit of a small system, where H can be called as it is.  To
  *stages; NULL: there is no such way.  NEVH_OK or NEVH_ENOMEM. */
 int nevh__repeated_stages_plan(nevh_work *, nevh__repeated_stages **stages);
@@ -48,10 +40,30 @@ bool nevh__repeated_stages_take(const nevh__stages *, size_t first,
 void nevh__repeated_stages_sum(const nevh__stages *, const double weights[],
                                double sum[]);
 
-/* What the kernel keeps. */
-typedef struct nevh__adaptive nevh__adaptive;
+/* What the control of steps has to know of a family of methods, and asks of it.
+ */
 typedef struct {
+    size_t stages, rows; /* rows: of slopes that are kept */
+    int error_power;     /* the power of h with which the estimate falls */
+    bool last_is_first;  /* the last stage is the next step's first */
+    bool coarse;         /* there is a second estimate */
+    /* The slopes of stages `first` to `until` - 1; those before are there.  Of
+       stage 0 alone: to the first row, as the derivative of q and p. */
+    int (*take)(nevh__stages *, size_t first, size_t until);
+    /* What the step adds to the state, and the estimates: 2n x columns each. */
+    int (*finish)(const nevh__stages *, double change[], double error[],
+                  double coarse[]);
+    /* Hands the stages to the balance of the energy, where one is kept. */
+    int (*account)(const nevh__stages *);
+} nevh__family;
+
+/* What the kernels keep. */
+typedef struct nevh__adaptive nevh__adaptive;
+typedef struct nevh__nystrom nevh__nystrom;
+typedef struct {
+    nevh__family family;
     nevh__repeated_stages *repeated; /* NULL: there is no such way */
+    nevh__nystrom *nystrom;          /* of the Nystroem kernel alone */
     nevh__adaptive *adaptive;        /* NULL: steps do not adapt */
 } nevh__stages_plan;
 

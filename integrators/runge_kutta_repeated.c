@@ -6,7 +6,7 @@
    it is runge_kutta_kernel.c: the same bits.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "runge_kutta_private.h"
-#include "system/vector_private.h"
+#include "stage_sums_private.h"
 #include "work_private.h"
 #include <nevh/body.h>
 #include <stdlib.h>
@@ -16,15 +16,6 @@
 /* Rows that are summed at once, to keep a processor busy; sums besides those of
    stages. */
 enum { SIDE_BY_SIDE = 4, ENDS = 3 };
-
-/* Weights that are not 0, and how far the slopes they belong to are from those
-   of the first stage. */
-typedef struct {
-    const double *all; /* the table's */
-    size_t count;
-    double *weights;
-    size_t *offsets;
-} sum;
 
 struct nevh__repeated_stages {
     nevh_work *work;
@@ -37,7 +28,7 @@ struct nevh__repeated_stages {
     double *start, *steps; /* 2n: the state; h, or -h for momenta */
     double *weights;
     size_t *offsets;
-    sum *sums; /* those of the stages, and of the ends */
+    nevh__sum *sums; /* those of the stages, and of the ends */
     nevh__call *calls;
 };
 
@@ -45,16 +36,10 @@ static void list_weights(nevh__repeated_stages *r) {
     const nevh_butcher *table = r->table;
     const double *const ends[ENDS] = {table->b, table->error, table->coarse};
     size_t s = table->stages;
-    for (size_t i = 0; i < s + ENDS; i++) {
-        const double *all = i < s ? table->a + i * s : ends[i - s];
-        sum *x = &r->sums[i];
-        *x = (sum){all, 0, r->weights + i * s, r->offsets + i * s};
-        for (size_t j = 0; all && j < (i < s ? i : s); j++)
-            if (all[j] != 0) {
-                x->weights[x->count] = all[j];
-                x->offsets[x->count++] = j * r->size;
-            }
-    }
+    for (size_t i = 0; i < s + ENDS; i++)
+        r->sums[i] =
+            nevh__sum_of(i < s ? table->a + i * s : ends[i - s], i < s ? i : s,
+                         r->size, r->weights + i * s, r->offsets + i * s);
 }
 
 static bool lay_out(nevh__repeated_stages *r) {
@@ -112,25 +97,12 @@ bool nevh__repeated_stages_ready(nevh__repeated_stages *r) {
     return r && !r->work->accounts && nevh__call_renew(r->calls);
 }
 
-/* The next `count` rows of sums of weights times slopes. */
-NEVH__INLINE void add_up(const sum *x, size_t count, const double slopes[],
-                         nevh__vector rows[]) {
-    for (size_t k = 0; k < count; k++)
-        rows[k] = (nevh__vector){0};
-    for (size_t j = 0; j < x->count; j++) {
-        const double *slope = slopes + x->offsets[j], weight = x->weights[j];
-        NEVH_UNROLL
-        for (size_t k = 0; k < count; k++)
-            rows[k] +=
-                weight * *(const nevh__vector *)(slope + k * NEVH__LANES);
-    }
-}
-
 /* State + (h times the sum + carry). */
 NEVH__INLINE void place_rows(const nevh__repeated_stages *r, size_t count,
-                             const sum *x, size_t first, const double carry[]) {
+                             const nevh__sum *x, size_t first,
+                             const double carry[]) {
     nevh__vector rows[SIDE_BY_SIDE];
-    add_up(x, count, r->slopes + first * NEVH__LANES, rows);
+    nevh__add_up(x, count, r->slopes + first * NEVH__LANES, rows);
     NEVH_UNROLL
     for (size_t i = 0; i < count; i++) {
         size_t k = first + i;
@@ -139,7 +111,7 @@ NEVH__INLINE void place_rows(const nevh__repeated_stages *r, size_t count,
     }
 }
 
-NEVH__INLINE void place(const nevh__repeated_stages *r, const sum *x,
+NEVH__INLINE void place(const nevh__repeated_stages *r, const nevh__sum *x,
                         const double carry[]) {
     size_t k = 0;
     for (; k + SIDE_BY_SIDE <= 2 * r->n; k += SIDE_BY_SIDE)
@@ -220,11 +192,11 @@ bool nevh__repeated_stages_take(const nevh__stages *s, size_t first,
     return true;
 }
 
-NEVH_SIMD static void finish(const nevh__repeated_stages *r, const sum *x,
+NEVH_SIMD static void finish(const nevh__repeated_stages *r, const nevh__sum *x,
                              double out[]) {
     for (size_t first = 0; first < 2 * r->n; first += 2) {
         nevh__vector rows[2];
-        add_up(x, 2, r->slopes + first * NEVH__LANES, rows);
+        nevh__add_up(x, 2, r->slopes + first * NEVH__LANES, rows);
         out[first] = rows[0][0] * r->steps[first];
         out[first + 1] = rows[1][0] * r->steps[first + 1];
     }
@@ -233,7 +205,7 @@ NEVH_SIMD static void finish(const nevh__repeated_stages *r, const sum *x,
 void nevh__repeated_stages_sum(const nevh__stages *s, const double weights[],
                                double out[]) {
     const nevh__repeated_stages *r = s->repeated;
-    const sum *x = r->sums + r->table->stages;
+    const nevh__sum *x = r->sums + r->table->stages;
     while (x->all != weights)
         x++;
     finish(r, x, out);

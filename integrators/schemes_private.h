@@ -51,6 +51,7 @@
     X(rk4)                                                                     \
     X(dopri5)                                                                  \
     X(dop853)                                                                  \
+    X(dprkn12)                                                                 \
     X(gsl_rkf45)                                                               \
     X(gsl_rk8pd)                                                               \
     X(gsl_msadams)

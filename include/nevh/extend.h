@@ -154,6 +154,22 @@ typedef struct {
 } nevh_butcher;
 NEVH_API extern const nevh_kernel nevh_runge_kutta_kernel;
 
+/* Explicit Runge-Kutta-Nystroem, for H = T(p) + V(q) with a T that is quadratic
+   in p and does not read the time: for p = dq/dt and f = -dV/dq
+       q += h p + h^2 sum_i bq[i] f_i,   p += h sum_i bp[i] f_i,
+       f_i = f(t + c[i] h, q + c[i] h p + h^2 sum_j a[i][j] f_j). */
+typedef struct {
+    size_t stages;
+    const double *a;  /* stages x stages, row by row; only below the diagonal */
+    const double *bq; /* stages */
+    const double *bp; /* stages */
+    const double *c;  /* stages; c[0] is 0 */
+    /* bq and bp less the embedded weights, for steps that adapt; or NULL */
+    const double *error_q, *error_p;
+    int error_power; /* the power of h with which the estimate falls */
+} nevh_nystrom;
+NEVH_API extern const nevh_kernel nevh_nystrom_kernel;
+
 /* Gauss-Legendre with `stages` stages from the descriptor; no table. */
 NEVH_API extern const nevh_kernel nevh_gauss_kernel;
 /* Lobatto IIIA for coordinates with IIIB for momenta, alike; from 2 stages. */

@@ -81,6 +81,7 @@ NEVH_API extern const nevh_integrator *const nevh_euler;
 NEVH_API extern const nevh_integrator *const nevh_rk4;
 NEVH_API extern const nevh_integrator *const nevh_dopri5;
 NEVH_API extern const nevh_integrator *const nevh_dop853;
+NEVH_API extern const nevh_integrator *const nevh_dprkn12;
 NEVH_API extern const nevh_integrator *const nevh_gsl_rkf45;
 NEVH_API extern const nevh_integrator *const nevh_gsl_rk8pd;
 NEVH_API extern const nevh_integrator *const nevh_gsl_msadams;

@@ -1,0 +1,259 @@
+/* nevh: explicit Runge-Kutta-Nystroem methods, for H = T(p) + V(q) with a T
+   quadratic in p.
+
+   Stages are kicks at
+
+       q_i = q + h (T_p(c_i p - h sum_j a_ij D_j) + (c_i - 1) T_p(0)),
+       D_j = dV/dq(t + c_j h, q_j),
+
+   and a step is q += h T_p(p - h sum_i b_i D_i), p -= h sum_i b'_i D_i: for
+   T = p^2/2 what E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary
+   Differential Equations I (1993), II.14, write for y'' = f(t, y).  No stage
+   needs momenta of its own, so there is half as much to sum up as of a method
+   for any H.  T_p is always asked for momenta of the size of p: differences
+   have their steps from there.  Where each term of T declares to read one
+   momentum, T_p(p) - T_p(0) is W p with a diagonal W, and T_p has to be asked
+   for once a step:
+
+       q_i = q + h c_i T_p(p) - h^2 W sum_j a_ij D_j.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "nystrom_private.h"
+#include "work_private.h"
+#include <math.h>
+#include <stdlib.h>
+
+/* A row of as many lanes as there may be. */
+static size_t most_lanes(const nevh_work *w) {
+    return w->width > NEVH__LANES ? w->width : NEVH__LANES;
+}
+
+static bool diagonal(const nevh_system *s) {
+    for (size_t i = 0; i < s->n_terms; i++) {
+        const nevh_term *is = &s->terms[i]->is;
+        if (nevh__term_on(s, s->terms[i]) && is->np &&
+            (is->np > 1 || is->nq > 0))
+            return false;
+    }
+    return true;
+}
+
+static bool lay_out(nevh__nystrom *y) {
+    size_t half = y->stride, stages = y->table->stages;
+    y->room = nevh__array((11 + stages) * half + most_lanes(y->work) +
+                              2 * y->n + NEVH__LANES,
+                          sizeof *y->room);
+    size_t lists = (stages + ENDS) * stages;
+    y->kicks = nevh__array(stages, sizeof *y->kicks);
+    y->weights = nevh__array(lists, sizeof *y->weights);
+    y->offsets = nevh__array(lists, sizeof *y->offsets);
+    y->sums = nevh__array(stages + ENDS, sizeof *y->sums);
+    if (!y->room || !y->kicks || !y->weights || !y->offsets || !y->sums)
+        return false;
+    double *from = nevh__aligned(y->room);
+    y->q = nevh__take(&from, half);
+    y->p = nevh__take(&from, half);
+    y->carry = nevh__take(&from, 2 * half);
+    y->h = nevh__take(&from, half);
+    y->way = nevh__take(&from, half);
+    y->gain = nevh__take(&from, half);
+    y->at_rest = nevh__take(&from, half);
+    y->momenta = nevh__take(&from, half);
+    y->velocities = nevh__take(&from, half);
+    y->points = nevh__take(&from, half);
+    y->slopes = nevh__take(&from, stages * half);
+    y->time = nevh__take(&from, most_lanes(y->work));
+    y->rest = nevh__take(&from, y->n);
+    y->inverse = diagonal(y->work->system) ? from : NULL;
+    return true;
+}
+
+static void list_weights(nevh__nystrom *y) {
+    const nevh_nystrom *table = y->table;
+    const double *const ends[ENDS] = {table->bq, table->bp, table->error_q,
+                                      table->error_p};
+    size_t s = table->stages;
+    for (size_t i = 0; i < s + ENDS; i++)
+        y->sums[i] =
+            nevh__sum_of(i < s ? table->a + i * s : ends[i - s], i < s ? i : s,
+                         y->stride, y->weights + i * s, y->offsets + i * s);
+}
+
+static void find_calls(nevh__nystrom *y) {
+    nevh_field *f = y->work->field;
+    size_t lanes = NEVH__LANES, stages = y->table->stages;
+    if (!nevh__work_repeats(y->work))
+        return;
+    y->drift = nevh__call_plan(f, lanes, y->time, y->points, y->momenta, NULL,
+                               y->velocities);
+    for (size_t i = 0; i < stages; i++)
+        y->kicks[i] = nevh__call_plan(f, lanes, y->time, y->points, y->p,
+                                      y->slopes + i * y->stride, NULL);
+    if (y->drift.count && y->kicks[0].count)
+        y->call_lanes = lanes;
+}
+
+/* Where T reads the time there is no second-order equation. */
+static int check_kinetic(nevh_work *w) {
+    for (size_t i = 0; i < w->system->n_terms; i++) {
+        const nevh__term *term = w->system->terms[i];
+        if (nevh__term_on(w->system, term) && term->is.np && term->is.time)
+            return nevh_work_fail(
+                w, NEVH_ESTRUCT,
+                "%s needs a T(p) that does not depend on time, but term \"%s\" "
+                "of effect \"%s\" reads momenta and time; dop853, gauss12 and "
+                "other schemes for any H can take it",
+                w->integrator->name, term->is.name, term->is.effect);
+    }
+    return NEVH_OK;
+}
+
+static int check_friction(nevh_work *w) {
+    if (!(w->options->tolerance > 0) || !nevh_system_friction(w->system, NULL))
+        return NEVH_OK;
+    return nevh_work_fail(w, NEVH_ESTRUCT,
+                          "%s takes no friction under a tolerance: friction is "
+                          "put around its steps, and they would be those of "
+                          "the run; leave the tolerance out, or take dop853",
+                          w->integrator->name);
+}
+
+/* T_p at momenta that are there, and the coordinates to plan at. */
+static int ask(nevh__nystrom *y, double velocities[]) {
+    nevh_work *w = y->work;
+    const nevh_options *o = w->options;
+    for (size_t k = 0; k < y->n; k++)
+        y->points[k] = o->q ? o->q[k * w->width] : 0;
+    int status = nevh_field_gradient(w->field, 1, &o->t, y->points, y->momenta,
+                                     NULL, velocities);
+    w->field->gradients = 0;
+    return status
+               ? nevh_work_fail(w, status, "%s", nevh_field_message(w->field))
+               : NEVH_OK;
+}
+
+/* T_p(0), and W from momenta of the size of p: powers of two, so that nothing
+   is rounded. */
+static int find_kinetic(nevh__nystrom *y) {
+    const double *scale = y->work->scale + y->n;
+    int status = ask(y, y->rest);
+    for (size_t k = 0; !status && k < y->n; k++) {
+        y->moves |= y->rest[k] != 0;
+        y->momenta[k] = exp2(round(log2(scale[k])));
+    }
+    if (!status && y->inverse)
+        status = ask(y, y->inverse);
+    for (size_t k = 0; !status && y->inverse && k < y->n; k++)
+        y->inverse[k] = (y->inverse[k] - y->rest[k]) / y->momenta[k];
+    return status;
+}
+
+static int plan_nystrom(nevh_work *w, nevh__nystrom **nystrom) {
+    nevh__nystrom *y = *nystrom = nevh__array(1, sizeof *y);
+    if (!y)
+        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
+    y->work = w;
+    y->table = w->integrator->table;
+    y->n = w->n;
+    y->stride = w->n * most_lanes(w);
+    y->known_h = NAN;
+    if (!lay_out(y))
+        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
+    list_weights(y);
+    find_calls(y);
+    return find_kinetic(y);
+}
+
+/* T does not read the time, so where momenta are does not matter. */
+static int account(const nevh__stages *s) {
+    nevh_work *w = s->work;
+    nevh__nystrom *y = nevh__nystrom_of(w);
+    const nevh_nystrom *table = y->table;
+    int status = NEVH_OK;
+    for (size_t i = 0; w->accounts && !status && i < table->stages; i++)
+        if (table->bp[i] != 0) {
+            status = nevh__nystrom_place(y, s, i);
+            if (!status)
+                status = nevh_work_account(w, NEVH_OF_Q | NEVH_OF_P,
+                                           table->bp[i] * s->h[0], y->time,
+                                           y->points, y->p);
+        }
+    return status;
+}
+
+static int plan(nevh_work *w) {
+    const nevh_nystrom *table = w->integrator->table;
+    nevh__stages_plan *plan = w->plan = nevh__array(1, sizeof *plan);
+    int status = plan ? check_kinetic(w)
+                      : nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
+    if (!status)
+        status = check_friction(w);
+    if (!status)
+        status = plan_nystrom(w, &plan->nystrom);
+    if (status)
+        return status;
+    plan->family = (nevh__family){.rows = 1,
+                                  .stages = table->stages,
+                                  .error_power = table->error_power,
+                                  .take = nevh__nystrom_take,
+                                  .finish = nevh__nystrom_finish,
+                                  .account = account};
+    if (table->error_p && w->options->tolerance > 0)
+        return nevh__adaptive_plan(w);
+    w->memory_rows = 2 * w->n;
+    w->scratch_size = 2 * w->size + 2 * w->width;
+    return NEVH_OK;
+}
+
+static void unplan(nevh_work *w) {
+    nevh__stages_plan *plan = w->plan;
+    if (!plan)
+        return;
+    nevh__adaptive_unplan(w);
+    if (plan->nystrom) {
+        free(plan->nystrom->room);
+        free(plan->nystrom->kicks);
+        free(plan->nystrom->weights);
+        free(plan->nystrom->offsets);
+        free(plan->nystrom->sums);
+    }
+    free(plan->nystrom);
+    free(plan);
+    w->plan = NULL;
+}
+
+static int step(nevh_work *w, double t, double h, double q[], double p[]) {
+    size_t n = w->size, width = w->width;
+    double *change = w->scratch, *times = change + 2 * n,
+           *steps = times + width;
+    if (((nevh__stages_plan *)w->plan)->adaptive)
+        return nevh__adaptive_step(w, t, h, q, p);
+    nevh__stages s = {.work = w,
+                      .columns = width,
+                      .t = times,
+                      .h = steps,
+                      .q = q,
+                      .p = p,
+                      .carry = w->memory};
+    for (size_t lane = 0; lane < width; lane++) {
+        times[lane] = t;
+        steps[lane] = h;
+    }
+    int status = nevh__nystrom_take(&s, 0, nevh__nystrom_of(w)->table->stages);
+    if (!status)
+        status = nevh__nystrom_finish(&s, change, NULL, NULL);
+    if (!status)
+        status = account(&s);
+    if (status)
+        return status;
+    return nevh_work_commit(w, n, q, change, w->memory, p, change + n,
+                            w->memory + n);
+}
+
+static void damp(nevh_work *w, const double factor[]) {
+    double *carry = w->memory + w->size;
+    for (size_t i = 0; i < w->size; i++)
+        carry[i] *= factor[i / w->width];
+}
+
+const nevh_kernel nevh_nystrom_kernel = {
+    .plan = plan, .step = step, .unplan = unplan, .damp = damp};
