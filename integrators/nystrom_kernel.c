@@ -18,6 +18,7 @@
        q_i = q + h c_i T_p(p) - h^2 W sum_j a_ij D_j.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "nystrom_private.h"
+#include "system/probe_private.h"
 #include "work_private.h"
 #include <math.h>
 #include <stdlib.h>
@@ -92,19 +93,30 @@ static void find_calls(nevh__nystrom *y) {
         y->call_lanes = lanes;
 }
 
-/* Where T reads the time there is no second-order equation. */
-static int check_kinetic(nevh_work *w) {
-    for (size_t i = 0; i < w->system->n_terms; i++) {
-        const nevh__term *term = w->system->terms[i];
-        if (nevh__term_on(w->system, term) && term->is.np && term->is.time)
-            return nevh_work_fail(
-                w, NEVH_ESTRUCT,
-                "%s needs a T(p) that does not depend on time, but term \"%s\" "
-                "of effect \"%s\" reads momenta and time; dop853, gauss12 and "
-                "other schemes for any H can take it",
-                w->integrator->name, term->is.name, term->is.effect);
+/* Lane 0 of the coordinates to plan at, at rest. */
+static void take_origin(nevh__nystrom *y) {
+    const nevh_options *o = y->work->options;
+    for (size_t k = 0; k < y->n; k++) {
+        y->points[k] = o->q ? o->q[k * y->work->width] : 0;
+        y->momenta[k] = 0;
     }
-    return NEVH_OK;
+}
+
+/* Where T depends on time there is no second-order equation. */
+static int check_kinetic(nevh__nystrom *y) {
+    nevh_work *w = y->work;
+    const char *term;
+    take_origin(y);
+    if (nevh__system_probe_kinetic_time(w->system, w->options->t, y->points,
+                                        NULL, w->scale, &term))
+        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
+    if (!term)
+        return NEVH_OK;
+    return nevh_work_fail(w, NEVH_ESTRUCT,
+                          "%s needs a T(p) that does not depend on time, but "
+                          "term \"%s\" does; schemes that fit any H: gauss12, "
+                          "dop853",
+                          w->integrator->name, term);
 }
 
 static int check_friction(nevh_work *w) {
@@ -117,24 +129,27 @@ static int check_friction(nevh_work *w) {
                           w->integrator->name);
 }
 
-/* T_p at momenta that are there, and the coordinates to plan at. */
 static int ask(nevh__nystrom *y, double velocities[]) {
     nevh_work *w = y->work;
-    const nevh_options *o = w->options;
-    for (size_t k = 0; k < y->n; k++)
-        y->points[k] = o->q ? o->q[k * w->width] : 0;
-    int status = nevh_field_gradient(w->field, 1, &o->t, y->points, y->momenta,
-                                     NULL, velocities);
-    w->field->gradients = 0;
+    int status = nevh_field_gradient(w->field, 1, &w->options->t, y->points,
+                                     y->momenta, NULL, velocities);
     return status
                ? nevh_work_fail(w, status, "%s", nevh_field_message(w->field))
                : NEVH_OK;
+}
+
+/* What planning asked for does not count. */
+static void forget(nevh_field *f) {
+    for (size_t i = 0; i < f->n_terms; i++)
+        f->terms[i].values = 0;
+    f->gradients = 0;
 }
 
 /* T_p(0), and W from momenta of the size of p: powers of two, so that nothing
    is rounded. */
 static int find_kinetic(nevh__nystrom *y) {
     const double *scale = y->work->scale + y->n;
+    take_origin(y);
     int status = ask(y, y->rest);
     for (size_t k = 0; !status && k < y->n; k++) {
         y->moves |= y->rest[k] != 0;
@@ -144,6 +159,7 @@ static int find_kinetic(nevh__nystrom *y) {
         status = ask(y, y->inverse);
     for (size_t k = 0; !status && y->inverse && k < y->n; k++)
         y->inverse[k] = (y->inverse[k] - y->rest[k]) / y->momenta[k];
+    forget(y->work->field);
     return status;
 }
 
@@ -160,7 +176,8 @@ static int plan_nystrom(nevh_work *w, nevh__nystrom **nystrom) {
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     list_weights(y);
     find_calls(y);
-    return find_kinetic(y);
+    int status = check_kinetic(y);
+    return status ? status : find_kinetic(y);
 }
 
 /* T does not read the time, so where momenta are does not matter. */
@@ -183,10 +200,8 @@ static int account(const nevh__stages *s) {
 static int plan(nevh_work *w) {
     const nevh_nystrom *table = w->integrator->table;
     nevh__stages_plan *plan = w->plan = nevh__array(1, sizeof *plan);
-    int status = plan ? check_kinetic(w)
+    int status = plan ? check_friction(w)
                       : nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
-    if (!status)
-        status = check_friction(w);
     if (!status)
         status = plan_nystrom(w, &plan->nystrom);
     if (status)

@@ -180,10 +180,9 @@ NEVH__INLINE int take(const nevh__nystrom *y, const nevh__stages *s,
                       bool by_call, size_t first, size_t until) {
     int status = NEVH_OK;
     double bad = 0;
-    if (y->inverse || until == 1) {
-        place_start(y);
+    place_start(y); /* where T_p is asked for, if H is one function */
+    if (y->inverse || until == 1)
         status = find_way(y, by_call);
-    }
     for (size_t i = first; !status && i < until; i++) {
         status = place(y, s, by_call, i);
         if (!status)

@@ -9,9 +9,16 @@
        next = size * 0.9 err^(-1/k + 3/4 beta) err_last^beta,  beta = 1/(5k),
 
    where the estimate falls with size^k; between a fifth and six times of size,
-   and not above it after a rejection.  Where H is not finite at a trial's
-   stages, the trial is rejected as well.
-   SPDX-License-Identifier: GPL-3.0-or-later */
+   and not above it after a rejection.  Nor above what the last two steps
+   predict if the estimate goes on growing as it did between them,
+
+       next = size * 0.9 size/size_last (err_last / err^2)^(1/k)
+
+   [K. Gustafsson, Control-theoretic techniques for stepsize selection in
+   implicit Runge-Kutta methods, ACM Trans. Math. Softw. 20 (1994) 496-517]: on
+   the way to a pericentre this saves most rejections.  Where H is not finite at
+   a trial's stages, the trial is rejected as well. SPDX-License-Identifier:
+   GPL-3.0-or-later */
 #include "runge_kutta_private.h"
 #include "work_private.h"
 #include "system/system_private.h"
@@ -26,6 +33,7 @@ typedef struct {
     double size;    /* of the next substep; 0: not known */
     double step;    /* under trial: size, or what is left */
     double last;    /* err of the last accepted one; 0: there is none */
+    double before;  /* its length */
     bool has_first; /* the slope at the state is known */
     bool held;      /* the last trial was rejected */
     bool ends;      /* this one ends the step */
@@ -51,6 +59,7 @@ typedef struct {
     double *carry, *next, *next_carry, *error, *coarse;
 } walk;
 
+static const double least_error = 1e-4; /* that is remembered */
 enum { ROWS = 11 }; /* of 2n x width in a walk, besides the slopes */
 
 static nevh__adaptive *plan_of(const nevh_work *w) {
@@ -67,8 +76,8 @@ void nevh__adaptive_unplan(nevh_work *w) {
     free(a);
 }
 
-/* Memory: carry, size, err; where the last stage is the next first one, also
-   that slope and whether it is there. */
+/* Memory: carry, size, err and length of the last one; where the last stage is
+   the next first one, also that slope and whether it is there. */
 int nevh__adaptive_plan(nevh_work *w) {
     nevh__stages_plan *plan = w->plan;
     const nevh__family *family = &plan->family;
@@ -80,7 +89,7 @@ int nevh__adaptive_plan(nevh_work *w) {
     a->unknown = nevh__array(w->width, sizeof *a->unknown);
     if (!a->lanes || !a->under_way || !a->unknown)
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
-    w->memory_rows = 2 * w->n + 2;
+    w->memory_rows = 2 * w->n + 3;
     if (family->last_is_first)
         w->memory_rows += 2 * w->n + 1;
     w->scratch_size = (family->rows + ROWS) * 2 * w->size + 3 * w->width;
@@ -121,7 +130,8 @@ static void load(walk *s, const double q[], const double p[]) {
     const nevh_work *w = s->work;
     size_t n = w->size, width = w->width;
     const double *size = w->memory + 2 * n, *last = size + width;
-    const double *first = last + width, *has_first = first + 2 * n;
+    const double *before = last + width;
+    const double *first = before + width, *has_first = first + 2 * n;
     bool keeps = s->family->last_is_first;
     memcpy(s->y, q, n * sizeof *q);
     memcpy(s->y + n, p, n * sizeof *p);
@@ -132,6 +142,7 @@ static void load(walk *s, const double q[], const double p[]) {
         s->lanes[lane] =
             (lane_walk){.size = size[lane],
                         .last = last[lane],
+                        .before = before[lane],
                         .has_first = keeps && has_first[lane] != 0};
 }
 
@@ -139,7 +150,8 @@ static void store(const walk *s, double q[], double p[]) {
     const nevh_work *w = s->work;
     size_t n = w->size, width = w->width;
     double *size = w->memory + 2 * n, *last = size + width;
-    double *first = last + width, *has_first = first + 2 * n;
+    double *before = last + width;
+    double *first = before + width, *has_first = first + 2 * n;
     bool keeps = s->family->last_is_first;
     memcpy(q, s->y, n * sizeof *q);
     memcpy(p, s->y + n, n * sizeof *p);
@@ -149,6 +161,7 @@ static void store(const walk *s, double q[], double p[]) {
     for (size_t lane = 0; lane < width; lane++) {
         size[lane] = s->lanes[lane].size;
         last[lane] = s->lanes[lane].last;
+        before[lane] = s->lanes[lane].before;
         if (keeps)
             has_first[lane] = s->lanes[lane].has_first;
     }
@@ -251,8 +264,11 @@ static bool too_short(const walk *s, const lane_walk *l) {
 /* How much longer the next substep may be. */
 static double factor(const walk *s, const lane_walk *l, double err) {
     double k = s->family->error_power, beta = 0.2 / k;
-    double last = l->last > 0 ? l->last : 1e-4;
-    return 0.9 * pow(err, 0.75 * beta - 1 / k) * pow(last, beta);
+    if (!(l->last > 0))
+        return 0.9 * pow(err, 0.75 * beta - 1 / k) * pow(least_error, beta);
+    double usual = pow(err, 0.75 * beta - 1 / k) * pow(l->last, beta);
+    double growing = l->step / l->before * pow(l->last / (err * err), 1 / k);
+    return 0.9 * fmin(usual, growing);
 }
 
 /* Near the end of an orbit the times themselves may be too coarse for a shorter
@@ -274,7 +290,8 @@ static int accept(walk *s, size_t column, size_t lane, double err) {
     double next = l->step * fmin(fmax(factor(s, l, err), 0.2), l->held ? 1 : 6);
     l->size = l->ends ? fmax(next, l->size) : next;
     l->done = l->ends ? fabs(s->h) : l->done + l->step;
-    l->last = fmax(err, 1e-4);
+    l->last = fmax(err, least_error);
+    l->before = l->step;
     l->held = false;
     l->has_first = s->family->last_is_first;
     scatter(s, column, lane, s->next, s->y);

@@ -15,6 +15,7 @@ libnevh_core_la_SOURCES = \
 	lib/system/probe_private.h \
 	lib/system/probe.c \
 	lib/system/kinetic.c \
+	lib/system/kinetic_time.c \
 	lib/system/motion_private.h \
 	lib/system/normal_mode.c \
 	lib/system/swing.c \

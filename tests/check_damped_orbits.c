@@ -241,6 +241,8 @@ START_TEST(the_form_shrinks) {
                    : nevh_integrator_preserves_energy(scheme) == NEVH_YES ? 0.25
                                                                           : 0.5;
         h = *b == &double_pendulum ? h / 2 : h;
+        if (claim == NEVH_NO && nevh_integrator_order(scheme) > 8)
+            h = 2; /* for truncation to be seen */
         nevh_system *s = damped(*b, equal);
         nevh_stepper *m = planned(s, *b, scheme, nevh_exact);
         double found = conformal_defect(m, *b, h, exp(-equal[0] * h));

@@ -226,7 +226,8 @@ static void run_asked(const nevh_integrator *scheme, double tolerance,
 /* What a stepper keeps ready does not hold for other widths. */
 START_TEST(asking_in_between_changes_nothing) {
     static const nevh_integrator *const *const schemes[] = {
-        &nevh_verlet, &nevh_gauss6, &nevh_rk4, &nevh_dop853, &nevh_dopri5};
+        &nevh_verlet, &nevh_gauss6, &nevh_rk4,
+        &nevh_dop853, &nevh_dopri5, &nevh_dprkn12};
     static const size_t asked[] = {1, 3, 8, 16};
     const nevh_integrator *scheme = *schemes[_i];
     double tolerance = scheme == nevh_dopri5 ? 1e-6 : 0;
@@ -247,7 +248,7 @@ int main(void) {
     tcase_add_loop_test(cases, alone_as_among_others, 0, 5 * scheme_count());
     tcase_add_loop_test(cases, every_width_alike, 0, 5);
     tcase_add_loop_test(cases, failures_name_the_term, 0, 4);
-    tcase_add_loop_test(cases, asking_in_between_changes_nothing, 0, 5);
+    tcase_add_loop_test(cases, asking_in_between_changes_nothing, 0, 6);
     suite_add_tcase(suite, cases);
     return run_suite(suite);
 }

@@ -89,6 +89,7 @@ START_TEST(public_pointers_are_listed) {
                                               nevh_rk4,
                                               nevh_dopri5,
                                               nevh_dop853,
+                                              nevh_dprkn12,
                                               nevh_gsl_rkf45,
                                               nevh_gsl_rk8pd,
                                               nevh_gsl_msadams};

@@ -27,6 +27,7 @@ suites = \
 	tests/check_scene_shown \
 	tests/check_registry \
 	tests/check_coefficients \
+	tests/check_nystrom \
 	tests/check_splitting \
 	tests/check_published \
 	tests/check_trees \

@@ -74,7 +74,7 @@ static bool run_stepper(void *data, double y[], double *seconds) {
             METHOD(how, gauss8, false, 8), METHOD(how, gauss12, false, 12),    \
             METHOD(how, gauss16, false, 16), METHOD(how, gauss20, false, 20),  \
             METHOD(how, rk4, false, 4), METHOD(how, dopri5, false, 5),         \
-            METHOD(how, dop853, false, 8),                                     \
+            METHOD(how, dop853, false, 8), METHOD(how, dprkn12, false, 12),    \
             {.scheme = "dopri5, adaptive",                                     \
              .adaptive = true,                                                 \
              .open = how,                                                      \
@@ -89,6 +89,13 @@ static bool run_stepper(void *data, double y[], double *seconds) {
              .close = close_run,                                               \
              .data = &nevh_dop853,                                             \
              .order = 8},                                                      \
+            {.scheme = "dprkn12, adaptive",                                    \
+             .adaptive = true,                                                 \
+             .open = how,                                                      \
+             .run = run_stepper,                                               \
+             .close = close_run,                                               \
+             .data = &nevh_dprkn12,                                            \
+             .order = 12},                                                     \
     }
 static const method exact[] = METHODS(open_exact);
 static const method numerical[] = METHODS(open_numerical);

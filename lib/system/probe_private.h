@@ -39,4 +39,13 @@ int nevh__system_probe_kinetic(const nevh_system *, double t, const double q[],
                                const double p[], const double scale[],
                                nevh__kinetic *result);
 
+/* Evaluates every enabled term that reads momenta and the time at pairs of
+   both.
+   term     out, the first whose part in the momenta depends on time; NULL: none
+   returns  NEVH_OK or NEVH_ENOMEM
+   cost     88 values of each such term instance, thread-safe */
+int nevh__system_probe_kinetic_time(const nevh_system *, double t,
+                                    const double q[], const double p[],
+                                    const double scale[], const char **term);
+
 #endif
