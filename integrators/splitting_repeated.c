@@ -1,10 +1,11 @@
 /* nevh: splitting steps of one orbit of a small system.
 
-   Its blocks are of a vector's size anyway, and what stays in vectors needs no
-   filling and no collecting: so the state is repeated over a vector, and stays
-   so from step to step, unless what the caller hands over is another one.
-   Operation by operation it is splitting_kernel.c: the same bits.
-   SPDX-License-Identifier: GPL-3.0-or-later */
+   Where its terms have point gradients, all is done number by number, in the
+   caller's arrays.  Else blocks are of a vector's size anyway, and what stays
+   in vectors needs no filling and no collecting: so the state is repeated over
+   a vector, and stays so from step to step, unless what the caller hands over
+   is another one.  Operation by operation it is splitting_kernel.c: the same
+   bits. SPDX-License-Identifier: GPL-3.0-or-later */
 #include "splitting_private.h"
 #include "gradient/field_private.h"
 #include "system/vector_private.h"
@@ -13,8 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One half of the state under way: q under drifts, p under kicks; each row is a
-   vector of the same number. */
+/* One half of the state under way: q under drifts, p under kicks; each row is
+   one number, or a vector of it. */
 typedef struct {
     double *state;  /* at the start of the step */
     double *carry;  /* digits that earlier steps lost */
@@ -23,8 +24,9 @@ typedef struct {
 } half;
 
 struct nevh__repeated {
-    size_t n, size; /* size: of a half, n vectors */
-    double *room;   /* holds all that follow */
+    size_t n;
+    bool points;  /* rows are numbers, states and carries the caller's */
+    double *room; /* holds all that follow */
     half q, p;
     double *slope, *kept, *time;
     nevh__call kick, drift;
@@ -39,35 +41,43 @@ static half take_half(double **from, size_t size) {
 }
 
 static bool lay_out(nevh__repeated *r) {
-    r->room = nevh__array(10 * r->size + 2 * NEVH__LANES, sizeof *r->room);
+    size_t size = r->n * NEVH__LANES;
+    r->room = nevh__array(10 * size + 2 * NEVH__LANES, sizeof *r->room);
     if (!r->room)
         return false;
     double *from = nevh__aligned(r->room);
-    r->q = take_half(&from, r->size);
-    r->p = take_half(&from, r->size);
-    r->slope = nevh__take(&from, r->size);
-    r->kept = nevh__take(&from, r->size);
+    r->q = take_half(&from, size);
+    r->p = take_half(&from, size);
+    r->slope = nevh__take(&from, size);
+    r->kept = nevh__take(&from, size);
     r->time = from;
     return true;
 }
 
+static bool plan_calls(nevh_work *w, nevh__repeated *r, size_t lanes) {
+    r->kick = nevh__call_plan(w->field, lanes, r->time, r->q.point, r->p.point,
+                              r->slope, NULL);
+    r->drift = nevh__call_plan(w->field, lanes, r->time, r->q.point, r->p.point,
+                               NULL, r->slope);
+    return r->kick.count && r->drift.count;
+}
+
 int nevh__repeated_plan(nevh_work *w, nevh__repeated **repeated) {
-    if (w->width > 1 || !w->field->repeats)
+    if (w->width > 1 || w->n > NEVH__MOST_POINT_ROWS)
         return NEVH_OK;
     nevh__repeated *r = nevh__array(1, sizeof *r);
     if (!r)
         return NEVH_ENOMEM;
     r->n = w->n;
-    r->size = w->n * NEVH__LANES;
     if (!lay_out(r)) {
         nevh__repeated_free(r);
         return NEVH_ENOMEM;
     }
-    r->kick = nevh__call_plan(w->field, NEVH__LANES, r->time, r->q.point,
-                              r->p.point, r->slope, NULL);
-    r->drift = nevh__call_plan(w->field, NEVH__LANES, r->time, r->q.point,
-                               r->p.point, NULL, r->slope);
-    *repeated = r;
+    r->points = plan_calls(w, r, 1);
+    if (r->points || (w->field->repeats && plan_calls(w, r, NEVH__LANES)))
+        *repeated = r;
+    else
+        nevh__repeated_free(r);
     return NEVH_OK;
 }
 
@@ -103,31 +113,39 @@ static void take_over(size_t n, const double from[], double rows[]) {
 typedef struct {
     const nevh__repeated *orbit;
     const nevh__operations *plan;
+    half q, p;
+    double *last; /* the slope kept of the last step; NULL: none ever is */
     double t, h;
     bool kept;
 } journey;
 
-NEVH__INLINE void begin(size_t size, const half *x) {
+/* Row by row, of `lanes` each, which is a constant. */
+#define EACH(i, lanes, size)                                                   \
+    for (size_t i##_from = 0; i##_from < (size); i##_from += (lanes))          \
+        for (size_t i = i##_from; i != i##_from + (lanes); i++)
+
+NEVH__INLINE void begin(size_t lanes, size_t size, const half *x) {
     double *restrict change = x->change, *restrict point = x->point;
     const double *restrict state = x->state, *restrict carry = x->carry;
-    NEVH_LANES(i, size) {
+    EACH(i, lanes, size) {
         change[i] = 0;
         point[i] = state[i] + carry[i];
     }
 }
 
-NEVH__INLINE void advance(size_t size, const half *x, double step,
+NEVH__INLINE void advance(size_t lanes, size_t size, const half *x, double step,
                           const double *restrict slope) {
     double *restrict change = x->change, *restrict point = x->point;
     const double *restrict state = x->state, *restrict carry = x->carry;
-    NEVH_LANES(i, size) {
+    EACH(i, lanes, size) {
         double sum = change[i] + step * slope[i];
         change[i] = sum;
         point[i] = state[i] + (sum + carry[i]);
     }
 }
 
-NEVH__INLINE void operate(const journey *j, size_t i) {
+NEVH__INLINE void operate(const journey *j, size_t lanes, size_t size,
+                          size_t i) {
     const nevh__repeated *r = j->orbit;
     const nevh__operations *o = j->plan;
     bool kick = (i % 2 ? !o->first : o->first) == NEVH_KICK;
@@ -136,30 +154,30 @@ NEVH__INLINE void operate(const journey *j, size_t i) {
     double dt = o->weights[i] * j->h;
     if (call->timed && !kept) {
         double time = j->t + o->times[i] * j->h;
-        NEVH_LANES(lane, NEVH__LANES) {
+        EACH(lane, lanes, lanes) {
             r->time[lane] = time;
         }
     }
     if (!kept)
         nevh__call_run(call);
-    advance(r->size, kick ? &r->p : &r->q, kick ? -dt : dt,
-            kept ? r->kept : r->slope);
+    advance(lanes, size, kick ? &j->p : &j->q, kick ? -dt : dt,
+            kept ? j->last : r->slope);
 }
 
 /* The sum of x - x over the new state: 0 if that is finite, else NaN. */
-NEVH__INLINE double check(size_t size, const half *x) {
+NEVH__INLINE double check(size_t lanes, size_t size, const half *x) {
     double sum = 0;
-    for (size_t i = 0; i < size; i += NEVH__LANES) {
+    for (size_t i = 0; i < size; i += lanes) {
         double next = x->state[i] + (x->change[i] + x->carry[i]);
         sum += next - next;
     }
     return sum;
 }
 
-NEVH__INLINE void commit(size_t size, const half *x) {
+NEVH__INLINE void commit(size_t lanes, size_t size, const half *x) {
     double *restrict state = x->state, *restrict carry = x->carry;
     const double *restrict change = x->change;
-    NEVH_LANES(i, size) {
+    EACH(i, lanes, size) {
         double start = state[i], d = change[i] + carry[i], next = start + d;
         double part = next - start;
         carry[i] = (start - (next - part)) + (d - part);
@@ -167,23 +185,31 @@ NEVH__INLINE void commit(size_t size, const half *x) {
     }
 }
 
-/* The step in vectors; whether all is finite, else the state is as it was. */
-NEVH_SIMD static bool go(const journey *j) {
-    const nevh__repeated *r = j->orbit;
-    begin(r->size, &r->q);
-    begin(r->size, &r->p);
+/* Whether all is finite, else the state is as it was. */
+NEVH__INLINE bool go(const journey *j, size_t lanes, size_t size) {
+    begin(lanes, size, &j->q);
+    begin(lanes, size, &j->p);
     for (size_t i = 0; i < j->plan->count; i++)
-        operate(j, i);
-    if (check(r->size, &r->q) + check(r->size, &r->p) != 0)
+        operate(j, lanes, size, i);
+    if (check(lanes, size, &j->q) + check(lanes, size, &j->p) != 0)
         return false;
-    commit(r->size, &r->q);
-    commit(r->size, &r->p);
-    const double *restrict slope = r->slope;
-    double *restrict kept = r->kept;
-    NEVH_LANES(i, r->size) {
-        kept[i] = slope[i];
-    }
+    commit(lanes, size, &j->q);
+    commit(lanes, size, &j->p);
+    const double *restrict slope = j->orbit->slope;
+    double *restrict kept = j->last;
+    if (kept)
+        EACH(i, lanes, size) {
+            kept[i] = slope[i];
+        }
     return true;
+}
+
+NEVH_SIMD static bool go_in_vectors(const journey *j) {
+    return go(j, NEVH__LANES, j->orbit->n * NEVH__LANES);
+}
+
+static bool go_in_numbers(const journey *j) {
+    return go(j, 1, j->orbit->n);
 }
 
 static void hand_over(size_t n, const double rows[], double to[]) {
@@ -196,31 +222,57 @@ static size_t kicks(const nevh__operations *o, bool kept) {
     return kicks - (kept && o->first == NEVH_KICK);
 }
 
+/* All in vectors that are kept from step to step. */
+static bool repeated(const nevh__splitting_memory *m, journey *j, double q[],
+                     double p[]) {
+    const nevh__repeated *r = j->orbit;
+    size_t n = r->n;
+    take_over(n, q, r->q.state);
+    take_over(n, p, r->p.state);
+    take_over(n, m->carry_q, r->q.carry);
+    take_over(n, m->carry_p, r->p.carry);
+    if (j->kept)
+        take_over(n, m->kept, r->kept);
+    j->q = r->q;
+    j->p = r->p;
+    j->last = r->kept;
+    if (!go_in_vectors(j))
+        return false;
+    hand_over(n, r->q.state, q);
+    hand_over(n, r->p.state, p);
+    hand_over(n, r->q.carry, m->carry_q);
+    hand_over(n, r->p.carry, m->carry_p);
+    if (j->plan->same_ends)
+        hand_over(n, r->kept, m->kept);
+    return true;
+}
+
+/* All where the caller and the memory have it. */
+static bool in_place(const nevh__splitting_memory *m, journey *j, double q[],
+                     double p[]) {
+    const nevh__repeated *r = j->orbit;
+    j->q = (half){q, m->carry_q, r->q.change, r->q.point};
+    j->p = (half){p, m->carry_p, r->p.change, r->p.point};
+    j->last = j->plan->same_ends ? m->kept : NULL;
+    return go_in_numbers(j);
+}
+
 bool nevh__repeated_step(nevh_work *w, double t, double h, double q[],
                          double p[]) {
     nevh__operations *o = w->plan;
     nevh__repeated *r = o->repeated;
     nevh__splitting_memory m = nevh__splitting_recall(w);
-    size_t n = r->n;
-    journey j = {r, o, t, h, o->same_ends && *m.has_kept != 0};
+    journey j = {.orbit = r,
+                 .plan = o,
+                 .t = t,
+                 .h = h,
+                 .kept = o->same_ends && *m.has_kept != 0};
     if (!nevh__call_renew(&r->kick) || !nevh__call_renew(&r->drift))
         return false;
-    take_over(n, q, r->q.state);
-    take_over(n, p, r->p.state);
-    take_over(n, m.carry_q, r->q.carry);
-    take_over(n, m.carry_p, r->p.carry);
-    if (j.kept)
-        take_over(n, m.kept, r->kept);
-    if (!go(&j))
+    if (!(r->points ? in_place(&m, &j, q, p) : repeated(&m, &j, q, p)))
         return false;
     w->field->gradients += kicks(o, j.kept);
-    hand_over(n, r->q.state, q);
-    hand_over(n, r->p.state, p);
-    hand_over(n, r->q.carry, m.carry_q);
-    hand_over(n, r->p.carry, m.carry_p);
-    if (o->same_ends) {
-        hand_over(n, r->kept, m.kept);
+    if (o->same_ends)
         *m.has_kept = 1;
-    }
     return true;
 }

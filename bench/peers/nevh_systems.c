@@ -38,6 +38,14 @@ static void unit_gradient(size_t width, const double t[], const double q[],
     }
 }
 
+static void unit_point_gradient(double t, const double q[], const double p[],
+                                const double c[], const void *params,
+                                double dh_dq[], double dh_dp[]) {
+    (void)t, (void)q, (void)c, (void)params, (void)dh_dq;
+    if (dh_dp)
+        dh_dp[0] = p[0];
+}
+
 NEVH_BODY(cosine, void, { return -nevh_cos(nevh_q(0)); })
 
 NEVH_SIMD
@@ -94,6 +102,17 @@ static void galaxy_gradient(size_t width, const double t[], const double q[],
     }
 }
 
+static void galaxy_point_gradient(double t, const double q[], const double p[],
+                                const double c[], const void *params,
+                                double dh_dq[], double dh_dp[]) {
+    (void)t, (void)p, (void)c, (void)params, (void)dh_dp;
+    if (!dh_dq)
+        return;
+    double x = q[0], y = q[1];
+        dh_dq[0] = x + 2 * x * y;
+        dh_dq[1] = y + x * x - y * y;
+}
+
 /* Two bodies; c: G m m'. */
 NEVH_BODY(gravity, void, {
     nevh_num x = nevh_q(3) - nevh_q(0);
@@ -135,7 +154,7 @@ static nevh_system *unit_mass(size_t n, nevh_term potential) {
                                     .p = all,
                                     .count = n,
                                     NEVH_FORMS(unit),
-                                    .gradient = unit_gradient});
+                                    .gradient = unit_gradient,.point_gradient = unit_point_gradient});
     potential.effect = "potential";
     potential.nq = n;
     nevh_system_add(s, &potential);
@@ -190,7 +209,7 @@ nevh_system *nevh_system_of(const problem *p) {
                                         .gradient = attraction_gradient});
     case HENON_HEILES:
         return unit_mass(
-            2, (nevh_term){NEVH_FORMS(galaxy), .gradient = galaxy_gradient});
+            2, (nevh_term){NEVH_FORMS(galaxy), .gradient = galaxy_gradient, .point_gradient=galaxy_point_gradient});
     default:
         return outer_sun();
     }
