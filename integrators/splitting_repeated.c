@@ -144,41 +144,60 @@ NEVH__INLINE void advance(size_t lanes, size_t size, const half *x, double step,
     }
 }
 
-NEVH__INLINE void operate(const journey *j, size_t lanes, size_t size,
-                          size_t i) {
+NEVH__INLINE void operate(const journey *j, size_t lanes, size_t size, size_t i,
+                          bool kick) {
     const nevh__repeated *r = j->orbit;
-    const nevh__operations *o = j->plan;
-    bool kick = (i % 2 ? !o->first : o->first) == NEVH_KICK;
-    bool kept = i == 0 && j->kept;
     const nevh__call *call = kick ? &r->kick : &r->drift;
-    double dt = o->weights[i] * j->h;
-    if (call->timed && !kept) {
-        double time = j->t + o->times[i] * j->h;
+    double dt = j->plan->weights[i] * j->h;
+    if (call->timed) {
+        double time = j->t + j->plan->times[i] * j->h;
         EACH(lane, lanes, lanes) {
             r->time[lane] = time;
         }
     }
-    if (!kept)
+    if (lanes == 1)
+        nevh__call_run_points(call);
+    else
         nevh__call_run(call);
-    advance(lanes, size, kick ? &j->p : &j->q, kick ? -dt : dt,
-            kept ? j->last : r->slope);
+    advance(lanes, size, kick ? &j->p : &j->q, kick ? -dt : dt, r->slope);
 }
 
-/* The sum of x - x over the new state: 0 if that is finite, else NaN. */
+/* All kicks and drifts in turn, of which the first may have its slope. */
+NEVH__INLINE void move(const journey *j, size_t lanes, size_t size) {
+    size_t i = 0, count = j->plan->count;
+    bool kick = j->plan->first == NEVH_KICK;
+    if (j->kept) {
+        double dt = j->plan->weights[i++] * j->h;
+        if (kick)
+            advance(lanes, size, &j->p, -dt, j->last);
+        else
+            advance(lanes, size, &j->q, dt, j->last);
+        kick = !kick;
+    }
+    if (!kick)
+        operate(j, lanes, size, i++, false);
+    for (; i + 1 < count; i += 2) {
+        operate(j, lanes, size, i, true);
+        operate(j, lanes, size, i + 1, false);
+    }
+    if (i < count)
+        operate(j, lanes, size, i, true);
+}
+
+/* The sum of x - x over the new state, which the last point is: 0 if that is
+   finite, else NaN. */
 NEVH__INLINE double check(size_t lanes, size_t size, const half *x) {
     double sum = 0;
-    for (size_t i = 0; i < size; i += lanes) {
-        double next = x->state[i] + (x->change[i] + x->carry[i]);
-        sum += next - next;
-    }
+    for (size_t i = 0; i < size; i += lanes)
+        sum += x->point[i] - x->point[i];
     return sum;
 }
 
 NEVH__INLINE void commit(size_t lanes, size_t size, const half *x) {
     double *restrict state = x->state, *restrict carry = x->carry;
-    const double *restrict change = x->change;
+    const double *restrict change = x->change, *restrict point = x->point;
     EACH(i, lanes, size) {
-        double start = state[i], d = change[i] + carry[i], next = start + d;
+        double start = state[i], d = change[i] + carry[i], next = point[i];
         double part = next - start;
         carry[i] = (start - (next - part)) + (d - part);
         state[i] = next;
@@ -189,17 +208,16 @@ NEVH__INLINE void commit(size_t lanes, size_t size, const half *x) {
 NEVH__INLINE bool go(const journey *j, size_t lanes, size_t size) {
     begin(lanes, size, &j->q);
     begin(lanes, size, &j->p);
-    for (size_t i = 0; i < j->plan->count; i++)
-        operate(j, lanes, size, i);
+    move(j, lanes, size);
     if (check(lanes, size, &j->q) + check(lanes, size, &j->p) != 0)
         return false;
     commit(lanes, size, &j->q);
     commit(lanes, size, &j->p);
     const double *restrict slope = j->orbit->slope;
-    double *restrict kept = j->last;
-    if (kept)
+    double *restrict last = j->last;
+    if (last)
         EACH(i, lanes, size) {
-            kept[i] = slope[i];
+            last[i] = slope[i];
         }
     return true;
 }
@@ -208,8 +226,37 @@ NEVH_SIMD static bool go_in_vectors(const journey *j) {
     return go(j, NEVH__LANES, j->orbit->n * NEVH__LANES);
 }
 
-static bool go_in_numbers(const journey *j) {
-    return go(j, 1, j->orbit->n);
+/* Numbers that go through memory to functions and back had better not be stored
+   one by one and loaded in pairs. */
+#ifdef NEVH__VECTORS
+#define ONE_BY_ONE                                                             \
+    __attribute__((optimize("O2", "no-tree-slp-vectorize", "fp-contract=off")))
+#else
+#define ONE_BY_ONE
+#endif
+
+/* All where the caller and the memory have it. */
+ONE_BY_ONE static bool go_in_numbers(const nevh__operations *o,
+                                     const nevh__splitting_memory *m, double t,
+                                     double h, bool kept, double q[],
+                                     double p[]) {
+    const nevh__repeated *r = o->repeated;
+    const journey j = {r,
+                       o,
+                       {q, m->carry_q, r->q.change, r->q.point},
+                       {p, m->carry_p, r->p.change, r->p.point},
+                       o->same_ends ? m->kept : NULL,
+                       t,
+                       h,
+                       kept};
+    switch (r->n) {
+    case 1:
+        return go(&j, 1, 1);
+    case 2:
+        return go(&j, 1, 2);
+    default:
+        return go(&j, 1, r->n);
+    }
 }
 
 static void hand_over(size_t n, const double rows[], double to[]) {
@@ -223,38 +270,26 @@ static size_t kicks(const nevh__operations *o, bool kept) {
 }
 
 /* All in vectors that are kept from step to step. */
-static bool repeated(const nevh__splitting_memory *m, journey *j, double q[],
-                     double p[]) {
-    const nevh__repeated *r = j->orbit;
+static bool repeated(const nevh__operations *o, const nevh__splitting_memory *m,
+                     double t, double h, bool kept, double q[], double p[]) {
+    const nevh__repeated *r = o->repeated;
     size_t n = r->n;
+    const journey j = {r, o, r->q, r->p, r->kept, t, h, kept};
     take_over(n, q, r->q.state);
     take_over(n, p, r->p.state);
     take_over(n, m->carry_q, r->q.carry);
     take_over(n, m->carry_p, r->p.carry);
-    if (j->kept)
+    if (kept)
         take_over(n, m->kept, r->kept);
-    j->q = r->q;
-    j->p = r->p;
-    j->last = r->kept;
-    if (!go_in_vectors(j))
+    if (!go_in_vectors(&j))
         return false;
     hand_over(n, r->q.state, q);
     hand_over(n, r->p.state, p);
     hand_over(n, r->q.carry, m->carry_q);
     hand_over(n, r->p.carry, m->carry_p);
-    if (j->plan->same_ends)
+    if (o->same_ends)
         hand_over(n, r->kept, m->kept);
     return true;
-}
-
-/* All where the caller and the memory have it. */
-static bool in_place(const nevh__splitting_memory *m, journey *j, double q[],
-                     double p[]) {
-    const nevh__repeated *r = j->orbit;
-    j->q = (half){q, m->carry_q, r->q.change, r->q.point};
-    j->p = (half){p, m->carry_p, r->p.change, r->p.point};
-    j->last = j->plan->same_ends ? m->kept : NULL;
-    return go_in_numbers(j);
 }
 
 bool nevh__repeated_step(nevh_work *w, double t, double h, double q[],
@@ -262,16 +297,14 @@ bool nevh__repeated_step(nevh_work *w, double t, double h, double q[],
     nevh__operations *o = w->plan;
     nevh__repeated *r = o->repeated;
     nevh__splitting_memory m = nevh__splitting_recall(w);
-    journey j = {.orbit = r,
-                 .plan = o,
-                 .t = t,
-                 .h = h,
-                 .kept = o->same_ends && *m.has_kept != 0};
-    if (!nevh__call_renew(&r->kick) || !nevh__call_renew(&r->drift))
+    bool kept = o->same_ends && *m.has_kept != 0;
+    if (!nevh__call_renew(&r->kick) ||
+        (!r->points && !nevh__call_renew(&r->drift)))
         return false;
-    if (!(r->points ? in_place(&m, &j, q, p) : repeated(&m, &j, q, p)))
+    if (!(r->points ? go_in_numbers(o, &m, t, h, kept, q, p)
+                    : repeated(o, &m, t, h, kept, q, p)))
         return false;
-    w->field->gradients += kicks(o, j.kept);
+    w->field->gradients += kicks(o, kept);
     if (o->same_ends)
         *m.has_kept = 1;
     return true;

@@ -102,7 +102,7 @@ static void galaxy_gradient(size_t width, const double t[], const double q[],
     }
 }
 
-static void galaxy_point_gradient(double t, const double q[], const double p[],
+__attribute__((optimize("O2","no-tree-slp-vectorize"))) static void galaxy_point_gradient(double t, const double q[], const double p[],
                                 const double c[], const void *params,
                                 double dh_dq[], double dh_dp[]) {
     (void)t, (void)p, (void)c, (void)params, (void)dh_dp;

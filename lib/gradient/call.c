@@ -92,12 +92,14 @@ static bool add_point(nevh__call *c, const nevh__called *given, size_t instance,
     x->p += p;
     x->c = is->c + instance * is->nc;
     double *scratch_q = c->field->slopes, *scratch_p = scratch_q + term->nq;
-    return (!x->size_q ||
-            point_half(&there[0], bits(q, x->size_q), c->half[0] + q, scratch_q,
-                       &x->dh_dq, &x->sum_q)) &&
-           (!x->size_p ||
-            point_half(&there[1], bits(p, x->size_p), c->half[1] + p, scratch_p,
-                       &x->dh_dp, &x->sum_p));
+    bool there_q =
+        !x->size_q || point_half(&there[0], bits(q, x->size_q), c->half[0] + q,
+                                 scratch_q, &x->dh_dq, &x->sum_q);
+    bool there_p =
+        !x->size_p || point_half(&there[1], bits(p, x->size_p), c->half[1] + p,
+                                 scratch_p, &x->dh_dp, &x->sum_p);
+    x->sums = x->sum_q || x->sum_p;
+    return there_q && there_p;
 }
 
 static bool add_points(nevh__call *c, nevh__planned *term, const double t[],

@@ -235,6 +235,7 @@ typedef struct {
     const double *t, *q, *p, *c;
     double *dh_dq, *dh_dp; /* written by the term; NULL: not asked for */
     double *sum_q, *sum_p; /* what that is added to; NULL: it is there */
+    bool sums;             /* any is added */
 } nevh__called;
 typedef struct {
     nevh_field *field;
@@ -253,15 +254,25 @@ nevh__call nevh__call_plan(nevh_field *, size_t width, const double t[],
    The field may have been asked for other widths in between. */
 bool nevh__call_renew(nevh__call *);
 void nevh__call_add(const nevh__called *);
-/* Takes it, but looks at no result, and counts nothing. */
+/* Takes it, but looks at no result, and counts nothing; a call of width 1, or
+   any. */
+static inline void nevh__call_run_points(const nevh__call *c) {
+    const nevh__called *x = c->terms;
+    for (size_t left = c->count; left > 0; left--, x++) {
+        x->point(*x->t, x->q, x->p, x->c, x->params, x->dh_dq, x->dh_dp);
+        if (x->sums)
+            nevh__call_add(x);
+    }
+}
 static inline void nevh__call_run(const nevh__call *c) {
+    if (c->width == 1) {
+        nevh__call_run_points(c);
+        return;
+    }
     for (const nevh__called *x = c->terms; x < c->terms + c->count; x++) {
-        if (c->width == 1)
-            x->point(*x->t, x->q, x->p, x->c, x->params, x->dh_dq, x->dh_dp);
-        else
-            x->gradient(x->stride, x->t, x->q, x->p, x->c, x->params, x->dh_dq,
-                        x->dh_dp);
-        if (x->sum_q || x->sum_p)
+        x->gradient(x->stride, x->t, x->q, x->p, x->c, x->params, x->dh_dq,
+                    x->dh_dp);
+        if (x->sums)
             nevh__call_add(x);
     }
 }
