@@ -48,6 +48,7 @@ static bool add_term(nevh__call *c, nevh__planned *term, const double t[],
         direct(term, f->writer_p, is->p, width, c->half[1],
                f->slopes + stride * term->nq, &x->dh_dp, &x->sum_p);
     }
+    x->sums = x->sum_q || x->sum_p;
     return true;
 }
 
