@@ -1,10 +1,11 @@
 /* nevh: splitting steps of one orbit of a small system.
 
-   Its blocks are of a vector's size anyway, and what stays in vectors needs no
-   filling and no collecting: so the state is repeated over a vector, and stays
-   so from step to step, unless what the caller hands over is another one.
-   Operation by operation it is splitting_kernel.c: the same bits.
-   SPDX-License-Identifier: GPL-3.0-or-later */
+   Where its terms have point gradients, all is done number by number, in the
+   caller's arrays.  Else blocks are of a vector's size anyway, and what stays
+   in vectors needs no filling and no collecting: so the state is repeated over
+   a vector, and stays so from step to step, unless what the caller hands over
+   is another one.  Operation by operation it is splitting_kernel.c: the same
+   bits. SPDX-License-Identifier: GPL-3.0-or-later */
 #include "splitting_private.h"
 #include "gradient/field_private.h"
 #include "system/vector_private.h"
@@ -13,8 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One half of the state under way: q under drifts, p under kicks; each row is a
-   vector of the same number. */
+/* One half of the state under way: q under drifts, p under kicks; each row is
+   one number, or a vector of it. */
 typedef struct {
     double *state;  /* at the start of the step */
     double *carry;  /* digits that earlier steps lost */
@@ -23,8 +24,9 @@ typedef struct {
 } half;
 
 struct nevh__repeated {
-    size_t n, size; /* size: of a half, n vectors */
-    double *room;   /* holds all that follow */
+    size_t n;
+    bool points;  /* rows are numbers, states and carries the caller's */
+    double *room; /* holds all that follow */
     half q, p;
     double *slope, *kept, *time;
     nevh__call kick, drift;
@@ -39,35 +41,43 @@ static half take_half(double **from, size_t size) {
 }
 
 static bool lay_out(nevh__repeated *r) {
-    r->room = nevh__array(10 * r->size + 2 * NEVH__LANES, sizeof *r->room);
+    size_t size = r->n * NEVH__LANES;
+    r->room = nevh__array(10 * size + 2 * NEVH__LANES, sizeof *r->room);
     if (!r->room)
         return false;
     double *from = nevh__aligned(r->room);
-    r->q = take_half(&from, r->size);
-    r->p = take_half(&from, r->size);
-    r->slope = nevh__take(&from, r->size);
-    r->kept = nevh__take(&from, r->size);
+    r->q = take_half(&from, size);
+    r->p = take_half(&from, size);
+    r->slope = nevh__take(&from, size);
+    r->kept = nevh__take(&from, size);
     r->time = from;
     return true;
 }
 
+static bool plan_calls(nevh_work *w, nevh__repeated *r, size_t lanes) {
+    r->kick = nevh__call_plan(w->field, lanes, r->time, r->q.point, r->p.point,
+                              r->slope, NULL);
+    r->drift = nevh__call_plan(w->field, lanes, r->time, r->q.point, r->p.point,
+                               NULL, r->slope);
+    return r->kick.count && r->drift.count;
+}
+
 int nevh__repeated_plan(nevh_work *w, nevh__repeated **repeated) {
-    if (w->width > 1 || !w->field->repeats)
+    if (w->width > 1 || w->n > NEVH__MOST_POINT_ROWS)
         return NEVH_OK;
     nevh__repeated *r = nevh__array(1, sizeof *r);
     if (!r)
         return NEVH_ENOMEM;
     r->n = w->n;
-    r->size = w->n * NEVH__LANES;
     if (!lay_out(r)) {
         nevh__repeated_free(r);
         return NEVH_ENOMEM;
     }
-    r->kick = nevh__call_plan(w->field, NEVH__LANES, r->time, r->q.point,
-                              r->p.point, r->slope, NULL);
-    r->drift = nevh__call_plan(w->field, NEVH__LANES, r->time, r->q.point,
-                               r->p.point, NULL, r->slope);
-    *repeated = r;
+    r->points = plan_calls(w, r, 1);
+    if (r->points || (w->field->repeats && plan_calls(w, r, NEVH__LANES)))
+        *repeated = r;
+    else
+        nevh__repeated_free(r);
     return NEVH_OK;
 }
 
@@ -103,87 +113,150 @@ static void take_over(size_t n, const double from[], double rows[]) {
 typedef struct {
     const nevh__repeated *orbit;
     const nevh__operations *plan;
+    half q, p;
+    double *last; /* the slope kept of the last step; NULL: none ever is */
     double t, h;
     bool kept;
 } journey;
 
-NEVH__INLINE void begin(size_t size, const half *x) {
+/* Row by row, of `lanes` each, which is a constant. */
+#define EACH(i, lanes, size)                                                   \
+    for (size_t i##_from = 0; i##_from < (size); i##_from += (lanes))          \
+        for (size_t i = i##_from; i != i##_from + (lanes); i++)
+
+NEVH__INLINE void begin(size_t lanes, size_t size, const half *x) {
     double *restrict change = x->change, *restrict point = x->point;
     const double *restrict state = x->state, *restrict carry = x->carry;
-    NEVH_LANES(i, size) {
+    EACH(i, lanes, size) {
         change[i] = 0;
         point[i] = state[i] + carry[i];
     }
 }
 
-NEVH__INLINE void advance(size_t size, const half *x, double step,
+NEVH__INLINE void advance(size_t lanes, size_t size, const half *x, double step,
                           const double *restrict slope) {
     double *restrict change = x->change, *restrict point = x->point;
     const double *restrict state = x->state, *restrict carry = x->carry;
-    NEVH_LANES(i, size) {
+    EACH(i, lanes, size) {
         double sum = change[i] + step * slope[i];
         change[i] = sum;
         point[i] = state[i] + (sum + carry[i]);
     }
 }
 
-NEVH__INLINE void operate(const journey *j, size_t i) {
+NEVH__INLINE void operate(const journey *j, size_t lanes, size_t size, size_t i,
+                          bool kick) {
     const nevh__repeated *r = j->orbit;
-    const nevh__operations *o = j->plan;
-    bool kick = (i % 2 ? !o->first : o->first) == NEVH_KICK;
-    bool kept = i == 0 && j->kept;
     const nevh__call *call = kick ? &r->kick : &r->drift;
-    double dt = o->weights[i] * j->h;
-    if (call->timed && !kept) {
-        double time = j->t + o->times[i] * j->h;
-        NEVH_LANES(lane, NEVH__LANES) {
+    double dt = j->plan->weights[i] * j->h;
+    if (call->timed) {
+        double time = j->t + j->plan->times[i] * j->h;
+        EACH(lane, lanes, lanes) {
             r->time[lane] = time;
         }
     }
-    if (!kept)
+    if (lanes == 1)
+        nevh__call_run_points(call);
+    else
         nevh__call_run(call);
-    advance(r->size, kick ? &r->p : &r->q, kick ? -dt : dt,
-            kept ? r->kept : r->slope);
+    advance(lanes, size, kick ? &j->p : &j->q, kick ? -dt : dt, r->slope);
 }
 
-/* The sum of x - x over the new state: 0 if that is finite, else NaN. */
-NEVH__INLINE double check(size_t size, const half *x) {
-    double sum = 0;
-    for (size_t i = 0; i < size; i += NEVH__LANES) {
-        double next = x->state[i] + (x->change[i] + x->carry[i]);
-        sum += next - next;
+/* All kicks and drifts in turn, of which the first may have its slope. */
+NEVH__INLINE void move(const journey *j, size_t lanes, size_t size) {
+    size_t i = 0, count = j->plan->count;
+    bool kick = j->plan->first == NEVH_KICK;
+    if (j->kept) {
+        double dt = j->plan->weights[i++] * j->h;
+        if (kick)
+            advance(lanes, size, &j->p, -dt, j->last);
+        else
+            advance(lanes, size, &j->q, dt, j->last);
+        kick = !kick;
     }
+    if (!kick)
+        operate(j, lanes, size, i++, false);
+    for (; i + 1 < count; i += 2) {
+        operate(j, lanes, size, i, true);
+        operate(j, lanes, size, i + 1, false);
+    }
+    if (i < count)
+        operate(j, lanes, size, i, true);
+}
+
+/* The sum of x - x over the new state, which the last point is: 0 if that is
+   finite, else NaN. */
+NEVH__INLINE double check(size_t lanes, size_t size, const half *x) {
+    double sum = 0;
+    for (size_t i = 0; i < size; i += lanes)
+        sum += x->point[i] - x->point[i];
     return sum;
 }
 
-NEVH__INLINE void commit(size_t size, const half *x) {
+NEVH__INLINE void commit(size_t lanes, size_t size, const half *x) {
     double *restrict state = x->state, *restrict carry = x->carry;
-    const double *restrict change = x->change;
-    NEVH_LANES(i, size) {
-        double start = state[i], d = change[i] + carry[i], next = start + d;
+    const double *restrict change = x->change, *restrict point = x->point;
+    EACH(i, lanes, size) {
+        double start = state[i], d = change[i] + carry[i], next = point[i];
         double part = next - start;
         carry[i] = (start - (next - part)) + (d - part);
         state[i] = next;
     }
 }
 
-/* The step in vectors; whether all is finite, else the state is as it was. */
-NEVH_SIMD static bool go(const journey *j) {
-    const nevh__repeated *r = j->orbit;
-    begin(r->size, &r->q);
-    begin(r->size, &r->p);
-    for (size_t i = 0; i < j->plan->count; i++)
-        operate(j, i);
-    if (check(r->size, &r->q) + check(r->size, &r->p) != 0)
+/* Whether all is finite, else the state is as it was. */
+NEVH__INLINE bool go(const journey *j, size_t lanes, size_t size) {
+    begin(lanes, size, &j->q);
+    begin(lanes, size, &j->p);
+    move(j, lanes, size);
+    if (check(lanes, size, &j->q) + check(lanes, size, &j->p) != 0)
         return false;
-    commit(r->size, &r->q);
-    commit(r->size, &r->p);
-    const double *restrict slope = r->slope;
-    double *restrict kept = r->kept;
-    NEVH_LANES(i, r->size) {
-        kept[i] = slope[i];
-    }
+    commit(lanes, size, &j->q);
+    commit(lanes, size, &j->p);
+    const double *restrict slope = j->orbit->slope;
+    double *restrict last = j->last;
+    if (last)
+        EACH(i, lanes, size) {
+            last[i] = slope[i];
+        }
     return true;
+}
+
+NEVH_SIMD static bool go_in_vectors(const journey *j) {
+    return go(j, NEVH__LANES, j->orbit->n * NEVH__LANES);
+}
+
+/* Numbers that go through memory to functions and back had better not be stored
+   one by one and loaded in pairs. */
+#ifdef NEVH__VECTORS
+#define ONE_BY_ONE                                                             \
+    __attribute__((optimize("O2", "no-tree-slp-vectorize", "fp-contract=off")))
+#else
+#define ONE_BY_ONE
+#endif
+
+/* All where the caller and the memory have it. */
+ONE_BY_ONE static bool go_in_numbers(const nevh__operations *o,
+                                     const nevh__splitting_memory *m, double t,
+                                     double h, bool kept, double q[],
+                                     double p[]) {
+    const nevh__repeated *r = o->repeated;
+    const journey j = {r,
+                       o,
+                       {q, m->carry_q, r->q.change, r->q.point},
+                       {p, m->carry_p, r->p.change, r->p.point},
+                       o->same_ends ? m->kept : NULL,
+                       t,
+                       h,
+                       kept};
+    switch (r->n) {
+    case 1:
+        return go(&j, 1, 1);
+    case 2:
+        return go(&j, 1, 2);
+    default:
+        return go(&j, 1, r->n);
+    }
 }
 
 static void hand_over(size_t n, const double rows[], double to[]) {
@@ -196,31 +269,43 @@ static size_t kicks(const nevh__operations *o, bool kept) {
     return kicks - (kept && o->first == NEVH_KICK);
 }
 
+/* All in vectors that are kept from step to step. */
+static bool repeated(const nevh__operations *o, const nevh__splitting_memory *m,
+                     double t, double h, bool kept, double q[], double p[]) {
+    const nevh__repeated *r = o->repeated;
+    size_t n = r->n;
+    const journey j = {r, o, r->q, r->p, r->kept, t, h, kept};
+    take_over(n, q, r->q.state);
+    take_over(n, p, r->p.state);
+    take_over(n, m->carry_q, r->q.carry);
+    take_over(n, m->carry_p, r->p.carry);
+    if (kept)
+        take_over(n, m->kept, r->kept);
+    if (!go_in_vectors(&j))
+        return false;
+    hand_over(n, r->q.state, q);
+    hand_over(n, r->p.state, p);
+    hand_over(n, r->q.carry, m->carry_q);
+    hand_over(n, r->p.carry, m->carry_p);
+    if (o->same_ends)
+        hand_over(n, r->kept, m->kept);
+    return true;
+}
+
 bool nevh__repeated_step(nevh_work *w, double t, double h, double q[],
                          double p[]) {
     nevh__operations *o = w->plan;
     nevh__repeated *r = o->repeated;
     nevh__splitting_memory m = nevh__splitting_recall(w);
-    size_t n = r->n;
-    journey j = {r, o, t, h, o->same_ends && *m.has_kept != 0};
-    if (!nevh__call_renew(&r->kick) || !nevh__call_renew(&r->drift))
+    bool kept = o->same_ends && *m.has_kept != 0;
+    if (!nevh__call_renew(&r->kick) ||
+        (!r->points && !nevh__call_renew(&r->drift)))
         return false;
-    take_over(n, q, r->q.state);
-    take_over(n, p, r->p.state);
-    take_over(n, m.carry_q, r->q.carry);
-    take_over(n, m.carry_p, r->p.carry);
-    if (j.kept)
-        take_over(n, m.kept, r->kept);
-    if (!go(&j))
+    if (!(r->points ? go_in_numbers(o, &m, t, h, kept, q, p)
+                    : repeated(o, &m, t, h, kept, q, p)))
         return false;
-    w->field->gradients += kicks(o, j.kept);
-    hand_over(n, r->q.state, q);
-    hand_over(n, r->p.state, p);
-    hand_over(n, r->q.carry, m.carry_q);
-    hand_over(n, r->p.carry, m.carry_p);
-    if (o->same_ends) {
-        hand_over(n, r->kept, m.kept);
+    w->field->gradients += kicks(o, kept);
+    if (o->same_ends)
         *m.has_kept = 1;
-    }
     return true;
 }

@@ -14,19 +14,11 @@ NEVH_BODY(coupling, void, {
     return nevh_c(0) / 2 * (stretch * stretch);
 })
 
-NEVH_SIMD
-static void coupling_gradient(size_t width, const double t[], const double q[],
-                              const double p[], const double c[],
-                              const void *params, double dh_dq[],
-                              double dh_dp[]) {
-    (void)t, (void)p, (void)params, (void)dh_dp;
-    if (!dh_dq)
-        return;
-    NEVH_LANES(i, width) {
-        dh_dq[i] = c[i] * (q[i] - q[width + i]);
-        dh_dq[width + i] = -dh_dq[i];
-    }
-}
+NEVH_GRADIENT(coupling, void, {
+    double force = nevh_c(0) * (nevh_q(0) - nevh_q(1));
+    nevh_dh_dq(0) = force;
+    nevh_dh_dq(1) = -force;
+})
 
 static nevh_system *coupled_system(const void *params) {
     const nevh_coupled_oscillators *a = params;
@@ -38,7 +30,7 @@ static nevh_system *coupled_system(const void *params) {
                           .nc = 1,
                           .c = &a->coupling,
                           NEVH_FORMS(coupling),
-                          .gradient = coupling_gradient}};
+                          NEVH_GRADIENTS(coupling)}};
     terms[0].count = 2;
     terms[0].p = both;
     terms[0].c = (const double[]){a->m1, a->m2};

@@ -21,66 +21,19 @@ NEVH_BODY(kinetic, void, {
     return form / (nevh_c(1) * (1 + sine * sine));
 })
 
-NEVH_SIMD
-static void kinetic_dq(size_t width, const double q[], const double p[],
-                       const double c[], double dh_dq[]) {
-    const double *q2 = q + width, *p2 = p + width, *scale = c + width;
-    NEVH_LANES(i, width) {
-        double d = q[i] - q2[i];
-        double cosine = nevh_simd_cos(d), sine = nevh_simd_sin(d);
-        double form =
-            p[i] * p[i] + c[i] * (p2[i] * p2[i]) - 2 * p[i] * p2[i] * cosine;
-        double root = 1 + sine * sine;
-        dh_dq[i] = 2 * sine * (p[i] * p2[i] - form * cosine / root) /
-                   (scale[i] * root);
-        dh_dq[width + i] = -dh_dq[i];
-    }
-}
-
-NEVH_SIMD
-static void kinetic_dp(size_t width, const double q[], const double p[],
-                       const double c[], double dh_dp[]) {
-    const double *q2 = q + width, *p2 = p + width, *scale = c + width;
-    NEVH_LANES(i, width) {
-        double d = q[i] - q2[i];
-        double cosine = nevh_simd_cos(d), sine = nevh_simd_sin(d);
-        double half = scale[i] * (1 + sine * sine) / 2;
-        dh_dp[i] = (p[i] - p2[i] * cosine) / half;
-        dh_dp[width + i] = (c[i] * p2[i] - p[i] * cosine) / half;
-    }
-}
-
-/* The same bits from one sine and cosine. */
-NEVH_SIMD
-static void kinetic_both(size_t width, const double q[], const double p[],
-                         const double c[], double dh_dq[], double dh_dp[]) {
-    const double *q2 = q + width, *p2 = p + width, *scale = c + width;
-    NEVH_LANES(i, width) {
-        double d = q[i] - q2[i];
-        double cosine = nevh_simd_cos(d), sine = nevh_simd_sin(d);
-        double form =
-            p[i] * p[i] + c[i] * (p2[i] * p2[i]) - 2 * p[i] * p2[i] * cosine;
-        double root = 1 + sine * sine, half = scale[i] * root / 2;
-        dh_dq[i] = 2 * sine * (p[i] * p2[i] - form * cosine / root) /
-                   (scale[i] * root);
-        dh_dq[width + i] = -dh_dq[i];
-        dh_dp[i] = (p[i] - p2[i] * cosine) / half;
-        dh_dp[width + i] = (c[i] * p2[i] - p[i] * cosine) / half;
-    }
-}
-
-static void kinetic_gradient(size_t width, const double t[], const double q[],
-                             const double p[], const double c[],
-                             const void *params, double dh_dq[],
-                             double dh_dp[]) {
-    (void)t, (void)params;
-    if (dh_dq && dh_dp)
-        kinetic_both(width, q, p, c, dh_dq, dh_dp);
-    else if (dh_dq)
-        kinetic_dq(width, q, p, c, dh_dq);
-    else if (dh_dp)
-        kinetic_dp(width, q, p, c, dh_dp);
-}
+NEVH_GRADIENT(kinetic, void, {
+    double p1 = nevh_p(0), p2 = nevh_p(1), d = nevh_q(0) - nevh_q(1);
+    double w = nevh_c(0), scale = nevh_c(1);
+    double cosine = nevh_cos(d), sine = nevh_sin(d);
+    double form = p1 * p1 + w * (p2 * p2) - 2 * p1 * p2 * cosine;
+    double root = 1 + sine * sine, half = scale * root / 2;
+    double torque =
+        2 * sine * (p1 * p2 - form * cosine / root) / (scale * root);
+    nevh_dh_dq(0) = torque;
+    nevh_dh_dq(1) = -torque;
+    nevh_dh_dp(0) = (p1 - p2 * cosine) / half;
+    nevh_dh_dp(1) = (w * p2 - p1 * cosine) / half;
+})
 
 static nevh_system *new_system(const nevh_double_pendulum *a, double w) {
     static const size_t both[] = {0, 1};
@@ -92,7 +45,7 @@ static nevh_system *new_system(const nevh_double_pendulum *a, double w) {
          .nc = 2,
          .c = (const double[]){w, 2 * a->m * (a->l * a->l)},
          NEVH_FORMS(kinetic),
-         .gradient = kinetic_gradient},
+         NEVH_GRADIENTS(kinetic)},
         nevh__cosine_term,
     };
     terms[1].count = 2;

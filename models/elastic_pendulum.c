@@ -12,41 +12,22 @@ NEVH_BODY(angular, void, {
     return p * p / (2 * nevh_c(0) * (r * r));
 })
 
-NEVH_SIMD
-static void angular_gradient(size_t width, const double t[], const double q[],
-                             const double p[], const double c[],
-                             const void *params, double dh_dq[],
-                             double dh_dp[]) {
-    (void)t, (void)params;
-    if (dh_dq)
-        NEVH_LANES(i, width) {
-            dh_dq[i] = -p[i] * p[i] / (c[i] * (q[i] * q[i]) * q[i]);
-        }
-    if (dh_dp)
-        NEVH_LANES(i, width) {
-            dh_dp[i] = p[i] / (c[i] * (q[i] * q[i]));
-        }
-}
+NEVH_GRADIENT(angular, void, {
+    double r = nevh_q(0), p = nevh_p(0), inertia = nevh_c(0) * (r * r);
+    nevh_dh_dq(0) = -p * p / (inertia * r);
+    nevh_dh_dp(0) = p / inertia;
+})
 
 NEVH_BODY(weight, void, {
     nevh_num r = nevh_q(0), theta = nevh_q(1);
     return -nevh_c(0) * r * nevh_cos(theta);
 })
 
-NEVH_SIMD
-static void weight_gradient(size_t width, const double t[], const double q[],
-                            const double p[], const double c[],
-                            const void *params, double dh_dq[],
-                            double dh_dp[]) {
-    (void)t, (void)p, (void)params, (void)dh_dp;
-    if (!dh_dq)
-        return;
-    NEVH_LANES(i, width) {
-        double theta = q[width + i];
-        dh_dq[i] = -c[i] * nevh_simd_cos(theta);
-        dh_dq[width + i] = c[i] * q[i] * nevh_simd_sin(theta);
-    }
-}
+NEVH_GRADIENT(weight, void, {
+    double r = nevh_q(0), theta = nevh_q(1);
+    nevh_dh_dq(0) = -nevh_c(0) * nevh_cos(theta);
+    nevh_dh_dq(1) = nevh_c(0) * r * nevh_sin(theta);
+})
 
 enum { R, THETA };
 
@@ -63,14 +44,14 @@ static nevh_system *elastic_system(const void *params) {
                           .p = theta,
                           .c = &a->m,
                           NEVH_FORMS(angular),
-                          .gradient = angular_gradient},
+                          NEVH_GRADIENTS(angular)},
                          nevh__spring_term,
                          {.effect = "gravity",
                           .nq = 2,
                           .nc = 1,
                           .c = (const double[]){a->m * a->g},
                           NEVH_FORMS(weight),
-                          .gradient = weight_gradient}};
+                          NEVH_GRADIENTS(weight)}};
     terms[0].name = "radial";
     terms[0].c = &a->m;
     terms[2].c = (const double[]){a->k, a->l};

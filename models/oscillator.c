@@ -7,49 +7,27 @@
 
 NEVH_BODY(kinetic, void, { return nevh_p(0) * nevh_p(0) / (2 * nevh_c(0)); })
 
-NEVH_SIMD
-static void kinetic_gradient(size_t width, const double t[], const double q[],
-                             const double p[], const double c[],
-                             const void *params, double dh_dq[],
-                             double dh_dp[]) {
-    (void)t, (void)q, (void)params, (void)dh_dq;
-    if (!dh_dp)
-        return;
-    NEVH_LANES(i, width) {
-        dh_dp[i] = p[i] / c[i];
-    }
-}
+NEVH_GRADIENT(kinetic, void, { nevh_dh_dp(0) = nevh_p(0) / nevh_c(0); })
 
 const nevh_term nevh__kinetic_term = {.effect = "kinetic",
                                       .np = 1,
                                       .nc = 1,
                                       NEVH_FORMS(kinetic),
-                                      .gradient = kinetic_gradient};
+                                      NEVH_GRADIENTS(kinetic)};
 
 NEVH_BODY(spring, void, {
     nevh_num stretch = nevh_q(0) - nevh_c(1);
     return nevh_c(0) / 2 * (stretch * stretch);
 })
 
-NEVH_SIMD
-static void spring_gradient(size_t width, const double t[], const double q[],
-                            const double p[], const double c[],
-                            const void *params, double dh_dq[],
-                            double dh_dp[]) {
-    (void)t, (void)p, (void)params, (void)dh_dp;
-    const double *rest = c + width;
-    if (!dh_dq)
-        return;
-    NEVH_LANES(i, width) {
-        dh_dq[i] = c[i] * (q[i] - rest[i]);
-    }
-}
+NEVH_GRADIENT(spring, void,
+              { nevh_dh_dq(0) = nevh_c(0) * (nevh_q(0) - nevh_c(1)); })
 
 const nevh_term nevh__spring_term = {.effect = "spring",
                                      .nq = 1,
                                      .nc = 2,
                                      NEVH_FORMS(spring),
-                                     .gradient = spring_gradient};
+                                     NEVH_GRADIENTS(spring)};
 
 static nevh_system *oscillator_system(const void *params) {
     const nevh_oscillator *a = params;

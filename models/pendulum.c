@@ -6,24 +6,14 @@
 
 NEVH_BODY(cosine, void, { return -nevh_c(0) * nevh_cos(nevh_q(0)); })
 
-NEVH_SIMD
-static void cosine_gradient(size_t width, const double t[], const double q[],
-                            const double p[], const double c[],
-                            const void *params, double dh_dq[],
-                            double dh_dp[]) {
-    (void)t, (void)p, (void)params, (void)dh_dp;
-    if (!dh_dq)
-        return;
-    NEVH_LANES(i, width) {
-        dh_dq[i] = c[i] * nevh_simd_sin(q[i]);
-    }
-}
+NEVH_GRADIENT(cosine, void,
+              { nevh_dh_dq(0) = nevh_c(0) * nevh_sin(nevh_q(0)); })
 
 const nevh_term nevh__cosine_term = {.effect = "gravity",
                                      .nq = 1,
                                      .nc = 1,
                                      NEVH_FORMS(cosine),
-                                     .gradient = cosine_gradient};
+                                     NEVH_GRADIENTS(cosine)};
 
 static nevh_system *pendulum_system(const void *params) {
     const nevh_pendulum *a = params;

@@ -150,11 +150,164 @@ START_TEST(sums_in_one_order) {
 }
 END_TEST
 
+/* The same terms with and without gradients of one state, which are counted, as
+   blocks are. */
+static struct { size_t points, blocks; } calls;
+
+static void wave_point(double t, const double q[], const double p[],
+                       const double c[], const void *params, double dq[],
+                       double dp[]) {
+    (void)t, (void)p, (void)params, (void)dp;
+    calls.points++;
+    if (dq)
+        dq[0] = c[0] * sin(q[0]);
+}
+
+static void wave_block(size_t width, const double t[], const double q[],
+                       const double p[], const double c[], const void *params,
+                       double dq[], double dp[]) {
+    calls.blocks++;
+    wave_gradient(width, t, q, p, c, params, dq, dp);
+}
+
+static void kinetic_point(double t, const double q[], const double p[],
+                          const double c[], const void *params, double dq[],
+                          double dp[]) {
+    (void)t, (void)q, (void)params, (void)dq;
+    if (dp)
+        dp[0] = p[0] / c[0];
+}
+
+static double pushed(double t, const double q[], const double p[],
+                     const double c[], const void *params) {
+    (void)p, (void)c, (void)params;
+    return ((q[0] - q[1]) * t + q[1] * q[1] * t * t) / 16;
+}
+
+static void pushed_point(double t, const double q[], const double p[],
+                         const double c[], const void *params, double dq[],
+                         double dp[]) {
+    (void)p, (void)c, (void)params, (void)dp;
+    if (!dq)
+        return;
+    dq[0] = t / 16;
+    dq[1] = (2 * q[1] * t * t - t) / 16;
+}
+
+static void pushed_block(size_t width, const double t[], const double q[],
+                         const double p[], const double c[], const void *params,
+                         double dq[], double dp[]) {
+    (void)p, (void)c, (void)params, (void)dp;
+    for (size_t i = 0; dq && i < width; i++) {
+        dq[i] = t[i] / 16;
+        dq[width + i] = (2 * q[width + i] * t[i] * t[i] - t[i]) / 16;
+    }
+}
+
+enum kind { PLAIN, RUBS, PUSHED, SHARED, KINDS };
+
+/* Terms on both coordinates, on one of them again, and on one momentum. */
+static nevh_system *of_points(enum kind kind, bool points) {
+    static const size_t all[] = {0, 1}, one[] = {1, 1};
+    static const double c[] = {1.25, 0.75}, masses[] = {2, 3};
+    nevh_system *s = nevh_system_new(2);
+    nevh_term wave = {.effect = "waves",
+                      .nq = 1,
+                      .nc = 1,
+                      .q = all,
+                      .c = c,
+                      .count = 2,
+                      .value = wave_value,
+                      .gradient = wave_block,
+                      .point_gradient = points ? wave_point : NULL};
+    nevh_term kinetic = {.effect = "kinetic",
+                         .np = 1,
+                         .nc = 1,
+                         .p = all,
+                         .c = masses,
+                         .count = 2,
+                         .value = mass_kinetic,
+                         .gradient = mass_kinetic_gradient,
+                         .point_gradient = points ? kinetic_point : NULL};
+    nevh_term push = {.effect = "push",
+                      .nq = 2,
+                      .time = true,
+                      .value = pushed,
+                      .gradient = pushed_block,
+                      .point_gradient = points ? pushed_point : NULL};
+    ck_assert(!nevh_system_add(s, &wave) && !nevh_system_add(s, &kinetic));
+    wave.q = kinetic.p = one;
+    wave.count = kind == SHARED ? 2 : 1;
+    kinetic.count = 1;
+    if (kind != PLAIN)
+        ck_assert(!nevh_system_add(s, &wave) && !nevh_system_add(s, &kinetic));
+    if (kind == RUBS)
+        ck_assert(
+            !nevh_system_add_friction(s, "drag", (const double[]){0.3, 0.1}));
+    if (kind == PUSHED)
+        ck_assert(!nevh_system_add(s, &push));
+    return s;
+}
+
+/* Whether a scheme takes that H; lane 5 of eight, or the only one, to x. */
+static bool run_points(const nevh_integrator *scheme, enum kind kind,
+                       bool points, size_t width, double x[4]) {
+    static const double start[] = {0.5, -1, 1, 0.25};
+    double z[4 * WIDTH], *p = z + 2 * width;
+    size_t lane = width == 1 ? 0 : 5;
+    nevh_system *s = of_points(kind, points);
+    nevh_stepper *stepper = plan_parts(s, scheme, width);
+    bool planned = !nevh_stepper_status(stepper);
+    for (size_t i = 0; i < 4 * width; i++)
+        z[i] = start[i / width] + (i % width == lane ? 0 : 0.1);
+    calls.points = calls.blocks = 0;
+    if (planned) {
+        nevh_run(stepper, 0, 0.2, STEPS, z, p, NULL, 0);
+        ck_assert_str_eq(nevh_stepper_message(stepper), "");
+    }
+    for (size_t k = 0; k < 4; k++)
+        x[k] = z[k * width + lane];
+    nevh_stepper_free(stepper);
+    nevh_system_free(s);
+    return planned;
+}
+
+START_TEST(points_as_blocks) {
+    const nevh_integrator *scheme = nevh_integrators()[_i / KINDS];
+    enum kind kind = _i % KINDS;
+    double with[4], without[4], among[4];
+    if (!run_points(scheme, kind, true, 1, with))
+        return;
+    ck_assert(run_points(scheme, kind, false, 1, without));
+    ck_assert_uint_eq(calls.points, 0);
+    ck_assert_mem_eq(with, without, sizeof with);
+    if (run_points(scheme, kind, true, WIDTH, among)) {
+        ck_assert_mem_eq(with, among, sizeof with);
+        ck_assert_uint_eq(calls.points, 0);
+    }
+}
+END_TEST
+
+/* A splitting leaves blocks alone where each term has a point gradient, and
+   takes them where there are many orbits. */
+START_TEST(points_are_taken) {
+    double x[4];
+    ck_assert(run_points(nevh_blanes_moan4, _i, true, 1, x));
+    ck_assert_uint_eq(calls.blocks, 0);
+    ck_assert_uint_gt(calls.points, 6 * STEPS);
+    ck_assert(run_points(nevh_blanes_moan4, _i, true, WIDTH, x));
+    ck_assert_uint_gt(calls.blocks, 6 * STEPS);
+    ck_assert_uint_eq(calls.points, 0);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("one orbit of several terms");
     TCase *cases = tcase_create("one orbit of several terms");
     tcase_add_loop_test(cases, in_parts_and_in_two, 0, 2 * scheme_count());
     tcase_add_loop_test(cases, sums_in_one_order, 0, 4);
+    tcase_add_loop_test(cases, points_as_blocks, 0, KINDS * scheme_count());
+    tcase_add_loop_test(cases, points_are_taken, 0, KINDS);
     suite_add_tcase(suite, cases);
     return run_suite(suite);
 }

@@ -26,73 +26,33 @@ static void kinetic_gradient(size_t width, const double t[], const double q[],
 /* Of mass 1. */
 NEVH_BODY(unit, void, { return nevh_p(0) * nevh_p(0) / 2; })
 
-NEVH_SIMD
-static void unit_gradient(size_t width, const double t[], const double q[],
-                          const double p[], const double c[],
-                          const void *params, double dh_dq[], double dh_dp[]) {
-    (void)t, (void)q, (void)c, (void)params, (void)dh_dq;
-    if (!dh_dp)
-        return;
-    NEVH_LANES(i, width) {
-        dh_dp[i] = p[i];
-    }
-}
+NEVH_GRADIENT(unit, void, { nevh_dh_dp(0) = nevh_p(0); })
 
 NEVH_BODY(cosine, void, { return -nevh_cos(nevh_q(0)); })
 
-NEVH_SIMD
-static void cosine_gradient(size_t width, const double t[], const double q[],
-                            const double p[], const double c[],
-                            const void *params, double dh_dq[],
-                            double dh_dp[]) {
-    (void)t, (void)p, (void)c, (void)params, (void)dh_dp;
-    if (!dh_dq)
-        return;
-    NEVH_LANES(i, width) {
-        dh_dq[i] = nevh_simd_sin(q[i]);
-    }
-}
+NEVH_GRADIENT(cosine, void, { nevh_dh_dq(0) = nevh_sin(nevh_q(0)); })
 
 NEVH_BODY(attraction, void, {
     return -1 / nevh_sqrt(nevh_q(0) * nevh_q(0) + nevh_q(1) * nevh_q(1));
 })
 
-NEVH_SIMD
-static void attraction_gradient(size_t width, const double t[],
-                                const double q[], const double p[],
-                                const double c[], const void *params,
-                                double dh_dq[], double dh_dp[]) {
-    (void)t, (void)p, (void)c, (void)params, (void)dh_dp;
-    const double *y = q + width;
-    if (!dh_dq)
-        return;
-    NEVH_LANES(i, width) {
-        double square = q[i] * q[i] + y[i] * y[i];
-        double factor = 1 / (square * nevh_simd_sqrt(square));
-        dh_dq[i] = factor * q[i];
-        dh_dq[width + i] = factor * y[i];
-    }
-}
+NEVH_GRADIENT(attraction, void, {
+    double x = nevh_q(0), y = nevh_q(1), square = x * x + y * y;
+    double factor = 1 / (square * nevh_sqrt(square));
+    nevh_dh_dq(0) = factor * x;
+    nevh_dh_dq(1) = factor * y;
+})
 
 NEVH_BODY(galaxy, void, {
     nevh_num x = nevh_q(0), y = nevh_q(1);
     return (x * x + y * y) / 2 + x * x * y - y * y * y / 3;
 })
 
-NEVH_SIMD
-static void galaxy_gradient(size_t width, const double t[], const double q[],
-                            const double p[], const double c[],
-                            const void *params, double dh_dq[],
-                            double dh_dp[]) {
-    (void)t, (void)p, (void)c, (void)params, (void)dh_dp;
-    const double *y = q + width;
-    if (!dh_dq)
-        return;
-    NEVH_LANES(i, width) {
-        dh_dq[i] = q[i] + 2 * q[i] * y[i];
-        dh_dq[width + i] = y[i] + q[i] * q[i] - y[i] * y[i];
-    }
-}
+NEVH_GRADIENT(galaxy, void, {
+    double x = nevh_q(0), y = nevh_q(1);
+    nevh_dh_dq(0) = x + 2 * x * y;
+    nevh_dh_dq(1) = y + x * x - y * y;
+})
 
 /* Two bodies; c: G m m'. */
 NEVH_BODY(gravity, void, {
@@ -135,7 +95,7 @@ static nevh_system *unit_mass(size_t n, nevh_term potential) {
                                     .p = all,
                                     .count = n,
                                     NEVH_FORMS(unit),
-                                    .gradient = unit_gradient});
+                                    NEVH_GRADIENTS(unit)});
     potential.effect = "potential";
     potential.nq = n;
     nevh_system_add(s, &potential);
@@ -181,16 +141,16 @@ nevh_system *nevh_system_of(const problem *p) {
     switch (p - problems) {
     case PENDULUM:
         return unit_mass(
-            1, (nevh_term){NEVH_FORMS(cosine), .gradient = cosine_gradient});
+            1, (nevh_term){NEVH_FORMS(cosine), NEVH_GRADIENTS(cosine)});
     case DOUBLE_PENDULUM:
         return nevh_double_pendulum_model->system(
             nevh_double_pendulum_model->defaults);
     case KEPLER:
-        return unit_mass(2, (nevh_term){NEVH_FORMS(attraction),
-                                        .gradient = attraction_gradient});
+        return unit_mass(
+            2, (nevh_term){NEVH_FORMS(attraction), NEVH_GRADIENTS(attraction)});
     case HENON_HEILES:
         return unit_mass(
-            2, (nevh_term){NEVH_FORMS(galaxy), .gradient = galaxy_gradient});
+            2, (nevh_term){NEVH_FORMS(galaxy), NEVH_GRADIENTS(galaxy)});
     default:
         return outer_sun();
     }

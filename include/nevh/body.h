@@ -77,17 +77,20 @@
    width, go through the same code; width must be a multiple of 8, and no lane
    may read what another one writes. */
 #ifdef NEVH__VECTORS
-#define NEVH_SIMD                                                              \
+#define NEVH__CLONES(slp)                                                      \
     __attribute__((                                                            \
         target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"),          \
-        optimize("O2", "tree-loop-vectorize", "vect-cost-model=unlimited",     \
-                 "fp-contract=off", "no-math-errno", "no-trapping-math")))
+        optimize("O2", "tree-loop-vectorize", slp,                             \
+                 "vect-cost-model=unlimited", "fp-contract=off",               \
+                 "no-math-errno", "no-trapping-math")))
+#define NEVH_SIMD NEVH__CLONES("tree-slp-vectorize")
 #define NEVH_LANES(i, width)                                                   \
     for (size_t i##_from = 0; i##_from < (width); i##_from += 8)               \
     _Pragma("GCC ivdep") for (size_t i = i##_from; i != i##_from + 8; i++)
 #define NEVH_UNROLL _Pragma("GCC unroll 16")
 #else
 #define NEVH_SIMD
+#define NEVH_POINT
 #define NEVH_LANES(i, width) for (size_t i = 0; i < (width); i++)
 #define NEVH_UNROLL
 #endif
@@ -132,17 +135,19 @@ extern double __builtin_sqrt(double) __attribute__((const));
 #endif
 
 /* GCC spares us small powers of its own pow alone. */
-NEVH__INLINE double nevh_simd_pow(double x, double y) {
-    if (!__builtin_constant_p(y))
-        return nevh__simd_pow(x, y);
-    return y == -2   ? 1 / (x * x)
-           : y == -1 ? 1 / x
-           : y == 1  ? x
-           : y == 2  ? x * x
-           : y == 3  ? x * x * x
-           : y == 4  ? x * x * (x * x)
-                     : nevh__simd_pow(x, y);
-}
+#define NEVH__POW(name, f)                                                     \
+    NEVH__INLINE double name(double x, double y) {                             \
+        if (!__builtin_constant_p(y))                                          \
+            return f(x, y);                                                    \
+        return y == -2   ? 1 / (x * x)                                         \
+               : y == -1 ? 1 / x                                               \
+               : y == 1  ? x                                                   \
+               : y == 2  ? x * x                                               \
+               : y == 3  ? x * x * x                                           \
+               : y == 4  ? x * x * (x * x)                                     \
+                         : f(x, y);                                             \
+    }
+NEVH__POW(nevh_simd_pow, nevh__simd_pow)
 #else
 #define nevh_simd_sin  sin
 #define nevh_simd_cos  cos
@@ -162,6 +167,91 @@ NEVH__INLINE double nevh_simd_pow(double x, double y) {
 #define nevh_simd_cbrt  cbrt
 #define nevh_simd_atan2 atan2
 #define nevh_simd_hypot hypot
+#endif
+
+/* For point gradients written by hand, which must give what their blocks do,
+   bit for bit:
+
+       NEVH_POINT static void my_point_gradient(double t, ...) {
+           if (dh_dq)
+               dh_dq[0] = c[0] * nevh_point_sin(q[0]);
+       }
+
+   Arithmetic and roots are rounded alike anywhere, functions like sine are not:
+   nevh_point_sin etc. are for one number what nevh_simd_sin is for eight, in
+   eight lanes of which one counts.  NEVH_POINT is NEVH_SIMD, but stores numbers
+   one by one, as they will be read: two joined in a vector have to wait. */
+#ifdef NEVH__VECTORS
+#define NEVH_POINT NEVH__CLONES("no-tree-slp-vectorize")
+
+/* Added to equal numbers these make lanes of them that GCC takes for different
+   ones, so that it calls a vector function. */
+static const double nevh__nothing[] __attribute__((aligned(64), unused)) = {
+    -0., -0., -0., -0., -0., -0., -0., -0.};
+
+NEVH__INLINE const double *nevh__unlike(void) {
+    const double *nothing = nevh__nothing;
+    __asm__("" : "+r"(nothing));
+    return nothing;
+}
+
+#define NEVH__POINT1(name, f)                                                  \
+    NEVH__INLINE double name(double x) {                                       \
+        const double *nothing = nevh__unlike();                                \
+        double lanes[8];                                                       \
+        NEVH_LANES(i, 8) {                                                     \
+            lanes[i] = f(x + nothing[i]);                                      \
+        }                                                                      \
+        return lanes[0];                                                       \
+    }
+#define NEVH__POINT2(name, f)                                                  \
+    NEVH__INLINE double name(double x, double y) {                             \
+        const double *nothing = nevh__unlike();                                \
+        double lanes[8];                                                       \
+        NEVH_LANES(i, 8) {                                                     \
+            lanes[i] = f(x + nothing[i], y + nothing[i]);                      \
+        }                                                                      \
+        return lanes[0];                                                       \
+    }
+NEVH__POINT1(nevh_point_sin, nevh_simd_sin)
+NEVH__POINT1(nevh_point_cos, nevh_simd_cos)
+NEVH__POINT1(nevh_point_exp, nevh_simd_exp)
+NEVH__POINT1(nevh_point_log, nevh_simd_log)
+NEVH__POINT2(nevh__point_pow, nevh__simd_pow)
+NEVH__POW(nevh_point_pow, nevh__point_pow)
+#if __GLIBC_PREREQ(2, 35)
+NEVH__POINT1(nevh_point_tan, nevh_simd_tan)
+NEVH__POINT1(nevh_point_asin, nevh_simd_asin)
+NEVH__POINT1(nevh_point_acos, nevh_simd_acos)
+NEVH__POINT1(nevh_point_atan, nevh_simd_atan)
+NEVH__POINT1(nevh_point_sinh, nevh_simd_sinh)
+NEVH__POINT1(nevh_point_cosh, nevh_simd_cosh)
+NEVH__POINT1(nevh_point_tanh, nevh_simd_tanh)
+NEVH__POINT1(nevh_point_cbrt, nevh_simd_cbrt)
+NEVH__POINT2(nevh_point_atan2, nevh_simd_atan2)
+NEVH__POINT2(nevh_point_hypot, nevh_simd_hypot)
+#endif
+#undef NEVH__POINT2
+#undef NEVH__POINT1
+#else
+#define nevh_point_sin sin
+#define nevh_point_cos cos
+#define nevh_point_exp exp
+#define nevh_point_log log
+#define nevh_point_pow pow
+#endif
+#define nevh_point_sqrt nevh_simd_sqrt
+#if !defined NEVH__VECTORS || !__GLIBC_PREREQ(2, 35)
+#define nevh_point_tan   tan
+#define nevh_point_asin  asin
+#define nevh_point_acos  acos
+#define nevh_point_atan  atan
+#define nevh_point_sinh  sinh
+#define nevh_point_cosh  cosh
+#define nevh_point_tanh  tanh
+#define nevh_point_cbrt  cbrt
+#define nevh_point_atan2 atan2
+#define nevh_point_hypot hypot
 #endif
 
 #ifndef __cplusplus
@@ -266,6 +356,15 @@ NEVH__INLINE double nevh__of_state(const double *x, size_t k) {
     return x[k];
 }
 
+/* One state of a gradient. */
+typedef struct {
+    const double *x;
+} nevh__one;
+
+NEVH__INLINE double nevh__of_one(nevh__one x, size_t k) {
+    return x.x[k];
+}
+
 NEVH__INLINE double nevh__of_lane(nevh__lanes x, size_t k) {
     return x.x[k * x.width + x.lane];
 }
@@ -279,11 +378,13 @@ NEVH__INLINE double _Complex nevh__of_complex(const double (*x)[2], size_t k) {
 #define NEVH__AT(x, k)                                                         \
     _Generic((x), const double *: nevh__of_state,                              \
                   nevh__lanes: nevh__of_lane,                                  \
+                  nevh__one: nevh__of_one,                                     \
                   const double (*)[2]: nevh__of_complex)((x), (size_t)(k))
 #define NEVH__ANY(x, real, complex)                                            \
     _Generic((x), double _Complex: complex, default: real)
 #define NEVH__LIBM(f, x)                                                       \
-    NEVH__ANY(x, _Generic(nevh__q, nevh__lanes: nevh_simd_##f, default: f),    \
+    NEVH__ANY(x, _Generic(nevh__q, nevh__lanes: nevh_simd_##f,                 \
+                                   nevh__one: nevh_point_##f, default: f),     \
               nevh__complex_##f)
 // clang-format on
 #define NEVH__OWN(f, x)  NEVH__ANY(x, nevh__##f, nevh__complex_##f)
@@ -374,6 +475,86 @@ NEVH__INLINE double _Complex nevh__of_complex(const double (*x)[2], size_t k) {
 #define NEVH_FORMS(name)                                                       \
     .value = name##_value, .block = name##_block,                              \
     .complex_value = name##_complex
+
+/* Where a gradient's body writes.  What nobody wants goes nowhere, and GCC, who
+   knows beforehand, leaves it out with all that leads to it. */
+typedef struct {
+    double *x;
+    size_t width, lane;
+    bool wanted;
+    double *nowhere;
+} nevh__slopes;
+
+NEVH__INLINE double *nevh__slope(nevh__slopes d, size_t k) {
+    return d.wanted ? d.x + (k * d.width + d.lane) : d.nowhere;
+}
+
+#define nevh_dh_dq(k) (*nevh__slope(nevh__dh_dq, (size_t)(k)))
+#define nevh_dh_dp(k) (*nevh__slope(nevh__dh_dp, (size_t)(k)))
+
+// clang-format off
+#define NEVH__GRADIENT_FORM(name, rows, params_type, ...)                      \
+    NEVH__INLINE void name(double nevh_t, rows nevh__q, rows nevh__p,          \
+                           rows nevh__c, const void *nevh__params,             \
+                           nevh__slopes nevh__dh_dq, nevh__slopes nevh__dh_dp) \
+    {                                                                          \
+        (void)nevh__dh_dq, (void)nevh__dh_dp;                                  \
+        NEVH__FORM(double, params_type, __VA_ARGS__)                           \
+    }
+
+/* All lanes, for the halves that are wanted: constants. */
+#define NEVH__GRADIENT_LANES(name, q_too, p_too)                               \
+    NEVH_LANES(i, width) {                                                     \
+        double nowhere;                                                        \
+        name##_gradient_lane(                                                  \
+            t[i], (nevh__lanes){q, width, i}, (nevh__lanes){p, width, i},      \
+            (nevh__lanes){c, width, i}, params,                                \
+            (nevh__slopes){dh_dq, width, i, q_too, &nowhere},                  \
+            (nevh__slopes){dh_dp, width, i, p_too, &nowhere});                 \
+    }
+#define NEVH__GRADIENT_POINT(name, q_too, p_too)                               \
+    name##_gradient_one(t, (nevh__one){q}, (nevh__one){p}, (nevh__one){c},     \
+                        params, (nevh__slopes){dh_dq, 1, 0, q_too, &nowhere},  \
+                        (nevh__slopes){dh_dp, 1, 0, p_too, &nowhere})
+
+/* Defines NAME_gradient and NAME_point_gradient, static functions of the types
+   in nevh_term, from one body that assigns to nevh_dh_dq(k) and nevh_dh_dp(k).
+   What it assigned it may not read back. */
+#define NEVH_GRADIENT(name, params_type, ...)                                  \
+    NEVH__GRADIENT_FORM(name##_gradient_lane, nevh__lanes, params_type,        \
+                        __VA_ARGS__)                                           \
+    NEVH__GRADIENT_FORM(name##_gradient_one, nevh__one, params_type,           \
+                        __VA_ARGS__)                                           \
+                                                                               \
+    NEVH__MAYBE_UNUSED NEVH_SIMD static void name##_gradient(                  \
+        size_t width, const double *t, const double *q, const double *p,       \
+        const double *c, const void *params, double *dh_dq, double *dh_dp)     \
+    {                                                                          \
+        if (dh_dq && dh_dp)                                                    \
+            NEVH__GRADIENT_LANES(name, true, true)                             \
+        else if (dh_dq)                                                        \
+            NEVH__GRADIENT_LANES(name, true, false)                            \
+        else if (dh_dp)                                                        \
+            NEVH__GRADIENT_LANES(name, false, true)                            \
+    }                                                                          \
+                                                                               \
+    NEVH__MAYBE_UNUSED NEVH_POINT static void name##_point_gradient(           \
+        double t, const double *q, const double *p, const double *c,           \
+        const void *params, double *dh_dq, double *dh_dp)                      \
+    {                                                                          \
+        double nowhere;                                                        \
+        if (dh_dq && dh_dp)                                                    \
+            NEVH__GRADIENT_POINT(name, true, true);                            \
+        else if (dh_dq)                                                        \
+            NEVH__GRADIENT_POINT(name, true, false);                           \
+        else if (dh_dp)                                                        \
+            NEVH__GRADIENT_POINT(name, false, true);                           \
+    }
+// clang-format on
+
+/* Both of them, in a nevh_term's initialiser. */
+#define NEVH_GRADIENTS(name)                                                   \
+    .gradient = name##_gradient, .point_gradient = name##_point_gradient
 
 #endif
 #endif

@@ -37,6 +37,16 @@ typedef void (*nevh_block_gradient_fn)(size_t width, const double t[],
                                        const double c[], const void *params,
                                        double dh_dq[], double dh_dp[]);
 
+/* The same derivatives of one instance at one state, where q, p and c are what
+   nevh_term_fn is handed, and dh_dq[k] belongs to q[k].  It gives the results of
+   the block, bit for bit, and is but a shorter way for one orbit of a small
+   system, which then needs no blocks.  <nevh/body.h> makes both from one
+   text. */
+typedef void (*nevh_point_gradient_fn)(double t, const double q[],
+                                       const double p[], const double c[],
+                                       const void *params, double dh_dq[],
+                                       double dh_dp[]);
+
 /* The value of one instance over complex numbers, for the complex step: pairs
    of real and imaginary part, so that C++ can include this header.  Imaginary
    parts are tiny (1e-100 of the variables): absolute values, comparisons and
@@ -64,6 +74,8 @@ typedef struct {
     nevh_block_gradient_fn gradient; /* NULL: no exact gradient */
     nevh_complex_fn complex_value;   /* NULL: no complex step */
     const void *params;              /* borrowed; outlives the system */
+    nevh_point_gradient_fn point_gradient; /* NULL: gradient, also for one;
+                                              else gradient is there, too */
 } nevh_term;
 
 /* What is known of the sum of the enabled terms. */
@@ -94,7 +106,8 @@ NEVH_API void nevh_system_free(nevh_system *);
 /* Adds a term.  The description, its indices and constants are copied.
    An index may be read only once by one instance.
    returns  NEVH_OK; NEVH_EINVAL (indices out of range or repeated, no
-            function, a name used twice, an empty effect name), NEVH_ENOMEM.
+            function, a point gradient without a gradient, a name used twice,
+            an empty effect name), NEVH_ENOMEM.
             The system is as before on failure, but carries the status: no
             stepper is made from a system that lacks what it was meant to
             have. */

@@ -1,7 +1,8 @@
 /* nevh: exact gradients that are taken many times at the same place in memory.
 
    All that can be known beforehand is: a call is a list of terms to evaluate,
-   the first of which writes each half, and others are added to it.
+   or of instances for a single state, the first of which writes each half, or
+   its part of it, and others are added to that.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/field_private.h"
 #include <nevh/body.h>
@@ -13,6 +14,10 @@ static void direct(const nevh__planned *term, const nevh__planned *writer,
                    double *scratch, double **written, double **sum) {
     *sum = term == writer ? NULL : half + index[0] * width;
     *written = term == writer ? half : scratch;
+}
+
+static bool wanted(const nevh__call *c, const nevh__planned *term) {
+    return (c->half[0] && term->nq) || (c->half[1] && term->np);
 }
 
 static bool add_term(nevh__call *c, nevh__planned *term, const double t[],
@@ -43,6 +48,100 @@ static bool add_term(nevh__call *c, nevh__planned *term, const double t[],
         direct(term, f->writer_p, is->p, width, c->half[1],
                f->slopes + stride * term->nq, &x->dh_dp, &x->sum_p);
     }
+    x->sums = x->sum_q || x->sum_p;
+    return true;
+}
+
+/* The variables of a half that have something, as bits. */
+static uint64_t bits(size_t first, size_t count) {
+    uint64_t low =
+        count < NEVH__MOST_POINT_ROWS ? (UINT64_C(1) << count) - 1 : UINT64_MAX;
+    return count ? low << first : 0;
+}
+
+static bool consecutive(size_t count, const size_t index[]) {
+    for (size_t k = 1; k < count; k++)
+        if (index[k] != index[0] + k)
+            return false;
+    return true;
+}
+
+/* One half of what an instance gives: written if nothing is there, added if
+   something is everywhere, and else there is no way. */
+static bool point_half(uint64_t *there, uint64_t here, double *half,
+                       double *scratch, double **written, double **sum) {
+    uint64_t met = *there & here;
+    *sum = met ? half : NULL;
+    *written = met ? scratch : half;
+    *there |= here;
+    return !met || met == here;
+}
+
+static bool add_point(nevh__call *c, const nevh__called *given, size_t instance,
+                      uint64_t there[2]) {
+    const nevh__planned *term = given->term;
+    const nevh_term *is = &term->term->is;
+    const size_t *all_q = is->q + instance * term->nq;
+    const size_t *all_p = is->p + instance * term->np;
+    size_t q = term->nq ? all_q[0] : 0, p = term->np ? all_p[0] : 0;
+    if (c->count == NEVH__MOST_CALLED || !consecutive(term->nq, all_q) ||
+        !consecutive(term->np, all_p))
+        return false;
+    nevh__called *x = &c->terms[c->count++];
+    *x = *given;
+    x->q += q;
+    x->p += p;
+    x->c = is->c + instance * is->nc;
+    double *scratch_q = c->field->slopes, *scratch_p = scratch_q + term->nq;
+    bool there_q =
+        !x->size_q || point_half(&there[0], bits(q, x->size_q), c->half[0] + q,
+                                 scratch_q, &x->dh_dq, &x->sum_q);
+    bool there_p =
+        !x->size_p || point_half(&there[1], bits(p, x->size_p), c->half[1] + p,
+                                 scratch_p, &x->dh_dp, &x->sum_p);
+    x->sums = x->sum_q || x->sum_p;
+    return there_q && there_p;
+}
+
+static bool add_points(nevh__call *c, nevh__planned *term, const double t[],
+                       const double q[], const double p[], uint64_t there[2]) {
+    const nevh_term *is = &term->term->is;
+    nevh__called given = {.term = term,
+                          .point = is->point_gradient,
+                          .params = is->params,
+                          .size_q = c->half[0] ? term->nq : 0,
+                          .size_p = c->half[1] ? term->np : 0,
+                          .t = is->time ? t : c->field->zeros,
+                          .q = q,
+                          .p = p};
+    c->timed |= is->time;
+    for (size_t i = 0; given.point && i < is->count; i++)
+        if (!add_point(c, &given, i, there))
+            return false;
+    return given.point;
+}
+
+static bool plan_points(nevh__call *c, const double t[], const double q[],
+                        const double p[]) {
+    nevh_field *f = c->field;
+    uint64_t there[2] = {0, 0}, all = bits(0, f->n);
+    if (f->n > NEVH__MOST_POINT_ROWS)
+        return false;
+    for (nevh__planned *term = f->terms; term < f->terms + f->n_terms; term++)
+        if (wanted(c, term) && !add_points(c, term, t, q, p, there))
+            return false;
+    return (!c->half[0] || there[0] == all) && (!c->half[1] || there[1] == all);
+}
+
+static bool plan_blocks(nevh__call *c, const double t[], const double q[],
+                        const double p[]) {
+    nevh_field *f = c->field;
+    if (c->width % NEVH__LANES || (c->half[0] && !f->writer_q) ||
+        (c->half[1] && !f->writer_p))
+        return false;
+    for (nevh__planned *term = f->terms; term < f->terms + f->n_terms; term++)
+        if (wanted(c, term) && !add_term(c, term, t, q, p))
+            return false;
     return true;
 }
 
@@ -50,21 +149,17 @@ nevh__call nevh__call_plan(nevh_field *f, size_t width, const double t[],
                            const double q[], const double p[], double dh_dq[],
                            double dh_dp[]) {
     nevh__call c = {.field = f, .width = width, .half = {dh_dq, dh_dp}};
-    if (f->gradient != nevh_exact || nevh__field_ready(f) ||
-        width % NEVH__LANES || (dh_dq && !f->writer_q) ||
-        (dh_dp && !f->writer_p))
+    if (f->gradient != nevh_exact || nevh__field_ready(f))
         return (nevh__call){0};
-    for (nevh__planned *term = f->terms; term < f->terms + f->n_terms; term++)
-        if (((dh_dq && term->nq) || (dh_dp && term->np)) &&
-            !add_term(&c, term, t, q, p))
-            return (nevh__call){0};
-    return c;
+    bool there =
+        width == 1 ? plan_points(&c, t, q, p) : plan_blocks(&c, t, q, p);
+    return there ? c : (nevh__call){0};
 }
 
 bool nevh__call_renew(nevh__call *c) {
     if (!c->count || nevh__field_ready(c->field))
         return false;
-    for (nevh__called *x = c->terms; x < c->terms + c->count; x++)
+    for (nevh__called *x = c->terms; x < c->terms + c->count && !x->point; x++)
         nevh__lean_constants(x->term, c->width, x->stride);
     return true;
 }
@@ -75,11 +170,17 @@ NEVH_SIMD static void add(size_t size, const double x[], double sum[]) {
     }
 }
 
+static void add_numbers(size_t size, const double x[], double sum[]) {
+    for (size_t k = 0; k < size; k++)
+        sum[k] += x[k];
+}
+
 void nevh__call_add(const nevh__called *x) {
+    void (*to)(size_t, const double *, double *) = x->point ? add_numbers : add;
     if (x->sum_q)
-        add(x->size_q, x->dh_dq, x->sum_q);
+        to(x->size_q, x->dh_dq, x->sum_q);
     if (x->sum_p)
-        add(x->size_p, x->dh_dp, x->sum_p);
+        to(x->size_p, x->dh_dp, x->sum_p);
 }
 
 bool nevh__call_take(const nevh__call *c) {

@@ -225,25 +225,28 @@ const double *nevh__lean_constants(nevh__planned *, size_t width,
 
 /* A gradient, or half of one, that a kernel takes many times at the same place
    in memory: terms whose rows stand there just as their blocks want them. */
-enum { NEVH__MOST_CALLED = 8 };
+enum { NEVH__MOST_CALLED = 8, NEVH__MOST_POINT_ROWS = 64 };
 typedef struct {
     nevh__planned *term;
     nevh_block_gradient_fn gradient;
+    nevh_point_gradient_fn point; /* of one instance, in a call of width 1 */
     const void *params;
     size_t stride, size_q, size_p;
     const double *t, *q, *p, *c;
     double *dh_dq, *dh_dp; /* written by the term; NULL: not asked for */
     double *sum_q, *sum_p; /* what that is added to; NULL: it is there */
+    bool sums;             /* any is added */
 } nevh__called;
 typedef struct {
     nevh_field *field;
-    size_t count; /* of terms; 0: there is no such call */
+    size_t count; /* of terms, or instances; 0: there is no such call */
     size_t width;
     bool timed;      /* time is read, in all lanes */
     double *half[2]; /* dh_dq, dh_dp; either may be NULL */
     nevh__called terms[NEVH__MOST_CALLED];
 } nevh__call;
-/* width is a multiple of NEVH__LANES; dh_dq or dh_dp may be NULL. */
+/* width is a multiple of NEVH__LANES, or 1 for a call of point gradients, where
+   all terms have them; dh_dq or dh_dp may be NULL. */
 nevh__call nevh__call_plan(nevh_field *, size_t width, const double t[],
                            const double q[], const double p[], double dh_dq[],
                            double dh_dp[]);
@@ -251,12 +254,25 @@ nevh__call nevh__call_plan(nevh_field *, size_t width, const double t[],
    The field may have been asked for other widths in between. */
 bool nevh__call_renew(nevh__call *);
 void nevh__call_add(const nevh__called *);
-/* Takes it, but looks at no result, and counts nothing. */
+/* Takes it, but looks at no result, and counts nothing; a call of width 1, or
+   any. */
+static inline void nevh__call_run_points(const nevh__call *c) {
+    const nevh__called *x = c->terms;
+    for (size_t left = c->count; left > 0; left--, x++) {
+        x->point(*x->t, x->q, x->p, x->c, x->params, x->dh_dq, x->dh_dp);
+        if (x->sums)
+            nevh__call_add(x);
+    }
+}
 static inline void nevh__call_run(const nevh__call *c) {
+    if (c->width == 1) {
+        nevh__call_run_points(c);
+        return;
+    }
     for (const nevh__called *x = c->terms; x < c->terms + c->count; x++) {
         x->gradient(x->stride, x->t, x->q, x->p, x->c, x->params, x->dh_dq,
                     x->dh_dp);
-        if (x->sum_q || x->sum_p)
+        if (x->sums)
             nevh__call_add(x);
     }
 }

@@ -3,11 +3,15 @@
    Compared with differences of order 8 at two steps, at a few states.  Where
    the two steps do not agree (a kink, the edge of the domain) or something is
    not finite, nothing is said.
+
+   A point gradient must be the gradient to the last bit, so that an orbit does
+   not depend on how many there are.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/explore_private.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const double tolerance = 1e-6;
 static const double long_step = 0x1p-6, short_step = 0x1p-8; /* of lengths */
@@ -82,6 +86,77 @@ static int check_sample(const check *c, size_t at) {
     return NEVH_OK;
 }
 
+static bool same(double a, double b) {
+    return memcmp(&a, &b, sizeof a) == 0 || (isnan(a) && isnan(b));
+}
+
+static int unlike(const check *c, size_t k, double point, double block) {
+    const nevh_term *is = &c->term->term->is;
+    return nevh__fail(
+        &c->explorer->field->report, NEVH_ENOGRAD,
+        "the point gradient of term \"%s\" of effect \"%s\" is not its "
+        "gradient to the last bit: the derivative with respect to %c[%zu] is "
+        "%.17g where that of a block is %.17g",
+        is->name, is->effect, k < c->term->nq ? 'q' : 'p',
+        nevh__index(c->term, c->instance, k), point, block);
+}
+
+/* Fills a block with one sample and neighbours of it, of which nothing is known
+   but that other last bits come up. */
+static void spread(const check *c, size_t at) {
+    nevh_field *f = c->explorer->field;
+    double move[NEVH__LANES] = {0}, x[NEVH__LANES], h[NEVH__LANES];
+    uint64_t seed = at;
+    nevh__along(c->explorer, c->term, c->instance, 0, at, NEVH__LANES, move, x,
+                h);
+    for (size_t k = 0; k < c->term->nv; k++) {
+        size_t i = nevh__index(c->term, c->instance, k);
+        double length = c->explorer->length[k < c->term->nq ? i : f->n + i];
+        for (size_t lane = 1; lane < NEVH__LANES; lane++)
+            f->rows[k * NEVH__LANES + lane] +=
+                long_step * length * nevh__random(&seed);
+    }
+}
+
+/* One lane, where either half may not be asked for. */
+static int check_lane(const check *c, size_t lane, bool of_q, bool of_p) {
+    const nevh__planned *term = c->term;
+    const nevh_term *is = &term->term->is;
+    nevh_field *f = c->explorer->field;
+    double *q = f->one, *p = q + term->nq, *own = c->own;
+    for (size_t k = 0; k < term->nv + is->nc; k++)
+        q[k] = f->rows[k * NEVH__LANES + lane];
+    for (size_t k = 0; k < term->nv; k++)
+        own[k] = NAN;
+    is->point_gradient(is->time ? f->times[lane] : 0, q, p, p + term->np,
+                       is->params, of_q ? own : NULL,
+                       of_p ? own + term->nq : NULL);
+    for (size_t k = of_q ? 0 : term->nq; k < (of_p ? term->nv : term->nq); k++)
+        if (!same(own[k], f->slopes[k * NEVH__LANES + lane]))
+            return unlike(c, k, own[k], f->slopes[k * NEVH__LANES + lane]);
+    return NEVH_OK;
+}
+
+/* Together first: what takes one half for the other would write nowhere. */
+static int check_point(const check *c, size_t at) {
+    static const bool asked[][2] = {{true, true}, {true, false}, {false, true}};
+    const nevh__planned *term = c->term;
+    const nevh_term *is = &term->term->is;
+    nevh_field *f = c->explorer->field;
+    double *q = f->rows, *p = q + term->nq * NEVH__LANES;
+    double *dp = f->slopes + term->nq * NEVH__LANES;
+    int status = NEVH_OK;
+    spread(c, at);
+    for (size_t i = 0; !status && i < 3; i++) {
+        is->gradient(NEVH__LANES, is->time ? f->times : f->zeros, q, p,
+                     p + term->np * NEVH__LANES, is->params,
+                     asked[i][0] ? f->slopes : NULL, asked[i][1] ? dp : NULL);
+        for (size_t lane = 0; !status && lane < NEVH__LANES; lane++)
+            status = check_lane(c, lane, asked[i][0], asked[i][1]);
+    }
+    return status;
+}
+
 int nevh__verify(nevh__explorer *e, const nevh__planned *term) {
     size_t count = term->term->is.count, stride = nevh__stride(count);
     check c = {e, term, 0, nevh__array(term->nv, sizeof *c.own)};
@@ -90,7 +165,9 @@ int nevh__verify(nevh__explorer *e, const nevh__planned *term) {
     int status = NEVH_OK;
     for (; !status && c.instance < count; c.instance += stride)
         for (size_t at = 0; !status && at < e->samples.count; at++)
-            status = check_sample(&c, at);
+            if (!(status = check_sample(&c, at)) &&
+                term->term->is.point_gradient)
+                status = check_point(&c, at);
     free(c.own);
     return status;
 }

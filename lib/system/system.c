@@ -71,6 +71,11 @@ static int check_term(nevh_system *s, const nevh_term *term) {
         return nevh__fail(&s->report, NEVH_EINVAL,
                           "effect %s: a term needs a value or block function",
                           term->effect);
+    if (term->point_gradient && !term->gradient)
+        return nevh__fail(&s->report, NEVH_EINVAL,
+                          "effect %s: a point gradient needs a gradient beside "
+                          "it, for blocks",
+                          term->effect);
     if (term->nc && !term->c)
         return nevh__fail(&s->report, NEVH_EINVAL,
                           "effect %s: nc is %zu but c is NULL", term->effect,
