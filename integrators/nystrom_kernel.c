@@ -79,18 +79,23 @@ static void list_weights(nevh__nystrom *y) {
                          y->stride, y->weights + i * s, y->offsets + i * s);
 }
 
-static void find_calls(nevh__nystrom *y) {
+static bool plan_calls(nevh__nystrom *y, size_t lanes) {
     nevh_field *f = y->work->field;
-    size_t lanes = NEVH__LANES, stages = y->table->stages;
-    if (!nevh__work_repeats(y->work))
-        return;
     y->drift = nevh__call_plan(f, lanes, y->time, y->points, y->momenta, NULL,
                                y->velocities);
-    for (size_t i = 0; i < stages; i++)
+    for (size_t i = 0; i < y->table->stages; i++)
         y->kicks[i] = nevh__call_plan(f, lanes, y->time, y->points, y->p,
                                       y->slopes + i * y->stride, NULL);
-    if (y->drift.count && y->kicks[0].count)
-        y->call_lanes = lanes;
+    return y->drift.count && y->kicks[0].count;
+}
+
+static void find_calls(nevh__nystrom *y) {
+    if (y->work->width > 1 || y->work->transform)
+        return;
+    if (plan_calls(y, 1))
+        y->call_lanes = 1;
+    else if (y->work->field->repeats && plan_calls(y, NEVH__LANES))
+        y->call_lanes = NEVH__LANES;
 }
 
 /* Lane 0 of the coordinates to plan at, at rest. */

@@ -1,12 +1,17 @@
 /* nevh: the stages of Runge-Kutta-Nystroem methods; see nystrom_kernel.c.
 
-   One orbit of a small system is taken as eight equal ones, side by side, since
-   its gradients then are called where they stand.
+   Of one orbit of a small system gradients are called where they stand: number
+   by number, where its terms have point gradients, or else as eight equal
+   orbits side by side.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "nystrom_private.h"
 #include "work_private.h"
 #include <math.h>
 #include <string.h>
+
+/* The ways to take a step, as constants of inlined functions: `called` is the
+   lanes of planned calls, or this where there are none. */
+enum { NOT_CALLED = 0 };
 
 /* Rows of columns. */
 static void prepare_columns(nevh__nystrom *y, const nevh__stages *s) {
@@ -99,6 +104,11 @@ NEVH__INLINE void place_vectors(const nevh__nystrom *y, const nevh__sum *x,
     }
 }
 
+NEVH__INLINE void place_number(const nevh__nystrom *y, double c, size_t i,
+                               double sum) {
+    y->points[i] = y->q[i] + ((c * y->way[i] + y->carry[i]) - y->gain[i] * sum);
+}
+
 NEVH__INLINE void place_diagonal(const nevh__nystrom *y, const nevh__sum *x,
                                  double c) {
     size_t i = 0, one = NEVH__IN_VECTOR;
@@ -106,10 +116,14 @@ NEVH__INLINE void place_diagonal(const nevh__nystrom *y, const nevh__sum *x,
         place_vectors(y, x, c, 2, i);
     for (; i + one <= y->size; i += one)
         place_vectors(y, x, c, 1, i);
-    for (; i < y->size; i++)
-        y->points[i] =
-            y->q[i] + ((c * y->way[i] + y->carry[i]) -
-                       y->gain[i] * nevh__add_up_one(x, y->slopes + i));
+    for (; i + 2 <= y->size; i += 2) {
+        double sums[2];
+        nevh__add_up_two(x, y->slopes + i, sums);
+        place_number(y, c, i, sums[0]);
+        place_number(y, c, i + 1, sums[1]);
+    }
+    if (i < y->size)
+        place_number(y, c, i, nevh__add_up_one(x, y->slopes + i));
 }
 
 /* The state of the first stage. */
@@ -126,26 +140,33 @@ NEVH__INLINE void set_time(const nevh__nystrom *y, const nevh__stages *s,
     }
 }
 
-/* T_p of the momenta; unless by_call is constant this is slow. */
-NEVH__INLINE int drift(const nevh__nystrom *y, bool by_call) {
-    if (!by_call)
+NEVH__INLINE void run(const nevh__call *call, size_t called) {
+    if (called == 1)
+        nevh__call_run_points(call);
+    else
+        nevh__call_run(call);
+}
+
+/* T_p of the momenta. */
+NEVH__INLINE int drift(const nevh__nystrom *y, size_t called) {
+    if (!called)
         return nevh_work_gradient(y->work, y->lanes, y->time, y->points,
                                   y->momenta, NULL, y->velocities);
-    nevh__call_run(&y->drift);
+    run(&y->drift, called);
     return NEVH_OK;
 }
 
-NEVH__INLINE int kick(const nevh__nystrom *y, bool by_call, size_t stage) {
-    if (!by_call)
+NEVH__INLINE int kick(const nevh__nystrom *y, size_t called, size_t stage) {
+    if (!called)
         return nevh_work_gradient(y->work, y->lanes, y->time, y->points, y->p,
                                   y->slopes + stage * y->stride, NULL);
-    nevh__call_run(&y->kicks[stage]);
+    run(&y->kicks[stage], called);
     return NEVH_OK;
 }
 
 /* The state of a stage, to points, and its time. */
 NEVH__INLINE int place(const nevh__nystrom *y, const nevh__stages *s,
-                       bool by_call, size_t stage) {
+                       size_t called, size_t stage) {
     const nevh_nystrom *table = y->table;
     const nevh__sum *x = &y->sums[stage];
     double c = table->c[stage];
@@ -156,20 +177,20 @@ NEVH__INLINE int place(const nevh__nystrom *y, const nevh__stages *s,
         place_diagonal(y, x, c);
     else {
         place_momenta(y, x, c);
-        status = drift(y, by_call);
+        status = drift(y, called);
         place_points(y, c);
     }
-    if (!by_call || y->kicks->timed)
+    if (!called || y->kicks->timed)
         set_time(y, s, c);
     return status;
 }
 
 /* T_p(p), to velocities, and by how far it moves q. */
-NEVH__INLINE int find_way(const nevh__nystrom *y, bool by_call) {
+NEVH__INLINE int find_way(const nevh__nystrom *y, size_t called) {
     const double *carry = y->carry + y->size;
     for (size_t i = 0; i < y->size; i++)
         y->momenta[i] = y->p[i] + carry[i];
-    int status = drift(y, by_call);
+    int status = drift(y, called);
     for (size_t i = 0; i < y->size; i++)
         y->way[i] = y->h[i] * y->velocities[i];
     return status;
@@ -177,32 +198,37 @@ NEVH__INLINE int find_way(const nevh__nystrom *y, bool by_call) {
 
 /* Of calls, stops where a slope is not finite. */
 NEVH__INLINE int take(const nevh__nystrom *y, const nevh__stages *s,
-                      bool by_call, size_t first, size_t until) {
+                      size_t called, size_t first, size_t until) {
     int status = NEVH_OK;
     double bad = 0;
     place_start(y); /* where T_p is asked for, if H is one function */
     if (y->inverse || until == 1)
-        status = find_way(y, by_call);
+        status = find_way(y, called);
     for (size_t i = first; !status && i < until; i++) {
-        status = place(y, s, by_call, i);
+        status = place(y, s, called, i);
         if (!status)
-            status = kick(y, by_call, i);
+            status = kick(y, called, i);
         const double *slopes = y->slopes + i * y->stride;
-        for (size_t k = 0; by_call && k < y->size; k += y->lanes)
+        for (size_t k = 0; called && k < y->size; k += y->lanes)
             bad += slopes[k] - slopes[k];
     }
     return bad == 0 ? status : NEVH_EDOM;
 }
 
-NEVH_SIMD static int take_by_call(const nevh__nystrom *y, const nevh__stages *s,
-                                  size_t first, size_t until) {
-    return take(y, s, true, first, until);
+NEVH__ONE_BY_ONE static int take_points(const nevh__nystrom *y,
+                                        const nevh__stages *s, size_t first,
+                                        size_t until) {
+    return take(y, s, 1, first, until);
 }
 
-NEVH_SIMD static int take_by_field(const nevh__nystrom *y,
-                                   const nevh__stages *s, size_t first,
-                                   size_t until) {
-    return take(y, s, false, first, until);
+NEVH_SIMD static int take_vectors(const nevh__nystrom *y, const nevh__stages *s,
+                                  size_t first, size_t until) {
+    return take(y, s, NEVH__LANES, first, until);
+}
+
+NEVH_SIMD static int take_columns(const nevh__nystrom *y, const nevh__stages *s,
+                                  size_t first, size_t until) {
+    return take(y, s, NOT_CALLED, first, until);
 }
 
 /* As a slope of the state, T_p and -D_0; and back. */
@@ -221,16 +247,17 @@ static void take_first(nevh__nystrom *y, const nevh__stages *s) {
             y->slopes[i * apart + lane] = -s->slopes[n + i];
 }
 
-static int take_slopes(nevh__nystrom *y, const nevh__stages *s, bool by_call,
+static int take_slopes(nevh__nystrom *y, const nevh__stages *s, size_t called,
                        size_t first, size_t until) {
-    if (by_call)
+    if (called > 1)
         prepare_lanes(y, s);
     else
         prepare_columns(y, s);
     if (first > 0)
         take_first(y, s);
-    int status = by_call ? take_by_call(y, s, first, until)
-                         : take_by_field(y, s, first, until);
+    int status = called == 1            ? take_points(y, s, first, until)
+                 : called == NOT_CALLED ? take_columns(y, s, first, until)
+                                        : take_vectors(y, s, first, until);
     if (!status && until == 1)
         hand_first(y, s);
     return status;
@@ -241,13 +268,13 @@ int nevh__nystrom_take(nevh__stages *s, size_t first, size_t until) {
     s->holds = y->call_lanes && !s->work->accounts &&
                nevh__call_renew(&y->drift) && nevh__call_renew(y->kicks);
     if (s->holds) {
-        if (take_slopes(y, s, true, first, until) == NEVH_OK) {
+        if (take_slopes(y, s, y->call_lanes, first, until) == NEVH_OK) {
             s->work->field->gradients += until - first;
             return NEVH_OK;
         }
     }
     s->holds = false;
-    return take_slopes(y, s, false, first, until);
+    return take_slopes(y, s, NOT_CALLED, first, until);
 }
 
 /* -h sum_j weights[j] D_j, of each column. */
@@ -273,7 +300,7 @@ NEVH_SIMD static int sum_drifts(const nevh__nystrom *y, const nevh__stages *s,
     if (y->inverse)
         return status;
     place_momenta(y, x, c);
-    status = drift(y, s->holds);
+    status = drift(y, s->holds ? y->lanes : NOT_CALLED);
     for (size_t i = 0; i < size; i++)
         out[i] = WAY(double, y, i *apart, c);
     return status;
@@ -296,5 +323,5 @@ int nevh__nystrom_finish(const nevh__stages *s, double change[], double error[],
 
 int nevh__nystrom_place(const nevh__nystrom *y, const nevh__stages *s,
                         size_t stage) {
-    return place(y, s, false, stage);
+    return place(y, s, NOT_CALLED, stage);
 }

@@ -226,20 +226,11 @@ NEVH_SIMD static bool go_in_vectors(const journey *j) {
     return go(j, NEVH__LANES, j->orbit->n * NEVH__LANES);
 }
 
-/* Numbers that go through memory to functions and back had better not be stored
-   one by one and loaded in pairs. */
-#ifdef NEVH__VECTORS
-#define ONE_BY_ONE                                                             \
-    __attribute__((optimize("O2", "no-tree-slp-vectorize", "fp-contract=off")))
-#else
-#define ONE_BY_ONE
-#endif
-
 /* All where the caller and the memory have it. */
-ONE_BY_ONE static bool go_in_numbers(const nevh__operations *o,
-                                     const nevh__splitting_memory *m, double t,
-                                     double h, bool kept, double q[],
-                                     double p[]) {
+NEVH__ONE_BY_ONE static bool go_in_numbers(const nevh__operations *o,
+                                           const nevh__splitting_memory *m,
+                                           double t, double h, bool kept,
+                                           double q[], double p[]) {
     const nevh__repeated *r = o->repeated;
     const journey j = {r,
                        o,

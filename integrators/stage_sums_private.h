@@ -46,9 +46,21 @@ NEVH__INLINE void nevh__add_up(const nevh__sum *x, size_t rows,
     }
 }
 
-/* The same of single numbers. */
-static inline double nevh__add_up_one(const nevh__sum *x,
-                                      const double slopes[]) {
+/* The same of numbers. */
+NEVH__INLINE void nevh__add_up_two(const nevh__sum *x, const double slopes[],
+                                   double sums[2]) {
+    double first = 0, second = 0;
+    for (size_t j = 0; j < x->count; j++) {
+        const double *slope = slopes + x->offsets[j];
+        first += x->weights[j] * slope[0];
+        second += x->weights[j] * slope[1];
+    }
+    sums[0] = first;
+    sums[1] = second;
+}
+
+NEVH__INLINE double nevh__add_up_one(const nevh__sum *x,
+                                     const double slopes[]) {
     double sum = 0;
     for (size_t j = 0; j < x->count; j++)
         sum += x->weights[j] * slopes[x->offsets[j]];

@@ -18,6 +18,14 @@ typedef double nevh__vector
 #else
 typedef double nevh__vector;
 #endif
+/* Numbers that go through memory to functions and back had better not be stored
+   one by one and loaded in pairs. */
+#ifdef NEVH__VECTORS
+#define NEVH__ONE_BY_ONE                                                       \
+    __attribute__((optimize("O2", "no-tree-slp-vectorize", "fp-contract=off")))
+#else
+#define NEVH__ONE_BY_ONE
+#endif
 /* A part of room that is laid out. */
 static inline double *nevh__take(double **from, size_t size) {
     double *taken = *from;
