@@ -186,11 +186,13 @@ NEVH__INLINE int place(const nevh__nystrom *y, const nevh__stages *s,
 }
 
 /* T_p(p), to velocities, and by how far it moves q. */
-NEVH__INLINE int find_way(const nevh__nystrom *y, size_t called) {
+NEVH__INLINE int find_way(const nevh__nystrom *y, size_t called, bool known) {
     const double *carry = y->carry + y->size;
+    int status = NEVH_OK;
     for (size_t i = 0; i < y->size; i++)
         y->momenta[i] = y->p[i] + carry[i];
-    int status = drift(y, called);
+    if (!known)
+        status = drift(y, called);
     for (size_t i = 0; i < y->size; i++)
         y->way[i] = y->h[i] * y->velocities[i];
     return status;
@@ -203,7 +205,7 @@ NEVH__INLINE int take(const nevh__nystrom *y, const nevh__stages *s,
     double bad = 0;
     place_start(y); /* where T_p is asked for, if H is one function */
     if (y->inverse || until == 1)
-        status = find_way(y, called);
+        status = find_way(y, called, first > 0);
     for (size_t i = first; !status && i < until; i++) {
         status = place(y, s, called, i);
         if (!status)
@@ -240,11 +242,13 @@ static void hand_first(const nevh__nystrom *y, const nevh__stages *s) {
     }
 }
 
-static void take_first(nevh__nystrom *y, const nevh__stages *s) {
+static void take_first(const nevh__nystrom *y, const nevh__stages *s) {
     size_t n = y->n * s->columns, apart = y->lanes / s->columns;
     for (size_t i = 0; i < n; i++)
-        for (size_t lane = 0; lane < apart; lane++)
+        for (size_t lane = 0; lane < apart; lane++) {
+            y->velocities[i * apart + lane] = s->slopes[i];
             y->slopes[i * apart + lane] = -s->slopes[n + i];
+        }
 }
 
 static int take_slopes(nevh__nystrom *y, const nevh__stages *s, size_t called,

@@ -263,12 +263,13 @@ static bool too_short(const walk *s, const lane_walk *l) {
 
 /* How much longer the next substep may be. */
 static double factor(const walk *s, const lane_walk *l, double err) {
-    double k = s->family->error_power, beta = 0.2 / k;
+    double k = s->family->error_power, beta = 0.2 / k, now = log2(err);
+    double last = log2(l->last > 0 ? l->last : least_error);
+    double usual = (0.75 * beta - 1 / k) * now + beta * last;
     if (!(l->last > 0))
-        return 0.9 * pow(err, 0.75 * beta - 1 / k) * pow(least_error, beta);
-    double usual = pow(err, 0.75 * beta - 1 / k) * pow(l->last, beta);
-    double growing = l->step / l->before * pow(l->last / (err * err), 1 / k);
-    return 0.9 * fmin(usual, growing);
+        return 0.9 * exp2(usual);
+    double growing = log2(l->step / l->before) + (last - 2 * now) / k;
+    return 0.9 * exp2(fmin(usual, growing));
 }
 
 /* Near the end of an orbit the times themselves may be too coarse for a shorter
