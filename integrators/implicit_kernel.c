@@ -304,22 +304,26 @@ NEVH__INLINE void add(double hb, double slope, double *sum, double *lost) {
     *sum = next;
 }
 
+/* One row of slopes, `apart` from each other. */
+NEVH__INLINE void sum_row(const nevh__tableau *a, const double hb[],
+                          const double x[], size_t apart, double *sum,
+                          double *lost) {
+    double total = *sum, rest = *lost;
+    for (size_t m = 0; m < a->stages; m++) {
+        size_t j = a->order[m];
+        add(hb[j], x[j * apart], &total, &rest);
+    }
+    *sum = total + rest;
+    *lost = nevh__lost(*sum, total, rest);
+}
+
 /* The new state and what it lost, small weights first. */
 NEVH_SIMD static void sum_up(const family_step *s, const nevh__tableau *a,
                              const double hb[]) {
     size_t count = 2 * s->work->size, width = s->work->width;
-    for (size_t m = 0; m < a->stages; m++) {
-        size_t j = a->order[m];
-        const double *x = s->slopes + j * width;
-        for (size_t i = 0; i < count; x += a->stages * width)
-            for (size_t lane = 0; lane < width; lane++, i++)
-                add(hb[j], x[lane], &s->sum[i], &s->lost[i]);
-    }
-    for (size_t i = 0; i < count; i++) {
-        double next = s->sum[i] + s->lost[i];
-        s->lost[i] = nevh__lost(next, s->sum[i], s->lost[i]);
-        s->sum[i] = next;
-    }
+    for (size_t i = 0; i < count; i++)
+        sum_row(a, hb, s->slopes + i / width * a->stages * width + i % width,
+                width, &s->sum[i], &s->lost[i]);
 }
 
 static int commit(const family_step *s, const family_plan *g, double q[],
