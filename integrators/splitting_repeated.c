@@ -144,22 +144,53 @@ NEVH__INLINE void advance(size_t lanes, size_t size, const half *x, double step,
     }
 }
 
-NEVH__INLINE void operate(const journey *j, size_t lanes, size_t size, size_t i,
-                          bool kick) {
-    const nevh__repeated *r = j->orbit;
-    const nevh__call *call = kick ? &r->kick : &r->drift;
-    double dt = j->plan->weights[i] * j->h;
+NEVH__INLINE void take(const journey *j, const nevh__call *call, size_t lanes,
+                       size_t i) {
     if (call->timed) {
         double time = j->t + j->plan->times[i] * j->h;
         EACH(lane, lanes, lanes) {
-            r->time[lane] = time;
+            j->orbit->time[lane] = time;
         }
     }
     if (lanes == 1)
         nevh__call_run_points(call);
     else
         nevh__call_run(call);
+}
+
+NEVH__INLINE void operate(const journey *j, size_t lanes, size_t size, size_t i,
+                          bool kick) {
+    const nevh__repeated *r = j->orbit;
+    double dt = j->plan->weights[i] * j->h;
+    take(j, kick ? &r->kick : &r->drift, lanes, i);
     advance(lanes, size, kick ? &j->p : &j->q, kick ? -dt : dt, r->slope);
+}
+
+/* A kick and a drift of known masses, whose numbers need not go through
+   memory. */
+NEVH__INLINE void operate_both(const journey *j, size_t lanes, size_t size,
+                               size_t i) {
+    const nevh__repeated *r = j->orbit;
+    double *restrict slope = r->slope;
+    const double *restrict inverse = r->drift.inverse;
+    const double *restrict p = j->p.state, *restrict carry_p = j->p.carry;
+    const double *restrict q = j->q.state, *restrict carry_q = j->q.carry;
+    double *restrict change_p = j->p.change, *restrict point_p = j->p.point;
+    double *restrict change_q = j->q.change, *restrict point_q = j->q.point;
+    double kick = -(j->plan->weights[i] * j->h);
+    double drift = j->plan->weights[i + 1] * j->h;
+    take(j, &r->kick, lanes, i);
+    EACH(k, lanes, size) {
+        double sum = change_p[k] + kick * slope[k];
+        double momentum = p[k] + (sum + carry_p[k]);
+        double velocity = inverse[k] * momentum;
+        double way = change_q[k] + drift * velocity;
+        slope[k] = velocity;
+        change_p[k] = sum;
+        point_p[k] = momentum;
+        change_q[k] = way;
+        point_q[k] = q[k] + (way + carry_q[k]);
+    }
 }
 
 /* All kicks and drifts in turn, of which the first may have its slope. */
@@ -177,6 +208,10 @@ NEVH__INLINE void move(const journey *j, size_t lanes, size_t size) {
     if (!kick)
         operate(j, lanes, size, i++, false);
     for (; i + 1 < count; i += 2) {
+        if (j->orbit->drift.inverse) {
+            operate_both(j, lanes, size, i);
+            continue;
+        }
         operate(j, lanes, size, i, true);
         operate(j, lanes, size, i + 1, false);
     }

@@ -196,19 +196,24 @@ NEVH__INLINE void weigh_up(size_t stages, size_t stride, const double mu[],
     *sum = even + odd;
 }
 
-/* Stages' states, n rows, from the gradient. */
-NEVH__INLINE void place_rows(size_t n, size_t stages, size_t stride,
-                             const double *restrict mu,
-                             const double *restrict hb,
-                             const double *restrict gradient, const double y[],
-                             const double carry[], double *restrict points) {
+/* Stages' states, n rows, from the gradient; velocities too, where these are
+   momenta over known masses. */
+NEVH__INLINE void
+place_rows(size_t n, size_t stages, size_t stride, const double *restrict mu,
+           const double *restrict hb, const double *restrict gradient,
+           const double y[], const double carry[], double *restrict points,
+           const double *inverse, double *restrict velocities) {
     for (size_t k = 0; k < n; k++)
         for (size_t from = 0; from < stride; from += NEVH__LANES) {
+            size_t at = k * stride + from;
             nevh__vector sum;
             weigh_up(stages, stride, mu + from, hb, gradient + k * stride,
                      &sum);
-            *(nevh__vector *)(points + k * stride + from) =
-                y[k] + (sum + carry[k]);
+            nevh__vector point = y[k] + (sum + carry[k]);
+            *(nevh__vector *)(points + at) = point;
+            if (inverse)
+                *(nevh__vector *)(velocities + at) =
+                    *(const nevh__vector *)(inverse + at) * point;
         }
 }
 
@@ -218,10 +223,13 @@ NEVH__INLINE void place(const nevh__sweeps *s, bool q) {
     const double *slopes = s->gradient + (q ? 0 : half);
     const double *y = q ? s->q : s->p, *carry = s->carry + (q ? 0 : n);
     double *points = s->points + (q ? 0 : half);
+    const double *inverse = q || !s->prepared ? NULL : s->drift.inverse;
     if (s->stages == eight)
-        place_rows(n, eight, eight, mu, hb, slopes, y, carry, points);
+        place_rows(n, eight, eight, mu, hb, slopes, y, carry, points, inverse,
+                   s->gradient);
     else
-        place_rows(n, s->stages, s->stride, mu, hb, slopes, y, carry, points);
+        place_rows(n, s->stages, s->stride, mu, hb, slopes, y, carry, points,
+                   inverse, s->gradient);
 }
 
 /* The gradient as it always is taken, which says what is wrong with it. */
@@ -238,7 +246,8 @@ NEVH__INLINE int take_gradient(const nevh__sweeps *s, const nevh__call *c,
                                bool q, bool p) {
     if (!s->prepared)
         return ask(s, q, p);
-    nevh__call_run(c);
+    if (!c->inverse)
+        nevh__call_run(c);
     return NEVH_OK;
 }
 

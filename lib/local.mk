@@ -14,6 +14,7 @@ libnevh_core_la_SOURCES = \
 	lib/system/closeness.c \
 	lib/system/probe_private.h \
 	lib/system/probe.c \
+	lib/system/masses.c \
 	lib/system/kinetic.c \
 	lib/system/kinetic_time.c \
 	lib/system/motion_private.h \

@@ -7,27 +7,6 @@ enum { PAIRS = BODIES * (BODIES - 1) / 2 };
 
 /* The derivatives are the formulas that peers are given in problems.h. */
 
-/* c: 1 over the mass */
-NEVH_BODY(kinetic, void, { return nevh_c(0) * nevh_p(0) * nevh_p(0) / 2; })
-
-NEVH_SIMD
-static void kinetic_gradient(size_t width, const double t[], const double q[],
-                             const double p[], const double c[],
-                             const void *params, double dh_dq[],
-                             double dh_dp[]) {
-    (void)t, (void)q, (void)params, (void)dh_dq;
-    if (!dh_dp)
-        return;
-    NEVH_LANES(i, width) {
-        dh_dp[i] = c[i] * p[i];
-    }
-}
-
-/* Of mass 1. */
-NEVH_BODY(unit, void, { return nevh_p(0) * nevh_p(0) / 2; })
-
-NEVH_GRADIENT(unit, void, { nevh_dh_dp(0) = nevh_p(0); })
-
 NEVH_BODY(cosine, void, { return -nevh_cos(nevh_q(0)); })
 
 NEVH_GRADIENT(cosine, void, { nevh_dh_dq(0) = nevh_sin(nevh_q(0)); })
@@ -88,14 +67,8 @@ static void gravity_gradient(size_t width, const double t[], const double q[],
 }
 
 static nevh_system *unit_mass(size_t n, nevh_term potential) {
-    static const size_t all[] = {0, 1};
     nevh_system *s = nevh_system_new(n);
-    nevh_system_add(s, &(nevh_term){.effect = "kinetic",
-                                    .np = 1,
-                                    .p = all,
-                                    .count = n,
-                                    NEVH_FORMS(unit),
-                                    NEVH_GRADIENTS(unit)});
+    nevh_system_add_masses(s, "kinetic", NULL);
     potential.effect = "potential";
     potential.nq = n;
     nevh_system_add(s, &potential);
@@ -104,8 +77,8 @@ static nevh_system *unit_mass(size_t n, nevh_term potential) {
 
 static nevh_system *outer_sun(void) {
     nevh_system *s = nevh_system_new(MOST_N);
-    double inverse[MOST_N], c[PAIRS];
-    size_t all[MOST_N], q[6 * PAIRS], pair = 0;
+    double masses[MOST_N], c[PAIRS];
+    size_t q[6 * PAIRS], pair = 0;
     for (size_t i = 0; i < BODIES; i++)
         for (size_t j = i + 1; j < BODIES; j++, pair++) {
             c[pair] = sun_gravity * sun_masses[i] * sun_masses[j];
@@ -114,18 +87,9 @@ static nevh_system *outer_sun(void) {
                 q[6 * pair + 3 + k] = 3 * j + k;
             }
         }
-    for (size_t k = 0; k < MOST_N; k++) {
-        all[k] = k;
-        inverse[k] = 1 / sun_masses[k / 3];
-    }
-    nevh_system_add(s, &(nevh_term){.effect = "kinetic",
-                                    .np = 1,
-                                    .nc = 1,
-                                    .p = all,
-                                    .c = inverse,
-                                    .count = MOST_N,
-                                    NEVH_FORMS(kinetic),
-                                    .gradient = kinetic_gradient});
+    for (size_t k = 0; k < MOST_N; k++)
+        masses[k] = sun_masses[k / 3];
+    nevh_system_add_masses(s, "kinetic", masses);
     nevh_system_add(s, &(nevh_term){.effect = "gravity",
                                     .nq = 6,
                                     .nc = 1,

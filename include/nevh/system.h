@@ -113,6 +113,17 @@ NEVH_API void nevh_system_free(nevh_system *);
             have. */
 NEVH_API int nevh_system_add(nevh_system *, const nevh_term *);
 
+/* Adds the kinetic energy of masses, the sum over k of p_k^2 / (2 m_k), in all
+   forms that a term may have.  Say it so where T is no more than that: one
+   orbit is then faster than with a term of one's own.
+   effect   as nevh_term has it
+   masses   in, n of them, or moments of inertia, copied; NULL: 1 each
+   returns  NEVH_OK; NEVH_EINVAL (a mass that is 0 or not finite, and as
+            nevh_system_add), NEVH_ENOMEM; carried by the system as after
+            nevh_system_add */
+NEVH_API int nevh_system_add_masses(nevh_system *, const char *effect,
+                                    const double masses[]);
+
 /* Adds friction: dp_k/dt gains -rates[k] p_k.  It is proportional to momentum,
    not to velocity, and no term of H: energies do not count it.
    effect   the effect that it belongs to, on or off by name like any other.

@@ -145,6 +145,18 @@ static bool plan_blocks(nevh__call *c, const double t[], const double q[],
     return true;
 }
 
+/* Whether no other term reads momenta. */
+static void find_masses(nevh__call *c, const double p[]) {
+    const nevh__called *x = c->terms;
+    const nevh_term *is = &x->term->term->is;
+    const double *inverse = nevh__term_inverse_masses(x->term->term);
+    size_t alone = c->width == 1 ? is->count : 1;
+    if (c->half[0] || !inverse || c->count != alone || is->count != c->field->n)
+        return;
+    c->inverse = c->width == 1 ? inverse : x->c;
+    c->momenta = p;
+}
+
 nevh__call nevh__call_plan(nevh_field *f, size_t width, const double t[],
                            const double q[], const double p[], double dh_dq[],
                            double dh_dp[]) {
@@ -153,7 +165,10 @@ nevh__call nevh__call_plan(nevh_field *f, size_t width, const double t[],
         return (nevh__call){0};
     bool there =
         width == 1 ? plan_points(&c, t, q, p) : plan_blocks(&c, t, q, p);
-    return there ? c : (nevh__call){0};
+    if (!there)
+        return (nevh__call){0};
+    find_masses(&c, p);
+    return c;
 }
 
 bool nevh__call_renew(nevh__call *c) {

@@ -109,6 +109,10 @@ static inline bool nevh__term_on(const nevh_system *s, const nevh__term *term) {
  */
 size_t nevh__effect_index(nevh_system *, const char *name);
 
+/* 1/m of each instance where the term came from nevh_system_add_masses; NULL:
+   it did not. */
+const double *nevh__term_inverse_masses(const nevh__term *);
+
 /* Values of a term in `width` columns (a multiple of NEVH__LANES) of which
    `used` count; rows of `width` doubles as in nevh_block_fn.  A scalar value
    is called for the used columns only; with `scalar` it is taken even where
