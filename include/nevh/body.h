@@ -194,6 +194,7 @@ NEVH__INLINE const double *nevh__unlike(void) {
     __asm__("" : "+r"(nothing));
     return nothing;
 }
+#define NEVH__UNLIKE(i) nothing[i - i##_from]
 
 #define NEVH__POINT1(name, f)                                                  \
     NEVH__INLINE double name(double x) {                                       \
@@ -234,11 +235,15 @@ NEVH__POINT2(nevh_point_hypot, nevh_simd_hypot)
 #undef NEVH__POINT2
 #undef NEVH__POINT1
 #else
-#define nevh_point_sin sin
-#define nevh_point_cos cos
-#define nevh_point_exp exp
-#define nevh_point_log log
-#define nevh_point_pow pow
+NEVH__INLINE const double *nevh__unlike(void) {
+    return NULL;
+}
+#define NEVH__UNLIKE(i) -0.
+#define nevh_point_sin  sin
+#define nevh_point_cos  cos
+#define nevh_point_exp  exp
+#define nevh_point_log  log
+#define nevh_point_pow  pow
 #endif
 #define nevh_point_sqrt nevh_simd_sqrt
 #if !defined NEVH__VECTORS || !__GLIBC_PREREQ(2, 35)
@@ -391,22 +396,22 @@ NEVH__INLINE double _Complex nevh__of_complex(const double (*x)[2], size_t k) {
 #define nevh_q(k)        NEVH__AT(nevh__q, k)
 #define nevh_p(k)        NEVH__AT(nevh__p, k)
 #define nevh_c(k)        NEVH__AT(nevh__c, k)
-#define nevh_sin(x)      NEVH__LIBM(sin, x)(x)
-#define nevh_cos(x)      NEVH__LIBM(cos, x)(x)
-#define nevh_tan(x)      NEVH__LIBM(tan, x)(x)
-#define nevh_asin(x)     NEVH__LIBM(asin, x)(x)
-#define nevh_acos(x)     NEVH__LIBM(acos, x)(x)
-#define nevh_atan(x)     NEVH__LIBM(atan, x)(x)
-#define nevh_atan2(y, x) NEVH__LIBM(atan2, (y) + (x))(y, x)
-#define nevh_sinh(x)     NEVH__LIBM(sinh, x)(x)
-#define nevh_cosh(x)     NEVH__LIBM(cosh, x)(x)
-#define nevh_tanh(x)     NEVH__LIBM(tanh, x)(x)
-#define nevh_exp(x)      NEVH__LIBM(exp, x)(x)
-#define nevh_log(x)      NEVH__LIBM(log, x)(x)
+#define nevh_sin(x)      NEVH__LIBM(sin, x)((x) + nevh__none)
+#define nevh_cos(x)      NEVH__LIBM(cos, x)((x) + nevh__none)
+#define nevh_tan(x)      NEVH__LIBM(tan, x)((x) + nevh__none)
+#define nevh_asin(x)     NEVH__LIBM(asin, x)((x) + nevh__none)
+#define nevh_acos(x)     NEVH__LIBM(acos, x)((x) + nevh__none)
+#define nevh_atan(x)     NEVH__LIBM(atan, x)((x) + nevh__none)
+#define nevh_atan2(y, x) NEVH__LIBM(atan2, (y) + (x))((y) + nevh__none, x)
+#define nevh_sinh(x)     NEVH__LIBM(sinh, x)((x) + nevh__none)
+#define nevh_cosh(x)     NEVH__LIBM(cosh, x)((x) + nevh__none)
+#define nevh_tanh(x)     NEVH__LIBM(tanh, x)((x) + nevh__none)
+#define nevh_exp(x)      NEVH__LIBM(exp, x)((x) + nevh__none)
+#define nevh_log(x)      NEVH__LIBM(log, x)((x) + nevh__none)
 #define nevh_sqrt(x)     NEVH__LIBM(sqrt, x)(x)
-#define nevh_cbrt(x)     NEVH__LIBM(cbrt, x)(x)
-#define nevh_pow(x, y)   NEVH__LIBM(pow, (x) + (y))(x, y)
-#define nevh_hypot(x, y) NEVH__LIBM(hypot, (x) + (y))(x, y)
+#define nevh_cbrt(x)     NEVH__LIBM(cbrt, x)((x) + nevh__none)
+#define nevh_pow(x, y)   NEVH__LIBM(pow, (x) + (y))((x) + nevh__none, y)
+#define nevh_hypot(x, y) NEVH__LIBM(hypot, (x) + (y))((x) + nevh__none, y)
 #define nevh_abs(x)      NEVH__ANY(x, fabs, nevh__complex_abs)(x)
 #define nevh_min(x, y)   NEVH__OWN(min, (x) + (y))(x, y)
 #define nevh_max(x, y)   NEVH__OWN(max, (x) + (y))(x, y)
@@ -419,10 +424,12 @@ NEVH__INLINE double _Complex nevh__of_complex(const double (*x)[2], size_t k) {
 #define NEVH__COMPLEX
 #endif
 
-/* One form of a body: its numbers, and the body. */
-#define NEVH__FORM(number, params_type, ...)                                   \
+/* One form of a body: its numbers, what is added to arguments, which is -0.,
+   and the body. */
+#define NEVH__FORM(number, nothing, params_type, ...)                          \
     {                                                                          \
         NEVH__MAYBE_UNUSED typedef number nevh_num;                            \
+        NEVH__MAYBE_UNUSED const double nevh__none = nothing;                  \
         const params_type *params = nevh__params;                              \
         (void)nevh_t, (void)nevh__q, (void)nevh__p, (void)nevh__c;             \
         (void)params;                                                          \
@@ -437,12 +444,12 @@ NEVH__INLINE double _Complex nevh__of_complex(const double (*x)[2], size_t k) {
     NEVH__MAYBE_UNUSED static double name##_value(                             \
         double nevh_t, const double *nevh__q, const double *nevh__p,           \
         const double *nevh__c, const void *nevh__params)                       \
-    NEVH__FORM(double, params_type, __VA_ARGS__)                               \
+    NEVH__FORM(double, -0., params_type, __VA_ARGS__)                               \
                                                                                \
     NEVH__INLINE double name##_lane(                                           \
         double nevh_t, nevh__lanes nevh__q, nevh__lanes nevh__p,               \
         nevh__lanes nevh__c, const void *nevh__params)                         \
-    NEVH__FORM(double, params_type, __VA_ARGS__)                               \
+    NEVH__FORM(double, -0., params_type, __VA_ARGS__)                               \
                                                                                \
     NEVH__MAYBE_UNUSED NEVH_SIMD static void name##_block(                     \
         size_t width, const double *t, const double *q, const double *p,       \
@@ -459,7 +466,7 @@ NEVH__INLINE double _Complex nevh__of_complex(const double (*x)[2], size_t k) {
         double nevh_t, const double (*nevh__q)[2],                             \
         const double (*nevh__p)[2], const double *nevh__c,                     \
         const void *nevh__params)                                              \
-    NEVH__FORM(double _Complex, params_type, __VA_ARGS__)                      \
+    NEVH__FORM(double _Complex, -0., params_type, __VA_ARGS__)                      \
                                                                                \
     NEVH__MAYBE_UNUSED NEVH__COMPLEX static void name##_complex(               \
         double t, const double (*q)[2], const double (*p)[2],                  \
@@ -496,10 +503,11 @@ NEVH__INLINE double *nevh__slope(nevh__slopes d, size_t k) {
 #define NEVH__GRADIENT_FORM(name, rows, params_type, ...)                      \
     NEVH__INLINE void name(double nevh_t, rows nevh__q, rows nevh__p,          \
                            rows nevh__c, const void *nevh__params,             \
-                           nevh__slopes nevh__dh_dq, nevh__slopes nevh__dh_dp) \
+                           double nothing, nevh__slopes nevh__dh_dq,           \
+                           nevh__slopes nevh__dh_dp)                           \
     {                                                                          \
         (void)nevh__dh_dq, (void)nevh__dh_dp;                                  \
-        NEVH__FORM(double, params_type, __VA_ARGS__)                           \
+        NEVH__FORM(double, nothing, params_type, __VA_ARGS__)                  \
     }
 
 /* All lanes, for the halves that are wanted: constants. */
@@ -508,13 +516,14 @@ NEVH__INLINE double *nevh__slope(nevh__slopes d, size_t k) {
         double nowhere;                                                        \
         name##_gradient_lane(                                                  \
             t[i], (nevh__lanes){q, width, i}, (nevh__lanes){p, width, i},      \
-            (nevh__lanes){c, width, i}, params,                                \
+            (nevh__lanes){c, width, i}, params, NEVH__UNLIKE(i),               \
             (nevh__slopes){dh_dq, width, i, q_too, &nowhere},                  \
             (nevh__slopes){dh_dp, width, i, p_too, &nowhere});                 \
     }
 #define NEVH__GRADIENT_POINT(name, q_too, p_too)                               \
     name##_gradient_one(t, (nevh__one){q}, (nevh__one){p}, (nevh__one){c},     \
-                        params, (nevh__slopes){dh_dq, 1, 0, q_too, &nowhere},  \
+                        params, -0.,                                           \
+                        (nevh__slopes){dh_dq, 1, 0, q_too, &nowhere},          \
                         (nevh__slopes){dh_dp, 1, 0, p_too, &nowhere})
 
 /* Defines NAME_gradient and NAME_point_gradient, static functions of the types
@@ -530,6 +539,7 @@ NEVH__INLINE double *nevh__slope(nevh__slopes d, size_t k) {
         size_t width, const double *t, const double *q, const double *p,       \
         const double *c, const void *params, double *dh_dq, double *dh_dp)     \
     {                                                                          \
+        NEVH__MAYBE_UNUSED const double *nothing = nevh__unlike();             \
         if (dh_dq && dh_dp)                                                    \
             NEVH__GRADIENT_LANES(name, true, true)                             \
         else if (dh_dq)                                                        \
