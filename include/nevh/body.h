@@ -1,4 +1,4 @@
-/* nevh: all forms of a term from one body.
+/* nevh: all forms of a term from one body, and of its gradient from another.
    SPDX-License-Identifier: GPL-3.0-or-later
 
    A term has up to three functions of the same meaning: value takes one state,
@@ -25,6 +25,25 @@
        nevh_sin cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt cbrt
        pow hypot abs min max, each with nevh_ before it
        nevh_real(x)         the real part, for what must be compared
+
+   Exact derivatives are written once, too, if one has them:
+
+       NEVH_GRADIENT(pendulum, rod, {
+           nevh_dh_dq(0) = params->m * params->g * params->l *
+                           nevh_sin(nevh_q(0));
+           nevh_dh_dp(0) = nevh_p(0) / (params->m * params->l * params->l);
+       })
+
+       nevh_term term = {..., NEVH_FORMS(pendulum), NEVH_GRADIENTS(pendulum)};
+
+   makes gradient, which takes many states, and point_gradient, which takes one
+   and gives the same bits.  There nevh_num is double.  nevh_dh_dq(k) and
+   nevh_dh_dp(k) are assigned to, and not read; each half is computed only where
+   it is wanted.  The same bits come from a body as simple as the next paragraph
+   asks for, which then is done eight states at once; where nevh says that the
+   point gradient of a body is not its gradient, the body is not, and the term
+   takes .gradient = pendulum_gradient alone.
+
    Helpers that take a nevh_num must be macros, since a function takes either
    double or complex numbers.  2, 4 or 8 states are done at once where a body
    calls nothing but these functions, none of them under an if or a ?:, and has
@@ -33,8 +52,8 @@
    -DNEVH_PORTABLE, or where a body is less simple, a block goes from state to
    state.
 
-   NEVH_BODY is for C11.  C++ finds NEVH_SIMD, NEVH_LANES, NEVH_UNROLL and
-   nevh_simd_sin etc. alone. */
+   NEVH_BODY and NEVH_GRADIENT are for C11.  C++ finds NEVH_SIMD, NEVH_LANES,
+   NEVH_UNROLL, NEVH_POINT, nevh_simd_sin and nevh_point_sin etc. alone. */
 #ifndef NEVH_BODY_H
 #define NEVH_BODY_H
 
@@ -527,8 +546,8 @@ NEVH__INLINE double *nevh__slope(nevh__slopes d, size_t k) {
                         (nevh__slopes){dh_dp, 1, 0, p_too, &nowhere})
 
 /* Defines NAME_gradient and NAME_point_gradient, static functions of the types
-   in nevh_term, from one body that assigns to nevh_dh_dq(k) and nevh_dh_dp(k).
-   What it assigned it may not read back. */
+   in nevh_term.  The body, in braces, comes last; it may ask only for what the
+   term declares to read. */
 #define NEVH_GRADIENT(name, params_type, ...)                                  \
     NEVH__GRADIENT_FORM(name##_gradient_lane, nevh__lanes, params_type,        \
                         __VA_ARGS__)                                           \
