@@ -236,18 +236,9 @@ NEVH__INLINE void settle(nevh_work *w, const nevh__splitting_memory *m,
         *m->has_kept = 1;
 }
 
-/* Numbers that go through memory to functions and back had better not be stored
-   one by one and loaded in pairs. */
-#ifdef NEVH__VECTORS
-#define ONE_BY_ONE                                                             \
-    __attribute__((optimize("O2", "no-tree-slp-vectorize", "fp-contract=off")))
-#else
-#define ONE_BY_ONE
-#endif
-
 /* All where the caller and the memory have it. */
-ONE_BY_ONE static bool go_in_numbers(nevh_work *w, double t, double h,
-                                     double q[], double p[]) {
+NEVH__ONE_BY_ONE static bool go_in_numbers(nevh_work *w, double t, double h,
+                                           double q[], double p[]) {
     const nevh__operations *o = w->plan;
     const nevh__repeated *r = o->repeated;
     nevh__splitting_memory m = nevh__splitting_recall(w);

@@ -256,7 +256,7 @@ bool nevh__call_renew(nevh__call *);
 void nevh__call_add(const nevh__called *);
 /* Takes it, but looks at no result, and counts nothing; a call of width 1, or
    any. */
-static inline void nevh__call_run_points(const nevh__call *c) {
+NEVH__INLINE void nevh__call_run_points(const nevh__call *c) {
     const nevh__called *x = c->terms;
     for (size_t left = c->count; left > 0; left--, x++) {
         x->point(*x->t, x->q, x->p, x->c, x->params, x->dh_dq, x->dh_dp);
@@ -264,7 +264,7 @@ static inline void nevh__call_run_points(const nevh__call *c) {
             nevh__call_add(x);
     }
 }
-static inline void nevh__call_run(const nevh__call *c) {
+NEVH__INLINE void nevh__call_run(const nevh__call *c) {
     if (c->width == 1) {
         nevh__call_run_points(c);
         return;
