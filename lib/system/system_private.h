@@ -3,6 +3,7 @@
 #ifndef NEVH_SYSTEM_PRIVATE_H
 #define NEVH_SYSTEM_PRIVATE_H
 
+#include <nevh/body.h>
 #include <nevh/system.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -27,7 +28,7 @@ static inline double nevh__random(uint64_t *state) {
 }
 
 /* What rounding has lost of a + b, exactly, whichever is larger. */
-static inline double nevh__lost(double sum, double a, double b) {
+NEVH__INLINE double nevh__lost(double sum, double a, double b) {
     double part = sum - a;
     return (a - (sum - part)) + (b - part);
 }
