@@ -1,6 +1,7 @@
 /* Systems with every form of H, for what measures gradients.  NEVH_BODY makes
-   value, SIMD block and complex form from one text; the exact derivatives are
-   written by hand.
+   value, SIMD block and complex form from one text; NEVH_GRADIENT makes the
+   exact derivatives of blocks and of one state from another, but for those
+   whose form depends on a parameter.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient_systems.h"
 #include <math.h>
@@ -30,18 +31,10 @@ static void power_gradient(size_t width, const double t[], const double q[],
 NEVH_BODY(pendulum, void,
           { return nevh_p(0) * nevh_p(0) / 2 - G * nevh_cos(nevh_q(0)); })
 
-NEVH_SIMD static void pendulum_gradient(size_t width, const double t[],
-                                        const double q[], const double p[],
-                                        const double c[], const void *params,
-                                        double dh_dq[], double dh_dp[]) {
-    (void)t, (void)c, (void)params;
-    if (dh_dq)
-        NEVH_LANES(i, width)
-    dh_dq[i] = G * nevh_simd_sin(q[i]);
-    if (dh_dp)
-        NEVH_LANES(i, width)
-    dh_dp[i] = p[i];
-}
+NEVH_GRADIENT(pendulum, void, {
+    nevh_dh_dq(0) = G * nevh_sin(nevh_q(0));
+    nevh_dh_dp(0) = nevh_p(0);
+})
 
 NEVH_BODY(double_pendulum, void, {
     nevh_num d = nevh_q(0) - nevh_q(1);
@@ -53,83 +46,45 @@ NEVH_BODY(double_pendulum, void, {
            G * (2 * nevh_cos(nevh_q(0)) + nevh_cos(nevh_q(1)));
 })
 
-NEVH_SIMD static void
-double_pendulum_gradient(size_t width, const double t[], const double q[],
-                         const double p[], const double c[], const void *params,
-                         double dh_dq[], double dh_dp[]) {
-    const double *q2 = q + width, *p2 = p + width;
-    (void)t, (void)c, (void)params;
-    if (dh_dq)
-        NEVH_LANES(i, width) {
-            double s = nevh_simd_sin(q[i] - q2[i]);
-            double k = nevh_simd_cos(q[i] - q2[i]), root = 1 + s * s;
-            double form =
-                p[i] * p[i] + 2 * p2[i] * p2[i] - 2 * p[i] * p2[i] * k;
-            double both = s * (p[i] * p2[i] - form * k / root) / root;
-            dh_dq[i] = both + 2 * G * nevh_simd_sin(q[i]);
-            dh_dq[width + i] = -both + G * nevh_simd_sin(q2[i]);
-        }
-    if (dh_dp)
-        NEVH_LANES(i, width) {
-            double s = nevh_simd_sin(q[i] - q2[i]);
-            double k = nevh_simd_cos(q[i] - q2[i]), root = 1 + s * s;
-            dh_dp[i] = (p[i] - p2[i] * k) / root;
-            dh_dp[width + i] = (2 * p2[i] - p[i] * k) / root;
-        }
-}
+NEVH_GRADIENT(double_pendulum, void, {
+    double p1 = nevh_p(0), p2 = nevh_p(1), d = nevh_q(0) - nevh_q(1);
+    double s = nevh_sin(d), k = nevh_cos(d), root = 1 + s * s;
+    double form = p1 * p1 + 2 * p2 * p2 - 2 * p1 * p2 * k;
+    double both = s * (p1 * p2 - form * k / root) / root;
+    nevh_dh_dq(0) = both + 2 * G * nevh_sin(nevh_q(0));
+    nevh_dh_dq(1) = -both + G * nevh_sin(nevh_q(1));
+    nevh_dh_dp(0) = (p1 - p2 * k) / root;
+    nevh_dh_dp(1) = (2 * p2 - p1 * k) / root;
+})
 
 NEVH_BODY(kepler, void, {
     return (nevh_p(0) * nevh_p(0) + nevh_p(1) * nevh_p(1)) / 2 -
            1 / nevh_sqrt(nevh_q(0) * nevh_q(0) + nevh_q(1) * nevh_q(1));
 })
 
-NEVH_SIMD static void kepler_gradient(size_t width, const double t[],
-                                      const double q[], const double p[],
-                                      const double c[], const void *params,
-                                      double dh_dq[], double dh_dp[]) {
-    (void)t, (void)c, (void)params;
-    if (dh_dq)
-        NEVH_LANES(i, width) {
-            double y = q[width + i], r2 = q[i] * q[i] + y * y;
-            double r3 = r2 * nevh_simd_sqrt(r2);
-            dh_dq[i] = q[i] / r3;
-            dh_dq[width + i] = y / r3;
-        }
-    if (dh_dp)
-        for (size_t row = 0; row < 2 * width; row += width)
-            NEVH_LANES(i, width)
-    dh_dp[row + i] = p[row + i];
-}
+NEVH_GRADIENT(kepler, void, {
+    double x = nevh_q(0), y = nevh_q(1), r2 = x * x + y * y;
+    double r3 = r2 * nevh_sqrt(r2);
+    nevh_dh_dq(0) = x / r3;
+    nevh_dh_dq(1) = y / r3;
+    nevh_dh_dp(0) = nevh_p(0);
+    nevh_dh_dp(1) = nevh_p(1);
+})
 
 NEVH_BODY(kinetic, void, { return nevh_p(0) * nevh_p(0) / 2; })
 
-NEVH_SIMD static void kinetic_gradient(size_t width, const double t[],
-                                       const double q[], const double p[],
-                                       const double c[], const void *params,
-                                       double dh_dq[], double dh_dp[]) {
-    (void)t, (void)q, (void)c, (void)params, (void)dh_dq;
-    if (dh_dp)
-        NEVH_LANES(i, width)
-    dh_dp[i] = p[i];
-}
+NEVH_GRADIENT(kinetic, void, { nevh_dh_dp(0) = nevh_p(0); })
 
 NEVH_BODY(spring, void, {
     nevh_num r = nevh_q(1) - nevh_q(0);
     return nevh_exp(-r) + r - 1;
 })
 
-NEVH_SIMD static void spring_gradient(size_t width, const double t[],
-                                      const double q[], const double p[],
-                                      const double c[], const void *params,
-                                      double dh_dq[], double dh_dp[]) {
-    (void)t, (void)p, (void)c, (void)params, (void)dh_dp;
-    if (dh_dq)
-        NEVH_LANES(i, width) {
-            double pull = 1 - nevh_simd_exp(q[i] - q[width + i]);
-            dh_dq[i] = -pull;
-            dh_dq[width + i] = pull;
-        }
-}
+NEVH_GRADIENT(spring, void, {
+    double pull = 1 - nevh_exp(nevh_q(0) - nevh_q(1));
+    nevh_dh_dq(0) = -pull;
+    nevh_dh_dq(1) = pull;
+})
 
 /* The caller asks the system for its status when it plans. */
 static nevh_system *from_term(size_t n, const nevh_term *term) {
@@ -153,7 +108,7 @@ nevh_system *pendulum_system(void) {
                                      .nq = 1,
                                      .np = 1,
                                      NEVH_FORMS(pendulum),
-                                     .gradient = pendulum_gradient});
+                                     NEVH_GRADIENTS(pendulum)});
 }
 
 nevh_system *double_pendulum_system(void) {
@@ -161,7 +116,7 @@ nevh_system *double_pendulum_system(void) {
                                      .nq = 2,
                                      .np = 2,
                                      NEVH_FORMS(double_pendulum),
-                                     .gradient = double_pendulum_gradient});
+                                     NEVH_GRADIENTS(double_pendulum)});
 }
 
 nevh_system *kepler_system(void) {
@@ -169,7 +124,7 @@ nevh_system *kepler_system(void) {
                                      .nq = 2,
                                      .np = 2,
                                      NEVH_FORMS(kepler),
-                                     .gradient = kepler_gradient});
+                                     NEVH_GRADIENTS(kepler)});
 }
 
 nevh_system *chain_system(size_t masses) {
@@ -177,12 +132,12 @@ nevh_system *chain_system(size_t masses) {
                           .np = 1,
                           .count = masses,
                           NEVH_FORMS(kinetic),
-                          .gradient = kinetic_gradient},
+                          NEVH_GRADIENTS(kinetic)},
                          {.effect = "springs",
                           .nq = 2,
                           .count = masses - 1,
                           NEVH_FORMS(spring),
-                          .gradient = spring_gradient}};
+                          NEVH_GRADIENTS(spring)}};
     nevh_system *system = nevh_system_new(masses);
     size_t *ends = malloc(2 * masses * sizeof *ends);
     for (size_t i = 0; ends && i < masses; i++)

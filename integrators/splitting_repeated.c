@@ -261,28 +261,38 @@ NEVH_SIMD static bool go_in_vectors(const journey *j) {
     return go(j, NEVH__LANES, j->orbit->n * NEVH__LANES);
 }
 
+/* What remains to be done of a step that was taken. */
+NEVH__INLINE void settle(nevh_work *w, const nevh__splitting_memory *m,
+                         bool kept) {
+    const nevh__operations *o = w->plan;
+    bool kicks_first = o->first == NEVH_KICK;
+    w->field->gradients += (o->count + kicks_first) / 2 - (kept && kicks_first);
+    if (o->same_ends)
+        *m->has_kept = 1;
+}
+
 /* All where the caller and the memory have it. */
-NEVH__ONE_BY_ONE static bool go_in_numbers(const nevh__operations *o,
-                                           const nevh__splitting_memory *m,
-                                           double t, double h, bool kept,
+NEVH__ONE_BY_ONE static bool go_in_numbers(nevh_work *w, double t, double h,
                                            double q[], double p[]) {
+    const nevh__operations *o = w->plan;
     const nevh__repeated *r = o->repeated;
+    nevh__splitting_memory m = nevh__splitting_recall(w);
     const journey j = {r,
                        o,
-                       {q, m->carry_q, r->q.change, r->q.point},
-                       {p, m->carry_p, r->p.change, r->p.point},
-                       o->same_ends ? m->kept : NULL,
+                       {q, m.carry_q, r->q.change, r->q.point},
+                       {p, m.carry_p, r->p.change, r->p.point},
+                       o->same_ends ? m.kept : NULL,
                        t,
                        h,
-                       kept};
-    switch (r->n) {
-    case 1:
-        return go(&j, 1, 1);
-    case 2:
-        return go(&j, 1, 2);
-    default:
-        return go(&j, 1, r->n);
-    }
+                       o->same_ends && *m.has_kept != 0};
+    bool gone = false;
+    if (nevh__field_at_hand(w->field))
+        gone = r->n == 1   ? go(&j, 1, 1)
+               : r->n == 2 ? go(&j, 1, 2)
+                           : go(&j, 1, r->n);
+    if (gone)
+        settle(w, &m, j.kept);
+    return gone;
 }
 
 static void hand_over(size_t n, const double rows[], double to[]) {
@@ -290,48 +300,38 @@ static void hand_over(size_t n, const double rows[], double to[]) {
         to[k] = rows[k * NEVH__LANES];
 }
 
-static size_t kicks(const nevh__operations *o, bool kept) {
-    size_t kicks = (o->count + (o->first == NEVH_KICK)) / 2;
-    return kicks - (kept && o->first == NEVH_KICK);
-}
-
 /* All in vectors that are kept from step to step. */
-static bool repeated(const nevh__operations *o, const nevh__splitting_memory *m,
-                     double t, double h, bool kept, double q[], double p[]) {
-    const nevh__repeated *r = o->repeated;
+static bool go_repeated(nevh_work *w, double t, double h, double q[],
+                        double p[]) {
+    const nevh__operations *o = w->plan;
+    nevh__repeated *r = o->repeated;
+    nevh__splitting_memory m = nevh__splitting_recall(w);
+    bool kept = o->same_ends && *m.has_kept != 0;
     size_t n = r->n;
     const journey j = {r, o, r->q, r->p, r->kept, t, h, kept};
+    if (!nevh__call_renew(&r->kick) || !nevh__call_renew(&r->drift))
+        return false;
     take_over(n, q, r->q.state);
     take_over(n, p, r->p.state);
-    take_over(n, m->carry_q, r->q.carry);
-    take_over(n, m->carry_p, r->p.carry);
+    take_over(n, m.carry_q, r->q.carry);
+    take_over(n, m.carry_p, r->p.carry);
     if (kept)
-        take_over(n, m->kept, r->kept);
+        take_over(n, m.kept, r->kept);
     if (!go_in_vectors(&j))
         return false;
     hand_over(n, r->q.state, q);
     hand_over(n, r->p.state, p);
-    hand_over(n, r->q.carry, m->carry_q);
-    hand_over(n, r->p.carry, m->carry_p);
+    hand_over(n, r->q.carry, m.carry_q);
+    hand_over(n, r->p.carry, m.carry_p);
     if (o->same_ends)
-        hand_over(n, r->kept, m->kept);
+        hand_over(n, r->kept, m.kept);
+    settle(w, &m, kept);
     return true;
 }
 
 bool nevh__repeated_step(nevh_work *w, double t, double h, double q[],
                          double p[]) {
-    nevh__operations *o = w->plan;
-    nevh__repeated *r = o->repeated;
-    nevh__splitting_memory m = nevh__splitting_recall(w);
-    bool kept = o->same_ends && *m.has_kept != 0;
-    if (!nevh__call_renew(&r->kick) ||
-        (!r->points && !nevh__call_renew(&r->drift)))
-        return false;
-    if (!(r->points ? go_in_numbers(o, &m, t, h, kept, q, p)
-                    : repeated(o, &m, t, h, kept, q, p)))
-        return false;
-    w->field->gradients += kicks(o, kept);
-    if (o->same_ends)
-        *m.has_kept = 1;
-    return true;
+    const nevh__operations *o = w->plan;
+    return o->repeated->points ? go_in_numbers(w, t, h, q, p)
+                               : go_repeated(w, t, h, q, p);
 }

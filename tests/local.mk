@@ -9,6 +9,7 @@ suites = \
 	tests/check_exact \
 	tests/check_portable \
 	tests/check_body \
+	tests/check_point \
 	tests/check_lanes \
 	tests/check_one_orbit \
 	tests/check_one_orbit_terms \

@@ -1,4 +1,4 @@
-/* nevh: all forms of a term from one body.
+/* nevh: all forms of a term from one body, and of its gradient from another.
    SPDX-License-Identifier: GPL-3.0-or-later
 
    A term has up to three functions of the same meaning: value takes one state,
@@ -25,6 +25,25 @@
        nevh_sin cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt cbrt
        pow hypot abs min max, each with nevh_ before it
        nevh_real(x)         the real part, for what must be compared
+
+   Exact derivatives are written once, too, if one has them:
+
+       NEVH_GRADIENT(pendulum, rod, {
+           nevh_dh_dq(0) = params->m * params->g * params->l *
+                           nevh_sin(nevh_q(0));
+           nevh_dh_dp(0) = nevh_p(0) / (params->m * params->l * params->l);
+       })
+
+       nevh_term term = {..., NEVH_FORMS(pendulum), NEVH_GRADIENTS(pendulum)};
+
+   makes gradient, which takes many states, and point_gradient, which takes one
+   and gives the same bits.  There nevh_num is double.  nevh_dh_dq(k) and
+   nevh_dh_dp(k) are assigned to, and not read; each half is computed only where
+   it is wanted.  The same bits come from a body as simple as the next paragraph
+   asks for, which then is done eight states at once; where nevh says that the
+   point gradient of a body is not its gradient, the body is not, and the term
+   takes .gradient = pendulum_gradient alone.
+
    Helpers that take a nevh_num must be macros, since a function takes either
    double or complex numbers.  2, 4 or 8 states are done at once where a body
    calls nothing but these functions, none of them under an if or a ?:, and has
@@ -33,8 +52,8 @@
    -DNEVH_PORTABLE, or where a body is less simple, a block goes from state to
    state.
 
-   NEVH_BODY is for C11.  C++ finds NEVH_SIMD, NEVH_LANES, NEVH_UNROLL and
-   nevh_simd_sin etc. alone. */
+   NEVH_BODY and NEVH_GRADIENT are for C11.  C++ finds NEVH_SIMD, NEVH_LANES,
+   NEVH_UNROLL, NEVH_POINT, nevh_simd_sin and nevh_point_sin etc. alone. */
 #ifndef NEVH_BODY_H
 #define NEVH_BODY_H
 
@@ -194,6 +213,7 @@ NEVH__INLINE const double *nevh__unlike(void) {
     __asm__("" : "+r"(nothing));
     return nothing;
 }
+#define NEVH__UNLIKE(i) nothing[i - i##_from]
 
 #define NEVH__POINT1(name, f)                                                  \
     NEVH__INLINE double name(double x) {                                       \
@@ -234,11 +254,15 @@ NEVH__POINT2(nevh_point_hypot, nevh_simd_hypot)
 #undef NEVH__POINT2
 #undef NEVH__POINT1
 #else
-#define nevh_point_sin sin
-#define nevh_point_cos cos
-#define nevh_point_exp exp
-#define nevh_point_log log
-#define nevh_point_pow pow
+NEVH__INLINE const double *nevh__unlike(void) {
+    return NULL;
+}
+#define NEVH__UNLIKE(i) -0.
+#define nevh_point_sin  sin
+#define nevh_point_cos  cos
+#define nevh_point_exp  exp
+#define nevh_point_log  log
+#define nevh_point_pow  pow
 #endif
 #define nevh_point_sqrt nevh_simd_sqrt
 #if !defined NEVH__VECTORS || !__GLIBC_PREREQ(2, 35)
@@ -391,22 +415,22 @@ NEVH__INLINE double _Complex nevh__of_complex(const double (*x)[2], size_t k) {
 #define nevh_q(k)        NEVH__AT(nevh__q, k)
 #define nevh_p(k)        NEVH__AT(nevh__p, k)
 #define nevh_c(k)        NEVH__AT(nevh__c, k)
-#define nevh_sin(x)      NEVH__LIBM(sin, x)(x)
-#define nevh_cos(x)      NEVH__LIBM(cos, x)(x)
-#define nevh_tan(x)      NEVH__LIBM(tan, x)(x)
-#define nevh_asin(x)     NEVH__LIBM(asin, x)(x)
-#define nevh_acos(x)     NEVH__LIBM(acos, x)(x)
-#define nevh_atan(x)     NEVH__LIBM(atan, x)(x)
-#define nevh_atan2(y, x) NEVH__LIBM(atan2, (y) + (x))(y, x)
-#define nevh_sinh(x)     NEVH__LIBM(sinh, x)(x)
-#define nevh_cosh(x)     NEVH__LIBM(cosh, x)(x)
-#define nevh_tanh(x)     NEVH__LIBM(tanh, x)(x)
-#define nevh_exp(x)      NEVH__LIBM(exp, x)(x)
-#define nevh_log(x)      NEVH__LIBM(log, x)(x)
+#define nevh_sin(x)      NEVH__LIBM(sin, x)((x) + nevh__none)
+#define nevh_cos(x)      NEVH__LIBM(cos, x)((x) + nevh__none)
+#define nevh_tan(x)      NEVH__LIBM(tan, x)((x) + nevh__none)
+#define nevh_asin(x)     NEVH__LIBM(asin, x)((x) + nevh__none)
+#define nevh_acos(x)     NEVH__LIBM(acos, x)((x) + nevh__none)
+#define nevh_atan(x)     NEVH__LIBM(atan, x)((x) + nevh__none)
+#define nevh_atan2(y, x) NEVH__LIBM(atan2, (y) + (x))((y) + nevh__none, x)
+#define nevh_sinh(x)     NEVH__LIBM(sinh, x)((x) + nevh__none)
+#define nevh_cosh(x)     NEVH__LIBM(cosh, x)((x) + nevh__none)
+#define nevh_tanh(x)     NEVH__LIBM(tanh, x)((x) + nevh__none)
+#define nevh_exp(x)      NEVH__LIBM(exp, x)((x) + nevh__none)
+#define nevh_log(x)      NEVH__LIBM(log, x)((x) + nevh__none)
 #define nevh_sqrt(x)     NEVH__LIBM(sqrt, x)(x)
-#define nevh_cbrt(x)     NEVH__LIBM(cbrt, x)(x)
-#define nevh_pow(x, y)   NEVH__LIBM(pow, (x) + (y))(x, y)
-#define nevh_hypot(x, y) NEVH__LIBM(hypot, (x) + (y))(x, y)
+#define nevh_cbrt(x)     NEVH__LIBM(cbrt, x)((x) + nevh__none)
+#define nevh_pow(x, y)   NEVH__LIBM(pow, (x) + (y))((x) + nevh__none, y)
+#define nevh_hypot(x, y) NEVH__LIBM(hypot, (x) + (y))((x) + nevh__none, y)
 #define nevh_abs(x)      NEVH__ANY(x, fabs, nevh__complex_abs)(x)
 #define nevh_min(x, y)   NEVH__OWN(min, (x) + (y))(x, y)
 #define nevh_max(x, y)   NEVH__OWN(max, (x) + (y))(x, y)
@@ -419,10 +443,12 @@ NEVH__INLINE double _Complex nevh__of_complex(const double (*x)[2], size_t k) {
 #define NEVH__COMPLEX
 #endif
 
-/* One form of a body: its numbers, and the body. */
-#define NEVH__FORM(number, params_type, ...)                                   \
+/* One form of a body: its numbers, what is added to arguments, which is -0.,
+   and the body. */
+#define NEVH__FORM(number, nothing, params_type, ...)                          \
     {                                                                          \
         NEVH__MAYBE_UNUSED typedef number nevh_num;                            \
+        NEVH__MAYBE_UNUSED const double nevh__none = nothing;                  \
         const params_type *params = nevh__params;                              \
         (void)nevh_t, (void)nevh__q, (void)nevh__p, (void)nevh__c;             \
         (void)params;                                                          \
@@ -437,12 +463,12 @@ NEVH__INLINE double _Complex nevh__of_complex(const double (*x)[2], size_t k) {
     NEVH__MAYBE_UNUSED static double name##_value(                             \
         double nevh_t, const double *nevh__q, const double *nevh__p,           \
         const double *nevh__c, const void *nevh__params)                       \
-    NEVH__FORM(double, params_type, __VA_ARGS__)                               \
+    NEVH__FORM(double, -0., params_type, __VA_ARGS__)                               \
                                                                                \
     NEVH__INLINE double name##_lane(                                           \
         double nevh_t, nevh__lanes nevh__q, nevh__lanes nevh__p,               \
         nevh__lanes nevh__c, const void *nevh__params)                         \
-    NEVH__FORM(double, params_type, __VA_ARGS__)                               \
+    NEVH__FORM(double, -0., params_type, __VA_ARGS__)                               \
                                                                                \
     NEVH__MAYBE_UNUSED NEVH_SIMD static void name##_block(                     \
         size_t width, const double *t, const double *q, const double *p,       \
@@ -459,7 +485,7 @@ NEVH__INLINE double _Complex nevh__of_complex(const double (*x)[2], size_t k) {
         double nevh_t, const double (*nevh__q)[2],                             \
         const double (*nevh__p)[2], const double *nevh__c,                     \
         const void *nevh__params)                                              \
-    NEVH__FORM(double _Complex, params_type, __VA_ARGS__)                      \
+    NEVH__FORM(double _Complex, -0., params_type, __VA_ARGS__)                      \
                                                                                \
     NEVH__MAYBE_UNUSED NEVH__COMPLEX static void name##_complex(               \
         double t, const double (*q)[2], const double (*p)[2],                  \
@@ -496,10 +522,11 @@ NEVH__INLINE double *nevh__slope(nevh__slopes d, size_t k) {
 #define NEVH__GRADIENT_FORM(name, rows, params_type, ...)                      \
     NEVH__INLINE void name(double nevh_t, rows nevh__q, rows nevh__p,          \
                            rows nevh__c, const void *nevh__params,             \
-                           nevh__slopes nevh__dh_dq, nevh__slopes nevh__dh_dp) \
+                           double nothing, nevh__slopes nevh__dh_dq,           \
+                           nevh__slopes nevh__dh_dp)                           \
     {                                                                          \
         (void)nevh__dh_dq, (void)nevh__dh_dp;                                  \
-        NEVH__FORM(double, params_type, __VA_ARGS__)                           \
+        NEVH__FORM(double, nothing, params_type, __VA_ARGS__)                  \
     }
 
 /* All lanes, for the halves that are wanted: constants. */
@@ -508,18 +535,19 @@ NEVH__INLINE double *nevh__slope(nevh__slopes d, size_t k) {
         double nowhere;                                                        \
         name##_gradient_lane(                                                  \
             t[i], (nevh__lanes){q, width, i}, (nevh__lanes){p, width, i},      \
-            (nevh__lanes){c, width, i}, params,                                \
+            (nevh__lanes){c, width, i}, params, NEVH__UNLIKE(i),               \
             (nevh__slopes){dh_dq, width, i, q_too, &nowhere},                  \
             (nevh__slopes){dh_dp, width, i, p_too, &nowhere});                 \
     }
 #define NEVH__GRADIENT_POINT(name, q_too, p_too)                               \
     name##_gradient_one(t, (nevh__one){q}, (nevh__one){p}, (nevh__one){c},     \
-                        params, (nevh__slopes){dh_dq, 1, 0, q_too, &nowhere},  \
+                        params, -0.,                                           \
+                        (nevh__slopes){dh_dq, 1, 0, q_too, &nowhere},          \
                         (nevh__slopes){dh_dp, 1, 0, p_too, &nowhere})
 
 /* Defines NAME_gradient and NAME_point_gradient, static functions of the types
-   in nevh_term, from one body that assigns to nevh_dh_dq(k) and nevh_dh_dp(k).
-   What it assigned it may not read back. */
+   in nevh_term.  The body, in braces, comes last; it may ask only for what the
+   term declares to read. */
 #define NEVH_GRADIENT(name, params_type, ...)                                  \
     NEVH__GRADIENT_FORM(name##_gradient_lane, nevh__lanes, params_type,        \
                         __VA_ARGS__)                                           \
@@ -530,6 +558,7 @@ NEVH__INLINE double *nevh__slope(nevh__slopes d, size_t k) {
         size_t width, const double *t, const double *q, const double *p,       \
         const double *c, const void *params, double *dh_dq, double *dh_dp)     \
     {                                                                          \
+        NEVH__MAYBE_UNUSED const double *nothing = nevh__unlike();             \
         if (dh_dq && dh_dp)                                                    \
             NEVH__GRADIENT_LANES(name, true, true)                             \
         else if (dh_dq)                                                        \

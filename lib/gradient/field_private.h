@@ -383,5 +383,10 @@ int nevh__field_time_slope(nevh_field *, size_t term, const nevh__time_step *,
 
 /* NEVH_OK, or why the field cannot be used (again). */
 int nevh__field_ready(nevh_field *);
+/* Whether that is so without a look at what went wrong last. */
+static inline bool nevh__field_at_hand(const nevh_field *f) {
+    return f->planned && !f->report.status &&
+           f->system->revision == f->revision;
+}
 
 #endif

@@ -96,7 +96,8 @@ static int unlike(const check *c, size_t k, double point, double block) {
         &c->explorer->field->report, NEVH_ENOGRAD,
         "the point gradient of term \"%s\" of effect \"%s\" is not its "
         "gradient to the last bit: the derivative with respect to %c[%zu] is "
-        "%.17g where that of a block is %.17g",
+        "%.17g where that of a block is %.17g; what is said of NEVH_GRADIENT "
+        "in <nevh/body.h> may help, and to leave it out",
         is->name, is->effect, k < c->term->nq ? 'q' : 'p',
         nevh__index(c->term, c->instance, k), point, block);
 }
