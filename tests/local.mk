@@ -28,6 +28,7 @@ suites = \
 	tests/check_scene_shown \
 	tests/check_registry \
 	tests/check_coefficients \
+	tests/check_masses \
 	tests/check_nystrom \
 	tests/check_splitting \
 	tests/check_published \
