@@ -71,10 +71,6 @@ NEVH_GRADIENT(kepler, void, {
     nevh_dh_dp(1) = nevh_p(1);
 })
 
-NEVH_BODY(kinetic, void, { return nevh_p(0) * nevh_p(0) / 2; })
-
-NEVH_GRADIENT(kinetic, void, { nevh_dh_dp(0) = nevh_p(0); })
-
 NEVH_BODY(spring, void, {
     nevh_num r = nevh_q(1) - nevh_q(0);
     return nevh_exp(-r) + r - 1;
@@ -128,26 +124,18 @@ nevh_system *kepler_system(void) {
 }
 
 nevh_system *chain_system(size_t masses) {
-    nevh_term terms[] = {{.effect = "kinetic",
-                          .np = 1,
-                          .count = masses,
-                          NEVH_FORMS(kinetic),
-                          NEVH_GRADIENTS(kinetic)},
-                         {.effect = "springs",
-                          .nq = 2,
-                          .count = masses - 1,
-                          NEVH_FORMS(spring),
-                          NEVH_GRADIENTS(spring)}};
     nevh_system *system = nevh_system_new(masses);
     size_t *ends = malloc(2 * masses * sizeof *ends);
-    for (size_t i = 0; ends && i < masses; i++)
-        ends[i] = i;
-    terms[0].p = ends;
-    bool made = system && ends && !nevh_system_add(system, &terms[0]);
     for (size_t i = 0; ends && i < 2 * (masses - 1); i++)
         ends[i] = (i + 1) / 2;
-    terms[1].q = ends;
-    made = made && !nevh_system_add(system, &terms[1]);
+    bool made = system && ends &&
+                !nevh_system_add_masses(system, "kinetic", NULL) &&
+                !nevh_system_add(system, &(nevh_term){.effect = "springs",
+                                                      .nq = 2,
+                                                      .q = ends,
+                                                      .count = masses - 1,
+                                                      NEVH_FORMS(spring),
+                                                      NEVH_GRADIENTS(spring)});
     free(ends);
     if (made)
         return system;
