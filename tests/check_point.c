@@ -283,12 +283,12 @@ POINT(wrong_half) {
         dq[0] = 2 * p[0];
 }
 
-/* In one state of 64. */
+/* In one state of 16. */
 POINT(seldom_off) {
     uint64_t bits;
     right_point_gradient(t, q, p, c, params, dq, dp);
     memcpy(&bits, &q[1], sizeof bits);
-    if (dq && (bits >> 20) % 64 == 5)
+    if (dq && (bits >> 20) % 16 == 5)
         dq[0] = nextafter(dq[0], 9);
 }
 
