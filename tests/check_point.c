@@ -292,6 +292,12 @@ POINT(seldom_off) {
         dq[0] = nextafter(dq[0], 9);
 }
 
+POINT(late) {
+    right_point_gradient(t, q, p, c, params, dq, dp);
+    if (dp && t > 0)
+        dp[0] = nextafter(dp[0], 9);
+}
+
 POINT(nothing) {
     (void)t, (void)q, (void)p, (void)c, (void)params, (void)dq, (void)dp;
 }
@@ -311,6 +317,7 @@ static const struct {
 } points[] = {{right_point_gradient, NULL}, {off_by_a_bit, "q[1] is "},
               {off_alone, "p[0] is "},      {wrong_half, "q[0] is "},
               {nothing, "q[0] is nan"},     {seldom_off, "q[0] is "},
+              {late, "p[0] is "},
 #ifdef NEVH__VECTORS
               {other_sine, "q[0] is "}
 #endif
@@ -323,6 +330,7 @@ START_TEST(unlike_points_are_refused) {
                             .name = "wrong",
                             .nq = 2,
                             .np = 1,
+                            .time = true,
                             NEVH_FORMS(right),
                             .gradient = right_gradient,
                             .point_gradient = points[_i].point};

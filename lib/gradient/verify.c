@@ -118,6 +118,8 @@ static void spread(const check *c, size_t at, size_t round) {
             f->rows[k * NEVH__LANES + lane] +=
                 long_step * length * nevh__random(&seed);
     }
+    for (size_t lane = 1; lane < NEVH__LANES; lane++)
+        f->times[lane] += long_step * fabs(nevh__random(&seed));
 }
 
 /* One lane, where either half may not be asked for. */
