@@ -75,9 +75,9 @@ typedef struct {
     bool time;           /* reads t; a term that does not is handed t = 0 */
     nevh_term_fn value;  /* may be NULL when block is given */
     nevh_block_fn block; /* NULL: value, lane by lane */
-    nevh_block_gradient_fn gradient; /* NULL: no exact gradient */
-    nevh_complex_fn complex_value;   /* NULL: no complex step */
-    const void *params;              /* borrowed; outlives the system */
+    nevh_block_gradient_fn gradient;       /* NULL: no exact gradient */
+    nevh_complex_fn complex_value;         /* NULL: no complex step */
+    const void *params;                    /* borrowed; outlives the system */
     nevh_point_gradient_fn point_gradient; /* NULL: gradient, also for one;
                                               else gradient is there, too */
 } nevh_term;
