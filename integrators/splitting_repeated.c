@@ -14,8 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One half of the state under way: q under drifts, p under kicks; each row is
-   one number, or a vector of it. */
+/* One half of the state under way: q under drifts, p under kicks; each row is a
+   number, and then state and carry are the caller's, or a vector of it. */
 typedef struct {
     double *state;  /* at the start of the step */
     double *carry;  /* digits that earlier steps lost */
@@ -25,7 +25,7 @@ typedef struct {
 
 struct nevh__repeated {
     size_t n;
-    bool points;  /* rows are numbers, states and carries the caller's */
+    bool (*step)(nevh_work *, double t, double h, double q[], double p[]);
     double *room; /* holds all that follow */
     half q, p;
     double *slope, *kept, *time;
@@ -52,33 +52,6 @@ static bool lay_out(nevh__repeated *r) {
     r->kept = nevh__take(&from, size);
     r->time = from;
     return true;
-}
-
-static bool plan_calls(nevh_work *w, nevh__repeated *r, size_t lanes) {
-    r->kick = nevh__call_plan(w->field, lanes, r->time, r->q.point, r->p.point,
-                              r->slope, NULL);
-    r->drift = nevh__call_plan(w->field, lanes, r->time, r->q.point, r->p.point,
-                               NULL, r->slope);
-    return r->kick.count && r->drift.count;
-}
-
-int nevh__repeated_plan(nevh_work *w, nevh__repeated **repeated) {
-    if (w->width > 1 || w->n > NEVH__MOST_POINT_ROWS)
-        return NEVH_OK;
-    nevh__repeated *r = nevh__array(1, sizeof *r);
-    if (!r)
-        return NEVH_ENOMEM;
-    r->n = w->n;
-    if (!lay_out(r)) {
-        nevh__repeated_free(r);
-        return NEVH_ENOMEM;
-    }
-    r->points = plan_calls(w, r, 1);
-    if (r->points || (w->field->repeats && plan_calls(w, r, NEVH__LANES)))
-        *repeated = r;
-    else
-        nevh__repeated_free(r);
-    return NEVH_OK;
 }
 
 void nevh__repeated_free(nevh__repeated *r) {
@@ -257,7 +230,7 @@ NEVH__INLINE bool go(const journey *j, size_t lanes, size_t size) {
     return true;
 }
 
-NEVH_SIMD static bool go_in_vectors(const journey *j) {
+NEVH_SIMD static bool repeat_step(const journey *j) {
     return go(j, NEVH__LANES, j->orbit->n * NEVH__LANES);
 }
 
@@ -301,8 +274,8 @@ static void hand_over(size_t n, const double rows[], double to[]) {
 }
 
 /* All in vectors that are kept from step to step. */
-static bool go_repeated(nevh_work *w, double t, double h, double q[],
-                        double p[]) {
+static bool go_in_vectors(nevh_work *w, double t, double h, double q[],
+                          double p[]) {
     const nevh__operations *o = w->plan;
     nevh__repeated *r = o->repeated;
     nevh__splitting_memory m = nevh__splitting_recall(w);
@@ -317,7 +290,7 @@ static bool go_repeated(nevh_work *w, double t, double h, double q[],
     take_over(n, m.carry_p, r->p.carry);
     if (kept)
         take_over(n, m.kept, r->kept);
-    if (!go_in_vectors(&j))
+    if (!repeat_step(&j))
         return false;
     hand_over(n, r->q.state, q);
     hand_over(n, r->p.state, p);
@@ -329,9 +302,38 @@ static bool go_repeated(nevh_work *w, double t, double h, double q[],
     return true;
 }
 
+static bool plan_calls(nevh_work *w, nevh__repeated *r, size_t lanes) {
+    r->kick = nevh__call_plan(w->field, lanes, r->time, r->q.point, r->p.point,
+                              r->slope, NULL);
+    r->drift = nevh__call_plan(w->field, lanes, r->time, r->q.point, r->p.point,
+                               NULL, r->slope);
+    return r->kick.count && r->drift.count;
+}
+
+int nevh__repeated_plan(nevh_work *w, nevh__repeated **repeated) {
+    if (w->width > 1 || w->n > NEVH__MOST_POINT_ROWS)
+        return NEVH_OK;
+    nevh__repeated *r = nevh__array(1, sizeof *r);
+    if (!r)
+        return NEVH_ENOMEM;
+    r->n = w->n;
+    if (!lay_out(r)) {
+        nevh__repeated_free(r);
+        return NEVH_ENOMEM;
+    }
+    r->step = plan_calls(w, r, 1) ? go_in_numbers
+              : w->field->repeats && plan_calls(w, r, NEVH__LANES)
+                  ? go_in_vectors
+                  : NULL;
+    if (r->step)
+        *repeated = r;
+    else
+        nevh__repeated_free(r);
+    return NEVH_OK;
+}
+
 bool nevh__repeated_step(nevh_work *w, double t, double h, double q[],
                          double p[]) {
     const nevh__operations *o = w->plan;
-    return o->repeated->points ? go_in_numbers(w, t, h, q, p)
-                               : go_repeated(w, t, h, q, p);
+    return o->repeated->step(w, t, h, q, p);
 }

@@ -3,6 +3,7 @@
 #include "support.h"
 #include <nevh/body.h>
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 enum { STATES = 4096, LANES = 8, MOST = 3 };
@@ -282,6 +283,21 @@ POINT(wrong_half) {
         dq[0] = 2 * p[0];
 }
 
+/* In one state of 16. */
+POINT(seldom_off) {
+    uint64_t bits;
+    right_point_gradient(t, q, p, c, params, dq, dp);
+    memcpy(&bits, &q[1], sizeof bits);
+    if (dq && (bits >> 20) % 16 == 5)
+        dq[0] = nextafter(dq[0], 9);
+}
+
+POINT(late) {
+    right_point_gradient(t, q, p, c, params, dq, dp);
+    if (dp && t > 0)
+        dp[0] = nextafter(dp[0], 9);
+}
+
 POINT(nothing) {
     (void)t, (void)q, (void)p, (void)c, (void)params, (void)dq, (void)dp;
 }
@@ -300,7 +316,8 @@ static const struct {
     const char *at; /* NULL: it is right */
 } points[] = {{right_point_gradient, NULL}, {off_by_a_bit, "q[1] is "},
               {off_alone, "p[0] is "},      {wrong_half, "q[0] is "},
-              {nothing, "q[0] is nan"},
+              {nothing, "q[0] is nan"},     {seldom_off, "q[0] is "},
+              {late, "p[0] is "},
 #ifdef NEVH__VECTORS
               {other_sine, "q[0] is "}
 #endif
@@ -313,6 +330,7 @@ START_TEST(unlike_points_are_refused) {
                             .name = "wrong",
                             .nq = 2,
                             .np = 1,
+                            .time = true,
                             NEVH_FORMS(right),
                             .gradient = right_gradient,
                             .point_gradient = points[_i].point};

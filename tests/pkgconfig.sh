@@ -123,10 +123,19 @@ NEVH_SIMD static void sines(size_t width, const double *q, double *h)
     NEVH_LANES(i, width) { h[i] = nevh_simd_sin(q[i]); }
 }
 
+NEVH_POINT static double sine(double x)
+{
+    return nevh_point_sin(x);
+}
+
 int main()
 {
     double q[8] = {0}, h[8];
+    nevh_term term = nevh_term();
+    term.point_gradient = 0;
     sines(8, q, h);
+    if (sine(1) < 0.8 || term.gradient)
+        return 1;
     return nevh_status_text(NEVH_OK) == 0 || nevh_integrators()[0] == 0 ||
            h[7] != 0;
 }

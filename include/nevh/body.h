@@ -463,12 +463,12 @@ NEVH__INLINE double _Complex nevh__of_complex(const double (*x)[2], size_t k) {
     NEVH__MAYBE_UNUSED static double name##_value(                             \
         double nevh_t, const double *nevh__q, const double *nevh__p,           \
         const double *nevh__c, const void *nevh__params)                       \
-    NEVH__FORM(double, -0., params_type, __VA_ARGS__)                               \
+    NEVH__FORM(double, -0., params_type, __VA_ARGS__)                          \
                                                                                \
     NEVH__INLINE double name##_lane(                                           \
         double nevh_t, nevh__lanes nevh__q, nevh__lanes nevh__p,               \
         nevh__lanes nevh__c, const void *nevh__params)                         \
-    NEVH__FORM(double, -0., params_type, __VA_ARGS__)                               \
+    NEVH__FORM(double, -0., params_type, __VA_ARGS__)                          \
                                                                                \
     NEVH__MAYBE_UNUSED NEVH_SIMD static void name##_block(                     \
         size_t width, const double *t, const double *q, const double *p,       \
@@ -485,7 +485,7 @@ NEVH__INLINE double _Complex nevh__of_complex(const double (*x)[2], size_t k) {
         double nevh_t, const double (*nevh__q)[2],                             \
         const double (*nevh__p)[2], const double *nevh__c,                     \
         const void *nevh__params)                                              \
-    NEVH__FORM(double _Complex, -0., params_type, __VA_ARGS__)                      \
+    NEVH__FORM(double _Complex, -0., params_type, __VA_ARGS__)                 \
                                                                                \
     NEVH__MAYBE_UNUSED NEVH__COMPLEX static void name##_complex(               \
         double t, const double (*q)[2], const double (*p)[2],                  \

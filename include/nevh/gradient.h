@@ -63,9 +63,9 @@ typedef struct nevh_field nevh_field;
    returns   the field, to be freed with nevh_field_free; NULL only when memory
              is out.  A field that could not be planned carries its status:
              NEVH_ENOGRAD (a term lacks the gradient or complex form asked
-             for, or its own gradient is not that of its values: the message
-             names term, variable and both numbers), NEVH_EINVAL, or the
-             system's own status.
+             for, or its own gradient is not that of its values, or its point
+             gradient not that gradient: the message names term, variable and
+             both numbers), NEVH_EINVAL, or the system's own status.
    cost      of a few thousand values a variable, where steps are chosen by
              trial: some milliseconds for a small system.  Of many
              instances, lanes, or variables of an instance, 64 are tried.  A

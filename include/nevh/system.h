@@ -37,11 +37,15 @@ typedef void (*nevh_block_gradient_fn)(size_t width, const double t[],
                                        const double c[], const void *params,
                                        double dh_dq[], double dh_dp[]);
 
-/* The same derivatives of one instance at one state, where q, p and c are what
-   nevh_term_fn is handed, and dh_dq[k] belongs to q[k].  It gives the results of
-   the block, bit for bit, and is but a shorter way for one orbit of a small
-   system, which then needs no blocks.  <nevh/body.h> makes both from one
-   text. */
+/* The same derivatives of one instance at one state: q, p and c are what
+   nevh_term_fn is handed, and dh_dq[k] belongs to q[k].  Either output is NULL
+   when it is not wanted.  It gives the results of the block, bit for bit, also
+   where a half is wanted alone, and is but a shorter way for one orbit of up to
+   eight instances, which then needs no blocks.  Where nevh_exact is planned the
+   two are compared at some states, and NEVH_ENOGRAD refuses what differs.
+   Sine and the like in vectors are not rounded as those of <math.h>:
+   NEVH_GRADIENT of <nevh/body.h> makes both functions from one text, and
+   nevh_point_sin is for those that are written by hand. */
 typedef void (*nevh_point_gradient_fn)(double t, const double q[],
                                        const double p[], const double c[],
                                        const void *params, double dh_dq[],
@@ -71,9 +75,9 @@ typedef struct {
     bool time;           /* reads t; a term that does not is handed t = 0 */
     nevh_term_fn value;  /* may be NULL when block is given */
     nevh_block_fn block; /* NULL: value, lane by lane */
-    nevh_block_gradient_fn gradient; /* NULL: no exact gradient */
-    nevh_complex_fn complex_value;   /* NULL: no complex step */
-    const void *params;              /* borrowed; outlives the system */
+    nevh_block_gradient_fn gradient;       /* NULL: no exact gradient */
+    nevh_complex_fn complex_value;         /* NULL: no complex step */
+    const void *params;                    /* borrowed; outlives the system */
     nevh_point_gradient_fn point_gradient; /* NULL: gradient, also for one;
                                               else gradient is there, too */
 } nevh_term;
