@@ -28,14 +28,54 @@ int nevh__begin_run(nevh_stepper *s, double t0, double h, const double q[],
     return status;
 }
 
+/* Whether a step is no more than the kernel's. */
+static bool plain(const nevh_stepper *s) {
+    return !s->damping && !s->work.ledger && !s->work.transform && !s->own_time;
+}
+
+/* The next step after `taken` that somebody looks at, or the last one. */
+static size_t next_shown(size_t taken, size_t steps,
+                         const nevh_observer observers[], size_t count) {
+    size_t next = steps;
+    for (size_t i = 0; i < count; i++) {
+        size_t every = observers[i].every ? observers[i].every : 1;
+        size_t rest = every - taken % every;
+        next = rest < next - taken ? taken + rest : next;
+    }
+    return next;
+}
+
+/* Steps before `until`, at which nobody looks; *t goes along. */
+static int run_unseen(nevh_stepper *s, double t0, double h, size_t until,
+                      double *t, double q[], double p[]) {
+    nevh_work *w = &s->work;
+    int status = NEVH_OK;
+    s->last_h = w->elapsed = h;
+    while (s->taken + 1 < until) {
+        status = w->integrator->kernel->step(w, *t, h, q, p);
+        if (status)
+            break;
+        s->taken++;
+        *t = s->last_t = nevh__next_time(s, t0, h);
+        if (s->report.status) /* a rescued step has failed before */
+            s->report = (nevh__report){0};
+    }
+    return status;
+}
+
 int nevh__run_steps(nevh_stepper *s, double t0, double h, size_t steps,
                     bool ends, double q[], double p[],
                     const nevh_observer observers[], size_t count) {
     double t = t0;
+    bool hurries = plain(s);
     int status =
         nevh__show(s, 0, ends && steps == 0, t, q, p, observers, count);
     while (!status && s->taken < steps) {
-        status = nevh__advance(s, t, h, q, p);
+        size_t next = next_shown(s->taken, steps, observers, count);
+        if (hurries && next > s->taken + 1)
+            status = run_unseen(s, t0, h, next, &t, q, p);
+        if (!status)
+            status = nevh__advance(s, t, h, q, p);
         if (status)
             break;
         s->taken++;
