@@ -57,8 +57,6 @@ static int run_unseen(nevh_stepper *s, double t0, double h, size_t until,
             break;
         s->taken++;
         *t = s->last_t = nevh__next_time(s, t0, h);
-        if (s->report.status) /* a rescued step has failed before */
-            s->report = (nevh__report){0};
     }
     return status;
 }
