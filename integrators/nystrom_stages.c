@@ -132,8 +132,11 @@ NEVH__INLINE void place_start(const nevh__nystrom *y) {
         y->points[i] = y->q[i] + y->carry[i];
 }
 
+/* Also where T seems to read the time: its differences are those of H. */
 NEVH__INLINE void set_time(const nevh__nystrom *y, const nevh__stages *s,
-                           double c) {
+                           size_t called, double c) {
+    if (called && !y->kicks->timed && !y->drift.timed)
+        return;
     for (size_t i = 0; i < y->lanes; i++) {
         size_t column = s->columns > 1 ? i : 0;
         y->time[i] = s->t[column] + c * s->h[column];
@@ -180,8 +183,7 @@ NEVH__INLINE int place(const nevh__nystrom *y, const nevh__stages *s,
         status = drift(y, called);
         place_points(y, c);
     }
-    if (!called || y->kicks->timed)
-        set_time(y, s, c);
+    set_time(y, s, called, c);
     return status;
 }
 
@@ -204,6 +206,7 @@ NEVH__INLINE int take(const nevh__nystrom *y, const nevh__stages *s,
     int status = NEVH_OK;
     double bad = 0;
     place_start(y); /* where T_p is asked for, if H is one function */
+    set_time(y, s, called, 0);
     if (y->inverse || until == 1)
         status = find_way(y, called, first > 0);
     for (size_t i = first; !status && i < until; i++) {

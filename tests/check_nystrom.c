@@ -225,6 +225,41 @@ START_TEST(undeclared) {
 }
 END_TEST
 
+/* What one function of everything rounds does not come from other lanes, nor
+   from other steps. */
+START_TEST(undeclared_in_lanes) {
+    enum { WIDTH = 3 };
+    nevh_system *one = nevh_system_from(2, whole, NULL);
+    for (int adaptive = 0; adaptive < 2; adaptive++) {
+        nevh_options o = {.scale = (const double[]){1, 1, 1, 1},
+                          .gradient_step = 0x1p-12,
+                          .tolerance = adaptive ? 1e-7 : 0,
+                          .width = WIDTH};
+        nevh_stepper *all = nevh_stepper_new(one, nevh_dprkn12, &o);
+        double z[4 * WIDTH];
+        for (size_t i = 0; i < 4 * WIDTH; i++)
+            z[i] = 0.4 - 0.1 * (double)(i % 5);
+        double alone[4 * WIDTH];
+        memcpy(alone, z, sizeof z);
+        ck_assert(!nevh_run(all, 0.2, 0.5, 7, z, z + 2 * WIDTH, NULL, 0));
+        o.width = 1;
+        for (size_t lane = 0; lane < WIDTH; lane++) {
+            nevh_stepper *m = nevh_stepper_new(one, nevh_dprkn12, &o);
+            double x[4];
+            for (size_t k = 0; k < 4; k++)
+                x[k] = alone[k * WIDTH + lane];
+            for (int i = 0; i < 7; i++)
+                ck_assert(!nevh_stepper_apply(m, 0.2 + 0.5 * i, 0.5, x, x + 2));
+            for (size_t k = 0; k < 4; k++)
+                ck_assert(x[k] == z[k * WIDTH + lane]);
+            nevh_stepper_free(m);
+        }
+        nevh_stepper_free(all);
+    }
+    nevh_system_free(one);
+}
+END_TEST
+
 /* Errors follow the tolerance, with fewer slopes than dop853 needs. */
 START_TEST(follows_the_tolerance) {
     nevh_system *s = make_coupled();
@@ -314,6 +349,7 @@ int main(void) {
     tcase_add_test(cases, momenta_that_mix);
     tcase_add_test(cases, momenta_apart);
     tcase_add_test(cases, undeclared);
+    tcase_add_test(cases, undeclared_in_lanes);
     tcase_add_test(cases, follows_the_tolerance);
     tcase_add_test(cases, refuses_a_mass_that_grows);
     tcase_add_test(cases, refuses_other_kinetic_energies);
