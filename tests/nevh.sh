@@ -164,7 +164,7 @@ has '^ double-pendulum +2 '
 exits 0 check double-pendulum
 has 'separable +no'
 has '^ verlet +2 +no$'
-has 'adaptive-verlet: needs H = '
+has 'dprkn12: needs H'
 has 'mixes coordinates'
 has '^ gauss4 +4 +yes'
 exits 0 effects pendulum --t-end 1
