@@ -87,6 +87,9 @@ static bool refuses_rightly(const hard_subject *s, const hard_result *r) {
      */
     if (s->balance && strncmp(nevh_integrator_name(r->scheme), "gsl-", 4) == 0)
         return true;
+    /* A tolerance decides over steps that friction would be put around. */
+    if (needs && nevh_integrator_adaptive(r->scheme) && is(s, HARD_FRICTION))
+        return true;
     return (needs && is(s, HARD_MIXED | HARD_NOISE)) ||
            (needs & NEVH_QUADRATIC_KINETIC && is(s, HARD_MIXED)) ||
            (nevh_integrator_own_time(r->scheme) && s->balance);
