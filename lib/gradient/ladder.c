@@ -8,7 +8,7 @@
 
 /* Rungs are powers of two times the variable's length. */
 enum { LOWEST = -30, HIGHEST = 3, RUNGS = HIGHEST - LOWEST + 1 };
-enum { FEW = 16 };
+enum { FEW = 16, ENOUGH = 8 };   /* variables; states for each */
 enum { ROOM = 8 * (RUNGS + 1) }; /* for differences of order 8 */
 /* At the best step the two errors balance, unless values are worse than
    rounded. */
@@ -175,14 +175,18 @@ static nevh__step choose(const nevh_gradient *g, const ladder *l, double unit) {
                         .size = best->size};
 }
 
-/* Where very many variables of instances are looked at, each is at fewer of
-   the states: never at less than a quarter. */
-static size_t sample_stride(const nevh__planned *term) {
+/* Values of a function of very many variables are dear.  Where there are many
+   variables of instances to be looked at, each is at fewer of the states, if
+   these are many. */
+static size_t sample_stride(const nevh__explorer *e,
+                            const nevh__planned *term) {
     size_t rows = nevh__step_rows(term), looked_at = 0;
+    if (term->nv > NEVH__PROBED)
+        return 4;
     for (size_t k = 0; k < term->nv; k++)
         looked_at += nevh__probed(term, k) == k ? rows : 0;
-    size_t stride = 1 + looked_at / FEW;
-    return stride < 4 ? stride : 4;
+    size_t stride = 1 + looked_at / FEW, most = e->samples.count / ENOUGH;
+    return stride < most ? stride : most > 1 ? most : 1;
 }
 
 /* The median of the derivative's sizes at samples from `at` on. */
@@ -191,7 +195,7 @@ static double usual_slope(const nevh__explorer *e, const nevh__planned *term,
     const double move[2] = {ldexp(unit, -8), -ldexp(unit, -8)};
     double x[2], h[2], sorted[NEVH__MOST_SAMPLES];
     size_t count = 0;
-    for (; at < e->samples.count; at += sample_stride(term)) {
+    for (; at < e->samples.count; at += sample_stride(e, term)) {
         nevh__along(e, term, instance, k, at, 2, move, x, h);
         double slope = fabs(nevh__chord_slope(nevh_central2, 1, x, h));
         size_t i = count;
@@ -213,7 +217,7 @@ nevh__step nevh__climb_along(const nevh__explorer *e, const nevh_gradient *g,
     /* The pilot may linger where symmetry makes the derivative vanish. */
     l.usual = fmax(usual_slope(e, term, instance, k, unit, 0),
                    usual_slope(e, term, instance, k, unit, e->neighbours));
-    for (size_t at = 0; at < e->samples.count; at += sample_stride(term))
+    for (size_t at = 0; at < e->samples.count; at += sample_stride(e, term))
         climb_at(e, g, term, instance, k, at, unit, &l);
     return choose(g, &l, unit);
 }
