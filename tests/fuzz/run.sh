@@ -30,8 +30,7 @@ compile() {
 link() {
     parts=
     test "$1" = scene ||
-        for part in options arguments words plan scenes resume lines \
-            trajectory table stop shelf; do
+        for part in $(cat "$srcdir/tests/fuzz/parts"); do
             parts="$parts $srcdir/tools/$part.c"
         done
     "$clang" $flags $sanitized -fsanitize=fuzzer '-DNEVH_SCENES="/nowhere"' \
