@@ -196,6 +196,22 @@ START_TEST(choices_are_added) {
 }
 END_TEST
 
+/* However many of them end a line, or the text. */
+START_TEST(carriages_do_not_count) {
+    nevh_scene *s = scene_of("[coordinates]\r\r\nx = 1\r\r\r\n"
+                             "[effects]\r\nA = x^2 + p_x^2\r\r\r");
+    char *text = nevh_scene_write(s, NULL);
+    nevh_scene *copy = scene_of(text);
+    char *again = nevh_scene_write(copy, NULL);
+    ck_assert_str_eq(text, again);
+    ck_assert_ptr_null(strchr(text, '\r'));
+    free(text);
+    free(again);
+    nevh_scene_free(copy);
+    nevh_scene_free(s);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("scene write");
     TCase *cases = tcase_create("scene write");
@@ -205,6 +221,7 @@ int main(void) {
     tcase_add_test(cases, failures_leave_no_trace);
     tcase_add_test(cases, arrays_are_lists_then);
     tcase_add_test(cases, choices_are_added);
+    tcase_add_test(cases, carriages_do_not_count);
     suite_add_tcase(suite, cases);
     return run_suite(suite);
 }

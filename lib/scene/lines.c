@@ -48,8 +48,9 @@ static bool cut_lines(nevh_scene *s, const char *text, size_t bytes) {
         size_t length = line_bytes(copy + at, bytes - at);
         nevh__line *line = &s->lines[s->n_lines++];
         more = at + length + 1 < bytes;
-        bool carriage = length && copy[at + length - 1] == '\r';
-        *line = (nevh__line){s->n_lines, copy + at, length - carriage};
+        *line = (nevh__line){s->n_lines, copy + at, length};
+        while (line->bytes && line->text[line->bytes - 1] == '\r')
+            line->bytes--;
         check_characters(s, line);
         at += length + 1;
     }
