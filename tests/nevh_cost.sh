@@ -104,6 +104,10 @@ for by in energy state; do
          on { for (i = 1; i <= NF; i++) stars += $i == "*" }
          END { exit stars < 4 }' $work/out || fails "has no stars"
 done
+# Tolerances that outputs are too close for are no floor.
+exits 0 cost kepler --t-end 50 --integrators dprkn12,gauss8 --gradient exact
+has '^ dprkn12, drifts .* [0-9.]+ \(0\.1[0-9]*\)$'
+lacks '^ dprkn12.*floor'
 exits 0 cost kepler --t-end 2 --integrators gonzalez,gauss8
 has '^ gonzalez +- +- '
 has '^gonzalez: keep the energy at any step'

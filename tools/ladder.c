@@ -173,14 +173,18 @@ ladder *ladder_next(ladder ladders[], size_t count) {
     return next;
 }
 
-/* Rungs at the end that brought next to nothing. */
+/* Rungs at the end that brought next to nothing.  Those of looser tolerances
+   than the distance of outputs asks for are the same run. */
 static size_t count_level(const ladder *l, bool by_state) {
-    static const double level = 0.7;
+    static const double level = 0.7, same = 0.99;
     size_t count = 0;
-    for (size_t i = l->count; i-- > 1; count++)
-        if (!(ladder_error(&l->rung[i], by_state) >
-              level * ladder_error(&l->rung[i - 1], by_state)))
+    for (size_t i = l->count; i-- > 1; count++) {
+        const row *fine = &l->rung[i], *coarse = &l->rung[i - 1];
+        if (!(ladder_error(fine, by_state) >
+              level * ladder_error(coarse, by_state)) ||
+            fine->dt > same * coarse->dt)
             break;
+    }
     return count;
 }
 
