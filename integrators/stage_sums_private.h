@@ -4,7 +4,7 @@
 #define NEVH_STAGE_SUMS_PRIVATE_H
 
 #include "system/vector_private.h"
-#include <nevh/body.h>
+#include <nevh/simd.h>
 
 /* The weights that are not 0, and how far the slopes they belong to are from
    those of the first stage. */

@@ -3,7 +3,7 @@
 #ifndef NEVH_SYSTEM_PRIVATE_H
 #define NEVH_SYSTEM_PRIVATE_H
 
-#include <nevh/body.h>
+#include <nevh/simd.h>
 #include <nevh/system.h>
 #include <stdarg.h>
 #include <stdint.h>

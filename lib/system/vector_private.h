@@ -8,7 +8,7 @@
 #define NEVH_VECTOR_PRIVATE_H
 
 #include "system/system_private.h"
-#include <nevh/body.h>
+#include <nevh/simd.h>
 
 #ifdef __GNUC__
 #define NEVH__HAS_VECTOR 1
