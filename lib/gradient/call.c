@@ -146,7 +146,7 @@ static bool plan_blocks(nevh__call *c, const double t[], const double q[],
 }
 
 /* Whether no other term reads momenta. */
-static void find_masses(nevh__call *c, const double p[]) {
+static void find_masses(nevh__call *c) {
     const nevh__called *x = c->terms;
     const nevh_term *is = &x->term->term->is;
     const double *inverse = nevh__term_inverse_masses(x->term->term);
@@ -154,7 +154,6 @@ static void find_masses(nevh__call *c, const double p[]) {
     if (c->half[0] || !inverse || c->count != alone || is->count != c->field->n)
         return;
     c->inverse = c->width == 1 ? inverse : x->c;
-    c->momenta = p;
 }
 
 nevh__call nevh__call_plan(nevh_field *f, size_t width, const double t[],
@@ -167,7 +166,7 @@ nevh__call nevh__call_plan(nevh_field *f, size_t width, const double t[],
         width == 1 ? plan_points(&c, t, q, p) : plan_blocks(&c, t, q, p);
     if (!there)
         return (nevh__call){0};
-    find_masses(&c, p);
+    find_masses(&c);
     return c;
 }
 

@@ -244,8 +244,8 @@ typedef struct {
     bool timed;      /* time is read, in all lanes */
     double *half[2]; /* dh_dq, dh_dp; either may be NULL */
     nevh__called terms[NEVH__MOST_CALLED];
-    /* Of dH/dp alone, where T is that of masses: what is to be multiplied. */
-    const double *inverse, *momenta; /* n x width; NULL: T is not known */
+    const double *inverse; /* n x width: of dH/dp alone, where T is that of
+                              masses, what p is multiplied by; or NULL */
 } nevh__call;
 /* width is a multiple of NEVH__LANES, or 1 for a call of point gradients, where
    all terms have them; dh_dq or dh_dp may be NULL. */
@@ -277,17 +277,6 @@ NEVH__INLINE void nevh__call_run(const nevh__call *c) {
         if (x->sums)
             nevh__call_add(x);
     }
-}
-/* The same of dH/dp alone, of `size` = n x width numbers. */
-NEVH__INLINE void nevh__call_run_drift(const nevh__call *c, size_t size) {
-    if (!c->inverse) {
-        nevh__call_run(c);
-        return;
-    }
-    const double *restrict inverse = c->inverse, *restrict p = c->momenta;
-    double *restrict velocities = c->half[1];
-    for (size_t i = 0; i < size; i++)
-        velocities[i] = inverse[i] * p[i];
 }
 /* Takes it for one lane, counts, and tells whether that is finite.  Where not,
    nevh__field_gradient says why. */
