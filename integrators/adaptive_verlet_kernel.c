@@ -17,7 +17,8 @@
    under gravity, where |f| grows as 1/r^2, that is r^1.5.  A unit for each
    would make |f| of a round orbit depend on the direction, and rho lose s.
    Where f is nearly zero its length at the start bounds the step.  s is divided
-   by its value at the start. SPDX-License-Identifier: GPL-3.0-or-later */
+   by its value at the start.
+   SPDX-License-Identifier: GPL-3.0-or-later */
 #include "adaptive_verlet_private.h"
 #include "gradient/field_private.h"
 #include "system/system_private.h"

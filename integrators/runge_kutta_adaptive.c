@@ -17,8 +17,8 @@
    [K. Gustafsson, Control-theoretic techniques for stepsize selection in
    implicit Runge-Kutta methods, ACM Trans. Math. Softw. 20 (1994) 496-517]: on
    the way to a pericentre this saves most rejections.  Where H is not finite at
-   a trial's stages, the trial is rejected as well. SPDX-License-Identifier:
-   GPL-3.0-or-later */
+   a trial's stages, the trial is rejected as well.
+   SPDX-License-Identifier: GPL-3.0-or-later */
 #include "runge_kutta_private.h"
 #include "work_private.h"
 #include "system/system_private.h"

@@ -40,8 +40,7 @@ bool nevh__repeated_stages_take(const nevh__stages *, size_t first,
 void nevh__repeated_stages_sum(const nevh__stages *, const double weights[],
                                double sum[]);
 
-/* What the control of steps has to know of a family of methods, and asks of it.
- */
+/* What step control needs from a family of methods. */
 typedef struct {
     size_t stages, rows; /* rows: of slopes that are kept */
     int error_power;     /* the power of h with which the estimate falls */

@@ -5,7 +5,8 @@
    in vectors needs no filling and no collecting: so the state is repeated over
    a vector, and stays so from step to step, unless what the caller hands over
    is another one.  Operation by operation it is splitting_kernel.c: the same
-   bits. SPDX-License-Identifier: GPL-3.0-or-later */
+   bits.
+   SPDX-License-Identifier: GPL-3.0-or-later */
 #include "splitting_private.h"
 #include "gradient/field_private.h"
 #include "system/vector_private.h"

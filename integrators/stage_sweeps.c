@@ -3,7 +3,8 @@
    In a small system a sweep is a chain of short operations, each of which
    waits for the one before, so what counts is how few they are.  Unknown are
    the derivatives of H, as they are written; signs and weights come in with the
-   sums over stages. SPDX-License-Identifier: GPL-3.0-or-later */
+   sums over stages.
+   SPDX-License-Identifier: GPL-3.0-or-later */
 #include "stage_sweeps_private.h"
 #include "gradient/field_private.h"
 #include "system/vector_private.h"

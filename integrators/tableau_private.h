@@ -7,8 +7,7 @@
    to 1.  Rounding a and b breaks that and lets the energy drift by about 1e-18
    a step.  So of each four the one in [1/2, 2] is rounded and the others are
    mirrored as 1 - mu, which is exact; the rounded method is then symplectic to
-   the last bit [Antonana, Makazaga, Murua, Numer. Algorithms (2017), sec. 3].
- */
+   the last bit [Antonana, Makazaga, Murua, Numer. Algorithms 2017, sec. 3]. */
 #ifndef NEVH_TABLEAU_PRIVATE_H
 #define NEVH_TABLEAU_PRIVATE_H
 

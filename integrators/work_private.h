@@ -41,8 +41,7 @@ int nevh__work_noise(nevh_work *, double t, const double q[], const double p[],
 int nevh__work_gradient(nevh_work *, size_t points, size_t used,
                         const double t[], const double q[], const double p[],
                         double dh_dq[], double dh_dp[]);
-/* Whether such points cost little: gradients are exact, and nobody's but H's.
- */
+/* Whether such points cost little: gradients are exact and those of H. */
 bool nevh__work_lean(const nevh_work *);
 /* Whether one orbit may as well be repeated over a vector. */
 bool nevh__work_repeats(const nevh_work *);

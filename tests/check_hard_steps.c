@@ -1,8 +1,7 @@
 /* nevh tests: steps that cannot be taken, or hardly.
    SPDX-License-Identifier: GPL-3.0-or-later
 
-   GSL's error handler is its default one, which aborts: nothing may reach it.
- */
+   GSL's error handler is the default one, which aborts: nothing may reach it. */
 #include "support.h"
 #include <float.h>
 #include <math.h>

@@ -77,8 +77,7 @@ char *stop_words(const plan *, double t);
 
 /* Of what is shown: that of the coordinate that it is; 0: none. */
 double plan_period(const plan *, const char *shown);
-/* The energy that errors are relative to: of the scene, or of H at the start.
- */
+/* The energy that errors are relative to: the scene's, or H at the start. */
 double plan_energy_scale(const plan *);
 
 /* impact.c: what nevh effects --impact prints. */

@@ -3,7 +3,8 @@
    The orbit by a method of order 8 that adapts its steps, and a neighbour that
    is brought back to it again and again [G. Benettin, L. Galgani, J.-M.
    Strelcyn, Kolmogorov entropy and numerical experiments, Phys. Rev. A 14
-   (1976) 2338-2345]. SPDX-License-Identifier: GPL-3.0-or-later */
+   (1976) 2338-2345].
+   SPDX-License-Identifier: GPL-3.0-or-later */
 #include "pace.h"
 #include <float.h>
 #include <math.h>

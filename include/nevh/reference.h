@@ -70,8 +70,7 @@ NEVH_API double nevh_reference_horizon(const nevh_reference *);
             horizon; what a step returned
    cost     of an exact solution about a microsecond; of a run, steps from the
             last checkpoint, which are few where times are asked for in order.
-            States are kept, so that asking again costs nothing (at most 32 MB).
- */
+            States are kept (at most 32 MB): asking again costs nothing. */
 NEVH_API int nevh_reference_state(nevh_reference *, double t, double q[],
                                   double p[]);
 

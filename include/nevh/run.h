@@ -62,8 +62,7 @@ NEVH_API int nevh_stepper_apply(nevh_stepper *, double t, double h, double q[],
    time (nevh_integrator_own_time). */
 NEVH_API double nevh_stepper_time(const nevh_stepper *);
 
-/* Forgets the memory and the gain, as if no step had been taken.  Counts go on.
- */
+/* Forgets the memory and the gain, as if no step had been taken; counts stay. */
 NEVH_API void nevh_stepper_reset(nevh_stepper *);
 /* A second stepper with the same memory, for branch-offs that leave the first
    untouched.  Its counts start at 0.  NULL when memory is out. */
@@ -126,9 +125,10 @@ NEVH_API int nevh_run(nevh_stepper *, double t0, double h, size_t steps,
    else the end is reached by one step more that branches off: the steps before
    it are those of nevh_run, bit for bit, and the stepper's memory, time and
    gain stay with the state before the end.  For schemes of own time the length
-   of that last step is found by GSL's root finding. returns    as nevh_run;
-   NEVH_EINVAL when h leads away from t_end, or when there would be more than
-   2^53 steps; NEVH_ENOMEM cost       allocates a few copies of the state */
+   of that last step is found by GSL's root finding.
+   returns    as nevh_run; NEVH_EINVAL when h leads away from t_end, or when
+              there would be more than 2^53 steps; NEVH_ENOMEM
+   cost       allocates a few copies of the state */
 NEVH_API int nevh_run_until(nevh_stepper *, double t0, double h, double t_end,
                             double q[], double p[],
                             const nevh_observer observers[],

@@ -1,13 +1,14 @@
 /* nevh: exact derivatives of a tape by one reverse sweep.
 
    Operations are carried out forwards; what a result overwrites goes to a
-   journal. Backwards, each hands its adjoint on to its arguments and puts back
+   journal.  Backwards, each hands its adjoint on to its arguments and puts back
    what its slot held, so that a slot may be used again and again.  Where the
    journal of the whole tape would not fit, the first half is run, its slots are
    kept, the second half is swept, and the first half is swept after it, halved
    again if need be [A. Griewank, "Achieving logarithmic growth of temporal and
    spatial complexity in reverse automatic differentiation", Optim. Methods
-   Softw. 1 (1992) 35-54]. SPDX-License-Identifier: GPL-3.0-or-later */
+   Softw. 1 (1992) 35-54].
+   SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/tape_inside_private.h"
 #include "expression/tape_operations_private.h"
 #include <string.h>

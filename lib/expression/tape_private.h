@@ -7,10 +7,11 @@
        nevh__tape_builder *b = nevh__tape_begin();
        int p = nevh__tape_variable(b, NEVH__P, 0);
        int m = nevh__tape_variable(b, NEVH__C, 0);
-       int square = nevh__tape_apply(b, NEVH__POWER, p, nevh__tape_number(b,
-   2)); int twice = nevh__tape_apply(b, NEVH__MULTIPLY, nevh__tape_number(b, 2),
-   m); int h = nevh__tape_apply(b, NEVH__DIVIDE, square, twice); nevh__tape
-   *tape = nevh__tape_finish(b, h, &status);
+       int two = nevh__tape_number(b, 2);
+       int square = nevh__tape_apply(b, NEVH__POWER, p, two);
+       int twice = nevh__tape_apply(b, NEVH__MULTIPLY, two, m);
+       int h = nevh__tape_apply(b, NEVH__DIVIDE, square, twice);
+       nevh__tape *tape = nevh__tape_finish(b, h, &status);
 
    A finished tape is const: threads share it.  Evaluation allocates nothing;
    it takes up to 66 KiB of stack, gradients of tapes that hold many values at

@@ -69,8 +69,8 @@ double nevh__curve_length(const nevh__explorer *, const nevh__planned *,
    samples that matter. */
 void nevh__find_lengths(nevh__explorer *);
 /* Of each variable, the largest over samples of what H varies by within its
-   length, over the square of that; 2n, zeros at first.  changes: room for 4n.
- */
+   length, over the square of that; 2n, zeros at first.
+   changes: room for 4n. */
 void nevh__find_curvatures(nevh__explorer *, double changes[],
                            double curvature[]);
 /* Steps that will do for a pilot, from the lengths. */

@@ -93,8 +93,7 @@ void nevh__newton_free(struct nevh__newton *m) {
     free(m);
 }
 
-/* The states around the mean, variables from `first` to `last` moved in turn.
- */
+/* The states around the mean: variables `first` to `last` moved in turn. */
 static void spread(const nevh__stage_solver *s, size_t first, size_t last) {
     const struct nevh__newton *m = s->newton;
     size_t n = s->work->n, points = m->points;
@@ -136,8 +135,7 @@ static int find_jacobian(nevh__stage_solver *s) {
     return status;
 }
 
-/* The slopes at the mean momenta move the mean coordinates, but not at first.
- */
+/* The slopes at the mean momenta move the mean coordinates, except at first. */
 static int find_product(nevh__stage_solver *s, bool standing) {
     struct nevh__newton *m = s->newton;
     size_t n = s->work->n;

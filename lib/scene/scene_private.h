@@ -241,8 +241,7 @@ void nevh__model_free(nevh__model *);
 double *nevh__velocity_room(const nevh_system *);
 void nevh__velocities(const nevh_system *, double t, const double q[],
                       const double p[], double room[], double v[]);
-/* The first effect that is on and has a value that is not finite; NULL: none.
- */
+/* The first effect that is on and has a value that is not finite, or NULL. */
 const char *nevh__effect_not_finite(const nevh_system *, double t,
                                     const double q[], const double p[],
                                     double room[]);
@@ -275,8 +274,7 @@ static inline uint64_t nevh__digest_byte(uint64_t digest, unsigned char byte) {
 }
 /* Says that there is no effect of that name. */
 bool nevh__scene_fail_effect(nevh_scene *, const nevh__piece *);
-/* The effect of that name, or NULL after a message: as asked for from outside.
- */
+/* The effect of that name, which a caller asked for; NULL after a message. */
 nevh__switch *nevh__scene_find_effect(nevh_scene *, const char *name);
 
 /* Calls visit for each statement of a section, until one fails. */

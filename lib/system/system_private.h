@@ -105,8 +105,7 @@ static inline bool nevh__term_on(const nevh_system *s, const nevh__term *term) {
     return s->effects[term->effect].on;
 }
 
-/* The index of an effect, new and on if need be; SIZE_MAX when memory is out.
- */
+/* The index of an effect, which is added (on) if new; SIZE_MAX: no memory. */
 size_t nevh__effect_index(nevh_system *, const char *name);
 
 /* 1/m of each instance where the term came from nevh_system_add_masses; NULL:

@@ -1,5 +1,6 @@
 /* nevh: numbers side by side, for code in which they must not go through
-   memory. SPDX-License-Identifier: GPL-3.0-or-later
+   memory.
+   SPDX-License-Identifier: GPL-3.0-or-later
 
    In sums of several terms GCC keeps an array of lanes in memory, and one
    operation waits for the other to be stored; a vector it keeps in a register.
