@@ -8,6 +8,18 @@ EXTRA_PROGRAMS += bench/tape
 bench_tape_LDADD = libnevh_core.la
 EXTRA_PROGRAMS += bench/scenes
 bench_scenes_LDADD = libnevh.la
+# Instructions, which do not depend on load: COUNTS=FILE compares with an
+# earlier table, SCHEMES='NAME ...' counts those alone.
+EXTRA_PROGRAMS += bench/counts
+bench_counts_LDADD = libnevh.la
+bench_counts_LDFLAGS = -static-libtool-libs
+EXTRA_DIST += bench/counts.sh
+CLEANFILES += bench/counts$(EXEEXT) bench/results-counts.csv
+
+bench-counts: bench/counts$(EXEEXT)
+	$(SHELL) $(srcdir)/bench/counts.sh ./bench/counts$(EXEEXT) \
+	  bench/results-counts.csv "$(COUNTS)" $(SCHEMES)
+
 CLEANFILES += bench/gradient$(EXEEXT) bench/results-gradient.csv \
 	bench/tape$(EXEEXT) bench/scenes$(EXEEXT)
 
@@ -49,4 +61,4 @@ bench-recommend: tools/nevh$(EXEEXT)
 	  ./tools/nevh$(EXEEXT)
 
 EXTRA_DIST += bench/recommend.sh
-.PHONY: bench bench-peers bench-recommend
+.PHONY: bench bench-counts bench-peers bench-recommend
