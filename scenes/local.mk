@@ -26,3 +26,7 @@ dist_scenes_DATA = \
 	scenes/pendulum-small.nevh \
 	scenes/pendulum.nevh \
 	scenes/sun-earth-moon.nevh
+
+# What configure makes for the command in the build tree.
+distclean-local:
+	test ! -h scenes || rm -f scenes

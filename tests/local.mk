@@ -157,6 +157,7 @@ dist_check_SCRIPTS = \
 	tests/cplusplus.sh \
 	tests/examples.sh \
 	tests/nevh.sh \
+	tests/nevh_scenes.sh \
 	tests/bad_scenes.sh \
 	tests/completion.sh \
 	tests/nevh_new.sh \

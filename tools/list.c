@@ -36,7 +36,7 @@ static void add_integrator(table *t, const nevh_integrator *s, bool all) {
     table_text(t, nevh_integrator_source(s));
 }
 
-static void list_integrators(table *t, bool all) {
+static int list_integrators(table *t, bool all) {
     static const char *const names[] = {
         "integrator",  "order",    "symplectic", "symmetric", "explicit",
         "energy kept", "adaptive", "gradients",  "needs H ="};
@@ -47,9 +47,10 @@ static void list_integrators(table *t, bool all) {
     }
     for (size_t i = 0; nevh_integrators()[i]; i++)
         add_integrator(t, nevh_integrators()[i], all);
+    return TOOL_OK;
 }
 
-static void list_gradients(table *t, bool all) {
+static int list_gradients(table *t, bool all) {
     static const char *const names[] = {"gradient", "order", "from"};
     (void)all;
     COLUMNS(t, names);
@@ -66,9 +67,10 @@ static void list_gradients(table *t, bool all) {
                                         : "values of H over complex "
                                           "numbers");
     }
+    return TOOL_OK;
 }
 
-static void list_models(table *t, bool all) {
+static int list_models(table *t, bool all) {
     static const char *const names[] = {"model", "degrees of freedom", "title"};
     (void)all;
     COLUMNS(t, names);
@@ -78,9 +80,10 @@ static void list_models(table *t, bool all) {
         table_number(t, (double)m->n);
         table_text(t, m->title);
     }
+    return TOOL_OK;
 }
 
-static void list_scenes(table *t, bool all) {
+static int list_scenes(table *t, bool all) {
     static const char *const titles[] = {"scene", "degrees of freedom",
                                          "title"};
     list names = {0}, files = {0};
@@ -98,35 +101,36 @@ static void list_scenes(table *t, bool all) {
             table_text(t, good ? nevh_scene_source(scene) : NULL);
         nevh_scene_free(scene);
     }
+    int status = names.count ? TOOL_OK : scenes_missing();
     list_free(&names);
     list_free(&files);
+    return status;
 }
 
 int list_what(const options *o) {
     static const struct {
         const char *name;
-        void (*list)(table *, bool all);
+        int (*list)(table *, bool all);
     } kinds[] = {{"integrators", list_integrators},
                  {"gradients", list_gradients},
                  {"models", list_models},
                  {"scenes", list_scenes}};
     list names = {0};
     page p = {.table = table_new()};
-    const char *name = o->operands.count > 1 ? o->operands.item[1] : NULL;
+    const char *name = o->operands.count == 2 ? o->operands.item[1] : NULL;
     int status = TOOL_USAGE;
-    bool found = false;
-    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
-        list_add(&names, kinds[i].name);
-        if (name && o->operands.count == 2 && strcmp(name, kinds[i].name) == 0)
-            kinds[i].list(p.table, o->all), found = true;
-    }
-    if (found)
-        status = output_page(o, &p, TOOL_OK);
-    else if (o->operands.count == 2)
-        tool_unknown("kind", name, &names);
-    else
+    size_t i = 0, count = sizeof kinds / sizeof *kinds;
+    for (size_t k = 0; k < count; k++)
+        list_add(&names, kinds[k].name);
+    while (name && i < count && strcmp(name, kinds[i].name) != 0)
+        i++;
+    if (!name)
         tool_refuse("nevh list takes one of integrators, gradients, models, "
                     "scenes");
+    else if (i == count)
+        tool_unknown("kind", name, &names);
+    else if (!kinds[i].list(p.table, o->all))
+        status = output_page(o, &p, TOOL_OK);
     list_free(&names);
     page_free(&p);
     return status;

@@ -8,11 +8,49 @@
 
 static const char ending[] = ".nevh";
 
-/* Where scenes are, for tests and in the build tree given by the
-   environment. */
-static const char *folder(void) {
+/* The folder that holds the program, without an end that libtool adds; NULL
+   where the system does not tell. */
+static char *program_folder(void) {
+    char *program = realpath("/proc/self/exe", NULL);
+    char *slash = program ? strrchr(program, '/') : NULL;
+    if (slash)
+        *slash = '\0';
+    slash = program ? strrchr(program, '/') : NULL;
+    if (slash && strcmp(slash, "/.libs") == 0)
+        *slash = '\0';
+    return program;
+}
+
+static bool is_folder(const char *name) {
+    struct stat found;
+    return stat(name, &found) == 0 && S_ISDIR(found.st_mode);
+}
+
+/* Beside the program: in a build tree in tools/, or installed in bin/, also
+   where the whole of what is installed was moved; NULL: neither. */
+static char *folder_beside(void) {
+    char *program = program_folder(), *found = NULL;
+    const char *last = program ? strrchr(program, '/') : NULL;
+    if (last && strcmp(last, "/tools") == 0)
+        found = text_print("%.*s/scenes", (int)(last - program), program);
+    else if (last)
+        found = text_print("%.*s/share/nevh/scenes", (int)(last - program),
+                           program);
+    free(program);
+    if (found && is_folder(found))
+        return found;
+    free(found);
+    return NULL;
+}
+
+const char *scenes_folder(void) {
+    static char *beside;
     const char *given = getenv("NEVH_SCENES");
-    return given && *given ? given : NEVH_SCENES;
+    if (given && *given)
+        return given;
+    if (!beside)
+        beside = folder_beside();
+    return beside ? beside : NEVH_SCENES;
 }
 
 static int is_scene(const struct dirent *entry) {
@@ -23,13 +61,13 @@ static int is_scene(const struct dirent *entry) {
 
 void scenes_installed(list *names, list *files) {
     struct dirent **entry = NULL;
-    int count = scandir(folder(), &entry, is_scene, alphasort);
+    int count = scandir(scenes_folder(), &entry, is_scene, alphasort);
     for (int i = 0; i < count; i++) {
         const char *file = entry[i]->d_name;
         list_print(names, "%.*s", (int)(strlen(file) - sizeof ending + 1),
                    file);
         if (files)
-            list_print(files, "%s/%s", folder(), file);
+            list_print(files, "%s/%s", scenes_folder(), file);
         free(entry[i]);
     }
     free(entry);
@@ -40,24 +78,53 @@ static bool is_file(const char *name) {
     return stat(name, &found) == 0 && !S_ISDIR(found.st_mode);
 }
 
+int scenes_missing(void) {
+    return tool_refuse("there are no scenes in %s; set NEVH_SCENES to the "
+                       "folder that holds them",
+                       scenes_folder());
+}
+
+/* Of a name without its ending, the file here; else a scene. */
+static char *suggestion(const char *name, const list *names) {
+    char *file = text_print("%s%s", name, ending);
+    if (is_file(file))
+        return file;
+    free(file);
+    const char *closest = list_closest(names, name);
+    return closest ? text_print("%s", closest) : NULL;
+}
+
+/* What was looked for, where, and what may have been meant. */
 static int not_found(const char *name) {
     list names = {0};
-    scenes_installed(&names, NULL);
-    const char *closest = list_closest(&names, name);
-    int status =
-        closest ? tool_refuse("there is no file and no scene %s; did you mean "
-                              "%s?",
-                              name, closest)
-                : tool_refuse("there is no file and no scene %s; see nevh list "
-                              "scenes",
-                              name);
+    bool path = strchr(name, '/');
+    if (!path)
+        scenes_installed(&names, NULL);
+    char *meant = suggestion(name, &names);
+    if (path)
+        tool_refuse("there is no file %s%s%s%s", name,
+                    meant ? "; did you mean " : "", meant ? meant : "",
+                    meant ? "?" : "");
+    else if (meant)
+        tool_refuse("there is no file %s, and no scene of that name in %s; did "
+                    "you mean %s?",
+                    name, scenes_folder(), meant);
+    else if (names.count)
+        tool_refuse("there is no file %s, and no scene of that name in %s; see "
+                    "nevh list scenes",
+                    name, scenes_folder());
+    else
+        tool_refuse("there is no file %s, and there are no scenes in %s; set "
+                    "NEVH_SCENES to the folder that holds them",
+                    name, scenes_folder());
     list_free(&names);
-    return status;
+    free(meant);
+    return TOOL_USAGE;
 }
 
 char *scene_file(const char *beside, const char *name) {
-    char *file = text_print("%s%s%s/%s%s", folder(), *beside ? "/" : "", beside,
-                            name, ending);
+    char *file = text_print("%s%s%s/%s%s", scenes_folder(), *beside ? "/" : "",
+                            beside, name, ending);
     if (is_file(file))
         return file;
     free(file);

@@ -156,6 +156,12 @@ int scene_report(const nevh_scene *, const options *);
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed and *scene NULL */
 int scene_open(nevh_scene **scene, const options *);
 int scene_open_named(nevh_scene **scene, const char *name, const options *);
+/* Where scenes that are given by name are: what NEVH_SCENES in the environment
+   says, else the folder that belongs to this program (in the build tree or
+   beside bin/), else the one it was configured for. */
+const char *scenes_folder(void);
+/* The message that none is there. */
+int scenes_missing(void);
 /* Names of installed scenes, sorted; with their files when `files` is not
    NULL. */
 void scenes_installed(list *names, list *files);
