@@ -158,6 +158,7 @@ dist_check_SCRIPTS = \
 	tests/examples.sh \
 	tests/nevh.sh \
 	tests/nevh_scenes.sh \
+	tests/quickstart.sh \
 	tests/bad_scenes.sh \
 	tests/completion.sh \
 	tests/nevh_new.sh \
@@ -205,6 +206,10 @@ if !HAVE_CHECK
 	  "when nevh was configured."
 endif
 
+# For ./quickstart, which shows how many have run.
+count-tests:
+	@set -- $(TESTS); echo $$#
+
 check-slow:
 	$(MAKE) $(AM_MAKEFLAGS) check TESTS='$(all_suites)' \
 	  CHECK_TAGS=CK_INCLUDE_TAGS TEST_TIMEOUT=3600
@@ -226,4 +231,4 @@ check-valgrind: all $(check_LTLIBRARIES) $(check_PROGRAMS)
 	done; \
 	test -z "$$failed" || { echo "failed under valgrind:$$failed"; exit 1; }
 
-.PHONY: check-slow check-valgrind fuzz
+.PHONY: count-tests check-slow check-valgrind fuzz
