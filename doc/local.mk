@@ -5,24 +5,44 @@ doc_nevh_TEXINFOS = \
 	doc/cost-pendulum.txt \
 	doc/recommend-pendulum.txt \
 	doc/gradients-pendulum.txt \
-	doc/hard.txt
+	doc/hard.txt \
+	doc/reference.texi
 AM_MAKEINFOHTMLFLAGS = --no-split
 # Without TeX; make pdf needs it.
 AM_DISTCHECK_DVI_TARGET = html
 
+# The C reference is what the headers say, in the order of first use.
 dist_man3_MANS = doc/nevh.3
+reference_headers = \
+	include/nevh/status.h include/nevh/system.h include/nevh/body.h \
+	include/nevh/simd.h include/nevh/probe.h include/nevh/gradient.h \
+	include/nevh/integrator.h include/nevh/run.h include/nevh/transform.h \
+	include/nevh/diagnose.h include/nevh/reference.h \
+	include/nevh/section.h include/nevh/scene.h include/nevh/models.h \
+	include/nevh/gsl.h include/nevh/extend.h
+# In the sources, where makeinfo looks for it, and in tarballs.
+doc/reference.texi: $(reference_headers) doc/reference.awk
+	$(AM_V_GEN)cd $(srcdir) && \
+	  $(AWK) -v form=texi -f doc/reference.awk $(reference_headers) \
+	    >doc/reference.tmp && mv doc/reference.tmp doc/reference.texi
+doc/nevh.3: $(reference_headers) doc/reference.awk doc/nevh.3.head
+	$(AM_V_GEN)cd $(srcdir) && \
+	  { cat doc/nevh.3.head && \
+	    $(AWK) -v form=man -f doc/reference.awk $(reference_headers); } \
+	    >doc/nevh.tmp && mv doc/nevh.tmp doc/nevh.3
+MAINTAINERCLEANFILES = doc/nevh.3 doc/reference.texi
 
 # nevh(1) is what nevh --help says, and in tarballs.
 if HAVE_PAGE
 dist_man1_MANS = doc/nevh.1
-MAINTAINERCLEANFILES = doc/nevh.1
+MAINTAINERCLEANFILES += doc/nevh.1
 doc/nevh.1: $(tools_nevh_SOURCES) doc/nevh.h2m configure.ac \
   | tools/nevh$(EXEEXT)
 	$(AM_V_GEN)$(MKDIR_P) doc && \
 	  $(HELP2MAN) --name 'compare symplectic integrators on a Hamiltonian' \
 	    --include $(srcdir)/doc/nevh.h2m --output $@ ./tools/nevh$(EXEEXT)
 endif
-EXTRA_DIST += doc/nevh.h2m doc/figures.sh doc/hard.awk \
+EXTRA_DIST += doc/nevh.h2m doc/nevh.3.head doc/reference.awk doc/figures.sh doc/hard.awk \
 	doc/gradient-cost.txt doc/steps-that-follow.txt doc/nevh-cost.txt \
 	doc/hard-all.txt
 

@@ -1,29 +1,13 @@
 #!/bin/sh
 # The shared library defines what the headers declare NEVH_API, and no name
-# but nevh_*.  nevh__* are shared inside and must not be seen.
+# but nevh_*.  nevh__* are shared inside and must not be seen.  The C reference
+# describes all of it.
 
 srcdir=${srcdir:-.}
-nm=${NM:-nm}
-lib=
-for name in .libs/libnevh.so .libs/libnevh.dylib; do
-    test -f $name && lib=$name
-done
-test -n "$lib" || { echo "there is no shared library here"; exit 77; }
-# Unquoted: $NM may bring options of its own.
-$nm --version >/dev/null 2>&1 || { echo "there is no nm"; exit 77; }
-
 work=symbols.$$
 trap 'rm -rf $work' EXIT
 trap 'exit 1' HUP INT TERM
 mkdir $work || exit 1
-
-# Under sanitizers the compiler adds names; linkers add the others.
-case $lib in
-*.so) $nm -D --defined-only $lib | awk '{ print $NF }' ;;
-*) $nm -g $lib | awk '$2 != "U" && NF == 3 { sub(/^_/, "", $3); print $3 }' ;;
-esac | sed 's/@.*//' |
-    grep -Ev '^(__odr_asan.*|_init|_fini|__bss_start|_edata|_end)$' |
-    sort -u >$work/defined
 
 # The name is the first one before a parenthesis, or else the last one.
 for header in "$srcdir"/include/nevh/*.h; do
@@ -46,6 +30,34 @@ done | tr '\n' ' ' | awk '
     }' | sort -u >$work/declared
 
 status=0
+# The C reference has an entry for each.
+for name in $(cat $work/declared); do
+    for form in "$srcdir/doc/reference.texi:^@def.* $name( |\$)" \
+        "$srcdir/doc/nevh.3:^\.B \".*$name"; do
+        grep -Eq "${form#*:}" "${form%%:*}" && continue
+        echo "${form%%:*} has no $name"
+        status=1
+    done
+done
+test $status = 0 || exit 1
+
+nm=${NM:-nm}
+lib=
+for name in .libs/libnevh.so .libs/libnevh.dylib; do
+    test -f $name && lib=$name
+done
+test -n "$lib" || { echo "there is no shared library here"; exit 77; }
+# Unquoted: $NM may bring options of its own.
+$nm --version >/dev/null 2>&1 || { echo "there is no nm"; exit 77; }
+
+# Under sanitizers the compiler adds names; linkers add the others.
+case $lib in
+*.so) $nm -D --defined-only $lib | awk '{ print $NF }' ;;
+*) $nm -g $lib | awk '$2 != "U" && NF == 3 { sub(/^_/, "", $3); print $3 }' ;;
+esac | sed 's/@.*//' |
+    grep -Ev '^(__odr_asan.*|_init|_fini|__bss_start|_edata|_end)$' |
+    sort -u >$work/defined
+
 if ! test -s $work/defined || ! test -s $work/declared; then
     echo "found no symbols, or no declarations"
     status=1
