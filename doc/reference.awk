@@ -13,15 +13,14 @@
 FNR == 1 {
     flush_group()
     head = 1
-    depth = code = 0
+    depth = 0
+    code = FILENAME ~ /\/(body|simd)\.h$/
     name = FILENAME
     sub(/.*include\//, "", name)
     section("<" name ">")
 }
 
 in_comment { comment_line($0); next }
-
-/NEVH__INLINE/ { code = 1 }
 
 /^\/\// { next }
 

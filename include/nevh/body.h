@@ -179,7 +179,7 @@ NEVH__INLINE double _Complex nevh__of_complex(const double (*x)[2], size_t k) {
     return nevh__pair(x[k][0], x[k][1]);
 }
 
-/* clang-format 14 does not know _Generic. */
+// clang-format 14 does not know _Generic.
 // clang-format off
 #define NEVH__AT(x, k)                                                         \
     _Generic((x), const double *: nevh__of_state,                              \
@@ -193,7 +193,9 @@ NEVH__INLINE double _Complex nevh__of_complex(const double (*x)[2], size_t k) {
                                    nevh__one: nevh_point_##f, default: f),     \
               nevh__complex_##f)
 // clang-format on
-#define NEVH__OWN(f, x)  NEVH__ANY(x, nevh__##f, nevh__complex_##f)
+#define NEVH__OWN(f, x) NEVH__ANY(x, nevh__##f, nevh__complex_##f)
+
+/* What the body reads, and the functions that it calls. */
 #define nevh_q(k)        NEVH__AT(nevh__q, k)
 #define nevh_p(k)        NEVH__AT(nevh__p, k)
 #define nevh_c(k)        NEVH__AT(nevh__c, k)
@@ -297,6 +299,7 @@ NEVH__INLINE double *nevh__slope(nevh__slopes d, size_t k) {
     return d.wanted ? d.x + (k * d.width + d.lane) : d.nowhere;
 }
 
+/* What the body of a gradient writes. */
 #define nevh_dh_dq(k) (*nevh__slope(nevh__dh_dq, (size_t)(k)))
 #define nevh_dh_dp(k) (*nevh__slope(nevh__dh_dp, (size_t)(k)))
 
