@@ -172,6 +172,7 @@ dist_check_SCRIPTS = \
 	tests/nevh_check.sh \
 	tests/nevh_hard.sh \
 	tests/nevh_cost.sh \
+	tests/nevh_recommend.sh \
 	tests/pkgconfig.sh \
 	tests/effects_off.sh \
 	tests/valgrind.sh

@@ -202,13 +202,42 @@ static const char *reason(const ladder *l, double least) {
     return "shorter steps do not lessen it: rounding ends there";
 }
 
+/* Of those that give no error to choose by. */
+static void tell_why(const advice *a) {
+    const char *name = a->search.plan.name;
+    const row *failed = NULL;
+    bool keeps = false, late = false;
+    for (size_t i = 0; i < a->count; i++) {
+        const ladder *l = &a->ladder[i];
+        keeps |= !counts(a, i) && l->count && l->rung[0].ran;
+        late |= l->end == LADDER_LIMIT;
+        for (size_t k = 0; k < l->count && !failed; k++)
+            if (l->rung[k].failed && !l->rung[k].late)
+                failed = &l->rung[k];
+    }
+    if (keeps)
+        tool_refuse("%s: what runs keeps the energy at any step, so that its "
+                    "error chooses none; ask for --state-error",
+                    name);
+    else if (failed)
+        tool_refuse("%s: no integrator comes to the end: %s with the %s "
+                    "gradient at dt = %g %s",
+                    name, failed->integrator, failed->gradient, failed->dt,
+                    failed->status);
+    else if (late)
+        tool_refuse("%s: all runs take longer than may be tried; --t-end "
+                    "shortens them",
+                    name);
+    else
+        tool_refuse("%s: no integrator fits; see nevh check", name);
+}
+
 int advice_none(const advice *a) {
     double least;
     const ladder *l = most_exact(a, &least);
     const char *what = a->search.by_state ? "state" : "energy";
     if (!l)
-        tool_refuse("%s: no integrator runs; see nevh check",
-                    a->search.plan.name);
+        tell_why(a);
     else
         tool_refuse("%s: nothing keeps the %s error below %g.  The least, %.1e,"
                     " is that of %s with the %s gradient; %s",

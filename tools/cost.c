@@ -180,6 +180,21 @@ static int status_of(const costs *c) {
     return failed && (!ran || c->search.dt) ? TOOL_FAILED : TOOL_OK;
 }
 
+/* On stderr, too, where the exit status says that rows failed. */
+static int report_failures(const costs *c) {
+    int status = status_of(c);
+    const row *failed = NULL;
+    for (size_t i = 0; i < c->count && !failed; i++)
+        for (size_t k = 0; k < c->ladder[i].count && !failed; k++)
+            if (c->ladder[i].rung[k].failed)
+                failed = &c->ladder[i].rung[k];
+    if (status && failed)
+        tool_refuse("%s: %s with %s at dt = %.4g %s", c->search.plan.name,
+                    failed->integrator, failed->gradient, failed->dt,
+                    failed->status);
+    return status;
+}
+
 static int cost_plan(const options *o, plan *p, double whole) {
     output out;
     if (plot_check(o) || output_open(&out, o->file))
@@ -193,7 +208,7 @@ static int cost_plan(const options *o, plan *p, double whole) {
     search_end(&c.search);
     page_print(&result, o->format, out.stream);
     page_free(&result);
-    int status = output_close(&out, status_of(&c));
+    int status = output_close(&out, report_failures(&c));
     if (plot_wanted(o) && cost_plot(o, &c))
         status = TOOL_USAGE;
     for (size_t i = 0; i < c.count; i++)

@@ -73,6 +73,8 @@ static void show_cell(const costs *c, const ladder *l, size_t target,
         text = text_print("  -");
     else if (l->end == LADDER_REFUSED)
         text = text_print("  refused");
+    else if (ladder_failure(l))
+        text = text_print("  fails");
     else if (!costs_count(c, l))
         text = text_print("  -");
     else if (!r)

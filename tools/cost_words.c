@@ -203,13 +203,40 @@ static void tell_names(const costs *c, list *words, const char *format,
     free(names);
 }
 
+/* The first of the table in full, the others by name. */
+static void tell_failures(const costs *c, list *words) {
+    enum { FEW = 4 };
+    list others = {0};
+    const row *first = NULL;
+    for (size_t i = 0; i < c->count; i++) {
+        const row *r = ladder_failure(&c->ladder[i]);
+        if (!r)
+            continue;
+        if (first && !list_has(&others, r->integrator))
+            list_add(&others, r->integrator);
+        else if (!first)
+            first = r;
+    }
+    char *names = list_joined(&others);
+    if (first)
+        list_print(words, "%s with %s at dt = %.4g %s.", first->integrator,
+                   first->gradient, first->dt, first->status);
+    if (others.count > FEW)
+        list_print(words, "%zu others fail as well.", others.count);
+    else if (others.count)
+        list_print(words, "%s %s as well.", names,
+                   others.count == 1 ? "fails" : "fail");
+    free(names);
+    list_free(&others);
+}
+
 static void tell_hidden(const costs *c, list *words) {
     size_t dear = 0, untried = 0;
     for (size_t i = 0; i < c->count; i++) {
         const ladder *l = &c->ladder[i];
         untried += l->end == LADDER_LIMIT && !l->count;
         dear += l->end != LADDER_REFUSED && l->count && costs_count(c, l) &&
-                !cost_shows(c, l);
+                !ladder_failure(l) && !cost_shows(c, l);
     }
     if (dear)
         list_print(words,
@@ -289,6 +316,7 @@ void cost_words(costs *c, list *words) {
     if (c->search.plan.friction && !c->search.by_state)
         list_add(words, "Friction around a step is exact in the balance, "
                         "though not in the orbit: compare --by state.");
+    tell_failures(c, words);
     tell_hidden(c, words);
     tell_legend(c, words);
 }

@@ -75,6 +75,19 @@ double plan_shorten(plan *p, double budget) {
     return whole;
 }
 
+int plan_goes_anywhere(const plan *p) {
+    bool reached = false;
+    if (nevh_scene_stops(p->scene) &&
+        !nevh_scene_stop_reached(p->scene, p->run->t_start, p->q, p->p,
+                                 &reached) &&
+        reached) {
+        tool_refuse("%s: the run stops at its start, where %s holds already",
+                    p->name, nevh_scene_stop_text(p->scene));
+        return TOOL_FAILED;
+    }
+    return TOOL_OK;
+}
+
 int plan_search(plan *p, const options *o) {
     if (o->gradients.count == 0) {
         list_free(&p->gradients);
@@ -86,7 +99,7 @@ int plan_search(plan *p, const options *o) {
         fitting_integrators(p, &p->integrators);
     }
     nevh_stepper *s = plan_first(p, NULL);
-    int status = s ? TOOL_OK : TOOL_USAGE;
+    int status = s ? plan_goes_anywhere(p) : TOOL_USAGE;
     nevh_stepper_free(s);
     return status;
 }

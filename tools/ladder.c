@@ -18,6 +18,12 @@ ladder ladder_new(const char *integrator, const char *gradient) {
                     .scheme = plan_scheme(integrator, &transformed)};
 }
 
+ladder ladder_like(const ladder *l, const char *gradient) {
+    ladder other = ladder_new(l->integrator, gradient);
+    other.keeps = l->keeps;
+    return other;
+}
+
 void ladder_free(ladder *l) {
     for (size_t i = 0; i < l->count; i++)
         free(l->rung[i].status);
@@ -43,19 +49,29 @@ static void set_step(const search *s, row *r, int k) {
     }
 }
 
-static size_t insert(ladder *l, size_t i, int k, row r) {
-    row *rung = tool_allocate(l->count + 1, sizeof *rung);
-    int *place = tool_allocate(l->count + 1, sizeof *place);
+/* For one rung more. */
+static void make_room(ladder *l) {
+    if (l->count < l->room)
+        return;
+    l->room = l->room ? 2 * l->room : 16;
+    row *rung = tool_allocate(l->room, sizeof *rung);
+    int *k = tool_allocate(l->room, sizeof *k);
     if (l->count) {
-        memcpy(rung, l->rung, i * sizeof *rung);
-        memcpy(place, l->k, i * sizeof *place);
-        memcpy(rung + i + 1, l->rung + i, (l->count - i) * sizeof *rung);
-        memcpy(place + i + 1, l->k + i, (l->count - i) * sizeof *place);
+        memcpy(rung, l->rung, l->count * sizeof *rung);
+        memcpy(k, l->k, l->count * sizeof *k);
     }
     free(l->rung);
     free(l->k);
-    rung[i] = r, place[i] = k;
-    l->rung = rung, l->k = place, l->count++;
+    l->rung = rung, l->k = k;
+}
+
+static size_t insert(ladder *l, size_t i, int k, row r) {
+    size_t after = l->count - i;
+    make_room(l);
+    memmove(l->rung + i + 1, l->rung + i, after * sizeof *l->rung);
+    memmove(l->k + i + 1, l->k + i, after * sizeof *l->k);
+    l->rung[i] = r, l->k[i] = k;
+    l->count++;
     return i;
 }
 
@@ -64,6 +80,13 @@ static void forget(ladder *l, size_t i) {
     l->count--;
     memmove(l->rung + i, l->rung + i + 1, (l->count - i) * sizeof *l->rung);
     memmove(l->k + i, l->k + i + 1, (l->count - i) * sizeof *l->k);
+}
+
+static void run_row(search *s, const plan *p, row *r) {
+    search_progress(s, r);
+    row_run(p, r);
+    s->spent += RUNS_A_ROW * r->work;
+    s->runs++;
 }
 
 size_t ladder_run(search *s, ladder *l, int k) {
@@ -76,10 +99,7 @@ size_t ladder_run(search *s, ladder *l, int k) {
              .gradient = l->gradient,
              .scheme = l->scheme};
     set_step(s, &r, k);
-    search_progress(s, &r);
-    row_run(&s->plan, &r);
-    s->spent += RUNS_A_ROW * r.work;
-    s->runs++;
+    run_row(s, &s->plan, &r);
     return insert(l, i, k, r);
 }
 
@@ -124,6 +144,31 @@ static bool is_kept(const search *s, const ladder *l) {
            nevh_integrator_preserves_energy(l->scheme) == NEVH_YES;
 }
 
+/* Whether the energy is kept at steps so long that orbits are not: a run of
+   coarse steps goes on after the end where that comes too soon.  Schemes that
+   claim it are taken at their word; where H is quadratic, Gauss does so, too.
+ */
+static bool keeps_at_any_step(search *s, const ladder *l) {
+    static const double kept = 1e-8, steps = 8;
+    enum { DOUBLINGS = 7 };
+    if (nevh_integrator_adaptive(l->scheme) || !l->count)
+        return false;
+    bool keeps = ladder_error(&l->rung[0], false) < kept;
+    plan longer = s->plan;
+    longer.reference = NULL;
+    for (int i = 1; keeps && i <= DOUBLINGS && !search_is_over(s, 1); i++) {
+        row r = {.integrator = l->integrator,
+                 .gradient = l->gradient,
+                 .scheme = l->scheme,
+                 .dt = ldexp(l->rung[0].dt, i)};
+        longer.t_end = fmax(s->plan.t_end, s->plan.run->t_start + steps * r.dt);
+        run_row(s, &longer, &r);
+        keeps = ladder_error(&r, false) < kept;
+        free(r.status);
+    }
+    return keeps;
+}
+
 /* The scene's dt is one for schemes of order 2 to 4. */
 static int first_place(const search *s, const ladder *l) {
     int order = nevh_integrator_order(l->scheme);
@@ -134,11 +179,18 @@ static int first_place(const search *s, const ladder *l) {
     return k;
 }
 
+static void find_out_whether_kept(search *s, ladder *l) {
+    l->keeps = !s->by_state &&
+               (nevh_integrator_preserves_energy(l->scheme) == NEVH_YES ||
+                keeps_at_any_step(s, l));
+}
+
 void ladder_begin(search *s, ladder *l) {
     enum { FIRST_TOLERANCE = 6 };
     bool adapts = nevh_integrator_adaptive(l->scheme);
     if (s->dt) {
         run_given(s, l);
+        find_out_whether_kept(s, l);
         return;
     }
     if (search_is_over(s, 0.5)) {
@@ -153,6 +205,7 @@ void ladder_begin(search *s, ladder *l) {
         l->end = LADDER_REFUSED;
     else if (!adapts && is_usable(l, i, s->by_state) && !is_kept(s, l))
         ascend(s, l);
+    find_out_whether_kept(s, l);
     if (!s->by_state && !s->keeping && ladder_keeps_energy(l))
         l->end = LADDER_FLOOR;
 }
@@ -213,10 +266,22 @@ static void give_up(ladder *l) {
         forget(l, l->count - 1);
 }
 
+/* What cannot take a first step, however short, will not take a shorter one. */
+static bool cannot_begin(const ladder *l) {
+    enum { TRIES = 6 };
+    size_t count = 0;
+    for (size_t i = l->count; i-- > 0 && count < TRIES; count++)
+        if (!l->rung[i].failed || l->rung[i].late || l->rung[i].steps > 0)
+            break;
+    return count == TRIES;
+}
+
 void ladder_descend(search *s, ladder *l) {
     const row *last = &l->rung[l->count - 1];
     bool finest = l->rung[0].tolerance > 0 && last->tolerance < 1e-13;
-    if (finest || is_level(l, s->by_state)) {
+    if (cannot_begin(l)) {
+        l->end = LADDER_FAILED;
+    } else if (finest || is_level(l, s->by_state)) {
         l->end = LADDER_FLOOR;
     } else if (next_work(l) > s->plan.patience) {
         l->end = LADDER_LIMIT;
@@ -365,11 +430,16 @@ const row *ladder_least_work(const ladder *l, double target, bool by_state) {
     return least(l, target, by_state, true);
 }
 
-/* So do those that are meant to, and Gauss where H is quadratic. */
+const row *ladder_failure(const ladder *l) {
+    const row *failed = NULL;
+    for (size_t i = 0; i < l->count; i++)
+        if (l->rung[i].ran)
+            return NULL;
+        else if (!failed && l->rung[i].failed && !l->rung[i].late)
+            failed = &l->rung[i];
+    return failed;
+}
+
 bool ladder_keeps_energy(const ladder *l) {
-    static const double kept = 1e-8;
-    bool adapts = nevh_integrator_adaptive(l->scheme);
-    if (nevh_integrator_preserves_energy(l->scheme) == NEVH_YES)
-        return true;
-    return !adapts && l->count && ladder_error(&l->rung[0], false) < kept;
+    return l->keeps && !ladder_failure(l);
 }

@@ -29,15 +29,17 @@ typedef enum {
     LADDER_FLOOR, /* shorter steps do not lessen the error */
     LADDER_LIMIT, /* they would take longer than allowed */
     LADDER_GIVEN, /* the steps asked for, and no others */
-    LADDER_REFUSED
+    LADDER_REFUSED,
+    LADDER_FAILED /* in its first step, however short that is */
 } ladder_end;
 typedef struct {
     const char *integrator, *gradient;
     const nevh_integrator *scheme;
     row *rung; /* coarse to fine */
     int *k;    /* their places on the grid */
-    size_t count;
+    size_t count, room;
     bool topped; /* steps coarser than the first stride were tried */
+    bool keeps;  /* the energy, also at steps that are far too long */
     ladder_end end;
 } ladder;
 typedef struct {
@@ -67,6 +69,8 @@ double search_longest_dt(const plan *);
 
 /* ladder.c: one integrator and gradient at many steps. */
 ladder ladder_new(const char *integrator, const char *gradient);
+/* The same integrator with another gradient, or for another end. */
+ladder ladder_like(const ladder *, const char *gradient);
 void ladder_free(ladder *);
 /* Finds the coarsest usable step, from the scene's on. */
 void ladder_begin(search *, ladder *);
@@ -85,10 +89,13 @@ void ladder_refine(search *, ladder *, double target);
 void ladder_fill(search *, ladder *, size_t count);
 size_t ladder_run(search *, ladder *, int k);    /* index of the rung */
 double ladder_error(const row *, bool by_state); /* INFINITY: none */
+/* A rung that failed, where none ran; NULL: some ran, or were refused. */
+const row *ladder_failure(const ladder *);
 /* The cheapest rung by seconds, or by work; NULL: none keeps the target. */
 const row *ladder_cheapest(const ladder *, double target, bool by_state);
 const row *ladder_least_work(const ladder *, double target, bool by_state);
-/* Whether the energy says nothing of its orbits, being kept at any step. */
+/* Whether the energy says nothing of its orbits, being kept at any step: as
+   ladder_begin found. */
 bool ladder_keeps_energy(const ladder *);
 
 /* fit.c: names of the schemes, and of the gradients, that fit. */
@@ -101,6 +108,8 @@ int state_errors_mean_something(plan *);
 /* Ends the plan earlier where runs of its integrators would take too long;
    returns the end that it had. */
 double plan_shorten(plan *, double budget);
+/* TOOL_FAILED, with a message, where the run is to stop at its start. */
+int plan_goes_anywhere(const plan *);
 /* How much a search may work. */
 enum { SEARCH_BUDGET = 15 };
 

@@ -126,7 +126,7 @@ static void add_ladder(advice *a, ladder l) {
    enough. */
 static ladder with_gradient(advice *a, const ladder *l, int k,
                             const char *gradient) {
-    ladder other = ladder_new(l->integrator, gradient);
+    ladder other = ladder_like(l, gradient);
     for (int finer = 0; finer <= GRID_STRIDE; finer++) {
         size_t i = ladder_run(&a->search, &other, k + finer);
         if (ladder_error(&other.rung[i], a->search.by_state) <= a->target)
@@ -234,7 +234,7 @@ static void choose(advice *a) {
    enough. */
 static ladder verified(advice *a, const ladder *l) {
     enum { FINER = 9 };
-    ladder full = ladder_new(l->integrator, l->gradient);
+    ladder full = ladder_like(l, l->gradient);
     int k = l->k[keeps(a, l) - l->rung];
     for (int finer = 0; finer <= FINER; finer++) {
         size_t i = ladder_run(&a->search, &full, k + finer);
