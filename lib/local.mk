@@ -130,6 +130,8 @@ libnevh_core_la_SOURCES = \
 	lib/scene/write.c \
 	lib/scene/code_private.h \
 	lib/scene/code.c \
+	lib/scene/compiler_private.h \
+	lib/scene/compiler.c \
 	lib/scene/code_term.c \
 	lib/scene/scene.c
 

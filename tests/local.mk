@@ -177,8 +177,8 @@ dist_check_SCRIPTS = \
 	tests/effects_off.sh \
 	tests/valgrind.sh
 
-EXTRA_DIST += tests/outside.c tests/formula.h tests/scene.h tests/shipped.h \
-	tests/nevh_support.sh tests/bad tests/fuzz
+EXTRA_DIST += tests/outside.c tests/interrupt.c tests/formula.h tests/scene.h tests/shipped.h \
+	tests/nevh_support.sh tests/nevh_interrupt.sh tests/bad tests/fuzz
 
 TESTS = $(all_suites) $(dist_check_SCRIPTS)
 TEST_EXTENSIONS = .sh

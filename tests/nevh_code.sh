@@ -3,6 +3,7 @@
 # do not compile, and cleaned up.
 
 . "${srcdir:-.}/tests/nevh_support.sh"
+. "$srcdir/tests/nevh_interrupt.sh"
 
 mkdir $work/tmp "$work/a b"
 TMPDIR=$PWD/$work/tmp
@@ -106,20 +107,56 @@ exits 0 new $work/copies/off.nevh --from $work/off.nevh --set g=2
 exits 0 compare $work/copies/off.nevh --with gravity --allow-code
 
 # Neither another text of the code nor another transform is the same run.
-$nevh run $work/code.nevh --allow-code --t-end 1e5 --every 1000 \
-    -o $work/x.csv 2>/dev/null &
-sleep 0.3
-kill -TERM $! && wait $! 2>/dev/null
-if test -e $work/x.csv.state; then
+can_stop && stops=yes || stops=no
+if test $stops = yes; then
+    must_stop $TERM INTERRUPT_STEP=1000 run $work/code.nevh --allow-code \
+        --t-end 1e3 --every 1000 -o $work/x.csv
     cp $work/term.c $work/term.kept
     echo '/* */' >>$work/term.c
-    exits 2 run $work/code.nevh --allow-code --t-end 1e5 --every 1000 \
+    exits 2 run $work/code.nevh --allow-code --t-end 1e3 --every 1000 \
         --resume $work/x.csv
     says 'or code'
     mv $work/term.kept $work/term.c
-    exits 0 run $work/code.nevh --allow-code --t-end 1e5 --every 1000 \
+    exits 0 run $work/code.nevh --allow-code --t-end 1e3 --every 1000 \
         --resume $work/x.csv
 fi
+
+# A signal while the compiler runs: it ends with nevh, and leaves nothing; also
+# where the compiler does not mind.
+cat >$work/compiler <<'END'
+#!/bin/sh
+test -z "$DEAF" || trap '' TERM HUP
+exec 9>"$HELD"
+touch "$TMPDIR/temporary" "$SIGN"
+while :; do
+    sleep 1
+done
+END
+chmod +x $work/compiler
+SIGN=$PWD/$work/compiling
+HELD=$PWD/$work/held # whose reader ends when no compiler does any more
+export SIGN HELD
+mkfifo $HELD
+for signal in TERM HUP DEAF; do
+    command="compare code.nevh ($signal)"
+    rm -f $SIGN
+    $limit cat $HELD &
+    reader=$!
+    DEAF=
+    test $signal = DEAF && signal=TERM DEAF=yes
+    DEAF=$DEAF CC=$PWD/$work/compiler "$nevh" compare $work/code.nevh \
+        --allow-code >$work/out 2>$work/err </dev/null &
+    compiling=$!
+    until test -e $SIGN; do
+        kill -0 $compiling 2>/dev/null || { fails "does not compile"; break; }
+        sleep 1
+    done
+    kill -s $signal $compiling
+    wait $compiling 2>/dev/null
+    test $? -gt 128 || fails "goes on after a signal"
+    clean
+    wait $reader || fails "leaves its compiler"
+done
 
 # One element of an array; velocities by differences of code.
 scene $work/element.nevh 'file("term.c", phi, m, l[2], l[1], g)'
@@ -201,4 +238,5 @@ for wrong in '"term.c", psi' '"term.c", phi, phi' '"term.c" phi' '"term.c' \
     says 'list.nevh:12:[0-9]+: error: '
 done
 clean
+test $stops = yes || exits_whole
 exit $status

@@ -2,14 +2,7 @@
 # nevh run: rows and their times, ends, and what interruptions leave.
 
 . "${srcdir:-.}/tests/nevh_support.sh"
-
-# libtool's wrapper takes longer than most runs here.
-if test -z "$NEVH" && LD_LIBRARY_PATH=./.libs ./tools/.libs/nevh --version \
-    >/dev/null 2>&1; then
-    LD_LIBRARY_PATH=./.libs${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
-    export LD_LIBRARY_PATH
-    nevh=./tools/.libs/nevh
-fi
+. "$srcdir/tests/nevh_interrupt.sh"
 
 # rows OF: what a file has without remarks and header.
 rows() {
@@ -196,97 +189,78 @@ part $work/full.csv $work/whole.csv || fails "left a broken line"
 exits 0 run pendulum --every 1 --resume $work/full.csv
 cmp -s $work/full.csv $work/whole.csv || fails "does not go on as it was"
 
-sleep 0.01 2>/dev/null || exit $status
-
-# stop SIGNAL SECONDS FILE ARGUMENT...: runs nevh and ends it that long after it
-# has saved the state of FILE for the first time.
-inode() {
-    ls -i "$1" 2>/dev/null
-}
-stop() {
-    signal=$1
-    seconds=$2
-    file=$3
-    shift 3
-    test -e $file.state && ln -f $file.state $file.old
-    before=$(inode $file.state)
-    "$nevh" "$@" >/dev/null 2>$work/err &
-    while test "$(inode $file.state)" = "$before" && kill -0 $! 2>/dev/null; do
-        sleep 0.01
-    done
-    sleep $seconds
-    kill -s $signal $! 2>/dev/null
-    wait $! 2>/dev/null
-    rm -f $file.old
-}
-seed=$$
-random() { # random N: $number from 10 to N + 9
+can_stop || exits_whole
+seed=1
+random() { # random N: $number from 1 to N
     seed=$(((seed * 1103515245 + 12345) % 2147483648))
-    number=$((seed / 65536 % $1 + 10))
+    number=$((seed / 65536 % $1 + 1))
 }
 
 # Interruptions anywhere: the same file in the end.  Schemes that remember the
 # last step, times between steps, friction, and steps of their own length.
-interrupted=0
+# again NAME STEPS ARGUMENT...: STEPS is no more than the run takes.
 again() {
     name=$1
-    shift
+    steps=$2
+    shift 2
     exits 0 run "$@" -o $work/$name.whole
-    random 40
-    stop TERM 0.0$number $work/$name run "$@" -o $work/$name
-    for i in 1 2 3 4 5; do
-        test -e $work/$name.state || break
+    random $((steps / 9))
+    must_stop $TERM INTERRUPT_STEP=$number run "$@" -o $work/$name
+    for i in 1 2 3 4 5 6 7; do
         part $work/$name $work/$name.whole || fails "left a broken line"
-        interrupted=$((interrupted + 1))
-        random 40
-        stop TERM 0.0$number $work/$name run "$@" --resume $work/$name
+        test -e $work/$name.state || fails "left no state"
+        random $((steps / 9))
+        must_stop $TERM INTERRUPT_STEP=$number \
+            run "$@" --resume $work/$name
+        says 'interrupted; to go on: --resume '
     done
-    test -e $work/$name.state && exits 0 run "$@" --resume $work/$name
+    exits 0 run "$@" --resume $work/$name
     cmp $work/$name $work/$name.whole >$work/cmp ||
         { fails "is another run when interrupted"; cat $work/cmp; }
     test -e $work/$name.state && fails "left its state"
 }
-again a double-pendulum --dt 0.001 --every 100 --t-end 40
-again b damped-driven-pendulum --dt 0.0003 --samples 300 --t-end 60
-again c $work/comet.nevh --integrators gauss8+transform --t-end 700 \
+again a 40000 double-pendulum --dt 0.001 --every 100 --t-end 40
+again b 200000 damped-driven-pendulum --dt 0.0003 --samples 300 --t-end 60
+again c 5000 $work/comet.nevh --integrators gauss8+transform --t-end 700 \
     --samples 200
-again e pendulum --every 1
-again d figure-eight --integrators gauss8 --t-end 50 --at 1,2.5,20.1,33,49.999
-test $interrupted -ge 8 || { echo "only $interrupted interruptions"; status=1; }
+again e 10000 pendulum --every 1
+again d 1000 figure-eight --integrators gauss8 --t-end 50 \
+    --at 1,2.5,20.1,33,49.999
 
-# Ends that ask nobody.  There Linux may cut a line that goes over the end of a
-# page, in the moment in which it is written.
+# Ends that ask nobody, before a write and in it.  Linux may cut a line that goes
+# over the end of a page there.
 cut() {
     count=$(wc -c <"$1")
     test $((count % 4096)) -eq 0 && head -c "$count" "$2" | cmp -s - "$1"
 }
-i=0
-while test $i -lt 50; do
-    i=$((i + 1))
-    random 40
-    stop KILL 0.0$number $work/killed.csv run pendulum --every 1 \
-        -o $work/killed.csv
+run='pendulum --every 1'
+for write in 1 -1 2 -2 3 -3 4 -4 5 -5 8 -9 20 -21 30 -31 40 -41 50 -51; do
+    rm -f $work/killed.csv*
+    must_stop $KILL INTERRUPT_WRITE=$write run $run -o $work/killed.csv
     part $work/killed.csv $work/whole.csv ||
-        cut $work/killed.csv $work/whole.csv ||
+        cut $work/killed.csv $work/whole.csv || test ! -s $work/killed.csv ||
         fails "left a broken line when killed"
-done
-if test -e $work/killed.csv.state; then
-    exits 0 run pendulum --every 1 --resume $work/killed.csv
+    test -e $work/killed.csv.state || case $write in
+    1 | -1 | 2 | -2) continue ;; # the first one was not yet there
+    *) fails "left no state" ;;
+    esac
+    exits 0 run $run --resume $work/killed.csv
     cmp -s $work/killed.csv $work/whole.csv || fails "does not go on"
-fi
+done
 
-# What is saved along the way.
-run='double-pendulum --dt 0.001 --every 100 --t-end 150'
-stop KILL 0.35 $work/long.csv run $run -o $work/long.csv
-if test -e $work/long.csv.state; then
-    exits 0 run $run --resume $work/long.csv
-    exits 0 run $run
-    cmp -s $work/long.csv $work/out || fails "goes on in another way"
-fi
+# What is saved along the way, by a clock that looks move on.
+run='double-pendulum --dt 0.001 --every 100 --t-end 40'
+INTERRUPT_CLOCK=
+export INTERRUPT_CLOCK
+must_stop $KILL INTERRUPT_STEP=35000 run $run -o $work/long.csv
+unset INTERRUPT_CLOCK
+test $(rows $work/long.csv | wc -l) -gt 340 || fails "saved nothing on its way"
+exits 0 run $run --resume $work/long.csv
+cmp -s $work/long.csv $work/a.whole || fails "goes on in another way"
 
 # States that are not those of the run are refused, and nothing is touched.
 run='double-pendulum --dt 0.001 --every 100 --t-end 40'
-stop TERM 0.02 $work/x.csv run $run -o $work/x.csv
+must_stop $TERM INTERRUPT_STEP=5000 run $run -o $work/x.csv
 says 'interrupted; to go on: --resume .*x.csv'
 cp $work/x.csv $work/x.kept
 cp $work/x.csv.state $work/x.state
@@ -367,7 +341,7 @@ cmp -s $work/x.csv $work/a.whole || fails "does not go on"
 # their own time.
 for run in "pendulum --integrators gauss8 --dt 0.001 --t-end 100 --at 0.5,1,99" \
     "$work/comet.nevh --integrators gauss8+transform --t-end 20000 --at 0.5,1,9999"; do
-    stop TERM 0.02 $work/x.csv run $run -o $work/x.csv
+    must_stop $TERM INTERRUPT_STEP=3000 run $run -o $work/x.csv
     cp $work/x.csv $work/x.kept
     cp $work/x.csv.state $work/x.state
     forged "row 3 .*$never" step=2000 t=2 row=3

@@ -6,7 +6,8 @@ NEVH_SCENES=$srcdir/scenes
 export NEVH_SCENES
 nevh=${NEVH:-./tools/nevh}
 limit=
-command -v timeout >/dev/null 2>&1 && limit="timeout 60"
+command -v timeout >/dev/null 2>&1 &&
+    limit="timeout ${CK_DEFAULT_TIMEOUT:-600}"
 
 work=nevh-$(basename "$0" .sh).$$
 trap 'rm -rf $work' EXIT

@@ -1,0 +1,214 @@
+/* nevh: the system's compiler, as a child in a process group of its own.
+
+   A signal that would end this process while the child runs must leave neither
+   the child nor its files behind.  A library owns no signal handlers, so the
+   calling thread blocks such signals and looks for pending ones while it waits.
+   When there is one, the group is ended, the folder is removed, and then the
+   signal takes its course.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#define _XOPEN_SOURCE 700
+#include "scene/compiler_private.h"
+#include "system/system_private.h"
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char **environ;
+
+enum { LOOKS_APART = 20, PATIENCE = 2000 }; /* milliseconds */
+static const int minded[] = {SIGHUP, SIGINT, SIGQUIT, SIGTERM};
+enum { MINDED = sizeof minded / sizeof *minded };
+
+void nevh__signals_hold(sigset_t *before) {
+    sigset_t held;
+    sigemptyset(&held);
+    for (size_t i = 0; i < MINDED; i++)
+        sigaddset(&held, minded[i]);
+    pthread_sigmask(SIG_BLOCK, &held, before);
+}
+
+void nevh__signals_release(const sigset_t *before) {
+    pthread_sigmask(SIG_SETMASK, before, NULL);
+}
+
+/* Linux keeps a blocked signal pending although it is ignored. */
+static bool is_ignored(int number) {
+    struct sigaction found;
+    return sigaction(number, NULL, &found) == 0 && found.sa_handler == SIG_IGN;
+}
+
+/* One that is delivered as soon as it is released. */
+static bool is_interrupted(const sigset_t *before) {
+    sigset_t pending;
+    if (sigpending(&pending))
+        return false;
+    for (size_t i = 0; i < MINDED; i++)
+        if (sigismember(&pending, minded[i]) == 1 &&
+            !sigismember(before, minded[i]) && !is_ignored(minded[i]))
+            return true;
+    return false;
+}
+
+/* As a word for the shell; NULL when memory is out. */
+static char *quote(const char *text) {
+    char *word = malloc(4 * strlen(text) + 3), *to = word;
+    if (!word)
+        return NULL;
+    *to++ = '\'';
+    for (; *text; text++)
+        if (*text == '\'') {
+            memcpy(to, "'\\''", 4);
+            to += 4;
+        } else {
+            *to++ = *text;
+        }
+    memcpy(to, "'", 2);
+    return word;
+}
+
+/* The compiler's own temporary files go to the folder, too. */
+static char *command_for(const char *path, const char *folder) {
+    char *file = quote(path), *in = quote(folder);
+    char *command =
+        file && in ? nevh__text("d=%s; TMPDIR=$d; export TMPDIR; "
+                                "${CC:-cc} -O2 -ffp-contract=off -fPIC -shared "
+                                "-o \"$d/term.so\" %s -lm 2>&1",
+                                in, file)
+                   : NULL;
+    free(file);
+    free(in);
+    return command;
+}
+
+static int set_attributes(posix_spawnattr_t *how, const sigset_t *before) {
+    int wrong = posix_spawnattr_setflags(how, POSIX_SPAWN_SETPGROUP |
+                                                  POSIX_SPAWN_SETSIGMASK);
+    if (!wrong)
+        wrong = posix_spawnattr_setpgroup(how, 0);
+    return wrong ? wrong : posix_spawnattr_setsigmask(how, before);
+}
+
+static int set_files(posix_spawn_file_actions_t *files, int out) {
+    int wrong = posix_spawn_file_actions_addopen(files, STDIN_FILENO,
+                                                 "/dev/null", O_RDONLY, 0);
+    return wrong ? wrong
+                 : posix_spawn_file_actions_adddup2(files, out, STDOUT_FILENO);
+}
+
+/* returns  0, or an error number */
+static int start(char *command, const sigset_t *before, int out, pid_t *child) {
+    char *arguments[] = {(char[]){"sh"}, (char[]){"-c"}, command, NULL};
+    posix_spawnattr_t how;
+    posix_spawn_file_actions_t files;
+    int wrong = posix_spawnattr_init(&how);
+    if (wrong)
+        return wrong;
+    wrong = posix_spawn_file_actions_init(&files);
+    if (!wrong) {
+        wrong = set_attributes(&how, before);
+        if (!wrong)
+            wrong = set_files(&files, out);
+        if (!wrong)
+            wrong =
+                posix_spawn(child, "/bin/sh", &files, &how, arguments, environ);
+        posix_spawn_file_actions_destroy(&files);
+    }
+    posix_spawnattr_destroy(&how);
+    return wrong;
+}
+
+/* Reads what there is, and keeps the beginning.
+   returns  whether the pipe's other end is closed by all */
+static bool has_ended(int pipe, nevh__compiler_output *output) {
+    char block[512];
+    ssize_t count = read(pipe, block, sizeof block);
+    if (count < 0)
+        return errno != EINTR;
+    size_t room = sizeof output->text - 1 - output->used,
+           kept = (size_t)count < room ? (size_t)count : room;
+    memcpy(output->text + output->used, block, kept);
+    output->used += kept;
+    return count == 0;
+}
+
+/* Reads until all of the group have ended, which is when nobody holds the
+   pipe, or until `give_up` milliseconds have passed; 0: until a signal comes. */
+static bool listen_to(int pipe, const sigset_t *before, int give_up,
+                      nevh__compiler_output *output) {
+    struct pollfd look = {.fd = pipe, .events = POLLIN};
+    for (int waited = 0;
+         give_up ? waited < give_up : !is_interrupted(before);) {
+        int ready = poll(&look, 1, LOOKS_APART);
+        if (ready > 0 && has_ended(pipe, output))
+            return true;
+        if (ready == 0)
+            waited += LOOKS_APART;
+    }
+    return false;
+}
+
+static void end_group(pid_t group, int pipe, const sigset_t *before,
+                      nevh__compiler_output *output) {
+    kill(-group, SIGTERM);
+    if (!listen_to(pipe, before, PATIENCE, output))
+        kill(-group, SIGKILL);
+    listen_to(pipe, before, PATIENCE, output);
+}
+
+/* returns  its exit status, or -1 */
+static int await(pid_t child) {
+    int status = 0;
+    while (waitpid(child, &status, 0) < 0)
+        if (errno != EINTR)
+            return -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+static int run(char *command, const sigset_t *before,
+               nevh__compiler_output *output) {
+    int ends[2];
+    pid_t child;
+    if (pipe(ends))
+        return -1;
+    fcntl(ends[0], F_SETFD, FD_CLOEXEC);
+    fcntl(ends[1], F_SETFD, FD_CLOEXEC);
+    int wrong = start(command, before, ends[1], &child), status = -1;
+    close(ends[1]);
+    if (!wrong) {
+        output->interrupted = !listen_to(ends[0], before, 0, output);
+        if (output->interrupted)
+            end_group(child, ends[0], before, output);
+        status = await(child);
+    }
+    close(ends[0]);
+    return status;
+}
+
+int nevh__compile(const char *path, const char *folder, const sigset_t *before,
+                  nevh__compiler_output *output) {
+    char *command = command_for(path, folder);
+    *output = (nevh__compiler_output){.used = 0};
+    int status = command ? run(command, before, output) : -1;
+    free(command);
+    return status;
+}
+
+void nevh__folder_remove(const char *folder) {
+    DIR *all = opendir(folder);
+    for (struct dirent *file; all && (file = readdir(all));) {
+        char *path = nevh__text("%s/%s", folder, file->d_name);
+        if (path)
+            unlink(path); /* no folder is: not . and .. either */
+        free(path);
+    }
+    if (all)
+        closedir(all);
+    rmdir(folder);
+}

@@ -1,0 +1,77 @@
+/* nevh: interruptions at places that tests ask for.  A library that LD_PRELOAD
+   puts before nevh's own; the environment says what happens:
+
+   INTERRUPT_STEP=k    before the k-th step of a run's trajectory ...
+   INTERRUPT_WRITE=k   in the k-th write to a file, of which a part is written,
+                       and before it when k is negative ...
+   INTERRUPT_SIGNAL=n  ... this signal comes.
+   INTERRUPT_CLOCK=    each look at the monotonic clock takes 10 ms
+   INTERRUPT_SIGN=F    file F is made when there is an interruption
+
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { PAGE = 4096 };
+
+static long asked(const char *name) {
+    const char *text = getenv(name);
+    return text ? atol(text) : 0;
+}
+
+static void interrupt(void) {
+    const char *sign = getenv("INTERRUPT_SIGN");
+    if (sign)
+        close(open(sign, O_WRONLY | O_CREAT, 0666));
+    raise((int)asked("INTERRUPT_SIGNAL"));
+}
+
+int nevh_stepper_apply(void *stepper, double t, double h, double q[],
+                       double p[]) {
+    static int (*real)(void *, double, double, double *, double *);
+    static long steps;
+    if (!real)
+        real = (int (*)(void *, double, double, double *, double *))dlsym(
+            RTLD_NEXT, "nevh_stepper_apply");
+    if (++steps == asked("INTERRUPT_STEP"))
+        interrupt();
+    return real(stepper, t, h, q, p);
+}
+
+/* As Linux cuts a write short in a process that is killed: between pages. */
+static size_t part_of(int file, size_t count) {
+    off_t at = lseek(file, 0, SEEK_CUR);
+    size_t room = PAGE - (size_t)(at < 0 ? 0 : at) % PAGE;
+    return count < room ? count : room;
+}
+
+ssize_t write(int file, const void *bytes, size_t count) {
+    static ssize_t (*real)(int, const void *, size_t);
+    static long writes;
+    if (!real)
+        real = (ssize_t(*)(int, const void *, size_t))dlsym(RTLD_NEXT, "write");
+    long at = asked("INTERRUPT_WRITE");
+    if (at == 0 || file <= STDERR_FILENO || ++writes != labs(at))
+        return real(file, bytes, count);
+    ssize_t written = at > 0 ? real(file, bytes, part_of(file, count)) : 0;
+    interrupt();
+    return written;
+}
+
+int clock_gettime(clockid_t which, struct timespec *now) {
+    static int (*real)(clockid_t, struct timespec *);
+    static long looks;
+    if (!real)
+        real = (int (*)(clockid_t, struct timespec *))dlsym(RTLD_NEXT,
+                                                            "clock_gettime");
+    if (which != CLOCK_MONOTONIC || !getenv("INTERRUPT_CLOCK"))
+        return real(which, now);
+    looks++;
+    *now = (struct timespec){looks / 100, looks % 100 * 10000000};
+    return 0;
+}
