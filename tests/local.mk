@@ -57,6 +57,7 @@ suites = \
 	tests/check_time_slope \
 	tests/check_models \
 	tests/check_reference \
+	tests/check_state_error \
 	tests/check_failures \
 	tests/check_hard_steps \
 	tests/check_hard \

@@ -144,6 +144,8 @@ static void watched(work *w, nevh_stepper *s) {
     nevh_observer observers[5] = {{nevh_energy_observe, energy, 1}};
     energy_trace trace = {r->errors, energy};
     size_t count = 1;
+    if (state)
+        nevh_state_error_follow(state, s);
     if (r->errors)
         observers[count++] = (nevh_observer){energy_trace_observe, &trace, 1};
     if (state)

@@ -19,6 +19,19 @@ static char *refusal(const plan *p, const char *name) {
     return NULL;
 }
 
+/* Elements of an array are of one kind. */
+static nevh_reference *
+make_reference(const plan *p, const nevh_integrator *scheme, double end) {
+    size_t *kind = tool_allocate(p->n, sizeof *kind);
+    for (size_t k = 0; k < p->n; k++)
+        kind[k] = nevh_scene_array(p->scene, k);
+    nevh_reference_options o = {.integrator = scheme, .kind = kind};
+    nevh_reference *made =
+        nevh_reference_with(p->system, &o, p->run->t_start, end, p->q, p->p);
+    free(kind);
+    return made;
+}
+
 int plan_reference(plan *p, double end) {
     const char *name = p->run->reference;
     const nevh_integrator *scheme = NULL;
@@ -32,8 +45,7 @@ int plan_reference(plan *p, double end) {
                            "length; take it without +transform",
                            name);
     p->reference_end = end;
-    p->reference =
-        nevh_reference_new(p->system, scheme, p->run->t_start, end, p->q, p->p);
+    p->reference = make_reference(p, scheme, end);
     p->no_reference = refusal(p, name);
     if (!p->no_reference)
         return TOOL_OK;

@@ -44,6 +44,19 @@ NEVH_API nevh_reference *nevh_reference_new(const nevh_system *,
                                             const nevh_integrator *integrator,
                                             double t0, double t1,
                                             const double q[], const double p[]);
+
+/* What else may be said of a reference; zeros are what nevh_reference_new
+   takes. */
+typedef struct {
+    const nevh_integrator *integrator; /* as there */
+    const size_t *kind; /* n numbers: coordinates of one number are of one kind
+                           and share a range, and so do their momenta; NULL:
+                           each has its own */
+} nevh_reference_options;
+/* options  borrowed for the call; NULL: zeros */
+NEVH_API nevh_reference *
+nevh_reference_with(const nevh_system *, const nevh_reference_options *options,
+                    double t0, double t1, const double q[], const double p[]);
 NEVH_API void nevh_reference_free(nevh_reference *); /* NULL is allowed */
 /* The status of making it or of the last call; NEVH_ENOMEM for NULL. */
 NEVH_API int nevh_reference_status(const nevh_reference *);
@@ -73,11 +86,19 @@ NEVH_API double nevh_reference_horizon(const nevh_reference *);
             States are kept (at most 32 MB): asking again costs nothing. */
 NEVH_API int nevh_reference_state(nevh_reference *, double t, double q[],
                                   double p[]);
+/* The same by the time since t0, between 0 and t1 - t0: far from t = 0 a time
+   is rounded, and an orbit may move within that rounding. */
+NEVH_API int nevh_reference_state_after(nevh_reference *, double elapsed,
+                                        double q[], double p[]);
 
-/* The difference of the largest and the smallest value over the time, of q[k]
-   for k < n, else of p[k - n].  Where that is 0 or rounding, the largest one
-   among the variables of the same kind; 1 where all are. */
+/* What state errors of q[k] for k < n, else of p[k - n], are divided by: its
+   own range, or the widest one among the variables of its kind.  Where that is
+   0 or rounding, the largest one among all coordinates, or all momenta; 1 where
+   all are. */
 NEVH_API double nevh_reference_range(const nevh_reference *, size_t k);
+/* The difference of the largest and the smallest value of that variable over
+   the time; 0 where it does not move. */
+NEVH_API double nevh_reference_own_range(const nevh_reference *, size_t k);
 
 /* Watches a run: the largest |difference to the reference| / range over
    coordinates and momenta, at up to 1024 of the run's own times spread over
@@ -87,6 +108,10 @@ typedef struct nevh_state_error nevh_state_error;
 /* The reference is borrowed.  NULL when memory is out, or for NULL. */
 NEVH_API nevh_state_error *nevh_state_error_new(nevh_reference *);
 NEVH_API void nevh_state_error_free(nevh_state_error *); /* NULL is allowed */
+/* The stepper that runs the orbit, borrowed: states are compared at the time
+   that its steps add up to, which far from t = 0 is known better than t.  NULL:
+   at t, as without a call. */
+NEVH_API void nevh_state_error_follow(nevh_state_error *, const nevh_stepper *);
 /* A nevh_observe_fn for runs of one orbit; data is the nevh_state_error.  It
    never stops a run: where the reference has no state there is no result. */
 NEVH_API int nevh_state_error_observe(void *state_error, size_t step, double t,
@@ -95,6 +120,10 @@ NEVH_API int nevh_state_error_observe(void *state_error, size_t step, double t,
    observed or the reference failed, or meaningless, because the run went on
    after the horizon. */
 NEVH_API double nevh_state_error_result(const nevh_state_error *);
+/* Of variable k alone, numbered as ranges are: the largest |difference| in the
+   units of that variable, so that it may be divided by either range.  INFINITY
+   and NAN as above. */
+NEVH_API double nevh_state_error_of(const nevh_state_error *, size_t k);
 
 #ifdef __cplusplus
 }

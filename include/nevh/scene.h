@@ -98,6 +98,9 @@ NEVH_API const char *nevh_scene_source(const nevh_scene *); /* "" if none */
 NEVH_API size_t nevh_scene_dof(const nevh_scene *);
 /* "phi", "x[3]"; NULL when k is out of range. */
 NEVH_API const char *nevh_scene_coordinate(const nevh_scene *, size_t k);
+/* Which coordinates are elements of one array: the number of the first of them,
+   the same for all; k itself where it is no array's, or out of range. */
+NEVH_API size_t nevh_scene_array(const nevh_scene *, size_t k);
 /* The text of a label ("t", "energy", a coordinate); "" if there is none.
    x[3] has that of x unless it has one of its own. */
 NEVH_API const char *nevh_scene_label(const nevh_scene *, const char *name);

@@ -18,26 +18,36 @@ void nevh__reference_widen(const nevh_reference *r, double low[], double high[],
     }
 }
 
-/* Of the variables of one kind. */
-static void scale_kind(size_t n, const double low[], const double high[],
-                       double scale[]) {
+/* Variables of one kind share the widest range.  The first of them has no
+   larger number than the others. */
+static void share(size_t n, const size_t kind[], double scale[]) {
+    for (size_t k = 0; k < n; k++)
+        scale[kind[k]] = fmax(scale[kind[k]], scale[k]);
+    for (size_t k = 0; k < n; k++)
+        scale[k] = scale[kind[k]];
+}
+
+/* Of the coordinates, or of the momenta. */
+static void scale_half(const nevh_reference *r, const double low[],
+                       const double high[], double scale[]) {
     static const double rounding = 1e-12; /* of the largest value */
     double widest = 0, largest = 0;
-    for (size_t k = 0; k < n; k++) {
+    for (size_t k = 0; k < r->n; k++) {
         largest = fmax(largest, fmax(fabs(low[k]), fabs(high[k])));
-        widest = fmax(widest, high[k] - low[k]);
-    }
-    for (size_t k = 0; k < n; k++) {
         scale[k] = high[k] - low[k];
+        widest = fmax(widest, scale[k]);
+    }
+    if (r->kind)
+        share(r->n, r->kind, scale);
+    for (size_t k = 0; k < r->n; k++)
         if (scale[k] <= rounding * largest)
             scale[k] = widest > 0 ? widest : 1;
-    }
 }
 
 void nevh__reference_scale(const nevh_reference *r, const double low[],
                            const double high[], double scale[]) {
-    scale_kind(r->n, low, high, scale);
-    scale_kind(r->n, low + r->n, high + r->n, scale + r->n);
+    scale_half(r, low, high, scale);
+    scale_half(r, low + r->n, high + r->n, scale + r->n);
 }
 
 static int exact_state(const nevh_reference *r, const nevh__exact *e, double t,
@@ -171,10 +181,38 @@ static bool allocate(nevh_reference *r, const double q[], const double p[]) {
     return true;
 }
 
+static size_t first(const size_t kind[], size_t k) {
+    size_t i = 0;
+    while (kind[i] != kind[k])
+        i++;
+    return i;
+}
+
+/* To each the first of its kind; false when memory is out. */
+static bool take_kinds(nevh_reference *r, const size_t kind[]) {
+    if (!kind)
+        return true;
+    r->kind = nevh__array(r->n, sizeof *r->kind);
+    for (size_t k = 0; r->kind && k < r->n; k++)
+        r->kind[k] =
+            k > 0 && kind[k] == kind[k - 1] ? r->kind[k - 1] : first(kind, k);
+    return r->kind != NULL;
+}
+
 nevh_reference *nevh_reference_new(const nevh_system *s,
                                    const nevh_integrator *integrator, double t0,
                                    double t1, const double q[],
                                    const double p[]) {
+    nevh_reference_options o = {.integrator = integrator};
+    return nevh_reference_with(s, &o, t0, t1, q, p);
+}
+
+nevh_reference *nevh_reference_with(const nevh_system *s,
+                                    const nevh_reference_options *options,
+                                    double t0, double t1, const double q[],
+                                    const double p[]) {
+    static const nevh_reference_options zeros;
+    const nevh_reference_options *o = options ? options : &zeros;
     nevh_reference *r = s ? nevh__array(1, sizeof *r) : NULL;
     if (!r)
         return NULL;
@@ -184,8 +222,8 @@ nevh_reference *nevh_reference_new(const nevh_system *s,
     r->t1 = t1;
     r->horizon = copysign(INFINITY, t1 - t0);
     r->error = NAN;
-    r->integrator = integrator;
-    if (allocate(r, q, p) && make(r) != NEVH_ENOMEM)
+    r->integrator = o->integrator;
+    if (allocate(r, q, p) && take_kinds(r, o->kind) && make(r) != NEVH_ENOMEM)
         return r;
     nevh_reference_free(r);
     return NULL;
@@ -201,6 +239,7 @@ void nevh_reference_free(nevh_reference *r) {
     free(r->memo.keys);
     free(r->memo.states);
     free(r->start);
+    free(r->kind);
     free(r);
 }
 
@@ -228,14 +267,20 @@ double nevh_reference_range(const nevh_reference *r, size_t k) {
     return k < 2 * r->n ? r->range[k] : NAN;
 }
 
-static int check_time(nevh_reference *r, double t) {
-    double forward = r->t1 > r->t0 ? 1 : -1;
-    if (!((t - r->t0) * forward >= 0 && (r->t1 - t) * forward >= 0))
+double nevh_reference_own_range(const nevh_reference *r, size_t k) {
+    return k < 2 * r->n ? r->high[k] - r->low[k] : NAN;
+}
+
+/* By what a time there may be off, it is still inside. */
+static int check_time(nevh_reference *r, double elapsed) {
+    double forward = r->t1 > r->t0 ? 1 : -1, span = r->t1 - r->t0;
+    double slack = 2 * DBL_EPSILON * fmax(fabs(r->t0), fabs(r->t1));
+    if (!(elapsed * forward >= 0 && (elapsed - span) * forward <= slack))
         return nevh__fail(&r->report, NEVH_EINVAL,
                           "the reference goes from t = %.9g to %.9g, not to "
                           "%.9g",
-                          r->t0, r->t1, t);
-    if ((t - r->horizon) * forward > 0)
+                          r->t0, r->t1, r->t0 + elapsed);
+    if ((elapsed - (r->horizon - r->t0)) * forward > slack)
         return nevh__fail(&r->report, NEVH_EDOM,
                           "the reference means nothing after t = %.9g: chaos",
                           r->horizon);
@@ -243,19 +288,30 @@ static int check_time(nevh_reference *r, double t) {
 }
 
 /* A reference that was not made keeps its status; others forget a failure. */
-int nevh_reference_state(nevh_reference *r, double t, double q[], double p[]) {
+static int find_state(nevh_reference *r, long double elapsed, double q[],
+                      double p[]) {
     if (!r || !*r->text)
         return nevh_reference_status(r);
     r->report.status = NEVH_OK;
     r->report.text[0] = '\0';
-    int status = check_time(r, t);
+    int status = check_time(r, (double)elapsed);
     if (status)
         return status;
     if (!r->exact)
-        return nevh__reference_walk(r, t, q, p);
-    status = nevh__exact_state(r->exact, (long double)t - r->t0, r->start,
-                               r->start + r->n, q, p);
+        return nevh__reference_walk(r, (double)elapsed, q, p);
+    status =
+        nevh__exact_state(r->exact, elapsed, r->start, r->start + r->n, q, p);
     return status ? nevh__fail(&r->report, status,
-                               "the exact solution has no state at t = %.9g", t)
+                               "the exact solution has no state at t = %.9g",
+                               (double)(r->t0 + elapsed))
                   : NEVH_OK;
+}
+
+int nevh_reference_state(nevh_reference *r, double t, double q[], double p[]) {
+    return find_state(r, r ? (long double)t - r->t0 : 0, q, p);
+}
+
+int nevh_reference_state_after(nevh_reference *r, double elapsed, double q[],
+                               double p[]) {
+    return find_state(r, elapsed, q, p);
 }

@@ -31,6 +31,7 @@ struct nevh_reference {
     double error, horizon;
     nevh__exact *exact; /* NULL: a run */
     const nevh_integrator *integrator;
+    size_t *kind; /* n: the first variable of the same kind; NULL: all differ */
     nevh__track track;
     nevh__memo memo;
     /* From the last checkpoint on, and from there to times between steps. */
@@ -48,8 +49,9 @@ enum { NEVH__MOST_TRACK = 16 << 20, NEVH__MOST_MEMO = 32 << 20 };
 nevh_stepper *nevh__reference_stepper(const nevh_reference *);
 /* Makes a run with the steps that it needs, its ranges, error and horizon. */
 int nevh__reference_run(nevh_reference *);
-/* The state of a run. */
-int nevh__reference_walk(nevh_reference *, double t, double q[], double p[]);
+/* The state of a run, so long after its start. */
+int nevh__reference_walk(nevh_reference *, double elapsed, double q[],
+                         double p[]);
 void nevh__reference_widen(const nevh_reference *, double low[], double high[],
                            const double state[]);
 /* What differences of states are measured in. */

@@ -205,20 +205,20 @@ static double first_error(pair *b, double h) {
     return most;
 }
 
-/* The longest step that is good at the start; tiny ones are lost in rounding,
-   so all are tried that are not bad. */
+/* The longest step that is good at the start, from the longest allowed on
+   downwards; the best one where none is, as rounding makes tiny ones bad. */
 static double first_step(pair *b, int order) {
-    static const double good = 1e-9, bad = 1e-3, shortest = 0x1p-30;
-    double span = b->reference->t1 - b->reference->t0, h = 0, error_of_h = 0;
-    for (double part = shortest; part <= 1; part *= 4) {
-        double error = first_error(b, part * span);
-        if (error > bad && part * span > 0 && h != 0)
-            break;
-        if (error < good)
-            h = part * span, error_of_h = error;
+    static const double good = 1e-9, fewest = 256, shortest = 0x1p-60;
+    const nevh_reference *r = b->reference;
+    double span = r->t1 - r->t0, longest = span / fewest, h = 0, least = 1;
+    for (double part = 1; part >= shortest && least >= good; part /= 4) {
+        double error = first_error(b, part * longest);
+        if (error < least)
+            h = part * longest, least = error;
     }
-    double longer = pow(0.1 * good / fmax(error_of_h, 1e-18), 1. / order);
-    return h * fmin(fmax(longer, 0.5), 2);
+    double longer = pow(0.1 * good / fmax(least, 1e-18), 1. / order);
+    h *= fmin(fmax(longer, 0.5), 2);
+    return fabs(h) < fabs(longest) ? h : longest;
 }
 
 static int give_up(pair *b, const outcome *o) {

@@ -107,9 +107,10 @@ static int walk_to(nevh_reference *r, size_t steps) {
     return status;
 }
 
-static int find_state(nevh_reference *r, double t, double q[], double p[]) {
-    double h = r->track.h, steps = floor((t - r->t0) / h);
-    double rest = (t - r->t0) - steps * h;
+static int find_state(nevh_reference *r, double elapsed, double q[],
+                      double p[]) {
+    double h = r->track.h, steps = floor(elapsed / h);
+    double rest = elapsed - steps * h;
     int status = walk_to(r, (size_t)steps);
     if (status)
         return status;
@@ -118,21 +119,22 @@ static int find_state(nevh_reference *r, double t, double q[], double p[]) {
     if (rest == 0)
         return NEVH_OK;
     nevh_stepper_reset(r->branch);
-    return take_step(r, r->branch, t - rest, rest, q, p);
+    return take_step(r, r->branch, r->t0 + steps * h, rest, q, p);
 }
 
-int nevh__reference_walk(nevh_reference *r, double t, double q[], double p[]) {
+int nevh__reference_walk(nevh_reference *r, double elapsed, double q[],
+                         double p[]) {
     int status = open_walk(r);
     if (status)
         return status;
-    const double *known = recall(r, t);
+    const double *known = recall(r, elapsed);
     if (known) {
         memcpy(q, known, r->n * sizeof *q);
         memcpy(p, known + r->n, r->n * sizeof *p);
         return NEVH_OK;
     }
-    status = find_state(r, t, q, p);
+    status = find_state(r, elapsed, q, p);
     if (!status)
-        remember(r, t, q, p);
+        remember(r, elapsed, q, p);
     return status;
 }

@@ -1,6 +1,8 @@
 /* nevh: how far a run is from its reference.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/reference_private.h"
+#include "run/stepper_private.h"
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -10,18 +12,23 @@ static const double golden = 0.6180339887498949;
 
 struct nevh_state_error {
     nevh_reference *reference;
+    const nevh_stepper *followed; /* NULL: times are those observed */
+    double h;                     /* of its steps; 0: none was seen */
     double worst;
     size_t next; /* the first of the wanted times that has not come */
     bool observed, unknown;
-    double state[]; /* 2n */
+    double *difference; /* 2n: the largest so far */
+    double state[];     /* 2n, then the differences */
 };
 
 nevh_state_error *nevh_state_error_new(nevh_reference *r) {
     size_t n = r ? r->n : 0;
     nevh_state_error *e =
-        r ? nevh__array(1, sizeof *e + 2 * n * sizeof *e->state) : NULL;
-    if (e)
-        e->reference = r;
+        r ? nevh__array(1, sizeof *e + 4 * n * sizeof *e->state) : NULL;
+    if (!e)
+        return NULL;
+    e->reference = r;
+    e->difference = e->state + 2 * n;
     return e;
 }
 
@@ -45,22 +52,44 @@ static bool is_due(nevh_state_error *e, double t) {
     return true;
 }
 
+void nevh_state_error_follow(nevh_state_error *e, const nevh_stepper *s) {
+    e->followed = s;
+    e->h = 0;
+}
+
+/* The time since the start.  t is rounded; what the steps add up to is not, or
+   less.  The last step may be another than the others. */
+static double elapsed(nevh_state_error *e, size_t step, double t) {
+    const nevh_stepper *s = e->followed;
+    double t0 = e->reference->t0, passed = t - t0;
+    double slack = 4 * DBL_EPSILON * fmax(fabs(t), fabs(t0));
+    if (!s || step == 0)
+        return passed;
+    if (e->h == 0)
+        e->h = s->last_h;
+    double better = s->own_time ? passed + s->time_lost
+                                : (double)(step - 1) * e->h + s->last_h;
+    return fabs(better - passed) <= slack ? better : passed;
+}
+
 static void add(nevh_state_error *e, size_t k, double value) {
-    double error =
-        fabs(value - e->state[k]) / nevh_reference_range(e->reference, k);
+    double difference = fabs(value - e->state[k]);
+    double error = difference / nevh_reference_range(e->reference, k);
     e->worst = fmax(e->worst, isfinite(error) ? error : INFINITY);
+    e->difference[k] =
+        fmax(e->difference[k], isfinite(difference) ? difference : INFINITY);
 }
 
 int nevh_state_error_observe(void *state_error, size_t step, double t,
                              const double q[], const double p[]) {
     nevh_state_error *e = state_error;
     size_t n = e->reference->n;
-    (void)step;
+    double passed = elapsed(e, step, t);
     if (e->unknown || !is_due(e, t))
         return NEVH_OK;
     e->observed = true;
-    e->unknown = nevh_reference_state(e->reference, t, e->state,
-                                      e->state + n) != NEVH_OK;
+    e->unknown = nevh_reference_state_after(e->reference, passed, e->state,
+                                            e->state + n) != NEVH_OK;
     for (size_t k = 0; !e->unknown && k < n; k++) {
         add(e, k, q[k]);
         add(e, n + k, p[k]);
@@ -70,4 +99,10 @@ int nevh_state_error_observe(void *state_error, size_t step, double t,
 
 double nevh_state_error_result(const nevh_state_error *e) {
     return e && e->observed && !e->unknown ? e->worst : NAN;
+}
+
+double nevh_state_error_of(const nevh_state_error *e, size_t k) {
+    return e && e->observed && !e->unknown && k < 2 * e->reference->n
+               ? e->difference[k]
+               : NAN;
 }

@@ -29,6 +29,16 @@ const char *nevh_scene_coordinate(const nevh_scene *s, size_t k) {
     return k < nevh_scene_dof(s) ? s->model->coordinate_names[k] : NULL;
 }
 
+size_t nevh_scene_array(const nevh_scene *s, size_t k) {
+    size_t count = s && s->model ? s->model->n_coordinates : 0;
+    for (size_t i = 0; i < count; i++) {
+        const nevh__coordinate *c = &s->model->coordinates[i];
+        if (k >= c->first && k < c->first + c->count)
+            return c->first;
+    }
+    return k;
+}
+
 const char *nevh_scene_label(const nevh_scene *s, const char *name) {
     char array[NEVH__NAME_LENGTH + 1];
     const char *text = text_of(s, NEVH__LABELS, name);
