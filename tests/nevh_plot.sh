@@ -50,7 +50,7 @@ done
 test "$(grep -c "id='plot_spacer\|<title>gnuplot_plot_[0-9]b</title>" $svg)" \
     = 3 || fails "does not draw 3 series in the second panel"
 # Decades, on one axis of each panel; a legend beside what is drawn.
-for decade in -5 -1 1; do
+for decade in -4 -2 0; do
     test "$(texts | grep -cx "10$decade")" = 2 || fails "lacks 10^$decade"
 done
 shows 1000
@@ -76,6 +76,14 @@ draws compare oscillator --t-end 9 --dt 0.1 --keep-plot-script $work/alone.gp
 gnuplot -e "set terminal dumb" $work/alone.gp | grep -q verlet ||
     fails "keeps a script that draws nothing"
 
+# A legend has a row for each series, also where a panel is not as high.
+draws compare pendulum --t-end 2 --dt 0.1,0.05 --plot $svg --integrators \
+    verlet,midpoint,gauss4,gauss6,gauss8,gauss10,gauss12,rk4,euler,pefrl,ruth3,forest-ruth,suzuki4,blanes-moan4,yoshida6,tao2,tao4,dopri5
+for name in verlet euler yoshida6 tao4 'dopri5, 1e-12'; do
+    test "$(texts | grep -cx "$name")" = 1 ||
+        fails "does not have $name in the legend once"
+done
+
 # Sections, and work and precision.
 draws section damped-driven-pendulum --t-end 4000 --plot $svg \
     --keep-plot-script $work/out.gp
@@ -99,9 +107,30 @@ awk '/^\$series2 <</ { getline; t = $1 } /^\$series4 <</ { on = 1 } /^EOD/ { on 
     fails "draws other numbers"
 test "$(grep -c '^set logscale [xy]' $work/out.gp)" = 4 ||
     fails "has axes that are not logarithmic"
-draws cost pendulum --gradient exact --integrators verlet --dt 0.2,0.1 \
-    --t-end 20 --plot $svg
+# Exact gradients take no H: both panels have all curves all the same, on axes
+# that begin where these do, and the line of an order.
+draws cost pendulum --integrators verlet,rk4,gauss4 --dt 0.2,0.1,0.05 \
+    --t-end 20 --plot $svg --keep-plot-script $work/out.gp
 shows 'evaluations of the gradient'
+shows 't = 0 ... 20 s; gradient exact; errors relative to the scale of the energy'
+shows 'order 2'
+shows 'order 4'
+for k in 1 2 3 4 5 6; do
+    test "$(points $k)" = 3 || fails "does not draw the series $k"
+done
+awk '/^\$series/ { panel = $1 > "$series3" } NF == 2 && /^[0-9]/ {
+        if (!low[panel] || $1 < low[panel]) low[panel] = $1 }
+    /^set xrange/ { sub(/.*\[/, ""); begin = $0 + 0; x = low[n++]
+        bad += !(begin <= x && begin > x / 2.51) }
+    END { exit bad || n != 2 }' $work/out.gp || fails "has axes that begin elsewhere"
+# Without --integrators, too, where schemes that take H alone are not shown.
+draws cost oscillator --t-end 5 --plot $svg
+shows 'evaluations of the gradient'
+# A step that costs as much as a shorter one, which errs less, is not drawn.
+draws cost pendulum --integrators gauss4 --dt 1.25,0.8,0.5,0.4 --t-end 100 \
+    --plot $svg --keep-plot-script $work/out.gp
+test "$(points 2)" = 2 || fails "draws $(points 2) steps of 4"
+texts | grep -q 'are left out$' || fails "does not say so"
 
 # Orbits: an angle that goes round stays within its period, lines end there.
 draws run pendulum-rotating --t-end 50 --dt 0.05 --every 1 --plot $svg \
@@ -172,14 +201,14 @@ lacks '^.{121}.*[*#|]'
 # Texts are no more than texts.
 cat >$work/weird.nevh <<'END'
 [scene]
-title = it's `touch HERE` "$(touch HERE)" {/S a}_b^2 %d \n <b>&ACUTE @x \
+title = '' it's y'' `touch HERE` "$(touch HERE)" {/S a}_b^2 %d \n <b>&ACUTE @x \
 [coordinates]
 x = 1
 [effects]
 kinetic = p_x^2/2
 spring = x^2/2
 [labels]
-t = 'y_r'\
+t = ''y'_r''\
 [run]
 t_end = 1
 dt = 0.1
@@ -187,15 +216,16 @@ integrators = verlet
 END
 acute=$(printf '\303\251') # in UTF-8
 sed -i.old "s/ACUTE/$acute/" $work/weird.nevh
-for name in "it's.svg" '|touch touched;.svg' '$(touch touched) `touch touched`.svg'; do
+line=$(printf 'two\nlines.svg')
+for name in "it's.svg" "''.svg" "$line" '|touch touched;.svg' '$(touch touched) `touch touched`.svg'; do
     (cd $work && NEVH_SCENES= && "$nevh" compare weird.nevh --plot "$name" \
         --keep-plot-script weird.gp >out 2>err) || { fails "fails at $name";
         cat $work/err; }
     test -s "$work/$name" || fails "does not draw $name"
     svg=$work/drawn.svg
     mv "$work/$name" $svg
-    shows "it's \`touch HERE\` \"\$(touch HERE)\" {/S a}_b^2 %d \\n &lt;b>&amp;$acute @x \\"
-    shows "t ('y_r'\\)"
+    shows "'' it's y'' \`touch HERE\` \"\$(touch HERE)\" {/S a}_b^2 %d \\n &lt;b>&amp;$acute @x \\"
+    shows "t (''y'_r''\\)"
     (cd $work && gnuplot weird.gp 2>err) || fails "keeps a script that fails"
     cmp $svg "$work/$name" || fails "keeps a script that draws elsewhere"
 done

@@ -68,6 +68,7 @@ tools_nevh_SOURCES = \
 	tools/plot_private.h \
 	tools/plot.c \
 	tools/plot_range.c \
+	tools/plot_ticks.c \
 	tools/plot_layout.c \
 	tools/plot_script.c \
 	tools/plot_gnuplot.c \

@@ -37,6 +37,11 @@ void plot_panel(plot *p, const char *heading, const char *x, const char *y) {
                                     .limit_y = {-largest, largest}};
 }
 
+void plot_note(plot *p, const char *text) {
+    free(p->note);
+    p->note = copy(text);
+}
+
 void plot_heading(plot *p, const char *text) {
     free(p->panel->heading);
     p->panel->heading = copy(text);
@@ -140,6 +145,7 @@ void plot_free(plot *p) {
     if (!p)
         return;
     free(p->title);
+    free(p->note);
     free(p->panel);
     free(p->series);
     free(p);

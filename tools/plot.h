@@ -15,15 +15,19 @@ typedef enum {
     PLOT_MARKED, /* lines with a marker here and there */
     PLOT_BOTH,   /* lines with a marker at each point */
     PLOT_POINTS, /* markers */
-    PLOT_DOTS,   /* small ones, for many */
+    PLOT_DOTS,   /* the smaller the more they are */
     PLOT_RODS,   /* thick grey lines */
-    PLOT_BOBS    /* large discs */
+    PLOT_BOBS,   /* large discs */
+    PLOT_GUIDE   /* a thin grey line with its name at the last point, and not in
+                    the legend */
 } plot_form;
 
 /* A plot of one panel, the current one.  Labels come with their units; texts
    are copied, and NULL is none. */
 plot *plot_new(const char *title, const char *x, const char *y);
 void plot_free(plot *); /* NULL is allowed */
+/* Smaller, below the title: what was run, and how to read the picture. */
+void plot_note(plot *, const char *text);
 /* Adds a panel and makes it the current one. */
 void plot_panel(plot *, const char *heading, const char *x, const char *y);
 /* Of the first panel. */

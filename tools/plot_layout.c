@@ -26,6 +26,16 @@ size_t plot_letters(const char *text) {
     return count;
 }
 
+size_t plot_line_bytes(const char *text, size_t letters) {
+    size_t at = 0, space = 0;
+    for (size_t count = 0; text[at] && count < letters; count++) {
+        size_t bytes = plot_letter_bytes((const unsigned char *)text + at);
+        space = text[at] == ' ' ? at : space;
+        at += bytes ? bytes : 1;
+    }
+    return !text[at] || space == 0 ? at : space;
+}
+
 static bool is_namesake(const plot *p, size_t i) {
     for (size_t k = 0; k < i; k++)
         if (p->series[k].name && p->series[i].name &&
@@ -35,7 +45,8 @@ static bool is_namesake(const plot *p, size_t i) {
 }
 
 bool plot_in_legend(const plot *p, size_t i) {
-    return p->series[i].name && !is_namesake(p, i);
+    return p->series[i].name && p->series[i].form != PLOT_GUIDE &&
+           !is_namesake(p, i);
 }
 
 static size_t legend_lines(const plot *p, size_t *longest) {
@@ -91,20 +102,72 @@ static void choose_panels(layout *l, const plot *p, const target *t) {
     l->rows = (p->panels + l->columns - 1) / l->columns;
 }
 
+axes plot_axes(const plot *p, size_t number, const layout *l, bool text) {
+    const panel *on = &p->panel[number];
+    range x = plot_range_x(p, number), y = plot_range_y(p, number);
+    double letter = text ? 2 : 1; /* is as high as so many are wide */
+    double lines = on->log_y ? 1.3 : 2;
+    if (on->equal)
+        plot_range_equal(&x, &y, l->panel_width, l->panel_height * letter);
+    return (axes){
+        plot_axis_across(x, on->log_x, l->panel_width / l->letter, text),
+        plot_axis(y, on->log_y, l->panel_height / (lines * l->line), text)};
+}
+
+/* The numbers at the widest axis, and its label. */
+static double room_beside(const plot *p, const layout *l, bool text) {
+    size_t longest = 0;
+    for (size_t i = 0; i < p->panels; i++) {
+        axes a = plot_axes(p, i, l, text);
+        size_t letters = plot_axis_letters(&a.y);
+        longest = letters > longest ? letters : longest;
+    }
+    return text ? (double)longest + 4 : 9 * (double)longest + 52;
+}
+
+/* Lines of the note as wide as the whole. */
+static size_t note_lines(const plot *p, const layout *l) {
+    size_t lines = 0, letters = plot_note_letters(l);
+    const char *c = p->note ? p->note : "";
+    for (; *c && lines < PLOT_NOTE_LINES; lines++) {
+        c += plot_line_bytes(c, letters);
+        c += *c == ' ';
+    }
+    return lines;
+}
+
+size_t plot_note_letters(const layout *l) {
+    double letter = l->letter == 1 ? 1 : 0.6 * PLOT_NOTE_FONT;
+    return (size_t)fmax(l->width / letter - 2, 20);
+}
+
+static double room_above(const plot *p, const layout *l) {
+    double title = p->title && *p->title ? 2 : 0.5;
+    return (title + (l->letter == 1 ? 1 : 0.95) * (double)l->note_lines) *
+           l->line;
+}
+
 layout plot_lay_out(const plot *p, const target *t) {
     bool text = t->medium == PLOT_TEXT;
     size_t longest, lines = legend_lines(p, &longest);
     layout l = {.letter = text ? 1 : 8, .line = text ? 1 : 18};
+    double entry = text ? 1 : 26; /* of the legend */
+    double legend = entry * (double)(lines + 1);
     l.legend = lines ? l.letter * (double)(longest + 8) : 0;
     l.left = (text ? 9 : 12) * l.letter;
     l.right = 3 * l.letter;
-    l.top = (text || has_headings(p) ? 1.7 : 0.5) * l.line;
-    l.bottom = (text ? 3 : 4) * l.line;
-    l.title = (p->title && *p->title ? 2.3 : 0.5) * l.line;
+    l.top = (text || has_headings(p) ? 1.8 : 0.7) * l.line;
+    l.bottom = (text ? 3 : 3.7) * l.line;
     choose_panels(&l, p, t);
+    l.left = room_beside(p, &l, text);
+    if (text)
+        choose_panels(&l, p, t);
     l.width = (l.left + l.panel_width + l.right) * (double)l.columns + l.legend;
+    l.note_lines = note_lines(p, &l);
+    l.title = room_above(p, &l);
     l.height = (l.top + l.panel_height + l.bottom) * (double)l.rows + l.title;
-    l.height = fmax(l.height, l.title + l.top + l.line * (double)(lines + 2));
+    l.legend_apart = legend > l.panel_height;
+    l.height = fmax(l.height, l.title + l.top + legend);
     l.width = ceil(l.width); /* gnuplot takes whole pixels */
     l.height = ceil(l.height);
     return l;

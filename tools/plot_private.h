@@ -29,7 +29,7 @@ typedef struct {
 } panel;
 
 struct plot {
-    char *title;
+    char *title, *note;
     panel *panel;
     series *series;
     size_t panels, count; /* count: of series */
@@ -43,6 +43,29 @@ range plot_range_y(const plot *, size_t panel);
 /* Makes one of them longer, so that a unit has the same length on both where
    the panel is `width` by `height`. */
 void plot_range_equal(range *x, range *y, double width, double height);
+
+/* plot_ticks.c: marks along an axis, and the numbers at them. */
+enum { PLOT_MOST_TICKS = 128 };
+typedef struct {
+    double at;
+    bool minor;    /* short, without a number */
+    char text[32]; /* enhanced; of `at` less base, over 10^power */
+} tick;
+typedef struct {
+    bool log;
+    range shown;
+    int power;
+    double base;
+    size_t count;
+    tick tick[PLOT_MOST_TICKS];
+} axis;
+/* About so many numbers, or as many as have room where letters of that number
+   fit beside each other. */
+axis plot_axis(range, bool log, double count, bool text);
+axis plot_axis_across(range, bool log, double letters, bool text);
+size_t plot_axis_letters(const axis *); /* of the longest number */
+/* With power and base; NULL: no label.  To be freed. */
+char *plot_axis_label(const axis *, const char *label, bool text);
 
 /* plot_script.c: the whole in the language of gnuplot. */
 typedef enum { PLOT_SVG, PLOT_PNG, PLOT_PDF, PLOT_TEXT, PLOT_SCREEN } medium;
@@ -61,9 +84,16 @@ typedef struct {
     double width, height, letter, line, legend;
     double panel_width, panel_height;
     double left, right, top, bottom; /* around a panel */
-    double title;
+    double title;                    /* with the note */
     size_t columns, rows;
+    size_t note_lines;
+    bool legend_apart; /* it is longer than a panel */
 } layout;
+/* What the axes of a panel show. */
+typedef struct {
+    axis x, y;
+} axes;
+axes plot_axes(const plot *, size_t panel, const layout *, bool text);
 
 layout plot_lay_out(const plot *, const target *);
 /* Whether the series is the one of its name that the legend shows. */
@@ -71,6 +101,11 @@ bool plot_in_legend(const plot *, size_t series);
 /* Bytes of the letter, as UTF-8 has them; 0 where it is none. */
 size_t plot_letter_bytes(const unsigned char *);
 size_t plot_letters(const char *text);
+/* The bytes of the text up to where a line of so many letters ends, at a space
+   if there is one. */
+size_t plot_line_bytes(const char *text, size_t letters);
+enum { PLOT_NOTE_LINES = 3, PLOT_NOTE_FONT = 11 };
+size_t plot_note_letters(const layout *); /* of a line of the note */
 
 /* plot_gnuplot.c: gnuplot --version, and a script to be drawn to a file.
    returns  TOOL_OK, or TOOL_USAGE with the message printed */

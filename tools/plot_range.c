@@ -31,13 +31,28 @@ static range extent(const plot *p, size_t number, coordinate *of) {
     return r;
 }
 
+/* The nearest of 1, 2 and 5 times a power of 10 that is not above. */
+static double round_below(double value) {
+    double power = pow(10, floor(log10(value) + few_digits));
+    double digits = value / power * (1 + few_digits);
+    return power * (digits >= 5 ? 5 : digits >= 2 ? 2 : 1);
+}
+
+static double round_above(double value) {
+    double below = round_below(value);
+    if (below >= value * (1 - few_digits))
+        return below;
+    double digits = below / pow(10, floor(log10(below) + few_digits));
+    return below * (digits < 1.5 || digits > 4 ? 2 : 2.5);
+}
+
 static range decades(range r) {
     if (r.low > r.high)
         return (range){0.1, 10};
-    double low = floor(log10(r.low)), high = ceil(log10(r.high));
-    if (low == high)
-        low -= 1, high += 1;
-    return (range){pow(10, low), pow(10, high)};
+    double low = round_below(r.low), high = round_above(r.high);
+    if (low >= high * (1 - few_digits))
+        return (range){round_below(low / 1.01), round_above(high * 1.01)};
+    return (range){low, high};
 }
 
 static range with_room(range r) {

@@ -21,35 +21,51 @@ enum {
     FONT = 14
 };
 
+/* In double quotes a backslash, a quote and a backquote (a command, to gnuplot)
+   mean something; written as numbers they do not. */
 static void quote_letter(FILE *f, const char *c, size_t bytes) {
     if (bytes == 0)
         fputc('?', f);
     else if ((unsigned char)*c < ' ' || *c == 0x7f)
         fputc(' ', f);
-    else if (*c == '\'')
-        fputs("''", f);
+    else if (strchr("\\\"`", *c))
+        fprintf(f, "\\%03o", (unsigned)*c);
     else
         fwrite(c, 1, bytes, f);
 }
 
-/* In single quotes gnuplot changes nothing, and runs nothing. */
+/* The first `bytes` of the text. */
+static void quote_part(FILE *f, const char *text, size_t bytes,
+                       const char *more) {
+    fputc('"', f);
+    for (const char *end = text + bytes; text < end;) {
+        size_t letter = plot_letter_bytes((const unsigned char *)text);
+        quote_letter(f, text, letter);
+        text += letter ? letter : 1;
+    }
+    fprintf(f, "%s\"", more);
+}
+
+static size_t bytes_of(const char *text, size_t letters) {
+    size_t at = 0;
+    while (text[at] && letters--) {
+        size_t bytes = plot_letter_bytes((const unsigned char *)text + at);
+        at += bytes ? bytes : 1;
+    }
+    return at;
+}
+
 static void quote(FILE *f, const char *text, size_t longest) {
     bool cut = plot_letters(text) > longest;
-    size_t most = cut ? longest - 3 : longest;
-    fputc('\'', f);
-    while (*text && most--) {
-        size_t bytes = plot_letter_bytes((const unsigned char *)text);
-        quote_letter(f, text, bytes);
-        text += bytes ? bytes : 1;
-    }
-    fputs(cut ? "...'" : "'", f);
+    quote_part(f, text, bytes_of(text, cut ? longest - 3 : longest),
+               cut ? "..." : "");
 }
 
 static void quote_line(FILE *f, const char *before, const char *text,
-                       double length) {
+                       double length, const char *after) {
     fputs(before, f);
     quote(f, text ? text : "", (size_t)fmax(length, 8));
-    fputs(" noenhanced\n", f);
+    fprintf(f, " noenhanced%s\n", after);
 }
 
 static void print_terminal(FILE *f, const target *t, const layout *l) {
@@ -83,18 +99,17 @@ static void print_terminal(FILE *f, const target *t, const layout *l) {
     }
 }
 
-/* A name that begins with | would be a command, with ~ a user's home, and one
-   that a line cannot hold is left to the shell's redirection. */
+/* A name that begins with | would be a command, with ~ a user's home. */
 static void print_output(FILE *f, const char *file) {
-    for (const char *c = file; *c; c++)
-        if ((unsigned char)*c < ' ')
-            return;
-    fputs("set output '", f);
+    fputs("set output \"", f);
     if (*file == '|' || *file == '~')
         fputs("./", f);
     for (const char *c = file; *c; c++)
-        fputs(*c == '\'' ? "''" : (char[]){*c, 0}, f);
-    fputs("'\n", f);
+        if ((unsigned char)*c < ' ' || strchr("\\\"`", *c))
+            fprintf(f, "\\%03o", (unsigned char)*c);
+        else
+            fputc(*c, f);
+    fputs("\"\n", f);
 }
 
 static void print_points(FILE *f, const series *s, size_t number) {
@@ -120,6 +135,12 @@ static void print_looks(FILE *f, const plot *p) {
                 markers[k % MARKERS]);
 }
 
+static double dot_size(size_t count) {
+    static const double largest = 0.8, smallest = 0.15;
+    return fmax(fmin(largest * pow(50 / (double)(count + 1), 0.3), largest),
+                smallest);
+}
+
 static void print_form(FILE *f, const series *s) {
     size_t number = s->look + 1;
     switch (s->form) {
@@ -137,11 +158,15 @@ static void print_form(FILE *f, const series *s) {
         fprintf(f, " with points linetype %zu", number);
         break;
     case PLOT_DOTS:
-        fprintf(f, " with points linetype %zu pointtype 7 pointsize 0.2",
-                number);
+        fprintf(f, " with points linetype %zu pointtype 7 pointsize %.2f",
+                number, dot_size(s->count));
         break;
     case PLOT_RODS:
         fputs(" with lines linecolor rgb '#777777' linewidth 4 dashtype solid",
+              f);
+        break;
+    case PLOT_GUIDE:
+        fputs(" with lines linecolor rgb '#999999' linewidth 1 dashtype solid",
               f);
         break;
     case PLOT_BOBS:
@@ -185,76 +210,71 @@ static void print_series(FILE *f, const plot *p, size_t i, bool here,
                 i + 1);
 }
 
-static void print_plots(FILE *f, const plot *p, size_t number) {
+/* Names at the ends of guides. */
+static void print_guides(FILE *f, const plot *p, size_t number) {
+    for (size_t i = 0; i < p->count; i++) {
+        const series *s = &p->series[i];
+        if (s->panel != number || s->form != PLOT_GUIDE || !s->count)
+            continue;
+        fputs("set label ", f);
+        quote(f, s->name, PLOT_LONGEST_NAME);
+        fprintf(f,
+                " at %.10g,%.10g right offset -0.5,0.3 noenhanced "
+                "textcolor rgb '#777777' font ',%d'\n",
+                s->point[s->count - 1].x, s->point[s->count - 1].y,
+                PLOT_NOTE_FONT);
+    }
+}
+
+static void print_plots(FILE *f, const plot *p, size_t number, bool legend) {
     size_t printed = 0;
     for (size_t i = 0; i < p->count; i++)
         print_series(f, p, i, p->series[i].panel == number,
-                     number == 0 && plot_in_legend(p, i), &printed);
+                     legend && plot_in_legend(p, i), &printed);
     if (!printed)
         fputs("plot NaN notitle", f);
     fputc('\n', f);
 }
 
-static void print_decades(FILE *f, char axis, range r, double labels,
-                          bool text) {
-    double step = ceil(log10(r.high / r.low) / fmax(floor(labels), 1));
-    fprintf(f,
-            "set logscale %c\nset format %c '%s'\nset %ctics 1e%g nomirror "
-            "out\nset m%ctics %d\n",
-            axis, axis, text ? "1e%T" : "10^{%T}", axis, step, axis,
-            log10(r.high / r.low) > 8 ? 1 : 10);
-}
-
-/* 1, 2 or 5 times a power of 10. */
-static double round_step(double step) {
-    double power = pow(10, floor(log10(step))), digits = step / power;
-    return power * (digits <= 1 ? 1 : digits <= 2 ? 2 : digits <= 5 ? 5 : 10);
-}
-
-static void print_tics(FILE *f, char axis, range r, double labels, bool text) {
-    fprintf(f,
-            "unset logscale %c\nset format %c '%s'\nset %ctics %.3g nomirror "
-            "out\nset m%ctics 1\n",
-            axis, axis, text ? "%g" : "%h", axis,
-            round_step((r.high - r.low) / fmax(labels, 2)), axis);
-}
-
-static void print_axis(FILE *f, char axis, bool log, range r, double labels,
-                       bool text) {
-    if (log)
-        print_decades(f, axis, r, labels, text);
-    else
-        print_tics(f, axis, r, labels, text);
-    fprintf(f, "set %crange [%.12g:%.12g]\n", axis, r.low, r.high);
+static void print_axis(FILE *f, char letter, const axis *a) {
+    fprintf(f, "%s logscale %c\nset %crange [%.12g:%.12g]\n",
+            a->log ? "set" : "unset", letter, letter, a->shown.low,
+            a->shown.high);
+    fprintf(f, a->count ? "set %ctics nomirror out (" : "unset %ctics\n",
+            letter);
+    for (size_t i = 0; i < a->count; i++)
+        fprintf(f, "%s\"%s\" %.12g%s", i ? ", " : "", a->tick[i].text,
+                a->tick[i].at, a->tick[i].minor ? " 1" : "");
+    fputs(a->count ? ")\n" : "", f);
 }
 
 /* Text has no letters that lie on their side. */
-static void print_texts(FILE *f, const panel *on, const layout *l, bool text) {
+static void print_texts(FILE *f, const panel *on, const axes *a,
+                        const layout *l, bool text) {
     double width = l->panel_width / l->letter;
-    const char *between = on->heading && on->y ? ", " : "";
-    quote_line(f, "set xlabel ", on->x, width);
-    if (!text) {
-        quote_line(f, "set ylabel ", on->y, l->panel_height / l->letter);
-        quote_line(f, "set title ", on->heading, width);
-        return;
+    char *x = plot_axis_label(&a->x, on->x, text);
+    char *y = plot_axis_label(&a->y, on->y, text);
+    quote_line(f, "set xlabel ", x, width, text ? "" : " offset 0,0.5");
+    if (text) {
+        char *title =
+            text_print("%s%s%s", y ? y : "", on->heading && y ? ", " : "",
+                       on->heading ? on->heading : "");
+        quote_line(f, "set title ", title, width + l->left, "");
+        free(title);
+    } else {
+        quote_line(f, "set ylabel ", y, l->panel_height / l->letter, "");
+        quote_line(f, "set title ", on->heading, width, " offset 0,-0.5");
     }
-    char *title = text_print("%s%s%s", on->y ? on->y : "", between,
-                             on->heading ? on->heading : "");
-    quote_line(f, "set title ", title, width + l->left);
-    free(title);
+    free(x);
+    free(y);
 }
 
 static void print_axes(FILE *f, const plot *p, size_t number, const layout *l,
                        bool text) {
-    const panel *on = &p->panel[number];
-    range x = plot_range_x(p, number), y = plot_range_y(p, number);
-    double letter = text ? 2 : 1; /* is as high as so many are wide */
-    double lines = on->log_y ? 1.3 : 2;
-    if (on->equal)
-        plot_range_equal(&x, &y, l->panel_width, l->panel_height * letter);
-    print_axis(f, 'x', on->log_x, x, l->panel_width / (7 * l->letter), text);
-    print_axis(f, 'y', on->log_y, y, l->panel_height / (lines * l->line), text);
-    print_texts(f, on, l, text);
+    axes a = plot_axes(p, number, l, text);
+    print_axis(f, 'x', &a.x);
+    print_axis(f, 'y', &a.y);
+    print_texts(f, &p->panel[number], &a, l, text);
 }
 
 static void print_place(FILE *f, size_t number, const layout *l) {
@@ -277,10 +297,35 @@ static void print_title(FILE *f, const char *title, const layout *l) {
     double scale = fmin(fmax(fitting, smallest), largest);
     double most =
         l->letter == 1 ? l->width : l->width / (letter * FONT * scale);
-    fputs("set label 1 ", f);
+    fputs("set label ", f);
     quote(f, title, (size_t)most);
     fprintf(f, " at screen 0.5,%.6f center noenhanced font ',%.3g'\n",
-            1 - 0.55 * l->title / l->height, FONT * scale);
+            1 - 1.1 * l->line / l->height, FONT * scale);
+}
+
+static void print_note(FILE *f, const char *note, const layout *l) {
+    size_t letters = plot_note_letters(l);
+    for (size_t i = 0; i < l->note_lines; i++) {
+        size_t bytes = plot_line_bytes(note, letters);
+        bool cut = i + 1 == l->note_lines && note[bytes];
+        double line = ((l->letter == 1 ? 1 : 0.95) * (double)i + 2.1) * l->line;
+        fputs("set label ", f);
+        quote_part(f, note, bytes, cut ? " ..." : "");
+        fprintf(f,
+                " at screen 0.5,%.6f center noenhanced textcolor rgb '#444444' "
+                "font ',%d'\n",
+                1 - line / l->height, PLOT_NOTE_FONT);
+        note += bytes;
+        note += *note == ' ';
+    }
+}
+
+static void print_key(FILE *f, const layout *l, bool text) {
+    fprintf(f,
+            "set key at screen %.6f,%.6f left top vertical maxcols 1 Left "
+            "reverse samplen %d spacing 1.2 noautotitle\n",
+            (l->width - l->legend) / l->width,
+            1 - (l->title + l->top) / l->height, text ? 3 : 2);
 }
 
 static void print_frame(FILE *f, const plot *p, const layout *l, bool text) {
@@ -292,21 +337,33 @@ static void print_frame(FILE *f, const plot *p, const layout *l, bool text) {
               "dashtype solid, linetype 1 linecolor rgb '#dddddd' linewidth "
               "0.5 dashtype solid\n",
               f);
-    if (l->legend > 0)
-        fprintf(f,
-                "set key at screen %.6f,%.6f left top vertical maxcols 1 Left "
-                "reverse samplen %d spacing 1.2 noautotitle\n",
-                (l->width - l->legend) / l->width,
-                1 - (l->title + l->top) / l->height, text ? 3 : 2);
-    else
-        fputs("unset key\n", f);
     if (p->title && *p->title)
         print_title(f, p->title, l);
+    if (p->note)
+        print_note(f, p->note, l);
+}
+
+/* A panel of the whole height, in which nothing is but the legend: gnuplot
+   leaves out entries that are below a panel. */
+static void print_legend(FILE *f, const plot *p, const layout *l, bool text) {
+    fprintf(f,
+            "set lmargin at screen %.6f\nset rmargin at screen 1\n"
+            "set tmargin at screen %.6f\nset bmargin at screen 0\n",
+            (l->width - l->legend) / l->width,
+            1 - (l->title + l->top) / l->height);
+    fputs("unset logscale\nunset border\nunset tics\nunset label\n"
+          "set xlabel ''\nset ylabel ''\nset title ''\n"
+          "set xrange [0:1]\nset yrange [0:1]\n",
+          f);
+    print_key(f, l, text);
+    print_plots(f, p, p->panels, true);
 }
 
 void plot_script(const plot *p, const target *t, FILE *f) {
     bool text = t->medium == PLOT_TEXT;
     layout l = plot_lay_out(p, t);
+    bool apart = l.legend > 0 && l.legend_apart;
+    bool several = p->panels > 1 || apart;
     print_terminal(f, t, &l);
     if (t->file)
         print_output(f, t->file);
@@ -315,15 +372,22 @@ void plot_script(const plot *p, const target *t, FILE *f) {
     for (size_t i = 0; i < p->count; i++)
         if (p->series[i].count)
             print_points(f, &p->series[i], i + 1);
-    if (p->panels > 1)
+    if (several)
         fputs("set multiplot\n", f);
     for (size_t i = 0; i < p->panels; i++) {
+        bool legend = i == 0 && l.legend > 0 && !apart;
+        if (i)
+            fputs("unset label\n", f);
+        print_guides(f, p, i);
         print_place(f, i, &l);
         print_axes(f, p, i, &l, text);
-        print_plots(f, p, i);
-        if (i == 0)
-            fputs("unset label 1\n", f);
+        fputs("unset key\n", f);
+        if (legend)
+            print_key(f, &l, text);
+        print_plots(f, p, i, legend);
     }
-    if (p->panels > 1)
+    if (apart)
+        print_legend(f, p, &l, text);
+    if (several)
         fputs("unset multiplot\n", f);
 }
