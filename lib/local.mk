@@ -100,6 +100,7 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/energy.c \
 	lib/diagnose/trend_private.h \
 	lib/diagnose/trend.c \
+	lib/diagnose/verdict.c \
 	lib/diagnose/symplecticity.c \
 	lib/diagnose/exact_private.h \
 	lib/diagnose/exact.c \

@@ -165,6 +165,7 @@ dist_check_SCRIPTS = \
 	tests/nevh_new.sh \
 	tests/nevh_effects.sh \
 	tests/nevh_compare.sh \
+	tests/nevh_verdict.sh \
 	tests/nevh_plot.sh \
 	tests/nevh_section.sh \
 	tests/nevh_run.sh \

@@ -147,7 +147,7 @@ static void tell_answer(const advice *a, const options *o, list *words) {
                    "long.",
                    a->alone->integrator, a->alone->gradient,
                    chosen(a, a->alone)->seconds / r->seconds);
-    if (r->energy.verdict == NEVH_DRIFTS)
+    if (row_drifts(r))
         list_add(words, "Its energy drifts: for longer runs ask again.");
     if (a->steady && a->steady != a->best)
         list_print(words, "Without drift %s takes %.2f times as long.",

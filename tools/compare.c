@@ -118,7 +118,7 @@ static void show_count(table *t, double count) {
 static void show_numbers(table *t, const plan *p, const row *r) {
     double span = r->t_end - p->run->t_start;
     table_shown(t, "%.1e", r->energy.max);
-    if (r->energy.verdict >= NEVH_DRIFTS)
+    if (r->energy.verdict == NEVH_DRIFTS || r->energy.verdict == NEVH_UNSTABLE)
         table_shown(t, "%+.1e", r->energy.drift * span);
     else
         table_shown(t, "-");

@@ -47,7 +47,7 @@ bool cost_drifts(const ladder *l) {
         bool counts =
             l->rung[i].ran && e->max < cost_target[0] && e->max > 1e-12;
         count += counts;
-        drifting += counts && e->verdict == NEVH_DRIFTS;
+        drifting += counts && row_drifts(&l->rung[i]);
     }
     return 2 * drifting > count;
 }

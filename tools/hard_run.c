@@ -32,7 +32,7 @@ static int watch(void *data, size_t step, double t, const double q[],
                  const double p[]) {
     guard *g = data;
     int status = nevh_energy_observe(g->energy, step, t, q, p);
-    g->unstable = fabs(nevh_energy_result(g->energy, 0).final) > unstable_above;
+    g->unstable = fabs(nevh_energy_error(g->energy, 0)) > unstable_above;
     g->spent = seconds_since(&g->begin) > g->budget;
     return status ? status : g->spent ? (int)NEVH_STOPPED : NEVH_OK;
 }

@@ -16,6 +16,7 @@ tools_nevh_SOURCES = \
 	tools/plan.c \
 	tools/stop.c \
 	tools/row.c \
+	tools/follow.c \
 	tools/row_time.c \
 	tools/shelf.c \
 	tools/row_notes.c \

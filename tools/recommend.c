@@ -81,7 +81,7 @@ static ladder *least_of(const advice *a, bool steady, const ladder * not ) {
     for (size_t i = 0; i < a->count; i++) {
         ladder *l = &a->ladder[i];
         const row *r = least_worked(a, l);
-        if (r && !(steady && r->energy.verdict == NEVH_DRIFTS) &&
+        if (r && !(steady && row_drifts(r)) &&
             !(not &&strcmp(not ->integrator, l->integrator) == 0) &&
             (!best || r->work < least_worked(a, best)->work))
             best = l;
@@ -224,7 +224,7 @@ static void choose(advice *a) {
             a->second = l;
         if (!a->alone && strcmp(l->gradient, "exact") != 0)
             a->alone = l;
-        if (!a->steady && keeps(a, l)->energy.verdict != NEVH_DRIFTS)
+        if (!a->steady && !row_drifts(keeps(a, l)))
             a->steady = l;
     }
     free(taken);

@@ -6,8 +6,6 @@
 #include <string.h>
 #include <time.h>
 
-static const double unstable_above = 1; /* as nevh_energy_report says */
-
 typedef struct {
     const plan *plan;
     row *row;
@@ -16,7 +14,7 @@ typedef struct {
 
 typedef struct {
     nevh_energy *energy;
-    double since;
+    double limit, since;
 } watch;
 
 /* Errors are asked for after every step, which costs more than a step may: this
@@ -25,8 +23,7 @@ static int stop_when_unstable(void *data, size_t step, double t,
                               const double q[], const double p[]) {
     watch *w = data;
     int status = nevh_energy_observe(w->energy, step, t, q, p);
-    nevh_energy_report r = nevh_energy_result(w->energy, 0);
-    if (!status && fabs(r.final) > unstable_above)
+    if (!status && fabs(nevh_energy_error(w->energy, 0)) > w->limit)
         return w->since = t, NEVH_STOPPED;
     return status;
 }
@@ -43,20 +40,22 @@ static int run(const work *w, nevh_stepper *s, const nevh_observer observers[],
                     stopped);
 }
 
-static nevh_energy *new_energy(const work *w, const nevh_stepper *s) {
-    nevh_options o = plan_options(w->plan, w->row->gradient);
-    nevh_energy *energy = nevh_energy_new(w->plan->system, &o);
-    if (w->plan->balance)
+nevh_energy *row_energy(const plan *p, const row *r, const nevh_stepper *s) {
+    nevh_options o = plan_options(p, r->gradient);
+    nevh_energy *energy = nevh_energy_new(p->system, &o);
+    nevh_energy_expect(energy, s);
+    if (p->balance)
         nevh_energy_follow(energy, s);
-    if (w->plan->run->energy_scale > 0)
-        nevh_energy_set_scale(energy, w->plan->run->energy_scale);
+    if (p->run->energy_scale > 0)
+        nevh_energy_set_scale(energy, p->run->energy_scale);
     return energy;
 }
 
 static void unstable_since(work *w) {
     bool balance = w->plan->balance;
     nevh_stepper *s = row_stepper(w->plan, w->row, balance);
-    watch unstable = {new_energy(w, s), NAN};
+    watch unstable = {row_energy(w->plan, w->row, s), w->row->energy.limit,
+                      NAN};
     double stopped;
     run(w, s, &(nevh_observer){stop_when_unstable, &unstable, 1}, 1, &stopped);
     free(w->row->status);
@@ -138,7 +137,7 @@ static bool compares_states(const plan *p, const row *r) {
 static void watched(work *w, nevh_stepper *s) {
     row *r = w->row;
     patience wait = {w->plan, r->scheme, s, nevh_stepper_counts(s), false};
-    nevh_energy *energy = new_energy(w, s);
+    nevh_energy *energy = row_energy(w->plan, w->row, s);
     nevh_state_error *state = nevh_state_error_new(w->plan->reference);
     invariants *kept = w->plan->diagnostics ? invariants_new(w->plan) : NULL;
     nevh_observer observers[5] = {{nevh_energy_observe, energy, 1}};
@@ -211,6 +210,8 @@ void row_run(const plan *p, row *r) {
     nevh_stepper *s = row_stepper(p, r, p->balance);
     if (!refused(r, s)) {
         watched(&w, s);
+        if (!p->hurried)
+            row_follow(p, r);
         if (r->ran && p->diagnostics)
             diagnose_row(p, r);
         if (r->ran && r->energy.verdict == NEVH_UNSTABLE && !p->hurried)
@@ -237,6 +238,7 @@ double row_end(const plan *p, const row *r) {
 
 void row_finish(const plan *p, row *r) {
     work w = work_new(p, r);
+    row_follow(p, r);
     if (r->energy.verdict == NEVH_UNSTABLE)
         unstable_since(&w);
     work_free(&w);

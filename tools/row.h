@@ -18,6 +18,9 @@ typedef struct {
     char *status;
     bool ran, late; /* there are numbers; patience was at its end */
     nevh_energy_report energy;
+    double followed; /* lengths of the run that the verdict is from; 0: its own
+                        alone */
+    nevh_energy_report longer; /* then */
     nevh_counts counts;
     double work;            /* by its counts: the same on every machine */
     double watched;         /* seconds, with all that watches */
@@ -31,6 +34,14 @@ typedef struct {
     struct envelope *errors; /* of the energy; NULL: not asked for */
 } row;
 void row_run(const plan *, row *);
+/* What observes the energy of a row's run. */
+nevh_energy *row_energy(const plan *, const row *, const nevh_stepper *);
+/* follow.c: where the run leaves the verdict open, from a longer one, as far as
+   the budget goes. */
+void row_follow(const plan *, row *);
+/* Whether its energy drifts, as far as is known: a run that is too short to
+   tell goes by the scheme. */
+bool row_drifts(const row *);
 /* Where it will end: by a run that nobody watches; at the start where it has no
    numbers. */
 double row_end(const plan *, const row *);

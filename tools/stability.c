@@ -91,7 +91,7 @@ static int stop_at_explosion(void *data, size_t step, double t,
                              const double q[], const double p[]) {
     explosion *e = data;
     int status = nevh_energy_observe(e->energy, step, t, q, p);
-    e->unstable = fabs(nevh_energy_result(e->energy, 0).final) > unstable_above;
+    e->unstable = fabs(nevh_energy_error(e->energy, 0)) > unstable_above;
     return e->unstable ? (int)NEVH_STOPPED : status;
 }
 

@@ -124,7 +124,8 @@ static void tell_some(const row rows[], size_t count, const char *integrator,
     static const char *const text[] = {
         [NEVH_BOUNDED] = "keeps the energy bounded",
         [NEVH_RANDOM_WALK] = "lets the energy wander",
-        [NEVH_UNSTABLE] = "is unstable"};
+        [NEVH_UNSTABLE] = "is unstable",
+        [NEVH_UNDECIDED] = "cannot be told yet"};
     list places = {0};
     for (size_t k = 0; k < count; k++) {
         if (strcmp(rows[k].integrator, integrator) != 0 ||
@@ -145,7 +146,7 @@ static void tell_some(const row rows[], size_t count, const char *integrator,
 /* Row i, where it is the first of its integrator, whose rows differ. */
 static void tell_mixed(const row rows[], size_t count, size_t i, list *words) {
     static const nevh_verdict told[] = {NEVH_BOUNDED, NEVH_RANDOM_WALK,
-                                        NEVH_UNSTABLE};
+                                        NEVH_UNSTABLE, NEVH_UNDECIDED};
     bool first = true;
     for (size_t k = 0; k < i; k++)
         first &= strcmp(rows[k].integrator, rows[i].integrator) != 0;
@@ -217,6 +218,12 @@ void verdict_words(const plan *p, const row rows[], size_t count, list *words) {
     tell_all(rows, count, NEVH_UNSTABLE,
              "is unstable: its error exceeds the energy itself.",
              "are unstable: their errors exceed the energy itself.", words);
+    tell_all(rows, count, NEVH_UNDECIDED,
+             "cannot be told yet: the run is too short to say what becomes of "
+             "its energy.",
+             "cannot be told yet: the run is too short to say what becomes of "
+             "their energies.",
+             words);
     for (size_t i = 0; i < count; i++)
         tell_mixed(rows, count, i, words);
     state_words(rows, count, words);

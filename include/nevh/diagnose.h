@@ -45,13 +45,34 @@ NEVH_API int nevh_energy_set_scale(nevh_energy *, double scale);
 NEVH_API int nevh_energy_observe(void *energy, size_t step, double t,
                                  const double q[], const double p[]);
 
+/* Tells which scheme takes the steps, so that the verdict may use what theory
+   knows of it; without that it goes by the errors alone.  To be called before
+   the first observation.
+   stepper  planned; read now, and not kept
+   returns  NEVH_OK; NEVH_EINVAL when the stepper was refused or the first
+            observation was made; carried by the observer */
+NEVH_API int nevh_energy_expect(nevh_energy *, const nevh_stepper *stepper);
+
 typedef enum {
-    NEVH_BOUNDED,     /* no larger at the end than at the beginning */
+    NEVH_BOUNDED,     /* does not grow, however large it is */
     NEVH_RANDOM_WALK, /* grows, but not along a line: rounding, or chaos */
-    NEVH_DRIFTS,      /* grows along a line */
-    NEVH_UNSTABLE     /* larger than the scale of the energy itself */
+    NEVH_DRIFTS,      /* its mean moves steadily, far above its uncertainty */
+    NEVH_UNSTABLE,    /* above all energies at the start, and grows or stays */
+    NEVH_UNDECIDED    /* the run is too short to tell */
 } nevh_verdict;
 NEVH_API const char *nevh_verdict_name(nevh_verdict);
+
+/* What theory says of the error of the energy. */
+typedef enum {
+    NEVH_THEORY_NONE,  /* nothing was told: nevh_energy_expect */
+    NEVH_THEORY_OPEN,  /* nothing: friction, H of t, symmetric methods */
+    NEVH_THEORY_KEEPS, /* no steady drift while steps resolve the orbit, but for
+                          what rounding and the gradients bring: fixed steps of
+                          symplectic methods and of those that preserve the
+                          energy, H autonomous [Hairer, Lubich, Wanner,
+                          Geometric Numerical Integration, chapter IX] */
+    NEVH_THEORY_LOSES  /* a drift: each step adds its error */
+} nevh_theory;
 
 /* Errors are of H(t) - H(0), or of the balance, relative to `scale`: |H0|
    without the terms that read nothing; where that is below 1e-6 of the largest
@@ -62,15 +83,51 @@ typedef struct {
     double scale;
     double max, rms, final; /* |error|, root mean square, signed last error */
     double drift;           /* slope of a straight line, per unit of time */
-    double drift_error;     /* standard error of that slope */
+    double drift_error;     /* standard error of that slope, from the slowest
+                               changes about the line, as neighbouring errors
+                               are not independent; 0 for fewer than 12 */
     double straightness;    /* share of the slow changes that the line explains:
                                1 for a steady loss, 0 for a level series */
     double first_fifth, last_fifth; /* largest |error| there */
-    nevh_verdict verdict; /* UNSTABLE: max > 1; BOUNDED: last_fifth at most
-                             twice first_fifth, or max at rounding (16
-                             epsilon); DRIFTS: straightness at least 0.8;
-                             RANDOM_WALK otherwise */
+    nevh_verdict verdict;           /* nevh_energy_verdict(this, 1) */
+    nevh_theory theory;
+    double span;     /* of time observed */
+    double limit;    /* the largest |effect| at the start over scale, or 1 */
+    double rounding; /* an error that rounding alone may have made by now: a
+                        random walk of the largest energies met */
+    double gradient; /* one that gradients by differences may have made, since
+                        they are of no H; 0: they are exact, INFINITY: their
+                        steps were given */
+    double rate[3];  /* the power of t with which the largest |error| grows:
+                        from the second quarter to the second half of the
+                        run, and in the same way of half and a quarter of it */
+    double least;    /* smallest |error| in the last fifth */
+    bool gone;       /* no error of the last fifth comes near one of the first
+                        fifth */
 } nevh_energy_report;
+
+/* The verdict on a run, from the report on it, or on a run of the same steps
+   that is `times` as long and begins alike.
+
+   UNSTABLE   max > limit, and the error grows, or stays above all through the
+              last fifth, or theory LOSES
+   RANDOM_WALK, BOUNDED  max at rounding: never a drift
+   theory LOSES: DRIFTS where the slope is above four times its error, or the
+              error is gone for good
+   KEEPS, OPEN: BOUNDED where the last fifth is at most twice the first; once
+              times >= 4 also where growth has nearly ended, DRIFTS along a line
+              that lasts (of KEEPS, one that the gradients may bring),
+              RANDOM_WALK where growth is slower (of KEEPS, beyond what the
+              gradients bring, where it has gone on for long)
+   NONE:      as OPEN, but it takes the run for long enough
+   UNDECIDED  otherwise: of a run that is longer one may ask again
+
+   Thread-safe. */
+NEVH_API nevh_verdict nevh_energy_verdict(const nevh_energy_report *,
+                                          double times);
+
+/* The last error of a lane, as `final` of the report, but at no cost. */
+NEVH_API double nevh_energy_error(const nevh_energy *, size_t lane);
 
 /* lane < width.  All zeros before the first observation. */
 NEVH_API nevh_energy_report nevh_energy_result(const nevh_energy *,

@@ -3,6 +3,7 @@
 #include "gradient/field_private.h"
 #include "diagnose/trend_private.h"
 #include "run/stepper_private.h"
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -16,6 +17,12 @@ struct nevh_energy {
     bool begun;
     double given_scale;                       /* by the user; 0: found */
     double *t, *h, *initial, *scale, *gained; /* width each */
+    double *limit;   /* width: the largest effect at the start */
+    double *largest; /* width: the largest sum of terms' |values| met */
+    double *seen;    /* width: the |error| at which that was looked for */
+    nevh_theory theory;
+    double noise, blur; /* of the gradient, relative */
+    size_t steps, next_look;
     double *effects;
     double *state; /* 2n: one lane */
     nevh__trend *trend;
@@ -37,11 +44,14 @@ static int plan(nevh_energy *e, const nevh_system *s, bool portable) {
     e->initial = nevh__array(width, sizeof *e->initial);
     e->gained = nevh__array(width, sizeof *e->gained);
     e->scale = nevh__array(width, sizeof *e->scale);
+    e->limit = nevh__array(width, sizeof *e->limit);
+    e->largest = nevh__array(width, sizeof *e->largest);
+    e->seen = nevh__array(width, sizeof *e->seen);
     e->trend = nevh__array(width, sizeof *e->trend);
     e->effects = nevh__array(s->n_effects, sizeof *e->effects);
     e->state = nevh__array(2 * s->n, sizeof *e->state);
-    if (e->t && e->h && e->initial && e->gained && e->scale && e->trend &&
-        e->effects && e->state)
+    if (e->t && e->h && e->initial && e->gained && e->scale && e->limit &&
+        e->largest && e->seen && e->trend && e->effects && e->state)
         return NEVH_OK;
     return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
 }
@@ -67,6 +77,9 @@ void nevh_energy_free(nevh_energy *e) {
     free(e->initial);
     free(e->gained);
     free(e->scale);
+    free(e->limit);
+    free(e->largest);
+    free(e->seen);
     free(e->trend);
     free(e->effects);
     free(e->state);
@@ -105,6 +118,52 @@ int nevh_energy_follow(nevh_energy *e, const nevh_stepper *s) {
     return NEVH_OK;
 }
 
+static nevh_theory theory_of(const nevh_stepper *s) {
+    const nevh_integrator *scheme = s->work.integrator;
+    const nevh_system *system = s->work.system;
+    nevh_claim symplectic = nevh_integrator_symplectic(scheme);
+    bool keeps = symplectic == NEVH_YES || symplectic == NEVH_EXTENDED ||
+                 nevh_integrator_preserves_energy(scheme) == NEVH_YES;
+    if (!keeps && nevh_integrator_symmetric(scheme) == NEVH_NO)
+        return NEVH_THEORY_LOSES;
+    if (!keeps || nevh_system_friction(system, NULL) ||
+        !(nevh_system_traits(system) & NEVH_AUTONOMOUS))
+        return NEVH_THEORY_OPEN;
+    return NEVH_THEORY_KEEPS;
+}
+
+/* How far rounding moves derivatives by differences, and how far these are
+   from derivatives of any H, relative to them. */
+static void find_blur(nevh_energy *e, const nevh_field *f) {
+    e->noise = e->blur = 0;
+    for (size_t i = 0; f && i < nevh_field_step_count(f); i++) {
+        nevh_step_report step = nevh_field_step_report(f, i);
+        if (step.given)
+            e->blur = INFINITY;
+        else if (step.size > 0) {
+            double both = step.truncation + step.rounding;
+            e->noise = fmax(e->noise, step.rounding / step.size);
+            e->blur = fmax(e->blur, both / step.size);
+        }
+    }
+}
+
+int nevh_energy_expect(nevh_energy *e, const nevh_stepper *s) {
+    if (e->report.status)
+        return e->report.status;
+    if (e->begun)
+        return nevh__fail(&e->report, NEVH_EINVAL,
+                          "the scheme is to be told before the first "
+                          "observation");
+    if (nevh_stepper_status(s))
+        return nevh__fail(&e->report, NEVH_EINVAL,
+                          "the stepper to expect was refused: %s",
+                          nevh_stepper_message(s));
+    e->theory = theory_of(s);
+    find_blur(e, s->work.field);
+    return NEVH_OK;
+}
+
 /* What came in from outside so far. */
 static double gain(const nevh_energy *e, size_t lane) {
     return e->followed ? nevh_stepper_gain(e->followed, lane) : 0;
@@ -120,21 +179,29 @@ int nevh_energy_set_scale(nevh_energy *e, double scale) {
     return NEVH_OK;
 }
 
-/* |H0| of what reads something, or the largest of its effects. */
-static int find_scale(nevh_energy *e, size_t lane, double t, const double q[],
-                      const double p[]) {
-    double sum = 0, most = 0;
+static void gather(nevh_energy *e, size_t lane, const double q[],
+                   const double p[]) {
     for (size_t k = 0; k < e->n; k++) {
         e->state[k] = q[k * e->width + lane];
         e->state[e->n + k] = p[k * e->width + lane];
     }
+}
+
+/* |H0| of what reads something, or the largest of its effects. */
+static int find_scale(nevh_energy *e, size_t lane, double t, const double q[],
+                      const double p[]) {
+    double sum = 0, most = 0;
+    gather(e, lane, q, p);
     int status = nevh__field_moving_effects(e->field, t, e->state,
                                             e->state + e->n, e->effects);
     for (size_t i = 0; !status && i < e->field->system->n_effects; i++) {
         sum += e->effects[i];
         most = fmax(most, fabs(e->effects[i]));
     }
-    e->scale[lane] = fabs(sum) >= cancelled * most ? fabs(sum) : most;
+    e->limit[lane] = most;
+    e->scale[lane] = e->given_scale                  ? e->given_scale
+                     : fabs(sum) >= cancelled * most ? fabs(sum)
+                                                     : most;
     if (e->scale[lane] == 0)
         e->scale[lane] = 1; /* H is 0 at the start: errors are absolute */
     return status;
@@ -145,12 +212,37 @@ static int begin(nevh_energy *e, double t, const double q[], const double p[]) {
     for (size_t lane = 0; !status && lane < e->width; lane++) {
         e->initial[lane] = e->h[lane];
         e->gained[lane] = gain(e, lane);
-        e->scale[lane] = e->given_scale;
-        if (e->given_scale == 0)
-            status = find_scale(e, lane, t, q, p);
+        status = find_scale(e, lane, t, q, p);
     }
     e->begun = !status;
     return status;
+}
+
+/* The size of the energies that rounding is of: looked for from time to time,
+   and where the error rises, which it does where they are large. */
+static int look(nevh_energy *e, size_t lane, double t, const double q[],
+                const double p[]) {
+    double h, lost, size;
+    gather(e, lane, q, p);
+    int status = nevh__field_moving_values(e->field, 1, &t, e->state,
+                                           e->state + e->n, &h, &lost, &size);
+    if (!status)
+        e->largest[lane] = fmax(e->largest[lane], size);
+    e->seen[lane] = fmax(e->seen[lane], fabs(nevh_energy_error(e, lane)));
+    return status;
+}
+
+static bool is_time_to_look(nevh_energy *e, size_t lane) {
+    static const double higher = 1.5;
+    return e->trend[lane].samples >= e->next_look ||
+           fabs(nevh_energy_error(e, lane)) > higher * e->seen[lane];
+}
+
+/* Some hundred times in a run of any length. */
+static void look_again_later(nevh_energy *e) {
+    size_t samples = e->trend[0].samples;
+    if (samples >= e->next_look)
+        e->next_look = samples + samples / 64 + 1;
 }
 
 static int add_error(nevh_energy *e, size_t lane, double t) {
@@ -168,7 +260,6 @@ static int add_error(nevh_energy *e, size_t lane, double t) {
 int nevh_energy_observe(void *energy, size_t step, double t, const double q[],
                         const double p[]) {
     nevh_energy *e = energy;
-    (void)step;
     if (e->report.status)
         return e->report.status;
     for (size_t lane = 0; lane < e->width; lane++)
@@ -178,9 +269,26 @@ int nevh_energy_observe(void *energy, size_t step, double t, const double q[],
         status = begin(e, t, q, p);
     if (status)
         return nevh__fail_as(&e->report, &e->field->report);
+    e->steps = step;
     for (size_t lane = 0; !status && lane < e->width; lane++)
         status = add_error(e, lane, t);
+    for (size_t lane = 0; !status && lane < e->width; lane++)
+        if (is_time_to_look(e, lane) && look(e, lane, t, q, p))
+            status = nevh__fail_as(&e->report, &e->field->report);
+    look_again_later(e);
     return status;
+}
+
+double nevh_energy_error(const nevh_energy *e, size_t lane) {
+    return e && e->begun && lane < e->width ? e->trend[lane].last : 0;
+}
+
+/* Of values, and of a random walk in the steps, whose gradients are off by that
+   or by the noise of differences. */
+static double rounding_of(const nevh_energy *e, size_t lane) {
+    double each = fmax(DBL_EPSILON, e->noise / 16);
+    double walk = 4 * each * sqrt((double)e->steps);
+    return (16 * DBL_EPSILON + walk) * e->largest[lane] / e->scale[lane];
 }
 
 nevh_energy_report nevh_energy_result(const nevh_energy *e, size_t lane) {
@@ -189,12 +297,18 @@ nevh_energy_report nevh_energy_result(const nevh_energy *e, size_t lane) {
         return report;
     report.initial = e->initial[lane];
     report.scale = e->scale[lane];
+    report.theory = e->theory;
+    report.limit = fmax(1, e->limit[lane] / e->scale[lane]);
+    report.rounding = rounding_of(e, lane);
+    report.gradient =
+        e->blur * (double)e->steps * e->largest[lane] / e->scale[lane];
     nevh__trend_report(&e->trend[lane], &report);
+    report.verdict = nevh_energy_verdict(&report, 1);
     return report;
 }
 
 const char *nevh_verdict_name(nevh_verdict verdict) {
     static const char *const names[] = {"bounded", "random-walk", "drifts",
-                                        "unstable"};
-    return verdict <= NEVH_UNSTABLE ? names[verdict] : "unknown";
+                                        "unstable", "undecided"};
+    return verdict <= NEVH_UNDECIDED ? names[verdict] : "unknown";
 }

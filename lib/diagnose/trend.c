@@ -1,21 +1,21 @@
 /* nevh: does a series grow, and along a line?
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/trend_private.h"
-#include <float.h>
 #include <math.h>
 
-/* The verdict's rule; see nevh_energy_report. */
-static const double unstable_above = 1;
-static const double growth_allowed = 2;
-static const double rounding = 16 * DBL_EPSILON;
-static const double straightness = 0.8;
+static const double pi = 3.14159265358979323846;
+enum { FEWEST = 12 };    /* bins, for an error of the slope */
+enum { SLOW_WAVES = 8 }; /* that the error of the slope is made from */
 
 static void merge_neighbours(nevh__trend *s) {
     for (size_t i = 0; i < NEVH__BINS / 2; i++) {
         const nevh__bin *a = &s->bin[2 * i], *b = a + 1;
-        s->bin[i] =
-            (nevh__bin){a->t + b->t, a->e + b->e, fmax(a->most, b->most),
-                        a->samples + b->samples};
+        s->bin[i] = (nevh__bin){a->t + b->t,
+                                a->e + b->e,
+                                fmin(a->lowest, b->lowest),
+                                fmax(a->highest, b->highest),
+                                fmin(a->least, b->least),
+                                a->samples + b->samples};
     }
     s->bins = NEVH__BINS / 2;
     s->per_bin *= 2;
@@ -27,17 +27,22 @@ static void add_to_bin(nevh__trend *s, double t, double e) {
     if (s->bins == 0 || s->bin[s->bins - 1].samples == s->per_bin) {
         if (s->bins == NEVH__BINS)
             merge_neighbours(s);
-        s->bin[s->bins++] = (nevh__bin){0};
+        s->bin[s->bins++] =
+            (nevh__bin){.lowest = e, .highest = e, .least = fabs(e)};
     }
     nevh__bin *bin = &s->bin[s->bins - 1];
     bin->samples++;
     bin->t += t;
     bin->e += e;
-    bin->most = fmax(bin->most, fabs(e));
+    bin->lowest = fmin(bin->lowest, e);
+    bin->highest = fmax(bin->highest, e);
+    bin->least = fmin(bin->least, fabs(e));
 }
 
 void nevh__trend_add(nevh__trend *s, double t, double e) {
-    s->samples++;
+    if (s->samples++ == 0)
+        s->first_t = t;
+    s->last_t = t;
     double dt = t - s->mean_t, count = (double)s->samples;
     s->mean_t += dt / count;
     s->mean_e += (e - s->mean_e) / count;
@@ -49,37 +54,83 @@ void nevh__trend_add(nevh__trend *s, double t, double e) {
     add_to_bin(s, t, e);
 }
 
-static double largest(const nevh__trend *s, size_t from, size_t to) {
-    double most = 0;
-    for (size_t i = from; i < to; i++)
-        most = fmax(most, s->bin[i].most);
-    return most;
+/* Of some bins together. */
+static nevh__bin join(const nevh__trend *s, size_t from, size_t to) {
+    nevh__bin all = s->bin[from];
+    for (size_t i = from + 1; i < to; i++) {
+        all.lowest = fmin(all.lowest, s->bin[i].lowest);
+        all.highest = fmax(all.highest, s->bin[i].highest);
+        all.least = fmin(all.least, s->bin[i].least);
+    }
+    return all;
 }
 
-/* Scatter of the bins' means about the line and about their mean.  Means of
-   bins average out what oscillates faster than a bin. */
-static void fit_bins(const nevh__trend *s, nevh_energy_report *r) {
-    double about_line = 0, about_mean = 0, tt = 0;
+static double largest(const nevh__trend *s, size_t from, size_t to) {
+    nevh__bin all = join(s, from, to);
+    return fmax(fabs(all.lowest), fabs(all.highest));
+}
+
+/* The means of bins about the line.  Means of bins average out what oscillates
+   faster than a bin. */
+static void find_rest(const nevh__trend *s, double slope, double rest[],
+                      nevh_energy_report *r) {
+    double about_line = 0, about_mean = 0;
     for (size_t i = 0; i < s->bins; i++) {
         double count = (double)s->bin[i].samples;
         double dt = s->bin[i].t / count - s->mean_t;
         double de = s->bin[i].e / count - s->mean_e;
+        rest[i] = de - slope * dt;
         about_mean += de * de;
-        about_line += (de - r->drift * dt) * (de - r->drift * dt);
-        tt += dt * dt;
+        about_line += rest[i] * rest[i];
     }
-    if (s->bins < 3 || tt == 0 || about_mean == 0)
-        return;
-    r->drift_error = sqrt(about_line / (double)(s->bins - 2) / tt);
-    r->straightness = fmax(0, 1 - about_line / about_mean);
+    if (about_mean > 0)
+        r->straightness = fmax(0, 1 - about_line / about_mean);
 }
 
-static nevh_verdict judge(const nevh_energy_report *r) {
-    if (!(r->max <= unstable_above))
-        return NEVH_UNSTABLE;
-    if (r->max <= rounding || r->last_fifth <= growth_allowed * r->first_fifth)
-        return NEVH_BOUNDED;
-    return r->straightness >= straightness ? NEVH_DRIFTS : NEVH_RANDOM_WALK;
+/* The variance that a mean of the rest has, times the number of bins: from its
+   slowest waves, the cosines of one to SLOW_WAVES half periods (but for the
+   first, which the line takes away) [U. K. Mueller, J. Econometrics 141 (2007)
+   1331-1352]. */
+static double slow_power(const double rest[], size_t bins) {
+    size_t waves = bins / 4 < SLOW_WAVES ? bins / 4 : SLOW_WAVES;
+    double power = 0;
+    for (size_t k = 2; k < waves + 2; k++) {
+        double sum = 0, angle = pi * (double)k / (double)bins;
+        for (size_t i = 0; i < bins; i++)
+            sum += rest[i] * cos(angle * ((double)i + 0.5));
+        power += 2 * sum * sum / (double)bins;
+    }
+    return power / (double)waves;
+}
+
+static void fit_bins(const nevh__trend *s, nevh_energy_report *r) {
+    double rest[NEVH__BINS], tt = 0;
+    if (s->bins < 3)
+        return;
+    find_rest(s, r->drift, rest, r);
+    for (size_t i = 0; i < s->bins; i++) {
+        double dt = s->bin[i].t / (double)s->bin[i].samples - s->mean_t;
+        tt += dt * dt;
+    }
+    if (s->bins >= FEWEST && tt > 0)
+        r->drift_error = sqrt(slow_power(rest, s->bins) / tt);
+}
+
+/* The power of t with which the largest |error| grew, from the second quarter
+   of so many bins to their second half. */
+static double rate(const nevh__trend *s, size_t bins) {
+    if (bins < 4)
+        return 0;
+    double before = largest(s, bins / 4, bins / 2);
+    double after = largest(s, bins / 2, bins);
+    return before > 0 && after > 0 ? log2(after / before) : 0;
+}
+
+/* Between the errors at both ends there is a gap as wide as either varies. */
+static bool is_gone(const nevh__bin *a, const nevh__bin *b) {
+    double gap = fmax(a->lowest - b->highest, b->lowest - a->highest);
+    return gap > 0 &&
+           gap > fmin(a->highest - a->lowest, b->highest - b->lowest);
 }
 
 void nevh__trend_report(const nevh__trend *s, nevh_energy_report *r) {
@@ -87,6 +138,8 @@ void nevh__trend_report(const nevh__trend *s, nevh_energy_report *r) {
     if (s->samples == 0)
         return;
     size_t fifth = s->bins < 5 ? 1 : s->bins / 5;
+    nevh__bin first = join(s, 0, fifth);
+    nevh__bin last = join(s, s->bins - fifth, s->bins);
     r->max = s->most;
     r->rms = sqrt(s->squares / (double)s->samples);
     r->final = s->last;
@@ -94,5 +147,9 @@ void nevh__trend_report(const nevh__trend *s, nevh_energy_report *r) {
     fit_bins(s, r);
     r->first_fifth = largest(s, 0, fifth);
     r->last_fifth = largest(s, s->bins - fifth, s->bins);
-    r->verdict = judge(r);
+    for (size_t i = 0, bins = s->bins; i < 3; i++, bins /= 2)
+        r->rate[i] = rate(s, bins);
+    r->span = fabs(s->last_t - s->first_t);
+    r->least = last.least;
+    r->gone = is_gone(&first, &last);
 }

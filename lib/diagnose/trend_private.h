@@ -11,19 +11,22 @@
 enum { NEVH__BINS = 200 };
 
 typedef struct {
-    double t, e, most; /* sums of time and error, largest |error| */
+    double t, e;            /* sums of time and error */
+    double lowest, highest; /* errors */
+    double least;           /* |error| */
     size_t samples;
 } nevh__bin;
 
 typedef struct {
     size_t samples, bins, per_bin; /* per_bin: samples of a full bin */
-    double squares, most, last;
+    double squares, most, last, first_t, last_t;
     double mean_t, mean_e, tt, te; /* for the straight line */
     nevh__bin bin[NEVH__BINS];
 } nevh__trend;
 
 void nevh__trend_add(nevh__trend *, double t, double e);
-/* Everything of the report but initial and scale. */
+/* What the report says of the series, from samples to straightness, rate, least
+   and gone. */
 void nevh__trend_report(const nevh__trend *, nevh_energy_report *);
 
 #endif

@@ -1,0 +1,75 @@
+/* nevh: rows whose verdict their run leaves open, followed further.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "row.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Lengths of the run: the least that is worth it, and the most. */
+static const double least = 4, most = 32;
+/* What following may take, as row_work counts, where the least takes less. */
+static const double allowed = 1;
+
+typedef struct {
+    nevh_energy *energy;
+    double start, span, times; /* at so many lengths the verdict is asked for */
+    nevh_energy_report report;
+    nevh_verdict verdict;
+} follower;
+
+static int ask(void *data, size_t step, double t, const double q[],
+               const double p[]) {
+    follower *f = data;
+    int status = nevh_energy_observe(f->energy, step, t, q, p);
+    if (status || t - f->start < f->times * f->span * (1 - 1e-9))
+        return status;
+    f->report = nevh_energy_result(f->energy, 0);
+    f->verdict = nevh_energy_verdict(&f->report, f->times);
+    f->times *= 2;
+    return f->verdict == NEVH_UNDECIDED ? NEVH_OK : NEVH_STOPPED;
+}
+
+static double lengths(const plan *p, const row *r) {
+    double once = row_work(p, r->scheme, &r->counts, r->steps);
+    double times = once > 0 ? allowed / once : most;
+    return exp2(floor(log2(fmin(most, fmax(least, times)))));
+}
+
+/* From the start, since the orbit is the same again. */
+static void run(const plan *p, const row *r, nevh_stepper *s, follower *f,
+                double times) {
+    double *q = tool_allocate(p->n, sizeof *q), stopped;
+    double *m = tool_allocate(p->n, sizeof *m);
+    plan longer = *p;
+    longer.t_end = f->start + times * f->span;
+    memcpy(q, p->q, p->n * sizeof *q);
+    memcpy(m, p->p, p->n * sizeof *m);
+    plan_run(&longer, s, r->step, q, m, &(nevh_observer){ask, f, 1}, 1,
+             &stopped);
+    free(q);
+    free(m);
+}
+
+bool row_drifts(const row *r) {
+    return r->energy.verdict == NEVH_DRIFTS ||
+           (r->energy.verdict == NEVH_UNDECIDED &&
+            r->energy.theory == NEVH_THEORY_LOSES);
+}
+
+void row_follow(const plan *p, row *r) {
+    double start = p->run->t_start;
+    if (!r->ran || r->energy.verdict != NEVH_UNDECIDED || isfinite(r->stopped))
+        return;
+    nevh_stepper *s = row_stepper(p, r, p->balance);
+    follower f = {.energy = row_energy(p, r, s),
+                  .start = start,
+                  .span = r->t_end - start,
+                  .times = 2,
+                  .verdict = NEVH_UNDECIDED};
+    run(p, r, s, &f, lengths(p, r));
+    r->energy.verdict = f.verdict;
+    r->followed = f.times / 2;
+    r->longer = f.report;
+    nevh_energy_free(f.energy);
+    row_shelve(p, r, p->balance, s);
+}
