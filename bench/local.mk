@@ -20,6 +20,13 @@ bench-counts: bench/counts$(EXEEXT)
 	$(SHELL) $(srcdir)/bench/counts.sh ./bench/counts$(EXEEXT) \
 	  bench/results-counts.csv "$(COUNTS)" $(SCHEMES)
 
+# What it judges with is the command's own, all but its main.
+EXTRA_PROGRAMS += bench/verdicts
+bench_verdicts_SOURCES = bench/verdicts.c bench/verdicts_private.h \
+	bench/verdicts_run.c bench/verdicts_label.c
+bench_verdicts_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE
+bench_verdicts_LDADD = $(tools_nevh_OBJECTS:tools/nevh-nevh.o=) libnevh.la
+bench_verdicts_DEPENDENCIES = $(tools_nevh_OBJECTS) libnevh.la
 CLEANFILES += bench/gradient$(EXEEXT) bench/results-gradient.csv \
 	bench/tape$(EXEEXT) bench/scenes$(EXEEXT)
 
@@ -60,5 +67,14 @@ bench-recommend: tools/nevh$(EXEEXT)
 	NEVH_SCENES=$(srcdir)/scenes $(SHELL) $(srcdir)/bench/recommend.sh \
 	  ./tools/nevh$(EXEEXT)
 
-EXTRA_DIST += bench/recommend.sh
-.PHONY: bench bench-counts bench-peers bench-recommend
+# Wrong rows are listed in bench/wrong-verdicts, long runs kept in
+# bench/long-runs, to be removed where schemes changed.
+SHARE = 0.35
+bench-verdicts: bench/verdicts$(EXEEXT)
+	./bench/verdicts$(EXEEXT) -s $(SHARE) -o bench/wrong-verdicts \
+	  $(srcdir) bench/long-runs
+
+EXTRA_DIST += bench/recommend.sh bench/orbits
+CLEANFILES += bench/verdicts$(EXEEXT) bench/wrong-verdicts
+DISTCLEANFILES = bench/long-runs
+.PHONY: bench bench-counts bench-peers bench-recommend bench-verdicts

@@ -1,0 +1,75 @@
+/* nevh bench: verdicts on the energy against what longer runs show.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_VERDICTS_PRIVATE_H
+#define NEVH_VERDICTS_PRIVATE_H
+
+#include "../tools/row.h"
+
+/* verdicts_run.c: the error of the energy in a run that is several times as
+   long as the row's, in windows of equal length.  It steps and takes values
+   itself: nothing of what judges is used. */
+enum { WINDOWS = 240 };
+typedef struct {
+    float least, most, mean;
+} window;
+
+typedef struct {
+    uint64_t key;   /* of scene, scheme, gradient, dt, t_end and spans */
+    double spans;   /* as long as so many of the row's runs */
+    double reached; /* so many of them were run before the scheme failed */
+    double work;   /* of row_work, of the part that is as long as the row, or of
+                      what was run of it */
+    double effect; /* the largest effect at the start over the scale */
+    double noise;  /* rounding of one value of H over the scale */
+    double wandering; /* by rounding in gradients, over one of the row's runs */
+    bool afforded;    /* or the rest says nothing but `work` */
+    window window[WINDOWS];
+} long_run;
+
+typedef struct {
+    const plan *plan;
+    nevh_stepper *stepper;
+    const nevh_integrator *scheme;
+    uint64_t scene; /* a hash of its text */
+    double dt, t_end;
+} subject;
+
+uint64_t hash_of(uint64_t before, const void *data, size_t size);
+/* Of the cache, or run and added to it.
+   work  that it may take, as row_work counts it */
+const long_run *long_run_of(const subject *, double spans, double work);
+/* The file that holds all runs; long_run_of reads and adds to it. */
+void runs_open(const char *file);
+void runs_close(void);
+
+/* verdicts_label.c: what the run says, and theory of the scheme. */
+typedef enum {
+    IS_BOUNDED,  /* swings, at most */
+    IS_ROUNDING, /* grows, but by no more than rounding does */
+    IS_LARGE,    /* above the energy itself, and level, but never back */
+    IS_WALKING,  /* grows, not along a line */
+    IS_DRIFTING, /* along a line */
+    IS_GROWING,  /* either */
+    IS_SPENT,    /* lost what there was to lose, or jumped, and stays there */
+    IS_SETTLED,  /* the same, and small */
+    IS_UNSTABLE, /* above the energy itself within the row's run */
+    WILL_BE_SO,  /* later */
+    IS_OPEN,     /* cannot be told from the longest run */
+    LABELS
+} label;
+const char *label_name(label);
+
+typedef enum { SYMPLECTIC, KEEPING, RUNGE_KUTTA, OTHER, GROUPS } group;
+group group_of(const nevh_integrator *);
+
+typedef struct {
+    label is;
+    const long_run *run; /* that says so: the longest */
+} truth;
+/* May ask for runs yet longer. */
+truth truth_of(const subject *, double spans, double work);
+char *truth_evidence(const truth *);
+/* Whether that verdict is right where that is true. */
+bool is_right(label, const char *verdict);
+
+#endif
