@@ -237,6 +237,84 @@ START_TEST(arrays) {
 }
 END_TEST
 
+static void start_at(nevh_scene *s, const char *assignment) {
+    ck_assert_msg(!nevh_scene_set_start(s, assignment), "%s: %s", assignment,
+                  nevh_scene_message(s));
+}
+
+/* A start from outside is that of the scene in which the line stands. */
+START_TEST(starts_from_outside) {
+    nevh_scene *s = scene_of(chain);
+    double q[32], p[32];
+    start_at(s, "x = 0");
+    start_at(s, "x[i = 2..4] = i/2");
+    start_at(s, "p_x[1..2] = 3, 4");
+    start_at(s, "x[32] = 7");
+    ck_assert_int_eq(nevh_scene_start(s, q, p), NEVH_OK);
+    for (int i = 0; i < 32; i++) {
+        double x = i >= 1 && i <= 3 ? (i + 1) / 2.0 : i == 31 ? 7 : 0;
+        ck_assert(q[i] == x && p[i] == (i == 0 ? 3 : i == 1 ? 4 : 0.5));
+    }
+    nevh_scene_free(s);
+}
+END_TEST
+
+START_TEST(starts_of_momenta_and_velocities) {
+    nevh_scene *s = scene_of("[parameters]\nm = 4\n[coordinates]\nx = 1, 8\n"
+                             "y = 0\nv_y = 3\n[effects]\n"
+                             "kinetic = p_x^2/(2*m) + p_y^2/(2*m)\n");
+    double q[2], p[2];
+    start_at(s, "v_x = m/8");
+    start_at(s, "p_y = 1");
+    ck_assert_int_eq(nevh_scene_start(s, q, p), NEVH_OK);
+    ck_assert(p[1] == 1 && q[0] == 1);
+    assert_close(p[0], 2);
+    ck_assert_int_eq(nevh_scene_set(s, "m = 2"), NEVH_OK);
+    ck_assert_int_eq(nevh_scene_start(s, q, p), NEVH_OK);
+    assert_close(p[0], 0.5);
+    nevh_scene_free(s);
+}
+END_TEST
+
+/* What is refused leaves the scene as it was, and says what it looked for. */
+START_TEST(wrong_starts) {
+    static const struct {
+        const char *text, *message;
+    } wrong[] = {{"fhi1 = 1", "did you mean phi1"},
+                 {"m = 1", "there is no coordinate, momentum"},
+                 {"phi1 = 1, 2", "takes 1 value"},
+                 {"phi1[2] = 1", "no such elements"},
+                 {"phi1 = phi2", "only parameters"},
+                 {"phi1", "NAME = VALUE"}};
+    nevh_scene *s = scene_of(shaken_pendulum);
+    uint64_t digest = nevh_scene_digest(s);
+    double q[2], p[2];
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        ck_assert_int_eq(nevh_scene_set_start(s, wrong[i].text), NEVH_EINVAL);
+        ck_assert_msg(strstr(nevh_scene_message(s), wrong[i].message), "%s",
+                      nevh_scene_message(s));
+    }
+    ck_assert(nevh_scene_digest(s) == digest);
+    ck_assert_int_eq(nevh_scene_start(s, q, p), NEVH_OK);
+    ck_assert(q[0] == PI / 2);
+    start_at(s, "phi1 = 1");
+    ck_assert(nevh_scene_digest(s) != digest);
+    nevh_scene_free(s);
+}
+END_TEST
+
+START_TEST(numbers_of_parameters) {
+    nevh_scene *s = scene_of(shaken_pendulum);
+    double number = 0;
+    ck_assert_int_eq(nevh_scene_number(s, "3*pi/w", &number), NEVH_OK);
+    assert_close(number, 3 * PI / 20);
+    ck_assert_int_eq(nevh_scene_number(s, "3*phi1", &number), NEVH_EINVAL);
+    ck_assert_int_eq(nevh_scene_number(s, "", &number), NEVH_EINVAL);
+    ck_assert_int_eq(nevh_scene_number(s, "sqrt(-w)", &number), NEVH_EDOM);
+    nevh_scene_free(s);
+}
+END_TEST
+
 /* Momenta of very different size, coupled, and one that is given itself. */
 START_TEST(velocities) {
     nevh_scene *s = scene_of(
@@ -365,6 +443,10 @@ int main(void) {
     tcase_add_test(cases, parameters_are_set);
     tcase_add_test(cases, arrays);
     tcase_add_test(cases, long_lists);
+    tcase_add_test(cases, starts_from_outside);
+    tcase_add_test(cases, starts_of_momenta_and_velocities);
+    tcase_add_test(cases, wrong_starts);
+    tcase_add_test(cases, numbers_of_parameters);
     tcase_add_test(cases, velocities);
     tcase_add_test(cases, velocities_of_others);
     tcase_add_test(cases, velocities_of_many);

@@ -23,7 +23,7 @@ exits 2 compare pendulum --gradient centrall4
 says 'did you mean central4'
 exits 2 compare pendulum --dt 0
 exits 2 compare pendulum --dt 0.1,x
-says '"x"'
+says '^nevh: --dt: '
 exits 2 compare pendulum --dt 0.1 --t-end 0
 exits 2 compare pendulum --t-end -1
 says 'before it begins'

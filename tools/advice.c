@@ -69,8 +69,12 @@ static table *recorded(const advice *a) {
     return records(&a->search.plan, rows, count);
 }
 
+/* To be typed: quoted where a shell would read it otherwise. */
 static char *append(char *text, const char *name, const char *value) {
-    char *longer = text_print("%s --%s %s", text, name, value);
+    bool plain = !value[strcspn(value, " ()*[]{}?<>|&;$\\\"'`!#~")];
+    const char *quote = plain || strchr(value, '\'') ? "" : "'";
+    char *longer =
+        text_print("%s --%s %s%s%s", text, name, quote, value, quote);
     free(text);
     return longer;
 }
@@ -97,6 +101,7 @@ static char *command_line(const advice *a, const options *o, const row *r) {
         text = append(text,
                       *setting == '+'   ? "with"
                       : *setting == '-' ? "without"
+                      : *setting == '@' ? "start"
                                         : "set",
                       setting + 1);
     }
@@ -108,8 +113,8 @@ static char *command_line(const advice *a, const options *o, const row *r) {
         append_number(text, "dt", r->tolerance > 0 ? a->search.landing : r->dt);
     if (r->tolerance > 0)
         text = append_number(text, "tolerance", r->tolerance);
-    if (!isnan(o->t_end))
-        text = append_number(text, "t-end", o->t_end);
+    if (o->t_end)
+        text = append(text, "t-end", o->t_end);
     return text;
 }
 

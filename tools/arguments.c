@@ -5,35 +5,83 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The names of a list, behind what is to be put before each. */
+static int read_names(list *l, const char *before, const char *option,
+                      const char *argument) {
+    list names = {0};
+    int status = TOOL_OK;
+    list_split(&names, argument);
+    for (size_t i = 0; !status && i < names.count; i++) {
+        const char *name = names.item[i];
+        if (!*name)
+            status = tool_refuse("--%s: a name is missing in \"%s\"", option,
+                                 argument);
+        else if (strchr(name, ' '))
+            status = tool_refuse("--%s: names are separated by commas, not "
+                                 "\"%s\"",
+                                 option, name);
+        else
+            list_print(l, "%s%s", before, name);
+    }
+    list_free(&names);
+    return status;
+}
+
 int read_with(options *o, const char *argument) {
-    list_print(&o->settings, "+%s", argument);
-    return TOOL_OK;
+    return read_names(&o->settings, "+", "with", argument);
 }
 
 int read_without(options *o, const char *argument) {
-    list_print(&o->settings, "-%s", argument);
+    return read_names(&o->settings, "-", "without", argument);
+}
+
+/* Where the next NAME = VALUE begins: behind a comma, outside of brackets,
+   after which a name and "=" follow; other commas separate values. */
+static const char *next_assignment(const char *text) {
+    const char *comma = NULL;
+    int depth = 0;
+    for (bool first = true; *text; text++) {
+        depth +=
+            (*text == '(' || *text == '[') - (*text == ')' || *text == ']');
+        if (depth == 0 && *text == ',')
+            comma = text;
+        if (depth == 0 && *text == '=' && !first && comma)
+            return comma + 1;
+        first = first && *text != '=';
+    }
+    return NULL;
+}
+
+static int read_assignments(list *l, char kind, const char *argument) {
+    for (const char *next; argument; argument = next) {
+        next = next_assignment(argument);
+        int length = next ? (int)(next - argument) - 1 : (int)strlen(argument);
+        list_print(l, "%c%.*s", kind, length, argument);
+    }
     return TOOL_OK;
 }
 
 int read_set(options *o, const char *argument) {
-    list_print(&o->settings, "=%s", argument);
-    return TOOL_OK;
+    return read_assignments(&o->settings, '=', argument);
+}
+
+int read_start(options *o, const char *argument) {
+    return read_assignments(&o->settings, '@', argument);
 }
 
 int read_integrators(options *o, const char *argument) {
-    list_split(&o->integrators, argument);
-    return TOOL_OK;
+    return read_names(&o->integrators, "", "integrators", argument);
 }
 
 int read_gradient(options *o, const char *argument) {
-    list_split(&o->gradients, argument);
-    return TOOL_OK;
+    return read_names(&o->gradients, "", "gradient", argument);
 }
 
 static int read_number(const char *option, const char *text, double *number) {
     char *end;
+    bool decimal = text[strspn(text, "0123456789.eE+-")] == '\0';
     *number = strtod(text, &end);
-    if (end != text && !*end && isfinite(*number))
+    if (decimal && end != text && !*end && isfinite(*number))
         return TOOL_OK;
     return tool_refuse("--%s takes numbers, not \"%s\"", option, text);
 }
@@ -61,8 +109,26 @@ static int read_numbers(const char *option, const char *argument,
     return status;
 }
 
+/* Formulas, whose commas inside of parentheses stay. */
+static int read_formulas(list *l, const char *argument) {
+    list_free(l);
+    for (;;) {
+        int depth = 0;
+        size_t length = 0;
+        for (; argument[length]; length++) {
+            depth += (argument[length] == '(') - (argument[length] == ')');
+            if (depth == 0 && argument[length] == ',')
+                break;
+        }
+        list_print(l, "%.*s", (int)length, argument);
+        if (!argument[length])
+            return TOOL_OK;
+        argument += length + 1;
+    }
+}
+
 int read_dt(options *o, const char *argument) {
-    return read_numbers("dt", argument, &o->dt, &o->dts, read_positive);
+    return read_formulas(&o->dt, argument);
 }
 
 int read_tolerance(options *o, const char *argument) {
@@ -71,11 +137,12 @@ int read_tolerance(options *o, const char *argument) {
 }
 
 int read_at(options *o, const char *argument) {
-    return read_numbers("at", argument, &o->at, &o->ats, read_number);
+    return read_formulas(&o->at, argument);
 }
 
 int read_t_end(options *o, const char *argument) {
-    return read_number("t-end", argument, &o->t_end);
+    o->t_end = argument;
+    return TOOL_OK;
 }
 
 int read_gradient_step(options *o, const char *argument) {

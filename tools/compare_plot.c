@@ -26,12 +26,11 @@ static char *heading(const plan *p, const row *r) {
 }
 
 static void begin_panel(plot **to, const plan *p, const row *r) {
-    const char *title = nevh_scene_title(p->scene);
     char *text = heading(p, r);
     if (*to)
         energy_plot_panel(*to, p, text);
     else
-        *to = energy_plot_new(p, *title ? title : p->name, text);
+        *to = energy_plot_new(p, p->title, text);
     free(text);
 }
 

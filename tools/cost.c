@@ -223,7 +223,7 @@ int cost(const options *o) {
     int status = plan_make(&p, o);
     if (!status)
         status = plan_search(&p, o);
-    if (!status && isnan(o->t_end) && !o->dts)
+    if (!status && !o->t_end && !o->dt.count)
         whole = plan_shorten(&p, SEARCH_BUDGET);
     if (!status && o->by_state)
         status = state_errors_mean_something(&p);

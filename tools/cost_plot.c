@@ -138,12 +138,10 @@ static char *note(const drawing *d) {
 
 int cost_plot(const options *o, const costs *c) {
     const plan *p = &c->search.plan;
-    const char *title = nevh_scene_title(p->scene);
     const char *error = c->search.by_state ? "largest state error, relative"
                                            : "largest energy error, relative";
     bool h = all_have(c, values);
-    drawing d = {c, plot_new(*title ? title : p->name, "CPU time (ms)", error),
-                 NULL, 0};
+    drawing d = {c, plot_new(p->title, "CPU time (ms)", error), NULL, 0};
     d.work = milliseconds;
     draw_panel(&d);
     plot_panel(d.to,

@@ -21,10 +21,12 @@ static const struct {
     reader *read;
     const char *help;
 } known[] = {
-    {"with", "EFFECT", OF_SCENES | FOR_NEW, read_with, "switch an effect on"},
-    {"without", "EFFECT", OF_SCENES | FOR_NEW, read_without,
-     "switch an effect off"},
-    {"set", "NAME=VALUE", OF_SCENES | FOR_NEW, read_set, "change a parameter"},
+    {"with", "A,B", OF_SCENES | FOR_NEW, read_with, "switch effects on"},
+    {"without", "A,B", OF_SCENES | FOR_NEW, read_without, "switch effects off"},
+    {"set", "NAME=VALUE", OF_SCENES | FOR_NEW, read_set,
+     "change a parameter; NAME=VALUE,NAME=VALUE several"},
+    {"start", "NAME=VALUE", OF_SCENES, read_start,
+     "where a coordinate x, a momentum p_x or a velocity v_x starts"},
     {"integrators", "A,B", OF_SCENES | FOR_HARD, read_integrators,
      "see nevh list integrators; instead of the scene's"},
     {"dt", "A,B", OF_SCENES, read_dt, "time steps, instead of the scene's"},
@@ -136,7 +138,7 @@ static int read_one(options *o, int code, char **argv) {
 int options_read(options *o, int argc, char **argv) {
     struct option described[KNOWN + 1];
     int status = TOOL_OK, code;
-    *o = (options){.t_end = NAN};
+    *o = (options){0};
     describe(described);
     opterr = 0;
     while (!status &&
@@ -159,6 +161,8 @@ void settings_notes(const options *o, list *notes) {
     for (size_t i = 0; i < o->settings.count; i++)
         if (o->settings.item[i][0] == '=')
             list_print(notes, "set: %s", o->settings.item[i] + 1);
+        else if (o->settings.item[i][0] == '@')
+            list_print(notes, "start: %s", o->settings.item[i] + 1);
 }
 
 void options_free(options *o) {
@@ -167,7 +171,7 @@ void options_free(options *o) {
     list_free(&o->integrators);
     list_free(&o->gradients);
     list_free(&o->sections);
-    free(o->dt);
-    free(o->at);
+    list_free(&o->dt);
+    list_free(&o->at);
     free(o->tolerance);
 }

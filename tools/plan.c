@@ -137,8 +137,8 @@ static void take_lists(plan *p, const options *o) {
     if (p->integrators.count == 0)
         default_integrators(p);
     add_transformed(p, o);
-    p->dt = o->dts ? o->dt : p->run->dt;
-    p->dts = o->dts ? o->dts : p->run->dts;
+    p->dt = o->dt.count ? p->given_dt : p->run->dt;
+    p->dts = o->dt.count ? o->dt.count : p->run->dts;
     p->tolerance = o->tolerances ? o->tolerance : p->run->tolerance;
     p->tolerances = o->tolerances ? o->tolerances : p->run->tolerances;
 }
@@ -146,7 +146,7 @@ static void take_lists(plan *p, const options *o) {
 static void take_settings(plan *p, const options *o) {
     p->system = nevh_scene_system(p->scene);
     p->run = nevh_scene_run_settings(p->scene);
-    p->t_end = isnan(o->t_end) ? p->run->t_end : o->t_end;
+    p->t_end = p->run->t_end;
     p->gradient_step =
         o->gradient_step > 0 ? o->gradient_step : p->run->gradient_step;
     p->gradient_steps = o->gradient_step > 0 ? NULL : p->run->gradient_steps;
@@ -160,23 +160,86 @@ static void take_settings(plan *p, const options *o) {
     p->balance = p->friction || p->time;
 }
 
+/* The formulas of an option. */
+static int take_numbers(plan *p, const options *o, const list *formulas,
+                        double **numbers) {
+    *numbers = tool_allocate(formulas->count, sizeof **numbers);
+    for (size_t i = 0; i < formulas->count; i++)
+        if (scene_number(p->scene, o, formulas->item[i], &(*numbers)[i]))
+            return TOOL_USAGE;
+    return TOOL_OK;
+}
+
+/* Within the run, so that a time is not taken for another. */
+static int check_at(const plan *p, const options *o) {
+    for (size_t i = 0; i < p->ats; i++)
+        if (!(p->at[i] >= p->run->t_start && p->at[i] <= p->t_end))
+            return tool_refuse("--at %s: the run is from t = %g to %g",
+                               o->at.item[i], p->run->t_start, p->t_end);
+    return TOOL_OK;
+}
+
+static int take_times(plan *p, const options *o) {
+    if (take_numbers(p, o, &o->dt, &p->given_dt) ||
+        take_numbers(p, o, &o->at, &p->at))
+        return TOOL_USAGE;
+    p->ats = o->at.count;
+    for (size_t i = 0; i < o->dt.count; i++)
+        if (!(p->given_dt[i] > 0))
+            return tool_refuse("--dt takes numbers above 0, not %s",
+                               o->dt.item[i]);
+    return o->t_end ? scene_number(p->scene, o, o->t_end, &p->t_end) : TOOL_OK;
+}
+
+/* Of a setting, for the title. */
+static char *change_of(const char *setting) {
+    enum { MOST = 32 };
+    const char *text = setting + 1;
+    if (*setting == '+' || *setting == '-')
+        return text_print("%s %s", *setting == '+' ? "with" : "without", text);
+    if (strlen(text) <= MOST)
+        return text_print("%s", text);
+    return text_print("%.*s changed", (int)strcspn(text, " =["), text);
+}
+
+/* What options change follows the scene's own title, which may tell of what was
+   there before. */
+static char *title_of(const plan *p, const options *o) {
+    const char *own = nevh_scene_title(p->scene);
+    char *title = text_print("%s", *own ? own : p->name);
+    for (size_t i = 0; i < o->settings.count; i++) {
+        char *change = change_of(o->settings.item[i]);
+        char *longer = text_print("%s%s%s", title, i ? ", " : ", but ", change);
+        free(title);
+        free(change);
+        title = longer;
+    }
+    return title;
+}
+
 int plan_make(plan *p, const options *o) {
     *p = (plan){.name = o->operands.count > 1 ? o->operands.item[1] : "",
                 .shelf = shelf_new()};
     if (scene_open(&p->scene, o))
         return TOOL_USAGE;
     take_settings(p, o);
+    if (take_times(p, o))
+        return TOOL_USAGE;
+    p->title = title_of(p, o);
     if (start(p, o))
         return TOOL_USAGE;
     take_lists(p, o);
     if (check_integrators(p) || check_gradients(p))
         return TOOL_USAGE;
-    return check_times(p);
+    return check_times(p) ? TOOL_USAGE : check_at(p, o);
 }
 
 void plan_free(plan *p) {
     list_free(&p->integrators);
     list_free(&p->gradients);
+    free(p->title);
+    free(p->given_dt);
+    free(p->at);
     free(p->q);
     free(p->p);
     nevh_reference_free(p->reference);
@@ -309,10 +372,9 @@ static void note_effects(const plan *p, list *notes) {
 }
 
 void plan_notes(const plan *p, list *notes) {
-    const char *title = nevh_scene_title(p->scene);
     const char *unit = nevh_scene_label(p->scene, "t");
     char *structure = plan_structure(p);
-    list_add(notes, *title ? title : p->name);
+    list_add(notes, p->title);
     note_effects(p, notes);
     list_add(notes, structure);
     list_print(notes,

@@ -13,11 +13,14 @@ typedef struct {
     const nevh_system *system;
     const nevh_scene_run *run;
     const char *name;
+    char *title; /* of the scene, and what options changed */
     size_t n;
     double *q, *p; /* at t_start */
     double t_end;
     const double *dt, *tolerance;
     size_t dts, tolerances;
+    double *given_dt, *at; /* by options; at: sorted */
+    size_t ats;
     list integrators, gradients;
     size_t added; /* of the integrators, from there on by --transform; or 0 */
     double gradient_step;

@@ -328,7 +328,7 @@ int recommend(const options *o) {
     int status = plan_make(&p, o);
     if (!status)
         status = plan_search(&p, o);
-    if (!status && !o->dts)
+    if (!status && !o->dt.count)
         whole = plan_shorten(&p, SEARCH_BUDGET);
     if (!status && o->state_error > 0)
         status = check_reference(&p, o->state_error);

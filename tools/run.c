@@ -44,22 +44,15 @@ static void mind_signals(void) {
 
 /* What to run. */
 
-static int take_times(job *j) {
-    const options *o = j->options;
+static void take_times(job *j) {
     const plan *p = &j->plan;
-    numbers_sort(o->at, o->ats);
-    for (size_t i = 0; i < o->ats; i++) {
-        double t = o->at[i];
-        if (t < p->run->t_start || t > p->t_end)
-            return tool_refuse("--at %g: the run is from t = %g to %g", t,
-                               p->run->t_start, p->t_end);
-        if (j->rows.count == 0 || t != o->at[j->rows.count - 1])
-            o->at[j->rows.count++] = t;
-    }
+    numbers_sort(p->at, p->ats);
+    for (size_t i = 0; i < p->ats; i++)
+        if (j->rows.count == 0 || p->at[i] != p->at[j->rows.count - 1])
+            p->at[j->rows.count++] = p->at[i];
     j->rows.by = BY_TIMES;
-    j->rows.time = o->at;
+    j->rows.time = p->at;
     j->rows_text = text_print("%s", "at the times asked for");
-    return TOOL_OK;
 }
 
 static void take_samples(job *j, size_t count, const char *why) {
@@ -78,14 +71,14 @@ static void take_every(job *j, size_t every) {
 static int choose_rows(job *j) {
     const options *o = j->options;
     double span = j->plan.t_end - j->plan.run->t_start;
-    if ((o->every > 0) + (o->samples > 0) + (o->ats > 0) > 1)
+    if ((o->every > 0) + (o->samples > 0) + (o->at.count > 0) > 1)
         return tool_refuse("--every, --samples and --at: only one of them");
     if (o->samples == 1)
         return tool_refuse("--samples takes at least 2: the first row and the "
                            "last");
-    if (o->ats)
-        return take_times(j);
-    if (o->every)
+    if (o->at.count)
+        take_times(j);
+    else if (o->every)
         take_every(j, o->every);
     else if (o->samples)
         take_samples(j, o->samples, "");

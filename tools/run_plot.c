@@ -36,10 +36,9 @@ static void follow(watched_run *o, nevh_observer observers[], size_t count) {
 
 static char *title_of(const watched_run *o, const char *more) {
     const plan *p = o->plan;
-    const char *title = nevh_scene_title(p->scene);
     const char *unit = nevh_scene_label(p->scene, "t");
-    return text_print("%s (%s, dt = %.4g%s%s%s)", *title ? title : p->name,
-                      o->integrator, p->dt[0], *unit ? " " : "", unit, more);
+    return text_print("%s (%s, dt = %.4g%s%s%s)", p->title, o->integrator,
+                      p->dt[0], *unit ? " " : "", unit, more);
 }
 
 /* Phase portraits: rows of coordinates and momenta. */

@@ -141,18 +141,35 @@ static char *find(const char *name) {
     return file;
 }
 
+static bool is_text(const char *given, const char *text, size_t length) {
+    return given && strlen(given) == length &&
+           strncmp(given, text, length) == 0;
+}
+
+static bool is_one_of(const list *l, const char *text, size_t length) {
+    for (size_t i = 0; i < l->count; i++)
+        if (is_text(l->item[i], text, length))
+            return true;
+    return false;
+}
+
 /* The option that was given that text. */
 static const char *option_of(const options *o, const char *text,
                              size_t length) {
-    if (o->transform && strlen(o->transform) == length &&
-        strncmp(o->transform, text, length) == 0)
+    if (is_text(o->transform, text, length))
         return "--transform";
     for (size_t i = 0; i < o->settings.count; i++) {
         const char *one = o->settings.item[i];
-        if (strlen(one + 1) == length && strncmp(one + 1, text, length) == 0)
-            return *one == '+' ? "--with" : *one == '-' ? "--without" : "--set";
+        if (is_text(one + 1, text, length))
+            return *one == '+'   ? "--with"
+                   : *one == '-' ? "--without"
+                   : *one == '@' ? "--start"
+                                 : "--set";
     }
-    return "--set";
+    return is_text(o->t_end, text, length)   ? "--t-end"
+           : is_one_of(&o->at, text, length) ? "--at"
+           : is_one_of(&o->dt, text, length) ? "--dt"
+                                             : "--set";
 }
 
 /* The scene's own messages have file, line and column; the line and the caret
@@ -168,13 +185,47 @@ int scene_report(const nevh_scene *scene, const options *o) {
                        what + strlen(": error: "));
 }
 
+int scene_number(nevh_scene *scene, const options *o, const char *formula,
+                 double *number) {
+    return nevh_scene_number(scene, formula, number) ? scene_report(scene, o)
+                                                     : TOOL_OK;
+}
+
+/* Whether an assignment is to a coordinate, a momentum or a velocity. */
+static bool is_start(const nevh_scene *scene, const char *assignment) {
+    assignment += strspn(assignment, " ");
+    if (strncmp(assignment, "p_", 2) == 0 || strncmp(assignment, "v_", 2) == 0)
+        assignment += 2;
+    size_t length = strcspn(assignment, " =[");
+    for (size_t k = 0; k < nevh_scene_dof(scene); k++) {
+        const char *name = nevh_scene_coordinate(scene, k);
+        if (strcspn(name, "[") == length &&
+            strncmp(name, assignment, length) == 0)
+            return true;
+    }
+    return false;
+}
+
+static int assign(nevh_scene *scene, const options *o, const char *setting) {
+    const char *text = setting + 1;
+    if (*setting == '@')
+        return nevh_scene_set_start(scene, text) ? scene_report(scene, o)
+                                                 : TOOL_OK;
+    if (*setting != '=' || !nevh_scene_set(scene, text))
+        return TOOL_OK;
+    if (is_start(scene, text))
+        return tool_refuse("--set changes parameters; where the motion starts "
+                           "is changed by --start %s",
+                           text);
+    return scene_report(scene, o);
+}
+
 static int read(nevh_scene *scene, const options *o) {
     if (nevh_scene_status(scene))
         return scene_report(scene, o);
     for (size_t i = 0; i < o->settings.count; i++)
-        if (o->settings.item[i][0] == '=' &&
-            nevh_scene_set(scene, o->settings.item[i] + 1))
-            return scene_report(scene, o);
+        if (assign(scene, o, o->settings.item[i]))
+            return TOOL_USAGE;
     if (o->transform && nevh_scene_set_transform(scene, o->transform))
         return scene_report(scene, o);
     return nevh_scene_system(scene) ? TOOL_OK : scene_report(scene, o);
@@ -195,7 +246,7 @@ static nevh_scene *read_switched(const char *file, const options *o) {
     const char **effects = tool_allocate(o->settings.count, sizeof *effects);
     nevh_scene_options how = {.allow_code = o->allow_code, .effects = effects};
     for (size_t i = 0; i < o->settings.count; i++)
-        if (o->settings.item[i][0] != '=')
+        if (strchr("+-", o->settings.item[i][0]))
             effects[how.n_effects++] = o->settings.item[i];
     nevh_scene *scene = nevh_scene_read_with(file, &how);
     free(effects);

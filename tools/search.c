@@ -37,7 +37,7 @@ search search_begin(const plan *p, const options *o, double budget) {
                 .landing = grid_dt(grid_dt_place(8 * search_longest_dt(p)))};
     s.plan.hurried = true;
     s.plan.patience = one_row * budget;
-    if (o->dts) {
+    if (o->dt.count) {
         s.dt = ordered(p->dt, s.dts = p->dts);
         s.tolerance = ordered(p->tolerance, s.tolerances = p->tolerances);
         s.landing = search_longest_dt(p);

@@ -53,10 +53,9 @@ static size_t new_series(plot *to, const char *name, size_t points) {
 
 static void add_panel(plot **to, const plan *p, const nevh_scene_section *is,
                       const char *across, const char *up) {
-    const char *title = nevh_scene_title(p->scene);
     char *x = plot_label(p, across, across), *y = plot_label(p, up, up);
     if (!*to) {
-        *to = plot_new(*title ? title : p->name, x, y);
+        *to = plot_new(p->title, x, y);
         plot_heading(*to, is->name);
     } else
         plot_panel(*to, is->name, x, y);

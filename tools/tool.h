@@ -110,9 +110,10 @@ typedef enum { PLOT_PHASE, PLOT_ENERGY, PLOT_CONFIGURATION } plot_kind;
 typedef struct {
     list operands, settings, integrators, gradients; /* settings: see below */
     list sections;
-    double *dt, *at, *tolerance;
-    size_t dts, ats, tolerances;
-    double t_end;                                    /* NAN: the scene's */
+    list dt, at; /* formulas of the scene's parameters */
+    double *tolerance;
+    size_t tolerances;
+    const char *t_end; /* a formula; NULL: the scene's */
     double gradient_step, energy_error, state_error; /* 0: not given */
     size_t every, samples, repeats;                  /* 0: not given */
     table_format format;
@@ -124,13 +125,13 @@ typedef struct {
     bool help, version;
     unsigned long long used; /* a bit an option */
 } options;
-/* A setting is '+', '-' or '=' and an effect to switch on or off, or an
-   assignment, in the order given.
+/* A setting is '+' or '-' and an effect to switch on or off, or '=' or '@' and an
+   assignment to a parameter or of a start, in the order given.
    returns  TOOL_OK or TOOL_USAGE, the message being printed */
 int options_read(options *, int argc, char **argv);
 /* That all options given are for this command. */
 int options_check(const options *, unsigned which);
-/* What --set gave, a line each. */
+/* What --set and --start gave, a line each. */
 void settings_notes(const options *, list *notes);
 void options_free(options *);
 void options_help(FILE *, unsigned which);
@@ -151,6 +152,9 @@ int output_close(output *, int status);
 int output_page(const options *, const page *, int status);
 
 /* scenes.c: scenes by file or name, changed as the options say. */
+/* The value of what an option was given: a formula of parameters.
+   returns  TOOL_OK, or TOOL_USAGE with the message printed */
+int scene_number(nevh_scene *, const options *, const char *formula, double *);
 /* Its message on stderr; TOOL_USAGE. */
 int scene_report(const nevh_scene *, const options *);
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed and *scene NULL */

@@ -82,6 +82,18 @@ NEVH_API const char *nevh_scene_message(const nevh_scene *);
             apart from texts of lines, is made anew */
 NEVH_API int nevh_scene_set(nevh_scene *, const char *assignment);
 NEVH_API int nevh_scene_enable(nevh_scene *, const char *effect, bool on);
+/* Where the motion starts, instead of what [coordinates] says: "x=FORMULA",
+   "p_x=FORMULA" or "v_x=FORMULA", where formulas may use parameters; of an array
+   "x[2]=...", "x[1..3]=...", "x[i = 1..3]=...", or "x=..." for all, as a list or
+   one value for all.  A momentum replaces an initial velocity, and the reverse.
+   nevh_scene_write writes the scene without it.
+   returns  as nevh_scene_set */
+NEVH_API int nevh_scene_set_start(nevh_scene *, const char *assignment);
+/* The value of a formula of parameters, as [run] takes them for numbers.
+   returns  NEVH_OK; NEVH_EINVAL or NEVH_EDOM with a message (which calls the
+            line `assignment`); NEVH_ENOMEM */
+NEVH_API int nevh_scene_number(nevh_scene *, const char *formula,
+                               double *number);
 
 /* The scene as text: its own lines with their comments, in which parameters
    that were set and effects that were switched have what they have now.  Read

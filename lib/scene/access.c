@@ -71,6 +71,8 @@ uint64_t nevh_scene_digest(const nevh_scene *s) {
                                   &s->statements[i]);
     for (size_t i = 0; i < s->n_assignments; i++)
         digest = digest_statement(digest, s->assignments[i]);
+    for (size_t i = 0; i < s->n_starts; i++)
+        digest = digest_statement(digest_text(digest, "start"), s->starts[i]);
     for (size_t i = 0; i < s->n_effects; i++)
         digest = digest_text(digest, s->effects[i].on ? "on" : "off");
     if (s->transform)

@@ -177,9 +177,81 @@ static bool take_motion(nevh_scene *s, nevh__model *m,
                              (velocity ? m->v : m->p) + first);
 }
 
+static const char *with_prefix(nevh_scene *s, nevh__model *m,
+                               const char *prefix, const char *name) {
+    char *text = nevh__pool_take(&m->pool, strlen(name) + 3, 1);
+    if (!text)
+        nevh__scene_no_memory(s);
+    return text ? strcat(strcpy(text, prefix), name) : name;
+}
+
+static bool fail_start(nevh_scene *s, nevh__model *m,
+                       const nevh__statement *one) {
+    static const char *const prefix[] = {"", "p_", "v_"};
+    const char **known =
+        nevh__pool_take(&m->pool, 3 * m->n_coordinates, sizeof *known);
+    size_t count = 0;
+    if (!known)
+        return nevh__scene_no_memory(s);
+    for (size_t i = 0; i < m->n_coordinates; i++)
+        for (int k = 0; k < 3; k++)
+            known[count++] = with_prefix(
+                s, m, prefix[k], m->coordinates[i].statement->head.name);
+    return nevh__scene_fail_word(
+        s, &one->key, "coordinate, momentum (p_NAME) or velocity (v_NAME)",
+        one->head.name, known, count);
+}
+
+/* Where a name of an array is given without an index, all of it is meant. */
+static bool start_range(nevh_scene *s, const nevh__model *m,
+                        const nevh__statement *one, size_t *from, size_t *to) {
+    size_t count, first;
+    nevh__names_find(m->names, one->head.name, &count, &first);
+    if (one->head.from || !count)
+        return nevh__head_range(s, m, one, from, to);
+    *from = first;
+    *to = first + count;
+    return true;
+}
+
+/* A start from outside: of coordinates, momenta or velocities. */
+static bool take_start(nevh_scene *s, nevh__model *m,
+                       const nevh__statement *one) {
+    size_t from, to, first;
+    nevh__meaning is = nevh__names_find(m->names, one->head.name, NULL, &first);
+    if (is != NEVH__COORDINATE && is != NEVH__MOMENTUM && is != NEVH__VELOCITY)
+        return fail_start(s, m, one);
+    if (!start_range(s, m, one, &from, &to))
+        return false;
+    double *all = is == NEVH__COORDINATE ? m->q
+                  : is == NEVH__MOMENTUM ? m->p
+                                         : m->v;
+    /* The formula of an index is of x[first], x[first + 1], ... */
+    size_t skipped = one->head.index ? from - first : 0;
+    double *values =
+        nevh__pool_take(&m->pool, skipped + to - from, sizeof *values);
+    if (!values)
+        return nevh__scene_no_memory(s);
+    if (!nevh__head_values(s, m, one, &one->value, skipped + to - from, values))
+        return false;
+    memcpy(all + from, values + skipped, (to - from) * sizeof *values);
+    for (size_t k = from; is != NEVH__COORDINATE && k < to; k++) {
+        m->moving[k] = one;
+        m->by_velocity[k] = is == NEVH__VELOCITY;
+        if (is == NEVH__VELOCITY)
+            m->p[k] = 0; /* until it is found */
+    }
+    return true;
+}
+
 bool nevh__model_values(nevh_scene *s, nevh__model *m) {
     for (size_t i = 0; i < m->n_coordinates; i++)
         if (!take_coordinate(s, m, &m->coordinates[i]))
             return false;
-    return nevh__scene_each(s, m, NEVH__COORDINATES, take_motion);
+    if (!nevh__scene_each(s, m, NEVH__COORDINATES, take_motion))
+        return false;
+    for (size_t i = 0; i < s->n_starts; i++)
+        if (!take_start(s, m, s->starts[i]))
+            return false;
+    return true;
 }

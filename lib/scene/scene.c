@@ -125,8 +125,11 @@ void nevh_scene_free(nevh_scene *s) {
         nevh__head_free(&s->statements[i].head);
     for (size_t i = 0; i < s->n_assignments; i++)
         nevh__head_free(&s->assignments[i]->head);
+    for (size_t i = 0; i < s->n_starts; i++)
+        nevh__head_free(&s->starts[i]->head);
     nevh__pool_free(&s->pool);
     free(s->assignments);
+    free(s->starts);
     free(s);
 }
 
@@ -147,16 +150,17 @@ bool nevh__scene_begin(nevh_scene *s) {
     return true;
 }
 
-/* NAME = FORMULA as a statement of its own; NULL on failure. */
-static nevh__statement *new_assignment(nevh_scene *s, const char *text) {
+/* NAME = FORMULA as a statement of its own, for which there is room in a list
+   then; NULL on failure. */
+static nevh__statement *new_assignment(nevh_scene *s, const char *text,
+                                       nevh__statement ***list, size_t count) {
     size_t bytes = strlen(text);
     nevh__statement *statement =
         nevh__pool_take(&s->pool, 1, sizeof *statement);
     nevh__line *line = nevh__pool_take(&s->pool, 1, sizeof *line);
     char *copy = nevh__pool_take(&s->pool, bytes + 1, 1);
-    nevh__statement **all =
-        nevh__grow(s->assignments, s->n_assignments + 1, sizeof *all);
-    s->assignments = all ? all : s->assignments;
+    nevh__statement **all = nevh__grow(*list, count + 1, sizeof *all);
+    *list = all ? all : *list;
     if (!statement || !line || !copy || !all) {
         nevh__scene_no_memory(s);
         return NULL;
@@ -188,22 +192,41 @@ static bool check_assignment(nevh_scene *s, const nevh__statement *statement) {
                                  statement->head.name, known, count);
 }
 
-int nevh_scene_set(nevh_scene *s, const char *assignment) {
-    if (!nevh__scene_begin(s))
-        return s->status;
-    nevh__statement *statement = new_assignment(s, assignment);
-    if (!statement)
-        return s->status;
-    s->assignments[s->n_assignments++] = statement;
-    nevh__model *model = check_assignment(s, statement) ? new_model(s) : NULL;
+/* Takes the model anew, with what was put last on a list, or without it. */
+static int keep_if_fine(nevh_scene *s, nevh__statement *statement, bool fine,
+                        size_t *count) {
+    nevh__model *model = fine ? new_model(s) : NULL;
     if (!model) {
-        s->n_assignments--;
+        --*count;
         nevh__head_free(&statement->head);
         return s->status;
     }
     nevh__model_free(s->model);
     s->model = model;
     return NEVH_OK;
+}
+
+int nevh_scene_set(nevh_scene *s, const char *assignment) {
+    if (!nevh__scene_begin(s))
+        return s->status;
+    nevh__statement *statement =
+        new_assignment(s, assignment, &s->assignments, s->n_assignments);
+    if (!statement)
+        return s->status;
+    s->assignments[s->n_assignments++] = statement;
+    return keep_if_fine(s, statement, check_assignment(s, statement),
+                        &s->n_assignments);
+}
+
+int nevh_scene_set_start(nevh_scene *s, const char *assignment) {
+    if (!nevh__scene_begin(s))
+        return s->status;
+    nevh__statement *statement =
+        new_assignment(s, assignment, &s->starts, s->n_starts);
+    if (!statement)
+        return s->status;
+    s->starts[s->n_starts++] = statement;
+    return keep_if_fine(s, statement, true, &s->n_starts);
 }
 
 static nevh__piece *new_piece(nevh_scene *s, const char *text) {
@@ -217,6 +240,14 @@ static nevh__piece *new_piece(nevh_scene *s, const char *text) {
     }
     *line = (nevh__line){0, strcpy(copy, text), bytes};
     return nevh__piece_take(s, &s->pool, line, 0, bytes, piece) ? piece : NULL;
+}
+
+int nevh_scene_number(nevh_scene *s, const char *formula, double *number) {
+    if (!nevh__scene_begin(s))
+        return s->status;
+    nevh__piece *piece = new_piece(s, formula);
+    return piece && nevh__piece_number(s, s->model, piece, number) ? NEVH_OK
+                                                                   : s->status;
 }
 
 int nevh_scene_set_transform(nevh_scene *s, const char *formula) {

@@ -134,6 +134,8 @@ struct nevh_scene {
     bool switched;                 /* from outside */
     nevh__statement **assignments; /* from outside, the newest last */
     size_t n_assignments;
+    nevh__statement **starts; /* from outside, the newest last */
+    size_t n_starts;
     const nevh__piece *transform; /* from outside; NULL: the scene's */
     nevh__model *model;
     int status;
