@@ -20,18 +20,17 @@ work=${TMPDIR:-/tmp}/recommend.$$
 trap 'rm -f $work $work.*' EXIT
 status=0
 
-grid() { # FROM TO: steps, ten a decade, at least eight a run
+grid() { # FROM TO: steps, eighty a decade, at least eight a run
     awk -v from="$1" -v to="$2" -v end="$3" 'BEGIN {
-        split("1 1.25 1.6 2 2.5 3.2 4 5 6.4 8", digit, " ")
-        for (d = 2; d >= -7; d--) for (i = 10; i > 0; i--) {
-            x = digit[i] * 10 ^ d
+        for (i = -240; i <= 560; i++) {
+            x = 10 ^ (-i / 80)
             if (x <= from * 1.001 && x >= to * 0.999 && 8 * x <= end * 1.001)
                 printf "%s%.6g", n++ ? "," : "", x } }'
 }
 tolerances() { # TO
-    awk -v to="$1" 'BEGIN { split("1 0.5 0.2", digit, " ")
-        for (d = -1; d >= -13; d--) for (i = 1; i <= 3; i++) {
-            x = digit[i] * 10 ^ d
+    awk -v to="$1" 'BEGIN {
+        for (i = 20; i <= 260; i++) {
+            x = 10 ^ (-i / 20)
             if (x >= to * 0.999) printf "%s%.6g", n++ ? "," : "", x } }'
 }
 rows() { # SCENE T_END, and options

@@ -58,7 +58,7 @@ static void refine_all(costs *c) {
             ladder *l = &c->ladder[i];
             if (c->all || cost_is_yardstick(l) ||
                 is_promising(c, l, cost_target[k]))
-                ladder_refine(&c->search, l, cost_target[k]);
+                ladder_refine(&c->search, l, cost_target[k], GRID_COARSE);
         }
 }
 
@@ -88,6 +88,15 @@ static void time_cells(costs *c) {
         }
 }
 
+/* The steps of what is cheapest, to the last place. */
+static void refine_cheapest(costs *c) {
+    for (size_t k = 0; k < COST_TARGETS; k++) {
+        ladder *l = (ladder *)costs_cheapest(c, cost_target[k]);
+        if (l && !cost_is_beyond(c, k))
+            ladder_refine(&c->search, l, cost_target[k], 1);
+    }
+}
+
 static void time_others(costs *c, bool shown) {
     for (size_t i = 0; i < c->count; i++)
         for (size_t k = 0; k < c->ladder[i].count; k++)
@@ -101,6 +110,8 @@ static void run_ladders(costs *c, const options *o) {
     bool for_people = o->format == FORMAT_TABLE;
     descend_all(c);
     refine_all(c);
+    time_cells(c);
+    refine_cheapest(c);
     time_cells(c);
     for (size_t i = 0; i < c->count && !(for_people && !c->all); i++)
         ladder_fill(&c->search, &c->ladder[i], RUNGS);

@@ -56,7 +56,7 @@ int state_errors_mean_something(plan *p) {
 static double share_below(double x) {
     int k = 0;
     while (grid_tolerance(k) > x)
-        k++;
+        k += GRID_COARSE;
     return grid_tolerance(k);
 }
 

@@ -7,27 +7,32 @@ static int floor_of(int k, int count) {
     return k >= 0 ? k / count : -((-k + count - 1) / count);
 }
 
-/* Short decimals, so that a dt can be typed again. */
-static double shortened(const double digits[], int count, int k) {
-    int decade = floor_of(k, count);
-    double digit = digits[k - decade * count];
-    return decade < 0 ? digit * pow(10, -decade) : digit / pow(10, decade);
+/* Short decimals, so that a dt can be typed again: whole numbers of thousandths,
+   and one division or product. */
+static double shortened(const double thousandths[], int count, int k) {
+    int decade = floor_of(k, count), power = -decade - 3;
+    double digit = thousandths[k - decade * count];
+    return power < 0 ? digit / pow(10, -power) : digit * pow(10, power);
 }
 
 double grid_dt(int k) {
-    /* Renard's, but for 3.2 and 6.4, so that most are doubled in three. */
-    static const double digits[] = {1,    0.8,  0.64, 0.5,  0.4,
-                                    0.32, 0.25, 0.2,  0.16, 0.125};
-    return shortened(digits, 10, k);
+    /* Each fourth is Renard's, but for 3.2 and 6.4, so that most are doubled
+       in GRID_STRIDE. */
+    static const double digits[] = {
+        1000, 950, 900, 850, 800, 760, 720, 680, 640, 600, 560, 530, 500, 475,
+        450,  420, 400, 380, 360, 340, 320, 300, 280, 265, 250, 240, 225, 210,
+        200,  190, 180, 170, 160, 150, 140, 132, 125, 118, 112, 106};
+    return shortened(digits, 40, k);
 }
 
 double grid_tolerance(int k) {
-    static const double digits[] = {1, 0.5, 0.2};
-    return shortened(digits, 3, k);
+    static const double digits[] = {1000, 850, 700, 600, 500, 400,
+                                    320,  250, 200, 170, 140, 120};
+    return shortened(digits, 12, k);
 }
 
 int grid_dt_place(double dt) {
-    int k = (int)floor(-10 * log10(dt)) - 2;
+    int k = (int)floor(-40 * log10(dt)) - 3;
     while (grid_dt(k) > dt * (1 + 1e-9))
         k++;
     return k;

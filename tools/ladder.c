@@ -186,7 +186,7 @@ static void find_out_whether_kept(search *s, ladder *l) {
 }
 
 void ladder_begin(search *s, ladder *l) {
-    enum { FIRST_TOLERANCE = 6 };
+    enum { FIRST_TOLERANCE = 2 * GRID_STRIDE };
     bool adapts = nevh_integrator_adaptive(l->scheme);
     if (s->dt) {
         run_given(s, l);
@@ -361,31 +361,34 @@ static int place_between(const ladder *l, size_t i, double target,
 
 /* Where the coarsest rung keeps the target, those up to the next stride, which
    was unusable or too long for the run. */
-static void refine_top(search *s, ladder *l, double target) {
-    for (int i = 1; i < GRID_STRIDE && !search_is_over(s, 1); i++) {
-        if (ladder_error(&l->rung[0], s->by_state) > target ||
-            !has_steps(s, l->k[0] - 1))
-            return;
-        ladder_run(s, l, l->k[0] - 1);
-        if (!is_usable(l, 0, s->by_state)) {
+static void refine_top(search *s, ladder *l, double target, int gap) {
+    int beyond = l->k[0] - GRID_STRIDE;
+    while (ladder_error(&l->rung[0], s->by_state) <= target &&
+           l->k[0] - beyond > gap && !search_is_over(s, 1)) {
+        int middle = beyond + (l->k[0] - beyond) / 2;
+        bool runs = has_steps(s, middle);
+        if (runs)
+            ladder_run(s, l, middle);
+        if (!runs || !is_usable(l, 0, s->by_state))
+            beyond = middle;
+        if (runs && !is_usable(l, 0, s->by_state))
             forget(l, 0);
-            return;
-        }
     }
 }
 
-void ladder_refine(search *s, ladder *l, double target) {
-    if (l->end < LADDER_GIVEN && l->count &&
-        !nevh_integrator_adaptive(l->scheme) && !l->topped) {
-        refine_top(s, l, target);
-        l->topped = true;
-    }
-    for (;;) {
+void ladder_refine(search *s, ladder *l, double target, int gap) {
+    enum { SECANTS = 2 };
+    if (l->end == LADDER_GIVEN || l->end == LADDER_REFUSED || !l->count)
+        return;
+    if (!nevh_integrator_adaptive(l->scheme) && (!l->topped || gap < l->topped))
+        refine_top(s, l, target, gap), l->topped = gap;
+    for (int runs = 0; !search_is_over(s, 1); runs++) {
         size_t i = first_below(l, target, s->by_state);
-        if (l->end == LADDER_GIVEN || i == 0 || i == l->count ||
-            l->k[i] - l->k[i - 1] < 2 || search_is_over(s, 1))
+        if (i == 0 || i == l->count || l->k[i] - l->k[i - 1] <= gap)
             return;
-        ladder_run(s, l, place_between(l, i, target, s->by_state));
+        ladder_run(s, l,
+                   runs < SECANTS ? place_between(l, i, target, s->by_state)
+                                  : l->k[i] - (l->k[i] - l->k[i - 1]) / 2);
     }
 }
 
@@ -402,7 +405,9 @@ void ladder_fill(search *s, ladder *l, size_t count) {
            !search_is_over(s, 1)) {
         size_t i = widest_gap(l);
         int gap = i ? l->k[i] - l->k[i - 1] : 0;
-        ladder_run(s, l, gap > 1 ? l->k[i] - gap / 2 : l->k[l->count - 1] + 1);
+        ladder_run(s, l,
+                   gap > GRID_COARSE ? l->k[i] - gap / 2
+                                     : l->k[l->count - 1] + GRID_COARSE);
     }
 }
 

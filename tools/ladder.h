@@ -7,8 +7,11 @@
 
 /* grid.c: step sizes to choose from, and what errors over them tell.  No run is
    made here. */
-enum { GRID_STRIDE = 3 }; /* a factor of about 2 in dt, of 10 in tolerance */
-/* Finer with k: ten a decade, 1 at k = 0; tolerances three a decade. */
+enum {
+    GRID_STRIDE = 12, /* a factor of about 2 in dt, of 10 in tolerance */
+    GRID_COARSE = 4   /* of 1.25 in dt, of 2 in tolerance */
+};
+/* Finer with k: forty a decade, 1 at k = 0; tolerances twelve a decade. */
 double grid_dt(int k);
 double grid_tolerance(int k);
 /* The coarsest k whose step is not longer than dt. */
@@ -38,8 +41,8 @@ typedef struct {
     row *rung; /* coarse to fine */
     int *k;    /* their places on the grid */
     size_t count, room;
-    bool topped; /* steps coarser than the first stride were tried */
-    bool keeps;  /* the energy, also at steps that are far too long */
+    int topped; /* gap to which steps beyond the coarsest were tried; 0 */
+    bool keeps; /* the energy, also at steps that are far too long */
     ladder_end end;
 } ladder;
 typedef struct {
@@ -82,9 +85,9 @@ bool ladder_is_behind(const search *, const ladder *, const ladder others[],
                       size_t count);
 /* Measures the time of a rung again, as often as asked for. */
 void ladder_time(const search *, ladder *, size_t rung);
-/* Rungs between those there are, so that the coarsest on the grid that keeps
-   the target is one of them. */
-void ladder_refine(search *, ladder *, double target);
+/* Rungs between those there are, until the coarsest that keeps the target is no
+   more than `gap` places finer than one that does not. */
+void ladder_refine(search *, ladder *, double target, int gap);
 /* Rungs in the widest gaps until there are so many. */
 void ladder_fill(search *, ladder *, size_t count);
 size_t ladder_run(search *, ladder *, int k);    /* index of the rung */

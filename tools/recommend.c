@@ -57,7 +57,7 @@ static void refine(advice *a) {
             k++;
         if (keeps(a, l) &&
             (k == 0 || l->rung[k - 1].work < nearly * least_work(a)))
-            ladder_refine(&a->search, l, a->target);
+            ladder_refine(&a->search, l, a->target, GRID_COARSE);
     }
 }
 
@@ -127,7 +127,7 @@ static void add_ladder(advice *a, ladder l) {
 static ladder with_gradient(advice *a, const ladder *l, int k,
                             const char *gradient) {
     ladder other = ladder_like(l, gradient);
-    for (int finer = 0; finer <= GRID_STRIDE; finer++) {
+    for (int finer = 0; finer <= GRID_STRIDE; finer += GRID_COARSE) {
         size_t i = ladder_run(&a->search, &other, k + finer);
         if (ladder_error(&other.rung[i], a->search.by_state) <= a->target)
             break;
@@ -172,6 +172,16 @@ static void vary_gradients(advice *a) {
                     a, with_gradient(a, &model[i], k[i], a->gradients.item[g]));
 }
 
+/* The steps of those that may win, to the last place. */
+static void polish(advice *a) {
+    enum { FEW = 8 };
+    static const double factor = 1.4;
+    ladder *found[FEW];
+    size_t count = list_best(a, factor, found, FEW);
+    for (size_t i = 0; i < count; i++)
+        ladder_refine(&a->search, found[i], a->target, 1);
+}
+
 /* Medians for those that may win. */
 static void time_best(advice *a) {
     enum { FEW = 24, USUAL = 9 };
@@ -198,23 +208,9 @@ static void take_gradients(advice *a, const options *o) {
             list_add(&a->gradients, names[i]);
 }
 
-static void search_all(advice *a) {
-    const plan *p = &a->search.plan;
-    a->ladder = tool_allocate(p->integrators.count, sizeof *a->ladder);
-    for (size_t i = 0; i < p->integrators.count; i++)
-        a->ladder[a->count++] =
-            ladder_new(p->integrators.item[i], a->gradients.item[0]);
-    descend(a);
-    refine(a);
-    time_once(a);
-    time_best(a);
-    vary_gradients(a);
-    time_once(a);
-    time_best(a);
-}
-
 static void choose(advice *a) {
     bool *taken = tool_allocate(a->count, sizeof *taken);
+    a->best = a->second = a->alone = a->steady = NULL;
     for (ladder *l; (l = next_best(a, taken));) {
         const char *name = l->integrator;
         taken[l - a->ladder] = true;
@@ -230,18 +226,60 @@ static void choose(advice *a) {
     free(taken);
 }
 
+/* The other answers, where they are too dear to win. */
+static void polish_others(advice *a) {
+    ladder *const others[] = {a->second, a->alone, a->steady};
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        if (others[i])
+            ladder_refine(&a->search, others[i], a->target, 1);
+}
+
+static void search_all(advice *a) {
+    const plan *p = &a->search.plan;
+    a->ladder = tool_allocate(p->integrators.count, sizeof *a->ladder);
+    for (size_t i = 0; i < p->integrators.count; i++)
+        a->ladder[a->count++] =
+            ladder_new(p->integrators.item[i], a->gradients.item[0]);
+    descend(a);
+    refine(a);
+    time_once(a);
+    time_best(a);
+    vary_gradients(a);
+    time_once(a);
+    polish(a);
+    time_once(a);
+    time_best(a);
+    choose(a);
+    polish_others(a);
+    time_once(a);
+    choose(a);
+}
+
+/* How many places finer a rung must be, as its order tells, at least one. */
+static int places_short(const advice *a, const row *r) {
+    double over = ladder_error(r, a->search.by_state) / a->target;
+    double places = nevh_integrator_adaptive(r->scheme)
+                        ? GRID_STRIDE * log10(over)
+                        : 40 * log10(over) / r->order;
+    return isfinite(places) ? 1 + (int)fmin(places, 2 * GRID_STRIDE)
+                            : GRID_STRIDE;
+}
+
 /* The pilot's choice on the whole run, with shorter steps where that is not
    enough. */
 static ladder verified(advice *a, const ladder *l) {
-    enum { FINER = 9 };
+    enum { TRIES = 6 };
     ladder full = ladder_like(l, l->gradient);
     int k = l->k[keeps(a, l) - l->rung];
-    for (int finer = 0; finer <= FINER; finer++) {
-        size_t i = ladder_run(&a->search, &full, k + finer);
-        if (ladder_error(&full.rung[i], a->search.by_state) <= a->target ||
-            full.rung[i].late)
+    full.topped = 1; /* longer steps failed sooner */
+    for (int i = 0; i < TRIES; i++) {
+        size_t rung = ladder_run(&a->search, &full, k);
+        const row *r = &full.rung[rung];
+        if (ladder_error(r, a->search.by_state) <= a->target || r->late)
             break;
+        k += places_short(a, r) + i;
     }
+    ladder_refine(&a->search, &full, a->target, 1);
     full.end = LADDER_LIMIT;
     return full;
 }
@@ -265,7 +303,6 @@ static void verify(advice *a, plan *p) {
         ladder_free(&a->ladder[i]);
     free(a->ladder);
     a->ladder = full, a->count = count;
-    a->best = a->second = a->alone = a->steady = NULL;
     time_once(a);
     time_best(a);
     choose(a);
@@ -284,7 +321,6 @@ static int advise(const options *o, plan *p, double whole) {
     a.search.keeping = a.named;
     take_gradients(&a, o);
     search_all(&a);
-    choose(&a);
     if (a.best && whole > p->t_end)
         verify(&a, p);
     int status = a.best ? TOOL_OK : advice_none(&a);

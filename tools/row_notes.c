@@ -10,13 +10,20 @@ static bool measures_order(const row *r) {
            r->energy.max > 1e-13;
 }
 
+/* Steps so close that their errors tell of their phases, not of the order. */
+static bool is_close(double a, double b) {
+    static const double apart = 1.2;
+    return a != b && a < apart * b && b < apart * a;
+}
+
 /* From the row of the same scheme and the dt before. */
 void observe_orders(row rows[], size_t count) {
     for (size_t i = 0; i < count; i++)
         for (size_t k = i; k-- > 0;) {
             row *b = &rows[i];
             const row *a = &rows[k];
-            if (a->integrator != b->integrator || a->gradient != b->gradient)
+            if (a->integrator != b->integrator || a->gradient != b->gradient ||
+                is_close(a->dt, b->dt))
                 continue;
             if (measures_order(a) && measures_order(b) && a->dt != b->dt)
                 b->observed_order =
