@@ -62,6 +62,22 @@ static void refine_all(costs *c) {
         }
 }
 
+/* The steps of what works least, or nearly so, to the last place. */
+static void refine_cheapest(costs *c) {
+    static const double nearly = 1.5;
+    for (size_t k = 0; k < COST_TARGETS; k++) {
+        double least = least_work(c, cost_target[k]);
+        for (size_t i = 0; i < c->count; i++) {
+            ladder *l = &c->ladder[i];
+            const row *r =
+                ladder_least_work(l, cost_target[k], c->search.by_state);
+            if (costs_count(c, l) && r && r->work <= nearly * least &&
+                !cost_is_beyond(c, k))
+                ladder_refine(&c->search, l, cost_target[k], 1);
+        }
+    }
+}
+
 /* Whether its time may be the least. */
 static bool may_win(const costs *c, const row *r, double target) {
     static const double nearly = 2.5;
@@ -88,15 +104,6 @@ static void time_cells(costs *c) {
         }
 }
 
-/* The steps of what is cheapest, to the last place. */
-static void refine_cheapest(costs *c) {
-    for (size_t k = 0; k < COST_TARGETS; k++) {
-        ladder *l = (ladder *)costs_cheapest(c, cost_target[k]);
-        if (l && !cost_is_beyond(c, k))
-            ladder_refine(&c->search, l, cost_target[k], 1);
-    }
-}
-
 static void time_others(costs *c, bool shown) {
     for (size_t i = 0; i < c->count; i++)
         for (size_t k = 0; k < c->ladder[i].count; k++)
@@ -110,7 +117,6 @@ static void run_ladders(costs *c, const options *o) {
     bool for_people = o->format == FORMAT_TABLE;
     descend_all(c);
     refine_all(c);
-    time_cells(c);
     refine_cheapest(c);
     time_cells(c);
     for (size_t i = 0; i < c->count && !(for_people && !c->all); i++)
