@@ -232,8 +232,9 @@ static void check_splitting(const nevh_integrator *scheme) {
 /* Runge-Kutta tables: check_trees. */
 START_TEST(explicit_tables) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
-    if (scheme->kernel == &nevh_splitting_kernel)
-        check_splitting(scheme);
+    if (scheme->kernel != &nevh_splitting_kernel)
+        skip_test("not a splitting");
+    check_splitting(scheme);
 }
 END_TEST
 

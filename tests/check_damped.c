@@ -90,7 +90,7 @@ static const nevh_integrator *damped(int i) {
 START_TEST(keeps_the_order) {
     const nevh_integrator *scheme = damped(_i);
     if (!scheme || nevh_integrator_needs_tolerance(scheme))
-        return;
+        skip_test("it takes no friction into its slopes, or no fixed steps");
     int order = nevh_integrator_order(scheme);
     size_t steps = order == 1 ? 3000 : order <= 5 ? 100 : 12;
     double coarse = error_of(scheme, 0, rates, 3, steps);
@@ -106,7 +106,7 @@ END_TEST
 START_TEST(meets_the_tolerance) {
     const nevh_integrator *scheme = damped(_i);
     if (!scheme || !nevh_integrator_adaptive(scheme))
-        return;
+        skip_test("it takes no friction into its slopes, or does not adapt");
     double error = error_of(scheme, 1e-11, rates, 20, 3);
     ck_assert_msg(error < 2e-8, "%s: %.2e", nevh_integrator_name(scheme),
                   error);
@@ -118,7 +118,7 @@ START_TEST(none_is_none) {
     static const double zeros[] = {0, 0};
     const nevh_integrator *scheme = damped(_i);
     if (!scheme)
-        return;
+        skip_test("it takes no friction into its slopes");
     double tolerance = tolerance_for(scheme);
     ck_assert(error_of(scheme, tolerance, zeros, 3, 20) ==
               error_of(scheme, tolerance, NULL, 3, 20));

@@ -225,7 +225,7 @@ START_TEST(collision) {
     const nevh_integrator *scheme = *schemes[_i / 8];
     double power = powers[_i / 2 % 4];
     if (power == 0 && !nevh_integrator_own_time(scheme))
-        return;
+        skip_test("nothing shortens its steps");
     nevh_system *h = make_kepler();
     nevh_system *s = power != 0 ? nevh_distance_power(2, 2, power) : NULL;
     double q[] = {1, 0}, p[] = {0, 0};

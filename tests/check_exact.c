@@ -109,7 +109,7 @@ START_TEST(wrong_gradients_are_refused) {
     const spoil how = 1 + _i % SLIGHT;
     if (how == SLIGHT && starts[_i / SLIGHT].q[0] == 0 &&
         !starts[_i / SLIGHT].none)
-        return;
+        skip_test("at q = 0 a slight error is none");
     double q[] = {0.9, 0.4, 1.1}, p[] = {0.5, 0.7, 0.3}, t = 0.7, d[6];
     nevh_system *s = make_mixed(&how);
     nevh_field *f = planned_at(s, _i / SLIGHT);

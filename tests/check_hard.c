@@ -233,7 +233,7 @@ START_TEST(light_bodies_keep_their_orbits) {
     double least_slope = 0.9 * fmin(order, 12); /* others meet rounding first */
     double most = order == 1 ? 0.1 : 1e-2, before = NAN, slope = 0, error = 1;
     if (nevh_integrator_needs_tolerance(scheme))
-        return;
+        skip_test("it has no fixed steps");
     orbit exact = outer_planets(nevh_gauss16, 200);
     for (double n = 4; slope < least_slope && error > least; n *= factor) {
         orbit o = outer_planets(scheme, round(n));

@@ -50,7 +50,7 @@ static orbit go_round(const nevh_integrator *scheme, const char *turns) {
 START_TEST(turns_do_not_matter) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     if (nevh_integrator_needs_tolerance(scheme))
-        return; /* relative to the angle */
+        skip_test("its tolerance is relative to the angle");
     orbit here = go_round(scheme, "turns = 0");
     for (int far = 0; far < 2; far++) {
         double turns = far ? 1e9 : 1e6, rounding = turns * 0x1p-50;

@@ -42,7 +42,7 @@ START_TEST(alone_as_among_others) {
     const problem *x = problems[_i % 5];
     double h = x->span / x->fewest / 8;
     if (!fits(scheme, x) || nevh_integrator_own_time(scheme))
-        return;
+        skip_test("it does not fit, or takes one orbit at a time");
     nevh_system *s = x->make();
     for (size_t i = 0; i < sizeof widths / sizeof *widths; i++) {
         double q[MOST_DOF * WIDEST], p[MOST_DOF * WIDEST];

@@ -129,9 +129,8 @@ static parameters mine = {.weights = {0.7, -1.3, 2.1}};
 
 static void equal(const function *f, char kind, size_t k, double point,
                   double block) {
-    if (!same(point, block))
-        ck_abort_msg("%s: d%c[%zu] is %a, in a block %a", f->name, kind, k,
-                     point, block);
+    ck_assert_msg(same(point, block), "%s: d%c[%zu] is %a, in a block %a",
+                  f->name, kind, k, point, block);
 }
 
 /* Eight states at once, and one by one, where a half may not be wanted; numbers

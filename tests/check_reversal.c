@@ -44,8 +44,8 @@ END_TEST
 START_TEST(others_do_not_return) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     if (nevh_integrator_symmetric(scheme) != NEVH_NO ||
-        nevh_integrator_needs_tolerance(scheme)) /* it returns as that says */
-        return;
+        nevh_integrator_needs_tolerance(scheme))
+        skip_test("it is symmetric, or returns as its tolerance says");
     int order = nevh_integrator_order(scheme);
     double h = order > 8 ? 2 : order > 4 ? 0.4 : order > 1 ? 0.1 : 0.02;
     double found = defect(&henon_heiles, scheme, nevh_exact, h);

@@ -73,7 +73,8 @@ START_TEST(watching_changes_nothing) {
                              {record, &often, 7}};
     nevh_observer two[] = {{record, &fifth, 5}, {record, &seventh, 7}};
     state x, y, z;
-    if (go(scheme, _i % 2, NULL, 0, &x)) {
+    bool goes = go(scheme, _i % 2, NULL, 0, &x);
+    if (goes) {
         ck_assert(go(scheme, _i % 2, watch, 2, &y));
         ck_assert(go(scheme, _i % 2, two, 2, &z));
         assert_same(b, &x, &y);
@@ -86,6 +87,8 @@ START_TEST(watching_changes_nothing) {
     }
     nevh_energy_free(energy);
     nevh_system_free(s);
+    if (!goes)
+        skip_test("friction is refused");
 }
 END_TEST
 
@@ -180,7 +183,7 @@ START_TEST(lanes_are_alone) {
     const problem *b = problem_for(scheme);
     enum { WIDTH = 3 };
     if (nevh_integrator_own_time(scheme))
-        return; /* see own_time_takes_one_orbit */
+        skip_test("it takes one orbit at a time: own_time_takes_one_orbit");
     nevh_system *s = b->make();
     nevh_options options = {.gradient = nevh_central4,
                             .gradient_step = 0x1p-9,
@@ -212,7 +215,7 @@ START_TEST(a_neighbours_jump_changes_nothing) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     const problem *b = problem_for(scheme);
     if (nevh_integrator_own_time(scheme))
-        return;
+        skip_test("it takes one orbit at a time");
     nevh_system *s = b->make();
     nevh_options options = {.gradient_step = 0x1p-9,
                             .width = 2,
@@ -244,7 +247,7 @@ START_TEST(own_time_takes_one_orbit) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     const problem *b = problem_for(scheme);
     if (!nevh_integrator_own_time(scheme))
-        return;
+        skip_test("it takes orbits side by side");
     nevh_system *s = b->make();
     nevh_options options = {.width = 2};
     nevh_stepper *m = nevh_stepper_new(s, scheme, &options);

@@ -120,7 +120,7 @@ static bool needs_quadratic(const nevh_integrator *scheme) {
 START_TEST(order_conditions) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     if (!table_of(_i))
-        return;
+        skip_test("not a splitting");
     int order = nevh_integrator_order(scheme);
     splitting x = expanded(table_of(_i));
     int found = order_of(&x, needs_quadratic(scheme), order + 1);
@@ -134,7 +134,7 @@ END_TEST
 START_TEST(needs_of_the_conditions) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     if (!table_of(_i))
-        return;
+        skip_test("not a splitting");
     int order = nevh_integrator_order(scheme), least = order;
     if (needs_quadratic(scheme))
         least = nevh_integrator_symmetric(scheme) == NEVH_YES ? 4 : 3;
@@ -150,7 +150,9 @@ END_TEST
 START_TEST(wrong_weights_are_noticed) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     const nevh_splitting *table = table_of(_i);
-    for (size_t k = 0; table && k < table->count; k++) {
+    if (!table || table->count == 0)
+        skip_test("no table of a splitting");
+    for (size_t k = 0; k < table->count; k++) {
         long double weights[MOST_GIVEN];
         nevh_splitting wrong = *table;
         ck_assert_uint_le(table->count, MOST_GIVEN);

@@ -452,6 +452,8 @@ static void assert_suggestions(const nevh_integrator *scheme,
 
 START_TEST(suggestions_fit) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
+    if (nevh_integrator_needs(scheme) == 0)
+        skip_test("it fits any H");
     for (const problem *const *b = problems; *b; b++)
         if (!fits(scheme, *b))
             assert_suggestions(scheme, *b);

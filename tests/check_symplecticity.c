@@ -27,11 +27,10 @@ static double defect_with(const problem *b, const nevh_integrator *scheme,
     return found;
 }
 
-/* A first step of own time has not varied yet: it is left to check_drift. */
 START_TEST(claim_of_scheme) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     if (nevh_integrator_own_time(scheme))
-        return;
+        skip_test("a first step of own time is no other step: check_drift");
     for (const problem *const *b = problems; *b; b++) {
         if (!fits(scheme, *b))
             continue;

@@ -201,4 +201,12 @@ static const problem *const driven_problems[] = {
     &damped,          &driven_damped};
 enum { PROBLEMS = sizeof driven_problems / sizeof *driven_problems };
 
+/* Whether the balance can be kept of any of them. */
+static inline bool keeps_any(const nevh_integrator *scheme) {
+    for (size_t i = 0; i < PROBLEMS; i++)
+        if (keeps(scheme, driven_problems[i]))
+            return true;
+    return false;
+}
+
 #endif

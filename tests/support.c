@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "support.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -480,10 +481,42 @@ int scheme_count(void) {
     return count;
 }
 
+/* The line of the sources at which a test was seen last, or "". */
+static void last_line(TestResult *result, char text[256]) {
+    FILE *file = tr_lfile(result) ? fopen(tr_lfile(result), "r") : NULL;
+    text[0] = 0;
+    for (int i = 0; file && i < tr_lno(result); i++)
+        if (!fgets(text, 256, file))
+            text[0] = 0;
+    if (file)
+        fclose(file);
+}
+
+/* Check passes a test that returns without an assertion.  Such a test was seen
+   last at its START_TEST, and one that skips at its skip_test. */
+static bool asserted(TestResult *result, int *skips) {
+    char text[256];
+    if (tr_rtype(result) != CK_PASS)
+        return true;
+    last_line(result, text);
+    *skips += strstr(text, "skip_test(") != NULL;
+    if (strncmp(text, "START_TEST(", 11) != 0)
+        return true;
+    printf("%s:%d: a test asserted nothing: %s", tr_lfile(result),
+           tr_lno(result), text);
+    return false;
+}
+
 int run_suite(Suite *suite) {
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);
-    int failed = srunner_ntests_failed(runner);
+    int failed = srunner_ntests_failed(runner), skips = 0;
+    TestResult **results = srunner_results(runner);
+    for (int i = 0; i < srunner_ntests_run(runner); i++)
+        failed += !asserted(results[i], &skips);
+    free(results);
     srunner_free(runner);
+    if (skips)
+        printf("skipped: %d\n", skips);
     return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
