@@ -44,7 +44,7 @@ static hard_verdict judged(const nevh_integrator *scheme, const char *name,
     hard_subject s;
     hard_result r = {.scheme = scheme, .gradient = "exact"};
     ck_assert_int_eq(hard_open(&s, c), TOOL_OK);
-    hard_begin("oscillator", scheme, 200 * budget);
+    hard_begin("oscillator", scheme, 60);
     r.limit = nevh_stability_limit(scheme);
     hard_end();
     hard_run(&s, budget, &r);
@@ -57,7 +57,7 @@ static hard_verdict judged(const nevh_integrator *scheme, const char *name,
 }
 
 static hard_verdict judge(const nevh_integrator *scheme, const char *name) {
-    return judged(scheme, name, 0.25);
+    return judged(scheme, name, 1e6);
 }
 
 START_TEST(good_ones_pass) {
@@ -181,22 +181,22 @@ static int explode(nevh_work *w, double t, double h, double q[], double p[]) {
 static int hang(nevh_work *w, double t, double h, double q[], double p[]) {
     volatile bool waits = true;
     while (waits)
-        pause();
+        ;
     return nevh_gauss_kernel.step(w, t, h, q, p);
 }
 
 START_TEST(wrong_steps) {
     static step_fn *const steps[] = {hurry,         rest,    leak,   give_nan,
                                      give_infinity, give_up, explode};
-    ck_assert_int_le(stepping(steps[_i], regular, 0.25), HARD_WRONG);
-    ck_assert_int_le(stepping(steps[_i], planets, 0.25), HARD_WRONG);
+    ck_assert_int_le(stepping(steps[_i], regular, 1e6), HARD_WRONG);
+    ck_assert_int_le(stepping(steps[_i], planets, 1e6), HARD_WRONG);
 }
 END_TEST
 
 /* The energy alone would not have told. */
 START_TEST(right_energy_on_a_wrong_orbit) {
-    ck_assert_int_eq(stepping(hurry, regular, 0.25), HARD_WRONG);
-    ck_assert_int_eq(stepping(rest, planets, 0.25), HARD_WRONG);
+    ck_assert_int_eq(stepping(hurry, regular, 1e6), HARD_WRONG);
+    ck_assert_int_eq(stepping(rest, planets, 1e6), HARD_WRONG);
 }
 END_TEST
 
@@ -204,7 +204,7 @@ START_TEST(does_not_return) {
     fflush(NULL);
     pid_t child = fork();
     if (child == 0) {
-        stepping(hang, regular, 0.005);
+        stepping(hang, regular, 2e4);
         _exit(TOOL_OK);
     }
     int status;

@@ -312,8 +312,16 @@ static double chain_seconds(int masses) {
     return (double)(clock() - start) / CLOCKS_PER_SEC;
 }
 
+/* The best of some: other processes share the caches. */
+static double least_seconds(int masses) {
+    double least = INFINITY;
+    for (int i = 0; i < 3; i++)
+        least = fmin(least, chain_seconds(masses));
+    return least;
+}
+
 START_TEST(long_chains_cost_in_proportion) {
-    double short_one = chain_seconds(10000), long_one = chain_seconds(100000);
+    double short_one = least_seconds(10000), long_one = least_seconds(100000);
     ck_assert_msg(long_one < 20 * short_one, "%g s, but %g s of 10 times more",
                   short_one, long_one);
     ck_assert_double_lt(long_one, 30);

@@ -4,7 +4,8 @@
 
 srcdir=${srcdir:-.}
 limit=
-command -v timeout >/dev/null 2>&1 && limit="timeout 300"
+command -v timeout >/dev/null 2>&1 &&
+    limit="timeout ${CK_DEFAULT_TIMEOUT:-600}"
 
 work=examples.$$
 trap 'rm -rf $work' EXIT

@@ -190,7 +190,8 @@ SH_LOG_COMPILER = $(SHELL)
 # Tests with the tag slow are for make check-slow; make check-valgrind leaves out
 # those with the tag long as well, which take orbits that others take, too.
 CHECK_TAGS = CK_EXCLUDE_TAGS
-TEST_TIMEOUT = 60
+# Seconds; ten times what a busy machine takes, since only a hang should meet it.
+TEST_TIMEOUT = 600
 AM_TESTS_ENVIRONMENT = \
 	$(CHECK_TAGS)=slow; export $(CHECK_TAGS); \
 	CK_DEFAULT_TIMEOUT=$(TEST_TIMEOUT); export CK_DEFAULT_TIMEOUT; \

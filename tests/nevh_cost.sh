@@ -83,9 +83,11 @@ records | awk -F, 'NR > 1 { n[$2]++; dt[$2, n[$2]] = $6; e[$2, n[$2]] = $9 }
 # says which steps are tried.
 records | cut -d, -f 1-16,18 >$work/run.1
 (while :; do :; done) & busy=$!
+trap 'kill $busy; exit 1' HUP INT TERM
 exits 0 cost pendulum --t-end 3 --integrators blanes-moan4,gauss8,gauss18 \
     --format csv
 kill $busy
+trap 'exit 1' HUP INT TERM
 wait $busy 2>/dev/null
 records | cut -d, -f 1-16,18 | cmp -s - $work/run.1 ||
     fails "has other rows where it takes longer"

@@ -88,16 +88,17 @@ typedef struct {
     double fastest_at;  /* or the case's */
     double limit;       /* nevh_stability_limit */
     double bound;       /* of the energy error, by theory */
-    double seconds;
-    char *reason; /* the library's */
+    char *reason;       /* the library's */
     hard_verdict verdict;
     char *happened;
 } hard_result;
-/* Between these a scheme has so many seconds; then the tool ends with a
+/* Between these a scheme has so many seconds of computing; then the tool ends with a
    message, since a step that does not return cannot be taken back. */
 void hard_begin(const char *name, const nevh_integrator *, double seconds);
 void hard_end(void);
+/* budget  evaluations of H and its gradient, after which a run ends */
 void hard_run(const hard_subject *, double budget, hard_result *);
+double hard_work(const nevh_stepper *); /* in these */
 /* Whether theory keeps the energy in bounds. */
 bool hard_keeps(const hard_result *);
 /* How much larger errors are by what the scheme does besides following H. */

@@ -5,10 +5,9 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { SAMPLES = 200 };
-static const double survey_seconds = 0.5;
+static const double most_work = 1e6;
 
 static char *find(const char *name) {
     char *file = scene_file("../hard", name);
@@ -74,15 +73,8 @@ typedef struct {
     pace fastest;
     nevh_field *field;
     double *effects, *slope, largest, rounding;
-    struct timespec begin;
+    const nevh_stepper *stepper;
 } survey;
-
-static double seconds_since(const struct timespec *begin) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return difftime(now.tv_sec, begin->tv_sec) +
-           1e-9 * (double)(now.tv_nsec - begin->tv_nsec);
-}
 
 /* What H changes by where the state is off by its rounding. */
 static void look_at_rounding(survey *s, double t, const double q[],
@@ -106,8 +98,7 @@ static int look(void *data, size_t step, double t, const double q[],
         for (size_t i = 0; i < count; i++)
             s->largest = fmax(s->largest, fabs(s->effects[i]));
     look_at_rounding(s, t, q, p);
-    return seconds_since(&s->begin) > survey_seconds ? (int)NEVH_STOPPED
-                                                     : NEVH_OK;
+    return hard_work(s->stepper) > most_work ? (int)NEVH_STOPPED : NEVH_OK;
 }
 
 /* Along the orbit of a method of order 8 with control of its steps, as far as
@@ -116,6 +107,7 @@ static void fly(hard_subject *s, survey *v, const nevh_options *o) {
     nevh_options own = *o;
     own.tolerance = 1e-9;
     nevh_stepper *m = nevh_stepper_new(s->system, nevh_dop853, &own);
+    v->stepper = m;
     double *q = tool_allocate(s->n, sizeof *q);
     double *p = tool_allocate(s->n, sizeof *p);
     memcpy(q, s->q, s->n * sizeof *q);
@@ -147,7 +139,6 @@ static void explore(hard_subject *s) {
         tool_allocate(nevh_system_effect_count(s->system), sizeof(double));
     v.slope = tool_allocate(2 * s->n, sizeof(double));
     v.fastest.rates = nevh_rates_new(s->system, &o);
-    clock_gettime(CLOCK_MONOTONIC, &v.begin);
     fly(s, &v, &o);
     s->frequency = v.fastest.frequency;
     s->fastest_at = v.fastest.t;
