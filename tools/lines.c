@@ -43,7 +43,6 @@ static int open_file(line_file *l, const char *name, int how) {
     if (l->file < 0)
         return unwritten(l);
     l->regular = name && is_regular(l->file);
-    signal(SIGXFSZ, SIG_IGN); /* a limit of size is an error like another */
     if (l->regular && flock(l->file, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK)
         return tool_refuse("%s: another run is writing it", name);
     return TOOL_OK;
@@ -90,9 +89,7 @@ void lines_print(line_file *l, const char *format, ...) {
     va_end(arguments);
     if (length < 0 || l->used + (size_t)length >= l->room) {
         l->room = 2 * l->room + (size_t)length + MUCH;
-        l->text = realloc(l->text, l->room);
-        if (!l->text)
-            abort();
+        l->text = tool_enlarge(l->text, l->room, 1);
     }
     va_start(arguments, format);
     vsnprintf(l->text + l->used, l->room - l->used, format, arguments);

@@ -86,6 +86,6 @@ tools_nevh_SOURCES = \
 	tools/cost_plot.c
 tools_nevh_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE \
 	-DNEVH_SCENES='"$(scenesdir)"'
-tools_nevh_LDADD = libnevh.la
+tools_nevh_LDADD = libnevh.la $(GSL_LIBS)
 
 dist_completions_DATA = tools/completion/nevh

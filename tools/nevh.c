@@ -2,6 +2,8 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "config.h"
 #include "tool.h"
+#include <gsl/gsl_errno.h>
+#include <signal.h>
 #include <string.h>
 
 static const struct {
@@ -89,8 +91,16 @@ static int obey(const options *o) {
     return status ? status : known[i].run(o);
 }
 
+/* A limit of a file's size is an error like another, and GSL, whose own handler
+   aborts, is to say what it lacks. */
+static void set_process(void) {
+    signal(SIGXFSZ, SIG_IGN);
+    gsl_set_error_handler_off();
+}
+
 int main(int argc, char **argv) {
     options o;
+    set_process();
     int status = options_read(&o, argc, argv);
     if (!status)
         status = obey(&o);

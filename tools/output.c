@@ -25,6 +25,12 @@ static void remove_and_end(int number) {
     raise(number);
 }
 
+/* Where memory is out the program ends from anywhere. */
+static void remove_unfinished(void) {
+    if (unfinished)
+        unlink(unfinished);
+}
+
 static void mind_signals(void) {
     static const int numbers[] = {SIGHUP, SIGINT, SIGTERM};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
@@ -46,6 +52,7 @@ static void open_temporary(output *o) {
         return;
     allow_as_usual(file);
     unfinished = o->temporary;
+    atexit(remove_unfinished);
     mind_signals();
 }
 

@@ -116,9 +116,7 @@ static ladder *next_best(const advice *a, const bool taken[]) {
 }
 
 static void add_ladder(advice *a, ladder l) {
-    a->ladder = realloc(a->ladder, (a->count + 1) * sizeof *a->ladder);
-    if (!a->ladder)
-        abort();
+    a->ladder = tool_enlarge(a->ladder, a->count + 1, sizeof *a->ladder);
     a->ladder[a->count++] = l;
 }
 

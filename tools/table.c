@@ -33,9 +33,7 @@ void table_free(table *t) {
 
 void table_column(table *t, const char *title) {
     list_add(&t->title, title);
-    t->key = realloc(t->key, t->title.count * sizeof *t->key);
-    if (!t->key)
-        abort();
+    t->key = tool_enlarge(t->key, t->title.count, sizeof *t->key);
     t->key[t->title.count - 1] = false;
 }
 
@@ -54,10 +52,8 @@ void table_group(table *t) {
 static void add(table *t, kind k, const char *text) {
     size_t i = t->cell.count;
     list_add(&t->cell, text);
-    t->kind = realloc(t->kind, (i + 1) * sizeof *t->kind);
-    t->group = realloc(t->group, (i + 1) * sizeof *t->group);
-    if (!t->kind || !t->group)
-        abort();
+    t->kind = tool_enlarge(t->kind, i + 1, sizeof *t->kind);
+    t->group = tool_enlarge(t->group, i + 1, sizeof *t->group);
     t->kind[i] = k;
     t->group[i] = t->begins;
     t->begins = false;

@@ -40,7 +40,29 @@ void list_split(list *, const char *text); /* at commas */
 bool list_has(const list *, const char *text);
 char *list_joined(const list *); /* with commas */
 void list_free(list *);
-void *tool_allocate(size_t count, size_t size); /* zeros */
+void *tool_allocate(size_t count, size_t size);        /* zeros */
+void *tool_enlarge(void *, size_t count, size_t size); /* as realloc */
+/* What is not NULL, which is what the library returns where memory is out. */
+void *tool_owned(void *);
+/* So every object that the command asks for is there. */
+#define nevh_energy_new(...)                                                   \
+    ((nevh_energy *)tool_owned(nevh_energy_new(__VA_ARGS__)))
+#define nevh_field_new(...)                                                    \
+    ((nevh_field *)tool_owned(nevh_field_new(__VA_ARGS__)))
+#define nevh_probe_new(...)                                                    \
+    ((nevh_probe *)tool_owned(nevh_probe_new(__VA_ARGS__)))
+#define nevh_rates_new(...)                                                    \
+    ((nevh_rates *)tool_owned(nevh_rates_new(__VA_ARGS__)))
+#define nevh_stepper_new(...)                                                  \
+    ((nevh_stepper *)tool_owned(nevh_stepper_new(__VA_ARGS__)))
+#define nevh_stepper_copy(...)                                                 \
+    ((nevh_stepper *)tool_owned(nevh_stepper_copy(__VA_ARGS__)))
+#define nevh_sections_new(...)                                                 \
+    ((nevh_sections *)tool_owned(nevh_sections_new(__VA_ARGS__)))
+#define nevh_system_new(...)                                                   \
+    ((nevh_system *)tool_owned(nevh_system_new(__VA_ARGS__)))
+#define nevh_system_from(...)                                                  \
+    ((nevh_system *)tool_owned(nevh_system_from(__VA_ARGS__)))
 __attribute__((format(printf, 1, 2))) char *text_print(const char *format, ...);
 /* The item that `name` may have been meant for; NULL when none is close. */
 const char *list_closest(const list *, const char *name);

@@ -2,10 +2,11 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tool.h"
 #include <stdarg.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-static void *owned(void *memory) {
+void *tool_owned(void *memory) {
     if (!memory) {
         fputs("nevh: out of memory\n", stderr);
         exit(TOOL_FAILED);
@@ -14,7 +15,13 @@ static void *owned(void *memory) {
 }
 
 void *tool_allocate(size_t count, size_t size) {
-    return owned(calloc(count ? count : 1, size));
+    return tool_owned(calloc(count ? count : 1, size));
+}
+
+void *tool_enlarge(void *memory, size_t count, size_t size) {
+    if (size && count > SIZE_MAX / size)
+        return tool_owned(NULL);
+    return tool_owned(realloc(memory, count * size));
 }
 
 static char *print(const char *format, va_list arguments) {
@@ -36,7 +43,7 @@ char *text_print(const char *format, ...) {
 }
 
 static void take(list *l, char *text) {
-    l->item = owned(realloc(l->item, (l->count + 1) * sizeof *l->item));
+    l->item = tool_enlarge(l->item, l->count + 1, sizeof *l->item);
     l->item[l->count++] = text;
 }
 
