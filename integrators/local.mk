@@ -10,7 +10,6 @@ libnevh_core_la_SOURCES += \
 	integrators/splitting_private.h \
 	integrators/splitting_expand.c \
 	integrators/splitting_kernel.c \
-	integrators/splitting_repeated.c \
 	integrators/symplectic_euler.c \
 	integrators/verlet.c \
 	integrators/ruth3.c \

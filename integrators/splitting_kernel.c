@@ -11,43 +11,72 @@
    steps are not merged, so the orbit is the same whether or not anyone looks.
 
    In V(q, t) time is that of the drifts, in T(p, t) that of the kicks.
+
+   The step is one text, `take_step`, which is compiled for numbers (one orbit
+   whose terms have point gradients), for rows of whole vectors (orbits side by
+   side, or one that is repeated over a vector), and for rows of any width with
+   gradients of any kind.  All give the same bits.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "splitting_private.h"
-#include "system/system_private.h"
+#include "gradient/field_private.h"
+#include "system/vector_private.h"
+#include "work_private.h"
+#include <nevh/body.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* One half of the state under way: q under drifts, p under kicks. */
 typedef struct {
-    double *start;  /* the state at the start of the step */
-    double *change; /* its increment so far */
-    double *carry;  /* lost digits of earlier steps */
-    double *point;  /* start + (change + carry) */
+    double *state;  /* at the start of the step */
+    double *carry;  /* digits that earlier steps lost */
+    double *change; /* the increment so far */
+    double *point;  /* state + (change + carry) */
 } half;
 
-typedef struct {
-    size_t lanes, size; /* n x lanes: elements of a half */
-    half q, p;
-    double *slope, *kept, *has_kept, *time;
-} layout;
+/* How gradients are taken: constants of inlined functions. */
+typedef enum {
+    BY_NUMBER, /* planned, of one state */
+    BY_VECTOR, /* planned, of rows of whole vectors */
+    BY_WORK    /* by nevh_work_gradient */
+} gradient_way;
 
-static layout lay_out(nevh_work *w, double q[], double p[]) {
-    nevh__splitting_memory m = nevh__splitting_recall(w);
-    double *s = w->scratch;
-    size_t n = w->size;
-    return (layout){.lanes = w->width,
-                    .size = n,
-                    .q = {q, s, m.carry_q, s + n},
-                    .p = {p, s + 2 * n, m.carry_p, s + 3 * n},
-                    .slope = s + 4 * n,
-                    .kept = m.kept,
-                    .has_kept = m.has_kept,
-                    .time = s + 5 * n};
+/* The numbers of a step, n rows each. */
+typedef struct {
+    size_t stride; /* of a row */
+    bool copied;   /* the state and memory, else they are where they were */
+    half q, p;
+    double *slope, *kept, *time; /* time: one row */
+} rows;
+
+typedef struct {
+    nevh_operation first;
+    size_t count; /* of kicks and drifts */
+    size_t kicks;
+    bool kicks_first;
+    bool same_ends; /* the last operation is of the first one's kind */
+    double *weights;
+    double *times; /* parts of h that the half at rest has gone through */
+    gradient_way way;
+    double *buffer; /* holds all rows */
+    rows planned, by_work;
+    nevh__call kick, drift; /* unless the way is BY_WORK */
+} splitting_plan;
+
+/* What is remembered of each half, and the last slope of a step. */
+typedef struct {
+    double *carry_q, *carry_p, *kept, *has_kept;
+} memory;
+
+static memory recall(const nevh_work *w) {
+    double *m = w->memory;
+    return (memory){m, m + w->size, m + 2 * w->size, m + 3 * w->size};
 }
 
 static void unplan(nevh_work *w) {
-    nevh__operations *o = w->plan;
-    nevh__repeated_free(o->repeated);
+    splitting_plan *o = w->plan;
+    if (!o)
+        return;
+    free(o->buffer);
     free(o->weights);
     free(o->times);
     free(o);
@@ -55,7 +84,7 @@ static void unplan(nevh_work *w) {
 }
 
 /* A kick takes dH/dq at the drifts' time, a drift dH/dp at the kicks'. */
-static void fill(nevh__operations *o, const nevh_splitting *table) {
+static void fill(splitting_plan *o, const nevh_splitting *table) {
     double passed[2] = {0, 0};
     nevh__splitting_expand(table, o->weights);
     for (size_t i = 0; i < o->count; i++) {
@@ -64,114 +93,403 @@ static void fill(nevh__operations *o, const nevh_splitting *table) {
     }
 }
 
+static half take_half(double **from, size_t size, bool copied) {
+    half x = {.change = nevh__take(from, size)};
+    x.point = nevh__take(from, size);
+    x.state = copied ? nevh__take(from, size) : NULL;
+    x.carry = copied ? nevh__take(from, size) : NULL;
+    return x;
+}
+
+static rows lay_out(const nevh_work *w, size_t stride, double *from) {
+    size_t size = w->n * stride;
+    bool copied = stride != w->width;
+    rows r = {.stride = stride, .copied = copied};
+    r.q = take_half(&from, size, copied);
+    r.p = take_half(&from, size, copied);
+    r.slope = nevh__take(&from, size);
+    r.kept = copied ? nevh__take(&from, size) : NULL;
+    r.time = from;
+    return r;
+}
+
+/* Rows of the width, and before them others of `stride` if that differs. */
+static bool plan_rows(splitting_plan *o, const nevh_work *w, size_t stride) {
+    size_t copied = stride == w->width ? 0 : (10 * w->n + 1) * stride;
+    size_t size = copied + (5 * w->n + 1) * w->width + NEVH__LANES;
+    free(o->buffer);
+    o->buffer = nevh__array(size, sizeof *o->buffer);
+    if (!o->buffer)
+        return false;
+    double *from = nevh__aligned(o->buffer);
+    o->planned = lay_out(w, stride, from);
+    o->by_work = lay_out(w, w->width, from + copied);
+    return true;
+}
+
+static bool plan_calls(splitting_plan *o, const nevh_work *w) {
+    const rows *r = &o->planned;
+    const double *q = r->q.point, *p = r->p.point;
+    nevh_field *f = w->field;
+    o->kick = nevh__call_plan(f, r->stride, r->time, q, p, r->slope, NULL);
+    o->drift = nevh__call_plan(f, r->stride, r->time, q, p, NULL, r->slope);
+    return o->kick.count && o->drift.count;
+}
+
+/* One state is repeated over a vector where it is small and has no point
+   gradients.  Returns false when memory is out. */
+static bool find_way(splitting_plan *o, const nevh_work *w) {
+    bool one = w->width == 1;
+    o->way = BY_NUMBER;
+    if (!plan_rows(o, w, w->width))
+        return false;
+    if (one && !w->transform && plan_calls(o, w))
+        return true;
+    o->way = BY_VECTOR;
+    if (!w->transform && (!one || w->field->repeats)) {
+        if (!plan_rows(o, w, nevh__padded(w->width)))
+            return false;
+        if (plan_calls(o, w))
+            return true;
+    }
+    o->way = BY_WORK;
+    return true;
+}
+
 static int plan(nevh_work *w) {
     const nevh_splitting *table = w->integrator->table;
-    nevh__operations *o = w->plan = nevh__array(1, sizeof *o);
+    splitting_plan *o = w->plan = nevh__array(1, sizeof *o);
     if (!o)
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     o->first = table->first;
     o->count = nevh__splitting_operations(table);
     o->same_ends = o->count % 2 == 1;
+    o->kicks_first = o->first == NEVH_KICK;
+    o->kicks = (o->count + o->kicks_first) / 2;
     o->weights = nevh__array(o->count, sizeof *o->weights);
     o->times = nevh__array(o->count, sizeof *o->times);
-    if (!o->weights || !o->times)
+    if (!o->weights || !o->times || !find_way(o, w))
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     fill(o, table);
     w->memory_rows = 3 * w->n + 1;
-    w->scratch_size = (5 * w->n + 1) * w->width;
-    if (nevh__repeated_plan(w, &o->repeated))
-        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     return NEVH_OK;
 }
 
-static void begin(const layout *l, const half *x) {
-    for (size_t i = 0; i < l->size; i++) {
-        x->change[i] = 0;
-        x->point[i] = x->start[i] + x->carry[i];
+/* One step under way. */
+typedef struct {
+    nevh_work *work;
+    const splitting_plan *plan;
+    rows rows;
+    double t, h;
+    bool has_kept; /* the last slope of the step before */
+} context;
+
+/* Element by element, `lanes` (a constant) at a time. */
+#define EACH(i, lanes, size)                                                   \
+    for (size_t i##_from = 0; i##_from < (size); i##_from += (lanes))          \
+    NEVH__NO_ALIAS for (size_t i = i##_from; i != i##_from + (lanes); i++)
+
+NEVH__INLINE void begin(size_t lanes, size_t size, const half *q,
+                        const half *p) {
+    EACH(i, lanes, size) {
+        q->change[i] = 0;
+        p->change[i] = 0;
+        q->point[i] = q->state[i] + q->carry[i];
+        p->point[i] = p->state[i] + p->carry[i];
     }
 }
 
-static void advance(const layout *l, const half *x, double step,
-                    const double slope[]) {
-    for (size_t i = 0; i < l->size; i++) {
-        x->change[i] += step * slope[i];
-        x->point[i] = x->start[i] + (x->change[i] + x->carry[i]);
+NEVH__INLINE void advance(size_t lanes, size_t size, const half *x, double step,
+                          const double *restrict slope) {
+    double *restrict change = x->change, *restrict point = x->point;
+    const double *restrict state = x->state, *restrict carry = x->carry;
+    EACH(i, lanes, size) {
+        double sum = change[i] + step * slope[i];
+        change[i] = sum;
+        point[i] = state[i] + (sum + carry[i]);
     }
 }
 
-static bool all_kept(const nevh_work *w, const layout *l) {
-    for (size_t lane = 0; lane < w->width; lane++)
-        if (l->has_kept[lane] == 0)
-            return false;
-    return true;
-}
-
-static void set_time(const layout *l, double t) {
-    for (size_t lane = 0; lane < l->lanes; lane++)
-        l->time[lane] = t;
+NEVH__INLINE void set_time(const context *x, size_t i) {
+    double time = x->t + x->plan->times[i] * x->h;
+    for (size_t lane = 0; lane < x->rows.stride; lane++)
+        x->rows.time[lane] = time;
 }
 
 /* dH/dq for a kick, or else dH/dp, to the slope. */
-static int take_slope(nevh_work *w, const layout *l, bool kick, double t) {
-    set_time(l, t);
-    return nevh_work_gradient(w, l->lanes, l->time, l->q.point, l->p.point,
-                              kick ? l->slope : NULL, kick ? NULL : l->slope);
+NEVH__INLINE int take_slope(const context *x, gradient_way way, size_t i,
+                            bool kick) {
+    const nevh__call *call = kick ? &x->plan->kick : &x->plan->drift;
+    if (way == BY_WORK || call->timed)
+        set_time(x, i);
+    if (way == BY_WORK)
+        return nevh_work_gradient(x->work, x->rows.stride, x->rows.time,
+                                  x->rows.q.point, x->rows.p.point,
+                                  kick ? x->rows.slope : NULL,
+                                  kick ? NULL : x->rows.slope);
+    if (way == BY_NUMBER)
+        nevh__call_run_points(call);
+    else
+        nevh__call_run(call);
+    return NEVH_OK;
 }
 
-/* Moves p at time t by the part dt of the step, or q. */
-static int operate(nevh_work *w, const layout *l, nevh_operation operation,
-                   double t, double dt, bool kept) {
-    bool kick = operation == NEVH_KICK;
-    int status = kept ? NEVH_OK : take_slope(w, l, kick, t);
-    if (w->accounts)
-        set_time(l, t);
-    if (!status && w->accounts)
-        status = nevh_work_account(w, kick ? NEVH_OF_Q : NEVH_OF_P, dt, l->time,
-                                   l->q.point, l->p.point);
+static int account(const context *x, size_t i, bool kick) {
+    set_time(x, i);
+    return nevh_work_account(x->work, kick ? NEVH_OF_Q : NEVH_OF_P,
+                             x->plan->weights[i] * x->h, x->rows.time,
+                             x->rows.q.point, x->rows.p.point);
+}
+
+/* A kick, or else a drift; `kept`: by the last slope of the step before. */
+NEVH__INLINE int operate(const context *x, gradient_way way, size_t lanes,
+                         size_t size, size_t i, bool kick, bool kept) {
+    double dt = x->plan->weights[i] * x->h;
+    int status = kept ? NEVH_OK : take_slope(x, way, i, kick);
+    if (way == BY_WORK && !status && x->work->accounts)
+        status = account(x, i, kick);
     if (!status)
-        advance(l, kick ? &l->p : &l->q, kick ? -dt : dt,
-                kept ? l->kept : l->slope);
+        advance(lanes, size, kick ? &x->rows.p : &x->rows.q, kick ? -dt : dt,
+                kept ? x->rows.kept : x->rows.slope);
     return status;
 }
 
-static void keep(const nevh_work *w, const layout *l) {
-    memcpy(l->kept, l->slope, w->size * sizeof *l->kept);
-    for (size_t lane = 0; lane < w->width; lane++)
-        l->has_kept[lane] = 1;
+/* A kick and a drift where T is that of known masses: velocities are momenta
+   times `inverse`, and need not go through memory (15 to 25 % of a step of
+   several kicks). */
+NEVH__INLINE void operate_both(const context *x, gradient_way way, size_t lanes,
+                               size_t size, size_t i) {
+    const half *q = &x->rows.q, *p = &x->rows.p;
+    double *restrict slope = x->rows.slope;
+    const double *restrict inverse = x->plan->drift.inverse;
+    double kick = -(x->plan->weights[i] * x->h);
+    double drift = x->plan->weights[i + 1] * x->h;
+    take_slope(x, way, i, true);
+    EACH(k, lanes, size) {
+        double sum = p->change[k] + kick * slope[k];
+        double momentum = p->state[k] + (sum + p->carry[k]);
+        double velocity = inverse[k] * momentum;
+        double moved = q->change[k] + drift * velocity;
+        slope[k] = velocity;
+        p->change[k] = sum;
+        p->point[k] = momentum;
+        q->change[k] = moved;
+        q->point[k] = q->state[k] + (moved + q->carry[k]);
+    }
 }
 
-static int step(nevh_work *w, double t, double h, double q[], double p[]) {
-    const nevh__operations *o = w->plan;
-    if (o->repeated && !w->accounts && nevh__repeated_step(w, t, h, q, p))
-        return NEVH_OK;
-    layout l = lay_out(w, q, p);
-    begin(&l, &l.q);
-    begin(&l, &l.p);
-    bool kept = o->same_ends && all_kept(w, &l);
+/* All kicks and drifts in turn. */
+NEVH__INLINE int operate_all(const context *x, gradient_way way, size_t lanes,
+                             size_t size) {
+    size_t i = 0, count = x->plan->count;
+    bool kick = x->plan->kicks_first;
     int status = NEVH_OK;
-    for (size_t i = 0; !status && i < o->count; i++)
-        status =
-            operate(w, &l, i % 2 ? !o->first : o->first, t + o->times[i] * h,
-                    o->weights[i] * h, i == 0 && kept);
-    if (!status)
-        status = nevh_work_commit(w, w->size, q, l.q.change, l.q.carry, p,
-                                  l.p.change, l.p.carry);
-    if (!status && o->same_ends)
-        keep(w, &l);
+    if (x->has_kept) {
+        status = kick ? operate(x, way, lanes, size, i++, true, true)
+                      : operate(x, way, lanes, size, i++, false, true);
+        kick = !kick;
+    }
+    if (!kick && !status)
+        status = operate(x, way, lanes, size, i++, false, false);
+    for (; !status && i + 1 < count; i += 2) {
+        if (way != BY_WORK && x->plan->drift.inverse) {
+            operate_both(x, way, lanes, size, i);
+            continue;
+        }
+        status = operate(x, way, lanes, size, i, true, false);
+        if (!status)
+            status = operate(x, way, lanes, size, i + 1, false, false);
+    }
+    if (!status && i < count)
+        status = operate(x, way, lanes, size, i, true, false);
     return status;
+}
+
+/* The sum of x - x over the new state, which the last points are: 0 if that is
+   finite, else NaN. */
+NEVH__INLINE double check(size_t lanes, size_t size, const double q[],
+                          const double p[]) {
+    double bad[NEVH__LANES] = {0};
+    for (size_t from = 0; from < size; from += lanes)
+        for (size_t i = 0; i < lanes; i++)
+            bad[i] += (q[from + i] - q[from + i]) + (p[from + i] - p[from + i]);
+    return lanes == 1 ? bad[0]
+                      : ((bad[0] + bad[1]) + (bad[2] + bad[3])) +
+                            ((bad[4] + bad[5]) + (bad[6] + bad[7]));
+}
+
+NEVH__INLINE void commit(const half *x, size_t i) {
+    double start = x->state[i], d = x->change[i] + x->carry[i];
+    x->carry[i] = nevh__lost(x->point[i], start, d);
+    x->state[i] = x->point[i];
+}
+
+/* The last points are the new state; `keep`: and the last slope is kept. */
+NEVH__INLINE void commit_all(const rows *r, size_t lanes, size_t size,
+                             bool keep) {
+    EACH(i, lanes, size) {
+        commit(&r->q, i);
+        commit(&r->p, i);
+        if (keep)
+            r->kept[i] = r->slope[i];
+    }
+}
+
+static int fail(nevh_work *w) {
+    return nevh_work_fail(w, NEVH_EDOM,
+                          "the new state is not a finite number: take a "
+                          "smaller step");
+}
+
+/* Unless NEVH_OK, the state is as it was. */
+NEVH__INLINE int take_step(const context *x, gradient_way way, size_t lanes,
+                           size_t size) {
+    begin(lanes, size, &x->rows.q, &x->rows.p);
+    int status = operate_all(x, way, lanes, size);
+    if (status)
+        return status;
+    if (check(lanes, size, x->rows.q.point, x->rows.p.point) != 0)
+        return way == BY_WORK ? fail(x->work) : NEVH_EDOM;
+    if (x->plan->same_ends)
+        commit_all(&x->rows, lanes, size, true);
+    else
+        commit_all(&x->rows, lanes, size, false);
+    return NEVH_OK;
+}
+
+/* Copies orbits to rows of vectors, whose padding repeats the first.  One orbit
+   that stands there already is left, since vectors stored number by number
+   would be slow to load. */
+NEVH__INLINE void load(const nevh_work *w, size_t stride, const double from[],
+                       double to[]) {
+    for (size_t k = 0; k < w->n; k++, from += w->width, to += stride) {
+        if (w->width == 1 && memcmp(from, to, sizeof *to) == 0)
+            continue;
+        for (size_t i = 0; i < stride; i++)
+            to[i] = from[i < w->width ? i : 0];
+    }
+}
+
+NEVH__INLINE void store(const nevh_work *w, size_t stride, const double from[],
+                        double to[]) {
+    for (size_t k = 0; k < w->n; k++, from += stride, to += w->width)
+        for (size_t i = 0; i < w->width; i++)
+            to[i] = from[i];
+}
+
+NEVH__INLINE void load_all(const context *x, const memory *m, const double q[],
+                           const double p[]) {
+    const rows *r = &x->rows;
+    load(x->work, r->stride, q, r->q.state);
+    load(x->work, r->stride, p, r->p.state);
+    load(x->work, r->stride, m->carry_q, r->q.carry);
+    load(x->work, r->stride, m->carry_p, r->p.carry);
+    if (x->has_kept)
+        load(x->work, r->stride, m->kept, r->kept);
+}
+
+NEVH__INLINE void store_all(const context *x, const memory *m, double q[],
+                            double p[]) {
+    const rows *r = &x->rows;
+    store(x->work, r->stride, r->q.state, q);
+    store(x->work, r->stride, r->p.state, p);
+    store(x->work, r->stride, r->q.carry, m->carry_q);
+    store(x->work, r->stride, r->p.carry, m->carry_p);
+    if (x->plan->same_ends)
+        store(x->work, r->stride, r->kept, m->kept);
+}
+
+/* Rows that are not copied are the caller's and the memory's. */
+NEVH__INLINE rows bind(const rows *planned, const memory *m, double q[],
+                       double p[]) {
+    rows r = *planned;
+    r.q.state = q;
+    r.p.state = p;
+    r.q.carry = m->carry_q;
+    r.p.carry = m->carry_p;
+    r.kept = m->kept;
+    return r;
+}
+
+/* The last slopes of the step before, of `lanes` orbits. */
+NEVH__INLINE bool all_kept(size_t lanes, const memory *m) {
+    int64_t none = 0;
+    for (size_t lane = 0; lane < lanes; lane++)
+        none |= m->has_kept[lane] == 0;
+    return none == 0;
+}
+
+/* A step of `width` orbits, in rows of so many lanes at least. */
+NEVH__INLINE int step_along(nevh_work *w, gradient_way way, size_t width,
+                            size_t lanes, double t, double h, double q[],
+                            double p[]) {
+    const splitting_plan *o = w->plan;
+    const rows *planned = way == BY_WORK ? &o->by_work : &o->planned;
+    memory m = recall(w);
+    context x = {.work = w, .plan = o, .t = t, .h = h};
+    bool copied = way == BY_VECTOR && planned->copied;
+    x.rows = copied ? *planned : bind(planned, &m, q, p);
+    x.has_kept = o->same_ends && all_kept(width, &m);
+    if (copied)
+        load_all(&x, &m, q, p);
+    int status = way != BY_NUMBER
+                     ? take_step(&x, way, lanes, w->n * x.rows.stride)
+                 : w->n == 1 ? take_step(&x, way, 1, 1)
+                 : w->n == 2 ? take_step(&x, way, 1, 2)
+                             : take_step(&x, way, 1, w->n);
+    if (status)
+        return status;
+    if (copied)
+        store_all(&x, &m, q, p);
+    if (way != BY_WORK)
+        w->field->gradients +=
+            (o->kicks - (x.has_kept && o->kicks_first)) * width;
+    for (size_t lane = 0; o->same_ends && lane < width; lane++)
+        m.has_kept[lane] = 1;
+    return NEVH_OK;
+}
+
+NEVH__ONE_BY_ONE static int step_number(nevh_work *w, double t, double h,
+                                        double q[], double p[]) {
+    if (!nevh__field_at_hand(w->field))
+        return NEVH_ESTALE;
+    return step_along(w, BY_NUMBER, 1, 1, t, h, q, p);
+}
+
+NEVH_SIMD static int step_vectors(nevh_work *w, double t, double h, double q[],
+                                  double p[]) {
+    return step_along(w, BY_VECTOR, w->width, NEVH__LANES, t, h, q, p);
+}
+
+NEVH_SIMD static int step_by_work(nevh_work *w, double t, double h, double q[],
+                                  double p[]) {
+    return step_along(w, BY_WORK, w->width, 1, t, h, q, p);
+}
+
+/* Where a step with planned gradients fails, the other way tells why. */
+static int step(nevh_work *w, double t, double h, double q[], double p[]) {
+    splitting_plan *o = w->plan;
+    if (o->way == BY_NUMBER && !w->accounts) {
+        if (step_number(w, t, h, q, p) == NEVH_OK)
+            return NEVH_OK;
+    } else if (o->way == BY_VECTOR && !w->accounts &&
+               nevh__call_renew(&o->kick) && nevh__call_renew(&o->drift))
+        if (step_vectors(w, t, h, q, p) == NEVH_OK)
+            return NEVH_OK;
+    return step_by_work(w, t, h, q, p);
 }
 
 /* What is kept is a dH/dp, or a dH/dq that may read p, unless declarations say
    that it does not. */
 static void damp(nevh_work *w, const double factor[]) {
-    const nevh__operations *o = w->plan;
-    double *carry = w->memory + w->size, *has_kept = w->memory + 3 * w->size;
+    const splitting_plan *o = w->plan;
+    memory m = recall(w);
     for (size_t i = 0; i < w->size; i++)
-        carry[i] *= factor[i / w->width];
+        m.carry_p[i] *= factor[i / w->width];
     if (o->first == NEVH_KICK && nevh_system_traits(w->system) & NEVH_SEPARABLE)
         return;
     for (size_t lane = 0; lane < w->width; lane++)
-        has_kept[lane] = 0;
+        m.has_kept[lane] = 0;
 }
 
 const nevh_kernel nevh_splitting_kernel = {

@@ -25,7 +25,8 @@ static int plan_memory(nevh_stepper *s) {
     s->fresh_rows = w->memory_rows + (s->damping ? w->n : 0) +
                     (w->transform ? NEVH__TRANSFORM_ROWS : 0);
     s->rows = s->fresh_rows + (w->ledger ? 2 : 0);
-    w->memory = nevh__array(s->rows * w->width, sizeof(double));
+    s->buffer = nevh__array(s->rows * w->width + NEVH__LANES, sizeof(double));
+    w->memory = s->buffer ? nevh__aligned(s->buffer) : NULL;
     w->scratch = nevh__array(w->scratch_size, sizeof(double));
     s->last_q = nevh__array(w->size, sizeof(double));
     s->last_p = nevh__array(w->size, sizeof(double));
@@ -142,7 +143,7 @@ void nevh_stepper_free(nevh_stepper *s) {
     nevh__damping_free(s->damping);
     nevh__ledger_free(s->work.ledger);
     free(s->rates);
-    free(s->work.memory);
+    free(s->buffer);
     free(s->work.scratch);
     free(s->last_q);
     free(s->last_p);

@@ -16,6 +16,7 @@ struct nevh_stepper {
        rows, or what the transform keeps, and the ledger's two.  A lane that
        starts afresh keeps the last. */
     size_t rows, fresh_rows;
+    double *buffer;                /* holds the memory, aligned for vectors */
     double *rates;                 /* n of friction; NULL: there is none */
     struct nevh__damping *damping; /* NULL: no friction around steps */
     /* What the last step returned. */

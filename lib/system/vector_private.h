@@ -27,6 +27,12 @@ typedef double nevh__vector;
 #else
 #define NEVH__ONE_BY_ONE
 #endif
+/* Before a loop whose rounds do not read what others write. */
+#ifdef __GNUC__
+#define NEVH__NO_ALIAS _Pragma("GCC ivdep")
+#else
+#define NEVH__NO_ALIAS
+#endif
 /* A part of room that is laid out. */
 static inline double *nevh__take(double **from, size_t size) {
     double *taken = *from;
