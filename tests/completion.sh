@@ -28,6 +28,9 @@ completes() {
 }
 
 completes 'nevh compa' compare
+completes 'nevh help comp' compare
+completes 'nevh compare --outp' --output
+completes 'nevh run pendulum --star' --start
 completes 'nevh list grad' gradients
 completes 'nevh compare pendulum-s' pendulum-small
 completes 'nevh compare pendulum --integr' --integrators

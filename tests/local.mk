@@ -159,6 +159,7 @@ dist_check_SCRIPTS = \
 	tests/examples.sh \
 	tests/nevh.sh \
 	tests/nevh_scenes.sh \
+	tests/nevh_help.sh \
 	tests/nevh_start.sh \
 	tests/quickstart.sh \
 	tests/bad_scenes.sh \

@@ -36,8 +36,13 @@ grep -q '^k = 0\.25 .*# N m/rad' $work/weak.nevh || fails "lost a comment"
 # Usage.
 exits 2 new
 exits 2 new $work/a.nevh $work/b.nevh
-exits 2 new $work/pendulum
-says 'pendulum\.nevh'
+exits 0 new $work/hoop
+has 'hoop\.nevh is made\. .*nevh compare .*hoop\.nevh$'
+exits 0 compare $work/hoop.nevh --t-end 1 --quiet
+exits 2 new $work/hoop
+says 'hoop\.nevh is there already'
+exits 0 new $work/loud.NEVH
+test -e $work/loud.NEVH || fails "makes another file"
 exits 2 new $work/nowhere/a.nevh
 says 'cannot be written'
 exits 2 new $work/a.nevh --from pendulm

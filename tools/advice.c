@@ -174,7 +174,7 @@ void advice_print(const advice *a, const options *o, FILE *f) {
         state_notes(&a->search.plan, &p.before);
         tell_answer(a, o, &p.after);
     }
-    page_print(&p, o->format, f);
+    page_print(&p, o, f);
     page_free(&p);
 }
 

@@ -231,7 +231,7 @@ static int compare_rows(const options *o, const plan *p, row_list *r) {
     run_rows(p, r, o->quiet);
     observe_orders(r->row, r->count);
     page result = make_page(o, p, r);
-    page_print(&result, o->format, out.stream);
+    page_print(&result, o, out.stream);
     page_free(&result);
     for (size_t i = 0; i < r->count; i++)
         if (r->row[i].failed)

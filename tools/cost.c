@@ -223,7 +223,7 @@ static int cost_plan(const options *o, plan *p, double whole) {
     run_ladders(&c, o);
     page result = make_page(o, &c);
     search_end(&c.search);
-    page_print(&result, o->format, out.stream);
+    page_print(&result, o, out.stream);
     page_free(&result);
     int status = output_close(&out, report_failures(&c));
     if (plot_wanted(o) && cost_plot(o, &c))

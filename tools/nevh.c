@@ -13,47 +13,57 @@ static const struct {
     const char *operand, *help;
 } known[] = {
     {"compare", compare, FOR_COMPARE, "SCENE",
-     "energy errors, a row an integrator and dt, and the verdict in words"},
+     "one row for each integrator and dt: energy error, orbit error, cost; "
+     "then a verdict"},
     {"run", run_scene, FOR_RUN, "SCENE",
      "the trajectory as CSV: t, coordinates, momenta, observables, energy"},
     {"cost", cost, FOR_COST, "SCENE",
-     "what a digit costs: target errors, a row an integrator"},
+     "what each digit costs, for each integrator"},
     {"recommend", recommend, FOR_RECOMMEND, "SCENE",
      "the cheapest integrator, gradient and step that keep an error"},
     {"gradients", gradients, FOR_GRADIENTS, "SCENE",
      "error and cost of each gradient method and step along the orbit"},
     {"check", check, FOR_CHECK, "SCENE",
-     "errors, structure of H with evidence, and which schemes fit"},
+     "errors of the scene, properties of H, and which integrators fit"},
     {"effects", effects, FOR_EFFECTS, "SCENE",
-     "each effect: on or off, what it reads, evaluations, time; --impact"},
+     "each effect: on or off, what it reads, evaluations, time; with --impact "
+     "what it changes"},
     {"section", section, FOR_SECTION, "SCENE",
      "points of Poincare and stroboscopic sections, as CSV"},
     {"hard", hard, FOR_HARD, "",
-     "every scheme on cases that are hard to integrate, and the verdicts"},
-    {"new", new_scene, FOR_NEW, "FILE",
-     "makes a scene to start from, FILE.nevh"},
+     "every integrator on cases that are hard to integrate"},
+    {"new", new_scene, FOR_NEW, "FILE", "makes a commented scene, FILE.nevh"},
     {"list", list_what, FOR_LIST, "WHAT",
      "integrators, gradients, models or scenes"},
 };
 enum { KNOWN = sizeof known / sizeof *known };
 
-static int help_all(void) {
-    puts("Usage: nevh COMMAND SCENE [OPTION]...\n"
-         "Compares symplectic integrators on a Hamiltonian, its gradient taken "
-         "from its values.\n");
+/* Space between the name and the text of a command, and nowhere else: help2man
+   takes that for the end of the name. */
+static void help_line(FILE *f, const char *name, const char *operand,
+                      const char *text) {
+    int used = fprintf(f, "  nevh %s%s%s", name, *operand ? " " : "", operand);
+    help_print(f, used, 25, text);
+}
+
+static void help_all(FILE *f) {
+    fputs("Usage: nevh COMMAND SCENE [OPTION]...\n"
+          "Compares integrators on a Hamiltonian, which it differentiates "
+          "numerically.\n\nCommands:\n",
+          f);
     for (size_t i = 0; i < KNOWN; i++)
-        printf("  nevh %-9s %-5s  %s\n", known[i].name, known[i].operand,
-               known[i].help);
-    options_help(stdout, ~0u);
-    puts("\nSCENE is a file, or a name of nevh list scenes.  nevh COMMAND "
-         "--help names the\noptions of one command.  Exit status: 0; 1 when a "
-         "row failed numerically; 2 for\nbad input or usage.");
-    return TOOL_OK;
+        help_line(f, known[i].name, known[i].operand, known[i].help);
+    help_line(f, "help", "COMMAND", "what a command does, and its options");
+    options_help(f, ~0u);
+    fputs("\nSCENE is a file, or a name of nevh list scenes.  Exit status: 0; "
+          "1 when a row\nfailed numerically; 2 for bad input or usage.\n",
+          f);
 }
 
 static int help(size_t i) {
-    printf("Usage: nevh %s %s%s[OPTION]...\n%s\n", known[i].name,
-           known[i].operand, *known[i].operand ? " " : "", known[i].help);
+    printf("Usage: nevh %s %s%s[OPTION]...\n", known[i].name, known[i].operand,
+           *known[i].operand ? " " : "");
+    help_print(stdout, 0, 0, known[i].help);
     options_help(stdout, known[i].bit);
     return TOOL_OK;
 }
@@ -68,25 +78,41 @@ static int unknown_command(const char *name) {
     list names = {0};
     for (size_t i = 0; i < KNOWN; i++)
         list_add(&names, known[i].name);
+    list_add(&names, "help");
     int status = tool_unknown("command", name, &names);
     list_free(&names);
     return status;
 }
 
-static int obey(const options *o) {
-    const char *word = o->operands.count ? o->operands.item[0] : NULL;
+static size_t find(const char *name) {
     size_t i = 0;
+    while (i < KNOWN && strcmp(name, known[i].name) != 0)
+        i++;
+    return i;
+}
+
+/* nevh help, nevh help COMMAND, nevh --help, nevh COMMAND --help. */
+static int help_on(const char *name) {
+    if (!name)
+        return help_all(stdout), TOOL_OK;
+    size_t i = find(name);
+    return i < KNOWN ? help(i) : unknown_command(name);
+}
+
+static int obey(const options *o) {
+    const list *words = &o->operands;
+    const char *word = words->count ? words->item[0] : NULL;
     if (o->version)
         return version();
+    if (word && strcmp(word, "help") == 0)
+        return help_on(words->count > 1 ? words->item[1] : NULL);
+    if (o->help)
+        return help_on(word);
     if (!word)
-        return o->help ? help_all()
-                       : tool_refuse("no command; see nevh --help");
-    while (i < KNOWN && strcmp(word, known[i].name) != 0)
-        i++;
+        return help_all(stderr), TOOL_USAGE;
+    size_t i = find(word);
     if (i == KNOWN)
         return unknown_command(word);
-    if (o->help)
-        return help(i);
     int status = options_check(o, known[i].bit);
     return status ? status : known[i].run(o);
 }

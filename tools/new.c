@@ -4,14 +4,15 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* The text of a scene, changed as the options say; NULL with the message
    printed. */
-static char *text_from(const options *o) {
+static char *text_from(const options *o, const char *file) {
     nevh_scene *scene;
     if (scene_open_named(&scene, o->from, o))
         return NULL;
-    char *text = nevh_scene_write(scene, o->operands.item[1]);
+    char *text = nevh_scene_write(scene, file);
     if (!text)
         tool_refuse("out of memory");
     nevh_scene_free(scene);
@@ -35,28 +36,30 @@ static int write_new(const char *file, const char *text) {
     return tool_refuse("%s cannot be written: %s", file, strerror(errno));
 }
 
-static int check_name(const options *o) {
-    const char *end =
-        o->operands.count == 2 ? strrchr(o->operands.item[1], '.') : NULL;
-    if (o->operands.count != 2)
-        return tool_refuse("nevh new takes one file to be made: FILE.nevh");
-    if (end && strcmp(end, ".nevh") == 0)
-        return TOOL_OK;
-    return tool_refuse("scenes are files that end in .nevh: %s.nevh",
-                       o->operands.item[1]);
+/* The file to be made: its ending may be left out. */
+static char *file_of(const char *name) {
+    const char *end = strrchr(name, '.');
+    return text_print("%s%s", name,
+                      end && strcasecmp(end, ".nevh") == 0 ? "" : ".nevh");
 }
 
-int new_scene(const options *o) {
-    if (check_name(o))
-        return TOOL_USAGE;
-    if (!o->from && o->settings.count)
-        return tool_refuse("--set, --with and --without change the scene that "
-                           "--from names");
-    const char *file = o->operands.item[1];
-    char *text = o->from ? text_from(o) : text_print("%s", scene_sample);
+static int make_file(const options *o, const char *file) {
+    char *text = o->from ? text_from(o, file) : text_print("%s", scene_sample);
     int status = text ? write_new(file, text) : TOOL_USAGE;
     free(text);
     if (!status && !o->quiet)
         printf("%s is made.   Next: nevh compare %s\n", file, file);
+    return status;
+}
+
+int new_scene(const options *o) {
+    if (o->operands.count != 2)
+        return tool_refuse("nevh new takes one file to be made: FILE.nevh");
+    if (!o->from && o->settings.count)
+        return tool_refuse("--set, --with and --without change the scene that "
+                           "--from names");
+    char *file = file_of(o->operands.item[1]);
+    int status = make_file(o, file);
+    free(file);
     return status;
 }

@@ -24,25 +24,28 @@ static const struct {
     {"with", "A,B", OF_SCENES | FOR_NEW, read_with, "switch effects on"},
     {"without", "A,B", OF_SCENES | FOR_NEW, read_without, "switch effects off"},
     {"set", "NAME=VALUE", OF_SCENES | FOR_NEW, read_set,
-     "change a parameter; NAME=VALUE,NAME=VALUE several"},
+     "change a parameter; several: A=1,B=2"},
     {"start", "NAME=VALUE", OF_SCENES, read_start,
      "where a coordinate x, a momentum p_x or a velocity v_x starts"},
     {"integrators", "A,B", OF_SCENES | FOR_HARD, read_integrators,
      "see nevh list integrators; instead of the scene's"},
-    {"dt", "A,B", OF_SCENES, read_dt, "time steps, instead of the scene's"},
+    {"dt", "A,B", OF_SCENES, read_dt,
+     "time steps, instead of the scene's; formulas such as pi/50"},
     {"tolerance", "A,B", FOR_COMPARE | FOR_RUN | FOR_SECTION, read_tolerance,
-     "of adaptive schemes, instead of the scene's"},
-    {"t-end", "T", OF_SCENES, read_t_end, "the end, instead of the scene's"},
+     "of integrators that choose their steps; instead of the scene's"},
+    {"t-end", "T", OF_SCENES, read_t_end,
+     "the end, instead of the scene's; a formula"},
     {"gradient", "A,B", OF_SCENES | FOR_HARD, read_gradient,
      "central2, central4, ...; see nevh list gradients"},
     {"gradient-step", "D", OF_SCENES, read_gradient_step,
-     "half-spread of the differences; chosen by trial if not given"},
+     "step D of the finite differences, (H(x+D) - H(x-D))/2D; found "
+     "automatically if not given"},
     {"by", "energy|state", FOR_COST, read_by,
-     "which error digits are of; energy if not given"},
+     "count digits of the energy (default) or of the orbit"},
     {"energy-error", "X", FOR_RECOMMEND, read_energy_error,
-     "the largest that the energy may have"},
+     "largest relative energy error allowed"},
     {"state-error", "X", FOR_RECOMMEND, read_state_error,
-     "the largest that the orbit may have"},
+     "largest relative error of the orbit allowed"},
     {"repeat", "N", FOR_COMPARE | FOR_COST | FOR_RECOMMEND, read_repeat,
      "timed runs, of which the median counts"},
     {"every", "K", FOR_RUN, read_every, "a row each K steps, and at the end"},
@@ -50,13 +53,13 @@ static const struct {
      "N rows at equal times, the first and the last included"},
     {"at", "T1,T2", FOR_RUN, read_at, "rows at these times alone"},
     {"resume", "FILE", FOR_RUN, read_resume,
-     "go on with FILE, which nevh run -o FILE left unfinished,\n"
-     "                            from FILE.state, as if never interrupted"},
+     "go on with FILE, which nevh run -o FILE left unfinished, from "
+     "FILE.state, as if never interrupted"},
     {"transform", "FORMULA", FOR_COMPARE | FOR_RUN | FOR_SECTION,
      read_transform,
      "of time, for integrators NAME+transform; instead of the scene's"},
     {"match", "steps|work", FOR_COMPARE, read_match,
-     "work: equal numbers of gradients, not of steps"},
+     "work: rows take equal numbers of gradients instead of equal steps"},
     {"diagnostics", NULL, FOR_COMPARE, read_diagnostics,
      "symplecticity, reversal, solvers, invariants"},
     {"portable", NULL, OF_SCENES, read_portable,
@@ -74,27 +77,53 @@ static const struct {
     {"impact", NULL, FOR_EFFECTS, read_impact,
      "what each effect changes in the orbit, costs, and rules out"},
     {"all", NULL, FOR_LIST | FOR_HARD, read_all,
-     "list: with names in other packages and sources; hard: each run"},
+     "list: also the names in other packages, and sources. hard: each run"},
     {"format", "table|csv|json", OF_TABLES, read_format,
      "csv for run and section, table for others, if not given"},
     {"output", "FILE", OF_TABLES, read_file,
-     "-o FILE: write there; run line by line, others when it is whole"},
+     "write to FILE, when all of it is there; nevh run: as it goes"},
     {"quiet", NULL, OF_TABLES | FOR_NEW, read_quiet,
-     "the table alone, and no progress"},
-    {"help", NULL, ~0u, read_help, "-h: this"},
-    {"version", NULL, ~0u, read_version, "and the licence"},
+     "the table alone: no # lines, no words, no progress"},
+    {"help", NULL, ~0u, read_help, "this text"},
+    {"version", NULL, ~0u, read_version, "version and licence"},
 };
 enum { KNOWN = sizeof known / sizeof *known };
+
+void help_print(FILE *f, int used, int column, const char *text) {
+    enum { WIDTH = 80 };
+    if (column > 0 && used + 2 > column) {
+        fputc('\n', f);
+        used = 0;
+    }
+    for (; *text; used = 0) {
+        size_t end = strlen(text);
+        if (end > (size_t)(WIDTH - column))
+            for (end = (size_t)(WIDTH - column); end && text[end] != ' ';)
+                end--;
+        end = end ? end : strcspn(text, " ");
+        fprintf(f, "%*s%.*s\n", column - used, "", (int)end, text);
+        text += end;
+        text += strspn(text, " ");
+    }
+}
+
+/* Options that are letters, too. */
+static const char *letter_of(const char *name) {
+    return strcmp(name, "output") == 0 ? "-o, "
+           : strcmp(name, "help") == 0 ? "-h, "
+                                       : "";
+}
 
 void options_help(FILE *f, unsigned which) {
     fputs("\nOptions:\n", f);
     for (size_t i = 0; i < KNOWN; i++) {
-        char text[80];
+        const char *argument = known[i].argument;
         if (!(known[i].commands & which))
             continue;
-        snprintf(text, sizeof text, "--%s %s", known[i].name,
-                 known[i].argument ? known[i].argument : "");
-        fprintf(f, "  %-25s %s\n", text, known[i].help);
+        int used =
+            fprintf(f, "  %s--%s%s%s", letter_of(known[i].name), known[i].name,
+                    argument ? " " : "", argument ? argument : "");
+        help_print(f, used, 28, known[i].help);
     }
 }
 

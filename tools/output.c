@@ -118,6 +118,6 @@ int output_page(const options *o, const page *p, int status) {
     output out;
     if (output_open(&out, o->file))
         return TOOL_USAGE;
-    page_print(p, o->format, out.stream);
+    page_print(p, o, out.stream);
     return output_close(&out, status);
 }

@@ -22,7 +22,7 @@ static void add_record(table *t, const plan *p, const row *r) {
     table_number(t, when(r->ran, e->final));
     table_number(t, when(r->ran, e->drift));
     table_number(t, when(r->ran, r->state_error));
-    table_number(t, when(r->ran, r->counts.hamiltonians));
+    table_number(t, when(r->ran, round(r->counts.hamiltonians)));
     table_number(t, when(r->ran, (double)r->counts.gradients));
     table_number(t, when(r->ran, (double)r->counts.sweeps));
     table_number(t, when(r->ran, r->seconds));

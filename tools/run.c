@@ -168,7 +168,7 @@ static int open_new(job *j) {
         mind_signals();
     if (lines_open(&j->lines, o->file))
         return TOOL_USAGE;
-    for (size_t i = 0; i < j->notes.count; i++)
+    for (size_t i = 0; !o->quiet && i < j->notes.count; i++)
         lines_print(&j->lines, "# %s\n", j->notes.item[i]);
     trajectory_header(j->trajectory);
     if (!j->lines.regular)
@@ -241,7 +241,7 @@ static int write_rows(job *j) {
     bool pages = o->formatted && o->format != FORMAT_CSV;
     j->trajectory =
         trajectory_new(&j->plan, j->integrator, j->stepper, &j->rows,
-                       (sink){&j->lines, pages ? &result : NULL});
+                       (sink){&j->lines, pages ? &result : NULL, o->quiet});
     note(j);
     int status = pages ? write_page(j, &result) : write_lines(j);
     trajectory_free(j->trajectory);

@@ -101,7 +101,9 @@ static int not_found(const char *name) {
     if (!path)
         scenes_installed(&names, NULL);
     char *meant = suggestion(name, &names);
-    if (path)
+    if (is_folder(name))
+        tool_refuse("%s is a folder, not a scene", name);
+    else if (path)
         tool_refuse("there is no file %s%s%s%s", name,
                     meant ? "; did you mean " : "", meant ? meant : "",
                     meant ? "?" : "");

@@ -319,9 +319,20 @@ static void print_json(const page *p, FILE *f) {
     fputs("\n}\n", f);
 }
 
+/* Control characters of names and texts are for nobody's terminal. */
+static void print_safely(const char *text, size_t bytes, FILE *f) {
+    for (size_t i = 0; i < bytes; i++) {
+        unsigned char c = (unsigned char)text[i];
+        fputc((c < ' ' && c != '\t') || c == 0x7F ? '?' : c, f);
+    }
+}
+
 static void print_comments(const list *l, FILE *f) {
-    for (size_t i = 0; i < l->count; i++)
-        fprintf(f, "# %s\n", l->item[i]);
+    for (size_t i = 0; i < l->count; i++) {
+        fputs("# ", f);
+        print_safely(l->item[i], strlen(l->item[i]), f);
+        fputc('\n', f);
+    }
 }
 
 /* At spaces, so that lines have at most 80 characters; further lines of a text
@@ -339,7 +350,9 @@ static void print_wrapped(const char *text, FILE *f) {
                 last = text[i] == ' ' ? i : last;
             end = last ? last : strcspn(text, " ");
         }
-        fprintf(f, "%*s%.*s\n", (int)in, "", (int)end, text);
+        fprintf(f, "%*s", (int)in, "");
+        print_safely(text, end, f);
+        fputc('\n', f);
         text += end;
         text += strspn(text, " ");
     }
@@ -350,11 +363,12 @@ static void print_all_wrapped(const list *l, FILE *f) {
         print_wrapped(l->item[i], f);
 }
 
-void page_print(const page *p, table_format as, FILE *f) {
-    if (as == FORMAT_JSON) {
+void page_print(const page *p, const options *o, FILE *f) {
+    if (o->format == FORMAT_JSON) {
         print_json(p, f);
-    } else if (as == FORMAT_CSV) {
-        print_comments(&p->before, f);
+    } else if (o->format == FORMAT_CSV) {
+        if (!o->quiet)
+            print_comments(&p->before, f);
         print_csv(p->table, f);
     } else {
         print_all_wrapped(&p->before, f);

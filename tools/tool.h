@@ -100,12 +100,12 @@ __attribute__((format(printf, 2, 3))) void table_shown(table *,
 /* Begins a group of rows, set off by an empty line. */
 void table_group(table *);
 /* The whole: lines before and after are set off by "# " in CSV (those after
-   are left out there), and called notes and verdict in JSON. */
+   are left out there, and all with --quiet), and called notes and verdict in
+   JSON. */
 typedef struct {
     list before, after;
     table *table;
 } page;
-void page_print(const page *, table_format, FILE *);
 void page_free(page *);
 
 /* sample.c */
@@ -157,6 +157,9 @@ int options_check(const options *, unsigned which);
 void settings_notes(const options *, list *notes);
 void options_free(options *);
 void options_help(FILE *, unsigned which);
+/* Words of a help text between columns, in lines of 80 characters: the first
+   begins after `used` characters. */
+void help_print(FILE *, int used, int column, const char *text);
 
 /* output.c: a file that is there when it is whole, or stdout. */
 typedef struct {
@@ -172,6 +175,7 @@ int output_check(const char *name);
 int output_close(output *, int status);
 /* Opens what -o says, prints, closes. */
 int output_page(const options *, const page *, int status);
+void page_print(const page *, const options *, FILE *);
 
 /* scenes.c: scenes by file or name, changed as the options say. */
 /* The value of what an option was given: a formula of parameters.

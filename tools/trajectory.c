@@ -158,7 +158,7 @@ remark(trajectory *r, const char *format, ...) {
     va_end(arguments);
     if (r->to.page)
         list_add(&r->to.page->after, text);
-    else
+    else if (!r->to.quiet)
         lines_print(r->to.lines, "# %s\n", text);
 }
 

@@ -69,6 +69,7 @@ typedef struct {
 typedef struct {
     line_file *lines;
     page *page; /* NULL: to the lines */
+    bool quiet; /* without remarks on the lines */
 } sink;
 typedef struct trajectory trajectory;
 /* integrator  as plan_scheme takes it

@@ -45,7 +45,11 @@ bool nevh__expression_integer(nevh__scope *s, const nevh__expression *e,
         return false;
     if (!(number == floor(number)))
         return nevh__scope_fail(s, NEVH_EINVAL, e,
-                                "%s is %.10g, which is not a whole number",
+                                fabs(number - round(number)) > 1e-9
+                                    ? "%s is %.10g, which is not a whole number"
+                                    : "%s is %.17g, which is not a whole "
+                                      "number: rounding; write floor(... + "
+                                      "0.5)",
                                 what, number);
     if (fabs(number) > 0x1p53 || fabs(number) >= (double)LONG_MAX)
         return nevh__scope_fail(s, NEVH_EINVAL, e, "%s is %g: too large", what,

@@ -38,6 +38,17 @@ static const char *shown(nevh__parser *p, const nevh__token *token) {
     return copy ? copy : "...";
 }
 
+/* 0.3 rad */
+static void *refuse_unit(nevh__parser *p, const nevh__token *from,
+                         const nevh__token *to, const char *word) {
+    nevh__formula_fail(p->error, NEVH_EINVAL, from->column,
+                       to->column + to->length - from->column,
+                       "units are not read: put %s behind a #, or in [labels]; "
+                       "for a product write %s*%s",
+                       word, shown(p, from), word);
+    return NULL;
+}
+
 /* Two values side by side. */
 static void *refuse_neighbours(nevh__parser *p) {
     const nevh__token *from = &p->previous, *to = &p->token;
@@ -53,6 +64,9 @@ static void *refuse_neighbours(nevh__parser *p) {
     const char *right = to->kind == '(' ? "(...)" : shown(p, to);
     if (from->kind == ']')
         left = "[...]";
+    bool apart = from->at + from->bytes != to->at;
+    if (from->kind == NEVH__NUMERAL && to->kind == NEVH__WORD && apart)
+        return refuse_unit(p, from, to, right);
     nevh__formula_fail(p->error, NEVH_EINVAL, from->column,
                        to->column + to->length - from->column,
                        "an operator is missing; for a product write %s*%s",

@@ -19,6 +19,8 @@ static bool add_coordinate(nevh_scene *s, nevh__model *m,
     nevh__formula_error error = {0};
     if (is_motion(statement))
         return true;
+    if (!nevh__head_column(s, statement))
+        return false;
     if (!nevh__head_shape(s, m, statement, &shape))
         return false;
     if (nevh__names_add_coordinate(m->names, statement->head.name,
@@ -101,6 +103,9 @@ static bool take_period(nevh_scene *s, nevh__model *m,
     if (period <= 0)
         return nevh__scene_fail(s, NEVH_EINVAL, &formula,
                                 "a period is greater than 0, not %g", period);
+    if (m->period[c->first] > 0)
+        return nevh__scene_fail(s, NEVH_EINVAL, clause,
+                                "a period is given already");
     for (size_t k = 0; k < (c->count ? c->count : 1); k++)
         m->period[c->first + k] = period;
     return true;

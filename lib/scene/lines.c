@@ -20,17 +20,26 @@ static size_t count_lines(const char *text, size_t bytes) {
     return count;
 }
 
-/* Refuses what is not UTF-8, and NUL. */
+/* What moves a terminal's cursor or changes its colours, and NUL.  A form feed
+   stands between pages of some files. */
+static bool is_control(uint32_t code) {
+    return (code < ' ' && code != '\t' && code != '\f') ||
+           (code >= 0x7F && code < 0xA0);
+}
+
+/* Refuses what is not UTF-8, and control characters. */
 static bool check_characters(nevh_scene *s, const nevh__line *line) {
     size_t column = 1;
     uint32_t code;
     for (size_t i = 0; i < line->bytes; column++) {
         size_t bytes = nevh__character(line->text + i, &code);
-        if (!bytes || !code || i + bytes > line->bytes)
-            return nevh__scene_fail_at(s, NEVH_EINVAL, line, column, 1,
-                                       code || !bytes
-                                           ? "this is not UTF-8"
-                                           : "a NUL character: is this text?");
+        bool whole = bytes && i + bytes <= line->bytes;
+        if (!whole || is_control(code))
+            return nevh__scene_fail_at(
+                s, NEVH_EINVAL, line, column, 1,
+                !whole  ? "this is not UTF-8"
+                : !code ? "a NUL character: is this text?"
+                        : "a control character: is this text?");
         i += bytes;
     }
     return true;

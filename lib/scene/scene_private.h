@@ -222,6 +222,8 @@ bool nevh__head_bound(nevh_scene *, const nevh__model *, const nevh__piece *key,
    from the first to before the last. */
 bool nevh__head_range(nevh_scene *, const nevh__model *,
                       const nevh__statement *, size_t *from, size_t *to);
+/* Refuses the name of a column that every table of an orbit has. */
+bool nevh__head_column(nevh_scene *, const nevh__statement *);
 /* Refuses an index where none belongs. */
 bool nevh__head_plain(nevh_scene *, const nevh__statement *);
 

@@ -40,7 +40,9 @@ static nevh__item *add_item(nevh_scene *s, nevh__model *m, nevh_shown which,
 
 static bool add_observable(nevh_scene *s, nevh__model *m,
                            const nevh__statement *statement) {
-    nevh__item *item = add_item(s, m, NEVH_OBSERVABLES, statement);
+    nevh__item *item = nevh__head_column(s, statement)
+                           ? add_item(s, m, NEVH_OBSERVABLES, statement)
+                           : NULL;
     return item && nevh__formula_check(s, m, &statement->value, &item->formula);
 }
 

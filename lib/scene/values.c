@@ -20,6 +20,13 @@ bool nevh__head_plain(nevh_scene *s, const nevh__statement *statement) {
                             "a plain name belongs here, without an index");
 }
 
+bool nevh__head_column(nevh_scene *s, const nevh__statement *statement) {
+    return strcmp(statement->head.name, "energy") != 0 ||
+           nevh__scene_fail(s, NEVH_EINVAL, &statement->key,
+                            "energy is the value of H in tables and [labels]: "
+                            "take another name");
+}
+
 /* The index of NAME[i = 1..N] must be new. */
 static bool check_index(nevh_scene *s, const nevh__model *m,
                         const nevh__statement *statement) {
