@@ -1,6 +1,6 @@
 /* nevh bench: how often the verdict on the energy is wrong.
 
-       bench/verdicts [-s SHARE] [-w WORK] [-o WRONG] SRCDIR RUNS
+       bench/verdicts [-s SHARE] [-w WORK] [-o WRONG] SRCDIR [RUNS]
 
    Runs every scheme with fixed steps over the scenes of bench/orbits/list,
    steps from h w = 0.1 on, and runs of 5, 50 and 500 periods, asks for the
@@ -40,7 +40,7 @@ typedef struct {
 
 typedef struct {
     char name[64], file[512];
-    double frequency, period;
+    double frequency, period, share;
 } orbit;
 
 static size_t number_of(const char *verdict) {
@@ -88,7 +88,7 @@ static const char *judge(survey *v, const subject *s) {
 static void survey_row(survey *v, const orbit *o, const subject *s,
                        size_t length) {
     const long_run *run = long_run_of(s, spans, v->work);
-    if (!run->afforded || run->reached < 1)
+    if (!is_afforded(run, v->work) || run->reached < 1)
         return;
     truth known = truth_of(s, spans, v->work);
     label is = known.is;
@@ -113,7 +113,7 @@ static bool is_taken(const survey *v, const orbit *o, const subject *s) {
     hash = hash_of(hash, &s->t_end, sizeof s->t_end);
     double more = group_of(s->scheme) == RUNGE_KUTTA ? 4 : 1;
     double less = s->dt * o->frequency > 2.6 ? 0.25 : 1;
-    return (double)(hash >> 11) * 0x1p-53 < more * less * v->share;
+    return (double)(hash >> 11) * 0x1p-53 < more * less * o->share * v->share;
 }
 
 static nevh_stepper *new_stepper(const subject *s) {
@@ -161,6 +161,20 @@ static bool has_fixed_steps(const nevh_integrator *scheme) {
            !nevh_integrator_own_time(scheme);
 }
 
+static void survey_plan(survey *v, const orbit *o, const plan *p) {
+    nevh_options exact = plan_options(p, "exact");
+    exact.gradient_step = 0, exact.gradient_steps = NULL;
+    subject s = {.plan = p,
+                 .field = nevh_field_new(p->system, &exact),
+                 .scene = hash_file(o->file)};
+    for (size_t i = 0; nevh_integrators()[i]; i++) {
+        s.scheme = nevh_integrators()[i];
+        if (has_fixed_steps(s.scheme))
+            survey_scheme(v, o, &s);
+    }
+    nevh_field_free(s.field);
+}
+
 static int survey_scene(survey *v, const orbit *o) {
     char *words[] = {"nevh", "compare", (char *)o->file, "--dt", "1e-6", NULL};
     options given;
@@ -169,13 +183,8 @@ static int survey_scene(survey *v, const orbit *o) {
     int status = options_read(&given, 5, words);
     if (!status)
         status = plan_make(&p, &given);
-    for (size_t i = 0; !status && nevh_integrators()[i]; i++) {
-        subject s = {.plan = &p,
-                     .scheme = nevh_integrators()[i],
-                     .scene = hash_file(o->file)};
-        if (has_fixed_steps(s.scheme))
-            survey_scheme(v, o, &s);
-    }
+    if (!status)
+        survey_plan(v, o, &p);
     if (!status)
         plan_free(&p);
     options_free(&given);
@@ -188,9 +197,9 @@ static int survey_all(survey *v) {
     char line[256];
     int status = f ? TOOL_OK : tool_refuse("%s cannot be read", name);
     while (f && !status && fgets(line, sizeof line, f)) {
-        orbit o;
-        if (*line == '#' ||
-            sscanf(line, "%63s %lf %lf", o.name, &o.frequency, &o.period) != 3)
+        orbit o = {.share = 1};
+        if (*line == '#' || sscanf(line, "%63s %lf %lf %lf", o.name,
+                                   &o.frequency, &o.period, &o.share) < 3)
             continue;
         snprintf(o.file, sizeof o.file, "%s/%s.nevh", v->srcdir, o.name);
         double begin = cpu_seconds();
@@ -305,7 +314,7 @@ static bool report(survey *v) {
 }
 
 static int usage(void) {
-    fputs("Usage: verdicts [-s SHARE] [-w WORK] [-o WRONG] SRCDIR RUNS\n",
+    fputs("Usage: verdicts [-s SHARE] [-w WORK] [-o WRONG] SRCDIR [RUNS]\n",
           stderr);
     return TOOL_USAGE;
 }
@@ -320,10 +329,11 @@ int main(int argc, char **argv) {
         else if (c != 'o' || !(v.wrong = fopen(optarg, "w")))
             return usage();
     }
-    if (argc - optind != 2)
+    if (argc - optind != 1 && argc - optind != 2)
         return usage();
     v.srcdir = argv[optind];
-    runs_open(argv[optind + 1]);
+    if (argv[optind + 1])
+        runs_open(argv[optind + 1]);
     int status = survey_all(&v);
     if (!status && !report(&v))
         status = TOOL_FAILED;

@@ -29,6 +29,7 @@ typedef struct {
 typedef struct {
     const plan *plan;
     nevh_stepper *stepper;
+    nevh_field *field; /* of exact derivatives */
     const nevh_integrator *scheme;
     uint64_t scene; /* a hash of its text */
     double dt, t_end;
@@ -38,7 +39,10 @@ uint64_t hash_of(uint64_t before, const void *data, size_t size);
 /* Of the cache, or run and added to it.
    work  that it may take, as row_work counts it */
 const long_run *long_run_of(const subject *, double spans, double work);
-/* The file that holds all runs; long_run_of reads and adds to it. */
+/* Whether it was: else it says nothing. */
+bool is_afforded(const long_run *, double work);
+/* The file that holds runs, which long_run_of reads and adds to; without it
+   they are made anew. */
 void runs_open(const char *file);
 void runs_close(void);
 

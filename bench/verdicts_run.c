@@ -49,7 +49,8 @@ void runs_close(void) {
     for (size_t i = 0; i < count; i++)
         free(runs[i]);
     free(runs);
-    fclose(file);
+    if (file)
+        fclose(file);
 }
 
 typedef struct {
@@ -153,9 +154,7 @@ static void fly(flight *f, double work) {
 
 static void make_run(const subject *s, long_run *r, double work) {
     const plan *p = s->plan;
-    nevh_options o = plan_options(p, "exact");
-    o.gradient_step = 0, o.gradient_steps = NULL;
-    flight f = {.of = s, .run = r, .field = nevh_field_new(p->system, &o)};
+    flight f = {.of = s, .run = r, .field = s->field};
     double *rows = tool_allocate(4 * p->n, sizeof *rows);
     f.q = rows, f.p = rows + p->n, f.dq = f.p + p->n, f.dp = f.dq + p->n;
     f.effects = tool_allocate(nevh_system_effect_count(p->system) + 1,
@@ -168,7 +167,6 @@ static void make_run(const subject *s, long_run *r, double work) {
     find_scale(&f);
     if (!nevh_field_value(f.field, 1, &t, f.q, f.p, &f.h0))
         fly(&f, work);
-    nevh_field_free(f.field);
     free(f.effects);
     free(rows);
 }
@@ -183,6 +181,10 @@ static uint64_t key_of(const subject *s, double spans) {
     return hash_of(key, &spans, sizeof spans);
 }
 
+bool is_afforded(const long_run *r, double work) {
+    return r->afforded && r->work * r->spans <= work;
+}
+
 const long_run *long_run_of(const subject *s, double spans, double work) {
     uint64_t key = key_of(s, spans);
     for (size_t i = 0; i < count; i++)
@@ -193,7 +195,7 @@ const long_run *long_run_of(const subject *s, double spans, double work) {
     r->key = key, r->spans = spans;
     make_run(s, r, work);
     keep(r);
-    fwrite(r, sizeof *r, 1, file);
-    fflush(file);
+    if (file && (fwrite(r, sizeof *r, 1, file) != 1 || fflush(file)))
+        exit(tool_refuse("long runs cannot be written"));
     return r;
 }
