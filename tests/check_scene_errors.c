@@ -100,6 +100,7 @@ static const struct {
     {COORDINATES EFFECTS "[picture]\nrodd = 0, 0\n", "6:1", "mean rod?"},
     {COORDINATES EFFECTS "[picture]\nrod = 0, 0, x\n", "6:7", "4 numbers"},
     {COORDINATES EFFECTS "[picture]\nbob = 0, y\n", "6:10", "name y"},
+    {COORDINATES EFFECTS "[picture]\nbob = 0, x; Moon\n", "6:13", "name TEXT"},
     {COORDINATES EFFECTS "[sections]\na = x\n", "6:5", "is written"},
     {COORDINATES EFFECTS "[sections]\na = when x: p_x\n", "6:10", "\"=\""},
     {COORDINATES EFFECTS "[sections]\na = when x = 0: x\n", "6:14", "rising"},

@@ -163,6 +163,20 @@ START_TEST(a_strobe_needs_time) {
 }
 END_TEST
 
+START_TEST(parts_have_names_and_texts) {
+    nevh_scene *s = nevh_scene_parse(
+        "test", "[coordinates]\nx = 0\n[effects]\nT = p_x^2\n[picture]\n"
+                "bob = x, 2*x ; name The Moon \nrod = 0, 0, x, x\n");
+    ck_assert_str_eq(nevh_scene_part_at(s, 0).name, "The Moon");
+    ck_assert_str_eq(nevh_scene_part_at(s, 0).item[0], "x");
+    ck_assert_str_eq(nevh_scene_part_at(s, 0).item[1], "2*x");
+    ck_assert_uint_eq(nevh_scene_part_at(s, 0).count, 2);
+    ck_assert_ptr_null(nevh_scene_part_at(s, 1).name);
+    ck_assert_str_eq(nevh_scene_part_at(s, 1).item[3], "x");
+    nevh_scene_free(s);
+}
+END_TEST
+
 START_TEST(parts_of_the_picture) {
     nevh_scene *s = scene_of(shaken_pendulum);
     double values[4], x = sin(Q[0]), y = -cos(Q[0]);
@@ -285,6 +299,7 @@ int main(void) {
     tcase_add_test(cases, crossings_of_all_kinds);
     tcase_add_test(cases, a_strobe_needs_time);
     tcase_add_test(cases, parts_of_the_picture);
+    tcase_add_test(cases, parts_have_names_and_texts);
     tcase_add_test(cases, periods_of_coordinates);
     tcase_add_test(cases, stops_below_and_above);
     tcase_add_test(cases, nothing_in_a_scene_that_was_not_read);

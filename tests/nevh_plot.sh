@@ -41,7 +41,8 @@ shows 'Pendulum released at rest from 2 rad'
 shows 'dt = 0.1 s'
 shows 'dt = 0.05 s'
 shows 't (s)'
-shows '|energy error|, relative'
+shows 'largest |energy error| per bin'
+shows 'gradient central4; t = 0 ... 1000 s; errors relative to 4.078 J, the largest in each 3.3 s'
 for name in verlet rk4 euler; do
     test "$(texts | grep -cx $name)" = 1 ||
         fails "does not have $name in the legend once"
@@ -112,7 +113,7 @@ test "$(grep -c '^set logscale [xy]' $work/out.gp)" = 4 ||
 draws cost pendulum --integrators verlet,rk4,gauss4 --dt 0.2,0.1,0.05 \
     --t-end 20 --plot $svg --keep-plot-script $work/out.gp
 shows 'evaluations of the gradient'
-shows 't = 0 ... 20 s; gradient exact; errors relative to the scale of the energy'
+shows 'gradient exact; t = 0 ... 20 s; errors relative to the scale of the energy'
 shows 'order 2'
 shows 'order 4'
 for k in 1 2 3 4 5 6; do
@@ -133,34 +134,117 @@ test "$(points 2)" = 2 || fails "draws $(points 2) steps of 4"
 texts | grep -q 'are left out$' || fails "does not say so"
 
 # Orbits: an angle that goes round stays within its period, lines end there.
+# Where there is a picture rows are for files, and the picture says what it is.
 draws run pendulum-rotating --t-end 50 --dt 0.05 --every 1 --plot $svg \
-    --keep-plot-script $work/out.gp
+    --keep-plot-script $work/out.gp -o $work/rows.csv
+test -s $work/out && fails "prints"
 shows 'phi (rad)'
-shows p_phi
+shows 'p_phi (J s)'
+shows 'verlet, dt = 0.05 s; gradient central4; t = 0 ... 50 s; H = 22.2 J at the start'
 grep -q '^set xrange \[-3.14159265359:3.14159265359\]' $work/out.gp ||
     fails "shows another range"
 rounds=$(awk -F, '/^[0-9]/ { t = int(($2 + 3.14159265) / 6.2831853)
-    n += t != last; last = t } END { print n }' $work/out)
+    n += t != last; last = t } END { print n }' $work/rows.csv)
 breaks=$(awk '/^\$series1 <</ { on = 1 } /^EOD/ { on = 0 } on && NF == 0 { n++ }
     END { print n }' $work/out.gp)
 test $rounds -gt 40 || fails "goes round $rounds times"
 test "$rounds" = "$breaks" || fails "wraps $breaks times, not $rounds"
+test "$(points 2)" = 1 || fails "does not show the start"
 draws run kepler --t-end 5 --dt 0.05 --plot-kind energy --plot $svg
 shows '|energy error|, relative'
+test "$(cat $work/out)" = "$svg: verlet, dt = 0.05; -o FILE writes the rows as CSV" ||
+    fails "prints something else"
+draws run kepler --t-end 50 --dt 0.05 --plot-kind energy --plot $svg --quiet
+test -s $work/out && fails "is not quiet"
+shows 'largest |energy error| per bin'
+texts | grep -q '; errors relative to 0.5, the largest in each 0.17$' ||
+    fails "does not say what a point is"
+draws run pendulum --t-end 5 --plot $svg --format csv
+has '^t,phi,p_phi,'
+draws run fput --t-end 5 --plot $svg
+texts | grep -q '; the first 4 of 32 coordinates: --columns chooses others$' ||
+    fails "does not say what is left out"
+test "$(texts | grep -c '^p_x\[')" = 4 || fails "has other panels"
+draws run fput --t-end 5 --plot $svg --columns 'x[7],x[1]:x[2]'
+for text in 'x[7]' 'p_x[7]' 'x[1]' 'x[2]'; do shows "$text"; done
+exits 2 run fput --t-end 5 --plot $svg --columns 'x[1]:x[2]:x[3]'
+says 'takes --columns A:B'
 
-# Rods and bobs are where the last row says.
-draws run double-pendulum --t-end 5 --dt 0.02 --plot-kind configuration \
+# Against time: each column its panel, joined ones share it; a curve for each
+# scheme, and the exact solution where there is one.
+draws run oscillator-paper --plot-kind time --columns x,p_x,energy --plot $svg \
+    --keep-plot-script $work/out.gp --integrators verlet,rk4
+for text in 'x (m)' 'p_x (J s/m)' 'energy (J)' 't (s)' 'exact solution' \
+    verlet rk4 'dt = 0.02 s; gradient central2; t = 0 ... 3 s'; do
+    test "$(texts | grep -cxF -e "$text")" = 1 || { fails "lacks '$text'"; texts; }
+done
+# cos and sin of the paper's Figure 2, in all three series of both panels.
+awk 'function near(a, b, by) { return a - b < by && b - a < by }
+    /^\$series[0-9]+ <</ { k = substr($1, 8) + 0; next } /^EOD/ { k = 0 }
+    k && k < 7 && NF == 2 { n[k]++; w = 6.283185307179586; by = k % 3 == 2 ? 0.02 : k % 3 == 1 ? 1e-9 : 1e-4
+        bad += !near($2, k < 4 ? cos(w * $1) : -w * sin(w * $1), (k < 4 ? 1 : w) * by) }
+    k > 6 && NF == 2 { bad += !near($2, 19.7392088, 0.1); n[k]++ }
+    END { for (k = 1; k < 10; k++) bad += n[k] < 150; exit bad > 0 }' $work/out.gp ||
+    fails "draws other curves"
+draws run oscillator-paper --plot-kind time --columns x:p_x --samples 31 \
     --plot $svg --keep-plot-script $work/out.gp
-shows 'bob 1'
-shows 'bob 2'
-test "$(points 1)" = 251 || fails "does not draw the trail"
+shows 'x (m), p_x (J s/m)'
+test "$(points 3) $(points 4)" = "31 31" || fails "draws other rows"
+awk '/series[34] using/ { n += / with points linetype [12] / } END { exit n != 2 }' \
+    $work/out.gp || fails "does not draw points"
+# A run of 375 swings is cut, and says so; unless its end is asked for.
+draws run pendulum --plot-kind time --plot $svg
+shows 'verlet, dt = 0.1 s; gradient central4; t = 0 ... 50 s; a part of the run: --t-end 1000 shows all'
+for text in 'phi (rad)' 'p_phi (J s)' 'energy (J)'; do shows "$text"; done
+draws run pendulum --plot-kind time --plot $svg --t-end 1000 --columns phi
+shows 'verlet, dt = 0.1 s; gradient central4; t = 0 ... 1000 s'
+# What the scene shows, where there are many coordinates.
+draws run sun-earth-moon --plot-kind time --plot $svg --t-end 1 --without moon
+
+shows 'height'
+texts | grep -q '^distance (10.* km)$' || fails "does not show the distance"
+shows 'verlet, dt = 0.002 year; gradient central4; t = 0 ... 1 year'
+texts | grep -q 'but without moon' || fails "does not say what is off"
+exits 2 run pendulum --plot-kind time --columns phj --plot $svg
+says 'unknown column phj; did you mean phi'
+exits 2 run damped-driven-pendulum --plot-kind time --columns energy_error --plot $svg
+says 'plot-kind energy'
+exits 2 run pendulum --columns phi --plot-kind energy --plot $svg
+says 'columns is for'
+test -s $work/out && fails "runs before it looks at the columns"
+
+# Rods and bobs are where the last row says; between steps there are points.
+draws run double-pendulum --t-end 5 --dt 0.02 --plot-kind configuration \
+    --plot $svg --keep-plot-script $work/out.gp -o $work/rows.csv
+for text in 'bob 1' 'bob 2' 'x (m)' 'y (m)'; do shows "$text"; done
+texts | grep -q 't = 0 ... 5 s; circles: the start; discs: t = 5 s$' ||
+    fails "does not say when"
+test "$(points 1)" -gt 2000 || fails "does not draw the trail"
+# Circles about the pivot, chords of which do not show.
+awk '/^\$series1 <</ { on = 1; next } /^EOD/ { on = 0 }
+    on { r = $1 * $1 + $2 * $2; bad += r < 0.99999 || r > 1.00001
+        d = ($1 - x) ^ 2 + ($2 - y) ^ 2; bad += n++ && d > 0.01; x = $1; y = $2 }
+    END { exit bad > 0 }' $work/out.gp || fails "draws chords"
+awk '/ using 1:2 with lines/ && !/dashtype solid/ { bad++ } END { exit bad > 0 }' \
+    $work/out.gp || fails "draws dashed trails"
 awk -F, '/^t,/ { for (i = 1; i <= NF; i++) if ($i == "x1") k = i }
     /^[0-9]/ { for (i = 0; i < 4; i++) last[i] = $(k + i) }
     END { printf("%.6f %.6f\n%.6f %.6f\n", last[0], last[1], last[2], last[3]) }
-    ' $work/out >$work/rows
-awk '/^\$series[56] <</ { getline; printf("%.6f %.6f\n", $1, $2) }' \
+    ' $work/rows.csv >$work/rows
+awk '/^\$series[78] <</ { getline; printf("%.6f %.6f\n", $1, $2) }' \
     $work/out.gp >$work/drawn
 cmp $work/rows $work/drawn || fails "draws bobs elsewhere"
+awk '/^\$series[34] <</ { getline; print }' $work/out.gp >$work/drawn
+printf '1 -6.123233996e-17\n1 -1\n' | cmp - $work/drawn ||
+    { fails "draws starts elsewhere"; cat $work/drawn; }
+# Names of bobs, and axes by what places them.
+draws run sun-earth-moon --t-end 1 --plot-kind configuration --plot $svg
+for text in Sun Earth Moon 'x (AU)' 'y (AU)'; do shows "$text"; done
+sed 's/^bob = x\[\(.\)\], y.*/bob = x[\1], z[\1]/' $NEVH_SCENES/sun-earth-moon.nevh \
+    >$work/side.nevh
+draws run $work/side.nevh --t-end 1 --plot-kind configuration --plot $svg
+for text in 'bob 3' 'x (AU)'; do shows "$text"; done
+texts | grep -q '^z (.*AU)$' || fails "names another axis"
 # A unit is as long on both axes, also where the picture is wide.
 draws run figure-eight --t-end 7 --dt 0.05 --plot-kind configuration \
     --plot $svg --keep-plot-script $work/out.gp
@@ -175,9 +259,11 @@ exits 2 run henon-heiles --plot-kind configuration --plot $svg
 says 'no \[picture\]'
 test -s $work/out && fails "runs before it looks for a picture"
 exits 2 run pendulum --plot-kind portrait --plot $svg
-says 'phase, energy or configuration'
-exits 2 run pendulum --plot -
+says 'phase, energy, configuration or time'
+exits 2 run pendulum --plot - --format csv
 says 'with -o'
+exits 0 run pendulum --t-end 5 --plot -
+has 'p_phi'
 exits 0 run pendulum -o $work/rows.csv --t-end 5 --plot -
 has 'p_phi'
 

@@ -250,11 +250,16 @@ int read_plot_script(options *o, const char *argument) {
 
 int read_plot_kind(options *o, const char *argument) {
     static const char *const names[] = {"phase", "energy", "configuration",
-                                        NULL};
+                                        "time", NULL};
     int which;
     int status = read_name("plot-kind", argument, names, &which);
     o->plot_kind = (plot_kind)which;
     return status;
+}
+
+int read_columns(options *o, const char *argument) {
+    o->columns = argument;
+    return TOOL_OK;
 }
 
 int read_transform(options *o, const char *argument) {

@@ -57,6 +57,9 @@ int compare_plot(const options *o, const plan *p, const row rows[],
     if (!to)
         return tool_refuse("there is nothing to plot: no row has numbers");
     plot_same_ranges(to);
+    char *more = energy_plot_words(p);
+    plot_note_run(to, p, NULL, more);
+    free(more);
     int status = plot_write(to, o);
     plot_free(to);
     return status;

@@ -119,21 +119,17 @@ static bool all_have(const costs *c, work_of *count) {
     return true;
 }
 
-static char *note(const drawing *d) {
-    const plan *p = &d->costs->search.plan;
-    const char *unit = nevh_scene_label(p->scene, "t");
-    char *gradients = list_joined(&p->gradients);
+static void add_note(const drawing *d) {
     char *text = text_print(
-        "t = %.6g ... %.6g%s%s; gradient %s; %s%s", p->run->t_start, p->t_end,
-        *unit ? " " : "", unit, gradients,
+        "%s%s",
         d->costs->search.by_state
             ? "errors relative to the range of each variable"
             : "errors relative to the scale of the energy",
         d->left_out ? "; long steps that cost no less than shorter ones are "
                       "left out"
                     : "");
-    free(gradients);
-    return text;
+    plot_note_run(d->to, &d->costs->search.plan, NULL, text);
+    free(text);
 }
 
 int cost_plot(const options *o, const costs *c) {
@@ -151,9 +147,7 @@ int cost_plot(const options *o, const costs *c) {
     d.left_out = 0;
     draw_panel(&d);
     draw_guides(&d);
-    char *text = note(&d);
-    plot_note(d.to, text);
-    free(text);
+    add_note(&d);
     int status = plot_write(d.to, o);
     plot_free(d.to);
     return status;

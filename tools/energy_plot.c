@@ -1,14 +1,38 @@
 /* nevh: energy errors against time.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "energy_plot.h"
+#include <math.h>
 #include <stdlib.h>
 
 static const double absurd = 100; /* of an error relative to the energy */
 enum { MOST_POINTS = 300 };       /* of a line */
 
+/* Whether a point stands for several steps. */
+static bool has_bins(const plan *p) {
+    double shortest = INFINITY;
+    for (size_t i = 0; i < p->dts; i++)
+        shortest = fmin(shortest, p->dt[i]);
+    return (p->t_end - p->run->t_start) / shortest > MOST_POINTS;
+}
+
 static const char *quantity(const plan *p) {
-    return p->balance ? "|error of the balance|, relative"
-                      : "|energy error|, relative";
+    return has_bins(p)  ? p->balance ? "largest |balance error| per bin"
+                                     : "largest |energy error| per bin"
+           : p->balance ? "|error of the balance|, relative"
+                        : "|energy error|, relative";
+}
+
+char *energy_plot_words(const plan *p) {
+    const char *unit = nevh_scene_label(p->scene, "energy");
+    const char *time = nevh_scene_label(p->scene, "t");
+    double bin = (p->t_end - p->run->t_start) / MOST_POINTS;
+    char *scale = text_print("errors relative to %.4g%s%s",
+                             plan_energy_scale(p), *unit ? " " : "", unit);
+    char *text = has_bins(p) ? text_print("%s, the largest in each %.2g%s%s",
+                                          scale, bin, *time ? " " : "", time)
+                             : text_print("%s", scale);
+    free(scale);
+    return text;
 }
 
 static void set_axes(plot *to, const plan *p) {
@@ -40,7 +64,7 @@ void energy_plot_add(plot *to, const char *name, const envelope *e) {
     plot_style(to, series, PLOT_MARKED);
     for (size_t i = 0; i < ENVELOPE_PARTS; i++)
         parts += e->part[i].value >= 0;
-    size_t each = parts / MOST_POINTS + 1;
+    size_t each = (parts + MOST_POINTS - 1) / MOST_POINTS;
     for (size_t i = 0; i < ENVELOPE_PARTS; i++) {
         if (e->part[i].value < 0)
             continue;

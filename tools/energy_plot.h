@@ -9,6 +9,8 @@
 /* A plot, or one more panel. */
 plot *energy_plot_new(const plan *, const char *title, const char *heading);
 void energy_plot_panel(plot *, const plan *, const char *heading);
+/* What they are relative to, and what a point stands for; to be freed. */
+char *energy_plot_words(const plan *);
 /* A line in the current panel; name: NULL is none. */
 void energy_plot_add(plot *, const char *name, const envelope *);
 

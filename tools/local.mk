@@ -81,6 +81,15 @@ tools_nevh_SOURCES = \
 	tools/compare_plot.c \
 	tools/thinned.h \
 	tools/thinned.c \
+	tools/columns.h \
+	tools/columns.c \
+	tools/orbit.h \
+	tools/orbit.c \
+	tools/plot_words.c \
+	tools/run_plot_private.h \
+	tools/phase_plot.c \
+	tools/configuration_plot.c \
+	tools/time_plot.c \
 	tools/run_plot.c \
 	tools/section_plot.c \
 	tools/cost_plot.c

@@ -67,7 +67,11 @@ static const struct {
     {"plot", "FILE", OF_PLOTS, read_plot,
      "draw FILE.svg, .png or .pdf, or - in the terminal"},
     {"plot-kind", "KIND", FOR_RUN, read_plot_kind,
-     "phase (the default), energy or configuration"},
+     "phase (the default), time, energy or configuration"},
+    {"columns", "A,B:C", FOR_RUN, read_columns,
+     "what --plot-kind time or phase draws: a panel each, names\n"
+     "                            joined by : in one; t, coordinates, p_NAME,\n"
+     "                            observables, energy, energy_error"},
     {"keep-plot-script", "FILE", OF_PLOTS, read_plot_script,
      "write what gnuplot is told, data included"},
     {"section", "A,B", FOR_SECTION, read_section, "these alone, by name"},

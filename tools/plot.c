@@ -64,6 +64,10 @@ void plot_span_x(plot *p, double low, double high) {
     current(p)->span_x = (range){low, high};
 }
 
+void plot_stack(plot *p) {
+    p->stacked = true;
+}
+
 void plot_limit_y(plot *p, double low, double high) {
     current(p)->limit_y = (range){low, high};
 }
@@ -80,7 +84,9 @@ static size_t find_look(const plot *p, const char *name) {
         const series *s = &p->series[i];
         if (name && s->name && strcmp(name, s->name) == 0)
             return s->look;
-        if ((name || s->panel == p->panels - 1) && look <= s->look)
+        bool grey = s->form == PLOT_BEHIND || s->form == PLOT_RODS ||
+                    s->form == PLOT_GUIDE;
+        if (!grey && (name || s->panel == p->panels - 1) && look <= s->look)
             look = s->look + 1;
     }
     return look;
@@ -89,13 +95,21 @@ static size_t find_look(const plot *p, const char *name) {
 size_t plot_series(plot *p, const char *name) {
     size_t look = find_look(p, name);
     p->series = grown(p->series, p->count, sizeof *p->series);
-    p->series[p->count] =
-        (series){.name = copy(name), .panel = p->panels - 1, .look = look};
+    p->series[p->count] = (series){
+        .name = copy(name), .panel = p->panels - 1, .look = look, .size = 1};
     return p->count++;
 }
 
 void plot_style(plot *p, size_t number, plot_form form) {
     p->series[number].form = form;
+}
+
+void plot_size(plot *p, size_t number, double size) {
+    p->series[number].size = size;
+}
+
+void plot_dash(plot *p, size_t number, size_t dash) {
+    p->series[number].dash = dash;
 }
 
 void plot_like(plot *p, size_t number, size_t other) {
@@ -130,6 +144,8 @@ void plot_point(plot *p, size_t number, double x, double y) {
         plot_break(p, number);
     else if (shown(&p->panel[s->panel], x, y))
         add(s, (pair){x, y});
+    else
+        p->hidden++;
 }
 
 void plot_free(plot *p) {
@@ -149,9 +165,4 @@ void plot_free(plot *p) {
     free(p->panel);
     free(p->series);
     free(p);
-}
-
-char *plot_label(const plan *p, const char *name, const char *of) {
-    const char *unit = nevh_scene_label(p->scene, of);
-    return text_print(*unit ? "%s (%s)" : "%s%s", name, unit);
 }

@@ -12,12 +12,15 @@
 typedef struct plot plot;
 typedef enum {
     PLOT_LINES,
+    PLOT_TRAIL,  /* lines that are never dashed */
+    PLOT_BEHIND, /* a thick pale line */
     PLOT_MARKED, /* lines with a marker here and there */
     PLOT_BOTH,   /* lines with a marker at each point */
     PLOT_POINTS, /* markers */
     PLOT_DOTS,   /* the smaller the more they are */
     PLOT_RODS,   /* thick grey lines */
     PLOT_BOBS,   /* large discs */
+    PLOT_START,  /* small circles */
     PLOT_GUIDE   /* a thin grey line with its name at the last point, and not in
                     the legend */
 } plot_form;
@@ -40,17 +43,32 @@ void plot_span_x(plot *, double low, double high);  /* exactly this */
 void plot_limit_y(plot *, double low, double high); /* no more than this */
 /* All panels show the same ranges. */
 void plot_same_ranges(plot *);
+/* Panels are wide, one below the other, over one axis. */
+void plot_stack(plot *);
 
 /* A series of the current panel; returns its number.  Series of the same name
    look the same, and are in the legend once; NULL: not at all. */
 size_t plot_series(plot *, const char *name);
 void plot_style(plot *, size_t series, plot_form);
+void plot_size(plot *, size_t series, double size); /* of its marks; 1: usual */
+void plot_dash(plot *, size_t series, size_t dash); /* 0: none */
 void plot_like(plot *, size_t series, size_t other); /* the same colour */
 void plot_point(plot *, size_t series, double x, double y);
 void plot_break(plot *, size_t series); /* the line ends */
 
-/* "NAME (UNIT)", the unit being the scene's label of `of`; to be freed. */
+/* plot_words.c */
+/* "NAME (UNIT)", the unit being the scene's label of `of`, or, for a momentum
+   without one, what follows from those of energy, t and the coordinate; to be
+   freed. */
 char *plot_label(const plan *, const char *name, const char *of);
+/* Scheme, gradient and time.
+   scheme  NULL: several, and all gradients are named
+   more    NULL or "": nothing */
+void plot_note_run(plot *, const plan *, const char *scheme, const char *more);
+/* "verlet, dt = 0.1 s": the first dt or tolerance of the plan; to be freed. */
+char *plot_scheme(const plan *, const char *integrator);
+/* "H = 0.125 J at the start"; to be freed. */
+char *plot_energy_at_start(const plan *);
 
 /* section_plot.c: a panel, the first making the plot.
    numbers  of each point t, direction, and the items of the section */
@@ -63,6 +81,9 @@ bool plot_wanted(const options *); /* --plot or --keep-plot-script */
    any output is opened.
    returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int plot_check(const options *);
+/* Whether it goes to a file, which is to be written before anything is printed:
+   who reads that may stop reading. */
+bool plot_goes_first(const options *);
 /* Draws to --plot and keeps the script as --keep-plot-script says.
    returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int plot_write(plot *, const options *);

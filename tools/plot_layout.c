@@ -86,10 +86,18 @@ static void choose_panels(layout *l, const plot *p, const target *t) {
     } few[] = {{1, 640, 420}, {2, 400, 320}, {3, 320, 280}, {2, 400, 280}},
       many = {3, 300, 230};
     size_t last = sizeof few / sizeof *few;
-    l->columns = p->panels > last ? many.columns : few[p->panels - 1].columns;
-    l->panel_width = p->panels > last ? many.width : few[p->panels - 1].width;
-    l->panel_height =
-        p->panels > last ? many.height : few[p->panels - 1].height;
+    if (p->stacked) {
+        l->columns = 1;
+        l->panel_width = 640;
+        l->panel_height = fmax(fmin(720 / (double)p->panels, 340), 110);
+    } else {
+        l->columns =
+            p->panels > last ? many.columns : few[p->panels - 1].columns;
+        l->panel_width =
+            p->panels > last ? many.width : few[p->panels - 1].width;
+        l->panel_height =
+            p->panels > last ? many.height : few[p->panels - 1].height;
+    }
     if (p->panels == 1 && p->panel->equal)
         shape_panel(l, p);
     if (t->medium == PLOT_TEXT) {
@@ -158,6 +166,8 @@ layout plot_lay_out(const plot *p, const target *t) {
     l.right = 3 * l.letter;
     l.top = (text || has_headings(p) ? 1.8 : 0.7) * l.line;
     l.bottom = (text ? 3 : 3.7) * l.line;
+    if (p->stacked && !text)
+        l.bottom = 2.2 * l.line;
     choose_panels(&l, p, t);
     l.left = room_beside(p, &l, text);
     if (text)
@@ -166,6 +176,8 @@ layout plot_lay_out(const plot *p, const target *t) {
     l.note_lines = note_lines(p, &l);
     l.title = room_above(p, &l);
     l.height = (l.top + l.panel_height + l.bottom) * (double)l.rows + l.title;
+    if (p->stacked && !text)
+        l.height += 1.5 * l.line;
     l.legend_apart = legend > l.panel_height;
     l.height = fmax(l.height, l.title + l.top + legend);
     l.width = ceil(l.width); /* gnuplot takes whole pixels */

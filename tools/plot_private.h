@@ -15,8 +15,9 @@ typedef struct {
 
 typedef struct {
     char *name; /* NULL: not in the legend */
-    size_t panel, look;
+    size_t panel, look, dash;
     plot_form form;
+    double size; /* 1: as usual */
     size_t count, room;
     pair *point;
 } series;
@@ -33,7 +34,8 @@ struct plot {
     panel *panel;
     series *series;
     size_t panels, count; /* count: of series */
-    bool same_ranges;
+    bool same_ranges, stacked;
+    size_t hidden; /* points that no logarithmic axis shows */
 };
 
 /* plot_range.c: what an axis of a panel shows: the points, with some room, or

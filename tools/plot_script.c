@@ -135,6 +135,8 @@ static void print_looks(FILE *f, const plot *p) {
                 markers[k % MARKERS]);
 }
 
+static const double bob_size = 2.2;
+
 static double dot_size(size_t count) {
     static const double largest = 0.8, smallest = 0.15;
     return fmax(fmin(largest * pow(50 / (double)(count + 1), 0.3), largest),
@@ -146,6 +148,20 @@ static void print_form(FILE *f, const series *s) {
     switch (s->form) {
     case PLOT_LINES:
         fprintf(f, " with lines linetype %zu", number);
+        break;
+    case PLOT_TRAIL:
+        fprintf(f, " with lines linetype %zu dashtype %s", number,
+                dashes[s->dash % DASHES]);
+        break;
+    case PLOT_BEHIND:
+        fputs(" with lines linecolor rgb '#bbbbbb' linewidth 5 dashtype solid",
+              f);
+        break;
+    case PLOT_START:
+        fprintf(f,
+                " with points linetype %zu linewidth 1.5 pointtype 6 pointsize "
+                "%.2f",
+                number, 1.2 * s->size);
         break;
     case PLOT_MARKED:
         fprintf(f, " with linespoints linetype %zu pointinterval %zu", number,
@@ -170,8 +186,8 @@ static void print_form(FILE *f, const series *s) {
               f);
         break;
     case PLOT_BOBS:
-        fprintf(f, " with points linetype %zu pointtype 7 pointsize 2.2",
-                number);
+        fprintf(f, " with points linetype %zu pointtype 7 pointsize %.2f",
+                number, bob_size * s->size);
         break;
     }
 }
@@ -206,8 +222,8 @@ static void print_series(FILE *f, const plot *p, size_t i, bool here,
     if (drawn && p->series[i].form == PLOT_BOBS)
         fprintf(f,
                 ", \\\n    $series%zu using 1:2 with points linecolor rgb "
-                "'#000000' linewidth 1.5 pointtype 6 pointsize 2.2 notitle",
-                i + 1);
+                "'#000000' linewidth 1.5 pointtype 6 pointsize %.2f notitle",
+                i + 1, bob_size * p->series[i].size);
 }
 
 /* Names at the ends of guides. */
@@ -274,7 +290,10 @@ static void print_axes(FILE *f, const plot *p, size_t number, const layout *l,
     axes a = plot_axes(p, number, l, text);
     print_axis(f, 'x', &a.x);
     print_axis(f, 'y', &a.y);
-    print_texts(f, &p->panel[number], &a, l, text);
+    panel on = p->panel[number];
+    if (p->stacked && number + 1 < p->panels)
+        on.x = NULL;
+    print_texts(f, &on, &a, l, text);
 }
 
 static void print_place(FILE *f, size_t number, const layout *l) {

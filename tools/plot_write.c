@@ -60,6 +60,10 @@ bool plot_wanted(const options *o) {
     return o->plot || o->plot_script;
 }
 
+bool plot_goes_first(const options *o) {
+    return plot_wanted(o) && !in_terminal(o);
+}
+
 static bool same(const char *a, const char *b) {
     return a && b && strcmp(a, b) == 0;
 }
@@ -163,7 +167,10 @@ int plot_write(plot *p, const options *o) {
     if (find_target(o, &t))
         return TOOL_USAGE;
     if (is_empty(p))
-        return tool_refuse("there is nothing to plot");
+        return tool_refuse(p->hidden ? "there is nothing to plot: all values "
+                                       "are 0, which a logarithmic axis does "
+                                       "not show"
+                                     : "there is nothing to plot");
     int status = o->plot_script ? keep_script(p, o, t) : TOOL_OK;
     if (!status && o->plot)
         status = draw(p, o, &t);

@@ -241,7 +241,9 @@ static int write_rows(job *j) {
     bool pages = o->formatted && o->format != FORMAT_CSV;
     j->trajectory =
         trajectory_new(&j->plan, j->integrator, j->stepper, &j->rows,
-                       (sink){&j->lines, pages ? &result : NULL, o->quiet});
+                       (sink){.lines = &j->lines,
+                              .page = pages ? &result : NULL,
+                              .quiet = o->quiet});
     note(j);
     int status = pages ? write_page(j, &result) : write_lines(j);
     trajectory_free(j->trajectory);
@@ -253,10 +255,15 @@ static int run_job(job *j) {
     const options *o = j->options;
     if (choose_rows(j) || choose_integrator(j) || run_plot_check(o, &j->plan))
         return TOOL_USAGE;
-    int status = write_rows(j);
-    if (plot_wanted(o) && status != TOOL_USAGE)
-        return run_plot(o, &j->plan, j->integrator) ? TOOL_USAGE : status;
-    return status;
+    bool plots = plot_wanted(o), first = plots && !o->file && !o->resume;
+    int drawn = TOOL_OK, status = TOOL_OK;
+    if (first)
+        drawn = run_plot(o, &j->plan, j->integrator, &j->rows);
+    if (run_prints_rows(o))
+        status = write_rows(j);
+    if (plots && !first && status != TOOL_USAGE)
+        drawn = run_plot(o, &j->plan, j->integrator, &j->rows);
+    return drawn > status ? drawn : status;
 }
 
 int run_scene(const options *o) {

@@ -1,253 +1,104 @@
-/* nevh run --plot: phase portraits, configurations, the energy.
+/* nevh run --plot: what kinds of pictures share, and errors of the energy.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "energy_plot.h"
-#include "thinned.h"
-#include "trajectory.h"
+#include "run_plot_private.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_PANELS = 9, MOST_BOBS = 16 };
+/* Columns. */
 
-/* What is watched of a run; the state is the last one. */
-typedef struct {
-    const plan *plan;
-    const char *integrator;
-    nevh_stepper *stepper;
-    double t, *q, *p;
-    thinned rows;
-} watched_run;
-
-static int keep_time(void *data, size_t step, double t, const double q[],
-                     const double p[]) {
-    watched_run *o = data;
-    (void)step, (void)q, (void)p;
-    o->t = t;
-    return NEVH_OK;
-}
-
-/* What goes wrong shows in the picture, and was said by nevh run. */
-static void follow(watched_run *o, nevh_observer observers[], size_t count) {
-    double stopped;
-    observers[count - 1] = (nevh_observer){keep_time, o, 1};
-    plan_run(o->plan, o->stepper, o->plan->dt[0], o->q, o->p, observers, count,
-             &stopped);
-}
-
-static char *title_of(const watched_run *o, const char *more) {
-    const plan *p = o->plan;
-    const char *unit = nevh_scene_label(p->scene, "t");
-    return text_print("%s (%s, dt = %.4g%s%s%s)", p->title, o->integrator,
-                      p->dt[0], *unit ? " " : "", unit, more);
-}
-
-/* Phase portraits: rows of coordinates and momenta. */
-
-static int keep_phase(void *data, size_t step, double t, const double q[],
-                      const double p[]) {
-    watched_run *o = data;
-    double *at = thinned_next(&o->rows);
-    (void)step, (void)t;
-    for (size_t k = 0; at && k < o->rows.columns / 2; k++) {
-        at[2 * k] = q[k];
-        at[2 * k + 1] = p[k];
+static int read_panel(column_panels *c, const char *names) {
+    char *copy = text_print("%s", names), *rest = copy;
+    int status = TOOL_OK;
+    while (!status && rest) {
+        char *colon = strchr(rest, ':');
+        if (colon)
+            *colon = '\0';
+        status = columns_add(&c->columns, rest);
+        if (!status)
+            c->panel[c->columns.count - 1] = c->panels;
+        rest = colon ? colon + 1 : NULL;
     }
-    return NEVH_OK;
+    c->panels++;
+    free(copy);
+    return status;
 }
 
-/* The period to take the coordinate modulo; 0 where it stays within one. */
-static double wrapping(const watched_run *o, size_t k) {
-    double period = nevh_scene_period(o->plan->scene, k);
-    double low = INFINITY, high = -INFINITY;
-    for (size_t i = 0; i < o->rows.count; i++) {
-        double q = o->rows.row[i * o->rows.columns + 2 * k];
-        low = fmin(low, q);
-        high = fmax(high, q);
+int column_panels_read(column_panels *c, const plan *p, const char *text) {
+    list panels = {0};
+    int status = TOOL_OK;
+    list_split(&panels, text);
+    *c = (column_panels){.columns = columns_new(p),
+                         .panel =
+                             tool_allocate(strlen(text) + 1, sizeof(size_t))};
+    for (size_t i = 0; !status && i < panels.count; i++)
+        status = read_panel(c, panels.item[i]);
+    list_free(&panels);
+    return status;
+}
+
+void column_panels_free(column_panels *c) {
+    columns_free(&c->columns);
+    free(c->panel);
+}
+
+void column_panels_fill(void *data, double t, const double q[],
+                        const double p[], double values[]) {
+    columns_values(&((column_panels *)data)->columns, t, q, p, values);
+}
+
+/* Runs. */
+
+int picture_follow(run_picture *is, const row_times *times, size_t columns,
+                   orbit_fill *fill, void *data) {
+    int worst = TOOL_OK;
+    for (size_t i = 0; i < is->orbits.count; i++) {
+        int status = orbit_follow(&is->orbits.item[i], times, columns, fill,
+                                  data, is->quiet);
+        worst = status > worst ? status : worst;
     }
-    return high - low > period ? period : 0;
+    return worst;
 }
 
-/* A line leaves the panel at one side, and comes in at the other. */
-static void turn_over(plot *to, size_t series, const double from[],
-                      const double at[], double old, double new) {
-    plot_point(to, series, at[0] - old, at[1]);
-    plot_break(to, series);
-    plot_point(to, series, from[0] - new, from[1]);
+/* 1, 2 or 5 times a power of ten that is not longer. */
+static double rounded(double span) {
+    double power = pow(10, floor(log10(span))), digits = span / power;
+    return power * (digits >= 5 ? 5 : digits >= 2 ? 2 : 1);
 }
 
-static void draw_phase(plot *to, const watched_run *o, size_t k) {
-    double period = wrapping(o, k), shift = 0, last = 0;
-    bool whole = o->rows.part == 1;
-    size_t series = plot_series(to, NULL), width = o->rows.columns;
-    plot_style(to, series, whole ? PLOT_LINES : PLOT_DOTS);
-    if (period > 0)
-        plot_span_x(to, -period / 2, period / 2);
-    for (size_t i = 0; i < o->rows.count; i++, last = shift) {
-        const double *at = o->rows.row + i * width + 2 * k;
-        if (period > 0)
-            shift = period * floor(at[0] / period + 0.5);
-        if (i && shift != last && whole)
-            turn_over(to, series, at - width, at, last, shift);
-        plot_point(to, series, at[0] - shift, at[1]);
-    }
+char *picture_cut(run_picture *is, double turns) {
+    static const double most = 60, wanted = 25;
+    double begin = is->plan.run->t_start, whole = is->plan.t_end;
+    if (is->options->t_end || turns <= most)
+        return NULL;
+    is->plan.t_end = begin + rounded((whole - begin) * wanted / turns);
+    for (size_t i = 0; i < is->orbits.count; i++)
+        is->orbits.item[i].plan.t_end = is->plan.t_end;
+    return text_print("a part of the run: --t-end %g shows all", whole);
 }
 
-static plot *plot_phase(watched_run *o) {
-    const plan *p = o->plan;
-    size_t panels = p->n < MOST_PANELS ? p->n : MOST_PANELS;
-    char *more = p->n > panels
-                     ? text_print("; %zu of %zu coordinates", panels, p->n)
-                     : text_print("%s", "");
-    nevh_observer observers[2] = {{keep_phase, o, 1}};
-    o->rows = thinned_new(2 * panels);
-    follow(o, observers, 2);
-    char *title = title_of(o, more);
-    free(more);
-    plot *to = NULL;
-    for (size_t k = 0; k < panels; k++) {
-        const char *name = nevh_scene_coordinate(p->scene, k);
-        char *momentum = text_print("p_%s", name);
-        char *x = plot_label(p, name, name);
-        char *y = plot_label(p, momentum, momentum);
-        if (to)
-            plot_panel(to, NULL, x, y);
-        else
-            to = plot_new(title, x, y);
-        draw_phase(to, o, k);
-        free(momentum);
-        free(x);
-        free(y);
-    }
-    free(title);
-    return to;
+void picture_note(const run_picture *is, plot *to, const char *more) {
+    const orbits *all = &is->orbits;
+    char *scheme =
+        all->count == 1 ? plot_scheme(&all->item->plan, all->item->integrator)
+        : is->plan.dts == 1 || is->options->dt.count <= 1
+            ? text_print("dt = %.4g%s%s", is->plan.dt[0],
+                         *nevh_scene_label(is->plan.scene, "t") ? " " : "",
+                         nevh_scene_label(is->plan.scene, "t"))
+            : text_print("%s", all->item->integrator);
+    char *others = list_joined(&all->left_out);
+    char *text = text_print("%s%s%s", *others ? "not drawn: " : "", others,
+                            *others && *more ? "; " : "");
+    char *whole = text_print("%s%s", text, more);
+    plot_note_run(to, &is->plan, scheme, whole);
+    free(whole);
+    free(text);
+    free(others);
+    free(scheme);
 }
 
-/* Configurations: rows of the places of bobs. */
-
-static size_t count_bobs(nevh_scene *s) {
-    size_t count = 0;
-    for (size_t i = 0; i < nevh_scene_part_count(s); i++)
-        count += strcmp(nevh_scene_part_at(s, i).kind, "bob") == 0;
-    return count < MOST_BOBS ? count : MOST_BOBS;
-}
-
-/* Of part i; NANs where its formulas have no value. */
-static void part(const watched_run *o, size_t i, double t, const double q[],
-                 const double p[], double values[4]) {
-    for (size_t k = 0; k < 4; k++)
-        values[k] = NAN;
-    nevh_scene_part_values(o->plan->scene, i, t, q, p, values);
-}
-
-static int keep_bobs(void *data, size_t step, double t, const double q[],
-                     const double p[]) {
-    watched_run *o = data;
-    nevh_scene *s = o->plan->scene;
-    double *at = thinned_next(&o->rows), values[4];
-    (void)step;
-    for (size_t i = 0, bob = 0; at && bob < o->rows.columns / 2; i++)
-        if (strcmp(nevh_scene_part_at(s, i).kind, "bob") == 0) {
-            part(o, i, t, q, p, values);
-            memcpy(at + 2 * bob++, values, 2 * sizeof *values);
-        }
-    return NEVH_OK;
-}
-
-/* returns  the series */
-static size_t draw_trail(plot *to, const watched_run *o, size_t bob) {
-    size_t series = plot_series(to, NULL);
-    plot_style(to, series, o->rows.part < 1 ? PLOT_DOTS : PLOT_LINES);
-    for (size_t i = 0; i < o->rows.count; i++) {
-        const double *at = o->rows.row + i * o->rows.columns + 2 * bob;
-        plot_point(to, series, at[0], at[1]);
-    }
-    return series;
-}
-
-static void draw_rod(plot *to, const double values[4]) {
-    size_t series = plot_series(to, NULL);
-    plot_style(to, series, PLOT_RODS);
-    plot_point(to, series, values[0], values[1]);
-    plot_point(to, series, values[2], values[3]);
-}
-
-static void draw_bob(plot *to, const char *name, size_t trail,
-                     const double values[2]) {
-    size_t series = plot_series(to, name);
-    plot_style(to, series, PLOT_BOBS);
-    plot_like(to, series, trail);
-    plot_point(to, series, values[0], values[1]);
-}
-
-/* Where all is at the end. */
-static void draw_rods(plot *to, const watched_run *o) {
-    nevh_scene *s = o->plan->scene;
-    double values[4];
-    for (size_t i = 0; i < nevh_scene_part_count(s); i++)
-        if (strcmp(nevh_scene_part_at(s, i).kind, "rod") == 0) {
-            part(o, i, o->t, o->q, o->p, values);
-            draw_rod(to, values);
-        }
-}
-
-static void draw_bobs(plot *to, const watched_run *o, const size_t trails[]) {
-    nevh_scene *s = o->plan->scene;
-    size_t bobs = o->rows.columns / 2, bob = 0;
-    double values[4];
-    for (size_t i = 0; i < nevh_scene_part_count(s) && bob < bobs; i++)
-        if (strcmp(nevh_scene_part_at(s, i).kind, "bob") == 0) {
-            char *name = bobs > 1 ? text_print("bob %zu", bob + 1) : NULL;
-            part(o, i, o->t, o->q, o->p, values);
-            draw_bob(to, name, trails[bob++], values);
-            free(name);
-        }
-}
-
-static plot *plot_configuration(watched_run *o) {
-    nevh_scene *s = o->plan->scene;
-    size_t bobs = count_bobs(s), trails[MOST_BOBS];
-    nevh_observer observers[2] = {{keep_bobs, o, 1}};
-    o->rows = thinned_new(2 * bobs);
-    follow(o, observers, 2);
-    char *title = title_of(o, "");
-    plot *to = plot_new(title, "x", "y");
-    plot_equal(to);
-    for (size_t bob = 0; bob < bobs; bob++)
-        trails[bob] = draw_trail(to, o, bob);
-    draw_rods(to, o);
-    draw_bobs(to, o, trails);
-    free(title);
-    return to;
-}
-
-/* The energy. */
-
-static nevh_energy *new_energy(const watched_run *o) {
-    const plan *p = o->plan;
-    nevh_options planned = plan_options(p, p->gradients.item[0]);
-    nevh_energy *energy = nevh_energy_new(p->system, &planned);
-    if (p->balance)
-        nevh_energy_follow(energy, o->stepper);
-    if (p->run->energy_scale > 0)
-        nevh_energy_set_scale(energy, p->run->energy_scale);
-    return energy;
-}
-
-static plot *plot_energy(watched_run *o) {
-    const plan *p = o->plan;
-    nevh_energy *energy = new_energy(o);
-    energy_trace trace = {envelope_new(p->run->t_start, p->t_end), energy};
-    nevh_observer observers[3] = {{nevh_energy_observe, energy, 1},
-                                  {energy_trace_observe, &trace, 1}};
-    follow(o, observers, 3);
-    char *title = title_of(o, "");
-    plot *to = energy_plot_new(p, title, NULL);
-    energy_plot_add(to, NULL, trace.envelope);
-    nevh_energy_free(energy);
-    free(trace.envelope);
-    free(title);
-    return to;
-}
+/* Errors of the energy. */
 
 static nevh_stepper *new_stepper(const plan *p, const char *integrator) {
     nevh_options o = plan_options(p, p->gradients.item[0]);
@@ -260,40 +111,129 @@ static nevh_stepper *new_stepper(const plan *p, const char *integrator) {
     return nevh_stepper_new(p->system, scheme, &o);
 }
 
+static nevh_energy *new_energy(const plan *p, const nevh_stepper *s) {
+    nevh_options planned = plan_options(p, p->gradients.item[0]);
+    nevh_energy *energy = nevh_energy_new(p->system, &planned);
+    if (p->balance)
+        nevh_energy_follow(energy, s);
+    if (p->run->energy_scale > 0)
+        nevh_energy_set_scale(energy, p->run->energy_scale);
+    return energy;
+}
+
 static double *copy(const double from[], size_t count) {
     double *to = tool_allocate(count, sizeof *to);
     memcpy(to, from, count * sizeof *to);
     return to;
 }
 
-int run_plot_check(const options *o, const plan *p) {
-    options as = *o;
-    as.file = o->resume ? o->resume : o->file;
-    as.format = o->formatted ? o->format : FORMAT_CSV;
-    if (plot_wanted(o) && o->plot_kind == PLOT_CONFIGURATION &&
-        nevh_scene_part_count(p->scene) == 0)
+static void draw_energy(plot *to, const run_picture *is, const orbit *o) {
+    const plan *p = &o->plan;
+    nevh_stepper *s = new_stepper(p, o->integrator);
+    nevh_energy *energy = new_energy(p, s);
+    energy_trace trace = {envelope_new(p->run->t_start, p->t_end), energy};
+    nevh_observer observers[] = {{nevh_energy_observe, energy, 1},
+                                 {energy_trace_observe, &trace, 1}};
+    double *q = copy(p->q, p->n), *m = copy(p->p, p->n), stopped;
+    if (plan_run(p, s, p->dt[0], q, m, observers, 2, &stopped) && !is->quiet)
+        tool_refuse("%s: %s failed: %s", p->name, o->integrator,
+                    nevh_stepper_message(s));
+    energy_plot_add(to, is->orbits.count > 1 ? o->name : NULL, trace.envelope);
+    nevh_energy_free(energy);
+    nevh_stepper_free(s);
+    free(trace.envelope);
+    free(q);
+    free(m);
+}
+
+static plot *plot_energy(run_picture *is) {
+    plot *to = energy_plot_new(&is->plan, is->plan.title, NULL);
+    for (size_t i = 0; i < is->orbits.count; i++)
+        draw_energy(to, is, &is->orbits.item[i]);
+    char *more = energy_plot_words(&is->plan);
+    picture_note(is, to, more);
+    free(more);
+    return to;
+}
+
+/* Kinds. */
+
+static int check_kind(const options *o, const plan *p) {
+    bool configuration = o->plot_kind == PLOT_CONFIGURATION;
+    bool columns = o->plot_kind == PLOT_TIME || o->plot_kind == PLOT_PHASE;
+    if (o->columns && !(plot_wanted(o) && columns))
+        return tool_refuse("--columns is for --plot with --plot-kind time or "
+                           "phase");
+    if (plot_wanted(o) && configuration && nevh_scene_part_count(p->scene) == 0)
         return tool_refuse("%s: the scene has no [picture] to plot, as: bob = "
                            "x, y",
                            p->name);
-    return plot_check(&as);
+    return TOOL_OK;
 }
 
-int run_plot(const options *given, const plan *p, const char *integrator) {
-    static plot *(*const draw[])(watched_run *) = {[PLOT_PHASE] = plot_phase,
+bool run_prints_rows(const options *o) {
+    return o->file || o->resume || o->formatted || !plot_wanted(o);
+}
+
+int run_plot_check(const options *o, const plan *p) {
+    options as = *o;
+    as.file = o->resume ? o->resume : o->file;
+    as.format = !run_prints_rows(o) ? FORMAT_TABLE
+                : o->formatted      ? o->format
+                                    : FORMAT_CSV;
+    return check_kind(o, p) ? TOOL_USAGE : plot_check(&as);
+}
+
+static size_t points_of(const run_picture *is) {
+    return is->orbits.count ? is->orbits.item[0].rows.seen : 0;
+}
+
+/* What was drawn, where nothing else is printed. */
+static void say_written(const run_picture *is) {
+    const options *o = is->options;
+    if (o->quiet || run_prints_rows(o) || !plot_goes_first(o))
+        return;
+    char *scheme = plot_scheme(&is->plan, is->orbits.item->integrator);
+    printf("%s: %s%s", o->plot ? o->plot : o->plot_script, scheme,
+           is->orbits.count > 1 ? " and others" : "");
+    if (points_of(is))
+        printf(", %zu points", points_of(is));
+    puts("; -o FILE writes the rows as CSV");
+    free(scheme);
+}
+
+static int worst_status(const run_picture *is) {
+    int worst = TOOL_OK;
+    for (size_t i = 0; i < is->orbits.count; i++)
+        worst = is->orbits.item[i].status > worst ? is->orbits.item[i].status
+                                                  : worst;
+    return worst;
+}
+
+int run_plot(const options *o, const plan *p, const char *integrator,
+             const row_times *rows) {
+    static plot *(*const draw[])(run_picture *) = {[PLOT_PHASE] = plot_phase,
                                                    [PLOT_CONFIGURATION] =
                                                        plot_configuration,
-                                                   [PLOT_ENERGY] = plot_energy};
-    watched_run o = {.plan = p,
-                     .integrator = integrator,
-                     .stepper = new_stepper(p, integrator),
-                     .q = copy(p->q, p->n),
-                     .p = copy(p->p, p->n)};
-    plot *to = draw[given->plot_kind](&o);
-    int status = plot_write(to, given);
+                                                   [PLOT_ENERGY] = plot_energy,
+                                                   [PLOT_TIME] = plot_time};
+    run_picture is = {.options = o,
+                      .plan = *p,
+                      .orbits = orbits_new(o, p, integrator),
+                      .rows =
+                          o->every || o->samples || o->at.count ? rows : NULL,
+                      .quiet = run_prints_rows(o)};
+    plot *to = draw[o->plot_kind](&is);
+    int status = to ? plot_write(to, o) : TOOL_USAGE;
+    if (!status) {
+        say_written(&is);
+        status = worst_status(&is);
+    }
     plot_free(to);
-    thinned_free(&o.rows);
-    nevh_stepper_free(o.stepper);
-    free(o.q);
-    free(o.p);
+    if (is.plan.reference != p->reference)
+        nevh_reference_free(is.plan.reference);
+    if (is.plan.no_reference != p->no_reference)
+        free(is.plan.no_reference);
+    orbits_free(&is.orbits);
     return status;
 }

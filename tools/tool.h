@@ -128,7 +128,12 @@ enum {
 
 /* options.c: the command line. */
 typedef enum { MATCH_SCENE, MATCH_STEPS, MATCH_WORK } matching;
-typedef enum { PLOT_PHASE, PLOT_ENERGY, PLOT_CONFIGURATION } plot_kind;
+typedef enum {
+    PLOT_PHASE,
+    PLOT_ENERGY,
+    PLOT_CONFIGURATION,
+    PLOT_TIME
+} plot_kind;
 typedef struct {
     list operands, settings, integrators, gradients; /* settings: see below */
     list sections;
@@ -142,7 +147,8 @@ typedef struct {
     matching match;
     plot_kind plot_kind;
     const char *file, *plot, *plot_script, *transform, *resume, *from;
-    bool formatted; /* --format was given */
+    const char *columns; /* NULL: not given */
+    bool formatted;      /* --format was given */
     bool quiet, portable, all, by_state, diagnostics, impact, allow_code;
     bool help, version;
     unsigned long long used; /* a bit an option */

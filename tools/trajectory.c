@@ -136,6 +136,9 @@ static void add_numbers(trajectory *r, const double numbers[], size_t count,
 static int show(trajectory *r, double t, const double q[], const double p[]) {
     double energy;
     nevh_scene *scene = r->plan->scene;
+    r->now.at.written = t;
+    if (r->to.take)
+        return r->to.take(r->to.data, t, q, p);
     if (nevh_scene_shown_values(scene, NEVH_OBSERVABLES, t, q, p, r->observed))
         return fprintf(stderr, "%s\n", nevh_scene_message(scene)), TOOL_USAGE;
     if (nevh_field_value(nevh_stepper_field(r->branch), 1, &t, q, p, &energy))
@@ -145,7 +148,6 @@ static int show(trajectory *r, double t, const double q[], const double p[]) {
     add_numbers(r, p, r->plan->n, ',');
     add_numbers(r, r->observed, r->observables, ',');
     add_numbers(r, &energy, 1, '\n');
-    r->now.at.written = t;
     return r->to.page ? TOOL_OK : lines_end(r->to.lines);
 }
 
@@ -158,14 +160,15 @@ remark(trajectory *r, const char *format, ...) {
     va_end(arguments);
     if (r->to.page)
         list_add(&r->to.page->after, text);
-    else if (!r->to.quiet)
+    else if (r->to.lines && !r->to.quiet)
         lines_print(r->to.lines, "# %s\n", text);
 }
 
 static int failed(trajectory *r, double t, const char *why) {
     remark(r, "failed after t = %.9g: %s", t, why);
-    tool_refuse("%s: %s failed after t = %.9g: %s", r->plan->name,
-                r->integrator, t, why);
+    if (!r->to.mute)
+        tool_refuse("%s: %s failed after t = %.9g: %s", r->plan->name,
+                    r->integrator, t, why);
     return TOOL_FAILED;
 }
 

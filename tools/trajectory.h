@@ -65,11 +65,15 @@ typedef struct {
     size_t every, count; /* count: rows, where they are not by steps */
     double *time;        /* BY_TIMES */
 } row_times;
-/* Where rows and remarks go: lines, or a page. */
+/* Where rows and remarks go: lines, or a page, or states to a function. */
 typedef struct {
     line_file *lines;
     page *page; /* NULL: to the lines */
+    /* NULL: to the page or the lines; returns TOOL_OK, or what ends the run. */
+    int (*take)(void *data, double t, const double q[], const double p[]);
+    void *data;
     bool quiet; /* without remarks on the lines */
+    bool mute;  /* failures are not printed */
 } sink;
 typedef struct trajectory trajectory;
 /* integrator  as plan_scheme takes it
@@ -95,9 +99,14 @@ bool trajectory_finished(const trajectory *);
 run_state *trajectory_state(trajectory *);
 int trajectory_restore(trajectory *);
 
-/* run_plot.c: as plot_write and plot_check; draws a run of its own, with the
-   first dt and gradient. */
-int run_plot(const options *, const plan *, const char *integrator);
+/* run_plot.c: as plot_write and plot_check; draws runs of their own, with the
+   first dt and gradient unless several are asked for.
+   rows     that options ask for
+   returns  TOOL_FAILED, too, where a run failed */
+int run_plot(const options *, const plan *, const char *integrator,
+             const row_times *rows);
 int run_plot_check(const options *, const plan *);
+/* Whether rows are wanted, beside or without a picture. */
+bool run_prints_rows(const options *);
 
 #endif

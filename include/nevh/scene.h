@@ -202,10 +202,13 @@ NEVH_API int nevh_scene_section_items(nevh_scene *, size_t i, double t,
                                       const double q[], const double p[],
                                       double values[]);
 
-/* [picture]: "rod" from x, y to x, y; "bob" at x, y. */
+/* [picture]: "rod" from x, y to x, y; "bob" at x, y; "; name TEXT" may follow.
+ */
 typedef struct {
-    const char *kind; /* NULL: i was out of range */
-    size_t count;     /* of its values */
+    const char *kind;        /* NULL: i was out of range */
+    size_t count;            /* of its values */
+    const char *const *item; /* their texts */
+    const char *name;        /* NULL: none is given */
 } nevh_scene_part;
 NEVH_API size_t nevh_scene_part_count(const nevh_scene *);
 NEVH_API nevh_scene_part nevh_scene_part_at(const nevh_scene *, size_t i);

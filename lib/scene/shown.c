@@ -96,6 +96,43 @@ static nevh__drawn *add_part(nevh_scene *s, nevh__model *m) {
     return m->drawn ? &m->drawn[m->n_drawn++] : NULL;
 }
 
+/* name TEXT */
+static bool take_name(nevh_scene *s, nevh__model *m, const nevh__piece *clause,
+                      nevh__drawn *part) {
+    const size_t word = strlen("name");
+    size_t at = (size_t)(clause->at - clause->line->text);
+    nevh__piece name;
+    if (strncmp(clause->text, "name", word) != 0 || !clause->text[word] ||
+        !strchr(" \t", clause->text[word]))
+        return nevh__scene_fail(s, NEVH_EINVAL, clause,
+                                "what may follow \";\" is: name TEXT");
+    if (!nevh__piece_take(s, &m->pool, clause->line, at + word,
+                          at + strlen(clause->text), &name))
+        return false;
+    part->is.name = name.text;
+    return true;
+}
+
+/* LIST, or LIST ; name TEXT */
+static bool take_values(nevh_scene *s, nevh__model *m, const nevh__piece *value,
+                        nevh__drawn *part) {
+    nevh__piece rest = *value, list;
+    char stop;
+    if (!nevh__piece_split(s, &m->pool, &rest, ";", &list, &stop))
+        return false;
+    part->values = nevh__formula_list(s, m, &list, &part->is.count);
+    if (!part->values)
+        return false;
+    const char **texts =
+        nevh__pool_take(&m->pool, part->is.count, sizeof *texts);
+    if (!texts)
+        return nevh__scene_no_memory(s);
+    for (size_t i = 0; i < part->is.count; i++)
+        texts[i] = part->values[i].piece.text;
+    part->is.item = texts;
+    return !stop || take_name(s, m, &rest, part);
+}
+
 static bool add_drawn(nevh_scene *s, nevh__model *m,
                       const nevh__statement *statement) {
     static const char *const known[] = {"rod", "bob"};
@@ -107,8 +144,7 @@ static bool add_drawn(nevh_scene *s, nevh__model *m,
         if (strcmp(known[i], name) != 0)
             continue;
         nevh__drawn *part = add_part(s, m);
-        if (!part || !(part->values = nevh__formula_list(
-                           s, m, &statement->value, &part->is.count)))
+        if (!part || !take_values(s, m, &statement->value, part))
             return false;
         part->is.kind = name;
         return part->is.count == numbers[i] ||

@@ -1,0 +1,197 @@
+/* nevh run --plot-kind configuration: the scene's picture: trails of its bobs,
+   and where all is at the end.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "run_plot_private.h"
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_BOBS = 16 };
+
+typedef struct {
+    nevh_scene *scene;
+    size_t count, part[MOST_BOBS];
+} bob_list;
+
+static bob_list bobs_of(nevh_scene *s) {
+    bob_list b = {.scene = s};
+    for (size_t i = 0; i < nevh_scene_part_count(s); i++)
+        if (strcmp(nevh_scene_part_at(s, i).kind, "bob") == 0 &&
+            b.count < MOST_BOBS)
+            b.part[b.count++] = i;
+    return b;
+}
+
+/* Of part i; NANs where its formulas have no value. */
+static void part(nevh_scene *s, size_t i, double t, const double q[],
+                 const double p[], double values[4]) {
+    for (size_t k = 0; k < 4; k++)
+        values[k] = NAN;
+    nevh_scene_part_values(s, i, t, q, p, values);
+}
+
+static void fill(void *data, double t, const double q[], const double p[],
+                 double places[]) {
+    const bob_list *b = data;
+    double values[4];
+    for (size_t i = 0; i < b->count; i++) {
+        part(b->scene, b->part[i], t, q, p, values);
+        memcpy(places + 2 * i, values, 2 * sizeof *values);
+    }
+}
+
+/* Axes. */
+
+/* The name that a formula is, without its number or index: x of x, x1, x[1];
+   "" of other formulas. */
+static void base_of(const char *formula, char base[], size_t size) {
+    size_t length = strcspn(formula, "[ ");
+    const char *rest = formula + length;
+    base[0] = '\0';
+    if (*rest == '[' && (!strchr(rest, ']') || strchr(rest, ']')[1]))
+        return;
+    if (*rest == ' ' || strpbrk(formula, "+-*/^(") || length >= size)
+        return;
+    memcpy(base, formula, length);
+    base[length] = '\0';
+    while (length > 1 && isdigit((unsigned char)base[length - 1]))
+        base[--length] = '\0';
+    if (isdigit((unsigned char)base[0]))
+        base[0] = '\0';
+}
+
+/* What all bobs are placed by, numbers apart; a word where that is not one. */
+static char *axis_label(const plan *p, const bob_list *b, size_t which) {
+    char name[64] = "", other[64];
+    const char *of = NULL;
+    bool same = true;
+    for (size_t i = 0; i < b->count; i++) {
+        const char *item = nevh_scene_part_at(b->scene, b->part[i]).item[which];
+        base_of(item, other, sizeof other);
+        if (!*other) {
+            same = same && isdigit((unsigned char)*item);
+            continue;
+        }
+        same = same && (!of || strcmp(name, other) == 0);
+        if (!of)
+            strcpy(name, other), of = item;
+    }
+    if (!same || !of)
+        return text_print("%s", which ? "y" : "x");
+    const char *unit = nevh_scene_label(b->scene, of);
+    return *unit ? plot_label(p, name, of) : plot_label(p, name, name);
+}
+
+/* Parts. */
+
+static size_t draw_trail(plot *to, const orbit *o, size_t bob) {
+    size_t series = plot_series(to, NULL);
+    plot_style(to, series, o->rows.part < 1 ? PLOT_DOTS : PLOT_TRAIL);
+    for (size_t i = 0; i < o->rows.count; i++) {
+        const double *at = orbit_row(o, i) + 2 * bob;
+        plot_point(to, series, at[0], at[1]);
+    }
+    return series;
+}
+
+static void draw_start(plot *to, const orbit *o, size_t bob, size_t trail) {
+    const double *at = orbit_row(o, 0) + 2 * bob;
+    size_t series = plot_series(to, NULL);
+    plot_style(to, series, PLOT_START);
+    plot_like(to, series, trail);
+    plot_point(to, series, at[0], at[1]);
+}
+
+static void draw_rod(plot *to, const double values[4]) {
+    size_t series = plot_series(to, NULL);
+    plot_style(to, series, PLOT_RODS);
+    plot_point(to, series, values[0], values[1]);
+    plot_point(to, series, values[2], values[3]);
+}
+
+/* Where all is at the end. */
+static void draw_rods(plot *to, nevh_scene *s, const orbit *o) {
+    double values[4];
+    for (size_t i = 0; i < nevh_scene_part_count(s); i++)
+        if (strcmp(nevh_scene_part_at(s, i).kind, "rod") == 0) {
+            part(s, i, o->t, o->q, o->p, values);
+            draw_rod(to, values);
+        }
+}
+
+/* Smaller ones later, so that none is hidden. */
+static void draw_bob(plot *to, const bob_list *b, size_t bob, const orbit *o,
+                     size_t trail) {
+    static const double least = 0.35, less = 0.2;
+    const char *given = nevh_scene_part_at(b->scene, b->part[bob]).name;
+    char *name = given          ? text_print("%s", given)
+                 : b->count > 1 ? text_print("bob %zu", bob + 1)
+                                : NULL;
+    double values[4];
+    part(b->scene, b->part[bob], o->t, o->q, o->p, values);
+    size_t series = plot_series(to, name);
+    plot_style(to, series, PLOT_BOBS);
+    plot_size(to, series, fmax(1 - less * (double)bob, least));
+    plot_like(to, series, trail);
+    plot_point(to, series, values[0], values[1]);
+    free(name);
+}
+
+static void draw(plot *to, const bob_list *b, const orbit *o) {
+    size_t trails[MOST_BOBS];
+    plot_equal(to);
+    for (size_t bob = 0; bob < b->count; bob++)
+        trails[bob] = draw_trail(to, o, bob);
+    for (size_t bob = 0; bob < b->count && o->rows.count; bob++)
+        draw_start(to, o, bob, trails[bob]);
+    draw_rods(to, b->scene, o);
+    for (size_t bob = 0; bob < b->count; bob++)
+        draw_bob(to, b, bob, o, trails[bob]);
+}
+
+/* How often the slowest of those that move goes round. */
+static double least_turns(const bob_list *b, const orbit *o) {
+    double least = INFINITY;
+    for (size_t i = 0; i < b->count; i++) {
+        double turns = fmax(orbit_turns(o, 2 * i), orbit_turns(o, 2 * i + 1));
+        least = turns > 0 ? fmin(least, turns) : least;
+    }
+    return isfinite(least) ? least : 0;
+}
+
+/* returns  what is to be said of it; to be freed */
+static char *follow(run_picture *is, bob_list *b) {
+    row_times dense = orbit_dense_times(&is->plan);
+    picture_follow(is, &dense, 2 * b->count, fill, b);
+    char *words = picture_cut(is, least_turns(b, is->orbits.item));
+    if (!words)
+        return text_print("%s", "");
+    dense = orbit_dense_times(&is->plan);
+    picture_follow(is, &dense, 2 * b->count, fill, b);
+    return words;
+}
+
+plot *plot_configuration(run_picture *is) {
+    bob_list b = bobs_of(is->plan.scene);
+    orbit *first = is->orbits.item;
+    const char *unit = nevh_scene_label(is->plan.scene, "t");
+    if (is->orbits.count > 1) {
+        tool_refuse("--plot-kind configuration draws one orbit: give one "
+                    "integrator and one dt");
+        return NULL;
+    }
+    char *cut = follow(is, &b);
+    char *x = axis_label(&is->plan, &b, 0), *y = axis_label(&is->plan, &b, 1);
+    plot *to = plot_new(is->plan.title, x, y);
+    draw(to, &b, first);
+    char *more =
+        text_print("circles: the start; discs: t = %.6g%s%s%s%s", first->t,
+                   *unit ? " " : "", unit, *cut ? "; " : "", cut);
+    free(cut);
+    picture_note(is, to, more);
+    free(more);
+    free(x);
+    free(y);
+    return to;
+}

@@ -1,0 +1,135 @@
+/* nevh: orbits to be drawn.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "orbit.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_ORBITS = 16 };
+
+static bool fits(const plan *p, const char *integrator) {
+    nevh_stepper *s = plan_stepper(p, integrator);
+    bool good = !nevh_stepper_status(s);
+    nevh_stepper_free(s);
+    return good;
+}
+
+static void add(orbits *all, const plan *p, const char *integrator,
+                const double *dt, char *name) {
+    orbit *one = &all->item[all->count++];
+    *one = (orbit){.plan = *p, .integrator = integrator, .name = name};
+    one->plan.dt = dt;
+    one->plan.dts = 1;
+}
+
+static char *name_of(const plan *p, const char *integrator, double dt,
+                     bool schemes, bool steps) {
+    const char *unit = nevh_scene_label(p->scene, "t");
+    char *step = text_print("dt = %.4g%s%s", dt, *unit ? " " : "", unit);
+    char *name = schemes && steps ? text_print("%s, %s", integrator, step)
+                 : steps          ? text_print("%s", step)
+                                  : text_print("%s", integrator);
+    free(step);
+    return name;
+}
+
+orbits orbits_new(const options *o, const plan *p, const char *integrator) {
+    bool schemes = o->integrators.count > 1, steps = o->dt.count > 1;
+    size_t names = schemes ? p->integrators.count : 1;
+    orbits all = {tool_allocate(MOST_ORBITS, sizeof(orbit)), 0, {0}};
+    for (size_t i = 0; i < names; i++) {
+        const char *name = schemes ? p->integrators.item[i] : integrator;
+        if (!fits(p, name)) {
+            list_add(&all.left_out, name);
+            continue;
+        }
+        for (size_t k = 0; k < (steps ? p->dts : 1); k++)
+            if (all.count < MOST_ORBITS)
+                add(&all, p, name, p->dt + k,
+                    name_of(p, name, p->dt[k], schemes, steps));
+            else
+                list_add(&all.left_out, name);
+    }
+    return all;
+}
+
+static void forget(orbit *o) {
+    thinned_free(&o->rows);
+    free(o->q);
+    free(o->p);
+    o->q = o->p = NULL;
+}
+
+void orbits_free(orbits *all) {
+    for (size_t i = 0; i < all->count; i++) {
+        forget(&all->item[i]);
+        free(all->item[i].name);
+    }
+    free(all->item);
+    list_free(&all->left_out);
+}
+
+typedef struct {
+    orbit *orbit;
+    orbit_fill *fill;
+    void *data;
+} filler;
+
+static int take(void *data, double t, const double q[], const double p[]) {
+    filler *f = data;
+    orbit *o = f->orbit;
+    double *row = thinned_next(&o->rows);
+    size_t size = o->plan.n * sizeof *q;
+    o->t = t;
+    memcpy(o->q, q, size);
+    memcpy(o->p, p, size);
+    if (row) {
+        row[0] = t;
+        f->fill(f->data, t, q, p, row + 1);
+    }
+    return TOOL_OK;
+}
+
+int orbit_follow(orbit *o, const row_times *times, size_t columns,
+                 orbit_fill *fill, void *data, bool quiet) {
+    static const volatile sig_atomic_t no_signal;
+    filler f = {o, fill, data};
+    forget(o);
+    o->rows = thinned_new(columns + 1);
+    o->q = tool_allocate(o->plan.n, sizeof *o->q);
+    o->p = tool_allocate(o->plan.n, sizeof *o->p);
+    nevh_stepper *s = plan_stepper(&o->plan, o->integrator);
+    trajectory *r =
+        trajectory_new(&o->plan, o->integrator, s, times,
+                       (sink){.take = take, .data = &f, .mute = quiet});
+    o->status = trajectory_follow(r, &(trajectory_watch){.signal = &no_signal});
+    trajectory_free(r);
+    nevh_stepper_free(s);
+    return o->status;
+}
+
+row_times orbit_dense_times(const plan *p) {
+    static const double enough = THINNED_ROWS - 1, most = 50;
+    double steps = (p->t_end - p->run->t_start) / p->dt[0];
+    double each = fmin(floor(enough / ceil(steps)), most);
+    if (each < 2)
+        return (row_times){.by = BY_STEPS, .every = 1};
+    return (row_times){.by = BY_SAMPLES,
+                       .count = (size_t)(ceil(steps) * each) + 1};
+}
+
+const double *orbit_row(const orbit *o, size_t i) {
+    return o->rows.row + i * o->rows.columns + 1;
+}
+
+double orbit_turns(const orbit *o, size_t k) {
+    double sum = 0;
+    size_t crossings = 0;
+    for (size_t i = 0; i < o->rows.count; i++)
+        sum += orbit_row(o, i)[k];
+    double mean = sum / (double)o->rows.count;
+    for (size_t i = 1; i < o->rows.count; i++)
+        crossings +=
+            (orbit_row(o, i)[k] > mean) != (orbit_row(o, i - 1)[k] > mean);
+    return (double)crossings / 2;
+}

@@ -1,0 +1,141 @@
+/* nevh run --plot-kind phase: momenta over coordinates, or any column over
+   another.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "run_plot_private.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_COORDINATES = 4 };
+
+/* x is x:p_x. */
+static char *pairs_of(const options *o, const plan *p) {
+    list names = {0};
+    char *text = text_print("%s", "");
+    if (o->columns)
+        list_split(&names, o->columns);
+    else
+        for (size_t k = 0; k < p->n && k < MOST_COORDINATES; k++)
+            list_add(&names, nevh_scene_coordinate(p->scene, k));
+    for (size_t i = 0; i < names.count; i++) {
+        const char *name = names.item[i], *comma = i ? "," : "";
+        char *longer = strchr(name, ':')
+                           ? text_print("%s%s%s", text, comma, name)
+                           : text_print("%s%s%s:p_%s", text, comma, name, name);
+        free(text);
+        text = longer;
+    }
+    list_free(&names);
+    return text;
+}
+
+static int check_pairs(const column_panels *c) {
+    size_t *count = tool_allocate(c->panels, sizeof *count);
+    int status = TOOL_OK;
+    for (size_t i = 0; i < c->columns.count; i++)
+        count[c->panel[i]]++;
+    for (size_t i = 0; !status && i < c->panels; i++)
+        if (count[i] != 2)
+            status = tool_refuse("--plot-kind phase takes --columns A:B, which "
+                                 "draws B over A, or a coordinate alone");
+    free(count);
+    return status;
+}
+
+/* The period to take the column modulo; 0 where it stays within one. */
+static double wrapping(const run_picture *is, const column_panels *c,
+                       size_t k) {
+    double period = plan_period(&is->plan, c->columns.item[k].name);
+    double low = INFINITY, high = -INFINITY;
+    for (size_t i = 0; i < is->orbits.count; i++)
+        for (size_t row = 0; row < is->orbits.item[i].rows.count; row++) {
+            double q = orbit_row(&is->orbits.item[i], row)[k];
+            low = fmin(low, q);
+            high = fmax(high, q);
+        }
+    return high - low > period ? period : 0;
+}
+
+/* A line leaves the panel at one side, and comes in at the other. */
+static void turn_over(plot *to, size_t series, const double from[],
+                      const double at[], double old, double new) {
+    plot_point(to, series, at[0] - old, at[1]);
+    plot_break(to, series);
+    plot_point(to, series, from[0] - new, from[1]);
+}
+
+static double shift_of(double q, double period) {
+    return period > 0 ? period * floor(q / period + 0.5) : 0;
+}
+
+static void draw_orbit(plot *to, const orbit *o, size_t k, double period,
+                       const char *name) {
+    size_t series = plot_series(to, name);
+    bool whole = o->rows.part == 1;
+    double last = 0;
+    plot_style(to, series, whole ? PLOT_TRAIL : PLOT_DOTS);
+    for (size_t i = 0; i < o->rows.count; i++) {
+        const double *at = orbit_row(o, i) + k;
+        double shift = shift_of(at[0], period);
+        if (i && shift != last && whole)
+            turn_over(to, series, orbit_row(o, i - 1) + k, at, last, shift);
+        plot_point(to, series, at[0] - shift, at[1]);
+        last = shift;
+    }
+    if (!o->rows.count)
+        return;
+    const double *begin = orbit_row(o, 0) + k;
+    size_t start = plot_series(to, NULL);
+    plot_style(to, start, PLOT_START);
+    plot_like(to, start, series);
+    plot_point(to, start, begin[0] - shift_of(begin[0], period), begin[1]);
+}
+
+static void draw_panel(plot **to, const run_picture *is, const column_panels *c,
+                       size_t number) {
+    size_t k = 2 * number;
+    char *x = column_label(&is->plan, &c->columns.item[k]);
+    char *y = column_label(&is->plan, &c->columns.item[k + 1]);
+    double period = wrapping(is, c, k);
+    if (number)
+        plot_panel(*to, NULL, x, y);
+    else
+        *to = plot_new(is->plan.title, x, y);
+    if (period > 0)
+        plot_span_x(*to, -period / 2, period / 2);
+    for (size_t i = 0; i < is->orbits.count; i++)
+        draw_orbit(*to, &is->orbits.item[i], k, period,
+                   is->orbits.count > 1 ? is->orbits.item[i].name : NULL);
+    free(x);
+    free(y);
+}
+
+static char *say_more(const run_picture *is) {
+    const plan *p = &is->plan;
+    char *energy = plot_energy_at_start(p);
+    char *text = p->n > MOST_COORDINATES && !is->options->columns
+                     ? text_print("%s; the first %d of %zu coordinates: "
+                                  "--columns chooses others",
+                                  energy, MOST_COORDINATES, p->n)
+                     : text_print("%s", energy);
+    free(energy);
+    return text;
+}
+
+plot *plot_phase(run_picture *is) {
+    column_panels c = {0};
+    plot *to = NULL;
+    row_times dense = orbit_dense_times(&is->plan);
+    char *names = pairs_of(is->options, &is->plan);
+    if (!column_panels_read(&c, &is->plan, names) && !check_pairs(&c)) {
+        picture_follow(is, &dense, c.columns.count, column_panels_fill, &c);
+        for (size_t i = 0; i < c.panels; i++)
+            draw_panel(&to, is, &c, i);
+        char *more = say_more(is);
+        picture_note(is, to, more);
+        free(more);
+    }
+    column_panels_free(&c);
+    free(names);
+    return to;
+}

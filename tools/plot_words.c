@@ -1,0 +1,89 @@
+/* nevh: plots: titles, notes and units.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "plot.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A word, to which others can be written as factors. */
+static bool is_plain(const char *unit) {
+    return *unit && !strpbrk(unit, " /*^()");
+}
+
+/* What makes p dq/dt an energy, an angle being a number. */
+static char *momentum_unit(const plan *p, const char *coordinate) {
+    const char *energy = nevh_scene_label(p->scene, "energy");
+    const char *time = nevh_scene_label(p->scene, "t");
+    const char *length = nevh_scene_label(p->scene, coordinate);
+    bool angle = strcmp(length, "rad") == 0;
+    if (!is_plain(energy) || !is_plain(time) || !is_plain(length))
+        return text_print("%s", "");
+    return angle ? text_print("%s %s", energy, time)
+                 : text_print("%s %s/%s", energy, time, length);
+}
+
+static char *unit_of(const plan *p, const char *name) {
+    const char *label = nevh_scene_label(p->scene, name);
+    return *label || strncmp(name, "p_", 2) != 0 ? text_print("%s", label)
+                                                 : momentum_unit(p, name + 2);
+}
+
+char *plot_label(const plan *p, const char *name, const char *of) {
+    char *unit = unit_of(p, of);
+    char *text = text_print(*unit ? "%s (%s)" : "%s%s", name, unit);
+    free(unit);
+    return text;
+}
+
+static char *joined(const list *parts) {
+    char *text = text_print("%s", "");
+    for (size_t i = 0; i < parts->count; i++) {
+        char *longer =
+            text_print("%s%s%s", text, i ? "; " : "", parts->item[i]);
+        free(text);
+        text = longer;
+    }
+    return text;
+}
+
+void plot_note_run(plot *to, const plan *p, const char *scheme,
+                   const char *more) {
+    const char *unit = nevh_scene_label(p->scene, "t");
+    list parts = {0};
+    char *gradients = list_joined(&p->gradients);
+    if (scheme)
+        list_add(&parts, scheme);
+    list_print(&parts, "gradient %s",
+               scheme ? p->gradients.item[0] : gradients);
+    list_print(&parts, "t = %.6g ... %.6g%s%s", p->run->t_start, p->t_end,
+               *unit ? " " : "", unit);
+    if (more && *more)
+        list_add(&parts, more);
+    char *text = joined(&parts);
+    plot_note(to, text);
+    free(text);
+    free(gradients);
+    list_free(&parts);
+}
+
+char *plot_scheme(const plan *p, const char *integrator) {
+    const char *unit = nevh_scene_label(p->scene, "t");
+    bool transformed;
+    if (nevh_integrator_adaptive(plan_scheme(integrator, &transformed)) &&
+        p->tolerances)
+        return text_print("%s, tolerance %.4g", integrator, p->tolerance[0]);
+    return text_print("%s, dt = %.4g%s%s", integrator, p->dt[0],
+                      *unit ? " " : "", unit);
+}
+
+char *plot_energy_at_start(const plan *p) {
+    nevh_options values = {.gradient_step = 1e-3, .portable = p->portable};
+    nevh_field *f = nevh_field_new(p->system, &values);
+    const char *unit = nevh_scene_label(p->scene, "energy");
+    double t = p->run->t_start, energy;
+    int status = nevh_field_value(f, 1, &t, p->q, p->p, &energy);
+    nevh_field_free(f);
+    return status ? text_print("%s", "")
+                  : text_print("H = %.6g%s%s at the start", energy,
+                               *unit ? " " : "", unit);
+}
