@@ -108,6 +108,8 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/reference_private.h \
 	lib/diagnose/reference.c \
 	lib/diagnose/reference_run.c \
+	lib/diagnose/reference_watch.c \
+	lib/diagnose/reference_spread.c \
 	lib/diagnose/reference_walk.c \
 	lib/diagnose/state_error.c \
 	lib/diagnose/stability.c \

@@ -58,6 +58,7 @@ suites = \
 	tests/check_models \
 	tests/check_reference \
 	tests/check_state_error \
+	tests/check_reference_end \
 	tests/check_failures \
 	tests/check_hard_steps \
 	tests/check_hard \
@@ -167,6 +168,7 @@ dist_check_SCRIPTS = \
 	tests/nevh_new.sh \
 	tests/nevh_effects.sh \
 	tests/nevh_compare.sh \
+	tests/nevh_reference.sh \
 	tests/nevh_verdict.sh \
 	tests/nevh_plot.sh \
 	tests/nevh_section.sh \

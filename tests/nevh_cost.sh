@@ -37,7 +37,7 @@ for run in 1 2; do
     records | cut -d, -f 1-16,18,19 >$work/run.$run
 done
 cmp -s $work/run.1 $work/run.2 || fails "differs from run to run"
-has '^# state error against the exact solution'
+has '^# state error: largest difference from the exact solution'
 records | awk -F, -v order=verlet:2,blanes-moan4:4,gauss4:4 'BEGIN {
         split(order, pair, ",")
         for (i in pair) { split(pair[i], word, ":"); p[word[1]] = word[2] } }

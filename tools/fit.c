@@ -43,10 +43,10 @@ int state_errors_mean_something(plan *p) {
     if (!p->reference)
         tool_refuse("%s: no state errors: %s", p->name, p->no_reference);
     else if (p->t_end > nevh_reference_horizon(p->reference))
-        tool_refuse("%s: state errors mean nothing after t = %.4g, where "
-                    "orbits that differ in the last digits have separated; "
+        tool_refuse("%s: state errors mean nothing after t = %.4g (%s); "
                     "--t-end shortens the run",
-                    p->name, nevh_reference_horizon(p->reference));
+                    p->name, nevh_reference_horizon(p->reference),
+                    nevh_reference_text(p->reference));
     else
         return TOOL_OK;
     return TOOL_FAILED;

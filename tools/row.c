@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "envelope.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -134,6 +135,16 @@ static bool compares_states(const plan *p, const row *r) {
     return r->t_end - p->run->t_start >= least * span;
 }
 
+static void explain_unknown(const plan *p, row *r) {
+    const char *message = nevh_reference_message(p->reference);
+    if (!compares_states(p, r))
+        snprintf(r->state_unknown, sizeof r->state_unknown,
+                 "it ended at t = %.6g, too early to be compared", r->t_end);
+    else
+        snprintf(r->state_unknown, sizeof r->state_unknown,
+                 "the reference has no state: %s", message);
+}
+
 static void watched(work *w, nevh_stepper *s) {
     row *r = w->row;
     patience wait = {w->plan, r->scheme, s, nevh_stepper_counts(s), false};
@@ -171,6 +182,8 @@ static void watched(work *w, nevh_stepper *s) {
     r->status = status ? text_print("failed: %s", why) : text_print("ok");
     r->state_error =
         compares_states(w->plan, r) ? nevh_state_error_result(state) : NAN;
+    if (state && isnan(r->state_error))
+        explain_unknown(w->plan, r);
     r->changes = kept ? invariants_result(kept) : NULL;
     nevh_state_error_free(state);
     nevh_energy_free(energy);

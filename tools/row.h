@@ -29,6 +29,7 @@ typedef struct {
     double t_end;           /* where it ended */
     double observed_order;  /* NAN: unknown */
     double state_error;     /* NAN: unknown or meaningless */
+    char state_unknown[160]; /* why; "" where it is known, or no run's fault */
     double symplecticity_error, reversal_error;
     double *changes; /* of invariants, the largest; NULL: not asked for */
     struct envelope *errors; /* of the energy; NULL: not asked for */
@@ -82,7 +83,7 @@ int plan_reference(plan *, double end);
 void state_notes(const plan *, list *notes);
 bool state_out_of_step(const row *);
 void state_show(table *, const plan *, const row *);
-void state_words(const row rows[], size_t count, list *words);
+void state_words(const plan *, const row rows[], size_t count, list *words);
 
 /* match.c: the dt with which the row costs as much as verlet with its dt, where
    the plan asks for that. */

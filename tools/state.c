@@ -6,6 +6,7 @@
 #include <string.h>
 
 static const double out_of_step = 0.5;
+static const double a_few = 4; /* steps of rows, to one of the reference */
 
 /* Why there is no reference, or NULL. */
 static char *refusal(const plan *p, const char *name) {
@@ -19,13 +20,29 @@ static char *refusal(const plan *p, const char *name) {
     return NULL;
 }
 
+static bool has_arrays(const plan *p) {
+    bool any = false;
+    for (size_t k = 0; k < p->n; k++)
+        any |= nevh_scene_array(p->scene, k) != k;
+    return any;
+}
+
+static double shortest_step(const plan *p) {
+    double shortest = p->dts ? p->dt[0] : 0;
+    for (size_t i = 1; i < p->dts; i++)
+        shortest = fmin(shortest, p->dt[i]);
+    return shortest;
+}
+
 /* Elements of an array are of one kind. */
 static nevh_reference *
 make_reference(const plan *p, const nevh_integrator *scheme, double end) {
     size_t *kind = tool_allocate(p->n, sizeof *kind);
     for (size_t k = 0; k < p->n; k++)
         kind[k] = nevh_scene_array(p->scene, k);
-    nevh_reference_options o = {.integrator = scheme, .kind = kind};
+    nevh_reference_options o = {.integrator = scheme,
+                                .kind = kind,
+                                .longest = a_few * shortest_step(p)};
     nevh_reference *made =
         nevh_reference_with(p->system, &o, p->run->t_start, end, p->q, p->p);
     free(kind);
@@ -54,25 +71,53 @@ int plan_reference(plan *p, double end) {
     return TOOL_OK;
 }
 
-static bool is_chaos(const plan *p) {
+/* Whether the run goes on after what is known. */
+static bool is_beyond(const plan *p) {
     return p->reference &&
            p->reference_end > nevh_reference_horizon(p->reference);
+}
+
+static bool is_chaos(const plan *p) {
+    return is_beyond(p) &&
+           nevh_reference_why(p->reference) == NEVH_REFERENCE_CHAOS;
+}
+
+static void note_horizon(const plan *p, list *notes) {
+    const nevh_reference *r = p->reference;
+    const char *text = nevh_reference_text(r);
+    double horizon = nevh_reference_horizon(r);
+    if (is_chaos(p))
+        list_print(notes,
+                   "state errors mean nothing after t = %.4g: chaos, where "
+                   "neighbouring orbits separate by a factor e in %.3g (%s)",
+                   horizon, 1 / nevh_reference_exponent(r), text);
+    else if (nevh_reference_why(r) == NEVH_REFERENCE_SENSITIVE)
+        list_print(notes,
+                   "state errors mean nothing after t = %.4g: differences in "
+                   "the last digits have grown by %.0e, at a saddle of H or in "
+                   "a close pass; that is no chaos (%s)",
+                   horizon, nevh_reference_growth(r), text);
+    else
+        list_print(notes,
+                   "no state errors after t = %.4g: shorter steps of the "
+                   "reference do not bring it below 1e-3 there, or cannot be "
+                   "afforded (%s)",
+                   horizon, text);
 }
 
 void state_notes(const plan *p, list *notes) {
     const char *text = nevh_reference_text(p->reference);
     if (p->no_reference)
         list_print(notes, "no state errors: %s", p->no_reference);
-    else if (is_chaos(p))
-        list_print(notes,
-                   "state errors mean nothing after t = %.4g, where orbits "
-                   "that differ in the last digits have separated (%s)",
-                   nevh_reference_horizon(p->reference), text);
+    else if (is_beyond(p))
+        note_horizon(p, notes);
     else if (p->reference)
-        list_print(notes, "state error against %s%s%s",
+        list_print(notes,
+                   "state error: largest difference from %s%s, divided by the "
+                   "range of that variable%s",
                    strncmp(text, "exact", 5) == 0 ? "the " : "", text,
-                   ", the largest over coordinates and momenta, over the range "
-                   "of each");
+                   has_arrays(p) ? "; elements of an array share the widest"
+                                 : "");
 }
 
 bool state_out_of_step(const row *r) {
@@ -83,9 +128,11 @@ void state_show(table *t, const plan *p, const row *r) {
     if (!p->reference || !r->ran)
         table_text(t, NULL);
     else if (state_out_of_step(r))
-        table_shown(t, "out of step");
+        table_shown(t, "> 50 %%");
     else if (is_chaos(p))
-        table_shown(t, "meaningless");
+        table_shown(t, "chaos");
+    else if (is_beyond(p))
+        table_shown(t, "unknown");
     else if (isnan(r->state_error))
         table_text(t, NULL);
     else
@@ -102,7 +149,31 @@ static list names_out_of_step(const row rows[], size_t count) {
     return names;
 }
 
-void state_words(const row rows[], size_t count, list *words) {
+/* Of the rows that ran, the first whose cell would be empty for no reason that
+   is told elsewhere. */
+static const row *first_unknown(const plan *p, const row rows[], size_t count) {
+    for (size_t i = 0; i < count && p->reference && !is_beyond(p); i++)
+        if (rows[i].ran && isnan(rows[i].state_error))
+            return &rows[i];
+    return NULL;
+}
+
+static void explain_cells(const plan *p, const row rows[], size_t count,
+                          list *words) {
+    const row *unknown = first_unknown(p, rows, count);
+    bool any = false;
+    for (size_t i = 0; i < count; i++)
+        any |= state_out_of_step(&rows[i]);
+    if (any)
+        list_add(words,
+                 "State error > 50 %: the run is elsewhere on its orbit, "
+                 "or on another one.");
+    if (unknown && *unknown->state_unknown)
+        list_print(words, "%s at dt = %.4g has no state error: %s.",
+                   unknown->integrator, unknown->dt, unknown->state_unknown);
+}
+
+void state_words(const plan *p, const row rows[], size_t count, list *words) {
     list names = names_out_of_step(rows, count);
     char *text = list_joined(&names);
     if (names.count)
@@ -110,6 +181,7 @@ void state_words(const row rows[], size_t count, list *words) {
             words,
             "Bounded energy is not an accurate orbit: %s %s out of step.", text,
             names.count == 1 ? "is" : "are");
+    explain_cells(p, rows, count, words);
     list_free(&names);
     free(text);
 }

@@ -226,6 +226,6 @@ void verdict_words(const plan *p, const row rows[], size_t count, list *words) {
              words);
     for (size_t i = 0; i < count; i++)
         tell_mixed(rows, count, i, words);
-    state_words(rows, count, words);
+    state_words(p, rows, count, words);
     warn_of_changes(rows, count, words);
 }

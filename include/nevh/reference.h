@@ -37,7 +37,11 @@ typedef struct nevh_reference nevh_reference;
    more than a twentieth of the following, or as well as can be afforded: 1e7
    gradients, or 2e8 evaluations of term instances, whichever is less.  The one
    with h/2 is kept, as checkpoints (at most 16 MB).  Gradients are exact where
-   all terms bring them, else central8.
+   all terms bring them, else central8.  There are at least 128 steps of h.
+   Where H reads no time and there is no friction, the runs must keep H as well
+   as they keep the state: a run whose H changes by far more than the runs differ
+   has stepped over something.  Then steps are shortened, and where H jumps, so
+   that no step would do, there is NEVH_EDOM and a message that says where.
    cost        of an exact solution some milliseconds; of a run up to the
                bounds above, some seconds */
 NEVH_API nevh_reference *nevh_reference_new(const nevh_system *,
@@ -52,6 +56,10 @@ typedef struct {
     const size_t *kind; /* n numbers: coordinates of one number are of one kind
                            and share a range, and so do their momenta; NULL:
                            each has its own */
+    double longest; /* step of a run, of either sign: no longer than a few of
+                       the steps that are compared with it, so that it sees what
+                       they see; 0: a 128th of the time.  Shorter ones than may
+                       be afforded are not asked for. */
 } nevh_reference_options;
 /* options  borrowed for the call; NULL: zeros */
 NEVH_API nevh_reference *
@@ -72,10 +80,28 @@ NEVH_API const char *nevh_reference_text(const nevh_reference *);
    run, the difference of those with h and h/2.  Smaller state errors mean
    nothing. */
 NEVH_API double nevh_reference_error(const nevh_reference *);
-/* The time after which state errors mean nothing, because runs that differ in
-   the last digits have separated by more than 1e-3 of the range of a variable:
-   chaos.  INFINITY (-INFINITY where t1 < t0) where that does not happen. */
+/* The time after which state errors mean nothing, because the runs of which it
+   was made have separated by more than 1e-3 of the range of a variable.
+   INFINITY (-INFINITY where t1 < t0) where that does not happen. */
 NEVH_API double nevh_reference_horizon(const nevh_reference *);
+/* Why there is a horizon. */
+typedef enum {
+    NEVH_REFERENCE_WHOLE, /* there is none */
+    NEVH_REFERENCE_CHAOS, /* orbits that start apart by the last digits separate
+                             exponentially, all the time until then */
+    NEVH_REFERENCE_SENSITIVE, /* they separate, but not so: at a saddle (as all
+                                 do of one degree of freedom whose H does not
+                                 read t), in a close pass */
+    NEVH_REFERENCE_COARSE /* they do not separate: shorter steps bring nothing,
+                             or cannot be afforded: at a pole, a jump, or with a
+                             scheme of low order */
+} nevh_reference_end;
+NEVH_API nevh_reference_end nevh_reference_why(const nevh_reference *);
+/* Of chaos and of sensitive orbits: the rate of separation, per time, by least
+   squares; what a difference in the last digits had grown by.  NAN of others.
+ */
+NEVH_API double nevh_reference_exponent(const nevh_reference *);
+NEVH_API double nevh_reference_growth(const nevh_reference *);
 
 /* The state at a time between t0 and t1.
    q, p     out, n each

@@ -132,6 +132,9 @@ static int use_exact(nevh_reference *r) {
                           "t = %.9g",
                           nevh__exact_name(r->exact), r->t1);
     r->error = doubted(r);
+    int status = nevh__watch_exact(r);
+    if (status)
+        return status;
     snprintf(r->text, sizeof r->text, "exact solution (%s)",
              nevh__exact_name(r->exact));
     return NEVH_OK;
@@ -153,6 +156,11 @@ static int make(nevh_reference *r) {
         if (!isfinite(r->start[k]))
             return nevh__fail(&r->report, NEVH_EINVAL,
                               "the start of the reference is not finite");
+    if (!(r->longest >= 0))
+        return nevh__fail(&r->report, NEVH_EINVAL,
+                          "the longest step of the reference, %g, is not "
+                          "positive",
+                          r->longest);
     if (!isfinite(r->t0) || !isfinite(r->t1) || r->t0 == r->t1)
         return nevh__fail(&r->report, NEVH_EINVAL,
                           "a reference from t = %g to %g has no length", r->t0,
@@ -222,6 +230,8 @@ nevh_reference *nevh_reference_with(const nevh_system *s,
     r->t1 = t1;
     r->horizon = copysign(INFINITY, t1 - t0);
     r->error = NAN;
+    r->exponent = r->growth = NAN;
+    r->longest = o->longest;
     r->integrator = o->integrator;
     if (allocate(r, q, p) && take_kinds(r, o->kind) && make(r) != NEVH_ENOMEM)
         return r;
@@ -263,6 +273,18 @@ double nevh_reference_horizon(const nevh_reference *r) {
     return r->horizon;
 }
 
+nevh_reference_end nevh_reference_why(const nevh_reference *r) {
+    return r->end;
+}
+
+double nevh_reference_exponent(const nevh_reference *r) {
+    return r->exponent;
+}
+
+double nevh_reference_growth(const nevh_reference *r) {
+    return r->growth;
+}
+
 double nevh_reference_range(const nevh_reference *r, size_t k) {
     return k < 2 * r->n ? r->range[k] : NAN;
 }
@@ -282,8 +304,9 @@ static int check_time(nevh_reference *r, double elapsed) {
                           r->t0, r->t1, r->t0 + elapsed);
     if ((elapsed - (r->horizon - r->t0)) * forward > slack)
         return nevh__fail(&r->report, NEVH_EDOM,
-                          "the reference means nothing after t = %.9g: chaos",
-                          r->horizon);
+                          "the reference means nothing after t = %.9g%s",
+                          r->horizon,
+                          r->end == NEVH_REFERENCE_CHAOS ? ": chaos" : "");
     return NEVH_OK;
 }
 

@@ -28,7 +28,9 @@ struct nevh_reference {
     double t0, t1;
     double *start;              /* 2n, as all states: coordinates first */
     double *low, *high, *range; /* 2n each */
-    double error, horizon;
+    double error, horizon, exponent, growth;
+    nevh_reference_end end;
+    double longest;     /* step of a run; 0: not said */
     nevh__exact *exact; /* NULL: a run */
     const nevh_integrator *integrator;
     size_t *kind; /* n: the first variable of the same kind; NULL: all differ */
@@ -40,6 +42,57 @@ struct nevh_reference {
     size_t steps;   /* walked since the start */
     bool walking;
 };
+
+/* Where H changes as no derivative of it says. */
+typedef struct {
+    bool found;    /* false: it changes within a step, but does not jump */
+    double by;     /* how much */
+    double part;   /* of the step */
+    size_t effect; /* which of the system's does most of it */
+} nevh__jump;
+
+/* Whether a run keeps H, where H is to be kept. */
+typedef struct {
+    nevh_field *field; /* for values; NULL: it is not */
+    size_t n;
+    double t0;
+    const double *start;
+    double *before, *between, *after; /* 2n each: the last state; to try */
+    double *effects, *others;         /* of the system, each */
+    long double h0;
+    double changed; /* H of the fine orbit, at most */
+    double apart;   /* of H, the two orbits */
+    double size;    /* of all terms together */
+    nevh__jump jump;
+} nevh__watch;
+
+int nevh__watch_open(nevh__watch *, const nevh_reference *);
+void nevh__watch_close(nevh__watch *);
+void nevh__watch_begin(nevh__watch *);
+/* False where H of the fine orbit has changed by far more than the orbits
+   differ; then `jump` tells where. */
+bool nevh__watch_step(nevh__watch *, const double coarse[],
+                      const double fine[]);
+/* Says that H jumps, near that time. */
+int nevh__watch_fail(nevh_reference *, const nevh__jump *, double t);
+/* Of an exact solution; adds to its own error. */
+int nevh__watch_exact(nevh_reference *);
+/* What the change of H adds to the own error of the run: where that of the runs
+   explains it, 0. */
+double nevh__watch_error(const nevh__watch *);
+
+/* How a difference grows: its logarithm at equal parts of the time. */
+enum { NEVH__SPREADS = 64 };
+typedef struct {
+    double most, folds[NEVH__SPREADS];
+    size_t count;
+} nevh__spread;
+/* Whether it is the first in its part. */
+bool nevh__spread_add(nevh__spread *, double part, double growth);
+/* By least squares, over that time. */
+double nevh__spread_rate(const nevh__spread *, double time);
+/* Whether it grows in most quarters of the time. */
+bool nevh__spread_steady(const nevh__spread *);
 
 /* Bytes of checkpoints, and of remembered states. */
 enum { NEVH__MOST_TRACK = 16 << 20, NEVH__MOST_MEMO = 32 << 20 };

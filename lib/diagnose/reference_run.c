@@ -18,11 +18,16 @@ static const double target = 1e-11; /* of the runs' difference */
 static const double fair = 1e-9; /* where more would cost more than `little` */
 static const double little = 0.05; /* of what may be spent */
 static const double hopeless =
-    1e-6;                           /* there is no use in going on to the end */
-static const double chaotic = 1e-3; /* as the header says */
-static const double nudge = 1e-13;  /* of the start, that tells chaos */
+    1e-6;                          /* there is no use in going on to the end */
+static const double apart = 1e-3;  /* as the header says */
+static const double nudge = 1e-13; /* of the start, that tells chaos */
+static const double bearable = 1e-4; /* error of a first step, for one that can
+                                        be afforded to the end */
+static const double late = 0.3; /* of what may be spent, to try shorter steps */
+static const double separate = 0.1; /* that is not a beginning any more */
 static const double most_gradients = 1e7, most_values = 2e8;
 static const double shorter = 0.4; /* the next step, where one is too long */
+static const double few = 16;      /* steps, after which the motion has begun */
 enum { MOST_RUNS = 16 };
 
 /* Two orbits side by side. */
@@ -35,6 +40,7 @@ typedef struct {
     double *scale;
     double *memory;    /* of all these */
     nevh__track track; /* of the fine one */
+    nevh__watch watch;
 } pair;
 
 typedef struct {
@@ -42,7 +48,8 @@ typedef struct {
     double h;       /* of the coarse one */
     double reached; /* time since t0, of either sign */
     double error;
-    bool whole; /* they came to the end */
+    bool whole;        /* they came to the end */
+    bool stepped_over; /* H changed, and not by what they differ */
 } outcome;
 
 static double spent_by(const nevh_stepper *s) {
@@ -105,6 +112,7 @@ static void begin(pair *b, double h) {
     b->track.count = 0;
     b->track.every = 1;
     b->track.h = h / 2;
+    nevh__watch_begin(&b->watch);
 }
 
 /* The largest difference now, over the ranges so far. */
@@ -149,76 +157,159 @@ static int step_pair(pair *b, size_t i, double h) {
     return status ? status : track_add(&b->track, r->n, 2 * i + 2, b->b);
 }
 
+/* The differences at the last power of two steps, and since. */
+typedef struct {
+    double before, since;
+} octave;
+
+/* Whether the orbits have separated.  At the very beginning little differences
+   are large parts of a motion that has hardly begun: these shrink. */
+static bool have_separated(octave *o, double step, double difference,
+                           double most) {
+    if (exp2(floor(log2(step))) == step) {
+        o->before = o->since;
+        o->since = 0;
+    }
+    o->since = fmax(o->since, difference);
+    if (step < few)
+        return !(difference <= 1);
+    return !(difference <= most) &&
+           !(difference <= o->before && difference <= separate);
+}
+
 /* Until they differ by more than `most`, or may cost no more. */
 static outcome run_pair(pair *b, double h, double most) {
     const nevh_reference *r = b->reference;
     double span = r->t1 - r->t0, steps = ceil(fabs(span / h) * (1 - 1e-12));
     outcome o = {.h = span / steps};
+    octave past = {0};
     begin(b, o.h);
     o.status = track_add(&b->track, r->n, 0, b->b);
     for (double i = 0; !o.status && i < steps && spent(b) < 1; i++) {
         o.status = step_pair(b, (size_t)i, o.h);
-        if (o.status || !(compare(b) <= most))
+        if (o.status || have_separated(&past, i + 1, compare(b), most))
+            break;
+        o.stepped_over = !nevh__watch_step(&b->watch, b->a, b->b);
+        if (o.stepped_over)
             break;
         o.reached = (i + 1) * o.h;
         o.whole = i + 1 == steps;
     }
-    o.error = largest_difference(b);
+    o.error = fmax(largest_difference(b), nevh__watch_error(&b->watch));
     return o;
 }
 
-/* How far the last digits of the start are blown up until `reached`, by steps
-   of h. */
-static double blow_up(pair *b, double h, double reached) {
+static double distance(const pair *b) {
     const nevh_reference *r = b->reference;
-    double steps = round(reached / h), most = 0;
-    begin(b, h);
+    double most = 0;
     for (size_t k = 0; k < 2 * r->n; k++)
-        b->a[k] += nudge * (b->a[k] != 0 ? fabs(b->a[k]) : r->range[k]);
+        most = fmax(most, fabs(b->a[k] - b->b[k]) / r->range[k]);
+    return most;
+}
+
+static void put_beside(pair *b, uint64_t *random) {
+    for (size_t k = 0; k < 2 * b->reference->n; k++)
+        b->a[k] += nudge * fabs(b->a[k]) * nevh__random(random);
+}
+
+/* How rounding is blown up until `reached`, by steps of h: one orbit is rounded
+   to fewer digits, again and again.  Differences are measured by the ranges up
+   to there. */
+static nevh__spread blow_up(pair *b, double h, double reached) {
+    nevh_reference *r = b->reference;
+    double steps = round(reached / h);
+    uint64_t random = 1;
+    nevh__spread s = {0};
+    memcpy(r->range, b->scale, 2 * r->n * sizeof *r->range);
+    begin(b, h);
     for (double i = 0; i < steps && spent(b) < 1; i++) {
         double t = r->t0 + i * h;
         if (step(b->coarse, t, h, b->a) || step(b->fine, t, h, b->b))
             break;
-        most = fmax(most, compare(b));
+        if (nevh__spread_add(&s, i / steps, distance(b) / nudge))
+            put_beside(b, &random);
     }
-    return most / nudge;
+    return s;
 }
 
-/* A step that changes the state by so much more than its error: the relative
-   error of one step from the start; INFINITY when it cannot be taken. */
-static double first_error(pair *b, double h) {
+/* The error of one step from the start, relative to what it changes, and to the
+   state. */
+typedef struct {
+    double of_change, of_state;
+} step_error;
+
+/* INFINITY when the step cannot be taken. */
+static step_error first_error(pair *b, double h) {
     const nevh_reference *r = b->reference;
     uint64_t newtons = nevh_stepper_counts(b->coarse).newtons;
-    double error[2] = {0}, change[2] = {0};
+    double error[2] = {0}, change[2] = {0}, size[2] = {0};
     begin(b, h);
     if (step_pair(b, 0, h) || nevh_stepper_counts(b->coarse).newtons > newtons)
-        return INFINITY;
+        return (step_error){INFINITY, INFINITY};
     for (size_t k = 0; k < 2 * r->n; k++) {
+        size_t half = k >= r->n;
         double e = fabs(b->a[k] - b->b[k]), c = fabs(b->b[k] - r->start[k]);
-        error[k >= r->n] = fmax(error[k >= r->n], e);
-        change[k >= r->n] = fmax(change[k >= r->n], c);
+        error[half] = fmax(error[half], e);
+        change[half] = fmax(change[half], c);
+        size[half] = fmax(size[half], fmax(fabs(r->start[k]), c));
     }
-    double most = 0;
+    step_error most = {0};
     for (int i = 0; i < 2; i++)
-        if (error[i] > 0)
-            most = fmax(most, error[i] / change[i]);
+        if (error[i] > 0) {
+            most.of_change = fmax(most.of_change, error[i] / change[i]);
+            most.of_state = fmax(most.of_state, error[i] / size[i]);
+        }
     return most;
 }
 
-/* The longest step that is good at the start, from the longest allowed on
-   downwards; the best one where none is, as rounding makes tiny ones bad. */
+/* Where the step is allowed to be no longer, that is not shorter than can be
+   afforded: `cost` is what a pair of steps spends. */
+static double longest_step(const nevh_reference *r, double cost) {
+    static const double fewest = 128, part = 0.1; /* of what may be spent */
+    double span = fabs(r->t1 - r->t0), longest = span / fewest;
+    if (r->longest > 0)
+        longest = fmin(longest, fmax(r->longest, cost * span / part));
+    return copysign(longest, r->t1 - r->t0);
+}
+
+/* The longest step that is good at the start; the best one where none is, as
+   rounding makes tiny ones bad.  One by which the end can be afforded will do
+   where it is not bad. */
 static double first_step(pair *b, int order) {
-    static const double good = 1e-9, fewest = 256, shortest = 0x1p-60;
+    static const double good = 1e-9, shortest = 0x1p-60;
     const nevh_reference *r = b->reference;
-    double span = r->t1 - r->t0, longest = span / fewest, h = 0, least = 1;
+    double span = r->t1 - r->t0, longest = longest_step(r, 0);
+    double h = 0, least = 1, affordable = 0, paid = 0, before = spent(b);
     for (double part = 1; part >= shortest && least >= good; part /= 4) {
-        double error = first_error(b, part * longest);
-        if (error < least)
-            h = part * longest, least = error;
+        step_error error = first_error(b, part * longest);
+        double cost = spent(b) - before;
+        before = spent(b);
+        double whole = cost * span / (part * longest);
+        if (error.of_state < bearable && whole < 0.3)
+            affordable = part * longest;
+        if (error.of_change < least)
+            h = part * longest, least = error.of_change, paid = whole;
+        longest = part == 1 ? longest_step(r, cost) : longest;
     }
+    if (paid > 1 && affordable != 0)
+        return affordable;
     double longer = pow(0.1 * good / fmax(least, 1e-18), 1. / order);
     h *= fmin(fmax(longer, 0.5), 2);
     return fabs(h) < fabs(longest) ? h : longest;
+}
+
+static int give_up_jump(const pair *b, const outcome *o) {
+    nevh_reference *r = b->reference;
+    const nevh__jump *j = &b->watch.jump;
+    double t = r->t0 + o->reached + j->part * o->h;
+    if (j->found)
+        return nevh__watch_fail(r, j, t);
+    return nevh__fail(&r->report, NEVH_EFAILED,
+                      "%s does not keep H: it changes by %.3g near t = %.6g, "
+                      "mostly in effect \"%s\", at steps of %.3g",
+                      nevh_integrator_name(r->integrator), b->watch.changed, t,
+                      nevh_system_effect_name(r->system, j->effect),
+                      fabs(o->h) / 2);
 }
 
 static int give_up(pair *b, const outcome *o) {
@@ -232,6 +323,8 @@ static int give_up(pair *b, const outcome *o) {
     if (o->status)
         return nevh__fail(report, o->status, "%s as a reference: %s", name,
                           nevh_stepper_message(s));
+    if (o->stepped_over)
+        return give_up_jump(b, o);
     return nevh__fail(report, NEVH_EFAILED,
                       "%s is accurate until t = %.4g only, within %.0g "
                       "gradients or %.0g evaluations of terms",
@@ -253,33 +346,59 @@ static void keep(pair *b, const outcome *o) {
              nevh_integrator_name(r->integrator), fabs(o->h) / 2, r->error);
 }
 
-/* As far as runs with differences in the last digits stay together. */
-static void keep_chaos(pair *b, double h) {
+/* As far as they stay together.  `why` they will not to the end. */
+static void keep_part(pair *b, double h, nevh_reference_end why) {
     nevh_reference *r = b->reference;
-    outcome o = run_pair(b, h, chaotic);
-    if (o.status || (!o.whole && spent(b) >= 1))
+    outcome o = run_pair(b, h, apart);
+    const char *name = nevh_integrator_name(r->integrator);
+    if (o.status || o.stepped_over || o.reached == 0 ||
+        (!o.whole && spent(b) >= 1))
         return;
     keep(b, &o);
+    r->exponent = o.whole ? NAN : r->exponent;
+    r->growth = o.whole ? NAN : r->growth;
     if (o.whole)
         return;
     r->horizon = r->t0 + o.reached;
-    snprintf(r->text, sizeof r->text,
-             "%s at dt = %.3g, until chaos at t = %.4g",
-             nevh_integrator_name(r->integrator), fabs(o.h) / 2, r->horizon);
+    r->end = why;
+    if (why == NEVH_REFERENCE_CHAOS)
+        snprintf(r->text, sizeof r->text,
+                 "%s at dt = %.3g, until chaos at t = %.4g", name,
+                 fabs(o.h) / 2, r->horizon);
+    else
+        snprintf(r->text, sizeof r->text, "%s at dt = %.3g, until t = %.4g",
+                 name, fabs(o.h) / 2, r->horizon);
 }
 
-/* Whether rounding explains that they have separated. */
-static bool is_chaos(pair *b, const outcome *o) {
+/* Orbits in a plane, the energy being kept or lost, have no room for chaos. */
+static bool has_room(const nevh_reference *r) {
+    return r->n > 1 || !(nevh_system_traits(r->system) & NEVH_AUTONOMOUS);
+}
+
+/* Why they have separated: by rounding, chaos or not, or by their steps.  Where
+   these have `stalled` all that is as small as rounding, such as tolerances, may
+   have been blown up. */
+static nevh_reference_end explain(pair *b, const outcome *o, bool stalled) {
+    static const double many = 1e4;
     nevh_reference *r = b->reference;
-    memcpy(r->range, b->scale, 2 * r->n * sizeof *r->range);
-    return blow_up(b, o->h, o->reached) * DBL_EPSILON * 30 > hopeless;
+    nevh__spread s = blow_up(b, o->h, o->reached);
+    bool chaos = has_room(r) && nevh__spread_steady(&s);
+    bool rounding = s.most * DBL_EPSILON * 30 > hopeless;
+    r->growth = r->exponent = NAN;
+    if (!rounding && !(stalled && chaos && s.most > many))
+        return NEVH_REFERENCE_COARSE;
+    r->growth = s.most;
+    r->exponent = nevh__spread_rate(&s, o->reached);
+    return chaos ? NEVH_REFERENCE_CHAOS : NEVH_REFERENCE_SENSITIVE;
 }
 
 /* What is known from the runs so far. */
 typedef struct {
-    double error;   /* of the last that came to the end */
-    double reached; /* by the others, at most */
-    int stalled;    /* of these, in turn, how many came no further */
+    double error; /* of the last that came to the end */
+    /* Of the others, of those that failed [1] and those that did not [0]: what
+       was reached at most, and how many, in turn, came no further. */
+    double reached[2];
+    int stalled[2];
 } progress;
 
 static double shorter_step(const outcome *o, int order) {
@@ -303,12 +422,14 @@ static double affordable_step(const pair *b, const outcome *o, double cost,
     return copysign(fmin(fabs(fitting), 0.9 * fabs(o->h)), h);
 }
 
-/* Two shorter steps, 4e9 times better at order 12, should have come further. */
+/* Shorter steps, 4e9 times better for two at order 12, should have come
+   further. */
 static bool has_stalled(progress *p, const outcome *o) {
-    bool further = fabs(o->reached) > 1.1 * p->reached;
-    p->stalled = further ? 0 : p->stalled + 1;
-    p->reached = fmax(p->reached, fabs(o->reached));
-    return p->stalled >= 2;
+    int failed = o->status != NEVH_OK;
+    bool further = fabs(o->reached) > 1.02 * p->reached[failed];
+    p->stalled[failed] = further ? 0 : p->stalled[failed] + 1;
+    p->reached[failed] = fmax(p->reached[failed], fabs(o->reached));
+    return p->stalled[failed] >= 2;
 }
 
 /* So that rounding alone separates the runs, where that can be afforded: they
@@ -319,17 +440,33 @@ static double chaos_step(const pair *b, const outcome *o, double cost) {
     return cost * longer / shorter < 1 - spent(b) ? shorter * o->h : o->h;
 }
 
+/* The shortest by which a run to the end costs no more than that part of what
+   may be spent, or as much as is left. */
+static double whole_step(const pair *b, const outcome *o, double cost) {
+    static const double part = 0.2;
+    double span = b->reference->t1 - b->reference->t0;
+    double reached = fmax(fabs(o->reached), fabs(o->h));
+    return o->h * cost * fabs(span) / reached /
+           fmin(part, 0.8 * (1 - spent(b)));
+}
+
 /* Whether that was the last run; `cost` is its own. */
 static bool is_enough(pair *b, const outcome *o, double cost, progress *p) {
     if (o->status == NEVH_ENOMEM || spent(b) >= 1)
         return true;
     if (o->status)
-        return false;
+        return has_stalled(p, o);
+    if (o->stepped_over)
+        return b->watch.jump.found;
     if (!o->whole) {
-        bool chaos = has_stalled(p, o) || is_chaos(b, o);
-        if (chaos)
-            keep_chaos(b, chaos_step(b, o, cost));
-        return chaos;
+        bool stalled = has_stalled(p, o) || spent(b) > late;
+        nevh_reference_end why = explain(b, o, stalled);
+        bool known = why != NEVH_REFERENCE_COARSE;
+        if (!known && !stalled)
+            return false;
+        keep_part(b, known ? chaos_step(b, o, cost) : whole_step(b, o, cost),
+                  why);
+        return true;
     }
     bool floor = o->error > p->error / 8;
     if (o->error < p->error)
@@ -371,6 +508,8 @@ static int open_pair(pair *b) {
     b->high = b->low + 2 * n;
     b->difference = b->high + 2 * n;
     b->scale = b->difference + 2 * n;
+    if (nevh__watch_open(&b->watch, r))
+        return nevh__fail(&r->report, NEVH_ENOMEM, "out of memory");
     int status = nevh_stepper_status(b->coarse);
     return status ? nevh__fail_as(&r->report, &b->coarse->report) : NEVH_OK;
 }
@@ -387,6 +526,7 @@ int nevh__reference_run(nevh_reference *r) {
         status = find_run(&b);
     nevh_stepper_free(b.coarse);
     nevh_stepper_free(b.fine);
+    nevh__watch_close(&b.watch);
     free(b.track.states);
     free(b.memory);
     return status;

@@ -1,0 +1,188 @@
+/* nevh: whether a run that is to be a reference keeps H.
+
+   Runs with h and h/2 agree where neither sees what both step over: a jump of
+   H, which no derivative knows of, or a wall thinner than a step.  But then H
+   changes by more than the two differ.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "diagnose/reference_private.h"
+#include "gradient/field_private.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double far_above = 100; /* what the runs differ by in H */
+static const double rounding = 1e-8; /* of the effects: let alone what is less,
+                                        which is in the own error */
+enum { HALVINGS = 50 };
+
+/* Only where H is to stay the same. */
+static bool is_constant(const nevh_system *s) {
+    return nevh_system_traits(s) & NEVH_AUTONOMOUS &&
+           !nevh_system_friction(s, NULL);
+}
+
+int nevh__watch_open(nevh__watch *w, const nevh_reference *r) {
+    size_t n = r->n, effects = nevh_system_effect_count(r->system);
+    nevh_options o = {.gradient = &nevh__no_gradient};
+    *w = (nevh__watch){.n = n, .t0 = r->t0, .start = r->start};
+    if (!is_constant(r->system))
+        return NEVH_OK;
+    w->field = nevh_field_new(r->system, &o);
+    w->before = nevh__array(6 * n + 2 * effects, sizeof *w->before);
+    if (!w->field || !w->before)
+        return NEVH_ENOMEM;
+    w->between = w->before + 2 * n;
+    w->after = w->between + 2 * n;
+    w->effects = w->after + 2 * n;
+    w->others = w->effects + effects;
+    return nevh_field_status(w->field);
+}
+
+void nevh__watch_close(nevh__watch *w) {
+    nevh_field_free(w->field);
+    free(w->before);
+}
+
+/* H without constants, and the sum of its terms' sizes; NAN where it has no
+   value. */
+static long double value(nevh__watch *w, const double z[], double *size) {
+    double h = NAN, lost = 0;
+    if (nevh__field_moving_values(w->field, 1, &w->t0, z, z + w->n, &h, &lost,
+                                  size))
+        return NAN;
+    return (long double)h + lost;
+}
+
+void nevh__watch_begin(nevh__watch *w) {
+    w->changed = w->apart = w->size = 0;
+    w->jump = (nevh__jump){0};
+    if (!w->field)
+        return;
+    memcpy(w->before, w->start, 2 * w->n * sizeof *w->before);
+    w->h0 = value(w, w->start, &w->size);
+}
+
+static const double *between(nevh__watch *w, const double after[],
+                             double part) {
+    for (size_t k = 0; k < 2 * w->n; k++)
+        w->between[k] = w->before[k] + part * (after[k] - w->before[k]);
+    return w->between;
+}
+
+/* The effect that changes more than the others from `low` to `high`. */
+static size_t find_effect(nevh__watch *w, const double after[], double low,
+                          double high) {
+    size_t count = nevh_system_effect_count(w->field->system), found = 0;
+    double most = 0;
+    const double *z = between(w, after, low);
+    nevh__field_moving_effects(w->field, w->t0, z, z + w->n, w->effects);
+    between(w, after, high);
+    nevh__field_moving_effects(w->field, w->t0, z, z + w->n, w->others);
+    for (size_t i = 0; i < count; i++) {
+        double change = fabs(w->others[i] - w->effects[i]);
+        found = change > most ? i : found;
+        most = fmax(most, change);
+    }
+    return found;
+}
+
+/* Between two states: into the half over which H changes more, again and
+   again.  What is left of the change is a jump. */
+static void find_jump(nevh__watch *w, const double after[]) {
+    double low = 0, high = 1, size;
+    long double h_low = value(w, between(w, after, 0), &size);
+    long double h_high = value(w, between(w, after, 1), &size);
+    long double all = fabsl(h_high - h_low);
+    for (int i = 0; i < HALVINGS; i++) {
+        double middle = (low + high) / 2;
+        long double h = value(w, between(w, after, middle), &size);
+        bool lower = fabsl(h - h_low) > fabsl(h_high - h);
+        *(lower ? &high : &low) = middle;
+        *(lower ? &h_high : &h_low) = h;
+    }
+    w->jump = (nevh__jump){
+        .found = fabsl(h_high - h_low) > 0.25L * all,
+        .by = (double)(h_high - h_low),
+        .part = low,
+        .effect = find_effect(w, after, low, high),
+    };
+}
+
+bool nevh__watch_step(nevh__watch *w, const double coarse[],
+                      const double fine[]) {
+    double size = 0;
+    if (!w->field)
+        return true;
+    long double a = value(w, coarse, &size), b = value(w, fine, &size);
+    double change = (double)fabsl(b - w->h0);
+    w->size = fmax(w->size, size);
+    w->apart = fmax(w->apart, (double)fabsl(a - b));
+    w->changed = fmax(w->changed, change);
+    if (change > far_above * w->apart + rounding * w->size) {
+        find_jump(w, fine);
+        return false;
+    }
+    memcpy(w->before, fine, 2 * w->n * sizeof *fine);
+    return true;
+}
+
+double nevh__watch_error(const nevh__watch *w) {
+    return w->size > 0 && w->changed > far_above * w->apart
+               ? w->changed / w->size
+               : 0;
+}
+
+int nevh__watch_fail(nevh_reference *r, const nevh__jump *j, double t) {
+    return nevh__fail(&r->report, NEVH_EDOM,
+                      "H jumps by %.3g near t = %.6g, in effect \"%s\", where "
+                      "its derivative tells nothing of it: no scheme follows "
+                      "that; make the jump a steep slope",
+                      j->by, t, nevh_system_effect_name(r->system, j->effect));
+}
+
+static const double *exact_at(const nevh_reference *r, nevh__watch *w,
+                              double elapsed) {
+    nevh__exact_state(r->exact, elapsed, r->start, r->start + r->n, w->between,
+                      w->between + r->n);
+    return w->between;
+}
+
+/* Between two times: into the half over which H changes more. */
+static int find_exact_jump(nevh_reference *r, nevh__watch *w, double low,
+                           double high) {
+    double size;
+    long double h_low = value(w, exact_at(r, w, low), &size);
+    long double h_high = value(w, exact_at(r, w, high), &size);
+    for (int i = 0; i < HALVINGS; i++) {
+        double middle = low + (high - low) / 2;
+        long double h = value(w, exact_at(r, w, middle), &size);
+        bool lower = fabsl(h - h_low) > fabsl(h_high - h);
+        *(lower ? &high : &low) = middle;
+        *(lower ? &h_high : &h_low) = h;
+    }
+    memcpy(w->before, exact_at(r, w, low), 2 * w->n * sizeof *w->before);
+    memcpy(w->after, exact_at(r, w, high), 2 * w->n * sizeof *w->after);
+    w->jump.by = (double)(h_high - h_low);
+    w->jump.effect = find_effect(w, w->after, 0, 1);
+    return nevh__watch_fail(r, &w->jump, r->t0 + low);
+}
+
+int nevh__watch_exact(nevh_reference *r) {
+    enum { TIMES = 4096 };
+    nevh__watch w;
+    int status = nevh__watch_open(&w, r);
+    double part = (r->t1 - r->t0) / TIMES;
+    if (!status)
+        nevh__watch_begin(&w);
+    for (int i = 1; !status && w.field && i <= TIMES; i++) {
+        memcpy(w.after, exact_at(r, &w, i * part), 2 * w.n * sizeof *w.after);
+        if (!nevh__watch_step(&w, w.after, w.after))
+            status = find_exact_jump(r, &w, (i - 1) * part, i * part);
+    }
+    if (!status)
+        r->error = fmax(r->error, nevh__watch_error(&w));
+    else if (status == NEVH_ENOMEM)
+        nevh__fail(&r->report, status, "out of memory");
+    nevh__watch_close(&w);
+    return status;
+}

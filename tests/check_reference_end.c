@@ -1,0 +1,173 @@
+/* nevh tests: why a reference ends: chaos, a saddle, or steps that are too
+   coarse; and where there is none.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "support.h"
+#include <math.h>
+#include <nevh/scene.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MOST = 8 };
+
+typedef struct {
+    nevh_scene *scene;
+    nevh_reference *reference;
+} setup;
+
+static setup refer(const char *coordinates, const char *effects, double t1,
+                   const nevh_reference_options *o) {
+    char text[2000];
+    double q[MOST], p[MOST];
+    snprintf(text, sizeof text, "[coordinates]\n%s\n[effects]\n%s\n",
+             coordinates, effects);
+    setup s = {.scene = nevh_scene_parse("test", text)};
+    ck_assert_str_eq(nevh_scene_message(s.scene), "");
+    ck_assert_uint_le(nevh_scene_dof(s.scene), MOST);
+    nevh_scene_start(s.scene, q, p);
+    s.reference =
+        nevh_reference_with(nevh_scene_system(s.scene), o, 0, t1, q, p);
+    return s;
+}
+
+static void tear_down(setup *s) {
+    nevh_reference_free(s->reference);
+    nevh_scene_free(s->scene);
+}
+
+#define RODS                                                                   \
+    "T = (p_a^2 + 2*p_b^2 - 2*p_a*p_b*cos(a - b))/(2*(1 + sin(a - b)^2))\n"    \
+    "V = -9.8*(2*cos(a) + cos(b))"
+#define HEILES "T = (p_x^2 + p_y^2)/2\nV = (x^2 + y^2)/2 + x^2*y - y^3/3"
+
+/* Of the chaotic ones, the exponents that are in the literature, or found by
+   another program over 1e5 units of time, within a factor that the spread of
+   finite times allows. */
+static const struct {
+    const char *coordinates, *effects;
+    double t1;
+    nevh_reference_end end;
+    double exponent;
+} ends[] = {
+    {"a = 3\nb = 3", RODS, 200, NEVH_REFERENCE_CHAOS, 1.3},
+    {"x = 0\ny = -0.25\np_x = 0.42", HEILES, 2000, NEVH_REFERENCE_CHAOS, 0.045},
+    {"a = 1.1\nb = 0\np_b = 2.7746", RODS, 100, NEVH_REFERENCE_WHOLE, 0},
+    {"x = 0\ny = 0.1\np_x = 0.2", HEILES, 2000, NEVH_REFERENCE_WHOLE, 0},
+    /* Shear: neighbours separate in proportion to the time. */
+    {"x = 1", "T = p_x^2/2\nV = x^4/4", 3000, NEVH_REFERENCE_WHOLE, 0},
+    /* All grows alike. */
+    {"x = 1", "T = p_x^2/2\nV = -x^2/2", 300, NEVH_REFERENCE_WHOLE, 0},
+    {"x = 1", "T = p_x^2/2\nV = -exp(t)*x^2", 9, NEVH_REFERENCE_WHOLE, 0},
+    {"x = 1", "T = p_x^2/2\nV = x/(t - 4.7)", 10, NEVH_REFERENCE_COARSE, 0},
+    /* Into a saddle again and again: one degree of freedom is never chaotic. */
+    {"x = 1e-14", "T = p_x^2/2\nV = -x^2/2 + x^4/4", 200,
+     NEVH_REFERENCE_SENSITIVE, 0},
+};
+enum { ENDS = sizeof ends / sizeof *ends };
+
+START_TEST(ends_have_reasons) {
+    setup s = refer(ends[_i].coordinates, ends[_i].effects, ends[_i].t1, NULL);
+    ck_assert_str_eq(nevh_reference_message(s.reference), "");
+    ck_assert_int_eq(nevh_reference_why(s.reference), ends[_i].end);
+    bool whole = ends[_i].end == NEVH_REFERENCE_WHOLE;
+    ck_assert_int_eq(nevh_reference_horizon(s.reference) == INFINITY, whole);
+    double rate = nevh_reference_exponent(s.reference);
+    if (whole || ends[_i].end == NEVH_REFERENCE_COARSE) {
+        ck_assert(isnan(rate));
+        ck_assert(isnan(nevh_reference_growth(s.reference)));
+    } else {
+        ck_assert_double_gt(nevh_reference_growth(s.reference), 1e4);
+    }
+    if (ends[_i].exponent > 0) {
+        ck_assert_double_gt(rate, ends[_i].exponent / 2);
+        ck_assert_double_lt(rate, ends[_i].exponent * 2);
+    }
+    if (whole)
+        ck_assert_double_lt(nevh_reference_error(s.reference), 1e-9);
+    tear_down(&s);
+}
+END_TEST
+
+/* A run that does not see what rows see: with their step it does. */
+START_TEST(steps_are_no_longer_than_asked_for) {
+    const char wall[] = "T = p_x^2/2\nV = 2*exp(-((x - 1.777)/0.0002)^2)";
+    setup blind = refer("x = 0, 1", wall, 4, NULL);
+    setup seeing = refer("x = 0, 1", wall, 4,
+                         &(nevh_reference_options){.longest = 0.0002});
+    double q, p;
+    ck_assert_int_eq(nevh_reference_state(seeing.reference, 4, &q, &p),
+                     NEVH_OK);
+    ck_assert_double_eq_tol(p, -1, 1e-9);
+    ck_assert_double_lt(nevh_reference_error(seeing.reference), 1e-9);
+    /* What this guards against: the other goes through. */
+    ck_assert_int_eq(nevh_reference_state(blind.reference, 4, &q, &p), NEVH_OK);
+    ck_assert_double_eq_tol(p, 1, 1e-6);
+    tear_down(&blind);
+    tear_down(&seeing);
+    seeing =
+        refer("x = 0, 1", wall, 4, &(nevh_reference_options){.longest = -1});
+    ck_assert_int_eq(nevh_reference_status(seeing.reference), NEVH_EINVAL);
+    tear_down(&seeing);
+}
+END_TEST
+
+/* Jumps of H that no derivative sees; the last are none, however steep. */
+static const struct {
+    const char *effects;
+    bool jumps;
+    const char *text;
+} jumps[] = {
+    {"T = p_x^2/2\nV = sign(x)", true, "by 2 near t = 0.333333"},
+    {"T = p_x^2/2\nV = x^2/2 + x^4/4\nW = 1e-6*floor(x)", true, "effect \"W\""},
+    {"T = p_x^2/2 + 0.1*sign(p_x - 2.5)\nV = x^2/2", true, "effect \"T\""},
+    {"T = p_x^2/2\nV = tanh(20*x)", false, ""},
+    {"T = p_x^2/2\nV = 1e12 + x^2/2 + x^4/4", false, ""},
+    {"T = p_x^2/2\nV = x^2/2 + x^4/4\nW = 1e-6*max(x, 0)^5", false, ""},
+};
+enum { JUMPS = sizeof jumps / sizeof *jumps };
+
+START_TEST(jumps_are_found) {
+    setup s = refer("x = -1, 3", jumps[_i].effects, 10, NULL);
+    const char *message = nevh_reference_message(s.reference);
+    if (jumps[_i].jumps) {
+        ck_assert_int_eq(nevh_reference_status(s.reference), NEVH_EDOM);
+        ck_assert_ptr_nonnull(strstr(message, "H jumps"));
+        ck_assert_ptr_nonnull(strstr(message, jumps[_i].text));
+        ck_assert_str_eq(nevh_reference_text(s.reference), "");
+    } else {
+        ck_assert_str_eq(message, "");
+        ck_assert_double_lt(nevh_reference_error(s.reference), 1e-9);
+    }
+    tear_down(&s);
+}
+END_TEST
+
+/* A scheme of low order: as good as can be afforded, and it says how good. */
+START_TEST(poor_schemes_are_poor_references) {
+    nevh_reference_options o = {.integrator = nevh_euler};
+    double q, p;
+    setup s = refer("x = 1", "T = p_x^2/2\nV = x^2/2 + x^4/4", 10, &o);
+    setup good = refer("x = 1", "T = p_x^2/2\nV = x^2/2 + x^4/4", 10, NULL);
+    ck_assert_str_eq(nevh_reference_message(s.reference), "");
+    ck_assert_int_eq(nevh_reference_why(s.reference), NEVH_REFERENCE_WHOLE);
+    double own = nevh_reference_error(s.reference), x;
+    ck_assert_double_lt(own, 1e-3);
+    nevh_reference_state(s.reference, 10, &q, &p);
+    nevh_reference_state(good.reference, 10, &x, &p);
+    double off = fabs(q - x) / nevh_reference_range(good.reference, 0);
+    ck_assert_double_gt(off, 1e-8);
+    ck_assert_double_lt(off, 3 * own);
+    tear_down(&s);
+    tear_down(&good);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("reference_end");
+    TCase *cases = tcase_create("ends");
+    tcase_add_loop_test(cases, ends_have_reasons, 0, ENDS);
+    tcase_add_test(cases, steps_are_no_longer_than_asked_for);
+    tcase_add_loop_test(cases, jumps_are_found, 0, JUMPS);
+    tcase_add_test(cases, poor_schemes_are_poor_references);
+    suite_add_tcase(suite, cases);
+    return run_suite(suite);
+}
