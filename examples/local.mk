@@ -6,6 +6,7 @@ examples = \
 	examples/double_pendulum_energy \
 	examples/integrators \
 	examples/effects \
+	examples/own_kernel \
 	examples/catalogue \
 	examples/conservation \
 	examples/steps_that_follow \
@@ -22,6 +23,7 @@ examples_pendulum_energy_LDADD = libnevh.la
 examples_double_pendulum_energy_LDADD = libnevh.la
 examples_integrators_LDADD = libnevh.la
 examples_effects_LDADD = libnevh.la
+examples_own_kernel_LDADD = libnevh.la
 examples_catalogue_LDADD = libnevh.la
 examples_conservation_LDADD = libnevh.la
 examples_steps_that_follow_LDADD = libnevh.la

@@ -67,6 +67,13 @@ look_closer() {
         no_row '$1 == "verlet" && ($4 > 1e-3 || $7 > 1e-4)'
         no_row '$2 ~ /^[0-9]+$/ && $7 > $4'
         ;;
+    */own_kernel)
+        has '^ my-euler .* bounded$'
+        has '^ euler .* unstable$'
+        test "$(sed -n 's/^ my-euler *//p' $work/out)" = \
+            "$(sed -n 's/^ symplectic-euler-a *//p' $work/out)" ||
+            fails "my-euler is not symplectic-euler-a"
+        ;;
     */nevh_cost)
         has '^ by hand .* 1\.00 '
         has '^ order 4, blocks of values '
