@@ -22,6 +22,7 @@ typedef struct {
     double shift, certainty; /* along the line: over the run, over its error */
     double straightness;     /* share of the blocks that the line explains */
     double allowed;          /* of rounding, at the end */
+    double own_allowed;      /* at the end of the row's own run */
 } shape;
 
 static double largest(const long_run *r, size_t from, size_t to) {
@@ -59,15 +60,17 @@ static void fit(const long_run *r, shape *s) {
     s->certainty = fabs(s->shift) / sqrt(about / (BLOCKS - 2) / xx + 1e-300);
 }
 
-static shape shape_of(const long_run *r) {
+/* own  of the same row, the run whose windows end with the row's own */
+static shape shape_of(const long_run *r, const long_run *own) {
     shape s = {.largest = largest(r, 0, WINDOWS)};
     s.begin = largest(r, 0, WINDOWS / 15);
     s.first = largest(r, 0, WINDOWS / 3);
     s.last = largest(r, 2 * WINDOWS / 3, WINDOWS);
     s.nearest = nearest(r, 2 * WINDOWS / 3, WINDOWS);
-    size_t own = (size_t)ceil(WINDOWS / r->spans);
-    s.own = largest(r, 0, own);
-    s.own_nearest = nearest(r, own - own / 2, own);
+    size_t part = WINDOWS / (size_t)own->spans;
+    s.own = largest(own, 0, part);
+    s.own_nearest = nearest(own, part / 2, part);
+    s.own_allowed = 16 * own->noise + 8 * own->wandering;
     s.allowed = 16 * r->noise + 8 * r->wandering * sqrt(r->spans);
     fit(r, &s);
     return s;
@@ -88,7 +91,8 @@ static label of_large(const shape *s, const long_run *r, group g) {
         return s->nearest < 0.3 * s->largest ? IS_OPEN : IS_SPENT;
     return s->own > 0.8 * s->largest && s->nearest < 0.3 && s->own_nearest < 0.3
                ? IS_BOUNDED
-               : IS_LARGE;
+           : s->own > 0.3 * s->largest ? IS_LARGE
+                                       : IS_OPEN;
 }
 
 /* Made early, and level since: a loss, or an orbit that went where nothing is
@@ -123,8 +127,8 @@ static label of_runge_kutta(const shape *s) {
     return s->nearest > 0.5 * s->largest ? of_level(s) : IS_OPEN;
 }
 
-static label of_run(const long_run *r, group g) {
-    shape s = shape_of(r);
+static label of_run(const long_run *r, const long_run *own, group g) {
+    shape s = shape_of(r, own);
     if (r->reached < r->spans * (1 - 1e-9))
         return s.own > above(r)             ? IS_UNSTABLE
                : s.largest > 0.5 * above(r) ? WILL_BE_SO
@@ -156,8 +160,15 @@ static bool is_certain(label is, group g) {
 /* What grows in the end has to grow in 30 times the run as well, and above
    rounding. */
 static bool grows_at_once(const long_run *r) {
-    shape s = shape_of(r);
+    shape s = shape_of(r, r);
     return s.largest > 3 * s.own && s.largest > 30 * s.allowed;
+}
+
+/* What the row's own run shows, whatever comes of it later. */
+static bool is_rounding(const long_run *r) {
+    shape s = shape_of(r, r);
+    return s.own <= s.own_allowed && s.largest < above(r) &&
+           s.own_allowed < 1e-3;
 }
 
 static bool grows(label is) {
@@ -174,22 +185,24 @@ static bool is_long_enough(const truth *known, const subject *s) {
 truth truth_of(const subject *s, double spans, double work) {
     group g = group_of(s->scheme);
     const long_run *shortest = long_run_of(s, spans, work);
-    truth known = {of_run(shortest, g), shortest};
+    truth known = {of_run(shortest, shortest, g), shortest, shortest};
     for (int i = 0; i < 2 && !is_certain(known.is, g); i++) {
         spans *= 4;
         const long_run *r = long_run_of(s, spans, 4 * work);
         if (!is_afforded(r, 4 * work))
             break;
-        known = (truth){of_run(r, g), r};
+        known = (truth){of_run(r, shortest, g), r, shortest};
     }
     if (g != RUNGE_KUTTA && grows(known.is) &&
         (!grows_at_once(shortest) || !is_long_enough(&known, s)))
         known.is = IS_OPEN;
+    if (g != RUNGE_KUTTA && grows(known.is) && is_rounding(shortest))
+        known.is = IS_ROUNDING;
     return known;
 }
 
 char *truth_evidence(const truth *known) {
-    shape s = shape_of(known->run);
+    shape s = shape_of(known->run, known->shortest);
     return text_print("error %.2g in the run; %.2g, %.2g in the first and last "
                       "third of %.4g times its length, least %.2g there; line "
                       "%+.2g, R^2 = %.2f; rounding %.1g",

@@ -68,7 +68,7 @@ group group_of(const nevh_integrator *);
 
 typedef struct {
     label is;
-    const long_run *run; /* that says so: the longest */
+    const long_run *run, *shortest; /* that says so: the longest */
 } truth;
 /* May ask for runs yet longer. */
 truth truth_of(const subject *, double spans, double work);
