@@ -161,7 +161,7 @@ exits 0 list models --format csv
 has '^pendulum,1,'
 exits 0 list scenes
 has '^ double-pendulum +2 '
-exits 0 check double-pendulum
+exits 0 check double-pendulum --all
 has 'separable +no'
 has '^ verlet +2 +no$'
 has 'dprkn12: needs H'

@@ -23,9 +23,8 @@ static void tell_probes(const plan *p, list *notes) {
                    nevh_probe_message(probe));
     } else {
         const double *lengths = nevh_probe_lengths(probe);
-        list_add(notes,
-                 "From values of H (largest violation met, and what rounding "
-                 "would allow):");
+        list_add(notes, "Properties of H, tested numerically: largest "
+                        "deviation met, and that which rounding causes");
         for (int i = 0; i < NEVH_FINDINGS; i++)
             tell_finding(probe, (nevh_question)i, notes);
         list_add(notes, "Lengths over which H varies:");
@@ -82,15 +81,22 @@ static void add_refusal(refusals *r, const char *scheme, const char *message) {
     free(why);
 }
 
+/* Below this growth of a step is no limit, but a pace at which euler is slow to
+   show that it is never stable. */
+static const double never = 0.01;
+
 /* dt times the fastest frequency, against what the scheme bears. */
 static void add_preflight(const plan *p, const nevh_integrator *scheme,
-                          bool fits, const preflight *ahead, table *t) {
+                          bool fits, bool why, const preflight *ahead,
+                          table *t) {
     double limit = fits ? nevh_stability_limit(scheme) : NAN;
     double x = fits ? p->dt[0] * ahead->frequency : NAN;
-    if (isfinite(limit))
+    if (!why && limit < never)
+        table_text(t, "never");
+    else if (isfinite(limit))
         table_shown(t, "%.3g", limit);
     else
-        table_text(t, isinf(limit) ? "-" : NULL);
+        table_text(t, isinf(limit) ? "any step" : NULL);
     if (x > 0)
         table_shown(t, "%.3g", x);
     else
@@ -98,8 +104,38 @@ static void add_preflight(const plan *p, const nevh_integrator *scheme,
     table_text(t, fits ? preflight_verdict(limit, x) : NULL);
 }
 
-static void add_scheme(const plan *p, const nevh_integrator *scheme, bool why,
-                       const preflight *ahead, table *t, refusals *r) {
+/* What the table holds, and what is said below it. */
+typedef struct {
+    const plan *plan;
+    const preflight *ahead;
+    bool why, all; /* reasons as a column; all rows, not the plan's alone */
+    table *table;
+    refusals refused;
+    list others; /* that fit */
+} fitting;
+
+static bool is_planned(const plan *p, const nevh_integrator *scheme) {
+    bool transformed;
+    for (size_t i = 0; i < p->integrators.count; i++)
+        if (plan_scheme(p->integrators.item[i], &transformed) == scheme)
+            return true;
+    return false;
+}
+
+static void add_row(fitting *f, const nevh_integrator *scheme,
+                    const nevh_stepper *s) {
+    int status = nevh_stepper_status(s);
+    table_text(f->table, nevh_integrator_name(scheme));
+    table_number(f->table, status ? nevh_integrator_order(scheme)
+                                  : nevh_stepper_order(s));
+    table_text(f->table, status ? "no" : "yes");
+    if (f->why)
+        table_text(f->table, status ? nevh_stepper_message(s) : NULL);
+    add_preflight(f->plan, scheme, !status, f->why, f->ahead, f->table);
+}
+
+static void add_scheme(fitting *f, const nevh_integrator *scheme) {
+    const plan *p = f->plan;
     nevh_options o = plan_options(p, p->gradients.item[0]);
     const char *name = nevh_integrator_name(scheme);
     if (o.gradient_step == 0)
@@ -108,37 +144,45 @@ static void add_scheme(const plan *p, const nevh_integrator *scheme, bool why,
         o.tolerance = 1e-6;
     nevh_stepper *s = nevh_stepper_new(p->system, scheme, &o);
     int status = nevh_stepper_status(s);
-    table_text(t, name);
-    table_number(t, status ? nevh_integrator_order(scheme)
-                           : nevh_stepper_order(s));
-    table_text(t, status ? "no" : "yes");
-    if (why)
-        table_text(t, status ? nevh_stepper_message(s) : NULL);
-    add_preflight(p, scheme, !status, ahead, t);
+    if (f->all || is_planned(p, scheme))
+        add_row(f, scheme, s);
+    else if (!status)
+        list_add(&f->others, name);
     if (status)
-        add_refusal(r, name, nevh_stepper_message(s));
+        add_refusal(&f->refused, name, nevh_stepper_message(s));
     nevh_stepper_free(s);
+}
+
+static void tell_others(const fitting *f, list *words) {
+    list_add(words,
+             "stable below: the largest omega dt at which the steps of an "
+             "oscillation stay bounded (never: they grow at any); empty where "
+             "the integrator chooses its own steps.");
+    char *others = list_joined(&f->others);
+    if (*others)
+        list_print(words, "Also fit (--all shows them): %s.", others);
+    for (size_t i = 0; i < f->refused.names.count; i++)
+        list_print(words, "Do not fit: %s: %s", f->refused.names.item[i],
+                   f->refused.reasons.item[i]);
+    free(others);
 }
 
 /* Reasons are a column where programs read, and below the table where people
    do. */
-static void add_schemes(const plan *p, bool why, const preflight *ahead,
-                        page *result) {
+static void add_schemes(fitting *f, page *result) {
     static const char *const columns[] = {"integrator", "order", "fits", "why"};
-    refusals r = {0};
-    for (size_t i = 0; i < (why ? 4 : 3); i++)
-        table_column(result->table, columns[i]);
-    table_column(result->table, why ? "stable_below" : "stable\nbelow");
-    table_column(result->table, why ? "h_omega" : "h w");
-    table_column(result->table, why ? "preflight" : "");
+    for (size_t i = 0; i < (f->why ? 4 : 3); i++)
+        table_column(f->table, columns[i]);
+    table_column(f->table, f->why ? "stable_below" : "stable\nbelow");
+    table_column(f->table, f->why ? "h_omega" : "omega dt");
+    table_column(f->table, f->why ? "preflight" : "");
     for (size_t i = 0; nevh_integrators()[i]; i++)
-        add_scheme(p, nevh_integrators()[i], why, ahead, result->table, &r);
-    for (size_t i = 0; !why && i < r.names.count; i++) {
-        list_print(&result->after, "%s: %s", r.names.item[i],
-                   r.reasons.item[i]);
-    }
-    list_free(&r.names);
-    list_free(&r.reasons);
+        add_scheme(f, nevh_integrators()[i]);
+    if (!f->why)
+        tell_others(f, &result->after);
+    list_free(&f->refused.names);
+    list_free(&f->refused.reasons);
+    list_free(&f->others);
 }
 
 static int check_plan(const options *o, const plan *p) {
@@ -151,7 +195,14 @@ static int check_plan(const options *o, const plan *p) {
         tell_probes(p, &result.before);
         preflight_words(p, &ahead, &result.before);
     }
-    add_schemes(p, !is_table, &ahead, &result);
+    add_schemes(&(fitting){.plan = p,
+                           .ahead = &ahead,
+                           .why = !is_table,
+                           .all = !is_table || o->all,
+                           .table = result.table},
+                &result);
+    if (o->quiet && is_table)
+        list_free(&result.after);
     free(ahead.failure);
     int status = output_page(o, &result, TOOL_OK);
     page_free(&result);

@@ -80,8 +80,9 @@ static const struct {
      "compile and run C code that the scene names"},
     {"impact", NULL, FOR_EFFECTS, read_impact,
      "what each effect changes in the orbit, costs, and rules out"},
-    {"all", NULL, FOR_LIST | FOR_HARD, read_all,
-     "list: also the names in other packages, and sources. hard: each run"},
+    {"all", NULL, FOR_LIST | FOR_HARD | FOR_CHECK, read_all,
+     "list: also the names in other packages, and sources. check: all "
+     "integrators. hard: each run"},
     {"format", "table|csv|json", OF_TABLES, read_format,
      "csv for run and section, table for others, if not given"},
     {"output", "FILE", OF_TABLES, read_file,

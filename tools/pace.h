@@ -31,18 +31,25 @@ char *stability_cause(const nevh_integrator *, double limit, double dt,
 void stability_words(const plan *, const row rows[], size_t count, list *words);
 
 /* preflight.c: what a short flight ahead says of a run. */
+typedef enum {
+    OUTLOOK_OPEN,    /* the flight was too short to tell */
+    OUTLOOK_PLANE,   /* one degree of freedom, H without time: no chaos */
+    OUTLOOK_REGULAR, /* neighbours part no faster than a power of the time */
+    OUTLOOK_CHAOTIC
+} outlook;
 typedef struct {
     double frequency, fastest_at; /* as a pace; 0: nothing is known */
-    double growth;                /* largest Lyapunov exponent; 0: no chaos */
-    double flown;                 /* time */
-    double noise; /* of the gradient: relative energy error; NAN */
-    double edge;  /* of H: distance in lengths; INFINITY: none is near */
+    outlook outlook;
+    double exponent, error; /* largest Lyapunov exponent over the time flown */
+    double flown;           /* time */
+    double noise;           /* of the gradient: relative energy error; NAN */
+    double edge; /* of H: distance in lengths; INFINITY: none is near */
     size_t edge_variable; /* coordinates first */
     double edge_at, edge_time;
     char *failure; /* NULL, or why the orbit could not be followed */
 } preflight;
 /* failure is to be freed.
-   cost     about a second at most */
+   cost     about two seconds at most */
 preflight preflight_fly(const plan *);
 void preflight_words(const plan *, const preflight *, list *notes);
 /* Of a scheme, its limit of stability given, at h w = x; NULL: nothing. */

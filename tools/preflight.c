@@ -13,22 +13,29 @@
 #include <time.h>
 
 enum { SAMPLES = 256, EDGE_EVERY = 8, MOST_DOF = 48 };
-static const double enough = 0.5;  /* seconds */
+static const double enough = 2;    /* seconds */
 static const double beside = 1e-7; /* of the lengths */
-static const double told = 12;     /* e-foldings that are no straight line */
+static const double far_off = 1e3; /* times that */
+/* Factors of e by which a neighbour parts: in all, and in the second half of
+   the flight.  Apart from chaos it parts in proportion to the time (a factor 2
+   in the second half), with resonance to its square (4). */
+static const double parted = 12, parted_late = 3, parted_little = 1.5;
+static const double many_turns = 30;
 static const double tolerance = 1e-10;
 
 typedef struct {
     const plan *plan;
     preflight *found;
     pace fastest;
-    nevh_field *field;    /* for values */
-    nevh_field *gradient; /* the first that is asked for */
-    double scale;         /* of the energy */
-    double *length;       /* 2n */
-    double *z;            /* 2n x 2, the neighbour in lane 1 */
-    double *trial;        /* 2n */
-    double folds;
+    nevh_field *field;        /* for values */
+    nevh_field *gradient;     /* the first that is asked for */
+    double scale;             /* of the energy */
+    double *length;           /* 2n */
+    double *z;                /* 2n x 2, the neighbour in lane 1 */
+    double *trial;            /* 2n */
+    double folds;             /* when the neighbour was last brought back */
+    double fold[SAMPLES + 1]; /* of each sample */
+    size_t samples;
     clock_t begin;
 } flight;
 
@@ -62,8 +69,10 @@ static void put_beside(flight *f) {
         f->z[2 * i + 1] = f->z[2 * i] + (i ? 0 : beside * f->length[i]);
 }
 
-/* Brings the neighbour back to its distance, and adds up what it had gained. */
-static void bring_back(flight *f) {
+/* Notes how far the neighbour has parted in all, and brings it back to its
+   distance where that is far off.  Not each time: the errors of the steps would
+   be brought back with it, and grow as if there were chaos. */
+static void follow_neighbour(flight *f, size_t sample) {
     size_t n = f->plan->n;
     double sum = 0;
     for (size_t i = 0; i < 2 * n; i++) {
@@ -72,9 +81,13 @@ static void bring_back(flight *f) {
     }
     double gained = sqrt(sum) / beside;
     if (!(gained > 0) || !isfinite(gained)) {
+        f->fold[f->samples = sample] = f->folds;
         put_beside(f);
         return;
     }
+    f->fold[f->samples = sample] = f->folds + log(gained);
+    if (gained > 1 / far_off && gained < far_off)
+        return;
     f->folds += log(gained);
     for (size_t i = 0; i < 2 * n; i++)
         f->z[2 * i + 1] =
@@ -126,7 +139,7 @@ static void fly(flight *f, nevh_stepper *s) {
         if (status)
             break;
         t = p->run->t_start + i * h;
-        bring_back(f);
+        follow_neighbour(f, (size_t)i);
         look(f, i, t);
         if (is_stopped(f, t) ||
             (double)(clock() - f->begin) / CLOCKS_PER_SEC > enough)
@@ -135,6 +148,48 @@ static void fly(flight *f, nevh_stepper *s) {
     f->found->flown = t - p->run->t_start;
     if (status)
         f->found->failure = text_print("%s", nevh_stepper_message(s));
+}
+
+static double most(const double numbers[], size_t from, size_t to) {
+    double found = numbers[from];
+    for (size_t i = from; i <= to; i++)
+        found = fmax(found, numbers[i]);
+    return found;
+}
+
+/* Of the last fold: from those of parts of the flight, which differ. */
+static double spread(const flight *f) {
+    enum { PARTS = 8 };
+    size_t last = f->samples;
+    double mean = f->fold[last] / PARTS, sum = 0;
+    for (size_t i = 0; i < PARTS; i++) {
+        double off =
+            f->fold[(i + 1) * last / PARTS] - f->fold[i * last / PARTS] - mean;
+        sum += off * off;
+    }
+    double halves = fabs(f->fold[last] - 2 * f->fold[last / 2]);
+    return fmax(halves, sqrt(sum * PARTS / (PARTS - 1)));
+}
+
+/* Whether neighbours part as in chaos; from the largest values of either half,
+   because their distance goes up and down with each turn. */
+static void judge(const flight *f) {
+    preflight *found = f->found;
+    size_t last = f->samples, half = last / 2;
+    double time = found->flown, turns = found->frequency * time / (2 * M_PI);
+    if (f->plan->n == 1 && !f->plan->time) {
+        found->outlook = OUTLOOK_PLANE;
+        return;
+    }
+    if (last < 2)
+        return;
+    double late = most(f->fold, half, last) - most(f->fold, 0, half);
+    found->exponent = f->fold[last] / time;
+    found->error = spread(f) / time;
+    if (f->fold[last] > parted && late > parted_late)
+        found->outlook = OUTLOOK_CHAOTIC;
+    else if (late < parted_little && turns > many_turns)
+        found->outlook = OUTLOOK_REGULAR;
 }
 
 static bool take_lengths(flight *f, const nevh_options *o) {
@@ -188,7 +243,7 @@ preflight preflight_fly(const plan *p) {
     }
     found.frequency = f.fastest.frequency;
     found.fastest_at = f.fastest.t;
-    found.growth = f.folds > told ? f.folds / found.flown : 0;
+    judge(&f);
     nevh_rates_free(f.fastest.rates);
     nevh_field_free(f.field);
     nevh_field_free(f.gradient);
@@ -212,20 +267,53 @@ static void tell_edge(const plan *p, const preflight *f, list *notes) {
                    p->run->t_start + f->flown, f->failure);
 }
 
+/* Of the time followed, and what it means for a longer run. */
+static void tell_outlook(const plan *p, const preflight *f, list *notes) {
+    const char *unit = nevh_scene_label(p->scene, "t");
+    const char *space = *unit ? " " : "", *per = *unit ? "/" : "";
+    double horizon = p->run->t_start - log(DBL_EPSILON) / f->exponent;
+    bool within = horizon < p->t_end;
+    switch (f->outlook) {
+    case OUTLOOK_CHAOTIC:
+        list_print(
+            notes,
+            "Chaotic: Lyapunov exponent %.2g +- %.1g%s%s (over %.3g%s%s)."
+            "  %s t = %.3g%s%s rounding errors have grown to the size of "
+            "the orbit: positions mean nothing%s, energies and averages "
+            "do.",
+            f->exponent, f->error, per, unit, f->flown, space, unit,
+            within ? "After" : "A run beyond", horizon, space, unit,
+            within ? "" : " there");
+        break;
+    case OUTLOOK_PLANE:
+        list_add(notes, "Regular: one degree of freedom without a drive cannot "
+                        "be chaotic.");
+        break;
+    case OUTLOOK_REGULAR:
+        list_print(
+            notes,
+            "Regular: over %.3g%s%s neighbouring orbits part slowly, not "
+            "exponentially (Lyapunov exponent below %.1g%s%s).",
+            f->flown, space, unit, 2 * parted_little / f->flown, per, unit);
+        break;
+    default:
+        list_print(notes,
+                   "Chaotic or regular: %.3g%s%s are too short to tell; a "
+                   "longer run (--t-end) tells.",
+                   f->flown, space, unit);
+    }
+}
+
 void preflight_words(const plan *p, const preflight *f, list *notes) {
-    double horizon = -log(DBL_EPSILON) / f->growth;
+    const char *unit = nevh_scene_label(p->scene, "t");
+    const char *space = *unit ? " " : "", *per = *unit ? " rad/" : "";
     if (f->frequency > 0)
         list_print(notes,
-                   "Fastest along the orbit: w = %.3g near t = %.4g; dt = %.4g "
-                   "is h w = %.3g",
-                   f->frequency, f->fastest_at, p->dt[0],
-                   p->dt[0] * f->frequency);
-    if (f->growth > 0 && horizon < p->t_end - p->run->t_start)
-        list_print(notes,
-                   "Neighbours part by a factor e in %.3g: by rounding alone "
-                   "the state cannot be foretold beyond t = %.3g; energies and "
-                   "statistics can",
-                   1 / f->growth, p->run->t_start + horizon);
+                   "Highest frequency met: omega = %.3g%s%s (t = %.4g%s%s); "
+                   "omega dt = %.3g at dt = %.4g%s%s",
+                   f->frequency, per, unit, f->fastest_at, space, unit,
+                   p->dt[0] * f->frequency, p->dt[0], space, unit);
+    tell_outlook(p, f, notes);
     if (isfinite(f->noise))
         list_print(notes,
                    f->noise > 0
