@@ -5,6 +5,7 @@
    as many steps within h as it needs; the size it arrived at is remembered,
    the history of a multistep method is not: each step begins with order 1.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradient/control_private.h"
 #include "gsl_private.h"
 #include "work_private.h"
 #include "system/system_private.h"
@@ -19,6 +20,7 @@ typedef struct {
     gsl_odeiv2_system system;
     gsl_odeiv2_step *step;
     gsl_odeiv2_control *control; /* NULL: fixed steps */
+    nevh__control tolerance;
     gsl_odeiv2_evolve *evolve;
     gsl_odeiv2_driver driver; /* multistep methods ask it for the control */
     double start;
@@ -29,7 +31,6 @@ static void unplan(nevh_work *w) {
     if (!g)
         return;
     gsl_odeiv2_step_free(g->step);
-    gsl_odeiv2_control_free(g->control);
     gsl_odeiv2_evolve_free(g->evolve);
     free(g);
     w->plan = NULL;
@@ -53,12 +54,15 @@ static int slopes(double t, const double y[], double dydt[], void *params) {
 static void plan_control(nevh_work *w) {
     gsl_plan *g = w->plan;
     double tolerance = w->options->tolerance;
-    g->control = gsl_odeiv2_control_scaled_new(tolerance, tolerance, 1, 0,
-                                               w->scale, 2 * w->n);
+    g->tolerance = (nevh__control){.absolute = tolerance,
+                                   .relative = tolerance,
+                                   .by_size = true,
+                                   .scale = w->scale};
+    nevh__control_init(&g->tolerance);
+    g->control = &g->tolerance.gsl;
     g->driver = (gsl_odeiv2_driver){
         .sys = &g->system, .s = g->step, .c = g->control, .e = g->evolve};
-    if (g->control)
-        gsl_odeiv2_step_set_driver(g->step, &g->driver);
+    gsl_odeiv2_step_set_driver(g->step, &g->driver);
 }
 
 /* An error of 0 over one of 0 is good enough for GSL. */
@@ -93,7 +97,7 @@ static int plan(nevh_work *w) {
     g->evolve = gsl_odeiv2_evolve_alloc(2 * w->n);
     if (adapts && g->step)
         plan_control(w);
-    if (!g->step || !g->evolve || (adapts && !g->control))
+    if (!g->step || !g->evolve)
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     w->memory_rows = 1;
     w->scratch_size = 2 * w->n * (w->width + 1) + w->width;

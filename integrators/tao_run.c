@@ -5,6 +5,7 @@
    magnitude more.  GSL's Prince-Dormand pair of order 8 takes some steps from
    one state to the next.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradient/control_private.h"
 #include "tao_private.h"
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
@@ -33,7 +34,7 @@ static size_t affordable(const nevh__explorer *e) {
 typedef struct {
     gsl_odeiv2_system ode;
     gsl_odeiv2_step *step;
-    gsl_odeiv2_control *control;
+    nevh__control control;
     gsl_odeiv2_evolve *evolve;
     double *y;
 } machine;
@@ -49,7 +50,7 @@ static void run(nevh__explorer *e, machine *m, size_t at, size_t count) {
     int status = h > 0 ? GSL_SUCCESS : GSL_FAILURE;
     gsl_odeiv2_evolve_reset(m->evolve);
     for (size_t i = 1; !status && i <= count * STRIDE; i++) {
-        status = gsl_odeiv2_evolve_apply(m->evolve, m->control, m->step,
+        status = gsl_odeiv2_evolve_apply(m->evolve, &m->control.gsl, m->step,
                                          &m->ode, &t, HUGE_VAL, &h, y);
         if (status || i % STRIDE)
             continue;
@@ -71,17 +72,15 @@ static bool assemble(machine *m, const nevh__explorer *e) {
     if (!trial || !m->y || !m->ode.jacobian)
         return false;
     m->step = gsl_odeiv2_step_alloc(gsl_odeiv2_step_rk8pd, d);
-    m->control =
-        gsl_odeiv2_control_scaled_new(tolerance, 0, 0, 0, e->length, d);
+    m->control = (nevh__control){.absolute = tolerance, .scale = e->length};
+    nevh__control_init(&m->control);
     m->evolve = gsl_odeiv2_evolve_alloc(d);
-    return m->step && m->control && m->evolve;
+    return m->step && m->evolve;
 }
 
 static void dismantle(machine *m) {
     if (m->step)
         gsl_odeiv2_step_free(m->step);
-    if (m->control)
-        gsl_odeiv2_control_free(m->control);
     if (m->evolve)
         gsl_odeiv2_evolve_free(m->evolve);
     free(m->y);

@@ -27,6 +27,8 @@ libnevh_core_la_SOURCES = \
 	lib/gradient/plan.c \
 	lib/gradient/explore.c \
 	lib/gradient/lengths.c \
+	lib/gradient/control_private.h \
+	lib/gradient/control.c \
 	lib/gradient/pilot.c \
 	lib/gradient/ladder.c \
 	lib/gradient/complex.c \

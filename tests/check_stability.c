@@ -1,5 +1,6 @@
 /* nevh tests: limits of stability, and how fast neighbours turn and part.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "shipped.h"
 #include "support.h"
 #include <float.h>
 #include <math.h>
@@ -243,6 +244,36 @@ START_TEST(rates_of_a_ring) {
 }
 END_TEST
 
+static double three_bodies(double gravity, const double lengths[]) {
+    double q[6], p[6], frequency, growth;
+    char text[40];
+    nevh_scene *s = read_shipped("figure-eight.nevh");
+    snprintf(text, sizeof text, "G = %g", gravity);
+    ck_assert_int_eq(nevh_scene_set(s, text), NEVH_OK);
+    ck_assert_int_eq(nevh_scene_start(s, q, p), NEVH_OK);
+    nevh_options o = {.q = q, .p = p, .scale = lengths};
+    nevh_rates *r = nevh_rates_new(nevh_scene_system(s), &o);
+    ck_assert_int_eq(nevh_rates_at(r, 0, q, p, &frequency, &growth), NEVH_OK);
+    nevh_rates_free(r);
+    nevh_scene_free(s);
+    return frequency;
+}
+
+/* Rates go as the root of G.  Products of what the matrix is made of underflow,
+   or overflow, above all where lengths are probed. */
+START_TEST(rates_of_any_size) {
+    static const double gravity[] = {1e-300, 1e-200, 1e-100, 1e100, 1e200};
+    double lengths[12];
+    for (size_t i = 0; i < 12; i++)
+        lengths[i] = 1;
+    double one = three_bodies(1, lengths), any = gravity[_i];
+    ck_assert_double_gt(one, 0.5);
+    ck_assert_double_eq_tol(three_bodies(any, lengths) / sqrt(any) / one, 1,
+                            1e-6);
+    ck_assert_double_ge(three_bodies(any, NULL), 0);
+}
+END_TEST
+
 static double rooted(double t, const double q[], const double p[],
                      const void *params) {
     (void)t, (void)params;
@@ -275,6 +306,7 @@ int main(void) {
     tcase_add_loop_test(cases, rates_of_a_pendulum, 0, 3);
     tcase_add_test(cases, rates_of_a_charge);
     tcase_add_loop_test(cases, rates_of_a_ring, 0, 2);
+    tcase_add_loop_test(cases, rates_of_any_size, 0, 5);
     tcase_add_test(cases, outside_there_are_no_rates);
     suite_add_tcase(s, cases);
     return run_suite(s);

@@ -174,6 +174,7 @@ dist_check_SCRIPTS = \
 	tests/nevh_section.sh \
 	tests/nevh_run.sh \
 	tests/nevh_code.sh \
+	tests/nevh_memory.sh \
 	tests/nevh_units.sh \
 	tests/nevh_check.sh \
 	tests/nevh_hard.sh \
@@ -183,7 +184,7 @@ dist_check_SCRIPTS = \
 	tests/effects_off.sh \
 	tests/valgrind.sh
 
-EXTRA_DIST += tests/outside.c tests/interrupt.c tests/formula.h tests/scene.h tests/shipped.h \
+EXTRA_DIST += tests/outside.c tests/interrupt.c tests/starve.c tests/formula.h tests/scene.h tests/shipped.h \
 	tests/nevh_support.sh tests/nevh_interrupt.sh tests/bad tests/fuzz
 
 TESTS = $(all_suites) $(dist_check_SCRIPTS)

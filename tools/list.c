@@ -94,6 +94,8 @@ static int list_scenes(table *t, bool all) {
     for (size_t i = 0; i < names.count; i++) {
         nevh_scene *scene = nevh_scene_read(files.item[i]);
         bool good = nevh_scene_status(scene) == NEVH_OK;
+        if (nevh_scene_status(scene) == NEVH_ENOMEM)
+            tool_owned(NULL);
         table_text(t, names.item[i]);
         table_number(t, good ? (double)nevh_scene_dof(scene) : 0);
         table_text(t, good ? nevh_scene_title(scene) : "has errors");

@@ -5,6 +5,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "system/system_private.h"
 #include <gsl/gsl_eigen.h>
+#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <nevh/diagnose.h>
 #include <nevh/probe.h>
@@ -24,6 +25,7 @@ struct nevh_rates {
     double *state, *slope;              /* 2n each */
     double *direction, *column, *trial; /* 2n each */
     gsl_matrix *matrix;
+    gsl_vector *balance;
     gsl_vector_complex *values;
     gsl_eigen_nonsymm_workspace *work;
 };
@@ -67,11 +69,12 @@ static bool plan_dense(nevh_rates *r) {
     if (!ask)
         return false;
     r->matrix = gsl_matrix_alloc(m, m);
+    r->balance = gsl_vector_alloc(m);
     r->values = gsl_vector_complex_alloc(m);
     r->work = gsl_eigen_nonsymm_alloc(m);
-    if (!r->matrix || !r->values || !r->work)
+    if (!r->matrix || !r->balance || !r->values || !r->work)
         return false;
-    gsl_eigen_nonsymm_params(0, 1, r->work);
+    gsl_eigen_nonsymm_params(0, 0, r->work);
     return true;
 }
 
@@ -115,6 +118,7 @@ void nevh_rates_free(nevh_rates *r) {
         return;
     nevh_field_free(r->field);
     gsl_matrix_free(r->matrix);
+    gsl_vector_free(r->balance);
     gsl_vector_complex_free(r->values);
     if (r->work)
         gsl_eigen_nonsymm_free(r->work);
@@ -170,6 +174,23 @@ static int derivative(nevh_rates *r, double t, const double d[]) {
     return status;
 }
 
+/* GSL's QR algorithm multiplies elements with each other, and does not converge
+   where the products underflow or overflow.  So the matrix is balanced, divided
+   by its largest element, and cleared of elements that are far below the
+   rounding of that one.
+   returns  what eigenvalues are to be multiplied with; 0: all are 0 */
+static double tame(gsl_matrix *a, gsl_vector *balance) {
+    static const double negligible = 0x1p-200;
+    gsl_linalg_balance_matrix(a, balance);
+    double largest = fmax(gsl_matrix_max(a), -gsl_matrix_min(a));
+    for (size_t i = 0; largest > 0 && i < a->size1; i++)
+        for (size_t j = 0; j < a->size2; j++) {
+            double part = gsl_matrix_get(a, i, j) / largest;
+            gsl_matrix_set(a, i, j, fabs(part) < negligible ? 0 : part);
+        }
+    return largest;
+}
+
 static int by_eigenvalues(nevh_rates *r, double t, double *frequency,
                           double *growth) {
     size_t m = 2 * r->n;
@@ -183,12 +204,15 @@ static int by_eigenvalues(nevh_rates *r, double t, double *frequency,
         for (size_t i = 0; i < m; i++)
             gsl_matrix_set(r->matrix, i, j, r->column[i]);
     }
-    if (gsl_eigen_nonsymm(r->matrix, r->values, r->work))
+    double scale = tame(r->matrix, r->balance);
+    if (!isfinite(scale))
+        return NEVH_EDOM;
+    if (scale > 0 && gsl_eigen_nonsymm(r->matrix, r->values, r->work))
         return NEVH_EFAILED;
-    for (size_t i = 0; i < m; i++) {
+    for (size_t i = 0; scale > 0 && i < m; i++) {
         gsl_complex value = gsl_vector_complex_get(r->values, i);
-        *frequency = fmax(*frequency, fabs(GSL_IMAG(value)));
-        *growth = fmax(*growth, GSL_REAL(value));
+        *frequency = fmax(*frequency, scale * fabs(GSL_IMAG(value)));
+        *growth = fmax(*growth, scale * GSL_REAL(value));
     }
     return NEVH_OK;
 }

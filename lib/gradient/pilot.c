@@ -1,5 +1,6 @@
 /* nevh: states to try difference steps at.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradient/control_private.h"
 #include "gradient/explore_private.h"
 #include <float.h>
 #include <gsl/gsl_errno.h>
@@ -109,16 +110,18 @@ static bool run_pilot(nevh__explorer *e, int steps) {
     }
     gsl_odeiv2_step *step =
         gsl_odeiv2_step_alloc(gsl_odeiv2_step_rkf45, ode.dimension);
-    gsl_odeiv2_control *control = gsl_odeiv2_control_scaled_new(
-        tolerance, tolerance, 1, 0, e->length, ode.dimension);
+    nevh__control control = {.absolute = tolerance,
+                             .relative = tolerance,
+                             .by_size = true,
+                             .scale = e->length};
+    nevh__control_init(&control);
     gsl_odeiv2_evolve *evolve = gsl_odeiv2_evolve_alloc(ode.dimension);
-    if (step && control && evolve)
-        fly(e, steps, &ode, step, control, evolve, y);
+    if (step && evolve)
+        fly(e, steps, &ode, step, &control.gsl, evolve, y);
     gsl_odeiv2_step_free(step);
-    gsl_odeiv2_control_free(control);
     gsl_odeiv2_evolve_free(evolve);
     free(y);
-    return step && control && evolve;
+    return step && evolve;
 }
 
 /* As many steps as most_work allows: a step takes six gradients. */
