@@ -236,10 +236,10 @@ static size_t wrong_of(size_t counts[LABELS][SAID]) {
 }
 
 static void print_table(const char *title, size_t counts[LABELS][SAID]) {
-    printf("\n%s: %zu rows, %zu wrong\n%-14s", title, all_of(counts),
+    printf("\n%s: %zu rows, %zu wrong (*)\n%-14s", title, all_of(counts),
            wrong_of(counts), "true \\ said");
     for (size_t k = 0; k < SAID - 1; k++)
-        printf(" %12s", said[k]);
+        printf(" %11s ", said[k]);
     puts("");
     for (size_t i = 0; i < LABELS; i++) {
         size_t sum = 0;
@@ -257,8 +257,8 @@ static void print_table(const char *title, size_t counts[LABELS][SAID]) {
 
 static bool goal(const char *what, size_t part, size_t of, double most) {
     double percent = of ? 100 * (double)part / (double)of : 0;
-    printf("%-66s %5zu of %6zu  %6.2f %%  goal %.1f %%%s\n", what, part, of,
-           percent, most, percent <= most ? "" : "  MISSED");
+    printf("%-48s %5zu of %5zu %6.2f %%  %3.1f%s\n", what, part, of, percent,
+           most, percent <= most ? "" : " missed");
     return percent <= most;
 }
 
@@ -286,17 +286,17 @@ static bool goals(const survey *v, size_t all[LABELS][SAID]) {
     size_t rest = wrong_of(all) - false_drifts - false_bounds;
     size_t rows = all_of(all);
     bool met = true;
-    puts("");
-    met &= goal("symplectic: said to drift or to be unstable, but bounded",
-                false_drifts, all_of(symplectic), 0.2);
-    met &= goal("rk4 and euler: said to be bounded, but the long run is not",
-                false_bounds, all_of(kutta), 0.5);
+    printf("\n%-48s %14s %8s  goal\n", "", "rows", "");
+    met &= goal("symplectic, bounded: said to drift, or unstable", false_drifts,
+                all_of(symplectic), 0.2);
+    met &= goal("rk4 and euler, not bounded: said to be", false_bounds,
+                all_of(kutta), 0.5);
     met &= goal("undecided", sum_of(all, every, "undecided"), rows, 5);
     met &= goal("all others that are wrong", rest, rows, 1);
-    printf("%-66s %5zu of %6zu  %6.2f %%\n", "wrong in all", wrong_of(all),
-           rows, 100 * (double)wrong_of(all) / fmax(1, (double)rows));
+    printf("%-48s %5zu of %5zu %6.2f %%\n", "wrong in all", wrong_of(all), rows,
+           100 * (double)wrong_of(all) / fmax(1, (double)rows));
     for (size_t k = 0; k < LENGTHS; k++)
-        printf("  runs of %3g periods %-46s %5zu of %6zu  %6.2f %%\n",
+        printf("  runs of %3g periods %-28s %5zu of %5zu %6.2f %%\n",
                lengths[k], "", v->wrongs[k], v->rows[k],
                100 * (double)v->wrongs[k] / fmax(1, (double)v->rows[k]));
     return met;

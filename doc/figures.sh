@@ -45,6 +45,11 @@ awk -f "$srcdir/doc/hard.awk" "$srcdir/doc/hard.csv" >"$srcdir/doc/hard.txt"
 sed -n '1p; $p' "$srcdir/doc/hard.txt" >"$srcdir/doc/hard-all.txt"
 rm -f "$srcdir/doc/hard.csv"
 
+# Of verdicts all groups together.  Long runs are made once, in half an hour.
+echo "bench/verdicts" >&2
+bench/verdicts -s 0.35 -o bench/wrong-verdicts "$srcdir" bench/long-runs \
+    2>/dev/null | sed -n '/^all:/,$p' >"$srcdir/doc/verdicts.txt"
+
 quote gradient-cost "$examples/gradient_cost"
 quote steps-that-follow "$examples/steps_that_follow"
 quote nevh-cost "$examples/nevh_cost"

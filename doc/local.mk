@@ -6,6 +6,7 @@ doc_nevh_TEXINFOS = \
 	doc/recommend-pendulum.txt \
 	doc/gradients-pendulum.txt \
 	doc/hard.txt \
+	doc/verdicts.txt \
 	doc/reference.texi
 AM_MAKEINFOHTMLFLAGS = --no-split
 # Without TeX; make pdf needs it.
@@ -47,5 +48,5 @@ EXTRA_DIST += doc/nevh.h2m doc/nevh.3.head doc/reference.awk doc/figures.sh doc/
 	doc/hard-all.txt
 
 # What the manual and the README quote, made anew.
-figures: all
+figures: all bench/verdicts$(EXEEXT)
 	$(SHELL) $(srcdir)/doc/figures.sh $(srcdir) ./tools/nevh$(EXEEXT) examples
