@@ -87,12 +87,82 @@ done
 
 # Sections, and work and precision.
 draws section damped-driven-pendulum --t-end 4000 --plot $svg \
-    --keep-plot-script $work/out.gp
+    --keep-plot-script $work/out.gp -o $work/points.csv
+test -s $work/out && fails "prints"
 shows strobe
 shows 'phi (rad)'
 shows p_phi
-test "$(points 1)" = "$(grep -c '^strobe,' $work/out)" ||
+shows 'verlet, dt = 0.1; gradient central4; t = 0 ... 4000; H = -1.28007 at the start'
+test "$(points 1)" = "$(grep -c '^strobe,' $work/points.csv)" ||
     fails "does not draw each point"
+# Larger where they are few.
+size() { sed -n 's/.*\$series1 .* pointsize \([0-9.]*\).*/\1/p' $work/out.gp; }
+small=$(size)
+draws section henon-heiles --t-end 100 --plot $svg --keep-plot-script $work/out.gp
+test "$(cat $work/out)" = \
+    "$svg: verlet, dt = 0.2, $(points 1) points; -o FILE writes the rows as CSV" ||
+    fails "prints something else"
+shows 'verlet, dt = 0.2; gradient central4; t = 0 ... 100; H = 0.125 at the start'
+test "$(echo "$(size) > 1.5 * $small" | bc)" = 1 || fails "draws points of $(size), not above $small"
+# One degree of freedom: what crosses is 0 at all points, so time is across.
+draws section pendulum --t-end 100 --plot $svg
+for text in swing 't (s)' 'p_phi (J s)'; do shows "$text"; done
+# A section without points says so, and a picture of none why.
+cat >$work/far.nevh <<'END'
+[coordinates]
+theta = 1, 0
+[effects]
+kinetic = p_theta^2/2
+V = (theta - 0.5)^2/2
+[sections]
+none = when theta = 2, rising: theta, p_theta
+some = when theta = 0.5, rising: theta, p_theta
+[labels]
+theta = rad
+[run]
+t_end = 20
+dt = 0.01
+integrators = verlet
+END
+draws section $work/far.nevh --plot $svg
+shows 'none: no points'
+exits 2 section $work/far.nevh --section none --plot $work/none.svg
+says 'nothing to plot: section none: 0 points: theta stays in 0 \.\.\. 1 rad$|-[0-9.e-]* \.\.\. 1 rad$'
+test -e $work/none.svg && fails "draws nothing to a file"
+draws section $work/far.nevh
+has '^# section none: 0 points: theta stays in .* 1 rad$'
+# A run that fails says with which scheme, once.
+cat >$work/fails.nevh <<'END'
+[coordinates]
+x = 1, 1
+[effects]
+kinetic = p_x^2/2
+V = log(2 - x)
+[sections]
+s = when x = 5, rising: x, p_x
+[run]
+t_end = 20
+dt = 0.1
+integrators = rk4
+END
+for plot in '' "--plot $work/none.svg"; do
+    exits 1 section $work/fails.nevh $plot
+    says 'rk4 failed: '
+    test "$(wc -l <$work/err)" = 1 || { fails "says more"; cat $work/err; }
+done
+exits 1 run $work/fails.nevh --plot $svg
+says 'rk4 failed after t = '
+test "$(wc -l <$work/err)" = 1 || { fails "says more"; cat $work/err; }
+exits 1 run $work/fails.nevh --plot $svg --format csv
+test "$(wc -l <$work/err)" = 1 || { fails "says more"; cat $work/err; }
+# Who reads the rows may stop reading.
+command="run | head"
+for what in run section compare; do
+    rm -f $svg
+    $limit "$nevh" $what pendulum --t-end 1000 --dt 0.01 --integrators verlet \
+        --format csv --plot $svg 2>$work/err | head -n 1 >$work/out
+    test -s $svg || fails "lets the reader of $what end the picture"
+done
 draws cost pendulum --gradient central4 --integrators verlet,rk4 \
     --dt 0.2,0.1,0.05,0.025 --t-end 20 --plot $svg \
     --keep-plot-script $work/out.gp
@@ -161,6 +231,8 @@ texts | grep -q '; errors relative to 0.5, the largest in each 0.17$' ||
     fails "does not say what a point is"
 draws run pendulum --t-end 5 --plot $svg --format csv
 has '^t,phi,p_phi,'
+draws run fput --plot-kind time --t-end 2000 --plot $svg
+for text in mode1 mode2 mode3 mode4; do shows "$text"; done
 draws run fput --t-end 5 --plot $svg
 texts | grep -q '; the first 4 of 32 coordinates: --columns chooses others$' ||
     fails "does not say what is left out"
@@ -235,7 +307,7 @@ awk '/^\$series[78] <</ { getline; printf("%.6f %.6f\n", $1, $2) }' \
     $work/out.gp >$work/drawn
 cmp $work/rows $work/drawn || fails "draws bobs elsewhere"
 awk '/^\$series[34] <</ { getline; print }' $work/out.gp >$work/drawn
-printf '1 -6.123233996e-17\n1 -1\n' | cmp - $work/drawn ||
+printf '1 -6.12323399573677e-17\n1 -1\n' | cmp - $work/drawn ||
     { fails "draws starts elsewhere"; cat $work/drawn; }
 # Names of bobs, and axes by what places them.
 draws run sun-earth-moon --t-end 1 --plot-kind configuration --plot $svg
@@ -345,6 +417,9 @@ says 'no option of nevh check'
 test "$(ls $work)" = "$before" || fails "leaves files: $(ls $work)"
 exits 2 compare double-pendulum --integrators verlet --t-end 1 --plot $work/x.svg
 says 'nothing to plot'
+exits 2 compare pendulum --without gravity --t-end 1 --plot $work/x.svg
+says 'nothing to plot: all values are 0'
+has '^ verlet '
 test -e $work/x.svg && fails "draws nothing to a file"
 
 # gnuplot is missing, or fails, at once or at the end.

@@ -231,15 +231,17 @@ static int compare_rows(const options *o, const plan *p, row_list *r) {
     run_rows(p, r, o->quiet);
     observe_orders(r->row, r->count);
     page result = make_page(o, p, r);
+    bool first = plot_goes_first(o);
+    int drawn = first ? compare_plot(o, p, r->row, r->count) : TOOL_OK;
     page_print(&result, o, out.stream);
     page_free(&result);
     for (size_t i = 0; i < r->count; i++)
         if (r->row[i].failed)
             status = TOOL_FAILED;
     status = output_close(&out, status);
-    if (plot_wanted(o) && compare_plot(o, p, r->row, r->count))
-        status = TOOL_USAGE;
-    return status;
+    if (plot_wanted(o) && !first)
+        drawn = compare_plot(o, p, r->row, r->count);
+    return drawn ? TOOL_USAGE : status;
 }
 
 static int compare_plan(const options *o, plan *p) {

@@ -61,26 +61,25 @@ static void base_of(const char *formula, char base[], size_t size) {
         base[0] = '\0';
 }
 
-/* What all bobs are placed by, numbers apart; a word where that is not one. */
+/* What all bobs are placed by, numbers apart; x or y where that is not one
+   name.  The unit is that of any that has one. */
 static char *axis_label(const plan *p, const bob_list *b, size_t which) {
     char name[64] = "", other[64];
-    const char *of = NULL;
+    const char *unit = "";
     bool same = true;
     for (size_t i = 0; i < b->count; i++) {
         const char *item = nevh_scene_part_at(b->scene, b->part[i]).item[which];
+        const char *label = nevh_scene_label(p->scene, item);
         base_of(item, other, sizeof other);
-        if (!*other) {
-            same = same && isdigit((unsigned char)*item);
-            continue;
-        }
-        same = same && (!of || strcmp(name, other) == 0);
-        if (!of)
-            strcpy(name, other), of = item;
+        unit = *label ? label : unit;
+        same = same && (*other ? !*name || strcmp(name, other) == 0
+                               : isdigit((unsigned char)*item));
+        if (*other)
+            strcpy(name, other);
     }
-    if (!same || !of)
-        return text_print("%s", which ? "y" : "x");
-    const char *unit = nevh_scene_label(b->scene, of);
-    return *unit ? plot_label(p, name, of) : plot_label(p, name, name);
+    if (!same || !*name)
+        strcpy(name, which ? "y" : "x");
+    return text_print(*unit ? "%s (%s)" : "%s%s", name, unit);
 }
 
 /* Parts. */
@@ -160,15 +159,19 @@ static double least_turns(const bob_list *b, const orbit *o) {
     return isfinite(least) ? least : 0;
 }
 
-/* returns  what is to be said of it; to be freed */
-static char *follow(run_picture *is, bob_list *b) {
+static void follow_dense(run_picture *is, bob_list *b) {
     row_times dense = orbit_dense_times(&is->plan);
     picture_follow(is, &dense, 2 * b->count, fill, b);
+    free(dense.time);
+}
+
+/* returns  what is to be said of it; to be freed */
+static char *follow(run_picture *is, bob_list *b) {
+    follow_dense(is, b);
     char *words = picture_cut(is, least_turns(b, is->orbits.item));
     if (!words)
         return text_print("%s", "");
-    dense = orbit_dense_times(&is->plan);
-    picture_follow(is, &dense, 2 * b->count, fill, b);
+    follow_dense(is, b);
     return words;
 }
 

@@ -223,10 +223,14 @@ static int cost_plan(const options *o, plan *p, double whole) {
     run_ladders(&c, o);
     page result = make_page(o, &c);
     search_end(&c.search);
+    bool first = plot_goes_first(o);
+    int drawn = first ? cost_plot(o, &c) : TOOL_OK;
     page_print(&result, o, out.stream);
     page_free(&result);
     int status = output_close(&out, report_failures(&c));
-    if (plot_wanted(o) && cost_plot(o, &c))
+    if (plot_wanted(o) && !first)
+        drawn = cost_plot(o, &c);
+    if (drawn)
         status = TOOL_USAGE;
     for (size_t i = 0; i < c.count; i++)
         ladder_free(&c.ladder[i]);

@@ -109,13 +109,23 @@ int orbit_follow(orbit *o, const row_times *times, size_t columns,
 }
 
 row_times orbit_dense_times(const plan *p) {
-    static const double enough = THINNED_ROWS - 1, most = 50;
-    double steps = (p->t_end - p->run->t_start) / p->dt[0];
+    static const double enough = THINNED_ROWS - 1, most = 50, whole = 1e-9;
+    double begin = p->run->t_start, span = p->t_end - begin;
+    double steps = span / p->dt[0], h = p->dt[0];
+    if (fabs(steps - round(steps)) <= whole * steps && round(steps) > 0) {
+        steps = round(steps);
+        h = span / steps;
+    }
     double each = fmin(floor(enough / ceil(steps)), most);
+    row_times r = {.by = BY_TIMES};
     if (each < 2)
         return (row_times){.by = BY_STEPS, .every = 1};
-    return (row_times){.by = BY_SAMPLES,
-                       .count = (size_t)(ceil(steps) * each) + 1};
+    r.time = tool_allocate((size_t)(ceil(steps) * each) + 1, sizeof *r.time);
+    for (double i = 0; i < steps * each - whole * steps; i++)
+        r.time[r.count++] =
+            begin + (floor(i / each) + fmod(i, each) / each) * h;
+    r.time[r.count++] = p->t_end;
+    return r;
 }
 
 const double *orbit_row(const orbit *o, size_t i) {

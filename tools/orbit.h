@@ -36,7 +36,7 @@ int orbit_follow(orbit *, const row_times *, size_t columns, orbit_fill *,
                  void *data, bool quiet);
 /* At the steps, and between them where they are few, so that a curve looks like
    one. */
-row_times orbit_dense_times(const plan *);
+row_times orbit_dense_times(const plan *);        /* time: to be freed */
 const double *orbit_row(const orbit *, size_t i); /* after t */
 /* How often a column goes round: passes its mean, over 2. */
 double orbit_turns(const orbit *, size_t k);

@@ -136,6 +136,7 @@ plot *plot_phase(run_picture *is) {
         free(more);
     }
     column_panels_free(&c);
+    free(dense.time);
     free(names);
     return to;
 }

@@ -81,6 +81,12 @@ bool plot_wanted(const options *); /* --plot or --keep-plot-script */
    any output is opened.
    returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int plot_check(const options *);
+/* Of commands that print rows: whether there is a picture instead, and no file
+   or format was asked for. */
+bool plot_replaces_rows(const options *);
+/* Then, what was drawn, where that is in a file; points: 0 is not said. */
+void plot_say_written(const options *, const plan *, const char *integrator,
+                      size_t points);
 /* Whether it goes to a file, which is to be written before anything is printed:
    who reads that may stop reading. */
 bool plot_goes_first(const options *);

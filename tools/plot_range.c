@@ -31,19 +31,23 @@ static range extent(const plot *p, size_t number, coordinate *of) {
     return r;
 }
 
-/* The nearest of 1, 2 and 5 times a power of 10 that is not above. */
+static const double digits[] = {1, 1.5, 2, 3, 4, 5, 6, 8, 10};
+
+/* The nearest of a few round numbers that is not above, or not below. */
 static double round_below(double value) {
     double power = pow(10, floor(log10(value) + few_digits));
-    double digits = value / power * (1 + few_digits);
-    return power * (digits >= 5 ? 5 : digits >= 2 ? 2 : 1);
+    int i = 7;
+    while (i > 0 && digits[i] * power > value * (1 + few_digits))
+        i--;
+    return digits[i] * power;
 }
 
 static double round_above(double value) {
-    double below = round_below(value);
-    if (below >= value * (1 - few_digits))
-        return below;
-    double digits = below / pow(10, floor(log10(below) + few_digits));
-    return below * (digits < 1.5 || digits > 4 ? 2 : 2.5);
+    double power = pow(10, floor(log10(value) + few_digits));
+    int i = 0;
+    while (i < 8 && digits[i] * power < value * (1 - few_digits))
+        i++;
+    return digits[i] * power;
 }
 
 static range decades(range r) {

@@ -118,7 +118,7 @@ static void print_points(FILE *f, const series *s, size_t number) {
         if (isnan(s->point[k].x))
             fputc('\n', f);
         else
-            fprintf(f, "%.10g %.10g\n", s->point[k].x, s->point[k].y);
+            fprintf(f, "%.15g %.15g\n", s->point[k].x, s->point[k].y);
     fputs("EOD\n", f);
 }
 
@@ -264,6 +264,17 @@ static void print_axis(FILE *f, char letter, const axis *a) {
     fputs(a->count ? ")\n" : "", f);
 }
 
+/* As long as the panel and what is above and below it, if need be smaller. */
+static void print_y_label(FILE *f, const char *label, const layout *l) {
+    static const double letter = 0.57, smallest = 0.75;
+    double room = l->panel_height + l->top + 0.8 * l->bottom;
+    double letters = fmax(label ? (double)plot_letters(label) : 0, 1);
+    double size = fmin(fmax(room / (letter * FONT * letters), smallest), 1);
+    char font[32];
+    snprintf(font, sizeof font, " font ',%.3g'", size * FONT);
+    quote_line(f, "set ylabel ", label, room / (letter * FONT * size), font);
+}
+
 /* Text has no letters that lie on their side. */
 static void print_texts(FILE *f, const panel *on, const axes *a,
                         const layout *l, bool text) {
@@ -278,7 +289,7 @@ static void print_texts(FILE *f, const panel *on, const axes *a,
         quote_line(f, "set title ", title, width + l->left, "");
         free(title);
     } else {
-        quote_line(f, "set ylabel ", y, l->panel_height / l->letter, "");
+        print_y_label(f, y, l);
         quote_line(f, "set title ", on->heading, width, " offset 0,-0.5");
     }
     free(x);

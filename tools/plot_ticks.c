@@ -108,11 +108,12 @@ static void add_decades(axis *a, double count, bool text) {
 
 axis plot_axis(range shown, bool log, double count, bool text) {
     static const double short_of = 0.5; /* of a decade */
+    static const double fewer = 0.6;    /* than powers of 10 */
     axis a = {.shown = shown, .log = log};
     if (log && log10(shown.high / shown.low) >= short_of)
         add_decades(&a, count, text);
     else
-        add_numbers(&a, count);
+        add_numbers(&a, log ? fewer * count : count);
     return a;
 }
 

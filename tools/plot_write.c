@@ -64,6 +64,22 @@ bool plot_goes_first(const options *o) {
     return plot_wanted(o) && !in_terminal(o);
 }
 
+bool plot_replaces_rows(const options *o) {
+    return plot_wanted(o) && !o->file && !o->resume && !o->formatted;
+}
+
+void plot_say_written(const options *o, const plan *p, const char *integrator,
+                      size_t points) {
+    if (o->quiet || !plot_replaces_rows(o) || !plot_goes_first(o))
+        return;
+    char *scheme = plot_scheme(p, integrator);
+    printf("%s: %s", o->plot ? o->plot : o->plot_script, scheme);
+    if (points)
+        printf(", %zu points", points);
+    puts("; -o FILE writes the rows as CSV");
+    free(scheme);
+}
+
 static bool same(const char *a, const char *b) {
     return a && b && strcmp(a, b) == 0;
 }

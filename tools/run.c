@@ -259,7 +259,7 @@ static int run_job(job *j) {
     int drawn = TOOL_OK, status = TOOL_OK;
     if (first)
         drawn = run_plot(o, &j->plan, j->integrator, &j->rows);
-    if (run_prints_rows(o))
+    if (!plot_replaces_rows(o))
         status = write_rows(j);
     if (plots && !first && status != TOOL_USAGE)
         drawn = run_plot(o, &j->plan, j->integrator, &j->rows);

@@ -171,35 +171,17 @@ static int check_kind(const options *o, const plan *p) {
     return TOOL_OK;
 }
 
-bool run_prints_rows(const options *o) {
-    return o->file || o->resume || o->formatted || !plot_wanted(o);
-}
-
 int run_plot_check(const options *o, const plan *p) {
     options as = *o;
     as.file = o->resume ? o->resume : o->file;
-    as.format = !run_prints_rows(o) ? FORMAT_TABLE
-                : o->formatted      ? o->format
-                                    : FORMAT_CSV;
+    as.format = plot_replaces_rows(o) ? FORMAT_TABLE
+                : o->formatted        ? o->format
+                                      : FORMAT_CSV;
     return check_kind(o, p) ? TOOL_USAGE : plot_check(&as);
 }
 
 static size_t points_of(const run_picture *is) {
     return is->orbits.count ? is->orbits.item[0].rows.seen : 0;
-}
-
-/* What was drawn, where nothing else is printed. */
-static void say_written(const run_picture *is) {
-    const options *o = is->options;
-    if (o->quiet || run_prints_rows(o) || !plot_goes_first(o))
-        return;
-    char *scheme = plot_scheme(&is->plan, is->orbits.item->integrator);
-    printf("%s: %s%s", o->plot ? o->plot : o->plot_script, scheme,
-           is->orbits.count > 1 ? " and others" : "");
-    if (points_of(is))
-        printf(", %zu points", points_of(is));
-    puts("; -o FILE writes the rows as CSV");
-    free(scheme);
 }
 
 static int worst_status(const run_picture *is) {
@@ -222,11 +204,12 @@ int run_plot(const options *o, const plan *p, const char *integrator,
                       .orbits = orbits_new(o, p, integrator),
                       .rows =
                           o->every || o->samples || o->at.count ? rows : NULL,
-                      .quiet = run_prints_rows(o)};
+                      .quiet = !plot_replaces_rows(o)};
     plot *to = draw[o->plot_kind](&is);
     int status = to ? plot_write(to, o) : TOOL_USAGE;
     if (!status) {
-        say_written(&is);
+        plot_say_written(o, &is.orbits.item->plan, is.orbits.item->integrator,
+                         points_of(&is));
         status = worst_status(&is);
     }
     plot_free(to);

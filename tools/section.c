@@ -12,7 +12,8 @@ typedef struct {
     nevh_scene *scene;
     size_t number, points, room;
     const nevh_scene_section *is;
-    double *periods; /* of items that are coordinates; 0: none */
+    double low, high; /* of what crosses, LEFT - RIGHT, at steps */
+    double *periods;  /* of items that are coordinates; 0: none */
     double *numbers;
 } series;
 
@@ -64,14 +65,21 @@ static int keep(void *data, const nevh_point *point) {
 
 static int value(void *data, double t, const double q[], const double p[],
                  double *result) {
-    const series *s = data;
-    return nevh_scene_section_cross(s->scene, s->number, t, q, p, result);
+    series *s = data;
+    int status = nevh_scene_section_cross(s->scene, s->number, t, q, p, result);
+    if (!status) {
+        s->low = fmin(s->low, *result);
+        s->high = fmax(s->high, *result);
+    }
+    return status;
 }
 
 static void add_series(job *j, size_t number) {
     series *s = &j->all[j->count++];
     s->scene = j->plan->scene;
     s->number = number;
+    s->low = INFINITY;
+    s->high = -INFINITY;
     s->is = nevh_scene_section_at(s->scene, number);
     s->periods = tool_allocate(s->is->items, sizeof *s->periods);
     for (size_t i = 0; i < s->is->items; i++)
@@ -149,7 +157,7 @@ static int explain(job *j, int status, const nevh_stepper *s,
     if (!*why)
         why = looking ? nevh_sections_message(x) : nevh_stepper_message(s);
     j->ended = text_print("failed: %s", why);
-    tool_refuse("%s: %s", j->plan->name, j->ended);
+    tool_refuse("%s: %s %s", j->plan->name, j->integrator, j->ended);
     return TOOL_FAILED;
 }
 
@@ -158,10 +166,15 @@ static int run(job *j, nevh_stepper *s) {
     nevh_sections *x = watch(j, s);
     nevh_observer observer = {nevh_sections_observe, x, 1};
     int status = nevh_sections_status(x);
+    double *q = tool_allocate(p->n, sizeof *q);
+    double *m = tool_allocate(p->n, sizeof *m);
+    memcpy(q, p->q, p->n * sizeof *q);
+    memcpy(m, p->p, p->n * sizeof *m);
     if (!status)
-        status =
-            plan_run(p, s, p->dt[0], p->q, p->p, &observer, 1, &j->stopped);
+        status = plan_run(p, s, p->dt[0], q, m, &observer, 1, &j->stopped);
     status = explain(j, status, s, x);
+    free(q);
+    free(m);
     nevh_sections_free(x);
     return status;
 }
@@ -196,6 +209,45 @@ static void fill(table *t, const job *j, const list *items) {
     }
 }
 
+/* What crosses, and where: "theta", 0; "z - (x)", 0 where that is no number. */
+static char *crossing_text(const nevh_scene_section *is, double *at) {
+    char *end;
+    *at = strtod(is->right, &end);
+    if (!*end && end != is->right)
+        return text_print("%s", is->left);
+    *at = 0;
+    return text_print("%s - (%s)", is->left, is->right);
+}
+
+/* Why there are no points; to be freed. */
+static char *reason(const job *j, const series *s) {
+    const nevh_scene_section *is = s->is;
+    const char *unit =
+        is->left ? nevh_scene_label(j->plan->scene, is->left) : "";
+    double at;
+    if (is->every > 0)
+        return text_print("the run is shorter than %.4g", is->every);
+    if (!(s->low <= s->high))
+        return text_print("no step was taken");
+    char *what = crossing_text(is, &at);
+    bool passes = s->low < 0 && s->high > 0;
+    char *text =
+        text_print("%s stays in %.3g ... %.3g%s%s%s", what, s->low + at,
+                   s->high + at, *unit ? " " : "", unit,
+                   passes && is->direction > 0   ? " and does not rise there"
+                   : passes && is->direction < 0 ? " and does not fall there"
+                                                 : "");
+    free(what);
+    return text;
+}
+
+static void note_points(const job *j, const series *s, list *notes) {
+    char *why = s->points ? NULL : reason(j, s);
+    list_print(notes, "section %s: %zu points%s%s", s->is->name, s->points,
+               why ? ": " : "", why ? why : "");
+    free(why);
+}
+
 static void note(const job *j, const options *o, list *notes) {
     const plan *p = j->plan;
     plan_notes(p, notes);
@@ -203,25 +255,60 @@ static void note(const job *j, const options *o, list *notes) {
     settings_notes(o, notes);
     plan_note_first(p, j->integrator, notes);
     for (size_t i = 0; i < j->count; i++)
-        list_print(notes, "section %s: %zu points", j->all[i].is->name,
-                   j->all[i].points);
+        note_points(j, &j->all[i], notes);
     if (j->ended)
         list_print(notes, "%s", j->ended);
 }
 
-static int draw(const job *j, const options *o) {
+/* What says why there is nothing to draw; a run that failed has said it. */
+static int refuse_empty(const job *j) {
+    list reasons = {0};
+    for (size_t i = 0; i < j->count; i++)
+        note_points(j, &j->all[i], &reasons);
+    for (size_t i = 0; i < reasons.count; i++)
+        tool_refuse("nothing to plot: %s", reasons.item[i]);
+    list_free(&reasons);
+    return TOOL_USAGE;
+}
+
+static size_t count_points(const job *j) {
+    size_t count = 0;
+    for (size_t i = 0; i < j->count; i++)
+        count += j->all[i].points;
+    return count;
+}
+
+static void add_note(const job *j, plot *to) {
+    char *scheme = plot_scheme(j->plan, j->integrator);
+    char *energy = plot_energy_at_start(j->plan);
+    char *more = text_print("%s%s%s", energy, j->ended ? "; " : "",
+                            j->ended ? j->ended : "");
+    plot_note_run(to, j->plan, scheme, more);
+    free(scheme);
+    free(energy);
+    free(more);
+}
+
+static int draw(const job *j, const options *o, int status) {
     plot *to = NULL;
+    if (count_points(j) == 0)
+        return status ? status : refuse_empty(j);
     for (size_t i = 0; i < j->count; i++)
         section_plot(&to, j->plan, j->all[i].is, j->all[i].points,
                      j->all[i].numbers);
-    int status = plot_write(to, o);
+    add_note(j, to);
+    int drawn = plot_write(to, o);
     plot_free(to);
-    return status;
+    if (!drawn)
+        plot_say_written(o, j->plan, j->integrator, count_points(j));
+    return drawn ? drawn : status;
 }
 
 static options with_format(const options *o) {
     options as = *o;
-    as.format = o->formatted ? o->format : FORMAT_CSV;
+    as.format = o->formatted            ? o->format
+                : plot_replaces_rows(o) ? FORMAT_TABLE
+                                        : FORMAT_CSV;
     return as;
 }
 
@@ -244,6 +331,17 @@ static int print(const job *j, const options *o, int status) {
     return status;
 }
 
+/* Who reads the rows may stop: the picture is written before. */
+static int show(const job *j, const options *o, int status) {
+    bool first = plot_goes_first(o);
+    int drawn = first ? draw(j, o, status) : status;
+    if (!plot_replaces_rows(o))
+        status = print(j, o, status);
+    if (plot_wanted(o) && !first && status != TOOL_USAGE)
+        drawn = draw(j, o, status);
+    return drawn > status ? drawn : status;
+}
+
 int section(const options *o) {
     plan p;
     job j = {.stopped = NAN};
@@ -257,9 +355,7 @@ int section(const options *o) {
     if (!status && !(s = plan_first(&p, &j.integrator)))
         status = TOOL_USAGE;
     if (!status)
-        status = print(&j, o, run(&j, s));
-    if (plot_wanted(o) && status != TOOL_USAGE && draw(&j, o))
-        status = TOOL_USAGE;
+        status = show(&j, o, run(&j, s));
     nevh_stepper_free(s);
     forget(&j);
     plan_free(&p);

@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MANY = 300 };
-
 /* One of the numbers of all points. */
 typedef struct {
     const double *number;
@@ -45,36 +43,53 @@ static double value(const column *c, size_t k) {
     return fabs(x) < nothing * c->period ? 0 : x;
 }
 
-static size_t new_series(plot *to, const char *name, size_t points) {
+/* A section of one degree of freedom holds what crosses at one value. */
+static bool is_level(const column *c) {
+    static const double nothing = 1e-9;
+    double low = INFINITY, high = -INFINITY, size = c->period;
+    for (size_t k = 0; k < c->points; k++) {
+        double x = c->number[k * c->width];
+        low = fmin(low, x);
+        high = fmax(high, x);
+        size = fmax(size, fabs(x));
+    }
+    return c->points > 1 && high - low <= nothing * fmax(size, 1e-6);
+}
+
+static size_t new_series(plot *to, const char *name) {
     size_t series = plot_series(to, name);
-    plot_style(to, series, points > MANY ? PLOT_DOTS : PLOT_POINTS);
+    plot_style(to, series, PLOT_DOTS);
     return series;
 }
 
 static void add_panel(plot **to, const plan *p, const nevh_scene_section *is,
-                      const char *across, const char *up) {
+                      size_t points, const char *across, const char *up) {
+    char *heading = text_print(points ? "%s" : "%s: no points", is->name);
     char *x = plot_label(p, across, across), *y = plot_label(p, up, up);
     if (!*to) {
         *to = plot_new(p->title, x, y);
-        plot_heading(*to, is->name);
+        plot_heading(*to, heading);
     } else
-        plot_panel(*to, is->name, x, y);
+        plot_panel(*to, heading, x, y);
+    free(heading);
     free(x);
     free(y);
 }
 
-/* The first item and the second; a single one against the time. */
+/* The first item and the second; a single one, or one beside another that does
+   not change, against the time. */
 void section_plot(plot **to, const plan *p, const nevh_scene_section *is,
                   size_t points, const double numbers[]) {
     bool two_ways = is->direction == 0 && is->every == 0;
-    bool items = is->items > 1;
-    size_t width = 2 + is->items;
-    const char *across = items ? is->item[0] : "t", *up = is->item[items];
-    column x = column_of(p, across, points, numbers, width, items ? 2 : 0);
-    column y = column_of(p, up, points, numbers, width, items ? 3 : 2);
-    add_panel(to, p, is, across, up);
-    size_t rising = new_series(*to, two_ways ? "rising" : NULL, points);
-    size_t falling = two_ways ? new_series(*to, "falling", points) : rising;
+    size_t width = 2 + is->items, last = is->items > 1 ? 1 : 0;
+    column t = column_of(p, "t", points, numbers, width, 0);
+    column first = column_of(p, is->item[0], points, numbers, width, 2);
+    column y = column_of(p, is->item[last], points, numbers, width, 2 + last);
+    bool level = last == 0 || is_level(&first);
+    column x = level ? t : first;
+    add_panel(to, p, is, points, level ? "t" : is->item[0], is->item[last]);
+    size_t rising = new_series(*to, two_ways ? "rising" : NULL);
+    size_t falling = two_ways ? new_series(*to, "falling") : rising;
     for (size_t k = 0; k < points; k++)
         plot_point(*to, numbers[k * width + 1] < 0 ? falling : rising,
                    value(&x, k), value(&y, k));

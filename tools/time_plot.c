@@ -46,6 +46,7 @@ static void follow(run_picture *is, column_panels *c) {
     row_times dense = orbit_dense_times(&is->plan);
     picture_follow(is, is->rows ? is->rows : &dense, c->columns.count,
                    column_panels_fill, c);
+    free(dense.time);
 }
 
 /* A run that goes round so often that a curve would be a band is cut.

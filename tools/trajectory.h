@@ -106,7 +106,5 @@ int trajectory_restore(trajectory *);
 int run_plot(const options *, const plan *, const char *integrator,
              const row_times *rows);
 int run_plot_check(const options *, const plan *);
-/* Whether rows are wanted, beside or without a picture. */
-bool run_prints_rows(const options *);
 
 #endif

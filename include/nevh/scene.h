@@ -187,7 +187,8 @@ typedef struct {
     double period; /* that the crossing value is taken modulo: that of the
                       coordinate that LEFT is, or TIME; 0: none */
     size_t items;
-    const char *const *item; /* their texts */
+    const char *const *item;  /* their texts */
+    const char *left, *right; /* texts; NULL where it is stroboscopic */
 } nevh_scene_section;
 NEVH_API size_t nevh_scene_section_count(const nevh_scene *);
 /* Valid as long as the system; NULL when i is out of range. */

@@ -53,6 +53,8 @@ static bool take_when(nevh_scene *s, nevh__model *m, nevh__piece *rest,
         !nevh__formula_check(s, m, &left, &crossing->left) ||
         !nevh__formula_check(s, m, &right, &crossing->right))
         return false;
+    crossing->is.left = left.text;
+    crossing->is.right = right.text;
     return find_period(s, m, left.text, &crossing->is.period) &&
            take_direction(s, rest, &right, &crossing->is.direction);
 }
