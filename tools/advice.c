@@ -30,6 +30,20 @@ static const char *name_of(const advice *a, const ladder *l) {
                             : "no drift";
 }
 
+static void show_end(const advice *a, const row *r, table *t) {
+    double holds = advice_holds(a, r);
+    if (isnan(holds))
+        table_text(t, NULL);
+    else if (isinf(holds))
+        table_shown(t, "> %.4g", a->longer);
+    else
+        table_shown(t, "%.4g", holds);
+}
+
+static bool has_states(const advice *a) {
+    return !a->search.by_state && a->search.plan.reference;
+}
+
 static void show(const advice *a, const ladder *l, const char *what, table *t) {
     const row *r = chosen(a, l);
     table_text(t, what);
@@ -37,22 +51,29 @@ static void show(const advice *a, const ladder *l, const char *what, table *t) {
     table_text(t, r->gradient);
     table_shown(t, "%.4g", r->dt);
     table_shown(t, "%.1e", ladder_error(r, a->search.by_state));
+    if (has_states(a))
+        state_show(t, &a->search.plan, r);
+    show_end(a, r, t);
     table_shown(t, "%.3g", 1000 * r->seconds);
-    table_shown(t, "%.2g", 1000 * r->spread);
     table_shown(t, "%llu", (unsigned long long)r->counts.gradients);
     table_shown(t, "%.0f", r->counts.hamiltonians);
     table_text(t, nevh_verdict_name(r->energy.verdict));
 }
 
 static table *shown(const advice *a) {
-    static const char *const titles[] = {
-        "",   "integrator", "gradient",  "dt",      NULL,
-        "ms", "+-",         "gradients", "H evals", "energy"};
     table *t = table_new();
-    for (size_t i = 0; i < sizeof titles / sizeof *titles; i++)
-        table_column(t, titles[i]            ? titles[i]
-                        : a->search.by_state ? "state error"
-                                             : "energy error");
+    table_column(t, "");
+    table_column(t, "integrator");
+    table_column(t, "gradient");
+    table_column(t, "dt");
+    table_column(t, a->search.by_state ? "state\nerror" : "energy\nerror");
+    if (has_states(a))
+        table_column(t, "state\nerror");
+    table_column(t, "holds\nuntil t");
+    table_column(t, "ms");
+    table_column(t, "gradients");
+    table_column(t, "H evals");
+    table_column(t, "energy");
     const ladder *found[ADVICE_MOST];
     size_t count = advice_list(a, found);
     for (size_t i = 0; i < count; i++)
@@ -128,6 +149,60 @@ static void tell_lines(const advice *a, const row *r, list *words) {
         list_print(words, "  tolerance = %.6g", r->tolerance);
 }
 
+/* In the orbit's own measure. */
+static void tell_steps(const advice *a, const row *r, list *words) {
+    const char *unit = nevh_scene_label(a->search.plan.scene, "t");
+    double steps = a->period / r->dt;
+    if (isfinite(steps))
+        list_print(words,
+                   steps < 1 ? "A step is %.3g times %.3g%s%s, the shortest "
+                               "period near the start of the orbit."
+                             : "That is %.3g steps in %.3g%s%s, the shortest "
+                               "period near the start of the orbit.",
+                   steps < 1 ? 1 / steps : steps, a->period, *unit ? " " : "",
+                   unit);
+}
+
+static void tell_longer(const advice *a, const row *r, list *words) {
+    double holds = advice_holds(a, r);
+    if (a->not_longer)
+        list_print(words, "Nothing is known of longer runs: %s.",
+                   a->not_longer);
+    else if (isinf(holds))
+        list_print(words,
+                   "It keeps that in a run three times as long, too, until t = "
+                   "%g.",
+                   a->longer);
+    else if (r->promise && r->promise->broken)
+        list_print(words,
+                   "In a longer run that holds until t = %.6g: beyond it ask "
+                   "again, with --t-end.",
+                   holds);
+    else if (r->promise)
+        list_print(words,
+                   "In a longer run that holds until t = %.6g at least, up to "
+                   "which it was followed.",
+                   holds);
+}
+
+/* That the error which was asked for does not see. */
+static void warn(const advice *a, const row *r, list *words) {
+    const plan *p = &a->search.plan;
+    if (a->search.by_state || !p->reference)
+        return;
+    if (state_out_of_step(r))
+        list_print(words,
+                   "Warning: the orbit is out of step with the true one: its "
+                   "state error is %.2g.  The energy does not show that; ask "
+                   "for --state-error.",
+                   r->state_error);
+    else if (isnan(r->state_error))
+        list_print(words,
+                   "The energy alone is kept: after t = %.4g nothing is known "
+                   "of the true orbit.",
+                   nevh_reference_horizon(p->reference));
+}
+
 static void tell_answer(const advice *a, const options *o, list *words) {
     const row *r = chosen(a, a->best);
     const char *what = a->search.by_state ? "state" : "energy";
@@ -139,6 +214,9 @@ static void tell_answer(const advice *a, const options *o, list *words) {
                r->tolerance > 0 ? "tolerance" : "dt",
                r->tolerance > 0 ? r->tolerance : r->dt, what,
                ladder_error(r, a->search.by_state), a->target);
+    tell_steps(a, r, words);
+    tell_longer(a, r, words);
+    warn(a, r, words);
     if (isfinite(a->whole) && a->pilot < a->whole)
         list_print(words, "Chosen by runs until t = %g, and verified until %g.",
                    a->pilot, a->whole);

@@ -25,8 +25,10 @@ ladder ladder_like(const ladder *l, const char *gradient) {
 }
 
 void ladder_free(ladder *l) {
-    for (size_t i = 0; i < l->count; i++)
+    for (size_t i = 0; i < l->count; i++) {
         free(l->rung[i].status);
+        free(l->rung[i].promise);
+    }
     free(l->rung);
     free(l->k);
 }

@@ -33,6 +33,7 @@ tools_nevh_SOURCES = \
 	tools/cost_words.c \
 	tools/recommend_private.h \
 	tools/recommend.c \
+	tools/promise.c \
 	tools/advice.c \
 	tools/gradients_private.h \
 	tools/gradients.c \

@@ -263,14 +263,29 @@ static int places_short(const advice *a, const row *r) {
                             : GRID_STRIDE;
 }
 
+/* As much as the whole should take by what the pilot took, and some more. */
+static double patience_for(const advice *a, const row *pilot) {
+    static const double more = 4;
+    double start = a->search.plan.run->t_start;
+    return fmax(more * pilot->work * (a->whole - start) / (a->pilot - start),
+                a->search.plan.patience);
+}
+
+/* Whether the next place that is coarser was tried. */
+static bool was_polished(const ladder *l, size_t rung) {
+    return rung && l->k[rung] - l->k[rung - 1] == 1;
+}
+
 /* The pilot's choice on the whole run, with shorter steps where that is not
    enough. */
 static ladder verified(advice *a, const ladder *l) {
     enum { TRIES = 6 };
     ladder full = ladder_like(l, l->gradient);
     int k = l->k[keeps(a, l) - l->rung];
-    full.topped = 1; /* longer steps failed sooner */
-    for (int i = 0; i < TRIES; i++) {
+    if (was_polished(l, (size_t)(keeps(a, l) - l->rung)))
+        full.topped = 1; /* longer steps failed sooner */
+    a->search.plan.patience = patience_for(a, keeps(a, l));
+    for (int i = 0; i < TRIES && !(i && search_is_over(&a->search, 1)); i++) {
         size_t rung = ladder_run(&a->search, &full, k);
         const row *r = &full.rung[rung];
         if (ladder_error(r, a->search.by_state) <= a->target || r->late)
@@ -294,7 +309,7 @@ static void verify(advice *a, plan *p) {
         plan_reference(p, p->t_end);
         a->search.plan.reference = p->reference;
     }
-    a->search.plan.patience *= 2;
+    a->search.budget = a->search.spent + SEARCH_BUDGET;
     for (size_t i = 0; i < count; i++)
         full[i] = verified(a, pilots[i]);
     for (size_t i = 0; i < a->count; i++)
@@ -321,6 +336,8 @@ static int advise(const options *o, plan *p, double whole) {
     search_all(&a);
     if (a.best && whole > p->t_end)
         verify(&a, p);
+    if (a.best)
+        advice_follow(&a, p);
     int status = a.best ? TOOL_OK : advice_none(&a);
     search_end(&a.search);
     if (a.best)
@@ -328,6 +345,7 @@ static int advise(const options *o, plan *p, double whole) {
     for (size_t i = 0; i < a.count; i++)
         ladder_free(&a.ladder[i]);
     free(a.ladder);
+    free(a.not_longer);
     list_free(&a.gradients);
     return output_close(&out, status);
 }

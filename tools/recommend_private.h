@@ -15,7 +15,17 @@ typedef struct {
     size_t count;
     ladder *best, *second;  /* with another integrator; NULL: none */
     ladder *alone, *steady; /* from values of H; without drift */
+    double period;          /* the shortest that the orbit has; NAN: unknown */
+    double longer;          /* the end to which promises were followed */
+    char *not_longer;       /* why they were not; NULL */
 } advice;
+
+/* promise.c: the answers on the whole run, against a reference, and for how
+   long they keep the target in one three times as long. */
+void advice_follow(advice *, plan *);
+/* Of an answer: the time until which it keeps the target; INFINITY: to the end
+   of the longer run; NAN: unknown. */
+double advice_holds(const advice *, const row *);
 
 /* advice.c */
 enum { ADVICE_MOST = 4 };

@@ -127,6 +127,30 @@ static int mind_work(void *data, size_t step, double t, const double q[],
     return wait->late ? NEVH_STOPPED : NEVH_OK;
 }
 
+/* Looks at a promise as often as is worth it. */
+typedef struct {
+    promise *promise;
+    const nevh_energy *energy;
+    const nevh_state_error *state;
+} keeper;
+
+enum { LOOKS = 4000 };
+
+static int mind_promise(void *data, size_t step, double t, const double q[],
+                        const double p[]) {
+    keeper *k = data;
+    promise *made = k->promise;
+    double error = made->by_state ? nevh_state_error_result(k->state)
+                                  : nevh_energy_result(k->energy, 0).max;
+    (void)step, (void)q, (void)p;
+    made->unknown = isnan(error);
+    made->broken = error > made->most;
+    if (made->unknown || made->broken)
+        return NEVH_STOPPED;
+    made->until = t;
+    return NEVH_OK;
+}
+
 /* The reference is compared with at times that are spread over the whole run:
    one that stopped early met too few of them. */
 static bool compares_states(const plan *p, const row *r) {
@@ -151,7 +175,7 @@ static void watched(work *w, nevh_stepper *s) {
     nevh_energy *energy = row_energy(w->plan, w->row, s);
     nevh_state_error *state = nevh_state_error_new(w->plan->reference);
     invariants *kept = w->plan->diagnostics ? invariants_new(w->plan) : NULL;
-    nevh_observer observers[5] = {{nevh_energy_observe, energy, 1}};
+    nevh_observer observers[6] = {{nevh_energy_observe, energy, 1}};
     energy_trace trace = {r->errors, energy};
     size_t count = 1;
     if (state)
@@ -163,6 +187,11 @@ static void watched(work *w, nevh_stepper *s) {
             (nevh_observer){nevh_state_error_observe, state, 1};
     if (kept)
         observers[count++] = (nevh_observer){invariants_observe, kept, 1};
+    keeper keeps = {r->promise, energy, state};
+    double steps = (w->plan->t_end - w->plan->run->t_start) / r->step;
+    if (r->promise)
+        observers[count++] =
+            (nevh_observer){mind_promise, &keeps, 1 + (size_t)(steps / LOOKS)};
     if (w->plan->patience > 0)
         observers[count++] =
             (nevh_observer){mind_work, &wait, w->plan->n < 8 ? 8 : 1};

@@ -5,6 +5,14 @@
 
 #include "plan.h"
 
+/* An error that a run is to keep, which ends it where it does not. */
+typedef struct {
+    double most;
+    bool by_state;
+    double until; /* out: the last time at which it was seen to be kept */
+    bool broken, unknown; /* out: since then; unknown: there is no error */
+} promise;
+
 /* row.c: one run of compare. */
 typedef struct {
     const char *integrator, *gradient;
@@ -33,6 +41,7 @@ typedef struct {
     double symplecticity_error, reversal_error;
     double *changes; /* of invariants, the largest; NULL: not asked for */
     struct envelope *errors; /* of the energy; NULL: not asked for */
+    promise *promise;        /* NULL: none */
 } row;
 void row_run(const plan *, row *);
 /* What observes the energy of a row's run. */

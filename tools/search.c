@@ -6,7 +6,9 @@
 #include <string.h>
 #include <unistd.h>
 
-static const double one_row = 0.0125; /* of the budget */
+static const double one_row =
+    0.0125; /* of the budget, or more of few schemes */
+static const double one_scheme = 0.16;
 
 double search_longest_dt(const plan *p) {
     double longest = 0;
@@ -36,7 +38,8 @@ search search_begin(const plan *p, const options *o, double budget) {
                 .started = cpu_seconds(),
                 .landing = grid_dt(grid_dt_place(8 * search_longest_dt(p)))};
     s.plan.hurried = true;
-    s.plan.patience = one_row * budget;
+    s.plan.patience =
+        budget * fmax(one_row, one_scheme / (double)p->integrators.count);
     if (o->dt.count) {
         s.dt = ordered(p->dt, s.dts = p->dts);
         s.tolerance = ordered(p->tolerance, s.tolerances = p->tolerances);
