@@ -31,10 +31,11 @@ typedef struct {
     nevh__tableau *tableau; /* first, where tests look for it */
     nevh__stage_solver *solver;
     bool partitioned;
-    size_t unknown;       /* slopes of a lane that are solved for */
-    double *hb;           /* h b_j of this step */
-    size_t *lanes;        /* all of them */
-    nevh__sweeps *sweeps; /* of one orbit as vectors, or NULL */
+    size_t unknown;     /* slopes of a lane that are solved for */
+    double *hb;         /* h b_j of this step */
+    size_t *lanes;      /* all of them */
+    nevh__sweeps *one;  /* sweeps of one orbit; NULL: there are none */
+    nevh__sweeps *many; /* the same of NEVH__LANES orbits */
 } family_plan;
 
 /* One step under way. */
@@ -42,14 +43,16 @@ typedef struct {
     nevh_work *work;
     double t, h;
     const double *q, *p;
-    double *slopes;     /* 2n x stages x width */
-    double *unknown;    /* the part of the slopes that is solved for */
-    double *increments; /* 2n x stages x width */
-    double *points;     /* 2n x stages x width */
-    double *times;      /* stages x width */
-    double *sum;        /* 2n x width: the new state */
-    double *lost;       /* 2n x width: what that lost */
-    double *hold;       /* width; see nevh__stage_problem */
+    double *slopes;      /* 2n x stages x width */
+    double *unknown;     /* the part of the slopes that is solved for */
+    double *increments;  /* 2n x stages x width */
+    double *points;      /* 2n x stages x width */
+    double *times;       /* stages x width */
+    double *sum;         /* 2n x width: the new state */
+    double *lost;        /* 2n x width: what that lost */
+    double *hold;        /* width; see nevh__stage_problem */
+    nevh__sweeps *group; /* under way, from this lane on */
+    size_t first;
 } family_step;
 
 /* Memory: carry, slopes of the last step that were solved for, their h (0:
@@ -74,9 +77,27 @@ static void unplan(nevh_work *w) {
     nevh__stage_solver_free(g->solver);
     free(g->hb);
     free(g->lanes);
-    nevh__sweeps_free(g->sweeps);
+    nevh__sweeps_free(g->one);
+    nevh__sweeps_free(g->many);
     free(g);
     w->plan = NULL;
+}
+
+/* Sweeps of `lanes` orbits, where these suit; false when memory is out. */
+static bool plan_group(nevh_work *w, const family_plan *g, size_t lanes,
+                       nevh__sweeps **sweeps) {
+    const nevh__tableau *a = g->tableau;
+    if (!nevh__sweeps_suit(w, a->stages, lanes))
+        return true;
+    *sweeps = nevh__sweeps_new(w, a, g->hb, g->partitioned, lanes);
+    return *sweeps;
+}
+
+static bool plan_sweeps(nevh_work *w, family_plan *g) {
+    size_t rest = w->width % NEVH__LANES, fewest = NEVH__FEWEST_TOGETHER;
+    bool one = rest > 0 && rest < fewest, many = w->width >= fewest;
+    return (!one || plan_group(w, g, 1, &g->one)) &&
+           (!many || plan_group(w, g, NEVH__LANES, &g->many));
 }
 
 static bool plan_solver(nevh_work *w, family_plan *g) {
@@ -92,10 +113,7 @@ static bool plan_solver(nevh_work *w, family_plan *g) {
         w, &(nevh__stage_shape){a->stages, g->partitioned, a->a_q, a->a_p});
     for (size_t lane = 0; g->lanes && lane < w->width; lane++)
         g->lanes[lane] = lane;
-    bool suits = g->hb && nevh__sweeps_suit(w, a->stages);
-    if (suits)
-        g->sweeps = nevh__sweeps_new(w, a, g->hb, g->partitioned);
-    return g->hb && g->lanes && g->solver && (g->sweeps || !suits);
+    return g->hb && g->lanes && g->solver && plan_sweeps(w, g);
 }
 
 static int plan_on(nevh_work *w, size_t fewest,
@@ -252,32 +270,63 @@ static int map_momenta(void *data, size_t active, const size_t lanes[],
     return status;
 }
 
-static void fetch(void *data) {
+/* Continues the last step's polynomial where there is one. */
+static void guess(void *data, size_t lane) {
     const family_step *s = data;
-    const family_plan *g = s->work->plan;
-    nevh__sweeps_fetch(g->sweeps, s->slopes);
+    const nevh_work *w = s->work;
+    const family_plan *g = w->plan;
+    family_memory last = recall(w);
+    size_t stages = g->tableau->stages;
+    double x[NEVH__MOST_STAGES], y[NEVH__MOST_STAGES];
+    for (size_t row = 0; row < g->unknown; row += stages) {
+        size_t at = row * w->width + lane;
+        for (size_t j = 0; j < stages; j++)
+            x[j] = last.slopes[at + j * w->width];
+        multiply(stages, 1, g->tableau->guess, x, y);
+        for (size_t j = 0; j < stages; j++)
+            s->unknown[at + j * w->width] = last.h[lane] == s->h ? y[j] : 0;
+    }
 }
 
-/* Continues the last step's polynomial where there is one. */
-static void guess(const family_step *s, const family_plan *g) {
+/* As many lanes as are worth while. */
+static size_t begin_group(void *data, size_t first, const double unit[]) {
+    family_step *s = data;
     const nevh_work *w = s->work;
-    size_t stages = g->tableau->stages, each = stages * w->width;
+    const family_plan *g = w->plan;
     family_memory last = recall(w);
-    memcpy(s->hold, last.hold, w->width * sizeof *s->hold);
-    if (g->sweeps) {
-        nevh__sweeps_begin(g->sweeps, s->t, s->h, s->q, s->p, last.carry,
-                           *last.h == s->h ? last.slopes : NULL);
-        return;
-    }
-    for (size_t row = 0; row < g->unknown; row += stages) {
-        double *slopes = s->unknown + row * w->width;
-        multiply(stages, w->width, g->tableau->guess,
-                 last.slopes + row * w->width, slopes);
-        for (size_t i = 0; i < each; i++)
-            if (last.h[i % w->width] != s->h)
-                slopes[i] = 0;
-    }
+    size_t rest = w->width - first;
+    bool many = rest >= NEVH__FEWEST_TOGETHER;
+    nevh__sweep_start start = {.width = w->width,
+                               .first = first,
+                               .count = many ? NEVH__LANES : 1,
+                               .t = s->t,
+                               .h = s->h,
+                               .q = s->q,
+                               .p = s->p,
+                               .carry = last.carry,
+                               .unit = unit,
+                               .last = last.slopes,
+                               .last_h = last.h};
+    start.count = start.count < rest ? start.count : rest;
+    s->group = many ? g->many : g->one;
+    s->first = first;
+    return s->group && nevh__sweeps_begin(s->group, &start) ? start.count : 0;
 }
+
+static int sweep_group(void *data, nevh__stage_progress made[]) {
+    const family_step *s = data;
+    return nevh__sweeps_sweep(s->group, made);
+}
+
+static void fetch(void *data, size_t lane, size_t sweeps) {
+    const family_step *s = data;
+    nevh__sweeps_count(s->group, sweeps);
+    nevh__sweeps_fetch(s->group, lane, s->work->width,
+                       s->slopes + s->first + lane);
+}
+
+static const nevh__stage_group groups = {begin_group, sweep_group, fetch,
+                                         guess};
 
 /* The evaluations that moved the state: one a stage. */
 static int account(const family_step *s, const family_plan *g) {
@@ -304,26 +353,36 @@ NEVH__INLINE void add(double hb, double slope, double *sum, double *lost) {
     *sum = next;
 }
 
-/* One row of slopes, `apart` from each other. */
+/* The new state and what it lost, small weights first, of `lanes` orbits. */
 NEVH__INLINE void sum_row(const nevh__tableau *a, const double hb[],
-                          const double x[], size_t apart, double *sum,
-                          double *lost) {
-    double total = *sum, rest = *lost;
-    for (size_t m = 0; m < a->stages; m++) {
-        size_t j = a->order[m];
-        add(hb[j], x[j * apart], &total, &rest);
+                          size_t lanes, size_t width, const double x[],
+                          double sum[], double lost[]) {
+    double total[NEVH__LANES], rest[NEVH__LANES];
+    for (size_t i = 0; i < lanes; i++) {
+        total[i] = sum[i];
+        rest[i] = lost[i];
     }
-    *sum = total + rest;
-    *lost = nevh__lost(*sum, total, rest);
+    for (const size_t *j = a->order; j < a->order + a->stages; j++)
+        for (size_t i = 0; i < lanes; i++)
+            add(hb[*j], x[*j * width + i], &total[i], &rest[i]);
+    for (size_t i = 0; i < lanes; i++) {
+        sum[i] = total[i] + rest[i];
+        lost[i] = nevh__lost(sum[i], total[i], rest[i]);
+    }
 }
 
-/* The new state and what it lost, small weights first. */
 NEVH_SIMD static void sum_up(const family_step *s, const nevh__tableau *a,
                              const double hb[]) {
-    size_t count = 2 * s->work->size, width = s->work->width;
-    for (size_t i = 0; i < count; i++)
-        sum_row(a, hb, s->slopes + i / width * a->stages * width + i % width,
-                width, &s->sum[i], &s->lost[i]);
+    size_t width = s->work->width, eight = NEVH__LANES;
+    for (size_t k = 0; k < 2 * s->work->n; k++) {
+        const double *x = s->slopes + k * a->stages * width;
+        double *sum = s->sum + k * width, *lost = s->lost + k * width;
+        size_t i = 0;
+        for (; i + eight <= width; i += eight)
+            sum_row(a, hb, eight, width, x + i, sum + i, lost + i);
+        for (; i < width; i++)
+            sum_row(a, hb, 1, width, x + i, sum + i, lost + i);
+    }
 }
 
 static int commit(const family_step *s, const family_plan *g, double q[],
@@ -357,17 +416,14 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     family_plan *g = w->plan;
     family_step s = lay_out(w, t, h, q, p);
     weigh(g, h);
-    guess(&s, g);
+    memcpy(s.hold, recall(w).hold, w->width * sizeof *s.hold);
     nevh__stage_problem problem = {.t = t,
                                    .h = h,
                                    .q = q,
                                    .p = p,
                                    .x = s.unknown,
                                    .map = g->partitioned ? map_momenta : map,
-                                   .sweep =
-                                       g->sweeps ? nevh__sweeps_sweep : NULL,
-                                   .sweeps = g->sweeps,
-                                   .fetch = fetch,
+                                   .group = &groups,
                                    .data = &s,
                                    .hold = s.hold};
     int status = nevh__stage_solve(g->solver, &problem);

@@ -273,7 +273,7 @@ static int take_slopes(nevh__nystrom *y, const nevh__stages *s, size_t called,
 int nevh__nystrom_take(nevh__stages *s, size_t first, size_t until) {
     nevh__nystrom *y = nevh__nystrom_of(s->work);
     s->holds = y->call_lanes && !s->work->accounts &&
-               nevh__call_renew(&y->drift) && nevh__call_renew(y->kicks);
+               nevh__call_ready(&y->drift) && nevh__call_ready(y->kicks);
     if (s->holds) {
         if (take_slopes(y, s, y->call_lanes, first, until) == NEVH_OK) {
             s->work->field->gradients += until - first;

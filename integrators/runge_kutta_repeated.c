@@ -94,7 +94,7 @@ void nevh__repeated_stages_free(nevh__repeated_stages *r) {
 }
 
 bool nevh__repeated_stages_ready(nevh__repeated_stages *r) {
-    return r && !r->work->accounts && nevh__call_renew(r->calls);
+    return r && !r->work->accounts && nevh__call_ready(r->calls);
 }
 
 /* State + (h times the sum + carry). */

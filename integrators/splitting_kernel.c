@@ -473,7 +473,7 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
         if (step_number(w, t, h, q, p) == NEVH_OK)
             return NEVH_OK;
     } else if (o->way == BY_VECTOR && !w->accounts &&
-               nevh__call_renew(&o->kick) && nevh__call_renew(&o->drift))
+               nevh__call_ready(&o->kick) && nevh__call_ready(&o->drift))
         if (step_vectors(w, t, h, q, p) == NEVH_OK)
             return NEVH_OK;
     return step_by_work(w, t, h, q, p);

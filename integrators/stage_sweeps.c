@@ -1,6 +1,7 @@
-/* nevh: fixed-point sweeps over the stages of one orbit, as vectors.
+/* nevh: fixed-point sweeps over the stages of one orbit, or of eight, as vectors.
 
-   In a small system a sweep is a chain of short operations, each of which
+   The lanes of a vector are stages of one orbit or, where there are enough of
+   them, orbits at one stage.  In a small system a sweep is a chain of short operations, each of which
    waits for the one before, so what counts is how few they are.  Unknown are
    the derivatives of H, as they are written; signs and weights come in with the
    sums over stages.
@@ -18,12 +19,20 @@
 
 struct nevh__sweeps {
     nevh_work *work;
-    size_t n, stages, stride;
+    size_t n, stages;
+    size_t lanes;                  /* orbits: 1, or those of a vector */
+    size_t row;                    /* of the tableau: stages, padded */
+    size_t stride;                 /* of other rows: stages of all lanes */
     size_t rows;                   /* of the gradient that are solved for */
     size_t unknown;                /* the first of them */
     double *room;                  /* holds all that follow */
     double *mu_q, *mu_p, *guess;   /* the tableau's */
     double *c, *times;             /* a row */
+    double *loaded;                /* of several orbits: what these are for */
+    const double *q, *p, *carry;   /* n, n and 2n rows of lanes: the state */
+    const double *unit;            /* 2n rows of lanes: |h| over scale */
+    double *last;                  /* rows of stages of lanes */
+    double *products;              /* a row: h b_j times a slope */
     double *to_q, *to_p;           /* h b_j, - h b_j: vectors of each */
     double *points;                /* 2n rows */
     double *gradient;              /* 2n rows: dH/dp, then dH/dq */
@@ -31,45 +40,50 @@ struct nevh__sweeps {
     double *least;                 /* rows: smallest change so far */
     const double *weights;         /* h b_j */
     double h;                      /* for which they were taken over */
-    double lowest;                 /* change of a sweep so far */
-    const double *q, *p, *carry;   /* of the step */
+    double lowest[NEVH__LANES];    /* change of a sweep so far */
     nevh__call whole, drift, kick; /* where H can be called as it is */
     bool partitioned, prepared;
 };
 
-bool nevh__sweeps_suit(const nevh_work *w, size_t stages) {
-    return w->width == 1 && !w->transform &&
-           (nevh__work_lean(w) || stages % NEVH__LANES == 0);
+/* Stages that only fill vectors cost little where gradients are exact. */
+bool nevh__sweeps_suit(const nevh_work *w, size_t stages, size_t lanes) {
+    return !w->transform &&
+           (nevh__work_lean(w) ||
+            (w->width == 1 && stages * lanes % NEVH__LANES == 0));
 }
 
 static void pad(const nevh__sweeps *s, size_t rows, const double from[],
                 double to[]) {
-    for (size_t i = 0; i < rows * s->stride; i++) {
-        size_t stage = i % s->stride;
-        to[i] = from[i / s->stride * s->stages + (stage < s->stages) * stage];
+    for (size_t i = 0; i < rows * s->row; i++) {
+        size_t stage = i % s->row;
+        to[i] = from[i / s->row * s->stages + (stage < s->stages) * stage];
     }
 }
 
 static bool lay_out(nevh__sweeps *s) {
-    size_t n = s->n, row = s->stride, matrix = s->stages * row;
-    size_t vectors = s->stages * NEVH__LANES;
-    size_t all =
-        3 * matrix + 2 * row + 2 * vectors + (4 * n + 2 * s->rows) * row;
-    s->room = nevh__array(all + NEVH__LANES, sizeof *s->room);
+    size_t n = s->n, matrix = s->stages * s->row, lanes = s->lanes;
+    size_t vectors = s->stages * NEVH__LANES, all = s->rows * s->stride;
+    s->room = nevh__array(3 * matrix + s->row + s->stride + 2 * vectors +
+                              (4 * n + 1) * s->stride + 3 * all +
+                              6 * n * lanes + 4 * NEVH__LANES,
+                          sizeof *s->room);
     if (!s->room)
         return false;
     double *from = nevh__aligned(s->room);
     s->mu_q = nevh__take(&from, matrix);
     s->mu_p = nevh__take(&from, matrix);
     s->guess = nevh__take(&from, matrix);
-    s->c = nevh__take(&from, row);
-    s->times = nevh__take(&from, row);
+    s->c = nevh__take(&from, s->row);
+    s->times = nevh__take(&from, s->stride);
     s->to_q = nevh__take(&from, vectors);
     s->to_p = nevh__take(&from, vectors);
-    s->points = nevh__take(&from, 2 * n * row);
-    s->gradient = nevh__take(&from, 2 * n * row);
-    s->before = nevh__take(&from, s->rows * row);
-    s->least = from;
+    s->points = nevh__take(&from, 2 * n * s->stride);
+    s->gradient = nevh__take(&from, 2 * n * s->stride);
+    s->before = nevh__take(&from, all);
+    s->least = nevh__take(&from, all);
+    s->last = nevh__take(&from, all);
+    s->products = nevh__take(&from, s->stride);
+    s->loaded = from;
     return true;
 }
 
@@ -86,14 +100,17 @@ static void find_calls(nevh__sweeps *s) {
 }
 
 nevh__sweeps *nevh__sweeps_new(nevh_work *w, const nevh__tableau *a,
-                               const double hb[], bool partitioned) {
+                               const double hb[], bool partitioned,
+                               size_t lanes) {
     nevh__sweeps *s = nevh__array(1, sizeof *s);
     if (!s)
         return NULL;
     s->work = w;
     s->n = w->n;
     s->stages = a->stages;
-    s->stride = nevh__padded(a->stages);
+    s->lanes = lanes;
+    s->row = nevh__padded(a->stages);
+    s->stride = nevh__padded(a->stages * lanes);
     s->rows = (partitioned ? 1 : 2) * w->n;
     s->unknown = 2 * w->n - s->rows;
     s->partitioned = partitioned;
@@ -116,42 +133,90 @@ void nevh__sweeps_free(nevh__sweeps *s) {
     free(s);
 }
 
-/* One vector of stages, sum_j weights[j * stride] x[j]: those with even j and
-   those with odd j, which need not wait for each other. */
-NEVH__INLINE void sum_up(size_t stages, size_t stride, const double weights[],
-                         const double x[], nevh__vector *sum) {
+#define VECTOR(x) (*(const nevh__vector *)(x))
+
+/* One vector of a[j] (hb[j] x[j]).  Its lanes are stages, with weights of their
+   own and a number of one orbit, or orbits, with the weight of one stage and
+   numbers of their own, for which x has the products. */
+#define PRODUCT(lanes, a, hb, x, j, row, from)                                 \
+    ((lanes) == 1 ? VECTOR((a) + (j) * (row) + (from)) *                       \
+                        (VECTOR((hb) + (j)*NEVH__LANES) * (x)[j])              \
+                  : (a)[(j) * (row) + (from) / NEVH__LANES] *                  \
+                        VECTOR((x) + (j)*NEVH__LANES))
+
+/* One vector of the sum over j: even and odd j, which need not wait for each
+   other. */
+NEVH__INLINE void weigh_up(size_t row, size_t lanes, size_t stages,
+                           const double *a, const double *hb, const double x[],
+                           size_t from, nevh__vector *sum) {
     nevh__vector even = {0}, odd = {0};
     size_t j = 0;
+    NEVH_UNROLL
     for (; j + 1 < stages; j += 2) {
-        even += *(const nevh__vector *)(weights + j * stride) * x[j];
-        odd += *(const nevh__vector *)(weights + (j + 1) * stride) * x[j + 1];
+        even += PRODUCT(lanes, a, hb, x, j, row, from);
+        odd += PRODUCT(lanes, a, hb, x, j + 1, row, from);
     }
     if (j < stages)
-        even += *(const nevh__vector *)(weights + j * stride) * x[j];
+        even += PRODUCT(lanes, a, hb, x, j, row, from);
     *sum = even + odd;
 }
 
-/* The gradient that continues the last slopes. */
-NEVH_SIMD static void begin(const nevh__sweeps *s, double t, double h,
-                            const double last[]) {
-    size_t at = s->unknown * s->stride;
-    NEVH_LANES(i, s->stride) {
-        s->times[i] = t + s->c[i] * h;
+/* The same without hb. */
+NEVH__INLINE void sum_up(size_t row, size_t lanes, size_t stages,
+                         const double *a, const double x[], size_t from,
+                         nevh__vector *sum) {
+    nevh__vector even = {0}, odd = {0};
+    size_t j = 0;
+    if (lanes > 1) {
+        weigh_up(row, lanes, stages, a, NULL, x, from, sum);
+        return;
     }
+    for (; j + 1 < stages; j += 2) {
+        even += VECTOR(a + j * row + from) * x[j];
+        odd += VECTOR(a + (j + 1) * row + from) * x[j + 1];
+    }
+    if (j < stages)
+        even += VECTOR(a + j * row + from) * x[j];
+    *sum = even + odd;
+}
+
+/* hb[j] x[j] of orbits. */
+NEVH__INLINE void multiply(size_t stages, const double *restrict hb,
+                           const double *restrict x, double *restrict out) {
+    for (size_t j = 0; j < stages * NEVH__LANES; j += NEVH__LANES)
+        *(nevh__vector *)(out + j) = VECTOR(hb + j) * VECTOR(x + j);
+}
+
+/* The gradient that continues the last slopes. */
+NEVH__INLINE void begin(const nevh__sweeps *s, size_t lanes, double t, double h,
+                        const double last[]) {
+    size_t at = s->unknown * s->stride, numbers = s->stages * lanes;
+    for (size_t i = 0; i < s->stride; i++)
+        s->times[i] = t + s->c[i / lanes] * h;
     for (size_t k = 0; k < s->rows; k++)
         for (size_t from = 0; from < s->stride; from += NEVH__LANES) {
             double *to = s->before + k * s->stride + from;
             double sign = s->unknown + k < s->n ? 1 : -1;
             nevh__vector sum = {0};
             if (last)
-                sum_up(s->stages, s->stride, s->guess + from,
-                       last + k * s->stages, &sum);
+                sum_up(s->row, lanes, s->stages, s->guess, last + k * numbers,
+                       from, &sum);
             *(nevh__vector *)to = sign * sum;
             *(nevh__vector *)(to - s->before + s->gradient + at) = sign * sum;
             NEVH_LANES(i, NEVH__LANES) {
                 s->least[to - s->before + i] = INFINITY;
             }
         }
+}
+
+NEVH_SIMD static void begin_one(const nevh__sweeps *s, double t, double h,
+                                const double last[]) {
+    begin(s, 1, t, h, last);
+}
+
+NEVH_SIMD static void begin_many(const nevh__sweeps *s, double t, double h,
+                                 const double last[]) {
+    begin(s, NEVH__LANES, t, h, last);
 }
 
 static void weigh(nevh__sweeps *s, double h) {
@@ -162,75 +227,110 @@ static void weigh(nevh__sweeps *s, double h) {
     s->h = h;
 }
 
-void nevh__sweeps_begin(nevh__sweeps *s, double t, double h, const double q[],
-                        const double p[], const double carry[],
-                        const double last[]) {
-    if (h != s->h)
-        weigh(s, h);
-    s->lowest = INFINITY;
-    s->q = q;
-    s->p = p;
-    s->carry = carry;
-    begin(s, t, h, last);
-    s->prepared = s->partitioned ? nevh__call_renew(&s->drift) &&
-                                       nevh__call_renew(&s->kick)
-                                 : nevh__call_renew(&s->whole);
+/* Rows of `count` lanes from `first` on; what is left repeats the first. */
+static void load(const nevh__sweeps *s, const nevh__sweep_start *x,
+                 const double from[], size_t rows, double to[]) {
+    from += x->first;
+    for (size_t k = 0; k < rows; k++, from += x->width, to += s->lanes)
+        if (x->count == NEVH__LANES)
+            memcpy(to, from, NEVH__LANES * sizeof *to);
+        else
+            for (size_t i = 0; i < s->lanes; i++)
+                to[i] = from[i < x->count ? i : 0];
 }
 
-/* sum_j mu[j * stride] (hb[j] slopes[j]), the same way. */
-NEVH__INLINE void weigh_up(size_t stages, size_t stride, const double mu[],
-                           const double hb[], const double slopes[],
-                           nevh__vector *sum) {
-    nevh__vector even = {0}, odd = {0};
-    const nevh__vector *weights = (const nevh__vector *)hb;
-    size_t j = 0;
-    NEVH_UNROLL
-    for (; j + 1 < stages; j += 2) {
-        even +=
-            *(const nevh__vector *)(mu + j * stride) * (weights[j] * slopes[j]);
-        odd += *(const nevh__vector *)(mu + (j + 1) * stride) *
-               (weights[j + 1] * slopes[j + 1]);
-    }
-    if (j < stages)
-        even +=
-            *(const nevh__vector *)(mu + j * stride) * (weights[j] * slopes[j]);
-    *sum = even + odd;
+/* One orbit is left where it is. */
+static void load_state(nevh__sweeps *s, const nevh__sweep_start *x) {
+    size_t half = s->n * s->lanes;
+    double *to = s->loaded;
+    s->q = x->q;
+    s->p = x->p;
+    s->carry = x->carry;
+    s->unit = x->unit;
+    if (x->width == 1)
+        return;
+    load(s, x, x->q, s->n, to);
+    load(s, x, x->p, s->n, to + half);
+    load(s, x, x->carry, 2 * s->n, to + 2 * half);
+    load(s, x, x->unit, 2 * s->n, to + 4 * half);
+    s->q = to;
+    s->p = to + half;
+    s->carry = to + 2 * half;
+    s->unit = to + 4 * half;
+}
+
+/* The last slopes, 0 where they are of another step; NULL: all are. */
+static const double *load_last(const nevh__sweeps *s,
+                               const nevh__sweep_start *x) {
+    size_t rows = s->rows * s->stages;
+    if (x->width == 1)
+        return *x->last_h == x->h ? x->last : NULL;
+    load(s, x, x->last, rows, s->last);
+    for (size_t i = 0; i < s->lanes; i++)
+        if (x->last_h[x->first + (i < x->count ? i : 0)] != x->h)
+            for (size_t row = 0; row < rows; row++)
+                s->last[row * s->lanes + i] = 0;
+    return s->last;
+}
+
+bool nevh__sweeps_begin(nevh__sweeps *s, const nevh__sweep_start *x) {
+    s->prepared = s->partitioned ? nevh__call_ready(&s->drift) &&
+                                       nevh__call_ready(&s->kick)
+                                 : nevh__call_ready(&s->whole);
+    if (s->lanes > 1 && !s->prepared)
+        return false;
+    if (x->h != s->h)
+        weigh(s, x->h);
+    for (size_t i = 0; i < s->lanes; i++)
+        s->lowest[i] = INFINITY;
+    load_state(s, x);
+    (s->lanes == 1 ? begin_one : begin_many)(s, x->t, x->h, load_last(s, x));
+    return true;
 }
 
 /* Stages' states, n rows, from the gradient; velocities too, where these are
    momenta over known masses. */
-NEVH__INLINE void
-place_rows(size_t n, size_t stages, size_t stride, const double *restrict mu,
-           const double *restrict hb, const double *restrict gradient,
-           const double y[], const double carry[], double *restrict points,
-           const double *inverse, double *restrict velocities) {
-    for (size_t k = 0; k < n; k++)
+NEVH__INLINE void place_rows(const nevh__sweeps *s, size_t lanes, size_t stages,
+                             size_t row, bool q, const double *inverse) {
+    size_t n = s->n, stride = lanes == 1 ? row : stages * lanes;
+    size_t half = n * stride;
+    const double *restrict mu = q ? s->mu_q : s->mu_p;
+    const double *restrict hb = q ? s->to_q : s->to_p;
+    const double *restrict slopes = s->gradient + (q ? 0 : half);
+    const double *restrict y = q ? s->q : s->p;
+    const double *restrict carry = s->carry + (q ? 0 : n * lanes);
+    double *restrict points = s->points + (q ? 0 : half);
+    double *restrict velocities = s->gradient;
+    for (size_t k = 0; k < n; k++) {
+        const double *x = lanes == 1 ? slopes + k * stride : s->products;
+        if (lanes > 1)
+            multiply(stages, hb, slopes + k * stride, s->products);
         for (size_t from = 0; from < stride; from += NEVH__LANES) {
             size_t at = k * stride + from;
-            nevh__vector sum;
-            weigh_up(stages, stride, mu + from, hb, gradient + k * stride,
-                     &sum);
-            nevh__vector point = y[k] + (sum + carry[k]);
+            nevh__vector sum, point;
+            weigh_up(row, lanes, stages, mu, hb, x, from, &sum);
+            if (lanes == 1)
+                point = y[k] + (sum + carry[k]);
+            else
+                point =
+                    VECTOR(y + k * lanes) + (sum + VECTOR(carry + k * lanes));
             *(nevh__vector *)(points + at) = point;
             if (inverse)
                 *(nevh__vector *)(velocities + at) =
-                    *(const nevh__vector *)(inverse + at) * point;
+                    VECTOR(inverse + at) * point;
         }
+    }
 }
 
-NEVH__INLINE void place(const nevh__sweeps *s, bool q) {
-    size_t n = s->n, half = n * s->stride, eight = NEVH__LANES;
-    const double *mu = q ? s->mu_q : s->mu_p, *hb = q ? s->to_q : s->to_p;
-    const double *slopes = s->gradient + (q ? 0 : half);
-    const double *y = q ? s->q : s->p, *carry = s->carry + (q ? 0 : n);
-    double *points = s->points + (q ? 0 : half);
+NEVH__INLINE void place(const nevh__sweeps *s, size_t lanes, bool q) {
     const double *inverse = q || !s->prepared ? NULL : s->drift.inverse;
+    size_t eight = NEVH__LANES;
     if (s->stages == eight)
-        place_rows(n, eight, eight, mu, hb, slopes, y, carry, points, inverse,
-                   s->gradient);
+        place_rows(s, lanes, eight, eight, q, inverse);
+    else if (s->row == eight)
+        place_rows(s, lanes, s->stages, eight, q, inverse);
     else
-        place_rows(n, s->stages, s->stride, mu, hb, slopes, y, carry, points,
-                   inverse, s->gradient);
+        place_rows(s, lanes, s->stages, s->row, q, inverse);
 }
 
 /* The gradient as it always is taken, which says what is wrong with it. */
@@ -284,14 +384,16 @@ typedef struct {
     double most[NEVH__LANES];   /* the largest, in units of scale */
 } comparison;
 
-NEVH__INLINE void compare(const nevh__sweeps *s, const double unit[],
+NEVH__INLINE void compare(const nevh__sweeps *s, size_t lanes,
                           comparison *made) {
     const double *restrict now = s->gradient + s->unknown * s->stride;
     double *restrict before = s->before, *restrict least = s->least;
-    for (size_t k = s->unknown; k < 2 * s->n; k++)
-        for (size_t from = 0; from < s->stride; from += NEVH__LANES) {
-            double one = unit[k];
+    const double *restrict unit = s->unit + s->unknown * lanes;
+    for (size_t k = s->unknown, stride = s->stride; k < 2 * s->n;
+         k++, unit += lanes)
+        for (size_t from = 0; from < stride; from += NEVH__LANES) {
             NEVH_LANES(i, NEVH__LANES) {
+                double one = unit[lanes == 1 ? 0 : i];
                 double change = fabs(now[i] - before[i]), part = change * one;
                 double bar = least[i], gain = change < bar ? change : 0;
                 before[i] = now[i];
@@ -307,50 +409,72 @@ NEVH__INLINE void compare(const nevh__sweeps *s, const double unit[],
 }
 
 /* Slopes of momenta alone are solved for: those of coordinates follow. */
-NEVH__INLINE int find_halves(const nevh__sweeps *s) {
-    place(s, false);
+NEVH__INLINE int find_halves(const nevh__sweeps *s, size_t lanes) {
+    place(s, lanes, false);
     int status = take_gradient(s, &s->drift, false, true);
     if (status)
         return status;
-    place(s, true);
+    place(s, lanes, true);
     if (s->prepared && !all_finite(s->n * s->stride, s->gradient))
-        return ask(s, false, true);
+        return lanes == 1 ? ask(s, false, true) : NEVH_EDOM;
     return take_gradient(s, &s->kick, true, false);
 }
 
-NEVH__INLINE int find_whole(const nevh__sweeps *s) {
-    place(s, true);
-    place(s, false);
+NEVH__INLINE int find_whole(const nevh__sweeps *s, size_t lanes) {
+    place(s, lanes, true);
+    place(s, lanes, false);
     return take_gradient(s, &s->whole, true, true);
 }
 
-NEVH_SIMD static int sweep(nevh__sweeps *s, const double unit[],
-                           nevh__stage_progress *made) {
+/* What a sweep did to one lane. */
+NEVH__INLINE void tell(double all, double better, double most, double *lowest,
+                       nevh__stage_progress *made) {
+    double change = all < INFINITY ? most : INFINITY, least = *lowest;
+    made->moved = all != 0;
+    made->change = change;
+    made->improved = change < least || better > 0;
+    *lowest = change < least ? change : least;
+}
+
+NEVH__INLINE int sweep(nevh__sweeps *s, size_t lanes,
+                       nevh__stage_progress made[]) {
     comparison found;
-    int status = s->partitioned ? find_halves(s) : find_whole(s);
+    int status = s->partitioned ? find_halves(s, lanes) : find_whole(s, lanes);
     if (status)
         return status;
     NEVH_LANES(i, NEVH__LANES) {
         found.all[i] = found.better[i] = found.most[i] = 0;
     }
-    compare(s, unit, &found);
-    double all = sum_lanes(found.all);
-    made->moved = all != 0;
-    made->change = all < INFINITY ? greatest(found.most) : INFINITY;
-    made->improved = made->change < s->lowest || sum_lanes(found.better) > 0;
-    s->lowest = made->change < s->lowest ? made->change : s->lowest;
+    compare(s, lanes, &found);
+    if (lanes == 1)
+        tell(sum_lanes(found.all), sum_lanes(found.better),
+             greatest(found.most), s->lowest, made);
+    for (size_t i = 0; lanes > 1 && i < lanes; i++)
+        tell(found.all[i], found.better[i], found.most[i], &s->lowest[i],
+             &made[i]);
     return NEVH_OK;
 }
 
-int nevh__sweeps_sweep(void *sweeps, const double unit[],
-                       nevh__stage_progress *made) {
-    nevh__sweeps *s = sweeps;
-    int status = sweep(s, unit, made);
+NEVH_SIMD static int sweep_one(nevh__sweeps *s, nevh__stage_progress made[]) {
+    return sweep(s, 1, made);
+}
+
+NEVH_SIMD static int sweep_many(nevh__sweeps *s, nevh__stage_progress made[]) {
+    return sweep(s, NEVH__LANES, made);
+}
+
+int nevh__sweeps_sweep(nevh__sweeps *s, nevh__stage_progress made[]) {
+    if (s->lanes > 1)
+        return sweep_many(s, made);
+    int status = sweep_one(s, made);
     if (!status && !(made->change < INFINITY))
         return ask(s, true, !s->partitioned);
-    if (!status && s->prepared)
-        s->work->field->gradients += s->stages;
     return status;
+}
+
+void nevh__sweeps_count(const nevh__sweeps *s, size_t sweeps) {
+    if (s->prepared)
+        s->work->field->gradients += sweeps * s->stages;
 }
 
 /* Rows without what is behind the stages. */
@@ -368,21 +492,32 @@ NEVH_SIMD static void fetch(const nevh__sweeps *s, size_t first, double sign,
                 to[i] = sign * from[i];
 }
 
-void nevh__sweeps_fetch(const nevh__sweeps *s, double slopes[]) {
+static void fetch_lane(const nevh__sweeps *s, size_t lane, size_t width,
+                       double slopes[]) {
+    for (size_t k = 0; k < 2 * s->n; k++) {
+        double sign = k < s->n ? 1 : -1;
+        const double *from = s->gradient + k * s->stride + lane;
+        for (size_t i = 0; i < s->stages; i++, slopes += width)
+            *slopes = sign * from[i * s->lanes];
+    }
+}
+
+void nevh__sweeps_fetch(const nevh__sweeps *s, size_t lane, size_t width,
+                        double slopes[]) {
+    if (width > 1) {
+        fetch_lane(s, lane, width, slopes);
+        return;
+    }
     fetch(s, 0, 1, slopes);
     fetch(s, s->n, -1, slopes);
 }
 
 #else
 
-bool nevh__sweeps_suit(const nevh_work *w, size_t stages) {
-    (void)w, (void)stages;
-    return false;
-}
-
 nevh__sweeps *nevh__sweeps_new(nevh_work *w, const nevh__tableau *a,
-                               const double hb[], bool partitioned) {
-    (void)w, (void)a, (void)hb, (void)partitioned;
+                               const double hb[], bool partitioned,
+                               size_t lanes) {
+    (void)w, (void)a, (void)hb, (void)partitioned, (void)lanes;
     return NULL;
 }
 
@@ -390,20 +525,28 @@ void nevh__sweeps_free(nevh__sweeps *s) {
     (void)s;
 }
 
-void nevh__sweeps_begin(nevh__sweeps *s, double t, double h, const double q[],
-                        const double p[], const double carry[],
-                        const double last[]) {
-    (void)s, (void)t, (void)h, (void)q, (void)p, (void)carry, (void)last;
+bool nevh__sweeps_suit(const nevh_work *w, size_t stages, size_t lanes) {
+    (void)w, (void)stages, (void)lanes;
+    return false;
 }
 
-int nevh__sweeps_sweep(void *sweeps, const double unit[],
-                       nevh__stage_progress *made) {
-    (void)sweeps, (void)unit, (void)made;
+bool nevh__sweeps_begin(nevh__sweeps *s, const nevh__sweep_start *x) {
+    (void)s, (void)x;
+    return false;
+}
+
+int nevh__sweeps_sweep(nevh__sweeps *s, nevh__stage_progress made[]) {
+    (void)s, (void)made;
     return NEVH_EINVAL;
 }
 
-void nevh__sweeps_fetch(const nevh__sweeps *s, double slopes[]) {
-    (void)s, (void)slopes;
+void nevh__sweeps_count(const nevh__sweeps *s, size_t sweeps) {
+    (void)s, (void)sweeps;
+}
+
+void nevh__sweeps_fetch(const nevh__sweeps *s, size_t lane, size_t width,
+                        double slopes[]) {
+    (void)s, (void)lane, (void)width, (void)slopes;
 }
 
 #endif

@@ -6,6 +6,53 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/field_private.h"
 #include <nevh/body.h>
+#include <stdlib.h>
+
+struct nevh__constants {
+    struct nevh__constants *next;
+    size_t width;
+    double *rows;
+};
+
+void nevh__constants_free(struct nevh__constants *c) {
+    while (c) {
+        struct nevh__constants *next = c->next;
+        free(c->rows);
+        free(c);
+        c = next;
+    }
+}
+
+static void fill(const nevh_term *is, size_t width, size_t stride,
+                 double *rows) {
+    for (size_t k = 0; k < is->nc; k++)
+        for (size_t i = 0; i < stride; i++) {
+            size_t instance = i < is->count * width ? i / width : 0;
+            rows[k * stride + i] = is->c[instance * is->nc + k];
+        }
+}
+
+const double *nevh__constants_plan(nevh__planned *term, size_t width) {
+    const nevh_term *is = &term->term->is;
+    size_t stride = nevh__padded(is->count * width);
+    struct nevh__constants *c = term->planned;
+    while (c && c->width != width)
+        c = c->next;
+    if (c || !is->nc)
+        return c ? c->rows : NULL;
+    c = nevh__array(1, sizeof *c);
+    if (c)
+        c->rows = nevh__array(is->nc * stride, sizeof *c->rows);
+    if (!c || !c->rows) {
+        free(c);
+        return NULL;
+    }
+    c->width = width;
+    c->next = term->planned;
+    term->planned = c;
+    fill(is, width, stride, c->rows);
+    return c->rows;
+}
 
 /* One half of what a term gives: it is written if it is the first, else to
    scratch, and added. */
@@ -36,7 +83,9 @@ static bool add_term(nevh__call *c, nevh__planned *term, const double t[],
                         .t = is->time ? t : f->zeros,
                         .q = term->nq ? q + is->q[0] * width : q,
                         .p = term->np ? p + is->p[0] * width : p,
-                        .c = term->constants};
+                        .c = nevh__constants_plan(term, width)};
+    if (is->nc && !x->c)
+        return false;
     c->timed |= is->time;
     if (c->half[0] && term->nq) {
         x->size_q = stride * term->nq;
@@ -168,14 +217,6 @@ nevh__call nevh__call_plan(nevh_field *f, size_t width, const double t[],
         return (nevh__call){0};
     find_masses(&c);
     return c;
-}
-
-bool nevh__call_renew(nevh__call *c) {
-    if (!c->count || nevh__field_ready(c->field))
-        return false;
-    for (nevh__called *x = c->terms; x < c->terms + c->count && !x->point; x++)
-        nevh__lean_constants(x->term, c->width, x->stride);
-    return true;
 }
 
 NEVH_SIMD static void add(size_t size, const double x[], double sum[]) {

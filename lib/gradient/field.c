@@ -30,6 +30,7 @@ void nevh_field_free(nevh_field *f) {
         free(f->terms[i].steps);
         free(f->terms[i].vars);
         free(f->terms[i].constants);
+        nevh__constants_free(f->terms[i].planned);
         nevh__wiring_free(&f->terms[i].to_q);
         nevh__wiring_free(&f->terms[i].to_p);
         nevh__stencil_free(&f->terms[i]);

@@ -71,7 +71,8 @@ typedef struct {
     bool straight_q, straight_p, straight;
     double *constants; /* rows of a block of all instances and so many lanes */
     size_t constants_width;
-    nevh__wiring to_q, to_p; /* no targets: there is none */
+    struct nevh__constants *planned; /* those of calls */
+    nevh__wiring to_q, to_p;         /* no targets: there is none */
 } nevh__planned;
 
 /* Adds a term's gradient to dh_dq and dh_dp, n x width each; either may be
@@ -252,10 +253,12 @@ typedef struct {
 nevh__call nevh__call_plan(nevh_field *, size_t width, const double t[],
                            const double q[], const double p[], double dh_dq[],
                            double dh_dp[]);
-/* Makes a call that was kept ready for another step; whether it may be taken.
-   The field may have been asked for other widths in between. */
-bool nevh__call_renew(nevh__call *);
 void nevh__call_add(const nevh__called *);
+/* A term's constants as blocks of all instances and `width` states have them,
+   made when planning, and the field's.  NULL: there are none, or memory is
+   out. */
+const double *nevh__constants_plan(nevh__planned *, size_t width);
+void nevh__constants_free(struct nevh__constants *);
 /* Takes it, but looks at no result, and counts nothing; a call of width 1, or
    any. */
 NEVH__INLINE void nevh__call_run_points(const nevh__call *c) {
@@ -376,6 +379,11 @@ int nevh__field_ready(nevh_field *);
 static inline bool nevh__field_at_hand(const nevh_field *f) {
     return f->planned && !f->report.status &&
            f->system->revision == f->revision;
+}
+
+/* Whether there is such a call, and it may be taken. */
+static inline bool nevh__call_ready(const nevh__call *c) {
+    return c->count && nevh__field_at_hand(c->field);
 }
 
 #endif

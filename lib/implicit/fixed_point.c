@@ -72,13 +72,17 @@ void nevh__stage_solver_free(nevh__stage_solver *s) {
 static void find_scales(nevh__stage_solver *s) {
     const nevh_work *w = s->work;
     const nevh__stage_problem *e = s->problem;
-    for (size_t i = 0; i < w->size; i++) {
-        size_t k = i / w->width;
-        s->scale[i] = fmax(w->scale[k], fabs(e->q[i]));
-        s->scale[w->size + i] = fmax(w->scale[w->n + k], fabs(e->p[i]));
+    double h = fabs(e->h);
+    for (size_t row = 0; row < 2 * w->n; row++) {
+        const double *y = row < w->n ? e->q : e->p;
+        size_t at = row * w->width;
+        for (size_t i = 0; i < w->width; i++) {
+            double size = fabs(y[row % w->n * w->width + i]);
+            double scale = size > w->scale[row] ? size : w->scale[row];
+            s->scale[at + i] = scale;
+            s->unit[at + i] = h / scale;
+        }
     }
-    for (size_t i = 0; i < 2 * w->size; i++)
-        s->unit[i] = fabs(e->h) / s->scale[i];
 }
 
 /* Whether the lane would take too long; looked at after a judgement. */
@@ -161,56 +165,142 @@ static int sweep_alone(nevh__stage_solver *s, size_t lanes[], size_t count,
     return status;
 }
 
-/* Lanes held by Newton's iteration are solved; the others are to be swept. */
-static int begin(nevh__stage_solver *s, size_t *active) {
+/* Whether the lane is held by Newton's iteration, which then solves it. */
+static bool held(nevh__stage_solver *s, size_t lane, int *status) {
     double *hold = s->newton ? s->problem->hold : NULL;
+    if (!hold || !(hold[lane] > 0))
+        return false;
+    hold[lane] -= 1;
+    *status = nevh__newton_lane(s, lane);
+    return true;
+}
+
+/* Lanes from `first` to `until` - 1 are to be swept unless they are held. */
+static int begin(nevh__stage_solver *s, size_t first, size_t until,
+                 size_t *active) {
+    const nevh__stage_group *group = s->problem->group;
     int status = NEVH_OK;
-    *active = 0;
-    find_scales(s);
-    for (size_t lane = 0; !status && lane < s->work->width; lane++) {
-        if (s->problem->sweep)
-            s->lane[lane] = nevh__stage_fresh;
-        else
-            nevh__stage_begin(s, lane);
-        if (!hold || !(hold[lane] > 0)) {
-            s->lanes[(*active)++] = lane;
+    for (size_t lane = first; !status && lane < until; lane++) {
+        nevh__stage_begin(s, lane);
+        if (held(s, lane, &status))
             continue;
-        }
-        hold[lane] -= 1;
-        status = nevh__newton_lane(s, lane);
+        if (group)
+            group->guess(s->problem->data, lane);
+        s->lanes[(*active)++] = lane;
     }
     return status;
 }
 
-/* One lane that knows how to sweep and compare at once. */
-static int sweep_orbit(nevh__stage_solver *s) {
+/* Lanes of a group, from `first` on. */
+typedef struct {
+    size_t first, count, left; /* left: are under way */
+    bool settled[NEVH__MOST_GROUP];
+} group_state;
+
+static int settle(nevh__stage_solver *s, group_state *g, size_t i,
+                  nevh__stage_state state, size_t sweeps) {
+    const nevh__stage_problem *e = s->problem;
+    g->settled[i] = true;
+    g->left--;
+    s->work->sweeps += sweeps;
+    if (state != NEVH__DONE)
+        return hand_over(s, g->first + i);
+    e->group->fetch(e->data, i, sweeps);
+    return NEVH_OK;
+}
+
+static bool all_finite(const group_state *g,
+                       const nevh__stage_progress made[]) {
+    bool finite = true;
+    for (size_t i = 0; i < g->count; i++)
+        finite &= g->settled[i] || made[i].change < INFINITY;
+    return finite;
+}
+
+/* One lane. */
+static int solve_one(nevh__stage_solver *s, size_t lane) {
     const nevh__stage_problem *e = s->problem;
     nevh__stage_progress made;
     nevh__stage_state state = NEVH__GO_ON;
-    for (int i = 0; state == NEVH__GO_ON && i < MOST_SWEEPS; i++) {
-        int status = e->sweep(e->sweeps, s->unit, &made);
-        bool lost = status == NEVH_EDOM && s->lane->strays;
+    size_t sweeps = 0;
+    int status = NEVH_OK;
+    s->lane[lane] = nevh__stage_fresh;
+    if (held(s, lane, &status))
+        return status;
+    for (; state == NEVH__GO_ON && sweeps < MOST_SWEEPS; sweeps++) {
+        status = e->group->sweep(e->data, &made);
+        bool lost = status == NEVH_EDOM && s->lane[lane].strays;
         if (status && !lost)
             return status;
-        s->work->sweeps++;
-        state = lost ? NEVH__STUCK : judge(s, 0, &made);
+        state = lost ? NEVH__STUCK : judge(s, lane, &made);
         if (s->status)
             return s->status;
     }
+    s->work->sweeps += sweeps;
     if (state != NEVH__DONE)
-        return hand_over(s, 0);
-    e->fetch(e->data);
+        return hand_over(s, lane);
+    e->group->fetch(e->data, 0, sweeps);
     return NEVH_OK;
+}
+
+/* One sweep of several.  NEVH_EDOM: each has to be swept alone, lest one decide
+   over the others. */
+static int sweep_group(nevh__stage_solver *s, group_state *g, size_t sweeps) {
+    const nevh__stage_problem *e = s->problem;
+    nevh__stage_progress made[NEVH__MOST_GROUP];
+    int status = e->group->sweep(e->data, made);
+    if (!status && !all_finite(g, made))
+        status = NEVH_EDOM;
+    for (size_t i = 0; !status && i < g->count; i++) {
+        if (g->settled[i])
+            continue;
+        nevh__stage_state state = judge(s, g->first + i, &made[i]);
+        if (s->status)
+            return s->status;
+        if (state != NEVH__GO_ON || sweeps == MOST_SWEEPS)
+            status = settle(s, g, i, state, sweeps);
+    }
+    return status;
+}
+
+/* Lanes that have to be swept alone are listed. */
+static int solve_group(nevh__stage_solver *s, size_t first, size_t count,
+                       size_t *active) {
+    group_state g = {.first = first, .count = count, .left = count};
+    int status = NEVH_OK;
+    for (size_t i = 0; !status && i < count; i++) {
+        s->lane[first + i] = nevh__stage_fresh;
+        g.settled[i] = held(s, first + i, &status);
+        g.left -= g.settled[i];
+    }
+    for (size_t i = 1; !status && g.left > 0; i++)
+        status = sweep_group(s, &g, i);
+    if (status != NEVH_EDOM)
+        return status;
+    status = NEVH_OK;
+    for (size_t i = 0; !status && i < count; i++)
+        if (!g.settled[i])
+            status = begin(s, first + i, first + i + 1, active);
+    return status;
 }
 
 int nevh__stage_solve(nevh__stage_solver *s,
                       const nevh__stage_problem *problem) {
-    size_t active;
+    size_t width = s->work->width, first = 0, active = 0;
+    int status = NEVH_OK;
     s->problem = problem;
     s->status = NEVH_OK;
-    int status = begin(s, &active);
-    if (!status && active > 0 && problem->sweep)
-        return sweep_orbit(s);
+    find_scales(s);
+    while (problem->group && !status && first < width) {
+        size_t count = problem->group->begin(problem->data, first, s->unit);
+        if (count == 0)
+            break;
+        status = count == 1 ? solve_one(s, first)
+                            : solve_group(s, first, count, &active);
+        first += count;
+    }
+    if (!status)
+        status = begin(s, first, width, &active);
     for (size_t i = 1; !status && active > 0; i++)
         status = sweep(s, s->lanes, &active, i >= MOST_SWEEPS);
     return status;

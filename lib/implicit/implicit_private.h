@@ -36,20 +36,32 @@ typedef struct {
     double change;   /* the largest, in units of scale */
 } nevh__stage_progress;
 
+/* Lanes that are swept, and compared, together: at most NEVH__MOST_GROUP, next
+   to each other.  data: the problem's. */
+enum { NEVH__MOST_GROUP = 8 };
+typedef struct {
+    /* Begins with some of the lanes from `first` on, and returns how many; 0:
+       none can be.  unit: 2n x width, |h| over scale. */
+    size_t (*begin)(void *data, size_t first, const double unit[]);
+    /* Sweeps on from where begun, and tells what that changed. */
+    int (*sweep)(void *data, nevh__stage_progress made[]);
+    /* Of a lane of the group, after so many sweeps: takes its x. */
+    void (*fetch)(void *data, size_t lane, size_t sweeps);
+    /* The first guess for any lane, to x. */
+    void (*guess)(void *data, size_t lane);
+} nevh__stage_group;
+
 /* One step's equations. */
 typedef struct {
     double t, h;
     const double *q, *p; /* the state at the start of the step */
-    double *x;           /* in: first guess; out: solution */
+    double *x;           /* in: first guess, unless in groups; out: solution */
     /* out = G(x) at the given lanes, side by side: out[row*active + a]. */
     int (*map)(void *data, size_t active, const size_t lanes[],
                const double x[], double out[]);
     void *data;
-    /* For one lane: sweeps on from where begun, and what that changed; unit:
-       2n, |h| over scale.  Then fetches x.  NULL: map will do. */
-    int (*sweep)(void *sweeps, const double unit[], nevh__stage_progress *);
-    void (*fetch)(void *data);
-    void *sweeps;
+    /* Lanes that are swept and compared together; NULL: map will do. */
+    const nevh__stage_group *group;
     /* width, in and out: steps for which a lane is given to Newton's iteration
        at once, from the step before and for the next.  To be kept in memory,
        but not before the step is certain.  NULL: nothing is known. */
