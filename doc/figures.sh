@@ -25,13 +25,17 @@ refresh() {
         /^<!-- [a-z-]+ -->$/ && $2 != "end" {
             quoting = 1
             print "```"
-            while ((getline line < (doc $2 ".txt")) > 0)
+            while ((getline line < (doc $2 ".txt")) > 0) {
+                sub(/^\$ nevh /, "$ ./nevh ", line)
                 print line
+            }
             print "```"
         }' "$srcdir/README.md" >"$srcdir/README.md.new" &&
         mv "$srcdir/README.md.new" "$srcdir/README.md"
 }
 
+quote compare-first "$nevh" compare pendulum --dt 0.05 \
+    --integrators verlet,gauss4,rk4
 quote compare-pendulum "$nevh" compare pendulum
 quote cost-pendulum "$nevh" cost pendulum --t-end 100 \
     --integrators verlet,blanes-moan4,gauss4,gauss8,rk4

@@ -44,7 +44,7 @@ doc/nevh.1: $(tools_nevh_SOURCES) doc/nevh.h2m configure.ac \
 	    --include $(srcdir)/doc/nevh.h2m --output $@ ./tools/nevh$(EXEEXT)
 endif
 EXTRA_DIST += doc/nevh.h2m doc/nevh.3.head doc/reference.awk doc/figures.sh doc/hard.awk \
-	doc/gradient-cost.txt doc/steps-that-follow.txt doc/nevh-cost.txt \
+	doc/compare-first.txt doc/gradient-cost.txt doc/steps-that-follow.txt doc/nevh-cost.txt \
 	doc/hard-all.txt
 
 # What the manual and the README quote, made anew.

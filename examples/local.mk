@@ -35,3 +35,23 @@ examples_gradient_error_SOURCES = \
 examples_gradient_cost_SOURCES = examples/gradient_cost.c $(gradient_systems)
 examples_gradient_error_LDADD = libnevh.la
 examples_gradient_cost_LDADD = libnevh.la
+
+# To read, and to compile with the installed library.
+exampledir = $(docdir)/examples
+dist_example_DATA = \
+	examples/catalogue.c \
+	examples/conservation.c \
+	examples/double_pendulum_energy.c \
+	examples/effects.c \
+	examples/energy_table.c \
+	examples/energy_table.h \
+	examples/first_hamiltonian.c \
+	examples/gradient_cost.c \
+	examples/gradient_error.c \
+	examples/gradient_systems.c \
+	examples/gradient_systems.h \
+	examples/integrators.c \
+	examples/nevh_cost.c \
+	examples/own_kernel.c \
+	examples/pendulum_energy.c \
+	examples/steps_that_follow.c

@@ -181,6 +181,7 @@ dist_check_SCRIPTS = \
 	tests/nevh_cost.sh \
 	tests/nevh_recommend.sh \
 	tests/pkgconfig.sh \
+	tests/install.sh \
 	tests/effects_off.sh \
 	tests/valgrind.sh
 

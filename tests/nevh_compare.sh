@@ -199,7 +199,7 @@ has '^the run stopped at t = 0\.7$'
 exits 0 effects $work/stop.nevh --impact
 has '^With gravity the run stops at t = 0\.7\.$'
 exits 0 check $work/stop.nevh
-has 'Fastest along the orbit: w = 2\.02 '
+has 'Highest frequency met: omega = 2\.02 '
 
 # Several gradients: verdicts that are alike are said once, others name theirs.
 exits 0 compare pendulum --integrators verlet,rk4 --gradient central2,exact \

@@ -133,8 +133,17 @@ static void show_numbers(table *t, const plan *p, const row *r) {
     diagnostics_show(t, p, r);
 }
 
+/* Rows of one scheme that chooses its steps differ in the tolerance. */
+static void show_name(table *t, const row *r) {
+    char *name = r->tolerance > 0
+                     ? text_print("%s %.0e", r->integrator, r->tolerance)
+                     : text_print("%s", r->integrator);
+    table_text(t, name);
+    free(name);
+}
+
 static void show_row(table *t, const plan *p, const row *r) {
-    table_text(t, r->integrator);
+    show_name(t, r);
     table_shown(t, "%d", r->order);
     table_text(t, nevh_claim_name(nevh_integrator_symplectic(r->scheme)));
     if (p->gradients.count > 1)
@@ -155,9 +164,9 @@ static table *shown(const plan *p, const row_list *r) {
     const char *unit = nevh_scene_label(p->scene, "t");
     char *dt = text_print(*unit ? "dt/%s" : "dt%s", unit);
     static const char *const first[] = {"integrator", "order", "sympl."};
-    static const char *const errors[] = {"max energy\nerror",
-                                         "drift over\nthe run", "state\nerror"};
-    static const char *const last[] = {"H evals", "ms", "energy"};
+    static const char *const errors[] = {
+        "max\nenergy\nerror", "drift\nover\nthe run", "state\nerror"};
+    static const char *const last[] = {"H\nevals", "ms", "energy"};
     table_column(t, first[0]);
     table_key(t);
     table_columns(t, first + 1, sizeof first / sizeof *first - 1);

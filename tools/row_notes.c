@@ -100,8 +100,8 @@ static void note_rows(const plan *p, const row rows[], size_t count,
                                   "of H alone, keep the dt given"},
                 {match_dearer, "no dt makes some implicit schemes as cheap: "
                                "theirs is the cheapest"},
-                {has_tolerance, "adaptive schemes have a row a tolerance of "
-                                "[run], in its order; dt is their mean step"}};
+                {has_tolerance, "adaptive schemes have a row for each "
+                                "tolerance; dt is their mean step"}};
     for (size_t k = 0; k < sizeof note / sizeof *note; k++)
         for (size_t i = 0; i < count; i++)
             if (note[k].holds(p, &rows[i])) {
