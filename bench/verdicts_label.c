@@ -182,11 +182,11 @@ static bool is_long_enough(const truth *known, const subject *s) {
            s->plan->balance;
 }
 
-truth truth_of(const subject *s, double spans, double work) {
+truth truth_of(const subject *s, double spans, double work, bool doubted) {
     group g = group_of(s->scheme);
     const long_run *shortest = long_run_of(s, spans, work);
     truth known = {of_run(shortest, shortest, g), shortest, shortest};
-    for (int i = 0; i < 2 && !is_certain(known.is, g); i++) {
+    for (int i = 0; i < 2 && (doubted || !is_certain(known.is, g)); i++) {
         spans *= 4;
         const long_run *r = long_run_of(s, spans, 4 * work);
         if (!is_afforded(r, 4 * work))

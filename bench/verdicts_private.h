@@ -70,8 +70,9 @@ typedef struct {
     label is;
     const long_run *run, *shortest; /* that says so: the longest */
 } truth;
-/* May ask for runs yet longer. */
-truth truth_of(const subject *, double spans, double work);
+/* May ask for runs yet longer.
+   doubted  asks for them anyway */
+truth truth_of(const subject *, double spans, double work, bool doubted);
 char *truth_evidence(const truth *);
 /* Whether that verdict is right where that is true. */
 bool is_right(label, const char *verdict);
