@@ -3,6 +3,8 @@
 #include "gradient/field_private.h"
 #include "support.h"
 #include <math.h>
+#include <nevh/scene.h>
+#include <stdio.h>
 #include <string.h>
 
 /* u is the unit, the numbers are those of a
@@ -140,10 +142,98 @@ START_TEST(time_derivative) {
 }
 END_TEST
 
+/* dH/dt of a formula of x = 2 and t; NAN where it cannot be told. */
+static double slope_of(const char *formula, double t0, double t) {
+    char text[300];
+    double q = 2, p = 0, slope = 0;
+    snprintf(text, sizeof text,
+             "[coordinates]\nx = 2\n[effects]\nK = p_x^2/2\nV = %s\n", formula);
+    nevh_scene *scene = nevh_scene_parse("test", text);
+    ck_assert_str_eq(nevh_scene_message(scene), "");
+    nevh_options o = {.t = t0, .q = &q, .p = &p};
+    nevh_field *f = nevh_field_new(nevh_scene_system(scene), &o);
+    nevh__time_step steps[8] = {0};
+    ck_assert_int_eq(nevh__field_plan_time(f, &o, steps), NEVH_OK);
+    for (size_t i = 0; i < f->n_terms; i++)
+        if (steps[i].method &&
+            nevh__field_time_slope(f, i, &steps[i], 1, &t, &q, &p, &slope))
+            slope = NAN;
+    nevh_field_free(f);
+    nevh_scene_free(scene);
+    return slope;
+}
+
+static const struct {
+    const char *formula;
+    double t, slope;
+} formulas[] = {
+    {"x*cos(3*t)^2", 0.4, -2 * 3 * 0.67546318055115095},
+    {"x*t^1.5", 0, 0},
+    {"x*t^1.5", 4, 6},
+    {"x^2*exp(-t/2)", 0, -2},
+    {"sin(x)*t^3 - t/x + abs(t - 7)", 1, 3 * 0.90929742682568170 - 1.5},
+    {"sum(i = 1..3, x*t^i)", 2, 2 * (1 + 4 + 12)},
+};
+enum { FORMULAS = sizeof formulas / sizeof *formulas };
+
+/* Formulas know it to rounding, also where H ends: t^1.5 has no t < 0. */
+START_TEST(formulas_know_their_time_derivative) {
+    double t = formulas[_i].t, slope = formulas[_i].slope;
+    ck_assert_double_eq_tol(slope_of(formulas[_i].formula, t, t), slope,
+                            4e-15 * fmax(1, fabs(slope)));
+}
+END_TEST
+
+/* Where it is infinite a difference on the side where H is does; it is finite,
+   but not the derivative.  Where there is neither side there is none. */
+START_TEST(infinite_time_derivatives) {
+    double slope = slope_of("x*sqrt(t)", 0, 0);
+    ck_assert(isfinite(slope));
+    ck_assert_double_gt(slope, 1);
+    ck_assert_double_lt(slope_of("x*sqrt(-t)", 0, 0), -1);
+    ck_assert_double_eq_tol(slope_of("x*sqrt(t)", 0, 4), 0.5, 1e-14);
+    ck_assert(isnan(slope_of("x*sqrt(t)", 1, -1)));
+}
+END_TEST
+
+static double ends_term(double t, const double q[], const double p[],
+                        const double c[], const void *params) {
+    (void)c, (void)params;
+    return (p[0] * p[0] + q[0] * q[0]) / 2 + q[0] * t * t * sqrt(t);
+}
+
+/* A function that knows no derivative: to the side where it has values. */
+START_TEST(differences_to_one_side) {
+    nevh_system *s = nevh_system_new(1);
+    nevh_system_add(
+        s,
+        &(nevh_term){
+            .effect = "H", .nq = 1, .np = 1, .time = true, .value = ends_term});
+    double q = 2, p = 0.5, slope = 0, t = 0;
+    nevh_options o = {.q = &q, .p = &p};
+    nevh_field *f = nevh_field_new(s, &o);
+    nevh__time_step step = {0};
+    ck_assert_int_eq(nevh__field_plan_time(f, &o, &step), NEVH_OK);
+    ck_assert_int_eq(nevh__field_time_slope(f, 0, &step, 1, &t, &q, &p, &slope),
+                     NEVH_OK);
+    ck_assert_double_lt(fabs(slope), 0.1); /* 0, by differences of t^2.5 */
+    t = -1;
+    ck_assert_int_eq(nevh__field_time_slope(f, 0, &step, 1, &t, &q, &p, &slope),
+                     NEVH_EDOM);
+    ck_assert_ptr_nonnull(strstr(nevh_field_message(f), "time derivative"));
+    nevh_field_free(f);
+    nevh_system_free(s);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("time slope");
     TCase *cases = tcase_create("time slope");
     tcase_add_loop_test(cases, time_derivative, 0, 3);
+    tcase_add_loop_test(cases, formulas_know_their_time_derivative, 0,
+                        FORMULAS);
+    tcase_add_test(cases, infinite_time_derivatives);
+    tcase_add_test(cases, differences_to_one_side);
     suite_add_tcase(suite, cases);
     return run_suite(suite);
 }

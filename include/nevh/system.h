@@ -80,6 +80,9 @@ typedef struct {
     const void *params;                    /* borrowed; outlives the system */
     nevh_point_gradient_fn point_gradient; /* NULL: gradient, also for one;
                                               else gradient is there, too */
+    nevh_block_fn time_slope; /* NULL, or the derivative with respect to t, in
+                                 block form: for the balance of the energy,
+                                 else found by differences */
 } nevh_term;
 
 /* What is known of the sum of the enabled terms. */

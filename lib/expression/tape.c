@@ -22,6 +22,7 @@ void nevh__tape_shape(nevh_term *term, const nevh__tape *tape) {
     term->value = nevh__tape_value;
     term->block = nevh__tape_block;
     term->gradient = nevh__tape_block_gradient;
+    term->time_slope = nevh__tape_block_time;
     term->complex_value = tape->analytic ? nevh__tape_complex : NULL;
     term->params = tape;
     term->nq = tape->count[NEVH__Q];

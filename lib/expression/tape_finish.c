@@ -139,6 +139,8 @@ static void see_argument(plan *p, int node, int place) {
         r->by = NEVH__BY_Q;
     if (n->kind == NEVH__P)
         r->by = NEVH__BY_P;
+    if (n->kind == NEVH__T)
+        r->by = NEVH__BY_T;
 }
 
 /* Last uses, numbers, and by what each operation changes. */
@@ -244,7 +246,7 @@ static void write_code(nevh__tape *tape, const plan *p) {
         journal += !to->fresh + !to->also_fresh;
         note_read(tape, to->a);
         note_read(tape, to->b);
-        if (!is_smooth(to->operation) && (to->a.by | to->b.by))
+        if (!is_smooth(to->operation) && ((to->a.by | to->b.by) & ~NEVH__BY_T))
             tape->analytic = false;
     }
     tape->code[p->length].journal = journal;

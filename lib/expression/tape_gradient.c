@@ -21,7 +21,7 @@ typedef struct {
     const nevh__tape *tape;
     nevh__rows rows;
     double *base[NEVH__KINDS]; /* adjoints; pitches are those of the rows */
-    unsigned wanted;           /* an or of NEVH__BY_Q, NEVH__BY_P */
+    unsigned wanted;           /* an or of NEVH__BY_Q and so on */
 } sweep;
 
 /* The row of adjoints of an operand; NULL when it is not wanted. */
@@ -141,7 +141,7 @@ static void clear(double d[], size_t rows, size_t width, size_t columns) {
 
 typedef struct {
     const double *t, *q, *p, *c;
-    double *dh_dq, *dh_dp;
+    double *dh_dq, *dh_dp, *dh_dt;
     const nevh__tape *tape;
     size_t width;
 } task;
@@ -154,11 +154,14 @@ static void sweep_columns(const task *is, size_t from, size_t columns,
         .tape = tape,
         .rows = nevh__rows_of(tape, is->width, from, columns, is->t, is->q,
                               is->p, is->c, scratch),
-        .wanted = (is->dh_dq ? NEVH__BY_Q : 0u) | (is->dh_dp ? NEVH__BY_P : 0u),
+        .wanted = (is->dh_dq ? NEVH__BY_Q : 0u) |
+                  (is->dh_dp ? NEVH__BY_P : 0u) | (is->dh_dt ? NEVH__BY_T : 0u),
     };
+    s.base[NEVH__T] = is->dh_dt ? is->dh_dt + from : NULL;
     s.base[NEVH__Q] = is->dh_dq ? is->dh_dq + from : NULL;
     s.base[NEVH__P] = is->dh_dp ? is->dh_dp + from : NULL;
     s.base[NEVH__SLOT] = scratch + slots;
+    clear(s.base[NEVH__T], 1, is->width, columns);
     clear(s.base[NEVH__Q], tape->count[NEVH__Q], is->width, columns);
     clear(s.base[NEVH__P], tape->count[NEVH__P], is->width, columns);
     run_back(&s, 0, tape->length, scratch + 2 * slots, room - 2 * slots);
@@ -210,20 +213,35 @@ __attribute__((noinline)) static void sweep_large(const task *is) {
     sweep_all(is, scratch, MUCH_SCRATCH);
 }
 
+static void sweep_task(const task *is) {
+    if (is_enough(is->tape, NEVH__TAPE_SCRATCH))
+        sweep_small(is);
+    else
+        sweep_large(is);
+}
+
 void nevh__tape_block_gradient(size_t width, const double t[], const double q[],
                                const double p[], const double c[],
                                const void *tape, double dh_dq[],
                                double dh_dp[]) {
-    const task is = {.t = t,
-                     .q = q,
-                     .p = p,
-                     .c = c,
-                     .dh_dq = dh_dq,
-                     .dh_dp = dh_dp,
-                     .tape = tape,
-                     .width = width};
-    if (is_enough(tape, NEVH__TAPE_SCRATCH))
-        sweep_small(&is);
-    else
-        sweep_large(&is);
+    sweep_task(&(task){.t = t,
+                       .q = q,
+                       .p = p,
+                       .c = c,
+                       .dh_dq = dh_dq,
+                       .dh_dp = dh_dp,
+                       .tape = tape,
+                       .width = width});
+}
+
+void nevh__tape_block_time(size_t width, const double t[], const double q[],
+                           const double p[], const double c[], const void *tape,
+                           double dh_dt[]) {
+    sweep_task(&(task){.t = t,
+                       .q = q,
+                       .p = p,
+                       .c = c,
+                       .dh_dt = dh_dt,
+                       .tape = tape,
+                       .width = width});
 }

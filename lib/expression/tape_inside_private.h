@@ -11,7 +11,7 @@
 enum { NEVH__SLOT = NEVH__VARIABLES, NEVH__NUMBER, NEVH__KINDS };
 
 /* By which variables something changes. */
-enum { NEVH__BY_Q = 1, NEVH__BY_P = 2 };
+enum { NEVH__BY_Q = 1, NEVH__BY_P = 2, NEVH__BY_T = 4 };
 
 /* sin and cos of one argument, both of which the result depends on. */
 enum { NEVH__SINCOS = NEVH__OPERATION_COUNT };

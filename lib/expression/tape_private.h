@@ -155,11 +155,15 @@ void nevh__tape_block_gradient(size_t width, const double t[], const double q[],
                                const double p[], const double c[],
                                const void *tape, double dh_dq[],
                                double dh_dp[]);
+/* The derivative with respect to t. */
+void nevh__tape_block_time(size_t width, const double t[], const double q[],
+                           const double p[], const double c[], const void *tape,
+                           double dh_dt[]);
 void nevh__tape_complex(double t, const double q[][2], const double p[][2],
                         const double c[], const void *tape, double h[2]);
 
-/* Fills in value, block, gradient, complex_value (NULL unless analytic),
-   params, nq, np, nc and time; leaves the rest, so q, p, c and count are the
+/* Fills in value, block, gradient, time_slope, complex_value (NULL unless
+   analytic), params, nq, np, nc and time; leaves the rest, so q, p, c and count are the
    caller's, rows of nq, np and nc. */
 void nevh__tape_shape(nevh_term *, const nevh__tape *);
 

@@ -5,10 +5,14 @@
    states around the start, and at times within that length.  A term that is
    quadratic in t, or in which nothing is to be seen, takes its step from the
    time in which the motion covers the lengths of its variables.
+
+   A term that brings the derivative is asked for it, where that is finite.
+   Where H ends in time, as t^1.5 does at t = 0, differences are one-sided.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/explore_private.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const double reach = 2;         /* of the length, for times to try */
 static const double part = 0x1p-4;     /* of the time of the motion, or of t */
@@ -37,14 +41,116 @@ static int difference(nevh_field *f, nevh__planned *term, const nevh__block *b,
     return status;
 }
 
+/* Lanes at once, so that what one way has added can be taken back. */
+enum { LANES = 64 };
+
+typedef struct {
+    nevh_field *field;
+    nevh__planned *term;
+    const nevh__time_step *step;
+    nevh__block lanes; /* all of its blocks */
+    double *dh_dt;
+} slope_task;
+
+static nevh__block copies_of(const slope_task *is, size_t copies) {
+    nevh__block b = is->lanes;
+    b.copies = copies;
+    return b;
+}
+
+/* What the term itself says of it; false where that is not finite. */
+static bool add_exact(const slope_task *is) {
+    nevh_field *f = is->field;
+    const nevh_term *term = &is->term->term->is;
+    nevh__block b = copies_of(is, 1);
+    double sum = 0;
+    while (term->time_slope && nevh__block_next(f, is->term, &b)) {
+        const double *q = f->rows, *p = q + is->term->nq * b.stride;
+        term->time_slope(b.stride, f->times, q, p, p + is->term->np * b.stride,
+                         term->params, f->h);
+        for (size_t i = 0; i < b.used; i++) {
+            is->dh_dt[b.lane + i % b.lanes] += f->h[i];
+            sum += f->h[i] - f->h[i];
+        }
+    }
+    return term->time_slope && sum == 0;
+}
+
+static int add_central(const slope_task *is) {
+    int status = NEVH_OK;
+    nevh__block b = copies_of(is, 2 * is->step->method->offsets);
+    while (!status && nevh__block_next(is->field, is->term, &b))
+        status = difference(is->field, is->term, &b, is->step, is->dh_dt);
+    return status;
+}
+
+/* Of order 4, from t on to one side; false where a value is not finite. */
+static bool add_sided(const slope_task *is, double side) {
+    static const double weights[] = {-25. / 12, 4, -3, 4. / 3, -0.25};
+    enum { POINTS = sizeof weights / sizeof *weights };
+    nevh_field *f = is->field;
+    nevh__block b = copies_of(is, POINTS);
+    double sum = 0;
+    while (nevh__block_next(f, is->term, &b)) {
+        size_t apart = b.groups * b.lanes;
+        for (size_t i = 0; i < b.used; i++)
+            f->times[i] += side * (double)(i / apart) * is->step->delta;
+        nevh__block_evaluate(f, is->term, &b);
+        for (size_t i = 0; i < b.used; i++) {
+            double product = weights[i / apart] * f->h[i];
+            is->dh_dt[b.lane + i % b.lanes] += side * product / is->step->delta;
+            sum += product - product;
+        }
+    }
+    return sum == 0;
+}
+
+static int fail_slope(const slope_task *is) {
+    const nevh_term *term = &is->term->term->is;
+    return nevh__fail(&is->field->report, NEVH_EDOM,
+                      "the time derivative of term \"%s\" of effect \"%s\" is "
+                      "not finite at t = %.9g, nor are differences within %.3g "
+                      "to either side",
+                      term->name, term->effect, is->lanes.t[is->lanes.lane],
+                      4 * is->step->delta);
+}
+
+/* The first way that ends in numbers. */
+static int add_slope(const slope_task *is) {
+    double kept[LANES], *out = is->dh_dt + is->lanes.lane;
+    size_t size = (is->lanes.until - is->lanes.lane) * sizeof *kept;
+    nevh__report report = is->field->report;
+    memcpy(kept, out, size);
+    if (add_exact(is))
+        return NEVH_OK;
+    memcpy(out, kept, size);
+    int status = add_central(is);
+    if (!status)
+        return NEVH_OK;
+    memcpy(out, kept, size);
+    if (!add_central(is))
+        return status; /* an H that differs from call to call */
+    for (int side = 1; side >= -1; side -= 2) {
+        memcpy(out, kept, size);
+        if (add_sided(is, side)) {
+            is->field->report = report;
+            return NEVH_OK;
+        }
+    }
+    return fail_slope(is);
+}
+
 int nevh__field_time_slope(nevh_field *f, size_t i, const nevh__time_step *step,
                            size_t width, const double t[], const double q[],
                            const double p[], double dh_dt[]) {
     int status = nevh__field_ready(f);
-    nevh__block b =
-        nevh__block_over(width, t, q, p, 2 * step->method->offsets, 1);
-    while (!status && nevh__block_next(f, &f->terms[i], &b))
-        status = difference(f, &f->terms[i], &b, step, dh_dt);
+    for (size_t lane = 0; !status && lane < width; lane += LANES) {
+        slope_task is = {f, &f->terms[i], step,
+                         nevh__block_over(width, t, q, p, 1, 1), dh_dt};
+        is.lanes.lane = lane;
+        is.lanes.until = lane + LANES < width ? lane + LANES : width;
+        status = add_slope(&is);
+    }
     return status;
 }
 
