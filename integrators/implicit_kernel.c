@@ -93,11 +93,14 @@ static bool plan_group(nevh_work *w, const family_plan *g, size_t lanes,
     return *sweeps;
 }
 
+/* A few orbits that are left, or all where many do not go together, are swept
+   one by one. */
 static bool plan_sweeps(nevh_work *w, family_plan *g) {
     size_t rest = w->width % NEVH__LANES, fewest = NEVH__FEWEST_TOGETHER;
-    bool one = rest > 0 && rest < fewest, many = w->width >= fewest;
-    return (!one || plan_group(w, g, 1, &g->one)) &&
-           (!many || plan_group(w, g, NEVH__LANES, &g->many));
+    if (w->width >= fewest && !plan_group(w, g, NEVH__LANES, &g->many))
+        return false;
+    return (g->many && (rest == 0 || rest >= fewest)) ||
+           plan_group(w, g, 1, &g->one);
 }
 
 static bool plan_solver(nevh_work *w, family_plan *g) {
@@ -295,7 +298,7 @@ static size_t begin_group(void *data, size_t first, const double unit[]) {
     const family_plan *g = w->plan;
     family_memory last = recall(w);
     size_t rest = w->width - first;
-    bool many = rest >= NEVH__FEWEST_TOGETHER;
+    bool many = g->many && rest >= NEVH__FEWEST_TOGETHER;
     nevh__sweep_start start = {.width = w->width,
                                .first = first,
                                .count = many ? NEVH__LANES : 1,

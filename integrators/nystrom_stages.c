@@ -143,11 +143,9 @@ NEVH__INLINE void set_time(const nevh__nystrom *y, const nevh__stages *s,
     }
 }
 
-NEVH__INLINE void run(const nevh__call *call, size_t called) {
-    if (called == 1)
-        nevh__call_run_points(call);
-    else
-        nevh__call_run(call);
+NEVH__INLINE int run(nevh_work *w, const nevh__call *call, size_t called) {
+    return called == 1 ? nevh__work_run_points(w, call)
+                       : nevh__work_run(w, call);
 }
 
 /* T_p of the momenta. */
@@ -155,16 +153,14 @@ NEVH__INLINE int drift(const nevh__nystrom *y, size_t called) {
     if (!called)
         return nevh_work_gradient(y->work, y->lanes, y->time, y->points,
                                   y->momenta, NULL, y->velocities);
-    run(&y->drift, called);
-    return NEVH_OK;
+    return run(y->work, &y->drift, called);
 }
 
 NEVH__INLINE int kick(const nevh__nystrom *y, size_t called, size_t stage) {
     if (!called)
         return nevh_work_gradient(y->work, y->lanes, y->time, y->points, y->p,
                                   y->slopes + stage * y->stride, NULL);
-    run(&y->kicks[stage], called);
-    return NEVH_OK;
+    return run(y->work, &y->kicks[stage], called);
 }
 
 /* The state of a stage, to points, and its time. */
@@ -275,10 +271,11 @@ int nevh__nystrom_take(nevh__stages *s, size_t first, size_t until) {
     s->holds = y->call_lanes && !s->work->accounts &&
                nevh__call_ready(&y->drift) && nevh__call_ready(y->kicks);
     if (s->holds) {
-        if (take_slopes(y, s, y->call_lanes, first, until) == NEVH_OK) {
+        int status = take_slopes(y, s, y->call_lanes, first, until);
+        if (status == NEVH_OK)
             s->work->field->gradients += until - first;
-            return NEVH_OK;
-        }
+        if (status == NEVH_OK || nevh__work_failed(s->work))
+            return status;
     }
     s->holds = false;
     return take_slopes(y, s, NOT_CALLED, first, until);

@@ -146,7 +146,9 @@ static bool find_way(splitting_plan *o, const nevh_work *w) {
     if (one && !w->transform && plan_calls(o, w))
         return true;
     o->way = BY_VECTOR;
-    if (!w->transform && (!one || w->field->repeats)) {
+    bool exact = w->field->gradient == nevh_exact;
+    bool whole = w->width % NEVH__LANES == 0; /* no states to fill vectors */
+    if (!w->transform && (one ? w->field->repeats : exact || whole)) {
         if (!plan_rows(o, w, nevh__padded(w->width)))
             return false;
         if (plan_calls(o, w))
@@ -227,11 +229,8 @@ NEVH__INLINE int take_slope(const context *x, gradient_way way, size_t i,
                                   x->rows.q.point, x->rows.p.point,
                                   kick ? x->rows.slope : NULL,
                                   kick ? NULL : x->rows.slope);
-    if (way == BY_NUMBER)
-        nevh__call_run_points(call);
-    else
-        nevh__call_run(call);
-    return NEVH_OK;
+    return way == BY_NUMBER ? nevh__work_run_points(x->work, call)
+                            : nevh__work_run(x->work, call);
 }
 
 static int account(const context *x, size_t i, bool kick) {
@@ -466,16 +465,25 @@ NEVH_SIMD static int step_by_work(nevh_work *w, double t, double h, double q[],
     return step_along(w, BY_WORK, w->width, 1, t, h, q, p);
 }
 
-/* Where a step with planned gradients fails, the other way tells why. */
+/* A step with planned gradients; NEVH_ESTALE: it may not be taken. */
+static int step_planned(nevh_work *w, double t, double h, double q[],
+                        double p[]) {
+    const splitting_plan *o = w->plan;
+    if (o->way == BY_NUMBER)
+        return step_number(w, t, h, q, p);
+    return nevh__call_ready(&o->kick) && nevh__call_ready(&o->drift)
+               ? step_vectors(w, t, h, q, p)
+               : NEVH_ESTALE;
+}
+
+/* Where such a step fails without a reason, the other way tells it. */
 static int step(nevh_work *w, double t, double h, double q[], double p[]) {
-    splitting_plan *o = w->plan;
-    if (o->way == BY_NUMBER && !w->accounts) {
-        if (step_number(w, t, h, q, p) == NEVH_OK)
-            return NEVH_OK;
-    } else if (o->way == BY_VECTOR && !w->accounts &&
-               nevh__call_ready(&o->kick) && nevh__call_ready(&o->drift))
-        if (step_vectors(w, t, h, q, p) == NEVH_OK)
-            return NEVH_OK;
+    const splitting_plan *o = w->plan;
+    if (o->way != BY_WORK && !w->accounts) {
+        int status = step_planned(w, t, h, q, p);
+        if (!status || (status != NEVH_ESTALE && nevh__work_failed(w)))
+            return status;
+    }
     return step_by_work(w, t, h, q, p);
 }
 

@@ -45,11 +45,11 @@ struct nevh__sweeps {
     bool partitioned, prepared;
 };
 
-/* Stages that only fill vectors cost little where gradients are exact. */
+/* States that only fill vectors, and sweeps of orbits that are done, cost
+   little where gradients are exact. */
 bool nevh__sweeps_suit(const nevh_work *w, size_t stages, size_t lanes) {
     return !w->transform &&
-           (nevh__work_lean(w) ||
-            (w->width == 1 && stages * lanes % NEVH__LANES == 0));
+           (nevh__work_lean(w) || (lanes == 1 && stages % NEVH__LANES == 0));
 }
 
 static void pad(const nevh__sweeps *s, size_t rows, const double from[],
@@ -341,15 +341,13 @@ static int ask(const nevh__sweeps *s, bool q, bool p) {
                                q ? dh_dq : NULL, p ? dh_dp : NULL);
 }
 
-/* The gradient, or a half of it; where H can be called as it is, it is not
+/* The gradient, or a half of it; where it is exact and planned, it is not
    looked at yet. */
 NEVH__INLINE int take_gradient(const nevh__sweeps *s, const nevh__call *c,
                                bool q, bool p) {
     if (!s->prepared)
         return ask(s, q, p);
-    if (!c->inverse)
-        nevh__call_run(c);
-    return NEVH_OK;
+    return c->inverse ? NEVH_OK : nevh__work_run(s->work, c);
 }
 
 NEVH__INLINE double sum_lanes(const double x[]) {

@@ -58,6 +58,11 @@ int nevh_work_value(nevh_work *w, size_t points, const double t[],
     return status ? fail_field(w, status) : NEVH_OK;
 }
 
+int nevh__work_run_values(nevh_work *w, const nevh__call *c) {
+    int status = nevh__call_run_values(c);
+    return status ? fail_field(w, status) : NEVH_OK;
+}
+
 int nevh__work_noise(nevh_work *w, double t, const double q[], const double p[],
                      double noise_q[], double noise_p[]) {
     int status = nevh__field_noise(w->field, t, q, p, noise_q, noise_p);

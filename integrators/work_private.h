@@ -3,6 +3,7 @@
 #ifndef NEVH_WORK_PRIVATE_H
 #define NEVH_WORK_PRIVATE_H
 
+#include "gradient/field_private.h"
 #include <nevh/extend.h>
 
 /* Trials that step control may make within one step of a lane. */
@@ -45,5 +46,25 @@ int nevh__work_gradient(nevh_work *, size_t points, size_t used,
 bool nevh__work_lean(const nevh_work *);
 /* Whether one orbit may as well be repeated over a vector. */
 bool nevh__work_repeats(const nevh_work *);
+
+/* A planned call: an exact one looks at no result and counts nothing, others
+   count values, and fail as nevh_work_gradient does. */
+int nevh__work_run_values(nevh_work *, const nevh__call *);
+NEVH__INLINE int nevh__work_run(nevh_work *w, const nevh__call *c) {
+    if (!c->exact)
+        return nevh__work_run_values(w, c);
+    nevh__call_run(c);
+    return NEVH_OK;
+}
+NEVH__INLINE int nevh__work_run_points(nevh_work *w, const nevh__call *c) {
+    if (!c->exact)
+        return nevh__work_run_values(w, c);
+    nevh__call_run_points(c);
+    return NEVH_OK;
+}
+/* Whether such a call has failed, and told why. */
+static inline bool nevh__work_failed(const nevh_work *w) {
+    return w->field->gradient != nevh_exact && w->field->report.status;
+}
 
 #endif

@@ -205,18 +205,54 @@ static void find_masses(nevh__call *c) {
     c->inverse = c->width == 1 ? inverse : x->c;
 }
 
+static bool plan_exact(nevh__call *c, const double t[], const double q[],
+                       const double p[]) {
+    bool there =
+        c->width == 1 ? plan_points(c, t, q, p) : plan_blocks(c, t, q, p);
+    if (there)
+        find_masses(c);
+    return there;
+}
+
+/* Of small systems, for whole vectors of states, or one. */
+static bool plan_values(nevh__call *c) {
+    const nevh_field *f = c->field;
+    c->count = f->n_terms;
+    c->timed = true;
+    return f->n <= NEVH__MOST_POINT_ROWS;
+}
+
 nevh__call nevh__call_plan(nevh_field *f, size_t width, const double t[],
                            const double q[], const double p[], double dh_dq[],
                            double dh_dp[]) {
-    nevh__call c = {.field = f, .width = width, .half = {dh_dq, dh_dp}};
-    if (f->gradient != nevh_exact || nevh__field_ready(f))
-        return (nevh__call){0};
-    bool there =
-        width == 1 ? plan_points(&c, t, q, p) : plan_blocks(&c, t, q, p);
-    if (!there)
-        return (nevh__call){0};
-    find_masses(&c);
-    return c;
+    nevh__call c = {.field = f,
+                    .width = width,
+                    .exact = f->gradient == nevh_exact,
+                    .t = t,
+                    .q = q,
+                    .p = p,
+                    .half = {dh_dq, dh_dp}};
+    bool there = !nevh__field_ready(f) &&
+                 (c.exact ? plan_exact(&c, t, q, p) : plan_values(&c));
+    return there ? c : (nevh__call){0};
+}
+
+int nevh__call_run_values(const nevh__call *c) {
+    nevh_field *f = c->field;
+    double *dh_dq = c->half[0], *dh_dp = c->half[1];
+    bool differences = f->gradient->offsets;
+    int status = NEVH_OK;
+    for (size_t i = 0; dh_dq && i < f->n * c->width; i++)
+        dh_dq[i] = 0;
+    for (size_t i = 0; dh_dp && i < f->n * c->width; i++)
+        dh_dp[i] = 0;
+    for (nevh__planned *term = f->terms;
+         !status && term < f->terms + f->n_terms; term++)
+        if (wanted(c, term))
+            status =
+                (differences ? nevh__gradient_central : nevh__gradient_complex)(
+                    f, term, c->width, c->t, c->q, c->p, dh_dq, dh_dp);
+    return status;
 }
 
 NEVH_SIMD static void add(size_t size, const double x[], double sum[]) {

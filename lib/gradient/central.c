@@ -180,22 +180,28 @@ static selection select_vars(const nevh__planned *term, const nevh__pass *pass,
     return (selection){term->vars + begin, end - begin, pass->pairs};
 }
 
-int nevh__gradient_central(nevh_field *f, nevh__planned *term, size_t width,
-                           const double t[], const double q[], const double p[],
-                           double dh_dq[], double dh_dp[]) {
+static int difference_blocks(nevh_field *f, nevh__planned *term, size_t width,
+                             const double t[], const double q[],
+                             const double p[], double dh_dq[], double dh_dp[]) {
     int status = NEVH_OK;
     for (int i = 0; !status && i < 2; i++) {
         selection s = select_vars(term, &term->pass[i], dh_dq, dh_dp);
-        const nevh__stencil *stencil = nevh__stencil_for(term, i, dh_dq, dh_dp);
         if (s.count == 0)
             continue;
         nevh__block b = nevh__block_over(width, t, q, p, 2 * s.pairs, s.count);
-        if (stencil)
-            status = nevh__stencil_difference(
-                f, term, stencil, weights_of(f, s.pairs), &b, dh_dq, dh_dp);
-        while (!stencil && !status && nevh__block_next(f, term, &b))
+        while (!status && nevh__block_next(f, term, &b))
             status = (b.lanes == 1 ? difference_one : difference_lanes)(
                 f, term, &b, s, dh_dq, dh_dp);
     }
     return status;
+}
+
+int nevh__gradient_central(nevh_field *f, nevh__planned *term, size_t width,
+                           const double t[], const double q[], const double p[],
+                           double dh_dq[], double dh_dp[]) {
+    nevh__stencil *s = nevh__stencil_for(term, dh_dq, dh_dp);
+    if (s)
+        return nevh__stencil_difference(f, term, s, width, t, q, p, dh_dq,
+                                        dh_dp);
+    return difference_blocks(f, term, width, t, q, p, dh_dq, dh_dp);
 }

@@ -37,13 +37,8 @@ typedef struct {
     size_t begin, end; /* in vars */
 } nevh__pass;
 
-/* A pass over the coordinates, the momenta or both of a term with one instance;
-   see stencil.c. */
-typedef struct {
-    const size_t *vars;
-    size_t groups, pairs, used, stride;
-    double *shift; /* nv x stride; NULL: there is no such stencil */
-} nevh__stencil;
+/* The points of dH/dq, dH/dp or both of a term; see stencil.c. */
+typedef struct nevh__stencil nevh__stencil;
 
 /* How a block of all instances of a term is wired to a half of the state: one
    row for each variable of an instance.  Lists of a variable's numbers are in
@@ -65,7 +60,7 @@ typedef struct {
     nevh__step *steps;  /* nevh__step_rows x nv */
     size_t *vars;       /* nv variables in the order of the passes */
     nevh__pass pass[2]; /* full order; order 2 */
-    nevh__stencil stencil[2][3];
+    nevh__stencil *stencil[3]; /* NULL: there is none */
     uint64_t values;
     /* Of exact gradients; see lean.c. */
     bool straight_q, straight_p, straight;
@@ -241,6 +236,8 @@ typedef struct {
 typedef struct {
     nevh_field *field;
     size_t count; /* of terms, or instances; 0: there is no such call */
+    bool exact;   /* else differences, or complex steps, of all terms */
+    const double *t, *q, *p;
     size_t width;
     bool timed;      /* time is read, in all lanes */
     double *half[2]; /* dh_dq, dh_dp; either may be NULL */
@@ -259,8 +256,10 @@ void nevh__call_add(const nevh__called *);
    out. */
 const double *nevh__constants_plan(nevh__planned *, size_t width);
 void nevh__constants_free(struct nevh__constants *);
-/* Takes it, but looks at no result, and counts nothing; a call of width 1, or
-   any. */
+/* One that is not exact: takes values, counts them, and looks at them. */
+int nevh__call_run_values(const nevh__call *);
+/* Takes one that is exact, but looks at no result, and counts nothing; a call of width 1,
+   or any. */
 NEVH__INLINE void nevh__call_run_points(const nevh__call *c) {
     const nevh__called *x = c->terms;
     for (size_t left = c->count; left > 0; left--, x++) {
@@ -293,12 +292,12 @@ int nevh__field_gradient(nevh_field *, size_t width, size_t used,
    is none), and put to use. */
 bool nevh__stencil_plan(const nevh_field *, nevh__planned *);
 void nevh__stencil_free(nevh__planned *);
-const nevh__stencil *nevh__stencil_for(const nevh__planned *, int pass,
-                                       const double dh_dq[],
-                                       const double dh_dp[]);
-int nevh__stencil_difference(nevh_field *, nevh__planned *,
-                             const nevh__stencil *, const nevh_gradient *,
-                             nevh__block *, double dh_dq[], double dh_dp[]);
+nevh__stencil *nevh__stencil_for(const nevh__planned *, const double dh_dq[],
+                                 const double dh_dp[]);
+/* Adds the differences. */
+int nevh__stencil_difference(nevh_field *, nevh__planned *, nevh__stencil *,
+                             size_t width, const double t[], const double q[],
+                             const double p[], double dh_dq[], double dh_dp[]);
 /* The derivative from values at x +- j delta, copies being `apart` from each
    other: + before -, nearest first. */
 static inline double nevh__chord_slope(const nevh_gradient *g, size_t apart,
