@@ -25,7 +25,7 @@ static const nevh_butcher table = {
 
 const nevh_integrator nevh__dopri5 = {
     .name = "dopri5",
-    .aliases = "DOPRI5, RK45, ode45, dormand-prince5",
+    .aliases = "DOPRI5, RK45, rk45, ode45, dormand-prince5",
     .source = "J. R. Dormand, P. J. Prince, A family of embedded Runge-Kutta "
               "formulae, J. Comput. Appl. Math. 6 (1980) 19-26, RK5(4)7M",
     .order = 5,

@@ -8,7 +8,7 @@ static const nevh_splitting drift_kick = {NEVH_DRIFT, NEVH_LISTED, 0, NULL};
 
 const nevh_integrator nevh__symplectic_euler_a = {
     .name = "symplectic-euler-a",
-    .aliases = "SymplecticEulerA, ARKODE_SPRK_EULER_1_1",
+    .aliases = "euler-cromer, SymplecticEulerA, ARKODE_SPRK_EULER_1_1",
     .source = "R. de Vogelaere, Methods of integration which preserve the "
               "contact transformation property of the Hamilton equations, "
               "Notre Dame report 4 (1956); kick, then drift",

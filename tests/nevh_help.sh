@@ -88,6 +88,11 @@ cp "$srcdir/scenes/pendulum.nevh" "$work/a${escape}[31m.nevh"
 exits 0 compare "$work/a${escape}[31m.nevh" --t-end 1
 grep -q "$escape" $work/out && fails "prints an escape"
 
+# Names that others use.
+exits 0 compare pendulum --integrators euler-cromer,rk45 --t-end 1 --dt 0.1 \
+    --format csv
+has '^pendulum,symplectic-euler-a,|^pendulum,euler-cromer,'
+
 # Names that stand for something else.
 scene() {
     printf '[coordinates]\n%s\n[effects]\nK = p_x^2/2\n[observables]\n%s\n' \

@@ -138,8 +138,8 @@ static int run(const plan *p, price prices[], size_t count, list *notes) {
         prices[i].seconds = seconds_of(&prices[i], gradients);
     }
     list_print(notes,
-               "evaluations of term instances by %s, dt = %g, gradient "
-               "%s: the first of each that fits",
+               "evaluations of terms, counted in a run of %s (the first "
+               "integrator that fits), dt = %g, gradient %s",
                integrator, p->dt[0], p->gradients.item[0]);
     if (isfinite(stopped))
         list_print(notes, "the run stopped at t = %.9g", stopped);

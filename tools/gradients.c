@@ -119,12 +119,11 @@ static void tell(const context *c, page *result) {
                c->exact.count);
     list_print(
         &result->after,
-        "truncation, rounding: what the choice of half-spreads expected. "
-        "energy error: of the orbit with that gradient; from the "
-        "gradient: what its errors bring in along the orbit of the %s "
-        "one; from rounding: the estimated part of that which "
-        "differences make inevitable, and which grows with the root of "
-        "time.",
+        "truncation, rounding: errors expected when the half-spread was "
+        "chosen. energy error: of the orbit with that gradient. from the "
+        "gradient: the energy error caused by the gradient alone, along the "
+        "orbit of the %s one; from rounding: the unavoidable rounding part of "
+        "this, which grows with the root of the time.",
         c->yardstick);
     double own = 0;
     for (size_t i = 0; i < c->exact.count; i++)

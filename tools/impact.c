@@ -239,14 +239,22 @@ int impact(const options *o, plan *p) {
     page result = {.table = table_new()};
     plan_notes(p, &result.before);
     list_print(&result.before,
-               "with each effect against without it, the others as they are; "
+               "each row: the run with all effects that are on compared with "
+               "the run without this one (of an effect that is off: with it); "
                "dt = %g",
                p->dt[0]);
     list_add(&result.before,
-             "differences of the state over the range of each variable; of "
-             "the energy over its scale; work: evaluations of H");
+             "differences of the state are divided by the range of each "
+             "variable, those of the energy by energy_scale");
     columns(result.table);
     add_all(o, p, &result);
+    if (!o->quiet)
+        list_add(
+            &result.after,
+            "1 %: when the states first differ by that much, at the times "
+            "compared. work ratio, time ratio: evaluations of H and CPU time of "
+            "the run with the effect, over those without it. rules out: "
+            "integrators that fit only without it.");
     if (o->quiet && o->format == FORMAT_TABLE)
         list_free(&result.before);
     int status = output_page(o, &result, TOOL_OK);
