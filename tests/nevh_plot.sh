@@ -203,6 +203,39 @@ draws cost pendulum --integrators gauss4 --dt 1.25,0.8,0.5,0.4 --t-end 100 \
 test "$(points 2)" = 2 || fails "draws $(points 2) steps of 4"
 texts | grep -q 'are left out$' || fails "does not say so"
 
+# The V of truncation, order 2 or 4, and of rounding, order -1, over the step;
+# the steps that nevh chooses are near its bottom.
+draws gradients pendulum --t-end 10 --dt 0.1 --integrators verlet --plot $svg \
+    --gradient central2,central4,complex-step --keep-plot-script $work/out.gp
+has '^ central4 '
+for text in central2 central4 complex-step 'slope 2' 'slope 4' \
+    'half-spread of the differences' 'largest error of the gradient'; do
+    test "$(texts | grep -cxF -e "$text")" = 1 || { fails "lacks '$text'"; texts; }
+done
+texts | grep -q 'against the exact gradient' || fails "does not say against what"
+curve() {
+    k=$(sed -n "s/.*\$series\([0-9]*\) using 1:2 .* title \"$1\".*/\1/p" $work/out.gp)
+    awk -v name="\$series$k" '$1 == name && $2 == "<<" { on = 1; next } /^EOD/ { on = 0 }
+        on && NF == 2' $work/out.gp
+}
+for order in 2 4; do
+    curve central$order >$work/curve
+    awk -v order=$order '{ x[++n] = $1; e[n] = $2; if (!low || $2 < low) { low = $2; at = $1 } }
+        function slope(a, b,  i, k) {
+            for (i = 1; x[i] < a; i++); for (k = i; x[k] < b; k++)
+            ; return log(e[k] / e[i]) / log(x[k] / x[i]) }
+        END { up = slope(30 * at, 0.1); down = slope(1e-11, at / 30)
+            exit !(up > order - 0.1 && up < order + 0.1 && down > -1.1 && down < -0.9) }' \
+        $work/curve || fails "draws another curve of central$order"
+done
+# Rounding does not show what is exact: quadratic functions.
+draws gradients oscillator --gradient central2 --plot $svg --keep-plot-script $work/out.gp
+texts | grep -q slope && fails "draws a slope where there is none"
+exits 2 gradients oscillator --gradient complex-step --plot $svg
+says 'nothing to plot: all values are 0'
+exits 2 effects pendulum --plot $svg
+says 'it is for compare, run, cost, gradients, section$'
+
 # Orbits: an angle that goes round stays within its period, lines end there.
 # Where there is a picture rows are for files, and the picture says what it is.
 draws run pendulum-rotating --t-end 50 --dt 0.05 --every 1 --plot $svg \

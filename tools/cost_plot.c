@@ -77,10 +77,10 @@ static void draw_guide(const drawing *d, const ladder *l) {
     char *name = text_print("order %g", order);
     size_t series = plot_series(d->to, name);
     plot_style(d->to, series, PLOT_GUIDE);
-    plot_point(d->to, series, work * pow(10, decades / order / 2),
-               error * pow(10, -decades / 2));
     plot_point(d->to, series, work * pow(10, -decades / order / 2),
                error * pow(10, decades / 2));
+    plot_point(d->to, series, work * pow(10, decades / order / 2),
+               error * pow(10, -decades / 2));
     free(name);
 }
 

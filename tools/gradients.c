@@ -2,6 +2,7 @@
    orbit, and their part in the energy error.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradients_private.h"
+#include "plot.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -140,7 +141,11 @@ static int gradients_plan(const options *o, const plan *p) {
     context c = {0};
     page result = {0};
     bool for_people = o->format == FORMAT_TABLE;
-    int status = context_make(&c, p);
+    int status = plot_check(o) ? TOOL_USAGE : context_make(&c, p),
+        drawn = TOOL_OK;
+    bool first = plot_goes_first(o);
+    if (!status && first)
+        drawn = gradients_plot(o, &c);
     if (!status) {
         result.table = new_table(for_people);
         findings f = find_all(&c, o);
@@ -150,10 +155,12 @@ static int gradients_plan(const options *o, const plan *p) {
             tell(&c, &result);
         }
         status = output_page(o, &result, TOOL_OK);
+        if (plot_wanted(o) && !first)
+            drawn = gradients_plot(o, &c);
     }
     page_free(&result);
     context_free(&c);
-    return status;
+    return drawn ? TOOL_USAGE : status;
 }
 
 int gradients(const options *o) {

@@ -97,24 +97,41 @@ static int evaluate_yardstick(context *c) {
     return status;
 }
 
-static void errors_along(const context *c, nevh_field *f, finding *g) {
+/* The largest at all states, relative; INFINITY where H fails. */
+static double largest_error(const context *c, nevh_field *f) {
     size_t n = c->exact.n;
     double *dq = tool_allocate(n, sizeof *dq),
-           *dp = tool_allocate(n, sizeof *dp);
-    nevh_counts before = nevh_field_counts(f);
+           *dp = tool_allocate(n, sizeof *dp), error = 0;
     for (size_t i = 0; i < c->exact.count; i++) {
         if (evaluate(c, f, i, dq, dp))
-            g->good = false;
+            error = INFINITY;
         for (size_t k = 0; k < n; k++) {
-            g->error = fmax(g->error, fabs(dq[k] - c->dq[i * n + k]));
-            g->error = fmax(g->error, fabs(dp[k] - c->dp[i * n + k]));
+            error = fmax(error, fabs(dq[k] - c->dq[i * n + k]));
+            error = fmax(error, fabs(dp[k] - c->dp[i * n + k]));
         }
     }
-    g->error /= c->size;
-    g->evaluations = (nevh_field_counts(f).hamiltonians - before.hamiltonians) /
-                     (double)c->exact.count;
     free(dq);
     free(dp);
+    return error / c->size;
+}
+
+static void errors_along(const context *c, nevh_field *f, finding *g) {
+    nevh_counts before = nevh_field_counts(f);
+    g->error = largest_error(c, f);
+    g->good = !isinf(g->error);
+    g->evaluations = (nevh_field_counts(f).hamiltonians - before.hamiltonians) /
+                     (double)c->exact.count;
+}
+
+double gradient_error(const context *c, const char *gradient,
+                      const double steps[]) {
+    nevh_options o = gradient_options(c, gradient, 0);
+    if (steps)
+        o.gradient_steps = steps;
+    nevh_field *f = nevh_field_new(c->plan->system, &o);
+    double error = nevh_field_status(f) ? INFINITY : largest_error(c, f);
+    nevh_field_free(f);
+    return error;
 }
 
 /* The median of a few rounds, each of which goes on along the orbit. */

@@ -50,4 +50,13 @@ void finding_free(finding *);
 /* The shortest half-spread chosen by differences of full order; INFINITY. */
 double gradient_own_step(const context *, const char *gradient);
 
+/* The largest error at the states, relative to the largest component.
+   steps    half-spreads of all variables, 2n; NULL: chosen
+   returns  INFINITY where the gradient fails */
+double gradient_error(const context *, const char *gradient,
+                      const double steps[]);
+
+/* gradients_plot.c: as plot_write. */
+int gradients_plot(const options *, const context *);
+
 #endif

@@ -38,6 +38,7 @@ tools_nevh_SOURCES = \
 	tools/gradients_private.h \
 	tools/gradients.c \
 	tools/gradients_along.c \
+	tools/gradients_plot.c \
 	tools/compare.c \
 	tools/verdict.c \
 	tools/state.c \

@@ -38,6 +38,13 @@ static const struct {
 };
 enum { KNOWN = sizeof known / sizeof *known };
 
+const char *command_name(unsigned bit) {
+    for (size_t i = 0; i < KNOWN; i++)
+        if (known[i].bit == bit)
+            return known[i].name;
+    return "";
+}
+
 /* Space between the name and the text of a command, and nowhere else: help2man
    takes that for the end of the name. */
 static void help_line(FILE *f, const char *name, const char *operand,

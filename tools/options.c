@@ -11,7 +11,7 @@ enum {
     OF_SCENES =
         FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_RUN | FOR_SECTION | OF_COST,
     OF_TABLES = OF_SCENES | FOR_LIST | FOR_HARD,
-    OF_PLOTS = FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_COST
+    OF_PLOTS = FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_COST | FOR_GRADIENTS
 };
 
 /* The commands that each option is for, as an or. */
@@ -183,11 +183,28 @@ int options_read(options *o, int argc, char **argv) {
     return status;
 }
 
+/* With the commands that it is for, where they are few. */
+static int refuse_option(int k, const char *name) {
+    enum { FEW = 5 };
+    list those = {0};
+    for (unsigned bit = 1; bit <= FOR_HARD; bit *= 2)
+        if (known[k].commands & bit)
+            list_add(&those, command_name(bit));
+    char *text = list_joined(&those);
+    int status =
+        tool_refuse(those.count <= FEW ? "--%s is no option of nevh "
+                                         "%s; it is for %s"
+                                       : "--%s is no option of nevh %s",
+                    known[k].name, name, text);
+    free(text);
+    list_free(&those);
+    return status;
+}
+
 int options_check(const options *o, unsigned which) {
     for (int k = 0; k < KNOWN; k++)
         if (o->used >> k & 1 && !(known[k].commands & which))
-            return tool_refuse("--%s is no option of nevh %s", known[k].name,
-                               o->operands.item[0]);
+            return refuse_option(k, o->operands.item[0]);
     return TOOL_OK;
 }
 

@@ -235,7 +235,7 @@ static void print_guides(FILE *f, const plot *p, size_t number) {
         fputs("set label ", f);
         quote(f, s->name, PLOT_LONGEST_NAME);
         fprintf(f,
-                " at %.10g,%.10g right offset -0.5,0.3 noenhanced "
+                " at %.10g,%.10g left offset 0.5,0 noenhanced "
                 "textcolor rgb '#777777' font ',%d'\n",
                 s->point[s->count - 1].x, s->point[s->count - 1].y,
                 PLOT_NOTE_FONT);

@@ -126,6 +126,8 @@ enum {
     FOR_HARD = 1024
 };
 
+const char *command_name(unsigned bit); /* nevh.c */
+
 /* options.c: the command line. */
 typedef enum { MATCH_SCENE, MATCH_STEPS, MATCH_WORK } matching;
 typedef enum {
