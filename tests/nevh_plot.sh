@@ -423,6 +423,15 @@ done
 test -e $work/HERE && fails "ran a title"
 test -e $work/touched && fails "ran the name of a file"
 
+# A long title has a second line.
+sed "s/^title *= .*/title = $(printf 'word%s ' 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18)/" \
+    $NEVH_SCENES/oscillator.nevh >$work/words.nevh
+svg=$work/out.svg
+draws run $work/words.nevh --t-end 9 --plot $svg
+test "$(texts | grep '^word' | tr '\n' ' ')" = \
+    "$(printf 'word%s ' 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18)" ||
+    { fails "cuts the title"; texts; }
+
 # Wrong use is told before anything runs.
 before=$(ls $work)
 for name in plot.gif plot svg ''; do

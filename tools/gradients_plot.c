@@ -78,6 +78,7 @@ static void draw_slope(const drawing *d, const char *gradient, double x,
 
 static size_t draw_curve(const drawing *d, const char *gradient) {
     static const double largest = 1e-2, useless = 10;
+    static const int steepest = 4; /* of slopes that can be told apart */
     size_t series = plot_series(d->to, gradient);
     double x_of_slope = NAN, error_of_slope = NAN;
     plot_style(d->to, series, PLOT_TRAIL);
@@ -89,7 +90,8 @@ static size_t draw_curve(const drawing *d, const char *gradient) {
         if (error < largest && error > 1e-6)
             x_of_slope = x, error_of_slope = error;
     }
-    if (isfinite(x_of_slope) &&
+    if (nevh_gradient_order(nevh_gradient_named(gradient)) <= steepest &&
+        isfinite(x_of_slope) &&
         error_at(d, gradient, x_of_slope / 2) < error_of_slope / 2)
         draw_slope(d, gradient, x_of_slope, error_of_slope);
     return series;

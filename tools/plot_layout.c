@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+static const double title_letter = 0.63 * 14; /* pixels, at scale 1 */
+
 size_t plot_letter_bytes(const unsigned char *c) {
     size_t more = *c >= 0xf0 && *c < 0xf5   ? 3
                   : *c >= 0xe0 && *c < 0xf0 ? 2
@@ -133,15 +135,27 @@ static double room_beside(const plot *p, const layout *l, bool text) {
     return text ? (double)longest + 4 : 9 * (double)longest + 52;
 }
 
-/* Lines of the note as wide as the whole. */
-static size_t note_lines(const plot *p, const layout *l) {
-    size_t lines = 0, letters = plot_note_letters(l);
-    const char *c = p->note ? p->note : "";
-    for (; *c && lines < PLOT_NOTE_LINES; lines++) {
-        c += plot_line_bytes(c, letters);
-        c += *c == ' ';
+/* As it is cut into lines of so many letters. */
+static size_t lines_of(const char *text, size_t letters, size_t most) {
+    size_t lines = 0;
+    for (; text && *text && lines < most; lines++) {
+        text += plot_line_bytes(text, letters);
+        text += *text == ' ';
     }
     return lines;
+}
+
+/* As large as it fits, but not too small. */
+static double title_scale(const plot *p, const layout *l) {
+    static const double smallest = 0.8, largest = 1.2;
+    double letters = p->title ? (double)plot_letters(p->title) : 0;
+    double fitting = l->width / (title_letter * fmax(letters, 1));
+    return fmin(fmax(fitting, smallest), largest);
+}
+
+size_t plot_title_letters(const layout *l) {
+    double letter = l->letter == 1 ? 1 : title_letter * l->title_scale;
+    return (size_t)fmax(l->width / letter, 20);
 }
 
 size_t plot_note_letters(const layout *l) {
@@ -150,8 +164,10 @@ size_t plot_note_letters(const layout *l) {
 }
 
 static double room_above(const plot *p, const layout *l) {
-    double title = p->title && *p->title ? 2 : 0.5;
-    return (title + (l->letter == 1 ? 1 : 0.95) * (double)l->note_lines) *
+    double title = p->title && *p->title ? 1 : -0.5;
+    double lines = (l->letter == 1 ? 1 : 1.2) * (double)l->title_lines;
+    return (title + lines - (lines > 0 && l->letter > 1 ? 0.2 : 0) +
+            (l->letter == 1 ? 1 : 0.95) * (double)l->note_lines) *
            l->line;
 }
 
@@ -173,7 +189,10 @@ layout plot_lay_out(const plot *p, const target *t) {
     if (text)
         choose_panels(&l, p, t);
     l.width = (l.left + l.panel_width + l.right) * (double)l.columns + l.legend;
-    l.note_lines = note_lines(p, &l);
+    l.title_scale = title_scale(p, &l);
+    l.title_lines =
+        lines_of(p->title, plot_title_letters(&l), PLOT_TITLE_LINES);
+    l.note_lines = lines_of(p->note, plot_note_letters(&l), PLOT_NOTE_LINES);
     l.title = room_above(p, &l);
     l.height = (l.top + l.panel_height + l.bottom) * (double)l.rows + l.title;
     if (p->stacked && !text)

@@ -88,8 +88,9 @@ typedef struct {
     double left, right, top, bottom; /* around a panel */
     double title;                    /* with the note */
     size_t columns, rows;
-    size_t note_lines;
-    bool legend_apart; /* it is longer than a panel */
+    size_t title_lines, note_lines;
+    double title_scale; /* of its letters */
+    bool legend_apart;  /* it is longer than a panel */
 } layout;
 /* What the axes of a panel show. */
 typedef struct {
@@ -108,6 +109,8 @@ size_t plot_letters(const char *text);
 size_t plot_line_bytes(const char *text, size_t letters);
 enum { PLOT_NOTE_LINES = 3, PLOT_NOTE_FONT = 11 };
 size_t plot_note_letters(const layout *); /* of a line of the note */
+enum { PLOT_TITLE_LINES = 2 };
+size_t plot_title_letters(const layout *); /* of a line of the title */
 
 /* plot_gnuplot.c: gnuplot --version, and a script to be drawn to a file.
    returns  TOOL_OK, or TOOL_USAGE with the message printed */

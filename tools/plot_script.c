@@ -206,10 +206,13 @@ static void print_name(FILE *f, const char *name) {
     fputs(" noenhanced", f);
 }
 
-/* A series without points is an entry of the legend at most. */
+/* A series without points is an entry of the legend at most; letters are too
+   coarse for guides. */
 static void print_series(FILE *f, const plot *p, size_t i, bool here,
-                         bool titled, size_t *printed) {
+                         bool titled, bool text, size_t *printed) {
     bool drawn = here && p->series[i].count;
+    if (text && p->series[i].form == PLOT_GUIDE)
+        return;
     if (!drawn && !titled)
         return;
     separate(f, printed);
@@ -242,11 +245,12 @@ static void print_guides(FILE *f, const plot *p, size_t number) {
     }
 }
 
-static void print_plots(FILE *f, const plot *p, size_t number, bool legend) {
+static void print_plots(FILE *f, const plot *p, size_t number, bool legend,
+                        bool text) {
     size_t printed = 0;
     for (size_t i = 0; i < p->count; i++)
         print_series(f, p, i, p->series[i].panel == number,
-                     legend && plot_in_legend(p, i), &printed);
+                     legend && plot_in_legend(p, i), text, &printed);
     if (!printed)
         fputs("plot NaN notitle", f);
     fputc('\n', f);
@@ -320,34 +324,40 @@ static void print_place(FILE *f, size_t number, const layout *l) {
             top / l->height, (top - l->panel_height) / l->height);
 }
 
-/* As large as it fits, but not too small. */
-static void print_title(FILE *f, const char *title, const layout *l) {
-    static const double letter = 0.63, smallest = 0.8, largest = 1.2;
-    double fitting = l->width / (letter * FONT * (double)plot_letters(title));
-    double scale = fmin(fmax(fitting, smallest), largest);
-    double most =
-        l->letter == 1 ? l->width : l->width / (letter * FONT * scale);
+/* A line in the middle, so many lines from the top. */
+static void print_line(FILE *f, const char *text, size_t bytes, bool cut,
+                       double line, const layout *l, const char *font) {
     fputs("set label ", f);
-    quote(f, title, (size_t)most);
-    fprintf(f, " at screen 0.5,%.6f center noenhanced font ',%.3g'\n",
-            1 - 1.1 * l->line / l->height, FONT * scale);
+    quote_part(f, text, bytes, cut ? " ..." : "");
+    fprintf(f, " at screen 0.5,%.6f center noenhanced %s\n",
+            1 - line * l->line / l->height, font);
 }
 
-static void print_note(FILE *f, const char *note, const layout *l) {
-    size_t letters = plot_note_letters(l);
-    for (size_t i = 0; i < l->note_lines; i++) {
-        size_t bytes = plot_line_bytes(note, letters);
-        bool cut = i + 1 == l->note_lines && note[bytes];
-        double line = ((l->letter == 1 ? 1 : 0.95) * (double)i + 2.1) * l->line;
-        fputs("set label ", f);
-        quote_part(f, note, bytes, cut ? " ..." : "");
-        fprintf(f,
-                " at screen 0.5,%.6f center noenhanced textcolor rgb '#444444' "
-                "font ',%d'\n",
-                1 - line / l->height, PLOT_NOTE_FONT);
-        note += bytes;
-        note += *note == ' ';
+static void print_lines(FILE *f, const char *text, size_t letters, size_t lines,
+                        double first, double apart, const layout *l,
+                        const char *font) {
+    for (size_t i = 0; i < lines; i++) {
+        size_t bytes = plot_line_bytes(text, letters);
+        bool cut = i + 1 == lines && text[bytes];
+        print_line(f, text, bytes, cut, first + apart * (double)i, l, font);
+        text += bytes;
+        text += *text == ' ';
     }
+}
+
+static void print_title(FILE *f, const plot *p, const layout *l) {
+    bool text = l->letter == 1;
+    double apart = text ? 1 : 1.2;
+    double begin =
+        p->title && *p->title ? 0.9 + apart * (double)l->title_lines : 0;
+    char font[80];
+    snprintf(font, sizeof font, "font ',%.3g'", FONT * l->title_scale);
+    print_lines(f, p->title, plot_title_letters(l), l->title_lines, 1.1, apart,
+                l, font);
+    snprintf(font, sizeof font, "textcolor rgb '#444444' font ',%d'",
+             PLOT_NOTE_FONT);
+    print_lines(f, p->note, plot_note_letters(l), l->note_lines, begin,
+                text ? 1 : 0.95, l, font);
 }
 
 static void print_key(FILE *f, const layout *l, bool text) {
@@ -367,10 +377,7 @@ static void print_frame(FILE *f, const plot *p, const layout *l, bool text) {
               "dashtype solid, linetype 1 linecolor rgb '#dddddd' linewidth "
               "0.5 dashtype solid\n",
               f);
-    if (p->title && *p->title)
-        print_title(f, p->title, l);
-    if (p->note)
-        print_note(f, p->note, l);
+    print_title(f, p, l);
 }
 
 /* A panel of the whole height, in which nothing is but the legend: gnuplot
@@ -386,7 +393,7 @@ static void print_legend(FILE *f, const plot *p, const layout *l, bool text) {
           "set xrange [0:1]\nset yrange [0:1]\n",
           f);
     print_key(f, l, text);
-    print_plots(f, p, p->panels, true);
+    print_plots(f, p, p->panels, true, text);
 }
 
 void plot_script(const plot *p, const target *t, FILE *f) {
@@ -408,13 +415,14 @@ void plot_script(const plot *p, const target *t, FILE *f) {
         bool legend = i == 0 && l.legend > 0 && !apart;
         if (i)
             fputs("unset label\n", f);
-        print_guides(f, p, i);
+        if (!text)
+            print_guides(f, p, i);
         print_place(f, i, &l);
         print_axes(f, p, i, &l, text);
         fputs("unset key\n", f);
         if (legend)
             print_key(f, &l, text);
-        print_plots(f, p, i, legend);
+        print_plots(f, p, i, legend, text);
     }
     if (apart)
         print_legend(f, p, &l, text);
