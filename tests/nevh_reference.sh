@@ -93,6 +93,14 @@ scene 'x^2/2 + x*t^1.5'
 exits 0 compare $work/x.nevh --integrators gauss4 --dt 0.01 --gradient exact
 has '^ gauss4 .* [0-9.]+e-0[5-9] .* bounded'
 
+# A difference that crosses the edge of the domain of H says so, and how far it
+# reached; one that need not cross it has no message.
+scene 'x^2/2 - 0.1*log(x)' 'x = 0.01, 0'
+sed -i 's/^integr.*/integrators = verlet/' $work/x.nevh
+exits 1 compare $work/x.nevh --gradient central4 --gradient-step 0.02
+has 'a difference by q\[0\] reaches 0\.0[0-9]* from the orbit, where'
+exits 0 compare $work/x.nevh --gradient central4 --dt 0.001
+
 # Late on the clock.
 printf '[coordinates]\nx = 1\n[effects]\nK = p_x^2/2\nV = x^2/2 + x^4/4
 [run]\nt_start = 1e9\nt_end = 1e9 + 10\ndt = 0.05\nintegrators = gauss8\n' \

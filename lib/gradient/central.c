@@ -13,7 +13,9 @@
    field: one that followed the state would break time reversal.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/field_private.h"
+#include <math.h>
 #include <nevh/body.h>
+#include <stdio.h>
 
 /* The differenced variables of each instance, and the points on each side. */
 typedef struct {
@@ -63,12 +65,42 @@ bool nevh__add_slopes(const nevh_gradient *g, size_t apart, size_t lanes,
     return add_slopes(g, apart, lanes, x, h, out);
 }
 
+/* How far a column is from the orbit, and by which variable. */
+static double reach_of(const nevh_field *f, const nevh__planned *term,
+                       const nevh__block *b, size_t column, size_t *variable) {
+    size_t lane = b->lane + column % b->lanes;
+    size_t group = column % (b->groups * b->lanes) / b->lanes;
+    size_t instance = (b->group + group) / b->per_instance;
+    double most = 0;
+    for (size_t k = 0; k < term->nv; k++) {
+        const double *z = k < term->nq ? b->q : b->p;
+        double orbit = z[nevh__index(term, instance, k) * b->width + lane];
+        double away = fabs(nevh__row(f, b, k)[column] - orbit);
+        *variable = away > most ? k : *variable;
+        most = fmax(most, away);
+    }
+    return most;
+}
+
+/* It is a point of the difference that has no value, not the orbit. */
+static int fail_outside(nevh_field *f, const nevh__planned *term,
+                        const nevh__block *b, size_t instance) {
+    char where[120];
+    size_t column = 0, k = 0;
+    while (column + 1 < b->used && isfinite(f->h[column]))
+        column++;
+    double reach = reach_of(f, term, b, column, &k);
+    snprintf(where, sizeof where,
+             "a difference by %c[%zu] reaches %.3g from the orbit, where ",
+             k < term->nq ? 'q' : 'p', nevh__index(term, instance, k), reach);
+    return nevh__block_fail(f, term, b, column, where, f->h[column]);
+}
+
 int nevh__central_fail(nevh_field *f, const nevh__planned *term,
                        const nevh__block *b, size_t instance, size_t k) {
     const nevh_term *is = &term->term->is;
-    int status = nevh__block_check(f, term, b);
-    if (status)
-        return status;
+    if (nevh__block_check(f, term, b))
+        return fail_outside(f, term, b, instance);
     return nevh__fail(
         &f->report, NEVH_EDOM,
         "the derivative of term \"%s\" of effect \"%s\" with respect to "
