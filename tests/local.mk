@@ -224,6 +224,8 @@ check-slow:
 	$(MAKE) $(AM_MAKEFLAGS) check TESTS='$(all_suites)' \
 	  CHECK_TAGS=CK_INCLUDE_TAGS TEST_TIMEOUT=3600
 	NEVH_SCENES='$(srcdir)/scenes' tools/nevh hard --quiet
+	$(MAKE) $(AM_MAKEFLAGS) bench/verdicts$(EXEEXT)
+	bench/verdicts$(EXEEXT) -s 0.1 -w 0.1 $(srcdir)
 	$(MAKE) $(AM_MAKEFLAGS) fuzz FUZZ_SECONDS=60
 
 # With clang; 77 is for what cannot be run here.
