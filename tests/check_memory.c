@@ -447,12 +447,15 @@ START_TEST(balanced_steppers) {
     a.options.tolerance = tolerance_for(a.scheme);
     a.options.balance = true;
     a.stepper = nevh_stepper_new(s, a.scheme, &a.options);
-    if (nevh_stepper_status(a.stepper) != NEVH_ESTRUCT) {
+    bool fits = nevh_stepper_status(a.stepper) != NEVH_ESTRUCT;
+    if (fits) {
         ck_assert_uint_ge(starve(make_stepper, &a), 30);
         ck_assert_uint_ge(starve(copy_stepper, &a), 30);
     }
     nevh_stepper_free(a.stepper);
     nevh_system_free(s);
+    if (!fits)
+        skip_test("the scheme does not fit");
 }
 END_TEST
 
@@ -471,7 +474,8 @@ START_TEST(balanced_steps_take_no_memory) {
     nevh_observer energy = {nevh_energy_observe, e, 1};
     double q[] = {1.7, 0.4}, p[] = {0.3, 0.5};
     int status = nevh_stepper_status(m);
-    if (status != NEVH_ESTRUCT) {
+    bool fits = status != NEVH_ESTRUCT;
+    if (fits) {
         status = nevh_energy_follow(e, m);
         watch(0);
         status |= nevh_run(m, 0, 0.01, 20, q, p, &energy, 1);
@@ -482,6 +486,8 @@ START_TEST(balanced_steps_take_no_memory) {
     nevh_energy_free(e);
     nevh_stepper_free(m);
     nevh_system_free(s);
+    if (!fits)
+        skip_test("the scheme does not fit");
 }
 END_TEST
 
