@@ -175,6 +175,7 @@ dist_check_SCRIPTS = \
 	tests/nevh_run.sh \
 	tests/nevh_code.sh \
 	tests/nevh_memory.sh \
+	tests/nevh_files.sh \
 	tests/nevh_units.sh \
 	tests/nevh_check.sh \
 	tests/nevh_hard.sh \

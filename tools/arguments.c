@@ -234,6 +234,9 @@ int read_section(options *o, const char *argument) {
 }
 
 int read_file(options *o, const char *argument) {
+    if (strcmp(argument, "-") == 0)
+        return tool_refuse("--output takes a file; without it rows go to the "
+                           "terminal");
     o->file = argument;
     return TOOL_OK;
 }

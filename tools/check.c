@@ -212,6 +212,8 @@ static int check_plan(const options *o, const plan *p) {
 int check(const options *o) {
     plan p;
     int status = plan_make(&p, o);
+    if (!status && o->file)
+        status = output_check(o->file);
     if (!status)
         status = check_plan(o, &p);
     plan_free(&p);

@@ -236,6 +236,8 @@ static int effects_of(const options *o, plan *p) {
 int effects(const options *o) {
     plan p;
     int status = plan_make(&p, o);
+    if (!status && o->file)
+        status = output_check(o->file);
     if (!status)
         status = o->impact ? impact(o, &p) : effects_of(o, &p);
     plan_free(&p);

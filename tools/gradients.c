@@ -166,6 +166,8 @@ static int gradients_plan(const options *o, const plan *p) {
 int gradients(const options *o) {
     plan p;
     int status = plan_make(&p, o);
+    if (!status && o->file)
+        status = output_check(o->file);
     if (!status)
         status = gradients_plan(o, &p);
     plan_free(&p);

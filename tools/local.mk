@@ -12,6 +12,7 @@ tools_nevh_SOURCES = \
 	tools/numbers.c \
 	tools/table.c \
 	tools/output.c \
+	tools/outputs.c \
 	tools/scenes.c \
 	tools/plan.c \
 	tools/stop.c \

@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "config.h"
 #include "tool.h"
+#include <errno.h>
 #include <gsl/gsl_errno.h>
 #include <signal.h>
 #include <string.h>
@@ -131,12 +132,19 @@ static void set_process(void) {
     gsl_set_error_handler_off();
 }
 
+/* What no command looked after. */
+static int end_output(int status) {
+    if (status != TOOL_USAGE && (fflush(stdout) || ferror(stdout)))
+        return tool_refuse("the output cannot be written: %s", strerror(errno));
+    return status;
+}
+
 int main(int argc, char **argv) {
     options o;
     set_process();
     int status = options_read(&o, argc, argv);
     if (!status)
-        status = obey(&o);
+        status = end_output(obey(&o));
     options_free(&o);
     return status;
 }

@@ -8,11 +8,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* mkstemp lets only the owner read. */
-static void allow_as_usual(int file) {
+/* mkstemp lets only the owner read.  A file that is replaced keeps its mode. */
+static void allow_as_usual(int file, const char *replaced) {
+    struct stat found;
     mode_t mask = umask(0);
     umask(mask);
-    fchmod(file, 0666 & ~mask);
+    if (stat(replaced, &found) == 0)
+        fchmod(file, found.st_mode & 07777);
+    else
+        fchmod(file, 0666 & ~mask);
 }
 
 /* The temporary file to remove when a signal ends the program. */
@@ -38,19 +42,29 @@ static void mind_signals(void) {
             signal(numbers[i], SIG_IGN);
 }
 
-/* A device or a pipe is written to as it is. */
+/* A device or a pipe is written to as it is, and so is what a symbolic link
+   stands for that is not there yet. */
 static bool can_be_replaced(const char *name) {
     struct stat found;
-    return stat(name, &found) != 0 || S_ISREG(found.st_mode);
+    if (stat(name, &found) == 0)
+        return S_ISREG(found.st_mode);
+    return lstat(name, &found) != 0 || !S_ISLNK(found.st_mode);
+}
+
+/* In the same folder, with a name that is not too long either. */
+static char *temporary_name(const char *name) {
+    enum { MOST = 200 };
+    const char *slash = strrchr(name, '/'), *last = slash ? slash + 1 : name;
+    return text_print("%.*s%.*s.XXXXXX", (int)(last - name), name, MOST, last);
 }
 
 static void open_temporary(output *o) {
-    o->temporary = text_print("%s.XXXXXX", o->name);
+    o->temporary = temporary_name(o->name);
     int file = mkstemp(o->temporary);
     o->stream = file < 0 ? NULL : fdopen(file, "w");
     if (!o->stream)
         return;
-    allow_as_usual(file);
+    allow_as_usual(file, o->name);
     unfinished = o->temporary;
     atexit(remove_unfinished);
     mind_signals();
@@ -83,7 +97,7 @@ int output_open(output *o, const char *name) {
 int output_check(const char *name) {
     output o;
     if (!can_be_replaced(name)) {
-        if (access(name, W_OK) == 0)
+        if (access(name, W_OK) == 0 || errno == ENOENT)
             return TOOL_OK;
         return tool_refuse("%s cannot be written: %s", name, strerror(errno));
     }

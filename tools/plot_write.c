@@ -81,7 +81,7 @@ void plot_say_written(const options *o, const plan *p, const char *integrator,
 }
 
 static bool same(const char *a, const char *b) {
-    return a && b && strcmp(a, b) == 0;
+    return a && b && file_is_same(a, b);
 }
 
 static int check_names(const options *o) {

@@ -261,8 +261,9 @@ int scene_open_named(nevh_scene **scene, const char *name, const options *o) {
     if (!file)
         return TOOL_USAGE;
     *scene = read_switched(file, o);
+    bool good = *scene && !outputs_check(o, *scene, file) && !read(*scene, o);
     free(file);
-    if (*scene && !read(*scene, o))
+    if (good)
         return TOOL_OK;
     if (!*scene)
         tool_refuse("out of memory");

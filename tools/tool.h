@@ -185,6 +185,12 @@ int output_close(output *, int status);
 int output_page(const options *, const page *, int status);
 void page_print(const page *, const options *, FILE *);
 
+/* outputs.c */
+/* Whether two names are of one regular file, or would be of one. */
+bool file_is_same(const char *, const char *);
+/* That no option writes over the file of a scene, or over its C code. */
+int outputs_check(const options *, const nevh_scene *, const char *file);
+
 /* scenes.c: scenes by file or name, changed as the options say. */
 /* The value of what an option was given: a formula of parameters.
    returns  TOOL_OK, or TOOL_USAGE with the message printed */

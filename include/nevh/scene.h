@@ -116,6 +116,9 @@ NEVH_API size_t nevh_scene_array(const nevh_scene *, size_t k);
 /* The text of a label ("t", "energy", a coordinate); "" if there is none.
    x[3] has that of x unless it has one of its own. */
 NEVH_API const char *nevh_scene_label(const nevh_scene *, const char *name);
+/* The file of the i-th effect that is written in C, whether it is on or not; to
+   be freed with free.  NULL: there are no more, or memory is out. */
+NEVH_API char *nevh_scene_code_path(const nevh_scene *, size_t i);
 /* A number that scenes share which say the same, up to comments and space, with
    the same parameters and transform set, effects on and texts of C code loaded;
    others hardly do. */

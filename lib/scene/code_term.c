@@ -331,6 +331,22 @@ static bool load_statement(nevh_scene *s, nevh__model *m,
     return true;
 }
 
+char *nevh_scene_code_path(const nevh_scene *s, size_t i) {
+    for (size_t k = 0; s && k < s->n_statements; k++) {
+        const char *open = nevh__is_code(&s->statements[k])
+                               ? strchr(s->statements[k].value.text, '"')
+                               : NULL;
+        const char *shut = open ? strchr(open + 1, '"') : NULL;
+        if (!shut || i-- > 0)
+            continue;
+        char *name = nevh__text("%.*s", (int)(shut - open) - 1, open + 1);
+        char *path = name ? path_of(s, name) : NULL;
+        free(name);
+        return path;
+    }
+    return NULL;
+}
+
 bool nevh__scene_load_code(nevh_scene *s, const char *effect) {
     for (size_t i = 0; i < s->n_statements; i++)
         if (nevh__is_code(&s->statements[i]) &&
