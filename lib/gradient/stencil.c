@@ -276,13 +276,18 @@ static bool add_many(const nevh_field *f, const nevh__stencil *s, size_t nq,
     return !bad;
 }
 
-/* Lanes that fit into one block: all, or whole vectors of them. */
+/* Lanes of a block: all or, where they do not fit into one, whole vectors of
+   them, as many in each block, so that constants stay. */
 static size_t lanes_in_block(const nevh_field *f, const nevh__stencil *s,
                              size_t lanes) {
-    if (lanes * s->points <= f->capacity)
-        return lanes;
     size_t most = f->capacity / s->points;
-    return most > NEVH__LANES ? most / NEVH__LANES * NEVH__LANES : most;
+    if (lanes <= most)
+        return lanes;
+    if (most < NEVH__LANES)
+        return most;
+    most -= most % NEVH__LANES;
+    return nevh__padded((lanes + (lanes - 1) / most) /
+                        ((lanes - 1) / most + 1));
 }
 
 /* Tells what is not finite: a value, or else the first such slope. */
@@ -312,11 +317,12 @@ int nevh__stencil_difference(nevh_field *f, nevh__planned *term,
                              const double q[], const double p[], double dh_dq[],
                              double dh_dp[]) {
     const nevh_term *is = &term->term->is;
+    size_t lanes = lanes_in_block(f, s, width);
     request r = {.width = width, .t = t, .q = q, .p = p};
     r.dh_dq = dh_dq;
     r.dh_dp = dh_dp;
     for (; r.lane < width; r.lane += r.lanes) {
-        r.lanes = lanes_in_block(f, s, width - r.lane);
+        r.lanes = width - r.lane < lanes ? width - r.lane : lanes;
         r.stride = nevh__padded(s->points * r.lanes);
         fill_rows(f, term, s, &r);
         if (is->time)
