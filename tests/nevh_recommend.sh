@@ -79,6 +79,43 @@ has '^Warning: the orbit is out of step'
 has '^A step is [0-9.]+ times 0.04'
 has '^ cheapest .* > 50 %'
 
+# So it is asked for what matters.  The distance of the Moon is within what was
+# promised of that by much shorter steps.
+exits 0 recommend sun-earth-moon --observable distance --error 1e-2 \
+    --integrators rkn14a,gauss8 --gradient exact
+has '^observable: distance; its errors are divided by its range, 3[0-9.]+ km'
+has '^That is 3[0-9]+ km of distance'
+lacks 'Warning'
+exits 0 run sun-earth-moon --integrators rkn14a --gradient exact \
+    --dt $(number cheapest 4) --at 5,12,18.7
+cut -d, -f 1,20 $work/out >$work/rough
+exits 0 run sun-earth-moon --integrators gauss12 --gradient exact --dt 0.002 \
+    --at 5,12,18.7
+cut -d, -f 1,20 $work/out | paste -d, - $work/rough | awk -F, '
+    /^[0-9]/ { n++; gap = $2 - $4; if (gap < 0) gap = -gap
+        if (gap > 400) far = 1; if (gap > 1) apart = 1 }
+    END { exit far || !apart || n != 3 }' || fails "is not so near"
+exits 0 recommend oscillator --observable 'x^2 + sin(p_x)' --error 1e-6 \
+    --t-end 20 --integrators gauss4,verlet --format csv
+records | awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) name[$i] = i }
+    NR == 2 { kept = $name["observable_error"] <= 1e-6 &&
+        $name["observable_error"] > 0 && $name["holds_until"] >= 20 }
+    END { exit !kept }' || { fails "has no such columns"; cat $work/out; }
+exits 0 cost kepler --t-end 7 --observable 'x*p_y - y*p_x' \
+    --integrators blanes-moan4,rk4
+has 'its errors are divided by its size, 0\.8'
+has 'largest observable error'
+exits 2 recommend pendulum --observable phy --error 1e-3
+says 'phy'
+exits 2 recommend pendulum --observable phi
+says 'needs --error X'
+exits 2 recommend pendulum --error 1e-3
+says 'is that of --observable'
+exits 2 recommend pendulum --observable phi --error 1e-3 --energy-error 1e-3
+says 'takes one of'
+exits 1 recommend pendulum --t-end 10 --observable 'log(phi)' --error 1e-3
+says 'log\(phi\) has no value at t = '
+
 # What fails in its first step is given up after a few that are shorter.
 scene edge.nevh 'acos(x)' 't_end = 2\ndt = 0.1'
 for name in rk4 verlet gauss4; do

@@ -66,7 +66,9 @@ static table *shown(const advice *a) {
     table_column(t, "integrator");
     table_column(t, "gradient");
     table_column(t, "dt");
-    table_column(t, a->search.by_state ? "state\nerror" : "energy\nerror");
+    char *title = text_print("%s\nerror", search_error(&a->search));
+    table_column(t, title);
+    free(title);
     if (has_states(a))
         table_column(t, "state\nerror");
     table_column(t, "holds\nuntil t");
@@ -149,6 +151,17 @@ static void tell_lines(const advice *a, const row *r, list *words) {
         list_print(words, "  tolerance = %.6g", r->tolerance);
 }
 
+/* In the observable's unit. */
+static void tell_size(const advice *a, const row *r, list *words) {
+    const plan *p = &a->search.plan;
+    const char *unit =
+        nevh_scene_label(p->scene, p->observable ? p->observable : "");
+    if (p->observable)
+        list_print(words, "That is %.3g%s%s of %s.",
+                   r->observable_error * p->observable_scale, *unit ? " " : "",
+                   unit, p->observable);
+}
+
 /* In the orbit's own measure. */
 static void tell_steps(const advice *a, const row *r, list *words) {
     const char *unit = nevh_scene_label(a->search.plan.scene, "t");
@@ -194,7 +207,7 @@ static void warn(const advice *a, const row *r, list *words) {
         list_print(words,
                    "Warning: the orbit is out of step with the true one: its "
                    "state error is %.2g.  The energy does not show that; ask "
-                   "for --state-error.",
+                   "for --state-error, or for what matters by --observable.",
                    r->state_error);
     else if (isnan(r->state_error))
         list_print(words,
@@ -205,7 +218,7 @@ static void warn(const advice *a, const row *r, list *words) {
 
 static void tell_answer(const advice *a, const options *o, list *words) {
     const row *r = chosen(a, a->best);
-    const char *what = a->search.by_state ? "state" : "energy";
+    const char *what = search_error(&a->search);
     char *line = command_line(a, o, r);
     list_print(words,
                "Take %s with the %s gradient at %s = %.4g: the largest %s "
@@ -214,6 +227,7 @@ static void tell_answer(const advice *a, const options *o, list *words) {
                r->tolerance > 0 ? "tolerance" : "dt",
                r->tolerance > 0 ? r->tolerance : r->dt, what,
                ladder_error(r, a->search.by_state), a->target);
+    tell_size(a, r, words);
     tell_steps(a, r, words);
     tell_longer(a, r, words);
     warn(a, r, words);
@@ -250,6 +264,7 @@ void advice_print(const advice *a, const options *o, FILE *f) {
     if (!is_table || !o->quiet) {
         plan_notes(&a->search.plan, &p.before);
         state_notes(&a->search.plan, &p.before);
+        observable_notes(&a->search.plan, &p.before);
         tell_answer(a, o, &p.after);
     }
     page_print(&p, o, f);
@@ -318,7 +333,7 @@ static void tell_why(const advice *a) {
 int advice_none(const advice *a) {
     double least;
     const ladder *l = most_exact(a, &least);
-    const char *what = a->search.by_state ? "state" : "energy";
+    const char *what = search_error(&a->search);
     if (!l)
         tell_why(a);
     else

@@ -265,6 +265,15 @@ int read_columns(options *o, const char *argument) {
     return TOOL_OK;
 }
 
+int read_error(options *o, const char *argument) {
+    return read_positive("error", argument, &o->error);
+}
+
+int read_observable(options *o, const char *argument) {
+    o->observable = argument;
+    return TOOL_OK;
+}
+
 int read_transform(options *o, const char *argument) {
     o->transform = argument;
     return TOOL_OK;

@@ -180,6 +180,7 @@ static page make_page(const options *o, costs *c) {
         plan_notes(&c->search.plan, &result.before);
         row_notes(o, &c->search.plan, rows, count, &result.before);
         state_notes(&c->search.plan, &result.before);
+        observable_notes(&c->search.plan, &result.before);
         cost_notes(c, &result.before);
         cost_words(c, &result.after);
     }
@@ -246,10 +247,12 @@ int cost(const options *o) {
         status = plan_search(&p, o);
     if (!status && !o->t_end && !o->dt.count)
         whole = plan_shorten(&p, SEARCH_BUDGET);
-    if (!status && o->by_state)
+    if (!status && (o->by_state || o->observable))
         status = state_errors_mean_something(&p);
     else if (!status && o->format != FORMAT_TABLE)
         status = plan_reference(&p, p.t_end);
+    if (!status && o->observable)
+        status = plan_observe(&p, o->observable);
     if (!status)
         status = cost_plan(o, &p, whole);
     plan_free(&p);

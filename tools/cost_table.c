@@ -54,7 +54,10 @@ bool cost_drifts(const ladder *l) {
 
 bool cost_is_beyond(const costs *c, size_t target) {
     return c->search.by_state &&
-           cost_target[target] < nevh_reference_error(c->search.plan.reference);
+           cost_target[target] <
+               (c->search.plan.observable
+                    ? c->search.plan.observable_error
+                    : nevh_reference_error(c->search.plan.reference));
 }
 
 static char *cell_text(const row *r, bool star) {

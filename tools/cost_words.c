@@ -16,7 +16,7 @@ void cost_notes(const costs *c, list *notes) {
     list_print(notes,
                "cost: steps that keep the largest %s error of the run below "
                "10^-digits; CPU ms (dt%s%s), * cheapest",
-               c->search.by_state ? "state" : "energy", *unit ? "/" : "", unit);
+               search_error(&c->search), *unit ? "/" : "", unit);
 }
 
 /* Rungs whose errors are neither coarse nor at rounding. */

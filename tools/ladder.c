@@ -34,7 +34,9 @@ void ladder_free(ladder *l) {
 }
 
 double ladder_error(const row *r, bool by_state) {
-    double error = by_state ? r->state_error : r->energy.max;
+    double error = !by_state       ? r->energy.max
+                   : r->observable ? r->observable_error
+                                   : r->state_error;
     return r->ran && isfinite(error) ? error : INFINITY;
 }
 

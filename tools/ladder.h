@@ -90,8 +90,10 @@ void ladder_time(const search *, ladder *, size_t rung);
 void ladder_refine(search *, ladder *, double target, int gap);
 /* Rungs in the widest gaps until there are so many. */
 void ladder_fill(search *, ladder *, size_t count);
-size_t ladder_run(search *, ladder *, int k);    /* index of the rung */
-double ladder_error(const row *, bool by_state); /* INFINITY: none */
+size_t ladder_run(search *, ladder *, int k); /* index of the rung */
+/* Of states, or of the observable where rows have one; INFINITY: none. */
+double ladder_error(const row *, bool by_state);
+const char *search_error(const search *); /* "energy", "state", "observable" */
 /* A rung that failed, where none ran; NULL: some ran, or were refused. */
 const row *ladder_failure(const ladder *);
 /* The cheapest rung by seconds, or by work; NULL: none keeps the target. */

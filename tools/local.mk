@@ -43,6 +43,7 @@ tools_nevh_SOURCES = \
 	tools/compare.c \
 	tools/verdict.c \
 	tools/state.c \
+	tools/observable.c \
 	tools/match.c \
 	tools/diagnostics.c \
 	tools/effects.c \

@@ -32,8 +32,13 @@ typedef struct {
     bool match_work, diagnostics;
     nevh_reference *reference; /* NULL: not asked for, or there is none */
     double reference_end;
-    char *no_reference; /* why there is none */
-    shelf *shelf;       /* of steppers */
+    char *no_reference;      /* why there is none */
+    const char *observable;  /* whose errors count, not of states; NULL */
+    double observable_scale; /* that its errors are divided by */
+    bool observable_level;   /* its size, not its range */
+    double observable_error; /* what that of the reference makes of it */
+    bool promises;           /* rows tell how long they keep what they should */
+    shelf *shelf;            /* of steppers */
 } plan;
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int plan_make(plan *, const options *);

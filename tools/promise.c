@@ -91,6 +91,7 @@ void advice_follow(advice *a, plan *p) {
         nevh_reference_free(longer.reference);
         free(longer.no_reference);
     }
+    whole->promises = true;
     find_period(a);
 }
 

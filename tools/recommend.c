@@ -308,6 +308,11 @@ static void verify(advice *a, plan *p) {
         p->reference = NULL;
         plan_reference(p, p->t_end);
         a->search.plan.reference = p->reference;
+        a->search.plan.reference_end = p->reference_end;
+    }
+    if (p->reference && p->observable && !plan_observe(p, p->observable)) {
+        a->search.plan.observable_scale = p->observable_scale;
+        a->search.plan.observable_level = p->observable_level;
     }
     a->search.budget = a->search.spent + SEARCH_BUDGET;
     for (size_t i = 0; i < count; i++)
@@ -328,9 +333,9 @@ static int advise(const options *o, plan *p, double whole) {
     advice a = {.search = search_begin(p, o, SEARCH_BUDGET),
                 .pilot = p->t_end,
                 .whole = whole,
-                .target = o->state_error > 0 ? o->state_error : o->energy_error,
+                .target = fmax(fmax(o->state_error, o->energy_error), o->error),
                 .named = o->integrators.count > 0};
-    a.search.by_state = o->state_error > 0;
+    a.search.by_state = o->state_error > 0 || o->observable;
     a.search.keeping = a.named;
     take_gradients(&a, o);
     search_all(&a);
@@ -352,13 +357,37 @@ static int advise(const options *o, plan *p, double whole) {
 
 static int check_target(const options *o) {
     bool energy = o->energy_error > 0, state = o->state_error > 0;
+    if (o->observable && !(o->error > 0))
+        return tool_refuse("--observable needs --error X, which X is to be "
+                           "relative to its range");
+    if (o->error > 0 && !o->observable)
+        return tool_refuse("--error is that of --observable FORMULA");
+    if (o->observable && (energy || state))
+        return tool_refuse("nevh recommend takes one of --energy-error, "
+                           "--state-error and --observable");
+    if (o->observable)
+        return TOOL_OK;
     if (energy && state)
         return tool_refuse("nevh recommend takes one of --energy-error and "
                            "--state-error, not both");
     if (!energy && !state)
         return tool_refuse("nevh recommend needs --energy-error X or "
-                           "--state-error X");
+                           "--state-error X, or --observable FORMULA --error "
+                           "X");
     return TOOL_OK;
+}
+
+static int check_observable(plan *p, const options *o) {
+    int status = state_errors_mean_something(p);
+    if (!status)
+        status = plan_observe(p, o->observable);
+    if (status || o->error >= p->observable_error)
+        return status;
+    tool_refuse("%s: an error of %g of %s cannot be told: the reference's own "
+                "is %.1e (%s)",
+                p->name, o->error, o->observable, p->observable_error,
+                nevh_reference_text(p->reference));
+    return TOOL_FAILED;
 }
 
 static int check_reference(plan *p, double target) {
@@ -384,6 +413,8 @@ int recommend(const options *o) {
         whole = plan_shorten(&p, SEARCH_BUDGET);
     if (!status && o->state_error > 0)
         status = check_reference(&p, o->state_error);
+    if (!status && o->observable)
+        status = check_observable(&p, o);
     if (!status)
         status = advise(o, &p, whole);
     plan_free(&p);

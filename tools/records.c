@@ -30,6 +30,10 @@ static void add_record(table *t, const plan *p, const row *r) {
     table_number(t, r->observed_order);
     table_number(t, when(r->ran, r->spread));
     diagnostics_record(t, p, r);
+    if (p->observable)
+        table_number(t, when(r->ran, r->observable_error));
+    if (p->promises)
+        table_number(t, r->promise ? r->promise->until : NAN);
 }
 
 table *records(const plan *p, const row rows[], size_t count) {
@@ -57,6 +61,10 @@ table *records(const plan *p, const row rows[], size_t count) {
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         table_column(t, names[i]);
     diagnostics_columns(t, p, false);
+    if (p->observable)
+        table_column(t, "observable_error");
+    if (p->promises)
+        table_column(t, "holds_until");
     for (size_t i = 0; i < count; i++)
         add_record(t, p, &rows[i]);
     return t;

@@ -132,6 +132,7 @@ typedef struct {
     promise *promise;
     const nevh_energy *energy;
     const nevh_state_error *state;
+    const observable *shown; /* NULL: states count */
 } keeper;
 
 enum { LOOKS = 4000 };
@@ -140,8 +141,9 @@ static int mind_promise(void *data, size_t step, double t, const double q[],
                         const double p[]) {
     keeper *k = data;
     promise *made = k->promise;
-    double error = made->by_state ? nevh_state_error_result(k->state)
-                                  : nevh_energy_result(k->energy, 0).max;
+    double error = made->by_state && k->shown ? observable_result(k->shown)
+                   : made->by_state ? nevh_state_error_result(k->state)
+                                    : nevh_energy_result(k->energy, 0).max;
     (void)step, (void)q, (void)p;
     made->unknown = isnan(error);
     made->broken = error > made->most;
@@ -175,7 +177,8 @@ static void watched(work *w, nevh_stepper *s) {
     nevh_energy *energy = row_energy(w->plan, w->row, s);
     nevh_state_error *state = nevh_state_error_new(w->plan->reference);
     invariants *kept = w->plan->diagnostics ? invariants_new(w->plan) : NULL;
-    nevh_observer observers[6] = {{nevh_energy_observe, energy, 1}};
+    observable *shown = observable_new(w->plan);
+    nevh_observer observers[7] = {{nevh_energy_observe, energy, 1}};
     energy_trace trace = {r->errors, energy};
     size_t count = 1;
     if (state)
@@ -187,7 +190,9 @@ static void watched(work *w, nevh_stepper *s) {
             (nevh_observer){nevh_state_error_observe, state, 1};
     if (kept)
         observers[count++] = (nevh_observer){invariants_observe, kept, 1};
-    keeper keeps = {r->promise, energy, state};
+    if (shown)
+        observers[count++] = (nevh_observer){observable_observe, shown, 1};
+    keeper keeps = {r->promise, energy, state, shown};
     double steps = (w->plan->t_end - w->plan->run->t_start) / r->step;
     if (r->promise)
         observers[count++] =
@@ -213,6 +218,9 @@ static void watched(work *w, nevh_stepper *s) {
         compares_states(w->plan, r) ? nevh_state_error_result(state) : NAN;
     if (state && isnan(r->state_error))
         explain_unknown(w->plan, r);
+    r->observable_error =
+        compares_states(w->plan, r) ? observable_result(shown) : NAN;
+    observable_free(shown);
     r->changes = kept ? invariants_result(kept) : NULL;
     nevh_state_error_free(state);
     nevh_energy_free(energy);
@@ -248,7 +256,9 @@ static void work_free(work *w) {
 void row_run(const plan *p, row *r) {
     work w = work_new(p, r);
     r->step = r->dt;
-    r->observed_order = r->state_error = r->stopped = r->seconds = NAN;
+    r->observable = p->observable;
+    r->observed_order = r->state_error = r->observable_error = r->stopped =
+        r->seconds = NAN;
     nevh_stepper *s = row_stepper(p, r, p->balance);
     if (!refused(r, s)) {
         watched(&w, s);

@@ -24,7 +24,8 @@ typedef struct {
     int order, failed;    /* failed: of the exit status */
     size_t steps;
     char *status;
-    bool ran, late; /* there are numbers; patience was at its end */
+    bool observable; /* its error is that of one, not of states */
+    bool ran, late;  /* there are numbers; patience was at its end */
     nevh_energy_report energy;
     double followed; /* lengths of the run that the verdict is from; 0: its own
                         alone */
@@ -37,6 +38,7 @@ typedef struct {
     double t_end;           /* where it ended */
     double observed_order;  /* NAN: unknown */
     double state_error;     /* NAN: unknown or meaningless */
+    double observable_error; /* the same */
     char state_unknown[160]; /* why; "" where it is known, or no run's fault */
     double symplecticity_error, reversal_error;
     double *changes; /* of invariants, the largest; NULL: not asked for */
@@ -93,6 +95,18 @@ void state_notes(const plan *, list *notes);
 bool state_out_of_step(const row *);
 void state_show(table *, const plan *, const row *);
 void state_words(const plan *, const row rows[], size_t count, list *words);
+
+/* observable.c: what --observable names.  Made ready by a plan that has a
+   reference: TOOL_OK, or TOOL_FAILED with the message printed. */
+int plan_observe(plan *, const char *formula);
+void observable_notes(const plan *, list *notes);
+/* Watches a run; NULL where none is asked for, which is allowed below. */
+typedef struct observable observable;
+observable *observable_new(const plan *);
+void observable_free(observable *);
+int observable_observe(void *, size_t step, double t, const double q[],
+                       const double p[]);
+double observable_result(const observable *); /* NAN: unknown */
 
 /* match.c: the dt with which the row costs as much as verlet with its dt, where
    the plan asks for that. */

@@ -160,6 +160,8 @@ static const char *option_of(const options *o, const char *text,
                              size_t length) {
     if (is_text(o->transform, text, length))
         return "--transform";
+    if (is_text(o->observable, text, length))
+        return "--observable";
     for (size_t i = 0; i < o->settings.count; i++) {
         const char *one = o->settings.item[i];
         if (is_text(one + 1, text, length))
@@ -229,6 +231,8 @@ static int read(nevh_scene *scene, const options *o) {
         if (assign(scene, o, o->settings.item[i]))
             return TOOL_USAGE;
     if (o->transform && nevh_scene_set_transform(scene, o->transform))
+        return scene_report(scene, o);
+    if (o->observable && nevh_scene_set_judged(scene, o->observable))
         return scene_report(scene, o);
     return nevh_scene_system(scene) ? TOOL_OK : scene_report(scene, o);
 }

@@ -32,7 +32,7 @@ static double *ordered(const double numbers[], size_t count) {
 search search_begin(const plan *p, const options *o, double budget) {
     search s = {.plan = *p,
                 .repeats = o->repeats,
-                .by_state = o->by_state,
+                .by_state = o->by_state || o->observable,
                 .quiet = o->quiet,
                 .budget = budget,
                 .started = cpu_seconds(),
@@ -46,6 +46,12 @@ search search_begin(const plan *p, const options *o, double budget) {
         s.landing = search_longest_dt(p);
     }
     return s;
+}
+
+const char *search_error(const search *s) {
+    return !s->by_state         ? "energy"
+           : s->plan.observable ? "observable"
+                                : "state";
 }
 
 /* Where a second is worth less work than anybody expects it ends, too. */

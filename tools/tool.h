@@ -143,12 +143,13 @@ typedef struct {
     double *tolerance;
     size_t tolerances;
     const char *t_end; /* a formula; NULL: the scene's */
-    double gradient_step, energy_error, state_error; /* 0: not given */
-    size_t every, samples, repeats;                  /* 0: not given */
+    double gradient_step, energy_error, state_error, error; /* 0: not given */
+    size_t every, samples, repeats;                         /* 0: not given */
     table_format format;
     matching match;
     plot_kind plot_kind;
-    const char *file, *plot, *plot_script, *transform, *resume, *from;
+    const char *file, *plot, *plot_script, *transform, *resume, *from,
+        *observable;
     const char *columns; /* NULL: not given */
     bool formatted;      /* --format was given */
     bool quiet, portable, all, by_state, diagnostics, impact, allow_code;

@@ -179,6 +179,19 @@ NEVH_API int nevh_scene_shown_values(nevh_scene *, nevh_shown, double t,
                                      const double q[], const double p[],
                                      double values[]);
 
+/* One formula more, given from outside, in the names of the scene: what a run is
+   judged by.  It reads t, coordinates, momenta, velocities, definitions and
+   observables, as [observables] may.
+   returns  NEVH_OK; NEVH_EINVAL when it is wrong (the message shows where):
+            then the one before stays; NEVH_ENOMEM; the status of a scene that
+            was not read
+   cost     of setting: parsing; of the first value: making its tape */
+NEVH_API int nevh_scene_set_judged(nevh_scene *, const char *formula);
+/* Its value at a state, n coordinates and momenta; NAN outside of a function's
+   domain, and where none was given. */
+NEVH_API int nevh_scene_judged_value(nevh_scene *, double t, const double q[],
+                                     const double p[], double *value);
+
 /* The period of coordinate k; 0 where none is declared. */
 NEVH_API double nevh_scene_period(const nevh_scene *, size_t k);
 

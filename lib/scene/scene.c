@@ -268,6 +268,18 @@ int nevh_scene_set_transform(nevh_scene *s, const char *formula) {
     return NEVH_OK;
 }
 
+int nevh_scene_set_judged(nevh_scene *s, const char *formula) {
+    nevh__formula judged;
+    if (!nevh__scene_begin(s))
+        return s->status;
+    const nevh__piece *piece = new_piece(s, formula);
+    if (!piece || !nevh__formula_check(s, s->model, piece, &judged))
+        return s->status;
+    s->judged = piece;
+    s->model->judged = judged;
+    return NEVH_OK;
+}
+
 int nevh_scene_enable(nevh_scene *s, const char *effect, bool on) {
     if (!nevh__scene_begin(s))
         return s->status;

@@ -114,6 +114,7 @@ typedef struct {
     nevh__drawn *drawn;
     size_t n_drawn;
     nevh__stop stop;
+    nevh__formula judged; /* where the scene has one, from outside */
     nevh__owned owned_shown;
     double *velocities, *velocity_room; /* n; NULL until asked for */
 } nevh__model;
@@ -137,6 +138,7 @@ struct nevh_scene {
     nevh__statement **starts; /* from outside, the newest last */
     size_t n_starts;
     const nevh__piece *transform; /* from outside; NULL: the scene's */
+    const nevh__piece *judged;    /* from outside; NULL: none */
     nevh__model *model;
     int status;
     char message[2000];

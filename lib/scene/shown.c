@@ -158,6 +158,7 @@ static bool add_drawn(nevh_scene *s, nevh__model *m,
 bool nevh__model_shown(nevh_scene *s, nevh__model *m) {
     return nevh__scene_each(s, m, NEVH__INVARIANTS, add_invariant) &&
            nevh__scene_each(s, m, NEVH__PICTURE, add_drawn) &&
+           (!s->judged || nevh__formula_check(s, m, s->judged, &m->judged)) &&
            nevh__model_crossings(s, m);
 }
 

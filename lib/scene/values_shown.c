@@ -1,6 +1,7 @@
 /* nevh: what a scene shows, draws, monitors and stops at.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/scene_private.h"
+#include <math.h>
 
 /* An invariant that an effect breaks is not there while that is on. */
 static bool is_there(const nevh_scene *s, const nevh__item *item) {
@@ -51,6 +52,15 @@ int nevh_scene_shown_values(nevh_scene *s, nevh_shown which, double t,
             !nevh__formula_value(s, &all->items[k].formula, &at, &values[i++]))
             return s->status;
     return NEVH_OK;
+}
+
+int nevh_scene_judged_value(nevh_scene *s, double t, const double q[],
+                            const double p[], double *value) {
+    nevh__state at = {t, q, p, false};
+    *value = NAN;
+    if (nevh__scene_begin(s) && s->judged)
+        nevh__formula_value(s, &s->model->judged, &at, value);
+    return s->status;
 }
 
 double nevh_scene_period(const nevh_scene *s, size_t k) {
