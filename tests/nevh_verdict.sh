@@ -30,8 +30,8 @@ verdicts gauss6=bounded rk4=drifts
 # Passages of the pericentre; energy that goes from mode to mode; chaos.
 compares earth-halley --dt 0.05 --t-end 1355.4 \
     --integrators lobatto4,mclachlan-atela4,blanes-moan4,gauss6,rk4
-verdicts lobatto4=bounded mclachlan-atela4=bounded blanes-moan4=bounded \
-    gauss6=bounded rk4=unstable
+verdicts 'lobatto4=(bounded|random-walk)' mclachlan-atela4=bounded \
+    blanes-moan4=bounded gauss6=bounded rk4=unstable
 compares fput --integrators midpoint,rk4 --dt 0.78431 --t-end 198
 verdicts midpoint=bounded rk4=drifts
 compares fput-1000 --integrators midpoint --dt 0.23041 --t-end 50

@@ -5,10 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Lengths of the run: the least that is worth it, and the most. */
-static const double least = 4, most = 32;
-/* What following may take, as row_work counts, where the least takes less. */
-static const double allowed = 1;
+/* Lengths of the run: the most, and what is worth it at least. */
+static const double most = 32, least = 4;
+/* What following may take, as row_work counts.  A run that leaves no room for
+   the least is long as it is. */
+static const double allowed = 8;
 
 typedef struct {
     nevh_energy *energy;
@@ -31,23 +32,36 @@ static int ask(void *data, size_t step, double t, const double q[],
 
 static double lengths(const plan *p, const row *r) {
     double once = row_work(p, r->scheme, &r->counts, r->steps);
-    double times = once > 0 ? allowed / once : most;
-    return exp2(floor(log2(fmin(most, fmax(least, times)))));
+    double times = once > 0 ? fmin(most, allowed / once) : most;
+    return times < least ? 1 : exp2(floor(log2(times)));
 }
 
 /* From the start, since the orbit is the same again. */
-static void run(const plan *p, const row *r, nevh_stepper *s, follower *f,
-                double times) {
+static int run(const plan *p, const row *r, nevh_stepper *s, follower *f,
+               double times) {
     double *q = tool_allocate(p->n, sizeof *q), stopped;
     double *m = tool_allocate(p->n, sizeof *m);
     plan longer = *p;
     longer.t_end = f->start + times * f->span;
     memcpy(q, p->q, p->n * sizeof *q);
     memcpy(m, p->p, p->n * sizeof *m);
-    plan_run(&longer, s, r->step, q, m, &(nevh_observer){ask, f, 1}, 1,
-             &stopped);
+    int status = plan_run(&longer, s, r->step, q, m,
+                          &(nevh_observer){ask, f, 1}, 1, &stopped);
     free(q);
     free(m);
+    return status;
+}
+
+/* What is left open is judged by as much as was seen: there is no more. */
+static void end(follower *f, int status) {
+    if (f->verdict != NEVH_UNDECIDED)
+        return;
+    f->report = nevh_energy_result(f->energy, 0);
+    bool failed = status != NEVH_OK && status != NEVH_STOPPED;
+    if (failed && !(f->report.max <= f->report.limit))
+        f->verdict = NEVH_UNSTABLE;
+    else
+        f->verdict = nevh_energy_verdict(&f->report, INFINITY);
 }
 
 bool row_drifts(const row *r) {
@@ -57,18 +71,23 @@ bool row_drifts(const row *r) {
 }
 
 void row_follow(const plan *p, row *r) {
-    double start = p->run->t_start;
+    double start = p->run->t_start, times;
     if (!r->ran || r->energy.verdict != NEVH_UNDECIDED || isfinite(r->stopped))
         return;
+    times = lengths(p, r);
+    if (times < least) {
+        r->energy.verdict = nevh_energy_verdict(&r->energy, INFINITY);
+        return;
+    }
     nevh_stepper *s = row_stepper(p, r, p->balance);
     follower f = {.energy = row_energy(p, r, s),
                   .start = start,
                   .span = r->t_end - start,
                   .times = 2,
                   .verdict = NEVH_UNDECIDED};
-    run(p, r, s, &f, lengths(p, r));
+    end(&f, run(p, r, s, &f, times));
     r->energy.verdict = f.verdict;
-    r->followed = f.times / 2;
+    r->followed = f.report.span / f.span;
     r->longer = f.report;
     nevh_energy_free(f.energy);
     row_shelve(p, r, p->balance, s);

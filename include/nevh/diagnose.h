@@ -101,26 +101,31 @@ typedef struct {
     double rate[3];  /* the power of t with which the largest |error| grows:
                         from the second quarter to the second half of the
                         run, and in the same way of half and a quarter of it */
+    double early;    /* largest |error| in the first eighth */
     double least;    /* smallest |error| in the last fifth */
     bool gone;       /* no error of the last fifth comes near one of the first
                         fifth */
 } nevh_energy_report;
 
 /* The verdict on a run, from the report on it, or on a run of the same steps
-   that is `times` as long and begins alike.
+   that is `times` as long and begins alike; INFINITY: there will be none that
+   is longer.
 
-   UNSTABLE   max > limit, and the error grows, or stays above all through the
-              last fifth, or theory LOSES
-   RANDOM_WALK, BOUNDED  max at rounding: never a drift
-   theory LOSES: DRIFTS where the slope is above four times its error, or the
-              error is gone for good
-   KEEPS, OPEN: BOUNDED where the last fifth is at most twice the first; once
-              times >= 4 also where growth has nearly ended, DRIFTS along a line
-              that lasts (of KEEPS, one that the gradients may bring),
-              RANDOM_WALK where growth is slower (of KEEPS, beyond what the
-              gradients bring, where it has gone on for long)
-   NONE:      as OPEN, but it takes the run for long enough
-   UNDECIDED  otherwise: of a run that is longer one may ask again
+   max > limit   UNSTABLE for theory LOSES, or beyond all measure; else, once
+                 times >= 16, where the error grows, or stays above through the
+                 last fifth; else BOUNDED
+   max at rounding: BOUNDED, or where it grows RANDOM_WALK, once times >= 16;
+                 never DRIFTS
+   LOSES         DRIFTS where the slope is above four times its error, or the
+                 error never comes back
+   KEEPS, OPEN   BOUNDED where the last fifth is at most twice the first, or,
+                 once times >= 4, where growth has nearly ended; of errors above
+                 3 % of the limit, once times >= 8.  Once times >= 16, DRIFTS
+                 along a line that lasts (of KEEPS, one that the gradients may
+                 bring), RANDOM_WALK where growth is slower and lasts
+   NONE          BOUNDED as for OPEN, DRIFTS along a line, else RANDOM_WALK, of
+                 the run as it is
+   UNDECIDED     otherwise: a longer run may tell
 
    Thread-safe. */
 NEVH_API nevh_verdict nevh_energy_verdict(const nevh_energy_report *,

@@ -121,15 +121,17 @@ int nevh_energy_follow(nevh_energy *e, const nevh_stepper *s) {
 static nevh_theory theory_of(const nevh_stepper *s) {
     const nevh_integrator *scheme = s->work.integrator;
     const nevh_system *system = s->work.system;
+    bool friction = nevh_system_friction(system, NULL);
+    bool autonomous = nevh_system_traits(system) & NEVH_AUTONOMOUS;
     nevh_claim symplectic = nevh_integrator_symplectic(scheme);
     bool keeps = symplectic == NEVH_YES || symplectic == NEVH_EXTENDED ||
                  nevh_integrator_preserves_energy(scheme) == NEVH_YES;
     if (!keeps && nevh_integrator_symmetric(scheme) == NEVH_NO)
         return NEVH_THEORY_LOSES;
-    if (!keeps || nevh_system_friction(system, NULL) ||
-        !(nevh_system_traits(system) & NEVH_AUTONOMOUS))
-        return NEVH_THEORY_OPEN;
-    return NEVH_THEORY_KEEPS;
+    if (friction && !autonomous) /* which takes energy for ever */
+        return NEVH_THEORY_LOSES;
+    return keeps && autonomous && !friction ? NEVH_THEORY_KEEPS
+                                            : NEVH_THEORY_OPEN;
 }
 
 /* How far rounding moves derivatives by differences, and how far these are

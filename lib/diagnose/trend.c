@@ -147,6 +147,7 @@ void nevh__trend_report(const nevh__trend *s, nevh_energy_report *r) {
     fit_bins(s, r);
     r->first_fifth = largest(s, 0, fifth);
     r->last_fifth = largest(s, s->bins - fifth, s->bins);
+    r->early = largest(s, 0, s->bins < 8 ? 1 : s->bins / 8);
     for (size_t i = 0, bins = s->bins; i < 3; i++, bins /= 2)
         r->rate[i] = rate(s, bins);
     r->span = fabs(s->last_t - s->first_t);

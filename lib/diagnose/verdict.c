@@ -6,9 +6,15 @@
 enum { FEWEST = 12 };                    /* errors that a rule is made for */
 static const double growth_allowed = 2;  /* of the last fifth to the first */
 static const double significant = 4;     /* of a slope, its own errors */
-static const double confirmed = 4;       /* lengths of the run */
 static const double nearly_ended = 0.3;  /* a power of t */
 static const double along_a_line = 0.75; /* likewise */
+static const double lasting =
+    0.3; /* of the largest error: is never made good */
+/* Of the limit: above, steps may not resolve the orbit. */
+static const double coarse = 0.03;
+/* Lengths of the run that confirm: that growth has ended, that coarse steps
+   keep the energy, that growth lasts. */
+static const double ended = 4, kept = 8, lasted = 16;
 
 static bool is_level(const nevh_energy_report *r) {
     return r->last_fifth <= growth_allowed * r->first_fifth;
@@ -24,64 +30,93 @@ static bool is_line(const nevh_energy_report *r) {
     return has_slope(r) && fabs(r->drift) * r->span > r->max / 2;
 }
 
+/* Neither larger than early on, by more than that, nor about to grow. */
+static bool is_flat(const nevh_energy_report *r, double allowed) {
+    double power = log2(allowed) / 3;
+    bool saturates = r->rate[0] <= power && r->rate[1] <= power;
+    return r->max <= allowed * r->early ||
+           (saturates && r->last_fifth <= allowed * r->first_fifth);
+}
+
+/* An error that large comes back where the orbit is still of use. */
 static nevh_verdict judge_large(const nevh_energy_report *r, double times) {
-    bool alone = r->theory == NEVH_THEORY_NONE;
-    bool grows = !is_level(r);
-    if (!isfinite(r->max) || r->least > r->limit ||
-        (grows && r->max > 10 * r->limit) || r->theory == NEVH_THEORY_LOSES)
+    static const double hopeless = 1e6, much = 10;
+    bool returns = r->least <= lasting * r->max;
+    bool huge = r->max > much * r->limit;
+    if (!(r->max <= hopeless * r->limit) || r->theory == NEVH_THEORY_LOSES)
         return NEVH_UNSTABLE;
-    if (!alone && times < confirmed)
+    if (times < (huge ? 2 * lasted : lasted))
         return NEVH_UNDECIDED;
-    return grows ? NEVH_UNSTABLE : NEVH_BOUNDED;
+    if (returns && (huge ? r->max <= 1.05 * r->early : is_flat(r, 1.25)))
+        return NEVH_BOUNDED;
+    return returns && is_flat(r, 1.25) ? NEVH_UNDECIDED : NEVH_UNSTABLE;
 }
 
 static nevh_verdict judge_rounding(const nevh_energy_report *r, double times) {
     bool loses = r->theory == NEVH_THEORY_LOSES && is_line(r);
-    bool alone = r->theory == NEVH_THEORY_NONE;
     if (is_level(r) && !loses)
         return NEVH_BOUNDED;
-    return loses || (!alone && times < confirmed) ? NEVH_UNDECIDED
-                                                  : NEVH_RANDOM_WALK;
+    return loses || times < lasted ? NEVH_UNDECIDED : NEVH_RANDOM_WALK;
 }
 
 static nevh_verdict judge_loss(const nevh_energy_report *r) {
-    return has_slope(r) || r->gone ? NEVH_DRIFTS : NEVH_UNDECIDED;
+    bool gone = r->gone || r->least > lasting * r->max;
+    return has_slope(r) || gone ? NEVH_DRIFTS : NEVH_UNDECIDED;
 }
 
 static nevh_verdict judge_growth(const nevh_energy_report *r) {
     double slowest = fmin(r->rate[0], fmin(r->rate[1], r->rate[2]));
     double fastest = fmax(r->rate[0], fmax(r->rate[1], r->rate[2]));
+    bool noise = r->max <= 100 * r->rounding;
     bool keeps = r->theory == NEVH_THEORY_KEEPS && r->max > r->gradient;
     bool line = is_line(r) && fmin(r->rate[0], r->rate[1]) > along_a_line;
-    if (r->rate[0] < nearly_ended)
-        return NEVH_BOUNDED;
     if (keeps && (slowest < nearly_ended || fastest > along_a_line))
         return NEVH_UNDECIDED;
-    return line ? NEVH_DRIFTS : NEVH_RANDOM_WALK;
+    return line && !noise ? NEVH_DRIFTS : NEVH_RANDOM_WALK;
+}
+
+/* Lengths of the run that it takes before an error that does not grow can be
+   believed: more of one that is large, or of few steps. */
+static double needed(const nevh_energy_report *r, double times) {
+    double few = r->theory == NEVH_THEORY_KEEPS ? 200 : 2000;
+    if (r->max > coarse * r->limit)
+        return kept;
+    if ((double)r->samples < few * fmin(times, kept))
+        return kept;
+    return is_level(r) ? 1 : ended;
 }
 
 static nevh_verdict judge_kept(const nevh_energy_report *r, double times) {
-    bool alone = r->theory == NEVH_THEORY_NONE;
-    if (is_level(r) && (r->theory == NEVH_THEORY_KEEPS || !is_line(r)))
-        return NEVH_BOUNDED;
-    if (!alone && times < confirmed)
+    bool keeps = r->theory == NEVH_THEORY_KEEPS;
+    bool line = !keeps && is_line(r);
+    bool large = r->max > coarse * r->limit;
+    bool level = large || !keeps ? is_flat(r, large ? 1.25 : growth_allowed)
+                                 : is_level(r);
+    bool ending = !large && keeps && r->rate[0] < nearly_ended;
+    if (!line && (level || ending))
+        return times < needed(r, times) ? NEVH_UNDECIDED : NEVH_BOUNDED;
+    if (times < lasted || (!line && is_level(r)))
         return NEVH_UNDECIDED;
+    return is_level(r) ? NEVH_DRIFTS : judge_growth(r);
+}
+
+/* By the errors alone. */
+static nevh_verdict judge_alone(const nevh_energy_report *r) {
     if (is_level(r))
-        return NEVH_DRIFTS;
-    if (alone)
-        return r->straightness >= 0.8 ? NEVH_DRIFTS : NEVH_RANDOM_WALK;
-    return judge_growth(r);
+        return is_line(r) ? NEVH_DRIFTS : NEVH_BOUNDED;
+    return r->straightness >= 0.8 ? NEVH_DRIFTS : NEVH_RANDOM_WALK;
 }
 
 nevh_verdict nevh_energy_verdict(const nevh_energy_report *r, double times) {
-    if (!(r->max <= r->limit)) {
-        nevh_verdict verdict = judge_large(r, times);
-        if (verdict != NEVH_BOUNDED)
-            return verdict;
-    }
+    if (r->theory == NEVH_THEORY_NONE)
+        times = INFINITY;
     if (r->max <= r->rounding)
         return judge_rounding(r, times);
-    if (r->samples < FEWEST && r->theory != NEVH_THEORY_NONE)
+    if (!(r->max <= r->limit))
+        return judge_large(r, times);
+    if (r->theory == NEVH_THEORY_NONE)
+        return judge_alone(r);
+    if (r->samples < FEWEST)
         return NEVH_UNDECIDED;
     return r->theory == NEVH_THEORY_LOSES ? judge_loss(r)
                                           : judge_kept(r, times);
