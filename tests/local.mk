@@ -48,6 +48,7 @@ suites = \
 	tests/check_own_time \
 	tests/check_eccentric \
 	tests/check_energy \
+	tests/check_verdict \
 	tests/check_grid \
 	tests/check_friction \
 	tests/check_damped_orbits \

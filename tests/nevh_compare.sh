@@ -206,7 +206,7 @@ exits 0 compare pendulum --integrators verlet,rk4 --gradient central2,exact \
     --dt 0.5,0.1 --t-end 200
 test $(grep -c '^verlet keeps the energy bounded at dt = 0\.1\.$' $work/out) = 1 ||
     fails "says the same twice"
-has '^rk4 with exact at dt = 0\.1 loses energy steadily'
+has '^rk4 with the exact gradient at dt = 0\.1 s loses energy steadily'
 has '^Warning: a smaller dt changes the verdict of verlet: '
 test $(grep -c '^Warning' $work/out) = 1 || fails "warns twice"
 exits 0 compare damped-driven-pendulum --integrators rk4 --t-end 500

@@ -69,4 +69,45 @@ scene 'x = 1' 'K = p_x^2/2\nV = -x^2/2' 't_end = 60\ndt = 0.1' away
 compares $work/away.nevh --integrators gauss8 --gradient exact
 verdicts 'gauss8=(bounded|random-walk)'
 
+# Steps that are advised are confirmed by the next run, and are not far too
+# short.
+error_at() {
+    exits 0 compare pendulum --integrators $1 --dt $2 --t-end $3 --format csv \
+        --repeat 1
+    grep -v '^#' $work/out | tail -n 1 | cut -d, -f9
+}
+for scheme in verlet rk4 euler; do
+    end=20
+    test $scheme = euler && end=1
+    exits 0 compare pendulum --integrators $scheme --dt 0.5 --t-end $end
+    dt=$(tr '\n' ' ' <$work/out |
+        sed -n 's/.*below 1 % until t = [0-9]* s with  *dt =  *\([0-9.e-]*\) s.*/\1/p')
+    longer=$(awk "BEGIN { print 1.5 * ${dt:-0} }")
+    { test -n "$dt" && error_at $scheme $dt $end && error_at $scheme $longer $end; } \
+        >$work/errors || fails "advises no dt"
+    awk 'NR == 1 && $1 > 0.01 || NR == 2 && $1 < 0.01 { exit 1 }
+        END { exit NR != 2 }' $work/errors ||
+        { fails "advises dt = $dt"; cat $work/errors; }
+done
+# Of a thousand seconds of euler that cannot be tried.
+exits 0 compare pendulum --integrators euler --dt 0.1,0.05
+tr '\n' ' ' <$work/out | grep -Eq \
+    'euler gains energy at every dt, and +would .* only with +dt below about +[5-7]e-07 s' ||
+    { fails "has no dt for euler"; cat $work/out; }
+lacks 'stable up to 0\.00'
+
+# Orders are not read from rounding.
+exits 0 compare pendulum --integrators gauss8 --dt 0.02,0.01 --t-end 100 \
+    --format csv --repeat 1
+grep -v '^#' $work/out | tail -n 1 | cut -d, -f19 | grep -q . &&
+    fails "sees an order in rounding"
+
+# What a longer run is needed for is said, and that a short one is followed.
+exits 0 compare pendulum --integrators gauss16 --dt 0.8 --t-end 100
+has '^The run is short for a verdict on gauss16: followed further'
+has '^gauss16 keeps the energy bounded'
+exits 0 compare pendulum --integrators rk4 --dt 0.05 --t-end 10
+lacks 'keeps? the energy bounded'
+has 'rk4 at dt = 0\.05 s (loses|gains) energy'
+
 exit $status

@@ -119,7 +119,9 @@ static void show_numbers(table *t, const plan *p, const row *r) {
     double span = r->t_end - p->run->t_start;
     table_shown(t, "%.1e", r->energy.max);
     if (r->energy.verdict == NEVH_DRIFTS || r->energy.verdict == NEVH_UNSTABLE)
-        table_shown(t, "%+.1e", r->energy.drift * span);
+        table_shown(t, "%+.1e",
+                    (r->followed > 0 ? r->longer.drift : r->energy.drift) *
+                        span);
     else
         table_shown(t, "-");
     state_show(t, p, r);
@@ -216,6 +218,8 @@ static page make_page(const options *o, const plan *p, const row_list *r) {
     verdict_words(p, r->row, r->count, &result.after);
     if (is_table)
         stability_words(p, r->row, r->count, &result.after);
+    if (is_table)
+        remedy_words(p, r->row, r->count, &result.after);
     if (is_table)
         list_reasons(r, &result.after);
     return result;

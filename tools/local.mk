@@ -53,6 +53,7 @@ tools_nevh_SOURCES = \
 	tools/trajectory.c \
 	tools/run.c \
 	tools/stability.c \
+	tools/remedy.c \
 	tools/preflight.c \
 	tools/hard_private.h \
 	tools/hard_cases.c \

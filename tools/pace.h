@@ -11,6 +11,7 @@
 typedef struct {
     nevh_rates *rates;
     double frequency, t;
+    double turning, turning_at; /* of frequencies alone */
 } pace;
 /* A nevh_observe_fn; data is the pace. */
 int pace_observe(void *, size_t step, double t, const double q[],
@@ -23,12 +24,16 @@ pace stability_pace(const nevh_system *, const nevh_integrator *,
                     double t_end);
 /* Whether h w = x is beyond what a scheme of that limit bears. */
 bool stability_exceeded(const nevh_integrator *, double limit, double x);
-/* The likely cause of trouble at that pace, and a step or schemes to take; NULL
-   where none is known. */
+/* The likely cause of trouble at that pace; NULL where none is known. */
 char *stability_cause(const nevh_integrator *, double limit, double dt,
                       const pace *);
 /* The same of each unstable row of compare. */
 void stability_words(const plan *, const row rows[], size_t count, list *words);
+
+/* remedy.c: steps with which unstable and drifting rows keep an error of 1 % to
+   the end of the run.
+   cost  a few seconds an integrator at most, as row_work counts */
+void remedy_words(const plan *, const row rows[], size_t count, list *words);
 
 /* preflight.c: what a short flight ahead says of a run. */
 typedef enum {

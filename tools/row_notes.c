@@ -7,7 +7,7 @@
 
 static bool measures_order(const row *r) {
     return r->ran && r->energy.verdict != NEVH_UNSTABLE && r->tolerance == 0 &&
-           r->energy.max > 1e-13;
+           r->energy.max > fmax(1e-13, 10 * r->energy.rounding);
 }
 
 /* Steps so close that their errors tell of their phases, not of the order. */

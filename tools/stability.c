@@ -18,16 +18,12 @@ int pace_observe(void *data, size_t step, double t, const double q[],
     (void)step;
     if (nevh_rates_at(fastest->rates, t, q, p, &frequency, &growth))
         return NEVH_OK;
-    frequency = fmax(frequency, growth); /* of whatever kind */
-    if (frequency > fastest->frequency)
-        fastest->frequency = frequency, fastest->t = t;
+    double rate = fmax(frequency, growth); /* of whatever kind */
+    if (rate > fastest->frequency)
+        fastest->frequency = rate, fastest->t = t;
+    if (frequency > fastest->turning)
+        fastest->turning = frequency, fastest->turning_at = t;
     return NEVH_OK;
-}
-
-/* Half of it, in two digits. */
-static double safe_step(double limit, double frequency) {
-    double h = limit / frequency / 2, unit = pow(10, floor(log10(h)) - 1);
-    return floor(h / unit) * unit;
 }
 
 /* The turn of a step on an oscillator: the angle by which steps of h omega = x
@@ -45,32 +41,33 @@ bool stability_exceeded(const nevh_integrator *scheme, double limit, double x) {
     return x > (extended ? limit - 1. / 32 : limit);
 }
 
+/* Below, a limit is where growth is first seen: there is none. */
+static const double no_limit = 0.01;
+
+static char *cause_at(const nevh_integrator *scheme, double limit, double x,
+                      const char *where) {
+    const char *name = nevh_integrator_name(scheme);
+    bool adds_up = nevh_integrator_symplectic(scheme) == NEVH_NO;
+    if (limit > no_limit && stability_exceeded(scheme, limit, x))
+        return text_print("%s: %s is stable up to %.3g", where, name, limit);
+    if (x > 1)
+        return text_print("%s: a turn has %.2g steps", where, 2 * M_PI / x);
+    return adds_up ? text_print("%s is not symplectic, and errors add up at "
+                                "h w = %.3g",
+                                name, x)
+                   : NULL;
+}
+
 char *stability_cause(const nevh_integrator *scheme, double limit, double dt,
                       const pace *fastest) {
-    double w = fastest->frequency;
-    double x = fabs(dt) * w;
-    const char *name = nevh_integrator_name(scheme);
+    double w = fastest->turning, x = fabs(dt) * w;
     const char *turn = resonance(scheme, x);
     if (!(x > 0) || !isfinite(x))
         return NULL;
     char *where = text_print("h w = %.3g near t = %.4g, where the orbit is "
                              "fastest (w = %.3g)",
-                             x, fastest->t, w);
-    char *text = NULL;
-    if (limit > 0 && stability_exceeded(scheme, limit, x))
-        text = text_print("%s, and %s is stable up to %.3g: take dt below "
-                          "%.2g%s",
-                          where, name, limit, safe_step(fmin(limit, 2), w),
-                          nevh_integrator_symplectic(scheme) == NEVH_YES
-                              ? ", or midpoint or gauss4, which have no limit"
-                              : ", or a symplectic scheme");
-    else if (x > 1)
-        text = text_print("%s: a turn has %.2g steps; take dt below %.2g",
-                          where, 2 * M_PI / x, safe_step(1, w));
-    else if (nevh_integrator_symplectic(scheme) == NEVH_NO)
-        text = text_print("%s is not symplectic, and errors add up at h w = "
-                          "%.3g; take dt below %.2g, or a symplectic scheme",
-                          name, x, safe_step(x, w));
+                             x, fastest->turning_at, w);
+    char *text = cause_at(scheme, limit, x, where);
     if (turn && (x <= limit)) {
         char *longer =
             text_print("%s%s%s steps make a turn: a resonance",
@@ -95,6 +92,21 @@ static int stop_at_explosion(void *data, size_t step, double t,
     return e->unstable ? (int)NEVH_STOPPED : status;
 }
 
+/* More often at the start, since a run may end soon. */
+typedef struct {
+    pace *fastest;
+    size_t next;
+} start;
+
+static int observe_early(void *data, size_t step, double t, const double q[],
+                         const double p[]) {
+    start *s = data;
+    if (step < s->next)
+        return NEVH_OK;
+    s->next = step + step / 4 + 1;
+    return pace_observe(s->fastest, step, t, q, p);
+}
+
 pace stability_pace(const nevh_system *system, const nevh_integrator *scheme,
                     const nevh_options *o, double scale, double dt,
                     double t_end) {
@@ -106,6 +118,7 @@ pace stability_pace(const nevh_system *system, const nevh_integrator *scheme,
     own.gradient_step = 0;
     explosion e = {.energy = nevh_energy_new(system, o)};
     pace fastest = {.rates = nevh_rates_new(system, &own)};
+    start early = {&fastest, 1};
     size_t every = (size_t)fmin(1e9, fabs((t_end - o->t) / dt) / SAMPLES);
     if (o->balance)
         nevh_energy_follow(e.energy, s);
@@ -115,8 +128,9 @@ pace stability_pace(const nevh_system *system, const nevh_integrator *scheme,
         q[k] = o->q[k], p[k] = o->p[k];
     nevh_run_until(s, o->t, dt, t_end, q, p,
                    (nevh_observer[]){{pace_observe, &fastest, every},
+                                     {observe_early, &early, 1},
                                      {stop_at_explosion, &e, 1}},
-                   2);
+                   3);
     nevh_rates_free(fastest.rates);
     nevh_energy_free(e.energy);
     nevh_stepper_free(s);

@@ -49,9 +49,9 @@ static bool differs(const row rows[], size_t count, const row *r) {
 /* "dt = 0.1", and the gradient where others have another verdict there. */
 static char *place_of(const row rows[], size_t count, const row *r) {
     bool adapts = r->tolerance > 0, differ = differs(rows, count, r);
-    return text_print("%s = %.4g%s%s", adapts ? "tolerance" : "dt",
-                      adapts ? r->tolerance : r->dt, differ ? " with " : "",
-                      differ ? r->gradient : "");
+    return text_print("%s = %.4g%s%s%s", adapts ? "tolerance" : "dt",
+                      adapts ? r->tolerance : r->dt, differ ? " with the " : "",
+                      differ ? r->gradient : "", differ ? " gradient" : "");
 }
 
 static bool several_gradients(const row rows[], size_t count) {
@@ -64,8 +64,8 @@ static bool several_gradients(const row rows[], size_t count) {
 /* The integrator, and the gradient where there are several. */
 static char *name_of(const row rows[], size_t count, const row *r) {
     bool several = several_gradients(rows, count);
-    return text_print("%s%s%s", r->integrator, several ? " with " : "",
-                      several ? r->gradient : "");
+    return text_print("%s%s%s%s", r->integrator, several ? " with the " : "",
+                      several ? r->gradient : "", several ? " gradient" : "");
 }
 
 /* The bounded row that a drifting one is to be compared with: symplectic, in
@@ -79,43 +79,139 @@ static const row *bounded_beside(const row rows[], size_t count,
     return NULL;
 }
 
+/* Numbers of a row that its longer run knows better. */
+static const nevh_energy_report *known(const row *r) {
+    return r->followed > 0 ? &r->longer : &r->energy;
+}
+
+static char *unit_of(const plan *p, const char *before) {
+    const char *unit = nevh_scene_label(p->scene, "t");
+    return text_print("%s%s", *unit ? before : "", unit);
+}
+
 /* When the drifting error passes, or would pass, the bounded one. */
 static void tell_crossing(const plan *p, const row *r, const row *b,
                           const char *text, list *words) {
     static const double long_after = 1e4; /* runs: of no practical meaning */
     double span = r->t_end - p->run->t_start;
-    double passes = b ? b->energy.max / fabs(r->energy.drift) : 0;
+    double passes = b ? b->energy.max / fabs(known(r)->drift) : 0;
     double t = p->run->t_start + passes;
+    char *unit = unit_of(p, " ");
     if (!b)
         list_print(words, "%s.", text);
+    else if (passes < fabs(r->step))
+        list_print(words, "%s; it is above %s's %.1e from the first step on.",
+                   text, b->integrator, b->energy.max);
     else if (passes < span)
-        list_print(words, "%s; it passed %s's %.1e near t = %.4g.", text,
-                   b->integrator, b->energy.max, t);
+        list_print(words, "%s; it passed %s's %.1e near t = %.4g%s.", text,
+                   b->integrator, b->energy.max, t, unit);
     else if (passes < long_after * span)
         list_print(words,
                    "%s; still below %s's %.1e, which it would pass near t = "
-                   "%.4g.",
-                   text, b->integrator, b->energy.max, t);
+                   "%.4g%s.",
+                   text, b->integrator, b->energy.max, t, unit);
     else
         list_print(words, "%s; that is far below %s's %.1e.", text,
                    b->integrator, b->energy.max);
+    free(unit);
+}
+
+/* Whether the line is most of the error; else the loss was made at once. */
+static bool is_steady(const nevh_energy_report *e) {
+    return fabs(e->drift) > 4 * e->drift_error &&
+           (fabs(e->drift) * e->span > e->max / 2 || e->least < e->max / 3);
 }
 
 static void tell_drift(const plan *p, const row rows[], size_t count,
                        const row *r, list *words) {
-    const row *b = bounded_beside(rows, count, r);
-    char *name = name_of(rows, count, r);
+    const nevh_energy_report *e = known(r);
+    const char *against = p->balance ? " against the balance" : "";
+    char *name = name_of(rows, count, r), *unit = unit_of(p, " ");
+    char *per = unit_of(p, "/"), *text = NULL;
     double span = r->t_end - p->run->t_start;
-    char *text =
-        text_print("%s at dt = %.4g %s energy steadily%s, %.2g %% of the "
-                   "scale over the run (slope %.3g +- %.1g, R^2 = %.4f)",
-                   name, r->dt, r->energy.drift < 0 ? "loses" : "gains",
-                   p->balance ? " against the balance" : "",
-                   100 * fabs(r->energy.drift) * span, r->energy.drift,
-                   r->energy.drift_error, r->energy.straightness);
-    tell_crossing(p, r, b, text, words);
+    if (is_steady(e)) {
+        text = text_print("%s at dt = %.4g%s %s energy steadily%s, %.2g %% of "
+                          "the scale over the run (slope (%.3g +- %.1g)%s, "
+                          "R^2 = %.4f)",
+                          name, r->dt, unit, e->drift < 0 ? "loses" : "gains",
+                          against, 100 * fabs(e->drift) * span, e->drift,
+                          e->drift_error, per, e->straightness);
+        tell_crossing(p, r, bounded_beside(rows, count, r), text, words);
+    } else
+        list_print(words,
+                   "%s at dt = %.4g%s %s energy for good%s, %.2g %% of the "
+                   "scale by the end of the run.",
+                   name, r->dt, unit, r->energy.final < 0 ? "loses" : "gains",
+                   against, 100 * fabs(r->energy.final));
     free(name);
+    free(unit);
+    free(per);
     free(text);
+}
+
+/* Two digits upwards. */
+static double rounded_up(double x) {
+    double unit = pow(10, floor(log10(x)) - 1);
+    return ceil(x / unit) * unit;
+}
+
+/* A row that even a longer run leaves open. */
+static void tell_open(const plan *p, const row rows[], size_t count,
+                      const row *r, list *words) {
+    double start = p->run->t_start, span = r->t_end - start;
+    double seen = r->followed > 0 ? r->followed : 1;
+    char *name = name_of(rows, count, r), *unit = unit_of(p, " ");
+    char *further = r->followed > 0
+                        ? text_print(", also when followed until t = %.4g%s",
+                                     start + seen * span, unit)
+                        : text_print("%s", "");
+    list_print(words,
+               "%s at dt = %.4g%s: the run is too short to tell what becomes "
+               "of the energy%s; one until t = %g%s may tell.",
+               name, r->dt, unit, further, rounded_up(start + 4 * seen * span),
+               unit);
+    free(name);
+    free(unit);
+    free(further);
+}
+
+/* Errors that do not grow, but are no small part of the energy. */
+static void tell_large(const row rows[], size_t count, list *words) {
+    for (size_t i = 0; i < count; i++) {
+        const row *r = &rows[i];
+        if (!is(r, NEVH_BOUNDED) || !(r->energy.max > 1))
+            continue;
+        char *name = name_of(rows, count, r);
+        list_print(words,
+                   "%s at dt = %.4g: the error is bounded but large, up to "
+                   "%.2g times the energy scale: take a shorter step.",
+                   name, r->dt, r->energy.max);
+        free(name);
+    }
+}
+
+/* Which verdicts are not from the run alone. */
+static void tell_followed(const plan *p, const row rows[], size_t count,
+                          list *words) {
+    list names = {0};
+    double most = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (rows[i].followed <= 0 || is(&rows[i], NEVH_UNDECIDED))
+            continue;
+        most = fmax(most, rows[i].followed);
+        if (!list_has(&names, rows[i].integrator))
+            list_add(&names, rows[i].integrator);
+    }
+    char *joined = list_joined(&names), *unit = unit_of(p, " ");
+    double start = p->run->t_start;
+    if (names.count)
+        list_print(words,
+                   "The run is short for a verdict on %s: followed further, "
+                   "at most until t = %.4g%s.",
+                   joined, start + most * (p->t_end - start), unit);
+    free(joined);
+    free(unit);
+    list_free(&names);
 }
 
 /* Of an integrator with several verdicts, where it has that one. */
@@ -124,8 +220,7 @@ static void tell_some(const row rows[], size_t count, const char *integrator,
     static const char *const text[] = {
         [NEVH_BOUNDED] = "keeps the energy bounded",
         [NEVH_RANDOM_WALK] = "lets the energy wander",
-        [NEVH_UNSTABLE] = "is unstable",
-        [NEVH_UNDECIDED] = "cannot be told yet"};
+        [NEVH_UNSTABLE] = "is unstable"};
     list places = {0};
     for (size_t k = 0; k < count; k++) {
         if (strcmp(rows[k].integrator, integrator) != 0 ||
@@ -146,7 +241,7 @@ static void tell_some(const row rows[], size_t count, const char *integrator,
 /* Row i, where it is the first of its integrator, whose rows differ. */
 static void tell_mixed(const row rows[], size_t count, size_t i, list *words) {
     static const nevh_verdict told[] = {NEVH_BOUNDED, NEVH_RANDOM_WALK,
-                                        NEVH_UNSTABLE, NEVH_UNDECIDED};
+                                        NEVH_UNSTABLE};
     bool first = true;
     for (size_t k = 0; k < i; k++)
         first &= strcmp(rows[k].integrator, rows[i].integrator) != 0;
@@ -203,10 +298,8 @@ static void warn_of_changes(const row rows[], size_t count, list *words) {
 
 void verdict_words(const plan *p, const row rows[], size_t count, list *words) {
     tell_all(rows, count, NEVH_BOUNDED,
-             "keeps the energy bounded: its error is no larger at the end of "
-             "the run than at the beginning.",
-             "keep the energy bounded: their errors are no larger at the end "
-             "of the run than at the beginning.",
+             "keeps the energy bounded: its error does not grow with time.",
+             "keep the energy bounded: their errors do not grow with time.",
              words);
     tell_all(rows, count, NEVH_RANDOM_WALK,
              "lets the energy wander: the error grows, but not along a line.",
@@ -216,16 +309,16 @@ void verdict_words(const plan *p, const row rows[], size_t count, list *words) {
         if (is(&rows[i], NEVH_DRIFTS))
             tell_drift(p, rows, count, &rows[i], words);
     tell_all(rows, count, NEVH_UNSTABLE,
-             "is unstable: its error exceeds the energy itself.",
-             "are unstable: their errors exceed the energy itself.", words);
-    tell_all(rows, count, NEVH_UNDECIDED,
-             "cannot be told yet: the run is too short to say what becomes of "
-             "its energy.",
-             "cannot be told yet: the run is too short to say what becomes of "
-             "their energies.",
+             "is unstable: its error exceeds all energies at the start.",
+             "are unstable: their errors exceed all energies at the start.",
              words);
     for (size_t i = 0; i < count; i++)
         tell_mixed(rows, count, i, words);
+    tell_large(rows, count, words);
+    for (size_t i = 0; i < count; i++)
+        if (is(&rows[i], NEVH_UNDECIDED))
+            tell_open(p, rows, count, &rows[i], words);
+    tell_followed(p, rows, count, words);
     state_words(p, rows, count, words);
     warn_of_changes(rows, count, words);
 }

@@ -1,0 +1,187 @@
+/* nevh tests: the verdict on a run's energy, and the error of its slope.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "driven.h"
+#include "support.h"
+#include <math.h>
+#include <string.h>
+
+static double coordinate(double t, const double q[], const double p[],
+                         const void *params) {
+    (void)t, (void)p, (void)params;
+    return q[0];
+}
+
+static double phase;
+
+/* The report on H0 = 1 with errors from `error`. */
+static nevh_energy_report report_on(double (*error)(double), double end) {
+    enum { SAMPLES = 20000 };
+    nevh_system *s = nevh_system_from(1, coordinate, NULL);
+    nevh_energy *energy = nevh_energy_new(s, NULL);
+    double p = 0;
+    for (size_t i = 0; i <= SAMPLES; i++) {
+        double t = (double)i * end / SAMPLES, q = 1 + (i ? error(t) : 0);
+        ck_assert_int_eq(nevh_energy_observe(energy, i, t, &q, &p), NEVH_OK);
+        ck_assert_double_eq(nevh_energy_error(energy, 0), q - 1);
+    }
+    nevh_energy_report r = nevh_energy_result(energy, 0);
+    nevh_energy_free(energy);
+    nevh_system_free(s);
+    return r;
+}
+
+static double wave(double t) {
+    return 1e-3 * sin(3 * t + phase);
+}
+static double hidden_loss(double t) {
+    return wave(t) - 2e-6 * t;
+}
+static double beat(double t) {
+    return 1e-6 * sin(0.001 * t) * cos(3 * t);
+}
+static double early_loss(double t) {
+    return -0.5 * (1 - exp(-t)) + 1e-3 * cos(3 * t);
+}
+static double rough(double t) {
+    return 2 * (1 - cos(t));
+}
+
+/* Values that are not independent: whatever the phase, and however many periods
+   there are, the slope of a wave is no more than some of its own errors. */
+START_TEST(slope_of_a_wave) {
+    static const double ends[] = {20, 50, 111, 400, 1234, 5000};
+    for (size_t i = 0; i < sizeof ends / sizeof *ends; i++)
+        for (phase = 0; phase < 6; phase += 0.5) {
+            nevh_energy_report r = report_on(wave, ends[i]);
+            ck_assert_msg(fabs(r.drift) < 4 * r.drift_error,
+                          "end %g, phase %g: %.2e +- %.1e", ends[i], phase,
+                          r.drift, r.drift_error);
+        }
+    phase = 0;
+}
+END_TEST
+
+START_TEST(slope_under_a_wave) {
+    nevh_energy_report r = report_on(hidden_loss, 400);
+    ck_assert_double_lt(r.last_fifth, 2 * r.first_fifth);
+    ck_assert_double_gt(fabs(r.drift), 4 * r.drift_error);
+    ck_assert_double_lt(fabs(r.drift + 2e-6), 4 * r.drift_error);
+}
+END_TEST
+
+static nevh_verdict judge(nevh_energy_report r, nevh_theory theory,
+                          double times) {
+    r.theory = theory;
+    return nevh_energy_verdict(&r, times);
+}
+
+/* The same data: what theory expects decides, or asks for more. */
+START_TEST(theories) {
+    nevh_energy_report r = report_on(hidden_loss, 400);
+    ck_assert_int_eq(judge(r, NEVH_THEORY_LOSES, 1), NEVH_DRIFTS);
+    ck_assert_int_eq(judge(r, NEVH_THEORY_KEEPS, 1), NEVH_BOUNDED);
+    r = report_on(beat, 500);
+    ck_assert_int_eq(judge(r, NEVH_THEORY_NONE, 1), r.verdict);
+    ck_assert_int_ne(r.verdict, NEVH_BOUNDED);
+    ck_assert_int_eq(judge(r, NEVH_THEORY_KEEPS, 1), NEVH_UNDECIDED);
+    ck_assert_int_eq(judge(r, NEVH_THEORY_OPEN, 1), NEVH_UNDECIDED);
+    r = report_on(beat, 8000);
+    ck_assert_int_eq(judge(r, NEVH_THEORY_KEEPS, 16), NEVH_BOUNDED);
+    r = report_on(early_loss, 50);
+    ck_assert_int_eq(judge(r, NEVH_THEORY_LOSES, 1), NEVH_DRIFTS);
+    r = report_on(rough, 1000);
+    ck_assert_double_gt(r.max, 3.9);
+    ck_assert_int_eq(judge(r, NEVH_THEORY_KEEPS, 1), NEVH_UNDECIDED);
+    ck_assert_int_eq(judge(r, NEVH_THEORY_KEEPS, 16), NEVH_BOUNDED);
+    ck_assert_int_eq(judge(r, NEVH_THEORY_LOSES, 1), NEVH_UNSTABLE);
+    ck_assert_str_eq(nevh_verdict_name(NEVH_UNDECIDED), "undecided");
+}
+END_TEST
+
+static nevh_theory theory_of(const problem *b, const nevh_integrator *scheme) {
+    nevh_system *s = b->make();
+    nevh_stepper *m = nevh_stepper_new(
+        s, scheme,
+        &(nevh_options){.gradient = nevh_central4, .q = b->q, .p = b->p});
+    nevh_energy *e = nevh_energy_new(s, NULL);
+    state z = start(b);
+    ck_assert_msg(!nevh_energy_expect(e, m), "%s", nevh_energy_message(e));
+    nevh_energy_observe(e, 0, 0, z.q, z.p);
+    nevh_theory theory = nevh_energy_result(e, 0).theory;
+    ck_assert_int_eq(nevh_energy_expect(e, m), NEVH_EINVAL); /* too late */
+    nevh_energy_free(e);
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+    return theory;
+}
+
+START_TEST(what_theory_knows) {
+    ck_assert_int_eq(theory_of(&henon_heiles, nevh_verlet), NEVH_THEORY_KEEPS);
+    ck_assert_int_eq(theory_of(&henon_heiles, nevh_gonzalez),
+                     NEVH_THEORY_KEEPS);
+    ck_assert_int_eq(theory_of(&henon_heiles, nevh_rk4), NEVH_THEORY_LOSES);
+    ck_assert_int_eq(theory_of(&henon_heiles, nevh_euler), NEVH_THEORY_LOSES);
+    ck_assert_int_eq(theory_of(&driven_pendulum, nevh_verlet),
+                     NEVH_THEORY_OPEN);
+    ck_assert_int_eq(theory_of(&driven_pendulum, nevh_rk4), NEVH_THEORY_LOSES);
+}
+END_TEST
+
+/* A stepper that was refused tells nothing. */
+START_TEST(refused) {
+    nevh_system *s = henon_heiles.make();
+    nevh_stepper *m = nevh_stepper_new(s, NULL, NULL);
+    nevh_energy *e = nevh_energy_new(s, NULL);
+    ck_assert_int_eq(nevh_energy_expect(e, m), NEVH_EINVAL);
+    ck_assert_ptr_nonnull(strstr(nevh_energy_message(e), "refused"));
+    nevh_energy_free(e);
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
+/* Energies met far above those at the start: what rounding makes of these is no
+   drift.  H = p^2/2 - x^2/2 from x = 1, by its exact solution, rounded. */
+static double kinetic(double t, const double q[], const double p[],
+                      const double c[], const void *params) {
+    (void)t, (void)q, (void)c, (void)params;
+    return p[0] * p[0] / 2;
+}
+static double hill(double t, const double q[], const double p[],
+                   const double c[], const void *params) {
+    (void)t, (void)p, (void)c, (void)params;
+    return -q[0] * q[0] / 2;
+}
+
+START_TEST(rounding_of_what_is_met) {
+    nevh_system *s = nevh_system_new(1);
+    nevh_system_add(s, &(nevh_term){.np = 1, .value = kinetic, .effect = "K"});
+    nevh_system_add(s, &(nevh_term){.nq = 1, .value = hill, .effect = "V"});
+    nevh_energy *e = nevh_energy_new(s, NULL);
+    for (size_t i = 0; i <= 600; i++) {
+        double t = (double)i / 40, q = cosh(t), p = sinh(t);
+        ck_assert_int_eq(nevh_energy_observe(e, i, t, &q, &p), NEVH_OK);
+    }
+    nevh_energy_report r = nevh_energy_result(e, 0);
+    ck_assert_double_gt(r.max, 1e-5);
+    ck_assert_double_lt(r.max, r.rounding);
+    ck_assert_double_lt(r.rounding, 1e5 * r.max);
+    ck_assert_int_ne(r.verdict, NEVH_DRIFTS);
+    ck_assert_int_ne(r.verdict, NEVH_UNSTABLE);
+    nevh_energy_free(e);
+    nevh_system_free(s);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("verdict");
+    TCase *cases = tcase_create("verdict");
+    tcase_add_test(cases, slope_of_a_wave);
+    tcase_add_test(cases, slope_under_a_wave);
+    tcase_add_test(cases, theories);
+    tcase_add_test(cases, what_theory_knows);
+    tcase_add_test(cases, refused);
+    tcase_add_test(cases, rounding_of_what_is_met);
+    suite_add_tcase(suite, cases);
+    return run_suite(suite);
+}
