@@ -40,8 +40,6 @@ ask() { # SCENE energy|state TARGET
     if test $code = 0; then
         end=$(sed -n 's/^t = \([^ ]*\) \.\.\. \([^ ]*\).*/\1 \2/p' $work |
             awk 'NR == 1 { printf "%.12g", $1 + 3 * ($2 - $1) }')
-        holds=$(awk '$1 == "cheapest" && seen { print $column }
-            /^ *integrator / { seen = 1 }' $work)
         holds=$(sed -n 's/^.*holds until t = \([0-9.e+-]*[0-9]\).*/\1/p' $work |
             head -n 1)
         error=$(error_of $2 $line)

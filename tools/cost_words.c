@@ -240,8 +240,8 @@ static void tell_hidden(const costs *c, list *words) {
     }
     if (dear)
         list_print(words,
-                   "%zu others fit and are nowhere cheapest: --integrators "
-                   "shows them, --format csv all.",
+                   "%zu more integrators work but are never the cheapest; list "
+                   "them with --integrators NAME, or all with --format csv.",
                    dear);
     if (untried)
         list_print(words,
@@ -287,8 +287,8 @@ static void tell_legend(const costs *c, list *words) {
     char *longest = cost_milliseconds(longest_cell(c));
     if (any_end(c, LADDER_LIMIT))
         list_print(words,
-                   "> limit: its steps were not followed so far (the longest "
-                   "run took %s ms).",
+                   "> limit: would take longer than was tried (the longest run "
+                   "took %s ms).",
                    longest);
     if (any_end(c, LADDER_FLOOR))
         list_add(words, "floor: shorter steps do not lessen the error, for "
@@ -305,10 +305,11 @@ void cost_words(costs *c, list *words) {
     cost_price(c, words);
     list_add(words, " ");
     tell_winners(c, words);
-    tell_names(c, words,
-               "the error grows with the run, so that more digits are needed "
-               "where it is longer.",
-               drifts_here);
+    tell_names(
+        c, words,
+        "the error grows with time: a longer run costs more for the same "
+        "digits.",
+        drifts_here);
     tell_names(c, words,
                "keep the energy at any step, which says nothing of their "
                "orbits.",
