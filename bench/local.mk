@@ -66,6 +66,9 @@ bench: bench/gradient$(EXEEXT) bench/tape$(EXEEXT) bench/scenes$(EXEEXT) \
 bench-recommend: tools/nevh$(EXEEXT)
 	NEVH_SCENES=$(srcdir)/scenes $(SHELL) $(srcdir)/bench/recommend.sh \
 	  ./tools/nevh$(EXEEXT)
+	NEVH_SCENES=$(srcdir)/scenes $(SHELL) $(srcdir)/bench/answers.sh \
+	  ./tools/nevh$(EXEEXT) >bench/results-answers.csv; \
+	  tail -n 4 bench/results-answers.csv
 
 # Wrong rows are listed in bench/wrong-verdicts, long runs kept in
 # bench/long-runs, to be removed where schemes changed.
@@ -74,7 +77,7 @@ bench-verdicts: bench/verdicts$(EXEEXT)
 	./bench/verdicts$(EXEEXT) -s $(SHARE) -o bench/wrong-verdicts \
 	  $(srcdir) bench/long-runs
 
-EXTRA_DIST += bench/recommend.sh bench/orbits
-CLEANFILES += bench/verdicts$(EXEEXT) bench/wrong-verdicts
+EXTRA_DIST += bench/recommend.sh bench/answers.sh bench/orbits
+CLEANFILES += bench/results-answers.csv bench/verdicts$(EXEEXT) bench/wrong-verdicts
 DISTCLEANFILES = bench/long-runs
 .PHONY: bench bench-counts bench-peers bench-recommend bench-verdicts
