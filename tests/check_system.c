@@ -372,6 +372,17 @@ START_TEST(off_is_off) {
 }
 END_TEST
 
+/* Sizes that overflow are no memory, and no endless loop. */
+START_TEST(widths_that_overflow) {
+    nevh_system *s = nevh_system_new(4);
+    static const size_t widths[] = {SIZE_MAX, SIZE_MAX / 2 + 1, SIZE_MAX / 8};
+    nevh_options o = {.width = widths[_i]};
+    ck_assert_ptr_null(nevh_stepper_new(s, nevh_verlet, &o));
+    ck_assert_ptr_null(nevh_field_new(s, &o));
+    nevh_system_free(s);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("system");
     TCase *terms = tcase_create("terms"), *effects = tcase_create("effects");
@@ -380,6 +391,7 @@ int main(void) {
     tcase_add_test(terms, unknown_effect);
     tcase_add_test(terms, tables_are_copied);
     tcase_add_test(terms, automatic_names);
+    tcase_add_loop_test(terms, widths_that_overflow, 0, 3);
     tcase_add_loop_test(terms, handed_what_is_read, 0, 4);
     tcase_add_test(effects, effects_group_terms);
     tcase_add_loop_test(effects, stale, 0, 4);

@@ -48,4 +48,10 @@ for path in "$srcdir"/include/nevh/*.h; do
     compiles c ${CC:-cc} -std=c11
     test -z "$cxx" || compiles cc "$cxx" -std=c++11
 done
+
+# Without glibc, as far as that can be shown with it.
+header=nevh/body.h
+printf '%s\n' '#include <limits.h>' '#undef __GLIBC__' '#undef __GLIBC_PREREQ' \
+    '#include <nevh/body.h>' >$work/file.c
+compiles c ${CC:-cc} -std=c11
 exit $status

@@ -126,4 +126,26 @@ fi
 ) || fails "does not mind a limit of size"
 says 'limited cannot be written'
 test "$(echo $work/limited*)" = "$work/limited*" || fails "left a part"
+
+# Names that are no UTF-8, or of two lines: JSON stays JSON, rows stay rows.
+bytes=$(printf '%s/a\377b.nevh' $work)
+cp $work/my.nevh "$bytes"
+exits 0 compare "$bytes" --format json
+has 'a\\ufffdb'
+LC_ALL=C grep -q "$(printf '\377')" $work/out && fails "is no UTF-8"
+lines=$(printf '%s/a\nb.nevh' $work)
+cp $work/my.nevh "$lines"
+exits 0 run "$lines" --t-end 0.2
+test "$(grep -vc '^#' $work/out)" = 4 || { fails "has other rows"; cat $work/out; }
+
+# What has no end is no state, and no code.
+: >$work/z.csv
+ln -s /dev/zero $work/z.csv.state
+exits 2 run $work/my.nevh --resume $work/z.csv
+says 'is no state of a run'
+ln -s /dev/zero $work/zero.c
+sed 's/my\.c/zero.c/; s/^effects.*/effects = kinetic, code/' $work/code.nevh \
+    >$work/zero.nevh
+exits 2 compare $work/zero.nevh --allow-code
+says 'is no regular file'
 exit $status

@@ -97,6 +97,13 @@ void lines_print(line_file *l, const char *format, ...) {
     l->used += (size_t)length;
 }
 
+void lines_comment(line_file *l, const char *text) {
+    for (size_t length; *text; text += length + (text[length] == '\n')) {
+        length = strcspn(text, "\n");
+        lines_print(l, "# %.*s\n", (int)length, text);
+    }
+}
+
 /* Bytes of whole lines up to the end of a page of the file, or of the one line
    that goes beyond.  Linux cuts a write short between two pages when the
    process is killed meanwhile; so but few bytes are written where that may

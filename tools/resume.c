@@ -9,6 +9,7 @@
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /* `order` tells the machine's order of bytes. */
@@ -17,6 +18,7 @@ typedef struct {
     uint64_t order, size, n, memory_size, settings_size;
     progress_of_run at;
 } header;
+static const off_t most_bytes = (off_t)1 << 31; /* of a file */
 static const char magic[16] = "nevh run, 1\n";
 static const uint64_t order = 0x0102030405060708u;
 
@@ -160,6 +162,10 @@ static int take(const char *name, const char *all, const char *settings,
 
 int state_load(const char *name, const char *settings, run_state *s) {
     size_t size;
+    struct stat found;
+    if (stat(name, &found) == 0 &&
+        !(S_ISREG(found.st_mode) && found.st_size <= most_bytes))
+        return tool_refuse("%s is no state of a run", name);
     char *all = read_all(name, &size);
     int status;
     if (!all)

@@ -169,7 +169,7 @@ static int open_new(job *j) {
     if (lines_open(&j->lines, o->file))
         return TOOL_USAGE;
     for (size_t i = 0; !o->quiet && i < j->notes.count; i++)
-        lines_print(&j->lines, "# %s\n", j->notes.item[i]);
+        lines_comment(&j->lines, j->notes.item[i]);
     trajectory_header(j->trajectory);
     if (!j->lines.regular)
         return TOOL_OK;

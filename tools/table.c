@@ -3,6 +3,7 @@
 #include "tool.h"
 #include <math.h>
 #include <stdarg.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -270,13 +271,42 @@ static void print_csv(const table *t, FILE *f) {
     }
 }
 
+/* Bytes of the character of UTF-8 that a text begins with; 0: it is none, an
+   overlong one, a surrogate, or beyond U+10FFFF. */
+static size_t character_bytes(const char *text) {
+    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
+    const unsigned char *at = (const unsigned char *)text;
+    size_t count = *at < 0x80   ? 1
+                   : *at < 0xC2 ? 0
+                   : *at < 0xE0 ? 2
+                   : *at < 0xF0 ? 3
+                   : *at < 0xF5 ? 4
+                                : 0;
+    uint32_t code = count > 1 ? *at & (0xFFu >> (count + 1)) : *at;
+    for (size_t i = 1; i < count; i++) {
+        if ((at[i] & 0xC0) != 0x80)
+            return 0;
+        code = code << 6 | (at[i] & 0x3F);
+    }
+    bool wrong = code < least[count] || (code >= 0xD800 && code < 0xE000) ||
+                 code > 0x10FFFF;
+    return wrong ? 0 : count;
+}
+
+/* What is no UTF-8, as names of files may be, is shown as U+FFFD. */
 static void print_string(const char *text, FILE *f) {
     fputc('"', f);
-    for (; *text; text++)
+    while (*text) {
+        size_t bytes = character_bytes(text);
         if ((unsigned char)*text < ' ')
             fprintf(f, "\\u%04x", (unsigned)*text);
+        else if (bytes == 0)
+            fputs("\\ufffd", f);
         else
-            fprintf(f, *text == '"' || *text == '\\' ? "\\%c" : "%c", *text);
+            fprintf(f, "%s%.*s", *text == '"' || *text == '\\' ? "\\" : "",
+                    (int)bytes, text);
+        text += bytes ? bytes : 1;
+    }
     fputc('"', f);
 }
 

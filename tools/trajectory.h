@@ -28,6 +28,8 @@ int lines_reopen(line_file *, const char *name, uint64_t bytes,
                  uint64_t digest);
 __attribute__((format(printf, 2, 3))) void lines_print(line_file *,
                                                        const char *format, ...);
+/* Behind "# ", also where the text has several lines. */
+void lines_comment(line_file *, const char *text);
 /* Writes what there is, which ends with a line. */
 int lines_flush(line_file *);
 /* At the end of a line: writes when there is much. */

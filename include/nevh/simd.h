@@ -16,6 +16,9 @@
    program starts, or nothing becomes vector code. */
 #if __GNUC__ >= 12 && __GLIBC_PREREQ(2, 22)
 #define NEVH__VECTORS 1
+#if __GLIBC_PREREQ(2, 35)
+#define NEVH__VECTORS_MORE 1
+#endif
 #endif
 #endif
 
@@ -79,7 +82,7 @@ NEVH__VECTOR1(cos)
 NEVH__VECTOR1(exp)
 NEVH__VECTOR1(log)
 extern double nevh__simd_pow(double, double) __asm__("pow") NEVH__VECTOR;
-#if __GLIBC_PREREQ(2, 35)
+#ifdef NEVH__VECTORS_MORE
 NEVH__VECTOR1(tan)
 NEVH__VECTOR1(asin)
 NEVH__VECTOR1(acos)
@@ -123,7 +126,7 @@ NEVH__POW(nevh_simd_pow, nevh__simd_pow)
 #define nevh_simd_pow  pow
 #define nevh_simd_sqrt sqrt
 #endif
-#if !defined NEVH__VECTORS || !__GLIBC_PREREQ(2, 35)
+#ifndef NEVH__VECTORS_MORE
 #define nevh_simd_tan   tan
 #define nevh_simd_asin  asin
 #define nevh_simd_acos  acos
@@ -187,7 +190,7 @@ NEVH__POINT1(nevh_point_exp, nevh_simd_exp)
 NEVH__POINT1(nevh_point_log, nevh_simd_log)
 NEVH__POINT2(nevh__point_pow, nevh__simd_pow)
 NEVH__POW(nevh_point_pow, nevh__point_pow)
-#if __GLIBC_PREREQ(2, 35)
+#ifdef NEVH__VECTORS_MORE
 NEVH__POINT1(nevh_point_tan, nevh_simd_tan)
 NEVH__POINT1(nevh_point_asin, nevh_simd_asin)
 NEVH__POINT1(nevh_point_acos, nevh_simd_acos)
@@ -213,7 +216,7 @@ NEVH__INLINE const double *nevh__unlike(void) {
 #define nevh_point_pow  pow
 #endif
 #define nevh_point_sqrt nevh_simd_sqrt
-#if !defined NEVH__VECTORS || !__GLIBC_PREREQ(2, 35)
+#ifndef NEVH__VECTORS_MORE
 #define nevh_point_tan   tan
 #define nevh_point_asin  asin
 #define nevh_point_acos  acos

@@ -7,7 +7,8 @@
 nevh_field *nevh_field_new(const nevh_system *s, const nevh_options *options) {
     static const nevh_options defaults = {0};
     const nevh_options *o = options ? options : &defaults;
-    nevh_field *f = s ? nevh__array(1, sizeof *f) : NULL;
+    bool fits = s && nevh__width_fits(s->report.status ? 0 : s->n, o->width);
+    nevh_field *f = fits ? nevh__array(1, sizeof *f) : NULL;
     if (!f)
         return NULL;
     f->system = s;

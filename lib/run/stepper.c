@@ -105,7 +105,10 @@ static int plan(nevh_stepper *s) {
 nevh_stepper *nevh_stepper_new(const nevh_system *system,
                                const nevh_integrator *integrator,
                                const nevh_options *options) {
-    nevh_stepper *s = system ? nevh__array(1, sizeof *s) : NULL;
+    bool fits =
+        system && nevh__width_fits(system->report.status ? 0 : system->n,
+                                   options ? options->width : 1);
+    nevh_stepper *s = fits ? nevh__array(1, sizeof *s) : NULL;
     if (!s)
         return NULL;
     if (options)

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 enum { MOST_READ = 256 }; /* variables of a gradient */
 
@@ -207,7 +208,12 @@ static char *path_of(const nevh_scene *s, const char *name) {
 
 static bool digest_file(nevh_scene *s, const nevh__piece *name,
                         const char *path, uint64_t *digest) {
-    FILE *file = fopen(path, "r");
+    struct stat found;
+    bool there = stat(path, &found) == 0;
+    if (there && !S_ISREG(found.st_mode))
+        return nevh__scene_fail(s, NEVH_EINVAL, name, "%s is no regular file",
+                                path);
+    FILE *file = there ? fopen(path, "r") : NULL;
     if (!file)
         return nevh__scene_fail(s, NEVH_EINVAL, name, "%s cannot be read: %s",
                                 path, strerror(errno));

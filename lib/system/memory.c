@@ -10,6 +10,11 @@ void *nevh__array(size_t count, size_t size) {
     return calloc(count ? count : 1, size);
 }
 
+bool nevh__width_fits(size_t n, size_t width) {
+    const size_t rows = 1 << 12; /* of n each; no plan has as many */
+    return n == 0 || width <= SIZE_MAX / sizeof(double) / rows / n;
+}
+
 void *nevh__copy(const void *from, size_t count, size_t size) {
     void *to = nevh__array(count, size);
     if (to && count)

@@ -103,13 +103,19 @@ static size_t *copy_indices(const size_t *from, size_t count, size_t each) {
     return to;
 }
 
-/* The effect's name, or with the first number that makes it unique. */
+/* The effect's name, or with the first number that makes it unique.  Names stay
+   used, so that a search goes on where the last one of the effect ended. */
 static char *free_name(const nevh_system *s, const char *effect) {
-    char *name = nevh__text("%s", effect);
-    for (size_t k = 2; name && is_term(s, name); k++) {
+    nevh__effect *known = effect_named(s, effect);
+    size_t k = known ? known->number : 0;
+    char *name = k ? nevh__text("%s %zu", effect, k) : nevh__text("%s", effect);
+    while (name && is_term(s, name)) {
         free(name);
+        k = k ? k + 1 : 2;
         name = nevh__text("%s %zu", effect, k);
     }
+    if (known && name)
+        known->number = k;
     return name;
 }
 

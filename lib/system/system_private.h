@@ -49,6 +49,8 @@ int nevh__fail_as(nevh__report *, const nevh__report *other);
 /* Memory; each returns NULL when it is out or the size overflows.  A request
    for nothing gives memory all the same. */
 void *nevh__array(size_t count, size_t size); /* zeroed */
+/* Whether sizes of blocks of so many lanes do not overflow. */
+bool nevh__width_fits(size_t n, size_t width);
 void *nevh__copy(const void *from, size_t count, size_t size);
 void *nevh__grow(void *array, size_t count, size_t size);
 char *nevh__text(const char *format, ...) __attribute__((format(printf, 1, 2)));
@@ -72,6 +74,7 @@ void nevh__register_put(nevh__register *, const char *name, size_t at);
 
 typedef struct {
     char *name;
+    size_t number; /* of the last term that was named after it; 0: none */
     bool on;
 } nevh__effect;
 
