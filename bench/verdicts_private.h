@@ -3,7 +3,7 @@
 #ifndef NEVH_VERDICTS_PRIVATE_H
 #define NEVH_VERDICTS_PRIVATE_H
 
-#include "../tools/row.h"
+#include "experiment/row.h"
 
 /* verdicts_run.c: the error of the energy in a run that is several times as
    long as the row's, in windows of equal length.  It steps and takes values

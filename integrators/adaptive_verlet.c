@@ -1,6 +1,6 @@
 /* nevh: Verlet with steps that vary: reversibly, and naively for contrast.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "adaptive_verlet_private.h"
+#include "kernels/adaptive_verlet_private.h"
 #include "schemes_private.h"
 
 static const nevh__step_control reversible = {true}, naive = {false};

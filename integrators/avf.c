@@ -5,7 +5,7 @@
    by Gauss-Legendre quadrature with as many nodes as there are stages, which is
    exact, and so keeps the energy, for polynomials H of degree 2 * stages.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "discrete_gradient_private.h"
+#include "kernels/discrete_gradient_private.h"
 #include "schemes_private.h"
 
 /* Rounding leaves the nodes in symmetry, without which the energy drifts by

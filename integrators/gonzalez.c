@@ -8,7 +8,7 @@
    ones would not survive its part of their energy.  It keeps H however wrong
    dH(m) is.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "discrete_gradient_private.h"
+#include "kernels/discrete_gradient_private.h"
 #include "schemes_private.h"
 #include "gradient/field_private.h"
 #include <float.h>

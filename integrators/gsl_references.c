@@ -1,6 +1,6 @@
 /* nevh: reference steppers that come with GSL.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "gsl_private.h"
+#include "kernels/gsl_private.h"
 #include "schemes_private.h"
 
 const nevh_integrator nevh__gsl_rkf45 = {

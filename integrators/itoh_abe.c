@@ -15,7 +15,7 @@
    One sweep takes 2n values of H, and two more for each short increment; a part
    of a step takes one more, two where H reads t.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "discrete_gradient_private.h"
+#include "kernels/discrete_gradient_private.h"
 #include "schemes_private.h"
 #include "gradient/field_private.h"
 #include <float.h>

@@ -2,14 +2,14 @@ libnevh_core_la_SOURCES += \
 	integrators/integrator.c \
 	integrators/schemes_private.h \
 	integrators/list.c \
-	integrators/work_private.h \
-	integrators/work.c \
-	integrators/substeps.c \
-	integrators/transform_private.h \
-	integrators/transform.c \
-	integrators/splitting_private.h \
-	integrators/splitting_expand.c \
-	integrators/splitting_kernel.c \
+	integrators/kernels/work_private.h \
+	integrators/kernels/work.c \
+	integrators/kernels/substeps.c \
+	integrators/kernels/transform_private.h \
+	integrators/kernels/transform.c \
+	integrators/kernels/splitting_private.h \
+	integrators/kernels/splitting_expand.c \
+	integrators/kernels/splitting_kernel.c \
 	integrators/symplectic_euler.c \
 	integrators/verlet.c \
 	integrators/ruth3.c \
@@ -23,41 +23,41 @@ libnevh_core_la_SOURCES += \
 	integrators/kahan_li.c \
 	integrators/suzuki_umeno.c \
 	integrators/sofroniou_spaletta.c \
-	integrators/adaptive_verlet_private.h \
-	integrators/adaptive_verlet_kernel.c \
+	integrators/kernels/adaptive_verlet_private.h \
+	integrators/kernels/adaptive_verlet_kernel.c \
 	integrators/adaptive_verlet.c \
-	integrators/stage_sums_private.h \
-	integrators/stage_sweeps_private.h \
-	integrators/stage_sweeps.c \
-	integrators/runge_kutta_private.h \
-	integrators/runge_kutta_repeated.c \
-	integrators/runge_kutta_kernel.c \
-	integrators/runge_kutta_adaptive.c \
+	integrators/kernels/stage_sums_private.h \
+	integrators/kernels/stage_sweeps_private.h \
+	integrators/kernels/stage_sweeps.c \
+	integrators/kernels/runge_kutta_private.h \
+	integrators/kernels/runge_kutta_repeated.c \
+	integrators/kernels/runge_kutta_kernel.c \
+	integrators/kernels/runge_kutta_adaptive.c \
 	integrators/euler.c \
 	integrators/rk4.c \
 	integrators/dopri5.c \
 	integrators/dop853.c \
 	integrators/dprkn12.c \
-	integrators/nystrom_private.h \
-	integrators/nystrom_stages.c \
-	integrators/nystrom_kernel.c \
-	integrators/tableau_private.h \
-	integrators/tableau.c \
-	integrators/gauss_coefficients.c \
-	integrators/lobatto_coefficients.c \
-	integrators/implicit_kernel.c \
+	integrators/kernels/nystrom_private.h \
+	integrators/kernels/nystrom_stages.c \
+	integrators/kernels/nystrom_kernel.c \
+	integrators/kernels/tableau_private.h \
+	integrators/kernels/tableau.c \
+	integrators/kernels/gauss_coefficients.c \
+	integrators/kernels/lobatto_coefficients.c \
+	integrators/kernels/implicit_kernel.c \
 	integrators/gauss.c \
 	integrators/lobatto.c \
-	integrators/tao_private.h \
-	integrators/tao_run.c \
-	integrators/tao_binding.c \
-	integrators/tao_kernel.c \
+	integrators/kernels/tao_private.h \
+	integrators/kernels/tao_run.c \
+	integrators/kernels/tao_binding.c \
+	integrators/kernels/tao_kernel.c \
 	integrators/tao.c \
-	integrators/discrete_gradient_private.h \
-	integrators/discrete_gradient_kernel.c \
+	integrators/kernels/discrete_gradient_private.h \
+	integrators/kernels/discrete_gradient_kernel.c \
 	integrators/itoh_abe.c \
 	integrators/gonzalez.c \
 	integrators/avf.c \
-	integrators/gsl_private.h \
-	integrators/gsl_kernel.c \
+	integrators/kernels/gsl_private.h \
+	integrators/kernels/gsl_kernel.c \
 	integrators/gsl_references.c

@@ -7,7 +7,7 @@
    than h, which helps the binding, too.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "schemes_private.h"
-#include "tao_private.h"
+#include "kernels/tao_private.h"
 
 static const nevh_splitting once = {NEVH_KICK, NEVH_COMPOSITION, 0, NULL};
 

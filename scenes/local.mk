@@ -30,3 +30,28 @@ dist_scenes_DATA = \
 # What configure makes for the command in the build tree.
 distclean-local:
 	test ! -h scenes || rm -f scenes
+
+# What nevh hard runs, beside the scenes.
+harddir = $(scenesdir)/hard
+dist_hard_DATA = \
+	scenes/hard/double-pendulum.nevh \
+	scenes/hard/earth.nevh \
+	scenes/hard/edge.nevh \
+	scenes/hard/elastic-pendulum.nevh \
+	scenes/hard/fput.nevh \
+	scenes/hard/head-on.nevh \
+	scenes/hard/henon-heiles.nevh \
+	scenes/hard/kepler.nevh \
+	scenes/hard/kink.nevh \
+	scenes/hard/late-start.nevh \
+	scenes/hard/magnetic-mirror.nevh \
+	scenes/hard/molecule.nevh \
+	scenes/hard/offset.nevh \
+	scenes/hard/outer-planets.nevh \
+	scenes/hard/pendulum-modulus.nevh \
+	scenes/hard/pythagorean.nevh \
+	scenes/hard/resonance.nevh \
+	scenes/hard/schwarzschild.nevh \
+	scenes/hard/swinging-atwood.nevh \
+	scenes/hard/toda.nevh \
+	scenes/hard/uniform-field.nevh

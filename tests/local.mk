@@ -1,194 +1,169 @@
-# Check suites, one file each, tests/check_NAME.c.
+# Check suites, one file each, tests/FOLDER/check_NAME.c.
 suites = \
-	tests/check_system \
-	tests/check_structure \
-	tests/check_gradient \
-	tests/check_steps \
-	tests/check_many_steps \
-	tests/check_step_reports \
-	tests/check_exact \
-	tests/check_portable \
-	tests/check_body \
-	tests/check_point \
-	tests/check_lanes \
-	tests/check_one_orbit \
-	tests/check_one_orbit_terms \
-	tests/check_probe \
-	tests/check_tape \
-	tests/check_tape_build \
-	tests/check_tape_terms \
-	tests/check_formula \
-	tests/check_formula_terms \
-	tests/check_random_formulas \
-	tests/check_scene \
-	tests/check_scene_errors \
-	tests/check_scene_write \
-	tests/check_scene_effects \
-	tests/check_shipped \
-	tests/check_scene_shown \
-	tests/check_registry \
-	tests/check_coefficients \
-	tests/check_masses \
-	tests/check_nystrom \
-	tests/check_splitting \
-	tests/check_published \
-	tests/check_trees \
-	tests/check_order \
-	tests/check_reversal \
-	tests/check_symplecticity \
-	tests/check_drift \
-	tests/check_stability \
-	tests/check_energy_preserving \
-	tests/check_evaluations \
-	tests/check_run \
-	tests/check_until \
-	tests/check_section \
-	tests/check_closeness \
-	tests/check_transform \
-	tests/check_own_time \
-	tests/check_eccentric \
-	tests/check_energy \
-	tests/check_verdict \
-	tests/check_grid \
-	tests/check_friction \
-	tests/check_damped_orbits \
-	tests/check_damped_steps \
-	tests/check_balance \
-	tests/check_ledger \
-	tests/check_time_slope \
-	tests/check_models \
-	tests/check_reference \
-	tests/check_state_error \
-	tests/check_reference_end \
-	tests/check_failures \
-	tests/check_hard_steps \
-	tests/check_hard \
-	tests/check_hard_pendulum \
-	tests/check_hard_judge \
-	tests/check_implicit \
-	tests/check_stiff \
-	tests/check_brouwer \
-	tests/check_threads \
-	tests/check_adaptive \
-	tests/check_damped \
-	tests/check_tao \
-	tests/check_gsl
-TEST_LIBS = tests/libsupport.la libnevh.la $(CHECK_LIBS)
+	tests/system/check_system \
+	tests/system/check_structure \
+	tests/gradient/check_gradient \
+	tests/gradient/check_steps \
+	tests/gradient/check_many_steps \
+	tests/gradient/check_step_reports \
+	tests/gradient/check_exact \
+	tests/gradient/check_portable \
+	tests/system/check_body \
+	tests/gradient/check_point \
+	tests/gradient/check_lanes \
+	tests/gradient/check_one_orbit \
+	tests/gradient/check_one_orbit_terms \
+	tests/system/check_probe \
+	tests/expression/check_tape \
+	tests/expression/check_tape_build \
+	tests/expression/check_tape_terms \
+	tests/expression/check_formula \
+	tests/expression/check_formula_terms \
+	tests/expression/check_random_formulas \
+	tests/scene/check_scene \
+	tests/scene/check_scene_errors \
+	tests/scene/check_scene_write \
+	tests/scene/check_scene_effects \
+	tests/scene/check_shipped \
+	tests/scene/check_scene_shown \
+	tests/scheme/check_registry \
+	tests/scheme/check_coefficients \
+	tests/system/check_masses \
+	tests/scheme/check_nystrom \
+	tests/scheme/check_splitting \
+	tests/scheme/check_published \
+	tests/scheme/check_trees \
+	tests/scheme/check_order \
+	tests/scheme/check_reversal \
+	tests/scheme/check_symplecticity \
+	tests/scheme/check_drift \
+	tests/scheme/check_stability \
+	tests/scheme/check_energy_preserving \
+	tests/scheme/check_evaluations \
+	tests/run/check_run \
+	tests/run/check_until \
+	tests/run/check_section \
+	tests/system/check_closeness \
+	tests/run/check_transform \
+	tests/scheme/check_own_time \
+	tests/scheme/check_eccentric \
+	tests/diagnose/check_energy \
+	tests/diagnose/check_verdict \
+	tests/tool/check_grid \
+	tests/system/check_friction \
+	tests/run/check_damped_orbits \
+	tests/run/check_damped_steps \
+	tests/run/check_balance \
+	tests/run/check_ledger \
+	tests/gradient/check_time_slope \
+	tests/system/check_models \
+	tests/diagnose/check_reference \
+	tests/diagnose/check_state_error \
+	tests/diagnose/check_reference_end \
+	tests/robust/check_failures \
+	tests/robust/check_hard_steps \
+	tests/robust/check_hard \
+	tests/robust/check_hard_pendulum \
+	tests/tool/check_hard_judge \
+	tests/scheme/check_implicit \
+	tests/scheme/check_stiff \
+	tests/scheme/check_brouwer \
+	tests/robust/check_threads \
+	tests/scheme/check_adaptive \
+	tests/scheme/check_damped \
+	tests/scheme/check_tao \
+	tests/scheme/check_gsl
+TEST_LIBS = tests/support/libsupport.la libnevh.la $(CHECK_LIBS)
 # These look inside, so they link what is not visible in libnevh.la.
-INSIDE_LIBS = tests/libsupport.la libnevh_core.la $(CHECK_LIBS)
-tests_check_random_formulas_LDADD = $(INSIDE_LIBS) $(MUPARSER_LIBS)
-tests_check_random_formulas_CPPFLAGS = $(AM_CPPFLAGS) $(MUPARSER_CFLAGS)
-tests_check_coefficients_LDADD = $(INSIDE_LIBS)
-tests_check_splitting_LDADD = $(INSIDE_LIBS)
-tests_check_damped_LDADD = $(INSIDE_LIBS)
-tests_check_brouwer_LDADD = $(INSIDE_LIBS)
-tests_check_implicit_LDADD = $(INSIDE_LIBS)
-tests_check_tao_LDADD = $(INSIDE_LIBS)
-tests_check_time_slope_LDADD = $(INSIDE_LIBS)
-tests_check_transform_LDADD = $(INSIDE_LIBS)
-tests_check_tape_LDADD = $(INSIDE_LIBS)
-tests_check_tape_build_LDADD = $(INSIDE_LIBS)
-tests_check_tape_terms_LDADD = $(INSIDE_LIBS)
-tests_check_formula_LDADD = $(INSIDE_LIBS)
-tests_check_formula_terms_LDADD = $(INSIDE_LIBS)
-tests_check_hard_pendulum_LDADD = $(TEST_LIBS) $(GSL_LIBS)
-tests_check_grid_SOURCES = tests/check_grid.c tools/grid.c
-tests_check_hard_judge_SOURCES = tests/check_hard_judge.c \
-	tools/hard_private.h \
-	tools/hard_cases.c \
-	tools/hard_subject.c \
-	tools/hard_state.c \
-	tools/hard_run.c \
-	tools/hard_judge.c \
-	tools/stability.c \
-	tools/words.c
-tests_check_hard_judge_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE
-tests_check_gsl_LDADD = $(TEST_LIBS) $(GSL_LIBS)
-tests_check_damped_orbits_LDADD = $(TEST_LIBS) $(GSL_LIBS)
-tests_check_threads_CFLAGS = $(AM_CFLAGS) -pthread
-tests_check_threads_LDFLAGS = $(AM_LDFLAGS) -pthread
+INSIDE_LIBS = tests/support/libsupport.la libnevh_core.la $(CHECK_LIBS)
+tests_expression_check_random_formulas_LDADD = $(INSIDE_LIBS) $(MUPARSER_LIBS)
+tests_expression_check_random_formulas_CPPFLAGS = $(AM_CPPFLAGS) $(MUPARSER_CFLAGS)
+tests_scheme_check_coefficients_LDADD = $(INSIDE_LIBS)
+tests_scheme_check_splitting_LDADD = $(INSIDE_LIBS)
+tests_scheme_check_damped_LDADD = $(INSIDE_LIBS)
+tests_scheme_check_brouwer_LDADD = $(INSIDE_LIBS)
+tests_scheme_check_implicit_LDADD = $(INSIDE_LIBS)
+tests_scheme_check_tao_LDADD = $(INSIDE_LIBS)
+tests_gradient_check_time_slope_LDADD = $(INSIDE_LIBS)
+tests_run_check_transform_LDADD = $(INSIDE_LIBS)
+tests_expression_check_tape_LDADD = $(INSIDE_LIBS)
+tests_expression_check_tape_build_LDADD = $(INSIDE_LIBS)
+tests_expression_check_tape_terms_LDADD = $(INSIDE_LIBS)
+tests_expression_check_formula_LDADD = $(INSIDE_LIBS)
+tests_expression_check_formula_terms_LDADD = $(INSIDE_LIBS)
+tests_robust_check_hard_pendulum_LDADD = $(TEST_LIBS) $(GSL_LIBS)
+tests_tool_check_grid_SOURCES = tests/tool/check_grid.c tools/search/grid.c
+tests_tool_check_hard_judge_SOURCES = tests/tool/check_hard_judge.c \
+	tools/hard/hard_private.h \
+	tools/hard/hard_cases.c \
+	tools/hard/hard_subject.c \
+	tools/hard/hard_state.c \
+	tools/hard/hard_run.c \
+	tools/hard/hard_judge.c \
+	tools/experiment/stability.c \
+	tools/cli/words.c
+tests_tool_check_hard_judge_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE
+tests_scheme_check_gsl_LDADD = $(TEST_LIBS) $(GSL_LIBS)
+tests_run_check_damped_orbits_LDADD = $(TEST_LIBS) $(GSL_LIBS)
+tests_robust_check_threads_CFLAGS = $(AM_CFLAGS) -pthread
+tests_robust_check_threads_LDFLAGS = $(AM_LDFLAGS) -pthread
 
-check_PROGRAMS = tests/steps tests/steps_of tests/forge
-tests_forge_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE
-tests_steps_LDADD = libnevh.la
-tests_steps_of_LDADD = libnevh.la
+check_PROGRAMS = tests/support/steps tests/support/steps_of tests/support/forge
+tests_support_forge_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE
+tests_support_steps_LDADD = libnevh.la
+tests_support_steps_of_LDADD = libnevh.la
 check_LTLIBRARIES =
 if HAVE_CHECK
 check_PROGRAMS += $(suites)
-check_LTLIBRARIES += tests/libsupport.la
-tests_libsupport_la_SOURCES = tests/support.c tests/support.h \
-	tests/damped.h tests/driven.h tests/state.h \
-	tests/hard.h
+check_LTLIBRARIES += tests/support/libsupport.la
+tests_support_libsupport_la_SOURCES = tests/support/support.c tests/support/support.h \
+	tests/support/damped.h tests/support/driven.h tests/support/state.h \
+	tests/support/hard.h
 if HAVE_WRAP
-memory_suite = tests/check_memory
+memory_suite = tests/robust/check_memory
 check_PROGRAMS += $(memory_suite)
-tests_check_memory_LDADD = $(INSIDE_LIBS)
-tests_check_memory_LDFLAGS = $(AM_LDFLAGS) \
+tests_robust_check_memory_LDADD = $(INSIDE_LIBS)
+tests_robust_check_memory_LDFLAGS = $(AM_LDFLAGS) \
 	-Wl,--wrap=malloc -Wl,--wrap=calloc -Wl,--wrap=realloc
 endif
 all_suites = $(suites) $(memory_suite)
 endif
 
-# What nevh hard runs, beside the scenes.
-harddir = $(pkgdatadir)/hard
-dist_hard_DATA = \
-	tests/hard/double-pendulum.nevh \
-	tests/hard/earth.nevh \
-	tests/hard/edge.nevh \
-	tests/hard/elastic-pendulum.nevh \
-	tests/hard/fput.nevh \
-	tests/hard/head-on.nevh \
-	tests/hard/henon-heiles.nevh \
-	tests/hard/kepler.nevh \
-	tests/hard/kink.nevh \
-	tests/hard/late-start.nevh \
-	tests/hard/magnetic-mirror.nevh \
-	tests/hard/molecule.nevh \
-	tests/hard/offset.nevh \
-	tests/hard/outer-planets.nevh \
-	tests/hard/pendulum-modulus.nevh \
-	tests/hard/pythagorean.nevh \
-	tests/hard/resonance.nevh \
-	tests/hard/schwarzschild.nevh \
-	tests/hard/swinging-atwood.nevh \
-	tests/hard/toda.nevh \
-	tests/hard/uniform-field.nevh
-
 dist_check_SCRIPTS = \
-	tests/symbols.sh \
-	tests/fuzz_compiles.sh \
-	tests/cplusplus.sh \
-	tests/examples.sh \
-	tests/nevh.sh \
-	tests/nevh_scenes.sh \
-	tests/nevh_help.sh \
-	tests/nevh_start.sh \
-	tests/quickstart.sh \
-	tests/bad_scenes.sh \
-	tests/completion.sh \
-	tests/nevh_new.sh \
-	tests/nevh_effects.sh \
-	tests/nevh_compare.sh \
-	tests/nevh_reference.sh \
-	tests/nevh_verdict.sh \
-	tests/nevh_plot.sh \
-	tests/nevh_section.sh \
-	tests/nevh_run.sh \
-	tests/nevh_code.sh \
-	tests/nevh_memory.sh \
-	tests/nevh_files.sh \
-	tests/nevh_units.sh \
-	tests/nevh_check.sh \
-	tests/nevh_hard.sh \
-	tests/nevh_cost.sh \
-	tests/nevh_recommend.sh \
-	tests/pkgconfig.sh \
-	tests/install.sh \
-	tests/effects_off.sh \
-	tests/valgrind.sh
+	tests/build/symbols.sh \
+	tests/robust/fuzz_compiles.sh \
+	tests/build/cplusplus.sh \
+	tests/build/examples.sh \
+	tests/tool/nevh.sh \
+	tests/tool/nevh_scenes.sh \
+	tests/tool/nevh_help.sh \
+	tests/tool/nevh_start.sh \
+	tests/build/quickstart.sh \
+	tests/scene/bad_scenes.sh \
+	tests/tool/completion.sh \
+	tests/tool/nevh_new.sh \
+	tests/tool/nevh_effects.sh \
+	tests/tool/nevh_compare.sh \
+	tests/tool/nevh_reference.sh \
+	tests/tool/nevh_verdict.sh \
+	tests/tool/nevh_plot.sh \
+	tests/tool/nevh_section.sh \
+	tests/tool/nevh_run.sh \
+	tests/tool/nevh_code.sh \
+	tests/tool/nevh_memory.sh \
+	tests/tool/nevh_files.sh \
+	tests/tool/nevh_units.sh \
+	tests/tool/nevh_check.sh \
+	tests/tool/nevh_hard.sh \
+	tests/tool/nevh_cost.sh \
+	tests/tool/nevh_recommend.sh \
+	tests/build/pkgconfig.sh \
+	tests/build/install.sh \
+	tests/robust/effects_off.sh \
+	tests/robust/valgrind.sh
 
-EXTRA_DIST += tests/outside.c tests/interrupt.c tests/starve.c tests/formula.h tests/scene.h tests/shipped.h \
-	tests/nevh_support.sh tests/nevh_interrupt.sh tests/bad tests/fuzz
+EXTRA_DIST += tests/build/outside.c tests/support/interrupt.c tests/support/starve.c tests/support/formula.h tests/support/scene.h tests/support/shipped.h \
+	tests/support/nevh_support.sh tests/support/nevh_interrupt.sh tests/scene/bad tests/robust/fuzz
 
 TESTS = $(all_suites) $(dist_check_SCRIPTS)
 TEST_EXTENSIONS = .sh
@@ -234,7 +209,7 @@ check-slow:
 FUZZ_SECONDS = 1800
 fuzz:
 	srcdir=$(srcdir) GSL_CFLAGS='$(GSL_CFLAGS)' GSL_LIBS='$(GSL_LIBS)' \
-	  $(SHELL) $(srcdir)/tests/fuzz/run.sh $(FUZZ_SECONDS) || test $$? = 77
+	  $(SHELL) $(srcdir)/tests/robust/fuzz/run.sh $(FUZZ_SECONDS) || test $$? = 77
 
 VALGRIND = valgrind -q --leak-check=full --error-exitcode=9
 check-valgrind: all $(check_LTLIBRARIES) $(check_PROGRAMS)

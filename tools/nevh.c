@@ -1,7 +1,7 @@
 /* nevh: the command.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "config.h"
-#include "tool.h"
+#include "cli/tool.h"
 #include <errno.h>
 #include <gsl/gsl_errno.h>
 #include <signal.h>

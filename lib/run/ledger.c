@@ -11,7 +11,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/field_private.h"
 #include "run/stepper_private.h"
-#include "transform_private.h"
+#include "kernels/transform_private.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

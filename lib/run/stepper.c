@@ -2,7 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/stepper_private.h"
 #include "gradient/field_private.h"
-#include "transform_private.h"
+#include "kernels/transform_private.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>

@@ -1,0 +1,37 @@
+#!/bin/sh
+# Targets of make fuzz, which needs clang and time, at least compile and link,
+# and take no input for an answer.
+
+srcdir=${srcdir:-.}
+work=fuzz_compiles.$$
+trap 'rm -rf $work' EXIT
+trap 'exit 1' HUP INT TERM
+mkdir $work || exit 1
+FUZZ_FOLDER=$work
+export FUZZ_FOLDER
+cat >$work/main.c <<'EOF'
+#include <stddef.h>
+#include <stdint.h>
+int LLVMFuzzerTestOneInput(const uint8_t *, size_t);
+int main(void) {
+    static const uint8_t none[1];
+    return LLVMFuzzerTestOneInput(none, 0);
+}
+EOF
+# Flags are lists.
+# shellcheck disable=SC2086
+compile() {
+    ${CC:-cc} -std=c11 $SANITIZE_FLAGS -Wall -Wextra -Werror -D_GNU_SOURCE -DNEVH_PORTABLE \
+        '-DNEVH_SCENES="/nowhere"' -I"$srcdir/include" -I"$srcdir/lib" \
+        -I"$srcdir/tools" $GSL_CFLAGS "$@"
+}
+
+for part in $(cat "$srcdir/tests/robust/fuzz/parts"); do
+    compile -c "$srcdir/tools/$part.c" -o "$work/$(basename "$part").o" || exit 1
+done
+# shellcheck disable=SC2086
+for target in "$srcdir"/tests/robust/fuzz/*.c; do
+    compile "$target" $work/main.c $work/*.o .libs/libnevh_core.a \
+        ${GSL_LIBS:--lgsl -lgslcblas} -lm -ldl -o $work/target || exit 1
+    $work/target || exit 1
+done

@@ -1,0 +1,278 @@
+/* nevh tests: splittings satisfy their order conditions, algebraically.
+
+   A step is the product of exp(w A) for its drifts and exp(w B) for its kicks
+   in their turn, a series in the words over the letters A and B.  It is of
+   order p if that series is the one of exp(A + B) up to degree p: in each word
+   of k letters the coefficient is 1/k!.  A and B satisfy no relation in
+   general, so each word is a condition of its own.
+
+   Where T is quadratic in p, [B,[B,[B,A]]] = 0, and as far as degree 7 no other
+   relation: BBBA = 3 BBAB - 3 BABB + ABBB.  BBBA does not overlap with itself,
+   so words without it are independent, and every word is a sum of such.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "run/stepper_private.h"
+#include "kernels/splitting_private.h"
+#include "support.h"
+#include "kernels/tao_private.h"
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum { MOST_DEGREE = 11, MOST_OPERATIONS = 100, MOST_GIVEN = 32 };
+
+/* A word is its letters as bits behind a leading 1: A is 0, B is 1. */
+typedef struct {
+    long double word[2 << MOST_DEGREE];
+} series;
+
+/* Times exp(w letter), up to a degree. */
+static void multiply(series *s, size_t degree, size_t letter, long double w) {
+    for (size_t word = ((size_t)2 << degree) - 1; word > 1; word--) {
+        long double factor = 1, sum = s->word[word];
+        size_t left = word;
+        for (int j = 1; left > 1 && left % 2 == letter; j++) {
+            left /= 2;
+            factor *= w / j;
+            sum += factor * s->word[left];
+        }
+        s->word[word] = sum;
+    }
+}
+
+/* Words of `degree` letters, by those without BBBA. */
+static void reduce(series *s, size_t degree) {
+    for (size_t word = ((size_t)2 << degree) - 1; word >> degree; word--)
+        for (size_t i = 0; i + 4 <= degree; i++) {
+            if ((word >> i & 15) != 14)
+                continue;
+            long double c = s->word[word];
+            s->word[word] = 0;
+            s->word[word - ((size_t)1 << i)] += 3 * c; /* BBAB */
+            s->word[word - ((size_t)3 << i)] -= 3 * c; /* BABB */
+            s->word[word - ((size_t)7 << i)] += c;     /* ABBB */
+        }
+}
+
+typedef struct {
+    nevh_operation first;
+    size_t count;
+    double weights[MOST_OPERATIONS];
+} splitting;
+
+static splitting expanded(const nevh_splitting *table) {
+    splitting s = {table->first, nevh__splitting_operations(table), {0}};
+    ck_assert_uint_le(s.count, MOST_OPERATIONS);
+    nevh__splitting_expand(table, s.weights);
+    return s;
+}
+
+/* The largest coefficient by which a step differs from exp(A + B) in words of
+   each degree, in units of what rounding of the weights can do to it. */
+static void find_defects(const splitting *x, bool quadratic, size_t degree,
+                         double defect[]) {
+    static series s;
+    memset(&s, 0, sizeof s);
+    s.word[1] = 1;
+    long double size[2] = {0, 0}, due = 1, rounding = DBL_EPSILON;
+    for (size_t i = 0; i < x->count; i++) {
+        bool kick = (x->first == NEVH_KICK) == (i % 2 == 0);
+        multiply(&s, degree, kick, x->weights[i]);
+        size[kick] += fabs(x->weights[i]);
+    }
+    for (size_t k = 1; k <= degree; k++) {
+        due /= (long double)k;
+        rounding *= fmaxl(size[0], size[1]) / (k > 1 ? (long double)k - 1 : 1);
+        for (size_t word = (size_t)1 << k; word >> k == 1; word++)
+            s.word[word] -= due;
+        if (quadratic)
+            reduce(&s, k);
+        defect[k] = 0;
+        for (size_t word = (size_t)1 << k; word >> k == 1; word++)
+            defect[k] = fmax(defect[k], (double)fabsl(s.word[word] / rounding));
+    }
+}
+
+/* Up to which degree the conditions hold; tried up to `most`. */
+static int order_of(const splitting *x, bool quadratic, int most) {
+    double defect[MOST_DEGREE + 1];
+    find_defects(x, quadratic, (size_t)most, defect);
+    for (int k = 1; k <= most; k++)
+        if (defect[k] > 1)
+            return k - 1;
+    return most;
+}
+
+/* The table of scheme number i, or NULL if it is no splitting. */
+/* Tao composes steps of order 2 as others compose Verlet's: the conditions are
+   the same. */
+static const nevh_splitting *table_of(int i) {
+    const nevh_integrator *scheme = nevh_integrators()[i];
+    bool is = scheme->kernel == &nevh_splitting_kernel ||
+              scheme->kernel == &nevh__tao_kernel;
+    return is ? scheme->table : NULL;
+}
+
+static bool needs_quadratic(const nevh_integrator *scheme) {
+    return nevh_integrator_needs(scheme) & NEVH_QUADRATIC_KINETIC;
+}
+
+/* No less than what is claimed, and no more. */
+START_TEST(order_conditions) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    if (!table_of(_i))
+        skip_test("not a splitting");
+    int order = nevh_integrator_order(scheme);
+    splitting x = expanded(table_of(_i));
+    int found = order_of(&x, needs_quadratic(scheme), order + 1);
+    ck_assert_msg(found == order, "%s: order %d, found %d",
+                  nevh_integrator_name(scheme), order, found);
+}
+END_TEST
+
+/* What falls to a lower order where T is not quadratic, or where kicks and
+   drifts are exchanged, must not be taken for what does not. */
+START_TEST(needs_of_the_conditions) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    if (!table_of(_i))
+        skip_test("not a splitting");
+    int order = nevh_integrator_order(scheme), least = order;
+    if (needs_quadratic(scheme))
+        least = nevh_integrator_symmetric(scheme) == NEVH_YES ? 4 : 3;
+    splitting x = expanded(table_of(_i));
+    ck_assert_int_eq(order_of(&x, false, order), least);
+    x.first = !x.first;
+    ck_assert_int_eq(order_of(&x, false, order), least);
+    ck_assert_int_eq(order_of(&x, needs_quadratic(scheme), order), least);
+}
+END_TEST
+
+/* Every number in every table matters. */
+START_TEST(wrong_weights_are_noticed) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    const nevh_splitting *table = table_of(_i);
+    if (!table || table->count == 0)
+        skip_test("no table of a splitting");
+    for (size_t k = 0; k < table->count; k++) {
+        long double weights[MOST_GIVEN];
+        nevh_splitting wrong = *table;
+        ck_assert_uint_le(table->count, MOST_GIVEN);
+        memcpy(weights, table->weights, table->count * sizeof *weights);
+        weights[k] += 1e-6L;
+        wrong.weights = weights;
+        splitting x = expanded(&wrong);
+        int order = nevh_integrator_order(scheme);
+        int found = order_of(&x, needs_quadratic(scheme), order);
+        ck_assert_msg(found < order, "%s: weight %zu may be wrong",
+                      nevh_integrator_name(scheme), k);
+    }
+}
+END_TEST
+
+static void assert_weights(const nevh_splitting *table, size_t count,
+                           const double weights[]) {
+    splitting x = expanded(table);
+    ck_assert_uint_eq(x.count, count);
+    for (size_t i = 0; i < count; i++)
+        ck_assert_double_eq(x.weights[i], weights[i]);
+}
+
+START_TEST(patterns) {
+    static const long double given[] = {0.125L, 0.5L};
+    const nevh_splitting tables[] = {{NEVH_KICK, NEVH_LISTED, 0, NULL},
+                                     {NEVH_KICK, NEVH_PALINDROME, 0, NULL},
+                                     {NEVH_KICK, NEVH_COMPOSITION, 0, NULL},
+                                     {NEVH_KICK, NEVH_LISTED, 2, given},
+                                     {NEVH_KICK, NEVH_PALINDROME, 2, given},
+                                     {NEVH_KICK, NEVH_COMPOSITION, 1, given}};
+    assert_weights(&tables[0], 2, (double[]){1, 1});
+    assert_weights(&tables[1], 3, (double[]){0.5, 1, 0.5});
+    assert_weights(&tables[2], 3, (double[]){0.5, 1, 0.5});
+    assert_weights(&tables[3], 4, (double[]){0.125, 0.5, 0.875, 0.5});
+    assert_weights(&tables[4], 7,
+                   (double[]){0.125, 0.5, 0.375, 0, 0.375, 0.5, 0.125});
+    assert_weights(
+        &tables[5], 7,
+        (double[]){0.0625, 0.125, 0.4375, 0.75, 0.4375, 0.125, 0.0625});
+}
+END_TEST
+
+/* What papers give besides, and the tables leave out. */
+START_TEST(weights_that_follow) {
+    static const struct {
+        const char *name;
+        size_t operation;
+        double weight;
+    } known[] = {{"ruth3", 4, -1. / 24},
+                 {"ruth3", 5, 1},
+                 {"mclachlan-atela4", 6, 0.334003603286321425},
+                 {"mclachlan-atela4", 7, 0.128846158365384185},
+                 {"pefrl", 3, -0.2123418310626054},
+                 {"pefrl", 5, -0.2123418310626054},
+                 {"blanes-moan4", 5, 0.4343366665664560},
+                 {"blanes-moan4", 6, 0.2193769557534997},
+                 {"rkn6b", 5, -0.3501716228953511},
+                 {"rkn6b", 6, 0.1195241940131507},
+                 {"yoshida6", 7, 1.31518632068391122},
+                 {"kahan-li8", 17, -0.60550853383003451},
+                 {"suzuki-umeno8", 15, -0.79688793935291635}};
+    const nevh_integrator *scheme = nevh_integrator_named(known[_i].name);
+    splitting x = expanded(scheme->table);
+    ck_assert_double_eq_tol(x.weights[known[_i].operation], known[_i].weight,
+                            4 * DBL_EPSILON);
+}
+END_TEST
+
+static double pendulum(double t, const double q[], const double p[],
+                       const void *params) {
+    (void)t, (void)params;
+    return p[0] * p[0] / 2.6 - 1.7 * cos(q[0]);
+}
+
+/* Friction between two steps: the next one is what it is with nothing kept of
+   the last.  Only a dH/dq that is known not to read p is kept and used. */
+START_TEST(friction_between_steps) {
+    const nevh_integrator *schemes[] = {nevh_verlet, nevh_blanes_moan6,
+                                        nevh_verlet, nevh_pefrl, nevh_ruth3};
+    const double factor[] = {0.75}, h = 0.125;
+    nevh_system *s =
+        _i == 2 ? nevh_system_from(1, pendulum, NULL) : driven_pendulum.make();
+    nevh_options options = {.gradient_step = 0x1p-9};
+    nevh_stepper *damped = nevh_stepper_new(s, schemes[_i], &options);
+    nevh_stepper *fresh = nevh_stepper_new(s, schemes[_i], &options);
+    double z[] = {0.9, 0.3}, y[2];
+    ck_assert_int_eq(nevh_run(damped, 0, h, 20, z, z + 1, NULL, 0), NEVH_OK);
+    z[1] *= factor[0];
+    memcpy(y, z, sizeof y);
+    damped->work.memory[1] = 0x1p-57; /* p's carry; it may have been 0 */
+    fresh->work.memory[0] = damped->work.memory[0];
+    fresh->work.memory[1] = damped->work.memory[1] * factor[0];
+    uint64_t before = nevh_stepper_counts(damped).gradients;
+    nevh_splitting_kernel.damp(&damped->work, factor);
+    ck_assert_int_eq(nevh__advance(damped, 20 * h, h, z, z + 1), NEVH_OK);
+    ck_assert_int_eq(nevh__advance(fresh, 20 * h, h, y, y + 1), NEVH_OK);
+    ck_assert_mem_eq(z, y, sizeof z);
+    ck_assert_mem_eq(damped->work.memory, fresh->work.memory,
+                     2 * sizeof(double));
+    ck_assert_uint_eq(nevh_stepper_counts(damped).gradients - before,
+                      nevh_stepper_counts(fresh).gradients - (_i < 2));
+    nevh_stepper_free(damped);
+    nevh_stepper_free(fresh);
+    nevh_system_free(s);
+}
+END_TEST
+
+int main(void) {
+    Suite *suite = suite_create("splitting");
+    TCase *cases = tcase_create("tables");
+    int count = scheme_count();
+    tcase_add_loop_test(cases, order_conditions, 0, count);
+    tcase_add_loop_test(cases, needs_of_the_conditions, 0, count);
+    tcase_add_loop_test(cases, wrong_weights_are_noticed, 0, count);
+    tcase_add_test(cases, patterns);
+    tcase_add_loop_test(cases, weights_that_follow, 0, 13);
+    suite_add_tcase(suite, cases);
+    cases = tcase_create("kernel");
+    tcase_add_loop_test(cases, friction_between_steps, 0, 5);
+    suite_add_tcase(suite, cases);
+    return run_suite(suite);
+}

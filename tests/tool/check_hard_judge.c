@@ -1,0 +1,230 @@
+/* nevh tests: the judge of nevh hard passes what is good, and nothing else.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "hard/hard_private.h"
+#include "support.h"
+#include <math.h>
+#include <nevh/extend.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* What the cases ask of the rest of the tool. */
+char *scene_file(const char *beside, const char *name) {
+    const char *source = getenv("srcdir");
+    bool hard = strcmp(beside, "hard") == 0;
+    if (!hard && strcmp(beside, ".") != 0)
+        return NULL;
+    char *file = text_print("%s/%s/%s.nevh", source ? source : ".",
+                            hard ? "scenes/hard" : "scenes", name);
+    if (access(file, R_OK) == 0)
+        return file;
+    free(file);
+    return NULL;
+}
+nevh_options plan_options(const plan *p, const char *gradient) {
+    (void)p, (void)gradient;
+    return (nevh_options){0};
+}
+const nevh_system *plan_transform(const plan *p, const char *name) {
+    (void)p, (void)name;
+    return NULL;
+}
+
+static const char regular[] = "Henon-Heiles at 1/12";
+static const char fine[] = "Henon-Heiles, small steps";
+static const char planets[] = "outer planets";
+
+static hard_verdict judged(const nevh_integrator *scheme, const char *name,
+                           double budget) {
+    const hard_case *c = hard_cases;
+    while (strcmp(c->name, name) != 0)
+        ck_assert_ptr_nonnull((++c)->name);
+    hard_subject s;
+    hard_result r = {.scheme = scheme, .gradient = "exact"};
+    ck_assert_int_eq(hard_open(&s, c), TOOL_OK);
+    hard_begin("oscillator", scheme, 60);
+    r.limit = nevh_stability_limit(scheme);
+    hard_end();
+    hard_run(&s, budget, &r);
+    hard_judge(&s, &r);
+    printf("%s, %s: %s: %s\n", name, nevh_integrator_name(scheme),
+           hard_verdict_name(r.verdict), r.happened);
+    hard_result_free(&r);
+    hard_close(&s);
+    return r.verdict;
+}
+
+static hard_verdict judge(const nevh_integrator *scheme, const char *name) {
+    return judged(scheme, name, 1e6);
+}
+
+START_TEST(good_ones_pass) {
+    static const nevh_integrator *const *const schemes[] = {
+        &nevh_verlet, &nevh_blanes_moan4, &nevh_gauss8, &nevh_tao4};
+    ck_assert_int_eq(judge(*schemes[_i], regular), HARD_BOUNDED);
+    ck_assert_int_eq(judge(*schemes[_i], fine), HARD_BOUNDED);
+    ck_assert_int_eq(judge(*schemes[_i], planets), HARD_BOUNDED);
+    ck_assert_int_eq(judge(nevh_rk4, "rotating pendulum"), HARD_DRIFTS);
+}
+END_TEST
+
+/* One weight off: of order 1 then, though symplectic, so that the energy keeps
+   in bounds all the same. */
+static hard_verdict spoiled(const nevh_integrator *scheme, size_t which,
+                            long double by, const char *name) {
+    nevh_splitting splitting = *(const nevh_splitting *)scheme->table;
+    nevh_integrator bad = *scheme;
+    long double weights[40];
+    ck_assert_uint_le(splitting.count, 40);
+    memcpy(weights, splitting.weights, splitting.count * sizeof *weights);
+    weights[which] += by;
+    splitting.weights = weights;
+    bad.table = &splitting;
+    return judge(&bad, name);
+}
+
+START_TEST(spoiled_weights) {
+    ck_assert_int_le(spoiled(nevh_blanes_moan4, 0, 1e-3L, fine), HARD_WRONG);
+    ck_assert_int_le(spoiled(nevh_blanes_moan6, 2, 1e-3L, fine), HARD_WRONG);
+    ck_assert_int_le(spoiled(nevh_forest_ruth, 0, 1e-3L, fine), HARD_WRONG);
+    ck_assert_int_le(spoiled(nevh_yoshida6, 1, 1e-3L, fine), HARD_WRONG);
+}
+END_TEST
+
+/* Verlet's with a first kick that is too long: sums are right, order is 1. */
+START_TEST(spoiled_verlet) {
+    static const long double weights[] = {0.6L};
+    static const nevh_splitting splitting = {NEVH_KICK, NEVH_LISTED, 1,
+                                             weights};
+    nevh_integrator bad = *nevh_verlet;
+    bad.table = &splitting;
+    ck_assert_int_le(judge(&bad, fine), HARD_WRONG);
+}
+END_TEST
+
+START_TEST(pretends_to_be_symplectic) {
+    nevh_integrator bad = *nevh_rk4;
+    bad.symplectic = bad.symmetric = NEVH_YES;
+    ck_assert_int_le(judge(&bad, "rotating pendulum"), HARD_WRONG);
+    ck_assert_int_le(judge(&bad, planets), HARD_WRONG);
+}
+END_TEST
+
+/* Of another order than it says. */
+START_TEST(pretends_to_be_accurate) {
+    nevh_integrator bad = *nevh_midpoint;
+    bad.order = 4;
+    ck_assert_int_le(judge(&bad, fine), HARD_WRONG);
+    bad = *nevh_verlet;
+    bad.order = 4;
+    ck_assert_int_le(judge(&bad, fine), HARD_WRONG);
+}
+END_TEST
+
+typedef int step_fn(nevh_work *, double, double, double[], double[]);
+
+static hard_verdict stepping(step_fn *step, const char *name, double budget) {
+    nevh_kernel kernel = nevh_gauss_kernel;
+    nevh_integrator bad = *nevh_gauss8;
+    kernel.step = step;
+    bad.kernel = &kernel;
+    return judged(&bad, name, budget);
+}
+
+/* Exact energy, on an orbit that runs 1e-3 too fast. */
+static int hurry(nevh_work *w, double t, double h, double q[], double p[]) {
+    return nevh_gauss_kernel.step(w, t, h * (1 + 1e-3), q, p);
+}
+
+/* Forgets to move. */
+static int rest(nevh_work *w, double t, double h, double q[], double p[]) {
+    (void)w, (void)t, (void)h, (void)q, (void)p;
+    return NEVH_OK;
+}
+
+/* A part of each step is lost. */
+static int leak(nevh_work *w, double t, double h, double q[], double p[]) {
+    int status = nevh_gauss_kernel.step(w, t, h, q, p);
+    p[0] *= 1 - 1e-6;
+    return status;
+}
+
+static int give_nan(nevh_work *w, double t, double h, double q[], double p[]) {
+    int status = nevh_gauss_kernel.step(w, t, h, q, p);
+    if (t > 1)
+        q[0] = NAN;
+    return status;
+}
+
+static int give_infinity(nevh_work *w, double t, double h, double q[],
+                         double p[]) {
+    int status = nevh_gauss_kernel.step(w, t, h, q, p);
+    if (t > 1)
+        p[0] = INFINITY;
+    return status;
+}
+
+static int give_up(nevh_work *w, double t, double h, double q[], double p[]) {
+    (void)h, (void)q, (void)p;
+    return t > 1 ? nevh_work_fail(w, NEVH_EMAXITER, "no reason to give up here")
+                 : NEVH_OK;
+}
+
+static int explode(nevh_work *w, double t, double h, double q[], double p[]) {
+    int status = nevh_gauss_kernel.step(w, t, h, q, p);
+    q[0] *= 1.1;
+    return status;
+}
+
+static int hang(nevh_work *w, double t, double h, double q[], double p[]) {
+    volatile bool waits = true;
+    while (waits)
+        ;
+    return nevh_gauss_kernel.step(w, t, h, q, p);
+}
+
+START_TEST(wrong_steps) {
+    static step_fn *const steps[] = {hurry,         rest,    leak,   give_nan,
+                                     give_infinity, give_up, explode};
+    ck_assert_int_le(stepping(steps[_i], regular, 1e6), HARD_WRONG);
+    ck_assert_int_le(stepping(steps[_i], planets, 1e6), HARD_WRONG);
+}
+END_TEST
+
+/* The energy alone would not have told. */
+START_TEST(right_energy_on_a_wrong_orbit) {
+    ck_assert_int_eq(stepping(hurry, regular, 1e6), HARD_WRONG);
+    ck_assert_int_eq(stepping(rest, planets, 1e6), HARD_WRONG);
+}
+END_TEST
+
+START_TEST(does_not_return) {
+    fflush(NULL);
+    pid_t child = fork();
+    if (child == 0) {
+        stepping(hang, regular, 2e4);
+        _exit(TOOL_OK);
+    }
+    int status;
+    ck_assert_int_eq(waitpid(child, &status, 0), child);
+    ck_assert(WIFEXITED(status));
+    ck_assert_int_eq(WEXITSTATUS(status), TOOL_FAILED);
+}
+END_TEST
+
+int main(void) {
+    Suite *s = suite_create("hard judge");
+    TCase *cases = tcase_create("hard judge");
+    tcase_add_loop_test(cases, good_ones_pass, 0, 4);
+    tcase_add_test(cases, spoiled_weights);
+    tcase_add_test(cases, spoiled_verlet);
+    tcase_add_test(cases, pretends_to_be_symplectic);
+    tcase_add_test(cases, pretends_to_be_accurate);
+    tcase_add_loop_test(cases, wrong_steps, 0, 7);
+    tcase_add_test(cases, right_energy_on_a_wrong_orbit);
+    tcase_add_test(cases, does_not_return);
+    suite_add_tcase(s, cases);
+    return run_suite(s);
+}

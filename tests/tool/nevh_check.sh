@@ -1,0 +1,70 @@
+#!/bin/sh
+# nevh check: what is said before a run.
+
+. "${srcdir:-.}/tests/support/nevh_support.sh"
+
+# A pendulum with w = 1 at most; dt = 0.1 and 2.5 against the limits.
+exits 0 check pendulum --dt 0.1 --format csv
+has '^# Highest frequency met: omega = 3\.13 rad/s \(t = .* s\); omega dt = 0\.313 at dt = 0\.1 s$'
+exits 0 check pendulum --dt 0.1 --all
+has '^ verlet +2 +yes +2 +0\.313$'
+has '^ euler +1 +yes +never +0\.313 +unstable'
+exits 0 check "$srcdir/scenes/hard/elastic-pendulum.nevh" --dt 0.05 --t-end 5 --all
+has '^Highest frequency met: omega = 100 '
+has '^ verlet +2 +yes +2 +5 +unstable'
+has '^ gauss4 +4 +yes +any step +5 +not resolved'
+exits 0 check "$srcdir/scenes/hard/elastic-pendulum.nevh" --dt 0.005 --t-end 1 --all
+has '^ verlet +2 +yes +2 +0.5$'
+
+# The table holds the integrators that are to run; the others are named.
+exits 0 check pendulum --integrators verlet,gauss4
+test $(grep -c '^ [a-z].* yes ' $work/out) = 2 || fails "has other rows"
+has '^Also fit \(--all shows them\): symplectic-euler-a, '
+has '^stable below: '
+exits 0 check double-pendulum
+has '^Do not fit: symplectic-euler-a, .*verlet'
+exits 0 check pendulum --format csv --quiet
+test $(wc -l <$work/out) -ge 40 || fails "leaves out rows"
+
+# Chaotic, regular, or too short to tell.  Exponents of this orbit from runs of
+# 400 and of 4000 seconds agree.
+exits 0 check double-pendulum --format csv
+has '^# Chaotic: Lyapunov exponent 0\.2[0-9]* \+- [0-9.]+/s .* After t = 1[5-7][0-9] s rounding'
+exits 0 check double-pendulum --t-end 100 --format csv
+has '^# Chaotic: Lyapunov exponent 0\.[12].* A run beyond t = [0-9]+ s '
+exits 0 check double-pendulum --t-end 10
+has '^Chaotic or regular: 10 s are too short to tell'
+exits 0 check double-pendulum --start phi1=0.1,phi2=0.1
+has '^Regular: '
+exits 0 check pendulum
+has '^Regular: one degree of freedom'
+# Neighbours of these part in proportion to the time, which is no chaos.
+for scene in kepler kepler-0.9 figure-eight henon-heiles \
+    double-pendulum-regular coupled-pendulums; do
+    exits 0 check $scene
+    has '^Regular: over '
+    lacks 'Chaotic'
+done
+for scene in double-pendulum-chaotic damped-driven-pendulum; do
+    exits 0 check $scene
+    has '^Chaotic: '
+done
+exits 0 check "$srcdir/scenes/hard/double-pendulum.nevh" --t-end 1000
+lacks 'Chaotic: '
+printf '%s\n' 's/^phi = .*/phi = 0/' 's/^p2 = .*/p2 = 3.873/' >$work/edit
+sed -f $work/edit "$srcdir/scenes/hard/double-pendulum.nevh" >$work/chaos.nevh
+exits 0 check $work/chaos.nevh --t-end 1000 --format csv
+has '^# Chaotic: .* After t = [0-9]+'
+
+# The floor of the gradient, and where H ends.
+exits 0 check pendulum --dt 0.1
+has '^Gradient: .* energy error of [0-9.]+e-[0-9]+'
+exits 0 check "$srcdir/scenes/hard/edge.nevh" --t-end 0.1
+has '^H ends at x = '
+exits 0 check pendulum
+lacks '^H ends'
+exits 0 check pendulum --format json
+if command -v python3 >/dev/null 2>&1; then
+    python3 -m json.tool $work/out >/dev/null || fails "is no JSON"
+fi
+exit $status

@@ -1,0 +1,214 @@
+#!/bin/sh
+# nevh compare: state errors, equal work, transforms, diagnostics, the verdict.
+
+. "${srcdir:-.}/tests/support/nevh_support.sh"
+
+# field NAME: of CSV, the column's values, row by row; no field before the
+# status may hold a comma.
+field() {
+    grep -v '^#' $work/out | awk -F, -v name="$1" '
+        NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) column = i; next }
+        { print $column }'
+}
+# A condition on the values of a column: $1, $2, ... are the rows.
+holds() {
+    field "$1" | tr '\n' ' ' | awk "{ exit !($2) }" ||
+        { fails "$1: not $2"; cat $work/out; }
+}
+
+# The reference is named; the table says what is out of step.
+exits 0 compare pendulum --dt 0.1,0.05 --integrators verlet,gauss4,rk4 \
+    --gradient exact
+has '^state error: largest difference from the exact solution \(Jacobi sn\)'
+has '^ verlet +2 +yes +0\.1 .* > 50 % .*bounded$'
+has '^ gauss4 +4 +yes +0\.05 .* 4e-04 +4\.0 .*bounded$'
+has 'Bounded energy is not an accurate orbit: verlet is out of step'
+has 'loses energy steadily.*'
+has 'slope'
+has 'R\^2 = '
+exits 0 compare pendulum --dt 0.1,0.05 --integrators verlet,gauss4,rk4 \
+    --format csv --gradient exact
+has '^# state error: largest difference from the exact solution \(Jacobi sn\)'
+holds state_error '$1 > 0.5 && $2 > 5e-3 && $2 < 7e-3 && $5 > 3e-4 && $5 < 5e-4'
+exits 0 compare kepler --t-end 20 --integrators gauss8 --dt 0.02 --format csv
+has "exact solution \(Kepler's equation\)"
+holds state_error '$1 > 0 && $1 < 1e-9'
+
+# No exact solution: a run, whose own error is told.
+exits 0 compare henon-heiles --t-end 30 --integrators gauss8 --dt 0.1 \
+    --format csv
+has '^# state error: largest difference from gauss12 at dt = [0-9.]+, own error [0-9]e-1[0-9]'
+holds state_error '$1 > 0 && $1 < 1e-7'
+
+# A named one, by the scene.
+sed 's/^t_end .*/&\nreference = gauss16/' "$srcdir/scenes/pendulum.nevh" \
+    >$work/named.nevh
+exits 0 compare $work/named.nevh --t-end 30 --integrators verlet
+has '^state error: largest difference from gauss16 at dt = '
+sed 's/^t_end .*/&\nreference = exact/' "$srcdir/scenes/henon-heiles.nevh" \
+    >$work/unknown.nevh
+exits 0 compare $work/unknown.nevh --t-end 30 --integrators verlet --format csv
+has '^# no state errors: no exact solution of this H is known'
+holds state_error '$1 == ""'
+sed 's/^t_end .*/&\nreference = gauss8+transform/' \
+    "$srcdir/scenes/kepler.nevh" >$work/wrong.nevh
+exits 2 compare $work/wrong.nevh
+says 'without \+transform'
+
+# Chaos: no number after the horizon.
+exits 0 compare double-pendulum-chaotic --t-end 60 --integrators gauss4 \
+    --dt 0.02
+has '^state errors mean nothing after t = [23][0-9]'
+has '^ gauss4 .* chaos '
+exits 0 compare double-pendulum-chaotic --t-end 60 --integrators gauss4 \
+    --dt 0.02 --format csv
+holds state_error '$1 == ""'
+exits 0 compare double-pendulum-chaotic --t-end 4 --integrators gauss6 \
+    --dt 0.01 --format csv
+holds state_error '$1 > 0 && $1 < 1e-3'
+
+# At equal numbers of gradients verlet beats rk4 over a long run.
+exits 0 compare pendulum --match work --dt 0.025 --t-end 1000 \
+    --integrators verlet,midpoint,blanes-moan4,rk4 --format csv
+has '^# match = work: '
+holds dt '$1 == 0.025 && $2 > 0.4 && $2 < 0.5 && $3 > 0.1499 && $4 == 0.1'
+holds gradient_evals '$2 > 0.93 * $1 && $2 < 1.07 * $1'
+holds gradient_evals '$3 > 0.99 * $1 && $3 < 1.01 * $1 && $4 == 40000'
+holds max_energy_error '$1 > 3.5e-3 && $1 < 4.5e-3 && $4 > 0.19 && $4 < 0.25'
+holds verdict '$1 == "bounded" && $4 == "drifts"'
+sed 's/^t_end .*/&\nmatch = work/' "$srcdir/scenes/pendulum.nevh" \
+    >$work/matched.nevh
+exits 0 compare $work/matched.nevh --dt 0.025 --t-end 5 --format csv \
+    --integrators verlet,rk4
+holds dt '$1 == 0.025 && $2 == 0.1'
+exits 0 compare $work/matched.nevh --dt 0.025 --t-end 5 --format csv \
+    --match steps --integrators verlet,rk4
+holds dt '$1 == 0.025 && $2 == 0.025'
+exits 0 compare pendulum --match work --dt 0.025 --t-end 5 \
+    --integrators itoh-abe
+has 'keep the dt given'
+exits 2 compare pendulum --match wok
+says 'steps or work'
+
+# A transform from the command line: rows beside those without.
+exits 0 compare kepler-0.9 --t-end 10 --dt 0.02 --integrators gauss4,verlet \
+    --transform '(x^2 + y^2)^(3/4)' --format csv --gradient exact
+holds integrator \
+    '$1 == "gauss4" && $2 == "verlet" && $3 == "gauss4+transform"'
+holds state_error '$3 < $1 && $1 > 0'
+# Instead of the scene's.
+sed 's/^t_end .*/&\ntransform = 1 + x^2/' "$srcdir/scenes/kepler-0.9.nevh" \
+    >$work/other.nevh
+for scene in kepler-0.9 $work/other.nevh; do
+    exits 0 compare $scene --t-end 10 --dt 0.02 --gradient exact --format csv \
+        --integrators gauss4 --transform '(x^2 + y^2)^(3/4)'
+    field state_error | tail -n 1 >>$work/transformed
+done
+test "$(sort -u $work/transformed | wc -l)" -eq 1 ||
+    { fails "takes the scene's transform"; cat $work/transformed; }
+exits 2 compare kepler --t-end 10 --transform '(x^2 + z^2)^(3/4)'
+says '^nevh: --transform: the name z is not known'
+says '^\(x\^2 \+ z\^2\)'
+for option in '--with foo' '--without foo' '--set foo=1'; do
+    exits 2 compare kepler $option
+    says "^nevh: ${option% *}: there is no (effect|parameter) foo"
+done
+exits 2 compare pendulum --set l=2 --set 'm=2*mm'
+says '^nevh: --set: .*mm'
+says '^m=2\*mm$'
+exits 2 compare kepler --t-end 10 --transform 't*x'
+exits 2 compare kepler --t-end 10 --transform ''
+
+# What a step does to phase space, and what became of invariants.
+exits 0 compare kepler --t-end 10 --dt 0.02 --integrators gauss4,rk4 \
+    --diagnostics --format csv --gradient exact
+holds symplecticity_error '$1 < 1e-11 && $2 > 1e-9'
+holds reversal_error '$1 < 1e-12 && $2 > 1e-8'
+holds newtons '$1 == 0 && $2 == 0'
+holds change_momentum '$1 < 1e-12 && $2 > 1e-8'
+holds straightness '$1 >= 0 && $1 <= 1'
+exits 0 compare kepler --t-end 10 --dt 0.02 --integrators gauss4 --diagnostics
+has 'symplecticity'
+has 'change of'
+# As text no wider than 100 columns: what is more goes below, row by row.
+exits 0 compare sun-earth-moon --t-end 0.1 --dt 0.01,0.005 --diagnostics \
+    --integrators verlet,gauss4 --gradient exact,central2
+awk 'length($0) > 100 { exit 1 }' $work/out || fails "is wider than 100 columns"
+has '^ integrator +gradient +dt/year .*symplecticity .*change of$'
+has '^ gauss4 +central2 +0\.005 .*[0-9]e-[0-9]+$'
+test "$(grep -c '^ verlet ' $work/out)" -ge 8 || fails "does not show rows again"
+exits 0 compare sun-earth-moon --t-end 0.1 --dt 0.01 --integrators verlet
+lacks 'symplecticity|^ integrator +dt'
+
+# A dt that decides the verdict.
+exits 0 compare pendulum --integrators euler,rk4 --dt 0.5,0.05
+has 'Warning: a smaller dt changes the verdict of rk4: unstable at dt = 0.5'
+lacks 'verdict of euler'
+
+
+# Of a long run a part is timed, with --repeat the whole: nothing else differs.
+for repeat in '' '--repeat 2'; do
+    exits 0 compare pendulum --integrators verlet,gauss4,dopri5 --dt 0.02 \
+        --t-end 2000 --tolerance 1e-6 --format csv $repeat
+    holds seconds '$1 > 0 && $2 > 0 && $3 > 0'
+    grep -v '^#' $work/out | cut -d, -f 1-16,18,19 >>$work/timed
+done
+test "$(sort -u $work/timed | wc -l)" -eq 4 ||
+    { fails "has other rows where all is timed"; cat $work/timed; }
+
+# Where the scene says stop: rows end there, the timed runs too.
+sed 's/^t_end .*/&\nstop = phi < 0.3/' "$srcdir/scenes/pendulum.nevh" \
+    >$work/stop.nevh
+exits 0 compare $work/stop.nevh --integrators verlet,gauss4 --dt 0.1 \
+    --format csv
+has '^# t = 0 \.\.\. 1000 s, or until phi < 0\.3$'
+has '^# 2 of 2 runs stopped where phi < 0\.3: t = 0\.7 \(verlet, dt = 0\.1\)$'
+has ',verlet,2,yes,central4,0\.1,7,ok,'
+has ',verlet,.*,8,0,[^,]*,[a-z-]*,'
+exits 0 compare $work/stop.nevh --integrators verlet,euler --dt 0.1,0.05 \
+    --quiet --set l=1.1
+exits 0 compare $work/stop.nevh --integrators dopri5 --format csv
+has '^# 3 of 3 runs stopped'
+lacks ',(failed|refused)'
+# Neither the reference nor the pilots of equal work go beyond: of 1e6 s of chaos
+# two, of a ball only until it is about to fall through a hole.
+sed 's/^t_end .*/t_end = 1e6\nstop = t > 2/' \
+    "$srcdir/scenes/double-pendulum-chaotic.nevh" >$work/soon.nevh
+exits 0 compare $work/soon.nevh --integrators gauss4,gauss6 --dt 0.02
+has '^state error: largest difference from gauss12 at dt'
+lacks 'mean nothing|chaos .*bounded'
+cat >$work/hole.nevh <<'END'
+[coordinates]
+x = 1, -10
+[effects]
+kinetic = p_x^2/2
+wall = -sqrt(x)
+[run]
+t_end = 1
+dt = 0.002
+stop = x < 0.5
+END
+exits 0 compare $work/hole.nevh --integrators verlet,gauss4 --match work \
+    --format csv
+has ',verlet,2,yes,central4,0\.002,26,ok,'
+has ',gauss4,4,yes,central4,0\.0[1-9][0-9]*,[3-5],ok,'
+exits 0 gradients $work/stop.nevh --gradient central2
+has '13 steps, t = 0 \.\.\. 0\.65'
+exits 0 effects $work/stop.nevh
+has '^the run stopped at t = 0\.7$'
+exits 0 effects $work/stop.nevh --impact
+has '^With gravity the run stops at t = 0\.7\.$'
+exits 0 check $work/stop.nevh
+has 'Highest frequency met: omega = 2\.02 '
+
+# Several gradients: verdicts that are alike are said once, others name theirs.
+exits 0 compare pendulum --integrators verlet,rk4 --gradient central2,exact \
+    --dt 0.5,0.1 --t-end 200
+test $(grep -c '^verlet keeps the energy bounded at dt = 0\.1\.$' $work/out) = 1 ||
+    fails "says the same twice"
+has '^rk4 with the exact gradient at dt = 0\.1 s loses energy steadily'
+has '^Warning: a smaller dt changes the verdict of verlet: '
+test $(grep -c '^Warning' $work/out) = 1 || fails "warns twice"
+exits 0 compare damped-driven-pendulum --integrators rk4 --t-end 500
+has 'gains energy steadily against the balance'
+exit $status

@@ -1,0 +1,106 @@
+#!/bin/sh
+# nevh effects: what effects read and cost, and what they change.
+
+. "${srcdir:-.}/tests/support/nevh_support.sh"
+
+exits 0 effects damped-driven-pendulum --t-end 20
+has '^ kinetic +on +momenta +1 +[0-9]+ +0\.2[45][0-9] '
+has '^ gravity +on +coordinates +1 +[0-9]+ +0\.5[0-9]* '
+has '^ drive +on +t, coordinates '
+has '^ drag +on +momenta \(friction\) +0\.5 +0 +0 '
+exits 0 effects fput --t-end 1 --format csv
+has '^kinetic,on,momenta,,32,'
+has '^springs,on,coordinates,,33,'
+
+# CSV: shares add up to 1, of time, too; off is 0 evaluations.
+exits 0 effects damped-driven-pendulum --without drag --t-end 20 --format csv
+grep -v '^#' $work/out | sed 's/"[^"]*"/text/' | awk -F, 'NR > 1 {
+    share += $7; time += $9; each[NR] = $6*$8; all += $6*$8; part[NR] = $9
+    if ($2 == "off" && $6 + $7 + $8 + $9 != 0) wrong = 1
+    if ($2 == "on" && $8 <= 0) wrong = 1 }
+    END { for (i in part) if ((each[i]/all - part[i])^2 > 1e-4) wrong = 1
+          exit wrong || share < 0.99 || share > 1.01 || time < 0.99 ||
+          time > 1.01 }' || { fails "has other shares"; cat $work/out; }
+exits 0 effects pendulum --gradient exact --t-end 10 --format csv
+grep -v '^#' $work/out | awk -F, 'NR > 1 { time += $9 }
+    END { exit time < 0.99 || time > 1.01 }' || fails "lacks shares of time"
+
+# What is not there changes nothing; what is there changes what it should.
+cat >$work/parts.nevh <<'END'
+[scene]
+effects = kinetic, spring, nothing, pull
+[coordinates]
+x = 1
+y = 0.5
+[effects]
+kinetic = (p_x^2 + p_y^2)/2
+spring = x^2/2 + y^2/2
+nothing = 0*x
+pull = 1e-6*x^3
+twist = 0.1*(x*p_y - y*p_x)
+wave = 0.1*x*cos(3*t)
+[friction]
+drag = all: 0.1
+[run]
+t_end = 20
+dt = 0.01
+integrators = verlet, gauss4
+transform = 1 + x^2
+END
+exits 0 effects $work/parts.nevh --impact --format csv
+row() { grep "^$1," $work/out; }
+row nothing | grep -q '^nothing,on,verlet,0,0,,0,' ||
+    fails "nothing changes something: $(row nothing)"
+row pull | awk -F, '{ exit !($4 > 1e-7 && $4 < 1e-4 && $6 == "") }' ||
+    fails "pull changes otherwise: $(row pull)"
+row wave | grep -q 'gauss4+transform' || fails "wave rules nothing out"
+row drag | grep -q 'adaptive-verlet' || fails "drag rules nothing out"
+row twist | grep -q '^twist,off,gauss4,.*"symplectic-euler-a, .*verlet' ||
+    fails "twist rules nothing out: $(row twist)"
+row spring | awk -F, '{ exit !($5 > 0.5 && $6 > 0) }' ||
+    fails "spring changes little: $(row spring)"
+exits 0 effects $work/parts.nevh --impact
+has 'With wave H reads the time'
+has 'drag is friction'
+has 'With twist H\(q, p\) is not separable'
+exits 0 effects $work/parts.nevh --impact --integrators verlet --quiet
+has '^ twist +off +[0-9]+$'
+has "none of the scene's integrators fits"
+
+# Also of scenes whose start asks for velocities.
+exits 0 effects sun-earth-moon --impact --t-end 0.1
+exits 2 compare pendulum --impact
+says 'no option of nevh compare'
+
+# What is off is as if its line were deleted: all columns but seconds.
+table() { grep -v '^#' $work/out | cut -d, -f2-16,18,19; }
+while read -r scene effect end; do
+    exits 0 compare "$scene" --without "$effect" --t-end "$end" --format csv
+    table >$work/off
+    sed -e '/^effects = /d' \
+        -e "/^\[effects\]/,/^\$/{/^$effect *=/d}" \
+        -e "/^\[friction\]/,/^\$/{/^$effect *=/d}" \
+        -e '/^\[effects\]/,/^$/{/^\(earth\|jupiter\|relativity\) *=/d}' \
+        "$srcdir/scenes/$scene.nevh" >$work/less.nevh
+    exits 0 compare $work/less.nevh --t-end "$end" --format csv
+    lacks "effects on: .*$effect"
+    table >$work/less
+    test "$(wc -l <$work/less)" -gt 3 || fails "has too few rows"
+    cmp -s $work/off $work/less ||
+        { fails "leaves a trace of $effect"; diff $work/off $work/less; }
+done <<END
+coupled-pendulums coupling 20
+coupled-oscillators springs 20
+damped-driven-pendulum drag 20
+damped-driven-pendulum drive 20
+double-pendulum gravity 2
+earth-halley relativity 40
+elastic-pendulum gravity 2
+fput cubic 20
+henon-heiles cubic 20
+kapitza shaking 1
+magnetic trap 5
+outer-solar-system planets 20000
+sun-earth-moon moon 0.5
+END
+exit $status

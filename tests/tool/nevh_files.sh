@@ -1,0 +1,151 @@
+#!/bin/sh
+# Files that the command writes: never those it reads, with the mode they had,
+# and all or nothing.
+
+. "${srcdir:-.}/tests/support/nevh_support.sh"
+
+scene() {
+    cat >$work/my.nevh <<'END'
+[coordinates]
+x = 1
+[effects]
+kinetic = p_x^2/2
+spring = x^2/2
+[run]
+t_end = 2
+dt = 0.1
+integrators = verlet
+END
+}
+scene
+cp $work/my.nevh $work/kept
+mkdir $work/folder
+ln -s ../my.nevh $work/folder/link
+ln $work/my.nevh $work/hard
+untouched() {
+    cmp -s $work/my.nevh $work/kept || { fails "changed the scene"; scene; }
+}
+
+# The scene, by whatever name.
+for name in $work/my.nevh ./$work/my.nevh $PWD/$work/folder/../my.nevh \
+    $work/folder/link $work/hard; do
+    for run in 'compare' 'run' 'cost' 'check' 'effects' 'gradients' \
+        'recommend --energy-error 1e-2'; do
+        exits 2 ${run%% *} $work/my.nevh ${run#"${run%% *}"} -o $name
+        says 'would be written over the scene itself; nothing was changed$'
+        untouched
+    done
+    exits 2 compare $work/my.nevh --keep-plot-script $name
+    says '^nevh: --keep-plot-script .* over the scene itself'
+    untouched
+done
+cp $work/my.nevh $work/my.svg
+exits 2 compare $work/my.svg --plot $work/my.svg
+says '^nevh: --plot .* over the scene itself'
+cmp -s $work/my.svg $work/kept || fails "changed the scene"
+exits 2 run $work/my.nevh --resume $work/my.nevh
+untouched
+# A copy is another file.
+cp $work/my.nevh $work/copy
+exits 0 compare $work/my.nevh -o $work/copy
+cmp -s $work/copy $work/kept && fails "wrote nothing"
+
+# Its C code, also of effects that are off.
+echo 'code = file("my.c", x)' >$work/line
+sed -e "/^spring/r $work/line" -e '1i [scene]\neffects = kinetic, spring' \
+    $work/kept >$work/code.nevh
+echo 'double value(double t, const double q[], const double p[],' \
+    'const double c[]) { return 0*q[0]; }' >$work/my.c
+cp $work/my.c $work/my.c.kept
+exits 2 compare $work/code.nevh -o $work/folder/../my.c
+says "over the scene's own C code"
+cmp -s $work/my.c $work/my.c.kept || fails "changed the code"
+
+# Two outputs, whether they are there or not.
+for names in 'a.svg ./a.svg' 'a.svg folder/../a.svg'; do
+    for there in no yes; do
+        rm -f $work/a.svg
+        test $there = no || : >$work/a.svg
+        exits 2 compare $work/my.nevh --plot $work/${names% *} \
+            -o $work/${names#* }
+        says 'two outputs would have the same name'
+    done
+done
+
+# The mode of a file that was there; of one that was not that of the umask.
+for run in 'compare' 'check' 'effects' 'run'; do
+    : >$work/private
+    chmod 600 $work/private
+    exits 0 $run $work/my.nevh -o $work/private
+    test "$(ls -l $work/private | cut -c 1-10)" = -rw------- ||
+        fails "made a private file public"
+    rm -f $work/new
+    (umask 027; exits 0 $run $work/my.nevh -o $work/new; exit $status) || status=1
+    test "$(ls -l $work/new | cut -c 1-10)" = -rw-r----- ||
+        fails "minds no umask"
+done
+
+# Links: what they stand for is written; a loop is refused and left alone.
+ln -s there $work/dangling
+exits 0 compare $work/my.nevh -o $work/dangling
+test -L $work/dangling && test -s $work/there || fails "replaced a link"
+ln -s loop $work/loop
+exits 2 compare $work/my.nevh -o $work/loop
+test -L $work/loop || fails "replaced a loop of links"
+
+# Names as long as the system takes; what cannot be written is told at once.
+long=$(printf 'n%.0s' 1 2 3 4 5)
+long=$long$long$long$long$long
+long=$long$long$long$long$long$long$long$long$long$long
+exits 0 compare $work/my.nevh -o $work/$long
+test -s $work/$long || fails "wrote nothing"
+for run in check effects gradients compare; do
+    exits 2 $run $work/my.nevh -o $work/nowhere/out
+    says 'nowhere/out cannot be written'
+    test -s $work/out && fails "worked before it looked"
+done
+exits 2 compare $work/my.nevh -o -
+says 'takes a file'
+test -e ./- && fails "made a file -"
+
+# No space for help, and none for files: nothing is left.
+if test -c /dev/full; then
+    for help in --help --version 'compare --help' help 'list integrators'; do
+        command=$help
+        "$nevh" $help >/dev/full 2>$work/err
+        test $? = 2 || fails "does not mind a full disk"
+        says 'cannot be written'
+    done
+fi
+(
+    ulimit -f 1 # of 512 or 1024 bytes
+    "$nevh" compare $work/my.nevh --t-end 20 --format csv --dt 0.1,0.2,0.3,0.4 \
+        --integrators verlet,gauss4,gauss6,gauss8,rk4 \
+        -o $work/limited >/dev/null 2>$work/err
+    test $? = 2
+) || fails "does not mind a limit of size"
+says 'limited cannot be written'
+test "$(echo $work/limited*)" = "$work/limited*" || fails "left a part"
+
+# Names that are no UTF-8, or of two lines: JSON stays JSON, rows stay rows.
+bytes=$(printf '%s/a\377b.nevh' $work)
+cp $work/my.nevh "$bytes"
+exits 0 compare "$bytes" --format json
+has 'a\\ufffdb'
+LC_ALL=C grep -q "$(printf '\377')" $work/out && fails "is no UTF-8"
+lines=$(printf '%s/a\nb.nevh' $work)
+cp $work/my.nevh "$lines"
+exits 0 run "$lines" --t-end 0.2
+test "$(grep -vc '^#' $work/out)" = 4 || { fails "has other rows"; cat $work/out; }
+
+# What has no end is no state, and no code.
+: >$work/z.csv
+ln -s /dev/zero $work/z.csv.state
+exits 2 run $work/my.nevh --resume $work/z.csv
+says 'is no state of a run'
+ln -s /dev/zero $work/zero.c
+sed 's/my\.c/zero.c/; s/^effects.*/effects = kinetic, code/' $work/code.nevh \
+    >$work/zero.nevh
+exits 2 compare $work/zero.nevh --allow-code
+says 'is no regular file'
+exit $status

@@ -1,0 +1,93 @@
+#!/bin/sh
+# Every command where memory runs out: at one allocation, or from one on.  It
+# never crashes or hangs, says so, leaves no file that is begun, and what it does
+# print is right.
+
+. "${srcdir:-.}/tests/support/nevh_support.sh"
+. "$srcdir/tests/support/nevh_interrupt.sh"
+
+exits_untested() {
+    test $status = 0 || exit $status
+    echo "memory that runs out was not tested: $1"
+    exit 77
+}
+test -z "$SANITIZE_FLAGS" ||
+    exits_untested "sanitizers bring an allocator of their own"
+command -v ${CC:-cc} >/dev/null 2>&1 || exits_untested "there is no C compiler"
+${CC:-cc} -shared -fPIC -o $work/starve.so "$srcdir/tests/support/starve.c" -ldl \
+    2>$work/err || exits_untested "tests/support/starve.c does not compile"
+
+# starve AT ON ARGUMENT...: runs nevh where allocation AT fails, and where ON is
+# not empty all after it.
+starve() {
+    starve_at=$1
+    starve_on=$2
+    shift 2
+    command="$* (allocation $starve_at${starve_on:+ and all after it} fails)"
+    $limit env LD_PRELOAD=$PWD/$work/starve.so STARVE_AT=$starve_at \
+        ${starve_on:+STARVE_ON=1} "$nevh" "$@" >$work/out 2>$work/err </dev/null
+    code=$?
+}
+# Without what takes another time each time.
+steady() {
+    sed -e 's/[0-9.e-]* *ms//g' "$1"
+}
+
+STARVE_COUNT=1
+export STARVE_COUNT
+starve 0 '' list integrators
+unset STARVE_COUNT
+grep -q '^[0-9][0-9]*$' $work/err ||
+    exits_untested "allocations of nevh do not pass through LD_PRELOAD"
+
+# starves PLACES ARGUMENT...: at so many places, from the first to the last.
+starves() {
+    places=$1
+    shift
+    STARVE_COUNT=1
+    export STARVE_COUNT
+    starve 0 '' "$@"
+    unset STARVE_COUNT
+    test $code -le 1 || fails "does not work where there is memory ($code)"
+    count=$(tail -n 1 $work/err)
+    steady $work/out >$work/right
+    at=1
+    while test $at -le $count; do
+        for on in '' on; do
+            rm -f $work/made*
+            starve $at "$on" "$@"
+            case $code in
+            0) steady $work/out | cmp -s - $work/right || test -z "$same" ||
+                fails "prints something else" ;;
+            1 | 2) cat $work/out $work/err | grep -Eiq 'memory|cannot' ||
+                { fails "does not say why (exit status $code)"
+                  cat $work/err; } ;;
+            *) fails "crashes (exit status $code)" ;;
+            esac
+            for file in $work/made.*.??????; do
+                test -e "$file" && fails "leaves $file"
+            done
+        done
+        at=$((at + count / places + 1))
+    done
+}
+same=yes
+starves 12 run pendulum --t-end 1
+starves 8 run figure-eight --t-end 1 --samples 5 --format json -o $work/made.json
+starves 6 section henon-heiles --t-end 20
+starves 6 new $work/made.nevh --from pendulum
+starves 5 list integrators
+starves 3 list scenes --format json
+same= # times are measured
+starves 12 compare pendulum --t-end 1 --diagnostics \
+    --integrators verlet,gauss4,gsl-rk8pd,dopri5,tao4,gonzalez
+starves 5 compare double-pendulum --t-end 0.5 --integrators gauss4,itoh-abe \
+    -o $work/made.txt
+starves 5 effects pendulum --impact --t-end 0.5
+starves 5 check pendulum --t-end 0.5
+starves 4 gradients pendulum --t-end 0.5
+starves 4 cost pendulum --t-end 0.5 --integrators verlet,gauss4
+starves 4 recommend pendulum --t-end 0.5 --integrators verlet,gauss8 \
+    --energy-error 1e-3
+starves 3 hard 'pendulum at rest' --integrators verlet,gauss4,dop853
+exit $status

@@ -1,0 +1,149 @@
+#!/bin/sh
+# What nevh recommend answers, and what it says where there is no answer.
+
+. "${srcdir:-.}/tests/support/nevh_support.sh"
+
+records() {
+    grep -v '^#' $work/out
+}
+# A scene of one coordinate: FILE POTENTIAL, lines of [run].
+scene() {
+    printf '[coordinates]\nx = 1\n[effects]\nK = p_x^2/2\nV = %s\n[run]\n%b\n' \
+        "$2" "$3" >$work/$1
+}
+
+# The first row of an answer keeps the error that was asked for.
+keeps() { # TARGET COLUMN
+    records | awk -F, -v most="$1" -v column="$2" \
+        'NR == 2 { kept = $column != "" && $column <= most + 0 }
+         END { exit !kept }' || { fails "keeps no $1"; cat $work/out; }
+}
+# Schemes that need few steps are not taken for such as keep the energy at any.
+for scene in pendulum pendulum-rotating; do
+    exits 0 recommend $scene --energy-error 1e-8 --format csv
+    keeps 1e-8 9
+done
+# Over runs so short that a few steps are enough for all digits.
+exits 0 recommend kepler --energy-error 1e-8 --t-end 2 \
+    --integrators gauss20 --gradient exact
+for t_end in 0.5 2 8; do
+    exits 0 cost kepler --t-end $t_end --integrators gauss20,verlet \
+        --gradient exact
+    lacks 'keep the energy at any step'
+done
+# Where H is quadratic Gauss's methods do keep it, however long the steps are.
+exits 0 cost oscillator --t-end 10 --integrators gauss4,gauss20,verlet
+has '^gauss4, gauss20: keep the energy at any step'
+
+# Every shipped scene has an answer, here for a tenth of its run.
+for file in "$srcdir"/scenes/*.nevh; do
+    scene=${file##*/}
+    scene=${scene%.nevh}
+    end=$(sed -n 's/^t_end *= *\([^#]*\).*/\1/p' "$file")
+    exits 0 recommend $scene --energy-error 1e-4 --t-end "($end)/10" \
+        --gradient exact \
+        --integrators blanes-moan4,gauss8 --format csv
+    keeps 1e-4 9
+done
+
+# How long an answer holds in a run three times as long: a drift passes the
+# target soon after the end, and when is told; a bounded error does not.
+number() { # what stands in the table's row of that name, in that column
+    awk -v row="$1" -v column="$2" '$1 == row { print $column }' $work/out
+}
+exits 0 recommend kepler --energy-error 1e-6 --t-end 20 --integrators rk4 \
+    --gradient exact
+until=$(sed -n 's/.*holds until t = \([0-9.]*[0-9]\):.*/\1/p' $work/out)
+step=$(number cheapest 4)
+test "$until" && test "$(number cheapest 7)" || fails "does not say how long"
+exits 0 compare kepler --t-end ${until:-0} --integrators rk4 --gradient exact \
+    --dt $step --format csv
+keeps 1e-6 9
+exits 0 compare kepler --t-end $(echo ${until:-0} | awk '{ print 1.3 * $1 }') \
+    --integrators rk4 --gradient exact --dt $step --format csv
+records | awk -F, 'NR == 2 { exit !($9 > 1e-6) }' || fails "would hold longer"
+exits 0 recommend kepler --energy-error 1e-6 --t-end 20 --gradient exact \
+    --integrators gauss8
+has '^It keeps that in a run three times as long, too, until t = 60\.'
+has '^ cheapest +gauss8 +exact .* > 60 '
+has '^That is [0-9.]+ steps in 1\.1[0-9]*, the shortest period'
+lacks 'Warning'
+# State errors of the longer run are against a reference that is as long.
+exits 0 recommend kepler --state-error 1e-3 --t-end 20 --gradient exact \
+    --integrators gauss4
+has 'holds until t = [2-5][0-9]'
+# What the energy does not see: the Moon is light.
+exits 0 recommend sun-earth-moon --energy-error 1e-4 --gradient exact \
+    --integrators rkn14a,gauss8
+has '^Warning: the orbit is out of step'
+has '^A step is [0-9.]+ times 0.04'
+has '^ cheapest .* > 50 %'
+
+# So it is asked for what matters.  The distance of the Moon is within what was
+# promised of that by much shorter steps.
+exits 0 recommend sun-earth-moon --observable distance --error 1e-2 \
+    --integrators rkn14a,gauss8 --gradient exact
+has '^observable: distance; its errors are divided by its range, 3[0-9.]+ km'
+has '^That is 3[0-9]+ km of distance'
+lacks 'Warning'
+exits 0 run sun-earth-moon --integrators rkn14a --gradient exact \
+    --dt $(number cheapest 4) --at 5,12,18.7
+cut -d, -f 1,20 $work/out >$work/rough
+exits 0 run sun-earth-moon --integrators gauss12 --gradient exact --dt 0.002 \
+    --at 5,12,18.7
+cut -d, -f 1,20 $work/out | paste -d, - $work/rough | awk -F, '
+    /^[0-9]/ { n++; gap = $2 - $4; if (gap < 0) gap = -gap
+        if (gap > 400) far = 1; if (gap > 1) apart = 1 }
+    END { exit far || !apart || n != 3 }' || fails "is not so near"
+exits 0 recommend oscillator --observable 'x^2 + sin(p_x)' --error 1e-6 \
+    --t-end 20 --integrators gauss4,verlet --format csv
+records | awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) name[$i] = i }
+    NR == 2 { kept = $name["observable_error"] <= 1e-6 &&
+        $name["observable_error"] > 0 && $name["holds_until"] >= 20 }
+    END { exit !kept }' || { fails "has no such columns"; cat $work/out; }
+exits 0 cost kepler --t-end 7 --observable 'x*p_y - y*p_x' \
+    --integrators blanes-moan4,rk4
+has 'its errors are divided by its size, 0\.8'
+has 'largest observable error'
+exits 2 recommend pendulum --observable phy --error 1e-3
+says 'phy'
+exits 2 recommend pendulum --observable phi
+says 'needs --error X'
+exits 2 recommend pendulum --error 1e-3
+says 'is that of --observable'
+exits 2 recommend pendulum --observable phi --error 1e-3 --energy-error 1e-3
+says 'takes one of'
+exits 1 recommend pendulum --t-end 10 --observable 'log(phi)' --error 1e-3
+says 'log\(phi\) has no value at t = '
+
+# What fails in its first step is given up after a few that are shorter.
+scene edge.nevh 'acos(x)' 't_end = 2\ndt = 0.1'
+for name in rk4 verlet gauss4; do
+    exits 1 cost $work/edge.nevh --integrators $name --format csv
+    says "$name with exact at dt = .* failed: .* is -inf at t = 0"
+    test "$(records | wc -l)" -le 8 || fails "tries $(records | wc -l) steps"
+done
+exits 1 cost $work/edge.nevh
+has '^ verlet +fails +fails'
+has '^symplectic-euler-a with exact at dt = 0.1 failed: '
+has '^[0-9]+ others fail as well'
+lacks 'keep the energy at any step'
+exits 1 recommend $work/edge.nevh --energy-error 1e-6
+says 'no integrator comes to the end: .* failed: .* is -inf at t = 0'
+# Given steps that fail are explained, too.
+printf '[coordinates]\nx = 1\n[effects]\nK = p_x^2/2\nV = atan2(x, p_x)\n%s' \
+    '[run]
+t_end = 2
+' >$work/kink.nevh
+exits 1 cost $work/kink.nevh --integrators rk4,gauss4 --dt 0.1,0.05
+says 'kink.nevh: .* with exact at dt = 0\.(05|1) failed'
+
+# A run that is to stop where it starts.
+scene still.nevh 'x^2/2' 't_end = 10\ndt = 0.1\nstop = x > 0'
+for command in cost 'recommend --energy-error 1e-3'; do
+    exits 1 $command $work/still.nevh
+    says 'the run stops at its start, where x > 0 holds already'
+done
+exits 0 compare $work/still.nevh --integrators verlet
+lacks 'nan'
+exit $status

@@ -1,0 +1,113 @@
+#!/bin/sh
+# nevh section: columns, points, directions, periods, and what it refuses.
+
+. "${srcdir:-.}/tests/support/nevh_support.sh"
+
+rows() { grep -v '^#' $work/out | tail -n +2; }
+# counts N: as many points.
+counts() {
+    test "$(rows | wc -l)" -eq "$1" ||
+        { fails "has not $1 points"; cat $work/out; }
+}
+# holds EXPRESSION: awk's, of every point.
+holds() {
+    rows | awk -F, "function abs(x) { return x < 0 ? -x : x }
+        !($1) { print; wrong = 1 } END { exit wrong || NR == 0 }" ||
+        fails "does not hold: $1"
+}
+
+# The points lie on the surface of the energy, and p_x is positive.
+exits 0 section henon-heiles --integrators gauss8 --dt 0.1 --t-end 300
+has '^# integrator: gauss8, dt = 0\.1$'
+has '^# section crossing: 48 points$'
+test "$(grep -v '^#' $work/out | head -n 1)" = section,t,direction,y,p_y ||
+    fails "has other columns"
+counts 48
+holds '$1 == "crossing" && $3 == 1'
+holds '1/8 - $5^2/2 - $4^2/2 + $4^3/3 > 0'
+rows >$work/gauss
+exits 0 section henon-heiles --integrators blanes-moan6 --dt 0.05 --t-end 300
+rows | paste -d, - $work/gauss | awk -F, 'function abs(x) {
+        return x < 0 ? -x : x }
+    abs($2 - $7) > 1e-6 || abs($4 - $9) > 1e-6 || abs($5 - $10) > 1e-6 {
+        print; wrong = 1 } END { exit wrong || NR != 48 }' ||
+    fails "has other points than gauss8"
+
+# What is used where nobody says so.
+exits 0 section henon-heiles --t-end 20
+has '^# integrator: verlet, dt = 0\.2: the first integrator of the list'
+
+# An angle is wrapped, the state is not: a pendulum that goes round.
+exits 0 section pendulum-rotating --t-end 20 --integrators gauss6 --dt 0.05
+counts 20
+holds '$3 == 1 && abs($4) < 1e-12 && abs($5 - 8) < 1e-4'
+
+# Stroboscopic: after each period, the last one being the end.
+exits 0 section damped-driven-pendulum --t-end 94.24777960769379
+counts 10
+holds '$3 == 0 && abs($2 - NR*3*3.14159265358979) < 1e-12'
+holds 'abs($4) <= 3.14159265358980'
+
+# Several sections: one table, grouped; fields are empty where a section does
+# not show an item.
+cat >$work/several.nevh <<'END'
+[coordinates]
+x = 1
+[effects]
+kinetic = p_x^2/2
+spring = x^2/2
+[sections]
+down  = when x = 0, falling: p_x
+both  = when x = 0.5, both: x, x^2 + p_x^2
+clock = every 1: x
+[run]
+t_end = 10
+dt = 0.1
+integrators = gauss8
+END
+exits 0 section $work/several.nevh
+counts 15
+has '^section,t,direction,p_x,x,x\^2 \+ p_x\^2$'
+holds '$1 != "down" || ($3 == -1 && $4 < -0.9 && $5 == "" && $6 == "")'
+holds '$1 != "both" || ($3^2 == 1 && $4 == "" && abs($5 - 0.5) < 1e-15 &&
+       abs($6 - 1) < 1e-9)'
+rows | cut -d, -f1 | uniq -c | tr -s ' \n' ' ' >$work/groups
+grep -q '^ 2 down 3 both 10 clock' $work/groups || fails "is not grouped"
+exits 0 section $work/several.nevh --section clock,down --format json
+has '"section": "down"'
+has '"section": "clock".* "p_x": null'
+lacks '"section": "both"'
+exits 0 section $work/several.nevh --section both --format table --quiet
+has '^ both +1\.047197551'
+lacks 'integrator:'
+
+# A file, as a whole.
+exits 0 section $work/several.nevh -o $work/points.csv
+test "$(grep -c '^clock,' $work/points.csv)" = 10 || fails "wrote no file"
+
+# A run that stops, and one that fails: the points until then.
+sed 's/^t_end = 10/&\nstop = x < -0.9/' $work/several.nevh >$work/stops.nevh
+exits 0 section $work/stops.nevh
+has '^# stopped at t = 2\.7: x < -0\.9$'
+counts 4
+sed 's/^clock.*/edge = when sqrt(x + 0.5) = 2, both: x/' $work/several.nevh \
+    >$work/fails.nevh
+exits 1 section $work/fails.nevh
+says 'failed: the value of section edge is not finite at t = 2\.1'
+has '^# failed: '
+has '^down,1\.57079632'
+has '^both,1\.04719755'
+
+# What is no use.
+exits 2 section kepler
+says 'no \[sections\]'
+exits 2 section henon-heiles --section crosing
+says 'did you mean crossing'
+exits 2 section double-pendulum --integrators verlet
+says 'needs H = T\(p\) \+ V\(q\)'
+exits 2 section henon-heiles --every 3
+says 'no option of nevh section'
+exits 2 compare henon-heiles --section crossing
+says 'no option of nevh compare'
+
+exit $status

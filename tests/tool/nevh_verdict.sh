@@ -1,0 +1,113 @@
+#!/bin/sh
+# nevh compare: verdicts that a longer run, or theory, bears out.
+
+. "${srcdir:-.}/tests/support/nevh_support.sh"
+
+# verdicts NAME=VERDICT...: what the last table says of each integrator.
+verdicts() {
+    for expected; do
+        grep -Eq "^[^#,]*,${expected%=*},.*,${expected#*=}," $work/out ||
+            { fails "is not $expected"; cat $work/out; }
+    done
+}
+compares() {
+    exits 0 compare "$@" --format csv --repeat 1
+}
+
+# A beat of step and period, or another modulation, slower than the run.
+compares double-pendulum-regular --integrators tao2,gauss8,rk4 --dt 0.04386 \
+    --t-end 60
+verdicts tao2=bounded gauss8=bounded rk4=drifts
+compares pendulum --integrators gauss16,gauss20 --dt 0.8 --t-end 100
+verdicts gauss16=bounded gauss20=bounded
+compares pendulum --integrators gauss16,rk4 --dt 0.4 --t-end 100
+verdicts gauss16=bounded rk4=unstable
+compares coupled-pendulums --integrators gauss4 --dt 0.48632 --t-end 240
+verdicts gauss4=bounded
+compares magnetic --integrators gauss6,rk4 --dt 1.641 --t-end 772.8
+verdicts gauss6=bounded rk4=drifts
+
+# Passages of the pericentre; energy that goes from mode to mode; chaos.
+compares earth-halley --dt 0.05 --t-end 1355.4 \
+    --integrators lobatto4,mclachlan-atela4,blanes-moan4,gauss6,rk4
+verdicts 'lobatto4=(bounded|random-walk)' mclachlan-atela4=bounded \
+    blanes-moan4=bounded gauss6=bounded rk4=unstable
+compares fput --integrators midpoint,rk4 --dt 0.78431 --t-end 198
+verdicts midpoint=bounded rk4=drifts
+compares fput-1000 --integrators midpoint --dt 0.23041 --t-end 50
+verdicts midpoint=bounded
+compares double-pendulum-chaotic --integrators gauss8,rk4 --dt 0.045249 \
+    --t-end 60
+verdicts gauss8=bounded rk4=drifts
+
+# Next to no energy is no measure of the error.
+scene() {
+    printf '[coordinates]\n%b\n[effects]\n%b\n[run]\n%b\n' "$1" "$2" "$3" \
+        >$work/$4.nevh
+}
+scene 'x = 1\ny = 0\np_y = sqrt(2)*(1 - 3e-6)' \
+    'K = (p_x^2+p_y^2)/2\nV = -1/sqrt(x^2+y^2)' 't_end = 20\ndt = 0.01' escape
+compares $work/escape.nevh --integrators verlet
+verdicts verlet=bounded
+
+# A loss that is less than twofold from the first fifth to the last: of half the
+# energy at once, and of a line below its ripple.
+scene 'x = 1\ny = 0.01' 'K = (p_x^2+p_y^2)/2\nV = x^2/2+5e3*y^2+10*x^2*y^2' \
+    't_end = 10\ndt = 0.01' fast
+compares $work/fast.nevh --integrators rk4,gauss8 --gradient exact
+verdicts rk4=drifts gauss8=bounded
+scene 'x = 3' 'K = sqrt(1+p_x^2)\nV = x^2/2' 't_end = 100\ndt = 0.1' ripple
+compares $work/ripple.nevh --integrators rk4,gauss4 --gradient exact
+verdicts rk4=drifts gauss4=bounded
+
+# Rounding of energies that are met, not of those at the start.
+scene 'x = 0' 'K = p_x^2/2\nV = x^2/2\nD = -0.1*x*cos(t)' \
+    't_end = 200\ndt = 0.1' driven
+compares $work/driven.nevh --integrators gauss8 --gradient exact
+verdicts 'gauss8=(bounded|random-walk)'
+scene 'x = 1' 'K = p_x^2/2\nV = -x^2/2' 't_end = 60\ndt = 0.1' away
+compares $work/away.nevh --integrators gauss8 --gradient exact
+verdicts 'gauss8=(bounded|random-walk)'
+
+# Steps that are advised are confirmed by the next run, and are not far too
+# short.
+error_at() {
+    exits 0 compare pendulum --integrators $1 --dt $2 --t-end $3 --format csv \
+        --repeat 1
+    grep -v '^#' $work/out | tail -n 1 | cut -d, -f9
+}
+for scheme in verlet rk4 euler; do
+    end=20
+    test $scheme = euler && end=1
+    exits 0 compare pendulum --integrators $scheme --dt 0.5 --t-end $end
+    dt=$(tr '\n' ' ' <$work/out |
+        sed -n 's/.*below 1 % until t = [0-9]* s with  *dt =  *\([0-9.e-]*\) s.*/\1/p')
+    longer=$(awk "BEGIN { print 1.5 * ${dt:-0} }")
+    { test -n "$dt" && error_at $scheme $dt $end && error_at $scheme $longer $end; } \
+        >$work/errors || fails "advises no dt"
+    awk 'NR == 1 && $1 > 0.01 || NR == 2 && $1 < 0.01 { exit 1 }
+        END { exit NR != 2 }' $work/errors ||
+        { fails "advises dt = $dt"; cat $work/errors; }
+done
+# Of a thousand seconds of euler that cannot be tried.
+exits 0 compare pendulum --integrators euler --dt 0.1,0.05
+tr '\n' ' ' <$work/out | grep -Eq \
+    'euler gains energy at every dt, and +would .* only with +dt below about +[5-7]e-07 s' ||
+    { fails "has no dt for euler"; cat $work/out; }
+lacks 'stable up to 0\.00'
+
+# Orders are not read from rounding.
+exits 0 compare pendulum --integrators gauss8 --dt 0.02,0.01 --t-end 100 \
+    --format csv --repeat 1
+grep -v '^#' $work/out | tail -n 1 | cut -d, -f19 | grep -q . &&
+    fails "sees an order in rounding"
+
+# What a longer run is needed for is said, and that a short one is followed.
+exits 0 compare pendulum --integrators gauss16 --dt 0.8 --t-end 100
+has '^The run is short for a verdict on gauss16: followed further'
+has '^gauss16 keeps the energy bounded'
+exits 0 compare pendulum --integrators rk4 --dt 0.05 --t-end 10
+lacks 'keeps? the energy bounded'
+has 'rk4 at dt = 0\.05 s (loses|gains) energy'
+
+exit $status

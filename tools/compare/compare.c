@@ -1,0 +1,278 @@
+/* nevh compare: a table of energy errors, a row an integrator and dt.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "plot/envelope.h"
+#include "experiment/pace.h"
+#include "plot/plot.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+typedef struct {
+    row *row;
+    size_t count;
+} row_list;
+
+static void add_row(const plan *p, row_list *r, size_t gradient,
+                    const char *name, double dt, double tolerance) {
+    bool transformed;
+    const nevh_integrator *scheme = plan_scheme(name, &transformed);
+    bool same = r->count &&
+                r->row[r->count - 1].gradient == p->gradients.item[gradient] &&
+                r->row[r->count - 1].dt == dt &&
+                (r->row[r->count - 1].tolerance > 0) == (tolerance > 0);
+    size_t group = r->count ? r->row[r->count - 1].group + !same : 0;
+    r->row[r->count++] = (row){.integrator = name,
+                               .gradient = p->gradients.item[gradient],
+                               .scheme = scheme,
+                               .dt = dt,
+                               .tolerance = tolerance,
+                               .group = group};
+}
+
+static bool adapts(const char *name) {
+    bool transformed;
+    return nevh_integrator_adaptive(plan_scheme(name, &transformed));
+}
+
+/* Adaptive schemes land on the ends of the longest dt. */
+static void add_adaptive(const plan *p, row_list *r, size_t gradient) {
+    double longest = 0;
+    for (size_t j = 0; j < p->dts; j++)
+        longest = fmax(longest, p->dt[j]);
+    for (size_t i = 0; i < p->integrators.count; i++)
+        for (size_t k = 0; k < p->tolerances; k++)
+            if (adapts(p->integrators.item[i]))
+                add_row(p, r, gradient, p->integrators.item[i], longest,
+                        p->tolerance[k]);
+}
+
+static row_list list_rows(const plan *p) {
+    size_t most =
+        p->gradients.count * p->integrators.count * (p->dts + p->tolerances);
+    row_list r = {tool_allocate(most, sizeof *r.row), 0};
+    for (size_t g = 0; g < p->gradients.count; g++) {
+        for (size_t j = 0; j < p->dts; j++)
+            for (size_t i = 0; i < p->integrators.count; i++)
+                if (!adapts(p->integrators.item[i]))
+                    add_row(p, &r, g, p->integrators.item[i], p->dt[j], 0);
+        add_adaptive(p, &r, g);
+    }
+    return r;
+}
+
+/* Where stderr is a terminal and the work takes longer than a second. */
+static void progress(const row_list *r, size_t i, double seconds, bool last) {
+    if (seconds < 1 || !isatty(STDERR_FILENO))
+        return;
+    if (last)
+        fputs("\r\033[K", stderr);
+    else
+        fprintf(stderr, "\r\033[K%zu of %zu: %s, dt = %g", i + 1, r->count,
+                r->row[i].integrator, r->row[i].dt);
+    fflush(stderr);
+}
+
+static void time_rows(const plan *p, row_list *r) {
+    row **ran = tool_allocate(r->count, sizeof *ran);
+    size_t count = 0;
+    for (size_t i = 0; i < r->count; i++)
+        if (r->row[i].ran)
+            ran[count++] = &r->row[i];
+    rows_time(p, ran, count, p->repeats ? p->repeats : ROUNDS, p->repeats > 0);
+    free(ran);
+}
+
+static void run_rows(const plan *p, row_list *r, bool quiet) {
+    time_t start = time(NULL);
+    for (size_t i = 0; i < r->count; i++) {
+        if (!quiet)
+            progress(r, i, difftime(time(NULL), start), false);
+        row_run(p, &r->row[i]);
+    }
+    time_rows(p, r);
+    if (!quiet)
+        progress(r, r->count, difftime(time(NULL), start), true);
+}
+
+/* Where the last of them will end: as far as a reference is of use. */
+static double last_end(const plan *p, const row_list *r) {
+    double last = p->run->t_start + p->dt[0];
+    if (!nevh_scene_stops(p->scene))
+        return p->t_end;
+    for (size_t i = 0; i < r->count && last < p->t_end; i++)
+        last = fmax(last, row_end(p, &r->row[i]));
+    return fmin(last, p->t_end);
+}
+
+static void show_count(table *t, double count) {
+    if (count < 1e4)
+        table_shown(t, "%.0f", count);
+    else if (count < 1e7)
+        table_shown(t, "%.0fk", count / 1e3);
+    else
+        table_shown(t, "%.0fM", count / 1e6);
+}
+
+static void show_numbers(table *t, const plan *p, const row *r) {
+    double span = r->t_end - p->run->t_start;
+    table_shown(t, "%.1e", r->energy.max);
+    if (r->energy.verdict == NEVH_DRIFTS || r->energy.verdict == NEVH_UNSTABLE)
+        table_shown(t, "%+.1e",
+                    (r->followed > 0 ? r->longer.drift : r->energy.drift) *
+                        span);
+    else
+        table_shown(t, "-");
+    state_show(t, p, r);
+    if (p->dts > 1 && isfinite(r->observed_order))
+        table_shown(t, "%.1f", r->observed_order);
+    else if (p->dts > 1)
+        table_text(t, NULL);
+    show_count(t, r->counts.hamiltonians);
+    table_shown(t, "%.3g", 1000 * r->seconds);
+    table_text(t, nevh_verdict_name(r->energy.verdict));
+    diagnostics_show(t, p, r);
+}
+
+/* Rows of one scheme that chooses its steps differ in the tolerance. */
+static void show_name(table *t, const row *r) {
+    char *name = r->tolerance > 0
+                     ? text_print("%s %.0e", r->integrator, r->tolerance)
+                     : text_print("%s", r->integrator);
+    table_text(t, name);
+    free(name);
+}
+
+static void show_row(table *t, const plan *p, const row *r) {
+    show_name(t, r);
+    table_shown(t, "%d", r->order);
+    table_text(t, nevh_claim_name(nevh_integrator_symplectic(r->scheme)));
+    if (p->gradients.count > 1)
+        table_text(t, r->gradient);
+    table_shown(t, "%.4g", r->dt);
+    if (r->ran) {
+        show_numbers(t, p, r);
+        return;
+    }
+    for (int i = 0; i < (p->dts > 1 ? 6 : 5); i++)
+        table_text(t, NULL);
+    table_text(t, r->failed ? "failed" : "refused");
+    diagnostics_show(t, p, r);
+}
+
+static table *shown(const plan *p, const row_list *r) {
+    table *t = table_new();
+    const char *unit = nevh_scene_label(p->scene, "t");
+    char *dt = text_print(*unit ? "dt/%s" : "dt%s", unit);
+    static const char *const first[] = {"integrator", "order", "sympl."};
+    static const char *const errors[] = {
+        "max\nenergy\nerror", "drift\nover\nthe run", "state\nerror"};
+    static const char *const last[] = {"H\nevals", "ms", "energy"};
+    table_column(t, first[0]);
+    table_key(t);
+    table_columns(t, first + 1, sizeof first / sizeof *first - 1);
+    if (p->gradients.count > 1) {
+        table_column(t, "gradient");
+        table_key(t);
+    }
+    table_column(t, dt);
+    table_key(t);
+    table_columns(t, errors, sizeof errors / sizeof *errors);
+    if (p->dts > 1)
+        table_column(t, "order\nseen");
+    table_columns(t, last, sizeof last / sizeof *last);
+    if (p->diagnostics)
+        table_break(t);
+    diagnostics_columns(t, p, true);
+    for (size_t i = 0; i < r->count; i++) {
+        if (i && r->row[i].group != r->row[i - 1].group)
+            table_group(t);
+        show_row(t, p, &r->row[i]);
+    }
+    free(dt);
+    return t;
+}
+
+/* Messages of rows without numbers, each once. */
+static void list_reasons(const row_list *r, list *words) {
+    for (size_t i = 0; i < r->count; i++) {
+        bool told = r->row[i].ran;
+        for (size_t k = 0; !told && k < i; k++)
+            told = r->row[k].integrator == r->row[i].integrator &&
+                   strcmp(r->row[k].status, r->row[i].status) == 0;
+        if (!told)
+            list_print(words, "%s %s", r->row[i].integrator, r->row[i].status);
+    }
+}
+
+static page make_page(const options *o, const plan *p, const row_list *r) {
+    page result = {0};
+    bool is_table = o->format == FORMAT_TABLE;
+    result.table = is_table ? shown(p, r) : records(p, r->row, r->count);
+    if (is_table && o->quiet)
+        return result;
+    plan_notes(p, &result.before);
+    row_notes(o, p, r->row, r->count, &result.before);
+    state_notes(p, &result.before);
+    verdict_words(p, r->row, r->count, &result.after);
+    if (is_table)
+        stability_words(p, r->row, r->count, &result.after);
+    if (is_table)
+        remedy_words(p, r->row, r->count, &result.after);
+    if (is_table)
+        list_reasons(r, &result.after);
+    return result;
+}
+
+static void free_rows(row_list *r) {
+    for (size_t i = 0; i < r->count; i++) {
+        free(r->row[i].status);
+        free(r->row[i].changes);
+        free(r->row[i].errors);
+    }
+    free(r->row);
+}
+
+static int compare_rows(const options *o, const plan *p, row_list *r) {
+    output out;
+    int status = TOOL_OK;
+    if (plot_check(o) || output_open(&out, o->file))
+        return TOOL_USAGE;
+    for (size_t i = 0; plot_wanted(o) && i < r->count; i++)
+        r->row[i].errors = envelope_new(p->run->t_start, p->t_end);
+    run_rows(p, r, o->quiet);
+    observe_orders(r->row, r->count);
+    page result = make_page(o, p, r);
+    bool first = plot_goes_first(o);
+    int drawn = first ? compare_plot(o, p, r->row, r->count) : TOOL_OK;
+    page_print(&result, o, out.stream);
+    page_free(&result);
+    for (size_t i = 0; i < r->count; i++)
+        if (r->row[i].failed)
+            status = TOOL_FAILED;
+    status = output_close(&out, status);
+    if (plot_wanted(o) && !first)
+        drawn = compare_plot(o, p, r->row, r->count);
+    return drawn ? TOOL_USAGE : status;
+}
+
+static int compare_plan(const options *o, plan *p) {
+    row_list r = list_rows(p);
+    for (size_t i = 0; i < r.count; i++)
+        match_row(p, &r.row[i]);
+    int status = plan_reference(p, last_end(p, &r));
+    if (!status)
+        status = compare_rows(o, p, &r);
+    free_rows(&r);
+    return status;
+}
+
+int compare(const options *o) {
+    plan p;
+    int status = plan_make(&p, o);
+    if (!status)
+        status = compare_plan(o, &p);
+    plan_free(&p);
+    return status;
+}

@@ -1,0 +1,66 @@
+/* nevh compare --plot: energy errors against time, a panel a dt.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "plot/energy_plot.h"
+#include <stdlib.h>
+
+enum { MOST_PANELS = 9 };
+
+/* Whether the row is the first of its group with numbers. */
+static bool begins(const row rows[], size_t i) {
+    for (size_t k = i; k-- > 0 && rows[k].group == rows[i].group;)
+        if (rows[k].ran)
+            return false;
+    return rows[i].ran;
+}
+
+static char *heading(const plan *p, const row *r) {
+    const char *unit = nevh_scene_label(p->scene, "t");
+    char *dt = r->tolerance > 0
+                   ? text_print("steps by tolerance")
+                   : text_print("dt = %.4g%s%s", r->dt, *unit ? " " : "", unit);
+    if (p->gradients.count < 2)
+        return dt;
+    char *both = text_print("%s, %s", dt, r->gradient);
+    free(dt);
+    return both;
+}
+
+static void begin_panel(plot **to, const plan *p, const row *r) {
+    char *text = heading(p, r);
+    if (*to)
+        energy_plot_panel(*to, p, text);
+    else
+        *to = energy_plot_new(p, p->title, text);
+    free(text);
+}
+
+static void draw_row(plot *to, const plan *p, const row *r) {
+    char *name = r->tolerance > 0 && p->tolerances > 1
+                     ? text_print("%s, %g", r->integrator, r->tolerance)
+                     : text_print("%s", r->integrator);
+    energy_plot_add(to, name, r->errors);
+    free(name);
+}
+
+int compare_plot(const options *o, const plan *p, const row rows[],
+                 size_t count) {
+    plot *to = NULL;
+    size_t panels = 0;
+    for (size_t i = 0; i < count; i++) {
+        panels += begins(rows, i);
+        if (!rows[i].ran || panels > MOST_PANELS)
+            continue;
+        if (begins(rows, i))
+            begin_panel(&to, p, &rows[i]);
+        draw_row(to, p, &rows[i]);
+    }
+    if (!to)
+        return tool_refuse("there is nothing to plot: no row has numbers");
+    plot_same_ranges(to);
+    char *more = energy_plot_words(p);
+    plot_note_run(to, p, NULL, more);
+    free(more);
+    int status = plot_write(to, o);
+    plot_free(to);
+    return status;
+}

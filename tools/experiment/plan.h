@@ -1,0 +1,94 @@
+/* nevh: what is to be run.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_PLAN_H
+#define NEVH_PLAN_H
+
+#include "cli/tool.h"
+
+typedef struct shelf shelf;
+
+/* plan.c: the rows to run, from options, scene and defaults. */
+typedef struct {
+    nevh_scene *scene;
+    const nevh_system *system;
+    const nevh_scene_run *run;
+    const char *name;
+    char *title; /* of the scene, and what options changed */
+    size_t n;
+    double *q, *p; /* at t_start */
+    double t_end;
+    const double *dt, *tolerance;
+    size_t dts, tolerances;
+    double *given_dt, *at; /* by options; at: sorted */
+    size_t ats;
+    list integrators, gradients;
+    size_t added; /* of the integrators, from there on by --transform; or 0 */
+    double gradient_step;
+    const double *gradient_steps; /* as in nevh_options */
+    size_t repeats;               /* of timed runs; 0: chosen */
+    bool portable, friction, time, balance;
+    bool hurried;    /* rows are to be finished later, and timed then */
+    double patience; /* work that a row may take; 0: any */
+    bool match_work, diagnostics;
+    nevh_reference *reference; /* NULL: not asked for, or there is none */
+    double reference_end;
+    char *no_reference;      /* why there is none */
+    const char *observable;  /* whose errors count, not of states; NULL */
+    double observable_scale; /* that its errors are divided by */
+    bool observable_level;   /* its size, not its range */
+    double observable_error; /* what that of the reference makes of it */
+    bool promises;           /* rows tell how long they keep what they should */
+    shelf *shelf;            /* of steppers */
+} plan;
+/* returns  TOOL_OK, or TOOL_USAGE with the message printed */
+int plan_make(plan *, const options *);
+void plan_free(plan *);
+nevh_options plan_options(const plan *, const char *gradient);
+/* The scheme of "gauss4" or "gauss4+transform"; NULL for other names. */
+const nevh_integrator *plan_scheme(const char *name, bool *transformed);
+/* The transform that it is to be planned with: of names with "+transform", and
+   of schemes that choose their own times; NULL: none. */
+const nevh_system *plan_transform(const plan *, const char *name);
+/* The integrator of that name, planned for the first gradient. */
+nevh_stepper *plan_stepper(const plan *, const char *name);
+/* The first integrator that fits, those of --transform before others, planned
+   for the first gradient; NULL, with a message, when none does.
+   name  out: what the plan calls it; NULL: not asked for */
+nevh_stepper *plan_first(const plan *, const char **name);
+/* Of plans with several integrators or dt: which of them is taken. */
+void plan_note_first(const plan *, const char *integrator, list *notes);
+/* Title, effects, structure of H, span. */
+void plan_notes(const plan *, list *notes);
+char *plan_structure(const plan *);
+
+/* shelf.c */
+shelf *shelf_new(void);
+void shelf_free(shelf *); /* NULL is allowed */
+
+/* stop.c: runs that end early, where the scene's `stop` says. */
+typedef struct {
+    nevh_scene *scene;
+    bool reached;
+    double t; /* of the last state seen */
+    size_t step;
+} stop;
+/* A nevh_observe_fn; data is the stop.  NEVH_STOPPED where it is reached. */
+int stop_observe(void *, size_t step, double t, const double q[],
+                 const double p[]);
+/* nevh_run_until, from the plan's start to its end, or to where it is to stop.
+   q, m     in and out, n each
+   stopped  out: the time where it was to stop; NAN
+   returns  as nevh_run_until; NEVH_OK where the run came to either end */
+int plan_run(const plan *, nevh_stepper *, double dt, double q[], double m[],
+             const nevh_observer[], size_t count, double *stopped);
+char *stop_words(const plan *, double t);
+
+/* Of what is shown: that of the coordinate that it is; 0: none. */
+double plan_period(const plan *, const char *shown);
+/* The energy that errors are relative to: the scene's, or H at the start. */
+double plan_energy_scale(const plan *);
+
+/* impact.c: what nevh effects --impact prints. */
+int impact(const options *, plan *);
+
+#endif

@@ -1,0 +1,297 @@
+/* nevh: one run of compare, watched.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "plot/envelope.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+typedef struct {
+    const plan *plan;
+    row *row;
+    double *q, *p;
+} work;
+
+typedef struct {
+    nevh_energy *energy;
+    double limit, since;
+} watch;
+
+/* Errors are asked for after every step, which costs more than a step may: this
+   is for a run that is known to become unstable. */
+static int stop_when_unstable(void *data, size_t step, double t,
+                              const double q[], const double p[]) {
+    watch *w = data;
+    int status = nevh_energy_observe(w->energy, step, t, q, p);
+    if (!status && fabs(nevh_energy_error(w->energy, 0)) > w->limit)
+        return w->since = t, NEVH_STOPPED;
+    return status;
+}
+
+static void go_to_start(const work *w) {
+    memcpy(w->q, w->plan->q, w->plan->n * sizeof *w->q);
+    memcpy(w->p, w->plan->p, w->plan->n * sizeof *w->p);
+}
+
+static int run(const work *w, nevh_stepper *s, const nevh_observer observers[],
+               size_t count, double *stopped) {
+    go_to_start(w);
+    return plan_run(w->plan, s, w->row->step, w->q, w->p, observers, count,
+                    stopped);
+}
+
+nevh_energy *row_energy(const plan *p, const row *r, const nevh_stepper *s) {
+    nevh_options o = plan_options(p, r->gradient);
+    nevh_energy *energy = nevh_energy_new(p->system, &o);
+    nevh_energy_expect(energy, s);
+    if (p->balance)
+        nevh_energy_follow(energy, s);
+    if (p->run->energy_scale > 0)
+        nevh_energy_set_scale(energy, p->run->energy_scale);
+    return energy;
+}
+
+static void unstable_since(work *w) {
+    bool balance = w->plan->balance;
+    nevh_stepper *s = row_stepper(w->plan, w->row, balance);
+    watch unstable = {row_energy(w->plan, w->row, s), w->row->energy.limit,
+                      NAN};
+    double stopped;
+    run(w, s, &(nevh_observer){stop_when_unstable, &unstable, 1}, 1, &stopped);
+    free(w->row->status);
+    w->row->status = text_print("unstable: since t = %.9g", unstable.since);
+    nevh_energy_free(unstable.energy);
+    row_shelve(w->plan, w->row, balance, s);
+}
+
+/* Values over instances, of which there is a whole number. */
+nevh_counts row_counts(const nevh_stepper *s, nevh_counts before) {
+    nevh_counts c = nevh_stepper_counts(s);
+    double instances = round((double)c.values / c.hamiltonians);
+    c.values -= before.values, c.gradients -= before.gradients;
+    c.sweeps -= before.sweeps;
+    c.newtons -= before.newtons, c.rescues -= before.rescues;
+    if (c.hamiltonians > 0)
+        c.hamiltonians = (double)c.values / instances;
+    return c;
+}
+
+/* What a gradient costs of many stages that are taken side by side, a single
+   one being 1. */
+static double side_by_side(const nevh_integrator *scheme) {
+    static const double least = 0.15;
+    double stages = nevh_integrator_sweep_gradients(scheme);
+    return stages > 1 ? least + (1 - least) / stages : 1;
+}
+
+/* Of gradients and values of formulas, as a processor of 2020 takes them, give
+   or take a factor of two; an implicit step that Newton solves factors a matrix
+   as well. */
+double row_work(const plan *p, const nevh_integrator *scheme,
+                const nevh_counts *c, size_t steps) {
+    double n = (double)p->n, m = 2 * n;
+    double gradient = c->hamiltonians > 0 ? 100 : 250 + 40 * n;
+    double evaluations =
+        gradient * (double)c->gradients + (100 + 40 * n) * c->hamiltonians;
+    return 1e-9 *
+           (side_by_side(scheme) * evaluations + (50 + 10 * n) * (double)steps +
+            m * m * m / 2 * (double)c->newtons);
+}
+
+/* Of all steps tried, those that were too long for the tolerance included. */
+static double mean_step(const work *w) {
+    int each = nevh_integrator_gradients(w->row->scheme);
+    double evaluations = (double)w->row->counts.gradients;
+    if (each == 0 || evaluations == 0)
+        return w->row->dt;
+    return (w->row->t_end - w->plan->run->t_start) * each / evaluations;
+}
+
+/* Whoever waits for a row no longer than its work is as much as that. */
+typedef struct {
+    const plan *plan;
+    const nevh_integrator *scheme;
+    const nevh_stepper *stepper;
+    nevh_counts before;
+    bool late;
+} patience;
+
+static int mind_work(void *data, size_t step, double t, const double q[],
+                     const double p[]) {
+    patience *wait = data;
+    nevh_counts c = row_counts(wait->stepper, wait->before);
+    (void)t, (void)q, (void)p;
+    wait->late =
+        row_work(wait->plan, wait->scheme, &c, step) > wait->plan->patience;
+    return wait->late ? NEVH_STOPPED : NEVH_OK;
+}
+
+/* Looks at a promise as often as is worth it. */
+typedef struct {
+    promise *promise;
+    const nevh_energy *energy;
+    const nevh_state_error *state;
+    const observable *shown; /* NULL: states count */
+} keeper;
+
+enum { LOOKS = 4000 };
+
+static int mind_promise(void *data, size_t step, double t, const double q[],
+                        const double p[]) {
+    keeper *k = data;
+    promise *made = k->promise;
+    double error = made->by_state && k->shown ? observable_result(k->shown)
+                   : made->by_state ? nevh_state_error_result(k->state)
+                                    : nevh_energy_result(k->energy, 0).max;
+    (void)step, (void)q, (void)p;
+    made->unknown = isnan(error);
+    made->broken = error > made->most;
+    if (made->unknown || made->broken)
+        return NEVH_STOPPED;
+    made->until = t;
+    return NEVH_OK;
+}
+
+/* The reference is compared with at times that are spread over the whole run:
+   one that stopped early met too few of them. */
+static bool compares_states(const plan *p, const row *r) {
+    static const double least = 1. / 32;
+    double span = p->reference_end - p->run->t_start;
+    return r->t_end - p->run->t_start >= least * span;
+}
+
+static void explain_unknown(const plan *p, row *r) {
+    const char *message = nevh_reference_message(p->reference);
+    if (!compares_states(p, r))
+        snprintf(r->state_unknown, sizeof r->state_unknown,
+                 "it ended at t = %.6g, too early to be compared", r->t_end);
+    else
+        snprintf(r->state_unknown, sizeof r->state_unknown,
+                 "the reference has no state: %s", message);
+}
+
+static void watched(work *w, nevh_stepper *s) {
+    row *r = w->row;
+    patience wait = {w->plan, r->scheme, s, nevh_stepper_counts(s), false};
+    nevh_energy *energy = row_energy(w->plan, w->row, s);
+    nevh_state_error *state = nevh_state_error_new(w->plan->reference);
+    invariants *kept = w->plan->diagnostics ? invariants_new(w->plan) : NULL;
+    observable *shown = observable_new(w->plan);
+    nevh_observer observers[7] = {{nevh_energy_observe, energy, 1}};
+    energy_trace trace = {r->errors, energy};
+    size_t count = 1;
+    if (state)
+        nevh_state_error_follow(state, s);
+    if (r->errors)
+        observers[count++] = (nevh_observer){energy_trace_observe, &trace, 1};
+    if (state)
+        observers[count++] =
+            (nevh_observer){nevh_state_error_observe, state, 1};
+    if (kept)
+        observers[count++] = (nevh_observer){invariants_observe, kept, 1};
+    if (shown)
+        observers[count++] = (nevh_observer){observable_observe, shown, 1};
+    keeper keeps = {r->promise, energy, state, shown};
+    double steps = (w->plan->t_end - w->plan->run->t_start) / r->step;
+    if (r->promise)
+        observers[count++] =
+            (nevh_observer){mind_promise, &keeps, 1 + (size_t)(steps / LOOKS)};
+    if (w->plan->patience > 0)
+        observers[count++] =
+            (nevh_observer){mind_work, &wait, w->plan->n < 8 ? 8 : 1};
+    double begin = cpu_seconds();
+    int status = run(w, s, observers, count, &r->stopped);
+    r->watched = cpu_seconds() - begin;
+    r->t_end = isfinite(r->stopped) ? r->stopped : w->plan->t_end;
+    const char *why = wait.late                ? "it takes too long"
+                      : status == NEVH_STOPPED ? nevh_energy_message(energy)
+                                               : nevh_stepper_message(s);
+    r->energy = nevh_energy_result(energy, 0);
+    r->steps = nevh_stepper_taken(s);
+    r->counts = row_counts(s, wait.before);
+    r->late = wait.late;
+    r->ran = !r->late && (!status || r->energy.verdict == NEVH_UNSTABLE);
+    r->failed = !r->ran;
+    r->status = status ? text_print("failed: %s", why) : text_print("ok");
+    r->state_error =
+        compares_states(w->plan, r) ? nevh_state_error_result(state) : NAN;
+    if (state && isnan(r->state_error))
+        explain_unknown(w->plan, r);
+    r->observable_error =
+        compares_states(w->plan, r) ? observable_result(shown) : NAN;
+    observable_free(shown);
+    r->changes = kept ? invariants_result(kept) : NULL;
+    nevh_state_error_free(state);
+    nevh_energy_free(energy);
+}
+
+static bool is_refusal(int status) {
+    return status == NEVH_ESTRUCT || status == NEVH_ENOGRAD ||
+           status == NEVH_EINVAL;
+}
+
+static bool refused(row *r, const nevh_stepper *s) {
+    int status = nevh_stepper_status(s);
+    r->order =
+        status ? nevh_integrator_order(r->scheme) : nevh_stepper_order(s);
+    if (!status)
+        return false;
+    r->failed = !is_refusal(status);
+    r->status = text_print(r->failed ? "failed: %s" : "refused: %s",
+                           nevh_stepper_message(s));
+    return true;
+}
+
+static work work_new(const plan *p, row *r) {
+    return (work){p, r, tool_allocate(p->n, sizeof(double)),
+                  tool_allocate(p->n, sizeof(double))};
+}
+
+static void work_free(work *w) {
+    free(w->q);
+    free(w->p);
+}
+
+void row_run(const plan *p, row *r) {
+    work w = work_new(p, r);
+    r->step = r->dt;
+    r->observable = p->observable;
+    r->observed_order = r->state_error = r->observable_error = r->stopped =
+        r->seconds = NAN;
+    nevh_stepper *s = row_stepper(p, r, p->balance);
+    if (!refused(r, s)) {
+        watched(&w, s);
+        if (!p->hurried)
+            row_follow(p, r);
+        if (r->ran && p->diagnostics)
+            diagnose_row(p, r);
+        if (r->ran && r->energy.verdict == NEVH_UNSTABLE && !p->hurried)
+            unstable_since(&w);
+        if (r->ran && r->tolerance > 0)
+            r->dt = mean_step(&w);
+    }
+    r->work = row_work(p, r->scheme, &r->counts, r->steps);
+    row_shelve(p, r, p->balance, s);
+    work_free(&w);
+}
+
+double row_end(const plan *p, const row *r) {
+    double stopped = NAN;
+    row copy = *r;
+    work w = work_new(p, &copy);
+    nevh_stepper *s = row_stepper(p, r, false);
+    if (nevh_stepper_status(s) || run(&w, s, NULL, 0, &stopped))
+        stopped = p->run->t_start;
+    row_shelve(p, r, false, s);
+    work_free(&w);
+    return isnan(stopped) ? p->t_end : stopped;
+}
+
+void row_finish(const plan *p, row *r) {
+    work w = work_new(p, r);
+    row_follow(p, r);
+    if (r->energy.verdict == NEVH_UNSTABLE)
+        unstable_since(&w);
+    work_free(&w);
+}

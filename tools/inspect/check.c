@@ -1,0 +1,221 @@
+/* nevh check: what can be said of a scene before it is run.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "experiment/pace.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void tell_finding(const nevh_probe *probe, nevh_question question,
+                         list *notes) {
+    nevh_finding f = nevh_probe_finding(probe, question);
+    list_print(notes, "  %-24s %-3s  %.1e  %.1e%s%s",
+               nevh_question_name(question), f.holds ? "yes" : "no", f.evidence,
+               f.limit, f.term && !f.holds ? "  " : "",
+               f.term && !f.holds ? f.term : "");
+}
+
+static void tell_probes(const plan *p, list *notes) {
+    enum { SHOWN = 8 };
+    nevh_options o = plan_options(p, p->gradients.item[0]);
+    nevh_probe *probe = nevh_probe_new(p->system, &o);
+    if (nevh_probe_status(probe)) {
+        list_print(notes, "H could not be probed: %s",
+                   nevh_probe_message(probe));
+    } else {
+        const double *lengths = nevh_probe_lengths(probe);
+        list_add(notes, "Properties of H, tested numerically: largest "
+                        "deviation met, and that which rounding causes");
+        for (int i = 0; i < NEVH_FINDINGS; i++)
+            tell_finding(probe, (nevh_question)i, notes);
+        list_add(notes, "Lengths over which H varies:");
+        for (size_t k = 0; k < p->n && k < SHOWN; k++)
+            list_print(notes, "  %s: %.2g, p_%s: %.2g",
+                       nevh_scene_coordinate(p->scene, k), lengths[k],
+                       nevh_scene_coordinate(p->scene, k), lengths[p->n + k]);
+        if (p->n > SHOWN)
+            list_print(notes, "  and %zu more", p->n - SHOWN);
+    }
+    nevh_probe_free(probe);
+}
+
+static void tell_state(const plan *p, list *notes) {
+    nevh_options o = plan_options(p, p->gradients.item[0]);
+    o.gradient = nevh_central2;
+    o.gradient_step = 1e-3; /* unused: H alone is asked for */
+    nevh_field *field = nevh_field_new(p->system, &o);
+    double h = NAN, t = p->run->t_start;
+    nevh_field_value(field, 1, &t, p->q, p->p, &h);
+    list_print(notes, "%zu degree%s of freedom, H = %.9g at the start", p->n,
+               p->n == 1 ? "" : "s", h);
+    nevh_field_free(field);
+}
+
+typedef struct {
+    list names, reasons; /* reasons[i] is why names[i] do not fit */
+} refusals;
+
+/* The message without the scheme's name and the schemes to take instead, which
+   are the rest of the table. */
+static char *reason(const char *scheme, const char *message) {
+    size_t own = strlen(scheme);
+    if (strncmp(message, scheme, own) == 0 && message[own] == ' ')
+        message += own + 1;
+    const char *end = strstr(message, "; schemes that fit");
+    size_t length = end ? (size_t)(end - message) : strlen(message);
+    return text_print("%.*s", (int)length, message);
+}
+
+static void add_refusal(refusals *r, const char *scheme, const char *message) {
+    char *why = reason(scheme, message);
+    size_t i = 0;
+    while (i < r->reasons.count && strcmp(r->reasons.item[i], why) != 0)
+        i++;
+    if (i == r->reasons.count) {
+        list_add(&r->reasons, why);
+        list_add(&r->names, scheme);
+    } else {
+        char *longer = text_print("%s, %s", r->names.item[i], scheme);
+        free(r->names.item[i]);
+        r->names.item[i] = longer;
+    }
+    free(why);
+}
+
+/* Below this growth of a step is no limit, but a pace at which euler is slow to
+   show that it is never stable. */
+static const double never = 0.01;
+
+/* dt times the fastest frequency, against what the scheme bears. */
+static void add_preflight(const plan *p, const nevh_integrator *scheme,
+                          bool fits, bool why, const preflight *ahead,
+                          table *t) {
+    double limit = fits ? nevh_stability_limit(scheme) : NAN;
+    double x = fits ? p->dt[0] * ahead->frequency : NAN;
+    if (!why && limit < never)
+        table_text(t, "never");
+    else if (isfinite(limit))
+        table_shown(t, "%.3g", limit);
+    else
+        table_text(t, isinf(limit) ? "any step" : NULL);
+    if (x > 0)
+        table_shown(t, "%.3g", x);
+    else
+        table_text(t, NULL);
+    table_text(t, fits ? preflight_verdict(limit, x) : NULL);
+}
+
+/* What the table holds, and what is said below it. */
+typedef struct {
+    const plan *plan;
+    const preflight *ahead;
+    bool why, all; /* reasons as a column; all rows, not the plan's alone */
+    table *table;
+    refusals refused;
+    list others; /* that fit */
+} fitting;
+
+static bool is_planned(const plan *p, const nevh_integrator *scheme) {
+    bool transformed;
+    for (size_t i = 0; i < p->integrators.count; i++)
+        if (plan_scheme(p->integrators.item[i], &transformed) == scheme)
+            return true;
+    return false;
+}
+
+static void add_row(fitting *f, const nevh_integrator *scheme,
+                    const nevh_stepper *s) {
+    int status = nevh_stepper_status(s);
+    table_text(f->table, nevh_integrator_name(scheme));
+    table_number(f->table, status ? nevh_integrator_order(scheme)
+                                  : nevh_stepper_order(s));
+    table_text(f->table, status ? "no" : "yes");
+    if (f->why)
+        table_text(f->table, status ? nevh_stepper_message(s) : NULL);
+    add_preflight(f->plan, scheme, !status, f->why, f->ahead, f->table);
+}
+
+static void add_scheme(fitting *f, const nevh_integrator *scheme) {
+    const plan *p = f->plan;
+    nevh_options o = plan_options(p, p->gradients.item[0]);
+    const char *name = nevh_integrator_name(scheme);
+    if (o.gradient_step == 0)
+        o.gradient_step = 1e-3; /* nothing is run: no need to choose it */
+    if (nevh_integrator_needs_tolerance(scheme))
+        o.tolerance = 1e-6;
+    nevh_stepper *s = nevh_stepper_new(p->system, scheme, &o);
+    int status = nevh_stepper_status(s);
+    if (f->all || is_planned(p, scheme))
+        add_row(f, scheme, s);
+    else if (!status)
+        list_add(&f->others, name);
+    if (status)
+        add_refusal(&f->refused, name, nevh_stepper_message(s));
+    nevh_stepper_free(s);
+}
+
+static void tell_others(const fitting *f, list *words) {
+    list_add(words,
+             "stable below: the largest omega dt at which the steps of an "
+             "oscillation stay bounded (never: they grow at any); empty where "
+             "the integrator chooses its own steps.");
+    char *others = list_joined(&f->others);
+    if (*others)
+        list_print(words, "Also fit (--all shows them): %s.", others);
+    for (size_t i = 0; i < f->refused.names.count; i++)
+        list_print(words, "Do not fit: %s: %s", f->refused.names.item[i],
+                   f->refused.reasons.item[i]);
+    free(others);
+}
+
+/* Reasons are a column where programs read, and below the table where people
+   do. */
+static void add_schemes(fitting *f, page *result) {
+    static const char *const columns[] = {"integrator", "order", "fits", "why"};
+    for (size_t i = 0; i < (f->why ? 4 : 3); i++)
+        table_column(f->table, columns[i]);
+    table_column(f->table, f->why ? "stable_below" : "stable\nbelow");
+    table_column(f->table, f->why ? "h_omega" : "omega dt");
+    table_column(f->table, f->why ? "preflight" : "");
+    for (size_t i = 0; nevh_integrators()[i]; i++)
+        add_scheme(f, nevh_integrators()[i]);
+    if (!f->why)
+        tell_others(f, &result->after);
+    list_free(&f->refused.names);
+    list_free(&f->refused.reasons);
+    list_free(&f->others);
+}
+
+static int check_plan(const options *o, const plan *p) {
+    page result = {.table = table_new()};
+    bool is_table = o->format == FORMAT_TABLE;
+    preflight ahead = preflight_fly(p);
+    if (!o->quiet || !is_table) {
+        plan_notes(p, &result.before);
+        tell_state(p, &result.before);
+        tell_probes(p, &result.before);
+        preflight_words(p, &ahead, &result.before);
+    }
+    add_schemes(&(fitting){.plan = p,
+                           .ahead = &ahead,
+                           .why = !is_table,
+                           .all = !is_table || o->all,
+                           .table = result.table},
+                &result);
+    if (o->quiet && is_table)
+        list_free(&result.after);
+    free(ahead.failure);
+    int status = output_page(o, &result, TOOL_OK);
+    page_free(&result);
+    return status;
+}
+
+int check(const options *o) {
+    plan p;
+    int status = plan_make(&p, o);
+    if (!status && o->file)
+        status = output_check(o->file);
+    if (!status)
+        status = check_plan(o, &p);
+    plan_free(&p);
+    return status;
+}

@@ -1,0 +1,29 @@
+/* nevh effects --impact: orbits, and how far they are apart.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_IMPACT_PRIVATE_H
+#define NEVH_IMPACT_PRIVATE_H
+
+#include "experiment/plan.h"
+
+/* A run, and where it came by: `kept` states after every `every` steps. */
+typedef struct {
+    const plan *plan;
+    size_t every, kept;
+    double *states, *last, t;     /* some x 2n, 2n */
+    double *low, *high;           /* 2n */
+    double energy, seconds, work; /* energy at the end; work: evaluations */
+    double stopped;               /* where the scene's `stop` said; NAN */
+    int status;
+    char *message;
+} trace;
+
+typedef struct {
+    double at_end, largest, since; /* of the range; at_end, since: or NAN */
+} difference;
+
+/* Of one orbit with the first dt and gradient; to be freed. */
+trace trace_run(const plan *, const char *integrator);
+void trace_free(trace *);
+difference trace_difference(const trace *, const trace *);
+
+#endif

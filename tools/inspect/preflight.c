@@ -1,0 +1,331 @@
+/* nevh check: what a short flight ahead says of a run.
+
+   The orbit by a method of order 8 that adapts its steps, and a neighbour that
+   is brought back to it again and again [G. Benettin, L. Galgani, J.-M.
+   Strelcyn, Kolmogorov entropy and numerical experiments, Phys. Rev. A 14
+   (1976) 2338-2345].
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "experiment/pace.h"
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { SAMPLES = 256, EDGE_EVERY = 8, MOST_DOF = 48 };
+static const double enough = 2;    /* seconds */
+static const double beside = 1e-7; /* of the lengths */
+static const double far_off = 1e3; /* times that */
+/* Factors of e by which a neighbour parts: in all, and in the second half of
+   the flight.  Apart from chaos it parts in proportion to the time (a factor 2
+   in the second half), with resonance to its square (4). */
+static const double parted = 12, parted_late = 3, parted_little = 1.5;
+static const double many_turns = 30;
+static const double tolerance = 1e-10;
+
+typedef struct {
+    const plan *plan;
+    preflight *found;
+    pace fastest;
+    nevh_field *field;        /* for values */
+    nevh_field *gradient;     /* the first that is asked for */
+    double scale;             /* of the energy */
+    double *length;           /* 2n */
+    double *z;                /* 2n x 2, the neighbour in lane 1 */
+    double *trial;            /* 2n */
+    double folds;             /* when the neighbour was last brought back */
+    double fold[SAMPLES + 1]; /* of each sample */
+    size_t samples;
+    clock_t begin;
+} flight;
+
+/* H at the state of lane 0, variable k moved. */
+static bool is_there(flight *f, double t, size_t k, double move) {
+    size_t n = f->plan->n;
+    double h = NAN;
+    for (size_t i = 0; i < 2 * n; i++)
+        f->trial[i] = f->z[2 * i] + (i == k ? move : 0);
+    return !nevh_field_value(f->field, 1, &t, f->trial, f->trial + n, &h) &&
+           isfinite(h);
+}
+
+/* Up to two lengths to either side, from near to far. */
+static void look_for_edge(flight *f, double t) {
+    for (size_t k = 0; k < 2 * f->plan->n; k++)
+        for (int i = 0; i < 12; i++) {
+            double part = ldexp(1, i / 2 - 4);
+            double move = (i % 2 ? -part : part) * f->length[k];
+            if (part >= f->found->edge || is_there(f, t, k, move))
+                continue;
+            f->found->edge = part;
+            f->found->edge_variable = k;
+            f->found->edge_at = f->z[2 * k] + move;
+            f->found->edge_time = t;
+        }
+}
+
+static void put_beside(flight *f) {
+    for (size_t i = 0; i < 2 * f->plan->n; i++)
+        f->z[2 * i + 1] = f->z[2 * i] + (i ? 0 : beside * f->length[i]);
+}
+
+/* Notes how far the neighbour has parted in all, and brings it back to its
+   distance where that is far off.  Not each time: the errors of the steps would
+   be brought back with it, and grow as if there were chaos. */
+static void follow_neighbour(flight *f, size_t sample) {
+    size_t n = f->plan->n;
+    double sum = 0;
+    for (size_t i = 0; i < 2 * n; i++) {
+        double d = (f->z[2 * i + 1] - f->z[2 * i]) / f->length[i];
+        sum += d * d;
+    }
+    double gained = sqrt(sum) / beside;
+    if (!(gained > 0) || !isfinite(gained)) {
+        f->fold[f->samples = sample] = f->folds;
+        put_beside(f);
+        return;
+    }
+    f->fold[f->samples = sample] = f->folds + log(gained);
+    if (gained > 1 / far_off && gained < far_off)
+        return;
+    f->folds += log(gained);
+    for (size_t i = 0; i < 2 * n; i++)
+        f->z[2 * i + 1] =
+            f->z[2 * i] + (f->z[2 * i + 1] - f->z[2 * i]) / gained;
+}
+
+/* Rounding noise of the first gradient over the steps of the first dt, at its
+   largest. */
+static void look_for_noise(flight *f, double t) {
+    const plan *p = f->plan;
+    double steps = fmin(1e15, (p->t_end - p->run->t_start) / p->dt[0]);
+    double noise = 0;
+    if (!nevh_field_energy_floor(f->gradient, t, f->trial, f->trial + p->n,
+                                 p->dt[0], (size_t)steps, &noise))
+        f->found->noise = fmax(f->found->noise, noise / f->scale);
+}
+
+static void take_first_lane(flight *f) {
+    for (size_t k = 0; k < 2 * f->plan->n; k++)
+        f->trial[k] = f->z[2 * k];
+}
+
+static void look(flight *f, int i, double t) {
+    size_t n = f->plan->n;
+    take_first_lane(f);
+    pace_observe(&f->fastest, 0, t, f->trial, f->trial + n);
+    look_for_noise(f, t);
+    if (i % EDGE_EVERY == 0 && n <= MOST_DOF)
+        look_for_edge(f, t);
+}
+
+/* Whether the run would end here. */
+static bool is_stopped(flight *f, double t) {
+    bool reached;
+    take_first_lane(f);
+    return !nevh_scene_stop_reached(f->plan->scene, t, f->trial,
+                                    f->trial + f->plan->n, &reached) &&
+           reached;
+}
+
+static void fly(flight *f, nevh_stepper *s) {
+    const plan *p = f->plan;
+    double t = p->run->t_start, h = (p->t_end - t) / SAMPLES;
+    int status = nevh_stepper_status(s);
+    look(f, 0, t);
+    put_beside(f);
+    for (int i = 1; !status && i <= SAMPLES; i++) {
+        status = nevh_stepper_apply(s, t, h, f->z, f->z + 2 * p->n);
+        if (status)
+            break;
+        t = p->run->t_start + i * h;
+        follow_neighbour(f, (size_t)i);
+        look(f, i, t);
+        if (is_stopped(f, t) ||
+            (double)(clock() - f->begin) / CLOCKS_PER_SEC > enough)
+            break;
+    }
+    f->found->flown = t - p->run->t_start;
+    if (status)
+        f->found->failure = text_print("%s", nevh_stepper_message(s));
+}
+
+static double most(const double numbers[], size_t from, size_t to) {
+    double found = numbers[from];
+    for (size_t i = from; i <= to; i++)
+        found = fmax(found, numbers[i]);
+    return found;
+}
+
+/* Of the last fold: from those of parts of the flight, which differ. */
+static double spread(const flight *f) {
+    enum { PARTS = 8 };
+    size_t last = f->samples;
+    double mean = f->fold[last] / PARTS, sum = 0;
+    for (size_t i = 0; i < PARTS; i++) {
+        double off =
+            f->fold[(i + 1) * last / PARTS] - f->fold[i * last / PARTS] - mean;
+        sum += off * off;
+    }
+    double halves = fabs(f->fold[last] - 2 * f->fold[last / 2]);
+    return fmax(halves, sqrt(sum * PARTS / (PARTS - 1)));
+}
+
+/* Whether neighbours part as in chaos; from the largest values of either half,
+   because their distance goes up and down with each turn. */
+static void judge(const flight *f) {
+    preflight *found = f->found;
+    size_t last = f->samples, half = last / 2;
+    double time = found->flown, turns = found->frequency * time / (2 * M_PI);
+    if (f->plan->n == 1 && !f->plan->time) {
+        found->outlook = OUTLOOK_PLANE;
+        return;
+    }
+    if (last < 2)
+        return;
+    double late = most(f->fold, half, last) - most(f->fold, 0, half);
+    found->exponent = f->fold[last] / time;
+    found->error = spread(f) / time;
+    if (f->fold[last] > parted && late > parted_late)
+        found->outlook = OUTLOOK_CHAOTIC;
+    else if (late < parted_little && turns > many_turns)
+        found->outlook = OUTLOOK_REGULAR;
+}
+
+static bool take_lengths(flight *f, const nevh_options *o) {
+    nevh_probe *probe = nevh_probe_new(f->plan->system, o);
+    bool there = !nevh_probe_status(probe);
+    if (there)
+        memcpy(f->length, nevh_probe_lengths(probe),
+               2 * f->plan->n * sizeof *f->length);
+    nevh_probe_free(probe);
+    return there;
+}
+
+/* Both lanes start in lane 0's state, so that scales and steps are found around
+   it. */
+static nevh_stepper *new_stepper(const flight *f) {
+    const plan *p = f->plan;
+    nevh_options o = plan_options(p, "exact");
+    for (size_t k = 0; k < p->n; k++) {
+        f->z[2 * k] = f->z[2 * k + 1] = p->q[k];
+        f->z[2 * (p->n + k)] = f->z[2 * (p->n + k) + 1] = p->p[k];
+    }
+    o.q = f->z;
+    o.p = f->z + 2 * p->n;
+    o.width = 2;
+    o.gradient_step = 0;
+    o.tolerance = tolerance;
+    o.scale = f->length;
+    return nevh_stepper_new(p->system, nevh_dop853, &o);
+}
+
+preflight preflight_fly(const plan *p) {
+    preflight found = {.edge = INFINITY};
+    nevh_options given = plan_options(p, p->gradients.item[0]);
+    nevh_options o = plan_options(p, "exact");
+    flight f = {.plan = p, .found = &found, .begin = clock()};
+    f.length = tool_allocate(2 * p->n, sizeof *f.length);
+    f.z = tool_allocate(4 * p->n, sizeof *f.z);
+    f.trial = tool_allocate(2 * p->n, sizeof *f.trial);
+    nevh_options values = plan_options(p, "central2");
+    values.gradient_step = 1e-3; /* unused: H alone is asked for */
+    o.gradient_step = 0;
+    f.field = nevh_field_new(p->system, &values);
+    f.gradient = nevh_field_new(p->system, &given);
+    f.scale = plan_energy_scale(p);
+    if (take_lengths(&f, &o)) {
+        o.scale = f.length;
+        f.fastest.rates = nevh_rates_new(p->system, &o);
+        nevh_stepper *s = new_stepper(&f);
+        fly(&f, s);
+        nevh_stepper_free(s);
+    }
+    found.frequency = f.fastest.frequency;
+    found.fastest_at = f.fastest.t;
+    judge(&f);
+    nevh_rates_free(f.fastest.rates);
+    nevh_field_free(f.field);
+    nevh_field_free(f.gradient);
+    free(f.length);
+    free(f.z);
+    free(f.trial);
+    return found;
+}
+
+static void tell_edge(const plan *p, const preflight *f, list *notes) {
+    size_t k = f->edge_variable;
+    if (isfinite(f->edge))
+        list_print(notes,
+                   "H ends at %s%s = %.3g or before: %.2g of the length over "
+                   "which it varies from the orbit, near t = %.4g",
+                   k < p->n ? "" : "p_",
+                   nevh_scene_coordinate(p->scene, k % p->n), f->edge_at,
+                   f->edge, f->edge_time);
+    if (f->failure)
+        list_print(notes, "The orbit could be followed up to t = %.6g: %s",
+                   p->run->t_start + f->flown, f->failure);
+}
+
+/* Of the time followed, and what it means for a longer run. */
+static void tell_outlook(const plan *p, const preflight *f, list *notes) {
+    const char *unit = nevh_scene_label(p->scene, "t");
+    const char *space = *unit ? " " : "", *per = *unit ? "/" : "";
+    double horizon = p->run->t_start - log(DBL_EPSILON) / f->exponent;
+    bool within = horizon < p->t_end;
+    switch (f->outlook) {
+    case OUTLOOK_CHAOTIC:
+        list_print(
+            notes,
+            "Chaotic: Lyapunov exponent %.2g +- %.1g%s%s (over %.3g%s%s)."
+            "  %s t = %.3g%s%s rounding errors have grown to the size of "
+            "the orbit: positions mean nothing%s, energies and averages "
+            "do.",
+            f->exponent, f->error, per, unit, f->flown, space, unit,
+            within ? "After" : "A run beyond", horizon, space, unit,
+            within ? "" : " there");
+        break;
+    case OUTLOOK_PLANE:
+        list_add(notes, "Regular: one degree of freedom without a drive cannot "
+                        "be chaotic.");
+        break;
+    case OUTLOOK_REGULAR:
+        list_print(
+            notes,
+            "Regular: over %.3g%s%s neighbouring orbits part slowly, not "
+            "exponentially (Lyapunov exponent below %.1g%s%s).",
+            f->flown, space, unit, 2 * parted_little / f->flown, per, unit);
+        break;
+    default:
+        list_print(notes,
+                   "Chaotic or regular: %.3g%s%s are too short to tell; a "
+                   "longer run (--t-end) tells.",
+                   f->flown, space, unit);
+    }
+}
+
+void preflight_words(const plan *p, const preflight *f, list *notes) {
+    const char *unit = nevh_scene_label(p->scene, "t");
+    const char *space = *unit ? " " : "", *per = *unit ? " rad/" : "";
+    if (f->frequency > 0)
+        list_print(notes,
+                   "Highest frequency met: omega = %.3g%s%s (t = %.4g%s%s); "
+                   "omega dt = %.3g at dt = %.4g%s%s",
+                   f->frequency, per, unit, f->fastest_at, space, unit,
+                   p->dt[0] * f->frequency, p->dt[0], space, unit);
+    tell_outlook(p, f, notes);
+    if (isfinite(f->noise))
+        list_print(notes,
+                   f->noise > 0
+                       ? "Gradient: the rounding of %s brings an energy error "
+                         "of %.1e over the run"
+                       : "Gradient: %s brings no noise of its own",
+                   p->gradients.item[0], f->noise);
+    tell_edge(p, f, notes);
+}
+
+const char *preflight_verdict(double limit, double x) {
+    if (x > limit)
+        return "unstable";
+    return x > 1 ? "not resolved" : NULL;
+}

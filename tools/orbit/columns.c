@@ -1,0 +1,131 @@
+/* nevh: what plots show of a state, by name.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "columns.h"
+#include "plot/plot.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+quantities columns_new(const plan *p) {
+    nevh_options values = {.gradient_step = 1e-3, .portable = p->portable};
+    size_t count = nevh_scene_shown_count(p->scene, NEVH_OBSERVABLES);
+    quantities c = {.plan = p,
+                    .observed = tool_allocate(count, sizeof(double)),
+                    .field = nevh_field_new(p->system, &values),
+                    .scale = plan_energy_scale(p)};
+    double t = p->run->t_start;
+    if (nevh_field_value(c.field, 1, &t, p->q, p->p, &c.start))
+        c.start = NAN;
+    return c;
+}
+
+void columns_free(quantities *c) {
+    for (size_t i = 0; i < c->count; i++)
+        free(c->item[i].name);
+    free(c->item);
+    free(c->observed);
+    nevh_field_free(c->field);
+}
+
+static bool find_state(const plan *p, const char *name, quantity *is) {
+    bool momentum = strncmp(name, "p_", 2) == 0;
+    for (size_t k = 0; k < p->n; k++) {
+        const char *coordinate = nevh_scene_coordinate(p->scene, k);
+        is->index = k;
+        is->kind = COLUMN_COORDINATE;
+        if (strcmp(name, coordinate) == 0)
+            return true;
+        is->kind = COLUMN_MOMENTUM;
+        if (momentum && strcmp(name + 2, coordinate) == 0)
+            return true;
+    }
+    return false;
+}
+
+static bool find_other(const plan *p, const char *name, quantity *is) {
+    static const struct {
+        const char *name;
+        column_kind kind;
+    } known[] = {{"t", COLUMN_TIME},
+                 {"energy", COLUMN_ENERGY},
+                 {"energy_error", COLUMN_ENERGY_ERROR}};
+    size_t count = nevh_scene_shown_count(p->scene, NEVH_OBSERVABLES);
+    is->kind = COLUMN_OBSERVABLE;
+    for (is->index = 0; is->index < count; is->index++)
+        if (strcmp(name, nevh_scene_shown_name(p->scene, NEVH_OBSERVABLES,
+                                               is->index)) == 0)
+            return true;
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        is->kind = known[i].kind;
+        if (strcmp(name, known[i].name) == 0)
+            return true;
+    }
+    return false;
+}
+
+static int refuse_name(const plan *p, const char *name) {
+    list known = {0};
+    list_split(&known, "t,energy,energy_error");
+    for (size_t k = 0; k < p->n; k++) {
+        list_add(&known, nevh_scene_coordinate(p->scene, k));
+        list_print(&known, "p_%s", nevh_scene_coordinate(p->scene, k));
+    }
+    for (size_t i = 0; nevh_scene_shown_name(p->scene, NEVH_OBSERVABLES, i);
+         i++)
+        list_add(&known, nevh_scene_shown_name(p->scene, NEVH_OBSERVABLES, i));
+    int status = tool_unknown("column", name, &known);
+    list_free(&known);
+    return status;
+}
+
+int columns_add(quantities *c, const char *name) {
+    quantity is = {0};
+    if (!find_state(c->plan, name, &is) && !find_other(c->plan, name, &is))
+        return refuse_name(c->plan, name);
+    if (is.kind == COLUMN_ENERGY_ERROR && c->plan->balance)
+        return tool_refuse("energy_error: H of this scene changes with time or "
+                           "friction; --plot-kind energy shows the error of "
+                           "the balance");
+    quantity *more = tool_allocate(c->count + 1, sizeof *more);
+    if (c->count)
+        memcpy(more, c->item, c->count * sizeof *more);
+    free(c->item);
+    c->item = more;
+    is.name = text_print("%s", name);
+    c->item[c->count++] = is;
+    return TOOL_OK;
+}
+
+static bool any(const quantities *c, column_kind low, column_kind high) {
+    for (size_t i = 0; i < c->count; i++)
+        if (c->item[i].kind >= low && c->item[i].kind <= high)
+            return true;
+    return false;
+}
+
+void columns_values(quantities *c, double t, const double q[], const double p[],
+                    double values[]) {
+    double energy = NAN;
+    bool observed = any(c, COLUMN_OBSERVABLE, COLUMN_OBSERVABLE) &&
+                    !nevh_scene_shown_values(c->plan->scene, NEVH_OBSERVABLES,
+                                             t, q, p, c->observed);
+    if (any(c, COLUMN_ENERGY, COLUMN_ENERGY_ERROR) &&
+        nevh_field_value(c->field, 1, &t, q, p, &energy))
+        energy = NAN;
+    for (size_t i = 0; i < c->count; i++) {
+        const quantity *is = &c->item[i];
+        values[i] = is->kind == COLUMN_TIME         ? t
+                    : is->kind == COLUMN_COORDINATE ? q[is->index]
+                    : is->kind == COLUMN_MOMENTUM   ? p[is->index]
+                    : is->kind == COLUMN_ENERGY     ? energy
+                    : is->kind == COLUMN_ENERGY_ERROR
+                        ? (energy - c->start) / c->scale
+                    : observed ? c->observed[is->index]
+                               : NAN;
+    }
+}
+
+char *column_label(const plan *p, const quantity *c) {
+    return c->kind == COLUMN_ENERGY_ERROR ? text_print("energy error, relative")
+                                          : plot_label(p, c->name, c->name);
+}

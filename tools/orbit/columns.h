@@ -1,0 +1,43 @@
+/* nevh: what plots show of a state, by name.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_COLUMNS_H
+#define NEVH_COLUMNS_H
+
+#include "experiment/plan.h"
+
+/* t, coordinates, momenta (p_NAME), observables, energy, and energy_error:
+   (H - H0) over the scale of the energy. */
+typedef enum {
+    COLUMN_TIME,
+    COLUMN_COORDINATE,
+    COLUMN_MOMENTUM,
+    COLUMN_OBSERVABLE,
+    COLUMN_ENERGY,
+    COLUMN_ENERGY_ERROR
+} column_kind;
+typedef struct {
+    column_kind kind;
+    size_t index;
+    char *name;
+} quantity;
+
+typedef struct {
+    const plan *plan;
+    quantity *item;
+    size_t count;
+    double *observed;
+    nevh_field *field; /* of values of H */
+    double start, scale;
+} quantities;
+
+quantities columns_new(const plan *); /* of no columns */
+void columns_free(quantities *);
+/* returns  TOOL_OK, or TOOL_USAGE with the message printed */
+int columns_add(quantities *, const char *name);
+/* What is not finite is NAN. */
+void columns_values(quantities *, double t, const double q[], const double p[],
+                    double values[]);
+/* The axis: name and unit.  To be freed. */
+char *column_label(const plan *, const quantity *);
+
+#endif

@@ -1,0 +1,44 @@
+/* nevh: orbits to be drawn.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_ORBIT_H
+#define NEVH_ORBIT_H
+
+#include "plot/thinned.h"
+#include "trajectory.h"
+
+/* One integrator and dt; its rows begin with t. */
+typedef struct {
+    plan plan; /* a copy with that dt alone; what it points to is shared */
+    const char *integrator;
+    char *name; /* among others */
+    thinned rows;
+    double t, *q, *p; /* the last state */
+    int status;
+} orbit;
+
+/* Those that are asked for by name or by --dt: all that fit; else the one with
+   the integrator and dt that are given. */
+typedef struct {
+    orbit *item;
+    size_t count;
+    list left_out; /* names */
+} orbits;
+orbits orbits_new(const options *, const plan *, const char *integrator);
+void orbits_free(orbits *);
+
+/* Writes what is shown of a state. */
+typedef void orbit_fill(void *data, double t, const double q[],
+                        const double p[], double values[]);
+/* Runs it anew.
+   quiet    a failure is not printed
+   returns  as trajectory_follow */
+int orbit_follow(orbit *, const row_times *, size_t columns, orbit_fill *,
+                 void *data, bool quiet);
+/* At the steps, and between them where they are few, so that a curve looks like
+   one. */
+row_times orbit_dense_times(const plan *);        /* time: to be freed */
+const double *orbit_row(const orbit *, size_t i); /* after t */
+/* How often a column goes round: passes its mean, over 2. */
+double orbit_turns(const orbit *, size_t k);
+
+#endif

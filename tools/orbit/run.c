@@ -1,0 +1,284 @@
+/* nevh run: the trajectory.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "config.h"
+#include "plot/plot.h"
+#include "trajectory.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { INTERVALS = 1000 }; /* at most, where nobody says how many */
+
+typedef struct {
+    const options *options;
+    plan plan;
+    const char *integrator;
+    nevh_stepper *stepper;
+    row_times rows;
+    char *rows_text;
+    list notes;
+    line_file lines;
+    trajectory *trajectory;
+    char *state, *settings; /* NULL: there is nothing to save */
+    bool saves;             /* so far it could be saved */
+} job;
+
+static volatile sig_atomic_t interrupted;
+
+static void note_signal(int number) {
+    interrupted = number;
+}
+
+/* The second one ends the program. */
+static void mind_signals(void) {
+    static const int numbers[] = {SIGHUP, SIGINT, SIGTERM};
+    struct sigaction mind = {.sa_handler = note_signal,
+                             .sa_flags = (int)SA_RESETHAND};
+    struct sigaction found;
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        if (sigaction(numbers[i], NULL, &found) == 0 &&
+            found.sa_handler != SIG_IGN)
+            sigaction(numbers[i], &mind, NULL);
+}
+
+/* What to run. */
+
+static void take_times(job *j) {
+    const plan *p = &j->plan;
+    numbers_sort(p->at, p->ats);
+    for (size_t i = 0; i < p->ats; i++)
+        if (j->rows.count == 0 || p->at[i] != p->at[j->rows.count - 1])
+            p->at[j->rows.count++] = p->at[i];
+    j->rows.by = BY_TIMES;
+    j->rows.time = p->at;
+    j->rows_text = text_print("%s", "at the times asked for");
+}
+
+static void take_samples(job *j, size_t count, const char *why) {
+    j->rows.by = BY_SAMPLES;
+    j->rows.count = count;
+    j->rows_text = text_print("%zu at equal times%s", count, why);
+}
+
+static void take_every(job *j, size_t every) {
+    j->rows.by = BY_STEPS;
+    j->rows.every = every;
+    j->rows_text = every == 1 ? text_print("after every step")
+                              : text_print("after every %zu steps", every);
+}
+
+static int choose_rows(job *j) {
+    const options *o = j->options;
+    double span = j->plan.t_end - j->plan.run->t_start;
+    if ((o->every > 0) + (o->samples > 0) + (o->at.count > 0) > 1)
+        return tool_refuse("--every, --samples and --at: only one of them");
+    if (o->samples == 1)
+        return tool_refuse("--samples takes at least 2: the first row and the "
+                           "last");
+    if (o->at.count)
+        take_times(j);
+    else if (o->every)
+        take_every(j, o->every);
+    else if (o->samples)
+        take_samples(j, o->samples, "");
+    else if (span / j->plan.dt[0] <= INTERVALS)
+        take_every(j, 1);
+    else
+        take_samples(j, INTERVALS + 1, "; see --every, --samples and --at");
+    return TOOL_OK;
+}
+
+static int choose_integrator(job *j) {
+    j->stepper = plan_first(&j->plan, &j->integrator);
+    return j->stepper ? TOOL_OK : TOOL_USAGE;
+}
+
+static int check_options(const options *o) {
+    bool other = o->formatted && o->format != FORMAT_CSV;
+    if (o->resume && o->file)
+        return tool_refuse("--resume names the file: leave -o out");
+    if (o->resume && other)
+        return tool_refuse("only CSV is resumed");
+    return TOOL_OK;
+}
+
+static void note(job *j) {
+    const plan *p = &j->plan;
+    plan_notes(p, &j->notes);
+    list_print(&j->notes, "scene: %s", p->name);
+    settings_notes(j->options, &j->notes);
+    plan_note_first(p, j->integrator, &j->notes);
+    list_print(&j->notes, "rows: %s", j->rows_text);
+}
+
+/* All that the orbit and its rows depend on. */
+static char *describe(const job *j) {
+    const plan *p = &j->plan;
+    char *times = text_print("%s", "");
+    for (size_t i = 0; j->rows.by == BY_TIMES && i < j->rows.count; i++) {
+        char *longer = text_print("%s %.17g", times, j->rows.time[i]);
+        free(times);
+        times = longer;
+    }
+    char *all = text_print(
+        "nevh = %s\nscene = %016llx\nintegrator = %s\ndt = %.17g\n"
+        "t_end = %.17g\ngradient = %s\ngradient step = %.17g\n"
+        "tolerance = %.17g\nportable = %s\ntransform = %s\nrows = %s%s\n",
+        PACKAGE_VERSION, (unsigned long long)nevh_scene_digest(p->scene),
+        j->integrator, p->dt[0], p->t_end, p->gradients.item[0],
+        p->gradient_step, p->tolerances ? p->tolerance[0] : 0,
+        p->portable ? "yes" : "no",
+        p->run->transform ? p->run->transform : "none", j->rows_text, times);
+    free(times);
+    return all;
+}
+
+/* Saving. */
+
+static int save(job *j, bool lasting) {
+    run_state *s = trajectory_state(j->trajectory);
+    if (lines_flush(&j->lines))
+        return TOOL_USAGE;
+    if (!j->saves)
+        return TOOL_OK;
+    if (lasting)
+        fdatasync(j->lines.file);
+    s->at.bytes = j->lines.bytes;
+    s->at.digest = j->lines.digest;
+    j->saves = !state_save(j->state, j->settings, s, lasting);
+    return TOOL_OK; /* what went wrong was said once; the run goes on */
+}
+
+static int save_often(void *data) {
+    return save(data, true);
+}
+
+static void begin_saving(job *j, const char *name) {
+    j->state = text_print("%s.state", name);
+    j->settings = describe(j);
+    j->saves = true;
+}
+
+/* Output. */
+
+static int open_new(job *j) {
+    const options *o = j->options;
+    if (o->file)
+        mind_signals();
+    if (lines_open(&j->lines, o->file))
+        return TOOL_USAGE;
+    for (size_t i = 0; !o->quiet && i < j->notes.count; i++)
+        lines_comment(&j->lines, j->notes.item[i]);
+    trajectory_header(j->trajectory);
+    if (!j->lines.regular)
+        return TOOL_OK;
+    begin_saving(j, o->file);
+    return save(j, false);
+}
+
+static int open_again(job *j) {
+    const char *name = j->options->resume;
+    run_state *s = trajectory_state(j->trajectory);
+    mind_signals();
+    begin_saving(j, name);
+    if (state_load(j->state, j->settings, s) ||
+        trajectory_restore(j->trajectory) ||
+        lines_reopen(&j->lines, name, s->at.bytes, s->at.digest))
+        return TOOL_USAGE;
+    return save(j, false);
+}
+
+/* The rest of a run that was told to end. */
+static int give_up(job *j) {
+    int number = interrupted;
+    const char *name =
+        j->options->resume ? j->options->resume : j->options->file;
+    if (save(j, true))
+        return TOOL_USAGE;
+    if (!j->options->quiet && j->saves)
+        fprintf(stderr, "nevh: interrupted; to go on: --resume %s\n", name);
+    lines_close(&j->lines);
+    signal(number, SIG_DFL);
+    raise(number);
+    return TOOL_FAILED;
+}
+
+static int follow(job *j, int (*saver)(void *)) {
+    bool progress = !j->options->quiet && isatty(STDERR_FILENO);
+    return trajectory_follow(
+        j->trajectory, &(trajectory_watch){&interrupted, saver, j, progress});
+}
+
+static int write_lines(job *j) {
+    int status = j->options->resume ? open_again(j) : open_new(j);
+    if (!status)
+        status = follow(j, save_often);
+    if (!status && !trajectory_finished(j->trajectory))
+        return give_up(j);
+    if (status == TOOL_USAGE || lines_flush(&j->lines))
+        return TOOL_USAGE;
+    if (j->state)
+        state_remove(j->state);
+    return status;
+}
+
+static int write_page(job *j, page *result) {
+    result->table = table_new();
+    trajectory_header(j->trajectory);
+    int status = follow(j, NULL);
+    if (status == TOOL_USAGE)
+        return status;
+    if (!(j->options->quiet && j->options->format == FORMAT_TABLE))
+        for (size_t i = 0; i < j->notes.count; i++)
+            list_add(&result->before, j->notes.item[i]);
+    return output_page(j->options, result, status);
+}
+
+static int write_rows(job *j) {
+    const options *o = j->options;
+    page result = {0};
+    bool pages = o->formatted && o->format != FORMAT_CSV;
+    j->trajectory =
+        trajectory_new(&j->plan, j->integrator, j->stepper, &j->rows,
+                       (sink){.lines = &j->lines,
+                              .page = pages ? &result : NULL,
+                              .quiet = o->quiet});
+    note(j);
+    int status = pages ? write_page(j, &result) : write_lines(j);
+    trajectory_free(j->trajectory);
+    page_free(&result);
+    return status;
+}
+
+static int run_job(job *j) {
+    const options *o = j->options;
+    if (choose_rows(j) || choose_integrator(j) || run_plot_check(o, &j->plan))
+        return TOOL_USAGE;
+    bool plots = plot_wanted(o), first = plots && !o->file && !o->resume;
+    int drawn = TOOL_OK, status = TOOL_OK;
+    if (first)
+        drawn = run_plot(o, &j->plan, j->integrator, &j->rows);
+    if (!plot_replaces_rows(o))
+        status = write_rows(j);
+    if (plots && !first && status != TOOL_USAGE)
+        drawn = run_plot(o, &j->plan, j->integrator, &j->rows);
+    return drawn > status ? drawn : status;
+}
+
+int run_scene(const options *o) {
+    job j = {.options = o, .lines.file = -1};
+    int status = check_options(o);
+    if (!status)
+        status = plan_make(&j.plan, o);
+    if (!status)
+        status = run_job(&j);
+    nevh_stepper_free(j.stepper);
+    plan_free(&j.plan);
+    lines_close(&j.lines);
+    list_free(&j.notes);
+    free(j.rows_text);
+    free(j.state);
+    free(j.settings);
+    return status;
+}

@@ -1,0 +1,222 @@
+/* nevh run --plot: what kinds of pictures share, and errors of the energy.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "plot/energy_plot.h"
+#include "run_plot_private.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Columns. */
+
+static int read_panel(column_panels *c, const char *names) {
+    char *copy = text_print("%s", names), *rest = copy;
+    int status = TOOL_OK;
+    while (!status && rest) {
+        char *colon = strchr(rest, ':');
+        if (colon)
+            *colon = '\0';
+        status = columns_add(&c->columns, rest);
+        if (!status)
+            c->panel[c->columns.count - 1] = c->panels;
+        rest = colon ? colon + 1 : NULL;
+    }
+    c->panels++;
+    free(copy);
+    return status;
+}
+
+int column_panels_read(column_panels *c, const plan *p, const char *text) {
+    list panels = {0};
+    int status = TOOL_OK;
+    list_split(&panels, text);
+    *c = (column_panels){.columns = columns_new(p),
+                         .panel =
+                             tool_allocate(strlen(text) + 1, sizeof(size_t))};
+    for (size_t i = 0; !status && i < panels.count; i++)
+        status = read_panel(c, panels.item[i]);
+    list_free(&panels);
+    return status;
+}
+
+void column_panels_free(column_panels *c) {
+    columns_free(&c->columns);
+    free(c->panel);
+}
+
+void column_panels_fill(void *data, double t, const double q[],
+                        const double p[], double values[]) {
+    columns_values(&((column_panels *)data)->columns, t, q, p, values);
+}
+
+/* Runs. */
+
+int picture_follow(run_picture *is, const row_times *times, size_t columns,
+                   orbit_fill *fill, void *data) {
+    int worst = TOOL_OK;
+    for (size_t i = 0; i < is->orbits.count; i++) {
+        int status = orbit_follow(&is->orbits.item[i], times, columns, fill,
+                                  data, is->quiet);
+        worst = status > worst ? status : worst;
+    }
+    return worst;
+}
+
+/* 1, 2 or 5 times a power of ten that is not longer. */
+static double rounded(double span) {
+    double power = pow(10, floor(log10(span))), digits = span / power;
+    return power * (digits >= 5 ? 5 : digits >= 2 ? 2 : 1);
+}
+
+char *picture_cut(run_picture *is, double turns) {
+    static const double most = 60, wanted = 25;
+    double begin = is->plan.run->t_start, whole = is->plan.t_end;
+    if (is->options->t_end || turns <= most)
+        return NULL;
+    is->plan.t_end = begin + rounded((whole - begin) * wanted / turns);
+    for (size_t i = 0; i < is->orbits.count; i++)
+        is->orbits.item[i].plan.t_end = is->plan.t_end;
+    return text_print("a part of the run: --t-end %g shows all", whole);
+}
+
+void picture_note(const run_picture *is, plot *to, const char *more) {
+    const orbits *all = &is->orbits;
+    char *scheme =
+        all->count == 1 ? plot_scheme(&all->item->plan, all->item->integrator)
+        : is->plan.dts == 1 || is->options->dt.count <= 1
+            ? text_print("dt = %.4g%s%s", is->plan.dt[0],
+                         *nevh_scene_label(is->plan.scene, "t") ? " " : "",
+                         nevh_scene_label(is->plan.scene, "t"))
+            : text_print("%s", all->item->integrator);
+    char *others = list_joined(&all->left_out);
+    char *text = text_print("%s%s%s", *others ? "not drawn: " : "", others,
+                            *others && *more ? "; " : "");
+    char *whole = text_print("%s%s", text, more);
+    plot_note_run(to, &is->plan, scheme, whole);
+    free(whole);
+    free(text);
+    free(others);
+    free(scheme);
+}
+
+/* Errors of the energy. */
+
+static nevh_stepper *new_stepper(const plan *p, const char *integrator) {
+    nevh_options o = plan_options(p, p->gradients.item[0]);
+    bool transformed;
+    const nevh_integrator *scheme = plan_scheme(integrator, &transformed);
+    o.transform = plan_transform(p, integrator);
+    o.balance = p->balance;
+    if (nevh_integrator_needs_tolerance(scheme) && p->tolerances)
+        o.tolerance = p->tolerance[0];
+    return nevh_stepper_new(p->system, scheme, &o);
+}
+
+static nevh_energy *new_energy(const plan *p, const nevh_stepper *s) {
+    nevh_options planned = plan_options(p, p->gradients.item[0]);
+    nevh_energy *energy = nevh_energy_new(p->system, &planned);
+    if (p->balance)
+        nevh_energy_follow(energy, s);
+    if (p->run->energy_scale > 0)
+        nevh_energy_set_scale(energy, p->run->energy_scale);
+    return energy;
+}
+
+static double *copy(const double from[], size_t count) {
+    double *to = tool_allocate(count, sizeof *to);
+    memcpy(to, from, count * sizeof *to);
+    return to;
+}
+
+static void draw_energy(plot *to, const run_picture *is, const orbit *o) {
+    const plan *p = &o->plan;
+    nevh_stepper *s = new_stepper(p, o->integrator);
+    nevh_energy *energy = new_energy(p, s);
+    energy_trace trace = {envelope_new(p->run->t_start, p->t_end), energy};
+    nevh_observer observers[] = {{nevh_energy_observe, energy, 1},
+                                 {energy_trace_observe, &trace, 1}};
+    double *q = copy(p->q, p->n), *m = copy(p->p, p->n), stopped;
+    if (plan_run(p, s, p->dt[0], q, m, observers, 2, &stopped) && !is->quiet)
+        tool_refuse("%s: %s failed: %s", p->name, o->integrator,
+                    nevh_stepper_message(s));
+    energy_plot_add(to, is->orbits.count > 1 ? o->name : NULL, trace.envelope);
+    nevh_energy_free(energy);
+    nevh_stepper_free(s);
+    free(trace.envelope);
+    free(q);
+    free(m);
+}
+
+static plot *plot_energy(run_picture *is) {
+    plot *to = energy_plot_new(&is->plan, is->plan.title, NULL);
+    for (size_t i = 0; i < is->orbits.count; i++)
+        draw_energy(to, is, &is->orbits.item[i]);
+    char *more = energy_plot_words(&is->plan);
+    picture_note(is, to, more);
+    free(more);
+    return to;
+}
+
+/* Kinds. */
+
+static int check_kind(const options *o, const plan *p) {
+    bool configuration = o->plot_kind == PLOT_CONFIGURATION;
+    bool columns = o->plot_kind == PLOT_TIME || o->plot_kind == PLOT_PHASE;
+    if (o->columns && !(plot_wanted(o) && columns))
+        return tool_refuse("--columns is for --plot with --plot-kind time or "
+                           "phase");
+    if (plot_wanted(o) && configuration && nevh_scene_part_count(p->scene) == 0)
+        return tool_refuse("%s: the scene has no [picture] to plot, as: bob = "
+                           "x, y",
+                           p->name);
+    return TOOL_OK;
+}
+
+int run_plot_check(const options *o, const plan *p) {
+    options as = *o;
+    as.file = o->resume ? o->resume : o->file;
+    as.format = plot_replaces_rows(o) ? FORMAT_TABLE
+                : o->formatted        ? o->format
+                                      : FORMAT_CSV;
+    return check_kind(o, p) ? TOOL_USAGE : plot_check(&as);
+}
+
+static size_t points_of(const run_picture *is) {
+    return is->orbits.count ? is->orbits.item[0].rows.seen : 0;
+}
+
+static int worst_status(const run_picture *is) {
+    int worst = TOOL_OK;
+    for (size_t i = 0; i < is->orbits.count; i++)
+        worst = is->orbits.item[i].status > worst ? is->orbits.item[i].status
+                                                  : worst;
+    return worst;
+}
+
+int run_plot(const options *o, const plan *p, const char *integrator,
+             const row_times *rows) {
+    static plot *(*const draw[])(run_picture *) = {[PLOT_PHASE] = plot_phase,
+                                                   [PLOT_CONFIGURATION] =
+                                                       plot_configuration,
+                                                   [PLOT_ENERGY] = plot_energy,
+                                                   [PLOT_TIME] = plot_time};
+    run_picture is = {.options = o,
+                      .plan = *p,
+                      .orbits = orbits_new(o, p, integrator),
+                      .rows =
+                          o->every || o->samples || o->at.count ? rows : NULL,
+                      .quiet = !plot_replaces_rows(o)};
+    plot *to = draw[o->plot_kind](&is);
+    int status = to ? plot_write(to, o) : TOOL_USAGE;
+    if (!status) {
+        plot_say_written(o, &is.orbits.item->plan, is.orbits.item->integrator,
+                         points_of(&is));
+        status = worst_status(&is);
+    }
+    plot_free(to);
+    if (is.plan.reference != p->reference)
+        nevh_reference_free(is.plan.reference);
+    if (is.plan.no_reference != p->no_reference)
+        free(is.plan.no_reference);
+    orbits_free(&is.orbits);
+    return status;
+}

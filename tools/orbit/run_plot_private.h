@@ -1,0 +1,47 @@
+/* nevh run --plot: what the kinds of pictures share.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_RUN_PLOT_PRIVATE_H
+#define NEVH_RUN_PLOT_PRIVATE_H
+
+#include "columns.h"
+#include "orbit.h"
+#include "plot/plot.h"
+
+typedef struct {
+    const options *options;
+    plan plan; /* a copy, which may end earlier */
+    orbits orbits;
+    const row_times *rows; /* asked for by options; NULL: by the picture */
+    bool quiet;            /* failures are not printed */
+} run_picture;
+
+/* The panels of --columns A:B,C: names that are joined share one. */
+typedef struct {
+    quantities columns;
+    size_t *panel; /* of each column */
+    size_t panels;
+} column_panels;
+/* returns  TOOL_OK, or TOOL_USAGE with the message printed */
+int column_panels_read(column_panels *, const plan *, const char *text);
+void column_panels_free(column_panels *);
+/* An orbit_fill; data are column_panels. */
+void column_panels_fill(void *, double t, const double q[], const double p[],
+                        double values[]);
+
+/* Runs of all; the worst of their statuses. */
+int picture_follow(run_picture *, const row_times *, size_t columns,
+                   orbit_fill *, void *data);
+/* Ends a run that goes round often after fewer turns, unless its length was
+   asked for; it is to be followed again then.
+   returns  what is to be said of it, to be freed; NULL: it stays */
+char *picture_cut(run_picture *, double turns);
+/* Title, and the note with what is said of orbits, and more; a plot is made
+   with the labels. */
+void picture_note(const run_picture *, plot *, const char *more);
+
+/* Each makes a plot; NULL, with a message printed, where it cannot. */
+plot *plot_phase(run_picture *);         /* phase_plot.c */
+plot *plot_configuration(run_picture *); /* configuration_plot.c */
+plot *plot_time(run_picture *);          /* time_plot.c */
+
+#endif

@@ -1,0 +1,363 @@
+/* nevh section: points of Poincare and stroboscopic sections.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "plot/plot.h"
+#include <math.h>
+#include <nevh/section.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A section of the scene and its points, of 2 + items numbers each: t,
+   direction, items. */
+typedef struct {
+    nevh_scene *scene;
+    size_t number, points, room;
+    const nevh_scene_section *is;
+    double low, high; /* of what crosses, LEFT - RIGHT, at steps */
+    double *periods;  /* of items that are coordinates; 0: none */
+    double *numbers;
+} series;
+
+typedef struct {
+    const plan *plan;
+    series *all;
+    size_t count;
+    const char *integrator;
+    double stopped; /* where the scene's `stop` said; NAN */
+    char *ended;    /* how, where that was not at t_end; or NULL */
+} job;
+
+/* Into (-period/2, period/2]. */
+static double wrapped(double x, double period) {
+    if (period == 0)
+        return x;
+    x = remainder(x, period);
+    return x <= -period / 2 ? x + period : x;
+}
+
+static double *new_point(series *s) {
+    size_t width = 2 + s->is->items;
+    if (s->points == s->room) {
+        s->room = s->room ? 2 * s->room : 64;
+        double *more = tool_allocate(s->room * width, sizeof *more);
+        if (s->points)
+            memcpy(more, s->numbers, s->points * width * sizeof *more);
+        free(s->numbers);
+        s->numbers = more;
+    }
+    return s->numbers + width * s->points++;
+}
+
+static int keep(void *data, const nevh_point *point) {
+    job *j = data;
+    series *s = &j->all[point->section];
+    double *numbers = new_point(s), *items = numbers + 2;
+    numbers[0] = point->t;
+    numbers[1] = point->direction;
+    if (nevh_scene_section_items(s->scene, s->number, point->t, point->q,
+                                 point->p, items)) {
+        s->points--;
+        return 1;
+    }
+    for (size_t i = 0; i < s->is->items; i++)
+        items[i] = wrapped(items[i], s->periods[i]);
+    return 0;
+}
+
+static int value(void *data, double t, const double q[], const double p[],
+                 double *result) {
+    series *s = data;
+    int status = nevh_scene_section_cross(s->scene, s->number, t, q, p, result);
+    if (!status) {
+        s->low = fmin(s->low, *result);
+        s->high = fmax(s->high, *result);
+    }
+    return status;
+}
+
+static void add_series(job *j, size_t number) {
+    series *s = &j->all[j->count++];
+    s->scene = j->plan->scene;
+    s->number = number;
+    s->low = INFINITY;
+    s->high = -INFINITY;
+    s->is = nevh_scene_section_at(s->scene, number);
+    s->periods = tool_allocate(s->is->items, sizeof *s->periods);
+    for (size_t i = 0; i < s->is->items; i++)
+        s->periods[i] = plan_period(j->plan, s->is->item[i]);
+}
+
+static bool asked_for(const list *names, const char *name) {
+    return names->count == 0 || list_has(names, name);
+}
+
+static int check_names(const plan *p, const list *names) {
+    list known = {0};
+    int status = TOOL_OK;
+    size_t count = nevh_scene_section_count(p->scene);
+    for (size_t i = 0; i < count; i++)
+        list_add(&known, nevh_scene_section_at(p->scene, i)->name);
+    for (size_t i = 0; !status && i < names->count; i++)
+        if (!list_has(&known, names->item[i]))
+            status = tool_unknown("section", names->item[i], &known);
+    if (!status && count == 0)
+        status = tool_refuse("%s: the scene has no [sections], as: swing = "
+                             "when phi = 0, rising: phi, p_phi",
+                             p->name);
+    list_free(&known);
+    return status;
+}
+
+static int choose(job *j, const plan *p, const options *o) {
+    size_t count = nevh_scene_section_count(p->scene);
+    j->plan = p;
+    if (check_names(p, &o->sections))
+        return TOOL_USAGE;
+    j->all = tool_allocate(count, sizeof *j->all);
+    for (size_t i = 0; i < count; i++)
+        if (asked_for(&o->sections, nevh_scene_section_at(p->scene, i)->name))
+            add_series(j, i);
+    return TOOL_OK;
+}
+
+static void forget(job *j) {
+    for (size_t i = 0; i < j->count; i++) {
+        free(j->all[i].periods);
+        free(j->all[i].numbers);
+    }
+    free(j->all);
+    free(j->ended);
+}
+
+static nevh_sections *watch(job *j, const nevh_stepper *s) {
+    nevh_section *is = tool_allocate(j->count, sizeof *is);
+    for (size_t i = 0; i < j->count; i++) {
+        const nevh_scene_section *from = j->all[i].is;
+        is[i] = from->every > 0
+                    ? (nevh_section){.name = from->name, .every = from->every}
+                    : (nevh_section){.name = from->name,
+                                     .value = value,
+                                     .data = &j->all[i],
+                                     .direction = from->direction,
+                                     .period = from->period};
+    }
+    nevh_sections *x = nevh_sections_new(s, is, j->count, keep, j);
+    free(is);
+    return x;
+}
+
+/* How a run ended. */
+static int explain(job *j, int status, const nevh_stepper *s,
+                   const nevh_sections *x) {
+    const char *why = nevh_scene_message(j->plan->scene);
+    int looking = nevh_sections_status(x);
+    if (isfinite(j->stopped))
+        j->ended = stop_words(j->plan, j->stopped);
+    if (!status)
+        return TOOL_OK;
+    if (!*why)
+        why = looking ? nevh_sections_message(x) : nevh_stepper_message(s);
+    j->ended = text_print("failed: %s", why);
+    tool_refuse("%s: %s %s", j->plan->name, j->integrator, j->ended);
+    return TOOL_FAILED;
+}
+
+static int run(job *j, nevh_stepper *s) {
+    const plan *p = j->plan;
+    nevh_sections *x = watch(j, s);
+    nevh_observer observer = {nevh_sections_observe, x, 1};
+    int status = nevh_sections_status(x);
+    double *q = tool_allocate(p->n, sizeof *q);
+    double *m = tool_allocate(p->n, sizeof *m);
+    memcpy(q, p->q, p->n * sizeof *q);
+    memcpy(m, p->p, p->n * sizeof *m);
+    if (!status)
+        status = plan_run(p, s, p->dt[0], q, m, &observer, 1, &j->stopped);
+    status = explain(j, status, s, x);
+    free(q);
+    free(m);
+    nevh_sections_free(x);
+    return status;
+}
+
+/* The columns that sections show, each once. */
+static void list_items(const job *j, list *items) {
+    for (size_t i = 0; i < j->count; i++)
+        for (size_t k = 0; k < j->all[i].is->items; k++)
+            if (!list_has(items, j->all[i].is->item[k]))
+                list_add(items, j->all[i].is->item[k]);
+}
+
+static double number_of(const series *s, const double *point,
+                        const char *item) {
+    for (size_t k = 0; k < s->is->items; k++)
+        if (strcmp(s->is->item[k], item) == 0)
+            return point[2 + k];
+    return NAN;
+}
+
+static void fill(table *t, const job *j, const list *items) {
+    for (size_t i = 0; i < j->count; i++, table_group(t)) {
+        const series *s = &j->all[i];
+        for (size_t k = 0; k < s->points; k++) {
+            const double *point = s->numbers + k * (2 + s->is->items);
+            table_text(t, s->is->name);
+            table_number(t, point[0]);
+            table_number(t, point[1]);
+            for (size_t c = 0; c < items->count; c++)
+                table_number(t, number_of(s, point, items->item[c]));
+        }
+    }
+}
+
+/* What crosses, and where: "theta", 0; "z - (x)", 0 where that is no number. */
+static char *crossing_text(const nevh_scene_section *is, double *at) {
+    char *end;
+    *at = strtod(is->right, &end);
+    if (!*end && end != is->right)
+        return text_print("%s", is->left);
+    *at = 0;
+    return text_print("%s - (%s)", is->left, is->right);
+}
+
+/* Why there are no points; to be freed. */
+static char *reason(const job *j, const series *s) {
+    const nevh_scene_section *is = s->is;
+    const char *unit =
+        is->left ? nevh_scene_label(j->plan->scene, is->left) : "";
+    double at;
+    if (is->every > 0)
+        return text_print("the run is shorter than %.4g", is->every);
+    if (!(s->low <= s->high))
+        return text_print("no step was taken");
+    char *what = crossing_text(is, &at);
+    bool passes = s->low < 0 && s->high > 0;
+    char *text =
+        text_print("%s stays in %.3g ... %.3g%s%s%s", what, s->low + at,
+                   s->high + at, *unit ? " " : "", unit,
+                   passes && is->direction > 0   ? " and does not rise there"
+                   : passes && is->direction < 0 ? " and does not fall there"
+                                                 : "");
+    free(what);
+    return text;
+}
+
+static void note_points(const job *j, const series *s, list *notes) {
+    char *why = s->points ? NULL : reason(j, s);
+    list_print(notes, "section %s: %zu points%s%s", s->is->name, s->points,
+               why ? ": " : "", why ? why : "");
+    free(why);
+}
+
+static void note(const job *j, const options *o, list *notes) {
+    const plan *p = j->plan;
+    plan_notes(p, notes);
+    list_print(notes, "scene: %s", p->name);
+    settings_notes(o, notes);
+    plan_note_first(p, j->integrator, notes);
+    for (size_t i = 0; i < j->count; i++)
+        note_points(j, &j->all[i], notes);
+    if (j->ended)
+        list_print(notes, "%s", j->ended);
+}
+
+/* What says why there is nothing to draw; a run that failed has said it. */
+static int refuse_empty(const job *j) {
+    list reasons = {0};
+    for (size_t i = 0; i < j->count; i++)
+        note_points(j, &j->all[i], &reasons);
+    for (size_t i = 0; i < reasons.count; i++)
+        tool_refuse("nothing to plot: %s", reasons.item[i]);
+    list_free(&reasons);
+    return TOOL_USAGE;
+}
+
+static size_t count_points(const job *j) {
+    size_t count = 0;
+    for (size_t i = 0; i < j->count; i++)
+        count += j->all[i].points;
+    return count;
+}
+
+static void add_note(const job *j, plot *to) {
+    char *scheme = plot_scheme(j->plan, j->integrator);
+    char *energy = plot_energy_at_start(j->plan);
+    char *more = text_print("%s%s%s", energy, j->ended ? "; " : "",
+                            j->ended ? j->ended : "");
+    plot_note_run(to, j->plan, scheme, more);
+    free(scheme);
+    free(energy);
+    free(more);
+}
+
+static int draw(const job *j, const options *o, int status) {
+    plot *to = NULL;
+    if (count_points(j) == 0)
+        return status ? status : refuse_empty(j);
+    for (size_t i = 0; i < j->count; i++)
+        section_plot(&to, j->plan, j->all[i].is, j->all[i].points,
+                     j->all[i].numbers);
+    add_note(j, to);
+    int drawn = plot_write(to, o);
+    plot_free(to);
+    if (!drawn)
+        plot_say_written(o, j->plan, j->integrator, count_points(j));
+    return drawn ? drawn : status;
+}
+
+static options with_format(const options *o) {
+    options as = *o;
+    as.format = o->formatted            ? o->format
+                : plot_replaces_rows(o) ? FORMAT_TABLE
+                                        : FORMAT_CSV;
+    return as;
+}
+
+static int print(const job *j, const options *o, int status) {
+    static const char *const columns[] = {"section", "t", "direction"};
+    page result = {.table = table_new()};
+    options as = with_format(o);
+    list items = {0};
+    if (!(o->quiet && as.format == FORMAT_TABLE))
+        note(j, o, &result.before);
+    for (size_t i = 0; i < 3; i++)
+        table_column(result.table, columns[i]);
+    list_items(j, &items);
+    for (size_t i = 0; i < items.count; i++)
+        table_column(result.table, items.item[i]);
+    fill(result.table, j, &items);
+    status = output_page(&as, &result, status);
+    list_free(&items);
+    page_free(&result);
+    return status;
+}
+
+/* Who reads the rows may stop: the picture is written before. */
+static int show(const job *j, const options *o, int status) {
+    bool first = plot_goes_first(o);
+    int drawn = first ? draw(j, o, status) : status;
+    if (!plot_replaces_rows(o))
+        status = print(j, o, status);
+    if (plot_wanted(o) && !first && status != TOOL_USAGE)
+        drawn = draw(j, o, status);
+    return drawn > status ? drawn : status;
+}
+
+int section(const options *o) {
+    plan p;
+    job j = {.stopped = NAN};
+    nevh_stepper *s = NULL;
+    options as = with_format(o);
+    int status = plan_make(&p, o);
+    if (!status)
+        status = choose(&j, &p, o);
+    if (!status)
+        status = plot_check(&as);
+    if (!status && !(s = plan_first(&p, &j.integrator)))
+        status = TOOL_USAGE;
+    if (!status)
+        status = show(&j, o, run(&j, s));
+    nevh_stepper_free(s);
+    forget(&j);
+    plan_free(&p);
+    return status;
+}

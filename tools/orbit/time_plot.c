@@ -1,0 +1,220 @@
+/* nevh run --plot-kind time: columns against time.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "experiment/row.h"
+#include "run_plot_private.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_PANELS = 9, FEW_ROWS = 80, EXACT_POINTS = 2000 };
+
+static void add_name(char **text, const char *prefix, const char *name) {
+    char *longer =
+        text_print("%s%s%s%s", *text, **text ? "," : "", prefix, name);
+    free(*text);
+    *text = longer;
+}
+
+/* Coordinates and momenta where they are few, else what the scene shows, else
+   the first coordinates; and the energy. */
+static char *usual_names(const plan *p) {
+    enum { FEW = 2, MOST = 4 };
+    size_t shown = nevh_scene_shown_count(p->scene, NEVH_OBSERVABLES);
+    bool all = p->n <= FEW;
+    char *text = text_print("%s", "");
+    for (size_t k = 0; k < p->n && k < MOST && (all || !shown); k++)
+        add_name(&text, "", nevh_scene_coordinate(p->scene, k));
+    for (size_t k = 0; k < p->n && all; k++)
+        add_name(&text, "p_", nevh_scene_coordinate(p->scene, k));
+    for (size_t i = 0; i < shown && i < MOST && !all; i++)
+        add_name(&text, "",
+                 nevh_scene_shown_name(p->scene, NEVH_OBSERVABLES, i));
+    add_name(&text, "", "energy");
+    return text;
+}
+
+static double most_turns(const orbit *o, const quantities *c) {
+    double most = 0;
+    for (size_t k = 0; k < c->count; k++)
+        if (c->item[k].kind != COLUMN_ENERGY &&
+            c->item[k].kind != COLUMN_ENERGY_ERROR)
+            most = fmax(most, orbit_turns(o, k));
+    return most;
+}
+
+static void follow(run_picture *is, column_panels *c) {
+    row_times dense = orbit_dense_times(&is->plan);
+    picture_follow(is, is->rows ? is->rows : &dense, c->columns.count,
+                   column_panels_fill, c);
+    free(dense.time);
+}
+
+/* A run that goes round so often that a curve would be a band is cut.
+   returns  what is to be said of it; to be freed */
+static char *follow_and_cut(run_picture *is, column_panels *c) {
+    follow(is, c);
+    char *words =
+        is->rows ? NULL
+                 : picture_cut(is, most_turns(is->orbits.item, &c->columns));
+    if (words)
+        follow(is, c);
+    return words ? words : text_print("%s", "");
+}
+
+/* The exact solution, where there is one. */
+
+static bool may_be_known(const plan *p) {
+    return p->n <= 3 && !p->balance && !p->run->reference;
+}
+
+static nevh_reference *exact_solution(run_picture *is) {
+    plan *p = &is->plan;
+    if (!may_be_known(p) || plan_reference(p, p->t_end) || !p->reference ||
+        strncmp(nevh_reference_text(p->reference), "exact", 5) != 0)
+        return NULL;
+    return p->reference;
+}
+
+static void draw_exact(plot *to, const run_picture *is, column_panels *c,
+                       size_t k, nevh_reference *exact) {
+    const plan *p = &is->plan;
+    size_t n = p->n, series = plot_series(to, "exact solution");
+    double *state = tool_allocate(2 * n + c->columns.count, sizeof *state);
+    double *values = state + 2 * n, begin = p->run->t_start;
+    plot_style(to, series, PLOT_BEHIND);
+    for (size_t i = 0; i <= EXACT_POINTS; i++) {
+        double t = begin + (p->t_end - begin) * (double)i / EXACT_POINTS;
+        if (nevh_reference_state(exact, t, state, state + n))
+            continue;
+        columns_values(&c->columns, t, state, state + n, values);
+        plot_point(to, series, t, values[k]);
+    }
+    free(state);
+}
+
+/* Which of the columns of its panel it is, and of how many. */
+static size_t place_in_panel(const column_panels *c, size_t k, size_t *count) {
+    size_t place = 0;
+    *count = 0;
+    for (size_t i = 0; i < c->columns.count; i++)
+        if (c->panel[i] == c->panel[k]) {
+            place += i < k;
+            ++*count;
+        }
+    return place;
+}
+
+/* Several orbits differ by colour, and the columns of a panel by dashes; those
+   of a single one by colour. */
+static size_t new_series(plot *to, const run_picture *is,
+                         const column_panels *c, size_t k, size_t number,
+                         bool exact) {
+    size_t count, place = place_in_panel(c, k, &count);
+    const orbit *o = &is->orbits.item[number];
+    bool several = is->orbits.count > 1;
+    bool named = several ? place == 0 : count == 1 && exact;
+    const char *name = named                   ? o->name
+                       : count > 1 && !several ? c->columns.item[k].name
+                                               : NULL;
+    size_t series = plot_series(to, name);
+    if (several && place > 0) {
+        plot_like(to, series, series - place * is->orbits.count);
+        plot_dash(to, series, place);
+    }
+    return series;
+}
+
+/* Between steps a scheme is nearer to the orbit than at their ends: of the
+   energy that would be teeth. */
+static bool is_shown(const orbit *o, const quantity *what, double t) {
+    static const double whole = 1e-6;
+    double steps = (t - o->plan.run->t_start) / o->plan.dt[0];
+    bool energy =
+        what->kind == COLUMN_ENERGY || what->kind == COLUMN_ENERGY_ERROR;
+    bool transformed;
+    const nevh_integrator *scheme = plan_scheme(o->integrator, &transformed);
+    return !energy || transformed || nevh_integrator_own_time(scheme) ||
+           fabs(steps - round(steps)) < whole;
+}
+
+static void draw_orbit(plot *to, const run_picture *is, const column_panels *c,
+                       size_t k, size_t number, bool exact) {
+    const orbit *o = &is->orbits.item[number];
+    size_t series = new_series(to, is, c, k, number, exact);
+    bool few = is->rows && o->rows.count <= FEW_ROWS;
+    plot_style(to, series,
+               o->rows.part < 1 ? PLOT_DOTS
+               : !few           ? PLOT_TRAIL
+               : exact          ? PLOT_POINTS
+                                : PLOT_BOTH);
+    for (size_t i = 0; i < o->rows.count; i++) {
+        const double *at = orbit_row(o, i);
+        if (is->rows || is_shown(o, &c->columns.item[k], at[-1]))
+            plot_point(to, series, at[-1], at[k]);
+    }
+}
+
+/* Of a panel with several columns: their names. */
+static char *panel_label(const run_picture *is, const column_panels *c,
+                         size_t panel) {
+    static const char *const dashes[] = {"", " dashed", " dotted",
+                                         " dash-dotted", " long dashes"};
+    bool several = is->orbits.count > 1;
+    char *text = NULL;
+    for (size_t k = 0; k < c->columns.count; k++) {
+        if (c->panel[k] != panel)
+            continue;
+        size_t count, place = place_in_panel(c, k, &count);
+        char *label = column_label(&is->plan, &c->columns.item[k]);
+        char *longer =
+            text_print("%s%s%s%s", text ? text : "", text ? ", " : "", label,
+                       several && place < 5 ? dashes[place] : "");
+        free(text);
+        free(label);
+        text = longer;
+    }
+    return text;
+}
+
+static void draw_panel(plot **to, run_picture *is, column_panels *c,
+                       size_t panel, nevh_reference *exact) {
+    char *x = plot_label(&is->plan, "t", "t");
+    char *y = panel_label(is, c, panel);
+    if (panel)
+        plot_panel(*to, NULL, x, y);
+    else
+        *to = plot_new(is->plan.title, x, y);
+    plot_span_x(*to, is->plan.run->t_start, is->plan.t_end);
+    for (size_t k = 0; k < c->columns.count && exact; k++)
+        if (c->panel[k] == panel)
+            draw_exact(*to, is, c, k, exact);
+    for (size_t k = 0; k < c->columns.count; k++)
+        for (size_t i = 0; i < is->orbits.count && c->panel[k] == panel; i++)
+            draw_orbit(*to, is, c, k, i, exact);
+    free(x);
+    free(y);
+}
+
+plot *plot_time(run_picture *is) {
+    column_panels c = {0};
+    plot *to = NULL;
+    char *names = is->options->columns ? text_print("%s", is->options->columns)
+                                       : usual_names(&is->plan);
+    int status = column_panels_read(&c, &is->plan, names);
+    if (!status && c.panels > MOST_PANELS)
+        status = tool_refuse("--columns: %d panels at most, not %zu; names "
+                             "joined as A:B share one",
+                             MOST_PANELS, c.panels);
+    if (!status) {
+        char *more = follow_and_cut(is, &c);
+        nevh_reference *exact = exact_solution(is);
+        for (size_t i = 0; i < c.panels; i++)
+            draw_panel(&to, is, &c, i, exact);
+        plot_stack(to);
+        picture_note(is, to, more);
+        free(more);
+    }
+    column_panels_free(&c);
+    free(names);
+    return to;
+}

@@ -1,0 +1,97 @@
+/* nevh: plots, drawn by gnuplot.
+   SPDX-License-Identifier: GPL-3.0-or-later
+
+   Texts may hold anything: no shell and no gnuplot ever reads them as more than
+   text.  Points that are not finite are left out and interrupt a line; where an
+   axis is logarithmic, points that are not positive are left out. */
+#ifndef NEVH_PLOT_H
+#define NEVH_PLOT_H
+
+#include "experiment/plan.h"
+
+typedef struct plot plot;
+typedef enum {
+    PLOT_LINES,
+    PLOT_TRAIL,  /* lines that are never dashed */
+    PLOT_BEHIND, /* a thick pale line */
+    PLOT_MARKED, /* lines with a marker here and there */
+    PLOT_BOTH,   /* lines with a marker at each point */
+    PLOT_POINTS, /* markers */
+    PLOT_DOTS,   /* the smaller the more they are */
+    PLOT_RODS,   /* thick grey lines */
+    PLOT_BOBS,   /* large discs */
+    PLOT_START,  /* small circles */
+    PLOT_GUIDE   /* a thin grey line with its name at the last point, and not in
+                    the legend */
+} plot_form;
+
+/* A plot of one panel, the current one.  Labels come with their units; texts
+   are copied, and NULL is none. */
+plot *plot_new(const char *title, const char *x, const char *y);
+void plot_free(plot *); /* NULL is allowed */
+/* Smaller, below the title: what was run, and how to read the picture. */
+void plot_note(plot *, const char *text);
+/* Adds a panel and makes it the current one. */
+void plot_panel(plot *, const char *heading, const char *x, const char *y);
+/* Of the first panel. */
+void plot_heading(plot *, const char *text);
+
+/* Of the current panel. */
+void plot_log(plot *, bool x, bool y);
+void plot_equal(plot *);                            /* as long on x as on y */
+void plot_span_x(plot *, double low, double high);  /* exactly this */
+void plot_limit_y(plot *, double low, double high); /* no more than this */
+/* All panels show the same ranges. */
+void plot_same_ranges(plot *);
+/* Panels are wide, one below the other, over one axis. */
+void plot_stack(plot *);
+
+/* A series of the current panel; returns its number.  Series of the same name
+   look the same, and are in the legend once; NULL: not at all. */
+size_t plot_series(plot *, const char *name);
+void plot_style(plot *, size_t series, plot_form);
+void plot_size(plot *, size_t series, double size); /* of its marks; 1: usual */
+void plot_dash(plot *, size_t series, size_t dash); /* 0: none */
+void plot_like(plot *, size_t series, size_t other); /* the same colour */
+void plot_point(plot *, size_t series, double x, double y);
+void plot_break(plot *, size_t series); /* the line ends */
+
+/* plot_words.c */
+/* "NAME (UNIT)", the unit being the scene's label of `of`, or, for a momentum
+   without one, what follows from those of energy, t and the coordinate; to be
+   freed. */
+char *plot_label(const plan *, const char *name, const char *of);
+/* Scheme, gradient and time.
+   scheme  NULL: several, and all gradients are named
+   more    NULL or "": nothing */
+void plot_note_run(plot *, const plan *, const char *scheme, const char *more);
+/* "verlet, dt = 0.1 s": the first dt or tolerance of the plan; to be freed. */
+char *plot_scheme(const plan *, const char *integrator);
+/* "H = 0.125 J at the start"; to be freed. */
+char *plot_energy_at_start(const plan *);
+
+/* section_plot.c: a panel, the first making the plot.
+   numbers  of each point t, direction, and the items of the section */
+void section_plot(plot **, const plan *, const nevh_scene_section *,
+                  size_t points, const double numbers[]);
+
+bool plot_wanted(const options *); /* --plot or --keep-plot-script */
+/* That plot_write will work as far as can be told: known ending, files that can
+   be written, gnuplot at hand.  To be called before the long work, and before
+   any output is opened.
+   returns  TOOL_OK, or TOOL_USAGE with the message printed */
+int plot_check(const options *);
+/* Of commands that print rows: whether there is a picture instead, and no file
+   or format was asked for. */
+bool plot_replaces_rows(const options *);
+/* Then, what was drawn, where that is in a file; points: 0 is not said. */
+void plot_say_written(const options *, const plan *, const char *integrator,
+                      size_t points);
+/* Whether it goes to a file, which is to be written before anything is printed:
+   who reads that may stop reading. */
+bool plot_goes_first(const options *);
+/* Draws to --plot and keeps the script as --keep-plot-script says.
+   returns  TOOL_OK, or TOOL_USAGE with the message printed */
+int plot_write(plot *, const options *);
+
+#endif

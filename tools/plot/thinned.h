@@ -1,0 +1,25 @@
+/* nevh: a long run in few rows.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_THINNED_H
+#define NEVH_THINNED_H
+
+#include "cli/tool.h"
+
+enum { THINNED_ROWS = 20001 };
+
+/* Rows of numbers: of those that were seen all, or, where these are more than
+   THINNED_ROWS, a part, spread over the run like multiples of the golden ratio
+   modulo 1, so that no period of the orbit is met always at the same phases. */
+typedef struct {
+    size_t columns, count, seen;
+    double part; /* 1, 1/2, 1/4, ... */
+    double *row;
+    size_t *number; /* of each row, in the run */
+} thinned;
+
+thinned thinned_new(size_t columns);
+void thinned_free(thinned *);
+/* Where the next row is to be written; NULL where it is not wanted. */
+double *thinned_next(thinned *);
+
+#endif

@@ -1,0 +1,260 @@
+/* nevh cost: what a digit costs.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cost_private.h"
+#include "plot/plot.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const double cost_target[COST_TARGETS] = {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
+
+static bool is_beaten(const costs *c, const ladder *l) {
+    return !c->all && !cost_is_yardstick(l) &&
+           ladder_is_behind(&c->search, l, c->ladder, c->count);
+}
+
+static void descend_all(costs *c) {
+    static const double share = 0.65; /* the rest is for the targets */
+    ladder *next;
+    for (size_t i = 0; i < c->count; i++)
+        ladder_begin(&c->search, &c->ladder[i]);
+    while ((next = ladder_next(c->ladder, c->count)) &&
+           !search_is_over(&c->search, share))
+        if (is_beaten(c, next))
+            next->end = LADDER_LIMIT;
+        else
+            ladder_descend(&c->search, next);
+    for (size_t i = 0; i < c->count; i++)
+        if (c->ladder[i].end == LADDER_OPEN)
+            c->ladder[i].end = LADDER_LIMIT;
+}
+
+static double least_work(const costs *c, double target) {
+    double least = INFINITY;
+    for (size_t i = 0; i < c->count; i++) {
+        const ladder *l = &c->ladder[i];
+        const row *r = ladder_least_work(l, target, c->search.by_state);
+        if (costs_count(c, l) && r)
+            least = fmin(least, r->work);
+    }
+    return least;
+}
+
+/* Whether the coarsest step that keeps the target may be a cheap one: it costs
+   more than the last rung that does not. */
+static bool is_promising(const costs *c, const ladder *l, double target) {
+    static const double nearly = 2;
+    double least = least_work(c, target);
+    size_t i = 0;
+    while (i < l->count &&
+           ladder_error(&l->rung[i], c->search.by_state) > target)
+        i++;
+    return i == 0 || l->rung[i - 1].work < nearly * least;
+}
+
+static void refine_all(costs *c) {
+    for (size_t k = 0; k < COST_TARGETS; k++)
+        for (size_t i = 0; i < c->count; i++) {
+            ladder *l = &c->ladder[i];
+            if (c->all || cost_is_yardstick(l) ||
+                is_promising(c, l, cost_target[k]))
+                ladder_refine(&c->search, l, cost_target[k], GRID_COARSE);
+        }
+}
+
+/* The steps of what works least, or nearly so, to the last place. */
+static void refine_cheapest(costs *c) {
+    static const double nearly = 1.5;
+    for (size_t k = 0; k < COST_TARGETS; k++) {
+        double least = least_work(c, cost_target[k]);
+        for (size_t i = 0; i < c->count; i++) {
+            ladder *l = &c->ladder[i];
+            const row *r =
+                ladder_least_work(l, cost_target[k], c->search.by_state);
+            if (costs_count(c, l) && r && r->work <= nearly * least &&
+                !cost_is_beyond(c, k))
+                ladder_refine(&c->search, l, cost_target[k], 1);
+        }
+    }
+}
+
+/* Whether its time may be the least. */
+static bool may_win(const costs *c, const row *r, double target) {
+    static const double nearly = 2.5;
+    return r->work < nearly * least_work(c, target);
+}
+
+static void time_cells(costs *c) {
+    for (size_t k = 0; k < COST_TARGETS; k++)
+        for (size_t i = 0; i < c->count; i++) {
+            ladder *l = &c->ladder[i];
+            const row *r =
+                ladder_least_work(l, cost_target[k], c->search.by_state);
+            if (r && (c->all || cost_is_yardstick(l) ||
+                      (costs_count(c, l) && may_win(c, r, cost_target[k]))))
+                ladder_time(&c->search, l, (size_t)(r - l->rung));
+        }
+    for (size_t k = 0; k < COST_TARGETS; k++)
+        for (size_t i = 0; i < c->count; i++) {
+            ladder *l = &c->ladder[i];
+            const row *r =
+                ladder_least_work(l, cost_target[k], c->search.by_state);
+            if (r && cost_shows(c, l))
+                ladder_time(&c->search, l, (size_t)(r - l->rung));
+        }
+}
+
+static void time_others(costs *c, bool shown) {
+    for (size_t i = 0; i < c->count; i++)
+        for (size_t k = 0; k < c->ladder[i].count; k++)
+            if (!shown || cost_shows(c, &c->ladder[i]))
+                ladder_time(&c->search, &c->ladder[i], k);
+}
+
+/* Those that the table does not show are for programs to read. */
+static void run_ladders(costs *c, const options *o) {
+    enum { RUNGS = 8 };
+    bool for_people = o->format == FORMAT_TABLE;
+    descend_all(c);
+    refine_all(c);
+    refine_cheapest(c);
+    time_cells(c);
+    for (size_t i = 0; i < c->count && !(for_people && !c->all); i++)
+        ladder_fill(&c->search, &c->ladder[i], RUNGS);
+    if (!for_people || c->all || plot_wanted(o))
+        time_others(c, for_people);
+}
+
+static void make_ladders(costs *c) {
+    const plan *p = &c->search.plan;
+    c->ladder = tool_allocate(p->gradients.count * p->integrators.count,
+                              sizeof *c->ladder);
+    for (size_t g = 0; g < p->gradients.count; g++)
+        for (size_t i = 0; i < p->integrators.count; i++)
+            c->ladder[c->count++] =
+                ladder_new(p->integrators.item[i], p->gradients.item[g]);
+}
+
+bool costs_count(const costs *c, const ladder *l) {
+    return !l->count || c->search.by_state || !ladder_keeps_energy(l);
+}
+
+const ladder *costs_cheapest(const costs *c, double target) {
+    const ladder *best = NULL;
+    double least = INFINITY;
+    for (size_t i = 0; i < c->count; i++) {
+        const ladder *l = &c->ladder[i];
+        const row *r = ladder_cheapest(l, target, c->search.by_state);
+        if (costs_count(c, l) && r && r->seconds < least)
+            least = r->seconds, best = l;
+    }
+    return best;
+}
+
+/* Rows side by side, in the order of the ladders. */
+static row *list_rows(const costs *c, bool shown, size_t *count) {
+    size_t most = 0;
+    for (size_t i = 0; i < c->count; i++)
+        most += c->ladder[i].count;
+    row *rows = tool_allocate(most, sizeof *rows);
+    *count = 0;
+    for (size_t i = 0; i < c->count; i++) {
+        const ladder *l = &c->ladder[i];
+        if (!l->count || (shown && !cost_shows(c, l)))
+            continue;
+        memcpy(rows + *count, l->rung, l->count * sizeof *rows);
+        *count += l->count;
+    }
+    return rows;
+}
+
+static page make_page(const options *o, costs *c) {
+    page result = {0};
+    bool is_table = o->format == FORMAT_TABLE;
+    size_t count;
+    row *rows = list_rows(c, is_table, &count);
+    observe_orders(rows, count);
+    result.table =
+        is_table ? cost_table(c) : records(&c->search.plan, rows, count);
+    if (!is_table || !o->quiet) {
+        plan_notes(&c->search.plan, &result.before);
+        row_notes(o, &c->search.plan, rows, count, &result.before);
+        state_notes(&c->search.plan, &result.before);
+        observable_notes(&c->search.plan, &result.before);
+        cost_notes(c, &result.before);
+        cost_words(c, &result.after);
+    }
+    free(rows);
+    return result;
+}
+
+static int status_of(const costs *c) {
+    bool ran = false, failed = false;
+    for (size_t i = 0; i < c->count; i++)
+        for (size_t k = 0; k < c->ladder[i].count; k++) {
+            ran |= c->ladder[i].rung[k].ran;
+            failed |= c->ladder[i].rung[k].failed;
+        }
+    return failed && (!ran || c->search.dt) ? TOOL_FAILED : TOOL_OK;
+}
+
+/* On stderr, too, where the exit status says that rows failed. */
+static int report_failures(const costs *c) {
+    int status = status_of(c);
+    const row *failed = NULL;
+    for (size_t i = 0; i < c->count && !failed; i++)
+        for (size_t k = 0; k < c->ladder[i].count && !failed; k++)
+            if (c->ladder[i].rung[k].failed)
+                failed = &c->ladder[i].rung[k];
+    if (status && failed)
+        tool_refuse("%s: %s with %s at dt = %.4g %s", c->search.plan.name,
+                    failed->integrator, failed->gradient, failed->dt,
+                    failed->status);
+    return status;
+}
+
+static int cost_plan(const options *o, plan *p, double whole) {
+    output out;
+    if (plot_check(o) || output_open(&out, o->file))
+        return TOOL_USAGE;
+    costs c = {.search = search_begin(p, o, SEARCH_BUDGET),
+               .whole = whole,
+               .all = o->integrators.count > 0};
+    make_ladders(&c);
+    run_ladders(&c, o);
+    page result = make_page(o, &c);
+    search_end(&c.search);
+    bool first = plot_goes_first(o);
+    int drawn = first ? cost_plot(o, &c) : TOOL_OK;
+    page_print(&result, o, out.stream);
+    page_free(&result);
+    int status = output_close(&out, report_failures(&c));
+    if (plot_wanted(o) && !first)
+        drawn = cost_plot(o, &c);
+    if (drawn)
+        status = TOOL_USAGE;
+    for (size_t i = 0; i < c.count; i++)
+        ladder_free(&c.ladder[i]);
+    free(c.ladder);
+    return status;
+}
+
+int cost(const options *o) {
+    plan p;
+    double whole = NAN;
+    int status = plan_make(&p, o);
+    if (!status)
+        status = plan_search(&p, o);
+    if (!status && !o->t_end && !o->dt.count)
+        whole = plan_shorten(&p, SEARCH_BUDGET);
+    if (!status && (o->by_state || o->observable))
+        status = state_errors_mean_something(&p);
+    else if (!status && o->format != FORMAT_TABLE)
+        status = plan_reference(&p, p.t_end);
+    if (!status && o->observable)
+        status = plan_observe(&p, o->observable);
+    if (!status)
+        status = cost_plan(o, &p, whole);
+    plan_free(&p);
+    return status;
+}

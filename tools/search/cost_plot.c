@@ -1,0 +1,154 @@
+/* nevh cost --plot: errors against time, and against evaluations.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cost_private.h"
+#include "plot/plot.h"
+#include <math.h>
+#include <stdlib.h>
+
+static const double useless = 10; /* as an error */
+
+typedef double work_of(const row *);
+
+static double milliseconds(const row *r) {
+    return 1000 * r->seconds;
+}
+static double values(const row *r) {
+    return r->counts.hamiltonians;
+}
+static double slopes(const row *r) {
+    return (double)r->counts.gradients;
+}
+
+typedef struct {
+    const costs *costs;
+    plot *to;
+    work_of *work;
+    size_t left_out; /* rungs */
+} drawing;
+
+static double error_of(const drawing *d, const ladder *l, size_t k) {
+    return ladder_error(&l->rung[k], d->costs->search.by_state);
+}
+
+/* Whether a shorter step costs no more and errs less: where steps are so long
+   that solving them takes more work than it saves. */
+static bool is_outdone(const drawing *d, const ladder *l, size_t k) {
+    for (size_t i = k + 1; i < l->count; i++)
+        if (l->rung[i].work <= l->rung[k].work &&
+            error_of(d, l, i) <= error_of(d, l, k))
+            return true;
+    return false;
+}
+
+static bool is_drawn(const drawing *d, const ladder *l, size_t k) {
+    return isfinite(error_of(d, l, k)) && !is_outdone(d, l, k);
+}
+
+static void draw_ladder(drawing *d, const ladder *l) {
+    bool alone = d->costs->search.plan.gradients.count < 2;
+    char *name = alone ? text_print("%s", l->integrator)
+                       : text_print("%s, %s", l->integrator, l->gradient);
+    size_t series = plot_series(d->to, name);
+    plot_style(d->to, series, PLOT_BOTH);
+    for (size_t k = 0; k < l->count; k++)
+        if (is_drawn(d, l, k))
+            plot_point(d->to, series, d->work(&l->rung[k]), error_of(d, l, k));
+        else
+            d->left_out += isfinite(error_of(d, l, k));
+    free(name);
+}
+
+/* Of a scheme with fixed steps, an order more is a steeper line: a line of that
+   order from the middle of the curve, a factor to the right of it. */
+static void draw_guide(const drawing *d, const ladder *l) {
+    static const double aside = 1.5, decades = 1.5;
+    size_t drawn[2] = {0, 0}, count = 0;
+    for (size_t k = 0; k < l->count; k++)
+        if (is_drawn(d, l, k) && error_of(d, l, k) < 1) {
+            drawn[0] = count++ ? drawn[0] : k;
+            drawn[1] = k;
+        }
+    if (count < 3)
+        return;
+    size_t middle = (drawn[0] + drawn[1]) / 2;
+    double order = nevh_integrator_order(l->scheme);
+    double work = aside * d->work(&l->rung[middle]);
+    double error = error_of(d, l, middle);
+    char *name = text_print("order %g", order);
+    size_t series = plot_series(d->to, name);
+    plot_style(d->to, series, PLOT_GUIDE);
+    plot_point(d->to, series, work * pow(10, -decades / order / 2),
+               error * pow(10, decades / 2));
+    plot_point(d->to, series, work * pow(10, decades / order / 2),
+               error * pow(10, -decades / 2));
+    free(name);
+}
+
+/* For the first scheme of each order up to 4: those of higher ones have few
+   steps between useless and rounding. */
+static void draw_guides(const drawing *d) {
+    static const int highest = 4;
+    bool seen[5] = {false};
+    for (size_t i = 0; i < d->costs->count; i++) {
+        const ladder *l = &d->costs->ladder[i];
+        int order = nevh_integrator_order(l->scheme);
+        if (!cost_shows(d->costs, l) || order > highest || seen[order] ||
+            nevh_integrator_adaptive(l->scheme))
+            continue;
+        seen[order] = true;
+        draw_guide(d, l);
+    }
+}
+
+static void draw_panel(drawing *d) {
+    plot_log(d->to, true, true);
+    plot_limit_y(d->to, 0, useless);
+    for (size_t i = 0; i < d->costs->count; i++)
+        if (cost_shows(d->costs, &d->costs->ladder[i]))
+            draw_ladder(d, &d->costs->ladder[i]);
+}
+
+/* Whether all that is shown has such counts: exact gradients evaluate no H, and
+   some schemes nothing but H. */
+static bool all_have(const costs *c, work_of *count) {
+    for (size_t i = 0; i < c->count; i++)
+        for (size_t k = 0; k < c->ladder[i].count; k++)
+            if (cost_shows(c, &c->ladder[i]) && c->ladder[i].rung[k].ran &&
+                !(count(&c->ladder[i].rung[k]) > 0))
+                return false;
+    return true;
+}
+
+static void add_note(const drawing *d) {
+    char *text = text_print(
+        "%s%s",
+        d->costs->search.by_state
+            ? "errors relative to the range of each variable"
+            : "errors relative to the scale of the energy",
+        d->left_out ? "; long steps that cost no less than shorter ones are "
+                      "left out"
+                    : "");
+    plot_note_run(d->to, &d->costs->search.plan, NULL, text);
+    free(text);
+}
+
+int cost_plot(const options *o, const costs *c) {
+    const plan *p = &c->search.plan;
+    const char *error = c->search.by_state ? "largest state error, relative"
+                                           : "largest energy error, relative";
+    bool h = all_have(c, values);
+    drawing d = {c, plot_new(p->title, "CPU time (ms)", error), NULL, 0};
+    d.work = milliseconds;
+    draw_panel(&d);
+    plot_panel(d.to,
+               h || all_have(c, slopes) ? NULL : "only schemes that take it",
+               h ? "evaluations of H" : "evaluations of the gradient", error);
+    d.work = h ? values : slopes;
+    d.left_out = 0;
+    draw_panel(&d);
+    draw_guides(&d);
+    add_note(&d);
+    int status = plot_write(d.to, o);
+    plot_free(d.to);
+    return status;
+}

@@ -1,0 +1,62 @@
+/* nevh gradients: an orbit, and what is found along it.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_GRADIENTS_PRIVATE_H
+#define NEVH_GRADIENTS_PRIVATE_H
+
+#include "experiment/plan.h"
+
+/* States of the orbit, and energies, at steps evenly apart. */
+typedef struct {
+    size_t n, count, every;
+    double *t, *q, *p; /* n each state */
+    double *h;
+    nevh_field *field; /* for h */
+} orbit_states;
+
+typedef struct {
+    const plan *plan;
+    const char *integrator;
+    double dt, scale;
+    size_t steps;
+    orbit_states exact; /* of the yardstick */
+    const char *yardstick;
+    double *dq, *dp; /* its gradients, n a state */
+    double size;     /* largest component among them */
+} context;
+
+/* Runs the orbit with the most exact gradient that there is.
+   context  out, of zeros; to be freed in any case; borrows the plan
+   returns  TOOL_OK; TOOL_FAILED or TOOL_USAGE with the message printed */
+int context_make(context *, const plan *);
+void context_free(context *);
+
+typedef struct {
+    const char *gradient;
+    double step;                        /* 0: auto */
+    double error, truncation, rounding; /* relative to the largest component */
+    double evaluations, nanoseconds;
+    double energy, influx, floor; /* relative to the scale of energies */
+    bool good, first;             /* first: of its method */
+    char *why;
+    nevh_field *field;
+} finding;
+
+/* All but the influx.
+   step  0: chosen */
+finding gradient_find(const context *, const char *gradient, double step);
+/* The influx of all, along one orbit. */
+void gradients_influx(const context *, finding[], size_t count);
+void finding_free(finding *);
+/* The shortest half-spread chosen by differences of full order; INFINITY. */
+double gradient_own_step(const context *, const char *gradient);
+
+/* The largest error at the states, relative to the largest component.
+   steps    half-spreads of all variables, 2n; NULL: chosen
+   returns  INFINITY where the gradient fails */
+double gradient_error(const context *, const char *gradient,
+                      const double steps[]);
+
+/* gradients_plot.c: as plot_write. */
+int gradients_plot(const options *, const context *);
+
+#endif

@@ -1,0 +1,140 @@
+/* nevh: errors of an observable that the user names, against the reference.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "experiment/row.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* As state errors are: so many times, not on one phase of every period. */
+enum { TIMES = 1024 };
+static const double golden = 0.6180339887498949;
+static const double hardly = 1e-6; /* of its size: no range to speak of */
+
+struct observable {
+    const plan *plan;
+    double worst;
+    size_t next;
+    bool observed, unknown;
+    double *state; /* 2n */
+};
+
+/* The i-th time, from 0 to 1. */
+static double wanted(size_t i) {
+    double turn = (double)i * golden;
+    return i >= TIMES ? 1 : ((double)i + turn - floor(turn)) / TIMES;
+}
+
+static double value_at(const plan *p, double t, const double state[]) {
+    double value;
+    return nevh_scene_judged_value(p->scene, t, state, state + p->n, &value)
+               ? NAN
+               : value;
+}
+
+/* What the reference's own error may do to it, variable by variable. */
+static double own_error(const plan *p, double t, double state[]) {
+    double value = value_at(p, t, state), sum = 0;
+    double part = nevh_reference_error(p->reference);
+    for (size_t k = 0; k < 2 * p->n; k++) {
+        double kept = state[k];
+        state[k] += part * nevh_reference_range(p->reference, k);
+        sum += fabs(value_at(p, t, state) - value);
+        state[k] = kept;
+    }
+    return sum;
+}
+
+static int no_value(const plan *p, double t) {
+    tool_refuse("%s: --observable %s has no value at t = %.6g", p->name,
+                p->observable, t);
+    return TOOL_FAILED;
+}
+
+int plan_observe(plan *p, const char *formula) {
+    double low = INFINITY, high = -INFINITY, start = p->run->t_start;
+    double none = NAN;
+    double *state = tool_allocate(2 * p->n, sizeof *state);
+    p->observable = formula;
+    p->observable_error = 0;
+    for (size_t i = 0; i <= TIMES; i++) {
+        double t = start + wanted(i) * (p->t_end - start);
+        if (nevh_reference_state(p->reference, t, state, state + p->n))
+            continue;
+        double value = value_at(p, t, state);
+        none = isfinite(value) || isfinite(none) ? none : t;
+        low = fmin(low, value), high = fmax(high, value);
+        if (i % 32 == 0)
+            p->observable_error =
+                fmax(p->observable_error, own_error(p, t, state));
+    }
+    free(state);
+    double size = fmax(fabs(low), fabs(high));
+    if (isfinite(none) || !isfinite(size))
+        return no_value(p, none);
+    p->observable_level = high - low <= hardly * size;
+    p->observable_scale = p->observable_level ? size : high - low;
+    if (p->observable_scale == 0)
+        p->observable_scale = 1;
+    p->observable_error /= p->observable_scale;
+    return TOOL_OK;
+}
+
+void observable_notes(const plan *p, list *notes) {
+    if (!p->observable)
+        return;
+    const char *unit = nevh_scene_label(p->scene, p->observable);
+    list_print(notes,
+               "observable: %s; its errors are divided by its %s, %.6g%s%s%s",
+               p->observable, p->observable_level ? "size" : "range",
+               p->observable_scale, *unit ? " " : "", unit,
+               p->observable_level ? " (it hardly changes)" : "");
+}
+
+observable *observable_new(const plan *p) {
+    if (!p->observable || !p->reference)
+        return NULL;
+    observable *o = tool_allocate(1, sizeof *o);
+    o->plan = p;
+    o->state = tool_allocate(2 * p->n, sizeof *o->state);
+    return o;
+}
+
+void observable_free(observable *o) {
+    if (o)
+        free(o->state);
+    free(o);
+}
+
+static bool is_due(observable *o, double t) {
+    double start = o->plan->run->t_start;
+    double part = (t - start) / (o->plan->reference_end - start);
+    if (o->next > TIMES || part < wanted(o->next))
+        return false;
+    while (o->next <= TIMES && part >= wanted(o->next))
+        o->next++;
+    return true;
+}
+
+int observable_observe(void *data, size_t step, double t, const double q[],
+                       const double p[]) {
+    observable *o = data;
+    const plan *whole = o->plan;
+    double value;
+    (void)step;
+    if (o->unknown || !is_due(o, t))
+        return NEVH_OK;
+    o->observed = true;
+    o->unknown = nevh_reference_state(whole->reference, t, o->state,
+                                      o->state + whole->n) ||
+                 nevh_scene_judged_value(whole->scene, t, q, p, &value);
+    if (o->unknown)
+        return NEVH_OK;
+    double error =
+        fabs(value - value_at(whole, t, o->state)) / whole->observable_scale;
+    o->worst = fmax(o->worst, isfinite(error) ? error : INFINITY);
+    return NEVH_OK;
+}
+
+double observable_result(const observable *o) {
+    return o && o->observed && !o->unknown ? o->worst : NAN;
+}

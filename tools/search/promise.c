@@ -1,0 +1,104 @@
+/* nevh recommend: what an answer is worth: its orbit, and longer runs.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "experiment/pace.h"
+#include "recommend_private.h"
+#include <math.h>
+#include <stdlib.h>
+
+static const double lengths = 3;
+static const double most_work = 6; /* as row_work counts */
+
+static row *chosen(const advice *a, const ladder *l) {
+    const row *r = ladder_cheapest(l, a->target, a->search.by_state);
+    return &l->rung[r - l->rung];
+}
+
+/* The same run once more, as `run` says; to be freed with its status. */
+static row again(const plan *run, const row *r, promise *made) {
+    row copy = {.integrator = r->integrator,
+                .gradient = r->gradient,
+                .scheme = r->scheme,
+                .dt = r->step,
+                .tolerance = r->tolerance,
+                .promise = made};
+    row_run(run, &copy);
+    return copy;
+}
+
+/* How far the orbit is from the true one, of which the energy says nothing. */
+static void compare_orbit(const plan *p, row *r) {
+    row copy = again(p, r, NULL);
+    r->state_error = copy.state_error;
+    free(copy.status);
+}
+
+static void follow(const advice *a, const plan *longer, row *r) {
+    double start = longer->run->t_start;
+    promise *made = tool_allocate(1, sizeof *made);
+    *made = (promise){
+        .most = a->target, .by_state = a->search.by_state, .until = start};
+    row copy = again(longer, r, made);
+    if (copy.late)
+        made->unknown = true;
+    else if (!copy.ran && !made->unknown)
+        made->broken = true;
+    free(copy.status);
+    r->promise = made;
+}
+
+/* Three times as long, with a reference of its own where states count. */
+static plan longer_plan(advice *a) {
+    plan longer = a->search.plan;
+    double start = longer.run->t_start;
+    longer.patience = most_work;
+    longer.t_end = start + lengths * (longer.t_end - start);
+    a->longer = longer.t_end;
+    if (!a->search.by_state) {
+        longer.reference = NULL;
+        return longer;
+    }
+    longer.reference = NULL;
+    longer.no_reference = NULL;
+    plan_reference(&longer, longer.t_end);
+    if (!longer.reference)
+        a->not_longer = text_print("%s", longer.no_reference);
+    return longer;
+}
+
+static void find_period(advice *a) {
+    preflight f = preflight_fly(&a->search.plan);
+    a->period = f.frequency > 0 ? 2 * acos(-1) / f.frequency : NAN;
+    free(f.failure);
+}
+
+void advice_follow(advice *a, plan *p) {
+    const ladder *found[ADVICE_MOST];
+    size_t count = advice_list(a, found);
+    plan *whole = &a->search.plan;
+    whole->patience = 0;
+    if (!a->search.by_state) {
+        plan_reference(p, whole->t_end);
+        whole->reference = p->reference;
+        whole->no_reference = p->no_reference;
+        whole->reference_end = p->reference_end;
+    }
+    for (size_t i = 0; i < count && !a->search.by_state && p->reference; i++)
+        compare_orbit(whole, chosen(a, found[i]));
+    plan longer = longer_plan(a);
+    for (size_t i = 0; i < count && !a->not_longer; i++)
+        follow(a, &longer, chosen(a, found[i]));
+    if (a->search.by_state) {
+        nevh_reference_free(longer.reference);
+        free(longer.no_reference);
+    }
+    whole->promises = true;
+    find_period(a);
+}
+
+double advice_holds(const advice *a, const row *r) {
+    const promise *made = r->promise;
+    if (!made)
+        return NAN;
+    (void)a;
+    return made->broken || made->unknown ? made->until : INFINITY;
+}

@@ -1,0 +1,172 @@
+/* nevh: steps that keep an error of the energy to the end of a run.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "experiment/pace.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The error that steps are for. */
+static const double target = 0.01;
+/* Below, a limit of stability is where growth is first seen: there is none. */
+static const double no_limit = 0.01;
+/* Of all runs together, as row_work counts; and of steps. */
+static const double most_work = 4, most_steps = 3e5;
+enum { FINER = 3, HALVINGS = 60 };
+
+/* The longest step, in two digits, that keeps the target. */
+typedef struct {
+    double dt;    /* 0: none was found */
+    bool guessed; /* from how long shorter steps keep it: it was not run */
+} remedy;
+
+typedef struct {
+    const plan *plan;
+    const row *row;
+    double work, *q, *p;
+} search;
+
+typedef struct {
+    nevh_energy *energy;
+    double t;
+    size_t steps;
+    bool kept;
+} attempt;
+
+static int watch(void *data, size_t step, double t, const double q[],
+                 const double p[]) {
+    attempt *a = data;
+    int status = nevh_energy_observe(a->energy, step, t, q, p);
+    a->t = t;
+    a->steps = step;
+    a->kept = fabs(nevh_energy_error(a->energy, 0)) <= target;
+    return status || a->kept ? status : NEVH_STOPPED;
+}
+
+/* A run with that dt, for as long as the error keeps the target. */
+static attempt try_step(search *s, double dt) {
+    const plan *p = s->plan;
+    row r = *s->row;
+    double stopped;
+    nevh_stepper *stepper = row_stepper(p, &r, p->balance);
+    attempt a = {.energy = row_energy(p, &r, stepper), .t = p->run->t_start};
+    nevh_counts before = nevh_stepper_counts(stepper);
+    memcpy(s->q, p->q, p->n * sizeof *s->q);
+    memcpy(s->p, p->p, p->n * sizeof *s->p);
+    int status = plan_run(p, stepper, dt, s->q, s->p,
+                          &(nevh_observer){watch, &a, 1}, 1, &stopped);
+    nevh_counts c = row_counts(stepper, before);
+    s->work += row_work(p, r.scheme, &c, a.steps);
+    a.kept = a.kept && !status;
+    nevh_energy_free(a.energy);
+    row_shelve(p, &r, p->balance, stepper);
+    return a;
+}
+
+static double rounded_down(double x, int digits) {
+    double unit = pow(10, floor(log10(x)) - digits + 1);
+    return floor(x / unit * (1 + 1e-12)) * unit;
+}
+
+/* Between steps that keep the target and such that do not. */
+static double refine(search *s, double kept, double lost) {
+    for (int i = 0; i < FINER && s->work < most_work; i++) {
+        double dt = rounded_down(sqrt(kept * lost), 2);
+        if (dt <= kept)
+            break;
+        if (try_step(s, dt).kept)
+            kept = dt;
+        else
+            lost = dt;
+    }
+    return kept;
+}
+
+/* From the times that two steps keep the target for, along a power law; none
+   where these do not grow as such steps let expect. */
+static double guess(const search *s, double dt, double keeps, double longer_dt,
+                    double longer_keeps) {
+    double span = s->plan->t_end - s->plan->run->t_start;
+    double power = log(keeps / longer_keeps) / log(longer_dt / dt);
+    if (!(power > 0.5 && power < 12))
+        return 0;
+    return rounded_down(dt * pow(keeps / span, 1 / power), 1);
+}
+
+static remedy look(search *s) {
+    double start = s->plan->run->t_start;
+    double before = s->row->dt, kept_before = NAN;
+    for (int i = 0; i < HALVINGS; i++) {
+        double dt = rounded_down(before / 2, 2);
+        attempt a = try_step(s, dt);
+        double keeps = a.t - start;
+        if (a.kept)
+            return (remedy){refine(s, dt, before), false};
+        if (s->work > most_work || (double)a.steps > most_steps)
+            return (remedy){guess(s, dt, keeps, before, kept_before), true};
+        before = dt;
+        kept_before = keeps;
+    }
+    return (remedy){0, false};
+}
+
+static remedy find(const plan *p, const row *r) {
+    search s = {.plan = p,
+                .row = r,
+                .q = tool_allocate(p->n, sizeof(double)),
+                .p = tool_allocate(p->n, sizeof(double))};
+    remedy found = look(&s);
+    free(s.q);
+    free(s.p);
+    return found;
+}
+
+static bool needs_remedy(const row *r) {
+    bool drifts = r->energy.verdict == NEVH_DRIFTS && r->energy.max > target;
+    return r->ran && r->tolerance == 0 &&
+           (drifts || r->energy.verdict == NEVH_UNSTABLE);
+}
+
+/* Of rows of one integrator that need one that with the shortest steps, where
+   `first` is the first of them; else NULL. */
+static const row *shortest(const row rows[], size_t count, const row *first) {
+    const row *found = first;
+    for (const row *r = rows; r < rows + count; r++) {
+        bool same =
+            strcmp(r->integrator, first->integrator) == 0 && needs_remedy(r);
+        if (same && r < first)
+            return NULL;
+        if (same && r->dt < found->dt)
+            found = r;
+    }
+    return found;
+}
+
+static void tell_remedy(const plan *p, const row *r, list *words) {
+    const char *unit = nevh_scene_label(p->scene, "t"), *gap = *unit ? " " : "";
+    bool loses = nevh_integrator_symplectic(r->scheme) == NEVH_NO;
+    bool always = loses && nevh_stability_limit(r->scheme) < no_limit;
+    const char *gains = always ? " gains energy at every dt, and" : "";
+    const char *other = loses ? "; or take a symplectic scheme" : "";
+    remedy found = find(p, r);
+    if (found.dt > 0 && found.guessed)
+        list_print(words,
+                   "%s%s would keep its error below %g %% until t = %.4g%s%s "
+                   "only with dt below about %.1g%s%s, as shorter runs show%s.",
+                   r->integrator, gains, 100 * target, p->t_end, gap, unit,
+                   found.dt, gap, unit, other);
+    else if (found.dt > 0)
+        list_print(words,
+                   "%s%s keeps its error below %g %% until t = %.4g%s%s with "
+                   "dt = %.2g%s%s%s.",
+                   r->integrator, gains, 100 * target, p->t_end, gap, unit,
+                   found.dt, gap, unit, other);
+}
+
+void remedy_words(const plan *p, const row rows[], size_t count, list *words) {
+    for (size_t i = 0; i < count; i++) {
+        const row *r =
+            needs_remedy(&rows[i]) ? shortest(rows, count, &rows[i]) : NULL;
+        if (r)
+            tell_remedy(p, r, words);
+    }
+}
