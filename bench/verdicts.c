@@ -43,11 +43,6 @@ typedef struct {
     double frequency, period, share;
 } orbit;
 
-/* What the options ask of nevh.c, which is left out. */
-const char *command_name(unsigned bit) {
-    return bit == FOR_COMPARE ? "compare" : "";
-}
-
 static size_t number_of(const char *verdict) {
     size_t i = 0;
     while (i < SAID - 1 && strcmp(said[i], verdict) != 0)

@@ -8,43 +8,33 @@
 #include <string.h>
 
 static const struct {
-    const char *name;
     command *run;
     unsigned bit;
     const char *operand, *help;
 } known[] = {
-    {"compare", compare, FOR_COMPARE, "SCENE",
+    {compare, FOR_COMPARE, "SCENE",
      "one row for each integrator and dt: energy error, orbit error, cost; "
      "then a verdict"},
-    {"run", run_scene, FOR_RUN, "SCENE",
+    {run_scene, FOR_RUN, "SCENE",
      "the trajectory as CSV: t, coordinates, momenta, observables, energy"},
-    {"cost", cost, FOR_COST, "SCENE",
-     "what each digit costs, for each integrator"},
-    {"recommend", recommend, FOR_RECOMMEND, "SCENE",
+    {cost, FOR_COST, "SCENE", "what each digit costs, for each integrator"},
+    {recommend, FOR_RECOMMEND, "SCENE",
      "the cheapest integrator, gradient and step that keep an error"},
-    {"gradients", gradients, FOR_GRADIENTS, "SCENE",
+    {gradients, FOR_GRADIENTS, "SCENE",
      "error and cost of each gradient method and step along the orbit"},
-    {"check", check, FOR_CHECK, "SCENE",
+    {check, FOR_CHECK, "SCENE",
      "errors of the scene, properties of H, and which integrators fit"},
-    {"effects", effects, FOR_EFFECTS, "SCENE",
+    {effects, FOR_EFFECTS, "SCENE",
      "each effect: on or off, what it reads, evaluations, time; with --impact "
      "what it changes"},
-    {"section", section, FOR_SECTION, "SCENE",
+    {section, FOR_SECTION, "SCENE",
      "points of Poincare and stroboscopic sections, as CSV"},
-    {"hard", hard, FOR_HARD, "",
+    {hard, FOR_HARD, "",
      "every integrator on cases that are hard to integrate"},
-    {"new", new_scene, FOR_NEW, "FILE", "makes a commented scene, FILE.nevh"},
-    {"list", list_what, FOR_LIST, "WHAT",
-     "integrators, gradients, models or scenes"},
+    {new_scene, FOR_NEW, "FILE", "makes a commented scene, FILE.nevh"},
+    {list_what, FOR_LIST, "WHAT", "integrators, gradients, models or scenes"},
 };
 enum { KNOWN = sizeof known / sizeof *known };
-
-const char *command_name(unsigned bit) {
-    for (size_t i = 0; i < KNOWN; i++)
-        if (known[i].bit == bit)
-            return known[i].name;
-    return "";
-}
 
 /* Space between the name and the text of a command, and nowhere else: help2man
    takes that for the end of the name. */
@@ -60,7 +50,8 @@ static void help_all(FILE *f) {
           "numerically.\n\nCommands:\n",
           f);
     for (size_t i = 0; i < KNOWN; i++)
-        help_line(f, known[i].name, known[i].operand, known[i].help);
+        help_line(f, command_name(known[i].bit), known[i].operand,
+                  known[i].help);
     help_line(f, "help", "COMMAND", "what a command does, and its options");
     options_help(f, ~0u);
     fputs("\nSCENE is a file, or a name of nevh list scenes.  Exit status: 0; "
@@ -69,8 +60,8 @@ static void help_all(FILE *f) {
 }
 
 static int help(size_t i) {
-    printf("Usage: nevh %s %s%s[OPTION]...\n", known[i].name, known[i].operand,
-           *known[i].operand ? " " : "");
+    printf("Usage: nevh %s %s%s[OPTION]...\n", command_name(known[i].bit),
+           known[i].operand, *known[i].operand ? " " : "");
     help_print(stdout, 0, 0, known[i].help);
     options_help(stdout, known[i].bit);
     return TOOL_OK;
@@ -85,7 +76,7 @@ static int version(void) {
 static int unknown_command(const char *name) {
     list names = {0};
     for (size_t i = 0; i < KNOWN; i++)
-        list_add(&names, known[i].name);
+        list_add(&names, command_name(known[i].bit));
     list_add(&names, "help");
     int status = tool_unknown("command", name, &names);
     list_free(&names);
@@ -94,7 +85,7 @@ static int unknown_command(const char *name) {
 
 static size_t find(const char *name) {
     size_t i = 0;
-    while (i < KNOWN && strcmp(name, known[i].name) != 0)
+    while (i < KNOWN && strcmp(name, command_name(known[i].bit)) != 0)
         i++;
     return i;
 }

@@ -28,14 +28,14 @@
 #include <string.h>
 
 typedef struct {
-    nevh__tableau *tableau; /* first, where tests look for it */
+    nevh__tableau *tableau; /* first three, where tests look for them */
+    nevh__sweeps *one;      /* sweeps of one orbit; NULL: there are none */
+    nevh__sweeps *many;     /* the same of NEVH__LANES orbits */
     nevh__stage_solver *solver;
     bool partitioned;
-    size_t unknown;     /* slopes of a lane that are solved for */
-    double *hb;         /* h b_j of this step */
-    size_t *lanes;      /* all of them */
-    nevh__sweeps *one;  /* sweeps of one orbit; NULL: there are none */
-    nevh__sweeps *many; /* the same of NEVH__LANES orbits */
+    size_t unknown; /* slopes of a lane that are solved for */
+    double *hb;     /* h b_j of this step */
+    size_t *lanes;  /* all of them */
 } family_plan;
 
 /* One step under way. */

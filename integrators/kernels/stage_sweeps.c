@@ -99,6 +99,13 @@ static void find_calls(nevh__sweeps *s) {
         s->whole = nevh__call_plan(f, s->stride, s->times, q, p, dh_dq, dh_dp);
 }
 
+void nevh__sweeps_take(nevh__sweeps *s, const nevh__tableau *a) {
+    pad(s, s->stages, a->mu_q, s->mu_q);
+    pad(s, s->stages, a->mu_p, s->mu_p);
+    pad(s, s->stages, a->guess, s->guess);
+    pad(s, 1, a->c, s->c);
+}
+
 nevh__sweeps *nevh__sweeps_new(nevh_work *w, const nevh__tableau *a,
                                const double hb[], bool partitioned,
                                size_t lanes) {
@@ -119,10 +126,7 @@ nevh__sweeps *nevh__sweeps_new(nevh_work *w, const nevh__tableau *a,
         nevh__sweeps_free(s);
         return NULL;
     }
-    pad(s, s->stages, a->mu_q, s->mu_q);
-    pad(s, s->stages, a->mu_p, s->mu_p);
-    pad(s, s->stages, a->guess, s->guess);
-    pad(s, 1, a->c, s->c);
+    nevh__sweeps_take(s, a);
     find_calls(s);
     return s;
 }

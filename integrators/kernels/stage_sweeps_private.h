@@ -24,6 +24,8 @@ nevh__sweeps *nevh__sweeps_new(nevh_work *, const nevh__tableau *,
                                const double hb[], bool partitioned,
                                size_t lanes);
 void nevh__sweeps_free(nevh__sweeps *);
+/* Takes the coefficients of a tableau. */
+void nevh__sweeps_take(nevh__sweeps *, const nevh__tableau *);
 
 /* A step by h from t of `count` orbits, from `first` on, of `width`: rows of so
    many numbers. */

@@ -83,13 +83,10 @@ static double reach_of(const nevh_field *f, const nevh__planned *term,
 }
 
 /* It is a point of the difference that has no value, not the orbit. */
-static int fail_outside(nevh_field *f, const nevh__planned *term,
-                        const nevh__block *b, size_t instance) {
+int nevh__fail_outside(nevh_field *f, const nevh__planned *term,
+                       const nevh__block *b, size_t column, size_t instance,
+                       size_t k, double reach) {
     char where[120];
-    size_t column = 0, k = 0;
-    while (column + 1 < b->used && isfinite(f->h[column]))
-        column++;
-    double reach = reach_of(f, term, b, column, &k);
     snprintf(where, sizeof where,
              "a difference by %c[%zu] reaches %.3g from the orbit, where ",
              k < term->nq ? 'q' : 'p', nevh__index(term, instance, k), reach);
@@ -99,8 +96,13 @@ static int fail_outside(nevh_field *f, const nevh__planned *term,
 int nevh__central_fail(nevh_field *f, const nevh__planned *term,
                        const nevh__block *b, size_t instance, size_t k) {
     const nevh_term *is = &term->term->is;
-    if (nevh__block_check(f, term, b))
-        return fail_outside(f, term, b, instance);
+    if (nevh__block_check(f, term, b)) {
+        size_t column = 0, moved = 0;
+        while (column + 1 < b->used && isfinite(f->h[column]))
+            column++;
+        double reach = reach_of(f, term, b, column, &moved);
+        return nevh__fail_outside(f, term, b, column, instance, moved, reach);
+    }
     return nevh__fail(
         &f->report, NEVH_EDOM,
         "the derivative of term \"%s\" of effect \"%s\" with respect to "

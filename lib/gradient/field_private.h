@@ -156,6 +156,9 @@ int nevh__block_check(nevh_field *, const nevh__planned *, const nevh__block *);
    a column. */
 int nevh__block_fail(nevh_field *, const nevh__planned *, const nevh__block *,
                      size_t column, const char *what, double value);
+/* The same of a point of the difference by variable k, so far from the orbit. */
+int nevh__fail_outside(nevh_field *, const nevh__planned *, const nevh__block *,
+                       size_t column, size_t instance, size_t k, double reach);
 
 /* All lanes of states side by side. */
 static inline nevh__block nevh__block_over(size_t width, const double t[],

@@ -9,6 +9,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/field_private.h"
 #include "system/vector_private.h"
+#include <math.h>
 #include <nevh/body.h>
 #include <stdlib.h>
 
@@ -309,7 +310,11 @@ static int fail(nevh_field *f, const nevh__planned *term,
     b.stride = r->stride;
     if (f->h[column] - f->h[column] == 0)
         return nevh__central_fail(f, term, &b, s->slope->instance, s->slope->k);
-    return nevh__block_fail(f, term, &b, column, "", f->h[column]);
+    /* A point that is not shifted in any variable is the orbit's. */
+    double reach = s->shift[x->k * s->stride + point];
+    return reach == 0 ? nevh__block_fail(f, term, &b, column, "", f->h[column])
+                      : nevh__fail_outside(f, term, &b, column, x->instance,
+                                           x->k, fabs(reach));
 }
 
 int nevh__stencil_difference(nevh_field *f, nevh__planned *term,

@@ -6,6 +6,7 @@
 
    The law is one of chance, so it is looked at over orbits side by side. */
 #include "support.h"
+#include "kernels/stage_sweeps_private.h"
 #include "kernels/tableau_private.h"
 #include <math.h>
 #include <nevh/extend.h>
@@ -153,9 +154,17 @@ static int plan_rounded(nevh_work *w) {
     int status = nevh_gauss_kernel.plan(w);
     if (status)
         return status;
-    nevh__tableau *a = *(nevh__tableau **)w->plan;
+    const struct {
+        nevh__tableau *tableau;
+        nevh__sweeps *one, *many;
+    } *g = w->plan;
+    nevh__tableau *a = g->tableau;
     for (size_t m = 0; m < a->stages * a->stages; m++)
         a->mu_q[m] = a->mu_p[m] = a->a_q[m] / a->b[m / a->stages];
+    if (g->one)
+        nevh__sweeps_take(g->one, a);
+    if (g->many)
+        nevh__sweeps_take(g->many, a);
     return NEVH_OK;
 }
 

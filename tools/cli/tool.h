@@ -126,7 +126,7 @@ enum {
     FOR_HARD = 1024
 };
 
-const char *command_name(unsigned bit); /* nevh.c */
+const char *command_name(unsigned bit);
 
 /* options.c: the command line. */
 typedef enum { MATCH_SCENE, MATCH_STEPS, MATCH_WORK } matching;
