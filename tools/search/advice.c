@@ -31,7 +31,7 @@ static const char *name_of(const advice *a, const ladder *l) {
 }
 
 static void show_end(const advice *a, const row *r, table *t) {
-    double holds = advice_holds(a, r);
+    double holds = advice_holds(r);
     if (isnan(holds))
         table_text(t, NULL);
     else if (isinf(holds))
@@ -177,7 +177,7 @@ static void tell_steps(const advice *a, const row *r, list *words) {
 }
 
 static void tell_longer(const advice *a, const row *r, list *words) {
-    double holds = advice_holds(a, r);
+    double holds = advice_holds(r);
     if (a->not_longer)
         list_print(words, "Nothing is known of longer runs: %s.",
                    a->not_longer);

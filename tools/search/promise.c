@@ -53,11 +53,9 @@ static plan longer_plan(advice *a) {
     longer.patience = most_work;
     longer.t_end = start + lengths * (longer.t_end - start);
     a->longer = longer.t_end;
-    if (!a->search.by_state) {
-        longer.reference = NULL;
-        return longer;
-    }
     longer.reference = NULL;
+    if (!a->search.by_state)
+        return longer;
     longer.no_reference = NULL;
     plan_reference(&longer, longer.t_end);
     if (!longer.reference)
@@ -95,10 +93,9 @@ void advice_follow(advice *a, plan *p) {
     find_period(a);
 }
 
-double advice_holds(const advice *a, const row *r) {
+double advice_holds(const row *r) {
     const promise *made = r->promise;
     if (!made)
         return NAN;
-    (void)a;
     return made->broken || made->unknown ? made->until : INFINITY;
 }

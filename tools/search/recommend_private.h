@@ -25,7 +25,7 @@ typedef struct {
 void advice_follow(advice *, plan *);
 /* Of an answer: the time until which it keeps the target; INFINITY: to the end
    of the longer run; NAN: unknown. */
-double advice_holds(const advice *, const row *);
+double advice_holds(const row *);
 
 /* advice.c */
 enum { ADVICE_MOST = 4 };
