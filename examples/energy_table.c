@@ -18,7 +18,7 @@ void energy_header(void) {
 static void print(const nevh_integrator *scheme, double dt, double t_end,
                   const row *r) {
     char drift[16] = "-";
-    if (r->energy.verdict >= NEVH_DRIFTS)
+    if (r->energy.verdict == NEVH_DRIFTS || r->energy.verdict == NEVH_UNSTABLE)
         snprintf(drift, sizeof drift, "%+.1e", r->energy.drift * t_end);
     printf(" %-18s %5d   %-4s %5g   %8.1e  %9s %9.1e %9.0f %9.2f  %s\n",
            nevh_integrator_name(scheme), nevh_integrator_order(scheme),

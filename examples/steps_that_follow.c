@@ -35,7 +35,7 @@ static void print(const entry *x, const nevh_stepper *stepper,
     static double first; /* evaluations of the group's fixed steps */
     double evaluations = nevh_stepper_counts(stepper).hamiltonians;
     char drift[16] = "-", s[16] = "fixed";
-    if (energy.verdict >= NEVH_DRIFTS)
+    if (energy.verdict == NEVH_DRIFTS || energy.verdict == NEVH_UNSTABLE)
         snprintf(drift, sizeof drift, "%+.1e", energy.drift * year * years);
     if (x->power > 0)
         snprintf(s, sizeof s, "r^%g", x->power);
