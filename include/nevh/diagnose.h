@@ -49,8 +49,9 @@ NEVH_API int nevh_energy_observe(void *energy, size_t step, double t,
    knows of it; without that it goes by the errors alone.  To be called before
    the first observation.
    stepper  planned; read now, and not kept
-   returns  NEVH_OK; NEVH_EINVAL when the stepper was refused or the first
-            observation was made; carried by the observer */
+   returns  NEVH_OK; NEVH_EINVAL when the stepper was refused, is for another
+            system or width, or the first observation was made; carried by
+            the observer */
 NEVH_API int nevh_energy_expect(nevh_energy *, const nevh_stepper *stepper);
 
 typedef enum {

@@ -94,22 +94,33 @@ const char *nevh_energy_message(const nevh_energy *e) {
     return e ? e->report.text : "out of memory";
 }
 
-int nevh_energy_follow(nevh_energy *e, const nevh_stepper *s) {
+/* Whether the observer may be told of that stepper, which is "to follow" or
+   "to expect". */
+static int check_stepper(nevh_energy *e, const nevh_stepper *s,
+                         const char *told) {
     if (e->report.status)
         return e->report.status;
     if (e->begun)
         return nevh__fail(&e->report, NEVH_EINVAL,
-                          "a stepper is to be followed from the first "
-                          "observation on");
+                          "the stepper %s is to be told before the first "
+                          "observation",
+                          told);
     if (nevh_stepper_status(s))
         return nevh__fail(&e->report, NEVH_EINVAL,
-                          "the stepper to follow was refused: %s",
+                          "the stepper %s was refused: %s", told,
                           nevh_stepper_message(s));
     if (s->work.system != e->field->system || s->work.width != e->width)
         return nevh__fail(&e->report, NEVH_EINVAL,
-                          "the stepper to follow is for another system or for "
-                          "%zu orbits, where %zu are observed",
-                          s->work.width, e->width);
+                          "the stepper %s is for another system or for %zu "
+                          "orbits, where %zu are observed",
+                          told, s->work.width, e->width);
+    return NEVH_OK;
+}
+
+int nevh_energy_follow(nevh_energy *e, const nevh_stepper *s) {
+    int status = check_stepper(e, s, "to follow");
+    if (status)
+        return status;
     if (!nevh__balanced(s))
         return nevh__fail(&e->report, NEVH_EINVAL,
                           "the stepper to follow keeps no balance: ask for it "
@@ -151,16 +162,9 @@ static void find_blur(nevh_energy *e, const nevh_field *f) {
 }
 
 int nevh_energy_expect(nevh_energy *e, const nevh_stepper *s) {
-    if (e->report.status)
-        return e->report.status;
-    if (e->begun)
-        return nevh__fail(&e->report, NEVH_EINVAL,
-                          "the scheme is to be told before the first "
-                          "observation");
-    if (nevh_stepper_status(s))
-        return nevh__fail(&e->report, NEVH_EINVAL,
-                          "the stepper to expect was refused: %s",
-                          nevh_stepper_message(s));
+    int status = check_stepper(e, s, "to expect");
+    if (status)
+        return status;
     e->theory = theory_of(s);
     find_blur(e, s->work.field);
     return NEVH_OK;

@@ -127,6 +127,20 @@ START_TEST(what_theory_knows) {
 }
 END_TEST
 
+/* A stepper of another system tells nothing of this one. */
+START_TEST(another_system) {
+    nevh_system *s = henon_heiles.make(), *other = henon_heiles.make();
+    nevh_stepper *m = nevh_stepper_new(other, nevh_verlet, NULL);
+    nevh_energy *e = nevh_energy_new(s, NULL);
+    ck_assert_int_eq(nevh_energy_expect(e, m), NEVH_EINVAL);
+    ck_assert_ptr_nonnull(strstr(nevh_energy_message(e), "another system"));
+    nevh_energy_free(e);
+    nevh_stepper_free(m);
+    nevh_system_free(other);
+    nevh_system_free(s);
+}
+END_TEST
+
 /* A stepper that was refused tells nothing. */
 START_TEST(refused) {
     nevh_system *s = henon_heiles.make();
@@ -181,6 +195,7 @@ int main(void) {
     tcase_add_test(cases, theories);
     tcase_add_test(cases, what_theory_knows);
     tcase_add_test(cases, refused);
+    tcase_add_test(cases, another_system);
     tcase_add_test(cases, rounding_of_what_is_met);
     suite_add_tcase(suite, cases);
     return run_suite(suite);
