@@ -2,11 +2,6 @@ libnevh_core_la_SOURCES += \
 	integrators/integrator.c \
 	integrators/schemes_private.h \
 	integrators/list.c \
-	integrators/kernels/work_private.h \
-	integrators/kernels/work.c \
-	integrators/kernels/substeps.c \
-	integrators/kernels/transform_private.h \
-	integrators/kernels/transform.c \
 	integrators/kernels/splitting_private.h \
 	integrators/kernels/splitting_expand.c \
 	integrators/kernels/splitting_kernel.c \

@@ -10,7 +10,7 @@ libnevh_core_la_SOURCES = \
 	lib/system/register.c \
 	lib/system/system.c \
 	lib/system/friction.c \
-	lib/system/values.c \
+	lib/system/term_values.c \
 	lib/system/closeness.c \
 	lib/system/probe_private.h \
 	lib/system/probe.c \
@@ -30,7 +30,7 @@ libnevh_core_la_SOURCES = \
 	lib/gradient/control_private.h \
 	lib/gradient/control.c \
 	lib/gradient/pilot.c \
-	lib/gradient/ladder.c \
+	lib/gradient/step_scan.c \
 	lib/gradient/complex.c \
 	lib/gradient/report.c \
 	lib/gradient/findings.c \
@@ -42,7 +42,7 @@ libnevh_core_la_SOURCES = \
 	lib/gradient/call.c \
 	lib/gradient/central.c \
 	lib/gradient/stencil.c \
-	lib/gradient/exact.c \
+	lib/gradient/exact_block.c \
 	lib/gradient/value.c \
 	lib/gradient/time.c \
 	lib/gradient/gsl_system.c \
@@ -80,6 +80,13 @@ libnevh_core_la_SOURCES = \
 	lib/expression/walk.c \
 	lib/expression/instance.c \
 	lib/expression/formula.c \
+	lib/work/work_private.h \
+	lib/work/work.c \
+	lib/work/substeps.c \
+	lib/work/transform_private.h \
+	lib/work/transform.c \
+	lib/work/ledger_private.h \
+	lib/work/ledger.c \
 	lib/implicit/implicit_private.h \
 	lib/implicit/fixed_point.c \
 	lib/implicit/judge.c \
@@ -89,8 +96,7 @@ libnevh_core_la_SOURCES = \
 	lib/run/stepper_private.h \
 	lib/run/structure.c \
 	lib/run/stepper.c \
-	lib/run/friction.c \
-	lib/run/ledger.c \
+	lib/run/friction_step.c \
 	lib/run/save.c \
 	lib/run/run.c \
 	lib/run/until.c \
@@ -124,13 +130,13 @@ libnevh_core_la_SOURCES = \
 	lib/scene/message.c \
 	lib/scene/values.c \
 	lib/scene/coordinates.c \
-	lib/scene/formula.c \
+	lib/scene/scene_formula.c \
 	lib/scene/shown.c \
 	lib/scene/values_shown.c \
-	lib/scene/section.c \
-	lib/scene/system.c \
-	lib/scene/friction.c \
-	lib/scene/run.c \
+	lib/scene/scene_section.c \
+	lib/scene/scene_system.c \
+	lib/scene/scene_friction.c \
+	lib/scene/scene_run.c \
 	lib/scene/velocity.c \
 	lib/scene/start.c \
 	lib/scene/access.c \

@@ -22,7 +22,7 @@
 #include "adaptive_verlet_private.h"
 #include "gradient/field_private.h"
 #include "system/system_private.h"
-#include "transform_private.h"
+#include "work/transform_private.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -11,7 +11,7 @@
    t only: from one part to the next by H(t', z) - H(t, z).
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "discrete_gradient_private.h"
-#include "work_private.h"
+#include "work/work_private.h"
 #include "gradient/field_private.h"
 #include "implicit/implicit_private.h"
 #include <float.h>

@@ -7,7 +7,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/control_private.h"
 #include "gsl_private.h"
-#include "work_private.h"
+#include "work/work_private.h"
 #include "system/system_private.h"
 #include <gsl/gsl_errno.h>
 #include <float.h>

@@ -19,7 +19,7 @@
 #include <nevh/extend.h>
 #include "stage_sweeps_private.h"
 #include "tableau_private.h"
-#include "work_private.h"
+#include "work/work_private.h"
 #include "implicit/implicit_private.h"
 #include "system/system_private.h"
 #include <math.h>

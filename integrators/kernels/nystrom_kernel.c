@@ -19,7 +19,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "nystrom_private.h"
 #include "system/probe_private.h"
-#include "work_private.h"
+#include "work/work_private.h"
 #include <math.h>
 #include <stdlib.h>
 

@@ -5,7 +5,7 @@
    orbits side by side.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "nystrom_private.h"
-#include "work_private.h"
+#include "work/work_private.h"
 #include <math.h>
 #include <string.h>
 

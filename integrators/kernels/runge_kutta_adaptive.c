@@ -20,7 +20,7 @@
    a trial's stages, the trial is rejected as well.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "runge_kutta_private.h"
-#include "work_private.h"
+#include "work/work_private.h"
 #include "system/system_private.h"
 #include <float.h>
 #include <math.h>

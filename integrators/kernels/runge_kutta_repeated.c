@@ -7,7 +7,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "runge_kutta_private.h"
 #include "stage_sums_private.h"
-#include "work_private.h"
+#include "work/work_private.h"
 #include <nevh/body.h>
 #include <stdlib.h>
 

@@ -20,7 +20,7 @@
 #include "splitting_private.h"
 #include "gradient/field_private.h"
 #include "system/vector_private.h"
-#include "work_private.h"
+#include "work/work_private.h"
 #include <nevh/body.h>
 #include <stdlib.h>
 #include <string.h>

@@ -9,7 +9,7 @@
 #include "stage_sweeps_private.h"
 #include "gradient/field_private.h"
 #include "system/vector_private.h"
-#include "work_private.h"
+#include "work/work_private.h"
 #include <math.h>
 #include <nevh/body.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* nevh: what a step does to phase space.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/stepper_private.h"
-#include "kernels/transform_private.h"
+#include "work/transform_private.h"
 #include <math.h>
 #include <nevh/diagnose.h>
 #include <stdlib.h>

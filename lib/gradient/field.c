@@ -4,25 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-nevh_field *nevh_field_new(const nevh_system *s, const nevh_options *options) {
-    static const nevh_options defaults = {0};
-    const nevh_options *o = options ? options : &defaults;
-    bool fits = s && nevh__width_fits(s->report.status ? 0 : s->n, o->width);
-    nevh_field *f = fits ? nevh__array(1, sizeof *f) : NULL;
-    if (!f)
-        return NULL;
-    f->system = s;
-    f->revision = s->revision;
-    f->n = s->n;
-    f->portable = o->portable;
-    f->gradient = o->gradient ? o->gradient : nevh_central4;
-    f->terms = nevh__array(s->n_terms, sizeof *f->terms);
-    if (f->terms && nevh__field_plan(f, o) != NEVH_ENOMEM)
-        return f;
-    nevh_field_free(f);
-    return NULL;
-}
-
 void nevh_field_free(nevh_field *f) {
     if (!f)
         return;

@@ -351,8 +351,6 @@ int nevh__field_curvatures(nevh_field *, const nevh_options *,
 
 /* Values only: no gradients are asked for, and none are planned. */
 extern const nevh_gradient nevh__no_gradient;
-/* Plans the terms and the workspace. */
-int nevh__field_plan(nevh_field *, const nevh_options *);
 /* Chooses the steps that the user does not give, and the scales. */
 int nevh__field_explore(nevh_field *, const nevh_options *);
 /* Compares exact gradients with differences. */

@@ -216,7 +216,7 @@ static int plan_gradient(nevh_field *f, const nevh_options *o) {
     return status;
 }
 
-int nevh__field_plan(nevh_field *f, const nevh_options *o) {
+static int plan_field(nevh_field *f, const nevh_options *o) {
     const nevh_system *s = f->system;
     if (s->report.status)
         return nevh__fail_as(&f->report, &s->report);
@@ -236,4 +236,23 @@ int nevh__field_plan(nevh_field *f, const nevh_options *o) {
     status = plan_gradient(f, o);
     f->planned = !status;
     return status;
+}
+
+nevh_field *nevh_field_new(const nevh_system *s, const nevh_options *options) {
+    static const nevh_options defaults = {0};
+    const nevh_options *o = options ? options : &defaults;
+    bool fits = s && nevh__width_fits(s->report.status ? 0 : s->n, o->width);
+    nevh_field *f = fits ? nevh__array(1, sizeof *f) : NULL;
+    if (!f)
+        return NULL;
+    f->system = s;
+    f->revision = s->revision;
+    f->n = s->n;
+    f->portable = o->portable;
+    f->gradient = o->gradient ? o->gradient : nevh_central4;
+    f->terms = nevh__array(s->n_terms, sizeof *f->terms);
+    if (f->terms && plan_field(f, o) != NEVH_ENOMEM)
+        return f;
+    nevh_field_free(f);
+    return NULL;
 }

@@ -20,7 +20,7 @@
    within that noise and the largest of them has ceased to fall.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "implicit/implicit_private.h"
-#include "kernels/work_private.h"
+#include "work/work_private.h"
 #include "gradient/field_private.h"
 #include "system/system_private.h"
 #include <float.h>

@@ -2,7 +2,8 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/stepper_private.h"
 #include "gradient/field_private.h"
-#include "kernels/transform_private.h"
+#include "work/ledger_private.h"
+#include "work/transform_private.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -83,7 +84,7 @@ static int plan_parts(nevh_stepper *s) {
     if (!status)
         status = nevh__plan_damping(s);
     if (!status)
-        status = nevh__plan_ledger(s);
+        status = nevh__ledger_plan(w, s->rates);
     w->accounts = w->transform || w->ledger;
     return status;
 }
@@ -239,6 +240,11 @@ static void pass_time(nevh_stepper *s, double t) {
     s->time_lost = nevh__lost(s->last_t, t, passed);
 }
 
+/* Two rows, where there is a ledger; see nevh__ledger_close. */
+static double *gains(const nevh_stepper *s) {
+    return s->work.memory + s->fresh_rows * s->work.width;
+}
+
 int nevh__advance(nevh_stepper *s, double t, double h, double q[], double p[]) {
     nevh_work *w = &s->work;
     s->last_h = h;
@@ -253,7 +259,7 @@ int nevh__advance(nevh_stepper *s, double t, double h, double q[], double p[]) {
                             : w->integrator->kernel->step(w, t, h, q, p);
     if (status)
         return status;
-    nevh__ledger_close(s);
+    nevh__ledger_close(w, gains(s));
     pass_time(s, t);
     s->report.status = NEVH_OK; /* a rescued step has failed before */
     s->report.text[0] = '\0';
@@ -300,4 +306,16 @@ double nevh_stepper_time(const nevh_stepper *s) {
 
 size_t nevh_stepper_taken(const nevh_stepper *s) {
     return s->taken;
+}
+
+double nevh_stepper_gain(const nevh_stepper *s, size_t lane) {
+    if (!s->planned || !s->work.ledger || lane >= s->work.width)
+        return 0;
+    const double *total = gains(s);
+    return total[lane] + total[s->work.width + lane];
+}
+
+bool nevh__balanced(const nevh_stepper *s) {
+    return s->options.balance ||
+           (!s->rates && nevh_system_traits(s->work.system) & NEVH_AUTONOMOUS);
 }

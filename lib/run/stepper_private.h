@@ -62,16 +62,6 @@ void nevh__damping_free(struct nevh__damping *); /* NULL is allowed */
 int nevh__damped_step(nevh_stepper *, double t, double h, double q[],
                       double p[]);
 
-/* The account of the energy, where it was asked for and is not 0. */
-int nevh__plan_ledger(nevh_stepper *);
-void nevh__ledger_free(struct nevh_ledger *); /* NULL is allowed */
-/* A step begins at a state. */
-void nevh__ledger_open(nevh_work *, const double q[], const double p[]);
-/* Adds sign times H to what is pending; NULL is allowed. */
-int nevh__ledger_add(nevh_work *, double sign, double t, const double q[],
-                     const double p[]);
-/* The step was taken: what is pending counts. */
-void nevh__ledger_close(nevh_stepper *);
 /* Whether nevh_stepper_gain is what came in, or nothing does. */
 bool nevh__balanced(const nevh_stepper *);
 

@@ -2,7 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "support.h"
 #include "run/stepper_private.h"
-#include "kernels/transform_private.h"
+#include "work/transform_private.h"
 #include <math.h>
 #include <nevh/transform.h>
 #include <stdlib.h>

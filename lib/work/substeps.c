@@ -5,7 +5,7 @@
    that, trials neither fail nor arrive: they become slower as a power of their
    number, while near a mere pericentre some hundreds of them make a decade.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "work_private.h"
+#include "work/work_private.h"
 #include <stdio.h>
 
 enum { FIRST = 10000, MOST_SLOWS = 2 };

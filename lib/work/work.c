@@ -1,9 +1,10 @@
 /* nevh: the tools of a kernel.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "work_private.h"
+#include "work/work_private.h"
 #include "gradient/field_private.h"
 #include "system/system_private.h"
-#include "transform_private.h"
+#include "work/ledger_private.h"
+#include "work/transform_private.h"
 
 int nevh_work_fail(nevh_work *w, int status, const char *format, ...) {
     va_list arguments;
@@ -56,6 +57,13 @@ int nevh_work_value(nevh_work *w, size_t points, const double t[],
         return nevh__transform_value(w, points, t, q, p, h);
     int status = nevh_field_value(w->field, points, t, q, p, h);
     return status ? fail_field(w, status) : NEVH_OK;
+}
+
+int nevh_work_account(nevh_work *w, unsigned parts, double weight,
+                      const double t[], const double q[], const double p[]) {
+    int status =
+        w->transform ? nevh__transform_pass(w, weight, t, q, p) : NEVH_OK;
+    return status ? status : nevh__ledger_account(w, parts, weight, t, q, p);
 }
 
 int nevh__work_run_values(nevh_work *w, const nevh__call *c) {

@@ -39,8 +39,9 @@ int nevh__transform_value(nevh_work *, size_t points, const double t[],
 /* From the noise of grad H, as nevh__field_noise, to that of grad K. */
 int nevh__transform_noise(nevh_work *, double t, const double q[],
                           const double p[], double noise_q[], double noise_p[]);
-/* dt/dtau at one state; a failure is recorded. */
-int nevh__transform_rate(nevh_work *, const double t[], const double q[],
-                         const double p[], double *rate);
+/* A part of the step that is `weight` long in tau: adds to w->elapsed the time
+   that goes by, as fast as at this one state; a failure is recorded. */
+int nevh__transform_pass(nevh_work *, double weight, const double t[],
+                         const double q[], const double p[]);
 
 #endif

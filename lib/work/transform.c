@@ -3,7 +3,7 @@
 
    grad K = s grad H + (H - H0) grad s, all over s0, from the gradient of H, one
    value of it, and a field of its own for s. */
-#include "transform_private.h"
+#include "work/transform_private.h"
 #include "system/system_private.h"
 #include <nevh/probe.h>
 #include <float.h>
@@ -233,16 +233,17 @@ int nevh__transform_noise(nevh_work *w, double t, const double q[],
     return NEVH_OK;
 }
 
-int nevh__transform_rate(nevh_work *w, const double t[], const double q[],
-                         const double p[], double *rate) {
+int nevh__transform_pass(nevh_work *w, double weight, const double t[],
+                         const double q[], const double p[]) {
     int status = find_s(w, 1, t, q, p);
     if (status)
         return status;
-    *rate = w->transform->s[0] / w->transform->memory[NEVH__UNIT];
-    if (*rate > NEVH__LEAST_RATE && *rate <= DBL_MAX)
+    double rate = w->transform->s[0] / w->transform->memory[NEVH__UNIT];
+    w->elapsed += weight * rate;
+    if (rate > NEVH__LEAST_RATE && rate <= DBL_MAX)
         return NEVH_OK;
     return nevh_work_fail(w, NEVH_EDOM,
                           "the transform s is %g times its value at the start "
                           "at t = %.9g%s",
-                          *rate, t[0], *rate < 1 ? " (a collision?)" : "");
+                          rate, t[0], rate < 1 ? " (a collision?)" : "");
 }

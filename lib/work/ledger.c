@@ -9,9 +9,8 @@
    Everything is asked of a field of its own: the stepper's counts are the
    orbit's.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "work/ledger_private.h"
 #include "gradient/field_private.h"
-#include "run/stepper_private.h"
-#include "kernels/transform_private.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,12 +29,12 @@ struct nevh_ledger {
                                       kernel has something to tell */
 };
 
-static int out_of_memory(nevh_stepper *s) {
-    return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
+static int out_of_memory(nevh_work *w) {
+    return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
 }
 
-static int allocate(nevh_stepper *s, struct nevh_ledger *l) {
-    size_t width = s->work.width, size = s->work.size;
+static int allocate(nevh_work *w, struct nevh_ledger *l) {
+    size_t width = w->width, size = w->size;
     l->t = nevh__array(width, sizeof(double));
     l->rate = nevh__array(width, sizeof(double));
     l->h = nevh__array(width, sizeof(double));
@@ -44,17 +43,16 @@ static int allocate(nevh_stepper *s, struct nevh_ledger *l) {
     l->slope = nevh__array(size, sizeof(double));
     l->q = nevh__array(size, sizeof(double));
     l->p = nevh__array(size, sizeof(double));
-    l->steps = nevh__array(s->work.system->n_terms, sizeof *l->steps);
+    l->steps = nevh__array(w->system->n_terms, sizeof *l->steps);
     bool all = l->t && l->rate && l->h && l->pending && l->lost && l->slope &&
                l->q && l->p && l->steps;
-    return all ? NEVH_OK : out_of_memory(s);
+    return all ? NEVH_OK : out_of_memory(w);
 }
 
-static int plan_field(nevh_stepper *s, struct nevh_ledger *l) {
-    nevh_work *w = &s->work;
+static int plan_field(nevh_work *w, struct nevh_ledger *l) {
     l->field = nevh_field_new(w->system, w->options);
     if (!l->field)
-        return out_of_memory(s);
+        return out_of_memory(w);
     int status = l->field->report.status;
     if (!status && l->driven)
         status = nevh__field_plan_time(l->field, w->options, l->steps);
@@ -62,27 +60,26 @@ static int plan_field(nevh_stepper *s, struct nevh_ledger *l) {
         const nevh__planned *term = &l->field->terms[i];
         l->mixed |= term->term->is.time && term->nq && term->np;
     }
-    return status ? nevh__fail_as(&s->report, &l->field->report) : NEVH_OK;
+    return status ? nevh__fail_as(w->report, &l->field->report) : NEVH_OK;
 }
 
-int nevh__plan_ledger(nevh_stepper *s) {
-    nevh_work *w = &s->work;
+int nevh__ledger_plan(nevh_work *w, bool friction) {
     bool driven = !(nevh_system_traits(w->system) & NEVH_AUTONOMOUS);
-    if (!w->options->balance || !(driven || s->rates))
+    if (!w->options->balance || !(driven || friction))
         return NEVH_OK;
     if ((driven || w->friction) && w->integrator->kernel->opaque)
-        return nevh__fail(&s->report, NEVH_ESTRUCT,
-                          "%s cannot keep the balance of the energy where %s: "
-                          "its stages are out of reach",
-                          w->integrator->name,
-                          driven ? "H reads t" : "there is friction");
+        return nevh_work_fail(
+            w, NEVH_ESTRUCT,
+            "%s cannot keep the balance of the energy where %s: "
+            "its stages are out of reach",
+            w->integrator->name, driven ? "H reads t" : "there is friction");
     struct nevh_ledger *l = w->ledger = nevh__array(1, sizeof *l);
     if (!l)
-        return out_of_memory(s);
+        return out_of_memory(w);
     l->driven = driven;
     l->by_kernel = driven || w->friction;
-    int status = allocate(s, l);
-    return status ? status : plan_field(s, l);
+    int status = allocate(w, l);
+    return status ? status : plan_field(w, l);
 }
 
 void nevh__ledger_free(struct nevh_ledger *l) {
@@ -186,14 +183,11 @@ static int add_friction(nevh_work *w, const double t[], const double q[],
     return status;
 }
 
-int nevh_work_account(nevh_work *w, unsigned parts, double weight,
-                      const double t[], const double q[], const double p[]) {
+int nevh__ledger_account(nevh_work *w, unsigned parts, double weight,
+                         const double t[], const double q[], const double p[]) {
     struct nevh_ledger *l = w->ledger;
-    double rate = 0;
-    int status =
-        w->transform ? nevh__transform_rate(w, t, q, p, &rate) : NEVH_OK;
-    w->elapsed += weight * rate;
-    if (status || !l || !l->by_kernel || weight == 0)
+    int status = NEVH_OK;
+    if (!l || !l->by_kernel || weight == 0)
         return status;
     l->kicked += parts & NEVH_OF_Q ? weight : 0;
     l->drifted += parts & NEVH_OF_P ? weight : 0;
@@ -208,12 +202,10 @@ int nevh_work_account(nevh_work *w, unsigned parts, double weight,
     return fail(w, status);
 }
 
-void nevh__ledger_close(nevh_stepper *s) {
-    const nevh_work *w = &s->work;
+void nevh__ledger_close(const nevh_work *w, double total[]) {
     const struct nevh_ledger *l = w->ledger;
     if (!l)
         return;
-    double *total = w->memory + s->fresh_rows * w->width;
     double slack = incomplete * fabs(w->elapsed);
     bool complete = !l->by_kernel || (fabs(l->kicked - w->elapsed) <= slack &&
                                       fabs(l->drifted - w->elapsed) <= slack);
@@ -222,17 +214,4 @@ void nevh__ledger_close(nevh_stepper *s) {
         add(&total[lane], lost, complete ? l->pending[lane] : NAN);
         *lost += l->lost[lane];
     }
-}
-
-double nevh_stepper_gain(const nevh_stepper *s, size_t lane) {
-    const nevh_work *w = &s->work;
-    if (!s->planned || !w->ledger || lane >= w->width)
-        return 0;
-    const double *total = w->memory + s->fresh_rows * w->width;
-    return total[lane] + total[w->width + lane];
-}
-
-bool nevh__balanced(const nevh_stepper *s) {
-    return s->options.balance ||
-           (!s->rates && nevh_system_traits(s->work.system) & NEVH_AUTONOMOUS);
 }

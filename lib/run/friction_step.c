@@ -11,6 +11,7 @@
    otherwise the error of the one rounded factor would grow with each step.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/stepper_private.h"
+#include "work/ledger_private.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,0 +1,90 @@
+#!/bin/sh
+# Folders of the source stand in one order, and what a file includes, or an
+# object refers to, is defined in its own folder or an earlier one.  No two
+# files of the library have the same name.
+
+srcdir=${srcdir:-.}
+order='system expression gradient work implicit integrators run diagnose scene
+    models tools'
+work=arrows.$$
+trap 'rm -rf $work' EXIT
+trap 'exit 1' HUP INT TERM
+mkdir $work || exit 1
+status=0
+
+# From lines USER USED REASON, folders by name: those that point upward.
+upward() {
+    awk -v order="$order" '
+        BEGIN { n = split(order, name); while (n > 0) { level[name[n]] = n; n-- } }
+        level[$1] == "" || level[$2] == "" {
+            print "not in the order of folders:", $0; next }
+        level[$2] > level[$1] { print $1, "must not use", $2 ":", $3, $4 }'
+}
+echo 'gradient run contrast' | upward | grep -q 'must not use' || {
+    echo "an arrow that points upward was not found"
+    exit 1
+}
+test -z "$(echo 'run gradient contrast' | upward)" || exit 1
+
+# lib/ROOM/..., or the first folder.
+folder_of='function folder(path, part) {
+    split(path, part, "/"); return part[1] == "lib" ? part[2] : part[1] }'
+
+# Headers in include/nevh belong to the folder that implements them.
+(cd "$srcdir" && grep -E '^#include ["<]' /dev/null \
+    $(find lib integrators models tools -name '*.[ch]')) |
+    awk -F'[:"<>]' "$folder_of"'
+    BEGIN {
+        of["status"] = of["system"] = of["simd"] = of["body"] = "system"
+        of["transform"] = "system"
+        of["gradient"] = of["gsl"] = of["probe"] = "gradient"
+        of["integrator"] = of["extend"] = of["run"] = "work"
+        of["section"] = "run"; of["diagnose"] = of["reference"] = "diagnose"
+        of["scene"] = "scene"; of["models"] = "models"; of["nevh"] = "tools"
+    }
+    $3 ~ /^nevh\// { name = substr($3, 6); sub(/\.h$/, "", name)
+        print folder($1), of[name] == "" ? "unknown" : of[name], $1, $3; next }
+    $2 ~ /^#include / && $3 ~ /\// && $0 ~ /"/ {
+        split($3, part, "/"); room = part[1] == "kernels" ? "integrators" : part[1]
+        if (folder($1) == "tools")
+            room = "tools"
+        print folder($1), room, $1, $3 }' >$work/includes
+upward <$work/includes >$work/wrong
+test -s $work/includes || { echo "no include was found"; status=1; }
+
+nm=${NM:-nm}
+# Those of files that are there: a tree that was built before may hold others.
+find lib integrators models tools -name '*.o' 2>/dev/null | while read -r object; do
+    source=$(echo "$object" | sed 's,\.libs/,,; s,nevh-,,; s,\.o$,.c,')
+    test ! -f "$srcdir/$source" || echo "$object"
+done >$work/objects
+objects=$(cat $work/objects)
+if test -n "$objects" && $nm --version >/dev/null 2>&1; then
+    # Unquoted: $NM may bring options of its own.
+    $nm -A -P $objects 2>/dev/null | sed 's/\[[^]]*\]: */: /' |
+        awk -F': ' "$folder_of"'
+        { split($2, word, " ") }
+        word[1] !~ /^_?nevh_|^_?tool_/ && folder($1) != "tools" { next }
+        word[2] ~ /^[TDBRCVWi]$/ { of[word[1]] = folder($1); next }
+        word[2] == "U" && folder($1) != "" {
+            user[++n] = folder($1); used[n] = word[1]; file[n] = $1 }
+        END { for (i = 1; i <= n; i++)
+            if (used[i] in of) print user[i], of[used[i]], file[i], used[i] }
+        ' >$work/symbols
+    upward <$work/symbols >>$work/wrong
+    test -s $work/symbols || { echo "no symbol was found"; status=1; }
+fi
+
+if test -s $work/wrong; then
+    sort -u $work/wrong
+    status=1
+fi
+find "$srcdir/lib" "$srcdir/integrators" -name '*.[ch]' | sed 's,.*/,,' |
+    sort | uniq -d >$work/twice
+if test -s $work/twice; then
+    echo "names of files that stand twice:"
+    cat $work/twice
+    status=1
+fi
+echo "$(wc -l <$work/includes) includes, $(wc -l <$work/symbols) symbols"
+exit $status
