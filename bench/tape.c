@@ -94,7 +94,7 @@ static void complex_steps(data *d, size_t width) {
     }
 }
 
-static int apply(nevh__tape_builder *b, nevh__operation of, int x, int y) {
+static int apply(nevh__tape_builder *b, nevh__tape_operation of, int x, int y) {
     return nevh__tape_apply(b, of, x, y);
 }
 
@@ -116,7 +116,7 @@ static int kinetic(nevh__tape_builder *b, int d) {
 }
 
 static nevh__tape *double_pendulum(void) {
-    nevh__tape_builder *b = nevh__tape_begin();
+    nevh__tape_builder *b = nevh__tape_builder_new();
     int q1 = nevh__tape_variable(b, NEVH__Q, 0);
     int q2 = nevh__tape_variable(b, NEVH__Q, 1);
     int heights = apply(b, NEVH__ADD, scaled(b, 2, apply(b, NEVH__COS, q1, q1)),

@@ -5,7 +5,7 @@
 
 static const nevh__step_control reversible = {true}, naive = {false};
 
-const nevh_integrator nevh__adaptive_verlet = {
+const nevh_integrator nevh__adaptive_verlet_entry = {
     .name = "adaptive-verlet",
     .source = "E. Hairer, G. Soederlind, Explicit, time reversible, adaptive "
               "step size control, SIAM J. Sci. Comput. 26 (2005) 1838-1851",
@@ -23,7 +23,7 @@ const nevh_integrator nevh__adaptive_verlet = {
 };
 NEVH__PUBLISH(adaptive_verlet);
 
-const nevh_integrator nevh__naive_adaptive_verlet = {
+const nevh_integrator nevh__naive_adaptive_verlet_entry = {
     .name = "naive-adaptive-verlet",
     .source = "J. M. Sanz-Serna, M. P. Calvo, Numerical Hamiltonian Problems, "
               "Chapman and Hall (1994), ch. 9: what varying the step of a "

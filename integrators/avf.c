@@ -55,7 +55,7 @@ int nevh__average_gradient(const nevh__gradient_step *s, size_t active,
 static const nevh__discrete_gradient averaged = {
     .parts = 1, .averages = true, .gradient = nevh__average_gradient};
 
-const nevh_integrator nevh__avf = {
+const nevh_integrator nevh__avf_entry = {
     .name = "avf",
     .aliases = "averaged-vector-field",
     .source = "G. R. W. Quispel, D. I. McLaren, A new class of energy-"

@@ -15,7 +15,7 @@ static const long double s6[] = {
 };
 static const nevh_splitting six = {NEVH_KICK, NEVH_PALINDROME, 5, s6};
 
-const nevh_integrator nevh__blanes_moan4 = {
+const nevh_integrator nevh__blanes_moan4_entry = {
     .name = "blanes-moan4",
     .aliases = "S6, BM4, BlanesMoan2002S6",
     .source = "S. Blanes, P. C. Moan, Practical symplectic partitioned "
@@ -47,7 +47,7 @@ static const long double s10[] = {
 };
 static const nevh_splitting ten = {NEVH_KICK, NEVH_PALINDROME, 9, s10};
 
-const nevh_integrator nevh__blanes_moan6 = {
+const nevh_integrator nevh__blanes_moan6_entry = {
     .name = "blanes-moan6",
     .aliases = "S10, BM6, BlanesMoan2002S10",
     .source = "S. Blanes, P. C. Moan, Practical symplectic partitioned "

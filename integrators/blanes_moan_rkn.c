@@ -16,7 +16,7 @@ static const long double srkn6b[] = {
 };
 static const nevh_splitting six = {NEVH_KICK, NEVH_PALINDROME, 5, srkn6b};
 
-const nevh_integrator nevh__rkn6b = {
+const nevh_integrator nevh__rkn6b_entry = {
     .name = "rkn6b",
     .aliases = "SRKN6B, RKN4b, BlanesMoan2002SRKN6B",
     .source = "S. Blanes, P. C. Moan, Practical symplectic partitioned "
@@ -49,7 +49,7 @@ static const long double srkn11b[] = {
 };
 static const nevh_splitting eleven = {NEVH_KICK, NEVH_PALINDROME, 10, srkn11b};
 
-const nevh_integrator nevh__rkn11b = {
+const nevh_integrator nevh__rkn11b_entry = {
     .name = "rkn11b",
     .aliases = "SRKN11B, BlanesMoan2002SRKN11B",
     .source = "S. Blanes, P. C. Moan, Practical symplectic partitioned "
@@ -86,7 +86,7 @@ static const long double srkn14a[] = {
 static const nevh_splitting fourteen = {NEVH_DRIFT, NEVH_PALINDROME, 13,
                                         srkn14a};
 
-const nevh_integrator nevh__rkn14a = {
+const nevh_integrator nevh__rkn14a_entry = {
     .name = "rkn14a",
     .aliases = "SRKN14A, RKN6a, BlanesMoan2002SRKN14A",
     .source = "S. Blanes, P. C. Moan, Practical symplectic partitioned "

@@ -69,7 +69,7 @@ static const double coarse[] = {5.42937341165687622380535766363e-2 - 31. / 127,
 static const nevh_butcher table = {
     12, a[0], b, c, .error = error, .coarse = coarse, .error_power = 8};
 
-const nevh_integrator nevh__dop853 = {
+const nevh_integrator nevh__dop853_entry = {
     .name = "dop853",
     .aliases = "DOP853, dopri853, dormand-prince853",
     .source = "P. J. Prince, J. R. Dormand, J. Comput. Appl. Math. 7 (1981) "

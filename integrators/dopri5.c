@@ -23,7 +23,7 @@ static const double error[] = {
 static const nevh_butcher table = {
     7, a[0], b, c, .error = error, .error_power = 5, .last_is_first = true};
 
-const nevh_integrator nevh__dopri5 = {
+const nevh_integrator nevh__dopri5_entry = {
     .name = "dopri5",
     .aliases = "DOPRI5, RK45, rk45, ode45, dormand-prince5",
     .source = "J. R. Dormand, P. J. Prince, A family of embedded Runge-Kutta "

@@ -150,7 +150,7 @@ static const nevh_nystrom table = {17,
                                    .error_p = error_p,
                                    .error_power = 11};
 
-const nevh_integrator nevh__dprkn12 = {
+const nevh_integrator nevh__dprkn12_entry = {
     .name = "dprkn12",
     .aliases = "DPRKN12, RKN1210, RKN12(10)17M",
     .source = "J. R. Dormand, M. E. A. El-Mikkawy, P. J. Prince, High-order "

@@ -5,7 +5,7 @@
 static const double a[] = {0}, b[] = {1}, c[] = {0};
 static const nevh_butcher table = {.stages = 1, .a = a, .b = b, .c = c};
 
-const nevh_integrator nevh__euler = {
+const nevh_integrator nevh__euler_entry = {
     .name = "euler",
     .aliases = "forward-euler, explicit-euler",
     .source = "L. Euler, Institutiones calculi integralis I (1768), sec. 650",

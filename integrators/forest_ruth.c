@@ -8,7 +8,7 @@ static const long double steps[] = {
 };
 static const nevh_splitting table = {NEVH_KICK, NEVH_COMPOSITION, 1, steps};
 
-const nevh_integrator nevh__forest_ruth = {
+const nevh_integrator nevh__forest_ruth_entry = {
     .name = "forest-ruth",
     .aliases = "yoshida4, CandyRoz4, ARKODE_SPRK_CANDY_ROZMUS_4_4, "
                "CandyRozmus1991ForestRuth1990, TripleJump",

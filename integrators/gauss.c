@@ -3,7 +3,7 @@
 #include "schemes_private.h"
 
 #define GAUSS(id, title, other, count)                                         \
-    const nevh_integrator nevh__##id = {                                       \
+    const nevh_integrator nevh__##id##_entry = {                               \
         .name = title,                                                         \
         .aliases = other,                                                      \
         .source = "J. C. Butcher, Implicit Runge-Kutta processes, Math. "      \

@@ -52,7 +52,7 @@ static const nevh__discrete_gradient midpoint = {
     .noise = find_noise,
 };
 
-const nevh_integrator nevh__gonzalez = {
+const nevh_integrator nevh__gonzalez_entry = {
     .name = "gonzalez",
     .aliases = "midpoint-discrete-gradient",
     .source = "O. Gonzalez, Time integration and discrete Hamiltonian systems, "

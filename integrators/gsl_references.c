@@ -3,7 +3,7 @@
 #include "kernels/gsl_private.h"
 #include "schemes_private.h"
 
-const nevh_integrator nevh__gsl_rkf45 = {
+const nevh_integrator nevh__gsl_rkf45_entry = {
     .name = "gsl-rkf45",
     .aliases = "gsl_odeiv2_step_rkf45, fehlberg45",
     .source = "E. Fehlberg, NASA TR R-315 (1969), table III; as in GSL, which "
@@ -21,7 +21,7 @@ const nevh_integrator nevh__gsl_rkf45 = {
 };
 NEVH__PUBLISH(gsl_rkf45);
 
-const nevh_integrator nevh__gsl_rk8pd = {
+const nevh_integrator nevh__gsl_rk8pd_entry = {
     .name = "gsl-rk8pd",
     .aliases = "gsl_odeiv2_step_rk8pd, prince-dormand8",
     .source = "P. J. Prince, J. R. Dormand, High order embedded Runge-Kutta "
@@ -39,7 +39,7 @@ const nevh_integrator nevh__gsl_rk8pd = {
 };
 NEVH__PUBLISH(gsl_rk8pd);
 
-const nevh_integrator nevh__gsl_msadams = {
+const nevh_integrator nevh__gsl_msadams_entry = {
     .name = "gsl-msadams",
     .aliases = "gsl_odeiv2_step_msadams, adams",
     .source = "G. D. Byrne, A. C. Hindmarsh, A polyalgorithm for the numerical "

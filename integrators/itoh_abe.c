@@ -230,7 +230,7 @@ static int find_noise(void *step, size_t lane, double noise[]) {
         .noise = find_noise,                                                   \
         .own_size = own_size,                                                  \
     };                                                                         \
-    const nevh_integrator nevh__##id = {                                       \
+    const nevh_integrator nevh__##id##_entry = {                               \
         .name = title,                                                         \
         .aliases = other,                                                      \
         .source = "T. Itoh, K. Abe, Hamiltonian-conserving discrete "          \

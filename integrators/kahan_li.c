@@ -12,7 +12,7 @@ static const long double steps9[] = {
 };
 static const nevh_splitting nine = {NEVH_KICK, NEVH_COMPOSITION, 4, steps9};
 
-const nevh_integrator nevh__kahan_li6 = {
+const nevh_integrator nevh__kahan_li6_entry = {
     .name = "kahan-li6",
     .aliases = "KahanLi6, s9odr6a",
     .source = "W. Kahan, R.-C. Li, Composition constants for raising the "
@@ -44,7 +44,7 @@ static const long double steps17[] = {
 static const nevh_splitting seventeen = {NEVH_KICK, NEVH_COMPOSITION, 8,
                                          steps17};
 
-const nevh_integrator nevh__kahan_li8 = {
+const nevh_integrator nevh__kahan_li8_entry = {
     .name = "kahan-li8",
     .aliases = "KahanLi8, s17odr8a",
     .source = "W. Kahan, R.-C. Li, Composition constants for raising the "

@@ -4,7 +4,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-#define ENTRY(id) &nevh__##id,
+#define ENTRY(id) &nevh__##id##_entry,
 static const nevh_integrator *const all[] = {NEVH__SCHEMES(ENTRY) NULL};
 #undef ENTRY
 

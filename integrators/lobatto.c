@@ -3,7 +3,7 @@
 #include "schemes_private.h"
 
 #define LOBATTO(id, title, other, count)                                       \
-    const nevh_integrator nevh__##id = {                                       \
+    const nevh_integrator nevh__##id##_entry = {                               \
         .name = title,                                                         \
         .aliases = other,                                                      \
         .source = "G. Sun, Symplectic partitioned Runge-Kutta methods, J. "    \

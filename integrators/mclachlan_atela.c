@@ -16,7 +16,7 @@ static const long double weights[] = {
 };
 static const nevh_splitting table = {NEVH_KICK, NEVH_LISTED, 6, weights};
 
-const nevh_integrator nevh__mclachlan_atela4 = {
+const nevh_integrator nevh__mclachlan_atela4_entry = {
     .name = "mclachlan-atela4",
     .aliases = "McAte4, ARKODE_SPRK_MCLACHLAN_4_4, "
                "McLachlanAtela1992Order4Optimal",

@@ -14,7 +14,7 @@ static const long double weights[] = {
 };
 static const nevh_splitting table = {NEVH_DRIFT, NEVH_PALINDROME, 3, weights};
 
-const nevh_integrator nevh__pefrl = {
+const nevh_integrator nevh__pefrl_entry = {
     .name = "pefrl",
     .aliases = "PEFRL",
     .source = "I. P. Omelyan, I. M. Mryglod, R. Folk, Optimized Forest-Ruth- "

@@ -12,7 +12,7 @@ static const double b[] = {1. / 6, 1. / 3, 1. / 3, 1. / 6};
 static const double c[] = {0, 0.5, 0.5, 1};
 static const nevh_butcher table = {.stages = 4, .a = a, .b = b, .c = c};
 
-const nevh_integrator nevh__rk4 = {
+const nevh_integrator nevh__rk4_entry = {
     .name = "rk4",
     .aliases = "RK4, runge-kutta-4",
     .source = "W. Kutta, Beitrag zur naeherungsweisen Integration totaler "

@@ -6,7 +6,7 @@
 static const long double weights[] = {7 / 24.L, 2 / 3.L, 3 / 4.L, -2 / 3.L};
 static const nevh_splitting table = {NEVH_KICK, NEVH_LISTED, 4, weights};
 
-const nevh_integrator nevh__ruth3 = {
+const nevh_integrator nevh__ruth3_entry = {
     .name = "ruth3",
     .aliases = "Ruth3, Ruth1983, ARKODE_SPRK_RUTH_3_3",
     .source = "R. D. Ruth, A canonical integration technique, IEEE Trans. "

@@ -56,11 +56,12 @@
     X(gsl_rk8pd)                                                               \
     X(gsl_msadams)
 
-/* nevh__verlet is the descriptor, nevh_verlet the public pointer to it. */
-#define NEVH__DECLARE(id) extern const nevh_integrator nevh__##id;
+/* nevh__verlet_entry is the descriptor, nevh_verlet the public pointer to it. */
+#define NEVH__DECLARE(id) extern const nevh_integrator nevh__##id##_entry;
 NEVH__SCHEMES(NEVH__DECLARE)
 #undef NEVH__DECLARE
 
-#define NEVH__PUBLISH(id) const nevh_integrator *const nevh_##id = &nevh__##id
+#define NEVH__PUBLISH(id)                                                      \
+    const nevh_integrator *const nevh_##id = &nevh__##id##_entry
 
 #endif

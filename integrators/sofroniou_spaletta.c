@@ -25,7 +25,7 @@ static const long double steps[] = {
 };
 static const nevh_splitting table = {NEVH_KICK, NEVH_COMPOSITION, 17, steps};
 
-const nevh_integrator nevh__sofroniou_spaletta10 = {
+const nevh_integrator nevh__sofroniou_spaletta10_entry = {
     .name = "sofroniou-spaletta10",
     .aliases = "SofSpa10, ARKODE_SPRK_SOFRONIOU_10_36, SPLIT_10TH_SS_M35",
     .source = "M. Sofroniou, G. Spaletta, Derivation of symmetric composition "

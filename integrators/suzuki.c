@@ -9,7 +9,7 @@ static const long double steps[] = {
 };
 static const nevh_splitting table = {NEVH_KICK, NEVH_COMPOSITION, 2, steps};
 
-const nevh_integrator nevh__suzuki4 = {
+const nevh_integrator nevh__suzuki4_entry = {
     .name = "suzuki4",
     .aliases = "s5odr4, SuzukiFractal",
     .source = "M. Suzuki, Fractal decomposition of exponential operators with "

@@ -16,7 +16,7 @@ static const long double steps[] = {
 };
 static const nevh_splitting table = {NEVH_KICK, NEVH_COMPOSITION, 7, steps};
 
-const nevh_integrator nevh__suzuki_umeno8 = {
+const nevh_integrator nevh__suzuki_umeno8_entry = {
     .name = "suzuki-umeno8",
     .aliases = "SS15, s15odr8, McAte8, McLachlan1995SS15, "
                "ARKODE_SPRK_SUZUKI_UMENO_8_16",

@@ -6,7 +6,7 @@
 static const nevh_splitting kick_drift = {NEVH_KICK, NEVH_LISTED, 0, NULL};
 static const nevh_splitting drift_kick = {NEVH_DRIFT, NEVH_LISTED, 0, NULL};
 
-const nevh_integrator nevh__symplectic_euler_a = {
+const nevh_integrator nevh__symplectic_euler_a_entry = {
     .name = "symplectic-euler-a",
     .aliases = "euler-cromer, SymplecticEulerA, ARKODE_SPRK_EULER_1_1",
     .source = "R. de Vogelaere, Methods of integration which preserve the "
@@ -25,7 +25,7 @@ const nevh_integrator nevh__symplectic_euler_a = {
 };
 NEVH__PUBLISH(symplectic_euler_a);
 
-const nevh_integrator nevh__symplectic_euler_b = {
+const nevh_integrator nevh__symplectic_euler_b_entry = {
     .name = "symplectic-euler-b",
     .aliases = "SymplecticEulerB",
     .source = "R. de Vogelaere, Methods of integration which preserve the "

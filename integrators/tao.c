@@ -11,7 +11,7 @@
 
 static const nevh_splitting once = {NEVH_KICK, NEVH_COMPOSITION, 0, NULL};
 
-const nevh_integrator nevh__tao2 = {
+const nevh_integrator nevh__tao2_entry = {
     .name = "tao2",
     .aliases = "",
     .source = "M. Tao, Explicit symplectic approximation of nonseparable "
@@ -34,7 +34,7 @@ static const long double jump[] = {1.351207191959657634047687808971460826922L};
 static const nevh_splitting triple_jump = {NEVH_KICK, NEVH_COMPOSITION, 1,
                                            jump};
 
-const nevh_integrator nevh__tao4 = {
+const nevh_integrator nevh__tao4_entry = {
     .name = "tao4",
     .aliases = "",
     .source = "M. Tao, Phys. Rev. E 94 (2016) 043303, sec. I: triple jump",
@@ -58,7 +58,7 @@ static const long double kahan_li[] = {
 };
 static const nevh_splitting nine = {NEVH_KICK, NEVH_COMPOSITION, 4, kahan_li};
 
-const nevh_integrator nevh__tao6 = {
+const nevh_integrator nevh__tao6_entry = {
     .name = "tao6",
     .aliases = "",
     .source = "M. Tao, Phys. Rev. E 94 (2016) 043303, composed by W. Kahan, "

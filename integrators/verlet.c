@@ -7,7 +7,7 @@ static const nevh_splitting kick_first = {NEVH_KICK, NEVH_PALINDROME, 0, NULL};
 static const nevh_splitting drift_first = {NEVH_DRIFT, NEVH_PALINDROME, 0,
                                            NULL};
 
-const nevh_integrator nevh__verlet = {
+const nevh_integrator nevh__verlet_entry = {
     .name = "verlet",
     .aliases = "stormer-verlet, velocity-verlet, leapfrog",
     .source = "E. Hairer, C. Lubich, G. Wanner, Geometric numerical "
@@ -26,7 +26,7 @@ const nevh_integrator nevh__verlet = {
 };
 NEVH__PUBLISH(verlet);
 
-const nevh_integrator nevh__position_verlet = {
+const nevh_integrator nevh__position_verlet_entry = {
     .name = "position-verlet",
     .aliases = "PseudoVerletLeapfrog, ARKODE_SPRK_PSEUDO_LEAPFROG_2_2",
     .source = "M. Tuckerman, B. J. Berne, G. J. Martyna, Reversible multiple "

@@ -10,7 +10,7 @@ static const long double steps[] = {
 };
 static const nevh_splitting table = {NEVH_KICK, NEVH_COMPOSITION, 3, steps};
 
-const nevh_integrator nevh__yoshida6 = {
+const nevh_integrator nevh__yoshida6_entry = {
     .name = "yoshida6",
     .aliases = "Yoshida6, ARKODE_SPRK_YOSHIDA_6_8, Yos6",
     .source = "H. Yoshida, Construction of higher order symplectic "

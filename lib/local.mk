@@ -22,10 +22,10 @@ libnevh_core_la_SOURCES = \
 	lib/system/swing.c \
 	lib/system/ellipse.c \
 	lib/gradient/field_private.h \
-	lib/gradient/explore_private.h \
+	lib/gradient/step_selection_private.h \
 	lib/gradient/methods.c \
 	lib/gradient/plan.c \
-	lib/gradient/explore.c \
+	lib/gradient/step_selection.c \
 	lib/gradient/lengths.c \
 	lib/gradient/control_private.h \
 	lib/gradient/control.c \

@@ -93,7 +93,7 @@ static int coupled_exact(const void *params, double t, const double q0[],
     return nevh__model_state(2, x, v, q, p);
 }
 
-const nevh_model nevh__coupled_oscillators = {
+const nevh_model nevh__coupled_oscillators_entry = {
     .name = "coupled-oscillators",
     .title = "Two coupled oscillators",
     .n = 2,
@@ -108,4 +108,4 @@ const nevh_model nevh__coupled_oscillators = {
     .exact = coupled_exact,
 };
 const nevh_model *const nevh_coupled_oscillators_model =
-    &nevh__coupled_oscillators;
+    &nevh__coupled_oscillators_entry;

@@ -87,7 +87,7 @@ static const double start_q[] = {1.5707963267948966, 0}; /* pi/2 */
 static const double start_p[] = {0, 0};
 static const char *const coords[] = {"phi1", "phi2"};
 
-const nevh_model nevh__double_pendulum = {
+const nevh_model nevh__double_pendulum_entry = {
     .name = "double-pendulum",
     .title = "Double pendulum",
     .n = 2,
@@ -98,9 +98,10 @@ const nevh_model nevh__double_pendulum = {
     .system = correct_system,
     .hamiltonian = correct_hamiltonian,
 };
-const nevh_model *const nevh_double_pendulum_model = &nevh__double_pendulum;
+const nevh_model *const nevh_double_pendulum_model =
+    &nevh__double_pendulum_entry;
 
-const nevh_model nevh__double_pendulum_as_printed = {
+const nevh_model nevh__double_pendulum_as_printed_entry = {
     .name = "double-pendulum-as-printed",
     .title = "Double pendulum with the paper's misprinted H",
     .n = 2,
@@ -112,4 +113,4 @@ const nevh_model nevh__double_pendulum_as_printed = {
     .hamiltonian = printed_hamiltonian,
 };
 const nevh_model *const nevh_double_pendulum_as_printed_model =
-    &nevh__double_pendulum_as_printed;
+    &nevh__double_pendulum_as_printed_entry;

@@ -67,7 +67,7 @@ static double elastic_hamiltonian(double t, const double q[], const double p[],
            a->m * a->g * r * cos(q[THETA]);
 }
 
-const nevh_model nevh__elastic_pendulum = {
+const nevh_model nevh__elastic_pendulum_entry = {
     .name = "elastic-pendulum",
     .title = "Elastic pendulum",
     .n = 2,
@@ -81,4 +81,5 @@ const nevh_model nevh__elastic_pendulum = {
     .system = elastic_system,
     .hamiltonian = elastic_hamiltonian,
 };
-const nevh_model *const nevh_elastic_pendulum_model = &nevh__elastic_pendulum;
+const nevh_model *const nevh_elastic_pendulum_model =
+    &nevh__elastic_pendulum_entry;

@@ -30,12 +30,12 @@ int nevh__model_state(size_t n, const long double from_q[],
 
 const nevh_model *const *nevh_models(void) {
     static const nevh_model *const list[] = {
-        &nevh__oscillator,
-        &nevh__pendulum,
-        &nevh__double_pendulum,
-        &nevh__double_pendulum_as_printed,
-        &nevh__elastic_pendulum,
-        &nevh__coupled_oscillators,
+        &nevh__oscillator_entry,
+        &nevh__pendulum_entry,
+        &nevh__double_pendulum_entry,
+        &nevh__double_pendulum_as_printed_entry,
+        &nevh__elastic_pendulum_entry,
+        &nevh__coupled_oscillators_entry,
         NULL,
     };
     return list;

@@ -6,9 +6,9 @@
 #include <nevh/body.h>
 #include <nevh/models.h>
 
-extern const nevh_model nevh__oscillator, nevh__pendulum, nevh__double_pendulum,
-    nevh__double_pendulum_as_printed, nevh__elastic_pendulum,
-    nevh__coupled_oscillators;
+extern const nevh_model nevh__oscillator_entry, nevh__pendulum_entry,
+    nevh__double_pendulum_entry, nevh__double_pendulum_as_printed_entry,
+    nevh__elastic_pendulum_entry, nevh__coupled_oscillators_entry;
 
 /* All numbers a model's term needs are constants of its instances, taken from
    the parameters when the system is made.  So a system of a model does not

@@ -53,7 +53,7 @@ static int oscillator_exact(const void *params, double t, const double q0[],
     return nevh__model_state(1, &x, &v, q, p);
 }
 
-const nevh_model nevh__oscillator = {
+const nevh_model nevh__oscillator_entry = {
     .name = "harmonic-oscillator",
     .title = "Harmonic oscillator",
     .n = 1,
@@ -66,4 +66,4 @@ const nevh_model nevh__oscillator = {
     .hamiltonian = oscillator_hamiltonian,
     .exact = oscillator_exact,
 };
-const nevh_model *const nevh_oscillator_model = &nevh__oscillator;
+const nevh_model *const nevh_oscillator_model = &nevh__oscillator_entry;

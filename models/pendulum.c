@@ -44,7 +44,7 @@ static int pendulum_exact(const void *params, double t, const double q0[],
     return nevh__model_state(1, &to_q, &to_p, q, p);
 }
 
-const nevh_model nevh__pendulum = {
+const nevh_model nevh__pendulum_entry = {
     .name = "pendulum",
     .title = "Pendulum",
     .n = 1,
@@ -56,4 +56,4 @@ const nevh_model nevh__pendulum = {
     .hamiltonian = pendulum_hamiltonian,
     .exact = pendulum_exact,
 };
-const nevh_model *const nevh_pendulum_model = &nevh__pendulum;
+const nevh_model *const nevh_pendulum_model = &nevh__pendulum_entry;

@@ -131,11 +131,11 @@ NEVH__INLINE double nevh__same(double x) {
 
 /* Of two numbers one that is NaN wins, so that it is noticed. */
 
-NEVH__INLINE double nevh__min(double x, double y) {
+NEVH__INLINE double nevh__real_min(double x, double y) {
     return x != x || x < y ? x : y;
 }
 
-NEVH__INLINE double nevh__max(double x, double y) {
+NEVH__INLINE double nevh__real_max(double x, double y) {
     return x != x || x > y ? x : y;
 }
 
@@ -151,7 +151,7 @@ NEVH__INLINE double _Complex nevh__complex_max(double _Complex x,
     return a != a || a > nevh__re(y) ? x : y;
 }
 
-/* One lane of a block.  In each form of a body nevh__q is of another type, by
+/* One lane of a block.  In each form of a body nevh__body_q is of another type, by
    which the functions are chosen. */
 typedef struct {
     const double *x;
@@ -189,16 +189,16 @@ NEVH__INLINE double _Complex nevh__of_complex(const double (*x)[2], size_t k) {
 #define NEVH__ANY(x, real, complex)                                            \
     _Generic((x), double _Complex: complex, default: real)
 #define NEVH__LIBM(f, x)                                                       \
-    NEVH__ANY(x, _Generic(nevh__q, nevh__lanes: nevh_simd_##f,                 \
+    NEVH__ANY(x, _Generic(nevh__body_q, nevh__lanes: nevh_simd_##f,                 \
                                    nevh__one: nevh_point_##f, default: f),     \
               nevh__complex_##f)
 // clang-format on
-#define NEVH__OWN(f, x) NEVH__ANY(x, nevh__##f, nevh__complex_##f)
+#define NEVH__OWN(f, x) NEVH__ANY(x, nevh__real_##f, nevh__complex_##f)
 
 /* What the body reads, and the functions that it calls. */
-#define nevh_q(k)        NEVH__AT(nevh__q, k)
-#define nevh_p(k)        NEVH__AT(nevh__p, k)
-#define nevh_c(k)        NEVH__AT(nevh__c, k)
+#define nevh_q(k)        NEVH__AT(nevh__body_q, k)
+#define nevh_p(k)        NEVH__AT(nevh__body_p, k)
+#define nevh_c(k)        NEVH__AT(nevh__body_c, k)
 #define nevh_sin(x)      NEVH__LIBM(sin, x)((x) + nevh__none)
 #define nevh_cos(x)      NEVH__LIBM(cos, x)((x) + nevh__none)
 #define nevh_tan(x)      NEVH__LIBM(tan, x)((x) + nevh__none)
@@ -234,7 +234,8 @@ NEVH__INLINE double _Complex nevh__of_complex(const double (*x)[2], size_t k) {
         NEVH__MAYBE_UNUSED typedef number nevh_num;                            \
         NEVH__MAYBE_UNUSED const double nevh__none = nothing;                  \
         const params_type *params = nevh__params;                              \
-        (void)nevh_t, (void)nevh__q, (void)nevh__p, (void)nevh__c;             \
+        (void)nevh_t, (void)nevh__body_q, (void)nevh__body_p,                  \
+            (void)nevh__body_c;                                                \
         (void)params;                                                          \
         __VA_ARGS__                                                            \
     }
@@ -245,13 +246,13 @@ NEVH__INLINE double _Complex nevh__of_complex(const double (*x)[2], size_t k) {
 // clang-format off
 #define NEVH_BODY(name, params_type, ...)                                      \
     NEVH__MAYBE_UNUSED static double name##_value(                             \
-        double nevh_t, const double *nevh__q, const double *nevh__p,           \
-        const double *nevh__c, const void *nevh__params)                       \
+        double nevh_t, const double *nevh__body_q, const double *nevh__body_p,           \
+        const double *nevh__body_c, const void *nevh__params)                       \
     NEVH__FORM(double, -0., params_type, __VA_ARGS__)                          \
                                                                                \
     NEVH__INLINE double name##_lane(                                           \
-        double nevh_t, nevh__lanes nevh__q, nevh__lanes nevh__p,               \
-        nevh__lanes nevh__c, const void *nevh__params)                         \
+        double nevh_t, nevh__lanes nevh__body_q, nevh__lanes nevh__body_p,               \
+        nevh__lanes nevh__body_c, const void *nevh__params)                         \
     NEVH__FORM(double, -0., params_type, __VA_ARGS__)                          \
                                                                                \
     NEVH__MAYBE_UNUSED NEVH_SIMD static void name##_block(                     \
@@ -266,8 +267,8 @@ NEVH__INLINE double _Complex nevh__of_complex(const double (*x)[2], size_t k) {
     }                                                                          \
                                                                                \
     NEVH__COMPLEX NEVH__INLINE double _Complex name##_analytic(                \
-        double nevh_t, const double (*nevh__q)[2],                             \
-        const double (*nevh__p)[2], const double *nevh__c,                     \
+        double nevh_t, const double (*nevh__body_q)[2],                             \
+        const double (*nevh__body_p)[2], const double *nevh__body_c,                     \
         const void *nevh__params)                                              \
     NEVH__FORM(double _Complex, -0., params_type, __VA_ARGS__)                 \
                                                                                \
@@ -300,17 +301,17 @@ NEVH__INLINE double *nevh__slope(nevh__slopes d, size_t k) {
 }
 
 /* What the body of a gradient writes. */
-#define nevh_dh_dq(k) (*nevh__slope(nevh__dh_dq, (size_t)(k)))
-#define nevh_dh_dp(k) (*nevh__slope(nevh__dh_dp, (size_t)(k)))
+#define nevh_dh_dq(k) (*nevh__slope(nevh__body_dh_dq, (size_t)(k)))
+#define nevh_dh_dp(k) (*nevh__slope(nevh__body_dh_dp, (size_t)(k)))
 
 // clang-format off
 #define NEVH__GRADIENT_FORM(name, rows, params_type, ...)                      \
-    NEVH__INLINE void name(double nevh_t, rows nevh__q, rows nevh__p,          \
-                           rows nevh__c, const void *nevh__params,             \
-                           double nothing, nevh__slopes nevh__dh_dq,           \
-                           nevh__slopes nevh__dh_dp)                           \
+    NEVH__INLINE void name(double nevh_t, rows nevh__body_q, rows nevh__body_p,          \
+                           rows nevh__body_c, const void *nevh__params,             \
+                           double nothing, nevh__slopes nevh__body_dh_dq,           \
+                           nevh__slopes nevh__body_dh_dp)                           \
     {                                                                          \
-        (void)nevh__dh_dq, (void)nevh__dh_dp;                                  \
+        (void)nevh__body_dh_dq, (void)nevh__body_dh_dp;                                  \
         NEVH__FORM(double, nothing, params_type, __VA_ARGS__)                  \
     }
 

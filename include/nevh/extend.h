@@ -25,7 +25,7 @@ typedef struct {
        they were: results go to scratch until the step is certain. */
     int (*step)(nevh_work *, double t, double h, double q[], double p[]);
     /* Frees `plan`; NULL when there is nothing to free. */
-    void (*unplan)(nevh_work *);
+    void (*clear)(nevh_work *);
     /* Friction has multiplied p by factor[k] (n of them) since the last step:
        memory that depends on p is scaled or dropped.  Called twice between
        steps, for the half behind one and for the half before the next; also
@@ -78,7 +78,7 @@ struct nevh_work {
     struct nevh_ledger *ledger;        /* NULL: nobody asked for the balance */
     bool accounts;                     /* nevh_work_account is to be called */
 
-    struct nevh_report *report; /* written by nevh_work_fail */
+    struct nevh__report *report; /* written by nevh_work_fail */
 };
 
 /* Records a status with a printf-like message, and returns the status. */

@@ -81,7 +81,7 @@ NEVH__VECTOR1(sin)
 NEVH__VECTOR1(cos)
 NEVH__VECTOR1(exp)
 NEVH__VECTOR1(log)
-extern double nevh__simd_pow(double, double) __asm__("pow") NEVH__VECTOR;
+extern double nevh__simd_libm_pow(double, double) __asm__("pow") NEVH__VECTOR;
 #ifdef NEVH__VECTORS_MORE
 NEVH__VECTOR1(tan)
 NEVH__VECTOR1(asin)
@@ -117,7 +117,7 @@ extern double __builtin_sqrt(double) __attribute__((const));
                : y == 4  ? x * x * (x * x)                                     \
                          : f(x, y);                                             \
     }
-NEVH__POW(nevh_simd_pow, nevh__simd_pow)
+NEVH__POW(nevh_simd_pow, nevh__simd_libm_pow)
 #else
 #define nevh_simd_sin  sin
 #define nevh_simd_cos  cos
@@ -188,8 +188,8 @@ NEVH__POINT1(nevh_point_sin, nevh_simd_sin)
 NEVH__POINT1(nevh_point_cos, nevh_simd_cos)
 NEVH__POINT1(nevh_point_exp, nevh_simd_exp)
 NEVH__POINT1(nevh_point_log, nevh_simd_log)
-NEVH__POINT2(nevh__point_pow, nevh__simd_pow)
-NEVH__POW(nevh_point_pow, nevh__point_pow)
+NEVH__POINT2(nevh__point_libm_pow, nevh__simd_libm_pow)
+NEVH__POW(nevh_point_pow, nevh__point_libm_pow)
 #ifdef NEVH__VECTORS_MORE
 NEVH__POINT1(nevh_point_tan, nevh_simd_tan)
 NEVH__POINT1(nevh_point_asin, nevh_simd_asin)

@@ -51,7 +51,7 @@ typedef struct {
 } control;
 enum { CONTROL_ROWS = sizeof(control) / sizeof(double) };
 
-static void unplan(nevh_work *w) {
+static void clear(nevh_work *w) {
     plan_data *d = w->plan;
     if (!d)
         return;
@@ -324,4 +324,4 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
 }
 
 const nevh_kernel nevh__adaptive_verlet_kernel = {
-    .plan = plan, .step = step, .unplan = unplan};
+    .plan = plan, .step = step, .clear = clear};

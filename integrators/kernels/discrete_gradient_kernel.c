@@ -54,7 +54,7 @@ static size_t node_count(const nevh_work *w) {
     return table_of(w)->averages ? (size_t)w->integrator->stages : 1;
 }
 
-static void unplan(nevh_work *w) {
+static void clear(nevh_work *w) {
     gradient_plan *g = w->plan;
     if (!g)
         return;
@@ -73,7 +73,7 @@ static void unplan(nevh_work *w) {
 static void measure(const nevh_work *w, const nevh__planned *term,
                     double energy, const double curved[]) {
     const gradient_plan *g = w->plan;
-    for (size_t at = 0; at < term->term->is.count * term->nv; at++) {
+    for (size_t at = 0; at < term->term->decl.count * term->nv; at++) {
         size_t v = at % term->nv;
         size_t k =
             nevh__index(term, at / term->nv, v) + (v < term->nq ? 0 : w->n);
@@ -313,8 +313,9 @@ static int map(void *data, size_t active, const size_t lanes[],
 static void advance(const nevh__gradient_step *s, double *z, double *carry) {
     for (size_t i = 0; i < 2 * s->work->size; i++) {
         double way = s->h * s->x[i], d = way + carry[i], next = z[i] + d;
-        double lost = fma(s->h, s->x[i], -way) + nevh__lost(d, way, carry[i]);
-        carry[i] = nevh__lost(next, z[i], d) + lost;
+        double lost =
+            fma(s->h, s->x[i], -way) + nevh__roundoff(d, way, carry[i]);
+        carry[i] = nevh__roundoff(next, z[i], d) + lost;
         z[i] = next;
     }
 }
@@ -407,4 +408,4 @@ static void damp(nevh_work *w, const double factor[]) {
 }
 
 const nevh_kernel nevh__discrete_gradient_kernel = {
-    .plan = plan, .step = step, .unplan = unplan, .damp = damp};
+    .plan = plan, .step = step, .clear = clear, .damp = damp};

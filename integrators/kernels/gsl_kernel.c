@@ -26,7 +26,7 @@ typedef struct {
     double start;
 } gsl_plan;
 
-static void unplan(nevh_work *w) {
+static void clear(nevh_work *w) {
     gsl_plan *g = w->plan;
     if (!g)
         return;
@@ -195,8 +195,5 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     return status;
 }
 
-const nevh_kernel nevh__gsl_kernel = {.plan = plan,
-                                      .step = step,
-                                      .unplan = unplan,
-                                      .damps = true,
-                                      .opaque = true};
+const nevh_kernel nevh__gsl_kernel = {
+    .plan = plan, .step = step, .clear = clear, .damps = true, .opaque = true};

@@ -69,7 +69,7 @@ static family_memory recall(const nevh_work *w) {
     return m;
 }
 
-static void unplan(nevh_work *w) {
+static void clear(nevh_work *w) {
     family_plan *g = w->plan;
     if (!g)
         return;
@@ -222,8 +222,8 @@ static int take_gradient(const family_step *s, size_t active, double dh_dq[],
     nevh_work *w = s->work;
     const family_plan *g = w->plan;
     size_t points = g->tableau->stages * active;
-    return nevh__work_gradient(w, points, points, s->times, s->points,
-                               s->points + w->n * points, dh_dq, dh_dp);
+    return nevh__work_gradient_padded(w, points, points, s->times, s->points,
+                                      s->points + w->n * points, dh_dq, dh_dp);
 }
 
 static void negate(const family_step *s, size_t active, double x[]) {
@@ -352,7 +352,7 @@ static int account(const family_step *s, const family_plan *g) {
 /* sum + lost += h b x; what that loses is below the last bit of lost. */
 NEVH__INLINE void add(double hb, double slope, double *sum, double *lost) {
     double x = hb * slope, next = *sum + x;
-    *lost += nevh__lost(next, *sum, x) + fma(hb, slope, -x);
+    *lost += nevh__roundoff(next, *sum, x) + fma(hb, slope, -x);
     *sum = next;
 }
 
@@ -370,7 +370,7 @@ NEVH__INLINE void sum_row(const nevh__tableau *a, const double hb[],
             add(hb[*j], x[*j * width + i], &total[i], &rest[i]);
     for (size_t i = 0; i < lanes; i++) {
         sum[i] = total[i] + rest[i];
-        lost[i] = nevh__lost(sum[i], total[i], rest[i]);
+        lost[i] = nevh__roundoff(sum[i], total[i], rest[i]);
     }
 }
 
@@ -441,6 +441,6 @@ static void damp(nevh_work *w, const double factor[]) {
 }
 
 const nevh_kernel nevh_gauss_kernel = {
-    .plan = plan_gauss, .step = step, .unplan = unplan, .damp = damp};
+    .plan = plan_gauss, .step = step, .clear = clear, .damp = damp};
 const nevh_kernel nevh_lobatto_kernel = {
-    .plan = plan_lobatto, .step = step, .unplan = unplan, .damp = damp};
+    .plan = plan_lobatto, .step = step, .clear = clear, .damp = damp};

@@ -30,15 +30,15 @@ static size_t most_lanes(const nevh_work *w) {
 
 static bool diagonal(const nevh_system *s) {
     for (size_t i = 0; i < s->n_terms; i++) {
-        const nevh_term *is = &s->terms[i]->is;
-        if (nevh__term_on(s, s->terms[i]) && is->np &&
-            (is->np > 1 || is->nq > 0))
+        const nevh_term *decl = &s->terms[i]->decl;
+        if (nevh__term_on(s, s->terms[i]) && decl->np &&
+            (decl->np > 1 || decl->nq > 0))
             return false;
     }
     return true;
 }
 
-static bool lay_out(nevh__nystrom *y) {
+static bool lay_out(nevh__nystrom_state *y) {
     size_t half = y->stride, stages = y->table->stages;
     y->room = nevh__array((11 + stages) * half + most_lanes(y->work) +
                               2 * y->n + NEVH__LANES,
@@ -68,7 +68,7 @@ static bool lay_out(nevh__nystrom *y) {
     return true;
 }
 
-static void list_weights(nevh__nystrom *y) {
+static void list_weights(nevh__nystrom_state *y) {
     const nevh_nystrom *table = y->table;
     const double *const ends[ENDS] = {table->bq, table->bp, table->error_q,
                                       table->error_p};
@@ -79,7 +79,7 @@ static void list_weights(nevh__nystrom *y) {
                          y->stride, y->weights + i * s, y->offsets + i * s);
 }
 
-static bool plan_calls(nevh__nystrom *y, size_t lanes) {
+static bool plan_calls(nevh__nystrom_state *y, size_t lanes) {
     nevh_field *f = y->work->field;
     y->drift = nevh__call_plan(f, lanes, y->time, y->points, y->momenta, NULL,
                                y->velocities);
@@ -89,7 +89,7 @@ static bool plan_calls(nevh__nystrom *y, size_t lanes) {
     return y->drift.count && y->kicks[0].count;
 }
 
-static void find_calls(nevh__nystrom *y) {
+static void find_calls(nevh__nystrom_state *y) {
     if (y->work->width > 1 || y->work->transform)
         return;
     if (plan_calls(y, 1))
@@ -99,7 +99,7 @@ static void find_calls(nevh__nystrom *y) {
 }
 
 /* Lane 0 of the coordinates to plan at, at rest. */
-static void take_origin(nevh__nystrom *y) {
+static void take_origin(nevh__nystrom_state *y) {
     const nevh_options *o = y->work->options;
     for (size_t k = 0; k < y->n; k++) {
         y->points[k] = o->q ? o->q[k * y->work->width] : 0;
@@ -108,7 +108,7 @@ static void take_origin(nevh__nystrom *y) {
 }
 
 /* Where T depends on time there is no second-order equation. */
-static int check_kinetic(nevh__nystrom *y) {
+static int check_kinetic(nevh__nystrom_state *y) {
     nevh_work *w = y->work;
     const char *term;
     take_origin(y);
@@ -134,7 +134,7 @@ static int check_friction(nevh_work *w) {
                           w->integrator->name);
 }
 
-static int ask(nevh__nystrom *y, double velocities[]) {
+static int ask(nevh__nystrom_state *y, double velocities[]) {
     nevh_work *w = y->work;
     int status = nevh_field_gradient(w->field, 1, &w->options->t, y->points,
                                      y->momenta, NULL, velocities);
@@ -152,7 +152,7 @@ static void forget(nevh_field *f) {
 
 /* T_p(0), and W from momenta of the size of p: powers of two, so that nothing
    is rounded. */
-static int find_kinetic(nevh__nystrom *y) {
+static int find_kinetic(nevh__nystrom_state *y) {
     const double *scale = y->work->scale + y->n;
     take_origin(y);
     int status = ask(y, y->rest);
@@ -168,8 +168,8 @@ static int find_kinetic(nevh__nystrom *y) {
     return status;
 }
 
-static int plan_nystrom(nevh_work *w, nevh__nystrom **nystrom) {
-    nevh__nystrom *y = *nystrom = nevh__array(1, sizeof *y);
+static int plan_nystrom(nevh_work *w, nevh__nystrom_state **nystrom) {
+    nevh__nystrom_state *y = *nystrom = nevh__array(1, sizeof *y);
     if (!y)
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     y->work = w;
@@ -188,7 +188,7 @@ static int plan_nystrom(nevh_work *w, nevh__nystrom **nystrom) {
 /* T does not read the time, so where momenta are does not matter. */
 static int account(const nevh__stages *s) {
     nevh_work *w = s->work;
-    nevh__nystrom *y = nevh__nystrom_of(w);
+    nevh__nystrom_state *y = nevh__nystrom_of(w);
     const nevh_nystrom *table = y->table;
     int status = NEVH_OK;
     for (size_t i = 0; w->accounts && !status && i < table->stages; i++)
@@ -224,11 +224,11 @@ static int plan(nevh_work *w) {
     return NEVH_OK;
 }
 
-static void unplan(nevh_work *w) {
+static void clear(nevh_work *w) {
     nevh__stages_plan *plan = w->plan;
     if (!plan)
         return;
-    nevh__adaptive_unplan(w);
+    nevh__adaptive_clear(w);
     if (plan->nystrom) {
         free(plan->nystrom->room);
         free(plan->nystrom->kicks);
@@ -276,4 +276,4 @@ static void damp(nevh_work *w, const double factor[]) {
 }
 
 const nevh_kernel nevh_nystrom_kernel = {
-    .plan = plan, .step = step, .unplan = unplan, .damp = damp};
+    .plan = plan, .step = step, .clear = clear, .damp = damp};

@@ -9,7 +9,7 @@
 /* Sums besides those of the stages. */
 enum { OF_Q, OF_P, ERROR_OF_Q, ERROR_OF_P, ENDS };
 
-struct nevh__nystrom {
+struct nevh__nystrom_state {
     nevh_work *work;
     const nevh_nystrom *table;
     size_t n, lanes;       /* lanes: of the step under way */
@@ -37,7 +37,7 @@ struct nevh__nystrom {
     nevh__sum *sums; /* those of the stages, and of the ends */
 };
 
-static inline nevh__nystrom *nevh__nystrom_of(const nevh_work *w) {
+static inline nevh__nystrom_state *nevh__nystrom_of(const nevh_work *w) {
     return ((const nevh__stages_plan *)w->plan)->nystrom;
 }
 
@@ -46,7 +46,7 @@ int nevh__nystrom_take(nevh__stages *, size_t first, size_t until);
 int nevh__nystrom_finish(const nevh__stages *, double change[], double error[],
                          double coarse[]);
 /* The state of a stage that was taken, to points, and its time. */
-int nevh__nystrom_place(const nevh__nystrom *, const nevh__stages *,
+int nevh__nystrom_place(const nevh__nystrom_state *, const nevh__stages *,
                         size_t stage);
 
 #endif

@@ -14,7 +14,7 @@
 enum { NOT_CALLED = 0 };
 
 /* Rows of columns. */
-static void prepare_columns(nevh__nystrom *y, const nevh__stages *s) {
+static void prepare_columns(nevh__nystrom_state *y, const nevh__stages *s) {
     size_t n = y->n, size = n * s->columns;
     y->lanes = s->columns;
     y->size = size;
@@ -31,7 +31,8 @@ static void prepare_columns(nevh__nystrom *y, const nevh__stages *s) {
 }
 
 /* Rows of equal lanes. */
-NEVH_SIMD static void prepare_lanes(nevh__nystrom *y, const nevh__stages *s) {
+NEVH_SIMD static void prepare_lanes(nevh__nystrom_state *y,
+                                    const nevh__stages *s) {
     size_t n = y->n;
     y->lanes = y->call_lanes;
     y->size = n * y->lanes;
@@ -50,8 +51,8 @@ NEVH_SIMD static void prepare_lanes(nevh__nystrom *y, const nevh__stages *s) {
 }
 
 /* Of T_p: c p - h sum_j weights[j] D_j. */
-NEVH__INLINE void place_momenta(const nevh__nystrom *y, const nevh__sum *x,
-                                double c) {
+NEVH__INLINE void place_momenta(const nevh__nystrom_state *y,
+                                const nevh__sum *x, double c) {
     const double *carry = y->carry + y->size;
     size_t i = 0;
     for (; i + NEVH__IN_VECTOR <= y->size; i += NEVH__IN_VECTOR) {
@@ -77,7 +78,7 @@ NEVH__INLINE void place_momenta(const nevh__nystrom *y, const nevh__sum *x,
                       *(const type *)((y)->velocities + (i)))
 
 /* q_i: the start and what it moved by. */
-NEVH__INLINE void place_points(const nevh__nystrom *y, double c) {
+NEVH__INLINE void place_points(const nevh__nystrom_state *y, double c) {
     size_t i = 0;
     for (; i + NEVH__IN_VECTOR <= y->size; i += NEVH__IN_VECTOR)
         *(nevh__vector *)(y->points + i) =
@@ -89,8 +90,9 @@ NEVH__INLINE void place_points(const nevh__nystrom *y, double c) {
 }
 
 /* The same by W: of `rows` vectors. */
-NEVH__INLINE void place_vectors(const nevh__nystrom *y, const nevh__sum *x,
-                                double c, size_t rows, size_t from) {
+NEVH__INLINE void place_vectors(const nevh__nystrom_state *y,
+                                const nevh__sum *x, double c, size_t rows,
+                                size_t from) {
     nevh__vector sums[2];
     nevh__add_up(x, rows, y->slopes + from, sums);
     NEVH_UNROLL
@@ -104,13 +106,13 @@ NEVH__INLINE void place_vectors(const nevh__nystrom *y, const nevh__sum *x,
     }
 }
 
-NEVH__INLINE void place_number(const nevh__nystrom *y, double c, size_t i,
+NEVH__INLINE void place_number(const nevh__nystrom_state *y, double c, size_t i,
                                double sum) {
     y->points[i] = y->q[i] + ((c * y->way[i] + y->carry[i]) - y->gain[i] * sum);
 }
 
-NEVH__INLINE void place_diagonal(const nevh__nystrom *y, const nevh__sum *x,
-                                 double c) {
+NEVH__INLINE void place_diagonal(const nevh__nystrom_state *y,
+                                 const nevh__sum *x, double c) {
     size_t i = 0, one = NEVH__IN_VECTOR;
     for (; i + 2 * one <= y->size; i += 2 * one)
         place_vectors(y, x, c, 2, i);
@@ -127,13 +129,13 @@ NEVH__INLINE void place_diagonal(const nevh__nystrom *y, const nevh__sum *x,
 }
 
 /* The state of the first stage. */
-NEVH__INLINE void place_start(const nevh__nystrom *y) {
+NEVH__INLINE void place_start(const nevh__nystrom_state *y) {
     for (size_t i = 0; i < y->size; i++)
         y->points[i] = y->q[i] + y->carry[i];
 }
 
 /* Also where T seems to read the time: its differences are those of H. */
-NEVH__INLINE void set_time(const nevh__nystrom *y, const nevh__stages *s,
+NEVH__INLINE void set_time(const nevh__nystrom_state *y, const nevh__stages *s,
                            size_t called, double c) {
     if (called && !y->kicks->timed && !y->drift.timed)
         return;
@@ -149,14 +151,15 @@ NEVH__INLINE int run(nevh_work *w, const nevh__call *call, size_t called) {
 }
 
 /* T_p of the momenta. */
-NEVH__INLINE int drift(const nevh__nystrom *y, size_t called) {
+NEVH__INLINE int drift(const nevh__nystrom_state *y, size_t called) {
     if (!called)
         return nevh_work_gradient(y->work, y->lanes, y->time, y->points,
                                   y->momenta, NULL, y->velocities);
     return run(y->work, &y->drift, called);
 }
 
-NEVH__INLINE int kick(const nevh__nystrom *y, size_t called, size_t stage) {
+NEVH__INLINE int kick(const nevh__nystrom_state *y, size_t called,
+                      size_t stage) {
     if (!called)
         return nevh_work_gradient(y->work, y->lanes, y->time, y->points, y->p,
                                   y->slopes + stage * y->stride, NULL);
@@ -164,7 +167,7 @@ NEVH__INLINE int kick(const nevh__nystrom *y, size_t called, size_t stage) {
 }
 
 /* The state of a stage, to points, and its time. */
-NEVH__INLINE int place(const nevh__nystrom *y, const nevh__stages *s,
+NEVH__INLINE int place(const nevh__nystrom_state *y, const nevh__stages *s,
                        size_t called, size_t stage) {
     const nevh_nystrom *table = y->table;
     const nevh__sum *x = &y->sums[stage];
@@ -184,7 +187,8 @@ NEVH__INLINE int place(const nevh__nystrom *y, const nevh__stages *s,
 }
 
 /* T_p(p), to velocities, and by how far it moves q. */
-NEVH__INLINE int find_way(const nevh__nystrom *y, size_t called, bool known) {
+NEVH__INLINE int find_way(const nevh__nystrom_state *y, size_t called,
+                          bool known) {
     const double *carry = y->carry + y->size;
     int status = NEVH_OK;
     for (size_t i = 0; i < y->size; i++)
@@ -197,7 +201,7 @@ NEVH__INLINE int find_way(const nevh__nystrom *y, size_t called, bool known) {
 }
 
 /* Of calls, stops where a slope is not finite. */
-NEVH__INLINE int take(const nevh__nystrom *y, const nevh__stages *s,
+NEVH__INLINE int take(const nevh__nystrom_state *y, const nevh__stages *s,
                       size_t called, size_t first, size_t until) {
     int status = NEVH_OK;
     double bad = 0;
@@ -216,24 +220,26 @@ NEVH__INLINE int take(const nevh__nystrom *y, const nevh__stages *s,
     return bad == 0 ? status : NEVH_EDOM;
 }
 
-NEVH__ONE_BY_ONE static int take_points(const nevh__nystrom *y,
+NEVH__ONE_BY_ONE static int take_points(const nevh__nystrom_state *y,
                                         const nevh__stages *s, size_t first,
                                         size_t until) {
     return take(y, s, 1, first, until);
 }
 
-NEVH_SIMD static int take_vectors(const nevh__nystrom *y, const nevh__stages *s,
-                                  size_t first, size_t until) {
+NEVH_SIMD static int take_vectors(const nevh__nystrom_state *y,
+                                  const nevh__stages *s, size_t first,
+                                  size_t until) {
     return take(y, s, NEVH__LANES, first, until);
 }
 
-NEVH_SIMD static int take_columns(const nevh__nystrom *y, const nevh__stages *s,
-                                  size_t first, size_t until) {
+NEVH_SIMD static int take_columns(const nevh__nystrom_state *y,
+                                  const nevh__stages *s, size_t first,
+                                  size_t until) {
     return take(y, s, NOT_CALLED, first, until);
 }
 
 /* As a slope of the state, T_p and -D_0; and back. */
-static void hand_first(const nevh__nystrom *y, const nevh__stages *s) {
+static void hand_first(const nevh__nystrom_state *y, const nevh__stages *s) {
     size_t n = y->n * s->columns, apart = y->lanes / s->columns;
     for (size_t i = 0; i < n; i++) {
         s->slopes[i] = y->velocities[i * apart];
@@ -241,7 +247,7 @@ static void hand_first(const nevh__nystrom *y, const nevh__stages *s) {
     }
 }
 
-static void take_first(const nevh__nystrom *y, const nevh__stages *s) {
+static void take_first(const nevh__nystrom_state *y, const nevh__stages *s) {
     size_t n = y->n * s->columns, apart = y->lanes / s->columns;
     for (size_t i = 0; i < n; i++)
         for (size_t lane = 0; lane < apart; lane++) {
@@ -250,8 +256,8 @@ static void take_first(const nevh__nystrom *y, const nevh__stages *s) {
         }
 }
 
-static int take_slopes(nevh__nystrom *y, const nevh__stages *s, size_t called,
-                       size_t first, size_t until) {
+static int take_slopes(nevh__nystrom_state *y, const nevh__stages *s,
+                       size_t called, size_t first, size_t until) {
     if (called > 1)
         prepare_lanes(y, s);
     else
@@ -267,7 +273,7 @@ static int take_slopes(nevh__nystrom *y, const nevh__stages *s, size_t called,
 }
 
 int nevh__nystrom_take(nevh__stages *s, size_t first, size_t until) {
-    nevh__nystrom *y = nevh__nystrom_of(s->work);
+    nevh__nystrom_state *y = nevh__nystrom_of(s->work);
     s->holds = y->call_lanes && !s->work->accounts &&
                nevh__call_ready(&y->drift) && nevh__call_ready(y->kicks);
     if (s->holds) {
@@ -282,7 +288,7 @@ int nevh__nystrom_take(nevh__stages *s, size_t first, size_t until) {
 }
 
 /* -h sum_j weights[j] D_j, of each column. */
-static void sum_kicks(const nevh__nystrom *y, const nevh__stages *s,
+static void sum_kicks(const nevh__nystrom_state *y, const nevh__stages *s,
                       const nevh__sum *x, double out[]) {
     size_t apart = y->lanes / s->columns;
     for (size_t i = 0; i < y->n * s->columns; i++) {
@@ -292,8 +298,9 @@ static void sum_kicks(const nevh__nystrom *y, const nevh__stages *s,
 }
 
 /* How far q moves by the velocity at c p - h sum_j weights[j] D_j. */
-NEVH_SIMD static int sum_drifts(const nevh__nystrom *y, const nevh__stages *s,
-                                const nevh__sum *x, double c, double out[]) {
+NEVH_SIMD static int sum_drifts(const nevh__nystrom_state *y,
+                                const nevh__stages *s, const nevh__sum *x,
+                                double c, double out[]) {
     size_t apart = y->lanes / s->columns, size = y->n * s->columns;
     int status = NEVH_OK;
     for (size_t i = 0; y->inverse && i < size; i++) {
@@ -312,7 +319,7 @@ NEVH_SIMD static int sum_drifts(const nevh__nystrom *y, const nevh__stages *s,
 
 int nevh__nystrom_finish(const nevh__stages *s, double change[], double error[],
                          double coarse[]) {
-    const nevh__nystrom *y = nevh__nystrom_of(s->work);
+    const nevh__nystrom_state *y = nevh__nystrom_of(s->work);
     const nevh__sum *ends = y->sums + y->table->stages;
     size_t n = y->n * s->columns;
     int status = NEVH_OK;
@@ -325,7 +332,7 @@ int nevh__nystrom_finish(const nevh__stages *s, double change[], double error[],
     return sum_drifts(y, s, &ends[ERROR_OF_Q], 0, error);
 }
 
-int nevh__nystrom_place(const nevh__nystrom *y, const nevh__stages *s,
+int nevh__nystrom_place(const nevh__nystrom_state *y, const nevh__stages *s,
                         size_t stage) {
     return place(y, s, NOT_CALLED, stage);
 }

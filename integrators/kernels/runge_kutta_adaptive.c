@@ -66,7 +66,7 @@ static nevh__adaptive *plan_of(const nevh_work *w) {
     return ((const nevh__stages_plan *)w->plan)->adaptive;
 }
 
-void nevh__adaptive_unplan(nevh_work *w) {
+void nevh__adaptive_clear(nevh_work *w) {
     nevh__adaptive *a = plan_of(w);
     if (!a)
         return;

@@ -11,11 +11,11 @@
 
 enum { ROWS = 2 }; /* of 2n x width in a step, besides the slopes */
 
-static void unplan(nevh_work *w) {
+static void clear(nevh_work *w) {
     nevh__stages_plan *plan = w->plan;
     if (!plan)
         return;
-    nevh__adaptive_unplan(w);
+    nevh__adaptive_clear(w);
     nevh__repeated_stages_free(plan->repeated);
     free(plan);
     w->plan = NULL;
@@ -198,4 +198,4 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
 }
 
 const nevh_kernel nevh_runge_kutta_kernel = {
-    .plan = plan, .step = step, .unplan = unplan, .damps = true};
+    .plan = plan, .step = step, .clear = clear, .damps = true};

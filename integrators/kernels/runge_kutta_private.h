@@ -58,17 +58,17 @@ typedef struct {
 
 /* What the kernels keep. */
 typedef struct nevh__adaptive nevh__adaptive;
-typedef struct nevh__nystrom nevh__nystrom;
+typedef struct nevh__nystrom_state nevh__nystrom_state;
 typedef struct {
     nevh__family family;
     nevh__repeated_stages *repeated; /* NULL: there is no such way */
-    nevh__nystrom *nystrom;          /* of the Nystroem kernel alone */
+    nevh__nystrom_state *nystrom;    /* of the Nystroem kernel alone */
     nevh__adaptive *adaptive;        /* NULL: steps do not adapt */
 } nevh__stages_plan;
 
 /* Steps that adapt, for w->options->tolerance > 0. */
 int nevh__adaptive_plan(nevh_work *);
-void nevh__adaptive_unplan(nevh_work *);
+void nevh__adaptive_clear(nevh_work *);
 int nevh__adaptive_step(nevh_work *, double t, double h, double q[],
                         double p[]);
 

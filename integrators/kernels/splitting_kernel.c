@@ -72,7 +72,7 @@ static memory recall(const nevh_work *w) {
     return (memory){m, m + w->size, m + 2 * w->size, m + 3 * w->size};
 }
 
-static void unplan(nevh_work *w) {
+static void clear(nevh_work *w) {
     splitting_plan *o = w->plan;
     if (!o)
         return;
@@ -319,7 +319,7 @@ NEVH__INLINE double check(size_t lanes, size_t size, const double q[],
 
 NEVH__INLINE void commit(const half *x, size_t i) {
     double start = x->state[i], d = x->change[i] + x->carry[i];
-    x->carry[i] = nevh__lost(x->point[i], start, d);
+    x->carry[i] = nevh__roundoff(x->point[i], start, d);
     x->state[i] = x->point[i];
 }
 
@@ -501,4 +501,4 @@ static void damp(nevh_work *w, const double factor[]) {
 }
 
 const nevh_kernel nevh_splitting_kernel = {
-    .plan = plan, .step = step, .unplan = unplan, .damp = damp};
+    .plan = plan, .step = step, .clear = clear, .damp = damp};

@@ -340,9 +340,9 @@ NEVH__INLINE void place(const nevh__sweeps *s, size_t lanes, bool q) {
 /* The gradient as it always is taken, which says what is wrong with it. */
 static int ask(const nevh__sweeps *s, bool q, bool p) {
     double *dh_dp = s->gradient, *dh_dq = dh_dp + s->n * s->stride;
-    return nevh__work_gradient(s->work, s->stride, s->stages, s->times,
-                               s->points, s->points + s->n * s->stride,
-                               q ? dh_dq : NULL, p ? dh_dp : NULL);
+    return nevh__work_gradient_padded(s->work, s->stride, s->stages, s->times,
+                                      s->points, s->points + s->n * s->stride,
+                                      q ? dh_dq : NULL, p ? dh_dp : NULL);
 }
 
 /* The gradient, or a half of it; where it is exact and planned, it is not

@@ -47,7 +47,7 @@ enum { SWEEPS = 16 };
 
 /* H around the states of a run. */
 typedef struct {
-    nevh__explorer explorer;
+    nevh__step_selection explorer;
     nevh_field *field;
     size_t n;
     double *move;           /* 2n: by which a state is moved to both sides */
@@ -58,7 +58,7 @@ typedef struct {
 } survey;
 
 static void close_survey(survey *s) {
-    nevh__explorer_close(&s->explorer);
+    nevh__step_selection_clear(&s->explorer);
     free(s->move);
     for (size_t i = 0; i < s->field->n_terms; i++)
         s->field->terms[i].values = 0;
@@ -77,7 +77,7 @@ static bool open_survey(survey *s, nevh_work *w) {
     s->behind = s->ahead + m;
     s->unit = s->behind + m;
     s->curved = s->unit + m;
-    if (nevh__explorer_open(&s->explorer, w->field, w->options) ||
+    if (nevh__step_selection_init(&s->explorer, w->field, w->options) ||
         !nevh__add_run(&s->explorer))
         return false;
     nevh__find_neighbours(&s->explorer);
@@ -209,7 +209,7 @@ static double curvature(survey *s, size_t at, double step, double v[]) {
 
 /* Of the run; of states beside it, where nothing is curved on it. */
 static double largest_curvature(survey *s, const double ratio[]) {
-    const nevh__explorer *e = &s->explorer;
+    const nevh__step_selection *e = &s->explorer;
     double step = INFINITY, first = 0, most = 0;
     for (size_t k = 0; k < s->n; k++) {
         s->unit[k] = 1 / sqrt(ratio[k]);

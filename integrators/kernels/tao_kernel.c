@@ -211,7 +211,7 @@ static void damp(nevh_work *w, const double factor[]) {
     memset(block(w, NEVH__TAO_BLOCKS), 0, w->width * sizeof *y);
 }
 
-static void unplan(nevh_work *w) {
+static void clear(nevh_work *w) {
     nevh__binding *binding = w->plan;
     free(binding->ratio);
     free(binding);
@@ -228,4 +228,4 @@ static int plan(nevh_work *w) {
 }
 
 const nevh_kernel nevh__tao_kernel = {
-    .plan = plan, .step = step, .unplan = unplan, .damp = damp};
+    .plan = plan, .step = step, .clear = clear, .damp = damp};

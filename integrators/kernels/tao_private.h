@@ -3,7 +3,7 @@
 #ifndef NEVH_TAO_PRIVATE_H
 #define NEVH_TAO_PRIVATE_H
 
-#include "gradient/explore_private.h"
+#include "gradient/step_selection_private.h"
 #include <nevh/extend.h>
 
 /* The part of h that step i of the 2 count + 1 of a NEVH_COMPOSITION takes, as
@@ -21,7 +21,7 @@ int nevh__binding_choose(nevh_work *, nevh__binding *);
 
 /* Adds states of a run from each lane to the samples; false when memory is
    out. */
-bool nevh__add_run(nevh__explorer *);
+bool nevh__add_run(nevh__step_selection *);
 
 /* The rows of a stepper's memory, in blocks of n. */
 enum {

@@ -19,12 +19,12 @@ static const double tolerance = 1e-8; /* of a step, in lengths */
 static const double most_work = 2e7;  /* values of terms */
 
 /* As many samples as most_work allows, and the explorer has room for. */
-static size_t affordable(const nevh__explorer *e) {
+static size_t affordable(const nevh__step_selection *e) {
     const nevh_field *f = e->field;
     size_t room = e->samples.most - e->samples.count;
     double work = 1;
     for (size_t j = 0; j < f->n_terms; j++)
-        work += (double)f->terms[j].term->is.count * (double)f->terms[j].nv *
+        work += (double)f->terms[j].term->decl.count * (double)f->terms[j].nv *
                 fmax(1, f->gradient->order);
     double most = fmin(SAMPLES, most_work / (work * EACH));
     return (size_t)fmin(most, (double)room);
@@ -40,7 +40,7 @@ typedef struct {
 } machine;
 
 /* From lane `at` of the samples to `count` states more. */
-static void run(nevh__explorer *e, machine *m, size_t at, size_t count) {
+static void run(nevh__step_selection *e, machine *m, size_t at, size_t count) {
     nevh__samples *s = &e->samples;
     size_t n = e->field->n;
     double *y = m->y, t = s->t[at];
@@ -63,7 +63,7 @@ static void run(nevh__explorer *e, machine *m, size_t at, size_t count) {
 
 /* Memory that is out inside GSL ends in its error handler, which aborts, so
    as much is asked for first. */
-static bool assemble(machine *m, const nevh__explorer *e) {
+static bool assemble(machine *m, const nevh__step_selection *e) {
     size_t d = 2 * e->field->n;
     double *trial = nevh__array(40 * d, sizeof *trial);
     free(trial);
@@ -86,7 +86,7 @@ static void dismantle(machine *m) {
     free(m->y);
 }
 
-bool nevh__add_run(nevh__explorer *e) {
+bool nevh__add_run(nevh__step_selection *e) {
     size_t count = affordable(e) / e->lanes;
     bool given = e->options->q || e->options->p;
     if (count == 0 || !given)

@@ -5,20 +5,20 @@
 #include <math.h>
 #include <stdlib.h>
 
-void nevh__exact_free(nevh__exact *e) {
+void nevh__exact_free(nevh__exact_solution *e) {
     if (e && e->solver)
         gsl_root_fsolver_free(e->solver);
     free(e);
 }
 
-const char *nevh__exact_name(const nevh__exact *e) {
+const char *nevh__exact_name(const nevh__exact_solution *e) {
     static const char *const names[] = {[NEVH__PENDULUM] = "Jacobi sn",
                                         [NEVH__OSCILLATOR] = "cosine",
                                         [NEVH__KEPLER] = "Kepler's equation"};
     return names[e->kind];
 }
 
-static void carry(const nevh__exact *e, long double t, long double q[],
+static void carry(const nevh__exact_solution *e, long double t, long double q[],
                   long double p[]) {
     if (e->kind == NEVH__PENDULUM) {
         q[0] -= e->c;
@@ -39,8 +39,9 @@ static void carry(const nevh__exact *e, long double t, long double q[],
         p[i] /= e->a;
 }
 
-int nevh__exact_state(const nevh__exact *e, long double t, const double q0[],
-                      const double p0[], double q[], double p[]) {
+int nevh__exact_state(const nevh__exact_solution *e, long double t,
+                      const double q0[], const double p0[], double q[],
+                      double p[]) {
     long double to_q[NEVH__EXACT_DOF], to_p[NEVH__EXACT_DOF];
     bool finite = isfinite(t);
     for (size_t i = 0; i < e->n; i++) {
@@ -58,7 +59,7 @@ int nevh__exact_state(const nevh__exact *e, long double t, const double q0[],
 }
 
 /* Equal parts of the eccentric anomaly. */
-static double ellipse_time(const nevh__exact *e, double span, double u,
+static double ellipse_time(const nevh__exact_solution *e, double span, double u,
                            const double q0[], const double p0[]) {
     long double r2 = 0, v2 = 0, rv = 0, mu = e->a * e->b;
     for (size_t i = 0; i < e->n; i++) {
@@ -74,7 +75,7 @@ static double ellipse_time(const nevh__exact *e, double span, double u,
                              : fmaxl(fminl(t, 0), span));
 }
 
-double nevh__exact_time(const nevh__exact *e, double span, double u,
+double nevh__exact_time(const nevh__exact_solution *e, double span, double u,
                         const double q0[], const double p0[]) {
     return e->kind == NEVH__KEPLER ? ellipse_time(e, span, u, q0, p0)
                                    : u * span;

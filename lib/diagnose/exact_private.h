@@ -20,23 +20,25 @@ typedef struct {
     long double a, b, c;
     double doubt; /* of the constants, relative */
     gsl_root_fsolver *solver;
-} nevh__exact;
+} nevh__exact_solution;
 
 /* The solution that the system has around the orbit through (q, p) for times
    from t0 to t1.
    returns  NEVH_OK, also where none is recognised: *exact is NULL then;
             NEVH_ENOMEM */
-int nevh__exact_recognise(nevh__exact **exact, const nevh_system *, double t0,
-                          double t1, const double q[], const double p[]);
-void nevh__exact_free(nevh__exact *); /* NULL is allowed */
+int nevh__exact_recognise(nevh__exact_solution **exact, const nevh_system *,
+                          double t0, double t1, const double q[],
+                          const double p[]);
+void nevh__exact_free(nevh__exact_solution *); /* NULL is allowed */
 /* "Jacobi sn" */
-const char *nevh__exact_name(const nevh__exact *);
+const char *nevh__exact_name(const nevh__exact_solution *);
 /* Carries a state on by t.  NEVH_OK or NEVH_EDOM. */
-int nevh__exact_state(const nevh__exact *, long double t, const double q0[],
-                      const double p0[], double q[], double p[]);
+int nevh__exact_state(const nevh__exact_solution *, long double t,
+                      const double q0[], const double p0[], double q[],
+                      double p[]);
 /* A time between 0 and `span`, as u is between 0 and 1: such that the motion
    is equally well covered everywhere. */
-double nevh__exact_time(const nevh__exact *, double span, double u,
+double nevh__exact_time(const nevh__exact_solution *, double span, double u,
                         const double q0[], const double p0[]);
 
 #endif

@@ -104,14 +104,15 @@ static void add_rest(rest *r, double left, double size) {
     r->count++;
 }
 
-static bool is_rounding(const rest *r, double rounding, nevh__exact *e) {
+static bool is_rounding(const rest *r, double rounding,
+                        nevh__exact_solution *e) {
     if (!(r->most <= rounding))
         return false;
     e->doubt = fmax(e->doubt, sqrt(r->squares / (double)r->count));
     return true;
 }
 
-static void fit_mass(const trial *b, nevh__exact *e) {
+static void fit_mass(const trial *b, nevh__exact_solution *e) {
     long double pp = 0, pv = 0;
     for (size_t i = 0; i < b->n * STATES; i++) {
         pp += (long double)b->p[i] * b->p[i];
@@ -120,7 +121,8 @@ static void fit_mass(const trial *b, nevh__exact *e) {
     e->a = pv / pp;
 }
 
-static bool mass_fits(const trial *b, nevh__exact *e, const region *r) {
+static bool mass_fits(const trial *b, nevh__exact_solution *e,
+                      const region *r) {
     rest left = {0};
     for (size_t i = 0; i < b->n * STATES; i++)
         add_rest(&left, (double)(b->dp[i] - e->a * b->p[i]),
@@ -129,7 +131,7 @@ static bool mass_fits(const trial *b, nevh__exact *e, const region *r) {
 }
 
 /* dV/dq = B sin q + C cos q, least squares near the start. */
-static void fit_pendulum(const trial *b, nevh__exact *e) {
+static void fit_pendulum(const trial *b, nevh__exact_solution *e) {
     long double ss = 0, sc = 0, cc = 0, sd = 0, cd = 0;
     for (size_t i = 0; i < STATES; i += 2) {
         long double s = sinl(b->q[i]), c = cosl(b->q[i]);
@@ -142,7 +144,7 @@ static void fit_pendulum(const trial *b, nevh__exact *e) {
     e->c = atan2l(-C, B);
 }
 
-static bool pendulum_fits(const trial *b, nevh__exact *e) {
+static bool pendulum_fits(const trial *b, nevh__exact_solution *e) {
     rest left = {0};
     for (size_t i = 0; i < STATES; i++)
         add_rest(&left, (double)(b->dq[i] - e->b * sinl(b->q[i] - e->c)),
@@ -151,7 +153,7 @@ static bool pendulum_fits(const trial *b, nevh__exact *e) {
 }
 
 /* The whole circle, and where it turns over all that it comes through. */
-static region pendulum_region(const trial *b, const nevh__exact *e) {
+static region pendulum_region(const trial *b, const nevh__exact_solution *e) {
     double q0 = b->q0[0], p0 = b->p0[0], A = (double)e->b, a = (double)e->a;
     double p = sqrt(p0 * p0 + 4 * A / a);
     region r = {q0, PI, q0 - PI, q0 + PI, margin * p};
@@ -164,7 +166,7 @@ static region pendulum_region(const trial *b, const nevh__exact *e) {
 }
 
 /* dV/dq = b q - b c. */
-static void fit_oscillator(const trial *b, nevh__exact *e) {
+static void fit_oscillator(const trial *b, nevh__exact_solution *e) {
     long double q = 0, d = 0, qq = 0, qd = 0;
     for (size_t i = 0; i < STATES; i++)
         q += b->q[i] / (long double)STATES, d += b->dq[i] / (long double)STATES;
@@ -176,7 +178,8 @@ static void fit_oscillator(const trial *b, nevh__exact *e) {
     e->c = q - d / e->b;
 }
 
-static bool oscillator_fits(const trial *b, nevh__exact *e, const region *r) {
+static bool oscillator_fits(const trial *b, nevh__exact_solution *e,
+                            const region *r) {
     rest left = {0};
     double size = fmax(fabs(r->low), fabs(r->high)) + fabs((double)e->c);
     for (size_t i = 0; i < STATES; i++)
@@ -185,7 +188,7 @@ static bool oscillator_fits(const trial *b, nevh__exact *e, const region *r) {
     return is_rounding(&left, b->rounding, e);
 }
 
-static region oscillator_region(const trial *b, const nevh__exact *e) {
+static region oscillator_region(const trial *b, const nevh__exact_solution *e) {
     double ratio = sqrt((double)(e->a / e->b)), c = (double)e->c;
     double most = margin * hypot(b->q0[0] - c, b->p0[0] * ratio);
     if (most == 0) /* at rest */
@@ -201,7 +204,7 @@ static double length(const trial *b, const double *v, size_t stride) {
 }
 
 /* dV/dq = b q/|q|^3. */
-static void fit_kepler(const trial *b, nevh__exact *e) {
+static void fit_kepler(const trial *b, nevh__exact_solution *e) {
     e->b = 0;
     for (size_t i = 0; i < STATES; i++) {
         long double r = length(b, b->q + i, STATES);
@@ -210,7 +213,7 @@ static void fit_kepler(const trial *b, nevh__exact *e) {
     }
 }
 
-static bool kepler_fits(const trial *b, nevh__exact *e) {
+static bool kepler_fits(const trial *b, nevh__exact_solution *e) {
     rest left = {0};
     for (size_t i = 0; i < STATES; i++) {
         long double r = length(b, b->q + i, STATES), force = e->b / (r * r);
@@ -224,7 +227,7 @@ static bool kepler_fits(const trial *b, nevh__exact *e) {
 }
 
 /* low is 0 where there is no ellipse. */
-static region kepler_region(const trial *b, const nevh__exact *e) {
+static region kepler_region(const trial *b, const nevh__exact_solution *e) {
     long double rr = 0, pp = 0, rp = 0;
     for (size_t k = 0; k < b->n; k++) {
         rr += (long double)b->q0[k] * b->q0[k];
@@ -244,7 +247,7 @@ static region kepler_region(const trial *b, const nevh__exact *e) {
                          (double)sqrtl(2 / e->a * (energy + e->b / low))};
 }
 
-static void fit(const trial *b, nevh__exact *e) {
+static void fit(const trial *b, nevh__exact_solution *e) {
     fit_mass(b, e);
     if (e->kind == NEVH__PENDULUM)
         fit_pendulum(b, e);
@@ -254,7 +257,7 @@ static void fit(const trial *b, nevh__exact *e) {
         fit_kepler(b, e);
 }
 
-static region region_of(const trial *b, const nevh__exact *e) {
+static region region_of(const trial *b, const nevh__exact_solution *e) {
     if (e->kind == NEVH__PENDULUM)
         return pendulum_region(b, e);
     if (e->kind == NEVH__OSCILLATOR)
@@ -262,7 +265,7 @@ static region region_of(const trial *b, const nevh__exact *e) {
     return kepler_region(b, e);
 }
 
-static bool fits(const trial *b, nevh__exact *e, const region *r) {
+static bool fits(const trial *b, nevh__exact_solution *e, const region *r) {
     e->doubt = DBL_EPSILON / 8;
     if (!mass_fits(b, e, r))
         return false;
@@ -284,7 +287,7 @@ static double longest_step(const trial *b, bool momentum) {
 }
 
 /* Lengths to begin with: of the start, or those that differences see. */
-static region first_region(const trial *b, const nevh__exact *e) {
+static region first_region(const trial *b, const nevh__exact_solution *e) {
     double q0 = b->q0[0], r = length(b, b->q0, 1), p = length(b, b->p0, 1);
     double half =
         e->kind == NEVH__PENDULUM ? PI : fmax(r, 64 * longest_step(b, false));
@@ -301,7 +304,7 @@ static bool is_usable(const region *r) {
            isfinite(r->p) && r->low < r->high;
 }
 
-static bool recognise(trial *b, nevh__exact *e) {
+static bool recognise(trial *b, nevh__exact_solution *e) {
     region r = first_region(b, e);
     for (int pass = 0; pass < PASSES; pass++) {
         if (!is_usable(&r) || !sample(b, &r))
@@ -324,7 +327,7 @@ static gsl_root_fsolver *make_solver(void) {
     return room ? gsl_root_fsolver_alloc(gsl_root_fsolver_brent) : NULL;
 }
 
-static bool try_kinds(trial *b, nevh__exact *e) {
+static bool try_kinds(trial *b, nevh__exact_solution *e) {
     e->n = b->n;
     if (b->n > 1) {
         e->kind = NEVH__KEPLER;
@@ -345,9 +348,9 @@ static void divide(trial *b, double *memory) {
     b->dp = b->dq + b->n * STATES;
 }
 
-static int try_all(trial *b, nevh__exact **exact) {
+static int try_all(trial *b, nevh__exact_solution **exact) {
     double *memory = nevh__array((1 + 4 * b->n) * STATES, sizeof *memory);
-    nevh__exact *e = nevh__array(1, sizeof *e);
+    nevh__exact_solution *e = nevh__array(1, sizeof *e);
     int status = memory && e ? NEVH_OK : NEVH_ENOMEM;
     if (!status)
         divide(b, memory);
@@ -362,8 +365,9 @@ static int try_all(trial *b, nevh__exact **exact) {
     return status;
 }
 
-int nevh__exact_recognise(nevh__exact **exact, const nevh_system *s, double t0,
-                          double t1, const double q[], const double p[]) {
+int nevh__exact_recognise(nevh__exact_solution **exact, const nevh_system *s,
+                          double t0, double t1, const double q[],
+                          const double p[]) {
     trial b = {.n = s->n, .t0 = t0, .t1 = t1, .q0 = q, .p0 = p, .random = 1};
     *exact = NULL;
     if (s->n > NEVH__EXACT_DOF || nevh_system_friction(s, NULL))

@@ -50,8 +50,8 @@ void nevh__reference_scale(const nevh_reference *r, const double low[],
     scale_half(r, low + r->n, high + r->n, scale + r->n);
 }
 
-static int exact_state(const nevh_reference *r, const nevh__exact *e, double t,
-                       double state[]) {
+static int exact_state(const nevh_reference *r, const nevh__exact_solution *e,
+                       double t, double state[]) {
     return nevh__exact_state(e, t, r->start, r->start + r->n, state,
                              state + r->n);
 }
@@ -94,8 +94,9 @@ static double long_rounding(void) {
 /* The solution with one of its three constants off by `part`: a mass near a
    separatrix or on a narrow ellipse does more to the orbit than to the clock,
    unlike all constants at once. */
-static nevh__exact spoiled(const nevh_reference *r, int constant, double part) {
-    nevh__exact e = *r->exact;
+static nevh__exact_solution spoiled(const nevh_reference *r, int constant,
+                                    double part) {
+    nevh__exact_solution e = *r->exact;
     long double unit = e.kind == NEVH__PENDULUM ? 1 : r->range[0];
     if (constant == 0)
         e.a *= 1 + (long double)part;
@@ -116,7 +117,7 @@ static double doubted(const nevh_reference *r) {
         double t = i ? exact_time(r, i) : r->t1 - r->t0, sum = 0;
         bool known = !exact_state(r, r->exact, t, a);
         for (int constant = 0; constant < 3; constant++) {
-            nevh__exact other = spoiled(r, constant, part);
+            nevh__exact_solution other = spoiled(r, constant, part);
             if (known && !exact_state(r, &other, t, b))
                 sum += distance(r, a, b);
         }
@@ -245,7 +246,7 @@ void nevh_reference_free(nevh_reference *r) {
     nevh__exact_free(r->exact);
     nevh_stepper_free(r->walker);
     nevh_stepper_free(r->branch);
-    free(r->track.states);
+    free(r->orbit.states);
     free(r->memo.keys);
     free(r->memo.states);
     free(r->start);

@@ -23,7 +23,7 @@ double nevh__pair_spent(const nevh__pair *b) {
     return spent_by(b->coarse) + spent_by(b->fine);
 }
 
-static bool track_grow(nevh__track *k, size_t n) {
+static bool orbit_grow(nevh__reference_orbit *k, size_t n) {
     size_t room = k->room ? 2 * k->room : 64;
     double *states = nevh__grow(k->states, room * 2 * n, sizeof *states);
     if (!states)
@@ -33,7 +33,7 @@ static bool track_grow(nevh__track *k, size_t n) {
     return true;
 }
 
-static void track_thin(nevh__track *k, size_t n) {
+static void orbit_thin(nevh__reference_orbit *k, size_t n) {
     k->count = (k->count + 1) / 2;
     for (size_t i = 1; i < k->count; i++)
         memcpy(k->states + 2 * n * i, k->states + 4 * n * i,
@@ -42,16 +42,16 @@ static void track_thin(nevh__track *k, size_t n) {
 }
 
 /* The state after so many steps. */
-static int track_add(nevh__track *k, size_t n, size_t step,
+static int orbit_add(nevh__reference_orbit *k, size_t n, size_t step,
                      const double state[]) {
     size_t most = NEVH__MOST_TRACK / sizeof(double) / (2 * n);
     if (step % k->every)
         return NEVH_OK;
     if (k->count >= 2 && k->count >= most)
-        track_thin(k, n);
+        orbit_thin(k, n);
     if (step % k->every)
         return NEVH_OK;
-    if (k->count == k->room && !track_grow(k, n))
+    if (k->count == k->room && !orbit_grow(k, n))
         return NEVH_ENOMEM;
     memcpy(k->states + 2 * n * k->count++, state, 2 * n * sizeof *state);
     return NEVH_OK;
@@ -67,9 +67,9 @@ static void begin(nevh__pair *b, double h) {
     memset(b->difference, 0, size);
     nevh_stepper_reset(b->coarse);
     nevh_stepper_reset(b->fine);
-    b->track.count = 0;
-    b->track.every = 1;
-    b->track.h = h / 2;
+    b->orbit.count = 0;
+    b->orbit.every = 1;
+    b->orbit.h = h / 2;
     nevh__watch_begin(&b->watch);
 }
 
@@ -107,12 +107,12 @@ static int step_pair(nevh__pair *b, size_t i, double h) {
     if (!status)
         status = step(b->fine, t, h / 2, b->b);
     if (!status)
-        status = track_add(&b->track, r->n, 2 * i + 1, b->b);
+        status = orbit_add(&b->orbit, r->n, 2 * i + 1, b->b);
     if (!status)
         nevh__reference_widen(r, b->low, b->high, b->b);
     if (!status)
         status = step(b->fine, half, h / 2, b->b);
-    return status ? status : track_add(&b->track, r->n, 2 * i + 2, b->b);
+    return status ? status : orbit_add(&b->orbit, r->n, 2 * i + 2, b->b);
 }
 
 /* The differences at the last power of two steps, and since. */
@@ -141,7 +141,7 @@ nevh__outcome nevh__pair_run(nevh__pair *b, double h, double most) {
     nevh__outcome o = {.h = span / steps};
     octave past = {0};
     begin(b, o.h);
-    o.status = track_add(&b->track, r->n, 0, b->b);
+    o.status = orbit_add(&b->orbit, r->n, 0, b->b);
     for (double i = 0; !o.status && i < steps && nevh__pair_spent(b) < 1; i++) {
         o.status = step_pair(b, (size_t)i, o.h);
         if (o.status || have_separated(&past, i + 1, compare(b), most))
@@ -209,13 +209,13 @@ nevh__step_error nevh__pair_first_error(nevh__pair *b, double h) {
     return most;
 }
 
-int nevh__pair_open(nevh__pair *b) {
+int nevh__pair_init(nevh__pair *b) {
     nevh_reference *r = b->reference;
     size_t n = r->n;
     b->coarse = nevh__reference_stepper(r);
     b->fine = nevh__reference_stepper(r);
     b->memory = nevh__array(12 * n, sizeof *b->memory);
-    if (!b->coarse || !b->fine || !b->memory || !track_grow(&b->track, n))
+    if (!b->coarse || !b->fine || !b->memory || !orbit_grow(&b->orbit, n))
         return nevh__fail(&r->report, NEVH_ENOMEM, "out of memory");
     b->a = b->memory;
     b->b = b->a + 2 * n;
@@ -223,16 +223,16 @@ int nevh__pair_open(nevh__pair *b) {
     b->high = b->low + 2 * n;
     b->difference = b->high + 2 * n;
     b->scale = b->difference + 2 * n;
-    if (nevh__watch_open(&b->watch, r))
+    if (nevh__watch_init(&b->watch, r))
         return nevh__fail(&r->report, NEVH_ENOMEM, "out of memory");
     int status = nevh_stepper_status(b->coarse);
     return status ? nevh__fail_as(&r->report, &b->coarse->report) : NEVH_OK;
 }
 
-void nevh__pair_close(nevh__pair *b) {
+void nevh__pair_clear(nevh__pair *b) {
     nevh_stepper_free(b->coarse);
     nevh_stepper_free(b->fine);
-    nevh__watch_close(&b->watch);
-    free(b->track.states);
+    nevh__watch_clear(&b->watch);
+    free(b->orbit.states);
     free(b->memory);
 }

@@ -16,8 +16,8 @@ typedef struct {
     double *low, *high; /* of the fine one */
     double *difference; /* the largest so far */
     double *scale;
-    double *memory;    /* of all these */
-    nevh__track track; /* of the fine one */
+    double *memory;              /* of all these */
+    nevh__reference_orbit orbit; /* of the fine one */
     nevh__watch watch;
 } nevh__pair;
 
@@ -38,8 +38,8 @@ typedef struct {
 } nevh__step_error;
 
 /* Returns a status, which the reference carries. */
-int nevh__pair_open(nevh__pair *);
-void nevh__pair_close(nevh__pair *);
+int nevh__pair_init(nevh__pair *);
+void nevh__pair_clear(nevh__pair *);
 /* The part of what may be spent that has been. */
 double nevh__pair_spent(const nevh__pair *);
 /* Until they differ by more than `most`, or may cost no more. */

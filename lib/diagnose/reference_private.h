@@ -11,7 +11,7 @@ typedef struct {
     double h;
     size_t every, count, room;
     double *states;
-} nevh__track;
+} nevh__reference_orbit;
 
 /* States that were asked for before, by their times. */
 typedef struct {
@@ -30,11 +30,11 @@ struct nevh_reference {
     double *low, *high, *range; /* 2n each */
     double error, horizon, exponent, growth;
     nevh_reference_end end;
-    double longest;     /* step of a run; 0: not said */
-    nevh__exact *exact; /* NULL: a run */
+    double longest;              /* step of a run; 0: not said */
+    nevh__exact_solution *exact; /* NULL: a run */
     const nevh_integrator *integrator;
     size_t *kind; /* n: the first variable of the same kind; NULL: all differ */
-    nevh__track track;
+    nevh__reference_orbit orbit;
     nevh__memo memo;
     /* From the last checkpoint on, and from there to times between steps. */
     nevh_stepper *walker, *branch;
@@ -66,8 +66,8 @@ typedef struct {
     nevh__jump jump;
 } nevh__watch;
 
-int nevh__watch_open(nevh__watch *, const nevh_reference *);
-void nevh__watch_close(nevh__watch *);
+int nevh__watch_init(nevh__watch *, const nevh_reference *);
+void nevh__watch_clear(nevh__watch *);
 void nevh__watch_begin(nevh__watch *);
 /* False where H of the fine orbit has changed by far more than the orbits
    differ; then `jump` tells where. */

@@ -98,9 +98,9 @@ static int give_up(nevh__pair *b, const nevh__outcome *o) {
 static void keep(nevh__pair *b, const nevh__outcome *o) {
     nevh_reference *r = b->reference;
     size_t size = 2 * r->n * sizeof(double);
-    nevh__track old = r->track;
-    r->track = b->track;
-    b->track = old;
+    nevh__reference_orbit old = r->orbit;
+    r->orbit = b->orbit;
+    b->orbit = old;
     memcpy(r->low, b->low, size);
     memcpy(r->high, b->high, size);
     memcpy(r->range, b->scale, size);
@@ -269,9 +269,9 @@ int nevh__reference_run(nevh_reference *r) {
                           "%s chooses its own times, which a reference must "
                           "not",
                           nevh_integrator_name(r->integrator));
-    int status = nevh__pair_open(&b);
+    int status = nevh__pair_init(&b);
     if (!status)
         status = find_run(&b);
-    nevh__pair_close(&b);
+    nevh__pair_clear(&b);
     return status;
 }

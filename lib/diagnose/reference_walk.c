@@ -89,7 +89,7 @@ static int take_step(nevh_reference *r, nevh_stepper *s, double t, double h,
 /* To the state after `steps` steps, from the last checkpoint or from where the
    last walk ended. */
 static int walk_to(nevh_reference *r, size_t steps) {
-    const nevh__track *k = &r->track;
+    const nevh__reference_orbit *k = &r->orbit;
     size_t checkpoint = steps / k->every;
     if (checkpoint >= k->count)
         checkpoint = k->count - 1;
@@ -109,7 +109,7 @@ static int walk_to(nevh_reference *r, size_t steps) {
 
 static int find_state(nevh_reference *r, double elapsed, double q[],
                       double p[]) {
-    double h = r->track.h, steps = floor(elapsed / h);
+    double h = r->orbit.h, steps = floor(elapsed / h);
     double rest = elapsed - steps * h;
     int status = walk_to(r, (size_t)steps);
     if (status)

@@ -21,7 +21,7 @@ static bool is_constant(const nevh_system *s) {
            !nevh_system_friction(s, NULL);
 }
 
-int nevh__watch_open(nevh__watch *w, const nevh_reference *r) {
+int nevh__watch_init(nevh__watch *w, const nevh_reference *r) {
     size_t n = r->n, effects = nevh_system_effect_count(r->system);
     nevh_options o = {.gradient = &nevh__no_gradient};
     *w = (nevh__watch){.n = n, .t0 = r->t0, .start = r->start};
@@ -38,7 +38,7 @@ int nevh__watch_open(nevh__watch *w, const nevh_reference *r) {
     return nevh_field_status(w->field);
 }
 
-void nevh__watch_close(nevh__watch *w) {
+void nevh__watch_clear(nevh__watch *w) {
     nevh_field_free(w->field);
     free(w->before);
 }
@@ -170,7 +170,7 @@ static int find_exact_jump(nevh_reference *r, nevh__watch *w, double low,
 int nevh__watch_exact(nevh_reference *r) {
     enum { TIMES = 4096 };
     nevh__watch w;
-    int status = nevh__watch_open(&w, r);
+    int status = nevh__watch_init(&w, r);
     double part = (r->t1 - r->t0) / TIMES;
     if (!status)
         nevh__watch_begin(&w);
@@ -183,6 +183,6 @@ int nevh__watch_exact(nevh_reference *r) {
         r->error = fmax(r->error, nevh__watch_error(&w));
     else if (status == NEVH_ENOMEM)
         nevh__fail(&r->report, status, "out of memory");
-    nevh__watch_close(&w);
+    nevh__watch_clear(&w);
     return status;
 }

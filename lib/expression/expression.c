@@ -3,7 +3,7 @@
 #include "expression/resolve_private.h"
 #include <string.h>
 
-void *nevh__resolver_fail(nevh__resolver *r, const nevh__node *node,
+void *nevh__resolver_fail(nevh__resolver *r, const nevh__syntax_node *node,
                           size_t length, const char *format, const char *a,
                           const char *b) {
     nevh__formula_error *error = r->scope.error;
@@ -13,13 +13,14 @@ void *nevh__resolver_fail(nevh__resolver *r, const nevh__node *node,
     return NULL;
 }
 
-void *nevh__resolver_fail_name(nevh__resolver *r, const nevh__node *node,
+void *nevh__resolver_fail_name(nevh__resolver *r, const nevh__syntax_node *node,
                                const char *format, const char *b) {
     return nevh__resolver_fail(r, node, node->length, format, node->name, b);
 }
 
 nevh__expression *nevh__expression_new(nevh__resolver *r, nevh__form form,
-                                       const nevh__node *node, size_t n) {
+                                       const nevh__syntax_node *node,
+                                       size_t n) {
     nevh__expression *e = nevh__pool_take(r->pool, 1, sizeof *e);
     if (e && n)
         e->operands = nevh__pool_take(r->pool, n, sizeof *e->operands);
@@ -107,7 +108,7 @@ nevh__expression *nevh__expression_finish(nevh__resolver *r,
 }
 
 nevh__expression *nevh__expression_number(nevh__resolver *r,
-                                          const nevh__node *node,
+                                          const nevh__syntax_node *node,
                                           double number) {
     nevh__expression *e = nevh__expression_new(r, NEVH__FORM_NUMBER, node, 0);
     if (!e)

@@ -45,14 +45,14 @@ int nevh__tree_integer(const nevh__tree *tree, const nevh__names *names,
 }
 
 static nevh__tape *whole_tape(nevh__expression *e, nevh__formula_error *error) {
-    nevh__operand factor = {.of = e};
+    nevh__expression_operand factor = {.of = e};
     nevh__summand summand = {.n = 1, .factors = &factor};
-    nevh__part part = {.n = 1, .summands = &summand};
+    nevh__formula_part part = {.n = 1, .summands = &summand};
     nevh__walk walk = {.whole = true, .limit = NEVH__WHOLE_LENGTH};
     nevh__tape *tape = NULL;
-    if (nevh__walk_begin(&walk, 0, error) && nevh__walk_note(&walk, &part))
+    if (nevh__walk_init(&walk, 0, error) && nevh__walk_note(&walk, &part))
         tape = nevh__walk_tape(&walk, &part);
-    nevh__walk_end(&walk);
+    nevh__walk_clear(&walk);
     return tape;
 }
 
@@ -77,22 +77,21 @@ void nevh__owned_free(nevh__owned *owned) {
 /* An effect without terms would not exist. */
 static void add_zero(nevh__adder *adder) {
     nevh__expression zero = {.form = NEVH__FORM_NUMBER};
-    nevh__operand factor = {.of = &zero};
+    nevh__expression_operand factor = {.of = &zero};
     nevh__summand summand = {.n = 1, .factors = &factor};
-    nevh__part part = {.n = 1, .summands = &summand};
+    nevh__formula_part part = {.n = 1, .summands = &summand};
     nevh__add_part(adder, &part);
 }
 
 static void add_parts(nevh__adder *adder, const nevh__names *names,
                       const nevh__parts *parts) {
     nevh__formula_error *error = parts->error;
-    bool fine =
-        nevh__walk_begin(&adder->walk, nevh__names_extent(names), error);
+    bool fine = nevh__walk_init(&adder->walk, nevh__names_extent(names), error);
     for (size_t i = 0; fine && i < parts->n; i++)
         fine = nevh__add_part(adder, &parts->parts[i]);
     if (fine && !adder->added)
         add_zero(adder);
-    nevh__walk_end(&adder->walk);
+    nevh__walk_clear(&adder->walk);
 }
 
 int nevh__tree_add_terms(const nevh__tree *tree, const nevh__names *names,

@@ -70,18 +70,18 @@ typedef enum {
     NEVH__NODE_PRODUCT, /* the same with * and / */
     NEVH__NODE_MINUS,
     NEVH__NODE_POWER
-} nevh__node_kind;
-typedef struct nevh__node {
-    nevh__node_kind kind;
+} nevh__syntax_kind;
+typedef struct nevh__syntax_node {
+    nevh__syntax_kind kind;
     bool inverse;
     size_t column, length;
     double number;
     const char *name;
-    struct nevh__node *first, *next; /* operands; siblings */
-} nevh__node;
+    struct nevh__syntax_node *first, *next; /* operands; siblings */
+} nevh__syntax_node;
 struct nevh__tree {
     nevh__pool pool;
-    nevh__node *root;
+    nevh__syntax_node *root;
     size_t length; /* characters */
 };
 
@@ -93,10 +93,10 @@ typedef struct {
     size_t depth;
     nevh__formula_error *error;
 } nevh__parser;
-void nevh__parser_begin(nevh__parser *, const char *text, nevh__pool *,
-                        nevh__formula_error *);
+void nevh__parser_init(nevh__parser *, const char *text, nevh__pool *,
+                       nevh__formula_error *);
 void nevh__parser_advance(nevh__parser *);
-nevh__node *nevh__parse_sum(nevh__parser *); /* NULL on error */
+nevh__syntax_node *nevh__parse_sum(nevh__parser *); /* NULL on error */
 /* A copy of a token's text; NULL when memory is out. */
 char *nevh__parser_copy(nevh__parser *, const nevh__token *);
 /* Says what is wrong with the present token, and returns NULL. */
@@ -106,9 +106,9 @@ void *nevh__parser_refuse_function(nevh__parser *, const char *name);
 
 /* The operation of a function's name or alias; NEVH__OPERATION_COUNT when
    there is none. */
-nevh__operation nevh__function_named(const char *name, size_t bytes);
+nevh__tape_operation nevh__function_named(const char *name, size_t bytes);
 /* Arguments as in atan2(y, x), for messages. */
-const char *nevh__function_usage(nevh__operation);
+const char *nevh__function_usage(nevh__tape_operation);
 
 /* Names. */
 typedef struct {
@@ -139,7 +139,7 @@ typedef struct nevh__bound {
 } nevh__bound;
 /* Says that a name is not known, with advice. */
 bool nevh__refuse_name(const nevh__names *, const nevh__bound *,
-                       const nevh__node *, bool in_index,
+                       const nevh__syntax_node *, bool in_index,
                        nevh__formula_error *);
 
 /* Expressions: resolved, definitions written out (shared, not copied),
@@ -159,7 +159,7 @@ typedef struct nevh__expression nevh__expression;
 typedef struct {
     nevh__expression *of;
     bool inverse; /* subtracted or divided by */
-} nevh__operand;
+} nevh__expression_operand;
 struct nevh__expression {
     nevh__form form;
     unsigned reads;   /* NEVH__READS_... */
@@ -176,10 +176,10 @@ struct nevh__expression {
     const double *values;
     nevh__variable kind;
     size_t first, count;
-    nevh__operation operation;
+    nevh__tape_operation operation;
     unsigned slot;
     size_t n;
-    nevh__operand *operands;
+    nevh__expression_operand *operands;
     uint64_t stamp; /* the walk that saw it last, and what that made of it */
     int node;
 };
@@ -227,7 +227,7 @@ bool nevh__scope_loop(nevh__scope *, const nevh__expression *loop,
 typedef struct {
     bool negative;
     size_t n;
-    nevh__operand *factors;
+    nevh__expression_operand *factors;
 } nevh__summand;
 typedef struct {
     size_t n_loops;
@@ -236,11 +236,11 @@ typedef struct {
     uint64_t variables; /* hash of the set of what it reads */
     size_t n, room;
     nevh__summand *summands;
-} nevh__part;
+} nevh__formula_part;
 typedef struct {
     nevh__pool *pool;
     nevh__formula_error *error;
-    nevh__part *parts; /* freed by the caller */
+    nevh__formula_part *parts; /* freed by the caller */
     size_t n, room;
     size_t summands;
     uint64_t stamp;
@@ -271,12 +271,12 @@ typedef struct {
     size_t *slot[2];   /* by variable, valid where ... */
     uint64_t *seen[2]; /* ... this is the present stamp */
 } nevh__walk;
-bool nevh__walk_begin(nevh__walk *, size_t extent, nevh__formula_error *);
-void nevh__walk_end(nevh__walk *);
+bool nevh__walk_init(nevh__walk *, size_t extent, nevh__formula_error *);
+void nevh__walk_clear(nevh__walk *);
 /* Notes an instance; false on error. */
-bool nevh__walk_note(nevh__walk *, const nevh__part *);
+bool nevh__walk_note(nevh__walk *, const nevh__formula_part *);
 /* Makes the tape of a noted instance; NULL on error. */
-nevh__tape *nevh__walk_tape(nevh__walk *, const nevh__part *);
+nevh__tape *nevh__walk_tape(nevh__walk *, const nevh__formula_part *);
 
 /* Adds the terms of one part. */
 typedef struct {
@@ -287,6 +287,6 @@ typedef struct {
     size_t instances; /* so far */
     size_t added;     /* terms so far */
 } nevh__adder;
-bool nevh__add_part(nevh__adder *, const nevh__part *);
+bool nevh__add_part(nevh__adder *, const nevh__formula_part *);
 
 #endif

@@ -5,7 +5,7 @@
 
 static const struct {
     const char *name;
-    nevh__operation operation;
+    nevh__tape_operation operation;
 } aliases[] = {
     {"ln", NEVH__LOG},       {"pow", NEVH__POWER},
     {"arcsin", NEVH__ASIN},  {"arccos", NEVH__ACOS},
@@ -20,8 +20,8 @@ static bool is(const char *name, const char *text, size_t bytes) {
     return strlen(name) == bytes && memcmp(name, text, bytes) == 0;
 }
 
-nevh__operation nevh__function_named(const char *name, size_t bytes) {
-    for (nevh__operation i = NEVH__SIN; i < NEVH__OPERATION_COUNT; i++)
+nevh__tape_operation nevh__function_named(const char *name, size_t bytes) {
+    for (nevh__tape_operation i = NEVH__SIN; i < NEVH__OPERATION_COUNT; i++)
         if (is(nevh__operation_name(i), name, bytes))
             return i;
     for (size_t i = 0; i < sizeof aliases / sizeof *aliases; i++)
@@ -30,7 +30,7 @@ nevh__operation nevh__function_named(const char *name, size_t bytes) {
     return NEVH__OPERATION_COUNT;
 }
 
-const char *nevh__function_usage(nevh__operation operation) {
+const char *nevh__function_usage(nevh__tape_operation operation) {
     switch (operation) {
     case NEVH__ATAN2:
         return "(y, x)";

@@ -91,7 +91,7 @@ int nevh__head_parse(const char *text, nevh__head *head,
     }
     nevh__pool pool = {0}; /* of words in messages */
     nevh__parser parser;
-    nevh__parser_begin(&parser, text, &pool, error);
+    nevh__parser_init(&parser, text, &pool, error);
     if (!parse_head(&parser, head))
         nevh__head_free(head);
     nevh__pool_free(&pool);

@@ -16,7 +16,7 @@ typedef struct {
 
 typedef struct {
     nevh__adder *adder;
-    const nevh__part *part;
+    const nevh__formula_part *part;
     size_t level; /* loops that are running */
     table *tables;
     size_t n, last; /* the one that an instance fitted last */
@@ -235,7 +235,7 @@ static bool make_term(part_tables *p, table *t) {
 }
 
 static bool add_constant(part_tables *p) {
-    nevh__tape_builder *builder = nevh__tape_begin();
+    nevh__tape_builder *builder = nevh__tape_builder_new();
     int node = nevh__tape_number(builder, p->total);
     nevh__tape *tape = nevh__tape_finish(builder, node, NULL);
     table none = {.count = 1};
@@ -244,7 +244,7 @@ static bool add_constant(part_tables *p) {
     return own(p->adder, tape) && add_term(p->adder, &none, tape);
 }
 
-bool nevh__add_part(nevh__adder *adder, const nevh__part *part) {
+bool nevh__add_part(nevh__adder *adder, const nevh__formula_part *part) {
     part_tables p = {.adder = adder, .part = part};
     bool fine = visit(&p);
     if (fine && !part->reads)

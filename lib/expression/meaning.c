@@ -7,8 +7,8 @@
 enum { ANYTHING = NEVH__READS_TIME | NEVH__READS_STATE | NEVH__READS_V };
 
 /* Whether something may be read here that is of this kind. */
-static bool permit(nevh__resolver *r, const nevh__node *node, unsigned reads,
-                   const char *kind) {
+static bool permit(nevh__resolver *r, const nevh__syntax_node *node,
+                   unsigned reads, const char *kind) {
     unsigned excess = reads & ~r->in.allowed;
     if (!excess)
         return true;
@@ -35,7 +35,7 @@ static bool permit(nevh__resolver *r, const nevh__node *node, unsigned reads,
 
 /* An operand resolved as an index or an end of a range. */
 nevh__expression *nevh__resolve_index(nevh__resolver *r,
-                                      const nevh__node *node) {
+                                      const nevh__syntax_node *node) {
     nevh__place outside = r->in;
     r->in.allowed = 0;
     r->in.in_index = true;
@@ -44,7 +44,7 @@ nevh__expression *nevh__resolve_index(nevh__resolver *r,
     return e;
 }
 
-static void *fail_array(nevh__resolver *r, const nevh__node *node,
+static void *fail_array(nevh__resolver *r, const nevh__syntax_node *node,
                         size_t count) {
     char advice[3 * NEVH__NAME_LENGTH];
     snprintf(advice, sizeof advice, "%s[1], or sum(i = 1..%zu, %s[i])",
@@ -54,7 +54,7 @@ static void *fail_array(nevh__resolver *r, const nevh__node *node,
 }
 
 /* Gives an element its index, where the name has any. */
-static bool take_index(nevh__resolver *r, const nevh__node *node,
+static bool take_index(nevh__resolver *r, const nevh__syntax_node *node,
                        nevh__expression *e) {
     bool array = e->count > 0, indexed = node->kind == NEVH__NODE_ELEMENT;
     if (array && !indexed)
@@ -67,7 +67,7 @@ static bool take_index(nevh__resolver *r, const nevh__node *node,
 }
 
 static nevh__expression *new_parameter(nevh__resolver *r,
-                                       const nevh__node *node,
+                                       const nevh__syntax_node *node,
                                        const nevh__entry *entry) {
     nevh__expression *e =
         nevh__expression_new(r, NEVH__FORM_PARAMETER, node, entry->count > 0);
@@ -78,7 +78,8 @@ static nevh__expression *new_parameter(nevh__resolver *r,
     return take_index(r, node, e) ? nevh__expression_finish(r, e) : NULL;
 }
 
-static nevh__expression *new_variable(nevh__resolver *r, const nevh__node *node,
+static nevh__expression *new_variable(nevh__resolver *r,
+                                      const nevh__syntax_node *node,
                                       const nevh__entry *entry,
                                       nevh__meaning meaning) {
     bool q = meaning == NEVH__COORDINATE, p = meaning == NEVH__MOMENTUM;
@@ -137,7 +138,7 @@ static bool make_room(nevh__resolver *r) {
 }
 
 static nevh__expression *use_definition(nevh__resolver *r,
-                                        const nevh__node *node,
+                                        const nevh__syntax_node *node,
                                         const nevh__entry *entry) {
     if (node->kind == NEVH__NODE_ELEMENT)
         return nevh__resolver_fail_name(
@@ -156,8 +157,8 @@ static nevh__expression *use_definition(nevh__resolver *r,
     return permit(r, node, e->reads, kind) ? e : NULL;
 }
 
-static nevh__expression *new_index(nevh__resolver *r, const nevh__node *node,
-                                   unsigned slot) {
+static nevh__expression *
+new_index(nevh__resolver *r, const nevh__syntax_node *node, unsigned slot) {
     if (node->kind == NEVH__NODE_ELEMENT)
         return nevh__resolver_fail_name(
             r, node, "%s is an index: it has none itself", "");
@@ -169,7 +170,8 @@ static nevh__expression *new_index(nevh__resolver *r, const nevh__node *node,
     return nevh__expression_finish(r, e);
 }
 
-static nevh__expression *new_time(nevh__resolver *r, const nevh__node *node) {
+static nevh__expression *new_time(nevh__resolver *r,
+                                  const nevh__syntax_node *node) {
     if (!permit(r, node, NEVH__READS_TIME, "the time"))
         return NULL;
     nevh__expression *e = nevh__expression_new(r, NEVH__FORM_TIME, node, 0);
@@ -181,7 +183,7 @@ static nevh__expression *new_time(nevh__resolver *r, const nevh__node *node) {
 
 /* t, pi. */
 static nevh__expression *resolve_constant(nevh__resolver *r,
-                                          const nevh__node *node) {
+                                          const nevh__syntax_node *node) {
     if (node->kind == NEVH__NODE_ELEMENT)
         return nevh__resolver_fail_name(
             r, node, "%s is a single number: it has no index", "");
@@ -191,7 +193,7 @@ static nevh__expression *resolve_constant(nevh__resolver *r,
 }
 
 nevh__expression *nevh__resolve_name(nevh__resolver *r,
-                                     const nevh__node *node) {
+                                     const nevh__syntax_node *node) {
     for (const nevh__bound *b = r->in.bound; b; b = b->outer)
         if (strcmp(b->name, node->name) == 0)
             return new_index(r, node, b->slot);

@@ -19,8 +19,8 @@ void nevh__parser_advance(nevh__parser *p) {
     p->token = nevh__scan(&p->scanner);
 }
 
-void nevh__parser_begin(nevh__parser *p, const char *text, nevh__pool *pool,
-                        nevh__formula_error *error) {
+void nevh__parser_init(nevh__parser *p, const char *text, nevh__pool *pool,
+                       nevh__formula_error *error) {
     *p = (nevh__parser){.pool = pool, .error = error};
     p->scanner = (nevh__scanner){text, 1, error};
     nevh__parser_advance(p);
@@ -43,9 +43,9 @@ char *nevh__parser_copy(nevh__parser *p, const nevh__token *token) {
     return copy;
 }
 
-static nevh__node *new_node(nevh__parser *p, nevh__node_kind kind,
-                            size_t column) {
-    nevh__node *node = nevh__pool_take(p->pool, 1, sizeof *node);
+static nevh__syntax_node *new_node(nevh__parser *p, nevh__syntax_kind kind,
+                                   size_t column) {
+    nevh__syntax_node *node = nevh__pool_take(p->pool, 1, sizeof *node);
     if (!node) {
         nevh__formula_no_memory(p->error);
         return NULL;
@@ -56,7 +56,8 @@ static nevh__node *new_node(nevh__parser *p, nevh__node_kind kind,
 }
 
 /* A node that ends with the previous token. */
-static nevh__node *ended(const nevh__parser *p, nevh__node *node) {
+static nevh__syntax_node *ended(const nevh__parser *p,
+                                nevh__syntax_node *node) {
     node->length = p->previous.column + p->previous.length - node->column;
     return node;
 }
@@ -79,8 +80,8 @@ static bool expect_closing(nevh__parser *p, int kind,
 }
 
 /* Appends an operand, a sum, to a node. */
-static bool take_operand(nevh__parser *p, nevh__node *node) {
-    nevh__node **end = &node->first;
+static bool take_operand(nevh__parser *p, nevh__syntax_node *node) {
+    nevh__syntax_node **end = &node->first;
     while (*end)
         end = &(*end)->next;
     *end = nevh__parse_sum(p);
@@ -98,13 +99,14 @@ static bool enter(nevh__parser *p) {
                               NEVH__NESTING);
 }
 
-static nevh__node *leave(nevh__parser *p, nevh__node *node) {
+static nevh__syntax_node *leave(nevh__parser *p, nevh__syntax_node *node) {
     p->depth--;
     return node;
 }
 
-static nevh__node *parse_loop(nevh__parser *p, const nevh__token *opening) {
-    nevh__node *loop = new_node(p, NEVH__NODE_LOOP, p->token.column);
+static nevh__syntax_node *parse_loop(nevh__parser *p,
+                                     const nevh__token *opening) {
+    nevh__syntax_node *loop = new_node(p, NEVH__NODE_LOOP, p->token.column);
     if (!loop || !enter(p) || !(loop->name = nevh__parser_copy(p, &p->token)))
         return NULL;
     nevh__parser_advance(p);
@@ -122,12 +124,12 @@ static nevh__node *parse_loop(nevh__parser *p, const nevh__token *opening) {
         return expect_closing(p, ')', opening) ? loop : NULL;
     if (!expect(p, ','))
         return NULL;
-    nevh__node *to = loop->first->next;
+    nevh__syntax_node *to = loop->first->next;
     to->next = at_range(p) ? parse_loop(p, opening) : nevh__parse_sum(p);
     return leave(p, to->next ? loop : NULL);
 }
 
-static nevh__node *parse_loops(nevh__parser *p) {
+static nevh__syntax_node *parse_loops(nevh__parser *p) {
     nevh__token opening = p->token;
     nevh__parser_advance(p);
     if (!at_range(p)) {
@@ -136,11 +138,11 @@ static nevh__node *parse_loops(nevh__parser *p) {
                            "sum(i = 1..N, x[i])");
         return NULL;
     }
-    nevh__node *loop = parse_loop(p, &opening);
+    nevh__syntax_node *loop = parse_loop(p, &opening);
     return loop && expect_closing(p, ')', &opening) ? loop : NULL;
 }
 
-static nevh__node *parse_call(nevh__parser *p, nevh__node *call) {
+static nevh__syntax_node *parse_call(nevh__parser *p, nevh__syntax_node *call) {
     nevh__token opening = p->token;
     call->kind = NEVH__NODE_CALL;
     do {
@@ -151,7 +153,8 @@ static nevh__node *parse_call(nevh__parser *p, nevh__node *call) {
     return expect_closing(p, ')', &opening) ? ended(p, call) : NULL;
 }
 
-static nevh__node *parse_element(nevh__parser *p, nevh__node *element) {
+static nevh__syntax_node *parse_element(nevh__parser *p,
+                                        nevh__syntax_node *element) {
     nevh__token opening = p->token;
     element->kind = NEVH__NODE_ELEMENT;
     nevh__parser_advance(p);
@@ -165,8 +168,8 @@ static nevh__node *parse_element(nevh__parser *p, nevh__node *element) {
     return expect_closing(p, ']', &opening) ? ended(p, element) : NULL;
 }
 
-static nevh__node *parse_name(nevh__parser *p) {
-    nevh__node *node = new_node(p, NEVH__NODE_NAME, p->token.column);
+static nevh__syntax_node *parse_name(nevh__parser *p) {
+    nevh__syntax_node *node = new_node(p, NEVH__NODE_NAME, p->token.column);
     if (!node || !(node->name = nevh__parser_copy(p, &p->token)))
         return NULL;
     nevh__parser_advance(p);
@@ -180,8 +183,8 @@ static nevh__node *parse_name(nevh__parser *p) {
     return p->token.kind == '[' ? parse_element(p, node) : node;
 }
 
-static nevh__node *parse_number(nevh__parser *p) {
-    nevh__node *node = new_node(p, NEVH__NODE_NUMBER, p->token.column);
+static nevh__syntax_node *parse_number(nevh__parser *p) {
+    nevh__syntax_node *node = new_node(p, NEVH__NODE_NUMBER, p->token.column);
     if (!node)
         return NULL;
     node->number = p->token.number;
@@ -189,7 +192,7 @@ static nevh__node *parse_number(nevh__parser *p) {
     return ended(p, node);
 }
 
-static nevh__node *parse_value(nevh__parser *p) {
+static nevh__syntax_node *parse_value(nevh__parser *p) {
     nevh__token opening = p->token;
     if (opening.kind == NEVH__NUMERAL)
         return parse_number(p);
@@ -198,20 +201,20 @@ static nevh__node *parse_value(nevh__parser *p) {
     if (opening.kind != '(')
         return nevh__parser_refuse(p);
     nevh__parser_advance(p);
-    nevh__node *inside = nevh__parse_sum(p);
+    nevh__syntax_node *inside = nevh__parse_sum(p);
     return inside && expect_closing(p, ')', &opening) ? inside : NULL;
 }
 
-static nevh__node *parse_sign(nevh__parser *);
+static nevh__syntax_node *parse_sign(nevh__parser *);
 
-static nevh__node *parse_power(nevh__parser *p) {
+static nevh__syntax_node *parse_power(nevh__parser *p) {
     size_t column = p->token.column;
-    nevh__node *base = parse_value(p);
+    nevh__syntax_node *base = parse_value(p);
     if (!base || p->token.kind != '^')
         return base;
     nevh__parser_advance(p);
-    nevh__node *exponent = parse_sign(p);
-    nevh__node *power = new_node(p, NEVH__NODE_POWER, column);
+    nevh__syntax_node *exponent = parse_sign(p);
+    nevh__syntax_node *power = new_node(p, NEVH__NODE_POWER, column);
     if (!exponent || !power)
         return NULL;
     power->first = base;
@@ -219,32 +222,33 @@ static nevh__node *parse_power(nevh__parser *p) {
     return ended(p, power);
 }
 
-static nevh__node *parse_signed(nevh__parser *p) {
+static nevh__syntax_node *parse_signed(nevh__parser *p) {
     if (p->token.kind == '+') {
         nevh__parser_advance(p);
         return parse_sign(p);
     }
     if (p->token.kind != '-')
         return parse_power(p);
-    nevh__node *minus = new_node(p, NEVH__NODE_MINUS, p->token.column);
+    nevh__syntax_node *minus = new_node(p, NEVH__NODE_MINUS, p->token.column);
     nevh__parser_advance(p);
     if (!minus || !(minus->first = parse_sign(p)))
         return NULL;
     return ended(p, minus);
 }
 
-static nevh__node *parse_sign(nevh__parser *p) {
+static nevh__syntax_node *parse_sign(nevh__parser *p) {
     return enter(p) ? leave(p, parse_signed(p)) : NULL;
 }
 
 /* Operands between `plus` and `minus`, or * and /. */
-static nevh__node *parse_chain(nevh__parser *p, nevh__node_kind kind, int plus,
-                               int minus, nevh__node *operand(nevh__parser *)) {
+static nevh__syntax_node *
+parse_chain(nevh__parser *p, nevh__syntax_kind kind, int plus, int minus,
+            nevh__syntax_node *operand(nevh__parser *)) {
     size_t column = p->token.column;
-    nevh__node *last = operand(p);
+    nevh__syntax_node *last = operand(p);
     if (!last || (p->token.kind != plus && p->token.kind != minus))
         return last;
-    nevh__node *chain = new_node(p, kind, column);
+    nevh__syntax_node *chain = new_node(p, kind, column);
     if (!chain)
         return NULL;
     chain->first = last;
@@ -259,18 +263,18 @@ static nevh__node *parse_chain(nevh__parser *p, nevh__node_kind kind, int plus,
     return ended(p, chain);
 }
 
-static nevh__node *parse_product(nevh__parser *p) {
+static nevh__syntax_node *parse_product(nevh__parser *p) {
     return parse_chain(p, NEVH__NODE_PRODUCT, '*', '/', parse_sign);
 }
 
-nevh__node *nevh__parse_sum(nevh__parser *p) {
+nevh__syntax_node *nevh__parse_sum(nevh__parser *p) {
     return parse_chain(p, NEVH__NODE_SUM, '+', '-', parse_product);
 }
 
 static bool parse_all(nevh__tree *tree, const char *text,
                       nevh__formula_error *error) {
     nevh__parser parser;
-    nevh__parser_begin(&parser, text, &tree->pool, error);
+    nevh__parser_init(&parser, text, &tree->pool, error);
     tree->length = nevh__characters(text);
     tree->root = nevh__parse_sum(&parser);
     if (tree->root && parser.token.kind != NEVH__END)

@@ -4,9 +4,9 @@
 #include <string.h>
 
 /* Resolves all operands of a node. */
-static bool take_operands(nevh__resolver *r, const nevh__node *node,
+static bool take_operands(nevh__resolver *r, const nevh__syntax_node *node,
                           nevh__expression *e) {
-    const nevh__node *operand = node->first;
+    const nevh__syntax_node *operand = node->first;
     for (size_t i = 0; i < e->n; i++, operand = operand->next) {
         e->operands[i].inverse = operand->inverse;
         if (!(e->operands[i].of = nevh__resolve_node(r, operand)))
@@ -15,23 +15,24 @@ static bool take_operands(nevh__resolver *r, const nevh__node *node,
     return true;
 }
 
-static size_t operands_of(const nevh__node *node) {
+static size_t operands_of(const nevh__syntax_node *node) {
     size_t count = 0;
-    for (const nevh__node *at = node->first; at; at = at->next)
+    for (const nevh__syntax_node *at = node->first; at; at = at->next)
         count++;
     return count;
 }
 
-static nevh__expression *
-resolve_chain(nevh__resolver *r, const nevh__node *node, nevh__form form) {
+static nevh__expression *resolve_chain(nevh__resolver *r,
+                                       const nevh__syntax_node *node,
+                                       nevh__form form) {
     nevh__expression *e =
         nevh__expression_new(r, form, node, operands_of(node));
     return e && take_operands(r, node, e) ? nevh__expression_finish(r, e)
                                           : NULL;
 }
 
-static nevh__expression *apply(nevh__resolver *r, const nevh__node *node,
-                               nevh__operation operation) {
+static nevh__expression *apply(nevh__resolver *r, const nevh__syntax_node *node,
+                               nevh__tape_operation operation) {
     nevh__expression *e =
         nevh__expression_new(r, NEVH__FORM_APPLY, node, operands_of(node));
     if (!e || !take_operands(r, node, e))
@@ -45,8 +46,8 @@ static nevh__expression *apply(nevh__resolver *r, const nevh__node *node,
 }
 
 static nevh__expression *resolve_call(nevh__resolver *r,
-                                      const nevh__node *node) {
-    nevh__operation operation =
+                                      const nevh__syntax_node *node) {
+    nevh__tape_operation operation =
         nevh__function_named(node->name, strlen(node->name));
     if (operation == NEVH__OPERATION_COUNT) {
         r->scope.error->definition = r->in.definition;
@@ -61,7 +62,7 @@ static nevh__expression *resolve_call(nevh__resolver *r,
 }
 
 /* Whether a new index may have this name. */
-static bool check_bound(nevh__resolver *r, const nevh__node *node) {
+static bool check_bound(nevh__resolver *r, const nevh__syntax_node *node) {
     nevh__meaning meaning;
     const char *name = node->name;
     bool taken =
@@ -84,8 +85,9 @@ static bool check_bound(nevh__resolver *r, const nevh__node *node) {
 }
 
 static nevh__expression *resolve_loop(nevh__resolver *r,
-                                      const nevh__node *node) {
-    const nevh__node *from = node->first, *to = from->next, *body = to->next;
+                                      const nevh__syntax_node *node) {
+    const nevh__syntax_node *from = node->first, *to = from->next,
+                            *body = to->next;
     nevh__expression *e = nevh__expression_new(r, NEVH__FORM_LOOP, node, 3);
     if (!e || !check_bound(r, node))
         return NULL;
@@ -101,7 +103,7 @@ static nevh__expression *resolve_loop(nevh__resolver *r,
 }
 
 static nevh__expression *resolve_form(nevh__resolver *r,
-                                      const nevh__node *node) {
+                                      const nevh__syntax_node *node) {
     switch (node->kind) {
     case NEVH__NODE_NUMBER:
         return nevh__expression_number(r, node, node->number);
@@ -125,7 +127,7 @@ static nevh__expression *resolve_form(nevh__resolver *r,
 }
 
 nevh__expression *nevh__resolve_node(nevh__resolver *r,
-                                     const nevh__node *node) {
+                                     const nevh__syntax_node *node) {
     if (r->depth > 2 * NEVH__HEIGHT)
         return nevh__resolver_fail(
             r, node, node->length,

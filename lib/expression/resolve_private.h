@@ -28,23 +28,27 @@ typedef struct {
 /* Each returns NULL on error. */
 
 /* The formats take a and b in turn; the name is the first. */
-void *nevh__resolver_fail(nevh__resolver *, const nevh__node *, size_t length,
-                          const char *format, const char *a, const char *b);
-void *nevh__resolver_fail_name(nevh__resolver *, const nevh__node *,
+void *nevh__resolver_fail(nevh__resolver *, const nevh__syntax_node *,
+                          size_t length, const char *format, const char *a,
+                          const char *b);
+void *nevh__resolver_fail_name(nevh__resolver *, const nevh__syntax_node *,
                                const char *format, const char *b);
 
 /* An expression with n operands to be filled in. */
 nevh__expression *nevh__expression_new(nevh__resolver *, nevh__form,
-                                       const nevh__node *, size_t n);
+                                       const nevh__syntax_node *, size_t n);
 /* Sets what follows from its operands. */
 nevh__expression *nevh__expression_finish(nevh__resolver *, nevh__expression *);
-nevh__expression *nevh__expression_number(nevh__resolver *, const nevh__node *,
-                                          double);
+nevh__expression *nevh__expression_number(nevh__resolver *,
+                                          const nevh__syntax_node *, double);
 
-nevh__expression *nevh__resolve_node(nevh__resolver *, const nevh__node *);
+nevh__expression *nevh__resolve_node(nevh__resolver *,
+                                     const nevh__syntax_node *);
 /* The same as an index or an end of a range. */
-nevh__expression *nevh__resolve_index(nevh__resolver *, const nevh__node *);
+nevh__expression *nevh__resolve_index(nevh__resolver *,
+                                      const nevh__syntax_node *);
 /* A name or an element. */
-nevh__expression *nevh__resolve_name(nevh__resolver *, const nevh__node *);
+nevh__expression *nevh__resolve_name(nevh__resolver *,
+                                     const nevh__syntax_node *);
 
 #endif

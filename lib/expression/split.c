@@ -10,7 +10,7 @@
    over indices.  Each link is one more around the last. */
 typedef struct around {
     const struct around *outer;
-    const nevh__operand *left, *right; /* factors before and after */
+    const nevh__expression_operand *left, *right; /* factors before and after */
     size_t n_left, n_right;
     const nevh__expression *loop; /* or NULL */
     bool negative;                /* all in all */
@@ -44,7 +44,7 @@ static size_t count_loops(const around *a) {
 }
 
 /* Whether a part is over just these loops. */
-static bool same_loops(const nevh__part *part, const around *a) {
+static bool same_loops(const nevh__formula_part *part, const around *a) {
     size_t k = part->n_loops;
     for (; a; a = a->outer)
         if (a->loop && (k == 0 || part->loops[--k] != a->loop))
@@ -56,16 +56,17 @@ static bool no_memory(nevh__parts *parts) {
     return nevh__formula_no_memory(parts->error);
 }
 
-static nevh__part *new_part(nevh__parts *parts, const around *a) {
+static nevh__formula_part *new_part(nevh__parts *parts, const around *a) {
     if (parts->n == parts->room) {
         size_t room = parts->room ? 2 * parts->room : 16;
-        nevh__part *grown = nevh__grow(parts->parts, room, sizeof *grown);
+        nevh__formula_part *grown =
+            nevh__grow(parts->parts, room, sizeof *grown);
         if (!grown)
             return NULL;
         parts->parts = grown;
         parts->room = room;
     }
-    nevh__part part = {.n_loops = count_loops(a)};
+    nevh__formula_part part = {.n_loops = count_loops(a)};
     part.loops = nevh__pool_take(parts->pool, part.n_loops, sizeof *part.loops);
     if (!part.loops)
         return NULL;
@@ -78,8 +79,8 @@ static nevh__part *new_part(nevh__parts *parts, const around *a) {
 
 /* The part that reads the same over the same loops, or a new one.  The hash
    says so; `reads` makes sure that no accident of hashes joins T and V. */
-static nevh__part *part_for(nevh__parts *parts, const around *a,
-                            const nevh__summand *s) {
+static nevh__formula_part *part_for(nevh__parts *parts, const around *a,
+                                    const nevh__summand *s) {
     unsigned reads = 0;
     uint64_t variables;
     for (size_t i = 0; i < s->n; i++)
@@ -87,12 +88,12 @@ static nevh__part *part_for(nevh__parts *parts, const around *a,
     if (!nevh__variables_hash(parts, s, &variables))
         return NULL;
     for (size_t i = 0; i < parts->n; i++) {
-        nevh__part *part = &parts->parts[i];
+        nevh__formula_part *part = &parts->parts[i];
         if (part->reads == reads && part->variables == variables &&
             same_loops(part, a))
             return part;
     }
-    nevh__part *part = new_part(parts, a);
+    nevh__formula_part *part = new_part(parts, a);
     if (!part)
         return NULL;
     part->reads = reads;
@@ -104,8 +105,8 @@ static nevh__part *part_for(nevh__parts *parts, const around *a,
 static bool take_factors(nevh__parts *parts, nevh__expression *core,
                          const around *a, nevh__summand *s) {
     bool product = core->form == NEVH__FORM_PRODUCT;
-    nevh__operand alone = {.of = core};
-    const nevh__operand *middle = product ? core->operands : &alone;
+    nevh__expression_operand alone = {.of = core};
+    const nevh__expression_operand *middle = product ? core->operands : &alone;
     size_t n_middle = product ? core->n : 1, n_left = 0;
     s->n = n_middle;
     for (const around *b = a; b; b = b->outer) {
@@ -115,7 +116,8 @@ static bool take_factors(nevh__parts *parts, nevh__expression *core,
     s->factors = nevh__pool_take(parts->pool, s->n, sizeof *s->factors);
     if (!s->factors)
         return false;
-    nevh__operand *left = s->factors + n_left, *right = left + n_middle;
+    nevh__expression_operand *left = s->factors + n_left,
+                             *right = left + n_middle;
     memcpy(left, middle, n_middle * sizeof *middle);
     for (; a; a = a->outer) {
         left -= a->n_left;
@@ -128,7 +130,7 @@ static bool take_factors(nevh__parts *parts, nevh__expression *core,
     return true;
 }
 
-static bool append(nevh__parts *parts, nevh__part *part,
+static bool append(nevh__parts *parts, nevh__formula_part *part,
                    const nevh__summand *s) {
     if (part->n == part->room) {
         size_t room = part->room ? 4 * part->room : 1;
@@ -156,7 +158,7 @@ static bool emit(nevh__parts *parts, nevh__expression *core, const around *a) {
     }
     if (!take_factors(parts, core, a, &s))
         return no_memory(parts);
-    nevh__part *part = part_for(parts, a, &s);
+    nevh__formula_part *part = part_for(parts, a, &s);
     return (part && append(parts, part, &s)) || no_memory(parts);
 }
 

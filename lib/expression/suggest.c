@@ -58,7 +58,7 @@ static void try_name(search *s, const char *prefix, const char *name) {
 }
 
 static void try_functions(search *s) {
-    for (nevh__operation i = NEVH__SIN; i < NEVH__OPERATION_COUNT; i++)
+    for (nevh__tape_operation i = NEVH__SIN; i < NEVH__OPERATION_COUNT; i++)
         try_name(s, "", nevh__operation_name(i));
     try_name(s, "", "sum");
 }
@@ -92,13 +92,13 @@ static const char *coordinate_of(const nevh__names *names, const char *word) {
     return word[1] == '\0' && count == 1 ? only : NULL;
 }
 
-static bool fail(const nevh__node *node, nevh__formula_error *error,
+static bool fail(const nevh__syntax_node *node, nevh__formula_error *error,
                  const char *format, const char *a, const char *b) {
     return nevh__formula_fail(error, NEVH_EINVAL, node->column,
                               nevh__characters(node->name), format, a, b);
 }
 
-static bool refuse_call(const nevh__names *names, const nevh__node *node,
+static bool refuse_call(const nevh__names *names, const nevh__syntax_node *node,
                         search *s, nevh__formula_error *error) {
     nevh__meaning meaning;
     bool known = nevh__entry_named(names, node->name, &meaning) ||
@@ -115,7 +115,7 @@ static bool refuse_call(const nevh__names *names, const nevh__node *node,
 }
 
 /* The coordinate of p_x or v_x that does not exist. */
-static bool refuse_prefixed(const nevh__node *node, const search *s,
+static bool refuse_prefixed(const nevh__syntax_node *node, const search *s,
                             nevh__formula_error *error) {
     return nevh__formula_fail(
         error, NEVH_EINVAL, node->column, nevh__characters(node->name),
@@ -125,7 +125,7 @@ static bool refuse_prefixed(const nevh__node *node, const search *s,
 }
 
 bool nevh__refuse_name(const nevh__names *names, const nevh__bound *bound,
-                       const nevh__node *node, bool in_index,
+                       const nevh__syntax_node *node, bool in_index,
                        nevh__formula_error *error) {
     const char *name = node->name;
     size_t length = nevh__characters(name);

@@ -7,7 +7,7 @@
 
 enum { FIRST_ROOM = 32 };
 
-nevh__tape_builder *nevh__tape_begin(void) {
+nevh__tape_builder *nevh__tape_builder_new(void) {
     return nevh__array(1, sizeof(nevh__tape_builder));
 }
 
@@ -19,7 +19,7 @@ void nevh__tape_abandon(nevh__tape_builder *b) {
     free(b);
 }
 
-static size_t hash(const nevh__node *n) {
+static size_t hash(const nevh__tape_node *n) {
     static const uint64_t odd = 0x9e3779b97f4a7c15u;
     uint64_t h = n->bits + n->kind;
     h = (h ^ h >> 32) * odd + n->operation;
@@ -29,20 +29,20 @@ static size_t hash(const nevh__node *n) {
     return (size_t)(h >> 16);
 }
 
-static bool same(const nevh__node *x, const nevh__node *y) {
+static bool same(const nevh__tape_node *x, const nevh__tape_node *y) {
     return x->kind == y->kind && x->operation == y->operation && x->a == y->a &&
            x->b == y->b && x->bits == y->bits;
 }
 
 /* Where a node is in the table, or where it would go. */
-static size_t place(const nevh__tape_builder *b, const nevh__node *n) {
+static size_t place(const nevh__tape_builder *b, const nevh__tape_node *n) {
     size_t mask = b->table_size - 1, i = hash(n) & mask;
     while (b->table[i] >= 0 && !same(&b->nodes[b->table[i]], n))
         i = (i + 1) & mask;
     return i;
 }
 
-int nevh__builder_find(const nevh__tape_builder *b, const nevh__node *n) {
+int nevh__builder_find(const nevh__tape_builder *b, const nevh__tape_node *n) {
     return b->table[place(b, n)];
 }
 
@@ -50,7 +50,7 @@ static bool grow(nevh__tape_builder *b) {
     if (b->room > INT_MAX / 4)
         return false;
     int room = b->room ? 2 * b->room : FIRST_ROOM;
-    nevh__node *nodes = nevh__grow(b->nodes, (size_t)room, sizeof *nodes);
+    nevh__tape_node *nodes = nevh__grow(b->nodes, (size_t)room, sizeof *nodes);
     if (!nodes)
         return false;
     b->nodes = nodes;
@@ -67,7 +67,7 @@ static bool grow(nevh__tape_builder *b) {
     return true;
 }
 
-int nevh__builder_node(nevh__tape_builder *b, nevh__node node) {
+int nevh__builder_node(nevh__tape_builder *b, nevh__tape_node node) {
     if (!b || b->failed)
         return -1;
     if (b->used == b->room && !grow(b)) {
@@ -82,14 +82,14 @@ int nevh__builder_node(nevh__tape_builder *b, nevh__node node) {
     return *at;
 }
 
-double nevh__node_number(const nevh__node *n) {
+double nevh__tape_node_number(const nevh__tape_node *n) {
     double x;
     memcpy(&x, &n->bits, sizeof x);
     return x;
 }
 
 int nevh__tape_number(nevh__tape_builder *b, double x) {
-    nevh__node node = {.kind = NEVH__NUMBER};
+    nevh__tape_node node = {.kind = NEVH__NUMBER};
     memcpy(&node.bits, &x, sizeof x);
     return nevh__builder_node(b, node);
 }
@@ -101,7 +101,8 @@ int nevh__tape_variable(nevh__tape_builder *b, nevh__variable v, size_t k) {
         b->failed = true;
     else if (b->count[v] <= k)
         b->count[v] = k + 1;
-    return nevh__builder_node(b, (nevh__node){.kind = (uint8_t)v, .bits = k});
+    return nevh__builder_node(b,
+                              (nevh__tape_node){.kind = (uint8_t)v, .bits = k});
 }
 
 bool nevh__tape_is_number(const nevh__tape_builder *b, int node,
@@ -109,6 +110,6 @@ bool nevh__tape_is_number(const nevh__tape_builder *b, int node,
     if (node < 0 || b->nodes[node].kind != NEVH__NUMBER)
         return false;
     if (value)
-        *value = nevh__node_number(&b->nodes[node]);
+        *value = nevh__tape_node_number(&b->nodes[node]);
     return true;
 }

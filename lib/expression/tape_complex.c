@@ -41,7 +41,7 @@ typedef struct {
 static const size_t re_pitch[] = {1, 2, 2, 1, 2, 1};
 static const size_t im_pitch[] = {0, 2, 2, 0, 2, 0};
 
-static inline number fetch(const parts *s, nevh__operand o) {
+static inline number fetch(const parts *s, nevh__tape_operand o) {
     return (number){s->re[o.kind][o.at * re_pitch[o.kind]],
                     s->im[o.kind][o.at * im_pitch[o.kind]]};
 }

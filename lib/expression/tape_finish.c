@@ -62,7 +62,7 @@ static bool new_plan(plan *p, const nevh__tape_builder *from) {
 /* Arguments have smaller numbers than what is made of them. */
 static void find_needs(plan *p) {
     for (int i = 0; i < p->from->used; i++) {
-        const nevh__node *n = &p->from->nodes[i];
+        const nevh__tape_node *n = &p->from->nodes[i];
         role *r = &p->roles[i];
         r->place = r->twin = NOWHERE;
         if (!is_operation(p, i))
@@ -76,7 +76,7 @@ static void find_needs(plan *p) {
 /* The argument that has to be placed before the node can be, the needier
    first; or NOWHERE. */
 static int missing(const plan *p, int node) {
-    const nevh__node *n = &p->from->nodes[node];
+    const nevh__tape_node *n = &p->from->nodes[node];
     bool a = is_operation(p, n->a) && p->roles[n->a].place == NOWHERE;
     bool b = is_operation(p, n->b) && p->roles[n->b].place == NOWHERE;
     if (a && b)
@@ -102,7 +102,7 @@ static void put_in_order(plan *p, int result) {
 
 /* The sine of a cosine's argument, or the other way round; or NOWHERE. */
 static int counterpart(const plan *p, int node) {
-    nevh__node n = p->from->nodes[node];
+    nevh__tape_node n = p->from->nodes[node];
     if (n.operation != NEVH__SIN && n.operation != NEVH__COS)
         return NOWHERE;
     n.operation = n.operation == NEVH__SIN ? NEVH__COS : NEVH__SIN;
@@ -131,7 +131,7 @@ static void join_twins(plan *p) {
 
 static void see_argument(plan *p, int node, int place) {
     role *r = &p->roles[node];
-    const nevh__node *n = &p->from->nodes[node];
+    const nevh__tape_node *n = &p->from->nodes[node];
     r->last = place;
     if (n->kind == NEVH__NUMBER && r->place == NOWHERE)
         r->place = p->numbers++;
@@ -146,7 +146,7 @@ static void see_argument(plan *p, int node, int place) {
 /* Last uses, numbers, and by what each operation changes. */
 static void see_uses(plan *p, int result) {
     for (int i = 0; i < p->length; i++) {
-        const nevh__node *n = &p->from->nodes[p->order[i]];
+        const nevh__tape_node *n = &p->from->nodes[p->order[i]];
         see_argument(p, n->a, i);
         see_argument(p, n->b, i);
         role *r = &p->roles[p->order[i]];
@@ -175,7 +175,7 @@ static void choose_slot(plan *p, int node) {
    finds both. */
 static void choose_slots(plan *p) {
     for (int i = 0; i < p->length; i++) {
-        const nevh__node *n = &p->from->nodes[p->order[i]];
+        const nevh__tape_node *n = &p->from->nodes[p->order[i]];
         choose_slot(p, p->order[i]);
         if (p->roles[p->order[i]].twin != NOWHERE)
             choose_slot(p, p->roles[p->order[i]].twin);
@@ -184,13 +184,13 @@ static void choose_slots(plan *p) {
     }
 }
 
-static nevh__operand operand(const plan *p, int node) {
-    const nevh__node *n = &p->from->nodes[node];
+static nevh__tape_operand operand(const plan *p, int node) {
+    const nevh__tape_node *n = &p->from->nodes[node];
     const role *r = &p->roles[node];
     uint32_t at = n->kind == NEVH__SLOT     ? (uint32_t)r->slot
                   : n->kind == NEVH__NUMBER ? (uint32_t)r->place
                                             : (uint32_t)n->bits;
-    return (nevh__operand){.kind = n->kind, .by = r->by, .at = at};
+    return (nevh__tape_operand){.kind = n->kind, .by = r->by, .at = at};
 }
 
 static bool is_smooth(unsigned operation) {
@@ -207,13 +207,13 @@ static bool is_smooth(unsigned operation) {
     }
 }
 
-static void note_read(nevh__tape *tape, nevh__operand o) {
+static void note_read(nevh__tape *tape, nevh__tape_operand o) {
     if (o.kind < NEVH__VARIABLES)
         tape->read[o.kind][o.at] = true;
 }
 
 static nevh__instruction instruction(const plan *p, int node) {
-    const nevh__node *n = &p->from->nodes[node];
+    const nevh__tape_node *n = &p->from->nodes[node];
     const role *r = &p->roles[node];
     nevh__instruction made = {
         .a = operand(p, n->a),
@@ -257,11 +257,11 @@ static void write_numbers(nevh__tape *tape, const plan *p) {
     double *wide = tape->wide_memory +
                    (NEVH__LANES - misplaced % NEVH__LANES) % NEVH__LANES;
     for (int i = 0; i < p->from->used; i++) {
-        const nevh__node *n = &p->from->nodes[i];
+        const nevh__tape_node *n = &p->from->nodes[i];
         int at = p->roles[i].place;
         if (n->kind != NEVH__NUMBER || at == NOWHERE)
             continue;
-        tape->numbers[at] = nevh__node_number(n);
+        tape->numbers[at] = nevh__tape_node_number(n);
         for (int lane = 0; lane < NEVH__LANES; lane++)
             wide[at * NEVH__LANES + lane] = tape->numbers[at];
     }

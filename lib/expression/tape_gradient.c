@@ -25,7 +25,7 @@ typedef struct {
 } sweep;
 
 /* The row of adjoints of an operand; NULL when it is not wanted. */
-static inline double *adjoint(const sweep *s, nevh__operand o) {
+static inline double *adjoint(const sweep *s, nevh__tape_operand o) {
     return o.by & s->wanted ? s->base[o.kind] + o.at * s->rows.pitch[o.kind]
                             : NULL;
 }
@@ -146,24 +146,25 @@ typedef struct {
     size_t width;
 } task;
 
-static void sweep_columns(const task *is, size_t from, size_t columns,
+static void sweep_columns(const task *job, size_t from, size_t columns,
                           double *scratch, size_t room) {
-    const nevh__tape *tape = is->tape;
+    const nevh__tape *tape = job->tape;
     size_t slots = tape->slots * columns;
     sweep s = {
         .tape = tape,
-        .rows = nevh__rows_of(tape, is->width, from, columns, is->t, is->q,
-                              is->p, is->c, scratch),
-        .wanted = (is->dh_dq ? NEVH__BY_Q : 0u) |
-                  (is->dh_dp ? NEVH__BY_P : 0u) | (is->dh_dt ? NEVH__BY_T : 0u),
+        .rows = nevh__rows_of(tape, job->width, from, columns, job->t, job->q,
+                              job->p, job->c, scratch),
+        .wanted = (job->dh_dq ? NEVH__BY_Q : 0u) |
+                  (job->dh_dp ? NEVH__BY_P : 0u) |
+                  (job->dh_dt ? NEVH__BY_T : 0u),
     };
-    s.base[NEVH__T] = is->dh_dt ? is->dh_dt + from : NULL;
-    s.base[NEVH__Q] = is->dh_dq ? is->dh_dq + from : NULL;
-    s.base[NEVH__P] = is->dh_dp ? is->dh_dp + from : NULL;
+    s.base[NEVH__T] = job->dh_dt ? job->dh_dt + from : NULL;
+    s.base[NEVH__Q] = job->dh_dq ? job->dh_dq + from : NULL;
+    s.base[NEVH__P] = job->dh_dp ? job->dh_dp + from : NULL;
     s.base[NEVH__SLOT] = scratch + slots;
-    clear(s.base[NEVH__T], 1, is->width, columns);
-    clear(s.base[NEVH__Q], tape->count[NEVH__Q], is->width, columns);
-    clear(s.base[NEVH__P], tape->count[NEVH__P], is->width, columns);
+    clear(s.base[NEVH__T], 1, job->width, columns);
+    clear(s.base[NEVH__Q], tape->count[NEVH__Q], job->width, columns);
+    clear(s.base[NEVH__P], tape->count[NEVH__P], job->width, columns);
     run_back(&s, 0, tape->length, scratch + 2 * slots, room - 2 * slots);
 }
 
@@ -181,13 +182,13 @@ static size_t whole(const nevh__tape *tape, size_t columns) {
     return columns * (2 * tape->slots + longest_journal(tape, tape->length));
 }
 
-static void sweep_all(const task *is, double *scratch, size_t room) {
+static void sweep_all(const task *job, double *scratch, size_t room) {
     size_t most = NEVH__TAPE_COLUMNS, columns;
-    while (most > NEVH__LANES && whole(is->tape, most) > room)
+    while (most > NEVH__LANES && whole(job->tape, most) > room)
         most /= 2;
-    for (size_t from = 0; from < is->width; from += columns) {
-        columns = is->width - from < most ? is->width - from : most;
-        sweep_columns(is, from, columns, scratch, room);
+    for (size_t from = 0; from < job->width; from += columns) {
+        columns = job->width - from < most ? job->width - from : most;
+        sweep_columns(job, from, columns, scratch, room);
     }
 }
 
@@ -203,21 +204,21 @@ static bool is_enough(const nevh__tape *tape, size_t room) {
 }
 
 /* Apart, so that most tapes do with little of the stack. */
-__attribute__((noinline)) static void sweep_small(const task *is) {
+__attribute__((noinline)) static void sweep_small(const task *job) {
     _Alignas(64) double scratch[NEVH__TAPE_SCRATCH];
-    sweep_all(is, scratch, NEVH__TAPE_SCRATCH);
+    sweep_all(job, scratch, NEVH__TAPE_SCRATCH);
 }
 
-__attribute__((noinline)) static void sweep_large(const task *is) {
+__attribute__((noinline)) static void sweep_large(const task *job) {
     _Alignas(64) double scratch[MUCH_SCRATCH];
-    sweep_all(is, scratch, MUCH_SCRATCH);
+    sweep_all(job, scratch, MUCH_SCRATCH);
 }
 
-static void sweep_task(const task *is) {
-    if (is_enough(is->tape, NEVH__TAPE_SCRATCH))
-        sweep_small(is);
+static void sweep_task(const task *job) {
+    if (is_enough(job->tape, NEVH__TAPE_SCRATCH))
+        sweep_small(job);
     else
-        sweep_large(is);
+        sweep_large(job);
 }
 
 void nevh__tape_block_gradient(size_t width, const double t[], const double q[],

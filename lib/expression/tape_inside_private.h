@@ -20,12 +20,12 @@ typedef struct {
     uint8_t kind, by; /* by: an or of the above */
     bool last;        /* an operation's result that is not used again */
     uint32_t at;
-} nevh__operand;
+} nevh__tape_operand;
 
 typedef struct {
-    nevh__operand a, b; /* b is a where there is one argument */
-    uint32_t to, also;  /* slots, never that of a or b; also is of cosines */
-    uint32_t journal;   /* slots not fresh in all that comes before */
+    nevh__tape_operand a, b; /* b is a where there is one argument */
+    uint32_t to, also; /* slots, never that of a or b; also is of cosines */
+    uint32_t journal;  /* slots not fresh in all that comes before */
     uint8_t operation;
     bool fresh, also_fresh; /* the slot held nothing before */
 } nevh__instruction;
@@ -36,7 +36,7 @@ struct nevh__tape {
     double *numbers;    /* each once */
     const double *wide; /* each NEVH__LANES times, in whole cache lines */
     double *wide_memory;
-    nevh__operand result;
+    nevh__tape_operand result;
     size_t count[NEVH__VARIABLES];
     bool *read[NEVH__VARIABLES];
     bool analytic;
@@ -55,7 +55,7 @@ typedef struct {
 enum { NEVH__TAPE_COLUMNS = 64, NEVH__TAPE_SCRATCH = 8192 };
 
 static inline const double *nevh__rows_at(const nevh__rows *r,
-                                          nevh__operand o) {
+                                          nevh__tape_operand o) {
     return r->base[o.kind] + o.at * r->pitch[o.kind];
 }
 
@@ -74,10 +74,10 @@ typedef struct {
     uint8_t kind, operation; /* NEVH__SLOT: an operation */
     int a, b;
     uint64_t bits; /* a number's; a variable's k */
-} nevh__node;
+} nevh__tape_node;
 
 struct nevh__tape_builder {
-    nevh__node *nodes;
+    nevh__tape_node *nodes;
     int used, room;
     int *table; /* open addressing; -1 is empty */
     size_t table_size;
@@ -86,9 +86,9 @@ struct nevh__tape_builder {
 };
 
 /* The node that is such, or -1. */
-int nevh__builder_find(const nevh__tape_builder *, const nevh__node *);
+int nevh__builder_find(const nevh__tape_builder *, const nevh__tape_node *);
 /* The same, made if need be; -1 when memory is out. */
-int nevh__builder_node(nevh__tape_builder *, nevh__node);
-double nevh__node_number(const nevh__node *);
+int nevh__builder_node(nevh__tape_builder *, nevh__tape_node);
+double nevh__tape_node_number(const nevh__tape_node *);
 
 #endif

@@ -80,8 +80,8 @@ NEVH__INLINE double nevh__chain(double x, double y) {
     X(HYPOT, NEVH__F(hypot)(a, b), NEVH__G(nevh__choose(y == 0, 0, a / y)),    \
       NEVH__G(nevh__choose(y == 0, 0, b / y)))                                 \
     X(ABS, fabs(a), NEVH__G(nevh__sign(a)), 0)                                 \
-    X(MIN, nevh__min(a, b), NEVH__G(a < b), NEVH__G(!(a < b)))                 \
-    X(MAX, nevh__max(a, b), NEVH__G(a > b), NEVH__G(!(a > b)))                 \
+    X(MIN, nevh__real_min(a, b), NEVH__G(a < b), NEVH__G(!(a < b)))                 \
+    X(MAX, nevh__real_max(a, b), NEVH__G(a > b), NEVH__G(!(a > b)))                 \
     X(SIGN, nevh__sign(a), NEVH__G(0), 0)                                      \
     X(MOD, nevh__mod(a, b), g, NEVH__G(-rint((a - y) / b)))                    \
     X(FLOOR, floor(a), NEVH__G(0), 0)                                          \

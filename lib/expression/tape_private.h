@@ -4,7 +4,7 @@
    A tape is an expression over the variables of one term instance, as a list
    of operations in static single assignment.  A builder makes it node by node:
 
-       nevh__tape_builder *b = nevh__tape_begin();
+       nevh__tape_builder *b = nevh__tape_builder_new();
        int p = nevh__tape_variable(b, NEVH__P, 0);
        int m = nevh__tape_variable(b, NEVH__C, 0);
        int two = nevh__tape_number(b, 2);
@@ -77,23 +77,23 @@ enum { NEVH__VARIABLES = 4 };
 #define NEVH__OPERATION_ENTRY(identifier, name, arguments) NEVH__##identifier,
 typedef enum {
     NEVH__OPERATIONS(NEVH__OPERATION_ENTRY) NEVH__OPERATION_COUNT
-} nevh__operation;
+} nevh__tape_operation;
 #undef NEVH__OPERATION_ENTRY
 
 /* The name in formulas, and 1 or 2.  Names of functions begin with a letter;
    pow(x, y) is for who reads formulas to map to NEVH__POWER. */
-const char *nevh__operation_name(nevh__operation);
-int nevh__operation_arguments(nevh__operation);
+const char *nevh__operation_name(nevh__tape_operation);
+int nevh__operation_arguments(nevh__tape_operation);
 /* One operation on numbers, as the tape does it one state at a time; b is
    ignored where there is one argument. */
-double nevh__operation_value(nevh__operation, double a, double b);
+double nevh__operation_value(nevh__tape_operation, double a, double b);
 
 typedef struct nevh__tape_builder nevh__tape_builder;
 typedef struct nevh__tape nevh__tape;
 
 /* NULL when memory is out; that may be handed on: each function below then
    returns -1 or NULL. */
-nevh__tape_builder *nevh__tape_begin(void);
+nevh__tape_builder *nevh__tape_builder_new(void);
 /* Without a tape having been made of it. */
 void nevh__tape_abandon(nevh__tape_builder *);
 
@@ -111,7 +111,7 @@ void nevh__tape_abandon(nevh__tape_builder *);
 int nevh__tape_number(nevh__tape_builder *, double);
 int nevh__tape_variable(nevh__tape_builder *, nevh__variable, size_t k);
 /* b is ignored where there is one argument. */
-int nevh__tape_apply(nevh__tape_builder *, nevh__operation, int a, int b);
+int nevh__tape_apply(nevh__tape_builder *, nevh__tape_operation, int a, int b);
 /* Whether a node is a number, and which; value may be NULL. */
 bool nevh__tape_is_number(const nevh__tape_builder *, int node, double *value);
 

@@ -15,7 +15,7 @@ static bool is(const nevh__tape_builder *b, int node, double x) {
 
 /* Whether a node is -z. */
 static bool is_negated(const nevh__tape_builder *b, int node, int *z) {
-    const nevh__node *n = &b->nodes[node];
+    const nevh__tape_node *n = &b->nodes[node];
     if (n->kind != NEVH__SLOT || n->operation != NEVH__NEGATE)
         return false;
     *z = n->a;
@@ -25,7 +25,7 @@ static bool is_negated(const nevh__tape_builder *b, int node, int *z) {
 /* Whether a node is c*z, c being a number. */
 static bool is_multiple(const nevh__tape_builder *b, int node, double *c,
                         int *z) {
-    const nevh__node *n = &b->nodes[node];
+    const nevh__tape_node *n = &b->nodes[node];
     if (n->kind != NEVH__SLOT || n->operation != NEVH__MULTIPLY)
         return false;
     bool first = nevh__tape_is_number(b, n->a, c);
@@ -33,13 +33,14 @@ static bool is_multiple(const nevh__tape_builder *b, int node, double *c,
     return first || nevh__tape_is_number(b, n->b, c);
 }
 
-static int operation(nevh__tape_builder *b, nevh__operation of, int x, int y) {
+static int operation(nevh__tape_builder *b, nevh__tape_operation of, int x,
+                     int y) {
     return nevh__builder_node(
-        b, (nevh__node){
+        b, (nevh__tape_node){
                .kind = NEVH__SLOT, .operation = (uint8_t)of, .a = x, .b = y});
 }
 
-static int commutative(nevh__tape_builder *b, nevh__operation of, int x,
+static int commutative(nevh__tape_builder *b, nevh__tape_operation of, int x,
                        int y) {
     return x < y ? operation(b, of, x, y) : operation(b, of, y, x);
 }
@@ -157,7 +158,8 @@ static int power(nevh__tape_builder *b, int x, int y) {
     return nevh__tape_apply(b, NEVH__DIVIDE, nevh__tape_number(b, 1), up);
 }
 
-static int rewritten(nevh__tape_builder *b, nevh__operation of, int x, int y) {
+static int rewritten(nevh__tape_builder *b, nevh__tape_operation of, int x,
+                     int y) {
     switch (of) {
     case NEVH__ADD:
         return add(b, x, y);
@@ -176,7 +178,8 @@ static int rewritten(nevh__tape_builder *b, nevh__operation of, int x, int y) {
     }
 }
 
-int nevh__tape_apply(nevh__tape_builder *b, nevh__operation of, int x, int y) {
+int nevh__tape_apply(nevh__tape_builder *b, nevh__tape_operation of, int x,
+                     int y) {
     double c, d;
     if (nevh__operation_arguments(of) == 1)
         y = x;

@@ -12,11 +12,11 @@ static const char *const names[] = {NEVH__OPERATIONS(ENTRY)};
 static const int argument_counts[] = {NEVH__OPERATIONS(ENTRY)};
 #undef ENTRY
 
-const char *nevh__operation_name(nevh__operation operation) {
+const char *nevh__operation_name(nevh__tape_operation operation) {
     return names[operation];
 }
 
-int nevh__operation_arguments(nevh__operation operation) {
+int nevh__operation_arguments(nevh__tape_operation operation) {
     return argument_counts[operation];
 }
 
@@ -37,7 +37,8 @@ NEVH__INLINE double apply(unsigned operation, double a, double b,
 }
 #undef CASE
 
-double nevh__operation_value(nevh__operation operation, double a, double b) {
+double nevh__operation_value(nevh__tape_operation operation, double a,
+                             double b) {
     return apply(operation, a, b, NULL);
 }
 

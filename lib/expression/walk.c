@@ -21,7 +21,7 @@ static int number(nevh__walk *w, double value) {
     return nevh__tape_number(w->builder, value);
 }
 
-static int apply(nevh__walk *w, nevh__operation operation, int a, int b) {
+static int apply(nevh__walk *w, nevh__tape_operation operation, int a, int b) {
     return nevh__tape_apply(w->builder, operation, a, b);
 }
 
@@ -102,14 +102,14 @@ static int walk_variable(nevh__walk *w, const nevh__expression *e) {
 /* Products begin with what is constant, taken together. */
 
 typedef struct {
-    const nevh__operand *factors;
+    const nevh__expression_operand *factors;
     size_t n, used; /* factors taken by `value` */
     double value;
     bool numbers; /* of numbers alone, the same in all instances */
 } prefix;
 
 static prefix take_prefix(nevh__walk *w, bool negative,
-                          const nevh__operand *factors, size_t n) {
+                          const nevh__expression_operand *factors, size_t n) {
     prefix p = {factors, n, 0, 1, true};
     for (; p.used < n && !factors[p.used].of->reads; p.used++) {
         const nevh__expression *e = factors[p.used].of;
@@ -125,7 +125,7 @@ static prefix take_prefix(nevh__walk *w, bool negative,
 }
 
 static int walk_product(nevh__walk *w, bool negative,
-                        const nevh__operand *factors, size_t n) {
+                        const nevh__expression_operand *factors, size_t n) {
     prefix p = take_prefix(w, negative, factors, n);
     size_t i = p.used;
     if (p.numbers && p.used)
@@ -239,7 +239,7 @@ static int walk(nevh__walk *w, nevh__expression *e) {
     return node;
 }
 
-static int walk_part(nevh__walk *w, const nevh__part *part) {
+static int walk_part(nevh__walk *w, const nevh__formula_part *part) {
     int node = -1;
     for (size_t i = 0; i < part->n && !failed(w); i++) {
         const nevh__summand *s = &part->summands[i];
@@ -249,8 +249,7 @@ static int walk_part(nevh__walk *w, const nevh__part *part) {
     return node;
 }
 
-bool nevh__walk_begin(nevh__walk *w, size_t extent,
-                      nevh__formula_error *error) {
+bool nevh__walk_init(nevh__walk *w, size_t extent, nevh__formula_error *error) {
     w->scope.error = error;
     bool made = true;
     for (int k = 0; k < 2 && !w->whole; k++) {
@@ -262,7 +261,7 @@ bool nevh__walk_begin(nevh__walk *w, size_t extent,
     return made || nevh__formula_no_memory(error);
 }
 
-void nevh__walk_end(nevh__walk *w) {
+void nevh__walk_clear(nevh__walk *w) {
     for (int k = 0; k < 2; k++) {
         free(w->read[k]);
         free(w->slot[k]);
@@ -272,7 +271,7 @@ void nevh__walk_end(nevh__walk *w) {
     free(w->constants);
 }
 
-bool nevh__walk_note(nevh__walk *w, const nevh__part *part) {
+bool nevh__walk_note(nevh__walk *w, const nevh__formula_part *part) {
     w->builder = NULL;
     w->length = w->n_shape = w->n_constants = 0;
     w->n_read[0] = w->n_read[1] = 0;
@@ -281,9 +280,9 @@ bool nevh__walk_note(nevh__walk *w, const nevh__part *part) {
     return !failed(w);
 }
 
-nevh__tape *nevh__walk_tape(nevh__walk *w, const nevh__part *part) {
+nevh__tape *nevh__walk_tape(nevh__walk *w, const nevh__formula_part *part) {
     nevh__formula_error *error = w->scope.error;
-    w->builder = nevh__tape_begin();
+    w->builder = nevh__tape_builder_new();
     if (!w->builder) {
         nevh__formula_no_memory(error);
         return NULL;

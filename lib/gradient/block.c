@@ -38,26 +38,27 @@ static void fill_all(const nevh__block *b, double x, double *row) {
 /* One instance, one lane: each row is one number. */
 static void fill_one(nevh_field *f, const nevh__planned *term,
                      const nevh__block *b) {
-    const nevh_term *is = &term->term->is;
+    const nevh_term *decl = &term->term->decl;
     double *row = f->rows;
     for (size_t k = 0; k < term->nq; k++, row += b->stride)
-        fill_all(b, b->q[is->q[k] * b->width + b->lane], row);
+        fill_all(b, b->q[decl->q[k] * b->width + b->lane], row);
     for (size_t k = 0; k < term->np; k++, row += b->stride)
-        fill_all(b, b->p[is->p[k] * b->width + b->lane], row);
-    for (size_t k = 0; k < is->nc; k++, row += b->stride)
-        fill_all(b, is->c[k], row);
-    if (is->time)
+        fill_all(b, b->p[decl->p[k] * b->width + b->lane], row);
+    for (size_t k = 0; k < decl->nc; k++, row += b->stride)
+        fill_all(b, decl->c[k], row);
+    if (decl->time)
         fill_all(b, b->t[b->lane], f->times);
 }
 
 static void fill_constants(const nevh__planned *term, const nevh__block *b,
                            double *row) {
-    const nevh_term *is = &term->term->is;
-    for (size_t k = 0; k < is->nc; k++, row += b->stride) {
+    const nevh_term *decl = &term->term->decl;
+    for (size_t k = 0; k < decl->nc; k++, row += b->stride) {
         nevh__cursor at = nevh__first_group(b);
         for (size_t group = 0; group < b->groups; group++) {
             for (size_t lane = 0; lane < b->lanes; lane++)
-                row[group * b->lanes + lane] = is->c[at.instance * is->nc + k];
+                row[group * b->lanes + lane] =
+                    decl->c[at.instance * decl->nc + k];
             nevh__next_group(b, &at);
         }
         fill_rest(b, row);
@@ -66,19 +67,19 @@ static void fill_constants(const nevh__planned *term, const nevh__block *b,
 
 static void fill_many(nevh_field *f, const nevh__planned *term,
                       const nevh__block *b) {
-    const nevh_term *is = &term->term->is;
+    const nevh_term *decl = &term->term->decl;
     static const size_t zero = 0;
     double *row = f->rows;
     for (size_t k = 0; k < term->nq; k++, row += b->stride) {
-        fill_first(b, b->q, is->q + k, term->nq, row);
+        fill_first(b, b->q, decl->q + k, term->nq, row);
         fill_rest(b, row);
     }
     for (size_t k = 0; k < term->np; k++, row += b->stride) {
-        fill_first(b, b->p, is->p + k, term->np, row);
+        fill_first(b, b->p, decl->p + k, term->np, row);
         fill_rest(b, row);
     }
     fill_constants(term, b, row);
-    if (is->time) {
+    if (decl->time) {
         fill_first(b, b->t, &zero, 0, f->times);
         fill_rest(b, f->times);
     }
@@ -104,7 +105,7 @@ static void set_size(const nevh_field *f, nevh__block *b, size_t total) {
 
 bool nevh__block_next(nevh_field *f, const nevh__planned *term,
                       nevh__block *b) {
-    size_t total = term->term->is.count * b->per_instance;
+    size_t total = term->term->decl.count * b->per_instance;
     b->group += b->groups;
     if (b->group >= total) {
         b->group = 0;
@@ -113,7 +114,7 @@ bool nevh__block_next(nevh_field *f, const nevh__planned *term,
     if (b->lane >= b->until || total == 0)
         return false;
     set_size(f, b, total);
-    if (b->lanes == 1 && term->term->is.count == 1)
+    if (b->lanes == 1 && term->term->decl.count == 1)
         fill_one(f, term, b);
     else
         fill_many(f, term, b);
@@ -140,20 +141,20 @@ static void describe(const nevh_field *f, const nevh__planned *term,
 int nevh__block_fail(nevh_field *f, const nevh__planned *term,
                      const nevh__block *b, size_t column, const char *what,
                      double value) {
-    const nevh_term *is = &term->term->is;
+    const nevh_term *decl = &term->term->decl;
     size_t lane = b->lane + column % b->lanes;
     size_t group = column % (b->groups * b->lanes) / b->lanes;
     size_t instance = (b->group + group) / b->per_instance;
     char where[200], which[80] = "";
     describe(f, term, b, instance, column, where, sizeof where);
-    if (is->count > 1 || b->width > 1)
+    if (decl->count > 1 || b->width > 1)
         snprintf(which, sizeof which, " (instance %zu, lane %zu)", instance,
                  lane);
     return nevh__fail(
         &f->report, NEVH_EDOM,
         "%sterm \"%s\" of effect \"%s\"%s is %g at t = %.9g, %s: keep the orbit "
         "away from there, or take a smaller step",
-        what, is->name, is->effect, which, value, b->t[lane], where);
+        what, decl->name, decl->effect, which, value, b->t[lane], where);
 }
 
 /* Whether all are finite: x - x is 0 then, and NaN otherwise. */
@@ -168,7 +169,7 @@ void nevh__block_evaluate(nevh_field *f, nevh__planned *term,
                           const nevh__block *b) {
     const double *q = f->rows, *p = q + term->nq * b->stride;
     const double *c = p + term->np * b->stride;
-    const double *t = term->term->is.time ? f->times : f->zeros;
+    const double *t = term->term->decl.time ? f->times : f->zeros;
     nevh__term_values(term->term, f->portable, b->stride, b->used, t, q, p, c,
                       f->h, f->one);
     term->values += b->used;

@@ -23,26 +23,26 @@ void nevh__constants_free(struct nevh__constants *c) {
     }
 }
 
-static void fill(const nevh_term *is, size_t width, size_t stride,
+static void fill(const nevh_term *decl, size_t width, size_t stride,
                  double *rows) {
-    for (size_t k = 0; k < is->nc; k++)
+    for (size_t k = 0; k < decl->nc; k++)
         for (size_t i = 0; i < stride; i++) {
-            size_t instance = i < is->count * width ? i / width : 0;
-            rows[k * stride + i] = is->c[instance * is->nc + k];
+            size_t instance = i < decl->count * width ? i / width : 0;
+            rows[k * stride + i] = decl->c[instance * decl->nc + k];
         }
 }
 
 const double *nevh__constants_plan(nevh__planned *term, size_t width) {
-    const nevh_term *is = &term->term->is;
-    size_t stride = nevh__padded(is->count * width);
+    const nevh_term *decl = &term->term->decl;
+    size_t stride = nevh__padded(decl->count * width);
     struct nevh__constants *c = term->planned;
     while (c && c->width != width)
         c = c->next;
-    if (c || !is->nc)
+    if (c || !decl->nc)
         return c ? c->rows : NULL;
     c = nevh__array(1, sizeof *c);
     if (c)
-        c->rows = nevh__array(is->nc * stride, sizeof *c->rows);
+        c->rows = nevh__array(decl->nc * stride, sizeof *c->rows);
     if (!c || !c->rows) {
         free(c);
         return NULL;
@@ -50,7 +50,7 @@ const double *nevh__constants_plan(nevh__planned *term, size_t width) {
     c->width = width;
     c->next = term->planned;
     term->planned = c;
-    fill(is, width, stride, c->rows);
+    fill(decl, width, stride, c->rows);
     return c->rows;
 }
 
@@ -70,31 +70,31 @@ static bool wanted(const nevh__call *c, const nevh__planned *term) {
 static bool add_term(nevh__call *c, nevh__planned *term, const double t[],
                      const double q[], const double p[]) {
     nevh_field *f = c->field;
-    const nevh_term *is = &term->term->is;
-    size_t width = c->width, stride = is->count * width;
+    const nevh_term *decl = &term->term->decl;
+    size_t width = c->width, stride = decl->count * width;
     if (c->count == NEVH__MOST_CALLED || !term->straight ||
-        stride > f->capacity || (is->time && is->count > 1))
+        stride > f->capacity || (decl->time && decl->count > 1))
         return false;
     nevh__called *x = &c->terms[c->count++];
     *x = (nevh__called){.term = term,
-                        .gradient = is->gradient,
-                        .params = is->params,
+                        .gradient = decl->gradient,
+                        .params = decl->params,
                         .stride = stride,
-                        .t = is->time ? t : f->zeros,
-                        .q = term->nq ? q + is->q[0] * width : q,
-                        .p = term->np ? p + is->p[0] * width : p,
+                        .t = decl->time ? t : f->zeros,
+                        .q = term->nq ? q + decl->q[0] * width : q,
+                        .p = term->np ? p + decl->p[0] * width : p,
                         .c = nevh__constants_plan(term, width)};
-    if (is->nc && !x->c)
+    if (decl->nc && !x->c)
         return false;
-    c->timed |= is->time;
+    c->timed |= decl->time;
     if (c->half[0] && term->nq) {
         x->size_q = stride * term->nq;
-        direct(term, f->writer_q, is->q, width, c->half[0], f->slopes,
+        direct(term, f->writer_q, decl->q, width, c->half[0], f->slopes,
                &x->dh_dq, &x->sum_q);
     }
     if (c->half[1] && term->np) {
         x->size_p = stride * term->np;
-        direct(term, f->writer_p, is->p, width, c->half[1],
+        direct(term, f->writer_p, decl->p, width, c->half[1],
                f->slopes + stride * term->nq, &x->dh_dp, &x->sum_p);
     }
     x->sums = x->sum_q || x->sum_p;
@@ -129,9 +129,9 @@ static bool point_half(uint64_t *there, uint64_t here, double *half,
 static bool add_point(nevh__call *c, const nevh__called *given, size_t instance,
                       uint64_t there[2]) {
     const nevh__planned *term = given->term;
-    const nevh_term *is = &term->term->is;
-    const size_t *all_q = is->q + instance * term->nq;
-    const size_t *all_p = is->p + instance * term->np;
+    const nevh_term *decl = &term->term->decl;
+    const size_t *all_q = decl->q + instance * term->nq;
+    const size_t *all_p = decl->p + instance * term->np;
     size_t q = term->nq ? all_q[0] : 0, p = term->np ? all_p[0] : 0;
     if (c->count == NEVH__MOST_CALLED || !consecutive(term->nq, all_q) ||
         !consecutive(term->np, all_p))
@@ -140,7 +140,7 @@ static bool add_point(nevh__call *c, const nevh__called *given, size_t instance,
     *x = *given;
     x->q += q;
     x->p += p;
-    x->c = is->c + instance * is->nc;
+    x->c = decl->c + instance * decl->nc;
     double *scratch_q = c->field->slopes, *scratch_p = scratch_q + term->nq;
     bool there_q =
         !x->size_q || point_half(&there[0], bits(q, x->size_q), c->half[0] + q,
@@ -154,17 +154,17 @@ static bool add_point(nevh__call *c, const nevh__called *given, size_t instance,
 
 static bool add_points(nevh__call *c, nevh__planned *term, const double t[],
                        const double q[], const double p[], uint64_t there[2]) {
-    const nevh_term *is = &term->term->is;
+    const nevh_term *decl = &term->term->decl;
     nevh__called given = {.term = term,
-                          .point = is->point_gradient,
-                          .params = is->params,
+                          .point = decl->point_gradient,
+                          .params = decl->params,
                           .size_q = c->half[0] ? term->nq : 0,
                           .size_p = c->half[1] ? term->np : 0,
-                          .t = is->time ? t : c->field->zeros,
+                          .t = decl->time ? t : c->field->zeros,
                           .q = q,
                           .p = p};
-    c->timed |= is->time;
-    for (size_t i = 0; given.point && i < is->count; i++)
+    c->timed |= decl->time;
+    for (size_t i = 0; given.point && i < decl->count; i++)
         if (!add_point(c, &given, i, there))
             return false;
     return given.point;
@@ -197,10 +197,11 @@ static bool plan_blocks(nevh__call *c, const double t[], const double q[],
 /* Whether no other term reads momenta. */
 static void find_masses(nevh__call *c) {
     const nevh__called *x = c->terms;
-    const nevh_term *is = &x->term->term->is;
+    const nevh_term *decl = &x->term->term->decl;
     const double *inverse = nevh__term_inverse_masses(x->term->term);
-    size_t alone = c->width == 1 ? is->count : 1;
-    if (c->half[0] || !inverse || c->count != alone || is->count != c->field->n)
+    size_t alone = c->width == 1 ? decl->count : 1;
+    if (c->half[0] || !inverse || c->count != alone ||
+        decl->count != c->field->n)
         return;
     c->inverse = c->width == 1 ? inverse : x->c;
 }

@@ -95,7 +95,7 @@ int nevh__fail_outside(nevh_field *f, const nevh__planned *term,
 
 int nevh__central_fail(nevh_field *f, const nevh__planned *term,
                        const nevh__block *b, size_t instance, size_t k) {
-    const nevh_term *is = &term->term->is;
+    const nevh_term *decl = &term->term->decl;
     if (nevh__block_check(f, term, b)) {
         size_t column = 0, moved = 0;
         while (column + 1 < b->used && isfinite(f->h[column]))
@@ -108,7 +108,7 @@ int nevh__central_fail(nevh_field *f, const nevh__planned *term,
         "the derivative of term \"%s\" of effect \"%s\" with respect to "
         "%c[%zu] is not finite at t = %.9g: its step of %g is lost in a value "
         "too large, or too small for the values of H; give a gradient step",
-        is->name, is->effect, k < term->nq ? 'q' : 'p',
+        decl->name, decl->effect, k < term->nq ? 'q' : 'p',
         nevh__index(term, instance, k), b->t[b->lane],
         term->delta[instance * term->nv + k]);
 }

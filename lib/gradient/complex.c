@@ -17,7 +17,7 @@ static void gather(const nevh_field *f, const nevh__planned *term,
         f->one[2 * j] = nevh__row(f, b, j)[column];
         f->one[2 * j + 1] = 0;
     }
-    for (size_t j = 0; j < term->term->is.nc; j++)
+    for (size_t j = 0; j < term->term->decl.nc; j++)
         f->one[2 * term->nv + j] = nevh__row(f, b, term->nv + j)[column];
 }
 
@@ -25,13 +25,13 @@ static void gather(const nevh_field *f, const nevh__planned *term,
 static int add_column(nevh_field *f, nevh__planned *term, const nevh__block *b,
                       size_t column, size_t instance, size_t lane, size_t k,
                       double *out) {
-    const nevh_term *is = &term->term->is;
+    const nevh_term *decl = &term->term->decl;
     size_t i = nevh__index(term, instance, k);
     double h[2] = {0, 0};
     const double(*one)[2] = (const double(*)[2])f->one;
     f->one[2 * k + 1] = step;
-    is->complex_value(is->time ? f->times[column] : 0, one, one + term->nq,
-                      f->one + 2 * term->nv, is->params, h);
+    decl->complex_value(decl->time ? f->times[column] : 0, one, one + term->nq,
+                        f->one + 2 * term->nv, decl->params, h);
     f->one[2 * k + 1] = 0;
     double slope = h[1] * (1 / step);
     out[i * b->width + lane] += slope;

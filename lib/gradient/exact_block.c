@@ -41,12 +41,13 @@ static int fail(nevh_field *f, const nevh__planned *term, const nevh__block *b,
 
 static int exact_block(nevh_field *f, nevh__planned *term, nevh__block *b,
                        double dh_dq[], double dh_dp[]) {
-    const nevh_term *is = &term->term->is;
+    const nevh_term *decl = &term->term->decl;
     const double *q = f->rows, *p = q + term->nq * b->stride;
     const double *c = p + term->np * b->stride;
     double *slopes_p = f->slopes + term->nq * b->stride;
-    is->gradient(b->stride, is->time ? f->times : f->zeros, q, p, c, is->params,
-                 dh_dq ? f->slopes : NULL, dh_dp ? slopes_p : NULL);
+    decl->gradient(b->stride, decl->time ? f->times : f->zeros, q, p, c,
+                   decl->params, dh_dq ? f->slopes : NULL,
+                   dh_dp ? slopes_p : NULL);
     for (size_t k = dh_dq ? 0 : term->nq; k < (dh_dp ? term->nv : term->nq);
          k++) {
         const double *row = f->slopes + k * b->stride;

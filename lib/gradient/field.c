@@ -51,12 +51,13 @@ static bool reads(const nevh__planned *term, bool q, bool p) {
 int nevh_field_gradient(nevh_field *f, size_t width, const double t[],
                         const double q[], const double p[], double dh_dq[],
                         double dh_dp[]) {
-    return nevh__field_gradient(f, width, width, t, q, p, dh_dq, dh_dp);
+    return nevh__field_gradient_padded(f, width, width, t, q, p, dh_dq, dh_dp);
 }
 
-int nevh__field_gradient(nevh_field *f, size_t width, size_t used,
-                         const double t[], const double q[], const double p[],
-                         double dh_dq[], double dh_dp[]) {
+int nevh__field_gradient_padded(nevh_field *f, size_t width, size_t used,
+                                const double t[], const double q[],
+                                const double p[], double dh_dq[],
+                                double dh_dp[]) {
     int status = nevh__field_ready(f);
     if (status)
         return status;
@@ -79,8 +80,8 @@ double nevh_field_step(const nevh_field *f, const char *name, size_t instance,
                        size_t i) {
     for (size_t j = 0; j < f->n_terms; j++) {
         const nevh__planned *term = &f->terms[j];
-        if (strcmp(term->term->is.name, name) != 0 || !term->delta ||
-            instance >= term->term->is.count)
+        if (strcmp(term->term->decl.name, name) != 0 || !term->delta ||
+            instance >= term->term->decl.count)
             continue;
         for (size_t k = 0; k < term->nv; k++)
             if (nevh__index(term, instance, k) + (k < term->nq ? 0 : f->n) == i)
@@ -101,7 +102,7 @@ nevh_counts nevh_field_counts(const nevh_field *f) {
 uint64_t nevh_field_effect_values(const nevh_field *f, const char *effect) {
     uint64_t values = 0;
     for (size_t i = 0; effect && i < f->n_terms; i++)
-        if (strcmp(f->terms[i].term->is.effect, effect) == 0)
+        if (strcmp(f->terms[i].term->decl.effect, effect) == 0)
             values += f->terms[i].values;
     return values;
 }

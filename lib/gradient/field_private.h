@@ -54,7 +54,7 @@ typedef struct {
 } nevh__wiring;
 
 typedef struct {
-    const nevh__term *term;
+    const nevh__term_entry *term;
     size_t nq, np, nv;  /* variables of an instance: coordinates, momenta */
     double *delta;      /* count x nv; NULL without differences */
     nevh__step *steps;  /* nevh__step_rows x nv */
@@ -181,9 +181,9 @@ static inline const double *nevh__row(const nevh_field *f, const nevh__block *b,
    nq of them) or momenta. */
 static inline size_t nevh__index(const nevh__planned *term, size_t instance,
                                  size_t k) {
-    const nevh_term *is = &term->term->is;
-    return k < term->nq ? is->q[instance * term->nq + k]
-                        : is->p[instance * term->np + k - term->nq];
+    const nevh_term *decl = &term->term->decl;
+    return k < term->nq ? decl->q[instance * term->nq + k]
+                        : decl->p[instance * term->np + k - term->nq];
 }
 
 /* The kernels; nevh__gradient_fn. */
@@ -284,12 +284,13 @@ NEVH__INLINE void nevh__call_run(const nevh__call *c) {
     }
 }
 /* Takes it for one lane, counts, and tells whether that is finite.  Where not,
-   nevh__field_gradient says why. */
+   nevh__field_gradient_padded says why. */
 bool nevh__call_take(const nevh__call *);
 /* nevh_field_gradient, of which `used` lanes count. */
-int nevh__field_gradient(nevh_field *, size_t width, size_t used,
-                         const double t[], const double q[], const double p[],
-                         double dh_dq[], double dh_dp[]);
+int nevh__field_gradient_padded(nevh_field *, size_t width, size_t used,
+                                const double t[], const double q[],
+                                const double p[], double dh_dq[],
+                                double dh_dp[]);
 
 /* Stencils: planned (false when memory is out), freed, chosen (NULL if there
    is none), and put to use. */
@@ -352,7 +353,7 @@ int nevh__field_curvatures(nevh_field *, const nevh_options *,
 /* Values only: no gradients are asked for, and none are planned. */
 extern const nevh_gradient nevh__no_gradient;
 /* Chooses the steps that the user does not give, and the scales. */
-int nevh__field_explore(nevh_field *, const nevh_options *);
+int nevh__field_select_steps(nevh_field *, const nevh_options *);
 /* Compares exact gradients with differences. */
 int nevh__field_verify(nevh_field *, const nevh_options *);
 /* Steps are kept for a part of the instances: the rows of term->steps, and

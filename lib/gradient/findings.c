@@ -1,6 +1,6 @@
 /* nevh: what can be known of H from its values.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "gradient/explore_private.h"
+#include "gradient/step_selection_private.h"
 #include <float.h>
 #include <math.h>
 #include <nevh/probe.h>
@@ -12,7 +12,7 @@ static const double smooth_limit = 1e-5;
 
 struct nevh_probe {
     nevh_field *field;
-    nevh__explorer explorer;
+    nevh__step_selection explorer;
     nevh_options options;
     double *start; /* 2n: lane 0 of the state */
     double *state; /* 2n: a trial state */
@@ -145,7 +145,7 @@ static int open_probe(nevh_probe *b, const nevh_system *s) {
     if (b->field->report.status)
         return nevh__fail_as(&b->report, &b->field->report);
     take_start(b);
-    if (nevh__explorer_open(&b->explorer, b->field, &b->options) ||
+    if (nevh__step_selection_init(&b->explorer, b->field, &b->options) ||
         !nevh__find_samples(&b->explorer))
         return nevh__fail(&b->report, NEVH_ENOMEM, "out of memory");
     return ask(b);
@@ -166,7 +166,7 @@ nevh_probe *nevh_probe_new(const nevh_system *s, const nevh_options *options) {
 void nevh_probe_free(nevh_probe *b) {
     if (!b)
         return;
-    nevh__explorer_close(&b->explorer);
+    nevh__step_selection_clear(&b->explorer);
     nevh_field_free(b->field);
     free(b->start);
     free(b->state);

@@ -30,7 +30,7 @@ static bool straight(const size_t index[], size_t variables, size_t count) {
 static const nevh__planned *writer(const nevh_field *f, bool momenta) {
     for (size_t i = 0; i < f->n_terms; i++) {
         const nevh__planned *term = &f->terms[i];
-        size_t all = (momenta ? term->np : term->nq) * term->term->is.count;
+        size_t all = (momenta ? term->np : term->nq) * term->term->decl.count;
         if (all == 0)
             continue;
         bool whole = momenta ? term->straight_p : term->straight_q;
@@ -54,11 +54,12 @@ static nevh__planned *sole(nevh_field *f, bool momenta) {
 
 /* What is not evaluated in one block has no use for it. */
 static bool wire(const nevh_field *f, nevh__planned *term) {
-    const nevh_term *is = &term->term->is;
-    if (is->count > f->capacity)
+    const nevh_term *decl = &term->term->decl;
+    if (decl->count > f->capacity)
         return true;
-    return nevh__wiring_plan(&term->to_q, f->n, term->nq, is->count, is->q) &&
-           nevh__wiring_plan(&term->to_p, f->n, term->np, is->count, is->p);
+    return nevh__wiring_plan(&term->to_q, f->n, term->nq, decl->count,
+                             decl->q) &&
+           nevh__wiring_plan(&term->to_p, f->n, term->np, decl->count, decl->p);
 }
 
 bool nevh__lean_plan(nevh_field *f) {
@@ -66,18 +67,18 @@ bool nevh__lean_plan(nevh_field *f) {
     f->most_instances = 0;
     for (size_t i = 0; i < f->n_terms; i++) {
         nevh__planned *term = &f->terms[i];
-        const nevh_term *is = &term->term->is;
-        term->straight_q = straight(is->q, term->nq, is->count);
-        term->straight_p = straight(is->p, term->np, is->count);
+        const nevh_term *decl = &term->term->decl;
+        term->straight_q = straight(decl->q, term->nq, decl->count);
+        term->straight_p = straight(decl->p, term->np, decl->count);
         term->straight =
             (term->straight_q || !term->nq) && (term->straight_p || !term->np);
-        if (is->count > f->most_instances)
-            f->most_instances = is->count;
-        repeats &= is->count <= MOST_REPEATED && term->straight;
+        if (decl->count > f->most_instances)
+            f->most_instances = decl->count;
+        repeats &= decl->count <= MOST_REPEATED && term->straight;
         if (!wire(f, term))
             return false;
-        if (is->nc && !(term->constants =
-                            nevh__array(is->nc * f->capacity, sizeof(double))))
+        if (decl->nc && !(term->constants = nevh__array(decl->nc * f->capacity,
+                                                        sizeof(double))))
             return false;
     }
     f->repeats = repeats && f->n <= MOST_ROWS;
@@ -174,11 +175,11 @@ static bool settle(size_t size, double out[]) {
 }
 
 static void fill_constants(nevh__planned *term, size_t width, size_t stride) {
-    const nevh_term *is = &term->term->is;
-    for (size_t k = 0; k < is->nc; k++)
+    const nevh_term *decl = &term->term->decl;
+    for (size_t k = 0; k < decl->nc; k++)
         for (size_t i = 0; i < stride; i++) {
-            size_t instance = i < is->count * width ? i / width : 0;
-            term->constants[k * stride + i] = is->c[instance * is->nc + k];
+            size_t instance = i < decl->count * width ? i / width : 0;
+            term->constants[k * stride + i] = decl->c[instance * decl->nc + k];
         }
     term->constants_width = width;
 }
@@ -199,14 +200,14 @@ typedef struct {
     double *dh_dq, *dh_dp;
 } request;
 
-static const double *times(nevh_field *f, const nevh_term *is, const request *r,
-                           size_t stride) {
-    if (!is->time)
+static const double *times(nevh_field *f, const nevh_term *decl,
+                           const request *r, size_t stride) {
+    if (!decl->time)
         return f->zeros;
-    if (r->vectors && is->count == 1)
+    if (r->vectors && decl->count == 1)
         return r->t;
     for (size_t i = 0; i < stride; i++)
-        f->times[i] = r->t[i < is->count * r->width ? i % r->width : 0];
+        f->times[i] = r->t[i < decl->count * r->width ? i % r->width : 0];
     return f->times;
 }
 
@@ -242,64 +243,65 @@ static bool add(const request *r, const nevh__wiring *x, size_t stride,
 /* A term whose rows all stand in place. */
 static inline bool evaluate_in_place(nevh_field *f, nevh__planned *term,
                                      const request *r) {
-    const nevh_term *is = &term->term->is;
-    size_t stride = is->count * r->width;
+    const nevh_term *decl = &term->term->decl;
+    size_t stride = decl->count * r->width;
     double *out_q = f->slopes, *out_p = f->slopes + term->nq * stride;
     const double *q = r->q, *p = r->p, *t = f->zeros;
     if (term->nq)
-        q += is->q[0] * r->width;
+        q += decl->q[0] * r->width;
     if (term->np)
-        p += is->p[0] * r->width;
+        p += decl->p[0] * r->width;
     if (term == f->writer_q)
         out_q = r->dh_dq;
     if (term == f->writer_p)
         out_p = r->dh_dp;
-    if (is->time)
-        t = times(f, is, r, stride);
-    is->gradient(stride, t, q, p, nevh__lean_constants(term, r->width, stride),
-                 is->params, r->dh_dq ? out_q : NULL, r->dh_dp ? out_p : NULL);
+    if (decl->time)
+        t = times(f, decl, r, stride);
+    decl->gradient(stride, t, q, p,
+                   nevh__lean_constants(term, r->width, stride), decl->params,
+                   r->dh_dq ? out_q : NULL, r->dh_dp ? out_p : NULL);
     bool bad = false;
     if (r->dh_dq && term->nq)
-        bad |= add(r, &term->to_q, stride, is->q, out_q, r->dh_dq);
+        bad |= add(r, &term->to_q, stride, decl->q, out_q, r->dh_dq);
     if (r->dh_dp && term->np)
-        bad |= add(r, &term->to_p, stride, is->p, out_p, r->dh_dp);
+        bad |= add(r, &term->to_p, stride, decl->p, out_p, r->dh_dp);
     return bad;
 }
 
 /* The only term of a half, to it; whether all is finite. */
 static inline bool write(nevh_field *f, nevh__planned *term, const request *r,
                          size_t variables, double *out) {
-    const nevh_term *is = &term->term->is;
-    size_t stride = is->count * r->width;
-    is->gradient(stride, is->time ? times(f, is, r, stride) : f->zeros,
-                 term->nq ? r->q + is->q[0] * r->width : r->q,
-                 term->np ? r->p + is->p[0] * r->width : r->p,
-                 nevh__lean_constants(term, r->width, stride), is->params,
-                 r->dh_dq, r->dh_dp);
+    const nevh_term *decl = &term->term->decl;
+    size_t stride = decl->count * r->width;
+    decl->gradient(stride, decl->time ? times(f, decl, r, stride) : f->zeros,
+                   term->nq ? r->q + decl->q[0] * r->width : r->q,
+                   term->np ? r->p + decl->p[0] * r->width : r->p,
+                   nevh__lean_constants(term, r->width, stride), decl->params,
+                   r->dh_dq, r->dh_dp);
     return !settle(variables * stride, out);
 }
 
 static bool evaluate(nevh_field *f, nevh__planned *term, const request *r) {
-    const nevh_term *is = &term->term->is;
-    size_t stride = nevh__padded(is->count * r->width);
+    const nevh_term *decl = &term->term->decl;
+    size_t stride = nevh__padded(decl->count * r->width);
     double *to_p = f->rows + term->nq * stride;
     double *slopes_q = f->slopes, *slopes_p = f->slopes + term->nq * stride;
     const double *q =
-        rows(r, &term->to_q, term->straight_q, stride, is->q, r->q, f->rows);
+        rows(r, &term->to_q, term->straight_q, stride, decl->q, r->q, f->rows);
     const double *p =
-        rows(r, &term->to_p, term->straight_p, stride, is->p, r->p, to_p);
+        rows(r, &term->to_p, term->straight_p, stride, decl->p, r->p, to_p);
     if (r->vectors && term == f->writer_q && r->dh_dq)
         slopes_q = r->dh_dq;
     if (r->vectors && term == f->writer_p && r->dh_dp)
         slopes_p = r->dh_dp;
-    is->gradient(stride, times(f, is, r, stride), q, p,
-                 nevh__lean_constants(term, r->width, stride), is->params,
-                 r->dh_dq ? slopes_q : NULL, r->dh_dp ? slopes_p : NULL);
+    decl->gradient(stride, times(f, decl, r, stride), q, p,
+                   nevh__lean_constants(term, r->width, stride), decl->params,
+                   r->dh_dq ? slopes_q : NULL, r->dh_dp ? slopes_p : NULL);
     bool bad = false;
     if (r->dh_dq && term->nq)
-        bad |= add(r, &term->to_q, stride, is->q, slopes_q, r->dh_dq);
+        bad |= add(r, &term->to_q, stride, decl->q, slopes_q, r->dh_dq);
     if (r->dh_dp && term->np)
-        bad |= add(r, &term->to_p, stride, is->p, slopes_p, r->dh_dp);
+        bad |= add(r, &term->to_p, stride, decl->p, slopes_p, r->dh_dp);
     return bad;
 }
 

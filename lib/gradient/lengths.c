@@ -1,6 +1,6 @@
 /* nevh: over which lengths does H vary?
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "gradient/explore_private.h"
+#include "gradient/step_selection_private.h"
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -25,16 +25,17 @@ static void fill(double *row, size_t stride, double value, size_t count,
         row[i] = value;
 }
 
-void nevh__along(const nevh__explorer *e, const nevh__planned *term,
-                 size_t instance, size_t k, size_t at, size_t count,
-                 const double move[], double x[], double h[]) {
+void nevh__sample_line(const nevh__step_selection *e, const nevh__planned *term,
+                       size_t instance, size_t k, size_t at, size_t count,
+                       const double move[], double x[], double h[]) {
     nevh_field *f = e->field;
-    const nevh_term *is = &term->term->is;
+    const nevh_term *decl = &term->term->decl;
     size_t stride = nevh__padded(count), n = f->n;
     const double *q = e->samples.q + at * n, *p = e->samples.p + at * n;
     double *row = f->rows;
-    for (size_t j = 0; j < term->nv + is->nc; j++, row += stride) {
-        double value = j >= term->nv  ? is->c[instance * is->nc + j - term->nv]
+    for (size_t j = 0; j < term->nv + decl->nc; j++, row += stride) {
+        double value = j >= term->nv
+                           ? decl->c[instance * decl->nc + j - term->nv]
                        : j < term->nq ? q[nevh__index(term, instance, j)]
                                       : p[nevh__index(term, instance, j)];
         fill(row, stride, value, j == k ? count : 0, move);
@@ -42,7 +43,7 @@ void nevh__along(const nevh__explorer *e, const nevh__planned *term,
     fill(f->times, stride, e->samples.t[at], k == NEVH__TIME ? count : 0, move);
     double *rows_p = f->rows + term->nq * stride;
     nevh__term_values(term->term, f->portable, stride, count,
-                      is->time ? f->times : f->zeros, f->rows, rows_p,
+                      decl->time ? f->times : f->zeros, f->rows, rows_p,
                       rows_p + term->np * stride, f->h, f->one);
     memcpy(x, k == NEVH__TIME ? f->times : f->rows + k * stride,
            count * sizeof *x);
@@ -76,7 +77,7 @@ static variation compare(double here, const double half[2],
 }
 
 /* Within a distance, twice that, and so on. */
-static void vary_on(const nevh__explorer *e, const nevh__planned *term,
+static void vary_on(const nevh__step_selection *e, const nevh__planned *term,
                     size_t instance, size_t k, double distance, size_t count,
                     variation v[]) {
     double move[3 + 2 * MOST_AHEAD], x[3 + 2 * MOST_AHEAD];
@@ -86,12 +87,12 @@ static void vary_on(const nevh__explorer *e, const nevh__planned *term,
         move[2 * i - 1] = i > 1 ? 2 * move[2 * i - 3] : distance / 2;
         move[2 * i] = -move[2 * i - 1];
     }
-    nevh__along(e, term, instance, k, e->at, 3 + 2 * count, move, x, h);
+    nevh__sample_line(e, term, instance, k, e->at, 3 + 2 * count, move, x, h);
     for (size_t i = 0; i < count; i++)
         v[i] = compare(h[0], h + 1 + 2 * i, h + 3 + 2 * i);
 }
 
-static variation vary(const nevh__explorer *e, const nevh__planned *term,
+static variation vary(const nevh__step_selection *e, const nevh__planned *term,
                       size_t instance, size_t k, double distance) {
     variation v;
     vary_on(e, term, instance, k, distance, 1, &v);
@@ -113,7 +114,7 @@ static bool alike(const variation *a, const variation *b) {
 /* Within a distance of many periods, five values may happen to be those of a
    quadratic.  Somewhere nearer they are not, although they vary as much; little
    ripples do not count.  Returns where, or else the distance. */
-static double unfold(const nevh__explorer *e, const nevh__planned *term,
+static double unfold(const nevh__step_selection *e, const nevh__planned *term,
                      size_t instance, size_t k, double distance) {
     double whole = vary(e, term, instance, k, distance).whole;
     for (int down = NEARER; whole > 0 && down <= NEAREST; down += NEARER) {
@@ -126,7 +127,7 @@ static double unfold(const nevh__explorer *e, const nevh__planned *term,
 }
 
 /* In leaps below `distance`, and how many; false where there is no length. */
-static bool leap_down(const nevh__explorer *e, const nevh__planned *term,
+static bool leap_down(const nevh__step_selection *e, const nevh__planned *term,
                       size_t instance, size_t k, double *distance, int *leaps) {
     variation v = vary(e, term, instance, k, *distance);
     while (too_far(&v) && *leaps < FARTHEST / LEAP) {
@@ -142,9 +143,9 @@ static bool leap_down(const nevh__explorer *e, const nevh__planned *term,
 
 /* Twice the distance again and again, at most so often, until that is too far.
    Several are asked for at once, the more the longer it takes. */
-static double double_up(const nevh__explorer *e, const nevh__planned *term,
-                        size_t instance, size_t k, double distance,
-                        const variation *here, int most) {
+static double double_up(const nevh__step_selection *e,
+                        const nevh__planned *term, size_t instance, size_t k,
+                        double distance, const variation *here, int most) {
     variation v[MOST_AHEAD];
     size_t ahead = FEWEST_AHEAD;
     double whole = here->whole;
@@ -165,8 +166,9 @@ static double double_up(const nevh__explorer *e, const nevh__planned *term,
     return seen ? INFINITY : NAN;
 }
 
-double nevh__curve_length(const nevh__explorer *e, const nevh__planned *term,
-                          size_t instance, size_t k, double guess) {
+double nevh__curve_length(const nevh__step_selection *e,
+                          const nevh__planned *term, size_t instance, size_t k,
+                          double guess) {
     variation v = vary(e, term, instance, k, guess);
     double distance = v.whole > v.rounding ? guess : askew * guess;
     int leaps = 0;
@@ -184,9 +186,9 @@ double nevh__curve_length(const nevh__explorer *e, const nevh__planned *term,
 
 /* The distance over which an instance varies by `energy`: in leaps below it,
    then up by twos. */
-static double energy_length(const nevh__explorer *e, const nevh__planned *term,
-                            size_t instance, size_t k, double guess,
-                            double energy) {
+static double energy_length(const nevh__step_selection *e,
+                            const nevh__planned *term, size_t instance,
+                            size_t k, double guess, double energy) {
     double distance = guess;
     for (int i = 0; i < FARTHEST / LEAP; i++) {
         if (!(vary(e, term, instance, k, distance).whole >= energy))
@@ -202,7 +204,7 @@ static double energy_length(const nevh__explorer *e, const nevh__planned *term,
 }
 
 /* A first guess that only saves time: the variable's size, or 1. */
-static double first_guess(const nevh__explorer *e, size_t i) {
+static double first_guess(const nevh__step_selection *e, size_t i) {
     size_t n = e->field->n;
     const nevh__samples *s = &e->samples;
     double x = fabs(i < n ? s->q[e->at * n + i] : s->p[e->at * n + i - n]);
@@ -211,13 +213,13 @@ static double first_guess(const nevh__explorer *e, size_t i) {
     return x > 0 && isfinite(x) ? exp2(floor(log2(x))) : 1;
 }
 
-typedef void (*visit_fn)(nevh__explorer *, const nevh__planned *,
+typedef void (*visit_fn)(nevh__step_selection *, const nevh__planned *,
                          size_t instance, size_t k, size_t i, double *energy);
 
-static void visit_all(nevh__explorer *e, visit_fn visit, double *energy) {
+static void visit_all(nevh__step_selection *e, visit_fn visit, double *energy) {
     for (size_t j = 0; j < e->field->n_terms; j++) {
         const nevh__planned *term = &e->field->terms[j];
-        size_t count = term->term->is.count, stride = nevh__stride(count);
+        size_t count = term->term->decl.count, stride = nevh__stride(count);
         for (size_t instance = 0; instance < count; instance += stride)
             for (size_t k = 0; k < term->nv; k++) {
                 size_t i = nevh__index(term, instance, k);
@@ -229,7 +231,7 @@ static void visit_all(nevh__explorer *e, visit_fn visit, double *energy) {
 }
 
 /* Finite lengths, and the largest variation of H within them. */
-static void find_curved(nevh__explorer *e, const nevh__planned *term,
+static void find_curved(nevh__step_selection *e, const nevh__planned *term,
                         size_t instance, size_t k, size_t i, double *energy) {
     double length = nevh__curve_length(e, term, instance, k, first_guess(e, i));
     if (!isfinite(length))
@@ -242,7 +244,7 @@ static void find_curved(nevh__explorer *e, const nevh__planned *term,
 }
 
 /* Nothing is curved: variations over the variables' own sizes. */
-static void find_energy(nevh__explorer *e, const nevh__planned *term,
+static void find_energy(nevh__step_selection *e, const nevh__planned *term,
                         size_t instance, size_t k, size_t i, double *energy) {
     size_t n = e->field->n;
     const nevh__samples *s = &e->samples;
@@ -252,7 +254,7 @@ static void find_energy(nevh__explorer *e, const nevh__planned *term,
 }
 
 /* The rest: where H varies by that energy. */
-static void find_straight(nevh__explorer *e, const nevh__planned *term,
+static void find_straight(nevh__step_selection *e, const nevh__planned *term,
                           size_t instance, size_t k, size_t i, double *energy) {
     double guess = first_guess(e, i), length = guess;
     bool curved = e->length[i] > 0;
@@ -264,7 +266,7 @@ static void find_straight(nevh__explorer *e, const nevh__planned *term,
 }
 
 /* Copies a lane of the states given to sample `at`. */
-static void load(nevh__explorer *e, size_t lane, size_t at) {
+static void load(nevh__step_selection *e, size_t lane, size_t at) {
     const nevh_options *o = e->options;
     size_t n = e->field->n, width = o->width ? o->width : 1;
     e->samples.t[at] = o->t;
@@ -276,7 +278,7 @@ static void load(nevh__explorer *e, size_t lane, size_t at) {
 
 /* The first lane becomes a sample, and the last ones that have a shorter length
    than those before. */
-static void find_over_lanes(nevh__explorer *e, double *energy) {
+static void find_over_lanes(nevh__step_selection *e, double *energy) {
     size_t width = e->options->width ? e->options->width : 1;
     size_t stride = (width + TRIED_LANES - 1) / TRIED_LANES;
     for (size_t lane = 0; lane < width; lane += stride) {
@@ -295,8 +297,9 @@ static void find_over_lanes(nevh__explorer *e, double *energy) {
 
 /* What an instance adds to the changes of H, up and down by the length of each
    variable. */
-static void add_changes(const nevh__explorer *e, const nevh__planned *term,
-                        size_t instance, double changes[]) {
+static void add_changes(const nevh__step_selection *e,
+                        const nevh__planned *term, size_t instance,
+                        double changes[]) {
     double up = 0, down = 0;
     for (size_t k = 0; k < term->nv; k++) {
         size_t i = nevh__index(term, instance, k);
@@ -304,7 +307,7 @@ static void add_changes(const nevh__explorer *e, const nevh__planned *term,
         if (nevh__probed(term, k) == k) {
             const double move[3] = {0, e->length[i], -e->length[i]};
             double x[3], h[3];
-            nevh__along(e, term, instance, k, e->at, 3, move, x, h);
+            nevh__sample_line(e, term, instance, k, e->at, 3, move, x, h);
             up = h[1] - h[0];
             down = h[2] - h[0];
         }
@@ -313,13 +316,13 @@ static void add_changes(const nevh__explorer *e, const nevh__planned *term,
     }
 }
 
-void nevh__find_curvatures(nevh__explorer *e, double changes[],
+void nevh__find_curvatures(nevh__step_selection *e, double changes[],
                            double curvature[]) {
     const nevh_field *f = e->field;
     for (e->at = 0; e->at < e->samples.count; e->at++) {
         memset(changes, 0, 4 * f->n * sizeof *changes);
         for (size_t j = 0; j < f->n_terms; j++)
-            for (size_t i = 0; i < f->terms[j].term->is.count; i++)
+            for (size_t i = 0; i < f->terms[j].term->decl.count; i++)
                 add_changes(e, &f->terms[j], i, changes);
         for (size_t i = 0; i < 2 * f->n; i++) {
             double most = fmax(fabs(changes[2 * i]), fabs(changes[2 * i + 1]));
@@ -331,7 +334,7 @@ void nevh__find_curvatures(nevh__explorer *e, double changes[],
     e->at = 0;
 }
 
-void nevh__find_lengths(nevh__explorer *e) {
+void nevh__find_lengths(nevh__step_selection *e) {
     double energy = 0, last = 1;
     find_over_lanes(e, &energy);
     if (energy == 0)

@@ -1,7 +1,7 @@
 /* nevh: states to try difference steps at.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/control_private.h"
-#include "gradient/explore_private.h"
+#include "gradient/step_selection_private.h"
 #include <float.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
@@ -16,7 +16,7 @@ static const double near_by = 0.3, anywhere = 2; /* of the lengths */
 static const double far_off = 64;
 static const double most_work = 4e5; /* values times variables */
 
-static void add_sample(nevh__explorer *e, double t, const double q[],
+static void add_sample(nevh__step_selection *e, double t, const double q[],
                        const double p[]) {
     nevh__samples *s = &e->samples;
     size_t n = e->field->n;
@@ -29,7 +29,7 @@ static void add_sample(nevh__explorer *e, double t, const double q[],
 }
 
 /* Displaced from one of the lanes given. */
-static void add_random(nevh__explorer *e, size_t lane, double part,
+static void add_random(nevh__step_selection *e, size_t lane, double part,
                        uint64_t *random) {
     nevh__samples *s = &e->samples;
     size_t n = e->field->n, from = lane * n;
@@ -43,12 +43,12 @@ static void add_random(nevh__explorer *e, size_t lane, double part,
     s->t[s->count++] = s->t[lane];
 }
 
-void nevh__set_crude_steps(nevh__explorer *e) {
+void nevh__set_crude_steps(nevh__step_selection *e) {
     nevh_field *f = e->field;
     double part = pow(DBL_EPSILON, 1. / (f->gradient->order + 1));
     for (size_t j = 0; j < f->n_terms; j++) {
         nevh__planned *term = &f->terms[j];
-        for (size_t at = 0; at < term->term->is.count * term->nv; at++) {
+        for (size_t at = 0; at < term->term->decl.count * term->nv; at++) {
             size_t k = at % term->nv, i = nevh__index(term, at / term->nv, k);
             double length = e->length[k < term->nq ? i : f->n + i];
             term->delta[at] = exp2(round(log2(part * length)));
@@ -56,8 +56,8 @@ void nevh__set_crude_steps(nevh__explorer *e) {
     }
 }
 
-double nevh__first_step(const nevh__explorer *e, const void *system, double t,
-                        const double y[], double dydt[]) {
+double nevh__first_step(const nevh__step_selection *e, const void *system,
+                        double t, const double y[], double dydt[]) {
     const gsl_odeiv2_system *ode = system;
     double step = INFINITY;
     if (ode->function(t, y, dydt, ode->params))
@@ -70,7 +70,7 @@ double nevh__first_step(const nevh__explorer *e, const void *system, double t,
 
 /* Whether a variable has left the neighbourhood of the start, as it may where
    H is not bounded below. */
-static bool runs_away(const nevh__explorer *e, const double y[]) {
+static bool runs_away(const nevh__step_selection *e, const double y[]) {
     size_t n = e->field->n;
     for (size_t i = 0; i < 2 * n; i++) {
         double start = i < n ? e->samples.q[i] : e->samples.p[i - n];
@@ -81,7 +81,7 @@ static bool runs_away(const nevh__explorer *e, const double y[]) {
 }
 
 /* y: room for 4n doubles. */
-static void fly(nevh__explorer *e, int steps, gsl_odeiv2_system *ode,
+static void fly(nevh__step_selection *e, int steps, gsl_odeiv2_system *ode,
                 gsl_odeiv2_step *step, gsl_odeiv2_control *control,
                 gsl_odeiv2_evolve *evolve, double *y) {
     size_t n = e->field->n;
@@ -100,7 +100,7 @@ static void fly(nevh__explorer *e, int steps, gsl_odeiv2_system *ode,
 }
 
 /* False when memory is out. */
-static bool run_pilot(nevh__explorer *e, int steps) {
+static bool run_pilot(nevh__step_selection *e, int steps) {
     nevh_field *f = e->field;
     double *y = nevh__array(24 * f->n, sizeof *y); /* what GSL will take, too */
     gsl_odeiv2_system ode = nevh_gsl_system(f);
@@ -128,13 +128,13 @@ static bool run_pilot(nevh__explorer *e, int steps) {
 static int pilot_steps(const nevh_field *f) {
     double work = 0;
     for (size_t j = 0; j < f->n_terms; j++)
-        work += (double)f->terms[j].term->is.count *
+        work += (double)f->terms[j].term->decl.count *
                 (double)(f->terms[j].nv * f->terms[j].nv);
     work *= 6 * f->gradient->order;
     return work * MOST_STEPS > most_work ? (int)(most_work / work) : MOST_STEPS;
 }
 
-void nevh__find_neighbours(nevh__explorer *e) {
+void nevh__find_neighbours(nevh__step_selection *e) {
     uint64_t random = 1;
     e->neighbours = e->samples.count;
     bool given = e->options->q || e->options->p;
@@ -143,7 +143,7 @@ void nevh__find_neighbours(nevh__explorer *e) {
         add_random(e, i % e->lanes, given ? near_by : anywhere, &random);
 }
 
-bool nevh__find_samples(nevh__explorer *e) {
+bool nevh__find_samples(nevh__step_selection *e) {
     int steps = pilot_steps(e->field);
     if ((e->options->q || e->options->p) && steps >= PILOT_SAMPLES &&
         !run_pilot(e, steps))

@@ -1,6 +1,6 @@
 /* nevh: a field is planned.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "gradient/explore_private.h"
+#include "gradient/step_selection_private.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -55,16 +55,18 @@ static int check_gradient(nevh_field *f, const nevh_term *term) {
                       term->name, term->effect, f->gradient->wants);
 }
 
-static int plan_term(nevh_field *f, const nevh__term *term) {
-    const nevh_term *is = &term->is;
+static int plan_term(nevh_field *f, const nevh__term_entry *term) {
+    const nevh_term *decl = &term->decl;
     nevh__planned *plan = &f->terms[f->n_terms++];
-    *plan = (nevh__planned){
-        .term = term, .nq = is->nq, .np = is->np, .nv = is->nq + is->np};
-    f->instances += is->count;
+    *plan = (nevh__planned){.term = term,
+                            .nq = decl->nq,
+                            .np = decl->np,
+                            .nv = decl->nq + decl->np};
+    f->instances += decl->count;
     if (!f->gradient->offsets)
-        return check_gradient(f, is);
+        return check_gradient(f, decl);
     size_t rows = nevh__step_rows(plan);
-    plan->delta = nevh__array(is->count * plan->nv, sizeof *plan->delta);
+    plan->delta = nevh__array(decl->count * plan->nv, sizeof *plan->delta);
     plan->steps = nevh__array(rows * plan->nv, sizeof *plan->steps);
     plan->vars = nevh__array(plan->nv, sizeof *plan->vars);
     if (plan->delta && plan->steps && plan->vars)
@@ -82,7 +84,7 @@ static int plan_workspace(nevh_field *f) {
     size_t variables = 0, reads = 0;
     for (size_t i = 0; i < f->n_terms; i++) {
         const nevh__planned *term = &f->terms[i];
-        size_t all = term->nv + term->term->is.nc;
+        size_t all = term->nv + term->term->decl.nc;
         variables = term->nv > variables ? term->nv : variables;
         reads = all > reads ? all : reads;
     }
@@ -107,7 +109,7 @@ static int plan_workspace(nevh_field *f) {
 /* The user's steps win, and are differenced at full order. */
 static void take_given(nevh_field *f, nevh__planned *term,
                        const nevh_options *o) {
-    for (size_t at = 0; at < term->term->is.count * term->nv; at++) {
+    for (size_t at = 0; at < term->term->decl.count * term->nv; at++) {
         size_t instance = at / term->nv, k = at % term->nv;
         size_t i = nevh__index(term, instance, k);
         double given = given_step(o, k < term->nq ? i : f->n + i);
@@ -116,7 +118,7 @@ static void take_given(nevh_field *f, nevh__planned *term,
             continue;
         term->delta[at] = given;
         step->quadratic = false;
-        if (instance % nevh__stride(term->term->is.count) == 0)
+        if (instance % nevh__stride(term->term->decl.count) == 0)
             *step = (nevh__step){.delta = given, .given = true};
     }
 }
@@ -161,27 +163,27 @@ int nevh__field_lengths(nevh_field *f, const nevh_options *o, double length[]) {
         memcpy(length, f->scale, size);
         return NEVH_OK;
     }
-    nevh__explorer e;
-    int status = nevh__explorer_open(&e, f, o);
+    nevh__step_selection e;
+    int status = nevh__step_selection_init(&e, f, o);
     if (!status)
         memcpy(length, e.length, size);
-    nevh__explorer_close(&e);
+    nevh__step_selection_clear(&e);
     return status;
 }
 
 int nevh__field_curvatures(nevh_field *f, const nevh_options *o,
                            double curvature[]) {
-    nevh__explorer e;
+    nevh__step_selection e;
     memset(curvature, 0, 2 * f->n * sizeof *curvature);
     double *changes = nevh__array(4 * f->n, sizeof *changes);
     if (!changes)
         return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
-    int status = nevh__explorer_open(&e, f, o);
+    int status = nevh__step_selection_init(&e, f, o);
     if (!status) {
         nevh__find_neighbours(&e);
         nevh__find_curvatures(&e, changes, curvature);
     }
-    nevh__explorer_close(&e);
+    nevh__step_selection_clear(&e);
     free(changes);
     return status;
 }
@@ -191,7 +193,7 @@ static int plan_steps(nevh_field *f, const nevh_options *o) {
     for (size_t i = 0; i < f->n_terms; i++)
         arrange(f, &f->terms[i]); /* for the pilot */
     if (!all_given(f, o))
-        status = nevh__field_explore(f, o);
+        status = nevh__field_select_steps(f, o);
     for (size_t i = 0; !status && i < f->n_terms; i++) {
         take_given(f, &f->terms[i], o);
         arrange(f, &f->terms[i]);

@@ -1,6 +1,6 @@
 /* nevh: what a field says about its steps.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "gradient/explore_private.h"
+#include "gradient/step_selection_private.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -19,11 +19,11 @@ size_t nevh_field_step_count(const nevh_field *f) {
 static nevh_step_report describe(const nevh_field *f, const nevh__planned *term,
                                  size_t at) {
     size_t row = at / term->nv, k = at % term->nv;
-    size_t instance = row * nevh__stride(term->term->is.count);
+    size_t instance = row * nevh__stride(term->term->decl.count);
     const nevh__step *s = &term->steps[at];
     double error = s->truncation + s->rounding;
-    return (nevh_step_report){.term = term->term->is.name,
-                              .effect = term->term->is.effect,
+    return (nevh_step_report){.term = term->term->decl.name,
+                              .effect = term->term->decl.effect,
                               .instance = instance,
                               .momentum = k >= term->nq,
                               .index = nevh__index(term, instance, k),

@@ -42,10 +42,10 @@ static size_t part_of(const double dh_dq[], const double dh_dp[]) {
 /* Those of one pass, instance by instance; false: there are too many. */
 static bool list_pass(const nevh_field *f, const nevh__planned *term,
                       const nevh__pass *pass, size_t part, nevh__stencil *s) {
-    const nevh_term *is = &term->term->is;
+    const nevh_term *decl = &term->term->decl;
     size_t begin = part == 1 ? pass->first_p : pass->begin;
     size_t end = part == 0 ? pass->first_p : pass->end;
-    for (size_t i = 0; i < is->count; i++)
+    for (size_t i = 0; i < decl->count; i++)
         for (size_t v = begin; v < end; v++) {
             if (s->slopes == MOST_SLOPES)
                 return false;
@@ -92,7 +92,7 @@ void nevh__stencil_free(nevh__planned *term) {
 /* Returns false when memory is out; a part that is empty, or does not fit into
    one block, has no stencil, and goes the long way. */
 static bool plan_part(const nevh_field *f, nevh__planned *term, size_t part) {
-    const nevh_term *is = &term->term->is;
+    const nevh_term *decl = &term->term->decl;
     nevh__stencil *s = nevh__array(1, sizeof *s);
     if (!s)
         return false;
@@ -108,7 +108,7 @@ static bool plan_part(const nevh_field *f, nevh__planned *term, size_t part) {
     s->stride = nevh__padded(s->points);
     s->shift = nevh__array(term->nv * s->stride, sizeof *s->shift);
     s->source = nevh__array(term->nv * s->stride, sizeof *s->source);
-    s->constants = nevh__array(is->nc * f->capacity, sizeof *s->constants);
+    s->constants = nevh__array(decl->nc * f->capacity, sizeof *s->constants);
     if (!s->shift || !s->source || !s->constants)
         return false;
     fill(term, s);
@@ -182,7 +182,7 @@ NEVH_SIMD static void shift_many(size_t points, size_t lanes, size_t width,
 static void fill_rows(nevh_field *f, const nevh__planned *term,
                       const nevh__stencil *s, const request *r) {
     double *row = f->rows;
-    bool alone = term->term->is.count == 1;
+    bool alone = term->term->decl.count == 1;
     for (size_t k = 0; k < term->nv; k++, row += r->stride) {
         const double *x = (k < term->nq ? r->q : r->p) + r->lane;
         const double *shift = s->shift + k * s->stride;
@@ -208,14 +208,15 @@ static void fill_times(const request *r, double *times) {
 /* Made anew only where other lanes are asked for. */
 static void fill_constants(const nevh__planned *term, nevh__stencil *s,
                            const request *r) {
-    const nevh_term *is = &term->term->is;
+    const nevh_term *decl = &term->term->decl;
     double *row = s->constants;
-    for (size_t k = 0; k < is->nc; k++, row += r->stride) {
+    for (size_t k = 0; k < decl->nc; k++, row += r->stride) {
         for (size_t i = 0; i < r->stride; i++)
-            row[i] = is->c[k];
+            row[i] = decl->c[k];
         for (const slope *x = s->slope; x < s->slope + s->slopes; x++)
             for (size_t i = 0; i < 2 * x->method->offsets * r->lanes; i++)
-                row[x->first * r->lanes + i] = is->c[x->instance * is->nc + k];
+                row[x->first * r->lanes + i] =
+                    decl->c[x->instance * decl->nc + k];
     }
     s->lanes = r->lanes;
 }
@@ -321,7 +322,7 @@ int nevh__stencil_difference(nevh_field *f, nevh__planned *term,
                              nevh__stencil *s, size_t width, const double t[],
                              const double q[], const double p[], double dh_dq[],
                              double dh_dp[]) {
-    const nevh_term *is = &term->term->is;
+    const nevh_term *decl = &term->term->decl;
     size_t lanes = lanes_in_block(f, s, width);
     request r = {.width = width, .t = t, .q = q, .p = p};
     r.dh_dq = dh_dq;
@@ -330,12 +331,12 @@ int nevh__stencil_difference(nevh_field *f, nevh__planned *term,
         r.lanes = width - r.lane < lanes ? width - r.lane : lanes;
         r.stride = nevh__padded(s->points * r.lanes);
         fill_rows(f, term, s, &r);
-        if (is->time)
+        if (decl->time)
             fill_times(&r, f->times);
         if (s->lanes != r.lanes)
             fill_constants(term, s, &r);
         nevh__term_values(term->term, f->portable, r.stride,
-                          s->points * r.lanes, is->time ? f->times : f->zeros,
+                          s->points * r.lanes, decl->time ? f->times : f->zeros,
                           f->rows, f->rows + term->nq * r.stride, s->constants,
                           f->h, f->one);
         bool finite =

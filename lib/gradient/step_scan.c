@@ -1,6 +1,6 @@
 /* nevh: the difference step of each variable, by a ladder.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "gradient/explore_private.h"
+#include "gradient/step_selection_private.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -75,7 +75,7 @@ static void take(estimate *rung, double usual, double now, double before,
 }
 
 /* As many steps as there is room for, from `from` on; returns how many. */
-static size_t try_steps(const nevh__explorer *e, const nevh_gradient *g,
+static size_t try_steps(const nevh__step_selection *e, const nevh_gradient *g,
                         const nevh__planned *term, size_t instance, size_t k,
                         size_t at, double unit, size_t from, differences *two,
                         differences *full) {
@@ -90,7 +90,8 @@ static size_t try_steps(const nevh__explorer *e, const nevh_gradient *g,
             move[(2 * j + 1) * count + i] = -(double)(j + 1) * delta;
         }
     }
-    nevh__along(e, term, instance, k, at, 2 * g->offsets * count, move, x, h);
+    nevh__sample_line(e, term, instance, k, at, 2 * g->offsets * count, move, x,
+                      h);
     difference(nevh_central2, count, x, h, two->slope + from,
                two->noise + from);
     difference(g, count, x, h, full->slope + from, full->noise + from);
@@ -98,7 +99,7 @@ static size_t try_steps(const nevh__explorer *e, const nevh_gradient *g,
 }
 
 /* Climbs from the shortest step at one sample. */
-static void climb_at(const nevh__explorer *e, const nevh_gradient *g,
+static void climb_at(const nevh__step_selection *e, const nevh_gradient *g,
                      const nevh__planned *term, size_t instance, size_t k,
                      size_t at, double unit, ladder *l) {
     differences two, full;
@@ -178,7 +179,7 @@ static nevh__step choose(const nevh_gradient *g, const ladder *l, double unit) {
 /* Values of a function of very many variables are dear.  Where there are many
    variables of instances to be looked at, each is at fewer of the states, if
    these are many. */
-static size_t sample_stride(const nevh__explorer *e,
+static size_t sample_stride(const nevh__step_selection *e,
                             const nevh__planned *term) {
     size_t rows = nevh__step_rows(term), looked_at = 0;
     if (term->nv > NEVH__PROBED)
@@ -190,13 +191,14 @@ static size_t sample_stride(const nevh__explorer *e,
 }
 
 /* The median of the derivative's sizes at samples from `at` on. */
-static double usual_slope(const nevh__explorer *e, const nevh__planned *term,
-                          size_t instance, size_t k, double unit, size_t at) {
+static double usual_slope(const nevh__step_selection *e,
+                          const nevh__planned *term, size_t instance, size_t k,
+                          double unit, size_t at) {
     const double move[2] = {ldexp(unit, -8), -ldexp(unit, -8)};
     double x[2], h[2], sorted[NEVH__MOST_SAMPLES];
     size_t count = 0;
     for (; at < e->samples.count; at += sample_stride(e, term)) {
-        nevh__along(e, term, instance, k, at, 2, move, x, h);
+        nevh__sample_line(e, term, instance, k, at, 2, move, x, h);
         double slope = fabs(nevh__chord_slope(nevh_central2, 1, x, h));
         size_t i = count;
         if (!isfinite(slope))
@@ -208,9 +210,9 @@ static double usual_slope(const nevh__explorer *e, const nevh__planned *term,
     return count ? sorted[count / 2] : 0;
 }
 
-nevh__step nevh__climb_along(const nevh__explorer *e, const nevh_gradient *g,
-                             const nevh__planned *term, size_t instance,
-                             size_t k, double length) {
+nevh__step nevh__scan_line(const nevh__step_selection *e,
+                           const nevh_gradient *g, const nevh__planned *term,
+                           size_t instance, size_t k, double length) {
     double unit = exp2(round(log2(length)));
     ladder l;
     memset(&l, 0, sizeof l);
@@ -222,15 +224,15 @@ nevh__step nevh__climb_along(const nevh__explorer *e, const nevh_gradient *g,
     return choose(g, &l, unit);
 }
 
-static nevh__step climb(const nevh__explorer *e, const nevh__planned *term,
-                        size_t instance, size_t k) {
+static nevh__step climb(const nevh__step_selection *e,
+                        const nevh__planned *term, size_t instance, size_t k) {
     size_t i = nevh__index(term, instance, k);
     double length = e->length[k < term->nq ? i : e->field->n + i];
-    return nevh__climb_along(e, e->field->gradient, term, instance, k, length);
+    return nevh__scan_line(e, e->field->gradient, term, instance, k, length);
 }
 
-void nevh__climb(nevh__explorer *e, nevh__planned *term) {
-    size_t count = term->term->is.count, stride = nevh__stride(count);
+void nevh__scan_steps(nevh__step_selection *e, nevh__planned *term) {
+    size_t count = term->term->decl.count, stride = nevh__stride(count);
     for (size_t at = 0; at < count * term->nv; at++) {
         size_t instance = at / term->nv, k = at % term->nv;
         size_t from = nevh__probed(term, k);

@@ -9,7 +9,7 @@
    A term that brings the derivative is asked for it, where that is finite.
    Where H ends in time, as t^1.5 does at t = 0, differences are one-sided.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "gradient/explore_private.h"
+#include "gradient/step_selection_private.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -35,7 +35,7 @@ static int difference(nevh_field *f, nevh__planned *term, const nevh__block *b,
                 &f->report, NEVH_EDOM,
                 "the time derivative of term \"%s\" of effect \"%s\" is not "
                 "finite at t = %.9g: its step of %g is lost in a time too large",
-                term->term->is.name, term->term->is.effect, b->t[b->lane],
+                term->term->decl.name, term->term->decl.effect, b->t[b->lane],
                 step->delta);
     }
     return status;
@@ -52,92 +52,94 @@ typedef struct {
     double *dh_dt;
 } slope_task;
 
-static nevh__block copies_of(const slope_task *is, size_t copies) {
-    nevh__block b = is->lanes;
+static nevh__block copies_of(const slope_task *task, size_t copies) {
+    nevh__block b = task->lanes;
     b.copies = copies;
     return b;
 }
 
 /* What the term itself says of it; false where that is not finite. */
-static bool add_exact(const slope_task *is) {
-    nevh_field *f = is->field;
-    const nevh_term *term = &is->term->term->is;
-    nevh__block b = copies_of(is, 1);
+static bool add_exact(const slope_task *task) {
+    nevh_field *f = task->field;
+    const nevh_term *term = &task->term->term->decl;
+    nevh__block b = copies_of(task, 1);
     double sum = 0;
-    while (term->time_slope && nevh__block_next(f, is->term, &b)) {
-        const double *q = f->rows, *p = q + is->term->nq * b.stride;
-        term->time_slope(b.stride, f->times, q, p, p + is->term->np * b.stride,
-                         term->params, f->h);
+    while (term->time_slope && nevh__block_next(f, task->term, &b)) {
+        const double *q = f->rows, *p = q + task->term->nq * b.stride;
+        term->time_slope(b.stride, f->times, q, p,
+                         p + task->term->np * b.stride, term->params, f->h);
         for (size_t i = 0; i < b.used; i++) {
-            is->dh_dt[b.lane + i % b.lanes] += f->h[i];
+            task->dh_dt[b.lane + i % b.lanes] += f->h[i];
             sum += f->h[i] - f->h[i];
         }
     }
     return term->time_slope && sum == 0;
 }
 
-static int add_central(const slope_task *is) {
+static int add_central(const slope_task *task) {
     int status = NEVH_OK;
-    nevh__block b = copies_of(is, 2 * is->step->method->offsets);
-    while (!status && nevh__block_next(is->field, is->term, &b))
-        status = difference(is->field, is->term, &b, is->step, is->dh_dt);
+    nevh__block b = copies_of(task, 2 * task->step->method->offsets);
+    while (!status && nevh__block_next(task->field, task->term, &b))
+        status =
+            difference(task->field, task->term, &b, task->step, task->dh_dt);
     return status;
 }
 
 /* Of order 4, from t on to one side; false where a value is not finite. */
-static bool add_sided(const slope_task *is, double side) {
+static bool add_sided(const slope_task *task, double side) {
     static const double weights[] = {-25. / 12, 4, -3, 4. / 3, -0.25};
     enum { POINTS = sizeof weights / sizeof *weights };
-    nevh_field *f = is->field;
-    nevh__block b = copies_of(is, POINTS);
+    nevh_field *f = task->field;
+    nevh__block b = copies_of(task, POINTS);
     double sum = 0;
-    while (nevh__block_next(f, is->term, &b)) {
+    while (nevh__block_next(f, task->term, &b)) {
         size_t apart = b.groups * b.lanes;
         for (size_t i = 0; i < b.used; i++)
-            f->times[i] += side * (double)(i / apart) * is->step->delta;
-        nevh__block_evaluate(f, is->term, &b);
+            f->times[i] += side * (double)(i / apart) * task->step->delta;
+        nevh__block_evaluate(f, task->term, &b);
         for (size_t i = 0; i < b.used; i++) {
             double product = weights[i / apart] * f->h[i];
-            is->dh_dt[b.lane + i % b.lanes] += side * product / is->step->delta;
+            task->dh_dt[b.lane + i % b.lanes] +=
+                side * product / task->step->delta;
             sum += product - product;
         }
     }
     return sum == 0;
 }
 
-static int fail_slope(const slope_task *is) {
-    const nevh_term *term = &is->term->term->is;
-    return nevh__fail(&is->field->report, NEVH_EDOM,
+static int fail_slope(const slope_task *task) {
+    const nevh_term *term = &task->term->term->decl;
+    return nevh__fail(&task->field->report, NEVH_EDOM,
                       "the time derivative of term \"%s\" of effect \"%s\" is "
                       "not finite at t = %.9g, nor are differences within %.3g "
                       "to either side",
-                      term->name, term->effect, is->lanes.t[is->lanes.lane],
-                      4 * is->step->delta);
+                      term->name, term->effect, task->lanes.t[task->lanes.lane],
+                      4 * task->step->delta);
 }
 
 /* The first way that ends in numbers. */
-static int add_slope(const slope_task *is) {
-    double kept[LANES], *out = is->dh_dt + is->lanes.lane;
-    size_t size = (is->lanes.until - is->lanes.lane) * sizeof *kept;
-    nevh__report report = is->field->report;
+static int add_slope(const slope_task *task) {
+    double kept[LANES], *out = task->dh_dt + task->lanes.lane;
+    size_t size = (task->lanes.until - task->lanes.lane) * sizeof *kept;
+    nevh__report report = task->field->report;
     memcpy(kept, out, size);
-    if (add_exact(is))
+    if (add_exact(task))
         return NEVH_OK;
     memcpy(out, kept, size);
-    int status = add_central(is);
+    int status = add_central(task);
     if (!status)
         return NEVH_OK;
     memcpy(out, kept, size);
-    if (!add_central(is))
+    if (!add_central(task))
         return status; /* an H that differs from call to call */
     for (int side = 1; side >= -1; side -= 2) {
         memcpy(out, kept, size);
-        if (add_sided(is, side)) {
-            is->field->report = report;
+        if (add_sided(task, side)) {
+            task->field->report = report;
             return NEVH_OK;
         }
     }
-    return fail_slope(is);
+    return fail_slope(task);
 }
 
 int nevh__field_time_slope(nevh_field *f, size_t i, const nevh__time_step *step,
@@ -156,7 +158,7 @@ int nevh__field_time_slope(nevh_field *f, size_t i, const nevh__time_step *step,
 
 /* The shortest time in which a variable moves by its length, of the samples;
    where nothing moves, the size of t, or 1. */
-static double find_pace(const nevh__explorer *e, double slopes[]) {
+static double find_pace(const nevh__step_selection *e, double slopes[]) {
     nevh_field *f = e->field;
     size_t n = f->n;
     double pace = INFINITY, size = fabs(e->options->t);
@@ -173,12 +175,12 @@ static double find_pace(const nevh__explorer *e, double slopes[]) {
 
 /* The shortest length of t over the lanes and instances; INFINITY where all
    are quadratic, NAN where none varies. */
-static double find_length(const nevh__explorer *e, const nevh__planned *term,
-                          double pace) {
-    size_t count = term->term->is.count;
+static double find_length(const nevh__step_selection *e,
+                          const nevh__planned *term, double pace) {
+    size_t count = term->term->decl.count;
     double seen = fmax(pace, visible * fabs(e->options->t));
     double shortest = NAN, guess = exp2(floor(log2(seen)));
-    nevh__explorer here = *e;
+    nevh__step_selection here = *e;
     for (here.at = 0; here.at < e->lanes; here.at++)
         for (size_t i = 0; i < count; i += nevh__stride(count))
             shortest = fmin(shortest, nevh__curve_length(&here, term, i,
@@ -187,7 +189,7 @@ static double find_length(const nevh__explorer *e, const nevh__planned *term,
 }
 
 /* Samples displaced at random get a time of their own. */
-static void spread_times(nevh__explorer *e, double length) {
+static void spread_times(nevh__step_selection *e, double length) {
     uint64_t random = 1;
     for (size_t at = e->neighbours; at < e->samples.count; at++)
         e->samples.t[at] =
@@ -196,13 +198,13 @@ static void spread_times(nevh__explorer *e, double length) {
 
 /* The shortest step of those that the instances want; the difference of order
    2 where that is as good for all. */
-static nevh__time_step climb(const nevh__explorer *e, const nevh__planned *term,
-                             double length) {
-    size_t count = term->term->is.count;
+static nevh__time_step climb(const nevh__step_selection *e,
+                             const nevh__planned *term, double length) {
+    size_t count = term->term->decl.count;
     double delta[2] = {INFINITY, INFINITY}; /* of order 8, of order 2 */
     for (size_t i = 0; i < count; i += nevh__stride(count)) {
         nevh__step step =
-            nevh__climb_along(e, nevh_central8, term, i, NEVH__TIME, length);
+            nevh__scan_line(e, nevh_central8, term, i, NEVH__TIME, length);
         double *least = &delta[step.quadratic];
         *least = fmin(*least, step.delta);
     }
@@ -211,8 +213,8 @@ static nevh__time_step climb(const nevh__explorer *e, const nevh__planned *term,
     return (nevh__time_step){nevh_central2, delta[1]};
 }
 
-static nevh__time_step choose(nevh__explorer *e, const nevh__planned *term,
-                              double pace) {
+static nevh__time_step choose(nevh__step_selection *e,
+                              const nevh__planned *term, double pace) {
     double length = find_length(e, term, pace), size = fabs(e->options->t);
     if (isfinite(length)) {
         spread_times(e, length);
@@ -225,12 +227,12 @@ static nevh__time_step choose(nevh__explorer *e, const nevh__planned *term,
 }
 
 /* Steps for the samples that there are, where these are shorter. */
-static void choose_all(nevh__explorer *e, double slopes[],
+static void choose_all(nevh__step_selection *e, double slopes[],
                        nevh__time_step steps[]) {
     const nevh_field *f = e->field;
     double pace = find_pace(e, slopes);
     for (size_t i = 0; i < f->n_terms; i++) {
-        if (!f->terms[i].term->is.time)
+        if (!f->terms[i].term->decl.time)
             continue;
         nevh__time_step step = choose(e, &f->terms[i], pace);
         if (!steps[i].method || step.delta < steps[i].delta)
@@ -242,9 +244,9 @@ static void choose_all(nevh__explorer *e, double slopes[],
    far from the start times themselves are coarser, and ask for longer steps. */
 int nevh__field_plan_time(nevh_field *f, const nevh_options *o,
                           nevh__time_step steps[]) {
-    nevh__explorer e;
+    nevh__step_selection e;
     double *slopes = nevh__array(2 * f->n, sizeof *slopes);
-    int status = slopes ? nevh__explorer_open(&e, f, o)
+    int status = slopes ? nevh__step_selection_init(&e, f, o)
                         : nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
     if (!slopes)
         return status;
@@ -257,7 +259,7 @@ int nevh__field_plan_time(nevh_field *f, const nevh_options *o,
     }
     if (!status)
         choose_all(&e, slopes, steps);
-    nevh__explorer_close(&e);
+    nevh__step_selection_clear(&e);
     free(slopes);
     return status;
 }

@@ -81,7 +81,7 @@ static int effects(nevh_field *f, bool constants, double t, const double q[],
         nevh__planned *term = &f->terms[i];
         double sum = 0, lost = 0;
         nevh__block b = nevh__block_over(1, &t, q, p, 1, 1);
-        if (!constants && !term->nv && !term->term->is.time)
+        if (!constants && !term->nv && !term->term->decl.time)
             continue;
         status = add_term(f, term, b, &sum, &lost, NULL);
         h[term->term->effect] += sum + lost;

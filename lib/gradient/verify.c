@@ -7,7 +7,7 @@
    A point gradient must be the gradient to the last bit, so that an orbit does
    not depend on how many there are.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "gradient/explore_private.h"
+#include "gradient/step_selection_private.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -18,7 +18,7 @@ enum { ROUNDS = 4 };
 static const double long_step = 0x1p-6, short_step = 0x1p-8; /* of lengths */
 
 typedef struct {
-    nevh__explorer *explorer;
+    nevh__step_selection *explorer;
     const nevh__planned *term;
     size_t instance;
     double *own; /* nv derivatives of the term's own */
@@ -32,7 +32,7 @@ static double by_difference(const check *c, size_t k, size_t at, double delta,
         move[2 * j] = (double)(j + 1) * delta;
         move[2 * j + 1] = -move[2 * j];
     }
-    nevh__along(c->explorer, c->term, c->instance, k, at, 8, move, x, h);
+    nevh__sample_line(c->explorer, c->term, c->instance, k, at, 8, move, x, h);
     for (size_t j = 0; j < 4; j++) {
         double weight = nevh_central8->weights[j] / (x[2 * j] - x[2 * j + 1]);
         double size = fmax(fabs(h[2 * j]), fabs(h[2 * j + 1]));
@@ -45,25 +45,26 @@ static double by_difference(const check *c, size_t k, size_t at, double delta,
 static void ask_term(const check *c, size_t at) {
     nevh_field *f = c->explorer->field;
     const nevh__planned *term = c->term;
-    const nevh_term *is = &term->term->is;
+    const nevh_term *decl = &term->term->decl;
     double move[NEVH__LANES] = {0}, x[NEVH__LANES], h[NEVH__LANES];
-    nevh__along(c->explorer, term, c->instance, 0, at, NEVH__LANES, move, x, h);
+    nevh__sample_line(c->explorer, term, c->instance, 0, at, NEVH__LANES, move,
+                      x, h);
     double *q = f->rows, *p = q + term->nq * NEVH__LANES;
     double *dp = f->slopes + term->nq * NEVH__LANES;
-    is->gradient(NEVH__LANES, is->time ? f->times : f->zeros, q, p,
-                 p + term->np * NEVH__LANES, is->params, f->slopes, dp);
+    decl->gradient(NEVH__LANES, decl->time ? f->times : f->zeros, q, p,
+                   p + term->np * NEVH__LANES, decl->params, f->slopes, dp);
     for (size_t k = 0; k < term->nv; k++)
         c->own[k] = f->slopes[k * NEVH__LANES];
 }
 
 static int wrong(const check *c, size_t k, double own, double difference) {
-    const nevh_term *is = &c->term->term->is;
+    const nevh_term *decl = &c->term->term->decl;
     return nevh__fail(
         &c->explorer->field->report, NEVH_ENOGRAD,
         "the exact gradient of term \"%s\" of effect \"%s\" is wrong: its "
         "derivative with respect to %c[%zu] is %.9g where differences of its "
         "values give %.9g",
-        is->name, is->effect, k < c->term->nq ? 'q' : 'p',
+        decl->name, decl->effect, k < c->term->nq ? 'q' : 'p',
         nevh__index(c->term, c->instance, k), own, difference);
 }
 
@@ -92,14 +93,14 @@ static bool same(double a, double b) {
 }
 
 static int unlike(const check *c, size_t k, double point, double block) {
-    const nevh_term *is = &c->term->term->is;
+    const nevh_term *decl = &c->term->term->decl;
     return nevh__fail(
         &c->explorer->field->report, NEVH_ENOGRAD,
         "the point gradient of term \"%s\" of effect \"%s\" is not its "
         "gradient to the last bit: the derivative with respect to %c[%zu] is "
         "%.17g where that of a block is %.17g; what is said of NEVH_GRADIENT "
         "in <nevh/body.h> may help, and to leave it out",
-        is->name, is->effect, k < c->term->nq ? 'q' : 'p',
+        decl->name, decl->effect, k < c->term->nq ? 'q' : 'p',
         nevh__index(c->term, c->instance, k), point, block);
 }
 
@@ -109,8 +110,8 @@ static void spread(const check *c, size_t at, size_t round) {
     nevh_field *f = c->explorer->field;
     double move[NEVH__LANES] = {0}, x[NEVH__LANES], h[NEVH__LANES];
     uint64_t seed = ROUNDS * at + round;
-    nevh__along(c->explorer, c->term, c->instance, 0, at, NEVH__LANES, move, x,
-                h);
+    nevh__sample_line(c->explorer, c->term, c->instance, 0, at, NEVH__LANES,
+                      move, x, h);
     for (size_t k = 0; k < c->term->nv; k++) {
         size_t i = nevh__index(c->term, c->instance, k);
         double length = c->explorer->length[k < c->term->nq ? i : f->n + i];
@@ -125,16 +126,16 @@ static void spread(const check *c, size_t at, size_t round) {
 /* One lane, where either half may not be asked for. */
 static int check_lane(const check *c, size_t lane, bool of_q, bool of_p) {
     const nevh__planned *term = c->term;
-    const nevh_term *is = &term->term->is;
+    const nevh_term *decl = &term->term->decl;
     nevh_field *f = c->explorer->field;
     double *q = f->one, *p = q + term->nq, *own = c->own;
-    for (size_t k = 0; k < term->nv + is->nc; k++)
+    for (size_t k = 0; k < term->nv + decl->nc; k++)
         q[k] = f->rows[k * NEVH__LANES + lane];
     for (size_t k = 0; k < term->nv; k++)
         own[k] = NAN;
-    is->point_gradient(is->time ? f->times[lane] : 0, q, p, p + term->np,
-                       is->params, of_q ? own : NULL,
-                       of_p ? own + term->nq : NULL);
+    decl->point_gradient(decl->time ? f->times[lane] : 0, q, p, p + term->np,
+                         decl->params, of_q ? own : NULL,
+                         of_p ? own + term->nq : NULL);
     for (size_t k = of_q ? 0 : term->nq; k < (of_p ? term->nv : term->nq); k++)
         if (!same(own[k], f->slopes[k * NEVH__LANES + lane]))
             return unlike(c, k, own[k], f->slopes[k * NEVH__LANES + lane]);
@@ -146,16 +147,16 @@ static int check_lane(const check *c, size_t lane, bool of_q, bool of_p) {
 static int check_point(const check *c, size_t at, size_t round) {
     static const bool asked[][2] = {{true, true}, {true, false}, {false, true}};
     const nevh__planned *term = c->term;
-    const nevh_term *is = &term->term->is;
+    const nevh_term *decl = &term->term->decl;
     nevh_field *f = c->explorer->field;
     double *q = f->rows, *p = q + term->nq * NEVH__LANES;
     double *dp = f->slopes + term->nq * NEVH__LANES;
     int status = NEVH_OK;
     spread(c, at, round);
     for (size_t i = 0; !status && i < (round ? 1 : 3); i++) {
-        is->gradient(NEVH__LANES, is->time ? f->times : f->zeros, q, p,
-                     p + term->np * NEVH__LANES, is->params,
-                     asked[i][0] ? f->slopes : NULL, asked[i][1] ? dp : NULL);
+        decl->gradient(NEVH__LANES, decl->time ? f->times : f->zeros, q, p,
+                       p + term->np * NEVH__LANES, decl->params,
+                       asked[i][0] ? f->slopes : NULL, asked[i][1] ? dp : NULL);
         for (size_t lane = 0; !status && lane < NEVH__LANES; lane++)
             status = check_lane(c, lane, asked[i][0], asked[i][1]);
     }
@@ -164,16 +165,16 @@ static int check_point(const check *c, size_t at, size_t round) {
 
 /* Thoroughly where it will be called. */
 static int check_points(const check *c, size_t at) {
-    const nevh_term *is = &c->term->term->is;
-    size_t rounds = is->count <= NEVH__MOST_CALLED ? ROUNDS : 1;
+    const nevh_term *decl = &c->term->term->decl;
+    size_t rounds = decl->count <= NEVH__MOST_CALLED ? ROUNDS : 1;
     int status = NEVH_OK;
-    for (size_t i = 0; is->point_gradient && !status && i < rounds; i++)
+    for (size_t i = 0; decl->point_gradient && !status && i < rounds; i++)
         status = check_point(c, at, i);
     return status;
 }
 
-int nevh__verify(nevh__explorer *e, const nevh__planned *term) {
-    size_t count = term->term->is.count, stride = nevh__stride(count);
+int nevh__verify(nevh__step_selection *e, const nevh__planned *term) {
+    size_t count = term->term->decl.count, stride = nevh__stride(count);
     check c = {e, term, 0, nevh__array(term->nv, sizeof *c.own)};
     if (!c.own)
         return nevh__fail(&e->field->report, NEVH_ENOMEM, "out of memory");

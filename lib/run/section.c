@@ -7,14 +7,16 @@
 
 static const double ahead = 0x1p-20; /* part of a step: for slopes */
 
-static int check(nevh_sections *x, const nevh_section *is, size_t number) {
-    if (is->value ? is->every == 0 : is->every > 0 && isfinite(is->every)) {
-        if (is->period >= 0 && isfinite(is->period) && abs(is->direction) <= 1)
+static int check(nevh_sections *x, const nevh_section *decl, size_t number) {
+    if (decl->value ? decl->every == 0
+                    : decl->every > 0 && isfinite(decl->every)) {
+        if (decl->period >= 0 && isfinite(decl->period) &&
+            abs(decl->direction) <= 1)
             return NEVH_OK;
         return nevh__fail(&x->report, NEVH_EINVAL,
                           "section %zu: the direction is %d (1, -1 or 0) and "
                           "the period %g",
-                          number, is->direction, is->period);
+                          number, decl->direction, decl->period);
     }
     return nevh__fail(&x->report, NEVH_EINVAL,
                       "section %zu: either a value or a positive time between "
@@ -26,18 +28,18 @@ static int out_of_memory(nevh_sections *x) {
     return nevh__fail(&x->report, NEVH_ENOMEM, "out of memory");
 }
 
-static int plan_track(nevh_sections *x, size_t i, const nevh_section *is) {
-    nevh__track *k = &x->tracks[i];
+static int plan_state(nevh_sections *x, size_t i, const nevh_section *decl) {
+    nevh__section_state *k = &x->states[i];
     size_t n = x->branch->work.n;
-    k->is = *is;
+    k->decl = *decl;
     k->number = i;
-    k->is.name = is->name ? nevh__text("%s", is->name) : NULL;
+    k->decl.name = decl->name ? nevh__text("%s", decl->name) : NULL;
     k->q = nevh__array(n, sizeof *k->q);
     k->p = nevh__array(n, sizeof *k->p);
-    x->crossings |= is->value != NULL;
-    if (!k->q || !k->p || (is->name && !k->is.name))
+    x->crossings |= decl->value != NULL;
+    if (!k->q || !k->p || (decl->name && !k->decl.name))
         return out_of_memory(x);
-    return check(x, is, i);
+    return check(x, decl, i);
 }
 
 /* GSL aborts where memory is out: ask first for more than it takes. */
@@ -76,7 +78,7 @@ static int plan(nevh_sections *x, const nevh_section sections[]) {
                           s->work.width);
     int status = plan_states(x);
     for (size_t i = 0; !status && i < x->count; i++)
-        status = plan_track(x, i, &sections[i]);
+        status = plan_state(x, i, &sections[i]);
     return status ? status : plan_solvers(x);
 }
 
@@ -90,9 +92,9 @@ nevh_sections *nevh_sections_new(const nevh_stepper *stepper,
     x->branch = nevh_stepper_copy(stepper);
     x->tell = tell;
     x->data = data;
-    x->tracks = nevh__array(count, sizeof *x->tracks);
-    x->count = x->tracks ? count : 0;
-    int status = x->branch && x->tracks ? plan(x, sections) : NEVH_ENOMEM;
+    x->states = nevh__array(count, sizeof *x->states);
+    x->count = x->states ? count : 0;
+    int status = x->branch && x->states ? plan(x, sections) : NEVH_ENOMEM;
     x->planned = status == NEVH_OK;
     if (status != NEVH_ENOMEM)
         return x;
@@ -104,16 +106,16 @@ void nevh_sections_free(nevh_sections *x) {
     if (!x)
         return;
     for (size_t i = 0; i < x->count; i++) {
-        free((char *)x->tracks[i].is.name);
-        free(x->tracks[i].q);
-        free(x->tracks[i].p);
+        free((char *)x->states[i].decl.name);
+        free(x->states[i].q);
+        free(x->states[i].p);
     }
     if (x->root)
         gsl_root_fsolver_free(x->root);
     if (x->least)
         gsl_min_fminimizer_free(x->least);
     nevh_stepper_free(x->branch);
-    free(x->tracks);
+    free(x->states);
     free(x->q);
     free(x->memory);
     free(x);
@@ -155,10 +157,10 @@ static int begin(nevh_sections *x, double t, const double q[],
     x->begun = x->first = true;
     x->origin = t;
     for (size_t i = 0; !status && i < x->count; i++) {
-        nevh__track *k = &x->tracks[i];
+        nevh__section_state *k = &x->states[i];
         k->came = 0;
         k->points = 0;
-        if (k->is.value)
+        if (k->decl.value)
             status = nevh__section_value(x, k, t, q, p, &k->value);
     }
     return status;
@@ -176,47 +178,47 @@ static bool flow(nevh_sections *x, double t, const double q[],
 }
 
 /* The slope of a value along the flow, NAN where it is unknown. */
-static double slope(nevh_sections *x, const nevh__track *k, double t,
+static double slope(nevh_sections *x, const nevh__section_state *k, double t,
                     const double q[], const double p[], double value) {
     double d = ahead * (x->t_after - x->t), next;
     for (size_t i = 0; i < x->branch->work.n; i++) {
         x->q_try[i] = q[i] + d * x->dq[i];
         x->p_try[i] = p[i] + d * x->dp[i];
     }
-    if (k->is.value(k->is.data, t + d, x->q_try, x->p_try, &next))
+    if (k->decl.value(k->decl.data, t + d, x->q_try, x->p_try, &next))
         return NAN;
     return (next - value) / d;
 }
 
 static void find_slopes_before(nevh_sections *x) {
     bool flows = flow(x, x->t, x->q, x->p);
-    for (nevh__track *k = x->tracks; k < x->tracks + x->count; k++)
-        if (k->is.value)
+    for (nevh__section_state *k = x->states; k < x->states + x->count; k++)
+        if (k->decl.value)
             k->slope = flows ? slope(x, k, x->t, x->q, x->p, k->value) : NAN;
 }
 
 static void find_slopes_after(nevh_sections *x) {
     bool flows = flow(x, x->t_after, x->q_after, x->p_after);
-    for (nevh__track *k = x->tracks; k < x->tracks + x->count; k++)
-        if (k->is.value)
+    for (nevh__section_state *k = x->states; k < x->states + x->count; k++)
+        if (k->decl.value)
             k->slope_after = flows ? slope(x, k, x->t_after, x->q_after,
                                            x->p_after, k->value_after)
                                    : NAN;
 }
 
 /* The first point of each section within the step. */
-static int look(nevh_sections *x, nevh__track *k) {
+static int look(nevh_sections *x, nevh__section_state *k) {
     int status = NEVH_OK;
     k->piece = 0;
     k->opened = false;
-    if (k->is.value)
+    if (k->decl.value)
         status = nevh__section_nodes(x, k);
     return status ? status : nevh__section_next(x, k);
 }
 
-static nevh__track *earliest(nevh_sections *x) {
-    nevh__track *first = NULL;
-    for (nevh__track *k = x->tracks; k < x->tracks + x->count; k++)
+static nevh__section_state *earliest(nevh_sections *x) {
+    nevh__section_state *first = NULL;
+    for (nevh__section_state *k = x->states; k < x->states + x->count; k++)
         if (k->found && (!first || k->s < first->s))
             first = k;
     return first;
@@ -224,7 +226,7 @@ static nevh__track *earliest(nevh_sections *x) {
 
 static int tell(nevh_sections *x) {
     int status = NEVH_OK;
-    nevh__track *k;
+    nevh__section_state *k;
     while (!status && (k = earliest(x))) {
         nevh_point point = {k->number, k->direction, k->t, k->q, k->p};
         if (x->tell(x->data, &point))
@@ -239,8 +241,8 @@ static int tell(nevh_sections *x) {
 static int search(nevh_sections *x) {
     int status = NEVH_OK;
     for (size_t i = 0; !status && i < x->count; i++) {
-        nevh__track *k = &x->tracks[i];
-        if (k->is.value)
+        nevh__section_state *k = &x->states[i];
+        if (k->decl.value)
             status = nevh__section_value(x, k, x->t_after, x->q_after,
                                          x->p_after, &k->value_after);
     }
@@ -251,7 +253,7 @@ static int search(nevh_sections *x) {
     if (x->crossings)
         find_slopes_after(x);
     for (size_t i = 0; !status && i < x->count; i++)
-        status = look(x, &x->tracks[i]);
+        status = look(x, &x->states[i]);
     return status ? status : tell(x);
 }
 
@@ -262,7 +264,7 @@ static int pass(nevh_sections *x, double t, const double q[],
     x->q_after = q;
     x->p_after = p;
     int status = search(x);
-    for (nevh__track *k = x->tracks; k < x->tracks + x->count; k++) {
+    for (nevh__section_state *k = x->states; k < x->states + x->count; k++) {
         k->value = k->value_after;
         k->slope = k->slope_after;
     }

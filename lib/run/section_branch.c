@@ -20,22 +20,23 @@ int nevh__section_step(nevh_sections *x, double h) {
     return status ? nevh__fail_as(&x->report, &s->report) : NEVH_OK;
 }
 
-double nevh__section_due(const nevh_sections *x, const nevh__track *k) {
+double nevh__section_due(const nevh_sections *x, const nevh__section_state *k) {
     double forward = x->h < 0 ? -1 : 1;
-    return x->origin + forward * (k->points + 1) * k->is.every;
+    return x->origin + forward * (k->points + 1) * k->decl.every;
 }
 
-int nevh__section_value(nevh_sections *x, const nevh__track *k, double t,
-                        const double q[], const double p[], double *value) {
+int nevh__section_value(nevh_sections *x, const nevh__section_state *k,
+                        double t, const double q[], const double p[],
+                        double *value) {
     char number[24];
-    const char *name = k->is.name;
-    if (!k->is.value) {
+    const char *name = k->decl.name;
+    if (!k->decl.value) {
         *value = t - nevh__section_due(x, k);
         return NEVH_OK;
     }
     snprintf(number, sizeof number, "%zu", k->number);
     *value = NAN;
-    int status = k->is.value(k->is.data, t, q, p, value);
+    int status = k->decl.value(k->decl.data, t, q, p, value);
     if (!status && isfinite(*value))
         return NEVH_OK;
     return nevh__fail(&x->report, status ? status : NEVH_EDOM,
@@ -45,8 +46,8 @@ int nevh__section_value(nevh_sections *x, const nevh__track *k, double t,
                       name ? name : number, t);
 }
 
-int nevh__section_sample(nevh_sections *x, const nevh__track *k, double s,
-                         double *value) {
+int nevh__section_sample(nevh_sections *x, const nevh__section_state *k,
+                         double s, double *value) {
     *value = NAN;
     int status = nevh__section_step(x, s * x->h);
     return status ? status
@@ -54,7 +55,7 @@ int nevh__section_sample(nevh_sections *x, const nevh__track *k, double s,
                                         x->p_try, value);
 }
 
-static void keep(nevh_sections *x, nevh__track *k, double s, double t,
+static void keep(nevh_sections *x, nevh__section_state *k, double s, double t,
                  const double q[], const double p[]) {
     size_t size = x->branch->work.size * sizeof(double);
     k->found = true;
@@ -64,7 +65,7 @@ static void keep(nevh_sections *x, nevh__track *k, double s, double t,
     memcpy(k->p, p, size);
 }
 
-int nevh__section_take(nevh_sections *x, nevh__track *k, double h) {
+int nevh__section_take(nevh_sections *x, nevh__section_state *k, double h) {
     int status = NEVH_OK;
     if (h == 0)
         keep(x, k, 0, x->t, x->q, x->p);
@@ -77,8 +78,8 @@ int nevh__section_take(nevh_sections *x, nevh__track *k, double h) {
 
 typedef struct {
     nevh_sections *x;
-    nevh__track *k;
-    nevh__node a, b;          /* less the level */
+    nevh__section_state *k;
+    nevh__section_node a, b;  /* less the level */
     double level, best, last; /* |value| */
 } search;
 
@@ -117,8 +118,9 @@ static void narrow(search *r) {
     }
 }
 
-int nevh__section_search(nevh_sections *x, nevh__track *k, nevh__node a,
-                         nevh__node b, double level) {
+int nevh__section_search(nevh_sections *x, nevh__section_state *k,
+                         nevh__section_node a, nevh__section_node b,
+                         double level) {
     search r = {.x = x, .k = k, .a = a, .b = b, .level = level};
     r.a.value -= level;
     r.b.value -= level;

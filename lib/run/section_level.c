@@ -9,8 +9,8 @@ static const double most_levels = 1e4; /* within one step */
 static const double at_start = 1e-10;
 static const double met = 1e-9; /* part of a step */
 
-double nevh__section_index(const nevh__track *k, double value) {
-    double period = k->is.period;
+double nevh__section_index(const nevh__section_state *k, double value) {
+    double period = k->decl.period;
     if (period == 0)
         return value >= 0 ? 0 : -1;
     double index = floor(value / period);
@@ -19,8 +19,8 @@ double nevh__section_index(const nevh__track *k, double value) {
     return (index + 1) * period <= value ? index + 1 : index;
 }
 
-static bool on_level(const nevh__track *k, double value) {
-    return value == nevh__section_index(k, value) * k->is.period;
+static bool on_level(const nevh__section_state *k, double value) {
+    return value == nevh__section_index(k, value) * k->decl.period;
 }
 
 static int sign_of(double x) {
@@ -30,8 +30,8 @@ static int sign_of(double x) {
 /* Finds the levels of the next piece.  One at its beginning counts when the
    value came from the other side; one at its end is left for later, but at the
    end of the step where the slope tells that the value will go on. */
-static int open_piece(nevh_sections *x, nevh__track *k) {
-    nevh__node a = k->nodes[k->piece], b = k->nodes[k->piece + 1];
+static int open_piece(nevh_sections *x, nevh__section_state *k) {
+    nevh__section_node a = k->nodes[k->piece], b = k->nodes[k->piece + 1];
     double from = nevh__section_index(k, a.value);
     double to = nevh__section_index(k, b.value);
     bool on_a = on_level(k, a.value), on_b = on_level(k, b.value);
@@ -63,9 +63,9 @@ static int open_piece(nevh_sections *x, nevh__track *k) {
 }
 
 /* The point at the next level of the open piece. */
-static int locate(nevh_sections *x, nevh__track *k) {
-    nevh__node a = k->nodes[k->piece], b = k->nodes[k->piece + 1];
-    double level = k->level * k->is.period;
+static int locate(nevh_sections *x, nevh__section_state *k) {
+    nevh__section_node a = k->nodes[k->piece], b = k->nodes[k->piece + 1];
+    double level = k->level * k->decl.period;
     int status;
     if (a.value == level)
         status = nevh__section_take(x, k, a.s * x->h);
@@ -78,14 +78,14 @@ static int locate(nevh_sections *x, nevh__track *k) {
     return status;
 }
 
-static int next_crossing(nevh_sections *x, nevh__track *k) {
+static int next_crossing(nevh_sections *x, nevh__section_state *k) {
     int status = NEVH_OK, forward = x->h < 0 ? -1 : 1;
     while (!status && !k->found && k->piece + 1 < k->n_nodes) {
         if (!k->opened)
             status = open_piece(x, k);
         k->direction = k->way * forward;
         if (!status && k->left > 0) {
-            if (k->is.direction != -k->direction)
+            if (k->decl.direction != -k->direction)
                 status = locate(x, k);
             k->level += k->way;
             k->left--;
@@ -99,8 +99,8 @@ static int next_crossing(nevh_sections *x, nevh__track *k) {
 
 /* A time that is due, but not met by a step, is met by a shorter one; where the
    scheme chooses the times, that one is searched for. */
-static int meet(nevh_sections *x, nevh__track *k, double due) {
-    nevh__node a = {0, x->t - due}, b = {1, x->t_after - due};
+static int meet(nevh_sections *x, nevh__section_state *k, double due) {
+    nevh__section_node a = {0, x->t - due}, b = {1, x->t_after - due};
     if (!x->branch->own_time)
         return nevh__section_take(x, k, due - x->t);
     int status = nevh__section_search(x, k, a, b, 0);
@@ -112,7 +112,7 @@ static int meet(nevh_sections *x, nevh__track *k, double due) {
                       x->h, x->t, due);
 }
 
-static int next_strobe(nevh_sections *x, nevh__track *k) {
+static int next_strobe(nevh_sections *x, nevh__section_state *k) {
     double due = nevh__section_due(x, k), forward = x->h < 0 ? -1 : 1;
     double near = 8 * DBL_EPSILON * (fabs(x->t_after) + fabs(x->origin));
     double past = (x->t_after - due) * forward;
@@ -126,7 +126,7 @@ static int next_strobe(nevh_sections *x, nevh__track *k) {
     return status;
 }
 
-int nevh__section_next(nevh_sections *x, nevh__track *k) {
+int nevh__section_next(nevh_sections *x, nevh__section_state *k) {
     k->found = false;
-    return k->is.value ? next_crossing(x, k) : next_strobe(x, k);
+    return k->decl.value ? next_crossing(x, k) : next_strobe(x, k);
 }

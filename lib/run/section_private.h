@@ -12,13 +12,13 @@
 typedef struct {
     double s; /* part of the step's length */
     double value;
-} nevh__node;
+} nevh__section_node;
 
 enum { NEVH__MOST_NODES = 4 };
 
 /* A section along a run. */
 typedef struct {
-    nevh_section is; /* the name is its own copy, or NULL */
+    nevh_section decl; /* the name is its own copy, or NULL */
     size_t number;
     double value, slope; /* where the step at hand begins; slopes are with t,
                             NAN where they are unknown */
@@ -29,7 +29,7 @@ typedef struct {
 
     /* The step at hand: pieces between nodes, within which the value rises or
        falls; levels are multiples of the period. */
-    nevh__node nodes[NEVH__MOST_NODES];
+    nevh__section_node nodes[NEVH__MOST_NODES];
     size_t n_nodes, piece;
     bool opened;        /* the next three are of that piece */
     int way;            /* 1: the value rises with s */
@@ -40,14 +40,14 @@ typedef struct {
     double s, t;
     int direction;
     double *q, *p;
-} nevh__track;
+} nevh__section_state;
 
 struct nevh_sections {
     const nevh_stepper *stepper;
     nevh_stepper *branch; /* a copy */
     nevh_point_fn tell;
     void *data;
-    nevh__track *tracks;
+    nevh__section_state *states;
     size_t count;
     bool planned, crossings; /* crossings: not all are stroboscopic */
 
@@ -71,28 +71,29 @@ struct nevh_sections {
 /* A step of h from where the step at hand begins to q_try, p_try. */
 int nevh__section_step(nevh_sections *, double h);
 /* The time of a stroboscopic section's next point. */
-double nevh__section_due(const nevh_sections *, const nevh__track *);
+double nevh__section_due(const nevh_sections *, const nevh__section_state *);
 /* The section's value at a state; of stroboscopic ones, time since that. */
-int nevh__section_value(nevh_sections *, const nevh__track *, double t,
+int nevh__section_value(nevh_sections *, const nevh__section_state *, double t,
                         const double q[], const double p[], double *value);
 /* The value after a part s of the step at hand. */
-int nevh__section_sample(nevh_sections *, const nevh__track *, double s,
+int nevh__section_sample(nevh_sections *, const nevh__section_state *, double s,
                          double *value);
 /* The state after a step of h becomes the track's point. */
-int nevh__section_take(nevh_sections *, nevh__track *, double h);
+int nevh__section_take(nevh_sections *, nevh__section_state *, double h);
 /* Where between two nodes, on different sides of it, the value is `level`.  No
    point is found where the value jumps. */
-int nevh__section_search(nevh_sections *, nevh__track *, nevh__node a,
-                         nevh__node b, double level);
+int nevh__section_search(nevh_sections *, nevh__section_state *,
+                         nevh__section_node a, nevh__section_node b,
+                         double level);
 
 /* section_turn.c: the nodes of the step at hand.  Where the value may turn and
    cross a level within it, nodes are put there. */
-int nevh__section_nodes(nevh_sections *, nevh__track *);
+int nevh__section_nodes(nevh_sections *, nevh__section_state *);
 
 /* section_level.c */
 /* The multiple of the period at or below a value; without one, -1 below 0. */
-double nevh__section_index(const nevh__track *, double value);
+double nevh__section_index(const nevh__section_state *, double value);
 /* Finds the next point within the step at hand, if there is one. */
-int nevh__section_next(nevh_sections *, nevh__track *);
+int nevh__section_next(nevh_sections *, nevh__section_state *);
 
 #endif

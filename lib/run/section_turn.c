@@ -34,15 +34,16 @@ static double at(const cubic *m, double s) {
     return ((m->a * s + m->b) * s + m->c) * s + m->d;
 }
 
-static bool level_within(const nevh__track *k, double low, double high) {
-    if (k->is.period == 0)
+static bool level_within(const nevh__section_state *k, double low,
+                         double high) {
+    if (k->decl.period == 0)
         return low <= 0 && 0 <= high;
-    return nevh__section_index(k, high) * k->is.period >= low;
+    return nevh__section_index(k, high) * k->decl.period >= low;
 }
 
 /* Whether there is a level that the value, which turns near `turn` instead of
    going straight, may pass. */
-static bool matters(const nevh__track *k, double turn) {
+static bool matters(const nevh__section_state *k, double turn) {
     double low = fmin(k->value, k->value_after);
     double high = fmax(k->value, k->value_after);
     double top = turn >= high ? turn + doubt * (turn - high) : high;
@@ -51,7 +52,7 @@ static bool matters(const nevh__track *k, double turn) {
 }
 
 /* Whether the value may turn near a level, as far as the flow tells. */
-static bool may_turn(const nevh__track *k, double begin, double end) {
+static bool may_turn(const nevh__section_state *k, double begin, double end) {
     double change = k->value_after - k->value;
     double reach = (fabs(begin) + fabs(end)) / 4;
     double low = fmin(k->value, k->value_after) - reach;
@@ -64,9 +65,9 @@ static bool may_turn(const nevh__track *k, double begin, double end) {
 
 typedef struct {
     nevh_sections *x;
-    nevh__track *k;
+    nevh__section_state *k;
     double sign; /* times the value has a minimum */
-    nevh__node low, least, high;
+    nevh__section_node low, least, high;
 } dip;
 
 static bool same_side(const dip *d, double value) {
@@ -81,8 +82,8 @@ static int enclose(dip *d) {
     double above = d->sign * (d->high.value - d->least.value);
     if ((below > 0) == (above > 0))
         return NEVH_OK;
-    nevh__node end = below > 0 ? d->high : d->low;
-    nevh__node next = {end.s + (below > 0 ? -close : close), 0};
+    nevh__section_node end = below > 0 ? d->high : d->low;
+    nevh__section_node next = {end.s + (below > 0 ? -close : close), 0};
     *(below > 0 ? &d->low : &d->high) = d->least;
     d->least = next;
     return nevh__section_sample(d->x, d->k, next.s, &d->least.value);
@@ -110,7 +111,8 @@ static int descend(dip *d) {
         status = gsl_min_fminimizer_iterate(m);
         double lowest = d->sign * gsl_min_fminimizer_f_minimum(m);
         bool through = !same_side(d, lowest);
-        d->least = (nevh__node){gsl_min_fminimizer_x_minimum(m), lowest};
+        d->least =
+            (nevh__section_node){gsl_min_fminimizer_x_minimum(m), lowest};
         if (through ||
             gsl_min_fminimizer_x_upper(m) - gsl_min_fminimizer_x_lower(m) <=
                 narrow)
@@ -120,7 +122,8 @@ static int descend(dip *d) {
 }
 
 /* Moves the node to where the value turns, if all about it are on one side. */
-static int dig(nevh_sections *x, nevh__track *k, size_t i, double sign) {
+static int dig(nevh_sections *x, nevh__section_state *k, size_t i,
+               double sign) {
     dip d = {x, k, sign, k->nodes[i - 1], k->nodes[i], k->nodes[i + 1]};
     if (!same_side(&d, d.low.value) || !same_side(&d, d.high.value))
         return NEVH_OK;
@@ -133,8 +136,8 @@ static int dig(nevh_sections *x, nevh__track *k, size_t i, double sign) {
 }
 
 /* Puts a node where the model turns. */
-static int add_node(nevh_sections *x, nevh__track *k, double s) {
-    nevh__node node = {fmin(fmax(s, inside), 1 - inside), 0};
+static int add_node(nevh_sections *x, nevh__section_state *k, double s) {
+    nevh__section_node node = {fmin(fmax(s, inside), 1 - inside), 0};
     if (node.s <= k->nodes[k->n_nodes - 1].s)
         return NEVH_OK;
     int status = nevh__section_sample(x, k, node.s, &node.value);
@@ -144,7 +147,7 @@ static int add_node(nevh_sections *x, nevh__track *k, double s) {
 }
 
 /* Nodes within the step, and what makes each a minimum. */
-static int add_nodes(nevh_sections *x, nevh__track *k, const cubic *m,
+static int add_nodes(nevh_sections *x, nevh__section_state *k, const cubic *m,
                      double sign[]) {
     double turn[2];
     int status = NEVH_OK;
@@ -161,7 +164,8 @@ static int add_nodes(nevh_sections *x, nevh__track *k, const cubic *m,
 
 /* At its end the step's own slope is taken: the flow's is that of the next
    step, from which it differs by the scheme's error. */
-static int look_for_turns(nevh_sections *x, nevh__track *k, double begin) {
+static int look_for_turns(nevh_sections *x, nevh__section_state *k,
+                          double begin) {
     double sign[NEVH__MOST_NODES], before;
     int status = nevh__section_sample(x, k, 1 - behind, &before);
     if (status)
@@ -169,19 +173,19 @@ static int look_for_turns(nevh_sections *x, nevh__track *k, double begin) {
     cubic m = model_of(k->value, k->value_after, begin,
                        (k->value_after - before) / behind);
     status = add_nodes(x, k, &m, sign);
-    k->nodes[k->n_nodes++] = (nevh__node){1, k->value_after};
+    k->nodes[k->n_nodes++] = (nevh__section_node){1, k->value_after};
     for (size_t i = 1; !status && i + 1 < k->n_nodes; i++)
         status = dig(x, k, i, sign[i]);
     return status;
 }
 
-int nevh__section_nodes(nevh_sections *x, nevh__track *k) {
+int nevh__section_nodes(nevh_sections *x, nevh__section_state *k) {
     double span = x->t_after - x->t;
     double begin = k->slope * span, end = k->slope_after * span;
-    k->nodes[0] = (nevh__node){0, k->value};
+    k->nodes[0] = (nevh__section_node){0, k->value};
     k->n_nodes = 1;
     if (isfinite(begin) && isfinite(end) && may_turn(k, begin, end))
         return look_for_turns(x, k, begin);
-    k->nodes[k->n_nodes++] = (nevh__node){1, k->value_after};
+    k->nodes[k->n_nodes++] = (nevh__section_node){1, k->value_after};
     return NEVH_OK;
 }

@@ -136,8 +136,8 @@ nevh_stepper *nevh_stepper_new(const nevh_system *system,
 void nevh_stepper_free(nevh_stepper *s) {
     if (!s)
         return;
-    if (s->work.plan && s->work.integrator->kernel->unplan)
-        s->work.integrator->kernel->unplan(&s->work);
+    if (s->work.plan && s->work.integrator->kernel->clear)
+        s->work.integrator->kernel->clear(&s->work);
     nevh_field_free(s->work.field);
     nevh__transform_free(s->work.transform);
     free((double *)s->options.gradient_steps);
@@ -237,7 +237,7 @@ void nevh__undo(nevh_stepper *s) {
 static void pass_time(nevh_stepper *s, double t) {
     double passed = s->work.elapsed + (s->own_time ? s->time_lost : 0);
     s->last_t = t + passed;
-    s->time_lost = nevh__lost(s->last_t, t, passed);
+    s->time_lost = nevh__roundoff(s->last_t, t, passed);
 }
 
 /* Two rows, where there is a ledger; see nevh__ledger_close. */

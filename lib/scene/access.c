@@ -4,7 +4,7 @@
 #include <string.h>
 
 /* The text of KEY = TEXT; "" if there is none. */
-static const char *text_of(const nevh_scene *s, nevh__section section,
+static const char *text_of(const nevh_scene *s, nevh__section_kind section,
                            const char *key) {
     for (size_t i = 0; i < s->n_statements; i++)
         if (s->statements[i].section == section &&

@@ -75,7 +75,7 @@ static bool add_variable(nevh_scene *s, const nevh__piece *name, size_t k,
 }
 
 /* The elements of NAME or NAME[k], from and to (not included). */
-static bool find_elements(nevh_scene *s, const nevh__model *m,
+static bool find_elements(nevh_scene *s, const nevh__scene_model *m,
                           const nevh__piece *name, const nevh__head *head,
                           size_t count, size_t *from, size_t *to) {
     long k = 0;
@@ -97,7 +97,7 @@ static bool find_elements(nevh_scene *s, const nevh__model *m,
     return true;
 }
 
-static bool add_values(nevh_scene *s, const nevh__model *m,
+static bool add_values(nevh_scene *s, const nevh__scene_model *m,
                        const nevh__piece *name, const nevh__head *head,
                        size_t from, size_t to, reading *r) {
     const nevh__entry *entry =
@@ -112,7 +112,7 @@ static bool add_values(nevh_scene *s, const nevh__model *m,
     return true;
 }
 
-static bool add_read(nevh_scene *s, const nevh__model *m,
+static bool add_read(nevh_scene *s, const nevh__scene_model *m,
                      const nevh__piece *name, const nevh__head *head,
                      reading *r) {
     size_t count = 0, first = 0, from, to;
@@ -137,7 +137,7 @@ static bool add_read(nevh_scene *s, const nevh__model *m,
     return fine;
 }
 
-static bool read_name(nevh_scene *s, const nevh__model *m,
+static bool read_name(nevh_scene *s, const nevh__scene_model *m,
                       const nevh__piece *name, reading *r) {
     nevh__head head;
     nevh__formula_error error = {0};
@@ -148,7 +148,7 @@ static bool read_name(nevh_scene *s, const nevh__model *m,
     return fine;
 }
 
-static bool read_all(const nevh__model *m, reading *r) {
+static bool read_all(const nevh__scene_model *m, reading *r) {
     for (size_t k = 0; k < m->n; k++)
         r->q[k] = r->p[k] = k;
     r->nq = r->np = m->n;
@@ -156,8 +156,8 @@ static bool read_all(const nevh__model *m, reading *r) {
 }
 
 /* , NAME, NAME ... */
-static bool read_names(nevh_scene *s, nevh__model *m, const nevh__piece *after,
-                       reading *r) {
+static bool read_names(nevh_scene *s, nevh__scene_model *m,
+                       const nevh__piece *after, reading *r) {
     size_t count;
     nevh__piece rest;
     size_t from = (size_t)(after->at - after->line->text);
@@ -178,7 +178,7 @@ static bool read_names(nevh_scene *s, nevh__model *m, const nevh__piece *after,
 }
 
 /* file("NAME" AFTER): the name and what follows it up to the last ")". */
-static bool cut(nevh_scene *s, nevh__model *m, const nevh__piece *value,
+static bool cut(nevh_scene *s, nevh__scene_model *m, const nevh__piece *value,
                 nevh__piece *name, nevh__piece *after) {
     size_t at = (size_t)(value->at - value->line->text),
            bytes = strlen(value->text);
@@ -260,7 +260,7 @@ static nevh__code *code_of(nevh_scene *s, const nevh__statement *statement) {
     return s->codes ? s->codes[at] : NULL;
 }
 
-static bool make_room(nevh_scene *s, nevh__model *m, reading *r) {
+static bool make_room(nevh_scene *s, nevh__scene_model *m, reading *r) {
     r->q = nevh__pool_take(&m->pool, m->n, sizeof *r->q);
     r->p = nevh__pool_take(&m->pool, m->n, sizeof *r->p);
     r->c = nevh__pool_take(&m->pool, MOST_READ, sizeof *r->c);
@@ -271,7 +271,7 @@ static bool has_gradient(const handed *h) {
     return h->code->gradient && h->nq <= MOST_READ && h->np <= MOST_READ;
 }
 
-static bool add(nevh_scene *s, nevh__model *m, const char *effect,
+static bool add(nevh_scene *s, nevh__scene_model *m, const char *effect,
                 const reading *r, const nevh__code *code) {
     handed *h = nevh__pool_take(&m->pool, 1, sizeof *h);
     if (!h)
@@ -296,7 +296,7 @@ bool nevh__is_code(const nevh__statement *statement) {
            strncmp(statement->value.text, "file(", 5) == 0;
 }
 
-bool nevh__model_code(nevh_scene *s, nevh__model *m,
+bool nevh__model_code(nevh_scene *s, nevh__scene_model *m,
                       const nevh__statement *statement) {
     nevh__piece name, after;
     reading r = {0};
@@ -312,18 +312,18 @@ bool nevh__model_code(nevh_scene *s, nevh__model *m,
 }
 
 /* The terms that waited for it get its gradient. */
-static void announce(nevh__model *m, const nevh__code *code) {
+static void announce(nevh__scene_model *m, const nevh__code *code) {
     for (size_t i = 0; i < m->system->n_terms; i++) {
-        nevh_term *is = &m->system->terms[i]->is;
-        if (is->value != value)
+        nevh_term *decl = &m->system->terms[i]->decl;
+        if (decl->value != value)
             continue;
-        const handed *h = is->params;
+        const handed *h = decl->params;
         if (h->code == code && has_gradient(h))
-            is->gradient = gradient;
+            decl->gradient = gradient;
     }
 }
 
-static bool load_statement(nevh_scene *s, nevh__model *m,
+static bool load_statement(nevh_scene *s, nevh__scene_model *m,
                            const nevh__statement *statement) {
     nevh__piece name, after;
     nevh__code *code = code_of(s, statement);

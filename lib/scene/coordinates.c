@@ -13,7 +13,7 @@ static bool is_motion(const nevh__statement *statement) {
     return (name[0] == 'p' || name[0] == 'v') && name[1] == '_' && name[2];
 }
 
-static bool add_coordinate(nevh_scene *s, nevh__model *m,
+static bool add_coordinate(nevh_scene *s, nevh__scene_model *m,
                            const nevh__statement *statement) {
     nevh__shape shape;
     nevh__formula_error error = {0};
@@ -32,8 +32,8 @@ static bool add_coordinate(nevh_scene *s, nevh__model *m,
     return true;
 }
 
-static char *name_of(nevh_scene *s, nevh__model *m, const nevh__coordinate *c,
-                     size_t k) {
+static char *name_of(nevh_scene *s, nevh__scene_model *m,
+                     const nevh__coordinate *c, size_t k) {
     const char *name = c->statement->head.name;
     char *full =
         c->count ? nevh__text("%s[%zu]", name, k + 1) : nevh__text("%s", name);
@@ -46,7 +46,7 @@ static char *name_of(nevh_scene *s, nevh__model *m, const nevh__coordinate *c,
     return copy;
 }
 
-static bool add_names(nevh_scene *s, nevh__model *m,
+static bool add_names(nevh_scene *s, nevh__scene_model *m,
                       const nevh__coordinate *c) {
     for (size_t k = 0; k < (c->count ? c->count : 1); k++)
         if (!(m->coordinate_names[c->first + k] = name_of(s, m, c, k)))
@@ -54,7 +54,7 @@ static bool add_names(nevh_scene *s, nevh__model *m,
     return true;
 }
 
-static bool make_room(nevh_scene *s, nevh__model *m) {
+static bool make_room(nevh_scene *s, nevh__scene_model *m) {
     m->coordinate_names = nevh__pool_take(&m->pool, m->n, sizeof(char *));
     m->q = nevh__pool_take(&m->pool, m->n, sizeof *m->q);
     m->p = nevh__pool_take(&m->pool, m->n, sizeof *m->p);
@@ -67,7 +67,7 @@ static bool make_room(nevh_scene *s, nevh__model *m) {
            nevh__scene_no_memory(s);
 }
 
-bool nevh__model_coordinates(nevh_scene *s, nevh__model *m) {
+bool nevh__model_coordinates(nevh_scene *s, nevh__scene_model *m) {
     m->coordinates =
         nevh__pool_take(&m->pool, s->n_statements, sizeof *m->coordinates);
     if (!m->coordinates)
@@ -86,7 +86,7 @@ bool nevh__model_coordinates(nevh_scene *s, nevh__model *m) {
 }
 
 /* period FORMULA */
-static bool take_period(nevh_scene *s, nevh__model *m,
+static bool take_period(nevh_scene *s, nevh__scene_model *m,
                         const nevh__coordinate *c, const nevh__piece *clause) {
     const char *text = clause->text;
     nevh__piece formula;
@@ -112,8 +112,8 @@ static bool take_period(nevh_scene *s, nevh__model *m,
 }
 
 /* Notes that momenta are given; they must not be twice. */
-static bool claim(nevh_scene *s, nevh__model *m, size_t first, size_t count,
-                  const nevh__statement *by) {
+static bool claim(nevh_scene *s, nevh__scene_model *m, size_t first,
+                  size_t count, const nevh__statement *by) {
     if (m->moving[first])
         return nevh__scene_fail(s, NEVH_EINVAL, &by->key,
                                 "momentum or velocity of %s: given in line %zu "
@@ -126,8 +126,8 @@ static bool claim(nevh_scene *s, nevh__model *m, size_t first, size_t count,
 }
 
 /* VALUE or VALUE, MOMENTUM */
-static bool take_pair(nevh_scene *s, nevh__model *m, const nevh__coordinate *c,
-                      const nevh__piece *value) {
+static bool take_pair(nevh_scene *s, nevh__scene_model *m,
+                      const nevh__coordinate *c, const nevh__piece *value) {
     size_t given, k = c->first;
     nevh__piece *parts = nevh__piece_list(s, &m->pool, value, &given);
     if (!parts || !nevh__piece_number(s, m, &parts[0], &m->q[k]))
@@ -139,7 +139,7 @@ static bool take_pair(nevh_scene *s, nevh__model *m, const nevh__coordinate *c,
                           claim(s, m, k, 1, c->statement));
 }
 
-static bool take_coordinate(nevh_scene *s, nevh__model *m,
+static bool take_coordinate(nevh_scene *s, nevh__scene_model *m,
                             const nevh__coordinate *c) {
     nevh__piece rest = c->statement->value, value, clause;
     char stop;
@@ -155,7 +155,7 @@ static bool take_coordinate(nevh_scene *s, nevh__model *m,
 }
 
 /* p_NAME = ..., v_NAME = ... */
-static bool take_motion(nevh_scene *s, nevh__model *m,
+static bool take_motion(nevh_scene *s, nevh__scene_model *m,
                         const nevh__statement *statement) {
     size_t count, first;
     nevh__shape shape;
@@ -182,7 +182,7 @@ static bool take_motion(nevh_scene *s, nevh__model *m,
                              (velocity ? m->v : m->p) + first);
 }
 
-static const char *with_prefix(nevh_scene *s, nevh__model *m,
+static const char *with_prefix(nevh_scene *s, nevh__scene_model *m,
                                const char *prefix, const char *name) {
     char *text = nevh__pool_take(&m->pool, strlen(name) + 3, 1);
     if (!text)
@@ -190,7 +190,7 @@ static const char *with_prefix(nevh_scene *s, nevh__model *m,
     return text ? strcat(strcpy(text, prefix), name) : name;
 }
 
-static bool fail_start(nevh_scene *s, nevh__model *m,
+static bool fail_start(nevh_scene *s, nevh__scene_model *m,
                        const nevh__statement *one) {
     static const char *const prefix[] = {"", "p_", "v_"};
     const char **known =
@@ -208,7 +208,7 @@ static bool fail_start(nevh_scene *s, nevh__model *m,
 }
 
 /* Where a name of an array is given without an index, all of it is meant. */
-static bool start_range(nevh_scene *s, const nevh__model *m,
+static bool start_range(nevh_scene *s, const nevh__scene_model *m,
                         const nevh__statement *one, size_t *from, size_t *to) {
     size_t count, first;
     nevh__names_find(m->names, one->head.name, &count, &first);
@@ -220,7 +220,7 @@ static bool start_range(nevh_scene *s, const nevh__model *m,
 }
 
 /* A start from outside: of coordinates, momenta or velocities. */
-static bool take_start(nevh_scene *s, nevh__model *m,
+static bool take_start(nevh_scene *s, nevh__scene_model *m,
                        const nevh__statement *one) {
     size_t from, to, first;
     nevh__meaning is = nevh__names_find(m->names, one->head.name, NULL, &first);
@@ -249,7 +249,7 @@ static bool take_start(nevh_scene *s, nevh__model *m,
     return true;
 }
 
-bool nevh__model_values(nevh_scene *s, nevh__model *m) {
+bool nevh__model_values(nevh_scene *s, nevh__scene_model *m) {
     for (size_t i = 0; i < m->n_coordinates; i++)
         if (!take_coordinate(s, m, &m->coordinates[i]))
             return false;

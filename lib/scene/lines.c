@@ -68,7 +68,7 @@ static bool cut_lines(nevh_scene *s, const char *text, size_t bytes) {
 
 /* [NAME] */
 static bool cut_section(nevh_scene *s, const nevh__piece *all,
-                        nevh__section *section) {
+                        nevh__section_kind *section) {
     size_t bytes = strlen(all->text),
            from = (size_t)(all->at - all->line->text);
     if (bytes < 2 || all->text[bytes - 1] != ']')
@@ -80,7 +80,7 @@ static bool cut_section(nevh_scene *s, const nevh__piece *all,
         return false;
     for (size_t i = 0; i < NEVH__SECTION_COUNT; i++)
         if (strcmp(section_names[i], name.text) == 0) {
-            *section = (nevh__section)i;
+            *section = (nevh__section_kind)i;
             return true;
         }
     return nevh__scene_fail_word(s, &name, "section", name.text, section_names,
@@ -128,7 +128,7 @@ bool nevh__statement_parse(nevh_scene *s, const nevh__line *line,
 }
 
 static bool cut_line(nevh_scene *s, const nevh__line *line, bool *begun,
-                     nevh__section *section) {
+                     nevh__section_kind *section) {
     nevh__piece all;
     if (!cut_comment(s, line, &all) || !all.text[0])
         return !s->status;
@@ -154,15 +154,15 @@ bool nevh__scene_cut(nevh_scene *s, const char *text, size_t bytes) {
     if (!s->statements)
         return nevh__scene_no_memory(s);
     bool begun = false;
-    nevh__section section = NEVH__SCENE;
+    nevh__section_kind section = NEVH__SCENE;
     for (size_t i = 0; i < s->n_lines; i++)
         if (!cut_line(s, &s->lines[i], &begun, &section))
             return false;
     return true;
 }
 
-bool nevh__scene_each(nevh_scene *s, nevh__model *m, nevh__section section,
-                      nevh__visitor visit) {
+bool nevh__scene_each(nevh_scene *s, nevh__scene_model *m,
+                      nevh__section_kind section, nevh__visitor visit) {
     for (size_t i = 0; i < s->n_statements; i++)
         if (s->statements[i].section == section &&
             !visit(s, m, &s->statements[i]))

@@ -74,7 +74,7 @@ nevh__tree *nevh__piece_tree(nevh_scene *s, const nevh__piece *piece) {
     return tree;
 }
 
-bool nevh__piece_number(nevh_scene *s, const nevh__model *m,
+bool nevh__piece_number(nevh_scene *s, const nevh__scene_model *m,
                         const nevh__piece *piece, double *value) {
     nevh__formula_error error = {0};
     nevh__tree *tree = nevh__piece_tree(s, piece);
@@ -85,7 +85,7 @@ bool nevh__piece_number(nevh_scene *s, const nevh__model *m,
     return !status || nevh__scene_fail_formula(s, piece, &error);
 }
 
-bool nevh__piece_check(nevh_scene *s, const nevh__model *m,
+bool nevh__piece_check(nevh_scene *s, const nevh__scene_model *m,
                        const nevh__piece *piece, unsigned allowed) {
     nevh__formula_error error = {0};
     nevh__tree *tree = nevh__piece_tree(s, piece);

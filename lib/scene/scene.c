@@ -8,7 +8,7 @@
 
 enum { MOST_BYTES = 1 << 24 };
 
-void nevh__model_free(nevh__model *m) {
+void nevh__model_free(nevh__scene_model *m) {
     if (!m)
         return;
     nevh_system_free(m->system);
@@ -23,8 +23,8 @@ void nevh__model_free(nevh__model *m) {
     free(m);
 }
 
-static nevh__model *new_model(nevh_scene *s) {
-    nevh__model *m = nevh__array(1, sizeof *m);
+static nevh__scene_model *new_model(nevh_scene *s) {
+    nevh__scene_model *m = nevh__array(1, sizeof *m);
     if (!m || !(m->names = nevh__names_new())) {
         free(m);
         nevh__scene_no_memory(s);
@@ -195,7 +195,7 @@ static bool check_assignment(nevh_scene *s, const nevh__statement *statement) {
 /* Takes the model anew, with what was put last on a list, or without it. */
 static int keep_if_fine(nevh_scene *s, nevh__statement *statement, bool fine,
                         size_t *count) {
-    nevh__model *model = fine ? new_model(s) : NULL;
+    nevh__scene_model *model = fine ? new_model(s) : NULL;
     if (!model) {
         --*count;
         nevh__head_free(&statement->head);
@@ -258,7 +258,7 @@ int nevh_scene_set_transform(nevh_scene *s, const char *formula) {
     if (!piece)
         return s->status;
     s->transform = piece;
-    nevh__model *model = new_model(s);
+    nevh__scene_model *model = new_model(s);
     if (!model) {
         s->transform = before;
         return s->status;

@@ -7,13 +7,13 @@
 
 enum { ANYTHING = NEVH__READS_TIME | NEVH__READS_STATE | NEVH__READS_V };
 
-bool nevh__formula_check(nevh_scene *s, const nevh__model *m,
+bool nevh__formula_check(nevh_scene *s, const nevh__scene_model *m,
                          const nevh__piece *piece, nevh__formula *formula) {
     *formula = (nevh__formula){.piece = *piece};
     return nevh__piece_check(s, m, piece, ANYTHING);
 }
 
-nevh__formula *nevh__formula_list(nevh_scene *s, nevh__model *m,
+nevh__formula *nevh__formula_list(nevh_scene *s, nevh__scene_model *m,
                                   const nevh__piece *value, size_t *count) {
     nevh__piece *list = nevh__piece_list(s, &m->pool, value, count);
     if (!list)
@@ -57,7 +57,7 @@ static bool make_tape(nevh_scene *s, nevh__formula *formula) {
 }
 
 static bool make_room(nevh_scene *s) {
-    nevh__model *m = s->model;
+    nevh__scene_model *m = s->model;
     if (!m->velocities)
         m->velocities = nevh__array(m->n, sizeof *m->velocities);
     if (!m->velocity_room)
@@ -67,7 +67,7 @@ static bool make_room(nevh_scene *s) {
 
 bool nevh__formula_value(nevh_scene *s, nevh__formula *formula, nevh__state *at,
                          double *value) {
-    nevh__model *m = s->model;
+    nevh__scene_model *m = s->model;
     if (!formula->tape && !make_tape(s, formula))
         return false;
     if (!at->moving && nevh__tape_count(formula->tape, NEVH__C)) {

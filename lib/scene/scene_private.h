@@ -38,10 +38,10 @@ typedef enum {
     NEVH__LABELS,
     NEVH__RUN,
     NEVH__SECTION_COUNT
-} nevh__section;
+} nevh__section_kind;
 
 typedef struct {
-    nevh__section section;
+    nevh__section_kind section;
     nevh__head head;
     nevh__piece key, value;
 } nevh__statement;
@@ -78,13 +78,13 @@ typedef struct {
 } nevh__items;
 
 typedef struct {
-    nevh_scene_section is;
+    nevh_scene_section decl;
     nevh__formula left, right; /* what crosses, and where */
     nevh__formula *items;
 } nevh__crossing;
 
 typedef struct {
-    nevh_scene_part is;
+    nevh_scene_part decl;
     nevh__formula *values;
 } nevh__drawn;
 
@@ -117,7 +117,7 @@ typedef struct {
     nevh__formula judged; /* where the scene has one, from outside */
     nevh__owned owned_shown;
     double *velocities, *velocity_room; /* n; NULL until asked for */
-} nevh__model;
+} nevh__scene_model;
 
 typedef struct nevh__code nevh__code; /* "scene/code_private.h" */
 
@@ -139,7 +139,7 @@ struct nevh_scene {
     size_t n_starts;
     const nevh__piece *transform; /* from outside; NULL: the scene's */
     const nevh__piece *judged;    /* from outside; NULL: none */
-    nevh__model *model;
+    nevh__scene_model *model;
     int status;
     char message[2000];
 };
@@ -182,10 +182,10 @@ size_t nevh__piece_column(const nevh__piece *);
 
 /* Formulas that stand in pieces. */
 nevh__tree *nevh__piece_tree(nevh_scene *, const nevh__piece *);
-bool nevh__piece_number(nevh_scene *, const nevh__model *, const nevh__piece *,
-                        double *value);
-bool nevh__piece_check(nevh_scene *, const nevh__model *, const nevh__piece *,
-                       unsigned allowed);
+bool nevh__piece_number(nevh_scene *, const nevh__scene_model *,
+                        const nevh__piece *, double *value);
+bool nevh__piece_check(nevh_scene *, const nevh__scene_model *,
+                       const nevh__piece *, unsigned allowed);
 
 /* Formulas of time, state and velocities, and their values at one state. */
 typedef struct {
@@ -193,14 +193,14 @@ typedef struct {
     const double *q, *p;
     bool moving; /* the model's velocities are those of this state */
 } nevh__state;
-bool nevh__formula_check(nevh_scene *, const nevh__model *, const nevh__piece *,
-                         nevh__formula *);
+bool nevh__formula_check(nevh_scene *, const nevh__scene_model *,
+                         const nevh__piece *, nevh__formula *);
 bool nevh__formula_value(nevh_scene *, nevh__formula *, nevh__state *,
                          double *value);
 bool nevh__formula_values(nevh_scene *, nevh__formula[], size_t count,
                           nevh__state, double values[]);
 /* The parts of a list; NULL on failure. */
-nevh__formula *nevh__formula_list(nevh_scene *, nevh__model *,
+nevh__formula *nevh__formula_list(nevh_scene *, nevh__scene_model *,
                                   const nevh__piece *, size_t *count);
 
 /* What NAME[...] = ... gives to each element. */
@@ -209,20 +209,21 @@ typedef struct {
     size_t count; /* at least 1 */
 } nevh__shape;
 /* The shape that NAME, NAME[1..N] or NAME[i = 1..N] has. */
-bool nevh__head_shape(nevh_scene *, const nevh__model *,
+bool nevh__head_shape(nevh_scene *, const nevh__scene_model *,
                       const nevh__statement *, nevh__shape *);
 /* Values: a list of `count`, one for all, or a formula of the index. */
-bool nevh__head_values(nevh_scene *, nevh__model *, const nevh__statement *,
-                       const nevh__piece *value, size_t count, double values[]);
+bool nevh__head_values(nevh_scene *, nevh__scene_model *,
+                       const nevh__statement *, const nevh__piece *value,
+                       size_t count, double values[]);
 /* What a parameter was set to from outside, or NULL. */
 const nevh__statement *nevh__scene_assignment(const nevh_scene *,
                                               const char *name);
 /* A bound of a range. */
-bool nevh__head_bound(nevh_scene *, const nevh__model *, const nevh__piece *key,
-                      const nevh__tree *, long *);
+bool nevh__head_bound(nevh_scene *, const nevh__scene_model *,
+                      const nevh__piece *key, const nevh__tree *, long *);
 /* The coordinates that x, x[3], x[2..N] or x[i = 1..N] are, or those of p_x:
    from the first to before the last. */
-bool nevh__head_range(nevh_scene *, const nevh__model *,
+bool nevh__head_range(nevh_scene *, const nevh__scene_model *,
                       const nevh__statement *, size_t *from, size_t *to);
 /* Refuses the name of a column that every table of an orbit has. */
 bool nevh__head_column(nevh_scene *, const nevh__statement *);
@@ -230,17 +231,17 @@ bool nevh__head_column(nevh_scene *, const nevh__statement *);
 bool nevh__head_plain(nevh_scene *, const nevh__statement *);
 
 /* Sections, in the order in which the model needs them. */
-bool nevh__model_parameters(nevh_scene *, nevh__model *);
-bool nevh__model_coordinates(nevh_scene *, nevh__model *);
-bool nevh__model_definitions(nevh_scene *, nevh__model *);
-bool nevh__model_values(nevh_scene *, nevh__model *);
-bool nevh__model_terms(nevh_scene *, nevh__model *);
-bool nevh__model_friction(nevh_scene *, nevh__model *);
-bool nevh__model_shown(nevh_scene *, nevh__model *); /* and monitored */
-bool nevh__model_crossings(nevh_scene *, nevh__model *);
-bool nevh__model_labels(nevh_scene *, nevh__model *);
-bool nevh__model_run(nevh_scene *, nevh__model *);
-void nevh__model_free(nevh__model *);
+bool nevh__model_parameters(nevh_scene *, nevh__scene_model *);
+bool nevh__model_coordinates(nevh_scene *, nevh__scene_model *);
+bool nevh__model_definitions(nevh_scene *, nevh__scene_model *);
+bool nevh__model_values(nevh_scene *, nevh__scene_model *);
+bool nevh__model_terms(nevh_scene *, nevh__scene_model *);
+bool nevh__model_friction(nevh_scene *, nevh__scene_model *);
+bool nevh__model_shown(nevh_scene *, nevh__scene_model *); /* and monitored */
+bool nevh__model_crossings(nevh_scene *, nevh__scene_model *);
+bool nevh__model_labels(nevh_scene *, nevh__scene_model *);
+bool nevh__model_run(nevh_scene *, nevh__scene_model *);
+void nevh__model_free(nevh__scene_model *);
 
 /* v = dH/dp at one state, n each; every term brings its gradient.
    room     of nevh__velocity_room, to be freed; NULL when memory is out */
@@ -266,7 +267,8 @@ nevh__switch *nevh__scene_effect(const nevh_scene *, const char *name);
 bool nevh__folder_of(const char *path, char **folder);
 /* NAME = file("term.c", ...): adds its term. */
 bool nevh__is_code(const nevh__statement *);
-bool nevh__model_code(nevh_scene *, nevh__model *, const nevh__statement *);
+bool nevh__model_code(nevh_scene *, nevh__scene_model *,
+                      const nevh__statement *);
 /* Loads the code of an effect, if it has any, before that is switched on. */
 bool nevh__scene_load_code(nevh_scene *, const char *effect);
 void nevh__scene_unload_code(nevh_scene *);
@@ -284,9 +286,9 @@ bool nevh__scene_fail_effect(nevh_scene *, const nevh__piece *);
 nevh__switch *nevh__scene_find_effect(nevh_scene *, const char *name);
 
 /* Calls visit for each statement of a section, until one fails. */
-typedef bool (*nevh__visitor)(nevh_scene *, nevh__model *,
+typedef bool (*nevh__visitor)(nevh_scene *, nevh__scene_model *,
                               const nevh__statement *);
-bool nevh__scene_each(nevh_scene *, nevh__model *, nevh__section,
+bool nevh__scene_each(nevh_scene *, nevh__scene_model *, nevh__section_kind,
                       nevh__visitor);
 
 #endif

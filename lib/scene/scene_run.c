@@ -5,7 +5,7 @@
 #include <nevh/integrator.h>
 #include <string.h>
 
-static bool take_number(nevh_scene *s, const nevh__model *m,
+static bool take_number(nevh_scene *s, const nevh__scene_model *m,
                         const nevh__piece *value, bool positive,
                         double *number) {
     if (!nevh__piece_number(s, m, value, number))
@@ -16,7 +16,7 @@ static bool take_number(nevh_scene *s, const nevh__model *m,
 }
 
 /* A list of numbers greater than 0. */
-static bool take_numbers(nevh_scene *s, nevh__model *m,
+static bool take_numbers(nevh_scene *s, nevh__scene_model *m,
                          const nevh__piece *value, const double **numbers,
                          size_t *count) {
     nevh__piece *list = nevh__piece_list(s, &m->pool, value, count);
@@ -62,9 +62,9 @@ static bool check_integrator(nevh_scene *s, const nevh__piece *name) {
 
 typedef bool (*checker)(nevh_scene *, const nevh__piece *);
 
-static bool take_names(nevh_scene *s, nevh__model *m, const nevh__piece *value,
-                       checker check, const char *const **names,
-                       size_t *count) {
+static bool take_names(nevh_scene *s, nevh__scene_model *m,
+                       const nevh__piece *value, checker check,
+                       const char *const **names, size_t *count) {
     nevh__piece *list = nevh__piece_list(s, &m->pool, value, count);
     if (!list)
         return false;
@@ -83,36 +83,39 @@ static bool take_names(nevh_scene *s, nevh__model *m, const nevh__piece *value,
     return true;
 }
 
-static bool take_t_start(nevh_scene *s, nevh__model *m, const nevh__piece *v) {
+static bool take_t_start(nevh_scene *s, nevh__scene_model *m,
+                         const nevh__piece *v) {
     return take_number(s, m, v, false, &m->run.t_start);
 }
 
-static bool take_t_end(nevh_scene *s, nevh__model *m, const nevh__piece *v) {
+static bool take_t_end(nevh_scene *s, nevh__scene_model *m,
+                       const nevh__piece *v) {
     return take_number(s, m, v, false, &m->run.t_end);
 }
 
-static bool take_dt(nevh_scene *s, nevh__model *m, const nevh__piece *v) {
+static bool take_dt(nevh_scene *s, nevh__scene_model *m, const nevh__piece *v) {
     return take_numbers(s, m, v, &m->run.dt, &m->run.dts);
 }
 
-static bool take_tolerance(nevh_scene *s, nevh__model *m,
+static bool take_tolerance(nevh_scene *s, nevh__scene_model *m,
                            const nevh__piece *v) {
     return take_numbers(s, m, v, &m->run.tolerance, &m->run.tolerances);
 }
 
-static bool take_integrators(nevh_scene *s, nevh__model *m,
+static bool take_integrators(nevh_scene *s, nevh__scene_model *m,
                              const nevh__piece *v) {
     return take_names(s, m, v, check_integrator, &m->run.integrator,
                       &m->run.integrators);
 }
 
-static bool take_gradient(nevh_scene *s, nevh__model *m, const nevh__piece *v) {
+static bool take_gradient(nevh_scene *s, nevh__scene_model *m,
+                          const nevh__piece *v) {
     return take_names(s, m, v, check_gradient, &m->run.gradient,
                       &m->run.gradients);
 }
 
 /* The step of one element, whose index is at. */
-static bool set_step(nevh_scene *s, const nevh__model *m,
+static bool set_step(nevh_scene *s, const nevh__scene_model *m,
                      const nevh__statement *one, const nevh__tree *tree,
                      nevh__index at, double *step) {
     nevh__formula_error error = {0};
@@ -127,8 +130,8 @@ static bool set_step(nevh_scene *s, const nevh__model *m,
 }
 
 /* Steps of what a head names: of coordinates, or after those of momenta. */
-static bool set_steps(nevh_scene *s, nevh__model *m, const nevh__statement *one,
-                      double steps[]) {
+static bool set_steps(nevh_scene *s, nevh__scene_model *m,
+                      const nevh__statement *one, double steps[]) {
     size_t from, to, first;
     nevh__meaning meaning =
         nevh__names_find(m->names, one->head.name, NULL, &first);
@@ -152,7 +155,7 @@ static bool set_steps(nevh_scene *s, nevh__model *m, const nevh__statement *one,
 }
 
 /* NAME: STEP */
-static bool take_named_step(nevh_scene *s, nevh__model *m,
+static bool take_named_step(nevh_scene *s, nevh__scene_model *m,
                             const nevh__piece *part, double steps[]) {
     char stop;
     nevh__formula_error error;
@@ -170,7 +173,7 @@ static bool take_named_step(nevh_scene *s, nevh__model *m,
     return fine;
 }
 
-static bool take_gradient_step(nevh_scene *s, nevh__model *m,
+static bool take_gradient_step(nevh_scene *s, nevh__scene_model *m,
                                const nevh__piece *v) {
     size_t count;
     if (strcmp(v->text, "auto") == 0)
@@ -188,24 +191,25 @@ static bool take_gradient_step(nevh_scene *s, nevh__model *m,
     return true;
 }
 
-static bool take_energy_scale(nevh_scene *s, nevh__model *m,
+static bool take_energy_scale(nevh_scene *s, nevh__scene_model *m,
                               const nevh__piece *v) {
     return take_number(s, m, v, true, &m->run.energy_scale);
 }
 
-static bool take_reference(nevh_scene *s, nevh__model *m,
+static bool take_reference(nevh_scene *s, nevh__scene_model *m,
                            const nevh__piece *v) {
     m->run.reference = v->text;
     return strcmp(v->text, "exact") == 0 || check_integrator(s, v);
 }
 
-static bool take_match(nevh_scene *s, nevh__model *m, const nevh__piece *v) {
+static bool take_match(nevh_scene *s, nevh__scene_model *m,
+                       const nevh__piece *v) {
     m->run.match_work = strcmp(v->text, "work") == 0;
     return m->run.match_work || strcmp(v->text, "steps") == 0 ||
            nevh__scene_fail(s, NEVH_EINVAL, v, "match is steps or work");
 }
 
-static bool take_transform(nevh_scene *s, nevh__model *m,
+static bool take_transform(nevh_scene *s, nevh__scene_model *m,
                            const nevh__piece *v) {
     nevh__formula_error error = {0};
     if (s->transform)
@@ -226,7 +230,8 @@ static bool take_transform(nevh_scene *s, nevh__model *m,
 }
 
 /* FORMULA < VALUE, or with > */
-static bool take_stop(nevh_scene *s, nevh__model *m, const nevh__piece *v) {
+static bool take_stop(nevh_scene *s, nevh__scene_model *m,
+                      const nevh__piece *v) {
     nevh__piece rest = *v, formula;
     char stop;
     if (!nevh__piece_split(s, &m->pool, &rest, "<>", &formula, &stop))
@@ -256,7 +261,7 @@ static bool take_stop(nevh_scene *s, nevh__model *m, const nevh__piece *v) {
 #define RUN_NAME(key) #key,
 #define RUN_TAKE(key) take_##key,
 static const char *const run_keys[] = {RUN_KEYS(RUN_NAME)};
-static bool (*const run_takers[])(nevh_scene *, nevh__model *,
+static bool (*const run_takers[])(nevh_scene *, nevh__scene_model *,
                                   const nevh__piece *) = {RUN_KEYS(RUN_TAKE)};
 static const char *const scene_keys[] = {"title", "source", "effects"};
 
@@ -282,20 +287,20 @@ static size_t key_index(nevh_scene *s, const nevh__statement *statement,
     return k;
 }
 
-static bool take_setting(nevh_scene *s, nevh__model *m,
+static bool take_setting(nevh_scene *s, nevh__scene_model *m,
                          const nevh__statement *statement) {
     const size_t count = sizeof run_keys / sizeof *run_keys;
     size_t k = key_index(s, statement, run_keys, count);
     return k < count && run_takers[k](s, m, &statement->value);
 }
 
-static bool check_heading(nevh_scene *s, nevh__model *m,
+static bool check_heading(nevh_scene *s, nevh__scene_model *m,
                           const nevh__statement *statement) {
     (void)m;
     return key_index(s, statement, scene_keys, 3) < 3;
 }
 
-bool nevh__model_run(nevh_scene *s, nevh__model *m) {
+bool nevh__model_run(nevh_scene *s, nevh__scene_model *m) {
     static const double tolerances[] = {1e-6, 1e-9, 1e-12};
     static const char *const gradients[] = {"central4"};
     m->run = (nevh_scene_run){.t_end = NAN,

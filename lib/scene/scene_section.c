@@ -17,8 +17,8 @@ static bool take_direction(nevh_scene *s, const nevh__piece *word,
 
 /* The period of the coordinate that a text names, as x or x[3]; 0 when it is
    none.  False when memory is out. */
-static bool find_period(nevh_scene *s, const nevh__model *m, const char *text,
-                        double *period) {
+static bool find_period(nevh_scene *s, const nevh__scene_model *m,
+                        const char *text, double *period) {
     nevh__formula_error error;
     nevh__head head;
     size_t count, first;
@@ -39,7 +39,7 @@ static bool find_period(nevh_scene *s, const nevh__model *m, const char *text,
 }
 
 /* FORMULA = FORMULA, rising */
-static bool take_when(nevh_scene *s, nevh__model *m, nevh__piece *rest,
+static bool take_when(nevh_scene *s, nevh__scene_model *m, nevh__piece *rest,
                       nevh__crossing *crossing) {
     nevh__piece left, right;
     char stop;
@@ -53,27 +53,27 @@ static bool take_when(nevh_scene *s, nevh__model *m, nevh__piece *rest,
         !nevh__formula_check(s, m, &left, &crossing->left) ||
         !nevh__formula_check(s, m, &right, &crossing->right))
         return false;
-    crossing->is.left = left.text;
-    crossing->is.right = right.text;
-    return find_period(s, m, left.text, &crossing->is.period) &&
-           take_direction(s, rest, &right, &crossing->is.direction);
+    crossing->decl.left = left.text;
+    crossing->decl.right = right.text;
+    return find_period(s, m, left.text, &crossing->decl.period) &&
+           take_direction(s, rest, &right, &crossing->decl.direction);
 }
 
-static bool take_every(nevh_scene *s, nevh__model *m, const nevh__piece *value,
-                       nevh__crossing *crossing) {
-    double *every = &crossing->is.every;
+static bool take_every(nevh_scene *s, nevh__scene_model *m,
+                       const nevh__piece *value, nevh__crossing *crossing) {
+    double *every = &crossing->decl.every;
     if (!nevh__piece_number(s, m, value, every))
         return false;
-    crossing->is.direction = 1;
-    crossing->is.period = *every;
+    crossing->decl.direction = 1;
+    crossing->decl.period = *every;
     return *every > 0 ||
            nevh__scene_fail(s, NEVH_EINVAL, value,
                             "this must be greater than 0, not %g", *every);
 }
 
 /* The formulas after the colon, and their texts. */
-static bool take_items(nevh_scene *s, nevh__model *m, const nevh__piece *list,
-                       nevh__crossing *crossing) {
+static bool take_items(nevh_scene *s, nevh__scene_model *m,
+                       const nevh__piece *list, nevh__crossing *crossing) {
     size_t count = 0;
     crossing->items = nevh__formula_list(s, m, list, &count);
     if (!crossing->items)
@@ -83,18 +83,18 @@ static bool take_items(nevh_scene *s, nevh__model *m, const nevh__piece *list,
         return nevh__scene_no_memory(s);
     for (size_t i = 0; i < count; i++)
         texts[i] = crossing->items[i].piece.text;
-    crossing->is.items = count;
-    crossing->is.item = texts;
+    crossing->decl.items = count;
+    crossing->decl.item = texts;
     return true;
 }
 
 /* when FORMULA = FORMULA, rising: LIST, or every FORMULA: LIST */
-static bool add_section(nevh_scene *s, nevh__model *m,
+static bool add_section(nevh_scene *s, nevh__scene_model *m,
                         const nevh__statement *statement) {
     nevh__crossing *crossing = &m->crossings[m->n_crossings++];
     nevh__piece shown = statement->value, front, condition;
     char stop;
-    crossing->is.name = statement->head.name;
+    crossing->decl.name = statement->head.name;
     if (!nevh__head_plain(s, statement) ||
         !nevh__piece_split(s, &m->pool, &shown, ":", &front, &stop))
         return false;
@@ -113,7 +113,7 @@ static bool add_section(nevh_scene *s, nevh__model *m,
            take_items(s, m, &shown, crossing);
 }
 
-bool nevh__model_crossings(nevh_scene *s, nevh__model *m) {
+bool nevh__model_crossings(nevh_scene *s, nevh__scene_model *m) {
     m->crossings =
         nevh__pool_take(&m->pool, s->n_statements, sizeof *m->crossings);
     return m->crossings ? nevh__scene_each(s, m, NEVH__SECTIONS, add_section)
@@ -125,7 +125,8 @@ size_t nevh_scene_section_count(const nevh_scene *s) {
 }
 
 const nevh_scene_section *nevh_scene_section_at(nevh_scene *s, size_t i) {
-    return i < nevh_scene_section_count(s) ? &s->model->crossings[i].is : NULL;
+    return i < nevh_scene_section_count(s) ? &s->model->crossings[i].decl
+                                           : NULL;
 }
 
 int nevh_scene_section_cross(nevh_scene *s, size_t i, double t,
@@ -138,7 +139,7 @@ int nevh_scene_section_cross(nevh_scene *s, size_t i, double t,
     if (i >= s->model->n_crossings)
         return NEVH_EINVAL;
     nevh__crossing *crossing = &s->model->crossings[i];
-    if (crossing->is.every > 0)
+    if (crossing->decl.every > 0)
         right = s->model->run.t_start;
     else if (!nevh__formula_value(s, &crossing->left, &at, &left) ||
              !nevh__formula_value(s, &crossing->right, &at, &right))
@@ -155,7 +156,7 @@ int nevh_scene_section_items(nevh_scene *s, size_t i, double t,
     if (i >= s->model->n_crossings)
         return NEVH_EINVAL;
     nevh__crossing *crossing = &s->model->crossings[i];
-    nevh__formula_values(s, crossing->items, crossing->is.items,
+    nevh__formula_values(s, crossing->items, crossing->decl.items,
                          (nevh__state){t, q, p, false}, values);
     return s->status;
 }

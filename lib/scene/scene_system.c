@@ -29,7 +29,7 @@ nevh__switch *nevh__scene_find_effect(nevh_scene *s, const char *name) {
 }
 
 /* An effect of terms and one of friction may have the same name. */
-static bool add_switch(nevh_scene *s, nevh__model *m,
+static bool add_switch(nevh_scene *s, nevh__scene_model *m,
                        const nevh__statement *statement) {
     (void)m;
     const char *name = statement->head.name;
@@ -60,7 +60,7 @@ static bool switch_on(nevh_scene *s, const nevh__piece *name) {
 }
 
 /* effects = NAME, NAME | all | none */
-static bool choose(nevh_scene *s, nevh__model *m,
+static bool choose(nevh_scene *s, nevh__scene_model *m,
                    const nevh__statement *statement) {
     (void)m;
     size_t count;
@@ -100,7 +100,7 @@ bool nevh__scene_switch(nevh_scene *s, const nevh_scene_options *o) {
     return true;
 }
 
-static bool add_terms(nevh_scene *s, nevh__model *m,
+static bool add_terms(nevh_scene *s, nevh__scene_model *m,
                       const nevh__statement *statement) {
     const nevh__piece *value = &statement->value;
     nevh__formula_error error = {0};
@@ -115,7 +115,7 @@ static bool add_terms(nevh_scene *s, nevh__model *m,
     return !status || nevh__scene_fail_formula(s, value, &error);
 }
 
-bool nevh__model_terms(nevh_scene *s, nevh__model *m) {
+bool nevh__model_terms(nevh_scene *s, nevh__scene_model *m) {
     if (!s->n_effects)
         return nevh__scene_fail_at(s, NEVH_EINVAL, &s->lines[s->n_lines - 1], 1,
                                    0, "there are no [effects]");

@@ -6,7 +6,7 @@
 #include "scene/scene_private.h"
 #include <string.h>
 
-static bool add_definition(nevh_scene *s, nevh__model *m,
+static bool add_definition(nevh_scene *s, nevh__scene_model *m,
                            const nevh__statement *statement) {
     nevh__formula_error error = {0};
     if (!nevh__head_plain(s, statement))
@@ -17,14 +17,15 @@ static bool add_definition(nevh_scene *s, nevh__model *m,
                     nevh__scene_fail_formula(s, &statement->key, &error));
 }
 
-static bool check_definition(nevh_scene *s, nevh__model *m,
+static bool check_definition(nevh_scene *s, nevh__scene_model *m,
                              const nevh__statement *statement) {
     nevh__formula formula;
     return nevh__formula_check(s, m, &statement->value, &formula);
 }
 
 /* Room for one item more; NULL when memory is out. */
-static nevh__item *add_item(nevh_scene *s, nevh__model *m, nevh_shown which,
+static nevh__item *add_item(nevh_scene *s, nevh__scene_model *m,
+                            nevh_shown which,
                             const nevh__statement *statement) {
     nevh__items *all = &m->shown[which];
     if (!all->items)
@@ -38,7 +39,7 @@ static nevh__item *add_item(nevh_scene *s, nevh__model *m, nevh_shown which,
     return &all->items[all->count++];
 }
 
-static bool add_observable(nevh_scene *s, nevh__model *m,
+static bool add_observable(nevh_scene *s, nevh__scene_model *m,
                            const nevh__statement *statement) {
     nevh__item *item = nevh__head_column(s, statement)
                            ? add_item(s, m, NEVH_OBSERVABLES, statement)
@@ -46,7 +47,7 @@ static bool add_observable(nevh_scene *s, nevh__model *m,
     return item && nevh__formula_check(s, m, &statement->value, &item->formula);
 }
 
-bool nevh__model_definitions(nevh_scene *s, nevh__model *m) {
+bool nevh__model_definitions(nevh_scene *s, nevh__scene_model *m) {
     return nevh__scene_each(s, m, NEVH__DEFINITIONS, add_definition) &&
            nevh__scene_each(s, m, NEVH__OBSERVABLES, add_definition) &&
            nevh__scene_each(s, m, NEVH__DEFINITIONS, check_definition) &&
@@ -54,7 +55,7 @@ bool nevh__model_definitions(nevh_scene *s, nevh__model *m) {
 }
 
 /* FORMULA, or FORMULA ; without EFFECT, EFFECT */
-static bool take_without(nevh_scene *s, nevh__model *m,
+static bool take_without(nevh_scene *s, nevh__scene_model *m,
                          const nevh__piece *clause, nevh__item *item) {
     const size_t word = strlen("without");
     size_t at = (size_t)(clause->at - clause->line->text);
@@ -74,7 +75,7 @@ static bool take_without(nevh_scene *s, nevh__model *m,
     return list;
 }
 
-static bool add_invariant(nevh_scene *s, nevh__model *m,
+static bool add_invariant(nevh_scene *s, nevh__scene_model *m,
                           const nevh__statement *statement) {
     nevh__piece rest = statement->value, formula;
     char stop;
@@ -88,7 +89,7 @@ static bool add_invariant(nevh_scene *s, nevh__model *m,
 }
 
 /* Room for one drawn shape more; NULL when memory is out. */
-static nevh__drawn *add_part(nevh_scene *s, nevh__model *m) {
+static nevh__drawn *add_part(nevh_scene *s, nevh__scene_model *m) {
     if (!m->drawn)
         m->drawn = nevh__pool_take(&m->pool, s->n_statements, sizeof *m->drawn);
     if (!m->drawn)
@@ -97,8 +98,8 @@ static nevh__drawn *add_part(nevh_scene *s, nevh__model *m) {
 }
 
 /* name TEXT */
-static bool take_name(nevh_scene *s, nevh__model *m, const nevh__piece *clause,
-                      nevh__drawn *part) {
+static bool take_name(nevh_scene *s, nevh__scene_model *m,
+                      const nevh__piece *clause, nevh__drawn *part) {
     const size_t word = strlen("name");
     size_t at = (size_t)(clause->at - clause->line->text);
     nevh__piece name;
@@ -109,31 +110,31 @@ static bool take_name(nevh_scene *s, nevh__model *m, const nevh__piece *clause,
     if (!nevh__piece_take(s, &m->pool, clause->line, at + word,
                           at + strlen(clause->text), &name))
         return false;
-    part->is.name = name.text;
+    part->decl.name = name.text;
     return true;
 }
 
 /* LIST, or LIST ; name TEXT */
-static bool take_values(nevh_scene *s, nevh__model *m, const nevh__piece *value,
-                        nevh__drawn *part) {
+static bool take_values(nevh_scene *s, nevh__scene_model *m,
+                        const nevh__piece *value, nevh__drawn *part) {
     nevh__piece rest = *value, list;
     char stop;
     if (!nevh__piece_split(s, &m->pool, &rest, ";", &list, &stop))
         return false;
-    part->values = nevh__formula_list(s, m, &list, &part->is.count);
+    part->values = nevh__formula_list(s, m, &list, &part->decl.count);
     if (!part->values)
         return false;
     const char **texts =
-        nevh__pool_take(&m->pool, part->is.count, sizeof *texts);
+        nevh__pool_take(&m->pool, part->decl.count, sizeof *texts);
     if (!texts)
         return nevh__scene_no_memory(s);
-    for (size_t i = 0; i < part->is.count; i++)
+    for (size_t i = 0; i < part->decl.count; i++)
         texts[i] = part->values[i].piece.text;
-    part->is.item = texts;
+    part->decl.item = texts;
     return !stop || take_name(s, m, &rest, part);
 }
 
-static bool add_drawn(nevh_scene *s, nevh__model *m,
+static bool add_drawn(nevh_scene *s, nevh__scene_model *m,
                       const nevh__statement *statement) {
     static const char *const known[] = {"rod", "bob"};
     static const size_t numbers[] = {4, 2};
@@ -146,16 +147,16 @@ static bool add_drawn(nevh_scene *s, nevh__model *m,
         nevh__drawn *part = add_part(s, m);
         if (!part || !take_values(s, m, &statement->value, part))
             return false;
-        part->is.kind = name;
-        return part->is.count == numbers[i] ||
+        part->decl.kind = name;
+        return part->decl.count == numbers[i] ||
                nevh__scene_fail(s, NEVH_EINVAL, &statement->value,
                                 "a %s takes %zu numbers, not %zu", name,
-                                numbers[i], part->is.count);
+                                numbers[i], part->decl.count);
     }
     return nevh__scene_fail_word(s, &statement->key, "shape", name, known, 2);
 }
 
-bool nevh__model_shown(nevh_scene *s, nevh__model *m) {
+bool nevh__model_shown(nevh_scene *s, nevh__scene_model *m) {
     return nevh__scene_each(s, m, NEVH__INVARIANTS, add_invariant) &&
            nevh__scene_each(s, m, NEVH__PICTURE, add_drawn) &&
            (!s->judged || nevh__formula_check(s, m, s->judged, &m->judged)) &&
@@ -163,7 +164,7 @@ bool nevh__model_shown(nevh_scene *s, nevh__model *m) {
 }
 
 /* Whether something has that name: t, energy, or what a section names. */
-static bool is_shown(const nevh_scene *s, const nevh__model *m,
+static bool is_shown(const nevh_scene *s, const nevh__scene_model *m,
                      const char *name) {
     for (size_t i = 0; i < s->n_statements; i++)
         if (s->statements[i].section == NEVH__INVARIANTS &&
@@ -174,7 +175,7 @@ static bool is_shown(const nevh_scene *s, const nevh__model *m,
            nevh__scene_effect(s, name);
 }
 
-static bool check_label(nevh_scene *s, nevh__model *m,
+static bool check_label(nevh_scene *s, nevh__scene_model *m,
                         const nevh__statement *statement) {
     const char *name = statement->head.name;
     if (is_shown(s, m, name))
@@ -191,6 +192,6 @@ static bool check_label(nevh_scene *s, nevh__model *m,
                                  m->n_coordinates + 2);
 }
 
-bool nevh__model_labels(nevh_scene *s, nevh__model *m) {
+bool nevh__model_labels(nevh_scene *s, nevh__scene_model *m) {
     return nevh__scene_each(s, m, NEVH__LABELS, check_label);
 }

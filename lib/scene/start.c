@@ -24,7 +24,7 @@ static const double CLOSE = 1e-10; /* residual that counts as solved */
 
 typedef struct {
     double *room;
-    const nevh__model *m;
+    const nevh__scene_model *m;
     size_t rows, *row; /* which of the n momenta are sought */
     const double *q;
     double *p, *slope, *rest; /* n; slope: dH/dp at p, rest: at p = 0 */
@@ -245,7 +245,7 @@ static int solve(search *s) {
 }
 
 static bool fail(nevh_scene *scene, const search *s, int status) {
-    const nevh__model *m = s->m;
+    const nevh__scene_model *m = s->m;
     size_t k = 0;
     while (!m->by_velocity[k])
         k++;
@@ -278,7 +278,7 @@ static bool fail_effect(nevh_scene *scene, const char *effect) {
 }
 
 static int check_values(nevh_scene *scene, const double q[], const double p[]) {
-    const nevh__model *m = scene->model;
+    const nevh__scene_model *m = scene->model;
     double *room = nevh__velocity_room(m->system);
     if (!room)
         return nevh__scene_no_memory(scene), NEVH_ENOMEM;
@@ -291,7 +291,7 @@ static int check_values(nevh_scene *scene, const double q[], const double p[]) {
 }
 
 int nevh_scene_start(nevh_scene *scene, double q[], double p[]) {
-    const nevh__model *m = scene->model;
+    const nevh__scene_model *m = scene->model;
     bool any = false;
     if (!m)
         return scene->status;

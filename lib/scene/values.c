@@ -6,7 +6,7 @@
 
 enum { MOST_ELEMENTS = 1 << 22 };
 
-bool nevh__head_bound(nevh_scene *s, const nevh__model *m,
+bool nevh__head_bound(nevh_scene *s, const nevh__scene_model *m,
                       const nevh__piece *key, const nevh__tree *tree,
                       long *value) {
     nevh__formula_error error;
@@ -28,7 +28,7 @@ bool nevh__head_column(nevh_scene *s, const nevh__statement *statement) {
 }
 
 /* The index of NAME[i = 1..N] must be new. */
-static bool check_index(nevh_scene *s, const nevh__model *m,
+static bool check_index(nevh_scene *s, const nevh__scene_model *m,
                         const nevh__statement *statement) {
     const char *index = statement->head.index;
     bool taken =
@@ -40,7 +40,7 @@ static bool check_index(nevh_scene *s, const nevh__model *m,
                                       index);
 }
 
-bool nevh__head_shape(nevh_scene *s, const nevh__model *m,
+bool nevh__head_shape(nevh_scene *s, const nevh__scene_model *m,
                       const nevh__statement *statement, nevh__shape *shape) {
     const nevh__head *head = &statement->head;
     const nevh__piece *key = &statement->key;
@@ -68,7 +68,7 @@ bool nevh__head_shape(nevh_scene *s, const nevh__model *m,
     return true;
 }
 
-bool nevh__head_range(nevh_scene *s, const nevh__model *m,
+bool nevh__head_range(nevh_scene *s, const nevh__scene_model *m,
                       const nevh__statement *one, size_t *from, size_t *to) {
     const nevh__head *head = &one->head;
     size_t count = 0, first = 0;
@@ -97,7 +97,7 @@ static void add_index(nevh__formula_error *error, const nevh__index *index) {
              index->name, index->value);
 }
 
-static bool values_by_index(nevh_scene *s, const nevh__model *m,
+static bool values_by_index(nevh_scene *s, const nevh__scene_model *m,
                             const nevh__statement *statement,
                             const nevh__piece *value, size_t count,
                             double values[]) {
@@ -115,7 +115,7 @@ static bool values_by_index(nevh_scene *s, const nevh__model *m,
     return tree && (!status || nevh__scene_fail_formula(s, value, &error));
 }
 
-bool nevh__head_values(nevh_scene *s, nevh__model *m,
+bool nevh__head_values(nevh_scene *s, nevh__scene_model *m,
                        const nevh__statement *statement,
                        const nevh__piece *value, size_t count,
                        double values[]) {
@@ -146,7 +146,7 @@ const nevh__statement *nevh__scene_assignment(const nevh_scene *s,
     return NULL;
 }
 
-static bool add_parameter(nevh_scene *s, nevh__model *m,
+static bool add_parameter(nevh_scene *s, nevh__scene_model *m,
                           const nevh__statement *statement) {
     nevh__shape shape;
     const char *name = statement->head.name;
@@ -165,6 +165,6 @@ static bool add_parameter(nevh_scene *s, nevh__model *m,
            nevh__scene_fail_formula(s, &statement->key, &error);
 }
 
-bool nevh__model_parameters(nevh_scene *s, nevh__model *m) {
+bool nevh__model_parameters(nevh_scene *s, nevh__scene_model *m) {
     return nevh__scene_each(s, m, NEVH__PARAMETERS, add_parameter);
 }

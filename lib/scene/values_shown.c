@@ -72,7 +72,7 @@ size_t nevh_scene_part_count(const nevh_scene *s) {
 }
 
 nevh_scene_part nevh_scene_part_at(const nevh_scene *s, size_t i) {
-    return i < nevh_scene_part_count(s) ? s->model->drawn[i].is
+    return i < nevh_scene_part_count(s) ? s->model->drawn[i].decl
                                         : (nevh_scene_part){0};
 }
 
@@ -83,7 +83,7 @@ int nevh_scene_part_values(nevh_scene *s, size_t i, double t, const double q[],
     if (i >= s->model->n_drawn)
         return NEVH_EINVAL;
     nevh__drawn *part = &s->model->drawn[i];
-    nevh__formula_values(s, part->values, part->is.count,
+    nevh__formula_values(s, part->values, part->decl.count,
                          (nevh__state){t, q, p, false}, values);
     return s->status;
 }

@@ -12,14 +12,14 @@
 enum { WIDTH = NEVH__LANES };
 
 /* Doubles that one block of a term takes. */
-static size_t block_size(const nevh_term *is) {
-    return WIDTH * (is->nq + 2 * is->np + is->nc + 2);
+static size_t block_size(const nevh_term *decl) {
+    return WIDTH * (decl->nq + 2 * decl->np + decl->nc + 2);
 }
 
 double *nevh__velocity_room(const nevh_system *system) {
     size_t most = 0;
     for (size_t i = 0; i < system->n_terms; i++) {
-        size_t size = block_size(&system->terms[i]->is);
+        size_t size = block_size(&system->terms[i]->decl);
         most = size > most ? size : most;
     }
     return nevh__array(most, sizeof(double));
@@ -41,77 +41,79 @@ typedef struct {
     double *t, *q, *p, *c, *result;
 } block;
 
-static block read_block(const nevh_term *is, size_t first, double t,
+static block read_block(const nevh_term *decl, size_t first, double t,
                         const double q[], const double p[], double room[]) {
     block b = {.t = room, .q = room + WIDTH};
-    b.p = b.q + WIDTH * is->nq;
-    b.c = b.p + WIDTH * is->np;
-    b.result = b.c + WIDTH * is->nc;
+    b.p = b.q + WIDTH * decl->nq;
+    b.c = b.p + WIDTH * decl->np;
+    b.result = b.c + WIDTH * decl->nc;
     for (size_t lane = 0; lane < WIDTH; lane++)
-        b.t[lane] = is->time ? t : 0;
-    gather(q, is->q, is->nq, first, is->count, b.q);
-    gather(p, is->p, is->np, first, is->count, b.p);
-    gather(is->c, NULL, is->nc, first, is->count, b.c);
+        b.t[lane] = decl->time ? t : 0;
+    gather(q, decl->q, decl->nq, first, decl->count, b.q);
+    gather(p, decl->p, decl->np, first, decl->count, b.p);
+    gather(decl->c, NULL, decl->nc, first, decl->count, b.c);
     return b;
 }
 
 static const double part = 0x1p-10; /* of a momentum: a step */
 
 /* d/dp[k] of order 4 of one instance; p is as before afterwards. */
-static double difference(const nevh_term *is, double t, const double q[],
+static double difference(const nevh_term *decl, double t, const double q[],
                          double p[], const double c[], size_t k) {
     const double at = p[k], step = at != 0 ? part * fabs(at) : part;
     double h[4];
     for (int i = 0; i < 4; i++) {
         p[k] = at + (i < 2 ? i - 2 : i - 1) * step;
-        h[i] = is->value(t, q, p, c, is->params);
+        h[i] = decl->value(t, q, p, c, decl->params);
     }
     p[k] = at;
     return (8 * (h[2] - h[1]) - (h[3] - h[0])) / (12 * step);
 }
 
 /* Of terms without a gradient; they have one instance. */
-static void add_differences(const nevh_term *is, double t, const double q[],
+static void add_differences(const nevh_term *decl, double t, const double q[],
                             const double p[], double room[], double v[]) {
-    double *own_q = room, *own_p = own_q + is->nq;
-    for (size_t k = 0; k < is->nq; k++)
-        own_q[k] = q[is->q[k]];
-    for (size_t k = 0; k < is->np; k++)
-        own_p[k] = p[is->p[k]];
-    for (size_t k = 0; k < is->np; k++)
-        v[is->p[k]] += difference(is, is->time ? t : 0, own_q, own_p, is->c, k);
+    double *own_q = room, *own_p = own_q + decl->nq;
+    for (size_t k = 0; k < decl->nq; k++)
+        own_q[k] = q[decl->q[k]];
+    for (size_t k = 0; k < decl->np; k++)
+        own_p[k] = p[decl->p[k]];
+    for (size_t k = 0; k < decl->np; k++)
+        v[decl->p[k]] +=
+            difference(decl, decl->time ? t : 0, own_q, own_p, decl->c, k);
 }
 
-static void add_block(const nevh_term *is, size_t first, double t,
+static void add_block(const nevh_term *decl, size_t first, double t,
                       const double q[], const double p[], double room[],
                       double v[]) {
-    block b = read_block(is, first, t, q, p, room);
-    is->gradient(WIDTH, b.t, b.q, b.p, b.c, is->params, NULL, b.result);
-    for (size_t lane = 0; lane < WIDTH && first + lane < is->count; lane++)
-        for (size_t k = 0; k < is->np; k++)
-            v[is->p[(first + lane) * is->np + k]] += b.result[k * WIDTH + lane];
+    block b = read_block(decl, first, t, q, p, room);
+    decl->gradient(WIDTH, b.t, b.q, b.p, b.c, decl->params, NULL, b.result);
+    for (size_t lane = 0; lane < WIDTH && first + lane < decl->count; lane++)
+        for (size_t k = 0; k < decl->np; k++)
+            v[decl->p[(first + lane) * decl->np + k]] +=
+                b.result[k * WIDTH + lane];
 }
 
 void nevh__velocities(const nevh_system *system, double t, const double q[],
                       const double p[], double room[], double v[]) {
     memset(v, 0, system->n * sizeof *v);
     for (size_t i = 0; i < system->n_terms; i++) {
-        const nevh_term *is = &system->terms[i]->is;
-        if (!nevh__term_on(system, system->terms[i]) || !is->np)
+        const nevh_term *decl = &system->terms[i]->decl;
+        if (!nevh__term_on(system, system->terms[i]) || !decl->np)
             continue;
-        if (!is->gradient)
-            add_differences(is, t, q, p, room, v);
-        for (size_t first = 0; is->gradient && first < is->count;
+        if (!decl->gradient)
+            add_differences(decl, t, q, p, room, v);
+        for (size_t first = 0; decl->gradient && first < decl->count;
              first += WIDTH)
-            add_block(is, first, t, q, p, room, v);
+            add_block(decl, first, t, q, p, room, v);
     }
 }
 
-static bool is_finite(const nevh_term *is, double t, const double q[],
+static bool is_finite(const nevh_term *decl, double t, const double q[],
                       const double p[], double room[]) {
-    for (size_t first = 0; first < is->count; first += WIDTH) {
-        block b = read_block(is, first, t, q, p, room);
-        is->block(WIDTH, b.t, b.q, b.p, b.c, is->params, b.result);
+    for (size_t first = 0; first < decl->count; first += WIDTH) {
+        block b = read_block(decl, first, t, q, p, room);
+        decl->block(WIDTH, b.t, b.q, b.p, b.c, decl->params, b.result);
         for (size_t lane = 0; lane < WIDTH; lane++)
             if (!isfinite(b.result[lane]))
                 return false;
@@ -123,10 +125,10 @@ const char *nevh__effect_not_finite(const nevh_system *system, double t,
                                     const double q[], const double p[],
                                     double room[]) {
     for (size_t i = 0; i < system->n_terms; i++) {
-        const nevh_term *is = &system->terms[i]->is;
-        if (nevh__term_on(system, system->terms[i]) && is->block &&
-            !is_finite(is, t, q, p, room))
-            return is->effect;
+        const nevh_term *decl = &system->terms[i]->decl;
+        if (nevh__term_on(system, system->terms[i]) && decl->block &&
+            !is_finite(decl, t, q, p, room))
+            return decl->effect;
     }
     return NULL;
 }

@@ -44,24 +44,24 @@ static void add_line(lines *l, const double h[4]) {
 
 /* The lines of an instance, from four times the lengths of its variables down
    to a fiftieth. */
-static lines find_lines(const nevh__term *term, size_t instance,
+static lines find_lines(const nevh__term_entry *term, size_t instance,
                         nevh__origin *o, double *rows) {
-    const nevh_term *is = &term->is;
-    double *q = rows, *p = q + 8 * is->nq, *c = p + 8 * is->np;
-    double *t = c + 8 * is->nc, *h = t + 8, *one = h + 8;
+    const nevh_term *decl = &term->decl;
+    double *q = rows, *p = q + 8 * decl->nq, *c = p + 8 * decl->np;
+    double *t = c + 8 * decl->nc, *h = t + 8, *one = h + 8;
     lines l = {.count = 0};
-    for (size_t k = 0; k < 8 * is->nc; k++)
-        c[k] = is->c[instance * is->nc + k / 8];
+    for (size_t k = 0; k < 8 * decl->nc; k++)
+        c[k] = decl->c[instance * decl->nc + k / 8];
     for (size_t k = 0; k < 8; k++)
-        t[k] = is->time ? o->t : 0;
+        t[k] = decl->time ? o->t : 0;
     for (int round = 0; round < LINES / 2; round++) {
         double amplitude[2] = {ldexp(4, -round), ldexp(2.8, -round)};
-        for (size_t k = 0; k < is->nq; k++)
-            write_row(o, o->q, 0, is->q[instance * is->nq + k], amplitude,
+        for (size_t k = 0; k < decl->nq; k++)
+            write_row(o, o->q, 0, decl->q[instance * decl->nq + k], amplitude,
                       q + 8 * k);
-        for (size_t k = 0; k < is->np; k++)
-            write_row(o, o->p, o->n, is->p[instance * is->np + k], amplitude,
-                      p + 8 * k);
+        for (size_t k = 0; k < decl->np; k++)
+            write_row(o, o->p, o->n, decl->p[instance * decl->np + k],
+                      amplitude, p + 8 * k);
         nevh__term_values(term, false, 8, 8, t, q, p, c, h, one);
         add_line(&l, h);
         add_line(&l, h + 4);
@@ -77,23 +77,23 @@ static double largest_third(const lines *l) {
     return most;
 }
 
-static int probe_term(const nevh__term *term, nevh__origin *o,
+static int probe_term(const nevh__term_entry *term, nevh__origin *o,
                       nevh__kinetic *result) {
-    const nevh_term *is = &term->is;
+    const nevh_term *decl = &term->decl;
     double *rows =
-        nevh__array(9 * (is->nq + is->np + is->nc) + 16, sizeof *rows);
+        nevh__array(9 * (decl->nq + decl->np + decl->nc) + 16, sizeof *rows);
     if (!rows)
         return NEVH_ENOMEM;
     double third = 0;
     size_t count = 0;
-    for (size_t i = 0; i < is->count; i++) {
+    for (size_t i = 0; i < decl->count; i++) {
         lines l = find_lines(term, i, o, rows);
         third = fmax(third, largest_third(&l));
         count += l.count;
     }
     free(rows);
     if (!result->term || !count || third > result->third) {
-        result->term = is->name;
+        result->term = decl->name;
         result->third = third;
     }
     return count ? NEVH_OK : NEVH_EDOM;
@@ -105,8 +105,8 @@ int nevh__system_probe_kinetic(const nevh_system *s, double t, const double q[],
     nevh__origin o = nevh__origin_at(s->n, t, q, p, scale);
     *result = (nevh__kinetic){.quadratic = false};
     for (size_t i = 0; i < s->n_terms; i++) {
-        const nevh__term *term = s->terms[i];
-        if (!nevh__term_on(s, term) || !term->is.np)
+        const nevh__term_entry *term = s->terms[i];
+        if (!nevh__term_on(s, term) || !term->decl.np)
             continue;
         int status = probe_term(term, &o, result);
         if (status)

@@ -41,19 +41,19 @@ static bool steady_over(const double h[4]) {
 }
 
 /* rows: room for 9 of each variable and constant, and 24. */
-static bool steady(const nevh__term *term, size_t instance, nevh__origin *o,
-                   double *rows) {
-    const nevh_term *is = &term->is;
-    double *q = rows, *p = q + 8 * is->nq, *c = p + 8 * is->np;
-    double *t = c + 8 * is->nc, *h = t + 8, *one = h + 8;
-    for (size_t k = 0; k < 8 * is->nc; k++)
-        c[k] = is->c[instance * is->nc + k / 8];
-    for (size_t k = 0; k < 8 * is->nq; k++)
-        q[k] = o->q ? o->q[is->q[instance * is->nq + k / 8]] : 0;
+static bool steady(const nevh__term_entry *term, size_t instance,
+                   nevh__origin *o, double *rows) {
+    const nevh_term *decl = &term->decl;
+    double *q = rows, *p = q + 8 * decl->nq, *c = p + 8 * decl->np;
+    double *t = c + 8 * decl->nc, *h = t + 8, *one = h + 8;
+    for (size_t k = 0; k < 8 * decl->nc; k++)
+        c[k] = decl->c[instance * decl->nc + k / 8];
+    for (size_t k = 0; k < 8 * decl->nq; k++)
+        q[k] = o->q ? o->q[decl->q[instance * decl->nq + k / 8]] : 0;
     for (int round = 0; round < SPANS / 2; round++) {
         write_times(o, round, t);
-        for (size_t k = 0; k < is->np; k++)
-            write_momenta(o, is->p[instance * is->np + k], p + 8 * k);
+        for (size_t k = 0; k < decl->np; k++)
+            write_momenta(o, decl->p[instance * decl->np + k], p + 8 * k);
         nevh__term_values(term, false, 8, 8, t, q, p, c, h, one);
         if (!steady_over(h) || !steady_over(h + 4))
             return false;
@@ -67,16 +67,16 @@ int nevh__system_probe_kinetic_time(const nevh_system *s, double t,
     nevh__origin o = nevh__origin_at(s->n, t, q, p, scale);
     *term = NULL;
     for (size_t i = 0; !*term && i < s->n_terms; i++) {
-        const nevh_term *is = &s->terms[i]->is;
-        if (!nevh__term_on(s, s->terms[i]) || !is->np || !is->time)
+        const nevh_term *decl = &s->terms[i]->decl;
+        if (!nevh__term_on(s, s->terms[i]) || !decl->np || !decl->time)
             continue;
-        double *rows =
-            nevh__array(9 * (is->nq + is->np + is->nc) + 24, sizeof *rows);
+        double *rows = nevh__array(9 * (decl->nq + decl->np + decl->nc) + 24,
+                                   sizeof *rows);
         if (!rows)
             return NEVH_ENOMEM;
-        for (size_t k = 0; !*term && k < is->count; k++)
+        for (size_t k = 0; !*term && k < decl->count; k++)
             if (!steady(s->terms[i], k, &o, rows))
-                *term = is->name;
+                *term = decl->name;
         free(rows);
     }
     return NEVH_OK;

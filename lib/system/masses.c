@@ -13,8 +13,8 @@ NEVH_BODY(mass, void, { return nevh_c(0) * nevh_p(0) * nevh_p(0) / 2; })
 
 NEVH_GRADIENT(mass, void, { nevh_dh_dp(0) = nevh_c(0) * nevh_p(0); })
 
-const double *nevh__term_inverse_masses(const nevh__term *term) {
-    return term->is.gradient == mass_gradient ? term->is.c : NULL;
+const double *nevh__term_inverse_masses(const nevh__term_entry *term) {
+    return term->decl.gradient == mass_gradient ? term->decl.c : NULL;
 }
 
 static int check(nevh_system *s, const char *effect, const double masses[]) {

@@ -59,25 +59,25 @@ static void write_row(nevh__origin *o, const double x[], size_t first, size_t i,
 }
 
 /* The largest mixed difference of an instance, relative; adds to *states. */
-static double probe_instance(const nevh__term *term, size_t instance,
+static double probe_instance(const nevh__term_entry *term, size_t instance,
                              nevh__origin *o, double *rows, size_t *states) {
     static const bool second_q[8] = {0, 1, 0, 1, 0, 1, 0, 1};
     static const bool second_p[8] = {0, 1, 1, 0, 0, 1, 1, 0};
-    const nevh_term *is = &term->is;
-    double *q = rows, *p = q + 8 * is->nq, *c = p + 8 * is->np;
-    double *t = c + 8 * is->nc, *h = t + 8, *one = h + 8, most = 0;
-    for (size_t k = 0; k < 8 * is->nc; k++)
-        c[k] = is->c[instance * is->nc + k / 8];
+    const nevh_term *decl = &term->decl;
+    double *q = rows, *p = q + 8 * decl->nq, *c = p + 8 * decl->np;
+    double *t = c + 8 * decl->nc, *h = t + 8, *one = h + 8, most = 0;
+    for (size_t k = 0; k < 8 * decl->nc; k++)
+        c[k] = decl->c[instance * decl->nc + k / 8];
     for (size_t k = 0; k < 8; k++)
-        t[k] = is->time ? o->t : 0;
+        t[k] = decl->time ? o->t : 0;
     for (size_t round = 0; round < PAIRS / 2; round++) {
         double amplitude[2] = {ldexp(1, -(int)round), ldexp(0.7, -(int)round)};
-        for (size_t k = 0; k < is->nq; k++)
-            write_row(o, o->q, 0, is->q[instance * is->nq + k], amplitude,
+        for (size_t k = 0; k < decl->nq; k++)
+            write_row(o, o->q, 0, decl->q[instance * decl->nq + k], amplitude,
                       second_q, q + 8 * k);
-        for (size_t k = 0; k < is->np; k++)
-            write_row(o, o->p, o->n, is->p[instance * is->np + k], amplitude,
-                      second_p, p + 8 * k);
+        for (size_t k = 0; k < decl->np; k++)
+            write_row(o, o->p, o->n, decl->p[instance * decl->np + k],
+                      amplitude, second_p, p + 8 * k);
         nevh__term_values(term, false, 8, 8, t, q, p, c, h, one);
         for (double *v = h; v < h + 8; v += 4) {
             double size = fabs(v[0]) + fabs(v[1]) + fabs(v[2]) + fabs(v[3]);
@@ -91,22 +91,22 @@ static double probe_instance(const nevh__term *term, size_t instance,
     return most;
 }
 
-static int probe_term(const nevh__term *term, nevh__origin *o,
+static int probe_term(const nevh__term_entry *term, nevh__origin *o,
                       nevh_separability *result) {
-    const nevh_term *is = &term->is;
+    const nevh_term *decl = &term->decl;
     double *rows =
-        nevh__array(9 * (is->nq + is->np + is->nc) + 16, sizeof *rows);
+        nevh__array(9 * (decl->nq + decl->np + decl->nc) + 16, sizeof *rows);
     if (!rows)
         return NEVH_ENOMEM;
     double mixed = 0;
     size_t states = 0;
-    for (size_t i = 0; i < is->count; i++)
+    for (size_t i = 0; i < decl->count; i++)
         mixed = fmax(mixed, probe_instance(term, i, o, rows, &states));
     free(rows);
     bool separable = states > 0 && mixed <= roundings * DBL_EPSILON;
     if (!result->term || (result->separable && !separable) ||
         (result->separable == separable && mixed > result->mixed)) {
-        result->term = is->name;
+        result->term = decl->name;
         result->mixed = mixed;
         result->states = states;
     }
@@ -123,8 +123,8 @@ int nevh_system_probe(const nevh_system *s, double t, const double q[],
     nevh__origin o = nevh__origin_at(s->n, t, q, p, scale);
     int status = NEVH_OK;
     for (size_t i = 0; i < s->n_terms && status != NEVH_ENOMEM; i++) {
-        const nevh__term *term = s->terms[i];
-        if (!nevh__term_on(s, term) || !term->is.nq || !term->is.np)
+        const nevh__term_entry *term = s->terms[i];
+        if (!nevh__term_on(s, term) || !term->decl.nq || !term->decl.np)
             continue;
         int one = probe_term(term, &o, result);
         status = one ? one : status;

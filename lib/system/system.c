@@ -14,13 +14,13 @@ static bool is_term(const nevh_system *s, const char *name) {
     return nevh__register_find(&s->term_names, name) < s->n_terms;
 }
 
-static void term_free(nevh__term *term) {
+static void term_free(nevh__term_entry *term) {
     if (!term)
         return;
-    free((char *)term->is.name);
-    free((size_t *)term->is.q);
-    free((size_t *)term->is.p);
-    free((double *)term->is.c);
+    free((char *)term->decl.name);
+    free((size_t *)term->decl.q);
+    free((size_t *)term->decl.p);
+    free((double *)term->decl.c);
     free(term);
 }
 
@@ -119,18 +119,19 @@ static char *free_name(const nevh_system *s, const char *effect) {
     return name;
 }
 
-static nevh__term *copy_term(const nevh_system *s, const nevh_term *from) {
-    nevh__term *term = nevh__array(1, sizeof *term);
+static nevh__term_entry *copy_term(const nevh_system *s,
+                                   const nevh_term *from) {
+    nevh__term_entry *term = nevh__array(1, sizeof *term);
     if (!term)
         return NULL;
-    term->is = *from;
-    term->is.effect = NULL;
-    term->is.name =
+    term->decl = *from;
+    term->decl.effect = NULL;
+    term->decl.name =
         from->name ? nevh__text("%s", from->name) : free_name(s, from->effect);
-    term->is.q = copy_indices(from->q, from->count, from->nq);
-    term->is.p = copy_indices(from->p, from->count, from->np);
-    term->is.c = nevh__copy(from->c, from->count * from->nc, sizeof *from->c);
-    if (term->is.name && term->is.q && term->is.p && term->is.c)
+    term->decl.q = copy_indices(from->q, from->count, from->nq);
+    term->decl.p = copy_indices(from->p, from->count, from->np);
+    term->decl.c = nevh__copy(from->c, from->count * from->nc, sizeof *from->c);
+    if (term->decl.name && term->decl.q && term->decl.p && term->decl.c)
         return term;
     term_free(term);
     return NULL;
@@ -157,12 +158,12 @@ size_t nevh__effect_index(nevh_system *s, const char *name) {
 
 /* Makes room first, so that the system is as before when memory is out. */
 static int append(nevh_system *s, const nevh_term *from) {
-    nevh__term **terms =
-        nevh__grow(s->terms, s->n_terms + 1, sizeof(nevh__term *));
+    nevh__term_entry **terms =
+        nevh__grow(s->terms, s->n_terms + 1, sizeof(nevh__term_entry *));
     if (!terms)
         return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
     s->terms = terms;
-    nevh__term *term =
+    nevh__term_entry *term =
         nevh__register_reserve(&s->term_names) ? copy_term(s, from) : NULL;
     size_t effect = term ? nevh__effect_index(s, from->effect) : SIZE_MAX;
     if (effect == SIZE_MAX) {
@@ -170,8 +171,8 @@ static int append(nevh_system *s, const nevh_term *from) {
         return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
     }
     term->effect = effect;
-    term->is.effect = s->effects[effect].name;
-    nevh__register_put(&s->term_names, term->is.name, s->n_terms);
+    term->decl.effect = s->effects[effect].name;
+    nevh__register_put(&s->term_names, term->decl.name, s->n_terms);
     s->terms[s->n_terms++] = term;
     s->revision++;
     return NEVH_OK;
@@ -283,7 +284,7 @@ bool nevh_system_effect_on(const nevh_system *s, const char *name) {
 unsigned nevh_system_traits(const nevh_system *s) {
     unsigned traits = NEVH_SEPARABLE | NEVH_AUTONOMOUS;
     for (size_t i = 0; i < s->n_terms; i++) {
-        const nevh_term *term = &s->terms[i]->is;
+        const nevh_term *term = &s->terms[i]->decl;
         if (!nevh__term_on(s, s->terms[i]))
             continue;
         if (term->nq && term->np)

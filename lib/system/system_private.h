@@ -28,13 +28,13 @@ static inline double nevh__random(uint64_t *state) {
 }
 
 /* What rounding has lost of a + b, exactly, whichever is larger. */
-NEVH__INLINE double nevh__lost(double sum, double a, double b) {
+NEVH__INLINE double nevh__roundoff(double sum, double a, double b) {
     double part = sum - a;
     return (a - (sum - part)) + (b - part);
 }
 
 /* A status and its message, part of every object that can fail. */
-typedef struct nevh_report {
+typedef struct nevh__report {
     int status;
     char text[400];
 } nevh__report;
@@ -79,10 +79,10 @@ typedef struct {
 } nevh__effect;
 
 typedef struct {
-    nevh_term is;  /* names, indices and constants are the system's own copies;
+    nevh_term decl; /* names, indices and constants are the system's own copies;
                       q and p are never NULL when something is read */
-    size_t effect; /* index into the effects */
-} nevh__term;
+    size_t effect;  /* index into the effects */
+} nevh__term_entry;
 
 typedef struct {
     size_t effect;
@@ -91,7 +91,7 @@ typedef struct {
 
 struct nevh_system {
     size_t n;
-    nevh__term **terms; /* pointers, so that terms stay where they are */
+    nevh__term_entry **terms; /* pointers, so that terms stay where they are */
     size_t n_terms;
     nevh__effect *effects;
     size_t n_effects;
@@ -104,7 +104,8 @@ struct nevh_system {
     nevh__report report;
 };
 
-static inline bool nevh__term_on(const nevh_system *s, const nevh__term *term) {
+static inline bool nevh__term_on(const nevh_system *s,
+                                 const nevh__term_entry *term) {
     return s->effects[term->effect].on;
 }
 
@@ -113,13 +114,13 @@ size_t nevh__effect_index(nevh_system *, const char *name);
 
 /* 1/m of each instance where the term came from nevh_system_add_masses; NULL:
    it did not. */
-const double *nevh__term_inverse_masses(const nevh__term *);
+const double *nevh__term_inverse_masses(const nevh__term_entry *);
 
 /* Values of a term in `width` columns (a multiple of NEVH__LANES) of which
    `used` count; rows of `width` doubles as in nevh_block_fn.  A scalar value
    is called for the used columns only; with `scalar` it is taken even where
    there is a block.  one: nq + np + nc doubles. */
-void nevh__term_values(const nevh__term *, bool scalar, size_t width,
+void nevh__term_values(const nevh__term_entry *, bool scalar, size_t width,
                        size_t used, const double t[], const double q[],
                        const double p[], const double c[], double h[],
                        double one[]);

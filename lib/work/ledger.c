@@ -58,7 +58,7 @@ static int plan_field(nevh_work *w, struct nevh_ledger *l) {
         status = nevh__field_plan_time(l->field, w->options, l->steps);
     for (size_t i = 0; !status && i < l->field->n_terms; i++) {
         const nevh__planned *term = &l->field->terms[i];
-        l->mixed |= term->term->is.time && term->nq && term->np;
+        l->mixed |= term->term->decl.time && term->nq && term->np;
     }
     return status ? nevh__fail_as(w->report, &l->field->report) : NEVH_OK;
 }
@@ -114,7 +114,7 @@ void nevh__ledger_open(nevh_work *w, const double q[], const double p[]) {
 /* sum + lost += x, whichever is larger. */
 static void add(double *sum, double *lost, double x) {
     double next = *sum + x;
-    *lost += nevh__lost(next, *sum, x);
+    *lost += nevh__roundoff(next, *sum, x);
     *sum = next;
 }
 

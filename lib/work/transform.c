@@ -32,7 +32,7 @@ int nevh__transform_fail(nevh_work *w, const nevh_field *s) {
    exact gradient, differences are good enough under any method of H's. */
 static const nevh_gradient *method(const nevh_system *s) {
     for (size_t i = 0; i < s->n_terms; i++)
-        if (!s->terms[i]->is.gradient)
+        if (!s->terms[i]->decl.gradient)
             return nevh_central6;
     return nevh_exact;
 }

@@ -36,14 +36,15 @@ bool nevh__work_repeats(const nevh_work *w) {
 int nevh_work_gradient(nevh_work *w, size_t points, const double t[],
                        const double q[], const double p[], double dh_dq[],
                        double dh_dp[]) {
-    return nevh__work_gradient(w, points, points, t, q, p, dh_dq, dh_dp);
+    return nevh__work_gradient_padded(w, points, points, t, q, p, dh_dq, dh_dp);
 }
 
-int nevh__work_gradient(nevh_work *w, size_t points, size_t used,
-                        const double t[], const double q[], const double p[],
-                        double dh_dq[], double dh_dp[]) {
-    int status =
-        nevh__field_gradient(w->field, points, used, t, q, p, dh_dq, dh_dp);
+int nevh__work_gradient_padded(nevh_work *w, size_t points, size_t used,
+                               const double t[], const double q[],
+                               const double p[], double dh_dq[],
+                               double dh_dp[]) {
+    int status = nevh__field_gradient_padded(w->field, points, used, t, q, p,
+                                             dh_dq, dh_dp);
     if (status)
         return fail_field(w, status);
     return w->transform
@@ -96,7 +97,7 @@ static double check(size_t count, const double y[], const double d[],
 static void add(size_t count, double y[], const double d[], double carry[]) {
     for (size_t i = 0; i < count; i++) {
         double x = d[i] + carry[i], next = y[i] + x;
-        carry[i] = nevh__lost(next, y[i], x);
+        carry[i] = nevh__roundoff(next, y[i], x);
         y[i] = next;
     }
 }

@@ -39,9 +39,10 @@ int nevh__work_noise(nevh_work *, double t, const double q[], const double p[],
                      double noise_q[], double noise_p[]);
 
 /* nevh_work_gradient, where only `used` points count: others fill vectors. */
-int nevh__work_gradient(nevh_work *, size_t points, size_t used,
-                        const double t[], const double q[], const double p[],
-                        double dh_dq[], double dh_dp[]);
+int nevh__work_gradient_padded(nevh_work *, size_t points, size_t used,
+                               const double t[], const double q[],
+                               const double p[], double dh_dq[],
+                               double dh_dp[]);
 /* Whether such points cost little: gradients are exact and those of H. */
 bool nevh__work_lean(const nevh_work *);
 /* Whether one orbit may as well be repeated over a vector. */

@@ -27,33 +27,33 @@ static formula_system made(const char *text, const nevh__names *names,
 
 /* Value and gradient (q, then p) of one instance, added up; `size` is what the
    values are without their signs. */
-static void add_instance(const nevh_term *is, size_t i, double t,
+static void add_instance(const nevh_term *decl, size_t i, double t,
                          const double q[], const double p[], double *h,
                          double *size, double dq[], double dp[]) {
     enum { W = 8, MOST_READ = 64 };
     static double rows[5 * MOST_READ * W], one[3 * MOST_READ], ts[W];
-    double *rows_p = rows + is->nq * W, *rows_c = rows_p + is->np * W,
-           *out_q = rows_c + is->nc * W, *out_p = out_q + is->nq * W;
-    double *one_p = one + is->nq, *one_c = one_p + is->np;
-    ck_assert(is->nq <= MOST_READ && is->np <= MOST_READ);
-    for (size_t k = 0; k < is->nq; k++)
-        one[k] = q[is->q[i * is->nq + k]];
-    for (size_t k = 0; k < is->np; k++)
-        one_p[k] = p[is->p[i * is->np + k]];
-    for (size_t k = 0; k < is->nc; k++)
-        one_c[k] = is->c[i * is->nc + k];
-    for (size_t k = 0; k < (is->nq + is->np + is->nc) * W; k++)
+    double *rows_p = rows + decl->nq * W, *rows_c = rows_p + decl->np * W,
+           *out_q = rows_c + decl->nc * W, *out_p = out_q + decl->nq * W;
+    double *one_p = one + decl->nq, *one_c = one_p + decl->np;
+    ck_assert(decl->nq <= MOST_READ && decl->np <= MOST_READ);
+    for (size_t k = 0; k < decl->nq; k++)
+        one[k] = q[decl->q[i * decl->nq + k]];
+    for (size_t k = 0; k < decl->np; k++)
+        one_p[k] = p[decl->p[i * decl->np + k]];
+    for (size_t k = 0; k < decl->nc; k++)
+        one_c[k] = decl->c[i * decl->nc + k];
+    for (size_t k = 0; k < (decl->nq + decl->np + decl->nc) * W; k++)
         rows[k] = one[k / W];
     for (size_t lane = 0; lane < W; lane++)
-        ts[lane] = is->time ? t : 0;
-    double value = is->value(ts[0], one, one_p, one_c, is->params);
+        ts[lane] = decl->time ? t : 0;
+    double value = decl->value(ts[0], one, one_p, one_c, decl->params);
     *h += value;
     *size += fabs(value);
-    is->gradient(W, ts, rows, rows_p, rows_c, is->params, out_q, out_p);
-    for (size_t k = 0; k < is->nq; k++)
-        dq[is->q[i * is->nq + k]] += out_q[k * W];
-    for (size_t k = 0; k < is->np; k++)
-        dp[is->p[i * is->np + k]] += out_p[k * W];
+    decl->gradient(W, ts, rows, rows_p, rows_c, decl->params, out_q, out_p);
+    for (size_t k = 0; k < decl->nq; k++)
+        dq[decl->q[i * decl->nq + k]] += out_q[k * W];
+    for (size_t k = 0; k < decl->np; k++)
+        dp[decl->p[i * decl->np + k]] += out_p[k * W];
 }
 
 /* The same of a system; a field would refuse gradients that differences of a
@@ -65,8 +65,8 @@ static double evaluate(const nevh_system *s, double t, const double q[],
     *h = 0;
     memset(slopes, 0, 2 * n * sizeof *slopes);
     for (size_t k = 0; k < s->n_terms; k++)
-        for (size_t i = 0; i < s->terms[k]->is.count; i++)
-            add_instance(&s->terms[k]->is, i, t, q, p, h, &size, slopes,
+        for (size_t i = 0; i < s->terms[k]->decl.count; i++)
+            add_instance(&s->terms[k]->decl, i, t, q, p, h, &size, slopes,
                          slopes + n);
     return size;
 }
@@ -212,8 +212,9 @@ START_TEST(order_and_tables) {
         made("y^2 + sum(i = 1..N, w[i]*q[i]^2/k + w[i]^2*q[i]*m) + x^2 + y^4",
              names, FORMULA_DOF);
     ck_assert_uint_eq(s.system->n_terms, 3);
-    const nevh_term *a = &s.system->terms[0]->is, *b = &s.system->terms[1]->is,
-                    *c = &s.system->terms[2]->is;
+    const nevh_term *a = &s.system->terms[0]->decl,
+                    *b = &s.system->terms[1]->decl,
+                    *c = &s.system->terms[2]->decl;
     ck_assert_str_eq(a->name, "H");
     ck_assert_str_eq(b->name, "H 2");
     ck_assert_str_eq(c->name, "H 3");
@@ -229,7 +230,7 @@ START_TEST(order_and_tables) {
     }
     system_done(&s);
     s = made("sum(i = 1..N, k*q[i]^2/2)", names, FORMULA_DOF);
-    ck_assert_uint_eq(s.system->terms[0]->is.nc, 0);
+    ck_assert_uint_eq(s.system->terms[0]->decl.nc, 0);
     system_done(&s);
     nevh__names_free(names);
 }
@@ -240,8 +241,8 @@ START_TEST(pairs) {
     formula_system s =
         made("sum(i = 1..N, j = 1..N, i*q[i]*q[j]*p_q[i])", names, FORMULA_DOF);
     ck_assert_uint_eq(s.system->n_terms, 2);
-    const nevh_term *diagonal = &s.system->terms[0]->is,
-                    *others = &s.system->terms[1]->is;
+    const nevh_term *diagonal = &s.system->terms[0]->decl,
+                    *others = &s.system->terms[1]->decl;
     ck_assert(diagonal->count == 4 && diagonal->nq == 1 && diagonal->np == 1);
     ck_assert(others->count == 12 && others->nq == 2 && others->np == 1);
     system_done(&s);
@@ -314,9 +315,9 @@ START_TEST(long_chain) {
                             " + a/3*(x[i+1] - x[i])^3)",
                             names, N);
     ck_assert_uint_eq(s.system->n_terms, 4);
-    ck_assert_uint_eq(s.system->terms[0]->is.count, N);
-    ck_assert_uint_eq(s.system->terms[3]->is.count, N - 1);
-    ck_assert_uint_eq(s.system->terms[3]->is.nq, 2);
+    ck_assert_uint_eq(s.system->terms[0]->decl.count, N);
+    ck_assert_uint_eq(s.system->terms[3]->decl.count, N - 1);
+    ck_assert_uint_eq(s.system->terms[3]->decl.nq, 2);
     random_state(N, q, p);
     double h, sum = q[0] * q[0] / 2 + q[N - 1] * q[N - 1] / 2;
     for (size_t i = 0; i < N; i++) {
@@ -354,8 +355,8 @@ START_TEST(many_bodies) {
                             "(x[3*i-k] - x[3*j-k])^2)))",
                             names, 3 * N);
     ck_assert_uint_eq(s.system->n_terms, 1);
-    ck_assert_uint_eq(s.system->terms[0]->is.count, 190);
-    ck_assert_uint_eq(s.system->terms[0]->is.nq, 6);
+    ck_assert_uint_eq(s.system->terms[0]->decl.count, 190);
+    ck_assert_uint_eq(s.system->terms[0]->decl.nq, 6);
     system_done(&s);
     nevh__names_free(names);
 }

@@ -77,7 +77,7 @@ OF(elliptic_k, elliptic(0, a))
 OF(elliptic_e, elliptic(1, a))
 
 typedef struct {
-    nevh__operation is;
+    nevh__tape_operation is;
     reference_fn reference;
     double from[2], to[2];
     double ulps; /* of the scalar value; of the function's size where that is
@@ -140,8 +140,8 @@ static void draw(const operation *f, double x[], double y[]) {
     }
 }
 
-static nevh__tape *tape_of(nevh__operation is) {
-    nevh__tape_builder *b = nevh__tape_begin();
+static nevh__tape *tape_of(nevh__tape_operation is) {
+    nevh__tape_builder *b = nevh__tape_builder_new();
     int x = nevh__tape_variable(b, NEVH__Q, 0);
     int y = nevh__tape_variable(b, NEVH__P, 0);
     nevh__tape *tape =
@@ -290,7 +290,7 @@ END_TEST
 /* Value and derivatives where they are special; they are exact, and NaN is
    wanted where NaN is written. */
 static const struct {
-    nevh__operation is;
+    nevh__tape_operation is;
     double a, b, value, by_a, by_b;
 } special[] = {
     {NEVH__POWER, -2, 3, -8, 12, NAN},

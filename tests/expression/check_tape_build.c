@@ -11,7 +11,7 @@ static nevh__tape_builder *b; /* of the test that runs */
 static int x, y;              /* q[0], p[0] */
 
 static void begin(void) {
-    b = nevh__tape_begin();
+    b = nevh__tape_builder_new();
     x = nevh__tape_variable(b, NEVH__Q, 0);
     y = nevh__tape_variable(b, NEVH__P, 0);
 }
@@ -20,7 +20,7 @@ static int number(double value) {
     return nevh__tape_number(b, value);
 }
 
-static int apply(nevh__operation of, int u, int v) {
+static int apply(nevh__tape_operation of, int u, int v) {
     return nevh__tape_apply(b, of, u, v);
 }
 
@@ -59,7 +59,8 @@ static double variant_value(int kind, double u) {
 /* a (of) b at all pairs of special numbers, either or none of them known as
    the tape is made: nothing that is rewritten changes a bit. */
 START_TEST(rewriting_is_exact) {
-    nevh__operation of = _i % 5 == 4 ? NEVH__NEGATE : (nevh__operation)(_i % 5);
+    nevh__tape_operation of =
+        _i % 5 == 4 ? NEVH__NEGATE : (nevh__tape_operation)(_i % 5);
     int kind_a = _i / 5 % 4, kind_b = _i / 20;
     for (int k = 0; k < 3 * SPECIALS * SPECIALS; k++) {
         double u = specials[k / 3 % SPECIALS], v = specials[k / 3 / SPECIALS];
@@ -188,7 +189,7 @@ START_TEST(what_is_read) {
 END_TEST
 
 START_TEST(kinks_are_told) {
-    static const nevh__operation kinked[] = {
+    static const nevh__tape_operation kinked[] = {
         NEVH__ABS, NEVH__MIN, NEVH__MAX, NEVH__SIGN, NEVH__MOD, NEVH__FLOOR};
     begin();
     nevh__tape *tape =

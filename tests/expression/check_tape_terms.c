@@ -26,7 +26,7 @@ static double uniform(void) {
    earlier nodes, or a variable (q, p, c, t) or a number. */
 typedef struct {
     enum { VARIABLE, NUMBER, OPERATION } kind;
-    nevh__operation is;
+    nevh__tape_operation is;
     int a, b;
     double number;
     bool drawn; /* may be drawn as an operand: a variable, a halved result */
@@ -40,7 +40,7 @@ static int put(node n) {
     return node_count++;
 }
 
-static int combine(nevh__operation is, int u, int v) {
+static int combine(nevh__tape_operation is, int u, int v) {
     return put((node){.kind = OPERATION, .is = is, .a = u, .b = v});
 }
 
@@ -69,12 +69,12 @@ static int operand(int reach) {
                        : drawn(reach);
 }
 
-static const nevh__operation smooth[] = {
+static const nevh__tape_operation smooth[] = {
     NEVH__ADD,  NEVH__SUBTRACT, NEVH__MULTIPLY, NEVH__NEGATE, NEVH__SIN,
     NEVH__COS,  NEVH__TANH,     NEVH__HYPOT,    NEVH__ATAN,   NEVH__ASINH,
     NEVH__ATAN, NEVH__DIVIDE,   NEVH__SQRT,     NEVH__EXP,    NEVH__POWER,
 };
-static const nevh__operation arithmetic[] = {
+static const nevh__tape_operation arithmetic[] = {
     NEVH__ADD,    NEVH__SUBTRACT, NEVH__MULTIPLY, NEVH__NEGATE,
     NEVH__DIVIDE, NEVH__SQRT,     NEVH__MIN,      NEVH__ABS,
 };
@@ -90,8 +90,9 @@ static int positive(int u) {
 
 /* Halved, so that neither values nor derivatives grow from node to node.
    Takes the last result, so that none is without use. */
-static void put_random(const nevh__operation from[], int count, int reach) {
-    nevh__operation is = from[random_int(count)];
+static void put_random(const nevh__tape_operation from[], int count,
+                       int reach) {
+    nevh__tape_operation is = from[random_int(count)];
     int u = node_count - 1, v = operand(reach);
     if (is == NEVH__DIVIDE || is == NEVH__HYPOT)
         v = positive(v);
@@ -108,7 +109,7 @@ static void put_random(const nevh__operation from[], int count, int reach) {
 }
 
 /* `count` nodes or a few more, of which many are summed up in the end. */
-static void make(const nevh__operation from[], int operations, int count,
+static void make(const nevh__tape_operation from[], int operations, int count,
                  int reach) {
     put_leaves();
     while (node_count < count)
@@ -122,7 +123,7 @@ static nevh__tape *tape_of_nodes(void) {
     static int made[MOST_NODES + 1100];
     static const nevh__variable kinds[] = {NEVH__Q, NEVH__P};
     int status;
-    nevh__tape_builder *b = nevh__tape_begin();
+    nevh__tape_builder *b = nevh__tape_builder_new();
     for (int i = 0; i < node_count; i++) {
         const node *n = &nodes[i];
         if (n->kind == OPERATION)
@@ -298,7 +299,7 @@ END_TEST
 /* The double pendulum's kinetic energy; w and 2 m l^2 are constants, and the
    third coordinate is declared, but not read. */
 static nevh__tape *kinetic_tape(void) {
-    nevh__tape_builder *b = nevh__tape_begin();
+    nevh__tape_builder *b = nevh__tape_builder_new();
     int q1 = nevh__tape_variable(b, NEVH__Q, 0);
     int q2 = nevh__tape_variable(b, NEVH__Q, 1);
     int p1 = nevh__tape_variable(b, NEVH__P, 0);
@@ -326,7 +327,7 @@ static nevh__tape *kinetic_tape(void) {
 
 /* c[0] cos q[0] */
 static nevh__tape *cosine_tape(void) {
-    nevh__tape_builder *b = nevh__tape_begin();
+    nevh__tape_builder *b = nevh__tape_builder_new();
     int q = nevh__tape_variable(b, NEVH__Q, 0);
     int c = nevh__tape_variable(b, NEVH__C, 0);
     nevh__tape_variable(b, NEVH__Q, 1);

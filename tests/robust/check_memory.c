@@ -235,7 +235,7 @@ static int find_defects(const setting *a) {
 static int make_tape(const setting *a) {
     (void)a;
     int status;
-    nevh__tape_builder *b = nevh__tape_begin();
+    nevh__tape_builder *b = nevh__tape_builder_new();
     int h = nevh__tape_variable(b, NEVH__Q, 0);
     for (double i = 0; i < 50; i++)
         h = nevh__tape_apply(b, NEVH__ADD, h, nevh__tape_number(b, i));

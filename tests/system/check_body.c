@@ -78,7 +78,7 @@ typedef long double (*slope_fn)(long double x, long double y);
 
 typedef struct {
     const char *name;
-    nevh_term is;
+    nevh_term decl;
     double from[2], to[2]; /* of x and y */
     slope_fn dx, dy;
 } function;
@@ -87,7 +87,7 @@ typedef struct {
 #define XY(f, x0, x1, y0, y1) FUNCTION(f, x0, x1, y0, y1, f##_dy)
 #define FUNCTION(f, x0, x1, y0, y1, slope_y)                                   \
     {                                                                          \
-        .name = #f, .is = {NEVH_FORMS(of_##f)}, .from = {x0, y0},              \
+        .name = #f, .decl = {NEVH_FORMS(of_##f)}, .from = {x0, y0},            \
         .to = {x1, y1}, .dx = f##_dx, .dy = slope_y                            \
     }
 
@@ -147,14 +147,14 @@ static void draw(const function *f, size_t count, double x[], double y[]) {
 }
 
 static double value_at(const function *f, double x, double y) {
-    return f->is.value(0, &x, &y, NULL, NULL);
+    return f->decl.value(0, &x, &y, NULL, NULL);
 }
 
 static const double no_time[WIDTH];
 
 static void block_at(const function *f, size_t width, const double x[],
                      const double y[], double h[]) {
-    f->is.block(width, no_time, x, y, NULL, NULL, h);
+    f->decl.block(width, no_time, x, y, NULL, NULL, h);
 }
 
 /* The value; *slope is the derivative in the direction (dx, dy). */
@@ -162,7 +162,7 @@ static double complex_at(const function *f, double x, double dx, double y,
                          double dy, double *slope) {
     const double q[1][2] = {{x, dx * TINY}}, p[1][2] = {{y, dy * TINY}};
     double h[2];
-    f->is.complex_value(0, q, p, NULL, NULL, h);
+    f->decl.complex_value(0, q, p, NULL, NULL, h);
     *slope = h[1] / TINY;
     return h[0];
 }

@@ -12,7 +12,7 @@ typedef struct {
     hard_result *result;
     size_t count;
     double frequency, dt, t, t_end;
-    const hard_case *is;
+    const hard_case *decl;
 } case_results;
 
 typedef struct {
@@ -94,7 +94,7 @@ static int check_names(const options *o) {
 static void run_case(const suite *all, hard_subject *s, case_results *c) {
     c->count = all->gradients.count * all->n_schemes;
     c->result = tool_allocate(c->count, sizeof *c->result);
-    c->is = s->is;
+    c->decl = s->decl;
     c->frequency = s->frequency;
     c->dt = s->dt;
     c->t = s->t;
@@ -151,7 +151,7 @@ static char *asked(const case_results *c) {
 static void add_record(table *t, const case_results *c, const hard_result *r) {
     char *what = asked(c);
     bool ran = r->planned && !r->status;
-    table_text(t, c->is->name);
+    table_text(t, c->decl->name);
     table_text(t, nevh_integrator_name(r->scheme));
     table_text(t, r->gradient);
     table_text(t, what);
@@ -208,7 +208,7 @@ static void show_bundle(table *t, const case_results *c, hard_verdict v,
                         const bundle *b) {
     bool numbers = v != HARD_REFUSED && v != HARD_FAILED;
     char *what = asked(c);
-    table_text(t, c->is->name);
+    table_text(t, c->decl->name);
     table_text(t, what);
     table_shown(t, "%.2g", c->dt * c->frequency);
     table_text(t, hard_verdict_name(v));

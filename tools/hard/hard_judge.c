@@ -21,7 +21,7 @@ const char *hard_verdict_name(hard_verdict v) {
 }
 
 static bool is(const hard_subject *s, unsigned facts) {
-    return s->is->facts & facts;
+    return s->decl->facts & facts;
 }
 
 /* Of the orbit as it should be: where a run went astray excuses nothing. */

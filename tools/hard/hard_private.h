@@ -37,7 +37,7 @@ typedef struct hard_track hard_track;
 
 /* A case made ready, and what its orbit is like. */
 typedef struct {
-    const hard_case *is;
+    const hard_case *decl;
     nevh_scene *scene;
     nevh_system *own; /* made by `make` */
     const nevh_system *system;

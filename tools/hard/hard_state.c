@@ -167,7 +167,7 @@ static void choose_system(hard_track *k, const hard_subject *s) {
 
 hard_track *hard_track_new(const hard_subject *s) {
     double span = fmin(s->t_end - s->t, most_steps * s->dt);
-    if (span > 1e200 || s->is->facts & HARD_KINK)
+    if (span > 1e200 || s->decl->facts & HARD_KINK)
         return NULL;
     hard_track *k = tool_allocate(1, sizeof *k);
     choose_system(k, s);
@@ -177,7 +177,7 @@ hard_track *hard_track_new(const hard_subject *s) {
     k->count = SAMPLES + 1;
     k->range = tool_allocate(2 * k->n, sizeof *k->range);
     for (size_t i = 0; i < 2 * k->n; i++)
-        k->range[i] = s->is->facts & HARD_REST
+        k->range[i] = s->decl->facts & HARD_REST
                           ? 1
                           : nevh_reference_range(k->reference, i);
     k->t = tool_allocate(3 * k->count, sizeof *k->t);
@@ -292,7 +292,7 @@ static void allow_rest(hard_state *w, const hard_subject *s,
 /* Increments of the state take the place of a gradient's steps, and go down to
    0, where noise in H is divided by them. */
 static bool divides_noise(const hard_subject *s, const hard_result *r) {
-    return s->is->facts & HARD_NOISE &&
+    return s->decl->facts & HARD_NOISE &&
            nevh_integrator_preserves_energy(r->scheme) == NEVH_YES &&
            nevh_integrator_sweep_gradients(r->scheme) == 0;
 }

@@ -31,27 +31,27 @@ static int change(nevh_scene *scene, const char *settings) {
 }
 
 static int open_scene(hard_subject *s) {
-    s->scene = hard_scene(s->is->scene);
+    s->scene = hard_scene(s->decl->scene);
     if (!s->scene)
         return tool_refuse("the scene %s of the hard cases is not there",
-                           s->is->scene);
-    if (!nevh_scene_status(s->scene) && s->is->settings)
-        change(s->scene, s->is->settings);
+                           s->decl->scene);
+    if (!nevh_scene_status(s->scene) && s->decl->settings)
+        change(s->scene, s->decl->settings);
     if (nevh_scene_status(s->scene))
         return tool_refuse("%s", nevh_scene_message(s->scene));
     const nevh_scene_run *run = nevh_scene_run_settings(s->scene);
     s->system = nevh_scene_system(s->scene);
     s->t = run->t_start;
-    s->dt = s->is->dt > 0 ? s->is->dt : run->dt[0];
-    s->t_end = s->is->t_end > 0 ? s->t + s->is->t_end : run->t_end;
+    s->dt = s->decl->dt > 0 ? s->decl->dt : run->dt[0];
+    s->t_end = s->decl->t_end > 0 ? s->t + s->decl->t_end : run->t_end;
     s->gradient_step = run->gradient_step;
     return TOOL_OK;
 }
 
 static void make_own(hard_subject *s) {
-    s->system = s->own = s->is->make();
-    s->dt = s->is->dt;
-    s->t_end = s->is->t_end;
+    s->system = s->own = s->decl->make();
+    s->dt = s->decl->dt;
+    s->t_end = s->decl->t_end;
 }
 
 static void start(hard_subject *s) {
@@ -151,13 +151,13 @@ static void explore(hard_subject *s) {
     free(v.slope);
 }
 
-int hard_open(hard_subject *s, const hard_case *is) {
-    *s = (hard_subject){.is = is};
-    if (is->scene && open_scene(s)) {
+int hard_open(hard_subject *s, const hard_case *decl) {
+    *s = (hard_subject){.decl = decl};
+    if (decl->scene && open_scene(s)) {
         hard_close(s);
         return TOOL_USAGE;
     }
-    if (!is->scene)
+    if (!decl->scene)
         make_own(s);
     start(s);
     explore(s);

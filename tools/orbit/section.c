@@ -11,7 +11,7 @@
 typedef struct {
     nevh_scene *scene;
     size_t number, points, room;
-    const nevh_scene_section *is;
+    const nevh_scene_section *decl;
     double low, high; /* of what crosses, LEFT - RIGHT, at steps */
     double *periods;  /* of items that are coordinates; 0: none */
     double *numbers;
@@ -35,7 +35,7 @@ static double wrapped(double x, double period) {
 }
 
 static double *new_point(series *s) {
-    size_t width = 2 + s->is->items;
+    size_t width = 2 + s->decl->items;
     if (s->points == s->room) {
         s->room = s->room ? 2 * s->room : 64;
         double *more = tool_allocate(s->room * width, sizeof *more);
@@ -58,7 +58,7 @@ static int keep(void *data, const nevh_point *point) {
         s->points--;
         return 1;
     }
-    for (size_t i = 0; i < s->is->items; i++)
+    for (size_t i = 0; i < s->decl->items; i++)
         items[i] = wrapped(items[i], s->periods[i]);
     return 0;
 }
@@ -80,10 +80,10 @@ static void add_series(job *j, size_t number) {
     s->number = number;
     s->low = INFINITY;
     s->high = -INFINITY;
-    s->is = nevh_scene_section_at(s->scene, number);
-    s->periods = tool_allocate(s->is->items, sizeof *s->periods);
-    for (size_t i = 0; i < s->is->items; i++)
-        s->periods[i] = plan_period(j->plan, s->is->item[i]);
+    s->decl = nevh_scene_section_at(s->scene, number);
+    s->periods = tool_allocate(s->decl->items, sizeof *s->periods);
+    for (size_t i = 0; i < s->decl->items; i++)
+        s->periods[i] = plan_period(j->plan, s->decl->item[i]);
 }
 
 static bool asked_for(const list *names, const char *name) {
@@ -129,19 +129,19 @@ static void forget(job *j) {
 }
 
 static nevh_sections *watch(job *j, const nevh_stepper *s) {
-    nevh_section *is = tool_allocate(j->count, sizeof *is);
+    nevh_section *decl = tool_allocate(j->count, sizeof *decl);
     for (size_t i = 0; i < j->count; i++) {
-        const nevh_scene_section *from = j->all[i].is;
-        is[i] = from->every > 0
-                    ? (nevh_section){.name = from->name, .every = from->every}
-                    : (nevh_section){.name = from->name,
-                                     .value = value,
-                                     .data = &j->all[i],
-                                     .direction = from->direction,
-                                     .period = from->period};
+        const nevh_scene_section *from = j->all[i].decl;
+        decl[i] = from->every > 0
+                      ? (nevh_section){.name = from->name, .every = from->every}
+                      : (nevh_section){.name = from->name,
+                                       .value = value,
+                                       .data = &j->all[i],
+                                       .direction = from->direction,
+                                       .period = from->period};
     }
-    nevh_sections *x = nevh_sections_new(s, is, j->count, keep, j);
-    free(is);
+    nevh_sections *x = nevh_sections_new(s, decl, j->count, keep, j);
+    free(decl);
     return x;
 }
 
@@ -182,15 +182,15 @@ static int run(job *j, nevh_stepper *s) {
 /* The columns that sections show, each once. */
 static void list_items(const job *j, list *items) {
     for (size_t i = 0; i < j->count; i++)
-        for (size_t k = 0; k < j->all[i].is->items; k++)
-            if (!list_has(items, j->all[i].is->item[k]))
-                list_add(items, j->all[i].is->item[k]);
+        for (size_t k = 0; k < j->all[i].decl->items; k++)
+            if (!list_has(items, j->all[i].decl->item[k]))
+                list_add(items, j->all[i].decl->item[k]);
 }
 
 static double number_of(const series *s, const double *point,
                         const char *item) {
-    for (size_t k = 0; k < s->is->items; k++)
-        if (strcmp(s->is->item[k], item) == 0)
+    for (size_t k = 0; k < s->decl->items; k++)
+        if (strcmp(s->decl->item[k], item) == 0)
             return point[2 + k];
     return NAN;
 }
@@ -199,8 +199,8 @@ static void fill(table *t, const job *j, const list *items) {
     for (size_t i = 0; i < j->count; i++, table_group(t)) {
         const series *s = &j->all[i];
         for (size_t k = 0; k < s->points; k++) {
-            const double *point = s->numbers + k * (2 + s->is->items);
-            table_text(t, s->is->name);
+            const double *point = s->numbers + k * (2 + s->decl->items);
+            table_text(t, s->decl->name);
             table_number(t, point[0]);
             table_number(t, point[1]);
             for (size_t c = 0; c < items->count; c++)
@@ -210,40 +210,40 @@ static void fill(table *t, const job *j, const list *items) {
 }
 
 /* What crosses, and where: "theta", 0; "z - (x)", 0 where that is no number. */
-static char *crossing_text(const nevh_scene_section *is, double *at) {
+static char *crossing_text(const nevh_scene_section *decl, double *at) {
     char *end;
-    *at = strtod(is->right, &end);
-    if (!*end && end != is->right)
-        return text_print("%s", is->left);
+    *at = strtod(decl->right, &end);
+    if (!*end && end != decl->right)
+        return text_print("%s", decl->left);
     *at = 0;
-    return text_print("%s - (%s)", is->left, is->right);
+    return text_print("%s - (%s)", decl->left, decl->right);
 }
 
 /* Why there are no points; to be freed. */
 static char *reason(const job *j, const series *s) {
-    const nevh_scene_section *is = s->is;
+    const nevh_scene_section *decl = s->decl;
     const char *unit =
-        is->left ? nevh_scene_label(j->plan->scene, is->left) : "";
+        decl->left ? nevh_scene_label(j->plan->scene, decl->left) : "";
     double at;
-    if (is->every > 0)
-        return text_print("the run is shorter than %.4g", is->every);
+    if (decl->every > 0)
+        return text_print("the run is shorter than %.4g", decl->every);
     if (!(s->low <= s->high))
         return text_print("no step was taken");
-    char *what = crossing_text(is, &at);
+    char *what = crossing_text(decl, &at);
     bool passes = s->low < 0 && s->high > 0;
     char *text =
         text_print("%s stays in %.3g ... %.3g%s%s%s", what, s->low + at,
                    s->high + at, *unit ? " " : "", unit,
-                   passes && is->direction > 0   ? " and does not rise there"
-                   : passes && is->direction < 0 ? " and does not fall there"
-                                                 : "");
+                   passes && decl->direction > 0   ? " and does not rise there"
+                   : passes && decl->direction < 0 ? " and does not fall there"
+                                                   : "");
     free(what);
     return text;
 }
 
 static void note_points(const job *j, const series *s, list *notes) {
     char *why = s->points ? NULL : reason(j, s);
-    list_print(notes, "section %s: %zu points%s%s", s->is->name, s->points,
+    list_print(notes, "section %s: %zu points%s%s", s->decl->name, s->points,
                why ? ": " : "", why ? why : "");
     free(why);
 }
@@ -294,7 +294,7 @@ static int draw(const job *j, const options *o, int status) {
     if (count_points(j) == 0)
         return status ? status : refuse_empty(j);
     for (size_t i = 0; i < j->count; i++)
-        section_plot(&to, j->plan, j->all[i].is, j->all[i].points,
+        section_plot(&to, j->plan, j->all[i].decl, j->all[i].points,
                      j->all[i].numbers);
     add_note(j, to);
     int drawn = plot_write(to, o);

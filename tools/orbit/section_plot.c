@@ -62,9 +62,9 @@ static size_t new_series(plot *to, const char *name) {
     return series;
 }
 
-static void add_panel(plot **to, const plan *p, const nevh_scene_section *is,
+static void add_panel(plot **to, const plan *p, const nevh_scene_section *decl,
                       size_t points, const char *across, const char *up) {
-    char *heading = text_print(points ? "%s" : "%s: no points", is->name);
+    char *heading = text_print(points ? "%s" : "%s: no points", decl->name);
     char *x = plot_label(p, across, across), *y = plot_label(p, up, up);
     if (!*to) {
         *to = plot_new(p->title, x, y);
@@ -78,16 +78,17 @@ static void add_panel(plot **to, const plan *p, const nevh_scene_section *is,
 
 /* The first item and the second; a single one, or one beside another that does
    not change, against the time. */
-void section_plot(plot **to, const plan *p, const nevh_scene_section *is,
+void section_plot(plot **to, const plan *p, const nevh_scene_section *decl,
                   size_t points, const double numbers[]) {
-    bool two_ways = is->direction == 0 && is->every == 0;
-    size_t width = 2 + is->items, last = is->items > 1 ? 1 : 0;
+    bool two_ways = decl->direction == 0 && decl->every == 0;
+    size_t width = 2 + decl->items, last = decl->items > 1 ? 1 : 0;
     column t = column_of(p, "t", points, numbers, width, 0);
-    column first = column_of(p, is->item[0], points, numbers, width, 2);
-    column y = column_of(p, is->item[last], points, numbers, width, 2 + last);
+    column first = column_of(p, decl->item[0], points, numbers, width, 2);
+    column y = column_of(p, decl->item[last], points, numbers, width, 2 + last);
     bool level = last == 0 || is_level(&first);
     column x = level ? t : first;
-    add_panel(to, p, is, points, level ? "t" : is->item[0], is->item[last]);
+    add_panel(to, p, decl, points, level ? "t" : decl->item[0],
+              decl->item[last]);
     size_t rising = new_series(*to, two_ways ? "rising" : NULL);
     size_t falling = two_ways ? new_series(*to, "falling") : rising;
     for (size_t k = 0; k < points; k++)

@@ -42,22 +42,23 @@ static double most_turns(const orbit *o, const quantities *c) {
     return most;
 }
 
-static void follow(run_picture *is, column_panels *c) {
-    row_times dense = orbit_dense_times(&is->plan);
-    picture_follow(is, is->rows ? is->rows : &dense, c->columns.count,
+static void follow(run_picture *decl, column_panels *c) {
+    row_times dense = orbit_dense_times(&decl->plan);
+    picture_follow(decl, decl->rows ? decl->rows : &dense, c->columns.count,
                    column_panels_fill, c);
     free(dense.time);
 }
 
 /* A run that goes round so often that a curve would be a band is cut.
    returns  what is to be said of it; to be freed */
-static char *follow_and_cut(run_picture *is, column_panels *c) {
-    follow(is, c);
+static char *follow_and_cut(run_picture *decl, column_panels *c) {
+    follow(decl, c);
     char *words =
-        is->rows ? NULL
-                 : picture_cut(is, most_turns(is->orbits.item, &c->columns));
+        decl->rows
+            ? NULL
+            : picture_cut(decl, most_turns(decl->orbits.item, &c->columns));
     if (words)
-        follow(is, c);
+        follow(decl, c);
     return words ? words : text_print("%s", "");
 }
 
@@ -67,17 +68,17 @@ static bool may_be_known(const plan *p) {
     return p->n <= 3 && !p->balance && !p->run->reference;
 }
 
-static nevh_reference *exact_solution(run_picture *is) {
-    plan *p = &is->plan;
+static nevh_reference *exact_solution(run_picture *decl) {
+    plan *p = &decl->plan;
     if (!may_be_known(p) || plan_reference(p, p->t_end) || !p->reference ||
         strncmp(nevh_reference_text(p->reference), "exact", 5) != 0)
         return NULL;
     return p->reference;
 }
 
-static void draw_exact(plot *to, const run_picture *is, column_panels *c,
+static void draw_exact(plot *to, const run_picture *decl, column_panels *c,
                        size_t k, nevh_reference *exact) {
-    const plan *p = &is->plan;
+    const plan *p = &decl->plan;
     size_t n = p->n, series = plot_series(to, "exact solution");
     double *state = tool_allocate(2 * n + c->columns.count, sizeof *state);
     double *values = state + 2 * n, begin = p->run->t_start;
@@ -106,19 +107,19 @@ static size_t place_in_panel(const column_panels *c, size_t k, size_t *count) {
 
 /* Several orbits differ by colour, and the columns of a panel by dashes; those
    of a single one by colour. */
-static size_t new_series(plot *to, const run_picture *is,
+static size_t new_series(plot *to, const run_picture *decl,
                          const column_panels *c, size_t k, size_t number,
                          bool exact) {
     size_t count, place = place_in_panel(c, k, &count);
-    const orbit *o = &is->orbits.item[number];
-    bool several = is->orbits.count > 1;
+    const orbit *o = &decl->orbits.item[number];
+    bool several = decl->orbits.count > 1;
     bool named = several ? place == 0 : count == 1 && exact;
     const char *name = named                   ? o->name
                        : count > 1 && !several ? c->columns.item[k].name
                                                : NULL;
     size_t series = plot_series(to, name);
     if (several && place > 0) {
-        plot_like(to, series, series - place * is->orbits.count);
+        plot_like(to, series, series - place * decl->orbits.count);
         plot_dash(to, series, place);
     }
     return series;
@@ -137,11 +138,12 @@ static bool is_shown(const orbit *o, const quantity *what, double t) {
            fabs(steps - round(steps)) < whole;
 }
 
-static void draw_orbit(plot *to, const run_picture *is, const column_panels *c,
-                       size_t k, size_t number, bool exact) {
-    const orbit *o = &is->orbits.item[number];
-    size_t series = new_series(to, is, c, k, number, exact);
-    bool few = is->rows && o->rows.count <= FEW_ROWS;
+static void draw_orbit(plot *to, const run_picture *decl,
+                       const column_panels *c, size_t k, size_t number,
+                       bool exact) {
+    const orbit *o = &decl->orbits.item[number];
+    size_t series = new_series(to, decl, c, k, number, exact);
+    bool few = decl->rows && o->rows.count <= FEW_ROWS;
     plot_style(to, series,
                o->rows.part < 1 ? PLOT_DOTS
                : !few           ? PLOT_TRAIL
@@ -149,23 +151,23 @@ static void draw_orbit(plot *to, const run_picture *is, const column_panels *c,
                                 : PLOT_BOTH);
     for (size_t i = 0; i < o->rows.count; i++) {
         const double *at = orbit_row(o, i);
-        if (is->rows || is_shown(o, &c->columns.item[k], at[-1]))
+        if (decl->rows || is_shown(o, &c->columns.item[k], at[-1]))
             plot_point(to, series, at[-1], at[k]);
     }
 }
 
 /* Of a panel with several columns: their names. */
-static char *panel_label(const run_picture *is, const column_panels *c,
+static char *panel_label(const run_picture *decl, const column_panels *c,
                          size_t panel) {
     static const char *const dashes[] = {"", " dashed", " dotted",
                                          " dash-dotted", " long dashes"};
-    bool several = is->orbits.count > 1;
+    bool several = decl->orbits.count > 1;
     char *text = NULL;
     for (size_t k = 0; k < c->columns.count; k++) {
         if (c->panel[k] != panel)
             continue;
         size_t count, place = place_in_panel(c, k, &count);
-        char *label = column_label(&is->plan, &c->columns.item[k]);
+        char *label = column_label(&decl->plan, &c->columns.item[k]);
         char *longer =
             text_print("%s%s%s%s", text ? text : "", text ? ", " : "", label,
                        several && place < 5 ? dashes[place] : "");
@@ -176,42 +178,43 @@ static char *panel_label(const run_picture *is, const column_panels *c,
     return text;
 }
 
-static void draw_panel(plot **to, run_picture *is, column_panels *c,
+static void draw_panel(plot **to, run_picture *decl, column_panels *c,
                        size_t panel, nevh_reference *exact) {
-    char *x = plot_label(&is->plan, "t", "t");
-    char *y = panel_label(is, c, panel);
+    char *x = plot_label(&decl->plan, "t", "t");
+    char *y = panel_label(decl, c, panel);
     if (panel)
         plot_panel(*to, NULL, x, y);
     else
-        *to = plot_new(is->plan.title, x, y);
-    plot_span_x(*to, is->plan.run->t_start, is->plan.t_end);
+        *to = plot_new(decl->plan.title, x, y);
+    plot_span_x(*to, decl->plan.run->t_start, decl->plan.t_end);
     for (size_t k = 0; k < c->columns.count && exact; k++)
         if (c->panel[k] == panel)
-            draw_exact(*to, is, c, k, exact);
+            draw_exact(*to, decl, c, k, exact);
     for (size_t k = 0; k < c->columns.count; k++)
-        for (size_t i = 0; i < is->orbits.count && c->panel[k] == panel; i++)
-            draw_orbit(*to, is, c, k, i, exact);
+        for (size_t i = 0; i < decl->orbits.count && c->panel[k] == panel; i++)
+            draw_orbit(*to, decl, c, k, i, exact);
     free(x);
     free(y);
 }
 
-plot *plot_time(run_picture *is) {
+plot *plot_time(run_picture *decl) {
     column_panels c = {0};
     plot *to = NULL;
-    char *names = is->options->columns ? text_print("%s", is->options->columns)
-                                       : usual_names(&is->plan);
-    int status = column_panels_read(&c, &is->plan, names);
+    char *names = decl->options->columns
+                      ? text_print("%s", decl->options->columns)
+                      : usual_names(&decl->plan);
+    int status = column_panels_read(&c, &decl->plan, names);
     if (!status && c.panels > MOST_PANELS)
         status = tool_refuse("--columns: %d panels at most, not %zu; names "
                              "joined as A:B share one",
                              MOST_PANELS, c.panels);
     if (!status) {
-        char *more = follow_and_cut(is, &c);
-        nevh_reference *exact = exact_solution(is);
+        char *more = follow_and_cut(decl, &c);
+        nevh_reference *exact = exact_solution(decl);
         for (size_t i = 0; i < c.panels; i++)
-            draw_panel(&to, is, &c, i, exact);
+            draw_panel(&to, decl, &c, i, exact);
         plot_stack(to);
-        picture_note(is, to, more);
+        picture_note(decl, to, more);
         free(more);
     }
     column_panels_free(&c);

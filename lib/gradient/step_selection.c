@@ -1,6 +1,6 @@
 /* nevh: a field looks around.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "gradient/explore_private.h"
+#include "gradient/step_selection_private.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -17,17 +17,17 @@ size_t nevh__probed(const nevh__planned *term, size_t k) {
 }
 
 size_t nevh__step_rows(const nevh__planned *term) {
-    size_t count = term->term->is.count, stride = nevh__stride(count);
+    size_t count = term->term->decl.count, stride = nevh__stride(count);
     return (count + stride - 1) / stride;
 }
 
 size_t nevh__step_at(const nevh__planned *term, size_t instance, size_t k) {
-    return instance / nevh__stride(term->term->is.count) * term->nv + k;
+    return instance / nevh__stride(term->term->decl.count) * term->nv + k;
 }
 
 /* The largest sizes met on the way, or the lengths, which are where H varies
    and not where the origin is, if these are shorter. */
-static void set_scales(nevh__explorer *e) {
+static void set_scales(nevh__step_selection *e) {
     nevh_field *f = e->field;
     size_t n = f->n;
     for (size_t i = 0; i < 2 * n; i++) {
@@ -39,10 +39,10 @@ static void set_scales(nevh__explorer *e) {
     }
 }
 
-int nevh__explorer_open(nevh__explorer *e, nevh_field *f,
-                        const nevh_options *o) {
+int nevh__step_selection_init(nevh__step_selection *e, nevh_field *f,
+                              const nevh_options *o) {
     size_t n = f->n, most = n > LARGE ? 4 : NEVH__MOST_SAMPLES;
-    *e = (nevh__explorer){.field = f, .options = o, .samples.most = most};
+    *e = (nevh__step_selection){.field = f, .options = o, .samples.most = most};
     e->length = nevh__array(2 * n, sizeof *e->length);
     e->samples.q = nevh__array(most * n, sizeof *e->samples.q);
     e->samples.p = nevh__array(most * n, sizeof *e->samples.p);
@@ -52,15 +52,15 @@ int nevh__explorer_open(nevh__explorer *e, nevh_field *f,
     return NEVH_OK;
 }
 
-void nevh__explorer_close(nevh__explorer *e) {
+void nevh__step_selection_clear(nevh__step_selection *e) {
     free(e->length);
     free(e->samples.q);
     free(e->samples.p);
 }
 
-int nevh__field_explore(nevh_field *f, const nevh_options *o) {
-    nevh__explorer e;
-    int status = nevh__explorer_open(&e, f, o);
+int nevh__field_select_steps(nevh_field *f, const nevh_options *o) {
+    nevh__step_selection e;
+    int status = nevh__step_selection_init(&e, f, o);
     if (!status)
         nevh__set_crude_steps(&e);
     if (!status && !nevh__find_samples(&e))
@@ -68,14 +68,14 @@ int nevh__field_explore(nevh_field *f, const nevh_options *o) {
     if (!status && !o->scale)
         set_scales(&e);
     for (size_t i = 0; !status && i < f->n_terms; i++)
-        nevh__climb(&e, &f->terms[i]);
-    nevh__explorer_close(&e);
+        nevh__scan_steps(&e, &f->terms[i]);
+    nevh__step_selection_clear(&e);
     return status;
 }
 
 int nevh__field_verify(nevh_field *f, const nevh_options *o) {
-    nevh__explorer e;
-    int status = nevh__explorer_open(&e, f, o);
+    nevh__step_selection e;
+    int status = nevh__step_selection_init(&e, f, o);
     if (!status)
         nevh__find_neighbours(&e);
     for (size_t i = 0; !status && i < f->n_terms; i++)
@@ -86,6 +86,6 @@ int nevh__field_verify(nevh_field *f, const nevh_options *o) {
         status = nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
     if (!status && !o->scale)
         set_scales(&e);
-    nevh__explorer_close(&e);
+    nevh__step_selection_clear(&e);
     return status;
 }

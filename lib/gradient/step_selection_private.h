@@ -15,8 +15,8 @@
               exactly zero, H hides how it varies.
    ladder.c   for each variable of each term, powers of two as steps, at all
               those states: the one whose worst error, by estimate, is least. */
-#ifndef NEVH_EXPLORE_PRIVATE_H
-#define NEVH_EXPLORE_PRIVATE_H
+#ifndef NEVH_STEP_SELECTION_PRIVATE_H
+#define NEVH_STEP_SELECTION_PRIVATE_H
 
 #include "gradient/field_private.h"
 
@@ -43,7 +43,7 @@ typedef struct {
     size_t at;         /* the one whose lengths are looked for */
     bool shortened;    /* a length, there */
     size_t neighbours; /* the first sample displaced at random */
-} nevh__explorer;
+} nevh__step_selection;
 
 /* Distances between the instances, and between the variables of one kind, that
    are looked at. */
@@ -54,46 +54,47 @@ size_t nevh__probed(const nevh__planned *, size_t k);
 /* Values of an instance at sample `at`, its variable k, or the time, moved by
    each of `count` (up to the field's capacity) amounts; x: what was moved. */
 #define NEVH__TIME SIZE_MAX
-void nevh__along(const nevh__explorer *, const nevh__planned *, size_t instance,
-                 size_t k, size_t at, size_t count, const double move[],
-                 double x[], double h[]);
+void nevh__sample_line(const nevh__step_selection *, const nevh__planned *,
+                       size_t instance, size_t k, size_t at, size_t count,
+                       const double move[], double x[], double h[]);
 
 /* Takes the states given and fills length; a status, recorded in the field. */
-int nevh__explorer_open(nevh__explorer *, nevh_field *, const nevh_options *);
-void nevh__explorer_close(nevh__explorer *);
+int nevh__step_selection_init(nevh__step_selection *, nevh_field *,
+                              const nevh_options *);
+void nevh__step_selection_clear(nevh__step_selection *);
 /* The length of one variable of one instance, or of time: INFINITY where it is
    quadratic as far as one can see, NAN where nothing is to be seen. */
-double nevh__curve_length(const nevh__explorer *, const nevh__planned *,
+double nevh__curve_length(const nevh__step_selection *, const nevh__planned *,
                           size_t instance, size_t k, double guess);
 /* Fills length with the shortest over the lanes, of which it makes those
    samples that matter. */
-void nevh__find_lengths(nevh__explorer *);
+void nevh__find_lengths(nevh__step_selection *);
 /* Of each variable, the largest over samples of what H varies by within its
    length, over the square of that; 2n, zeros at first.
    changes: room for 4n. */
-void nevh__find_curvatures(nevh__explorer *, double changes[],
+void nevh__find_curvatures(nevh__step_selection *, double changes[],
                            double curvature[]);
 /* Steps that will do for a pilot, from the lengths. */
-void nevh__set_crude_steps(nevh__explorer *);
+void nevh__set_crude_steps(nevh__step_selection *);
 /* The time in which the fastest variable moves a hundredth of its length; 0 if
    none moves.
    ode      a gsl_odeiv2_system of the field
    y        q and p
    dydt     out, 2n */
-double nevh__first_step(const nevh__explorer *, const void *ode, double t,
+double nevh__first_step(const nevh__step_selection *, const void *ode, double t,
                         const double y[], double dydt[]);
 /* Adds samples; false when memory is out. */
-bool nevh__find_samples(nevh__explorer *);
+bool nevh__find_samples(nevh__step_selection *);
 /* Adds only those displaced at random. */
-void nevh__find_neighbours(nevh__explorer *);
+void nevh__find_neighbours(nevh__step_selection *);
 /* Checks a term's own gradient. */
-int nevh__verify(nevh__explorer *, const nevh__planned *);
+int nevh__verify(nevh__step_selection *, const nevh__planned *);
 /* Chooses the step of a method in one variable, or the time, that varies over
    a length. */
-nevh__step nevh__climb_along(const nevh__explorer *, const nevh_gradient *,
-                             const nevh__planned *, size_t instance, size_t k,
-                             double length);
+nevh__step nevh__scan_line(const nevh__step_selection *, const nevh_gradient *,
+                           const nevh__planned *, size_t instance, size_t k,
+                           double length);
 /* Chooses the steps of a term. */
-void nevh__climb(nevh__explorer *, nevh__planned *);
+void nevh__scan_steps(nevh__step_selection *, nevh__planned *);
 
 #endif
