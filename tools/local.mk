@@ -44,7 +44,7 @@ tools_nevh_SOURCES = \
 	tools/compare/compare.c \
 	tools/compare/verdict.c \
 	tools/experiment/state.c \
-	tools/search/observable.c \
+	tools/experiment/observable.c \
 	tools/experiment/match.c \
 	tools/experiment/diagnostics.c \
 	tools/inspect/effects.c \

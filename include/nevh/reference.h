@@ -138,6 +138,16 @@ NEVH_API void nevh_state_error_free(nevh_state_error *); /* NULL is allowed */
    that its steps add up to, which far from t = 0 is known better than t.  NULL:
    at t, as without a call. */
 NEVH_API void nevh_state_error_follow(nevh_state_error *, const nevh_stepper *);
+/* Is handed each pair of states that is compared.
+   t          the run's own time
+   q, p       its state, n each
+   reference  the reference's at the same time, 2n: coordinates, then momenta */
+typedef void (*nevh_pair_fn)(void *data, double t, const double q[],
+                             const double p[], const double reference[]);
+/* Whom to hand them to, for errors of what depends on the state.  NULL: nobody,
+   as without a call.  data is borrowed. */
+NEVH_API void nevh_state_error_hand(nevh_state_error *, nevh_pair_fn,
+                                    void *data);
 /* A nevh_observe_fn for runs of one orbit; data is the nevh_state_error.  It
    never stops a run: where the reference has no state there is no result. */
 NEVH_API int nevh_state_error_observe(void *state_error, size_t step, double t,

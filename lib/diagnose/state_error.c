@@ -17,6 +17,8 @@ struct nevh_state_error {
     double worst;
     size_t next; /* the first of the wanted times that has not come */
     bool observed, unknown;
+    nevh_pair_fn hand; /* NULL: nobody wants the pairs */
+    void *hand_data;
     double *difference; /* 2n: the largest so far */
     double state[];     /* 2n, then the differences */
 };
@@ -57,6 +59,11 @@ void nevh_state_error_follow(nevh_state_error *e, const nevh_stepper *s) {
     e->h = 0;
 }
 
+void nevh_state_error_hand(nevh_state_error *e, nevh_pair_fn hand, void *data) {
+    e->hand = hand;
+    e->hand_data = data;
+}
+
 /* The time since the start.  t is rounded; what the steps add up to is not, or
    less.  The last step may be another than the others. */
 static double elapsed(nevh_state_error *e, size_t step, double t) {
@@ -94,6 +101,8 @@ int nevh_state_error_observe(void *state_error, size_t step, double t,
         add(e, k, q[k]);
         add(e, n + k, p[k]);
     }
+    if (!e->unknown && e->hand)
+        e->hand(e->hand_data, t, q, p, e->state);
     return NEVH_OK;
 }
 

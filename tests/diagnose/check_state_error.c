@@ -186,12 +186,61 @@ START_TEST(differences_by_variable) {
 }
 END_TEST
 
+typedef struct {
+    size_t count;
+    double worst, last;
+} gaps;
+
+static void measure(void *data, double t, const double q[], const double p[],
+                    const double reference[]) {
+    gaps *g = data;
+    g->count++;
+    g->last = t;
+    g->worst = fmax(g->worst, fabs(q[0] - reference[0]));
+    g->worst = fmax(g->worst, fabs(p[0] - reference[1]));
+}
+
+/* Both states of a pair are of the same time, late on the clock, too: 1e-9 of
+   a time that is 1e9 later is nothing beside 1e-7, its last digit. */
+START_TEST(pairs_are_handed_on) {
+    setup s = set_up(
+        "[coordinates]\nx = 1\n[effects]\nK = p_x^2/2\nV = x^2/2 + x^4/4\n");
+    const double t0 = 1e9, t1 = t0 + 10;
+    double q[MOST], p[MOST];
+    gaps seen = {0, 0, 0};
+    nevh_options o = {.gradient = nevh_exact, .t = t0, .q = s.q, .p = s.p};
+    refer(&s, false, t0, t1);
+    nevh_stepper *stepper = nevh_stepper_new(s.system, nevh_gauss8, &o);
+    nevh_state_error *e = nevh_state_error_new(s.reference);
+    nevh_state_error_follow(e, stepper);
+    nevh_state_error_hand(e, measure, &seen);
+    memcpy(q, s.q, sizeof q);
+    memcpy(p, s.p, sizeof p);
+    ck_assert_int_eq(
+        nevh_run_until(stepper, t0, 0.05, t1, q, p,
+                       &(nevh_observer){nevh_state_error_observe, e, 1}, 1),
+        NEVH_OK);
+    ck_assert_uint_gt(seen.count, 100);
+    ck_assert_double_eq(seen.last, t1);
+    ck_assert_double_gt(seen.worst, 0);
+    ck_assert_double_lt(seen.worst, 1e-12);
+    size_t before = seen.count;
+    nevh_state_error_hand(e, NULL, NULL);
+    nevh_state_error_observe(e, 200, t1, q, p);
+    ck_assert_uint_eq(seen.count, before);
+    nevh_state_error_free(e);
+    nevh_stepper_free(stepper);
+    tear_down(&s);
+}
+END_TEST
+
 int main(void) {
     Suite *suite = suite_create("state_error");
     TCase *clock = tcase_create("clock");
     tcase_add_loop_test(clock, errors_late_on_the_clock, 0,
                         sizeof beginnings / sizeof *beginnings);
     tcase_add_test(clock, rounded_times_are_other_times);
+    tcase_add_test(clock, pairs_are_handed_on);
     suite_add_tcase(suite, clock);
     TCase *kinds = tcase_create("kinds");
     tcase_add_test(kinds, arrays_of_a_scene);

@@ -119,6 +119,36 @@ says '^m=2\*mm$'
 exits 2 compare kepler --t-end 10 --transform 't*x'
 exits 2 compare kepler --t-end 10 --transform ''
 
+# Errors of an observable stand beside those of the state: that of a coordinate
+# is its own part of them.  Late on the clock they are what they are at t = 0.
+cat >$work/late.nevh <<'EOF'
+[coordinates]
+x = 1
+[effects]
+K = p_x^2/2
+V = x^2/2 + x^4/4
+[run]
+dt = 0.05
+integrators = gauss8, verlet
+gradient = exact
+EOF
+for start in 0 1e9; do
+    sed "s/^dt/t_start = $start\nt_end = $start + 10\ndt/" $work/late.nevh \
+        >$work/clock.nevh
+    exits 0 compare $work/clock.nevh --observable x --format csv
+    holds observable_error '$1 > 0 && $1 < 1e-13 && $2 > 1e-4 && $2 < 1e-2'
+done
+exits 0 compare kepler --t-end 10 --integrators verlet --observable 'x*x + y'
+has '^observable: x\*x \+ y; its errors are divided by its range, [0-9.]+$'
+has '^ integrator .* state +observable +order'
+exits 0 compare double-pendulum-chaotic --t-end 60 --integrators midpoint \
+    --dt 0.02 --observable phi1
+has '^ midpoint .* chaos +chaos '
+exits 1 compare pendulum --t-end 5 --observable 'log(phi)'
+says 'log\(phi\) has no value at t = '
+exits 2 compare pendulum --observable foo
+says '^nevh: --observable: the name foo is not known'
+
 # What a step does to phase space, and what became of invariants.
 exits 0 compare kepler --t-end 10 --dt 0.02 --integrators gauss4,rk4 \
     --diagnostics --format csv --gradient exact

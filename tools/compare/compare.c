@@ -125,6 +125,8 @@ static void show_numbers(table *t, const plan *p, const row *r) {
     else
         table_shown(t, "-");
     state_show(t, p, r);
+    if (p->observable)
+        observable_show(t, p, r);
     if (p->dts > 1 && isfinite(r->observed_order))
         table_shown(t, "%.1f", r->observed_order);
     else if (p->dts > 1)
@@ -155,7 +157,7 @@ static void show_row(table *t, const plan *p, const row *r) {
         show_numbers(t, p, r);
         return;
     }
-    for (int i = 0; i < (p->dts > 1 ? 6 : 5); i++)
+    for (int i = 0; i < 5 + (p->observable != NULL) + (p->dts > 1); i++)
         table_text(t, NULL);
     table_text(t, r->failed ? "failed" : "refused");
     diagnostics_show(t, p, r);
@@ -179,6 +181,8 @@ static table *shown(const plan *p, const row_list *r) {
     table_column(t, dt);
     table_key(t);
     table_columns(t, errors, sizeof errors / sizeof *errors);
+    if (p->observable)
+        table_column(t, "observable\nerror");
     if (p->dts > 1)
         table_column(t, "order\nseen");
     table_columns(t, last, sizeof last / sizeof *last);
@@ -215,6 +219,7 @@ static page make_page(const options *o, const plan *p, const row_list *r) {
     plan_notes(p, &result.before);
     row_notes(o, p, r->row, r->count, &result.before);
     state_notes(p, &result.before);
+    observable_notes(p, &result.before);
     verdict_words(p, r->row, r->count, &result.after);
     if (is_table)
         stability_words(p, r->row, r->count, &result.after);
@@ -262,6 +267,8 @@ static int compare_plan(const options *o, plan *p) {
     for (size_t i = 0; i < r.count; i++)
         match_row(p, &r.row[i]);
     int status = plan_reference(p, last_end(p, &r));
+    if (!status && o->observable)
+        status = plan_observe(p, o->observable);
     if (!status)
         status = compare_rows(o, p, &r);
     free_rows(&r);

@@ -132,7 +132,7 @@ typedef struct {
     promise *promise;
     const nevh_energy *energy;
     const nevh_state_error *state;
-    const observable *shown; /* NULL: states count */
+    const observable *shown; /* counts where the plan has one */
 } keeper;
 
 enum { LOOKS = 4000 };
@@ -141,9 +141,10 @@ static int mind_promise(void *data, size_t step, double t, const double q[],
                         const double p[]) {
     keeper *k = data;
     promise *made = k->promise;
-    double error = made->by_state && k->shown ? observable_result(k->shown)
-                   : made->by_state ? nevh_state_error_result(k->state)
-                                    : nevh_energy_result(k->energy, 0).max;
+    double error = made->by_state ? nevh_state_error_result(k->state)
+                                  : nevh_energy_result(k->energy, 0).max;
+    if (made->by_state && k->shown->plan->observable && !isnan(error))
+        error = k->shown->worst;
     (void)step, (void)q, (void)p;
     made->unknown = isnan(error);
     made->broken = error > made->most;
@@ -151,6 +152,11 @@ static int mind_promise(void *data, size_t step, double t, const double q[],
         return NEVH_STOPPED;
     made->until = t;
     return NEVH_OK;
+}
+
+static void compare_observables(void *data, double t, const double q[],
+                                const double p[], const double reference[]) {
+    observable_compare(data, t, q, p, reference);
 }
 
 /* The reference is compared with at times that are spread over the whole run:
@@ -177,12 +183,14 @@ static void watched(work *w, nevh_stepper *s) {
     nevh_energy *energy = row_energy(w->plan, w->row, s);
     nevh_state_error *state = nevh_state_error_new(w->plan->reference);
     invariants *kept = w->plan->diagnostics ? invariants_new(w->plan) : NULL;
-    observable *shown = observable_new(w->plan);
-    nevh_observer observers[7] = {{nevh_energy_observe, energy, 1}};
+    observable shown = {w->plan, 0};
+    nevh_observer observers[6] = {{nevh_energy_observe, energy, 1}};
     energy_trace trace = {r->errors, energy};
     size_t count = 1;
     if (state)
         nevh_state_error_follow(state, s);
+    if (state && w->plan->observable)
+        nevh_state_error_hand(state, compare_observables, &shown);
     if (r->errors)
         observers[count++] = (nevh_observer){energy_trace_observe, &trace, 1};
     if (state)
@@ -190,9 +198,7 @@ static void watched(work *w, nevh_stepper *s) {
             (nevh_observer){nevh_state_error_observe, state, 1};
     if (kept)
         observers[count++] = (nevh_observer){invariants_observe, kept, 1};
-    if (shown)
-        observers[count++] = (nevh_observer){observable_observe, shown, 1};
-    keeper keeps = {r->promise, energy, state, shown};
+    keeper keeps = {r->promise, energy, state, &shown};
     double steps = (w->plan->t_end - w->plan->run->t_start) / r->step;
     if (r->promise)
         observers[count++] =
@@ -218,9 +224,7 @@ static void watched(work *w, nevh_stepper *s) {
         compares_states(w->plan, r) ? nevh_state_error_result(state) : NAN;
     if (state && isnan(r->state_error))
         explain_unknown(w->plan, r);
-    r->observable_error =
-        compares_states(w->plan, r) ? observable_result(shown) : NAN;
-    observable_free(shown);
+    r->observable_error = isnan(r->state_error) ? NAN : shown.worst;
     r->changes = kept ? invariants_result(kept) : NULL;
     nevh_state_error_free(state);
     nevh_energy_free(energy);

@@ -100,13 +100,14 @@ void state_words(const plan *, const row rows[], size_t count, list *words);
    reference: TOOL_OK, or TOOL_FAILED with the message printed. */
 int plan_observe(plan *, const char *formula);
 void observable_notes(const plan *, list *notes);
-/* Watches a run; NULL where none is asked for, which is allowed below. */
-typedef struct observable observable;
-observable *observable_new(const plan *);
-void observable_free(observable *);
-int observable_observe(void *, size_t step, double t, const double q[],
-                       const double p[]);
-double observable_result(const observable *); /* NAN: unknown */
+typedef struct {
+    const plan *plan;
+    double worst; /* error so far */
+} observable;
+void observable_show(table *, const plan *, const row *);
+/* As nevh_pair_fn. */
+void observable_compare(observable *, double t, const double q[],
+                        const double p[], const double reference[]);
 
 /* match.c: the dt with which the row costs as much as verlet with its dt, where
    the plan asks for that. */

@@ -138,6 +138,8 @@ static char *command_line(const advice *a, const options *o, const row *r) {
         text = append_number(text, "tolerance", r->tolerance);
     if (o->t_end)
         text = append(text, "t-end", o->t_end);
+    if (p->observable)
+        text = append(text, "observable", p->observable);
     return text;
 }
 

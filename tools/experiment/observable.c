@@ -1,6 +1,6 @@
 /* nevh: errors of an observable that the user names, against the reference.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "experiment/row.h"
+#include "row.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,14 +9,6 @@
 enum { TIMES = 1024 };
 static const double golden = 0.6180339887498949;
 static const double hardly = 1e-6; /* of its size: no range to speak of */
-
-struct observable {
-    const plan *plan;
-    double worst;
-    size_t next;
-    bool observed, unknown;
-    double *state; /* 2n */
-};
 
 /* The i-th time, from 0 to 1. */
 static double wanted(size_t i) {
@@ -51,6 +43,11 @@ static int no_value(const plan *p, double t) {
 }
 
 int plan_observe(plan *p, const char *formula) {
+    if (!p->reference) {
+        tool_refuse("%s: no errors of --observable: %s", p->name,
+                    p->no_reference);
+        return TOOL_FAILED;
+    }
     double low = INFINITY, high = -INFINITY, start = p->run->t_start;
     double none = NAN;
     double *state = tool_allocate(2 * p->n, sizeof *state);
@@ -90,51 +87,19 @@ void observable_notes(const plan *p, list *notes) {
                p->observable_level ? " (it hardly changes)" : "");
 }
 
-observable *observable_new(const plan *p) {
-    if (!p->observable || !p->reference)
-        return NULL;
-    observable *o = tool_allocate(1, sizeof *o);
-    o->plan = p;
-    o->state = tool_allocate(2 * p->n, sizeof *o->state);
-    return o;
+void observable_show(table *t, const plan *p, const row *r) {
+    if (r->ran && isfinite(r->observable_error))
+        table_shown(t, "%.1e", r->observable_error);
+    else
+        state_show(t, p, r);
 }
 
-void observable_free(observable *o) {
-    if (o)
-        free(o->state);
-    free(o);
-}
-
-static bool is_due(observable *o, double t) {
-    double start = o->plan->run->t_start;
-    double part = (t - start) / (o->plan->reference_end - start);
-    if (o->next > TIMES || part < wanted(o->next))
-        return false;
-    while (o->next <= TIMES && part >= wanted(o->next))
-        o->next++;
-    return true;
-}
-
-int observable_observe(void *data, size_t step, double t, const double q[],
-                       const double p[]) {
-    observable *o = data;
-    const plan *whole = o->plan;
+void observable_compare(observable *o, double t, const double q[],
+                        const double p[], const double reference[]) {
     double value;
-    (void)step;
-    if (o->unknown || !is_due(o, t))
-        return NEVH_OK;
-    o->observed = true;
-    o->unknown = nevh_reference_state(whole->reference, t, o->state,
-                                      o->state + whole->n) ||
-                 nevh_scene_judged_value(whole->scene, t, q, p, &value);
-    if (o->unknown)
-        return NEVH_OK;
-    double error =
-        fabs(value - value_at(whole, t, o->state)) / whole->observable_scale;
+    if (nevh_scene_judged_value(o->plan->scene, t, q, p, &value))
+        value = NAN;
+    double error = fabs(value - value_at(o->plan, t, reference)) /
+                   o->plan->observable_scale;
     o->worst = fmax(o->worst, isfinite(error) ? error : INFINITY);
-    return NEVH_OK;
-}
-
-double observable_result(const observable *o) {
-    return o && o->observed && !o->unknown ? o->worst : NAN;
 }
