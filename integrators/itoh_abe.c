@@ -52,11 +52,12 @@ static size_t own_size(const nevh_work *w) {
 
 static tour set_out(const nevh__gradient_step *s, size_t active,
                     const size_t lanes[]) {
-    size_t room = most_points(s->work);
+    size_t capacity = most_points(s->work);
     tour v = {.step = s, .active = active, .lanes = lanes, .least = s->own};
     v.z = v.least + s->work->width;
-    v.t = v.z + room * 2 * s->work->n;
-    v.h = (nevh__values){v.t + room, v.t + 2 * room, v.t + 3 * room};
+    v.t = v.z + capacity * 2 * s->work->n;
+    v.h =
+        (nevh__values){v.t + capacity, v.t + 2 * capacity, v.t + 3 * capacity};
     return v;
 }
 
@@ -98,7 +99,7 @@ static int evaluate(const tour *v, size_t count) {
         v->t[i] = v->step->t;
     int status = nevh__field_moving_values(w->field, count, v->t, v->z,
                                            v->z + w->n * count, v->h.h,
-                                           v->h.lost, v->h.size);
+                                           v->h.roundoff, v->h.size);
     if (status)
         nevh_work_fail(w, status, "%s", nevh_field_message(w->field));
     return status;
@@ -124,11 +125,11 @@ static void divide(const tour *v, size_t first, size_t stops, double out[]) {
         double *slope = out + nevh__conjugate(v->step->work, k) * v->active;
         for (size_t a = 0; a < v->active; a++) {
             size_t at = i * v->active + a;
-            slope[a] =
-                ((h->h[at] - before->h[a]) + (h->lost[at] - before->lost[a])) /
-                (end_of(v, k, a) - start_of(v, k, a));
+            slope[a] = ((h->h[at] - before->h[a]) +
+                        (h->roundoff[at] - before->roundoff[a])) /
+                       (end_of(v, k, a) - start_of(v, k, a));
             before->h[a] = h->h[at];
-            before->lost[a] = h->lost[at];
+            before->roundoff[a] = h->roundoff[at];
         }
     }
 }
@@ -140,7 +141,7 @@ static int take_quotients(const tour *v, double out[]) {
     int status = NEVH_OK;
     for (size_t a = 0; a < v->active; a++) {
         before->h[a] = start->h[v->lanes[a]];
-        before->lost[a] = start->lost[v->lanes[a]];
+        before->roundoff[a] = start->roundoff[v->lanes[a]];
     }
     for (size_t first = 0, stops; !status && first < all; first += stops) {
         stops = all - first < most ? all - first : most;
@@ -187,9 +188,9 @@ static int replace_short(const tour *v, size_t stop, double out[]) {
     int status = evaluate(v, count);
     for (size_t a = 0, at = 0; !status && at < count; a++)
         if (lengthen(v, k, a, ends)) {
-            slope[a] =
-                ((h->h[at + 1] - h->h[at]) + (h->lost[at + 1] - h->lost[at])) /
-                (ends[1] - ends[0]);
+            slope[a] = ((h->h[at + 1] - h->h[at]) +
+                        (h->roundoff[at + 1] - h->roundoff[at])) /
+                       (ends[1] - ends[0]);
             at += 2;
         }
     return status;

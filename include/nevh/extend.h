@@ -31,10 +31,10 @@ typedef struct {
        steps, for the half behind one and for the half before the next; also
        where memory is all 0.  Where the next step fails, the stepper restores
        the memory.  NULL: none depends on p. */
-    void (*damp)(nevh_work *, const double factor[]);
+    void (*apply_friction)(nevh_work *, const double factor[]);
     /* The kernel takes friction into its own slopes, dp/dt = -dH/dq - rate p
        with w->friction; otherwise it is split off and put around the step. */
-    bool damps;
+    bool has_friction;
     /* Takes its gradients around nevh_work_gradient, so that they can neither
        be transformed nor accounted for: a stepper that is asked for a transform
        of time, or for a balance of the energy, refuses. */

@@ -43,7 +43,7 @@ typedef struct {
     double *carry;         /* 2n x width */
     double *slopes[STEPS]; /* parts x 2n x width each, the last step first */
     double *h[STEPS];      /* width */
-    double *known, *energy, *lost, *t; /* width */
+    double *known, *energy, *roundoff, *t; /* width */
 } remembered;
 
 static const nevh__discrete_gradient *table_of(const nevh_work *w) {
@@ -157,14 +157,14 @@ static remembered find_memory(const nevh_work *w, double *from) {
         m.h[i] = take(&from, width);
     m.known = take(&from, width);
     m.energy = take(&from, width);
-    m.lost = take(&from, width);
+    m.roundoff = take(&from, width);
     m.t = take(&from, width);
     return m;
 }
 
 static nevh__values take_values(double **from, size_t count) {
     nevh__values v = {take(from, count), NULL, NULL};
-    v.lost = take(from, count);
+    v.roundoff = take(from, count);
     v.size = take(from, count);
     return v;
 }
@@ -194,9 +194,9 @@ static nevh__gradient_step lay_out(nevh_work *w, double h) {
 static int find_values(const nevh__gradient_step *s, size_t count,
                        const double z[], const nevh__values *to) {
     nevh_work *w = s->work;
-    int status =
-        nevh__field_moving_values(w->field, count, s->times, z,
-                                  z + w->n * count, to->h, to->lost, to->size);
+    int status = nevh__field_moving_values(w->field, count, s->times, z,
+                                           z + w->n * count, to->h,
+                                           to->roundoff, to->size);
     if (status)
         nevh_work_fail(w, status, "%s", nevh_field_message(w->field));
     return status;
@@ -214,9 +214,10 @@ static int begin_balance(const nevh__gradient_step *s, const remembered *m) {
     set_times(s, m);
     int status = find_values(s, w->width, s->z, &s->start);
     for (size_t i = 0; !status && i < w->width; i++)
-        s->lack[i] = m->known[i] == 0 ? 0
-                                      : (m->energy[i] - s->start.h[i]) +
-                                            (m->lost[i] - s->start.lost[i]);
+        s->lack[i] = m->known[i] == 0
+                         ? 0
+                         : (m->energy[i] - s->start.h[i]) +
+                               (m->roundoff[i] - s->start.roundoff[i]);
     set_times(s, NULL);
     if (!status && !autonomous)
         status = find_values(s, w->width, s->z, &s->start);
@@ -226,7 +227,7 @@ static int begin_balance(const nevh__gradient_step *s, const remembered *m) {
             continue;
         m->known[i] = 1;
         m->energy[i] = s->start.h[i];
-        m->lost[i] = s->start.lost[i] + s->lack[i];
+        m->roundoff[i] = s->start.roundoff[i] + s->lack[i];
     }
     return status;
 }
@@ -263,7 +264,7 @@ static double find_defect(const nevh__gradient_step *s, size_t active, size_t a,
                           size_t lane, const double out[]) {
     const nevh_work *w = s->work;
     double way = 0, lack = (s->end.h[a] - s->start.h[lane]) +
-                           (s->end.lost[a] - s->start.lost[lane]) -
+                           (s->end.roundoff[a] - s->start.roundoff[lane]) -
                            s->lack[lane];
     for (size_t k = 0; k < 2 * w->n; k++) {
         double dz = s->ends[k * active + a] - s->z[k * w->width + lane];
@@ -399,7 +400,7 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
 }
 
 /* The energy is another one; first guesses may stay. */
-static void damp(nevh_work *w, const double factor[]) {
+static void apply_friction(nevh_work *w, const double factor[]) {
     remembered m = find_memory(w, w->memory);
     for (size_t i = 0; i < w->size; i++)
         m.carry[w->size + i] *= factor[i / w->width];
@@ -407,5 +408,8 @@ static void damp(nevh_work *w, const double factor[]) {
         m.known[lane] = 0;
 }
 
-const nevh_kernel nevh__discrete_gradient_kernel = {
-    .plan = plan, .step = step, .clear = clear, .damp = damp};
+const nevh_kernel nevh__discrete_gradient_kernel = {.plan = plan,
+                                                    .step = step,
+                                                    .clear = clear,
+                                                    .apply_friction =
+                                                        apply_friction};

@@ -9,9 +9,9 @@
 #include "tableau_private.h"
 #include <nevh/extend.h>
 
-/* H at a few states: h + lost, and what its rounding is held against. */
+/* H at a few states: h + roundoff, and what its rounding is held against. */
 typedef struct {
-    double *h, *lost, *size;
+    double *h, *roundoff, *size;
 } nevh__values;
 
 /* One part of a step under way.  Variables are numbered from 0 to 2n,

@@ -195,5 +195,8 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     return status;
 }
 
-const nevh_kernel nevh__gsl_kernel = {
-    .plan = plan, .step = step, .clear = clear, .damps = true, .opaque = true};
+const nevh_kernel nevh__gsl_kernel = {.plan = plan,
+                                      .step = step,
+                                      .clear = clear,
+                                      .has_friction = true,
+                                      .opaque = true};

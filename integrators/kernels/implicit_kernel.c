@@ -434,13 +434,17 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
 }
 
 /* What sums of momenta lost belongs to momenta; slopes are only a guess. */
-static void damp(nevh_work *w, const double factor[]) {
+static void apply_friction(nevh_work *w, const double factor[]) {
     double *carry = recall(w).carry + w->size;
     for (size_t i = 0; i < w->size; i++)
         carry[i] *= factor[i / w->width];
 }
 
-const nevh_kernel nevh_gauss_kernel = {
-    .plan = plan_gauss, .step = step, .clear = clear, .damp = damp};
-const nevh_kernel nevh_lobatto_kernel = {
-    .plan = plan_lobatto, .step = step, .clear = clear, .damp = damp};
+const nevh_kernel nevh_gauss_kernel = {.plan = plan_gauss,
+                                       .step = step,
+                                       .clear = clear,
+                                       .apply_friction = apply_friction};
+const nevh_kernel nevh_lobatto_kernel = {.plan = plan_lobatto,
+                                         .step = step,
+                                         .clear = clear,
+                                         .apply_friction = apply_friction};

@@ -269,11 +269,13 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
                             w->memory + n);
 }
 
-static void damp(nevh_work *w, const double factor[]) {
+static void apply_friction(nevh_work *w, const double factor[]) {
     double *carry = w->memory + w->size;
     for (size_t i = 0; i < w->size; i++)
         carry[i] *= factor[i / w->width];
 }
 
-const nevh_kernel nevh_nystrom_kernel = {
-    .plan = plan, .step = step, .clear = clear, .damp = damp};
+const nevh_kernel nevh_nystrom_kernel = {.plan = plan,
+                                         .step = step,
+                                         .clear = clear,
+                                         .apply_friction = apply_friction};

@@ -198,4 +198,4 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
 }
 
 const nevh_kernel nevh_runge_kutta_kernel = {
-    .plan = plan, .step = step, .clear = clear, .damps = true};
+    .plan = plan, .step = step, .clear = clear, .has_friction = true};

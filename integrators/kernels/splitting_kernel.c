@@ -489,7 +489,7 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
 
 /* What is kept is a dH/dp, or a dH/dq that may read p, unless declarations say
    that it does not. */
-static void damp(nevh_work *w, const double factor[]) {
+static void apply_friction(nevh_work *w, const double factor[]) {
     const splitting_plan *o = w->plan;
     memory m = recall(w);
     for (size_t i = 0; i < w->size; i++)
@@ -500,5 +500,7 @@ static void damp(nevh_work *w, const double factor[]) {
         m.has_kept[lane] = 0;
 }
 
-const nevh_kernel nevh_splitting_kernel = {
-    .plan = plan, .step = step, .clear = clear, .damp = damp};
+const nevh_kernel nevh_splitting_kernel = {.plan = plan,
+                                           .step = step,
+                                           .clear = clear,
+                                           .apply_friction = apply_friction};

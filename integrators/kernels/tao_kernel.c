@@ -202,7 +202,7 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     return status ? status : commit(&z, q, p);
 }
 
-static void damp(nevh_work *w, const double factor[]) {
+static void apply_friction(nevh_work *w, const double factor[]) {
     double *carry = block(w, NEVH__TAO_CARRY_P), *y = block(w, NEVH__TAO_Y);
     for (size_t i = 0; i < w->size; i++) {
         carry[i] *= factor[i / w->width];
@@ -227,5 +227,7 @@ static int plan(nevh_work *w) {
     return nevh__binding_choose(w, binding);
 }
 
-const nevh_kernel nevh__tao_kernel = {
-    .plan = plan, .step = step, .clear = clear, .damp = damp};
+const nevh_kernel nevh__tao_kernel = {.plan = plan,
+                                      .step = step,
+                                      .clear = clear,
+                                      .apply_friction = apply_friction};

@@ -228,10 +228,10 @@ static int begin(nevh_energy *e, double t, const double q[], const double p[]) {
    and where the error rises, which it does where they are large. */
 static int look(nevh_energy *e, size_t lane, double t, const double q[],
                 const double p[]) {
-    double h, lost, size;
+    double h, roundoff, size;
     gather(e, lane, q, p);
-    int status = nevh__field_moving_values(e->field, 1, &t, e->state,
-                                           e->state + e->n, &h, &lost, &size);
+    int status = nevh__field_moving_values(
+        e->field, 1, &t, e->state, e->state + e->n, &h, &roundoff, &size);
     if (!status)
         e->largest[lane] = fmax(e->largest[lane], size);
     e->seen[lane] = fmax(e->seen[lane], fabs(nevh_energy_error(e, lane)));

@@ -78,7 +78,7 @@ static bool plan_dense(nevh_rates *r) {
     return true;
 }
 
-static bool plan_room(nevh_rates *r) {
+static bool plan_buffers(nevh_rates *r) {
     size_t m = 2 * r->n;
     r->length = nevh__array(m, sizeof(double));
     r->state = nevh__array(m, sizeof(double));
@@ -103,7 +103,7 @@ nevh_rates *nevh_rates_new(const nevh_system *s, const nevh_options *options) {
         return r;
     }
     r->n = nevh_system_dof(s);
-    if (!plan_room(r))
+    if (!plan_buffers(r))
         nevh__fail(&r->report, NEVH_ENOMEM, "out of memory");
     else if (!plan_lengths(r, s, o) && !plan_field(r, s, o))
         r->planned = true;

@@ -93,9 +93,9 @@ static bool sample(trial *b, const region *r) {
 typedef struct {
     double most, squares;
     size_t count;
-} rest;
+} residual;
 
-static void add_rest(rest *r, double left, double size) {
+static void add_residual(residual *r, double left, double size) {
     double part = fabs(left) / size;
     r->most = part >= 0 && r->most <= part ? part : r->most;
     if (!(part >= 0))
@@ -104,7 +104,7 @@ static void add_rest(rest *r, double left, double size) {
     r->count++;
 }
 
-static bool is_rounding(const rest *r, double rounding,
+static bool is_rounding(const residual *r, double rounding,
                         nevh__exact_solution *e) {
     if (!(r->most <= rounding))
         return false;
@@ -123,10 +123,10 @@ static void fit_mass(const trial *b, nevh__exact_solution *e) {
 
 static bool mass_fits(const trial *b, nevh__exact_solution *e,
                       const region *r) {
-    rest left = {0};
+    residual left = {0};
     for (size_t i = 0; i < b->n * STATES; i++)
-        add_rest(&left, (double)(b->dp[i] - e->a * b->p[i]),
-                 (double)e->a * r->p);
+        add_residual(&left, (double)(b->dp[i] - e->a * b->p[i]),
+                     (double)e->a * r->p);
     return is_rounding(&left, b->rounding, e);
 }
 
@@ -145,10 +145,10 @@ static void fit_pendulum(const trial *b, nevh__exact_solution *e) {
 }
 
 static bool pendulum_fits(const trial *b, nevh__exact_solution *e) {
-    rest left = {0};
+    residual left = {0};
     for (size_t i = 0; i < STATES; i++)
-        add_rest(&left, (double)(b->dq[i] - e->b * sinl(b->q[i] - e->c)),
-                 (double)e->b * (1 + fabs(b->q[i])));
+        add_residual(&left, (double)(b->dq[i] - e->b * sinl(b->q[i] - e->c)),
+                     (double)e->b * (1 + fabs(b->q[i])));
     return is_rounding(&left, b->rounding, e);
 }
 
@@ -180,11 +180,11 @@ static void fit_oscillator(const trial *b, nevh__exact_solution *e) {
 
 static bool oscillator_fits(const trial *b, nevh__exact_solution *e,
                             const region *r) {
-    rest left = {0};
+    residual left = {0};
     double size = fmax(fabs(r->low), fabs(r->high)) + fabs((double)e->c);
     for (size_t i = 0; i < STATES; i++)
-        add_rest(&left, (double)(b->dq[i] - e->b * (b->q[i] - e->c)),
-                 (double)e->b * size);
+        add_residual(&left, (double)(b->dq[i] - e->b * (b->q[i] - e->c)),
+                     (double)e->b * size);
     return is_rounding(&left, b->rounding, e);
 }
 
@@ -214,14 +214,14 @@ static void fit_kepler(const trial *b, nevh__exact_solution *e) {
 }
 
 static bool kepler_fits(const trial *b, nevh__exact_solution *e) {
-    rest left = {0};
+    residual left = {0};
     for (size_t i = 0; i < STATES; i++) {
         long double r = length(b, b->q + i, STATES), force = e->b / (r * r);
         for (size_t k = 0; k < b->n; k++)
-            add_rest(&left,
-                     (double)(b->dq[k * STATES + i] -
-                              force * b->q[k * STATES + i] / r),
-                     (double)force);
+            add_residual(&left,
+                         (double)(b->dq[k * STATES + i] -
+                                  force * b->q[k * STATES + i] / r),
+                         (double)force);
     }
     return is_rounding(&left, b->rounding, e);
 }
@@ -322,9 +322,9 @@ static bool recognise(trial *b, nevh__exact_solution *e) {
 
 /* GSL aborts where memory is out: ask first for more than it takes. */
 static gsl_root_fsolver *make_solver(void) {
-    void *room = nevh__array(64, sizeof(double));
-    free(room);
-    return room ? gsl_root_fsolver_alloc(gsl_root_fsolver_brent) : NULL;
+    void *memory = nevh__array(64, sizeof(double));
+    free(memory);
+    return memory ? gsl_root_fsolver_alloc(gsl_root_fsolver_brent) : NULL;
 }
 
 static bool try_kinds(trial *b, nevh__exact_solution *e) {

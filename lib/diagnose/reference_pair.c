@@ -24,12 +24,12 @@ double nevh__pair_spent(const nevh__pair *b) {
 }
 
 static bool orbit_grow(nevh__reference_orbit *k, size_t n) {
-    size_t room = k->room ? 2 * k->room : 64;
-    double *states = nevh__grow(k->states, room * 2 * n, sizeof *states);
+    size_t capacity = k->capacity ? 2 * k->capacity : 64;
+    double *states = nevh__grow(k->states, capacity * 2 * n, sizeof *states);
     if (!states)
         return false;
     k->states = states;
-    k->room = room;
+    k->capacity = capacity;
     return true;
 }
 
@@ -51,7 +51,7 @@ static int orbit_add(nevh__reference_orbit *k, size_t n, size_t step,
         orbit_thin(k, n);
     if (step % k->every)
         return NEVH_OK;
-    if (k->count == k->room && !orbit_grow(k, n))
+    if (k->count == k->capacity && !orbit_grow(k, n))
         return NEVH_ENOMEM;
     memcpy(k->states + 2 * n * k->count++, state, 2 * n * sizeof *state);
     return NEVH_OK;

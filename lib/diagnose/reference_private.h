@@ -9,7 +9,7 @@
 /* States of a run: the k-th after k*every steps of h, coordinates first. */
 typedef struct {
     double h;
-    size_t every, count, room;
+    size_t every, count, capacity;
     double *states;
 } nevh__reference_orbit;
 

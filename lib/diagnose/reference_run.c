@@ -134,7 +134,7 @@ static void keep_part(nevh__pair *b, double h, nevh_reference_end why) {
 }
 
 /* Orbits in a plane, the energy being kept or lost, have no room for chaos. */
-static bool has_room(const nevh_reference *r) {
+static bool may_be_chaotic(const nevh_reference *r) {
     return r->n > 1 || !(nevh_system_traits(r->system) & NEVH_AUTONOMOUS);
 }
 
@@ -146,7 +146,7 @@ static nevh_reference_end explain(nevh__pair *b, const nevh__outcome *o,
     static const double many = 1e4;
     nevh_reference *r = b->reference;
     nevh__spread s = nevh__pair_spread(b, o->h, o->reached);
-    bool chaos = has_room(r) && nevh__spread_steady(&s);
+    bool chaos = may_be_chaotic(r) && nevh__spread_steady(&s);
     bool rounding = s.most * DBL_EPSILON * 30 > hopeless;
     r->growth = r->exponent = NAN;
     if (!rounding && !(stalled && chaos && s.most > many))

@@ -110,16 +110,16 @@ static int walk_to(nevh_reference *r, size_t steps) {
 static int find_state(nevh_reference *r, double elapsed, double q[],
                       double p[]) {
     double h = r->orbit.h, steps = floor(elapsed / h);
-    double rest = elapsed - steps * h;
+    double remainder = elapsed - steps * h;
     int status = walk_to(r, (size_t)steps);
     if (status)
         return status;
     memcpy(q, r->walked, r->n * sizeof *q);
     memcpy(p, r->walked + r->n, r->n * sizeof *p);
-    if (rest == 0)
+    if (remainder == 0)
         return NEVH_OK;
     nevh_stepper_reset(r->branch);
-    return take_step(r, r->branch, r->t0 + steps * h, rest, q, p);
+    return take_step(r, r->branch, r->t0 + steps * h, remainder, q, p);
 }
 
 int nevh__reference_walk(nevh_reference *r, double elapsed, double q[],

@@ -46,11 +46,11 @@ void nevh__watch_clear(nevh__watch *w) {
 /* H without constants, and the sum of its terms' sizes; NAN where it has no
    value. */
 static long double value(nevh__watch *w, const double z[], double *size) {
-    double h = NAN, lost = 0;
-    if (nevh__field_moving_values(w->field, 1, &w->t0, z, z + w->n, &h, &lost,
-                                  size))
+    double h = NAN, roundoff = 0;
+    if (nevh__field_moving_values(w->field, 1, &w->t0, z, z + w->n, &h,
+                                  &roundoff, size))
         return NAN;
-    return (long double)h + lost;
+    return (long double)h + roundoff;
 }
 
 void nevh__watch_begin(nevh__watch *w) {

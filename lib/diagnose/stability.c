@@ -77,10 +77,12 @@ static double excess(const oscillator *o, double x) {
     if (nevh_stepper_apply(o->stepper, 0, x, q, p))
         return INFINITY;
     double determinant = o->symplectic ? 1 : q[0] * p[1] - q[1] * p[0];
-    double half = fabs(q[0] + p[1]) / 2, rest = half * half - determinant;
-    if (isnan(rest))
+    double half = fabs(q[0] + p[1]) / 2,
+           discriminant = half * half - determinant;
+    if (isnan(discriminant))
         return INFINITY;
-    return rest < 0 ? sqrt(determinant) - 1 : half + sqrt(rest) - 1;
+    return discriminant < 0 ? sqrt(determinant) - 1
+                            : half + sqrt(discriminant) - 1;
 }
 
 /* Half the trace's distance to 1 from below, which the tips of narrow unstable

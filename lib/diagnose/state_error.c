@@ -74,7 +74,7 @@ static double elapsed(nevh_state_error *e, size_t step, double t) {
         return passed;
     if (e->h == 0)
         e->h = s->last_h;
-    double better = s->own_time ? passed + s->time_lost
+    double better = s->own_time ? passed + s->time_roundoff
                                 : (double)(step - 1) * e->h + s->last_h;
     return fabs(better - passed) <= slack ? better : passed;
 }

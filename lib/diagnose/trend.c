@@ -72,48 +72,48 @@ static double largest(const nevh__trend *s, size_t from, size_t to) {
 
 /* The means of bins about the line.  Means of bins average out what oscillates
    faster than a bin. */
-static void find_rest(const nevh__trend *s, double slope, double rest[],
-                      nevh_energy_report *r) {
+static void find_residuals(const nevh__trend *s, double slope,
+                           double residual[], nevh_energy_report *r) {
     double about_line = 0, about_mean = 0;
     for (size_t i = 0; i < s->bins; i++) {
         double count = (double)s->bin[i].samples;
         double dt = s->bin[i].t / count - s->mean_t;
         double de = s->bin[i].e / count - s->mean_e;
-        rest[i] = de - slope * dt;
+        residual[i] = de - slope * dt;
         about_mean += de * de;
-        about_line += rest[i] * rest[i];
+        about_line += residual[i] * residual[i];
     }
     if (about_mean > 0)
         r->straightness = fmax(0, 1 - about_line / about_mean);
 }
 
-/* The variance that a mean of the rest has, times the number of bins: from its
+/* The variance that a mean of the residuals has, times the number of bins: from its
    slowest waves, the cosines of one to SLOW_WAVES half periods (but for the
    first, which the line takes away) [U. K. Mueller, J. Econometrics 141 (2007)
    1331-1352]. */
-static double slow_power(const double rest[], size_t bins) {
+static double slow_power(const double residual[], size_t bins) {
     size_t waves = bins / 4 < SLOW_WAVES ? bins / 4 : SLOW_WAVES;
     double power = 0;
     for (size_t k = 2; k < waves + 2; k++) {
         double sum = 0, angle = pi * (double)k / (double)bins;
         for (size_t i = 0; i < bins; i++)
-            sum += rest[i] * cos(angle * ((double)i + 0.5));
+            sum += residual[i] * cos(angle * ((double)i + 0.5));
         power += 2 * sum * sum / (double)bins;
     }
     return power / (double)waves;
 }
 
 static void fit_bins(const nevh__trend *s, nevh_energy_report *r) {
-    double rest[NEVH__BINS], tt = 0;
+    double residual[NEVH__BINS], tt = 0;
     if (s->bins < 3)
         return;
-    find_rest(s, r->drift, rest, r);
+    find_residuals(s, r->drift, residual, r);
     for (size_t i = 0; i < s->bins; i++) {
         double dt = s->bin[i].t / (double)s->bin[i].samples - s->mean_t;
         tt += dt * dt;
     }
     if (s->bins >= FEWEST && tt > 0)
-        r->drift_error = sqrt(slow_power(rest, s->bins) / tt);
+        r->drift_error = sqrt(slow_power(residual, s->bins) / tt);
 }
 
 /* The power of t with which the largest |error| grew, from the second quarter

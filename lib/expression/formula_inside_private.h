@@ -234,14 +234,14 @@ typedef struct {
     const nevh__expression **loops; /* the outermost first */
     unsigned reads;
     uint64_t variables; /* hash of the set of what it reads */
-    size_t n, room;
+    size_t n, capacity;
     nevh__summand *summands;
 } nevh__formula_part;
 typedef struct {
     nevh__pool *pool;
     nevh__formula_error *error;
     nevh__formula_part *parts; /* freed by the caller */
-    size_t n, room;
+    size_t n, capacity;
     size_t summands;
     uint64_t stamp;
 } nevh__parts;
@@ -260,9 +260,9 @@ typedef struct {
     uint64_t stamp;
 
     size_t *shape;
-    size_t n_shape, shape_room, at_shape;
+    size_t n_shape, shape_capacity, at_shape;
     double *constants;
-    size_t n_constants, constants_room, at_constant;
+    size_t n_constants, constants_capacity, at_constant;
     const int *columns; /* constant -> its slot, or -1: a number; NULL: all are
                            numbers */
 

@@ -9,7 +9,7 @@ enum { SHAPES = 1000 }; /* of one part */
 /* Instances of one shape: rows of indices and constants. */
 typedef struct {
     size_t *shape, n_shape;
-    size_t nq, np, nc, count, room;
+    size_t nq, np, nc, count, capacity;
     size_t *q, *p;
     double *c;
 } table;
@@ -60,16 +60,16 @@ static table *table_for(part_tables *p) {
 }
 
 static bool grow(table *t) {
-    size_t room = t->room ? 2 * t->room : 1;
-    size_t *q = nevh__grow(t->q, room * t->nq + 1, sizeof *q);
+    size_t capacity = t->capacity ? 2 * t->capacity : 1;
+    size_t *q = nevh__grow(t->q, capacity * t->nq + 1, sizeof *q);
     t->q = q ? q : t->q;
-    size_t *p = nevh__grow(t->p, room * t->np + 1, sizeof *p);
+    size_t *p = nevh__grow(t->p, capacity * t->np + 1, sizeof *p);
     t->p = p ? p : t->p;
-    double *c = nevh__grow(t->c, room * t->nc + 1, sizeof *c);
+    double *c = nevh__grow(t->c, capacity * t->nc + 1, sizeof *c);
     t->c = c ? c : t->c;
     if (!q || !p || !c)
         return false;
-    t->room = room;
+    t->capacity = capacity;
     return true;
 }
 
@@ -81,7 +81,7 @@ static void copy(void *to, const void *from, size_t count, size_t size) {
 static bool keep_instance(part_tables *p) {
     const nevh__walk *w = &p->adder->walk;
     table *t = table_for(p);
-    if (!t || !t->shape || (t->count == t->room && !grow(t)))
+    if (!t || !t->shape || (t->count == t->capacity && !grow(t)))
         return no_memory(p);
     copy(t->q + t->count * t->nq, w->read[0], t->nq, sizeof *t->q);
     copy(t->p + t->count * t->np, w->read[1], t->np, sizeof *t->p);

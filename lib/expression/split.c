@@ -57,14 +57,14 @@ static bool no_memory(nevh__parts *parts) {
 }
 
 static nevh__formula_part *new_part(nevh__parts *parts, const around *a) {
-    if (parts->n == parts->room) {
-        size_t room = parts->room ? 2 * parts->room : 16;
+    if (parts->n == parts->capacity) {
+        size_t capacity = parts->capacity ? 2 * parts->capacity : 16;
         nevh__formula_part *grown =
-            nevh__grow(parts->parts, room, sizeof *grown);
+            nevh__grow(parts->parts, capacity, sizeof *grown);
         if (!grown)
             return NULL;
         parts->parts = grown;
-        parts->room = room;
+        parts->capacity = capacity;
     }
     nevh__formula_part part = {.n_loops = count_loops(a)};
     part.loops = nevh__pool_take(parts->pool, part.n_loops, sizeof *part.loops);
@@ -132,16 +132,16 @@ static bool take_factors(nevh__parts *parts, nevh__expression *core,
 
 static bool append(nevh__parts *parts, nevh__formula_part *part,
                    const nevh__summand *s) {
-    if (part->n == part->room) {
-        size_t room = part->room ? 4 * part->room : 1;
+    if (part->n == part->capacity) {
+        size_t capacity = part->capacity ? 4 * part->capacity : 1;
         nevh__summand *grown =
-            nevh__pool_take(parts->pool, room, sizeof *grown);
+            nevh__pool_take(parts->pool, capacity, sizeof *grown);
         if (!grown)
             return false;
         if (part->n)
             memcpy(grown, part->summands, part->n * sizeof *grown);
         part->summands = grown;
-        part->room = room;
+        part->capacity = capacity;
     }
     part->summands[part->n++] = *s;
     return true;

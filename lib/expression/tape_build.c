@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FIRST_ROOM = 32 };
+enum { FIRST_CAPACITY = 32 };
 
 nevh__tape_builder *nevh__tape_builder_new(void) {
     return nevh__array(1, sizeof(nevh__tape_builder));
@@ -47,20 +47,21 @@ int nevh__builder_find(const nevh__tape_builder *b, const nevh__tape_node *n) {
 }
 
 static bool grow(nevh__tape_builder *b) {
-    if (b->room > INT_MAX / 4)
+    if (b->capacity > INT_MAX / 4)
         return false;
-    int room = b->room ? 2 * b->room : FIRST_ROOM;
-    nevh__tape_node *nodes = nevh__grow(b->nodes, (size_t)room, sizeof *nodes);
+    int capacity = b->capacity ? 2 * b->capacity : FIRST_CAPACITY;
+    nevh__tape_node *nodes =
+        nevh__grow(b->nodes, (size_t)capacity, sizeof *nodes);
     if (!nodes)
         return false;
     b->nodes = nodes;
-    int *table = nevh__array(2 * (size_t)room, sizeof *table);
+    int *table = nevh__array(2 * (size_t)capacity, sizeof *table);
     if (!table)
         return false;
     free(b->table);
     b->table = table;
-    b->table_size = 2 * (size_t)room;
-    b->room = room;
+    b->table_size = 2 * (size_t)capacity;
+    b->capacity = capacity;
     memset(table, 0xff, b->table_size * sizeof *table);
     for (int i = 0; i < b->used; i++)
         table[place(b, &nodes[i])] = i;
@@ -70,7 +71,7 @@ static bool grow(nevh__tape_builder *b) {
 int nevh__builder_node(nevh__tape_builder *b, nevh__tape_node node) {
     if (!b || b->failed)
         return -1;
-    if (b->used == b->room && !grow(b)) {
+    if (b->used == b->capacity && !grow(b)) {
         b->failed = true;
         return -1;
     }

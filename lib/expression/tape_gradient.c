@@ -113,13 +113,13 @@ static void seed(const sweep *s) {
         d[i] = h[i] - h[i] + 1;
 }
 
-/* `room` doubles are free from `scratch` on. */
+/* `capacity` doubles are free from `scratch` on. */
 static void run_back(const sweep *s, size_t from, size_t until, double *scratch,
-                     size_t room) {
+                     size_t capacity) {
     const nevh__instruction *code = s->tape->code;
     size_t length = until - from,
            rows = code[until].journal - code[from].journal;
-    if (rows * s->rows.columns <= room) {
+    if (rows * s->rows.columns <= capacity) {
         double *end = nevh__rows_run(&s->rows, code + from, length, scratch);
         if (until == s->tape->length)
             seed(s);
@@ -129,9 +129,9 @@ static void run_back(const sweep *s, size_t from, size_t until, double *scratch,
     size_t kept = s->tape->slots * s->rows.columns, half = length / 2;
     memcpy(scratch, s->rows.slots, kept * sizeof *scratch);
     nevh__rows_run(&s->rows, code + from, half, NULL);
-    run_back(s, from + half, until, scratch + kept, room - kept);
+    run_back(s, from + half, until, scratch + kept, capacity - kept);
     memcpy(s->rows.slots, scratch, kept * sizeof *scratch);
-    run_back(s, from, from + half, scratch, room);
+    run_back(s, from, from + half, scratch, capacity);
 }
 
 static void clear(double d[], size_t rows, size_t width, size_t columns) {
@@ -147,7 +147,7 @@ typedef struct {
 } task;
 
 static void sweep_columns(const task *job, size_t from, size_t columns,
-                          double *scratch, size_t room) {
+                          double *scratch, size_t capacity) {
     const nevh__tape *tape = job->tape;
     size_t slots = tape->slots * columns;
     sweep s = {
@@ -165,7 +165,7 @@ static void sweep_columns(const task *job, size_t from, size_t columns,
     clear(s.base[NEVH__T], 1, job->width, columns);
     clear(s.base[NEVH__Q], tape->count[NEVH__Q], job->width, columns);
     clear(s.base[NEVH__P], tape->count[NEVH__P], job->width, columns);
-    run_back(&s, 0, tape->length, scratch + 2 * slots, room - 2 * slots);
+    run_back(&s, 0, tape->length, scratch + 2 * slots, capacity - 2 * slots);
 }
 
 static size_t smaller(size_t a, size_t b) {
@@ -182,21 +182,21 @@ static size_t whole(const nevh__tape *tape, size_t columns) {
     return columns * (2 * tape->slots + longest_journal(tape, tape->length));
 }
 
-static void sweep_all(const task *job, double *scratch, size_t room) {
+static void sweep_all(const task *job, double *scratch, size_t capacity) {
     size_t most = NEVH__TAPE_COLUMNS, columns;
-    while (most > NEVH__LANES && whole(job->tape, most) > room)
+    while (most > NEVH__LANES && whole(job->tape, most) > capacity)
         most /= 2;
     for (size_t from = 0; from < job->width; from += columns) {
         columns = job->width - from < most ? job->width - from : most;
-        sweep_columns(job, from, columns, scratch, room);
+        sweep_columns(job, from, columns, scratch, capacity);
     }
 }
 
 /* Whether halving ends with a journal that fits. */
-static bool is_enough(const nevh__tape *tape, size_t room) {
+static bool is_enough(const nevh__tape *tape, size_t capacity) {
     size_t kept = NEVH__LANES * tape->slots, length = tape->length;
-    for (size_t used = 2 * kept; used <= room; used += kept) {
-        if (NEVH__LANES * longest_journal(tape, length) <= room - used)
+    for (size_t used = 2 * kept; used <= capacity; used += kept) {
+        if (NEVH__LANES * longest_journal(tape, length) <= capacity - used)
             return true;
         length = (length + 1) / 2;
     }

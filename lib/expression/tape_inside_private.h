@@ -78,7 +78,7 @@ typedef struct {
 
 struct nevh__tape_builder {
     nevh__tape_node *nodes;
-    int used, room;
+    int used, capacity;
     int *table; /* open addressing; -1 is empty */
     size_t table_size;
     size_t count[NEVH__VARIABLES];

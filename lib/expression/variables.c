@@ -5,19 +5,19 @@
 
 typedef struct {
     uint64_t *hashes;
-    size_t n, room;
+    size_t n, capacity;
     uint64_t stamp;
 } set;
 
 /* Collects variables; what has no memory is recorded as n = SIZE_MAX. */
 static bool add(set *s, uint64_t hash) {
-    if (s->n == s->room) {
-        size_t room = s->room ? 2 * s->room : 16;
-        uint64_t *grown = nevh__grow(s->hashes, room, sizeof *grown);
+    if (s->n == s->capacity) {
+        size_t capacity = s->capacity ? 2 * s->capacity : 16;
+        uint64_t *grown = nevh__grow(s->hashes, capacity, sizeof *grown);
         if (!grown)
             return false;
         s->hashes = grown;
-        s->room = room;
+        s->capacity = capacity;
     }
     s->hashes[s->n++] = hash;
     return true;

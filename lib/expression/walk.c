@@ -26,21 +26,21 @@ static int apply(nevh__walk *w, nevh__tape_operation operation, int a, int b) {
 }
 
 /* Room for one more element; false when memory is out. */
-static bool reserve(nevh__walk *w, void *array, size_t count, size_t *room,
+static bool reserve(nevh__walk *w, void *array, size_t count, size_t *capacity,
                     size_t size) {
-    if (count < *room)
+    if (count < *capacity)
         return true;
-    size_t more = *room ? 2 * *room : 32;
+    size_t more = *capacity ? 2 * *capacity : 32;
     void **place = array, *grown = nevh__grow(*place, more, size);
     if (!grown)
         return nevh__formula_no_memory(w->scope.error);
     *place = grown;
-    *room = more;
+    *capacity = more;
     return true;
 }
 
 static void note_shape(nevh__walk *w, size_t what) {
-    if (reserve(w, &w->shape, w->n_shape, &w->shape_room, sizeof *w->shape))
+    if (reserve(w, &w->shape, w->n_shape, &w->shape_capacity, sizeof *w->shape))
         w->shape[w->n_shape++] = what;
 }
 
@@ -49,7 +49,7 @@ static void note_shape(nevh__walk *w, size_t what) {
 static void note_constant(nevh__walk *w, double value,
                           const nevh__expression *at) {
     nevh__scope_finite(&w->scope, value, at);
-    if (reserve(w, &w->constants, w->n_constants, &w->constants_room,
+    if (reserve(w, &w->constants, w->n_constants, &w->constants_capacity,
                 sizeof *w->constants))
         w->constants[w->n_constants++] = value;
 }

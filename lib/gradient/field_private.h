@@ -332,12 +332,12 @@ int nevh__field_noise(nevh_field *, double t, const double q[],
 int nevh__field_moving_effects(nevh_field *, double t, const double q[],
                                const double p[], double h[]);
 
-/* H without the terms that read nothing, as h + lost: differences of these two
+/* H without the terms that read nothing, as h + roundoff: differences of these two
    parts are as accurate as the terms are, however large the sum.  size: the sum
    of the terms' |values|.  Arguments as nevh_field_value. */
 int nevh__field_moving_values(nevh_field *, size_t width, const double t[],
                               const double q[], const double p[], double h[],
-                              double lost[], double size[]);
+                              double roundoff[], double size[]);
 
 /* The 2n lengths over which H varies, coordinates first: the user's scales, or
    found by trial as when steps are chosen.  Where all steps are given, planning

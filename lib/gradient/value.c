@@ -5,22 +5,22 @@
 #include <math.h>
 
 /* Neumaier's compensated sum. */
-static void add(double *sum, double *lost, double x) {
+static void add(double *sum, double *roundoff, double x) {
     double next = *sum + x;
-    *lost += fabs(*sum) >= fabs(x) ? (*sum - next) + x : (x - next) + *sum;
+    *roundoff += fabs(*sum) >= fabs(x) ? (*sum - next) + x : (x - next) + *sum;
     *sum = next;
 }
 
 /* Adds all instances of a term at a few lanes to sums, lost digits and, unless
    that is NULL, sizes. */
 static int add_term(nevh_field *f, nevh__planned *term, nevh__block b,
-                    double *sum, double *lost, double *size) {
+                    double *sum, double *roundoff, double *size) {
     int status = NEVH_OK;
     while (!status && nevh__block_next(f, term, &b)) {
         status = nevh__block_values(f, term, &b);
         for (size_t k = 0; !status && k < b.used; k++) {
             size_t lane = b.lane + k % b.lanes;
-            add(sum + lane, lost + lane, f->h[k]);
+            add(sum + lane, roundoff + lane, f->h[k]);
             if (size)
                 size[lane] += fabs(f->h[k]);
         }
@@ -40,34 +40,34 @@ static nevh__block lanes_from(const nevh_field *f, size_t lane, size_t width,
 
 int nevh_field_value(nevh_field *f, size_t width, const double t[],
                      const double q[], const double p[], double h[]) {
-    double *sum = f->sums, *lost = sum + f->capacity;
+    double *sum = f->sums, *roundoff = sum + f->capacity;
     int status = nevh__field_ready(f);
     for (size_t at = 0, lanes; !status && at < width; at += lanes) {
         nevh__block b = lanes_from(f, at, width, t, q, p);
         lanes = b.until;
         for (size_t lane = 0; lane < lanes; lane++)
-            sum[lane] = lost[lane] = 0;
+            sum[lane] = roundoff[lane] = 0;
         for (size_t i = 0; !status && i < f->n_terms; i++)
-            status = add_term(f, &f->terms[i], b, sum, lost, NULL);
+            status = add_term(f, &f->terms[i], b, sum, roundoff, NULL);
         for (size_t lane = 0; lane < lanes; lane++)
-            h[at + lane] = sum[lane] + lost[lane];
+            h[at + lane] = sum[lane] + roundoff[lane];
     }
     return status;
 }
 
 int nevh__field_moving_values(nevh_field *f, size_t width, const double t[],
                               const double q[], const double p[], double h[],
-                              double lost[], double size[]) {
+                              double roundoff[], double size[]) {
     int status = nevh__field_ready(f);
     for (size_t lane = 0; lane < width; lane++)
-        h[lane] = lost[lane] = size[lane] = 0;
+        h[lane] = roundoff[lane] = size[lane] = 0;
     for (size_t at = 0, lanes; !status && at < width; at += lanes) {
         nevh__block b = lanes_from(f, at, width, t, q, p);
         lanes = b.until;
         for (size_t i = 0; !status && i < f->n_terms; i++)
             if (f->terms[i].nv)
-                status =
-                    add_term(f, &f->terms[i], b, h + at, lost + at, size + at);
+                status = add_term(f, &f->terms[i], b, h + at, roundoff + at,
+                                  size + at);
     }
     return status;
 }
@@ -79,12 +79,12 @@ static int effects(nevh_field *f, bool constants, double t, const double q[],
         h[i] = 0;
     for (size_t i = 0; !status && i < f->n_terms; i++) {
         nevh__planned *term = &f->terms[i];
-        double sum = 0, lost = 0;
+        double sum = 0, roundoff = 0;
         nevh__block b = nevh__block_over(1, &t, q, p, 1, 1);
         if (!constants && !term->nv && !term->term->decl.time)
             continue;
-        status = add_term(f, term, b, &sum, &lost, NULL);
-        h[term->term->effect] += sum + lost;
+        status = add_term(f, term, b, &sum, &roundoff, NULL);
+        h[term->term->effect] += sum + roundoff;
     }
     return status;
 }

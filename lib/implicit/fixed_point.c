@@ -38,9 +38,9 @@ nevh__stage_solver *nevh__stage_solver_new(nevh_work *w,
     s->rows = (2 * w->n - s->first) * s->stages;
     s->scale = nevh__array(2 * w->size, sizeof *s->scale);
     size_t unknowns = nevh__padded(s->rows * w->width);
-    s->room = nevh__array(2 * unknowns + NEVH__LANES, sizeof *s->room);
-    s->out = s->room ? nevh__aligned(s->room) : NULL;
-    s->least = s->room ? s->out + unknowns : NULL;
+    s->buffer = nevh__array(2 * unknowns + NEVH__LANES, sizeof *s->buffer);
+    s->out = s->buffer ? nevh__aligned(s->buffer) : NULL;
+    s->least = s->buffer ? s->out + unknowns : NULL;
     s->unit = nevh__array(2 * w->size, sizeof *s->unit);
     s->noise = nevh__array(4 * w->n, sizeof *s->noise);
     s->lanes = nevh__array(w->width, sizeof *s->lanes);
@@ -48,7 +48,7 @@ nevh__stage_solver *nevh__stage_solver_new(nevh_work *w,
     bool large = 2 * w->n * s->stages > MOST_DENSE;
     s->newton = large ? NULL : nevh__newton_new(s);
     s->rescue = large ? NULL : nevh__rescue_new(s);
-    if (s->scale && s->unit && s->room && s->noise && s->lanes && s->lane &&
+    if (s->scale && s->unit && s->buffer && s->noise && s->lanes && s->lane &&
         (large || (s->newton && s->rescue)))
         return s;
     nevh__stage_solver_free(s);
@@ -62,7 +62,7 @@ void nevh__stage_solver_free(nevh__stage_solver *s) {
     nevh__rescue_free(s->rescue);
     free(s->scale);
     free(s->unit);
-    free(s->room);
+    free(s->buffer);
     free(s->noise);
     free(s->lanes);
     free(s->lane);

@@ -86,7 +86,7 @@ struct nevh__stage_solver {
     size_t rows;          /* 2 n stages or n stages: unknowns of a lane */
     double *scale;        /* 2n x width: sizes that changes are held against */
     double *unit;         /* 2n x width: |h| over them */
-    double *room;         /* for the next two */
+    double *buffer;       /* for the next two */
     double *out;          /* rows x width */
     double *least;        /* rows x width: smallest change so far */
     double *noise;        /* 2n, of one lane */

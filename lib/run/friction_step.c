@@ -16,11 +16,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct nevh__damping {
-    double h;              /* that the factors are for */
-    double *factor, *rest; /* n: exp(-rate h/2) is their sum */
-    double *q, *p;         /* n x width: a step under way */
-    double *before;        /* the memory that is not the ledger's */
+struct nevh__friction_step {
+    double h;                   /* that the factors are for */
+    double *factor, *remainder; /* n: exp(-rate h/2) is their sum */
+    double *q, *p;              /* n x width: a step under way */
+    double *before;             /* the memory that is not the ledger's */
 };
 
 int nevh__plan_friction(nevh_stepper *s) {
@@ -43,7 +43,7 @@ int nevh__plan_friction(nevh_stepper *s) {
                           "%s takes no friction under a time transform, which "
                           "needs an energy that is conserved",
                           scheme->name);
-    if (scheme->kernel->damps)
+    if (scheme->kernel->has_friction)
         w->friction = s->rates;
     else if (scheme->own_time)
         return nevh__fail(&s->report, NEVH_ESTRUCT,
@@ -53,30 +53,30 @@ int nevh__plan_friction(nevh_stepper *s) {
     return NEVH_OK;
 }
 
-int nevh__plan_damping(nevh_stepper *s) {
+int nevh__friction_step_plan(nevh_stepper *s) {
     const nevh_work *w = &s->work;
     if (!s->rates || w->friction)
         return NEVH_OK;
-    struct nevh__damping *d = s->damping = nevh__array(1, sizeof *d);
+    struct nevh__friction_step *d = s->friction = nevh__array(1, sizeof *d);
     if (!d)
         return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
     d->h = NAN;
     d->factor = nevh__array(w->n, sizeof *d->factor);
-    d->rest = nevh__array(w->n, sizeof *d->rest);
+    d->remainder = nevh__array(w->n, sizeof *d->remainder);
     d->q = nevh__array(w->size, sizeof *d->q);
     d->p = nevh__array(w->size, sizeof *d->p);
     d->before =
         nevh__array((w->memory_rows + w->n) * w->width, sizeof *d->before);
-    if (d->factor && d->rest && d->q && d->p && d->before)
+    if (d->factor && d->remainder && d->q && d->p && d->before)
         return NEVH_OK;
     return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
 }
 
-void nevh__damping_free(struct nevh__damping *d) {
+void nevh__friction_step_free(struct nevh__friction_step *d) {
     if (!d)
         return;
     free(d->factor);
-    free(d->rest);
+    free(d->remainder);
     free(d->q);
     free(d->p);
     free(d->before);
@@ -85,63 +85,65 @@ void nevh__damping_free(struct nevh__damping *d) {
 
 /* Near 1 the two parts hold what expm1 knows beyond the last bit of exp. */
 static void set_factors(const nevh_stepper *s, double h) {
-    struct nevh__damping *d = s->damping;
+    struct nevh__friction_step *d = s->friction;
     if (d->h == h)
         return;
     for (size_t k = 0; k < s->work.n; k++) {
         double change = expm1(-s->rates[k] * h / 2);
         bool near = fabs(change) <= 0.5;
         d->factor[k] = near ? 1 + change : exp(-s->rates[k] * h / 2);
-        d->rest[k] = near ? change - (d->factor[k] - 1) : 0;
+        d->remainder[k] = near ? change - (d->factor[k] - 1) : 0;
     }
     d->h = h;
 }
 
 /* p and its carry times the factors; whether all p are finite. */
-static bool multiply(const nevh_work *w, struct nevh__damping *d,
+static bool multiply(const nevh_work *w, struct nevh__friction_step *d,
                      double carry[]) {
     double check = 0;
     for (size_t i = 0; i < w->size; i++) {
-        double factor = d->factor[i / w->width], rest = d->rest[i / w->width];
+        double factor = d->factor[i / w->width],
+               remainder = d->remainder[i / w->width];
         double x = d->p[i], next = x * factor;
-        double lost = fma(x, factor, -next) + (x * rest + carry[i] * factor);
-        d->p[i] = next + lost;
-        carry[i] = lost - (d->p[i] - next);
+        double roundoff =
+            fma(x, factor, -next) + (x * remainder + carry[i] * factor);
+        d->p[i] = next + roundoff;
+        carry[i] = roundoff - (d->p[i] - next);
         check += d->p[i] - d->p[i];
     }
     return check == 0;
 }
 
 /* Half a step of friction at time t. */
-static int damp(nevh_stepper *s, double t, double h) {
+static int apply(nevh_stepper *s, double t, double h) {
     nevh_work *w = &s->work;
-    struct nevh__damping *d = s->damping;
+    struct nevh__friction_step *d = s->friction;
     int status = nevh__ledger_add(w, -1, t, d->q, d->p);
     if (!status && !multiply(w, d, w->memory + w->memory_rows * w->width))
         status = nevh__fail(&s->report, NEVH_EDOM,
                             "friction over half a step of %g from t = %.9g "
                             "leaves the range of numbers: take a smaller one",
                             h, t);
-    if (!status && w->integrator->kernel->damp)
-        w->integrator->kernel->damp(w, d->factor);
+    if (!status && w->integrator->kernel->apply_friction)
+        w->integrator->kernel->apply_friction(w, d->factor);
     return status ? status : nevh__ledger_add(w, 1, t, d->q, d->p);
 }
 
-int nevh__damped_step(nevh_stepper *s, double t, double h, double q[],
-                      double p[]) {
+int nevh__friction_step_apply(nevh_stepper *s, double t, double h, double q[],
+                              double p[]) {
     nevh_work *w = &s->work;
-    struct nevh__damping *d = s->damping;
+    struct nevh__friction_step *d = s->friction;
     size_t size = w->size * sizeof *q;
     size_t memory = s->fresh_rows * w->width * sizeof *w->memory;
     set_factors(s, h);
     memcpy(d->before, w->memory, memory);
     memcpy(d->q, q, size);
     memcpy(d->p, p, size);
-    int status = damp(s, t, h);
+    int status = apply(s, t, h);
     if (!status)
         status = w->integrator->kernel->step(w, t, h, d->q, d->p);
     if (!status)
-        status = damp(s, t + h, h);
+        status = apply(s, t + h, h);
     if (status) {
         memcpy(w->memory, d->before, memory);
         return status;
@@ -155,5 +157,5 @@ int nevh_stepper_order(const nevh_stepper *s) {
     if (!s || !s->work.integrator)
         return 0;
     int order = s->work.integrator->order;
-    return s->damping && order > 2 ? 2 : order;
+    return s->friction && order > 2 ? 2 : order;
 }

@@ -30,7 +30,8 @@ int nevh__begin_run(nevh_stepper *s, double t0, double h, const double q[],
 
 /* Whether a step is no more than the kernel's. */
 static bool plain(const nevh_stepper *s) {
-    return !s->damping && !s->work.ledger && !s->work.transform && !s->own_time;
+    return !s->friction && !s->work.ledger && !s->work.transform &&
+           !s->own_time;
 }
 
 /* The next step after `taken` that somebody looks at, or the last one. */

@@ -9,7 +9,7 @@ typedef struct {
     char magic[8];
     char integrator[32];
     uint64_t n, width, rows, has_last;
-    double last_t, time_lost;
+    double last_t, time_roundoff;
 } header;
 
 static header describe(const nevh_stepper *s) {
@@ -19,7 +19,7 @@ static header describe(const nevh_stepper *s) {
     h.width = s->work.width;
     h.rows = s->rows;
     h.last_t = s->last_t;
-    h.time_lost = s->time_lost;
+    h.time_roundoff = s->time_roundoff;
     return h;
 }
 
@@ -65,7 +65,7 @@ int nevh_stepper_load(nevh_stepper *s, const void *buffer, size_t size) {
     memcpy(&h, buffer, sizeof h);
     own.has_last = h.has_last;
     own.last_t = h.last_t;
-    own.time_lost = h.time_lost;
+    own.time_roundoff = h.time_roundoff;
     if (memcmp(&own, &h, sizeof h) != 0)
         return nevh__fail(&s->report, NEVH_EINVAL,
                           "the memory was saved by another scheme or system");
@@ -77,7 +77,7 @@ int nevh_stepper_load(nevh_stepper *s, const void *buffer, size_t size) {
         memcpy(part[i], from, each[i]);
     s->has_last = h.has_last != 0;
     s->last_t = h.last_t;
-    s->time_lost = h.time_lost;
+    s->time_roundoff = h.time_roundoff;
     return NEVH_OK;
 }
 
@@ -98,6 +98,6 @@ nevh_stepper *nevh_stepper_copy(const nevh_stepper *s) {
         memcpy(to[i], from[i], size[i]);
     copy->has_last = s->has_last;
     copy->last_t = s->last_t;
-    copy->time_lost = s->time_lost;
+    copy->time_roundoff = s->time_roundoff;
     return copy;
 }

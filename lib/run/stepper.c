@@ -23,7 +23,7 @@ static bool own_options(nevh_options *o, size_t n) {
 
 static int plan_memory(nevh_stepper *s) {
     nevh_work *w = &s->work;
-    s->fresh_rows = w->memory_rows + (s->damping ? w->n : 0) +
+    s->fresh_rows = w->memory_rows + (s->friction ? w->n : 0) +
                     (w->transform ? NEVH__TRANSFORM_ROWS : 0);
     s->rows = s->fresh_rows + (w->ledger ? 2 : 0);
     s->buffer = nevh__array(s->rows * w->width + NEVH__LANES, sizeof(double));
@@ -82,7 +82,7 @@ static int plan_parts(nevh_stepper *s) {
     if (!status)
         status = integrator->kernel->plan(w);
     if (!status)
-        status = nevh__plan_damping(s);
+        status = nevh__friction_step_plan(s);
     if (!status)
         status = nevh__ledger_plan(w, s->rates);
     w->accounts = w->transform || w->ledger;
@@ -144,7 +144,7 @@ void nevh_stepper_free(nevh_stepper *s) {
     free((double *)s->options.scale);
     free((double *)s->options.q);
     free((double *)s->options.p);
-    nevh__damping_free(s->damping);
+    nevh__friction_step_free(s->friction);
     nevh__ledger_free(s->work.ledger);
     free(s->rates);
     free(s->buffer);
@@ -214,7 +214,7 @@ int nevh__begin(nevh_stepper *s, double t, double h, const double q[],
                           "since this was planned: make a new stepper");
     bool same = s->has_last && same_time(s, t, h);
     s->before_t = s->last_t;
-    s->before_lost = s->time_lost;
+    s->before_lost = s->time_roundoff;
     for (size_t lane = 0; lane < s->work.width; lane++)
         if (!same || !same_lane(s, lane, q, p)) {
             if (!s->forgot)
@@ -223,7 +223,7 @@ int nevh__begin(nevh_stepper *s, double t, double h, const double q[],
             forget_lane(s, lane);
         }
     if (s->forgot)
-        s->time_lost = 0;
+        s->time_roundoff = 0;
     return NEVH_OK;
 }
 
@@ -231,13 +231,13 @@ void nevh__undo(nevh_stepper *s) {
     if (s->forgot)
         memcpy(s->work.memory, s->before, memory_size(s));
     s->last_t = s->before_t;
-    s->time_lost = s->before_lost;
+    s->time_roundoff = s->before_lost;
 }
 
 static void pass_time(nevh_stepper *s, double t) {
-    double passed = s->work.elapsed + (s->own_time ? s->time_lost : 0);
+    double passed = s->work.elapsed + (s->own_time ? s->time_roundoff : 0);
     s->last_t = t + passed;
-    s->time_lost = nevh__roundoff(s->last_t, t, passed);
+    s->time_roundoff = nevh__roundoff(s->last_t, t, passed);
 }
 
 /* Two rows, where there is a ledger; see nevh__ledger_close. */
@@ -255,8 +255,8 @@ int nevh__advance(nevh_stepper *s, double t, double h, double q[], double p[]) {
         status = nevh__transform_begin(w, w->memory + w->memory_rows * w->width,
                                        t, q, p);
     if (!status)
-        status = s->damping ? nevh__damped_step(s, t, h, q, p)
-                            : w->integrator->kernel->step(w, t, h, q, p);
+        status = s->friction ? nevh__friction_step_apply(s, t, h, q, p)
+                             : w->integrator->kernel->step(w, t, h, q, p);
     if (status)
         return status;
     nevh__ledger_close(w, gains(s));

@@ -16,9 +16,9 @@ struct nevh_stepper {
        rows, or what the transform keeps, and the ledger's two.  A lane that
        starts afresh keeps the last. */
     size_t rows, fresh_rows;
-    double *buffer;                /* holds the memory, aligned for vectors */
-    double *rates;                 /* n of friction; NULL: there is none */
-    struct nevh__damping *damping; /* NULL: no friction around steps */
+    double *buffer; /* holds the memory, aligned for vectors */
+    double *rates;  /* n of friction; NULL: there is none */
+    struct nevh__friction_step *friction; /* NULL: no friction around steps */
     /* What the last step returned. */
     bool has_last;
     double last_t, *last_q, *last_p;
@@ -26,8 +26,8 @@ struct nevh_stepper {
     bool forgot;    /* the last step or run began with less than `before` */
     double *before; /* the memory before that */
     size_t taken;
-    double time_lost;             /* of last_t, where steps vary, by rounding */
-    double before_t, before_lost; /* last_t and time_lost before that */
+    double time_roundoff;         /* of last_t, where steps vary, by rounding */
+    double before_t, before_lost; /* last_t and time_roundoff before that */
 };
 
 /* Why a scheme does not fit the system, or NEVH_OK. */
@@ -56,11 +56,12 @@ void nevh__end_run(nevh_stepper *, const double q[], const double p[]);
 /* Finds the friction, and whether the scheme takes it. */
 int nevh__plan_friction(nevh_stepper *);
 /* Makes room for friction around steps; after the kernel's plan. */
-int nevh__plan_damping(nevh_stepper *);
-void nevh__damping_free(struct nevh__damping *); /* NULL is allowed */
+int nevh__friction_step_plan(nevh_stepper *);
+void nevh__friction_step_free(
+    struct nevh__friction_step *); /* NULL is allowed */
 /* A step with friction around it. */
-int nevh__damped_step(nevh_stepper *, double t, double h, double q[],
-                      double p[]);
+int nevh__friction_step_apply(nevh_stepper *, double t, double h, double q[],
+                              double p[]);
 
 /* Whether nevh_stepper_gain is what came in, or nothing does. */
 bool nevh__balanced(const nevh_stepper *);

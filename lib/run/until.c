@@ -19,7 +19,7 @@ enum { MOST_TRIALS = 100 };
 typedef struct {
     nevh_stepper *stepper;
     double t, t_end, h;
-    double lost;            /* of t, by rounding */
+    double roundoff;        /* of t, by rounding */
     double elapsed;         /* by a step of h */
     double *q, *p, *memory; /* the main orbit's */
     double *q_end, *p_end;  /* after a trial step */
@@ -66,7 +66,7 @@ static void branch_close(branch *b) {
 static void keep(branch *b, double t, const double q[], const double p[]) {
     nevh_stepper *s = b->stepper;
     b->t = t;
-    b->lost = s->time_lost;
+    b->roundoff = s->time_roundoff;
     memcpy(b->q, q, state_size(s));
     memcpy(b->p, p, state_size(s));
     memcpy(b->memory, s->work.memory, memory_size(s));
@@ -75,7 +75,7 @@ static void keep(branch *b, double t, const double q[], const double p[]) {
 static void resume(const branch *b) {
     nevh_stepper *s = b->stepper;
     s->last_t = b->t;
-    s->time_lost = b->lost;
+    s->time_roundoff = b->roundoff;
     memcpy(s->work.memory, b->memory, memory_size(s));
 }
 

@@ -260,7 +260,7 @@ static nevh__code *code_of(nevh_scene *s, const nevh__statement *statement) {
     return s->codes ? s->codes[at] : NULL;
 }
 
-static bool make_room(nevh_scene *s, nevh__scene_model *m, reading *r) {
+static bool reserve(nevh_scene *s, nevh__scene_model *m, reading *r) {
     r->q = nevh__pool_take(&m->pool, m->n, sizeof *r->q);
     r->p = nevh__pool_take(&m->pool, m->n, sizeof *r->p);
     r->c = nevh__pool_take(&m->pool, MOST_READ, sizeof *r->c);
@@ -303,7 +303,7 @@ bool nevh__model_code(nevh_scene *s, nevh__scene_model *m,
     nevh__code *code = code_of(s, statement);
     if (!code)
         return nevh__scene_no_memory(s);
-    if (!cut(s, m, &statement->value, &name, &after) || !make_room(s, m, &r) ||
+    if (!cut(s, m, &statement->value, &name, &after) || !reserve(s, m, &r) ||
         !read_names(s, m, &after, &r))
         return false;
     bool on = nevh__scene_effect(s, statement->head.name)->on;

@@ -131,8 +131,8 @@ static bool has_ended(int pipe, nevh__compiler_output *output) {
     ssize_t count = read(pipe, block, sizeof block);
     if (count < 0)
         return errno != EINTR;
-    size_t room = sizeof output->text - 1 - output->used,
-           kept = (size_t)count < room ? (size_t)count : room;
+    size_t left = sizeof output->text - 1 - output->used,
+           kept = (size_t)count < left ? (size_t)count : left;
     memcpy(output->text + output->used, block, kept);
     output->used += kept;
     return count == 0;

@@ -12,8 +12,8 @@ typedef struct {
 } buffer;
 
 static void append(buffer *b, const char *bytes, size_t count) {
-    size_t room = b->size - b->used - 1;
-    count = count < room ? count : room;
+    size_t left = b->size - b->used - 1;
+    count = count < left ? count : left;
     memcpy(b->text + b->used, bytes, count);
     b->used += count;
     b->text[b->used] = '\0';
@@ -68,9 +68,9 @@ bool nevh__scene_fail_at(nevh_scene *s, int status, const nevh__line *line,
     char place[64];
     snprintf(place, sizeof place,
              ":%zu:%zu: error: ", line->number ? line->number : 1, column);
-    size_t room = strlen(s->name);
+    size_t left = strlen(s->name);
     append(&b, line->number ? s->name : "assignment",
-           line->number ? (room < TEXT ? room : TEXT) : strlen("assignment"));
+           line->number ? (left < TEXT ? left : TEXT) : strlen("assignment"));
     append(&b, place, strlen(place));
     append(&b, text, strlen(text));
     append_line(&b, line, column, length);

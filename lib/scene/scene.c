@@ -17,7 +17,7 @@ void nevh__model_free(nevh__scene_model *m) {
     nevh__owned_free(&m->owned_transform);
     nevh__owned_free(&m->owned_shown);
     free(m->velocities);
-    free(m->velocity_room);
+    free(m->velocity_buffer);
     nevh__names_free(m->names);
     nevh__pool_free(&m->pool);
     free(m);
@@ -72,18 +72,18 @@ static void unreadable(nevh_scene *s, const char *why) {
 
 /* All of a file, freed by the caller; NULL when it is not to be read. */
 static char *read_all(nevh_scene *s, FILE *file, size_t *bytes) {
-    size_t room = 1 << 12;
-    char *text = malloc(room);
+    size_t capacity = 1 << 12;
+    char *text = malloc(capacity);
     *bytes = 0;
     while (text && !s->status) {
-        *bytes += fread(text + *bytes, 1, room - *bytes, file);
+        *bytes += fread(text + *bytes, 1, capacity - *bytes, file);
         if (ferror(file))
             unreadable(s, strerror(errno));
-        else if (*bytes < room)
+        else if (*bytes < capacity)
             return text;
-        else if (room >= MOST_BYTES)
+        else if (capacity >= MOST_BYTES)
             unreadable(s, "the file is too large for a scene");
-        char *grown = nevh__grow(text, room *= 2, 1);
+        char *grown = nevh__grow(text, capacity *= 2, 1);
         if (!grown)
             nevh__scene_no_memory(s);
         text = grown ? grown : text;

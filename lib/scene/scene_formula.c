@@ -56,13 +56,13 @@ static bool make_tape(nevh_scene *s, nevh__formula *formula) {
     return true;
 }
 
-static bool make_room(nevh_scene *s) {
+static bool reserve(nevh_scene *s) {
     nevh__scene_model *m = s->model;
     if (!m->velocities)
         m->velocities = nevh__array(m->n, sizeof *m->velocities);
-    if (!m->velocity_room)
-        m->velocity_room = nevh__velocity_room(m->system);
-    return (m->velocities && m->velocity_room) || nevh__scene_no_memory(s);
+    if (!m->velocity_buffer)
+        m->velocity_buffer = nevh__velocity_buffer(m->system);
+    return (m->velocities && m->velocity_buffer) || nevh__scene_no_memory(s);
 }
 
 bool nevh__formula_value(nevh_scene *s, nevh__formula *formula, nevh__state *at,
@@ -71,9 +71,9 @@ bool nevh__formula_value(nevh_scene *s, nevh__formula *formula, nevh__state *at,
     if (!formula->tape && !make_tape(s, formula))
         return false;
     if (!at->moving && nevh__tape_count(formula->tape, NEVH__C)) {
-        if (!make_room(s))
+        if (!reserve(s))
             return false;
-        nevh__velocities(m->system, at->t, at->q, at->p, m->velocity_room,
+        nevh__velocities(m->system, at->t, at->q, at->p, m->velocity_buffer,
                          m->velocities);
         at->moving = true;
     }

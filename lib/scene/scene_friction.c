@@ -7,7 +7,7 @@ typedef struct {
     double *rates;
     bool *given;
     nevh__statement one; /* COORDINATE: RATE */
-} damping;
+} friction;
 
 /* Which coordinates x, x[3], x[2..N], x[i = 1..N] or all are. */
 static bool find_range(nevh_scene *s, const nevh__scene_model *m,
@@ -23,7 +23,7 @@ static bool find_range(nevh_scene *s, const nevh__scene_model *m,
     return nevh__head_range(s, m, one, from, to);
 }
 
-static bool set_rate(nevh_scene *s, nevh__scene_model *m, damping *d, size_t k,
+static bool set_rate(nevh_scene *s, nevh__scene_model *m, friction *d, size_t k,
                      const nevh__tree *tree, nevh__index at) {
     nevh__formula_error error = {0};
     if (d->given[k])
@@ -36,7 +36,7 @@ static bool set_rate(nevh_scene *s, nevh__scene_model *m, damping *d, size_t k,
            nevh__scene_fail_formula(s, &d->one.value, &error);
 }
 
-static bool take_rates(nevh_scene *s, nevh__scene_model *m, damping *d) {
+static bool take_rates(nevh_scene *s, nevh__scene_model *m, friction *d) {
     size_t from = 0, to = 0, first = 0;
     const nevh__head *head = &d->one.head;
     if (!find_range(s, m, &d->one, &from, &to))
@@ -53,7 +53,7 @@ static bool take_rates(nevh_scene *s, nevh__scene_model *m, damping *d) {
     return fine;
 }
 
-static bool take_part(nevh_scene *s, nevh__scene_model *m, damping *d,
+static bool take_part(nevh_scene *s, nevh__scene_model *m, friction *d,
                       const nevh__piece *part) {
     char stop;
     nevh__formula_error error;
@@ -74,8 +74,8 @@ static bool take_part(nevh_scene *s, nevh__scene_model *m, damping *d,
 static bool add_friction(nevh_scene *s, nevh__scene_model *m,
                          const nevh__statement *statement) {
     size_t count;
-    damping d = {.rates = nevh__pool_take(&m->pool, m->n, sizeof *d.rates),
-                 .given = nevh__pool_take(&m->pool, m->n, sizeof *d.given)};
+    friction d = {.rates = nevh__pool_take(&m->pool, m->n, sizeof *d.rates),
+                  .given = nevh__pool_take(&m->pool, m->n, sizeof *d.given)};
     if (!d.rates || !d.given)
         return nevh__scene_no_memory(s);
     nevh__piece *parts =

@@ -116,7 +116,7 @@ typedef struct {
     nevh__stop stop;
     nevh__formula judged; /* where the scene has one, from outside */
     nevh__owned owned_shown;
-    double *velocities, *velocity_room; /* n; NULL until asked for */
+    double *velocities, *velocity_buffer; /* n; NULL until asked for */
 } nevh__scene_model;
 
 typedef struct nevh__code nevh__code; /* "scene/code_private.h" */
@@ -244,14 +244,14 @@ bool nevh__model_run(nevh_scene *, nevh__scene_model *);
 void nevh__model_free(nevh__scene_model *);
 
 /* v = dH/dp at one state, n each; every term brings its gradient.
-   room     of nevh__velocity_room, to be freed; NULL when memory is out */
-double *nevh__velocity_room(const nevh_system *);
+   buffer       of nevh__velocity_buffer, to be freed; NULL when memory is out */
+double *nevh__velocity_buffer(const nevh_system *);
 void nevh__velocities(const nevh_system *, double t, const double q[],
-                      const double p[], double room[], double v[]);
+                      const double p[], double buffer[], double v[]);
 /* The first effect that is on and has a value that is not finite, or NULL. */
 const char *nevh__effect_not_finite(const nevh_system *, double t,
                                     const double q[], const double p[],
-                                    double room[]);
+                                    double buffer[]);
 
 /* Whether a scene may be asked; its last failure is forgotten then. */
 bool nevh__scene_begin(nevh_scene *);

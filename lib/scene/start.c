@@ -23,7 +23,7 @@ enum {
 static const double CLOSE = 1e-10; /* residual that counts as solved */
 
 typedef struct {
-    double *room;
+    double *buffer;
     const nevh__scene_model *m;
     size_t rows, *row; /* which of the n momenta are sought */
     const double *q;
@@ -44,7 +44,7 @@ static double offset(const search *s, size_t j) {
 /* The velocities at p, and how far they are off at most. */
 static double measure(search *s) {
     double most = 0;
-    nevh__velocities(s->m->system, s->m->run.t_start, s->q, s->p, s->room,
+    nevh__velocities(s->m->system, s->m->run.t_start, s->q, s->p, s->buffer,
                      s->slope);
     for (size_t j = 0; j < s->rows; j++) {
         double off = fabs(offset(s, j));
@@ -189,19 +189,19 @@ static bool take_gsl(search *s) {
 
 static bool take_memory(search *s) {
     size_t n = s->m->n;
-    s->room = nevh__velocity_room(s->m->system);
+    s->buffer = nevh__velocity_buffer(s->m->system);
     s->row = nevh__array(n, sizeof *s->row);
     s->slope = nevh__array(n, sizeof *s->slope);
     s->rest = nevh__array(n, sizeof *s->rest);
     s->scale = nevh__array(n, sizeof *s->scale);
     s->unit = nevh__array(n, sizeof *s->unit);
     s->best = nevh__array(n, sizeof *s->best);
-    return s->room && s->row && s->slope && s->rest && s->scale && s->unit &&
+    return s->buffer && s->row && s->slope && s->rest && s->scale && s->unit &&
            s->best;
 }
 
 static void done(search *s) {
-    free(s->room);
+    free(s->buffer);
     if (s->gsl)
         gsl_multiroot_fdfsolver_free(s->gsl);
     gsl_vector_free(s->u);
@@ -279,12 +279,12 @@ static bool fail_effect(nevh_scene *scene, const char *effect) {
 
 static int check_values(nevh_scene *scene, const double q[], const double p[]) {
     const nevh__scene_model *m = scene->model;
-    double *room = nevh__velocity_room(m->system);
-    if (!room)
+    double *buffer = nevh__velocity_buffer(m->system);
+    if (!buffer)
         return nevh__scene_no_memory(scene), NEVH_ENOMEM;
     const char *effect =
-        nevh__effect_not_finite(m->system, m->run.t_start, q, p, room);
-    free(room);
+        nevh__effect_not_finite(m->system, m->run.t_start, q, p, buffer);
+    free(buffer);
     if (effect)
         fail_effect(scene, effect);
     return scene->status;

@@ -16,7 +16,7 @@ static size_t block_size(const nevh_term *decl) {
     return WIDTH * (decl->nq + 2 * decl->np + decl->nc + 2);
 }
 
-double *nevh__velocity_room(const nevh_system *system) {
+double *nevh__velocity_buffer(const nevh_system *system) {
     size_t most = 0;
     for (size_t i = 0; i < system->n_terms; i++) {
         size_t size = block_size(&system->terms[i]->decl);
@@ -42,8 +42,8 @@ typedef struct {
 } block;
 
 static block read_block(const nevh_term *decl, size_t first, double t,
-                        const double q[], const double p[], double room[]) {
-    block b = {.t = room, .q = room + WIDTH};
+                        const double q[], const double p[], double buffer[]) {
+    block b = {.t = buffer, .q = buffer + WIDTH};
     b.p = b.q + WIDTH * decl->nq;
     b.c = b.p + WIDTH * decl->np;
     b.result = b.c + WIDTH * decl->nc;
@@ -72,8 +72,8 @@ static double difference(const nevh_term *decl, double t, const double q[],
 
 /* Of terms without a gradient; they have one instance. */
 static void add_differences(const nevh_term *decl, double t, const double q[],
-                            const double p[], double room[], double v[]) {
-    double *own_q = room, *own_p = own_q + decl->nq;
+                            const double p[], double buffer[], double v[]) {
+    double *own_q = buffer, *own_p = own_q + decl->nq;
     for (size_t k = 0; k < decl->nq; k++)
         own_q[k] = q[decl->q[k]];
     for (size_t k = 0; k < decl->np; k++)
@@ -84,9 +84,9 @@ static void add_differences(const nevh_term *decl, double t, const double q[],
 }
 
 static void add_block(const nevh_term *decl, size_t first, double t,
-                      const double q[], const double p[], double room[],
+                      const double q[], const double p[], double buffer[],
                       double v[]) {
-    block b = read_block(decl, first, t, q, p, room);
+    block b = read_block(decl, first, t, q, p, buffer);
     decl->gradient(WIDTH, b.t, b.q, b.p, b.c, decl->params, NULL, b.result);
     for (size_t lane = 0; lane < WIDTH && first + lane < decl->count; lane++)
         for (size_t k = 0; k < decl->np; k++)
@@ -95,24 +95,24 @@ static void add_block(const nevh_term *decl, size_t first, double t,
 }
 
 void nevh__velocities(const nevh_system *system, double t, const double q[],
-                      const double p[], double room[], double v[]) {
+                      const double p[], double buffer[], double v[]) {
     memset(v, 0, system->n * sizeof *v);
     for (size_t i = 0; i < system->n_terms; i++) {
         const nevh_term *decl = &system->terms[i]->decl;
         if (!nevh__term_on(system, system->terms[i]) || !decl->np)
             continue;
         if (!decl->gradient)
-            add_differences(decl, t, q, p, room, v);
+            add_differences(decl, t, q, p, buffer, v);
         for (size_t first = 0; decl->gradient && first < decl->count;
              first += WIDTH)
-            add_block(decl, first, t, q, p, room, v);
+            add_block(decl, first, t, q, p, buffer, v);
     }
 }
 
 static bool is_finite(const nevh_term *decl, double t, const double q[],
-                      const double p[], double room[]) {
+                      const double p[], double buffer[]) {
     for (size_t first = 0; first < decl->count; first += WIDTH) {
-        block b = read_block(decl, first, t, q, p, room);
+        block b = read_block(decl, first, t, q, p, buffer);
         decl->block(WIDTH, b.t, b.q, b.p, b.c, decl->params, b.result);
         for (size_t lane = 0; lane < WIDTH; lane++)
             if (!isfinite(b.result[lane]))
@@ -123,11 +123,11 @@ static bool is_finite(const nevh_term *decl, double t, const double q[],
 
 const char *nevh__effect_not_finite(const nevh_system *system, double t,
                                     const double q[], const double p[],
-                                    double room[]) {
+                                    double buffer[]) {
     for (size_t i = 0; i < system->n_terms; i++) {
         const nevh_term *decl = &system->terms[i]->decl;
         if (nevh__term_on(system, system->terms[i]) && decl->block &&
-            !is_finite(decl, t, q, p, room))
+            !is_finite(decl, t, q, p, buffer))
             return decl->effect;
     }
     return NULL;

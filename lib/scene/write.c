@@ -7,7 +7,7 @@
 
 typedef struct {
     char *text;
-    size_t used, room;
+    size_t used, capacity;
     bool failed;
     char *folder; /* that names of C files are put after; NULL: none */
 } writer;
@@ -15,14 +15,14 @@ typedef struct {
 static void put(writer *w, const char *bytes, size_t count) {
     if (w->failed)
         return;
-    if (w->used + count >= w->room) {
-        size_t room = 2 * (w->used + count) + 64;
-        char *grown = nevh__grow(w->text, room, 1);
+    if (w->used + count >= w->capacity) {
+        size_t capacity = 2 * (w->used + count) + 64;
+        char *grown = nevh__grow(w->text, capacity, 1);
         w->failed = !grown;
         if (w->failed)
             return;
         w->text = grown;
-        w->room = room;
+        w->capacity = capacity;
     }
     memcpy(w->text + w->used, bytes, count);
     w->used += count;

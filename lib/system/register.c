@@ -14,25 +14,25 @@ static size_t hash(const char *name) {
 
 /* Where the name is, or is to be. */
 static nevh__registered *entry_of(const nevh__register *x, const char *name) {
-    size_t i = hash(name) & (x->room - 1);
+    size_t i = hash(name) & (x->capacity - 1);
     while (x->entries[i].name && strcmp(x->entries[i].name, name) != 0)
-        i = (i + 1) & (x->room - 1);
+        i = (i + 1) & (x->capacity - 1);
     return &x->entries[i];
 }
 
 size_t nevh__register_find(const nevh__register *x, const char *name) {
-    const nevh__registered *e = x->room && name ? entry_of(x, name) : NULL;
+    const nevh__registered *e = x->capacity && name ? entry_of(x, name) : NULL;
     return e && e->name ? e->at : SIZE_MAX;
 }
 
 bool nevh__register_reserve(nevh__register *x) {
-    nevh__register larger = {.room = x->room ? 2 * x->room : 16};
-    if (2 * (x->count + 1) <= x->room)
+    nevh__register larger = {.capacity = x->capacity ? 2 * x->capacity : 16};
+    if (2 * (x->count + 1) <= x->capacity)
         return true;
-    larger.entries = nevh__array(larger.room, sizeof *larger.entries);
+    larger.entries = nevh__array(larger.capacity, sizeof *larger.entries);
     if (!larger.entries)
         return false;
-    for (size_t i = 0; i < x->room; i++)
+    for (size_t i = 0; i < x->capacity; i++)
         if (x->entries[i].name)
             nevh__register_put(&larger, x->entries[i].name, x->entries[i].at);
     free(x->entries);

@@ -63,7 +63,7 @@ typedef struct {
 } nevh__registered;
 typedef struct {
     nevh__registered *entries; /* at least half of them without a name */
-    size_t room, count;        /* room: a power of two, or 0 */
+    size_t capacity, count;    /* capacity: a power of two, or 0 */
 } nevh__register;
 size_t nevh__register_find(const nevh__register *,
                            const char *name); /* SIZE_MAX */

@@ -23,7 +23,7 @@ struct nevh_ledger {
     double *t, *rate, *h;          /* width each; rate: of the gain */
     double *slope;                 /* n x width: dH/dp, for friction */
     double *q, *p;                 /* n x width: where the step began */
-    double *pending, *lost;        /* width each: of the step under way */
+    double *pending, *roundoff;    /* width each: of the step under way */
     double kicked, drifted;        /* parts of it that the kernel told */
     bool driven, mixed, by_kernel; /* reads t; so does a term of q and p; the
                                       kernel has something to tell */
@@ -39,13 +39,13 @@ static int allocate(nevh_work *w, struct nevh_ledger *l) {
     l->rate = nevh__array(width, sizeof(double));
     l->h = nevh__array(width, sizeof(double));
     l->pending = nevh__array(width, sizeof(double));
-    l->lost = nevh__array(width, sizeof(double));
+    l->roundoff = nevh__array(width, sizeof(double));
     l->slope = nevh__array(size, sizeof(double));
     l->q = nevh__array(size, sizeof(double));
     l->p = nevh__array(size, sizeof(double));
     l->steps = nevh__array(w->system->n_terms, sizeof *l->steps);
-    bool all = l->t && l->rate && l->h && l->pending && l->lost && l->slope &&
-               l->q && l->p && l->steps;
+    bool all = l->t && l->rate && l->h && l->pending && l->roundoff &&
+               l->slope && l->q && l->p && l->steps;
     return all ? NEVH_OK : out_of_memory(w);
 }
 
@@ -91,7 +91,7 @@ void nevh__ledger_free(struct nevh_ledger *l) {
     free(l->rate);
     free(l->h);
     free(l->pending);
-    free(l->lost);
+    free(l->roundoff);
     free(l->slope);
     free(l->q);
     free(l->p);
@@ -104,17 +104,17 @@ void nevh__ledger_open(nevh_work *w, const double q[], const double p[]) {
         return;
     l->kicked = l->drifted = 0;
     for (size_t lane = 0; lane < w->width; lane++)
-        l->pending[lane] = l->lost[lane] = 0;
+        l->pending[lane] = l->roundoff[lane] = 0;
     if (!l->mixed)
         return;
     memcpy(l->q, q, w->size * sizeof *q);
     memcpy(l->p, p, w->size * sizeof *p);
 }
 
-/* sum + lost += x, whichever is larger. */
-static void add(double *sum, double *lost, double x) {
+/* sum + roundoff += x, whichever is larger. */
+static void add(double *sum, double *roundoff, double x) {
     double next = *sum + x;
-    *lost += nevh__roundoff(next, *sum, x);
+    *roundoff += nevh__roundoff(next, *sum, x);
     *sum = next;
 }
 
@@ -133,7 +133,7 @@ int nevh__ledger_add(nevh_work *w, double sign, double t, const double q[],
         l->t[lane] = t;
     int status = nevh_field_value(l->field, w->width, l->t, q, p, l->h);
     for (size_t lane = 0; !status && lane < w->width; lane++)
-        add(&l->pending[lane], &l->lost[lane], sign * l->h[lane]);
+        add(&l->pending[lane], &l->roundoff[lane], sign * l->h[lane]);
     return fail(w, status);
 }
 
@@ -198,7 +198,7 @@ int nevh__ledger_account(nevh_work *w, unsigned parts, double weight,
     if (!status && w->friction && parts & NEVH_OF_P)
         status = add_friction(w, t, q, p);
     for (size_t lane = 0; !status && lane < w->width; lane++)
-        add(&l->pending[lane], &l->lost[lane], weight * l->rate[lane]);
+        add(&l->pending[lane], &l->roundoff[lane], weight * l->rate[lane]);
     return fail(w, status);
 }
 
@@ -210,8 +210,8 @@ void nevh__ledger_close(const nevh_work *w, double total[]) {
     bool complete = !l->by_kernel || (fabs(l->kicked - w->elapsed) <= slack &&
                                       fabs(l->drifted - w->elapsed) <= slack);
     for (size_t lane = 0; lane < w->width; lane++) {
-        double *lost = total + w->width + lane;
-        add(&total[lane], lost, complete ? l->pending[lane] : NAN);
-        *lost += l->lost[lane];
+        double *roundoff = total + w->width + lane;
+        add(&total[lane], roundoff, complete ? l->pending[lane] : NAN);
+        *roundoff += l->roundoff[lane];
     }
 }

@@ -84,7 +84,7 @@ static double error_of(const nevh_integrator *scheme, double tolerance,
 /* The scheme with this index, or NULL where friction goes around it. */
 static const nevh_integrator *damped(int i) {
     const nevh_integrator *scheme = nevh_integrators()[i];
-    return scheme->kernel->damps ? scheme : NULL;
+    return scheme->kernel->has_friction ? scheme : NULL;
 }
 
 START_TEST(keeps_the_order) {
@@ -130,7 +130,7 @@ START_TEST(runge_kutta_and_gsl_take_it) {
         nevh_euler,     nevh_rk4,       nevh_dopri5,     nevh_dop853,
         nevh_gsl_rkf45, nevh_gsl_rk8pd, nevh_gsl_msadams};
     for (size_t i = 0; i < sizeof schemes / sizeof *schemes; i++)
-        ck_assert(schemes[i]->kernel->damps);
+        ck_assert(schemes[i]->kernel->has_friction);
 }
 END_TEST
 

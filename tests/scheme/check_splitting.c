@@ -247,7 +247,7 @@ START_TEST(friction_between_steps) {
     fresh->work.memory[0] = damped->work.memory[0];
     fresh->work.memory[1] = damped->work.memory[1] * factor[0];
     uint64_t before = nevh_stepper_counts(damped).gradients;
-    nevh_splitting_kernel.damp(&damped->work, factor);
+    nevh_splitting_kernel.apply_friction(&damped->work, factor);
     ck_assert_int_eq(nevh__advance(damped, 20 * h, h, z, z + 1), NEVH_OK);
     ck_assert_int_eq(nevh__advance(fresh, 20 * h, h, y, y + 1), NEVH_OK);
     ck_assert_mem_eq(z, y, sizeof z);

@@ -436,7 +436,7 @@ START_TEST(friction_damps_the_memory) {
     const double *now = m->work.memory;
     ck_assert_int_eq(nevh_run(m, 0, 0.02, 7, q, p, NULL, 0), NEVH_OK);
     memcpy(before, now, sizeof before);
-    m->work.integrator->kernel->damp(&m->work, factor);
+    m->work.integrator->kernel->apply_friction(&m->work, factor);
     for (size_t i = 0; i < 8; i++) {
         bool momentum = i / 2 == NEVH__TAO_CARRY_P || i / 2 == NEVH__TAO_Y;
         ck_assert(now[i] == before[i] * (momentum ? factor[i % 2] : 1));

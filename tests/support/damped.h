@@ -26,10 +26,10 @@ static inline const problem *problem_for(const nevh_integrator *scheme) {
 
 /* Whether friction is put around the scheme's steps, or refused. */
 static inline bool splits(const nevh_integrator *scheme) {
-    return !scheme->kernel->damps && !scheme->own_time;
+    return !scheme->kernel->has_friction && !scheme->own_time;
 }
 static inline bool refuses(const nevh_integrator *scheme) {
-    return !scheme->kernel->damps && scheme->own_time;
+    return !scheme->kernel->has_friction && scheme->own_time;
 }
 
 static inline double distance(const problem *b, const state *x,

@@ -175,10 +175,10 @@ static inline bool has_friction(const problem *b) {
 /* Whether the balance can be kept of that problem. */
 static inline bool keeps(const nevh_integrator *scheme, const problem *b) {
     const nevh_kernel *kernel = scheme->kernel;
-    if (has_friction(b) && scheme->own_time && !kernel->damps)
+    if (has_friction(b) && scheme->own_time && !kernel->has_friction)
         return false;
     return fits(scheme, b) &&
-           !(kernel->opaque && (b != &damped || kernel->damps));
+           !(kernel->opaque && (b != &damped || kernel->has_friction));
 }
 
 static inline nevh_stepper *balanced(nevh_system *s, const problem *b,

@@ -187,7 +187,7 @@ static nevh_integrator holding(const nevh_kernel *kernel) {
    jump and of steps that change. */
 START_TEST(memory_is_damped_with_p) {
     const nevh_kernel kernel = {
-        .plan = hold_plan, .step = hold, .damp = hold_damp};
+        .plan = hold_plan, .step = hold, .apply_friction = hold_damp};
     nevh_integrator scheme = holding(&kernel);
     nevh_system *s = damped(&henon_heiles, unequal);
     nevh_stepper *m = nevh_stepper_new(s, &scheme, &(nevh_options){.width = 2});
@@ -205,7 +205,8 @@ END_TEST
 
 /* One that damps itself is given the rates, and left alone. */
 START_TEST(a_kernel_takes_the_rates) {
-    const nevh_kernel kernel = {.plan = hold_plan, .step = hold, .damps = true};
+    const nevh_kernel kernel = {
+        .plan = hold_plan, .step = hold, .has_friction = true};
     nevh_integrator scheme = holding(&kernel);
     nevh_system *s = damped(&henon_heiles, unequal);
     nevh_stepper *m = nevh_stepper_new(s, &scheme, NULL);

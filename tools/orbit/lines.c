@@ -87,12 +87,12 @@ void lines_print(line_file *l, const char *format, ...) {
     va_start(arguments, format);
     int length = vsnprintf(NULL, 0, format, arguments);
     va_end(arguments);
-    if (length < 0 || l->used + (size_t)length >= l->room) {
-        l->room = 2 * l->room + (size_t)length + MUCH;
-        l->text = tool_enlarge(l->text, l->room, 1);
+    if (length < 0 || l->used + (size_t)length >= l->capacity) {
+        l->capacity = 2 * l->capacity + (size_t)length + MUCH;
+        l->text = tool_enlarge(l->text, l->capacity, 1);
     }
     va_start(arguments, format);
-    vsnprintf(l->text + l->used, l->room - l->used, format, arguments);
+    vsnprintf(l->text + l->used, l->capacity - l->used, format, arguments);
     va_end(arguments);
     l->used += (size_t)length;
 }
@@ -110,11 +110,11 @@ void lines_comment(line_file *l, const char *text) {
    break a line. */
 static size_t next_part(const line_file *l, size_t from) {
     const char *text = l->text + from;
-    size_t count = l->used - from, room = PAGE - (l->bytes + from) % PAGE;
-    if (!l->regular || count <= room)
+    size_t count = l->used - from, capacity = PAGE - (l->bytes + from) % PAGE;
+    if (!l->regular || count <= capacity)
         return count;
-    const char *end = memrchr(text, '\n', room);
-    end = end ? end : memchr(text + room, '\n', count - room);
+    const char *end = memrchr(text, '\n', capacity);
+    end = end ? end : memchr(text + capacity, '\n', count - capacity);
     return end ? (size_t)(end - text) + 1 : count;
 }
 

@@ -82,14 +82,14 @@ int state_save(const char *name, const char *settings, const run_state *s,
 
 /* All of a file, freed by the caller; NULL when it cannot be read. */
 static char *read_all(const char *name, size_t *size) {
-    size_t room = 1 << 12, count;
+    size_t capacity = 1 << 12, count;
     FILE *file = fopen(name, "rbe");
-    char *all = file ? malloc(room) : NULL;
+    char *all = file ? malloc(capacity) : NULL;
     *size = 0;
-    while (all && (count = fread(all + *size, 1, room - *size, file)) > 0) {
+    while (all && (count = fread(all + *size, 1, capacity - *size, file)) > 0) {
         *size += count;
-        if (*size == room)
-            all = realloc(all, room *= 2);
+        if (*size == capacity)
+            all = realloc(all, capacity *= 2);
     }
     if (file)
         fclose(file);

@@ -10,7 +10,7 @@
    direction, items. */
 typedef struct {
     nevh_scene *scene;
-    size_t number, points, room;
+    size_t number, points, capacity;
     const nevh_scene_section *decl;
     double low, high; /* of what crosses, LEFT - RIGHT, at steps */
     double *periods;  /* of items that are coordinates; 0: none */
@@ -36,9 +36,9 @@ static double wrapped(double x, double period) {
 
 static double *new_point(series *s) {
     size_t width = 2 + s->decl->items;
-    if (s->points == s->room) {
-        s->room = s->room ? 2 * s->room : 64;
-        double *more = tool_allocate(s->room * width, sizeof *more);
+    if (s->points == s->capacity) {
+        s->capacity = s->capacity ? 2 * s->capacity : 64;
+        double *more = tool_allocate(s->capacity * width, sizeof *more);
         if (s->points)
             memcpy(more, s->numbers, s->points * width * sizeof *more);
         free(s->numbers);

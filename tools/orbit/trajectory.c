@@ -47,7 +47,7 @@ static void choose_steps(trajectory *r) {
         r->h = span / steps;
 }
 
-static void make_room(trajectory *r) {
+static void reserve(trajectory *r) {
     size_t n = r->plan->n;
     run_state *s = &r->now;
     s->n = n;
@@ -77,7 +77,7 @@ trajectory *trajectory_new(const plan *p, const char *integrator,
                       .to = to,
                       .h = p->dt[0],
                       .now.at = {.t = p->run->t_start, .written = NAN}};
-    make_room(r);
+    reserve(r);
     choose_steps(r);
     return r;
 }

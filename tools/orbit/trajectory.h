@@ -17,7 +17,7 @@ typedef struct {
     bool regular; /* it can be cut, and continued */
     bool stuck;   /* writing has failed */
     char *text;   /* not yet written */
-    size_t used, room;
+    size_t used, capacity;
     uint64_t bytes, digest; /* of what is written */
 } line_file;
 /* Both return TOOL_OK or, with a message, TOOL_USAGE; another process must not

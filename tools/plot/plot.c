@@ -117,9 +117,9 @@ void plot_like(plot *p, size_t number, size_t other) {
 }
 
 static void add(series *s, pair point) {
-    if (s->count == s->room) {
-        s->room = 2 * s->room + 64;
-        pair *more = tool_allocate(s->room, sizeof *more);
+    if (s->count == s->capacity) {
+        s->capacity = 2 * s->capacity + 64;
+        pair *more = tool_allocate(s->capacity, sizeof *more);
         if (s->count)
             memcpy(more, s->point, s->count * sizeof *more);
         free(s->point);

@@ -54,12 +54,12 @@ static void set_step(const search *s, row *r, int k) {
 }
 
 /* For one rung more. */
-static void make_room(ladder *l) {
-    if (l->count < l->room)
+static void reserve(ladder *l) {
+    if (l->count < l->capacity)
         return;
-    l->room = l->room ? 2 * l->room : 16;
-    row *rung = tool_allocate(l->room, sizeof *rung);
-    int *k = tool_allocate(l->room, sizeof *k);
+    l->capacity = l->capacity ? 2 * l->capacity : 16;
+    row *rung = tool_allocate(l->capacity, sizeof *rung);
+    int *k = tool_allocate(l->capacity, sizeof *k);
     if (l->count) {
         memcpy(rung, l->rung, l->count * sizeof *rung);
         memcpy(k, l->k, l->count * sizeof *k);
@@ -71,7 +71,7 @@ static void make_room(ladder *l) {
 
 static size_t insert(ladder *l, size_t i, int k, row r) {
     size_t after = l->count - i;
-    make_room(l);
+    reserve(l);
     memmove(l->rung + i + 1, l->rung + i, after * sizeof *l->rung);
     memmove(l->k + i + 1, l->k + i, after * sizeof *l->k);
     l->rung[i] = r, l->k[i] = k;

@@ -40,7 +40,7 @@ typedef struct {
     const nevh_integrator *scheme;
     row *rung; /* coarse to fine */
     int *k;    /* their places on the grid */
-    size_t count, room;
+    size_t count, capacity;
     int topped; /* gap to which steps beyond the coarsest were tried; 0 */
     bool keeps; /* the energy, also at steps that are far too long */
     ladder_end end;
