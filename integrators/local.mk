@@ -29,6 +29,9 @@ libnevh_core_la_SOURCES += \
 	integrators/kernels/runge_kutta_kernel.c \
 	integrators/kernels/runge_kutta_adaptive.c \
 	integrators/euler.c \
+	integrators/implicit_euler.c \
+	integrators/rk2.c \
+	integrators/rk3.c \
 	integrators/rk4.c \
 	integrators/dopri5.c \
 	integrators/dop853.c \

@@ -48,6 +48,11 @@
     X(adaptive_verlet)                                                         \
     X(naive_adaptive_verlet)                                                   \
     X(euler)                                                                   \
+    X(implicit_euler)                                                          \
+    X(explicit_midpoint)                                                       \
+    X(heun)                                                                    \
+    X(ralston)                                                                 \
+    X(rk3)                                                                     \
     X(rk4)                                                                     \
     X(dopri5)                                                                  \
     X(dop853)                                                                  \

@@ -8,7 +8,8 @@ static const nevh_splitting drift_kick = {NEVH_DRIFT, NEVH_LISTED, 0, NULL};
 
 const nevh_integrator nevh__symplectic_euler_a_entry = {
     .name = "symplectic-euler-a",
-    .aliases = "euler-cromer, SymplecticEulerA, ARKODE_SPRK_EULER_1_1",
+    .aliases =
+        "euler-cromer, semi-implicit-euler, SymplecticEulerA, ARKODE_SPRK_EULER_1_1",
     .source = "R. de Vogelaere, Methods of integration which preserve the "
               "contact transformation property of the Hamilton equations, "
               "Notre Dame report 4 (1956); kick, then drift",

@@ -174,6 +174,8 @@ NEVH_API extern const nevh_kernel nevh_nystrom_kernel;
 NEVH_API extern const nevh_kernel nevh_gauss_kernel;
 /* Lobatto IIIA for coordinates with IIIB for momenta, alike; from 2 stages. */
 NEVH_API extern const nevh_kernel nevh_lobatto_kernel;
+/* The implicit Euler method: 1 stage; no table. */
+NEVH_API extern const nevh_kernel nevh_implicit_euler_kernel;
 
 #ifdef __cplusplus
 }

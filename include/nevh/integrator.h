@@ -78,6 +78,11 @@ NEVH_API extern const nevh_integrator *const nevh_naive_adaptive_verlet;
    such steps short, change the last digits.  nevh_gsl_msadams, whose order
    goes from 1 to 12, needs a tolerance, and begins anew with every step. */
 NEVH_API extern const nevh_integrator *const nevh_euler;
+NEVH_API extern const nevh_integrator *const nevh_implicit_euler;
+NEVH_API extern const nevh_integrator *const nevh_explicit_midpoint;
+NEVH_API extern const nevh_integrator *const nevh_heun;
+NEVH_API extern const nevh_integrator *const nevh_ralston;
+NEVH_API extern const nevh_integrator *const nevh_rk3;
 NEVH_API extern const nevh_integrator *const nevh_rk4;
 NEVH_API extern const nevh_integrator *const nevh_dopri5;
 NEVH_API extern const nevh_integrator *const nevh_dop853;

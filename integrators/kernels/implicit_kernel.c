@@ -119,13 +119,13 @@ static bool plan_solver(nevh_work *w, family_plan *g) {
     return g->hb && g->lanes && g->solver && plan_sweeps(w, g);
 }
 
-static int plan_on(nevh_work *w, size_t fewest,
+static int plan_on(nevh_work *w, size_t fewest, size_t most,
                    nevh__tableau *(*make)(size_t stages)) {
     size_t stages = (size_t)w->integrator->stages;
-    if (stages < fewest || stages > NEVH__MOST_STAGES)
-        return nevh_work_fail(
-            w, NEVH_EINVAL, "%s: %zu stages, where %zu to %d are possible",
-            w->integrator->name, stages, fewest, NEVH__MOST_STAGES);
+    if (stages < fewest || stages > most)
+        return nevh_work_fail(w, NEVH_EINVAL,
+                              "%s: %zu stages, where %zu to %zu are possible",
+                              w->integrator->name, stages, fewest, most);
     family_plan *g = w->plan = nevh__array(1, sizeof *g);
     if (g)
         g->tableau = make(stages);
@@ -137,11 +137,15 @@ static int plan_on(nevh_work *w, size_t fewest,
 }
 
 static int plan_gauss(nevh_work *w) {
-    return plan_on(w, 1, nevh__gauss_new);
+    return plan_on(w, 1, NEVH__MOST_STAGES, nevh__gauss_new);
 }
 
 static int plan_lobatto(nevh_work *w) {
-    return plan_on(w, 2, nevh__lobatto_new);
+    return plan_on(w, 2, NEVH__MOST_STAGES, nevh__lobatto_new);
+}
+
+static int plan_implicit_euler(nevh_work *w) {
+    return plan_on(w, 1, 1, nevh__implicit_euler_new);
 }
 
 static family_step lay_out(nevh_work *w, double t, double h, const double q[],
@@ -448,3 +452,8 @@ const nevh_kernel nevh_lobatto_kernel = {.plan = plan_lobatto,
                                          .step = step,
                                          .clear = clear,
                                          .apply_friction = apply_friction};
+const nevh_kernel nevh_implicit_euler_kernel = {.plan = plan_implicit_euler,
+                                                .step = step,
+                                                .clear = clear,
+                                                .apply_friction =
+                                                    apply_friction};

@@ -92,6 +92,13 @@ nevh__tableau *nevh__tableau_new(const nevh__rule *r, bool alike) {
     return a;
 }
 
+nevh__tableau *nevh__implicit_euler_new(size_t stages) {
+    nevh__tableau *a = stages == 1 ? nevh__gauss_new(1) : NULL;
+    if (a)
+        *a->c = *a->mu_q = *a->mu_p = *a->a_q = *a->a_p = 1;
+    return a;
+}
+
 void nevh__tableau_free(nevh__tableau *a) {
     if (!a)
         return;

@@ -38,6 +38,9 @@ typedef struct {
    coordinates and IIIB for momenta, from 2.  NULL when memory is out. */
 nevh__tableau *nevh__gauss_new(size_t stages);
 nevh__tableau *nevh__lobatto_new(size_t stages);
+/* The implicit Euler method: one stage, at the end of the step.  NULL for more,
+   or when memory is out. */
+nevh__tableau *nevh__implicit_euler_new(size_t stages);
 void nevh__tableau_free(nevh__tableau *);
 
 /* Collocation on the rule's nodes for coordinates, its mirror for momenta;

@@ -34,14 +34,19 @@ static nevh_energy_report report_on(const problem *b,
 }
 
 /* The error of the balance falls with the scheme's order.  Beyond order 8 the
-   power law is hardly seen before rounding; there the error falls to it. */
+   power law is hardly seen before rounding; there the error falls to it.  Of
+   Runge-Kutta methods of order 2 the energy itself is wrong in order 3, with a
+   sign that may differ from friction's part: only small steps show order 2. */
 static void assert_order(const problem *b, const nevh_integrator *scheme) {
     enum { MOST = 5 };
     double x[MOST], y[MOST], error = INFINITY;
     int count = 0, order = nevh_integrator_order(scheme);
     bool high = order > 8;
     bool keeps_h = nevh_integrator_preserves_energy(scheme) == NEVH_YES;
-    double above = order == 1 ? 3e-2 : order <= 4 ? 1e-3 : 1e-5;
+    double above = order == 1   ? 3e-2
+                   : order == 2 ? 2e-5
+                   : order <= 4 ? 1e-3
+                                : 1e-5;
     for (double steps = b->fewest; steps < 4e5 && count < MOST && error > 3e-13;
          steps = ceil(steps * 1.4)) {
         int status; /* the longest steps may be too long */

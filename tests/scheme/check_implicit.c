@@ -158,6 +158,40 @@ START_TEST(stages_of_ones_own) {
 }
 END_TEST
 
+START_TEST(implicit_euler_has_one_stage) {
+    nevh_integrator own = *nevh_implicit_euler;
+    own.stages = 2;
+    nevh_system *s = henon_heiles.make();
+    nevh_stepper *m = nevh_stepper_new(s, &own, NULL);
+    ck_assert_int_eq(nevh_stepper_status(m), NEVH_EINVAL);
+    ck_assert_ptr_nonnull(strstr(nevh_stepper_message(m), "1 to 1"));
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
+static double oscillator(double t, const double q[], const double p[],
+                         const void *params) {
+    (void)t, (void)params;
+    return (p[0] * p[0] + q[0] * q[0]) / 2;
+}
+
+/* (q, p) at the end of the step is the solution of q - h p = q0, p + h q = p0:
+   the energy is divided by 1 + h^2. */
+START_TEST(implicit_euler_is_the_end_of_the_step) {
+    const double h = 0.3, q0 = 0.7, p0 = -0.4;
+    nevh_options options = {.gradient_step = 0x1p-3};
+    nevh_system *s = nevh_system_from(1, oscillator, NULL);
+    nevh_stepper *m = nevh_stepper_new(s, nevh_implicit_euler, &options);
+    double q = q0, p = p0;
+    ck_assert_int_eq(nevh_stepper_apply(m, 0, h, &q, &p), NEVH_OK);
+    ck_assert_double_eq_tol(q, (q0 + h * p0) / (1 + h * h), 1e-15);
+    ck_assert_double_eq_tol(p, (p0 - h * q0) / (1 + h * h), 1e-15);
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+END_TEST
+
 /* Motion without forces is exact: the weights of a step add up to h, but for
    the last bit where they are many. */
 START_TEST(free_motion) {
@@ -208,6 +242,8 @@ int main(void) {
     tcase_add_loop_test(cases, lobatto2_is_verlet, 0, 3);
     tcase_add_test(cases, lobatto2_is_the_generalized_leapfrog);
     tcase_add_loop_test(cases, stages_of_ones_own, 0, 2);
+    tcase_add_test(cases, implicit_euler_has_one_stage);
+    tcase_add_test(cases, implicit_euler_is_the_end_of_the_step);
     tcase_add_loop_test(cases, free_motion, 0, SCHEMES);
     tcase_add_test(cases, factors);
     suite_add_tcase(suite, cases);

@@ -26,15 +26,16 @@ static double defect(const problem *b, const nevh_integrator *scheme,
    another factor; a thousandth of what is no return at all. */
 START_TEST(symmetric_schemes_return) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
+    if (nevh_integrator_symmetric(scheme) != NEVH_YES &&
+        nevh_integrator_symmetric(scheme) != NEVH_EXTENDED)
+        skip_test("it is not symmetric");
     for (const problem *const *b = problems; *b; b++) {
         if (!fits(scheme, *b))
             continue;
         double found = defect(*b, scheme, nevh_exact, 0.02);
         bool returns = found <= 300 * DBL_EPSILON * sqrt(STEPS);
-        if (nevh_integrator_symmetric(scheme) == NEVH_YES ||
-            nevh_integrator_symmetric(scheme) == NEVH_EXTENDED)
-            ck_assert_msg(returns, "%s on %s: %.2e",
-                          nevh_integrator_name(scheme), (*b)->name, found);
+        ck_assert_msg(returns, "%s on %s: %.2e", nevh_integrator_name(scheme),
+                      (*b)->name, found);
     }
 }
 END_TEST

@@ -13,8 +13,9 @@ static const double pi = 3.14159265358979323846;
    + x^4/24 + i (x - x^3/6) has modulus 1 at 2 sqrt(2).  Lobatto IIIA-IIIB of 3
    stages: 2 sqrt(2) [L. O. Jay, L. R. Petzold, Highly oscillatory systems and
    periodic stability (1995)].  Forest and Ruth: a step of Verlet's at x has the
-   trace 2 - x^2; where three of them reach -2.  Euler: sqrt(1 + x^2) = 1 +
-   1e-5. */
+   trace 2 - x^2; where three of them reach -2.  Kutta's of order 3: sqrt(3).
+   Euler: sqrt(1 + x^2) = 1 + 1e-5, and two stages: sqrt(1 + x^4/4) = 1 + 1e-5.
+   The implicit Euler method: 1 / sqrt(1 + x^2). */
 static const struct {
     const nevh_integrator *const *scheme;
     double limit, tolerance;
@@ -31,6 +32,11 @@ static const struct {
                  {&nevh_gauss4, INFINITY, 0},
                  {&nevh_gauss8, INFINITY, 0},
                  {&nevh_gonzalez, INFINITY, 0},
+                 {&nevh_rk3, 1.7320508076, 1e-4},
+                 {&nevh_explicit_midpoint, 0.0945742, 1e-6},
+                 {&nevh_heun, 0.0945742, 1e-6},
+                 {&nevh_ralston, 0.0945742, 1e-6},
+                 {&nevh_implicit_euler, INFINITY, 0},
                  {&nevh_euler, 4.47215e-3, 1e-7}};
 enum { PUBLISHED = sizeof published / sizeof *published };
 

@@ -143,11 +143,13 @@ static bool holds(const nevh_integrator *scheme, const tableau *x) {
 }
 
 static const nevh_integrator *scheme_at(int i) {
-    const nevh_integrator *schemes[] = {nevh_euler, nevh_rk4, nevh_dopri5,
-                                        nevh_dop853};
+    const nevh_integrator *schemes[] = {nevh_euler,  nevh_explicit_midpoint,
+                                        nevh_heun,   nevh_ralston,
+                                        nevh_rk3,    nevh_rk4,
+                                        nevh_dopri5, nevh_dop853};
     return schemes[i];
 }
-enum { SCHEMES = 4 };
+enum { SCHEMES = 8 };
 
 /* None is forgotten above. */
 START_TEST(all_tables_are_checked) {
