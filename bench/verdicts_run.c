@@ -59,10 +59,10 @@ typedef struct {
     nevh_field *field; /* exact derivatives, for estimates of rounding */
     double *q, *p, *dq, *dp, *effects;
     double h0, scale;
-} flight;
+} trial;
 
 /* What rounding of H and of the state makes of the energy. */
-static void probe_noise(flight *f, double t) {
+static void probe_noise(trial *f, double t) {
     size_t n = f->of->plan->n,
            effects = nevh_system_effect_count(f->of->plan->system);
     double sum = 0;
@@ -76,7 +76,7 @@ static void probe_noise(flight *f, double t) {
     f->run->noise = fmax(f->run->noise, DBL_EPSILON * sum / f->scale);
 }
 
-static void probe_wandering(flight *f, double t) {
+static void probe_wandering(trial *f, double t) {
     const subject *s = f->of;
     double most, start = s->plan->run->t_start;
     if (!nevh_field_energy_floor(nevh_stepper_field(s->stepper), t, f->q, f->p,
@@ -86,7 +86,7 @@ static void probe_wandering(flight *f, double t) {
 }
 
 /* As DESIGN says, found here afresh. */
-static void find_scale(flight *f) {
+static void find_scale(trial *f) {
     const plan *p = f->of->plan;
     size_t effects = nevh_system_effect_count(p->system);
     double given = p->run->energy_scale, most = 0, sum = 0;
@@ -111,13 +111,13 @@ static void add(long_run *r, size_t i, double e, size_t samples) {
 }
 
 /* Work of that much of the run, in seconds of no machine in particular. */
-static double work_of(const flight *f, nevh_counts before, size_t steps) {
+static double work_of(const trial *f, nevh_counts before, size_t steps) {
     nevh_counts c = row_counts(f->of->stepper, before);
     double balance = f->of->plan->balance ? 8 : 1; /* which counts do not say */
     return balance * row_work(f->of->plan, f->of->scheme, &c, steps);
 }
 
-static void fly(flight *f, double work) {
+static void integrate(trial *f, double work) {
     const subject *s = f->of;
     long_run *r = f->run;
     double start = s->plan->run->t_start, h;
@@ -154,7 +154,7 @@ static void fly(flight *f, double work) {
 
 static void make_run(const subject *s, long_run *r, double work) {
     const plan *p = s->plan;
-    flight f = {.of = s, .run = r, .field = s->field};
+    trial f = {.of = s, .run = r, .field = s->field};
     double *rows = tool_allocate(4 * p->n, sizeof *rows);
     f.q = rows, f.p = rows + p->n, f.dq = f.p + p->n, f.dp = f.dq + p->n;
     f.effects = tool_allocate(nevh_system_effect_count(p->system) + 1,
@@ -166,7 +166,7 @@ static void make_run(const subject *s, long_run *r, double work) {
     nevh_stepper_reset(s->stepper);
     find_scale(&f);
     if (!nevh_field_value(f.field, 1, &t, f.q, f.p, &f.h0))
-        fly(&f, work);
+        integrate(&f, work);
     free(f.effects);
     free(rows);
 }

@@ -20,14 +20,14 @@ tools_nevh_SOURCES = \
 	tools/experiment/row.c \
 	tools/experiment/follow.c \
 	tools/experiment/row_time.c \
-	tools/experiment/shelf.c \
+	tools/experiment/stepper_cache.c \
 	tools/experiment/row_notes.c \
 	tools/experiment/records.c \
-	tools/search/ladder.h \
+	tools/search/study.h \
 	tools/search/grid.c \
 	tools/search/fit.c \
 	tools/search/search.c \
-	tools/search/ladder.c \
+	tools/search/study.c \
 	tools/search/cost_private.h \
 	tools/search/cost.c \
 	tools/search/cost_table.c \
@@ -55,7 +55,7 @@ tools_nevh_SOURCES = \
 	tools/orbit/run.c \
 	tools/experiment/stability.c \
 	tools/search/remedy.c \
-	tools/inspect/preflight.c \
+	tools/inspect/trial_run.c \
 	tools/hard/hard_private.h \
 	tools/hard/hard_cases.c \
 	tools/hard/hard_subject.c \

@@ -32,7 +32,8 @@ static const struct {
     {hard, FOR_HARD, "",
      "every integrator on cases that are hard to integrate"},
     {new_scene, FOR_NEW, "FILE", "makes a commented scene, FILE.nevh"},
-    {list_what, FOR_LIST, "WHAT", "integrators, gradients, models or scenes"},
+    {list_command, FOR_LIST, "WHAT",
+     "integrators, gradients, models or scenes"},
 };
 enum { KNOWN = sizeof known / sizeof *known };
 
@@ -98,7 +99,7 @@ static int help_on(const char *name) {
     return i < KNOWN ? help(i) : unknown_command(name);
 }
 
-static int obey(const options *o) {
+static int dispatch(const options *o) {
     const list *words = &o->operands;
     const char *word = words->count ? words->item[0] : NULL;
     if (o->version)
@@ -135,7 +136,7 @@ int main(int argc, char **argv) {
     set_process();
     int status = options_read(&o, argc, argv);
     if (!status)
-        status = end_output(obey(&o));
+        status = end_output(dispatch(&o));
     options_free(&o);
     return status;
 }

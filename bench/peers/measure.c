@@ -1,6 +1,6 @@
 /* nevh: settings that are good enough, and what they cost.
 
-   Each method is given the coarsest setting, on a ladder of eight rungs for
+   Each method is given the coarsest setting, on a sequence of eight levels for
    each doubling of steps (or tenfold tolerance), that keeps the state error
    below the target and whose next finer one does so, too: no lucky crossings.
    Then all take turns in every round, so that a machine that slows down does
@@ -12,7 +12,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { RUNGS = 8, TOLERANCES = 14, FEWEST_STEPS = 4, DOUBLINGS = 24 };
+enum { LEVELS = 8, TOLERANCES = 14, FEWEST_STEPS = 4, DOUBLINGS = 24 };
 const double targets[TARGETS] = {1e-3, 1e-6, 1e-9, 1e-12};
 static const double least_time = 0.002; /* CPU seconds of a turn */
 
@@ -42,14 +42,14 @@ double one_run(const library *l, const method *m, const problem *p,
     return done ? problem_error(p, ranges, y) : INFINITY;
 }
 
-static double setting_at(const method *m, int rung) {
+static double setting_at(const method *m, int level) {
     return m->adaptive
-               ? pow(10, -(double)rung / RUNGS)
-               : floor(FEWEST_STEPS * pow(2, (double)rung / RUNGS) + 0.5);
+               ? pow(10, -(double)level / LEVELS)
+               : floor(FEWEST_STEPS * pow(2, (double)level / LEVELS) + 0.5);
 }
 
-static int last_rung(const method *m) {
-    return RUNGS * (m->adaptive ? TOLERANCES : DOUBLINGS);
+static int last_level(const method *m) {
+    return LEVELS * (m->adaptive ? TOLERANCES : DOUBLINGS);
 }
 
 /* A search under way. */
@@ -66,10 +66,10 @@ typedef struct {
     int slow;      /* runs that took too long, one after another */
 } search;
 
-static bool good(search *s, int rung, double *error, bool *too_long) {
+static bool good(search *s, int level, double *error, bool *too_long) {
     double seconds;
     *error = one_run(s->library, s->method, s->problem,
-                     setting_at(s->method, rung), s->ranges, &seconds);
+                     setting_at(s->method, level), s->ranges, &seconds);
     bool slow =
         *error < INFINITY && seconds > s->longest && seconds > s->before;
     s->slow = slow ? s->slow + 1 : 0;
@@ -78,25 +78,25 @@ static bool good(search *s, int rung, double *error, bool *too_long) {
     return *error <= s->target;
 }
 
-/* The rung, or -1 where there is none, and its error. */
-static int find_rung(search *s, int from, double *error) {
+/* The level, or -1 where there is none, and its error. */
+static int find_level(search *s, int from, double *error) {
     bool too_long = false;
     double finer;
-    int rung = from;
-    while (!good(s, rung, error, &too_long)) {
-        rung += RUNGS;
-        if (too_long || rung > last_rung(s->method))
+    int level = from;
+    while (!good(s, level, error, &too_long)) {
+        level += LEVELS;
+        if (too_long || level > last_level(s->method))
             return -1;
     }
     if (s->library->outside)
-        return rung;
-    for (int i = rung - RUNGS + 1; i < rung; i++)
+        return level;
+    for (int i = level - LEVELS + 1; i < level; i++)
         if (i >= 0 && good(s, i, &finer, &too_long) &&
-            (i + 1 == rung || good(s, i + 1, error, &too_long))) {
+            (i + 1 == level || good(s, i + 1, error, &too_long))) {
             *error = finer;
             return i;
         }
-    return rung;
+    return level;
 }
 
 void find_entries(contest *c, const problem *p, const double ranges[],
@@ -104,15 +104,15 @@ void find_entries(contest *c, const problem *p, const double ranges[],
     for (size_t i = 0; i < c->library_count; i++) {
         const library *l = c->libraries[i];
         for (const method *m = l->methods; m < l->methods + l->count; m++) {
-            int rung = 0;
-            for (size_t k = 0; k < TARGETS && rung >= 0; k++) {
+            int level = 0;
+            for (size_t k = 0; k < TARGETS && level >= 0; k++) {
                 entry e = {
                     .problem = p, .library = l, .method = m, .target = k};
                 search s = {l, m, p, ranges, longest, targets[k], INFINITY, 0};
                 s.longest *= l->outside ? 5 : 1;
-                rung = find_rung(&s, rung, &e.error);
-                e.setting = setting_at(m, rung);
-                if (rung >= 0 && c->count < MOST_ENTRIES)
+                level = find_level(&s, level, &e.error);
+                e.setting = setting_at(m, level);
+                if (level >= 0 && c->count < MOST_ENTRIES)
                     c->entries[c->count++] = e;
             }
         }

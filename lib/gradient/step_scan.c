@@ -1,4 +1,4 @@
-/* nevh: the difference step of each variable, by a ladder.
+/* nevh: the difference step of each variable, by a scan of powers of two.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/step_selection_private.h"
 #include <float.h>
@@ -6,17 +6,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Rungs are powers of two times the variable's length. */
-enum { LOWEST = -30, HIGHEST = 3, RUNGS = HIGHEST - LOWEST + 1 };
-enum { FEW = 16, ENOUGH = 8 };   /* variables; states for each */
-enum { ROOM = 8 * (RUNGS + 1) }; /* for differences of order 8 */
+/* Levels are powers of two times the variable's length. */
+enum { LOWEST = -30, HIGHEST = 3, LEVELS = HIGHEST - LOWEST + 1 };
+enum { FEW = 16, ENOUGH = 8 };      /* variables; states for each */
+enum { BUFFER = 8 * (LEVELS + 1) }; /* for differences of order 8 */
 /* At the best step the two errors balance, unless values are worse than
    rounded. */
 static const double out_of_balance = 1e4;
 static const double good = 0.1, no_good = 0.5; /* of the derivative */
 static const double as_good = 2; /* order 2 is taken if it is, up to this */
 
-/* Estimates on one rung, worst over the samples: how much the difference
+/* Estimates on one level, worst over the samples: how much the difference
    changed from half the step, and what rounding may do to it; both also over
    the derivative there, or the usual one where that is larger, so that a state
    far away, where all is large, does not decide for the others. */
@@ -26,13 +26,13 @@ typedef struct {
 } estimate;
 
 typedef struct {
-    estimate two[RUNGS], full[RUNGS]; /* of order 2 and of the method's */
-    double usual;                     /* size of the derivative */
-} ladder;
+    estimate two[LEVELS], full[LEVELS]; /* of order 2 and of the method's */
+    double usual;                       /* size of the derivative */
+} scan_result;
 
 /* Differences at one sample, from half the lowest step on; rounding in them. */
 typedef struct {
-    double slope[RUNGS + 1], noise[RUNGS + 1];
+    double slope[LEVELS + 1], noise[LEVELS + 1];
 } differences;
 
 /* A number that is not one is no larger. */
@@ -60,17 +60,18 @@ static double finite_or_huge(double x) {
     return isfinite(x) ? x : INFINITY;
 }
 
-static void take(estimate *rung, double usual, double now, double before,
+static void take(estimate *level, double usual, double now, double before,
                  double noise) {
     double change = finite_or_huge(fabs(now - before));
     double here = isfinite(now) ? fabs(now) : 0, size = larger(usual, here);
     noise = finite_or_huge(noise);
-    rung->truncation = larger(rung->truncation, change);
-    rung->rounding = larger(rung->rounding, noise);
-    rung->size = larger(rung->size, here);
+    level->truncation = larger(level->truncation, change);
+    level->rounding = larger(level->rounding, noise);
+    level->size = larger(level->size, here);
     if (size > 0) {
-        rung->share_truncation = larger(rung->share_truncation, change / size);
-        rung->share_rounding = larger(rung->share_rounding, noise / size);
+        level->share_truncation =
+            larger(level->share_truncation, change / size);
+        level->share_rounding = larger(level->share_rounding, noise / size);
     }
 }
 
@@ -79,9 +80,9 @@ static size_t try_steps(const nevh__step_selection *e, const nevh_gradient *g,
                         const nevh__planned *term, size_t instance, size_t k,
                         size_t at, double unit, size_t from, differences *two,
                         differences *full) {
-    double move[ROOM], x[ROOM], h[ROOM];
+    double move[BUFFER], x[BUFFER], h[BUFFER];
     size_t fit = e->field->capacity / (2 * g->offsets);
-    size_t rest = RUNGS + 1 - from, count = rest < fit ? rest : fit;
+    size_t rest = LEVELS + 1 - from, count = rest < fit ? rest : fit;
     double power = ldexp(1, LOWEST - 1 + (int)from);
     for (size_t i = 0; i < count; i++, power *= 2) {
         double delta = power * unit;
@@ -98,14 +99,14 @@ static size_t try_steps(const nevh__step_selection *e, const nevh_gradient *g,
     return count;
 }
 
-/* Climbs from the shortest step at one sample. */
-static void climb_at(const nevh__step_selection *e, const nevh_gradient *g,
-                     const nevh__planned *term, size_t instance, size_t k,
-                     size_t at, double unit, ladder *l) {
+/* Scans from the shortest step at one sample. */
+static void scan_at(const nevh__step_selection *e, const nevh_gradient *g,
+                    const nevh__planned *term, size_t instance, size_t k,
+                    size_t at, double unit, scan_result *l) {
     differences two, full;
-    for (size_t from = 0; from <= RUNGS;)
+    for (size_t from = 0; from <= LEVELS;)
         from += try_steps(e, g, term, instance, k, at, unit, from, &two, &full);
-    for (size_t i = 0; i < RUNGS; i++) {
+    for (size_t i = 0; i < LEVELS; i++) {
         take(&l->two[i], l->usual, two.slope[i + 1], two.slope[i],
              two.noise[i + 1]);
         take(&l->full[i], l->usual, full.slope[i + 1], full.slope[i],
@@ -123,15 +124,15 @@ static double weighed(const estimate *e, int order) {
     return ldexp(e->share_truncation, order / 2) + e->share_rounding;
 }
 
-/* The rung of the least error, the longest step of equal ones.  Where steps
+/* The level of the least error, the longest step of equal ones.  Where steps
    were good and then are no good at all, longer ones are not looked at: they
    may be whole periods, and agree with each other that there is no slope. */
-static int best_rung(const estimate rungs[RUNGS], int order) {
+static int best_level(const estimate levels[LEVELS], int order) {
     int best = 0;
-    for (int i = 1; i < RUNGS; i++) {
-        if (weighed(&rungs[i], order) <= weighed(&rungs[best], order))
+    for (int i = 1; i < LEVELS; i++) {
+        if (weighed(&levels[i], order) <= weighed(&levels[best], order))
             best = i;
-        if (rungs[i].share_truncation > no_good && worst(&rungs[best]) < good)
+        if (levels[i].share_truncation > no_good && worst(&levels[best]) < good)
             break;
     }
     return best;
@@ -140,7 +141,7 @@ static int best_rung(const estimate rungs[RUNGS], int order) {
 /* Of a smooth H, also near a singularity, the error of order 2 falls by no more
    than some 16 where steps are halved twice.  Where a kink comes out of their
    reach it falls at once.  Then the error is that of steps within reach. */
-static double kink(const estimate two[RUNGS]) {
+static double kink(const estimate two[LEVELS]) {
     for (int i = -2 - LOWEST; i >= 2; i--) {
         double far = two[i].truncation, near = two[i - 2].truncation;
         if (far < INFINITY && far > 1e5 * two[i].rounding && far > 200 * near)
@@ -154,8 +155,9 @@ static bool blind(const estimate *best) {
     return !(worst(best) < INFINITY) || best->size == 0;
 }
 
-static nevh__step choose(const nevh_gradient *g, const ladder *l, double unit) {
-    int two = best_rung(l->two, 2), full = best_rung(l->full, g->order);
+static nevh__step choose(const nevh_gradient *g, const scan_result *l,
+                         double unit) {
+    int two = best_level(l->two, 2), full = best_level(l->full, g->order);
     const estimate *best = &l->full[full];
     if (blind(best))
         return (nevh__step){
@@ -214,18 +216,18 @@ nevh__step nevh__scan_line(const nevh__step_selection *e,
                            const nevh_gradient *g, const nevh__planned *term,
                            size_t instance, size_t k, double length) {
     double unit = exp2(round(log2(length)));
-    ladder l;
+    scan_result l;
     memset(&l, 0, sizeof l);
     /* The pilot may linger where symmetry makes the derivative vanish. */
     l.usual = fmax(usual_slope(e, term, instance, k, unit, 0),
                    usual_slope(e, term, instance, k, unit, e->neighbours));
     for (size_t at = 0; at < e->samples.count; at += sample_stride(e, term))
-        climb_at(e, g, term, instance, k, at, unit, &l);
+        scan_at(e, g, term, instance, k, at, unit, &l);
     return choose(g, &l, unit);
 }
 
-static nevh__step climb(const nevh__step_selection *e,
-                        const nevh__planned *term, size_t instance, size_t k) {
+static nevh__step scan(const nevh__step_selection *e, const nevh__planned *term,
+                       size_t instance, size_t k) {
     size_t i = nevh__index(term, instance, k);
     double length = e->length[k < term->nq ? i : e->field->n + i];
     return nevh__scan_line(e, e->field->gradient, term, instance, k, length);
@@ -238,7 +240,7 @@ void nevh__scan_steps(nevh__step_selection *e, nevh__planned *term) {
         size_t from = nevh__probed(term, k);
         nevh__step *own = &term->steps[nevh__step_at(term, instance, k)];
         if (instance % stride == 0 && from == k)
-            *own = climb(e, term, instance, k);
+            *own = scan(e, term, instance, k);
         else if (instance % stride == 0)
             *own = term->steps[nevh__step_at(term, instance, from)];
         term->delta[at] = own->delta;

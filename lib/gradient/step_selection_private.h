@@ -13,7 +13,7 @@
               reached; and a few displaced at random by a part of those
               lengths, because at an equilibrium, or where a momentum is
               exactly zero, H hides how it varies.
-   ladder.c   for each variable of each term, powers of two as steps, at all
+   step_scan.cfor each variable of each term, powers of two as steps, at all
               those states: the one whose worst error, by estimate, is least. */
 #ifndef NEVH_STEP_SELECTION_PRIVATE_H
 #define NEVH_STEP_SELECTION_PRIVATE_H

@@ -1,7 +1,7 @@
 /* nevh: dH/dt by differences of the values of the terms that read t.
 
    The step is found as those of the variables are: how far may t move before
-   the term is no longer quadratic in it, then a ladder of powers of two at
+   the term is no longer quadratic in it, then a scan of powers of two at
    states around the start, and at times within that length.  A term that is
    quadratic in t, or in which nothing is to be seen, takes its step from the
    time in which the motion covers the lengths of its variables.
@@ -198,8 +198,8 @@ static void spread_times(nevh__step_selection *e, double length) {
 
 /* The shortest step of those that the instances want; the difference of order
    2 where that is as good for all. */
-static nevh__time_step climb(const nevh__step_selection *e,
-                             const nevh__planned *term, double length) {
+static nevh__time_step scan(const nevh__step_selection *e,
+                            const nevh__planned *term, double length) {
     size_t count = term->term->decl.count;
     double delta[2] = {INFINITY, INFINITY}; /* of order 8, of order 2 */
     for (size_t i = 0; i < count; i += nevh__stride(count)) {
@@ -218,7 +218,7 @@ static nevh__time_step choose(nevh__step_selection *e,
     double length = find_length(e, term, pace), size = fabs(e->options->t);
     if (isfinite(length)) {
         spread_times(e, length);
-        return climb(e, term, length);
+        return scan(e, term, length);
     }
     bool unseen = isnan(length);
     double delta = fmax(part * pace, (unseen ? visible : part) * size);

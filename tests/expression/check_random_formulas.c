@@ -178,7 +178,7 @@ START_TEST(gradients) {
 }
 END_TEST
 
-/* The best of a ladder of steps, where the function does not vary faster than
+/* The best of a sequence of steps, where the function does not vary faster than
    they are long. */
 START_TEST(gradients_by_differences) {
     nevh__names *names = formula_names();

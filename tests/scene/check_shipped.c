@@ -227,7 +227,7 @@ START_TEST(sun_earth_moon_start_as_they_are) {
 }
 END_TEST
 
-static void fly(nevh_scene *s, double t, double q[2]) {
+static void integrate(nevh_scene *s, double t, double q[2]) {
     double p[2];
     ck_assert_int_eq(nevh_scene_start(s, q, p), NEVH_OK);
     nevh_options o = {.gradient = nevh_exact,
@@ -243,9 +243,9 @@ static void fly(nevh_scene *s, double t, double q[2]) {
 START_TEST(halley_returns) {
     nevh_scene *s = read_shipped("earth-halley.nevh");
     double period = pow(17.834, 1.5), q[2];
-    fly(s, period / 2, q);
+    integrate(s, period / 2, q);
     ck_assert_double_eq_tol(hypot(q[0], q[1]), 17.834 * (1 - 0.96714), 1e-7);
-    fly(s, period, q);
+    integrate(s, period, q);
     ck_assert_double_eq_tol(q[0], -17.834 * (1 + 0.96714), 1e-7);
     nevh_scene_free(s);
 }

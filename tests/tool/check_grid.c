@@ -1,6 +1,6 @@
 /* nevh: tests of the grid of step sizes, and of what errors over them tell.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "search/ladder.h"
+#include "search/study.h"
 #include "support.h"
 #include <math.h>
 #include <stdlib.h>

@@ -51,7 +51,7 @@ if command -v python3 >/dev/null 2>&1; then
     python3 -m json.tool $work/out >/dev/null || fails "is no JSON"
 fi
 
-# The ladder: at least eight steps, errors that fall as the order says, and
+# The steps: at least eight steps, errors that fall as the order says, and
 # beside each target the step that is one place coarser on the grid, too.
 exits 0 cost pendulum --t-end 3 --integrators blanes-moan4,gauss8,gauss18 \
     --format csv
@@ -77,9 +77,9 @@ records | awk -F, 'NR > 1 { n[$2]++; dt[$2, n[$2]] = $6; e[$2, n[$2]] = $9 }
             }
         }
         if (orders < 5) exit 5
-    }' || { fails "has no ladder ($?)"; cat $work/out; }
+    }' || { fails "has no sequence of steps ($?)"; cat $work/out; }
 
-# The same ladder where the machine has other things to do: work, not seconds,
+# The same steps where the machine has other things to do: work, not seconds,
 # says which steps are tried.
 records | cut -d, -f 1-16,18 >$work/run.1
 (while :; do :; done) & busy=$!

@@ -109,7 +109,7 @@ static int list_scenes(table *t, bool all) {
     return status;
 }
 
-int list_what(const options *o) {
+int list_command(const options *o) {
     static const struct {
         const char *name;
         int (*list)(table *, bool all);

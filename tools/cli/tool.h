@@ -5,10 +5,10 @@
        compare     compare.c    rows of row.h, a run each
        run         run.c        an orbit of trajectory.h, line by line
        section     section.c
-       cost        cost.c       ladders of ladder.h: rows at many steps
+       cost        cost.c       studies of study.h: rows at many steps
        recommend   recommend.c  the same
        gradients   gradients.c
-       check       check.c      pace.h: a flight ahead
+       check       check.c      pace.h: a trial run
        effects     effects.c, impact.c
        hard        hard.c
        new, list   new.c, list.c
@@ -215,7 +215,7 @@ void scenes_installed(list *names, list *files);
 char *scene_file(const char *beside, const char *name);
 
 typedef int command(const options *);
-command compare, list_what, check, effects, run_scene, section, new_scene;
+command compare, list_command, check, effects, run_scene, section, new_scene;
 command cost, recommend, gradients, hard;
 
 #endif

@@ -73,7 +73,7 @@ void diagnose_row(const plan *p, row *r) {
     set_scale(p, 1, scale);
     nevh_reversal_defect(s, t, r->dt, steps, p->q, p->p, scale,
                          &r->reversal_error);
-    row_shelve(p, r, false, s);
+    row_stepper_keep(p, r, false, s);
     free(scale);
 }
 

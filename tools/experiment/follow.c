@@ -90,5 +90,5 @@ void row_follow(const plan *p, row *r) {
     r->followed = f.report.span / f.span;
     r->longer = f.report;
     nevh_energy_free(f.energy);
-    row_shelve(p, r, p->balance, s);
+    row_stepper_keep(p, r, p->balance, s);
 }

@@ -29,7 +29,7 @@ static double work_of_step(const plan *p, const row *r, double dt) {
                           nevh_scene_stops(p->scene));
     nevh_counts after = nevh_stepper_counts(s);
     double taken = (double)nevh_stepper_taken(s);
-    row_shelve(p, r, false, s);
+    row_stepper_keep(p, r, false, s);
     free(q);
     return (status && !end.reached) || taken == 0
                ? NAN
@@ -96,7 +96,7 @@ void match_row(const plan *p, row *r) {
         return;
     nevh_stepper *s = row_stepper(p, r, false);
     bool refused = nevh_stepper_status(s) != NEVH_OK;
-    row_shelve(p, r, false, s);
+    row_stepper_keep(p, r, false, s);
     if (refused)
         return;
     r->dt = gradients > 0 ? r->dt * gradients : piloted(p, r, r->dt);

@@ -35,9 +35,9 @@ void stability_words(const plan *, const row rows[], size_t count, list *words);
    cost  a few seconds an integrator at most, as row_work counts */
 void remedy_words(const plan *, const row rows[], size_t count, list *words);
 
-/* preflight.c: what a short flight ahead says of a run. */
+/* trial_run.c: what a short trial run says of a run. */
 typedef enum {
-    OUTLOOK_OPEN,    /* the flight was too short to tell */
+    OUTLOOK_OPEN,    /* the trial run was too short to tell */
     OUTLOOK_PLANE,   /* one degree of freedom, H without time: no chaos */
     OUTLOOK_REGULAR, /* neighbours part no faster than a power of the time */
     OUTLOOK_CHAOTIC
@@ -45,19 +45,19 @@ typedef enum {
 typedef struct {
     double frequency, fastest_at; /* as a pace; 0: nothing is known */
     outlook outlook;
-    double exponent, error; /* largest Lyapunov exponent over the time flown */
-    double flown;           /* time */
+    double exponent, error; /* largest Lyapunov exponent over its time */
+    double length;          /* time */
     double noise;           /* of the gradient: relative energy error; NAN */
     double edge; /* of H: distance in lengths; INFINITY: none is near */
     size_t edge_variable; /* coordinates first */
     double edge_at, edge_time;
     char *failure; /* NULL, or why the orbit could not be followed */
-} preflight;
+} trial_run;
 /* failure is to be freed.
    cost     about two seconds at most */
-preflight preflight_fly(const plan *);
-void preflight_words(const plan *, const preflight *, list *notes);
+trial_run trial_run_new(const plan *);
+void trial_run_words(const plan *, const trial_run *, list *notes);
 /* Of a scheme, its limit of stability given, at h w = x; NULL: nothing. */
-const char *preflight_verdict(double limit, double x);
+const char *trial_run_verdict(double limit, double x);
 
 #endif

@@ -219,7 +219,7 @@ static char *title_of(const plan *p, const options *o) {
 
 int plan_make(plan *p, const options *o) {
     *p = (plan){.name = o->operands.count > 1 ? o->operands.item[1] : "",
-                .shelf = shelf_new()};
+                .steppers = stepper_cache_new()};
     if (scene_open(&p->scene, o))
         return TOOL_USAGE;
     take_settings(p, o);
@@ -243,7 +243,7 @@ void plan_free(plan *p) {
     free(p->q);
     free(p->p);
     nevh_reference_free(p->reference);
-    shelf_free(p->shelf);
+    stepper_cache_free(p->steppers);
     free(p->no_reference);
     nevh_scene_free(p->scene);
 }

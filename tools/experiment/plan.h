@@ -5,7 +5,7 @@
 
 #include "cli/tool.h"
 
-typedef struct shelf shelf;
+typedef struct stepper_cache stepper_cache;
 
 /* plan.c: the rows to run, from options, scene and defaults. */
 typedef struct {
@@ -38,7 +38,7 @@ typedef struct {
     bool observable_level;   /* its size, not its range */
     double observable_error; /* what that of the reference makes of it */
     bool promises;           /* rows tell how long they keep what they should */
-    shelf *shelf;            /* of steppers */
+    stepper_cache *steppers; /* of steppers */
 } plan;
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int plan_make(plan *, const options *);
@@ -61,9 +61,9 @@ void plan_note_first(const plan *, const char *integrator, list *notes);
 void plan_notes(const plan *, list *notes);
 char *plan_structure(const plan *);
 
-/* shelf.c */
-shelf *shelf_new(void);
-void shelf_free(shelf *); /* NULL is allowed */
+/* stepper_cache.c */
+stepper_cache *stepper_cache_new(void);
+void stepper_cache_free(stepper_cache *); /* NULL is allowed */
 
 /* stop.c: runs that end early, where the scene's `stop` says. */
 typedef struct {

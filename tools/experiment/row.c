@@ -62,7 +62,7 @@ static void unstable_since(work *w) {
     free(w->row->status);
     w->row->status = text_print("unstable: since t = %.9g", unstable.since);
     nevh_energy_free(unstable.energy);
-    row_shelve(w->plan, w->row, balance, s);
+    row_stepper_keep(w->plan, w->row, balance, s);
 }
 
 /* Values over instances, of which there is a whole number. */
@@ -276,7 +276,7 @@ void row_run(const plan *p, row *r) {
             r->dt = mean_step(&w);
     }
     r->work = row_work(p, r->scheme, &r->counts, r->steps);
-    row_shelve(p, r, p->balance, s);
+    row_stepper_keep(p, r, p->balance, s);
     work_free(&w);
 }
 
@@ -287,7 +287,7 @@ double row_end(const plan *p, const row *r) {
     nevh_stepper *s = row_stepper(p, r, false);
     if (nevh_stepper_status(s) || run(&w, s, NULL, 0, &stopped))
         stopped = p->run->t_start;
-    row_shelve(p, r, false, s);
+    row_stepper_keep(p, r, false, s);
     work_free(&w);
     return isnan(stopped) ? p->t_end : stopped;
 }

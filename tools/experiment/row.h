@@ -65,9 +65,9 @@ double row_work(const plan *, const nevh_integrator *, const nevh_counts *,
 void row_finish(const plan *, row *);
 /* Since those before. */
 nevh_counts row_counts(const nevh_stepper *, nevh_counts before);
-/* shelf.c: planned for that row, by whom it is given back. */
+/* stepper_cache.c: planned for that row, by whom it is given back. */
 nevh_stepper *row_stepper(const plan *, const row *, bool balance);
-void row_shelve(const plan *, const row *, bool balance, nevh_stepper *);
+void row_stepper_keep(const plan *, const row *, bool balance, nevh_stepper *);
 /* row_time.c: the seconds of rows that ran, medians of so many rounds, in which
    they are run one after the other, so that what else the machine does falls
    upon all alike.

@@ -28,7 +28,7 @@ static stopwatch stopwatch_new(const plan *p, const row *r, size_t rounds) {
 }
 
 static void stopwatch_free(stopwatch *w) {
-    row_shelve(w->plan, w->row, false, w->stepper);
+    row_stepper_keep(w->plan, w->row, false, w->stepper);
     free(w->q);
     free(w->p);
     free(w->seconds);

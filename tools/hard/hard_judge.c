@@ -129,7 +129,7 @@ static char *tell_cause(const hard_subject *s, const hard_result *r) {
    of its gradients: all but the rounding of each step, carried along. */
 static hard_verdict judge_return(const hard_subject *s, hard_result *r) {
     double rest = r->state_floor + 1e-14 * 2 * r->asked;
-    double allowed = rest * hard_track_growth(s->track);
+    double allowed = rest * hard_orbit_growth(s->orbit);
     bool symmetric = nevh_integrator_symmetric(r->scheme) == NEVH_YES;
     r->happened = text_print("comes back to %.1e", r->defect);
     if (r->defect <= allowed)

@@ -33,7 +33,7 @@ typedef struct {
 /* Ended by one without a name. */
 extern const hard_case hard_cases[];
 
-typedef struct hard_track hard_track;
+typedef struct hard_orbit hard_orbit;
 
 /* A case made ready, and what its orbit is like. */
 typedef struct {
@@ -49,7 +49,7 @@ typedef struct {
     double peak;                  /* largest effect over the energy's scale */
     double scale;                 /* of the energy */
     double rounding;   /* of the energy, where q, p and t are rounded once */
-    hard_track *track; /* NULL: nobody knows where the orbit leads */
+    hard_orbit *orbit; /* NULL: nobody knows where the orbit leads */
 } hard_subject;
 /* Of the hard cases, which are beside the scenes, or of the scenes; NULL. */
 nevh_scene *hard_scene(const char *name);
@@ -83,7 +83,7 @@ typedef struct {
     double floor;  /* of the energy error, from rounding and gradients */
     double state_error, state_bound, state_at; /* where it is the largest part
                                                   of its bound; NAN: unknown */
-    double state_floor; /* from the same, over the time of the track */
+    double state_floor; /* from the same, over the time of the orbit */
     double frequency;   /* at the fastest state that this run went through */
     double fastest_at;  /* or the case's */
     double limit;       /* nevh_stability_limit */
@@ -108,13 +108,13 @@ void hard_result_free(hard_result *);
 
 /* hard_state.c: where the orbit of a case leads, and how far a run is off.
    returns  NULL when no reference can be had */
-hard_track *hard_track_new(const hard_subject *);
-void hard_track_free(hard_track *); /* NULL is allowed */
+hard_orbit *hard_orbit_new(const hard_subject *);
+void hard_orbit_free(hard_orbit *); /* NULL is allowed */
 /* By how much the flow enlarges an error at most, over its time; NAN. */
-double hard_track_growth(const hard_track *);
+double hard_orbit_growth(const hard_orbit *);
 typedef struct hard_state hard_state;
 /* To watch a planned run of a scheme, with a tolerance if it adapts.
-   returns  NULL where there is no track */
+   returns  NULL where there is no orbit */
 hard_state *hard_state_new(const hard_subject *, const hard_result *,
                            nevh_field *, double tolerance);
 size_t hard_state_every(const hard_state *); /* steps between looks */

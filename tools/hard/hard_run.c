@@ -92,8 +92,8 @@ static void take(hard_result *r, const guard *g, nevh_stepper *m) {
         r->reason = text_print("%s", nevh_stepper_message(m));
 }
 
-static void fly(const hard_subject *s, nevh_stepper *m, const nevh_options *o,
-                double budget, hard_result *r) {
+static void integrate(const hard_subject *s, nevh_stepper *m,
+                      const nevh_options *o, double budget, hard_result *r) {
     double *q = tool_allocate(s->n, sizeof *q);
     double *p = tool_allocate(s->n, sizeof *p);
     guard g = {.energy = nevh_energy_new(s->system, o),
@@ -151,7 +151,7 @@ static void run_planned(const hard_subject *s, nevh_stepper *m,
     r->order = nevh_stepper_order(m);
     r->floor = find_floor(s, m, r->asked);
     r->state_floor = find_noise(s, m, fmin(r->asked, 1e4));
-    fly(s, m, o, stops ? fmin(budget, endless) : budget, r);
+    integrate(s, m, o, stops ? fmin(budget, endless) : budget, r);
     if (s->decl->facts & HARD_RETURN && !r->status)
         turn_back(s, m, r);
     if (!stops && o->tolerance == 0 &&

@@ -27,7 +27,7 @@ static const double doubt = 10;
 static const double substeps = 10;
 
 /* An orbit as it should be, followed for some time. */
-struct hard_track {
+struct hard_orbit {
     nevh_reference *reference;
     const nevh_system *system;
     nevh_scene *scene; /* of systems that have no derivatives of their own */
@@ -36,7 +36,7 @@ struct hard_track {
     double *range;                    /* 2n */
 };
 
-static double distance(const hard_track *k, const double state[],
+static double distance(const hard_orbit *k, const double state[],
                        const double q[], const double p[]) {
     double most = 0;
     for (size_t i = 0; i < k->n; i++) {
@@ -47,21 +47,21 @@ static double distance(const hard_track *k, const double state[],
     return most;
 }
 
-static nevh_stepper *fine(const hard_track *k, const hard_subject *s) {
+static nevh_stepper *fine(const hard_orbit *k, const hard_subject *s) {
     nevh_options o = {.gradient = nevh_exact, .q = s->q, .p = s->p, .t = s->t};
     o.tolerance = 1e-13;
     return nevh_stepper_new(k->system, nevh_dop853, &o);
 }
 
 typedef struct {
-    hard_track *track;
+    hard_orbit *orbit;
     double *state, *growth; /* growth: a sum over displacements */
 } spread;
 
 static int look(void *data, size_t step, double t, const double q[],
                 const double p[]) {
     spread *d = data;
-    const hard_track *k = d->track;
+    const hard_orbit *k = d->orbit;
     if (nevh_reference_state(k->reference, t, d->state, d->state + k->n))
         return NEVH_OK;
     double most = distance(k, d->state, q, p);
@@ -73,7 +73,7 @@ static int look(void *data, size_t step, double t, const double q[],
 /* Of an orbit displaced in one variable. */
 static int follow(spread *d, const hard_subject *s, nevh_stepper *m,
                   size_t variable) {
-    hard_track *k = d->track;
+    hard_orbit *k = d->orbit;
     double *q = tool_allocate(2 * k->n, sizeof *q), *p = q + k->n;
     memcpy(q, s->q, k->n * sizeof *q);
     memcpy(p, s->p, k->n * sizeof *p);
@@ -85,7 +85,7 @@ static int follow(spread *d, const hard_subject *s, nevh_stepper *m,
     return status;
 }
 
-static void find_growth(hard_track *k, const hard_subject *s) {
+static void find_growth(hard_orbit *k, const hard_subject *s) {
     spread d = {k, tool_allocate(2 * k->n, sizeof(double)),
                 tool_allocate(k->count, sizeof(double))};
     nevh_stepper *m = fine(k, s);
@@ -102,7 +102,7 @@ static void find_growth(hard_track *k, const hard_subject *s) {
 
 /* Of what H does by itself: gradients at the start, at the times of the track.
    A sine of amplitude a, a range of 2 a, has slopes of up to a omega. */
-static double find_drive(const hard_track *k, const hard_subject *s) {
+static double find_drive(const hard_orbit *k, const hard_subject *s) {
     nevh_options o = {.gradient = nevh_exact, .q = s->q, .p = s->p, .t = s->t};
     nevh_field *f = nevh_field_new(k->system, &o);
     double *g = tool_allocate(5 * k->n, sizeof *g), drive = 0;
@@ -129,7 +129,7 @@ static double find_drive(const hard_track *k, const hard_subject *s) {
 
 /* Of what the orbit meets: derivatives along it come from its own turning, from
    time and from friction, whose rates add up. */
-static double find_outside(const hard_track *k, const hard_subject *s) {
+static double find_outside(const hard_orbit *k, const hard_subject *s) {
     double *rates = tool_allocate(k->n, sizeof *rates), most = 0;
     nevh_system_friction(k->system, rates);
     for (size_t i = 0; i < k->n; i++)
@@ -139,7 +139,7 @@ static double find_outside(const hard_track *k, const hard_subject *s) {
     return most + (driven ? find_drive(k, s) : 0);
 }
 
-static void find_pace(hard_track *k, const hard_subject *s) {
+static void find_pace(hard_orbit *k, const hard_subject *s) {
     double *at = tool_allocate(2 * k->n, sizeof *at), growth;
     double outside = find_outside(k, s);
     nevh_options o = {.t = s->t, .q = s->q, .p = s->p};
@@ -156,7 +156,7 @@ static void find_pace(hard_track *k, const hard_subject *s) {
 }
 
 /* The orbits of H given as values alone are those of the same H in formulas. */
-static void choose_system(hard_track *k, const hard_subject *s) {
+static void choose_system(hard_orbit *k, const hard_subject *s) {
     k->system = s->system;
     k->n = s->n;
     if (!s->own)
@@ -165,11 +165,11 @@ static void choose_system(hard_track *k, const hard_subject *s) {
     k->system = nevh_scene_system(k->scene);
 }
 
-hard_track *hard_track_new(const hard_subject *s) {
+hard_orbit *hard_orbit_new(const hard_subject *s) {
     double span = fmin(s->t_end - s->t, most_steps * s->dt);
     if (span > 1e200 || s->decl->facts & HARD_KINK)
         return NULL;
-    hard_track *k = tool_allocate(1, sizeof *k);
+    hard_orbit *k = tool_allocate(1, sizeof *k);
     choose_system(k, s);
     k->t_end = s->t + span;
     k->reference =
@@ -186,7 +186,7 @@ hard_track *hard_track_new(const hard_subject *s) {
     for (size_t i = 0; i < k->count; i++)
         k->t[i] = i < SAMPLES ? s->t + span * (double)i / SAMPLES : k->t_end;
     if (nevh_reference_status(k->reference)) {
-        hard_track_free(k);
+        hard_orbit_free(k);
         return NULL;
     }
     find_pace(k, s);
@@ -194,7 +194,7 @@ hard_track *hard_track_new(const hard_subject *s) {
     return k;
 }
 
-void hard_track_free(hard_track *k) {
+void hard_orbit_free(hard_orbit *k) {
     if (!k)
         return;
     nevh_reference_free(k->reference);
@@ -205,7 +205,7 @@ void hard_track_free(hard_track *k) {
 }
 
 struct hard_state {
-    const hard_track *track;
+    const hard_orbit *orbit;
     size_t every;
     double *bound, *state;
     double error, allowed, t, share; /* where share = error/allowed is most */
@@ -224,7 +224,7 @@ double hard_haste(const hard_result *r) {
 /* Of fixed steps. */
 static void allow_steps(hard_state *w, const hard_subject *s,
                         const hard_result *r) {
-    const hard_track *k = w->track;
+    const hard_orbit *k = w->orbit;
     double turns = 0, most = 0, order = r->order, haste = hard_haste(r);
     for (size_t i = 0; i < k->count; i++) {
         double rate = fmax(k->pace[i], k->pace[i ? i - 1 : 0]);
@@ -245,7 +245,7 @@ static void allow_steps(hard_state *w, const hard_subject *s,
 /* Tolerances are relative to coordinates and momenta, not to their ranges. */
 static void allow_tolerance(hard_state *w, const hard_subject *s,
                             double tolerance) {
-    const hard_track *k = w->track;
+    const hard_orbit *k = w->orbit;
     double size = 1;
     for (size_t i = 0; i < k->n; i++) {
         size = fmax(size, 1 + fabs(s->q[i]) / k->range[i]);
@@ -258,18 +258,18 @@ static void allow_tolerance(hard_state *w, const hard_subject *s,
     }
 }
 
-/* What differences lack, per unit of time: of dH/dq in p, of dH/dp in q. */
-static double find_lack(const hard_track *k, nevh_field *f) {
-    double *lack = tool_allocate(2 * k->n, sizeof *lack), most = 0;
+/* What differences error, per unit of time: of dH/dq in p, of dH/dp in q. */
+static double find_gradient_error(const hard_orbit *k, nevh_field *f) {
+    double *error = tool_allocate(2 * k->n, sizeof *error), most = 0;
     for (size_t i = 0; i < nevh_field_step_count(f); i++) {
         nevh_step_report step = nevh_field_step_report(f, i);
         size_t moved = step.index + (step.momentum ? 0 : k->n);
         if (!step.given)
-            lack[moved] += step.truncation + step.rounding;
+            error[moved] += step.truncation + step.rounding;
     }
     for (size_t i = 0; i < 2 * k->n; i++)
-        most = fmax(most, lack[i] / k->range[i]);
-    free(lack);
+        most = fmax(most, error[i] / k->range[i]);
+    free(error);
     return doubt * most;
 }
 
@@ -277,11 +277,11 @@ static double find_lack(const hard_track *k, nevh_field *f) {
    some epsilon of the state each, the solution of stages of 1e-14. */
 static void allow_rest(hard_state *w, const hard_subject *s,
                        const hard_result *r, nevh_field *f) {
-    const hard_track *k = w->track;
-    double lack = find_lack(k, f);
+    const hard_orbit *k = w->orbit;
+    double error = find_gradient_error(k, f);
     for (size_t i = 0; i < k->count; i++) {
         double time = k->t[i] - s->t;
-        double rest = r->state_floor + lack * time + 1e-14 * time / s->dt;
+        double rest = r->state_floor + error * time + 1e-14 * time / s->dt;
         w->bound[i] +=
             rest * k->growth[i] + 10 * nevh_reference_error(k->reference);
         if (w->bound[i] > 0.5) /* half of the orbit's size: no longer linear */
@@ -299,13 +299,13 @@ static bool divides_noise(const hard_subject *s, const hard_result *r) {
 
 hard_state *hard_state_new(const hard_subject *s, const hard_result *r,
                            nevh_field *f, double tolerance) {
-    if (!s->track || divides_noise(s, r))
+    if (!s->orbit || divides_noise(s, r))
         return NULL;
     hard_state *w = tool_allocate(1, sizeof *w);
-    w->track = s->track;
-    double steps = (s->track->t_end - s->t) / s->dt;
+    w->orbit = s->orbit;
+    double steps = (s->orbit->t_end - s->t) / s->dt;
     w->every = (size_t)fmax(1, steps / LOOKS);
-    w->bound = tool_allocate(s->track->count, sizeof *w->bound);
+    w->bound = tool_allocate(s->orbit->count, sizeof *w->bound);
     w->state = tool_allocate(2 * s->n, sizeof *w->state);
     w->error = w->allowed = w->t = NAN;
     w->share = -1;
@@ -317,7 +317,7 @@ hard_state *hard_state_new(const hard_subject *s, const hard_result *r,
     return w;
 }
 
-double hard_track_growth(const hard_track *k) {
+double hard_orbit_growth(const hard_orbit *k) {
     return k ? k->growth[k->count - 1] : NAN;
 }
 
@@ -328,7 +328,7 @@ size_t hard_state_every(const hard_state *w) {
 int hard_state_observe(void *state, size_t step, double t, const double q[],
                        const double p[]) {
     hard_state *w = state;
-    const hard_track *k = w->track;
+    const hard_orbit *k = w->orbit;
     double start = k->t[0], span = k->t_end - start;
     if (step == 0 || t > k->t_end ||
         nevh_reference_state(k->reference, t, w->state, w->state + k->n))

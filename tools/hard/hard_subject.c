@@ -101,7 +101,7 @@ static int look(void *data, size_t step, double t, const double q[],
 
 /* Along the orbit of a method of order 8 with control of its steps, as far as
    it gets. */
-static void fly(hard_subject *s, survey *v, const nevh_options *o) {
+static void integrate(hard_subject *s, survey *v, const nevh_options *o) {
     nevh_options own = *o;
     own.tolerance = 1e-9;
     nevh_stepper *m = nevh_stepper_new(s->system, nevh_dop853, &own);
@@ -137,7 +137,7 @@ static void explore(hard_subject *s) {
         tool_allocate(nevh_system_effect_count(s->system), sizeof(double));
     v.slope = tool_allocate(2 * s->n, sizeof(double));
     v.fastest.rates = nevh_rates_new(s->system, &o);
-    fly(s, &v, &o);
+    integrate(s, &v, &o);
     s->frequency = v.fastest.frequency;
     s->fastest_at = v.fastest.t;
     s->scale = energy_scale(s, &o);
@@ -161,12 +161,12 @@ int hard_open(hard_subject *s, const hard_case *decl) {
         make_own(s);
     start(s);
     explore(s);
-    s->track = hard_track_new(s);
+    s->orbit = hard_orbit_new(s);
     return TOOL_OK;
 }
 
 void hard_close(hard_subject *s) {
-    hard_track_free(s->track);
+    hard_orbit_free(s->orbit);
     nevh_system_free(s->own);
     nevh_scene_free(s->scene);
     free(s->q);

@@ -86,8 +86,8 @@ static void add_refusal(refusals *r, const char *scheme, const char *message) {
 static const double never = 0.01;
 
 /* dt times the fastest frequency, against what the scheme bears. */
-static void add_preflight(const plan *p, const nevh_integrator *scheme,
-                          bool fits, bool why, const preflight *ahead,
+static void add_trial_run(const plan *p, const nevh_integrator *scheme,
+                          bool fits, bool why, const trial_run *ahead,
                           table *t) {
     double limit = fits ? nevh_stability_limit(scheme) : NAN;
     double x = fits ? p->dt[0] * ahead->frequency : NAN;
@@ -101,13 +101,13 @@ static void add_preflight(const plan *p, const nevh_integrator *scheme,
         table_shown(t, "%.3g", x);
     else
         table_text(t, NULL);
-    table_text(t, fits ? preflight_verdict(limit, x) : NULL);
+    table_text(t, fits ? trial_run_verdict(limit, x) : NULL);
 }
 
 /* What the table holds, and what is said below it. */
 typedef struct {
     const plan *plan;
-    const preflight *ahead;
+    const trial_run *ahead;
     bool why, all; /* reasons as a column; all rows, not the plan's alone */
     table *table;
     refusals refused;
@@ -131,7 +131,7 @@ static void add_row(fitting *f, const nevh_integrator *scheme,
     table_text(f->table, status ? "no" : "yes");
     if (f->why)
         table_text(f->table, status ? nevh_stepper_message(s) : NULL);
-    add_preflight(f->plan, scheme, !status, f->why, f->ahead, f->table);
+    add_trial_run(f->plan, scheme, !status, f->why, f->ahead, f->table);
 }
 
 static void add_scheme(fitting *f, const nevh_integrator *scheme) {
@@ -188,12 +188,12 @@ static void add_schemes(fitting *f, page *result) {
 static int check_plan(const options *o, const plan *p) {
     page result = {.table = table_new()};
     bool is_table = o->format == FORMAT_TABLE;
-    preflight ahead = preflight_fly(p);
+    trial_run ahead = trial_run_new(p);
     if (!o->quiet || !is_table) {
         plan_notes(p, &result.before);
         tell_state(p, &result.before);
         tell_probes(p, &result.before);
-        preflight_words(p, &ahead, &result.before);
+        trial_run_words(p, &ahead, &result.before);
     }
     add_schemes(&(fitting){.plan = p,
                            .ahead = &ahead,

@@ -27,22 +27,22 @@ void columns_free(quantities *c) {
     nevh_field_free(c->field);
 }
 
-static bool find_state(const plan *p, const char *name, quantity *decl) {
+static bool find_state(const plan *p, const char *name, quantity *column) {
     bool momentum = strncmp(name, "p_", 2) == 0;
     for (size_t k = 0; k < p->n; k++) {
         const char *coordinate = nevh_scene_coordinate(p->scene, k);
-        decl->index = k;
-        decl->kind = COLUMN_COORDINATE;
+        column->index = k;
+        column->kind = COLUMN_COORDINATE;
         if (strcmp(name, coordinate) == 0)
             return true;
-        decl->kind = COLUMN_MOMENTUM;
+        column->kind = COLUMN_MOMENTUM;
         if (momentum && strcmp(name + 2, coordinate) == 0)
             return true;
     }
     return false;
 }
 
-static bool find_other(const plan *p, const char *name, quantity *decl) {
+static bool find_other(const plan *p, const char *name, quantity *column) {
     static const struct {
         const char *name;
         column_kind kind;
@@ -50,13 +50,13 @@ static bool find_other(const plan *p, const char *name, quantity *decl) {
                  {"energy", COLUMN_ENERGY},
                  {"energy_error", COLUMN_ENERGY_ERROR}};
     size_t count = nevh_scene_shown_count(p->scene, NEVH_OBSERVABLES);
-    decl->kind = COLUMN_OBSERVABLE;
-    for (decl->index = 0; decl->index < count; decl->index++)
+    column->kind = COLUMN_OBSERVABLE;
+    for (column->index = 0; column->index < count; column->index++)
         if (strcmp(name, nevh_scene_shown_name(p->scene, NEVH_OBSERVABLES,
-                                               decl->index)) == 0)
+                                               column->index)) == 0)
             return true;
     for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
-        decl->kind = known[i].kind;
+        column->kind = known[i].kind;
         if (strcmp(name, known[i].name) == 0)
             return true;
     }
@@ -113,14 +113,14 @@ void columns_values(quantities *c, double t, const double q[], const double p[],
         nevh_field_value(c->field, 1, &t, q, p, &energy))
         energy = NAN;
     for (size_t i = 0; i < c->count; i++) {
-        const quantity *decl = &c->item[i];
-        values[i] = decl->kind == COLUMN_TIME         ? t
-                    : decl->kind == COLUMN_COORDINATE ? q[decl->index]
-                    : decl->kind == COLUMN_MOMENTUM   ? p[decl->index]
-                    : decl->kind == COLUMN_ENERGY     ? energy
-                    : decl->kind == COLUMN_ENERGY_ERROR
+        const quantity *column = &c->item[i];
+        values[i] = column->kind == COLUMN_TIME         ? t
+                    : column->kind == COLUMN_COORDINATE ? q[column->index]
+                    : column->kind == COLUMN_MOMENTUM   ? p[column->index]
+                    : column->kind == COLUMN_ENERGY     ? energy
+                    : column->kind == COLUMN_ENERGY_ERROR
                         ? (energy - c->start) / c->scale
-                    : observed ? c->observed[decl->index]
+                    : observed ? c->observed[column->index]
                                : NAN;
     }
 }

@@ -159,41 +159,41 @@ static double least_turns(const bob_list *b, const orbit *o) {
     return isfinite(least) ? least : 0;
 }
 
-static void follow_dense(run_picture *decl, bob_list *b) {
-    row_times dense = orbit_dense_times(&decl->plan);
-    picture_follow(decl, &dense, 2 * b->count, fill, b);
+static void follow_dense(run_picture *picture, bob_list *b) {
+    row_times dense = orbit_dense_times(&picture->plan);
+    picture_follow(picture, &dense, 2 * b->count, fill, b);
     free(dense.time);
 }
 
 /* returns  what is to be said of it; to be freed */
-static char *follow(run_picture *decl, bob_list *b) {
-    follow_dense(decl, b);
-    char *words = picture_cut(decl, least_turns(b, decl->orbits.item));
+static char *follow(run_picture *picture, bob_list *b) {
+    follow_dense(picture, b);
+    char *words = picture_cut(picture, least_turns(b, picture->orbits.item));
     if (!words)
         return text_print("%s", "");
-    follow_dense(decl, b);
+    follow_dense(picture, b);
     return words;
 }
 
-plot *plot_configuration(run_picture *decl) {
-    bob_list b = bobs_of(decl->plan.scene);
-    orbit *first = decl->orbits.item;
-    const char *unit = nevh_scene_label(decl->plan.scene, "t");
-    if (decl->orbits.count > 1) {
+plot *plot_configuration(run_picture *picture) {
+    bob_list b = bobs_of(picture->plan.scene);
+    orbit *first = picture->orbits.item;
+    const char *unit = nevh_scene_label(picture->plan.scene, "t");
+    if (picture->orbits.count > 1) {
         tool_refuse("--plot-kind configuration draws one orbit: give one "
                     "integrator and one dt");
         return NULL;
     }
-    char *cut = follow(decl, &b);
-    char *x = axis_label(&decl->plan, &b, 0),
-         *y = axis_label(&decl->plan, &b, 1);
-    plot *to = plot_new(decl->plan.title, x, y);
+    char *cut = follow(picture, &b);
+    char *x = axis_label(&picture->plan, &b, 0),
+         *y = axis_label(&picture->plan, &b, 1);
+    plot *to = plot_new(picture->plan.title, x, y);
     draw(to, &b, first);
     char *more =
         text_print("circles: the start; discs: t = %.6g%s%s%s%s", first->t,
                    *unit ? " " : "", unit, *cut ? "; " : "", cut);
     free(cut);
-    picture_note(decl, to, more);
+    picture_note(picture, to, more);
     free(more);
     free(x);
     free(y);

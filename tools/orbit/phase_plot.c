@@ -43,13 +43,13 @@ static int check_pairs(const column_panels *c) {
 }
 
 /* The period to take the column modulo; 0 where it stays within one. */
-static double wrapping(const run_picture *decl, const column_panels *c,
+static double wrapping(const run_picture *picture, const column_panels *c,
                        size_t k) {
-    double period = plan_period(&decl->plan, c->columns.item[k].name);
+    double period = plan_period(&picture->plan, c->columns.item[k].name);
     double low = INFINITY, high = -INFINITY;
-    for (size_t i = 0; i < decl->orbits.count; i++)
-        for (size_t row = 0; row < decl->orbits.item[i].rows.count; row++) {
-            double q = orbit_row(&decl->orbits.item[i], row)[k];
+    for (size_t i = 0; i < picture->orbits.count; i++)
+        for (size_t row = 0; row < picture->orbits.item[i].rows.count; row++) {
+            double q = orbit_row(&picture->orbits.item[i], row)[k];
             low = fmin(low, q);
             high = fmax(high, q);
         }
@@ -91,29 +91,30 @@ static void draw_orbit(plot *to, const orbit *o, size_t k, double period,
     plot_point(to, start, begin[0] - shift_of(begin[0], period), begin[1]);
 }
 
-static void draw_panel(plot **to, const run_picture *decl,
+static void draw_panel(plot **to, const run_picture *picture,
                        const column_panels *c, size_t number) {
     size_t k = 2 * number;
-    char *x = column_label(&decl->plan, &c->columns.item[k]);
-    char *y = column_label(&decl->plan, &c->columns.item[k + 1]);
-    double period = wrapping(decl, c, k);
+    char *x = column_label(&picture->plan, &c->columns.item[k]);
+    char *y = column_label(&picture->plan, &c->columns.item[k + 1]);
+    double period = wrapping(picture, c, k);
     if (number)
         plot_panel(*to, NULL, x, y);
     else
-        *to = plot_new(decl->plan.title, x, y);
+        *to = plot_new(picture->plan.title, x, y);
     if (period > 0)
         plot_span_x(*to, -period / 2, period / 2);
-    for (size_t i = 0; i < decl->orbits.count; i++)
-        draw_orbit(*to, &decl->orbits.item[i], k, period,
-                   decl->orbits.count > 1 ? decl->orbits.item[i].name : NULL);
+    for (size_t i = 0; i < picture->orbits.count; i++)
+        draw_orbit(*to, &picture->orbits.item[i], k, period,
+                   picture->orbits.count > 1 ? picture->orbits.item[i].name
+                                             : NULL);
     free(x);
     free(y);
 }
 
-static char *say_more(const run_picture *decl) {
-    const plan *p = &decl->plan;
+static char *say_more(const run_picture *picture) {
+    const plan *p = &picture->plan;
     char *energy = plot_energy_at_start(p);
-    char *text = p->n > MOST_COORDINATES && !decl->options->columns
+    char *text = p->n > MOST_COORDINATES && !picture->options->columns
                      ? text_print("%s; the first %d of %zu coordinates: "
                                   "--columns chooses others",
                                   energy, MOST_COORDINATES, p->n)
@@ -122,17 +123,18 @@ static char *say_more(const run_picture *decl) {
     return text;
 }
 
-plot *plot_phase(run_picture *decl) {
+plot *plot_phase(run_picture *picture) {
     column_panels c = {0};
     plot *to = NULL;
-    row_times dense = orbit_dense_times(&decl->plan);
-    char *names = pairs_of(decl->options, &decl->plan);
-    if (!column_panels_read(&c, &decl->plan, names) && !check_pairs(&c)) {
-        picture_follow(decl, &dense, c.columns.count, column_panels_fill, &c);
+    row_times dense = orbit_dense_times(&picture->plan);
+    char *names = pairs_of(picture->options, &picture->plan);
+    if (!column_panels_read(&c, &picture->plan, names) && !check_pairs(&c)) {
+        picture_follow(picture, &dense, c.columns.count, column_panels_fill,
+                       &c);
         for (size_t i = 0; i < c.panels; i++)
-            draw_panel(&to, decl, &c, i);
-        char *more = say_more(decl);
-        picture_note(decl, to, more);
+            draw_panel(&to, picture, &c, i);
+        char *more = say_more(picture);
+        picture_note(picture, to, more);
         free(more);
     }
     column_panels_free(&c);

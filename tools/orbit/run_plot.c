@@ -50,12 +50,12 @@ void column_panels_fill(void *data, double t, const double q[],
 
 /* Runs. */
 
-int picture_follow(run_picture *decl, const row_times *times, size_t columns,
+int picture_follow(run_picture *picture, const row_times *times, size_t columns,
                    orbit_fill *fill, void *data) {
     int worst = TOOL_OK;
-    for (size_t i = 0; i < decl->orbits.count; i++) {
-        int status = orbit_follow(&decl->orbits.item[i], times, columns, fill,
-                                  data, decl->quiet);
+    for (size_t i = 0; i < picture->orbits.count; i++) {
+        int status = orbit_follow(&picture->orbits.item[i], times, columns,
+                                  fill, data, picture->quiet);
         worst = status > worst ? status : worst;
     }
     return worst;
@@ -67,31 +67,31 @@ static double rounded(double span) {
     return power * (digits >= 5 ? 5 : digits >= 2 ? 2 : 1);
 }
 
-char *picture_cut(run_picture *decl, double turns) {
+char *picture_cut(run_picture *picture, double turns) {
     static const double most = 60, wanted = 25;
-    double begin = decl->plan.run->t_start, whole = decl->plan.t_end;
-    if (decl->options->t_end || turns <= most)
+    double begin = picture->plan.run->t_start, whole = picture->plan.t_end;
+    if (picture->options->t_end || turns <= most)
         return NULL;
-    decl->plan.t_end = begin + rounded((whole - begin) * wanted / turns);
-    for (size_t i = 0; i < decl->orbits.count; i++)
-        decl->orbits.item[i].plan.t_end = decl->plan.t_end;
+    picture->plan.t_end = begin + rounded((whole - begin) * wanted / turns);
+    for (size_t i = 0; i < picture->orbits.count; i++)
+        picture->orbits.item[i].plan.t_end = picture->plan.t_end;
     return text_print("a part of the run: --t-end %g shows all", whole);
 }
 
-void picture_note(const run_picture *decl, plot *to, const char *more) {
-    const orbits *all = &decl->orbits;
+void picture_note(const run_picture *picture, plot *to, const char *more) {
+    const orbits *all = &picture->orbits;
     char *scheme =
         all->count == 1 ? plot_scheme(&all->item->plan, all->item->integrator)
-        : decl->plan.dts == 1 || decl->options->dt.count <= 1
-            ? text_print("dt = %.4g%s%s", decl->plan.dt[0],
-                         *nevh_scene_label(decl->plan.scene, "t") ? " " : "",
-                         nevh_scene_label(decl->plan.scene, "t"))
+        : picture->plan.dts == 1 || picture->options->dt.count <= 1
+            ? text_print("dt = %.4g%s%s", picture->plan.dt[0],
+                         *nevh_scene_label(picture->plan.scene, "t") ? " " : "",
+                         nevh_scene_label(picture->plan.scene, "t"))
             : text_print("%s", all->item->integrator);
     char *others = list_joined(&all->left_out);
     char *text = text_print("%s%s%s", *others ? "not drawn: " : "", others,
                             *others && *more ? "; " : "");
     char *whole = text_print("%s%s", text, more);
-    plot_note_run(to, &decl->plan, scheme, whole);
+    plot_note_run(to, &picture->plan, scheme, whole);
     free(whole);
     free(text);
     free(others);
@@ -127,7 +127,7 @@ static double *copy(const double from[], size_t count) {
     return to;
 }
 
-static void draw_energy(plot *to, const run_picture *decl, const orbit *o) {
+static void draw_energy(plot *to, const run_picture *picture, const orbit *o) {
     const plan *p = &o->plan;
     nevh_stepper *s = new_stepper(p, o->integrator);
     nevh_energy *energy = new_energy(p, s);
@@ -135,10 +135,11 @@ static void draw_energy(plot *to, const run_picture *decl, const orbit *o) {
     nevh_observer observers[] = {{nevh_energy_observe, energy, 1},
                                  {energy_trace_observe, &trace, 1}};
     double *q = copy(p->q, p->n), *m = copy(p->p, p->n), stopped;
-    if (plan_run(p, s, p->dt[0], q, m, observers, 2, &stopped) && !decl->quiet)
+    if (plan_run(p, s, p->dt[0], q, m, observers, 2, &stopped) &&
+        !picture->quiet)
         tool_refuse("%s: %s failed: %s", p->name, o->integrator,
                     nevh_stepper_message(s));
-    energy_plot_add(to, decl->orbits.count > 1 ? o->name : NULL,
+    energy_plot_add(to, picture->orbits.count > 1 ? o->name : NULL,
                     trace.envelope);
     nevh_energy_free(energy);
     nevh_stepper_free(s);
@@ -147,12 +148,12 @@ static void draw_energy(plot *to, const run_picture *decl, const orbit *o) {
     free(m);
 }
 
-static plot *plot_energy(run_picture *decl) {
-    plot *to = energy_plot_new(&decl->plan, decl->plan.title, NULL);
-    for (size_t i = 0; i < decl->orbits.count; i++)
-        draw_energy(to, decl, &decl->orbits.item[i]);
-    char *more = energy_plot_words(&decl->plan);
-    picture_note(decl, to, more);
+static plot *plot_energy(run_picture *picture) {
+    plot *to = energy_plot_new(&picture->plan, picture->plan.title, NULL);
+    for (size_t i = 0; i < picture->orbits.count; i++)
+        draw_energy(to, picture, &picture->orbits.item[i]);
+    char *more = energy_plot_words(&picture->plan);
+    picture_note(picture, to, more);
     free(more);
     return to;
 }
@@ -181,15 +182,15 @@ int run_plot_check(const options *o, const plan *p) {
     return check_kind(o, p) ? TOOL_USAGE : plot_check(&as);
 }
 
-static size_t points_of(const run_picture *decl) {
-    return decl->orbits.count ? decl->orbits.item[0].rows.seen : 0;
+static size_t points_of(const run_picture *picture) {
+    return picture->orbits.count ? picture->orbits.item[0].rows.seen : 0;
 }
 
-static int worst_status(const run_picture *decl) {
+static int worst_status(const run_picture *picture) {
     int worst = TOOL_OK;
-    for (size_t i = 0; i < decl->orbits.count; i++)
-        worst = decl->orbits.item[i].status > worst
-                    ? decl->orbits.item[i].status
+    for (size_t i = 0; i < picture->orbits.count; i++)
+        worst = picture->orbits.item[i].status > worst
+                    ? picture->orbits.item[i].status
                     : worst;
     return worst;
 }

@@ -42,23 +42,23 @@ static double most_turns(const orbit *o, const quantities *c) {
     return most;
 }
 
-static void follow(run_picture *decl, column_panels *c) {
-    row_times dense = orbit_dense_times(&decl->plan);
-    picture_follow(decl, decl->rows ? decl->rows : &dense, c->columns.count,
-                   column_panels_fill, c);
+static void follow(run_picture *picture, column_panels *c) {
+    row_times dense = orbit_dense_times(&picture->plan);
+    picture_follow(picture, picture->rows ? picture->rows : &dense,
+                   c->columns.count, column_panels_fill, c);
     free(dense.time);
 }
 
 /* A run that goes round so often that a curve would be a band is cut.
    returns  what is to be said of it; to be freed */
-static char *follow_and_cut(run_picture *decl, column_panels *c) {
-    follow(decl, c);
-    char *words =
-        decl->rows
-            ? NULL
-            : picture_cut(decl, most_turns(decl->orbits.item, &c->columns));
+static char *follow_and_cut(run_picture *picture, column_panels *c) {
+    follow(picture, c);
+    char *words = picture->rows
+                      ? NULL
+                      : picture_cut(picture, most_turns(picture->orbits.item,
+                                                        &c->columns));
     if (words)
-        follow(decl, c);
+        follow(picture, c);
     return words ? words : text_print("%s", "");
 }
 
@@ -68,17 +68,17 @@ static bool may_be_known(const plan *p) {
     return p->n <= 3 && !p->balance && !p->run->reference;
 }
 
-static nevh_reference *exact_solution(run_picture *decl) {
-    plan *p = &decl->plan;
+static nevh_reference *exact_solution(run_picture *picture) {
+    plan *p = &picture->plan;
     if (!may_be_known(p) || plan_reference(p, p->t_end) || !p->reference ||
         strncmp(nevh_reference_text(p->reference), "exact", 5) != 0)
         return NULL;
     return p->reference;
 }
 
-static void draw_exact(plot *to, const run_picture *decl, column_panels *c,
+static void draw_exact(plot *to, const run_picture *picture, column_panels *c,
                        size_t k, nevh_reference *exact) {
-    const plan *p = &decl->plan;
+    const plan *p = &picture->plan;
     size_t n = p->n, series = plot_series(to, "exact solution");
     double *state = tool_allocate(2 * n + c->columns.count, sizeof *state);
     double *values = state + 2 * n, begin = p->run->t_start;
@@ -107,19 +107,19 @@ static size_t place_in_panel(const column_panels *c, size_t k, size_t *count) {
 
 /* Several orbits differ by colour, and the columns of a panel by dashes; those
    of a single one by colour. */
-static size_t new_series(plot *to, const run_picture *decl,
+static size_t new_series(plot *to, const run_picture *picture,
                          const column_panels *c, size_t k, size_t number,
                          bool exact) {
     size_t count, place = place_in_panel(c, k, &count);
-    const orbit *o = &decl->orbits.item[number];
-    bool several = decl->orbits.count > 1;
+    const orbit *o = &picture->orbits.item[number];
+    bool several = picture->orbits.count > 1;
     bool named = several ? place == 0 : count == 1 && exact;
     const char *name = named                   ? o->name
                        : count > 1 && !several ? c->columns.item[k].name
                                                : NULL;
     size_t series = plot_series(to, name);
     if (several && place > 0) {
-        plot_like(to, series, series - place * decl->orbits.count);
+        plot_like(to, series, series - place * picture->orbits.count);
         plot_dash(to, series, place);
     }
     return series;
@@ -138,12 +138,12 @@ static bool is_shown(const orbit *o, const quantity *what, double t) {
            fabs(steps - round(steps)) < whole;
 }
 
-static void draw_orbit(plot *to, const run_picture *decl,
+static void draw_orbit(plot *to, const run_picture *picture,
                        const column_panels *c, size_t k, size_t number,
                        bool exact) {
-    const orbit *o = &decl->orbits.item[number];
-    size_t series = new_series(to, decl, c, k, number, exact);
-    bool few = decl->rows && o->rows.count <= FEW_ROWS;
+    const orbit *o = &picture->orbits.item[number];
+    size_t series = new_series(to, picture, c, k, number, exact);
+    bool few = picture->rows && o->rows.count <= FEW_ROWS;
     plot_style(to, series,
                o->rows.part < 1 ? PLOT_DOTS
                : !few           ? PLOT_TRAIL
@@ -151,23 +151,23 @@ static void draw_orbit(plot *to, const run_picture *decl,
                                 : PLOT_BOTH);
     for (size_t i = 0; i < o->rows.count; i++) {
         const double *at = orbit_row(o, i);
-        if (decl->rows || is_shown(o, &c->columns.item[k], at[-1]))
+        if (picture->rows || is_shown(o, &c->columns.item[k], at[-1]))
             plot_point(to, series, at[-1], at[k]);
     }
 }
 
 /* Of a panel with several columns: their names. */
-static char *panel_label(const run_picture *decl, const column_panels *c,
+static char *panel_label(const run_picture *picture, const column_panels *c,
                          size_t panel) {
     static const char *const dashes[] = {"", " dashed", " dotted",
                                          " dash-dotted", " long dashes"};
-    bool several = decl->orbits.count > 1;
+    bool several = picture->orbits.count > 1;
     char *text = NULL;
     for (size_t k = 0; k < c->columns.count; k++) {
         if (c->panel[k] != panel)
             continue;
         size_t count, place = place_in_panel(c, k, &count);
-        char *label = column_label(&decl->plan, &c->columns.item[k]);
+        char *label = column_label(&picture->plan, &c->columns.item[k]);
         char *longer =
             text_print("%s%s%s%s", text ? text : "", text ? ", " : "", label,
                        several && place < 5 ? dashes[place] : "");
@@ -178,43 +178,44 @@ static char *panel_label(const run_picture *decl, const column_panels *c,
     return text;
 }
 
-static void draw_panel(plot **to, run_picture *decl, column_panels *c,
+static void draw_panel(plot **to, run_picture *picture, column_panels *c,
                        size_t panel, nevh_reference *exact) {
-    char *x = plot_label(&decl->plan, "t", "t");
-    char *y = panel_label(decl, c, panel);
+    char *x = plot_label(&picture->plan, "t", "t");
+    char *y = panel_label(picture, c, panel);
     if (panel)
         plot_panel(*to, NULL, x, y);
     else
-        *to = plot_new(decl->plan.title, x, y);
-    plot_span_x(*to, decl->plan.run->t_start, decl->plan.t_end);
+        *to = plot_new(picture->plan.title, x, y);
+    plot_span_x(*to, picture->plan.run->t_start, picture->plan.t_end);
     for (size_t k = 0; k < c->columns.count && exact; k++)
         if (c->panel[k] == panel)
-            draw_exact(*to, decl, c, k, exact);
+            draw_exact(*to, picture, c, k, exact);
     for (size_t k = 0; k < c->columns.count; k++)
-        for (size_t i = 0; i < decl->orbits.count && c->panel[k] == panel; i++)
-            draw_orbit(*to, decl, c, k, i, exact);
+        for (size_t i = 0; i < picture->orbits.count && c->panel[k] == panel;
+             i++)
+            draw_orbit(*to, picture, c, k, i, exact);
     free(x);
     free(y);
 }
 
-plot *plot_time(run_picture *decl) {
+plot *plot_time(run_picture *picture) {
     column_panels c = {0};
     plot *to = NULL;
-    char *names = decl->options->columns
-                      ? text_print("%s", decl->options->columns)
-                      : usual_names(&decl->plan);
-    int status = column_panels_read(&c, &decl->plan, names);
+    char *names = picture->options->columns
+                      ? text_print("%s", picture->options->columns)
+                      : usual_names(&picture->plan);
+    int status = column_panels_read(&c, &picture->plan, names);
     if (!status && c.panels > MOST_PANELS)
         status = tool_refuse("--columns: %d panels at most, not %zu; names "
                              "joined as A:B share one",
                              MOST_PANELS, c.panels);
     if (!status) {
-        char *more = follow_and_cut(decl, &c);
-        nevh_reference *exact = exact_solution(decl);
+        char *more = follow_and_cut(picture, &c);
+        nevh_reference *exact = exact_solution(picture);
         for (size_t i = 0; i < c.panels; i++)
-            draw_panel(&to, decl, &c, i, exact);
+            draw_panel(&to, picture, &c, i, exact);
         plot_stack(to);
-        picture_note(decl, to, more);
+        picture_note(picture, to, more);
         free(more);
     }
     column_panels_free(&c);

@@ -5,13 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const row *chosen(const advice *a, const ladder *l) {
-    return ladder_cheapest(l, a->target, a->search.by_state);
+static const row *chosen(const advice *a, const study *l) {
+    return study_cheapest(l, a->target, a->search.by_state);
 }
 
-size_t advice_list(const advice *a, const ladder *found[ADVICE_MOST]) {
-    const ladder *const all[ADVICE_MOST] = {a->best, a->second, a->alone,
-                                            a->steady};
+size_t advice_list(const advice *a, const study *found[ADVICE_MOST]) {
+    const study *const all[ADVICE_MOST] = {a->best, a->second, a->alone,
+                                           a->steady};
     size_t count = 0;
     for (size_t i = 0; i < ADVICE_MOST; i++) {
         bool known = !all[i];
@@ -23,7 +23,7 @@ size_t advice_list(const advice *a, const ladder *found[ADVICE_MOST]) {
     return count;
 }
 
-static const char *name_of(const advice *a, const ladder *l) {
+static const char *name_of(const advice *a, const study *l) {
     return l == a->best     ? "cheapest"
            : l == a->second ? "runner-up"
            : l == a->alone  ? "from H alone"
@@ -44,13 +44,13 @@ static bool has_states(const advice *a) {
     return !a->search.by_state && a->search.plan.reference;
 }
 
-static void show(const advice *a, const ladder *l, const char *what, table *t) {
+static void show(const advice *a, const study *l, const char *what, table *t) {
     const row *r = chosen(a, l);
     table_text(t, what);
     table_text(t, r->integrator);
     table_text(t, r->gradient);
     table_shown(t, "%.4g", r->dt);
-    table_shown(t, "%.1e", ladder_error(r, a->search.by_state));
+    table_shown(t, "%.1e", study_error(r, a->search.by_state));
     if (has_states(a))
         state_show(t, &a->search.plan, r);
     show_end(a, r, t);
@@ -76,7 +76,7 @@ static table *shown(const advice *a) {
     table_column(t, "gradients");
     table_column(t, "H evals");
     table_column(t, "energy");
-    const ladder *found[ADVICE_MOST];
+    const study *found[ADVICE_MOST];
     size_t count = advice_list(a, found);
     for (size_t i = 0; i < count; i++)
         show(a, found[i], name_of(a, found[i]), t);
@@ -84,7 +84,7 @@ static table *shown(const advice *a) {
 }
 
 static table *recorded(const advice *a) {
-    const ladder *found[ADVICE_MOST];
+    const study *found[ADVICE_MOST];
     row rows[ADVICE_MOST];
     size_t count = advice_list(a, found);
     for (size_t i = 0; i < count; i++)
@@ -228,7 +228,7 @@ static void tell_answer(const advice *a, const options *o, list *words) {
                r->integrator, r->gradient,
                r->tolerance > 0 ? "tolerance" : "dt",
                r->tolerance > 0 ? r->tolerance : r->dt, what,
-               ladder_error(r, a->search.by_state), a->target);
+               study_error(r, a->search.by_state), a->target);
     tell_size(a, r, words);
     tell_steps(a, r, words);
     tell_longer(a, r, words);
@@ -274,27 +274,26 @@ void advice_print(const advice *a, const options *o, FILE *f) {
 }
 
 static bool counts(const advice *a, size_t i) {
-    return a->named || a->search.by_state ||
-           !ladder_keeps_energy(&a->ladder[i]);
+    return a->named || a->search.by_state || !study_keeps_energy(&a->study[i]);
 }
 
-static const ladder *most_exact(const advice *a, double *least) {
-    const ladder *best = NULL;
+static const study *most_exact(const advice *a, double *least) {
+    const study *best = NULL;
     *least = INFINITY;
     for (size_t i = 0; i < a->count; i++)
-        for (size_t k = 0; counts(a, i) && k < a->ladder[i].count; k++) {
+        for (size_t k = 0; counts(a, i) && k < a->study[i].count; k++) {
             double error =
-                ladder_error(&a->ladder[i].rung[k], a->search.by_state);
+                study_error(&a->study[i].level[k], a->search.by_state);
             if (error < *least)
-                *least = error, best = &a->ladder[i];
+                *least = error, best = &a->study[i];
         }
     return best;
 }
 
-static const char *reason(const ladder *l, double least) {
-    if (l->end == LADDER_GIVEN)
+static const char *reason(const study *l, double least) {
+    if (l->end == STUDY_GIVEN)
         return "these steps do not reach it";
-    if (l->end != LADDER_FLOOR)
+    if (l->end != STUDY_FLOOR)
         return "shorter steps take longer than was tried; --t-end shortens the "
                "run";
     if (least > 1e-11 && strcmp(l->gradient, "exact") != 0)
@@ -308,12 +307,12 @@ static void tell_why(const advice *a) {
     const row *failed = NULL;
     bool keeps = false, late = false;
     for (size_t i = 0; i < a->count; i++) {
-        const ladder *l = &a->ladder[i];
-        keeps |= !counts(a, i) && l->count && l->rung[0].ran;
-        late |= l->end == LADDER_LIMIT;
+        const study *l = &a->study[i];
+        keeps |= !counts(a, i) && l->count && l->level[0].ran;
+        late |= l->end == STUDY_LIMIT;
         for (size_t k = 0; k < l->count && !failed; k++)
-            if (l->rung[k].failed && !l->rung[k].late)
-                failed = &l->rung[k];
+            if (l->level[k].failed && !l->level[k].late)
+                failed = &l->level[k];
     }
     if (keeps)
         tool_refuse("%s: what runs keeps the energy at any step, so that its "
@@ -334,7 +333,7 @@ static void tell_why(const advice *a) {
 
 int advice_none(const advice *a) {
     double least;
-    const ladder *l = most_exact(a, &least);
+    const study *l = most_exact(a, &least);
     const char *what = search_error(&a->search);
     if (!l)
         tell_why(a);

@@ -8,32 +8,32 @@
 
 const double cost_target[COST_TARGETS] = {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
 
-static bool is_beaten(const costs *c, const ladder *l) {
+static bool is_beaten(const costs *c, const study *l) {
     return !c->all && !cost_is_yardstick(l) &&
-           ladder_is_behind(&c->search, l, c->ladder, c->count);
+           study_is_behind(&c->search, l, c->study, c->count);
 }
 
 static void descend_all(costs *c) {
     static const double share = 0.65; /* the rest is for the targets */
-    ladder *next;
+    study *next;
     for (size_t i = 0; i < c->count; i++)
-        ladder_begin(&c->search, &c->ladder[i]);
-    while ((next = ladder_next(c->ladder, c->count)) &&
+        study_begin(&c->search, &c->study[i]);
+    while ((next = study_next(c->study, c->count)) &&
            !search_is_over(&c->search, share))
         if (is_beaten(c, next))
-            next->end = LADDER_LIMIT;
+            next->end = STUDY_LIMIT;
         else
-            ladder_descend(&c->search, next);
+            study_descend(&c->search, next);
     for (size_t i = 0; i < c->count; i++)
-        if (c->ladder[i].end == LADDER_OPEN)
-            c->ladder[i].end = LADDER_LIMIT;
+        if (c->study[i].end == STUDY_OPEN)
+            c->study[i].end = STUDY_LIMIT;
 }
 
 static double least_work(const costs *c, double target) {
     double least = INFINITY;
     for (size_t i = 0; i < c->count; i++) {
-        const ladder *l = &c->ladder[i];
-        const row *r = ladder_least_work(l, target, c->search.by_state);
+        const study *l = &c->study[i];
+        const row *r = study_least_work(l, target, c->search.by_state);
         if (costs_count(c, l) && r)
             least = fmin(least, r->work);
     }
@@ -41,24 +41,24 @@ static double least_work(const costs *c, double target) {
 }
 
 /* Whether the coarsest step that keeps the target may be a cheap one: it costs
-   more than the last rung that does not. */
-static bool is_promising(const costs *c, const ladder *l, double target) {
+   more than the last level that does not. */
+static bool is_promising(const costs *c, const study *l, double target) {
     static const double nearly = 2;
     double least = least_work(c, target);
     size_t i = 0;
     while (i < l->count &&
-           ladder_error(&l->rung[i], c->search.by_state) > target)
+           study_error(&l->level[i], c->search.by_state) > target)
         i++;
-    return i == 0 || l->rung[i - 1].work < nearly * least;
+    return i == 0 || l->level[i - 1].work < nearly * least;
 }
 
 static void refine_all(costs *c) {
     for (size_t k = 0; k < COST_TARGETS; k++)
         for (size_t i = 0; i < c->count; i++) {
-            ladder *l = &c->ladder[i];
+            study *l = &c->study[i];
             if (c->all || cost_is_yardstick(l) ||
                 is_promising(c, l, cost_target[k]))
-                ladder_refine(&c->search, l, cost_target[k], GRID_COARSE);
+                study_refine(&c->search, l, cost_target[k], GRID_COARSE);
         }
 }
 
@@ -68,12 +68,12 @@ static void refine_cheapest(costs *c) {
     for (size_t k = 0; k < COST_TARGETS; k++) {
         double least = least_work(c, cost_target[k]);
         for (size_t i = 0; i < c->count; i++) {
-            ladder *l = &c->ladder[i];
+            study *l = &c->study[i];
             const row *r =
-                ladder_least_work(l, cost_target[k], c->search.by_state);
+                study_least_work(l, cost_target[k], c->search.by_state);
             if (costs_count(c, l) && r && r->work <= nearly * least &&
                 !cost_is_beyond(c, k))
-                ladder_refine(&c->search, l, cost_target[k], 1);
+                study_refine(&c->search, l, cost_target[k], 1);
         }
     }
 }
@@ -87,82 +87,82 @@ static bool may_win(const costs *c, const row *r, double target) {
 static void time_cells(costs *c) {
     for (size_t k = 0; k < COST_TARGETS; k++)
         for (size_t i = 0; i < c->count; i++) {
-            ladder *l = &c->ladder[i];
+            study *l = &c->study[i];
             const row *r =
-                ladder_least_work(l, cost_target[k], c->search.by_state);
+                study_least_work(l, cost_target[k], c->search.by_state);
             if (r && (c->all || cost_is_yardstick(l) ||
                       (costs_count(c, l) && may_win(c, r, cost_target[k]))))
-                ladder_time(&c->search, l, (size_t)(r - l->rung));
+                study_time(&c->search, l, (size_t)(r - l->level));
         }
     for (size_t k = 0; k < COST_TARGETS; k++)
         for (size_t i = 0; i < c->count; i++) {
-            ladder *l = &c->ladder[i];
+            study *l = &c->study[i];
             const row *r =
-                ladder_least_work(l, cost_target[k], c->search.by_state);
+                study_least_work(l, cost_target[k], c->search.by_state);
             if (r && cost_shows(c, l))
-                ladder_time(&c->search, l, (size_t)(r - l->rung));
+                study_time(&c->search, l, (size_t)(r - l->level));
         }
 }
 
 static void time_others(costs *c, bool shown) {
     for (size_t i = 0; i < c->count; i++)
-        for (size_t k = 0; k < c->ladder[i].count; k++)
-            if (!shown || cost_shows(c, &c->ladder[i]))
-                ladder_time(&c->search, &c->ladder[i], k);
+        for (size_t k = 0; k < c->study[i].count; k++)
+            if (!shown || cost_shows(c, &c->study[i]))
+                study_time(&c->search, &c->study[i], k);
 }
 
 /* Those that the table does not show are for programs to read. */
-static void run_ladders(costs *c, const options *o) {
-    enum { RUNGS = 8 };
+static void run_studies(costs *c, const options *o) {
+    enum { LEVELS = 8 };
     bool for_people = o->format == FORMAT_TABLE;
     descend_all(c);
     refine_all(c);
     refine_cheapest(c);
     time_cells(c);
     for (size_t i = 0; i < c->count && !(for_people && !c->all); i++)
-        ladder_fill(&c->search, &c->ladder[i], RUNGS);
+        study_fill(&c->search, &c->study[i], LEVELS);
     if (!for_people || c->all || plot_wanted(o))
         time_others(c, for_people);
 }
 
-static void make_ladders(costs *c) {
+static void make_studies(costs *c) {
     const plan *p = &c->search.plan;
-    c->ladder = tool_allocate(p->gradients.count * p->integrators.count,
-                              sizeof *c->ladder);
+    c->study = tool_allocate(p->gradients.count * p->integrators.count,
+                             sizeof *c->study);
     for (size_t g = 0; g < p->gradients.count; g++)
         for (size_t i = 0; i < p->integrators.count; i++)
-            c->ladder[c->count++] =
-                ladder_new(p->integrators.item[i], p->gradients.item[g]);
+            c->study[c->count++] =
+                study_new(p->integrators.item[i], p->gradients.item[g]);
 }
 
-bool costs_count(const costs *c, const ladder *l) {
-    return !l->count || c->search.by_state || !ladder_keeps_energy(l);
+bool costs_count(const costs *c, const study *l) {
+    return !l->count || c->search.by_state || !study_keeps_energy(l);
 }
 
-const ladder *costs_cheapest(const costs *c, double target) {
-    const ladder *best = NULL;
+const study *costs_cheapest(const costs *c, double target) {
+    const study *best = NULL;
     double least = INFINITY;
     for (size_t i = 0; i < c->count; i++) {
-        const ladder *l = &c->ladder[i];
-        const row *r = ladder_cheapest(l, target, c->search.by_state);
+        const study *l = &c->study[i];
+        const row *r = study_cheapest(l, target, c->search.by_state);
         if (costs_count(c, l) && r && r->seconds < least)
             least = r->seconds, best = l;
     }
     return best;
 }
 
-/* Rows side by side, in the order of the ladders. */
+/* Rows side by side, in the order of the studies. */
 static row *list_rows(const costs *c, bool shown, size_t *count) {
     size_t most = 0;
     for (size_t i = 0; i < c->count; i++)
-        most += c->ladder[i].count;
+        most += c->study[i].count;
     row *rows = tool_allocate(most, sizeof *rows);
     *count = 0;
     for (size_t i = 0; i < c->count; i++) {
-        const ladder *l = &c->ladder[i];
+        const study *l = &c->study[i];
         if (!l->count || (shown && !cost_shows(c, l)))
             continue;
-        memcpy(rows + *count, l->rung, l->count * sizeof *rows);
+        memcpy(rows + *count, l->level, l->count * sizeof *rows);
         *count += l->count;
     }
     return rows;
@@ -191,9 +191,9 @@ static page make_page(const options *o, costs *c) {
 static int status_of(const costs *c) {
     bool ran = false, failed = false;
     for (size_t i = 0; i < c->count; i++)
-        for (size_t k = 0; k < c->ladder[i].count; k++) {
-            ran |= c->ladder[i].rung[k].ran;
-            failed |= c->ladder[i].rung[k].failed;
+        for (size_t k = 0; k < c->study[i].count; k++) {
+            ran |= c->study[i].level[k].ran;
+            failed |= c->study[i].level[k].failed;
         }
     return failed && (!ran || c->search.dt) ? TOOL_FAILED : TOOL_OK;
 }
@@ -203,9 +203,9 @@ static int report_failures(const costs *c) {
     int status = status_of(c);
     const row *failed = NULL;
     for (size_t i = 0; i < c->count && !failed; i++)
-        for (size_t k = 0; k < c->ladder[i].count && !failed; k++)
-            if (c->ladder[i].rung[k].failed)
-                failed = &c->ladder[i].rung[k];
+        for (size_t k = 0; k < c->study[i].count && !failed; k++)
+            if (c->study[i].level[k].failed)
+                failed = &c->study[i].level[k];
     if (status && failed)
         tool_refuse("%s: %s with %s at dt = %.4g %s", c->search.plan.name,
                     failed->integrator, failed->gradient, failed->dt,
@@ -220,8 +220,8 @@ static int cost_plan(const options *o, plan *p, double whole) {
     costs c = {.search = search_begin(p, o, SEARCH_BUDGET),
                .whole = whole,
                .all = o->integrators.count > 0};
-    make_ladders(&c);
-    run_ladders(&c, o);
+    make_studies(&c);
+    run_studies(&c, o);
     page result = make_page(o, &c);
     search_end(&c.search);
     bool first = plot_goes_first(o);
@@ -234,8 +234,8 @@ static int cost_plan(const options *o, plan *p, double whole) {
     if (drawn)
         status = TOOL_USAGE;
     for (size_t i = 0; i < c.count; i++)
-        ladder_free(&c.ladder[i]);
-    free(c.ladder);
+        study_free(&c.study[i]);
+    free(c.study);
     return status;
 }
 
@@ -248,7 +248,7 @@ int cost(const options *o) {
     if (!status && !o->t_end && !o->dt.count)
         whole = plan_shorten(&p, SEARCH_BUDGET);
     if (!status && (o->by_state || o->observable))
-        status = state_errors_mean_something(&p);
+        status = plan_require_reference(&p);
     else if (!status && o->format != FORMAT_TABLE)
         status = plan_reference(&p, p.t_end);
     if (!status && o->observable)

@@ -23,28 +23,28 @@ typedef struct {
     const costs *costs;
     plot *to;
     work_of *work;
-    size_t left_out; /* rungs */
+    size_t left_out; /* levels */
 } drawing;
 
-static double error_of(const drawing *d, const ladder *l, size_t k) {
-    return ladder_error(&l->rung[k], d->costs->search.by_state);
+static double error_of(const drawing *d, const study *l, size_t k) {
+    return study_error(&l->level[k], d->costs->search.by_state);
 }
 
 /* Whether a shorter step costs no more and errs less: where steps are so long
    that solving them takes more work than it saves. */
-static bool is_outdone(const drawing *d, const ladder *l, size_t k) {
+static bool is_outdone(const drawing *d, const study *l, size_t k) {
     for (size_t i = k + 1; i < l->count; i++)
-        if (l->rung[i].work <= l->rung[k].work &&
+        if (l->level[i].work <= l->level[k].work &&
             error_of(d, l, i) <= error_of(d, l, k))
             return true;
     return false;
 }
 
-static bool is_drawn(const drawing *d, const ladder *l, size_t k) {
+static bool is_drawn(const drawing *d, const study *l, size_t k) {
     return isfinite(error_of(d, l, k)) && !is_outdone(d, l, k);
 }
 
-static void draw_ladder(drawing *d, const ladder *l) {
+static void draw_study(drawing *d, const study *l) {
     bool alone = d->costs->search.plan.gradients.count < 2;
     char *name = alone ? text_print("%s", l->integrator)
                        : text_print("%s, %s", l->integrator, l->gradient);
@@ -52,7 +52,7 @@ static void draw_ladder(drawing *d, const ladder *l) {
     plot_style(d->to, series, PLOT_BOTH);
     for (size_t k = 0; k < l->count; k++)
         if (is_drawn(d, l, k))
-            plot_point(d->to, series, d->work(&l->rung[k]), error_of(d, l, k));
+            plot_point(d->to, series, d->work(&l->level[k]), error_of(d, l, k));
         else
             d->left_out += isfinite(error_of(d, l, k));
     free(name);
@@ -60,7 +60,7 @@ static void draw_ladder(drawing *d, const ladder *l) {
 
 /* Of a scheme with fixed steps, an order more is a steeper line: a line of that
    order from the middle of the curve, a factor to the right of it. */
-static void draw_guide(const drawing *d, const ladder *l) {
+static void draw_guide(const drawing *d, const study *l) {
     static const double aside = 1.5, decades = 1.5;
     size_t drawn[2] = {0, 0}, count = 0;
     for (size_t k = 0; k < l->count; k++)
@@ -72,7 +72,7 @@ static void draw_guide(const drawing *d, const ladder *l) {
         return;
     size_t middle = (drawn[0] + drawn[1]) / 2;
     double order = nevh_integrator_order(l->scheme);
-    double work = aside * d->work(&l->rung[middle]);
+    double work = aside * d->work(&l->level[middle]);
     double error = error_of(d, l, middle);
     char *name = text_print("order %g", order);
     size_t series = plot_series(d->to, name);
@@ -90,7 +90,7 @@ static void draw_guides(const drawing *d) {
     static const int highest = 4;
     bool seen[5] = {false};
     for (size_t i = 0; i < d->costs->count; i++) {
-        const ladder *l = &d->costs->ladder[i];
+        const study *l = &d->costs->study[i];
         int order = nevh_integrator_order(l->scheme);
         if (!cost_shows(d->costs, l) || order > highest || seen[order] ||
             nevh_integrator_adaptive(l->scheme))
@@ -104,17 +104,17 @@ static void draw_panel(drawing *d) {
     plot_log(d->to, true, true);
     plot_limit_y(d->to, 0, useless);
     for (size_t i = 0; i < d->costs->count; i++)
-        if (cost_shows(d->costs, &d->costs->ladder[i]))
-            draw_ladder(d, &d->costs->ladder[i]);
+        if (cost_shows(d->costs, &d->costs->study[i]))
+            draw_study(d, &d->costs->study[i]);
 }
 
 /* Whether all that is shown has such counts: exact gradients evaluate no H, and
    some schemes nothing but H. */
 static bool all_have(const costs *c, work_of *count) {
     for (size_t i = 0; i < c->count; i++)
-        for (size_t k = 0; k < c->ladder[i].count; k++)
-            if (cost_shows(c, &c->ladder[i]) && c->ladder[i].rung[k].ran &&
-                !(count(&c->ladder[i].rung[k]) > 0))
+        for (size_t k = 0; k < c->study[i].count; k++)
+            if (cost_shows(c, &c->study[i]) && c->study[i].level[k].ran &&
+                !(count(&c->study[i].level[k]) > 0))
                 return false;
     return true;
 }

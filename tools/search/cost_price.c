@@ -6,21 +6,21 @@
 #include <string.h>
 
 /* The cheapest for the most digits that are reached. */
-static const row *most_digits(const costs *c, const ladder **l) {
+static const row *most_digits(const costs *c, const study **l) {
     for (size_t k = COST_TARGETS; k-- > 0;) {
         *l = costs_cheapest(c, cost_target[k]);
         if (*l && !cost_is_beyond(c, k))
-            return ladder_cheapest(*l, cost_target[k], c->search.by_state);
+            return study_cheapest(*l, cost_target[k], c->search.by_state);
     }
     return NULL;
 }
 
 static char *price(const costs *c, const row *best, const row *r) {
     double factor = r->seconds / best->seconds;
-    double error = ladder_error(r, c->search.by_state);
+    double error = study_error(r, c->search.by_state);
     if (!r->ran)
         return NULL;
-    if (error > 3 * ladder_error(best, c->search.by_state))
+    if (error > 3 * study_error(best, c->search.by_state))
         return text_print("%s x%.2g, but its error is %.1g", r->gradient,
                           factor, error);
     return text_print("%s x%.2g", r->gradient, factor);
@@ -28,30 +28,30 @@ static char *price(const costs *c, const row *best, const row *r) {
 
 /* One after the other, so that nothing but the gradient differs. */
 void cost_price(costs *c, list *words) {
-    const ladder *l;
+    const study *l;
     const row *best = most_digits(c, &l);
     if (!best)
         return;
-    int k = l->k[best - l->rung];
+    int k = l->k[best - l->level];
     char *text = text_print("%s 1", l->gradient);
     for (size_t i = 0; nevh_gradients()[i]; i++) {
         const char *name = nevh_gradient_name(nevh_gradients()[i]);
-        ladder other = ladder_new(l->integrator, name);
+        study other = study_new(l->integrator, name);
         if (strcmp(name, l->gradient) != 0 &&
             gradient_fits(&c->search.plan, name, NULL)) {
-            ladder_run(&c->search, &other, k);
-            ladder_time(&c->search, &other, 0);
-            char *more = price(c, best, &other.rung[0]);
+            study_run(&c->search, &other, k);
+            study_time(&c->search, &other, 0);
+            char *more = price(c, best, &other.level[0]);
             char *longer = more ? text_print("%s, %s", text, more)
                                 : text_print("%s", text);
             free(text);
             free(more);
             text = longer;
         }
-        ladder_free(&other);
+        study_free(&other);
     }
     list_print(words, "price of the gradient (%s at dt = %.4g, error %.1g): %s",
-               l->integrator, best->dt, ladder_error(best, c->search.by_state),
+               l->integrator, best->dt, study_error(best, c->search.by_state),
                text);
     free(text);
 }

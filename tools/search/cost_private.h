@@ -3,32 +3,32 @@
 #ifndef NEVH_COST_PRIVATE_H
 #define NEVH_COST_PRIVATE_H
 
-#include "ladder.h"
+#include "study.h"
 
 enum { COST_TARGETS = 6 };
 extern const double cost_target[COST_TARGETS];
 
 typedef struct {
     search search;
-    ladder *ladder;
+    study *study;
     size_t count;
     double whole; /* t_end before it was shortened; NAN: as asked for */
-    bool all; /* ladders are shown, not only those that are cheap somewhere */
+    bool all; /* studies are shown, not only those that are cheap somewhere */
 } costs;
 /* Whether its errors are to be compared with others'. */
-bool costs_count(const costs *, const ladder *);
+bool costs_count(const costs *, const study *);
 /* NULL: none keeps the target. */
-const ladder *costs_cheapest(const costs *, double target);
-bool cost_is_yardstick(const ladder *);
-bool cost_shows(const costs *, const ladder *);
+const study *costs_cheapest(const costs *, double target);
+bool cost_is_yardstick(const study *);
+bool cost_shows(const costs *, const study *);
 
 /* cost_table.c */
 table *cost_table(const costs *);
 /* The reference is not good enough for these digits. */
 bool cost_is_beyond(const costs *, size_t target);
 char *cost_milliseconds(double seconds);
-bool cost_drifts(const ladder *); /* its energy */
-/* cost_price.c: more rungs, with other gradients. */
+bool cost_drifts(const study *); /* its energy */
+/* cost_price.c: more levels, with other gradients. */
 void cost_price(costs *, list *words);
 /* cost_plot.c: as plot_write. */
 int cost_plot(const options *, const costs *);

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool cost_is_yardstick(const ladder *l) {
+bool cost_is_yardstick(const study *l) {
     static const char *const names[] = {"verlet", "midpoint", "rk4"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (strcmp(l->integrator, names[i]) == 0)
@@ -14,24 +14,24 @@ bool cost_is_yardstick(const ladder *l) {
 }
 
 /* Cheapest, or nearly so, for some target. */
-static bool is_cheap(const costs *c, const ladder *l) {
+static bool is_cheap(const costs *c, const study *l) {
     static const double nearly = 1.1;
     for (size_t k = 0; k < COST_TARGETS; k++) {
-        const ladder *best = costs_cheapest(c, cost_target[k]);
-        const row *r = ladder_cheapest(l, cost_target[k], c->search.by_state);
+        const study *best = costs_cheapest(c, cost_target[k]);
+        const row *r = study_cheapest(l, cost_target[k], c->search.by_state);
         if (best && r &&
-            r->seconds <= nearly * ladder_cheapest(best, cost_target[k],
-                                                   c->search.by_state)
+            r->seconds <= nearly * study_cheapest(best, cost_target[k],
+                                                  c->search.by_state)
                                        ->seconds)
             return true;
     }
     return false;
 }
 
-bool cost_shows(const costs *c, const ladder *l) {
+bool cost_shows(const costs *c, const study *l) {
     if (c->all)
         return l->count > 0;
-    return l->end != LADDER_REFUSED && costs_count(c, l) &&
+    return l->end != STUDY_REFUSED && costs_count(c, l) &&
            (cost_is_yardstick(l) || is_cheap(c, l));
 }
 
@@ -40,14 +40,14 @@ char *cost_milliseconds(double seconds) {
 }
 
 /* At most of the steps that keep some digits and are above rounding. */
-bool cost_drifts(const ladder *l) {
+bool cost_drifts(const study *l) {
     size_t count = 0, drifting = 0;
     for (size_t i = 0; i < l->count; i++) {
-        const nevh_energy_report *e = &l->rung[i].energy;
+        const nevh_energy_report *e = &l->level[i].energy;
         bool counts =
-            l->rung[i].ran && e->max < cost_target[0] && e->max > 1e-12;
+            l->level[i].ran && e->max < cost_target[0] && e->max > 1e-12;
         count += counts;
-        drifting += counts && row_drifts(&l->rung[i]);
+        drifting += counts && row_drifts(&l->level[i]);
     }
     return 2 * drifting > count;
 }
@@ -67,23 +67,22 @@ static char *cell_text(const row *r, bool star) {
     return text;
 }
 
-static void show_cell(const costs *c, const ladder *l, size_t target,
-                      table *t) {
-    const row *r = ladder_cheapest(l, cost_target[target], c->search.by_state);
+static void show_cell(const costs *c, const study *l, size_t target, table *t) {
+    const row *r = study_cheapest(l, cost_target[target], c->search.by_state);
     bool star = costs_cheapest(c, cost_target[target]) == l;
     char *text;
     if (cost_is_beyond(c, target))
         text = text_print("  -");
-    else if (l->end == LADDER_REFUSED)
+    else if (l->end == STUDY_REFUSED)
         text = text_print("  refused");
-    else if (ladder_failure(l))
+    else if (study_failure(l))
         text = text_print("  fails");
     else if (!costs_count(c, l))
         text = text_print("  -");
     else if (!r)
-        text = text_print("  %s", l->end == LADDER_LIMIT   ? "> limit"
-                                  : l->end == LADDER_GIVEN ? "-"
-                                                           : "floor");
+        text = text_print("  %s", l->end == STUDY_LIMIT   ? "> limit"
+                                  : l->end == STUDY_GIVEN ? "-"
+                                                          : "floor");
     else
         text = cell_text(r, star);
     table_text(t, text);
@@ -102,7 +101,7 @@ table *cost_table(const costs *c) {
         free(title);
     }
     for (size_t i = 0; i < c->count; i++) {
-        const ladder *l = &c->ladder[i];
+        const study *l = &c->study[i];
         if (!cost_shows(c, l))
             continue;
         char *name =

@@ -19,13 +19,13 @@ void cost_notes(const costs *c, list *notes) {
                search_error(&c->search), *unit ? "/" : "", unit);
 }
 
-/* Rungs whose errors are neither coarse nor at rounding. */
+/* Levels whose errors are neither coarse nor at rounding. */
 typedef struct {
     double *error, *seconds, *evaluations, *frequency;
     size_t count;
 } slope;
 
-static slope slope_new(const ladder *l, bool by_state) {
+static slope slope_new(const study *l, bool by_state) {
     static const double coarse = 2e-2, floors = 30;
     slope s = {tool_allocate(l->count, sizeof(double)),
                tool_allocate(l->count, sizeof(double)),
@@ -33,11 +33,11 @@ static slope slope_new(const ladder *l, bool by_state) {
                tool_allocate(l->count, sizeof(double)), 0};
     double least = INFINITY;
     for (size_t i = 0; i < l->count; i++)
-        least = fmin(least, ladder_error(&l->rung[i], by_state));
-    least = l->end == LADDER_FLOOR ? fmax(floors * least, 1e-13) : least;
+        least = fmin(least, study_error(&l->level[i], by_state));
+    least = l->end == STUDY_FLOOR ? fmax(floors * least, 1e-13) : least;
     for (size_t i = 0; i < l->count; i++) {
-        const row *r = &l->rung[i];
-        double error = ladder_error(r, by_state);
+        const row *r = &l->level[i];
+        double error = study_error(r, by_state);
         if (error > coarse || error < least || !(r->seconds > 0))
             continue;
         s.error[s.count] = error;
@@ -56,7 +56,7 @@ static void slope_free(slope *s) {
     free(s->frequency);
 }
 
-static const char *remark(const ladder *l, double time, double theory) {
+static const char *remark(const study *l, double time, double theory) {
     bool is_implicit = nevh_integrator_explicit(l->scheme) == NEVH_NO &&
                        !nevh_integrator_adaptive(l->scheme);
     if (time < 0.95 * theory && is_implicit)
@@ -66,12 +66,12 @@ static const char *remark(const ladder *l, double time, double theory) {
     return "";
 }
 
-static void tell_digit(const costs *c, const ladder *l, list *words) {
+static void tell_digit(const costs *c, const study *l, list *words) {
     slope s = slope_new(l, c->search.by_state);
     double time = grid_digit_factor(s.error, s.seconds, s.count);
     double evaluations = grid_digit_factor(s.error, s.evaluations, s.count);
     double steps = grid_digit_factor(s.error, s.frequency, s.count);
-    double theory = pow(10, 1.0 / l->rung[0].order);
+    double theory = pow(10, 1.0 / l->level[0].order);
     if (s.count > 2 && isfinite(time))
         list_print(words,
                    " %-21s x %-5.3g  x %-5.3g        x %-5.3g  x %-5.3g%s",
@@ -83,8 +83,8 @@ static void tell_digit(const costs *c, const ladder *l, list *words) {
 static void tell_digits(const costs *c, list *words) {
     list lines = {0};
     for (size_t i = 0; i < c->count; i++)
-        if (cost_shows(c, &c->ladder[i]) && c->ladder[i].count)
-            tell_digit(c, &c->ladder[i], &lines);
+        if (cost_shows(c, &c->study[i]) && c->study[i].count)
+            tell_digit(c, &c->study[i], &lines);
     if (lines.count)
         list_add(words, " one more digit         time     evaluations    "
                         "steps    10^(1/order)");
@@ -93,13 +93,13 @@ static void tell_digits(const costs *c, list *words) {
     list_free(&lines);
 }
 
-static const row *cell(const costs *c, const ladder *l, size_t target) {
-    return ladder_cheapest(l, cost_target[target], c->search.by_state);
+static const row *cell(const costs *c, const study *l, size_t target) {
+    return study_cheapest(l, cost_target[target], c->search.by_state);
 }
 
 /* The last of the targets from `first` on that have the same cheapest. */
 static size_t last_alike(const costs *c, size_t first) {
-    const ladder *best = costs_cheapest(c, cost_target[first]);
+    const study *best = costs_cheapest(c, cost_target[first]);
     while (first + 1 < COST_TARGETS && !cost_is_beyond(c, first + 1) &&
            costs_cheapest(c, cost_target[first + 1]) == best)
         first++;
@@ -113,7 +113,7 @@ static char *step_text(const row *r) {
 }
 
 static void tell_best(const costs *c, size_t first, size_t last, list *words) {
-    const ladder *best = costs_cheapest(c, cost_target[first]);
+    const study *best = costs_cheapest(c, cost_target[first]);
     const row *a = cell(c, best, first), *b = cell(c, best, last);
     char *digits =
         text_print(first < last ? "%.0f to %.0f" : "%.0f",
@@ -140,8 +140,8 @@ static void tell_best(const costs *c, size_t first, size_t last, list *words) {
 static void tell_yardstick(const costs *c, const char *name, list *words) {
     for (size_t k = COST_TARGETS; k-- > 0;)
         for (size_t i = 0; i < c->count && !cost_is_beyond(c, k); i++) {
-            const ladder *l = &c->ladder[i];
-            const ladder *best = costs_cheapest(c, cost_target[k]);
+            const study *l = &c->study[i];
+            const study *best = costs_cheapest(c, cost_target[k]);
             if (strcmp(l->integrator, name) != 0 || !best || best == l ||
                 !cell(c, l, k))
                 continue;
@@ -171,10 +171,10 @@ static void tell_winners(const costs *c, list *words) {
 }
 
 static char *names_where(const costs *c,
-                         bool (*holds)(const costs *, const ladder *)) {
+                         bool (*holds)(const costs *, const study *)) {
     char *names = text_print("%s", "");
     for (size_t i = 0; i < c->count; i++) {
-        const ladder *l = &c->ladder[i];
+        const study *l = &c->study[i];
         if (!l->count || !holds(c, l) || strstr(names, l->integrator))
             continue;
         char *longer =
@@ -185,16 +185,16 @@ static char *names_where(const costs *c,
     return names;
 }
 
-static bool drifts_here(const costs *c, const ladder *l) {
+static bool drifts_here(const costs *c, const study *l) {
     return cost_shows(c, l) && cost_drifts(l);
 }
 
-static bool says_nothing(const costs *c, const ladder *l) {
-    return l->end != LADDER_REFUSED && !costs_count(c, l);
+static bool says_nothing(const costs *c, const study *l) {
+    return l->end != STUDY_REFUSED && !costs_count(c, l);
 }
 
 static void tell_names(const costs *c, list *words, const char *format,
-                       bool (*holds)(const costs *, const ladder *)) {
+                       bool (*holds)(const costs *, const study *)) {
     char *names = names_where(c, holds);
     char *text = text_print("%s: %s", names, format);
     if (*names)
@@ -209,7 +209,7 @@ static void tell_failures(const costs *c, list *words) {
     list others = {0};
     const row *first = NULL;
     for (size_t i = 0; i < c->count; i++) {
-        const row *r = ladder_failure(&c->ladder[i]);
+        const row *r = study_failure(&c->study[i]);
         if (!r)
             continue;
         if (first && !list_has(&others, r->integrator))
@@ -233,10 +233,10 @@ static void tell_failures(const costs *c, list *words) {
 static void tell_hidden(const costs *c, list *words) {
     size_t dear = 0, untried = 0;
     for (size_t i = 0; i < c->count; i++) {
-        const ladder *l = &c->ladder[i];
-        untried += l->end == LADDER_LIMIT && !l->count;
-        dear += l->end != LADDER_REFUSED && l->count && costs_count(c, l) &&
-                !ladder_failure(l) && !cost_shows(c, l);
+        const study *l = &c->study[i];
+        untried += l->end == STUDY_LIMIT && !l->count;
+        dear += l->end != STUDY_REFUSED && l->count && costs_count(c, l) &&
+                !study_failure(l) && !cost_shows(c, l);
     }
     if (dear)
         list_print(words,
@@ -253,8 +253,8 @@ static void tell_hidden(const costs *c, list *words) {
 static double longest_cell(const costs *c) {
     double longest = 0;
     for (size_t i = 0; i < c->count; i++)
-        for (size_t k = 0; k < c->ladder[i].count; k++)
-            longest = fmax(longest, c->ladder[i].rung[k].seconds);
+        for (size_t k = 0; k < c->study[i].count; k++)
+            longest = fmax(longest, c->study[i].level[k].seconds);
     return longest;
 }
 
@@ -262,11 +262,11 @@ static double longest_cell(const costs *c) {
 static double typical_spread(const costs *c) {
     size_t most = 0, count = 0;
     for (size_t i = 0; i < c->count; i++)
-        most += c->ladder[i].count;
+        most += c->study[i].count;
     double *part = tool_allocate(most, sizeof *part);
     for (size_t i = 0; i < c->count; i++)
-        for (size_t k = 0; k < c->ladder[i].count; k++) {
-            const row *r = &c->ladder[i].rung[k];
+        for (size_t k = 0; k < c->study[i].count; k++) {
+            const row *r = &c->study[i].level[k];
             if (r->ran && r->spread > 0)
                 part[count++] = r->spread / r->seconds;
         }
@@ -275,22 +275,22 @@ static double typical_spread(const costs *c) {
     return median;
 }
 
-static bool any_end(const costs *c, ladder_end end) {
+static bool any_end(const costs *c, study_end end) {
     for (size_t i = 0; i < c->count; i++)
-        if (c->ladder[i].end == end && cost_shows(c, &c->ladder[i]) &&
-            !cell(c, &c->ladder[i], COST_TARGETS - 1))
+        if (c->study[i].end == end && cost_shows(c, &c->study[i]) &&
+            !cell(c, &c->study[i], COST_TARGETS - 1))
             return true;
     return false;
 }
 
 static void tell_legend(const costs *c, list *words) {
     char *longest = cost_milliseconds(longest_cell(c));
-    if (any_end(c, LADDER_LIMIT))
+    if (any_end(c, STUDY_LIMIT))
         list_print(words,
                    "> limit: would take longer than was tried (the longest run "
                    "took %s ms).",
                    longest);
-    if (any_end(c, LADDER_FLOOR))
+    if (any_end(c, STUDY_FLOOR))
         list_add(words, "floor: shorter steps do not lessen the error, for "
                         "rounding or what the gradient lacks.");
     list_print(words,

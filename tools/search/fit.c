@@ -1,6 +1,6 @@
 /* nevh: which schemes and gradients fit a scene.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "ladder.h"
+#include "study.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,7 +36,7 @@ bool gradient_fits(const plan *p, const char *gradient, char **why) {
     return !status;
 }
 
-int state_errors_mean_something(plan *p) {
+int plan_require_reference(plan *p) {
     int status = plan_reference(p, p->t_end);
     if (status)
         return status;

@@ -1,7 +1,7 @@
 /* nevh gradients: errors and costs of one gradient along the orbit.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradients_private.h"
-#include "ladder.h"
+#include "study.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

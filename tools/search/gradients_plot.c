@@ -4,7 +4,7 @@
    a V, at the bottom of which the best step is.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradients_private.h"
-#include "ladder.h"
+#include "study.h"
 #include "plot/plot.h"
 #include <math.h>
 #include <stdlib.h>

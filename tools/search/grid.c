@@ -1,6 +1,6 @@
 /* nevh: step sizes to choose from, and what errors over them tell.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "ladder.h"
+#include "study.h"
 #include <math.h>
 
 static int floor_of(int k, int count) {

@@ -8,9 +8,9 @@
 static const double lengths = 3;
 static const double most_work = 6; /* as row_work counts */
 
-static row *chosen(const advice *a, const ladder *l) {
-    const row *r = ladder_cheapest(l, a->target, a->search.by_state);
-    return &l->rung[r - l->rung];
+static row *chosen(const advice *a, const study *l) {
+    const row *r = study_cheapest(l, a->target, a->search.by_state);
+    return &l->level[r - l->level];
 }
 
 /* The same run once more, as `run` says; to be freed with its status. */
@@ -64,13 +64,13 @@ static plan longer_plan(advice *a) {
 }
 
 static void find_period(advice *a) {
-    preflight f = preflight_fly(&a->search.plan);
+    trial_run f = trial_run_new(&a->search.plan);
     a->period = f.frequency > 0 ? 2 * acos(-1) / f.frequency : NAN;
     free(f.failure);
 }
 
 void advice_follow(advice *a, plan *p) {
-    const ladder *found[ADVICE_MOST];
+    const study *found[ADVICE_MOST];
     size_t count = advice_list(a, found);
     plan *whole = &a->search.plan;
     whole->patience = 0;

@@ -6,21 +6,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool counts(const advice *a, const ladder *l) {
-    return a->named || a->search.by_state || !ladder_keeps_energy(l);
+static bool counts(const advice *a, const study *l) {
+    return a->named || a->search.by_state || !study_keeps_energy(l);
 }
 
-/* The cheapest rung that keeps the target, of the ladders that count. */
-static const row *keeps(const advice *a, const ladder *l) {
-    return counts(a, l) ? ladder_cheapest(l, a->target, a->search.by_state)
+/* The cheapest level that keeps the target, of the studies that count. */
+static const row *keeps(const advice *a, const study *l) {
+    return counts(a, l) ? study_cheapest(l, a->target, a->search.by_state)
                         : NULL;
 }
 
 static double least_work(const advice *a) {
     double least = INFINITY;
     for (size_t i = 0; i < a->count; i++) {
-        const ladder *l = &a->ladder[i];
-        const row *r = ladder_least_work(l, a->target, a->search.by_state);
+        const study *l = &a->study[i];
+        const row *r = study_least_work(l, a->target, a->search.by_state);
         if (counts(a, l) && r)
             least = fmin(least, r->work);
     }
@@ -31,55 +31,55 @@ static double least_work(const advice *a) {
 static const double nearly = 2.5;
 
 /* A shorter step costs more, but for the sweeps that it saves. */
-static bool is_hopeless(const advice *a, const ladder *l) {
-    return l->rung[l->count - 1].work > nearly * least_work(a);
+static bool is_hopeless(const advice *a, const study *l) {
+    return l->level[l->count - 1].work > nearly * least_work(a);
 }
 
 static void descend(advice *a) {
     static const double share = 0.6;
-    ladder *next;
+    study *next;
     for (size_t i = 0; i < a->count; i++)
-        ladder_begin(&a->search, &a->ladder[i]);
-    while ((next = ladder_next(a->ladder, a->count)) &&
+        study_begin(&a->search, &a->study[i]);
+    while ((next = study_next(a->study, a->count)) &&
            !search_is_over(&a->search, share))
         if (keeps(a, next) || is_hopeless(a, next))
-            next->end = LADDER_LIMIT;
+            next->end = STUDY_LIMIT;
         else
-            ladder_descend(&a->search, next);
+            study_descend(&a->search, next);
 }
 
 static void refine(advice *a) {
     for (size_t i = 0; i < a->count; i++) {
-        ladder *l = &a->ladder[i];
+        study *l = &a->study[i];
         size_t k = 0;
         while (k < l->count &&
-               ladder_error(&l->rung[k], a->search.by_state) > a->target)
+               study_error(&l->level[k], a->search.by_state) > a->target)
             k++;
         if (keeps(a, l) &&
-            (k == 0 || l->rung[k - 1].work < nearly * least_work(a)))
-            ladder_refine(&a->search, l, a->target, GRID_COARSE);
+            (k == 0 || l->level[k - 1].work < nearly * least_work(a)))
+            study_refine(&a->search, l, a->target, GRID_COARSE);
     }
 }
 
-static const row *least_worked(const advice *a, const ladder *l) {
-    return counts(a, l) ? ladder_least_work(l, a->target, a->search.by_state)
+static const row *least_worked(const advice *a, const study *l) {
+    return counts(a, l) ? study_least_work(l, a->target, a->search.by_state)
                         : NULL;
 }
 
-static void time_one(advice *a, ladder *l) {
+static void time_one(advice *a, study *l) {
     const row *r = least_worked(a, l);
     if (!r || isfinite(r->seconds))
         return;
-    row *rung = &l->rung[r - l->rung];
-    rows_time(&a->search.plan, &rung, 1, 1, a->search.repeats > 0);
+    row *level = &l->level[r - l->level];
+    rows_time(&a->search.plan, &level, 1, 1, a->search.repeats > 0);
 }
 
 /* The one that works least, of those without drift, or with another integrator
    than that of all; NULL: there is none. */
-static ladder *least_of(const advice *a, bool steady, const ladder * not ) {
-    ladder *best = NULL;
+static study *least_of(const advice *a, bool steady, const study * not ) {
+    study *best = NULL;
     for (size_t i = 0; i < a->count; i++) {
-        ladder *l = &a->ladder[i];
+        study *l = &a->study[i];
         const row *r = least_worked(a, l);
         if (r && !(steady && row_drifts(r)) &&
             !(not &&strcmp(not ->integrator, l->integrator) == 0) &&
@@ -92,10 +92,10 @@ static ladder *least_of(const advice *a, bool steady, const ladder * not ) {
 /* One run of each that may win, or be the runner-up or other evidence. */
 static void time_once(advice *a) {
     double least = least_work(a);
-    ladder *second = least_of(a, false, least_of(a, false, NULL));
-    ladder *steady = least_of(a, true, NULL);
+    study *second = least_of(a, false, least_of(a, false, NULL));
+    study *steady = least_of(a, true, NULL);
     for (size_t i = 0; i < a->count; i++) {
-        ladder *l = &a->ladder[i];
+        study *l = &a->study[i];
         const row *r = least_worked(a, l);
         bool varied = strcmp(l->gradient, a->gradients.item[0]) != 0;
         if (r &&
@@ -105,46 +105,46 @@ static void time_once(advice *a) {
 }
 
 /* Of those not yet taken. */
-static ladder *next_best(const advice *a, const bool taken[]) {
-    ladder *best = NULL;
+static study *next_best(const advice *a, const bool taken[]) {
+    study *best = NULL;
     for (size_t i = 0; i < a->count; i++) {
-        const row *r = taken[i] ? NULL : keeps(a, &a->ladder[i]);
+        const row *r = taken[i] ? NULL : keeps(a, &a->study[i]);
         if (r && (!best || r->seconds < keeps(a, best)->seconds))
-            best = &a->ladder[i];
+            best = &a->study[i];
     }
     return best;
 }
 
-static void add_ladder(advice *a, ladder l) {
-    a->ladder = tool_enlarge(a->ladder, a->count + 1, sizeof *a->ladder);
-    a->ladder[a->count++] = l;
+static void add_study(advice *a, study l) {
+    a->study = tool_enlarge(a->study, a->count + 1, sizeof *a->study);
+    a->study[a->count++] = l;
 }
 
 /* The same steps with another gradient, and finer ones where that is not
    enough. */
-static ladder with_gradient(advice *a, const ladder *l, int k,
-                            const char *gradient) {
-    ladder other = ladder_like(l, gradient);
+static study with_gradient(advice *a, const study *l, int k,
+                           const char *gradient) {
+    study other = study_like(l, gradient);
     for (int finer = 0; finer <= GRID_STRIDE; finer += GRID_COARSE) {
-        size_t i = ladder_run(&a->search, &other, k + finer);
-        if (ladder_error(&other.rung[i], a->search.by_state) <= a->target)
+        size_t i = study_run(&a->search, &other, k + finer);
+        if (study_error(&other.level[i], a->search.by_state) <= a->target)
             break;
     }
-    other.end = LADDER_LIMIT;
+    other.end = STUDY_LIMIT;
     return other;
 }
 
 /* The best, and those that take less than `factor` times as long; at most
    `most`. */
-static size_t list_best(const advice *a, double factor, ladder *found[],
+static size_t list_best(const advice *a, double factor, study *found[],
                         size_t most) {
     bool *taken = tool_allocate(a->count, sizeof *taken);
     size_t count = 0;
-    for (ladder *l; count < most && (l = next_best(a, taken));) {
+    for (study *l; count < most && (l = next_best(a, taken));) {
         if (count &&
             keeps(a, l)->seconds > factor * keeps(a, found[0])->seconds)
             break;
-        taken[l - a->ladder] = true;
+        taken[l - a->study] = true;
         found[count++] = l;
     }
     free(taken);
@@ -156,17 +156,17 @@ static size_t list_best(const advice *a, double factor, ladder *found[],
 static void vary_gradients(advice *a) {
     enum { FEW = 10 };
     static const double factor = 2.2;
-    ladder *found[FEW], model[FEW];
+    study *found[FEW], model[FEW];
     int k[FEW];
     size_t count = list_best(a, factor, found, FEW);
     for (size_t i = 0; i < count; i++) {
         model[i] = *found[i];
-        k[i] = found[i]->k[keeps(a, found[i]) - found[i]->rung];
+        k[i] = found[i]->k[keeps(a, found[i]) - found[i]->level];
     }
     for (size_t i = 0; i < count; i++)
         for (size_t g = 1; g < a->gradients.count; g++)
             if (!search_is_over(&a->search, 1))
-                add_ladder(
+                add_study(
                     a, with_gradient(a, &model[i], k[i], a->gradients.item[g]));
 }
 
@@ -174,23 +174,23 @@ static void vary_gradients(advice *a) {
 static void polish(advice *a) {
     enum { FEW = 8 };
     static const double factor = 1.4;
-    ladder *found[FEW];
+    study *found[FEW];
     size_t count = list_best(a, factor, found, FEW);
     for (size_t i = 0; i < count; i++)
-        ladder_refine(&a->search, found[i], a->target, 1);
+        study_refine(&a->search, found[i], a->target, 1);
 }
 
 /* Medians for those that may win. */
 static void time_best(advice *a) {
     enum { FEW = 24, USUAL = 9 };
     static const double factor = 1.7;
-    ladder *found[FEW];
-    row *rung[FEW];
+    study *found[FEW];
+    row *level[FEW];
     size_t count = list_best(a, factor, found, FEW);
     size_t repeats = a->search.repeats;
     for (size_t i = 0; i < count; i++)
-        rung[i] = &found[i]->rung[keeps(a, found[i]) - found[i]->rung];
-    rows_time(&a->search.plan, rung, count, repeats ? repeats : USUAL,
+        level[i] = &found[i]->level[keeps(a, found[i]) - found[i]->level];
+    rows_time(&a->search.plan, level, count, repeats ? repeats : USUAL,
               repeats > 0);
 }
 
@@ -209,9 +209,9 @@ static void take_gradients(advice *a, const options *o) {
 static void choose(advice *a) {
     bool *taken = tool_allocate(a->count, sizeof *taken);
     a->best = a->second = a->alone = a->steady = NULL;
-    for (ladder *l; (l = next_best(a, taken));) {
+    for (study *l; (l = next_best(a, taken));) {
         const char *name = l->integrator;
-        taken[l - a->ladder] = true;
+        taken[l - a->study] = true;
         if (!a->best)
             a->best = l;
         else if (!a->second && strcmp(name, a->best->integrator) != 0)
@@ -226,18 +226,18 @@ static void choose(advice *a) {
 
 /* The other answers, where they are too dear to win. */
 static void polish_others(advice *a) {
-    ladder *const others[] = {a->second, a->alone, a->steady};
+    study *const others[] = {a->second, a->alone, a->steady};
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
         if (others[i])
-            ladder_refine(&a->search, others[i], a->target, 1);
+            study_refine(&a->search, others[i], a->target, 1);
 }
 
 static void search_all(advice *a) {
     const plan *p = &a->search.plan;
-    a->ladder = tool_allocate(p->integrators.count, sizeof *a->ladder);
+    a->study = tool_allocate(p->integrators.count, sizeof *a->study);
     for (size_t i = 0; i < p->integrators.count; i++)
-        a->ladder[a->count++] =
-            ladder_new(p->integrators.item[i], a->gradients.item[0]);
+        a->study[a->count++] =
+            study_new(p->integrators.item[i], a->gradients.item[0]);
     descend(a);
     refine(a);
     time_once(a);
@@ -253,9 +253,9 @@ static void search_all(advice *a) {
     choose(a);
 }
 
-/* How many places finer a rung must be, as its order tells, at least one. */
+/* How many places finer a level must be, as its order tells, at least one. */
 static int places_short(const advice *a, const row *r) {
-    double over = ladder_error(r, a->search.by_state) / a->target;
+    double over = study_error(r, a->search.by_state) / a->target;
     double places = nevh_integrator_adaptive(r->scheme)
                         ? GRID_STRIDE * log10(over)
                         : 40 * log10(over) / r->order;
@@ -272,36 +272,36 @@ static double patience_for(const advice *a, const row *pilot) {
 }
 
 /* Whether the next place that is coarser was tried. */
-static bool was_polished(const ladder *l, size_t rung) {
-    return rung && l->k[rung] - l->k[rung - 1] == 1;
+static bool was_polished(const study *l, size_t level) {
+    return level && l->k[level] - l->k[level - 1] == 1;
 }
 
 /* The pilot's choice on the whole run, with shorter steps where that is not
    enough. */
-static ladder verified(advice *a, const ladder *l) {
+static study verified(advice *a, const study *l) {
     enum { TRIES = 6 };
-    ladder full = ladder_like(l, l->gradient);
-    int k = l->k[keeps(a, l) - l->rung];
-    if (was_polished(l, (size_t)(keeps(a, l) - l->rung)))
+    study full = study_like(l, l->gradient);
+    int k = l->k[keeps(a, l) - l->level];
+    if (was_polished(l, (size_t)(keeps(a, l) - l->level)))
         full.topped = 1; /* longer steps failed sooner */
     a->search.plan.patience = patience_for(a, keeps(a, l));
     for (int i = 0; i < TRIES && !(i && search_is_over(&a->search, 1)); i++) {
-        size_t rung = ladder_run(&a->search, &full, k);
-        const row *r = &full.rung[rung];
-        if (ladder_error(r, a->search.by_state) <= a->target || r->late)
+        size_t level = study_run(&a->search, &full, k);
+        const row *r = &full.level[level];
+        if (study_error(r, a->search.by_state) <= a->target || r->late)
             break;
         k += places_short(a, r) + i;
     }
-    ladder_refine(&a->search, &full, a->target, 1);
-    full.end = LADDER_LIMIT;
+    study_refine(&a->search, &full, a->target, 1);
+    full.end = STUDY_LIMIT;
     return full;
 }
 
 /* A reference for the whole is a plan's own. */
 static void verify(advice *a, plan *p) {
-    const ladder *pilots[ADVICE_MOST];
+    const study *pilots[ADVICE_MOST];
     size_t count = advice_list(a, pilots);
-    ladder *full = tool_allocate(count, sizeof *full);
+    study *full = tool_allocate(count, sizeof *full);
     p->t_end = a->search.plan.t_end = a->whole;
     if (p->reference) {
         nevh_reference_free(p->reference);
@@ -318,9 +318,9 @@ static void verify(advice *a, plan *p) {
     for (size_t i = 0; i < count; i++)
         full[i] = verified(a, pilots[i]);
     for (size_t i = 0; i < a->count; i++)
-        ladder_free(&a->ladder[i]);
-    free(a->ladder);
-    a->ladder = full, a->count = count;
+        study_free(&a->study[i]);
+    free(a->study);
+    a->study = full, a->count = count;
     time_once(a);
     time_best(a);
     choose(a);
@@ -348,8 +348,8 @@ static int advise(const options *o, plan *p, double whole) {
     if (a.best)
         advice_print(&a, o, out.stream);
     for (size_t i = 0; i < a.count; i++)
-        ladder_free(&a.ladder[i]);
-    free(a.ladder);
+        study_free(&a.study[i]);
+    free(a.study);
     free(a.not_longer);
     list_free(&a.gradients);
     return output_close(&out, status);
@@ -378,7 +378,7 @@ static int check_target(const options *o) {
 }
 
 static int check_observable(plan *p, const options *o) {
-    int status = state_errors_mean_something(p);
+    int status = plan_require_reference(p);
     if (!status)
         status = plan_observe(p, o->observable);
     if (status || o->error >= p->observable_error)
@@ -391,7 +391,7 @@ static int check_observable(plan *p, const options *o) {
 }
 
 static int check_reference(plan *p, double target) {
-    int status = state_errors_mean_something(p);
+    int status = plan_require_reference(p);
     if (status || target >= nevh_reference_error(p->reference))
         return status;
     tool_refuse("%s: a state error of %g cannot be told: that of the reference "

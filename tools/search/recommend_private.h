@@ -3,7 +3,7 @@
 #ifndef NEVH_RECOMMEND_PRIVATE_H
 #define NEVH_RECOMMEND_PRIVATE_H
 
-#include "ladder.h"
+#include "study.h"
 
 typedef struct {
     search search;
@@ -11,13 +11,13 @@ typedef struct {
     double pilot, whole; /* ends of runs; NAN: there was no pilot */
     bool named; /* by the user: those that keep any energy count, too */
     list gradients;
-    ladder *ladder;
+    study *study;
     size_t count;
-    ladder *best, *second;  /* with another integrator; NULL: none */
-    ladder *alone, *steady; /* from values of H; without drift */
-    double period;          /* the shortest that the orbit has; NAN: unknown */
-    double longer;          /* the end to which promises were followed */
-    char *not_longer;       /* why they were not; NULL */
+    study *best, *second;  /* with another integrator; NULL: none */
+    study *alone, *steady; /* from values of H; without drift */
+    double period;         /* the shortest that the orbit has; NAN: unknown */
+    double longer;         /* the end to which promises were followed */
+    char *not_longer;      /* why they were not; NULL */
 } advice;
 
 /* promise.c: the answers on the whole run, against a reference, and for how
@@ -30,7 +30,7 @@ double advice_holds(const row *);
 /* advice.c */
 enum { ADVICE_MOST = 4 };
 /* The answers, each once, the best first; returns their number. */
-size_t advice_list(const advice *, const ladder *found[ADVICE_MOST]);
+size_t advice_list(const advice *, const study *found[ADVICE_MOST]);
 void advice_print(const advice *, const options *, FILE *);
 /* Says why nothing keeps the target; TOOL_FAILED. */
 int advice_none(const advice *);

@@ -58,7 +58,7 @@ static attempt try_step(search *s, double dt) {
     s->work += row_work(p, r.scheme, &c, a.steps);
     a.kept = a.kept && !status;
     nevh_energy_free(a.energy);
-    row_shelve(p, &r, p->balance, stepper);
+    row_stepper_keep(p, &r, p->balance, stepper);
     return a;
 }
 

@@ -1,6 +1,6 @@
 /* nevh: what a search for steps may cost, and where it is.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "ladder.h"
+#include "study.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

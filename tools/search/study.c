@@ -1,6 +1,6 @@
 /* nevh: one integrator and gradient at many steps.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "ladder.h"
+#include "study.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,36 +11,36 @@ static const double usable_below = 0.5; /* of the scale of errors */
 /* As much as a run that is watched costs. */
 enum { RUNS_A_ROW = 2 };
 
-ladder ladder_new(const char *integrator, const char *gradient) {
+study study_new(const char *integrator, const char *gradient) {
     bool transformed;
-    return (ladder){.integrator = integrator,
-                    .gradient = gradient,
-                    .scheme = plan_scheme(integrator, &transformed)};
+    return (study){.integrator = integrator,
+                   .gradient = gradient,
+                   .scheme = plan_scheme(integrator, &transformed)};
 }
 
-ladder ladder_like(const ladder *l, const char *gradient) {
-    ladder other = ladder_new(l->integrator, gradient);
+study study_like(const study *l, const char *gradient) {
+    study other = study_new(l->integrator, gradient);
     other.keeps = l->keeps;
     return other;
 }
 
-void ladder_free(ladder *l) {
+void study_free(study *l) {
     for (size_t i = 0; i < l->count; i++) {
-        free(l->rung[i].status);
-        free(l->rung[i].promise);
+        free(l->level[i].status);
+        free(l->level[i].promise);
     }
-    free(l->rung);
+    free(l->level);
     free(l->k);
 }
 
-double ladder_error(const row *r, bool by_state) {
+double study_error(const row *r, bool by_state) {
     double error = !by_state       ? r->energy.max
                    : r->observable ? r->observable_error
                                    : r->state_error;
     return r->ran && isfinite(error) ? error : INFINITY;
 }
 
-static double grid_step(const ladder *l, int k) {
+static double grid_step(const study *l, int k) {
     return nevh_integrator_adaptive(l->scheme) ? grid_tolerance(k) : grid_dt(k);
 }
 
@@ -53,36 +53,36 @@ static void set_step(const search *s, row *r, int k) {
     }
 }
 
-/* For one rung more. */
-static void reserve(ladder *l) {
+/* For one level more. */
+static void reserve(study *l) {
     if (l->count < l->capacity)
         return;
     l->capacity = l->capacity ? 2 * l->capacity : 16;
-    row *rung = tool_allocate(l->capacity, sizeof *rung);
+    row *level = tool_allocate(l->capacity, sizeof *level);
     int *k = tool_allocate(l->capacity, sizeof *k);
     if (l->count) {
-        memcpy(rung, l->rung, l->count * sizeof *rung);
+        memcpy(level, l->level, l->count * sizeof *level);
         memcpy(k, l->k, l->count * sizeof *k);
     }
-    free(l->rung);
+    free(l->level);
     free(l->k);
-    l->rung = rung, l->k = k;
+    l->level = level, l->k = k;
 }
 
-static size_t insert(ladder *l, size_t i, int k, row r) {
+static size_t insert(study *l, size_t i, int k, row r) {
     size_t after = l->count - i;
     reserve(l);
-    memmove(l->rung + i + 1, l->rung + i, after * sizeof *l->rung);
+    memmove(l->level + i + 1, l->level + i, after * sizeof *l->level);
     memmove(l->k + i + 1, l->k + i, after * sizeof *l->k);
-    l->rung[i] = r, l->k[i] = k;
+    l->level[i] = r, l->k[i] = k;
     l->count++;
     return i;
 }
 
-static void forget(ladder *l, size_t i) {
-    free(l->rung[i].status);
+static void forget(study *l, size_t i) {
+    free(l->level[i].status);
     l->count--;
-    memmove(l->rung + i, l->rung + i + 1, (l->count - i) * sizeof *l->rung);
+    memmove(l->level + i, l->level + i + 1, (l->count - i) * sizeof *l->level);
     memmove(l->k + i, l->k + i + 1, (l->count - i) * sizeof *l->k);
 }
 
@@ -93,7 +93,7 @@ static void run_row(search *s, const plan *p, row *r) {
     s->runs++;
 }
 
-size_t ladder_run(search *s, ladder *l, int k) {
+size_t study_run(search *s, study *l, int k) {
     size_t i = 0;
     while (i < l->count && l->k[i] < k)
         i++;
@@ -107,8 +107,8 @@ size_t ladder_run(search *s, ladder *l, int k) {
     return insert(l, i, k, r);
 }
 
-static bool is_usable(const ladder *l, size_t i, bool by_state) {
-    return ladder_error(&l->rung[i], by_state) < usable_below;
+static bool is_usable(const study *l, size_t i, bool by_state) {
+    return study_error(&l->level[i], by_state) < usable_below;
 }
 
 static bool has_steps(const search *s, int k) {
@@ -118,32 +118,32 @@ static bool has_steps(const search *s, int k) {
 
 /* To coarser ones, of which only those that are usable stay, as long as they
    save something: sweeps may cost more than steps save. */
-static void ascend(search *s, ladder *l) {
+static void ascend(search *s, study *l) {
     static const double saves = 0.9;
     enum { STRIDES = 6 };
     for (int i = 0; i < STRIDES && !search_is_over(s, 1); i++) {
         int k = l->k[0] - GRID_STRIDE;
         if (!has_steps(s, k))
             return;
-        ladder_run(s, l, k);
+        study_run(s, l, k);
         if (!is_usable(l, 0, s->by_state)) {
             forget(l, 0);
             return;
         }
-        if (l->rung[0].work > saves * l->rung[1].work)
+        if (l->level[0].work > saves * l->level[1].work)
             return;
     }
 }
 
-static void run_given(search *s, ladder *l) {
+static void run_given(search *s, study *l) {
     size_t count = nevh_integrator_adaptive(l->scheme) ? s->tolerances : s->dts;
     for (size_t i = 0; i < count; i++)
-        ladder_run(s, l, (int)i);
-    l->end = LADDER_GIVEN;
+        study_run(s, l, (int)i);
+    l->end = STUDY_GIVEN;
 }
 
 /* By what the scheme claims. */
-static bool is_kept(const search *s, const ladder *l) {
+static bool is_kept(const search *s, const study *l) {
     return !s->by_state && !s->keeping &&
            nevh_integrator_preserves_energy(l->scheme) == NEVH_YES;
 }
@@ -152,29 +152,29 @@ static bool is_kept(const search *s, const ladder *l) {
    coarse steps goes on after the end where that comes too soon.  Schemes that
    claim it are taken at their word; where H is quadratic, Gauss does so, too.
  */
-static bool keeps_at_any_step(search *s, const ladder *l) {
+static bool keeps_at_any_step(search *s, const study *l) {
     static const double kept = 1e-8, steps = 8;
     enum { DOUBLINGS = 7 };
     if (nevh_integrator_adaptive(l->scheme) || !l->count)
         return false;
-    bool keeps = ladder_error(&l->rung[0], false) < kept;
+    bool keeps = study_error(&l->level[0], false) < kept;
     plan longer = s->plan;
     longer.reference = NULL;
     for (int i = 1; keeps && i <= DOUBLINGS && !search_is_over(s, 1); i++) {
         row r = {.integrator = l->integrator,
                  .gradient = l->gradient,
                  .scheme = l->scheme,
-                 .dt = ldexp(l->rung[0].dt, i)};
+                 .dt = ldexp(l->level[0].dt, i)};
         longer.t_end = fmax(s->plan.t_end, s->plan.run->t_start + steps * r.dt);
         run_row(s, &longer, &r);
-        keeps = ladder_error(&r, false) < kept;
+        keeps = study_error(&r, false) < kept;
         free(r.status);
     }
     return keeps;
 }
 
 /* The scene's dt is one for schemes of order 2 to 4. */
-static int first_place(const search *s, const ladder *l) {
+static int first_place(const search *s, const study *l) {
     int order = nevh_integrator_order(l->scheme);
     int k = grid_dt_place(search_longest_dt(&s->plan));
     for (int coarser = order >= 8 ? 2 : order >= 6; coarser; coarser--)
@@ -183,13 +183,13 @@ static int first_place(const search *s, const ladder *l) {
     return k;
 }
 
-static void find_out_whether_kept(search *s, ladder *l) {
+static void find_out_whether_kept(search *s, study *l) {
     l->keeps = !s->by_state &&
                (nevh_integrator_preserves_energy(l->scheme) == NEVH_YES ||
                 keeps_at_any_step(s, l));
 }
 
-void ladder_begin(search *s, ladder *l) {
+void study_begin(search *s, study *l) {
     enum { FIRST_TOLERANCE = 2 * GRID_STRIDE };
     bool adapts = nevh_integrator_adaptive(l->scheme);
     if (s->dt) {
@@ -198,47 +198,47 @@ void ladder_begin(search *s, ladder *l) {
         return;
     }
     if (search_is_over(s, 0.5)) {
-        l->end = LADDER_LIMIT;
+        l->end = STUDY_LIMIT;
         return;
     }
     int k = adapts ? FIRST_TOLERANCE : first_place(s, l);
-    size_t i = ladder_run(s, l, k);
-    if (l->rung[i].late)
-        l->end = LADDER_LIMIT;
-    else if (!l->rung[i].ran && !l->rung[i].failed)
-        l->end = LADDER_REFUSED;
+    size_t i = study_run(s, l, k);
+    if (l->level[i].late)
+        l->end = STUDY_LIMIT;
+    else if (!l->level[i].ran && !l->level[i].failed)
+        l->end = STUDY_REFUSED;
     else if (!adapts && is_usable(l, i, s->by_state) && !is_kept(s, l))
         ascend(s, l);
     find_out_whether_kept(s, l);
-    if (!s->by_state && !s->keeping && ladder_keeps_energy(l))
-        l->end = LADDER_FLOOR;
+    if (!s->by_state && !s->keeping && study_keeps_energy(l))
+        l->end = STUDY_FLOOR;
 }
 
-static double next_work(const ladder *l) {
+static double next_work(const study *l) {
     double stretch = nevh_integrator_adaptive(l->scheme)
                          ? pow(10, 1.0 / nevh_integrator_order(l->scheme))
                          : 2;
-    return stretch * l->rung[l->count - 1].work;
+    return stretch * l->level[l->count - 1].work;
 }
 
-ladder *ladder_next(ladder ladders[], size_t count) {
-    ladder *next = NULL;
+study *study_next(study studies[], size_t count) {
+    study *next = NULL;
     for (size_t i = 0; i < count; i++)
-        if (ladders[i].end == LADDER_OPEN &&
-            (!next || next_work(&ladders[i]) < next_work(next)))
-            next = &ladders[i];
+        if (studies[i].end == STUDY_OPEN &&
+            (!next || next_work(&studies[i]) < next_work(next)))
+            next = &studies[i];
     return next;
 }
 
-/* Rungs at the end that brought next to nothing.  Those of looser tolerances
+/* Levels at the end that brought next to nothing.  Those of looser tolerances
    than the distance of outputs asks for are the same run. */
-static size_t count_level(const ladder *l, bool by_state) {
-    static const double level = 0.7, same = 0.99;
+static size_t count_level(const study *l, bool by_state) {
+    static const double flat = 0.7, same = 0.99;
     size_t count = 0;
     for (size_t i = l->count; i-- > 1; count++) {
-        const row *fine = &l->rung[i], *coarse = &l->rung[i - 1];
-        if (!(ladder_error(fine, by_state) >
-              level * ladder_error(coarse, by_state)) ||
+        const row *fine = &l->level[i], *coarse = &l->level[i - 1];
+        if (!(study_error(fine, by_state) >
+              flat * study_error(coarse, by_state)) ||
             fine->dt > same * coarse->dt)
             break;
     }
@@ -247,58 +247,58 @@ static size_t count_level(const ladder *l, bool by_state) {
 
 /* Whether shorter steps are of no use: at rounding at once, elsewhere when a
    few were of none, since errors of coarse steps may be level, too. */
-static bool is_level(const ladder *l, bool by_state) {
+static bool is_level(const study *l, bool by_state) {
     static const double small = 1e-11, usual = 1e-2;
     size_t count = count_level(l, by_state);
-    double last = ladder_error(&l->rung[l->count - 1], by_state);
-    double first = ladder_error(&l->rung[0], by_state);
+    double last = study_error(&l->level[l->count - 1], by_state);
+    double first = study_error(&l->level[0], by_state);
     return last <= rounding || (count > 0 && last < small) ||
            (count > 1 && last < 0.1 * first) || (count > 2 && last < usual);
 }
 
-/* Coarse rungs were of no use once a finer one is of some. */
-static void drop_useless(ladder *l, bool by_state) {
+/* Coarse levels were of no use once a finer one is of some. */
+static void drop_useless(study *l, bool by_state) {
     while (l->count > 1 && !is_usable(l, 0, by_state) &&
            is_usable(l, l->count - 1, by_state))
         forget(l, 0);
 }
 
-/* The rung that took too long has no numbers. */
-static void give_up(ladder *l) {
-    l->end = LADDER_LIMIT;
+/* The level that took too long has no numbers. */
+static void give_up(study *l) {
+    l->end = STUDY_LIMIT;
     if (l->count > 1)
         forget(l, l->count - 1);
 }
 
 /* What cannot take a first step, however short, will not take a shorter one. */
-static bool cannot_begin(const ladder *l) {
+static bool cannot_begin(const study *l) {
     enum { TRIES = 6 };
     size_t count = 0;
     for (size_t i = l->count; i-- > 0 && count < TRIES; count++)
-        if (!l->rung[i].failed || l->rung[i].late || l->rung[i].steps > 0)
+        if (!l->level[i].failed || l->level[i].late || l->level[i].steps > 0)
             break;
     return count == TRIES;
 }
 
-void ladder_descend(search *s, ladder *l) {
-    const row *last = &l->rung[l->count - 1];
-    bool finest = l->rung[0].tolerance > 0 && last->tolerance < 1e-13;
+void study_descend(search *s, study *l) {
+    const row *last = &l->level[l->count - 1];
+    bool finest = l->level[0].tolerance > 0 && last->tolerance < 1e-13;
     if (cannot_begin(l)) {
-        l->end = LADDER_FAILED;
+        l->end = STUDY_FAILED;
     } else if (finest || is_level(l, s->by_state)) {
-        l->end = LADDER_FLOOR;
+        l->end = STUDY_FLOOR;
     } else if (next_work(l) > s->plan.patience) {
-        l->end = LADDER_LIMIT;
+        l->end = STUDY_LIMIT;
     } else {
-        ladder_run(s, l, l->k[l->count - 1] + GRID_STRIDE);
-        if (l->rung[l->count - 1].late)
+        study_run(s, l, l->k[l->count - 1] + GRID_STRIDE);
+        if (l->level[l->count - 1].late)
             give_up(l);
         drop_useless(l, s->by_state);
     }
 }
 
 /* How much less the other must work. */
-static double lead(const ladder *l, const ladder *other, bool useless) {
+static double lead(const study *l, const study *other, bool useless) {
     static const double behind = 2, far_behind = 8;
     bool higher = nevh_integrator_order(other->scheme) >=
                   nevh_integrator_order(l->scheme);
@@ -307,27 +307,27 @@ static double lead(const ladder *l, const ladder *other, bool useless) {
     return higher ? behind : far_behind;
 }
 
-bool ladder_is_behind(const search *s, const ladder *l, const ladder others[],
-                      size_t count) {
-    const row *last = &l->rung[l->count - 1];
-    double error = ladder_error(last, s->by_state);
+bool study_is_behind(const search *s, const study *l, const study others[],
+                     size_t count) {
+    const row *last = &l->level[l->count - 1];
+    double error = study_error(last, s->by_state);
     bool useless = error >= usable_below;
     for (size_t i = 0; i < count; i++) {
-        const ladder *m = &others[i];
+        const study *m = &others[i];
         double factor = lead(l, m, useless);
         for (size_t k = 0; k < m->count; k++)
             if (m->gradient == l->gradient &&
-                (s->by_state || !ladder_keeps_energy(m)) &&
-                ladder_error(&m->rung[k], s->by_state) <=
+                (s->by_state || !study_keeps_energy(m)) &&
+                study_error(&m->level[k], s->by_state) <=
                     fmin(error, usable_below) &&
-                factor * m->rung[k].work < last->work)
+                factor * m->level[k].work < last->work)
                 return true;
     }
     return false;
 }
 
-void ladder_time(const search *s, ladder *l, size_t i) {
-    row *r = &l->rung[i];
+void study_time(const search *s, study *l, size_t i) {
+    row *r = &l->level[i];
     if (!r->ran || isfinite(r->seconds))
         return;
     row_finish(&s->plan, r);
@@ -338,21 +338,21 @@ void ladder_time(const search *s, ladder *l, size_t i) {
               s->repeats > 0);
 }
 
-/* The first rung that keeps the target. */
-static size_t first_below(const ladder *l, double target, bool by_state) {
+/* The first level that keeps the target. */
+static size_t first_below(const study *l, double target, bool by_state) {
     size_t i = 0;
-    while (i < l->count && ladder_error(&l->rung[i], by_state) > target)
+    while (i < l->count && study_error(&l->level[i], by_state) > target)
         i++;
     return i;
 }
 
-/* A place strictly between rungs i - 1 and i: where the target is expected. */
-static int place_between(const ladder *l, size_t i, double target,
+/* A place strictly between levels i - 1 and i: where the target is expected. */
+static int place_between(const study *l, size_t i, double target,
                          bool by_state) {
     double step[2], error[2];
     for (size_t j = 0; j < 2; j++) {
         step[j] = grid_step(l, l->k[i - 1 + j]);
-        error[j] = ladder_error(&l->rung[i - 1 + j], by_state);
+        error[j] = study_error(&l->level[i - 1 + j], by_state);
     }
     int k = l->k[i] - 1;
     if (isinf(error[0]))
@@ -363,16 +363,16 @@ static int place_between(const ladder *l, size_t i, double target,
     return k;
 }
 
-/* Where the coarsest rung keeps the target, those up to the next stride, which
+/* Where the coarsest level keeps the target, those up to the next stride, which
    was unusable or too long for the run. */
-static void refine_top(search *s, ladder *l, double target, int gap) {
+static void refine_top(search *s, study *l, double target, int gap) {
     int beyond = l->k[0] - GRID_STRIDE;
-    while (ladder_error(&l->rung[0], s->by_state) <= target &&
+    while (study_error(&l->level[0], s->by_state) <= target &&
            l->k[0] - beyond > gap && !search_is_over(s, 1)) {
         int middle = beyond + (l->k[0] - beyond) / 2;
         bool runs = has_steps(s, middle);
         if (runs)
-            ladder_run(s, l, middle);
+            study_run(s, l, middle);
         if (!runs || !is_usable(l, 0, s->by_state))
             beyond = middle;
         if (runs && !is_usable(l, 0, s->by_state))
@@ -380,9 +380,9 @@ static void refine_top(search *s, ladder *l, double target, int gap) {
     }
 }
 
-void ladder_refine(search *s, ladder *l, double target, int gap) {
+void study_refine(search *s, study *l, double target, int gap) {
     enum { SECANTS = 2 };
-    if (l->end == LADDER_GIVEN || l->end == LADDER_REFUSED || !l->count)
+    if (l->end == STUDY_GIVEN || l->end == STUDY_REFUSED || !l->count)
         return;
     if (!nevh_integrator_adaptive(l->scheme) && (!l->topped || gap < l->topped))
         refine_top(s, l, target, gap), l->topped = gap;
@@ -390,13 +390,13 @@ void ladder_refine(search *s, ladder *l, double target, int gap) {
         size_t i = first_below(l, target, s->by_state);
         if (i == 0 || i == l->count || l->k[i] - l->k[i - 1] <= gap)
             return;
-        ladder_run(s, l,
-                   runs < SECANTS ? place_between(l, i, target, s->by_state)
-                                  : l->k[i] - (l->k[i] - l->k[i - 1]) / 2);
+        study_run(s, l,
+                  runs < SECANTS ? place_between(l, i, target, s->by_state)
+                                 : l->k[i] - (l->k[i] - l->k[i - 1]) / 2);
     }
 }
 
-static size_t widest_gap(const ladder *l) {
+static size_t widest_gap(const study *l) {
     size_t widest = 0;
     for (size_t i = 1; i < l->count; i++)
         if (!widest || l->k[i] - l->k[i - 1] > l->k[widest] - l->k[widest - 1])
@@ -404,51 +404,51 @@ static size_t widest_gap(const ladder *l) {
     return widest;
 }
 
-void ladder_fill(search *s, ladder *l, size_t count) {
-    while (l->count && l->count < count && l->end < LADDER_GIVEN &&
+void study_fill(search *s, study *l, size_t count) {
+    while (l->count && l->count < count && l->end < STUDY_GIVEN &&
            !search_is_over(s, 1)) {
         size_t i = widest_gap(l);
         int gap = i ? l->k[i] - l->k[i - 1] : 0;
-        ladder_run(s, l,
-                   gap > GRID_COARSE ? l->k[i] - gap / 2
-                                     : l->k[l->count - 1] + GRID_COARSE);
+        study_run(s, l,
+                  gap > GRID_COARSE ? l->k[i] - gap / 2
+                                    : l->k[l->count - 1] + GRID_COARSE);
     }
 }
 
-static const row *least(const ladder *l, double target, bool by_state,
+static const row *least(const study *l, double target, bool by_state,
                         bool by_work) {
     double *error = tool_allocate(l->count, sizeof *error);
     double *price = tool_allocate(l->count, sizeof *price);
     for (size_t i = 0; i < l->count; i++) {
-        error[i] = ladder_error(&l->rung[i], by_state);
-        price[i] = by_work ? l->rung[i].work : l->rung[i].seconds;
+        error[i] = study_error(&l->level[i], by_state);
+        price[i] = by_work ? l->level[i].work : l->level[i].seconds;
         if (isnan(price[i]))
             error[i] = INFINITY;
     }
     size_t i = grid_cheapest(error, price, l->count, target);
     free(error);
     free(price);
-    return i < l->count ? &l->rung[i] : NULL;
+    return i < l->count ? &l->level[i] : NULL;
 }
 
-const row *ladder_cheapest(const ladder *l, double target, bool by_state) {
+const row *study_cheapest(const study *l, double target, bool by_state) {
     return least(l, target, by_state, false);
 }
 
-const row *ladder_least_work(const ladder *l, double target, bool by_state) {
+const row *study_least_work(const study *l, double target, bool by_state) {
     return least(l, target, by_state, true);
 }
 
-const row *ladder_failure(const ladder *l) {
+const row *study_failure(const study *l) {
     const row *failed = NULL;
     for (size_t i = 0; i < l->count; i++)
-        if (l->rung[i].ran)
+        if (l->level[i].ran)
             return NULL;
-        else if (!failed && l->rung[i].failed && !l->rung[i].late)
-            failed = &l->rung[i];
+        else if (!failed && l->level[i].failed && !l->level[i].late)
+            failed = &l->level[i];
     return failed;
 }
 
-bool ladder_keeps_energy(const ladder *l) {
-    return l->keeps && !ladder_failure(l);
+bool study_keeps_energy(const study *l) {
+    return l->keeps && !study_failure(l);
 }

@@ -14,15 +14,15 @@ typedef struct {
     nevh_stepper *stepper; /* NULL: an empty place */
 } place;
 
-struct shelf {
+struct stepper_cache {
     place places[MOST];
 };
 
-shelf *shelf_new(void) {
-    return tool_allocate(1, sizeof(shelf));
+stepper_cache *stepper_cache_new(void) {
+    return tool_allocate(1, sizeof(stepper_cache));
 }
 
-void shelf_free(shelf *s) {
+void stepper_cache_free(stepper_cache *s) {
     for (size_t i = 0; s && i < MOST; i++)
         nevh_stepper_free(s->places[i].stepper);
     free(s);
@@ -44,7 +44,7 @@ static nevh_stepper *plan_new(const plan *p, const row *r, bool balance) {
 
 nevh_stepper *row_stepper(const plan *p, const row *r, bool balance) {
     for (size_t i = 0; i < MOST; i++) {
-        place *at = &p->shelf->places[i];
+        place *at = &p->steppers->places[i];
         nevh_stepper *s = at->stepper;
         if (!is_alike(at, r, balance))
             continue;
@@ -56,12 +56,13 @@ nevh_stepper *row_stepper(const plan *p, const row *r, bool balance) {
 }
 
 /* Those that were refused, or failed, keep the message, and are not kept. */
-void row_shelve(const plan *p, const row *r, bool balance, nevh_stepper *s) {
+void row_stepper_keep(const plan *p, const row *r, bool balance,
+                      nevh_stepper *s) {
     size_t i = 0;
-    while (i < MOST && p->shelf->places[i].stepper)
+    while (i < MOST && p->steppers->places[i].stepper)
         i++;
     if (i < MOST && p->n <= MOST_DOF && !nevh_stepper_status(s))
-        p->shelf->places[i] =
+        p->steppers->places[i] =
             (place){r->integrator, r->gradient, r->tolerance, balance, s};
     else
         nevh_stepper_free(s);

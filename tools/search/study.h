@@ -1,7 +1,7 @@
 /* nevh: work and precision: what cost and recommend share.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#ifndef NEVH_LADDER_H
-#define NEVH_LADDER_H
+#ifndef NEVH_STUDY_H
+#define NEVH_STUDY_H
 
 #include "experiment/row.h"
 
@@ -28,23 +28,23 @@ size_t grid_cheapest(const double error[], const double work[], size_t count,
                      double target);
 
 typedef enum {
-    LADDER_OPEN,
-    LADDER_FLOOR, /* shorter steps do not lessen the error */
-    LADDER_LIMIT, /* they would take longer than allowed */
-    LADDER_GIVEN, /* the steps asked for, and no others */
-    LADDER_REFUSED,
-    LADDER_FAILED /* in its first step, however short that is */
-} ladder_end;
+    STUDY_OPEN,
+    STUDY_FLOOR, /* shorter steps do not lessen the error */
+    STUDY_LIMIT, /* they would take longer than allowed */
+    STUDY_GIVEN, /* the steps asked for, and no others */
+    STUDY_REFUSED,
+    STUDY_FAILED /* in its first step, however short that is */
+} study_end;
 typedef struct {
     const char *integrator, *gradient;
     const nevh_integrator *scheme;
-    row *rung; /* coarse to fine */
-    int *k;    /* their places on the grid */
+    row *level; /* coarse to fine */
+    int *k;     /* their places on the grid */
     size_t count, capacity;
     int topped; /* gap to which steps beyond the coarsest were tried; 0 */
     bool keeps; /* the energy, also at steps that are far too long */
-    ladder_end end;
-} ladder;
+    study_end end;
+} study;
 typedef struct {
     plan plan; /* a copy, in a hurry */
     bool by_state, quiet;
@@ -70,45 +70,45 @@ void search_progress(const search *, const row *);
 void search_end(search *);
 double search_longest_dt(const plan *);
 
-/* ladder.c: one integrator and gradient at many steps. */
-ladder ladder_new(const char *integrator, const char *gradient);
+/* study.c: one integrator and gradient at many steps. */
+study study_new(const char *integrator, const char *gradient);
 /* The same integrator with another gradient, or for another end. */
-ladder ladder_like(const ladder *, const char *gradient);
-void ladder_free(ladder *);
+study study_like(const study *, const char *gradient);
+void study_free(study *);
 /* Finds the coarsest usable step, from the scene's on. */
-void ladder_begin(search *, ladder *);
-/* Next: the one with the least work in its next rung; NULL: none is open. */
-ladder *ladder_next(ladder ladders[], size_t count);
-void ladder_descend(search *, ladder *);
+void study_begin(search *, study *);
+/* Next: the one with the least work in its next level; NULL: none is open. */
+study *study_next(study studies[], size_t count);
+void study_descend(search *, study *);
 /* Whether another is so far ahead that shorter steps will not change it. */
-bool ladder_is_behind(const search *, const ladder *, const ladder others[],
-                      size_t count);
-/* Measures the time of a rung again, as often as asked for. */
-void ladder_time(const search *, ladder *, size_t rung);
-/* Rungs between those there are, until the coarsest that keeps the target is no
+bool study_is_behind(const search *, const study *, const study others[],
+                     size_t count);
+/* Measures the time of a level again, as often as asked for. */
+void study_time(const search *, study *, size_t level);
+/* Levels between those there are, until the coarsest that keeps the target is no
    more than `gap` places finer than one that does not. */
-void ladder_refine(search *, ladder *, double target, int gap);
-/* Rungs in the widest gaps until there are so many. */
-void ladder_fill(search *, ladder *, size_t count);
-size_t ladder_run(search *, ladder *, int k); /* index of the rung */
+void study_refine(search *, study *, double target, int gap);
+/* Levels in the widest gaps until there are so many. */
+void study_fill(search *, study *, size_t count);
+size_t study_run(search *, study *, int k); /* index of the level */
 /* Of states, or of the observable where rows have one; INFINITY: none. */
-double ladder_error(const row *, bool by_state);
+double study_error(const row *, bool by_state);
 const char *search_error(const search *); /* "energy", "state", "observable" */
-/* A rung that failed, where none ran; NULL: some ran, or were refused. */
-const row *ladder_failure(const ladder *);
-/* The cheapest rung by seconds, or by work; NULL: none keeps the target. */
-const row *ladder_cheapest(const ladder *, double target, bool by_state);
-const row *ladder_least_work(const ladder *, double target, bool by_state);
+/* A level that failed, where none ran; NULL: some ran, or were refused. */
+const row *study_failure(const study *);
+/* The cheapest level by seconds, or by work; NULL: none keeps the target. */
+const row *study_cheapest(const study *, double target, bool by_state);
+const row *study_least_work(const study *, double target, bool by_state);
 /* Whether the energy says nothing of its orbits, being kept at any step: as
-   ladder_begin found. */
-bool ladder_keeps_energy(const ladder *);
+   study_begin found. */
+bool study_keeps_energy(const study *);
 
 /* fit.c: names of the schemes, and of the gradients, that fit. */
 void fitting_integrators(const plan *, list *names);
 bool gradient_fits(const plan *, const char *gradient, char **why);
 /* Makes the reference.  Otherwise the message is printed and the exit status
    returned. */
-int state_errors_mean_something(plan *);
+int plan_require_reference(plan *);
 
 /* Ends the plan earlier where runs of its integrators would take too long;
    returns the end that it had. */

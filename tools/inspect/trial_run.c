@@ -1,4 +1,4 @@
-/* nevh check: what a short flight ahead says of a run.
+/* nevh check: what a short trial run says of a run.
 
    The orbit by a method of order 8 that adapts its steps, and a neighbour that
    is brought back to it again and again [G. Benettin, L. Galgani, J.-M.
@@ -17,7 +17,7 @@ static const double enough = 2;    /* seconds */
 static const double beside = 1e-7; /* of the lengths */
 static const double far_off = 1e3; /* times that */
 /* Factors of e by which a neighbour parts: in all, and in the second half of
-   the flight.  Apart from chaos it parts in proportion to the time (a factor 2
+   the trial.  Apart from chaos it parts in proportion to the time (a factor 2
    in the second half), with resonance to its square (4). */
 static const double parted = 12, parted_late = 3, parted_little = 1.5;
 static const double many_turns = 30;
@@ -25,7 +25,7 @@ static const double tolerance = 1e-10;
 
 typedef struct {
     const plan *plan;
-    preflight *found;
+    trial_run *found;
     pace fastest;
     nevh_field *field;        /* for values */
     nevh_field *gradient;     /* the first that is asked for */
@@ -37,10 +37,10 @@ typedef struct {
     double fold[SAMPLES + 1]; /* of each sample */
     size_t samples;
     clock_t begin;
-} flight;
+} trial;
 
 /* H at the state of lane 0, variable k moved. */
-static bool is_there(flight *f, double t, size_t k, double move) {
+static bool is_there(trial *f, double t, size_t k, double move) {
     size_t n = f->plan->n;
     double h = NAN;
     for (size_t i = 0; i < 2 * n; i++)
@@ -50,7 +50,7 @@ static bool is_there(flight *f, double t, size_t k, double move) {
 }
 
 /* Up to two lengths to either side, from near to far. */
-static void look_for_edge(flight *f, double t) {
+static void look_for_edge(trial *f, double t) {
     for (size_t k = 0; k < 2 * f->plan->n; k++)
         for (int i = 0; i < 12; i++) {
             double part = ldexp(1, i / 2 - 4);
@@ -64,7 +64,7 @@ static void look_for_edge(flight *f, double t) {
         }
 }
 
-static void put_beside(flight *f) {
+static void put_beside(trial *f) {
     for (size_t i = 0; i < 2 * f->plan->n; i++)
         f->z[2 * i + 1] = f->z[2 * i] + (i ? 0 : beside * f->length[i]);
 }
@@ -72,7 +72,7 @@ static void put_beside(flight *f) {
 /* Notes how far the neighbour has parted in all, and brings it back to its
    distance where that is far off.  Not each time: the errors of the steps would
    be brought back with it, and grow as if there were chaos. */
-static void follow_neighbour(flight *f, size_t sample) {
+static void follow_neighbour(trial *f, size_t sample) {
     size_t n = f->plan->n;
     double sum = 0;
     for (size_t i = 0; i < 2 * n; i++) {
@@ -96,7 +96,7 @@ static void follow_neighbour(flight *f, size_t sample) {
 
 /* Rounding noise of the first gradient over the steps of the first dt, at its
    largest. */
-static void look_for_noise(flight *f, double t) {
+static void look_for_noise(trial *f, double t) {
     const plan *p = f->plan;
     double steps = fmin(1e15, (p->t_end - p->run->t_start) / p->dt[0]);
     double noise = 0;
@@ -105,12 +105,12 @@ static void look_for_noise(flight *f, double t) {
         f->found->noise = fmax(f->found->noise, noise / f->scale);
 }
 
-static void take_first_lane(flight *f) {
+static void take_first_lane(trial *f) {
     for (size_t k = 0; k < 2 * f->plan->n; k++)
         f->trial[k] = f->z[2 * k];
 }
 
-static void look(flight *f, int i, double t) {
+static void look(trial *f, int i, double t) {
     size_t n = f->plan->n;
     take_first_lane(f);
     pace_observe(&f->fastest, 0, t, f->trial, f->trial + n);
@@ -120,7 +120,7 @@ static void look(flight *f, int i, double t) {
 }
 
 /* Whether the run would end here. */
-static bool is_stopped(flight *f, double t) {
+static bool is_stopped(trial *f, double t) {
     bool reached;
     take_first_lane(f);
     return !nevh_scene_stop_reached(f->plan->scene, t, f->trial,
@@ -128,7 +128,7 @@ static bool is_stopped(flight *f, double t) {
            reached;
 }
 
-static void fly(flight *f, nevh_stepper *s) {
+static void run(trial *f, nevh_stepper *s) {
     const plan *p = f->plan;
     double t = p->run->t_start, h = (p->t_end - t) / SAMPLES;
     int status = nevh_stepper_status(s);
@@ -145,7 +145,7 @@ static void fly(flight *f, nevh_stepper *s) {
             (double)(clock() - f->begin) / CLOCKS_PER_SEC > enough)
             break;
     }
-    f->found->flown = t - p->run->t_start;
+    f->found->length = t - p->run->t_start;
     if (status)
         f->found->failure = text_print("%s", nevh_stepper_message(s));
 }
@@ -157,8 +157,8 @@ static double most(const double numbers[], size_t from, size_t to) {
     return found;
 }
 
-/* Of the last fold: from those of parts of the flight, which differ. */
-static double spread(const flight *f) {
+/* Of the last fold: from those of parts of the trial run, which differ. */
+static double spread(const trial *f) {
     enum { PARTS = 8 };
     size_t last = f->samples;
     double mean = f->fold[last] / PARTS, sum = 0;
@@ -173,10 +173,10 @@ static double spread(const flight *f) {
 
 /* Whether neighbours part as in chaos; from the largest values of either half,
    because their distance goes up and down with each turn. */
-static void judge(const flight *f) {
-    preflight *found = f->found;
+static void judge(const trial *f) {
+    trial_run *found = f->found;
     size_t last = f->samples, half = last / 2;
-    double time = found->flown, turns = found->frequency * time / (2 * M_PI);
+    double time = found->length, turns = found->frequency * time / (2 * M_PI);
     if (f->plan->n == 1 && !f->plan->time) {
         found->outlook = OUTLOOK_PLANE;
         return;
@@ -192,7 +192,7 @@ static void judge(const flight *f) {
         found->outlook = OUTLOOK_REGULAR;
 }
 
-static bool take_lengths(flight *f, const nevh_options *o) {
+static bool take_lengths(trial *f, const nevh_options *o) {
     nevh_probe *probe = nevh_probe_new(f->plan->system, o);
     bool there = !nevh_probe_status(probe);
     if (there)
@@ -204,7 +204,7 @@ static bool take_lengths(flight *f, const nevh_options *o) {
 
 /* Both lanes start in lane 0's state, so that scales and steps are found around
    it. */
-static nevh_stepper *new_stepper(const flight *f) {
+static nevh_stepper *new_stepper(const trial *f) {
     const plan *p = f->plan;
     nevh_options o = plan_options(p, "exact");
     for (size_t k = 0; k < p->n; k++) {
@@ -220,11 +220,11 @@ static nevh_stepper *new_stepper(const flight *f) {
     return nevh_stepper_new(p->system, nevh_dop853, &o);
 }
 
-preflight preflight_fly(const plan *p) {
-    preflight found = {.edge = INFINITY};
+trial_run trial_run_new(const plan *p) {
+    trial_run found = {.edge = INFINITY};
     nevh_options given = plan_options(p, p->gradients.item[0]);
     nevh_options o = plan_options(p, "exact");
-    flight f = {.plan = p, .found = &found, .begin = clock()};
+    trial f = {.plan = p, .found = &found, .begin = clock()};
     f.length = tool_allocate(2 * p->n, sizeof *f.length);
     f.z = tool_allocate(4 * p->n, sizeof *f.z);
     f.trial = tool_allocate(2 * p->n, sizeof *f.trial);
@@ -238,7 +238,7 @@ preflight preflight_fly(const plan *p) {
         o.scale = f.length;
         f.fastest.rates = nevh_rates_new(p->system, &o);
         nevh_stepper *s = new_stepper(&f);
-        fly(&f, s);
+        run(&f, s);
         nevh_stepper_free(s);
     }
     found.frequency = f.fastest.frequency;
@@ -253,7 +253,7 @@ preflight preflight_fly(const plan *p) {
     return found;
 }
 
-static void tell_edge(const plan *p, const preflight *f, list *notes) {
+static void tell_edge(const plan *p, const trial_run *f, list *notes) {
     size_t k = f->edge_variable;
     if (isfinite(f->edge))
         list_print(notes,
@@ -264,11 +264,11 @@ static void tell_edge(const plan *p, const preflight *f, list *notes) {
                    f->edge, f->edge_time);
     if (f->failure)
         list_print(notes, "The orbit could be followed up to t = %.6g: %s",
-                   p->run->t_start + f->flown, f->failure);
+                   p->run->t_start + f->length, f->failure);
 }
 
 /* Of the time followed, and what it means for a longer run. */
-static void tell_outlook(const plan *p, const preflight *f, list *notes) {
+static void tell_outlook(const plan *p, const trial_run *f, list *notes) {
     const char *unit = nevh_scene_label(p->scene, "t");
     const char *space = *unit ? " " : "", *per = *unit ? "/" : "";
     double horizon = p->run->t_start - log(DBL_EPSILON) / f->exponent;
@@ -281,7 +281,7 @@ static void tell_outlook(const plan *p, const preflight *f, list *notes) {
             "  %s t = %.3g%s%s rounding errors have grown to the size of "
             "the orbit: positions mean nothing%s, energies and averages "
             "do.",
-            f->exponent, f->error, per, unit, f->flown, space, unit,
+            f->exponent, f->error, per, unit, f->length, space, unit,
             within ? "After" : "A run beyond", horizon, space, unit,
             within ? "" : " there");
         break;
@@ -294,17 +294,17 @@ static void tell_outlook(const plan *p, const preflight *f, list *notes) {
             notes,
             "Regular: over %.3g%s%s neighbouring orbits part slowly, not "
             "exponentially (Lyapunov exponent below %.1g%s%s).",
-            f->flown, space, unit, 2 * parted_little / f->flown, per, unit);
+            f->length, space, unit, 2 * parted_little / f->length, per, unit);
         break;
     default:
         list_print(notes,
                    "Chaotic or regular: %.3g%s%s are too short to tell; a "
                    "longer run (--t-end) tells.",
-                   f->flown, space, unit);
+                   f->length, space, unit);
     }
 }
 
-void preflight_words(const plan *p, const preflight *f, list *notes) {
+void trial_run_words(const plan *p, const trial_run *f, list *notes) {
     const char *unit = nevh_scene_label(p->scene, "t");
     const char *space = *unit ? " " : "", *per = *unit ? " rad/" : "";
     if (f->frequency > 0)
@@ -324,7 +324,7 @@ void preflight_words(const plan *p, const preflight *f, list *notes) {
     tell_edge(p, f, notes);
 }
 
-const char *preflight_verdict(double limit, double x) {
+const char *trial_run_verdict(double limit, double x) {
     if (x > limit)
         return "unstable";
     return x > 1 ? "not resolved" : NULL;
