@@ -3,6 +3,7 @@ libnevh_core_la_SOURCES += \
 	integrators/schemes_private.h \
 	integrators/list.c \
 	integrators/kernels/splitting_private.h \
+	integrators/kernels/splitting_step.h \
 	integrators/kernels/splitting_expand.c \
 	integrators/kernels/splitting_kernel.c \
 	integrators/symplectic_euler.c \

@@ -12,53 +12,41 @@
 
    In V(q, t) time is that of the drifts, in T(p, t) that of the kicks.
 
-   The step is one text, `take_step`, which is compiled for numbers (one orbit
-   whose terms have point gradients), for rows of whole vectors (orbits side by
-   side, or one that is repeated over a vector), and for rows of any width with
-   gradients of any kind.  All give the same bits.
+   The step is splitting_step.h, compiled for numbers (one orbit whose terms have
+   point gradients), for rows of whole vectors (orbits side by side, or one that
+   is repeated over a vector), and for rows of any width with gradients of any
+   kind.  All give the same bits.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "splitting_private.h"
+#include "splitting_step.h"
 #include "gradient/field_private.h"
-#include "system/vector_private.h"
+#include "splitting_private.h"
 #include "work/work_private.h"
 #include <nevh/body.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* One half of the state under way: q under drifts, p under kicks. */
-typedef struct {
-    double *state;  /* at the start of the step */
-    double *carry;  /* digits that earlier steps lost */
-    double *change; /* the increment so far */
-    double *point;  /* state + (change + carry) */
-} half;
-
 /* How gradients are taken: constants of inlined functions. */
 typedef enum {
-    BY_NUMBER, /* planned, of one state */
+    BY_POINT,  /* planned, of one state, exact */
+    BY_NUMBER, /* planned, of one state, from values */
     BY_VECTOR, /* planned, of rows of whole vectors */
     BY_WORK    /* by nevh_work_gradient */
 } gradient_way;
 
 /* The numbers of a step, n rows each. */
 typedef struct {
-    size_t stride; /* of a row */
-    bool copied;   /* the state and memory, else they are where they were */
-    half q, p;
+    nevh__half q, p;
     double *slope, *kept, *time; /* time: one row */
 } rows;
 
 typedef struct {
     nevh_operation first;
-    size_t count; /* of kicks and drifts */
     size_t kicks;
-    bool kicks_first;
-    bool same_ends; /* the last operation is of the first one's kind */
-    double *weights;
-    double *times; /* parts of h that the half at rest has gone through */
+    nevh__splitting_scheme scheme;
     gradient_way way;
-    double *buffer; /* holds all rows */
-    rows planned, by_work;
+    double *buffer;         /* holds all rows */
+    double *from, *by_work; /* those of calls, and those of the width */
+    size_t stride;          /* of a row of the former */
     nevh__call kick, drift; /* unless the way is BY_WORK */
 } splitting_plan;
 
@@ -67,9 +55,10 @@ typedef struct {
     double *carry_q, *carry_p, *kept, *has_kept;
 } memory;
 
-static memory recall(const nevh_work *w) {
+/* size: of a half, n x width. */
+NEVH__INLINE memory recall(const nevh_work *w, size_t size) {
     double *m = w->memory;
-    return (memory){m, m + w->size, m + 2 * w->size, m + 3 * w->size};
+    return (memory){m, m + size, m + 2 * size, m + 3 * size};
 }
 
 static void clear(nevh_work *w) {
@@ -77,8 +66,8 @@ static void clear(nevh_work *w) {
     if (!o)
         return;
     free(o->buffer);
-    free(o->weights);
-    free(o->times);
+    free(o->scheme.weights);
+    free(o->scheme.times);
     free(o);
     w->plan = NULL;
 }
@@ -86,29 +75,27 @@ static void clear(nevh_work *w) {
 /* A kick takes dH/dq at the drifts' time, a drift dH/dp at the kicks'. */
 static void fill(splitting_plan *o, const nevh_splitting *table) {
     double passed[2] = {0, 0};
-    nevh__splitting_expand(table, o->weights);
-    for (size_t i = 0; i < o->count; i++) {
-        o->times[i] = passed[1 - i % 2];
-        passed[i % 2] += o->weights[i];
+    nevh__splitting_expand(table, o->scheme.weights);
+    for (size_t i = 0; i < o->scheme.count; i++) {
+        o->scheme.times[i] = passed[1 - i % 2];
+        passed[i % 2] += o->scheme.weights[i];
     }
 }
 
-static half take_half(double **from, size_t size, bool copied) {
-    half x = {.change = nevh__take(from, size)};
-    x.point = nevh__take(from, size);
-    x.state = copied ? nevh__take(from, size) : NULL;
-    x.carry = copied ? nevh__take(from, size) : NULL;
-    return x;
-}
-
-static rows lay_out(const nevh_work *w, size_t stride, double *from) {
-    size_t size = w->n * stride;
-    bool copied = stride != w->width;
-    rows r = {.stride = stride, .copied = copied};
-    r.q = take_half(&from, size, copied);
-    r.p = take_half(&from, size, copied);
+/* Rows of `size` numbers; with those of the state and the memory where these
+   are copied. */
+NEVH__INLINE rows lay_out(size_t size, bool copied, double *from) {
+    rows r;
+    r.q.change = nevh__take(&from, size);
+    r.q.point = nevh__take(&from, size);
+    r.p.change = nevh__take(&from, size);
+    r.p.point = nevh__take(&from, size);
     r.slope = nevh__take(&from, size);
-    r.kept = copied ? nevh__take(&from, size) : NULL;
+    r.q.state = nevh__take(&from, copied ? size : 0);
+    r.p.state = nevh__take(&from, copied ? size : 0);
+    r.q.carry = nevh__take(&from, copied ? size : 0);
+    r.p.carry = nevh__take(&from, copied ? size : 0);
+    r.kept = nevh__take(&from, copied ? size : 0);
     r.time = from;
     return r;
 }
@@ -121,32 +108,32 @@ static bool plan_rows(splitting_plan *o, const nevh_work *w, size_t stride) {
     o->buffer = nevh__array(size, sizeof *o->buffer);
     if (!o->buffer)
         return false;
-    double *from = nevh__aligned(o->buffer);
-    o->planned = lay_out(w, stride, from);
-    o->by_work = lay_out(w, w->width, from + copied);
+    o->stride = stride;
+    o->from = nevh__aligned(o->buffer);
+    o->by_work = o->from + copied;
     return true;
 }
 
 static bool plan_calls(splitting_plan *o, const nevh_work *w) {
-    const rows *r = &o->planned;
-    const double *q = r->q.point, *p = r->p.point;
+    size_t stride = o->stride;
+    rows r = lay_out(w->n * stride, stride != w->width, o->from);
+    const double *q = r.q.point, *p = r.p.point;
     nevh_field *f = w->field;
-    o->kick = nevh__call_plan(f, r->stride, r->time, q, p, r->slope, NULL);
-    o->drift = nevh__call_plan(f, r->stride, r->time, q, p, NULL, r->slope);
+    o->kick = nevh__call_plan(f, stride, r.time, q, p, r.slope, NULL);
+    o->drift = nevh__call_plan(f, stride, r.time, q, p, NULL, r.slope);
     return o->kick.count && o->drift.count;
 }
 
 /* One state is repeated over a vector where it is small and has no point
    gradients.  Returns false when memory is out. */
 static bool find_way(splitting_plan *o, const nevh_work *w) {
-    bool one = w->width == 1;
-    o->way = BY_NUMBER;
+    bool one = w->width == 1, exact = w->field->gradient == nevh_exact;
+    o->way = exact ? BY_POINT : BY_NUMBER;
     if (!plan_rows(o, w, w->width))
         return false;
     if (one && !w->transform && plan_calls(o, w))
         return true;
     o->way = BY_VECTOR;
-    bool exact = w->field->gradient == nevh_exact;
     bool whole = w->width % NEVH__LANES == 0; /* no states to fill vectors */
     if (!w->transform && (one ? w->field->repeats : exact || whole)) {
         if (!plan_rows(o, w, nevh__padded(w->width)))
@@ -164,196 +151,79 @@ static int plan(nevh_work *w) {
     if (!o)
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     o->first = table->first;
-    o->count = nevh__splitting_operations(table);
-    o->same_ends = o->count % 2 == 1;
-    o->kicks_first = o->first == NEVH_KICK;
-    o->kicks = (o->count + o->kicks_first) / 2;
-    o->weights = nevh__array(o->count, sizeof *o->weights);
-    o->times = nevh__array(o->count, sizeof *o->times);
-    if (!o->weights || !o->times || !find_way(o, w))
+    o->scheme.count = nevh__splitting_operations(table);
+    o->scheme.keeps = o->scheme.count % 2 == 1;
+    o->scheme.kicks_first = o->first == NEVH_KICK;
+    o->kicks = (o->scheme.count + o->scheme.kicks_first) / 2;
+    o->scheme.weights = nevh__array(o->scheme.count, sizeof *o->scheme.weights);
+    o->scheme.times = nevh__array(o->scheme.count, sizeof *o->scheme.times);
+    if (!o->scheme.weights || !o->scheme.times || !find_way(o, w))
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     fill(o, table);
     w->memory_rows = 3 * w->n + 1;
     return NEVH_OK;
 }
 
-/* One step under way. */
-typedef struct {
+/* Whose step it is, and how long rows are. */
+struct nevh__splitting_owner {
     nevh_work *work;
     const splitting_plan *plan;
-    rows rows;
-    double t, h;
-    bool has_kept; /* the last slope of the step before */
-} context;
+    size_t stride;
+    double *time; /* a row */
+};
 
-/* Element by element, `lanes` (a constant) at a time. */
-#define EACH(i, lanes, size)                                                   \
-    for (size_t i##_from = 0; i##_from < (size); i##_from += (lanes))          \
-    NEVH__NO_ALIAS for (size_t i = i##_from; i != i##_from + (lanes); i++)
-
-NEVH__INLINE void begin(size_t lanes, size_t size, const half *q,
-                        const half *p) {
-    EACH(i, lanes, size) {
-        q->change[i] = 0;
-        p->change[i] = 0;
-        q->point[i] = q->state[i] + q->carry[i];
-        p->point[i] = p->state[i] + p->carry[i];
-    }
+NEVH__INLINE void set_time(const nevh__splitting_step *x, size_t i) {
+    double time = x->t + x->scheme->times[i] * x->h;
+    for (size_t lane = 0; lane < x->owner->stride; lane++)
+        x->owner->time[lane] = time;
 }
 
-NEVH__INLINE void advance(size_t lanes, size_t size, const half *x, double step,
-                          const double *restrict slope) {
-    double *restrict change = x->change, *restrict point = x->point;
-    const double *restrict state = x->state, *restrict carry = x->carry;
-    EACH(i, lanes, size) {
-        double sum = change[i] + step * slope[i];
-        change[i] = sum;
-        point[i] = state[i] + (sum + carry[i]);
-    }
-}
-
-NEVH__INLINE void set_time(const context *x, size_t i) {
-    double time = x->t + x->plan->times[i] * x->h;
-    for (size_t lane = 0; lane < x->rows.stride; lane++)
-        x->rows.time[lane] = time;
-}
-
-/* dH/dq for a kick, or else dH/dp, to the slope. */
-NEVH__INLINE int take_slope(const context *x, gradient_way way, size_t i,
-                            bool kick) {
-    const nevh__call *call = kick ? &x->plan->kick : &x->plan->drift;
-    if (way == BY_WORK || call->timed)
-        set_time(x, i);
-    if (way == BY_WORK)
-        return nevh_work_gradient(x->work, x->rows.stride, x->rows.time,
-                                  x->rows.q.point, x->rows.p.point,
-                                  kick ? x->rows.slope : NULL,
-                                  kick ? NULL : x->rows.slope);
-    return way == BY_NUMBER ? nevh__work_run_points(x->work, call)
-                            : nevh__work_run(x->work, call);
-}
-
-static int account(const context *x, size_t i, bool kick) {
+static int account(const nevh__splitting_step *x, size_t i, bool kick) {
     set_time(x, i);
-    return nevh_work_account(x->work, kick ? NEVH_OF_Q : NEVH_OF_P,
-                             x->plan->weights[i] * x->h, x->rows.time,
-                             x->rows.q.point, x->rows.p.point);
+    return nevh_work_account(x->owner->work, kick ? NEVH_OF_Q : NEVH_OF_P,
+                             x->scheme->weights[i] * x->h, x->owner->time,
+                             x->q.point, x->p.point);
 }
 
-/* A kick, or else a drift; `kept`: by the last slope of the step before. */
-NEVH__INLINE int operate(const context *x, gradient_way way, size_t lanes,
-                         size_t size, size_t i, bool kick, bool kept) {
-    double dt = x->plan->weights[i] * x->h;
-    int status = kept ? NEVH_OK : take_slope(x, way, i, kick);
-    if (way == BY_WORK && !status && x->work->accounts)
-        status = account(x, i, kick);
-    if (!status)
-        advance(lanes, size, kick ? &x->rows.p : &x->rows.q, kick ? -dt : dt,
-                kept ? x->rows.kept : x->rows.slope);
-    return status;
-}
-
-/* A kick and a drift where T is that of known masses: velocities are momenta
-   times `inverse`, and need not go through memory (15 to 25 % of a step of
-   several kicks). */
-NEVH__INLINE void operate_both(const context *x, gradient_way way, size_t lanes,
-                               size_t size, size_t i) {
-    const half *q = &x->rows.q, *p = &x->rows.p;
-    double *restrict slope = x->rows.slope;
-    const double *restrict inverse = x->plan->drift.inverse;
-    double kick = -(x->plan->weights[i] * x->h);
-    double drift = x->plan->weights[i + 1] * x->h;
-    take_slope(x, way, i, true);
-    EACH(k, lanes, size) {
-        double sum = p->change[k] + kick * slope[k];
-        double momentum = p->state[k] + (sum + p->carry[k]);
-        double velocity = inverse[k] * momentum;
-        double moved = q->change[k] + drift * velocity;
-        slope[k] = velocity;
-        p->change[k] = sum;
-        p->point[k] = momentum;
-        q->change[k] = moved;
-        q->point[k] = q->state[k] + (moved + q->carry[k]);
-    }
-}
-
-/* All kicks and drifts in turn. */
-NEVH__INLINE int operate_all(const context *x, gradient_way way, size_t lanes,
-                             size_t size) {
-    size_t i = 0, count = x->plan->count;
-    bool kick = x->plan->kicks_first;
+NEVH__INLINE int slope_by_work(const nevh__splitting_step *x, size_t i,
+                               bool kick, bool kept) {
+    nevh_work *w = x->owner->work;
     int status = NEVH_OK;
-    if (x->has_kept) {
-        status = kick ? operate(x, way, lanes, size, i++, true, true)
-                      : operate(x, way, lanes, size, i++, false, true);
-        kick = !kick;
-    }
-    if (!kick && !status)
-        status = operate(x, way, lanes, size, i++, false, false);
-    for (; !status && i + 1 < count; i += 2) {
-        if (way != BY_WORK && x->plan->drift.inverse) {
-            operate_both(x, way, lanes, size, i);
-            continue;
-        }
-        status = operate(x, way, lanes, size, i, true, false);
-        if (!status)
-            status = operate(x, way, lanes, size, i + 1, false, false);
-    }
-    if (!status && i < count)
-        status = operate(x, way, lanes, size, i, true, false);
-    return status;
+    set_time(x, i);
+    if (!kept)
+        status = nevh_work_gradient(
+            w, x->owner->stride, x->owner->time, x->q.point, x->p.point,
+            kick ? x->slope : NULL, kick ? NULL : x->slope);
+    return status || !w->accounts ? status : account(x, i, kick);
 }
 
-/* The sum of x - x over the new state, which the last points are: 0 if that is
-   finite, else NaN. */
-NEVH__INLINE double check(size_t lanes, size_t size, const double q[],
-                          const double p[]) {
-    double bad[NEVH__LANES] = {0};
-    for (size_t from = 0; from < size; from += lanes)
-        for (size_t i = 0; i < lanes; i++)
-            bad[i] += (q[from + i] - q[from + i]) + (p[from + i] - p[from + i]);
-    return lanes == 1 ? bad[0]
-                      : ((bad[0] + bad[1]) + (bad[2] + bad[3])) +
-                            ((bad[4] + bad[5]) + (bad[6] + bad[7]));
+NEVH__INLINE int nevh__splitting_slope(const nevh__splitting_step *x, int way,
+                                       size_t i, bool kick, bool kept) {
+    const struct nevh__splitting_owner *o = x->owner;
+    const nevh__call *call = kick ? &o->plan->kick : &o->plan->drift;
+    if (way == BY_WORK)
+        return slope_by_work(x, i, kick, kept);
+    if (kept)
+        return NEVH_OK;
+    if (call->timed)
+        set_time(x, i);
+    if (way == BY_VECTOR)
+        return nevh__work_run(o->work, call);
+    if (way == BY_NUMBER)
+        return nevh__work_run_values(o->work, call);
+    nevh__call_run_points(call);
+    return NEVH_OK;
 }
 
-NEVH__INLINE void commit(const half *x, size_t i) {
-    double start = x->state[i], d = x->change[i] + x->carry[i];
-    x->carry[i] = nevh__roundoff(x->point[i], start, d);
-    x->state[i] = x->point[i];
-}
-
-/* The last points are the new state; `keep`: and the last slope is kept. */
-NEVH__INLINE void commit_all(const rows *r, size_t lanes, size_t size,
-                             bool keep) {
-    EACH(i, lanes, size) {
-        commit(&r->q, i);
-        commit(&r->p, i);
-        if (keep)
-            r->kept[i] = r->slope[i];
-    }
+NEVH__INLINE const double *
+nevh__splitting_inverse(const nevh__splitting_step *x, int way) {
+    return way == BY_WORK ? NULL : x->owner->plan->drift.inverse;
 }
 
 static int fail(nevh_work *w) {
     return nevh_work_fail(w, NEVH_EDOM,
                           "the new state is not a finite number: take a "
                           "smaller step");
-}
-
-/* Unless NEVH_OK, the state is as it was. */
-NEVH__INLINE int take_step(const context *x, gradient_way way, size_t lanes,
-                           size_t size) {
-    begin(lanes, size, &x->rows.q, &x->rows.p);
-    int status = operate_all(x, way, lanes, size);
-    if (status)
-        return status;
-    if (check(lanes, size, x->rows.q.point, x->rows.p.point) != 0)
-        return way == BY_WORK ? fail(x->work) : NEVH_EDOM;
-    if (x->plan->same_ends)
-        commit_all(&x->rows, lanes, size, true);
-    else
-        commit_all(&x->rows, lanes, size, false);
-    return NEVH_OK;
 }
 
 /* Copies orbits to rows of vectors, whose padding repeats the first.  One orbit
@@ -376,32 +246,32 @@ NEVH__INLINE void store(const nevh_work *w, size_t stride, const double from[],
             to[i] = from[i];
 }
 
-NEVH__INLINE void load_all(const context *x, const memory *m, const double q[],
-                           const double p[]) {
-    const rows *r = &x->rows;
-    load(x->work, r->stride, q, r->q.state);
-    load(x->work, r->stride, p, r->p.state);
-    load(x->work, r->stride, m->carry_q, r->q.carry);
-    load(x->work, r->stride, m->carry_p, r->p.carry);
-    if (x->has_kept)
-        load(x->work, r->stride, m->kept, r->kept);
+NEVH__INLINE void load_all(const nevh_work *w, size_t stride, const rows *r,
+                           const memory *m, const double q[], const double p[],
+                           bool has_kept) {
+    load(w, stride, q, r->q.state);
+    load(w, stride, p, r->p.state);
+    load(w, stride, m->carry_q, r->q.carry);
+    load(w, stride, m->carry_p, r->p.carry);
+    if (has_kept)
+        load(w, stride, m->kept, r->kept);
 }
 
-NEVH__INLINE void store_all(const context *x, const memory *m, double q[],
-                            double p[]) {
-    const rows *r = &x->rows;
-    store(x->work, r->stride, r->q.state, q);
-    store(x->work, r->stride, r->p.state, p);
-    store(x->work, r->stride, r->q.carry, m->carry_q);
-    store(x->work, r->stride, r->p.carry, m->carry_p);
-    if (x->plan->same_ends)
-        store(x->work, r->stride, r->kept, m->kept);
+NEVH__INLINE void store_all(const nevh_work *w, size_t stride, const rows *r,
+                            const memory *m, double q[], double p[],
+                            bool keeps) {
+    store(w, stride, r->q.state, q);
+    store(w, stride, r->p.state, p);
+    store(w, stride, r->q.carry, m->carry_q);
+    store(w, stride, r->p.carry, m->carry_p);
+    if (keeps)
+        store(w, stride, r->kept, m->kept);
 }
 
 /* Rows that are not copied are the caller's and the memory's. */
-NEVH__INLINE rows bind(const rows *planned, const memory *m, double q[],
+NEVH__INLINE rows bind(size_t size, double *from, const memory *m, double q[],
                        double p[]) {
-    rows r = *planned;
+    rows r = lay_out(size, false, from);
     r.q.state = q;
     r.p.state = p;
     r.q.carry = m->carry_q;
@@ -418,62 +288,88 @@ NEVH__INLINE bool all_kept(size_t lanes, const memory *m) {
     return none == 0;
 }
 
-/* A step of `width` orbits, in rows of so many lanes at least. */
-NEVH__INLINE int step_along(nevh_work *w, gradient_way way, size_t width,
-                            size_t lanes, double t, double h, double q[],
-                            double p[]) {
+/* A step of `width` orbits with n coordinates, in rows of `stride`. */
+NEVH__INLINE int step_along(nevh_work *w, gradient_way way, size_t n,
+                            size_t width, size_t stride, size_t lanes, double t,
+                            double h, double q[], double p[]) {
     const splitting_plan *o = w->plan;
-    const rows *planned = way == BY_WORK ? &o->by_work : &o->planned;
-    memory m = recall(w);
-    context x = {.work = w, .plan = o, .t = t, .h = h};
-    bool copied = way == BY_VECTOR && planned->copied;
-    x.rows = copied ? *planned : bind(planned, &m, q, p);
-    x.has_kept = o->same_ends && all_kept(width, &m);
+    double *from = way == BY_WORK ? o->by_work : o->from;
+    memory m = recall(w, n * width);
+    bool copied = way == BY_VECTOR && stride != width;
+    rows r = copied ? lay_out(n * stride, true, from)
+                    : bind(n * stride, from, &m, q, p);
+    struct nevh__splitting_owner owner = {w, o, stride, r.time};
+    nevh__splitting_step x = {.t = t,
+                              .h = h,
+                              .scheme = &o->scheme,
+                              .has_kept =
+                                  o->scheme.keeps && all_kept(width, &m),
+                              .q = r.q,
+                              .p = r.p,
+                              .slope = r.slope,
+                              .kept = r.kept,
+                              .owner = &owner};
     if (copied)
-        load_all(&x, &m, q, p);
-    int status = way != BY_NUMBER
-                     ? take_step(&x, way, lanes, w->n * x.rows.stride)
-                 : w->n == 1 ? take_step(&x, way, 1, 1)
-                 : w->n == 2 ? take_step(&x, way, 1, 2)
-                             : take_step(&x, way, 1, w->n);
+        load_all(w, stride, &r, &m, q, p, x.has_kept);
+    int status = nevh__splitting_take(&x, way, lanes, n * stride);
+    if (status == NEVH__SPLITTING_RANGE)
+        return way == BY_WORK ? fail(w) : NEVH_EDOM;
     if (status)
         return status;
     if (copied)
-        store_all(&x, &m, q, p);
+        store_all(w, stride, &r, &m, q, p, o->scheme.keeps);
     if (way != BY_WORK)
         w->field->gradients +=
-            (o->kicks - (x.has_kept && o->kicks_first)) * width;
-    for (size_t lane = 0; o->same_ends && lane < width; lane++)
+            (o->kicks - (x.has_kept && o->scheme.kicks_first)) * width;
+    for (size_t lane = 0; o->scheme.keeps && lane < width; lane++)
         m.has_kept[lane] = 1;
     return NEVH_OK;
 }
 
+NEVH__ONE_BY_ONE static int step_point(nevh_work *w, double t, double h,
+                                       double q[], double p[]) {
+    return step_along(w, BY_POINT, 1, 1, 1, 1, t, h, q, p);
+}
+
+NEVH__ONE_BY_ONE static int step_points_of_two(nevh_work *w, double t, double h,
+                                               double q[], double p[]) {
+    return step_along(w, BY_POINT, 2, 1, 1, 1, t, h, q, p);
+}
+
+NEVH__ONE_BY_ONE static int step_points(nevh_work *w, double t, double h,
+                                        double q[], double p[]) {
+    return step_along(w, BY_POINT, w->n, 1, 1, 1, t, h, q, p);
+}
+
 NEVH__ONE_BY_ONE static int step_number(nevh_work *w, double t, double h,
                                         double q[], double p[]) {
-    if (!nevh__field_at_hand(w->field))
-        return NEVH_ESTALE;
-    return step_along(w, BY_NUMBER, 1, 1, t, h, q, p);
+    return w->n == 1 ? step_along(w, BY_NUMBER, 1, 1, 1, 1, t, h, q, p)
+                     : step_along(w, BY_NUMBER, w->n, 1, 1, 1, t, h, q, p);
 }
 
 NEVH_SIMD static int step_vectors(nevh_work *w, double t, double h, double q[],
                                   double p[]) {
-    return step_along(w, BY_VECTOR, w->width, NEVH__LANES, t, h, q, p);
+    return step_along(w, BY_VECTOR, w->n, w->width,
+                      ((const splitting_plan *)w->plan)->stride, NEVH__LANES, t,
+                      h, q, p);
 }
 
 NEVH_SIMD static int step_by_work(nevh_work *w, double t, double h, double q[],
                                   double p[]) {
-    return step_along(w, BY_WORK, w->width, 1, t, h, q, p);
+    return step_along(w, BY_WORK, w->n, w->width, w->width, 1, t, h, q, p);
 }
 
 /* A step with planned gradients; NEVH_ESTALE: it may not be taken. */
 static int step_planned(nevh_work *w, double t, double h, double q[],
                         double p[]) {
     const splitting_plan *o = w->plan;
-    if (o->way == BY_NUMBER)
-        return step_number(w, t, h, q, p);
-    return nevh__call_ready(&o->kick) && nevh__call_ready(&o->drift)
-               ? step_vectors(w, t, h, q, p)
-               : NEVH_ESTALE;
+    if (!nevh__call_ready(&o->kick) || !nevh__call_ready(&o->drift))
+        return NEVH_ESTALE;
+    return (o->way == BY_VECTOR   ? step_vectors
+            : o->way == BY_NUMBER ? step_number
+            : w->n == 1           ? step_point
+            : w->n == 2           ? step_points_of_two
+                                  : step_points)(w, t, h, q, p);
 }
 
 /* Where such a step fails without a reason, the other way tells it. */
@@ -491,7 +387,7 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
    that it does not. */
 static void apply_friction(nevh_work *w, const double factor[]) {
     const splitting_plan *o = w->plan;
-    memory m = recall(w);
+    memory m = recall(w, w->size);
     for (size_t i = 0; i < w->size; i++)
         m.carry_p[i] *= factor[i / w->width];
     if (o->first == NEVH_KICK && nevh_system_traits(w->system) & NEVH_SEPARABLE)

@@ -3,13 +3,11 @@
 #ifndef NEVH_SYSTEM_PRIVATE_H
 #define NEVH_SYSTEM_PRIVATE_H
 
+#include "vector_private.h"
 #include <nevh/simd.h>
 #include <nevh/system.h>
 #include <stdarg.h>
 #include <stdint.h>
-
-/* Block callbacks always get a multiple of this many lanes. */
-#define NEVH__LANES 8
 
 static inline size_t nevh__padded(size_t width) {
     return (width + NEVH__LANES - 1) / NEVH__LANES * NEVH__LANES;
@@ -25,12 +23,6 @@ static inline double *nevh__aligned(double *from) {
 static inline double nevh__random(uint64_t *state) {
     *state = *state * 6364136223846793005u + 1442695040888963407u;
     return (double)(*state >> 11) * 0x1p-52 - 1;
-}
-
-/* What rounding has lost of a + b, exactly, whichever is larger. */
-NEVH__INLINE double nevh__roundoff(double sum, double a, double b) {
-    double part = sum - a;
-    return (a - (sum - part)) + (b - part);
 }
 
 /* A status and its message, part of every object that can fail. */

@@ -4,12 +4,17 @@
 
    In sums of several terms GCC keeps an array of lanes in memory, and one
    operation waits for the other to be stored; a vector it keeps in a register.
-   Arithmetic is that of its lanes, on any processor. */
+   Arithmetic is that of its lanes, on any processor.
+
+   This header needs <nevh/simd.h> and the C library alone. */
 #ifndef NEVH_VECTOR_PRIVATE_H
 #define NEVH_VECTOR_PRIVATE_H
 
-#include "system/system_private.h"
 #include <nevh/simd.h>
+#include <stdbool.h>
+
+/* Block callbacks always get a multiple of this many lanes. */
+#define NEVH__LANES 8
 
 #ifdef __GNUC__
 #define NEVH__HAS_VECTOR 1
@@ -33,6 +38,32 @@ typedef double nevh__vector;
 #else
 #define NEVH__NO_ALIAS
 #endif
+/* Element by element, `lanes` (a constant that divides size) at a time. */
+#define NEVH__EACH(i, lanes, size)                                             \
+    for (size_t i##_from = 0; i##_from < (size); i##_from += (lanes))          \
+    NEVH__NO_ALIAS for (size_t i = i##_from; i != i##_from + (lanes); i++)
+
+/* What rounding has lost of a + b, exactly, whichever is larger. */
+NEVH__INLINE double nevh__roundoff(double sum, double a, double b) {
+    double part = sum - a;
+    return (a - (sum - part)) + (b - part);
+}
+
+NEVH__INLINE double nevh__sum_lanes(const double x[NEVH__LANES]) {
+    return ((x[0] + x[1]) + (x[2] + x[3])) + ((x[4] + x[5]) + (x[6] + x[7]));
+}
+
+/* Whether any number of two arrays is not finite: then x - x is NaN, and so is
+   the sum of these. */
+NEVH__INLINE bool nevh__not_finite(size_t lanes, size_t size, const double x[],
+                                   const double y[]) {
+    double bad[NEVH__LANES] = {0};
+    for (size_t from = 0; from < size; from += lanes)
+        for (size_t i = 0; i < lanes; i++)
+            bad[i] += (x[from + i] - x[from + i]) + (y[from + i] - y[from + i]);
+    return (lanes == 1 ? bad[0] : nevh__sum_lanes(bad)) != 0;
+}
+
 /* A part of room that is laid out. */
 static inline double *nevh__take(double **from, size_t size) {
     double *taken = *from;
