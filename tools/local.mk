@@ -45,6 +45,7 @@ tools_nevh_SOURCES = \
 	tools/compare/verdict.c \
 	tools/experiment/state.c \
 	tools/experiment/observable.c \
+	tools/experiment/energies.c \
 	tools/experiment/match.c \
 	tools/experiment/diagnostics.c \
 	tools/inspect/effects.c \

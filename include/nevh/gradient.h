@@ -101,6 +101,20 @@ NEVH_API int nevh_field_value(nevh_field *, size_t width, const double t[],
 NEVH_API int nevh_field_effects(nevh_field *, double t, const double q[],
                                 const double p[], double h[]);
 
+/* The energy of groups of variables, such as bodies, at one state: h[g] is the
+   sum of all instances of enabled terms that read a coordinate or a momentum of
+   group g.  An interaction counts for all groups that take part in it, so that
+   the sum over groups is not H.
+   group    in, n: of coordinate k and its momentum, less than `count`; any other
+            number: of none
+   h        out, count
+   cost     one value of H, and the square of the number of variables that an
+            instance reads
+   returns  as nevh_field_value */
+NEVH_API int nevh_field_groups(nevh_field *, double t, const double q[],
+                               const double p[], size_t count,
+                               const size_t group[], double h[]);
+
 /* The step delta that central differences take in coordinate i (i < n) or
    momentum i - n of the given term instance; 0 if it does not read it. */
 NEVH_API double nevh_field_step(const nevh_field *, const char *term,

@@ -99,6 +99,45 @@ int nevh__field_moving_effects(nevh_field *f, double t, const double q[],
     return effects(f, false, t, q, p, h);
 }
 
+/* The group of a variable that an instance reads; `count`: it has none, or it
+   is that of a variable before. */
+static size_t new_group(const nevh__planned *term, size_t instance, size_t k,
+                        size_t count, const size_t group[]) {
+    size_t own = group[nevh__index(term, instance, k)];
+    for (size_t i = 0; own < count && i < k; i++)
+        if (group[nevh__index(term, instance, i)] == own)
+            return count;
+    return own < count ? own : count;
+}
+
+static int add_groups(nevh_field *f, nevh__planned *term, nevh__block b,
+                      size_t count, const size_t group[], double h[]) {
+    int status = NEVH_OK;
+    while (!status && nevh__block_next(f, term, &b)) {
+        status = nevh__block_values(f, term, &b);
+        for (size_t i = 0; !status && i < b.groups; i++)
+            for (size_t k = 0; k < term->nv; k++) {
+                size_t own = new_group(term, b.group + i, k, count, group);
+                if (own < count)
+                    h[own] += f->h[i];
+            }
+    }
+    return status;
+}
+
+int nevh_field_groups(nevh_field *f, double t, const double q[],
+                      const double p[], size_t count, const size_t group[],
+                      double h[]) {
+    int status = nevh__field_ready(f);
+    for (size_t g = 0; g < count; g++)
+        h[g] = 0;
+    for (size_t i = 0; !status && i < f->n_terms; i++)
+        status =
+            add_groups(f, &f->terms[i], nevh__block_over(1, &t, q, p, 1, 1),
+                       count, group, h);
+    return status;
+}
+
 static int add_noise(nevh_field *f, nevh__planned *term, nevh__block b,
                      double noise_q[], double noise_p[]) {
     int status = NEVH_OK;

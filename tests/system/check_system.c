@@ -220,6 +220,56 @@ START_TEST(effects_group_terms) {
 }
 END_TEST
 
+static double spring(double t, const double q[], const double p[],
+                     const double c[], const void *params) {
+    (void)t, (void)p, (void)params;
+    return c[0] * (q[0] - q[1]) * (q[0] - q[1]);
+}
+static double kinetic_of(double t, const double q[], const double p[],
+                         const double c[], const void *params) {
+    (void)t, (void)q, (void)params;
+    return c[0] * p[0] * p[0];
+}
+static double product(double t, const double q[], const double p[],
+                      const double c[], const void *params) {
+    (void)t, (void)c, (void)params;
+    return q[0] * q[1] * p[0];
+}
+
+/* Three masses, a spring between neighbours, and what reads mass 0 twice: what
+   reads two groups counts for both, and once for each. */
+START_TEST(energies_of_groups) {
+    const size_t pairs[] = {0, 1, 1, 2}, both[] = {0, 1}, own[] = {0, 1, 2};
+    const double k[] = {2, 3}, m[] = {1, 10, 100};
+    const double q[] = {0.5, 2, 3}, p[] = {7, 0.1, 0.3};
+    nevh_system *s = nevh_system_new(3);
+    nevh_system_add(s, &(nevh_term){"springs", .nq = 2, .nc = 1, .q = pairs,
+                                    .c = k, .count = 2, .value = spring});
+    nevh_system_add(s, &(nevh_term){"kinetic", .np = 1, .nc = 1, .p = own,
+                                    .c = m, .count = 3, .value = kinetic_of});
+    nevh_system_add(s, &(nevh_term){"mixed", .nq = 2, .np = 1, .q = both,
+                                    .p = both, .value = product});
+    const double T[] = {49, 0.1, 9}, V[] = {4.5, 3}, mixed = 7;
+    double h[3];
+    for (int on = 1; on >= 0; on--) {
+        nevh_system_enable(s, "springs", on);
+        nevh_field *f = nevh_field_new(s, NULL);
+        ck_assert_int_eq(nevh_field_groups(f, 0, q, p, 3, own, h), NEVH_OK);
+        ck_assert_double_eq_tol(h[0], T[0] + on * V[0] + mixed, 1e-13);
+        ck_assert_double_eq_tol(h[1], T[1] + on * (V[0] + V[1]) + mixed, 1e-13);
+        ck_assert_double_eq_tol(h[2], T[2] + on * V[1], 1e-13);
+        ck_assert_int_eq(
+            nevh_field_groups(f, 0, q, p, 2, (size_t[]){1, SIZE_MAX, 1}, h),
+            NEVH_OK);
+        ck_assert_double_eq(h[0], 0);
+        ck_assert_double_eq_tol(h[1], T[0] + T[2] + on * (V[0] + V[1]) + mixed,
+                                1e-13);
+        nevh_field_free(f);
+    }
+    nevh_system_free(s);
+}
+END_TEST
+
 static int change_nothing(nevh_system *s) {
     return nevh_system_enable(s, "gravity", true);
 }
@@ -394,6 +444,7 @@ int main(void) {
     tcase_add_loop_test(terms, widths_that_overflow, 0, 3);
     tcase_add_loop_test(terms, handed_what_is_read, 0, 4);
     tcase_add_test(effects, effects_group_terms);
+    tcase_add_test(effects, energies_of_groups);
     tcase_add_loop_test(effects, stale, 0, 4);
     tcase_add_loop_test(effects, off_is_off, 0, scheme_count());
     suite_add_tcase(suite, terms);

@@ -160,6 +160,28 @@ holds straightness '$1 >= 0 && $1 <= 1'
 exits 0 compare kepler --t-end 10 --dt 0.02 --integrators gauss4 --diagnostics
 has 'symplecticity'
 has 'change of'
+# What the total energy does not show: the Moon is lost, which is light.  Short
+# steps keep it, and a run that is only late on its orbit loses nothing.
+exits 0 compare sun-earth-moon --dt 0.25,0.0125 --integrators rkn14a \
+    --gradient exact --diagnostics --format csv
+holds max_energy_error '$1 < 1e-4 && $2 < 1e-10'
+holds energy_error_moon '$1 > 0.5 && $1 < 2 && $2 < 1e-3'
+holds energy_error_sun '$1 < 1e-3 && $2 < 1e-6'
+holds body_energy_error '$1 > 5e-3 && $2 < 1e-5'
+field worst_body | grep -q Moon || fails "names another body"
+exits 0 compare sun-earth-moon --dt 0.25,0.0125 --integrators rkn14a \
+    --gradient exact --diagnostics
+has '^ integrator .*energy of +energy of +which$'
+test "$(grep -c 'The energy of moon is off by' $work/out)" -eq 1 ||
+    { fails "tells not one of two runs"; cat $work/out; }
+exits 0 compare kepler --dt 0.03 --integrators midpoint --diagnostics \
+    --format csv
+holds state_error '$1 > 0.5'
+holds energy_error_gravity '$1 < 0.02'
+lacks worst_body
+exits 0 compare sun-earth-moon --dt 0.25 --integrators rkn14a --gradient exact \
+    --format csv
+lacks 'energy_error_moon'
 # As text no wider than 100 columns: what is more goes below, row by row.
 exits 0 compare sun-earth-moon --t-end 0.1 --dt 0.01,0.005 --diagnostics \
     --integrators verlet,gauss4 --gradient exact,central2

@@ -66,7 +66,8 @@ static const struct {
     {"match", "steps|work", FOR_COMPARE, read_match,
      "work: rows take equal numbers of gradients instead of equal steps"},
     {"diagnostics", NULL, FOR_COMPARE, read_diagnostics,
-     "symplecticity, reversal, solvers, invariants"},
+     "symplecticity, reversal, solvers, invariants, energies by effect and "
+     "body"},
     {"portable", NULL, OF_SCENES, read_portable,
      "no vector code: the same digits with the same libm"},
     {"plot", "FILE", OF_PLOTS, read_plot,

@@ -135,6 +135,7 @@ static void show_numbers(table *t, const plan *p, const row *r) {
     table_shown(t, "%.3g", 1000 * r->seconds);
     table_text(t, nevh_verdict_name(r->energy.verdict));
     diagnostics_show(t, p, r);
+    energies_put(t, p, r, true);
 }
 
 /* Rows of one scheme that chooses its steps differ in the tolerance. */
@@ -161,6 +162,7 @@ static void show_row(table *t, const plan *p, const row *r) {
         table_text(t, NULL);
     table_text(t, r->failed ? "failed" : "refused");
     diagnostics_show(t, p, r);
+    energies_put(t, p, r, true);
 }
 
 static table *shown(const plan *p, const row_list *r) {
@@ -189,6 +191,7 @@ static table *shown(const plan *p, const row_list *r) {
     if (p->diagnostics)
         table_break(t);
     diagnostics_columns(t, p, true);
+    energies_columns(t, p, true);
     for (size_t i = 0; i < r->count; i++) {
         if (i && r->row[i].group != r->row[i - 1].group)
             table_group(t);
@@ -220,7 +223,9 @@ static page make_page(const options *o, const plan *p, const row_list *r) {
     row_notes(o, p, r->row, r->count, &result.before);
     state_notes(p, &result.before);
     observable_notes(p, &result.before);
+    energies_notes(p, &result.before);
     verdict_words(p, r->row, r->count, &result.after);
+    energies_words(p, r->row, r->count, &result.after);
     if (is_table)
         stability_words(p, r->row, r->count, &result.after);
     if (is_table)
@@ -234,6 +239,7 @@ static void free_rows(row_list *r) {
     for (size_t i = 0; i < r->count; i++) {
         free(r->row[i].status);
         free(r->row[i].changes);
+        free(r->row[i].energies);
         free(r->row[i].errors);
     }
     free(r->row);
@@ -269,6 +275,8 @@ static int compare_plan(const options *o, plan *p) {
     int status = plan_reference(p, last_end(p, &r));
     if (!status && o->observable)
         status = plan_observe(p, o->observable);
+    if (!status && p->diagnostics && p->reference)
+        plan_energies(p);
     if (!status)
         status = compare_rows(o, p, &r);
     free_rows(&r);

@@ -243,6 +243,7 @@ void plan_free(plan *p) {
     free(p->q);
     free(p->p);
     nevh_reference_free(p->reference);
+    energies_free(p->energies);
     stepper_cache_free(p->steppers);
     free(p->no_reference);
     nevh_scene_free(p->scene);

@@ -6,6 +6,7 @@
 #include "cli/tool.h"
 
 typedef struct stepper_cache stepper_cache;
+typedef struct energies energies;
 
 /* plan.c: the rows to run, from options, scene and defaults. */
 typedef struct {
@@ -37,6 +38,7 @@ typedef struct {
     double observable_scale; /* that its errors are divided by */
     bool observable_level;   /* its size, not its range */
     double observable_error; /* what that of the reference makes of it */
+    energies *energies;      /* whose energies rows compare; NULL: none */
     bool promises;           /* rows tell how long they keep what they should */
     stepper_cache *steppers; /* of steppers */
 } plan;
@@ -64,6 +66,10 @@ char *plan_structure(const plan *);
 /* stepper_cache.c */
 stepper_cache *stepper_cache_new(void);
 void stepper_cache_free(stepper_cache *); /* NULL is allowed */
+
+/* energies.c: energies of effects and bodies, of a plan with a reference. */
+void plan_energies(plan *);
+void energies_free(energies *); /* NULL is allowed */
 
 /* stop.c: runs that end early, where the scene's `stop` says. */
 typedef struct {

@@ -34,6 +34,7 @@ static void add_record(table *t, const plan *p, const row *r) {
         table_number(t, when(r->ran, r->observable_error));
     if (p->promises)
         table_number(t, r->promise ? r->promise->until : NAN);
+    energies_put(t, p, r, false);
 }
 
 table *records(const plan *p, const row rows[], size_t count) {
@@ -65,6 +66,7 @@ table *records(const plan *p, const row rows[], size_t count) {
         table_column(t, "observable_error");
     if (p->promises)
         table_column(t, "holds_until");
+    energies_columns(t, p, false);
     for (size_t i = 0; i < count; i++)
         add_record(t, p, &rows[i]);
     return t;

@@ -154,9 +154,13 @@ static int mind_promise(void *data, size_t step, double t, const double q[],
     return NEVH_OK;
 }
 
-static void compare_observables(void *data, double t, const double q[],
-                                const double p[], const double reference[]) {
-    observable_compare(data, t, q, p, reference);
+static void compare_pair(void *data, double t, const double q[],
+                         const double p[], const double reference[]) {
+    observable *shown = data;
+    if (shown->plan->observable)
+        observable_compare(shown, t, q, p, reference);
+    if (shown->plan->energies)
+        energies_compare(shown->plan->energies, t, q, p, reference);
 }
 
 /* The reference is compared with at times that are spread over the whole run:
@@ -189,8 +193,10 @@ static void watched(work *w, nevh_stepper *s) {
     size_t count = 1;
     if (state)
         nevh_state_error_follow(state, s);
-    if (state && w->plan->observable)
-        nevh_state_error_hand(state, compare_observables, &shown);
+    if (state && (w->plan->observable || w->plan->energies))
+        nevh_state_error_hand(state, compare_pair, &shown);
+    if (w->plan->energies)
+        energies_begin(w->plan->energies);
     if (r->errors)
         observers[count++] = (nevh_observer){energy_trace_observe, &trace, 1};
     if (state)
@@ -225,6 +231,8 @@ static void watched(work *w, nevh_stepper *s) {
     if (state && isnan(r->state_error))
         explain_unknown(w->plan, r);
     r->observable_error = isnan(r->state_error) ? NAN : shown.worst;
+    if (w->plan->energies && r->ran && !isnan(r->state_error))
+        r->energies = energies_result(w->plan->energies);
     r->changes = kept ? invariants_result(kept) : NULL;
     nevh_state_error_free(state);
     nevh_energy_free(energy);

@@ -44,6 +44,7 @@ typedef struct {
     double *changes; /* of invariants, the largest; NULL: not asked for */
     struct envelope *errors; /* of the energy; NULL: not asked for */
     promise *promise;        /* NULL: none */
+    double *energies; /* errors of the energies of the plan's; NULL: unknown */
 } row;
 void row_run(const plan *, row *);
 /* What observes the energy of a row's run. */
@@ -108,6 +109,19 @@ void observable_show(table *, const plan *, const row *);
 /* As nevh_pair_fn. */
 void observable_compare(observable *, double t, const double q[],
                         const double p[], const double reference[]);
+
+/* energies.c */
+void energies_begin(energies *);
+void energies_compare(energies *, double t, const double q[], const double p[],
+                      const double reference[]); /* as nevh_pair_fn */
+double *energies_result(const energies *);
+void energies_columns(table *, const plan *, bool is_table);
+void energies_put(table *, const plan *, const row *, bool is_table);
+void energies_notes(const plan *, list *notes);
+/* A sentence on the worst of them where the total energy does not show it, to
+   be freed; NULL: there is none. */
+char *energies_unseen(const plan *, const row *);
+void energies_words(const plan *, const row rows[], size_t count, list *words);
 
 /* match.c: the dt with which the row costs as much as verlet with its dt, where
    the plan asks for that. */

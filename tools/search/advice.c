@@ -205,6 +205,7 @@ static void warn(const advice *a, const row *r, list *words) {
     const plan *p = &a->search.plan;
     if (a->search.by_state || !p->reference)
         return;
+    char *unseen = energies_unseen(p, r);
     if (state_out_of_step(r))
         list_print(words,
                    "Warning: the orbit is out of step with the true one: its "
@@ -216,6 +217,9 @@ static void warn(const advice *a, const row *r, list *words) {
                    "The energy alone is kept: after t = %.4g nothing is known "
                    "of the true orbit.",
                    nevh_reference_horizon(p->reference));
+    if (unseen)
+        list_add(words, unseen);
+    free(unseen);
 }
 
 static void tell_answer(const advice *a, const options *o, list *words) {

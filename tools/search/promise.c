@@ -29,6 +29,7 @@ static row again(const plan *run, const row *r, promise *made) {
 static void compare_orbit(const plan *p, row *r) {
     row copy = again(p, r, NULL);
     r->state_error = copy.state_error;
+    r->energies = copy.energies;
     free(copy.status);
 }
 
@@ -79,6 +80,9 @@ void advice_follow(advice *a, plan *p) {
         whole->reference = p->reference;
         whole->no_reference = p->no_reference;
         whole->reference_end = p->reference_end;
+        if (p->reference)
+            plan_energies(p);
+        whole->energies = p->energies;
     }
     for (size_t i = 0; i < count && !a->search.by_state && p->reference; i++)
         compare_orbit(whole, chosen(a, found[i]));

@@ -28,6 +28,7 @@ void study_free(study *l) {
     for (size_t i = 0; i < l->count; i++) {
         free(l->level[i].status);
         free(l->level[i].promise);
+        free(l->level[i].energies);
     }
     free(l->level);
     free(l->k);
