@@ -19,7 +19,8 @@ reference_headers = \
 	include/nevh/simd.h include/nevh/probe.h include/nevh/gradient.h \
 	include/nevh/integrator.h include/nevh/run.h include/nevh/transform.h \
 	include/nevh/diagnose.h include/nevh/reference.h \
-	include/nevh/section.h include/nevh/scene.h include/nevh/models.h \
+	include/nevh/section.h include/nevh/ensemble.h include/nevh/scene.h \
+	include/nevh/sweep.h include/nevh/models.h \
 	include/nevh/gsl.h include/nevh/extend.h
 # In the sources, where makeinfo looks for it, and in tarballs.
 doc/reference.texi: $(reference_headers) doc/reference.awk

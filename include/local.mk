@@ -14,6 +14,8 @@ nevhinclude_HEADERS = \
 	include/nevh/run.h \
 	include/nevh/scene.h \
 	include/nevh/section.h \
+	include/nevh/ensemble.h \
+	include/nevh/sweep.h \
 	include/nevh/status.h \
 	include/nevh/system.h \
 	include/nevh/transform.h

@@ -105,6 +105,7 @@ libnevh_core_la_SOURCES = \
 	lib/run/section_branch.c \
 	lib/run/section_turn.c \
 	lib/run/section_level.c \
+	lib/diagnose/energy_private.h \
 	lib/diagnose/energy.c \
 	lib/diagnose/trend_private.h \
 	lib/diagnose/trend.c \
@@ -124,6 +125,13 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/state_error.c \
 	lib/diagnose/stability.c \
 	lib/diagnose/rates.c \
+	lib/ensemble/random_private.h \
+	lib/ensemble/random.c \
+	lib/ensemble/ensemble_private.h \
+	lib/ensemble/ensemble.c \
+	lib/ensemble/lanes.c \
+	lib/ensemble/observe.c \
+	lib/ensemble/event.c \
 	lib/scene/scene_private.h \
 	lib/scene/lines.c \
 	lib/scene/piece.c \
@@ -146,6 +154,13 @@ libnevh_core_la_SOURCES = \
 	lib/scene/compiler_private.h \
 	lib/scene/compiler.c \
 	lib/scene/code_term.c \
+	lib/scene/scene_ensemble_private.h \
+	lib/scene/scene_ensemble.c \
+	lib/scene/scene_outcome.c \
+	lib/scene/sweep_private.h \
+	lib/scene/variant.c \
+	lib/scene/sweep.c \
+	lib/scene/crew.c \
 	lib/scene/scene.c
 
 # -version-info C:R:A, at each release, beginning with that of the last one:

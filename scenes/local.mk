@@ -21,6 +21,7 @@ dist_scenes_DATA = \
 	scenes/oscillator-paper.nevh \
 	scenes/oscillator.nevh \
 	scenes/outer-solar-system.nevh \
+	scenes/pendulum-periods.nevh \
 	scenes/pendulum-rotating.nevh \
 	scenes/pendulum-separatrix.nevh \
 	scenes/pendulum-small.nevh \

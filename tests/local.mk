@@ -43,6 +43,9 @@ suites = \
 	tests/run/check_run \
 	tests/run/check_until \
 	tests/run/check_section \
+	tests/ensemble/check_random \
+	tests/ensemble/check_ensemble \
+	tests/ensemble/check_sweep \
 	tests/system/check_closeness \
 	tests/run/check_transform \
 	tests/scheme/check_own_time \
@@ -103,6 +106,8 @@ tests_tool_check_hard_judge_SOURCES = tests/tool/check_hard_judge.c \
 	tools/experiment/stability.c \
 	tools/cli/words.c
 tests_tool_check_hard_judge_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE
+tests_ensemble_check_random_LDADD = $(INSIDE_LIBS)
+tests_ensemble_check_sweep_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_scheme_check_gsl_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_run_check_damped_orbits_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_robust_check_threads_CFLAGS = $(AM_CFLAGS) -pthread
@@ -149,6 +154,7 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_verdict.sh \
 	tests/tool/nevh_plot.sh \
 	tests/tool/nevh_section.sh \
+	tests/tool/nevh_sweep.sh \
 	tests/tool/nevh_run.sh \
 	tests/tool/nevh_code.sh \
 	tests/tool/nevh_memory.sh \

@@ -29,6 +29,9 @@ static const struct {
      "what it changes"},
     {section, FOR_SECTION, "SCENE",
      "points of Poincare and stroboscopic sections, as CSV"},
+    {sweep, FOR_SWEEP, "SCENE",
+     "many orbits: a row for each member of the ensemble, with outcomes, as "
+     "CSV"},
     {hard, FOR_HARD, "",
      "every integrator on cases that are hard to integrate"},
     {new_scene, FOR_NEW, "FILE", "makes a commented scene, FILE.nevh"},

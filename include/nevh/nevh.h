@@ -8,6 +8,7 @@
 #define NEVH_H
 
 #include <nevh/diagnose.h>
+#include <nevh/ensemble.h>
 #include <nevh/gradient.h>
 #include <nevh/integrator.h>
 #include <nevh/models.h>
@@ -17,6 +18,7 @@
 #include <nevh/scene.h>
 #include <nevh/section.h>
 #include <nevh/status.h>
+#include <nevh/sweep.h>
 #include <nevh/system.h>
 #include <nevh/transform.h>
 

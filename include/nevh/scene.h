@@ -3,7 +3,7 @@
 
    A scene is a text file (UTF-8) of sections [scene], [parameters],
    [coordinates], [definitions], [effects], [friction], [invariants],
-   [observables], [picture], [sections], [labels], [run], each with lines
+   [observables], [picture], [sections], [labels], [ensemble], [run], each with lines
    KEY = VALUE; # begins a comment.  [coordinates] and [effects] there must be.
    All formulas are checked when the scene is read, also those that only some
    commands ask for.

@@ -1,6 +1,7 @@
 /* nevh: the energy observer.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/field_private.h"
+#include "diagnose/energy_private.h"
 #include "diagnose/trend_private.h"
 #include "run/stepper_private.h"
 #include <float.h>
@@ -13,16 +14,17 @@ static const double cancelled = 1e-6;
 struct nevh_energy {
     nevh_field *field; /* for values only */
     size_t n, width;
-    const nevh_stepper *followed; /* NULL: errors are of H alone */
-    bool begun;
+    const nevh_stepper *followed;             /* NULL: errors are of H alone */
+    bool begun;                               /* any of the lanes */
     double given_scale;                       /* by the user; 0: found */
     double *t, *h, *initial, *scale, *gained; /* width each */
     double *limit;   /* width: the largest effect at the start */
     double *largest; /* width: the largest sum of terms' |values| met */
     double *seen;    /* width: the |error| at which that was looked for */
     nevh_theory theory;
-    double noise, blur; /* of the gradient, relative */
-    size_t steps, next_look;
+    double noise, blur;        /* of the gradient, relative */
+    size_t *steps, *next_look; /* width */
+    bool *started;             /* width */
     double *effects;
     double *state; /* 2n: one lane */
     nevh__trend *trend;
@@ -48,10 +50,14 @@ static int plan(nevh_energy *e, const nevh_system *s, bool portable) {
     e->largest = nevh__array(width, sizeof *e->largest);
     e->seen = nevh__array(width, sizeof *e->seen);
     e->trend = nevh__array(width, sizeof *e->trend);
+    e->steps = nevh__array(width, sizeof *e->steps);
+    e->next_look = nevh__array(width, sizeof *e->next_look);
+    e->started = nevh__array(width, sizeof *e->started);
     e->effects = nevh__array(s->n_effects, sizeof *e->effects);
     e->state = nevh__array(2 * s->n, sizeof *e->state);
     if (e->t && e->h && e->initial && e->gained && e->scale && e->limit &&
-        e->largest && e->seen && e->trend && e->effects && e->state)
+        e->largest && e->seen && e->trend && e->steps && e->next_look &&
+        e->started && e->effects && e->state)
         return NEVH_OK;
     return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
 }
@@ -81,6 +87,9 @@ void nevh_energy_free(nevh_energy *e) {
     free(e->largest);
     free(e->seen);
     free(e->trend);
+    free(e->steps);
+    free(e->next_look);
+    free(e->started);
     free(e->effects);
     free(e->state);
     free(e);
@@ -213,14 +222,13 @@ static int find_scale(nevh_energy *e, size_t lane, double t, const double q[],
     return status;
 }
 
-static int begin(nevh_energy *e, double t, const double q[], const double p[]) {
-    int status = NEVH_OK;
-    for (size_t lane = 0; !status && lane < e->width; lane++) {
-        e->initial[lane] = e->h[lane];
-        e->gained[lane] = gain(e, lane);
-        status = find_scale(e, lane, t, q, p);
-    }
-    e->begun = !status;
+static int begin(nevh_energy *e, size_t lane, double t, const double q[],
+                 const double p[]) {
+    e->initial[lane] = e->h[lane];
+    e->gained[lane] = gain(e, lane);
+    int status = find_scale(e, lane, t, q, p);
+    e->started[lane] = !status;
+    e->begun |= !status;
     return status;
 }
 
@@ -240,15 +248,15 @@ static int look(nevh_energy *e, size_t lane, double t, const double q[],
 
 static bool is_time_to_look(nevh_energy *e, size_t lane) {
     static const double higher = 1.5;
-    return e->trend[lane].samples >= e->next_look ||
+    return e->trend[lane].samples >= e->next_look[lane] ||
            fabs(nevh_energy_error(e, lane)) > higher * e->seen[lane];
 }
 
 /* Some hundred times in a run of any length. */
-static void look_again_later(nevh_energy *e) {
-    size_t samples = e->trend[0].samples;
-    if (samples >= e->next_look)
-        e->next_look = samples + samples / 64 + 1;
+static void look_again_later(nevh_energy *e, size_t lane) {
+    size_t samples = e->trend[lane].samples;
+    if (samples >= e->next_look[lane])
+        e->next_look[lane] = samples + samples / 64 + 1;
 }
 
 static int add_error(nevh_energy *e, size_t lane, double t) {
@@ -263,6 +271,19 @@ static int add_error(nevh_energy *e, size_t lane, double t) {
     return NEVH_OK;
 }
 
+static int observe_lane(nevh_energy *e, size_t lane, size_t step,
+                        const double q[], const double p[]) {
+    double t = e->t[lane];
+    int status = e->started[lane] ? NEVH_OK : begin(e, lane, t, q, p);
+    e->steps[lane] = step;
+    if (!status)
+        status = add_error(e, lane, t);
+    if (!status && is_time_to_look(e, lane))
+        status = look(e, lane, t, q, p);
+    look_again_later(e, lane);
+    return status;
+}
+
 int nevh_energy_observe(void *energy, size_t step, double t, const double q[],
                         const double p[]) {
     nevh_energy *e = energy;
@@ -271,18 +292,43 @@ int nevh_energy_observe(void *energy, size_t step, double t, const double q[],
     for (size_t lane = 0; lane < e->width; lane++)
         e->t[lane] = t;
     int status = nevh_field_value(e->field, e->width, e->t, q, p, e->h);
-    if (!status && !e->begun)
-        status = begin(e, t, q, p);
-    if (status)
-        return nevh__fail_as(&e->report, &e->field->report);
-    e->steps = step;
     for (size_t lane = 0; !status && lane < e->width; lane++)
-        status = add_error(e, lane, t);
-    for (size_t lane = 0; !status && lane < e->width; lane++)
-        if (is_time_to_look(e, lane) && look(e, lane, t, q, p))
-            status = nevh__fail_as(&e->report, &e->field->report);
-    look_again_later(e);
+        status = observe_lane(e, lane, step, q, p);
+    if (status && !e->report.status)
+        nevh__fail_as(&e->report, &e->field->report);
     return status;
+}
+
+/* Each lane alone, where one of them has no energy. */
+static void value_of_lane(nevh_energy *e, size_t lane, const double q[],
+                          const double p[]) {
+    gather(e, lane, q, p);
+    if (nevh_field_value(e->field, 1, &e->t[lane], e->state, e->state + e->n,
+                         &e->h[lane]))
+        e->h[lane] = NAN;
+}
+
+void nevh__energy_observe_lanes(nevh_energy *e, bool on[], const size_t step[],
+                                const double t[], const double q[],
+                                const double p[]) {
+    size_t width = e->width;
+    for (size_t lane = 0; lane < width; lane++)
+        e->t[lane] = t[lane];
+    if (nevh_field_value(e->field, width, e->t, q, p, e->h))
+        for (size_t lane = 0; lane < width; lane++)
+            value_of_lane(e, lane, q, p);
+    for (size_t lane = 0; lane < width; lane++)
+        if (on[lane])
+            on[lane] = isfinite(e->h[lane]) &&
+                       !observe_lane(e, lane, step[lane], q, p);
+    e->report = (nevh__report){0}; /* the lane's that failed, alone */
+}
+
+void nevh__energy_restart(nevh_energy *e, size_t lane) {
+    e->started[lane] = false;
+    e->largest[lane] = e->seen[lane] = 0;
+    e->steps[lane] = e->next_look[lane] = 0;
+    e->trend[lane] = (nevh__trend){0};
 }
 
 double nevh_energy_error(const nevh_energy *e, size_t lane) {
@@ -293,7 +339,7 @@ double nevh_energy_error(const nevh_energy *e, size_t lane) {
    or by the noise of differences. */
 static double rounding_of(const nevh_energy *e, size_t lane) {
     double each = fmax(DBL_EPSILON, e->noise / 16);
-    double walk = 4 * each * sqrt((double)e->steps);
+    double walk = 4 * each * sqrt((double)e->steps[lane]);
     return (16 * DBL_EPSILON + walk) * e->largest[lane] / e->scale[lane];
 }
 
@@ -307,7 +353,7 @@ nevh_energy_report nevh_energy_result(const nevh_energy *e, size_t lane) {
     report.limit = fmax(1, e->limit[lane] / e->scale[lane]);
     report.rounding = rounding_of(e, lane);
     report.gradient =
-        e->blur * (double)e->steps * e->largest[lane] / e->scale[lane];
+        e->blur * (double)e->steps[lane] * e->largest[lane] / e->scale[lane];
     nevh__trend_report(&e->trend[lane], &report);
     report.verdict = nevh_energy_verdict(&report, 1);
     return report;

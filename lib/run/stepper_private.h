@@ -53,6 +53,9 @@ int nevh__run_steps(nevh_stepper *, double t0, double h, size_t steps,
                     bool ends, double q[], double p[],
                     const nevh_observer observers[], size_t count);
 void nevh__end_run(nevh_stepper *, const double q[], const double p[]);
+/* Of a run of fixed steps: whether whole steps fill the span, h then being
+   adjusted to it; else the whole ones before the rest. */
+bool nevh__whole_steps(double span, double *h, double *steps);
 /* Finds the friction, and whether the scheme takes it. */
 int nevh__plan_friction(nevh_stepper *);
 /* Makes room for friction around steps; after the kernel's plan. */

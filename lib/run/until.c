@@ -212,16 +212,25 @@ static int run_whole(branch *b, double h, double steps, double q[], double p[],
     return status;
 }
 
+bool nevh__whole_steps(double span, double *h, double *steps) {
+    *steps = round(span / *h);
+    if (span == 0)
+        return true;
+    if (*steps > 0 && fabs(span / *h - *steps) <= whole * *steps) {
+        *h = span / *steps;
+        return true;
+    }
+    *steps = floor(span / *h);
+    return false;
+}
+
 /* Whole steps, and what is left. */
 static int run_fixed(branch *b, double h, double q[], double p[],
                      const nevh_observer observers[], size_t count) {
     nevh_stepper *s = b->stepper;
-    double t0 = b->t, span = b->t_end - t0, steps = round(span / h);
-    if (span == 0)
-        return run_whole(b, h, 0, q, p, observers, count);
-    if (steps > 0 && fabs(span / h - steps) <= whole * steps)
-        return run_whole(b, span / steps, steps, q, p, observers, count);
-    steps = floor(span / h);
+    double t0 = b->t, steps;
+    if (nevh__whole_steps(b->t_end - t0, &h, &steps))
+        return run_whole(b, h, steps, q, p, observers, count);
     int status =
         nevh__run_steps(s, t0, h, (size_t)steps, false, q, p, observers, count);
     if (status) {

@@ -73,6 +73,10 @@ uint64_t nevh_scene_digest(const nevh_scene *s) {
         digest = digest_statement(digest, s->assignments[i]);
     for (size_t i = 0; i < s->n_starts; i++)
         digest = digest_statement(digest_text(digest, "start"), s->starts[i]);
+    for (size_t i = 0; i < s->n_varies; i++)
+        digest = digest_statement(digest_text(digest, "vary"), s->varies[i]);
+    if (s->outcomes)
+        digest = digest_text(digest, s->outcomes->text);
     for (size_t i = 0; i < s->n_effects; i++)
         digest = digest_text(digest, s->effects[i].on ? "on" : "off");
     if (s->transform)

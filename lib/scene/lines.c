@@ -4,9 +4,9 @@
 #include <string.h>
 
 static const char *const section_names[NEVH__SECTION_COUNT] = {
-    "scene",   "parameters", "coordinates", "definitions",
-    "effects", "friction",   "invariants",  "observables",
-    "picture", "sections",   "labels",      "run"};
+    "scene",    "parameters", "coordinates", "definitions", "effects",
+    "friction", "invariants", "observables", "picture",     "sections",
+    "labels",   "ensemble",   "run"};
 
 static size_t line_bytes(const char *text, size_t left) {
     const char *end = memchr(text, '\n', left);

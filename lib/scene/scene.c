@@ -1,6 +1,7 @@
 /* nevh: scenes.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "scene/scene_private.h"
+#include "scene/scene_ensemble_private.h"
+#include <nevh/sweep.h>
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -33,10 +34,19 @@ static nevh__scene_model *new_model(nevh_scene *s) {
     if (nevh__model_parameters(s, m) && nevh__model_coordinates(s, m) &&
         nevh__model_definitions(s, m) && nevh__model_values(s, m) &&
         nevh__model_terms(s, m) && nevh__model_shown(s, m) &&
-        nevh__model_labels(s, m) && nevh__model_run(s, m))
+        nevh__model_labels(s, m) && nevh__model_run(s, m) &&
+        nevh__model_ensemble(s, m))
         return m;
     nevh__model_free(m);
     return NULL;
+}
+
+nevh__scene_model *nevh__model_with(nevh_scene *s,
+                                    const struct nevh__overrides *overrides) {
+    s->overrides = overrides;
+    nevh__scene_model *m = new_model(s);
+    s->overrides = NULL;
+    return m;
 }
 
 static nevh_scene *new_scene(const char *name) {
@@ -127,9 +137,12 @@ void nevh_scene_free(nevh_scene *s) {
         nevh__head_free(&s->assignments[i]->head);
     for (size_t i = 0; i < s->n_starts; i++)
         nevh__head_free(&s->starts[i]->head);
+    for (size_t i = 0; i < s->n_varies; i++)
+        nevh__head_free(&s->varies[i]->head);
     nevh__pool_free(&s->pool);
     free(s->assignments);
     free(s->starts);
+    free(s->varies);
     free(s);
 }
 
@@ -229,6 +242,27 @@ int nevh_scene_set_start(nevh_scene *s, const char *assignment) {
     return keep_if_fine(s, statement, true, &s->n_starts);
 }
 
+int nevh_scene_vary(nevh_scene *s, const char *const lines[], size_t count) {
+    if (!nevh__scene_begin(s))
+        return s->status;
+    size_t before = s->n_varies;
+    for (size_t i = 0; !s->status && i < count; i++) {
+        nevh__statement *statement =
+            new_assignment(s, lines[i], &s->varies, s->n_varies);
+        if (statement)
+            s->varies[s->n_varies++] = statement;
+    }
+    nevh__scene_model *model = s->status ? NULL : new_model(s);
+    if (!model) {
+        while (s->n_varies > before)
+            nevh__head_free(&s->varies[--s->n_varies]->head);
+        return s->status;
+    }
+    nevh__model_free(s->model);
+    s->model = model;
+    return NEVH_OK;
+}
+
 static nevh__piece *new_piece(nevh_scene *s, const char *text) {
     size_t bytes = strlen(text);
     nevh__line *line = nevh__pool_take(&s->pool, 1, sizeof *line);
@@ -261,6 +295,24 @@ int nevh_scene_set_transform(nevh_scene *s, const char *formula) {
     nevh__scene_model *model = new_model(s);
     if (!model) {
         s->transform = before;
+        return s->status;
+    }
+    nevh__model_free(s->model);
+    s->model = model;
+    return NEVH_OK;
+}
+
+int nevh_scene_set_outcomes(nevh_scene *s, const char *outcomes) {
+    if (!nevh__scene_begin(s))
+        return s->status;
+    const nevh__piece *before = s->outcomes;
+    nevh__piece *piece = new_piece(s, outcomes);
+    if (!piece)
+        return s->status;
+    s->outcomes = piece;
+    nevh__scene_model *model = new_model(s);
+    if (!model) {
+        s->outcomes = before;
         return s->status;
     }
     nevh__model_free(s->model);

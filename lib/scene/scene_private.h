@@ -36,6 +36,7 @@ typedef enum {
     NEVH__PICTURE,
     NEVH__SECTIONS,
     NEVH__LABELS,
+    NEVH__ENSEMBLE,
     NEVH__RUN,
     NEVH__SECTION_COUNT
 } nevh__section_kind;
@@ -95,6 +96,9 @@ typedef struct {
     double value;
 } nevh__stop;
 
+typedef struct nevh__scene_ensemble
+    nevh__scene_ensemble; /* "scene/scene_ensemble_private.h" */
+
 typedef struct {
     nevh__pool pool;
     nevh__names *names;
@@ -114,7 +118,8 @@ typedef struct {
     nevh__drawn *drawn;
     size_t n_drawn;
     nevh__stop stop;
-    nevh__formula judged; /* where the scene has one, from outside */
+    nevh__scene_ensemble *ensemble; /* NULL: nothing is varied */
+    nevh__formula judged;           /* where the scene has one, from outside */
     nevh__owned owned_shown;
     double *velocities, *velocity_buffer; /* n; NULL until asked for */
 } nevh__scene_model;
@@ -137,6 +142,10 @@ struct nevh_scene {
     size_t n_assignments;
     nevh__statement **starts; /* from outside, the newest last */
     size_t n_starts;
+    nevh__statement **varies; /* from outside, the newest last */
+    size_t n_varies;
+    const nevh__piece *outcomes; /* from outside; NULL: the scene's */
+    const struct nevh__overrides *overrides; /* while a model is made */
     const nevh__piece *transform; /* from outside; NULL: the scene's */
     const nevh__piece *judged;    /* from outside; NULL: none */
     nevh__scene_model *model;

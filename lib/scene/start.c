@@ -6,7 +6,7 @@
    the size of the momenta, which may be anything.  In units of these, GSL's
    hybrid solver does the rest.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "scene/scene_private.h"
+#include "scene/scene_ensemble_private.h"
 #include <float.h>
 #include <gsl/gsl_multiroots.h>
 #include <math.h>
@@ -244,8 +244,8 @@ static int solve(search *s) {
     return s->residual <= CLOSE ? NEVH_OK : NEVH_EMAXITER;
 }
 
-static bool fail(nevh_scene *scene, const search *s, int status) {
-    const nevh__scene_model *m = s->m;
+static bool fail(nevh_scene *scene, int status) {
+    const nevh__scene_model *m = scene->model;
     size_t k = 0;
     while (!m->by_velocity[k])
         k++;
@@ -256,12 +256,17 @@ static bool fail(nevh_scene *scene, const search *s, int status) {
         "no momenta were found that give the initial velocities");
 }
 
-static int find_momenta(nevh_scene *scene, double q[], double p[]) {
-    search s = {.m = scene->model, .q = q, .p = p};
+int nevh__momenta_find(const nevh__scene_model *m, double q[], double p[]) {
+    search s = {.m = m, .q = q, .p = p};
     int status = take_memory(&s) ? solve(&s) : NEVH_ENOMEM;
-    if (status)
-        fail(scene, &s, status);
     done(&s);
+    return status;
+}
+
+static int find_momenta(nevh_scene *scene, double q[], double p[]) {
+    int status = nevh__momenta_find(scene->model, q, p);
+    if (status)
+        fail(scene, status);
     return status;
 }
 

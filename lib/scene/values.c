@@ -1,6 +1,6 @@
 /* nevh: numbers and arrays of numbers; parameters.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "scene/scene_private.h"
+#include "scene/scene_ensemble_private.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -159,6 +159,7 @@ static bool add_parameter(nevh_scene *s, nevh__scene_model *m,
         return nevh__scene_no_memory(s);
     if (!nevh__head_values(s, m, from, &from->value, shape.count, values))
         return false;
+    nevh__override(s, name, values);
     nevh__formula_error error = {0};
     return !nevh__names_add_parameter(
                m->names, name, shape.array ? shape.count : 0, values, &error) ||

@@ -4,7 +4,7 @@
 # files of the library have the same name.
 
 srcdir=${srcdir:-.}
-order='system expression gradient work implicit integrators run diagnose scene
+order='system expression gradient work implicit integrators run diagnose ensemble scene
     models tools'
 work=arrows.$$
 trap 'rm -rf $work' EXIT
@@ -40,6 +40,7 @@ folder_of='function folder(path, part) {
         of["gradient"] = of["gsl"] = of["probe"] = "gradient"
         of["integrator"] = of["extend"] = of["run"] = "work"
         of["section"] = "run"; of["diagnose"] = of["reference"] = "diagnose"
+        of["ensemble"] = "ensemble"; of["sweep"] = "scene"
         of["scene"] = "scene"; of["models"] = "models"; of["nevh"] = "tools"
     }
     $3 ~ /^nevh\// { name = substr($3, 6); sub(/\.h$/, "", name)

@@ -39,5 +39,7 @@ completes 'nevh compare pendulum --integrators verlet,gauss2' verlet,gauss20
 completes 'nevh compare pendulum --format j' json
 completes 'nevh run pendulum --plot-kind conf' configuration
 completes 'nevh new x.nevh --from kepler-' kepler-0.9
+completes 'nevh swe' sweep
+completes 'nevh sweep pendulum --outcomes state,peri' state,period
 completes 'nevh compare --quiet keple' 'kepler-0.9 kepler'
 exit $status

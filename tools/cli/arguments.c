@@ -179,6 +179,33 @@ int read_repeat(options *o, const char *argument) {
     return read_count("repeat", argument, &o->repeats);
 }
 
+int read_vary(options *o, const char *argument) {
+    list_add(&o->vary, argument);
+    return TOOL_OK;
+}
+
+int read_outcomes(options *o, const char *argument) {
+    o->outcomes = argument;
+    return TOOL_OK;
+}
+
+static int read_few(const char *option, const char *text, size_t most,
+                    size_t *count) {
+    if (read_count(option, text, count))
+        return TOOL_USAGE;
+    return *count <= most ? TOOL_OK
+                          : tool_refuse("--%s takes at most %zu, not %s",
+                                        option, most, text);
+}
+
+int read_threads(options *o, const char *argument) {
+    return read_few("threads", argument, 4096, &o->threads);
+}
+
+int read_width(options *o, const char *argument) {
+    return read_few("width", argument, 4096, &o->width);
+}
+
 /* "a, b or c" */
 static char *either(const char *const names[]) {
     char *text = text_print("%s", names[0]);

@@ -11,7 +11,7 @@ static const struct {
     {FOR_GRADIENTS, "gradients"}, {FOR_CHECK, "check"},
     {FOR_EFFECTS, "effects"},     {FOR_SECTION, "section"},
     {FOR_HARD, "hard"},           {FOR_NEW, "new"},
-    {FOR_LIST, "list"},
+    {FOR_LIST, "list"},           {FOR_SWEEP, "sweep"},
 };
 
 const char *command_name(unsigned bit) {

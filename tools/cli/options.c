@@ -8,8 +8,8 @@
 
 enum {
     OF_COST = FOR_COST | FOR_GRADIENTS | FOR_RECOMMEND,
-    OF_SCENES =
-        FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_RUN | FOR_SECTION | OF_COST,
+    OF_SCENES = FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_RUN | FOR_SECTION |
+                FOR_SWEEP | OF_COST,
     OF_TABLES = OF_SCENES | FOR_LIST | FOR_HARD,
     OF_PLOTS = FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_COST | FOR_GRADIENTS
 };
@@ -31,7 +31,8 @@ static const struct {
      "see nevh list integrators; instead of the scene's"},
     {"dt", "A,B", OF_SCENES, read_dt,
      "time steps, instead of the scene's; formulas such as pi/50"},
-    {"tolerance", "A,B", FOR_COMPARE | FOR_RUN | FOR_SECTION, read_tolerance,
+    {"tolerance", "A,B", FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_SWEEP,
+     read_tolerance,
      "of integrators that choose their steps; instead of the scene's"},
     {"t-end", "T", OF_SCENES, read_t_end,
      "the end, instead of the scene's; a formula"},
@@ -60,7 +61,18 @@ static const struct {
     {"resume", "FILE", FOR_RUN, read_resume,
      "go on with FILE, which nevh run -o FILE left unfinished, from "
      "FILE.state, as if never interrupted"},
-    {"transform", "FORMULA", FOR_COMPARE | FOR_RUN | FOR_SECTION,
+    {"vary", "NAME=WHAT", FOR_SWEEP, read_vary,
+     "a line of [ensemble]: a list, range(A, B, N), normal(M, S) or "
+     "uniform(A, B); repeated for more names"},
+    {"outcomes", "A,B", FOR_SWEEP, read_outcomes,
+     "columns: state, t, energy_error, verdict, first(A > B), last(F), min(F), "
+     "max(F), mean(F), crossings, period"},
+    {"threads", "N", FOR_SWEEP, read_threads,
+     "threads that take members; as many as processors if not given"},
+    {"width", "N", FOR_SWEEP, read_width,
+     "orbits that a thread takes side by side, which changes no digit; chosen "
+     "if not given"},
+    {"transform", "FORMULA", FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_SWEEP,
      read_transform,
      "of time, for integrators NAME+transform; instead of the scene's"},
     {"match", "steps|work", FOR_COMPARE, read_match,
@@ -90,7 +102,7 @@ static const struct {
      "list: also the names in other packages, and sources. check: all "
      "integrators. hard: each run"},
     {"format", "table|csv|json", OF_TABLES, read_format,
-     "csv for run and section, table for others, if not given"},
+     "csv for run, section and sweep, table for others, if not given"},
     {"output", "FILE", OF_TABLES, read_file,
      "write to FILE, when all of it is there; nevh run: as it goes"},
     {"quiet", NULL, OF_TABLES | FOR_NEW, read_quiet,
@@ -193,7 +205,7 @@ int options_read(options *o, int argc, char **argv) {
 static int refuse_option(int k, const char *name) {
     enum { FEW = 5 };
     list those = {0};
-    for (unsigned bit = 1; bit <= FOR_HARD; bit *= 2)
+    for (unsigned bit = 1; bit <= FOR_LAST; bit *= 2)
         if (known[k].commands & bit)
             list_add(&those, command_name(bit));
     char *text = list_joined(&those);
@@ -228,6 +240,7 @@ void options_free(options *o) {
     list_free(&o->integrators);
     list_free(&o->gradients);
     list_free(&o->sections);
+    list_free(&o->vary);
     list_free(&o->dt);
     list_free(&o->at);
     free(o->tolerance);

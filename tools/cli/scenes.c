@@ -1,6 +1,7 @@
 /* nevh: scenes by file or name.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tool.h"
+#include <nevh/sweep.h>
 #include <dirent.h>
 #include <stdlib.h>
 #include <string.h>
@@ -160,6 +161,10 @@ static const char *option_of(const options *o, const char *text,
                              size_t length) {
     if (is_text(o->transform, text, length))
         return "--transform";
+    if (is_text(o->outcomes, text, length))
+        return "--outcomes";
+    if (is_one_of(&o->vary, text, length))
+        return "--vary";
     if (is_text(o->observable, text, length))
         return "--observable";
     for (size_t i = 0; i < o->settings.count; i++) {
@@ -230,6 +235,11 @@ static int read(nevh_scene *scene, const options *o) {
     for (size_t i = 0; i < o->settings.count; i++)
         if (assign(scene, o, o->settings.item[i]))
             return TOOL_USAGE;
+    if (nevh_scene_vary(scene, (const char *const *)o->vary.item,
+                        o->vary.count))
+        return scene_report(scene, o);
+    if (o->outcomes && nevh_scene_set_outcomes(scene, o->outcomes))
+        return scene_report(scene, o);
     if (o->transform && nevh_scene_set_transform(scene, o->transform))
         return scene_report(scene, o);
     if (o->observable && nevh_scene_set_judged(scene, o->observable))

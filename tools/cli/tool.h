@@ -5,6 +5,7 @@
        compare     compare.c    rows of row.h, a run each
        run         run.c        an orbit of trajectory.h, line by line
        section     section.c
+       sweep       sweep.c
        cost        cost.c       studies of study.h: rows at many steps
        recommend   recommend.c  the same
        gradients   gradients.c
@@ -123,7 +124,9 @@ enum {
     FOR_GRADIENTS = 128,
     FOR_RECOMMEND = 256,
     FOR_SECTION = 512,
-    FOR_HARD = 1024
+    FOR_HARD = 1024,
+    FOR_SWEEP = 2048,
+    FOR_LAST = FOR_SWEEP
 };
 
 const char *command_name(unsigned bit);
@@ -139,7 +142,10 @@ typedef enum {
 typedef struct {
     list operands, settings, integrators, gradients; /* settings: see below */
     list sections;
-    list dt, at; /* formulas of the scene's parameters */
+    list vary; /* lines of [ensemble] */
+    const char *outcomes;
+    size_t threads, width; /* 0: not given */
+    list dt, at;           /* formulas of the scene's parameters */
     double *tolerance;
     size_t tolerances;
     const char *t_end; /* a formula; NULL: the scene's */
@@ -216,6 +222,6 @@ char *scene_file(const char *beside, const char *name);
 
 typedef int command(const options *);
 command compare, list_command, check, effects, run_scene, section, new_scene;
-command cost, recommend, gradients, hard;
+command cost, recommend, gradients, hard, sweep;
 
 #endif

@@ -1,0 +1,99 @@
+/* nevh: the members of a scene's [ensemble], and their outcomes.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_SWEEP_H
+#define NEVH_SWEEP_H
+
+#include <nevh/ensemble.h>
+#include <nevh/scene.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Adds `count` lines to [ensemble], "NAME = WHAT", or replaces those of that
+   name:
+   WHAT is a list of formulas, range(A, B, N), normal(MEAN, DEVIATION) or
+   uniform(A, B), NAME a coordinate, p_NAME, v_NAME or a parameter; or a setting
+   (count, combine, seed).
+   returns  as nevh_scene_set */
+NEVH_API int nevh_scene_vary(nevh_scene *, const char *const lines[],
+                             size_t count);
+/* A list of outcomes, instead of the scene's: "state, first(x > 1)".
+   returns  as nevh_scene_set */
+NEVH_API int nevh_scene_set_outcomes(nevh_scene *, const char *outcomes);
+
+/* How members are run; zeros are the defaults. */
+typedef struct {
+    const nevh_integrator *integrator;
+    bool transformed;              /* by the scene's transform of time */
+    const nevh_gradient *gradient; /* NULL: central4 */
+    double gradient_step;          /* as in nevh_options */
+    const double *gradient_steps;
+    double dt, t_end; /* 0: those of [run], the first dt, with the member's
+                         parameters */
+    double tolerance;
+    bool portable;
+    size_t width, threads; /* 0: chosen; 1 */
+    bool ordered;          /* results come in order of members */
+} nevh_sweep_options;
+
+/* A sweep over the members of a scene.  Member i is a function of the scene's
+   text, of what was set from outside, of the seed and of i alone; so is its
+   result, to the last bit, whatever the threads, the width and the order. */
+typedef struct nevh_sweep nevh_sweep;
+
+/* scene    with an [ensemble], or lines by nevh_scene_vary; borrowed, not to be
+            changed or asked meanwhile
+   returns  to be freed with nevh_sweep_free; NULL only when memory is out;
+            carries NEVH_EINVAL where nothing is varied or there is no dt or
+            t_end, or the refusal of the scheme
+   cost     that of planning a stepper */
+NEVH_API nevh_sweep *nevh_sweep_new(nevh_scene *, const nevh_sweep_options *);
+NEVH_API void nevh_sweep_free(nevh_sweep *); /* NULL is allowed */
+NEVH_API int nevh_sweep_status(const nevh_sweep *);
+/* The message to that status, or ""; never NULL. */
+NEVH_API const char *nevh_sweep_message(const nevh_sweep *);
+NEVH_API uint64_t nevh_sweep_members(const nevh_sweep *);
+/* What is varied, then outcomes: "phi", "last(phi)", "energy_error". */
+NEVH_API size_t nevh_sweep_columns(const nevh_sweep *);
+/* How many of them are varied. */
+NEVH_API size_t nevh_sweep_varied(const nevh_sweep *);
+/* NULL when k is out of range. */
+NEVH_API const char *nevh_sweep_column(const nevh_sweep *, size_t k);
+/* Whether column k is a nevh_verdict. */
+NEVH_API bool nevh_sweep_is_verdict(const nevh_sweep *, size_t k);
+
+typedef enum {
+    NEVH_MEMBER_MISSING, /* not yet run */
+    NEVH_MEMBER_DONE,
+    NEVH_MEMBER_FAILED,  /* refused, or a step failed */
+    NEVH_MEMBER_NO_START /* H is not finite there, or no momenta give the
+                            velocities */
+} nevh_member_status;
+
+typedef struct {
+    uint64_t member;
+    nevh_member_status status;
+    const char *message;  /* why it is not done, or "" */
+    const double *values; /* nevh_sweep_columns; NAN where unknown */
+} nevh_sweep_result;
+/* Is called with each member, by one thread at a time.  A result other than 0
+   stops the sweep: orbits under way are left. */
+typedef int (*nevh_sweep_fn)(void *data, const nevh_sweep_result *);
+/* Whether a member is to be run at all; NULL: all are.  Called by several
+   threads at once. */
+typedef bool (*nevh_wanted_fn)(void *data, uint64_t member);
+
+/* Runs members first ... first + count - 1.
+   returns  NEVH_OK, also where members failed; NEVH_STOPPED; NEVH_ENOMEM
+   cost     memory does not grow with the number of members.  Where parameters
+            are varied, the scene's system is made, and a stepper planned, for
+            each set of them, some milliseconds for a small one */
+NEVH_API int nevh_sweep_run(nevh_sweep *, uint64_t first, uint64_t count,
+                            nevh_wanted_fn wanted, nevh_sweep_fn tell,
+                            void *data);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,361 @@
+/* nevh: an ensemble is planned.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "ensemble/ensemble_private.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WIDTH = 32, MOST_NUMBERS = 1 << 14 }; /* chosen; n times width */
+
+static int out_of_memory(nevh_ensemble *e) {
+    return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
+}
+
+static bool has_quantity(const nevh_outcome *o) {
+    return o->kind >= NEVH_OUTCOME_FIRST;
+}
+
+static bool crosses(const nevh_outcome *o) {
+    return o->kind == NEVH_OUTCOME_CROSSINGS || o->kind == NEVH_OUTCOME_PERIOD;
+}
+
+static bool asks_energy(const nevh_outcome *o) {
+    return o->kind == NEVH_OUTCOME_ENERGY_ERROR ||
+           o->kind == NEVH_OUTCOME_VERDICT;
+}
+
+/* What the outcomes ask for. */
+static int take_outcomes(nevh_ensemble *e) {
+    e->n_outcomes = e->is.n_outcomes;
+    e->outcomes = nevh__array(e->n_outcomes, sizeof *e->outcomes);
+    e->crossing_of = nevh__array(e->n_outcomes, sizeof *e->crossing_of);
+    e->crossings = nevh__array(e->n_outcomes, sizeof *e->crossings);
+    if (!e->outcomes || !e->crossing_of || !e->crossings)
+        return out_of_memory(e);
+    e->moving = e->is.stop.value && e->is.stop.velocities;
+    for (size_t i = 0; i < e->n_outcomes; i++) {
+        const nevh_outcome *o = &e->is.outcomes[i];
+        e->outcomes[i] = *o;
+        if ((unsigned)o->kind > NEVH_OUTCOME_PERIOD ||
+            (has_quantity(o) && !o->quantity.value))
+            return nevh__fail(&e->report, NEVH_EINVAL,
+                              "outcome %zu is of no known kind, or lacks its "
+                              "quantity",
+                              i);
+        e->columns += o->kind == NEVH_OUTCOME_STATE ? 2 * e->n : 1;
+        e->moving |= has_quantity(o) && o->quantity.velocities;
+        e->looks_back |= o->kind == NEVH_OUTCOME_FIRST;
+        if (crosses(o))
+            e->crossing_of[e->n_crossings++] = i;
+    }
+    return NEVH_OK;
+}
+
+static bool has_energy(const nevh_ensemble *e) {
+    for (size_t i = 0; i < e->n_outcomes; i++)
+        if (asks_energy(&e->outcomes[i]))
+            return true;
+    return false;
+}
+
+/* How many side by side. */
+static size_t choose_width(const nevh_ensemble *e, const nevh_options *o) {
+    const nevh_integrator *scheme = e->is.integrator;
+    size_t width = e->is.width ? e->is.width : WIDTH;
+    while (!e->is.width && width > NEVH__LANES && width * e->n > MOST_NUMBERS)
+        width /= 2;
+    if (scheme->own_time || o->transform || e->n_crossings ||
+        (scheme->adaptive && o->balance) || width == 1)
+        return 1;
+    return nevh__padded(width);
+}
+
+/* The options of a stepper of so many lanes, which all begin where the options
+   say: so its plan is that of one. */
+static int repeat_state(nevh_ensemble *e, size_t width, nevh_options *o,
+                        double **room) {
+    o->width = width;
+    *room = nevh__array(2 * e->n * width, sizeof **room);
+    if (!*room)
+        return out_of_memory(e);
+    for (size_t i = 0; i < e->n * width; i++) {
+        (*room)[i] = o->q ? o->q[i / width] : 0;
+        (*room)[e->n * width + i] = o->p ? o->p[i / width] : 0;
+    }
+    o->q = o->q ? *room : NULL;
+    o->p = o->p ? *room + e->n * width : NULL;
+    return NEVH_OK;
+}
+
+static int plan_stepper(nevh_ensemble *e, const nevh_options *options,
+                        size_t width, nevh_stepper **s) {
+    nevh_options o = *options;
+    double *room;
+    int status = repeat_state(e, width, &o, &room);
+    if (status)
+        return status;
+    *s = nevh_stepper_new(e->system, e->is.integrator, &o);
+    free(room);
+    if (!*s)
+        return out_of_memory(e);
+    return nevh_stepper_status(*s) ? nevh__fail_as(&e->report, &(*s)->report)
+                                   : NEVH_OK;
+}
+
+static int plan_energy(nevh_ensemble *e, const nevh_options *options) {
+    nevh_options o = {.width = e->width, .portable = options->portable};
+    e->energy = nevh_energy_new(e->system, &o);
+    if (!e->energy)
+        return out_of_memory(e);
+    if (e->is.energy_scale != 0)
+        nevh_energy_set_scale(e->energy, e->is.energy_scale);
+    nevh_energy_follow(e->energy, e->stepper);
+    nevh_energy_expect(e->energy, e->stepper);
+    return nevh_energy_status(e->energy)
+               ? nevh__fail(&e->report, nevh_energy_status(e->energy), "%s",
+                            nevh_energy_message(e->energy))
+               : NEVH_OK;
+}
+
+/* Velocities are exact, where terms bring their derivatives. */
+static int plan_motion(nevh_ensemble *e, const nevh_options *options) {
+    nevh_options o = *options;
+    for (int i = 0; i < 2; i++) {
+        o.gradient = i ? nevh_central6 : nevh_exact;
+        o.width = 1;
+        nevh_field_free(e->motion);
+        e->motion = nevh_field_new(e->system, &o);
+        if (!e->motion)
+            return out_of_memory(e);
+        if (!nevh_field_status(e->motion))
+            return NEVH_OK;
+    }
+    return nevh__fail(&e->report, nevh_field_status(e->motion), "%s",
+                      nevh_field_message(e->motion));
+}
+
+static double *numbers(size_t count) {
+    return nevh__array(count, sizeof(double));
+}
+
+static bool plan_snapshot(nevh_ensemble *e, nevh__snapshot *s, bool state) {
+    s->t = numbers(e->stride);
+    s->h = numbers(e->width);
+    s->value = numbers(e->n_outcomes * e->stride);
+    if (state && e->looks_back) {
+        s->q = numbers(e->n * e->width);
+        s->p = numbers(e->n * e->width);
+        s->memory = numbers(e->stepper->rows * e->width);
+        return s->t && s->h && s->value && s->q && s->p && s->memory;
+    }
+    return s->t && s->h && s->value;
+}
+
+static void free_snapshot(nevh__snapshot *s) {
+    free(s->t);
+    free(s->h);
+    free(s->value);
+    free(s->q);
+    free(s->p);
+    free(s->memory);
+}
+
+/* GSL aborts where memory is out: ask first for more than it takes. */
+static bool plan_root(nevh_ensemble *e) {
+    void *trial = nevh__array(64, sizeof(double));
+    free(trial);
+    e->root = trial ? gsl_root_fsolver_alloc(gsl_root_fsolver_brent) : NULL;
+    return e->root;
+}
+
+static int plan_rooms(nevh_ensemble *e) {
+    size_t n = e->n, width = e->width, stride = e->stride;
+    bool copies = stride != width;
+    e->lanes = nevh__array(width, sizeof *e->lanes);
+    e->q = numbers(n * width);
+    e->p = numbers(n * width);
+    e->records = nevh__array(e->n_outcomes * width, sizeof *e->records);
+    e->stop = numbers(stride);
+    e->v = numbers(n * stride);
+    e->wide_q = copies ? numbers(n * stride) : e->q;
+    e->wide_p = copies ? numbers(n * stride) : e->p;
+    e->run_q = numbers(n);
+    e->run_p = numbers(n);
+    e->q1 = numbers(n);
+    e->p1 = numbers(n);
+    e->wide_q1 = numbers(n * NEVH__LANES);
+    e->wide_p1 = numbers(n * NEVH__LANES);
+    e->v1 = numbers(n * NEVH__LANES);
+    e->t1 = numbers(NEVH__LANES);
+    e->value1 = numbers(NEVH__LANES);
+    e->on = nevh__array(width, sizeof *e->on);
+    e->step = nevh__array(width, sizeof *e->step);
+    e->result = numbers(e->columns);
+    bool all = e->lanes && e->q && e->p && e->records && e->stop && e->v &&
+               e->wide_q && e->wide_p && e->run_q && e->run_p && e->q1 &&
+               e->p1 && e->wide_q1 && e->wide_p1 && e->v1 && e->t1 &&
+               e->value1 && e->on && e->step && e->result && plan_root(e);
+    all = plan_snapshot(e, &e->now, false) && all;
+    all = plan_snapshot(e, &e->ago1, true) && all;
+    all = plan_snapshot(e, &e->ago2, true) && all;
+    return all ? NEVH_OK : out_of_memory(e);
+}
+
+/* A section's value, at the state beside the orbits. */
+typedef struct {
+    nevh_ensemble *ensemble;
+    size_t outcome;
+} crossing;
+
+static int value_of_crossing(void *data, double t, const double q[],
+                             const double p[], double *value) {
+    const crossing *c = data;
+    nevh_ensemble *e = c->ensemble;
+    memcpy(e->q1, q, e->n * sizeof *q);
+    memcpy(e->p1, p, e->n * sizeof *p);
+    *value = nevh__narrow_value(e, c->outcome, t);
+    return NEVH_OK;
+}
+
+static int plan_sections(nevh_ensemble *e) {
+    crossing *data = nevh__array(e->n_crossings, sizeof *data);
+    if (!data)
+        return out_of_memory(e);
+    for (size_t i = 0; i < e->n_crossings; i++) {
+        const nevh_outcome *o = &e->outcomes[e->crossing_of[i]];
+        data[i] = (crossing){e, e->crossing_of[i]};
+        e->crossings[i] = (nevh_section){.value = value_of_crossing,
+                                         .data = &data[i],
+                                         .direction = o->direction,
+                                         .period = o->modulus};
+    }
+    e->sections = nevh_sections_new(e->stepper, e->crossings, e->n_crossings,
+                                    nevh__ensemble_cross, e);
+    if (!e->sections) {
+        free(data);
+        return out_of_memory(e);
+    }
+    return nevh_sections_status(e->sections)
+               ? nevh__fail_as(&e->report, &e->sections->report)
+               : NEVH_OK;
+}
+
+static int check_times(nevh_ensemble *e) {
+    const nevh_ensemble_options *is = &e->is;
+    double steps = (is->t_end - is->t_start) / is->dt;
+    if (!(steps >= 0 && steps < 0x1p53))
+        return nevh__fail(&e->report, NEVH_EINVAL,
+                          "no number of steps of %g leads from %.9g to %.9g",
+                          is->dt, is->t_start, is->t_end);
+    e->h = is->dt;
+    e->whole = nevh__whole_steps(is->t_end - is->t_start, &e->h, &e->steps);
+    return NEVH_OK;
+}
+
+static int plan(nevh_ensemble *e) {
+    nevh_options o = e->is.options ? *e->is.options : (nevh_options){0};
+    if (e->system->report.status)
+        return nevh__fail_as(&e->report, &e->system->report);
+    if (!e->is.integrator)
+        return nevh__fail(&e->report, NEVH_EINVAL,
+                          "the integrator is NULL: is its name spelt right?");
+    e->n = e->system->n;
+    int status = check_times(e);
+    if (!status)
+        status = take_outcomes(e);
+    if (status)
+        return status;
+    bool autonomous = nevh_system_traits(e->system) & NEVH_AUTONOMOUS;
+    o.balance =
+        has_energy(e) && (!autonomous || nevh_system_friction(e->system, NULL));
+    e->width = choose_width(e, &o);
+    e->stride = nevh__padded(e->width);
+    e->alone = e->width == 1;
+    e->abreast = !autonomous;
+    status = plan_stepper(e, &o, e->width, &e->stepper);
+    if (!status)
+        status = plan_stepper(e, &o, 1, &e->narrow);
+    if (!status && has_energy(e))
+        status = plan_energy(e, &o);
+    if (!status && e->moving)
+        status = plan_motion(e, &o);
+    if (!status)
+        status = plan_rooms(e);
+    return !status && e->n_crossings ? plan_sections(e) : status;
+}
+
+nevh_ensemble *nevh_ensemble_new(const nevh_system *system,
+                                 const nevh_ensemble_options *options) {
+    nevh_ensemble *e = system ? nevh__array(1, sizeof *e) : NULL;
+    if (!e)
+        return NULL;
+    e->system = system;
+    e->is = *options;
+    int status = plan(e);
+    e->planned = !status;
+    e->is.options = NULL; /* borrowed until now */
+    e->is.outcomes = NULL;
+    if (status != NEVH_ENOMEM)
+        return e;
+    nevh_ensemble_free(e);
+    return NULL;
+}
+
+void nevh_ensemble_free(nevh_ensemble *e) {
+    if (!e)
+        return;
+    nevh_energy_free(e->energy);
+    nevh_sections_free(e->sections);
+    if (e->n_crossings && e->crossings)
+        free(e->crossings[0].data);
+    nevh_field_free(e->motion);
+    nevh_stepper_free(e->stepper);
+    nevh_stepper_free(e->narrow);
+    if (e->root)
+        gsl_root_fsolver_free(e->root);
+    if (e->wide_q != e->q)
+        free(e->wide_q);
+    if (e->wide_p != e->p)
+        free(e->wide_p);
+    free_snapshot(&e->now);
+    free_snapshot(&e->ago1);
+    free_snapshot(&e->ago2);
+    free(e->outcomes);
+    free(e->crossing_of);
+    free(e->crossings);
+    free(e->lanes);
+    free(e->q);
+    free(e->p);
+    free(e->records);
+    free(e->stop);
+    free(e->v);
+    free(e->run_q);
+    free(e->run_p);
+    free(e->q1);
+    free(e->p1);
+    free(e->wide_q1);
+    free(e->wide_p1);
+    free(e->v1);
+    free(e->t1);
+    free(e->value1);
+    free(e->on);
+    free(e->step);
+    free(e->result);
+    free(e);
+}
+
+int nevh_ensemble_status(const nevh_ensemble *e) {
+    return e ? e->report.status : NEVH_ENOMEM;
+}
+
+const char *nevh_ensemble_message(const nevh_ensemble *e) {
+    return e ? e->report.text : "out of memory";
+}
+
+size_t nevh_ensemble_columns(const nevh_ensemble *e) {
+    return e ? e->columns : 0;
+}
+
+size_t nevh_ensemble_width(const nevh_ensemble *e) {
+    return e ? e->width : 0;
+}

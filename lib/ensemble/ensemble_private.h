@@ -1,0 +1,108 @@
+/* nevh: inside an ensemble.
+
+   A lane is an orbit under way: a column of the rows of the state, of the
+   stepper's memory, and of all that is kept here.  Snapshots are of the states
+   before the last step and before the one before that: shorter steps branch off
+   from there, by a second stepper of one lane.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_ENSEMBLE_PRIVATE_H
+#define NEVH_ENSEMBLE_PRIVATE_H
+
+#include "diagnose/energy_private.h"
+#include "run/section_private.h"
+#include "run/stepper_private.h"
+#include <gsl/gsl_roots.h>
+#include <nevh/ensemble.h>
+
+typedef struct {
+    double *q, *p, *memory; /* rows of `width` */
+    double *t, *h;          /* width; h: of the step from there */
+    double *value;          /* n_outcomes rows of `stride` */
+} nevh__snapshot;
+
+/* An outcome of a lane on its way. */
+typedef struct {
+    double value, lost;
+    double first, last; /* of crossings */
+    size_t count;
+    bool known; /* it will not change any more */
+} nevh__record;
+
+typedef struct {
+    bool busy, fresh, over;
+    bool look, ends; /* it is to be looked at; its last step is taken */
+    uint64_t member;
+    size_t step;
+    double t;
+    nevh__report report; /* of what failed */
+} nevh__lane;
+
+struct nevh_ensemble {
+    const nevh_system *system;
+    size_t n, width, stride; /* stride: of values, a multiple of NEVH__LANES */
+    nevh_ensemble_options is;
+    nevh_outcome *outcomes; /* the ensemble's own */
+    size_t n_outcomes, columns;
+    nevh_stepper *stepper, *narrow; /* narrow: of one lane */
+    double h, steps;                /* whole ones; of fixed steps */
+    bool whole;                     /* they fill the run */
+    bool alone;   /* lanes are taken by nevh_run_until: there is one */
+    bool abreast; /* H reads t: lanes begin together */
+    bool looks_back, moving; /* snapshots, velocities are asked for */
+    bool planned;
+    nevh_energy *energy;     /* NULL: not asked for */
+    nevh_sections *sections; /* NULL: not asked for */
+    nevh_section *crossings; /* one an outcome that wants it */
+    size_t *crossing_of, n_crossings;
+    nevh_field *motion; /* of velocities; or NULL */
+    gsl_root_fsolver *root;
+
+    nevh__lane *lanes;     /* width */
+    double *q, *p;         /* n rows of `width` */
+    double *run_q, *run_p; /* n each: of nevh_run_until */
+    nevh__snapshot now;    /* of values alone, and times */
+    nevh__snapshot ago1, ago2;
+    nevh__record *records; /* n_outcomes rows of `width` */
+    double *stop;          /* stride: values of what stops */
+    double *v;             /* n rows of `stride` */
+    double *wide_q,
+        *wide_p; /* n rows of `stride`; q, p themselves, or copies */
+    /* A state beside the orbits: of the narrow stepper, padded for values. */
+    double *q1, *p1, *wide_q1, *wide_p1, *v1, *t1, *value1;
+    bool *on;
+    size_t *step;
+    double *result; /* columns */
+    nevh_member_fn next;
+    nevh_result_fn done;
+    void *data;
+    bool stopped;
+    nevh__report report;
+};
+
+/* observe.c: looks at the lanes that are to be looked at, after a step or at
+   their start; sets `over`. */
+void nevh__ensemble_look(nevh_ensemble *);
+/* The lane ends, as it is: hands its outcomes on. */
+void nevh__ensemble_end(nevh_ensemble *, size_t lane);
+void nevh__ensemble_fail(nevh_ensemble *, size_t lane, const nevh__report *);
+/* A point of a section of the only lane. */
+int nevh__ensemble_cross(void *ensemble, const nevh_point *);
+
+/* event.c: the time at which outcome o of a lane first is above 0 between the
+   snapshot and `until`, a part of the step from it, where it is above 0. */
+double nevh__ensemble_locate(nevh_ensemble *, const nevh__snapshot *from,
+                             size_t lane, size_t o, double until,
+                             double value_until);
+/* The time at which it first is between the last three states, none of which
+   is above 0; NAN where it is not, as far as parabolas tell. */
+double nevh__ensemble_graze(nevh_ensemble *, size_t lane, size_t o);
+
+/* lanes.c: moves of columns. */
+void nevh__lane_to_narrow(nevh_ensemble *, const double q[], const double p[],
+                          const double memory[], size_t lane);
+/* A step of h of the narrow stepper. */
+int nevh__narrow_step(nevh_ensemble *, double t, double h);
+/* The value of an outcome's quantity at the state beside the orbits. */
+double nevh__narrow_value(nevh_ensemble *, size_t o, double t);
+
+#endif

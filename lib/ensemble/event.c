@@ -1,0 +1,154 @@
+/* nevh: when a quantity is above 0 for the first time.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "ensemble/ensemble_private.h"
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum { MOST_TRIALS = 100, MOST_DIGS = 12 };
+static const double certain = 4 * DBL_EPSILON; /* part of a step */
+static const double doubt = 3;     /* factor on what a parabola's turn adds */
+static const double inside = 1e-6; /* turns keep off the ends by that part */
+
+/* A step from a snapshot, at the parts of which the quantity is asked for. */
+typedef struct {
+    nevh_ensemble *e;
+    const nevh__snapshot *from;
+    size_t lane, outcome;
+    double a, at_a, b, at_b; /* parts, and values there */
+    double ratio;            /* of the last two steps' lengths */
+    double t;                /* after the last one tried */
+    nevh__report failed;
+} search;
+
+static double sample(search *s, double part) {
+    nevh_ensemble *e = s->e;
+    const nevh__snapshot *from = s->from;
+    nevh__lane_to_narrow(e, from->q, from->p, from->memory, s->lane);
+    double t = from->t[s->lane], h = from->h[s->lane];
+    if (nevh__narrow_step(e, t, part * h)) {
+        s->failed = e->narrow->report;
+        return NAN;
+    }
+    s->t = e->narrow->last_t;
+    return nevh__narrow_value(e, s->outcome, s->t);
+}
+
+/* Finite whatever happens, since GSL aborts otherwise; the ends are known. */
+static double height(double part, void *data) {
+    search *s = data;
+    if (part == s->a || s->failed.status)
+        return s->at_a;
+    if (part == s->b)
+        return s->at_b;
+    double value = sample(s, part);
+    return isfinite(value) ? value : s->at_a;
+}
+
+/* Between part a, where the value is not above 0, and b, where it is. */
+static double find(search *s) {
+    gsl_root_fsolver *root = s->e->root;
+    gsl_function f = {height, s};
+    if (!(s->at_a <= 0) || !isfinite(s->at_a))
+        s->at_a = -1; /* it was not a number: only its side counts */
+    if (!isfinite(s->at_b))
+        s->at_b = 1;
+    double part = s->b;
+    int status = s->at_a == 0 ? 1 : gsl_root_fsolver_set(root, &f, s->a, s->b);
+    if (s->at_a == 0)
+        part = s->a;
+    for (int i = 0; !status && !s->failed.status && i < MOST_TRIALS; i++) {
+        status = gsl_root_fsolver_iterate(root);
+        part = gsl_root_fsolver_root(root);
+        if (gsl_root_fsolver_x_upper(root) - gsl_root_fsolver_x_lower(root) <=
+            certain)
+            break;
+    }
+    if (part == 0)
+        return s->from->t[s->lane];
+    sample(s, part);
+    return s->t;
+}
+
+static double result(search *s, double t) {
+    if (!s->failed.status)
+        return t;
+    nevh__ensemble_fail(s->e, s->lane, &s->failed);
+    return NAN;
+}
+
+double nevh__ensemble_locate(nevh_ensemble *e, const nevh__snapshot *from,
+                             size_t lane, size_t o, double until,
+                             double value_until) {
+    search s = {.e = e, .from = from, .lane = lane, .outcome = o};
+    s.at_a = from->value[o * e->stride + lane];
+    s.b = until;
+    s.at_b = value_until;
+    return result(&s, find(&s));
+}
+
+/* Where the parabola through three points turns, and its value there, if that
+   is a maximum. */
+static bool turn(const double t[3], const double g[3], double *at,
+                 double *most) {
+    double left = t[1] - t[0], right = t[2] - t[1];
+    double up = (g[1] - g[0]) / left, down = (g[2] - g[1]) / right;
+    double curve = (down - up) / (left + right);
+    double slope = (up * right + down * left) / (left + right);
+    if (!(curve < 0))
+        return false;
+    *at = t[1] - slope / (2 * curve);
+    *most = g[1] - slope * slope / (4 * curve);
+    return *at > t[0] && *at < t[2];
+}
+
+/* A time in units of the first of the two steps, as a part of the one that it
+   is in, whose snapshot is s->from. */
+static double part_of(search *s, double at) {
+    s->from = at < 1 ? &s->e->ago2 : &s->e->ago1;
+    return at < 1 ? at : (at - 1) / s->ratio;
+}
+
+/* Goes up to the maximum, or until the value is above 0. */
+static bool climb(search *s, double t[3], double g[3], double *at,
+                  double *value) {
+    for (int i = 0; i < MOST_DIGS; i++) {
+        double top;
+        if (!turn(t, g, at, &top) || !(g[1] + doubt * (top - g[1]) > 0))
+            return false;
+        *at = fmin(fmax(*at, t[0] + inside), t[2] - inside);
+        if (fabs(*at - t[1]) < inside)
+            *at = t[1] + (t[2] - t[1] > t[1] - t[0] ? inside : -inside);
+        *value = sample(s, part_of(s, *at));
+        if (s->failed.status || !isfinite(*value) || *value > 0)
+            return !s->failed.status && *value > 0;
+        size_t end = (*at > t[1]) == (*value > g[1]) ? 0 : 2;
+        double *side_t = &t[end], *side_g = &g[end];
+        if (*value > g[1]) { /* the new middle; the old one is an end */
+            *side_t = t[1];
+            *side_g = g[1];
+            t[1] = *at;
+            g[1] = *value;
+        } else {
+            *side_t = *at;
+            *side_g = *value;
+        }
+    }
+    return false;
+}
+
+double nevh__ensemble_graze(nevh_ensemble *e, size_t lane, size_t o) {
+    size_t i = o * e->stride + lane;
+    double g[3] = {e->ago2.value[i], e->ago1.value[i], e->now.value[i]};
+    if (!(g[1] >= g[0] && g[1] >= g[2] && g[0] > -INFINITY && g[2] > -INFINITY))
+        return NAN;
+    double ratio = e->ago1.h[lane] / e->ago2.h[lane];
+    double t[3] = {0, 1, 1 + ratio}, at, value;
+    search s = {.e = e, .lane = lane, .outcome = o, .ratio = ratio};
+    if (!climb(&s, t, g, &at, &value)) {
+        result(&s, NAN);
+        return NAN;
+    }
+    double part = part_of(&s, at);
+    return nevh__ensemble_locate(e, s.from, lane, o, part, value);
+}

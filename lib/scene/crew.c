@@ -1,0 +1,347 @@
+/* nevh: a sweep is run, by several threads.
+
+   Members are given out in chunks, in order.  Where no parameter is varied a
+   thread has one ensemble, whose lanes take chunk after chunk; else it takes
+   the members of a chunk that share their parameters together.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "scene/sweep_private.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { CHUNK = 256, WINDOW = 1 << 14 }; /* members; those that may wait */
+
+typedef struct {
+    nevh_sweep *sweep;
+    pthread_t thread;
+    nevh__variant variant;
+    uint64_t *list; /* the members of a chunk */
+    size_t count, at, group_end;
+    double *values; /* columns of one result */
+    double *varied; /* n_varied of each member of the list */
+    double *q, *p, *v, *room;
+    size_t *order; /* of the list, by parameters */
+    bool started;
+} worker;
+
+/* Results, under the lock. */
+
+static void tell(nevh_sweep *s, uint64_t member, nevh_member_status status,
+                 const char *message, const double values[]) {
+    nevh_sweep_result result = {member, status, message, values};
+    if (!s->stopped)
+        s->stopped = s->tell(s->data, &result) != 0;
+}
+
+static void tell_waiting(nevh_sweep *s) {
+    nevh__waiting *w;
+    uint64_t before = s->low;
+    while ((w = &s->waiting[s->low % WINDOW])->ready) {
+        if (w->status != NEVH_MEMBER_MISSING)
+            tell(s, s->low, w->status, w->message ? w->message : "", w->values);
+        free(w->message);
+        w->message = NULL;
+        w->ready = false;
+        s->low++;
+    }
+    if (s->low > before)
+        pthread_cond_broadcast(&s->moved);
+}
+
+static void hand_on(nevh_sweep *s, uint64_t member, nevh_member_status status,
+                    const char *message, const double values[]) {
+    pthread_mutex_lock(&s->lock);
+    if (!s->waiting) {
+        if (status != NEVH_MEMBER_MISSING)
+            tell(s, member, status, message, values);
+    } else {
+        nevh__waiting *w = &s->waiting[member % WINDOW];
+        w->ready = true;
+        w->status = status;
+        w->message = *message ? nevh__text("%s", message) : NULL;
+        if (values)
+            memcpy(w->values, values, s->columns * sizeof *values);
+        tell_waiting(s);
+    }
+    pthread_mutex_unlock(&s->lock);
+}
+
+/* A result of the worker's: what is varied, and outcomes or NULL. */
+static void finish(worker *w, uint64_t member, const double varied[],
+                   nevh_member_status status, const char *message,
+                   const double outcomes[]) {
+    nevh_sweep *s = w->sweep;
+    size_t n = s->ensemble->n_varied;
+    memcpy(w->values, varied, n * sizeof *varied);
+    for (size_t k = n; k < s->columns; k++)
+        w->values[k] = outcomes ? outcomes[k - n] : NAN;
+    hand_on(s, member, status, message, w->values);
+}
+
+/* Chunks. */
+
+/* Takes the next one; waits for room where it may. */
+static bool take_chunk(worker *w, bool may_wait) {
+    nevh_sweep *s = w->sweep;
+    pthread_mutex_lock(&s->lock);
+    while (may_wait && s->waiting && !s->stopped && s->next < s->end &&
+           s->next + CHUNK > s->low + WINDOW)
+        pthread_cond_wait(&s->moved, &s->lock);
+    bool room = !s->waiting || s->next + CHUNK <= s->low + WINDOW;
+    uint64_t from = s->next, to = from;
+    if (room && !s->stopped && from < s->end)
+        to = s->end - from < CHUNK ? s->end : from + CHUNK;
+    s->next = to;
+    pthread_mutex_unlock(&s->lock);
+    w->at = w->count = 0;
+    for (uint64_t i = from; i < to; i++)
+        if (!s->wanted || s->wanted(s->data, i))
+            w->list[w->count++] = i;
+        else if (s->waiting)
+            hand_on(s, i, NEVH_MEMBER_MISSING, "", NULL);
+    w->group_end = w->count;
+    return to > from;
+}
+
+static const double *varied_of(worker *w, size_t at) {
+    const nevh__scene_ensemble *e = w->sweep->ensemble;
+    double *all = w->varied + at * e->n_varied;
+    for (size_t i = 0; i < e->n_varied; i++)
+        all[i] = nevh__varied_value(e, &e->varied[i], w->list[at]);
+    return all;
+}
+
+/* The values of what is varied, by the place of the member in the list: kept
+   until its result comes, by then another chunk may be there. */
+static const double *varied_now(worker *w, uint64_t member, double room[]) {
+    const nevh__scene_ensemble *e = w->sweep->ensemble;
+    for (size_t i = 0; i < e->n_varied; i++)
+        room[i] = nevh__varied_value(e, &e->varied[i], member);
+    return room;
+}
+
+/* The next member of the group that has a start. */
+static bool next(void *data, uint64_t *member, double q[], double p[]) {
+    worker *w = data;
+    nevh_sweep *s = w->sweep;
+    for (;;) {
+        while (w->at == w->group_end)
+            if (s->ensemble->parameters || !take_chunk(w, false))
+                return false;
+        nevh__report report = {0};
+        *member = w->list[w->order ? w->order[w->at] : w->at];
+        w->at++;
+        const double *varied = varied_now(w, *member, w->room);
+        if (!nevh__variant_start(s, &w->variant, varied, q, p, w->v, &report))
+            return true;
+        finish(w, *member, varied, NEVH_MEMBER_NO_START, report.text, NULL);
+    }
+}
+
+static int done(void *data, const nevh_member_result *r) {
+    worker *w = data;
+    const double *varied = varied_now(w, r->member, w->room);
+    finish(w, r->member, varied,
+           r->status ? NEVH_MEMBER_FAILED : NEVH_MEMBER_DONE, r->message,
+           r->values);
+    return w->sweep->stopped;
+}
+
+/* Ensembles. */
+
+static void out_of_memory(nevh_sweep *s) {
+    pthread_mutex_lock(&s->lock);
+    s->failed = s->stopped = true;
+    pthread_cond_broadcast(&s->moved);
+    pthread_mutex_unlock(&s->lock);
+}
+
+/* The ensemble of the variant with these values; NULL after a message. */
+static nevh_ensemble *open(worker *w, const double varied[],
+                           nevh__report *report) {
+    nevh_sweep *s = w->sweep;
+    nevh_options o;
+    pthread_mutex_lock(&s->lock); /* the scene is one */
+    bool made = nevh__variant_make(s, varied, &w->variant, report);
+    pthread_mutex_unlock(&s->lock);
+    if (!made)
+        return NULL;
+    double *room = nevh__array(2 * w->variant.model->n, sizeof *room);
+    nevh_ensemble *e = NULL;
+    if (room) {
+        nevh_ensemble_options is =
+            nevh__variant_options(s, &w->variant, &o, room);
+        e = nevh_ensemble_new(w->variant.model->system, &is);
+    }
+    free(room);
+    if (!e || nevh_ensemble_status(e))
+        nevh__fail(report, nevh_ensemble_status(e), "%s",
+                   nevh_ensemble_message(e));
+    if (!report->status)
+        return e;
+    nevh_ensemble_free(e);
+    return NULL;
+}
+
+/* Members of the group, whose ensemble could not be made. */
+static void refuse_group(worker *w, const nevh__report *report) {
+    for (; w->at < w->group_end; w->at++) {
+        uint64_t member = w->list[w->order ? w->order[w->at] : w->at];
+        finish(w, member, varied_now(w, member, w->room), NEVH_MEMBER_FAILED,
+               report->text, NULL);
+    }
+}
+
+static void run_group(worker *w, const double varied[]) {
+    nevh__report report = {0};
+    nevh_ensemble *e = open(w, varied, &report);
+    if (e)
+        do
+            nevh_ensemble_run(e, next, done, w);
+        while (!w->sweep->ensemble->parameters && !w->sweep->stopped &&
+               take_chunk(w, true));
+    else if (report.status == NEVH_ENOMEM)
+        out_of_memory(w->sweep);
+    else
+        refuse_group(w, &report);
+    nevh_ensemble_free(e);
+    nevh__variant_free(&w->variant);
+}
+
+/* Whether two members of the list have the same parameters; else which comes
+   first: less than 0 where a does. */
+static int compare(const worker *w, size_t a, size_t b) {
+    const nevh__scene_ensemble *e = w->sweep->ensemble;
+    for (size_t i = 0; i < e->n_varied; i++) {
+        double x = w->varied[a * e->n_varied + i];
+        double y = w->varied[b * e->n_varied + i];
+        if (e->varied[i].is == NEVH__PARAMETER && x != y)
+            return x < y ? -1 : 1;
+    }
+    return a < b ? -1 : a > b;
+}
+
+static bool same_group(const worker *w, size_t a, size_t b) {
+    const nevh__scene_ensemble *e = w->sweep->ensemble;
+    for (size_t i = 0; i < e->n_varied; i++)
+        if (e->varied[i].is == NEVH__PARAMETER &&
+            w->varied[a * e->n_varied + i] != w->varied[b * e->n_varied + i])
+            return false;
+    return true;
+}
+
+/* By insertion: chunks are short, and mostly in order. */
+static void sort(worker *w) {
+    for (size_t i = 0; i < w->count; i++) {
+        size_t k = i;
+        for (; k > 0 && compare(w, i, w->order[k - 1]) < 0; k--)
+            w->order[k] = w->order[k - 1];
+        w->order[k] = i;
+    }
+}
+
+static void run_chunk_by_groups(worker *w) {
+    for (size_t i = 0; i < w->count; i++)
+        varied_of(w, i);
+    sort(w);
+    while (w->at < w->count && !w->sweep->stopped) {
+        size_t first = w->order[w->at];
+        w->group_end = w->at + 1;
+        while (w->group_end < w->count &&
+               same_group(w, first, w->order[w->group_end]))
+            w->group_end++;
+        run_group(w, w->varied + first * w->sweep->ensemble->n_varied);
+    }
+}
+
+static void *work(void *data) {
+    worker *w = data;
+    nevh_sweep *s = w->sweep;
+    if (s->ensemble->parameters)
+        while (take_chunk(w, true))
+            run_chunk_by_groups(w);
+    else if (take_chunk(w, true))
+        run_group(w, w->varied);
+    return NULL;
+}
+
+static bool equip(worker *w, nevh_sweep *s) {
+    size_t n = s->scene->model->n, varied = s->ensemble->n_varied;
+    *w = (worker){.sweep = s};
+    w->list = nevh__array(CHUNK, sizeof *w->list);
+    w->values = nevh__array(s->columns, sizeof *w->values);
+    w->varied = nevh__array(CHUNK * varied, sizeof *w->varied);
+    w->v = nevh__array(n, sizeof *w->v);
+    w->room = nevh__array(varied, sizeof *w->room);
+    if (s->ensemble->parameters)
+        w->order = nevh__array(CHUNK, sizeof *w->order);
+    return w->list && w->values && w->varied && w->v && w->room &&
+           (w->order || !s->ensemble->parameters);
+}
+
+static void dismiss(worker *w) {
+    free(w->list);
+    free(w->values);
+    free(w->varied);
+    free(w->v);
+    free(w->room);
+    free(w->order);
+}
+
+static bool open_window(nevh_sweep *s) {
+    if (!s->is.ordered)
+        return true;
+    s->waiting = nevh__array(WINDOW, sizeof *s->waiting);
+    double *all = nevh__array(WINDOW * s->columns, sizeof *all);
+    if (!s->waiting || !all) {
+        free(all);
+        return false;
+    }
+    for (size_t i = 0; i < WINDOW; i++)
+        s->waiting[i].values = all + i * s->columns;
+    return true;
+}
+
+static void close_window(nevh_sweep *s) {
+    for (size_t i = 0; s->waiting && i < WINDOW; i++)
+        free(s->waiting[i].message);
+    if (s->waiting)
+        free(s->waiting[0].values);
+    free(s->waiting);
+    s->waiting = NULL;
+}
+
+int nevh_sweep_run(nevh_sweep *s, uint64_t first, uint64_t count,
+                   nevh_wanted_fn wanted, nevh_sweep_fn tell_fn, void *data) {
+    if (s->report.status && s->report.status != NEVH_STOPPED)
+        return s->report.status;
+    s->report = (nevh__report){0};
+    uint64_t members = nevh_sweep_members(s);
+    s->first = s->next = s->low = first < members ? first : members;
+    s->end = count < members - s->first ? s->first + count : members;
+    s->wanted = wanted;
+    s->tell = tell_fn;
+    s->data = data;
+    s->stopped = s->failed = false;
+    size_t threads = s->is.threads;
+    worker *all = nevh__array(threads, sizeof *all);
+    bool ready = all && open_window(s);
+    for (size_t i = 0; ready && i < threads; i++)
+        ready = equip(&all[i], s);
+    for (size_t i = 1; ready && i < threads; i++)
+        all[i].started = !pthread_create(&all[i].thread, NULL, work, &all[i]);
+    if (ready)
+        work(&all[0]);
+    for (size_t i = 0; all && i < threads; i++) {
+        if (all[i].started)
+            pthread_join(all[i].thread, NULL);
+        dismiss(&all[i]);
+    }
+    free(all);
+    close_window(s);
+    if (!ready || s->failed)
+        return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
+    return s->stopped
+               ? nevh__fail(&s->report, NEVH_STOPPED, "the sweep was to stop")
+               : NEVH_OK;
+}

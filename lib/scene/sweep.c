@@ -1,0 +1,167 @@
+/* nevh: a sweep is planned.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "scene/sweep_private.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int out_of_memory(nevh_sweep *s) {
+    return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
+}
+
+static bool name_column(nevh_sweep *s, const char *format, const char *name) {
+    char *text = nevh__text(format, name);
+    s->names[s->columns++] = text;
+    return text;
+}
+
+/* last(x), last(p_x) */
+static bool name_state(nevh_sweep *s) {
+    const nevh__scene_model *m = s->scene->model;
+    for (size_t k = 0; k < 2 * m->n; k++)
+        if (!name_column(s, k < m->n ? "last(%s)" : "last(p_%s)",
+                         m->coordinate_names[k % m->n]))
+            return false;
+    return true;
+}
+
+static bool name_columns(nevh_sweep *s) {
+    const nevh__scene_ensemble *e = s->ensemble;
+    for (size_t i = 0; i < e->n_varied; i++)
+        if (!name_column(s, "%s", e->varied[i].name))
+            return false;
+    for (size_t i = 0; i < s->n_outcomes; i++) {
+        const nevh__scene_outcome *o = &s->outcomes[i];
+        s->verdicts[s->columns] = o->kind == NEVH_OUTCOME_VERDICT;
+        if (o->kind == NEVH_OUTCOME_STATE
+                ? !name_state(s)
+                : !name_column(s, "%s", o->piece.text))
+            return false;
+    }
+    return true;
+}
+
+static int check_names(nevh_sweep *s) {
+    for (size_t i = 0; i < s->columns; i++)
+        for (size_t k = 0; k < i; k++)
+            if (strcmp(s->names[i], s->names[k]) == 0)
+                return nevh__fail(&s->report, NEVH_EINVAL,
+                                  "two columns would be called %s",
+                                  s->names[i]);
+    return NEVH_OK;
+}
+
+static int take_outcomes(nevh_sweep *s) {
+    const nevh__scene_ensemble *e = s->ensemble;
+    s->outcomes = e->outcomes;
+    s->n_outcomes = e->n_outcomes;
+    if (!s->n_outcomes) {
+        s->default_outcomes[0].kind = NEVH_OUTCOME_STATE;
+        s->default_outcomes[1].kind = NEVH_OUTCOME_ENERGY_ERROR;
+        s->default_outcomes[1].piece.text = "energy_error";
+        s->outcomes = s->default_outcomes;
+        s->n_outcomes = 2;
+    }
+    size_t most = e->n_varied + s->n_outcomes * 2 * s->scene->model->n;
+    s->names = nevh__array(most, sizeof *s->names);
+    s->verdicts = nevh__array(most, sizeof *s->verdicts);
+    if (!s->names || !s->verdicts || !name_columns(s))
+        return out_of_memory(s);
+    return check_names(s);
+}
+
+/* Of the scene as it is: refusals that all members would meet. */
+static int try(nevh_sweep *s) {
+    const nevh__scene_model *m = s->scene->model;
+    nevh_options o;
+    nevh__variant x = {0};
+    double *room = nevh__array(2 * m->n, sizeof *room);
+    nevh_ensemble *e = NULL;
+    if (!room)
+        out_of_memory(s);
+    else if (nevh__variant_make(s, NULL, &x, &s->report)) {
+        nevh_ensemble_options is = nevh__variant_options(s, &x, &o, room);
+        if (!(is.dt > 0))
+            nevh__fail(&s->report, NEVH_EINVAL, "there is no time step");
+        else if (isnan(is.t_end))
+            nevh__fail(&s->report, NEVH_EINVAL, "there is no end of the run");
+        else if (!(e = nevh_ensemble_new(x.model->system, &is)))
+            out_of_memory(s);
+        else if (nevh_ensemble_status(e))
+            nevh__fail(&s->report, nevh_ensemble_status(e), "%s",
+                       nevh_ensemble_message(e));
+    }
+    nevh_ensemble_free(e);
+    nevh__variant_free(&x);
+    free(room);
+    return s->report.status;
+}
+
+nevh_sweep *nevh_sweep_new(nevh_scene *scene,
+                           const nevh_sweep_options *options) {
+    nevh_sweep *s = scene ? nevh__array(1, sizeof *s) : NULL;
+    if (!s)
+        return NULL;
+    s->scene = scene;
+    s->is = *options;
+    s->is.threads = s->is.threads ? s->is.threads : 1;
+    pthread_mutex_init(&s->lock, NULL);
+    pthread_cond_init(&s->moved, NULL);
+    s->ensemble = scene->model ? scene->model->ensemble : NULL;
+    int status = NEVH_OK;
+    if (!scene->model)
+        status = nevh__fail(&s->report, scene->status, "%s", scene->message);
+    else if (!s->ensemble->n_varied)
+        status = nevh__fail(&s->report, NEVH_EINVAL,
+                            "nothing is varied: give [ensemble] a line such "
+                            "as %s = range(0, 1, 11)",
+                            scene->model->coordinate_names[0]);
+    else
+        status = take_outcomes(s);
+    if (!status)
+        status = try(s);
+    if (status != NEVH_ENOMEM)
+        return s;
+    nevh_sweep_free(s);
+    return NULL;
+}
+
+void nevh_sweep_free(nevh_sweep *s) {
+    if (!s)
+        return;
+    for (size_t i = 0; i < s->columns; i++)
+        free(s->names[i]);
+    free(s->names);
+    free(s->verdicts);
+    pthread_mutex_destroy(&s->lock);
+    pthread_cond_destroy(&s->moved);
+    free(s);
+}
+
+int nevh_sweep_status(const nevh_sweep *s) {
+    return s ? s->report.status : NEVH_ENOMEM;
+}
+
+const char *nevh_sweep_message(const nevh_sweep *s) {
+    return s ? s->report.text : "out of memory";
+}
+
+uint64_t nevh_sweep_members(const nevh_sweep *s) {
+    return s->ensemble ? s->ensemble->members : 0;
+}
+
+size_t nevh_sweep_columns(const nevh_sweep *s) {
+    return s->columns;
+}
+
+size_t nevh_sweep_varied(const nevh_sweep *s) {
+    return s->ensemble ? s->ensemble->n_varied : 0;
+}
+
+const char *nevh_sweep_column(const nevh_sweep *s, size_t k) {
+    return k < s->columns ? s->names[k] : NULL;
+}
+
+bool nevh_sweep_is_verdict(const nevh_sweep *s, size_t k) {
+    return k < s->columns && s->verdicts[k];
+}

@@ -1,0 +1,66 @@
+/* nevh: inside a sweep.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_SWEEP_PRIVATE_H
+#define NEVH_SWEEP_PRIVATE_H
+
+#include "scene/scene_ensemble_private.h"
+#include <nevh/sweep.h>
+#include <pthread.h>
+
+/* The scene with one set of the parameters that are varied. */
+typedef struct {
+    nevh__scene_model *model;
+    bool owned; /* else it is the scene's own */
+    nevh_outcome *outcomes;
+    nevh_quantity stop;
+    nevh__owned tapes;
+    double *room; /* of nevh__effect_not_finite */
+} nevh__variant;
+
+/* Results that wait for those before them. */
+typedef struct {
+    bool ready;
+    nevh_member_status status;
+    char *message; /* NULL: none */
+    double *values;
+} nevh__waiting;
+
+struct nevh_sweep {
+    nevh_scene *scene;
+    nevh_sweep_options is;
+    const nevh__scene_ensemble *ensemble;
+    nevh__scene_outcome default_outcomes[2];
+    const nevh__scene_outcome *outcomes;
+    size_t n_outcomes, columns;
+    char **names; /* columns */
+    bool *verdicts;
+    nevh__report report;
+
+    /* A run. */
+    pthread_mutex_t lock;           /* of all below, and of the scene */
+    pthread_cond_t moved;           /* next or low */
+    uint64_t first, next, end, low; /* low: all before are told */
+    nevh_wanted_fn wanted;
+    nevh_sweep_fn tell;
+    void *data;
+    nevh__waiting *waiting; /* NULL: the order does not matter */
+    bool stopped, failed;
+};
+
+/* variant.c.  varied: of a member; NULL: the scene as it is. */
+bool nevh__variant_make(nevh_sweep *, const double varied[], nevh__variant *,
+                        nevh__report *);
+void nevh__variant_free(nevh__variant *);
+/* The options of an ensemble of the variant's members.  room: 2n */
+nevh_ensemble_options nevh__variant_options(const nevh_sweep *,
+                                            const nevh__variant *,
+                                            nevh_options *, double room[]);
+/* Where a member starts: from the variant's own start and what is varied.
+   returns  NEVH_OK or a status, with a message */
+int nevh__variant_start(const nevh_sweep *, const nevh__variant *,
+                        const double varied[], double q[], double p[],
+                        double v[], nevh__report *);
+
+/* crew.c: the run. */
+
+#endif

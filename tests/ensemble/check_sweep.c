@@ -1,0 +1,262 @@
+/* nevh tests: members of a scene, and what becomes of them.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "support.h"
+#include <gsl/gsl_sf_ellint.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define PENDULUM                                                               \
+    "[parameters]\ng = 9.8\n[coordinates]\nphi = 1 ; period 2*pi\n"            \
+    "[effects]\nkinetic = p_phi^2/2\ngravity = -g*cos(phi)\n"                  \
+    "[sections]\nswing = when phi = 0, rising: phi\n"                          \
+    "[run]\nt_end = 40\ndt = 0.05\n[ensemble]\n"
+
+enum { MOST = 700, COLUMNS = 8 };
+typedef struct {
+    size_t count, columns;
+    uint64_t last;
+    bool in_order;
+    double row[MOST][COLUMNS];
+    nevh_member_status status[MOST];
+    char message[300];
+} results;
+
+static int tell(void *data, const nevh_sweep_result *r) {
+    results *all = data;
+    all->in_order &= all->count == 0 || r->member > all->last;
+    all->last = r->member;
+    all->count++;
+    all->status[r->member] = r->status;
+    if (r->status != NEVH_MEMBER_DONE)
+        snprintf(all->message, sizeof all->message, "%s", r->message);
+    memcpy(all->row[r->member], r->values, all->columns * sizeof(double));
+    return 0;
+}
+
+static nevh_scene *scene_of(const char *text) {
+    nevh_scene *scene = nevh_scene_parse("test", text);
+    ck_assert_str_eq(nevh_scene_message(scene), "");
+    return scene;
+}
+
+static nevh_sweep_options plain(void) {
+    return (nevh_sweep_options){
+        .integrator = nevh_gauss10, .gradient = nevh_exact, .ordered = true};
+}
+
+static results *run(const char *text, nevh_sweep_options o) {
+    results *all = calloc(1, sizeof *all);
+    nevh_scene *scene = scene_of(text);
+    nevh_sweep *s = nevh_sweep_new(scene, &o);
+    ck_assert_str_eq(nevh_sweep_message(s), "");
+    all->columns = nevh_sweep_columns(s);
+    all->in_order = true;
+    ck_assert_uint_le(nevh_sweep_members(s), MOST);
+    ck_assert_uint_le(all->columns, COLUMNS);
+    ck_assert_int_eq(nevh_sweep_run(s, 0, UINT64_MAX, NULL, tell, all),
+                     NEVH_OK);
+    ck_assert_uint_eq(all->count, nevh_sweep_members(s));
+    nevh_sweep_free(s);
+    nevh_scene_free(scene);
+    return all;
+}
+
+START_TEST(periods_are_the_elliptic_integral) {
+    results *all = run(PENDULUM "phi = range(0.05, 3.05, 61)\n"
+                                "outcomes = period, crossings\n",
+                       plain());
+    ck_assert_uint_eq(all->count, 61);
+    for (size_t i = 0; i < 61; i++) {
+        double amplitude = all->row[i][0];
+        double period =
+            4 / sqrt(9.8) *
+            gsl_sf_ellint_Kcomp(sin(amplitude / 2), GSL_PREC_DOUBLE);
+        ck_assert_double_eq_tol(amplitude, 0.05 + 0.05 * (double)i, 1e-15);
+        ck_assert_double_eq_tol(all->row[i][1] / period, 1, 1e-9);
+        ck_assert_double_eq(all->row[i][2], floor(40 / period + 0.25));
+    }
+    free(all);
+}
+END_TEST
+
+/* A parameter that is varied gives the same as the same scene with it set. */
+START_TEST(parameters_are_those_of_a_scene) {
+    const double g[] = {1.6, 9.8, 24.8};
+    results *all = run(PENDULUM "g = 1.6, 9.8, 24.8\nphi = 0.5, 2\n", plain());
+    ck_assert_uint_eq(all->count, 6);
+    for (size_t i = 0; i < 6; i++) {
+        char text[600];
+        snprintf(text, sizeof text, PENDULUM "phi = %s\n", i % 2 ? "2" : "0.5");
+        char *at = strstr(text, "g = 9.8");
+        memcpy(at, i < 2 ? "g = 1.6" : i < 4 ? "g = 9.8" : "g =24.8", 7);
+        results *one = run(text, plain());
+        ck_assert_double_eq(all->row[i][0], g[i / 2]);
+        ck_assert_double_eq(all->row[i][1], i % 2 ? 2 : 0.5);
+        ck_assert_mem_eq(all->row[i] + 2, one->row[0] + 1, 3 * sizeof(double));
+        free(one);
+    }
+    free(all);
+}
+END_TEST
+
+START_TEST(order_is_of_the_lines) {
+    results *product = run(PENDULUM "phi = range(0, 1, 3)\np_phi = 4, 5\n"
+                                    "outcomes = t\n",
+                           plain());
+    results *zip = run(PENDULUM "phi = range(0, 1, 3)\np_phi = 4, 5, 6\n"
+                                "combine = zip\noutcomes = t\n",
+                       plain());
+    ck_assert_uint_eq(product->count, 6);
+    ck_assert_uint_eq(zip->count, 3);
+    for (size_t i = 0; i < 6; i++) {
+        ck_assert_double_eq(product->row[i][0], 0.5 * (double)(i / 2));
+        ck_assert_double_eq(product->row[i][1], 4 + (double)(i % 2));
+    }
+    for (size_t i = 0; i < 3; i++) {
+        ck_assert_double_eq(zip->row[i][0], 0.5 * (double)i);
+        ck_assert_double_eq(zip->row[i][1], 4 + (double)i);
+    }
+    free(product);
+    free(zip);
+}
+END_TEST
+
+/* Draws go by seed, name and number alone: not by what else is varied. */
+START_TEST(draws_are_of_seed_name_and_number) {
+    results *a = run(PENDULUM "phi = normal(1, 0.1)\ncount = 600\nseed = 3\n"
+                              "outcomes = t\n",
+                     plain());
+    results *b = run(PENDULUM "p_phi = uniform(0, 1)\nphi = normal(1, 0.1)\n"
+                              "count = 500\nseed = 3\noutcomes = t\n",
+                     plain());
+    results *c = run(PENDULUM "phi = normal(1, 0.1)\ncount = 600\nseed = 4\n"
+                              "outcomes = t\n",
+                     plain());
+    for (size_t i = 0; i < 500; i++) {
+        ck_assert_double_eq(a->row[i][0], b->row[i][1]);
+        ck_assert_double_ne(a->row[i][0], c->row[i][0]);
+        ck_assert(b->row[i][0] > 0 && b->row[i][0] < 1);
+        ck_assert_double_eq(a->row[i][0],
+                            1 + 0.1 * nevh_normal_at(3, "phi", i));
+    }
+    free(a);
+    free(b);
+    free(c);
+}
+END_TEST
+
+START_TEST(threads_and_widths_change_nothing) {
+    static const char text[] =
+        PENDULUM "phi = range(-3, 3, 300)\np_phi = 0, 2\n"
+                 "outcomes = first(abs(phi) > pi), energy_error, mean(v_phi), "
+                 "state\n";
+    nevh_sweep_options o = plain();
+    o.integrator = nevh_verlet;
+    o.gradient = NULL;
+    o.width = 1;
+    results *one = run(text, o);
+    ck_assert(one->in_order);
+    for (size_t i = 0; i < 4; i++) {
+        o.width = i < 2 ? 8 : 32;
+        o.threads = 1 + i % 2 * 2;
+        o.ordered = i != 3;
+        results *other = run(text, o);
+        ck_assert(i == 3 || other->in_order);
+        ck_assert_mem_eq(other->row, one->row, sizeof one->row);
+        free(other);
+    }
+    free(one);
+}
+END_TEST
+
+/* Members without a start are told of. */
+START_TEST(members_without_a_start_are_told) {
+    results *all = run("[parameters]\na = 1\n[coordinates]\nx = 1\n"
+                       "[effects]\nkinetic = p_x^2/2\nwell = -a*log(x)/x\n"
+                       "[run]\nt_end = 0.1\ndt = 0.01\n"
+                       "[ensemble]\nx = -1, 1, 2\n",
+                       plain());
+    ck_assert_int_eq(all->status[0], NEVH_MEMBER_NO_START);
+    ck_assert_int_eq(all->status[1], NEVH_MEMBER_DONE);
+    ck_assert_int_eq(all->status[2], NEVH_MEMBER_DONE);
+    assert_says(all->message, "well");
+    ck_assert_double_eq(all->row[0][0], -1);
+    ck_assert_double_nan(all->row[0][1]);
+    free(all);
+}
+END_TEST
+
+static const struct {
+    const char *line, *says;
+} wrong[] = {
+    {"phi = range(0, 1, 0)", "whole number"},
+    {"phi = range(0, 1)", "range(A, B, N)"},
+    {"phi = range(0, 1, 1e6)\np_phi = range(0, 1, 1e6)", "1e+12 members"},
+    {"phi = normal(1, 1)", "how many"},
+    {"phi = normal(1, -1)\ncount = 3", "deviation"},
+    {"phi = uniform(1, 1)\ncount = 3", "below"},
+    {"phi = 1, 2\ncount = 3", "nothing is drawn"},
+    {"phi = 1, 2\np_phi = 1, 2, 3\ncombine = zip", "equally many"},
+    {"phi = 1\nphi = 2", "already"},
+    {"psi = 1", "psi"},
+    {"phi = x", "x is not known"},
+    {"phi = 1\noutcomes = firts(phi > 1)", "did you mean first?"},
+    {"phi = 1\noutcomes = first(phi)", "FORMULA > FORMULA"},
+    {"phi = 1\noutcomes = last(psi)", "psi"},
+    {"phi = 1\noutcomes = period(swim)", "did you mean swing?"},
+    {"phi = 1\ncombine = both", "product or zip"},
+    {"phi = 1\nseed = 1.5", "whole number"},
+    {"p_phi = 1\nv_phi = 1", "both"},
+};
+
+START_TEST(wrong_lines_are_refused) {
+    char text[600];
+    snprintf(text, sizeof text, PENDULUM "%s\n", wrong[_i].line);
+    nevh_scene *scene = nevh_scene_parse("test", text);
+    ck_assert_int_ne(nevh_scene_status(scene), NEVH_OK);
+    assert_says(nevh_scene_message(scene), wrong[_i].says);
+    assert_says(nevh_scene_message(scene), "test:1");
+    nevh_scene_free(scene);
+}
+END_TEST
+
+/* Lines from outside replace the scene's; one that is wrong changes nothing. */
+START_TEST(lines_from_outside_replace) {
+    nevh_scene *scene = scene_of(PENDULUM "phi = 1, 2\n");
+    uint64_t digest = nevh_scene_digest(scene);
+    const char *wrong_one[] = {"g = 3", "psi = 1"};
+    const char *fine[] = {"phi = range(0, 1, 5)", "g = 1, 2"};
+    ck_assert_int_eq(nevh_scene_vary(scene, wrong_one, 2), NEVH_EINVAL);
+    ck_assert_uint_eq(nevh_scene_digest(scene), digest);
+    ck_assert_int_eq(nevh_scene_vary(scene, fine, 2), NEVH_OK);
+    ck_assert_int_eq(nevh_scene_set_outcomes(scene, "t"), NEVH_OK);
+    ck_assert_uint_ne(nevh_scene_digest(scene), digest);
+    nevh_sweep_options o = plain();
+    nevh_sweep *s = nevh_sweep_new(scene, &o);
+    ck_assert_str_eq(nevh_sweep_message(s), "");
+    ck_assert_uint_eq(nevh_sweep_members(s), 10);
+    ck_assert_uint_eq(nevh_sweep_columns(s), 3);
+    ck_assert_str_eq(nevh_sweep_column(s, 0), "phi");
+    ck_assert_str_eq(nevh_sweep_column(s, 1), "g");
+    ck_assert_str_eq(nevh_sweep_column(s, 2), "t");
+    nevh_sweep_free(s);
+    nevh_scene_free(scene);
+}
+END_TEST
+
+int main(void) {
+    Suite *s = suite_create("sweep");
+    TCase *c = tcase_create("members");
+    tcase_add_test(c, periods_are_the_elliptic_integral);
+    tcase_add_test(c, parameters_are_those_of_a_scene);
+    tcase_add_test(c, order_is_of_the_lines);
+    tcase_add_test(c, draws_are_of_seed_name_and_number);
+    tcase_add_test(c, threads_and_widths_change_nothing);
+    tcase_add_test(c, members_without_a_start_are_told);
+    tcase_add_loop_test(c, wrong_lines_are_refused, 0,
+                        sizeof wrong / sizeof *wrong);
+    tcase_add_test(c, lines_from_outside_replace);
+    suite_add_tcase(s, c);
+    return run_suite(s);
+}

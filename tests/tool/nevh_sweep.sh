@@ -1,0 +1,104 @@
+#!/bin/sh
+# nevh sweep: columns, order, the same bytes for any width and threads, and what
+# it refuses.
+
+. "${srcdir:-.}/tests/support/nevh_support.sh"
+
+rows() { grep -v '^#' $work/out | tail -n +2; }
+
+exits 0 sweep pendulum-periods --gradient exact
+has '^# integrator: gauss10, dt = 0\.05: the first integrator of the list'
+has '^# members: 61$'
+test "$(grep -v '^#' $work/out | head -n 1)" = \
+    member,status,phi,period,energy_error || fails "has other columns"
+rows | awk -F, '
+    function K(k, a, b, c, i) { # by arithmetic and geometric means
+        a = 1; b = sqrt((1 - k)*(1 + k))
+        for (i = 0; i < 20; i++) { c = (a + b)/2; b = sqrt(a*b); a = c }
+        return 2*atan2(1, 1)/a
+    }
+    {
+        exact = 4*sqrt(1/9.8)*K(sin($3/2))
+        if ($1 != NR - 1 || $2 != "ok" || ($4/exact - 1)^2 > 1e-18) {
+            print; wrong = 1
+        }
+    }
+    END { exit wrong || NR != 61 }' || fails "has other periods"
+
+# Bytes do not depend on widths, threads, or where they go.
+many="--vary phi=range(-3,3,40) --vary p_phi=range(-8,8,30)
+    --integrators verlet --t-end 20"
+set -- $many --outcomes \
+    'first(abs(phi) > pi), energy_error, verdict, mean(v_phi), state'
+exits 0 sweep pendulum-periods "$@" --width 1 --threads 1
+cp $work/out $work/one
+exits 0 sweep pendulum-periods "$@" --width 8 --threads 2
+cmp -s $work/out $work/one || fails "depends on the width"
+exits 0 sweep pendulum-periods "$@" --width 32 --threads 3
+cmp -s $work/out $work/one || fails "depends on the threads"
+exits 0 sweep pendulum-periods "$@" -o $work/file.csv
+cmp -s $work/file.csv $work/one || fails "writes other bytes to a file"
+exits 0 sweep pendulum-periods "$@" --quiet
+grep -v '^#' $work/one | cmp -s - $work/out || fails "is not quiet"
+# What never happens is empty.
+has ',first\(abs\(phi\) > pi\),'
+awk -F, '$5 == ""' $work/out | grep -q . || fails "has no empty field"
+
+# A parameter that changes the step changes it for its members alone.
+exits 0 sweep pendulum-periods --vary 'g = 1.6, 9.8' --vary 'phi = 1' \
+    --outcomes period --quiet
+rows | awk -F, 'NR == 1 { slow = $5 } NR == 2 { fast = $5 }
+    END { ratio = slow/fast - sqrt(9.8/1.6); exit ratio^2 > 1e-16 || NR != 2 }' ||
+    fails "has other periods on the moon"
+
+# Draws: the same for the same seed.
+exits 0 sweep pendulum --vary 'phi = normal(1, 0.1)' --vary 'count = 20' \
+    --vary 'seed = 5' --t-end 1 --outcomes t --quiet
+cp $work/out $work/one
+exits 0 sweep pendulum --vary 'count = 20' --vary 'seed = 5' \
+    --vary 'phi = normal(1, 0.1)' --t-end 1 --outcomes t --quiet
+cmp -s $work/out $work/one || fails "draws other numbers"
+
+# Members that cannot be run are told of, and the others are there.
+cat >$work/well.nevh <<'END'
+[parameters]
+a = 1
+[coordinates]
+x = 1
+[effects]
+kinetic = p_x^2/2
+well = -log(x)
+[run]
+t_end = 1
+dt = 0.01*a
+END
+exits 1 sweep $work/well.nevh --vary 'x = -1, 1' --quiet
+says '1 of 2 members have no start; the first, member 0: well is not finite'
+has '^0,no start,-1,,,$'
+has '^1,ok,1,'
+exits 1 sweep $work/well.nevh --vary 'a = 0, 1' --quiet
+says '1 of 2 members failed; the first, member 0'
+has '^0,failed,0,,,$'
+has '^1,ok,1,'
+
+refuses() {
+    words=$1
+    shift
+    exits 2 sweep "$@"
+    says "$words"
+}
+refuses 'nothing is varied' pendulum
+refuses 'there is no outcome frist; did you mean first' pendulum-periods \
+    --outcomes 'frist(phi > 1)'
+refuses 'from 2 to 1e\+11, not 0' pendulum --vary 'phi = range(0, 1, 0)'
+refuses '1e\+12 members' pendulum --vary 'phi = range(0, 1, 1e6)' \
+    --vary 'p_phi = range(0, 1, 1e6)'
+refuses 'psi is no coordinate' pendulum --vary 'psi = 1'
+refuses 'writes CSV' pendulum-periods --format json
+refuses 'needs H = T\(p\) \+ V\(q\)' double-pendulum --vary 'phi1 = 1, 2' \
+    --integrators verlet
+refuses 'cannot be written' pendulum-periods -o $work/no/such/folder.csv
+exits 2 run pendulum --vary 'phi = 1'
+says '--vary is no option of nevh run; it is for sweep'
+
+exit $status
