@@ -46,7 +46,7 @@ static double walk(double t) {
     return 1e-9 * sqrt(t) * sin(3 * t) * cos(0.05 * t);
 }
 
-START_TEST(slope_of_a_line) {
+TEST(slope_of_a_line) {
     nevh_energy_report r = report_on(steady, 0.01);
     ck_assert_double_eq_tol(r.drift, 3e-6, 1e-12);
     ck_assert_double_eq_tol(r.max, 6e-4, 1e-12);
@@ -59,9 +59,8 @@ START_TEST(slope_of_a_line) {
     r = report_on(steady, -0.01); /* backwards */
     ck_assert_double_eq_tol(r.drift, 3e-6, 1e-12);
 }
-END_TEST
 
-START_TEST(verdicts) {
+TEST(verdicts) {
     ck_assert_int_eq(report_on(steady, 0.01).verdict, NEVH_DRIFTS);
     ck_assert_int_eq(report_on(steady_loss_with_ripple, 0.1).verdict,
                      NEVH_DRIFTS);
@@ -71,7 +70,6 @@ START_TEST(verdicts) {
     ck_assert_str_eq(nevh_verdict_name(NEVH_RANDOM_WALK), "random-walk");
     ck_assert_str_eq(nevh_verdict_name((nevh_verdict)17), "unknown");
 }
-END_TEST
 
 /* H = T + V + constant with H0 as the parameters say. */
 typedef struct {
@@ -115,7 +113,7 @@ static nevh_energy_report scale_of(parts h) {
     return r;
 }
 
-START_TEST(scale_rule) {
+TEST(scale_rule) {
     nevh_energy_report r = scale_of((parts){3, -5, 0});
     ck_assert_double_eq(r.scale, 2);
     ck_assert_double_eq(r.initial, -2);
@@ -131,11 +129,10 @@ START_TEST(scale_rule) {
     r = scale_of((parts){0, 0, 0});
     ck_assert_double_eq(r.scale, 1);
 }
-END_TEST
 
 /* A scale that is given replaces the one that is found; none but a positive
    number is taken. */
-START_TEST(given_scale) {
+TEST(given_scale) {
     nevh_system *s = nevh_system_from(1, coordinate, NULL);
     nevh_energy *energy = nevh_energy_new(s, NULL);
     double p = 0, first = 1, second = 1.5;
@@ -154,10 +151,9 @@ START_TEST(given_scale) {
     }
     nevh_system_free(s);
 }
-END_TEST
 
 /* Each lane has its own series. */
-START_TEST(lanes) {
+TEST(lanes) {
     nevh_system *s = nevh_system_from(1, coordinate, NULL);
     nevh_energy *energy = nevh_energy_new(s, &(nevh_options){.width = 2});
     double p[2] = {0, 0}, first[2] = {1, 4}, second[2] = {1.5, 3};
@@ -169,7 +165,6 @@ START_TEST(lanes) {
     nevh_energy_free(energy);
     nevh_system_free(s);
 }
-END_TEST
 
 static double root(double t, const double q[], const double p[],
                    const void *params) {
@@ -177,7 +172,7 @@ static double root(double t, const double q[], const double p[],
     return sqrt(q[0]);
 }
 
-START_TEST(failures) {
+TEST(failures) {
     nevh_system *s = nevh_system_from(1, root, NULL);
     nevh_energy *energy = nevh_energy_new(s, NULL);
     double good = 4, bad = -1, p = 0;
@@ -196,10 +191,9 @@ START_TEST(failures) {
     nevh_energy_free(NULL);
     nevh_system_free(none);
 }
-END_TEST
 
 /* Effects switched after the observer was made are noticed. */
-START_TEST(stale) {
+TEST(stale) {
     nevh_system *s = henon_heiles.make();
     nevh_energy *energy = nevh_energy_new(s, NULL);
     nevh_system_enable(s, "potential", false);
@@ -208,19 +202,4 @@ START_TEST(stale) {
         NEVH_ESTALE);
     nevh_energy_free(energy);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("energy");
-    TCase *cases = tcase_create("energy");
-    tcase_add_test(cases, slope_of_a_line);
-    tcase_add_test(cases, verdicts);
-    tcase_add_test(cases, scale_rule);
-    tcase_add_test(cases, given_scale);
-    tcase_add_test(cases, lanes);
-    tcase_add_test(cases, failures);
-    tcase_add_test(cases, stale);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -96,7 +96,7 @@ static const struct {
 enum { RECOGNISED = sizeof recognised / sizeof *recognised };
 
 /* What is recognised is also what a Gauss method finds. */
-START_TEST(exact_solutions_are_recognised) {
+TEST_EACH(exact_solutions_are_recognised, RECOGNISED) {
     const orbit *o = &recognised[_i].orbit;
     setup a = refer_to(o, NULL), b = refer_to(o, nevh_gauss12);
     ck_assert_str_eq(nevh_reference_text(a.reference), recognised[_i].text);
@@ -112,7 +112,6 @@ START_TEST(exact_solutions_are_recognised) {
     tear_down(&a);
     tear_down(&b);
 }
-END_TEST
 
 /* Nearly the same, or no such motion. */
 static const struct {
@@ -142,13 +141,12 @@ static const struct {
 };
 enum { NEAR_MISSES = sizeof near_misses / sizeof *near_misses };
 
-START_TEST(near_misses_are_refused) {
+TEST_EACH(near_misses_are_refused, NEAR_MISSES) {
     setup s = set_up(near_misses[_i].coordinates, near_misses[_i].effects);
     refer(&s, NULL, 0, 3);
     ck_assert_ptr_null(strstr(nevh_reference_text(s.reference), "exact"));
     tear_down(&s);
 }
-END_TEST
 
 /* States of another program in quadruple precision, good to 20 digits and more;
    coordinates first.  H as a function has no exact gradient. */
@@ -198,7 +196,7 @@ static double error_at_end(const setup *s, double t1, const double state[]) {
     return most;
 }
 
-START_TEST(states_in_quadruple_precision) {
+TEST_EACH(states_in_quadruple_precision, STATES) {
     setup s = refer_to(&states[_i].orbit, NULL);
     double error = error_at_end(&s, states[_i].orbit.t1, states[_i].state);
     bool exact = strncmp(nevh_reference_text(s.reference), "exact", 5) == 0;
@@ -207,7 +205,6 @@ START_TEST(states_in_quadruple_precision) {
     ck_assert_double_le(error, nevh_reference_error(s.reference) + 1e-15);
     tear_down(&s);
 }
-END_TEST
 
 /* Orbits that hang on a constant: at a rounding of it, they are off by no more
    than the own error. */
@@ -228,7 +225,7 @@ static const struct {
 };
 enum { SENSITIVE = sizeof sensitive / sizeof *sensitive };
 
-START_TEST(constants_are_in_the_own_error) {
+TEST_EACH(constants_are_in_the_own_error, SENSITIVE) {
     char effects[400];
     orbit off = sensitive[_i].orbit;
     snprintf(effects, sizeof effects, "%s\n%s", off.effects,
@@ -246,7 +243,6 @@ START_TEST(constants_are_in_the_own_error) {
     tear_down(&a);
     tear_down(&b);
 }
-END_TEST
 
 static double pendulum_value(double t, const double q[], const double p[],
                              const void *params) {
@@ -255,7 +251,7 @@ static double pendulum_value(double t, const double q[], const double p[],
 }
 
 /* From values alone, by differences: for what its own error says. */
-START_TEST(values_alone_are_enough) {
+TEST(values_alone_are_enough) {
     nevh_system *system = nevh_system_from(1, pendulum_value, NULL);
     double q[] = {2}, p[] = {0};
     setup s = {.system = system, .n = 1};
@@ -268,11 +264,10 @@ START_TEST(values_alone_are_enough) {
     nevh_reference_free(s.reference);
     nevh_system_free(system);
 }
-END_TEST
 
 /* A run that is exact but for rounding, so that its checkpoints are put to
    the test: asked for in any order, near to steps and between them. */
-START_TEST(states_come_in_any_order) {
+TEST(states_come_in_any_order) {
     const orbit *o = &states[0].orbit;
     setup a = refer_to(o, NULL), b = refer_to(o, nevh_gauss16);
     for (size_t i = 0; i < 400; i++) {
@@ -284,10 +279,9 @@ START_TEST(states_come_in_any_order) {
     tear_down(&a);
     tear_down(&b);
 }
-END_TEST
 
 /* Back in time. */
-START_TEST(backwards) {
+TEST(backwards) {
     const nevh_integrator *const by[] = {NULL, nevh_gauss12};
     for (int i = 0; i < 2; i++) {
         setup s = set_up("q = 1.982325653157030516, 0.1796407425909401979",
@@ -299,9 +293,8 @@ START_TEST(backwards) {
         tear_down(&s);
     }
 }
-END_TEST
 
-START_TEST(ranges) {
+TEST(ranges) {
     setup s = refer_to(&recognised[6].orbit, NULL);
     /* e = 0.6: x from 0.4 to -1.6, |y| up to sqrt(1 - e^2); p_y from 2 at the
        near end to -0.5, |p_x| up to 1/sqrt(1 - e^2). */
@@ -326,7 +319,6 @@ START_TEST(ranges) {
     ck_assert_double_eq(nevh_reference_range(s.reference, 0), 1);
     tear_down(&s);
 }
-END_TEST
 
 #define RODS                                                                   \
     "T = (p_a^2 + 2*p_b^2 - 2*p_a*p_b*cos(a - b))/(2*(1 + sin(a - b)^2))\n"    \
@@ -334,7 +326,7 @@ END_TEST
 
 /* The chaotic one separates, wherever it is to end and whatever the method; a
    regular one does not. */
-START_TEST(chaos_has_a_horizon) {
+TEST(chaos_has_a_horizon) {
     const orbit chaos = {"a = 3\nb = 3", RODS, 0, 500};
     const orbit regular = {"a = 1.1\nb = 0\np_b = 2.7746", RODS, 0, 100};
     setup s = refer_to(&chaos, NULL);
@@ -360,11 +352,10 @@ START_TEST(chaos_has_a_horizon) {
     ck_assert_double_lt(nevh_reference_error(s.reference), 1e-9);
     tear_down(&s);
 }
-END_TEST
 
 /* A comet that comes near only after a while: steps that are good at its start
    are not, and that is no chaos. */
-START_TEST(a_close_pass_is_no_chaos) {
+TEST(a_close_pass_is_no_chaos) {
     setup s = set_up("x = -1.95\ny = 0\np_y = 0.05/sqrt(0.0975)",
                      "T = (p_x^2 + p_y^2)/2\nV = -1/hypot(x, y)");
     refer(&s, nevh_gauss12, 0, 20);
@@ -376,7 +367,6 @@ START_TEST(a_close_pass_is_no_chaos) {
     tear_down(&s);
     tear_down(&exact);
 }
-END_TEST
 
 /* State error of a run with so many steps. */
 static double error_of_run(const setup *s, const nevh_integrator *scheme,
@@ -432,7 +422,7 @@ static const struct {
 };
 enum { SLOPES = sizeof slopes / sizeof *slopes };
 
-START_TEST(slope_of_the_state_error_is_the_order) {
+TEST_EACH(slope_of_the_state_error_is_the_order, SLOPES) {
     const orbit *o = &slopes[_i].orbit;
     const nevh_integrator *scheme = nevh_integrator_named(slopes[_i].scheme);
     setup s = refer_to(o, NULL);
@@ -444,10 +434,9 @@ START_TEST(slope_of_the_state_error_is_the_order) {
     ck_assert_double_eq_tol(log2(a / b), slopes[_i].order, 0.15);
     tear_down(&s);
 }
-END_TEST
 
 /* The state, and nothing but it, over the range of each variable. */
-START_TEST(state_error_is_that_of_the_worst_variable) {
+TEST(state_error_is_that_of_the_worst_variable) {
     setup s = refer_to(&states[1].orbit, NULL);
     nevh_state_error *e = nevh_state_error_new(s.reference);
     ck_assert(isnan(nevh_state_error_result(e)));
@@ -466,11 +455,10 @@ START_TEST(state_error_is_that_of_the_worst_variable) {
     ck_assert_ptr_null(nevh_state_error_new(NULL));
     tear_down(&s);
 }
-END_TEST
 
 /* Of a million observations no more than 1025 ask the reference; the last one
    always does. */
-START_TEST(observations_are_spread_over_the_run) {
+TEST(observations_are_spread_over_the_run) {
     setup s = refer_to(&states[1].orbit, NULL);
     nevh_state_error *e = nevh_state_error_new(s.reference);
     size_t count = 0, most = 1000000;
@@ -486,19 +474,17 @@ START_TEST(observations_are_spread_over_the_run) {
     nevh_state_error_free(e);
     tear_down(&s);
 }
-END_TEST
 
-START_TEST(runs_beyond_the_horizon_have_no_state_error) {
+TEST(runs_beyond_the_horizon_have_no_state_error) {
     const orbit chaos = {"a = 3\nb = 3", RODS, 0, 60};
     setup s = refer_to(&chaos, NULL);
     ck_assert(isnan(error_of_run(&s, nevh_gauss8, 0, 60, 6000)));
     ck_assert_double_lt(error_of_run(&s, nevh_gauss8, 0, 8, 800), 1e-3);
     tear_down(&s);
 }
-END_TEST
 
 /* More steps than checkpoints are kept: a chain in one of its modes. */
-START_TEST(long_runs_keep_every_other_checkpoint) {
+TEST(long_runs_keep_every_other_checkpoint) {
     enum { N = 400 };
     char text[400];
     static double q[N], p[N];
@@ -524,9 +510,8 @@ START_TEST(long_runs_keep_every_other_checkpoint) {
     }
     tear_down(&s);
 }
-END_TEST
 
-START_TEST(bad_input) {
+TEST(bad_input) {
     setup s = set_up("x = 1", "T = p_x^2/2\nV = x^4/4");
     double q, p, bad = NAN;
     const double ends[] = {0, NAN, INFINITY};
@@ -558,56 +543,13 @@ START_TEST(bad_input) {
     nevh_reference_free(NULL);
     nevh_state_error_free(NULL);
 }
-END_TEST
 
 /* What cannot be stepped has no reference: the ball falls into the centre. */
-START_TEST(failures_are_told) {
+TEST(failures_are_told) {
     setup s = set_up("x = 1", "T = p_x^2/2\nV = -1/abs(x)");
     s.reference = nevh_reference_new(s.system, NULL, 0, 2, s.q, s.p);
     ck_assert_int_ne(nevh_reference_status(s.reference), NEVH_OK);
     ck_assert_str_ne(nevh_reference_message(s.reference), "");
     ck_assert_str_eq(nevh_reference_text(s.reference), "");
     tear_down(&s);
-}
-END_TEST
-
-static void add_exact(Suite *suite) {
-    TCase *cases = tcase_create("exact");
-    tcase_add_loop_test(cases, exact_solutions_are_recognised, 0, RECOGNISED);
-    tcase_add_loop_test(cases, near_misses_are_refused, 0, NEAR_MISSES);
-    tcase_add_loop_test(cases, states_in_quadruple_precision, 0, STATES);
-    tcase_add_loop_test(cases, constants_are_in_the_own_error, 0, SENSITIVE);
-    tcase_add_test(cases, values_alone_are_enough);
-    suite_add_tcase(suite, cases);
-}
-
-static void add_runs(Suite *suite) {
-    TCase *cases = tcase_create("runs");
-    tcase_add_test(cases, states_come_in_any_order);
-    tcase_add_test(cases, backwards);
-    tcase_add_test(cases, ranges);
-    tcase_add_test(cases, chaos_has_a_horizon);
-    tcase_add_test(cases, a_close_pass_is_no_chaos);
-    tcase_add_test(cases, long_runs_keep_every_other_checkpoint);
-    tcase_add_test(cases, bad_input);
-    tcase_add_test(cases, failures_are_told);
-    suite_add_tcase(suite, cases);
-}
-
-static void add_state_errors(Suite *suite) {
-    TCase *cases = tcase_create("state errors");
-    tcase_add_loop_test(cases, slope_of_the_state_error_is_the_order, 0,
-                        SLOPES);
-    tcase_add_test(cases, state_error_is_that_of_the_worst_variable);
-    tcase_add_test(cases, observations_are_spread_over_the_run);
-    tcase_add_test(cases, runs_beyond_the_horizon_have_no_state_error);
-    suite_add_tcase(suite, cases);
-}
-
-int main(void) {
-    Suite *suite = suite_create("reference");
-    add_exact(suite);
-    add_runs(suite);
-    add_state_errors(suite);
-    return run_suite(suite);
 }

@@ -64,7 +64,7 @@ static const struct {
 };
 enum { ENDS = sizeof ends / sizeof *ends };
 
-START_TEST(ends_have_reasons) {
+TEST_EACH(ends_have_reasons, ENDS) {
     setup s = refer(ends[_i].coordinates, ends[_i].effects, ends[_i].t1, NULL);
     ck_assert_str_eq(nevh_reference_message(s.reference), "");
     ck_assert_int_eq(nevh_reference_why(s.reference), ends[_i].end);
@@ -85,10 +85,9 @@ START_TEST(ends_have_reasons) {
         ck_assert_double_lt(nevh_reference_error(s.reference), 1e-9);
     tear_down(&s);
 }
-END_TEST
 
 /* A run that does not see what rows see: with their step it does. */
-START_TEST(steps_are_no_longer_than_asked_for) {
+TEST(steps_are_no_longer_than_asked_for) {
     const char wall[] = "T = p_x^2/2\nV = 2*exp(-((x - 1.777)/0.0002)^2)";
     setup blind = refer("x = 0, 1", wall, 4, NULL);
     setup seeing = refer("x = 0, 1", wall, 4,
@@ -108,7 +107,6 @@ START_TEST(steps_are_no_longer_than_asked_for) {
     ck_assert_int_eq(nevh_reference_status(seeing.reference), NEVH_EINVAL);
     tear_down(&seeing);
 }
-END_TEST
 
 /* Jumps of H that no derivative sees; the last are none, however steep. */
 static const struct {
@@ -125,7 +123,7 @@ static const struct {
 };
 enum { JUMPS = sizeof jumps / sizeof *jumps };
 
-START_TEST(jumps_are_found) {
+TEST_EACH(jumps_are_found, JUMPS) {
     setup s = refer("x = -1, 3", jumps[_i].effects, 10, NULL);
     const char *message = nevh_reference_message(s.reference);
     if (jumps[_i].jumps) {
@@ -139,10 +137,9 @@ START_TEST(jumps_are_found) {
     }
     tear_down(&s);
 }
-END_TEST
 
 /* A scheme of low order: as good as can be afforded, and it says how good. */
-START_TEST(poor_schemes_are_poor_references) {
+TEST(poor_schemes_are_poor_references) {
     nevh_reference_options o = {.integrator = nevh_euler};
     double q, p;
     setup s = refer("x = 1", "T = p_x^2/2\nV = x^2/2 + x^4/4", 10, &o);
@@ -158,16 +155,4 @@ START_TEST(poor_schemes_are_poor_references) {
     ck_assert_double_lt(off, 3 * own);
     tear_down(&s);
     tear_down(&good);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("reference_end");
-    TCase *cases = tcase_create("ends");
-    tcase_add_loop_test(cases, ends_have_reasons, 0, ENDS);
-    tcase_add_test(cases, steps_are_no_longer_than_asked_for);
-    tcase_add_loop_test(cases, jumps_are_found, 0, JUMPS);
-    tcase_add_test(cases, poor_schemes_are_poor_references);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

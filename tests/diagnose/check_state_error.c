@@ -69,7 +69,7 @@ static double error_of_run(const setup *s, const nevh_integrator *scheme,
 /* H does not read t: the orbit is the same to the bit, and so is its error,
    with whole steps or a shorter last one. */
 static const double beginnings[] = {-7.3, 2460000, 1e9, 1e12};
-START_TEST(errors_late_on_the_clock) {
+TEST_EACH(errors_late_on_the_clock, sizeof beginnings / sizeof *beginnings) {
     static const char duffing[] =
         "[coordinates]\nx = 1\n[effects]\nK = p_x^2/2\nV = x^2/2 + x^4/4\n";
     static const double h[] = {0.05, 0.0513};
@@ -86,11 +86,10 @@ START_TEST(errors_late_on_the_clock) {
         tear_down(&late);
     }
 }
-END_TEST
 
 /* At the times as they are rounded it is not; and a scheme's own error stays
    what it is. */
-START_TEST(rounded_times_are_other_times) {
+TEST(rounded_times_are_other_times) {
     setup s = set_up(
         "[coordinates]\nx = 1\n[effects]\nK = p_x^2/2\nV = x^2/2 + x^4/4\n");
     refer(&s, false, 1e9, 1e9 + 10);
@@ -106,9 +105,8 @@ START_TEST(rounded_times_are_other_times) {
     ck_assert_double_gt(verlet, 1e-3);
     tear_down(&s);
 }
-END_TEST
 
-START_TEST(arrays_of_a_scene) {
+TEST(arrays_of_a_scene) {
     setup s = set_up("[coordinates]\na = 1\nx[1..3] = 0\nb = 2\ny[1..2] = 1\n"
                      "[effects]\nK = p_a^2/2 + p_b^2/2\n");
     const size_t first[] = {0, 1, 1, 1, 4, 5, 5, 7};
@@ -117,7 +115,6 @@ START_TEST(arrays_of_a_scene) {
     ck_assert_uint_eq(nevh_scene_array(NULL, 3), 3);
     nevh_scene_free(s.scene);
 }
-END_TEST
 
 static const char wave[] =
     "[parameters]\nN = 64\n[coordinates]\nx[i = 1..N] = exp(-((i - 20)/3)^2)\n"
@@ -126,7 +123,7 @@ static const char wave[] =
 
 /* What hardly moves is measured by what does: the wave's error is that of the
    wave, not that of masses which it has not reached. */
-START_TEST(elements_of_an_array_share_a_range) {
+TEST(elements_of_an_array_share_a_range) {
     setup s = set_up(wave);
     refer(&s, true, 0, 20);
     double together = error_of_run(&s, nevh_verlet, true, 0, 20, 0.1);
@@ -143,7 +140,6 @@ START_TEST(elements_of_an_array_share_a_range) {
                         20 * together);
     tear_down(&s);
 }
-END_TEST
 
 static const char toda[] =
     "[parameters]\nN = 40\n[coordinates]\nx[1..N] = 0\n"
@@ -152,7 +148,7 @@ static const char toda[] =
     "V = sum(i = 1..N-1, exp(x[i] - x[i+1]) - 1) + x[N] - x[1]\n";
 
 /* All orbits of Toda's chain are regular. */
-START_TEST(a_regular_chain_is_not_chaotic) {
+TEST(a_regular_chain_is_not_chaotic) {
     setup s = set_up(toda);
     refer(&s, true, 0, 30);
     ck_assert_double_eq(nevh_reference_horizon(s.reference), INFINITY);
@@ -160,10 +156,9 @@ START_TEST(a_regular_chain_is_not_chaotic) {
     ck_assert_double_lt(error_of_run(&s, nevh_gauss4, true, 0, 30, 0.05), 1e-5);
     tear_down(&s);
 }
-END_TEST
 
 /* The largest difference of each, and none of the others'. */
-START_TEST(differences_by_variable) {
+TEST(differences_by_variable) {
     setup s = set_up("[coordinates]\nx = 1\ny = 3\n[effects]\n"
                      "K = (p_x^2 + p_y^2)/2\nV = x^2/2 + y^2/2\n");
     refer(&s, false, 0, 10);
@@ -184,7 +179,6 @@ START_TEST(differences_by_variable) {
     nevh_state_error_free(e);
     tear_down(&s);
 }
-END_TEST
 
 typedef struct {
     size_t count;
@@ -202,7 +196,7 @@ static void measure(void *data, double t, const double q[], const double p[],
 
 /* Both states of a pair are of the same time, late on the clock, too: 1e-9 of
    a time that is 1e9 later is nothing beside 1e-7, its last digit. */
-START_TEST(pairs_are_handed_on) {
+TEST(pairs_are_handed_on) {
     setup s = set_up(
         "[coordinates]\nx = 1\n[effects]\nK = p_x^2/2\nV = x^2/2 + x^4/4\n");
     const double t0 = 1e9, t1 = t0 + 10;
@@ -231,22 +225,4 @@ START_TEST(pairs_are_handed_on) {
     nevh_state_error_free(e);
     nevh_stepper_free(stepper);
     tear_down(&s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("state_error");
-    TCase *clock = tcase_create("clock");
-    tcase_add_loop_test(clock, errors_late_on_the_clock, 0,
-                        sizeof beginnings / sizeof *beginnings);
-    tcase_add_test(clock, rounded_times_are_other_times);
-    tcase_add_test(clock, pairs_are_handed_on);
-    suite_add_tcase(suite, clock);
-    TCase *kinds = tcase_create("kinds");
-    tcase_add_test(kinds, arrays_of_a_scene);
-    tcase_add_test(kinds, elements_of_an_array_share_a_range);
-    tcase_add_test(kinds, a_regular_chain_is_not_chaotic);
-    tcase_add_test(kinds, differences_by_variable);
-    suite_add_tcase(suite, kinds);
-    return run_suite(suite);
 }

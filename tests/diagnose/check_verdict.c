@@ -48,7 +48,7 @@ static double rough(double t) {
 
 /* Values that are not independent: whatever the phase, and however many periods
    there are, the slope of a wave is no more than some of its own errors. */
-START_TEST(slope_of_a_wave) {
+TEST(slope_of_a_wave) {
     static const double ends[] = {20, 50, 111, 400, 1234, 5000};
     for (size_t i = 0; i < sizeof ends / sizeof *ends; i++)
         for (phase = 0; phase < 6; phase += 0.5) {
@@ -59,15 +59,13 @@ START_TEST(slope_of_a_wave) {
         }
     phase = 0;
 }
-END_TEST
 
-START_TEST(slope_under_a_wave) {
+TEST(slope_under_a_wave) {
     nevh_energy_report r = report_on(hidden_loss, 400);
     ck_assert_double_lt(r.last_fifth, 2 * r.first_fifth);
     ck_assert_double_gt(fabs(r.drift), 4 * r.drift_error);
     ck_assert_double_lt(fabs(r.drift + 2e-6), 4 * r.drift_error);
 }
-END_TEST
 
 static nevh_verdict judge(nevh_energy_report r, nevh_theory theory,
                           double times) {
@@ -76,7 +74,7 @@ static nevh_verdict judge(nevh_energy_report r, nevh_theory theory,
 }
 
 /* The same data: what theory expects decides, or asks for more. */
-START_TEST(theories) {
+TEST(theories) {
     nevh_energy_report r = report_on(hidden_loss, 400);
     ck_assert_int_eq(judge(r, NEVH_THEORY_LOSES, 1), NEVH_DRIFTS);
     ck_assert_int_eq(judge(r, NEVH_THEORY_KEEPS, 1), NEVH_BOUNDED);
@@ -96,7 +94,6 @@ START_TEST(theories) {
     ck_assert_int_eq(judge(r, NEVH_THEORY_LOSES, 1), NEVH_UNSTABLE);
     ck_assert_str_eq(nevh_verdict_name(NEVH_UNDECIDED), "undecided");
 }
-END_TEST
 
 static nevh_theory theory_of(const problem *b, const nevh_integrator *scheme) {
     nevh_system *s = b->make();
@@ -115,7 +112,7 @@ static nevh_theory theory_of(const problem *b, const nevh_integrator *scheme) {
     return theory;
 }
 
-START_TEST(what_theory_knows) {
+TEST(what_theory_knows) {
     ck_assert_int_eq(theory_of(&henon_heiles, nevh_verlet), NEVH_THEORY_KEEPS);
     ck_assert_int_eq(theory_of(&henon_heiles, nevh_gonzalez),
                      NEVH_THEORY_KEEPS);
@@ -125,10 +122,9 @@ START_TEST(what_theory_knows) {
                      NEVH_THEORY_OPEN);
     ck_assert_int_eq(theory_of(&driven_pendulum, nevh_rk4), NEVH_THEORY_LOSES);
 }
-END_TEST
 
 /* A stepper of another system tells nothing of this one. */
-START_TEST(another_system) {
+TEST(another_system) {
     nevh_system *s = henon_heiles.make(), *other = henon_heiles.make();
     nevh_stepper *m = nevh_stepper_new(other, nevh_verlet, NULL);
     nevh_energy *e = nevh_energy_new(s, NULL);
@@ -139,10 +135,9 @@ START_TEST(another_system) {
     nevh_system_free(other);
     nevh_system_free(s);
 }
-END_TEST
 
 /* A stepper that was refused tells nothing. */
-START_TEST(refused) {
+TEST(refused) {
     nevh_system *s = henon_heiles.make();
     nevh_stepper *m = nevh_stepper_new(s, NULL, NULL);
     nevh_energy *e = nevh_energy_new(s, NULL);
@@ -152,7 +147,6 @@ START_TEST(refused) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Energies met far above those at the start: what rounding makes of these is no
    drift.  H = p^2/2 - x^2/2 from x = 1, by its exact solution, rounded. */
@@ -167,7 +161,7 @@ static double hill(double t, const double q[], const double p[],
     return -q[0] * q[0] / 2;
 }
 
-START_TEST(rounding_of_what_is_met) {
+TEST(rounding_of_what_is_met) {
     nevh_system *s = nevh_system_new(1);
     nevh_system_add(s, &(nevh_term){.np = 1, .value = kinetic, .effect = "K"});
     nevh_system_add(s, &(nevh_term){.nq = 1, .value = hill, .effect = "V"});
@@ -184,19 +178,4 @@ START_TEST(rounding_of_what_is_met) {
     ck_assert_int_ne(r.verdict, NEVH_UNSTABLE);
     nevh_energy_free(e);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("verdict");
-    TCase *cases = tcase_create("verdict");
-    tcase_add_test(cases, slope_of_a_wave);
-    tcase_add_test(cases, slope_under_a_wave);
-    tcase_add_test(cases, theories);
-    tcase_add_test(cases, what_theory_knows);
-    tcase_add_test(cases, refused);
-    tcase_add_test(cases, another_system);
-    tcase_add_test(cases, rounding_of_what_is_met);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

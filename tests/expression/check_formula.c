@@ -19,7 +19,7 @@ static double number_of(const char *text) {
     return value;
 }
 
-START_TEST(numbers) {
+TEST(numbers) {
     const struct {
         const char *text;
         double value;
@@ -79,7 +79,6 @@ START_TEST(numbers) {
                       table[i].text, value, table[i].value);
     }
 }
-END_TEST
 
 /* Columns count characters; phi with an index is two of them. */
 static const struct {
@@ -194,7 +193,7 @@ static const struct {
     {"x*first", 3, 5, "first is defined by itself", "second"},
 };
 
-START_TEST(errors) {
+TEST_EACH(errors, sizeof wrong / sizeof *wrong) {
     nevh__names *names = formula_names();
     formula_system s = system_of(wrong[_i].text, names, FORMULA_DOF);
     const nevh__formula_error *e = &s.error;
@@ -214,10 +213,9 @@ START_TEST(errors) {
     system_done(&s);
     nevh__names_free(names);
 }
-END_TEST
 
 /* Where numbers are wanted. */
-START_TEST(parameters_only) {
+TEST(parameters_only) {
     static const struct {
         const char *text;
         size_t column;
@@ -241,9 +239,8 @@ START_TEST(parameters_only) {
     }
     nevh__names_free(names);
 }
-END_TEST
 
-START_TEST(whole_numbers_and_indices) {
+TEST(whole_numbers_and_indices) {
     nevh__names *names = formula_names();
     nevh__formula_error e;
     nevh__index i = {.name = "i", .value = 3};
@@ -265,11 +262,10 @@ START_TEST(whole_numbers_and_indices) {
     nevh__tree_free(tree);
     nevh__names_free(names);
 }
-END_TEST
 
 /* Names. */
 
-START_TEST(names_are_refused) {
+TEST(names_are_refused) {
     static const struct {
         const char *name, *words;
     } table[] = {
@@ -296,9 +292,8 @@ START_TEST(names_are_refused) {
     }
     nevh__names_free(names);
 }
-END_TEST
 
-START_TEST(names_are_found) {
+TEST(names_are_found) {
     nevh__names *names = formula_names();
     nevh__formula_error e;
     const double values[] = {5, 6, 7, 8};
@@ -323,11 +318,10 @@ START_TEST(names_are_found) {
     nevh__tree_free(tree);
     nevh__names_free(names);
 }
-END_TEST
 
 /* Heads of lines. */
 
-START_TEST(heads) {
+TEST(heads) {
     nevh__head head;
     nevh__formula_error e;
     ck_assert_int_eq(nevh__head_parse(" p_x [i = 1 .. 2*N - 1] ", &head, &e),
@@ -350,9 +344,8 @@ START_TEST(heads) {
     nevh__head_free(&head);
     nevh__names_free(names);
 }
-END_TEST
 
-START_TEST(wrong_heads) {
+TEST(wrong_heads) {
     static const struct {
         const char *text;
         size_t column;
@@ -369,15 +362,13 @@ START_TEST(wrong_heads) {
                       e.column, e.text);
     }
 }
-END_TEST
 
-START_TEST(extents) {
+TEST(extents) {
     ck_assert_uint_eq(nevh__formula_extent("f(1, 2)[3, 4], 5; 6", ",;"), 13);
     ck_assert_uint_eq(nevh__formula_extent("(1, 2", ",;"), 5);
     ck_assert_uint_eq(nevh__formula_extent("1) ; 2", ",;"), 3);
     ck_assert_uint_eq(nevh__formula_extent("", ",;"), 0);
 }
-END_TEST
 
 /* Text of any kind. */
 
@@ -400,7 +391,7 @@ static void refuse_repeated(const char *before, const char *piece, size_t count,
     free(text);
 }
 
-START_TEST(extremes) {
+TEST(extremes) {
     refuse_repeated("", "(", 100000, "", "levels");
     refuse_repeated("", "-", 100000, "x", "levels");
     refuse_repeated("x", "^x", 50000, "", "levels");
@@ -416,10 +407,9 @@ START_TEST(extremes) {
     refuse_repeated("x", "+sum(i=1..1,x)", 65, "", "too many sums");
     refuse_repeated("", "(", 150, "x", "is missing");
 }
-END_TEST
 
 /* Definitions that double: 2^60 summands, 2^60 operations, 900 levels. */
-START_TEST(doubling_definitions) {
+TEST(doubling_definitions) {
     nevh__names *names = formula_names();
     char name[20], text[60];
     define(names, "a0", "x");
@@ -455,7 +445,6 @@ START_TEST(doubling_definitions) {
     system_done(&s);
     nevh__names_free(names);
 }
-END_TEST
 
 static unsigned long long seed = 7;
 
@@ -480,7 +469,7 @@ static void try_garbage(const char *text, const nevh__names *names) {
     system_done(&s);
 }
 
-START_TEST(garbage) {
+TEST(garbage) {
     static const char *const pieces[] = {"1",
                                          "2.5",
                                          ".",
@@ -547,24 +536,4 @@ START_TEST(garbage) {
         try_garbage(text, names);
     }
     nevh__names_free(names);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("formula");
-    TCase *cases = tcase_create("text");
-    tcase_add_test(cases, numbers);
-    tcase_add_loop_test(cases, errors, 0, sizeof wrong / sizeof *wrong);
-    tcase_add_test(cases, parameters_only);
-    tcase_add_test(cases, whole_numbers_and_indices);
-    tcase_add_test(cases, names_are_refused);
-    tcase_add_test(cases, names_are_found);
-    tcase_add_test(cases, heads);
-    tcase_add_test(cases, wrong_heads);
-    tcase_add_test(cases, extents);
-    tcase_add_test(cases, extremes);
-    tcase_add_test(cases, doubling_definitions);
-    tcase_add_test(cases, garbage);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -186,7 +186,7 @@ static const struct {
     {"sum(i = 1..N, sqrt(sum(j = i..N, q[j]^2)))", true, true, 4},
 };
 
-START_TEST(split) {
+TEST_EACH(split, sizeof table / sizeof *table) {
     nevh__names *names = formula_names();
     formula_system s = made(table[_i].text, names, FORMULA_DOF);
     unsigned traits = nevh_system_traits(s.system);
@@ -202,11 +202,10 @@ START_TEST(split) {
         compare_with_whole(table[_i].text, names, FORMULA_DOF);
     nevh__names_free(names);
 }
-END_TEST
 
 /* Terms come in the order of the text, with names of the effect; constants
    that vary are the only ones kept. */
-START_TEST(order_and_tables) {
+TEST(order_and_tables) {
     nevh__names *names = formula_names();
     formula_system s =
         made("y^2 + sum(i = 1..N, w[i]*q[i]^2/k + w[i]^2*q[i]*m) + x^2 + y^4",
@@ -234,9 +233,8 @@ START_TEST(order_and_tables) {
     system_done(&s);
     nevh__names_free(names);
 }
-END_TEST
 
-START_TEST(pairs) {
+TEST(pairs) {
     nevh__names *names = formula_names();
     formula_system s =
         made("sum(i = 1..N, j = 1..N, i*q[i]*q[j]*p_q[i])", names, FORMULA_DOF);
@@ -248,7 +246,6 @@ START_TEST(pairs) {
     system_done(&s);
     nevh__names_free(names);
 }
-END_TEST
 
 /* Chains and rings of any length. */
 
@@ -282,7 +279,7 @@ static double ring_value(size_t n, const double q[], double dq[]) {
     return h;
 }
 
-START_TEST(rings) {
+TEST_RANGE(rings, 1, 7) {
     static const char text[] =
         "sum(i = 1..N, (x[mod(i, N) + 1] - x[i])^2/2"
         " + (x[mod(i, N) + 1] - x[i])^4/4 + (x[mod(i, N) + 1] - x[i])/2"
@@ -302,10 +299,9 @@ START_TEST(rings) {
     compare_with_whole(text, names, n);
     nevh__names_free(names);
 }
-END_TEST
 
 /* Fermi, Pasta, Ulam and Tsingou, between walls. */
-START_TEST(long_chain) {
+TEST(long_chain) {
     enum { N = 100000 };
     static double w[N], q[N], p[N], slopes[2 * N];
     nevh__names *names = chain_names(N, w);
@@ -335,10 +331,9 @@ START_TEST(long_chain) {
     system_done(&s);
     nevh__names_free(names);
 }
-END_TEST
 
 /* Every pair of 40 bodies with three coordinates each. */
-START_TEST(many_bodies) {
+TEST(many_bodies) {
     enum { N = 20 };
     static double w[3 * N];
     nevh__names *names = chain_names(3 * N, w);
@@ -360,10 +355,9 @@ START_TEST(many_bodies) {
     system_done(&s);
     nevh__names_free(names);
 }
-END_TEST
 
 /* The model in text. */
-START_TEST(double_pendulum_in_text) {
+TEST(double_pendulum_in_text) {
     nevh__formula_error e;
     nevh__names *names = nevh__names_new();
     const nevh_model *model = nevh_double_pendulum_model;
@@ -394,10 +388,9 @@ START_TEST(double_pendulum_in_text) {
     system_done(&s);
     nevh__names_free(names);
 }
-END_TEST
 
 /* Observables may read velocities, which are constants of the tape. */
-START_TEST(velocities) {
+TEST(velocities) {
     nevh__names *names = formula_names();
     nevh__formula_error e;
     nevh__tree *tree = nevh__tree_parse("x*v_y + v_q[3]^2 + p_x", &e);
@@ -414,7 +407,6 @@ START_TEST(velocities) {
     nevh__tree_free(tree);
     nevh__names_free(names);
 }
-END_TEST
 
 /* Formulas drawn at random: what is split and gathered is the same function. */
 
@@ -515,7 +507,7 @@ static void put_sum(unsigned depth) {
     }
 }
 
-START_TEST(random_formulas) {
+TEST_EACH(random_formulas, 10) {
     nevh__names *names = formula_names();
     seed = 100 + (unsigned)_i;
     for (int i = 0; i < 100; i++) {
@@ -525,21 +517,4 @@ START_TEST(random_formulas) {
     }
     ck_assert_int_ge(compared, 60);
     nevh__names_free(names);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("formula_terms");
-    TCase *cases = tcase_create("terms");
-    tcase_add_loop_test(cases, split, 0, sizeof table / sizeof *table);
-    tcase_add_test(cases, order_and_tables);
-    tcase_add_test(cases, pairs);
-    tcase_add_loop_test(cases, rings, 1, 7);
-    tcase_add_test(cases, long_chain);
-    tcase_add_test(cases, many_bodies);
-    tcase_add_test(cases, double_pendulum_in_text);
-    tcase_add_test(cases, velocities);
-    tcase_add_loop_test(cases, random_formulas, 0, 10);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

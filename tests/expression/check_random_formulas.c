@@ -158,7 +158,7 @@ static double unsure(const formula *f, int variable) {
     return most;
 }
 
-START_TEST(gradients) {
+TEST(gradients) {
     nevh__names *names = formula_names();
     drawn = 7;
     for (int i = 0; i < FORMULAS; i++) {
@@ -176,11 +176,10 @@ START_TEST(gradients) {
     }
     nevh__names_free(names);
 }
-END_TEST
 
 /* The best of a sequence of steps, where the function does not vary faster than
    they are long. */
-START_TEST(gradients_by_differences) {
+TEST(gradients_by_differences) {
     nevh__names *names = formula_names();
     int compared = 0;
     drawn = 11;
@@ -204,7 +203,6 @@ START_TEST(gradients_by_differences) {
     ck_assert_int_gt(compared, FORMULAS / 2);
     nevh__names_free(names);
 }
-END_TEST
 
 #ifdef HAVE_MUPARSER
 static double judge(const formula *f) {
@@ -222,7 +220,7 @@ static double judge(const formula *f) {
 
 /* The size of what is added up to the value is not known: how it varies where
    the state is rounded stands for it. */
-START_TEST(values) {
+TEST(values) {
     nevh__names *names = formula_names();
     drawn = 13;
     for (int i = 0; i < FORMULAS; i++) {
@@ -238,10 +236,9 @@ START_TEST(values) {
     }
     nevh__names_free(names);
 }
-END_TEST
 
 /* What is written without parentheses. */
-START_TEST(precedence) {
+TEST(precedence) {
     static const char *const texts[] = {
         "-x^2",     "2^-1",         "2^3^2",      "-2^2",   "x - y - 3",
         "x/y/3",    "x/y*3",        "-x*-y",      "2*-x^2", "x^2^0.5",
@@ -263,18 +260,4 @@ START_TEST(precedence) {
     }
     nevh__names_free(names);
 }
-END_TEST
 #endif
-
-int main(void) {
-    Suite *suite = suite_create("random formulas");
-    TCase *cases = tcase_create("random formulas");
-    tcase_add_test(cases, gradients);
-    tcase_add_test(cases, gradients_by_differences);
-#ifdef HAVE_MUPARSER
-    tcase_add_test(cases, values);
-    tcase_add_test(cases, precedence);
-#endif
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
-}

@@ -160,14 +160,13 @@ static double ulp(double x) {
     return nextafter(fabs(x), INFINITY) - fabs(x);
 }
 
-START_TEST(all_are_listed) {
+TEST(all_are_listed) {
     ck_assert_int_eq(OPERATIONS, NEVH__OPERATION_COUNT);
     for (int i = 0; i < OPERATIONS; i++)
         ck_assert_int_eq(operations[i].is, i);
 }
-END_TEST
 
-START_TEST(values) {
+TEST_EACH(values, OPERATIONS) {
     const operation *f = &operations[_i];
     const char *name = nevh__operation_name(f->is);
     double x[WIDTH], y[WIDTH], t[WIDTH] = {0}, h[WIDTH], pair[2];
@@ -196,7 +195,6 @@ START_TEST(values) {
     }
     nevh__tape_free(tape);
 }
-END_TEST
 
 /* df/da, or df/db where by_b. */
 static long double slope(const operation *f, long double a, long double b,
@@ -219,7 +217,7 @@ static bool is_kinked(const operation *f, double a, double b) {
     return (f->is == NEVH__MIN || f->is == NEVH__MAX) && fabs(a - b) < 0.01;
 }
 
-START_TEST(slopes) {
+TEST_EACH(slopes, OPERATIONS) {
     const operation *f = &operations[_i];
     double x[WIDTH], y[WIDTH], t[WIDTH] = {0}, dx[WIDTH], dy[WIDTH], pair[2];
     nevh__tape *tape = tape_of(f->is);
@@ -244,10 +242,9 @@ START_TEST(slopes) {
         }
     nevh__tape_free(tape);
 }
-END_TEST
 
 /* Lane i of a block of eight full of other numbers against lane i of many. */
-START_TEST(lanes_are_alone) {
+TEST_EACH(lanes_are_alone, OPERATIONS) {
     const operation *f = &operations[_i];
     double x[WIDTH], y[WIDTH], t[WIDTH] = {0}, h[WIDTH], dx[WIDTH], dy[WIDTH];
     double x8[8], y8[8], h8[8], dx8[8], dy8[8];
@@ -271,10 +268,9 @@ START_TEST(lanes_are_alone) {
     }
     nevh__tape_free(tape);
 }
-END_TEST
 
 /* Either derivative alone is the same as both together. */
-START_TEST(one_side_at_a_time) {
+TEST_EACH(one_side_at_a_time, OPERATIONS) {
     const operation *f = &operations[_i];
     double x[WIDTH], y[WIDTH], t[WIDTH] = {0}, d[4][WIDTH];
     nevh__tape *tape = tape_of(f->is);
@@ -285,7 +281,6 @@ START_TEST(one_side_at_a_time) {
     ck_assert(memcmp(d[0], d[2], 2 * sizeof d[0]) == 0);
     nevh__tape_free(tape);
 }
-END_TEST
 
 /* Value and derivatives where they are special; they are exact, and NaN is
    wanted where NaN is written. */
@@ -356,7 +351,7 @@ static bool same(double x, double y) {
     return isnan(y) ? isnan(x) : isinf(y) ? x == y : fabs(x - y) <= 4 * ulp(y);
 }
 
-START_TEST(special_values) {
+TEST_EACH(special_values, sizeof special / sizeof *special) {
     double x[8], y[8], t[8] = {0}, h[8], dx[8], dy[8];
     const double a = special[_i].a, b = special[_i].b;
     nevh__tape *tape = tape_of(special[_i].is);
@@ -373,19 +368,4 @@ START_TEST(special_values) {
         "%s(%g, %g): %g (block %g), slopes %g, %g",
         nevh__operation_name(special[_i].is), a, b, one, h[3], dx[3], dy[3]);
     nevh__tape_free(tape);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("tape");
-    TCase *cases = tcase_create("operations");
-    int specials = sizeof special / sizeof *special;
-    tcase_add_test(cases, all_are_listed);
-    tcase_add_loop_test(cases, values, 0, OPERATIONS);
-    tcase_add_loop_test(cases, slopes, 0, OPERATIONS);
-    tcase_add_loop_test(cases, lanes_are_alone, 0, OPERATIONS);
-    tcase_add_loop_test(cases, one_side_at_a_time, 0, OPERATIONS);
-    tcase_add_loop_test(cases, special_values, 0, specials);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -58,7 +58,7 @@ static double variant_value(int kind, double u) {
 
 /* a (of) b at all pairs of special numbers, either or none of them known as
    the tape is made: nothing that is rewritten changes a bit. */
-START_TEST(rewriting_is_exact) {
+TEST_EACH(rewriting_is_exact, 5 * 4 * 4) {
     nevh__tape_operation of =
         _i % 5 == 4 ? NEVH__NEGATE : (nevh__tape_operation)(_i % 5);
     int kind_a = _i / 5 % 4, kind_b = _i / 20;
@@ -76,9 +76,8 @@ START_TEST(rewriting_is_exact) {
         nevh__tape_free(tape);
     }
 }
-END_TEST
 
-START_TEST(nothing_is_kept_twice) {
+TEST(nothing_is_kept_twice) {
     begin();
     int sum = apply(NEVH__ADD, x, y);
     ck_assert_int_eq(sum, apply(NEVH__ADD, y, x));
@@ -98,9 +97,8 @@ START_TEST(nothing_is_kept_twice) {
     ck_assert_int_eq(y, nevh__tape_variable(b, NEVH__P, 0));
     nevh__tape_abandon(b);
 }
-END_TEST
 
-START_TEST(identities) {
+TEST(identities) {
     double value;
     begin();
     ck_assert_int_eq(apply(NEVH__MULTIPLY, number(1), x), x);
@@ -129,7 +127,6 @@ START_TEST(identities) {
     ck_assert(nevh__tape_is_number(b, apply(NEVH__POWER, x, number(0)), NULL));
     nevh__tape_abandon(b);
 }
-END_TEST
 
 /* So many halves of an ulp, and those by which powl errs where long double is
    no more than double, as under valgrind. */
@@ -140,7 +137,7 @@ static double roundings(double count) {
 }
 
 /* Half-integer powers: how exact they are, and how many operations. */
-START_TEST(powers) {
+TEST_EACH(powers, 35) {
     double exponent = (_i - 17) / 2., whole = trunc(fabs(exponent));
     bool small = exponent == trunc(exponent) ? whole <= 8 : whole < 5;
     double rounded = fmax(whole, 1) + (exponent < 0) + 1;
@@ -158,9 +155,8 @@ START_TEST(powers) {
     }
     nevh__tape_free(tape);
 }
-END_TEST
 
-START_TEST(what_is_read) {
+TEST(what_is_read) {
     begin();
     int t = nevh__tape_variable(b, NEVH__T, 0);
     int c = nevh__tape_variable(b, NEVH__C, 3);
@@ -186,9 +182,8 @@ START_TEST(what_is_read) {
     ck_assert(term.complex_value && term.block && term.gradient);
     nevh__tape_free(tape);
 }
-END_TEST
 
-START_TEST(kinks_are_told) {
+TEST_EACH(kinks_are_told, 6) {
     static const nevh__tape_operation kinked[] = {
         NEVH__ABS, NEVH__MIN, NEVH__MAX, NEVH__SIGN, NEVH__MOD, NEVH__FLOOR};
     begin();
@@ -204,10 +199,9 @@ START_TEST(kinks_are_told) {
     ck_assert(!nevh__tape_analytic(tape) && !term.complex_value);
     nevh__tape_free(tape);
 }
-END_TEST
 
 /* Sine and cosine are one operation, dead ones none. */
-START_TEST(lengths) {
+TEST(lengths) {
     begin();
     int sine = apply(NEVH__SIN, x, -1), cosine = apply(NEVH__COS, x, -1);
     apply(NEVH__EXP, sine, -1);
@@ -228,10 +222,9 @@ START_TEST(lengths) {
     ck_assert_uint_eq(nevh__tape_length(tape), 0);
     nevh__tape_free(tape);
 }
-END_TEST
 
 /* Without operations: a variable of each kind, and a number. */
-START_TEST(mere_variables) {
+TEST_EACH(mere_variables, 5) {
     double t[24], none[24] = {0}, h[24], dq[24], dp[24];
     for (int i = 0; i < 24; i++)
         t[i] = i - 13;
@@ -249,10 +242,9 @@ START_TEST(mere_variables) {
         ck_assert_int_eq(nevh__tape_reads(tape, (nevh__variable)v, 0), v == _i);
     nevh__tape_free(tape);
 }
-END_TEST
 
 /* Where a branch is not taken, its derivative may be infinite. */
-START_TEST(what_does_not_matter) {
+TEST(what_does_not_matter) {
     double at[8] = {0}, dq[8], dp[8];
     begin();
     int root = apply(NEVH__SQRT, x, x), one = number(1);
@@ -265,7 +257,6 @@ START_TEST(what_does_not_matter) {
     ck_assert_double_eq(dp[5], 0);
     nevh__tape_free(tape);
 }
-END_TEST
 
 /* Every sine is used twice, the second time after all of them. */
 static int crowd(int count) {
@@ -281,7 +272,7 @@ static int crowd(int count) {
     return again;
 }
 
-START_TEST(too_much) {
+TEST(too_much) {
     int status = NEVH_OK, last = crowd(NEVH__TAPE_LIVE + 2);
     ck_assert_ptr_null(nevh__tape_finish(b, last, &status));
     ck_assert_int_eq(status, NEVH_EINVAL);
@@ -294,9 +285,8 @@ START_TEST(too_much) {
     ck_assert_ptr_null(nevh__tape_finish(b, last, &status));
     ck_assert_int_eq(status, NEVH_EINVAL);
 }
-END_TEST
 
-START_TEST(failures_are_handed_on) {
+TEST(failures_are_handed_on) {
     int status = NEVH_OK;
     b = NULL;
     ck_assert_int_eq(number(1), -1);
@@ -311,23 +301,4 @@ START_TEST(failures_are_handed_on) {
     ck_assert_int_eq(nevh__tape_variable(b, NEVH__Q, SIZE_MAX), -1);
     ck_assert_int_eq(number(1), -1);
     ck_assert_ptr_null(nevh__tape_finish(b, x, NULL));
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("tape_build");
-    TCase *cases = tcase_create("building");
-    tcase_add_loop_test(cases, rewriting_is_exact, 0, 5 * 4 * 4);
-    tcase_add_test(cases, nothing_is_kept_twice);
-    tcase_add_test(cases, identities);
-    tcase_add_loop_test(cases, powers, 0, 35);
-    tcase_add_test(cases, what_is_read);
-    tcase_add_loop_test(cases, kinks_are_told, 0, 6);
-    tcase_add_test(cases, lengths);
-    tcase_add_loop_test(cases, mere_variables, 0, 5);
-    tcase_add_test(cases, what_does_not_matter);
-    tcase_add_test(cases, too_much);
-    tcase_add_test(cases, failures_are_handed_on);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -236,32 +236,29 @@ static void compare_all(size_t stride, double error) {
     nevh__tape_free(tape);
 }
 
-START_TEST(random_formulas) {
+TEST_EACH(random_formulas, 60) {
     seed = 1000 + (unsigned)_i;
     make(smooth, sizeof smooth / sizeof *smooth, 80 + 40 * _i, 4 + _i);
     compare_all(5, 1e-12);
 }
-END_TEST
 
-START_TEST(blocks_of_arithmetic_are_exact) {
+TEST_EACH(blocks_of_arithmetic_are_exact, 20) {
     seed = 2000 + (unsigned)_i;
     make(arithmetic, sizeof arithmetic / sizeof *arithmetic, 300, 5 + _i);
     compare_all(1, 0);
 }
-END_TEST
 
 /* Logs that do not fit: short memory in little scratch, long in much. */
-START_TEST(long_formulas) {
+TEST_EACH(long_formulas, 5) {
     static const int lengths[] = {3000, 12000, 60000, 3000, 40000};
     static const int reaches[] = {10, 20, 8, 400, 200};
     seed = 3000 + (unsigned)_i;
     make(smooth, sizeof smooth / sizeof *smooth, lengths[_i], reaches[_i]);
     compare_all(17, 1e-12);
 }
-END_TEST
 
 /* Neither width nor neighbours, where slots are used again and halves run. */
-START_TEST(lanes_are_alone) {
+TEST_EACH(lanes_are_alone, 3) {
     static block x, y;
     static const int lengths[] = {60, 400, 6000};
     double h[8], dq[VARIABLES * 8], dp[VARIABLES * 8];
@@ -294,7 +291,6 @@ START_TEST(lanes_are_alone) {
     }
     nevh__tape_free(tape);
 }
-END_TEST
 
 /* The double pendulum's kinetic energy; w and 2 m l^2 are constants, and the
    third coordinate is declared, but not read. */
@@ -363,7 +359,7 @@ static nevh_stepper *run(nevh_system *s, const nevh_gradient *g, double q[2],
     return stepper;
 }
 
-START_TEST(orbits_of_the_model) {
+TEST_EACH(orbits_of_the_model, 3) {
     static const nevh_gradient *const *const gradients[] = {
         &nevh_exact, &nevh_complex_step, &nevh_central4};
     const nevh_gradient *g = *gradients[_i];
@@ -386,17 +382,4 @@ START_TEST(orbits_of_the_model) {
     }
     nevh__tape_free(kinetic);
     nevh__tape_free(cosine);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("tape_terms");
-    TCase *cases = tcase_create("terms");
-    tcase_add_loop_test(cases, random_formulas, 0, 60);
-    tcase_add_loop_test(cases, blocks_of_arithmetic_are_exact, 0, 20);
-    tcase_add_loop_test(cases, long_formulas, 0, 5);
-    tcase_add_loop_test(cases, lanes_are_alone, 0, 3);
-    tcase_add_loop_test(cases, orbits_of_the_model, 0, 3);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -105,7 +105,7 @@ static const char *const wrong_variable[] = {[SIGN] = "q[1]",
                                              [SLIGHT] = "q[2]"};
 
 /* On a singularity no length can be found, and a slight error not either. */
-START_TEST(wrong_gradients_are_refused) {
+TEST_EACH(wrong_gradients_are_refused, STARTS *SLIGHT) {
     const spoil how = 1 + _i % SLIGHT;
     if (how == SLIGHT && starts[_i / SLIGHT].q[0] == 0 &&
         !starts[_i / SLIGHT].none)
@@ -129,10 +129,9 @@ START_TEST(wrong_gradients_are_refused) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Both numbers: at the state given, the first that is tried. */
-START_TEST(both_values_are_told) {
+TEST(both_values_are_told) {
     const spoil how = SIGN;
     double right = cos(0.4) * 0.7 + 1.1 * 0.7;
     char number[40];
@@ -145,9 +144,8 @@ START_TEST(both_values_are_told) {
     nevh_field_free(f);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(right_gradients_pass) {
+TEST_EACH(right_gradients_pass, STARTS) {
     const spoil how = RIGHT;
     nevh_system *s = make_mixed(&how);
     nevh_field *f = planned_at(s, _i);
@@ -156,10 +154,9 @@ START_TEST(right_gradients_pass) {
     nevh_field_free(f);
     nevh_system_free(s);
 }
-END_TEST
 
 /* On all models and problems, at their own states and around zero. */
-START_TEST(right_gradients_of_models_pass) {
+TEST(right_gradients_of_models_pass) {
     for (const nevh_model *const *m = nevh_models(); *m; m++) {
         nevh_system *s = (*m)->system((*m)->defaults);
         nevh_field *f = planned_exact(s, (*m)->q, (*m)->p);
@@ -178,7 +175,6 @@ START_TEST(right_gradients_of_models_pass) {
         nevh_system_free(s);
     }
 }
-END_TEST
 
 /* The complex step.  A pendulum that is shaken, and Kepler's problem. */
 
@@ -288,7 +284,7 @@ static void set_zoo(size_t width) {
 
 /* Planned around zero, where 1/r drowns the momenta: that must not make their
    derivatives wrong ones. */
-START_TEST(complex_equals_exact) {
+TEST_RANGE(complex_equals_exact, 1, WIDEST + 1) {
     const size_t width = (size_t)_i;
     static double d[2 * N * WIDEST], e[2 * N * WIDEST];
     nevh_system *s = make_zoo();
@@ -314,10 +310,9 @@ START_TEST(complex_equals_exact) {
     nevh_field_free(exact);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Each lane as if it were alone, to the last bit, with either method. */
-START_TEST(lanes_agree) {
+TEST_EACH(lanes_agree, 8) {
     static const size_t widths[] = {1, 3, 17, 200};
     const size_t width = widths[_i / 2];
     const nevh_gradient *g = _i % 2 ? nevh_exact : nevh_complex_step;
@@ -340,9 +335,8 @@ START_TEST(lanes_agree) {
     nevh_field_free(f);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(complex_failures) {
+TEST(complex_failures) {
     nevh_system *s = make_zoo();
     const nevh_options o = {.gradient = nevh_complex_step};
     nevh_field *f = nevh_field_new(s, &o);
@@ -372,19 +366,4 @@ START_TEST(complex_failures) {
     ck_assert_int_eq(nevh_field_status(f), NEVH_OK);
     nevh_field_free(f);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("exact");
-    TCase *cases = tcase_create("exact");
-    tcase_add_loop_test(cases, wrong_gradients_are_refused, 0, STARTS * SLIGHT);
-    tcase_add_test(cases, both_values_are_told);
-    tcase_add_loop_test(cases, right_gradients_pass, 0, STARTS);
-    tcase_add_test(cases, right_gradients_of_models_pass);
-    tcase_add_loop_test(cases, complex_equals_exact, 1, WIDEST + 1);
-    tcase_add_loop_test(cases, lanes_agree, 0, 8);
-    tcase_add_test(cases, complex_failures);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -27,7 +27,7 @@ static void differentiate(nevh_value_fn H, const void *params,
     nevh_system_free(s);
 }
 
-START_TEST(methods) {
+TEST(methods) {
     const char *names[] = {"central2", "central4",     "central6",
                            "central8", "complex-step", "exact"};
     const nevh_gradient *const *all = nevh_gradients();
@@ -40,7 +40,6 @@ START_TEST(methods) {
     ck_assert_ptr_null(nevh_gradient_named("central3"));
     ck_assert_ptr_null(nevh_gradient_named(NULL));
 }
-END_TEST
 
 static double monomials(double t, const double q[], const double p[],
                         const void *params) {
@@ -51,7 +50,7 @@ static double monomials(double t, const double q[], const double p[],
 
 /* The moments: exact for x^k up to k = order, and not beyond, where the error
    of x^(m+1) is (-1)^(m/2+1) (1 2 ... m/2)^2 delta^m, m the order. */
-START_TEST(moments) {
+TEST_EACH(moments, 4) {
     const nevh_gradient *g = central(_i);
     const double q = 1.37, p = -0.83, delta = 0.25;
     double order = nevh_gradient_order(g), d[2];
@@ -67,7 +66,6 @@ START_TEST(moments) {
     ck_assert_double_eq_tol(d[0], k * pow(q, k - 1) + error, 1e-12);
     ck_assert_double_eq_tol(d[1], -0.3 * (k * pow(p, k - 1) + error), 1e-12);
 }
-END_TEST
 
 static double transcendental(double t, const double q[], const double p[],
                              const void *params) {
@@ -88,7 +86,7 @@ static double slope(const double x[], const double y[], int n) {
     return xy / xx;
 }
 
-START_TEST(order_of_the_error) {
+TEST_EACH(order_of_the_error, 4) {
     enum { POINTS = 8 };
     const double q = 0.61, p = 0.23;
     double x[POINTS], error_q[POINTS], error_p[POINTS], d[2];
@@ -106,7 +104,6 @@ START_TEST(order_of_the_error) {
     ck_assert_double_eq_tol(slope(x, error_q, POINTS), order, 0.05 * order);
     ck_assert_double_eq_tol(slope(x, error_p, POINTS), order, 0.05 * order);
 }
-END_TEST
 
 static double quadratic(double t, const double q[], const double p[],
                         const void *params) {
@@ -114,7 +111,7 @@ static double quadratic(double t, const double q[], const double p[],
     return 1.5 * q[0] * q[0] + p[0] * p[0] / 2.6 + 0.7 * q[0] * p[0] + t;
 }
 
-START_TEST(quadratic_is_exact) {
+TEST_EACH(quadratic_is_exact, 4) {
     const double q = 0.61, p = -1.3, delta = 1024;
     double d[2];
     differentiate(quadratic, NULL, central(_i), delta, q, p, d);
@@ -122,7 +119,6 @@ START_TEST(quadratic_is_exact) {
     ck_assert_double_eq_tol(d[0], 3 * q + 0.7 * p, rounding);
     ck_assert_double_eq_tol(d[1], p / 1.3 + 0.7 * q, rounding);
 }
-END_TEST
 
 /* A term of two degrees of freedom that reads q[1], p[1] only. */
 static double second_plane(double t, const double q[], const double p[],
@@ -146,7 +142,7 @@ static nevh_field *second_plane_field(nevh_system **s, const nevh_options *o) {
 }
 
 /* What the user says is taken as it is, one by one, then for all. */
-START_TEST(given_steps) {
+TEST_EACH(given_steps, 4) {
     const nevh_gradient *g = central(_i);
     const double steps[] = {7, 0.1234, 7, 0}, scale[] = {1, 1, 1, 1e5};
     const double q[] = {1, 2}, p[] = {3, 4};
@@ -174,19 +170,17 @@ START_TEST(given_steps) {
     nevh_field_free(f);
     nevh_system_free(s);
 }
-END_TEST
 
 /* The points are those that the user's step says. */
-START_TEST(steps_are_used) {
+TEST(steps_are_used) {
     double d[2], exact = 3 * 0.6 * 0.6;
     const double k = 3;
     differentiate(monomials, &k, nevh_central2, 0.1, 0.6, 0, d);
     ck_assert_double_eq_tol(d[0] - exact, 0.01, 1e-14);
 }
-END_TEST
 
 /* More lanes than any block holds, and one that is at fault near their end. */
-START_TEST(very_many_lanes) {
+TEST_EACH(very_many_lanes, 5) {
     enum { WIDTH = 1301, BAD = 1290 };
     const nevh_gradient *g = nevh_gradients()[_i < 4 ? _i : 5];
     const nevh_model *model = nevh_pendulum_model;
@@ -211,12 +205,11 @@ START_TEST(very_many_lanes) {
     nevh_field_free(f);
     nevh_system_free(s);
 }
-END_TEST
 
 static const double bad[] = {-1e-3, NAN, INFINITY, -INFINITY, 0};
 
 /* A step of 0 is the default; a scale of 0 is none. */
-START_TEST(invalid_options) {
+TEST_EACH(invalid_options, 5) {
     const bool zero = bad[_i] == 0;
     double row[] = {1, 1, bad[_i], 1};
     const nevh_options options[] = {
@@ -245,10 +238,9 @@ START_TEST(invalid_options) {
     }
     nevh_system_free(s);
 }
-END_TEST
 
 /* A step lost in a large coordinate is an error, not a derivative of 0/0. */
-START_TEST(step_is_lost) {
+TEST_EACH(step_is_lost, 4) {
     nevh_system *s;
     nevh_field *f = second_plane_field(
         &s, &(nevh_options){.gradient = central(_i), .gradient_step = 1e-3});
@@ -261,7 +253,6 @@ START_TEST(step_is_lost) {
     nevh_field_free(f);
     nevh_system_free(s);
 }
-END_TEST
 
 static void plane_gradient(size_t width, const double t[], const double q[],
                            const double p[], const double c[],
@@ -280,7 +271,7 @@ static double only_time(double t, const double q[], const double p[],
 }
 
 /* What reads nothing needs no gradient. */
-START_TEST(exact_needs_gradients) {
+TEST(exact_needs_gradients) {
     nevh_system *s = nevh_system_new(2);
     const nevh_options o = {.gradient = nevh_exact};
     double q[] = {0.3, 0.5}, p[] = {0.7, 1.1}, dq[2], dp[2], h;
@@ -320,7 +311,6 @@ START_TEST(exact_needs_gradients) {
     nevh_field_free(f);
     nevh_system_free(s);
 }
-END_TEST
 
 static double constant(double t, const double q[], const double p[],
                        const double c[], const void *params) {
@@ -329,7 +319,7 @@ static double constant(double t, const double q[], const double p[],
 }
 
 /* Digits that a plain sum would lose; `_i` lanes. */
-START_TEST(values_are_compensated) {
+TEST_RANGE(values_are_compensated, 1, 201) {
     static const double c[] = {1e16, 1, 1, -1e16, 1e-3}, z[201];
     double h[201], dq[201];
     size_t width = (size_t)_i;
@@ -347,23 +337,4 @@ START_TEST(values_are_compensated) {
         ck_assert(h[lane] == 2.002 && dq[lane] == 0);
     nevh_field_free(f);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("gradient");
-    TCase *cases = tcase_create("accuracy");
-    tcase_add_test(cases, methods);
-    tcase_add_loop_test(cases, very_many_lanes, 0, 5);
-    tcase_add_loop_test(cases, moments, 0, 4);
-    tcase_add_loop_test(cases, order_of_the_error, 0, 4);
-    tcase_add_loop_test(cases, quadratic_is_exact, 0, 4);
-    tcase_add_loop_test(cases, given_steps, 0, 4);
-    tcase_add_test(cases, steps_are_used);
-    tcase_add_loop_test(cases, invalid_options, 0, 5);
-    tcase_add_loop_test(cases, step_is_lost, 0, 4);
-    tcase_add_test(cases, exact_needs_gradients);
-    tcase_add_loop_test(cases, values_are_compensated, 1, 201);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -195,7 +195,7 @@ static const nevh_gradient *method(int i) {
     return i < 4 ? nevh_gradients()[i] : nevh_exact;
 }
 
-START_TEST(lanes_are_alone) {
+TEST_EACH(lanes_are_alone, 10) {
     static const size_t widths[] = {1, 3, 8, 17, 200};
     nevh_system *s = whole_chain(_i >= 5);
     nevh_field *f = field_of(s, method(_i % 5));
@@ -219,16 +219,14 @@ START_TEST(lanes_are_alone) {
     nevh_field_free(f);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(block_is_value) {
+TEST_EACH(block_is_value, 5) {
     assert_same(evaluated(whole_chain(false), method(_i)),
                 evaluated(whole_chain(true), method(_i)), 0);
 }
-END_TEST
 
 /* Springs added one by one are the springs of one table. */
-START_TEST(instances_are_terms) {
+TEST_EACH(instances_are_terms, 5) {
     nevh_term terms[SPRINGS + 2];
     chain c;
     fill_chain(&c);
@@ -243,7 +241,6 @@ START_TEST(instances_are_terms) {
     assert_same(evaluated(system_of(terms, SPRINGS + 2), method(_i)),
                 evaluated(whole_chain(false), method(_i)), 0);
 }
-END_TEST
 
 static double whole(double t, const double q[], const double p[],
                     const void *params) {
@@ -257,7 +254,7 @@ static double whole(double t, const double q[], const double p[],
 }
 
 /* So are they in one function, but for the rounding of a larger sum. */
-START_TEST(terms_are_the_whole) {
+TEST_EACH(terms_are_the_whole, 4) {
     static const double accuracy[] = {2e-8, 1e-10, 2e-11, 1e-11};
     chain c;
     fill_chain(&c);
@@ -268,7 +265,6 @@ START_TEST(terms_are_the_whole) {
                 accuracy[_i]);
     assert_same(evaluated(whole_chain(false), method(_i)), copy, accuracy[_i]);
 }
-END_TEST
 
 /* Reads more than it needs. */
 static double wide(double t, const double q[], const double p[],
@@ -276,7 +272,7 @@ static double wide(double t, const double q[], const double p[],
     return chain_spring(t, q + 4, p, c, params);
 }
 
-START_TEST(sparse_is_wide) {
+TEST_EACH(sparse_is_wide, 4) {
     chain c;
     fill_chain(&c);
     nevh_term sparse = c.spring, all = c.spring;
@@ -288,9 +284,8 @@ START_TEST(sparse_is_wide) {
     assert_same(evaluated(system_of(&sparse, 1), method(_i)),
                 evaluated(system_of(&all, 1), method(_i)), 0);
 }
-END_TEST
 
-START_TEST(outputs_not_wanted) {
+TEST_EACH(outputs_not_wanted, 4) {
     const nevh_gradient *g = method(_i);
     nevh_system *s = whole_chain(_i % 2);
     nevh_field *f = field_of(s, g), *part = field_of(s, g);
@@ -322,7 +317,6 @@ START_TEST(outputs_not_wanted) {
     nevh_field_free(f);
     nevh_system_free(s);
 }
-END_TEST
 
 static size_t calls;
 
@@ -340,7 +334,7 @@ static double never(double t, const double q[], const double p[],
 
 /* Padding is neither counted nor put before a value function; what has a block
    is never evaluated through its value. */
-START_TEST(padding_is_not_counted) {
+TEST_EACH(padding_is_not_counted, 4) {
     chain c;
     fill_chain(&c);
     c.spring.value = never;
@@ -365,9 +359,8 @@ START_TEST(padding_is_not_counted) {
     free(z);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(effects_sum_to_the_value) {
+TEST_EACH(effects_sum_to_the_value, 2) {
     nevh_system *s = whole_chain(_i);
     states *z = calloc(1, sizeof *z);
     nevh_field *f = field_of(s, NULL);
@@ -387,20 +380,4 @@ START_TEST(effects_sum_to_the_value) {
     free(z);
     nevh_field_free(f);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("lanes");
-    TCase *cases = tcase_create("lanes");
-    tcase_add_loop_test(cases, lanes_are_alone, 0, 10);
-    tcase_add_loop_test(cases, block_is_value, 0, 5);
-    tcase_add_loop_test(cases, instances_are_terms, 0, 5);
-    tcase_add_loop_test(cases, terms_are_the_whole, 0, 4);
-    tcase_add_loop_test(cases, sparse_is_wide, 0, 4);
-    tcase_add_loop_test(cases, outputs_not_wanted, 0, 4);
-    tcase_add_loop_test(cases, padding_is_not_counted, 0, 4);
-    tcase_add_loop_test(cases, effects_sum_to_the_value, 0, 2);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

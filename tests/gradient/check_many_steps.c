@@ -150,7 +150,7 @@ static double solar_error(const nevh_system *s, const nevh_gradient *g) {
     return worst;
 }
 
-START_TEST(solar_system) {
+TEST(solar_system) {
     nevh_system *terms = make_solar();
     nevh_system *whole = nevh_system_from(SOLAR, whole_solar, NULL);
     double apart = solar_error(terms, nevh_central4);
@@ -160,7 +160,6 @@ START_TEST(solar_system) {
     nevh_system_free(whole);
     nevh_system_free(terms);
 }
-END_TEST
 
 /* A ring of n particles with Toda's springs, exp(d) - d. */
 enum { LONG_CHAIN = 2000, SHORT_CHAIN = 100 };
@@ -268,7 +267,7 @@ static void assert_power_of_two(double step) {
 }
 
 /* One in 32 instances is tried. */
-START_TEST(instances_between) {
+TEST(instances_between) {
     const size_t n = LONG_CHAIN;
     set_chain(n);
     nevh_system *s = make_chain(n);
@@ -284,7 +283,6 @@ START_TEST(instances_between) {
     assert_good("chain of terms", s);
     nevh_system_free(s);
 }
-END_TEST
 
 static size_t asked_to_plan(size_t n) {
     set_chain(n);
@@ -298,7 +296,7 @@ static size_t asked_to_plan(size_t n) {
 }
 
 /* However long the chain, a plan has its budget of values. */
-START_TEST(price_of_a_plan) {
+TEST(price_of_a_plan) {
     static const size_t chains[] = {8, 32, 33, 64, 100, 250, 1000, LONG_CHAIN};
     for (size_t i = 0; i < sizeof chains / sizeof *chains; i++) {
         size_t asked = asked_to_plan(chains[i]);
@@ -306,10 +304,9 @@ START_TEST(price_of_a_plan) {
                       chains[i], asked);
     }
 }
-END_TEST
 
 /* One function of 200 variables, half of which are tried. */
-START_TEST(variables_between) {
+TEST(variables_between) {
     const size_t n = SHORT_CHAIN;
     set_chain(n);
     nevh_system *s = nevh_system_from(n, whole_chain, NULL);
@@ -320,11 +317,10 @@ START_TEST(variables_between) {
     assert_good("whole chain", s);
     nevh_system_free(s);
 }
-END_TEST
 
 /* A step given for one mass, of those that no trial looks at, keeps that
    variable of all of them at full order. */
-START_TEST(given_between_trials) {
+TEST(given_between_trials) {
     enum { N = 200, GIVEN = 3 };
     static double masses[N], steps[2 * N], p[N], dp[N], t;
     for (int i = 0; i < N; i++)
@@ -342,17 +338,4 @@ START_TEST(given_between_trials) {
         nevh_field_free(f);
     }
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("many_steps");
-    TCase *cases = tcase_create("sums");
-    tcase_add_test(cases, given_between_trials);
-    tcase_add_test(cases, solar_system);
-    tcase_add_test(cases, instances_between);
-    tcase_add_test(cases, price_of_a_plan);
-    tcase_add_test(cases, variables_between);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

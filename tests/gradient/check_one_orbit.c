@@ -37,7 +37,7 @@ static void start(const problem *x, size_t lane, size_t width, size_t column,
 
 static const size_t widths[] = {3, 8, 16};
 
-START_TEST(alone_as_among_others) {
+TEST_EACH(alone_as_among_others, 5 * scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i / 5];
     const problem *x = problems[_i % 5];
     double h = x->span / x->fewest / 8;
@@ -66,7 +66,6 @@ START_TEST(alone_as_among_others) {
     }
     nevh_system_free(s);
 }
-END_TEST
 
 static nevh_system *wavy(int kind) {
     nevh_system *s = nevh_system_new(MOST);
@@ -104,7 +103,7 @@ static nevh_system *wavy(int kind) {
 }
 
 /* To the sign of a zero; and constants follow a width that changes. */
-START_TEST(every_width_alike) {
+TEST_EACH(every_width_alike, 5) {
     static const size_t all[] = {1, 8, 2, 16, 9, 8};
     nevh_system *s = wavy(_i);
     nevh_field *f = nevh_field_new(
@@ -141,7 +140,6 @@ START_TEST(every_width_alike) {
     nevh_field_free(f);
     nevh_system_free(s);
 }
-END_TEST
 
 /* A force that is NaN beyond a wall; its value is not. */
 static void walled(size_t width, const double t[], const double q[],
@@ -159,7 +157,7 @@ static double free_value(double t, const double q[], const double p[],
 
 /* The message names the term, however the gradient was taken, and the state is
    the one before. */
-START_TEST(failures_name_the_term) {
+TEST_EACH(failures_name_the_term, 4) {
     static const nevh_integrator *const *const schemes[] = {
         &nevh_verlet, &nevh_gauss16, &nevh_gauss6, &nevh_rk4};
     static const double mass[] = {2};
@@ -190,7 +188,6 @@ START_TEST(failures_name_the_term) {
     nevh_stepper_free(stepper);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Ten steps, of which the field is asked for other states in between. */
 static void run_asked(const nevh_integrator *scheme, double tolerance,
@@ -224,7 +221,7 @@ static void run_asked(const nevh_integrator *scheme, double tolerance,
 }
 
 /* What a stepper keeps ready does not hold for other widths. */
-START_TEST(asking_in_between_changes_nothing) {
+TEST_EACH(asking_in_between_changes_nothing, 6) {
     static const nevh_integrator *const *const schemes[] = {
         &nevh_verlet, &nevh_gauss6, &nevh_rk4,
         &nevh_dop853, &nevh_dopri5, &nevh_dprkn12};
@@ -239,16 +236,4 @@ START_TEST(asking_in_between_changes_nothing) {
         ck_assert_mem_eq(q, other_q, sizeof q);
         ck_assert_mem_eq(p, other_p, sizeof p);
     }
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("one orbit");
-    TCase *cases = tcase_create("one orbit");
-    tcase_add_loop_test(cases, alone_as_among_others, 0, 5 * scheme_count());
-    tcase_add_loop_test(cases, every_width_alike, 0, 5);
-    tcase_add_loop_test(cases, failures_name_the_term, 0, 4);
-    tcase_add_loop_test(cases, asking_in_between_changes_nothing, 0, 6);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -67,7 +67,7 @@ static void go_in_two(const nevh_system *s, const nevh_integrator *scheme,
     nevh_stepper_free(second);
 }
 
-START_TEST(in_parts_and_in_two) {
+TEST_EACH(in_parts_and_in_two, 2 * scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i / 2];
     double q[2 * WIDTH], p[2 * WIDTH], one_q[] = {0.5, -1}, one_p[] = {1, 0.25};
     nevh_system *s = in_parts(_i % 2);
@@ -91,7 +91,6 @@ START_TEST(in_parts_and_in_two) {
     nevh_stepper_free(all);
     nevh_system_free(s);
 }
-END_TEST
 
 static double bond(double t, const double q[], const double p[],
                    const double c[], const void *params) {
@@ -126,7 +125,7 @@ static nevh_system *bonds(void) {
 }
 
 /* Each lane has what it would have alone, to the last bit. */
-START_TEST(sums_in_one_order) {
+TEST_EACH(sums_in_one_order, 4) {
     static const size_t widths[] = {1, 3, 8, 16};
     enum { STATES = 40 };
     size_t width = widths[_i];
@@ -148,7 +147,6 @@ START_TEST(sums_in_one_order) {
     nevh_field_free(f);
     nevh_system_free(s);
 }
-END_TEST
 
 /* The same terms with and without gradients of one state, which are counted, as
    blocks are. */
@@ -274,7 +272,7 @@ static bool run_points(const nevh_integrator *scheme, enum kind kind,
     return planned;
 }
 
-START_TEST(points_as_blocks) {
+TEST_EACH(points_as_blocks, KINDS *scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i / KINDS];
     enum kind kind = _i % KINDS;
     double with[4], without[4], among[4];
@@ -288,11 +286,10 @@ START_TEST(points_as_blocks) {
         ck_assert_uint_eq(calls.points, 0);
     }
 }
-END_TEST
 
 /* A splitting leaves blocks alone where each term has a point gradient, and
    takes them where there are many orbits. */
-START_TEST(points_are_taken) {
+TEST_EACH(points_are_taken, TURNED) {
     double x[4];
     ck_assert(run_points(nevh_blanes_moan4, _i, true, 1, x));
     ck_assert_uint_eq(calls.blocks, 0);
@@ -300,16 +297,4 @@ START_TEST(points_are_taken) {
     ck_assert(run_points(nevh_blanes_moan4, _i, true, WIDTH, x));
     ck_assert_uint_gt(calls.blocks, 6 * STEPS);
     ck_assert_uint_eq(calls.points, 0);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("one orbit of several terms");
-    TCase *cases = tcase_create("one orbit of several terms");
-    tcase_add_loop_test(cases, in_parts_and_in_two, 0, 2 * scheme_count());
-    tcase_add_loop_test(cases, sums_in_one_order, 0, 4);
-    tcase_add_loop_test(cases, points_as_blocks, 0, KINDS * scheme_count());
-    tcase_add_loop_test(cases, points_are_taken, 0, TURNED);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -158,7 +158,7 @@ static void compare(const function *f, const double x[], bool of_q, bool of_p) {
     }
 }
 
-START_TEST(point_is_block) {
+TEST_EACH(point_is_block, FUNCTIONS) {
     const function *f = &functions[_i];
     for (int state = 0; state < STATES; state += LANES) {
         double x[(3 * MOST + 1) * LANES];
@@ -176,11 +176,10 @@ START_TEST(point_is_block) {
         compare(f, x, false, true);
     }
 }
-END_TEST
 
 /* In vectors some bits are not those of libm, or there would be nothing to be
    tested. */
-START_TEST(bits_are_at_stake) {
+TEST(bits_are_at_stake) {
     size_t unlike[3] = {0, 0, 0};
     for (int state = 0; state < STATES; state++) {
         double x = uniform(-20, 20), d;
@@ -197,7 +196,6 @@ START_TEST(bits_are_at_stake) {
     ck_assert(unlike[0] + unlike[1] + unlike[2] == 0);
 #endif
 }
-END_TEST
 
 /* An orbit of a model alone, without blocks where the scheme is a splitting,
    and as one of eight. */
@@ -222,7 +220,7 @@ static void run_model(const nevh_model *model, const nevh_integrator *scheme,
     nevh_system_free(s);
 }
 
-START_TEST(orbits_of_models) {
+TEST_EACH(orbits_of_models, model_count()) {
     const nevh_model *model = nevh_models()[_i];
     nevh_system *s = model->system(model->defaults);
     bool separable = nevh_system_traits(s) & NEVH_SEPARABLE;
@@ -237,14 +235,6 @@ START_TEST(orbits_of_models) {
         ck_assert_mem_eq(alone, among, 2 * model->n * sizeof *alone);
     }
     nevh_system_free(s);
-}
-END_TEST
-
-static int model_count(void) {
-    int count = 0;
-    while (nevh_models()[count])
-        count++;
-    return count;
 }
 
 /* Point gradients of q0 sin(q1) + p0^2, of which only the first is right. */
@@ -323,7 +313,7 @@ static const struct {
 };
 enum { POINTS = sizeof points / sizeof *points };
 
-START_TEST(unlike_points_are_refused) {
+TEST_EACH(unlike_points_are_refused, POINTS) {
     nevh_system *s = nevh_system_new(2);
     const nevh_term term = {.effect = "mixed",
                             .name = "wrong",
@@ -354,9 +344,8 @@ START_TEST(unlike_points_are_refused) {
     nevh_field_free(f);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(points_need_blocks) {
+TEST(points_need_blocks) {
     nevh_system *s = nevh_system_new(2);
     nevh_term term = {.effect = "mixed",
                       .nq = 2,
@@ -368,19 +357,4 @@ START_TEST(points_need_blocks) {
                                              "needs a gradient beside it, for "
                                              "blocks");
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("point gradients");
-    TCase *cases = tcase_create("bodies");
-    tcase_add_loop_test(cases, point_is_block, 0, FUNCTIONS);
-    tcase_add_test(cases, bits_are_at_stake);
-    tcase_add_loop_test(cases, orbits_of_models, 0, model_count());
-    suite_add_tcase(suite, cases);
-    cases = tcase_create("refusals");
-    tcase_add_loop_test(cases, unlike_points_are_refused, 0, POINTS);
-    tcase_add_test(cases, points_need_blocks);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -56,7 +56,7 @@ static void assert_only(bool scalar) {
 enum { WIDTH = 11 };
 
 /* Planning, values, effects and gradients. */
-START_TEST(fields) {
+TEST_EACH(fields, 6) {
     nevh_system *s = system_of(_i);
     bool scalar = scalar_wanted(_i);
     double t[WIDTH], q[WIDTH], p[WIDTH], dq[WIDTH], dp[WIDTH], h[WIDTH];
@@ -89,9 +89,8 @@ START_TEST(fields) {
     nevh_field_free(f);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(energies) {
+TEST_EACH(energies, 6) {
     nevh_system *s = system_of(_i);
     double q = 0.4, p = 0.1;
     nevh_energy *e = nevh_energy_new(s, &(nevh_options){.portable = _i % 2});
@@ -103,10 +102,9 @@ START_TEST(energies) {
     nevh_energy_free(e);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Energies without options are as they always were: in blocks. */
-START_TEST(energies_without_options) {
+TEST(energies_without_options) {
     nevh_system *s = system_of(2 * BOTH);
     double q = 0.4, p = 0.1;
     nevh_energy *e = nevh_energy_new(s, NULL);
@@ -115,7 +113,6 @@ START_TEST(energies_without_options) {
     nevh_energy_free(e);
     nevh_system_free(s);
 }
-END_TEST
 
 /* An orbit of the double pendulum, from planning on. */
 static void run(const nevh_integrator *scheme, const nevh_gradient *g,
@@ -132,7 +129,7 @@ static void run(const nevh_integrator *scheme, const nevh_gradient *g,
     nevh_system_free(s);
 }
 
-START_TEST(orbits_repeat) {
+TEST_EACH(orbits_repeat, 4) {
     const nevh_integrator *const schemes[] = {nevh_gauss8, nevh_rk4,
                                               nevh_gsl_rk8pd};
     for (int i = 0; i < 3; i++) {
@@ -144,10 +141,9 @@ START_TEST(orbits_repeat) {
         ck_assert_mem_ne(first, start, sizeof start);
     }
 }
-END_TEST
 
 /* Planned and run without a block. */
-START_TEST(orbits_are_scalar) {
+TEST(orbits_are_scalar) {
     nevh_system *s = system_of(2 * BOTH + 1);
     double q = 0.4, p = 0.1;
     nevh_stepper *stepper = nevh_stepper_new(
@@ -156,17 +152,4 @@ START_TEST(orbits_are_scalar) {
     assert_only(true);
     nevh_stepper_free(stepper);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("portable");
-    TCase *cases = tcase_create("portable");
-    tcase_add_loop_test(cases, fields, 0, 6);
-    tcase_add_loop_test(cases, energies, 0, 6);
-    tcase_add_test(cases, energies_without_options);
-    tcase_add_loop_test(cases, orbits_repeat, 0, 4);
-    tcase_add_test(cases, orbits_are_scalar);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

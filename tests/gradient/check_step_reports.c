@@ -117,7 +117,7 @@ static void measure(const problem *b, nevh_field *f, double error[]) {
 }
 
 /* From above, and by no more than the worst case asks for. */
-START_TEST(estimates_bound_errors) {
+TEST_EACH(estimates_bound_errors, 16) {
     const problem *b = problem_of(_i);
     const nevh_gradient *g = method_of(_i);
     nevh_system *s = b->make();
@@ -136,9 +136,8 @@ START_TEST(estimates_bound_errors) {
     nevh_field_free(f);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(smooth_is_seen) {
+TEST_EACH(smooth_is_seen, 24) {
     const problem *b = problem_of(_i);
     nevh_system *s = b->make();
     nevh_field *f = field_of(s, b, method_of(_i));
@@ -152,10 +151,9 @@ START_TEST(smooth_is_seen) {
     nevh_field_free(f);
     nevh_system_free(s);
 }
-END_TEST
 
 /* All these kinetic energies are; so is Henon and Heiles' x^2 y, in x. */
-START_TEST(quadratic_is_seen) {
+TEST_EACH(quadratic_is_seen, 16) {
     const problem *b = problem_of(_i);
     const nevh_gradient *g = method_of(_i);
     nevh_system *s = b->make();
@@ -169,7 +167,6 @@ START_TEST(quadratic_is_seen) {
     nevh_field_free(f);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Whole functions of one degree of freedom. */
 
@@ -223,7 +220,7 @@ static nevh_step_report report_of(nevh_value_fn H, const nevh_gradient *g,
 }
 
 /* The orbit from q = 0.3 crosses the kink. */
-START_TEST(rough_is_seen) {
+TEST_EACH(rough_is_seen, 4) {
     const nevh_gradient *g = method_of(_i);
     ck_assert(!report_of(smooth, g, 0.3, false).rough);
     ck_assert(!report_of(smooth, g, 0.3, true).rough);
@@ -232,15 +229,13 @@ START_TEST(rough_is_seen) {
     ck_assert(report_of(noisy, g, 0.3, false).rough);
     ck_assert(report_of(noisy, g, 0.3, true).rough);
 }
-END_TEST
 
-START_TEST(blind_is_said) {
+TEST_EACH(blind_is_said, 4) {
     nevh_step_report q = report_of(without_q, method_of(_i), 0.3, false);
     nevh_step_report p = report_of(without_q, method_of(_i), 0.3, true);
     ck_assert(q.blind && !q.rough && q.step > 0 && q.size == 0);
     ck_assert(!p.blind && !p.rough && p.size > 0);
 }
-END_TEST
 
 /* A regular orbit of the double pendulum, on which gauss12 leaves nothing but
    rounding. */
@@ -274,28 +269,10 @@ static void assert_floor(const nevh_gradient *g, size_t steps) {
                   nevh_gradient_name(g), steps, ratio);
 }
 
-START_TEST(floor_of_short_runs) {
+TEST_EACH(floor_of_short_runs, 4) {
     assert_floor(method_of(_i), 20000);
 }
-END_TEST
 
-START_TEST(floor_of_long_runs) {
+TEST_TAGGED(floor_of_long_runs, "slow", 0, 4) {
     assert_floor(method_of(_i), 200000);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("step_reports");
-    TCase *cases = tcase_create("reports"), *slow = tcase_create("slow");
-    tcase_add_loop_test(cases, estimates_bound_errors, 0, 16);
-    tcase_add_loop_test(cases, smooth_is_seen, 0, 24);
-    tcase_add_loop_test(cases, quadratic_is_seen, 0, 16);
-    tcase_add_loop_test(cases, rough_is_seen, 0, 4);
-    tcase_add_loop_test(cases, blind_is_said, 0, 4);
-    tcase_add_loop_test(cases, floor_of_short_runs, 0, 4);
-    suite_add_tcase(suite, cases);
-    tcase_set_tags(slow, "slow");
-    tcase_add_loop_test(slow, floor_of_long_runs, 0, 4);
-    suite_add_tcase(suite, slow);
-    return run_suite(suite);
 }

@@ -241,7 +241,7 @@ static void assert_good(const char *what, const plan *at,
                   at->of->name, at->where, nevh_gradient_name(g), chosen, best);
 }
 
-START_TEST(near_the_best) {
+TEST_EACH(near_the_best, PLANS *UNITS) {
     const plan *at = &plans[_i % PLANS];
     double L = lengths[_i / PLANS], M = masses[_i / PLANS];
     orbit z = orbit_of(at->of, L, M);
@@ -255,7 +255,6 @@ START_TEST(near_the_best) {
     }
     nevh_system_free(s);
 }
-END_TEST
 
 /* H as one function, with a constant added. */
 typedef struct {
@@ -273,7 +272,7 @@ static double whole(double t, const double q[], const double p[],
 
 /* The error may grow as theory says: as the power m/(m+1) of the rounding of
    values, for order m.  The pericentre takes most of the factor. */
-START_TEST(constant_in_h) {
+TEST_EACH(constant_in_h, PLANS) {
     const plan *at = &plans[_i];
     orbit z = orbit_of(at->of, 1, 1);
     nevh_system *terms = at->of->make(1, 1);
@@ -294,7 +293,6 @@ START_TEST(constant_in_h) {
     nevh_field_free(h.terms);
     nevh_system_free(terms);
 }
-END_TEST
 
 /* Steps that are whole periods would see no slope anywhere. */
 static double lattice(double t, const double q[], const double p[],
@@ -303,7 +301,7 @@ static double lattice(double t, const double q[], const double p[],
     return p[0] * p[0] / 2 + cos(2 * acos(-1) * q[0] / *(const double *)params);
 }
 
-START_TEST(no_whole_periods) {
+TEST_EACH(no_whole_periods, 16) {
     double period = ldexp(1, _i - 8), wave = 2 * acos(-1) / period, t = 0;
     nevh_system *s = nevh_system_from(1, lattice, &period);
     for (int i = 0; i < 4; i++) {
@@ -321,7 +319,6 @@ START_TEST(no_whole_periods) {
     }
     nevh_system_free(s);
 }
-END_TEST
 
 /* A power of a variable has no length of its own where it is 0: that of others
    must do. */
@@ -336,7 +333,7 @@ static double level(double t, const double q[], const double p[],
     return cubic(t, q, p, params) + p[1] * p[1] / 2 + cos(q[1]);
 }
 
-START_TEST(powers_at_zero) {
+TEST_EACH(powers_at_zero, 4) {
     nevh_system *s = nevh_system_from(2, _i % 2 ? level : cubic, NULL);
     double q[] = {0, 0.5}, p[] = {0.1, 0.2}, t = 0, dq[2];
     for (int g = 0; g < 4; g++) {
@@ -352,10 +349,9 @@ START_TEST(powers_at_zero) {
     }
     nevh_system_free(s);
 }
-END_TEST
 
 /* What is not given is a power of two, and the same each time. */
-START_TEST(powers_of_two) {
+TEST_EACH(powers_of_two, PLANS) {
     const plan *at = &plans[_i];
     nevh_system *s = at->of->make(1, 1);
     nevh_options o = {.q = at->q, .p = at->p};
@@ -375,10 +371,9 @@ START_TEST(powers_of_two) {
     nevh_field_free(again);
     nevh_system_free(s);
 }
-END_TEST
 
 /* One variable's step is given; then all are. */
-START_TEST(given_steps_win) {
+TEST_EACH(given_steps_win, PLANS) {
     const plan *at = &plans[_i];
     size_t n = at->of->n;
     nevh_system *s = at->of->make(1, 1);
@@ -398,7 +393,6 @@ START_TEST(given_steps_win) {
     }
     nevh_system_free(s);
 }
-END_TEST
 
 /* Circles, one of them much smaller than the others: its lane decides. */
 enum { WIDEST = 20 };
@@ -419,7 +413,7 @@ static double inner_error(const nevh_system *s, size_t width, size_t inner) {
     return status ? INFINITY : error;
 }
 
-START_TEST(all_lanes_are_seen) {
+TEST_RANGE(all_lanes_are_seen, 2, WIDEST + 1) {
     size_t width = (size_t)_i;
     nevh_system *s = make_kepler(1, 1);
     ck_assert_double_lt(inner_error(s, 1, 0), 1e-11);
@@ -428,19 +422,4 @@ START_TEST(all_lanes_are_seen) {
         ck_assert_msg(inner_error(s, width, lane) < 1e-11,
                       "lane %zu of %zu is not seen", lane, width);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("steps");
-    TCase *cases = tcase_create("steps");
-    tcase_add_loop_test(cases, near_the_best, 0, PLANS * UNITS);
-    tcase_add_loop_test(cases, constant_in_h, 0, PLANS);
-    tcase_add_loop_test(cases, no_whole_periods, 0, 16);
-    tcase_add_loop_test(cases, powers_at_zero, 0, 4);
-    tcase_add_loop_test(cases, powers_of_two, 0, PLANS);
-    tcase_add_loop_test(cases, given_steps_win, 0, PLANS);
-    tcase_add_loop_test(cases, all_lanes_are_seen, 2, WIDEST + 1);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

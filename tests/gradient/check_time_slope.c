@@ -132,7 +132,7 @@ static void assert_slope(size_t kind, double u, double from) {
     nevh_system_free(s);
 }
 
-START_TEST(time_derivative) {
+TEST_EACH(time_derivative, 3) {
     const double units[] = {1, 1e-15, 1e12};
     for (size_t kind = 0; kind < CLOCKS; kind++) {
         assert_slope(kind, units[_i], 0);
@@ -140,7 +140,6 @@ START_TEST(time_derivative) {
         assert_slope(kind, units[_i], -0.7);
     }
 }
-END_TEST
 
 /* dH/dt of a formula of x = 2 and t; NAN where it cannot be told. */
 static double slope_of(const char *formula, double t0, double t) {
@@ -177,16 +176,15 @@ static const struct {
 enum { FORMULAS = sizeof formulas / sizeof *formulas };
 
 /* Formulas know it to rounding, also where H ends: t^1.5 has no t < 0. */
-START_TEST(formulas_know_their_time_derivative) {
+TEST_EACH(formulas_know_their_time_derivative, FORMULAS) {
     double t = formulas[_i].t, slope = formulas[_i].slope;
     ck_assert_double_eq_tol(slope_of(formulas[_i].formula, t, t), slope,
                             4e-15 * fmax(1, fabs(slope)));
 }
-END_TEST
 
 /* Where it is infinite a difference on the side where H is does; it is finite,
    but not the derivative.  Where there is neither side there is none. */
-START_TEST(infinite_time_derivatives) {
+TEST(infinite_time_derivatives) {
     double slope = slope_of("x*sqrt(t)", 0, 0);
     ck_assert(isfinite(slope));
     ck_assert_double_gt(slope, 1);
@@ -194,7 +192,6 @@ START_TEST(infinite_time_derivatives) {
     ck_assert_double_eq_tol(slope_of("x*sqrt(t)", 0, 4), 0.5, 1e-14);
     ck_assert(isnan(slope_of("x*sqrt(t)", 1, -1)));
 }
-END_TEST
 
 static double ends_term(double t, const double q[], const double p[],
                         const double c[], const void *params) {
@@ -203,7 +200,7 @@ static double ends_term(double t, const double q[], const double p[],
 }
 
 /* A function that knows no derivative: to the side where it has values. */
-START_TEST(differences_to_one_side) {
+TEST(differences_to_one_side) {
     nevh_system *s = nevh_system_new(1);
     nevh_system_add(
         s,
@@ -223,17 +220,4 @@ START_TEST(differences_to_one_side) {
     ck_assert_ptr_nonnull(strstr(nevh_field_message(f), "time derivative"));
     nevh_field_free(f);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("time slope");
-    TCase *cases = tcase_create("time slope");
-    tcase_add_loop_test(cases, time_derivative, 0, 3);
-    tcase_add_loop_test(cases, formulas_know_their_time_derivative, 0,
-                        FORMULAS);
-    tcase_add_test(cases, infinite_time_derivatives);
-    tcase_add_test(cases, differences_to_one_side);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -119,7 +119,7 @@ static void fail_once(const nevh_integrator *scheme, const orbit *o, fuse f) {
     nevh_system_free(s);
 }
 
-START_TEST(fails_at_any_evaluation) {
+TEST_EACH(fails_at_any_evaluation, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     orbit o = clean_orbit(scheme);
     size_t stride = o.calls / 50 + 1;
@@ -128,10 +128,9 @@ START_TEST(fails_at_any_evaluation) {
         fail_once(scheme, &o, (fuse){.fault = k, .value = INFINITY});
     }
 }
-END_TEST
 
 /* A run that fails, goes on; one that is stopped, too. */
-START_TEST(run_keeps_the_last_good_state) {
+TEST_EACH(run_keeps_the_last_good_state, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     orbit o = clean_orbit(scheme);
     fuse f = {0}, *params = &f;
@@ -151,7 +150,6 @@ START_TEST(run_keeps_the_last_good_state) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 static int stop_at(void *data, size_t taken, double t, const double q[],
                    const double p[]) {
@@ -159,7 +157,7 @@ static int stop_at(void *data, size_t taken, double t, const double q[],
     return taken == *(size_t *)data;
 }
 
-START_TEST(observer_stops) {
+TEST_EACH(observer_stops, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     orbit o = clean_orbit(scheme);
     fuse f = {0}, *params = &f;
@@ -183,9 +181,8 @@ START_TEST(observer_stops) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(energy_that_fails_stops_the_run) {
+TEST(energy_that_fails_stops_the_run) {
     fuse f = {.fault = 1, .value = INFINITY}, *params = &f;
     nevh_system *s = system_of(gravity, &params);
     nevh_stepper *m = stepper_of(s, nevh_verlet);
@@ -200,11 +197,10 @@ START_TEST(energy_that_fails_stops_the_run) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* A trial from another state that fails leaves the memory alone, too; so does
    a step that is none. */
-START_TEST(failed_jump) {
+TEST_EACH(failed_jump, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     orbit o = clean_orbit(scheme);
     for (int at = 1; at < STEPS; at++) {
@@ -229,7 +225,6 @@ START_TEST(failed_jump) {
         nevh_system_free(s);
     }
 }
-END_TEST
 
 static double reciprocal(double t, const double q[], const double p[],
                          const double c[], const void *params) {
@@ -249,7 +244,7 @@ static void reciprocal_gradient(size_t width, const double t[],
 }
 
 /* The one of `width` lanes and three instances that is at fault is named. */
-START_TEST(names_instance_and_lane) {
+TEST_EACH(names_instance_and_lane, 5) {
     static const size_t q[] = {0, 1, 2, 3, 4, 5};
     enum { WIDTH = 45, BAD = 38 };
     double t[WIDTH] = {0}, x[6 * WIDTH], dq[6 * WIDTH];
@@ -286,7 +281,6 @@ START_TEST(names_instance_and_lane) {
     nevh_field_free(f);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Pulls the orbit over the edge of its domain, q = 2. */
 static double edge(double t, const double q[], const double p[],
@@ -301,7 +295,7 @@ static double wall(double t, const double q[], const double p[],
     return 3 * q[0] + log(q[0]);
 }
 
-START_TEST(edge_of_the_domain) {
+TEST_EACH(edge_of_the_domain, 2 * scheme_count()) {
     const nevh_term_fn potentials[] = {edge, wall};
     nevh_term_fn potential = potentials[_i % 2];
     const nevh_integrator *scheme = nevh_integrators()[_i / 2];
@@ -320,20 +314,4 @@ START_TEST(edge_of_the_domain) {
     nevh_stepper_free(m);
     nevh_stepper_free(again);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("failures");
-    TCase *cases = tcase_create("failures");
-    int schemes = scheme_count();
-    tcase_add_loop_test(cases, fails_at_any_evaluation, 0, schemes);
-    tcase_add_loop_test(cases, run_keeps_the_last_good_state, 0, schemes);
-    tcase_add_loop_test(cases, observer_stops, 0, schemes);
-    tcase_add_test(cases, energy_that_fails_stops_the_run);
-    tcase_add_loop_test(cases, failed_jump, 0, schemes);
-    tcase_add_loop_test(cases, names_instance_and_lane, 0, 5);
-    tcase_add_loop_test(cases, edge_of_the_domain, 0, 2 * schemes);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

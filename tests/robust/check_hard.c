@@ -49,21 +49,19 @@ static double predicted(double length) {
     return 1 + 7. / 16 * length * length;
 }
 
-START_TEST(kapitza_stands) {
+TEST_TAGGED(kapitza_stands, "long", 0, 6) {
     static const nevh_integrator *const *const schemes[] = {
         &nevh_verlet, &nevh_blanes_moan4, &nevh_gauss4};
     double length = _i / 3 ? 0.05 : 0.1;
     double found = boundary(*schemes[_i % 3], 40, length);
     ck_assert_double_eq_tol(found / predicted(length), 1, 0.02);
 }
-END_TEST
 
 /* With three steps a period of the pivot it is another motion. */
-START_TEST(kapitza_needs_steps) {
+TEST(kapitza_needs_steps) {
     double found = boundary(nevh_verlet, 3, 0.1);
     ck_assert_double_gt(fabs(found / predicted(0.1) - 1), 0.02);
 }
-END_TEST
 
 enum { SPRINGS = 32 };
 
@@ -98,7 +96,7 @@ static double recurrence(const nevh_integrator *scheme, double h,
 
 /* The step of the report of 1955 gives 157 periods, an artefact of the step;
    the orbit's are 146.5. */
-START_TEST(fput_recurs) {
+TEST(fput_recurs) {
     double share;
     double when = recurrence(nevh_blanes_moan4, 0.25, &share);
     ck_assert_double_eq_tol(when, 146.5, 1);
@@ -108,7 +106,6 @@ START_TEST(fput_recurs) {
     when = recurrence(nevh_verlet, sqrt(0.125), &share);
     ck_assert_double_eq_tol(when, 157, 1);
 }
-END_TEST
 
 static void toda_invariants(const orbit *o, double value[3]) {
     const double *q = o->q, *p = o->p;
@@ -134,12 +131,11 @@ static double toda(const nevh_integrator *scheme, double h, double steps) {
     return most;
 }
 
-START_TEST(toda_keeps_three) {
+TEST(toda_keeps_three) {
     ck_assert_double_le(toda(nevh_gauss8, 0.02, 20000), 1e-12);
     ck_assert_double_ge(toda(nevh_rk4, 0.02, 20000), 1e-10);
     ck_assert_double_ge(toda(nevh_verlet, 0.02, 20000), 1e-5);
 }
-END_TEST
 
 static double momentum(const orbit *o) {
     return o->q[0] * o->p[1] - o->q[1] * o->p[0];
@@ -165,7 +161,7 @@ static void comet(const nevh_integrator *scheme, double orbits, double *energy,
 }
 
 /* Gauss methods keep what is quadratic: to rounding, however near the sun. */
-START_TEST(comets_keep_their_momentum) {
+TEST(comets_keep_their_momentum) {
     double energy, rotation;
     comet(nevh_gauss8, 4, &energy, &rotation);
     ck_assert_double_le(rotation, 1e-13);
@@ -174,7 +170,6 @@ START_TEST(comets_keep_their_momentum) {
     ck_assert_double_ge(rotation, 1e-3);
     ck_assert_double_ge(energy, 0.5);
 }
-END_TEST
 
 /* How far from the start after each of 1000 periods, at most. */
 static double eight(const nevh_integrator *scheme, double steps) {
@@ -192,12 +187,11 @@ static double eight(const nevh_integrator *scheme, double steps) {
     return most;
 }
 
-START_TEST(the_eight_stays) {
+TEST_TAGGED(the_eight_stays, "slow", 0, 1) {
     ck_assert_double_le(eight(nevh_rkn14a, 60), 1e-3);
     ck_assert_double_le(eight(nevh_blanes_moan6, 100), 1e-3);
     ck_assert_double_ge(eight(nevh_rk4, 300), 0.1);
 }
-END_TEST
 
 /* The outer solar system after 22 years, whose masses span eight powers of
    ten. */
@@ -226,7 +220,7 @@ static double astray(const orbit *o, const orbit *exact, size_t body) {
 /* States converge at the order somewhere above rounding; and Pluto, of which
    there is nothing to be seen in the energy, is never as far off as Jupiter,
    which goes round twenty times as fast. */
-START_TEST(light_bodies_keep_their_orbits) {
+TEST_EACH(light_bodies_keep_their_orbits, scheme_count()) {
     static const double least = 1e-11, factor = 1.5;
     const nevh_integrator *scheme = nevh_integrators()[_i];
     int order = nevh_integrator_order(scheme);
@@ -248,11 +242,10 @@ START_TEST(light_bodies_keep_their_orbits) {
     ck_assert_msg(slope >= least_slope, "%s: order %d, measured %.2f at %.2g",
                   nevh_integrator_name(scheme), order, slope, error);
 }
-END_TEST
 
 /* Henon and Heiles' potential lets the orbit go to infinity by t = 13.942; near
    there differences are noisy.  It is not followed for a million substeps. */
-START_TEST(escapes_are_given_up) {
+TEST_EACH(escapes_are_given_up, 4) {
     const nevh_integrator *schemes[] = {nevh_dopri5, nevh_dop853,
                                         nevh_gsl_rkf45, nevh_gsl_rk8pd};
     nevh_scene *scene = read_scene("scenes/hard", "henon-heiles");
@@ -271,7 +264,6 @@ START_TEST(escapes_are_given_up) {
     nevh_stepper_free(m);
     nevh_scene_free(scene);
 }
-END_TEST
 
 /* Over steps of 200 days. */
 static nevh_energy_report planets(const nevh_integrator *scheme, size_t steps) {
@@ -289,7 +281,7 @@ static nevh_energy_report planets(const nevh_integrator *scheme, size_t steps) {
 /* 365.25e6 days, h omega = 0.29 of Jupiter: errors of (h omega)^4 all
    along, and a line through them that is no more than its own error and
    what rounding walks, epsilon times the root of the steps. */
-START_TEST(a_million_years) {
+TEST_TAGGED(a_million_years, "slow", 0, 1) {
     static const double steps = 1826250;
     nevh_energy_report r = planets(nevh_blanes_moan4, (size_t)steps);
     double drift = fabs(r.drift) * 200 * steps;
@@ -300,27 +292,4 @@ START_TEST(a_million_years) {
     r = planets(nevh_rk4, 100000);
     ck_assert_int_ne(r.verdict, NEVH_BOUNDED);
     ck_assert_double_ge(fabs(r.drift) * 200 * 100000, 100 * walk);
-}
-END_TEST
-
-int main(void) {
-    Suite *s = suite_create("hard");
-    TCase *cases = tcase_create("hard"), *often = tcase_create("many orbits"),
-          *slow = tcase_create("long");
-    tcase_add_test(cases, kapitza_needs_steps);
-    tcase_add_test(cases, fput_recurs);
-    tcase_add_test(cases, toda_keeps_three);
-    tcase_add_test(cases, comets_keep_their_momentum);
-    tcase_add_loop_test(cases, light_bodies_keep_their_orbits, 0,
-                        scheme_count());
-    tcase_add_loop_test(cases, escapes_are_given_up, 0, 4);
-    suite_add_tcase(s, cases);
-    tcase_set_tags(often, "long");
-    tcase_add_loop_test(often, kapitza_stands, 0, 6);
-    suite_add_tcase(s, often);
-    tcase_set_tags(slow, "slow");
-    tcase_add_test(slow, the_eight_stays);
-    tcase_add_test(slow, a_million_years);
-    suite_add_tcase(s, slow);
-    return run_suite(s);
 }

@@ -22,7 +22,7 @@ static double turned(const nevh_integrator *scheme, double h, size_t steps,
 /* A turn takes 2 K(1/k)/k, by K(1/2) in GSL's own definition.  The state is not
    wrapped, so that in the end angles are rounded to 1e-9: errors p dF h of
    4.5e-11 a step add up to 2e-7 of energy in 1.6e7 steps, as a random walk. */
-START_TEST(a_million_turns) {
+TEST_TAGGED(a_million_turns, "slow", 0, 1) {
     double period = 2 * gsl_sf_ellint_Kcomp(0.5, GSL_PREC_DOUBLE) / 2;
     double h = period / 16, energy;
     double angle = turned(nevh_blanes_moan4, h, 16000000, &energy);
@@ -31,7 +31,6 @@ START_TEST(a_million_turns) {
     turned(nevh_rk4, h, 160000, &energy);
     ck_assert_double_ge(energy, 1e-2);
 }
-END_TEST
 
 /* The pendulum of modulus 2 after half a turn or so. */
 static orbit go_round(const nevh_integrator *scheme, const char *turns) {
@@ -47,7 +46,7 @@ static orbit go_round(const nevh_integrator *scheme, const char *turns) {
 
 /* Where angles are counted from changes nothing but their rounding, which is
    4.7e-10 after a million turns. */
-START_TEST(turns_do_not_matter) {
+TEST_EACH(turns_do_not_matter, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     if (nevh_integrator_needs_tolerance(scheme))
         skip_test("its tolerance is relative to the angle");
@@ -63,11 +62,10 @@ START_TEST(turns_do_not_matter) {
                       there.p[0] - here.p[0]);
     }
 }
-END_TEST
 
 /* Steps of a turn need Newton's iteration, whose differences of angles must not
    be as large as these are. */
-START_TEST(newton_after_many_turns) {
+TEST_EACH(newton_after_many_turns, 2) {
     const nevh_integrator *schemes[] = {nevh_gauss4, nevh_lobatto4};
     nevh_scene *scene = read_scene("scenes/hard", "pendulum-modulus");
     ck_assert_int_eq(nevh_scene_set(scene, "k = 2"), NEVH_OK);
@@ -78,7 +76,6 @@ START_TEST(newton_after_many_turns) {
     ck_assert_uint_gt(nevh_stepper_counts(o.stepper).newtons, 0);
     end(&o);
 }
-END_TEST
 
 /* The largest error of a state over four turns of a pendulum that comes
    within 1e-10 of standing upright, against Jacobi's functions. */
@@ -106,12 +103,11 @@ static double beside_separatrix(const nevh_integrator *scheme,
 /* Each passage takes log(1/d) at a distance d in energy: energies that walk
    by the rounding of 800 steps, 30 epsilon, put it off by 30 epsilon/1e-10,
    which is 7e-5 in each of two. */
-START_TEST(both_sides_of_the_separatrix) {
+TEST_EACH(both_sides_of_the_separatrix, 2) {
     static const char *const moduli[] = {"k = 1 - 1e-10", "k = 1 + 1e-10"};
     ck_assert_double_le(beside_separatrix(nevh_gauss12, moduli[_i]), 1.4e-4);
     ck_assert_double_ge(beside_separatrix(nevh_rk4, moduli[_i]), 0.1);
 }
-END_TEST
 
 enum { PENDULUMS = 8 };
 
@@ -147,7 +143,7 @@ static double walked(const nevh_gradient *gradient, size_t steps,
     return *error / floor;
 }
 
-START_TEST(gradients_bring_their_noise) {
+TEST_TAGGED(gradients_bring_their_noise, "slow", 0, 1) {
     static const nevh_gradient *const *const gradients[] = {
         &nevh_central4, &nevh_central6, &nevh_central8};
     double error, exact;
@@ -158,19 +154,4 @@ START_TEST(gradients_bring_their_noise) {
         ck_assert_double_ge(ratio, 0.25);
         ck_assert_double_ge(error, exact);
     }
-}
-END_TEST
-
-int main(void) {
-    Suite *s = suite_create("hard pendulums");
-    TCase *cases = tcase_create("hard"), *slow = tcase_create("long");
-    tcase_add_loop_test(cases, turns_do_not_matter, 0, scheme_count());
-    tcase_add_loop_test(cases, newton_after_many_turns, 0, 2);
-    tcase_add_loop_test(cases, both_sides_of_the_separatrix, 0, 2);
-    suite_add_tcase(s, cases);
-    tcase_set_tags(slow, "slow");
-    tcase_add_test(slow, a_million_turns);
-    tcase_add_test(slow, gradients_bring_their_noise);
-    suite_add_tcase(s, slow);
-    return run_suite(s);
 }

@@ -62,17 +62,16 @@ static void try_step(const nevh_system *s, const nevh_integrator *scheme,
     nevh_stepper_free(fresh);
 }
 
-START_TEST(absurd_steps) {
+TEST_EACH(absurd_steps, 2 * scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i / 2];
     nevh_system *s = nevh_system_from(1, _i % 2 ? quartic : pendulum, NULL);
     for (int i = 0; i < ABSURD; i++)
         try_step(s, scheme, 0, absurd[i]);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Under step control; 1e20 would take that many steps. */
-START_TEST(absurd_adaptive_steps) {
+TEST_EACH(absurd_adaptive_steps, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     if (!nevh_integrator_adaptive(scheme))
         skip_test("it does not adapt steps");
@@ -82,10 +81,9 @@ START_TEST(absurd_adaptive_steps) {
             try_step(s, scheme, 1e-9, absurd[i]);
     nevh_system_free(s);
 }
-END_TEST
 
 /* There and back, however short the way. */
-START_TEST(tiny_steps_turn_round) {
+TEST_EACH(tiny_steps_turn_round, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     nevh_system *s = nevh_system_from(1, pendulum, NULL);
     for (int adaptive = 0; adaptive < 2; adaptive++) {
@@ -102,7 +100,6 @@ START_TEST(tiny_steps_turn_round) {
     }
     nevh_system_free(s);
 }
-END_TEST
 
 static double stiff(double t, const double q[], const double p[],
                     const void *params) {
@@ -124,7 +121,7 @@ static double midpoint_residual(const nevh_system *s, const nevh_options *o,
 }
 
 /* Never a hang, never NaN, and what is called solved is solved. */
-START_TEST(stiff_steps) {
+TEST_EACH(stiff_steps, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     for (double k = 1e2; k < 1e13; k *= 1e5) {
         nevh_system *s = nevh_system_from(1, stiff, &k);
@@ -148,7 +145,6 @@ START_TEST(stiff_steps) {
         nevh_system_free(s);
     }
 }
-END_TEST
 
 /* Its values are noise: no difference quotient means anything. */
 static double noisy(double t, const double q[], const double p[],
@@ -161,7 +157,7 @@ static double noisy(double t, const double q[], const double p[],
     return quartic(t, q, p, params) + (double)(bits >> 40) * 0x1p-34;
 }
 
-START_TEST(noise_is_not_solved) {
+TEST_EACH(noise_is_not_solved, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     if (nevh_integrator_explicit(scheme) == NEVH_YES)
         skip_test("it is explicit");
@@ -175,7 +171,6 @@ START_TEST(noise_is_not_solved) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* A spring that ends at q = 1: fixed-point iteration jumps over the end. */
 static double ending(double t, const double q[], const double p[],
@@ -193,7 +188,7 @@ static const struct {
 } hard[] = {{&nevh_midpoint, 0.3, 0}, {&nevh_gauss4, 1.73, 1}};
 
 /* The step is a success, and is reported as one. */
-START_TEST(solved_after_leaving_the_domain) {
+TEST_EACH(solved_after_leaving_the_domain, 2) {
     static const double q = 0.9, p = 0;
     nevh_system *s = nevh_system_from(1, ending, NULL);
     nevh_stepper *m = nevh_stepper_new(s, *hard[_i].scheme,
@@ -207,7 +202,6 @@ START_TEST(solved_after_leaving_the_domain) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* The steepness changes too much within a step for one matrix: GSL's solver,
    and what it finds is a solution. */
@@ -217,7 +211,7 @@ static double steep(double t, const double q[], const double p[],
     return p[0] * p[0] / 2 + 40 * pow(fabs(q[0]), 1.3);
 }
 
-START_TEST(solved_where_newton_fails) {
+TEST(solved_where_newton_fails) {
     nevh_system *s = nevh_system_from(1, steep, NULL);
     nevh_options o = {.gradient_step = 0x1p-10, .q = &start_q, .p = &start_p};
     uint64_t rescues = 0;
@@ -233,7 +227,6 @@ START_TEST(solved_where_newton_fails) {
     ck_assert_uint_ge(rescues, 4);
     nevh_system_free(s);
 }
-END_TEST
 
 static double half_square(double t, const double q[], const double p[],
                           const double c[], const void *params) {
@@ -255,7 +248,7 @@ static double both(double t, const double q[], const double p[],
 
 /* T(p) + V(q), where slopes of momenta alone are solved for, and H as a whole:
    GSL finds the same step. */
-START_TEST(rescue_in_both_forms) {
+TEST(rescue_in_both_forms) {
     nevh_options o = {.gradient_step = 0x1p-10, .q = &start_q, .p = &start_p};
     nevh_system *forms[] = {nevh_system_new(1),
                             nevh_system_from(1, both, NULL)};
@@ -279,7 +272,6 @@ START_TEST(rescue_in_both_forms) {
     ck_assert_double_eq_tol(z[0][0], z[1][0], 1e-8);
     ck_assert_double_eq_tol(z[0][1], z[1][1], 1e-8);
 }
-END_TEST
 
 static double steep_alone(double t, const double q[], const double p[],
                           const double c[], const void *params) {
@@ -321,7 +313,7 @@ static void ending_gradient(size_t width, const double t[], const double q[],
 /* In a step that Newton's iteration (i = 0, after the first sweep has left the
    domain) or GSL solves for the slopes of momenta, those of coordinates are the
    ones that go with them: q1 - q0 = h (p0 + p1) / 2 without any loss. */
-START_TEST(coordinates_go_along) {
+TEST_EACH(coordinates_go_along, 6) {
     const nevh_term potentials[] = {
         {.effect = "V", .nq = 1, .value = ending_alone},
         {.effect = "V", .nq = 1, .value = steep_alone}};
@@ -342,10 +334,9 @@ START_TEST(coordinates_go_along) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* A lane beside one that is rescued is what it is alone. */
-START_TEST(rescue_of_a_neighbour) {
+TEST_EACH(rescue_of_a_neighbour, 2) {
     static const double scale[] = {1, 1};
     nevh_system *s = nevh_system_from(1, ending, NULL);
     nevh_options o = {.scale = scale, .width = 2};
@@ -365,7 +356,6 @@ START_TEST(rescue_of_a_neighbour) {
     nevh_stepper_free(alone);
     nevh_system_free(s);
 }
-END_TEST
 
 /* F q + p/F: values and derivatives are finite, the momentum after a step is
    not. */
@@ -416,7 +406,7 @@ static nevh_system *strong(const double *strength) {
 
 /* The coefficients of dop853 add up to 100, and so its slopes must be that
    far from the end of the range. */
-START_TEST(leaves_the_range_of_numbers) {
+TEST_EACH(leaves_the_range_of_numbers, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     const double strength = scheme == nevh_dop853 ? 1e306 : 1e308;
     const double start = scheme == nevh_dop853 ? -1.7975e308 : -1e308;
@@ -435,9 +425,8 @@ START_TEST(leaves_the_range_of_numbers) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(refused_plans) {
+TEST(refused_plans) {
     nevh_system *s = nevh_system_from(1, pendulum, NULL);
     const struct {
         const char *name, *word;
@@ -464,25 +453,4 @@ START_TEST(refused_plans) {
     }
     ck_assert_ptr_null(nevh_stepper_new(NULL, nevh_verlet, NULL));
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("hard_steps");
-    TCase *cases = tcase_create("hard steps");
-    int schemes = scheme_count();
-    tcase_add_loop_test(cases, absurd_steps, 0, 2 * schemes);
-    tcase_add_loop_test(cases, absurd_adaptive_steps, 0, schemes);
-    tcase_add_loop_test(cases, tiny_steps_turn_round, 0, schemes);
-    tcase_add_loop_test(cases, stiff_steps, 0, schemes);
-    tcase_add_loop_test(cases, noise_is_not_solved, 0, schemes);
-    tcase_add_loop_test(cases, solved_after_leaving_the_domain, 0, 2);
-    tcase_add_test(cases, solved_where_newton_fails);
-    tcase_add_test(cases, rescue_in_both_forms);
-    tcase_add_loop_test(cases, coordinates_go_along, 0, 6);
-    tcase_add_loop_test(cases, rescue_of_a_neighbour, 0, 2);
-    tcase_add_loop_test(cases, leaves_the_range_of_numbers, 0, schemes);
-    tcase_add_test(cases, refused_plans);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

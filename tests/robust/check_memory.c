@@ -394,16 +394,15 @@ static size_t starve(int (*attempt)(const setting *), const setting *a) {
     ck_abort_msg("no end of requests");
 }
 
-START_TEST(systems) {
+TEST(systems) {
     const setting none = {0};
     ck_assert_uint_ge(starve(make_system, &none), 1);
     ck_assert_uint_ge(starve(make_whole, &none), 5);
     ck_assert_uint_ge(starve(add_terms, &none), 9);
     ck_assert_uint_ge(starve(add_friction, &none), 4);
 }
-END_TEST
 
-START_TEST(fields) {
+TEST_EACH(fields, 5) {
     nevh_system *s = pendulums();
     setting a = {
         .system = s,
@@ -412,13 +411,12 @@ START_TEST(fields) {
     ck_assert_uint_ge(starve(make_energy, &a), 12);
     nevh_system_free(s);
 }
-END_TEST
 
 static const double start_q[] = {1.7, 0.4}, start_p[] = {0.3, 0.5};
 static const double ones[] = {1, 1, 1, 1}, steps[] = {1e-3, 1e-3, 0, 1e-3};
 
 /* Where every option is given, a whole H has to be probed. */
-START_TEST(steppers) {
+TEST_EACH(steppers, 2 * scheme_count()) {
     nevh_system *s = nevh_system_from(2, whole, NULL);
     setting a = {.system = s, .scheme = nevh_integrators()[_i / 2]};
     a.options =
@@ -434,10 +432,9 @@ START_TEST(steppers) {
     nevh_stepper_free(a.stepper);
     nevh_system_free(s);
 }
-END_TEST
 
 /* With friction and a balance, of a term that may read t ... */
-START_TEST(balanced_steppers) {
+TEST_EACH(balanced_steppers, scheme_count()) {
     static const double rates[] = {0.1, 0.2};
     nevh_system *s = nevh_system_from(2, whole, NULL);
     nevh_system_add_friction(s, "drag", rates);
@@ -457,10 +454,9 @@ START_TEST(balanced_steppers) {
     if (!fits)
         skip_test("the scheme does not fit");
 }
-END_TEST
 
 /* ... and takes no more when it steps. */
-START_TEST(balanced_steps_take_no_memory) {
+TEST_EACH(balanced_steps_take_no_memory, scheme_count()) {
     static const double rates[] = {0.1, 0.2};
     const nevh_integrator *scheme = nevh_integrators()[_i];
     nevh_system *s = nevh_system_from(2, whole, NULL);
@@ -489,9 +485,8 @@ START_TEST(balanced_steps_take_no_memory) {
     if (!fits)
         skip_test("the scheme does not fit");
 }
-END_TEST
 
-START_TEST(defects) {
+TEST(defects) {
     nevh_system *s = pendulums();
     setting a = {.system = s,
                  .stepper = nevh_stepper_new(s, nevh_gauss4, NULL)};
@@ -499,16 +494,14 @@ START_TEST(defects) {
     nevh_stepper_free(a.stepper);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(tapes) {
+TEST(tapes) {
     const setting none = {0};
     ck_assert_uint_ge(starve(make_tape, &none), 14);
 }
-END_TEST
 
 /* Time of its own: under a transform, and by the step. */
-START_TEST(transforms_and_runs) {
+TEST_EACH(transforms_and_runs, 4) {
     const nevh_integrator *schemes[] = {nevh_gauss4, nevh_rk4,
                                         nevh_adaptive_verlet, nevh_verlet};
     const setting none = {0};
@@ -525,10 +518,9 @@ START_TEST(transforms_and_runs) {
     nevh_system_free(s);
     nevh_system_free(closeness);
 }
-END_TEST
 
 /* Under a transform. */
-START_TEST(transformed_steps_take_no_memory) {
+TEST_EACH(transformed_steps_take_no_memory, 3) {
     const nevh_integrator *schemes[] = {nevh_gauss4, nevh_rk4,
                                         nevh_adaptive_verlet};
     nevh_system *s = pendulums(), *closeness = nevh_closeness_power(2, 1, 1);
@@ -544,21 +536,18 @@ START_TEST(transformed_steps_take_no_memory) {
     nevh_system_free(s);
     nevh_system_free(closeness);
 }
-END_TEST
 
-START_TEST(formulas) {
+TEST(formulas) {
     const setting none = {0};
     ck_assert_uint_ge(starve(make_formula, &none), 100);
 }
-END_TEST
 
-START_TEST(scenes) {
+TEST(scenes) {
     const setting none = {0};
     ck_assert_uint_ge(starve(make_scene, &none), 100);
 }
-END_TEST
 
-START_TEST(steps_take_no_memory) {
+TEST_EACH(steps_take_no_memory, 3 * scheme_count()) {
     const nevh_gradient *gradients[] = {nevh_central2, nevh_central8,
                                         nevh_exact};
     const nevh_integrator *scheme = nevh_integrators()[_i / 3];
@@ -594,7 +583,6 @@ START_TEST(steps_take_no_memory) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 static double attraction(double t, const double q[], const double p[],
                          const void *params) {
@@ -602,17 +590,16 @@ static double attraction(double t, const double q[], const double p[],
     return (p[0] * p[0] + p[1] * p[1]) / 2 - 1 / hypot(q[0], q[1]);
 }
 
-START_TEST(references) {
+TEST_EACH(references, 2) {
     const nevh_integrator *const by[] = {NULL, nevh_gauss12};
     nevh_system *s = nevh_system_from(2, attraction, NULL);
     setting a = {.system = s, .scheme = by[_i]};
     ck_assert_uint_ge(starve(make_reference, &a), 10);
     nevh_system_free(s);
 }
-END_TEST
 
 /* GSL's solvers without a Jacobian, where there is no room for one. */
-START_TEST(gsl_system_without_memory) {
+TEST(gsl_system_without_memory) {
     nevh_system *s = pendulums();
     nevh_field *f = nevh_field_new(s, NULL);
     watch(1);
@@ -622,27 +609,4 @@ START_TEST(gsl_system_without_memory) {
     ck_assert(nevh_gsl_system(f).jacobian);
     nevh_field_free(f);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("memory");
-    TCase *cases = tcase_create("memory");
-    int schemes = scheme_count();
-    tcase_add_test(cases, systems);
-    tcase_add_loop_test(cases, fields, 0, 5);
-    tcase_add_loop_test(cases, steppers, 0, 2 * schemes);
-    tcase_add_loop_test(cases, balanced_steppers, 0, schemes);
-    tcase_add_loop_test(cases, balanced_steps_take_no_memory, 0, schemes);
-    tcase_add_test(cases, defects);
-    tcase_add_test(cases, tapes);
-    tcase_add_loop_test(cases, transforms_and_runs, 0, 4);
-    tcase_add_loop_test(cases, transformed_steps_take_no_memory, 0, 3);
-    tcase_add_test(cases, formulas);
-    tcase_add_test(cases, scenes);
-    tcase_add_loop_test(cases, references, 0, 2);
-    tcase_add_loop_test(cases, steps_take_no_memory, 0, 3 * schemes);
-    tcase_add_test(cases, gsl_system_without_memory);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

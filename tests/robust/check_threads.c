@@ -45,7 +45,7 @@ static void compare_threads(job task) {
     }
 }
 
-START_TEST(threads_agree_with_serial) {
+TEST_EACH(threads_agree_with_serial, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     const problem *b =
         fits(scheme, &double_pendulum) ? &double_pendulum : &henon_heiles;
@@ -53,10 +53,9 @@ START_TEST(threads_agree_with_serial) {
     compare_threads((job){.system = s, .problem = b, .scheme = scheme});
     nevh_system_free(s);
 }
-END_TEST
 
 /* Tapes are shared. */
-START_TEST(scenes) {
+TEST_EACH(scenes, 6) {
     nevh_scene *s =
         nevh_scene_parse("f", "[coordinates]\nx[1..2] = 1\n[effects]\n"
                               "kinetic = sum(i = 1..2, p_x[i]^2/2)\n"
@@ -67,14 +66,4 @@ START_TEST(scenes) {
                           .scheme = nevh_gauss4,
                           .gradient = nevh_gradients()[_i]});
     nevh_scene_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("threads");
-    TCase *cases = tcase_create("threads");
-    tcase_add_loop_test(cases, threads_agree_with_serial, 0, scheme_count());
-    tcase_add_loop_test(cases, scenes, 0, 6);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -70,7 +70,7 @@ static void assert_order(const problem *b, const nevh_integrator *scheme) {
                   nevh_integrator_name(scheme), b->name, order, slope, count);
 }
 
-START_TEST(order_of_scheme) {
+TEST_EACH(order_of_scheme, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     if (!keeps_any(scheme))
         skip_test("it keeps no balance");
@@ -78,10 +78,9 @@ START_TEST(order_of_scheme) {
         if (keeps(scheme, driven_problems[i]))
             assert_order(driven_problems[i], scheme);
 }
-END_TEST
 
 /* The energy itself does change, however small the steps. */
-START_TEST(energy_is_not_kept) {
+TEST(energy_is_not_kept) {
     for (size_t i = 0; i < PROBLEMS; i++) {
         const problem *b = driven_problems[i];
         nevh_energy_report h =
@@ -94,7 +93,6 @@ START_TEST(energy_is_not_kept) {
         ck_assert_double_eq(h.initial, balance.initial);
     }
 }
-END_TEST
 
 /* Symplectic schemes keep the balance for long where the orbit is regular. */
 static void assert_bounded(const nevh_integrator *scheme, double h,
@@ -105,7 +103,7 @@ static void assert_bounded(const nevh_integrator *scheme, double h,
                   nevh_verdict_name(r.verdict), r.max);
 }
 
-START_TEST(bounded_for_long) {
+TEST(bounded_for_long) {
     assert_bounded(nevh_verlet, 0.1, 20000);
     assert_bounded(nevh_gauss4, 0.2, 5000);
     nevh_energy_report r =
@@ -113,17 +111,15 @@ START_TEST(bounded_for_long) {
     ck_assert_msg(r.verdict == NEVH_DRIFTS || r.verdict == NEVH_UNSTABLE,
                   "rk4: %s", nevh_verdict_name(r.verdict));
 }
-END_TEST
 
-START_TEST(bounded_for_very_long) {
+TEST_TAGGED(bounded_for_very_long, "slow", 0, 1) {
     assert_bounded(nevh_verlet, 0.1, 1000000);
     assert_bounded(nevh_position_verlet, 0.1, 1000000);
     assert_bounded(nevh_gauss4, 0.2, 300000);
 }
-END_TEST
 
 /* A term of t alone adds f(t) - f(0) to H, and nothing to the orbit. */
-START_TEST(time_alone) {
+TEST(time_alone) {
     nevh_system *s = henon_heiles.make();
     nevh_system_add(s, &(nevh_term){.effect = "clock",
                                     .time = true,
@@ -137,7 +133,6 @@ START_TEST(time_alone) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Sums of many steps are compensated. */
 static double slowly(double t, const double q[], const double p[],
@@ -146,7 +141,7 @@ static double slowly(double t, const double q[], const double p[],
     return 0.7 * t;
 }
 
-START_TEST(many_steps) {
+TEST(many_steps) {
     nevh_system *s = henon_heiles.make();
     nevh_system_add(s, &(nevh_term){.effect = "ramp",
                                     .time = true,
@@ -159,10 +154,9 @@ START_TEST(many_steps) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* What came in before the first observation does not count. */
-START_TEST(observed_from_the_middle) {
+TEST(observed_from_the_middle) {
     const problem *b = &driven_pendulum;
     nevh_system *s = b->make();
     nevh_stepper *m = balanced(s, b, nevh_gauss8);
@@ -178,12 +172,11 @@ START_TEST(observed_from_the_middle) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* An end between two steps is reached by a step that branches off: it counts in
    what is shown there, and leaves the account of the orbit, and what friction
    has rounded off, as they were. */
-START_TEST(ends_between_steps) {
+TEST_EACH(ends_between_steps, 6) {
     static const struct {
         const problem *b;
         const nevh_integrator *const *scheme;
@@ -224,22 +217,4 @@ START_TEST(ends_between_steps) {
     nevh_stepper_free(m);
     nevh_stepper_free(plain);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("balance");
-    TCase *cases = tcase_create("balance"), *slow = tcase_create("slow");
-    tcase_add_loop_test(cases, order_of_scheme, 0, scheme_count());
-    tcase_add_test(cases, energy_is_not_kept);
-    tcase_add_test(cases, bounded_for_long);
-    tcase_add_test(cases, time_alone);
-    tcase_add_test(cases, many_steps);
-    tcase_add_test(cases, observed_from_the_middle);
-    tcase_add_loop_test(cases, ends_between_steps, 0, 6);
-    suite_add_tcase(suite, cases);
-    tcase_set_tags(slow, "slow");
-    tcase_add_test(slow, bounded_for_very_long);
-    suite_add_tcase(suite, slow);
-    return run_suite(suite);
 }

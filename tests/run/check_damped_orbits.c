@@ -32,7 +32,7 @@ static void assert_decay(const nevh_integrator *scheme, bool moves, double rate,
     nevh_system_free(s);
 }
 
-START_TEST(decay_is_exact) {
+TEST_EACH(decay_is_exact, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     /* Where copies of q and p are bound, rounding of q comes back to p. */
     if (!splits(scheme) || nevh_integrator_symplectic(scheme) == NEVH_EXTENDED)
@@ -45,7 +45,6 @@ START_TEST(decay_is_exact) {
     assert_decay(scheme, false, 1.3, 1, 200);
     assert_decay(scheme, false, 1e-9, 0.1, 10000);
 }
-END_TEST
 
 /* An independent reference: GSL's Prince-Dormand with dp/dt written out. */
 typedef struct {
@@ -175,7 +174,7 @@ static void assert_order(const problem *b, const nevh_integrator *scheme,
     nevh_system_free(s);
 }
 
-START_TEST(order_of_scheme) {
+TEST_EACH(order_of_scheme, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     const problem *const coupled[] = {&henon_heiles, &relativistic,
                                       &double_pendulum};
@@ -189,14 +188,12 @@ START_TEST(order_of_scheme) {
             assert_order(coupled[i], scheme, unequal, &exact);
         }
 }
-END_TEST
 
-START_TEST(independent_reference) {
+TEST(independent_reference) {
     state exact = oscillator_solution(unequal[0]);
     state other = reference(&oscillator, unequal);
     ck_assert_double_lt(distance(&oscillator, &exact, &other), 1e-13);
 }
-END_TEST
 
 /* The largest element of |M'JM - factor J|, M being the derivative of a step by
    differences of order 6. */
@@ -228,7 +225,7 @@ static double conformal_defect(nevh_stepper *m, const problem *b, double h,
     return most;
 }
 
-START_TEST(the_form_shrinks) {
+TEST_EACH(the_form_shrinks, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     const double level = 2e-11;
     if (refuses(scheme) || nevh_integrator_needs_tolerance(scheme))
@@ -256,9 +253,8 @@ START_TEST(the_form_shrinks) {
         nevh_system_free(s);
     }
 }
-END_TEST
 
-START_TEST(unequal_rates_do_not) {
+TEST(unequal_rates_do_not) {
     nevh_system *s = damped(&henon_heiles, unequal);
     nevh_stepper *m = planned(s, &henon_heiles, nevh_verlet, nevh_exact);
     for (int i = 0; i < 2; i++)
@@ -268,9 +264,8 @@ START_TEST(unequal_rates_do_not) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(symmetric_schemes_return) {
+TEST_EACH(symmetric_schemes_return, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     const problem *b = problem_for(scheme);
     nevh_claim claim = nevh_integrator_symmetric(scheme);
@@ -287,12 +282,11 @@ START_TEST(symmetric_schemes_return) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Memory that friction has outdated would show: as an orbit other than that of
    a stepper that begins afresh each time.  A second copy of the state is more
    than memory; there the order shows it. */
-START_TEST(memory_is_a_help_only) {
+TEST_EACH(memory_is_a_help_only, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     const problem *b = problem_for(scheme);
     enum { STEPS = 200 };
@@ -314,20 +308,4 @@ START_TEST(memory_is_a_help_only) {
     nevh_stepper_free(kept);
     nevh_stepper_free(fresh);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("damped orbits");
-    TCase *cases = tcase_create("damped orbits");
-    int count = scheme_count();
-    tcase_add_loop_test(cases, decay_is_exact, 0, count);
-    tcase_add_loop_test(cases, order_of_scheme, 0, count);
-    tcase_add_test(cases, independent_reference);
-    tcase_add_loop_test(cases, the_form_shrinks, 0, count);
-    tcase_add_test(cases, unequal_rates_do_not);
-    tcase_add_loop_test(cases, symmetric_schemes_return, 0, count);
-    tcase_add_loop_test(cases, memory_is_a_help_only, 0, count);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -3,7 +3,7 @@
 #include "damped.h"
 #include <stdlib.h>
 
-START_TEST(memory_can_be_kept) {
+TEST_EACH(memory_can_be_kept, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     const problem *b = problem_for(scheme);
     const double h = 0.0078125, t1 = 40 * h;
@@ -45,10 +45,9 @@ START_TEST(memory_can_be_kept) {
     nevh_stepper_free(more);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Lane 1 of three is the orbit that runs alone, also beside one that jumps. */
-START_TEST(lanes_are_alone) {
+TEST_EACH(lanes_are_alone, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     const problem *b = problem_for(scheme);
     enum { WIDTH = 3 };
@@ -81,7 +80,6 @@ START_TEST(lanes_are_alone) {
     nevh_stepper_free(one);
     nevh_system_free(s);
 }
-END_TEST
 
 static int look(void *data, size_t step, double t, const double q[],
                 const double p[]) {
@@ -89,7 +87,7 @@ static int look(void *data, size_t step, double t, const double q[],
     return 0;
 }
 
-START_TEST(watching_changes_nothing) {
+TEST_EACH(watching_changes_nothing, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     const problem *b = problem_for(scheme);
     const double h = 0.0078125;
@@ -110,7 +108,6 @@ START_TEST(watching_changes_nothing) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* H that is not finite at its k-th evaluation. */
 typedef struct {
@@ -163,7 +160,7 @@ static int run_fused(const nevh_integrator *scheme, fuse *f,
     return failures;
 }
 
-START_TEST(fails_at_any_evaluation) {
+TEST_EACH(fails_at_any_evaluation, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     double clean[FUSED_STEPS + 1][2] = {{1.7, 0.4}};
     double failed[FUSED_STEPS + 1][2] = {{1.7, 0.4}};
@@ -180,10 +177,9 @@ START_TEST(fails_at_any_evaluation) {
                       nevh_integrator_name(scheme), k);
     }
 }
-END_TEST
 
 /* Backwards friction drives; beyond the range of numbers a step fails. */
-START_TEST(overflow_is_a_failure) {
+TEST_EACH(overflow_is_a_failure, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     const problem *b = problem_for(scheme);
     const double strong[] = {500, 500};
@@ -207,18 +203,4 @@ START_TEST(overflow_is_a_failure) {
     nevh_stepper_free(m);
     nevh_stepper_free(other);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("damped steps");
-    TCase *cases = tcase_create("damped steps");
-    int count = scheme_count();
-    tcase_add_loop_test(cases, memory_can_be_kept, 0, count);
-    tcase_add_loop_test(cases, lanes_are_alone, 0, count);
-    tcase_add_loop_test(cases, watching_changes_nothing, 0, count);
-    tcase_add_loop_test(cases, fails_at_any_evaluation, 0, count);
-    tcase_add_loop_test(cases, overflow_is_a_failure, 0, count);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

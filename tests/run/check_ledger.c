@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 /* What is asked for changes no bit of the orbit, and no count. */
-START_TEST(asking_changes_nothing) {
+TEST_EACH(asking_changes_nothing, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     if (!keeps_any(scheme))
         skip_test("it keeps no balance");
@@ -34,10 +34,9 @@ START_TEST(asking_changes_nothing) {
         nevh_system_free(s);
     }
 }
-END_TEST
 
 /* Nothing comes in where nothing can. */
-START_TEST(closed_systems) {
+TEST(closed_systems) {
     nevh_system *s = henon_heiles.make();
     nevh_stepper *m = balanced(s, &henon_heiles, nevh_gsl_rkf45);
     nevh_stepper *unasked = planned(s, &henon_heiles, nevh_verlet, nevh_exact);
@@ -55,10 +54,9 @@ START_TEST(closed_systems) {
     nevh_stepper_free(unasked);
     nevh_system_free(s);
 }
-END_TEST
 
 /* The sum goes with the memory; a reset begins it, a jump does not. */
-START_TEST(gain_can_be_kept) {
+TEST_EACH(gain_can_be_kept, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     if (!keeps_any(scheme))
         skip_test("it keeps no balance");
@@ -99,10 +97,9 @@ START_TEST(gain_can_be_kept) {
         nevh_system_free(s);
     }
 }
-END_TEST
 
 /* A lane's gain is that of the orbit that runs alone. */
-START_TEST(lanes_are_alone) {
+TEST_EACH(lanes_are_alone, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     enum { WIDTH = 5 };
     if (!keeps_any(scheme) || scheme->own_time)
@@ -136,7 +133,6 @@ START_TEST(lanes_are_alone) {
         nevh_system_free(s);
     }
 }
-END_TEST
 
 /* Steps that fail leave the sum alone: H is not finite at its k-th value. */
 typedef struct {
@@ -193,7 +189,7 @@ static int run_fused(const nevh_integrator *scheme, fuse *f, size_t fault,
     return failures;
 }
 
-START_TEST(fails_at_any_evaluation) {
+TEST_EACH(fails_at_any_evaluation, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     double clean[FUSED_STEPS], failed[FUSED_STEPS];
     fuse f = {0, 0};
@@ -206,11 +202,10 @@ START_TEST(fails_at_any_evaluation) {
         ck_assert_mem_eq(clean, failed, sizeof clean);
     }
 }
-END_TEST
 
 /* Refusals. */
 
-START_TEST(out_of_reach) {
+TEST_EACH(out_of_reach, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     if (!scheme->kernel->opaque)
         skip_test("it keeps a balance");
@@ -223,7 +218,6 @@ START_TEST(out_of_reach) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* A kernel that forgets a part is found out. */
 static int no_plan(nevh_work *w) {
@@ -235,7 +229,7 @@ static int forgetful(nevh_work *w, double t, double h, double q[], double p[]) {
     return nevh_work_account(w, NEVH_OF_Q, h, &t, q, p);
 }
 
-START_TEST(incomplete_accounts) {
+TEST(incomplete_accounts) {
     const nevh_kernel kernel = {.plan = no_plan, .step = forgetful};
     const nevh_integrator scheme = {
         .name = "forgetful", .source = "here", .order = 1, .kernel = &kernel};
@@ -254,7 +248,6 @@ START_TEST(incomplete_accounts) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 static void assert_not_followed(const nevh_system *s, const nevh_stepper *m,
                                 size_t width, const char *word) {
@@ -267,7 +260,7 @@ static void assert_not_followed(const nevh_system *s, const nevh_stepper *m,
     nevh_energy_free(e);
 }
 
-START_TEST(not_followed) {
+TEST(not_followed) {
     const problem *b = &driven_pendulum;
     nevh_system *s = b->make(), *other = b->make();
     nevh_stepper *asked = balanced(s, b, nevh_verlet);
@@ -288,21 +281,4 @@ START_TEST(not_followed) {
     nevh_stepper_free(refused);
     nevh_system_free(s);
     nevh_system_free(other);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("ledger");
-    TCase *cases = tcase_create("ledger");
-    int count = scheme_count();
-    tcase_add_loop_test(cases, asking_changes_nothing, 0, count);
-    tcase_add_test(cases, closed_systems);
-    tcase_add_loop_test(cases, gain_can_be_kept, 0, count);
-    tcase_add_loop_test(cases, lanes_are_alone, 0, count);
-    tcase_add_loop_test(cases, fails_at_any_evaluation, 0, count);
-    tcase_add_loop_test(cases, out_of_reach, 0, count);
-    tcase_add_test(cases, incomplete_accounts);
-    tcase_add_test(cases, not_followed);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -61,7 +61,7 @@ static bool go(const nevh_integrator *scheme, bool rubs,
 }
 
 /* Looked at in each step, in some, or not at all. */
-START_TEST(watching_changes_nothing) {
+TEST_EACH(watching_changes_nothing, 2 * scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i / 2];
     const problem *b = problem_for(scheme);
     nevh_system *s = b->make();
@@ -90,10 +90,9 @@ START_TEST(watching_changes_nothing) {
     if (!goes)
         skip_test("friction is refused");
 }
-END_TEST
 
 /* One run, two runs in a row, and single steps are the same orbit. */
-START_TEST(pieces_make_the_whole) {
+TEST_EACH(pieces_make_the_whole, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     const problem *b = problem_for(scheme);
     const double h = 0.0078125; /* so that t0 + i h is the sum of steps */
@@ -119,11 +118,10 @@ START_TEST(pieces_make_the_whole) {
         nevh_stepper_free(stepper[k]);
     nevh_system_free(s);
 }
-END_TEST
 
 /* A copy branches off and leaves the first alone; a saved memory continues bit
    for bit in another stepper; without the memory the last bits differ. */
-START_TEST(memory_can_be_kept) {
+TEST_EACH(memory_can_be_kept, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     const problem *b = problem_for(scheme);
     const double h = 0.02;
@@ -155,10 +153,9 @@ START_TEST(memory_can_be_kept) {
     nevh_stepper_free(copy);
     nevh_system_free(s);
 }
-END_TEST
 
 /* A stepper that is moved to another state starts afresh there. */
-START_TEST(jumps_start_afresh) {
+TEST_EACH(jumps_start_afresh, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     const problem *b = problem_for(scheme);
     nevh_system *s = b->make();
@@ -175,10 +172,9 @@ START_TEST(jumps_start_afresh) {
     nevh_stepper_free(fresh);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Lane 1 of three is the orbit that runs alone, to the last bit. */
-START_TEST(lanes_are_alone) {
+TEST_EACH(lanes_are_alone, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     const problem *b = problem_for(scheme);
     enum { WIDTH = 3 };
@@ -208,10 +204,9 @@ START_TEST(lanes_are_alone) {
     nevh_stepper_free(one);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Also a lane whose neighbour has jumped. */
-START_TEST(a_neighbours_jump_changes_nothing) {
+TEST_EACH(a_neighbours_jump_changes_nothing, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     const problem *b = problem_for(scheme);
     if (nevh_integrator_own_time(scheme))
@@ -241,9 +236,8 @@ START_TEST(a_neighbours_jump_changes_nothing) {
     nevh_stepper_free(quiet);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(own_time_takes_one_orbit) {
+TEST_EACH(own_time_takes_one_orbit, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     const problem *b = problem_for(scheme);
     if (!nevh_integrator_own_time(scheme))
@@ -256,9 +250,8 @@ START_TEST(own_time_takes_one_orbit) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(an_observer_stops_the_run) {
+TEST(an_observer_stops_the_run) {
     const problem *b = &henon_heiles;
     nevh_system *s = b->make();
     nevh_stepper *stepper = planned(s, b, nevh_verlet, nevh_exact);
@@ -276,21 +269,4 @@ START_TEST(an_observer_stops_the_run) {
     assert_same(b, &x, &y);
     nevh_stepper_free(stepper);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("run");
-    TCase *cases = tcase_create("registry");
-    int count = scheme_count();
-    tcase_add_loop_test(cases, watching_changes_nothing, 0, 2 * count);
-    tcase_add_loop_test(cases, pieces_make_the_whole, 0, count);
-    tcase_add_loop_test(cases, memory_can_be_kept, 0, count);
-    tcase_add_loop_test(cases, jumps_start_afresh, 0, count);
-    tcase_add_loop_test(cases, lanes_are_alone, 0, count);
-    tcase_add_loop_test(cases, a_neighbours_jump_changes_nothing, 0, count);
-    tcase_add_loop_test(cases, own_time_takes_one_orbit, 0, count);
-    tcase_add_test(cases, an_observer_stops_the_run);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -177,7 +177,7 @@ static orbit *of_problem(const problem *b, const nevh_integrator *scheme,
 }
 
 /* All of them, at their times, in their directions; whatever the step. */
-START_TEST(an_oscillator_crosses_twice_a_period) {
+TEST_EACH(an_oscillator_crosses_twice_a_period, 3) {
     static const double steps[] = {0.01, 0.3, 1.1};
     const nevh_section is[] = {{.value = coordinate},
                                {.value = coordinate, .direction = 1},
@@ -200,11 +200,10 @@ START_TEST(an_oscillator_crosses_twice_a_period) {
     }
     put_away(o);
 }
-END_TEST
 
 /* A level just below the largest x is crossed twice within a step, one just
    above never; x turns anywhere within a step and close to its ends. */
-START_TEST(touching_and_grazing) {
+TEST_EACH(touching_and_grazing, 12) {
     static const double distances[] = {1e-3, 1e-6, 1e-9, 1e-12};
     static const double steps[] = {0.9, 2 * pi / 8 * (1 + 1e-7), 0.05};
     const double d = distances[_i % 4], h = steps[_i / 4];
@@ -224,10 +223,9 @@ START_TEST(touching_and_grazing) {
                                 apart, 1e-2 * apart + 1e-12);
     put_away(o);
 }
-END_TEST
 
 /* A square is touched, a cube crossed, however flat. */
-START_TEST(zeros_of_any_multiplicity) {
+TEST_EACH(zeros_of_any_multiplicity, 4) {
     static const double powers[] = {2, 3, 4, 5};
     double power_of = powers[_i];
     const nevh_section is = {.value = power, .data = &power_of};
@@ -238,7 +236,6 @@ START_TEST(zeros_of_any_multiplicity) {
         ck_assert_double_eq_tol(o->found.at[i].q[0], 0.3, 1e-9);
     put_away(o);
 }
-END_TEST
 
 static orbit *in_time(double t0, nevh_section_fn value, const double at[]) {
     const nevh_section is = {.value = value, .data = (void *)at};
@@ -258,7 +255,7 @@ static void assert_times(const orbit *o, const double at[], double tolerance) {
     ck_assert_uint_eq(o->found.count, count);
 }
 
-START_TEST(two_and_three_within_one_step) {
+TEST_EACH(two_and_three_within_one_step, 7) {
     static const double at[][4] = {{1.1, 1.3, NAN},       {1.01, 1.5, 1.99},
                                    {1.4, 1.5, 1.6},       {1.001, 1.002, NAN},
                                    {1.2, 1.2000001, NAN}, {0.5, 1.7, 1.9},
@@ -270,12 +267,11 @@ START_TEST(two_and_three_within_one_step) {
     assert_times(o, with_end, 1e-9);
     put_away(o);
 }
-END_TEST
 
 /* Zeros on steps count once, with the very state of the orbit, also where it
    ends; where it begins they do not count, even if it only begins there to
    rounding. */
-START_TEST(zeros_on_steps) {
+TEST(zeros_on_steps) {
     static const double at[] = {0.75, 1.25, 1.5, 2.75, NAN};
     orbit *o = in_time(0, zeros, at), *plain = in_time(0, zeros, at);
     for (int i = 1; i <= 3; i++)
@@ -291,9 +287,8 @@ START_TEST(zeros_on_steps) {
     put_away(o);
     put_away(plain);
 }
-END_TEST
 
-START_TEST(a_start_on_a_zero) {
+TEST_EACH(a_start_on_a_zero, 3) {
     static const double starts[] = {0.75, 0.75 - 1e-16, 0.75 + 1e-16};
     static const double at[] = {0.75, 1.3, NAN};
     orbit *o = in_time(starts[_i], zeros, at);
@@ -301,9 +296,8 @@ START_TEST(a_start_on_a_zero) {
     assert_times(o, at + 1, 1e-12);
     put_away(o);
 }
-END_TEST
 
-START_TEST(zeros_that_touch_on_steps) {
+TEST(zeros_that_touch_on_steps) {
     static const double touched[] = {0.75, 0.75, NAN},
                         flat_cube[] = {0.75, 0.75, 0.75, NAN};
     static const double none[] = {NAN}, one[] = {0.75, NAN}, end[] = {1, NAN};
@@ -320,11 +314,10 @@ START_TEST(zeros_that_touch_on_steps) {
     assert_times(o, end, 0);
     put_away(o);
 }
-END_TEST
 
 /* A free rotor passes several multiples of the period in a step, forward and
    backward; what rises, rises with t. */
-START_TEST(multiples_of_a_period) {
+TEST_EACH(multiples_of_a_period, 4) {
     const double turn = 2 * pi, p = _i < 2 ? 20 : -20, h = _i % 2 ? -1 : 1;
     const nevh_section is[] = {
         {.value = coordinate, .period = turn},
@@ -343,10 +336,9 @@ START_TEST(multiples_of_a_period) {
     }
     put_away(o);
 }
-END_TEST
 
 /* Just below 3 periods of 1.3 at t = 1, by less than division can tell. */
-START_TEST(a_step_just_before_a_multiple) {
+TEST(a_step_just_before_a_multiple) {
     double slope = nextafter(3 * 1.3, 0);
     const nevh_section is = {
         .value = proportional, .data = &slope, .period = 1.3};
@@ -357,7 +349,6 @@ START_TEST(a_step_just_before_a_multiple) {
     ck_assert_double_eq_tol(o->found.at[2].t, 1, 1e-12);
     put_away(o);
 }
-END_TEST
 
 /* The value s into a step of h, by a stepper that knows nothing of it. */
 typedef struct {
@@ -402,7 +393,7 @@ static double turn_of(const part *a) {
 /* A level just below the turn is crossed twice in the step, wherever in it the
    turn is, and whatever the flow's slopes at its ends say of that, which are
    not quite the scheme's. */
-START_TEST(turns_anywhere_in_a_step) {
+TEST_EACH(turns_anywhere_in_a_step, 4) {
     static const double rates[] = {0.5};
     const bool of_p = _i % 2, damped = _i / 2;
     double level = 0;
@@ -444,11 +435,10 @@ START_TEST(turns_anywhere_in_a_step) {
                   near);
     put_away(o);
 }
-END_TEST
 
 /* A pendulum that swings to 2 and, after a push, goes round: only the multiples
    that it passes; a sawtooth's jumps and poles are none. */
-START_TEST(no_crossing_at_jumps) {
+TEST(no_crossing_at_jumps) {
     const nevh_section is[] = {{.value = coordinate, .period = 2 * pi},
                                {.value = sawtooth},
                                {.value = pole}};
@@ -468,12 +458,11 @@ START_TEST(no_crossing_at_jumps) {
     put_away(swings);
     put_away(turns);
 }
-END_TEST
 
 /* Points of a coarse orbit against sign changes along a fine one, for sections
    all over the range, some of which the orbit only just reaches. */
 enum { COMB = 60 };
-START_TEST(none_is_missed) {
+TEST(none_is_missed) {
     static double levels[COMB];
     static int last[COMB];
     nevh_section is[COMB];
@@ -508,7 +497,6 @@ START_TEST(none_is_missed) {
     put_away(coarse);
     put_away(fine);
 }
-END_TEST
 
 /* The largest difference of the points to those of a better orbit, in units of
    what the states themselves differ by at the end of each of ten spans. */
@@ -524,7 +512,7 @@ static double worst_of(const orbit *a, const orbit *b) {
 }
 
 /* Points of two schemes agree to the error of the worse one's states. */
-START_TEST(points_are_as_good_as_states) {
+TEST_EACH(points_are_as_good_as_states, 7) {
     static const struct {
         const nevh_integrator *const *scheme;
         double h;
@@ -554,7 +542,6 @@ START_TEST(points_are_as_good_as_states) {
     put_away(good);
     put_away(a);
 }
-END_TEST
 
 /* A scheme on a problem that it fits, with time in it where possible; the last
    is gauss4 under a transform. */
@@ -583,7 +570,7 @@ static nevh_stepper *stepper_on(int i, nevh_system **system,
 
 /* No orbit changes when it is looked at; points are on the section, and those
    in time where they are due, of every scheme. */
-START_TEST(every_scheme_the_same_orbit) {
+TEST_EACH(every_scheme_the_same_orbit, setting_count()) {
     const problem *b;
     nevh_system *system, *transform;
     nevh_stepper *seen = stepper_on(_i, &system, &transform, &b);
@@ -639,11 +626,10 @@ START_TEST(every_scheme_the_same_orbit) {
     nevh_system_free(system);
     nevh_system_free(transform);
 }
-END_TEST
 
 /* Those of a run that ends there, bit for bit; on a step, between steps, and
    several within one. */
-START_TEST(strobes_are_states) {
+TEST_EACH(strobes_are_states, 4) {
     static const double every[] = {0.125, 0.3, 0.01, 0.375};
     const nevh_section is = {.every = every[_i]};
     const problem *b = &driven_pendulum;
@@ -663,10 +649,9 @@ START_TEST(strobes_are_states) {
     }
     put_away(o);
 }
-END_TEST
 
 /* By the clock 0.1 + 0.1 + 0.1 is not 0.3, and both are met. */
-START_TEST(strobes_on_steps) {
+TEST(strobes_on_steps) {
     const nevh_section is[] = {{.every = 0.1}, {.every = 0.3}};
     const double start[] = {0.4, 0.3};
     double q = start[0], p = start[1];
@@ -689,10 +674,9 @@ START_TEST(strobes_on_steps) {
     nevh_stepper_free(plain);
     put_away(o);
 }
-END_TEST
 
 /* A run that begins at the same state, but at another time, is another. */
-START_TEST(the_same_state_at_another_time) {
+TEST(the_same_state_at_another_time) {
     const nevh_section is = {.every = 0.7};
     orbit *o = on_circle(0, &is, 1);
     ck_assert_int_eq(go(o, 0.1, 1), NEVH_OK);
@@ -702,10 +686,9 @@ START_TEST(the_same_state_at_another_time) {
     ck_assert_double_eq(o->found.at[1].t, 10.7);
     put_away(o);
 }
-END_TEST
 
 /* Forward and backward again: the same points, in the same directions. */
-START_TEST(backward_the_same_points) {
+TEST(backward_the_same_points) {
     const nevh_section is = {.value = coordinate, .direction = 1};
     orbit *o = of_problem(&henon_heiles, nevh_gauss8, &is, 1);
     const double t0 = o->t, t_end = t0 + 40.3;
@@ -723,10 +706,9 @@ START_TEST(backward_the_same_points) {
     }
     put_away(o);
 }
-END_TEST
 
 /* In pieces, one of which ends at a point, as in one run. */
-START_TEST(runs_that_go_on) {
+TEST(runs_that_go_on) {
     const nevh_section is[] = {{.value = coordinate}, {.every = 0.7}};
     orbit *whole = of_problem(&henon_heiles, nevh_gauss8, is, 2);
     orbit *parts = of_problem(&henon_heiles, nevh_gauss8, is, 2);
@@ -753,10 +735,9 @@ START_TEST(runs_that_go_on) {
     put_away(whole);
     put_away(parts);
 }
-END_TEST
 
 /* A value that is not a number, or fails, stops the run and says which. */
-START_TEST(values_that_fail) {
+TEST_EACH(values_that_fail, 2) {
     static int statuses[] = {NEVH_OK, NEVH_EFAILED};
     const nevh_section is = {
         .name = "broken", .value = breaking, .data = &statuses[_i]};
@@ -771,7 +752,6 @@ START_TEST(values_that_fail) {
     ck_assert_double_eq_tol(o->q[0], cos(1.2), 1e-9);
     put_away(o);
 }
-END_TEST
 
 /* One that fails at the start, and one that fails in between: beyond x = 0.999
    there is no value. */
@@ -781,7 +761,7 @@ static int edge(void *data, double t, const double q[], const double p[],
     *value = sqrt(0.999 - q[0]) - 0.01;
     return NEVH_OK;
 }
-START_TEST(values_that_fail_within_a_step) {
+TEST(values_that_fail_within_a_step) {
     const nevh_section is = {.value = edge};
     orbit *o = on_circle(-0.5, &is, 1);
     ck_assert_int_eq(go(o, 1, 0.5), NEVH_STOPPED);
@@ -794,9 +774,8 @@ START_TEST(values_that_fail_within_a_step) {
     ck_assert_ptr_nonnull(strstr(nevh_sections_message(o->sections), "t = 0"));
     put_away(o);
 }
-END_TEST
 
-START_TEST(a_point_may_stop_the_run) {
+TEST(a_point_may_stop_the_run) {
     const nevh_section is = {.value = coordinate};
     orbit *o = on_circle(0, &is, 1);
     o->found.stop_at = 3;
@@ -806,9 +785,8 @@ START_TEST(a_point_may_stop_the_run) {
     ck_assert_uint_eq(nevh_stepper_taken(o->stepper), 27);
     put_away(o);
 }
-END_TEST
 
-START_TEST(sections_that_make_no_sense) {
+TEST_EACH(sections_that_make_no_sense, 7) {
     const nevh_section wrong[] = {
         {.every = 0},
         {.every = -1},
@@ -828,9 +806,8 @@ START_TEST(sections_that_make_no_sense) {
     nevh_sections_free(x);
     put_away(o);
 }
-END_TEST
 
-START_TEST(refusals) {
+TEST(refusals) {
     const nevh_section is = {.value = coordinate};
     const double pair[] = {1, 1};
     nevh_system *s = nevh_oscillator_model->system(&unit_spring);
@@ -855,48 +832,13 @@ START_TEST(refusals) {
     ck_assert_int_eq(nevh_sections_status(o->sections), NEVH_EINVAL);
     put_away(o);
 }
-END_TEST
 
 /* Periods without number in a step end in a message, not in a search without
    end. */
-START_TEST(too_many_periods) {
+TEST(too_many_periods) {
     const nevh_section is = {.value = coordinate, .period = 1e-300};
     orbit *o = on_circle(0, &is, 1);
     ck_assert_int_eq(go(o, 0.1, 1), NEVH_STOPPED);
     ck_assert_int_eq(nevh_sections_status(o->sections), NEVH_EFAILED);
     put_away(o);
-}
-END_TEST
-
-int main(void) {
-    Suite *s = suite_create("section");
-    TCase *found = tcase_create("found"), *limits = tcase_create("limits");
-    tcase_add_loop_test(found, an_oscillator_crosses_twice_a_period, 0, 3);
-    tcase_add_loop_test(found, touching_and_grazing, 0, 12);
-    tcase_add_loop_test(found, zeros_of_any_multiplicity, 0, 4);
-    tcase_add_loop_test(found, two_and_three_within_one_step, 0, 7);
-    tcase_add_test(found, zeros_on_steps);
-    tcase_add_loop_test(found, a_start_on_a_zero, 0, 3);
-    tcase_add_test(found, zeros_that_touch_on_steps);
-    tcase_add_loop_test(found, multiples_of_a_period, 0, 4);
-    tcase_add_test(found, a_step_just_before_a_multiple);
-    tcase_add_loop_test(found, turns_anywhere_in_a_step, 0, 4);
-    tcase_add_test(found, no_crossing_at_jumps);
-    tcase_add_test(found, none_is_missed);
-    tcase_add_loop_test(found, points_are_as_good_as_states, 0, 7);
-    tcase_add_loop_test(found, every_scheme_the_same_orbit, 0, setting_count());
-    tcase_add_loop_test(found, strobes_are_states, 0, 4);
-    tcase_add_test(found, strobes_on_steps);
-    tcase_add_test(found, the_same_state_at_another_time);
-    tcase_add_test(found, backward_the_same_points);
-    tcase_add_test(found, runs_that_go_on);
-    suite_add_tcase(s, found);
-    tcase_add_loop_test(limits, values_that_fail, 0, 2);
-    tcase_add_test(limits, values_that_fail_within_a_step);
-    tcase_add_test(limits, a_point_may_stop_the_run);
-    tcase_add_loop_test(limits, sections_that_make_no_sense, 0, 7);
-    tcase_add_test(limits, refusals);
-    tcase_add_test(limits, too_many_periods);
-    suite_add_tcase(s, limits);
-    return run_suite(s);
 }

@@ -149,7 +149,7 @@ static void differences(nevh_work *w, points *x, double *moved, double out[]) {
     }
 }
 
-START_TEST(gradient_of_k) {
+TEST_EACH(gradient_of_k, 3 * TRANSFORMS) {
     const problem *const of[] = {&kepler, &henon_heiles, &double_pendulum};
     setting a = on(of[_i / TRANSFORMS], transform(_i % TRANSFORMS));
     nevh_stepper *m = plan(&a, nevh_gauss8, nevh_exact);
@@ -177,10 +177,9 @@ START_TEST(gradient_of_k) {
     nevh_stepper_free(m);
     put_away(&a);
 }
-END_TEST
 
 /* More points than were planned are refused, not written. */
-START_TEST(room_for_points) {
+TEST(room_for_points) {
     setting a = on(&henon_heiles, transform(3));
     nevh_stepper *m = plan(&a, nevh_gauss8, nevh_exact);
     state z = start(&a);
@@ -191,7 +190,6 @@ START_TEST(room_for_points) {
     nevh_stepper_free(m);
     put_away(&a);
 }
-END_TEST
 
 static state state_at(const setting *a, const nevh_integrator *scheme, double h,
                       double t_end) {
@@ -252,7 +250,7 @@ static const nevh_integrator *scheme_at(int i) {
     return schemes[i];
 }
 
-START_TEST(order_in_physical_time) {
+TEST_EACH(order_in_physical_time, 6 * 4) {
     static const struct {
         const problem *b;
         int s;
@@ -269,10 +267,9 @@ START_TEST(order_in_physical_time) {
                   a.b->name, cases[_i / 4].s, slope);
     put_away(&a);
 }
-END_TEST
 
 /* The map of K, H0 and s0 being those of one state. */
-START_TEST(symplectic_and_symmetric) {
+TEST_EACH(symplectic_and_symmetric, 8) {
     setting a = on(_i < 4 ? &kepler : &henon_heiles, transform(_i < 4 ? 0 : 3));
     const nevh_integrator *scheme = scheme_at(_i % 4);
     nevh_stepper *m = plan(&a, scheme, nevh_exact);
@@ -292,10 +289,9 @@ START_TEST(symplectic_and_symmetric) {
     nevh_stepper_free(m);
     put_away(&a);
 }
-END_TEST
 
 /* Reversible, and what the naive choice makes of it. */
-START_TEST(own_steps_forth_and_back) {
+TEST_EACH(own_steps_forth_and_back, 4) {
     setting a = on(&kepler, _i ? transform(_i) : NULL);
     double good, bad, t;
     nevh_stepper *m = plan(&a, nevh_adaptive_verlet, nevh_exact);
@@ -308,17 +304,4 @@ START_TEST(own_steps_forth_and_back) {
     ck_assert_double_lt(fabs(t), 1e-13);
     nevh_stepper_free(m);
     put_away(&a);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("transform");
-    TCase *cases = tcase_create("transform");
-    tcase_add_loop_test(cases, gradient_of_k, 0, 3 * TRANSFORMS);
-    tcase_add_test(cases, room_for_points);
-    tcase_add_loop_test(cases, order_in_physical_time, 0, 6 * 4);
-    tcase_add_loop_test(cases, symplectic_and_symmetric, 0, 8);
-    tcase_add_loop_test(cases, own_steps_forth_and_back, 0, 4);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -94,7 +94,7 @@ static double step_of(int i) {
 
 /* The last time is exactly the end, and steps are those of a run of that many.
    With h a little off, too. */
-START_TEST(a_whole_number_of_steps) {
+TEST_EACH(a_whole_number_of_steps, 2 * scheme_count()) {
     setting a = prepare(_i / 2);
     if (a.own_time) {
         put_away(&a);
@@ -122,10 +122,9 @@ START_TEST(a_whole_number_of_steps) {
     nevh_stepper_free(plain);
     put_away(&a);
 }
-END_TEST
 
 /* However the product of number and step is rounded. */
-START_TEST(the_last_time_is_exact) {
+TEST(the_last_time_is_exact) {
     const problem *b = &henon_heiles;
     nevh_system *s = b->make();
     nevh_stepper *m = planned(s, b, nevh_verlet, nevh_exact);
@@ -145,10 +144,9 @@ START_TEST(the_last_time_is_exact) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* 1e-9 of the number of steps is where adjusting ends. */
-START_TEST(nearly_whole_numbers) {
+TEST(nearly_whole_numbers) {
     static const struct {
         double steps;
         size_t taken;
@@ -184,11 +182,10 @@ START_TEST(nearly_whole_numbers) {
     }
     nevh_system_free(s);
 }
-END_TEST
 
 /* The end between two steps: all before is nevh_run's orbit, on which the
    stepper stays; what follows is a step of a copy. */
-START_TEST(an_end_between_steps) {
+TEST_EACH(an_end_between_steps, 2 * (scheme_count() + 1)) {
     enum { STEPS = 10, MORE = 6 };
     setting a = prepare(_i / 2);
     const double t0 = a.b->t0, h = step_of(_i);
@@ -230,11 +227,10 @@ START_TEST(an_end_between_steps) {
     nevh_stepper_free(copy);
     put_away(&a);
 }
-END_TEST
 
 /* An end within the first step from a state that is not the last one: nothing
    of the orbit before may be in it. */
-START_TEST(a_short_way_after_a_jump) {
+TEST_EACH(a_short_way_after_a_jump, scheme_count() + 1) {
     setting a = prepare(_i);
     nevh_stepper *used = stepper_for(&a), *fresh = stepper_for(&a);
     state x = start(a.b), y;
@@ -254,7 +250,6 @@ START_TEST(a_short_way_after_a_jump) {
     nevh_stepper_free(fresh);
     put_away(&a);
 }
-END_TEST
 
 static void assert_same_memory(const nevh_stepper *a, const nevh_stepper *b) {
     size_t size = nevh_stepper_save_size(a);
@@ -268,7 +263,7 @@ static void assert_same_memory(const nevh_stepper *a, const nevh_stepper *b) {
 
 /* What takes no step leaves the stepper where it was, even if asked from
    elsewhere. */
-START_TEST(nothing_to_do_and_refusals) {
+TEST_EACH(nothing_to_do_and_refusals, scheme_count() + 1) {
     static const double ends[][2] = {
         {h0, 0},        {h0, -1},         {-h0, 1},   {0, 1},
         {0, 0},         {NAN, 1},         {h0, NAN},  {h0, INFINITY},
@@ -303,10 +298,9 @@ START_TEST(nothing_to_do_and_refusals) {
     nevh_stepper_free(plain);
     put_away(&a);
 }
-END_TEST
 
 /* First and last once, and every so many in between. */
-START_TEST(observers_and_their_turns) {
+TEST(observers_and_their_turns) {
     static const struct {
         double steps;
         size_t every, calls, shown[6];
@@ -337,10 +331,9 @@ START_TEST(observers_and_their_turns) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* At the start, on the way, and at the end, whole or not. */
-START_TEST(an_observer_stops_the_run) {
+TEST_EACH(an_observer_stops_the_run, scheme_count() + 1) {
     setting a = prepare(_i);
     for (size_t stop_at = 0; stop_at < 12; stop_at += stop_at < 10 ? 5 : 1) {
         nevh_stepper *m = stepper_for(&a), *plain = stepper_for(&a);
@@ -363,7 +356,6 @@ START_TEST(an_observer_stops_the_run) {
     }
     put_away(&a);
 }
-END_TEST
 
 /* A spring that is not defined beyond a time of the user's choosing. */
 static double last_time;
@@ -387,7 +379,7 @@ static nevh_system *breaking_spring(void) {
 }
 
 /* The last good state is kept, with the memory that belongs to it. */
-START_TEST(a_branch_off_that_fails) {
+TEST_EACH(a_branch_off_that_fails, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     if (nevh_integrator_needs_tolerance(scheme))
         skip_test("it steps beyond the end of a step");
@@ -426,10 +418,9 @@ START_TEST(a_branch_off_that_fails) {
     nevh_stepper_free(plain);
     nevh_system_free(s);
 }
-END_TEST
 
 /* And where not a step was taken, the memory of the orbit before. */
-START_TEST(a_first_branch_off_that_fails) {
+TEST_EACH(a_first_branch_off_that_fails, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     if (nevh_integrator_needs_tolerance(scheme))
         skip_test("it steps beyond the end of a step");
@@ -458,7 +449,6 @@ START_TEST(a_first_branch_off_that_fails) {
     nevh_stepper_free(plain);
     nevh_system_free(s);
 }
-END_TEST
 
 static double distance(const problem *b, const state *x, const state *y) {
     double most = 0;
@@ -484,7 +474,7 @@ static state state_at(const problem *b, const nevh_integrator *scheme, double h,
 /* Steps of half the length are better by 2^order or nothing but rounding, at an
    end that is no step; forwards and backwards.  A last step to another time
    would be an error of order 0. */
-START_TEST(the_state_at_the_end) {
+TEST_EACH(the_state_at_the_end, 2 * scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i / 2];
     if (nevh_integrator_needs_tolerance(scheme))
         skip_test("its error does not fall with h");
@@ -504,24 +494,4 @@ START_TEST(the_state_at_the_end) {
                       (*b)->name, first, second);
         ck_assert_double_lt(second, gain > 2 ? 0.1 : 2);
     }
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("until");
-    TCase *cases = tcase_create("until");
-    int schemes = scheme_count(), all = schemes + 1;
-    tcase_add_loop_test(cases, a_whole_number_of_steps, 0, 2 * schemes);
-    tcase_add_test(cases, the_last_time_is_exact);
-    tcase_add_test(cases, nearly_whole_numbers);
-    tcase_add_loop_test(cases, an_end_between_steps, 0, 2 * all);
-    tcase_add_loop_test(cases, a_short_way_after_a_jump, 0, all);
-    tcase_add_loop_test(cases, nothing_to_do_and_refusals, 0, all);
-    tcase_add_test(cases, observers_and_their_turns);
-    tcase_add_loop_test(cases, an_observer_stops_the_run, 0, all);
-    tcase_add_loop_test(cases, a_branch_off_that_fails, 0, schemes);
-    tcase_add_loop_test(cases, a_first_branch_off_that_fails, 0, schemes);
-    tcase_add_loop_test(cases, the_state_at_the_end, 0, 2 * schemes);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -36,7 +36,7 @@ static void assert_close(double a, double b) {
                   b);
 }
 
-START_TEST(double_pendulum_has_its_energies) {
+TEST(double_pendulum_has_its_energies) {
     nevh_scene *s = scene_of(shaken_pendulum);
     const nevh_model *model = nevh_double_pendulum_model;
     ck_assert_uint_eq(nevh_scene_dof(s), 2);
@@ -50,9 +50,8 @@ START_TEST(double_pendulum_has_its_energies) {
     ck_assert(q[0] == PI / 2 && q[1] == 0 && p[0] == 0 && p[1] == 0);
     nevh_scene_free(s);
 }
-END_TEST
 
-START_TEST(texts_and_names) {
+TEST(texts_and_names) {
     nevh_scene *s = scene_of(shaken_pendulum);
     ck_assert_str_eq(nevh_scene_title(s), "Double pendulum on a shaken pivot");
     ck_assert_str_eq(nevh_scene_source(s),
@@ -64,9 +63,8 @@ START_TEST(texts_and_names) {
     ck_assert_str_eq(nevh_scene_label(s, "phi2"), "");
     nevh_scene_free(s);
 }
-END_TEST
 
-START_TEST(run_settings) {
+TEST(run_settings) {
     nevh_scene *s = scene_of(shaken_pendulum);
     const nevh_scene_run *run = nevh_scene_run_settings(s);
     ck_assert(run->t_start == 0 && fabs(run->t_end - 10 * PI) < 1e-13);
@@ -85,10 +83,9 @@ START_TEST(run_settings) {
                  1 + sin(0.5) * sin(0.5));
     nevh_scene_free(s);
 }
-END_TEST
 
 /* Of coordinates, then of momenta; 0 where it is to be found out. */
-START_TEST(gradient_steps_by_name) {
+TEST(gradient_steps_by_name) {
     nevh_scene *s = scene_of(
         "[parameters]\nm[1..3] = 1, 2, 4\n"
         "[coordinates]\ny = 1\nx[1..3] = 1\n"
@@ -106,11 +103,10 @@ START_TEST(gradient_steps_by_name) {
     ck_assert_ptr_null(nevh_scene_run_settings(s)->gradient_steps);
     nevh_scene_free(s);
 }
-END_TEST
 
 static const char small[] = "[coordinates]\nx = 1\n[effects]\nH = p_x^2/2\n";
 
-START_TEST(run_defaults) {
+TEST(run_defaults) {
     nevh_scene *s = scene_of(small);
     const nevh_scene_run *run = nevh_scene_run_settings(s);
     ck_assert(run->t_start == 0 && isnan(run->t_end) && run->dts == 0);
@@ -121,10 +117,9 @@ START_TEST(run_defaults) {
     ck_assert_str_eq(nevh_scene_title(s), "");
     nevh_scene_free(s);
 }
-END_TEST
 
 /* shaking adds m l A w^2 cos(w t)(2 cos q1 + cos q2). */
-START_TEST(effects_are_switched) {
+TEST(effects_are_switched) {
     nevh_scene *s = scene_of(shaken_pendulum);
     double q[] = {0.3, -0.7}, p[] = {0.2, 0.5}, t = 0.11, rates[2];
     double without = energy(s, t, q, p);
@@ -149,9 +144,8 @@ START_TEST(effects_are_switched) {
     ck_assert_ptr_nonnull(strstr(nevh_scene_message(s), "mean gravity?"));
     nevh_scene_free(s);
 }
-END_TEST
 
-START_TEST(parameters_are_set) {
+TEST(parameters_are_set) {
     nevh_scene *s = scene_of("[parameters]\na = 2\nb = a^2\nN = 2\n"
                              "c[i = 1..N] = b*i\n"
                              "[coordinates]\nx[1..N] = a\n"
@@ -177,7 +171,6 @@ START_TEST(parameters_are_set) {
     assert_close(energy(s, 0, q, p), 9 * (1 + 2 + 3));
     nevh_scene_free(s);
 }
-END_TEST
 
 static const char chain[] =
     "[parameters]\nN = 32\nalpha = 0.25\nm[i = 1..N] = 1 + i/N\n"
@@ -201,7 +194,7 @@ static double chain_energy(const double q[], const double p[]) {
 }
 
 /* Reading is linear in the text. */
-START_TEST(long_lists) {
+TEST(long_lists) {
     enum { COUNT = 40000 };
     static char text[COUNT * 8 + 200];
     char *to = text + sprintf(text, "[coordinates]\nx[1..%d] = 0", COUNT);
@@ -215,9 +208,8 @@ START_TEST(long_lists) {
         ck_assert(q[i] == i && p[i] == 0);
     nevh_scene_free(s);
 }
-END_TEST
 
-START_TEST(arrays) {
+TEST(arrays) {
     nevh_scene *s = scene_of(chain);
     double q[32], p[32], rates[32];
     ck_assert_uint_eq(nevh_scene_dof(s), 32);
@@ -235,7 +227,6 @@ START_TEST(arrays) {
     ck_assert(nevh_system_traits(nevh_scene_system(s)) & NEVH_SEPARABLE);
     nevh_scene_free(s);
 }
-END_TEST
 
 static void start_at(nevh_scene *s, const char *assignment) {
     ck_assert_msg(!nevh_scene_set_start(s, assignment), "%s: %s", assignment,
@@ -243,7 +234,7 @@ static void start_at(nevh_scene *s, const char *assignment) {
 }
 
 /* A start from outside is that of the scene in which the line stands. */
-START_TEST(starts_from_outside) {
+TEST(starts_from_outside) {
     nevh_scene *s = scene_of(chain);
     double q[32], p[32];
     start_at(s, "x = 0");
@@ -257,9 +248,8 @@ START_TEST(starts_from_outside) {
     }
     nevh_scene_free(s);
 }
-END_TEST
 
-START_TEST(starts_of_momenta_and_velocities) {
+TEST(starts_of_momenta_and_velocities) {
     nevh_scene *s = scene_of("[parameters]\nm = 4\n[coordinates]\nx = 1, 8\n"
                              "y = 0\nv_y = 3\n[effects]\n"
                              "kinetic = p_x^2/(2*m) + p_y^2/(2*m)\n");
@@ -274,10 +264,9 @@ START_TEST(starts_of_momenta_and_velocities) {
     assert_close(p[0], 0.5);
     nevh_scene_free(s);
 }
-END_TEST
 
 /* What is refused leaves the scene as it was, and says what it looked for. */
-START_TEST(wrong_starts) {
+TEST(wrong_starts) {
     static const struct {
         const char *text, *message;
     } wrong[] = {{"fhi1 = 1", "did you mean phi1"},
@@ -301,9 +290,8 @@ START_TEST(wrong_starts) {
     ck_assert(nevh_scene_digest(s) != digest);
     nevh_scene_free(s);
 }
-END_TEST
 
-START_TEST(numbers_of_parameters) {
+TEST(numbers_of_parameters) {
     nevh_scene *s = scene_of(shaken_pendulum);
     double number = 0;
     ck_assert_int_eq(nevh_scene_number(s, "3*pi/w", &number), NEVH_OK);
@@ -313,10 +301,9 @@ START_TEST(numbers_of_parameters) {
     ck_assert_int_eq(nevh_scene_number(s, "sqrt(-w)", &number), NEVH_EDOM);
     nevh_scene_free(s);
 }
-END_TEST
 
 /* Momenta of very different size, coupled, and one that is given itself. */
-START_TEST(velocities) {
+TEST(velocities) {
     nevh_scene *s = scene_of(
         "[parameters]\nm = 1e-27\nc = 3e8\n"
         "[coordinates]\nx = 0\nv_x = -2.5e8\ny = 1, 2\nz = 0.5\nv_z = 3\n"
@@ -345,10 +332,9 @@ START_TEST(velocities) {
     assert_close(p[0] / (-2.5e8 * 1e-27 / sqrt(1 - 6.25 / 9)), 1);
     nevh_scene_free(s);
 }
-END_TEST
 
 /* No velocity depends on its own momentum alone; many instances. */
-START_TEST(velocities_of_others) {
+TEST(velocities_of_others) {
     nevh_scene *s =
         scene_of("[coordinates]\nx[1..11] = 0\nv_x[i = 1..11] = i/7\n"
                  "u = 0\nv_u = 2\nw = 0\nv_w = -0.5\n"
@@ -365,10 +351,9 @@ START_TEST(velocities_of_others) {
     assert_close(p[12], 2 - 0.6 * 0.25);
     nevh_scene_free(s);
 }
-END_TEST
 
 /* Too many for a dense solver. */
-START_TEST(velocities_of_many) {
+TEST(velocities_of_many) {
     nevh_scene *s =
         scene_of("[coordinates]\nx[1..3000] = 0\nv_x[i = 1..3000] = i\n"
                  "[effects]\nT = sum(i = 1..3000, i^2*sqrt(1 + p_x[i]^2))\n");
@@ -384,9 +369,8 @@ START_TEST(velocities_of_many) {
         assert_close(i * p[i - 1] / sqrt(1 + p[i - 1] * p[i - 1]), 0.5);
     nevh_scene_free(s);
 }
-END_TEST
 
-START_TEST(velocities_of_a_chain) {
+TEST(velocities_of_a_chain) {
     nevh_scene *s = scene_of(moving_chain);
     double q[4], p[4], c = cos(0) / 3;
     int status = nevh_scene_start(s, q, p);
@@ -397,9 +381,8 @@ START_TEST(velocities_of_a_chain) {
     assert_close(p[3] / sqrt(1 + p[3] * p[3]) + c * p[0], -0.3);
     nevh_scene_free(s);
 }
-END_TEST
 
-START_TEST(velocities_out_of_reach) {
+TEST(velocities_out_of_reach) {
     nevh_scene *s = scene_of("[coordinates]\nx = 0\nv_x = 2\n"
                              "[effects]\nT = sqrt(1 + p_x^2)\n");
     double q, p;
@@ -410,10 +393,9 @@ START_TEST(velocities_out_of_reach) {
     ck_assert_str_eq(nevh_scene_message(s), "");
     nevh_scene_free(s);
 }
-END_TEST
 
 /* The same, whatever ends the lines. */
-START_TEST(ends_of_lines) {
+TEST(ends_of_lines) {
     char text[sizeof shaken_pendulum * 2 + 3] = "\xEF\xBB\xBF", *to = text + 3;
     for (const char *at = shaken_pendulum; *at; at++) {
         if (*at == '\n')
@@ -428,31 +410,4 @@ START_TEST(ends_of_lines) {
     ck_assert_str_eq(nevh_scene_run_settings(s)->reference, "gauss12");
     nevh_scene_free(s);
     nevh_scene_free(same);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("scene");
-    TCase *cases = tcase_create("scene");
-    tcase_add_test(cases, double_pendulum_has_its_energies);
-    tcase_add_test(cases, texts_and_names);
-    tcase_add_test(cases, run_settings);
-    tcase_add_test(cases, run_defaults);
-    tcase_add_test(cases, gradient_steps_by_name);
-    tcase_add_test(cases, effects_are_switched);
-    tcase_add_test(cases, parameters_are_set);
-    tcase_add_test(cases, arrays);
-    tcase_add_test(cases, long_lists);
-    tcase_add_test(cases, starts_from_outside);
-    tcase_add_test(cases, starts_of_momenta_and_velocities);
-    tcase_add_test(cases, wrong_starts);
-    tcase_add_test(cases, numbers_of_parameters);
-    tcase_add_test(cases, velocities);
-    tcase_add_test(cases, velocities_of_others);
-    tcase_add_test(cases, velocities_of_many);
-    tcase_add_test(cases, velocities_of_a_chain);
-    tcase_add_test(cases, velocities_out_of_reach);
-    tcase_add_test(cases, ends_of_lines);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -101,7 +101,7 @@ static void assert_no_trace(nevh_scene *s, const char *const off[]) {
 }
 
 /* Each effect off, with those that are off already. */
-START_TEST(off_is_as_if_deleted) {
+TEST_EACH(off_is_as_if_deleted, find_shipped()) {
     nevh_scene *s = read_shipped(shipped[_i]);
     const nevh_system *system = nevh_scene_system(s);
     size_t count = nevh_system_effect_count(system), n_off = 0;
@@ -123,7 +123,6 @@ START_TEST(off_is_as_if_deleted) {
         assert_no_trace(s, off + 1);
     nevh_scene_free(s);
 }
-END_TEST
 
 /* Problems of every structure, as many effects and as one. */
 static const struct {
@@ -263,7 +262,7 @@ static void assert_alike(int which, int friction, bool transformed,
     nevh_scene_free(t);
 }
 
-START_TEST(many_effects_are_one) {
+TEST_EACH(many_effects_are_one, PROBLEMS) {
     int accepted = 0;
     assert_alike(_i, 0, false, &accepted);
     assert_alike(_i, 1, false, &accepted);
@@ -271,10 +270,9 @@ START_TEST(many_effects_are_one) {
         assert_alike(_i, 0, true, &accepted);
     ck_assert_int_ge(accepted, 40);
 }
-END_TEST
 
 /* An effect that a scheme overlooked would be missed by nobody. */
-START_TEST(every_effect_is_seen) {
+TEST_EACH(every_effect_is_seen, PROBLEMS) {
     nevh_scene *s = many(_i, frictions[1]);
     const nevh_system *system = nevh_scene_system(s);
     for (int i = 0; nevh_integrators()[i]; i++) {
@@ -296,16 +294,4 @@ START_TEST(every_effect_is_seen) {
         }
     }
     nevh_scene_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("scene effects");
-    TCase *cases = tcase_create("scene effects");
-    find_shipped();
-    tcase_add_loop_test(cases, off_is_as_if_deleted, 0, (int)n_shipped);
-    tcase_add_loop_test(cases, many_effects_are_one, 0, PROBLEMS);
-    tcase_add_loop_test(cases, every_effect_is_seen, 0, PROBLEMS);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

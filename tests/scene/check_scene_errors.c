@@ -125,7 +125,7 @@ static const struct {
     {COORDINATES EFFECTS "[run]\nstop = x < y\n", "6:12", "name y"},
 };
 
-START_TEST(errors) {
+TEST_EACH(errors, sizeof wrong / sizeof *wrong) {
     nevh_scene *s = nevh_scene_parse("f", wrong[_i].text);
     char place[40];
     const char *message = nevh_scene_message(s);
@@ -142,9 +142,8 @@ START_TEST(errors) {
     ck_assert_uint_eq(nevh_scene_dof(s), 0);
     nevh_scene_free(s);
 }
-END_TEST
 
-START_TEST(caret_keeps_tabs) {
+TEST(caret_keeps_tabs) {
     nevh_scene *s = nevh_scene_parse("f", "[parameters]\n\tm\t= 2*\xCE\xB1z");
     ck_assert_str_eq(nevh_scene_message(s),
                      "f:2:8: error: the name \xCE\xB1z is not known\n"
@@ -152,9 +151,8 @@ START_TEST(caret_keeps_tabs) {
                      "\t \t    ^~");
     nevh_scene_free(s);
 }
-END_TEST
 
-START_TEST(carriage_returns_are_not_shown) {
+TEST(carriage_returns_are_not_shown) {
     nevh_scene *s = nevh_scene_parse("f", "[parameters]\r\nm = zz\r\n");
     ck_assert_str_eq(nevh_scene_message(s),
                      "f:2:5: error: the name zz is not known\n"
@@ -162,10 +160,9 @@ START_TEST(carriage_returns_are_not_shown) {
                      "    ^~");
     nevh_scene_free(s);
 }
-END_TEST
 
 /* Long lines are shown around the column. */
-START_TEST(caret_in_a_long_line) {
+TEST(caret_in_a_long_line) {
     char text[3000] = "[parameters]\nm = 0";
     for (int i = 0; i < 400; i++)
         strcat(text, " + 1");
@@ -178,7 +175,6 @@ START_TEST(caret_in_a_long_line) {
     ck_assert_uint_lt(strlen(line), 300);
     nevh_scene_free(s);
 }
-END_TEST
 
 static nevh_scene *scene_in_file(const char *bytes, size_t count) {
     const char *path = "check_scene_errors.nevh";
@@ -191,7 +187,7 @@ static nevh_scene *scene_in_file(const char *bytes, size_t count) {
     return s;
 }
 
-START_TEST(files) {
+TEST(files) {
     nevh_scene *s = scene_in_file(shaken_pendulum, sizeof shaken_pendulum - 2);
     ck_assert_msg(!nevh_scene_status(s), "%s", nevh_scene_message(s));
     nevh_scene_free(s);
@@ -212,7 +208,6 @@ START_TEST(files) {
     ck_assert_int_eq(nevh_scene_status(s), NEVH_EFAILED);
     nevh_scene_free(s);
 }
-END_TEST
 
 static uint64_t state = 1;
 
@@ -242,7 +237,7 @@ static void mutate(char *text) {
 }
 
 /* Whatever the text, there is a scene or a message with a place. */
-START_TEST(mutations) {
+TEST(mutations) {
     double q[64], p[64];
     for (int i = 0; i < 4000; i++) {
         char text[2 * sizeof shaken_pendulum] = "";
@@ -260,18 +255,4 @@ START_TEST(mutations) {
             nevh_scene_set(s, i % 2 ? "w = 1/m" : "N = 2");
         nevh_scene_free(s);
     }
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("scene errors");
-    TCase *cases = tcase_create("scene errors");
-    tcase_add_loop_test(cases, errors, 0, sizeof wrong / sizeof *wrong);
-    tcase_add_test(cases, caret_keeps_tabs);
-    tcase_add_test(cases, carriage_returns_are_not_shown);
-    tcase_add_test(cases, caret_in_a_long_line);
-    tcase_add_test(cases, files);
-    tcase_add_test(cases, mutations);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -26,7 +26,7 @@ static double velocity_1(void) {
     return (P[0] - P[1] * cos(d)) / (1 + sin(d) * sin(d));
 }
 
-START_TEST(observables_at_a_state) {
+TEST(observables_at_a_state) {
     nevh_scene *s = scene_of(shaken_pendulum);
     static const char *const names[] = {"x1", "y1", "x2", "y2", "speed"};
     double x = sin(Q[0]), y = -cos(Q[0]), values[5];
@@ -42,7 +42,6 @@ START_TEST(observables_at_a_state) {
     ck_assert_ptr_null(nevh_scene_shown_name(s, NEVH_OBSERVABLES, 5));
     nevh_scene_free(s);
 }
-END_TEST
 
 static double only_observable(nevh_scene *s, double t) {
     double value = NAN;
@@ -51,7 +50,7 @@ static double only_observable(nevh_scene *s, double t) {
     return value;
 }
 
-START_TEST(velocities_are_those_of_effects_that_are_on) {
+TEST(velocities_are_those_of_effects_that_are_on) {
     nevh_scene *s =
         scene_of("[parameters]\nm = 2\n[coordinates]\nx = 0\n[effects]\n"
                  "kinetic = p_x^2/(2*m)\nfield = p_x*sin(t)\n"
@@ -65,9 +64,8 @@ START_TEST(velocities_are_those_of_effects_that_are_on) {
     assert_close(only_observable(s, 1), 10 * (0.4 / 4 + sin(1)) + 1);
     nevh_scene_free(s);
 }
-END_TEST
 
-START_TEST(velocities_of_elements) {
+TEST(velocities_of_elements) {
     nevh_scene *s = scene_of(
         "[coordinates]\nx[1..2] = 0\n[effects]\n"
         "T = sum(i = 1..2, i*p_x[i]^2/2)\n"
@@ -75,9 +73,8 @@ START_TEST(velocities_of_elements) {
     assert_close(only_observable(s, 0), 10 * 0.4 + 100 * 5 + 0.7 * 2.5);
     nevh_scene_free(s);
 }
-END_TEST
 
-START_TEST(an_effect_that_breaks_an_invariant_hides_it) {
+TEST(an_effect_that_breaks_an_invariant_hides_it) {
     nevh_scene *s =
         scene_of("[coordinates]\nx = 0\ny = 0\n[effects]\n"
                  "T = p_x^2 + p_y^2\nU = x\nW = y\n[friction]\nd = all: 1\n"
@@ -98,9 +95,8 @@ START_TEST(an_effect_that_breaks_an_invariant_hides_it) {
     ck_assert(values[0] == 0.4);
     nevh_scene_free(s);
 }
-END_TEST
 
-START_TEST(sections_of_a_scene) {
+TEST(sections_of_a_scene) {
     nevh_scene *s = scene_of(shaken_pendulum);
     double value, items[2];
     ck_assert_uint_eq(nevh_scene_section_count(s), 2);
@@ -124,9 +120,8 @@ START_TEST(sections_of_a_scene) {
                      NEVH_EINVAL);
     nevh_scene_free(s);
 }
-END_TEST
 
-START_TEST(crossings_of_all_kinds) {
+TEST(crossings_of_all_kinds) {
     nevh_scene *s = scene_of(
         "[parameters]\nk = 2\n[coordinates]\n"
         "x[1..2] = 0 ; period 3\n[effects]\nT = p_x[1]^2 + p_x[2]^2\n"
@@ -150,9 +145,8 @@ START_TEST(crossings_of_all_kinds) {
     ck_assert(nevh_scene_section_at(s, 3)->every == 1);
     nevh_scene_free(s);
 }
-END_TEST
 
-START_TEST(a_strobe_needs_time) {
+TEST(a_strobe_needs_time) {
     nevh_scene *s =
         nevh_scene_parse("test", "[coordinates]\nx = 0\n[effects]\nT = p_x^2\n"
                                  "[sections]\na = every 1 - 1: x\n");
@@ -161,9 +155,8 @@ START_TEST(a_strobe_needs_time) {
     ck_assert_ptr_null(nevh_scene_section_at(s, 0));
     nevh_scene_free(s);
 }
-END_TEST
 
-START_TEST(parts_have_names_and_texts) {
+TEST(parts_have_names_and_texts) {
     nevh_scene *s = nevh_scene_parse(
         "test", "[coordinates]\nx = 0\n[effects]\nT = p_x^2\n[picture]\n"
                 "bob = x, 2*x ; name The Moon \nrod = 0, 0, x, x\n");
@@ -175,9 +168,8 @@ START_TEST(parts_have_names_and_texts) {
     ck_assert_str_eq(nevh_scene_part_at(s, 1).item[3], "x");
     nevh_scene_free(s);
 }
-END_TEST
 
-START_TEST(parts_of_the_picture) {
+TEST(parts_of_the_picture) {
     nevh_scene *s = scene_of(shaken_pendulum);
     double values[4], x = sin(Q[0]), y = -cos(Q[0]);
     ck_assert_uint_eq(nevh_scene_part_count(s), 4);
@@ -195,15 +187,13 @@ START_TEST(parts_of_the_picture) {
                      NEVH_EINVAL);
     nevh_scene_free(s);
 }
-END_TEST
 
-START_TEST(periods_of_coordinates) {
+TEST(periods_of_coordinates) {
     nevh_scene *s = scene_of(moving_chain);
     ck_assert(nevh_scene_period(s, 0) == 0 && nevh_scene_period(s, 3) == 4);
     ck_assert(nevh_scene_period(s, 4) == 0);
     nevh_scene_free(s);
 }
-END_TEST
 
 static bool stops_at(nevh_scene *s, double x) {
     bool reached;
@@ -213,7 +203,7 @@ static bool stops_at(nevh_scene *s, double x) {
 }
 
 #define PARTICLE "[coordinates]\nx = 0\n[effects]\nT = p_x^2\n[run]\n"
-START_TEST(stops_below_and_above) {
+TEST(stops_below_and_above) {
     nevh_scene *none = scene_of(PARTICLE);
     ck_assert(!nevh_scene_stops(none) && !stops_at(none, 1));
     ck_assert_ptr_null(nevh_scene_stop_text(none));
@@ -227,9 +217,8 @@ START_TEST(stops_below_and_above) {
     nevh_scene_free(below);
     nevh_scene_free(above);
 }
-END_TEST
 
-START_TEST(nothing_in_a_scene_that_was_not_read) {
+TEST(nothing_in_a_scene_that_was_not_read) {
     nevh_scene *s = nevh_scene_parse("test", "nonsense");
     double value;
     bool reached;
@@ -246,10 +235,9 @@ START_TEST(nothing_in_a_scene_that_was_not_read) {
                      NEVH_EINVAL);
     nevh_scene_free(s);
 }
-END_TEST
 
 /* The element that a section asks for may be set. */
-START_TEST(an_element_that_is_not_there) {
+TEST(an_element_that_is_not_there) {
     nevh_scene *s = scene_of("[parameters]\nk = 1\n[coordinates]\n"
                              "x[1..2] = 0 ; period 3\n[effects]\nT = x[1]^2\n"
                              "[sections]\nc = when x[k] = 0, both: t\n");
@@ -260,7 +248,6 @@ START_TEST(an_element_that_is_not_there) {
     ck_assert(value == Q[0]);
     nevh_scene_free(s);
 }
-END_TEST
 
 static uint64_t digest_of(const char *text, const char *off, const char *set) {
     nevh_scene *s = scene_of(text);
@@ -275,7 +262,7 @@ static uint64_t digest_of(const char *text, const char *off, const char *set) {
 
 #define SPRING   "[coordinates]\nx = 1\n[effects]\nT = p_x^2\n"
 #define STRENGTH "[parameters]\nk = 1\n"
-START_TEST(digests_tell_scenes_apart) {
+TEST(digests_tell_scenes_apart) {
     uint64_t one = digest_of(STRENGTH SPRING "V = k*x^2\n", NULL, NULL);
     ck_assert(digest_of("# a comment\n" STRENGTH SPRING "V  =  k*x^2 # more\n",
                         NULL, NULL) == one);
@@ -285,26 +272,4 @@ START_TEST(digests_tell_scenes_apart) {
     ck_assert(digest_of(STRENGTH SPRING "V = k*x^2\n", NULL, "k = 2") != one);
     ck_assert(digest_of(STRENGTH SPRING "V = k*x^2\n[run]\ndt = 1\n", NULL,
                         NULL) != one);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("scene shown");
-    TCase *cases = tcase_create("scene shown");
-    tcase_add_test(cases, observables_at_a_state);
-    tcase_add_test(cases, velocities_are_those_of_effects_that_are_on);
-    tcase_add_test(cases, velocities_of_elements);
-    tcase_add_test(cases, an_effect_that_breaks_an_invariant_hides_it);
-    tcase_add_test(cases, sections_of_a_scene);
-    tcase_add_test(cases, crossings_of_all_kinds);
-    tcase_add_test(cases, a_strobe_needs_time);
-    tcase_add_test(cases, parts_of_the_picture);
-    tcase_add_test(cases, parts_have_names_and_texts);
-    tcase_add_test(cases, periods_of_coordinates);
-    tcase_add_test(cases, stops_below_and_above);
-    tcase_add_test(cases, nothing_in_a_scene_that_was_not_read);
-    tcase_add_test(cases, an_element_that_is_not_there);
-    tcase_add_test(cases, digests_tell_scenes_apart);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

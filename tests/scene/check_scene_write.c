@@ -87,7 +87,7 @@ static void assert_round_trip(nevh_scene *s) {
 }
 
 /* Every scene that ships: as it is, and with each effect switched. */
-START_TEST(shipped_scenes) {
+TEST_EACH(shipped_scenes, find_shipped()) {
     nevh_scene *s = read_shipped(shipped[_i]);
     assert_round_trip(s);
     const nevh_system *system = nevh_scene_system(s);
@@ -100,7 +100,6 @@ START_TEST(shipped_scenes) {
     }
     nevh_scene_free(s);
 }
-END_TEST
 
 static void set(nevh_scene *s, const char *assignment) {
     ck_assert_msg(!nevh_scene_set(s, assignment), "%s", nevh_scene_message(s));
@@ -112,7 +111,7 @@ static void assert_written(const nevh_scene *s, const char *line, bool there) {
     free(text);
 }
 
-START_TEST(changes_stay) {
+TEST(changes_stay) {
     nevh_scene *s = scene_of(shaken_pendulum);
     assert_written(s, "g = 9.8      # m/s^2\n", true);
     set(s, "g = 1.5");
@@ -130,10 +129,9 @@ START_TEST(changes_stay) {
     assert_round_trip(s);
     nevh_scene_free(s);
 }
-END_TEST
 
 /* What failed to be set is not written. */
-START_TEST(failures_leave_no_trace) {
+TEST(failures_leave_no_trace) {
     nevh_scene *s = scene_of(shaken_pendulum);
     char *before = nevh_scene_write(s, NULL);
     ck_assert(nevh_scene_set(s, "g = 1/0"));
@@ -149,7 +147,6 @@ START_TEST(failures_leave_no_trace) {
     ck_assert_ptr_null(nevh_scene_write(s, NULL));
     nevh_scene_free(s);
 }
-END_TEST
 
 static const char chain[] = "[parameters]\nN = 3\n"
                             "c[i = 1..N] = i # by index\n"
@@ -158,7 +155,7 @@ static const char chain[] = "[parameters]\nN = 3\n"
                             "[effects]\nT = sum(i = 1..N, p_x[i]^2/m[i])\n"
                             "V = sum(i = 1..N, c[i]*x[i]^2)";
 
-START_TEST(arrays_are_lists_then) {
+TEST(arrays_are_lists_then) {
     nevh_scene *s = scene_of(chain);
     set(s, "c = 1/3, 2, 7");
     set(s, "m = 5");
@@ -171,10 +168,9 @@ START_TEST(arrays_are_lists_then) {
     assert_round_trip(s);
     nevh_scene_free(s);
 }
-END_TEST
 
 /* A scene without [scene], and with one but without effects; none on. */
-START_TEST(choices_are_added) {
+TEST(choices_are_added) {
     nevh_scene *s = scene_of(chain);
     nevh_scene_enable(s, "V", false);
     assert_written(s, "[scene]\neffects = T\n\n[parameters]\n", true);
@@ -194,10 +190,9 @@ START_TEST(choices_are_added) {
     assert_round_trip(s);
     nevh_scene_free(s);
 }
-END_TEST
 
 /* However many of them end a line, or the text. */
-START_TEST(carriages_do_not_count) {
+TEST(carriages_do_not_count) {
     nevh_scene *s = scene_of("[coordinates]\r\r\nx = 1\r\r\r\n"
                              "[effects]\r\nA = x^2 + p_x^2\r\r\r");
     char *text = nevh_scene_write(s, NULL);
@@ -209,19 +204,4 @@ START_TEST(carriages_do_not_count) {
     free(again);
     nevh_scene_free(copy);
     nevh_scene_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("scene write");
-    TCase *cases = tcase_create("scene write");
-    find_shipped();
-    tcase_add_loop_test(cases, shipped_scenes, 0, (int)n_shipped);
-    tcase_add_test(cases, changes_stay);
-    tcase_add_test(cases, failures_leave_no_trace);
-    tcase_add_test(cases, arrays_are_lists_then);
-    tcase_add_test(cases, choices_are_added);
-    tcase_add_test(cases, carriages_do_not_count);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -115,7 +115,7 @@ static void assert_same_energy(const pair *both, const double q[],
                   "%.17g, not %.17g", a, b);
 }
 
-START_TEST(scene_is_the_model) {
+TEST_EACH(scene_is_the_model, PAIRS) {
     pair both;
     open_pair(&both, _i);
     for (int j = 0; j < 200; j++) {
@@ -135,7 +135,6 @@ START_TEST(scene_is_the_model) {
     }
     close_pair(&both);
 }
-END_TEST
 
 static int observe_energies(void *data, size_t step, double t, const double q[],
                             const double p[]) {
@@ -145,7 +144,7 @@ static int observe_energies(void *data, size_t step, double t, const double q[],
 }
 
 /* Along one orbit, and to the same end by both. */
-START_TEST(orbits_are_those_of_the_model) {
+TEST_EACH(orbits_are_those_of_the_model, PAIRS) {
     pair both;
     open_pair(&both, _i);
     double q[2][MOST_DOF], p[2][MOST_DOF];
@@ -168,7 +167,6 @@ START_TEST(orbits_are_those_of_the_model) {
     }
     close_pair(&both);
 }
-END_TEST
 
 /* The Sun and Pluto after 100000 days in quadruple precision, by a Gauss method
    of order 16: coordinates. */
@@ -177,7 +175,7 @@ static const double sun[] = {0.6197224011858143216, -0.2483636156271377760,
 static const double pluto[] = {14.12135343202440495, -28.71152633143566509,
                                -13.07958855928588185};
 
-START_TEST(outer_solar_system_gets_there) {
+TEST(outer_solar_system_gets_there) {
     nevh_scene *s = read_shipped("outer-solar-system.nevh");
     double q[18], p[18];
     ck_assert_uint_eq(nevh_scene_dof(s), 18);
@@ -192,7 +190,6 @@ START_TEST(outer_solar_system_gets_there) {
     nevh_stepper_free(by);
     nevh_scene_free(s);
 }
-END_TEST
 
 static void orbit_elements(const double r[3], const double v[3], double GM,
                            double *a, double *tilt) {
@@ -205,7 +202,7 @@ static void orbit_elements(const double r[3], const double v[3], double GM,
 }
 
 /* The Moon's orbit about the Earth, and the Earth's about the Sun. */
-START_TEST(sun_earth_moon_start_as_they_are) {
+TEST(sun_earth_moon_start_as_they_are) {
     nevh_scene *s = read_shipped("sun-earth-moon.nevh");
     double q[9], p[9], v[9], r[3], w[3], a, tilt, t = 0;
     ck_assert_int_eq(nevh_scene_start(s, q, p), NEVH_OK);
@@ -225,7 +222,6 @@ START_TEST(sun_earth_moon_start_as_they_are) {
     nevh_field_free(f);
     nevh_scene_free(s);
 }
-END_TEST
 
 static void integrate(nevh_scene *s, double t, double q[2]) {
     double p[2];
@@ -240,7 +236,7 @@ static void integrate(nevh_scene *s, double t, double q[2]) {
 }
 
 /* A full turn, 75.3 years, past the Sun at 0.586 AU. */
-START_TEST(halley_returns) {
+TEST(halley_returns) {
     nevh_scene *s = read_shipped("earth-halley.nevh");
     double period = pow(17.834, 1.5), q[2];
     integrate(s, period / 2, q);
@@ -249,11 +245,10 @@ START_TEST(halley_returns) {
     ck_assert_double_eq_tol(q[0], -17.834 * (1 + 0.96714), 1e-7);
     nevh_scene_free(s);
 }
-END_TEST
 
 /* The Earth, which only pulls where the comet comes by, moves energy; the
    balance knows by how much. */
-START_TEST(passages_are_balanced) {
+TEST(passages_are_balanced) {
     nevh_scene *s = read_shipped("earth-halley.nevh");
     ck_assert_int_eq(nevh_scene_enable(s, "earth", true), NEVH_OK);
     double q[2], p[2];
@@ -276,10 +271,9 @@ START_TEST(passages_are_balanced) {
     nevh_stepper_free(by);
     nevh_scene_free(s);
 }
-END_TEST
 
 /* k = sin(start/2), energy above the bottom over that at the top. */
-START_TEST(separatrix_is_near) {
+TEST(separatrix_is_near) {
     nevh_scene *s = read_shipped("pendulum-separatrix.nevh");
     double q, p;
     ck_assert_int_eq(nevh_scene_start(s, &q, &p), NEVH_OK);
@@ -287,7 +281,6 @@ START_TEST(separatrix_is_near) {
     ck_assert(p == 0);
     nevh_scene_free(s);
 }
-END_TEST
 
 /* CPU seconds to read a chain, to plan for it, also for a scheme that asks what
    kind of T it has, and to take some steps. */
@@ -320,16 +313,15 @@ static double least_seconds(int masses) {
     return least;
 }
 
-START_TEST(long_chains_cost_in_proportion) {
+TEST_TAGGED(long_chains_cost_in_proportion, "slow", 0, 1) {
     double short_one = least_seconds(10000), long_one = least_seconds(100000);
     ck_assert_msg(long_one < 20 * short_one, "%g s, but %g s of 10 times more",
                   short_one, long_one);
     ck_assert_double_lt(long_one, 30);
 }
-END_TEST
 
 /* Each has what a student needs. */
-START_TEST(scenes_are_complete) {
+TEST(scenes_are_complete) {
     for (size_t i = 0; i < n_shipped; i++) {
         nevh_scene *s = read_shipped(shipped[i]);
         const nevh_scene_run *run = nevh_scene_run_settings(s);
@@ -340,25 +332,4 @@ START_TEST(scenes_are_complete) {
         nevh_scene_free(s);
     }
     ck_assert_uint_ge(n_shipped, 25);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("shipped");
-    TCase *cases = tcase_create("shipped");
-    find_shipped();
-    tcase_add_loop_test(cases, scene_is_the_model, 0, PAIRS);
-    tcase_add_loop_test(cases, orbits_are_those_of_the_model, 0, PAIRS);
-    tcase_add_test(cases, outer_solar_system_gets_there);
-    tcase_add_test(cases, sun_earth_moon_start_as_they_are);
-    tcase_add_test(cases, halley_returns);
-    tcase_add_test(cases, passages_are_balanced);
-    tcase_add_test(cases, separatrix_is_near);
-    tcase_add_test(cases, scenes_are_complete);
-    suite_add_tcase(suite, cases);
-    cases = tcase_create("slow");
-    tcase_set_tags(cases, "slow");
-    tcase_add_test(cases, long_chains_cost_in_proportion);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -117,7 +117,7 @@ static void assert_proportion(const problem *b, const nevh_integrator *scheme,
                   nevh_integrator_name(scheme), b->name, found);
 }
 
-START_TEST(error_falls_with_the_tolerance) {
+TEST_EACH(error_falls_with_the_tolerance, scheme_count()) {
     const nevh_integrator *scheme = adaptive(_i);
     if (!scheme)
         skip_test("it does not adapt steps");
@@ -129,10 +129,9 @@ START_TEST(error_falls_with_the_tolerance) {
     end = travel(&henon_heiles, nevh_gauss16, 0, 100, 2000);
     assert_proportion(&henon_heiles, scheme, 100, &end, 2e3);
 }
-END_TEST
 
 /* Time is right in every stage of every substep. */
-START_TEST(time_goes_with_the_substeps) {
+TEST_EACH(time_goes_with_the_substeps, scheme_count()) {
     const nevh_integrator *scheme = adaptive(_i);
     if (!scheme)
         skip_test("it does not adapt steps");
@@ -142,11 +141,10 @@ START_TEST(time_goes_with_the_substeps) {
     ck_assert_double_eq_tol(z.q[0], end.q[0], 3e-8);
     ck_assert_double_eq_tol(z.p[0], end.p[0], 3e-8);
 }
-END_TEST
 
 /* A control of the same kind but without memory, written separately, takes
    7009 evaluations for errors of 1e-9 (1 + |y|). */
-START_TEST(work_is_that_of_others) {
+TEST(work_is_that_of_others) {
     orbit z = travel(&ellipse, nevh_dopri5, 1e-9, 10 * two_pi, 1);
     ck_assert(z.gradients > 6500 && z.gradients < 9000);
     ck_assert_uint_eq(z.gradients % 6,
@@ -157,21 +155,19 @@ START_TEST(work_is_that_of_others) {
     other = travel(&ellipse, nevh_gsl_rk8pd, 1e-9, 10 * two_pi, 1);
     ck_assert_uint_lt(z.gradients, other.gradients);
 }
-END_TEST
 
 /* Where one substep a step is enough, steps cost what they do without control:
    the slope at their end is kept. */
-START_TEST(short_steps_cost_no_more) {
+TEST(short_steps_cost_no_more) {
     orbit z = travel(&ellipse, nevh_dopri5, 1e-6, 1, 500);
     ck_assert_uint_eq(z.gradients, 500 * 6 + 1);
     z = travel(&ellipse, nevh_dop853, 1e-6, 1, 500);
     ck_assert_uint_eq(z.gradients, 500 * 12);
 }
-END_TEST
 
 /* A step begins with the substep that the last one arrived at: all that it
    costs is to land at its end. */
-START_TEST(substeps_are_remembered) {
+TEST_EACH(substeps_are_remembered, scheme_count()) {
     const nevh_integrator *scheme = adaptive(_i);
     if (!scheme || nevh_integrator_needs_tolerance(scheme))
         skip_test("it does not adapt steps, or begins anew with each");
@@ -182,9 +178,8 @@ START_TEST(substeps_are_remembered) {
                   "%s: %lu instead of %lu", nevh_integrator_name(scheme),
                   (unsigned long)z.gradients, (unsigned long)whole.gradients);
 }
-END_TEST
 
-START_TEST(there_and_back) {
+TEST_EACH(there_and_back, scheme_count()) {
     const nevh_integrator *scheme = adaptive(_i);
     if (!scheme)
         skip_test("it does not adapt steps");
@@ -200,10 +195,9 @@ START_TEST(there_and_back) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Other units, by powers of two, are the same orbit to the last bit. */
-START_TEST(units_do_not_matter) {
+TEST_EACH(units_do_not_matter, scheme_count()) {
     const nevh_integrator *scheme = adaptive(_i);
     if (!scheme)
         skip_test("it does not adapt steps");
@@ -230,10 +224,9 @@ START_TEST(units_do_not_matter) {
     nevh_system_free(plain);
     nevh_system_free(other);
 }
-END_TEST
 
 /* Late on the clock, where t + substep is t, an H without time moves on. */
-START_TEST(late_is_as_early) {
+TEST_EACH(late_is_as_early, scheme_count()) {
     const nevh_integrator *scheme = adaptive(_i);
     if (!scheme)
         skip_test("it does not adapt steps");
@@ -250,7 +243,6 @@ START_TEST(late_is_as_early) {
     ck_assert_mem_eq(p[0], p[1], sizeof p[0]);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Falls towards the left, slowly, up a wall that overflows. */
 static double steep(double t, const double q[], const double p[],
@@ -260,7 +252,7 @@ static double steep(double t, const double q[], const double p[],
 }
 
 /* A first substep of all h would be far beyond numbers. */
-START_TEST(h_is_not_the_first_substep) {
+TEST_EACH(h_is_not_the_first_substep, scheme_count()) {
     const nevh_integrator *scheme = adaptive(_i);
     if (!scheme)
         skip_test("it does not adapt steps");
@@ -277,10 +269,9 @@ START_TEST(h_is_not_the_first_substep) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* A million time units are no many substeps where nothing happens fast. */
-START_TEST(a_long_way) {
+TEST_EACH(a_long_way, scheme_count()) {
     const nevh_integrator *scheme = adaptive(_i);
     if (!scheme)
         skip_test("it does not adapt steps");
@@ -293,7 +284,6 @@ START_TEST(a_long_way) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 static void assert_usual_step(nevh_stepper *used, const nevh_system *s,
                               const nevh_integrator *scheme, double tolerance) {
@@ -320,27 +310,24 @@ static void go_too_far(const nevh_integrator *scheme, double h,
     nevh_system_free(s);
 }
 
-START_TEST(a_way_too_long) {
+TEST_EACH(a_way_too_long, scheme_count()) {
     const nevh_integrator *scheme = adaptive(_i);
     if (!scheme)
         skip_test("it does not adapt steps");
     go_too_far(scheme, 1e30, "gave up");
 }
-END_TEST
 
-START_TEST(too_many_substeps) {
+TEST_TAGGED(too_many_substeps, "slow", 0, scheme_count()) {
     const nevh_integrator *scheme = adaptive(_i);
     if (!scheme)
         skip_test("it does not adapt steps");
     go_too_far(scheme, -1e8, "gave up");
 }
-END_TEST
 
-START_TEST(the_budget_is_named) {
+TEST(the_budget_is_named) {
     go_too_far(nevh_dopri5, 1e30, "too short");
     go_too_far(nevh_dopri5, 1e8, "million");
 }
-END_TEST
 
 /* Ends at q = 2, where the orbit goes. */
 static double edge(double t, const double q[], const double p[],
@@ -363,7 +350,7 @@ static nevh_system *cliff(nevh_term_fn potential) {
     return s;
 }
 
-START_TEST(an_end_of_the_domain) {
+TEST_EACH(an_end_of_the_domain, scheme_count()) {
     const nevh_integrator *scheme = adaptive(_i);
     if (!scheme)
         skip_test("it does not adapt steps");
@@ -384,7 +371,6 @@ START_TEST(an_end_of_the_domain) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Ends at q = -1 and 1, but throws back. */
 static double walls(double t, const double q[], const double p[],
@@ -394,7 +380,7 @@ static double walls(double t, const double q[], const double p[],
 }
 
 /* Trials that leave the domain are taken back. */
-START_TEST(walls_are_not_run_through) {
+TEST_EACH(walls_are_not_run_through, 2) {
     const nevh_integrator *scheme = _i ? nevh_dop853 : nevh_dopri5;
     nevh_system *s = cliff(walls);
     nevh_options o = {.gradient_step = 0x1p-20, .tolerance = 1e-5};
@@ -409,7 +395,6 @@ START_TEST(walls_are_not_run_through) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* x'' = 6 x^2, x = 1/(1 - t)^2: gone at t = 1, up to which the substeps shrink
    as long as times tell them apart. */
@@ -429,7 +414,7 @@ static void fleeing_gradient(size_t width, const double t[], const double q[],
         dp[i] = p[i];
 }
 
-START_TEST(orbits_that_end_in_time) {
+TEST_EACH(orbits_that_end_in_time, 20) {
     const nevh_integrator *scheme = _i % 2 ? nevh_dop853 : nevh_dopri5;
     nevh_system *s = nevh_system_new(1);
     nevh_system_add(s, &(nevh_term){.effect = "H",
@@ -448,11 +433,10 @@ START_TEST(orbits_that_end_in_time) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Lanes take substeps of their own, and none knows of the others: also where
    one runs into a wall. */
-START_TEST(lanes_are_alone) {
+TEST_EACH(lanes_are_alone, scheme_count()) {
     const nevh_integrator *scheme = adaptive(_i);
     if (!scheme)
         skip_test("it does not adapt steps");
@@ -483,10 +467,9 @@ START_TEST(lanes_are_alone) {
     nevh_stepper_free(all);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Also where H reads t: each lane has its own. */
-START_TEST(lanes_have_their_own_time) {
+TEST_EACH(lanes_have_their_own_time, scheme_count()) {
     const nevh_integrator *scheme = adaptive(_i);
     if (!scheme)
         skip_test("it does not adapt steps");
@@ -508,11 +491,10 @@ START_TEST(lanes_have_their_own_time) {
     nevh_stepper_free(all);
     nevh_system_free(s);
 }
-END_TEST
 
 /* What a substep loses to rounding is added to the next one: a hundred
    thousand of them, whose truncation is nothing, leave the last digit. */
-START_TEST(rounding_is_carried_on) {
+TEST_EACH(rounding_is_carried_on, 2) {
     const nevh_integrator *scheme = _i ? nevh_dop853 : nevh_dopri5;
     nevh_system *s = henon_heiles.make();
     nevh_stepper *m = stepper_of(s, &henon_heiles, scheme, 1e-9);
@@ -528,7 +510,6 @@ START_TEST(rounding_is_carried_on) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 static int look(void *data, size_t step, double t, const double q[],
                 const double p[]) {
@@ -539,7 +520,7 @@ static int look(void *data, size_t step, double t, const double q[],
 
 /* Watched, in pieces, from a copy, from what was saved, and after a trial
    elsewhere that failed: the same orbit to the last bit. */
-START_TEST(memory_is_all) {
+TEST_EACH(memory_is_all, scheme_count()) {
     const nevh_integrator *scheme = adaptive(_i);
     if (!scheme)
         skip_test("it does not adapt steps");
@@ -570,10 +551,9 @@ START_TEST(memory_is_all) {
     free(buffer);
     nevh_system_free(s);
 }
-END_TEST
 
 /* GSL would take errors that are 0/0 for good ones. */
-START_TEST(a_tolerance_of_nothing) {
+TEST_EACH(a_tolerance_of_nothing, scheme_count()) {
     const nevh_integrator *scheme = adaptive(_i);
     if (!scheme || strncmp(nevh_integrator_name(scheme), "gsl-", 4) != 0)
         skip_test("not one of GSL's");
@@ -587,9 +567,8 @@ START_TEST(a_tolerance_of_nothing) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(a_tolerance_is_needed) {
+TEST(a_tolerance_is_needed) {
     nevh_system *s = ellipse.make();
     nevh_stepper *m = nevh_stepper_new(s, nevh_gsl_msadams, NULL);
     ck_assert_int_eq(nevh_stepper_status(m), NEVH_EINVAL);
@@ -600,37 +579,4 @@ START_TEST(a_tolerance_is_needed) {
     for (int i = 0; i < scheme_count(); i++)
         ck_assert(!nevh_integrator_needs_tolerance(nevh_integrators()[i]) ||
                   adaptive(i));
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("adaptive");
-    TCase *cases = tcase_create("adaptive"), *slow = tcase_create("slow");
-    int count = scheme_count();
-    tcase_add_loop_test(cases, error_falls_with_the_tolerance, 0, count);
-    tcase_add_loop_test(cases, time_goes_with_the_substeps, 0, count);
-    tcase_add_test(cases, work_is_that_of_others);
-    tcase_add_test(cases, short_steps_cost_no_more);
-    tcase_add_loop_test(cases, substeps_are_remembered, 0, count);
-    tcase_add_loop_test(cases, there_and_back, 0, count);
-    tcase_add_loop_test(cases, units_do_not_matter, 0, count);
-    tcase_add_loop_test(cases, late_is_as_early, 0, count);
-    tcase_add_loop_test(cases, h_is_not_the_first_substep, 0, count);
-    tcase_add_loop_test(cases, a_long_way, 0, count);
-    tcase_add_loop_test(cases, a_way_too_long, 0, count);
-    tcase_add_test(cases, the_budget_is_named);
-    tcase_add_loop_test(cases, an_end_of_the_domain, 0, count);
-    tcase_add_loop_test(cases, walls_are_not_run_through, 0, 2);
-    tcase_add_loop_test(cases, orbits_that_end_in_time, 0, 20);
-    tcase_add_loop_test(cases, lanes_are_alone, 0, count);
-    tcase_add_loop_test(cases, lanes_have_their_own_time, 0, count);
-    tcase_add_loop_test(cases, rounding_is_carried_on, 0, 2);
-    tcase_add_loop_test(cases, memory_is_all, 0, count);
-    tcase_add_loop_test(cases, a_tolerance_of_nothing, 0, count);
-    tcase_add_test(cases, a_tolerance_is_needed);
-    suite_add_tcase(suite, cases);
-    tcase_set_tags(slow, "slow");
-    tcase_add_loop_test(slow, too_many_substeps, 0, count);
-    suite_add_tcase(suite, slow);
-    return run_suite(suite);
 }

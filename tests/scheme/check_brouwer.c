@@ -102,14 +102,13 @@ static errors errors_of(const orbits *o, const nevh_integrator *scheme,
 enum { STEPS = 32000 };
 
 /* Errors of either sign, that grow fourfold in sixteen times the steps. */
-START_TEST(errors_walk_at_random) {
+TEST_EACH(errors_walk_at_random, ALL) {
     const orbits *o = &all[_i];
     errors r = errors_of(o, *o->scheme, LANES, STEPS);
     ck_assert_msg(r.late < 7e-15 && r.late < 8 * r.early &&
                       fabs(r.mean) < 0.75 * r.late,
                   "%.2e, before %.2e, mean %.2e", r.late, r.early, r.mean);
 }
-END_TEST
 
 /* A million steps and more of one orbit. */
 static void check_one(const orbits *o, size_t steps, double most) {
@@ -117,15 +116,14 @@ static void check_one(const orbits *o, size_t steps, double most) {
     ck_assert_msg(r.most <= most, "%.2e", r.most);
 }
 
-START_TEST(a_million_steps) {
+TEST_RANGE(a_million_steps, 1, 2) {
     check_one(&all[_i], 1000000, 3e-14);
 }
-END_TEST
+TEST_ALSO(a_million_steps, "slow", 0, ALL)
 
-START_TEST(ten_million_steps) {
+TEST_TAGGED(ten_million_steps, "slow", 0, ALL) {
     check_one(&all[_i], 10000000, _i < 2 ? 5e-14 : 1e-13);
 }
-END_TEST
 
 /* Schemes of which something is taken away. */
 static errors errors_without(const orbits *o, const nevh_kernel *kernel) {
@@ -141,13 +139,12 @@ static int step_without_carry(nevh_work *w, double t, double h, double q[],
     return status;
 }
 
-START_TEST(sums_without_carry) {
+TEST_EACH(sums_without_carry, 1) {
     nevh_kernel kernel = nevh_gauss_kernel;
     kernel.step = step_without_carry;
     errors r = errors_without(&all[_i], &kernel);
     ck_assert_msg(r.late > 1.4e-14, "%.2e", r.late);
 }
-END_TEST
 
 /* mu = a / b, both rounded, as they stand in tables. */
 static int plan_rounded(nevh_work *w) {
@@ -169,14 +166,14 @@ static int plan_rounded(nevh_work *w) {
 }
 
 /* All orbits lose energy, the more the longer. */
-START_TEST(rounded_coefficients_drift) {
+TEST_EACH(rounded_coefficients_drift, 1) {
     nevh_kernel kernel = nevh_gauss_kernel;
     kernel.plan = plan_rounded;
     errors r = errors_without(&all[_i], &kernel);
     ck_assert_msg(fabs(r.mean) > 0.9 * r.late && r.late > 5e-15,
                   "%.2e, mean %.2e", r.late, r.mean);
 }
-END_TEST
+TEST_ALSO(rounded_coefficients_drift, NULL, 2, 3)
 
 /* The state is q + carry, in the stages as in the sum: a step is the same
    wherever the point is set. */
@@ -187,7 +184,7 @@ static int step_with_carry(nevh_work *w, double t, double h, double q[],
     return nevh_gauss_kernel.step(w, t, h, q, p);
 }
 
-START_TEST(carry_is_part_of_the_state) {
+TEST(carry_is_part_of_the_state) {
     nevh_kernel kernel = nevh_gauss_kernel;
     kernel.step = step_with_carry;
     nevh_integrator split = *nevh_gauss8;
@@ -204,23 +201,4 @@ START_TEST(carry_is_part_of_the_state) {
     nevh_stepper_free(carried);
     nevh_stepper_free(plain);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("brouwer");
-    TCase *cases = tcase_create("brouwer");
-    tcase_add_loop_test(cases, errors_walk_at_random, 0, ALL);
-    tcase_add_loop_test(cases, a_million_steps, 1, 2);
-    tcase_add_loop_test(cases, sums_without_carry, 0, 1);
-    tcase_add_loop_test(cases, rounded_coefficients_drift, 0, 1);
-    tcase_add_loop_test(cases, rounded_coefficients_drift, 2, 3);
-    tcase_add_test(cases, carry_is_part_of_the_state);
-    suite_add_tcase(suite, cases);
-    cases = tcase_create("long runs");
-    tcase_set_tags(cases, "slow");
-    tcase_add_loop_test(cases, a_million_steps, 0, ALL);
-    tcase_add_loop_test(cases, ten_million_steps, 0, ALL);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -10,7 +10,7 @@
 
 enum { MOST_STAGES = 24, MOST_OPERATIONS = 100 };
 
-START_TEST(gauss_nodes_are_gsls) {
+TEST_RANGE(gauss_nodes_are_gsls, 1, MOST_STAGES) {
     size_t s = (size_t)_i;
     nevh__tableau *g = nevh__gauss_new(s);
     gsl_integration_glfixed_table *table =
@@ -24,10 +24,9 @@ START_TEST(gauss_nodes_are_gsls) {
     gsl_integration_glfixed_table_free(table);
     nevh__tableau_free(g);
 }
-END_TEST
 
 /* mu_ij + mu_ji = 1 without any rounding: symplectic; and symmetric in time. */
-START_TEST(gauss_is_exactly_symplectic) {
+TEST_RANGE(gauss_is_exactly_symplectic, 1, NEVH__MOST_STAGES + 1) {
     size_t s = (size_t)_i;
     nevh__tableau *g = nevh__gauss_new(s);
     for (size_t i = 0; i < s; i++)
@@ -40,11 +39,10 @@ START_TEST(gauss_is_exactly_symplectic) {
         }
     nevh__tableau_free(g);
 }
-END_TEST
 
 /* The contrast: with a_ij rounded as usual the same condition does not hold to
    the last bit, so that the test above can fail. */
-START_TEST(rounded_a_is_not_exactly_symplectic) {
+TEST(rounded_a_is_not_exactly_symplectic) {
     size_t s = 6;
     nevh__tableau *g = nevh__gauss_new(s);
     int violations = 0;
@@ -57,10 +55,9 @@ START_TEST(rounded_a_is_not_exactly_symplectic) {
     ck_assert_int_gt(violations, 0);
     nevh__tableau_free(g);
 }
-END_TEST
 
 /* B(2s), C(s) and D(s), from which order 2s follows [Butcher 1964]. */
-START_TEST(gauss_has_order_2s) {
+TEST_RANGE(gauss_has_order_2s, 1, MOST_STAGES) {
     size_t s = (size_t)_i;
     nevh__tableau *g = nevh__gauss_new(s);
     for (size_t k = 1; k <= 2 * s; k++) {
@@ -82,7 +79,6 @@ START_TEST(gauss_has_order_2s) {
         }
     nevh__tableau_free(g);
 }
-END_TEST
 
 /* Tables of the literature [Jay 1996; Hairer, Lubich, Wanner, II.1.4], row by
    row. */
@@ -98,7 +94,7 @@ static void compare_tables(size_t s, const double a[], const double b[]) {
     nevh__tableau_free(g);
 }
 
-START_TEST(lobatto_tables) {
+TEST(lobatto_tables) {
     compare_tables(2, (double[]){0, 0, 0.5, 0.5}, (double[]){0.5, 0, 0.5, 0});
     compare_tables(
         3,
@@ -115,9 +111,8 @@ START_TEST(lobatto_tables) {
                               (25 + 13 * r) / 120, (25 - r) / 120, 0, e,
                               (11 - r) / 24, (11 + r) / 24, 0});
 }
-END_TEST
 
-START_TEST(lobatto_is_exactly_symplectic) {
+TEST_RANGE(lobatto_is_exactly_symplectic, 2, NEVH__MOST_STAGES + 1) {
     size_t s = (size_t)_i;
     nevh__tableau *g = nevh__lobatto_new(s);
     for (size_t i = 0; i < s; i++)
@@ -132,7 +127,6 @@ START_TEST(lobatto_is_exactly_symplectic) {
         }
     nevh__tableau_free(g);
 }
-END_TEST
 
 /* C(k) and D(k) of a matrix: sum_j a_ij c_j^(k-1) = c_i^k / k, and
    sum_i b_i c_i^(k-1) a_ij = b_j (1 - c_j^k) / k. */
@@ -162,7 +156,7 @@ static bool has_columns(const nevh__tableau *g, const double mu[], size_t k) {
 
 /* B(2s-2), IIIA: C(s) and D(s-2), IIIB: C(s-2) and D(s), and no more: order
    2s-2 follows. */
-START_TEST(lobatto_has_order_2s_less_2) {
+TEST_RANGE(lobatto_has_order_2s_less_2, 2, MOST_STAGES) {
     size_t s = (size_t)_i;
     nevh__tableau *g = nevh__lobatto_new(s);
     ck_assert(g->c[0] == 0 && g->c[s - 1] == 1);
@@ -180,10 +174,9 @@ START_TEST(lobatto_has_order_2s_less_2) {
     }
     nevh__tableau_free(g);
 }
-END_TEST
 
 /* The continued polynomial is exact for polynomials of degree s - 1. */
-START_TEST(gauss_guess_extrapolates) {
+TEST_RANGE(gauss_guess_extrapolates, 1, MOST_STAGES) {
     size_t s = (size_t)_i;
     nevh__tableau *g = nevh__gauss_new(s);
     for (size_t k = 0; k < s; k++)
@@ -198,9 +191,8 @@ START_TEST(gauss_guess_extrapolates) {
         }
     nevh__tableau_free(g);
 }
-END_TEST
 
-START_TEST(gauss_order_rises) {
+TEST_RANGE(gauss_order_rises, 1, MOST_STAGES) {
     size_t s = (size_t)_i, seen = 0;
     nevh__tableau *g = nevh__gauss_new(s);
     for (size_t m = 0; m < s; m++) {
@@ -211,7 +203,6 @@ START_TEST(gauss_order_rises) {
     ck_assert_uint_eq(seen, s * (s - 1) / 2);
     nevh__tableau_free(g);
 }
-END_TEST
 
 static void check_splitting(const nevh_integrator *scheme) {
     double weights[MOST_OPERATIONS], sums[2] = {0, 0};
@@ -230,33 +221,9 @@ static void check_splitting(const nevh_integrator *scheme) {
 }
 
 /* Runge-Kutta tables: check_trees. */
-START_TEST(explicit_tables) {
+TEST_EACH(explicit_tables, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     if (scheme->kernel != &nevh_splitting_kernel)
         skip_test("not a splitting");
     check_splitting(scheme);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("coefficients");
-    TCase *cases = tcase_create("gauss");
-    tcase_add_loop_test(cases, gauss_nodes_are_gsls, 1, MOST_STAGES);
-    tcase_add_loop_test(cases, gauss_is_exactly_symplectic, 1,
-                        NEVH__MOST_STAGES + 1);
-    tcase_add_test(cases, rounded_a_is_not_exactly_symplectic);
-    tcase_add_loop_test(cases, gauss_has_order_2s, 1, MOST_STAGES);
-    tcase_add_loop_test(cases, gauss_guess_extrapolates, 1, MOST_STAGES);
-    tcase_add_loop_test(cases, gauss_order_rises, 1, MOST_STAGES);
-    suite_add_tcase(suite, cases);
-    cases = tcase_create("lobatto");
-    tcase_add_test(cases, lobatto_tables);
-    tcase_add_loop_test(cases, lobatto_is_exactly_symplectic, 2,
-                        NEVH__MOST_STAGES + 1);
-    tcase_add_loop_test(cases, lobatto_has_order_2s_less_2, 2, MOST_STAGES);
-    suite_add_tcase(suite, cases);
-    cases = tcase_create("tables");
-    tcase_add_loop_test(cases, explicit_tables, 0, scheme_count());
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

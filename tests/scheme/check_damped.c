@@ -87,7 +87,7 @@ static const nevh_integrator *damped(int i) {
     return scheme->kernel->has_friction ? scheme : NULL;
 }
 
-START_TEST(keeps_the_order) {
+TEST_EACH(keeps_the_order, scheme_count()) {
     const nevh_integrator *scheme = damped(_i);
     if (!scheme || nevh_integrator_needs_tolerance(scheme))
         skip_test("it takes no friction into its slopes, or no fixed steps");
@@ -101,9 +101,8 @@ START_TEST(keeps_the_order) {
                   nevh_integrator_name(scheme), slope, coarse, fine);
     ck_assert(error_of(scheme, 0, NULL, 3, steps) > 0.1);
 }
-END_TEST
 
-START_TEST(meets_the_tolerance) {
+TEST_EACH(meets_the_tolerance, scheme_count()) {
     const nevh_integrator *scheme = damped(_i);
     if (!scheme || !nevh_integrator_adaptive(scheme))
         skip_test("it takes no friction into its slopes, or does not adapt");
@@ -111,10 +110,9 @@ START_TEST(meets_the_tolerance) {
     ck_assert_msg(error < 2e-8, "%s: %.2e", nevh_integrator_name(scheme),
                   error);
 }
-END_TEST
 
 /* Rates of 0 are no friction, to the last bit. */
-START_TEST(none_is_none) {
+TEST_EACH(none_is_none, scheme_count()) {
     static const double zeros[] = {0, 0};
     const nevh_integrator *scheme = damped(_i);
     if (!scheme)
@@ -123,25 +121,11 @@ START_TEST(none_is_none) {
     ck_assert(error_of(scheme, tolerance, zeros, 3, 20) ==
               error_of(scheme, tolerance, NULL, 3, 20));
 }
-END_TEST
 
-START_TEST(runge_kutta_and_gsl_take_it) {
+TEST(runge_kutta_and_gsl_take_it) {
     const nevh_integrator *const schemes[] = {
         nevh_euler,     nevh_rk4,       nevh_dopri5,     nevh_dop853,
         nevh_gsl_rkf45, nevh_gsl_rk8pd, nevh_gsl_msadams};
     for (size_t i = 0; i < sizeof schemes / sizeof *schemes; i++)
         ck_assert(schemes[i]->kernel->has_friction);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("damped");
-    TCase *cases = tcase_create("damped");
-    int count = scheme_count();
-    tcase_add_loop_test(cases, keeps_the_order, 0, count);
-    tcase_add_loop_test(cases, meets_the_tolerance, 0, count);
-    tcase_add_loop_test(cases, none_is_none, 0, count);
-    tcase_add_test(cases, runge_kutta_and_gsl_take_it);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -52,7 +52,7 @@ static const figure figures[] = {
     {&released, &nevh_rk4, 0.01, 2.112e-5, 0.01},
 };
 
-START_TEST(known_figures) {
+TEST_EACH(known_figures, sizeof figures / sizeof *figures) {
     const figure *f = &figures[_i];
     size_t steps = (size_t)lround(f->problem->span / f->h);
     const nevh_gradient *const gradients[] = {nevh_exact, nevh_central8};
@@ -65,20 +65,18 @@ START_TEST(known_figures) {
                       nevh_gradient_name(gradients[k]), r.max, f->most);
     }
 }
-END_TEST
 
-START_TEST(gauss8_at_rounding) {
+TEST(gauss8_at_rounding) {
     const nevh_gradient *const gradients[] = {nevh_exact, nevh_central8};
     for (int k = 0; k < 2; k++)
         ck_assert_double_lt(
             energy_of(&pendulum, nevh_gauss8, gradients[k], 0.05, 2000).max,
             2e-14);
 }
-END_TEST
 
 /* Where truncation is seen, symplectic schemes do not lose energy in 1e5 steps
    and the others do. */
-START_TEST(claim_over_long_runs) {
+TEST_EACH(claim_over_long_runs, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     int order = nevh_integrator_order(scheme);
     if (order > 10)
@@ -102,10 +100,9 @@ START_TEST(claim_over_long_runs) {
                       "%s: max %.2e, drift %.2e", nevh_integrator_name(scheme),
                       r.max, r.drift * 1e5 * h);
 }
-END_TEST
 
 /* A million steps: 50 000 seconds. */
-START_TEST(a_million_steps) {
+TEST(a_million_steps) {
     const size_t steps = 1000000;
     nevh_energy_report r = energy_of(&pendulum, nevh_verlet, NULL, 0.05, steps);
     ck_assert_int_eq(r.verdict, NEVH_BOUNDED);
@@ -117,7 +114,6 @@ START_TEST(a_million_steps) {
     ck_assert_int_eq(r.verdict, NEVH_DRIFTS);
     ck_assert_double_eq_tol(r.max, 3.857e-4, 1e-5);
 }
-END_TEST
 
 /* Largest energy error of gauss8 at h = 0.02 on the double pendulum. */
 static double largest_error(const double q0[], const double p0[],
@@ -143,18 +139,17 @@ static const double regular_q[] = {1.1, 0}, regular_p[] = {0, 2.7746};
 static const double chaotic_q[] = {1.5707963267948966, 0}, at_rest[] = {0, 0};
 
 /* With steps chosen by trial, orders 4 to 8 cannot be told from exact ones. */
-START_TEST(differences_are_as_good_as_exact) {
+TEST_EACH(differences_are_as_good_as_exact, 3) {
     double exact = largest_error(regular_q, regular_p, nevh_exact, 0, 5000);
     const nevh_gradient *g = nevh_gradients()[1 + _i];
     double found = largest_error(regular_q, regular_p, g, 0, 5000);
     ck_assert_msg(fabs(found / exact - 1) < 0.01, "%s: %.3e instead of %.3e",
                   nevh_gradient_name(g), found, exact);
 }
-END_TEST
 
 /* The paper's differences are not those of any H: on a regular orbit the error
    that they bring stays, on a chaotic one it grows. */
-START_TEST(coarse_differences) {
+TEST(coarse_differences) {
     const nevh_gradient *g = nevh_central2;
     double soon = largest_error(regular_q, regular_p, g, 0.01, 1000);
     double late = largest_error(regular_q, regular_p, g, 0.01, 25000);
@@ -170,19 +165,4 @@ START_TEST(coarse_differences) {
     ck_assert_double_gt(growth, 1.3);
     ck_assert_double_gt(late, 500 * largest_error(chaotic_q, at_rest,
                                                   nevh_central6, 0.01, 25000));
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("drift");
-    TCase *cases = tcase_create("drift");
-    tcase_add_loop_test(cases, known_figures, 0,
-                        sizeof figures / sizeof *figures);
-    tcase_add_test(cases, gauss8_at_rounding);
-    tcase_add_loop_test(cases, claim_over_long_runs, 0, scheme_count());
-    tcase_add_test(cases, a_million_steps);
-    tcase_add_loop_test(cases, differences_are_as_good_as_exact, 0, 3);
-    tcase_add_test(cases, coarse_differences);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -99,19 +99,17 @@ static void stays_bounded(int i, double periods, bool exact) {
                   nevh_verdict_name(r.verdict), r.max);
 }
 
-START_TEST(bounded) {
+TEST_EACH(bounded, 2 * LEVELS) {
     stays_bounded(_i, 30, true);
     stays_bounded(_i, 5, false);
 }
-END_TEST
 
-START_TEST(bounded_for_long) {
+TEST_TAGGED(bounded_for_long, "slow", 0, 2 * LEVELS) {
     stays_bounded(_i, 1000, true);
 }
-END_TEST
 
 /* The same steps taken naively, and under a scheme that is not symplectic. */
-START_TEST(contrast) {
+TEST_EACH(contrast, 3) {
     static const nevh_integrator *const *schemes[] = {
         &nevh_naive_adaptive_verlet, &nevh_naive_adaptive_verlet, &nevh_rk4};
     static const double power[] = {1.5, 0, 1.5}, steps[] = {300, 300, 100};
@@ -121,7 +119,6 @@ START_TEST(contrast) {
     ck_assert_msg(drifts && r.last_fifth > 3 * r.first_fifth, "%s: %s",
                   nevh_integrator_name(o.scheme), nevh_verdict_name(r.verdict));
 }
-END_TEST
 
 /* The work of a scheme under fixed steps, for an energy error no smaller than
    given: doubled steps until it is reached, and back by the order. */
@@ -137,7 +134,7 @@ static double work_of_fixed(const nevh_integrator *scheme, double e,
 }
 
 /* Evaluations of H, values only, for the same error of the energy. */
-START_TEST(less_work_than_fixed_steps) {
+TEST_EACH(less_work_than_fixed_steps, 6) {
     static const struct {
         const nevh_integrator *const *scheme, *const *fixed;
         double power, e, steps, first, share;
@@ -161,11 +158,10 @@ START_TEST(less_work_than_fixed_steps) {
     ck_assert_msg(r.cost < races[_i].share * fixed, "%s: %.0f of %.0f",
                   nevh_integrator_name(o.scheme), r.cost, fixed);
 }
-END_TEST
 
 /* The noise of differences is that of K: far from the start s may be much
    larger than there, or much smaller. */
-START_TEST(noise_ends_the_iteration) {
+TEST_EACH(noise_ends_the_iteration, 4) {
     orbit o = {nevh_gauss6, nevh_exact, 1.5, _i / 2 ? 0.99 : 0.9,
                _i % 2,      120,        5};
     result exact = follow(&o);
@@ -174,7 +170,6 @@ START_TEST(noise_ends_the_iteration) {
     ck_assert_msg(differences.sweeps < 1.15 * exact.sweeps, "%.1f, %.1f exact",
                   differences.sweeps, exact.sweeps);
 }
-END_TEST
 
 /* Two bodies whose closeness is s are Kepler's problem once more. */
 static double attraction(double t, const double q[], const double p[],
@@ -183,7 +178,7 @@ static double attraction(double t, const double q[], const double p[],
     return -0.3 / hypot(q[2] - q[0], q[3] - q[1]);
 }
 
-START_TEST(two_bodies) {
+TEST(two_bodies) {
     static const size_t momenta[] = {0, 1, 2, 3};
     static const double masses[] = {1, 1, 0.3, 0.3};
     const double q[] = {0, 0, 1.9, 0}, p[] = {0, 0, 0, 0.08};
@@ -214,10 +209,9 @@ START_TEST(two_bodies) {
     nevh_system_free(h);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Straight into the centre: steps shrink to nothing, and that is said. */
-START_TEST(collision) {
+TEST_EACH(collision, 48) {
     static const nevh_integrator *const *schemes[] = {
         &nevh_midpoint, &nevh_gauss4,          &nevh_gauss8,
         &nevh_rk4,      &nevh_adaptive_verlet, &nevh_naive_adaptive_verlet};
@@ -249,10 +243,9 @@ START_TEST(collision) {
     nevh_system_free(h);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Whatever h: an end, or a message. */
-START_TEST(absurd_steps) {
+TEST_EACH(absurd_steps, 16) {
     static const double absurd[] = {3, 1e3, 1e300, 1e-300, -3, -1e150, 0.9};
     const problem *b = _i % 2 ? &kepler : &henon_heiles;
     const nevh_integrator *schemes[] = {nevh_adaptive_verlet,
@@ -278,22 +271,4 @@ START_TEST(absurd_steps) {
     }
     nevh_system_free(h);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("eccentric");
-    TCase *cases = tcase_create("eccentric"), *slow = tcase_create("slow");
-    tcase_add_loop_test(cases, bounded, 0, 2 * LEVELS);
-    tcase_add_loop_test(cases, contrast, 0, 3);
-    tcase_add_loop_test(cases, less_work_than_fixed_steps, 0, 6);
-    tcase_add_loop_test(cases, noise_ends_the_iteration, 0, 4);
-    tcase_add_test(cases, two_bodies);
-    tcase_add_loop_test(cases, collision, 0, 48);
-    tcase_add_loop_test(cases, absurd_steps, 0, 16);
-    tcase_set_tags(slow, "slow");
-    tcase_add_loop_test(slow, bounded_for_long, 0, 2 * LEVELS);
-    suite_add_tcase(suite, cases);
-    suite_add_tcase(suite, slow);
-    return run_suite(suite);
 }

@@ -84,7 +84,7 @@ static const size_t many = 10000;
 
 /* The mean of a difference gradient has no values of H to correct it: there
    its noise makes a random walk. */
-START_TEST(energy_is_kept) {
+TEST_EACH(energy_is_kept, KEPT) {
     const setting *a = &kept[_i];
     const nevh_options o = {.gradient = *a->gradient};
     for (int i = 0; i < SCHEMES; i++) {
@@ -98,30 +98,27 @@ START_TEST(energy_is_kept) {
     double contrast = run(a->problem, nevh_gauss4, &o, a->h, many).max;
     ck_assert_double_gt(contrast, a->contrast);
 }
-END_TEST
 
 /* A million steps, and no walk where values of H balance it. */
-START_TEST(energy_does_not_walk) {
+TEST_TAGGED(energy_does_not_walk, "slow", 0, SCHEMES) {
     const nevh_integrator *scheme = scheme_at(_i);
     const nevh_options o = {.gradient = nevh_exact};
     double most = run(&henon_heiles, scheme, &o, 0.2, 1000000).max;
     ck_assert_double_lt(most, scheme == nevh_avf ? 2e-13 : 1e-14);
 }
-END_TEST
 
 /* Each step is solved: one among these 200 000 whose sweeps ended early would
    stand out by 1e-13 and more. */
-START_TEST(no_sweep_too_few) {
+TEST(no_sweep_too_few) {
     problem high = pendulum;
     high.q[0] = 2.6;
     high.p[0] = 0;
     const nevh_options o = {.gradient = nevh_exact};
     ck_assert_double_lt(run(&high, nevh_avf, &o, 0.2, 200000).max, 8e-14);
 }
-END_TEST
 
 /* Gonzalez' scheme keeps H however wrong the gradient is. */
-START_TEST(wrong_gradients) {
+TEST_EACH(wrong_gradients, 2) {
     const problem *const all[] = {&pendulum, &double_pendulum};
     const double h[] = {0.05, 0.01};
     const nevh_options o = {.gradient = nevh_central2, .gradient_step = 1e-2};
@@ -129,10 +126,9 @@ START_TEST(wrong_gradients) {
     ck_assert_msg(most < 1e-14, "%s: %.2e", all[_i]->name, most);
     ck_assert_double_gt(run(all[_i], nevh_midpoint, &o, h[_i], many).max, 1e-6);
 }
-END_TEST
 
 /* Nodes too few for a cosine, and one alone is the midpoint rule. */
-START_TEST(too_few_nodes) {
+TEST_EACH(too_few_nodes, 3) {
     static const double least[] = {4e-4, 1e-10, 1e-14};
     static const double most[] = {6e-4, 1e-6, 1e-11};
     nevh_integrator scheme = *nevh_avf;
@@ -146,7 +142,6 @@ START_TEST(too_few_nodes) {
         ck_assert_double_eq_tol(found, midpoint, 1e-11);
     }
 }
-END_TEST
 
 /* One orbit of one stepper. */
 typedef struct {
@@ -230,7 +225,7 @@ static nevh_system *double_well(size_t n, double mass, double c,
 
 /* Increments of exactly 0, and H with a third derivative there.  Values of H
    alone find the bottom to the accuracy of their differences. */
-START_TEST(equilibria) {
+TEST_EACH(equilibria, SCHEMES) {
     const nevh_integrator *scheme = scheme_at(_i);
     double slack = nevh_integrator_sweep_gradients(scheme) ? 0 : 1e-9;
     const double q[] = {1}, p[] = {0}, bottom[] = {0};
@@ -244,10 +239,9 @@ START_TEST(equilibria) {
     ck_assert(z.q[0] == 0 && z.p[0] == 0);
     finish(&z);
 }
-END_TEST
 
 /* A small oscillation: H is dominated by what does not move. */
-START_TEST(near_an_equilibrium) {
+TEST_EACH(near_an_equilibrium, SCHEMES) {
     const nevh_integrator *scheme = scheme_at(_i);
     const double amplitude = 1e-5, h = 0.01, q[] = {amplitude}, p[] = {0};
     orbit z = start(make_pendulum(), scheme, nevh_exact, q, p);
@@ -258,11 +252,10 @@ START_TEST(near_an_equilibrium) {
     }
     finish(&z);
 }
-END_TEST
 
 /* A step across a turning point, so that one increment is 0 and the state comes
    back with its momentum turned round. */
-START_TEST(turning_points) {
+TEST_EACH(turning_points, 2 * SCHEMES) {
     const nevh_integrator *scheme = scheme_at(_i % SCHEMES);
     double h = _i / SCHEMES ? 1e-3 : 0.2;
     const double q[] = {1.3}, p[] = {h * sin(q[0]) / 2};
@@ -277,11 +270,10 @@ START_TEST(turning_points) {
                             p[0] * p[0] / 2 - cos(q[0]), 1e-15);
     finish(&z);
 }
-END_TEST
 
 /* A coordinate that H does not read stands still, or goes on by h p/m, its
    momentum the same to the last bit. */
-START_TEST(frozen_coordinate) {
+TEST_EACH(frozen_coordinate, 2 * SCHEMES) {
     const nevh_integrator *scheme = scheme_at(_i % SCHEMES);
     double moving = _i / SCHEMES;
     const double q[] = {0.3, 5}, p[] = {0.2, moving};
@@ -291,10 +283,9 @@ START_TEST(frozen_coordinate) {
     ck_assert_double_le(fabs(z.q[1] - (5 + 125 * moving)), 1e-9 * moving);
     finish(&z);
 }
-END_TEST
 
 /* Other units, of which the factors are powers of two, change no digit. */
-START_TEST(units_do_not_matter) {
+TEST_EACH(units_do_not_matter, SCHEMES) {
     const nevh_integrator *scheme = scheme_at(_i);
     const double unit = 0x1p-90;
     const double q[] = {0.3}, p[] = {0.2}, small[] = {0.2 * unit};
@@ -307,10 +298,9 @@ START_TEST(units_do_not_matter) {
     finish(&z);
     finish(&y);
 }
-END_TEST
 
 /* From rest: nothing tells the units of the momentum but H. */
-START_TEST(units_are_found) {
+TEST_EACH(units_are_found, SCHEMES) {
     const nevh_integrator *scheme = scheme_at(_i);
     const double unit = 1e-27, q[] = {0.3}, p[] = {0};
     orbit z = start(double_well(1, unit, unit, 0), scheme, nevh_exact, q, p);
@@ -321,10 +311,9 @@ START_TEST(units_are_found) {
     }
     finish(&z);
 }
-END_TEST
 
 /* A term that reads nothing is not in the way of any digit. */
-START_TEST(offset_changes_nothing) {
+TEST_EACH(offset_changes_nothing, SCHEMES) {
     const nevh_integrator *scheme = scheme_at(_i);
     const double q[] = {0.3}, p[] = {0.2};
     orbit z = start(double_well(1, 1, 1, 0), scheme, nevh_central4, q, p);
@@ -335,7 +324,6 @@ START_TEST(offset_changes_nothing) {
     finish(&z);
     finish(&y);
 }
-END_TEST
 
 static double lifted(double t, const double q[], const double p[],
                      const void *params) {
@@ -349,15 +337,14 @@ static const problem lifted_pendulum = {
     .name = "lifted", .n = 1, .q = {2}, .p = {0.1}, .make = make_lifted};
 
 /* In H itself, its rounding is all that is lost. */
-START_TEST(offset_within_h) {
+TEST_EACH(offset_within_h, SCHEMES) {
     const nevh_options o = {.gradient = nevh_central8};
     double most = run(&lifted_pendulum, scheme_at(_i), &o, 0.1, many).max;
     ck_assert_double_lt(most * 1e6, 100 * 1e6 * DBL_EPSILON);
 }
-END_TEST
 
 /* Increments are all short: the orbit is still the orbit. */
-START_TEST(tiny_steps) {
+TEST_EACH(tiny_steps, SCHEMES) {
     const nevh_integrator *scheme = scheme_at(_i);
     const double h = 1e-8, t = 1e4 * h, q[] = {2}, p[] = {0.1};
     const nevh_options o = {.gradient = nevh_exact};
@@ -371,11 +358,10 @@ START_TEST(tiny_steps) {
     finish(&z);
     finish(&y);
 }
-END_TEST
 
 /* The symmetric scheme is half a step of Itoh and Abe's, and half a step that
    its own backward step undoes. */
-START_TEST(symmetric_is_composed) {
+TEST(symmetric_is_composed) {
     const problem *b = &double_pendulum;
     const double h = 0.04;
     orbit whole =
@@ -391,10 +377,9 @@ START_TEST(symmetric_is_composed) {
     finish(&whole);
     finish(&half);
 }
-END_TEST
 
 /* Lanes at rest, slow and fast ones side by side are what they are alone. */
-START_TEST(lanes_are_alone) {
+TEST_EACH(lanes_are_alone, SCHEMES) {
     enum { LANES = 5 };
     static const double scale[] = {1, 1};
     const double q[LANES] = {1, 0.3, 1 + 1e-9, -1.4, 0.9};
@@ -417,32 +402,4 @@ START_TEST(lanes_are_alone) {
     }
     nevh_stepper_free(all);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("energy preserving");
-    TCase *cases = tcase_create("energy"), *hard = tcase_create("0/0");
-    TCase *slow = tcase_create("slow");
-    tcase_add_loop_test(cases, energy_is_kept, 0, KEPT);
-    tcase_add_test(cases, no_sweep_too_few);
-    tcase_add_loop_test(cases, wrong_gradients, 0, 2);
-    tcase_add_loop_test(cases, too_few_nodes, 0, 3);
-    tcase_add_test(cases, symmetric_is_composed);
-    tcase_add_loop_test(hard, equilibria, 0, SCHEMES);
-    tcase_add_loop_test(hard, near_an_equilibrium, 0, SCHEMES);
-    tcase_add_loop_test(hard, turning_points, 0, 2 * SCHEMES);
-    tcase_add_loop_test(hard, frozen_coordinate, 0, 2 * SCHEMES);
-    tcase_add_loop_test(hard, units_do_not_matter, 0, SCHEMES);
-    tcase_add_loop_test(hard, units_are_found, 0, SCHEMES);
-    tcase_add_loop_test(hard, offset_changes_nothing, 0, SCHEMES);
-    tcase_add_loop_test(hard, offset_within_h, 0, SCHEMES);
-    tcase_add_loop_test(hard, tiny_steps, 0, SCHEMES);
-    tcase_add_loop_test(hard, lanes_are_alone, 0, SCHEMES);
-    tcase_set_tags(slow, "slow");
-    tcase_add_loop_test(slow, energy_does_not_walk, 0, SCHEMES);
-    suite_add_tcase(suite, cases);
-    suite_add_tcase(suite, hard);
-    suite_add_tcase(suite, slow);
-    return run_suite(suite);
 }

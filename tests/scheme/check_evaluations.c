@@ -36,7 +36,7 @@ static nevh_counts counts_of(const problem *b, const nevh_integrator *scheme,
 
 /* To the last one between step STEPS and step LATER; the first step may take
    more. */
-START_TEST(gradients_of_a_step) {
+TEST_EACH(gradients_of_a_step, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     const problem *b = &henon_heiles;
     uint64_t each = (uint64_t)nevh_integrator_gradients(scheme);
@@ -55,10 +55,9 @@ START_TEST(gradients_of_a_step) {
     ck_assert_uint_eq(c.newtons, 0);
     ck_assert_uint_eq(c.rescues, 0);
 }
-END_TEST
 
 /* One more where a step's last kick is the next one's first. */
-START_TEST(kept_gradients) {
+TEST(kept_gradients) {
     ck_assert_uint_eq(
         counts_of(&henon_heiles, nevh_verlet, nevh_exact, 1, NULL, 0).gradients,
         STEPS + 1);
@@ -67,12 +66,11 @@ START_TEST(kept_gradients) {
             .gradients,
         STEPS);
 }
-END_TEST
 
 /* Henon-Heiles: 2 instances of p^2/2m, one of V(x, y).  Order 2 takes 2 values
    for each variable read, order 2m m times as many, except that x and the
    momenta, in which H is found to be quadratic, take 2; exact takes none. */
-START_TEST(values_of_a_gradient) {
+TEST_EACH(values_of_a_gradient, 5) {
     const nevh_gradient *g = _i < 4 ? nevh_gradients()[_i] : nevh_exact;
     uint64_t order = (uint64_t)nevh_gradient_order(g);
     uint64_t quadratic = order ? 2 : 0;
@@ -81,12 +79,11 @@ START_TEST(values_of_a_gradient) {
     ck_assert_uint_eq(c.values, 4 * STEPS * (order + 3 * quadratic));
     ck_assert_double_eq(c.hamiltonians, (double)c.values / 3);
 }
-END_TEST
 
 /* One step of the schemes that take values of H beside, or instead of, its
    gradient, from a state where no increment is short.  The first sweep of a
    part knows no slopes, so all increments are. */
-START_TEST(values_of_a_sweep) {
+TEST_EACH(values_of_a_sweep, 4) {
     static const struct {
         const nevh_integrator *const *scheme;
         uint64_t start, first, sweep;
@@ -106,10 +103,9 @@ START_TEST(values_of_a_sweep) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Kicks ask for dH/dq alone, drifts for dH/dp alone. */
-START_TEST(kicks_and_drifts_ask_for_half) {
+TEST(kicks_and_drifts_ask_for_half) {
     nevh_counts c =
         counts_of(&henon_heiles, nevh_verlet, nevh_central2, 1, NULL, 0);
     ck_assert_uint_eq(c.values, (STEPS + 1) * 4 + STEPS * 4);
@@ -117,11 +113,10 @@ START_TEST(kicks_and_drifts_ask_for_half) {
                   0);
     ck_assert_uint_eq(c.values, STEPS * 4 + (STEPS + 1) * 4);
 }
-END_TEST
 
 /* Noise is not iterated on: with differences a step takes hardly more sweeps
    than with exact gradients. */
-START_TEST(noise_costs_no_sweeps) {
+TEST_EACH(noise_costs_no_sweeps, 4) {
     const nevh_integrator *const schemes[] = {nevh_midpoint, nevh_gauss4,
                                               nevh_gauss8, nevh_gauss16};
     uint64_t exact =
@@ -136,9 +131,8 @@ START_TEST(noise_costs_no_sweeps) {
                       (unsigned long)sweeps, (unsigned long)exact);
     }
 }
-END_TEST
 
-START_TEST(runs_count_alike) {
+TEST_EACH(runs_count_alike, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     nevh_system *s = henon_heiles.make();
     nevh_energy *energy = nevh_energy_new(s, NULL);
@@ -152,9 +146,8 @@ START_TEST(runs_count_alike) {
     nevh_energy_free(energy);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(lanes_count_alike) {
+TEST_EACH(lanes_count_alike, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     if (nevh_integrator_own_time(scheme))
         skip_test("it takes one orbit at a time");
@@ -164,20 +157,4 @@ START_TEST(lanes_count_alike) {
     ck_assert_uint_eq(4 * a.values, four.values);
     ck_assert_uint_eq(4 * a.gradients, four.gradients);
     ck_assert_uint_eq(4 * a.sweeps, four.sweeps);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("evaluations");
-    TCase *cases = tcase_create("registry");
-    tcase_add_loop_test(cases, gradients_of_a_step, 0, scheme_count());
-    tcase_add_test(cases, kept_gradients);
-    tcase_add_loop_test(cases, values_of_a_gradient, 0, 5);
-    tcase_add_loop_test(cases, values_of_a_sweep, 0, 4);
-    tcase_add_test(cases, kicks_and_drifts_ask_for_half);
-    tcase_add_loop_test(cases, noise_costs_no_sweeps, 0, 4);
-    tcase_add_loop_test(cases, runs_count_alike, 0, scheme_count());
-    tcase_add_loop_test(cases, lanes_count_alike, 0, scheme_count());
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -14,7 +14,7 @@ static double oscillator(double t, const double q[], const double p[],
     return k * q[0] * q[0] / 2 + p[0] * p[0] / 2;
 }
 
-START_TEST(h_into_an_existing_solver) {
+TEST(h_into_an_existing_solver) {
     const double pi = acos(-1), k = 4 * pi * pi;
     nevh_system *s = nevh_system_from(1, oscillator, &k);
     nevh_field *field = nevh_field_new(s, NULL);
@@ -33,10 +33,9 @@ START_TEST(h_into_an_existing_solver) {
     nevh_field_free(field);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Against the field with another gradient method: dq/dt = dH/dp first. */
-START_TEST(right_hand_side) {
+TEST(right_hand_side) {
     const problem *b = &double_pendulum;
     nevh_system *s = b->make();
     nevh_options options = {.gradient = nevh_exact};
@@ -54,10 +53,9 @@ START_TEST(right_hand_side) {
     nevh_field_free(field);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Pendulum driven in time: d(-V')/dq, and the derivative in t. */
-START_TEST(jacobian) {
+TEST(jacobian) {
     const problem *b = &driven_pendulum;
     nevh_system *s = b->make();
     nevh_options options = {.gradient = nevh_exact};
@@ -75,10 +73,9 @@ START_TEST(jacobian) {
     nevh_field_free(field);
     nevh_system_free(s);
 }
-END_TEST
 
 /* An implicit solver of GSL's needs it. */
-START_TEST(solver_with_jacobian) {
+TEST(solver_with_jacobian) {
     nevh_system *s = double_pendulum.make();
     nevh_field *field = nevh_field_new(s, NULL);
     gsl_odeiv2_system ode = nevh_gsl_system(field);
@@ -95,7 +92,6 @@ START_TEST(solver_with_jacobian) {
     nevh_field_free(field);
     nevh_system_free(s);
 }
-END_TEST
 
 static double undefined(double t, const double q[], const double p[],
                         const void *params) {
@@ -103,7 +99,7 @@ static double undefined(double t, const double q[], const double p[],
     return p[0] * p[0] / 2 - log(q[0]);
 }
 
-START_TEST(failure_reaches_gsl) {
+TEST(failure_reaches_gsl) {
     nevh_system *s = nevh_system_from(1, undefined, NULL);
     nevh_field *field = nevh_field_new(s, NULL);
     gsl_odeiv2_system ode = nevh_gsl_system(field);
@@ -113,10 +109,9 @@ START_TEST(failure_reaches_gsl) {
     nevh_field_free(field);
     nevh_system_free(s);
 }
-END_TEST
 
 /* With a tolerance the step is GSL's, whatever h is; tighter is better. */
-START_TEST(tighter_is_better) {
+TEST_EACH(tighter_is_better, 2) {
     const nevh_integrator *scheme = _i ? nevh_gsl_rk8pd : nevh_gsl_rkf45;
     const problem *b = &kepler;
     nevh_system *s = b->make();
@@ -143,9 +138,8 @@ START_TEST(tighter_is_better) {
     }
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(bad_tolerance) {
+TEST(bad_tolerance) {
     const double bad[] = {-1, NAN, INFINITY};
     nevh_system *s = kepler.make();
     for (int i = 0; i < 3; i++) {
@@ -155,19 +149,4 @@ START_TEST(bad_tolerance) {
         nevh_stepper_free(stepper);
     }
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("gsl");
-    TCase *cases = tcase_create("gsl");
-    tcase_add_test(cases, h_into_an_existing_solver);
-    tcase_add_test(cases, right_hand_side);
-    tcase_add_test(cases, jacobian);
-    tcase_add_test(cases, solver_with_jacobian);
-    tcase_add_test(cases, failure_reaches_gsl);
-    tcase_add_loop_test(cases, tighter_is_better, 0, 2);
-    tcase_add_test(cases, bad_tolerance);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

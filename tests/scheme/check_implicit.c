@@ -80,7 +80,7 @@ static const problem *const separable[] = {&driven_pendulum, &henon_heiles,
 
 /* The partitioned form is the same scheme, in little more than half the
    sweeps. */
-START_TEST(partitioned_form_is_the_scheme) {
+TEST_EACH(partitioned_form_is_the_scheme, 3 * SCHEMES) {
     const problem *b = separable[_i % 3];
     const nevh_integrator *scheme = *schemes[_i / 3];
     result part = solve(b, scheme, nevh_exact, false);
@@ -94,21 +94,19 @@ START_TEST(partitioned_form_is_the_scheme) {
                       part.counts.sweeps *
                           (uint64_t)nevh_integrator_sweep_gradients(scheme));
 }
-END_TEST
 
 /* lobatto2 is the general Stoermer-Verlet method: on T(p) + V(q), verlet. */
-START_TEST(lobatto2_is_verlet) {
+TEST_EACH(lobatto2_is_verlet, 3) {
     const problem *b = separable[_i];
     result lobatto = solve(b, nevh_lobatto2, nevh_exact, false);
     result verlet = solve(b, nevh_verlet, nevh_exact, false);
     ck_assert_double_le(difference(&lobatto, &verlet), 1e-13);
     ck_assert_uint_le(lobatto.counts.sweeps, 2 * 3 * STEPS);
 }
-END_TEST
 
 /* Its general form, by hand: p1 = p - h/2 H_q(q, p1),
    q1 = q + h/2 (H_p(q, p1) + H_p(q1, p1)), p2 = p1 - h/2 H_q(q1, p1). */
-START_TEST(lobatto2_is_the_generalized_leapfrog) {
+TEST(lobatto2_is_the_generalized_leapfrog) {
     const problem *b = &double_pendulum;
     const double h = 0.01, t[] = {0, 0};
     nevh_system *s = b->make();
@@ -136,11 +134,10 @@ START_TEST(lobatto2_is_the_generalized_leapfrog) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* A descriptor of one's own: more stages than any that is listed, and fewer
    than the family has. */
-START_TEST(stages_of_ones_own) {
+TEST_EACH(stages_of_ones_own, 2) {
     nevh_integrator own = *nevh_gauss4;
     const nevh_kernel *kernels[] = {&nevh_gauss_kernel, &nevh_lobatto_kernel};
     own.kernel = kernels[_i];
@@ -156,9 +153,8 @@ START_TEST(stages_of_ones_own) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(implicit_euler_has_one_stage) {
+TEST(implicit_euler_has_one_stage) {
     nevh_integrator own = *nevh_implicit_euler;
     own.stages = 2;
     nevh_system *s = henon_heiles.make();
@@ -168,7 +164,6 @@ START_TEST(implicit_euler_has_one_stage) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 static double oscillator(double t, const double q[], const double p[],
                          const void *params) {
@@ -178,7 +173,7 @@ static double oscillator(double t, const double q[], const double p[],
 
 /* (q, p) at the end of the step is the solution of q - h p = q0, p + h q = p0:
    the energy is divided by 1 + h^2. */
-START_TEST(implicit_euler_is_the_end_of_the_step) {
+TEST(implicit_euler_is_the_end_of_the_step) {
     const double h = 0.3, q0 = 0.7, p0 = -0.4;
     nevh_options options = {.gradient_step = 0x1p-3};
     nevh_system *s = nevh_system_from(1, oscillator, NULL);
@@ -190,11 +185,10 @@ START_TEST(implicit_euler_is_the_end_of_the_step) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Motion without forces is exact: the weights of a step add up to h, but for
    the last bit where they are many. */
-START_TEST(free_motion) {
+TEST_EACH(free_motion, SCHEMES) {
     static const double mass[] = {1};
     static const double steps[] = {0.1, 0.3, 1 / 3., 0.7, 1e-3, 123.4};
     nevh_system *s = nevh_system_new(1);
@@ -216,10 +210,9 @@ START_TEST(free_motion) {
     }
     nevh_system_free(s);
 }
-END_TEST
 
 /* Newton's linear equations. */
-START_TEST(factors) {
+TEST(factors) {
     double matrix[] = {0, 1, 2, 1, 0, 3, 4, -3, 8};
     double singular[] = {1, 2, 3, 2, 4, 6, 1, 0, 1};
     double x[] = {1 * 2 + 2 * 5, 3 + 3 * 5, 4 * 3 - 3 * 2 + 8 * 5};
@@ -232,20 +225,4 @@ START_TEST(factors) {
     ck_assert_double_eq_tol(x[2], 5, 1e-14);
     ck_assert(!nevh__factor(3, singular, pivot));
     ck_assert(!nevh__factor(2, wrong, pivot));
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("implicit");
-    TCase *cases = tcase_create("implicit");
-    tcase_add_loop_test(cases, partitioned_form_is_the_scheme, 0, 3 * SCHEMES);
-    tcase_add_loop_test(cases, lobatto2_is_verlet, 0, 3);
-    tcase_add_test(cases, lobatto2_is_the_generalized_leapfrog);
-    tcase_add_loop_test(cases, stages_of_ones_own, 0, 2);
-    tcase_add_test(cases, implicit_euler_has_one_stage);
-    tcase_add_test(cases, implicit_euler_is_the_end_of_the_step);
-    tcase_add_loop_test(cases, free_motion, 0, SCHEMES);
-    tcase_add_test(cases, factors);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -28,7 +28,7 @@ static double moment(const double b[], int k) {
 
 /* Quadratures of order 12 for momenta and coordinates; the embedded one is of
    order 10, and of no higher. */
-START_TEST(quadratures) {
+TEST(quadratures) {
     const nevh_nystrom *t = table();
     for (int k = 0; k < 12; k++)
         ck_assert_double_eq_tol(moment(t->bp, k), 1. / (k + 1), 1e-15);
@@ -43,10 +43,9 @@ START_TEST(quadratures) {
     ck_assert_double_gt(fabs(moment(t->error_p, 10)), 1e-8);
     ck_assert_double_gt(fabs(moment(t->error_q, 9)), 1e-8);
 }
-END_TEST
 
 /* sum_j a_ij c_j^k = c_i^(k+2) / ((k+1)(k+2)), as far as the stages have it. */
-START_TEST(stages) {
+TEST(stages) {
     const nevh_nystrom *t = table();
     for (size_t i = 1; i < t->stages; i++) {
         const double *a = t->a + i * t->stages;
@@ -59,15 +58,13 @@ START_TEST(stages) {
     }
     ck_assert(t->c[0] == 0);
 }
-END_TEST
 
 /* bq = bp (1 - c), by which coordinates are of the order of momenta. */
-START_TEST(weights_agree) {
+TEST(weights_agree) {
     const nevh_nystrom *t = table();
     for (size_t i = 0; i < t->stages; i++)
         ck_assert_double_eq_tol(t->bq[i], t->bp[i] * (1 - t->c[i]), 1e-16);
 }
-END_TEST
 
 /* T = p0^2 + p0 p1 + 0.7 p1^2 + 0.3 p0 - 0.2 p1, of which no W is declared to
    be diagonal, and T_p(0) is not 0. */
@@ -204,18 +201,16 @@ static void assert_order(nevh_system *s, size_t few, size_t many) {
     nevh_system_free(s);
 }
 
-START_TEST(momenta_that_mix) {
+TEST(momenta_that_mix) {
     assert_order(make_coupled(), 8, 24);
 }
-END_TEST
 
-START_TEST(momenta_apart) {
+TEST(momenta_apart) {
     assert_order(make_single(), 5, 9);
 }
-END_TEST
 
 /* The same orbit where W is known and where T_p is asked for. */
-START_TEST(undeclared) {
+TEST(undeclared) {
     nevh_system *one = nevh_system_from(2, whole, NULL), *s = make_single();
     state a = travel(one, nevh_dprkn12, nevh_central8, 20, 0);
     state b = travel(s, nevh_dprkn12, nevh_exact, 20, 0);
@@ -223,11 +218,10 @@ START_TEST(undeclared) {
     nevh_system_free(one);
     nevh_system_free(s);
 }
-END_TEST
 
 /* What one function of everything rounds does not come from other lanes, nor
    from other steps. */
-START_TEST(undeclared_in_lanes) {
+TEST(undeclared_in_lanes) {
     enum { WIDTH = 3 };
     nevh_system *one = nevh_system_from(2, whole, NULL);
     for (int adaptive = 0; adaptive < 2; adaptive++) {
@@ -258,10 +252,9 @@ START_TEST(undeclared_in_lanes) {
     }
     nevh_system_free(one);
 }
-END_TEST
 
 /* Errors follow the tolerance, with fewer slopes than dop853 needs. */
-START_TEST(follows_the_tolerance) {
+TEST(follows_the_tolerance) {
     nevh_system *s = make_coupled();
     state exact = travel(s, nevh_gauss16, nevh_exact, 100, 0);
     for (double tolerance = 1e-5; tolerance > 1e-13; tolerance /= 100) {
@@ -277,7 +270,6 @@ START_TEST(follows_the_tolerance) {
     ck_assert_uint_le(3 * own, 2 * slopes);
     nevh_system_free(s);
 }
-END_TEST
 
 static double growing_mass(double t, const double q[], const double p[],
                            const double c[], const void *params) {
@@ -301,7 +293,7 @@ static void assert_refused(nevh_system *s, const nevh_options *o, int status,
 }
 
 /* That is no equation of second order; splittings can take it. */
-START_TEST(refuses_a_mass_that_grows) {
+TEST(refuses_a_mass_that_grows) {
     const nevh_options o = {.gradient = nevh_central4};
     nevh_term term = {.np = 2, .time = true, .value = growing_mass};
     assert_refused(make(term), &o, NEVH_ESTRUCT, "\"kinetic\"");
@@ -313,16 +305,14 @@ START_TEST(refuses_a_mass_that_grows) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(refuses_other_kinetic_energies) {
+TEST(refuses_other_kinetic_energies) {
     const nevh_options o = {.gradient = nevh_exact};
     assert_refused(relativistic.make(), &o, NEVH_ESTRUCT, "quadratic");
 }
-END_TEST
 
 /* Friction goes around steps of a given length. */
-START_TEST(refuses_friction_under_a_tolerance) {
+TEST(refuses_friction_under_a_tolerance) {
     nevh_options o = {.gradient = nevh_exact, .tolerance = 1e-6};
     nevh_system *s = make_single();
     nevh_system_add_friction(s, "air", (const double[]){0.1, 0.1});
@@ -335,25 +325,4 @@ START_TEST(refuses_friction_under_a_tolerance) {
     ck_assert_int_eq(nevh_stepper_order(m), 2);
     nevh_stepper_free(m);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("nystroem");
-    TCase *cases = tcase_create("coefficients");
-    tcase_add_test(cases, quadratures);
-    tcase_add_test(cases, stages);
-    tcase_add_test(cases, weights_agree);
-    suite_add_tcase(suite, cases);
-    cases = tcase_create("kinetic energies");
-    tcase_add_test(cases, momenta_that_mix);
-    tcase_add_test(cases, momenta_apart);
-    tcase_add_test(cases, undeclared);
-    tcase_add_test(cases, undeclared_in_lanes);
-    tcase_add_test(cases, follows_the_tolerance);
-    tcase_add_test(cases, refuses_a_mass_that_grows);
-    tcase_add_test(cases, refuses_other_kinetic_energies);
-    tcase_add_test(cases, refuses_friction_under_a_tolerance);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -23,7 +23,7 @@ static void assert_order(const problem *b, const nevh_integrator *scheme) {
                   nevh_integrator_name(scheme), b->name, order, slope);
 }
 
-START_TEST(order_of_scheme) {
+TEST_EACH(order_of_scheme, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     if (nevh_integrator_needs_tolerance(scheme))
         skip_test("its error falls with the tolerance: check_adaptive");
@@ -35,10 +35,9 @@ START_TEST(order_of_scheme) {
         }
     ck_assert_int_ge(measured, 2);
 }
-END_TEST
 
 /* Differences of order 8 do not cost the scheme its order. */
-START_TEST(order_from_h_alone) {
+TEST_EACH(order_from_h_alone, 4) {
     const nevh_integrator *schemes[] = {nevh_verlet, nevh_midpoint, nevh_gauss4,
                                         nevh_rk4};
     const nevh_integrator *scheme = schemes[_i];
@@ -47,11 +46,10 @@ START_TEST(order_from_h_alone) {
     ck_assert_msg(fabs(slope - order) <= 0.05 * order, "%s: measured %.3f",
                   nevh_integrator_name(scheme), slope);
 }
-END_TEST
 
 /* The reference of these tests, against states computed in quadruple
    precision by other means: H = p^2/2 - cos q from q = 2 to t = 100. */
-START_TEST(independent_reference) {
+TEST(independent_reference) {
     static const nevh_pendulum params = {1, 1, 1};
     nevh_system *s = nevh_pendulum_model->system(&params);
     nevh_options options = {.gradient = nevh_exact};
@@ -62,15 +60,4 @@ START_TEST(independent_reference) {
     ck_assert_double_eq_tol(p[0], 0.1796407425909401978724921, 1e-12);
     nevh_stepper_free(stepper);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("order");
-    TCase *cases = tcase_create("registry");
-    tcase_add_loop_test(cases, order_of_scheme, 0, scheme_count());
-    tcase_add_loop_test(cases, order_from_h_alone, 0, 4);
-    tcase_add_test(cases, independent_reference);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -53,7 +53,7 @@ static void assert_refused(const nevh_system *h, const nevh_system *s,
 }
 
 /* Each scheme either takes a transform or says why not. */
-START_TEST(schemes_take_it_or_refuse) {
+TEST_EACH(schemes_take_it_or_refuse, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     nevh_system *h = kepler.make(), *s = nevh_distance_power(2, 2, 1.5);
     if (nevh_integrator_own_time(scheme) || !nevh_integrator_needs(scheme)) {
@@ -77,7 +77,6 @@ START_TEST(schemes_take_it_or_refuse) {
     nevh_system_free(h);
     nevh_system_free(s);
 }
-END_TEST
 
 static double whole_kepler(double t, const double q[], const double p[],
                            const void *params) {
@@ -91,7 +90,7 @@ static double shaken_kepler(double t, const double q[], const double p[],
 }
 
 /* One function might read the time; whether it does, is found out. */
-START_TEST(whole_functions) {
+TEST(whole_functions) {
     nevh_system *h = nevh_system_from(2, whole_kepler, NULL);
     nevh_system *shaken = nevh_system_from(2, shaken_kepler, NULL);
     nevh_system *s = nevh_distance_power(2, 2, 1.5);
@@ -107,9 +106,8 @@ START_TEST(whole_functions) {
     nevh_system_free(shaken);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(refused_transforms) {
+TEST(refused_transforms) {
     nevh_system *h = kepler.make(), *driven = driven_pendulum.make();
     nevh_system *other = nevh_distance_power(3, 2, 1);
     nevh_system *small = nevh_distance_power(1, 1, 1);
@@ -135,7 +133,6 @@ START_TEST(refused_transforms) {
     nevh_system_free(broken);
     nevh_system_free(timed);
 }
-END_TEST
 
 /* A wrong gradient of s is noticed as one of H is. */
 static void wrong_gradient(size_t width, const double t[], const double q[],
@@ -146,7 +143,7 @@ static void wrong_gradient(size_t width, const double t[], const double q[],
         dq[i] = 1;
 }
 
-START_TEST(wrong_gradient_of_s) {
+TEST(wrong_gradient_of_s) {
     nevh_system *h = kepler.make(), *s = nevh_system_new(2);
     nevh_system_add(s, &(nevh_term){.effect = "s",
                                     .nq = 2,
@@ -156,7 +153,6 @@ START_TEST(wrong_gradient_of_s) {
     nevh_system_free(h);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Functions that are no s: at the start, or later. */
 static double no_good(double t, const double q[], const double p[],
@@ -199,7 +195,7 @@ static const bad bads[] = {{no_good, "positive", true},
 enum { BADS = sizeof bads / sizeof *bads };
 
 /* The state is the last good one, and the memory goes with it. */
-START_TEST(s_that_ends) {
+TEST_EACH(s_that_ends, 5 * BADS) {
     const nevh_integrator *schemes[] = {
         nevh_gauss4, nevh_rk4, nevh_adaptive_verlet, nevh_naive_adaptive_verlet,
         nevh_midpoint};
@@ -230,10 +226,9 @@ START_TEST(s_that_ends) {
     nevh_system_free(h);
     nevh_system_free(s);
 }
-END_TEST
 
 /* A change of s after planning is noticed, also by a copy made later. */
-START_TEST(stale_transforms) {
+TEST_EACH(stale_transforms, 2) {
     const nevh_integrator *schemes[] = {nevh_gauss4, nevh_adaptive_verlet};
     nevh_system *h = kepler.make(), *s = nevh_distance_power(2, 2, 1.5);
     nevh_stepper *m = under(h, s, schemes[_i]);
@@ -253,7 +248,6 @@ START_TEST(stale_transforms) {
     nevh_system_free(h);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Schemes of own time on Kepler's problem: under a transform, and by nature. */
 enum { RUNS = 8 };
@@ -299,7 +293,7 @@ static void assert_same(const nevh_stepper *a, const nevh_stepper *b,
 }
 
 /* In one piece, watched; in pieces, with a copy, and from a saved memory. */
-START_TEST(memory_can_be_kept) {
+TEST_EACH(memory_can_be_kept, RUNS) {
     nevh_system *h = kepler.make(), *s = run_s(_i);
     nevh_stepper *m[3];
     state z[3];
@@ -335,10 +329,9 @@ START_TEST(memory_can_be_kept) {
     nevh_system_free(h);
     nevh_system_free(s);
 }
-END_TEST
 
 /* After a jump, or a reset, H0 and s0 are those of the new start. */
-START_TEST(a_new_start) {
+TEST_EACH(a_new_start, RUNS) {
     nevh_system *h = kepler.make(), *s = run_s(_i);
     nevh_stepper *used = under(h, s, run_scheme(_i));
     nevh_stepper *fresh = under(h, s, run_scheme(_i));
@@ -362,11 +355,10 @@ START_TEST(a_new_start) {
     nevh_system_free(h);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Steps of 1e-3 that start at 1e6: compensated, so that the time is the sum of
    what the steps take. */
-START_TEST(time_adds_up) {
+TEST_EACH(time_adds_up, RUNS) {
     nevh_system *h = kepler.make(), *s = run_s(_i);
     nevh_stepper *near = under(h, s, run_scheme(_i));
     nevh_stepper *late = under(h, s, run_scheme(_i));
@@ -380,7 +372,6 @@ START_TEST(time_adds_up) {
     nevh_system_free(h);
     nevh_system_free(s);
 }
-END_TEST
 
 /* |f|^(-3/4) over the scales below; |f| as if it were no less than a tenth of
    that at the start. */
@@ -391,7 +382,7 @@ static double own_s(const state *z, double unit) {
 }
 
 /* Steps stay as long as s says, to a thousandth, wherever the orbit turns. */
-START_TEST(steps_follow_s) {
+TEST_EACH(steps_follow_s, 2) {
     static const double scale[] = {0.7, 0.1, 0.1, 1.6};
     nevh_system *h = kepler.make();
     nevh_system *s = _i ? nevh_distance_power(2, 2, 1.5) : NULL;
@@ -419,22 +410,4 @@ START_TEST(steps_follow_s) {
     nevh_stepper_free(m);
     nevh_system_free(h);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("own_time");
-    TCase *cases = tcase_create("own time");
-    tcase_add_loop_test(cases, schemes_take_it_or_refuse, 0, scheme_count());
-    tcase_add_test(cases, whole_functions);
-    tcase_add_test(cases, refused_transforms);
-    tcase_add_test(cases, wrong_gradient_of_s);
-    tcase_add_loop_test(cases, s_that_ends, 0, 5 * BADS);
-    tcase_add_loop_test(cases, stale_transforms, 0, 2);
-    tcase_add_loop_test(cases, memory_can_be_kept, 0, RUNS);
-    tcase_add_loop_test(cases, a_new_start, 0, RUNS);
-    tcase_add_loop_test(cases, time_adds_up, 0, RUNS);
-    tcase_add_loop_test(cases, steps_follow_s, 0, 2);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

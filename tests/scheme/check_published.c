@@ -44,18 +44,9 @@ static const struct {
     {&nevh_rkn14a, 6.29e-13},          {&nevh_kahan_li6, 1.525e-8},
 };
 
-START_TEST(oscillator) {
+TEST_EACH(oscillator, sizeof figures / sizeof *figures) {
     double found = largest_error(*figures[_i].scheme);
     ck_assert_msg(
         fabs(found / figures[_i].error - 1) < 1e-3, "%s: %.6e instead of %.4e",
         nevh_integrator_name(*figures[_i].scheme), found, figures[_i].error);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("published");
-    TCase *cases = tcase_create("oscillator");
-    tcase_add_loop_test(cases, oscillator, 0, sizeof figures / sizeof *figures);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

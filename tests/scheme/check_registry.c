@@ -4,7 +4,7 @@
 #include <nevh/extend.h>
 #include <string.h>
 
-START_TEST(scheme_is_described) {
+TEST_EACH(scheme_is_described, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     ck_assert_int_gt((int)strlen(nevh_integrator_name(scheme)), 0);
     ck_assert_int_gt((int)strlen(nevh_integrator_source(scheme)), 10);
@@ -16,9 +16,8 @@ START_TEST(scheme_is_described) {
         ck_assert(nevh_integrator_gradients(scheme) >= 1 ||
                   nevh_integrator_adaptive(scheme));
 }
-END_TEST
 
-START_TEST(scheme_is_found_by_its_names) {
+TEST_EACH(scheme_is_found_by_its_names, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     ck_assert_ptr_eq(nevh_integrator_named(nevh_integrator_name(scheme)),
                      scheme);
@@ -28,9 +27,8 @@ START_TEST(scheme_is_found_by_its_names) {
         ck_assert_ptr_eq(nevh_integrator_named(name + strspn(name, " ")),
                          scheme);
 }
-END_TEST
 
-START_TEST(unknown_names) {
+TEST(unknown_names) {
     const char *const names[] = {"", "verlot", "verle", "verlet2", ",", " "};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         ck_assert_ptr_null(nevh_integrator_named(names[i]));
@@ -41,9 +39,8 @@ START_TEST(unknown_names) {
     ck_assert_ptr_null(nevh_gradient_named(NULL));
     ck_assert_ptr_null(nevh_model_named(NULL));
 }
-END_TEST
 
-START_TEST(public_pointers_are_listed) {
+TEST(public_pointers_are_listed) {
     const nevh_integrator *const schemes[] = {nevh_symplectic_euler_a,
                                               nevh_symplectic_euler_b,
                                               nevh_verlet,
@@ -103,9 +100,8 @@ START_TEST(public_pointers_are_listed) {
     for (int i = 0; i < count; i++)
         ck_assert_ptr_eq(nevh_integrators()[i], schemes[i]);
 }
-END_TEST
 
-START_TEST(gradients_are_listed) {
+TEST(gradients_are_listed) {
     const nevh_gradient *const methods[] = {nevh_central2,     nevh_central4,
                                             nevh_central6,     nevh_central8,
                                             nevh_complex_step, nevh_exact};
@@ -120,37 +116,20 @@ START_TEST(gradients_are_listed) {
     }
     ck_assert_ptr_null(nevh_gradients()[6]);
 }
-END_TEST
 
-START_TEST(claims_have_names) {
+TEST(claims_have_names) {
     ck_assert_str_eq(nevh_claim_name(NEVH_NO), "no");
     ck_assert_str_eq(nevh_claim_name(NEVH_YES), "yes");
     ck_assert_str_eq(nevh_claim_name(NEVH_UNPROVEN), "unproven");
     ck_assert_str_eq(nevh_claim_name(NEVH_EXTENDED), "extended");
     ck_assert_str_eq(nevh_claim_name((nevh_claim)9), "unknown");
 }
-END_TEST
 
-START_TEST(statuses_have_texts) {
+TEST(statuses_have_texts) {
     ck_assert_str_eq(nevh_status_text(NEVH_OK), "no error");
     ck_assert_str_eq(nevh_status_text(-7), "unknown status");
 #define DIFFERS(name, number, text)                                            \
     ck_assert_str_eq(nevh_status_text(number), text);
     NEVH_STATUS_LIST(DIFFERS)
 #undef DIFFERS
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("registry");
-    TCase *cases = tcase_create("registry");
-    tcase_add_loop_test(cases, scheme_is_described, 0, scheme_count());
-    tcase_add_loop_test(cases, scheme_is_found_by_its_names, 0, scheme_count());
-    tcase_add_test(cases, unknown_names);
-    tcase_add_test(cases, public_pointers_are_listed);
-    tcase_add_test(cases, gradients_are_listed);
-    tcase_add_test(cases, claims_have_names);
-    tcase_add_test(cases, statuses_have_texts);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

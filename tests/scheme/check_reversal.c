@@ -24,7 +24,7 @@ static double defect(const problem *b, const nevh_integrator *scheme,
 
 /* Rounding grows with the root of the steps, and on an orbit with shear with
    another factor; a thousandth of what is no return at all. */
-START_TEST(symmetric_schemes_return) {
+TEST_EACH(symmetric_schemes_return, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     if (nevh_integrator_symmetric(scheme) != NEVH_YES &&
         nevh_integrator_symmetric(scheme) != NEVH_EXTENDED)
@@ -38,11 +38,10 @@ START_TEST(symmetric_schemes_return) {
                       (*b)->name, found);
     }
 }
-END_TEST
 
 /* Those that are not symmetric must be caught, at a step large enough for
    their truncation to be seen. */
-START_TEST(others_do_not_return) {
+TEST_EACH(others_do_not_return, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     if (nevh_integrator_symmetric(scheme) != NEVH_NO ||
         nevh_integrator_needs_tolerance(scheme))
@@ -53,24 +52,12 @@ START_TEST(others_do_not_return) {
     ck_assert_msg(found > 1e-9, "%s: %.2e", nevh_integrator_name(scheme),
                   found);
 }
-END_TEST
 
 /* A fixed difference step keeps the symmetry, however wrong the gradient. */
-START_TEST(differences_return) {
+TEST(differences_return) {
     const nevh_gradient *const *g = nevh_gradients();
     for (; nevh_gradient_order(*g) > 0; g++) {
         double found = defect(&henon_heiles, nevh_verlet, *g, 0.05);
         ck_assert_msg(found < 1e-10, "%s: %.2e", nevh_gradient_name(*g), found);
     }
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("reversal");
-    TCase *cases = tcase_create("registry");
-    tcase_add_loop_test(cases, symmetric_schemes_return, 0, scheme_count());
-    tcase_add_loop_test(cases, others_do_not_return, 0, scheme_count());
-    tcase_add_test(cases, differences_return);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -117,7 +117,7 @@ static bool needs_quadratic(const nevh_integrator *scheme) {
 }
 
 /* No less than what is claimed, and no more. */
-START_TEST(order_conditions) {
+TEST_EACH(order_conditions, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     if (!table_of(_i))
         skip_test("not a splitting");
@@ -127,11 +127,10 @@ START_TEST(order_conditions) {
     ck_assert_msg(found == order, "%s: order %d, found %d",
                   nevh_integrator_name(scheme), order, found);
 }
-END_TEST
 
 /* What falls to a lower order where T is not quadratic, or where kicks and
    drifts are exchanged, must not be taken for what does not. */
-START_TEST(needs_of_the_conditions) {
+TEST_EACH(needs_of_the_conditions, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     if (!table_of(_i))
         skip_test("not a splitting");
@@ -144,10 +143,9 @@ START_TEST(needs_of_the_conditions) {
     ck_assert_int_eq(order_of(&x, false, order), least);
     ck_assert_int_eq(order_of(&x, needs_quadratic(scheme), order), least);
 }
-END_TEST
 
 /* Every number in every table matters. */
-START_TEST(wrong_weights_are_noticed) {
+TEST_EACH(wrong_weights_are_noticed, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     const nevh_splitting *table = table_of(_i);
     if (!table || table->count == 0)
@@ -166,7 +164,6 @@ START_TEST(wrong_weights_are_noticed) {
                       nevh_integrator_name(scheme), k);
     }
 }
-END_TEST
 
 static void assert_weights(const nevh_splitting *table, size_t count,
                            const double weights[]) {
@@ -176,7 +173,7 @@ static void assert_weights(const nevh_splitting *table, size_t count,
         ck_assert_double_eq(x.weights[i], weights[i]);
 }
 
-START_TEST(patterns) {
+TEST(patterns) {
     static const long double given[] = {0.125L, 0.5L};
     const nevh_splitting tables[] = {{NEVH_KICK, NEVH_LISTED, 0, NULL},
                                      {NEVH_KICK, NEVH_PALINDROME, 0, NULL},
@@ -194,10 +191,9 @@ START_TEST(patterns) {
         &tables[5], 7,
         (double[]){0.0625, 0.125, 0.4375, 0.75, 0.4375, 0.125, 0.0625});
 }
-END_TEST
 
 /* What papers give besides, and the tables leave out. */
-START_TEST(weights_that_follow) {
+TEST_EACH(weights_that_follow, 13) {
     static const struct {
         const char *name;
         size_t operation;
@@ -220,7 +216,6 @@ START_TEST(weights_that_follow) {
     ck_assert_double_eq_tol(x.weights[known[_i].operation], known[_i].weight,
                             4 * DBL_EPSILON);
 }
-END_TEST
 
 static double pendulum(double t, const double q[], const double p[],
                        const void *params) {
@@ -230,7 +225,7 @@ static double pendulum(double t, const double q[], const double p[],
 
 /* Friction between two steps: the next one is what it is with nothing kept of
    the last.  Only a dH/dq that is known not to read p is kept and used. */
-START_TEST(friction_between_steps) {
+TEST_EACH(friction_between_steps, 5) {
     const nevh_integrator *schemes[] = {nevh_verlet, nevh_blanes_moan6,
                                         nevh_verlet, nevh_pefrl, nevh_ruth3};
     const double factor[] = {0.75}, h = 0.125;
@@ -258,21 +253,4 @@ START_TEST(friction_between_steps) {
     nevh_stepper_free(damped);
     nevh_stepper_free(fresh);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("splitting");
-    TCase *cases = tcase_create("tables");
-    int count = scheme_count();
-    tcase_add_loop_test(cases, order_conditions, 0, count);
-    tcase_add_loop_test(cases, needs_of_the_conditions, 0, count);
-    tcase_add_loop_test(cases, wrong_weights_are_noticed, 0, count);
-    tcase_add_test(cases, patterns);
-    tcase_add_loop_test(cases, weights_that_follow, 0, 13);
-    suite_add_tcase(suite, cases);
-    cases = tcase_create("kernel");
-    tcase_add_loop_test(cases, friction_between_steps, 0, 5);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -40,7 +40,7 @@ static const struct {
                  {&nevh_euler, 4.47215e-3, 1e-7}};
 enum { PUBLISHED = sizeof published / sizeof *published };
 
-START_TEST(published_limits) {
+TEST_EACH(published_limits, PUBLISHED) {
     double limit = nevh_stability_limit(*published[_i].scheme);
     if (isinf(published[_i].limit))
         ck_assert_double_infinite(limit);
@@ -48,15 +48,13 @@ START_TEST(published_limits) {
         ck_assert_double_eq_tol(limit, published[_i].limit,
                                 published[_i].tolerance);
 }
-END_TEST
 
 /* Its two copies of the orbit leave each other. */
-START_TEST(limit_of_an_extended_space) {
+TEST(limit_of_an_extended_space) {
     double limit = nevh_stability_limit(nevh_tao4);
     ck_assert_double_gt(limit, 0.3);
     ck_assert_double_lt(limit, 1);
 }
-END_TEST
 
 static const double mass = 1.3, spring = 2.2;
 
@@ -89,7 +87,7 @@ static double largest_above(const nevh_integrator *scheme, double limit) {
 }
 
 /* On another oscillator: bounded right below every limit, not right above. */
-START_TEST(limits_are_limits) {
+TEST_EACH(limits_are_limits, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     double limit = nevh_stability_limit(scheme);
     if (nevh_integrator_symplectic(scheme) != NEVH_YES) {
@@ -103,14 +101,12 @@ START_TEST(limits_are_limits) {
     ck_assert_double_le(largest_after(scheme, limit * (1 - 1e-4)), 1e2);
     ck_assert_double_ge(largest_above(scheme, limit), 3);
 }
-END_TEST
 
-START_TEST(no_limit_is_told) {
+TEST(no_limit_is_told) {
     ck_assert_double_nan(nevh_stability_limit(NULL));
     ck_assert_double_nan(nevh_stability_limit(nevh_adaptive_verlet));
     ck_assert_double_nan(nevh_stability_limit(nevh_gsl_msadams));
 }
-END_TEST
 
 /* Steps of no sense, for which there is an answer all the same. */
 static int grow(nevh_work *w, double t, double h, double q[], double p[]) {
@@ -137,7 +133,7 @@ static int refuse(nevh_work *w, double t, double h, double q[], double p[]) {
     return NEVH_EDOM;
 }
 
-START_TEST(schemes_of_no_sense_have_an_answer) {
+TEST_EACH(schemes_of_no_sense_have_an_answer, 8) {
     static const struct {
         int (*step)(nevh_work *, double, double, double[], double[]);
         double limit;
@@ -153,7 +149,6 @@ START_TEST(schemes_of_no_sense_have_an_answer) {
     else
         ck_assert_double_le(limit, 1e-18);
 }
-END_TEST
 
 static void assert_rates(const nevh_system *s, const nevh_options *o,
                          const double q[], const double p[], double frequency,
@@ -178,7 +173,7 @@ static double pendulum(double t, const double q[], const double p[],
 }
 
 /* omega^2 = (1.7/1.3) cos(q), whatever the units of the momentum. */
-START_TEST(rates_of_a_pendulum) {
+TEST_EACH(rates_of_a_pendulum, 3) {
     static const double units[] = {1, 1e30, 1e-34};
     double unit = units[_i], c = 1.7 / 1.3;
     nevh_system *s = nevh_system_from(1, pendulum, &unit);
@@ -189,7 +184,6 @@ START_TEST(rates_of_a_pendulum) {
     assert_rates(s, &o, &up, &p, 0, sqrt(c * cos(0.1)), 1e-6);
     nevh_system_free(s);
 }
-END_TEST
 
 /* A charge in a uniform field turns with omega = B, its guiding centre does not
    move: momenta and coordinates mix. */
@@ -200,14 +194,13 @@ static double charge(double t, const double q[], const double p[],
     return (vx * vx + vy * vy) / 2;
 }
 
-START_TEST(rates_of_a_charge) {
+TEST(rates_of_a_charge) {
     nevh_system *s = nevh_system_from(2, charge, NULL);
     static const double q[] = {0.3, 0.2}, p[] = {1, -0.5};
     nevh_options o = {.q = q, .p = p};
     assert_rates(s, &o, q, p, 3, 0, 1e-4);
     nevh_system_free(s);
 }
-END_TEST
 
 static const double chain_springs = 2.5;
 enum { CHAIN = 60 };
@@ -225,7 +218,7 @@ static double own_kinetic(double t, const double q[], const double p[],
 }
 
 /* A ring: omega = 2 sqrt(k) |sin(pi j/N)|; dense up to 48 bodies. */
-START_TEST(rates_of_a_ring) {
+TEST_EACH(rates_of_a_ring, 2) {
     size_t n = _i ? CHAIN : 12, pairs[2 * CHAIN], own[CHAIN];
     double z[CHAIN] = {0.1, -0.2};
     for (size_t i = 0; i < n; i++) {
@@ -248,7 +241,6 @@ START_TEST(rates_of_a_ring) {
                  _i ? 1e-2 : 1e-3);
     nevh_system_free(s);
 }
-END_TEST
 
 static double three_bodies(double gravity, const double lengths[]) {
     double q[6], p[6], frequency, growth;
@@ -267,7 +259,7 @@ static double three_bodies(double gravity, const double lengths[]) {
 
 /* Rates go as the root of G.  Products of what the matrix is made of underflow,
    or overflow, above all where lengths are probed. */
-START_TEST(rates_of_any_size) {
+TEST_EACH(rates_of_any_size, 5) {
     static const double gravity[] = {1e-300, 1e-200, 1e-100, 1e100, 1e200};
     double lengths[12];
     for (size_t i = 0; i < 12; i++)
@@ -278,7 +270,6 @@ START_TEST(rates_of_any_size) {
                             1e-6);
     ck_assert_double_ge(three_bodies(any, NULL), 0);
 }
-END_TEST
 
 static double rooted(double t, const double q[], const double p[],
                      const void *params) {
@@ -286,7 +277,7 @@ static double rooted(double t, const double q[], const double p[],
     return p[0] * p[0] / 2 - sqrt(q[0]);
 }
 
-START_TEST(outside_there_are_no_rates) {
+TEST(outside_there_are_no_rates) {
     nevh_system *s = nevh_system_from(1, rooted, NULL);
     static const double q = 1, p = 0, outside = -1;
     nevh_options o = {.q = &q, .p = &p};
@@ -298,22 +289,4 @@ START_TEST(outside_there_are_no_rates) {
     ck_assert_int_eq(nevh_rates_status(NULL), NEVH_ENOMEM);
     nevh_rates_free(NULL);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *s = suite_create("stability");
-    TCase *cases = tcase_create("limits and rates");
-    tcase_add_loop_test(cases, published_limits, 0, PUBLISHED);
-    tcase_add_loop_test(cases, limits_are_limits, 0, scheme_count());
-    tcase_add_test(cases, limit_of_an_extended_space);
-    tcase_add_test(cases, no_limit_is_told);
-    tcase_add_loop_test(cases, schemes_of_no_sense_have_an_answer, 0, 8);
-    tcase_add_loop_test(cases, rates_of_a_pendulum, 0, 3);
-    tcase_add_test(cases, rates_of_a_charge);
-    tcase_add_loop_test(cases, rates_of_a_ring, 0, 2);
-    tcase_add_loop_test(cases, rates_of_any_size, 0, 5);
-    tcase_add_test(cases, outside_there_are_no_rates);
-    suite_add_tcase(s, cases);
-    return run_suite(s);
 }

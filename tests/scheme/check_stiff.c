@@ -119,7 +119,7 @@ enum { EXPECTED = sizeof expected / sizeof *expected, STEPS = 4000 };
 
 /* Rounding of r moves the force by 1e8 epsilon, and with it the energy of a
    step by some 1e-11: what high orders leave is chance below that. */
-START_TEST(steps_of_ten_fast_periods) {
+TEST_EACH(steps_of_ten_fast_periods, 2 * EXPECTED) {
     const expectation *x = &expected[_i / 2];
     outcome o = run(x->polar, *x->scheme, _i % 2 ? NULL : nevh_exact,
                     ten_periods, STEPS);
@@ -132,11 +132,10 @@ START_TEST(steps_of_ten_fast_periods) {
     ck_assert(o.energy.last_fifth < 2 * o.energy.first_fifth ||
               o.energy.max < 1e-11);
 }
-END_TEST
 
 /* The explicit scheme is stable for h omega < 2, and says so above, with
    numbers as long as there are any; of Lobatto's pairs, the same is true. */
-START_TEST(explicit_steps_end) {
+TEST_EACH(explicit_steps_end, 2) {
     const nevh_integrator *const schemes[] = {nevh_verlet, nevh_lobatto2};
     outcome o = run(false, schemes[_i], nevh_exact, 1.9 / RATIO, STEPS);
     ck_assert_int_eq(o.status, NEVH_OK);
@@ -152,7 +151,6 @@ START_TEST(explicit_steps_end) {
             ck_assert(isfinite(o.q[k]) && isfinite(o.p[k]));
     }
 }
-END_TEST
 
 /* A string of N beads between stiff springs, weakly tied to their places. */
 enum { N = 24 };
@@ -212,7 +210,7 @@ static nevh_system *make_chain(size_t n) {
     return s;
 }
 
-START_TEST(many_stiff_springs) {
+TEST(many_stiff_springs) {
     nevh_system *s = make_chain(N);
     double q[N], p[N], h = 3 * 2 * PI / sqrt(stiffness);
     for (size_t k = 0; k < N; k++) {
@@ -234,10 +232,9 @@ START_TEST(many_stiff_springs) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Beyond 1024 unknowns no matrices are made, and the verdict says so. */
-START_TEST(too_large_for_matrices) {
+TEST(too_large_for_matrices) {
     enum { MANY = 513 };
     static double q[MANY], p[MANY];
     nevh_system *s = make_chain(MANY);
@@ -252,7 +249,6 @@ START_TEST(too_large_for_matrices) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* A harmonic oscillator: 200 steps of h omega as given, then 200 of 0.1. */
 static nevh_counts counts_at(double h, nevh_counts *soft) {
@@ -274,7 +270,7 @@ static nevh_counts counts_at(double h, nevh_counts *soft) {
 /* The contraction decides: (h omega / 2)^2 a sweep for the midpoint rule.  At
    0.8, a hundred sweeps and more would go on each step.  Where that has passed,
    sweeps are tried again before long. */
-START_TEST(newton_where_it_is_cheaper) {
+TEST(newton_where_it_is_cheaper) {
     nevh_counts soft, c = counts_at(0.9, &soft);
     ck_assert_uint_eq(c.newtons + soft.newtons, 0);
     c = counts_at(1.79, &soft);
@@ -283,7 +279,6 @@ START_TEST(newton_where_it_is_cheaper) {
     ck_assert_uint_eq(c.rescues, 0);
     ck_assert_uint_le(soft.newtons, 50);
 }
-END_TEST
 
 /* Coupled springs with all kinds of terms but those that `mixed` adds. */
 static double momenta(double t, const double q[], const double p[],
@@ -325,7 +320,7 @@ enum { SCHEMES = sizeof schemes / sizeof *schemes, FEW = 5 };
 
 /* Where equations are linear, Newton's matrix is exact and one sweep solves
    them, whatever the units; two more find that out. */
-START_TEST(linear_stages_in_one_sweep) {
+TEST_EACH(linear_stages_in_one_sweep, 4 * SCHEMES) {
     static const double odd[] = {1, 64, 0.5, 4};
     nevh_system *s = make_linear(_i % 2);
     nevh_options options = {.gradient = nevh_central2,
@@ -343,11 +338,10 @@ START_TEST(linear_stages_in_one_sweep) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* How long Newton's iteration goes first is part of the memory: a run that is
    copied or resumed goes on bit for bit, with the same work. */
-START_TEST(memory_of_newton) {
+TEST_EACH(memory_of_newton, EXPECTED) {
     const nevh_integrator *scheme = *expected[_i].scheme;
     bool polar = expected[_i].polar;
     nevh_system *s = polar ? make_polar() : make_plane();
@@ -381,10 +375,9 @@ START_TEST(memory_of_newton) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Lanes are stiff each for itself. */
-START_TEST(stiff_lanes_are_alone) {
+TEST_EACH(stiff_lanes_are_alone, EXPECTED) {
     static const double scale[] = {1, 1, 1, 1};
     const nevh_integrator *scheme = *expected[_i].scheme;
     bool polar = expected[_i].polar;
@@ -418,20 +411,4 @@ START_TEST(stiff_lanes_are_alone) {
     }
     nevh_stepper_free(m);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("stiff");
-    TCase *cases = tcase_create("stiff");
-    tcase_add_loop_test(cases, steps_of_ten_fast_periods, 0, 2 * EXPECTED);
-    tcase_add_loop_test(cases, explicit_steps_end, 0, 2);
-    tcase_add_test(cases, many_stiff_springs);
-    tcase_add_test(cases, too_large_for_matrices);
-    tcase_add_test(cases, newton_where_it_is_cheaper);
-    tcase_add_loop_test(cases, linear_stages_in_one_sweep, 0, 4 * SCHEMES);
-    tcase_add_loop_test(cases, memory_of_newton, 0, EXPECTED);
-    tcase_add_loop_test(cases, stiff_lanes_are_alone, 0, EXPECTED);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

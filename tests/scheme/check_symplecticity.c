@@ -27,7 +27,7 @@ static double defect_with(const problem *b, const nevh_integrator *scheme,
     return found;
 }
 
-START_TEST(claim_of_scheme) {
+TEST_EACH(claim_of_scheme, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     if (nevh_integrator_own_time(scheme))
         skip_test("a first step of own time is no other step: check_drift");
@@ -48,12 +48,11 @@ START_TEST(claim_of_scheme) {
                           nevh_integrator_name(scheme), (*b)->name, found);
     }
 }
-END_TEST
 
 /* Differences of a coupled V are not curl-free: a coarse one leaves a defect
    that shrinks as its order says; kicks by a V of one coordinate stay exactly
    symplectic, however coarse. */
-START_TEST(level_of_the_gradient) {
+TEST(level_of_the_gradient) {
     double coarse2 =
         defect_with(&kepler, nevh_verlet, nevh_central2, 0.02, 0.1);
     double fine2 = defect_with(&kepler, nevh_verlet, nevh_central2, 0.01, 0.1);
@@ -66,10 +65,9 @@ START_TEST(level_of_the_gradient) {
         defect_with(&driven_pendulum, nevh_verlet, nevh_central2, 0.05, 0.1);
     ck_assert_double_lt(one, level);
 }
-END_TEST
 
 /* In units of scale the defect does not depend on the user's units. */
-START_TEST(units_do_not_matter) {
+TEST(units_do_not_matter) {
     static const nevh_pendulum params = {1e-3, 1, 9.8};
     const double q[] = {1}, p[] = {2e-3}, scale[] = {1, 1e-3};
     nevh_system *s = nevh_pendulum_model->system(&params);
@@ -84,9 +82,8 @@ START_TEST(units_do_not_matter) {
     nevh_stepper_free(stepper);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(refusals) {
+TEST(refusals) {
     nevh_system *s = double_pendulum.make();
     double found = 7;
     nevh_stepper *refused = nevh_stepper_new(s, nevh_verlet, NULL);
@@ -106,16 +103,4 @@ START_TEST(refusals) {
     nevh_stepper_free(refused);
     nevh_stepper_free(two);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("symplecticity");
-    TCase *cases = tcase_create("registry");
-    tcase_add_loop_test(cases, claim_of_scheme, 0, scheme_count());
-    tcase_add_test(cases, level_of_the_gradient);
-    tcase_add_test(cases, units_do_not_matter);
-    tcase_add_test(cases, refusals);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -114,7 +114,7 @@ static pair apart(const problem *b) {
     return z;
 }
 
-START_TEST(doubled_step_is_symplectic) {
+TEST_EACH(doubled_step_is_symplectic, 15) {
     const problem *b = problems[_i % 5];
     nevh_system *s = b->make();
     nevh_stepper *m = planned(s, b, *schemes[_i / 5], nevh_exact);
@@ -126,10 +126,9 @@ START_TEST(doubled_step_is_symplectic) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* The contrast: of (q, p) alone it is not, where H is not separable. */
-START_TEST(one_copy_is_not_symplectic) {
+TEST_EACH(one_copy_is_not_symplectic, 3) {
     nevh_system *s = double_pendulum.make();
     nevh_stepper *m = planned(s, &double_pendulum, *schemes[_i], nevh_exact);
     double found = 0;
@@ -141,7 +140,6 @@ START_TEST(one_copy_is_not_symplectic) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* How far the copies move apart on a regular orbit of the double pendulum. */
 static double distance_of_copies(const nevh_integrator *scheme, double binding,
@@ -163,7 +161,7 @@ static double distance_of_copies(const nevh_integrator *scheme, double binding,
     return most;
 }
 
-START_TEST(copies_stay_together) {
+TEST_EACH(copies_stay_together, 3) {
     static const double largest[] = {0.15, 0.05, 0.01};
     const nevh_integrator *scheme = *schemes[_i];
     double found = distance_of_copies(scheme, 0, 0.01, 100000);
@@ -172,7 +170,6 @@ START_TEST(copies_stay_together) {
     /* The contrast: next to no binding. */
     ck_assert_double_ge(distance_of_copies(scheme, DBL_MIN, 0.01, 100000), 1);
 }
-END_TEST
 
 /* Tao's problem in other units, of q, p and H: params. */
 static double tao(double t, const double q[], const double p[],
@@ -212,7 +209,7 @@ static double difference(const outcome *a, const outcome *b) {
 
 static const double ones[] = {1, 1, 1};
 
-START_TEST(units_do_not_matter) {
+TEST_EACH(units_do_not_matter, 3) {
     static const double given[] = {2.5, 1.5};
     static const double odd[] = {3.7e-21, 1.9e17, 0.37};
     static const double even[] = {0x1p-70, 0x1p33, 0x1p-9};
@@ -231,7 +228,6 @@ START_TEST(units_do_not_matter) {
     b = orbit_in((const double[]){0.3, 7, 1}, scheme, ones);
     ck_assert(!(difference(&a, &b) < 1e-4));
 }
-END_TEST
 
 static double nothing(double t, const double q[], const double p[],
                       const void *params) {
@@ -240,7 +236,7 @@ static double nothing(double t, const double q[], const double p[],
 }
 
 /* Without H a step is the binding's turn by 2 omega h. */
-START_TEST(binding_turns) {
+TEST_EACH(binding_turns, 3) {
     static const double scale[] = {2, 10}, omega = 3, r = 5;
     nevh_system *s = nevh_system_from(1, nothing, NULL);
     nevh_options o = {.scale = scale, .binding = omega};
@@ -260,7 +256,6 @@ START_TEST(binding_turns) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 static double oscillator(double t, const double q[], const double p[],
                          const void *params) {
@@ -270,7 +265,7 @@ static double oscillator(double t, const double q[], const double p[],
 
 /* r and omega of an oscillator are those of the books, to what they are rounded
    to, from anywhere. */
-START_TEST(binding_of_an_oscillator) {
+TEST_EACH(binding_of_an_oscillator, 4) {
     const double q = _i % 2 ? 0.3 : 0, p = _i / 2 ? 0.02 : 0;
     nevh_system *s = nevh_system_from(1, oscillator, NULL);
     nevh_stepper *m =
@@ -288,7 +283,6 @@ START_TEST(binding_of_an_oscillator) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* A charge in a field along z: H does not depend on y, which rests on what
    bends x. */
@@ -299,7 +293,7 @@ static double charge(double t, const double q[], const double p[],
     return (p[0] * p[0] + v * v) / 0.2;
 }
 
-START_TEST(binding_of_a_free_coordinate) {
+TEST_EACH(binding_of_a_free_coordinate, 3) {
     static const double q[] = {0.3, 7}, p[] = {5, 90};
     nevh_system *s = nevh_system_from(2, charge, NULL);
     nevh_stepper *m =
@@ -314,9 +308,8 @@ START_TEST(binding_of_a_free_coordinate) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(refused_bindings) {
+TEST_EACH(refused_bindings, 3) {
     static const double bindings[] = {-1, NAN, INFINITY};
     nevh_system *s = nevh_system_from(1, oscillator, NULL);
     nevh_options o = {.binding = bindings[_i]};
@@ -326,10 +319,9 @@ START_TEST(refused_bindings) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Sums of powers over the parts: 1, then 0 for odd powers below the order. */
-START_TEST(compositions) {
+TEST_EACH(compositions, 3) {
     const nevh_integrator *scheme = *schemes[_i];
     const nevh_splitting *c = scheme->table;
     size_t count = 2 * c->count + 1;
@@ -346,7 +338,6 @@ START_TEST(compositions) {
         ck_assert_double_eq_tol(sum, 0, 4e-15);
     }
 }
-END_TEST
 
 /* How far a run ends from where gauss12 does, on separable H. */
 static double error_of(const problem *b, const nevh_integrator *scheme,
@@ -366,7 +357,7 @@ static double error_of(const problem *b, const nevh_integrator *scheme,
     return sum;
 }
 
-START_TEST(agrees_with_gauss) {
+TEST_EACH(agrees_with_gauss, 3) {
     const nevh_integrator *scheme = *schemes[_i];
     const problem *b = &henon_heiles;
     double coarse = error_of(b, scheme, 0.05, 160);
@@ -376,11 +367,10 @@ START_TEST(agrees_with_gauss) {
                       coarse / fine < 1.25 * ratio,
                   "%s: %.2e, %.2e", nevh_integrator_name(scheme), coarse, fine);
 }
-END_TEST
 
 /* Tao's own problem, q = -3, p = 0, over 1e5 steps: energy within bounds that
    shrink as h^order. */
-START_TEST(energy_on_taos_problem) {
+TEST_EACH(energy_on_taos_problem, 3) {
     static const double most[][2] = {
         {4e-3, 1e-3}, {1.2e-4, 8e-6}, {3e-6, 6e-8}};
     static const double q0 = -3, p0 = 0;
@@ -401,10 +391,9 @@ START_TEST(energy_on_taos_problem) {
         nevh_system_free(s);
     }
 }
-END_TEST
 
 /* A lane goes on from the gradient it has kept, whatever others do. */
-START_TEST(neighbours_gradients_are_kept) {
+TEST_EACH(neighbours_gradients_are_kept, 3) {
     const problem *b = &henon_heiles;
     nevh_system *s = b->make();
     nevh_options o = {.gradient = nevh_exact, .binding = 5, .width = 2};
@@ -423,11 +412,10 @@ START_TEST(neighbours_gradients_are_kept) {
     nevh_stepper_free(jumpy);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Friction shortens p and y alike, and the gradient kept is no longer that of
    the state; q and x stay. */
-START_TEST(friction_damps_the_memory) {
+TEST_EACH(friction_damps_the_memory, 3) {
     const problem *b = &double_pendulum;
     static const double factor[] = {0.5, 0.25};
     nevh_system *s = b->make();
@@ -444,25 +432,4 @@ START_TEST(friction_damps_the_memory) {
     ck_assert(before[6] != 0 && before[12] == 1 && now[12] == 0);
     nevh_stepper_free(m);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("tao");
-    TCase *cases = tcase_create("tao");
-    tcase_add_loop_test(cases, doubled_step_is_symplectic, 0, 15);
-    tcase_add_loop_test(cases, one_copy_is_not_symplectic, 0, 3);
-    tcase_add_loop_test(cases, copies_stay_together, 0, 3);
-    tcase_add_loop_test(cases, units_do_not_matter, 0, 3);
-    tcase_add_loop_test(cases, binding_turns, 0, 3);
-    tcase_add_loop_test(cases, binding_of_an_oscillator, 0, 4);
-    tcase_add_loop_test(cases, binding_of_a_free_coordinate, 0, 3);
-    tcase_add_loop_test(cases, refused_bindings, 0, 3);
-    tcase_add_loop_test(cases, compositions, 0, 3);
-    tcase_add_loop_test(cases, agrees_with_gauss, 0, 3);
-    tcase_add_loop_test(cases, energy_on_taos_problem, 0, 3);
-    tcase_add_loop_test(cases, neighbours_gradients_are_kept, 0, 3);
-    tcase_add_loop_test(cases, friction_damps_the_memory, 0, 3);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

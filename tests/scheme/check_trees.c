@@ -152,16 +152,15 @@ static const nevh_integrator *scheme_at(int i) {
 enum { SCHEMES = 8 };
 
 /* None is forgotten above. */
-START_TEST(all_tables_are_checked) {
+TEST(all_tables_are_checked) {
     int count = 0;
     for (int i = 0; i < scheme_count(); i++)
         count += nevh_integrators()[i]->kernel == &nevh_runge_kutta_kernel;
     ck_assert_int_eq(count, SCHEMES);
 }
-END_TEST
 
 /* Sloane's A000081. */
-START_TEST(number_of_trees) {
+TEST(number_of_trees) {
     static const int known[] = {1, 1, 2, 4, 9, 20, 48, 115, 286};
     plant();
     for (int order = 1; order <= MOST_ORDER; order++)
@@ -175,9 +174,8 @@ START_TEST(number_of_trees) {
     }
     ck_assert(bushy == 1 && tall == 40320);
 }
-END_TEST
 
-START_TEST(conditions_hold) {
+TEST_EACH(conditions_hold, SCHEMES) {
     const nevh_integrator *scheme = scheme_at(_i);
     plant();
     tableau x = tableau_of(scheme->table);
@@ -188,11 +186,10 @@ START_TEST(conditions_hold) {
     int next = scheme->order + 1;
     ck_assert(defect(&x, x.b, 1, next, next) > seen);
 }
-END_TEST
 
 /* An estimate is blind up to its method's order and no further, and falls with
    the power that is said. */
-START_TEST(estimates_have_their_orders) {
+TEST_EACH(estimates_have_their_orders, SCHEMES) {
     const nevh_integrator *scheme = scheme_at(_i);
     const nevh_butcher *table = scheme->table;
     plant();
@@ -211,7 +208,6 @@ START_TEST(estimates_have_their_orders) {
     }
     ck_assert_int_eq(table->error_power, power);
 }
-END_TEST
 
 /* Where the entries are that are not 0. */
 static int list_entries(tableau *x, long double *entries[]) {
@@ -229,7 +225,7 @@ static int list_entries(tableau *x, long double *entries[]) {
 }
 
 /* Every entry counts: a change by a millionth is noticed. */
-START_TEST(every_entry_counts) {
+TEST_EACH(every_entry_counts, SCHEMES) {
     const nevh_integrator *scheme = scheme_at(_i);
     plant();
     tableau x = tableau_of(scheme->table);
@@ -245,10 +241,9 @@ START_TEST(every_entry_counts) {
     }
     ck_assert(holds(scheme, &x));
 }
-END_TEST
 
 /* Of the a_ij the trees notice it without the row sums. */
-START_TEST(trees_see_the_matrix) {
+TEST_EACH(trees_see_the_matrix, SCHEMES) {
     const nevh_integrator *scheme = scheme_at(_i);
     plant();
     tableau x = tableau_of(scheme->table);
@@ -262,18 +257,4 @@ START_TEST(trees_see_the_matrix) {
                               "%s: a[%zu][%zu]", scheme->name, i, j);
             x.a[i][j] = before;
         }
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("trees");
-    TCase *cases = tcase_create("trees");
-    tcase_add_test(cases, all_tables_are_checked);
-    tcase_add_test(cases, number_of_trees);
-    tcase_add_loop_test(cases, conditions_hold, 0, SCHEMES);
-    tcase_add_loop_test(cases, estimates_have_their_orders, 0, SCHEMES);
-    tcase_add_loop_test(cases, every_entry_counts, 0, SCHEMES);
-    tcase_add_loop_test(cases, trees_see_the_matrix, 0, SCHEMES);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -25,7 +25,9 @@ static inline int by_name(const void *a, const void *b) {
     return strcmp(a, b);
 }
 
-static inline void find_shipped(void) {
+/* How many there are. */
+static inline int find_shipped(void) {
+    n_shipped = 0;
     DIR *folder = opendir(shipped_folder());
     for (struct dirent *entry; folder && (entry = readdir(folder));) {
         const char *end = strstr(entry->d_name, ".nevh");
@@ -35,6 +37,7 @@ static inline void find_shipped(void) {
     if (folder)
         closedir(folder);
     qsort(shipped, n_shipped, sizeof *shipped, by_name);
+    return (int)n_shipped;
 }
 
 static inline nevh_scene *read_shipped(const char *file) {

@@ -481,6 +481,13 @@ int scheme_count(void) {
     return count;
 }
 
+int model_count(void) {
+    int count = 0;
+    while (nevh_models()[count])
+        count++;
+    return count;
+}
+
 /* The line of the sources at which a test was seen last, or "". */
 static void last_line(TestResult *result, char text[256]) {
     FILE *file = tr_lfile(result) ? fopen(tr_lfile(result), "r") : NULL;
@@ -493,21 +500,44 @@ static void last_line(TestResult *result, char text[256]) {
 }
 
 /* Check passes a test that returns without an assertion.  Such a test was seen
-   last at its START_TEST, and one that skips at its skip_test. */
+   last at its TEST, and one that skips at its skip_test. */
 static bool asserted(TestResult *result, int *skips) {
     char text[256];
     if (tr_rtype(result) != CK_PASS)
         return true;
     last_line(result, text);
     *skips += strstr(text, "skip_test(") != NULL;
-    if (strncmp(text, "START_TEST(", 11) != 0)
+    if (strncmp(text, "TEST", 4) != 0)
         return true;
     printf("%s:%d: a test asserted nothing: %s", tr_lfile(result),
            tr_lno(result), text);
     return false;
 }
 
-int run_suite(Suite *suite) {
+static test_entry *registered;
+
+void register_test(test_entry *entry) {
+    test_entry **at = &registered;
+    while (*at && (*at)->line < entry->line)
+        at = &(*at)->next;
+    entry->next = *at;
+    *at = entry;
+}
+
+static void add_test(Suite *suite, const test_entry *entry) {
+    TCase *cases = tcase_create((*entry->test)->name);
+    if (entry->tag)
+        tcase_set_tags(cases, entry->tag);
+    tcase_add_loop_test(cases, *entry->test, entry->from, entry->until());
+    suite_add_tcase(suite, cases);
+}
+
+int main(int argc, char **argv) {
+    (void)argc;
+    const char *slash = strrchr(argv[0], '/');
+    Suite *suite = suite_create(slash ? slash + 1 : argv[0]);
+    for (const test_entry *entry = registered; entry; entry = entry->next)
+        add_test(suite, entry);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);
     int failed = srunner_ntests_failed(runner), skips = 0;

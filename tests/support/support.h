@@ -76,16 +76,48 @@ nevh_energy_report energy_of(const problem *, const nevh_integrator *,
 double time_on(const nevh_stepper *, const nevh_integrator *, double t);
 /* The slope of a straight line through points. */
 double slope_through(int count, const double x[], const double y[]);
-/* Number of registered schemes. */
+/* Numbers of registered schemes, and of models. */
 int scheme_count(void);
+int model_count(void);
 /* Ends a test that does not apply to its case. */
 #define skip_test(why)                                                         \
     do {                                                                       \
         ck_assert_msg(true, why);                                              \
         return;                                                                \
     } while (0)
-/* Runs a suite and returns main's result.  A test that neither asserts nor
-   skips is a failure; skips are counted and printed. */
-int run_suite(Suite *);
+
+/* A test registers itself where it stands: TEST(name) { ... }.  support.c has
+   main, which runs all tests of a program, in the order of their lines.  A test
+   that neither asserts nor skips is a failure; skips are counted and printed.
+   TEST_EACH runs it with _i from 0 to count - 1, TEST_RANGE from `from` to
+   until - 1, both evaluated when main begins; TEST_TAGGED gives a tag, such as
+   "slow", which make check leaves out.  TEST_ALSO adds further runs. */
+typedef struct test_entry {
+    const TTest *const *test;
+    const char *tag;
+    int line, from, (*until)(void);
+    struct test_entry *next;
+} test_entry;
+void register_test(test_entry *);
+#define TEST(name)                    TEST_TAGGED(name, NULL, 0, 1)
+#define TEST_EACH(name, count)        TEST_TAGGED(name, NULL, 0, count)
+#define TEST_RANGE(name, from, until) TEST_TAGGED(name, NULL, from, until)
+#define TEST_TAGGED(name, tag, from, until)                                    \
+    static const TTest *name;                                                  \
+    TEST_ENTRY(name, __LINE__, tag, from, until)                               \
+    START_TEST(name)
+#define TEST_ALSO(name, tag, from, until)                                      \
+    TEST_ENTRY(name, __LINE__, tag, from, until)
+#define TEST_ENTRY(name, line, tag, from, until)                               \
+    TEST_ENTRY_AT(name, line, tag, from, until)
+#define TEST_ENTRY_AT(name, line, tag, from, until)                            \
+    static int name##_until_##line(void) {                                     \
+        return (int)(until);                                                   \
+    }                                                                          \
+    __attribute__((constructor)) static void name##_register_##line(void) {    \
+        static test_entry entry = {                                            \
+            &name, tag, line, from, name##_until_##line, NULL};                \
+        register_test(&entry);                                                 \
+    }
 
 #endif

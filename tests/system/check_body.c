@@ -168,7 +168,7 @@ static double complex_at(const function *f, double x, double dx, double y,
 }
 
 /* libmvec is within 4 ulp, also of itself in other instruction sets. */
-START_TEST(block_is_value) {
+TEST_EACH(block_is_value, FUNCTIONS) {
     const function *f = &functions[_i];
     double x[WIDTH], y[WIDTH], h[WIDTH];
     for (int repeat = 0; repeat < 50; repeat++) {
@@ -182,10 +182,9 @@ START_TEST(block_is_value) {
         }
     }
 }
-END_TEST
 
 /* Alone among numbers that take every other path, to the last bit. */
-START_TEST(lanes_are_independent) {
+TEST_EACH(lanes_are_independent, FUNCTIONS) {
     static const double awkward[] = {0,     -0., INFINITY, NAN,
                                      1e300, -7., -1e22,    5e-324};
     const function *f = &functions[_i];
@@ -206,7 +205,6 @@ START_TEST(lanes_are_independent) {
                       some_x[lane], some_y[lane]);
     }
 }
-END_TEST
 
 static void assert_slope(const function *f, slope_fn exact, double x, double dx,
                          double y, double dy) {
@@ -219,7 +217,7 @@ static void assert_slope(const function *f, slope_fn exact, double x, double dx,
                             2 * DBL_EPSILON * fabs(value));
 }
 
-START_TEST(complex_has_the_slope) {
+TEST_EACH(complex_has_the_slope, FUNCTIONS) {
     const function *f = &functions[_i];
     for (int i = 0; i < 1000; i++) {
         double x, y;
@@ -229,7 +227,6 @@ START_TEST(complex_has_the_slope) {
             assert_slope(f, f->dy, x, 0, y, 1);
     }
 }
-END_TEST
 
 /* Where functions end, turn, or have no derivative.  The slope is in the
    direction (dx, dy). */
@@ -316,7 +313,7 @@ static bool agree(double a, double b) {
     return fabs(a - b) <= 4 * DBL_EPSILON * fabs(b);
 }
 
-START_TEST(special_points) {
+TEST_EACH(special_points, POINTS) {
     const function *f = named(points[_i].function);
     double x = points[_i].x, y = points[_i].y, value = points[_i].value;
     double many_x[8], many_y[8], h[8], slope;
@@ -331,7 +328,6 @@ START_TEST(special_points) {
                   "%s(%g, %g) = %g, block %g, complex %g slope %g", f->name, x,
                   y, value_at(f, x, y), h[0], real, slope);
 }
-END_TEST
 
 /* All that a body can read, a loop, and a whole term in a system. */
 typedef struct {
@@ -359,7 +355,7 @@ static double plain(double t, const double q[], const double p[],
 static const parameters mine = {{0.7, -1.3, 2.1}, 0.2};
 static const double constants[] = {1.1, 2.3, 0.9};
 
-START_TEST(forms_of_everything) {
+TEST(forms_of_everything) {
     double t[8], q[24], p[24], c[24], h[8];
     for (int i = 0; i < 24; i++) {
         t[i % 8] = uniform(0, 9);
@@ -378,7 +374,6 @@ START_TEST(forms_of_everything) {
         ck_assert_double_eq_tol(value, right, 2e-15);
     }
 }
-END_TEST
 
 /* Without a function from libm all is rounded alike; a product that cancels
    would show whether it was joined with a sum. */
@@ -388,7 +383,7 @@ NEVH_BODY(arithmetic, void, {
     return nevh_min(area, nevh_pow(nevh_q(0), 2) - 0.1) / size;
 })
 
-START_TEST(arithmetic_is_the_same_to_the_bit) {
+TEST(arithmetic_is_the_same_to_the_bit) {
     double q[2 * WIDTH], p[2 * WIDTH], h[WIDTH];
     for (int i = 0; i < 2 * WIDTH; i++) {
         q[i] = uniform(-1, 1);
@@ -403,7 +398,6 @@ START_TEST(arithmetic_is_the_same_to_the_bit) {
                       "lane %d is %.17g, alone %.17g", i, h[i], value);
     }
 }
-END_TEST
 
 static double largest_difference(const double a[], const double b[], int n) {
     double most = 0;
@@ -412,7 +406,7 @@ static double largest_difference(const double a[], const double b[], int n) {
     return most;
 }
 
-START_TEST(everything_in_a_system) {
+TEST(everything_in_a_system) {
     nevh_term term = {.effect = "all",
                       .nq = 3,
                       .np = 3,
@@ -435,7 +429,6 @@ START_TEST(everything_in_a_system) {
     ck_assert_double_lt(largest_difference(g[0], g[1], 6), 1e-11);
     nevh_system_free(sys);
 }
-END_TEST
 
 /* Gradients of one effect of a model by complex step and by formula. */
 static void compare_gradients(nevh_system *sys, const nevh_model *model) {
@@ -460,7 +453,7 @@ static void compare_gradients(nevh_system *sys, const nevh_model *model) {
     ck_assert_double_le(largest_difference(g[0], g[1], 2 * SIZE), 1e-14 * size);
 }
 
-START_TEST(complex_step_of_models) {
+TEST_EACH(complex_step_of_models, model_count()) {
     const nevh_model *model = nevh_models()[_i];
     nevh_system *sys = model->system(model->defaults);
     size_t effects = nevh_system_effect_count(sys);
@@ -470,29 +463,4 @@ START_TEST(complex_step_of_models) {
         compare_gradients(sys, model);
     }
     nevh_system_free(sys);
-}
-END_TEST
-
-static int model_count(void) {
-    int count = 0;
-    while (nevh_models()[count])
-        count++;
-    return count;
-}
-
-int main(void) {
-    Suite *suite = suite_create("body");
-    TCase *cases = tcase_create("functions");
-    tcase_add_loop_test(cases, block_is_value, 0, FUNCTIONS);
-    tcase_add_loop_test(cases, lanes_are_independent, 0, FUNCTIONS);
-    tcase_add_loop_test(cases, complex_has_the_slope, 0, FUNCTIONS);
-    tcase_add_loop_test(cases, special_points, 0, POINTS);
-    suite_add_tcase(suite, cases);
-    cases = tcase_create("terms");
-    tcase_add_test(cases, forms_of_everything);
-    tcase_add_test(cases, arithmetic_is_the_same_to_the_bit);
-    tcase_add_test(cases, everything_in_a_system);
-    tcase_add_loop_test(cases, complex_step_of_models, 0, model_count());
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

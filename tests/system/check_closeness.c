@@ -83,7 +83,7 @@ static void assert_close(const char *what, double found, double expected,
 }
 
 /* From 1e-20 to 1e20. */
-START_TEST(values_and_gradients) {
+TEST_EACH(values_and_gradients, CHOICES) {
     const choice *a = &choices[_i];
     nevh_system *s = make(a);
     for (double size = 1e-20; size < 1e21; size *= 1e5) {
@@ -106,10 +106,9 @@ START_TEST(values_and_gradients) {
     }
     nevh_system_free(s);
 }
-END_TEST
 
 /* Which is not how the formula above was found. */
-START_TEST(gradients_by_differences) {
+TEST_EACH(gradients_by_differences, CHOICES) {
     const choice *a = &choices[_i];
     nevh_system *s = make(a);
     double q[MOST], p[MOST] = {0}, exact[MOST], other[MOST], t = 0, most = 0;
@@ -127,10 +126,9 @@ START_TEST(gradients_by_differences) {
         ck_assert_double_eq_tol(exact[k], other[k], 1e-10 * most);
     nevh_system_free(s);
 }
-END_TEST
 
 /* A lane is what it is alone. */
-START_TEST(lanes) {
+TEST_EACH(lanes, CHOICES) {
     const choice *a = &choices[_i];
     nevh_system *s = make(a);
     double q[MOST * WIDTH], p[MOST * WIDTH] = {0}, dq[MOST * WIDTH], h[WIDTH];
@@ -155,10 +153,9 @@ START_TEST(lanes) {
     nevh_field_free(f);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Two bodies: a power of their distance, whatever their places. */
-START_TEST(two_bodies) {
+TEST(two_bodies) {
     nevh_system *s = nevh_closeness_power(2, 3, 1.5);
     double q[] = {1, -2, 0.5, 4, 2, 0.5}, p[6] = {0}, t = 0, value;
     nevh_field *f = field_of(s, &(nevh_options){.q = q});
@@ -167,11 +164,10 @@ START_TEST(two_bodies) {
     nevh_field_free(f);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Neither is smooth at q = 0, where a plan without a state looks around, over
    lengths that H has given. */
-START_TEST(planned_without_a_state) {
+TEST_EACH(planned_without_a_state, CHOICES) {
     double scale[2 * MOST];
     nevh_system *s = make(&choices[_i]);
     for (size_t k = 0; k < 2 * MOST; k++)
@@ -180,9 +176,8 @@ START_TEST(planned_without_a_state) {
     nevh_field_free(field_of(s, &o));
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(refusals) {
+TEST(refusals) {
     nevh_system *refused[] = {nevh_distance_power(3, 0, 1),
                               nevh_distance_power(3, 4, 1),
                               nevh_distance_power(0, 0, 1),
@@ -197,18 +192,4 @@ START_TEST(refusals) {
         ck_assert(strlen(nevh_system_message(refused[i])) > 20);
         nevh_system_free(refused[i]);
     }
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("closeness");
-    TCase *cases = tcase_create("closeness");
-    tcase_add_loop_test(cases, values_and_gradients, 0, CHOICES);
-    tcase_add_loop_test(cases, gradients_by_differences, 0, CHOICES);
-    tcase_add_loop_test(cases, lanes, 0, CHOICES);
-    tcase_add_test(cases, two_bodies);
-    tcase_add_loop_test(cases, planned_without_a_state, 0, CHOICES);
-    tcase_add_test(cases, refusals);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -5,7 +5,7 @@
 
 /* What a system says. */
 
-START_TEST(rates_add_up) {
+TEST(rates_add_up) {
     const double a[] = {0.5, 0.25}, b[] = {1, -0.125};
     double sum[2];
     nevh_system *s = henon_heiles.make();
@@ -28,10 +28,9 @@ START_TEST(rates_add_up) {
     ck_assert(!nevh_system_effect_on(s, "water"));
     nevh_system_free(s);
 }
-END_TEST
 
 /* Terms and friction of one name are one effect. */
-START_TEST(an_effect_of_both_kinds) {
+TEST(an_effect_of_both_kinds) {
     double values[4], sum[2];
     nevh_system *s = henon_heiles.make();
     nevh_system_add_friction(s, "potential", unequal);
@@ -48,7 +47,6 @@ START_TEST(an_effect_of_both_kinds) {
     ck_assert_uint_eq(nevh_system_traits(s), NEVH_SEPARABLE | NEVH_AUTONOMOUS);
     nevh_system_free(s);
 }
-END_TEST
 
 static void assert_bad(const char *effect, const double rates[],
                        const char *word) {
@@ -66,7 +64,7 @@ static void assert_bad(const char *effect, const double rates[],
     nevh_system_free(s);
 }
 
-START_TEST(bad_rates) {
+TEST(bad_rates) {
     assert_bad("drag", (double[]){0.1, NAN}, "nan");
     assert_bad("drag", (double[]){INFINITY, 0.1}, "momentum 0");
     assert_bad("drag", (double[]){0, -INFINITY}, "-inf");
@@ -83,10 +81,9 @@ START_TEST(bad_rates) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Adding or switching it makes steppers stale; copies of these stay so. */
-START_TEST(changes_are_noticed) {
+TEST(changes_are_noticed) {
     nevh_system *s = damped(&henon_heiles, equal);
     nevh_stepper *m = planned(s, &henon_heiles, nevh_verlet, nevh_exact);
     state z = start(&henon_heiles);
@@ -106,11 +103,10 @@ START_TEST(changes_are_noticed) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* What a stepper says. */
 
-START_TEST(order_to_expect) {
+TEST_EACH(order_to_expect, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     const problem *b = problem_for(scheme);
     nevh_system *s = damped(b, unequal);
@@ -131,9 +127,8 @@ START_TEST(order_to_expect) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(own_times_are_refused) {
+TEST(own_times_are_refused) {
     nevh_integrator varies = **&nevh_verlet;
     varies.name = "varies";
     varies.own_time = true;
@@ -149,7 +144,6 @@ START_TEST(own_times_are_refused) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* A scheme of its own: q and p stay as they are, memory holds p. */
 static int hold_plan(nevh_work *w) {
@@ -185,7 +179,7 @@ static nevh_integrator holding(const nevh_kernel *kernel) {
 
 /* The kernel is told of each factor between its steps, also of lanes that
    jump and of steps that change. */
-START_TEST(memory_is_damped_with_p) {
+TEST(memory_is_damped_with_p) {
     const nevh_kernel kernel = {
         .plan = hold_plan, .step = hold, .apply_friction = hold_damp};
     nevh_integrator scheme = holding(&kernel);
@@ -201,10 +195,9 @@ START_TEST(memory_is_damped_with_p) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* One that damps itself is given the rates, and left alone. */
-START_TEST(a_kernel_takes_the_rates) {
+TEST(a_kernel_takes_the_rates) {
     const nevh_kernel kernel = {
         .plan = hold_plan, .step = hold, .has_friction = true};
     nevh_integrator scheme = holding(&kernel);
@@ -217,7 +210,6 @@ START_TEST(a_kernel_takes_the_rates) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* What it does to orbits. */
 
@@ -231,7 +223,7 @@ static state orbit_on(nevh_system *s, const problem *b,
     return z;
 }
 
-START_TEST(none_leaves_no_trace) {
+TEST_EACH(none_leaves_no_trace, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     const problem *b = problem_for(scheme);
     const double zeros[] = {0, -0.}, opposite[] = {-0.21, -0.08};
@@ -256,22 +248,4 @@ START_TEST(none_leaves_no_trace) {
         ck_assert(!same(b, &plain, &x));
     }
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("friction");
-    TCase *cases = tcase_create("friction");
-    int count = scheme_count();
-    tcase_add_test(cases, rates_add_up);
-    tcase_add_test(cases, an_effect_of_both_kinds);
-    tcase_add_test(cases, bad_rates);
-    tcase_add_test(cases, changes_are_noticed);
-    tcase_add_loop_test(cases, order_to_expect, 0, count);
-    tcase_add_test(cases, own_times_are_refused);
-    tcase_add_test(cases, memory_is_damped_with_p);
-    tcase_add_test(cases, a_kernel_takes_the_rates);
-    tcase_add_loop_test(cases, none_leaves_no_trace, 0, count);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

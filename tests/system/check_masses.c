@@ -81,7 +81,7 @@ static bool travel(const nevh_integrator *scheme, enum kind kind, bool known,
     return planned;
 }
 
-START_TEST(as_written_out) {
+TEST_EACH(as_written_out, KINDS *scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i / KINDS];
     enum kind kind = _i % KINDS;
     for (size_t width = 1; width <= MOST_WIDTH; width *= 8) {
@@ -93,9 +93,8 @@ START_TEST(as_written_out) {
                       nevh_integrator_name(scheme), width);
     }
 }
-END_TEST
 
-START_TEST(of_one_each) {
+TEST(of_one_each) {
     double q[N] = {0}, p[N] = {0.3, -7}, t = 0, h, v[N];
     nevh_system *s = nevh_system_new(N);
     ck_assert(!nevh_system_add_masses(s, "T", NULL));
@@ -112,9 +111,8 @@ START_TEST(of_one_each) {
     nevh_field_free(f);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(every_gradient) {
+TEST(every_gradient) {
     nevh_system *s = make(PLAIN, true);
     const double q[N] = {0.2, 0.4}, p[N] = {0.3, -7}, t = 0;
     for (const nevh_gradient *const *g = nevh_gradients(); *g; g++) {
@@ -130,9 +128,8 @@ START_TEST(every_gradient) {
     }
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(refuses) {
+TEST(refuses) {
     static const double bad[][N] = {
         {1, 0}, {1, -0.}, {INFINITY, 1}, {1, NAN}, {1, 1e-310}};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
@@ -146,16 +143,4 @@ START_TEST(refuses) {
     ck_assert_int_eq(nevh_system_add_masses(s, NULL, masses), NEVH_EINVAL);
     nevh_system_free(s);
     ck_assert_int_eq(nevh_system_add_masses(NULL, "T", NULL), NEVH_ENOMEM);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("masses");
-    TCase *cases = tcase_create("masses");
-    tcase_add_loop_test(cases, as_written_out, 0, KINDS * scheme_count());
-    tcase_add_test(cases, of_one_each);
-    tcase_add_test(cases, every_gradient);
-    tcase_add_test(cases, refuses);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

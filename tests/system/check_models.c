@@ -87,7 +87,7 @@ static double size_of(nevh_field *field, size_t effects, const double q[],
     return size;
 }
 
-START_TEST(list_is_complete) {
+TEST(list_is_complete) {
     const nevh_model *const exported[] = {
         nevh_oscillator_model,       nevh_pendulum_model,
         nevh_double_pendulum_model,  nevh_double_pendulum_as_printed_model,
@@ -100,9 +100,8 @@ START_TEST(list_is_complete) {
     ck_assert_ptr_null(nevh_model_named("pendulums"));
     ck_assert_ptr_null(nevh_model_named(NULL));
 }
-END_TEST
 
-START_TEST(structure) {
+TEST_EACH(structure, MODELS) {
     const nevh_model *model = nevh_models()[_i];
     char effects[80] = "";
     setup s = set_up(model, model->defaults, nevh_exact);
@@ -120,10 +119,9 @@ START_TEST(structure) {
         ck_assert_str_ne(model->coords[k], "");
     tear_down(s);
 }
-END_TEST
 
 /* Vector cosines are within 4 ulp, and those of one effect may cancel. */
-START_TEST(terms_sum_to_the_hamiltonian) {
+TEST_EACH(terms_sum_to_the_hamiltonian, MODELS) {
     const nevh_model *model = nevh_models()[_i];
     setup s = set_up(model, known[_i].params, nevh_exact);
     double t[STATES] = {0}, h[STATES], q[MOST_DOF], p[MOST_DOF];
@@ -142,10 +140,9 @@ START_TEST(terms_sum_to_the_hamiltonian) {
     ck_assert_double_le(error, 4 * DBL_EPSILON * size);
     tear_down(s);
 }
-END_TEST
 
 /* One state alone gives what it gives among others, to the last bit. */
-START_TEST(lanes_are_independent) {
+TEST_EACH(lanes_are_independent, MODELS) {
     const nevh_model *model = nevh_models()[_i];
     setup s = set_up(model, known[_i].params, nevh_exact);
     double t[STATES] = {0}, h[STATES], alone, q[MOST_DOF], p[MOST_DOF];
@@ -169,7 +166,6 @@ START_TEST(lanes_are_independent) {
     }
     tear_down(s);
 }
-END_TEST
 
 static double largest(const double x[], size_t count) {
     double most = 0;
@@ -184,7 +180,7 @@ static void assert_close(const double a[], const double b[], size_t count,
         ck_assert_double_le(fabs(a[i] - b[i]), tolerance);
 }
 
-START_TEST(gradient_is_the_derivative) {
+TEST_EACH(gradient_is_the_derivative, MODELS) {
     const nevh_model *model = nevh_models()[_i];
     setup exact = set_up(model, known[_i].params, nevh_exact);
     setup central = set_up(model, known[_i].params, nevh_central8);
@@ -201,7 +197,6 @@ START_TEST(gradient_is_the_derivative) {
     tear_down(exact);
     tear_down(central);
 }
-END_TEST
 
 /* The double pendulum once more, from where its bobs are. */
 
@@ -271,16 +266,14 @@ static double legendre_error(const nevh_model *model) {
     return worst;
 }
 
-START_TEST(double_pendulum_follows_from_its_lagrangian) {
+TEST(double_pendulum_follows_from_its_lagrangian) {
     ck_assert_double_lt(legendre_error(nevh_double_pendulum_model), 1e-9);
 }
-END_TEST
 
-START_TEST(as_printed_is_no_double_pendulum) {
+TEST(as_printed_is_no_double_pendulum) {
     ck_assert_double_gt(legendre_error(nevh_double_pendulum_as_printed_model),
                         0.1);
 }
-END_TEST
 
 /* Orbits with an exact solution.  SEPARATRIX: p at the bottom of `plain`. */
 #define SEPARATRIX 6.2609903369994111
@@ -350,7 +343,7 @@ static void orbit_slope(int i, double t, double slope[]) {
     }
 }
 
-START_TEST(exact_solves_hamiltons_equations) {
+TEST_EACH(exact_solves_hamiltons_equations, ORBITS) {
     const nevh_model *model = nevh_model_named(orbits[_i].model);
     setup s = set_up(model, orbits[_i].params, nevh_exact);
     size_t n = model->n;
@@ -366,9 +359,8 @@ START_TEST(exact_solves_hamiltons_equations) {
     }
     tear_down(s);
 }
-END_TEST
 
-START_TEST(exact_conserves_energy) {
+TEST_EACH(exact_conserves_energy, ORBITS) {
     const nevh_model *model = nevh_model_named(orbits[_i].model);
     setup s = set_up(model, orbits[_i].params, nevh_exact);
     double h0 = model->hamiltonian(0, orbits[_i].q, orbits[_i].p, s.params);
@@ -382,19 +374,17 @@ START_TEST(exact_conserves_energy) {
     }
     tear_down(s);
 }
-END_TEST
 
-START_TEST(exact_starts_at_the_start) {
+TEST_EACH(exact_starts_at_the_start, ORBITS) {
     double z[2 * MOST_DOF];
     size_t n = nevh_model_named(orbits[_i].model)->n;
     orbit_at(_i, 0, z);
     assert_close(z, orbits[_i].q, n, 2 * DBL_EPSILON * largest(z, n));
     assert_close(z + n, orbits[_i].p, n, 2 * DBL_EPSILON * largest(z + n, n));
 }
-END_TEST
 
 /* An angle neither jumps nor is wrapped, nor turns once too often. */
-START_TEST(exact_angle_is_continuous) {
+TEST_EACH(exact_angle_is_continuous, ORBITS) {
     double last[2 * MOST_DOF], z[2 * MOST_DOF];
     if (strcmp(orbits[_i].model, "pendulum") != 0)
         skip_test("its coordinate is no angle");
@@ -405,7 +395,6 @@ START_TEST(exact_angle_is_continuous) {
         last[0] = z[0];
     }
 }
-END_TEST
 
 /* States in quadruple precision: the first by a Gauss method of order 16 (to
    24 digits), the others by elliptic functions of 70 digits.  At 1e-10 from
@@ -468,7 +457,7 @@ static const struct {
 };
 enum { REFERENCES = sizeof references / sizeof *references };
 
-START_TEST(pendulum_reference) {
+TEST_EACH(pendulum_reference, REFERENCES) {
     double q, p;
     ck_assert_int_eq(nevh_pendulum_model->exact(
                          &references[_i].params, references[_i].t,
@@ -479,20 +468,18 @@ START_TEST(pendulum_reference) {
     ck_assert_double_eq_tol(p, references[_i].p,
                             1e-12 * fmax(1, fabs(references[_i].p)));
 }
-END_TEST
 
 /* Time in units of sqrt(l/g), momentum in units of m l sqrt(g l). */
-START_TEST(pendulum_scales) {
+TEST(pendulum_scales) {
     double rate = sqrt(odd.g / odd.l), action = odd.m * odd.l * odd.l * rate;
     double start[] = {2, 0}, q, p;
     nevh_pendulum_model->exact(&odd, 100 / rate, start, start + 1, &q, &p);
     ck_assert_double_eq_tol(q, 1.982325653157030516, 1e-12);
     ck_assert_double_eq_tol(p / action, 0.1796407425909401979, 1e-12);
 }
-END_TEST
 
 /* What no answer can be given to is refused, and the state left alone. */
-START_TEST(exact_refuses) {
+TEST_EACH(exact_refuses, MODELS) {
     const nevh_model *model = nevh_models()[_i];
     const double bad[] = {NAN, INFINITY, -INFINITY};
     double state[MOST_DOF] = {0.3, 0.4}, q[MOST_DOF] = {7}, p[MOST_DOF] = {8};
@@ -513,45 +500,11 @@ START_TEST(exact_refuses) {
     ck_assert_double_eq(q[0], 7);
     ck_assert_double_eq(p[0], 8);
 }
-END_TEST
 
 /* The separatrix has a limit there, but no state. */
-START_TEST(exact_refuses_infinite_time) {
+TEST(exact_refuses_infinite_time) {
     double q0 = 0, p0 = 2, q, p;
     ck_assert_int_eq(
         nevh_pendulum_model->exact(&unit, INFINITY, &q0, &p0, &q, &p),
         NEVH_EDOM);
-}
-END_TEST
-
-static void add_terms(Suite *suite) {
-    TCase *cases = tcase_create("terms");
-    tcase_add_test(cases, list_is_complete);
-    tcase_add_loop_test(cases, structure, 0, MODELS);
-    tcase_add_loop_test(cases, terms_sum_to_the_hamiltonian, 0, MODELS);
-    tcase_add_loop_test(cases, lanes_are_independent, 0, MODELS);
-    tcase_add_loop_test(cases, gradient_is_the_derivative, 0, MODELS);
-    tcase_add_test(cases, double_pendulum_follows_from_its_lagrangian);
-    tcase_add_test(cases, as_printed_is_no_double_pendulum);
-    suite_add_tcase(suite, cases);
-}
-
-static void add_exact(Suite *suite) {
-    TCase *cases = tcase_create("exact");
-    tcase_add_loop_test(cases, exact_solves_hamiltons_equations, 0, ORBITS);
-    tcase_add_loop_test(cases, exact_conserves_energy, 0, ORBITS);
-    tcase_add_loop_test(cases, exact_starts_at_the_start, 0, ORBITS);
-    tcase_add_loop_test(cases, exact_angle_is_continuous, 0, ORBITS);
-    tcase_add_loop_test(cases, pendulum_reference, 0, REFERENCES);
-    tcase_add_test(cases, pendulum_scales);
-    tcase_add_loop_test(cases, exact_refuses, 0, MODELS);
-    tcase_add_test(cases, exact_refuses_infinite_time);
-    suite_add_tcase(suite, cases);
-}
-
-int main(void) {
-    Suite *suite = suite_create("models");
-    add_terms(suite);
-    add_exact(suite);
-    return run_suite(suite);
 }

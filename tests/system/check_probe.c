@@ -49,7 +49,7 @@ static const trial trials[] = {
 };
 
 /* With a state to plan at, at rest, and with none. */
-START_TEST(answers) {
+TEST_EACH(answers, 3 * sizeof trials / sizeof *trials) {
     const trial *t = &trials[_i / 3];
     const double q[] = {1.1}, p[] = {_i % 3 == 1 ? 0 : 0.4};
     nevh_options given = {.q = q, .p = p};
@@ -69,10 +69,9 @@ START_TEST(answers) {
     nevh_probe_free(b);
     nevh_system_free(s);
 }
-END_TEST
 
 /* The evidence can be checked at the state that comes with it. */
-START_TEST(evidence_can_be_repeated) {
+TEST(evidence_can_be_repeated) {
     nevh_system *s = nevh_system_from(1, one_way, NULL);
     nevh_probe *b = nevh_probe_new(s, NULL);
     nevh_finding f = nevh_probe_finding(b, NEVH_IS_REVERSIBLE);
@@ -84,10 +83,9 @@ START_TEST(evidence_can_be_repeated) {
     nevh_probe_free(b);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Whatever the units. */
-START_TEST(lengths) {
+TEST_EACH(lengths, 2) {
     const double metre = _i ? 1e-10 : 1e11, mass = _i ? 1e-27 : 1e30;
     nevh_pendulum rod = {mass, metre, 9.8 * metre};
     nevh_system *s = nevh_pendulum_model->system(&rod);
@@ -104,9 +102,8 @@ START_TEST(lengths) {
     nevh_probe_free(b);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(terms_are_named) {
+TEST(terms_are_named) {
     nevh_system *s = double_pendulum.make();
     nevh_options o = {.q = double_pendulum.q, .p = double_pendulum.p};
     nevh_probe *b = nevh_probe_new(s, &o);
@@ -118,9 +115,8 @@ START_TEST(terms_are_named) {
     nevh_probe_free(b);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(failures) {
+TEST(failures) {
     nevh_system *s = nevh_system_from(1, nowhere, NULL);
     nevh_probe *b = nevh_probe_new(s, NULL);
     ck_assert_int_eq(nevh_probe_status(b), NEVH_EDOM);
@@ -136,17 +132,4 @@ START_TEST(failures) {
     nevh_probe_free(b);
     nevh_probe_free(NULL);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("probe");
-    TCase *cases = tcase_create("probe");
-    tcase_add_loop_test(cases, answers, 0, 3 * sizeof trials / sizeof *trials);
-    tcase_add_test(cases, evidence_can_be_repeated);
-    tcase_add_loop_test(cases, lengths, 0, 2);
-    tcase_add_test(cases, terms_are_named);
-    tcase_add_test(cases, failures);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

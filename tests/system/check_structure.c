@@ -20,7 +20,7 @@ static double any(double t, const double q[], const double p[],
 }
 
 /* Every combination of effects that read q, p, both, t and q, nothing, t. */
-START_TEST(traits) {
+TEST_EACH(traits, 64) {
     static const struct {
         const char *name;
         size_t nq, np;
@@ -46,7 +46,6 @@ START_TEST(traits) {
     ck_assert_uint_eq(nevh_system_traits(s), expected);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Whole functions; params is a constant that is added. */
 static double one_pendulum(double t, const double q[], const double p[],
@@ -88,7 +87,7 @@ static void assert_separable(const nevh_system *s, const nevh_options *o,
     nevh_stepper_free(m);
 }
 
-START_TEST(whole_functions) {
+TEST_EACH(whole_functions, 6) {
     static const nevh_value_fn functions[] = {one_pendulum, two_pendulums,
                                               double_pendulum_h};
     static const double q[] = {1.1, -0.4}, p[] = {0.3, 0.5};
@@ -100,7 +99,6 @@ START_TEST(whole_functions) {
     assert_separable(s, &(nevh_options){.q = q, .p = p}, separable);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Coupled only within 1e-10 and 1e-24 of the origin, as in an atom. */
 static double atom(double t, const double q[], const double p[],
@@ -116,7 +114,7 @@ static double small_oscillator(double t, const double q[], const double p[],
     return p[0] * p[0] / 1.8e-30 + 1e2 * q[0] * q[0];
 }
 
-START_TEST(follows_scales) {
+TEST_EACH(follows_scales, 3) {
     static const double q[] = {0.7e-10}, p[] = {1.1e-24};
     static const double scale[] = {1e-10, 1e-24};
     nevh_options by_scale = {.scale = scale}, by_state = {.q = q, .p = p};
@@ -124,7 +122,6 @@ START_TEST(follows_scales) {
     assert_separable(s, _i == 2 ? &by_state : &by_scale, _i == 0);
     nevh_system_free(s);
 }
-END_TEST
 
 static double root(double t, const double q[], const double p[],
                    const void *params) {
@@ -138,7 +135,7 @@ static double coupled_root(double t, const double q[], const double p[],
     return p[0] * p[0] * sqrt(q[0]);
 }
 
-START_TEST(undefined_in_part) {
+TEST_EACH(undefined_in_part, 2) {
     static const double q[] = {0.5}, p[] = {0.3}, scale[] = {2, 1};
     nevh_separability found;
     nevh_system *s = nevh_system_from(1, _i ? coupled_root : root, NULL);
@@ -147,9 +144,8 @@ START_TEST(undefined_in_part) {
     ck_assert_uint_lt(found.states, 16);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(undefined_everywhere) {
+TEST(undefined_everywhere) {
     static const double q[] = {-9};
     nevh_separability found;
     nevh_system *s = nevh_system_from(1, root, NULL);
@@ -164,7 +160,6 @@ START_TEST(undefined_everywhere) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 static double product(double t, const double q[], const double p[],
                       const double c[], const void *params) {
@@ -185,7 +180,7 @@ static nevh_system *three_mixtures(void) {
     return s;
 }
 
-START_TEST(names_the_worst_term) {
+TEST(names_the_worst_term) {
     const char *worst[] = {"strong", "weak", "none", NULL};
     nevh_system *s = three_mixtures();
     nevh_system_add(s, &gravity);
@@ -204,10 +199,9 @@ START_TEST(names_the_worst_term) {
     }
     nevh_system_free(s);
 }
-END_TEST
 
 /* A scheme that fits is suggested; what is off is no reason to refuse. */
-START_TEST(verlet_refuses_a_mixed_term) {
+TEST(verlet_refuses_a_mixed_term) {
     nevh_system *s = three_mixtures();
     nevh_stepper *m = nevh_stepper_new(s, nevh_verlet, NULL);
     ck_assert_int_eq(nevh_stepper_status(m), NEVH_ESTRUCT);
@@ -222,10 +216,9 @@ START_TEST(verlet_refuses_a_mixed_term) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* An invalid option is the reason given, not what the probe makes of it. */
-START_TEST(invalid_scale) {
+TEST(invalid_scale) {
     static const double offset = 0, bad[] = {NAN, 0, -1, INFINITY};
     nevh_system *s = nevh_system_from(1, one_pendulum, &offset);
     for (int i = 0; i < 4; i++) {
@@ -237,7 +230,6 @@ START_TEST(invalid_scale) {
     }
     nevh_system_free(s);
 }
-END_TEST
 
 /* Kinetic energies of two momenta; c[0] is what makes them differ. */
 typedef struct {
@@ -332,15 +324,13 @@ static void assert_kinetic(const kinetic_energy *kinetic, bool expected) {
     }
 }
 
-START_TEST(quadratic_kinetic_energies) {
+TEST_EACH(quadratic_kinetic_energies, sizeof quadratic / sizeof *quadratic) {
     assert_kinetic(&quadratic[_i], true);
 }
-END_TEST
 
-START_TEST(other_kinetic_energies) {
+TEST_EACH(other_kinetic_energies, sizeof other / sizeof *other) {
     assert_kinetic(&other[_i], false);
 }
-END_TEST
 
 /* A thousand degrees of freedom in one function. */
 static double long_chain(double t, const double q[], const double p[],
@@ -354,7 +344,7 @@ static double long_chain(double t, const double q[], const double p[],
     return h;
 }
 
-START_TEST(large_systems) {
+TEST(large_systems) {
     nevh_system *s = nevh_system_from(1000, long_chain, NULL);
     nevh_options options = {.gradient_step = 0x1p-10};
     nevh_stepper *m = nevh_stepper_new(s, nevh_rkn11b, &options);
@@ -362,10 +352,9 @@ START_TEST(large_systems) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* What is off is no reason; what needs no such T takes it. */
-START_TEST(only_where_it_is_needed) {
+TEST(only_where_it_is_needed) {
     nevh_system *s = system_with(&quadratic[0], false);
     nevh_system_add(s, &(nevh_term){.effect = "fast",
                                     .np = 2,
@@ -391,7 +380,6 @@ START_TEST(only_where_it_is_needed) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 static double positive(double t, const double q[], const double p[],
                        const double c[], const void *params) {
@@ -400,7 +388,7 @@ static double positive(double t, const double q[], const double p[],
 }
 
 /* Separability comes first; then what cannot be evaluated. */
-START_TEST(other_reasons) {
+TEST(other_reasons) {
     const double beyond = 99;
     nevh_system *s = three_mixtures();
     nevh_options options = {.gradient_step = 0x1p-10};
@@ -422,7 +410,6 @@ START_TEST(other_reasons) {
     nevh_stepper_free(m);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Each scheme that is suggested takes the system, at no lower order. */
 static void assert_suggestions(const nevh_integrator *scheme,
@@ -450,37 +437,11 @@ static void assert_suggestions(const nevh_integrator *scheme,
     nevh_system_free(s);
 }
 
-START_TEST(suggestions_fit) {
+TEST_EACH(suggestions_fit, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     if (nevh_integrator_needs(scheme) == 0)
         skip_test("it fits any H");
     for (const problem *const *b = problems; *b; b++)
         if (!fits(scheme, *b))
             assert_suggestions(scheme, *b);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("structure");
-    TCase *cases = tcase_create("structure");
-    tcase_add_loop_test(cases, traits, 0, 64);
-    tcase_add_loop_test(cases, whole_functions, 0, 6);
-    tcase_add_loop_test(cases, follows_scales, 0, 3);
-    tcase_add_loop_test(cases, undefined_in_part, 0, 2);
-    tcase_add_test(cases, undefined_everywhere);
-    tcase_add_test(cases, names_the_worst_term);
-    tcase_add_test(cases, verlet_refuses_a_mixed_term);
-    tcase_add_test(cases, invalid_scale);
-    suite_add_tcase(suite, cases);
-    cases = tcase_create("kinetic energy");
-    tcase_add_loop_test(cases, quadratic_kinetic_energies, 0,
-                        sizeof quadratic / sizeof *quadratic);
-    tcase_add_loop_test(cases, other_kinetic_energies, 0,
-                        sizeof other / sizeof *other);
-    tcase_add_test(cases, large_systems);
-    tcase_add_test(cases, only_where_it_is_needed);
-    tcase_add_test(cases, other_reasons);
-    tcase_add_loop_test(cases, suggestions_fit, 0, scheme_count());
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -87,7 +87,7 @@ static const struct {
 };
 enum { REFUSED = sizeof refused / sizeof *refused };
 
-START_TEST(refusal) {
+TEST_EACH(refusal, REFUSED) {
     nevh_system *s = nevh_system_new(3);
     char first[400];
     ck_assert_int_eq(nevh_system_add(s, &kinetic), NEVH_OK);
@@ -105,7 +105,6 @@ START_TEST(refusal) {
     assert_useless(s, NEVH_EINVAL);
     nevh_system_free(s);
 }
-END_TEST
 
 static double whole(double t, const double q[], const double p[],
                     const void *params) {
@@ -113,7 +112,7 @@ static double whole(double t, const double q[], const double p[],
     return q[0] + p[0];
 }
 
-START_TEST(refused_at_birth) {
+TEST(refused_at_birth) {
     nevh_system *made[] = {nevh_system_new(0), nevh_system_from(0, whole, NULL),
                            nevh_system_from(2, NULL, NULL),
                            nevh_system_new(SIZE_MAX)};
@@ -130,9 +129,8 @@ START_TEST(refused_at_birth) {
     ck_assert_str_ne(nevh_system_message(NULL), "");
     nevh_system_free(NULL);
 }
-END_TEST
 
-START_TEST(unknown_effect) {
+TEST(unknown_effect) {
     nevh_system *s = pendulum();
     ck_assert(!nevh_system_effect_on(s, "drag"));
     ck_assert(!nevh_system_effect_on(s, NULL));
@@ -141,10 +139,9 @@ START_TEST(unknown_effect) {
     assert_useless(s, NEVH_EINVAL);
     nevh_system_free(s);
 }
-END_TEST
 
 /* What the caller hands over may be changed and freed at once. */
-START_TEST(tables_are_copied) {
+TEST(tables_are_copied) {
     size_t *q = malloc(4 * sizeof *q), *p = malloc(2 * sizeof *p);
     double *c = malloc(2 * sizeof *c);
     char *name = malloc(4), *effect = malloc(4);
@@ -170,9 +167,8 @@ START_TEST(tables_are_copied) {
     nevh_field_free(f);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(automatic_names) {
+TEST(automatic_names) {
     nevh_system *s = nevh_system_new(4);
     const char *names[] = {NULL, "a 2", NULL, NULL};
     const char *expected[] = {"a", "a 2", "a 3", "a 4"};
@@ -192,9 +188,8 @@ START_TEST(automatic_names) {
     nevh_field_free(f);
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(effects_group_terms) {
+TEST(effects_group_terms) {
     nevh_system *s = pendulum();
     double t = 0, q = 0.4, p = 0.9, h[2];
     nevh_system_add(
@@ -218,7 +213,6 @@ START_TEST(effects_group_terms) {
     }
     nevh_system_free(s);
 }
-END_TEST
 
 static double spring(double t, const double q[], const double p[],
                      const double c[], const void *params) {
@@ -238,7 +232,7 @@ static double product(double t, const double q[], const double p[],
 
 /* Three masses, a spring between neighbours, and what reads mass 0 twice: what
    reads two groups counts for both, and once for each. */
-START_TEST(energies_of_groups) {
+TEST(energies_of_groups) {
     const size_t pairs[] = {0, 1, 1, 2}, both[] = {0, 1}, own[] = {0, 1, 2};
     const double k[] = {2, 3}, m[] = {1, 10, 100};
     const double q[] = {0.5, 2, 3}, p[] = {7, 0.1, 0.3};
@@ -268,7 +262,6 @@ START_TEST(energies_of_groups) {
     }
     nevh_system_free(s);
 }
-END_TEST
 
 static int change_nothing(nevh_system *s) {
     return nevh_system_enable(s, "gravity", true);
@@ -284,7 +277,7 @@ static int add_term(nevh_system *s) {
     return nevh_system_add(s, &gravity);
 }
 
-START_TEST(stale) {
+TEST_EACH(stale, 4) {
     int (*const changes[])(nevh_system *) = {change_nothing, switch_off,
                                              switch_off_and_on, add_term};
     const int status = _i ? NEVH_ESTALE : NEVH_OK;
@@ -317,7 +310,6 @@ START_TEST(stale) {
     nevh_field_free(f);
     nevh_system_free(s);
 }
-END_TEST
 
 /* A term gets what it declares, in the order it declares; time only if it
    reads it, whatever the others read. */
@@ -342,7 +334,7 @@ static double clock_value(double t, const double q[], const double p[],
     return 0 * t;
 }
 
-START_TEST(handed_what_is_read) {
+TEST_EACH(handed_what_is_read, 4) {
     const bool block = _i & 1, time = _i & 2;
     static const size_t q[] = {3, 1, 0, 4}, p[] = {4, 2};
     static const double c[] = {7, -7};
@@ -367,7 +359,6 @@ START_TEST(handed_what_is_read) {
     nevh_field_free(f);
     nevh_system_free(s);
 }
-END_TEST
 
 /* Reads everything, so that a trace of it would be seen everywhere. */
 static double counted(double t, const double q[], const double p[],
@@ -389,7 +380,7 @@ static void run_scheme(nevh_system *s, const nevh_integrator *scheme,
 }
 
 /* What is off costs nothing and leaves no trace. */
-START_TEST(off_is_off) {
+TEST_EACH(off_is_off, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     size_t calls = 0, *params = &calls;
     nevh_system *without = pendulum(), *with = nevh_system_new(1);
@@ -420,34 +411,13 @@ START_TEST(off_is_off) {
     nevh_system_free(with);
     nevh_system_free(without);
 }
-END_TEST
 
 /* Sizes that overflow are no memory, and no endless loop. */
-START_TEST(widths_that_overflow) {
+TEST_EACH(widths_that_overflow, 3) {
     nevh_system *s = nevh_system_new(4);
     static const size_t widths[] = {SIZE_MAX, SIZE_MAX / 2 + 1, SIZE_MAX / 8};
     nevh_options o = {.width = widths[_i]};
     ck_assert_ptr_null(nevh_stepper_new(s, nevh_verlet, &o));
     ck_assert_ptr_null(nevh_field_new(s, &o));
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("system");
-    TCase *terms = tcase_create("terms"), *effects = tcase_create("effects");
-    tcase_add_loop_test(terms, refusal, 0, REFUSED);
-    tcase_add_test(terms, refused_at_birth);
-    tcase_add_test(terms, unknown_effect);
-    tcase_add_test(terms, tables_are_copied);
-    tcase_add_test(terms, automatic_names);
-    tcase_add_loop_test(terms, widths_that_overflow, 0, 3);
-    tcase_add_loop_test(terms, handed_what_is_read, 0, 4);
-    tcase_add_test(effects, effects_group_terms);
-    tcase_add_test(effects, energies_of_groups);
-    tcase_add_loop_test(effects, stale, 0, 4);
-    tcase_add_loop_test(effects, off_is_off, 0, scheme_count());
-    suite_add_tcase(suite, terms);
-    suite_add_tcase(suite, effects);
-    return run_suite(suite);
 }

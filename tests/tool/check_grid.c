@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-START_TEST(steps_double_and_can_be_typed) {
+TEST(steps_double_and_can_be_typed) {
     for (int k = -160; k <= 160; k++) {
         char text[32];
         double dt = grid_dt(k), ratio = dt / grid_dt(k + 1);
@@ -18,9 +18,8 @@ START_TEST(steps_double_and_can_be_typed) {
     }
     ck_assert(grid_dt(0) == 1 && grid_dt(28) == 0.2 && grid_dt(-12) == 2);
 }
-END_TEST
 
-START_TEST(tolerances_fall_by_decades) {
+TEST(tolerances_fall_by_decades) {
     for (int k = 0; k <= 170; k++) {
         double ratio = grid_tolerance(k) / grid_tolerance(k + 1);
         ck_assert(ratio > 1.15 && ratio < 1.3);
@@ -29,27 +28,24 @@ START_TEST(tolerances_fall_by_decades) {
     }
     ck_assert(grid_tolerance(24) == 0.01 && grid_tolerance(28) == 0.005);
 }
-END_TEST
 
-START_TEST(places_are_the_coarsest_not_above) {
+TEST(places_are_the_coarsest_not_above) {
     for (int k = -160; k <= 160; k++) {
         ck_assert_int_eq(grid_dt_place(grid_dt(k)), k);
         ck_assert_int_eq(grid_dt_place(1.02 * grid_dt(k)), k);
         ck_assert_int_eq(grid_dt_place(0.99 * grid_dt(k)), k + 1);
     }
 }
-END_TEST
 
-START_TEST(a_power_is_found_between) {
+TEST(a_power_is_found_between) {
     const double dt[2] = {0.4, 0.1};
     const double error[2] = {3 * pow(0.4, 6), 3 * pow(0.1, 6)};
     double wanted = grid_between(dt, error, 3 * pow(0.23, 6));
     ck_assert_double_eq_tol(wanted, 0.23, 1e-12);
 }
-END_TEST
 
 /* Work as 1/dt, errors as dt^4, half a digit of scatter. */
-START_TEST(one_digit_costs_a_root_of_ten) {
+TEST(one_digit_costs_a_root_of_ten) {
     double error[7], work[7];
     for (int i = 0; i < 7; i++) {
         double dt = pow(0.5, i), scatter = i % 2 ? 1.2 : 1 / 1.2;
@@ -62,27 +58,12 @@ START_TEST(one_digit_costs_a_root_of_ten) {
     error[1] = error[0];
     ck_assert(isnan(grid_digit_factor(error, work, 2)));
 }
-END_TEST
 
 /* Coarse steps of implicit schemes may cost more than finer ones. */
-START_TEST(the_cheapest_need_not_be_the_coarsest) {
+TEST(the_cheapest_need_not_be_the_coarsest) {
     const double error[] = {1e-1, 1e-3, 1e-5, 1e-7, INFINITY};
     const double work[] = {9, 8, 5, 6, 1};
     ck_assert_uint_eq(grid_cheapest(error, work, 5, 1e-2), 2);
     ck_assert_uint_eq(grid_cheapest(error, work, 5, 1e-6), 3);
     ck_assert_uint_eq(grid_cheapest(error, work, 5, 1e-8), 5);
-}
-END_TEST
-
-int main(void) {
-    Suite *suite = suite_create("grid");
-    TCase *cases = tcase_create("grid");
-    tcase_add_test(cases, steps_double_and_can_be_typed);
-    tcase_add_test(cases, tolerances_fall_by_decades);
-    tcase_add_test(cases, places_are_the_coarsest_not_above);
-    tcase_add_test(cases, a_power_is_found_between);
-    tcase_add_test(cases, one_digit_costs_a_root_of_ten);
-    tcase_add_test(cases, the_cheapest_need_not_be_the_coarsest);
-    suite_add_tcase(suite, cases);
-    return run_suite(suite);
 }

@@ -60,7 +60,7 @@ static hard_verdict judge(const nevh_integrator *scheme, const char *name) {
     return judged(scheme, name, 1e6);
 }
 
-START_TEST(good_ones_pass) {
+TEST_EACH(good_ones_pass, 4) {
     static const nevh_integrator *const *const schemes[] = {
         &nevh_verlet, &nevh_blanes_moan4, &nevh_gauss8, &nevh_tao4};
     ck_assert_int_eq(judge(*schemes[_i], regular), HARD_BOUNDED);
@@ -68,7 +68,6 @@ START_TEST(good_ones_pass) {
     ck_assert_int_eq(judge(*schemes[_i], planets), HARD_BOUNDED);
     ck_assert_int_eq(judge(nevh_rk4, "rotating pendulum"), HARD_DRIFTS);
 }
-END_TEST
 
 /* One weight off: of order 1 then, though symplectic, so that the energy keeps
    in bounds all the same. */
@@ -85,16 +84,15 @@ static hard_verdict spoiled(const nevh_integrator *scheme, size_t which,
     return judge(&bad, name);
 }
 
-START_TEST(spoiled_weights) {
+TEST(spoiled_weights) {
     ck_assert_int_le(spoiled(nevh_blanes_moan4, 0, 1e-3L, fine), HARD_WRONG);
     ck_assert_int_le(spoiled(nevh_blanes_moan6, 2, 1e-3L, fine), HARD_WRONG);
     ck_assert_int_le(spoiled(nevh_forest_ruth, 0, 1e-3L, fine), HARD_WRONG);
     ck_assert_int_le(spoiled(nevh_yoshida6, 1, 1e-3L, fine), HARD_WRONG);
 }
-END_TEST
 
 /* Verlet's with a first kick that is too long: sums are right, order is 1. */
-START_TEST(spoiled_verlet) {
+TEST(spoiled_verlet) {
     static const long double weights[] = {0.6L};
     static const nevh_splitting splitting = {NEVH_KICK, NEVH_LISTED, 1,
                                              weights};
@@ -102,18 +100,16 @@ START_TEST(spoiled_verlet) {
     bad.table = &splitting;
     ck_assert_int_le(judge(&bad, fine), HARD_WRONG);
 }
-END_TEST
 
-START_TEST(pretends_to_be_symplectic) {
+TEST(pretends_to_be_symplectic) {
     nevh_integrator bad = *nevh_rk4;
     bad.symplectic = bad.symmetric = NEVH_YES;
     ck_assert_int_le(judge(&bad, "rotating pendulum"), HARD_WRONG);
     ck_assert_int_le(judge(&bad, planets), HARD_WRONG);
 }
-END_TEST
 
 /* Of another order than it says. */
-START_TEST(pretends_to_be_accurate) {
+TEST(pretends_to_be_accurate) {
     nevh_integrator bad = *nevh_midpoint;
     bad.order = 4;
     ck_assert_int_le(judge(&bad, fine), HARD_WRONG);
@@ -121,7 +117,6 @@ START_TEST(pretends_to_be_accurate) {
     bad.order = 4;
     ck_assert_int_le(judge(&bad, fine), HARD_WRONG);
 }
-END_TEST
 
 typedef int step_fn(nevh_work *, double, double, double[], double[]);
 
@@ -185,22 +180,20 @@ static int hang(nevh_work *w, double t, double h, double q[], double p[]) {
     return nevh_gauss_kernel.step(w, t, h, q, p);
 }
 
-START_TEST(wrong_steps) {
+TEST_EACH(wrong_steps, 7) {
     static step_fn *const steps[] = {hurry,         rest,    leak,   give_nan,
                                      give_infinity, give_up, explode};
     ck_assert_int_le(stepping(steps[_i], regular, 1e6), HARD_WRONG);
     ck_assert_int_le(stepping(steps[_i], planets, 1e6), HARD_WRONG);
 }
-END_TEST
 
 /* The energy alone would not have told. */
-START_TEST(right_energy_on_a_wrong_orbit) {
+TEST(right_energy_on_a_wrong_orbit) {
     ck_assert_int_eq(stepping(hurry, regular, 1e6), HARD_WRONG);
     ck_assert_int_eq(stepping(rest, planets, 1e6), HARD_WRONG);
 }
-END_TEST
 
-START_TEST(does_not_return) {
+TEST(does_not_return) {
     fflush(NULL);
     pid_t child = fork();
     if (child == 0) {
@@ -211,20 +204,4 @@ START_TEST(does_not_return) {
     ck_assert_int_eq(waitpid(child, &status, 0), child);
     ck_assert(WIFEXITED(status));
     ck_assert_int_eq(WEXITSTATUS(status), TOOL_FAILED);
-}
-END_TEST
-
-int main(void) {
-    Suite *s = suite_create("hard judge");
-    TCase *cases = tcase_create("hard judge");
-    tcase_add_loop_test(cases, good_ones_pass, 0, 4);
-    tcase_add_test(cases, spoiled_weights);
-    tcase_add_test(cases, spoiled_verlet);
-    tcase_add_test(cases, pretends_to_be_symplectic);
-    tcase_add_test(cases, pretends_to_be_accurate);
-    tcase_add_loop_test(cases, wrong_steps, 0, 7);
-    tcase_add_test(cases, right_energy_on_a_wrong_orbit);
-    tcase_add_test(cases, does_not_return);
-    suite_add_tcase(s, cases);
-    return run_suite(s);
 }
