@@ -26,7 +26,7 @@ libnevh_core_la_SOURCES += \
 	integrators/kernels/stage_sweeps_private.h \
 	integrators/kernels/stage_sweeps.c \
 	integrators/kernels/runge_kutta_private.h \
-	integrators/kernels/runge_kutta_repeated.c \
+	integrators/kernels/runge_kutta_step.h \
 	integrators/kernels/runge_kutta_kernel.c \
 	integrators/kernels/runge_kutta_adaptive.c \
 	integrators/euler.c \

@@ -191,7 +191,7 @@ static int account(const nevh__stages *s) {
     nevh__nystrom_state *y = nevh__nystrom_of(w);
     const nevh_nystrom *table = y->table;
     int status = NEVH_OK;
-    for (size_t i = 0; w->accounts && !status && i < table->stages; i++)
+    for (size_t i = 0; !status && i < table->stages; i++)
         if (table->bp[i] != 0) {
             status = nevh__nystrom_place(y, s, i);
             if (!status)
@@ -211,8 +211,7 @@ static int plan(nevh_work *w) {
         status = plan_nystrom(w, &plan->nystrom);
     if (status)
         return status;
-    plan->family = (nevh__family){.rows = 1,
-                                  .stages = table->stages,
+    plan->family = (nevh__family){.stages = table->stages,
                                   .error_power = table->error_power,
                                   .take = nevh__nystrom_take,
                                   .finish = nevh__nystrom_finish,
@@ -241,34 +240,6 @@ static void clear(nevh_work *w) {
     w->plan = NULL;
 }
 
-static int step(nevh_work *w, double t, double h, double q[], double p[]) {
-    size_t n = w->size, width = w->width;
-    double *change = w->scratch, *times = change + 2 * n,
-           *steps = times + width;
-    if (((nevh__stages_plan *)w->plan)->adaptive)
-        return nevh__adaptive_step(w, t, h, q, p);
-    nevh__stages s = {.work = w,
-                      .columns = width,
-                      .t = times,
-                      .h = steps,
-                      .q = q,
-                      .p = p,
-                      .carry = w->memory};
-    for (size_t lane = 0; lane < width; lane++) {
-        times[lane] = t;
-        steps[lane] = h;
-    }
-    int status = nevh__nystrom_take(&s, 0, nevh__nystrom_of(w)->table->stages);
-    if (!status)
-        status = nevh__nystrom_finish(&s, change, NULL, NULL);
-    if (!status)
-        status = account(&s);
-    if (status)
-        return status;
-    return nevh_work_commit(w, n, q, change, w->memory, p, change + n,
-                            w->memory + n);
-}
-
 static void apply_friction(nevh_work *w, const double factor[]) {
     double *carry = w->memory + w->size;
     for (size_t i = 0; i < w->size; i++)
@@ -276,6 +247,6 @@ static void apply_friction(nevh_work *w, const double factor[]) {
 }
 
 const nevh_kernel nevh_nystrom_kernel = {.plan = plan,
-                                         .step = step,
+                                         .step = nevh__stages_step,
                                          .clear = clear,
                                          .apply_friction = apply_friction};

@@ -238,12 +238,12 @@ NEVH_SIMD static int take_columns(const nevh__nystrom_state *y,
     return take(y, s, NOT_CALLED, first, until);
 }
 
-/* As a slope of the state, T_p and -D_0; and back. */
+/* As a slope of the state, T_p and D_0; and back. */
 static void hand_first(const nevh__nystrom_state *y, const nevh__stages *s) {
     size_t n = y->n * s->columns, apart = y->lanes / s->columns;
     for (size_t i = 0; i < n; i++) {
-        s->slopes[i] = y->velocities[i * apart];
-        s->slopes[n + i] = -y->slopes[i * apart];
+        s->slope[i] = y->velocities[i * apart];
+        s->slope[n + i] = y->slopes[i * apart];
     }
 }
 
@@ -251,8 +251,8 @@ static void take_first(const nevh__nystrom_state *y, const nevh__stages *s) {
     size_t n = y->n * s->columns, apart = y->lanes / s->columns;
     for (size_t i = 0; i < n; i++)
         for (size_t lane = 0; lane < apart; lane++) {
-            y->velocities[i * apart + lane] = s->slopes[i];
-            y->slopes[i * apart + lane] = -s->slopes[n + i];
+            y->velocities[i * apart + lane] = s->slope[i];
+            y->slopes[i * apart + lane] = s->slope[n + i];
         }
 }
 
@@ -267,23 +267,23 @@ static int take_slopes(nevh__nystrom_state *y, const nevh__stages *s,
     int status = called == 1            ? take_points(y, s, first, until)
                  : called == NOT_CALLED ? take_columns(y, s, first, until)
                                         : take_vectors(y, s, first, until);
-    if (!status && until == 1)
+    if (!status && s->slope && until == 1)
         hand_first(y, s);
     return status;
 }
 
 int nevh__nystrom_take(nevh__stages *s, size_t first, size_t until) {
     nevh__nystrom_state *y = nevh__nystrom_of(s->work);
-    s->holds = y->call_lanes && !s->work->accounts &&
-               nevh__call_ready(&y->drift) && nevh__call_ready(y->kicks);
-    if (s->holds) {
+    s->planned = y->call_lanes && !s->work->accounts &&
+                 nevh__call_ready(&y->drift) && nevh__call_ready(y->kicks);
+    if (s->planned) {
         int status = take_slopes(y, s, y->call_lanes, first, until);
         if (status == NEVH_OK)
             s->work->field->gradients += until - first;
         if (status == NEVH_OK || nevh__work_failed(s->work))
             return status;
     }
-    s->holds = false;
+    s->planned = false;
     return take_slopes(y, s, NOT_CALLED, first, until);
 }
 
@@ -311,7 +311,7 @@ NEVH_SIMD static int sum_drifts(const nevh__nystrom_state *y,
     if (y->inverse)
         return status;
     place_momenta(y, x, c);
-    status = drift(y, s->holds ? y->lanes : NOT_CALLED);
+    status = drift(y, s->planned ? y->lanes : NOT_CALLED);
     for (size_t i = 0; i < size; i++)
         out[i] = WAY(double, y, i *apart, c);
     return status;

@@ -1,4 +1,4 @@
-/* nevh: Runge-Kutta steps as many as a tolerance needs.
+/* nevh: Runge-Kutta steps, one of h or as many as a tolerance needs.
 
    Every lane goes from t to t + h in substeps of its own; lanes that are under
    way take their slopes together.  Step control is that of E. Hairer, S. P.
@@ -56,11 +56,11 @@ typedef struct {
     nevh__stages trial;       /* of some lanes, their columns side by side */
     double *begin, *each;     /* the trial's t and h */
     double *old;              /* the trial's state, 2n x columns as all below */
-    double *carry, *next, *next_carry, *error, *coarse;
+    double *carry, *next, *next_carry, *change, *error, *coarse;
 } walk;
 
 static const double least_error = 1e-4; /* that is remembered */
-enum { ROWS = 11 }; /* of 2n x width in a walk, besides the slopes */
+enum { ROWS = 11 };                     /* of 2n x width in a walk */
 
 static nevh__adaptive *plan_of(const nevh_work *w) {
     return ((const nevh__stages_plan *)w->plan)->adaptive;
@@ -92,7 +92,7 @@ int nevh__adaptive_plan(nevh_work *w) {
     w->memory_rows = 2 * w->n + 3;
     if (family->last_is_first)
         w->memory_rows += 2 * w->n + 1;
-    w->scratch_size = (family->rows + ROWS) * 2 * w->size + 3 * w->width;
+    w->scratch_size = ROWS * 2 * w->size + 2 * w->width;
     return NEVH_OK;
 }
 
@@ -105,19 +105,13 @@ static walk lay_out(nevh_work *w, double t, double h) {
               .lanes = plan->adaptive->lanes};
     size_t each = 2 * w->size;
     double *at = w->scratch;
-    double **const rows[ROWS] = {
-        &s.y,      &s.lost,         &s.first,      &s.old,
-        &s.carry,  &s.next,         &s.next_carry, &s.error,
-        &s.coarse, &s.trial.change, &s.trial.point};
+    double **const rows[ROWS] = {&s.y,      &s.lost,   &s.first,      &s.old,
+                                 &s.carry,  &s.next,   &s.next_carry, &s.error,
+                                 &s.coarse, &s.change, &s.trial.slope};
     for (int i = 0; i < ROWS; i++, at += each)
         *rows[i] = at;
-    s.trial.slopes = at;
-    s.begin = at + s.family->rows * each;
+    s.begin = at;
     s.each = s.begin + w->width;
-    s.trial.time = s.each + w->width;
-    if (nevh__repeated_stages_ready(plan->repeated))
-        s.trial.repeated = plan->repeated;
-    s.trial.stride = each;
     s.trial.work = w;
     s.trial.t = s.begin;
     s.trial.h = s.each;
@@ -206,7 +200,7 @@ static int take_first_slopes(walk *s, size_t count, const size_t lanes[]) {
     gather_states(s, some, unknown);
     int status = s->family->take(&s->trial, 0, 1);
     for (size_t c = 0; c < some; c++) {
-        scatter(s, c, unknown[c], s->trial.slopes, s->first);
+        scatter(s, c, unknown[c], s->trial.slope, s->first);
         s->lanes[unknown[c]].has_first = true;
     }
     return status;
@@ -297,9 +291,8 @@ static int accept(walk *s, size_t column, size_t lane, double err) {
     l->has_first = s->family->last_is_first;
     scatter(s, column, lane, s->next, s->y);
     scatter(s, column, lane, s->next_carry, s->lost);
-    size_t final = s->trial.stride * (s->family->rows - 1);
     if (l->has_first)
-        scatter(s, column, lane, s->trial.slopes + final, s->first);
+        scatter(s, column, lane, s->trial.slope, s->first);
     return s->work->accounts ? s->family->account(&s->trial) : NEVH_OK;
 }
 
@@ -309,16 +302,16 @@ static int take_trial(walk *s, size_t count, const size_t lanes[]) {
     nevh__stages *trial = &s->trial;
     size_t n = s->work->n * count;
     gather_states(s, count, lanes);
-    gather(s, lanes, s->first, trial->slopes);
+    gather(s, lanes, s->first, trial->slope);
     int status = family->take(trial, 1, family->stages);
     if (!status)
-        status = family->finish(trial, trial->change, s->error, s->coarse);
+        status = family->finish(trial, s->change, s->error, s->coarse);
     if (status)
         return status;
     memcpy(s->next, s->old, 2 * n * sizeof *s->next);
     memcpy(s->next_carry, s->carry, 2 * n * sizeof *s->next_carry);
-    return nevh_work_commit(s->work, n, s->next, trial->change, s->next_carry,
-                            s->next + n, trial->change + n, s->next_carry + n);
+    return nevh_work_commit(s->work, n, s->next, s->change, s->next_carry,
+                            s->next + n, s->change + n, s->next_carry + n);
 }
 
 /* One substep of each of the lanes, accepted or not.  Where together they
@@ -364,8 +357,8 @@ static int choose(const walk *s, size_t lane) {
     return NEVH_OK;
 }
 
-int nevh__adaptive_step(nevh_work *w, double t, double h, double q[],
-                        double p[]) {
+static int adaptive_step(nevh_work *w, double t, double h, double q[],
+                         double p[]) {
     size_t *lanes = plan_of(w)->under_way, count;
     walk s = lay_out(w, t, h);
     int status = NEVH_OK;
@@ -389,4 +382,38 @@ int nevh__adaptive_step(nevh_work *w, double t, double h, double q[],
     if (!status)
         store(&s, q, p);
     return status;
+}
+
+/* One step of h.  A last stage that is the next step's first is left to that
+   step: its weight is 0. */
+static int step_once(nevh_work *w, const nevh__family *family, double t,
+                     double h, double q[], double p[]) {
+    size_t n = w->size, width = w->width;
+    double *change = w->scratch, *times = change + 2 * n;
+    nevh__stages s = {.work = w,
+                      .columns = width,
+                      .t = times,
+                      .h = times + width,
+                      .q = q,
+                      .p = p,
+                      .carry = w->memory};
+    for (size_t lane = 0; lane < width; lane++) {
+        times[lane] = t;
+        times[width + lane] = h;
+    }
+    int status = family->take(&s, 0, family->stages - family->last_is_first);
+    if (!status)
+        status = family->finish(&s, change, NULL, NULL);
+    if (!status && w->accounts)
+        status = family->account(&s);
+    return status ? status
+                  : nevh_work_commit(w, n, q, change, w->memory, p, change + n,
+                                     w->memory + n);
+}
+
+int nevh__stages_step(nevh_work *w, double t, double h, double q[],
+                      double p[]) {
+    const nevh__stages_plan *plan = w->plan;
+    return plan->adaptive ? adaptive_step(w, t, h, q, p)
+                          : step_once(w, &plan->family, t, h, q, p);
 }

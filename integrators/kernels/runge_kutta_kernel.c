@@ -1,132 +1,329 @@
 /* nevh: explicit Runge-Kutta methods, the non-symplectic reference.
 
-   Slopes k_i = f(t + c_i h, y + h sum_j a_ij k_j), y += h sum_i b_i k_i, the
-   sum added to the state with compensation.  Friction is a part of f.
+   The stages are runge_kutta_step.h, compiled for rows of whole vectors (one
+   orbit that is repeated over a vector, or orbits side by side), in which
+   gradients are planned, and for rows of any width with gradients of any kind.
+   The sum is added to the state with compensation.  Friction is a part of f.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "runge_kutta_step.h"
 #include "runge_kutta_private.h"
-#include "system/vector_private.h"
+#include "work/work_private.h"
+#include <math.h>
 #include <nevh/body.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { ROWS = 2 }; /* of 2n x width in a step, besides the slopes */
+/* Sums besides those of the stages. */
+enum { CHANGE, ERROR, COARSE, ENDS };
+/* How gradients are taken: constants of inlined functions. */
+enum { BY_WORK, PLANNED };
+
+struct nevh__runge_kutta_state {
+    const nevh_butcher *table;
+    double *buffer; /* holds all that follow, rows of lanes */
+    double *state, *carry, *step, *point; /* 2n rows */
+    double *slopes;                       /* 2n rows a stage */
+    double *time;                         /* a row */
+    size_t stride;  /* from the slopes of a stage to the next */
+    size_t planned; /* lanes of planned calls; 0: there are none */
+    double known_h; /* that lanes of `step` are for */
+    nevh__call *calls;
+    double *weights;
+    size_t *offsets;
+    nevh__sum *sums; /* those of the stages, and of the ends */
+};
+
+/* A step whose stages are being taken. */
+struct nevh__runge_kutta_owner {
+    const nevh__stages *stages;
+    const nevh__runge_kutta_state *state;
+};
+
+static nevh__runge_kutta_state *state_of(const nevh_work *w) {
+    return ((const nevh__stages_plan *)w->plan)->runge_kutta;
+}
 
 static void clear(nevh_work *w) {
     nevh__stages_plan *plan = w->plan;
     if (!plan)
         return;
     nevh__adaptive_clear(w);
-    nevh__repeated_stages_free(plan->repeated);
+    if (plan->runge_kutta) {
+        free(plan->runge_kutta->buffer);
+        free(plan->runge_kutta->calls);
+        free(plan->runge_kutta->weights);
+        free(plan->runge_kutta->offsets);
+        free(plan->runge_kutta->sums);
+    }
+    free(plan->runge_kutta);
     free(plan);
     w->plan = NULL;
 }
 
-/* sum = the sum over `count` rows of weights[j] rows[j], each in turn. */
-NEVH_SIMD static void sum_up(size_t size, size_t stride, size_t count,
-                             const double weights[], const double rows[],
-                             double sum[]) {
-    size_t i = 0;
-    for (; i + NEVH__IN_VECTOR <= size; i += NEVH__IN_VECTOR) {
-        nevh__vector all = {0};
-        for (size_t j = 0; j < count; j++)
-            if (weights[j] != 0)
-                all +=
-                    weights[j] * *(const nevh__vector *)(rows + j * stride + i);
-        *(nevh__vector *)(sum + i) = all;
-    }
-    for (; i < size; i++) {
-        double all = 0;
-        for (size_t j = 0; j < count; j++)
-            if (weights[j] != 0)
-                all += weights[j] * rows[j * stride + i];
-        sum[i] = all;
-    }
+static void list_weights(nevh__runge_kutta_state *y) {
+    const nevh_butcher *table = y->table;
+    const double *const ends[ENDS] = {table->b, table->error, table->coarse};
+    size_t s = table->stages;
+    for (size_t i = 0; i < s + ENDS; i++)
+        y->sums[i] =
+            nevh__sum_of(i < s ? table->a + i * s : ends[i - s], i < s ? i : s,
+                         y->stride, y->weights + i * s, y->offsets + i * s);
 }
 
-/* h times the sum over `count` stages of weights[j] slopes[j]. */
-static void sum_stages(const nevh__stages *s, size_t count,
-                       const double weights[], double sum[]) {
-    size_t columns = s->columns, size = 2 * s->work->n * columns;
-    if (s->holds) {
-        nevh__repeated_stages_sum(s, weights, sum);
+static bool lay_out(const nevh_work *w, nevh__runge_kutta_state *y) {
+    size_t stages = y->table->stages, lists = (stages + ENDS) * stages;
+    size_t lanes = nevh__padded(w->width);
+    y->stride = 2 * w->n * lanes;
+    y->buffer = nevh__array((4 + stages) * y->stride + lanes + NEVH__LANES,
+                            sizeof *y->buffer);
+    y->calls = nevh__array(stages, sizeof *y->calls);
+    y->weights = nevh__array(lists, sizeof *y->weights);
+    y->offsets = nevh__array(lists, sizeof *y->offsets);
+    y->sums = nevh__array(stages + ENDS, sizeof *y->sums);
+    if (!y->buffer || !y->calls || !y->weights || !y->offsets || !y->sums)
+        return false;
+    double *from = nevh__aligned(y->buffer);
+    y->state = nevh__take(&from, y->stride);
+    y->carry = nevh__take(&from, y->stride);
+    y->step = nevh__take(&from, y->stride);
+    y->point = nevh__take(&from, y->stride);
+    y->slopes = nevh__take(&from, stages * y->stride);
+    y->time = from;
+    list_weights(y);
+    return true;
+}
+
+/* States that only fill vectors cost little where gradients are exact. */
+static void plan_calls(const nevh_work *w, nevh__runge_kutta_state *y) {
+    size_t lanes = nevh__padded(w->width), half = w->n * lanes;
+    bool suits = w->width == 1 ? nevh__work_repeats(w)
+                               : w->width == lanes || nevh__work_lean(w);
+    if (w->transform || !suits)
         return;
+    for (size_t i = 0; i < y->table->stages; i++) {
+        double *dh_dp = y->slopes + i * y->stride, *dh_dq = dh_dp + half;
+        y->calls[i] = nevh__call_plan(w->field, lanes, y->time, y->point,
+                                      y->point + half, dh_dq, dh_dp);
     }
-    sum_up(size, s->stride, count, weights, s->slopes, sum);
-    for (size_t i = 0; i < size; i += columns)
-        for (size_t c = 0; c < columns; c++)
-            sum[i + c] *= s->h[c];
+    y->planned = y->calls[0].count ? lanes : 0;
 }
 
-/* The stage's state, to point, and its time. */
-static void place(const nevh__stages *s, size_t stage) {
-    const nevh_butcher *table = s->work->integrator->table;
-    size_t n = s->work->n * s->columns;
-    sum_stages(s, stage, table->a + stage * table->stages, s->change);
-    for (size_t i = 0; i < n; i++) {
-        s->point[i] = s->q[i] + (s->change[i] + s->carry[i]);
-        s->point[n + i] = s->p[i] + (s->change[n + i] + s->carry[n + i]);
+/* Rows of columns; what is behind these repeats the first one. */
+NEVH__INLINE void load(size_t rows, size_t columns, size_t lanes,
+                       const double from[], double to[]) {
+    if (columns == lanes)
+        memcpy(to, from, rows * lanes * sizeof *to);
+    else if (columns == 1)
+        nevh__repeat(rows, from, to);
+    else
+        for (size_t k = 0; k < rows; k++)
+            for (size_t i = 0; i < lanes; i++)
+                to[k * lanes + i] = from[k * columns + (i < columns ? i : 0)];
+}
+
+NEVH__INLINE void load_steps(const nevh__stages *s,
+                             nevh__runge_kutta_state *y) {
+    size_t n = s->work->n, half = n * s->lanes;
+    bool one = s->columns == 1;
+    if (one && y->known_h == *s->h)
+        return;
+    load(1, s->columns, s->lanes, s->h, y->step);
+    for (size_t i = s->lanes; i < half; i++)
+        y->step[i] = y->step[i - s->lanes];
+    for (size_t i = 0; i < half; i++)
+        y->step[half + i] = -y->step[i];
+    y->known_h = one && s->lanes > 1 ? *s->h : NAN;
+}
+
+/* The state; and the first slope, where that is known. */
+NEVH__INLINE nevh__runge_kutta_step begin(const nevh__stages *s,
+                                          nevh__runge_kutta_state *y,
+                                          bool has_first) {
+    size_t n = s->work->n, columns = s->columns, lanes = s->lanes;
+    load(n, columns, lanes, s->q, y->state);
+    load(n, columns, lanes, s->p, y->state + n * lanes);
+    load(2 * n, columns, lanes, s->carry, y->carry);
+    load_steps(s, y);
+    if (has_first)
+        load(2 * n, columns, lanes, s->slope, y->slopes);
+    return (nevh__runge_kutta_step){.sums = y->sums,
+                                    .size = 2 * n * lanes,
+                                    .stride = y->stride,
+                                    .state = y->state,
+                                    .carry = y->carry,
+                                    .step = y->step,
+                                    .point = y->point,
+                                    .slopes = y->slopes};
+}
+
+/* Rows of lanes, without what is behind the columns. */
+static void store(const nevh__stages *s, const double from[], double to[]) {
+    for (size_t k = 0; k < 2 * s->work->n; k++)
+        for (size_t i = 0; i < s->columns; i++)
+            to[k * s->columns + i] = from[k * s->lanes + i];
+}
+
+NEVH__INLINE void set_time(const nevh__stages *s,
+                           const nevh__runge_kutta_state *y, size_t stage) {
+    double c = y->table->c[stage];
+    for (size_t i = 0; i < s->lanes; i++) {
+        size_t column = i < s->columns ? i : 0;
+        y->time[i] = s->t[column] + c * s->h[column];
     }
-    for (size_t c = 0; c < s->columns; c++)
-        s->time[c] = s->t[c] + table->c[stage] * s->h[c];
 }
 
-/* dp/dt = -dH/dq - rate p. */
-static void rub(const nevh__stages *s, double slopes[]) {
-    const double *rates = s->work->friction, *p = s->point;
-    size_t n = s->work->n, columns = s->columns;
-    for (size_t k = 0; k < n; k++)
-        for (size_t i = (n + k) * columns; i < (n + k + 1) * columns; i++)
-            slopes[i] -= rates[k] * p[i];
+/* dp/dt = -(dH/dq + rate p). */
+NEVH__INLINE void add_friction(const nevh__stages *s, const double p[],
+                               double dh_dq[]) {
+    const double *rates = s->work->friction;
+    for (size_t k = 0; k < s->work->n; k++) {
+        double rate = rates[k];
+        for (size_t i = k * s->lanes; i < (k + 1) * s->lanes; i++)
+            dh_dq[i] += rate * p[i];
+    }
 }
 
-/* The slopes at the point, but for friction. */
-static int take_slopes(const nevh__stages *s, double slopes[]) {
-    size_t n = s->work->n * s->columns;
-    int status = nevh_work_gradient(s->work, s->columns, s->time, s->point,
-                                    s->point + n, slopes + n, slopes);
-    for (size_t i = n; !status && i < 2 * n; i++)
-        slopes[i] = -slopes[i];
+/* Of one orbit a lane of each row will do. */
+NEVH__INLINE bool finite(const nevh__stages *s, size_t size,
+                         const double slopes[]) {
+    double bad[NEVH__LANES] = {0}, one = 0;
+    if (s->columns == 1) {
+        for (size_t i = 0; i < size; i += s->lanes)
+            one += slopes[i] - slopes[i];
+        return one == 0;
+    }
+    for (size_t from = 0; from < size; from += NEVH__LANES)
+        NEVH_LANES(i, NEVH__LANES) {
+            bad[i] += slopes[from + i] - slopes[from + i];
+        }
+    return nevh__sum_lanes(bad) == 0;
+}
+
+NEVH__INLINE int nevh__runge_kutta_slope(const nevh__runge_kutta_step *x,
+                                         int way, size_t stage) {
+    const nevh__stages *s = x->owner->stages;
+    const nevh__runge_kutta_state *y = x->owner->state;
+    size_t half = x->size / 2;
+    double *dh_dp = x->slopes + stage * x->stride, *dh_dq = dh_dp + half;
+    const nevh__call *call = &y->calls[stage];
+    if (way == BY_WORK || call->timed)
+        set_time(s, y, stage);
+    int status = way == BY_WORK
+                     ? nevh_work_gradient(s->work, s->lanes, y->time, x->point,
+                                          x->point + half, dh_dq, dh_dp)
+                     : nevh__work_run(s->work, call);
+    if (status)
+        return status;
+    if (s->work->friction)
+        add_friction(s, x->point + half, dh_dq);
+    return way == BY_WORK || finite(s, x->size, dh_dp) ? NEVH_OK : NEVH_EDOM;
+}
+
+NEVH__INLINE int take_stages(const nevh__stages *s, int way, size_t first,
+                             size_t until) {
+    nevh__runge_kutta_state *y = state_of(s->work);
+    struct nevh__runge_kutta_owner owner = {s, y};
+    nevh__runge_kutta_step x = begin(s, y, first > 0);
+    x.owner = &owner;
+    int status = nevh__runge_kutta_take(&x, way, first, until);
+    bool last = until == y->table->stages && y->table->last_is_first;
+    if (!status && s->slope && (until == 1 || last))
+        store(s, y->slopes + (until - 1) * y->stride, s->slope);
     return status;
 }
 
+NEVH_SIMD static int take_planned(const nevh__stages *s, size_t first,
+                                  size_t until) {
+    return take_stages(s, PLANNED, first, until);
+}
+
+NEVH_SIMD static int take_by_work(const nevh__stages *s, size_t first,
+                                  size_t until) {
+    return take_stages(s, BY_WORK, first, until);
+}
+
+/* Where planned calls fail without a reason, the other way tells it. */
 static int take(nevh__stages *s, size_t first, size_t until) {
-    s->holds = s->repeated && nevh__repeated_stages_take(s, first, until);
-    if (s->holds)
-        return NEVH_OK;
-    for (size_t stage = first; stage < until; stage++) {
-        double *slopes = s->slopes + s->stride * stage;
-        place(s, stage);
-        int status = take_slopes(s, slopes);
-        if (status)
+    nevh_work *w = s->work;
+    const nevh__runge_kutta_state *y = state_of(w);
+    if (y->planned && s->columns == w->width && !w->accounts &&
+        nevh__call_ready(y->calls)) {
+        s->lanes = y->planned;
+        int status = take_planned(s, first, until);
+        if (!status && y->calls->exact)
+            w->field->gradients += (until - first) * s->columns;
+        if (!status || nevh__work_failed(w))
             return status;
-        if (s->work->friction)
-            rub(s, slopes);
     }
-    return NEVH_OK;
+    s->lanes = s->columns;
+    return take_by_work(s, first, until);
 }
 
 /* All columns take the same h. */
 static int account(const nevh__stages *s) {
     nevh_work *w = s->work;
-    const nevh_butcher *table = w->integrator->table;
+    nevh__runge_kutta_state *y = state_of(w);
+    nevh__runge_kutta_step x = begin(s, y, false);
     int status = NEVH_OK;
-    for (size_t i = 0; w->accounts && !status && i < table->stages; i++)
-        if (table->b[i] != 0) {
-            place(s, i);
+    for (size_t i = 0; !status && i < y->table->stages; i++)
+        if (y->table->b[i] != 0) {
+            nevh__runge_kutta_place(&x, i);
+            set_time(s, y, i);
             status = nevh_work_account(w, NEVH_OF_Q | NEVH_OF_P,
-                                       table->b[i] * s->h[0], s->time, s->point,
-                                       s->point + w->n * s->columns);
+                                       y->table->b[i] * s->h[0], y->time,
+                                       y->point, y->point + x.size / 2);
         }
     return status;
 }
 
+/* s times a sum over all stages, of each column. */
+NEVH_SIMD static void sum_up(const nevh__stages *s, const nevh__sum *sum,
+                             double out[]) {
+    const nevh__runge_kutta_state *y = state_of(s->work);
+    size_t lanes = s->lanes, size = 2 * s->work->n * lanes, i = 0;
+    nevh__vector rows[2];
+    nevh__runge_kutta_step x = {.step = y->step, .slopes = y->slopes};
+    if (s->columns == 1 && lanes > 1) {
+        for (; i < size; i += 2 * lanes, out += 2) {
+            nevh__runge_kutta_sum(&x, sum, 2, i, rows);
+            out[0] = rows[0][0];
+            out[1] = rows[1][0];
+        }
+        return;
+    }
+    double *to = lanes == s->columns ? out : y->point;
+    for (; i + 2 * NEVH__IN_VECTOR <= size; i += 2 * NEVH__IN_VECTOR) {
+        nevh__runge_kutta_sum(&x, sum, 2, i, rows);
+        NEVH__VECTOR_AT(to + i) = rows[0];
+        NEVH__VECTOR_AT(to + i + NEVH__IN_VECTOR) = rows[1];
+    }
+    for (; i < size; i++)
+        to[i] = y->step[i] * nevh__add_up_one(sum, y->slopes + i);
+    if (to != out)
+        store(s, to, out);
+}
+
 static int finish(const nevh__stages *s, double change[], double error[],
                   double coarse[]) {
-    const nevh_butcher *table = s->work->integrator->table;
-    sum_stages(s, table->stages, table->error, error);
-    if (table->coarse)
-        sum_stages(s, table->stages, table->coarse, coarse);
-    sum_stages(s, table->stages, table->b, change);
+    const nevh__runge_kutta_state *y = state_of(s->work);
+    const nevh__sum *ends = y->sums + y->table->stages;
+    if (error)
+        sum_up(s, &ends[ERROR], error);
+    if (error && y->table->coarse)
+        sum_up(s, &ends[COARSE], coarse);
+    sum_up(s, &ends[CHANGE], change);
+    return NEVH_OK;
+}
+
+static int plan_state(nevh_work *w, nevh__runge_kutta_state **state) {
+    nevh__runge_kutta_state *y = *state = nevh__array(1, sizeof *y);
+    if (!y)
+        return NEVH_ENOMEM;
+    y->table = w->integrator->table;
+    y->known_h = NAN;
+    if (!lay_out(w, y))
+        return NEVH_ENOMEM;
+    plan_calls(w, y);
     return NEVH_OK;
 }
 
@@ -134,14 +331,10 @@ static int finish(const nevh__stages *s, double change[], double error[],
    next step's first is left to that step. */
 static int plan(nevh_work *w) {
     const nevh_butcher *table = w->integrator->table;
-    w->plan = nevh__array(1, sizeof(nevh__stages_plan));
-    if (!w->plan)
-        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
-    nevh__stages_plan *plan = w->plan;
-    if (nevh__repeated_stages_plan(w, &plan->repeated))
+    nevh__stages_plan *plan = w->plan = nevh__array(1, sizeof *plan);
+    if (!plan || plan_state(w, &plan->runge_kutta))
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     plan->family = (nevh__family){.stages = table->stages,
-                                  .rows = table->stages,
                                   .error_power = table->error_power,
                                   .last_is_first = table->last_is_first,
                                   .coarse = table->coarse,
@@ -151,51 +344,11 @@ static int plan(nevh_work *w) {
     if (table->error && w->options->tolerance > 0)
         return nevh__adaptive_plan(w);
     w->memory_rows = 2 * w->n;
-    w->scratch_size = (table->stages + ROWS) * 2 * w->size + 3 * w->width;
+    w->scratch_size = 2 * w->size + 2 * w->width;
     return NEVH_OK;
 }
 
-static nevh__stages lay_out(nevh_work *w, double q[], double p[]) {
-    const nevh_butcher *table = w->integrator->table;
-    const nevh__stages_plan *plan = w->plan;
-    size_t stride = 2 * w->size;
-    double *change = w->scratch + stride * table->stages;
-    double *times = change + ROWS * stride;
-    bool ready = nevh__repeated_stages_ready(plan->repeated);
-    return (nevh__stages){.work = w,
-                          .columns = w->width,
-                          .t = times + w->width,
-                          .h = times + 2 * w->width,
-                          .q = q,
-                          .p = p,
-                          .carry = w->memory,
-                          .slopes = w->scratch,
-                          .stride = stride,
-                          .change = change,
-                          .point = change + stride,
-                          .time = times,
-                          .repeated = ready ? plan->repeated : NULL};
-}
-
-static int step(nevh_work *w, double t, double h, double q[], double p[]) {
-    const nevh_butcher *table = w->integrator->table;
-    size_t n = w->size, stages = table->stages - table->last_is_first;
-    if (((nevh__stages_plan *)w->plan)->adaptive)
-        return nevh__adaptive_step(w, t, h, q, p);
-    nevh__stages s = lay_out(w, q, p);
-    for (size_t lane = 0; lane < w->width; lane++) {
-        s.time[w->width + lane] = t;
-        s.time[2 * w->width + lane] = h;
-    }
-    int status = take(&s, 0, stages);
-    if (!status)
-        status = account(&s);
-    if (status)
-        return status;
-    sum_stages(&s, stages, table->b, s.change);
-    return nevh_work_commit(w, n, q, s.change, w->memory, p, s.change + n,
-                            w->memory + n);
-}
-
-const nevh_kernel nevh_runge_kutta_kernel = {
-    .plan = plan, .step = step, .clear = clear, .has_friction = true};
+const nevh_kernel nevh_runge_kutta_kernel = {.plan = plan,
+                                             .step = nevh__stages_step,
+                                             .clear = clear,
+                                             .has_friction = true};

@@ -137,16 +137,14 @@ void nevh__sweeps_free(nevh__sweeps *s) {
     free(s);
 }
 
-#define VECTOR(x) (*(const nevh__vector *)(x))
-
 /* One vector of a[j] (hb[j] x[j]).  Its lanes are stages, with weights of their
    own and a number of one orbit, or orbits, with the weight of one stage and
    numbers of their own, for which x has the products. */
 #define PRODUCT(lanes, a, hb, x, j, row, from)                                 \
-    ((lanes) == 1 ? VECTOR((a) + (j) * (row) + (from)) *                       \
-                        (VECTOR((hb) + (j)*NEVH__LANES) * (x)[j])              \
+    ((lanes) == 1 ? NEVH__VECTOR_AT((a) + (j) * (row) + (from)) *              \
+                        (NEVH__VECTOR_AT((hb) + (j)*NEVH__LANES) * (x)[j])     \
                   : (a)[(j) * (row) + (from) / NEVH__LANES] *                  \
-                        VECTOR((x) + (j)*NEVH__LANES))
+                        NEVH__VECTOR_AT((x) + (j)*NEVH__LANES))
 
 /* One vector of the sum over j: even and odd j, which need not wait for each
    other. */
@@ -176,11 +174,11 @@ NEVH__INLINE void sum_up(size_t row, size_t lanes, size_t stages,
         return;
     }
     for (; j + 1 < stages; j += 2) {
-        even += VECTOR(a + j * row + from) * x[j];
-        odd += VECTOR(a + (j + 1) * row + from) * x[j + 1];
+        even += NEVH__VECTOR_AT(a + j * row + from) * x[j];
+        odd += NEVH__VECTOR_AT(a + (j + 1) * row + from) * x[j + 1];
     }
     if (j < stages)
-        even += VECTOR(a + j * row + from) * x[j];
+        even += NEVH__VECTOR_AT(a + j * row + from) * x[j];
     *sum = even + odd;
 }
 
@@ -188,7 +186,8 @@ NEVH__INLINE void sum_up(size_t row, size_t lanes, size_t stages,
 NEVH__INLINE void multiply(size_t stages, const double *restrict hb,
                            const double *restrict x, double *restrict out) {
     for (size_t j = 0; j < stages * NEVH__LANES; j += NEVH__LANES)
-        *(nevh__vector *)(out + j) = VECTOR(hb + j) * VECTOR(x + j);
+        *(nevh__vector *)(out + j) =
+            NEVH__VECTOR_AT(hb + j) * NEVH__VECTOR_AT(x + j);
 }
 
 /* The gradient that continues the last slopes. */
@@ -316,12 +315,12 @@ NEVH__INLINE void place_rows(const nevh__sweeps *s, size_t lanes, size_t stages,
             if (lanes == 1)
                 point = y[k] + (sum + carry[k]);
             else
-                point =
-                    VECTOR(y + k * lanes) + (sum + VECTOR(carry + k * lanes));
+                point = NEVH__VECTOR_AT(y + k * lanes) +
+                        (sum + NEVH__VECTOR_AT(carry + k * lanes));
             *(nevh__vector *)(points + at) = point;
             if (inverse)
                 *(nevh__vector *)(velocities + at) =
-                    VECTOR(inverse + at) * point;
+                    NEVH__VECTOR_AT(inverse + at) * point;
         }
     }
 }

@@ -82,6 +82,8 @@ NEVH__INLINE void nevh__repeat(size_t count, const double from[], double to[]) {
     }
 }
 
+/* The vector that begins there. */
+#define NEVH__VECTOR_AT(x) (*(nevh__vector *)(x))
 enum { NEVH__IN_VECTOR = sizeof(nevh__vector) / sizeof(double) };
 
 #endif
