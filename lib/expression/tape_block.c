@@ -87,24 +87,49 @@ static void store_result(const nevh__tape *tape, const nevh__rows *r,
 }
 
 /* As many columns as there is room for. */
-static size_t fitting(const nevh__tape *tape) {
+static size_t fitting(const nevh__tape *tape, size_t room) {
     size_t columns = NEVH__TAPE_COLUMNS;
-    while (columns * tape->slots > NEVH__TAPE_SCRATCH)
+    while (columns * tape->slots > room)
         columns /= 2;
     return columns;
+}
+
+typedef struct {
+    size_t width;
+    const double *t, *q, *p, *c;
+    const nevh__tape *tape;
+    double *h;
+} task;
+
+static void run_all(const task *job, double *slots, size_t room) {
+    size_t most = fitting(job->tape, room), columns;
+    for (size_t from = 0; from < job->width; from += columns) {
+        columns = job->width - from < most ? job->width - from : most;
+        nevh__rows r = nevh__rows_of(job->tape, job->width, from, columns,
+                                     job->t, job->q, job->p, job->c, slots);
+        nevh__rows_run(&r, job->tape->code, job->tape->length, NULL);
+        store_result(job->tape, &r, job->h + from);
+    }
+}
+
+/* Apart, so that most tapes do with little of the stack. */
+__attribute__((noinline)) static void run_little(const task *job) {
+    _Alignas(64) double slots[NEVH__TAPE_SCRATCH];
+    run_all(job, slots, NEVH__TAPE_SCRATCH);
+}
+
+__attribute__((noinline)) static void run_most(const task *job) {
+    _Alignas(64) double slots[NEVH__TAPE_LIVE * NEVH__LANES];
+    run_all(job, slots, NEVH__TAPE_LIVE * NEVH__LANES);
 }
 
 void nevh__tape_block(size_t width, const double t[], const double q[],
                       const double p[], const double c[], const void *tape,
                       double h[]) {
-    _Alignas(64) double slots[NEVH__TAPE_SCRATCH];
-    size_t most = fitting(tape), columns;
-    for (size_t from = 0; from < width; from += columns) {
-        columns = width - from < most ? width - from : most;
-        nevh__rows r =
-            nevh__rows_of(tape, width, from, columns, t, q, p, c, slots);
-        nevh__tape const *of = tape;
-        nevh__rows_run(&r, of->code, of->length, NULL);
-        store_result(of, &r, h + from);
-    }
+    const nevh__tape *of = tape;
+    const task job = {width, t, q, p, c, of, h};
+    if (of->slots * 2 * NEVH__LANES <= NEVH__TAPE_SCRATCH)
+        run_little(&job);
+    else
+        run_most(&job);
 }

@@ -15,7 +15,8 @@
 
 #define NEVH__F(f) nevh_simd_##f
 
-enum { MUCH_SCRATCH = 8 * NEVH__TAPE_SCRATCH };
+/* Doubles on the stack: of most formulas, of long ones, of the longest. */
+enum { LITTLE = NEVH__TAPE_SCRATCH, MORE = 4 * LITTLE, MOST = 32 * LITTLE };
 
 typedef struct {
     const nevh__tape *tape;
@@ -204,21 +205,23 @@ static bool is_enough(const nevh__tape *tape, size_t capacity) {
 }
 
 /* Apart, so that most tapes do with little of the stack. */
-__attribute__((noinline)) static void sweep_small(const task *job) {
-    _Alignas(64) double scratch[NEVH__TAPE_SCRATCH];
-    sweep_all(job, scratch, NEVH__TAPE_SCRATCH);
-}
+#define SWEEP(name, capacity)                                                  \
+    __attribute__((noinline)) static void name(const task *job) {              \
+        _Alignas(64) double scratch[capacity];                                 \
+        sweep_all(job, scratch, capacity);                                     \
+    }
+SWEEP(sweep_little, LITTLE)
+SWEEP(sweep_more, MORE)
+SWEEP(sweep_most, MOST)
 
-__attribute__((noinline)) static void sweep_large(const task *job) {
-    _Alignas(64) double scratch[MUCH_SCRATCH];
-    sweep_all(job, scratch, MUCH_SCRATCH);
-}
-
+/* Little has to do without halves, which would take time. */
 static void sweep_task(const task *job) {
-    if (is_enough(job->tape, NEVH__TAPE_SCRATCH))
-        sweep_small(job);
+    if (whole(job->tape, NEVH__TAPE_COLUMNS / 2) <= LITTLE)
+        sweep_little(job);
+    else if (is_enough(job->tape, MORE))
+        sweep_more(job);
     else
-        sweep_large(job);
+        sweep_most(job);
 }
 
 void nevh__tape_block_gradient(size_t width, const double t[], const double q[],

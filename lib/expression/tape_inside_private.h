@@ -52,7 +52,7 @@ typedef struct {
 } nevh__rows;
 
 /* At most so many columns at once; scratch in doubles. */
-enum { NEVH__TAPE_COLUMNS = 64, NEVH__TAPE_SCRATCH = 8192 };
+enum { NEVH__TAPE_COLUMNS = 64, NEVH__TAPE_SCRATCH = 2048 };
 
 static inline const double *nevh__rows_at(const nevh__rows *r,
                                           nevh__tape_operand o) {
