@@ -67,10 +67,15 @@ static void *refuse_neighbours(nevh__parser *p) {
     bool apart = from->at + from->bytes != to->at;
     if (from->kind == NEVH__NUMERAL && to->kind == NEVH__WORD && apart)
         return refuse_unit(p, from, to, right);
+    bool power = from->kind == NEVH__NUMERAL && to->bytes == 1 &&
+                 (*to->at == 'e' || *to->at == 'E');
     nevh__formula_fail(p->error, NEVH_EINVAL, from->column,
                        to->column + to->length - from->column,
-                       "an operator is missing; for a product write %s*%s",
-                       left, right);
+                       power ? "the exponent is missing, as in %se3; for a "
+                               "product write %s*%s"
+                             : "an operator is missing; for a product write "
+                               "%.0s%s*%s",
+                       left, left, right);
     return NULL;
 }
 

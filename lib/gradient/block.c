@@ -138,6 +138,16 @@ static void describe(const nevh_field *f, const nevh__planned *term,
         snprintf(text + at, size - at, ", ...");
 }
 
+/* Where squares and products of variables soon are beyond numbers. */
+static bool is_beyond(const nevh_field *f, const nevh__planned *term,
+                      const nevh__block *b, size_t column) {
+    const double vast = 1e100;
+    for (size_t k = 0; k < term->nv; k++)
+        if (!(fabs(nevh__row(f, b, k)[column]) < vast))
+            return true;
+    return false;
+}
+
 int nevh__block_fail(nevh_field *f, const nevh__planned *term,
                      const nevh__block *b, size_t column, const char *what,
                      double value) {
@@ -150,6 +160,12 @@ int nevh__block_fail(nevh_field *f, const nevh__planned *term,
     if (decl->count > 1 || b->width > 1)
         snprintf(which, sizeof which, " (instance %zu, lane %zu)", instance,
                  lane);
+    if (is_beyond(f, term, b, column))
+        return nevh__fail(
+            &f->report, NEVH_EDOM,
+            "the orbit has grown beyond all numbers: term \"%s\" of effect "
+            "\"%s\"%s has no value at t = %.9g, %s: take a smaller step",
+            decl->name, decl->effect, which, b->t[lane], where);
     return nevh__fail(
         &f->report, NEVH_EDOM,
         "%sterm \"%s\" of effect \"%s\"%s is %g at t = %.9g, %s: keep the orbit "

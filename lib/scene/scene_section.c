@@ -81,8 +81,15 @@ static bool take_items(nevh_scene *s, nevh__scene_model *m,
     const char **texts = nevh__pool_take(&m->pool, count, sizeof *texts);
     if (!texts)
         return nevh__scene_no_memory(s);
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < count; i++) {
         texts[i] = crossing->items[i].piece.text;
+        if (strcmp(texts[i], "section") == 0 ||
+            strcmp(texts[i], "direction") == 0)
+            return nevh__scene_fail(s, NEVH_EINVAL, &crossing->items[i].piece,
+                                    "%s is a column of every section: write "
+                                    "(%s)",
+                                    texts[i], texts[i]);
+    }
     crossing->decl.items = count;
     crossing->decl.item = texts;
     return true;

@@ -67,4 +67,27 @@ exits 0 check pendulum --format json
 if command -v python3 >/dev/null 2>&1; then
     python3 -m json.tool $work/out >/dev/null || fails "is no JSON"
 fi
+
+# What grows is no frequency: a pendulum upside down, and a hill alone.
+printf '%s\n' '[coordinates]' 'x = 1e-6' '[effects]' 'K = p_x^2/2' 'V = -x^2/2' \
+    '[run]' 't_end = 3' 'dt = 0.1' 'integrators = verlet' >$work/hill.nevh
+exits 0 check $work/hill.nevh
+lacks '^Highest frequency met'
+has '^Fastest growth met: small displacements grow at a rate of 1 '
+has '^ verlet +2 +yes +2$'
+
+# How long the trial run is does not depend on the machine: here each look at the
+# time of computing takes ten seconds.
+. "$srcdir/tests/support/nevh_interrupt.sh"
+if can_stop; then
+    exits 0 check kepler
+    mv $work/out $work/usual
+    command='check kepler (on a slow machine)'
+    INTERRUPT_CLOCK= LD_PRELOAD=$PWD/$work/interrupt.so \
+        ASAN_OPTIONS=$ASAN_OPTIONS:verify_asan_link_order=0 \
+        "$nevh" check kepler >$work/out 2>$work/err
+    cmp -s $work/out $work/usual || { fails "differs"; cat $work/out; }
+else
+    echo "clocks were not tested: $why"
+fi
 exit $status

@@ -127,6 +127,14 @@ fi
 says 'limited cannot be written'
 test "$(echo $work/limited*)" = "$work/limited*" || fails "left a part"
 
+# Little stack, as threads have it in some places.
+if test -z "$SANITIZE_FLAGS"; then
+    (
+        ulimit -s 64 && "$nevh" compare $work/my.nevh --t-end 20 \
+            --integrators verlet,gauss4,rk4 >/dev/null 2>$work/err
+    ) || fails "needs more than 64 kB of stack"
+fi
+
 # Names that are no UTF-8, or of two lines: JSON stays JSON, rows stay rows.
 bytes=$(printf '%s/a\377b.nevh' $work)
 cp $work/my.nevh "$bytes"

@@ -110,4 +110,17 @@ says 'no option of nevh section'
 exits 2 compare henon-heiles --section crossing
 says 'no option of nevh compare'
 
+
+# A column is there once, whatever a section shows.
+printf '%s\n' '[coordinates]' 'x = 1' 'direction = 0' '[effects]' \
+    'K = (p_x^2 + p_direction^2)/2' 'V = x^2/2' '[sections]' \
+    'c = when x = 0, rising: t, x, (direction)' '[run]' 't_end = 20' 'dt = 0.1' \
+    >$work/twice.nevh
+exits 0 section $work/twice.nevh
+test "$(grep -v '^#' $work/out | head -n 1)" = 'section,t,direction,x,(direction)' ||
+    { fails "has a column twice"; cat $work/out; }
+holds '$2 > 4.7 && $4 < 1e-12 && $5 == 0'
+sed 's/(direction)$/direction/' $work/twice.nevh >$work/again.nevh
+exits 2 section $work/again.nevh
+says ':8:31: error: direction is a column of every section: write \(direction\)'
 exit $status

@@ -43,7 +43,8 @@ typedef enum {
     OUTLOOK_CHAOTIC
 } outlook;
 typedef struct {
-    double frequency, fastest_at; /* as a pace; 0: nothing is known */
+    double frequency, frequency_at; /* 0: none is known */
+    double pace, pace_at; /* the larger of that and of rates of growth */
     outlook outlook;
     double exponent, error; /* largest Lyapunov exponent over its time */
     double length;          /* time */
@@ -54,10 +55,10 @@ typedef struct {
     char *failure; /* NULL, or why the orbit could not be followed */
 } trial_run;
 /* failure is to be freed.
-   cost     about two seconds at most */
+   cost     1e8 evaluations of terms, two seconds or so */
 trial_run trial_run_new(const plan *);
 void trial_run_words(const plan *, const trial_run *, list *notes);
-/* Of a scheme, its limit of stability given, at h w = x; NULL: nothing. */
-const char *trial_run_verdict(double limit, double x);
+/* Of a scheme, its limit of stability given, at steps of dt; NULL: nothing. */
+const char *trial_run_verdict(const trial_run *, double limit, double dt);
 
 #endif

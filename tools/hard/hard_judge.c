@@ -26,7 +26,7 @@ static bool is(const hard_subject *s, unsigned facts) {
 
 /* Of the orbit as it should be: where a run went astray excuses nothing. */
 static double pace_of(const hard_subject *s) {
-    return s->dt * s->frequency;
+    return s->dt * s->pace;
 }
 
 /* Whether theory keeps the energy in bounds. */
@@ -98,7 +98,7 @@ static bool refuses_rightly(const hard_subject *s, const hard_result *r) {
 /* Steps beyond the scheme's limit.  To have next to none contradicts the claim
    to keep the energy. */
 static bool is_too_long(const hard_subject *s, const hard_result *r) {
-    return stability_exceeded(r->scheme, r->limit, pace_of(s)) &&
+    return stability_exceeded(r->scheme, r->limit, s->dt * s->frequency) &&
            (r->limit > 0.1 || !hard_keeps(r));
 }
 

@@ -46,8 +46,9 @@ typedef struct {
     double t, dt, t_end, gradient_step;
     bool balance;
     double frequency, fastest_at; /* the largest along the orbit, and when */
-    double peak;                  /* largest effect over the energy's scale */
-    double scale;                 /* of the energy */
+    double pace;       /* the larger of that and of all rates of growth */
+    double peak;       /* largest effect over the energy's scale */
+    double scale;      /* of the energy */
     double rounding;   /* of the energy, where q, p and t are rounded once */
     hard_orbit *orbit; /* NULL: nobody knows where the orbit leads */
 } hard_subject;

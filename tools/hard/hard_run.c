@@ -68,7 +68,7 @@ static double find_floor(const hard_subject *s, nevh_stepper *m, double steps) {
             rough = fmax(rough, (step.truncation + step.rounding) / step.size);
     }
     return find_noise(s, m, steps) + (rough + 16 * DBL_EPSILON) * s->peak *
-                                         fmax(1, steps * s->dt * s->frequency);
+                                         fmax(1, steps * s->dt * s->pace);
 }
 
 static bool finite_state(const hard_subject *s, const double q[],
@@ -141,8 +141,8 @@ static void find_pace(const hard_subject *s, const nevh_options *o,
     pace fastest =
         stability_pace(s->system, r->scheme, &own, 0, s->dt,
                        s->t + s->dt * fmin((double)r->steps + 1, r->asked));
-    if (fastest.frequency > r->frequency)
-        r->frequency = fastest.frequency, r->fastest_at = fastest.t;
+    if (fastest.turning > r->frequency)
+        r->frequency = fastest.turning, r->fastest_at = fastest.turning_at;
 }
 
 static void run_planned(const hard_subject *s, nevh_stepper *m,

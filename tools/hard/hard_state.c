@@ -230,7 +230,7 @@ static void allow_steps(hard_state *w, const hard_subject *s,
         double rate = fmax(k->pace[i], k->pace[i ? i - 1 : 0]);
         double time = i ? k->t[i] - k->t[i - 1] : 0;
         if (haste > 1)
-            rate = fmax(rate, s->frequency);
+            rate = fmax(rate, s->pace);
         most = fmax(most, s->dt * rate);
         turns += pow(s->dt * rate, order) * rate * time / (2 * M_PI);
         double once = pow(most, order);
@@ -254,7 +254,7 @@ static void allow_tolerance(hard_state *w, const hard_subject *s,
     for (size_t i = 0; i < k->count; i++) {
         double time = k->t[i] - s->t;
         w->bound[i] = tolerance * size * k->growth[i] * substeps *
-                      (1 + time * fmax(1 / s->dt, s->frequency));
+                      (1 + time * fmax(1 / s->dt, s->pace));
     }
 }
 

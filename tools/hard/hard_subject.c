@@ -138,8 +138,9 @@ static void explore(hard_subject *s) {
     v.slope = tool_allocate(2 * s->n, sizeof(double));
     v.fastest.rates = nevh_rates_new(s->system, &o);
     integrate(s, &v, &o);
-    s->frequency = v.fastest.frequency;
-    s->fastest_at = v.fastest.t;
+    s->frequency = v.fastest.turning;
+    s->fastest_at = v.fastest.turning_at;
+    s->pace = v.fastest.frequency;
     s->scale = energy_scale(s, &o);
     s->peak = fmax(1, v.largest / s->scale);
     s->rounding = v.rounding / s->scale;

@@ -101,7 +101,7 @@ static void add_trial_run(const plan *p, const nevh_integrator *scheme,
         table_shown(t, "%.3g", x);
     else
         table_text(t, NULL);
-    table_text(t, fits ? trial_run_verdict(limit, x) : NULL);
+    table_text(t, fits ? trial_run_verdict(ahead, limit, p->dt[0]) : NULL);
 }
 
 /* What the table holds, and what is said below it. */

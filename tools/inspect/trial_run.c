@@ -10,10 +10,12 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
-enum { SAMPLES = 256, EDGE_EVERY = 8, MOST_DOF = 48 };
-static const double enough = 2;    /* seconds */
+enum { SAMPLES = 256, PARTS = 16, EDGE_EVERY = 8, MOST_DOF = 48 };
+/* Evaluations of single terms, or of their derivatives, in all: a second or
+   two, and as many on every machine. */
+static const double enough = 1e8;
+static const double large = 1e4;   /* instances of terms */
 static const double beside = 1e-7; /* of the lengths */
 static const double far_off = 1e3; /* times that */
 /* Factors of e by which a neighbour parts: in all, and in the second half of
@@ -31,13 +33,30 @@ typedef struct {
     nevh_field *gradient;     /* the first that is asked for */
     double scale;             /* of the energy */
     double *length;           /* 2n */
-    double *z;                /* 2n x 2, the neighbour in lane 1 */
+    double *z, *before;       /* 2n x 2, the neighbour in lane 1 */
     double *trial;            /* 2n */
     double folds;             /* when the neighbour was last brought back */
     double fold[SAMPLES + 1]; /* of each sample */
     size_t samples;
-    clock_t begin;
+    nevh_stepper *stepper;
+    double looks, instances; /* instances: of terms, in H */
 } trial;
+
+/* Derivatives that are taken by one state for its rates, as nevh_rates_at
+   says. */
+static double rates_gradients(size_t n) {
+    return n <= MOST_DOF ? 12 * (double)n : 6 * 60;
+}
+
+static double work_of(const trial *f) {
+    nevh_counts step = nevh_stepper_counts(f->stepper);
+    nevh_counts value = nevh_field_counts(f->field);
+    nevh_counts noise = nevh_field_counts(f->gradient);
+    double gradients = (double)(step.gradients + noise.gradients) +
+                       f->looks * rates_gradients(f->plan->n);
+    return (double)(step.values + value.values + noise.values) +
+           gradients * f->instances;
+}
 
 /* H at the state of lane 0, variable k moved. */
 static bool is_there(trial *f, double t, size_t k, double move) {
@@ -112,6 +131,7 @@ static void take_first_lane(trial *f) {
 
 static void look(trial *f, int i, double t) {
     size_t n = f->plan->n;
+    f->looks++;
     take_first_lane(f);
     pace_observe(&f->fastest, 0, t, f->trial, f->trial + n);
     look_for_noise(f, t);
@@ -128,24 +148,49 @@ static bool is_stopped(trial *f, double t) {
            reached;
 }
 
-static void run(trial *f, nevh_stepper *s) {
+/* A sample's time back, and on to the stop in short steps.
+   returns  the time there */
+static double look_up_to_stop(trial *f, double t, double h) {
+    enum { SHORTER = 64 };
+    size_t n = f->plan->n;
+    memcpy(f->z, f->before, 4 * n * sizeof *f->z);
+    for (int i = 1; i <= SHORTER; i++) {
+        double from = t + (i - 1) * h / SHORTER;
+        int status = nevh_stepper_apply(f->stepper, from, h / SHORTER, f->z,
+                                        f->z + 2 * n);
+        if (status || is_stopped(f, from + h / SHORTER))
+            return from + h / SHORTER;
+        look(f, i, from + h / SHORTER);
+    }
+    return t + h;
+}
+
+static void run(trial *f) {
     const plan *p = f->plan;
-    double t = p->run->t_start, h = (p->t_end - t) / SAMPLES;
+    nevh_stepper *s = f->stepper;
+    double begin = p->run->t_start, t = begin, h = (p->t_end - t) / SAMPLES;
     int status = nevh_stepper_status(s);
+    /* Of a large H a sample alone may take all that is allowed. */
+    int parts = f->instances > large ? PARTS : 1;
     look(f, 0, t);
     put_beside(f);
-    for (int i = 1; !status && i <= SAMPLES; i++) {
-        status = nevh_stepper_apply(s, t, h, f->z, f->z + 2 * p->n);
+    for (int i = 1; !status && i <= SAMPLES && work_of(f) < enough; i++) {
+        memcpy(f->before, f->z, 4 * p->n * sizeof *f->z);
+        for (int k = 0; !status && k < parts && work_of(f) < enough; k++) {
+            status = nevh_stepper_apply(s, t, h / parts, f->z, f->z + 2 * p->n);
+            if (!status)
+                t = begin + (i - 1 + (k + 1.) / parts) * h;
+        }
         if (status)
             break;
-        t = p->run->t_start + i * h;
         follow_neighbour(f, (size_t)i);
-        look(f, i, t);
-        if (is_stopped(f, t) ||
-            (double)(clock() - f->begin) / CLOCKS_PER_SEC > enough)
+        if (is_stopped(f, t)) {
+            t = look_up_to_stop(f, begin + (i - 1) * h, h);
             break;
+        }
+        look(f, i, t);
     }
-    f->found->length = t - p->run->t_start;
+    f->found->length = t - begin;
     if (status)
         f->found->failure = text_print("%s", nevh_stepper_message(s));
 }
@@ -159,16 +204,16 @@ static double most(const double numbers[], size_t from, size_t to) {
 
 /* Of the last fold: from those of parts of the trial run, which differ. */
 static double spread(const trial *f) {
-    enum { PARTS = 8 };
+    enum { OWN = 8 };
     size_t last = f->samples;
-    double mean = f->fold[last] / PARTS, sum = 0;
-    for (size_t i = 0; i < PARTS; i++) {
+    double mean = f->fold[last] / OWN, sum = 0;
+    for (size_t i = 0; i < OWN; i++) {
         double off =
-            f->fold[(i + 1) * last / PARTS] - f->fold[i * last / PARTS] - mean;
+            f->fold[(i + 1) * last / OWN] - f->fold[i * last / OWN] - mean;
         sum += off * off;
     }
     double halves = fabs(f->fold[last] - 2 * f->fold[last / 2]);
-    return fmax(halves, sqrt(sum * PARTS / (PARTS - 1)));
+    return fmax(halves, sqrt(sum * OWN / (OWN - 1)));
 }
 
 /* Whether neighbours part as in chaos; from the largest values of either half,
@@ -220,13 +265,22 @@ static nevh_stepper *new_stepper(const trial *f) {
     return nevh_stepper_new(p->system, nevh_dop853, &o);
 }
 
+static double count_instances(const trial *f) {
+    const plan *p = f->plan;
+    double t = p->run->t_start, h;
+    if (nevh_field_value(f->field, 1, &t, p->q, p->p, &h))
+        return 1;
+    return (double)nevh_field_counts(f->field).values;
+}
+
 trial_run trial_run_new(const plan *p) {
     trial_run found = {.edge = INFINITY};
     nevh_options given = plan_options(p, p->gradients.item[0]);
     nevh_options o = plan_options(p, "exact");
-    trial f = {.plan = p, .found = &found, .begin = clock()};
+    trial f = {.plan = p, .found = &found};
     f.length = tool_allocate(2 * p->n, sizeof *f.length);
     f.z = tool_allocate(4 * p->n, sizeof *f.z);
+    f.before = tool_allocate(4 * p->n, sizeof *f.z);
     f.trial = tool_allocate(2 * p->n, sizeof *f.trial);
     nevh_options values = plan_options(p, "central2");
     values.gradient_step = 1e-3; /* unused: H alone is asked for */
@@ -234,21 +288,25 @@ trial_run trial_run_new(const plan *p) {
     f.field = nevh_field_new(p->system, &values);
     f.gradient = nevh_field_new(p->system, &given);
     f.scale = plan_energy_scale(p);
+    f.instances = count_instances(&f);
     if (take_lengths(&f, &o)) {
         o.scale = f.length;
         f.fastest.rates = nevh_rates_new(p->system, &o);
-        nevh_stepper *s = new_stepper(&f);
-        run(&f, s);
-        nevh_stepper_free(s);
+        f.stepper = new_stepper(&f);
+        run(&f);
+        nevh_stepper_free(f.stepper);
     }
-    found.frequency = f.fastest.frequency;
-    found.fastest_at = f.fastest.t;
+    found.frequency = f.fastest.turning;
+    found.frequency_at = f.fastest.turning_at;
+    found.pace = f.fastest.frequency;
+    found.pace_at = f.fastest.t;
     judge(&f);
     nevh_rates_free(f.fastest.rates);
     nevh_field_free(f.field);
     nevh_field_free(f.gradient);
     free(f.length);
     free(f.z);
+    free(f.before);
     free(f.trial);
     return found;
 }
@@ -311,8 +369,14 @@ void trial_run_words(const plan *p, const trial_run *f, list *notes) {
         list_print(notes,
                    "Highest frequency met: omega = %.3g%s%s (t = %.4g%s%s); "
                    "omega dt = %.3g at dt = %.4g%s%s",
-                   f->frequency, per, unit, f->fastest_at, space, unit,
+                   f->frequency, per, unit, f->frequency_at, space, unit,
                    p->dt[0] * f->frequency, p->dt[0], space, unit);
+    if (f->pace > f->frequency)
+        list_print(notes,
+                   "Fastest growth met: small displacements grow at a rate of "
+                   "%.3g%s%s (t = %.4g%s%s); rate dt = %.3g at dt = %.4g%s%s",
+                   f->pace, *unit ? "/" : "", unit, f->pace_at, space, unit,
+                   p->dt[0] * f->pace, p->dt[0], space, unit);
     tell_outlook(p, f, notes);
     if (isfinite(f->noise))
         list_print(notes,
@@ -324,8 +388,8 @@ void trial_run_words(const plan *p, const trial_run *f, list *notes) {
     tell_edge(p, f, notes);
 }
 
-const char *trial_run_verdict(double limit, double x) {
-    if (x > limit)
+const char *trial_run_verdict(const trial_run *f, double limit, double dt) {
+    if (f->frequency * dt > limit)
         return "unstable";
-    return x > 1 ? "not resolved" : NULL;
+    return f->pace * dt > 1 ? "not resolved" : NULL;
 }

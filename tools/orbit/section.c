@@ -179,11 +179,12 @@ static int run(job *j, nevh_stepper *s) {
     return status;
 }
 
-/* The columns that sections show, each once. */
+/* The columns that sections show, each once; t is there before. */
 static void list_items(const job *j, list *items) {
     for (size_t i = 0; i < j->count; i++)
         for (size_t k = 0; k < j->all[i].decl->items; k++)
-            if (!list_has(items, j->all[i].decl->item[k]))
+            if (strcmp(j->all[i].decl->item[k], "t") != 0 &&
+                !list_has(items, j->all[i].decl->item[k]))
                 list_add(items, j->all[i].decl->item[k]);
 }
 
