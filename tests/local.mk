@@ -137,6 +137,7 @@ endif
 dist_check_SCRIPTS = \
 	tests/build/symbols.sh \
 	tests/build/arrows.sh \
+	tests/build/names.sh \
 	tests/robust/fuzz_compiles.sh \
 	tests/build/cplusplus.sh \
 	tests/build/examples.sh \

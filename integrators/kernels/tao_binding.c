@@ -47,7 +47,7 @@ enum { SWEEPS = 16 };
 
 /* H around the states of a run. */
 typedef struct {
-    nevh__step_selection explorer;
+    nevh__step_selection selection;
     nevh_field *field;
     size_t n;
     double *move;           /* 2n: by which a state is moved to both sides */
@@ -58,7 +58,7 @@ typedef struct {
 } survey;
 
 static void close_survey(survey *s) {
-    nevh__step_selection_clear(&s->explorer);
+    nevh__step_selection_clear(&s->selection);
     free(s->move);
     for (size_t i = 0; i < s->field->n_terms; i++)
         s->field->terms[i].values = 0;
@@ -77,15 +77,15 @@ static bool open_survey(survey *s, nevh_work *w) {
     s->behind = s->ahead + m;
     s->unit = s->behind + m;
     s->curved = s->unit + m;
-    if (nevh__step_selection_init(&s->explorer, w->field, w->options) ||
-        !nevh__add_run(&s->explorer))
+    if (nevh__step_selection_init(&s->selection, w->field, w->options) ||
+        !nevh__add_run(&s->selection))
         return false;
-    nevh__find_neighbours(&s->explorer);
+    nevh__find_neighbours(&s->selection);
     return true;
 }
 
 static bool gradient_beside(survey *s, size_t at, double sign, double out[]) {
-    const nevh__samples *z = &s->explorer.samples;
+    const nevh__samples *z = &s->selection.samples;
     size_t n = s->n;
     for (size_t i = 0; i < n; i++) {
         s->point[i] = z->q[at * n + i] + sign * s->move[i];
@@ -112,12 +112,12 @@ static void add_curved(survey *s, size_t at, uint64_t *random) {
         for (size_t i = 0; i < 2 * s->n; i++) {
             double part = nevh__random(random) < 0 ? -reach : reach;
             bool moves = i >= first && i < first + s->n;
-            s->move[i] = moves ? part * s->explorer.length[i] : 0;
+            s->move[i] = moves ? part * s->selection.length[i] : 0;
         }
         if (!differ(s, at))
             continue;
         for (size_t i = first; i < first + s->n; i++) {
-            double curved = s->ahead[i] * s->explorer.length[i];
+            double curved = s->ahead[i] * s->selection.length[i];
             s->curved[i] += curved * curved;
         }
     }
@@ -137,7 +137,7 @@ typedef struct {
 } bend;
 
 static bend bend_of(const survey *s, size_t k) {
-    const double *length = s->explorer.length;
+    const double *length = s->selection.length;
     bend b = {.q = sqrt(s->curved[k]),
               .p = sqrt(s->curved[s->n + k]),
               .action = length[k] * length[s->n + k]};
@@ -149,10 +149,10 @@ static bend bend_of(const survey *s, size_t k) {
    on, the other is made as large as the largest frequency found; where nothing
    is curved, the scales remain. */
 static void find_ratios(survey *s, const double scale[], double ratio[]) {
-    const double *length = s->explorer.length;
+    const double *length = s->selection.length;
     uint64_t random = 1;
     double frequency = 0;
-    for (size_t at = 0; at < s->explorer.neighbours; at++)
+    for (size_t at = 0; at < s->selection.neighbours; at++)
         add_curved(s, at, &random);
     for (size_t k = 0; k < s->n; k++) {
         bend b = bend_of(s, k);
@@ -209,7 +209,7 @@ static double curvature(survey *s, size_t at, double step, double v[]) {
 
 /* Of the run; of states beside it, where nothing is curved on it. */
 static double largest_curvature(survey *s, const double ratio[]) {
-    const nevh__step_selection *e = &s->explorer;
+    const nevh__step_selection *e = &s->selection;
     double step = INFINITY, first = 0, most = 0;
     for (size_t k = 0; k < s->n; k++) {
         s->unit[k] = 1 / sqrt(ratio[k]);

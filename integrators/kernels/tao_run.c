@@ -18,7 +18,7 @@ enum { SAMPLES = 24, STRIDE = 8, EACH = 140 /* gradients a sample */ };
 static const double tolerance = 1e-8; /* of a step, in lengths */
 static const double most_work = 2e7;  /* values of terms */
 
-/* As many samples as most_work allows, and the explorer has room for. */
+/* As many samples as most_work allows, and the selection has room for. */
 static size_t affordable(const nevh__step_selection *e) {
     const nevh_field *f = e->field;
     size_t room = e->samples.most - e->samples.count;

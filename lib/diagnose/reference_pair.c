@@ -135,10 +135,10 @@ static bool have_separated(octave *o, double step, double difference,
            !(difference <= o->before && difference <= separate);
 }
 
-nevh__outcome nevh__pair_run(nevh__pair *b, double h, double most) {
+nevh__pair_outcome nevh__pair_run(nevh__pair *b, double h, double most) {
     const nevh_reference *r = b->reference;
     double span = r->t1 - r->t0, steps = ceil(fabs(span / h) * (1 - 1e-12));
-    nevh__outcome o = {.h = span / steps};
+    nevh__pair_outcome o = {.h = span / steps};
     octave past = {0};
     begin(b, o.h);
     o.status = orbit_add(&b->orbit, r->n, 0, b->b);

@@ -29,7 +29,7 @@ typedef struct {
     double error;
     bool whole;        /* they came to the end */
     bool stepped_over; /* H changed, and not by what they differ */
-} nevh__outcome;
+} nevh__pair_outcome;
 
 /* The error of one step from the start, relative to what it changes, and to the
    state. */
@@ -43,7 +43,7 @@ void nevh__pair_clear(nevh__pair *);
 /* The part of what may be spent that has been. */
 double nevh__pair_spent(const nevh__pair *);
 /* Until they differ by more than `most`, or may cost no more. */
-nevh__outcome nevh__pair_run(nevh__pair *, double h, double most);
+nevh__pair_outcome nevh__pair_run(nevh__pair *, double h, double most);
 /* INFINITY when the step cannot be taken. */
 nevh__step_error nevh__pair_first_error(nevh__pair *, double h);
 /* How rounding grows until `reached`, by steps of h: one orbit is rounded to

@@ -61,7 +61,7 @@ static double first_step(nevh__pair *b, int order) {
     return fabs(h) < fabs(longest) ? h : longest;
 }
 
-static int give_up_jump(const nevh__pair *b, const nevh__outcome *o) {
+static int give_up_jump(const nevh__pair *b, const nevh__pair_outcome *o) {
     nevh_reference *r = b->reference;
     const nevh__jump *j = &b->watch.jump;
     double t = r->t0 + o->reached + j->part * o->h;
@@ -75,7 +75,7 @@ static int give_up_jump(const nevh__pair *b, const nevh__outcome *o) {
                       fabs(o->h) / 2);
 }
 
-static int give_up(nevh__pair *b, const nevh__outcome *o) {
+static int give_up(nevh__pair *b, const nevh__pair_outcome *o) {
     nevh__report *report = &b->reference->report;
     double t = b->reference->t0 + o->reached;
     const char *name = nevh_integrator_name(b->reference->integrator);
@@ -95,7 +95,7 @@ static int give_up(nevh__pair *b, const nevh__outcome *o) {
 }
 
 /* The pair's fine orbit becomes the reference. */
-static void keep(nevh__pair *b, const nevh__outcome *o) {
+static void keep(nevh__pair *b, const nevh__pair_outcome *o) {
     nevh_reference *r = b->reference;
     size_t size = 2 * r->n * sizeof(double);
     nevh__reference_orbit old = r->orbit;
@@ -112,7 +112,7 @@ static void keep(nevh__pair *b, const nevh__outcome *o) {
 /* As far as they stay together.  `why` they will not to the end. */
 static void keep_part(nevh__pair *b, double h, nevh_reference_end why) {
     nevh_reference *r = b->reference;
-    nevh__outcome o = nevh__pair_run(b, h, apart);
+    nevh__pair_outcome o = nevh__pair_run(b, h, apart);
     const char *name = nevh_integrator_name(r->integrator);
     if (o.status || o.stepped_over || o.reached == 0 ||
         (!o.whole && nevh__pair_spent(b) >= 1))
@@ -141,7 +141,7 @@ static bool may_be_chaotic(const nevh_reference *r) {
 /* Why they have separated: by rounding, chaos or not, or by their steps.  Where
    these have `stalled` all that is as small as rounding, such as tolerances, may
    have been blown up. */
-static nevh_reference_end explain(nevh__pair *b, const nevh__outcome *o,
+static nevh_reference_end explain(nevh__pair *b, const nevh__pair_outcome *o,
                                   bool stalled) {
     static const double many = 1e4;
     nevh_reference *r = b->reference;
@@ -165,7 +165,7 @@ typedef struct {
     int stalled[2];
 } progress;
 
-static double shorter_step(const nevh__outcome *o, int order) {
+static double shorter_step(const nevh__pair_outcome *o, int order) {
     if (o->status)
         return o->h / 2;
     if (!o->whole)
@@ -176,7 +176,7 @@ static double shorter_step(const nevh__outcome *o, int order) {
 
 /* Longer again where a run to the end would cost more than is left, if `cost`
    is what the last one did. */
-static double affordable_step(const nevh__pair *b, const nevh__outcome *o,
+static double affordable_step(const nevh__pair *b, const nevh__pair_outcome *o,
                               double cost, double h) {
     double span = b->reference->t1 - b->reference->t0;
     double whole = o->reached != 0 ? cost * span / o->reached : 0;
@@ -188,7 +188,7 @@ static double affordable_step(const nevh__pair *b, const nevh__outcome *o,
 
 /* Shorter steps, 4e9 times better for two at order 12, should have come
    further. */
-static bool has_stalled(progress *p, const nevh__outcome *o) {
+static bool has_stalled(progress *p, const nevh__pair_outcome *o) {
     int failed = o->status != NEVH_OK;
     bool further = fabs(o->reached) > 1.02 * p->reached[failed];
     p->stalled[failed] = further ? 0 : p->stalled[failed] + 1;
@@ -198,7 +198,7 @@ static bool has_stalled(progress *p, const nevh__outcome *o) {
 
 /* So that rounding alone separates the runs, where that can be afforded: they
    will go on for longer than the last, at most to the end. */
-static double chaos_step(const nevh__pair *b, const nevh__outcome *o,
+static double chaos_step(const nevh__pair *b, const nevh__pair_outcome *o,
                          double cost) {
     const nevh_reference *r = b->reference;
     double longer = fmin(3, (r->t1 - r->t0) / o->reached);
@@ -208,7 +208,7 @@ static double chaos_step(const nevh__pair *b, const nevh__outcome *o,
 
 /* The shortest by which a run to the end costs no more than that part of what
    may be spent, or as much as is left. */
-static double whole_step(const nevh__pair *b, const nevh__outcome *o,
+static double whole_step(const nevh__pair *b, const nevh__pair_outcome *o,
                          double cost) {
     static const double part = 0.2;
     double span = b->reference->t1 - b->reference->t0;
@@ -218,7 +218,7 @@ static double whole_step(const nevh__pair *b, const nevh__outcome *o,
 }
 
 /* Whether that was the last run; `cost` is its own. */
-static bool is_enough(nevh__pair *b, const nevh__outcome *o, double cost,
+static bool is_enough(nevh__pair *b, const nevh__pair_outcome *o, double cost,
                       progress *p) {
     if (o->status == NEVH_ENOMEM || nevh__pair_spent(b) >= 1)
         return true;
@@ -248,7 +248,7 @@ static int find_run(nevh__pair *b) {
     int order = nevh_stepper_order(b->coarse);
     double h = first_step(b, order), last = 0;
     progress p = {.error = INFINITY};
-    nevh__outcome o = {0};
+    nevh__pair_outcome o = {0};
     for (int i = 0; h != 0 && i < MOST_RUNS; i++) {
         double before = nevh__pair_spent(b);
         if (*r->text && last * o.h / h > 1 - before)

@@ -110,8 +110,8 @@ static double part_of(search *s, double at) {
 }
 
 /* Goes up to the maximum, or until the value is above 0. */
-static bool climb(search *s, double t[3], double g[3], double *at,
-                  double *value) {
+static bool find_maximum(search *s, double t[3], double g[3], double *at,
+                         double *value) {
     for (int i = 0; i < MOST_DIGS; i++) {
         double top;
         if (!turn(t, g, at, &top) || !(g[1] + doubt * (top - g[1]) > 0))
@@ -145,7 +145,7 @@ double nevh__ensemble_graze(nevh_ensemble *e, size_t lane, size_t o) {
     double ratio = e->ago1.h[lane] / e->ago2.h[lane];
     double t[3] = {0, 1, 1 + ratio}, at, value;
     search s = {.e = e, .lane = lane, .outcome = o, .ratio = ratio};
-    if (!climb(&s, t, g, &at, &value)) {
+    if (!find_maximum(&s, t, g, &at, &value)) {
         result(&s, NAN);
         return NAN;
     }

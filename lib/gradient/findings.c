@@ -12,7 +12,7 @@ static const double smooth_limit = 1e-5;
 
 struct nevh_probe {
     nevh_field *field;
-    nevh__step_selection explorer;
+    nevh__step_selection selection;
     nevh_options options;
     double *start; /* 2n: lane 0 of the state */
     double *state; /* 2n: a trial state */
@@ -25,7 +25,7 @@ struct nevh_probe {
 static void violate(nevh_probe *b, nevh_question question, double violation,
                     double size, size_t at) {
     nevh_finding *f = &b->finding[question];
-    const nevh__samples *s = &b->explorer.samples;
+    const nevh__samples *s = &b->selection.samples;
     size_t n = b->field->n;
     if (!isfinite(violation) || !(size > 0) || violation / size < f->evidence)
         return;
@@ -37,7 +37,7 @@ static void violate(nevh_probe *b, nevh_question question, double violation,
 
 /* H at sample `at`, with momenta times `factor` and time moved. */
 static double energy(nevh_probe *b, size_t at, double factor, double later) {
-    const nevh__samples *s = &b->explorer.samples;
+    const nevh__samples *s = &b->selection.samples;
     size_t n = b->field->n;
     double t = s->t[at] + later, h;
     for (size_t k = 0; k < n; k++)
@@ -73,7 +73,7 @@ static void try_separable(nevh_probe *b) {
     nevh_finding *f = &b->finding[NEVH_IS_SEPARABLE];
     size_t n = b->field->n;
     nevh_system_probe(b->field->system, b->options.t, b->start, b->start + n,
-                      b->explorer.length, &s);
+                      b->selection.length, &s);
     f->holds = s.separable;
     f->evidence = s.mixed;
     f->term = s.term;
@@ -107,7 +107,7 @@ static bool reads_time(const nevh_system *s) {
 static int ask(nevh_probe *b) {
     for (nevh_question i = 0; i < NEVH_FINDINGS; i++)
         b->finding[i].limit = roundings;
-    for (size_t at = 0; at < b->explorer.samples.count; at++) {
+    for (size_t at = 0; at < b->selection.samples.count; at++) {
         try_momenta(b, at);
         if (reads_time(b->field->system))
             try_times(b, at);
@@ -145,8 +145,8 @@ static int open_probe(nevh_probe *b, const nevh_system *s) {
     if (b->field->report.status)
         return nevh__fail_as(&b->report, &b->field->report);
     take_start(b);
-    if (nevh__step_selection_init(&b->explorer, b->field, &b->options) ||
-        !nevh__find_samples(&b->explorer))
+    if (nevh__step_selection_init(&b->selection, b->field, &b->options) ||
+        !nevh__find_samples(&b->selection))
         return nevh__fail(&b->report, NEVH_ENOMEM, "out of memory");
     return ask(b);
 }
@@ -166,7 +166,7 @@ nevh_probe *nevh_probe_new(const nevh_system *s, const nevh_options *options) {
 void nevh_probe_free(nevh_probe *b) {
     if (!b)
         return;
-    nevh__step_selection_clear(&b->explorer);
+    nevh__step_selection_clear(&b->selection);
     nevh_field_free(b->field);
     free(b->start);
     free(b->state);
@@ -195,5 +195,5 @@ const char *nevh_question_name(nevh_question question) {
 }
 
 const double *nevh_probe_lengths(const nevh_probe *b) {
-    return b->explorer.length;
+    return b->selection.length;
 }

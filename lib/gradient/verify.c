@@ -18,7 +18,7 @@ enum { ROUNDS = 4 };
 static const double long_step = 0x1p-6, short_step = 0x1p-8; /* of lengths */
 
 typedef struct {
-    nevh__step_selection *explorer;
+    nevh__step_selection *selection;
     const nevh__planned *term;
     size_t instance;
     double *own; /* nv derivatives of the term's own */
@@ -32,7 +32,7 @@ static double by_difference(const check *c, size_t k, size_t at, double delta,
         move[2 * j] = (double)(j + 1) * delta;
         move[2 * j + 1] = -move[2 * j];
     }
-    nevh__sample_line(c->explorer, c->term, c->instance, k, at, 8, move, x, h);
+    nevh__sample_line(c->selection, c->term, c->instance, k, at, 8, move, x, h);
     for (size_t j = 0; j < 4; j++) {
         double weight = nevh_central8->weights[j] / (x[2 * j] - x[2 * j + 1]);
         double size = fmax(fabs(h[2 * j]), fabs(h[2 * j + 1]));
@@ -43,11 +43,11 @@ static double by_difference(const check *c, size_t k, size_t at, double delta,
 
 /* The term's own derivatives at one sample, from a block of equal lanes. */
 static void ask_term(const check *c, size_t at) {
-    nevh_field *f = c->explorer->field;
+    nevh_field *f = c->selection->field;
     const nevh__planned *term = c->term;
     const nevh_term *decl = &term->term->decl;
     double move[NEVH__LANES] = {0}, x[NEVH__LANES], h[NEVH__LANES];
-    nevh__sample_line(c->explorer, term, c->instance, 0, at, NEVH__LANES, move,
+    nevh__sample_line(c->selection, term, c->instance, 0, at, NEVH__LANES, move,
                       x, h);
     double *q = f->rows, *p = q + term->nq * NEVH__LANES;
     double *dp = f->slopes + term->nq * NEVH__LANES;
@@ -60,7 +60,7 @@ static void ask_term(const check *c, size_t at) {
 static int wrong(const check *c, size_t k, double own, double difference) {
     const nevh_term *decl = &c->term->term->decl;
     return nevh__fail(
-        &c->explorer->field->report, NEVH_ENOGRAD,
+        &c->selection->field->report, NEVH_ENOGRAD,
         "the exact gradient of term \"%s\" of effect \"%s\" is wrong: its "
         "derivative with respect to %c[%zu] is %.9g where differences of its "
         "values give %.9g",
@@ -70,11 +70,11 @@ static int wrong(const check *c, size_t k, double own, double difference) {
 
 static int check_sample(const check *c, size_t at) {
     const nevh__planned *term = c->term;
-    size_t n = c->explorer->field->n;
+    size_t n = c->selection->field->n;
     ask_term(c, at);
     for (size_t k = 0; k < term->nv; k++) {
         size_t i = nevh__index(term, c->instance, k);
-        double length = c->explorer->length[k < term->nq ? i : n + i];
+        double length = c->selection->length[k < term->nq ? i : n + i];
         double noise = 0;
         double near = by_difference(c, k, at, short_step * length, &noise);
         double far = by_difference(c, k, at, long_step * length, &noise);
@@ -95,7 +95,7 @@ static bool same(double a, double b) {
 static int unlike(const check *c, size_t k, double point, double block) {
     const nevh_term *decl = &c->term->term->decl;
     return nevh__fail(
-        &c->explorer->field->report, NEVH_ENOGRAD,
+        &c->selection->field->report, NEVH_ENOGRAD,
         "the point gradient of term \"%s\" of effect \"%s\" is not its "
         "gradient to the last bit: the derivative with respect to %c[%zu] is "
         "%.17g where that of a block is %.17g; what is said of NEVH_GRADIENT "
@@ -107,14 +107,14 @@ static int unlike(const check *c, size_t k, double point, double block) {
 /* Fills a block with one sample and neighbours of it, of which nothing is known
    but that other last bits come up. */
 static void spread(const check *c, size_t at, size_t round) {
-    nevh_field *f = c->explorer->field;
+    nevh_field *f = c->selection->field;
     double move[NEVH__LANES] = {0}, x[NEVH__LANES], h[NEVH__LANES];
     uint64_t seed = ROUNDS * at + round;
-    nevh__sample_line(c->explorer, c->term, c->instance, 0, at, NEVH__LANES,
+    nevh__sample_line(c->selection, c->term, c->instance, 0, at, NEVH__LANES,
                       move, x, h);
     for (size_t k = 0; k < c->term->nv; k++) {
         size_t i = nevh__index(c->term, c->instance, k);
-        double length = c->explorer->length[k < c->term->nq ? i : f->n + i];
+        double length = c->selection->length[k < c->term->nq ? i : f->n + i];
         for (size_t lane = 1; lane < NEVH__LANES; lane++)
             f->rows[k * NEVH__LANES + lane] +=
                 long_step * length * nevh__random(&seed);
@@ -127,7 +127,7 @@ static void spread(const check *c, size_t at, size_t round) {
 static int check_lane(const check *c, size_t lane, bool of_q, bool of_p) {
     const nevh__planned *term = c->term;
     const nevh_term *decl = &term->term->decl;
-    nevh_field *f = c->explorer->field;
+    nevh_field *f = c->selection->field;
     double *q = f->one, *p = q + term->nq, *own = c->own;
     for (size_t k = 0; k < term->nv + decl->nc; k++)
         q[k] = f->rows[k * NEVH__LANES + lane];
@@ -148,7 +148,7 @@ static int check_point(const check *c, size_t at, size_t round) {
     static const bool asked[][2] = {{true, true}, {true, false}, {false, true}};
     const nevh__planned *term = c->term;
     const nevh_term *decl = &term->term->decl;
-    nevh_field *f = c->explorer->field;
+    nevh_field *f = c->selection->field;
     double *q = f->rows, *p = q + term->nq * NEVH__LANES;
     double *dp = f->slopes + term->nq * NEVH__LANES;
     int status = NEVH_OK;

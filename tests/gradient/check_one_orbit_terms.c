@@ -22,14 +22,14 @@ static void add_kinetic(nevh_system *s, size_t count, const size_t *at) {
 }
 
 /* Both halves of H are sums of two terms. */
-static nevh_system *in_parts(bool rubs) {
+static nevh_system *in_parts(bool friction) {
     static const size_t all[] = {0, 1}, one[] = {1};
     nevh_system *s = nevh_system_new(2);
     add_waves(s, 2, all);
     add_kinetic(s, 2, all);
     add_waves(s, 1, one);
     add_kinetic(s, 1, one);
-    if (rubs)
+    if (friction)
         ck_assert(
             !nevh_system_add_friction(s, "drag", (const double[]){0.3, 0.1}));
     return s;

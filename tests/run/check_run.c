@@ -44,13 +44,13 @@ static int record(void *data, size_t step, double t, const double q[],
 }
 
 /* With or without friction; whether the scheme takes it. */
-static bool go(const nevh_integrator *scheme, bool rubs,
+static bool go(const nevh_integrator *scheme, bool friction,
                const nevh_observer watch[], size_t count, state *x) {
     const problem *b = problem_for(scheme);
-    if (rubs && nevh_integrator_own_time(scheme))
+    if (friction && nevh_integrator_own_time(scheme))
         return false;
     nevh_system *s = b->make();
-    if (rubs)
+    if (friction)
         nevh_system_add_friction(s, "drag", (const double[]){0.2, 0.1});
     nevh_stepper *m = planned(s, b, scheme, nevh_central4);
     *x = start(b);

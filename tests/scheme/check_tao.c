@@ -415,7 +415,7 @@ TEST_EACH(neighbours_gradients_are_kept, 3) {
 
 /* Friction shortens p and y alike, and the gradient kept is no longer that of
    the state; q and x stay. */
-TEST_EACH(friction_damps_the_memory, 3) {
+TEST_EACH(friction_scales_the_memory, 3) {
     const problem *b = &double_pendulum;
     static const double factor[] = {0.5, 0.25};
     nevh_system *s = b->make();

@@ -381,7 +381,7 @@ static double slope(int points, const double x[], const double y[],
     return xy / xx;
 }
 
-/* Of the straightest stretch: large steps do not obey the power law yet, small
+/* Of the straightest stretch: large steps do not follow the power law yet, small
    ones are lost in rounding, and both scatter. */
 static double straightest(const line *l, int stretch) {
     double best = INFINITY, found = NAN, scatter;
@@ -395,7 +395,7 @@ static double straightest(const line *l, int stretch) {
     return found;
 }
 
-/* Orders 9 and 10 obey their power law only just above rounding. */
+/* Orders 9 and 10 follow their power law only just above rounding. */
 static double least_error(int order) {
     if (order <= 5)
         return order == 5 ? 1e-11 : 1e-9;

@@ -167,7 +167,7 @@ static int hold(nevh_work *w, double t, double h, double q[], double p[]) {
     return NEVH_OK;
 }
 
-static void hold_damp(nevh_work *w, const double factor[]) {
+static void hold_friction(nevh_work *w, const double factor[]) {
     for (size_t i = 0; i < w->size; i++)
         w->memory[i] *= factor[i / w->width];
 }
@@ -181,7 +181,7 @@ static nevh_integrator holding(const nevh_kernel *kernel) {
    jump and of steps that change. */
 TEST(memory_is_damped_with_p) {
     const nevh_kernel kernel = {
-        .plan = hold_plan, .step = hold, .apply_friction = hold_damp};
+        .plan = hold_plan, .step = hold, .apply_friction = hold_friction};
     nevh_integrator scheme = holding(&kernel);
     nevh_system *s = damped(&henon_heiles, unequal);
     nevh_stepper *m = nevh_stepper_new(s, &scheme, &(nevh_options){.width = 2});
@@ -196,7 +196,7 @@ TEST(memory_is_damped_with_p) {
     nevh_system_free(s);
 }
 
-/* One that damps itself is given the rates, and left alone. */
+/* One that has friction itself is given the rates, and left alone. */
 TEST(a_kernel_takes_the_rates) {
     const nevh_kernel kernel = {
         .plan = hold_plan, .step = hold, .has_friction = true};
