@@ -142,7 +142,7 @@ typedef struct {
 static double fused(double t, const double q[], const double p[],
                     const double c[], const void *params) {
     fuse *f = *(fuse *const *)params;
-    return ++f->calls == f->fault ? NAN : driven(t, q, p, c, NULL);
+    return ++f->calls == f->fault ? NAN : driven_value(t, q, p, c, NULL);
 }
 
 enum { FUSED_STEPS = 6 };

@@ -1,6 +1,6 @@
 /* nevh tests: steppers, their memory, and the driver.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "support.h"
+#include "state.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,22 +8,6 @@
 /* A problem that the scheme fits, with time in it where possible. */
 static const problem *problem_for(const nevh_integrator *scheme) {
     return nevh_integrator_needs(scheme) ? &driven_pendulum : &double_pendulum;
-}
-
-typedef struct {
-    double q[MOST_DOF], p[MOST_DOF];
-} state;
-
-static state start(const problem *b) {
-    state z;
-    memcpy(z.q, b->q, sizeof z.q);
-    memcpy(z.p, b->p, sizeof z.p);
-    return z;
-}
-
-static void assert_same(const problem *b, const state *x, const state *y) {
-    ck_assert_mem_eq(x->q, y->q, b->n * sizeof(double));
-    ck_assert_mem_eq(x->p, y->p, b->n * sizeof(double));
 }
 
 typedef struct {
@@ -77,8 +61,8 @@ TEST_EACH(watching_changes_nothing, 2 * scheme_count()) {
     if (goes) {
         ck_assert(go(scheme, _i % 2, watch, 2, &y));
         ck_assert(go(scheme, _i % 2, two, 2, &z));
-        assert_same(b, &x, &y);
-        assert_same(b, &x, &z);
+        assert_same_state(b, &x, &y);
+        assert_same_state(b, &x, &z);
         ck_assert_uint_eq(often.calls, 1 + 14 + 1);
         ck_assert_uint_eq(fifth.calls, 1 + 20);
         ck_assert_uint_eq(seventh.calls, 1 + 14 + 1);
@@ -112,8 +96,8 @@ TEST_EACH(pieces_make_the_whole, scheme_count()) {
         t = time_on(stepper[2], scheme, 0.25 + i * h);
         nevh_stepper_apply(stepper[2], t, h, z[2].q, z[2].p);
     }
-    assert_same(b, &z[0], &z[1]);
-    assert_same(b, &z[0], &z[2]);
+    assert_same_state(b, &z[0], &z[1]);
+    assert_same_state(b, &z[0], &z[2]);
     for (int k = 0; k < 3; k++)
         nevh_stepper_free(stepper[k]);
     nevh_system_free(s);
@@ -140,10 +124,10 @@ TEST_EACH(memory_can_be_kept, scheme_count()) {
     nevh_run(first, t1, h, 40, x.q, x.p, NULL, 0);
     ck_assert_int_eq(nevh_stepper_load(other, buffer, size), NEVH_OK);
     nevh_run(other, t1, h, 40, y.q, y.p, NULL, 0);
-    assert_same(b, &x, &y);
+    assert_same_state(b, &x, &y);
     ck_assert_int_eq(nevh_stepper_load(copy, buffer, size), NEVH_OK);
     nevh_run(copy, t1, h, 40, z.q, z.p, NULL, 0);
-    assert_same(b, &x, &z);
+    assert_same_state(b, &x, &z);
     ck_assert_int_eq(nevh_stepper_load(other, buffer, size - 1), NEVH_EINVAL);
     memset(buffer, 1, size);
     ck_assert_int_eq(nevh_stepper_load(other, buffer, size), NEVH_EINVAL);
@@ -167,7 +151,7 @@ TEST_EACH(jumps_start_afresh, scheme_count()) {
     y = x;
     nevh_run(used, b->t0 + 0.6, 0.02, 30, x.q, x.p, NULL, 0);
     nevh_run(fresh, b->t0 + 0.6, 0.02, 30, y.q, y.p, NULL, 0);
-    assert_same(b, &x, &y);
+    assert_same_state(b, &x, &y);
     nevh_stepper_free(used);
     nevh_stepper_free(fresh);
     nevh_system_free(s);
@@ -264,9 +248,9 @@ TEST(an_observer_stops_the_run) {
     ck_assert_int_gt((int)strlen(nevh_stepper_message(stepper)), 0);
     nevh_stepper_reset(stepper);
     nevh_run(stepper, 1, -0.05, 12, y.q, y.p, NULL, 0);
-    assert_same(b, &x, &y);
+    assert_same_state(b, &x, &y);
     ck_assert_int_eq(nevh_run(stepper, 0, 1, 0, x.q, x.p, &watch, 0), NEVH_OK);
-    assert_same(b, &x, &y);
+    assert_same_state(b, &x, &y);
     nevh_stepper_free(stepper);
     nevh_system_free(s);
 }

@@ -1,26 +1,10 @@
 /* nevh tests: runs until a given time.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "support.h"
+#include "state.h"
 #include <math.h>
 #include <nevh/transform.h>
 #include <stdlib.h>
 #include <string.h>
-
-typedef struct {
-    double q[MOST_DOF], p[MOST_DOF];
-} state;
-
-static state start(const problem *b) {
-    state z;
-    memcpy(z.q, b->q, sizeof z.q);
-    memcpy(z.p, b->p, sizeof z.p);
-    return z;
-}
-
-static void assert_same(const state *x, const state *y, const problem *b) {
-    ck_assert_mem_eq(x->q, y->q, b->n * sizeof(double));
-    ck_assert_mem_eq(x->p, y->p, b->n * sizeof(double));
-}
 
 /* What an observer is shown. */
 enum { MOST_SHOWN = 80 };
@@ -114,10 +98,10 @@ TEST_EACH(a_whole_number_of_steps, 2 * scheme_count()) {
     ck_assert(shown.times[7] == t_end && nevh_stepper_time(until) == t_end);
     for (int i = 0; i < 7; i++)
         ck_assert(shown.times[i] == run.times[i]);
-    assert_same(&x, &y, a.b);
+    assert_same_state(a.b, &x, &y);
     nevh_run(until, t_end, h, 5, x.q, x.p, NULL, 0);
     nevh_run(plain, t_end, h, 5, y.q, y.p, NULL, 0);
-    assert_same(&x, &y, a.b);
+    assert_same_state(a.b, &x, &y);
     nevh_stepper_free(until);
     nevh_stepper_free(plain);
     put_away(&a);
@@ -204,22 +188,22 @@ TEST_EACH(an_end_between_steps, 2 * (scheme_count() + 1)) {
     for (size_t i = 0; i <= STEPS; i++) {
         ck_assert_uint_eq(shown.steps[i], i);
         ck_assert(shown.times[i] == run.times[i]);
-        assert_same(&shown.states[i], &run.states[i], a.b);
+        assert_same_state(a.b, &shown.states[i], &run.states[i]);
     }
     ck_assert(shown.steps[STEPS + 1] == STEPS + 1);
     ck_assert(shown.times[STEPS + 1] == t_end);
-    assert_same(&shown.states[STEPS + 1], &x, a.b);
+    assert_same_state(a.b, &shown.states[STEPS + 1], &x);
     ck_assert(nevh_stepper_time(until) == t);
     if (!a.own_time) {
         state z = y;
         nevh_stepper_apply(copy, t, t_end - t, z.q, z.p);
-        assert_same(&x, &z, a.b);
+        assert_same_state(a.b, &x, &z);
     }
     x = y;
     shown.calls = run.calls = 0;
     nevh_run(until, t, h, MORE, x.q, x.p, &watch, 1);
     nevh_run(plain, t, h, MORE, y.q, y.p, &other, 1);
-    assert_same(&x, &y, a.b);
+    assert_same_state(a.b, &x, &y);
     for (size_t i = 0; i <= MORE; i++)
         ck_assert(shown.times[i] == run.times[i]);
     nevh_stepper_free(until);
@@ -243,7 +227,7 @@ TEST_EACH(a_short_way_after_a_jump, scheme_count() + 1) {
         nevh_run_until(used, a.b->t0, h0, t_end, x.q, x.p, NULL, 0), NEVH_OK);
     ck_assert_int_eq(
         nevh_run_until(fresh, a.b->t0, h0, t_end, y.q, y.p, NULL, 0), NEVH_OK);
-    assert_same(&x, &y, a.b);
+    assert_same_state(a.b, &x, &y);
     ck_assert_uint_eq(nevh_stepper_taken(used), 1);
     ck_assert(nevh_stepper_time(used) == a.b->t0);
     nevh_stepper_free(used);
@@ -287,13 +271,13 @@ TEST_EACH(nothing_to_do_and_refusals, scheme_count() + 1) {
         ck_assert(!status || strlen(nevh_stepper_message(m)) > 20);
         ck_assert_uint_eq(nevh_stepper_taken(m), 0);
         ck_assert_uint_eq(shown.calls, 1);
-        assert_same(&z, &before, a.b);
+        assert_same_state(a.b, &z, &before);
         ck_assert(nevh_stepper_time(m) == t);
     }
     assert_same_memory(m, plain);
     nevh_run(m, t, h0, 7, x.q, x.p, NULL, 0);
     nevh_run(plain, t, h0, 7, y.q, y.p, NULL, 0);
-    assert_same(&x, &y, a.b);
+    assert_same_state(a.b, &x, &y);
     nevh_stepper_free(m);
     nevh_stepper_free(plain);
     put_away(&a);
@@ -326,7 +310,7 @@ TEST(observers_and_their_turns) {
         for (size_t k = 0; k < shown.calls; k++)
             ck_assert_uint_eq(shown.steps[k], turns[i].shown[k]);
         ck_assert(shown.times[shown.calls - 1] == t_end);
-        assert_same(&shown.states[shown.calls - 1], &z, &driven_pendulum);
+        assert_same_state(&driven_pendulum, &shown.states[shown.calls - 1], &z);
     }
     nevh_stepper_free(m);
     nevh_system_free(s);
@@ -348,9 +332,9 @@ TEST_EACH(an_observer_stops_the_run, scheme_count() + 1) {
             NEVH_STOPPED);
         ck_assert_uint_eq(nevh_stepper_taken(m), stop_at);
         ck_assert_uint_eq(shown.calls, stop_at + 1);
-        assert_same(&shown.states[stop_at], &x, a.b);
+        assert_same_state(a.b, &shown.states[stop_at], &x);
         if (stop_at < 11)
-            assert_same(&run.states[stop_at], &x, a.b);
+            assert_same_state(a.b, &run.states[stop_at], &x);
         nevh_stepper_free(m);
         nevh_stepper_free(plain);
     }

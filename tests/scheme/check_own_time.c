@@ -1,21 +1,10 @@
 /* nevh tests: what own time asks of a plan, of memory and of failures.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "support.h"
+#include "state.h"
 #include <math.h>
 #include <nevh/transform.h>
 #include <stdlib.h>
 #include <string.h>
-
-typedef struct {
-    double q[2], p[2];
-} state;
-
-static state start(const problem *b) {
-    state z;
-    memcpy(z.q, b->q, sizeof z.q);
-    memcpy(z.p, b->p, sizeof z.p);
-    return z;
-}
 
 static nevh_stepper *under(const nevh_system *h, const nevh_system *s,
                            const nevh_integrator *scheme) {

@@ -20,20 +20,6 @@ static nevh_system *make_polar(void) {
     return nevh_elastic_pendulum_model->system(&bead);
 }
 
-static double kinetic(double t, const double q[], const double p[],
-                      const double c[], const void *params) {
-    (void)t, (void)q, (void)c, (void)params;
-    return (p[0] * p[0] + p[1] * p[1]) / 2;
-}
-
-static void kinetic_gradient(size_t width, const double t[], const double q[],
-                             const double p[], const double c[],
-                             const void *params, double dq[], double dp[]) {
-    (void)t, (void)q, (void)c, (void)params, (void)dq;
-    for (size_t i = 0; dp && i < 2 * width; i++)
-        dp[i] = p[i];
-}
-
 static double spring(double t, const double q[], const double p[],
                      const double c[], const void *params) {
     const double *k = params;
@@ -59,8 +45,8 @@ static nevh_system *make_plane(void) {
     nevh_system *s = nevh_system_new(2);
     nevh_system_add(s, &(nevh_term){.effect = "kinetic",
                                     .np = 2,
-                                    .value = kinetic,
-                                    .gradient = kinetic_gradient});
+                                    .value = plane_kinetic,
+                                    .gradient = plane_kinetic_gradient});
     nevh_system_add(s, &(nevh_term){.effect = "potential",
                                     .nq = 2,
                                     .value = spring,

@@ -22,20 +22,6 @@ static void breathing_gradient(size_t width, const double t[], const double q[],
         dp[i] = 2 * p[i] / (2.6 + 0.8 * sin(1.3 * t[i])) + 0.04 * pow(p[i], 3);
 }
 
-static double driven(double t, const double q[], const double p[],
-                     const double c[], const void *params) {
-    (void)p, (void)c, (void)params;
-    return -(2 + 0.7 * sin(1.9 * t)) * cos(q[0]);
-}
-
-static void driven_gradient(size_t width, const double t[], const double q[],
-                            const double p[], const double c[],
-                            const void *params, double dq[], double dp[]) {
-    (void)p, (void)c, (void)params, (void)dp;
-    for (size_t i = 0; dq && i < width; i++)
-        dq[i] = (2 + 0.7 * sin(1.9 * t[i])) * sin(q[i]);
-}
-
 static double clock_term(double t, const double q[], const double p[],
                          const double c[], const void *params) {
     (void)q, (void)p, (void)c, (void)params;
@@ -59,7 +45,7 @@ static nevh_system *make_breathing(void) {
     nevh_system_add(s, &(nevh_term){.effect = "potential",
                                     .nq = 1,
                                     .time = true,
-                                    .value = driven,
+                                    .value = driven_value,
                                     .gradient = driven_gradient});
     nevh_system_add(s, &(nevh_term){.effect = "clock",
                                     .time = true,
@@ -71,7 +57,7 @@ static nevh_system *make_breathing(void) {
 /* The same as one function, whose parts are not declared. */
 static double mixed(double t, const double q[], const double p[],
                     const double c[], const void *params) {
-    return breathing(t, q, p, c, params) + driven(t, q, p, c, params) +
+    return breathing(t, q, p, c, params) + driven_value(t, q, p, c, params) +
            clock_term(t, q, p, c, params);
 }
 

@@ -16,4 +16,10 @@ static inline state start(const problem *b) {
     return z;
 }
 
+static inline void assert_same_state(const problem *b, const state *x,
+                                     const state *y) {
+    ck_assert_mem_eq(x->q, y->q, b->n * sizeof(double));
+    ck_assert_mem_eq(x->p, y->p, b->n * sizeof(double));
+}
+
 #endif

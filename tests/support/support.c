@@ -14,6 +14,20 @@ double mass_kinetic(double t, const double q[], const double p[],
     return p[0] * p[0] / (2 * c[0]);
 }
 
+double plane_kinetic(double t, const double q[], const double p[],
+                     const double c[], const void *params) {
+    (void)t, (void)q, (void)c, (void)params;
+    return (p[0] * p[0] + p[1] * p[1]) / 2;
+}
+
+void plane_kinetic_gradient(size_t width, const double t[], const double q[],
+                            const double p[], const double c[],
+                            const void *params, double dq[], double dp[]) {
+    (void)t, (void)q, (void)c, (void)params, (void)dq;
+    for (size_t i = 0; dp && i < 2 * width; i++)
+        dp[i] = p[i];
+}
+
 void mass_kinetic_gradient(size_t width, const double t[], const double q[],
                            const double p[], const double c[],
                            const void *params, double dq[], double dp[]) {
@@ -75,22 +89,22 @@ static nevh_system *with_potential(size_t n, bool time, nevh_term_fn value,
 }
 
 /* A pendulum whose gravity is shaken: time must be right in every stage. */
-static double driven(double t, const double q[], const double p[],
-                     const double c[], const void *params) {
+double driven_value(double t, const double q[], const double p[],
+                    const double c[], const void *params) {
     (void)p, (void)c, (void)params;
     return -(2 + 0.7 * sin(1.9 * t)) * cos(q[0]);
 }
 
-static void driven_gradient(size_t width, const double t[], const double q[],
-                            const double p[], const double c[],
-                            const void *params, double dq[], double dp[]) {
+void driven_gradient(size_t width, const double t[], const double q[],
+                     const double p[], const double c[], const void *params,
+                     double dq[], double dp[]) {
     (void)p, (void)c, (void)params, (void)dp;
     if (dq)
         EACH(i) dq[i] = (2 + 0.7 * sin(1.9 * t[i])) * sin(q[i]);
 }
 
 static nevh_system *make_driven(void) {
-    return with_potential(1, true, driven, driven_gradient);
+    return with_potential(1, true, driven_value, driven_gradient);
 }
 
 static double gravity(double t, const double q[], const double p[],

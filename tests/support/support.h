@@ -34,6 +34,18 @@ double mass_kinetic(double t, const double q[], const double p[],
 void mass_kinetic_gradient(size_t width, const double t[], const double q[],
                            const double p[], const double c[],
                            const void *params, double dq[], double dp[]);
+/* The same of two unit masses in one term. */
+double plane_kinetic(double t, const double q[], const double p[],
+                     const double c[], const void *params);
+void plane_kinetic_gradient(size_t width, const double t[], const double q[],
+                            const double p[], const double c[],
+                            const void *params, double dq[], double dp[]);
+/* -(2 + 0.7 sin(1.9 t)) cos(q): the potential of driven_pendulum. */
+double driven_value(double t, const double q[], const double p[],
+                    const double c[], const void *params);
+void driven_gradient(size_t width, const double t[], const double q[],
+                     const double p[], const double c[], const void *params,
+                     double dq[], double dp[]);
 /* -c cos(q), and up to three of them over the coordinates that are given, as a
    term. */
 double wave_value(double t, const double q[], const double p[],
