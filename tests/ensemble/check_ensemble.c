@@ -137,7 +137,7 @@ static void compare_widths(const problem *b, const nevh_integrator *scheme,
     nevh_system_free(s);
 }
 
-START_TEST(lanes_are_orbits_alone) {
+TEST_EACH(lanes_are_orbits_alone, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     bool any = false;
     for (int i = 0; problems[i]; i++)
@@ -147,10 +147,9 @@ START_TEST(lanes_are_orbits_alone) {
         }
     ck_assert(any);
 }
-END_TEST
 
 /* Orbits that end at different times: free lanes take the next ones. */
-START_TEST(orbits_end_when_all_is_known) {
+TEST(orbits_end_when_all_is_known) {
     const problem *b = &henon_heiles;
     nevh_options o;
     nevh_ensemble_options is = options_of(b, 1, nevh_gauss6, &o);
@@ -173,7 +172,6 @@ START_TEST(orbits_end_when_all_is_known) {
     }
     nevh_system_free(s);
 }
-END_TEST
 
 /* An oscillator, x = cos(t): above a level just below 1 around 2 pi, between
    two steps, and never above 1. */
@@ -187,7 +185,7 @@ static double spring(double t, const double q[], const double p[],
 static const problem oscillator = {
     .name = "oscillator", .n = 1, .q = {0}, .p = {-1}};
 
-START_TEST(what_holds_between_steps_is_found) {
+TEST_EACH(what_holds_between_steps_is_found, 3) {
     const double pi = acos(-1), levels[] = {0.5, 0.9999, 1.0001};
     nevh_system *s = nevh_system_from(1, spring, NULL);
     nevh_options o = {0};
@@ -213,7 +211,6 @@ START_TEST(what_holds_between_steps_is_found) {
     nevh_ensemble_free(e);
     nevh_system_free(s);
 }
-END_TEST
 
 /* H is not defined below 0: some members fall there, the others must not
    notice. */
@@ -226,7 +223,7 @@ static double fall(double t, const double q[], const double p[],
 
 static const problem falling = {.name = "falling", .n = 1, .q = {1}, .p = {2}};
 
-START_TEST(failures_stop_no_neighbour) {
+TEST(failures_stop_no_neighbour) {
     nevh_system *s = nevh_system_from(1, fall, NULL);
     nevh_options o = {.q = falling.q, .p = falling.p, .gradient_step = 1e-3};
     nevh_outcome outcomes[] = {{.kind = NEVH_OUTCOME_STATE},
@@ -257,9 +254,8 @@ START_TEST(failures_stop_no_neighbour) {
                              sizeof(double));
     nevh_system_free(s);
 }
-END_TEST
 
-START_TEST(nonsense_is_refused) {
+TEST(nonsense_is_refused) {
     nevh_system *s = henon_heiles.make();
     nevh_outcome none = {.kind = NEVH_OUTCOME_FIRST};
     nevh_ensemble_options is = {.integrator = nevh_verlet,
@@ -285,10 +281,9 @@ START_TEST(nonsense_is_refused) {
     nevh_ensemble_free(NULL);
     ck_assert_int_eq(nevh_ensemble_status(NULL), NEVH_ENOMEM);
 }
-END_TEST
 
 /* A system that changes after planning is noticed. */
-START_TEST(changed_system_is_refused) {
+TEST(changed_system_is_refused) {
     const problem *b = &henon_heiles;
     nevh_system *s = b->make();
     nevh_options o;
@@ -301,18 +296,4 @@ START_TEST(changed_system_is_refused) {
     ck_assert_uint_eq(m.told, 0);
     nevh_ensemble_free(e);
     nevh_system_free(s);
-}
-END_TEST
-
-int main(void) {
-    Suite *s = suite_create("ensemble");
-    TCase *c = tcase_create("lanes");
-    tcase_add_loop_test(c, lanes_are_orbits_alone, 0, scheme_count());
-    tcase_add_test(c, orbits_end_when_all_is_known);
-    tcase_add_loop_test(c, what_holds_between_steps_is_found, 0, 3);
-    tcase_add_test(c, failures_stop_no_neighbour);
-    tcase_add_test(c, nonsense_is_refused);
-    tcase_add_test(c, changed_system_is_refused);
-    suite_add_tcase(s, c);
-    return run_suite(s);
 }

@@ -17,16 +17,15 @@ static const struct {
      {0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}},
 };
 
-START_TEST(generator_gives_published_vectors) {
+TEST_EACH(generator_gives_published_vectors, 3) {
     uint32_t out[4];
     nevh__philox(published[_i].counter, published[_i].key, out);
     ck_assert_mem_eq(out, published[_i].out, sizeof out);
 }
-END_TEST
 
 enum { DRAWS = 20000 };
 
-START_TEST(draws_have_their_moments) {
+TEST(draws_have_their_moments) {
     double sum = 0, squares = 0, fourth = 0, mean = 0, spread = 0;
     for (uint64_t i = 0; i < DRAWS; i++) {
         double u = nevh_uniform_at(7, "x", i), x = nevh_normal_at(7, "x", i);
@@ -44,10 +43,9 @@ START_TEST(draws_have_their_moments) {
     ck_assert_double_lt(fabs(squares - 1), error * sqrt(2));
     ck_assert_double_lt(fabs(fourth - 3), error * sqrt(96));
 }
-END_TEST
 
 /* Neighbours in i, seed and name have nothing in common. */
-START_TEST(draws_are_independent) {
+TEST(draws_are_independent) {
     double product[3] = {0};
     for (uint64_t i = 0; i < DRAWS; i++) {
         double x = nevh_normal_at(7, "x", i);
@@ -57,15 +55,4 @@ START_TEST(draws_are_independent) {
     }
     for (int k = 0; k < 3; k++)
         ck_assert_double_lt(fabs(product[k]), 5 / sqrt(DRAWS));
-}
-END_TEST
-
-int main(void) {
-    Suite *s = suite_create("random");
-    TCase *c = tcase_create("philox");
-    tcase_add_loop_test(c, generator_gives_published_vectors, 0, 3);
-    tcase_add_test(c, draws_have_their_moments);
-    tcase_add_test(c, draws_are_independent);
-    suite_add_tcase(s, c);
-    return run_suite(s);
 }

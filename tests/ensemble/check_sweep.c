@@ -62,7 +62,7 @@ static results *run(const char *text, nevh_sweep_options o) {
     return all;
 }
 
-START_TEST(periods_are_the_elliptic_integral) {
+TEST(periods_are_the_elliptic_integral) {
     results *all = run(PENDULUM "phi = range(0.05, 3.05, 61)\n"
                                 "outcomes = period, crossings\n",
                        plain());
@@ -78,10 +78,9 @@ START_TEST(periods_are_the_elliptic_integral) {
     }
     free(all);
 }
-END_TEST
 
 /* A parameter that is varied gives the same as the same scene with it set. */
-START_TEST(parameters_are_those_of_a_scene) {
+TEST(parameters_are_those_of_a_scene) {
     const double g[] = {1.6, 9.8, 24.8};
     results *all = run(PENDULUM "g = 1.6, 9.8, 24.8\nphi = 0.5, 2\n", plain());
     ck_assert_uint_eq(all->count, 6);
@@ -98,9 +97,8 @@ START_TEST(parameters_are_those_of_a_scene) {
     }
     free(all);
 }
-END_TEST
 
-START_TEST(order_is_of_the_lines) {
+TEST(order_is_of_the_lines) {
     results *product = run(PENDULUM "phi = range(0, 1, 3)\np_phi = 4, 5\n"
                                     "outcomes = t\n",
                            plain());
@@ -120,10 +118,9 @@ START_TEST(order_is_of_the_lines) {
     free(product);
     free(zip);
 }
-END_TEST
 
 /* Draws go by seed, name and number alone: not by what else is varied. */
-START_TEST(draws_are_of_seed_name_and_number) {
+TEST(draws_are_of_seed_name_and_number) {
     results *a = run(PENDULUM "phi = normal(1, 0.1)\ncount = 600\nseed = 3\n"
                               "outcomes = t\n",
                      plain());
@@ -144,9 +141,8 @@ START_TEST(draws_are_of_seed_name_and_number) {
     free(b);
     free(c);
 }
-END_TEST
 
-START_TEST(threads_and_widths_change_nothing) {
+TEST(threads_and_widths_change_nothing) {
     static const char text[] =
         PENDULUM "phi = range(-3, 3, 300)\np_phi = 0, 2\n"
                  "outcomes = first(abs(phi) > pi), energy_error, mean(v_phi), "
@@ -168,10 +164,9 @@ START_TEST(threads_and_widths_change_nothing) {
     }
     free(one);
 }
-END_TEST
 
 /* Members without a start are told of. */
-START_TEST(members_without_a_start_are_told) {
+TEST(members_without_a_start_are_told) {
     results *all = run("[parameters]\na = 1\n[coordinates]\nx = 1\n"
                        "[effects]\nkinetic = p_x^2/2\nwell = -a*log(x)/x\n"
                        "[run]\nt_end = 0.1\ndt = 0.01\n"
@@ -185,7 +180,6 @@ START_TEST(members_without_a_start_are_told) {
     ck_assert_double_nan(all->row[0][1]);
     free(all);
 }
-END_TEST
 
 static const struct {
     const char *line, *says;
@@ -210,7 +204,7 @@ static const struct {
     {"p_phi = 1\nv_phi = 1", "both"},
 };
 
-START_TEST(wrong_lines_are_refused) {
+TEST_EACH(wrong_lines_are_refused, sizeof wrong / sizeof *wrong) {
     char text[600];
     snprintf(text, sizeof text, PENDULUM "%s\n", wrong[_i].line);
     nevh_scene *scene = nevh_scene_parse("test", text);
@@ -219,10 +213,9 @@ START_TEST(wrong_lines_are_refused) {
     assert_says(nevh_scene_message(scene), "test:1");
     nevh_scene_free(scene);
 }
-END_TEST
 
 /* Lines from outside replace the scene's; one that is wrong changes nothing. */
-START_TEST(lines_from_outside_replace) {
+TEST(lines_from_outside_replace) {
     nevh_scene *scene = scene_of(PENDULUM "phi = 1, 2\n");
     uint64_t digest = nevh_scene_digest(scene);
     const char *wrong_one[] = {"g = 3", "psi = 1"};
@@ -242,21 +235,4 @@ START_TEST(lines_from_outside_replace) {
     ck_assert_str_eq(nevh_sweep_column(s, 2), "t");
     nevh_sweep_free(s);
     nevh_scene_free(scene);
-}
-END_TEST
-
-int main(void) {
-    Suite *s = suite_create("sweep");
-    TCase *c = tcase_create("members");
-    tcase_add_test(c, periods_are_the_elliptic_integral);
-    tcase_add_test(c, parameters_are_those_of_a_scene);
-    tcase_add_test(c, order_is_of_the_lines);
-    tcase_add_test(c, draws_are_of_seed_name_and_number);
-    tcase_add_test(c, threads_and_widths_change_nothing);
-    tcase_add_test(c, members_without_a_start_are_told);
-    tcase_add_loop_test(c, wrong_lines_are_refused, 0,
-                        sizeof wrong / sizeof *wrong);
-    tcase_add_test(c, lines_from_outside_replace);
-    suite_add_tcase(s, c);
-    return run_suite(s);
 }
