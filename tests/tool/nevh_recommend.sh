@@ -35,6 +35,19 @@ done
 exits 0 cost oscillator --t-end 10 --integrators gauss4,gauss20,verlet
 has '^gauss4, gauss20: keep the energy at any step'
 
+# Where the answers of a shorter run all fail in the whole one, since errors of
+# differences add up in it, others are tried.
+exits 0 recommend kepler-0.9 --state-error 1e-8 --format csv
+keeps 1e-8 13
+# Why there is no answer: no step is short enough where rounding is larger.
+exits 1 recommend pendulum-separatrix --state-error 1e-12 --t-end 500 \
+    --gradient exact --integrators gauss14,gauss18
+says 'nothing keeps the state error below 1e-12.* shorter steps do not lessen'
+says 'for rounding$'
+exits 1 recommend kepler --energy-error 1e-10 --t-end 1000 \
+    --integrators symplectic-euler-a
+says 'shorter steps take longer than was tried'
+
 # Every shipped scene has an answer, here for a tenth of its run.
 for file in "$srcdir"/scenes/*.nevh; do
     scene=${file##*/}

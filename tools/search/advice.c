@@ -281,11 +281,14 @@ static bool counts(const advice *a, size_t i) {
     return a->named || a->search.by_state || !study_keeps_energy(&a->study[i]);
 }
 
-static const study *most_exact(const advice *a, double *least) {
+/* Of those that count; at a floor: of those that shorter steps do not help. */
+static const study *most_exact(const advice *a, bool at_floor, double *least) {
     const study *best = NULL;
     *least = INFINITY;
     for (size_t i = 0; i < a->count; i++)
         for (size_t k = 0; counts(a, i) && k < a->study[i].count; k++) {
+            if (at_floor && a->study[i].end != STUDY_FLOOR)
+                continue;
             double error =
                 study_error(&a->study[i].level[k], a->search.by_state);
             if (error < *least)
@@ -294,15 +297,28 @@ static const study *most_exact(const advice *a, double *least) {
     return best;
 }
 
-static const char *reason(const study *l, double least) {
+static const char *floor_of(const study *l, double least) {
+    return least > 1e-11 && strcmp(l->gradient, "exact") != 0
+               ? "the gradient's own error"
+               : "rounding";
+}
+
+/* Where shorter steps were not tried of the most exact, others may tell what
+   they would find: such as reached their floor near the same error. */
+static char *reason(const advice *a, const study *l, double least) {
+    static const double near = 30;
+    double level;
+    const study *floor = most_exact(a, true, &level);
     if (l->end == STUDY_GIVEN)
-        return "these steps do not reach it";
-    if (l->end != STUDY_FLOOR)
-        return "shorter steps take longer than was tried; --t-end shortens the "
-               "run";
-    if (least > 1e-11 && strcmp(l->gradient, "exact") != 0)
-        return "shorter steps do not lessen it: the gradient ends there";
-    return "shorter steps do not lessen it: rounding ends there";
+        return text_print("these steps do not reach it");
+    if (l->end == STUDY_FLOOR)
+        return text_print("shorter steps do not lessen it, for %s",
+                          floor_of(l, least));
+    if (floor && level < near * least)
+        return text_print("of %s shorter steps do not lessen %.1e, for %s",
+                          floor->integrator, level, floor_of(floor, level));
+    return text_print("shorter steps take longer than was tried; --t-end "
+                      "shortens the run");
 }
 
 /* Of those that give no error to choose by. */
@@ -337,14 +353,21 @@ static void tell_why(const advice *a) {
 
 int advice_none(const advice *a) {
     double least;
-    const study *l = most_exact(a, &least);
+    const study *l = most_exact(a, false, &least);
     const char *what = search_error(&a->search);
-    if (!l)
+    double end = a->search.plan.t_end;
+    if (!l) {
         tell_why(a);
-    else
-        tool_refuse("%s: nothing keeps the %s error below %g.  The least, %.1e,"
-                    " is that of %s with the %s gradient; %s",
-                    a->search.plan.name, what, a->target, least, l->integrator,
-                    l->gradient, reason(l, least));
+        return TOOL_FAILED;
+    }
+    char *until = end < a->whole ? text_print(" until t = %g", end)
+                                 : text_print("%s", "");
+    char *why = reason(a, l, least);
+    tool_refuse("%s: nothing keeps the %s error below %g%s.  The least, %.1e,"
+                " is that of %s with the %s gradient; %s",
+                a->search.plan.name, what, a->target, until, least,
+                l->integrator, l->gradient, why);
+    free(until);
+    free(why);
     return TOOL_FAILED;
 }

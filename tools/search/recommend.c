@@ -293,15 +293,57 @@ static study verified(advice *a, const study *l) {
         k += places_short(a, r) + i;
     }
     study_refine(&a->search, &full, a->target, 1);
-    full.end = STUDY_LIMIT;
+    full.end =
+        study_ends_level(&full, a->search.by_state) ? STUDY_FLOOR : STUDY_LIMIT;
     return full;
+}
+
+/* The next of the pilots that keep the target, the cheapest first: those with
+   the gradient that all schemes were tried with, then others. */
+static size_t list_next(const advice *a, bool taken[],
+                        const study *found[ADVICE_MOST]) {
+    size_t count = 0;
+    bool *skipped = tool_allocate(a->count, sizeof *skipped);
+    for (int others = 0; others < 2 && count == 0; others++) {
+        for (size_t i = 0; i < a->count; i++)
+            skipped[i] = taken[i] || (!others && a->study[i].gradient !=
+                                                     a->gradients.item[0]);
+        for (study *l; count < ADVICE_MOST && (l = next_best(a, skipped));) {
+            skipped[l - a->study] = taken[l - a->study] = true;
+            found[count++] = l;
+        }
+    }
+    free(skipped);
+    return count;
+}
+
+/* The answers of the pilot, and where none of them keeps the target over the
+   whole run, as the gradient's own errors may add up in it, what is next. */
+static void verify_pilots(advice *a) {
+    const study *pilots[ADVICE_MOST];
+    size_t count = advice_list(a, pilots), done = 0;
+    study *full = tool_allocate(a->count + 1, sizeof *full);
+    bool *taken = tool_allocate(a->count, sizeof *taken), kept = false;
+    for (size_t i = 0; i < count; i++)
+        taken[pilots[i] - a->study] = true;
+    while (count) {
+        for (size_t i = 0; i < count; i++, done++) {
+            full[done] = verified(a, pilots[i]);
+            kept |= least_worked(a, &full[done]) != NULL;
+        }
+        count = kept || search_is_over(&a->search, 1)
+                    ? 0
+                    : list_next(a, taken, pilots);
+    }
+    free(taken);
+    for (size_t i = 0; i < a->count; i++)
+        study_free(&a->study[i]);
+    free(a->study);
+    a->study = full, a->count = done;
 }
 
 /* A reference for the whole is a plan's own. */
 static void verify(advice *a, plan *p) {
-    const study *pilots[ADVICE_MOST];
-    size_t count = advice_list(a, pilots);
-    study *full = tool_allocate(count, sizeof *full);
     p->t_end = a->search.plan.t_end = a->whole;
     if (p->reference) {
         nevh_reference_free(p->reference);
@@ -315,12 +357,7 @@ static void verify(advice *a, plan *p) {
         a->search.plan.observable_level = p->observable_level;
     }
     a->search.budget = a->search.spent + SEARCH_BUDGET;
-    for (size_t i = 0; i < count; i++)
-        full[i] = verified(a, pilots[i]);
-    for (size_t i = 0; i < a->count; i++)
-        study_free(&a->study[i]);
-    free(a->study);
-    a->study = full, a->count = count;
+    verify_pilots(a);
     time_once(a);
     time_best(a);
     choose(a);

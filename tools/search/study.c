@@ -257,6 +257,10 @@ static bool is_level(const study *l, bool by_state) {
            (count > 1 && last < 0.1 * first) || (count > 2 && last < usual);
 }
 
+bool study_ends_level(const study *l, bool by_state) {
+    return l->count && !l->level[l->count - 1].late && is_level(l, by_state);
+}
+
 /* Coarse levels were of no use once a finer one is of some. */
 static void drop_useless(study *l, bool by_state) {
     while (l->count > 1 && !is_usable(l, 0, by_state) &&
