@@ -41,6 +41,7 @@ EXTRA_DIST += bench/RESULTS.md $(peers)/build $(peers)/paper.py $(peers)/problem
 PEERS_ROUNDS = 9
 CLEANFILES += bench/results-peers.csv bench/results-peers.md
 clean-local:
+	rm -rf tests/cache
 	rm -rf $(peers)/*.o $(peers)/.libs $(peers)/peers $(peers)/empty* \
 	  $(peers)/circumstances.h $(peers)/build.log
 

@@ -93,6 +93,18 @@ libnevh_core_la_SOURCES = \
 	lib/implicit/newton.c \
 	lib/implicit/factor.c \
 	lib/implicit/rescue.c \
+	lib/native/native_private.h \
+	lib/native/compiler_private.h \
+	lib/native/compiler.c \
+	lib/native/writer_private.h \
+	lib/native/writer.c \
+	lib/native/formula_text.c \
+	lib/native/slope_text.c \
+	lib/native/prelude_text.c \
+	lib/native/splitting_text.c \
+	lib/native/cache.c \
+	lib/native/build.c \
+	lib/native/native.c \
 	lib/run/stepper_private.h \
 	lib/run/structure.c \
 	lib/run/stepper.c \
@@ -151,8 +163,6 @@ libnevh_core_la_SOURCES = \
 	lib/scene/write.c \
 	lib/scene/code_private.h \
 	lib/scene/code.c \
-	lib/scene/compiler_private.h \
-	lib/scene/compiler.c \
 	lib/scene/code_term.c \
 	lib/scene/scene_ensemble_private.h \
 	lib/scene/scene_ensemble.c \

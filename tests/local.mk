@@ -40,6 +40,7 @@ suites = \
 	tests/scheme/check_stability \
 	tests/scheme/check_energy_preserving \
 	tests/scheme/check_evaluations \
+	tests/native/check_native \
 	tests/run/check_run \
 	tests/run/check_until \
 	tests/run/check_section \
@@ -82,6 +83,7 @@ INSIDE_LIBS = tests/support/libsupport.la libnevh_core.la $(CHECK_LIBS)
 tests_expression_check_random_formulas_LDADD = $(INSIDE_LIBS) $(MUPARSER_LIBS)
 tests_expression_check_random_formulas_CPPFLAGS = $(AM_CPPFLAGS) $(MUPARSER_CFLAGS)
 tests_scheme_check_coefficients_LDADD = $(INSIDE_LIBS)
+tests_native_check_native_LDADD = $(INSIDE_LIBS)
 tests_scheme_check_splitting_LDADD = $(INSIDE_LIBS)
 tests_scheme_check_damped_LDADD = $(INSIDE_LIBS)
 tests_scheme_check_brouwer_LDADD = $(INSIDE_LIBS)
@@ -186,6 +188,7 @@ AM_TESTS_ENVIRONMENT = \
 	$(CHECK_TAGS)=slow; export $(CHECK_TAGS); \
 	CK_DEFAULT_TIMEOUT=$(TEST_TIMEOUT); export CK_DEFAULT_TIMEOUT; \
 	CC='$(CC)'; export CC; \
+	XDG_CACHE_HOME="$$PWD/tests/cache"; export XDG_CACHE_HOME; \
 	NM='$(NM)'; export NM; \
 	LIBTOOL='$(LIBTOOL)'; export LIBTOOL; \
 	PKG_CONFIG='$(PKG_CONFIG)'; export PKG_CONFIG; \

@@ -78,6 +78,9 @@ struct nevh_work {
     struct nevh_ledger *ledger;        /* NULL: nobody asked for the balance */
     bool accounts;                     /* nevh_work_account is to be called */
 
+    struct nevh__native *native; /* compiled steps, taken before the kernel's;
+                                    NULL: there are none */
+
     struct nevh__report *report; /* written by nevh_work_fail */
 };
 

@@ -30,6 +30,16 @@ NEVH_API const char *nevh_gradient_name(const nevh_gradient *);
 /* Order of the difference; 0 for derivatives without truncation error. */
 NEVH_API int nevh_gradient_order(const nevh_gradient *);
 
+/* Whether steps of formulas are compiled, by the C compiler that the environment
+   names (CC) or cc, gcc or clang, and run as native code.  The orbit is the same
+   to the last bit.  By default they are where the steps foreseen make up for the
+   time that compiling takes. */
+typedef enum {
+    NEVH_NATIVE_AUTO,
+    NEVH_NATIVE_ALWAYS,
+    NEVH_NATIVE_NEVER
+} nevh_native_use;
+
 /* How to plan a field or a stepper; zeros and NULLs are the defaults. */
 typedef struct {
     const nevh_gradient *gradient; /* NULL: nevh_central4 */
@@ -51,6 +61,12 @@ typedef struct {
                       with the same libm and instruction-set class */
     bool balance;  /* steppers keep account of the energy that comes in from
                       outside: see nevh_stepper_gain */
+    nevh_native_use native;   /* of steppers; see nevh_stepper_native */
+    double steps_foreseen;    /* how many the stepper will take; 0: unknown, and
+                                 NEVH_NATIVE_AUTO compiles nothing */
+    const char *native_cache; /* the folder of compiled steps, borrowed; NULL:
+                                 nevh in $XDG_CACHE_HOME, else in ~/.cache; "":
+                                 nothing is kept */
 } nevh_options;
 
 /* A field is the gradient of H, planned: a system, a gradient method with its

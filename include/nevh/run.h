@@ -93,6 +93,14 @@ NEVH_API int nevh_stepper_order(const nevh_stepper *);
             where friction is put around it; none in nevh_stepper_counts */
 NEVH_API double nevh_stepper_gain(const nevh_stepper *, size_t lane);
 
+/* Whether steps run as native code: H and the scheme written as one C function,
+   compiled and loaded when the stepper was made.  Only formulas of scenes do,
+   one orbit at a time, under splitting schemes, and where nobody asked for the
+   balance of the energy.
+   why      out, may be NULL: what is in the way, if they were to ("there is no C
+            compiler: ..."), else ""; the stepper's own, never NULL */
+NEVH_API bool nevh_stepper_native(const nevh_stepper *, const char **why);
+
 NEVH_API nevh_counts nevh_stepper_counts(const nevh_stepper *);
 /* The field that the stepper takes its gradients from: its counts, steps and
    values.  Owned by the stepper. */

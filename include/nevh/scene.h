@@ -146,9 +146,10 @@ typedef struct {
     double gradient_step;         /* 0: auto, or by name: */
     const double *gradient_steps; /* 2n, coordinates first, 0: auto; or NULL */
     double energy_scale;          /* 0: from H */
-    bool match_work;              /* match = work */
-    const char *reference;        /* NULL: none named */
-    const char *transform;        /* formula; NULL: none */
+    nevh_native_use native;
+    bool match_work;       /* match = work */
+    const char *reference; /* NULL: none named */
+    const char *transform; /* formula; NULL: none */
 } nevh_scene_run;
 /* Valid as long as the system; NULL when the scene was not read. */
 NEVH_API const nevh_scene_run *nevh_scene_run_settings(nevh_scene *);

@@ -141,7 +141,7 @@ int nevh__friction_step_apply(nevh_stepper *s, double t, double h, double q[],
     memcpy(d->p, p, size);
     int status = apply(s, t, h);
     if (!status)
-        status = w->integrator->kernel->step(w, t, h, d->q, d->p);
+        status = nevh__native_step(w, t, h, d->q, d->p);
     if (!status)
         status = apply(s, t + h, h);
     if (status) {

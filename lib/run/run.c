@@ -53,6 +53,13 @@ static int run_unseen(nevh_stepper *s, double t0, double h, size_t until,
     int status = NEVH_OK;
     s->last_h = w->elapsed = h;
     while (s->taken + 1 < until) {
+        size_t done = w->native ? nevh__native_run(w, t0, h, s->taken,
+                                                   until - 1 - s->taken, q, p)
+                                : 0;
+        s->taken += done;
+        *t = s->last_t = nevh__next_time(s, t0, h);
+        if (s->taken + 1 == until)
+            break;
         status = w->integrator->kernel->step(w, *t, h, q, p);
         if (status)
             break;

@@ -100,7 +100,11 @@ static int plan(nevh_stepper *s) {
         status = nevh__check_structure(s);
     if (!status)
         status = plan_parts(s);
-    return status ? status : plan_memory(s);
+    if (!status)
+        status = plan_memory(s);
+    if (!status)
+        nevh__native_plan(&s->work, s->why_native);
+    return status;
 }
 
 nevh_stepper *nevh_stepper_new(const nevh_system *system,
@@ -138,6 +142,7 @@ void nevh_stepper_free(nevh_stepper *s) {
         return;
     if (s->work.plan && s->work.integrator->kernel->clear)
         s->work.integrator->kernel->clear(&s->work);
+    nevh__native_free(s->work.native);
     nevh_field_free(s->work.field);
     nevh__transform_free(s->work.transform);
     free((double *)s->options.gradient_steps);
@@ -256,7 +261,7 @@ int nevh__advance(nevh_stepper *s, double t, double h, double q[], double p[]) {
                                        t, q, p);
     if (!status)
         status = s->friction ? nevh__friction_step_apply(s, t, h, q, p)
-                             : w->integrator->kernel->step(w, t, h, q, p);
+                             : nevh__native_step(w, t, h, q, p);
     if (status)
         return status;
     nevh__ledger_close(w, gains(s));
@@ -298,6 +303,12 @@ nevh_counts nevh_stepper_counts(const nevh_stepper *s) {
 
 nevh_field *nevh_stepper_field(nevh_stepper *s) {
     return s->work.field;
+}
+
+bool nevh_stepper_native(const nevh_stepper *s, const char **why) {
+    if (why)
+        *why = s->why_native;
+    return s->work.native;
 }
 
 double nevh_stepper_time(const nevh_stepper *s) {

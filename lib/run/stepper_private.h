@@ -4,6 +4,7 @@
 #define NEVH_STEPPER_PRIVATE_H
 
 #include "system/system_private.h"
+#include "native/native_private.h"
 #include <nevh/extend.h>
 
 struct nevh_stepper {
@@ -28,6 +29,7 @@ struct nevh_stepper {
     size_t taken;
     double time_roundoff;         /* of last_t, where steps vary, by rounding */
     double before_t, before_lost; /* last_t and time_roundoff before that */
+    char why_native[NEVH__WHY_NATIVE]; /* why steps are not native, or "" */
 };
 
 /* Why a scheme does not fit the system, or NEVH_OK. */

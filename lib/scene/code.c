@@ -3,14 +3,15 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #define _XOPEN_SOURCE 700
 #include "scene/code_private.h"
-#include "scene/compiler_private.h"
+#include "native/compiler_private.h"
 #include <dlfcn.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-enum { NO_COMMAND = 127 };
+static const char *const flags[] = {"-O2", "-ffp-contract=off", "-fPIC",
+                                    "-shared", NULL};
 
 static void keep_output(nevh__code *code, const char *output) {
     size_t bytes = strlen(output);
@@ -30,10 +31,10 @@ static const char *load(const char *path, const char *folder,
                         const char *object, const sigset_t *before,
                         nevh__code *code) {
     nevh__compiler_output output;
-    int status = nevh__compile(path, folder, before, &output);
+    int status = nevh__compile(flags, path, object, folder, before, &output);
     if (output.interrupted)
         return "%s was not compiled: a signal ended its compiler";
-    if (status == NO_COMMAND)
+    if (status == NEVH__NO_COMPILER)
         return "%s needs a C compiler, and there is none: install one, or name "
                "it in the environment, CC=...";
     if (status) {
@@ -52,20 +53,10 @@ static const char *load(const char *path, const char *folder,
                  "q[], const double p[], const double c[])";
 }
 
-static char *new_folder(void) {
-    const char *where = getenv("TMPDIR");
-    char *folder =
-        nevh__text("%s/nevh-XXXXXX", where && *where ? where : "/tmp");
-    if (folder && mkdtemp(folder))
-        return folder;
-    free(folder);
-    return NULL;
-}
-
 bool nevh__code_load(const char *path, nevh__code *code, const char **what) {
     sigset_t before;
     nevh__signals_hold(&before);
-    char *folder = new_folder();
+    char *folder = nevh__new_folder();
     char *object = folder ? nevh__text("%s/term.so", folder) : NULL;
     *code = (nevh__code){0};
     *what = object ? load(path, folder, object, &before, code)

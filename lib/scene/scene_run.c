@@ -245,6 +245,17 @@ static bool take_stop(nevh_scene *s, nevh__scene_model *m,
            nevh__piece_number(s, m, &rest, &m->stop.value);
 }
 
+static bool take_native(nevh_scene *s, nevh__scene_model *m,
+                        const nevh__piece *v) {
+    static const char *const words[] = {"auto", "always", "never"};
+    for (size_t i = 0; i < 3; i++)
+        if (strcmp(v->text, words[i]) == 0) {
+            m->run.native = (nevh_native_use)i;
+            return true;
+        }
+    return nevh__scene_fail_word(s, v, "setting of native", v->text, words, 3);
+}
+
 #define RUN_KEYS(X)                                                            \
     X(t_start)                                                                 \
     X(t_end)                                                                   \
@@ -257,6 +268,7 @@ static bool take_stop(nevh_scene *s, nevh__scene_model *m,
     X(match)                                                                   \
     X(tolerance)                                                               \
     X(energy_scale)                                                            \
+    X(native)                                                                  \
     X(stop)
 #define RUN_NAME(key) #key,
 #define RUN_TAKE(key) take_##key,

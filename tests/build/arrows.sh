@@ -4,8 +4,8 @@
 # files of the library have the same name.
 
 srcdir=${srcdir:-.}
-order='system expression gradient work implicit integrators run diagnose ensemble scene
-    models tools'
+order='system expression gradient work implicit integrators native run diagnose
+    ensemble scene models tools'
 work=arrows.$$
 trap 'rm -rf $work' EXIT
 trap 'exit 1' HUP INT TERM

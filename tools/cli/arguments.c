@@ -328,6 +328,21 @@ int read_portable(options *o, const char *argument) {
     return TOOL_OK;
 }
 
+int read_native(options *o, const char *argument) {
+    static const char *const names[] = {"auto", "always", "never", NULL};
+    int which;
+    int status = read_name("native", argument, names, &which);
+    o->native = (nevh_native_use)which;
+    o->native_given = true;
+    return status;
+}
+
+int read_no_cache(options *o, const char *argument) {
+    (void)argument;
+    o->no_cache = true;
+    return TOOL_OK;
+}
+
 int read_all(options *o, const char *argument) {
     (void)argument;
     o->all = true;

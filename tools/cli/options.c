@@ -10,6 +10,7 @@ enum {
     OF_COST = FOR_COST | FOR_GRADIENTS | FOR_RECOMMEND,
     OF_SCENES = FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_RUN | FOR_SECTION |
                 FOR_SWEEP | OF_COST,
+    OF_NATIVE = FOR_COMPARE | FOR_RUN | FOR_COST | FOR_RECOMMEND,
     OF_TABLES = OF_SCENES | FOR_LIST | FOR_HARD,
     OF_PLOTS = FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_COST | FOR_GRADIENTS
 };
@@ -82,6 +83,10 @@ static const struct {
      "body"},
     {"portable", NULL, OF_SCENES, read_portable,
      "no vector code: the same digits with the same libm"},
+    {"native", "auto|never|always", OF_NATIVE, read_native,
+     "compile steps of formulas; auto (default): where that pays"},
+    {"no-cache", NULL, OF_NATIVE, read_no_cache,
+     "keep no compiled steps, and use none that were kept"},
     {"plot", "FILE", OF_PLOTS, read_plot,
      "draw FILE.svg, .png or .pdf, or - in the terminal"},
     {"plot-kind", "KIND", FOR_RUN, read_plot_kind,

@@ -159,6 +159,8 @@ typedef struct {
     const char *columns; /* NULL: not given */
     bool formatted;      /* --format was given */
     bool quiet, portable, all, by_state, diagnostics, impact, allow_code;
+    nevh_native_use native;
+    bool native_given, no_cache;
     bool help, version;
     unsigned long long used; /* a bit an option */
 } options;

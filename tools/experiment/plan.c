@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "plan.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -151,6 +152,8 @@ static void take_settings(plan *p, const options *o) {
         o->gradient_step > 0 ? o->gradient_step : p->run->gradient_step;
     p->gradient_steps = o->gradient_step > 0 ? NULL : p->run->gradient_steps;
     p->portable = o->portable;
+    p->native = o->native_given ? o->native : p->run->native;
+    p->no_cache = o->no_cache;
     p->repeats = o->repeats;
     p->diagnostics = o->diagnostics;
     p->match_work = o->match == MATCH_WORK ||
@@ -256,7 +259,25 @@ nevh_options plan_options(const plan *p, const char *gradient) {
                           .t = p->run->t_start,
                           .q = p->q,
                           .p = p->p,
-                          .portable = p->portable};
+                          .portable = p->portable,
+                          .native = p->native,
+                          .native_cache = p->no_cache ? "" : NULL};
+}
+
+double plan_steps(const plan *p, double h) {
+    double steps = fabs((p->t_end - p->run->t_start) / h);
+    return isfinite(steps) ? steps : 0;
+}
+
+void plan_tell_native(const nevh_stepper *s) {
+    static char *told;
+    const char *why;
+    if (nevh_stepper_status(s) || nevh_stepper_native(s, &why) || !*why ||
+        (told && strcmp(told, why) == 0))
+        return;
+    fprintf(stderr, "nevh: steps are not compiled: %s\n", why);
+    free(told);
+    told = text_print("%s", why);
 }
 
 const nevh_system *plan_transform(const plan *p, const char *name) {
@@ -274,6 +295,7 @@ nevh_stepper *plan_stepper(const plan *p, const char *name) {
     o.transform = plan_transform(p, name);
     if (nevh_integrator_adaptive(scheme) && p->tolerances)
         o.tolerance = p->tolerance[0];
+    o.steps_foreseen = p->dts ? plan_steps(p, p->dt[0]) : 0;
     return nevh_stepper_new(p->system, scheme, &o);
 }
 

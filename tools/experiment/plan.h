@@ -28,6 +28,8 @@ typedef struct {
     const double *gradient_steps; /* as in nevh_options */
     size_t repeats;               /* of timed runs; 0: chosen */
     bool portable, friction, time, balance;
+    nevh_native_use native;
+    bool no_cache;
     bool hurried;    /* rows are to be finished later, and timed then */
     double patience; /* work that a row may take; 0: any */
     bool match_work, diagnostics;
@@ -46,6 +48,10 @@ typedef struct {
 int plan_make(plan *, const options *);
 void plan_free(plan *);
 nevh_options plan_options(const plan *, const char *gradient);
+/* Steps of h that the whole run takes. */
+double plan_steps(const plan *, double h);
+/* Says once why steps could not be compiled. */
+void plan_tell_native(const nevh_stepper *);
 /* The scheme of "gauss4" or "gauss4+transform"; NULL for other names. */
 const nevh_integrator *plan_scheme(const char *name, bool *transformed);
 /* The transform that it is to be planned with: of names with "+transform", and

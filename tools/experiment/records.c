@@ -35,6 +35,7 @@ static void add_record(table *t, const plan *p, const row *r) {
     if (p->promises)
         table_number(t, r->promise ? r->promise->until : NAN);
     energies_put(t, p, r, false);
+    table_text(t, r->native ? "yes" : "no");
 }
 
 table *records(const plan *p, const row rows[], size_t count) {
@@ -67,6 +68,7 @@ table *records(const plan *p, const row rows[], size_t count) {
     if (p->promises)
         table_column(t, "holds_until");
     energies_columns(t, p, false);
+    table_column(t, "native");
     for (size_t i = 0; i < count; i++)
         add_record(t, p, &rows[i]);
     return t;

@@ -273,6 +273,7 @@ void row_run(const plan *p, row *r) {
         r->seconds = NAN;
     nevh_stepper *s = row_stepper(p, r, p->balance);
     if (!refused(r, s)) {
+        r->native = nevh_stepper_native(s, NULL);
         watched(&w, s);
         if (!p->hurried)
             row_follow(p, r);

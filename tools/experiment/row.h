@@ -25,6 +25,7 @@ typedef struct {
     size_t steps;
     char *status;
     bool observable; /* its error is that of one, not of states */
+    bool native;     /* steps were compiled */
     bool ran, late;  /* there are numbers; patience was at its end */
     nevh_energy_report energy;
     double followed; /* lengths of the run that the verdict is from; 0: its own

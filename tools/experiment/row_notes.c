@@ -3,6 +3,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "row.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static bool measures_order(const row *r) {
@@ -113,6 +114,28 @@ static void note_rows(const plan *p, const row rows[], size_t count,
                         "as verlet with that dt; dt is what they take");
 }
 
+/* Integrators some of whose rows ran compiled steps. */
+static void note_native(const plan *p, const row rows[], size_t count,
+                        list *notes) {
+    char *names = text_print("%s", "");
+    const char *last = "";
+    for (size_t i = 0; i < count; i++) {
+        if (!rows[i].native || strcmp(rows[i].integrator, last) == 0)
+            continue;
+        char *longer =
+            text_print("%s%s%s", names, *names ? ", " : "", rows[i].integrator);
+        free(names);
+        names = longer;
+        last = rows[i].integrator;
+    }
+    if (*names)
+        list_print(notes, "native: steps of %s are compiled; others are not",
+                   names);
+    else if (p->native == NEVH_NATIVE_ALWAYS)
+        list_add(notes, "native: no steps are compiled");
+    free(names);
+}
+
 void row_notes(const options *o, const plan *p, const row rows[], size_t count,
                list *notes) {
     settings_notes(o, notes);
@@ -121,4 +144,5 @@ void row_notes(const options *o, const plan *p, const row rows[], size_t count,
     note_balance(p, notes);
     note_rows(p, rows, count, notes);
     stop_notes(p, rows, count, notes);
+    note_native(p, rows, count, notes);
 }

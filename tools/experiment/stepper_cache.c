@@ -6,6 +6,7 @@
 #include <string.h>
 
 enum { MOST = 256, MOST_DOF = 4096 };
+enum { MOST_RUNS = 3 }; /* of a row, as a rule: one watched, the others timed */
 
 typedef struct {
     const char *integrator, *gradient;
@@ -39,7 +40,10 @@ static nevh_stepper *plan_new(const plan *p, const row *r, bool balance) {
     o.transform = plan_transform(p, r->integrator);
     o.tolerance = r->tolerance;
     o.balance = balance;
-    return nevh_stepper_new(p->system, r->scheme, &o);
+    o.steps_foreseen = MOST_RUNS * plan_steps(p, r->dt);
+    nevh_stepper *s = nevh_stepper_new(p->system, r->scheme, &o);
+    plan_tell_native(s);
+    return s;
 }
 
 nevh_stepper *row_stepper(const plan *p, const row *r, bool balance) {

@@ -91,6 +91,8 @@ static int choose_rows(job *j) {
 
 static int choose_integrator(job *j) {
     j->stepper = plan_first(&j->plan, &j->integrator);
+    if (j->stepper)
+        plan_tell_native(j->stepper);
     return j->stepper ? TOOL_OK : TOOL_USAGE;
 }
 
@@ -110,6 +112,8 @@ static void note(job *j) {
     settings_notes(j->options, &j->notes);
     plan_note_first(p, j->integrator, &j->notes);
     list_print(&j->notes, "rows: %s", j->rows_text);
+    if (nevh_stepper_native(j->stepper, NULL))
+        list_add(&j->notes, "native: steps are compiled");
 }
 
 /* All that the orbit and its rows depend on. */

@@ -7,7 +7,7 @@
    signal takes its course.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #define _XOPEN_SOURCE 700
-#include "scene/compiler_private.h"
+#include "native/compiler_private.h"
 #include "system/system_private.h"
 #include <dirent.h>
 #include <errno.h>
@@ -56,35 +56,30 @@ static bool is_interrupted(const sigset_t *before) {
     return false;
 }
 
-/* As a word for the shell; NULL when memory is out. */
-static char *quote(const char *text) {
-    char *word = malloc(4 * strlen(text) + 3), *to = word;
-    if (!word)
+/* The environment, but that the compiler's own temporary files go to the
+   folder; the first is to be freed. */
+static char **environment_in(const char *folder) {
+    size_t count = 0, kept = 0;
+    while (environ[count])
+        count++;
+    char **all = nevh__array(count + 2, sizeof *all);
+    char *temporary = nevh__text("TMPDIR=%s", folder);
+    if (!all || !temporary) {
+        free(all);
+        free(temporary);
         return NULL;
-    *to++ = '\'';
-    for (; *text; text++)
-        if (*text == '\'') {
-            memcpy(to, "'\\''", 4);
-            to += 4;
-        } else {
-            *to++ = *text;
-        }
-    memcpy(to, "'", 2);
-    return word;
+    }
+    all[kept++] = temporary;
+    for (size_t i = 0; i < count; i++)
+        if (strncmp(environ[i], "TMPDIR=", 7) != 0)
+            all[kept++] = environ[i];
+    return all;
 }
 
-/* The compiler's own temporary files go to the folder, too. */
-static char *command_for(const char *path, const char *folder) {
-    char *file = quote(path), *in = quote(folder);
-    char *command =
-        file && in ? nevh__text("d=%s; TMPDIR=$d; export TMPDIR; "
-                                "${CC:-cc} -O2 -ffp-contract=off -fPIC -shared "
-                                "-o \"$d/term.so\" %s -lm 2>&1",
-                                in, file)
-                   : NULL;
-    free(file);
-    free(in);
-    return command;
+static void free_environment(char **all) {
+    if (all)
+        free(all[0]);
+    free(all);
 }
 
 static int set_attributes(posix_spawnattr_t *how, const sigset_t *before) {
@@ -98,13 +93,15 @@ static int set_attributes(posix_spawnattr_t *how, const sigset_t *before) {
 static int set_files(posix_spawn_file_actions_t *files, int out) {
     int wrong = posix_spawn_file_actions_addopen(files, STDIN_FILENO,
                                                  "/dev/null", O_RDONLY, 0);
+    if (!wrong)
+        wrong = posix_spawn_file_actions_adddup2(files, out, STDOUT_FILENO);
     return wrong ? wrong
-                 : posix_spawn_file_actions_adddup2(files, out, STDOUT_FILENO);
+                 : posix_spawn_file_actions_adddup2(files, out, STDERR_FILENO);
 }
 
 /* returns  0, or an error number */
-static int start(char *command, const sigset_t *before, int out, pid_t *child) {
-    char *arguments[] = {(char[]){"sh"}, (char[]){"-c"}, command, NULL};
+static int start(char *const arguments[], char *const environment[],
+                 const sigset_t *before, int out, pid_t *child) {
     posix_spawnattr_t how;
     posix_spawn_file_actions_t files;
     int wrong = posix_spawnattr_init(&how);
@@ -116,8 +113,8 @@ static int start(char *command, const sigset_t *before, int out, pid_t *child) {
         if (!wrong)
             wrong = set_files(&files, out);
         if (!wrong)
-            wrong =
-                posix_spawn(child, "/bin/sh", &files, &how, arguments, environ);
+            wrong = posix_spawnp(child, arguments[0], &files, &how, arguments,
+                                 environment);
         posix_spawn_file_actions_destroy(&files);
     }
     posix_spawnattr_destroy(&how);
@@ -171,15 +168,16 @@ static int await(pid_t child) {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-static int run(char *command, const sigset_t *before,
-               nevh__compiler_output *output) {
+static int run(char *const arguments[], char *const environment[],
+               const sigset_t *before, nevh__compiler_output *output) {
     int ends[2];
     pid_t child;
     if (pipe(ends))
         return -1;
     fcntl(ends[0], F_SETFD, FD_CLOEXEC);
     fcntl(ends[1], F_SETFD, FD_CLOEXEC);
-    int wrong = start(command, before, ends[1], &child), status = -1;
+    int wrong = start(arguments, environment, before, ends[1], &child),
+        status = wrong == ENOENT ? NEVH__NO_COMPILER : -1;
     close(ends[1]);
     if (!wrong) {
         output->interrupted = !listen_to(ends[0], before, 0, output);
@@ -191,13 +189,77 @@ static int run(char *command, const sigset_t *before,
     return status;
 }
 
-int nevh__compile(const char *path, const char *folder, const sigset_t *before,
-                  nevh__compiler_output *output) {
-    char *command = command_for(path, folder);
+/* The file that the shell would run; NULL: there is none. */
+char *nevh__command_find(const char *name) {
+    const char *path = getenv("PATH");
+    char *found = NULL;
+    if (strchr(name, '/'))
+        return access(name, X_OK) ? NULL : nevh__text("%s", name);
+    for (const char *at = path ? path : ""; *at && !found;) {
+        size_t bytes = strcspn(at, ":");
+        found = nevh__text("%.*s/%s", (int)bytes, at, name);
+        if (found && (!bytes || access(found, X_OK))) {
+            free(found);
+            found = NULL;
+        }
+        at += bytes + (at[bytes] == ':');
+    }
+    return found;
+}
+
+char *nevh__compiler_name(void) {
+    static const char *const usual[] = {"cc", "gcc", "clang"};
+    const char *given = getenv("CC");
+    if (given && given[strspn(given, " \t\n")])
+        return nevh__text("%s", given);
+    for (size_t i = 0; i < sizeof usual / sizeof *usual; i++) {
+        char *found = nevh__command_find(usual[i]);
+        free(found);
+        if (found)
+            return nevh__text("%s", usual[i]);
+    }
+    return nevh__text("%s", usual[0]);
+}
+
+/* NAME FLAGS -o OBJECT SOURCE -lm */
+static int compile(char *name, const char *const flags[], const char *source,
+                   const char *object, char *const environment[],
+                   const sigset_t *before, nevh__compiler_output *output) {
+    const char *arguments[NEVH__MOST_ARGUMENTS + 5];
+    size_t count = 0;
+    char *rest = NULL;
+    for (char *word = strtok_r(name, " \t\n", &rest);
+         word && count < NEVH__MOST_ARGUMENTS;
+         word = strtok_r(NULL, " \t\n", &rest))
+        arguments[count++] = word;
+    for (; *flags && count < NEVH__MOST_ARGUMENTS; flags++)
+        arguments[count++] = *flags;
+    const char *last[] = {"-o", object, source, "-lm", NULL};
+    memcpy(arguments + count, last, sizeof last);
+    return run((char *const *)arguments, environment, before, output);
+}
+
+int nevh__compile(const char *const flags[], const char *source,
+                  const char *object, const char *folder,
+                  const sigset_t *before, nevh__compiler_output *output) {
+    char *name = nevh__compiler_name(), **environment = environment_in(folder);
     *output = (nevh__compiler_output){.used = 0};
-    int status = command ? run(command, before, output) : -1;
-    free(command);
+    int status = name && environment ? compile(name, flags, source, object,
+                                               environment, before, output)
+                                     : -1;
+    free(name);
+    free_environment(environment);
     return status;
+}
+
+char *nevh__new_folder(void) {
+    const char *where = getenv("TMPDIR");
+    char *folder =
+        nevh__text("%s/nevh-XXXXXX", where && *where ? where : "/tmp");
+    if (folder && mkdtemp(folder))
+        return folder;
+    free(folder);
+    return NULL;
 }
 
 void nevh__folder_remove(const char *folder) {

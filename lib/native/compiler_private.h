@@ -1,0 +1,40 @@
+/* nevh: the system's C compiler.  Files that include this one ask for POSIX.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_COMPILER_PRIVATE_H
+#define NEVH_COMPILER_PRIVATE_H
+
+#include <signal.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+enum { NEVH__MOST_OUTPUT = 1200 };
+typedef struct {
+    char text[NEVH__MOST_OUTPUT + 1]; /* the beginning of what it says */
+    size_t used;
+    bool interrupted; /* by a signal, which is still pending */
+} nevh__compiler_output;
+/* Between these the calling thread gets none of the signals that end a process
+   from outside.
+   before  out: the mask that was */
+void nevh__signals_hold(sigset_t *before);
+void nevh__signals_release(const sigset_t *before);
+/* What to call: words apart by spaces, CC of the environment, else the first of
+   cc, gcc and clang that there is; to be freed.  NULL: memory is out. */
+char *nevh__compiler_name(void);
+/* The file that a command is; to be freed.  NULL: there is none. */
+char *nevh__command_find(const char *name);
+/* Compiles a source into a shared object, all signals being held and without a
+   shell.  The compiler's own files go to the folder.
+   flags    ended by NULL
+   returns  the compiler's exit status, NEVH__NO_COMPILER; or -1 */
+enum { NEVH__NO_COMPILER = 127, NEVH__MOST_ARGUMENTS = 40 };
+int nevh__compile(const char *const flags[], const char *source,
+                  const char *object, const char *folder,
+                  const sigset_t *before, nevh__compiler_output *);
+/* A folder of nobody else's, in that of temporary files; to be removed and
+   freed.  NULL: none can be made. */
+char *nevh__new_folder(void);
+/* A folder of files, removed with them. */
+void nevh__folder_remove(const char *folder);
+
+#endif

@@ -1,0 +1,508 @@
+/* nevh: a tape as C text.
+
+   The text of each operation and of its derivatives is that of the table which
+   the tape itself runs on, with names for its arguments.  Text and tape do the
+   same operations in the same order, but that of 0 times infinity there is NaN
+   where the chain rule of the tape has 0: who calls such text looks for NaN,
+   and asks the tape.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "expression/tape_inside_private.h"
+#include "expression/tape_operations_private.h"
+#include "native/writer_private.h"
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Stringified, not expanded. */
+#define TEXTS(identifier, value, by_a, by_b) {#value, #by_a, #by_b},
+static const struct {
+    const char *value, *by_a, *by_b;
+} texts[] = {NEVH__FORMULAS(TEXTS)};
+#undef TEXTS
+
+/* What a name in the table stands for. */
+typedef struct {
+    const char *a, *b, *y, *g;
+    bool wide, scalar;
+} meaning;
+
+/* Which operations take vectors as they stand in the table. */
+static bool is_lanewise(unsigned operation) {
+    switch (operation) {
+    case NEVH__ATAN2:
+    case NEVH__ASINH:
+    case NEVH__ACOSH:
+    case NEVH__ATANH:
+    case NEVH__LOG10:
+    case NEVH__HYPOT:
+    case NEVH__ABS:
+    case NEVH__MIN:
+    case NEVH__MAX:
+    case NEVH__SIGN:
+    case NEVH__MOD:
+    case NEVH__FLOOR:
+        return true;
+    default:
+        return false;
+    }
+}
+
+/* Of GSL's, which compiled text would have to be linked with. */
+static bool is_special(unsigned operation) {
+    return operation == NEVH__BESSEL_J0 || operation == NEVH__BESSEL_J1 ||
+           operation == NEVH__ELLIPTIC_K || operation == NEVH__ELLIPTIC_E;
+}
+
+static bool is(const char *word, size_t length, const char *name) {
+    return strlen(name) == length && strncmp(word, name, length) == 0;
+}
+
+/* One word of the table; returns where the text goes on. */
+static const char *write_word(nevh__writer *w, const char *word, size_t length,
+                              const meaning *m) {
+    const char *after = word + length;
+    const char *name = is(word, length, "a")   ? m->a
+                       : is(word, length, "b") ? m->b
+                       : is(word, length, "y") ? m->y
+                       : is(word, length, "g") ? m->g
+                                               : NULL;
+    if (name)
+        nevh__write(w, "%s", name);
+    else if (is(word, length, "NEVH__F")) { /* NEVH__F(sin) */
+        size_t bytes = strcspn(after, ")") - 1;
+        nevh__write(w, "%s%.*s",
+                    m->wide     ? "wide_"
+                    : m->scalar ? ""
+                                : "lane_",
+                    (int)bytes, after + 1);
+        after += bytes + 2;
+    } else if (is(word, length, "NEVH__G"))
+        nevh__write(w, "%s * ", m->g);
+    else if (is(word, length, "NEVH__LN10"))
+        nevh__write(w, "2.302585092994045684");
+    else if (length > 6 && strncmp(word, "nevh__", 6) == 0)
+        nevh__write(w, "nevh_%.*s", (int)length - 6, word + 6);
+    else
+        nevh__write(w, "%.*s", (int)length, word);
+    return after;
+}
+
+static void write_text(nevh__writer *w, const char *text, const meaning *m) {
+    while (*text) {
+        size_t length = 0;
+        while (isalnum((unsigned char)text[length]) || text[length] == '_')
+            length++;
+        if (length && !isdigit((unsigned char)*text))
+            text = write_word(w, text, length, m);
+        else {
+            size_t bytes = length ? length : 1;
+            nevh__write(w, "%.*s", (int)bytes, text);
+            text += bytes;
+        }
+    }
+}
+
+/* Where the numbers of a tape are: which operation wrote what a slot holds. */
+typedef struct nevh__reading {
+    uint32_t *a, *b;  /* by operation: which wrote its operand */
+    uint32_t *holder; /* by slot, for now */
+    double *bound;    /* by result: it is smaller, if all it reads is finite */
+    bool *cosine;     /* by operand, whether it is the second result */
+    bool *begun, *begun_cosine; /* by result: whether it has an adjoint */
+    bool *variable[NEVH__VARIABLES];
+} reading;
+
+static void free_reading(reading *r) {
+    free(r->a);
+    free(r->holder);
+    free(r->bound);
+    free(r->cosine);
+}
+
+static bool new_reading(const nevh__tape *tape, reading *r) {
+    size_t n = tape->length, variables = 0;
+    *r = (reading){0};
+    for (size_t v = 0; v < NEVH__VARIABLES; v++)
+        variables += tape->count[v];
+    r->a = nevh__array(2 * n, sizeof *r->a);
+    r->holder = nevh__array(2 * tape->slots, sizeof *r->holder);
+    r->bound = nevh__array(2 * n, sizeof *r->bound);
+    r->cosine = nevh__array(4 * n + variables, sizeof *r->cosine);
+    if (!r->a || !r->holder || !r->bound || !r->cosine) {
+        free_reading(r);
+        return false;
+    }
+    r->b = r->a + n;
+    r->begun = r->cosine + 2 * n;
+    r->begun_cosine = r->begun + n;
+    bool *at = r->begun_cosine + n;
+    for (size_t v = 0; v < NEVH__VARIABLES; at += tape->count[v++])
+        r->variable[v] = at;
+    return true;
+}
+
+/* Results are called v3_7, operation 7 of formula 3, and cosines beside a sine
+   w3_7; adjoints dv3_7 and dw3_7. */
+static void result_name(const nevh__formula_text *f, uint32_t at, bool cosine,
+                        char name[NEVH__NAME]) {
+    snprintf(name, NEVH__NAME, "%c%u_%u", cosine ? 'w' : 'v', f->id, at);
+}
+
+static void operand_name(nevh__writer *w, const nevh__formula_text *f,
+                         nevh__tape_operand o, uint32_t from, bool cosine,
+                         char name[NEVH__NAME]) {
+    if (o.kind == NEVH__SLOT)
+        result_name(f, from, cosine, name);
+    else if (o.kind == NEVH__NUMBER)
+        snprintf(name, NEVH__NAME, "N[%zu]", f->first_number + o.at);
+    else
+        f->variable(w, f, (nevh__variable)o.kind, o.at, name);
+    if (f->wide && o.kind == NEVH__NUMBER) {
+        char plain[NEVH__NAME];
+        memcpy(plain, name, sizeof plain);
+        snprintf(name, NEVH__NAME, "ALL(%.30s)", plain);
+    }
+}
+
+static double bound_of(const nevh__formula_text *f, const reading *r,
+                       nevh__tape_operand o, uint32_t from, bool cosine) {
+    if (o.kind == NEVH__SLOT)
+        return cosine ? 1 : r->bound[from];
+    return o.kind == NEVH__NUMBER ? fabs(f->tape->numbers[o.at]) : INFINITY;
+}
+
+/* How large a result can be where its arguments are finite. */
+static double bound(unsigned operation, double a, double b) {
+    switch (operation) {
+    case NEVH__SIN:
+    case NEVH__COS:
+    case NEVH__SINCOS:
+    case NEVH__TANH:
+    case NEVH__SIGN:
+        return 1;
+    case NEVH__ATAN:
+    case NEVH__ATAN2:
+        return 4;
+    case NEVH__NEGATE:
+    case NEVH__ABS:
+        return a;
+    case NEVH__ADD:
+    case NEVH__SUBTRACT:
+        return a + b;
+    case NEVH__MULTIPLY:
+        return a * b;
+    default:
+        return INFINITY;
+    }
+}
+
+static const char *type_of(const nevh__formula_text *f) {
+    return f->wide ? "wide" : "double";
+}
+
+static void write_operation(nevh__writer *w, const nevh__formula_text *f,
+                            unsigned operation, const char *text,
+                            const char *to, const meaning *m) {
+    if (!f->wide || !is_lanewise(operation)) {
+        write_text(w, text, m);
+        nevh__write(w, ";\n");
+        return;
+    }
+    meaning one = {"a_", "b_", "y_", "g_", false, f->scalar};
+    nevh__write(w, "%s;\n    EACH_LANE { double a_ = %s[lane], b_ = %s[lane]",
+                m->a, m->a, m->b);
+    if (m->y)
+        nevh__write(w, ", y_ = %s[lane]", m->y);
+    if (m->g)
+        nevh__write(w, ", g_ = %s[lane]", m->g);
+    nevh__write(w, "; (void)a_, (void)b_; %s[lane] = ", to);
+    write_text(w, text, &one);
+    nevh__write(w, "; }\n");
+}
+
+/* One operation's operands and results. */
+typedef struct {
+    char a[NEVH__NAME], b[NEVH__NAME], y[NEVH__NAME], also[NEVH__NAME];
+} names;
+
+static void find_names(nevh__writer *w, const nevh__formula_text *f,
+                       const reading *r, uint32_t i, names *x) {
+    const nevh__instruction *at = &f->tape->code[i];
+    operand_name(w, f, at->a, r->a[i], r->cosine[2 * i], x->a);
+    operand_name(w, f, at->b, r->b[i], r->cosine[2 * i + 1], x->b);
+    result_name(f, i, false, x->y);
+    result_name(f, i, true, x->also);
+}
+
+/* Which operations wrote the operands of one, and where it writes. */
+static void trace(const nevh__formula_text *f, reading *r, uint32_t i) {
+    const nevh__instruction *at = &f->tape->code[i];
+    const nevh__tape_operand operands[] = {at->a, at->b};
+    uint32_t *from[] = {&r->a[i], &r->b[i]};
+    size_t slots = f->tape->slots;
+    for (size_t k = 0; k < 2; k++)
+        if (operands[k].kind == NEVH__SLOT) {
+            *from[k] = r->holder[operands[k].at];
+            r->cosine[2 * i + k] = r->holder[slots + operands[k].at];
+        }
+    double a = bound_of(f, r, at->a, r->a[i], r->cosine[2 * i]);
+    double b = bound_of(f, r, at->b, r->b[i], r->cosine[2 * i + 1]);
+    r->bound[i] = bound(at->operation, a, b);
+    r->holder[at->to] = i;
+    r->holder[slots + at->to] = 0;
+    if (at->operation == NEVH__SINCOS) {
+        r->holder[at->also] = i;
+        r->holder[slots + at->also] = 1;
+    }
+}
+
+/* The tape's numbers, once for all instances of a formula. */
+static void write_numbers(nevh__writer *w, nevh__formula_text *f) {
+    const nevh__tape *tape = f->tape;
+    size_t count = 0;
+    if (f->numbered)
+        return;
+    for (size_t i = 0; i <= tape->length; i++) {
+        nevh__tape_operand a =
+            i < tape->length ? tape->code[i].a : tape->result;
+        nevh__tape_operand b =
+            i < tape->length ? tape->code[i].b : tape->result;
+        if (a.kind == NEVH__NUMBER && a.at >= count)
+            count = a.at + 1;
+        if (b.kind == NEVH__NUMBER && b.at >= count)
+            count = b.at + 1;
+    }
+    f->first_number = w->count;
+    f->numbered = true;
+    for (size_t i = 0; i < count; i++)
+        nevh__writer_append(w, tape->numbers[i]);
+}
+
+static bool write_forwards(nevh__writer *w, nevh__formula_text *f, reading *r,
+                           char result[NEVH__NAME], double *most) {
+    const nevh__tape *tape = f->tape;
+    f->id = w->formulas++;
+    write_numbers(w, f);
+    for (uint32_t i = 0; i < tape->length; i++) {
+        const nevh__instruction *at = &tape->code[i];
+        names x;
+        if (is_special(at->operation)) {
+            w->refusal = "it calls a function that libm does not have";
+            return false;
+        }
+        trace(f, r, i);
+        find_names(w, f, r, i, &x);
+        meaning m = {x.a, x.b, NULL, NULL, f->wide, f->scalar};
+        nevh__write(w, "    %s %s = ", type_of(f), x.y);
+        bool pair = at->operation == NEVH__SINCOS;
+        unsigned first = pair ? NEVH__SIN : at->operation;
+        write_operation(w, f, first, texts[first].value, x.y, &m);
+        if (pair) {
+            nevh__write(w, "    %s %s = ", type_of(f), x.also);
+            write_operation(w, f, NEVH__COS, texts[NEVH__COS].value, x.also,
+                            &m);
+        }
+    }
+    nevh__tape_operand o = tape->result;
+    uint32_t from = o.kind == NEVH__SLOT ? r->holder[o.at] : 0;
+    bool cosine = o.kind == NEVH__SLOT && r->holder[tape->slots + o.at];
+    operand_name(w, f, o, from, cosine, result);
+    *most = bound_of(f, r, o, from, cosine);
+    return true;
+}
+
+bool nevh__write_value(nevh__writer *w, nevh__formula_text *f,
+                       char result[NEVH__NAME]) {
+    reading r;
+    double most;
+    if (!new_reading(f->tape, &r)) {
+        w->failed = true;
+        return false;
+    }
+    bool fine = write_forwards(w, f, &r, result, &most);
+    free_reading(&r);
+    return fine;
+}
+
+void nevh__derivative_name(const nevh__formula_text *f, nevh__variable kind,
+                           size_t k, char name[NEVH__NAME]) {
+    snprintf(name, NEVH__NAME, "d%u%c%zu", f->id, "tqpc"[kind], k);
+}
+
+/* The adjoint of an operand, and whether there was something before. */
+static bool *adjoint_name(const nevh__formula_text *f, const reading *r,
+                          nevh__tape_operand o, uint32_t from, bool cosine,
+                          char name[NEVH__NAME]) {
+    if (o.kind != NEVH__SLOT) {
+        nevh__derivative_name(f, (nevh__variable)o.kind, o.at, name);
+        return &r->variable[o.kind][o.at];
+    }
+    snprintf(name, NEVH__NAME, "d%c%u_%u", cosine ? 'w' : 'v', f->id, from);
+    return cosine ? &r->begun_cosine[from] : &r->begun[from];
+}
+
+/* The adjoint of an operation's result is handed on to one argument. */
+static void hand_on(nevh__writer *w, const nevh__formula_text *f,
+                    const reading *r, uint32_t i, bool second, const names *x) {
+    const nevh__instruction *at = &f->tape->code[i];
+    nevh__tape_operand o = second ? at->b : at->a;
+    char to[NEVH__NAME], g[NEVH__NAME], g_cosine[NEVH__NAME],
+        product[NEVH__NAME];
+    bool *begun = adjoint_name(f, r, o, second ? r->b[i] : r->a[i],
+                               r->cosine[2 * i + second], to);
+    snprintf(g, sizeof g, "dv%u_%u", f->id, i);
+    snprintf(g_cosine, sizeof g_cosine, "dw%u_%u", f->id, i);
+    snprintf(product, sizeof product, "%c%u_%u", second ? 'f' : 'e', f->id, i);
+    if (at->operation == NEVH__SINCOS) {
+        /* As the tape has it: one after the other. */
+        if (*begun)
+            nevh__write(w, "    %s = %s + %s * %s - %s * %s;\n", to, to, g,
+                        x->also, g_cosine, x->y);
+        else
+            nevh__write(w, "    %s %s = %s * %s - %s * %s;\n", type_of(f), to,
+                        g, x->also, g_cosine, x->y);
+        *begun = true;
+        return;
+    }
+    nevh__write(w, "    %s %s = ", type_of(f), product);
+    meaning m = {x->a, x->b, x->y, g, f->wide, f->scalar};
+    write_operation(w, f, at->operation,
+                    second ? texts[at->operation].by_b
+                           : texts[at->operation].by_a,
+                    product, &m);
+    if (*begun)
+        nevh__write(w, "    %s += %s;\n", to, product);
+    else
+        nevh__write(w, "    %s %s = %s;\n", type_of(f), to, product);
+    *begun = true;
+}
+
+static void write_backwards(nevh__writer *w, const nevh__formula_text *f,
+                            const reading *r, unsigned wanted) {
+    const nevh__tape *tape = f->tape;
+    for (uint32_t i = (uint32_t)tape->length; i-- > 0;) {
+        const nevh__instruction *at = &tape->code[i];
+        names x;
+        if (!((at->a.by | at->b.by) & wanted))
+            continue;
+        find_names(w, f, r, i, &x);
+        if (at->a.by & wanted)
+            hand_on(w, f, r, i, false, &x);
+        if (at->b.by & wanted)
+            hand_on(w, f, r, i, true, &x);
+    }
+}
+
+bool nevh__write_gradient(nevh__writer *w, nevh__formula_text *f,
+                          unsigned wanted) {
+    static const double safe = 1e300;
+    reading r;
+    char result[NEVH__NAME], to[NEVH__NAME];
+    double most;
+    if (!new_reading(f->tape, &r)) {
+        w->failed = true;
+        return false;
+    }
+    bool fine = write_forwards(w, f, &r, result, &most);
+    nevh__tape_operand o = f->tape->result;
+    if (fine && o.by & wanted) {
+        uint32_t from = o.kind == NEVH__SLOT ? r.holder[o.at] : 0;
+        bool cosine = o.kind == NEVH__SLOT && r.holder[f->tape->slots + o.at];
+        bool *begun = adjoint_name(f, &r, o, from, cosine, to);
+        if (!(most < safe))
+            nevh__write(w, "    bad += %s - %s;\n", result, result);
+        nevh__write(w, "    %s %s = %s;\n", type_of(f), to,
+                    f->wide ? "ALL(1.0)" : "1.0");
+        *begun = true;
+        write_backwards(w, f, &r, wanted);
+    }
+    free_reading(&r);
+    return fine;
+}
+
+/* Whether an operand changes with the variable that is moved. */
+static bool moves(const reading *r, nevh__tape_operand o, uint32_t from,
+                  bool cosine, nevh__variable by, size_t k) {
+    if (o.kind == NEVH__SLOT)
+        return cosine ? r->begun_cosine[from] : r->begun[from];
+    return o.kind == (uint8_t)by && o.at == k;
+}
+
+/* The imaginary part of an operand that moves. */
+static void part_name(const nevh__formula_text *f, nevh__tape_operand o,
+                      uint32_t from, bool cosine, char name[NEVH__NAME]) {
+    if (o.kind == NEVH__SLOT)
+        snprintf(name, NEVH__NAME, "i%c%u_%u", cosine ? 'w' : 'v', f->id, from);
+    else
+        snprintf(name, NEVH__NAME, "0x1p-332");
+}
+
+static void write_parts(nevh__writer *w, const nevh__formula_text *f,
+                        reading *r, nevh__variable by, size_t k) {
+    for (uint32_t i = 0; i < f->tape->length; i++) {
+        const nevh__instruction *at = &f->tape->code[i];
+        bool cosine_a = r->cosine[2 * i], cosine_b = r->cosine[2 * i + 1];
+        bool one = at->operation < NEVH__OPERATION_COUNT
+                       ? nevh__operation_arguments(at->operation) == 1
+                       : true;
+        bool a = moves(r, at->a, r->a[i], cosine_a, by, k);
+        bool b = !one && moves(r, at->b, r->b[i], cosine_b, by, k);
+        names x;
+        char g[NEVH__NAME];
+        if (!a && !b)
+            continue;
+        find_names(w, f, r, i, &x);
+        r->begun[i] = true;
+        if (at->operation == NEVH__SINCOS) {
+            r->begun_cosine[i] = true;
+            part_name(f, at->a, r->a[i], cosine_a, g);
+            nevh__write(w, "    double iv%u_%u = %s * %s;\n", f->id, i, x.also,
+                        g);
+            nevh__write(w, "    double iw%u_%u = -%s * %s;\n", f->id, i, x.y,
+                        g);
+            continue;
+        }
+        nevh__write(w, "    double iv%u_%u = ", f->id, i);
+        if (a) {
+            part_name(f, at->a, r->a[i], cosine_a, g);
+            write_text(w, texts[at->operation].by_a,
+                       &(meaning){x.a, x.b, x.y, g, false, true});
+        }
+        if (a && b)
+            nevh__write(w, " + ");
+        if (b) {
+            nevh__write(w, "(");
+            part_name(f, at->b, r->b[i], cosine_b, g);
+            write_text(w, texts[at->operation].by_b,
+                       &(meaning){x.a, x.b, x.y, g, false, true});
+            nevh__write(w, ")");
+        }
+        nevh__write(w, ";\n");
+    }
+}
+
+bool nevh__write_complex(nevh__writer *w, nevh__formula_text *f,
+                         nevh__variable by, size_t k, char result[NEVH__NAME]) {
+    reading r;
+    double most;
+    f->scalar = true;
+    if (!new_reading(f->tape, &r)) {
+        w->failed = true;
+        return false;
+    }
+    bool fine = write_forwards(w, f, &r, result, &most);
+    if (fine) {
+        nevh__tape_operand o = f->tape->result;
+        uint32_t from = o.kind == NEVH__SLOT ? r.holder[o.at] : 0;
+        bool cosine = o.kind == NEVH__SLOT && r.holder[f->tape->slots + o.at];
+        nevh__write(w, "    bad += %s - %s;\n", result, result);
+        write_parts(w, f, &r, by, k);
+        if (moves(&r, o, from, cosine, by, k))
+            part_name(f, o, from, cosine, result);
+        else
+            snprintf(result, NEVH__NAME, "0.0");
+    }
+    free_reading(&r);
+    return fine;
+}

@@ -1,0 +1,134 @@
+/* nevh: native steps are planned and taken.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "native/native_private.h"
+#include "kernels/splitting_private.h"
+#include <dlfcn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Seconds that the steps foreseen take from the tape, from which on compiling
+   (0.1 s), and loading what was compiled, pay. */
+static const double compiling_pays = 0.3, loading_pays = 2e-3;
+
+void nevh__native_free(nevh__native *x) {
+    if (!x)
+        return;
+    if (x->library)
+        dlclose(x->library);
+    free(x->numbers);
+    free(x->weights);
+    free(x->times);
+    free(x->kick_values);
+    free(x->drift_values);
+    free(x);
+}
+
+/* A kick takes dH/dq at the drifts' time, a drift dH/dp at the kicks'. */
+static bool fill(nevh__native *x, const nevh_work *w) {
+    const nevh_splitting *table = w->integrator->table;
+    size_t count = nevh__splitting_operations(table), terms = w->field->n_terms;
+    double passed[2] = {0, 0};
+    x->weights = nevh__array(count, sizeof *x->weights);
+    x->times = nevh__array(count, sizeof *x->times);
+    x->kick_values = nevh__array(terms, sizeof *x->kick_values);
+    x->drift_values = nevh__array(terms, sizeof *x->drift_values);
+    if (!x->weights || !x->times || !x->kick_values || !x->drift_values)
+        return false;
+    nevh__splitting_expand(table, x->weights);
+    for (size_t i = 0; i < count; i++) {
+        x->times[i] = passed[1 - i % 2];
+        passed[i % 2] += x->weights[i];
+    }
+    x->keeps = count % 2 == 1;
+    x->kicks_first = table->first == NEVH_KICK;
+    x->kicks = (count + x->kicks_first) / 2;
+    x->drifts = count - x->kicks;
+    nevh__slope_values(w->field, true, x->kick_values);
+    nevh__slope_values(w->field, false, x->drift_values);
+    return true;
+}
+
+/* A guess of what the steps foreseen take from the tape. */
+static double seconds_foreseen(const nevh_work *w) {
+    static const double call = 4e-8, operation = 5e-9;
+    double each = call;
+    for (size_t i = 0; i < w->field->n_terms; i++) {
+        const nevh_term *is = &w->field->terms[i].term->decl;
+        if (is->gradient == nevh__tape_block_gradient)
+            each += operation * (double)is->count *
+                    (double)nevh__tape_length(is->params);
+    }
+    double gradients = w->integrator->gradients ? w->integrator->gradients : 1;
+    return w->options->steps_foreseen * gradients * each;
+}
+
+static bool plan(nevh_work *w, nevh__native *x, nevh__writer *text,
+                 bool compile, char why[NEVH__WHY_NATIVE]) {
+    if (!nevh__write_splitting(text, w) && text->refusal)
+        snprintf(why, NEVH__WHY_NATIVE, "%s", text->refusal);
+    if (text->refusal || text->failed || !fill(x, w))
+        return false;
+    x->library =
+        nevh__native_load(text->text, w->options->native_cache, compile, why);
+    if (!x->library)
+        return false;
+    *(void **)&x->steps = dlsym(x->library, "nevh_native_steps");
+    x->numbers = text->numbers;
+    text->numbers = NULL;
+    return x->steps;
+}
+
+void nevh__native_plan(nevh_work *w, char why[NEVH__WHY_NATIVE]) {
+    const nevh_options *o = w->options;
+    bool always = o->native == NEVH_NATIVE_ALWAYS;
+    double seconds = seconds_foreseen(w);
+    nevh__writer text = {0};
+    why[0] = '\0';
+    if (o->native == NEVH_NATIVE_NEVER || (!always && seconds < loading_pays))
+        return;
+    if (w->integrator->kernel != &nevh_splitting_kernel || w->width > 1 ||
+        w->accounts) {
+        if (always)
+            snprintf(why, NEVH__WHY_NATIVE, "%s",
+                     w->accounts    ? "the balance of the energy is kept"
+                     : w->width > 1 ? "orbits stand side by side"
+                                    : "the scheme has none");
+        return;
+    }
+    nevh__native *x = nevh__array(1, sizeof *x);
+    bool compile = always || seconds > compiling_pays;
+    if (x && plan(w, x, &text, compile, why))
+        w->native = x;
+    else
+        nevh__native_free(x);
+    if (w->native || !compile)
+        why[0] = '\0';
+    nevh__writer_free(&text);
+}
+
+/* Gradients and values of so many steps, as the kernel counts them. */
+static void count(nevh_work *w, const nevh__native *x, size_t steps,
+                  bool kept) {
+    size_t saved = x->keeps ? steps - !kept : 0;
+    size_t kicks = steps * x->kicks - (x->kicks_first ? saved : 0);
+    size_t drifts = steps * x->drifts - (x->kicks_first ? 0 : saved);
+    w->field->gradients += kicks;
+    for (size_t i = 0; i < w->field->n_terms; i++)
+        w->field->terms[i].values +=
+            kicks * x->kick_values[i] + drifts * x->drift_values[i];
+}
+
+size_t nevh__native_run(nevh_work *w, double t0, double h, size_t from,
+                        size_t steps, double q[], double p[]) {
+    const nevh__native *x = w->native;
+    if (!nevh__field_at_hand(w->field))
+        return 0;
+    bool kept = x->keeps && w->memory[3 * w->n] != 0;
+    size_t done =
+        x->steps(x->numbers, x->weights, x->times, x->kicks + x->drifts, t0, h,
+                 from, steps, q, p, w->memory);
+    if (done)
+        count(w, x, done, kept);
+    return done;
+}

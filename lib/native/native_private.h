@@ -1,0 +1,70 @@
+/* nevh: steps as native code: formulas, their gradients and the scheme written
+   as one C function, compiled by what compiler there is, and loaded.
+   SPDX-License-Identifier: GPL-3.0-or-later
+
+   Native steps give the bits of the steps that they stand for.  They look at
+   the state that a step gives, and where that is not finite they leave it, and
+   the step to the kernel, which knows what went wrong. */
+#ifndef NEVH_NATIVE_PRIVATE_H
+#define NEVH_NATIVE_PRIVATE_H
+
+#include "native/writer_private.h"
+#include <nevh/extend.h>
+
+typedef size_t (*nevh__native_steps)(const double numbers[],
+                                     const double weights[],
+                                     const double times[], size_t operations,
+                                     double t0, double h, size_t from,
+                                     size_t steps, double q[], double p[],
+                                     double memory[]);
+
+enum { NEVH__WHY_NATIVE = 400 };
+
+typedef struct nevh__native {
+    void *library;
+    nevh__native_steps steps;
+    double *numbers, *weights, *times;
+    size_t kicks, drifts; /* of a step */
+    bool keeps, kicks_first;
+    uint64_t *kick_values, *drift_values; /* n_terms each, of one of them */
+} nevh__native;
+
+/* Text of steps of a splitting. */
+bool nevh__write_splitting(nevh__writer *, nevh_work *);
+
+/* Makes w->native if that is wanted, possible and worth while; `why`: else what
+   is in the way, or "". */
+void nevh__native_plan(nevh_work *, char why[NEVH__WHY_NATIVE]);
+void nevh__native_free(nevh__native *); /* NULL is allowed */
+/* Takes up to `steps` steps of h, step i from t0 + i h, and counts them: the
+   first is number `from`.
+   returns  how many; the next is to be taken by the kernel */
+size_t nevh__native_run(nevh_work *, double t0, double h, size_t from,
+                        size_t steps, double q[], double p[]);
+
+/* One step, native where it can be. */
+static inline int nevh__native_step(nevh_work *w, double t, double h,
+                                    double q[], double p[]) {
+    if (w->native && nevh__native_run(w, t, h, 0, 1, q, p))
+        return NEVH_OK;
+    return w->integrator->kernel->step(w, t, h, q, p);
+}
+
+/* A compiled text, from the cache or made.
+   cache    a folder; "": none; NULL: the usual one
+   compile  else only what is in the cache
+   why      out: what is in the way
+   returns  a library to be closed with dlclose; NULL: there is none */
+void *nevh__native_load(const char *source, const char *cache, bool compile,
+                        char why[NEVH__WHY_NATIVE]);
+
+/* The folder of compiled steps, which is made; to be freed.  NULL: it cannot
+   be made, is not a folder, or others may write to it. */
+char *nevh__cache_folder(const char *given, char why[NEVH__WHY_NATIVE]);
+/* Whether a file is as nevh__cache_store wrote it. */
+bool nevh__cache_is_whole(const char *path);
+/* Copies a file to the cache under its name there; older ones go where it is
+   full.  Returns whether it is there. */
+bool nevh__cache_store(const char *folder, const char *from, const char *to);
+
+#endif

@@ -1,0 +1,75 @@
+/* nevh: C text in the making.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "native/writer_private.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool make_room(nevh__writer *w, size_t more) {
+    size_t room = w->room ? w->room : 4096;
+    while (room < w->used + more + 1)
+        room *= 2;
+    if (room == w->room)
+        return true;
+    char *text = nevh__grow(w->text, room, 1);
+    if (!text)
+        return false;
+    w->text = text;
+    w->room = room;
+    return true;
+}
+
+void nevh__write(nevh__writer *w, const char *format, ...) {
+    va_list arguments, again;
+    va_start(arguments, format);
+    va_copy(again, arguments);
+    int length = vsnprintf(NULL, 0, format, arguments);
+    w->failed |= length < 0 || !make_room(w, (size_t)length);
+    if (!w->failed)
+        w->used += (size_t)vsnprintf(w->text + w->used, w->room - w->used,
+                                     format, again);
+    va_end(again);
+    va_end(arguments);
+}
+
+void nevh__writer_free(nevh__writer *w) {
+    free(w->text);
+    free(w->numbers);
+    *w = (nevh__writer){0};
+}
+
+void nevh__writer_append(nevh__writer *w, double x) {
+    if (w->count == w->number_room) {
+        size_t room = w->number_room ? 2 * w->number_room : 64;
+        double *numbers = nevh__grow(w->numbers, room, sizeof *numbers);
+        if (!numbers) {
+            w->failed = true;
+            return;
+        }
+        w->numbers = numbers;
+        w->number_room = room;
+    }
+    w->numbers[w->count++] = x;
+}
+
+void nevh__write_number(nevh__writer *w, double x, char name[NEVH__NAME]) {
+    snprintf(name, NEVH__NAME, "N[%zu]", w->count);
+    nevh__writer_append(w, x);
+}
+
+void nevh__write_each(nevh__writer *w, size_t n, const char *line) {
+    bool apart = n <= NEVH__MOST_APART;
+    for (size_t k = 0; k < (apart ? n : 1); k++) {
+        if (!apart)
+            nevh__write(w, "    for (size k = 0; k < %zu; k++) {\n", n);
+        nevh__write(w, "    ");
+        for (const char *c = line; *c; c++)
+            if (*c != '$')
+                nevh__write(w, "%c", *c);
+            else if (apart)
+                nevh__write(w, "%zu", k);
+            else
+                nevh__write(w, "k");
+        nevh__write(w, apart ? "\n" : "\n    }\n");
+    }
+}

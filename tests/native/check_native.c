@@ -1,0 +1,454 @@
+/* nevh tests: compiled steps.  They give the bits of those that they stand for,
+   or none; without a compiler, or with a cache that cannot be used, everything
+   goes on.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#define _GNU_SOURCE
+#include "../support/shipped.h"
+#include "native/compiler_private.h"
+#include "native/native_private.h"
+#include <math.h>
+#include <nevh/extend.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static char cache[64];
+
+static void make_cache(void) {
+    strcpy(cache, "native.XXXXXX");
+    ck_assert_ptr_nonnull(mkdtemp(cache));
+}
+
+static void remove_cache(void) {
+    char command[100];
+    snprintf(command, sizeof command, "rm -rf %s", cache);
+    ck_assert_int_eq(system(command), 0);
+}
+
+/* Two steppers planned alike, of which one is to run compiled steps. */
+typedef struct {
+    size_t n;
+    nevh_stepper *plain, *native;
+    double *start, *a, *b; /* q and p */
+    const char *why;
+} pair;
+
+static pair pair_new(nevh_scene *scene, const nevh_integrator *scheme,
+                     const nevh_gradient *gradient, bool portable,
+                     const char *folder) {
+    const nevh_system *s = nevh_scene_system(scene);
+    size_t n = nevh_scene_dof(scene);
+    pair x = {.n = n};
+    x.start = calloc(6 * n, sizeof(double));
+    x.a = x.start + 2 * n;
+    x.b = x.a + 2 * n;
+    ck_assert_int_eq(nevh_scene_start(scene, x.start, x.start + n), NEVH_OK);
+    memcpy(x.a, x.start, 2 * n * sizeof(double));
+    memcpy(x.b, x.start, 2 * n * sizeof(double));
+    nevh_options o = {.gradient = gradient,
+                      .q = x.start,
+                      .p = x.start + n,
+                      .portable = portable,
+                      .native = NEVH_NATIVE_NEVER,
+                      .native_cache = folder};
+    x.plain = nevh_stepper_new(s, scheme, &o);
+    o.native = NEVH_NATIVE_ALWAYS;
+    x.native = nevh_stepper_new(s, scheme, &o);
+    ck_assert(!nevh_stepper_native(x.plain, &x.why) && !*x.why);
+    nevh_stepper_native(x.native, &x.why);
+    return x;
+}
+
+static void pair_free(pair *x) {
+    nevh_stepper_free(x->plain);
+    nevh_stepper_free(x->native);
+    free(x->start);
+}
+
+static bool pair_same(const pair *x) {
+    nevh_counts a = nevh_stepper_counts(x->plain),
+                b = nevh_stepper_counts(x->native);
+    return memcmp(x->a, x->b, 2 * x->n * sizeof(double)) == 0 &&
+           a.values == b.values && a.gradients == b.gradients;
+}
+
+/* Runs both, and returns their status. */
+static int pair_run(pair *x, double h, size_t steps) {
+    int a = nevh_run(x->plain, 0, h, steps, x->a, x->a + x->n, NULL, 0);
+    int b = nevh_run(x->native, 0, h, steps, x->b, x->b + x->n, NULL, 0);
+    ck_assert_int_eq(a, b);
+    ck_assert_uint_eq(nevh_stepper_taken(x->plain),
+                      nevh_stepper_taken(x->native));
+    ck_assert_str_eq(nevh_stepper_message(x->plain),
+                     nevh_stepper_message(x->native));
+    return a;
+}
+
+static bool has_compiler(void) {
+    char *name = nevh__compiler_name(), *rest = NULL;
+    char *found = nevh__command_find(strtok_r(name, " ", &rest));
+    bool has = found;
+    free(found);
+    free(name);
+    return has;
+}
+
+static nevh_scene *parsed(const char *text) {
+    nevh_scene *s = nevh_scene_parse("test", text);
+    ck_assert_msg(!nevh_scene_status(s), "%s", nevh_scene_message(s));
+    return s;
+}
+
+static const char pendulum[] =
+    "[coordinates]\nphi = 2\n[effects]\nT = p_phi^2/2\nV = -9.8*cos(phi)\n";
+
+static bool splits(const nevh_integrator *scheme) {
+    return scheme->kernel == &nevh_splitting_kernel;
+}
+
+/* Every splitting scheme on scenes that ship, gradients by _i. */
+static const char *const scenes[] = {"pendulum.nevh", "kepler.nevh",
+                                     "henon-heiles.nevh", "kapitza.nevh",
+                                     "figure-eight.nevh"};
+static const struct {
+    const char *gradient;
+    bool portable;
+} ways[] = {{"exact", false},   {"exact", true},         {"central2", false},
+            {"central4", true}, {"complex-step", false}, {"central8", false}};
+enum { WAYS = sizeof ways / sizeof *ways };
+
+static void assert_scene(const char *file, int way) {
+    nevh_scene *scene = read_shipped(file);
+    size_t count = 0;
+    for (size_t i = 0; nevh_integrators()[i]; i++) {
+        const nevh_integrator *scheme = nevh_integrators()[i];
+        if (!splits(scheme))
+            continue;
+        pair x =
+            pair_new(scene, scheme, nevh_gradient_named(ways[way].gradient),
+                     ways[way].portable, cache);
+        if (!nevh_stepper_status(x.plain)) {
+            ck_assert_msg(nevh_stepper_native(x.native, NULL), "%s, %s: %s",
+                          file, scheme->name, x.why);
+            ck_assert_int_eq(pair_run(&x, 0.003, 200), NEVH_OK);
+            ck_assert_msg(pair_same(&x), "%s, %s, %s", file, scheme->name,
+                          ways[way].gradient);
+            /* Back, and each step looked at. */
+            ck_assert_int_eq(pair_run(&x, -0.003, 1), NEVH_OK);
+            ck_assert(pair_same(&x));
+            count++;
+        }
+        pair_free(&x);
+    }
+    ck_assert(count > 5);
+    nevh_scene_free(scene);
+}
+
+TEST_EACH(same_bits, WAYS) {
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    make_cache();
+    for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++)
+        assert_scene(scenes[i], _i);
+    remove_cache();
+}
+
+/* Each function that formulas know, in V and, of time, where that is read. */
+static const char *const functions[] = {
+    "sin(x) + cos(x)*x", "tan(x/3)",        "asin(x/4)",
+    "acos(x/4)",         "atan(x)*x",       "atan2(x, 2 + y)",
+    "sinh(x) + cosh(y)", "tanh(x*y)",       "asinh(x)",
+    "acosh(3 + x^2)",    "atanh(x/5)",      "exp(-x^2)",
+    "log(4 + x)",        "log10(4 + x*y)",  "sqrt(2 + x)",
+    "cbrt(3 + x)",       "hypot(x, y)",     "abs(x - 0.1)*y",
+    "min(x, y)^2",       "max(x, 0.3*y)^2", "sign(x)*x^2",
+    "mod(x, 0.7)",       "floor(x)*y",      "(2 + x^2)^1.7",
+    "(1 + x^2)^(-3/2)",  "x^7/(1 + y^2)",   "-cos(x + 0.3*sin(2*t))",
+    "x*sqrt(4 + y)*t"};
+enum { FUNCTIONS = sizeof functions / sizeof *functions };
+
+TEST_EACH(functions_same_bits, FUNCTIONS) {
+    char text[300];
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    make_cache();
+    snprintf(text, sizeof text,
+             "[coordinates]\nx = 0.4, 0.3\ny = -0.7, 0.2\n[effects]\n"
+             "T = p_x^2/2 + p_y^2/3 + p_x^4/50\nU = (x^2 + y^2)/2\nV = %s\n",
+             functions[_i]);
+    nevh_scene *scene = parsed(text);
+    for (int way = 0; way < WAYS; way++) {
+        pair x = pair_new(scene, nevh_verlet,
+                          nevh_gradient_named(ways[way].gradient),
+                          ways[way].portable, cache);
+        if (!nevh_stepper_status(x.plain)) {
+            ck_assert_msg(nevh_stepper_native(x.native, NULL), "%s", x.why);
+            pair_run(&x, 0.05, 400);
+            ck_assert_msg(pair_same(&x), "%s, %s", functions[_i],
+                          ways[way].gradient);
+        }
+        pair_free(&x);
+    }
+    nevh_scene_free(scene);
+    remove_cache();
+}
+
+/* H leaves its domain: both stop at the same state, with the same words. */
+TEST(failures_same) {
+    static const char *const gradients[] = {"exact", "central4",
+                                            "complex-step"};
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    make_cache();
+    nevh_scene *scene = parsed("[coordinates]\nx = 1, -1\n[effects]\n"
+                               "T = p_x^2/2\nV = sqrt(x - 0.2)\n");
+    for (size_t i = 0; i < 3; i++) {
+        pair x = pair_new(scene, nevh_verlet, nevh_gradient_named(gradients[i]),
+                          false, cache);
+        ck_assert(nevh_stepper_native(x.native, NULL));
+        ck_assert_int_eq(pair_run(&x, 0.01, 1000), NEVH_EDOM);
+        ck_assert(nevh_stepper_taken(x.native) > 10 && pair_same(&x));
+        ck_assert(isfinite(x.b[0]) && isfinite(x.b[1]));
+        pair_free(&x);
+    }
+    nevh_scene_free(scene);
+    remove_cache();
+}
+
+/* 0 times infinity is 0 in the chain rule: such a step is the tape's. */
+TEST(chain_rule) {
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    make_cache();
+    nevh_scene *scene = parsed("[coordinates]\nx = 0, 0\ny = 1, 0.3\n"
+                               "[effects]\nT = (p_x^2 + p_y^2)/2\n"
+                               "V = x*sqrt(x) + y^2/2\n");
+    pair x = pair_new(scene, nevh_verlet, nevh_exact, false, cache);
+    ck_assert(nevh_stepper_native(x.native, NULL));
+    ck_assert_int_eq(pair_run(&x, 0.01, 500), NEVH_OK);
+    ck_assert(pair_same(&x) && x.b[1] != 1);
+    pair_free(&x);
+    nevh_scene_free(scene);
+    remove_cache();
+}
+
+/* Memory that one has saved the other goes on with. */
+TEST(memory_is_shared) {
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    make_cache();
+    nevh_scene *scene = parsed(pendulum);
+    pair x = pair_new(scene, nevh_forest_ruth, nevh_exact, false, cache);
+    ck_assert_int_eq(pair_run(&x, 0.1, 500), NEVH_OK);
+    size_t size = nevh_stepper_save_size(x.plain);
+    void *saved = malloc(size), *other = malloc(size);
+    nevh_stepper_save(x.plain, saved);
+    nevh_stepper_save(x.native, other);
+    ck_assert_mem_eq(saved, other, size);
+    ck_assert_int_eq(nevh_stepper_load(x.native, saved, size), NEVH_OK);
+    ck_assert_int_eq(nevh_stepper_apply(x.plain, 50, 0.1, x.a, x.a + 1), 0);
+    ck_assert_int_eq(nevh_stepper_apply(x.native, 50, 0.1, x.b, x.b + 1), 0);
+    ck_assert_mem_eq(x.a, x.b, 2 * sizeof(double));
+    /* A jump forgets both. */
+    x.a[0] = x.b[0] = 0.5;
+    ck_assert_int_eq(pair_run(&x, 0.1, 50), NEVH_OK);
+    ck_assert_mem_eq(x.a, x.b, 2 * sizeof(double));
+    free(saved);
+    free(other);
+    pair_free(&x);
+    nevh_scene_free(scene);
+    remove_cache();
+}
+
+TEST(no_compiler) {
+    nevh_scene *scene = parsed(pendulum);
+    make_cache();
+    setenv("CC", "no-such-compiler --really", 1);
+    pair x = pair_new(scene, nevh_verlet, nevh_exact, false, cache);
+    ck_assert(!nevh_stepper_native(x.native, NULL));
+    assert_says(x.why, "there is no C compiler");
+    ck_assert_int_eq(pair_run(&x, 0.1, 100), NEVH_OK);
+    ck_assert(pair_same(&x));
+    pair_free(&x);
+    setenv("CC", "false", 1);
+    x = pair_new(scene, nevh_verlet, nevh_exact, false, cache);
+    ck_assert(!nevh_stepper_native(x.native, NULL));
+    assert_says(x.why, "the C compiler fails");
+    pair_free(&x);
+    nevh_scene_free(scene);
+    remove_cache();
+}
+
+/* Nothing of a library is told about what it does not compile. */
+TEST(others_are_not) {
+    static const char whole[] = "[coordinates]\nx = 1\n[effects]\n"
+                                "H = p_x^2/2 + bessel_j0(x)\n";
+    nevh_scene *scene = parsed(pendulum), *special = parsed(whole);
+    make_cache();
+    pair x = pair_new(scene, nevh_rk4, nevh_exact, false, cache);
+    ck_assert(!nevh_stepper_native(x.native, NULL));
+    assert_says(x.why, "the scheme has none");
+    pair_free(&x);
+    x = pair_new(special, nevh_verlet, nevh_exact, false, cache);
+    ck_assert(!nevh_stepper_native(x.native, NULL));
+    assert_says(x.why, "libm does not have");
+    ck_assert_int_eq(pair_run(&x, 0.1, 10), NEVH_OK);
+    pair_free(&x);
+    /* By default nothing is compiled, unless steps are foreseen. */
+    nevh_options o = {.native_cache = cache};
+    nevh_stepper *s =
+        nevh_stepper_new(nevh_scene_system(scene), nevh_verlet, &o);
+    ck_assert(!nevh_stepper_native(s, NULL));
+    nevh_stepper_free(s);
+    o.steps_foreseen = 1e9;
+    s = nevh_stepper_new(nevh_scene_system(scene), nevh_verlet, &o);
+    ck_assert(nevh_stepper_native(s, NULL) == has_compiler());
+    nevh_stepper_free(s);
+    nevh_scene_free(scene);
+    nevh_scene_free(special);
+    remove_cache();
+}
+
+/* The only file of the cache. */
+static void find_file(char path[200]) {
+    DIR *all = opendir(cache);
+    size_t count = 0;
+    for (struct dirent *entry; (entry = readdir(all));)
+        if (entry->d_name[0] != '.') {
+            snprintf(path, 200, "%s/%.100s", cache, entry->d_name);
+            count++;
+        }
+    closedir(all);
+    ck_assert_uint_eq(count, 1);
+}
+
+static bool is_native(nevh_scene *scene, const char *folder) {
+    pair x = pair_new(scene, nevh_verlet, nevh_exact, false, folder);
+    bool native = nevh_stepper_native(x.native, NULL);
+    ck_assert_int_eq(pair_run(&x, 0.1, 100), NEVH_OK);
+    ck_assert(pair_same(&x));
+    pair_free(&x);
+    return native;
+}
+
+/* What is kept is found without a compiler, but made anew once it is broken. */
+TEST(cache_is_kept) {
+    char path[200];
+    struct stat found;
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    nevh_scene *scene = parsed(pendulum);
+    make_cache();
+    ck_assert(is_native(scene, cache));
+    find_file(path);
+    ck_assert_int_eq(stat(path, &found), 0);
+    ck_assert_uint_eq(found.st_mode & 077, 0);
+    ck_assert_int_eq(truncate(path, found.st_size / 2), 0);
+    ck_assert(!nevh__cache_is_whole(path));
+    ck_assert(is_native(scene, cache));
+    ck_assert(nevh__cache_is_whole(path));
+    /* Parameters are no part of it. */
+    nevh_scene *other = parsed("[coordinates]\nphi = 1\n[effects]\n"
+                               "T = p_phi^2/3\nV = -7.1*cos(phi)\n");
+    nevh_scene *third = parsed("[coordinates]\nu = 1\n[effects]\n"
+                               "kin = p_u^2/7\npot = -1.5*cos(u)\n");
+    ck_assert(is_native(other, cache));
+    ck_assert(is_native(third, cache));
+    DIR *all = opendir(cache);
+    size_t files = 0;
+    for (struct dirent *entry; (entry = readdir(all));)
+        files += entry->d_name[0] != '.';
+    closedir(all);
+    ck_assert_uint_le(files, 2);
+    nevh_scene_free(third);
+    nevh_scene_free(other);
+    nevh_scene_free(scene);
+    remove_cache();
+}
+
+/* Folders that others may write to are not used; steps are compiled all the
+   same, and nothing is kept. */
+TEST(cache_is_refused) {
+    char why[NEVH__WHY_NATIVE] = "", inside[100];
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    nevh_scene *scene = parsed(pendulum);
+    make_cache();
+    ck_assert_int_eq(chmod(cache, 0777), 0);
+    ck_assert_ptr_null(nevh__cache_folder(cache, why));
+    assert_says(why, "may be written to by others");
+    ck_assert(is_native(scene, cache));
+    ck_assert_int_eq(rmdir(cache), 0); /* it is empty */
+    ck_assert_int_eq(mkdir(cache, 0700), 0);
+    snprintf(inside, sizeof inside, "%s/link", cache);
+    ck_assert_int_eq(symlink("/tmp", inside), 0);
+    ck_assert_ptr_null(nevh__cache_folder(inside, why));
+    assert_says(why, "is no folder");
+    ck_assert(is_native(scene, inside));
+    if (geteuid() == 0) {
+        ck_assert_int_eq(chown(cache, 12345, 12345), 0);
+        ck_assert_ptr_null(nevh__cache_folder(cache, why));
+        assert_says(why, "another user's");
+        ck_assert(is_native(scene, cache));
+    }
+    ck_assert_int_eq(chmod(cache, 0500), 0); /* read-only, unless for root */
+    ck_assert(is_native(scene, cache));
+    ck_assert(is_native(scene, ""));
+    chmod(cache, 0700);
+    nevh_scene_free(scene);
+    remove_cache();
+}
+
+TEST(processes_at_once) {
+    enum { PROCESSES = 4 };
+    pid_t child[PROCESSES];
+    char path[200];
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    nevh_scene *scene = parsed(pendulum);
+    make_cache();
+    for (int i = 0; i < PROCESSES; i++) {
+        child[i] = fork();
+        if (!child[i])
+            _exit(is_native(scene, cache) ? 0 : 1);
+    }
+    for (int i = 0; i < PROCESSES; i++) {
+        int status;
+        waitpid(child[i], &status, 0);
+        ck_assert(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    }
+    find_file(path);
+    ck_assert(nevh__cache_is_whole(path));
+    nevh_scene_free(scene);
+    remove_cache();
+}
+
+/* No word of a scene is in what is compiled, nor any of its numbers. */
+TEST(names_stay_out) {
+    static const char hostile[] =
+        "[scene]\ntitle = \"); system(\"rm -rf /\"); //\n"
+        "[parameters]\nasm = 1234.5\n__attribute__ = 2\nmain = 3\n"
+        "[coordinates]\nsystem = 1, 0.2\nφ_include = 0.5\n"
+        "[effects]\nexit = p_system^2/asm + p_φ_include^2/main\n"
+        "abort = __attribute__*(1 - cos(system)) + φ_include^2/2\n";
+    static const char *const words[] = {"system", "exit",          "abort",
+                                        "asm",    "attribute__ =", "main",
+                                        "φ",      "1234",          "rm -rf"};
+    nevh_scene *scene = parsed(hostile);
+    nevh_options o = {.gradient = nevh_exact};
+    nevh_stepper *s =
+        nevh_stepper_new(nevh_scene_system(scene), nevh_verlet, &o);
+    ck_assert_int_eq(nevh_stepper_status(s), NEVH_OK);
+    nevh_work w = {.integrator = nevh_verlet,
+                   .field = nevh_stepper_field(s),
+                   .n = 2,
+                   .width = 1};
+    nevh__writer text = {0};
+    ck_assert(nevh__write_splitting(&text, &w));
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+        ck_assert_msg(!strstr(text.text, words[i]), "%s", words[i]);
+    ck_assert(strstr(text.text, "cos"));
+    nevh__writer_free(&text);
+    nevh_stepper_free(s);
+    nevh_scene_free(scene);
+}
