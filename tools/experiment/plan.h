@@ -32,6 +32,7 @@ typedef struct {
     bool no_cache;
     bool hurried;    /* rows are to be finished later, and timed then */
     double patience; /* work that a row may take; 0: any */
+    double follow;   /* work that its verdict may take; 0: as usual */
     bool match_work, diagnostics;
     nevh_reference *reference; /* NULL: not asked for, or there is none */
     double reference_end;

@@ -222,6 +222,21 @@ static void warn(const advice *a, const row *r, list *words) {
     free(unseen);
 }
 
+/* On its energy, as far as the run, or a longer one, decides it. */
+static void tell_verdict(const row *r, list *words) {
+    if (row_drifts(r))
+        list_add(words, "Its energy drifts: for longer runs ask again.");
+    if (r->followed > 0)
+        list_print(
+            words,
+            "The verdict on its energy is from a run %.3g times as long.",
+            r->followed);
+    if (r->energy.verdict == NEVH_UNDECIDED)
+        list_print(words,
+                   "Whether its energy drifts cannot be told yet: nevh compare "
+                   "follows it further, as may a longer --t-end.");
+}
+
 static void tell_answer(const advice *a, const options *o, list *words) {
     const row *r = chosen(a, a->best);
     const char *what = search_error(&a->search);
@@ -237,6 +252,7 @@ static void tell_answer(const advice *a, const options *o, list *words) {
     tell_steps(a, r, words);
     tell_longer(a, r, words);
     warn(a, r, words);
+    tell_verdict(r, words);
     if (isfinite(a->whole) && a->pilot < a->whole)
         list_print(words, "Chosen by runs until t = %g, and verified until %g.",
                    a->pilot, a->whole);
@@ -250,8 +266,6 @@ static void tell_answer(const advice *a, const options *o, list *words) {
                    "long.",
                    a->alone->integrator, a->alone->gradient,
                    chosen(a, a->alone)->seconds / r->seconds);
-    if (row_drifts(r))
-        list_add(words, "Its energy drifts: for longer runs ask again.");
     if (a->steady && a->steady != a->best)
         list_print(words, "Without drift %s takes %.2f times as long.",
                    a->steady->integrator,

@@ -363,6 +363,24 @@ static void verify(advice *a, plan *p) {
     choose(a);
 }
 
+/* Verdicts that the runs of answers leave open, from longer ones; what is
+   without drift follows from them. */
+static void decide(advice *a) {
+    enum { ROUNDS_AT_MOST = 2 };
+    a->search.plan.follow = 2;
+    for (int i = 0; i < ROUNDS_AT_MOST; i++) {
+        const study *found[ADVICE_MOST];
+        size_t count = advice_list(a, found);
+        for (size_t k = 0; k < count; k++) {
+            const row *r = keeps(a, found[k]);
+            if (!(r->followed > 0))
+                row_follow(&a->search.plan,
+                           &found[k]->level[r - found[k]->level]);
+        }
+        choose(a);
+    }
+}
+
 static int advise(const options *o, plan *p, double whole) {
     output out;
     if (output_open(&out, o->file))
@@ -378,8 +396,10 @@ static int advise(const options *o, plan *p, double whole) {
     search_all(&a);
     if (a.best && whole > p->t_end)
         verify(&a, p);
-    if (a.best)
+    if (a.best) {
+        decide(&a);
         advice_follow(&a, p);
+    }
     int status = a.best ? TOOL_OK : advice_none(&a);
     search_end(&a.search);
     if (a.best)
