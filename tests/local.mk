@@ -158,6 +158,7 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_plot.sh \
 	tests/tool/nevh_section.sh \
 	tests/tool/nevh_sweep.sh \
+	tests/tool/nevh_sweep_file.sh \
 	tests/tool/nevh_run.sh \
 	tests/tool/nevh_code.sh \
 	tests/tool/nevh_memory.sh \

@@ -64,6 +64,8 @@ tools_nevh_SOURCES = \
 	tools/hard/hard_run.c \
 	tools/hard/hard_judge.c \
 	tools/hard/hard.c \
+	tools/ensemble/store.h \
+	tools/ensemble/store.c \
 	tools/ensemble/sweep.c \
 	tools/inspect/check.c \
 	tools/orbit/section.c \

@@ -31,7 +31,7 @@ static const struct {
      "points of Poincare and stroboscopic sections, as CSV"},
     {sweep, FOR_SWEEP, "SCENE",
      "many orbits: a row for each member of the ensemble, with outcomes, as "
-     "CSV"},
+     "CSV or an array of NumPy (-o FILE.npy)"},
     {hard, FOR_HARD, "",
      "every integrator on cases that are hard to integrate"},
     {new_scene, FOR_NEW, "FILE", "makes a commented scene, FILE.nevh"},
@@ -58,9 +58,11 @@ static void help_all(FILE *f) {
                   known[i].help);
     help_line(f, "help", "COMMAND", "what a command does, and its options");
     options_help(f, ~0u);
-    fputs("\nSCENE is a file, or a name of nevh list scenes.  Exit status: 0; "
-          "1 when a row\nfailed numerically; 2 for bad input or usage.\n",
-          f);
+    fputs(
+        "\nSCENE is a file, or a name of nevh list scenes.  Exit status: 0; "
+        "1 when a row\nfailed numerically; 2 for bad input or usage; 3 when a sweep was "
+        "stopped early.\n",
+        f);
 }
 
 static int help(size_t i) {

@@ -85,13 +85,18 @@ typedef int (*nevh_sweep_fn)(void *data, const nevh_sweep_result *);
 typedef bool (*nevh_wanted_fn)(void *data, uint64_t member);
 
 /* Runs members first ... first + count - 1.
-   returns  NEVH_OK, also where members failed; NEVH_STOPPED; NEVH_ENOMEM
+   returns  NEVH_OK, also where members failed; NEVH_STOPPED where not all were
+            told of; NEVH_ENOMEM
    cost     memory does not grow with the number of members.  Where parameters
             are varied, the scene's system is made, and a stepper planned, for
             each set of them, some milliseconds for a small one */
 NEVH_API int nevh_sweep_run(nevh_sweep *, uint64_t first, uint64_t count,
                             nevh_wanted_fn wanted, nevh_sweep_fn tell,
                             void *data);
+/* No member begins any more: nevh_sweep_run finishes those under way and returns
+   NEVH_STOPPED.  May be called from a signal handler, from another thread or
+   from `tell`; what was asked for before a run begins counts for that run. */
+NEVH_API void nevh_sweep_stop(nevh_sweep *);
 
 #ifdef __cplusplus
 }

@@ -84,12 +84,12 @@ static void finish(worker *w, uint64_t member, const double varied[],
 static bool take_chunk(worker *w, bool may_wait) {
     nevh_sweep *s = w->sweep;
     pthread_mutex_lock(&s->lock);
-    while (may_wait && s->waiting && !s->stopped && s->next < s->end &&
-           s->next + CHUNK > s->low + WINDOW)
+    while (may_wait && s->waiting && !s->stopped && !s->draining &&
+           s->next < s->end && s->next + CHUNK > s->low + WINDOW)
         pthread_cond_wait(&s->moved, &s->lock);
     bool room = !s->waiting || s->next + CHUNK <= s->low + WINDOW;
     uint64_t from = s->next, to = from;
-    if (room && !s->stopped && from < s->end)
+    if (room && !s->stopped && !s->draining && from < s->end)
         to = s->end - from < CHUNK ? s->end : from + CHUNK;
     s->next = to;
     pthread_mutex_unlock(&s->lock);
@@ -125,6 +125,8 @@ static bool next(void *data, uint64_t *member, double q[], double p[]) {
     worker *w = data;
     nevh_sweep *s = w->sweep;
     for (;;) {
+        if (s->draining)
+            return false;
         while (w->at == w->group_end)
             if (s->ensemble->parameters || !take_chunk(w, false))
                 return false;
@@ -199,7 +201,7 @@ static void run_group(worker *w, const double varied[]) {
         do
             nevh_ensemble_run(e, next, done, w);
         while (!w->sweep->ensemble->parameters && !w->sweep->stopped &&
-               take_chunk(w, true));
+               !w->sweep->draining && take_chunk(w, true));
     else if (report.status == NEVH_ENOMEM)
         out_of_memory(w->sweep);
     else
@@ -244,7 +246,7 @@ static void run_chunk_by_groups(worker *w) {
     for (size_t i = 0; i < w->count; i++)
         varied_of(w, i);
     sort(w);
-    while (w->at < w->count && !w->sweep->stopped) {
+    while (w->at < w->count && !w->sweep->stopped && !w->sweep->draining) {
         size_t first = w->order[w->at];
         w->group_end = w->at + 1;
         while (w->group_end < w->count &&
@@ -302,13 +304,24 @@ static bool open_window(nevh_sweep *s) {
     return true;
 }
 
+/* After a sweep that was stopped some wait for members that never came. */
 static void close_window(nevh_sweep *s) {
+    for (uint64_t i = 0; s->waiting && i < WINDOW; i++) {
+        nevh__waiting *w = &s->waiting[(s->low + i) % WINDOW];
+        if (w->ready && w->status != NEVH_MEMBER_MISSING)
+            tell(s, s->low + i, w->status, w->message ? w->message : "",
+                 w->values);
+    }
     for (size_t i = 0; s->waiting && i < WINDOW; i++)
         free(s->waiting[i].message);
     if (s->waiting)
         free(s->waiting[0].values);
     free(s->waiting);
     s->waiting = NULL;
+}
+
+void nevh_sweep_stop(nevh_sweep *s) {
+    s->draining = 1;
 }
 
 int nevh_sweep_run(nevh_sweep *s, uint64_t first, uint64_t count,
@@ -341,7 +354,9 @@ int nevh_sweep_run(nevh_sweep *s, uint64_t first, uint64_t count,
     close_window(s);
     if (!ready || s->failed)
         return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
-    return s->stopped
+    bool drained = s->draining;
+    s->draining = 0;
+    return s->stopped || drained
                ? nevh__fail(&s->report, NEVH_STOPPED, "the sweep was to stop")
                : NEVH_OK;
 }

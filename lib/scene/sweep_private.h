@@ -6,6 +6,7 @@
 #include "scene/scene_ensemble_private.h"
 #include <nevh/sweep.h>
 #include <pthread.h>
+#include <signal.h>
 
 /* The scene with one set of the parameters that are varied. */
 typedef struct {
@@ -45,6 +46,7 @@ struct nevh_sweep {
     void *data;
     nevh__waiting *waiting; /* NULL: the order does not matter */
     bool stopped, failed;
+    volatile sig_atomic_t draining;
 };
 
 /* variant.c.  varied: of a member; NULL: the scene as it is. */

@@ -4,6 +4,8 @@
    INTERRUPT_STEP=k    before the k-th step of a run's trajectory ...
    INTERRUPT_WRITE=k   in the k-th write to a file, of which a part is written,
                        and before it when k is negative ...
+   INTERRUPT_PWRITE=k  the same of the k-th write to a place in a file ...
+   INTERRUPT_FULL=k    from the k-th of these on the disk is full
    INTERRUPT_SIGNAL=n  ... this signal comes.
    INTERRUPT_CLOCK=    each look at the monotonic clock takes 10 ms, and each
                        at the time of computing 10 s
@@ -12,6 +14,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #define _GNU_SOURCE
 #include <dlfcn.h>
+#include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -62,6 +65,35 @@ ssize_t write(int file, const void *bytes, size_t count) {
     ssize_t written = at > 0 ? real(file, bytes, part_of(file, count)) : 0;
     interrupt();
     return written;
+}
+
+static ssize_t write_at(int file, const void *bytes, size_t count, off_t to) {
+    static ssize_t (*real)(int, const void *, size_t, off_t);
+    static long writes;
+    if (!real)
+        real = (ssize_t(*)(int, const void *, size_t, off_t))dlsym(RTLD_NEXT,
+                                                                   "pwrite");
+    long at = asked("INTERRUPT_PWRITE"), full = asked("INTERRUPT_FULL");
+    writes++;
+    if (full && writes >= full) {
+        errno = ENOSPC;
+        return -1;
+    }
+    if (writes != labs(at))
+        return real(file, bytes, count, to);
+    size_t room = PAGE - (size_t)to % PAGE;
+    ssize_t written =
+        at > 0 ? real(file, bytes, count < room ? count : room, to) : 0;
+    interrupt();
+    return written;
+}
+
+ssize_t pwrite(int file, const void *bytes, size_t count, off_t to) {
+    return write_at(file, bytes, count, to);
+}
+
+ssize_t pwrite64(int file, const void *bytes, size_t count, off64_t to) {
+    return write_at(file, bytes, count, (off_t)to);
 }
 
 int clock_gettime(clockid_t which, struct timespec *now) {

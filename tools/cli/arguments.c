@@ -202,6 +202,47 @@ int read_threads(options *o, const char *argument) {
     return read_few("threads", argument, 4096, &o->threads);
 }
 
+int read_retry(options *o, const char *argument) {
+    (void)argument;
+    o->retry = true;
+    return TOOL_OK;
+}
+
+int read_join(options *o, const char *argument) {
+    (void)argument;
+    o->join = true;
+    return TOOL_OK;
+}
+
+/* 90, 90s, 50m, 2h, 1d */
+int read_stop_after(options *o, const char *argument) {
+    static const char units[] = "smhd";
+    static const double seconds[] = {1, 60, 3600, 86400};
+    size_t length = strlen(argument);
+    const char *unit = length ? strchr(units, argument[length - 1]) : NULL;
+    char *number = text_print("%.*s", (int)(length - (unit != NULL)), argument);
+    int status = read_positive("stop-after", number, &o->stop_after);
+    free(number);
+    o->stop_after *= unit ? seconds[unit - units] : 1;
+    return status;
+}
+
+/* I/N */
+int read_task(options *o, const char *argument) {
+    char *slash = strchr(argument, '/');
+    char *part =
+        text_print("%.*s", slash ? (int)(slash - argument) : 0, argument);
+    int status =
+        slash ? read_count("task", part, &o->task)
+              : tool_refuse("--task is written 3/16, not \"%s\"", argument);
+    if (!status)
+        status = read_count("task", slash + 1, &o->tasks);
+    free(part);
+    if (!status && o->task > o->tasks)
+        return tool_refuse("--task %s: there are %zu", argument, o->tasks);
+    return status;
+}
+
 int read_width(options *o, const char *argument) {
     return read_few("width", argument, 4096, &o->width);
 }

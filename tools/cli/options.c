@@ -59,15 +59,24 @@ static const struct {
     {"samples", "N", FOR_RUN, read_samples,
      "N rows at equal times, the first and the last included"},
     {"at", "T1,T2", FOR_RUN, read_at, "rows at these times alone"},
-    {"resume", "FILE", FOR_RUN, read_resume,
-     "go on with FILE, which nevh run -o FILE left unfinished, from "
-     "FILE.state, as if never interrupted"},
+    {"resume", "FILE", FOR_RUN | FOR_SWEEP, read_resume,
+     "go on with FILE, which nevh run or nevh sweep -o FILE left unfinished, "
+     "as if never interrupted"},
     {"vary", "NAME=WHAT", FOR_SWEEP, read_vary,
      "a line of [ensemble]: a list, range(A, B, N), normal(M, S) or "
      "uniform(A, B); repeated for more names"},
     {"outcomes", "A,B", FOR_SWEEP, read_outcomes,
      "columns: state, t, energy_error, verdict, first(A > B), last(F), min(F), "
      "max(F), mean(F), crossings, period"},
+    {"retry", NULL, FOR_SWEEP, read_retry,
+     "with --resume: run members that failed again"},
+    {"stop-after", "TIME", FOR_SWEEP, read_stop_after,
+     "finish the members under way after 50m, 2h or 90s, and end with exit "
+     "status 3"},
+    {"task", "I/N", FOR_SWEEP, read_task,
+     "run part I of N alone, into FILE.I-of-N.npy"},
+    {"join", NULL, FOR_SWEEP, read_join,
+     "make -o FILE.npy of the parts FILE.1-of-N.npy, ..."},
     {"threads", "N", FOR_SWEEP, read_threads,
      "threads that take members; as many as processors if not given"},
     {"width", "N", FOR_SWEEP, read_width,

@@ -15,6 +15,7 @@ reader read_with, read_without, read_set, read_start, read_integrators,
     read_observable, read_error, read_resume, read_from, read_quiet,
     read_portable, read_native, read_no_cache, read_all, read_allow_code,
     read_section, read_diagnostics, read_impact, read_vary, read_outcomes,
-    read_threads, read_width, read_help, read_version;
+    read_threads, read_retry, read_stop_after, read_task, read_join, read_width,
+    read_help, read_version;
 
 #endif

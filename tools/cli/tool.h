@@ -27,7 +27,7 @@
 #include <stdio.h>
 
 /* Exit statuses. */
-enum { TOOL_OK, TOOL_FAILED, TOOL_USAGE };
+enum { TOOL_OK, TOOL_FAILED, TOOL_USAGE, TOOL_STOPPED };
 
 /* words.c: texts and lists of them.  Where memory is out the program ends. */
 typedef struct {
@@ -145,7 +145,10 @@ typedef struct {
     list vary; /* lines of [ensemble] */
     const char *outcomes;
     size_t threads, width; /* 0: not given */
-    list dt, at;           /* formulas of the scene's parameters */
+    size_t task, tasks;    /* part `task` of `tasks`; 0: not given */
+    double stop_after;     /* seconds; 0: not given */
+    bool retry, join;
+    list dt, at; /* formulas of the scene's parameters */
     double *tolerance;
     size_t tolerances;
     const char *t_end; /* a formula; NULL: the scene's */
