@@ -145,6 +145,21 @@ exits 0 recommend pendulum --energy-error 1e-4 --t-end 2 --gradient central2 \
 records | awk -F, 'NR > 1 && ($9 > 1e-4 || $5 != "central2") { exit 1 }' ||
     fails "has other rows"
 
+# A run that keeps several digits stands there once.  One digit more never
+# costs less: steps that are both longer and dearer do not count.
+exits 0 cost pendulum --t-end 2 --integrators gauss18,gauss20
+has '^ gauss(18|20) .* =( |$)'
+has '^=: the same run as for the digits to its left'
+lacks '^ gauss.* x 0\.'
+# Digits that the reference does not have make no column.
+exits 0 cost kepler-0.9 --by state --integrators gauss16,gauss20
+has '^ integrator +1e-2 +1e-4 +1e-6 +1e-8 +1e-10$'
+has '^12 digits and more cannot be told: the reference'
+lacks '^floor: '
+exits 0 cost pendulum --t-end 5 --integrators dop853
+has '^dt of adaptive schemes is their mean step$'
+lacks 'row for each tolerance'
+
 # What cannot be reached, and why.
 exits 1 recommend pendulum --energy-error 1e-30 --t-end 2 \
     --integrators gauss12,gauss14 --gradient exact

@@ -67,6 +67,19 @@ exits 0 effects $work/parts.nevh --impact --integrators verlet --quiet
 has '^ twist +off +[0-9]+$'
 has "none of the scene's integrators fits"
 
+# Without what moves coordinates there is no orbit to compare with; without a
+# force, from rest, there is one.
+exits 0 effects pendulum --impact --t-end 10
+has '^Without kinetic no coordinate moves'
+has '^ kinetic +on +verlet +[0-9.]+ +[0-9.]+ +0$'
+has '^Without gravity all stays where it starts'
+has '^ gravity +on +verlet +[0-9.]+e'
+has '^difference: of the states'
+lacks 'is chaotic'
+# Where chaos makes differences large, that is said.
+exits 0 effects damped-driven-pendulum --impact --t-end 200
+has '^The orbit is chaotic: a difference grows by a factor e in '
+
 # Also of scenes whose start asks for velocities.
 exits 0 effects sun-earth-moon --impact --t-end 0.1
 exits 2 compare pendulum --impact

@@ -83,8 +83,12 @@ static bool has_nominal_steps(const plan *p, const row *r) {
 }
 
 static bool has_tolerance(const plan *p, const row *r) {
-    (void)p;
-    return r->tolerance > 0;
+    return r->tolerance > 0 && !p->hurried;
+}
+
+/* Of a search, in which it chose the tolerance. */
+static bool has_mean_step(const plan *p, const row *r) {
+    return r->tolerance > 0 && p->hurried;
 }
 
 /* What is to be said where it holds for a row. */
@@ -102,7 +106,8 @@ static void note_rows(const plan *p, const row rows[], size_t count,
                 {match_dearer, "no dt makes some implicit schemes as cheap: "
                                "theirs is the cheapest"},
                 {has_tolerance, "adaptive schemes have a row for each "
-                                "tolerance; dt is their mean step"}};
+                                "tolerance; dt is their mean step"},
+                {has_mean_step, "dt of adaptive schemes is their mean step"}};
     for (size_t k = 0; k < sizeof note / sizeof *note; k++)
         for (size_t i = 0; i < count; i++)
             if (note[k].holds(p, &rows[i])) {

@@ -4,6 +4,7 @@
    Each is switched, and the run repeated by one integrator that fits both ways;
    the others stay as they are.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "experiment/pace.h"
 #include "impact_private.h"
 #include <math.h>
 #include <stdlib.h>
@@ -115,6 +116,26 @@ static void free_both(both *b) {
     }
 }
 
+/* Any of n variables from `first` on. */
+static bool moves(const trace *o, size_t first) {
+    for (size_t k = first; k < first + o->plan->n; k++)
+        if (o->high[k] > o->low[k])
+            return true;
+    return false;
+}
+
+/* Without it there is no orbit to compare with, such as kinetic energy: though
+   momenta change, coordinates do not. */
+static bool is_essential(const both *b) {
+    const trace *a = &b->trace[0];
+    return b->ran && moves(&b->trace[1], 0) && !moves(a, 0) &&
+           moves(a, a->plan->n);
+}
+
+static bool rests(const trace *o) {
+    return !moves(o, 0) && !moves(o, o->plan->n);
+}
+
 /* Schemes that fit without, but not with it. */
 static list ruled_out(const both *b) {
     list names = {0};
@@ -158,6 +179,13 @@ static void say(const char *effect, const both *b, const char *names,
                    effect);
     for (int on = 0; b->integrator && on < 2; on++)
         say_end(effect, on, &b->trace[on], words);
+    if (is_essential(b))
+        list_print(words,
+                   "Without %s no coordinate moves: there is no orbit to "
+                   "compare with.",
+                   effect);
+    else if (b->ran && rests(&b->trace[0]) && !rests(&b->trace[1]))
+        list_print(words, "Without %s all stays where it starts.", effect);
 }
 
 /* All digits, but for what is to be read. */
@@ -170,8 +198,10 @@ static void put(const page *result, bool known, const char *format, double x) {
         table_text(result->table, NULL);
 }
 
-static void put_row(const options *o, const char *effect, bool on,
+/* Returns whether the orbits were as far apart as they can be. */
+static bool put_row(const options *o, const char *effect, bool on,
                     const both *b, double scale, page *result) {
+    static const double far_apart = 0.5;
     table *t = result->table;
     const trace *a = &b->trace[0], *c = &b->trace[1];
     const bool shown = o->format == FORMAT_TABLE;
@@ -184,11 +214,11 @@ static void put_row(const options *o, const char *effect, bool on,
     table_text(t, effect);
     table_text(t, on ? "on" : "off");
     table_text(t, b->integrator);
-    put(result, b->ran, shown ? "%.1e" : NULL, d.at_end);
-    put(result, b->ran, shown ? "%.1e" : NULL, d.largest);
-    put(result, b->ran, shown ? "%.4g" : NULL, d.since);
-    put(result, b->ran, shown ? "%+.1e" : NULL,
-        (c->energy - a->energy) / scale);
+    bool told = b->ran && !(shown && is_essential(b));
+    put(result, told, shown ? "%.1e" : NULL, d.at_end);
+    put(result, told, shown ? "%.1e" : NULL, d.largest);
+    put(result, told, shown ? "%.4g" : NULL, d.since);
+    put(result, told, shown ? "%+.1e" : NULL, (c->energy - a->energy) / scale);
     put(result, b->ran && a->work > 0, shown ? "%.2f" : NULL,
         c->work / a->work);
     put(result, b->ran && a->seconds > 0, shown ? "%.2f" : NULL,
@@ -200,6 +230,21 @@ static void put_row(const options *o, const char *effect, bool on,
     say(effect, b, names, count, &result->after);
     list_free(&out);
     free(names);
+    return told && d.largest > far_apart && !rests(a) && !rests(c);
+}
+
+/* Differences that chaos makes, of effects of any size. */
+static void say_chaos(const plan *p, list *words) {
+    trial_run found = trial_run_new(p);
+    const char *unit = nevh_scene_label(p->scene, "t");
+    if (found.outlook == OUTLOOK_CHAOTIC)
+        list_print(words,
+                   "The orbit is chaotic: a difference grows by a factor e in "
+                   "%.3g%s%s, until orbits have nothing in common.  Large "
+                   "differences tell that, not the size of an effect; of that "
+                   "the time of 1 %% tells more.",
+                   1 / found.exponent, *unit ? " " : "", unit);
+    free(found.failure);
 }
 
 static void columns(table *t) {
@@ -220,12 +265,13 @@ static void columns(table *t) {
 static void add_all(const options *o, plan *p, page *result) {
     size_t count = nevh_system_effect_count(p->system);
     double scale = plan_energy_scale(p);
+    bool apart = false;
     for (size_t i = 0; i < count; i++) {
         char *effect = text_print("%s", nevh_system_effect_name(p->system, i));
         bool on = nevh_system_effect_on(p->system, effect);
         both b = {0};
         if (look(p, effect, &b))
-            put_row(o, effect, on, &b, scale, result);
+            apart |= put_row(o, effect, on, &b, scale, result);
         else
             list_print(&result->after, "%s cannot be switched on: %s", effect,
                        nevh_scene_message(p->scene));
@@ -233,6 +279,8 @@ static void add_all(const options *o, plan *p, page *result) {
         switch_effect(p, effect, on);
         free(effect);
     }
+    if (apart)
+        say_chaos(p, &result->after);
 }
 
 int impact(const options *o, plan *p) {
@@ -251,8 +299,10 @@ int impact(const options *o, plan *p) {
     if (!o->quiet)
         list_add(
             &result.after,
-            "1 %: when the states first differ by that much, at the times "
-            "compared. work ratio, time ratio: evaluations of H and CPU time of "
+            "difference: of the states, with the effect and without it. 1 %: "
+            "when they first differ by that much, at the times compared. energy: "
+            "H at the end of the run with the effect, less that without it. "
+            "work ratio, time ratio: evaluations of H and CPU time of "
             "the run with the effect, over those without it. rules out: "
             "integrators that fit only without it.");
     if (o->quiet && o->format == FORMAT_TABLE)

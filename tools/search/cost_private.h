@@ -26,6 +26,13 @@ bool cost_shows(const costs *, const study *);
 table *cost_table(const costs *);
 /* The reference is not good enough for these digits. */
 bool cost_is_beyond(const costs *, size_t target);
+/* What stands in the table where no step does: "-", "floor", ...; NULL: a step
+   does. */
+const char *cost_word(const costs *, const study *, size_t target);
+/* No integrator that is shown has anything there: the column is left out. */
+bool cost_is_empty(const costs *, size_t target);
+/* The same run as for the target before. */
+bool cost_repeats(const costs *, const study *, size_t target);
 char *cost_milliseconds(double seconds);
 bool cost_drifts(const study *); /* its energy */
 /* cost_price.c: more levels, with other gradients. */

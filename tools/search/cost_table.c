@@ -67,24 +67,47 @@ static char *cell_text(const row *r, bool star) {
     return text;
 }
 
-static void show_cell(const costs *c, const study *l, size_t target, table *t) {
-    const row *r = study_cheapest(l, cost_target[target], c->search.by_state);
-    bool star = costs_cheapest(c, cost_target[target]) == l;
-    char *text;
+const char *cost_word(const costs *c, const study *l, size_t target) {
     if (cost_is_beyond(c, target))
-        text = text_print("  -");
-    else if (l->end == STUDY_REFUSED)
-        text = text_print("  refused");
-    else if (study_failure(l))
-        text = text_print("  fails");
-    else if (!costs_count(c, l))
-        text = text_print("  -");
-    else if (!r)
-        text = text_print("  %s", l->end == STUDY_LIMIT   ? "> limit"
-                                  : l->end == STUDY_GIVEN ? "-"
-                                                          : "floor");
-    else
-        text = cell_text(r, star);
+        return "-";
+    if (l->end == STUDY_REFUSED)
+        return "refused";
+    if (study_failure(l))
+        return "fails";
+    if (!costs_count(c, l))
+        return "-";
+    if (study_cheapest(l, cost_target[target], c->search.by_state))
+        return NULL;
+    return l->end == STUDY_LIMIT   ? "> limit"
+           : l->end == STUDY_GIVEN ? "-"
+                                   : "floor";
+}
+
+bool cost_is_empty(const costs *c, size_t target) {
+    for (size_t i = 0; i < c->count; i++) {
+        const char *word = cost_word(c, &c->study[i], target);
+        if (cost_shows(c, &c->study[i]) && !(word && strcmp(word, "-") == 0))
+            return false;
+    }
+    return true;
+}
+
+bool cost_repeats(const costs *c, const study *l, size_t target) {
+    bool by_state = c->search.by_state;
+    return target && !cost_word(c, l, target - 1) && !cost_word(c, l, target) &&
+           study_cheapest(l, cost_target[target], by_state) ==
+               study_cheapest(l, cost_target[target - 1], by_state);
+}
+
+static void show_cell(const costs *c, const study *l, size_t target, table *t) {
+    const char *word = cost_word(c, l, target);
+    bool star = costs_cheapest(c, cost_target[target]) == l;
+    char *text = word ? text_print("  %s", word)
+                 : cost_repeats(c, l, target)
+                     ? text_print("%s =", star ? "*" : " ")
+                     : cell_text(study_cheapest(l, cost_target[target],
+                                                c->search.by_state),
+                                 star);
     table_text(t, text);
     free(text);
 }
@@ -96,6 +119,8 @@ table *cost_table(const costs *c) {
     if (gradients)
         table_column(t, "gradient");
     for (size_t k = 0; k < COST_TARGETS; k++) {
+        if (cost_is_empty(c, k))
+            continue;
         char *title = text_print("  1e%.0f", log10(cost_target[k]));
         table_column(t, title);
         free(title);
@@ -111,7 +136,8 @@ table *cost_table(const costs *c) {
         if (gradients)
             table_text(t, l->gradient);
         for (size_t k = 0; k < COST_TARGETS; k++)
-            show_cell(c, l, k, t);
+            if (!cost_is_empty(c, k))
+                show_cell(c, l, k, t);
     }
     return t;
 }

@@ -25,6 +25,17 @@ typedef struct {
     size_t count;
 } slope;
 
+/* Whether another run is more exact and takes no longer: nobody would pay for
+   that level's digits. */
+static bool is_dominated(const study *l, size_t i, bool by_state) {
+    for (size_t k = 0; k < l->count; k++)
+        if (k != i && l->level[k].seconds <= l->level[i].seconds &&
+            study_error(&l->level[k], by_state) <
+                study_error(&l->level[i], by_state))
+            return true;
+    return false;
+}
+
 static slope slope_new(const study *l, bool by_state) {
     static const double coarse = 2e-2, floors = 30;
     slope s = {tool_allocate(l->count, sizeof(double)),
@@ -38,7 +49,8 @@ static slope slope_new(const study *l, bool by_state) {
     for (size_t i = 0; i < l->count; i++) {
         const row *r = &l->level[i];
         double error = study_error(r, by_state);
-        if (error > coarse || error < least || !(r->seconds > 0))
+        if (error > coarse || error < least || !(r->seconds > 0) ||
+            is_dominated(l, i, by_state))
             continue;
         s.error[s.count] = error;
         s.seconds[s.count] = r->seconds;
@@ -275,22 +287,54 @@ static double typical_spread(const costs *c) {
     return median;
 }
 
-static bool any_end(const costs *c, study_end end) {
+static bool any_word(const costs *c, const char *wanted) {
     for (size_t i = 0; i < c->count; i++)
-        if (c->study[i].end == end && cost_shows(c, &c->study[i]) &&
-            !cell(c, &c->study[i], COST_TARGETS - 1))
-            return true;
+        for (size_t k = 0; k < COST_TARGETS; k++) {
+            const char *word = cost_word(c, &c->study[i], k);
+            if (word && strcmp(word, wanted) == 0 &&
+                cost_shows(c, &c->study[i]) && !cost_is_empty(c, k))
+                return true;
+        }
     return false;
+}
+
+static bool any_repeated(const costs *c) {
+    for (size_t i = 0; i < c->count; i++)
+        for (size_t k = 0; k < COST_TARGETS; k++)
+            if (cost_shows(c, &c->study[i]) && cost_repeats(c, &c->study[i], k))
+                return true;
+    return false;
+}
+
+/* The digits whose columns are left out, from the first of them on. */
+static void tell_empty(const costs *c, list *words) {
+    size_t k = 0;
+    while (k < COST_TARGETS && !cost_is_empty(c, k))
+        k++;
+    if (k == COST_TARGETS)
+        return;
+    if (cost_is_beyond(c, k))
+        list_print(words,
+                   "%.0f digits and more cannot be told: the reference's own "
+                   "error is larger.",
+                   -log10(cost_target[k]));
+    else
+        list_print(words, "%.0f digits are reached by none of these steps.",
+                   -log10(cost_target[k]));
 }
 
 static void tell_legend(const costs *c, list *words) {
     char *longest = cost_milliseconds(longest_cell(c));
-    if (any_end(c, STUDY_LIMIT))
+    tell_empty(c, words);
+    if (any_repeated(c))
+        list_add(words, "=: the same run as for the digits to its left, whose "
+                        "step keeps these as well.");
+    if (any_word(c, "> limit"))
         list_print(words,
                    "> limit: would take longer than was tried (the longest run "
-                   "took %s ms).",
+                   "took %s ms), or others are far ahead.",
                    longest);
-    if (any_end(c, STUDY_FLOOR))
+    if (any_word(c, "floor"))
         list_add(words, "floor: shorter steps do not lessen the error, for "
                         "rounding or what the gradient lacks.");
     list_print(words,
