@@ -207,7 +207,7 @@ double value(double t, const double q[], const double p[], const double c[])
 END
 scene "$work/a b/all.nevh" 'file("it'"'"'s.c")'
 exits 0 check "$work/a b/all.nevh" --allow-code
-has 'as its values tell'
+has 'according to its values'
 has 'autonomous +yes'
 scene "$work/a b/timed.nevh" 'file("it'"'"'s.c", t, phi, p_phi)'
 exits 0 check "$work/a b/timed.nevh" --allow-code

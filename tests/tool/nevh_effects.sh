@@ -60,7 +60,7 @@ row twist | grep -q '^twist,off,gauss4,.*"symplectic-euler-a, .*verlet' ||
 row spring | awk -F, '{ exit !($5 > 0.5 && $6 > 0) }' ||
     fails "spring changes little: $(row spring)"
 exits 0 effects $work/parts.nevh --impact
-has 'With wave H reads the time'
+has 'With wave H depends on time'
 has 'drag is friction'
 has 'With twist H\(q, p\) is not separable'
 exits 0 effects $work/parts.nevh --impact --integrators verlet --quiet

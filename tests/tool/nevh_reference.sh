@@ -69,7 +69,7 @@ none 0
 has 'own error [0-9]e-1[0-9]'
 exits 0 compare double-pendulum-chaotic --t-end 60 --integrators gauss6 \
     --dt 0.02
-has '^state errors mean nothing after t = [23][0-9].*: chaos, where neigh'
+has '^predictability horizon t = [23][0-9].*: chaos, where'
 has 'separate by a factor e in (0\.[0-9]+|1\.[0-9]+)[ ,]'
 has '^ gauss6 .* chaos '
 

@@ -162,12 +162,12 @@ static void tell_open(const plan *p, const row rows[], size_t count,
     double seen = r->followed > 0 ? r->followed : 1;
     char *name = name_of(rows, count, r), *unit = unit_of(p, " ");
     char *further = r->followed > 0
-                        ? text_print(", also when followed until t = %.4g%s",
+                        ? text_print(", also when continued until t = %.4g%s",
                                      start + seen * span, unit)
                         : text_print("%s", "");
     list_print(words,
-               "%s at dt = %.4g%s: the run is too short to tell what becomes "
-               "of the energy%s; one until t = %g%s may tell.",
+               "%s at dt = %.4g%s: the run is too short for a verdict on the "
+               "energy%s; a run until t = %g%s may decide.",
                name, r->dt, unit, further, rounded_up(start + 4 * seen * span),
                unit);
     free(name);
@@ -206,8 +206,8 @@ static void tell_followed(const plan *p, const row rows[], size_t count,
     double start = p->run->t_start;
     if (names.count)
         list_print(words,
-                   "The run is short for a verdict on %s: followed further, "
-                   "at most until t = %.4g%s.",
+                   "The run is short for a verdict on %s: continued at most "
+                   "until t = %.4g%s.",
                    joined, start + most * (p->t_end - start), unit);
     free(joined);
     free(unit);
@@ -219,7 +219,7 @@ static void tell_some(const row rows[], size_t count, const char *integrator,
                       nevh_verdict verdict, list *words) {
     static const char *const text[] = {
         [NEVH_BOUNDED] = "keeps the energy bounded",
-        [NEVH_RANDOM_WALK] = "lets the energy wander",
+        [NEVH_RANDOM_WALK] = "shows a random walk of the energy",
         [NEVH_UNSTABLE] = "is unstable"};
     list places = {0};
     for (size_t k = 0; k < count; k++) {
@@ -290,8 +290,8 @@ static void warn_of_changes(const row rows[], size_t count, list *words) {
     }
     if (text)
         list_print(words,
-                   "Warning: a smaller dt changes the verdict%.*s.  Trust it "
-                   "when yet another does not.",
+                   "Warning: a smaller dt changes the verdict%.*s.  Trust a "
+                   "verdict that a still smaller dt confirms.",
                    (int)strlen(text) - 1, text);
     free(text);
 }
@@ -302,8 +302,10 @@ void verdict_words(const plan *p, const row rows[], size_t count, list *words) {
              "keep the energy bounded: their errors do not grow with time.",
              words);
     tell_all(rows, count, NEVH_RANDOM_WALK,
-             "lets the energy wander: the error grows, but not along a line.",
-             "let the energy wander: their errors grow, but not along a line.",
+             "shows a random walk of the energy: its error grows, but not "
+             "linearly.",
+             "show a random walk of the energy: their errors grow, but not "
+             "linearly.",
              words);
     for (size_t i = 0; i < count; i++)
         if (is(&rows[i], NEVH_DRIFTS))

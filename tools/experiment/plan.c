@@ -377,7 +377,7 @@ char *plan_structure(const plan *p) {
     if (nevh_system_probe(p->system, p->run->t_start, p->q, p->p, NULL, &found))
         return text_print("H(%sq, p), of unknown structure", t);
     if (found.separable)
-        return text_print("H = T(p) + V(%sq), as its values tell", t);
+        return text_print("H = T(p) + V(%sq), according to its values", t);
     return text_print("H(%sq, p) is not separable: %s mixes coordinates and "
                       "momenta",
                       t, found.term);

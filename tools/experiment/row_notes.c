@@ -62,13 +62,13 @@ static void note_scale(const plan *p, const row rows[], size_t count,
 }
 
 static void note_balance(const plan *p, list *notes) {
-    const char *why = !p->friction ? "H reads the time"
-                      : p->time    ? "H reads the time, and there is friction"
+    const char *why = !p->friction ? "H depends on time"
+                      : p->time    ? "H depends on time, and there is friction"
                                    : "there is friction";
     if (p->balance)
         list_print(notes,
-                   "%s: energy columns hold the error of the balance "
-                   "H(t) - H(0) - what came in from outside",
+                   "%s: energy columns are the error of the balance H(t) - "
+                   "H(0) - the energy from outside",
                    why);
 }
 
@@ -103,8 +103,8 @@ static void note_rows(const plan *p, const row rows[], size_t count,
                                     "or the scheme chooses its own"},
                 {match_unmatched, "schemes that take no gradients, but values "
                                   "of H alone, keep the dt given"},
-                {match_dearer, "no dt makes some implicit schemes as cheap: "
-                               "theirs is the cheapest"},
+                {match_dearer, "some implicit schemes cost more at every dt: "
+                               "they take the cheapest dt"},
                 {has_tolerance, "adaptive schemes have a row for each "
                                 "tolerance; dt is their mean step"},
                 {has_mean_step, "dt of adaptive schemes is their mean step"}};

@@ -87,22 +87,25 @@ static void note_horizon(const plan *p, list *notes) {
     const char *text = nevh_reference_text(r);
     double horizon = nevh_reference_horizon(r);
     if (is_chaos(p))
-        list_print(notes,
-                   "state errors mean nothing after t = %.4g: chaos, where "
-                   "neighbouring orbits separate by a factor e in %.3g (%s)",
-                   horizon, 1 / nevh_reference_exponent(r), text);
+        list_print(
+            notes,
+            "predictability horizon t = %.4g, no state errors after it: "
+            "chaos, where neighbouring orbits separate by a factor e in %.3g (%s)",
+            horizon, 1 / nevh_reference_exponent(r), text);
     else if (nevh_reference_why(r) == NEVH_REFERENCE_SENSITIVE)
-        list_print(notes,
-                   "state errors mean nothing after t = %.4g: differences in "
-                   "the last digits have grown by %.0e, at a saddle of H or in "
-                   "a close pass; that is no chaos (%s)",
-                   horizon, nevh_reference_growth(r), text);
+        list_print(
+            notes,
+            "predictability horizon t = %.4g, no state errors after it: "
+            "differences in the last digits have grown by %.0e, at a saddle of H or in "
+            "a close encounter; that is not chaos (%s)",
+            horizon, nevh_reference_growth(r), text);
     else
-        list_print(notes,
-                   "no state errors after t = %.4g: shorter steps of the "
-                   "reference do not bring it below 1e-3 there, or cannot be "
-                   "afforded (%s)",
-                   horizon, text);
+        list_print(
+            notes,
+            "no state errors after t = %.4g: shorter steps of the "
+            "reference do not reduce its error below 1e-3 there, or cost "
+            "too much (%s)",
+            horizon, text);
 }
 
 void state_notes(const plan *p, list *notes) {

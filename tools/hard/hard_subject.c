@@ -33,7 +33,7 @@ static int change(nevh_scene *scene, const char *settings) {
 static int open_scene(hard_subject *s) {
     s->scene = hard_scene(s->decl->scene);
     if (!s->scene)
-        return tool_refuse("the scene %s of the hard cases is not there",
+        return tool_refuse("scene %s of the hard cases not found",
                            s->decl->scene);
     if (!nevh_scene_status(s->scene) && s->decl->settings)
         change(s->scene, s->decl->settings);

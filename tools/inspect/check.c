@@ -24,7 +24,7 @@ static void tell_probes(const plan *p, list *notes) {
     } else {
         const double *lengths = nevh_probe_lengths(probe);
         list_add(notes, "Properties of H, tested numerically: largest "
-                        "deviation met, and that which rounding causes");
+                        "deviation, and the deviation that rounding explains");
         for (int i = 0; i < NEVH_FINDINGS; i++)
             tell_finding(probe, (nevh_question)i, notes);
         list_add(notes, "Lengths over which H varies:");
@@ -175,7 +175,7 @@ static void add_schemes(fitting *f, page *result) {
         table_column(f->table, columns[i]);
     table_column(f->table, f->why ? "stable_below" : "stable\nbelow");
     table_column(f->table, f->why ? "h_omega" : "omega dt");
-    table_column(f->table, f->why ? "preflight" : "");
+    table_column(f->table, f->why ? "prediction" : "");
     for (size_t i = 0; nevh_integrators()[i]; i++)
         add_scheme(f, nevh_integrators()[i]);
     if (!f->why)

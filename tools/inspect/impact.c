@@ -164,8 +164,8 @@ static void say(const char *effect, const both *b, const char *names,
                    b->structure[0]);
     if (b->time[1] && !b->time[0])
         list_print(words,
-                   "With %s H reads the time: no energy is conserved, and "
-                   "errors are those of a balance.",
+                   "With %s H depends on time: its energy is not conserved, "
+                   "and errors are those of the energy balance.",
                    effect);
     if (b->friction[1] && !b->friction[0])
         list_print(words,

@@ -314,14 +314,15 @@ trial_run trial_run_new(const plan *p) {
 static void tell_edge(const plan *p, const trial_run *f, list *notes) {
     size_t k = f->edge_variable;
     if (isfinite(f->edge))
-        list_print(notes,
-                   "H ends at %s%s = %.3g or before: %.2g of the length over "
-                   "which it varies from the orbit, near t = %.4g",
-                   k < p->n ? "" : "p_",
-                   nevh_scene_coordinate(p->scene, k % p->n), f->edge_at,
-                   f->edge, f->edge_time);
+        list_print(
+            notes,
+            "The domain of H ends at %s%s = %.3g or before: its distance "
+            "from the orbit is %.2g of the length over which H varies, "
+            "near t = %.4g",
+            k < p->n ? "" : "p_", nevh_scene_coordinate(p->scene, k % p->n),
+            f->edge_at, f->edge, f->edge_time);
     if (f->failure)
-        list_print(notes, "The orbit could be followed up to t = %.6g: %s",
+        list_print(notes, "The orbit was integrated up to t = %.6g: %s",
                    p->run->t_start + f->length, f->failure);
 }
 
@@ -336,12 +337,12 @@ static void tell_outlook(const plan *p, const trial_run *f, list *notes) {
         list_print(
             notes,
             "Chaotic: Lyapunov exponent %.2g +- %.1g%s%s (over %.3g%s%s)."
-            "  %s t = %.3g%s%s rounding errors have grown to the size of "
-            "the orbit: positions mean nothing%s, energies and averages "
-            "do.",
+            "  Predictability horizon: %s t = %.3g%s%s rounding errors have "
+            "grown to the size of the orbit.  Positions%s cannot be "
+            "predicted; energies and averages can.",
             f->exponent, f->error, per, unit, f->length, space, unit,
-            within ? "After" : "A run beyond", horizon, space, unit,
-            within ? "" : " there");
+            within ? "after" : "beyond the run, after", horizon, space, unit,
+            within ? "" : " after it");
         break;
     case OUTLOOK_PLANE:
         list_add(notes, "Regular: one degree of freedom without a drive cannot "
@@ -350,14 +351,14 @@ static void tell_outlook(const plan *p, const trial_run *f, list *notes) {
     case OUTLOOK_REGULAR:
         list_print(
             notes,
-            "Regular: over %.3g%s%s neighbouring orbits part slowly, not "
-            "exponentially (Lyapunov exponent below %.1g%s%s).",
+            "Regular: over %.3g%s%s the distance of neighbouring orbits "
+            "does not grow exponentially (Lyapunov exponent below %.1g%s%s).",
             f->length, space, unit, 2 * parted_little / f->length, per, unit);
         break;
     default:
         list_print(notes,
-                   "Chaotic or regular: %.3g%s%s are too short to tell; a "
-                   "longer run (--t-end) tells.",
+                   "Chaotic or regular: %.3g%s%s are too short to decide; "
+                   "--t-end makes the run longer.",
                    f->length, space, unit);
     }
 }
@@ -367,13 +368,13 @@ void trial_run_words(const plan *p, const trial_run *f, list *notes) {
     const char *space = *unit ? " " : "", *per = *unit ? " rad/" : "";
     if (f->frequency > 0)
         list_print(notes,
-                   "Highest frequency met: omega = %.3g%s%s (t = %.4g%s%s); "
+                   "Highest frequency: omega = %.3g%s%s (t = %.4g%s%s); "
                    "omega dt = %.3g at dt = %.4g%s%s",
                    f->frequency, per, unit, f->frequency_at, space, unit,
                    p->dt[0] * f->frequency, p->dt[0], space, unit);
     if (f->pace > f->frequency)
         list_print(notes,
-                   "Fastest growth met: small displacements grow at a rate of "
+                   "Fastest growth: small displacements grow at a rate of "
                    "%.3g%s%s (t = %.4g%s%s); rate dt = %.3g at dt = %.4g%s%s",
                    f->pace, *unit ? "/" : "", unit, f->pace_at, space, unit,
                    p->dt[0] * f->pace, p->dt[0], space, unit);
@@ -381,9 +382,9 @@ void trial_run_words(const plan *p, const trial_run *f, list *notes) {
     if (isfinite(f->noise))
         list_print(notes,
                    f->noise > 0
-                       ? "Gradient: the rounding of %s brings an energy error "
+                       ? "Gradient: the rounding of %s causes an energy error "
                          "of %.1e over the run"
-                       : "Gradient: %s brings no noise of its own",
+                       : "Gradient: %s adds no rounding error of its own",
                    p->gradients.item[0], f->noise);
     tell_edge(p, f, notes);
 }

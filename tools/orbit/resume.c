@@ -167,17 +167,17 @@ static int compare_settings(const char *name, const char *saved,
             saved += a + (saved[a] == '\n');
             now += b + (now[b] == '\n');
         } else if (strncmp(now, "scene", 5) == 0) {
-            return tool_refuse("%s is of another scene, or of other parameters "
-                               "or effects, or code",
+            return tool_refuse("%s belongs to another scene, or to other "
+                               "parameters, effects or code",
                                name);
         } else if (strncmp(now, "digits", 6) == 0) {
-            return tool_refuse("%s is of a machine whose vector units or libm "
-                               "give other last digits: resume it there, or "
-                               "run it anew here",
+            return tool_refuse("%s comes from a machine whose vector units or "
+                               "libm give other last digits: resume it there, "
+                               "or start a new run here",
                                name);
         } else {
-            return tool_refuse("%s is of a run with %.*s, not %.*s", name, a,
-                               saved, b, now);
+            return tool_refuse("%s belongs to a run with %.*s, not %.*s", name,
+                               a, saved, b, now);
         }
     }
     return TOOL_OK;
@@ -195,7 +195,7 @@ static int take(const char *name, const char *all, const char *settings,
     int status = compare_settings(name, saved, settings);
     free(saved);
     if (!status && (h.n != s->n || h.memory_size != s->memory_size))
-        status = tool_refuse("%s is of another version of nevh", name);
+        status = tool_refuse("%s belongs to another version of nevh", name);
     if (status)
         return status;
     s->at = h.at;

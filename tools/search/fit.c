@@ -43,8 +43,8 @@ int plan_require_reference(plan *p) {
     if (!p->reference)
         tool_refuse("%s: no state errors: %s", p->name, p->no_reference);
     else if (p->t_end > nevh_reference_horizon(p->reference))
-        tool_refuse("%s: state errors mean nothing after t = %.4g (%s); "
-                    "--t-end shortens the run",
+        tool_refuse("%s: no state errors after the predictability horizon "
+                    "t = %.4g (%s); --t-end shortens the run",
                     p->name, nevh_reference_horizon(p->reference),
                     nevh_reference_text(p->reference));
     else
