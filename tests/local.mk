@@ -65,6 +65,7 @@ suites = \
 	tests/diagnose/check_state_error \
 	tests/diagnose/check_reference_end \
 	tests/robust/check_failures \
+	tests/robust/check_null \
 	tests/robust/check_hard_steps \
 	tests/robust/check_hard \
 	tests/robust/check_hard_pendulum \

@@ -15,7 +15,13 @@ extern "C" {
 
 /* Every function that can fail returns one of these as int.  Where GSL has a
    code for the same thing the number is GSL's, so that a callback written for
-   GSL may pass its own codes on; what GSL lacks is numbered from 1024. */
+   GSL may pass its own codes on; what GSL lacks is numbered from 1024.
+
+   Where memory is out an object is NULL.  Every function takes NULL for an
+   object, and for an integrator or gradient, which NULL is where a name is
+   none: the status of NULL is NEVH_ENOMEM; what acts on it returns NEVH_EINVAL,
+   outputs being untouched; a text is "" or says what is wrong, a number 0 or
+   NAN, a pointer NULL; what returns nothing does nothing. */
 #define NEVH_STATUS_LIST(X)                                                    \
     X(NEVH_OK, 0, "no error")                                                  \
     X(NEVH_EDOM, 1, "a value is not finite")                                   \

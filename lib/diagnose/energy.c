@@ -127,6 +127,8 @@ static int check_stepper(nevh_energy *e, const nevh_stepper *s,
 }
 
 int nevh_energy_follow(nevh_energy *e, const nevh_stepper *s) {
+    if (!e)
+        return NEVH_EINVAL;
     int status = check_stepper(e, s, "to follow");
     if (status)
         return status;
@@ -171,6 +173,8 @@ static void find_blur(nevh_energy *e, const nevh_field *f) {
 }
 
 int nevh_energy_expect(nevh_energy *e, const nevh_stepper *s) {
+    if (!e)
+        return NEVH_EINVAL;
     int status = check_stepper(e, s, "to expect");
     if (status)
         return status;
@@ -185,6 +189,8 @@ static double gain(const nevh_energy *e, size_t lane) {
 }
 
 int nevh_energy_set_scale(nevh_energy *e, double scale) {
+    if (!e)
+        return NEVH_EINVAL;
     if (!(scale > 0 && isfinite(scale)))
         return nevh__fail(&e->report, NEVH_EINVAL,
                           "the scale of the energy, %g, is not a positive "
@@ -286,6 +292,8 @@ static int observe_lane(nevh_energy *e, size_t lane, size_t step,
 
 int nevh_energy_observe(void *energy, size_t step, double t, const double q[],
                         const double p[]) {
+    if (!energy)
+        return NEVH_EINVAL;
     nevh_energy *e = energy;
     if (e->report.status)
         return e->report.status;

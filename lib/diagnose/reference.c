@@ -267,30 +267,34 @@ const char *nevh_reference_text(const nevh_reference *r) {
 }
 
 double nevh_reference_error(const nevh_reference *r) {
-    return r->error;
+    return r ? r->error : NAN;
 }
 
 double nevh_reference_horizon(const nevh_reference *r) {
-    return r->horizon;
+    return r ? r->horizon : NAN;
 }
 
 nevh_reference_end nevh_reference_why(const nevh_reference *r) {
-    return r->end;
+    return r ? r->end : NEVH_REFERENCE_COARSE;
 }
 
 double nevh_reference_exponent(const nevh_reference *r) {
-    return r->exponent;
+    return r ? r->exponent : NAN;
 }
 
 double nevh_reference_growth(const nevh_reference *r) {
-    return r->growth;
+    return r ? r->growth : NAN;
 }
 
 double nevh_reference_range(const nevh_reference *r, size_t k) {
+    if (!r)
+        return NAN;
     return k < 2 * r->n ? r->range[k] : NAN;
 }
 
 double nevh_reference_own_range(const nevh_reference *r, size_t k) {
+    if (!r)
+        return NAN;
     return k < 2 * r->n ? r->high[k] - r->low[k] : NAN;
 }
 

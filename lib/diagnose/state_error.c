@@ -55,11 +55,15 @@ static bool is_due(nevh_state_error *e, double t) {
 }
 
 void nevh_state_error_follow(nevh_state_error *e, const nevh_stepper *s) {
+    if (!e)
+        return;
     e->followed = s;
     e->h = 0;
 }
 
 void nevh_state_error_hand(nevh_state_error *e, nevh_pair_fn hand, void *data) {
+    if (!e)
+        return;
     e->hand = hand;
     e->hand_data = data;
 }
@@ -89,6 +93,8 @@ static void add(nevh_state_error *e, size_t k, double value) {
 
 int nevh_state_error_observe(void *state_error, size_t step, double t,
                              const double q[], const double p[]) {
+    if (!state_error)
+        return NEVH_EINVAL;
     nevh_state_error *e = state_error;
     size_t n = e->reference->n;
     double passed = elapsed(e, step, t);

@@ -51,6 +51,8 @@ static bool reads(const nevh__planned *term, bool q, bool p) {
 int nevh_field_gradient(nevh_field *f, size_t width, const double t[],
                         const double q[], const double p[], double dh_dq[],
                         double dh_dp[]) {
+    if (!f)
+        return NEVH_EINVAL;
     return nevh__field_gradient_padded(f, width, width, t, q, p, dh_dq, dh_dp);
 }
 
@@ -78,6 +80,8 @@ int nevh__field_gradient_padded(nevh_field *f, size_t width, size_t used,
 
 double nevh_field_step(const nevh_field *f, const char *name, size_t instance,
                        size_t i) {
+    if (!f)
+        return NAN;
     for (size_t j = 0; j < f->n_terms; j++) {
         const nevh__planned *term = &f->terms[j];
         if (strcmp(term->term->decl.name, name) != 0 || !term->delta ||
@@ -91,6 +95,8 @@ double nevh_field_step(const nevh_field *f, const char *name, size_t instance,
 }
 
 nevh_counts nevh_field_counts(const nevh_field *f) {
+    if (!f)
+        return (nevh_counts){0};
     nevh_counts counts = {.gradients = f->gradients};
     for (size_t i = 0; i < f->n_terms; i++)
         counts.values += f->terms[i].values;
@@ -100,6 +106,8 @@ nevh_counts nevh_field_counts(const nevh_field *f) {
 }
 
 uint64_t nevh_field_effect_values(const nevh_field *f, const char *effect) {
+    if (!f)
+        return 0;
     uint64_t values = 0;
     for (size_t i = 0; effect && i < f->n_terms; i++)
         if (strcmp(f->terms[i].term->decl.effect, effect) == 0)

@@ -195,5 +195,5 @@ const char *nevh_question_name(nevh_question question) {
 }
 
 const double *nevh_probe_lengths(const nevh_probe *b) {
-    return b->selection.length;
+    return b ? b->selection.length : NULL;
 }

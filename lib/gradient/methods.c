@@ -60,9 +60,9 @@ const nevh_gradient *nevh_gradient_named(const char *name) {
 }
 
 const char *nevh_gradient_name(const nevh_gradient *gradient) {
-    return gradient->name;
+    return gradient ? gradient->name : "";
 }
 
 int nevh_gradient_order(const nevh_gradient *gradient) {
-    return gradient->order;
+    return gradient ? gradient->order : 0;
 }

@@ -9,6 +9,8 @@
 static const double rough = 1e-5;
 
 size_t nevh_field_step_count(const nevh_field *f) {
+    if (!f)
+        return 0;
     size_t count = 0;
     for (size_t i = 0; i < f->n_terms; i++)
         if (f->terms[i].steps)
@@ -40,6 +42,8 @@ static nevh_step_report describe(const nevh_field *f, const nevh__planned *term,
 }
 
 nevh_step_report nevh_field_step_report(const nevh_field *f, size_t i) {
+    if (!f)
+        return (nevh_step_report){0};
     for (size_t j = 0; j < f->n_terms; j++) {
         const nevh__planned *term = &f->terms[j];
         size_t count = term->steps ? nevh__step_rows(term) * term->nv : 0;
@@ -64,6 +68,8 @@ static double noise_power(const nevh_field *f, const double *v) {
 int nevh_field_energy_floor(nevh_field *f, double t, const double q[],
                             const double p[], double h, size_t steps,
                             double *energy) {
+    if (!f)
+        return NEVH_EINVAL;
     double *v = nevh__array(4 * f->n, sizeof *v);
     if (!v)
         return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");

@@ -40,6 +40,8 @@ static nevh__block lanes_from(const nevh_field *f, size_t lane, size_t width,
 
 int nevh_field_value(nevh_field *f, size_t width, const double t[],
                      const double q[], const double p[], double h[]) {
+    if (!f)
+        return NEVH_EINVAL;
     double *sum = f->sums, *roundoff = sum + f->capacity;
     int status = nevh__field_ready(f);
     for (size_t at = 0, lanes; !status && at < width; at += lanes) {
@@ -91,6 +93,8 @@ static int effects(nevh_field *f, bool constants, double t, const double q[],
 
 int nevh_field_effects(nevh_field *f, double t, const double q[],
                        const double p[], double h[]) {
+    if (!f)
+        return NEVH_EINVAL;
     return effects(f, true, t, q, p, h);
 }
 
@@ -128,6 +132,8 @@ static int add_groups(nevh_field *f, nevh__planned *term, nevh__block b,
 int nevh_field_groups(nevh_field *f, double t, const double q[],
                       const double p[], size_t count, const size_t group[],
                       double h[]) {
+    if (!f)
+        return NEVH_EINVAL;
     int status = nevh__field_ready(f);
     for (size_t g = 0; g < count; g++)
         h[g] = 0;

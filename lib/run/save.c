@@ -33,6 +33,8 @@ static void list_parts(const nevh_stepper *s, double *part[3], size_t size[3]) {
 }
 
 size_t nevh_stepper_save_size(const nevh_stepper *s) {
+    if (!s)
+        return 0;
     double *part[3];
     size_t size[3];
     list_parts(s, part, size);
@@ -40,6 +42,8 @@ size_t nevh_stepper_save_size(const nevh_stepper *s) {
 }
 
 void nevh_stepper_save(const nevh_stepper *s, void *buffer) {
+    if (!s)
+        return;
     double *part[3];
     size_t size[3];
     char *to = buffer;
@@ -55,6 +59,8 @@ void nevh_stepper_save(const nevh_stepper *s, void *buffer) {
 }
 
 int nevh_stepper_load(nevh_stepper *s, const void *buffer, size_t size) {
+    if (!s)
+        return NEVH_EINVAL;
     if (!s->planned)
         return s->report.status;
     header own = describe(s), h;
@@ -82,6 +88,8 @@ int nevh_stepper_load(nevh_stepper *s, const void *buffer, size_t size) {
 }
 
 nevh_stepper *nevh_stepper_copy(const nevh_stepper *s) {
+    if (!s)
+        return NULL;
     nevh_stepper *copy =
         nevh_stepper_new(s->work.system, s->work.integrator, &s->options);
     if (!copy || !s->planned || !copy->planned)

@@ -130,6 +130,8 @@ const char *nevh_sections_message(const nevh_sections *x) {
 }
 
 nevh_counts nevh_sections_counts(const nevh_sections *x) {
+    if (!x)
+        return (nevh_counts){0};
     return nevh_stepper_counts(x->branch);
 }
 

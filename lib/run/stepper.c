@@ -175,6 +175,8 @@ static void forget_lane(nevh_stepper *s, size_t lane) {
 }
 
 void nevh_stepper_reset(nevh_stepper *s) {
+    if (!s)
+        return;
     for (size_t lane = 0; s->planned && lane < s->work.width; lane++)
         forget_lane(s, lane);
     for (size_t i = s->fresh_rows * s->work.width;
@@ -292,6 +294,8 @@ int nevh_stepper_apply(nevh_stepper *s, double t, double h, double q[],
 }
 
 nevh_counts nevh_stepper_counts(const nevh_stepper *s) {
+    if (!s)
+        return (nevh_counts){0};
     nevh_counts counts = {0};
     if (s->work.field)
         counts = nevh_field_counts(s->work.field);
@@ -302,7 +306,7 @@ nevh_counts nevh_stepper_counts(const nevh_stepper *s) {
 }
 
 nevh_field *nevh_stepper_field(nevh_stepper *s) {
-    return s->work.field;
+    return s ? s->work.field : NULL;
 }
 
 bool nevh_stepper_native(const nevh_stepper *s, const char **why) {
@@ -312,14 +316,16 @@ bool nevh_stepper_native(const nevh_stepper *s, const char **why) {
 }
 
 double nevh_stepper_time(const nevh_stepper *s) {
-    return s->last_t;
+    return s ? s->last_t : NAN;
 }
 
 size_t nevh_stepper_taken(const nevh_stepper *s) {
-    return s->taken;
+    return s ? s->taken : 0;
 }
 
 double nevh_stepper_gain(const nevh_stepper *s, size_t lane) {
+    if (!s)
+        return NAN;
     if (!s->planned || !s->work.ledger || lane >= s->work.width)
         return 0;
     const double *total = gains(s);

@@ -14,18 +14,26 @@ static const char *text_of(const nevh_scene *s, nevh__section_kind section,
 }
 
 const char *nevh_scene_title(const nevh_scene *s) {
+    if (!s)
+        return "";
     return text_of(s, NEVH__SCENE, "title");
 }
 
 const char *nevh_scene_source(const nevh_scene *s) {
+    if (!s)
+        return "";
     return text_of(s, NEVH__SCENE, "source");
 }
 
 size_t nevh_scene_dof(const nevh_scene *s) {
+    if (!s)
+        return 0;
     return s->model ? s->model->n : 0;
 }
 
 const char *nevh_scene_coordinate(const nevh_scene *s, size_t k) {
+    if (!s)
+        return "";
     return k < nevh_scene_dof(s) ? s->model->coordinate_names[k] : NULL;
 }
 
@@ -40,6 +48,8 @@ size_t nevh_scene_array(const nevh_scene *s, size_t k) {
 }
 
 const char *nevh_scene_label(const nevh_scene *s, const char *name) {
+    if (!s)
+        return "";
     char array[NEVH__NAME_LENGTH + 1];
     const char *text = text_of(s, NEVH__LABELS, name);
     size_t bytes = strcspn(name, "[");
@@ -65,6 +75,8 @@ static uint64_t digest_statement(uint64_t digest,
 }
 
 uint64_t nevh_scene_digest(const nevh_scene *s) {
+    if (!s)
+        return 0;
     uint64_t digest = nevh__digest_begin;
     for (size_t i = 0; i < s->n_statements; i++)
         digest = digest_statement(digest ^ s->statements[i].section,
@@ -85,13 +97,19 @@ uint64_t nevh_scene_digest(const nevh_scene *s) {
 }
 
 const nevh_system *nevh_scene_system(nevh_scene *s) {
+    if (!s)
+        return NULL;
     return s->model ? s->model->system : NULL;
 }
 
 const nevh_scene_run *nevh_scene_run_settings(nevh_scene *s) {
+    if (!s)
+        return NULL;
     return s->model ? &s->model->run : NULL;
 }
 
 const nevh_system *nevh_scene_transform(nevh_scene *s) {
+    if (!s)
+        return NULL;
     return s->model ? s->model->transform : NULL;
 }

@@ -326,6 +326,8 @@ void nevh_sweep_stop(nevh_sweep *s) {
 
 int nevh_sweep_run(nevh_sweep *s, uint64_t first, uint64_t count,
                    nevh_wanted_fn wanted, nevh_sweep_fn tell_fn, void *data) {
+    if (!s)
+        return NEVH_EINVAL;
     if (s->report.status && s->report.status != NEVH_STOPPED)
         return s->report.status;
     s->report = (nevh__report){0};

@@ -220,6 +220,8 @@ static int keep_if_fine(nevh_scene *s, nevh__statement *statement, bool fine,
 }
 
 int nevh_scene_set(nevh_scene *s, const char *assignment) {
+    if (!s)
+        return NEVH_EINVAL;
     if (!nevh__scene_begin(s))
         return s->status;
     nevh__statement *statement =
@@ -232,6 +234,8 @@ int nevh_scene_set(nevh_scene *s, const char *assignment) {
 }
 
 int nevh_scene_set_start(nevh_scene *s, const char *assignment) {
+    if (!s)
+        return NEVH_EINVAL;
     if (!nevh__scene_begin(s))
         return s->status;
     nevh__statement *statement =
@@ -243,6 +247,8 @@ int nevh_scene_set_start(nevh_scene *s, const char *assignment) {
 }
 
 int nevh_scene_vary(nevh_scene *s, const char *const lines[], size_t count) {
+    if (!s)
+        return NEVH_EINVAL;
     if (!nevh__scene_begin(s))
         return s->status;
     size_t before = s->n_varies;
@@ -277,6 +283,8 @@ static nevh__piece *new_piece(nevh_scene *s, const char *text) {
 }
 
 int nevh_scene_number(nevh_scene *s, const char *formula, double *number) {
+    if (!s)
+        return NEVH_EINVAL;
     if (!nevh__scene_begin(s))
         return s->status;
     nevh__piece *piece = new_piece(s, formula);
@@ -285,6 +293,8 @@ int nevh_scene_number(nevh_scene *s, const char *formula, double *number) {
 }
 
 int nevh_scene_set_transform(nevh_scene *s, const char *formula) {
+    if (!s)
+        return NEVH_EINVAL;
     if (!nevh__scene_begin(s))
         return s->status;
     const nevh__piece *before = s->transform;
@@ -303,6 +313,8 @@ int nevh_scene_set_transform(nevh_scene *s, const char *formula) {
 }
 
 int nevh_scene_set_outcomes(nevh_scene *s, const char *outcomes) {
+    if (!s)
+        return NEVH_EINVAL;
     if (!nevh__scene_begin(s))
         return s->status;
     const nevh__piece *before = s->outcomes;
@@ -321,6 +333,8 @@ int nevh_scene_set_outcomes(nevh_scene *s, const char *outcomes) {
 }
 
 int nevh_scene_set_judged(nevh_scene *s, const char *formula) {
+    if (!s)
+        return NEVH_EINVAL;
     nevh__formula judged;
     if (!nevh__scene_begin(s))
         return s->status;
@@ -333,6 +347,8 @@ int nevh_scene_set_judged(nevh_scene *s, const char *formula) {
 }
 
 int nevh_scene_enable(nevh_scene *s, const char *effect, bool on) {
+    if (!s)
+        return NEVH_EINVAL;
     if (!nevh__scene_begin(s))
         return s->status;
     nevh__switch *found = nevh__scene_find_effect(s, effect);

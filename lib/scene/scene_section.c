@@ -128,10 +128,14 @@ bool nevh__model_crossings(nevh_scene *s, nevh__scene_model *m) {
 }
 
 size_t nevh_scene_section_count(const nevh_scene *s) {
+    if (!s)
+        return 0;
     return s->model ? s->model->n_crossings : 0;
 }
 
 const nevh_scene_section *nevh_scene_section_at(nevh_scene *s, size_t i) {
+    if (!s)
+        return NULL;
     return i < nevh_scene_section_count(s) ? &s->model->crossings[i].decl
                                            : NULL;
 }
@@ -139,6 +143,8 @@ const nevh_scene_section *nevh_scene_section_at(nevh_scene *s, size_t i) {
 int nevh_scene_section_cross(nevh_scene *s, size_t i, double t,
                              const double q[], const double p[],
                              double *value) {
+    if (!s)
+        return NEVH_EINVAL;
     double left = t, right;
     nevh__state at = {t, q, p, false};
     if (!nevh__scene_begin(s))
@@ -158,6 +164,8 @@ int nevh_scene_section_cross(nevh_scene *s, size_t i, double t,
 int nevh_scene_section_items(nevh_scene *s, size_t i, double t,
                              const double q[], const double p[],
                              double values[]) {
+    if (!s)
+        return NEVH_EINVAL;
     if (!nevh__scene_begin(s))
         return s->status;
     if (i >= s->model->n_crossings)

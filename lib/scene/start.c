@@ -296,6 +296,8 @@ static int check_values(nevh_scene *scene, const double q[], const double p[]) {
 }
 
 int nevh_scene_start(nevh_scene *scene, double q[], double p[]) {
+    if (!scene)
+        return NEVH_EINVAL;
     const nevh__scene_model *m = scene->model;
     bool any = false;
     if (!m)

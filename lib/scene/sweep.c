@@ -147,21 +147,29 @@ const char *nevh_sweep_message(const nevh_sweep *s) {
 }
 
 uint64_t nevh_sweep_members(const nevh_sweep *s) {
+    if (!s)
+        return 0;
     return s->ensemble ? s->ensemble->members : 0;
 }
 
 size_t nevh_sweep_columns(const nevh_sweep *s) {
-    return s->columns;
+    return s ? s->columns : 0;
 }
 
 size_t nevh_sweep_varied(const nevh_sweep *s) {
+    if (!s)
+        return 0;
     return s->ensemble ? s->ensemble->n_varied : 0;
 }
 
 const char *nevh_sweep_column(const nevh_sweep *s, size_t k) {
+    if (!s)
+        return "";
     return k < s->columns ? s->names[k] : NULL;
 }
 
 bool nevh_sweep_is_verdict(const nevh_sweep *s, size_t k) {
+    if (!s)
+        return false;
     return k < s->columns && s->verdicts[k];
 }

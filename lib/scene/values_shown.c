@@ -28,6 +28,8 @@ static nevh__item *item_at(const nevh_scene *s, nevh_shown which, size_t i,
 }
 
 size_t nevh_scene_shown_count(const nevh_scene *s, nevh_shown which) {
+    if (!s)
+        return 0;
     size_t count;
     item_at(s, which, SIZE_MAX, &count);
     return count;
@@ -35,6 +37,8 @@ size_t nevh_scene_shown_count(const nevh_scene *s, nevh_shown which) {
 
 const char *nevh_scene_shown_name(const nevh_scene *s, nevh_shown which,
                                   size_t i) {
+    if (!s)
+        return "";
     size_t before;
     const nevh__item *item = item_at(s, which, i, &before);
     return item ? item->name : NULL;
@@ -43,6 +47,8 @@ const char *nevh_scene_shown_name(const nevh_scene *s, nevh_shown which,
 int nevh_scene_shown_values(nevh_scene *s, nevh_shown which, double t,
                             const double q[], const double p[],
                             double values[]) {
+    if (!s)
+        return NEVH_EINVAL;
     if (!nevh__scene_begin(s))
         return s->status;
     const nevh__items *all = &s->model->shown[which];
@@ -56,6 +62,8 @@ int nevh_scene_shown_values(nevh_scene *s, nevh_shown which, double t,
 
 int nevh_scene_judged_value(nevh_scene *s, double t, const double q[],
                             const double p[], double *value) {
+    if (!s)
+        return NEVH_EINVAL;
     nevh__state at = {t, q, p, false};
     *value = NAN;
     if (nevh__scene_begin(s) && s->judged)
@@ -64,20 +72,28 @@ int nevh_scene_judged_value(nevh_scene *s, double t, const double q[],
 }
 
 double nevh_scene_period(const nevh_scene *s, size_t k) {
+    if (!s)
+        return 0;
     return k < nevh_scene_dof(s) ? s->model->period[k] : 0;
 }
 
 size_t nevh_scene_part_count(const nevh_scene *s) {
+    if (!s)
+        return 0;
     return s->model ? s->model->n_drawn : 0;
 }
 
 nevh_scene_part nevh_scene_part_at(const nevh_scene *s, size_t i) {
+    if (!s)
+        return (nevh_scene_part){0};
     return i < nevh_scene_part_count(s) ? s->model->drawn[i].decl
                                         : (nevh_scene_part){0};
 }
 
 int nevh_scene_part_values(nevh_scene *s, size_t i, double t, const double q[],
                            const double p[], double values[]) {
+    if (!s)
+        return NEVH_EINVAL;
     if (!nevh__scene_begin(s))
         return s->status;
     if (i >= s->model->n_drawn)
@@ -89,15 +105,21 @@ int nevh_scene_part_values(nevh_scene *s, size_t i, double t, const double q[],
 }
 
 const char *nevh_scene_stop_text(const nevh_scene *s) {
+    if (!s)
+        return "";
     return s->model ? s->model->stop.text : NULL;
 }
 
 bool nevh_scene_stops(nevh_scene *s) {
+    if (!s)
+        return false;
     return nevh_scene_stop_text(s);
 }
 
 int nevh_scene_stop_reached(nevh_scene *s, double t, const double q[],
                             const double p[], bool *reached) {
+    if (!s)
+        return NEVH_EINVAL;
     double value;
     *reached = false;
     if (!nevh__scene_begin(s) || !nevh_scene_stops(s))

@@ -186,6 +186,8 @@ static char *other_folder(writer *w, const nevh_scene *s, const char *path) {
 }
 
 char *nevh_scene_write(const nevh_scene *s, const char *path) {
+    if (!s)
+        return NULL;
     writer w = {0};
     if (path)
         w.folder = other_folder(&w, s, path);

@@ -45,6 +45,8 @@ int nevh_system_add_friction(nevh_system *s, const char *effect,
 }
 
 bool nevh_system_friction(const nevh_system *s, double rates[]) {
+    if (!s)
+        return false;
     bool any = false;
     for (size_t k = 0; k < s->n && (rates || s->n_frictions); k++) {
         double sum = 0;

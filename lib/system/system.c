@@ -181,6 +181,8 @@ static int append(nevh_system *s, const nevh_term *from) {
 int nevh_system_add(nevh_system *s, const nevh_term *from) {
     if (nevh_system_status(s))
         return nevh_system_status(s);
+    if (!from)
+        return nevh__fail(&s->report, NEVH_EINVAL, "the term is NULL");
     nevh_term term = *from;
     if (!term.count)
         term.count = 1;
@@ -265,23 +267,29 @@ const char *nevh_system_message(const nevh_system *s) {
 }
 
 size_t nevh_system_dof(const nevh_system *s) {
-    return s->n;
+    return s ? s->n : 0;
 }
 
 size_t nevh_system_effect_count(const nevh_system *s) {
-    return s->n_effects;
+    return s ? s->n_effects : 0;
 }
 
 const char *nevh_system_effect_name(const nevh_system *s, size_t i) {
+    if (!s)
+        return "";
     return i < s->n_effects ? s->effects[i].name : NULL;
 }
 
 bool nevh_system_effect_on(const nevh_system *s, const char *name) {
+    if (!s)
+        return false;
     const nevh__effect *effect = effect_named(s, name);
     return effect && effect->on;
 }
 
 unsigned nevh_system_traits(const nevh_system *s) {
+    if (!s)
+        return 0;
     unsigned traits = NEVH_SEPARABLE | NEVH_AUTONOMOUS;
     for (size_t i = 0; i < s->n_terms; i++) {
         const nevh_term *term = &s->terms[i]->decl;

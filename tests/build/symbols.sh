@@ -39,6 +39,20 @@ for name in $(cat $work/declared); do
         status=1
     done
 done
+# Those that take an object are called with NULL in tests/robust/check_null.c; a
+# kernel is never called without its work.
+objects='energy|rates|field|probe|reference|state_error|stepper|scene|sections'
+objects="$objects|system|integrator|gradient|ensemble|sweep"
+for name in $(grep -E "^nevh_($objects)_" $work/declared); do
+    case $name in
+    nevh_*_named | nevh_system_from | nevh_scene_read* | nevh_scene_parse) ;;
+    nevh_system_new | nevh_energy_verdict) ;; # a report
+    *) grep -q "[ (]$name," "$srcdir/tests/robust/check_null.c" || {
+        echo "tests/robust/check_null.c does not call $name with NULL"
+        status=1
+    } ;;
+    esac
+done
 test $status = 0 || exit 1
 
 nm=${NM:-nm}
