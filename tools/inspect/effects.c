@@ -66,11 +66,11 @@ static void time_gradients(nevh_field *field, const plan *p, alone *a) {
     uint64_t before = nevh_field_counts(field).values;
     size_t count = 0;
     int status = 0;
-    clock_t start = clock();
+    double start = cpu_seconds();
     do {
         for (int i = 0; !status && i < 16; i++, count++)
             status = nevh_field_gradient(field, 1, &t, p->q, p->p, d, d + p->n);
-        spent = (double)(clock() - start) / CLOCKS_PER_SEC;
+        spent = cpu_seconds() - start;
     } while (!status && spent < time_enough);
     double values = (double)(nevh_field_counts(field).values - before);
     a->gradient = status ? NAN : spent / (double)count;

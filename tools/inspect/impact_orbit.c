@@ -70,9 +70,9 @@ static void measure(trace *o, nevh_stepper *s) {
     for (int i = 0; i < REPEATS && sum < time_enough; i++) {
         nevh_counts before = nevh_stepper_counts(s);
         nevh_stepper_reset(s);
-        clock_t start = clock();
+        double start = cpu_seconds();
         go(o, s, NULL);
-        double spent = (double)(clock() - start) / CLOCKS_PER_SEC;
+        double spent = cpu_seconds() - start;
         o->seconds = fmin(o->seconds, spent);
         sum += spent;
         o->work = (double)(nevh_stepper_counts(s).values - before.values);
