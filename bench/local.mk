@@ -8,6 +8,9 @@ EXTRA_PROGRAMS += bench/tape
 bench_tape_LDADD = libnevh_core.la
 EXTRA_PROGRAMS += bench/scenes
 bench_scenes_LDADD = libnevh.la
+EXTRA_PROGRAMS += bench/native
+bench_native_CFLAGS = $(AM_CFLAGS) -O3 -march=native
+bench_native_LDADD = libnevh.la
 # Instructions, which do not depend on load: COUNTS=FILE compares with an
 # earlier table, SCHEMES='NAME ...' counts those alone.
 EXTRA_PROGRAMS += bench/counts
@@ -28,7 +31,7 @@ bench_verdicts_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE
 bench_verdicts_LDADD = $(tools_nevh_OBJECTS:tools/nevh-nevh.o=) libnevh.la
 bench_verdicts_DEPENDENCIES = $(tools_nevh_OBJECTS) libnevh.la
 CLEANFILES += bench/gradient$(EXEEXT) bench/results-gradient.csv \
-	bench/tape$(EXEEXT) bench/scenes$(EXEEXT)
+	bench/tape$(EXEEXT) bench/scenes$(EXEEXT) bench/native$(EXEEXT)
 
 # nevh's peers are used where they are found, and never needed: a script tries.
 # bench/RESULTS.md is a copy of results-peers.md, from a machine at rest.

@@ -102,6 +102,8 @@ libnevh_core_la_SOURCES = \
 	lib/native/slope_text.c \
 	lib/native/prelude_text.c \
 	lib/native/splitting_text.c \
+	lib/native/runge_kutta_text.c \
+	lib/native/program_text.c \
 	lib/native/cache.c \
 	lib/native/build.c \
 	lib/native/native.c \

@@ -54,6 +54,7 @@ tools_nevh_SOURCES = \
 	tools/orbit/resume.c \
 	tools/orbit/trajectory.c \
 	tools/orbit/run.c \
+	tools/orbit/export.c \
 	tools/experiment/stability.c \
 	tools/search/remedy.c \
 	tools/inspect/trial_run.c \

@@ -32,6 +32,8 @@ static const struct {
     {sweep, FOR_SWEEP, "SCENE",
      "many orbits: a row for each member of the ensemble, with outcomes, as "
      "CSV or an array of NumPy (-o FILE.npy)"},
+    {export_scene, FOR_EXPORT, "SCENE",
+     "the steps of one integrator as a C program that needs nothing else"},
     {hard, FOR_HARD, "",
      "every integrator on cases that are hard to integrate"},
     {new_scene, FOR_NEW, "FILE", "makes a commented scene, FILE.nevh"},

@@ -93,10 +93,28 @@ NEVH_API int nevh_stepper_order(const nevh_stepper *);
             where friction is put around it; none in nevh_stepper_counts */
 NEVH_API double nevh_stepper_gain(const nevh_stepper *, size_t lane);
 
+/* The steps as a C program that needs nothing but the C library: it starts from
+   nevh_options.t, q and p, and prints t, q and p.  It gives the digits of a
+   stepper of differences that is portable, on a machine with the same libm.
+   names      of the coordinates, n
+   h, steps   as of nevh_run
+   every      steps between rows, at least 1
+   functions  the functions alone, for another program
+   returns    the text, to be freed with free; NULL when memory is out, or with a
+              status and message where the scheme or the system has no such text:
+              see nevh_stepper_native */
+typedef struct {
+    const char *const *names;
+    double h;
+    size_t steps, every;
+    bool functions;
+} nevh_program;
+NEVH_API char *nevh_stepper_program(nevh_stepper *, const nevh_program *);
+
 /* Whether steps run as native code: H and the scheme written as one C function,
    compiled and loaded when the stepper was made.  Only formulas of scenes do,
-   one orbit at a time, under splitting schemes, and where nobody asked for the
-   balance of the energy.
+   one orbit at a time, under splitting schemes and fixed steps of explicit
+   Runge-Kutta methods, and where nobody asked for the balance of the energy.
    why      out, may be NULL: what is in the way, if they were to ("there is no C
             compiler: ..."), else ""; the stepper's own, never NULL */
 NEVH_API bool nevh_stepper_native(const nevh_stepper *, const char **why);

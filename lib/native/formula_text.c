@@ -154,6 +154,8 @@ static void operand_name(nevh__writer *w, const nevh__formula_text *f,
                          char name[NEVH__NAME]) {
     if (o.kind == NEVH__SLOT)
         result_name(f, from, cosine, name);
+    else if (o.kind == NEVH__NUMBER && w->readable)
+        nevh__number_text(f->tape->numbers[o.at], name);
     else if (o.kind == NEVH__NUMBER)
         snprintf(name, NEVH__NAME, "N[%zu]", f->first_number + o.at);
     else
@@ -261,7 +263,7 @@ static void trace(const nevh__formula_text *f, reading *r, uint32_t i) {
 static void write_numbers(nevh__writer *w, nevh__formula_text *f) {
     const nevh__tape *tape = f->tape;
     size_t count = 0;
-    if (f->numbered)
+    if (f->numbered || w->readable)
         return;
     for (size_t i = 0; i <= tape->length; i++) {
         nevh__tape_operand a =
@@ -283,6 +285,7 @@ static bool write_forwards(nevh__writer *w, nevh__formula_text *f, reading *r,
                            char result[NEVH__NAME], double *most) {
     const nevh__tape *tape = f->tape;
     f->id = w->formulas++;
+    f->scalar |= w->readable;
     write_numbers(w, f);
     for (uint32_t i = 0; i < tape->length; i++) {
         const nevh__instruction *at = &tape->code[i];

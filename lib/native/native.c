@@ -25,15 +25,14 @@ void nevh__native_free(nevh__native *x) {
 }
 
 /* A kick takes dH/dq at the drifts' time, a drift dH/dp at the kicks'. */
-static bool fill(nevh__native *x, const nevh_work *w) {
+static bool fill_splitting(nevh__native *x, const nevh_work *w) {
     const nevh_splitting *table = w->integrator->table;
-    size_t count = nevh__splitting_operations(table), terms = w->field->n_terms;
+    size_t count = nevh__splitting_operations(table);
     double passed[2] = {0, 0};
+    x->weight_count = x->time_count = count;
     x->weights = nevh__array(count, sizeof *x->weights);
     x->times = nevh__array(count, sizeof *x->times);
-    x->kick_values = nevh__array(terms, sizeof *x->kick_values);
-    x->drift_values = nevh__array(terms, sizeof *x->drift_values);
-    if (!x->weights || !x->times || !x->kick_values || !x->drift_values)
+    if (!x->weights || !x->times)
         return false;
     nevh__splitting_expand(table, x->weights);
     for (size_t i = 0; i < count; i++) {
@@ -44,6 +43,64 @@ static bool fill(nevh__native *x, const nevh_work *w) {
     x->kicks_first = table->first == NEVH_KICK;
     x->kicks = (count + x->kicks_first) / 2;
     x->drifts = count - x->kicks;
+    return true;
+}
+
+/* The matrix, and the weights behind it. */
+static bool fill_runge_kutta(nevh__native *x, const nevh_work *w) {
+    const nevh_butcher *table = w->integrator->table;
+    size_t s = table->stages;
+    x->weight_count = s * s + s;
+    x->time_count = s;
+    x->weights = nevh__array(s * s + s, sizeof *x->weights);
+    x->times = nevh__array(s, sizeof *x->times);
+    if (!x->weights || !x->times)
+        return false;
+    memcpy(x->weights, table->a, s * s * sizeof *x->weights);
+    memcpy(x->weights + s * s, table->b, s * sizeof *x->weights);
+    memcpy(x->times, table->c, s * sizeof *x->times);
+    x->kicks = x->drifts = s - table->last_is_first;
+    return true;
+}
+
+static const struct {
+    const nevh_kernel *kernel;
+    bool (*write)(nevh__writer *, nevh_work *);
+    bool (*fill)(nevh__native *, const nevh_work *);
+} families[] = {
+    {&nevh_splitting_kernel, nevh__write_splitting, fill_splitting},
+    {&nevh_runge_kutta_kernel, nevh__write_runge_kutta, fill_runge_kutta}};
+enum { FAMILIES = sizeof families / sizeof *families };
+
+static size_t family_of(const nevh_work *w) {
+    size_t i = 0;
+    while (i < FAMILIES && families[i].kernel != w->integrator->kernel)
+        i++;
+    return i;
+}
+
+/* What is in the way; NULL: nothing that is known yet. */
+static const char *obstacle(const nevh_work *w) {
+    return family_of(w) == FAMILIES    ? "the scheme has none"
+           : w->accounts               ? "the balance of the energy is kept"
+           : w->width > 1              ? "orbits stand side by side"
+           : w->options->tolerance > 0 ? "steps adapt to a tolerance"
+           : w->friction               ? "there is friction"
+                                       : NULL;
+}
+
+bool nevh__native_write(nevh__writer *text, nevh_work *w) {
+    text->refusal = obstacle(w);
+    return !text->refusal && families[family_of(w)].write(text, w);
+}
+
+bool nevh__native_fill(nevh__native *x, const nevh_work *w) {
+    size_t terms = w->field->n_terms;
+    x->kick_values = nevh__array(terms, sizeof *x->kick_values);
+    x->drift_values = nevh__array(terms, sizeof *x->drift_values);
+    if (!x->kick_values || !x->drift_values ||
+        !families[family_of(w)].fill(x, w))
+        return false;
     nevh__slope_values(w->field, true, x->kick_values);
     nevh__slope_values(w->field, false, x->drift_values);
     return true;
@@ -65,9 +122,10 @@ static double seconds_foreseen(const nevh_work *w) {
 
 static bool plan(nevh_work *w, nevh__native *x, nevh__writer *text,
                  bool compile, char why[NEVH__WHY_NATIVE]) {
-    if (!nevh__write_splitting(text, w) && text->refusal)
+    nevh__write_prelude(text);
+    if (!nevh__native_write(text, w) && text->refusal)
         snprintf(why, NEVH__WHY_NATIVE, "%s", text->refusal);
-    if (text->refusal || text->failed || !fill(x, w))
+    if (text->refusal || text->failed || !nevh__native_fill(x, w))
         return false;
     x->library =
         nevh__native_load(text->text, w->options->native_cache, compile, why);
@@ -87,13 +145,9 @@ void nevh__native_plan(nevh_work *w, char why[NEVH__WHY_NATIVE]) {
     why[0] = '\0';
     if (o->native == NEVH_NATIVE_NEVER || (!always && seconds < loading_pays))
         return;
-    if (w->integrator->kernel != &nevh_splitting_kernel || w->width > 1 ||
-        w->accounts) {
+    if (obstacle(w)) {
         if (always)
-            snprintf(why, NEVH__WHY_NATIVE, "%s",
-                     w->accounts    ? "the balance of the energy is kept"
-                     : w->width > 1 ? "orbits stand side by side"
-                                    : "the scheme has none");
+            snprintf(why, NEVH__WHY_NATIVE, "%s", obstacle(w));
         return;
     }
     nevh__native *x = nevh__array(1, sizeof *x);

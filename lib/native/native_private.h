@@ -10,6 +10,7 @@
 
 #include "native/writer_private.h"
 #include <nevh/extend.h>
+#include <nevh/run.h>
 
 typedef size_t (*nevh__native_steps)(const double numbers[],
                                      const double weights[],
@@ -24,13 +25,22 @@ typedef struct nevh__native {
     void *library;
     nevh__native_steps steps;
     double *numbers, *weights, *times;
+    size_t weight_count, time_count;
     size_t kicks, drifts; /* of a step */
     bool keeps, kicks_first;
     uint64_t *kick_values, *drift_values; /* n_terms each, of one of them */
 } nevh__native;
 
-/* Text of steps of a splitting. */
+/* Text of steps, and of the slopes before them: of a splitting, and of an
+   explicit Runge-Kutta method. */
 bool nevh__write_splitting(nevh__writer *, nevh_work *);
+bool nevh__write_runge_kutta(nevh__writer *, nevh_work *);
+/* Text of steps, if the scheme has one; else false, and w->refusal. */
+bool nevh__native_write(nevh__writer *, nevh_work *);
+/* What steps are handed, but for numbers; false when memory is out. */
+bool nevh__native_fill(nevh__native *, const nevh_work *);
+/* A program, or functions, that take the steps; false: as above. */
+bool nevh__write_program(nevh__writer *, nevh_work *, const nevh_program *);
 
 /* Makes w->native if that is wanted, possible and worth while; `why`: else what
    is in the way, or "". */

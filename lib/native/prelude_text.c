@@ -23,6 +23,7 @@ int nevh__vector_lanes(void) {
 static const char basis[] =
     "typedef __SIZE_TYPE__ size;\n"
     "#define INLINE static inline __attribute__((always_inline, unused))\n"
+    "#define SLOPE INLINE\n"
     "#define CONST __attribute__((const))\n"
     "typedef double wide __attribute__((vector_size(64), aligned(8)));\n"
     "#define ALL(x) ((wide){x, x, x, x, x, x, x, x})\n"
@@ -39,7 +40,7 @@ static const char basis[] =
     "extern double fmod(double, double) CONST;\n"
     "INLINE double nevh_mod(double x, double y) { double rest = fmod(x, y); "
     "return rest != 0 && (rest < 0) != (y < 0) ? rest + y : rest; }\n"
-    "INLINE double nevh_lost(double sum, double a, double b) { double part = "
+    "INLINE double nevh_roundoff(double sum, double a, double b) { double part = "
     "sum - a; return (a - (sum - part)) + (b - part); }\n"
     "extern double fabs(double) CONST, floor(double) CONST, rint(double) "
     "CONST;\n"

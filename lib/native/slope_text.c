@@ -5,6 +5,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "native/writer_private.h"
 #include "expression/tape_inside_private.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -64,7 +65,6 @@ static void name_at_state(nevh__writer *w, const nevh__formula_text *f,
                           char name[NEVH__NAME]) {
     const sum *s = f->data;
     const nevh_term *is = &s->term->term->decl;
-    (void)w;
     switch (kind) {
     case NEVH__T:
         snprintf(name, NEVH__NAME, "t");
@@ -76,6 +76,10 @@ static void name_at_state(nevh__writer *w, const nevh__formula_text *f,
         snprintf(name, NEVH__NAME, "p[%zu]", is->p[f->instance * is->np + k]);
         break;
     default:
+        if (w->readable) {
+            nevh__number_text(is->c[f->instance * is->nc + k], name);
+            break;
+        }
         snprintf(name, NEVH__NAME, "N[%zu]",
                  s->constants + f->instance * is->nc + k);
     }
@@ -262,10 +266,11 @@ static bool write_points(nevh__writer *w, stencil *x) {
         const point *at = &x->points[x->at];
         char result[NEVH__NAME];
         x->block = w->formulas;
-        nevh__write(w, "    double x%u = %s[%zu] + N[%zu];\n", x->block,
+        char shift[NEVH__NAME];
+        nevh__write_number(w, at->shift, shift);
+        nevh__write(w, "    double x%u = %s[%zu] + %s;\n", x->block,
                     at->k < x->s->term->nq ? "q" : "p",
-                    nevh__index(x->s->term, at->instance, at->k), w->count);
-        nevh__writer_append(w, at->shift);
+                    nevh__index(x->s->term, at->instance, at->k), shift);
         if (!nevh__write_value(w, &f, result))
             return false;
         nevh__write(w, "    double h%u = %s;\n", x->block, result);
@@ -292,8 +297,9 @@ static void write_slopes(nevh__writer *w, sum *s, const stencil *x,
         nevh__write(w, "    double %s = ", name);
         for (size_t j = 0; j < one->method->offsets; j++) {
             size_t plus = one->first + 2 * j, minus = plus + 1;
-            nevh__write(w, "%sN[%zu] * ((", j ? " + " : "", w->count);
-            nevh__writer_append(w, one->method->weights[j]);
+            char weight[NEVH__NAME];
+            nevh__write_number(w, one->method->weights[j], weight);
+            nevh__write(w, "%s%s * ((", j ? " + " : "", weight);
             write_point(w, "h", first, plus, wide, one->k);
             nevh__write(w, " - ");
             write_point(w, "h", first, minus, wide, one->k);
@@ -313,7 +319,7 @@ static bool write_central(sum *s) {
     stencil x = {.s = s};
     x.points = nevh__array(slopes * 2 * s->f->gradient->offsets, sizeof(point));
     x.slopes = nevh__array(slopes, sizeof(slope));
-    bool fine = x.points && x.slopes, wide = !s->f->portable;
+    bool fine = x.points && x.slopes, wide = !s->f->portable && !s->w->readable;
     unsigned first = s->w->formulas;
     if (fine) {
         list_points(s, &x);
@@ -356,8 +362,10 @@ static bool is_tape(const nevh_term *is) {
     return is->gradient == nevh__tape_block_gradient;
 }
 
-/* Whether all terms are formulas, and not too much text. */
-static bool fits(nevh__writer *w, const nevh_field *f, bool kick) {
+/* How long the text of one half is, in operations; INFINITY: there is none, and
+   why. */
+static double half_operations(const nevh_field *f, bool kick, bool wide,
+                              const char **why) {
     double operations = 0;
     for (size_t i = 0; i < f->n_terms; i++) {
         const nevh__planned *term = &f->terms[i];
@@ -365,19 +373,31 @@ static bool fits(nevh__writer *w, const nevh_field *f, bool kick) {
         if (!is_wanted(term, kick))
             continue;
         if (!is_tape(is)) {
-            w->refusal = "a term is no formula";
-            return false;
+            *why = "a term is no formula";
+            return INFINITY;
         }
         double times = (double)is->count;
-        if (f->gradient != nevh_exact) {
-            times = (double)points_of(f, term, kick);
-            times /= f->gradient->offsets && !f->portable ? LANES : 1;
-        }
+        if (f->gradient != nevh_exact)
+            times = (double)points_of(f, term, kick) /
+                    (f->gradient->offsets && wide ? LANES : 1);
         operations += times * (double)nevh__tape_length(is->params);
     }
-    if (operations > MOST_OPERATIONS)
+    return operations;
+}
+
+double nevh__slope_operations(const nevh_field *f) {
+    const char *why;
+    return half_operations(f, true, !f->portable, &why) +
+           half_operations(f, false, !f->portable, &why);
+}
+
+static bool fits(nevh__writer *w, const nevh_field *f, bool kick) {
+    bool wide = !f->portable && !w->readable;
+    double most = w->readable ? 10 * MOST_OPERATIONS : MOST_OPERATIONS;
+    double operations = half_operations(f, kick, wide, &w->refusal);
+    if (operations > most && !w->refusal)
         w->refusal = "its formulas are too long";
-    return operations <= MOST_OPERATIONS;
+    return !w->refusal;
 }
 
 static void write_sums(const sum *s) {
@@ -398,16 +418,19 @@ bool nevh__write_slope(nevh__writer *w, nevh_field *f, bool kick,
     sum s = {.w = w, .f = f, .kick = kick};
     bool fine = fits(w, f, kick);
     nevh__write(w,
-                "INLINE double %s(const double *N, double t, const double *q, "
-                "const double *p, double *slope) {\n    double bad = 0;\n",
-                name);
+                "%s double %s(%sdouble t, const double *q, const double *p, "
+                "double *slope) {\n    double bad = 0;\n",
+                w->readable ? "static" : "SLOPE", name,
+                w->readable ? "" : "const double *N, ");
+    if (w->readable)
+        nevh__write(w, "    (void)t, (void)q, (void)p;\n");
     for (size_t i = 0; fine && i < f->n_terms; i++) {
         s.term = &f->terms[i];
         const nevh_term *is = &s.term->term->decl;
         if (!is_wanted(s.term, kick))
             continue;
         s.constants = w->count;
-        for (size_t k = 0; k < is->count * is->nc; k++)
+        for (size_t k = 0; k < is->count * is->nc && !w->readable; k++)
             nevh__writer_append(w, is->c[k]);
         fine = f->gradient == nevh_exact ? write_exact(&s)
                : f->gradient->offsets    ? write_central(&s)

@@ -14,8 +14,9 @@ static void write_operation(nevh__writer *w, size_t n, const char *at,
     if (kept)
         nevh__write_each(w, n, "slope[$] = kept[$];");
     else
-        nevh__write(w, "    bad += %s(N, t + T[%s] * h, yq, yp, slope);\n",
-                    kick ? "kick_slope" : "drift_slope", at);
+        nevh__write(w, "    bad += %s(%st + T[%s] * h, yq, yp, slope);\n",
+                    kick ? "kick_slope" : "drift_slope",
+                    w->readable ? "" : "N, ", at);
     nevh__write(w, "    { double step = %s(W[%s] * h);\n", kick ? "-" : "", at);
     nevh__write_each(w, n,
                      kick ? "dp[$] += step * slope[$]; yp[$] = p[$] + (dp[$] + "
@@ -30,26 +31,16 @@ static void write_operations(nevh__writer *w, size_t n, bool keeps,
                              bool kicks_first) {
     if (keeps)
         write_operation(w, n, "0", kicks_first, true);
-    nevh__write(w, "    for (size i = %d; i + 1 < operations; i += 2) {\n",
-                keeps);
+    nevh__write(w, "    for (%s i = %d; i + 1 < operations; i += 2) {\n",
+                w->readable ? "size_t" : "size", keeps);
     write_operation(w, n, "i", kicks_first != keeps, false);
     write_operation(w, n, "i + 1", kicks_first == keeps, false);
     nevh__write(w, "    }\n");
 }
 
-static void write_load(nevh__writer *w, size_t n, bool keeps) {
-    static const char *const arrays[] = {"q",  "p",  "lost_q", "lost_p", "dq",
-                                         "dp", "yq", "yp",     "slope"};
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
-        nevh__write(w, "    double %s[%zu];\n", arrays[i], n);
-    nevh__write_each(w, n, "q[$] = Q[$]; p[$] = P[$];");
-    nevh__write(w, "    double *Mp = M + %zu, *Mk = Mp + %zu;\n", n, n);
-    nevh__write_each(w, n, "lost_q[$] = M[$]; lost_p[$] = Mp[$];");
-    if (keeps) {
-        nevh__write(w, "    double kept[%zu];\n", n);
-        nevh__write_each(w, n, "kept[$] = Mk[$];");
-    } else
-        nevh__write(w, "    (void)Mk;\n");
+static void write_kept(nevh__writer *w, size_t n) {
+    nevh__write(w, "    double kept[%zu];\n    double *Mk = Mp + %zu;\n", n, n);
+    nevh__write_each(w, n, "kept[$] = Mk[$];");
 }
 
 static void write_begin(nevh__writer *w, size_t n) {
@@ -65,8 +56,10 @@ static void write_first_slope(nevh__writer *w, size_t n) {
                 "(double)from * h;\n",
                 n);
     write_begin(w, n);
-    nevh__write(w, "    if (first_slope(N, t + T[0] * h, yq, yp, kept) != 0) "
-                   "return 0;\n    }\n");
+    nevh__write(w,
+                "    if (first_slope(%st + T[0] * h, yq, yp, kept) != 0) "
+                "return 0;\n    }\n",
+                w->readable ? "" : "N, ");
 }
 
 static void write_commit(nevh__writer *w, size_t n, bool keeps) {
@@ -75,7 +68,7 @@ static void write_commit(nevh__writer *w, size_t n, bool keeps) {
     nevh__write_each(
         w, n,
         "{ double d = dq[$] + lost_q[$], e = dp[$] + lost_p[$]; lost_q[$] = "
-        "nevh_lost(yq[$], q[$], d); lost_p[$] = nevh_lost(yp[$], p[$], e); "
+        "nevh_roundoff(yq[$], q[$], d); lost_p[$] = nevh_roundoff(yp[$], p[$], e); "
         "q[$] = yq[$]; p[$] = yp[$]; }");
     if (keeps)
         nevh__write_each(w, n, "kept[$] = slope[$];");
@@ -93,20 +86,19 @@ static void write_store(nevh__writer *w, size_t n, bool keeps) {
 
 static void write_steps(nevh__writer *w, size_t n, bool keeps,
                         bool kicks_first) {
-    nevh__write(w,
-                "static __attribute__((noinline, unused)) double "
-                "first_slope(const double *N, double t, const double *q, "
-                "const double *p, double *slope) { return %s(N, t, q, p, "
-                "slope); }\n",
-                kicks_first ? "kick_slope" : "drift_slope");
-    nevh__write(
-        w,
-        "size nevh_native_steps(const double *restrict N, const "
-        "double *restrict W, const double *restrict T, size operations, double t0, "
-        "double h, size from, size steps, double *restrict Q, "
-        "double *restrict P, double *restrict M) {\n"
-        "    size done = 0;\n");
-    write_load(w, n, keeps);
+    if (keeps)
+        nevh__write(w,
+                    "%s double first_slope(%sdouble t, const double *q, const "
+                    "double *p, double *slope) {\n    return %s(%st, q, p, "
+                    "slope);\n}\n",
+                    w->readable ? "static" : "static __attribute__((noinline))",
+                    w->readable ? "" : "const double *N, ",
+                    kicks_first ? "kick_slope" : "drift_slope",
+                    w->readable ? "" : "N, ");
+    nevh__write_head(w, n);
+    nevh__write(w, "    double slope[%zu];\n", n);
+    if (keeps)
+        write_kept(w, n);
     if (keeps)
         write_first_slope(w, n);
     nevh__write(w, "    for (; done < steps; done++) {\n    double t = t0 + "
@@ -122,10 +114,31 @@ static void write_steps(nevh__writer *w, size_t n, bool keeps,
 bool nevh__write_splitting(nevh__writer *w, nevh_work *work) {
     const nevh_splitting *table = work->integrator->table;
     size_t count = nevh__splitting_operations(table);
-    nevh__write_prelude(w);
     if (!nevh__write_slope(w, work->field, true, "kick_slope") ||
         !nevh__write_slope(w, work->field, false, "drift_slope"))
         return false;
     write_steps(w, work->n, count % 2 == 1, table->first == NEVH_KICK);
     return true;
+}
+
+void nevh__write_head(nevh__writer *w, size_t n) {
+    static const char *const arrays[] = {"q",  "p",  "lost_q", "lost_p",
+                                         "dq", "dp", "yq",     "yp"};
+    if (w->readable)
+        nevh__write(w,
+                    "static size_t advance(double t0, double h, size_t from, "
+                    "size_t steps, double *Q, double *P, double *M) {\n"
+                    "    size_t done = 0;\n");
+    else
+        nevh__write(w,
+                    "size nevh_native_steps(const double *restrict N, const "
+                    "double *restrict W, const double *restrict T, size "
+                    "operations, double t0, double h, size from, size steps, "
+                    "double *restrict Q, double *restrict P, double *restrict "
+                    "M) {\n    size done = 0;\n");
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
+        nevh__write(w, "    double %s[%zu];\n", arrays[i], n);
+    nevh__write(w, "    double *Mp = M + %zu;\n", n);
+    nevh__write_each(
+        w, n, "q[$] = Q[$]; p[$] = P[$]; lost_q[$] = M[$]; lost_p[$] = Mp[$];");
 }

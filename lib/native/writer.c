@@ -1,6 +1,7 @@
 /* nevh: C text in the making.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "native/writer_private.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -52,7 +53,24 @@ void nevh__writer_append(nevh__writer *w, double x) {
     w->numbers[w->count++] = x;
 }
 
+void nevh__number_text(double x, char name[NEVH__NAME]) {
+    double found = NAN;
+    /* As few digits as give it back. */
+    for (int digits = 15; found != x && digits <= 17; digits++) {
+        snprintf(name, NEVH__NAME, signbit(x) ? "(%.*g" : "%.*g", digits, x);
+        found = strtod(name + (name[0] == '('), NULL);
+    }
+    if (!strpbrk(name, ".en"))
+        strcat(name, ".0");
+    if (name[0] == '(')
+        strcat(name, ")");
+}
+
 void nevh__write_number(nevh__writer *w, double x, char name[NEVH__NAME]) {
+    if (w->readable) {
+        nevh__number_text(x, name);
+        return;
+    }
     snprintf(name, NEVH__NAME, "N[%zu]", w->count);
     nevh__writer_append(w, x);
 }
@@ -61,7 +79,8 @@ void nevh__write_each(nevh__writer *w, size_t n, const char *line) {
     bool apart = n <= NEVH__MOST_APART;
     for (size_t k = 0; k < (apart ? n : 1); k++) {
         if (!apart)
-            nevh__write(w, "    for (size k = 0; k < %zu; k++) {\n", n);
+            nevh__write(w, "    for (%s k = 0; k < %zu; k++) {\n",
+                        w->readable ? "size_t" : "size", n);
         nevh__write(w, "    ");
         for (const char *c = line; *c; c++)
             if (*c != '$')

@@ -18,6 +18,7 @@ typedef struct {
     double *numbers;
     size_t count, number_room;
     unsigned formulas;   /* written so far: names of each are its own */
+    bool readable;       /* numbers stand in the text, functions are libm's */
     bool failed;         /* memory is out */
     const char *refusal; /* why there is no text; NULL: there is */
 } nevh__writer;
@@ -27,6 +28,8 @@ void nevh__write(nevh__writer *, const char *format, ...)
 void nevh__writer_free(nevh__writer *);
 /* What a number is called. */
 void nevh__write_number(nevh__writer *, double, char name[NEVH__NAME]);
+/* A number as C has it. */
+void nevh__number_text(double, char name[NEVH__NAME]);
 /* A number that follows the last one, whatever it is: the place of the first of
    so many is the count before. */
 void nevh__writer_append(nevh__writer *, double);
@@ -72,12 +75,17 @@ void nevh__derivative_name(const nevh__formula_text *, nevh__variable, size_t k,
 /* What formulas need before them. */
 void nevh__write_prelude(nevh__writer *);
 
+/* The beginning of the function that takes steps: state and memory. */
+void nevh__write_head(nevh__writer *, size_t n);
+
 /* double slope of H: a function
-       INLINE double NAME(const double *N, double t, const double *q,
-                          const double *p, double *slope)
+       SLOPE double NAME(const double *N, double t, const double *q,
+                         const double *p, double *slope)
    that writes n numbers, and returns something that is 0 if all is well. */
 bool nevh__write_slope(nevh__writer *, nevh_field *, bool kick,
                        const char *name);
+/* Operations in the text of both halves. */
+double nevh__slope_operations(const nevh_field *);
 /* Values of each term that a slope takes, to values[]; 0 where it is exact. */
 void nevh__slope_values(const nevh_field *, bool kick, uint64_t values[]);
 

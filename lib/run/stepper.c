@@ -311,8 +311,28 @@ nevh_field *nevh_stepper_field(nevh_stepper *s) {
 
 bool nevh_stepper_native(const nevh_stepper *s, const char **why) {
     if (why)
-        *why = s->why_native;
-    return s->work.native;
+        *why = s ? s->why_native : "out of memory";
+    return s && s->work.native;
+}
+
+char *nevh_stepper_program(nevh_stepper *s, const nevh_program *as) {
+    nevh__writer text = {0};
+    if (!s || !s->planned || !as)
+        return NULL;
+    if (!s->options.q || !s->options.p || !as->every) {
+        nevh__fail(&s->report, NEVH_EINVAL,
+                   "a program needs a state to start from, and rows");
+        return NULL;
+    }
+    if (nevh__write_program(&text, &s->work, as)) {
+        free(text.numbers);
+        return text.text;
+    }
+    nevh__fail(&s->report, text.refusal ? NEVH_ESTRUCT : NEVH_ENOMEM,
+               "there is no program of such steps: %s",
+               text.refusal ? text.refusal : "out of memory");
+    nevh__writer_free(&text);
+    return NULL;
 }
 
 double nevh_stepper_time(const nevh_stepper *s) {

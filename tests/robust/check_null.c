@@ -115,6 +115,8 @@ static nevh_separability separability;
     X(STATUS, nevh_stepper_load, (NULL, out, 0))                               \
     X(NUMBER, nevh_stepper_order, (NULL))                                      \
     X(REAL, nevh_stepper_gain, (NULL, 0))                                      \
+    X(ANY, nevh_stepper_native, (NULL, NULL))                                  \
+    X(POINTER, nevh_stepper_program, (NULL, NULL))                             \
     X(ANY, nevh_stepper_counts, (NULL))                                        \
     X(POINTER, nevh_stepper_field, (NULL))                                     \
     X(STATUS, nevh_run, (NULL, 0.1, 0.1, 1, out, out, NULL, 0))                \

@@ -378,6 +378,12 @@ int read_native(options *o, const char *argument) {
     return status;
 }
 
+int read_header(options *o, const char *argument) {
+    (void)argument;
+    o->header = true;
+    return TOOL_OK;
+}
+
 int read_no_cache(options *o, const char *argument) {
     (void)argument;
     o->no_cache = true;

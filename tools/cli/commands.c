@@ -12,6 +12,7 @@ static const struct {
     {FOR_EFFECTS, "effects"},     {FOR_SECTION, "section"},
     {FOR_HARD, "hard"},           {FOR_NEW, "new"},
     {FOR_LIST, "list"},           {FOR_SWEEP, "sweep"},
+    {FOR_EXPORT, "export"},
 };
 
 const char *command_name(unsigned bit) {

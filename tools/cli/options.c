@@ -8,10 +8,10 @@
 
 enum {
     OF_COST = FOR_COST | FOR_GRADIENTS | FOR_RECOMMEND,
-    OF_SCENES = FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_RUN | FOR_SECTION |
-                FOR_SWEEP | OF_COST,
+    OF_SCENES = FOR_EXPORT | FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_RUN |
+                FOR_SECTION | FOR_SWEEP | OF_COST,
     OF_NATIVE = FOR_COMPARE | FOR_RUN | FOR_COST | FOR_RECOMMEND,
-    OF_TABLES = OF_SCENES | FOR_LIST | FOR_HARD,
+    OF_TABLES = (OF_SCENES & ~FOR_EXPORT) | FOR_LIST | FOR_HARD,
     OF_PLOTS = FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_COST | FOR_GRADIENTS
 };
 
@@ -55,7 +55,8 @@ static const struct {
      "the largest that the observable may have"},
     {"repeat", "N", FOR_COMPARE | FOR_COST | FOR_RECOMMEND, read_repeat,
      "timed runs, of which the median counts"},
-    {"every", "K", FOR_RUN, read_every, "a row each K steps, and at the end"},
+    {"every", "K", FOR_RUN | FOR_EXPORT, read_every,
+     "a row each K steps, and at the end"},
     {"samples", "N", FOR_RUN, read_samples,
      "N rows at equal times, the first and the last included"},
     {"at", "T1,T2", FOR_RUN, read_at, "rows at these times alone"},
@@ -106,6 +107,8 @@ static const struct {
      "                            observables, energy, energy_error"},
     {"keep-plot-script", "FILE", OF_PLOTS, read_plot_script,
      "write what gnuplot is told, data included"},
+    {"header", NULL, FOR_EXPORT, read_header,
+     "functions for another program, instead of a program"},
     {"section", "A,B", FOR_SECTION, read_section, "these alone, by name"},
     {"from", "SCENE", FOR_NEW, read_from, "the scene to begin with"},
     {"allow-code", NULL, OF_SCENES | FOR_NEW, read_allow_code,
@@ -117,7 +120,7 @@ static const struct {
      "integrators. hard: each run"},
     {"format", "table|csv|json", OF_TABLES, read_format,
      "csv for run, section and sweep, table for others, if not given"},
-    {"output", "FILE", OF_TABLES, read_file,
+    {"output", "FILE", OF_TABLES | FOR_EXPORT, read_file,
      "write to FILE, when all of it is there; nevh run: as it goes"},
     {"quiet", NULL, OF_TABLES | FOR_NEW, read_quiet,
      "the table alone: no # lines, no words, no progress"},

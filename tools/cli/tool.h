@@ -126,7 +126,8 @@ enum {
     FOR_SECTION = 512,
     FOR_HARD = 1024,
     FOR_SWEEP = 2048,
-    FOR_LAST = FOR_SWEEP
+    FOR_EXPORT = 4096,
+    FOR_LAST = FOR_EXPORT
 };
 
 const char *command_name(unsigned bit);
@@ -163,7 +164,7 @@ typedef struct {
     bool formatted;      /* --format was given */
     bool quiet, portable, all, by_state, diagnostics, impact, allow_code;
     nevh_native_use native;
-    bool native_given, no_cache;
+    bool native_given, no_cache, header;
     bool help, version;
     unsigned long long used; /* a bit an option */
 } options;
@@ -226,7 +227,8 @@ void scenes_installed(list *names, list *files);
 char *scene_file(const char *beside, const char *name);
 
 typedef int command(const options *);
-command compare, list_command, check, effects, run_scene, section, new_scene;
+command compare, list_command, check, effects, run_scene, export_scene, section,
+    new_scene;
 command cost, recommend, gradients, hard, sweep;
 
 #endif

@@ -1,0 +1,165 @@
+/* nevh: compiled steps of scenes against loops written by hand.
+
+   The loops have formulas, gradient and scheme inlined by the compiler, -O3
+   -march=native, without compensated sums.  Runs are interleaved; medians.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include <math.h>
+#include <nevh/nevh.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { ROUNDS = 9, STEPS = 100000, DOF = 2 };
+
+static double seconds(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+typedef struct {
+    double w[64];
+    size_t count;
+} scheme;
+
+static inline void pendulum_force(const double q[], double f[]) {
+    f[0] = 9.8 * sin(q[0]);
+}
+static inline void kepler_force(const double q[], double f[]) {
+    double r2 = q[0] * q[0] + q[1] * q[1], r3 = r2 * sqrt(r2);
+    f[0] = q[0] / r3;
+    f[1] = q[1] / r3;
+}
+static inline void henon_force(const double q[], double f[]) {
+    f[0] = q[0] + 2 * q[0] * q[1];
+    f[1] = q[1] + q[0] * q[0] - q[1] * q[1];
+}
+
+/* Kick first; the last kick's force is the next step's first. */
+#define LOOP(name, n, force)                                                   \
+    static void name(const scheme *s, double h, size_t steps, double q[],      \
+                     double p[]) {                                             \
+        double x[n], v[n], f[n];                                               \
+        for (int k = 0; k < (n); k++)                                          \
+            x[k] = q[k], v[k] = p[k];                                          \
+        force(x, f);                                                           \
+        for (size_t i = 0; i < steps; i++) {                                   \
+            for (int k = 0; k < (n); k++)                                      \
+                v[k] -= s->w[0] * h * f[k];                                    \
+            for (size_t j = 1; j + 1 < s->count; j += 2) {                     \
+                for (int k = 0; k < (n); k++)                                  \
+                    x[k] += s->w[j] * h * v[k];                                \
+                force(x, f);                                                   \
+                for (int k = 0; k < (n); k++)                                  \
+                    v[k] -= s->w[j + 1] * h * f[k];                            \
+            }                                                                  \
+        }                                                                      \
+        for (int k = 0; k < (n); k++)                                          \
+            q[k] = x[k], p[k] = v[k];                                          \
+    }
+LOOP(pendulum_loop, 1, pendulum_force)
+LOOP(kepler_loop, 2, kepler_force)
+LOOP(henon_loop, 2, henon_force)
+
+static const scheme verlet = {{0.5, 1, 0.5}, 3};
+/* As many stages as rkn11b has; what they weigh does not change the time. */
+static scheme eleven(void) {
+    scheme s = {.count = 23};
+    for (size_t i = 0; i < 23; i++)
+        s.w[i] = i % 2 ? 1.0 / 11 : i == 0 || i == 22 ? 1.0 / 22 : 1.0 / 11;
+    return s;
+}
+
+typedef void loop(const scheme *, double, size_t, double[], double[]);
+typedef struct {
+    const char *name, *text;
+    loop *by_hand;
+    double h;
+} subject;
+static const subject subjects[] = {
+    {"pendulum",
+     "[coordinates]\nphi = 2\n[effects]\nT = p_phi^2/2\nV = -9.8*cos(phi)\n",
+     pendulum_loop, 0.01},
+    {"kepler",
+     "[coordinates]\nx = 0.4, 0\ny = 0, 2\n[effects]\n"
+     "T = (p_x^2 + p_y^2)/2\nV = -1/sqrt(x^2 + y^2)\n",
+     kepler_loop, 0.01},
+    {"henon-heiles",
+     "[coordinates]\nx = 0, 0.3\ny = 0.1, 0\n[effects]\n"
+     "T = (p_x^2 + p_y^2)/2\nV = (x^2 + y^2)/2 + x^2*y - y^3/3\n",
+     henon_loop, 0.01}};
+
+static int by_size(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(double x[]) {
+    qsort(x, ROUNDS, sizeof *x, by_size);
+    return x[ROUNDS / 2];
+}
+
+typedef struct {
+    nevh_stepper *s;
+    double q[DOF], p[DOF], time[ROUNDS];
+} run;
+
+static void begin(run *r, nevh_scene *scene, const char *integrator,
+                  const char *gradient, nevh_native_use use) {
+    nevh_scene_start(scene, r->q, r->p);
+    nevh_options o = {.gradient = nevh_gradient_named(gradient),
+                      .q = r->q,
+                      .p = r->p,
+                      .native = use};
+    r->s = nevh_stepper_new(nevh_scene_system(scene),
+                            nevh_integrator_named(integrator), &o);
+}
+
+static void compare(const subject *x, const char *name, const scheme *hand) {
+    static const char *const gradients[] = {"exact", "central2", "central4",
+                                            "complex-step"};
+    nevh_scene *scene = nevh_scene_parse(x->name, x->text);
+    run tape, native[4];
+    double q[DOF], p[DOF], time[ROUNDS];
+    nevh_scene_start(scene, q, p);
+    begin(&tape, scene, name, "exact", NEVH_NATIVE_NEVER);
+    for (int g = 0; g < 4; g++)
+        begin(&native[g], scene, name, gradients[g], NEVH_NATIVE_ALWAYS);
+    for (int i = 0; i < ROUNDS; i++) {
+        double t = seconds();
+        x->by_hand(hand, x->h, STEPS, q, p);
+        time[i] = seconds() - t;
+        for (int g = 0; g < 5; g++) {
+            run *r = g < 4 ? &native[g] : &tape;
+            t = seconds();
+            nevh_run(r->s, 0, x->h, STEPS, r->q, r->p, NULL, 0);
+            r->time[i] = seconds() - t;
+        }
+    }
+    double own = median(time), unit = 1e9 / STEPS;
+    printf("%s,%s,%.1f,%.1f", x->name, name, own * unit,
+           median(tape.time) * unit);
+    for (int g = 0; g < 4; g++)
+        printf(",%.1f", median(native[g].time) * unit);
+    double exact = median(native[0].time);
+    printf(",%.2f,%.2f,%.2f,%s\n", exact / own, median(native[1].time) / exact,
+           median(native[2].time) / exact,
+           nevh_stepper_native(native[0].s, NULL) ? "yes" : "no");
+    for (int g = 0; g < 4; g++)
+        nevh_stepper_free(native[g].s);
+    nevh_stepper_free(tape.s);
+    nevh_scene_free(scene);
+}
+
+int main(void) {
+    scheme long_one = eleven();
+    puts(
+        "system,integrator,by_hand_ns,tape_ns,exact_ns,central2_ns,central4_ns,"
+        "complex_ns,exact/by_hand,central2/exact,central4/exact,native");
+    for (size_t i = 0; i < sizeof subjects / sizeof *subjects; i++) {
+        compare(&subjects[i], "verlet", &verlet);
+        compare(&subjects[i], "rkn11b", &long_one);
+    }
+    return 0;
+}

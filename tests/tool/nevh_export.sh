@@ -1,0 +1,64 @@
+#!/bin/sh
+# Programs that nevh export writes: they compile without a warning, need nothing
+# else, and print the digits of nevh run --portable.
+
+. "${srcdir:-.}/tests/support/nevh_support.sh"
+
+# same SCENE N INTEGRATOR GRADIENT DT T_END EVERY: the columns of N coordinates
+# and momenta.
+same() {
+    scene=$1 last=$((1 + 2 * $2)) rows=$7
+    set -- "$scene" --integrators $3 --gradient $4 --dt $5 --t-end $6 --every $7
+    exits 0 export "$@" -o $work/prog.c
+    test $status = 0 || return
+    ${CC:-cc} -std=c11 -O2 -Wall -Wextra -Werror -ffp-contract=off \
+        -o $work/prog $work/prog.c -lm 2>$work/err ||
+        { fails 'does not compile'; cat $work/err; return; }
+    $work/prog | cut -d, -f 2-$last >$work/prog.csv
+    exits 0 run "$@" --portable --quiet --native never
+    cut -d, -f 2-$last $work/out | cmp -s - $work/prog.csv || {
+        fails 'prints other digits than nevh run'
+        cut -d, -f 2-$last $work/out | diff - $work/prog.csv | head -n 6
+    }
+    test "$(wc -l <$work/prog.csv)" -gt 5 || fails 'prints no rows'
+}
+
+exits 0 export pendulum
+has '^#include <math\.h>'
+lacks 'nevh/'
+if ${CC:-cc} --version >/dev/null 2>&1; then
+    same pendulum 1 verlet central4 0.1 30 7
+    same pendulum 1 forest-ruth complex-step 0.05 10 10
+    same kepler 2 rkn11b exact 0.05 20 40
+    same double-pendulum 2 rk4 central4 0.01 2 20
+    same henon-heiles 2 symplectic-euler-b central2 0.05 10 10
+    # Of a scene whose names are meant to get out of a comment or a string.
+    cat >$work/hostile.nevh <<'END'
+[coordinates]
+main = 1
+[effects]
+system = p_main^2/2
+exit = main^2/2
+[run]
+dt = 0.1
+t_end = 1
+END
+    same $work/hostile.nevh 1 verlet exact 0.1 1 1
+    # Functions for another program.
+    exits 0 export pendulum --header --integrators verlet -o $work/steps.h
+    cat >$work/own.c <<'END'
+#include <stdio.h>
+#include "steps.h"
+int main(void) {
+    double q = 2, p = 0, memory[4] = {0};
+    return advance(0, 0.1, 0, 10, &q, &p, memory) != 10 || !(q < 2);
+}
+END
+    ${CC:-cc} -Wall -Wextra -Werror -o $work/own $work/own.c -lm && $work/own ||
+        fails 'writes functions that do not work'
+fi
+exits 2 export pendulum --integrators gauss4
+says 'no program of such steps: the scheme has none'
+exits 2 export no-such-scene
+
+exit $status

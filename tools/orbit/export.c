@@ -1,0 +1,57 @@
+/* nevh export: the steps of one integrator as a C program.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "experiment/plan.h"
+#include <math.h>
+#include <stdlib.h>
+
+/* Steps to t_end: h is adjusted where that is a whole number of them, but for
+   roundings, as nevh run does. */
+static void choose_steps(const plan *p, nevh_program *as) {
+    double span = p->t_end - p->run->t_start, count = span / p->dt[0];
+    double whole = round(count);
+    bool fits = whole >= 1 && fabs(count - whole) <= 1e-9 * whole;
+    as->steps = (size_t)(fits ? whole : floor(count));
+    as->h = fits ? span / whole : p->dt[0];
+}
+
+static int write_text(const options *o, const char *text) {
+    output out;
+    if (output_open(&out, o->file))
+        return TOOL_USAGE;
+    fputs(text, out.stream);
+    return output_close(&out, TOOL_OK);
+}
+
+static int export_plan(const options *o, const plan *p) {
+    const char *name, **names = tool_allocate(p->n, sizeof *names);
+    nevh_stepper *s = plan_first(p, &name);
+    nevh_program as = {.names = names,
+                       .every = o->every ? o->every : 1,
+                       .functions = o->header};
+    for (size_t k = 0; k < p->n; k++)
+        names[k] = nevh_scene_coordinate(p->scene, k);
+    choose_steps(p, &as);
+    char *text = s ? nevh_stepper_program(s, &as) : NULL;
+    int status = TOOL_USAGE;
+    if (text)
+        status = write_text(o, text);
+    else if (s)
+        tool_refuse("%s: %s", name, nevh_stepper_message(s));
+    free(text);
+    free(names);
+    nevh_stepper_free(s);
+    return status;
+}
+
+int export_scene(const options *o) {
+    plan p = {0};
+    int status = plan_make(&p, o);
+    p.portable = true; /* differences, too, are found from libm's values */
+    if (!status && !(p.dts && p.dt[0] > 0 && isfinite(p.t_end)))
+        status = tool_refuse("a program takes steps of dt up to t_end: give "
+                             "both");
+    if (!status)
+        status = export_plan(o, &p);
+    plan_free(&p);
+    return status;
+}
