@@ -10,6 +10,7 @@ examples = \
 	examples/catalogue \
 	examples/conservation \
 	examples/steps_that_follow \
+	examples/flip_map \
 	examples/gradient_error \
 	examples/gradient_cost \
 	examples/nevh_cost
@@ -27,6 +28,7 @@ examples_own_kernel_LDADD = libnevh.la
 examples_catalogue_LDADD = libnevh.la
 examples_conservation_LDADD = libnevh.la
 examples_steps_that_follow_LDADD = libnevh.la
+examples_flip_map_LDADD = libnevh.la
 examples_nevh_cost_LDADD = libnevh.la
 gradient_systems = \
 	examples/gradient_systems.c examples/gradient_systems.h
@@ -46,6 +48,7 @@ dist_example_DATA = \
 	examples/energy_table.c \
 	examples/energy_table.h \
 	examples/first_hamiltonian.c \
+	examples/flip_map.c \
 	examples/gradient_cost.c \
 	examples/gradient_error.c \
 	examples/gradient_systems.c \

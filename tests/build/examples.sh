@@ -74,6 +74,11 @@ look_closer() {
             "$(sed -n 's/^ symplectic-euler-a *//p' $work/out)" ||
             fails "my-euler is not symplectic-euler-a"
         ;;
+    */flip_map)
+        has '^flips where the energy forbids them: 0$'
+        has '^ +4 +4[345]\.'
+        no_row 'NF == 1 && /[?]/'
+        ;;
     */nevh_cost)
         has '^ by hand .* 1\.00 '
         has '^ order 4, blocks of values '

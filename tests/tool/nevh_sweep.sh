@@ -51,6 +51,16 @@ rows | awk -F, 'NR == 1 { slow = $5 } NR == 2 { fast = $5 }
     END { ratio = slow/fast - sqrt(9.8/1.6); exit ratio^2 > 1e-16 || NR != 2 }' ||
     fails "has other periods on the moon"
 
+# A double pendulum at rest flips where its energy suffices, and nowhere else.
+exits 0 sweep double-pendulum-chaotic --vary 'phi1 = range(-3.1, 3.1, 25)' \
+    --vary 'phi2 = range(-3.1, 3.1, 25)' --outcomes 'first(abs(phi2) > pi)' \
+    --integrators gauss4 --gradient exact --dt 0.02 --t-end 12 --quiet
+rows | awk -F, '$2 != "ok" || (2*cos($3) + cos($4) > 1 && $5 != "") {
+        print; wrong = 1 }
+    $5 != "" { flips++ }
+    END { exit wrong || NR != 625 || flips < 300 }' ||
+    fails "flips where the energy forbids it, or hardly ever"
+
 # Draws: the same for the same seed.
 exits 0 sweep pendulum --vary 'phi = normal(1, 0.1)' --vary 'count = 20' \
     --vary 'seed = 5' --t-end 1 --outcomes t --quiet
