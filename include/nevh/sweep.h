@@ -12,8 +12,8 @@ extern "C" {
 
 /* Adds `count` lines to [ensemble], "NAME = WHAT", or replaces those of that
    name:
-   WHAT is a list of formulas, range(A, B, N), normal(MEAN, DEVIATION) or
-   uniform(A, B), NAME a coordinate, p_NAME, v_NAME or a parameter; or a setting
+   WHAT is a list of formulas, range(A, B, N), normal(MEAN, DEVIATION),
+   uniform(A, B) or solve(FORMULA = FORMULA, from A), NAME a coordinate, p_NAME, v_NAME or a parameter; or a setting
    (count, combine, seed).
    returns  as nevh_scene_set */
 NEVH_API int nevh_scene_vary(nevh_scene *, const char *const lines[],

@@ -113,7 +113,7 @@ static const double *varied_of(worker *w, size_t at) {
 
 /* The values of what is varied, by the place of the member in the list: kept
    until its result comes, by then another chunk may be there. */
-static const double *varied_now(worker *w, uint64_t member, double room[]) {
+static double *varied_now(worker *w, uint64_t member, double room[]) {
     const nevh__scene_ensemble *e = w->sweep->ensemble;
     for (size_t i = 0; i < e->n_varied; i++)
         room[i] = nevh__varied_value(e, &e->varied[i], member);
@@ -133,7 +133,7 @@ static bool next(void *data, uint64_t *member, double q[], double p[]) {
         nevh__report report = {0};
         *member = w->list[w->order ? w->order[w->at] : w->at];
         w->at++;
-        const double *varied = varied_now(w, *member, w->room);
+        double *varied = varied_now(w, *member, w->room);
         if (!nevh__variant_start(s, &w->variant, varied, q, p, w->v, &report))
             return true;
         finish(w, *member, varied, NEVH_MEMBER_NO_START, report.text, NULL);
@@ -142,7 +142,11 @@ static bool next(void *data, uint64_t *member, double q[], double p[]) {
 
 static int done(void *data, const nevh_member_result *r) {
     worker *w = data;
-    const double *varied = varied_now(w, r->member, w->room);
+    double *varied = varied_now(w, r->member, w->room);
+    nevh__report ignored = {0};
+    if (w->sweep->ensemble->solves) /* once more, for the solution */
+        nevh__variant_start(w->sweep, &w->variant, varied, w->q, w->p, w->v,
+                            &ignored);
     finish(w, r->member, varied,
            r->status ? NEVH_MEMBER_FAILED : NEVH_MEMBER_DONE, r->message,
            r->values);
@@ -273,18 +277,22 @@ static bool equip(worker *w, nevh_sweep *s) {
     w->list = nevh__array(CHUNK, sizeof *w->list);
     w->values = nevh__array(s->columns, sizeof *w->values);
     w->varied = nevh__array(CHUNK * varied, sizeof *w->varied);
+    w->q = nevh__array(n, sizeof *w->q);
+    w->p = nevh__array(n, sizeof *w->p);
     w->v = nevh__array(n, sizeof *w->v);
     w->room = nevh__array(varied, sizeof *w->room);
     if (s->ensemble->parameters)
         w->order = nevh__array(CHUNK, sizeof *w->order);
-    return w->list && w->values && w->varied && w->v && w->room &&
-           (w->order || !s->ensemble->parameters);
+    return w->list && w->values && w->varied && w->q && w->p && w->v &&
+           w->room && (w->order || !s->ensemble->parameters);
 }
 
 static void dismiss(worker *w) {
     free(w->list);
     free(w->values);
     free(w->varied);
+    free(w->q);
+    free(w->p);
     free(w->v);
     free(w->room);
     free(w->order);

@@ -99,13 +99,46 @@ static bool take_list(nevh_scene *s, nevh__scene_model *m, nevh__varied *v) {
     return true;
 }
 
+/* solve(LEFT = RIGHT), or with ", from FORMULA" */
+static bool take_solve(nevh_scene *s, nevh__scene_model *m, nevh__varied *v,
+                       const nevh__piece *arguments, size_t given) {
+    enum { ANYTHING = NEVH__READS_TIME | NEVH__READS_STATE };
+    const nevh__piece *from = given > 1 ? &arguments[1] : NULL;
+    nevh__piece formula;
+    char stop;
+    v->how = NEVH__VARY_SOLVE;
+    v->count = 1;
+    v->a = 1;
+    v->right = arguments[0];
+    m->ensemble->solves = true;
+    if (!nevh__piece_split(s, &m->pool, &v->right, "=", &v->left, &stop))
+        return false;
+    if (!stop || given > 2 || (from && strncmp(from->text, "from", 4) != 0))
+        return fail_arguments(s, &v->statement->value,
+                              "solve(FORMULA = FORMULA, from NUMBER)");
+    if (v->is != NEVH__COORDINATE && v->is != NEVH__MOMENTUM)
+        return nevh__scene_fail(s, NEVH_EINVAL, &v->statement->key,
+                                "what is solved for is a coordinate or a "
+                                "momentum");
+    v->energy = strcmp(v->left.text, "H") == 0 &&
+                nevh__names_find(m->names, "H", NULL, NULL) == NEVH__UNKNOWN;
+    if ((!v->energy && !nevh__piece_check(s, m, &v->left, ANYTHING)) ||
+        !nevh__piece_check(s, m, &v->right, ANYTHING))
+        return false;
+    size_t at = from ? (size_t)(from->at - from->line->text) : 0;
+    return !from || (nevh__piece_take(s, &m->pool, from->line, at + 4,
+                                      at + strlen(from->text), &formula) &&
+                     nevh__piece_number(s, m, &formula, &v->a));
+}
+
 static bool take_what(nevh_scene *s, nevh__scene_model *m, nevh__varied *v) {
     static const struct {
         const char *name;
         nevh__variation how;
     } calls[] = {{"range", NEVH__VARY_RANGE},
                  {"normal", NEVH__VARY_NORMAL},
-                 {"uniform", NEVH__VARY_UNIFORM}};
+                 {"uniform", NEVH__VARY_UNIFORM},
+                 {"solve", NEVH__VARY_SOLVE}};
     const nevh__piece *value = &v->statement->value;
     nevh__piece *arguments = NULL;
     size_t given;
@@ -114,8 +147,10 @@ static bool take_what(nevh_scene *s, nevh__scene_model *m, nevh__varied *v) {
             return false;
         v->how = calls[i].how;
         if (given)
-            return (v->how == NEVH__VARY_RANGE ? take_range : take_draw)(
-                s, m, v, arguments, given);
+            return (v->how == NEVH__VARY_RANGE ? take_range
+                    : v->how == NEVH__VARY_SOLVE
+                        ? take_solve
+                        : take_draw)(s, m, v, arguments, given);
     }
     return take_list(s, m, v);
 }
@@ -306,6 +341,8 @@ double nevh__varied_value(const nevh__scene_ensemble *e, const nevh__varied *v,
         return v->a + v->b * nevh_normal_at(e->seed, v->name, member);
     case NEVH__VARY_UNIFORM:
         return v->a + (v->b - v->a) * nevh_uniform_at(e->seed, v->name, member);
+    case NEVH__VARY_SOLVE:
+        return v->a; /* where the search begins */
     default:
         return v->values[i];
     }

@@ -10,7 +10,8 @@ typedef enum {
     NEVH__VARY_LIST,
     NEVH__VARY_RANGE,
     NEVH__VARY_NORMAL,
-    NEVH__VARY_UNIFORM
+    NEVH__VARY_UNIFORM,
+    NEVH__VARY_SOLVE
 } nevh__variation;
 
 /* One varied number: NAME = WHAT. */
@@ -24,6 +25,9 @@ typedef struct {
     uint64_t stride; /* members until the next value, in a product */
     double a, b;     /* of range, normal, uniform */
     double *values;  /* of a list */
+    /* Of solve(LEFT = RIGHT, from A), where LEFT may be H. */
+    nevh__piece left, right;
+    bool energy; /* it is */
 } nevh__varied;
 
 typedef struct {
@@ -38,6 +42,7 @@ struct nevh__scene_ensemble {
     nevh__varied *varied;
     size_t n_varied;
     bool parameters; /* some are varied */
+    bool solves;     /* for some */
     bool zip, draws, counted;
     uint64_t members, each; /* each: draws a grid point */
     uint64_t seed;

@@ -15,7 +15,10 @@ typedef struct {
     nevh_outcome *outcomes;
     nevh_quantity stop;
     nevh__owned tapes;
-    double *room; /* of nevh__effect_not_finite */
+    double *room;         /* of nevh__effect_not_finite */
+    nevh_quantity *sides; /* LEFT - RIGHT, or RIGHT, of what is solved for */
+    double *padded;       /* 2n rows of NEVH__LANES */
+    nevh_field *energy;   /* values of H; NULL: not asked for */
 } nevh__variant;
 
 /* Results that wait for those before them. */
@@ -57,11 +60,17 @@ void nevh__variant_free(nevh__variant *);
 nevh_ensemble_options nevh__variant_options(const nevh_sweep *,
                                             const nevh__variant *,
                                             nevh_options *, double room[]);
-/* Where a member starts: from the variant's own start and what is varied.
+/* Where a member starts: from the variant's own start and what is varied, in
+   which what is solved for is replaced by the solution.
    returns  NEVH_OK or a status, with a message */
 int nevh__variant_start(const nevh_sweep *, const nevh__variant *,
-                        const double varied[], double q[], double p[],
-                        double v[], nevh__report *);
+                        double varied[], double q[], double p[], double v[],
+                        nevh__report *);
+
+/* solve.c: finds the value of varied number i at which its sides are equal, in
+   the state.  Returns whether there is one. */
+bool nevh__variant_solve(const nevh_sweep *, const nevh__variant *, size_t i,
+                         double q[], double p[]);
 
 /* crew.c: the run. */
 

@@ -76,6 +76,27 @@ static bool make_stop(nevh__variant *x, nevh__report *report) {
     return made;
 }
 
+static bool make_sides(const nevh_sweep *s, nevh__variant *x,
+                       nevh__report *report) {
+    const nevh__scene_ensemble *e = s->ensemble;
+    /* For values alone: a step that is given is not searched for. */
+    nevh_options values = {.gradient = nevh_central2, .gradient_step = 1};
+    x->sides = nevh__array(e->n_varied, sizeof *x->sides);
+    x->padded = nevh__array(2 * x->model->n * NEVH__LANES, sizeof(double));
+    x->energy = nevh_field_new(x->model->system, &values);
+    if (!x->sides || !x->padded || !x->energy)
+        return fail(report, NEVH_ENOMEM, "out of memory");
+    for (size_t i = 0; i < e->n_varied; i++) {
+        const nevh__varied *v = &e->varied[i];
+        if (v->how == NEVH__VARY_SOLVE &&
+            !make_quantity(x, v->energy ? v->right.text : v->left.text,
+                           v->energy ? NULL : v->right.text, &x->sides[i],
+                           report))
+            return false;
+    }
+    return true;
+}
+
 /* The message of a scene without its place: a set of parameters is at fault,
    not a line. */
 static void quote_scene(const nevh_scene *s, nevh__report *report) {
@@ -105,7 +126,8 @@ bool nevh__variant_make(nevh_sweep *s, const double varied[], nevh__variant *x,
     for (size_t i = 0; i < s->n_outcomes; i++)
         if (!make_outcome(x, &s->outcomes[i], &x->outcomes[i], report))
             return false;
-    return make_stop(x, report);
+    return (!s->ensemble->solves || make_sides(s, x, report)) &&
+           make_stop(x, report);
 }
 
 void nevh__variant_free(nevh__variant *x) {
@@ -114,6 +136,9 @@ void nevh__variant_free(nevh__variant *x) {
     nevh__owned_free(&x->tapes);
     free(x->outcomes);
     free(x->room);
+    free(x->sides);
+    free(x->padded);
+    nevh_field_free(x->energy);
     *x = (nevh__variant){0};
 }
 
@@ -163,8 +188,8 @@ nevh_ensemble_options nevh__variant_options(const nevh_sweep *s,
 }
 
 int nevh__variant_start(const nevh_sweep *s, const nevh__variant *x,
-                        const double varied[], double q[], double p[],
-                        double v[], nevh__report *report) {
+                        double varied[], double q[], double p[], double v[],
+                        nevh__report *report) {
     const nevh__scene_ensemble *e = s->ensemble;
     nevh__scene_model m = *x->model;
     bool any = false;
@@ -194,6 +219,20 @@ int nevh__variant_start(const nevh_sweep *s, const nevh__variant *x,
                               ? "out of memory"
                               : "no momenta were found that give the initial "
                                 "velocities");
+    for (size_t i = 0; i < e->n_varied; i++) {
+        const nevh__varied *is = &e->varied[i];
+        if (is->how != NEVH__VARY_SOLVE)
+            continue;
+        bool found = nevh__variant_solve(s, x, i, q, p);
+        varied[i] = !found                     ? NAN
+                    : is->is == NEVH__MOMENTUM ? p[is->index]
+                                               : q[is->index];
+        if (!found)
+            return nevh__fail(report, NEVH_EMAXITER,
+                              "%s = %s has no solution that the search from "
+                              "%.9g finds",
+                              is->name, is->statement->value.text, is->a);
+    }
     const char *effect =
         nevh__effect_not_finite(m.system, m.run.t_start, q, p, x->room);
     return effect ? nevh__fail(report, NEVH_EDOM,

@@ -181,6 +181,48 @@ TEST(members_without_a_start_are_told) {
     free(all);
 }
 
+#define HENON_HEILES                                                           \
+    "[coordinates]\nx = 0\ny = 0.1\n[effects]\n"                               \
+    "kinetic = (p_x^2 + p_y^2)/2\nsprings = (x^2 + y^2)/2\n"                   \
+    "cubic = x^2*y - y^3/3\n[run]\nt_end = 1\ndt = 0.1\n[ensemble]\n"
+
+/* Momenta of one energy, of the sign that the search begins with; beyond the
+   energy's boundary, as at y = 0.8, there is none. */
+TEST_EACH(momenta_are_solved_for, 2) {
+    const char *from = _i ? "-0.4" : "0.4";
+    char text[600];
+    snprintf(text, sizeof text,
+             HENON_HEILES "p_x = solve(H = 1/8, from %s)\n"
+                          "y = range(-0.4, 0.8, 13)\noutcomes = t\n",
+             from);
+    results *all = run(text, plain());
+    for (size_t i = 0; i < 13; i++) {
+        double p = all->row[i][0], y = all->row[i][1];
+        double room = 1. / 4 - y * y + 2 * y * y * y / 3;
+        if (room > 1e-12) {
+            ck_assert_int_eq(all->status[i], NEVH_MEMBER_DONE);
+            ck_assert_double_eq_tol(p, (_i ? -1 : 1) * sqrt(room), 1e-15);
+        }
+    }
+    ck_assert_int_eq(all->status[12], NEVH_MEMBER_NO_START);
+    ck_assert_double_nan(all->row[12][0]);
+    assert_says(all->message, "no solution");
+    free(all);
+}
+END_TEST
+
+/* Of any formula, for a coordinate, after what else is varied. */
+TEST(formulas_are_solved) {
+    results *all = run(PENDULUM "phi = solve(sin(phi) = p_phi/g, from 0)\n"
+                                "p_phi = 1, 2\ng = 5, 10\noutcomes = t\n",
+                       plain());
+    for (size_t i = 0; i < 4; i++)
+        ck_assert_double_eq_tol(all->row[i][0],
+                                asin(all->row[i][1] / all->row[i][2]), 1e-15);
+    free(all);
+}
+END_TEST
+
 static const struct {
     const char *line, *says;
 } wrong[] = {
@@ -202,6 +244,10 @@ static const struct {
     {"phi = 1\ncombine = both", "product or zip"},
     {"phi = 1\nseed = 1.5", "whole number"},
     {"p_phi = 1\nv_phi = 1", "both"},
+    {"p_phi = solve(H)", "solve(FORMULA = FORMULA, from NUMBER)"},
+    {"p_phi = solve(H = 1, 2)", "solve(FORMULA = FORMULA, from NUMBER)"},
+    {"p_phi = solve(H = 1, from phi)", "phi"},
+    {"g = solve(H = 1)", "a coordinate or a momentum"},
 };
 
 TEST_EACH(wrong_lines_are_refused, sizeof wrong / sizeof *wrong) {

@@ -64,8 +64,8 @@ static const struct {
      "go on with FILE, which nevh run or nevh sweep -o FILE left unfinished, "
      "as if never interrupted"},
     {"vary", "NAME=WHAT", FOR_SWEEP, read_vary,
-     "a line of [ensemble]: a list, range(A, B, N), normal(M, S) or "
-     "uniform(A, B); repeated for more names"},
+     "a line of [ensemble]: a list, range(A, B, N), normal(M, S), "
+     "uniform(A, B) or solve(F = G, from X); repeated for more names"},
     {"outcomes", "A,B", FOR_SWEEP, read_outcomes,
      "columns: state, t, energy_error, verdict, first(A > B), last(F), min(F), "
      "max(F), mean(F), crossings, period"},
