@@ -180,17 +180,41 @@ static void polish(advice *a) {
         study_refine(&a->search, found[i], a->target, 1);
 }
 
-/* Medians for those that may win. */
+/* Errors do not fall evenly: of the best few, each place up to half a stride
+   beyond what keeps the target. */
+static void look_beyond(advice *a) {
+    enum { FEW = 8 };
+    static const double factor = 1.4;
+    study *found[FEW];
+    size_t count = list_best(a, factor, found, FEW);
+    for (size_t i = 0; i < count; i++) {
+        int from = found[i]->k[keeps(a, found[i]) - found[i]->level];
+        for (int k = from - 1; k >= from - GRID_STRIDE / 2; k--)
+            if (!search_is_over(&a->search, 1) &&
+                found[i]->end != STUDY_GIVEN &&
+                !nevh_integrator_adaptive(found[i]->scheme) &&
+                study_fits_steps(&a->search, k))
+                study_run(&a->search, found[i], k);
+    }
+}
+
+/* Medians for those that may win: of each the level that took least time, and
+   the one that works least, of which one time may have been taken badly. */
 static void time_best(advice *a) {
     enum { FEW = 24, USUAL = 9 };
     static const double factor = 1.7;
     study *found[FEW];
-    row *level[FEW];
-    size_t count = list_best(a, factor, found, FEW);
+    row *level[2 * FEW];
+    size_t count = list_best(a, factor, found, FEW), rows = 0;
     size_t repeats = a->search.repeats;
-    for (size_t i = 0; i < count; i++)
-        level[i] = &found[i]->level[keeps(a, found[i]) - found[i]->level];
-    rows_time(&a->search.plan, level, count, repeats ? repeats : USUAL,
+    for (size_t i = 0; i < count; i++) {
+        const row *quick = keeps(a, found[i]);
+        const row *light = least_worked(a, found[i]);
+        level[rows++] = &found[i]->level[quick - found[i]->level];
+        if (light != quick && isfinite(light->seconds))
+            level[rows++] = &found[i]->level[light - found[i]->level];
+    }
+    rows_time(&a->search.plan, level, rows, repeats ? repeats : USUAL,
               repeats > 0);
 }
 
@@ -245,6 +269,8 @@ static void search_all(advice *a) {
     vary_gradients(a);
     time_once(a);
     polish(a);
+    time_once(a);
+    look_beyond(a);
     time_once(a);
     time_best(a);
     choose(a);

@@ -112,7 +112,7 @@ static bool is_usable(const study *l, size_t i, bool by_state) {
     return study_error(&l->level[i], by_state) < usable_below;
 }
 
-static bool has_steps(const search *s, int k) {
+bool study_fits_steps(const search *s, int k) {
     static const double least = 8;
     return grid_dt(k) * least <= s->plan.t_end - s->plan.run->t_start;
 }
@@ -124,7 +124,7 @@ static void ascend(search *s, study *l) {
     enum { STRIDES = 6 };
     for (int i = 0; i < STRIDES && !search_is_over(s, 1); i++) {
         int k = l->k[0] - GRID_STRIDE;
-        if (!has_steps(s, k))
+        if (!study_fits_steps(s, k))
             return;
         study_run(s, l, k);
         if (!is_usable(l, 0, s->by_state)) {
@@ -179,7 +179,7 @@ static int first_place(const search *s, const study *l) {
     int order = nevh_integrator_order(l->scheme);
     int k = grid_dt_place(search_longest_dt(&s->plan));
     for (int coarser = order >= 8 ? 2 : order >= 6; coarser; coarser--)
-        if (has_steps(s, k - GRID_STRIDE))
+        if (study_fits_steps(s, k - GRID_STRIDE))
             k -= GRID_STRIDE;
     return k;
 }
@@ -375,7 +375,7 @@ static void refine_top(search *s, study *l, double target, int gap) {
     while (study_error(&l->level[0], s->by_state) <= target &&
            l->k[0] - beyond > gap && !search_is_over(s, 1)) {
         int middle = beyond + (l->k[0] - beyond) / 2;
-        bool runs = has_steps(s, middle);
+        bool runs = study_fits_steps(s, middle);
         if (runs)
             study_run(s, l, middle);
         if (!runs || !is_usable(l, 0, s->by_state))

@@ -80,6 +80,8 @@ void study_begin(search *, study *);
 /* Next: the one with the least work in its next level; NULL: none is open. */
 study *study_next(study studies[], size_t count);
 void study_descend(search *, study *);
+/* Whether the run has room for some steps of that place. */
+bool study_fits_steps(const search *, int k);
 /* Whether shorter steps would not lessen the error, as its levels tell. */
 bool study_ends_level(const study *, bool by_state);
 /* Whether another is so far ahead that shorter steps will not change it. */
