@@ -38,34 +38,28 @@ static bool diagonal(const nevh_system *s) {
     return true;
 }
 
-static bool lay_out(nevh__nystrom_state *y) {
-    size_t half = y->stride, stages = y->table->stages;
-    y->room = nevh__array((11 + stages) * half + most_lanes(y->work) +
-                              2 * y->n + NEVH__LANES,
-                          sizeof *y->room);
+static void lay_out(nevh__arena *a, void *state) {
+    nevh__nystrom_state *y = state;
+    size_t half = y->stride, stages = y->table->stages, each = sizeof(double);
     size_t lists = (stages + ENDS) * stages;
-    y->kicks = nevh__array(stages, sizeof *y->kicks);
-    y->weights = nevh__array(lists, sizeof *y->weights);
-    y->offsets = nevh__array(lists, sizeof *y->offsets);
-    y->sums = nevh__array(stages + ENDS, sizeof *y->sums);
-    if (!y->room || !y->kicks || !y->weights || !y->offsets || !y->sums)
-        return false;
-    double *from = nevh__aligned(y->room);
-    y->q = nevh__take(&from, half);
-    y->p = nevh__take(&from, half);
-    y->carry = nevh__take(&from, 2 * half);
-    y->h = nevh__take(&from, half);
-    y->way = nevh__take(&from, half);
-    y->gain = nevh__take(&from, half);
-    y->at_rest = nevh__take(&from, half);
-    y->momenta = nevh__take(&from, half);
-    y->velocities = nevh__take(&from, half);
-    y->points = nevh__take(&from, half);
-    y->slopes = nevh__take(&from, stages * half);
-    y->time = nevh__take(&from, most_lanes(y->work));
-    y->rest = nevh__take(&from, y->n);
-    y->inverse = diagonal(y->work->system) ? from : NULL;
-    return true;
+    y->q = nevh__arena_take(a, half, each);
+    y->p = nevh__arena_take(a, half, each);
+    y->carry = nevh__arena_take(a, 2 * half, each);
+    y->h = nevh__arena_take(a, half, each);
+    y->way = nevh__arena_take(a, half, each);
+    y->gain = nevh__arena_take(a, half, each);
+    y->at_rest = nevh__arena_take(a, half, each);
+    y->momenta = nevh__arena_take(a, half, each);
+    y->velocities = nevh__arena_take(a, half, each);
+    y->points = nevh__arena_take(a, half, each);
+    y->slopes = nevh__arena_take(a, stages * half, each);
+    y->time = nevh__arena_take(a, most_lanes(y->work), each);
+    y->rest = nevh__arena_take(a, y->n, each);
+    y->inverse = nevh__arena_take(a, y->n, each);
+    y->kicks = nevh__arena_take(a, stages, sizeof *y->kicks);
+    y->weights = nevh__arena_take(a, lists, each);
+    y->offsets = nevh__arena_take(a, lists, sizeof *y->offsets);
+    y->sums = nevh__arena_take(a, stages + ENDS, sizeof *y->sums);
 }
 
 static void list_weights(nevh__nystrom_state *y) {
@@ -177,8 +171,11 @@ static int plan_nystrom(nevh_work *w, nevh__nystrom_state **nystrom) {
     y->n = w->n;
     y->stride = w->n * most_lanes(w);
     y->known_h = NAN;
-    if (!lay_out(y))
+    y->memory = nevh__arena_new(lay_out, y);
+    if (!y->memory)
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
+    if (!diagonal(w->system))
+        y->inverse = NULL;
     list_weights(y);
     find_calls(y);
     int status = check_kinetic(y);
@@ -228,13 +225,8 @@ static void clear(nevh_work *w) {
     if (!plan)
         return;
     nevh__adaptive_clear(w);
-    if (plan->nystrom) {
-        free(plan->nystrom->room);
-        free(plan->nystrom->kicks);
-        free(plan->nystrom->weights);
-        free(plan->nystrom->offsets);
-        free(plan->nystrom->sums);
-    }
+    if (plan->nystrom)
+        free(plan->nystrom->memory);
     free(plan->nystrom);
     free(plan);
     w->plan = NULL;

@@ -15,7 +15,7 @@ struct nevh__nystrom_state {
     size_t n, lanes;       /* lanes: of the step under way */
     size_t size;           /* n x lanes */
     size_t stride;         /* from the slopes of a stage to the next */
-    double *room;          /* holds all that follow, rows of lanes */
+    void *memory;          /* holds all that follow, rows of lanes */
     double *q, *p, *carry; /* the start; carry: 2n rows */
     double *h;             /* n rows, of equal ones */
     double *way;           /* h T_p(p), n rows; with a diagonal W */

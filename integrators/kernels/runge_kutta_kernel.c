@@ -20,7 +20,8 @@ enum { BY_WORK, PLANNED };
 
 struct nevh__runge_kutta_state {
     const nevh_butcher *table;
-    double *buffer; /* holds all that follow, rows of lanes */
+    void *memory; /* holds all that follow, rows of at most so many lanes */
+    size_t lanes;
     double *state, *carry, *step, *point; /* 2n rows */
     double *slopes;                       /* 2n rows a stage */
     double *time;                         /* a row */
@@ -48,13 +49,8 @@ static void clear(nevh_work *w) {
     if (!plan)
         return;
     nevh__adaptive_clear(w);
-    if (plan->runge_kutta) {
-        free(plan->runge_kutta->buffer);
-        free(plan->runge_kutta->calls);
-        free(plan->runge_kutta->weights);
-        free(plan->runge_kutta->offsets);
-        free(plan->runge_kutta->sums);
-    }
+    if (plan->runge_kutta)
+        free(plan->runge_kutta->memory);
     free(plan->runge_kutta);
     free(plan);
     w->plan = NULL;
@@ -70,32 +66,25 @@ static void list_weights(nevh__runge_kutta_state *y) {
                          y->stride, y->weights + i * s, y->offsets + i * s);
 }
 
-static bool lay_out(const nevh_work *w, nevh__runge_kutta_state *y) {
+static void lay_out(nevh__arena *a, void *state) {
+    nevh__runge_kutta_state *y = state;
     size_t stages = y->table->stages, lists = (stages + ENDS) * stages;
-    size_t lanes = nevh__padded(w->width);
-    y->stride = 2 * w->n * lanes;
-    y->buffer = nevh__array((4 + stages) * y->stride + lanes + NEVH__LANES,
-                            sizeof *y->buffer);
-    y->calls = nevh__array(stages, sizeof *y->calls);
-    y->weights = nevh__array(lists, sizeof *y->weights);
-    y->offsets = nevh__array(lists, sizeof *y->offsets);
-    y->sums = nevh__array(stages + ENDS, sizeof *y->sums);
-    if (!y->buffer || !y->calls || !y->weights || !y->offsets || !y->sums)
-        return false;
-    double *from = nevh__aligned(y->buffer);
-    y->state = nevh__take(&from, y->stride);
-    y->carry = nevh__take(&from, y->stride);
-    y->step = nevh__take(&from, y->stride);
-    y->point = nevh__take(&from, y->stride);
-    y->slopes = nevh__take(&from, stages * y->stride);
-    y->time = from;
-    list_weights(y);
-    return true;
+    size_t each = sizeof(double), rows = y->stride;
+    y->state = nevh__arena_take(a, rows, each);
+    y->carry = nevh__arena_take(a, rows, each);
+    y->step = nevh__arena_take(a, rows, each);
+    y->point = nevh__arena_take(a, rows, each);
+    y->slopes = nevh__arena_take(a, stages * rows, each);
+    y->time = nevh__arena_take(a, y->lanes, each);
+    y->calls = nevh__arena_take(a, stages, sizeof *y->calls);
+    y->weights = nevh__arena_take(a, lists, each);
+    y->offsets = nevh__arena_take(a, lists, sizeof *y->offsets);
+    y->sums = nevh__arena_take(a, stages + ENDS, sizeof *y->sums);
 }
 
 /* States that only fill vectors cost little where gradients are exact. */
 static void plan_calls(const nevh_work *w, nevh__runge_kutta_state *y) {
-    size_t lanes = nevh__padded(w->width), half = w->n * lanes;
+    size_t lanes = y->lanes, half = w->n * lanes;
     bool suits = w->width == 1 ? nevh__work_repeats(w)
                                : w->width == lanes || nevh__work_lean(w);
     if (w->transform || !suits)
@@ -321,8 +310,12 @@ static int plan_state(nevh_work *w, nevh__runge_kutta_state **state) {
         return NEVH_ENOMEM;
     y->table = w->integrator->table;
     y->known_h = NAN;
-    if (!lay_out(w, y))
+    y->lanes = nevh__padded(w->width);
+    y->stride = 2 * w->n * y->lanes;
+    y->memory = nevh__arena_new(lay_out, y);
+    if (!y->memory)
         return NEVH_ENOMEM;
+    list_weights(y);
     plan_calls(w, y);
     return NEVH_OK;
 }

@@ -25,7 +25,7 @@ struct nevh__sweeps {
     size_t stride;                 /* of other rows: stages of all lanes */
     size_t rows;                   /* of the gradient that are solved for */
     size_t unknown;                /* the first of them */
-    double *room;                  /* holds all that follow */
+    void *memory;                  /* holds all that follow */
     double *mu_q, *mu_p, *guess;   /* the tableau's */
     double *c, *times;             /* a row */
     double *loaded;                /* of several orbits: what these are for */
@@ -60,31 +60,25 @@ static void pad(const nevh__sweeps *s, size_t rows, const double from[],
     }
 }
 
-static bool lay_out(nevh__sweeps *s) {
+static void lay_out(nevh__arena *a, void *sweeps) {
+    nevh__sweeps *s = sweeps;
     size_t n = s->n, matrix = s->stages * s->row, lanes = s->lanes;
     size_t vectors = s->stages * NEVH__LANES, all = s->rows * s->stride;
-    s->room = nevh__array(3 * matrix + s->row + s->stride + 2 * vectors +
-                              (4 * n + 1) * s->stride + 3 * all +
-                              6 * n * lanes + 4 * NEVH__LANES,
-                          sizeof *s->room);
-    if (!s->room)
-        return false;
-    double *from = nevh__aligned(s->room);
-    s->mu_q = nevh__take(&from, matrix);
-    s->mu_p = nevh__take(&from, matrix);
-    s->guess = nevh__take(&from, matrix);
-    s->c = nevh__take(&from, s->row);
-    s->times = nevh__take(&from, s->stride);
-    s->to_q = nevh__take(&from, vectors);
-    s->to_p = nevh__take(&from, vectors);
-    s->points = nevh__take(&from, 2 * n * s->stride);
-    s->gradient = nevh__take(&from, 2 * n * s->stride);
-    s->before = nevh__take(&from, all);
-    s->least = nevh__take(&from, all);
-    s->last = nevh__take(&from, all);
-    s->products = nevh__take(&from, s->stride);
-    s->loaded = from;
-    return true;
+    size_t each = sizeof(double);
+    s->mu_q = nevh__arena_take(a, matrix, each);
+    s->mu_p = nevh__arena_take(a, matrix, each);
+    s->guess = nevh__arena_take(a, matrix, each);
+    s->c = nevh__arena_take(a, s->row, each);
+    s->times = nevh__arena_take(a, s->stride, each);
+    s->to_q = nevh__arena_take(a, vectors, each);
+    s->to_p = nevh__arena_take(a, vectors, each);
+    s->points = nevh__arena_take(a, 2 * n * s->stride, each);
+    s->gradient = nevh__arena_take(a, 2 * n * s->stride, each);
+    s->before = nevh__arena_take(a, all, each);
+    s->least = nevh__arena_take(a, all, each);
+    s->last = nevh__arena_take(a, all, each);
+    s->products = nevh__arena_take(a, s->stride, each);
+    s->loaded = nevh__arena_take(a, 6 * n * lanes, each);
 }
 
 static void find_calls(nevh__sweeps *s) {
@@ -122,7 +116,8 @@ nevh__sweeps *nevh__sweeps_new(nevh_work *w, const nevh__tableau *a,
     s->unknown = 2 * w->n - s->rows;
     s->partitioned = partitioned;
     s->weights = hb;
-    if (!lay_out(s)) {
+    s->memory = nevh__arena_new(lay_out, s);
+    if (!s->memory) {
         nevh__sweeps_free(s);
         return NULL;
     }
@@ -133,7 +128,7 @@ nevh__sweeps *nevh__sweeps_new(nevh_work *w, const nevh__tableau *a,
 
 void nevh__sweeps_free(nevh__sweeps *s) {
     if (s)
-        free(s->room);
+        free(s->memory);
     free(s);
 }
 

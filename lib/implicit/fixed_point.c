@@ -26,6 +26,19 @@ enum {
 };
 static const double slow_small = 0.25, slow_large = 0.5; /* in two sweeps */
 
+static void lay_out(nevh__arena *a, void *solver) {
+    nevh__stage_solver *s = solver;
+    size_t width = s->work->width, state = 2 * s->work->size;
+    size_t unknowns = s->rows * width, each = sizeof(double);
+    s->scale = nevh__arena_take(a, state, each);
+    s->unit = nevh__arena_take(a, state, each);
+    s->out = nevh__arena_take(a, unknowns, each);
+    s->least = nevh__arena_take(a, unknowns, each);
+    s->noise = nevh__arena_take(a, 4 * s->work->n, each);
+    s->lanes = nevh__arena_take(a, width, sizeof *s->lanes);
+    s->lane = nevh__arena_take(a, width, sizeof *s->lane);
+}
+
 nevh__stage_solver *nevh__stage_solver_new(nevh_work *w,
                                            const nevh__stage_shape *shape) {
     nevh__stage_solver *s = nevh__array(1, sizeof *s);
@@ -36,20 +49,11 @@ nevh__stage_solver *nevh__stage_solver_new(nevh_work *w,
     s->stages = shape->stages;
     s->first = shape->partitioned ? w->n : 0;
     s->rows = (2 * w->n - s->first) * s->stages;
-    s->scale = nevh__array(2 * w->size, sizeof *s->scale);
-    size_t unknowns = nevh__padded(s->rows * w->width);
-    s->buffer = nevh__array(2 * unknowns + NEVH__LANES, sizeof *s->buffer);
-    s->out = s->buffer ? nevh__aligned(s->buffer) : NULL;
-    s->least = s->buffer ? s->out + unknowns : NULL;
-    s->unit = nevh__array(2 * w->size, sizeof *s->unit);
-    s->noise = nevh__array(4 * w->n, sizeof *s->noise);
-    s->lanes = nevh__array(w->width, sizeof *s->lanes);
-    s->lane = nevh__array(w->width, sizeof *s->lane);
+    s->memory = nevh__arena_new(lay_out, s);
     bool large = 2 * w->n * s->stages > MOST_DENSE;
     s->newton = large ? NULL : nevh__newton_new(s);
     s->rescue = large ? NULL : nevh__rescue_new(s);
-    if (s->scale && s->unit && s->buffer && s->noise && s->lanes && s->lane &&
-        (large || (s->newton && s->rescue)))
+    if (s->memory && (large || (s->newton && s->rescue)))
         return s;
     nevh__stage_solver_free(s);
     return NULL;
@@ -60,12 +64,7 @@ void nevh__stage_solver_free(nevh__stage_solver *s) {
         return;
     nevh__newton_free(s->newton);
     nevh__rescue_free(s->rescue);
-    free(s->scale);
-    free(s->unit);
-    free(s->buffer);
-    free(s->noise);
-    free(s->lanes);
-    free(s->lane);
+    free(s->memory);
     free(s);
 }
 

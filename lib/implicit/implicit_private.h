@@ -84,9 +84,9 @@ struct nevh__stage_solver {
     nevh__stage_shape shape;
     size_t stages, first; /* first: the variable that row 0 belongs to */
     size_t rows;          /* 2 n stages or n stages: unknowns of a lane */
+    void *memory;         /* holds all arrays that follow */
     double *scale;        /* 2n x width: sizes that changes are held against */
     double *unit;         /* 2n x width: |h| over them */
-    double *buffer;       /* for the next two */
     double *out;          /* rows x width */
     double *least;        /* rows x width: smallest change so far */
     double *noise;        /* 2n, of one lane */

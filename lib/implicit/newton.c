@@ -28,6 +28,7 @@ static const double part = 0x1p-16; /* of the scale: the difference's step */
 
 struct nevh__newton {
     size_t points;         /* 1 + variables that are moved in one call */
+    void *memory;          /* holds all that follow */
     double *mean;          /* 2n: where J is taken */
     double *times;         /* points */
     double *q, *p;         /* n x points */
@@ -40,18 +41,24 @@ struct nevh__newton {
     double *g, *out;       /* rows: G(x), the next x */
 };
 
-static bool allocate(nevh__stage_solver *s, struct nevh__newton *m) {
+static void lay_out(nevh__arena *a, void *solver) {
+    const nevh__stage_solver *s = solver;
+    struct nevh__newton *m = s->newton;
     size_t n = s->work->n, rows = s->rows, stages = s->stages;
-    m->points = (s->shape.partitioned ? n : 2 * n) + 1;
-    m->mean = nevh__array(2 * n, sizeof *m->mean);
-    m->times = nevh__array((4 * n + 1) * m->points, sizeof *m->times);
-    m->jacobian = nevh__array(5 * n * n, sizeof *m->jacobian);
-    m->stage_product = nevh__array(stages * stages, sizeof *m->stage_product);
-    m->matrix = nevh__array(rows * rows, sizeof *m->matrix);
-    m->pivot = nevh__array(rows, sizeof *m->pivot);
-    m->g = nevh__array(2 * rows, sizeof *m->g);
-    return m->mean && m->times && m->jacobian && m->stage_product &&
-           m->matrix && m->pivot && m->g;
+    size_t each = sizeof(double), states = n * m->points;
+    m->mean = nevh__arena_take(a, 2 * n, each);
+    m->times = nevh__arena_take(a, m->points, each);
+    m->q = nevh__arena_take(a, states, each);
+    m->p = nevh__arena_take(a, states, each);
+    m->dq = nevh__arena_take(a, states, each);
+    m->dp = nevh__arena_take(a, states, each);
+    m->jacobian = nevh__arena_take(a, 4 * n * n, each);
+    m->product = nevh__arena_take(a, n * n, each);
+    m->stage_product = nevh__arena_take(a, stages * stages, each);
+    m->matrix = nevh__arena_take(a, rows * rows, each);
+    m->pivot = nevh__arena_take(a, rows, sizeof *m->pivot);
+    m->g = nevh__arena_take(a, rows, each);
+    m->out = nevh__arena_take(a, rows, each);
 }
 
 static void multiply_stages(const nevh__stage_shape *a, double *product) {
@@ -63,33 +70,22 @@ static void multiply_stages(const nevh__stage_shape *a, double *product) {
 }
 
 struct nevh__newton *nevh__newton_new(nevh__stage_solver *s) {
-    struct nevh__newton *m = nevh__array(1, sizeof *m);
-    if (!m || !allocate(s, m)) {
-        nevh__newton_free(m);
+    struct nevh__newton *m = s->newton = nevh__array(1, sizeof *m);
+    if (!m)
         return NULL;
-    }
-    size_t n = s->work->n;
-    m->q = m->times + m->points;
-    m->p = m->q + n * m->points;
-    m->dq = m->p + n * m->points;
-    m->dp = m->dq + n * m->points;
-    m->product = m->jacobian + 4 * n * n;
-    m->out = m->g + s->rows;
-    if (s->shape.partitioned)
+    m->points = (s->shape.partitioned ? 1 : 2) * s->work->n + 1;
+    m->memory = nevh__arena_new(lay_out, s);
+    if (m->memory && s->shape.partitioned)
         multiply_stages(&s->shape, m->stage_product);
-    return m;
+    if (m->memory)
+        return m;
+    free(m);
+    return NULL;
 }
 
 void nevh__newton_free(struct nevh__newton *m) {
-    if (!m)
-        return;
-    free(m->mean);
-    free(m->times);
-    free(m->jacobian);
-    free(m->stage_product);
-    free(m->matrix);
-    free(m->pivot);
-    free(m->g);
+    if (m)
+        free(m->memory);
     free(m);
 }
 

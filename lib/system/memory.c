@@ -10,6 +10,29 @@ void *nevh__array(size_t count, size_t size) {
     return calloc(count ? count : 1, size);
 }
 
+enum { CACHE_LINE = 64 };
+
+void *nevh__arena_take(nevh__arena *a, size_t count, size_t size) {
+    const size_t most = SIZE_MAX / 4;
+    void *taken = a->from ? a->from + a->size : NULL;
+    size_t bytes = count > most / size ? most : count * size;
+    bytes = (bytes + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
+    a->size = a->size > most ? a->size : a->size + bytes;
+    return taken;
+}
+
+void *nevh__arena_new(void (*lay_out)(nevh__arena *, void *data), void *data) {
+    nevh__arena a = {NULL, 0};
+    lay_out(&a, data);
+    char *memory = nevh__array(a.size + CACHE_LINE, 1);
+    if (!memory)
+        return NULL;
+    size_t past = (uintptr_t)memory % CACHE_LINE;
+    a = (nevh__arena){memory + (CACHE_LINE - past) % CACHE_LINE, 0};
+    lay_out(&a, data);
+    return memory;
+}
+
 bool nevh__width_fits(size_t n, size_t width) {
     const size_t rows = 1 << 12; /* of n each; no plan has as many */
     return n == 0 || width <= SIZE_MAX / sizeof(double) / rows / n;

@@ -47,6 +47,16 @@ void *nevh__copy(const void *from, size_t count, size_t size);
 void *nevh__grow(void *array, size_t count, size_t size);
 char *nevh__text(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
+/* Arrays in one piece of memory.  A function lays them out twice: first without
+   any, to sum up their sizes.  Each begins on a cache line, and is zeroed. */
+typedef struct {
+    char *from;  /* NULL: sizes are summed up */
+    size_t size; /* in bytes, so far */
+} nevh__arena;
+void *nevh__arena_take(nevh__arena *, size_t count, size_t size);
+/* Returns what is to be freed, or NULL when memory is out. */
+void *nevh__arena_new(void (*lay_out)(nevh__arena *, void *data), void *data);
+
 /* Numbers by name; the names are borrowed.  Zeros are an empty one, of which
    the entries are to be freed. */
 typedef struct {
