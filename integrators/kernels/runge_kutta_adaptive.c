@@ -34,6 +34,7 @@ typedef struct {
     double step;    /* under trial: size, or what is left */
     double last;    /* err of the last accepted one; 0: there is none */
     double before;  /* its length */
+    double excess;  /* substeps beyond the usual of the steps before */
     bool has_first; /* the slope at the state is known */
     bool held;      /* the last trial was rejected */
     bool ends;      /* this one ends the step */
@@ -60,7 +61,9 @@ typedef struct {
 } walk;
 
 static const double least_error = 1e-4; /* that is remembered */
-enum { ROWS = 11 };                     /* of 2n x width in a walk */
+/* A single step may take NEVH__MOST_SUBSTEPS, one after another may not. */
+static const double usual_substeps = 1e5;
+enum { ROWS = 11 }; /* of 2n x width in a walk */
 
 static nevh__adaptive *plan_of(const nevh_work *w) {
     return ((const nevh__stages_plan *)w->plan)->adaptive;
@@ -76,7 +79,7 @@ void nevh__adaptive_clear(nevh_work *w) {
     free(a);
 }
 
-/* Memory: carry, size, err and length of the last one; where the last stage is
+/* Memory: carry, size, err and length of the last one, the excess; where the last stage is
    the next first one, also that slope and whether it is there. */
 int nevh__adaptive_plan(nevh_work *w) {
     nevh__stages_plan *plan = w->plan;
@@ -89,7 +92,7 @@ int nevh__adaptive_plan(nevh_work *w) {
     a->unknown = nevh__array(w->width, sizeof *a->unknown);
     if (!a->lanes || !a->under_way || !a->unknown)
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
-    w->memory_rows = 2 * w->n + 3;
+    w->memory_rows = 2 * w->n + 4;
     if (family->last_is_first)
         w->memory_rows += 2 * w->n + 1;
     w->scratch_size = ROWS * 2 * w->size + 2 * w->width;
@@ -124,8 +127,8 @@ static void load(walk *s, const double q[], const double p[]) {
     const nevh_work *w = s->work;
     size_t n = w->size, width = w->width;
     const double *size = w->memory + 2 * n, *last = size + width;
-    const double *before = last + width;
-    const double *first = before + width, *has_first = first + 2 * n;
+    const double *before = last + width, *excess = before + width;
+    const double *first = excess + width, *has_first = first + 2 * n;
     bool keeps = s->family->last_is_first;
     memcpy(s->y, q, n * sizeof *q);
     memcpy(s->y + n, p, n * sizeof *p);
@@ -137,6 +140,7 @@ static void load(walk *s, const double q[], const double p[]) {
             (lane_walk){.size = size[lane],
                         .last = last[lane],
                         .before = before[lane],
+                        .excess = excess[lane],
                         .has_first = keeps && has_first[lane] != 0};
 }
 
@@ -144,8 +148,8 @@ static void store(const walk *s, double q[], double p[]) {
     const nevh_work *w = s->work;
     size_t n = w->size, width = w->width;
     double *size = w->memory + 2 * n, *last = size + width;
-    double *before = last + width;
-    double *first = before + width, *has_first = first + 2 * n;
+    double *before = last + width, *excess = before + width;
+    double *first = excess + width, *has_first = first + 2 * n;
     bool keeps = s->family->last_is_first;
     memcpy(q, s->y, n * sizeof *q);
     memcpy(p, s->y + n, n * sizeof *p);
@@ -156,6 +160,9 @@ static void store(const walk *s, double q[], double p[]) {
         size[lane] = s->lanes[lane].size;
         last[lane] = s->lanes[lane].last;
         before[lane] = s->lanes[lane].before;
+        excess[lane] =
+            fmax(0, s->lanes[lane].excess + s->lanes[lane].pace.substeps -
+                        usual_substeps);
         if (keeps)
             has_first[lane] = s->lanes[lane].has_first;
     }
@@ -351,6 +358,9 @@ static int choose(const walk *s, size_t lane) {
     char why[NEVH__WHY];
     if (nevh__too_many(&l->pace, fabs(s->h), l->done, why))
         return give_up(s, l, why);
+    if (l->excess + l->pace.substeps > NEVH__MOST_SUBSTEPS)
+        return give_up(s, l,
+                       "more than 100000 substeps, as do those before it,");
     double next = l->done + l->size; /* so that the sum of steps is exact */
     l->ends = 1.01 * l->size >= left;
     l->step = l->ends ? left : next - l->done;

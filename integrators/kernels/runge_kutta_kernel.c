@@ -173,8 +173,8 @@ NEVH__INLINE void add_friction(const nevh__stages *s, const double p[],
 }
 
 /* Of one orbit a lane of each row will do. */
-NEVH__INLINE bool finite(const nevh__stages *s, size_t size,
-                         const double slopes[]) {
+NEVH__INLINE bool is_finite(const nevh__stages *s, size_t size,
+                            const double slopes[]) {
     double bad[NEVH__LANES] = {0}, one = 0;
     if (s->columns == 1) {
         for (size_t i = 0; i < size; i += s->lanes)
@@ -205,7 +205,7 @@ NEVH__INLINE int nevh__runge_kutta_slope(const nevh__runge_kutta_step *x,
         return status;
     if (s->work->friction)
         add_friction(s, x->point + half, dh_dq);
-    return way == BY_WORK || finite(s, x->size, dh_dp) ? NEVH_OK : NEVH_EDOM;
+    return way == BY_WORK || is_finite(s, x->size, dh_dp) ? NEVH_OK : NEVH_EDOM;
 }
 
 NEVH__INLINE int take_stages(const nevh__stages *s, int way, size_t first,
