@@ -22,6 +22,7 @@ libnevh_core_la_SOURCES = \
 	lib/system/swing.c \
 	lib/system/ellipse.c \
 	lib/gradient/field_private.h \
+	lib/gradient/evaluation_private.h \
 	lib/gradient/step_selection_private.h \
 	lib/gradient/methods.c \
 	lib/gradient/plan.c \
@@ -35,14 +36,15 @@ libnevh_core_la_SOURCES = \
 	lib/gradient/report.c \
 	lib/gradient/findings.c \
 	lib/gradient/verify.c \
-	lib/gradient/wiring.c \
+	lib/gradient/scatter_map.c \
 	lib/gradient/field.c \
-	lib/gradient/lean.c \
+	lib/gradient/exact_gather.c \
 	lib/gradient/block.c \
-	lib/gradient/call.c \
-	lib/gradient/central.c \
-	lib/gradient/stencil.c \
+	lib/gradient/evaluation.c \
+	lib/gradient/central_block.c \
+	lib/gradient/central_stencil.c \
 	lib/gradient/exact_block.c \
+	lib/gradient/exact_point.c \
 	lib/gradient/value.c \
 	lib/gradient/time.c \
 	lib/gradient/gsl_system.c \

@@ -4,6 +4,7 @@
 #define NEVH_NYSTROM_PRIVATE_H
 
 #include "runge_kutta_private.h"
+#include "gradient/evaluation_private.h"
 #include "stage_sums_private.h"
 
 /* Sums besides those of the stages. */

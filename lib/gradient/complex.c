@@ -43,11 +43,11 @@ static int add_column(nevh_field *f, nevh__planned *term, const nevh__block *b,
                             of_value ? h[0] : slope);
 }
 
-int nevh__gradient_complex(nevh_field *f, nevh__planned *term, size_t width,
-                           const double t[], const double q[], const double p[],
-                           double dh_dq[], double dh_dp[]) {
-    nevh__block b = nevh__block_over(width, t, q, p, 1, 1);
-    size_t first = dh_dq ? 0 : term->nq, end = dh_dp ? term->nv : term->nq;
+int nevh__gradient_complex(nevh_field *f, nevh__planned *term,
+                           const nevh__places *at) {
+    nevh__block b = nevh__block_over(at->width, at->t, at->q, at->p, 1, 1);
+    size_t first = at->dh_dq ? 0 : term->nq;
+    size_t end = at->dh_dp ? term->nv : term->nq;
     int status = NEVH_OK;
     while (!status && nevh__block_next(f, term, &b))
         for (size_t column = 0; !status && column < b.used; column++) {
@@ -57,7 +57,7 @@ int nevh__gradient_complex(nevh_field *f, nevh__planned *term, size_t width,
             term->values += end - first;
             for (size_t k = first; !status && k < end; k++)
                 status = add_column(f, term, &b, column, instance, lane, k,
-                                    k < term->nq ? dh_dq : dh_dp);
+                                    k < term->nq ? at->dh_dq : at->dh_dp);
         }
     return status;
 }

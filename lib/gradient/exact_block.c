@@ -1,68 +1,105 @@
-/* nevh: the derivatives that terms bring themselves.
+/* nevh: exact gradients of whole vectors of states, in place.
+
+   The rows of a term's block are read where the states are, and written where
+   the gradient goes by the first term that has a share in it; the slopes of
+   others are added.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "gradient/field_private.h"
-#include <math.h>
+#include "gradient/evaluation_private.h"
 #include <nevh/body.h>
 
-/* Adds one number a lane to `out`; returns whether one is not finite. */
-NEVH_SIMD static bool add_lanes(size_t lanes, const double *row, double *out) {
-    int64_t bad = 0;
-    for (size_t lane = 0; lane < lanes; lane++)
-        out[lane] += row[lane];
-    for (size_t lane = 0; lane < lanes; lane++)
-        bad |= row[lane] - row[lane] != 0;
-    return bad != 0;
-}
+/* Instances that a state repeated over a vector may have, and variables: more
+   of them cost more than to gather one vector of instances. */
+enum { MOST_REPEATED = 2, MOST_ROWS = 8 };
 
-/* Adds a variable's derivatives; returns whether one is not finite. */
-static bool add_row(const nevh__planned *term, const nevh__block *b, size_t k,
-                    const double *row, double *out) {
-    bool bad = false;
-    for (size_t group = 0; group < b->groups; group++, row += b->lanes) {
-        size_t i = nevh__index(term, b->group + group, k);
-        double *to = out + i * b->width + b->lane;
-        if (b->lanes == 1) {
-            *to += *row;
-            bad |= *row - *row != 0;
-        } else
-            bad |= add_lanes(b->lanes, row, to);
-    }
-    return bad;
-}
-
-static int fail(nevh_field *f, const nevh__planned *term, const nevh__block *b,
-                const double *row) {
-    size_t column = 0;
-    while (column + 1 < b->used && isfinite(row[column]))
-        column++;
-    return nevh__block_fail(f, term, b, column, "a derivative of ",
-                            row[column]);
-}
-
-static int exact_block(nevh_field *f, nevh__planned *term, nevh__block *b,
-                       double dh_dq[], double dh_dp[]) {
+/* Whether the rows of all variables stand in the state as in a block. */
+static bool stands(const nevh__planned *term) {
     const nevh_term *decl = &term->term->decl;
-    const double *q = f->rows, *p = q + term->nq * b->stride;
-    const double *c = p + term->np * b->stride;
-    double *slopes_p = f->slopes + term->nq * b->stride;
-    decl->gradient(b->stride, decl->time ? f->times : f->zeros, q, p, c,
-                   decl->params, dh_dq ? f->slopes : NULL,
-                   dh_dp ? slopes_p : NULL);
-    for (size_t k = dh_dq ? 0 : term->nq; k < (dh_dp ? term->nv : term->nq);
-         k++) {
-        const double *row = f->slopes + k * b->stride;
-        if (add_row(term, b, k, row, k < term->nq ? dh_dq : dh_dp))
-            return fail(f, term, b, row);
-    }
-    return NEVH_OK;
+    return (!term->nq || nevh__contiguous(decl->q, term->nq, decl->count)) &&
+           (!term->np || nevh__contiguous(decl->p, term->np, decl->count));
 }
 
-int nevh__gradient_exact(nevh_field *f, nevh__planned *term, size_t width,
-                         const double t[], const double q[], const double p[],
-                         double dh_dq[], double dh_dp[]) {
-    nevh__block b = nevh__block_over(width, t, q, p, 1, 1);
-    int status = NEVH_OK;
-    while (!status && nevh__block_next(f, term, &b))
-        status = exact_block(f, term, &b, dh_dq, dh_dp);
-    return status;
+bool nevh__exact_block_repeats(const nevh_field *f) {
+    for (size_t i = 0; i < f->n_terms; i++)
+        if (f->terms[i].term->decl.count > MOST_REPEATED ||
+            !stands(&f->terms[i]))
+            return false;
+    return f->n <= MOST_ROWS;
 }
+
+static bool applicable(const nevh__call *e) {
+    const nevh_field *f = e->field;
+    if (f->gradient != nevh_exact)
+        return false; /* terms need not bring derivatives */
+    if (e->width % NEVH__LANES)
+        return false; /* nothing may be written beyond the rows */
+    for (size_t i = 0; i < f->n_terms; i++) {
+        const nevh__planned *term = &f->terms[i];
+        const nevh_term *decl = &term->term->decl;
+        if (!nevh__wanted(&e->at, term))
+            continue;
+        if (!stands(term))
+            return false; /* variables would have to be gathered */
+        if (decl->count * e->width > f->capacity)
+            return false; /* slopes that are added have no more room */
+        if (decl->time && decl->count > 1)
+            return false; /* the row of times is one state's */
+    }
+    return true;
+}
+
+/* Where a half of a part's slopes goes: to its place if that is all of the half
+   and nothing is there yet, else beside it, to be added.  False: something is
+   to be added where nothing is. */
+static bool direct(const nevh__call *e, const size_t index[], size_t size,
+                   bool *there, double *half, double *beside, double **written,
+                   double **sum) {
+    *written = *there ? beside : half;
+    *sum = *there ? half + index[0] * e->width : NULL;
+    bool known = *there || size == e->field->n * e->width;
+    *there = true;
+    return known;
+}
+
+static bool add_part(nevh__call *e, nevh__planned *term, bool there[2]) {
+    nevh_field *f = e->field;
+    const nevh_term *decl = &term->term->decl;
+    size_t width = e->width, stride = decl->count * width;
+    double *slopes_p = f->slopes + stride * term->nq;
+    if (e->count == NEVH__MOST_CALLED)
+        return false;
+    nevh__called *x = &e->terms[e->count++];
+    *x = (nevh__called){.term = term,
+                        .gradient = decl->gradient,
+                        .params = decl->params,
+                        .stride = stride,
+                        .t = decl->time ? e->at.t : f->zeros,
+                        .q = term->nq ? e->at.q + decl->q[0] * width : e->at.q,
+                        .p = term->np ? e->at.p + decl->p[0] * width : e->at.p,
+                        .c = nevh__constants_plan(term, NULL, width)};
+    bool known = !decl->nc || x->c;
+    f->starved |= !known;
+    e->timed |= decl->time;
+    if (e->at.dh_dq && term->nq) {
+        x->size_q = stride * term->nq;
+        known &= direct(e, decl->q, x->size_q, &there[0], e->at.dh_dq,
+                        f->slopes, &x->dh_dq, &x->sum_q);
+    }
+    if (e->at.dh_dp && term->np) {
+        x->size_p = stride * term->np;
+        known &= direct(e, decl->p, x->size_p, &there[1], e->at.dh_dp, slopes_p,
+                        &x->dh_dp, &x->sum_p);
+    }
+    x->sums = x->sum_q || x->sum_p;
+    return known;
+}
+
+static bool plan(nevh__call *e) {
+    nevh_field *f = e->field;
+    bool there[2] = {!e->at.dh_dq, !e->at.dh_dp};
+    for (nevh__planned *term = f->terms; term < f->terms + f->n_terms; term++)
+        if (nevh__wanted(&e->at, term) && !add_part(e, term, there))
+            return false;
+    return there[0] && there[1];
+}
+
+const nevh__evaluator nevh__exact_block = {applicable, plan};

@@ -1,6 +1,6 @@
 /* nevh: a field is planned once and asked many times.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "gradient/field_private.h"
+#include "gradient/evaluation_private.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,13 +11,14 @@ void nevh_field_free(nevh_field *f) {
         free(f->terms[i].delta);
         free(f->terms[i].steps);
         free(f->terms[i].vars);
-        free(f->terms[i].constants);
-        nevh__constants_free(f->terms[i].planned);
-        nevh__wiring_free(&f->terms[i].to_q);
-        nevh__wiring_free(&f->terms[i].to_p);
-        nevh__stencil_free(&f->terms[i]);
+        free(f->terms[i].gathered);
+        nevh__constants_free(f->terms[i].constants);
+        nevh__central_stencil_clear(&f->terms[i]);
+        nevh__scatter_map_clear(&f->terms[i].to_q);
+        nevh__scatter_map_clear(&f->terms[i].to_p);
     }
     free(f->terms);
+    nevh__single_free(f->single);
     free(f->scale);
     free(f->jacobian);
     free(f->workspace);
@@ -42,40 +43,6 @@ int nevh__field_ready(nevh_field *f) {
     return nevh__fail(&f->report, NEVH_ESTALE,
                       "effects were added or switched since this was planned: "
                       "make a new stepper or field");
-}
-
-static bool reads(const nevh__planned *term, bool q, bool p) {
-    return (q && term->nq) || (p && term->np);
-}
-
-int nevh_field_gradient(nevh_field *f, size_t width, const double t[],
-                        const double q[], const double p[], double dh_dq[],
-                        double dh_dp[]) {
-    if (!f)
-        return NEVH_EINVAL;
-    return nevh__field_gradient_padded(f, width, width, t, q, p, dh_dq, dh_dp);
-}
-
-int nevh__field_gradient_padded(nevh_field *f, size_t width, size_t used,
-                                const double t[], const double q[],
-                                const double p[], double dh_dq[],
-                                double dh_dp[]) {
-    int status = nevh__field_ready(f);
-    if (status)
-        return status;
-    if (dh_dq)
-        f->gradients += used;
-    if (nevh__gradient_lean(f, width, t, q, p, dh_dq, dh_dp))
-        return NEVH_OK;
-    for (size_t i = 0; dh_dq && i < f->n * width; i++)
-        dh_dq[i] = 0;
-    for (size_t i = 0; dh_dp && i < f->n * width; i++)
-        dh_dp[i] = 0;
-    for (size_t i = 0; !status && i < f->n_terms; i++)
-        if (reads(&f->terms[i], dh_dq, dh_dp))
-            status = f->gradient->evaluate(f, &f->terms[i], width, t, q, p,
-                                           dh_dq, dh_dp);
-    return status;
 }
 
 double nevh_field_step(const nevh_field *f, const char *name, size_t instance,

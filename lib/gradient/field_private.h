@@ -37,21 +37,29 @@ typedef struct {
     size_t begin, end; /* in vars */
 } nevh__pass;
 
-/* The points of dH/dq, dH/dp or both of a term; see stencil.c. */
+/* Where states are and their gradient goes, n x width each.  Either half of the
+   gradient may be NULL. */
+typedef struct {
+    size_t width; /* the distance between rows */
+    const double *t, *q, *p;
+    double *dh_dq, *dh_dp;
+} nevh__places;
+
+/* The points of the differences of a term; see central_stencil.c. */
 typedef struct nevh__stencil nevh__stencil;
 
-/* How a block of all instances of a term is wired to a half of the state: one
-   row for each variable of an instance.  Lists of a variable's numbers are in
-   their order in the block. */
+/* From a half of the state to the rows of a block of all instances of a term,
+   one row for each variable of an instance, and back.  Lists of a variable's
+   numbers are in their order in the block. */
 typedef struct {
     size_t rows, count, stride; /* count: instances; stride: padded */
     size_t *source;             /* rows x stride: of one lane */
     size_t targets;             /* variables that are written to */
     size_t *target;
-    size_t *begin;  /* targets + 1: of each list below */
-    size_t *column; /* in rows of `stride`: of one lane */
-    size_t *entry;  /* in rows of `count`: of vectors */
-} nevh__wiring;
+    size_t *begin;   /* targets + 1: of the lists */
+    size_t *column;  /* each list: in rows of `stride`, of one lane */
+    bool contiguous; /* row after row, as they stand in the state */
+} nevh__scatter_map;
 
 typedef struct {
     const nevh__term_entry *term;
@@ -60,22 +68,17 @@ typedef struct {
     nevh__step *steps;  /* nevh__step_rows x nv */
     size_t *vars;       /* nv variables in the order of the passes */
     nevh__pass pass[2]; /* full order; order 2 */
-    nevh__stencil *stencil[3]; /* NULL: there is none */
     uint64_t values;
-    /* Of exact gradients; see lean.c. */
-    bool straight_q, straight_p, straight;
-    double *constants; /* rows of a block of all instances and so many lanes */
-    size_t constants_width;
-    struct nevh__constants *planned; /* those of calls */
-    nevh__wiring to_q, to_p;         /* no targets: there is none */
+    nevh__stencil *stencil[3]; /* of dH/dq, dH/dp, both; NULL: by blocks */
+    struct nevh__constants *constants; /* of evaluations */
+    nevh__scatter_map to_q, to_p;      /* of exact_gather: no targets: none */
+    double *gathered; /* constants of a block of all instances and of so many */
+    size_t gathered_width; /* states, those that were asked for last */
 } nevh__planned;
 
-/* Adds a term's gradient to dh_dq and dh_dp, n x width each; either may be
-   NULL. */
-typedef int (*nevh__gradient_fn)(nevh_field *, nevh__planned *, size_t width,
-                                 const double t[], const double q[],
-                                 const double p[], double dh_dq[],
-                                 double dh_dp[]);
+/* Adds a term's gradient at any places, or writes it: nevh__writes. */
+typedef int (*nevh__gradient_fn)(nevh_field *, nevh__planned *,
+                                 const nevh__places *);
 
 struct nevh_gradient {
     const char *name;
@@ -108,10 +111,13 @@ struct nevh_field {
     double *one;       /* one state of a scalar or complex term */
     double *jacobian;  /* 6n, made by nevh_gsl_system */
     uint64_t gradients;
-    size_t most_instances;                    /* of a term; these: lean.c */
-    const nevh__planned *writer_q, *writer_p; /* write all rows, and first */
-    nevh__planned *sole_q, *sole_p;           /* and alone */
+    /* Of a half of the gradient: the first term with a share in it, if that has
+       all of it; else NULL. */
+    const nevh__planned *whole_q, *whole_p;
+    bool starved; /* memory was out when an evaluation was planned */
     bool repeats; /* one state may as well be repeated over a vector */
+    struct nevh__single
+        *single; /* evaluations at one state; see evaluation.c */
     nevh__report report;
 };
 
@@ -186,122 +192,63 @@ static inline size_t nevh__index(const nevh__planned *term, size_t instance,
                         : decl->p[instance * term->np + k - term->nq];
 }
 
-/* The kernels; nevh__gradient_fn. */
-int nevh__gradient_central(nevh_field *, nevh__planned *, size_t width,
-                           const double t[], const double q[], const double p[],
-                           double dh_dq[], double dh_dp[]);
-int nevh__gradient_exact(nevh_field *, nevh__planned *, size_t width,
-                         const double t[], const double q[], const double p[],
-                         double dh_dq[], double dh_dp[]);
-int nevh__gradient_complex(nevh_field *, nevh__planned *, size_t width,
-                           const double t[], const double q[], const double p[],
-                           double dh_dq[], double dh_dp[]);
+/* Whether a term that has all of a half writes it, and others add. */
+static inline bool nevh__writes(const nevh_field *f, const nevh__planned *whole,
+                                size_t width) {
+    if (!whole || f->gradient != nevh_exact)
+        return whole;
+    return width % NEVH__LANES == 0 &&
+           whole->term->decl.count * width <= f->capacity;
+}
+/* Which of three: dH/dq, dH/dp, both. */
+static inline size_t nevh__part_of(const nevh__places *at) {
+    return at->dh_dq && at->dh_dp ? 2 : at->dh_dp ? 1 : 0;
+}
+/* Whether a term has a part in what is asked for. */
+static inline bool nevh__wanted(const nevh__places *at,
+                                const nevh__planned *term) {
+    return (at->dh_dq && term->nq) || (at->dh_dp && term->np);
+}
 
-/* Exact gradients of all terms, if each fits into one block and all are finite;
-   else false.  What they need is made when planning: false when memory is
-   out. */
-bool nevh__gradient_lean(nevh_field *, size_t width, const double t[],
-                         const double q[], const double p[], double dh_dq[],
-                         double dh_dp[]);
-bool nevh__lean_plan(nevh_field *);
+/* For each method; nevh__gradient_fn. */
+int nevh__gradient_central(nevh_field *, nevh__planned *, const nevh__places *);
+/* The same of a term without a stencil. */
+int nevh__central_blocks(nevh_field *, nevh__planned *, const nevh__places *);
+int nevh__gradient_exact(nevh_field *, nevh__planned *, const nevh__places *);
+int nevh__gradient_complex(nevh_field *, nevh__planned *, const nevh__places *);
+
+/* Of all terms, one after another, at any places. */
+int nevh__field_terms(nevh_field *, const nevh__places *);
+/* What differences, and exact gradients, need at any places; false when memory
+   is out. */
+bool nevh__central_stencil_plan(nevh_field *);
+void nevh__central_stencil_clear(nevh__planned *);
+bool nevh__exact_gather_plan(nevh_field *);
+/* Whether one state may as well be repeated over a vector. */
+bool nevh__exact_block_repeats(const nevh_field *);
+
 /* For `count` instances whose variable k of instance i is index[i*rows + k] of
    n; false when memory is out. */
-bool nevh__wiring_plan(nevh__wiring *, size_t n, size_t rows, size_t count,
-                       const size_t index[]);
-void nevh__wiring_free(nevh__wiring *);
-/* The rows of one lane, padded with column 0. */
-void nevh__wiring_collect(const nevh__wiring *, const double from[],
-                          double to[]);
-/* Adds rows of one lane, or of whole vectors of lanes, to what they belong to;
-   whether all are finite. */
-bool nevh__wiring_add(const nevh__wiring *, const double from[], double out[]);
-bool nevh__wiring_add_vectors(const nevh__wiring *, size_t width,
-                              const double from[], double out[]);
+bool nevh__scatter_map_init(nevh__scatter_map *, size_t n, size_t rows,
+                            size_t count, const size_t index[]);
+void nevh__scatter_map_clear(nevh__scatter_map *);
+/* Fills rows of `stride` with all instances of `width` lanes, and then with
+   column 0; adds such rows to what they belong to, and tells whether all are
+   finite. */
+void nevh__gather(const nevh__scatter_map *, size_t width, size_t stride,
+                  const double from[], double to[]);
+bool nevh__scatter(const nevh__scatter_map *, size_t width, size_t stride,
+                   const double from[], double out[]);
+/* Whether variable k of instance i is number i + k: one row after another, in
+   a block of one instance or of one variable. */
+bool nevh__contiguous(const size_t index[], size_t variables, size_t count);
 
-/* A term's constants, repeated over so many lanes. */
-const double *nevh__lean_constants(nevh__planned *, size_t width,
-                                   size_t stride);
-
-/* A gradient, or half of one, that a kernel takes many times at the same place
-   in memory: terms whose rows stand there just as their blocks want them. */
-enum { NEVH__MOST_CALLED = 8, NEVH__MOST_POINT_ROWS = 64 };
-typedef struct {
-    nevh__planned *term;
-    nevh_block_gradient_fn gradient;
-    nevh_point_gradient_fn point; /* of one instance, in a call of width 1 */
-    const void *params;
-    size_t stride, size_q, size_p;
-    const double *t, *q, *p, *c;
-    double *dh_dq, *dh_dp; /* written by the term; NULL: not asked for */
-    double *sum_q, *sum_p; /* what that is added to; NULL: it is there */
-    bool sums;             /* any is added */
-} nevh__called;
-typedef struct {
-    nevh_field *field;
-    size_t count; /* of terms, or instances; 0: there is no such call */
-    bool exact;   /* else differences, or complex steps, of all terms */
-    const double *t, *q, *p;
-    size_t width;
-    bool timed;      /* time is read, in all lanes */
-    double *half[2]; /* dh_dq, dh_dp; either may be NULL */
-    nevh__called terms[NEVH__MOST_CALLED];
-    const double *inverse; /* n x width: of dH/dp alone, where T is that of
-                              masses, what p is multiplied by; or NULL */
-} nevh__call;
-/* width is a multiple of NEVH__LANES, or 1 for a call of point gradients, where
-   all terms have them; dh_dq or dh_dp may be NULL. */
-nevh__call nevh__call_plan(nevh_field *, size_t width, const double t[],
-                           const double q[], const double p[], double dh_dq[],
-                           double dh_dp[]);
-void nevh__call_add(const nevh__called *);
-/* A term's constants as blocks of all instances and `width` states have them,
-   made when planning, and the field's.  NULL: there are none, or memory is
-   out. */
-const double *nevh__constants_plan(nevh__planned *, size_t width);
-void nevh__constants_free(struct nevh__constants *);
-/* One that is not exact: takes values, counts them, and looks at them. */
-int nevh__call_run_values(const nevh__call *);
-/* Takes one that is exact, but looks at no result, and counts nothing; a call of width 1,
-   or any. */
-NEVH__INLINE void nevh__call_run_points(const nevh__call *c) {
-    const nevh__called *x = c->terms;
-    for (size_t left = c->count; left > 0; left--, x++) {
-        x->point(*x->t, x->q, x->p, x->c, x->params, x->dh_dq, x->dh_dp);
-        if (x->sums)
-            nevh__call_add(x);
-    }
-}
-NEVH__INLINE void nevh__call_run(const nevh__call *c) {
-    if (c->width == 1) {
-        nevh__call_run_points(c);
-        return;
-    }
-    for (const nevh__called *x = c->terms; x < c->terms + c->count; x++) {
-        x->gradient(x->stride, x->t, x->q, x->p, x->c, x->params, x->dh_dq,
-                    x->dh_dp);
-        if (x->sums)
-            nevh__call_add(x);
-    }
-}
-/* Takes it for one lane, counts, and tells whether that is finite.  Where not,
-   nevh__field_gradient_padded says why. */
-bool nevh__call_take(const nevh__call *);
 /* nevh_field_gradient, of which `used` lanes count. */
 int nevh__field_gradient_padded(nevh_field *, size_t width, size_t used,
                                 const double t[], const double q[],
                                 const double p[], double dh_dq[],
                                 double dh_dp[]);
 
-/* Stencils: planned (false when memory is out), freed, chosen (NULL if there
-   is none), and put to use. */
-bool nevh__stencil_plan(const nevh_field *, nevh__planned *);
-void nevh__stencil_free(nevh__planned *);
-nevh__stencil *nevh__stencil_for(const nevh__planned *, const double dh_dq[],
-                                 const double dh_dp[]);
-/* Adds the differences. */
-int nevh__stencil_difference(nevh_field *, nevh__planned *, nevh__stencil *,
-                             size_t width, const double t[], const double q[],
-                             const double p[], double dh_dq[], double dh_dp[]);
 /* The derivative from values at x +- j delta, copies being `apart` from each
    other: + before -, nearest first. */
 static inline double nevh__chord_slope(const nevh_gradient *g, size_t apart,
@@ -380,11 +327,6 @@ int nevh__field_ready(nevh_field *);
 static inline bool nevh__field_at_hand(const nevh_field *f) {
     return f->planned && !f->report.status &&
            f->system->revision == f->revision;
-}
-
-/* Whether there is such a call, and it may be taken. */
-static inline bool nevh__call_ready(const nevh__call *c) {
-    return c->count && nevh__field_at_hand(c->field);
 }
 
 #endif

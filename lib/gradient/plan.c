@@ -1,6 +1,7 @@
 /* nevh: a field is planned.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/step_selection_private.h"
+#include "gradient/evaluation_private.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -101,9 +102,12 @@ static int plan_workspace(nevh_field *f) {
     f->h = f->zeros + columns;
     f->sums = f->h + columns;
     f->one = f->sums + 2 * columns;
-    if (f->gradient == nevh_exact && !nevh__lean_plan(f))
-        return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
-    return NEVH_OK;
+    if (f->gradient != nevh_exact)
+        return NEVH_OK;
+    f->repeats = nevh__exact_block_repeats(f);
+    if (nevh__exact_gather_plan(f))
+        return NEVH_OK;
+    return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
 }
 
 /* The user's steps win, and are differenced at full order. */
@@ -197,9 +201,9 @@ static int plan_steps(nevh_field *f, const nevh_options *o) {
     for (size_t i = 0; !status && i < f->n_terms; i++) {
         take_given(f, &f->terms[i], o);
         arrange(f, &f->terms[i]);
-        if (!nevh__stencil_plan(f, &f->terms[i]))
-            status = nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
     }
+    if (!status && !nevh__central_stencil_plan(f))
+        status = nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
     return status;
 }
 
@@ -215,6 +219,8 @@ static int plan_gradient(nevh_field *f, const nevh_options *o) {
     f->gradients = 0;
     if (!status)
         f->report = (nevh__report){0};
+    if (!status && !nevh__single_plan(f))
+        status = nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
     return status;
 }
 

@@ -81,6 +81,8 @@ static int plan_parts(nevh_stepper *s) {
         status = nevh__plan_friction(s);
     if (!status)
         status = integrator->kernel->plan(w);
+    if (!status && w->field->starved)
+        status = nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     if (!status)
         status = nevh__friction_step_plan(s);
     if (!status)

@@ -3,7 +3,7 @@
 #ifndef NEVH_WORK_PRIVATE_H
 #define NEVH_WORK_PRIVATE_H
 
-#include "gradient/field_private.h"
+#include "gradient/evaluation_private.h"
 #include <nevh/extend.h>
 
 /* Trials that step control may make within one step of a lane. */

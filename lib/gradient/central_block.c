@@ -163,7 +163,7 @@ static void perturb_one(double *row, size_t pairs, size_t apart, double delta,
 /* Where there are many instances the way from group to group has to be short;
    bit for bit what difference_lanes gives. */
 static int difference_one(nevh_field *f, nevh__planned *term, nevh__block *b,
-                          selection s, double dh_dq[], double dh_dp[]) {
+                          selection s, const nevh__places *x) {
     const nevh_gradient *g = weights_of(f, s.pairs);
     double width[NEVH__COLUMNS], slope[NEVH__COLUMNS];
     nevh__cursor at = nevh__first_group(b);
@@ -179,14 +179,14 @@ static int difference_one(nevh_field *f, nevh__planned *term, nevh__block *b,
         size_t k = s.vars[at.v];
         if (bad && slope[i] - slope[i] != 0)
             return nevh__central_fail(f, term, b, at.instance, k);
-        double *out = k < term->nq ? dh_dq : dh_dp;
+        double *out = k < term->nq ? x->dh_dq : x->dh_dp;
         out[nevh__index(term, at.instance, k) * b->width + b->lane] += slope[i];
     }
     return NEVH_OK;
 }
 
 static int difference_lanes(nevh_field *f, nevh__planned *term, nevh__block *b,
-                            selection s, double dh_dq[], double dh_dp[]) {
+                            selection s, const nevh__places *x) {
     const nevh_gradient *g = weights_of(f, s.pairs);
     size_t apart = b->groups * b->lanes;
     perturb_block(f, term, b, s);
@@ -194,7 +194,7 @@ static int difference_lanes(nevh_field *f, nevh__planned *term, nevh__block *b,
     nevh__cursor at = nevh__first_group(b);
     for (size_t group = 0; group < b->groups; group++) {
         size_t k = s.vars[at.v], first = group * b->lanes;
-        double *out = k < term->nq ? dh_dq : dh_dp;
+        double *out = k < term->nq ? x->dh_dq : x->dh_dp;
         out += nevh__index(term, at.instance, k) * b->width + b->lane;
         bool bad = nevh__add_slopes(g, apart, b->lanes,
                                     f->rows + k * b->stride + first,
@@ -214,28 +214,18 @@ static selection select_vars(const nevh__planned *term, const nevh__pass *pass,
     return (selection){term->vars + begin, end - begin, pass->pairs};
 }
 
-static int difference_blocks(nevh_field *f, nevh__planned *term, size_t width,
-                             const double t[], const double q[],
-                             const double p[], double dh_dq[], double dh_dp[]) {
+int nevh__central_blocks(nevh_field *f, nevh__planned *term,
+                         const nevh__places *x) {
     int status = NEVH_OK;
     for (int i = 0; !status && i < 2; i++) {
-        selection s = select_vars(term, &term->pass[i], dh_dq, dh_dp);
+        selection s = select_vars(term, &term->pass[i], x->dh_dq, x->dh_dp);
         if (s.count == 0)
             continue;
-        nevh__block b = nevh__block_over(width, t, q, p, 2 * s.pairs, s.count);
+        nevh__block b =
+            nevh__block_over(x->width, x->t, x->q, x->p, 2 * s.pairs, s.count);
         while (!status && nevh__block_next(f, term, &b))
-            status = (b.lanes == 1 ? difference_one : difference_lanes)(
-                f, term, &b, s, dh_dq, dh_dp);
+            status = (b.lanes == 1 ? difference_one
+                                   : difference_lanes)(f, term, &b, s, x);
     }
     return status;
-}
-
-int nevh__gradient_central(nevh_field *f, nevh__planned *term, size_t width,
-                           const double t[], const double q[], const double p[],
-                           double dh_dq[], double dh_dp[]) {
-    nevh__stencil *s = nevh__stencil_for(term, dh_dq, dh_dp);
-    if (s)
-        return nevh__stencil_difference(f, term, s, width, t, q, p, dh_dq,
-                                        dh_dp);
-    return difference_blocks(f, term, width, t, q, p, dh_dq, dh_dp);
 }

@@ -1,0 +1,246 @@
+/* nevh: which evaluator takes a gradient is decided here, when it is planned.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradient/evaluation_private.h"
+#include "system/vector_private.h"
+#include <nevh/body.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Exact gradients have another way of their own, which looks at its results:
+   who plans them takes them so where no evaluator is applicable. */
+static bool any_but_exact(const nevh__call *e) {
+    const nevh_field *f = e->field;
+    if (f->gradient == nevh_exact)
+        return false;
+    if (f->n > NEVH__MOST_POINT_ROWS)
+        return false; /* evaluations are for small systems */
+    return true;
+}
+
+static bool plan_terms(nevh__call *e) {
+    e->count = e->field->n_terms;
+    e->timed = true;
+    return true;
+}
+
+static const nevh__evaluator term_by_term = {any_but_exact, plan_terms};
+
+static const nevh__evaluator *const evaluators[] = {
+    &nevh__exact_point, &nevh__exact_block, &nevh__central_stencil,
+    &term_by_term};
+
+/* Where no other term reads momenta. */
+static const double *find_masses(const nevh__call *e) {
+    const nevh__called *x = e->terms;
+    const nevh_term *decl = &x->term->term->decl;
+    const double *inverse = nevh__term_inverse_masses(x->term->term);
+    size_t alone = e->width == 1 ? decl->count : 1;
+    if (e->at.dh_dq || !inverse || e->count != alone ||
+        decl->count != e->field->n)
+        return NULL;
+    return e->width == 1 ? inverse : x->c;
+}
+
+nevh__call nevh__call_plan(nevh_field *f, size_t width, const double t[],
+                           const double q[], const double p[], double dh_dq[],
+                           double dh_dp[]) {
+    const nevh__call asked = {
+        .field = f, .width = width, .at = {width, t, q, p, dh_dq, dh_dp}};
+    size_t count = sizeof evaluators / sizeof *evaluators;
+    for (size_t i = 0; i < count && !nevh__field_ready(f); i++) {
+        nevh__call e = asked;
+        if (!evaluators[i]->applicable(&e) || !evaluators[i]->plan(&e))
+            continue;
+        e.exact = f->gradient == nevh_exact;
+        if (e.exact)
+            e.inverse = find_masses(&e);
+        return e;
+    }
+    return (nevh__call){0};
+}
+
+int nevh__call_run_values(const nevh__call *e) {
+    return e->stencil ? nevh__central_stencil_run(e)
+                      : nevh__field_terms(e->field, &e->at);
+}
+
+int nevh__field_terms(nevh_field *f, const nevh__places *at) {
+    size_t size = f->n * at->width * sizeof(double);
+    int status = NEVH_OK;
+    if (at->dh_dq && !nevh__writes(f, f->whole_q, at->width))
+        memset(at->dh_dq, 0, size);
+    if (at->dh_dp && !nevh__writes(f, f->whole_p, at->width))
+        memset(at->dh_dp, 0, size);
+    nevh__gradient_fn evaluate = f->gradient->evaluate;
+    nevh__planned *term = f->terms, *end = term + f->n_terms;
+    for (; !status && term < end; term++)
+        if (nevh__wanted(at, term))
+            status = evaluate(f, term, at);
+    return status;
+}
+
+NEVH_SIMD static void add(size_t size, const double x[], double sum[]) {
+    NEVH_LANES(i, size) {
+        sum[i] += x[i];
+    }
+}
+
+static void add_numbers(size_t size, const double x[], double sum[]) {
+    for (size_t k = 0; k < size; k++)
+        sum[k] += x[k];
+}
+
+void nevh__call_add(const nevh__called *x) {
+    void (*to)(size_t, const double *, double *) = x->point ? add_numbers : add;
+    if (x->sum_q)
+        to(x->size_q, x->dh_dq, x->sum_q);
+    if (x->sum_p)
+        to(x->size_p, x->dh_dp, x->sum_p);
+}
+
+/* A term's constants for blocks of so many states. */
+struct nevh__constants {
+    struct nevh__constants *next;
+    const nevh__stencil *of; /* NULL: of instances */
+    size_t width;
+    double rows[];
+};
+
+void nevh__constants_free(struct nevh__constants *c) {
+    while (c) {
+        struct nevh__constants *next = c->next;
+        free(c);
+        c = next;
+    }
+}
+
+static void fill(const nevh_term *decl, size_t columns,
+                 struct nevh__constants *c) {
+    size_t stride = nevh__padded(columns * c->width);
+    for (size_t i = 0; i < decl->nc * stride; i++) {
+        size_t column = i % stride / c->width;
+        size_t x = column < columns ? column : 0;
+        size_t instance = c->of ? nevh__stencil_instance(c->of, x) : x;
+        c->rows[i] = decl->c[instance * decl->nc + i / stride];
+    }
+}
+
+const double *nevh__constants_plan(nevh__planned *term, const nevh__stencil *of,
+                                   size_t width) {
+    const nevh_term *decl = &term->term->decl;
+    size_t columns = of ? nevh__stencil_points(of) : decl->count;
+    size_t count = decl->nc * nevh__padded(columns * width);
+    struct nevh__constants *c = term->constants;
+    while (c && (c->width != width || c->of != of))
+        c = c->next;
+    if (c || !count)
+        return c ? c->rows : NULL;
+    c = nevh__array(1, sizeof *c + count * sizeof *c->rows);
+    if (!c)
+        return NULL;
+    c->next = term->constants;
+    c->of = of;
+    c->width = width;
+    term->constants = c;
+    fill(decl, columns, c);
+    return c->rows;
+}
+
+/* One state goes through places of the field's own, for dH/dq, dH/dp, or
+   both. */
+struct nevh__single {
+    nevh__call of[3];
+    double t[NEVH__LANES], numbers[]; /* q, p, dH/dq, dH/dp */
+};
+
+/* A number for a state, or one for each lane of a vector. */
+static nevh__call plan_single(nevh_field *f, size_t width, size_t part) {
+    struct nevh__single *s = f->single;
+    size_t size = f->n * NEVH__LANES;
+    double *x = nevh__aligned(s->numbers);
+    return nevh__call_plan(f, width, s->t, x, x + size,
+                           part != 1 ? x + 2 * size : NULL,
+                           part != 0 ? x + 3 * size : NULL);
+}
+
+bool nevh__single_plan(nevh_field *f) {
+    size_t size = (4 * f->n + 1) * NEVH__LANES * sizeof(double);
+    if (f->gradient != nevh_exact || f->n > NEVH__MOST_POINT_ROWS)
+        return true;
+    f->single = nevh__array(1, sizeof *f->single + size);
+    for (size_t part = 0; f->single && part < 3; part++) {
+        nevh__call *e = &f->single->of[part];
+        *e = plan_single(f, 1, part);
+        if (!e->count && f->repeats)
+            *e = plan_single(f, NEVH__LANES, part);
+        if (!e->exact)
+            e->count = 0; /* as well where the state is */
+    }
+    return f->single && !f->starved;
+}
+
+void nevh__single_free(struct nevh__single *s) {
+    free(s);
+}
+
+/* Stores in parts are slow to load as a vector. */
+NEVH_SIMD static void repeat(size_t count, const double from[], double to[]) {
+    nevh__repeat(count, from, to);
+}
+
+static void load(size_t width, size_t count, const double from[],
+                 const double to[]) {
+    if (width > 1)
+        repeat(count, from, (double *)to);
+    else
+        for (size_t k = 0; k < count; k++)
+            ((double *)to)[k] = from[k];
+}
+
+/* As if added to 0; returns the sum of x - x. */
+static double store(size_t width, size_t count, const double from[],
+                    double to[]) {
+    double sum = 0;
+    for (size_t k = 0; to && k < count; k++, from += width) {
+        to[k] = 0 + *from;
+        sum += *from - *from;
+    }
+    return sum;
+}
+
+/* False: there is no such evaluation, or something is not finite. */
+static bool take_single(nevh_field *f, const nevh__places *at) {
+    const nevh__call *e = f->single ? &f->single->of[nevh__part_of(at)] : NULL;
+    if (!e || !e->count || (!at->dh_dq && !at->dh_dp))
+        return false;
+    load(e->width, 1, at->t, e->at.t);
+    load(e->width, f->n, at->q, e->at.q);
+    load(e->width, f->n, at->p, e->at.p);
+    nevh__call_run(e);
+    return store(e->width, f->n, e->at.dh_dq, at->dh_dq) +
+               store(e->width, f->n, e->at.dh_dp, at->dh_dp) ==
+           0;
+}
+
+int nevh__field_gradient_padded(nevh_field *f, size_t width, size_t used,
+                                const double t[], const double q[],
+                                const double p[], double dh_dq[],
+                                double dh_dp[]) {
+    const nevh__places at = {width, t, q, p, dh_dq, dh_dp};
+    int status = nevh__field_ready(f);
+    if (status)
+        return status;
+    if (dh_dq)
+        f->gradients += used;
+    if (width == 1 && take_single(f, &at))
+        return NEVH_OK;
+    return nevh__field_terms(f, &at);
+}
+
+int nevh_field_gradient(nevh_field *f, size_t width, const double t[],
+                        const double q[], const double p[], double dh_dq[],
+                        double dh_dp[]) {
+    if (!f)
+        return NEVH_EINVAL;
+    return nevh__field_gradient_padded(f, width, width, t, q, p, dh_dq, dh_dp);
+}

@@ -1,0 +1,114 @@
+/* nevh: a gradient is a planned evaluation.
+   SPDX-License-Identifier: GPL-3.0-or-later
+
+   Whoever takes a gradient many times at the same place in memory plans an
+   evaluation, and runs it.  Evaluators are tried in order (evaluation.c); the
+   first that is applicable plans it:
+
+       exact_point      one state: a scalar function of each instance
+       exact_block      whole vectors of states, whose rows are read and written
+                        where they stand
+       central_stencil  differences, whose points were laid out when planning
+       term by term     what else there is, as nevh_field_gradient takes it:
+                        exact_gather, complex_step, central_block
+
+   Constants and buffers are made when planning and belong to the field, so
+   that nothing is decided, filled anew or allocated while stepping. */
+#ifndef NEVH_EVALUATION_PRIVATE_H
+#define NEVH_EVALUATION_PRIVATE_H
+
+#include "gradient/field_private.h"
+
+enum { NEVH__MOST_CALLED = 8, NEVH__MOST_POINT_ROWS = 64 };
+
+/* A term's part of an evaluation, or that of one of its instances. */
+typedef struct {
+    nevh__planned *term;
+    nevh_block_gradient_fn gradient;
+    nevh_point_gradient_fn point;
+    const void *params;
+    size_t stride, size_q, size_p;
+    const double *t, *q, *p, *c;
+    double *dh_dq, *dh_dp; /* written by the term; NULL: not asked for */
+    double *sum_q, *sum_p; /* what that is added to; NULL: it is there */
+    bool sums;             /* any is added */
+    const nevh__stencil *stencil;
+    size_t lanes;        /* of each block of it */
+    bool adds_q, adds_p; /* its slopes, to what is there */
+} nevh__called;
+
+typedef struct nevh__call {
+    nevh_field *field;
+    nevh__places at;
+    size_t count;          /* of parts; 0: there is no such evaluation */
+    bool exact;            /* by exact_point or exact_block */
+    bool stencil;          /* by central_stencil */
+    bool clear_q, clear_p; /* before stencils add to them */
+    size_t width;          /* at.width */
+    bool timed;            /* time is read, in all lanes */
+    nevh__called terms[NEVH__MOST_CALLED];
+    const double *inverse; /* n x width: of dH/dp alone, where T is that of
+                              masses, what p is multiplied by; or NULL */
+} nevh__call;
+
+typedef struct {
+    /* Conditions on the field and the places. */
+    bool (*applicable)(const nevh__call *);
+    /* Lists the parts; false: a condition on these is not met, or memory is
+       out. */
+    bool (*plan)(nevh__call *);
+} nevh__evaluator;
+
+extern const nevh__evaluator nevh__exact_point, nevh__exact_block,
+    nevh__central_stencil;
+
+/* width is 1 or a multiple of NEVH__LANES; dh_dq or dh_dp may be NULL. */
+nevh__call nevh__call_plan(nevh_field *, size_t width, const double t[],
+                           const double q[], const double p[], double dh_dq[],
+                           double dh_dp[]);
+/* Adds what a part wrote beside its place. */
+void nevh__call_add(const nevh__called *);
+/* Runs one that is not exact: values are counted, and failures told. */
+int nevh__call_run_values(const nevh__call *);
+int nevh__central_stencil_run(const nevh__call *);
+/* Runs one that is exact, but looks at no result, and counts nothing: of width
+   1, or of any. */
+NEVH__INLINE void nevh__call_run_points(const nevh__call *c) {
+    const nevh__called *x = c->terms;
+    for (size_t left = c->count; left > 0; left--, x++) {
+        x->point(*x->t, x->q, x->p, x->c, x->params, x->dh_dq, x->dh_dp);
+        if (x->sums)
+            nevh__call_add(x);
+    }
+}
+NEVH__INLINE void nevh__call_run(const nevh__call *c) {
+    if (c->width == 1) {
+        nevh__call_run_points(c);
+        return;
+    }
+    for (const nevh__called *x = c->terms; x < c->terms + c->count; x++) {
+        x->gradient(x->stride, x->t, x->q, x->p, x->c, x->params, x->dh_dq,
+                    x->dh_dp);
+        if (x->sums)
+            nevh__call_add(x);
+    }
+}
+/* Whether there is such an evaluation, and it may be run. */
+static inline bool nevh__call_ready(const nevh__call *c) {
+    return c->count && nevh__field_at_hand(c->field);
+}
+
+/* A term's constants as blocks of all instances, or the points of a stencil,
+   and `width` states have them.  NULL: there are none, or memory is out. */
+const double *nevh__constants_plan(nevh__planned *, const nevh__stencil *,
+                                   size_t width);
+void nevh__constants_free(struct nevh__constants *);
+/* Columns of a stencil and a state; the instance of each. */
+size_t nevh__stencil_points(const nevh__stencil *);
+size_t nevh__stencil_instance(const nevh__stencil *, size_t point);
+
+/* Those of the field itself: nevh_field_gradient at one state. */
+bool nevh__single_plan(nevh_field *); /* false: memory is out */
+void nevh__single_free(struct nevh__single *);
+
+#endif
