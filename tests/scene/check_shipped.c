@@ -322,6 +322,7 @@ TEST_TAGGED(long_chains_cost_in_proportion, "slow", 0, 1) {
 
 /* Each has what a student needs. */
 TEST(scenes_are_complete) {
+    find_shipped();
     for (size_t i = 0; i < n_shipped; i++) {
         nevh_scene *s = read_shipped(shipped[i]);
         const nevh_scene_run *run = nevh_scene_run_settings(s);
