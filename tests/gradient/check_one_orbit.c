@@ -40,7 +40,8 @@ static const size_t widths[] = {3, 8, 16};
 TEST_EACH(alone_as_among_others, 5 * scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i / 5];
     const problem *x = problems[_i % 5];
-    double h = x->span / x->fewest / 8;
+    /* Implicit Euler loses energy: longer steps end in Kepler's centre. */
+    double h = x->span / x->fewest / 16;
     if (!fits(scheme, x) || nevh_integrator_own_time(scheme))
         skip_test("it does not fit, or takes one orbit at a time");
     nevh_system *s = x->make();

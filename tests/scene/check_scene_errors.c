@@ -22,7 +22,7 @@ static const struct {
     {"[]\n", "1:2", "no section"},
     {"[scene] title = x\n", "1:1", "line of its own"},
     {"[coordinatse]\n", "1:2", "did you mean coordinates?"},
-    {"[ensemble]\n", "1:2", "no section ensemble"},
+    {"[assembly]\n", "1:2", "no section assembly"},
     {"[parameters]\nm 1\n", "2:1", "neither NAME = VALUE"},
     {"[parameters]\nm : 1 # = 2\n", "2:1", "neither NAME = VALUE"},
     {"[parameters]\n  = 1\n", "2:3", "name is missing"},
