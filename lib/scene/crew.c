@@ -329,7 +329,8 @@ static void close_window(nevh_sweep *s) {
 }
 
 void nevh_sweep_stop(nevh_sweep *s) {
-    s->draining = 1;
+    if (s)
+        s->draining = 1;
 }
 
 int nevh_sweep_run(nevh_sweep *s, uint64_t first, uint64_t count,
