@@ -148,10 +148,8 @@ static void assert_order(const problem *b, const nevh_integrator *scheme,
     int order = splits(scheme) ? (int)fmin(2, order_on(b, scheme))
                                : nevh_stepper_order(m);
     bool doubled = nevh_integrator_symplectic(scheme) == NEVH_EXTENDED;
-    bool iterates = nevh_integrator_explicit(scheme) != NEVH_YES;
-    double above = order == 1 ? (iterates ? 2e-4 : 1e-2)
-                   : doubled  ? 1e-7
-                              : 1e-5;
+    bool keeps = nevh_integrator_preserves_energy(scheme) == NEVH_YES;
+    double above = order == 1 ? (keeps ? 2e-4 : 1e-2) : doubled ? 1e-7 : 1e-5;
     for (double steps = b->fewest; steps < 4e5 && count < MOST;
          steps = ceil(steps * 1.4)) {
         state z = start(b);
@@ -238,6 +236,8 @@ TEST_EACH(the_form_shrinks, scheme_count()) {
                    : nevh_integrator_preserves_energy(scheme) == NEVH_YES ? 0.25
                                                                           : 0.5;
         h = *b == &double_pendulum ? h / 2 : h;
+        if (scheme == nevh_implicit_euler)
+            h = 0.1; /* longer steps are not solved */
         if (claim == NEVH_NO && nevh_integrator_order(scheme) > 8)
             h = 2; /* for truncation to be seen */
         nevh_system *s = damped(*b, equal);
