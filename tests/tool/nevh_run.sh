@@ -268,10 +268,10 @@ untouched() {
     cmp -s $work/x.csv $work/x.kept || fails "touched a file that it refused"
 }
 exits 2 run $run --set m=2 --resume $work/x.csv
-says 'another scene, or of other parameters'
+says 'another scene, or to other parameters'
 exits 2 run $run --without gravity --resume $work/x.csv
 exits 2 run $run --dt 0.002 --resume $work/x.csv
-says 'of a run with dt = 0\.001.*, not dt = 0\.002'
+says 'a run with dt = 0\.001.*, not dt = 0\.002'
 exits 2 run $run --integrators gauss6 --resume $work/x.csv
 says 'with integrator = midpoint, not integrator = gauss6'
 exits 2 run $run --gradient exact --resume $work/x.csv

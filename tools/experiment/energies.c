@@ -227,9 +227,13 @@ void energies_words(const plan *p, const row rows[], size_t count,
                     list *words) {
     for (size_t i = 0; i < count; i++) {
         char *unseen = energies_unseen(p, &rows[i]);
-        if (unseen)
-            list_print(words, "%s at dt = %.4g: %s", rows[i].integrator,
-                       rows[i].dt, unseen);
+        if (!unseen)
+            continue;
+        char *text = text_print("%s at dt = %.4g: %s", rows[i].integrator,
+                                rows[i].dt, unseen);
+        if (!list_has(words, text)) /* another gradient may find the same */
+            list_add(words, text);
+        free(text);
         free(unseen);
     }
 }
