@@ -81,7 +81,8 @@ static size_t family_of(const nevh_work *w) {
 
 /* What is in the way; NULL: nothing that is known yet. */
 static const char *obstacle(const nevh_work *w) {
-    return family_of(w) == FAMILIES    ? "the scheme has none"
+    return family_of(w) == FAMILIES
+               ? "only splitting and fixed Runge-Kutta steps can be"
            : w->accounts               ? "the balance of the energy is kept"
            : w->width > 1              ? "orbits stand side by side"
            : w->options->tolerance > 0 ? "steps adapt to a tolerance"

@@ -58,7 +58,7 @@ END
         fails 'writes functions that do not work'
 fi
 exits 2 export pendulum --integrators gauss4
-says 'no program of such steps: the scheme has none'
+says 'no program of such steps: only splitting and fixed Runge-Kutta steps can be'
 exits 2 export no-such-scene
 
 exit $status
