@@ -94,7 +94,7 @@ static const struct {
     {"portable", NULL, OF_SCENES, read_portable,
      "no vector code: the same digits with the same libm"},
     {"native", "auto|never|always", OF_NATIVE, read_native,
-     "compile steps of formulas; auto (default): where that pays"},
+     "compile steps of formulas; auto (default): in run, where that pays"},
     {"no-cache", NULL, OF_NATIVE, read_no_cache,
      "keep no compiled steps, and use none that were kept"},
     {"plot", "FILE", OF_PLOTS, read_plot,

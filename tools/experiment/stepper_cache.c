@@ -6,7 +6,6 @@
 #include <string.h>
 
 enum { MOST = 256, MOST_DOF = 4096 };
-enum { MOST_RUNS = 3 }; /* of a row, as a rule: one watched, the others timed */
 
 typedef struct {
     const char *integrator, *gradient;
@@ -40,7 +39,8 @@ static nevh_stepper *plan_new(const plan *p, const row *r, bool balance) {
     o.transform = plan_transform(p, r->integrator);
     o.tolerance = r->tolerance;
     o.balance = balance;
-    o.steps_foreseen = MOST_RUNS * plan_steps(p, r->dt);
+    /* No steps are foreseen: rows are compared in time, so that none is compiled
+       unasked, as long as some schemes have no compiled steps. */
     nevh_stepper *s = nevh_stepper_new(p->system, r->scheme, &o);
     plan_tell_native(s);
     return s;
