@@ -31,7 +31,7 @@ static nevh_separability separability;
     X(STATUS, nevh_reversal_defect, (NULL, 0.1, 0.1, 1, in, in, in, out))      \
     X(REAL, nevh_stability_limit, (NULL))                                      \
     X(REAL, nevh_stability_angle, (NULL, 0.1))                                 \
-    X(MADE, nevh_rates_new, (NULL, NULL))                                      \
+    X(RATES, nevh_rates_new, (NULL, NULL))                                     \
     X(ANY, nevh_rates_free, (NULL))                                            \
     X(STATUS, nevh_rates_status, (NULL))                                       \
     X(TEXT, nevh_rates_message, (NULL))                                        \
@@ -200,6 +200,7 @@ static nevh_separability separability;
     double found = call;                                                       \
     ck_assert(found == 0 || isnan(found))
 #define MADE(name, call)    (void)(call)
+#define RATES(name, call)   nevh_rates_free(call)
 #define POINTER(name, call) ck_assert_ptr_null(call)
 #define ANY(name, call)     (void)(call)
 
