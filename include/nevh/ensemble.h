@@ -85,10 +85,11 @@ typedef struct {
    system that nobody changes meanwhile. */
 typedef struct nevh_ensemble nevh_ensemble;
 
-/* returns  to be freed with nevh_ensemble_free; NULL only when memory is out;
-            carries the stepper's refusal, or NEVH_EINVAL, otherwise.  Schemes
-            that choose their own times, and orbits whose crossings are asked
-            for, are taken one by one, whatever the width
+/* returns  to be freed with nevh_ensemble_free; NULL when memory is out, or
+            where an argument is NULL; carries the stepper's refusal, or
+            NEVH_EINVAL, otherwise.  Schemes that choose their own times, and
+            orbits whose crossings are asked for, are taken one by one, whatever
+            the width
    cost     that of planning two steppers; then memory that is proportional to
             the width, whatever the number of orbits */
 NEVH_API nevh_ensemble *nevh_ensemble_new(const nevh_system *,

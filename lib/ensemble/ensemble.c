@@ -286,7 +286,7 @@ static int plan(nevh_ensemble *e) {
 
 nevh_ensemble *nevh_ensemble_new(const nevh_system *system,
                                  const nevh_ensemble_options *options) {
-    nevh_ensemble *e = system ? nevh__array(1, sizeof *e) : NULL;
+    nevh_ensemble *e = system && options ? nevh__array(1, sizeof *e) : NULL;
     if (!e)
         return NULL;
     e->system = system;

@@ -303,3 +303,9 @@ TEST(changed_system_is_refused) {
     nevh_ensemble_free(e);
     nevh_system_free(s);
 }
+
+TEST(options_are_asked_for) {
+    nevh_system *s = nevh_system_new(1);
+    ck_assert_ptr_null(nevh_ensemble_new(s, NULL));
+    nevh_system_free(s);
+}
