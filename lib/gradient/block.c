@@ -121,15 +121,19 @@ bool nevh__block_next(nevh_field *f, const nevh__planned *term,
     return true;
 }
 
-/* " q[2] = 0.5" for each variable of a column, as far as there is room. */
+/* "t = 2, q[2] = 0.5": what a term reads in a column, as far as there is room. A
+   kernel passes no time to a term that does not read it. */
 static void describe(const nevh_field *f, const nevh__planned *term,
                      const nevh__block *b, size_t instance, size_t column,
                      char *text, size_t size) {
     size_t at = 0;
     text[0] = '\0';
+    if (term->term->decl.time)
+        at = (size_t)snprintf(text, size, "t = %.9g",
+                              b->t[b->lane + column % b->lanes]);
     for (size_t k = 0; k < term->nv && k < 6 && at < size; k++) {
         int length =
-            snprintf(text + at, size - at, "%s%c[%zu] = %.9g", k ? ", " : "",
+            snprintf(text + at, size - at, "%s%c[%zu] = %.9g", at ? ", " : "",
                      k < term->nq ? 'q' : 'p', nevh__index(term, instance, k),
                      nevh__row(f, b, k)[column]);
         at += length > 0 ? (size_t)length : 0;
@@ -155,7 +159,7 @@ int nevh__block_fail(nevh_field *f, const nevh__planned *term,
     size_t lane = b->lane + column % b->lanes;
     size_t group = column % (b->groups * b->lanes) / b->lanes;
     size_t instance = (b->group + group) / b->per_instance;
-    char where[200], which[80] = "";
+    char where[240], which[80] = "";
     describe(f, term, b, instance, column, where, sizeof where);
     if (decl->count > 1 || b->width > 1)
         snprintf(which, sizeof which, " (instance %zu, lane %zu)", instance,
@@ -164,13 +168,13 @@ int nevh__block_fail(nevh_field *f, const nevh__planned *term,
         return nevh__fail(
             &f->report, NEVH_EDOM,
             "the orbit has grown beyond all numbers: term \"%s\" of effect "
-            "\"%s\"%s has no value at t = %.9g, %s: take a smaller step",
-            decl->name, decl->effect, which, b->t[lane], where);
+            "\"%s\"%s has no value at %s: take a smaller step",
+            decl->name, decl->effect, which, where);
     return nevh__fail(
         &f->report, NEVH_EDOM,
-        "%sterm \"%s\" of effect \"%s\"%s is %g at t = %.9g, %s: keep the orbit "
-        "away from there, or take a smaller step",
-        what, decl->name, decl->effect, which, value, b->t[lane], where);
+        "%sterm \"%s\" of effect \"%s\"%s is %g at %s: keep the orbit away "
+        "from there, or take a smaller step",
+        what, decl->name, decl->effect, which, value, where);
 }
 
 /* Whether all are finite: x - x is 0 then, and NaN otherwise. */

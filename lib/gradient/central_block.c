@@ -86,9 +86,10 @@ static double reach_of(const nevh_field *f, const nevh__planned *term,
 int nevh__fail_outside(nevh_field *f, const nevh__planned *term,
                        const nevh__block *b, size_t column, size_t instance,
                        size_t k, double reach) {
-    char where[120];
+    char where[200];
     snprintf(where, sizeof where,
-             "a difference by %c[%zu] reaches %.3g from the orbit, where ",
+             "a difference by %c[%zu] reaches %.3g from the orbit (the exact "
+             "gradient reads no such point), where ",
              k < term->nq ? 'q' : 'p', nevh__index(term, instance, k), reach);
     return nevh__block_fail(f, term, b, column, where, f->h[column]);
 }

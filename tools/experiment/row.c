@@ -225,7 +225,9 @@ static void watched(work *w, nevh_stepper *s) {
     r->late = wait.late;
     r->ran = !r->late && (!status || r->energy.verdict == NEVH_UNSTABLE);
     r->failed = !r->ran;
-    r->status = status ? text_print("failed: %s", why) : text_print("ok");
+    r->status = status ? text_print("failed: %s (after t = %.9g)", why,
+                                    nevh_stepper_time(s))
+                       : text_print("ok");
     r->state_error =
         compares_states(w->plan, r) ? nevh_state_error_result(state) : NAN;
     if (state && isnan(r->state_error))
