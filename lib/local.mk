@@ -1,7 +1,7 @@
 # Every object is in libnevh_core.la.  libnevh.la is all of it with only
 # NEVH_API visible; tests that look inside link libnevh_core.la itself.
 noinst_LTLIBRARIES += libnevh_core.la
-libnevh_core_la_LIBADD = $(GSL_LIBS)
+libnevh_core_la_LIBADD = $(GSL_LIBS) $(QUADMATH_LIBS)
 libnevh_core_la_SOURCES = \
 	lib/system/system_private.h \
 	lib/system/vector_private.h \
@@ -82,6 +82,14 @@ libnevh_core_la_SOURCES = \
 	lib/expression/walk.c \
 	lib/expression/instance.c \
 	lib/expression/formula.c \
+	lib/taylor/graph_private.h \
+	lib/taylor/graph.c \
+	lib/taylor/derive.c \
+	lib/taylor/series_private.h \
+	lib/taylor/series_text.h \
+	lib/taylor/schedule.c \
+	lib/taylor/series_double.c \
+	lib/taylor/series_quad.c \
 	lib/work/work_private.h \
 	lib/work/work.c \
 	lib/work/substeps.c \

@@ -4,7 +4,7 @@
 # files of the library have the same name.
 
 srcdir=${srcdir:-.}
-order='system expression gradient work implicit integrators native run diagnose
+order='system expression taylor gradient work implicit integrators native run diagnose
     ensemble scene models tools'
 work=arrows.$$
 trap 'rm -rf $work' EXIT

@@ -1,0 +1,251 @@
+/* nevh: the graph of dH/dq and dH/dp, from the tapes of the terms that are on.
+
+   Each instance of a term is written out, what instances have in common is one
+   node, and one sweep from the values back to the variables gives the gradient.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "expression/tape_inside_private.h"
+#include "taylor/graph_private.h"
+#include <stdio.h>
+#include <stdlib.h>
+
+typedef struct {
+    nevh__graph *g;
+    int tagged;
+    nevh__report *report;
+    size_t n;
+    int *roots; /* of the instances */
+    size_t n_roots, capacity;
+} reader;
+
+static int refuse(const reader *r, const nevh_term *term, const char *what) {
+    return nevh__fail(r->report, NEVH_ESTRUCT,
+                      "term \"%s\" of effect \"%s\" has no Taylor series: %s",
+                      term->name, term->effect, what);
+}
+
+static int out_of_memory(const reader *r) {
+    return r->g->overflowed
+               ? nevh__fail(r->report, NEVH_ESTRUCT,
+                            "H has more than %d operations with its "
+                            "derivatives: too many for a Taylor series",
+                            NEVH__GRAPH_NODES)
+               : nevh__fail(r->report, NEVH_ENOMEM, "out of memory");
+}
+
+static const char *why_not(unsigned operation) {
+    switch (operation) {
+    case NEVH__ABS:
+    case NEVH__MIN:
+    case NEVH__MAX:
+    case NEVH__SIGN:
+    case NEVH__MOD:
+    case NEVH__FLOOR:
+        return "is not analytic, so that its derivatives say nothing about it "
+               "elsewhere";
+    case NEVH__BESSEL_J0:
+    case NEVH__BESSEL_J1:
+    case NEVH__ELLIPTIC_K:
+    case NEVH__ELLIPTIC_E:
+        return "is one whose recurrence is not known here";
+    default:
+        return NULL;
+    }
+}
+
+static int refuse_operation(const reader *r, const nevh_term *term,
+                            unsigned operation) {
+    char text[200];
+    snprintf(text, sizeof text, "its function %s(...) %s",
+             nevh__operation_name((nevh__tape_operation)operation),
+             why_not(operation));
+    return refuse(r, term, text);
+}
+
+/* What the nodes made since the last call have in common. */
+static void tag(reader *r, int what, bool backwards) {
+    for (; r->tagged < r->g->used; r->tagged++) {
+        r->g->nodes[r->tagged].tag = what;
+        r->g->nodes[r->tagged].rank = backwards ? -r->tagged : r->tagged;
+    }
+}
+
+/* Where an operand of an instance is. */
+static int operand(const reader *r, const nevh_term *term, size_t instance,
+                   const int slots[], nevh__tape_operand o) {
+    const nevh__tape *tape = term->params;
+    switch (o.kind) {
+    case NEVH__T:
+        return nevh__graph_variable(r->g, 2 * r->n);
+    case NEVH__Q:
+        return nevh__graph_variable(r->g, term->q[instance * term->nq + o.at]);
+    case NEVH__P:
+        return nevh__graph_variable(
+            r->g, r->n + term->p[instance * term->np + o.at]);
+    case NEVH__C:
+        return nevh__graph_number(r->g, term->c[instance * term->nc + o.at]);
+    case NEVH__NUMBER:
+        return nevh__graph_number(r->g, tape->numbers[o.at]);
+    default:
+        return slots[o.at];
+    }
+}
+
+static int power(nevh__graph *g, int a, int b) {
+    nevh__wide c;
+    if (nevh__graph_is_number(g, b, &c))
+        return nevh__graph_power(g, a, c);
+    return nevh__graph_call(
+        g, NEVH__EXP,
+        nevh__graph_multiply(g, b, nevh__graph_call(g, NEVH__LOG, a, -1)), -1);
+}
+
+static int operate(nevh__graph *g, unsigned operation, int a, int b) {
+    switch (operation) {
+    case NEVH__ADD:
+        return nevh__graph_add(g, a, b);
+    case NEVH__SUBTRACT:
+        return nevh__graph_add(g, a, nevh__graph_scale(g, -1, b));
+    case NEVH__MULTIPLY:
+        return nevh__graph_multiply(g, a, b);
+    case NEVH__DIVIDE:
+        return nevh__graph_multiply(g, a, nevh__graph_invert(g, b));
+    case NEVH__POWER:
+        return power(g, a, b);
+    case NEVH__NEGATE:
+        return nevh__graph_scale(g, -1, a);
+    case NEVH__SINCOS:
+        return nevh__graph_call(g, NEVH__SIN, a, -1);
+    default:
+        return nevh__graph_call(g, (nevh__tape_operation)operation, a, b);
+    }
+}
+
+static int read_instance(reader *r, const nevh_term *term, size_t instance,
+                         int slots[]) {
+    const nevh__tape *tape = term->params;
+    for (size_t i = 0; i < tape->length; i++) {
+        const nevh__instruction *c = &tape->code[i];
+        if (why_not(c->operation))
+            return refuse_operation(r, term, c->operation);
+        int a = operand(r, term, instance, slots, c->a);
+        int b = operand(r, term, instance, slots, c->b);
+        slots[c->to] = operate(r->g, c->operation, a, b);
+        if (c->operation == NEVH__SINCOS)
+            slots[c->also] = nevh__graph_call(r->g, NEVH__COS, a, -1);
+        tag(r, (int)i, false);
+    }
+    int root = operand(r, term, instance, slots, tape->result);
+    if (r->g->failed)
+        return out_of_memory(r);
+    if (r->n_roots == r->capacity) {
+        size_t capacity = 2 * r->capacity + 16;
+        int *roots = nevh__grow(r->roots, capacity, sizeof *roots);
+        if (!roots)
+            return out_of_memory(r);
+        r->roots = roots;
+        r->capacity = capacity;
+    }
+    r->roots[r->n_roots++] = root;
+    return NEVH_OK;
+}
+
+static int read_term(reader *r, const nevh__term_entry *entry) {
+    const nevh_term *term = &entry->decl;
+    if (term->value != nevh__tape_value)
+        return refuse(r, term,
+                      "it is a function in C, and a series needs a formula");
+    const nevh__tape *tape = term->params;
+    int *slots = nevh__array(tape->slots, sizeof *slots), status = NEVH_OK;
+    if (!slots)
+        return out_of_memory(r);
+    for (size_t i = 0; !status && i < term->count; i++)
+        status = read_instance(r, term, i, slots);
+    free(slots);
+    return status;
+}
+
+static void add_to(nevh__graph *g, int *sum, int what) {
+    *sum = *sum < 0 ? what : nevh__graph_add(g, *sum, what);
+}
+
+/* The part of node i, whose own derivative is known, in those of its
+   operands. */
+static void hand_back(nevh__graph *g, int i, int of[]) {
+    const nevh__graph_node x = g->nodes[i];
+    int mine = of[i];
+    switch (x.kind) {
+    case NEVH__GRAPH_ADD:
+        add_to(g, &of[x.a], mine);
+        add_to(g, &of[x.b], mine);
+        break;
+    case NEVH__GRAPH_SCALE:
+        add_to(g, &of[x.a], nevh__graph_scale(g, x.number, mine));
+        break;
+    case NEVH__GRAPH_MULTIPLY:
+        add_to(g, &of[x.a], nevh__graph_multiply(g, mine, x.b));
+        add_to(g, &of[x.b], nevh__graph_multiply(g, mine, x.a));
+        break;
+    case NEVH__GRAPH_INVERT:
+        mine = nevh__graph_multiply(g, nevh__graph_multiply(g, mine, i), i);
+        add_to(g, &of[x.a], nevh__graph_scale(g, -1, mine));
+        break;
+    case NEVH__GRAPH_POWER:
+        mine = nevh__graph_multiply(
+            g, mine, nevh__graph_power(g, x.a, x.number - 1));
+        add_to(g, &of[x.a], nevh__graph_scale(g, x.number, mine));
+        break;
+    case NEVH__GRAPH_CALL:
+        add_to(g, &of[x.a], nevh__graph_multiply(g, mine, x.slope));
+        break;
+    default:
+        break;
+    }
+}
+
+static int sweep(reader *r, const double friction[], int slope[]) {
+    nevh__graph *g = r->g;
+    size_t n = r->n;
+    int used = g->used, zero = nevh__graph_number(g, 0);
+    int one = nevh__graph_number(g, 1);
+    int *of = nevh__array((size_t)used, sizeof *of);
+    if (!of)
+        return out_of_memory(r);
+    for (int i = 0; i < used; i++)
+        of[i] = -1;
+    for (size_t i = 0; i < r->n_roots && !g->failed; i++)
+        add_to(g, &of[r->roots[i]], one);
+    for (size_t k = 0; k < 2 * n; k++)
+        slope[k] = zero;
+    for (int i = used - 1; i >= 0 && !g->failed; i--) {
+        if (of[i] < 0)
+            continue;
+        hand_back(g, i, of);
+        tag(r, -1 - g->nodes[i].tag, true);
+        size_t k = g->nodes[i].at;
+        if (g->nodes[i].kind == NEVH__GRAPH_VARIABLE && k < n)
+            slope[n + k] = nevh__graph_scale(g, -1, of[i]);
+        if (g->nodes[i].kind == NEVH__GRAPH_VARIABLE && k >= n && k < 2 * n)
+            slope[k - n] = of[i];
+    }
+    for (size_t k = 0; friction && k < n; k++)
+        slope[n + k] = nevh__graph_add(
+            g, slope[n + k],
+            nevh__graph_scale(g, -(nevh__wide)friction[k],
+                              nevh__graph_variable(g, n + k)));
+    free(of);
+    return g->failed ? out_of_memory(r) : NEVH_OK;
+}
+
+int nevh__graph_of_system(nevh__graph *g, const nevh_system *system,
+                          const double friction[], int slope[],
+                          nevh__report *report) {
+    reader r = {.g = g, .report = report, .n = system->n};
+    int status = NEVH_OK;
+    for (size_t i = 0; !status && i < system->n_terms; i++)
+        if (nevh__term_on(system, system->terms[i]))
+            status = read_term(&r, system->terms[i]);
+    if (!status)
+        status = sweep(&r, friction, slope);
+    free(r.roots);
+    return status;
+}

@@ -1,0 +1,80 @@
+/* nevh: formulas as a graph of few operations, of which Taylor coefficients
+   follow by recurrences.
+
+   Sums are binary, differences are sums with a factor of -1, quotients are
+   products with a reciprocal.  Any other function f is carried by its
+   derivative: y' = slope(...) x', of which slope is a node, too; so that one
+   recurrence stands for them all.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_GRAPH_PRIVATE_H
+#define NEVH_GRAPH_PRIVATE_H
+
+#include "expression/tape_private.h"
+#include "system/system_private.h"
+
+/* Numbers of a graph have more digits than double where they can: products of
+   numbers are rounded once. */
+#ifdef NEVH_QUADMATH
+__extension__ typedef __float128 nevh__wide;
+#else
+typedef long double nevh__wide;
+#endif
+
+typedef enum {
+    NEVH__GRAPH_NUMBER,
+    NEVH__GRAPH_VARIABLE, /* at: coordinates, momenta, time */
+    NEVH__GRAPH_ADD,      /* a + b */
+    NEVH__GRAPH_SCALE,    /* number a */
+    NEVH__GRAPH_MULTIPLY, /* a b */
+    NEVH__GRAPH_INVERT,   /* 1/a */
+    NEVH__GRAPH_POWER,    /* a^number, not a whole one */
+    NEVH__GRAPH_CALL      /* f(a), or f(a, b) whose derivative by b is another
+                             call's; f = nevh__tape_operation, or NEVH__NOTHING */
+} nevh__graph_kind;
+/* The function that begins at 0: the second half of atan2. */
+enum { NEVH__NOTHING = NEVH__OPERATION_COUNT };
+
+typedef struct {
+    uint8_t kind, function;
+    int a, b;  /* b: -1 where there is none */
+    int slope; /* of a call: the derivative by a */
+    int tag;   /* the same for what instances of a term do alike; rank: the
+                  order of instances */
+    int rank;
+    size_t at;
+    nevh__wide number;
+} nevh__graph_node;
+
+/* Nodes in the order in which they were made: operands come first, but for
+   slopes.  Zeros at first. */
+typedef struct {
+    nevh__graph_node *nodes;
+    int used, capacity;
+    int *table; /* open addressing; 0 is empty, else a node and 1 */
+    size_t slots;
+    bool failed;     /* memory is out */
+    bool overflowed; /* too many nodes */
+} nevh__graph;
+enum { NEVH__GRAPH_NODES = 1 << 21 };
+
+void nevh__graph_clear(nevh__graph *);
+
+/* Each returns a node, or -1 when memory is out, now or earlier: -1 may be
+   handed on.  What is the same is one node. */
+int nevh__graph_number(nevh__graph *, nevh__wide);
+int nevh__graph_variable(nevh__graph *, size_t at);
+int nevh__graph_add(nevh__graph *, int a, int b);
+int nevh__graph_scale(nevh__graph *, nevh__wide, int a);
+int nevh__graph_multiply(nevh__graph *, int a, int b);
+int nevh__graph_invert(nevh__graph *, int a);
+int nevh__graph_power(nevh__graph *, int a, nevh__wide exponent);
+/* An analytic function of one argument, or atan2 and hypot. */
+int nevh__graph_call(nevh__graph *, nevh__tape_operation, int a, int b);
+bool nevh__graph_is_number(const nevh__graph *, int node, nevh__wide *value);
+
+/* Why a system has no series: a status and a message in the report.
+   slope  out, 2n: nodes of dq/dt and dp/dt, friction counted in */
+int nevh__graph_of_system(nevh__graph *, const nevh_system *,
+                          const double friction[], int slope[], nevh__report *);
+
+#endif

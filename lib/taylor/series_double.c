@@ -1,0 +1,41 @@
+/* nevh: Taylor coefficients in doubles.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include <math.h>
+
+typedef double real;
+#define NAMED(name) name##_double
+#define FUNCTION(f) f
+#define ROWS        1
+#define VECTORS     NEVH_SIMD
+#include "taylor/series_text.h"
+
+NEVH__INLINE void store(series *s, size_t k) {
+    const nevh__recurrence *r = s->of;
+    double *a = s->rows_a + k * r->lanes, *b = s->rows_b + k * r->lanes;
+    const double *value = s->value;
+    double order = (double)k;
+    NEVH_LANES(i, r->weighted) {
+        a[i] = order * value[r->lane_a[i]];
+    }
+    NEVH__NO_ALIAS for (size_t i = r->weighted; i < r->lanes; i++)
+        a[i] = value[r->lane_a[i]];
+    NEVH__NO_ALIAS for (size_t i = 0; i < r->lanes; i++)
+        b[i] = value[r->lane_b[i]];
+}
+
+NEVH__INLINE void add_up(series *s, size_t k) {
+    size_t lanes = s->of->lanes;
+    for (size_t from = 0; from < lanes; from += NEVH__LANES) {
+        const double *a = s->rows_a + lanes + from;
+        const double *b = s->rows_b + (k - 1) * lanes + from;
+        nevh__vector even = {0}, odd = {0};
+        size_t j = 1;
+        for (; j + 1 < k; j += 2, a += 2 * lanes, b -= 2 * lanes) {
+            even += NEVH__VECTOR_AT(a) * NEVH__VECTOR_AT(b);
+            odd += NEVH__VECTOR_AT(a + lanes) * NEVH__VECTOR_AT(b - lanes);
+        }
+        if (j < k)
+            even += NEVH__VECTOR_AT(a) * NEVH__VECTOR_AT(b);
+        NEVH__VECTOR_AT(s->sum + from) = even + odd;
+    }
+}

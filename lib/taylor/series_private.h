@@ -1,0 +1,80 @@
+/* nevh: Taylor series of orbits.
+
+   From a graph follow recurrences: the coefficients of order k of all that H's
+   gradient is made of, from those of lower order [A. Jorba, M. Zou, A software
+   package for the numerical integration of ODEs by means of high-order Taylor
+   methods, Exp. Math. 14 (2005) 99-117; F. Biscani, D. Izzo, Revisiting
+   high-order Taylor methods for astrodynamics and celestial mechanics, MNRAS
+   504 (2021) 2614-2628].
+
+   A product's coefficient is a sum over pairs, of which all but the outermost
+   are known before the order begins.  So the inner sums of all products are
+   taken first, side by side: each product has a lane, whose operands are kept
+   in rows by order.  What is left of an order is a list of batches, operations
+   of one kind that do not wait for each other.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_SERIES_PRIVATE_H
+#define NEVH_SERIES_PRIVATE_H
+
+#include "taylor/graph_private.h"
+
+typedef enum {
+    NEVH__BATCH_SUM, /* of up to four multiples */
+    NEVH__BATCH_MULTIPLY,
+    NEVH__BATCH_INVERT,
+    NEVH__BATCH_ROOT,
+    NEVH__BATCH_POWER,
+    NEVH__BATCH_CALL
+} nevh__batch_kind;
+enum { NEVH__MOST_SUMMANDS = 4 };
+
+/* `count` operations that give values `first` and on. */
+typedef struct {
+    uint8_t kind, arity, function;
+    bool together[NEVH__MOST_SUMMANDS]; /* operands stand side by side */
+    uint32_t count, first;
+    uint32_t operand[NEVH__MOST_SUMMANDS]; /* values; else places in `index` */
+    uint32_t lane, also;                   /* also: of a power's second sums */
+    uint32_t number; /* factors of summands, exponents, factors of slopes */
+} nevh__batch;
+
+/* Values are coordinates, momenta and time, then numbers, then results.
+   Lanes whose first operand counts with its order come first. */
+typedef struct {
+    size_t n, values, n_batches, lanes, weighted, widest;
+    size_t first_constant, n_constants; /* whose numbers are the first */
+    size_t n_numbers;
+    nevh__batch *batches;
+    uint32_t *index;
+    nevh__wide *numbers;
+    uint32_t *lane_a, *lane_b; /* lanes each */
+    uint32_t *slope;           /* 2n values, and their factors' numbers */
+    size_t slope_number;
+} nevh__recurrence;
+
+/* friction  n rates or NULL
+   returns   NULL, with the reason in the report */
+nevh__recurrence *nevh__recurrence_new(const nevh_system *,
+                                       const double friction[], nevh__report *);
+void nevh__recurrence_free(nevh__recurrence *); /* NULL is allowed */
+
+/* Room to take coefficients up to an order in. */
+typedef struct nevh__series_double nevh__series_double;
+nevh__series_double *nevh__series_new_double(const nevh__recurrence *,
+                                             size_t order);
+void nevh__series_free_double(nevh__series_double *);
+/* The coefficients at a state: rows of 2n, from that of order 0, the state
+   itself, on.  Returns whether they are finite. */
+bool nevh__series_expand_double(nevh__series_double *, double t,
+                                const double state[], double rows[]);
+
+#ifdef NEVH_QUADMATH
+typedef struct nevh__series_quad nevh__series_quad;
+nevh__series_quad *nevh__series_new_quad(const nevh__recurrence *,
+                                         size_t order);
+void nevh__series_free_quad(nevh__series_quad *);
+bool nevh__series_expand_quad(nevh__series_quad *, nevh__wide t,
+                              const nevh__wide state[], nevh__wide rows[]);
+#endif
+
+#endif

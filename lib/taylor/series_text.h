@@ -1,0 +1,299 @@
+/* nevh: Taylor coefficients in one kind of numbers.
+
+   Before this is included are defined: real, the numbers; NAMED(name), the name
+   of a function; FUNCTION(f), a function of theirs as <math.h> has it; ROWS,
+   numbers that a lane's operand takes in a row.  After it: how operands are
+   stored in rows (store), and the inner sums of all lanes (add_up).
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "taylor/series_private.h"
+#include <stdlib.h>
+
+struct NAMED(nevh__series) {
+    const nevh__recurrence *of;
+    size_t order;
+    real *value;      /* the coefficients of the present order */
+    real *slope;      /* 2n */
+    real *a0, *b0;    /* lanes: operands of order 0 */
+    real *sum;        /* lanes */
+    real *each;       /* by number: of inverses of what is divided by */
+    real *numbers;
+    real *gathered;   /* a few times the widest batch */
+    real *inverse;    /* 1/k */
+    double *rows_a, *rows_b; /* order x ROWS x lanes */
+    void *memory;
+};
+typedef struct NAMED(nevh__series) series;
+
+static void store(series *, size_t k);
+static void add_up(series *, size_t k);
+
+static void lay_out(nevh__arena *arena, void *data) {
+    series *s = data;
+    const nevh__recurrence *r = s->of;
+    s->value = nevh__arena_take(arena, r->values, sizeof(real));
+    s->slope = nevh__arena_take(arena, 2 * r->n, sizeof(real));
+    s->a0 = nevh__arena_take(arena, r->lanes, sizeof(real));
+    s->b0 = nevh__arena_take(arena, r->lanes, sizeof(real));
+    s->sum = nevh__arena_take(arena, r->lanes, sizeof(real));
+    s->each = nevh__arena_take(arena, r->values, sizeof(real));
+    s->numbers = nevh__arena_take(arena, r->n_numbers, sizeof(real));
+    s->gathered = nevh__arena_take(arena, NEVH__MOST_SUMMANDS * r->widest,
+                                   sizeof(real));
+    s->inverse = nevh__arena_take(arena, s->order + 1, sizeof(real));
+    s->rows_a =
+        nevh__arena_take(arena, s->order * ROWS * r->lanes, sizeof(double));
+    s->rows_b =
+        nevh__arena_take(arena, s->order * ROWS * r->lanes, sizeof(double));
+}
+
+void NAMED(nevh__series_free)(series *s) {
+    if (!s)
+        return;
+    free(s->memory);
+    free(s);
+}
+
+series *NAMED(nevh__series_new)(const nevh__recurrence *r, size_t order) {
+    series *s = nevh__array(1, sizeof *s);
+    if (!s)
+        return NULL;
+    s->of = r;
+    s->order = order;
+    s->memory = nevh__arena_new(lay_out, s);
+    if (!s->memory) {
+        free(s);
+        return NULL;
+    }
+    for (size_t i = 0; i < r->n_numbers; i++)
+        s->numbers[i] = (real)r->numbers[i];
+    for (size_t k = 1; k <= order; k++)
+        s->inverse[k] = (real)1 / (real)k;
+    return s;
+}
+
+/* The present values of a batch's operand. */
+NEVH__INLINE const real *operand(const series *s, const nevh__batch *b,
+                                 int which) {
+    if (b->together[which])
+        return s->value + b->operand[which];
+    const uint32_t *index = s->of->index + b->operand[which];
+    real *to = s->gathered + (size_t)which * s->of->widest;
+    NEVH__NO_ALIAS for (size_t i = 0; i < b->count; i++)
+        to[i] = s->value[index[i]];
+    return to;
+}
+
+NEVH__INLINE void add_summands(const series *s, const nevh__batch *b) {
+    real *restrict y = s->value + b->first;
+    size_t count = b->count;
+    const real *c = s->numbers + b->number, *x = operand(s, b, 0);
+    const real *d = c + count, *z;
+    switch (b->arity) {
+    case 1:
+        NEVH__NO_ALIAS for (size_t i = 0; i < count; i++)
+            y[i] = c[i] * x[i];
+        return;
+    case 2:
+        z = operand(s, b, 1);
+        NEVH__NO_ALIAS for (size_t i = 0; i < count; i++)
+            y[i] = c[i] * x[i] + d[i] * z[i];
+        return;
+    default:
+        z = operand(s, b, 1);
+        const real *e = d + count, *u = operand(s, b, 2);
+        if (b->arity == 3) {
+            NEVH__NO_ALIAS for (size_t i = 0; i < count; i++)
+                y[i] = c[i] * x[i] + d[i] * z[i] + e[i] * u[i];
+            return;
+        }
+        const real *f = e + count, *v = operand(s, b, 3);
+        NEVH__NO_ALIAS for (size_t i = 0; i < count; i++)
+            y[i] = (c[i] * x[i] + d[i] * z[i]) + (e[i] * u[i] + f[i] * v[i]);
+    }
+}
+
+static real function(const nevh__batch *b, real x, real second) {
+    switch (b->function) {
+    case NEVH__SIN:
+        return FUNCTION(sin)(x);
+    case NEVH__COS:
+        return FUNCTION(cos)(x);
+    case NEVH__TAN:
+        return FUNCTION(tan)(x);
+    case NEVH__ASIN:
+        return FUNCTION(asin)(x);
+    case NEVH__ACOS:
+        return FUNCTION(acos)(x);
+    case NEVH__ATAN:
+        return FUNCTION(atan)(x);
+    case NEVH__ATAN2:
+        return FUNCTION(atan2)(x, second);
+    case NEVH__SINH:
+        return FUNCTION(sinh)(x);
+    case NEVH__COSH:
+        return FUNCTION(cosh)(x);
+    case NEVH__TANH:
+        return FUNCTION(tanh)(x);
+    case NEVH__ASINH:
+        return FUNCTION(asinh)(x);
+    case NEVH__ACOSH:
+        return FUNCTION(acosh)(x);
+    case NEVH__ATANH:
+        return FUNCTION(atanh)(x);
+    case NEVH__EXP:
+        return FUNCTION(exp)(x);
+    case NEVH__LOG:
+        return FUNCTION(log)(x);
+    case NEVH__LOG10:
+        return FUNCTION(log10)(x);
+    case NEVH__CBRT:
+        return FUNCTION(cbrt)(x);
+    default:
+        return 0;
+    }
+}
+
+static real power(real x, real exponent) {
+    if (exponent == (real)-1.5)
+        return 1 / (x * FUNCTION(sqrt)(x));
+    if (exponent == (real)-0.5)
+        return 1 / FUNCTION(sqrt)(x);
+    return FUNCTION(pow)(x, exponent);
+}
+
+/* Order 0. */
+static void begin_batch(const series *s, const nevh__batch *b) {
+    real *y = s->value + b->first, *each = s->each + b->first;
+    const real *x = operand(s, b, 0), *z;
+    const real *c = s->numbers + b->number;
+    switch (b->kind) {
+    case NEVH__BATCH_SUM:
+        add_summands(s, b);
+        break;
+    case NEVH__BATCH_MULTIPLY:
+        z = operand(s, b, 1);
+        for (size_t i = 0; i < b->count; i++)
+            y[i] = x[i] * z[i];
+        break;
+    case NEVH__BATCH_INVERT:
+        for (size_t i = 0; i < b->count; i++)
+            each[i] = -(y[i] = 1 / x[i]);
+        break;
+    case NEVH__BATCH_ROOT:
+        for (size_t i = 0; i < b->count; i++) {
+            y[i] = FUNCTION(sqrt)(x[i]);
+            each[i] = (real)0.5 / y[i];
+        }
+        break;
+    case NEVH__BATCH_POWER:
+        for (size_t i = 0; i < b->count; i++) {
+            y[i] = power(x[i], c[i]);
+            each[i] = 1 / x[i];
+        }
+        break;
+    default:
+        z = b->arity > 1 ? operand(s, b, 1) : x;
+        for (size_t i = 0; i < b->count; i++)
+            y[i] = function(b, x[i], z[i]);
+    }
+}
+
+/* Order k, from the inner sums. */
+NEVH__INLINE void next_batch(const series *s, const nevh__batch *b, size_t k) {
+    size_t count = b->count;
+    real *restrict y = s->value + b->first;
+    const real *each = s->each + b->first;
+    if (b->kind == NEVH__BATCH_SUM) {
+        add_summands(s, b);
+        return;
+    }
+    const real *x = operand(s, b, 0), *z;
+    const real *c = s->numbers + b->number, *sum = s->sum + b->lane;
+    const real *a0 = s->a0 + b->lane, *b0 = s->b0 + b->lane;
+    real order = (real)k, inverse = s->inverse[k];
+    switch (b->kind) {
+    case NEVH__BATCH_MULTIPLY:
+        z = operand(s, b, 1);
+        NEVH__NO_ALIAS for (size_t i = 0; i < count; i++)
+            y[i] = sum[i] + (a0[i] * z[i] + x[i] * b0[i]);
+        break;
+    case NEVH__BATCH_INVERT: /* x y = 1 */
+        NEVH__NO_ALIAS for (size_t i = 0; i < count; i++)
+            y[i] = (sum[i] + x[i] * b0[i]) * each[i];
+        break;
+    case NEVH__BATCH_ROOT: /* y y = x */
+        NEVH__NO_ALIAS for (size_t i = 0; i < count; i++)
+            y[i] = (x[i] - sum[i]) * each[i];
+        break;
+    case NEVH__BATCH_POWER: { /* x y' = c y x' */
+        const real *plain = s->sum + b->also;
+        b0 = s->b0 + b->also;
+        NEVH__NO_ALIAS for (size_t i = 0; i < count; i++)
+            y[i] = ((c[i] + 1) * (sum[i] * inverse + x[i] * b0[i]) -
+                    (plain[i] + x[i] * b0[i])) *
+                   each[i];
+        break;
+    }
+    default: /* y' = slope x' */
+        NEVH__NO_ALIAS for (size_t i = 0; i < count; i++)
+            y[i] = c[i] * ((sum[i] + order * x[i] * b0[i]) * inverse);
+    }
+}
+
+/* Coefficients of order k of the state, from slopes of order k - 1. */
+NEVH__INLINE void advance(series *s, size_t k, real row[]) {
+    const nevh__recurrence *r = s->of;
+    const real *factor = s->numbers + r->slope_number;
+    size_t n = 2 * r->n;
+    for (size_t i = 0; i < n; i++)
+        row[i] = factor[i] * s->value[r->slope[i]] * s->inverse[k];
+    for (size_t i = 0; i < n; i++)
+        s->value[i] = row[i];
+    s->value[n] = k == 1;
+    if (k == 1)
+        for (size_t i = 0; i < r->n_constants; i++)
+            s->value[r->first_constant + i] = 0;
+}
+
+/* Order 0 of everything. */
+static void begin(series *s, real t, const real state[], real row[]) {
+    const nevh__recurrence *r = s->of;
+    for (size_t i = 0; i < 2 * r->n; i++)
+        row[i] = s->value[i] = state[i];
+    s->value[2 * r->n] = t;
+    for (size_t i = 0; i < r->n_constants; i++)
+        s->value[r->first_constant + i] = s->numbers[i];
+    for (size_t i = 0; i < r->n_batches; i++)
+        begin_batch(s, &r->batches[i]);
+    for (size_t i = 0; i < r->lanes; i++) {
+        s->a0[i] = s->value[r->lane_a[i]];
+        s->b0[i] = s->value[r->lane_b[i]];
+    }
+}
+
+VECTORS static void go_on(series *s, real rows[]) {
+    const nevh__recurrence *r = s->of;
+    size_t each = 2 * r->n;
+    for (size_t k = 1; k < s->order; k++) {
+        advance(s, k, rows + k * each);
+        if (k > 1)
+            add_up(s, k);
+        for (size_t i = 0; i < r->n_batches; i++)
+            next_batch(s, &r->batches[i], k);
+        store(s, k);
+    }
+    advance(s, s->order, rows + s->order * each);
+}
+
+bool NAMED(nevh__series_expand)(series *s, real t, const real state[],
+                                real rows[]) {
+    size_t each = 2 * s->of->n;
+    begin(s, t, state, rows);
+    for (size_t i = 0; i < s->of->lanes; i++)
+        s->sum[i] = 0;
+    go_on(s, rows);
+    real bad = 0;
+    for (size_t i = 0; i < each; i++)
+        bad += rows[s->order * each + i] - rows[s->order * each + i];
+    return bad == 0;
+}
