@@ -20,6 +20,7 @@ suites = \
 	tests/expression/check_formula \
 	tests/expression/check_formula_terms \
 	tests/expression/check_random_formulas \
+	tests/taylor/check_series \
 	tests/scene/check_scene \
 	tests/scene/check_scene_errors \
 	tests/scene/check_scene_write \
@@ -95,6 +96,7 @@ tests_run_check_transform_LDADD = $(INSIDE_LIBS)
 tests_expression_check_tape_LDADD = $(INSIDE_LIBS)
 tests_expression_check_tape_build_LDADD = $(INSIDE_LIBS)
 tests_expression_check_tape_terms_LDADD = $(INSIDE_LIBS)
+tests_taylor_check_series_LDADD = $(INSIDE_LIBS)
 tests_expression_check_formula_LDADD = $(INSIDE_LIBS)
 tests_expression_check_formula_terms_LDADD = $(INSIDE_LIBS)
 tests_robust_check_hard_pendulum_LDADD = $(TEST_LIBS) $(GSL_LIBS)

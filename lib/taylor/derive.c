@@ -79,8 +79,8 @@ static int operand(const reader *r, const nevh_term *term, size_t instance,
     case NEVH__Q:
         return nevh__graph_variable(r->g, term->q[instance * term->nq + o.at]);
     case NEVH__P:
-        return nevh__graph_variable(
-            r->g, r->n + term->p[instance * term->np + o.at]);
+        return nevh__graph_variable(r->g,
+                                    r->n + term->p[instance * term->np + o.at]);
     case NEVH__C:
         return nevh__graph_number(r->g, term->c[instance * term->nc + o.at]);
     case NEVH__NUMBER:
@@ -190,8 +190,8 @@ static void hand_back(nevh__graph *g, int i, int of[]) {
         add_to(g, &of[x.a], nevh__graph_scale(g, -1, mine));
         break;
     case NEVH__GRAPH_POWER:
-        mine = nevh__graph_multiply(
-            g, mine, nevh__graph_power(g, x.a, x.number - 1));
+        mine = nevh__graph_multiply(g, mine,
+                                    nevh__graph_power(g, x.a, x.number - 1));
         add_to(g, &of[x.a], nevh__graph_scale(g, x.number, mine));
         break;
     case NEVH__GRAPH_CALL:
@@ -228,10 +228,10 @@ static int sweep(reader *r, const double friction[], int slope[]) {
             slope[k - n] = of[i];
     }
     for (size_t k = 0; friction && k < n; k++)
-        slope[n + k] = nevh__graph_add(
-            g, slope[n + k],
-            nevh__graph_scale(g, -(nevh__wide)friction[k],
-                              nevh__graph_variable(g, n + k)));
+        slope[n + k] =
+            nevh__graph_add(g, slope[n + k],
+                            nevh__graph_scale(g, -(nevh__wide)friction[k],
+                                              nevh__graph_variable(g, n + k)));
     free(of);
     return g->failed ? out_of_memory(r) : NEVH_OK;
 }

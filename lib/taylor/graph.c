@@ -104,11 +104,10 @@ int nevh__graph_variable(nevh__graph *g, size_t k) {
 
 static int operation(nevh__graph *g, nevh__graph_kind kind, nevh__wide x, int a,
                      int b) {
-    return node(g, (nevh__graph_node){.kind = (uint8_t)kind,
-                                      .a = a,
-                                      .b = b,
-                                      .slope = -1,
-                                      .number = x});
+    return node(
+        g,
+        (nevh__graph_node){
+            .kind = (uint8_t)kind, .a = a, .b = b, .slope = -1, .number = x});
 }
 
 int nevh__graph_add(nevh__graph *g, int a, int b) {
@@ -164,8 +163,7 @@ int nevh__graph_multiply(nevh__graph *g, int a, int b) {
         return nevh__graph_scale(g, x, a);
     if (at(g, a)->kind == NEVH__GRAPH_SCALE) {
         x = at(g, a)->number;
-        return nevh__graph_scale(g, x,
-                                 nevh__graph_multiply(g, at(g, a)->a, b));
+        return nevh__graph_scale(g, x, nevh__graph_multiply(g, at(g, a)->a, b));
     }
     if (at(g, b)->kind == NEVH__GRAPH_SCALE)
         return nevh__graph_multiply(g, b, a);
@@ -287,13 +285,12 @@ static int slope_of(nevh__graph *g, nevh__tape_operation f, int a, int y) {
 
 /* Of x and y: the two halves have one argument each, and 1/r^2 in common. */
 static int angle(nevh__graph *g, int y, int x) {
-    int inverse = nevh__graph_invert(
-        g, nevh__graph_add(g, square(g, x), square(g, y)));
+    int inverse =
+        nevh__graph_invert(g, nevh__graph_add(g, square(g, x), square(g, y)));
     int by_y = raw_call(g, NEVH__ATAN2, y, x);
     int by_x = raw_call(g, NEVH__NOTHING, x, y);
     int slope_y = nevh__graph_multiply(g, x, inverse);
-    int slope_x =
-        nevh__graph_scale(g, -1, nevh__graph_multiply(g, y, inverse));
+    int slope_x = nevh__graph_scale(g, -1, nevh__graph_multiply(g, y, inverse));
     if (g->failed)
         return -1;
     g->nodes[by_y].slope = slope_y;

@@ -47,8 +47,7 @@ static void push(scheduler *s, int node, nevh__wide factor) {
         int *stack = nevh__grow(s->stack, capacity, sizeof *stack);
         if (stack)
             s->stack = stack;
-        nevh__wide *factors =
-            nevh__grow(s->factors, capacity, sizeof *factors);
+        nevh__wide *factors = nevh__grow(s->factors, capacity, sizeof *factors);
         if (factors)
             s->factors = factors;
         s->failed = s->failed || !stack || !factors;
@@ -99,9 +98,9 @@ static void count_uses(scheduler *s, const int slope[]) {
 /* Whether a sum is written into those that use it. */
 static bool dissolves(const scheduler *s, int node) {
     const nevh__graph_node *x = &s->g->nodes[node];
-    return !s->apart[node] && (x->kind == NEVH__GRAPH_SCALE ||
-                               (x->kind == NEVH__GRAPH_ADD &&
-                                s->uses[node] == 1));
+    return !s->apart[node] &&
+           (x->kind == NEVH__GRAPH_SCALE ||
+            (x->kind == NEVH__GRAPH_ADD && s->uses[node] == 1));
 }
 
 static int add_item(scheduler *s, item x) {
@@ -151,8 +150,8 @@ static void collect(scheduler *s, int node) {
         }
         if (x->b >= 0)
             push(s, x->b, factor);
-        push(s, x->a, x->kind == NEVH__GRAPH_SCALE ? factor * x->number
-                                                   : factor);
+        push(s, x->a,
+             x->kind == NEVH__GRAPH_SCALE ? factor * x->number : factor);
     }
 }
 
@@ -172,8 +171,8 @@ static int part_of_sum(scheduler *s, const item *like, size_t from,
     for (size_t i = 0; i < count && !s->failed; i += each) {
         size_t some = count - i < each ? count - i : each;
         bool whole = some > 1;
-        x.operand[x.arity] =
-            whole ? part_of_sum(s, like, from + i, some) : s->sum[from + i].leaf;
+        x.operand[x.arity] = whole ? part_of_sum(s, like, from + i, some)
+                                   : s->sum[from + i].leaf;
         x.number[x.arity] = whole ? 1 : s->sum[from + i].factor;
         x.level = s->failed ? 0 : level_over(s, x.level, x.operand[x.arity]);
         x.arity++;
@@ -223,10 +222,9 @@ static int item_for(scheduler *s, const nevh__graph_node *n, int node) {
 static void make_items(scheduler *s) {
     const nevh__graph *g = s->g;
     for (int i = 0; i < g->used && !s->failed; i++)
-        s->item_of[i] =
-            s->uses[i] && !(is_sum(&g->nodes[i]) && dissolves(s, i))
-                ? item_for(s, &g->nodes[i], i)
-                : -1;
+        s->item_of[i] = s->uses[i] && !(is_sum(&g->nodes[i]) && dissolves(s, i))
+                            ? item_for(s, &g->nodes[i], i)
+                            : -1;
     for (int i = 0; i < g->used && !s->failed; i++)
         if (s->item_of[i] >= 0 && g->nodes[i].slope >= 0) {
             item *x = &s->items[s->item_of[i]];

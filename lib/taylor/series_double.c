@@ -17,10 +17,10 @@ NEVH__INLINE void store(series *s, size_t k) {
     NEVH_LANES(i, r->weighted) {
         a[i] = order * value[r->lane_a[i]];
     }
-    NEVH__NO_ALIAS for (size_t i = r->weighted; i < r->lanes; i++)
-        a[i] = value[r->lane_a[i]];
-    NEVH__NO_ALIAS for (size_t i = 0; i < r->lanes; i++)
-        b[i] = value[r->lane_b[i]];
+    NEVH__NO_ALIAS for (size_t i = r->weighted; i < r->lanes; i++) a[i] =
+        value[r->lane_a[i]];
+    NEVH__NO_ALIAS for (size_t i = 0; i < r->lanes; i++) b[i] =
+        value[r->lane_b[i]];
 }
 
 NEVH__INLINE void add_up(series *s, size_t k) {

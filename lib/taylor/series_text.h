@@ -11,14 +11,14 @@
 struct NAMED(nevh__series) {
     const nevh__recurrence *of;
     size_t order;
-    real *value;      /* the coefficients of the present order */
-    real *slope;      /* 2n */
-    real *a0, *b0;    /* lanes: operands of order 0 */
-    real *sum;        /* lanes */
-    real *each;       /* by number: of inverses of what is divided by */
+    real *value;   /* the coefficients of the present order */
+    real *slope;   /* 2n */
+    real *a0, *b0; /* lanes: operands of order 0 */
+    real *sum;     /* lanes */
+    real *each;    /* by number: of inverses of what is divided by */
     real *numbers;
-    real *gathered;   /* a few times the widest batch */
-    real *inverse;    /* 1/k */
+    real *gathered;          /* a few times the widest batch */
+    real *inverse;           /* 1/k */
     double *rows_a, *rows_b; /* order x ROWS x lanes */
     void *memory;
 };
@@ -37,8 +37,8 @@ static void lay_out(nevh__arena *arena, void *data) {
     s->sum = nevh__arena_take(arena, r->lanes, sizeof(real));
     s->each = nevh__arena_take(arena, r->values, sizeof(real));
     s->numbers = nevh__arena_take(arena, r->n_numbers, sizeof(real));
-    s->gathered = nevh__arena_take(arena, NEVH__MOST_SUMMANDS * r->widest,
-                                   sizeof(real));
+    s->gathered =
+        nevh__arena_take(arena, NEVH__MOST_SUMMANDS * r->widest, sizeof(real));
     s->inverse = nevh__arena_take(arena, s->order + 1, sizeof(real));
     s->rows_a =
         nevh__arena_take(arena, s->order * ROWS * r->lanes, sizeof(double));
@@ -78,8 +78,8 @@ NEVH__INLINE const real *operand(const series *s, const nevh__batch *b,
         return s->value + b->operand[which];
     const uint32_t *index = s->of->index + b->operand[which];
     real *to = s->gathered + (size_t)which * s->of->widest;
-    NEVH__NO_ALIAS for (size_t i = 0; i < b->count; i++)
-        to[i] = s->value[index[i]];
+    NEVH__NO_ALIAS for (size_t i = 0; i < b->count; i++) to[i] =
+        s->value[index[i]];
     return to;
 }
 
@@ -90,25 +90,24 @@ NEVH__INLINE void add_summands(const series *s, const nevh__batch *b) {
     const real *d = c + count, *z;
     switch (b->arity) {
     case 1:
-        NEVH__NO_ALIAS for (size_t i = 0; i < count; i++)
-            y[i] = c[i] * x[i];
+        NEVH__NO_ALIAS for (size_t i = 0; i < count; i++) y[i] = c[i] * x[i];
         return;
     case 2:
         z = operand(s, b, 1);
-        NEVH__NO_ALIAS for (size_t i = 0; i < count; i++)
-            y[i] = c[i] * x[i] + d[i] * z[i];
+        NEVH__NO_ALIAS for (size_t i = 0; i < count; i++) y[i] =
+            c[i] * x[i] + d[i] * z[i];
         return;
     default:
         z = operand(s, b, 1);
         const real *e = d + count, *u = operand(s, b, 2);
         if (b->arity == 3) {
-            NEVH__NO_ALIAS for (size_t i = 0; i < count; i++)
-                y[i] = c[i] * x[i] + d[i] * z[i] + e[i] * u[i];
+            NEVH__NO_ALIAS for (size_t i = 0; i < count; i++) y[i] =
+                c[i] * x[i] + d[i] * z[i] + e[i] * u[i];
             return;
         }
         const real *f = e + count, *v = operand(s, b, 3);
-        NEVH__NO_ALIAS for (size_t i = 0; i < count; i++)
-            y[i] = (c[i] * x[i] + d[i] * z[i]) + (e[i] * u[i] + f[i] * v[i]);
+        NEVH__NO_ALIAS for (size_t i = 0; i < count; i++) y[i] =
+            (c[i] * x[i] + d[i] * z[i]) + (e[i] * u[i] + f[i] * v[i]);
     }
 }
 
@@ -214,29 +213,29 @@ NEVH__INLINE void next_batch(const series *s, const nevh__batch *b, size_t k) {
     switch (b->kind) {
     case NEVH__BATCH_MULTIPLY:
         z = operand(s, b, 1);
-        NEVH__NO_ALIAS for (size_t i = 0; i < count; i++)
-            y[i] = sum[i] + (a0[i] * z[i] + x[i] * b0[i]);
+        NEVH__NO_ALIAS for (size_t i = 0; i < count; i++) y[i] =
+            sum[i] + (a0[i] * z[i] + x[i] * b0[i]);
         break;
     case NEVH__BATCH_INVERT: /* x y = 1 */
-        NEVH__NO_ALIAS for (size_t i = 0; i < count; i++)
-            y[i] = (sum[i] + x[i] * b0[i]) * each[i];
+        NEVH__NO_ALIAS for (size_t i = 0; i < count; i++) y[i] =
+            (sum[i] + x[i] * b0[i]) * each[i];
         break;
     case NEVH__BATCH_ROOT: /* y y = x */
-        NEVH__NO_ALIAS for (size_t i = 0; i < count; i++)
-            y[i] = (x[i] - sum[i]) * each[i];
+        NEVH__NO_ALIAS for (size_t i = 0; i < count; i++) y[i] =
+            (x[i] - sum[i]) * each[i];
         break;
     case NEVH__BATCH_POWER: { /* x y' = c y x' */
         const real *plain = s->sum + b->also;
         b0 = s->b0 + b->also;
-        NEVH__NO_ALIAS for (size_t i = 0; i < count; i++)
-            y[i] = ((c[i] + 1) * (sum[i] * inverse + x[i] * b0[i]) -
-                    (plain[i] + x[i] * b0[i])) *
-                   each[i];
+        NEVH__NO_ALIAS for (size_t i = 0; i < count; i++) y[i] =
+            ((c[i] + 1) * (sum[i] * inverse + x[i] * b0[i]) -
+             (plain[i] + x[i] * b0[i])) *
+            each[i];
         break;
     }
     default: /* y' = slope x' */
-        NEVH__NO_ALIAS for (size_t i = 0; i < count; i++)
-            y[i] = c[i] * ((sum[i] + order * x[i] * b0[i]) * inverse);
+        NEVH__NO_ALIAS for (size_t i = 0; i < count; i++) y[i] =
+            c[i] * ((sum[i] + order * x[i] * b0[i]) * inverse);
     }
 }
 
