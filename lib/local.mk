@@ -155,6 +155,7 @@ libnevh_core_la_SOURCES = \
 	lib/ensemble/ensemble.c \
 	lib/ensemble/lanes.c \
 	lib/ensemble/observe.c \
+	lib/ensemble/cross.c \
 	lib/ensemble/event.c \
 	lib/scene/scene_private.h \
 	lib/scene/lines.c \

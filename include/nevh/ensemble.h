@@ -87,9 +87,8 @@ typedef struct nevh_ensemble nevh_ensemble;
 
 /* returns  to be freed with nevh_ensemble_free; NULL when memory is out, or
             where an argument is NULL; carries the stepper's refusal, or
-            NEVH_EINVAL, otherwise.  Schemes that choose their own times, and
-            orbits whose crossings are asked for, are taken one by one, whatever
-            the width
+            NEVH_EINVAL, otherwise.  Orbits of schemes that choose their own
+            times are taken one by one, whatever the width
    cost     that of planning two steppers; then memory that is proportional to
             the width, whatever the number of orbits */
 NEVH_API nevh_ensemble *nevh_ensemble_new(const nevh_system *,

@@ -44,7 +44,7 @@ static int take_outcomes(nevh_ensemble *e) {
                               i);
         e->columns += o->kind == NEVH_OUTCOME_STATE ? 2 * e->n : 1;
         e->moving |= has_quantity(o) && o->quantity.velocities;
-        e->looks_back |= o->kind == NEVH_OUTCOME_FIRST;
+        e->looks_back |= o->kind == NEVH_OUTCOME_FIRST || crosses(o);
         if (crosses(o))
             e->crossing_of[e->n_crossings++] = i;
     }
@@ -64,8 +64,8 @@ static size_t choose_width(const nevh_ensemble *e, const nevh_options *o) {
     size_t width = e->is.width ? e->is.width : WIDTH;
     while (!e->is.width && width > NEVH__LANES && width * e->n > MOST_NUMBERS)
         width /= 2;
-    if (scheme->own_time || o->transform || e->n_crossings ||
-        (scheme->adaptive && o->balance) || width == 1)
+    if (scheme->own_time || o->transform || (scheme->adaptive && o->balance) ||
+        width == 1)
         return 1;
     return nevh__padded(width);
 }
@@ -229,15 +229,17 @@ static int plan_sections(nevh_ensemble *e) {
                                          .direction = o->direction,
                                          .period = o->modulus};
     }
-    e->sections = nevh_sections_new(e->stepper, e->crossings, e->n_crossings,
-                                    nevh__ensemble_cross, e);
+    e->sections =
+        nevh_sections_new(e->alone ? e->stepper : e->narrow, e->crossings,
+                          e->n_crossings, nevh__ensemble_cross, e);
     if (!e->sections) {
         free(data);
         return out_of_memory(e);
     }
-    return nevh_sections_status(e->sections)
-               ? nevh__fail_as(&e->report, &e->sections->report)
-               : NEVH_OK;
+    if (nevh_sections_status(e->sections))
+        return nevh__fail_as(&e->report, &e->sections->report);
+    return e->alone || nevh__crossing_lanes_plan(e) ? NEVH_OK
+                                                    : out_of_memory(e);
 }
 
 static int check_times(nevh_ensemble *e) {
@@ -306,6 +308,7 @@ void nevh_ensemble_free(nevh_ensemble *e) {
         return;
     nevh_energy_free(e->energy);
     nevh_sections_free(e->sections);
+    nevh__crossing_lanes_free(e->crossing_lanes);
     if (e->n_crossings && e->crossings)
         free(e->crossings[0].data);
     nevh_field_free(e->motion);

@@ -37,6 +37,8 @@ typedef struct {
     nevh__report report; /* of what failed */
 } nevh__lane;
 
+typedef struct nevh__crossing_lanes nevh__crossing_lanes;
+
 struct nevh_ensemble {
     const nevh_system *system;
     size_t n, width, stride; /* stride: of values, a multiple of NEVH__LANES */
@@ -54,7 +56,9 @@ struct nevh_ensemble {
     nevh_sections *sections; /* NULL: not asked for */
     nevh_section *crossings; /* one an outcome that wants it */
     size_t *crossing_of, n_crossings;
-    nevh_field *motion; /* of velocities; or NULL */
+    size_t crossing_lane;                 /* whose points are told */
+    nevh__crossing_lanes *crossing_lanes; /* NULL: not asked for, or alone */
+    nevh_field *motion;                   /* of velocities; or NULL */
     gsl_root_fsolver *root;
 
     nevh__lane *lanes;     /* width */
@@ -85,8 +89,19 @@ void nevh__ensemble_look(nevh_ensemble *);
 /* The lane ends, as it is: hands its outcomes on. */
 void nevh__ensemble_end(nevh_ensemble *, size_t lane);
 void nevh__ensemble_fail(nevh_ensemble *, size_t lane, const nevh__report *);
-/* A point of a section of the only lane. */
+/* A point of a section of e->crossing_lane. */
 int nevh__ensemble_cross(void *ensemble, const nevh_point *);
+/* Of states side by side, rows of `stride`: velocities, to e->v, where they are
+   asked for; then quantities. */
+void nevh__ensemble_move(nevh_ensemble *, const double t[], const double q[],
+                         const double p[]);
+void nevh__ensemble_value(const nevh_ensemble *, size_t o, const double t[],
+                          const double q[], const double p[], double values[]);
+
+/* cross.c: crossings of lanes that are to be looked at and are not over. */
+bool nevh__crossing_lanes_plan(nevh_ensemble *); /* false: memory is out */
+void nevh__crossing_lanes_free(nevh__crossing_lanes *);
+void nevh__ensemble_look_at_crossings(nevh_ensemble *);
 
 /* event.c: the time at which outcome o of a lane first is above 0 between the
    snapshot and `until`, a part of the step from it, where it is above 0. */

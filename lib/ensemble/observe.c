@@ -14,24 +14,33 @@ static void widen(const nevh_ensemble *e, const double from[], double to[]) {
                 from[k * e->width + (lane < e->width ? lane : 0)];
 }
 
-/* Each lane alone, where one of them has no velocity. */
-static void velocity_of_lane(nevh_ensemble *e, size_t lane) {
+/* A lane alone, where one of them has no velocity. */
+static void velocity_of_lane(nevh_ensemble *e, size_t lane, double t,
+                             const double q[], const double p[]) {
     size_t n = e->n, stride = e->stride;
     for (size_t k = 0; k < n; k++) {
-        e->q1[k] = e->wide_q[k * stride + lane];
-        e->p1[k] = e->wide_p[k * stride + lane];
+        e->q1[k] = q[k * stride + lane];
+        e->p1[k] = p[k * stride + lane];
     }
-    int status = nevh_field_gradient(e->motion, 1, &e->now.t[lane], e->q1,
-                                     e->p1, NULL, e->v1);
+    int status =
+        nevh_field_gradient(e->motion, 1, &t, e->q1, e->p1, NULL, e->v1);
     for (size_t k = 0; k < n; k++)
         e->v[k * stride + lane] = status ? NAN : e->v1[k];
 }
 
-static void find_velocities(nevh_ensemble *e) {
-    if (nevh_field_gradient(e->motion, e->stride, e->now.t, e->wide_q,
-                            e->wide_p, NULL, e->v))
+void nevh__ensemble_move(nevh_ensemble *e, const double t[], const double q[],
+                         const double p[]) {
+    if (e->moving &&
+        nevh_field_gradient(e->motion, e->stride, t, q, p, NULL, e->v))
         for (size_t lane = 0; lane < e->stride; lane++)
-            velocity_of_lane(e, lane);
+            velocity_of_lane(e, lane, t[lane], q, p);
+}
+
+void nevh__ensemble_value(const nevh_ensemble *e, size_t o, const double t[],
+                          const double q[], const double p[], double values[]) {
+    const nevh_quantity *is = &e->outcomes[o].quantity;
+    is->value(is->data, e->stride, t, q, p, is->velocities ? e->v : NULL,
+              values);
 }
 
 static void evaluate(nevh_ensemble *e) {
@@ -39,15 +48,11 @@ static void evaluate(nevh_ensemble *e) {
         e->now.t[lane] = e->lanes[lane < e->width ? lane : 0].t;
     widen(e, e->q, e->wide_q);
     widen(e, e->p, e->wide_p);
-    if (e->moving)
-        find_velocities(e);
-    for (size_t i = 0; i < e->n_outcomes; i++) {
-        const nevh_quantity *is = &e->outcomes[i].quantity;
-        if (is->value)
-            is->value(is->data, e->stride, e->now.t, e->wide_q, e->wide_p,
-                      is->velocities ? e->v : NULL,
-                      e->now.value + i * e->stride);
-    }
+    nevh__ensemble_move(e, e->now.t, e->wide_q, e->wide_p);
+    for (size_t i = 0; i < e->n_outcomes; i++)
+        if (e->outcomes[i].quantity.value)
+            nevh__ensemble_value(e, i, e->now.t, e->wide_q, e->wide_p,
+                                 e->now.value + i * e->stride);
     const nevh_quantity *stop = &e->is.stop;
     if (stop->value)
         stop->value(stop->data, e->stride, e->now.t, e->wide_q, e->wide_p,
@@ -133,7 +138,8 @@ static bool all_known(const nevh_ensemble *e, size_t lane) {
 
 int nevh__ensemble_cross(void *ensemble, const nevh_point *point) {
     nevh_ensemble *e = ensemble;
-    nevh__record *r = &e->records[e->crossing_of[point->section] * e->width];
+    size_t o = e->crossing_of[point->section];
+    nevh__record *r = &e->records[o * e->width + e->crossing_lane];
     r->first = r->count++ ? r->first : point->t;
     r->last = point->t;
     return 0;
@@ -173,6 +179,8 @@ void nevh__ensemble_look(nevh_ensemble *e) {
             all_known(e, lane) || (e->is.stop.value && e->stop[lane] > 0);
         l->fresh = false;
     }
+    if (e->crossing_lanes)
+        nevh__ensemble_look_at_crossings(e);
 }
 
 void nevh__ensemble_fail(nevh_ensemble *e, size_t lane,

@@ -276,12 +276,22 @@ static void load(nevh__step_selection *e, size_t lane, size_t at) {
     }
 }
 
+static bool same_state(const nevh_options *o, size_t n, size_t a, size_t b) {
+    for (size_t i = 0; i < n * o->width; i += o->width)
+        if ((o->q && o->q[i + a] != o->q[i + b]) ||
+            (o->p && o->p[i + a] != o->p[i + b]))
+            return false;
+    return true;
+}
+
 /* The first lane becomes a sample, and the last ones that have a shorter length
    than those before. */
 static void find_over_lanes(nevh__step_selection *e, double *energy) {
     size_t width = e->options->width ? e->options->width : 1;
     size_t stride = (width + TRIED_LANES - 1) / TRIED_LANES;
     for (size_t lane = 0; lane < width; lane += stride) {
+        if (lane && same_state(e->options, e->field->n, lane, lane - stride))
+            continue; /* nothing would be shorter */
         e->at = e->lanes;
         e->shortened = lane == 0;
         load(e, lane, e->at);

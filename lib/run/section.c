@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double ahead = 0x1p-20; /* part of a step: for slopes */
-
 static int check(nevh_sections *x, const nevh_section *decl, size_t number) {
     if (decl->value ? decl->every == 0
                     : decl->every > 0 && isfinite(decl->every)) {
@@ -182,7 +180,7 @@ static bool flow(nevh_sections *x, double t, const double q[],
 /* The slope of a value along the flow, NAN where it is unknown. */
 static double slope(nevh_sections *x, const nevh__section_state *k, double t,
                     const double q[], const double p[], double value) {
-    double d = ahead * (x->t_after - x->t), next;
+    double d = nevh__section_ahead * (x->t_after - x->t), next;
     for (size_t i = 0; i < x->branch->work.n; i++) {
         x->q_try[i] = q[i] + d * x->dq[i];
         x->p_try[i] = p[i] + d * x->dp[i];
@@ -240,6 +238,13 @@ static int tell(nevh_sections *x) {
     return status;
 }
 
+int nevh__sections_search(nevh_sections *x) {
+    int status = NEVH_OK;
+    for (size_t i = 0; !status && i < x->count; i++)
+        status = look(x, &x->states[i]);
+    return status ? status : tell(x);
+}
+
 static int search(nevh_sections *x) {
     int status = NEVH_OK;
     for (size_t i = 0; !status && i < x->count; i++) {
@@ -254,9 +259,7 @@ static int search(nevh_sections *x) {
         find_slopes_before(x);
     if (x->crossings)
         find_slopes_after(x);
-    for (size_t i = 0; !status && i < x->count; i++)
-        status = look(x, &x->states[i]);
-    return status ? status : tell(x);
+    return nevh__sections_search(x);
 }
 
 static int pass(nevh_sections *x, double t, const double q[],

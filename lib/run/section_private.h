@@ -67,6 +67,12 @@ struct nevh_sections {
     nevh__report report;
 };
 
+/* section.c: tells the points within the step at hand, of which the values and
+   slopes of all sections are set. */
+int nevh__sections_search(nevh_sections *);
+/* The part of a step by which a slope looks ahead. */
+static const double nevh__section_ahead = 0x1p-20;
+
 /* section_branch.c.  All return a status, which is recorded. */
 /* A step of h from where the step at hand begins to q_try, p_try. */
 int nevh__section_step(nevh_sections *, double h);
@@ -89,6 +95,9 @@ int nevh__section_search(nevh_sections *, nevh__section_state *,
 /* section_turn.c: the nodes of the step at hand.  Where the value may turn and
    cross a level within it, nodes are put there. */
 int nevh__section_nodes(nevh_sections *, nevh__section_state *);
+/* Whether the value may meet a level within the step at hand; where it does
+   not, there is nothing to be found. */
+bool nevh__section_near(const nevh_sections *, const nevh__section_state *);
 
 /* section_level.c */
 /* The multiple of the period at or below a value; without one, -1 below 0. */

@@ -179,6 +179,15 @@ static int look_for_turns(nevh_sections *x, nevh__section_state *k,
     return status;
 }
 
+bool nevh__section_near(const nevh_sections *x, const nevh__section_state *k) {
+    double span = x->t_after - x->t;
+    double begin = k->slope * span, end = k->slope_after * span;
+    double low = fmin(k->value, k->value_after);
+    double high = fmax(k->value, k->value_after);
+    return level_within(k, low, high) ||
+           (isfinite(begin) && isfinite(end) && may_turn(k, begin, end));
+}
+
 int nevh__section_nodes(nevh_sections *x, nevh__section_state *k) {
     double span = x->t_after - x->t;
     double begin = k->slope * span, end = k->slope_after * span;

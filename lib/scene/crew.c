@@ -177,6 +177,8 @@ static nevh_ensemble *open(worker *w, const double varied[],
     if (room) {
         nevh_ensemble_options is =
             nevh__variant_options(s, &w->variant, &o, room);
+        if (s->ensemble->parameters && !is.width)
+            is.width = w->group_end - w->at < NEVH__LANES ? 1 : 0;
         e = nevh_ensemble_new(w->variant.model->system, &is);
     }
     free(room);

@@ -154,6 +154,49 @@ TEST_EACH(lanes_are_orbits_alone, scheme_count()) {
     ck_assert(any);
 }
 
+/* dq0/dt, which is zero where q0 turns. */
+static void first_velocity(const void *data, size_t width, const double t[],
+                           const double q[], const double p[], const double v[],
+                           double values[]) {
+    (void)data, (void)t, (void)q, (void)p;
+    for (size_t lane = 0; lane < width; lane++)
+        values[lane] = v[lane];
+}
+
+/* A level, many of them, and a level near which the value of some turns. */
+TEST_EACH(crossings_are_those_of_orbits_alone, scheme_count()) {
+    const nevh_integrator *scheme = nevh_integrators()[_i];
+    const problem *b = &henon_heiles; /* any scheme fits */
+    double near_turn = 1.02 * b->q[0];
+    const nevh_quantity speed = {.value = first_velocity, .velocities = true};
+    const nevh_outcome crossings[] = {
+        {.kind = NEVH_OUTCOME_CROSSINGS, .quantity = q0},
+        {.kind = NEVH_OUTCOME_PERIOD, .quantity = q0, .modulus = 0.03},
+        {.kind = NEVH_OUTCOME_PERIOD, .quantity = speed, .direction = -1},
+        {.kind = NEVH_OUTCOME_CROSSINGS,
+         .quantity = {first_coordinate, &near_turn, false}},
+        {.kind = NEVH_OUTCOME_STATE},
+    };
+    nevh_options o;
+    nevh_ensemble_options is = options_of(b, 1, scheme, &o);
+    nevh_system *s = b->make();
+    is.outcomes = crossings;
+    is.n_outcomes = sizeof crossings / sizeof *crossings;
+    is.dt *= 1.5;
+    is.t_end = b->t0 + b->span;
+    members one = run(s, &is, b, false);
+    is.width = 8;
+    members many = run(s, &is, b, true);
+    ck_assert_mem_eq(many.status, one.status, sizeof one.status);
+    ck_assert_mem_eq(many.values, one.values, sizeof one.values);
+    double counted = 0;
+    for (int i = 0; i < MEMBERS; i++)
+        counted += one.status[i] ? 0 : one.values[i][0] + one.values[i][3];
+    /* Euler's orbits go to infinity, through all levels at once. */
+    ck_assert(counted > MEMBERS || one.status[0] == NEVH_EFAILED);
+    nevh_system_free(s);
+}
+
 /* Orbits that end at different times: free lanes take the next ones. */
 TEST(orbits_end_when_all_is_known) {
     const problem *b = &henon_heiles;

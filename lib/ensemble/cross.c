@@ -1,0 +1,204 @@
+/* nevh: crossings of orbits side by side.
+
+   Values, and slopes along the flow, are taken of all lanes at once.  They are
+   those that lib/run/section.c takes of one orbit; where they tell that a value
+   may meet a level within the step, it searches as it does for one.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "ensemble/ensemble_private.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct nevh__crossing_lanes {
+    double *slope, *slope_after;            /* a row of `stride` a crossing */
+    double *dq, *dp, *q, *p, *t, *d, *next; /* rows: the flow; states ahead */
+    int *came;                              /* a row a crossing */
+    double numbers[];
+};
+
+bool nevh__crossing_lanes_plan(nevh_ensemble *e) {
+    size_t rows = 4 * e->n + 2 * e->n_crossings + 3;
+    nevh__crossing_lanes *c = nevh__array(
+        1, sizeof *c + (rows * e->stride + NEVH__LANES) * sizeof *c->numbers);
+    e->crossing_lanes = c;
+    if (!c || !(c->came = nevh__array(e->n_crossings * e->width, sizeof(int))))
+        return false;
+    size_t half = e->n * e->stride;
+    c->slope = nevh__aligned(c->numbers);
+    c->slope_after = c->slope + e->n_crossings * e->stride;
+    c->dq = c->slope_after + e->n_crossings * e->stride;
+    c->dp = c->dq + half;
+    c->q = c->dp + half;
+    c->p = c->q + half;
+    c->t = c->p + half;
+    c->d = c->t + e->stride;
+    c->next = c->d + e->stride;
+    return true;
+}
+
+void nevh__crossing_lanes_free(nevh__crossing_lanes *c) {
+    if (c)
+        free(c->came);
+    free(c);
+}
+
+/* dp/dt and dq/dt of a lane alone, where one of them has none. */
+static void flow_of_lane(nevh_ensemble *e, size_t lane, double t,
+                         const double q[], const double p[]) {
+    nevh__crossing_lanes *c = e->crossing_lanes;
+    double *v = e->v1, *force = e->wide_p1;
+    for (size_t k = 0; k < e->n; k++) {
+        e->q1[k] = q[k * e->stride + lane];
+        e->p1[k] = p[k * e->stride + lane];
+    }
+    int status = nevh_field_gradient(e->narrow->work.field, 1, &t, e->q1, e->p1,
+                                     force, v);
+    for (size_t k = 0; k < e->n; k++) {
+        c->dq[k * e->stride + lane] = status ? NAN : v[k];
+        c->dp[k * e->stride + lane] = status ? NAN : force[k];
+    }
+}
+
+static void find_flow(nevh_ensemble *e, const double t[], const double q[],
+                      const double p[]) {
+    nevh__crossing_lanes *c = e->crossing_lanes;
+    const double *rates = e->narrow->rates;
+    if (nevh_field_gradient(e->narrow->work.field, e->stride, t, q, p, c->dp,
+                            c->dq))
+        for (size_t lane = 0; lane < e->width; lane++)
+            flow_of_lane(e, lane, t[lane], q, p);
+    for (size_t i = 0; i < e->n * e->stride; i++)
+        c->dp[i] = -c->dp[i] - (rates ? rates[i / e->stride] * p[i] : 0);
+}
+
+/* Of all lanes, at states from which the values are known. */
+static void find_slopes(nevh_ensemble *e, const double t[], const double q[],
+                        const double p[], const double values[],
+                        double slopes[]) {
+    nevh__crossing_lanes *c = e->crossing_lanes;
+    find_flow(e, t, q, p);
+    for (size_t lane = 0; lane < e->stride; lane++) {
+        c->d[lane] = nevh__section_ahead * (e->now.t[lane] - e->ago1.t[lane]);
+        c->t[lane] = t[lane] + c->d[lane];
+    }
+    for (size_t i = 0; i < e->n * e->stride; i++) {
+        c->q[i] = q[i] + c->d[i % e->stride] * c->dq[i];
+        c->p[i] = p[i] + c->d[i % e->stride] * c->dp[i];
+    }
+    nevh__ensemble_move(e, c->t, c->q, c->p);
+    for (size_t i = 0; i < e->n_crossings; i++) {
+        const double *value = values + e->crossing_of[i] * e->stride;
+        double *slope = slopes + i * e->stride;
+        nevh__ensemble_value(e, e->crossing_of[i], c->t, c->q, c->p, c->next);
+        for (size_t lane = 0; lane < e->stride; lane++)
+            slope[lane] = isnan(c->dq[lane])
+                              ? NAN
+                              : (c->next[lane] - value[lane]) / c->d[lane];
+    }
+}
+
+/* The step that a lane has taken last. */
+static void load_step(nevh_ensemble *e, size_t lane) {
+    nevh_sections *x = e->sections;
+    const nevh__crossing_lanes *c = e->crossing_lanes;
+    x->first = e->lanes[lane].step == 1;
+    x->t = e->ago1.t[lane];
+    x->t_after = e->now.t[lane];
+    x->h = e->ago1.h[lane];
+    for (size_t i = 0; i < x->count; i++) {
+        nevh__section_state *k = &x->states[i];
+        size_t at = e->crossing_of[i] * e->stride + lane;
+        k->value = e->ago1.value[at];
+        k->value_after = e->now.value[at];
+        k->slope = c->slope[i * e->stride + lane];
+        k->slope_after = c->slope_after[i * e->stride + lane];
+        k->came = c->came[i * e->width + lane];
+    }
+}
+
+/* The states, from which shorter steps branch off and where the step ends. */
+static void load_states(nevh_ensemble *e, size_t lane) {
+    nevh_sections *x = e->sections;
+    for (size_t k = 0; k < e->n; k++) {
+        size_t at = k * e->width + lane;
+        x->q[k] = e->ago1.q[at];
+        x->p[k] = e->ago1.p[at];
+        e->run_q[k] = e->q[at];
+        e->run_p[k] = e->p[at];
+    }
+    for (size_t row = 0; row < e->stepper->rows; row++)
+        x->memory[row] = e->ago1.memory[row * e->width + lane];
+    x->q_after = e->run_q;
+    x->p_after = e->run_p;
+}
+
+/* Whether all values are finite; else the orbit fails, as it does alone. */
+static bool all_finite(nevh_ensemble *e, size_t lane) {
+    nevh_sections *x = e->sections;
+    double value;
+    for (size_t i = 0; i < x->count; i++)
+        if (!isfinite(e->now.value[e->crossing_of[i] * e->stride + lane])) {
+            nevh__lane_to_narrow(e, e->q, e->p, e->stepper->work.memory, lane);
+            memcpy(e->run_q, e->q1, e->n * sizeof *e->q1);
+            memcpy(e->run_p, e->p1, e->n * sizeof *e->p1);
+            nevh__section_value(x, &x->states[i], e->now.t[lane], e->run_q,
+                                e->run_p, &value);
+            nevh__ensemble_fail(e, lane, &x->report);
+            return false;
+        }
+    return true;
+}
+
+static void look_at_lane(nevh_ensemble *e, size_t lane) {
+    nevh_sections *x = e->sections;
+    int *came = e->crossing_lanes->came + lane;
+    bool near = false;
+    load_step(e, lane);
+    for (size_t i = 0; i < x->count; i++)
+        near |= nevh__section_near(x, &x->states[i]);
+    if (!near)
+        return;
+    e->crossing_lane = lane;
+    x->report = (nevh__report){0};
+    load_states(e, lane);
+    if (nevh__sections_search(x))
+        nevh__ensemble_fail(e, lane, &x->report);
+    for (size_t i = 0; i < x->count; i++)
+        came[i * e->width] = x->states[i].came;
+}
+
+static void keep_slopes(nevh_ensemble *e, size_t lane, const double from[]) {
+    for (size_t i = lane; i < e->n_crossings * e->stride; i += e->stride)
+        e->crossing_lanes->slope[i] = from[i];
+}
+
+void nevh__ensemble_look_at_crossings(nevh_ensemble *e) {
+    nevh__crossing_lanes *c = e->crossing_lanes;
+    bool any = false, first = false;
+    for (size_t lane = 0; lane < e->width; lane++) {
+        const nevh__lane *l = &e->lanes[lane];
+        if (!l->look || l->over)
+            continue;
+        any |= l->step > 0;
+        first |= l->step == 1;
+        for (size_t i = lane; !l->step && i < e->n_crossings * e->width;
+             i += e->width)
+            c->came[i] = 0;
+    }
+    if (first) {
+        find_slopes(e, e->ago1.t, e->ago1.q, e->ago1.p, e->ago1.value,
+                    c->slope_after);
+        for (size_t lane = 0; lane < e->width; lane++)
+            if (e->lanes[lane].look && e->lanes[lane].step == 1)
+                keep_slopes(e, lane, c->slope_after);
+    }
+    if (any)
+        find_slopes(e, e->now.t, e->q, e->p, e->now.value, c->slope_after);
+    for (size_t lane = 0; lane < e->width; lane++) {
+        const nevh__lane *l = &e->lanes[lane];
+        if (!l->look || l->over || !all_finite(e, lane) || !l->step)
+            continue;
+        look_at_lane(e, lane);
+        keep_slopes(e, lane, c->slope_after);
+    }
+}
