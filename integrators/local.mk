@@ -24,6 +24,7 @@ libnevh_core_la_SOURCES += \
 	integrators/adaptive_verlet.c \
 	integrators/kernels/stage_sums_private.h \
 	integrators/kernels/stage_sweeps_private.h \
+	integrators/kernels/stage_step.h \
 	integrators/kernels/stage_sweeps.c \
 	integrators/kernels/runge_kutta_private.h \
 	integrators/kernels/runge_kutta_step.h \

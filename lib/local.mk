@@ -98,6 +98,7 @@ libnevh_core_la_SOURCES = \
 	lib/work/ledger_private.h \
 	lib/work/ledger.c \
 	lib/implicit/implicit_private.h \
+	lib/implicit/stage_progress.h \
 	lib/implicit/fixed_point.c \
 	lib/implicit/judge.c \
 	lib/implicit/newton.c \

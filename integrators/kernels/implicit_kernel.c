@@ -12,29 +12,25 @@
    compensation, the products' own rounding included.  First guess: the
    collocation polynomial of the previous step, continued.
 
-   For H = T(p) + V(q) unknown are the slopes of the momenta alone: a sweep
-   takes the momenta from them, the slopes of the coordinates at these momenta,
-   the coordinates, and new slopes there.  That halves the number of sweeps.
+   For H = T(p) + V(q) unknown are the slopes of the momenta alone, which halves
+   the number of sweeps.  A sweep is stage_step.h.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include <nevh/extend.h>
 #include "stage_sweeps_private.h"
-#include "tableau_private.h"
 #include "work/work_private.h"
-#include "implicit/implicit_private.h"
 #include "system/system_private.h"
-#include <math.h>
-#include <nevh/body.h>
 #include <stdlib.h>
 #include <string.h>
 
 typedef struct {
-    nevh__tableau *tableau; /* first three, where tests look for them */
-    nevh__sweeps *one;      /* sweeps of one orbit; NULL: there are none */
-    nevh__sweeps *many;     /* the same of NEVH__LANES orbits */
+    nevh__tableau *tableau; /* these two first, where tests look for them */
+    nevh__stage_weights *weights;
+    nevh__sweeps *one;   /* sweeps of one orbit; NULL: there are none */
+    nevh__sweeps *eight; /* the same of NEVH__LANES orbits */
+    nevh__sweeps *any;   /* of as many as are left over, or stuck */
     nevh__stage_solver *solver;
     bool partitioned;
     size_t unknown; /* slopes of a lane that are solved for */
-    double *hb;     /* h b_j of this step */
     size_t *lanes;  /* all of them */
 } family_plan;
 
@@ -45,11 +41,9 @@ typedef struct {
     const double *q, *p;
     double *slopes;      /* 2n x stages x width */
     double *unknown;     /* the part of the slopes that is solved for */
-    double *increments;  /* 2n x stages x width */
-    double *points;      /* 2n x stages x width */
-    double *times;       /* stages x width */
     double *sum;         /* 2n x width: the new state */
     double *lost;        /* 2n x width: what that lost */
+    double *state;       /* 2n x width: that of a stage */
     double *hold;        /* width; see nevh__stage_problem */
     nevh__sweeps *group; /* under way, from this lane on */
     size_t first;
@@ -75,21 +69,21 @@ static void clear(nevh_work *w) {
         return;
     nevh__tableau_free(g->tableau);
     nevh__stage_solver_free(g->solver);
-    free(g->hb);
-    free(g->lanes);
     nevh__sweeps_free(g->one);
-    nevh__sweeps_free(g->many);
+    nevh__sweeps_free(g->eight);
+    nevh__sweeps_free(g->any);
+    nevh__stage_weights_free(g->weights);
+    free(g->lanes);
     free(g);
     w->plan = NULL;
 }
 
-/* Sweeps of `lanes` orbits, where these suit; false when memory is out. */
-static bool plan_group(nevh_work *w, const family_plan *g, size_t lanes,
+/* Sweeps of some orbits, where these suit; false when memory is out. */
+static bool plan_group(nevh_work *w, const family_plan *g, nevh__swept kind,
                        nevh__sweeps **sweeps) {
-    const nevh__tableau *a = g->tableau;
-    if (!nevh__sweeps_suit(w, a->stages, lanes))
+    if (!nevh__sweeps_suit(w, g->tableau->stages, kind))
         return true;
-    *sweeps = nevh__sweeps_new(w, a, g->hb, g->partitioned, lanes);
+    *sweeps = nevh__sweeps_new(w, g->weights, g->partitioned, kind);
     return *sweeps;
 }
 
@@ -97,10 +91,12 @@ static bool plan_group(nevh_work *w, const family_plan *g, size_t lanes,
    one by one. */
 static bool plan_sweeps(nevh_work *w, family_plan *g) {
     size_t rest = w->width % NEVH__LANES, fewest = NEVH__FEWEST_TOGETHER;
-    if (w->width >= fewest && !plan_group(w, g, NEVH__LANES, &g->many))
+    g->any = nevh__sweeps_new(w, g->weights, g->partitioned, NEVH__ORBITS);
+    if (!g->any || (w->width >= fewest &&
+                    !plan_group(w, g, NEVH__EIGHT_ORBITS, &g->eight)))
         return false;
-    return (g->many && (rest == 0 || rest >= fewest)) ||
-           plan_group(w, g, 1, &g->one);
+    return (g->eight && (rest == 0 || rest >= fewest)) ||
+           plan_group(w, g, NEVH__ONE_ORBIT, &g->one);
 }
 
 static bool plan_solver(nevh_work *w, family_plan *g) {
@@ -110,13 +106,13 @@ static bool plan_solver(nevh_work *w, family_plan *g) {
     g->partitioned =
         !w->transform && (nevh_system_traits(w->system) & NEVH_SEPARABLE);
     g->unknown = (g->partitioned ? 1 : 2) * w->n * a->stages;
-    g->hb = nevh__array(a->stages, sizeof *g->hb);
+    g->weights = nevh__stage_weights_new(a);
     g->lanes = nevh__array(w->width, sizeof *g->lanes);
     g->solver = nevh__stage_solver_new(
         w, &(nevh__stage_shape){a->stages, g->partitioned, a->a_q, a->a_p});
     for (size_t lane = 0; g->lanes && lane < w->width; lane++)
         g->lanes[lane] = lane;
-    return g->hb && g->lanes && g->solver && plan_sweeps(w, g);
+    return g->weights && g->lanes && g->solver && plan_sweeps(w, g);
 }
 
 static int plan_on(nevh_work *w, size_t fewest, size_t most,
@@ -132,7 +128,7 @@ static int plan_on(nevh_work *w, size_t fewest, size_t most,
     if (!g || !plan_solver(w, g))
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     w->memory_rows = 2 * w->n + g->unknown + 2;
-    w->scratch_size = ((6 * w->n + 1) * stages + 1 + 4 * w->n) * w->width;
+    w->scratch_size = (2 * w->n * stages + 6 * w->n + 1) * w->width;
     return NEVH_OK;
 }
 
@@ -151,130 +147,36 @@ static int plan_implicit_euler(nevh_work *w) {
 static family_step lay_out(nevh_work *w, double t, double h, const double q[],
                            const double p[]) {
     const family_plan *g = w->plan;
-    size_t size = g->tableau->stages * w->width, all = 2 * w->n * size;
+    size_t slopes = 2 * w->size * g->tableau->stages;
     family_step s = {w, t, h, q, p, .slopes = w->scratch};
-    s.unknown =
-        s.slopes + 2 * w->size * g->tableau->stages - g->unknown * w->width;
-    s.increments = s.slopes + all;
-    s.points = s.increments + all;
-    s.times = s.points + all;
-    s.sum = s.times + size;
+    s.unknown = s.slopes + slopes - g->unknown * w->width;
+    s.sum = s.slopes + slopes;
     s.lost = s.sum + 2 * w->size;
-    s.hold = s.lost + 2 * w->size;
+    s.state = s.lost + 2 * w->size;
+    s.hold = s.state + 2 * w->size;
     return s;
 }
 
-/* h b_j; the outer two share what the rounded others leave of h. */
-static void weigh(family_plan *g, double h) {
-    size_t s = g->tableau->stages;
-    double rest = h;
-    for (size_t j = 1; j + 1 < s; j++) {
-        g->hb[j] = h * g->tableau->b[j];
-        rest -= g->hb[j];
-    }
-    g->hb[0] = g->hb[s - 1] = s > 1 ? rest / 2 : rest;
-}
-
-/* out[i] = sum_j m[j*stages + i] x[j], for `active` lanes side by side; the
-   sums of even and odd j apart, as in stage_sweeps.c. */
-static void multiply(size_t stages, size_t active, const double m[],
-                     const double x[], double out[]) {
-    for (size_t i = 0; i < stages * active; i++) {
-        const double *weight = m + i / active, *slope = x + i % active;
-        double sum[2] = {0, 0};
-        for (size_t j = 0; j < stages; j++)
-            sum[j % 2] += weight[j * stages] * slope[j * active];
-        out[i] = sum[0] + sum[1];
-    }
-}
-
-/* The stage states of variables from `first` to `last` at some lanes, to
-   points. */
-static void find_points(const family_step *s, size_t first, size_t last,
-                        size_t active, const size_t lanes[]) {
-    const nevh_work *w = s->work;
-    const family_plan *g = w->plan;
-    size_t stages = g->tableau->stages;
-    for (size_t k = first; k < last; k++) {
-        const double *mu = k < w->n ? g->tableau->mu_q : g->tableau->mu_p;
-        const double *slopes = s->slopes + k * stages * w->width;
-        const double *y = (k < w->n ? s->q : s->p) + k % w->n * w->width;
-        const double *carry = w->memory + k * w->width;
-        double *points = s->points + k * stages * active;
-        double *x = s->increments + k * stages * active;
-        for (size_t j = 0; j < stages; j++)
-            for (size_t a = 0; a < active; a++)
-                x[j * active + a] = g->hb[j] * slopes[j * w->width + lanes[a]];
-        multiply(stages, active, mu, x, points);
-        for (size_t i = 0; i < stages; i++)
-            for (size_t a = 0; a < active; a++) {
-                double *point = points + i * active + a;
-                *point = y[lanes[a]] + (*point + carry[lanes[a]]);
-            }
-    }
-}
-
-static void find_times(const family_step *s, size_t active) {
-    const nevh__tableau *a = ((const family_plan *)s->work->plan)->tableau;
-    for (size_t i = 0; i < a->stages * active; i++)
-        s->times[i] = s->t + a->c[i / active] * s->h;
-}
-
-/* The gradient at the points. */
-static int take_gradient(const family_step *s, size_t active, double dh_dq[],
-                         double dh_dp[]) {
-    nevh_work *w = s->work;
-    const family_plan *g = w->plan;
-    size_t points = g->tableau->stages * active;
-    return nevh__work_gradient_padded(w, points, points, s->times, s->points,
-                                      s->points + w->n * points, dh_dq, dh_dp);
-}
-
-static void negate(const family_step *s, size_t active, double x[]) {
-    const family_plan *g = s->work->plan;
-    for (size_t i = 0; i < s->work->n * g->tableau->stages * active; i++)
-        x[i] = -x[i];
+/* The step of some lanes. */
+static nevh__sweep_start start_of(const family_step *s, size_t count,
+                                  const size_t lanes[]) {
+    return (nevh__sweep_start){.width = s->work->width,
+                               .count = count,
+                               .lanes = lanes,
+                               .t = s->t,
+                               .h = s->h,
+                               .q = s->q,
+                               .p = s->p,
+                               .carry = recall(s->work).carry};
 }
 
 static int map(void *data, size_t active, const size_t lanes[],
                const double slopes[], double out[]) {
     const family_step *s = data;
     const family_plan *g = s->work->plan;
-    double *forces = out + s->work->n * g->tableau->stages * active;
+    const nevh__sweep_start start = start_of(s, active, lanes);
     (void)slopes; /* are s->unknown */
-    find_points(s, 0, 2 * s->work->n, active, lanes);
-    find_times(s, active);
-    int status = take_gradient(s, active, forces, out);
-    negate(s, active, forces);
-    return status;
-}
-
-/* Slopes of the coordinates at the stages' momenta. */
-static int find_velocities(const family_step *s, size_t active,
-                           const size_t lanes[]) {
-    const nevh_work *w = s->work;
-    const family_plan *g = w->plan;
-    double *velocities = s->increments;
-    find_points(s, w->n, 2 * w->n, active, lanes);
-    int status = take_gradient(s, active, NULL, velocities);
-    for (size_t row = 0; row < w->n * g->tableau->stages; row++)
-        for (size_t a = 0; a < active; a++)
-            s->slopes[row * w->width + lanes[a]] = velocities[row * active + a];
-    return status;
-}
-
-static int map_momenta(void *data, size_t active, const size_t lanes[],
-                       const double slopes[], double out[]) {
-    const family_step *s = data;
-    (void)slopes;
-    find_times(s, active);
-    int status = find_velocities(s, active, lanes);
-    if (status)
-        return status;
-    find_points(s, 0, s->work->n, active, lanes);
-    status = take_gradient(s, active, out, NULL);
-    negate(s, active, out);
-    return status;
+    return nevh__sweeps_map(g->any, &start, s->slopes, out);
 }
 
 /* Continues the last step's polynomial where there is one. */
@@ -284,14 +186,14 @@ static void guess(void *data, size_t lane) {
     const family_plan *g = w->plan;
     family_memory last = recall(w);
     size_t stages = g->tableau->stages;
-    double x[NEVH__MOST_STAGES], y[NEVH__MOST_STAGES];
     for (size_t row = 0; row < g->unknown; row += stages) {
-        size_t at = row * w->width + lane;
-        for (size_t j = 0; j < stages; j++)
-            x[j] = last.slopes[at + j * w->width];
-        multiply(stages, 1, g->tableau->guess, x, y);
-        for (size_t j = 0; j < stages; j++)
-            s->unknown[at + j * w->width] = last.h[lane] == s->h ? y[j] : 0;
+        const double *x = last.slopes + row * w->width + lane;
+        double *to = s->unknown + row * w->width + lane;
+        for (size_t i = 0; i < stages; i++)
+            to[i * w->width] =
+                last.h[lane] == s->h
+                    ? nevh__stage_continue(g->weights, i, w->width, x)
+                    : 0;
     }
 }
 
@@ -302,22 +204,15 @@ static size_t begin_group(void *data, size_t first, const double unit[]) {
     const family_plan *g = w->plan;
     family_memory last = recall(w);
     size_t rest = w->width - first;
-    bool many = g->many && rest >= NEVH__FEWEST_TOGETHER;
-    nevh__sweep_start start = {.width = w->width,
-                               .first = first,
-                               .count = many ? NEVH__LANES : 1,
-                               .t = s->t,
-                               .h = s->h,
-                               .q = s->q,
-                               .p = s->p,
-                               .carry = last.carry,
-                               .unit = unit,
-                               .last = last.slopes,
-                               .last_h = last.h};
-    start.count = start.count < rest ? start.count : rest;
-    s->group = many ? g->many : g->one;
+    bool many = g->eight && rest >= NEVH__FEWEST_TOGETHER;
+    size_t most = many ? NEVH__LANES : 1, count = rest < most ? rest : most;
+    nevh__sweep_start start = start_of(s, count, g->lanes + first);
+    start.unit = unit;
+    start.last = last.slopes;
+    start.last_h = last.h;
+    s->group = many ? g->eight : g->one;
     s->first = first;
-    return s->group && nevh__sweeps_begin(s->group, &start) ? start.count : 0;
+    return s->group && nevh__sweeps_begin(s->group, &start) ? count : 0;
 }
 
 static int sweep_group(void *data, nevh__stage_progress made[]) {
@@ -338,58 +233,15 @@ static const nevh__stage_group groups = {begin_group, sweep_group, fetch,
 /* The evaluations that moved the state: one a stage. */
 static int account(const family_step *s, const family_plan *g) {
     nevh_work *w = s->work;
-    size_t stages = g->tableau->stages, size = stages * w->width;
-    double *z = s->increments;
+    const nevh__sweep_start start = start_of(s, w->width, g->lanes);
     int status = NEVH_OK;
-    find_points(s, 0, 2 * w->n, w->width, g->lanes);
-    find_times(s, w->width);
-    for (size_t i = 0; !status && i < stages; i++) {
-        for (size_t k = 0; k < 2 * w->n; k++)
-            memcpy(z + k * w->width, s->points + k * size + i * w->width,
-                   w->width * sizeof *z);
-        status = nevh_work_account(w, NEVH_OF_Q | NEVH_OF_P, g->hb[i],
-                                   s->times + i * w->width, z, z + w->size);
+    nevh__sweeps_place(g->any, &start, s->slopes);
+    for (size_t i = 0; !status && i < g->tableau->stages; i++) {
+        const double *times = nevh__sweeps_stage(g->any, i, s->state);
+        status = nevh_work_account(w, NEVH_OF_Q | NEVH_OF_P, g->weights->hb[i],
+                                   times, s->state, s->state + w->size);
     }
     return status;
-}
-
-/* sum + lost += h b x; what that loses is below the last bit of lost. */
-NEVH__INLINE void add(double hb, double slope, double *sum, double *lost) {
-    double x = hb * slope, next = *sum + x;
-    *lost += nevh__roundoff(next, *sum, x) + fma(hb, slope, -x);
-    *sum = next;
-}
-
-/* The new state and what it lost, small weights first, of `lanes` orbits. */
-NEVH__INLINE void sum_row(const nevh__tableau *a, const double hb[],
-                          size_t lanes, size_t width, const double x[],
-                          double sum[], double lost[]) {
-    double total[NEVH__LANES], rest[NEVH__LANES];
-    for (size_t i = 0; i < lanes; i++) {
-        total[i] = sum[i];
-        rest[i] = lost[i];
-    }
-    for (const size_t *j = a->order; j < a->order + a->stages; j++)
-        for (size_t i = 0; i < lanes; i++)
-            add(hb[*j], x[*j * width + i], &total[i], &rest[i]);
-    for (size_t i = 0; i < lanes; i++) {
-        sum[i] = total[i] + rest[i];
-        lost[i] = nevh__roundoff(sum[i], total[i], rest[i]);
-    }
-}
-
-NEVH_SIMD static void sum_up(const family_step *s, const nevh__tableau *a,
-                             const double hb[]) {
-    size_t width = s->work->width, eight = NEVH__LANES;
-    for (size_t k = 0; k < 2 * s->work->n; k++) {
-        const double *x = s->slopes + k * a->stages * width;
-        double *sum = s->sum + k * width, *lost = s->lost + k * width;
-        size_t i = 0;
-        for (; i + eight <= width; i += eight)
-            sum_row(a, hb, eight, width, x + i, sum + i, lost + i);
-        for (; i < width; i++)
-            sum_row(a, hb, 1, width, x + i, sum + i, lost + i);
-    }
 }
 
 static int commit(const family_step *s, const family_plan *g, double q[],
@@ -400,7 +252,8 @@ static int commit(const family_step *s, const family_plan *g, double q[],
     memcpy(s->sum, q, n * sizeof *q);
     memcpy(s->sum + n, p, n * sizeof *p);
     memcpy(s->lost, w->memory, 2 * n * sizeof *s->lost);
-    sum_up(s, g->tableau, g->hb);
+    nevh__stages_advance(g->tableau, g->weights->hb, 2 * w->n, w->width,
+                         s->slopes, s->sum, s->lost);
     for (size_t i = 0; i < 2 * n; i++)
         check += s->sum[i] - s->sum[i];
     if (check != 0)
@@ -422,14 +275,14 @@ static int commit(const family_step *s, const family_plan *g, double q[],
 static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     family_plan *g = w->plan;
     family_step s = lay_out(w, t, h, q, p);
-    weigh(g, h);
+    nevh__stage_weights_set(g->weights, g->tableau, h);
     memcpy(s.hold, recall(w).hold, w->width * sizeof *s.hold);
     nevh__stage_problem problem = {.t = t,
                                    .h = h,
                                    .q = q,
                                    .p = p,
                                    .x = s.unknown,
-                                   .map = g->partitioned ? map_momenta : map,
+                                   .map = map,
                                    .group = &groups,
                                    .data = &s,
                                    .hold = s.hold};

@@ -1,128 +1,185 @@
-/* nevh: fixed-point sweeps over the stages of one orbit, or of eight, as vectors.
+/* nevh: sweeps over the stages of one orbit, of eight, or of any number.
 
-   The lanes of a vector are stages of one orbit or, where there are enough of
-   them, orbits at one stage.  In a small system a sweep is a chain of short operations, each of which
-   waits for the one before, so what counts is how few they are.  Unknown are
-   the derivatives of H, as they are written; signs and weights come in with the
-   sums over stages.
+   In a small system a sweep is a chain of short operations, each of which waits
+   for the one before, so what counts is how few they are.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "stage_sweeps_private.h"
 #include "gradient/field_private.h"
-#include "system/vector_private.h"
+#include "stage_step.h"
 #include "work/work_private.h"
-#include <math.h>
 #include <nevh/body.h>
 #include <stdlib.h>
 #include <string.h>
 
-#ifdef NEVH__HAS_VECTOR
-
-struct nevh__sweeps {
+struct nevh__stage_owner {
+    nevh__stage_step x;
+    nevh__stage_changes changes;
     nevh_work *work;
-    size_t n, stages;
-    size_t lanes;                  /* orbits: 1, or those of a vector */
-    size_t row;                    /* of the tableau: stages, padded */
-    size_t stride;                 /* of other rows: stages of all lanes */
-    size_t rows;                   /* of the gradient that are solved for */
-    size_t unknown;                /* the first of them */
+    const nevh__stage_weights *weights;
+    nevh__swept kind;
+    size_t lanes;                  /* of a row: most orbits */
+    size_t used;                   /* points that count in an evaluation */
     void *memory;                  /* holds all that follow */
-    double *mu_q, *mu_p, *guess;   /* the tableau's */
-    double *c, *times;             /* a row */
-    double *loaded;                /* of several orbits: what these are for */
-    const double *q, *p, *carry;   /* n, n and 2n rows of lanes: the state */
-    const double *unit;            /* 2n rows of lanes: |h| over scale */
+    double *times;                 /* a row */
+    double *loaded;                /* of several orbits: their state */
     double *last;                  /* rows of stages of lanes */
-    double *products;              /* a row: h b_j times a slope */
-    double *to_q, *to_p;           /* h b_j, - h b_j: vectors of each */
-    double *points;                /* 2n rows */
-    double *gradient;              /* 2n rows: dH/dp, then dH/dq */
-    double *before;                /* rows: as the last sweep left them */
-    double *least;                 /* rows: smallest change so far */
-    const double *weights;         /* h b_j */
-    double h;                      /* for which they were taken over */
     double lowest[NEVH__LANES];    /* change of a sweep so far */
     nevh__call whole, drift, kick; /* where H can be called as it is */
-    bool partitioned, prepared;
+    bool from_values;              /* so it is, of any orbits */
 };
+
+static void pad(const nevh__stage_weights *w, size_t rows, const double from[],
+                double to[]) {
+    for (size_t i = 0; i < rows * w->row; i++) {
+        size_t stage = i % w->row;
+        to[i] = from[i / w->row * w->stages + (stage < w->stages) * stage];
+    }
+}
+
+static void lay_out_weights(nevh__arena *a, void *weights) {
+    nevh__stage_weights *w = weights;
+    size_t matrix = w->stages * w->row, each = sizeof(double);
+    w->mu_q = nevh__arena_take(a, matrix, each);
+    w->mu_p = nevh__arena_take(a, matrix, each);
+    w->guess = nevh__arena_take(a, matrix, each);
+    w->c = nevh__arena_take(a, w->row, each);
+    w->hb = nevh__arena_take(a, w->stages, each);
+    w->to_q = nevh__arena_take(a, w->stages * NEVH__LANES, each);
+    w->to_p = nevh__arena_take(a, w->stages * NEVH__LANES, each);
+}
+
+nevh__stage_weights *nevh__stage_weights_new(const nevh__tableau *a) {
+    nevh__stage_weights *w = nevh__array(1, sizeof *w);
+    if (!w)
+        return NULL;
+    w->stages = a->stages;
+    w->row = nevh__padded(a->stages);
+    w->memory = nevh__arena_new(lay_out_weights, w);
+    if (!w->memory) {
+        free(w);
+        return NULL;
+    }
+    nevh__stage_weights_take(w, a);
+    return w;
+}
+
+void nevh__stage_weights_free(nevh__stage_weights *w) {
+    if (w)
+        free(w->memory);
+    free(w);
+}
+
+void nevh__stage_weights_take(nevh__stage_weights *w, const nevh__tableau *a) {
+    pad(w, w->stages, a->mu_q, w->mu_q);
+    pad(w, w->stages, a->mu_p, w->mu_p);
+    pad(w, w->stages, a->guess, w->guess);
+    pad(w, 1, a->c, w->c);
+}
+
+void nevh__stage_weights_set(nevh__stage_weights *w, const nevh__tableau *a,
+                             double h) {
+    size_t s = w->stages;
+    double rest = h;
+    if (h == w->h)
+        return;
+    for (size_t j = 1; j + 1 < s; j++) {
+        w->hb[j] = h * a->b[j];
+        rest -= w->hb[j];
+    }
+    w->hb[0] = w->hb[s - 1] = s > 1 ? rest / 2 : rest;
+    for (size_t j = 0; j < s * NEVH__LANES; j++) {
+        w->to_q[j] = w->hb[j / NEVH__LANES];
+        w->to_p[j] = -w->hb[j / NEVH__LANES];
+    }
+    w->h = h;
+}
+
+double nevh__stage_continue(const nevh__stage_weights *w, size_t i,
+                            size_t width, const double last[]) {
+    return nevh__stage_sum_orbit(w->row, w->stages, width, w->guess + i, last);
+}
 
 /* States that only fill vectors, and sweeps of orbits that are done, cost
    little where gradients are exact. */
-bool nevh__sweeps_suit(const nevh_work *w, size_t stages, size_t lanes) {
-    return !w->transform &&
-           (nevh__work_lean(w) || (lanes == 1 && stages % NEVH__LANES == 0));
-}
-
-static void pad(const nevh__sweeps *s, size_t rows, const double from[],
-                double to[]) {
-    for (size_t i = 0; i < rows * s->row; i++) {
-        size_t stage = i % s->row;
-        to[i] = from[i / s->row * s->stages + (stage < s->stages) * stage];
-    }
+bool nevh__sweeps_suit(const nevh_work *w, size_t stages, nevh__swept kind) {
+    bool whole = kind == NEVH__ONE_ORBIT && stages % NEVH__LANES == 0;
+    return !w->transform && (nevh__work_lean(w) || whole);
 }
 
 static void lay_out(nevh__arena *a, void *sweeps) {
     nevh__sweeps *s = sweeps;
-    size_t n = s->n, matrix = s->stages * s->row, lanes = s->lanes;
-    size_t vectors = s->stages * NEVH__LANES, all = s->rows * s->stride;
-    size_t each = sizeof(double);
-    s->mu_q = nevh__arena_take(a, matrix, each);
-    s->mu_p = nevh__arena_take(a, matrix, each);
-    s->guess = nevh__arena_take(a, matrix, each);
-    s->c = nevh__arena_take(a, s->row, each);
-    s->times = nevh__arena_take(a, s->stride, each);
-    s->to_q = nevh__arena_take(a, vectors, each);
-    s->to_p = nevh__arena_take(a, vectors, each);
-    s->points = nevh__arena_take(a, 2 * n * s->stride, each);
-    s->gradient = nevh__arena_take(a, 2 * n * s->stride, each);
-    s->before = nevh__arena_take(a, all, each);
-    s->least = nevh__arena_take(a, all, each);
+    nevh__stage_step *x = &s->x;
+    size_t each = sizeof(double), lanes = s->lanes;
+    size_t all = s->kind == NEVH__ORBITS ? 0 : s->changes.rows * x->stride;
+    s->times = nevh__arena_take(a, x->stride, each);
+    x->half = x->n * x->stride + NEVH__LANES; /* a last row may be longer */
+    x->points = nevh__arena_take(a, 2 * x->half, each);
+    x->gradient = nevh__arena_take(a, 2 * x->n * x->stride, each);
+    s->changes.before = nevh__arena_take(a, all, each);
+    s->changes.least = nevh__arena_take(a, all, each);
     s->last = nevh__arena_take(a, all, each);
-    s->products = nevh__arena_take(a, s->stride, each);
-    s->loaded = nevh__arena_take(a, 6 * n * lanes, each);
+    x->products = nevh__arena_take(a, x->stride, each);
+    s->loaded = nevh__arena_take(a, 6 * x->n * lanes, each);
 }
 
-static void find_calls(nevh__sweeps *s) {
+static void plan_calls(nevh__sweeps *s) {
+    const nevh__stage_step *x = &s->x;
     nevh_field *f = s->work->field;
-    size_t half = s->n * s->stride;
-    const double *q = s->points, *p = q + half;
-    double *dh_dp = s->gradient, *dh_dq = dh_dp + half;
-    if (s->partitioned) {
-        s->drift = nevh__call_plan(f, s->stride, s->times, q, p, NULL, dh_dp);
-        s->kick = nevh__call_plan(f, s->stride, s->times, q, p, dh_dq, NULL);
+    size_t half = x->n * x->stride, width = x->stride;
+    const double *q = x->points, *p = q + x->half, *t = s->times;
+    double *dh_dp = x->gradient, *dh_dq = dh_dp + half;
+    if (x->partitioned) {
+        s->drift = nevh__call_plan(f, width, t, q, p, NULL, dh_dp);
+        s->kick = nevh__call_plan(f, width, t, q, p, dh_dq, NULL);
     } else
-        s->whole = nevh__call_plan(f, s->stride, s->times, q, p, dh_dq, dh_dp);
+        s->whole = nevh__call_plan(f, width, t, q, p, dh_dq, dh_dp);
 }
 
-void nevh__sweeps_take(nevh__sweeps *s, const nevh__tableau *a) {
-    pad(s, s->stages, a->mu_q, s->mu_q);
-    pad(s, s->stages, a->mu_p, s->mu_p);
-    pad(s, s->stages, a->guess, s->guess);
-    pad(s, 1, a->c, s->c);
+/* Of one orbit, whose stages stay where they are. */
+static bool has_values(const nevh_work *w) {
+    return w->width == 1 && !w->transform && !nevh__work_lean(w);
 }
 
-nevh__sweeps *nevh__sweeps_new(nevh_work *w, const nevh__tableau *a,
-                               const double hb[], bool partitioned,
-                               size_t lanes) {
+static bool ready(const nevh__sweeps *s) {
+    return s->x.partitioned
+               ? nevh__call_ready(&s->drift) && nevh__call_ready(&s->kick)
+               : nevh__call_ready(&s->whole);
+}
+
+nevh__sweeps *nevh__sweeps_new(nevh_work *w, const nevh__stage_weights *a,
+                               bool partitioned, nevh__swept kind) {
     nevh__sweeps *s = nevh__array(1, sizeof *s);
     if (!s)
         return NULL;
     s->work = w;
-    s->n = w->n;
-    s->stages = a->stages;
-    s->lanes = lanes;
-    s->row = nevh__padded(a->stages);
-    s->stride = nevh__padded(a->stages * lanes);
-    s->rows = (partitioned ? 1 : 2) * w->n;
-    s->unknown = 2 * w->n - s->rows;
-    s->partitioned = partitioned;
-    s->weights = hb;
+    s->weights = a;
+    s->kind = kind;
+    s->lanes = kind == NEVH__ORBITS         ? w->width
+               : kind == NEVH__EIGHT_ORBITS ? NEVH__LANES
+                                            : 1;
+    s->used = a->stages;
+    s->x = (nevh__stage_step){.n = w->n,
+                              .stages = a->stages,
+                              .row = a->row,
+                              .partitioned = partitioned,
+                              .mu_q = a->mu_q,
+                              .mu_p = a->mu_p,
+                              .to_q = a->to_q,
+                              .to_p = a->to_p,
+                              .owner = s};
+    s->x.stride = a->stages * s->lanes;
+    if (kind != NEVH__ORBITS)
+        s->x.stride = nevh__padded(s->x.stride);
+    s->changes.rows = (partitioned ? 1 : 2) * w->n;
+    s->changes.first = 2 * w->n - s->changes.rows;
     s->memory = nevh__arena_new(lay_out, s);
     if (!s->memory) {
         nevh__sweeps_free(s);
         return NULL;
     }
-    nevh__sweeps_take(s, a);
-    find_calls(s);
+    s->changes.lowest = s->lowest;
+    if (kind != NEVH__ORBITS || has_values(w))
+        plan_calls(s);
     return s;
 }
 
@@ -132,368 +189,170 @@ void nevh__sweeps_free(nevh__sweeps *s) {
     free(s);
 }
 
-/* One vector of a[j] (hb[j] x[j]).  Its lanes are stages, with weights of their
-   own and a number of one orbit, or orbits, with the weight of one stage and
-   numbers of their own, for which x has the products. */
-#define PRODUCT(lanes, a, hb, x, j, row, from)                                 \
-    ((lanes) == 1 ? NEVH__VECTOR_AT((a) + (j) * (row) + (from)) *              \
-                        (NEVH__VECTOR_AT((hb) + (j)*NEVH__LANES) * (x)[j])     \
-                  : (a)[(j) * (row) + (from) / NEVH__LANES] *                  \
-                        NEVH__VECTOR_AT((x) + (j)*NEVH__LANES))
-
-/* One vector of the sum over j: even and odd j, which need not wait for each
-   other. */
-NEVH__INLINE void weigh_up(size_t row, size_t lanes, size_t stages,
-                           const double *a, const double *hb, const double x[],
-                           size_t from, nevh__vector *sum) {
-    nevh__vector even = {0}, odd = {0};
-    size_t j = 0;
-    NEVH_UNROLL
-    for (; j + 1 < stages; j += 2) {
-        even += PRODUCT(lanes, a, hb, x, j, row, from);
-        odd += PRODUCT(lanes, a, hb, x, j + 1, row, from);
-    }
-    if (j < stages)
-        even += PRODUCT(lanes, a, hb, x, j, row, from);
-    *sum = even + odd;
+/* The gradient as it always is taken, which says what is wrong with it. */
+static int ask(const nevh__sweeps *s, bool q, bool p) {
+    const nevh__stage_step *x = &s->x;
+    double *dh_dp = x->gradient, *dh_dq = dh_dp + x->n * x->stride;
+    return nevh__work_gradient_padded(s->work, x->stride, s->used, s->times,
+                                      x->points, x->points + x->half,
+                                      q ? dh_dq : NULL, p ? dh_dp : NULL);
 }
 
-/* The same without hb. */
-NEVH__INLINE void sum_up(size_t row, size_t lanes, size_t stages,
-                         const double *a, const double x[], size_t from,
-                         nevh__vector *sum) {
-    nevh__vector even = {0}, odd = {0};
-    size_t j = 0;
-    if (lanes > 1) {
-        weigh_up(row, lanes, stages, a, NULL, x, from, sum);
-        return;
-    }
-    for (; j + 1 < stages; j += 2) {
-        even += NEVH__VECTOR_AT(a + j * row + from) * x[j];
-        odd += NEVH__VECTOR_AT(a + (j + 1) * row + from) * x[j + 1];
-    }
-    if (j < stages)
-        even += NEVH__VECTOR_AT(a + j * row + from) * x[j];
-    *sum = even + odd;
+/* Where it is exact and planned, it is not looked at yet. */
+NEVH__INLINE int nevh__stage_slopes(const nevh__stage_step *x, bool q, bool p) {
+    const nevh__sweeps *s = x->owner;
+    const nevh__call *c = q && p ? &s->whole : q ? &s->kick : &s->drift;
+    if (x->unchecked)
+        return c->inverse ? NEVH_OK : nevh__work_run(s->work, c);
+    if (!s->from_values)
+        return ask(s, q, p);
+    s->work->field->gradients += q ? s->used : 0;
+    return nevh__work_run_values(s->work, c);
 }
 
-/* hb[j] x[j] of orbits. */
-NEVH__INLINE void multiply(size_t stages, const double *restrict hb,
-                           const double *restrict x, double *restrict out) {
-    for (size_t j = 0; j < stages * NEVH__LANES; j += NEVH__LANES)
-        *(nevh__vector *)(out + j) =
-            NEVH__VECTOR_AT(hb + j) * NEVH__VECTOR_AT(x + j);
+NEVH__INLINE const double *nevh__stage_inverse(const nevh__stage_step *x) {
+    return x->unchecked ? x->owner->drift.inverse : NULL;
 }
 
 /* The gradient that continues the last slopes. */
-NEVH__INLINE void begin(const nevh__sweeps *s, size_t lanes, double t, double h,
+NEVH__INLINE void begin(nevh__sweeps *s, size_t lanes, double t, double h,
                         const double last[]) {
-    size_t at = s->unknown * s->stride, numbers = s->stages * lanes;
-    for (size_t i = 0; i < s->stride; i++)
-        s->times[i] = t + s->c[i / lanes] * h;
-    for (size_t k = 0; k < s->rows; k++)
-        for (size_t from = 0; from < s->stride; from += NEVH__LANES) {
-            double *to = s->before + k * s->stride + from;
-            double sign = s->unknown + k < s->n ? 1 : -1;
-            nevh__vector sum = {0};
-            if (last)
-                sum_up(s->row, lanes, s->stages, s->guess, last + k * numbers,
-                       from, &sum);
-            *(nevh__vector *)to = sign * sum;
-            *(nevh__vector *)(to - s->before + s->gradient + at) = sign * sum;
-            NEVH_LANES(i, NEVH__LANES) {
-                s->least[to - s->before + i] = INFINITY;
-            }
-        }
+    const nevh__stage_step *x = &s->x;
+    size_t columns = lanes == NEVH__STAGES_TOGETHER ? 1 : lanes;
+    for (size_t i = 0; i < x->stride; i++)
+        s->times[i] = t + s->weights->c[i / columns] * h;
+    nevh__stage_begin_sweeps(x, &s->changes, lanes, s->weights->guess, last,
+                             x->stages * columns);
 }
 
-NEVH_SIMD static void begin_one(const nevh__sweeps *s, double t, double h,
+NEVH_SIMD static void begin_one(nevh__sweeps *s, double t, double h,
                                 const double last[]) {
-    begin(s, 1, t, h, last);
+    begin(s, NEVH__STAGES_TOGETHER, t, h, last);
 }
 
-NEVH_SIMD static void begin_many(const nevh__sweeps *s, double t, double h,
-                                 const double last[]) {
+NEVH_SIMD static void begin_eight(nevh__sweeps *s, double t, double h,
+                                  const double last[]) {
     begin(s, NEVH__LANES, t, h, last);
 }
 
-static void weigh(nevh__sweeps *s, double h) {
-    for (size_t j = 0; j < s->stages * NEVH__LANES; j++) {
-        s->to_q[j] = s->weights[j / NEVH__LANES];
-        s->to_p[j] = -s->weights[j / NEVH__LANES];
-    }
-    s->h = h;
-}
-
-/* Rows of `count` lanes from `first` on; what is left repeats the first. */
-static void load(const nevh__sweeps *s, const nevh__sweep_start *x,
-                 const double from[], size_t rows, double to[]) {
-    from += x->first;
-    for (size_t k = 0; k < rows; k++, from += x->width, to += s->lanes)
-        if (x->count == NEVH__LANES)
-            memcpy(to, from, NEVH__LANES * sizeof *to);
+/* Rows of `count` lanes; what is left repeats the first. */
+static void load(const nevh__sweep_start *x, size_t lanes, const double from[],
+                 size_t rows, double to[]) {
+    bool vector = x->count == NEVH__LANES && lanes == NEVH__LANES &&
+                  x->lanes[x->count - 1] == x->lanes[0] + x->count - 1;
+    for (size_t k = 0; k < rows; k++, from += x->width, to += lanes)
+        if (vector)
+            memcpy(to, from + x->lanes[0], NEVH__LANES * sizeof *to);
         else
-            for (size_t i = 0; i < s->lanes; i++)
-                to[i] = from[i < x->count ? i : 0];
+            for (size_t i = 0; i < lanes; i++)
+                to[i] = from[x->lanes[i < x->count ? i : 0]];
 }
 
 /* One orbit is left where it is. */
-static void load_state(nevh__sweeps *s, const nevh__sweep_start *x) {
-    size_t half = s->n * s->lanes;
+static void load_state(nevh__sweeps *s, const nevh__sweep_start *x,
+                       size_t lanes) {
+    size_t n = s->x.n, half = n * lanes;
     double *to = s->loaded;
-    s->q = x->q;
-    s->p = x->p;
-    s->carry = x->carry;
-    s->unit = x->unit;
+    s->x.q = x->q;
+    s->x.p = x->p;
+    s->x.carry = x->carry;
+    s->changes.unit = x->unit;
     if (x->width == 1)
         return;
-    load(s, x, x->q, s->n, to);
-    load(s, x, x->p, s->n, to + half);
-    load(s, x, x->carry, 2 * s->n, to + 2 * half);
-    load(s, x, x->unit, 2 * s->n, to + 4 * half);
-    s->q = to;
-    s->p = to + half;
-    s->carry = to + 2 * half;
-    s->unit = to + 4 * half;
+    load(x, lanes, x->q, n, to);
+    load(x, lanes, x->p, n, to + half);
+    load(x, lanes, x->carry, 2 * n, to + 2 * half);
+    s->x.q = to;
+    s->x.p = to + half;
+    s->x.carry = to + 2 * half;
+    if (!x->unit)
+        return;
+    load(x, lanes, x->unit, 2 * n, to + 4 * half);
+    s->changes.unit = to + 4 * half;
 }
 
 /* The last slopes, 0 where they are of another step; NULL: all are. */
 static const double *load_last(const nevh__sweeps *s,
                                const nevh__sweep_start *x) {
-    size_t rows = s->rows * s->stages;
+    size_t rows = s->changes.rows * s->x.stages;
     if (x->width == 1)
         return *x->last_h == x->h ? x->last : NULL;
-    load(s, x, x->last, rows, s->last);
+    load(x, s->lanes, x->last, rows, s->last);
     for (size_t i = 0; i < s->lanes; i++)
-        if (x->last_h[x->first + (i < x->count ? i : 0)] != x->h)
+        if (x->last_h[x->lanes[i < x->count ? i : 0]] != x->h)
             for (size_t row = 0; row < rows; row++)
                 s->last[row * s->lanes + i] = 0;
     return s->last;
 }
 
 bool nevh__sweeps_begin(nevh__sweeps *s, const nevh__sweep_start *x) {
-    s->prepared = s->partitioned ? nevh__call_ready(&s->drift) &&
-                                       nevh__call_ready(&s->kick)
-                                 : nevh__call_ready(&s->whole);
-    if (s->lanes > 1 && !s->prepared)
+    s->x.unchecked = ready(s);
+    if (s->lanes > 1 && !s->x.unchecked)
         return false;
-    if (x->h != s->h)
-        weigh(s, x->h);
     for (size_t i = 0; i < s->lanes; i++)
         s->lowest[i] = INFINITY;
-    load_state(s, x);
-    (s->lanes == 1 ? begin_one : begin_many)(s, x->t, x->h, load_last(s, x));
+    load_state(s, x, s->lanes);
+    (s->lanes == 1 ? begin_one : begin_eight)(s, x->t, x->h, load_last(s, x));
     return true;
-}
-
-/* Stages' states, n rows, from the gradient; velocities too, where these are
-   momenta over known masses. */
-NEVH__INLINE void place_rows(const nevh__sweeps *s, size_t lanes, size_t stages,
-                             size_t row, bool q, const double *inverse) {
-    size_t n = s->n, stride = lanes == 1 ? row : stages * lanes;
-    size_t half = n * stride;
-    const double *restrict mu = q ? s->mu_q : s->mu_p;
-    const double *restrict hb = q ? s->to_q : s->to_p;
-    const double *restrict slopes = s->gradient + (q ? 0 : half);
-    const double *restrict y = q ? s->q : s->p;
-    const double *restrict carry = s->carry + (q ? 0 : n * lanes);
-    double *restrict points = s->points + (q ? 0 : half);
-    double *restrict velocities = s->gradient;
-    for (size_t k = 0; k < n; k++) {
-        const double *x = lanes == 1 ? slopes + k * stride : s->products;
-        if (lanes > 1)
-            multiply(stages, hb, slopes + k * stride, s->products);
-        for (size_t from = 0; from < stride; from += NEVH__LANES) {
-            size_t at = k * stride + from;
-            nevh__vector sum, point;
-            weigh_up(row, lanes, stages, mu, hb, x, from, &sum);
-            if (lanes == 1)
-                point = y[k] + (sum + carry[k]);
-            else
-                point = NEVH__VECTOR_AT(y + k * lanes) +
-                        (sum + NEVH__VECTOR_AT(carry + k * lanes));
-            *(nevh__vector *)(points + at) = point;
-            if (inverse)
-                *(nevh__vector *)(velocities + at) =
-                    NEVH__VECTOR_AT(inverse + at) * point;
-        }
-    }
-}
-
-NEVH__INLINE void place(const nevh__sweeps *s, size_t lanes, bool q) {
-    const double *inverse = q || !s->prepared ? NULL : s->drift.inverse;
-    size_t eight = NEVH__LANES;
-    if (s->stages == eight)
-        place_rows(s, lanes, eight, eight, q, inverse);
-    else if (s->row == eight)
-        place_rows(s, lanes, s->stages, eight, q, inverse);
-    else
-        place_rows(s, lanes, s->stages, s->row, q, inverse);
-}
-
-/* The gradient as it always is taken, which says what is wrong with it. */
-static int ask(const nevh__sweeps *s, bool q, bool p) {
-    double *dh_dp = s->gradient, *dh_dq = dh_dp + s->n * s->stride;
-    return nevh__work_gradient_padded(s->work, s->stride, s->stages, s->times,
-                                      s->points, s->points + s->n * s->stride,
-                                      q ? dh_dq : NULL, p ? dh_dp : NULL);
-}
-
-/* The gradient, or a half of it; where it is exact and planned, it is not
-   looked at yet. */
-NEVH__INLINE int take_gradient(const nevh__sweeps *s, const nevh__call *c,
-                               bool q, bool p) {
-    if (!s->prepared)
-        return ask(s, q, p);
-    return c->inverse ? NEVH_OK : nevh__work_run(s->work, c);
-}
-
-NEVH__INLINE double sum_lanes(const double x[]) {
-    return ((x[0] + x[1]) + (x[2] + x[3])) + ((x[4] + x[5]) + (x[6] + x[7]));
-}
-
-NEVH__INLINE double greater(double x, double y) {
-    return x > y ? x : y;
-}
-
-NEVH__INLINE double greatest(const double x[]) {
-    return greater(greater(greater(x[0], x[1]), greater(x[2], x[3])),
-                   greater(greater(x[4], x[5]), greater(x[6], x[7])));
-}
-
-NEVH__INLINE bool all_finite(size_t size, const double x[]) {
-    double bad[NEVH__LANES];
-    NEVH_LANES(i, NEVH__LANES) {
-        bad[i] = 0;
-    }
-    for (size_t from = 0; from < size; from += NEVH__LANES)
-        NEVH_LANES(i, NEVH__LANES) {
-            bad[i] += x[from + i] - x[from + i];
-        }
-    return sum_lanes(bad) == 0;
-}
-
-/* How this sweep differs from the last, of the lanes of all vectors. */
-typedef struct {
-    double all[NEVH__LANES];    /* sum of changes: 0: none; finite or not */
-    double better[NEVH__LANES]; /* sum of those that are smaller than ever */
-    double most[NEVH__LANES];   /* the largest, in units of scale */
-} comparison;
-
-NEVH__INLINE void compare(const nevh__sweeps *s, size_t lanes,
-                          comparison *made) {
-    const double *restrict now = s->gradient + s->unknown * s->stride;
-    double *restrict before = s->before, *restrict least = s->least;
-    const double *restrict unit = s->unit + s->unknown * lanes;
-    for (size_t k = s->unknown, stride = s->stride; k < 2 * s->n;
-         k++, unit += lanes)
-        for (size_t from = 0; from < stride; from += NEVH__LANES) {
-            NEVH_LANES(i, NEVH__LANES) {
-                double one = unit[lanes == 1 ? 0 : i];
-                double change = fabs(now[i] - before[i]), part = change * one;
-                double bar = least[i], gain = change < bar ? change : 0;
-                before[i] = now[i];
-                least[i] = gain > 0 ? gain : bar;
-                made->all[i] += change;
-                made->better[i] += gain;
-                made->most[i] = made->most[i] > part ? made->most[i] : part;
-            }
-            now += NEVH__LANES;
-            before += NEVH__LANES;
-            least += NEVH__LANES;
-        }
-}
-
-/* Slopes of momenta alone are solved for: those of coordinates follow. */
-NEVH__INLINE int find_halves(const nevh__sweeps *s, size_t lanes) {
-    place(s, lanes, false);
-    int status = take_gradient(s, &s->drift, false, true);
-    if (status)
-        return status;
-    place(s, lanes, true);
-    if (s->prepared && !all_finite(s->n * s->stride, s->gradient))
-        return lanes == 1 ? ask(s, false, true) : NEVH_EDOM;
-    return take_gradient(s, &s->kick, true, false);
-}
-
-NEVH__INLINE int find_whole(const nevh__sweeps *s, size_t lanes) {
-    place(s, lanes, true);
-    place(s, lanes, false);
-    return take_gradient(s, &s->whole, true, true);
-}
-
-/* What a sweep did to one lane. */
-NEVH__INLINE void tell(double all, double better, double most, double *lowest,
-                       nevh__stage_progress *made) {
-    double change = all < INFINITY ? most : INFINITY, least = *lowest;
-    made->moved = all != 0;
-    made->change = change;
-    made->improved = change < least || better > 0;
-    *lowest = change < least ? change : least;
 }
 
 NEVH__INLINE int sweep(nevh__sweeps *s, size_t lanes,
                        nevh__stage_progress made[]) {
-    comparison found;
-    int status = s->partitioned ? find_halves(s, lanes) : find_whole(s, lanes);
-    if (status)
-        return status;
-    NEVH_LANES(i, NEVH__LANES) {
-        found.all[i] = found.better[i] = found.most[i] = 0;
-    }
-    compare(s, lanes, &found);
-    if (lanes == 1)
-        tell(sum_lanes(found.all), sum_lanes(found.better),
-             greatest(found.most), s->lowest, made);
-    for (size_t i = 0; lanes > 1 && i < lanes; i++)
-        tell(found.all[i], found.better[i], found.most[i], &s->lowest[i],
-             &made[i]);
-    return NEVH_OK;
+    int status = nevh__stage_map(&s->x, lanes);
+    if (!status)
+        nevh__stage_compare_sweep(&s->x, &s->changes, lanes, made);
+    return status;
 }
 
 NEVH_SIMD static int sweep_one(nevh__sweeps *s, nevh__stage_progress made[]) {
-    return sweep(s, 1, made);
+    return sweep(s, NEVH__STAGES_TOGETHER, made);
 }
 
-NEVH_SIMD static int sweep_many(nevh__sweeps *s, nevh__stage_progress made[]) {
+NEVH_SIMD static int sweep_eight(nevh__sweeps *s, nevh__stage_progress made[]) {
     return sweep(s, NEVH__LANES, made);
 }
 
 int nevh__sweeps_sweep(nevh__sweeps *s, nevh__stage_progress made[]) {
-    if (s->lanes > 1)
-        return sweep_many(s, made);
+    if (s->lanes > 1) {
+        int status = sweep_eight(s, made);
+        return status == NEVH__STAGE_RANGE ? NEVH_EDOM : status;
+    }
     int status = sweep_one(s, made);
+    if (status == NEVH__STAGE_RANGE)
+        return ask(s, false, true);
     if (!status && !(made->change < INFINITY))
-        return ask(s, true, !s->partitioned);
+        return ask(s, true, !s->x.partitioned);
     return status;
 }
 
 void nevh__sweeps_count(const nevh__sweeps *s, size_t sweeps) {
-    if (s->prepared)
-        s->work->field->gradients += sweeps * s->stages;
+    if (s->x.unchecked)
+        s->work->field->gradients += sweeps * s->x.stages;
 }
 
 /* Rows without what is behind the stages. */
 NEVH_SIMD static void fetch(const nevh__sweeps *s, size_t first, double sign,
                             double slopes[]) {
-    const double *from = s->gradient + first * s->stride;
-    double *to = slopes + first * s->stages;
-    if (s->stages == s->stride)
-        NEVH_LANES(i, s->n * s->stages) {
+    const nevh__stage_step *x = &s->x;
+    const double *from = x->gradient + first * x->stride;
+    double *to = slopes + first * x->stages;
+    if (x->stages == x->stride)
+        NEVH_LANES(i, x->n * x->stages) {
             to[i] = sign * from[i];
         }
     else
-        for (size_t k = 0; k < s->n; k++, from += s->stride, to += s->stages)
-            for (size_t i = 0; i < s->stages; i++)
+        for (size_t k = 0; k < x->n; k++, from += x->stride, to += x->stages)
+            for (size_t i = 0; i < x->stages; i++)
                 to[i] = sign * from[i];
 }
 
 static void fetch_lane(const nevh__sweeps *s, size_t lane, size_t width,
                        double slopes[]) {
-    for (size_t k = 0; k < 2 * s->n; k++) {
-        double sign = k < s->n ? 1 : -1;
-        const double *from = s->gradient + k * s->stride + lane;
-        for (size_t i = 0; i < s->stages; i++, slopes += width)
+    const nevh__stage_step *x = &s->x;
+    for (size_t k = 0; k < 2 * x->n; k++) {
+        double sign = k < x->n ? 1 : -1;
+        const double *from = x->gradient + k * x->stride + lane;
+        for (size_t i = 0; i < x->stages; i++, slopes += width)
             *slopes = sign * from[i * s->lanes];
     }
 }
@@ -505,44 +364,98 @@ void nevh__sweeps_fetch(const nevh__sweeps *s, size_t lane, size_t width,
         return;
     }
     fetch(s, 0, 1, slopes);
-    fetch(s, s->n, -1, slopes);
+    fetch(s, s->x.n, -1, slopes);
 }
 
-#else
-
-nevh__sweeps *nevh__sweeps_new(nevh_work *w, const nevh__tableau *a,
-                               const double hb[], bool partitioned,
-                               size_t lanes) {
-    (void)w, (void)a, (void)hb, (void)partitioned, (void)lanes;
-    return NULL;
+/* Rows of `width` slopes, of which some lanes are taken, and those of the
+   gradient. */
+static void load_rows(const nevh__sweep_start *x, size_t rows, double sign,
+                      const double slopes[], double to[]) {
+    for (size_t row = 0; row < rows; row++, slopes += x->width)
+        for (size_t i = 0; i < x->count; i++)
+            *to++ = sign * slopes[x->width == 1 ? 0 : x->lanes[i]];
 }
 
-void nevh__sweeps_free(nevh__sweeps *s) {
-    (void)s;
+static void load_slopes(nevh__sweeps *s, const nevh__sweep_start *x,
+                        size_t first, const double slopes[]) {
+    size_t half = s->x.n * s->x.stages;
+    if (first == 0)
+        load_rows(x, half, 1, slopes, s->x.gradient);
+    load_rows(x, half, -1, slopes + half * x->width,
+              s->x.gradient + half * x->count);
 }
 
-bool nevh__sweeps_suit(const nevh_work *w, size_t stages, size_t lanes) {
-    (void)w, (void)stages, (void)lanes;
-    return false;
+static void set_columns(nevh__sweeps *s, const nevh__sweep_start *x) {
+    s->used = s->x.stride = s->x.stages * x->count;
+    s->from_values = ready(s);
+    load_state(s, x, x->count);
+    for (size_t i = 0; i < s->x.stride; i++)
+        s->times[i] = x->t + s->weights->c[i / x->count] * x->h;
 }
 
-bool nevh__sweeps_begin(nevh__sweeps *s, const nevh__sweep_start *x) {
-    (void)s, (void)x;
-    return false;
+NEVH_SIMD static int map(nevh__sweeps *s, size_t lanes) {
+    return nevh__stage_map(&s->x, lanes);
 }
 
-int nevh__sweeps_sweep(nevh__sweeps *s, nevh__stage_progress made[]) {
-    (void)s, (void)made;
-    return NEVH_EINVAL;
+int nevh__sweeps_map(nevh__sweeps *s, const nevh__sweep_start *x,
+                     double slopes[], double out[]) {
+    const size_t n = s->x.n, stages = s->x.stages, first = s->changes.first;
+    set_columns(s, x);
+    load_slopes(s, x, first, slopes);
+    int status = map(s, x->count > 1 ? x->count : NEVH__STAGES_TOGETHER);
+    if (status)
+        return status;
+    const double *from = s->x.gradient, *half = from + n * s->x.stride;
+    for (size_t row = 0; first && row < n * stages; row++)
+        for (size_t i = 0; i < x->count; i++)
+            slopes[row * x->width + x->lanes[i]] = *from++;
+    for (; from < half; from++)
+        *out++ = *from;
+    for (; from < half + n * s->x.stride; from++)
+        *out++ = -*from;
+    return status;
 }
 
-void nevh__sweeps_count(const nevh__sweeps *s, size_t sweeps) {
-    (void)s, (void)sweeps;
+NEVH_SIMD static void place(nevh__sweeps *s, size_t lanes) {
+    nevh__stage_place(&s->x, lanes, false);
+    nevh__stage_place(&s->x, lanes, true);
 }
 
-void nevh__sweeps_fetch(const nevh__sweeps *s, size_t lane, size_t width,
-                        double slopes[]) {
-    (void)s, (void)lane, (void)width, (void)slopes;
+void nevh__sweeps_place(nevh__sweeps *s, const nevh__sweep_start *x,
+                        const double slopes[]) {
+    set_columns(s, x);
+    load_slopes(s, x, 0, slopes);
+    place(s, x->count);
 }
 
-#endif
+const double *nevh__sweeps_stage(const nevh__sweeps *s, size_t stage,
+                                 double state[]) {
+    const size_t n = s->x.n, count = s->x.stride / s->x.stages;
+    const double *from = s->x.points + stage * count;
+    for (size_t k = 0; k < 2 * n; k++, state += count)
+        memcpy(state, from + (k / n) * s->x.half + k % n * s->x.stride,
+               count * sizeof *state);
+    return s->times + stage * count;
+}
+
+NEVH_SIMD static void advance(const nevh__tableau *a, const double hb[],
+                              size_t rows, size_t width, const double slopes[],
+                              double sum[], double carry[]) {
+    size_t eight = NEVH__LANES;
+    for (size_t k = 0; k < rows; k++, slopes += a->stages * width) {
+        size_t i = k * width, end = i + width;
+        const double *x = slopes;
+        for (; i + eight <= end; i += eight, x += eight)
+            nevh__stage_advance(a->stages, a->order, hb, eight, width, x,
+                                sum + i, carry + i);
+        for (; i < end; i++, x++)
+            nevh__stage_advance(a->stages, a->order, hb, 1, width, x, sum + i,
+                                carry + i);
+    }
+}
+
+void nevh__stages_advance(const nevh__tableau *a, const double hb[],
+                          size_t rows, size_t width, const double slopes[],
+                          double sum[], double carry[]) {
+    advance(a, hb, rows, width, slopes, sum, carry);
+}

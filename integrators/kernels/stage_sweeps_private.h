@@ -1,36 +1,57 @@
-/* nevh: fixed-point sweeps over the stages of one orbit, or of a few, as vectors.
+/* nevh: sweeps over the stages of one orbit, of eight, or of any number.
    SPDX-License-Identifier: GPL-3.0-or-later
 
-   Of one orbit a row is what belongs to one variable, a number a stage, with
-   room for whole vectors; what is behind the stages repeats the first one, and
-   so decides nothing.  Of several orbits a row has a number an orbit, stage by
-   stage.  All is done operation by operation as in implicit_kernel.c and
-   lib/implicit/judge.c, and comes out the same, bit for bit. */
+   A sweep is stage_step.h.  Of one orbit the lanes of a vector are stages; of
+   eight, orbits at one stage; any number of orbits have rows of their own, of
+   which as much as may be are vectors. */
 #ifndef NEVH_STAGE_SWEEPS_PRIVATE_H
 #define NEVH_STAGE_SWEEPS_PRIVATE_H
 
 #include "implicit/implicit_private.h"
 #include "tableau_private.h"
 
-typedef struct nevh__sweeps nevh__sweeps;
+/* A tableau and its weights in a step by h, as sweeps take them. */
+typedef struct {
+    size_t stages, row;          /* row: stages, padded to whole vectors */
+    void *memory;                /* holds all that follow */
+    double *mu_q, *mu_p, *guess; /* the tableau's, columns of `row` */
+    double *c;                   /* a row */
+    double *hb;                  /* h b_j */
+    double *to_q, *to_p;         /* h b_j, - h b_j: vectors of each */
+    double h;                    /* 0: none yet */
+} nevh__stage_weights;
+
+nevh__stage_weights *nevh__stage_weights_new(const nevh__tableau *);
+void nevh__stage_weights_free(nevh__stage_weights *);
+/* Takes the coefficients of a tableau. */
+void nevh__stage_weights_take(nevh__stage_weights *, const nevh__tableau *);
+/* h b_j; the outer two share what the rounded others leave of h. */
+void nevh__stage_weights_set(nevh__stage_weights *, const nevh__tableau *,
+                             double h);
+
+/* Of stage i, what continues a variable's slopes of the last step, `width`
+   apart. */
+double nevh__stage_continue(const nevh__stage_weights *, size_t i, size_t width,
+                            const double last[]);
 
 /* Orbits that are worth the work of eight. */
 enum { NEVH__FEWEST_TOGETHER = 5 };
+typedef enum { NEVH__ONE_ORBIT, NEVH__EIGHT_ORBITS, NEVH__ORBITS } nevh__swept;
 
-/* Whether sweeps of one lane, or of NEVH__LANES, may be of use. */
-bool nevh__sweeps_suit(const nevh_work *, size_t stages, size_t lanes);
-/* The tableau and hb, the stages' h b_j, outlive it.  NULL: out of memory. */
-nevh__sweeps *nevh__sweeps_new(nevh_work *, const nevh__tableau *,
-                               const double hb[], bool partitioned,
-                               size_t lanes);
+typedef struct nevh__stage_owner nevh__sweeps; /* see stage_step.h */
+
+/* Whether sweeps of one orbit, or of eight, are of use. */
+bool nevh__sweeps_suit(const nevh_work *, size_t stages, nevh__swept);
+/* The weights outlive it.  NULL: out of memory. */
+nevh__sweeps *nevh__sweeps_new(nevh_work *, const nevh__stage_weights *,
+                               bool partitioned, nevh__swept);
 void nevh__sweeps_free(nevh__sweeps *);
-/* Takes the coefficients of a tableau. */
-void nevh__sweeps_take(nevh__sweeps *, const nevh__tableau *);
 
-/* A step by h from t of `count` orbits, from `first` on, of `width`: rows of so
-   many numbers. */
+/* A step by h from t of `count` of `width` orbits: rows of so many numbers, of
+   which `lanes` says which are taken. */
 typedef struct {
-    size_t width, first, count;
+    size_t width, count;
+    const size_t *lanes;
     double t, h;
     const double *q, *p;  /* n rows each */
     const double *carry;  /* 2n rows */
@@ -38,7 +59,9 @@ typedef struct {
     const double *last;   /* the slopes solved for in the last step, to be */
     const double *last_h; /* continued where that was by h too; one row */
 } nevh__sweep_start;
-/* Whether they can be swept, which one always can. */
+
+/* Of one orbit, or of lanes next to each other: whether they can be swept, which
+   one always can. */
 bool nevh__sweeps_begin(nevh__sweeps *, const nevh__sweep_start *);
 /* One sweep, and what it did to each lane. */
 int nevh__sweeps_sweep(nevh__sweeps *, nevh__stage_progress made[]);
@@ -48,5 +71,22 @@ void nevh__sweeps_count(const nevh__sweeps *, size_t sweeps);
    the first; those that are not solved for as they were in the last sweep. */
 void nevh__sweeps_fetch(const nevh__sweeps *, size_t lane, size_t width,
                         double slopes[]);
+
+/* Of any orbits: the slopes that the unknown ones of `slopes`, 2n x stages rows
+   of `width`, lead to, to out[row*count + i]; the others go to `slopes`. */
+int nevh__sweeps_map(nevh__sweeps *, const nevh__sweep_start *, double slopes[],
+                     double out[]);
+/* The states of the stages that slopes lead to. */
+void nevh__sweeps_place(nevh__sweeps *, const nevh__sweep_start *,
+                        const double slopes[]);
+/* One of them, 2n rows of `count`; returns their times. */
+const double *nevh__sweeps_stage(const nevh__sweeps *, size_t stage,
+                                 double state[]);
+
+/* y += sum_j h b_j x_j of `rows` rows of a state, and what that loses to carry;
+   rows of slopes are stages x width. */
+void nevh__stages_advance(const nevh__tableau *, const double hb[], size_t rows,
+                          size_t width, const double slopes[], double sum[],
+                          double carry[]);
 
 #endif

@@ -15,6 +15,7 @@
 #ifndef NEVH_IMPLICIT_PRIVATE_H
 #define NEVH_IMPLICIT_PRIVATE_H
 
+#include "implicit/stage_progress.h"
 #include <nevh/extend.h>
 #include <stdbool.h>
 
@@ -28,13 +29,6 @@ typedef struct {
     bool partitioned;
     const double *a_q, *a_p; /* may be one array; outlive the solver */
 } nevh__stage_shape;
-
-/* What one sweep did to one lane. */
-typedef struct {
-    bool moved;      /* something changed */
-    size_t improved; /* unknowns whose change was smaller than ever */
-    double change;   /* the largest, in units of scale */
-} nevh__stage_progress;
 
 /* Lanes that are swept, and compared, together: at most NEVH__MOST_GROUP, next
    to each other.  data: the problem's. */

@@ -153,15 +153,12 @@ static int plan_rounded(nevh_work *w) {
         return status;
     const struct {
         nevh__tableau *tableau;
-        nevh__sweeps *one, *many;
+        nevh__stage_weights *weights;
     } *g = w->plan;
     nevh__tableau *a = g->tableau;
     for (size_t m = 0; m < a->stages * a->stages; m++)
         a->mu_q[m] = a->mu_p[m] = a->a_q[m] / a->b[m / a->stages];
-    if (g->one)
-        nevh__sweeps_take(g->one, a);
-    if (g->many)
-        nevh__sweeps_take(g->many, a);
+    nevh__stage_weights_take(g->weights, a);
     return NEVH_OK;
 }
 
