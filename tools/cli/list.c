@@ -38,9 +38,12 @@ static void add_integrator(table *t, const nevh_integrator *s, bool all) {
 
 static int list_integrators(table *t, bool all) {
     static const char *const names[] = {
-        "integrator",  "order",    "symplectic", "symmetric", "explicit",
-        "energy kept", "adaptive", "gradients",  "needs H ="};
+        "order",        "sym-\nplectic", "sym-\nmetric", "ex-\nplicit",
+        "energy\nkept", "adap-\ntive",   "gra-\ndients", "needs H ="};
+    table_column(t, "integrator");
+    table_key(t);
     COLUMNS(t, names);
+    table_break(t);
     if (all) {
         table_column(t, "elsewhere");
         table_column(t, "source");
@@ -71,7 +74,8 @@ static int list_gradients(table *t, bool all) {
 }
 
 static int list_models(table *t, bool all) {
-    static const char *const names[] = {"model", "degrees of freedom", "title"};
+    static const char *const names[] = {"model", "degrees of\nfreedom",
+                                        "title"};
     (void)all;
     COLUMNS(t, names);
     for (size_t i = 0; nevh_models()[i]; i++) {
@@ -84,7 +88,7 @@ static int list_models(table *t, bool all) {
 }
 
 static int list_scenes(table *t, bool all) {
-    static const char *const titles[] = {"scene", "degrees of freedom",
+    static const char *const titles[] = {"scene", "degrees of\nfreedom",
                                          "title"};
     list names = {0}, files = {0};
     COLUMNS(t, titles);

@@ -258,12 +258,26 @@ static void print_quoted(const char *text, FILE *f) {
     fputc('"', f);
 }
 
+/* A title on one line: "-\n" divides a word, "\n" words. */
+static char *joined_title(const char *title) {
+    char *text = text_print("%s", title), *to = text;
+    for (const char *from = text; *from; from++)
+        if (from[0] == '-' && from[1] == '\n')
+            from++;
+        else
+            *to++ = *from == '\n' ? ' ' : *from;
+    *to = '\0';
+    return text;
+}
+
 /* Lines end with a line feed, as all text here does. */
 static void print_csv(const table *t, FILE *f) {
     size_t columns = t->title.count;
     for (size_t j = 0; j < columns; j++) {
-        print_quoted(t->title.item[j], f);
+        char *title = joined_title(t->title.item[j]);
+        print_quoted(title, f);
         fputc(j + 1 < columns ? ',' : '\n', f);
+        free(title);
     }
     for (size_t i = 0; i < t->cell.count; i++) {
         print_quoted(t->cell.item[i], f);
@@ -322,7 +336,9 @@ static void print_rows(const table *t, FILE *f) {
     fputs("  \"rows\": [", f);
     for (size_t i = 0; i < t->cell.count; i++) {
         fputs(i % columns ? ", " : i ? ",\n    {" : "\n    {", f);
-        print_string(t->title.item[i % columns], f);
+        char *title = joined_title(t->title.item[i % columns]);
+        print_string(title, f);
+        free(title);
         fputs(": ", f);
         print_value(t, i, f);
         fputs((i + 1) % columns ? "" : "}", f);

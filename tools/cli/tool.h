@@ -83,7 +83,8 @@ typedef enum { FORMAT_TABLE, FORMAT_CSV, FORMAT_JSON } table_format;
 typedef struct table table;
 table *table_new(void);
 void table_free(table *);
-/* The next column; lines of the title are separated by \n. */
+/* The next column; lines of the title are separated by \n, parts of a word by
+   -\n.  CSV and JSON have it on one line. */
 void table_column(table *, const char *title);
 void table_columns(table *, const char *const titles[], size_t count);
 /* The next column and those after it may go below, where they are more than fit
