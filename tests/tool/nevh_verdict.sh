@@ -110,4 +110,21 @@ exits 0 compare pendulum --integrators rk4 --dt 0.05 --t-end 10
 lacks 'keeps? the energy bounded'
 has 'rk4 at dt = 0\.05 s (loses|gains) energy'
 
+# Where a drift passes another scheme's error is foretold, and not sooner than the
+# first step.
+exits 0 compare pendulum --integrators verlet,rk4 --dt 0.1 --t-end 200
+passes=$(tr '\n' ' ' <$work/out | tr -s ' ' | sed -n \
+    "s/.*still below verlet's [^,]*, which it would pass near t = \([0-9.]*\) s.*/\1/p")
+errors_at() {
+    exits 0 compare pendulum --integrators rk4,verlet --dt 0.1 \
+        --t-end "$passes*$1" --format csv --repeat 1
+    grep -v '^[#s]' $work/out | cut -d, -f9 | tr '\n' ' '
+}
+errors_at 0.97 | awk '!($1 < $2) { exit 1 }' || fails "passes before t = $passes"
+errors_at 1.03 | awk '!($1 > $2) { exit 1 }' || fails "is below after t = $passes"
+exits 0 compare pendulum --integrators gauss16,rk4 --dt 0.1 --t-end 200
+tr '\n' ' ' <$work/out | tr -s ' ' |
+    grep -q "above gauss16's [^ ]* from the first step on" ||
+    { fails "passes before the first step"; cat $work/out; }
+
 exit $status
