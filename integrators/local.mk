@@ -38,8 +38,7 @@ libnevh_core_la_SOURCES += \
 	integrators/dopri5.c \
 	integrators/dop853.c \
 	integrators/dprkn12.c \
-	integrators/kernels/nystrom_private.h \
-	integrators/kernels/nystrom_stages.c \
+	integrators/kernels/nystrom_step.h \
 	integrators/kernels/nystrom_kernel.c \
 	integrators/kernels/tableau_private.h \
 	integrators/kernels/tableau.c \

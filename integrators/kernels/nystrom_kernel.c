@@ -16,12 +16,43 @@
    for once a step:
 
        q_i = q + h c_i T_p(p) - h^2 W sum_j a_ij D_j.
+
+   The stages are nystrom_step.h.  Of one orbit of a small system gradients are
+   planned: number by number, where its terms have point gradients, or else as
+   eight equal orbits side by side.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "nystrom_private.h"
+#include "nystrom_step.h"
+#include "gradient/evaluation_private.h"
+#include "runge_kutta_private.h"
 #include "system/probe_private.h"
 #include "work/work_private.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
+
+/* Sums besides those of the stages. */
+enum { OF_Q, OF_P, ERROR_OF_Q, ERROR_OF_P, ENDS };
+
+struct nevh__nystrom_state {
+    nevh__nystrom_step x; /* its rows have as many lanes as there may be */
+    nevh_work *work;
+    const nevh_nystrom *table;
+    size_t n;
+    void *memory;      /* holds all arrays */
+    double *time;      /* a row */
+    double *rest;      /* n: T_p(0) */
+    double *inverse;   /* n: W, if that is diagonal by declaration */
+    double known_h;    /* that lanes of h are for */
+    size_t call_lanes; /* of the calls; 0: there are none */
+    nevh__call *kicks, drift;
+    double *weights;
+    size_t *offsets;
+    nevh__sum *sums; /* those of the stages, and of the ends */
+};
+
+static nevh__nystrom_state *state_of(const nevh_work *w) {
+    return ((const nevh__stages_plan *)w->plan)->nystrom;
+}
 
 /* A row of as many lanes as there may be. */
 static size_t most_lanes(const nevh_work *w) {
@@ -40,19 +71,19 @@ static bool diagonal(const nevh_system *s) {
 
 static void lay_out(nevh__arena *a, void *state) {
     nevh__nystrom_state *y = state;
-    size_t half = y->stride, stages = y->table->stages, each = sizeof(double);
+    size_t half = y->x.stride, stages = y->table->stages, each = sizeof(double);
     size_t lists = (stages + ENDS) * stages;
-    y->q = nevh__arena_take(a, half, each);
-    y->p = nevh__arena_take(a, half, each);
-    y->carry = nevh__arena_take(a, 2 * half, each);
-    y->h = nevh__arena_take(a, half, each);
-    y->way = nevh__arena_take(a, half, each);
-    y->gain = nevh__arena_take(a, half, each);
-    y->at_rest = nevh__arena_take(a, half, each);
-    y->momenta = nevh__arena_take(a, half, each);
-    y->velocities = nevh__arena_take(a, half, each);
-    y->points = nevh__arena_take(a, half, each);
-    y->slopes = nevh__arena_take(a, stages * half, each);
+    y->x.q = nevh__arena_take(a, half, each);
+    y->x.p = nevh__arena_take(a, half, each);
+    y->x.carry = nevh__arena_take(a, 2 * half, each);
+    y->x.h = nevh__arena_take(a, half, each);
+    y->x.way = nevh__arena_take(a, half, each);
+    y->x.gain = nevh__arena_take(a, half, each);
+    y->x.at_rest = nevh__arena_take(a, half, each);
+    y->x.momenta = nevh__arena_take(a, half, each);
+    y->x.velocities = nevh__arena_take(a, half, each);
+    y->x.points = nevh__arena_take(a, half, each);
+    y->x.slopes = nevh__arena_take(a, stages * half, each);
     y->time = nevh__arena_take(a, most_lanes(y->work), each);
     y->rest = nevh__arena_take(a, y->n, each);
     y->inverse = nevh__arena_take(a, y->n, each);
@@ -70,16 +101,16 @@ static void list_weights(nevh__nystrom_state *y) {
     for (size_t i = 0; i < s + ENDS; i++)
         y->sums[i] =
             nevh__sum_of(i < s ? table->a + i * s : ends[i - s], i < s ? i : s,
-                         y->stride, y->weights + i * s, y->offsets + i * s);
+                         y->x.stride, y->weights + i * s, y->offsets + i * s);
 }
 
 static bool plan_calls(nevh__nystrom_state *y, size_t lanes) {
     nevh_field *f = y->work->field;
-    y->drift = nevh__call_plan(f, lanes, y->time, y->points, y->momenta, NULL,
-                               y->velocities);
+    y->drift = nevh__call_plan(f, lanes, y->time, y->x.points, y->x.momenta,
+                               NULL, y->x.velocities);
     for (size_t i = 0; i < y->table->stages; i++)
-        y->kicks[i] = nevh__call_plan(f, lanes, y->time, y->points, y->p,
-                                      y->slopes + i * y->stride, NULL);
+        y->kicks[i] = nevh__call_plan(f, lanes, y->time, y->x.points, y->x.p,
+                                      y->x.slopes + i * y->x.stride, NULL);
     return y->drift.count && y->kicks[0].count;
 }
 
@@ -96,8 +127,8 @@ static void find_calls(nevh__nystrom_state *y) {
 static void take_origin(nevh__nystrom_state *y) {
     const nevh_options *o = y->work->options;
     for (size_t k = 0; k < y->n; k++) {
-        y->points[k] = o->q ? o->q[k * y->work->width] : 0;
-        y->momenta[k] = 0;
+        y->x.points[k] = o->q ? o->q[k * y->work->width] : 0;
+        y->x.momenta[k] = 0;
     }
 }
 
@@ -106,7 +137,7 @@ static int check_kinetic(nevh__nystrom_state *y) {
     nevh_work *w = y->work;
     const char *term;
     take_origin(y);
-    if (nevh__system_probe_kinetic_time(w->system, w->options->t, y->points,
+    if (nevh__system_probe_kinetic_time(w->system, w->options->t, y->x.points,
                                         NULL, w->scale, &term))
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     if (!term)
@@ -130,8 +161,8 @@ static int check_friction(nevh_work *w) {
 
 static int ask(nevh__nystrom_state *y, double velocities[]) {
     nevh_work *w = y->work;
-    int status = nevh_field_gradient(w->field, 1, &w->options->t, y->points,
-                                     y->momenta, NULL, velocities);
+    int status = nevh_field_gradient(w->field, 1, &w->options->t, y->x.points,
+                                     y->x.momenta, NULL, velocities);
     return status
                ? nevh_work_fail(w, status, "%s", nevh_field_message(w->field))
                : NEVH_OK;
@@ -151,13 +182,13 @@ static int find_kinetic(nevh__nystrom_state *y) {
     take_origin(y);
     int status = ask(y, y->rest);
     for (size_t k = 0; !status && k < y->n; k++) {
-        y->moves |= y->rest[k] != 0;
-        y->momenta[k] = exp2(round(log2(scale[k])));
+        y->x.moves |= y->rest[k] != 0;
+        y->x.momenta[k] = exp2(round(log2(scale[k])));
     }
-    if (!status && y->inverse)
+    if (!status && y->x.diagonal)
         status = ask(y, y->inverse);
-    for (size_t k = 0; !status && y->inverse && k < y->n; k++)
-        y->inverse[k] = (y->inverse[k] - y->rest[k]) / y->momenta[k];
+    for (size_t k = 0; !status && y->x.diagonal && k < y->n; k++)
+        y->inverse[k] = (y->inverse[k] - y->rest[k]) / y->x.momenta[k];
     forget(y->work->field);
     return status;
 }
@@ -169,32 +200,208 @@ static int plan_nystrom(nevh_work *w, nevh__nystrom_state **nystrom) {
     y->work = w;
     y->table = w->integrator->table;
     y->n = w->n;
-    y->stride = w->n * most_lanes(w);
+    y->x.stride = w->n * most_lanes(w);
     y->known_h = NAN;
     y->memory = nevh__arena_new(lay_out, y);
     if (!y->memory)
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
-    if (!diagonal(w->system))
-        y->inverse = NULL;
+    y->x.diagonal = diagonal(w->system);
+    y->x.c = y->table->c;
+    y->x.sums = y->sums;
     list_weights(y);
     find_calls(y);
     int status = check_kinetic(y);
     return status ? status : find_kinetic(y);
 }
 
+/* How gradients are taken, a constant of inlined functions: planned, of so many
+   lanes, or by nevh_work_gradient. */
+enum { BY_WORK = 0 };
+
+/* A step whose stages are being taken. */
+struct nevh__nystrom_owner {
+    const nevh__nystrom_state *state;
+    const nevh__stages *stages;
+};
+
+/* Rows of columns. */
+static void prepare_columns(nevh__nystrom_state *y, const nevh__stages *s) {
+    size_t n = y->n, size = n * s->columns;
+    y->x.lanes = s->columns;
+    y->x.size = size;
+    y->known_h = NAN;
+    memcpy(y->x.q, s->q, size * sizeof *y->x.q);
+    memcpy(y->x.p, s->p, size * sizeof *y->x.p);
+    memcpy(y->x.carry, s->carry, 2 * size * sizeof *y->x.carry);
+    for (size_t i = 0; i < size; i++) {
+        y->x.h[i] = s->h[i % s->columns];
+        y->x.at_rest[i] = y->rest[i / s->columns];
+        if (y->x.diagonal)
+            y->x.gain[i] = y->x.h[i] * y->x.h[i] * y->inverse[i / s->columns];
+    }
+}
+
+/* Rows of equal lanes. */
+NEVH_SIMD static void prepare_lanes(nevh__nystrom_state *y,
+                                    const nevh__stages *s) {
+    size_t n = y->n;
+    y->x.lanes = y->call_lanes;
+    y->x.size = n * y->x.lanes;
+    nevh__repeat(n, s->q, y->x.q);
+    nevh__repeat(n, s->p, y->x.p);
+    nevh__repeat(2 * n, s->carry, y->x.carry);
+    if (y->known_h == *s->h)
+        return;
+    nevh__repeat(n, y->rest, y->x.at_rest);
+    for (size_t k = 0; k < n; k++) {
+        double h = *s->h, gain = y->x.diagonal ? h * h * y->inverse[k] : 0;
+        nevh__repeat(1, &h, y->x.h + k * y->x.lanes);
+        nevh__repeat(1, &gain, y->x.gain + k * y->x.lanes);
+    }
+    y->known_h = *s->h;
+}
+
+/* Also where T seems to read the time: its differences are those of H. */
+NEVH__INLINE void nevh__nystrom_time(const nevh__nystrom_step *x, int way,
+                                     double c) {
+    const nevh__nystrom_state *y = x->owner->state;
+    const nevh__stages *s = x->owner->stages;
+    if (way != BY_WORK && !y->kicks->timed && !y->drift.timed)
+        return;
+    for (size_t i = 0; i < x->lanes; i++) {
+        size_t column = s->columns > 1 ? i : 0;
+        y->time[i] = s->t[column] + c * s->h[column];
+    }
+}
+
+NEVH__INLINE int run(nevh_work *w, const nevh__call *call, int way) {
+    return way == 1 ? nevh__work_run_points(w, call) : nevh__work_run(w, call);
+}
+
+NEVH__INLINE int nevh__nystrom_drift(const nevh__nystrom_step *x, int way) {
+    const nevh__nystrom_state *y = x->owner->state;
+    if (way == BY_WORK)
+        return nevh_work_gradient(y->work, x->lanes, y->time, x->points,
+                                  x->momenta, NULL, x->velocities);
+    return run(y->work, &y->drift, way);
+}
+
+NEVH__INLINE int nevh__nystrom_kick(const nevh__nystrom_step *x, int way,
+                                    size_t stage) {
+    const nevh__nystrom_state *y = x->owner->state;
+    if (way == BY_WORK)
+        return nevh_work_gradient(y->work, x->lanes, y->time, x->points, x->p,
+                                  x->slopes + stage * x->stride, NULL);
+    return run(y->work, &y->kicks[stage], way);
+}
+
+NEVH__ONE_BY_ONE static int take_points(const nevh__nystrom_step *x,
+                                        size_t first, size_t until) {
+    return nevh__nystrom_take(x, 1, true, first, until);
+}
+
+NEVH_SIMD static int take_vectors(const nevh__nystrom_step *x, size_t first,
+                                  size_t until) {
+    return nevh__nystrom_take(x, NEVH__LANES, true, first, until);
+}
+
+NEVH_SIMD static int take_columns(const nevh__nystrom_step *x, size_t first,
+                                  size_t until) {
+    return nevh__nystrom_take(x, BY_WORK, false, first, until);
+}
+
+/* As a slope of the state, T_p and D_0; and back. */
+static void hand_first(const nevh__nystrom_state *y, const nevh__stages *s) {
+    size_t n = y->n * s->columns, apart = y->x.lanes / s->columns;
+    for (size_t i = 0; i < n; i++) {
+        s->slope[i] = y->x.velocities[i * apart];
+        s->slope[n + i] = y->x.slopes[i * apart];
+    }
+}
+
+static void take_first(const nevh__nystrom_state *y, const nevh__stages *s) {
+    size_t n = y->n * s->columns, apart = y->x.lanes / s->columns;
+    for (size_t i = 0; i < n; i++)
+        for (size_t lane = 0; lane < apart; lane++) {
+            y->x.velocities[i * apart + lane] = s->slope[i];
+            y->x.slopes[i * apart + lane] = s->slope[n + i];
+        }
+}
+
+static int take_slopes(nevh__nystrom_state *y, const nevh__stages *s, int way,
+                       size_t first, size_t until) {
+    const struct nevh__nystrom_owner owner = {y, s};
+    y->x.owner = &owner;
+    if (way > 1)
+        prepare_lanes(y, s);
+    else
+        prepare_columns(y, s);
+    if (first > 0)
+        take_first(y, s);
+    int status = way == 1         ? take_points(&y->x, first, until)
+                 : way == BY_WORK ? take_columns(&y->x, first, until)
+                                  : take_vectors(&y->x, first, until);
+    if (!status && s->slope && until == 1)
+        hand_first(y, s);
+    return status == NEVH__NYSTROM_RANGE ? NEVH_EDOM : status;
+}
+
+static int take(nevh__stages *s, size_t first, size_t until) {
+    nevh__nystrom_state *y = state_of(s->work);
+    s->planned = y->call_lanes && !s->work->accounts &&
+                 nevh__call_ready(&y->drift) && nevh__call_ready(y->kicks);
+    if (s->planned) {
+        int status = take_slopes(y, s, (int)y->call_lanes, first, until);
+        if (status == NEVH_OK)
+            s->work->field->gradients += until - first;
+        if (status == NEVH_OK || nevh__work_failed(s->work))
+            return status;
+    }
+    s->planned = false;
+    return take_slopes(y, s, BY_WORK, first, until);
+}
+
+/* How far q moves, and -h sum_j weights[j] D_j, of each column. */
+NEVH_SIMD static int sum_up(nevh__nystrom_state *y, const nevh__stages *s,
+                            size_t of_q, size_t of_p, double c, double out[]) {
+    const struct nevh__nystrom_owner owner = {y, s};
+    const nevh__sum *ends = y->sums + y->table->stages;
+    size_t apart = y->x.lanes / s->columns;
+    int way = s->planned ? (int)y->x.lanes : BY_WORK;
+    y->x.owner = &owner;
+    nevh__nystrom_sum_kicks(&y->x, &ends[of_p], apart, out + y->n * s->columns);
+    return nevh__nystrom_sum_drifts(&y->x, way, &ends[of_q], c, apart, out);
+}
+
+static int finish(const nevh__stages *s, double change[], double error[],
+                  double coarse[]) {
+    nevh__nystrom_state *y = state_of(s->work);
+    (void)coarse;
+    int status = sum_up(y, s, OF_Q, OF_P, 1, change);
+    return status || !error ? status
+                            : sum_up(y, s, ERROR_OF_Q, ERROR_OF_P, 0, error);
+}
+
+static int place_again(nevh__nystrom_state *y, const nevh__stages *s,
+                       size_t stage) {
+    const struct nevh__nystrom_owner owner = {y, s};
+    y->x.owner = &owner;
+    return nevh__nystrom_place(&y->x, BY_WORK, stage);
+}
+
 /* T does not read the time, so where momenta are does not matter. */
 static int account(const nevh__stages *s) {
     nevh_work *w = s->work;
-    nevh__nystrom_state *y = nevh__nystrom_of(w);
+    nevh__nystrom_state *y = state_of(w);
     const nevh_nystrom *table = y->table;
     int status = NEVH_OK;
     for (size_t i = 0; !status && i < table->stages; i++)
         if (table->bp[i] != 0) {
-            status = nevh__nystrom_place(y, s, i);
+            status = place_again(y, s, i);
             if (!status)
                 status = nevh_work_account(w, NEVH_OF_Q | NEVH_OF_P,
                                            table->bp[i] * s->h[0], y->time,
-                                           y->points, y->p);
+                                           y->x.points, y->x.p);
         }
     return status;
 }
@@ -210,8 +417,8 @@ static int plan(nevh_work *w) {
         return status;
     plan->family = (nevh__family){.stages = table->stages,
                                   .error_power = table->error_power,
-                                  .take = nevh__nystrom_take,
-                                  .finish = nevh__nystrom_finish,
+                                  .take = take,
+                                  .finish = finish,
                                   .account = account};
     if (table->error_p && w->options->tolerance > 0)
         return nevh__adaptive_plan(w);
