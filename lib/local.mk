@@ -60,6 +60,7 @@ libnevh_core_la_SOURCES = \
 	lib/expression/tape_gradient.c \
 	lib/expression/tape_complex.c \
 	lib/expression/tape_special.c \
+	lib/expression/kepler.c \
 	lib/expression/formula_private.h \
 	lib/expression/formula_inside_private.h \
 	lib/expression/pool.c \
@@ -164,6 +165,7 @@ libnevh_core_la_SOURCES = \
 	lib/scene/message.c \
 	lib/scene/values.c \
 	lib/scene/coordinates.c \
+	lib/scene/elements.c \
 	lib/scene/scene_formula.c \
 	lib/scene/shown.c \
 	lib/scene/values_shown.c \

@@ -27,6 +27,7 @@ suites = \
 	tests/scene/check_scene_effects \
 	tests/scene/check_shipped \
 	tests/scene/check_scene_shown \
+	tests/scene/check_elements \
 	tests/scheme/check_registry \
 	tests/scheme/check_coefficients \
 	tests/system/check_masses \

@@ -19,6 +19,9 @@ double nevh__elliptic_k(double k);
 double nevh__elliptic_e(double k);
 double nevh__elliptic_k_slope(double k);
 double nevh__elliptic_e_slope(double k);
+/* The eccentric anomaly E of a mean one, and dE/dM; dE/de is sin E times that. */
+double nevh__kepler(double mean, double e);
+double nevh__kepler_slope(double anomaly, double e);
 
 NEVH__INLINE double nevh__choose(bool first, double x, double y) {
     return first ? x : y;
@@ -88,7 +91,9 @@ NEVH__INLINE double nevh__chain(double x, double y) {
     X(BESSEL_J0, nevh__bessel_j0(a), NEVH__G(-nevh__bessel_j1(a)), 0)          \
     X(BESSEL_J1, nevh__bessel_j1(a), NEVH__G(nevh__bessel_j1_slope(a)), 0)     \
     X(ELLIPTIC_K, nevh__elliptic_k(a), NEVH__G(nevh__elliptic_k_slope(a)), 0)  \
-    X(ELLIPTIC_E, nevh__elliptic_e(a), NEVH__G(nevh__elliptic_e_slope(a)), 0)
+    X(ELLIPTIC_E, nevh__elliptic_e(a), NEVH__G(nevh__elliptic_e_slope(a)), 0)  \
+    X(ECCENTRIC, nevh__kepler(a, b), NEVH__G(nevh__kepler_slope(y, b)),           \
+      NEVH__G(NEVH__F(sin)(y) * nevh__kepler_slope(y, b)))
 // clang-format on
 
 #endif

@@ -32,6 +32,8 @@ enum { NEVH__VARIABLES = 4 };
    integers.  Of min and max, an argument that is NaN wins.  bessel_j0 and
    bessel_j1 are of the first kind, |x| < 4e15; elliptic_k and elliptic_e are
    complete integrals of the modulus k, |k| < 1 (elliptic_e: also 1).
+   kepler(M, e) is the eccentric anomaly, E - e sin E = M, 0 <= e < 1, of mean
+   anomalies up to 1e15.
 
    Outside its domain a function is NaN.  Derivatives at a kink: abs has 0 at
    0, hypot at (0, 0); min and max of equals have that of the second argument;
@@ -72,7 +74,8 @@ enum { NEVH__VARIABLES = 4 };
     X(BESSEL_J0, "bessel_j0", 1)                                               \
     X(BESSEL_J1, "bessel_j1", 1)                                               \
     X(ELLIPTIC_K, "elliptic_k", 1)                                             \
-    X(ELLIPTIC_E, "elliptic_e", 1)
+    X(ELLIPTIC_E, "elliptic_e", 1)                                             \
+    X(ECCENTRIC, "kepler", 2)
 
 #define NEVH__OPERATION_ENTRY(identifier, name, arguments) NEVH__##identifier,
 typedef enum {

@@ -48,10 +48,11 @@ static bool is_lanewise(unsigned operation) {
     }
 }
 
-/* Of GSL's, which compiled text would have to be linked with. */
+/* Of GSL's or nevh's, which compiled text would have to be linked with. */
 static bool is_special(unsigned operation) {
     return operation == NEVH__BESSEL_J0 || operation == NEVH__BESSEL_J1 ||
-           operation == NEVH__ELLIPTIC_K || operation == NEVH__ELLIPTIC_E;
+           operation == NEVH__ELLIPTIC_K || operation == NEVH__ELLIPTIC_E ||
+           operation == NEVH__ECCENTRIC;
 }
 
 static bool is(const char *word, size_t length, const char *name) {

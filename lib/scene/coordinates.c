@@ -139,15 +139,30 @@ static bool take_pair(nevh_scene *s, nevh__scene_model *m,
                           claim(s, m, k, 1, c->statement));
 }
 
+/* A coordinate, or an array of them, with velocities. */
+static bool take_elements(nevh_scene *s, nevh__scene_model *m,
+                          const nevh__coordinate *c, const nevh__piece *value) {
+    size_t count = c->count ? c->count : 1;
+    if (!nevh__elements_values(s, m, c->statement, value, count,
+                               m->q + c->first, m->v + c->first) ||
+        !claim(s, m, c->first, count, c->statement))
+        return false;
+    for (size_t k = 0; k < count; k++)
+        m->by_velocity[c->first + k] = true;
+    return true;
+}
+
 static bool take_coordinate(nevh_scene *s, nevh__scene_model *m,
                             const nevh__coordinate *c) {
     nevh__piece rest = c->statement->value, value, clause;
     char stop;
     if (!nevh__piece_split(s, &m->pool, &rest, ";", &value, &stop))
         return false;
-    bool fine = c->count ? nevh__head_values(s, m, c->statement, &value,
-                                             c->count, m->q + c->first)
-                         : take_pair(s, m, c, &value);
+    bool elements = c->statement->group || nevh__is_elements(&value);
+    bool fine = elements   ? take_elements(s, m, c, &value)
+                : c->count ? nevh__head_values(s, m, c->statement, &value,
+                                               c->count, m->q + c->first)
+                           : take_pair(s, m, c, &value);
     while (fine && stop)
         fine = nevh__piece_split(s, &m->pool, &rest, ";", &clause, &stop) &&
                take_period(s, m, c, &clause);

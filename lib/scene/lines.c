@@ -113,6 +113,35 @@ static bool cut_key(nevh_scene *s, const nevh__piece *all,
     return stop || nevh__scene_fail(s, NEVH_EINVAL, all, "\"=\" is missing");
 }
 
+/* NAME, NAME, NAME = VALUE: a statement for each. */
+static bool cut_keys(nevh_scene *s, const nevh__piece *all,
+                     nevh__section_kind section) {
+    nevh__piece value = *all, left;
+    nevh__formula_error error;
+    size_t count = 1;
+    char stop;
+    if (!nevh__piece_split(s, &s->pool, &value, "=", &left, &stop))
+        return false;
+    nevh__piece *keys = nevh__piece_list(s, &s->pool, &left, &count);
+    if (!keys)
+        return false;
+    if (count > NEVH__GROUP)
+        return nevh__scene_fail(s, NEVH_EINVAL, &keys[NEVH__GROUP],
+                                "no more than %d names stand before a \"=\"",
+                                NEVH__GROUP);
+    for (size_t i = 0; i < count; i++) {
+        nevh__statement *one = &s->statements[s->n_statements++];
+        *one = (nevh__statement){.section = section,
+                                 .key = keys[i],
+                                 .value = value,
+                                 .group = count,
+                                 .member = i};
+        if (nevh__head_parse(one->key.text, &one->head, &error))
+            return nevh__scene_fail_formula(s, &one->key, &error);
+    }
+    return stop || nevh__scene_fail(s, NEVH_EINVAL, all, "\"=\" is missing");
+}
+
 /* A line without its comment. */
 static bool cut_comment(nevh_scene *s, const nevh__line *line,
                         nevh__piece *all) {
@@ -140,6 +169,9 @@ static bool cut_line(nevh_scene *s, const nevh__line *line, bool *begun,
         return nevh__scene_fail(s, NEVH_EINVAL, &all,
                                 "a section must come first, such as "
                                 "[parameters]");
+    if (*section == NEVH__COORDINATES &&
+        all.text[nevh__formula_extent(all.text, ",=")] == ',')
+        return cut_keys(s, &all, *section);
     nevh__statement *statement = &s->statements[s->n_statements++];
     statement->section = *section;
     return cut_key(s, &all, statement);
@@ -149,8 +181,8 @@ bool nevh__scene_cut(nevh_scene *s, const char *text, size_t bytes) {
     bool mark = bytes >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0;
     if (!cut_lines(s, text + 3 * mark, bytes - 3 * mark))
         return false;
-    s->statements =
-        nevh__pool_take(&s->pool, s->n_lines, sizeof *s->statements);
+    s->statements = nevh__pool_take(&s->pool, NEVH__GROUP * s->n_lines,
+                                    sizeof *s->statements);
     if (!s->statements)
         return nevh__scene_no_memory(s);
     bool begun = false;

@@ -59,6 +59,30 @@ nevh__piece *nevh__piece_list(nevh_scene *s, nevh__pool *pool,
     return NULL;
 }
 
+bool nevh__piece_call(nevh_scene *s, nevh__pool *pool, const nevh__piece *value,
+                      const char *name, nevh__piece **arguments,
+                      size_t *count) {
+    size_t bytes = strlen(name), length = strlen(value->text);
+    size_t from = (size_t)(value->at - value->line->text);
+    const char *open = value->text + bytes;
+    *count = 0;
+    if (strncmp(value->text, name, bytes) != 0)
+        return true;
+    open += strspn(open, " \t");
+    if (*open != '(')
+        return true;
+    size_t begin = (size_t)(open - value->text) + 1;
+    size_t end = begin + nevh__formula_extent(open + 1, ")");
+    if (end + 1 != length) /* range(...) + 1, or an open parenthesis */
+        return true;
+    nevh__piece inside;
+    if (!nevh__piece_take(s, pool, value->line, from + begin, from + end,
+                          &inside))
+        return false;
+    *arguments = nevh__piece_list(s, pool, &inside, count);
+    return *arguments;
+}
+
 size_t nevh__piece_column(const nevh__piece *piece) {
     size_t column = 1;
     for (const char *at = piece->line->text; at < piece->at; at++)

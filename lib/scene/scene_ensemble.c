@@ -7,29 +7,6 @@
 
 static const double most_members = 1e11;
 
-/* NAME(A, B, ...) as its arguments; *count is 0 where the text is no call of
-   that name. */
-static bool take_call(nevh_scene *s, nevh__scene_model *m,
-                      const nevh__piece *value, const char *name,
-                      nevh__piece **arguments, size_t *count) {
-    size_t bytes = strlen(name), length = strlen(value->text);
-    size_t from = (size_t)(value->at - value->line->text);
-    const char *open = value->text + bytes + strspn(value->text + bytes, " \t");
-    *count = 0;
-    if (strncmp(value->text, name, bytes) != 0 || *open != '(')
-        return true;
-    size_t begin = (size_t)(open - value->text) + 1;
-    size_t end = begin + nevh__formula_extent(open + 1, ")");
-    if (end + 1 != length) /* range(...) + 1, or an open parenthesis */
-        return true;
-    nevh__piece inside;
-    if (!nevh__piece_take(s, &m->pool, value->line, from + begin, from + end,
-                          &inside))
-        return false;
-    *arguments = nevh__piece_list(s, &m->pool, &inside, count);
-    return *arguments;
-}
-
 static bool fail_arguments(nevh_scene *s, const nevh__piece *value,
                            const char *usage) {
     return nevh__scene_fail(s, NEVH_EINVAL, value, "this is written %s", usage);
@@ -143,7 +120,8 @@ static bool take_what(nevh_scene *s, nevh__scene_model *m, nevh__varied *v) {
     nevh__piece *arguments = NULL;
     size_t given;
     for (size_t i = 0; i < sizeof calls / sizeof *calls; i++) {
-        if (!take_call(s, m, value, calls[i].name, &arguments, &given))
+        if (!nevh__piece_call(s, &m->pool, value, calls[i].name, &arguments,
+                              &given))
             return false;
         v->how = calls[i].how;
         if (given)

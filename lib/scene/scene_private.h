@@ -41,10 +41,14 @@ typedef enum {
     NEVH__SECTION_COUNT
 } nevh__section_kind;
 
+/* Names that a line may give values to. */
+enum { NEVH__GROUP = 3 };
+
 typedef struct {
     nevh__section_kind section;
     nevh__head head;
     nevh__piece key, value;
+    size_t group, member; /* names of the line; which it is, from 0 */
 } nevh__statement;
 
 /* An effect, of terms or friction or both. */
@@ -238,6 +242,17 @@ bool nevh__head_range(nevh_scene *, const nevh__scene_model *,
 bool nevh__head_column(nevh_scene *, const nevh__statement *);
 /* Refuses an index where none belongs. */
 bool nevh__head_plain(nevh_scene *, const nevh__statement *);
+
+/* NAME(A, B, ...) as its arguments; *count is 0 where the text is no call of
+   that name. */
+bool nevh__piece_call(nevh_scene *, nevh__pool *, const nevh__piece *,
+                      const char *name, nevh__piece **arguments, size_t *count);
+
+/* Of elements(...): a coordinate and its velocity, `count` of an array. */
+bool nevh__is_elements(const nevh__piece *);
+bool nevh__elements_values(nevh_scene *, nevh__scene_model *,
+                           const nevh__statement *, const nevh__piece *value,
+                           size_t count, double q[], double v[]);
 
 /* Sections, in the order in which the model needs them. */
 bool nevh__model_parameters(nevh_scene *, nevh__scene_model *);

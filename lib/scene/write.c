@@ -162,9 +162,11 @@ static void put_lines(writer *w, const nevh_scene *s) {
         put_new_choice(w, s, "[scene]\n", "\n\n");
     for (size_t i = 0; i < s->n_lines; i++) {
         const nevh__line *line = &s->lines[i];
-        if (next < end && next->key.line == line)
-            put_statement(w, s, next++);
-        else
+        if (next < end && next->key.line == line) {
+            put_statement(w, s, next);
+            while (next < end && next->key.line == line)
+                next++;
+        } else
             put(w, line->text, line->bytes);
         put_text(w, "\n");
         if (missing && heading == line)

@@ -46,6 +46,7 @@ static const char *why_not(unsigned operation) {
     case NEVH__BESSEL_J1:
     case NEVH__ELLIPTIC_K:
     case NEVH__ELLIPTIC_E:
+    case NEVH__ECCENTRIC:
         return "is one whose recurrence is not known here";
     default:
         return NULL;

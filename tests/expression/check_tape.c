@@ -40,6 +40,16 @@ static long double elliptic(int part, long double k) {
     return pi / (2 * a) * (part ? 1 - sum : 1);
 }
 
+/* Kepler's equation, halved to the last digit. */
+static long double anomaly(long double mean, long double e) {
+    long double low = mean - 1, high = mean + 1;
+    for (int i = 0; i < 80; i++) {
+        long double x = (low + high) / 2;
+        *(x - e * sinl(x) < mean ? &low : &high) = x;
+    }
+    return (low + high) / 2;
+}
+
 OF(add, a + b)
 OF(subtract, a - b)
 OF(multiply, a *b)
@@ -75,6 +85,7 @@ OF(bessel_j0, bessel(0, a))
 OF(bessel_j1, bessel(1, a))
 OF(elliptic_k, elliptic(0, a))
 OF(elliptic_e, elliptic(1, a))
+OF(kepler, anomaly(a, b))
 
 typedef struct {
     nevh__tape_operation is;
@@ -123,6 +134,7 @@ static const operation operations[] = {
     ROW(BESSEL_J1, bessel_j1, -9, 9, 0, 1, 4),
     ROW(ELLIPTIC_K, elliptic_k, -0.95, 0.95, 0, 1, 4),
     ROW(ELLIPTIC_E, elliptic_e, -0.95, 0.95, 0, 1, 4),
+    ROW(ECCENTRIC, kepler, -20, 20, 0.05, 0.95, 4),
 };
 enum { OPERATIONS = sizeof operations / sizeof *operations, WIDTH = 72 };
 
@@ -343,6 +355,13 @@ static const struct {
     {NEVH__ELLIPTIC_K, -1.5, 0, NAN, NAN, 0},
     {NEVH__ELLIPTIC_E, 1, 0, 1, NAN, 0},
     {NEVH__ELLIPTIC_E, INFINITY, 0, NAN, NAN, 0},
+    {NEVH__ECCENTRIC, 1, 1, NAN, NAN, NAN},
+    {NEVH__ECCENTRIC, 1, 1.5, NAN, NAN, NAN},
+    {NEVH__ECCENTRIC, 1, -0.1, NAN, NAN, NAN},
+    {NEVH__ECCENTRIC, INFINITY, 0.5, NAN, NAN, NAN},
+    {NEVH__ECCENTRIC, NAN, 0.5, NAN, NAN, NAN},
+    {NEVH__ECCENTRIC, 0, 0.5, 0, 2, 0},
+    {NEVH__ECCENTRIC, 2.5, 0, 2.5, 1, 0.59847214410395655},
     {NEVH__ELLIPTIC_K, 1e-200, 0, 1.5707963267948966, 7.8539816339744828e-201,
      0},
 };
@@ -368,4 +387,47 @@ TEST_EACH(special_values, sizeof special / sizeof *special) {
         "%s(%g, %g): %g (block %g), slopes %g, %g",
         nevh__operation_name(special[_i].is), a, b, one, h[3], dx[3], dy[3]);
     nevh__tape_free(tape);
+}
+
+/* Published: J. Meeus, Astronomical Algorithms, chapter 30: examples a and b, and
+   the hard case e = 0.99, M = 2 deg.  Then what the series of the equation says
+   where e is nearly 1 and M is small: M = (1 - e) E + e E^3/6 - ... */
+static const struct {
+    double mean, e, anomaly, digits;
+} published[] = {
+    {5 * 0.017453292519943295, 0.1, 5.554589 * 0.017453292519943295, 1e-7},
+    {0.2, 0.99, 1.066997365282, 1e-12},
+    {2 * 0.017453292519943295, 0.99, 32.361007 * 0.017453292519943295, 2e-8},
+    {1e-200, 1 - 0x1p-53, 9.007199254740992e-185, 1e-15},
+    {1e-30, 1 - 0x1p-53, 9.007199254739896e-15, 1e-15},
+    {1e-6, 1 - 0x1p-53, 0.018171305929724314, 1e-14},
+};
+
+TEST_EACH(keplers_equation, sizeof published / sizeof *published) {
+    double found = nevh__operation_value(NEVH__ECCENTRIC, published[_i].mean,
+                                         published[_i].e);
+    ck_assert_double_eq_tol(found / published[_i].anomaly, 1,
+                            published[_i].digits);
+    ck_assert_double_eq(nevh__operation_value(NEVH__ECCENTRIC,
+                                              -published[_i].mean,
+                                              published[_i].e),
+                        -found);
+}
+
+/* Everywhere the residual is that of rounding. */
+TEST(keplers_equation_is_solved) {
+    for (int i = 0; i < 20000; i++) {
+        double e = i % 3 ? uniform(0, 1) : 1 - exp2(-uniform(1, 53));
+        double mean = (i % 2 ? 1 : exp2(-uniform(0, 80))) * uniform(0, 3.14);
+        double x = nevh__operation_value(NEVH__ECCENTRIC, mean, e);
+        long double less = x - sinl(x), y = (long double)x * x, sum = 0;
+        for (int k = 12; k > 0; k--)
+            sum = y / (2 * k * (2 * k + 1)) * (1 - sum);
+        if (x < 1) /* x - sin x cancels */
+            less = x * sum;
+        long double over = (1 - (long double)e) * x + (long double)e * less -
+                           (long double)mean;
+        ck_assert_msg(fabsl(over) <= 8 * ulp(mean), "E(%.17g, %.17g) = %.17g",
+                      mean, e, x);
+    }
 }

@@ -198,6 +198,7 @@ TEST(what_has_no_series_is_refused) {
         {"floor(x)*x", "floor"},
         {"bessel_j0(x)", "bessel_j0"},
         {"elliptic_k(x)", "elliptic_k"},
+        {"kepler(x, 0.5)", "kepler"},
     };
     for (size_t i = 0; i < sizeof formulas / sizeof *formulas; i++) {
         planned_series x = plan_of(formulas[i][0], NULL);
