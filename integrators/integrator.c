@@ -40,6 +40,10 @@ bool nevh_integrator_needs_tolerance(const nevh_integrator *i) {
     return i ? i->needs_tolerance : false;
 }
 
+bool nevh_integrator_needs_formulas(const nevh_integrator *i) {
+    return i ? i->needs_formulas : false;
+}
+
 bool nevh_integrator_own_time(const nevh_integrator *i) {
     return i ? i->own_time : false;
 }

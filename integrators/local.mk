@@ -59,4 +59,7 @@ libnevh_core_la_SOURCES += \
 	integrators/avf.c \
 	integrators/kernels/gsl_private.h \
 	integrators/kernels/gsl_kernel.c \
-	integrators/gsl_references.c
+	integrators/gsl_references.c \
+	integrators/kernels/taylor_private.h \
+	integrators/kernels/taylor_kernel.c \
+	integrators/taylor.c

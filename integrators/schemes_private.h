@@ -59,7 +59,8 @@
     X(dprkn12)                                                                 \
     X(gsl_rkf45)                                                               \
     X(gsl_rk8pd)                                                               \
-    X(gsl_msadams)
+    X(gsl_msadams)                                                             \
+    X(taylor)
 
 /* nevh__verlet_entry is the descriptor, nevh_verlet the public pointer to it. */
 #define NEVH__DECLARE(id) extern const nevh_integrator nevh__##id##_entry;

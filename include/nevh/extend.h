@@ -39,6 +39,8 @@ typedef struct {
        be transformed nor accounted for: a stepper that is asked for a transform
        of time, or for a balance of the energy, refuses. */
     bool opaque;
+    /* Takes no gradients: a transform of time is refused. */
+    bool own_slopes;
 } nevh_kernel;
 
 struct nevh_integrator {
@@ -49,6 +51,7 @@ struct nevh_integrator {
     bool adaptive;        /* with a tolerance, takes its own steps within h */
     bool needs_tolerance; /* it has no steps of its own */
     bool own_time;        /* h is nominal: the step sets w->elapsed */
+    bool needs_formulas;  /* refuses terms that are functions in C */
     nevh_claim symplectic, symmetric, explicit_form, preserves_energy;
     unsigned needs;
     const nevh_kernel *kernel;

@@ -90,6 +90,13 @@ NEVH_API extern const nevh_integrator *const nevh_dprkn12;
 NEVH_API extern const nevh_integrator *const nevh_gsl_rkf45;
 NEVH_API extern const nevh_integrator *const nevh_gsl_rk8pd;
 NEVH_API extern const nevh_integrator *const nevh_gsl_msadams;
+/* Taylor series of the orbit, of an order that the tolerance asks for: the one
+   for many digits, down to rounding (1e-16; the order grows by one a digit and
+   a half).  Only for formulas, as scenes have them, that are analytic: no
+   gradient is taken, the derivatives of all orders follow from the formula.
+   The end of a step of h is a value of the series there: h changes no digit of
+   the orbit where H does not read t. */
+NEVH_API extern const nevh_integrator *const nevh_taylor;
 
 /* All schemes, ended by NULL. */
 NEVH_API const nevh_integrator *const *nevh_integrators(void);
@@ -113,6 +120,8 @@ NEVH_API int nevh_integrator_sweep_gradients(const nevh_integrator *);
 NEVH_API bool nevh_integrator_adaptive(const nevh_integrator *);
 /* Whether it has no fixed steps: without a tolerance its plan is refused. */
 NEVH_API bool nevh_integrator_needs_tolerance(const nevh_integrator *);
+/* Whether it takes formulas alone: terms that are functions in C are refused. */
+NEVH_API bool nevh_integrator_needs_formulas(const nevh_integrator *);
 /* Whether h is a nominal step, and the time that a step takes the scheme's
    own: see nevh_stepper_time. */
 NEVH_API bool nevh_integrator_own_time(const nevh_integrator *);

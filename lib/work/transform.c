@@ -89,7 +89,7 @@ static int check(nevh_work *w) {
     if (scheme->needs)
         return refuse(w, "it needs H = T(p) + V(q), and s(q, p) (H - H0) is "
                          "no such sum");
-    if (scheme->kernel->opaque)
+    if (scheme->kernel->opaque || scheme->kernel->own_slopes)
         return refuse(w, "it takes its gradients on its own");
     if (scheme->preserves_energy == NEVH_YES)
         return refuse(w, "it is H that it preserves, not s (H - H0)");

@@ -68,6 +68,7 @@ static nevh_separability separability;
     X(NUMBER, nevh_integrator_sweep_gradients, (NULL))                         \
     X(NUMBER, nevh_integrator_adaptive, (NULL))                                \
     X(NUMBER, nevh_integrator_needs_tolerance, (NULL))                         \
+    X(NUMBER, nevh_integrator_needs_formulas, (NULL))                          \
     X(NUMBER, nevh_integrator_own_time, (NULL))                                \
     X(NUMBER, nevh_integrator_symplectic, (NULL))                              \
     X(NUMBER, nevh_integrator_symmetric, (NULL))                               \

@@ -488,10 +488,17 @@ double slope_through(int count, const double x[], const double y[]) {
     return xy / xx;
 }
 
-int scheme_count(void) {
+int registered_count(void) {
     int count = 0;
     while (nevh_integrators()[count])
         count++;
+    return count;
+}
+
+int scheme_count(void) {
+    int count = registered_count();
+    while (nevh_integrator_needs_formulas(nevh_integrators()[count - 1]))
+        count--;
     return count;
 }
 

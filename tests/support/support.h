@@ -88,7 +88,10 @@ nevh_energy_report energy_of(const problem *, const nevh_integrator *,
 double time_on(const nevh_stepper *, const nevh_integrator *, double t);
 /* The slope of a straight line through points. */
 double slope_through(int count, const double x[], const double y[]);
-/* Numbers of registered schemes, and of models. */
+/* Numbers of registered schemes, of those that take functions in C, as the
+   problems have them (others come last: tests/taylor has them), and of
+   models. */
+int registered_count(void);
 int scheme_count(void);
 int model_count(void);
 /* Ends a test that does not apply to its case. */

@@ -1,0 +1,338 @@
+/* nevh: steps along Taylor series.
+
+   An orbit is a chain of series, each of which holds as far as its last two
+   coefficients say that the tolerance allows: no step h of the caller's cuts
+   one short, and states between their ends are their values.  So the chain does
+   not depend on h.  The state at the beginning of a series is kept with the
+   digits that its double lost.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "taylor_private.h"
+#include "taylor/series_private.h"
+#include "work/work_private.h"
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct {
+    nevh__recurrence *recurrence;
+    nevh__series_double *series;
+    size_t order;
+    bool timed; /* H reads t */
+} taylor_plan;
+
+/* Of one lane, in memory or scratch. */
+typedef struct {
+    double *begun;      /* whether there is a series */
+    double *since;      /* time since its beginning, of either sign, */
+    double *since_lost; /* and what that lost */
+    double *reach;      /* how long it holds, to either side */
+    double *lost;       /* 2n: of the state at its beginning */
+    double *rows;       /* 2n times order + 1: its coefficients */
+} chain;
+enum { HEAD = 4 };
+
+static size_t chain_size(const nevh_work *w) {
+    const taylor_plan *plan = w->plan;
+    return HEAD + 2 * w->n * (plan->order + 2);
+}
+
+static chain chain_at(const nevh_work *w, double *from) {
+    return (chain){.begun = from,
+                   .since = from + 1,
+                   .since_lost = from + 2,
+                   .reach = from + 3,
+                   .lost = from + HEAD,
+                   .rows = from + HEAD + 2 * w->n};
+}
+
+static void clear(nevh_work *w) {
+    taylor_plan *plan = w->plan;
+    if (!plan)
+        return;
+    nevh__series_free_double(plan->series);
+    nevh__recurrence_free(plan->recurrence);
+    free(plan);
+    w->plan = NULL;
+}
+
+/* An order more divides the error by e^2 where steps have the best length: the
+   fewer operations an order costs, the better are high ones. */
+static size_t order_for(double tolerance) {
+    double digits = -log(fmax(tolerance, 1e-18));
+    double order = ceil(3 + 0.72 * digits);
+    return order < 4 ? 4 : (size_t)order;
+}
+
+static int plan(nevh_work *w) {
+    double tolerance = w->options->tolerance;
+    if (!(tolerance > 0))
+        return nevh_work_fail(w, NEVH_EINVAL,
+                              "%s has no fixed steps: it needs a tolerance",
+                              w->integrator->name);
+    taylor_plan *plan = w->plan = nevh__array(1, sizeof *plan);
+    if (!plan)
+        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
+    plan->order = order_for(tolerance);
+    plan->timed = !(nevh_system_traits(w->system) & NEVH_AUTONOMOUS);
+    nevh__report report = {0};
+    plan->recurrence = nevh__recurrence_new(w->system, w->friction, &report);
+    if (!plan->recurrence)
+        return nevh_work_fail(w, report.status, "%s", report.text);
+    plan->series = nevh__series_new_double(plan->recurrence, plan->order);
+    if (!plan->series)
+        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
+    w->memory_rows = chain_size(w);
+    w->scratch_size = chain_size(w) * (w->width > 1 ? w->width : 1) + 4 * w->n;
+    return NEVH_OK;
+}
+
+/* Of order k, relative to the state; times a power of two. */
+static double size_of(const nevh_work *w, const double rows[], size_t k,
+                      int shift) {
+    double most = 0;
+    for (size_t i = 0; i < 2 * w->n; i++) {
+        double x = fabs(rows[k * 2 * w->n + i]);
+        double size = x / fmax(fabs(rows[i]), w->scale[i]);
+        most = size > most ? size : most;
+    }
+    return ldexp(most, shift);
+}
+
+/* How long a series holds: where either of the last two terms is the tolerance.
+   By powers of two in units in which the state changes by itself in about 1, so
+   that other units of time or length give the same digits. */
+static double reach_of(const nevh_work *w, const double rows[]) {
+    const taylor_plan *plan = w->plan;
+    int exponent = 0, p = (int)plan->order;
+    double tolerance = w->options->tolerance;
+    double rate = size_of(w, rows, 1, 0);
+    if (rate > 0)
+        frexp(rate, &exponent);
+    double last = tolerance / size_of(w, rows, plan->order, -p * exponent);
+    double before =
+        tolerance / size_of(w, rows, plan->order - 1, (1 - p) * exponent);
+    double reach = exp2(fmin(log2(last) / p, log2(before) / (p - 1)));
+    return ldexp(reach, -exponent);
+}
+
+/* The state at a time since the beginning, in 2n; as its change, which is then
+   added. */
+static void change_at(const nevh_work *w, const chain *z, double since,
+                      double change[]) {
+    const taylor_plan *plan = w->plan;
+    size_t each = 2 * w->n;
+    const double *row = z->rows + plan->order * each;
+    for (size_t i = 0; i < each; i++)
+        change[i] = row[i] * since;
+    for (size_t k = plan->order - 1; k > 0; k--) {
+        row -= each;
+        for (size_t i = 0; i < each; i++)
+            change[i] = (change[i] + row[i]) * since;
+    }
+    for (size_t i = 0; i < each; i++)
+        change[i] += z->lost[i];
+}
+
+static void state_at(const nevh_work *w, const chain *z, double since,
+                     double state[]) {
+    change_at(w, z, since, state);
+    for (size_t i = 0; i < 2 * w->n; i++)
+        state[i] += z->rows[i];
+}
+
+/* A time since the beginning, so much later. */
+static void pass(const chain *z, double time) {
+    double sum = *z->since + time;
+    *z->since_lost += nevh__roundoff(sum, *z->since, time);
+    double whole = sum + *z->since_lost;
+    *z->since_lost = nevh__roundoff(whole, sum, *z->since_lost);
+    *z->since = whole;
+}
+
+/* A series at the state in rows, for the time t. */
+static int begin(nevh_work *w, const chain *z, double t, double h) {
+    taylor_plan *plan = w->plan;
+    size_t each = 2 * w->n;
+    double *state = w->scratch + w->scratch_size - each;
+    memcpy(state, z->rows, each * sizeof *state);
+    w->field->gradients++;
+    if (!nevh__series_expand_double(plan->series, t, state, z->rows))
+        return nevh_work_fail(w, NEVH_EDOM,
+                              "the series at t = %.9g is not finite: H has no "
+                              "derivatives there, or the state is out of its "
+                              "domain",
+                              t);
+    double reach = reach_of(w, z->rows);
+    *z->reach = plan->timed ? fmin(reach, fabs(h)) : reach;
+    *z->begun = 1;
+    return NEVH_OK;
+}
+
+/* The next series of the chain, `step` later. */
+static int go_on(nevh_work *w, const chain *z, double step, double t,
+                 double h) {
+    size_t each = 2 * w->n;
+    double *change = w->scratch + w->scratch_size - 2 * each;
+    change_at(w, z, step, change);
+    for (size_t i = 0; i < each; i++) {
+        double sum = z->rows[i] + change[i];
+        z->lost[i] = nevh__roundoff(sum, z->rows[i], change[i]);
+        z->rows[i] = sum;
+    }
+    pass(z, -step);
+    return begin(w, z, t, h);
+}
+
+/* Gauss points and weights on -1 ... 1, for the balance of the energy. */
+static const double points[] = {0.1834346424956498, 0.5255324099163290,
+                                0.7966664774136267, 0.9602898564975363};
+static const double weights[] = {0.3626837833783620, 0.3137066458778873,
+                                 0.2223810344533745, 0.1012285362903763};
+
+/* What a part of a series, to `until` since its beginning, has passed; `later`:
+   the time then. */
+static int account(nevh_work *w, const chain *z, double from, double until,
+                   double later) {
+    double *state = w->scratch + w->scratch_size - 2 * w->n;
+    double half = (until - from) / 2, middle = from + half;
+    int status = NEVH_OK;
+    for (int i = 0; !status && i < 8 && half != 0; i++) {
+        double since = middle + (i % 2 ? half : -half) * points[i / 2];
+        double t = later - (until - since);
+        state_at(w, z, since, state);
+        status =
+            nevh_work_account(w, NEVH_OF_Q | NEVH_OF_P, half * weights[i / 2],
+                              &t, state, state + w->n);
+    }
+    return status;
+}
+
+static int give_up(const nevh_work *w, double t, double h, const char *why) {
+    return nevh_work_fail((nevh_work *)w, NEVH_EFAILED,
+                          "%s gave up at t = %.9g: the step of %g takes %s at "
+                          "a tolerance of %g",
+                          w->integrator->name, t, h, why,
+                          w->options->tolerance);
+}
+
+/* By h, the time then being `end`. */
+static int advance(nevh_work *w, const chain *z, double end, double h) {
+    nevh__pace pace = {0};
+    char why[NEVH__WHY];
+    double from = *z->since;
+    int status = NEVH_OK;
+    pass(z, h);
+    while (!status && fabs(*z->since) > *z->reach) {
+        double step = copysign(*z->reach, *z->since);
+        double left = fabs(*z->since) - *z->reach;
+        double t = end - copysign(left, *z->since);
+        if (!(*z->reach > DBL_EPSILON * fabs(h) / 8) || t - step == t)
+            return give_up(w, t, h, "series too short to be taken");
+        if (nevh__too_many(&pace, fabs(h), fmax(0, fabs(h) - left), why))
+            return give_up(w, t, h, why);
+        if (w->accounts)
+            status = account(w, z, from, step, t);
+        from = 0;
+        if (!status)
+            status = go_on(w, z, step, t, h);
+    }
+    if (!status && w->accounts)
+        status = account(w, z, from, *z->since, end);
+    return status;
+}
+
+/* Whether the state is a value of the series that is there. */
+static bool reaches(const chain *z, double h) {
+    return *z->begun != 0 && fabs(*z->since + h) < 0.999 * *z->reach;
+}
+
+/* One lane, whose chain is its own copy. */
+static int take(nevh_work *w, const chain *z, double t, double h) {
+    int status = *z->begun != 0 ? NEVH_OK : begin(w, z, t, h);
+    return status ? status : advance(w, z, t + h, h);
+}
+
+static int step_one(nevh_work *w, double t, double h, double q[], double p[]) {
+    chain z = chain_at(w, w->memory);
+    size_t n = w->n, size = chain_size(w) * sizeof(double);
+    bool copied = !reaches(&z, h) || w->accounts;
+    double *state = w->scratch + w->scratch_size - 2 * n;
+    if (copied) {
+        memcpy(w->scratch, w->memory, size);
+        z = chain_at(w, w->scratch);
+    }
+    if (*z.begun == 0) {
+        memcpy(z.rows, q, n * sizeof *q);
+        memcpy(z.rows + n, p, n * sizeof *p);
+    }
+    int status = NEVH_OK;
+    if (copied)
+        status = take(w, &z, t, h);
+    else
+        pass(&z, h);
+    if (status)
+        return status;
+    state_at(w, &z, *z.since, state);
+    if (nevh__not_finite(1, n, state, state + n)) {
+        if (!copied)
+            pass(&z, -h);
+        return nevh__fail_range(w, t, h);
+    }
+    if (copied)
+        memcpy(w->memory, w->scratch, size);
+    memcpy(q, state, n * sizeof *q);
+    memcpy(p, state + n, n * sizeof *p);
+    return NEVH_OK;
+}
+
+/* Lanes one after the other, through copies of their columns. */
+static int step_lanes(nevh_work *w, double t, double h, double q[],
+                      double p[]) {
+    size_t n = w->n, width = w->width, size = chain_size(w);
+    double *state = w->scratch + w->scratch_size - 2 * n;
+    int status = NEVH_OK;
+    for (size_t lane = 0; !status && lane < width; lane++) {
+        double *at = w->scratch + lane * size;
+        chain z = chain_at(w, at);
+        for (size_t i = 0; i < size; i++)
+            at[i] = w->memory[i * width + lane];
+        for (size_t k = 0; *z.begun == 0 && k < n; k++) {
+            z.rows[k] = q[k * width + lane];
+            z.rows[n + k] = p[k * width + lane];
+        }
+        status = take(w, &z, t, h);
+        if (status)
+            break;
+        state_at(w, &z, *z.since, state);
+        if (nevh__not_finite(1, n, state, state + n))
+            status = nevh__fail_range(w, t, h);
+    }
+    for (size_t lane = 0; !status && lane < width; lane++) {
+        double *at = w->scratch + lane * size;
+        chain z = chain_at(w, at);
+        state_at(w, &z, *z.since, state);
+        for (size_t k = 0; k < n; k++) {
+            q[k * width + lane] = state[k];
+            p[k * width + lane] = state[n + k];
+        }
+        for (size_t i = 0; i < size; i++)
+            w->memory[i * width + lane] = at[i];
+    }
+    return status;
+}
+
+static int step(nevh_work *w, double t, double h, double q[], double p[]) {
+    if (w->accounts && w->width > 1)
+        return nevh_work_fail(w, NEVH_EINVAL,
+                              "the balance of the energy under step control is "
+                              "kept for one orbit, not for %zu side by side",
+                              w->width);
+    return w->width == 1 ? step_one(w, t, h, q, p) : step_lanes(w, t, h, q, p);
+}
+
+const nevh_kernel nevh__taylor_kernel = {.plan = plan,
+                                         .step = step,
+                                         .clear = clear,
+                                         .has_friction = true,
+                                         .own_slopes = true};
