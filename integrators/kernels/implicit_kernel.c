@@ -29,10 +29,15 @@ typedef struct {
     nevh__sweeps *eight; /* the same of NEVH__LANES orbits */
     nevh__sweeps *any;   /* of as many as are left over, or stuck */
     nevh__stage_solver *solver;
+    nevh__stage_group groups;
     bool partitioned;
     size_t unknown; /* slopes of a lane that are solved for */
     size_t *lanes;  /* all of them */
 } family_plan;
+
+/* Orbits of eight that had better be swept one by one, if stages fill vectors:
+   a sweep of one then costs about a sixth of one of eight. */
+enum { FEW = 2 };
 
 /* One step under way. */
 typedef struct {
@@ -45,8 +50,9 @@ typedef struct {
     double *lost;        /* 2n x width: what that lost */
     double *state;       /* 2n x width: that of a stage */
     double *hold;        /* width; see nevh__stage_problem */
+    const double *unit;  /* 2n x width: |h| over scale */
     nevh__sweeps *group; /* under way, from this lane on */
-    size_t first;
+    size_t first, first_of_eight;
 } family_step;
 
 /* Memory: carry, slopes of the last step that were solved for, their h (0:
@@ -76,72 +82,6 @@ static void clear(nevh_work *w) {
     free(g->lanes);
     free(g);
     w->plan = NULL;
-}
-
-/* Sweeps of some orbits, where these suit; false when memory is out. */
-static bool plan_group(nevh_work *w, const family_plan *g, nevh__swept kind,
-                       nevh__sweeps **sweeps) {
-    if (!nevh__sweeps_suit(w, g->tableau->stages, kind))
-        return true;
-    *sweeps = nevh__sweeps_new(w, g->weights, g->partitioned, kind);
-    return *sweeps;
-}
-
-/* A few orbits that are left, or all where many do not go together, are swept
-   one by one. */
-static bool plan_sweeps(nevh_work *w, family_plan *g) {
-    size_t rest = w->width % NEVH__LANES, fewest = NEVH__FEWEST_TOGETHER;
-    g->any = nevh__sweeps_new(w, g->weights, g->partitioned, NEVH__ORBITS);
-    if (!g->any || (w->width >= fewest &&
-                    !plan_group(w, g, NEVH__EIGHT_ORBITS, &g->eight)))
-        return false;
-    return (g->eight && (rest == 0 || rest >= fewest)) ||
-           plan_group(w, g, NEVH__ONE_ORBIT, &g->one);
-}
-
-static bool plan_solver(nevh_work *w, family_plan *g) {
-    nevh__tableau *a = g->tableau;
-    if (!a)
-        return false;
-    g->partitioned =
-        !w->transform && (nevh_system_traits(w->system) & NEVH_SEPARABLE);
-    g->unknown = (g->partitioned ? 1 : 2) * w->n * a->stages;
-    g->weights = nevh__stage_weights_new(a);
-    g->lanes = nevh__array(w->width, sizeof *g->lanes);
-    g->solver = nevh__stage_solver_new(
-        w, &(nevh__stage_shape){a->stages, g->partitioned, a->a_q, a->a_p});
-    for (size_t lane = 0; g->lanes && lane < w->width; lane++)
-        g->lanes[lane] = lane;
-    return g->weights && g->lanes && g->solver && plan_sweeps(w, g);
-}
-
-static int plan_on(nevh_work *w, size_t fewest, size_t most,
-                   nevh__tableau *(*make)(size_t stages)) {
-    size_t stages = (size_t)w->integrator->stages;
-    if (stages < fewest || stages > most)
-        return nevh_work_fail(w, NEVH_EINVAL,
-                              "%s: %zu stages, where %zu to %zu are possible",
-                              w->integrator->name, stages, fewest, most);
-    family_plan *g = w->plan = nevh__array(1, sizeof *g);
-    if (g)
-        g->tableau = make(stages);
-    if (!g || !plan_solver(w, g))
-        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
-    w->memory_rows = 2 * w->n + g->unknown + 2;
-    w->scratch_size = (2 * w->n * stages + 6 * w->n + 1) * w->width;
-    return NEVH_OK;
-}
-
-static int plan_gauss(nevh_work *w) {
-    return plan_on(w, 1, NEVH__MOST_STAGES, nevh__gauss_new);
-}
-
-static int plan_lobatto(nevh_work *w) {
-    return plan_on(w, 2, NEVH__MOST_STAGES, nevh__lobatto_new);
-}
-
-static int plan_implicit_euler(nevh_work *w) {
-    return plan_on(w, 1, 1, nevh__implicit_euler_new);
 }
 
 static family_step lay_out(nevh_work *w, double t, double h, const double q[],
@@ -211,13 +151,24 @@ static size_t begin_group(void *data, size_t first, const double unit[]) {
     start.last = last.slopes;
     start.last_h = last.h;
     s->group = many ? g->eight : g->one;
-    s->first = first;
+    s->first = s->first_of_eight = first;
+    s->unit = unit;
     return s->group && nevh__sweeps_begin(s->group, &start) ? count : 0;
 }
 
 static int sweep_group(void *data, nevh__stage_progress made[]) {
     const family_step *s = data;
     return nevh__sweeps_sweep(s->group, made);
+}
+
+static void leave(void *data, size_t lane) {
+    family_step *s = data;
+    const family_plan *g = s->work->plan;
+    nevh__sweep_start start = start_of(s, 1, g->lanes + lane);
+    start.unit = s->unit;
+    nevh__sweeps_take_over(g->one, &start, g->eight, lane - s->first_of_eight);
+    s->group = g->one;
+    s->first = lane;
 }
 
 static void fetch(void *data, size_t lane, size_t sweeps) {
@@ -228,7 +179,74 @@ static void fetch(void *data, size_t lane, size_t sweeps) {
 }
 
 static const nevh__stage_group groups = {begin_group, sweep_group, fetch,
-                                         guess};
+                                         leave,       0,           guess};
+
+/* Sweeps of some orbits, where these suit; false when memory is out. */
+static bool plan_group(nevh_work *w, const family_plan *g, nevh__swept kind,
+                       nevh__sweeps **sweeps) {
+    if (!nevh__sweeps_suit(w, g->tableau->stages, kind))
+        return true;
+    *sweeps = nevh__sweeps_new(w, g->weights, g->partitioned, kind);
+    return *sweeps;
+}
+
+/* A few orbits that are left over, or under way, are swept one by one. */
+static bool plan_sweeps(nevh_work *w, family_plan *g) {
+    bool many = w->width >= NEVH__FEWEST_TOGETHER;
+    g->any = nevh__sweeps_new(w, g->weights, g->partitioned, NEVH__ORBITS);
+    if (!g->any || !plan_group(w, g, NEVH__ONE_ORBIT, &g->one) ||
+        (many && !plan_group(w, g, NEVH__EIGHT_ORBITS, &g->eight)))
+        return false;
+    g->groups = groups;
+    if (g->one && g->weights->stages == g->weights->row)
+        g->groups.few = FEW;
+    return true;
+}
+
+static bool plan_solver(nevh_work *w, family_plan *g) {
+    nevh__tableau *a = g->tableau;
+    if (!a)
+        return false;
+    g->partitioned =
+        !w->transform && (nevh_system_traits(w->system) & NEVH_SEPARABLE);
+    g->unknown = (g->partitioned ? 1 : 2) * w->n * a->stages;
+    g->weights = nevh__stage_weights_new(a);
+    g->lanes = nevh__array(w->width, sizeof *g->lanes);
+    g->solver = nevh__stage_solver_new(
+        w, &(nevh__stage_shape){a->stages, g->partitioned, a->a_q, a->a_p});
+    for (size_t lane = 0; g->lanes && lane < w->width; lane++)
+        g->lanes[lane] = lane;
+    return g->weights && g->lanes && g->solver && plan_sweeps(w, g);
+}
+
+static int plan_on(nevh_work *w, size_t fewest, size_t most,
+                   nevh__tableau *(*make)(size_t stages)) {
+    size_t stages = (size_t)w->integrator->stages;
+    if (stages < fewest || stages > most)
+        return nevh_work_fail(w, NEVH_EINVAL,
+                              "%s: %zu stages, where %zu to %zu are possible",
+                              w->integrator->name, stages, fewest, most);
+    family_plan *g = w->plan = nevh__array(1, sizeof *g);
+    if (g)
+        g->tableau = make(stages);
+    if (!g || !plan_solver(w, g))
+        return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
+    w->memory_rows = 2 * w->n + g->unknown + 2;
+    w->scratch_size = (2 * w->n * stages + 6 * w->n + 1) * w->width;
+    return NEVH_OK;
+}
+
+static int plan_gauss(nevh_work *w) {
+    return plan_on(w, 1, NEVH__MOST_STAGES, nevh__gauss_new);
+}
+
+static int plan_lobatto(nevh_work *w) {
+    return plan_on(w, 2, NEVH__MOST_STAGES, nevh__lobatto_new);
+}
+
+static int plan_implicit_euler(nevh_work *w) {
+    return plan_on(w, 1, 1, nevh__implicit_euler_new);
+}
 
 /* The evaluations that moved the state: one a stage. */
 static int account(const family_step *s, const family_plan *g) {
@@ -283,7 +301,7 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
                                    .p = p,
                                    .x = s.unknown,
                                    .map = map,
-                                   .group = &groups,
+                                   .group = &g->groups,
                                    .data = &s,
                                    .hold = s.hold};
     int status = nevh__stage_solve(g->solver, &problem);

@@ -99,10 +99,9 @@ double nevh__stage_continue(const nevh__stage_weights *w, size_t i,
     return nevh__stage_sum_orbit(w->row, w->stages, width, w->guess + i, last);
 }
 
-/* States that only fill vectors, and sweeps of orbits that are done, cost
-   little where gradients are exact. */
+/* States that only fill vectors cost little where gradients are exact. */
 bool nevh__sweeps_suit(const nevh_work *w, size_t stages, nevh__swept kind) {
-    bool whole = kind == NEVH__ONE_ORBIT && stages % NEVH__LANES == 0;
+    bool whole = kind != NEVH__ONE_ORBIT || stages % NEVH__LANES == 0;
     return !w->transform && (nevh__work_lean(w) || whole);
 }
 
@@ -294,6 +293,29 @@ bool nevh__sweeps_begin(nevh__sweeps *s, const nevh__sweep_start *x) {
     load_state(s, x, s->lanes);
     (s->lanes == 1 ? begin_one : begin_eight)(s, x->t, x->h, load_last(s, x));
     return true;
+}
+
+/* A row of a lane's stages; what is behind them repeats the first. */
+static void pick(const nevh__sweeps *s, size_t rows, const double from[],
+                 size_t lane, size_t apart, double to[]) {
+    size_t stages = s->x.stages;
+    for (size_t k = 0; k < rows; k++, from += stages * apart)
+        for (size_t i = 0; i < s->x.stride; i++)
+            *to++ = from[(i < stages ? i : 0) * apart + lane];
+}
+
+void nevh__sweeps_take_over(nevh__sweeps *s, const nevh__sweep_start *x,
+                            const nevh__sweeps *o, size_t lane) {
+    s->x.unchecked = ready(s);
+    load_state(s, x, 1);
+    for (size_t i = 0; i < s->x.stride; i++)
+        s->times[i] = x->t + s->weights->c[i] * x->h;
+    pick(s, 2 * s->x.n, o->x.gradient, lane, o->lanes, s->x.gradient);
+    pick(s, s->changes.rows, o->changes.before, lane, o->lanes,
+         s->changes.before);
+    pick(s, s->changes.rows, o->changes.least, lane, o->lanes,
+         s->changes.least);
+    s->lowest[0] = o->lowest[lane];
 }
 
 NEVH__INLINE int sweep(nevh__sweeps *s, size_t lanes,

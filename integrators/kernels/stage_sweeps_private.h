@@ -63,6 +63,9 @@ typedef struct {
 /* Of one orbit, or of lanes next to each other: whether they can be swept, which
    one always can. */
 bool nevh__sweeps_begin(nevh__sweeps *, const nevh__sweep_start *);
+/* Goes on with one orbit that is a lane of others' sweeps. */
+void nevh__sweeps_take_over(nevh__sweeps *, const nevh__sweep_start *,
+                            const nevh__sweeps *others, size_t lane);
 /* One sweep, and what it did to each lane. */
 int nevh__sweeps_sweep(nevh__sweeps *, nevh__stage_progress made[]);
 /* Counts what so many sweeps of one lane have evaluated. */

@@ -216,18 +216,13 @@ static bool all_finite(const group_state *g,
     return finite;
 }
 
-/* One lane. */
-static int solve_one(nevh__stage_solver *s, size_t lane) {
+/* One lane, from where the group's one lane stands after so many sweeps. */
+static int iterate_one(nevh__stage_solver *s, size_t lane, size_t sweeps) {
     const nevh__stage_problem *e = s->problem;
     nevh__stage_progress made;
     nevh__stage_state state = NEVH__GO_ON;
-    size_t sweeps = 0;
-    int status = NEVH_OK;
-    s->lane[lane] = nevh__stage_fresh;
-    if (held(s, lane, &status))
-        return status;
     for (; state == NEVH__GO_ON && sweeps < MOST_SWEEPS; sweeps++) {
-        status = e->group->sweep(e->data, &made);
+        int status = e->group->sweep(e->data, &made);
         bool lost = status == NEVH_EDOM && s->lane[lane].strays;
         if (status && !lost)
             return status;
@@ -240,6 +235,12 @@ static int solve_one(nevh__stage_solver *s, size_t lane) {
         return hand_over(s, lane);
     e->group->fetch(e->data, 0, sweeps);
     return NEVH_OK;
+}
+
+static int solve_one(nevh__stage_solver *s, size_t lane) {
+    int status = NEVH_OK;
+    s->lane[lane] = nevh__stage_fresh;
+    return held(s, lane, &status) ? status : iterate_one(s, lane, 0);
 }
 
 /* One sweep of several.  NEVH_EDOM: each has to be swept alone, lest one decide
@@ -262,6 +263,20 @@ static int sweep_group(nevh__stage_solver *s, group_state *g, size_t sweeps) {
     return status;
 }
 
+/* The last lanes of a group go on one by one. */
+static int iterate_rest(nevh__stage_solver *s, const group_state *g,
+                        size_t sweeps) {
+    const nevh__stage_problem *e = s->problem;
+    int status = NEVH_OK;
+    for (size_t i = 0; !status && i < g->count; i++) {
+        if (g->settled[i])
+            continue;
+        e->group->leave(e->data, g->first + i);
+        status = iterate_one(s, g->first + i, sweeps);
+    }
+    return status;
+}
+
 /* Lanes that have to be swept alone are listed. */
 static int solve_group(nevh__stage_solver *s, size_t first, size_t count,
                        size_t *active) {
@@ -272,8 +287,11 @@ static int solve_group(nevh__stage_solver *s, size_t first, size_t count,
         g.settled[i] = held(s, first + i, &status);
         g.left -= g.settled[i];
     }
-    for (size_t i = 1; !status && g.left > 0; i++)
+    for (size_t i = 1; !status && g.left > 0; i++) {
         status = sweep_group(s, &g, i);
+        if (!status && g.left <= s->problem->group->few)
+            return iterate_rest(s, &g, i);
+    }
     if (status != NEVH_EDOM)
         return status;
     status = NEVH_OK;

@@ -41,6 +41,10 @@ typedef struct {
     int (*sweep)(void *data, nevh__stage_progress made[]);
     /* Of a lane of the group, after so many sweeps: takes its x. */
     void (*fetch)(void *data, size_t lane, size_t sweeps);
+    /* So many lanes of a group, or fewer, had better leave it: what follows is
+       of this lane alone, which goes on where it stands.  few 0: none does. */
+    void (*leave)(void *data, size_t lane);
+    size_t few;
     /* The first guess for any lane, to x. */
     void (*guess)(void *data, size_t lane);
 } nevh__stage_group;
