@@ -113,6 +113,7 @@ libnevh_core_la_SOURCES = \
 	lib/native/formula_text.c \
 	lib/native/slope_text.c \
 	lib/native/prelude_text.c \
+	lib/native/steps_text.c \
 	lib/native/splitting_text.c \
 	lib/native/runge_kutta_text.c \
 	lib/native/program_text.c \
@@ -189,6 +190,18 @@ libnevh_core_la_SOURCES = \
 	lib/scene/sweep.c \
 	lib/scene/crew.c \
 	lib/scene/scene.c
+
+# The kernels' steps as text, for steps that are compiled: strings, line by line.
+step_texts = integrators/kernels/splitting_step.h \
+	integrators/kernels/stage_sums_private.h \
+	integrators/kernels/runge_kutta_step.h
+nodist_libnevh_core_la_SOURCES = lib/native/kernel_texts.c
+lib/native/kernel_texts.c: lib/native/kernel_texts.awk $(step_texts)
+	$(MKDIR_P) lib/native
+	cd $(srcdir) && $(AWK) -f lib/native/kernel_texts.awk $(step_texts) \
+	  >$(abs_builddir)/$@.new && mv $(abs_builddir)/$@.new $(abs_builddir)/$@
+EXTRA_DIST += lib/native/kernel_texts.awk
+CLEANFILES += lib/native/kernel_texts.c
 
 # -version-info C:R:A, at each release, beginning with that of the last one:
 #   the library's code changed at all          R + 1

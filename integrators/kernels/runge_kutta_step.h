@@ -3,24 +3,26 @@
    SPDX-License-Identifier: GPL-3.0-or-later
 
    The text needs vector_private.h, stage_sums_private.h and one function of the
-   includer; runge_kutta_kernel.c compiles it for numbers, for vectors, and for
-   rows of any width.  Slopes are dH/dp and dH/dq as they are written; the step
-   of momenta is -h:
-
-       Y_i = y + (s sum_j a_ij k_j + e),   k_i = (dH/dp, dH/dq)(t + c_i h, Y_i),
-       y  += s sum_j b_j k_j,              s = h for q, -h for p. */
+   includer; runge_kutta_kernel.c compiles it for vectors, and for rows of any
+   width; lib/native hands it to the C compiler with a scene's formulas. */
 #ifndef NEVH_RUNGE_KUTTA_STEP_H
 #define NEVH_RUNGE_KUTTA_STEP_H
 
 #include "stage_sums_private.h"
 
+/* Slopes are dH/dp and dH/dq as they are written; the step
+   of momenta is -h:
+
+       Y_i = y + (s sum_j a_ij k_j + e),   k_i = (dH/dp, dH/dq)(t + c_i h, Y_i),
+       y  += s sum_j b_j k_j,              s = h for q, -h for p. */
+
 typedef struct {
     const nevh__sum *sums; /* sum_j a_ij k_j of each stage */
     size_t size;           /* numbers of a state: q, then p */
     size_t stride;         /* from the slopes of a stage to the next */
-    const double *state, *carry, *step;          /* y, e, s */
-    double *point;                               /* Y_i */
-    double *slopes;                              /* k_i of each stage */
+    const nevh__number *state, *carry, *step;    /* y, e, s */
+    nevh__number *point;                         /* Y_i */
+    nevh__number *slopes;                        /* k_i of each stage */
     const struct nevh__runge_kutta_owner *owner; /* the includer's */
 } nevh__runge_kutta_step;
 
@@ -56,7 +58,7 @@ NEVH__INLINE void nevh__runge_kutta_place_rows(const nevh__runge_kutta_step *x,
 
 NEVH__INLINE void
 nevh__runge_kutta_place_number(const nevh__runge_kutta_step *x, size_t i,
-                               double sum) {
+                               nevh__number sum) {
     x->point[i] = x->state[i] + (sum * x->step[i] + x->carry[i]);
 }
 
@@ -72,7 +74,7 @@ NEVH__INLINE void nevh__runge_kutta_place(const nevh__runge_kutta_step *x,
     for (; i + one <= x->size; i += one)
         nevh__runge_kutta_place_rows(x, sum, 1, i);
     for (; i + 2 <= x->size; i += 2) {
-        double sums[2];
+        nevh__number sums[2];
         nevh__add_up_two(sum, x->slopes + i, sums);
         nevh__runge_kutta_place_number(x, i, sums[0]);
         nevh__runge_kutta_place_number(x, i + 1, sums[1]);

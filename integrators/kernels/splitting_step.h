@@ -2,16 +2,11 @@
    number of orbits side by side.
    SPDX-License-Identifier: GPL-3.0-or-later
 
-   The text needs NEVH__INLINE, NEVH__EACH, nevh__roundoff and nevh__not_finite of
-   vector_private.h, the C library's size_t and bool, and two functions of the
-   includer.  splitting_kernel.c compiles it for numbers, for vectors, and for
-   rows of any width.
-
-       change_q = change_p = 0,  Q = q + e_q,  P = p + e_p
-       for each operation i
-           kick:   change_p -= w_i h dV/dq(Q),  P = p + (change_p + e_p)
-           drift:  change_q += w_i h dT/dp(P),  Q = q + (change_q + e_q)
-       q = Q,  p = P, and e is what that lost to rounding. */
+   The text needs NEVH__INLINE, NEVH__EACH, nevh__number, nevh__roundoff and
+   nevh__not_finite of vector_private.h, the C library's size_t and bool, and two
+   functions of the includer.  splitting_kernel.c compiles it for numbers, for
+   vectors, and for rows of any width; lib/native hands it to the C compiler with
+   a scene's formulas. */
 #ifndef NEVH_SPLITTING_STEP_H
 #define NEVH_SPLITTING_STEP_H
 
@@ -19,12 +14,18 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+/*     change_q = change_p = 0,  Q = q + e_q,  P = p + e_p
+       for each operation i
+           kick:   change_p -= w_i h dV/dq(Q),  P = p + (change_p + e_p)
+           drift:  change_q += w_i h dT/dp(P),  Q = q + (change_q + e_q)
+       q = Q,  p = P, and e is what that lost to rounding. */
+
 /* One half of the state: q under drifts, p under kicks.  Rows of lanes. */
 typedef struct {
-    double *state;  /* at the start of the step */
-    double *carry;  /* e: digits that earlier steps lost */
-    double *change; /* the increment so far */
-    double *point;  /* state + (change + carry) */
+    nevh__number *state;  /* at the start of the step */
+    nevh__number *carry;  /* e: digits that earlier steps lost */
+    nevh__number *change; /* the increment so far */
+    nevh__number *point;  /* state + (change + carry) */
 } nevh__half;
 
 typedef struct {
@@ -40,7 +41,7 @@ typedef struct {
     const nevh__splitting_scheme *scheme;
     bool has_kept; /* the step before has left a slope */
     nevh__half q, p;
-    double *slope, *kept;
+    nevh__number *slope, *kept;
     const struct nevh__splitting_owner *owner; /* the includer's */
 } nevh__splitting_step;
 
@@ -55,16 +56,16 @@ NEVH__INLINE int nevh__splitting_slope(const nevh__splitting_step *x, int way,
                                        size_t i, bool kick, bool kept);
 /* The includer's, too: where T is that of known masses, what momenta are
    multiplied by, as many as slopes; else NULL. */
-NEVH__INLINE const double *
+NEVH__INLINE const nevh__number *
 nevh__splitting_inverse(const nevh__splitting_step *x, int way);
 
 NEVH__INLINE void nevh__splitting_advance(size_t lanes, size_t size,
                                           const nevh__half *x, double step,
-                                          const double *restrict slope) {
-    double *restrict change = x->change, *restrict point = x->point;
-    const double *restrict state = x->state, *restrict carry = x->carry;
+                                          const nevh__number *restrict slope) {
+    nevh__number *restrict change = x->change, *restrict point = x->point;
+    const nevh__number *restrict state = x->state, *restrict carry = x->carry;
     NEVH__EACH(i, lanes, size) {
-        double sum = change[i] + step * slope[i];
+        nevh__number sum = change[i] + step * slope[i];
         change[i] = sum;
         point[i] = state[i] + (sum + carry[i]);
     }
@@ -89,18 +90,18 @@ NEVH__INLINE int nevh__splitting_operate_both(const nevh__splitting_step *x,
                                               int way, size_t lanes,
                                               size_t size, size_t i) {
     const nevh__half *q = &x->q, *p = &x->p;
-    double *restrict slope = x->slope;
-    const double *restrict inverse = nevh__splitting_inverse(x, way);
+    nevh__number *restrict slope = x->slope;
+    const nevh__number *restrict inverse = nevh__splitting_inverse(x, way);
     double kick = -(x->scheme->weights[i] * x->h),
            drift = x->scheme->weights[i + 1] * x->h;
     int status = nevh__splitting_slope(x, way, i, true, false);
     if (status)
         return status;
     NEVH__EACH(k, lanes, size) {
-        double sum = p->change[k] + kick * slope[k];
-        double momentum = p->state[k] + (sum + p->carry[k]);
-        double velocity = inverse[k] * momentum;
-        double moved = q->change[k] + drift * velocity;
+        nevh__number sum = p->change[k] + kick * slope[k];
+        nevh__number momentum = p->state[k] + (sum + p->carry[k]);
+        nevh__number velocity = inverse[k] * momentum;
+        nevh__number moved = q->change[k] + drift * velocity;
         slope[k] = velocity;
         p->change[k] = sum;
         p->point[k] = momentum;
@@ -143,7 +144,7 @@ NEVH__INLINE int nevh__splitting_operate_all(const nevh__splitting_step *x,
 }
 
 NEVH__INLINE void nevh__splitting_commit(const nevh__half *x, size_t i) {
-    double start = x->state[i], d = x->change[i] + x->carry[i];
+    nevh__number start = x->state[i], d = x->change[i] + x->carry[i];
     x->carry[i] = nevh__roundoff(x->point[i], start, d);
     x->state[i] = x->point[i];
 }
@@ -165,8 +166,8 @@ NEVH__INLINE void nevh__splitting_commit_all(const nevh__splitting_step *x,
 NEVH__INLINE int nevh__splitting_take(const nevh__splitting_step *x, int way,
                                       size_t lanes, size_t size) {
     NEVH__EACH(i, lanes, size) {
-        x->q.change[i] = 0;
-        x->p.change[i] = 0;
+        x->q.change[i] = (nevh__number){0};
+        x->p.change[i] = (nevh__number){0};
         x->q.point[i] = x->q.state[i] + x->q.carry[i];
         x->p.point[i] = x->p.state[i] + x->p.carry[i];
     }

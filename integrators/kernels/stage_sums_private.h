@@ -33,25 +33,28 @@ static inline nevh__sum nevh__sum_of(const double all[], size_t count,
 /* The sums of `rows` (a constant) vectors side by side, in the order of the
    stages; slopes: the first one's. */
 NEVH__INLINE void nevh__add_up(const nevh__sum *x, size_t rows,
-                               const double slopes[], nevh__vector sums[]) {
+                               const nevh__number slopes[],
+                               nevh__vector sums[]) {
     for (size_t k = 0; k < rows; k++)
         sums[k] = (nevh__vector){0};
+    NEVH__KNOWN_COUNT
     for (size_t j = 0; j < x->count; j++) {
-        const double *slope = slopes + x->offsets[j];
+        const nevh__number *slope = slopes + x->offsets[j];
         double weight = x->weights[j];
         NEVH_UNROLL
         for (size_t k = 0; k < rows; k++)
-            sums[k] +=
-                weight * *(const nevh__vector *)(slope + k * NEVH__IN_VECTOR);
+            sums[k] += weight * NEVH__VECTOR_AT(slope + k * NEVH__IN_VECTOR);
     }
 }
 
 /* The same of numbers. */
-NEVH__INLINE void nevh__add_up_two(const nevh__sum *x, const double slopes[],
-                                   double sums[2]) {
-    double first = 0, second = 0;
+NEVH__INLINE void nevh__add_up_two(const nevh__sum *x,
+                                   const nevh__number slopes[],
+                                   nevh__number sums[2]) {
+    nevh__number first = {0}, second = {0};
+    NEVH__KNOWN_COUNT
     for (size_t j = 0; j < x->count; j++) {
-        const double *slope = slopes + x->offsets[j];
+        const nevh__number *slope = slopes + x->offsets[j];
         first += x->weights[j] * slope[0];
         second += x->weights[j] * slope[1];
     }
@@ -59,9 +62,9 @@ NEVH__INLINE void nevh__add_up_two(const nevh__sum *x, const double slopes[],
     sums[1] = second;
 }
 
-NEVH__INLINE double nevh__add_up_one(const nevh__sum *x,
-                                     const double slopes[]) {
-    double sum = 0;
+NEVH__INLINE nevh__number nevh__add_up_one(const nevh__sum *x,
+                                           const nevh__number slopes[]) {
+    nevh__number sum = {0};
     for (size_t j = 0; j < x->count; j++)
         sum += x->weights[j] * slopes[x->offsets[j]];
     return sum;

@@ -207,7 +207,8 @@ static const char *type_of(const nevh__formula_text *f) {
 static void write_operation(nevh__writer *w, const nevh__formula_text *f,
                             unsigned operation, const char *text,
                             const char *to, const meaning *m) {
-    if (!f->wide || !is_lanewise(operation)) {
+    bool calls = f->scalar && strstr(text, "NEVH__F(");
+    if (!f->wide || (!calls && !is_lanewise(operation))) {
         write_text(w, text, m);
         nevh__write(w, ";\n");
         return;

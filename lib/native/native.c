@@ -24,42 +24,19 @@ void nevh__native_free(nevh__native *x) {
     free(x);
 }
 
-/* A kick takes dH/dq at the drifts' time, a drift dH/dp at the kicks'. */
 static bool fill_splitting(nevh__native *x, const nevh_work *w) {
     const nevh_splitting *table = w->integrator->table;
     size_t count = nevh__splitting_operations(table);
-    double passed[2] = {0, 0};
-    x->weight_count = x->time_count = count;
-    x->weights = nevh__array(count, sizeof *x->weights);
-    x->times = nevh__array(count, sizeof *x->times);
-    if (!x->weights || !x->times)
-        return false;
-    nevh__splitting_expand(table, x->weights);
-    for (size_t i = 0; i < count; i++) {
-        x->times[i] = passed[1 - i % 2];
-        passed[i % 2] += x->weights[i];
-    }
     x->keeps = count % 2 == 1;
     x->kicks_first = table->first == NEVH_KICK;
     x->kicks = (count + x->kicks_first) / 2;
     x->drifts = count - x->kicks;
-    return true;
+    return nevh__splitting_tables(table, &x->weights, &x->times);
 }
 
-/* The matrix, and the weights behind it. */
 static bool fill_runge_kutta(nevh__native *x, const nevh_work *w) {
     const nevh_butcher *table = w->integrator->table;
-    size_t s = table->stages;
-    x->weight_count = s * s + s;
-    x->time_count = s;
-    x->weights = nevh__array(s * s + s, sizeof *x->weights);
-    x->times = nevh__array(s, sizeof *x->times);
-    if (!x->weights || !x->times)
-        return false;
-    memcpy(x->weights, table->a, s * s * sizeof *x->weights);
-    memcpy(x->weights + s * s, table->b, s * sizeof *x->weights);
-    memcpy(x->times, table->c, s * sizeof *x->times);
-    x->kicks = x->drifts = s - table->last_is_first;
+    x->kicks = x->drifts = table->stages - table->last_is_first;
     return true;
 }
 
@@ -70,6 +47,8 @@ static const struct {
 } families[] = {
     {&nevh_splitting_kernel, nevh__write_splitting, fill_splitting},
     {&nevh_runge_kutta_kernel, nevh__write_runge_kutta, fill_runge_kutta}};
+/* The steps' copies of the state stand on the stack. */
+enum { MOST_NUMBERS = 8192 };
 enum { FAMILIES = sizeof families / sizeof *families };
 
 static size_t family_of(const nevh_work *w) {
@@ -83,15 +62,18 @@ static size_t family_of(const nevh_work *w) {
 static const char *obstacle(const nevh_work *w) {
     return family_of(w) == FAMILIES
                ? "only splitting and fixed Runge-Kutta steps can be"
-           : w->accounts               ? "the balance of the energy is kept"
-           : w->width > 1              ? "orbits stand side by side"
-           : w->options->tolerance > 0 ? "steps adapt to a tolerance"
-           : w->friction               ? "there is friction"
-                                       : NULL;
+           : w->accounts ? "the balance of the energy is kept"
+           : w->width % NEVH__LANES && w->width > 1
+               ? "orbits side by side fill no vectors"
+           : w->n * w->width > MOST_NUMBERS ? "the state is too large"
+           : w->options->tolerance > 0      ? "steps adapt to a tolerance"
+           : w->friction                    ? "there is friction"
+                                            : NULL;
 }
 
 bool nevh__native_write(nevh__writer *text, nevh_work *w) {
     text->refusal = obstacle(w);
+    text->width = w->width;
     return !text->refusal && families[family_of(w)].write(text, w);
 }
 
@@ -168,10 +150,28 @@ static void count(nevh_work *w, const nevh__native *x, size_t steps,
     size_t saved = x->keeps ? steps - !kept : 0;
     size_t kicks = steps * x->kicks - (x->kicks_first ? saved : 0);
     size_t drifts = steps * x->drifts - (x->kicks_first ? 0 : saved);
+    kicks *= w->width;
+    drifts *= w->width;
     w->field->gradients += kicks;
     for (size_t i = 0; i < w->field->n_terms; i++)
         w->field->terms[i].values +=
             kicks * x->kick_values[i] + drifts * x->drift_values[i];
+}
+
+/* Whether all lanes have the slope that the step before left. */
+static bool has_kept(const nevh_work *w) {
+    const double *flags = w->memory + 3 * w->size;
+    for (size_t lane = 0; lane < w->width; lane++)
+        if (flags[lane] == 0)
+            return false;
+    return true;
+}
+
+static size_t take(const nevh_work *w, double t0, double h, size_t from,
+                   size_t steps, double q[], double p[]) {
+    const nevh__native *x = w->native;
+    return x->steps(x->numbers, x->weights, x->times, x->kicks + x->drifts, t0,
+                    h, from, steps, q, p, w->memory);
 }
 
 size_t nevh__native_run(nevh_work *w, double t0, double h, size_t from,
@@ -179,10 +179,10 @@ size_t nevh__native_run(nevh_work *w, double t0, double h, size_t from,
     const nevh__native *x = w->native;
     if (!nevh__field_at_hand(w->field))
         return 0;
-    bool kept = x->keeps && w->memory[3 * w->n] != 0;
-    size_t done =
-        x->steps(x->numbers, x->weights, x->times, x->kicks + x->drifts, t0, h,
-                 from, steps, q, p, w->memory);
+    bool kept = x->keeps && has_kept(w);
+    size_t done = take(w, t0, h, from, steps, q, p);
+    if (done && done < steps) /* nothing has been stored */
+        done = take(w, t0, h, from, done, q, p);
     if (done)
         count(w, x, done, kept);
     return done;

@@ -12,9 +12,9 @@
 #include <nevh/extend.h>
 #include <nevh/run.h>
 
-typedef size_t (*nevh__native_steps)(const double numbers[],
-                                     const double weights[],
-                                     const double times[], size_t operations,
+/* Takes `steps` steps, or none, and returns how many of them can be taken. */
+typedef size_t (*nevh__native_steps)(const double numbers[], double weights[],
+                                     double times[], size_t operations,
                                      double t0, double h, size_t from,
                                      size_t steps, double q[], double p[],
                                      double memory[]);
@@ -25,7 +25,6 @@ typedef struct nevh__native {
     void *library;
     nevh__native_steps steps;
     double *numbers, *weights, *times;
-    size_t weight_count, time_count;
     size_t kicks, drifts; /* of a step */
     bool keeps, kicks_first;
     uint64_t *kick_values, *drift_values; /* n_terms each, of one of them */
@@ -35,6 +34,10 @@ typedef struct nevh__native {
    explicit Runge-Kutta method. */
 bool nevh__write_splitting(nevh__writer *, nevh_work *);
 bool nevh__write_runge_kutta(nevh__writer *, nevh_work *);
+/* Weights of all kicks and drifts, and the times of their slopes; to be freed.
+   false when memory is out. */
+bool nevh__splitting_tables(const nevh_splitting *, double **weights,
+                            double **times);
 /* Text of steps, if the scheme has one; else false, and w->refusal. */
 bool nevh__native_write(nevh__writer *, nevh_work *);
 /* What steps are handed, but for numbers; false when memory is out. */

@@ -9,23 +9,18 @@
 static const struct {
     const char *call, *text;
 } helpers[] = {
-    {"nevh_roundoff(",
-     "/* What rounding has lost of a + b. */\n"
-     "static double nevh_roundoff(double sum, double a, double b) {\n"
-     "    double part = sum - a;\n"
-     "    return (a - (sum - part)) + (b - part);\n}\n"},
-    {"nevh_choose(", "static double nevh_choose(int first, double x, double y) "
-                     "{\n    return first ? x : y;\n}\n"},
-    {"nevh_real_min(", "static double nevh_real_min(double x, double y) {\n"
-                       "    return x != x || x < y ? x : y;\n}\n"},
-    {"nevh_real_max(", "static double nevh_real_max(double x, double y) {\n"
-                       "    return x != x || x > y ? x : y;\n}\n"},
-    {"nevh_sign(", "static double nevh_sign(double x) {\n"
-                   "    return x != x ? x : x > 0 ? 1 : x < 0 ? -1 : 0;\n}\n"},
-    {"nevh_chain(", "static double nevh_chain(double x, double y) {\n"
-                    "    return x * y;\n}\n"},
-    {"nevh_mod(",
-     "static double nevh_mod(double x, double y) {\n"
+    {"choose(", "static double choose(int first, double x, double y) "
+                "{\n    return first ? x : y;\n}\n"},
+    {"real_min(", "static double real_min(double x, double y) {\n"
+                  "    return x != x || x < y ? x : y;\n}\n"},
+    {"real_max(", "static double real_max(double x, double y) {\n"
+                  "    return x != x || x > y ? x : y;\n}\n"},
+    {"sign(", "static double sign(double x) {\n"
+              "    return x != x ? x : x > 0 ? 1 : x < 0 ? -1 : 0;\n}\n"},
+    {"chain(", "static double chain(double x, double y) {\n"
+               "    return x * y;\n}\n"},
+    {"mod(",
+     "static double mod(double x, double y) {\n"
      "    double rest = fmod(x, y);\n"
      "    return rest != 0 && (rest < 0) != (y < 0) ? rest + y : rest;\n}\n"}};
 
@@ -39,6 +34,36 @@ static bool has_word(const char *line, const char *word, size_t length) {
         if ((at == line || !is_word(at[-1])) && !is_word(at[length]))
             return true;
     return false;
+}
+
+/* Names without what they have in the library. */
+static void rename_all(char *text) {
+    static const struct {
+        const char *from, *to;
+    } names[] = {{"nevh__number", "double"},
+                 {"NEVH__INLINE", "static"},
+                 {"nevh__", ""},
+                 {"NEVH__", ""},
+                 {"NEVH_", ""},
+                 {"nevh_", ""}};
+    char *to = text;
+    bool begins = true;
+    while (*text) {
+        size_t i = 0, count = sizeof names / sizeof *names;
+        while (i < count &&
+               strncmp(text, names[i].from, strlen(names[i].from)) != 0)
+            i++;
+        if (!begins || i == count) {
+            begins = !is_word(*text);
+            *to++ = *text++;
+            continue;
+        }
+        text += strlen(names[i].from);
+        for (const char *c = names[i].to; *c; c++)
+            *to++ = *c;
+        begins = false;
+    }
+    *to = '\0';
 }
 
 /* Lines become strings. */
@@ -104,17 +129,6 @@ static void write_name(nevh__writer *w, const char *name) {
     }
 }
 
-static void write_numbers(nevh__writer *w, const char *name, size_t count,
-                          const double x[]) {
-    nevh__write(w, "%s[%zu] = {", name, count);
-    for (size_t i = 0; i < count; i++) {
-        char number[NEVH__NAME];
-        nevh__number_text(x[i], number);
-        nevh__write(w, "%s%s", i == 0 ? "" : i % 3 ? ", " : ",\n    ", number);
-    }
-    nevh__write(w, "};\n");
-}
-
 static void write_main(nevh__writer *w, const nevh_work *work,
                        const nevh_program *p) {
     const nevh_options *o = work->options;
@@ -122,9 +136,9 @@ static void write_main(nevh__writer *w, const nevh_work *work,
     nevh__number_text(o->t, t);
     nevh__number_text(p->h, h);
     nevh__write(w, "int main(void) {\n    ");
-    write_numbers(w, "double q", work->n, o->q);
+    nevh__write_numbers(w, "double q", work->n, o->q);
     nevh__write(w, "    ");
-    write_numbers(w, "double p", work->n, o->p);
+    nevh__write_numbers(w, "double p", work->n, o->p);
     nevh__write(w,
                 "    double memory[%zu] = {0};\n    const double t0 = %s, h = "
                 "%s;\n    const size_t steps = %zu, every = %zu;\n    puts(\"t",
@@ -176,34 +190,22 @@ static void write_comment(nevh__writer *w, const nevh_work *work,
 bool nevh__write_program(nevh__writer *w, nevh_work *work,
                          const nevh_program *p) {
     nevh__writer body = {.readable = true};
-    nevh__native tables = {0};
-    bool fine = nevh__native_write(&body, work) && !body.failed &&
-                nevh__native_fill(&tables, work);
+    bool fine = nevh__native_write(&body, work) && !body.failed;
     w->refusal = body.refusal;
     if (fine) {
+        rename_all(body.text);
         write_comment(w, work, p);
-        nevh__write(w, "#include <math.h>\n#include <stddef.h>\n%s\n",
+        nevh__write(w,
+                    "#include <math.h>\n#include <stdbool.h>\n#include "
+                    "<stddef.h>\n%s#include <string.h>\n\n",
                     p->functions ? "" : "#include <stdio.h>\n");
         for (size_t i = 0; i < sizeof helpers / sizeof *helpers; i++)
             if (strstr(body.text, helpers[i].call))
                 nevh__write(w, "%s\n", helpers[i].text);
-        nevh__write(w, "/* Weights, and times as parts of a step. */\n");
-        write_numbers(w, "static const double W", tables.weight_count,
-                      tables.weights);
-        write_numbers(w, "static const double T", tables.time_count,
-                      tables.times);
-        if (strstr(body.text, "operations"))
-            nevh__write(w, "static const size_t operations = %zu;\n",
-                        tables.kicks + tables.drifts);
-        nevh__write(w, "\n");
         fine = write_used(w, body.text);
         if (!p->functions)
             write_main(w, work, p);
     }
-    free(tables.weights);
-    free(tables.times);
-    free(tables.kick_values);
-    free(tables.drift_values);
     nevh__writer_free(&body);
     return fine && !w->failed;
 }

@@ -1,88 +1,142 @@
-/* nevh: fixed steps of an explicit Runge-Kutta method as C text: what
-   integrators/kernels/runge_kutta_kernel.c does, operation by operation, with
-   gradients written into the stages.
+/* nevh: steps of an explicit Runge-Kutta method as C text: that of the kernel,
+   whose slopes are a scene's formulas, and the tables in digits.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "native/native_private.h"
-#include "native/writer_private.h"
 #include <stdio.h>
-#include <stdlib.h>
 
-/* More text than that is called instead of being repeated stage by stage. */
-enum { MOST_REPEATED = 800 };
+static const char slope[] =
+    "NEVH__INLINE int nevh__runge_kutta_slope(const nevh__runge_kutta_step *x,\n"
+    "                                         int way, size_t stage) {\n"
+    "    const struct nevh__runge_kutta_owner *o = x->owner;\n"
+    "    nevh__number *slopes = x->slopes + stage * x->stride;\n"
+    "    double t = o->t + times[stage] * o->h;\n"
+    "    (void)way;\n"
+    "    *o->bad += kick_slope($1t, x->point, x->point + DOF, slopes + DOF);\n"
+    "    *o->bad += drift_slope($1t, x->point, x->point + DOF, slopes);\n"
+    "    return 0;\n}\n\n";
+
+static const char owner[] =
+    "struct nevh__runge_kutta_owner {\n"
+    "%s    double t, h;\n    nevh__number *bad;\n};\n\n";
+
+static const char step_begins[] =
+    "{\n"
+    "    nevh__number step[2 * DOF], point[2 * DOF], slopes[$2 * 2 * DOF];\n"
+    "    nevh__number bad = {0};\n"
+    "    struct nevh__runge_kutta_owner owner = {$1t, h, &bad};\n"
+    "    nevh__runge_kutta_step x = {sums, 2 * DOF, 2 * DOF, y, lost,\n"
+    "                                step, point, slopes, &owner};\n"
+    "    NEVH__EACH(k, 1, DOF) {\n"
+    "        step[k] = (nevh__number){0} + h;\n"
+    "        step[DOF + k] = -step[k];\n"
+    "    }\n";
+
+static const char step_ends[] =
+    "    NEVH__EACH(k, 1, 2 * DOF) {\n"
+    "        nevh__number change, next;\n"
+    "        nevh__runge_kutta_sum(&x, &sums[$1], 1, k, &change);\n"
+    "        change += lost[k];\n"
+    "        next = y[k] + change;\n"
+    "        bad += next - next;\n"
+    "        lost[k] = nevh__roundoff(next, y[k], change);\n"
+    "        y[k] = next;\n"
+    "    }\n"
+    "    return bad;\n}\n\n";
 
 static size_t stages_of(const nevh_butcher *table) {
     return table->stages - table->last_is_first;
 }
 
-/* The sum of a table's row, times the slopes of the stages so far. */
-static void write_sum(nevh__writer *w, size_t n, const double row[],
-                      size_t count, size_t at, const char *half,
-                      const char *to) {
-    char line[4000];
-    size_t used = (size_t)snprintf(line, sizeof line, "%s[$] = ", to);
-    const char *plus = "";
-    for (size_t j = 0; j < count && used < sizeof line - 100; j++)
-        if (row[j] != 0) {
-            used +=
-                (size_t)snprintf(line + used, sizeof line - used,
-                                 "%sW[%zu] * k%s%zu[$]", plus, at + j, half, j);
-            plus = " + ";
+/* The weights of a sum that are not 0, and whose they are. */
+static size_t write_row(nevh__writer *w, size_t row, const double all[],
+                        size_t count) {
+    size_t some = 0;
+    for (int part = 0; part < 2; part++) {
+        const char *plus = part ? "static size_t offsets_%zu[] = {"
+                                : "static double weights_%zu[] = {";
+        for (size_t j = 0; j < count; j++) {
+            char number[NEVH__NAME];
+            if (all[j] == 0)
+                continue;
+            nevh__number_text(all[j], number);
+            if (*plus == 's')
+                nevh__write(w, plus, row);
+            else
+                nevh__write(w, "%s", plus);
+            if (part)
+                nevh__write(w, "%zu * 2 * DOF", j);
+            else
+                nevh__write(w, "%s", number);
+            plus = ", ";
+            some += !part;
         }
-    snprintf(line + used, sizeof line - used, "%s;", *plus ? "" : "0.0");
-    nevh__write_each(w, n, line);
+        if (some)
+            nevh__write(w, "};\n");
+    }
+    return some;
 }
 
-static void write_stage(nevh__writer *w, size_t n, const nevh_butcher *table,
-                        size_t i) {
-    size_t s = table->stages;
-    const char *N = w->readable ? "" : "N, ";
-    nevh__write(w, "    double kq%zu[%zu], kp%zu[%zu];\n", i, n, i, n);
-    write_sum(w, n, table->a + i * s, i, i * s, "q", "dq");
-    write_sum(w, n, table->a + i * s, i, i * s, "p", "dp");
-    nevh__write_each(w, n,
-                     "yq[$] = q[$] + (dq[$] * h + lost_q[$]); yp[$] = p[$] + "
-                     "(dp[$] * -h + lost_p[$]);");
-    nevh__write(w,
-                "    bad += kick_slope(%st + T[%zu] * h, yq, yp, kp%zu);\n"
-                "    bad += drift_slope(%st + T[%zu] * h, yq, yp, kq%zu);\n",
-                N, i, i, N, i, i);
+static void write_tables(nevh__writer *w, const nevh_butcher *table) {
+    size_t s = table->stages, used = stages_of(table), count[64];
+    for (size_t i = 0; i <= used; i++)
+        count[i] = i < used ? write_row(w, i, table->a + i * s, i)
+                            : write_row(w, i, table->b, used);
+    nevh__write(w, "static const nevh__sum sums[] = {\n");
+    for (size_t i = 0; i <= used; i++)
+        if (count[i])
+            nevh__write(w, "    {NULL, %zu, weights_%zu, offsets_%zu},\n",
+                        count[i], i, i);
+        else
+            nevh__write(w, "    {NULL, 0, NULL, NULL},\n");
+    nevh__write(w, "};\n\n");
+    nevh__write_numbers(w, "static const double times", used, table->c);
 }
 
-static void write_commit(nevh__writer *w, size_t n, const nevh_butcher *table) {
-    size_t s = table->stages, used = stages_of(table);
-    write_sum(w, n, table->b, used, s * s, "q", "dq");
-    write_sum(w, n, table->b, used, s * s, "p", "dp");
-    nevh__write_each(w, n,
-                     "dq[$] = dq[$] * h + lost_q[$]; dp[$] = dp[$] * -h + "
-                     "lost_p[$]; yq[$] = q[$] + dq[$]; yp[$] = p[$] + dp[$]; "
-                     "bad += (yq[$] - yq[$]) + (yp[$] - yp[$]);");
-    nevh__write(w, "    if (bad != 0) break;\n");
-    nevh__write_each(
-        w, n,
-        "lost_q[$] = nevh_roundoff(yq[$], q[$], dq[$]); lost_p[$] = "
-        "nevh_roundoff(yp[$], p[$], dp[$]); q[$] = yq[$]; p[$] = yp[$];");
+static void write_step(nevh__writer *w, size_t stages) {
+    char number[24];
+    snprintf(number, sizeof number, "%zu", stages);
+    if (w->readable)
+        nevh__write(w, "/* A step of the state y, q and then p.  Returns 0 if "
+                       "all is finite. */\n"
+                       "static double take_step(double t, double h, double *y, "
+                       "double *lost,\n                        double *unused) "
+                       "");
+    else
+        nevh__write(w, "INLINE nevh__number take_step(const double *N, double "
+                       "*W, double *T, size_t operations, double t, double h, "
+                       "nevh__number *y, nevh__number *lost, nevh__number "
+                       "*kept) ");
+    nevh__write_filled(w, step_begins,
+                       (const char *const[]){w->readable ? "" : "N, ", number});
+    if (w->readable)
+        nevh__write(w,
+                    "    (void)unused;\n"
+                    "    nevh__runge_kutta_take(&x, 0, 0, %zu);\n",
+                    stages);
+    else
+        for (size_t i = 0; i < stages; i++)
+            nevh__write(w, "    nevh__runge_kutta_take(&x, 0, %zu, %zu);\n", i,
+                        i + 1);
+    nevh__write_filled(w, step_ends, (const char *const[]){number});
 }
 
 bool nevh__write_runge_kutta(nevh__writer *w, nevh_work *work) {
     const nevh_butcher *table = work->integrator->table;
-    size_t n = work->n, stages = stages_of(table);
-    bool repeats =
-        nevh__slope_operations(work->field) * (double)stages < MOST_REPEATED;
-    if (!repeats && !w->readable)
-        nevh__write(w, "#undef SLOPE\n"
-                       "#define SLOPE static __attribute__((noinline))\n");
-    if (!nevh__write_slope(w, work->field, true, "kick_slope") ||
-        !nevh__write_slope(w, work->field, false, "drift_slope"))
+    size_t stages = stages_of(table);
+    nevh__write_needs(w, work->n, false, true);
+    if (!nevh__write_slopes(w, work->field, stages))
         return false;
-    nevh__write_head(w, n);
-    nevh__write(w, "    for (; done < steps; done++) {\n    double t = t0 + "
-                   "(double)(from + done) * h, bad = 0; (void)t;\n");
-    for (size_t i = 0; i < stages; i++)
-        write_stage(w, n, table, i);
-    write_commit(w, n, table);
-    nevh__write(w, "    }\n");
-    nevh__write_each(
-        w, n, "Q[$] = q[$]; P[$] = p[$]; M[$] = lost_q[$]; Mp[$] = lost_p[$];");
-    nevh__write(w, "    return done;\n}\n");
+    nevh__write_lines(w, nevh__stage_sums_text);
+    nevh__write_lines(w, nevh__runge_kutta_step_text);
+    write_tables(w, table);
+    nevh__write(w, owner, w->readable ? "" : "    const double *N;\n");
+    nevh__write_filled(w, slope,
+                       (const char *const[]){w->readable ? "" : "o->N, "});
+    write_step(w, stages);
+    if (!w->readable)
+        nevh__write(w, "enum { KEPT = 0 };\n"
+                       "#define take_first(N, T, t, h, y, lost, kept) "
+                       "((nevh__number){0})\n");
+    nevh__write_driver(w);
     return true;
 }

@@ -10,7 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_OPERATIONS = 800, LANES = 8 };
+/* More text than MOST_REPEATED is called instead of being repeated. */
+enum { MOST_OPERATIONS = 800, MOST_REPEATED = 800, LANES = 8 };
 
 /* What is added to one variable's derivative. */
 typedef struct {
@@ -67,7 +68,7 @@ static void name_at_state(nevh__writer *w, const nevh__formula_text *f,
     const nevh_term *is = &s->term->term->decl;
     switch (kind) {
     case NEVH__T:
-        snprintf(name, NEVH__NAME, "t");
+        snprintf(name, NEVH__NAME, f->wide ? "ALL(t)" : "t");
         break;
     case NEVH__Q:
         snprintf(name, NEVH__NAME, "q[%zu]", is->q[f->instance * is->nq + k]);
@@ -80,15 +81,17 @@ static void name_at_state(nevh__writer *w, const nevh__formula_text *f,
             nevh__number_text(is->c[f->instance * is->nc + k], name);
             break;
         }
-        snprintf(name, NEVH__NAME, "N[%zu]",
+        snprintf(name, NEVH__NAME, f->wide ? "ALL(N[%zu])" : "N[%zu]",
                  s->constants + f->instance * is->nc + k);
     }
 }
 
 static bool write_exact(sum *s) {
     const nevh_term *is = &s->term->term->decl;
-    nevh__formula_text f = {
-        .tape = is->params, .variable = name_at_state, .data = s};
+    nevh__formula_text f = {.tape = is->params,
+                            .wide = s->w->width > 1,
+                            .variable = name_at_state,
+                            .data = s};
     unsigned first = s->w->formulas;
     for (f.instance = 0; f.instance < is->count; f.instance++)
         if (!nevh__write_gradient(s->w, &f, s->kick ? NEVH__BY_Q : NEVH__BY_P))
@@ -258,8 +261,10 @@ static void name_at_point(nevh__writer *w, const nevh__formula_text *f,
 }
 
 static bool write_points(nevh__writer *w, stencil *x) {
+    bool lanes = w->width > 1;
     nevh__formula_text f = {.tape = x->s->term->term->decl.params,
-                            .scalar = true,
+                            .wide = lanes,
+                            .scalar = !lanes || x->s->f->portable,
                             .variable = name_at_point,
                             .data = x};
     for (x->at = 0; x->at < x->count; x->at++) {
@@ -268,12 +273,13 @@ static bool write_points(nevh__writer *w, stencil *x) {
         x->block = w->formulas;
         char shift[NEVH__NAME];
         nevh__write_number(w, at->shift, shift);
-        nevh__write(w, "    double x%u = %s[%zu] + %s;\n", x->block,
-                    at->k < x->s->term->nq ? "q" : "p",
+        nevh__write(w, "    %s x%u = %s[%zu] + %s;\n", nevh__number_type(w),
+                    x->block, at->k < x->s->term->nq ? "q" : "p",
                     nevh__index(x->s->term, at->instance, at->k), shift);
         if (!nevh__write_value(w, &f, result))
             return false;
-        nevh__write(w, "    double h%u = %s;\n", x->block, result);
+        nevh__write(w, "    %s h%u = %s;\n", nevh__number_type(w), x->block,
+                    result);
     }
     return true;
 }
@@ -294,7 +300,7 @@ static void write_slopes(nevh__writer *w, sum *s, const stencil *x,
         const slope *one = &x->slopes[i];
         char name[NEVH__NAME];
         snprintf(name, sizeof name, "s%u_%zu", first, i);
-        nevh__write(w, "    double %s = ", name);
+        nevh__write(w, "    %s %s = ", nevh__number_type(w), name);
         for (size_t j = 0; j < one->method->offsets; j++) {
             size_t plus = one->first + 2 * j, minus = plus + 1;
             char weight[NEVH__NAME];
@@ -314,12 +320,17 @@ static void write_slopes(nevh__writer *w, sum *s, const stencil *x,
     }
 }
 
+/* Whether points of differences stand in a vector's lanes. */
+static bool side_by_side(const nevh__writer *w, const nevh_field *f) {
+    return !f->portable && !w->readable && w->width == 1;
+}
+
 static bool write_central(sum *s) {
     size_t slopes = s->term->term->decl.count * s->term->nv;
     stencil x = {.s = s};
     x.points = nevh__array(slopes * 2 * s->f->gradient->offsets, sizeof(point));
     x.slopes = nevh__array(slopes, sizeof(slope));
-    bool fine = x.points && x.slopes, wide = !s->f->portable && !s->w->readable;
+    bool fine = x.points && x.slopes, wide = side_by_side(s->w, s->f);
     unsigned first = s->w->formulas;
     if (fine) {
         list_points(s, &x);
@@ -385,18 +396,18 @@ static double half_operations(const nevh_field *f, bool kick, bool wide,
     return operations;
 }
 
-double nevh__slope_operations(const nevh_field *f) {
-    const char *why;
-    return half_operations(f, true, !f->portable, &why) +
-           half_operations(f, false, !f->portable, &why);
-}
-
-static bool fits(nevh__writer *w, const nevh_field *f, bool kick) {
-    bool wide = !f->portable && !w->readable;
+static bool fits(nevh__writer *w, const nevh_field *f, size_t calls) {
+    bool wide = side_by_side(w, f);
     double most = w->readable ? 10 * MOST_OPERATIONS : MOST_OPERATIONS;
-    double operations = half_operations(f, kick, wide, &w->refusal);
-    if (operations > most && !w->refusal)
+    double kick = half_operations(f, true, wide, &w->refusal);
+    double drift = half_operations(f, false, wide, &w->refusal);
+    if ((kick > most || drift > most) && !w->refusal)
         w->refusal = "its formulas are too long";
+    if (w->width > 1 && f->gradient != nevh_exact && !f->gradient->offsets)
+        w->refusal = "orbits stand side by side";
+    if (!w->readable && (kick + drift) * (double)calls > MOST_REPEATED)
+        nevh__write(w, "#undef SLOPE\n"
+                       "#define SLOPE static __attribute__((noinline))\n");
     return !w->refusal;
 }
 
@@ -409,19 +420,22 @@ static void write_sums(const sum *s) {
                 nevh__write(s->w, "%s%s", plus, s->parts[i].name);
                 plus = " + ";
             }
-        nevh__write(s->w, "%s;\n", *plus == ' ' && !plus[1] ? " 0.0" : "");
+        const char *zero = s->w->width > 1 ? " ALL(0.0)" : " 0.0";
+        nevh__write(s->w, "%s;\n", *plus == ' ' && !plus[1] ? zero : "");
     }
 }
 
-bool nevh__write_slope(nevh__writer *w, nevh_field *f, bool kick,
-                       const char *name) {
+static bool write_slope(nevh__writer *w, nevh_field *f, bool kick,
+                        const char *name) {
     sum s = {.w = w, .f = f, .kick = kick};
-    bool fine = fits(w, f, kick);
-    nevh__write(w,
-                "%s double %s(%sdouble t, const double *q, const double *p, "
-                "double *slope) {\n    double bad = 0;\n",
-                w->readable ? "static" : "SLOPE", name,
-                w->readable ? "" : "const double *N, ");
+    const char *type = nevh__number_type(w);
+    bool fine = true;
+    nevh__write_filled(
+        w,
+        "$1 $2 $3($4double t, const $2 *q, const $2 *p,\n"
+        "        $2 *slope) {\n    $2 bad = {0};\n",
+        (const char *const[]){w->readable ? "static" : "SLOPE", type, name,
+                              w->readable ? "" : "const double *N, "});
     if (w->readable)
         nevh__write(w, "    (void)t, (void)q, (void)p;\n");
     for (size_t i = 0; fine && i < f->n_terms; i++) {
@@ -440,4 +454,9 @@ bool nevh__write_slope(nevh__writer *w, nevh_field *f, bool kick,
     nevh__write(w, "    return bad;\n}\n");
     free(s.parts);
     return fine;
+}
+
+bool nevh__write_slopes(nevh__writer *w, nevh_field *f, size_t calls) {
+    return fits(w, f, calls) && write_slope(w, f, true, "kick_slope") &&
+           write_slope(w, f, false, "drift_slope");
 }

@@ -1,144 +1,134 @@
-/* nevh: steps of a splitting as C text: what
-   integrators/kernels/splitting_kernel.c does, operation by operation, with
-   gradients written into the step.
+/* nevh: steps of a splitting as C text: that of the kernel, whose slopes are a
+   scene's formulas.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "kernels/splitting_private.h"
 #include "native/native_private.h"
-#include "native/writer_private.h"
 #include <stdio.h>
 #include <stdlib.h>
 
-/* A kick, or else a drift; `at`: the operation's number. */
-static void write_operation(nevh__writer *w, size_t n, const char *at,
-                            bool kick, bool kept) {
-    if (kept)
-        nevh__write_each(w, n, "slope[$] = kept[$];");
-    else
-        nevh__write(w, "    bad += %s(%st + T[%s] * h, yq, yp, slope);\n",
-                    kick ? "kick_slope" : "drift_slope",
-                    w->readable ? "" : "N, ", at);
-    nevh__write(w, "    { double step = %s(W[%s] * h);\n", kick ? "-" : "", at);
-    nevh__write_each(w, n,
-                     kick ? "dp[$] += step * slope[$]; yp[$] = p[$] + (dp[$] + "
-                            "lost_p[$]);"
-                          : "dq[$] += step * slope[$]; yq[$] = q[$] + (dq[$] + "
-                            "lost_q[$]);");
-    nevh__write(w, "    }\n");
+static const char slope[] =
+    "NEVH__INLINE int nevh__splitting_slope(const nevh__splitting_step *x, int "
+    "way,\n"
+    "                                       size_t i, bool kick, bool kept) {\n"
+    "    double t = x->t + x->scheme->times[i] * x->h;\n"
+    "    (void)way;\n"
+    "    if (!kept)\n"
+    "        *x->owner->bad += kick ? kick_slope($1t, x->q.point,\n"
+    "                                            x->p.point, x->slope)\n"
+    "                               : drift_slope($1t, x->q.point,\n"
+    "                                             x->p.point, x->slope);\n"
+    "    return 0;\n}\n\n"
+    "NEVH__INLINE const nevh__number *\n"
+    "nevh__splitting_inverse(const nevh__splitting_step *x, int way) {\n"
+    "    (void)x, (void)way;\n"
+    "    return NULL;\n}\n\n";
+
+static const char first[] =
+    "static __attribute__((noinline)) nevh__number take_first(const double *N, "
+    "const double *T, double t, double h, const nevh__number *y, const "
+    "nevh__number *lost, nevh__number *kept) {\n"
+    "    nevh__number point[2 * DOF];\n"
+    "    NEVH__EACH(k, 1, 2 * DOF) point[k] = y[k] + lost[k];\n"
+    "    return %s(N, t + T[0] * h, point, point + DOF, kept);\n}\n";
+static const char no_first[] =
+    "#define take_first(N, T, t, h, y, lost, kept) ((nevh__number){0})\n";
+
+/* The state's check of finite numbers is that of all lanes. */
+static const char step[] =
+    "INLINE nevh__number take_step(const double *N, double *W, double *T,\n"
+    "        size_t operations, double t, double h, nevh__number *y,\n"
+    "        nevh__number *lost, nevh__number *kept) {\n"
+    "    nevh__number change[2 * DOF], point[2 * DOF], slope[DOF], bad = {0};\n"
+    "    struct nevh__splitting_owner owner = {N, &bad};\n"
+    "    nevh__splitting_scheme scheme = {operations, W, T, $1, $2};\n"
+    "    nevh__splitting_step x = {t, h, &scheme, $2,\n"
+    "        {y, lost, change, point},\n"
+    "        {y + DOF, lost + DOF, change + DOF, point + DOF},\n"
+    "        slope, kept, &owner};\n"
+    "    nevh__splitting_take(&x, 0, 1, DOF);\n"
+    "    NEVH__EACH(k, 1, 2 * DOF) bad += point[k] - point[k];\n"
+    "    return bad;\n}\n";
+
+static const char step_for_readers[] =
+    "/* A step of the state y, q and then p.  Returns 0 if all is finite. */\n"
+    "static double take_step(double t, double h, double *y, double *lost,\n"
+    "                        double *kept) {\n"
+    "    static const nevh__splitting_scheme scheme = {$3, W, T, $1, "
+    "$2};\n"
+    "    double change[2 * DOF], point[2 * DOF], slope[DOF], bad = 0;\n"
+    "    struct nevh__splitting_owner owner = {&bad};\n"
+    "    nevh__splitting_step x = {\n"
+    "        t, h, &scheme, $2 && kept[DOF] != 0,\n"
+    "        {y, lost, change, point},\n"
+    "        {y + DOF, lost + DOF, change + DOF, point + DOF},\n"
+    "        slope, kept, &owner};\n"
+    "    if (nevh__splitting_take(&x, 0, 1, DOF) != 0)\n"
+    "        return 1;\n"
+    "$4"
+    "    return bad;\n}\n\n";
+
+static const char owner[] = "struct nevh__splitting_owner {\n"
+                            "%s    nevh__number *bad;\n};\n\n";
+
+/* A kick takes dH/dq at the drifts' time, a drift dH/dp at the kicks'. */
+bool nevh__splitting_tables(const nevh_splitting *table, double **weights,
+                            double **times) {
+    size_t count = nevh__splitting_operations(table);
+    double passed[2] = {0, 0};
+    *weights = nevh__array(count, sizeof **weights);
+    *times = nevh__array(count, sizeof **times);
+    if (!*weights || !*times)
+        return false;
+    nevh__splitting_expand(table, *weights);
+    for (size_t i = 0; i < count; i++) {
+        (*times)[i] = passed[1 - i % 2];
+        passed[i % 2] += (*weights)[i];
+    }
+    return true;
 }
 
-/* Two by two: one text for all schemes that begin and end alike. */
-static void write_operations(nevh__writer *w, size_t n, bool keeps,
-                             bool kicks_first) {
-    if (keeps)
-        write_operation(w, n, "0", kicks_first, true);
-    nevh__write(w, "    for (%s i = %d; i + 1 < operations; i += 2) {\n",
-                w->readable ? "size_t" : "size", keeps);
-    write_operation(w, n, "i", kicks_first != keeps, false);
-    write_operation(w, n, "i + 1", kicks_first == keeps, false);
-    nevh__write(w, "    }\n");
-}
-
-static void write_kept(nevh__writer *w, size_t n) {
-    nevh__write(w, "    double kept[%zu];\n    double *Mk = Mp + %zu;\n", n, n);
-    nevh__write_each(w, n, "kept[$] = Mk[$];");
-}
-
-static void write_begin(nevh__writer *w, size_t n) {
-    nevh__write_each(w, n,
-                     "dq[$] = 0; dp[$] = 0; yq[$] = q[$] + lost_q[$]; yp[$] = "
-                     "p[$] + lost_p[$];");
-}
-
-/* Where no slope is kept, the first step takes its own. */
-static void write_first_slope(nevh__writer *w, size_t n) {
-    nevh__write(w,
-                "    if (!Mk[%zu] && steps) {\n    double t = t0 + "
-                "(double)from * h;\n",
-                n);
-    write_begin(w, n);
-    nevh__write(w,
-                "    if (first_slope(%st + T[0] * h, yq, yp, kept) != 0) "
-                "return 0;\n    }\n",
-                w->readable ? "" : "N, ");
-}
-
-static void write_commit(nevh__writer *w, size_t n, bool keeps) {
-    nevh__write_each(w, n, "bad += (yq[$] - yq[$]) + (yp[$] - yp[$]);");
-    nevh__write(w, "    if (bad != 0) break;\n");
-    nevh__write_each(
-        w, n,
-        "{ double d = dq[$] + lost_q[$], e = dp[$] + lost_p[$]; lost_q[$] = "
-        "nevh_roundoff(yq[$], q[$], d); lost_p[$] = nevh_roundoff(yp[$], p[$], e); "
-        "q[$] = yq[$]; p[$] = yp[$]; }");
-    if (keeps)
-        nevh__write_each(w, n, "kept[$] = slope[$];");
-}
-
-static void write_store(nevh__writer *w, size_t n, bool keeps) {
-    nevh__write_each(
-        w, n, "Q[$] = q[$]; P[$] = p[$]; M[$] = lost_q[$]; Mp[$] = lost_p[$];");
-    if (!keeps)
-        return;
-    nevh__write(w, "    if (done) {\n");
-    nevh__write_each(w, n, "Mk[$] = kept[$];");
-    nevh__write(w, "    Mk[%zu] = 1; }\n", n);
-}
-
-static void write_steps(nevh__writer *w, size_t n, bool keeps,
-                        bool kicks_first) {
-    if (keeps)
-        nevh__write(w,
-                    "%s double first_slope(%sdouble t, const double *q, const "
-                    "double *p, double *slope) {\n    return %s(%st, q, p, "
-                    "slope);\n}\n",
-                    w->readable ? "static" : "static __attribute__((noinline))",
-                    w->readable ? "" : "const double *N, ",
-                    kicks_first ? "kick_slope" : "drift_slope",
-                    w->readable ? "" : "N, ");
-    nevh__write_head(w, n);
-    nevh__write(w, "    double slope[%zu];\n", n);
-    if (keeps)
-        write_kept(w, n);
-    if (keeps)
-        write_first_slope(w, n);
-    nevh__write(w, "    for (; done < steps; done++) {\n    double t = t0 + "
-                   "(double)(from + done) * h, bad = 0; (void)t;\n");
-    write_begin(w, n);
-    write_operations(w, n, keeps, kicks_first);
-    write_commit(w, n, keeps);
-    nevh__write(w, "    }\n");
-    write_store(w, n, keeps);
-    nevh__write(w, "    return done;\n}\n");
+static void write_tables(nevh__writer *w, const nevh_splitting *table) {
+    size_t count = nevh__splitting_operations(table);
+    double *weights, *times;
+    if (nevh__splitting_tables(table, &weights, &times)) {
+        nevh__write(w, "/* Weights, and times as parts of a step. */\n");
+        nevh__write_numbers(w, "static double W", count, weights);
+        nevh__write_numbers(w, "static double T", count, times);
+        nevh__write(w, "\n");
+    } else
+        w->failed = true;
+    free(weights);
+    free(times);
 }
 
 bool nevh__write_splitting(nevh__writer *w, nevh_work *work) {
     const nevh_splitting *table = work->integrator->table;
     size_t count = nevh__splitting_operations(table);
-    if (!nevh__write_slope(w, work->field, true, "kick_slope") ||
-        !nevh__write_slope(w, work->field, false, "drift_slope"))
+    bool keeps = count % 2 == 1, kicks = table->first == NEVH_KICK;
+    char number[24];
+    snprintf(number, sizeof number, "%zu", count);
+    const char *keep = keeps ? "true" : "false",
+               *kick = kicks ? "true" : "false";
+    nevh__write_needs(w, work->n, true, false);
+    if (!nevh__write_slopes(w, work->field, 2))
         return false;
-    write_steps(w, work->n, count % 2 == 1, table->first == NEVH_KICK);
-    return true;
-}
-
-void nevh__write_head(nevh__writer *w, size_t n) {
-    static const char *const arrays[] = {"q",  "p",  "lost_q", "lost_p",
-                                         "dq", "dp", "yq",     "yp"};
     if (w->readable)
-        nevh__write(w,
-                    "static size_t advance(double t0, double h, size_t from, "
-                    "size_t steps, double *Q, double *P, double *M) {\n"
-                    "    size_t done = 0;\n");
-    else
-        nevh__write(w,
-                    "size nevh_native_steps(const double *restrict N, const "
-                    "double *restrict W, const double *restrict T, size "
-                    "operations, double t0, double h, size from, size steps, "
-                    "double *restrict Q, double *restrict P, double *restrict "
-                    "M) {\n    size done = 0;\n");
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
-        nevh__write(w, "    double %s[%zu];\n", arrays[i], n);
-    nevh__write(w, "    double *Mp = M + %zu;\n", n);
-    nevh__write_each(
-        w, n, "q[$] = Q[$]; p[$] = P[$]; lost_q[$] = M[$]; lost_p[$] = Mp[$];");
+        write_tables(w, table);
+    nevh__write_lines(w, nevh__splitting_step_text);
+    nevh__write(w, owner, w->readable ? "" : "    const double *N;\n");
+    nevh__write_filled(
+        w, slope, (const char *const[]){w->readable ? "" : "x->owner->N, "});
+    if (w->readable)
+        nevh__write_filled(
+            w, step_for_readers,
+            (const char *const[]){kick, keep, number,
+                                  keeps ? "    kept[DOF] = 1;\n" : ""});
+    else {
+        nevh__write(w, "enum { KEPT = %s };\n", keeps ? "DOF" : "0");
+        nevh__write(w, keeps ? first : no_first,
+                    kicks ? "kick_slope" : "drift_slope");
+        nevh__write_filled(w, step, (const char *const[]){kick, keep});
+    }
+    nevh__write_driver(w);
+    return true;
 }

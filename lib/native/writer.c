@@ -75,20 +75,26 @@ void nevh__write_number(nevh__writer *w, double x, char name[NEVH__NAME]) {
     nevh__writer_append(w, x);
 }
 
-void nevh__write_each(nevh__writer *w, size_t n, const char *line) {
-    bool apart = n <= NEVH__MOST_APART;
-    for (size_t k = 0; k < (apart ? n : 1); k++) {
-        if (!apart)
-            nevh__write(w, "    for (%s k = 0; k < %zu; k++) {\n",
-                        w->readable ? "size_t" : "size", n);
-        nevh__write(w, "    ");
-        for (const char *c = line; *c; c++)
-            if (*c != '$')
-                nevh__write(w, "%c", *c);
-            else if (apart)
-                nevh__write(w, "%zu", k);
-            else
-                nevh__write(w, "k");
-        nevh__write(w, apart ? "\n" : "\n    }\n");
+void nevh__write_numbers(nevh__writer *w, const char *name, size_t count,
+                         const double x[]) {
+    nevh__write(w, "%s[%zu] = {", name, count);
+    for (size_t i = 0; i < count; i++) {
+        char number[NEVH__NAME];
+        nevh__number_text(x[i], number);
+        nevh__write(w, "%s%s", i == 0 ? "" : i % 3 ? ", " : ",\n    ", number);
+    }
+    nevh__write(w, "};\n");
+}
+
+void nevh__write_filled(nevh__writer *w, const char *text,
+                        const char *const words[]) {
+    while (*text) {
+        size_t bytes = strcspn(text, "$");
+        nevh__write(w, "%.*s", (int)bytes, text);
+        text += bytes;
+        if (!*text)
+            break;
+        nevh__write(w, "%s", words[text[1] - '1']);
+        text += 2;
     }
 }

@@ -18,6 +18,7 @@ typedef struct {
     double *numbers;
     size_t count, number_room;
     unsigned formulas;   /* written so far: names of each are its own */
+    size_t width;        /* orbits side by side, as vectors; 1: one orbit */
     bool readable;       /* numbers stand in the text, functions are libm's */
     bool failed;         /* memory is out */
     const char *refusal; /* why there is no text; NULL: there is */
@@ -25,6 +26,9 @@ typedef struct {
 
 void nevh__write(nevh__writer *, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
+/* A text in which $1, $2 and so on stand for words. */
+void nevh__write_filled(nevh__writer *, const char *text,
+                        const char *const words[]);
 void nevh__writer_free(nevh__writer *);
 /* What a number is called. */
 void nevh__write_number(nevh__writer *, double, char name[NEVH__NAME]);
@@ -33,11 +37,18 @@ void nevh__number_text(double, char name[NEVH__NAME]);
 /* A number that follows the last one, whatever it is: the place of the first of
    so many is the count before. */
 void nevh__writer_append(nevh__writer *, double);
-/* A line for each of 0 ... n - 1, in which "$" is an index. */
-void nevh__write_each(nevh__writer *, size_t n, const char *line);
-/* The same of few of them, else a loop: what n is up to which each has a line of
-   its own. */
-enum { NEVH__MOST_APART = 16 };
+/* NAME[count] = {...}; as C has it. */
+void nevh__write_numbers(nevh__writer *, const char *name, size_t count,
+                         const double x[]);
+void nevh__write_lines(nevh__writer *, const char *const lines[]);
+/* "double", or what orbits side by side are. */
+const char *nevh__number_type(const nevh__writer *);
+
+/* Kernels' headers, line by line, ended by NULL: made from them by
+   kernel_texts.awk. */
+extern const char *const nevh__splitting_step_text[];
+extern const char *const nevh__stage_sums_text[];
+extern const char *const nevh__runge_kutta_step_text[];
 
 /* A formula at one point, or at eight of them side by side. */
 typedef struct nevh__formula_text {
@@ -75,17 +86,19 @@ void nevh__derivative_name(const nevh__formula_text *, nevh__variable, size_t k,
 /* What formulas need before them. */
 void nevh__write_prelude(nevh__writer *);
 
-/* The beginning of the function that takes steps: state and memory. */
-void nevh__write_head(nevh__writer *, size_t n);
+/* What kernels' texts need; finite: nevh__not_finite, sums: stage_sums. */
+void nevh__write_needs(nevh__writer *, size_t n, bool finite, bool sums);
+/* The function that takes steps, of
+       take_step(N, W, T, operations, t, h, y, lost, kept)
+   which returns 0 if all is well; for readers take_step(t, h, y, lost, kept). */
+void nevh__write_driver(nevh__writer *);
 
-/* double slope of H: a function
-       SLOPE double NAME(const double *N, double t, const double *q,
-                         const double *p, double *slope)
-   that writes n numbers, and returns something that is 0 if all is well. */
-bool nevh__write_slope(nevh__writer *, nevh_field *, bool kick,
-                       const char *name);
-/* Operations in the text of both halves. */
-double nevh__slope_operations(const nevh_field *);
+/* Functions kick_slope and drift_slope
+       NUMBER NAME(const double *N, double t, const NUMBER *q,
+                   const NUMBER *p, NUMBER *slope)
+   that write dH/dq and dH/dp, n numbers, and return something that is 0 if all is
+   well.  They are called so many times in the text. */
+bool nevh__write_slopes(nevh__writer *, nevh_field *, size_t calls);
 /* Values of each term that a slope takes, to values[]; 0 where it is exact. */
 void nevh__slope_values(const nevh_field *, bool kick, uint64_t values[]);
 

@@ -24,6 +24,9 @@ typedef double nevh__vector
 #else
 typedef double nevh__vector;
 #endif
+/* What rows of the explicit steps hold, an orbit each; in steps that are compiled
+   for a scene it may be a vector of several orbits. */
+typedef double nevh__number;
 /* Numbers that go through memory to functions and back had better not be stored
    one by one and loaded in pairs. */
 #ifdef NEVH__VECTORS
@@ -38,6 +41,9 @@ typedef double nevh__vector;
 #else
 #define NEVH__NO_ALIAS
 #endif
+/* Before a loop whose count is a constant in steps that are compiled for one
+   scheme. */
+#define NEVH__KNOWN_COUNT
 /* Element by element, `lanes` (a constant that divides size) at a time. */
 #define NEVH__EACH(i, lanes, size)                                             \
     for (size_t i##_from = 0; i##_from < (size); i##_from += (lanes))          \

@@ -27,27 +27,31 @@ static void remove_cache(void) {
 
 /* Two steppers planned alike, of which one is to run compiled steps. */
 typedef struct {
-    size_t n;
+    size_t n; /* numbers of q, and of p */
     nevh_stepper *plain, *native;
     double *start, *a, *b; /* q and p */
     const char *why;
 } pair;
 
-static pair pair_new(nevh_scene *scene, const nevh_integrator *scheme,
-                     const nevh_gradient *gradient, bool portable,
-                     const char *folder) {
+/* Orbits that start side by side, a little apart. */
+static pair pair_of(nevh_scene *scene, const nevh_integrator *scheme,
+                    const nevh_gradient *gradient, bool portable,
+                    const char *folder, size_t width) {
     const nevh_system *s = nevh_scene_system(scene);
-    size_t n = nevh_scene_dof(scene);
+    size_t dof = nevh_scene_dof(scene), n = dof * width;
     pair x = {.n = n};
     x.start = calloc(6 * n, sizeof(double));
     x.a = x.start + 2 * n;
     x.b = x.a + 2 * n;
-    ck_assert_int_eq(nevh_scene_start(scene, x.start, x.start + n), NEVH_OK);
+    ck_assert_int_eq(nevh_scene_start(scene, x.a, x.a + dof), NEVH_OK);
+    for (size_t i = 0; i < 2 * n; i++)
+        x.start[i] = x.a[i / width] * (1 + 0.001 * (double)(i % width));
     memcpy(x.a, x.start, 2 * n * sizeof(double));
     memcpy(x.b, x.start, 2 * n * sizeof(double));
     nevh_options o = {.gradient = gradient,
                       .q = x.start,
                       .p = x.start + n,
+                      .width = width,
                       .portable = portable,
                       .native = NEVH_NATIVE_NEVER,
                       .native_cache = folder};
@@ -57,6 +61,12 @@ static pair pair_new(nevh_scene *scene, const nevh_integrator *scheme,
     ck_assert(!nevh_stepper_native(x.plain, &x.why) && !*x.why);
     nevh_stepper_native(x.native, &x.why);
     return x;
+}
+
+static pair pair_new(nevh_scene *scene, const nevh_integrator *scheme,
+                     const nevh_gradient *gradient, bool portable,
+                     const char *folder) {
+    return pair_of(scene, scheme, gradient, portable, folder, 1);
 }
 
 static void pair_free(pair *x) {
@@ -118,16 +128,15 @@ static const struct {
             {"central4", true}, {"complex-step", false}, {"central8", false}};
 enum { WAYS = sizeof ways / sizeof *ways };
 
-static void assert_scene(const char *file, int way) {
+static void assert_scene(const char *file, int way, size_t width) {
     nevh_scene *scene = read_shipped(file);
     size_t count = 0;
     for (size_t i = 0; nevh_integrators()[i]; i++) {
         const nevh_integrator *scheme = nevh_integrators()[i];
-        if (!compiles(scheme))
+        if (!compiles(scheme) || (width > 1 && i % 4 != (size_t)way % 4))
             continue;
-        pair x =
-            pair_new(scene, scheme, nevh_gradient_named(ways[way].gradient),
-                     ways[way].portable, cache);
+        pair x = pair_of(scene, scheme, nevh_gradient_named(ways[way].gradient),
+                         ways[way].portable, cache, width);
         if (!nevh_stepper_status(x.plain)) {
             ck_assert_msg(nevh_stepper_native(x.native, NULL), "%s, %s: %s",
                           file, scheme->name, x.why);
@@ -141,7 +150,7 @@ static void assert_scene(const char *file, int way) {
         }
         pair_free(&x);
     }
-    ck_assert(count >= 2);
+    ck_assert(count >= (width > 1 ? 1 : 2));
     nevh_scene_free(scene);
 }
 
@@ -150,7 +159,19 @@ TEST_EACH(same_bits, WAYS) {
         skip_test("there is no C compiler");
     make_cache();
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++)
-        assert_scene(scenes[i], _i);
+        assert_scene(scenes[i], _i, 1);
+    remove_cache();
+}
+
+/* Side by side, a quarter of the schemes; the complex step is not compiled. */
+TEST_EACH(same_bits_of_lanes, WAYS) {
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    if (strcmp(ways[_i].gradient, "complex-step") == 0)
+        skip_test("the complex step is not compiled for orbits side by side");
+    make_cache();
+    for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++)
+        assert_scene(scenes[i], _i, i % 2 ? 8 : 32);
     remove_cache();
 }
 
@@ -212,6 +233,24 @@ TEST(failures_same) {
         ck_assert(isfinite(x.b[0]) && isfinite(x.b[1]));
         pair_free(&x);
     }
+    nevh_scene_free(scene);
+    remove_cache();
+}
+
+/* One orbit of many leaves it: none has gone further than the others. */
+TEST(failure_of_a_lane) {
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    make_cache();
+    nevh_scene *scene = parsed("[coordinates]\nx = 1, -1\n[effects]\n"
+                               "T = p_x^2/2\nV = sqrt(x - 0.2)\n");
+    pair x = pair_of(scene, nevh_verlet, nevh_exact, false, cache, 32);
+    ck_assert_msg(nevh_stepper_native(x.native, NULL), "%s", x.why);
+    ck_assert_int_eq(pair_run(&x, 0.01, 1000), NEVH_EDOM);
+    ck_assert(nevh_stepper_taken(x.native) > 10 && pair_same(&x));
+    for (size_t i = 0; i < 2 * x.n; i++)
+        ck_assert(isfinite(x.b[i]));
+    pair_free(&x);
     nevh_scene_free(scene);
     remove_cache();
 }

@@ -1,0 +1,157 @@
+/* nevh: what the texts of all families of steps share: what the kernels' texts
+   need, and the function that takes steps.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "native/native_private.h"
+
+/* Sums go number by number: rows are short, and lanes are vectors already. */
+static const char needs[] =
+    "typedef size size_t;\n"
+    "#define bool _Bool\n"
+    "#define true 1\n"
+    "#define false 0\n"
+    "#define NULL ((void *)0)\n"
+    "#define INFINITY __builtin_inf()\n"
+    "#define NEVH__INLINE INLINE\n"
+    "#define NEVH_UNROLL _Pragma(\"GCC unroll 16\")\n"
+    "#define NEVH__KNOWN_COUNT NEVH_UNROLL\n"
+    "#define NEVH__EACH(i, lanes, size) \\\n"
+    "    NEVH_UNROLL for (size_t i = 0; i < (size); i += (lanes))\n"
+    "#define NEVH__VECTOR_AT(x) (*(x))\n"
+    "enum { NEVH__IN_VECTOR = 1 };\n";
+
+/* Of the larger one of a and b what is lost follows in two operations instead
+   of six, which all wait for one another; it is exact in both ways. */
+static const char needs_of_numbers[] =
+    "typedef double nevh__number, nevh__vector;\n"
+    "static __attribute__((noinline, cold)) double rare_roundoff(double sum, "
+    "double a, double b) { return a - (sum - b); }\n"
+    "INLINE double nevh__roundoff(double sum, double a, double b) {\n"
+    "    if (__builtin_expect(!(fabs(a) >= fabs(b)), 0))\n"
+    "        return rare_roundoff(sum, a, b);\n"
+    "    return b - (sum - a);\n}\n"
+    "INLINE bool nevh__not_finite(size_t lanes, size_t size, const double *x, "
+    "const double *y) {\n"
+    "    double bad = 0;\n"
+    "    NEVH__EACH(i, lanes, size) bad += (x[i] - x[i]) + (y[i] - y[i]);\n"
+    "    return bad != 0;\n}\n"
+    "INLINE bool is_bad(double bad) { return bad != 0; }\n";
+
+/* What is not finite is found once for all blocks. */
+static const char needs_of_lanes[] =
+    "typedef wide nevh__number, nevh__vector;\n"
+    "INLINE wide nevh__roundoff(wide sum, wide a, wide b) {\n"
+    "    wide part = sum - a;\n"
+    "    return (a - (sum - part)) + (b - part);\n}\n"
+    "INLINE bool nevh__not_finite(size_t lanes, size_t size, const wide *x, "
+    "const wide *y) { return false; }\n"
+    "INLINE bool is_bad(wide bad) {\n"
+    "    return ((bad[0] + bad[1]) + (bad[2] + bad[3])) + ((bad[4] + bad[5]) + "
+    "(bad[6] + bad[7])) != 0;\n}\n";
+
+static const char needs_of_readers[] =
+    "/* Element by element. */\n"
+    "#define NEVH__EACH(i, lanes, size) \\\n"
+    "    for (size_t i = 0; i < (size); i += (lanes))\n\n"
+    "/* What rounding has lost of a + b. */\n"
+    "static double nevh__roundoff(double sum, double a, double b) {\n"
+    "    double part = sum - a;\n"
+    "    return (a - (sum - part)) + (b - part);\n}\n\n";
+static const char not_finite_for_readers[] =
+    "static bool nevh__not_finite(size_t lanes, size_t size, const double *x,\n"
+    "                             const double *y) {\n"
+    "    double bad = 0;\n"
+    "    NEVH__EACH(i, lanes, size)\n"
+    "        bad += (x[i] - x[i]) + (y[i] - y[i]);\n"
+    "    return bad != 0;\n}\n\n";
+static const char vectors_for_readers[] = "#define NEVH_UNROLL\n"
+                                          "#define NEVH__KNOWN_COUNT\n"
+                                          "#define NEVH__VECTOR_AT(x) (*(x))\n"
+                                          "enum { NEVH__IN_VECTOR = 1 };\n"
+                                          "typedef double nevh__vector;\n\n";
+
+/* Steps are taken of copies, which are stored if all of them went well. */
+static const char driver[] =
+    "size_t nevh_native_steps(const double *restrict N, double *restrict W,\n"
+    "        double *restrict T, size_t operations, double t0, double h,\n"
+    "        size_t from, size_t steps, double *restrict Q,\n"
+    "        double *restrict P, double *restrict M) {\n"
+    "    nevh__number y[BLOCKS][2 * DOF], lost[BLOCKS][2 * DOF];\n"
+    "    nevh__number kept[BLOCKS][KEPT + 1];\n"
+    "    double *flags = M + (2 * DOF + KEPT) * WIDTH;\n"
+    "    bool has_kept = true;\n"
+    "    size_t done = 0;\n"
+    "    for (int b = 0; b < BLOCKS; b++) {\n"
+    "        NEVH__EACH(k, 1, DOF) y[b][k] = AT(Q, k, b);\n"
+    "        NEVH__EACH(k, 1, DOF) y[b][DOF + k] = AT(P, k, b);\n"
+    "        NEVH__EACH(k, 1, 2 * DOF) lost[b][k] = AT(M, k, b);\n"
+    "        NEVH__EACH(k, 1, KEPT) kept[b][k] = AT(M, 2 * DOF + k, b);\n"
+    "    }\n"
+    "    for (int i = 0; KEPT && i < WIDTH; i++) has_kept &= flags[i] != 0;\n"
+    "    for (int b = 0; KEPT && !has_kept && b < BLOCKS; b++)\n"
+    "        if (is_bad(take_first(N, T, t0 + (double)from * h, h, y[b],\n"
+    "                              lost[b], kept[b])))\n"
+    "            return 0;\n"
+    "    for (; done < steps; done++) {\n"
+    "        double t = t0 + (double)(from + done) * h;\n"
+    "        nevh__number bad = {0};\n"
+    "        for (int b = 0; b < BLOCKS; b++)\n"
+    "            bad += take_step(N, W, T, operations, t, h, y[b], lost[b],\n"
+    "                             kept[b]);\n"
+    "        if (is_bad(bad)) return done;\n"
+    "    }\n"
+    "    for (int b = 0; b < BLOCKS; b++) {\n"
+    "        NEVH__EACH(k, 1, DOF) AT(Q, k, b) = y[b][k];\n"
+    "        NEVH__EACH(k, 1, DOF) AT(P, k, b) = y[b][DOF + k];\n"
+    "        NEVH__EACH(k, 1, 2 * DOF) AT(M, k, b) = lost[b][k];\n"
+    "        NEVH__EACH(k, 1, KEPT) AT(M, 2 * DOF + k, b) = kept[b][k];\n"
+    "    }\n"
+    "    for (int i = 0; KEPT && i < WIDTH; i++) flags[i] = 1;\n"
+    "    return done;\n}\n";
+
+static const char driver_for_readers[] =
+    "static size_t advance(double t0, double h, size_t from, size_t steps,\n"
+    "                      double *q, double *p, double *memory) {\n"
+    "    double y[2 * DOF], lost[2 * DOF];\n"
+    "    size_t done = 0;\n"
+    "    memcpy(lost, memory, sizeof lost);\n"
+    "    for (; done < steps; done++) {\n"
+    "        memcpy(y, q, DOF * sizeof *q);\n"
+    "        memcpy(y + DOF, p, DOF * sizeof *p);\n"
+    "        if (take_step(t0 + (double)(from + done) * h, h, y, lost,\n"
+    "                      memory + 2 * DOF) != 0)\n"
+    "            break;\n"
+    "        memcpy(q, y, DOF * sizeof *q);\n"
+    "        memcpy(p, y + DOF, DOF * sizeof *p);\n"
+    "        memcpy(memory, lost, sizeof lost);\n"
+    "    }\n"
+    "    return done;\n}\n";
+
+void nevh__write_lines(nevh__writer *w, const char *const lines[]) {
+    for (; *lines; lines++)
+        nevh__write(w, "%s", *lines);
+}
+
+const char *nevh__number_type(const nevh__writer *w) {
+    return w->width > 1 ? "wide" : "double";
+}
+
+void nevh__write_needs(nevh__writer *w, size_t n, bool finite, bool sums) {
+    if (w->readable) {
+        nevh__write(w, "enum { DOF = %zu };\n\n%s%s%s", n, needs_of_readers,
+                    finite ? not_finite_for_readers : "",
+                    sums ? vectors_for_readers : "");
+        return;
+    }
+    size_t lanes = w->width > 1 ? NEVH__LANES : 1;
+    nevh__write(w, "%s%s", needs,
+                lanes > 1 ? needs_of_lanes : needs_of_numbers);
+    nevh__write(w,
+                "enum { DOF = %zu, WIDTH = %zu, BLOCKS = %zu };\n"
+                "#define AT(x, row, b) "
+                "(*(nevh__number *)((x) + (row) * WIDTH + (b) * %zu))\n",
+                n, w->width, w->width / lanes, lanes);
+}
+
+void nevh__write_driver(nevh__writer *w) {
+    nevh__write(w, "%s", w->readable ? driver_for_readers : driver);
+}
