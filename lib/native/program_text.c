@@ -30,8 +30,9 @@ static bool is_word(char c) {
 
 /* Whether a line has a word. */
 static bool has_word(const char *line, const char *word, size_t length) {
-    for (const char *at = line; (at = strstr(at, word)); at++)
-        if ((at == line || !is_word(at[-1])) && !is_word(at[length]))
+    for (const char *at = line; (at = strchr(at, *word)); at++)
+        if (strncmp(at, word, length) == 0 &&
+            (at == line || !is_word(at[-1])) && !is_word(at[length]))
             return true;
     return false;
 }
@@ -86,7 +87,7 @@ static char **split_lines(char *text, size_t *count) {
    the function's end. */
 static bool is_of_use(char **lines, size_t i, size_t count) {
     static const char begin[] = "    double ";
-    if (strncmp(lines[i], begin, sizeof begin - 1) != 0)
+    if (!lines[i] || strncmp(lines[i], begin, sizeof begin - 1) != 0)
         return true;
     const char *name = lines[i] + sizeof begin - 1;
     size_t length = 0;
@@ -97,10 +98,48 @@ static bool is_of_use(char **lines, size_t i, size_t count) {
         return true;
     memcpy(word, name, length);
     word[length] = '\0';
-    for (size_t k = i + 1; k < count && lines[k][0] != '}'; k++)
-        if (has_word(lines[k], word, length))
+    for (size_t k = i + 1; k < count && (!lines[k] || lines[k][0] != '}'); k++)
+        if (lines[k] && has_word(lines[k], word, length))
             return true;
     return false;
+}
+
+/* Where a function ends that begins at line i; i: none does. */
+static size_t end_of_function(char **lines, size_t i, size_t count) {
+    size_t end = i;
+    if (!lines[i] || strncmp(lines[i], "static ", 7) != 0 ||
+        !strchr(lines[i], '('))
+        return i;
+    while (end < count && lines[end] && !strchr(lines[end], '{') &&
+           !strchr(lines[end], ';'))
+        end++;
+    if (end == count || !lines[end] || !strchr(lines[end], '{') ||
+        strchr(lines[i], '='))
+        return i;
+    while (end < count && lines[end][0] != '}')
+        end++;
+    return end < count ? end : i;
+}
+
+/* A function that no other line names goes, and the comment before it. */
+static void drop_function(char **lines, size_t i, size_t count) {
+    size_t end = end_of_function(lines, i, count);
+    const char *name = strchr(lines[i], '('), *after = name;
+    if (end == i || strncmp(name, "(double t0", 10) == 0) /* advance */
+        return;
+    while (name > lines[i] && is_word(name[-1]))
+        name--;
+    for (size_t k = 0; k < count; k++)
+        if ((k < i || k > end) && lines[k] &&
+            has_word(lines[k], name, (size_t)(after - name)))
+            return;
+    while (end + 1 > i)
+        lines[end--] = NULL;
+    bool comment = i > 0 && lines[i - 1] && strstr(lines[i - 1], "*/");
+    while (comment && i-- > 0) {
+        comment = strncmp(lines[i], "/*", 2) != 0;
+        lines[i] = NULL;
+    }
 }
 
 /* Values that only other derivatives would need are left out. */
@@ -110,11 +149,16 @@ static bool write_used(nevh__writer *w, char *text) {
     if (!lines)
         return false;
     for (size_t i = count; i-- > 0;)
+        drop_function(lines, i, count);
+    for (size_t i = count; i-- > 0;)
         if (!is_of_use(lines, i, count))
-            lines[i] = (char *)"";
+            lines[i] = NULL;
+    bool empty = true; /* no two empty lines */
     for (size_t i = 0; i < count; i++)
-        if (lines[i][0])
-            nevh__write(w, "%s\n%s", lines[i], lines[i][0] == '}' ? "\n" : "");
+        if (lines[i] && (lines[i][0] || !empty)) {
+            nevh__write(w, "%s\n", lines[i]);
+            empty = !lines[i][0];
+        }
     free(lines);
     return true;
 }
