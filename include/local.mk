@@ -16,6 +16,7 @@ nevhinclude_HEADERS = \
 	include/nevh/section.h \
 	include/nevh/ensemble.h \
 	include/nevh/sweep.h \
+	include/nevh/loop.h \
 	include/nevh/status.h \
 	include/nevh/system.h \
 	include/nevh/transform.h

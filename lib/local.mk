@@ -152,6 +152,10 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/state_error.c \
 	lib/diagnose/stability.c \
 	lib/diagnose/rates.c \
+	lib/diagnose/loop_private.h \
+	lib/diagnose/loop.c \
+	lib/diagnose/loop_panel.c \
+	lib/diagnose/loop_inside.c \
 	lib/ensemble/random_private.h \
 	lib/ensemble/random.c \
 	lib/ensemble/ensemble_private.h \

@@ -56,6 +56,7 @@ suites = \
 	tests/scheme/check_eccentric \
 	tests/diagnose/check_energy \
 	tests/diagnose/check_verdict \
+	tests/diagnose/check_loop \
 	tests/tool/check_grid \
 	tests/system/check_friction \
 	tests/run/check_damped_orbits \
@@ -163,6 +164,7 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_plot.sh \
 	tests/tool/nevh_section.sh \
 	tests/tool/nevh_sweep.sh \
+	tests/tool/nevh_flow.sh \
 	tests/tool/nevh_sweep_file.sh \
 	tests/tool/nevh_run.sh \
 	tests/tool/nevh_code.sh \

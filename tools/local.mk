@@ -103,6 +103,11 @@ tools_nevh_SOURCES = \
 	tools/orbit/time_plot.c \
 	tools/orbit/run_plot.c \
 	tools/orbit/section_plot.c \
+	tools/orbit/flow.h \
+	tools/orbit/flow_shape.h \
+	tools/orbit/flow_shape.c \
+	tools/orbit/flow_plot.c \
+	tools/orbit/flow.c \
 	tools/search/cost_plot.c
 tools_nevh_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE \
 	-DNEVH_SCENES='"$(scenesdir)"'

@@ -32,6 +32,9 @@ static const struct {
     {sweep, FOR_SWEEP, "SCENE",
      "many orbits: a row for each member of the ensemble, with outcomes, as "
      "CSV or an array of NumPy (-o FILE.npy)"},
+    {flow, FOR_FLOW, "SCENE",
+     "a disc, a rectangle or Arnold's cat of starts carried along by each "
+     "integrator: its area by time"},
     {export_scene, FOR_EXPORT, "SCENE",
      "the steps of one integrator as a C program that needs nothing else"},
     {hard, FOR_HARD, "",

@@ -11,6 +11,7 @@
 #include <nevh/ensemble.h>
 #include <nevh/gradient.h>
 #include <nevh/integrator.h>
+#include <nevh/loop.h>
 #include <nevh/models.h>
 #include <nevh/probe.h>
 #include <nevh/reference.h>

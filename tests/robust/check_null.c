@@ -36,6 +36,13 @@ static nevh_separability separability;
     X(STATUS, nevh_rates_status, (NULL))                                       \
     X(TEXT, nevh_rates_message, (NULL))                                        \
     X(STATUS, nevh_rates_at, (NULL, 0.1, in, in, out, out))                    \
+    X(MADE, nevh_loop_new, (NULL, NULL, NULL, NULL))                           \
+    X(ANY, nevh_loop_free, (NULL))                                             \
+    X(STATUS, nevh_loop_status, (NULL))                                        \
+    X(TEXT, nevh_loop_message, (NULL))                                         \
+    X(STATUS, nevh_loop_carry, (NULL))                                         \
+    X(ANY, nevh_loop_result, (NULL, 0))                                        \
+    X(NUMBER, nevh_loop_shape, (NULL, 0, 0, out, out))                         \
     X(MADE, nevh_ensemble_new, (NULL, NULL))                                   \
     X(ANY, nevh_ensemble_free, (NULL))                                         \
     X(STATUS, nevh_ensemble_status, (NULL))                                    \

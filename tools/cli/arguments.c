@@ -342,6 +342,11 @@ int read_observable(options *o, const char *argument) {
     return TOOL_OK;
 }
 
+int read_shape(options *o, const char *argument) {
+    o->shape = argument;
+    return TOOL_OK;
+}
+
 int read_transform(options *o, const char *argument) {
     o->transform = argument;
     return TOOL_OK;

@@ -12,7 +12,7 @@ static const struct {
     {FOR_EFFECTS, "effects"},     {FOR_SECTION, "section"},
     {FOR_HARD, "hard"},           {FOR_NEW, "new"},
     {FOR_LIST, "list"},           {FOR_SWEEP, "sweep"},
-    {FOR_EXPORT, "export"},
+    {FOR_EXPORT, "export"},       {FOR_FLOW, "flow"},
 };
 
 const char *command_name(unsigned bit) {

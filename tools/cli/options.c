@@ -9,10 +9,11 @@
 enum {
     OF_COST = FOR_COST | FOR_GRADIENTS | FOR_RECOMMEND,
     OF_SCENES = FOR_EXPORT | FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_RUN |
-                FOR_SECTION | FOR_SWEEP | OF_COST,
+                FOR_SECTION | FOR_SWEEP | FOR_FLOW | OF_COST,
     OF_NATIVE = FOR_COMPARE | FOR_RUN | FOR_COST | FOR_RECOMMEND,
     OF_TABLES = (OF_SCENES & ~FOR_EXPORT) | FOR_LIST | FOR_HARD,
-    OF_PLOTS = FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_COST | FOR_GRADIENTS
+    OF_PLOTS = FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_COST | FOR_GRADIENTS |
+               FOR_FLOW
 };
 
 /* The commands that each option is for, as an or. */
@@ -32,8 +33,8 @@ static const struct {
      "see nevh list integrators; instead of the scene's"},
     {"dt", "A,B", OF_SCENES, read_dt,
      "time steps, instead of the scene's; formulas such as pi/50"},
-    {"tolerance", "A,B", FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_SWEEP,
-     read_tolerance,
+    {"tolerance", "A,B",
+     FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_SWEEP | FOR_FLOW, read_tolerance,
      "of integrators that choose their steps; instead of the scene's"},
     {"t-end", "T", OF_SCENES, read_t_end,
      "the end, instead of the scene's; a formula"},
@@ -57,9 +58,13 @@ static const struct {
      "timed runs, of which the median counts"},
     {"every", "K", FOR_RUN | FOR_EXPORT, read_every,
      "a row each K steps, and at the end"},
-    {"samples", "N", FOR_RUN, read_samples,
+    {"samples", "N", FOR_RUN | FOR_FLOW, read_samples,
      "N rows at equal times, the first and the last included"},
-    {"at", "T1,T2", FOR_RUN, read_at, "rows at these times alone"},
+    {"at", "T1,T2", FOR_RUN | FOR_FLOW, read_at, "rows at these times alone"},
+    {"shape", "SHAPE", FOR_FLOW, read_shape,
+     "disc(x = 1, p_x = 0, RADIUS), box(x = 1, p_x = 0, WIDTH, HEIGHT), cat(x "
+     "= 1, p_x = 0, SIZE), or loop(x = cos(t), p_x = sin(t)) of formulas of t "
+     "from 0 to 2*pi; a cat round the start if not given"},
     {"resume", "FILE", FOR_RUN | FOR_SWEEP, read_resume,
      "go on with FILE, which nevh run or nevh sweep -o FILE left unfinished, "
      "as if never interrupted"},

@@ -6,6 +6,7 @@
        run         run.c        an orbit of trajectory.h, line by line
        section     section.c
        sweep       sweep.c
+       flow        flow.c, flow_shape.c
        cost        cost.c       studies of study.h: rows at many steps
        recommend   recommend.c  the same
        gradients   gradients.c
@@ -128,7 +129,8 @@ enum {
     FOR_HARD = 1024,
     FOR_SWEEP = 2048,
     FOR_EXPORT = 4096,
-    FOR_LAST = FOR_EXPORT
+    FOR_FLOW = 8192,
+    FOR_LAST = FOR_FLOW
 };
 
 const char *command_name(unsigned bit);
@@ -161,6 +163,7 @@ typedef struct {
     plot_kind plot_kind;
     const char *file, *plot, *plot_script, *transform, *resume, *from,
         *observable;
+    const char *shape;   /* of flow; NULL: chosen */
     const char *columns; /* NULL: not given */
     bool formatted;      /* --format was given */
     bool quiet, portable, all, by_state, diagnostics, impact, allow_code;
@@ -230,6 +233,6 @@ char *scene_file(const char *beside, const char *name);
 typedef int command(const options *);
 command compare, list_command, check, effects, run_scene, export_scene, section,
     new_scene;
-command cost, recommend, gradients, hard, sweep;
+command cost, recommend, gradients, hard, sweep, flow;
 
 #endif

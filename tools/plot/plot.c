@@ -34,6 +34,7 @@ void plot_panel(plot *p, const char *heading, const char *x, const char *y) {
                                     .x = copy(x),
                                     .y = copy(y),
                                     .span_x = {NAN, NAN},
+                                    .span_y = {NAN, NAN},
                                     .limit_y = {-largest, largest}};
 }
 
@@ -66,6 +67,14 @@ void plot_span_x(plot *p, double low, double high) {
 
 void plot_stack(plot *p) {
     p->stacked = true;
+}
+
+void plot_columns(plot *p, size_t columns) {
+    p->beside = columns;
+}
+
+void plot_span_y(plot *p, double low, double high) {
+    current(p)->span_y = (range){low, high};
 }
 
 void plot_limit_y(plot *p, double low, double high) {

@@ -21,6 +21,8 @@ typedef enum {
     PLOT_RODS,   /* thick grey lines */
     PLOT_BOBS,   /* large discs */
     PLOT_START,  /* small circles */
+    PLOT_FILLED, /* a closed line, and what it encloses in a pale colour */
+    PLOT_HOLE,   /* a closed line, and what it encloses in white */
     PLOT_GUIDE   /* a thin grey line with its name at the last point, and not in
                     the legend */
 } plot_form;
@@ -38,11 +40,14 @@ void plot_heading(plot *, const char *text);
 
 /* Of the current panel. */
 void plot_log(plot *, bool x, bool y);
-void plot_equal(plot *);                            /* as long on x as on y */
-void plot_span_x(plot *, double low, double high);  /* exactly this */
+void plot_equal(plot *);                           /* as long on x as on y */
+void plot_span_x(plot *, double low, double high); /* exactly this */
+void plot_span_y(plot *, double low, double high);
 void plot_limit_y(plot *, double low, double high); /* no more than this */
 /* All panels show the same ranges. */
 void plot_same_ranges(plot *);
+/* So many panels side by side, small ones where they are many. */
+void plot_columns(plot *, size_t columns);
 /* Panels are wide, one below the other, over one axis. */
 void plot_stack(plot *);
 

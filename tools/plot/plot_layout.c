@@ -100,6 +100,11 @@ static void choose_panels(layout *l, const plot *p, const target *t) {
         l->panel_height =
             p->panels > last ? many.height : few[p->panels - 1].height;
     }
+    if (p->beside && !p->stacked) {
+        l->columns = p->beside < p->panels ? p->beside : p->panels;
+        l->panel_width = fmax(fmin(1200 / (double)l->columns, 400), 200);
+        l->panel_height = 0.8 * l->panel_width;
+    }
     if (p->panels == 1 && p->panel->equal)
         shape_panel(l, p);
     if (t->medium == PLOT_TEXT) {

@@ -25,7 +25,7 @@ typedef struct {
 typedef struct {
     char *heading, *x, *y;
     bool log_x, log_y, equal;
-    range span_x; /* NAN: found */
+    range span_x, span_y; /* NAN: found */
     range limit_y;
 } panel;
 
@@ -35,6 +35,7 @@ struct plot {
     series *series;
     size_t panels, count; /* count: of series */
     bool same_ranges, stacked;
+    size_t beside; /* panels side by side; 0: chosen */
     size_t hidden; /* points that no logarithmic axis shows */
 };
 

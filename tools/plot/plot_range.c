@@ -80,6 +80,8 @@ range plot_range_x(const plot *p, size_t number) {
 
 range plot_range_y(const plot *p, size_t number) {
     const panel *on = &p->panel[number];
+    if (on->span_y.low < on->span_y.high)
+        return on->span_y;
     range r = extent(p, number, y_of);
     if (r.low <= r.high) {
         r.low = fmin(fmax(r.low, on->limit_y.low), on->limit_y.high);

@@ -143,7 +143,7 @@ static double dot_size(size_t count) {
                 smallest);
 }
 
-static void print_form(FILE *f, const series *s) {
+static void print_form(FILE *f, const series *s, bool text) {
     size_t number = s->look + 1;
     switch (s->form) {
     case PLOT_LINES:
@@ -156,6 +156,19 @@ static void print_form(FILE *f, const series *s) {
     case PLOT_BEHIND:
         fputs(" with lines linecolor rgb '#bbbbbb' linewidth 5 dashtype solid",
               f);
+        break;
+    case PLOT_FILLED:
+        fprintf(f,
+                " with filledcurves closed linetype %zu linewidth 0.8 "
+                "fillstyle %s border",
+                number, text ? "empty" : "transparent solid 0.45");
+        break;
+    case PLOT_HOLE:
+        fprintf(f,
+                " with filledcurves closed linetype %zu linewidth 0.8 "
+                "linecolor rgb '#ffffff' fillstyle %s border linecolor rgb "
+                "'#555555'",
+                number, text ? "empty" : "solid 1");
         break;
     case PLOT_START:
         fprintf(f,
@@ -220,7 +233,7 @@ static void print_series(FILE *f, const plot *p, size_t i, bool here,
         fprintf(f, "$series%zu using 1:2", i + 1);
     else
         fputs("NaN", f);
-    print_form(f, &p->series[i]);
+    print_form(f, &p->series[i], text);
     print_name(f, titled ? p->series[i].name : NULL);
     if (drawn && p->series[i].form == PLOT_BOBS)
         fprintf(f,

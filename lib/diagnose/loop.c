@@ -1,0 +1,366 @@
+/* nevh: a closed curve of starts, carried along, and the area in it.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "diagnose/loop_private.h"
+#include <gsl/gsl_integration.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    PIECES = 4, /* panels between two corners, to begin with */
+    MOST_POINTS = 1 << 14
+};
+static const double shortest = 1e-12; /* panel, in s */
+
+static int out_of_memory(nevh_loop *l) {
+    return nevh__fail(&l->report, NEVH_ENOMEM, "out of memory");
+}
+
+static size_t most_panels(const nevh_loop *l) {
+    size_t points = l->is.most_points ? l->is.most_points : MOST_POINTS;
+    return points / NEVH__NODES;
+}
+
+/* Planning. */
+
+/* P_k(x) for k < NEVH__NODES. */
+static void legendre_values(double x, double value[]) {
+    value[0] = 1;
+    value[1] = x;
+    for (int k = 2; k < NEVH__NODES; k++)
+        value[k] =
+            ((2 * k - 1) * x * value[k - 1] - (k - 1) * value[k - 2]) / k;
+}
+
+/* Sums over the nodes are exact for products of two of the polynomials. */
+static int plan_nodes(nevh_loop *l) {
+    void *ask =
+        nevh__array(4 * NEVH__NODES, sizeof(double)); /* GSL would abort */
+    free(ask);
+    gsl_integration_glfixed_table *t =
+        ask ? gsl_integration_glfixed_table_alloc(NEVH__NODES) : NULL;
+    if (!t)
+        return out_of_memory(l);
+    for (size_t j = 0; j < NEVH__NODES; j++) {
+        double weight, value[NEVH__NODES];
+        gsl_integration_glfixed_point(-1, 1, j, &l->node[j], &weight, t);
+        legendre_values(l->node[j], value);
+        for (int k = 0; k < NEVH__NODES; k++)
+            l->legendre[k][j] = (k + 0.5) * weight * value[k];
+    }
+    gsl_integration_glfixed_table_free(t);
+    return NEVH_OK;
+}
+
+static int check_options(nevh_loop *l, const nevh_options *o,
+                         const nevh_integrator *scheme) {
+    const nevh_loop_options *is = &l->is;
+    bool good = is->curve && is->times && is->steps && isfinite(is->t0) &&
+                isfinite(is->h) && (is->corners || !is->n_corners);
+    for (size_t i = 0; good && i < is->n_corners; i++)
+        good = is->corners[i] >= 0 && is->corners[i] < 1 &&
+               (!i || is->corners[i] > is->corners[i - 1]);
+    for (size_t i = 1; good && i < is->times; i++)
+        good = is->steps[i] >= is->steps[i - 1];
+    if (!good)
+        return nevh__fail(&l->report, NEVH_EINVAL,
+                          "a loop needs a curve, corners that rise within "
+                          "[0, 1), times that rise, and finite t0 and h");
+    if (nevh_integrator_own_time(scheme) || o->transform)
+        return nevh__fail(&l->report, NEVH_ESTRUCT,
+                          "%s chooses times of its own for each orbit: there "
+                          "is no curve at one time",
+                          nevh_integrator_name(scheme));
+    return NEVH_OK;
+}
+
+static int plan_stepper(nevh_loop *l, const nevh_system *s,
+                        const nevh_integrator *scheme, nevh_options o) {
+    size_t size = l->n * NEVH__NODES;
+    for (size_t i = 0; i < size; i++) {
+        l->q[i] = o.q ? o.q[i / NEVH__NODES] : 0;
+        l->p[i] = o.p ? o.p[i / NEVH__NODES] : 0;
+    }
+    o.width = NEVH__NODES;
+    o.q = o.q ? l->q : NULL;
+    o.p = o.p ? l->p : NULL;
+    l->stepper = nevh_stepper_new(s, scheme, &o);
+    return nevh_stepper_status(l->stepper)
+               ? nevh__fail(&l->report, nevh_stepper_status(l->stepper), "%s",
+                            nevh_stepper_message(l->stepper))
+               : NEVH_OK;
+}
+
+static int plan_corners(nevh_loop *l) {
+    static const double beginning;
+    const double *given = l->is.n_corners ? l->is.corners : &beginning;
+    size_t count = l->is.n_corners ? l->is.n_corners : 1;
+    l->corners = nevh__array(count + 1, sizeof *l->corners);
+    l->steps = nevh__copy(l->is.steps, l->is.times, sizeof *l->steps);
+    if (!l->corners || !l->steps)
+        return out_of_memory(l);
+    memcpy(l->corners, given, count * sizeof *given);
+    l->corners[count] = given[0] + 1;
+    l->is.n_corners = count;
+    l->is.corners = NULL;
+    l->is.steps = NULL;
+    return NEVH_OK;
+}
+
+static int plan_rooms(nevh_loop *l) {
+    size_t times = l->is.times, size = l->n * NEVH__NODES;
+    l->q = nevh__array(size, sizeof(double));
+    l->p = nevh__array(size, sizeof(double));
+    l->taken_area = nevh__array(times, sizeof(double));
+    l->taken_error = nevh__array(times, sizeof(double));
+    l->centre = nevh__array(times * l->n, sizeof(double));
+    l->unit = nevh__array(times, sizeof(double));
+    l->low = nevh__array(times * 2 * l->n, sizeof(double));
+    l->high = nevh__array(times * 2 * l->n, sizeof(double));
+    l->area = nevh__array(times, sizeof(double));
+    l->error = nevh__array(times, sizeof(double));
+    l->rough = nevh__array(times, sizeof *l->rough);
+    l->noise = nevh__array(times, sizeof(double));
+    l->taken_noise = nevh__array(times, sizeof(bool));
+    l->inside = nevh__array(times, sizeof(bool));
+    return l->inside && l->rough && l->noise && l->taken_noise && l->q &&
+                   l->p && l->taken_area && l->taken_error && l->centre &&
+                   l->unit && l->low && l->high && l->area && l->error
+               ? NEVH_OK
+               : out_of_memory(l);
+}
+
+nevh_loop *nevh_loop_new(const nevh_system *s, const nevh_integrator *scheme,
+                         const nevh_options *options,
+                         const nevh_loop_options *is) {
+    static const nevh_options defaults;
+    const nevh_options *o = options ? options : &defaults;
+    nevh_loop *l = s && scheme && is ? nevh__array(1, sizeof *l) : NULL;
+    if (!l)
+        return NULL;
+    l->is = *is;
+    l->n = nevh_system_dof(s);
+    if (!check_options(l, o, scheme) && !plan_corners(l) && !plan_rooms(l) &&
+        !plan_nodes(l))
+        plan_stepper(l, s, scheme, *o);
+    return l;
+}
+
+void nevh_loop_free(nevh_loop *l) {
+    if (!l)
+        return;
+    for (size_t i = 0; l->shape && i < l->panels; i++)
+        free(l->shape[i].states);
+    for (size_t i = 0; l->rough && i < l->is.times; i++)
+        free(l->rough[i].item);
+    free(l->rough);
+    nevh_stepper_free(l->stepper);
+    free(l->corners);
+    free(l->steps);
+    free(l->q);
+    free(l->p);
+    free(l->taken_area);
+    free(l->taken_error);
+    free(l->centre);
+    free(l->unit);
+    free(l->low);
+    free(l->high);
+    free(l->area);
+    free(l->noise);
+    free(l->inside);
+    free(l->taken_noise);
+    free(l->error);
+    free(l->shape);
+    free(l);
+}
+
+int nevh_loop_status(const nevh_loop *l) {
+    return l ? l->report.status : NEVH_ENOMEM;
+}
+
+const char *nevh_loop_message(const nevh_loop *l) {
+    return l ? l->report.text : nevh_status_text(NEVH_ENOMEM);
+}
+
+/* The whole. */
+
+static int put(nevh_loop *l, nevh__queue *to, double from, double to_s) {
+    if (to->count == to->room) {
+        size_t room = 2 * to->room + 16;
+        nevh__panel *more = nevh__grow(to->item, room, sizeof *more);
+        if (!more)
+            return out_of_memory(l);
+        to->item = more;
+        to->room = room;
+    }
+    to->item[to->count++] = (nevh__panel){from, to_s, NULL};
+    return NEVH_OK;
+}
+
+/* Of the box in one direction; 0 where rounding makes it. */
+static double length(const nevh_loop *l, size_t i) {
+    static const double rounding = 1e-13;
+    double low = l->low[i], high = l->high[i];
+    return high - low > rounding * fmax(fabs(low), fabs(high)) ? high - low : 0;
+}
+
+/* The panels as they begin tell what is large: rounding and errors are of that. */
+static int find_units(nevh_loop *l, const nevh__queue *all) {
+    static const double thin = 1e-3, nothing = 1e-6;
+    for (size_t i = 0; i < l->is.times * 2 * l->n; i++) {
+        l->low[i] = INFINITY;
+        l->high[i] = -INFINITY;
+    }
+    for (size_t i = 0; i < all->count; i++)
+        if (nevh__loop_follow(l, &all->item[i], nevh__loop_measure))
+            return l->report.status;
+    for (size_t time = 0; time < l->reach; time++) {
+        double box = 0;
+        for (size_t k = 0; k < l->n; k++) {
+            size_t i = (time * l->n + k) * 2;
+            box += length(l, i) * length(l, i + 1);
+            l->centre[time * l->n + k] = (l->low[i] + l->high[i]) / 2;
+        }
+        if (time == 0 && !(box > 0 && fabs(l->area[0]) > nothing * box))
+            return nevh__fail(&l->report, NEVH_EINVAL,
+                              "the curve encloses no area");
+        l->unit[time] = fmax(fabs(l->area[0]), thin * box);
+    }
+    memset(l->area, 0, l->is.times * sizeof *l->area);
+    return NEVH_OK;
+}
+
+static int accept(nevh_loop *l, nevh__panel at) {
+    for (size_t i = 0; i < l->reach; i++) {
+        l->area[i] += l->taken_area[i];
+        if (l->taken_noise[i])
+            l->noise[i] += l->taken_error[i] * l->taken_error[i];
+        else
+            l->error[i] += l->taken_error[i];
+    }
+    if (l->is.shapes) {
+        nevh__panel *more = nevh__grow(l->shape, l->panels + 1, sizeof *more);
+        if (!more) {
+            free(at.states);
+            return out_of_memory(l);
+        }
+        l->shape = more;
+        l->shape[l->panels] = at;
+    }
+    l->panels++;
+    return NEVH_OK;
+}
+
+/* Accepts a panel that is smooth at all times, or that is the last resort; else
+   it waits to be cut. */
+static int take(nevh_loop *l, nevh__panel at, bool last) {
+    if (l->is.shapes)
+        at.states =
+            nevh__array(2 * l->n * NEVH__NODES * l->is.times, sizeof(double));
+    if (l->is.shapes && !at.states)
+        return out_of_memory(l);
+    l->taken_times = 0;
+    int status = nevh__loop_follow(
+        l, &at, last ? nevh__loop_keep : nevh__loop_keep_smooth);
+    if (!status && (last || l->taken_times >= l->reach))
+        return accept(l, at);
+    free(at.states);
+    return status ? status : put(l, &l->rough[l->taken_times], at.from, at.to);
+}
+
+/* Cuts the panel that is rough first, while there may be more. */
+static int cut(nevh_loop *l, nevh__queue *from, size_t waiting) {
+    nevh__panel at = from->item[from->front++];
+    double middle = at.from + (at.to - at.from) / 2;
+    if (l->panels + waiting >= most_panels(l) || at.to - at.from < shortest)
+        return take(l, at, true);
+    int status = take(l, (nevh__panel){at.from, middle, NULL}, false);
+    return status ? status : take(l, (nevh__panel){middle, at.to, NULL}, false);
+}
+
+static int cut_all(nevh_loop *l) {
+    int status = NEVH_OK;
+    while (!status) {
+        nevh__queue *first = NULL;
+        size_t waiting = 0;
+        for (size_t i = l->is.times; i-- > 0;) {
+            nevh__queue *here = &l->rough[i];
+            waiting += here->count - here->front;
+            first = here->count > here->front ? here : first;
+        }
+        if (!first)
+            break;
+        status = cut(l, first, waiting);
+    }
+    return status;
+}
+
+static int begin(nevh_loop *l) {
+    nevh__queue all = {0};
+    int status = NEVH_OK;
+    for (size_t c = 0; !status && c < l->is.n_corners; c++)
+        for (int i = 0; !status && i < PIECES; i++) {
+            double from = l->corners[c], length = l->corners[c + 1] - from;
+            status = put(l, &all, from + length * i / PIECES,
+                         from + length * (i + 1) / PIECES);
+        }
+    if (!status)
+        status = find_units(l, &all);
+    for (size_t i = 0; !status && i < all.count; i++)
+        status = take(l, all.item[i], false);
+    free(all.item);
+    return status;
+}
+
+static int by_place(const void *a, const void *b) {
+    const nevh__panel *one = a, *other = b;
+    return (one->from > other->from) - (one->from < other->from);
+}
+
+int nevh_loop_carry(nevh_loop *l) {
+    if (!l)
+        return NEVH_EINVAL;
+    if (l->report.status || l->carried)
+        return l->report.status;
+    l->carried = true;
+    l->reach = l->is.times;
+    int status = begin(l);
+    if (!status)
+        status = cut_all(l);
+    if (!status)
+        status = nevh__loop_look_inside(l);
+    if (status)
+        l->reach = 0;
+    if (l->shape)
+        qsort(l->shape, l->panels, sizeof *l->shape, by_place);
+    return l->report.status;
+}
+
+nevh_loop_area nevh_loop_result(const nevh_loop *l, size_t i) {
+    nevh_loop_area r = {NAN, NAN, NAN, 0, false};
+    if (!l || i >= l->is.times || !l->steps)
+        return r;
+    r.t = l->is.t0 + (double)l->steps[i] * l->is.h;
+    if (l->carried && i < l->reach) {
+        r.area = l->area[i];
+        r.error = l->error[i] + sqrt(l->noise[i]);
+        r.inside = l->inside[i];
+        r.points = l->panels * NEVH__NODES;
+    }
+    return r;
+}
+
+bool nevh_loop_shape(const nevh_loop *l, size_t i, size_t point, double q[],
+                     double p[]) {
+    if (!l || i >= l->reach || !l->shape || point >= l->panels * NEVH__NODES)
+        return false;
+    size_t size = l->n * NEVH__NODES;
+    const double *from = l->shape[point / NEVH__NODES].states + 2 * size * i;
+    for (size_t k = 0; k < l->n; k++) {
+        if (q)
+            q[k] = from[k * NEVH__NODES + point % NEVH__NODES];
+        if (p)
+            p[k] = from[size + k * NEVH__NODES + point % NEVH__NODES];
+    }
+    return true;
+}

@@ -1,0 +1,177 @@
+/* nevh: a panel of a loop: what becomes of it, and the area under it.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "diagnose/loop_private.h"
+#include <math.h>
+#include <string.h>
+
+enum { TAIL = 3 }; /* coefficients whose size tells the error */
+static const double tolerance = 1e-11; /* of a panel, of the area's unit */
+
+void nevh__loop_expand(const nevh_loop *l, const double value[], double from,
+                       double coefficient[]) {
+    for (int k = 0; k < NEVH__NODES; k++) {
+        coefficient[k] = 0;
+        for (int j = 0; j < NEVH__NODES; j++)
+            coefficient[k] += l->legendre[k][j] * (value[j] - from);
+    }
+}
+
+static double largest(const double coefficient[], int from, int to) {
+    double most = 0;
+    for (int k = from; k < to; k++)
+        most = fmax(most, fabs(coefficient[k]));
+    return most;
+}
+
+/* Coefficients that fell to a level, far below the first ones, and fall no more:
+   noise, of rounding or of differences, which no shorter panel has less of. */
+static bool is_noise(const double coefficient[]) {
+    static const double little = 1e-5, same = 0.1;
+    double level = largest(coefficient, NEVH__NODES - TAIL, NEVH__NODES);
+    return level <= little * largest(coefficient, 1, NEVH__NODES) &&
+           level >= same * largest(coefficient, NEVH__NODES - 2 * TAIL,
+                                   NEVH__NODES - TAIL);
+}
+
+/* Leaves out what is noise at the end. */
+static int length_of(const double coefficient[]) {
+    double level = 2 * largest(coefficient, NEVH__NODES - TAIL, NEVH__NODES);
+    int length = NEVH__NODES;
+    while (length > 2 && fabs(coefficient[length - 1]) <= level)
+        length--;
+    return length;
+}
+
+/* The integral of q dp of two series: that of P_a P_b' is 2 where b - a is odd
+   and positive, else 0. */
+static double product(const double a[], int na, const double b[], int nb) {
+    double sum = 0;
+    for (int j = 1; j < nb; j++)
+        for (int i = j - 1; i >= 0; i -= 2)
+            sum += i < na ? 2 * a[i] * b[j] : 0;
+    return sum;
+}
+
+/* What the last coefficients of either may have in it. */
+static double tail_of(const double a[], const double b[]) {
+    double sum_a = 0, sum_b = 0;
+    for (int k = 1; k < NEVH__NODES; k++) {
+        sum_a += fabs(a[k]);
+        sum_b += fabs(b[k]);
+    }
+    return 2 * (largest(a, NEVH__NODES - TAIL, NEVH__NODES) * sum_b +
+                largest(b, NEVH__NODES - TAIL, NEVH__NODES) * sum_a);
+}
+
+/* The panel as it is. */
+static void integrate(nevh_loop *l, size_t time) {
+    double sum = 0, tail = 0;
+    bool noise = true;
+    for (size_t k = 0; k < l->n; k++) {
+        double a[NEVH__NODES], b[NEVH__NODES], own;
+        nevh__loop_expand(l, l->q + k * NEVH__NODES, l->centre[time * l->n + k],
+                          a);
+        nevh__loop_expand(l, l->p + k * NEVH__NODES, 0, b);
+        own = tail_of(a, b);
+        noise = noise && (own <= tolerance * l->unit[time] ||
+                          (is_noise(a) && is_noise(b)));
+        sum += is_noise(a) && is_noise(b)
+                   ? product(a, length_of(a), b, length_of(b))
+                   : product(a, NEVH__NODES, b, NEVH__NODES);
+        tail += own;
+    }
+    l->taken_area[time] = sum;
+    l->taken_error[time] = tail;
+    l->taken_noise[time] = noise;
+}
+
+int nevh__loop_place(nevh_loop *l, const nevh__panel *at) {
+    double s[NEVH__NODES];
+    for (int j = 0; j < NEVH__NODES; j++) {
+        s[j] = at->from + (at->to - at->from) * (l->node[j] + 1) / 2;
+        s[j] = s[j] >= 1 ? s[j] - 1 : s[j];
+    }
+    return l->is.curve(l->is.data, NEVH__NODES, s, l->q, l->p)
+               ? nevh__fail(&l->report, NEVH_EFAILED,
+                            "the curve of starts ended the run")
+               : NEVH_OK;
+}
+
+static int advance(nevh_loop *l, size_t time) {
+    size_t from = time ? l->steps[time - 1] : 0;
+    if (l->steps[time] == from)
+        return NEVH_OK;
+    return nevh_run(l->stepper, l->is.t0 + (double)from * l->is.h, l->is.h,
+                    l->steps[time] - from, l->q, l->p, NULL, 0);
+}
+
+/* From then on there is no area. */
+static void end_at(nevh_loop *l, size_t time, int status) {
+    double t = l->is.t0 + (double)l->steps[time] * l->is.h;
+    l->reach = time;
+    nevh__fail(&l->report, status,
+               "a point of the curve failed before t = %g: %s", t,
+               nevh_stepper_message(l->stepper));
+}
+
+/* Calls `look` after each of the times, as long as it says so.  Returns a status
+   that ends all. */
+int nevh__loop_follow(nevh_loop *l, nevh__panel *at,
+                      bool (*look)(nevh_loop *, nevh__panel *, size_t time)) {
+    int status = nevh__loop_place(l, at);
+    if (status)
+        return status;
+    nevh_stepper_reset(l->stepper);
+    for (size_t i = 0; i < l->reach; i++) {
+        status = advance(l, i);
+        if (status) {
+            end_at(l, i, status);
+            break;
+        }
+        if (!look(l, at, i))
+            break;
+    }
+    return NEVH_OK;
+}
+
+static void widen(double *low, double *high, double x) {
+    *low = fmin(*low, x);
+    *high = fmax(*high, x);
+}
+
+/* Where the curve is at all. */
+bool nevh__loop_measure(nevh_loop *l, nevh__panel *at, size_t time) {
+    (void)at;
+    for (size_t k = 0; k < l->n; k++)
+        for (size_t j = 0; j < NEVH__NODES; j++) {
+            size_t i = (time * l->n + k) * 2;
+            widen(&l->low[i], &l->high[i], l->q[k * NEVH__NODES + j]);
+            widen(&l->low[i + 1], &l->high[i + 1], l->p[k * NEVH__NODES + j]);
+        }
+    integrate(l, time);
+    l->area[time] += l->taken_area[time];
+    return true;
+}
+
+bool nevh__loop_keep(nevh_loop *l, nevh__panel *at, size_t time) {
+    size_t size = l->n * NEVH__NODES;
+    integrate(l, time);
+    if (l->is.shapes) {
+        memcpy(at->states + 2 * size * time, l->q, size * sizeof(double));
+        memcpy(at->states + 2 * size * time + size, l->p,
+               size * sizeof(double));
+    }
+    return true;
+}
+
+static bool is_smooth(const nevh_loop *l, size_t time) {
+    return l->taken_error[time] <= tolerance * l->unit[time] ||
+           l->taken_noise[time];
+}
+
+/* Up to the first time at which it must be cut. */
+bool nevh__loop_keep_smooth(nevh_loop *l, nevh__panel *at, size_t time) {
+    nevh__loop_keep(l, at, time);
+    l->taken_times += is_smooth(l, time);
+    return is_smooth(l, time);
+}

@@ -1,0 +1,70 @@
+/* nevh: inside a loop.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_LOOP_PRIVATE_H
+#define NEVH_LOOP_PRIVATE_H
+
+#include "run/stepper_private.h"
+#include <nevh/loop.h>
+
+enum { NEVH__NODES = 16 };
+
+typedef struct {
+    double from, to; /* s */
+    double
+        *states; /* NEVH__NODES x n of q, then of p, for each time; NULL where
+                        shapes are not kept */
+} nevh__panel;
+
+/* Panels, of which those before `front` are gone. */
+typedef struct {
+    nevh__panel *item;
+    size_t count, front, room;
+} nevh__queue;
+
+struct nevh_loop {
+    nevh__report report;
+    nevh_loop_options is;
+    nevh_stepper *stepper;
+    size_t n;
+    double *corners; /* n_corners and 1 more: the first once again */
+    size_t *steps;
+    double node[NEVH__NODES]; /* in (-1, 1) */
+    double legendre[NEVH__NODES]
+                   [NEVH__NODES]; /* [k][j]: from value j to coefficient k */
+    double *q, *p;                /* NEVH__NODES x n */
+    double *taken_area, *taken_error; /* times: of the panel at hand */
+    double *centre;                   /* n x times: taken from q */
+    double *unit;                     /* times: of areas */
+    double *low, *high;               /* 2n x times: where the curve is */
+    double *area, *error, *noise;     /* times; noise: a sum of squares */
+    bool *taken_noise, *inside; /* times; inside: by nevh__loop_look_inside */
+    nevh__panel *shape;
+    nevh__queue *rough; /* times: panels that are first too rough there */
+    size_t panels;      /* that were accepted */
+    size_t reach;       /* times before any step failed */
+    size_t taken_times; /* of the panel at hand, that are smooth */
+    bool carried;
+};
+
+/* loop_panel.c.  Carries a panel along and calls `look` after each of the times,
+   as long as it says so.
+   returns  NEVH_OK, also where a step failed; a status that ends all */
+typedef bool (*nevh__loop_look)(nevh_loop *, nevh__panel *, size_t time);
+int nevh__loop_follow(nevh_loop *, nevh__panel *, nevh__loop_look);
+/* States of the panel's nodes at the beginning. */
+int nevh__loop_place(nevh_loop *, const nevh__panel *);
+/* Of a series over a panel from its values, less `from`. */
+void nevh__loop_expand(const nevh_loop *, const double value[], double from,
+                       double coefficient[]);
+/* What to look for: where the curve is; areas, errors and states; the same up to
+   the first time at which the panel must be cut. */
+bool nevh__loop_measure(nevh_loop *, nevh__panel *, size_t time);
+bool nevh__loop_keep(nevh_loop *, nevh__panel *, size_t time);
+bool nevh__loop_keep_smooth(nevh_loop *, nevh__panel *, size_t time);
+
+/* loop_inside.c.  Finds areas that the curve no longer tells, of one degree of
+   freedom: the mean over what it enclosed at first of the determinants of all
+   steps. */
+int nevh__loop_look_inside(nevh_loop *);
+
+#endif

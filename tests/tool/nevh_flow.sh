@@ -1,0 +1,129 @@
+#!/bin/sh
+# nevh flow: areas, shapes, pictures, and what it refuses.
+
+. "${srcdir:-.}/tests/support/nevh_support.sh"
+
+rows() { grep -v '^#' $work/out | tail -n +2; }
+# holds EXPRESSION: awk's, of every row.
+holds() {
+    rows | awk -F, "function abs(x) { return x < 0 ? -x : x }
+        !($1) { print; wrong = 1 } END { exit wrong || NR == 0 }" ||
+        fails "does not hold: $1"
+}
+
+# A disc of radius 0.3, 300 steps: symplectic schemes keep its area.
+exits 0 flow pendulum --shape 'disc(phi = 1, p_phi = 0, 0.3)' \
+    --gradient exact --dt 0.1 --samples 4 --t-end 30 --format csv \
+    --integrators verlet,gauss4,implicit-euler,rk4
+test "$(grep -v '^#' $work/out | head -n 1)" = \
+    scene,integrator,symplectic,dt,t,area,ratio,points,status,error ||
+    fails "has other columns"
+test "$(rows | wc -l)" -eq 16 || fails "has not 16 rows"
+holds '$9 == "ok" && $1 == "pendulum" && $4 == 0.1'
+holds '$3 == "yes" && abs($7 - 1) < 1e-9 || $3 == "no" && ($5 == 0 || $7 < 0.9995)'
+holds '$5 > 0 || abs($6 - 3.14159265358979*0.09) < 1e-14'
+holds '$5 == (NR - 1) % 4*10'
+
+# An ellipse, a rectangle and the cat; where no shape is named the cat is round
+# the start.
+exits 0 flow pendulum --shape 'disc(p_phi = 1, phi = 0, 0.3, 0.1)' --at 1 \
+    --format csv --integrators verlet
+holds '$5 > 0 || abs($6 - 3.14159265358979*0.03) < 1e-14'
+test "$(rows | wc -l)" -eq 2 || fails "has not 2 rows"
+exits 0 flow pendulum --shape 'box(phi = pi/2, p_phi = 0, 0.3, 0.1)' --at 0,1 \
+    --format csv --integrators verlet
+holds '$5 > 0 || abs($6 - 0.03) < 1e-14'
+test "$(rows | wc -l)" -eq 2 || fails "has not 2 rows"
+exits 0 flow pendulum --integrators verlet,heun --t-end 2
+has '^shape: cat\(phi = 2, p_phi = 0, '
+has '^ verlet  .* 1\.000000000 .* ok$'
+has '^heun, dt = 0\.1: (grows|shrinks) to '
+has '^Symplectic integrators keep the area: ratios are 1 within '
+
+# Two degrees of freedom: the sum, of a loop of formulas or of a disc.
+exits 0 flow henon-heiles --dt 0.1 --gradient exact --format csv --t-end 50 \
+    --integrators verlet,rk4 \
+    --shape 'loop(x = 0.15*cos(t), p_x = 0.3 + 0.1*sin(t), y = 0.05*sin(t))'
+holds '$9 == "ok"'
+holds '$2 == "verlet" && abs($7 - 1) < 1e-9 || $2 == "rk4" && ($5 < 5 || $7 < 0.999999)'
+exits 0 flow henon-heiles --dt 0.1 --gradient exact --format csv --t-end 20 \
+    --integrators midpoint --shape 'disc(y = 0.1, p_y = 0, 0.05)'
+holds 'abs($7 - 1) < 1e-9'
+
+# Friction shrinks the area by exp(-gamma t).
+cat >$work/damped.nevh <<'END'
+[coordinates]
+x = 1
+[effects]
+kinetic = p_x^2/2
+spring = 1 - cos(x)
+[friction]
+drag = x: 0.1
+[run]
+t_end = 10
+dt = 0.1
+END
+exits 0 flow $work/damped.nevh --integrators verlet --gradient exact \
+    --shape 'disc(x = 1, p_x = 0, 0.3)' --format csv
+holds 'abs($7 - exp(-0.1*$5)) < 1e-9'
+
+# What is refused, or fails, has rows of its own.
+exits 0 flow kepler-0.9 --integrators verlet,adaptive-verlet --t-end 1 \
+    --shape 'disc(x = 0.1, p_x = 0, 0.01)' --dt 0.001
+has '^ adaptive-verlet .* refused$'
+has 'adaptive-verlet refused: .*chooses times of its own'
+cat >$work/edge.nevh <<'END'
+[coordinates]
+x = 1
+[effects]
+kinetic = p_x^2/2
+push = -x - sqrt(9 - x)
+[run]
+t_end = 10
+dt = 0.1
+END
+exits 1 flow $work/edge.nevh --integrators verlet --format csv \
+    --shape 'disc(x = 1, p_x = 0, 0.3)'
+has '^.*edge.nevh,verlet,yes,0.1,10,,,,"?failed: a point of the curve failed'
+lacks ",-?nan"
+
+# refuses WORDS ARGUMENT...
+refuses() {
+    words=$1
+    shift
+    exits 2 flow "$@"
+    says "$words"
+    test -s $work/out && fails "prints to stdout"
+}
+for bad in disc 'disc()' 'disc(phi = 1)' 'disc(phi = 1, p_phi = 0)' \
+    'blob(phi = 1, p_phi = 0, 1)' 'disc(1, 0, 1)' 'disc(phi = 1, p_phi = 0, 1' \
+    'box(phi = 1, p_phi = 0, 1)' ''; do
+    refuses '--shape takes disc' pendulum --shape "$bad"
+done
+refuses 'sizes are above 0, not -1' pendulum --shape 'disc(phi=1, p_phi=0, -1)'
+refuses 'sizes are above 0, not 0' pendulum --shape 'box(phi=1, p_phi=0, 1, 0)'
+refuses 'coordinate or momentum psi' pendulum --shape 'disc(psi=1, p_phi=0, 1)'
+refuses 'own momentum: x goes with p_x' henon-heiles \
+    --shape 'disc(x=1, p_y=0, 1)'
+refuses 'own momentum' henon-heiles --shape 'disc(x=1, y=0, 1)'
+refuses 'not closed: x is' henon-heiles --shape 'loop(x=t, p_x=sin(t))'
+refuses 'x is given twice' henon-heiles --shape 'loop(x=sin(t), x=cos(t))'
+refuses 'encloses no area' henon-heiles --shape 'loop(x=sin(t))'
+refuses 'not finite' henon-heiles --shape 'loop(x=sqrt(cos(t)), p_x=sin(t))'
+refuses 'frobnicate' henon-heiles --shape 'loop(x=frobnicate(t), p_x=sin(t))'
+refuses 'stays where it starts' pendulum --start phi=0
+refuses 'takes 1000 times' pendulum --samples 100000000
+refuses 'the run is from' pendulum --at -1
+refuses 'dt = 2000 is longer' pendulum --dt 2000
+refuses 'FILE.svg' pendulum --plot nowhere.doc
+
+# The picture: panels an integrator and time.
+if command -v gnuplot >/dev/null 2>&1; then
+    exits 0 flow pendulum --integrators verlet,euler --t-end 3 \
+        --plot $work/flow.svg --keep-plot-script $work/script
+    test -s $work/flow.svg || fails "draws nothing"
+    test "$(grep -c '^set lmargin at' $work/script)" -eq 10 ||
+        fails "has not 10 panels"
+    grep -q 'filledcurves closed' $work/script || fails "fills no shape"
+fi
+exit $status

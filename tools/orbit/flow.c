@@ -1,0 +1,324 @@
+/* nevh flow: what integrators do to the area of a shape of starts.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "flow.h"
+#include "plot/plot.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { USUAL_STEPS = 1000, MOST_TIMES = 1000 };
+
+bool flow_resolved(nevh_loop_area r) {
+    static const double certain = 1e-6;
+    return r.error <= certain * fabs(r.area);
+}
+
+static int by_size(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* When the area is asked for: where the options say, else at once, and after 10,
+   30, 100 and 1000 steps, or such parts of the run where that is shorter. */
+static int take_times(flow_job *j, const options *o) {
+    static const double parts[] = {0, 0.01, 0.03, 0.1, 1};
+    enum { USUAL_TIMES = sizeof parts / sizeof *parts };
+    const plan *p = &j->plan;
+    double begin = p->run->t_start, end = p->t_end;
+    bool equal = o->samples > 0;
+    j->times = p->ats ? p->ats + 1 : equal ? o->samples : USUAL_TIMES;
+    if (j->times > MOST_TIMES)
+        return tool_refuse("nevh flow takes %d times at most, not %zu",
+                           MOST_TIMES, j->times);
+    if (!o->t_end && !p->ats)
+        end = fmin(end, begin + USUAL_STEPS * p->dt[0]);
+    j->time = tool_allocate(j->times + 1, sizeof *j->time);
+    j->time[0] = begin;
+    for (size_t i = 1; i < j->times; i++) {
+        double part =
+            equal ? (double)i / (double)(j->times - 1) : parts[i % USUAL_TIMES];
+        j->time[i] = p->ats ? p->at[i - 1] : begin + (end - begin) * part;
+    }
+    qsort(j->time, j->times, sizeof *j->time, by_size);
+    if (p->ats && j->times > 1 && j->time[1] == begin)
+        memmove(j->time + 1, j->time + 2, (--j->times - 1) * sizeof *j->time);
+    return TOOL_OK;
+}
+
+/* A loop of the shape; eye: 0, or which one of the cat. */
+static nevh_loop *new_loop(flow_job *j, const flow_row *r, int eye,
+                           bool shapes) {
+    const plan *p = &j->plan;
+    double corner[FLOW_CORNERS];
+    size_t *steps = tool_allocate(j->times, sizeof *steps);
+    nevh_options o = plan_options(p, p->gradients.item[0]);
+    bool transformed;
+    const nevh_integrator *scheme = plan_scheme(r->integrator, &transformed);
+    o.transform = plan_transform(p, r->integrator);
+    if (nevh_integrator_adaptive(scheme) && p->tolerances)
+        o.tolerance = p->tolerance[0];
+    for (size_t i = 0; i < j->times; i++)
+        steps[i] = (size_t)llround((j->time[i] - j->time[0]) / r->dt);
+    j->shape.eye = eye;
+    nevh_loop_options is = {.curve = shape_curve,
+                            .data = &j->shape,
+                            .corners = corner,
+                            .n_corners = shape_corners(&j->shape, corner),
+                            .steps = steps,
+                            .times = j->times,
+                            .t0 = j->time[0],
+                            .h = r->dt,
+                            .shapes = shapes};
+    nevh_loop *l = tool_owned(nevh_loop_new(p->system, scheme, &o, &is));
+    free(steps);
+    return l;
+}
+
+/* returns  TOOL_OK, TOOL_FAILED where a step failed, or TOOL_USAGE */
+static int run_row(flow_job *j, flow_row *r, const options *o) {
+    bool shapes = plot_wanted(o);
+    r->loop = new_loop(j, r, 0, shapes);
+    if (nevh_loop_status(r->loop)) {
+        r->status = text_print("refused: %s", nevh_loop_message(r->loop));
+        return TOOL_OK;
+    }
+    int status = nevh_loop_carry(r->loop);
+    if (j->shape.failed)
+        return TOOL_USAGE;
+    if (status == NEVH_EINVAL)
+        return tool_refuse("--shape: %s", nevh_loop_message(r->loop));
+    for (int i = 0; shapes && j->shape.kind == FLOW_CAT && i < FLOW_EYES; i++) {
+        r->eye[i] = new_loop(j, r, i + 1, true);
+        nevh_loop_carry(r->eye[i]);
+        j->shape.eye = 0;
+    }
+    if (status)
+        r->status = text_print("failed: %s", nevh_loop_message(r->loop));
+    return status ? TOOL_FAILED : TOOL_OK;
+}
+
+/* All integrators; the first dt, or those that --dt gives. */
+static int run_rows(flow_job *j, const options *o) {
+    const plan *p = &j->plan;
+    size_t dts = o->dt.count ? p->dts : 1;
+    int worst = TOOL_OK;
+    j->row = tool_allocate(dts * p->integrators.count, sizeof *j->row);
+    for (size_t d = 0; d < dts; d++)
+        for (size_t i = 0; i < p->integrators.count; i++) {
+            flow_row *r = &j->row[j->rows++];
+            r->integrator = p->integrators.item[i];
+            r->dt = p->dt[d];
+            r->code = run_row(j, r, o);
+            if (r->code == TOOL_USAGE)
+                return TOOL_USAGE;
+            worst = r->code ? r->code : worst;
+        }
+    return worst;
+}
+
+static char *status_of(const flow_row *r, nevh_loop_area at) {
+    if (isnan(at.area))
+        return text_print("%s", r->status);
+    if (at.inside)
+        return text_print("from inside: uncertain by %.1e",
+                          at.error / fabs(at.area));
+    return flow_resolved(at) ? text_print("ok")
+                             : text_print("unresolved: uncertain by %.1e",
+                                          at.error / fabs(at.area));
+}
+
+static const char *symplectic(const flow_row *r) {
+    bool transformed;
+    return nevh_claim_name(
+        nevh_integrator_symplectic(plan_scheme(r->integrator, &transformed)));
+}
+
+static void add_records(table *t, const flow_job *j) {
+    for (size_t k = 0; k < j->rows; k++) {
+        const flow_row *r = &j->row[k];
+        double first = nevh_loop_result(r->loop, 0).area;
+        for (size_t i = 0; i < j->times; i++) {
+            nevh_loop_area at = nevh_loop_result(r->loop, i);
+            char *status = status_of(r, at);
+            table_text(t, j->plan.name);
+            table_text(t, r->integrator);
+            table_text(t, symplectic(r));
+            table_number(t, r->dt);
+            table_number(t, at.t);
+            table_number(t, at.area);
+            table_number(t, at.area / first);
+            if (at.points)
+                table_shown(t, "%zu", at.points);
+            else
+                table_text(t, NULL);
+            table_text(t, status);
+            table_number(t, at.error);
+            free(status);
+        }
+    }
+}
+
+static table *records(const flow_job *j) {
+    static const char *const columns[] = {
+        "scene", "integrator", "symplectic", "dt",     "t",
+        "area",  "ratio",      "points",     "status", "error"};
+    table *t = table_new();
+    table_columns(t, columns, sizeof columns / sizeof *columns);
+    add_records(t, j);
+    return t;
+}
+
+static void show_ratio(table *t, double ratio) {
+    if (isnan(ratio))
+        table_text(t, NULL);
+    else
+        table_shown(t, fabs(ratio - 1) < 0.5 ? "%.9f" : "%.6g", ratio);
+}
+
+static void show_row(table *t, const flow_job *j, const flow_row *r) {
+    double first = nevh_loop_result(r->loop, 0).area;
+    for (size_t i = 0; i < j->times; i++) {
+        nevh_loop_area at = nevh_loop_result(r->loop, i);
+        if (i == 0)
+            table_group(t);
+        table_text(t, r->integrator);
+        table_text(t, symplectic(r));
+        table_shown(t, "%.4g", r->dt);
+        if (isnan(at.area)) {
+            for (int c = 0; c < 4; c++)
+                table_text(t, NULL);
+            table_text(t, r->code ? "failed" : "refused");
+            return;
+        }
+        table_shown(t, "%.6g", at.t);
+        table_shown(t, "%.6g", at.area);
+        show_ratio(t, at.area / first);
+        table_shown(t, "%zu", at.points);
+        char *status = status_of(r, at);
+        table_text(t, status);
+        free(status);
+    }
+}
+
+static table *shown(const flow_job *j) {
+    const char *unit = nevh_scene_label(j->plan.scene, "t");
+    char *dt = text_print(*unit ? "dt/%s" : "dt%s", unit);
+    char *time = text_print(*unit ? "t/%s" : "t%s", unit);
+    table *t = table_new();
+    table_column(t, "integrator");
+    table_column(t, "sympl.");
+    table_column(t, dt);
+    table_column(t, time);
+    table_column(t, "area");
+    table_column(t, "area over\nthe first");
+    table_column(t, "points");
+    table_column(t, "status");
+    for (size_t i = 0; i < j->rows; i++)
+        show_row(t, j, &j->row[i]);
+    free(dt);
+    free(time);
+    return t;
+}
+
+static void note(const flow_job *j, const options *o, list *notes) {
+    const plan *p = &j->plan;
+    plan_notes(p, notes);
+    settings_notes(o, notes);
+    list_print(notes, "shape: %s", j->shape.text);
+    list_print(notes, "area: %s%s",
+               p->n > 1 ? "the sum over coordinates x of the integral of x "
+                          "dp_x round the edge"
+                        : "what the edge encloses",
+               "; at whole steps");
+    list_print(notes, "gradient: %s%s", p->gradients.item[0],
+               p->gradients.count > 1 ? ", the first of the list" : "");
+    if (!o->dt.count && p->dts > 1)
+        list_print(notes, "dt = %.9g: the first of the list", p->dt[0]);
+}
+
+/* The largest |ratio - 1| of symplectic rows, and what others do. */
+static void words(const flow_job *j, list *to) {
+    double worst = 0;
+    bool any = false;
+    for (size_t k = 0; k < j->rows; k++) {
+        const flow_row *r = &j->row[k];
+        double first = nevh_loop_result(r->loop, 0).area;
+        nevh_loop_area last = {.area = NAN};
+        for (size_t i = 0; i < j->times; i++) {
+            nevh_loop_area at = nevh_loop_result(r->loop, i);
+            if (!isnan(at.area) && (at.inside || flow_resolved(at)))
+                last = at;
+            if (!isnan(at.area) && flow_resolved(at) &&
+                strcmp(symplectic(r), "yes") == 0) {
+                worst = fmax(worst, fabs(at.area / first - 1));
+                any = true;
+            }
+        }
+        if (!isnan(last.area) && strcmp(symplectic(r), "yes") != 0)
+            list_print(to, "%s, dt = %g: %s to %.6g of the area by t = %.6g.",
+                       r->integrator, r->dt,
+                       last.area > first ? "grows" : "shrinks",
+                       last.area / first, last.t);
+        if (r->status)
+            list_print(to, "%s %s", r->integrator, r->status);
+    }
+    if (any && !j->plan.friction)
+        list_print(to,
+                   "Symplectic integrators keep the area: ratios are 1 "
+                   "within %.1e.",
+                   worst);
+    else if (any)
+        list_add(to, "With friction the area shrinks, with symplectic "
+                     "integrators by exp(-gamma t) where all rates are equal.");
+}
+
+static int print(const flow_job *j, const options *o, int status) {
+    bool is_table = o->format == FORMAT_TABLE;
+    page result = {.table = is_table ? shown(j) : records(j)};
+    if (!(o->quiet && is_table)) {
+        note(j, o, &result.before);
+        words(j, &result.after);
+    }
+    status = output_page(o, &result, status);
+    page_free(&result);
+    return status;
+}
+
+static int show(const flow_job *j, const options *o, int status) {
+    bool first = plot_goes_first(o);
+    int drawn = first ? flow_plot(j, o) : TOOL_OK;
+    status = print(j, o, status);
+    if (plot_wanted(o) && !first && status != TOOL_USAGE)
+        drawn = flow_plot(j, o);
+    return drawn > status ? drawn : status;
+}
+
+static void forget(flow_job *j) {
+    for (size_t i = 0; i < j->rows; i++) {
+        nevh_loop_free(j->row[i].loop);
+        for (int k = 0; k < FLOW_EYES; k++)
+            nevh_loop_free(j->row[i].eye[k]);
+        free(j->row[i].status);
+    }
+    free(j->row);
+    free(j->time);
+    shape_free(&j->shape);
+    plan_free(&j->plan);
+}
+
+int flow(const options *o) {
+    flow_job j = {0};
+    int status = plan_make(&j.plan, o);
+    if (!status)
+        status = shape_read(&j.shape, &j.plan, o, o->shape);
+    if (!status)
+        status = take_times(&j, o);
+    if (!status)
+        status = plot_check(o);
+    if (!status)
+        status = run_rows(&j, o);
+    if (status != TOOL_USAGE)
+        status = show(&j, o, status);
+    forget(&j);
+    return status;
+}
