@@ -38,6 +38,12 @@ examples_gradient_cost_SOURCES = examples/gradient_cost.c $(gradient_systems)
 examples_gradient_error_LDADD = libnevh.la
 examples_gradient_cost_LDADD = libnevh.la
 
+if HAVE_MPI
+noinst_PROGRAMS += examples/sweep_mpi
+endif
+examples_sweep_mpi_CPPFLAGS = $(AM_CPPFLAGS) $(MPI_CPPFLAGS)
+examples_sweep_mpi_LDADD = libnevh.la $(MPI_LIBS)
+
 # To read, and to compile with the installed library.
 exampledir = $(docdir)/examples
 dist_example_DATA = \
@@ -57,4 +63,5 @@ dist_example_DATA = \
 	examples/nevh_cost.c \
 	examples/own_kernel.c \
 	examples/pendulum_energy.c \
-	examples/steps_that_follow.c
+	examples/steps_that_follow.c \
+	examples/sweep_mpi.c

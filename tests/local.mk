@@ -166,6 +166,7 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_sweep.sh \
 	tests/tool/nevh_flow.sh \
 	tests/tool/nevh_sweep_file.sh \
+	tests/tool/nevh_sweep_mpi.sh \
 	tests/tool/nevh_run.sh \
 	tests/tool/nevh_code.sh \
 	tests/tool/nevh_export.sh \

@@ -67,6 +67,8 @@ tools_nevh_SOURCES = \
 	tools/hard/hard.c \
 	tools/ensemble/store.h \
 	tools/ensemble/store.c \
+	tools/ensemble/ranks.h \
+	tools/ensemble/ranks.c \
 	tools/ensemble/sweep.c \
 	tools/inspect/check.c \
 	tools/orbit/section.c \
@@ -112,5 +114,14 @@ tools_nevh_SOURCES = \
 tools_nevh_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE \
 	-DNEVH_SCENES='"$(scenesdir)"'
 tools_nevh_LDADD = libnevh.la $(GSL_LIBS)
+
+# nevh with ranks of MPI, which mpirun nevh sweep becomes.
+if HAVE_MPI
+bin_PROGRAMS += tools/nevh-mpi
+endif
+tools_nevh_mpi_SOURCES = tools/ensemble/ranks_mpi.c
+tools_nevh_mpi_CPPFLAGS = $(tools_nevh_CPPFLAGS) $(MPI_CPPFLAGS)
+tools_nevh_mpi_LDADD = $(tools_nevh_OBJECTS) $(tools_nevh_LDADD) $(MPI_LIBS)
+tools_nevh_mpi_DEPENDENCIES = $(tools_nevh_OBJECTS) libnevh.la
 
 dist_completions_DATA = tools/completion/nevh

@@ -1,5 +1,6 @@
 /* nevh: the command.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "ensemble/ranks.h"
 #include "config.h"
 #include "cli/tool.h"
 #include <errno.h>
@@ -143,6 +144,7 @@ static int end_output(int status) {
 
 int main(int argc, char **argv) {
     options o;
+    ranks_exec(argv);
     set_process();
     int status = options_read(&o, argc, argv);
     if (!status)

@@ -93,6 +93,17 @@ typedef bool (*nevh_wanted_fn)(void *data, uint64_t member);
 NEVH_API int nevh_sweep_run(nevh_sweep *, uint64_t first, uint64_t count,
                             nevh_wanted_fn wanted, nevh_sweep_fn tell,
                             void *data);
+/* Asks for the next members to be run.
+   first, count   out
+   returns        whether there are any */
+typedef bool (*nevh_chunk_fn)(void *data, uint64_t *first, uint64_t *count);
+/* The same of members that are asked for, chunk after chunk: of what several
+   processes share, such as a counter of MPI.
+   chunks   is called by one thread at a time, and never while `tell` is
+   returns  as nevh_sweep_run; NEVH_EINVAL where results are to be in order */
+NEVH_API int nevh_sweep_run_chunks(nevh_sweep *, nevh_chunk_fn chunks,
+                                   void *chunks_data, nevh_wanted_fn wanted,
+                                   nevh_sweep_fn tell, void *data);
 /* No member begins any more: nevh_sweep_run finishes those under way and returns
    NEVH_STOPPED.  May be called from a signal handler, from another thread or
    from `tell`; what was asked for before a run begins counts for that run. */

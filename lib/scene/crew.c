@@ -80,6 +80,17 @@ static void finish(worker *w, uint64_t member, const double varied[],
 
 /* Chunks. */
 
+/* From who shares the members out. */
+static void ask_for_chunk(nevh_sweep *s) {
+    uint64_t first = 0, count = 0, members = nevh_sweep_members(s);
+    if (!s->chunks(s->chunks_data, &first, &count)) {
+        s->chunks = NULL;
+        return;
+    }
+    s->next = first < members ? first : members;
+    s->end = count < members - s->next ? s->next + count : members;
+}
+
 /* Takes the next one; waits for room where it may. */
 static bool take_chunk(worker *w, bool may_wait) {
     nevh_sweep *s = w->sweep;
@@ -87,6 +98,8 @@ static bool take_chunk(worker *w, bool may_wait) {
     while (may_wait && s->waiting && !s->stopped && !s->draining &&
            s->next < s->end && s->next + CHUNK > s->low + WINDOW)
         pthread_cond_wait(&s->moved, &s->lock);
+    if (s->chunks && s->next == s->end && !s->stopped && !s->draining)
+        ask_for_chunk(s);
     bool room = !s->waiting || s->next + CHUNK <= s->low + WINDOW;
     uint64_t from = s->next, to = from;
     if (room && !s->stopped && !s->draining && from < s->end)
@@ -335,16 +348,8 @@ void nevh_sweep_stop(nevh_sweep *s) {
         s->draining = 1;
 }
 
-int nevh_sweep_run(nevh_sweep *s, uint64_t first, uint64_t count,
-                   nevh_wanted_fn wanted, nevh_sweep_fn tell_fn, void *data) {
-    if (!s)
-        return NEVH_EINVAL;
-    if (s->report.status && s->report.status != NEVH_STOPPED)
-        return s->report.status;
-    s->report = (nevh__report){0};
-    uint64_t members = nevh_sweep_members(s);
-    s->first = s->next = s->low = first < members ? first : members;
-    s->end = count < members - s->first ? s->first + count : members;
+static int run(nevh_sweep *s, nevh_wanted_fn wanted, nevh_sweep_fn tell_fn,
+               void *data) {
     s->wanted = wanted;
     s->tell = tell_fn;
     s->data = data;
@@ -372,4 +377,38 @@ int nevh_sweep_run(nevh_sweep *s, uint64_t first, uint64_t count,
     return s->stopped || drained
                ? nevh__fail(&s->report, NEVH_STOPPED, "the sweep was to stop")
                : NEVH_OK;
+}
+
+/* Of a sweep that could not be planned. */
+static int begin(nevh_sweep *s) {
+    if (s->report.status && s->report.status != NEVH_STOPPED)
+        return s->report.status;
+    s->report = (nevh__report){0};
+    return NEVH_OK;
+}
+
+int nevh_sweep_run(nevh_sweep *s, uint64_t first, uint64_t count,
+                   nevh_wanted_fn wanted, nevh_sweep_fn tell_fn, void *data) {
+    int status = s ? begin(s) : NEVH_EINVAL;
+    if (status)
+        return status;
+    uint64_t members = nevh_sweep_members(s);
+    s->first = s->next = s->low = first < members ? first : members;
+    s->end = count < members - s->first ? s->first + count : members;
+    s->chunks = NULL;
+    return run(s, wanted, tell_fn, data);
+}
+
+int nevh_sweep_run_chunks(nevh_sweep *s, nevh_chunk_fn chunks,
+                          void *chunks_data, nevh_wanted_fn wanted,
+                          nevh_sweep_fn tell_fn, void *data) {
+    int status = s ? begin(s) : NEVH_EINVAL;
+    if (status)
+        return status;
+    if (s->is.ordered || !chunks)
+        return NEVH_EINVAL;
+    s->first = s->next = s->low = s->end = 0;
+    s->chunks = chunks;
+    s->chunks_data = chunks_data;
+    return run(s, wanted, tell_fn, data);
 }

@@ -49,6 +49,8 @@ struct nevh_sweep {
     void *data;
     nevh__waiting *waiting; /* NULL: the order does not matter */
     bool stopped, failed;
+    nevh_chunk_fn chunks; /* where next and end come from; NULL: they stay */
+    void *chunks_data;
     volatile sig_atomic_t draining;
 };
 

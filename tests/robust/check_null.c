@@ -185,6 +185,7 @@ static nevh_separability separability;
     X(TEXT, nevh_sweep_column, (NULL, 0))                                      \
     X(NUMBER, nevh_sweep_is_verdict, (NULL, 0))                                \
     X(STATUS, nevh_sweep_run, (NULL, 0, 0, NULL, NULL, NULL))                  \
+    X(STATUS, nevh_sweep_run_chunks, (NULL, NULL, NULL, NULL, NULL, NULL))     \
     X(ANY, nevh_sweep_stop, (NULL))                                            \
     X(ANY, nevh_system_free, (NULL))                                           \
     X(STATUS, nevh_system_add, (NULL, NULL))                                   \

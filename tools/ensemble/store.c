@@ -36,6 +36,8 @@ static int unwritten(const store *s) {
 static bool write_at(const store *s, const void *bytes, size_t count,
                      uint64_t at) {
     const char *from = bytes;
+    if (s->write)
+        return s->write(bytes, count, at);
     while (count) {
         ssize_t now = pwrite(s->file, from, count, (off_t)at);
         if (now < 0 && errno == EINTR)
@@ -301,6 +303,14 @@ int store_resume(store *s, const char *name) {
     if (fstat(s->file, &found) == 0 && (uint64_t)found.st_size <= s->header)
         return init(s);
     return check_file(s) ? TOOL_USAGE : map(s);
+}
+
+int store_attach(store *s, const char *name) {
+    measure(s, name);
+    s->file = open(s->name, O_RDONLY | O_CLOEXEC);
+    if (s->file < 0)
+        return tool_refuse("%s cannot be read: %s", s->name, strerror(errno));
+    return check_side(s) || check_file(s) ? TOOL_USAGE : map(s);
 }
 
 nevh_member_status store_status(const store *s, uint64_t member) {

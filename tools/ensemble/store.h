@@ -24,6 +24,8 @@ typedef struct {
     const unsigned char *map; /* the whole file; NULL: not mapped */
     size_t mapped;
     uint64_t reasons; /* written */
+    /* Writes to the file, as pwrite does; NULL: pwrite. */
+    bool (*write)(const void *bytes, size_t count, uint64_t at);
 } store;
 
 /* FILE.npy, or for task I of N (0: there are no tasks) FILE.I-of-N.npy; to be
@@ -34,6 +36,8 @@ char *store_name(const char *file, uint64_t task, uint64_t tasks);
 int store_create(store *, const char *name);
 /* Opens a file that was left, whose settings must be the same. */
 int store_resume(store *, const char *name);
+/* Looks at a file that another process has opened. */
+int store_attach(store *, const char *name);
 /* The first member, and how many, of a file that is to be resumed. */
 int store_range(const char *name, uint64_t *first, uint64_t *count);
 /* The status of a member. */

@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "config.h"
 #include "experiment/plan.h"
+#include "ranks.h"
 #include "store.h"
 #include <ctype.h>
 #include <dirent.h>
@@ -22,6 +23,8 @@ typedef struct {
     list notes, columns;
     output out;
     store store; /* of an array */
+    ranks ranks;
+    size_t threads;
     uint64_t first, count, failed, startless, told;
     char *why; /* of the first that is not done */
     double begun, shown;
@@ -65,11 +68,6 @@ static double seconds(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static size_t processors(void) {
-    long count = sysconf(_SC_NPROCESSORS_ONLN);
-    return count > 0 ? (size_t)count : 1;
-}
-
 /* How members are run. */
 
 static int make_sweep(job *j) {
@@ -79,6 +77,7 @@ static int make_sweep(job *j) {
     if (!first)
         return TOOL_USAGE;
     nevh_stepper_free(first);
+    j->threads = o->threads ? o->threads : ranks_threads(&j->ranks);
     nevh_sweep_options is = {.gradient =
                                  nevh_gradient_named(p->gradients.item[0]),
                              .gradient_step = o->gradient_step,
@@ -86,7 +85,7 @@ static int make_sweep(job *j) {
                              .t_end = o->t_end ? p->t_end : 0,
                              .portable = p->portable,
                              .width = o->width,
-                             .threads = o->threads ? o->threads : processors(),
+                             .threads = j->threads,
                              .ordered = !is_array(o)};
     is.integrator = plan_scheme(j->integrator, &is.transformed);
     is.transformed = plan_transform(p, j->integrator) != NULL;
@@ -295,14 +294,23 @@ static int run_array(job *j) {
     under_way = j->sweep;
     mind_signals(j->options->stop_after);
     j->begun = j->shown = seconds();
-    int status = nevh_sweep_run(j->sweep, j->store.first, j->store.count,
-                                is_wanted, keep, j);
+    bool shared = j->ranks.count > 1;
+    int status = shared ? nevh_sweep_run_chunks(j->sweep, ranks_take, &j->ranks,
+                                                is_wanted, keep, j)
+                        : nevh_sweep_run(j->sweep, j->store.first,
+                                         j->store.count, is_wanted, keep, j);
     under_way = NULL;
     if (j->shown > j->begun)
         fputs("\r\033[K", stderr);
-    if (status && status != NEVH_STOPPED)
-        return tool_refuse("%s", nevh_sweep_message(j->sweep));
-    return store_finish(&j->store) ? TOOL_USAGE : tell_array(j);
+    status = status && status != NEVH_STOPPED
+                 ? tool_refuse("%s", nevh_sweep_message(j->sweep))
+                 : TOOL_OK;
+    if (shared)
+        status = ranks_close(&j->ranks, status);
+    j->store.write = NULL;
+    if (!status && !j->ranks.rank)
+        status = store_finish(&j->store) ? TOOL_USAGE : tell_array(j);
+    return ranks_agree(&j->ranks, status);
 }
 
 /* The first member of a part. */
@@ -389,14 +397,14 @@ static int fill_array(job *j) {
     if (o->tasks)
         take_part(j, o->task, o->tasks, &j->store.first, &j->store.count);
     if (o->resume)
-        status = store_range(o->resume, &j->store.first, &j->store.count);
+        status = ranks_agree(&j->ranks, store_range(o->resume, &j->store.first,
+                                                    &j->store.count));
     j->count = o->join ? j->count : j->store.count;
     if (!status && o->join) {
         status = join(j);
     } else if (!status) {
         name = store_name(o->resume ? o->resume : o->file, o->task, o->tasks);
-        status = o->resume ? store_resume(&j->store, name)
-                           : store_create(&j->store, name);
+        status = ranks_open(&j->ranks, &j->store, name, o->resume, j->threads);
         if (!status)
             status = run_array(j);
     }
@@ -436,9 +444,13 @@ int sweep(const options *o) {
     int status = check_options(o);
     if (status)
         return status;
-    status = plan_make(&j.plan, o);
-    if (!status)
-        status = make_sweep(&j);
+    status = ranks_begin(&j.ranks, o, is_array(o));
+    if (!status) {
+        status = plan_make(&j.plan, o);
+        if (!status)
+            status = make_sweep(&j);
+        status = ranks_agree(&j.ranks, status);
+    }
     if (!status) {
         note(&j);
         status = is_array(o) ? fill_array(&j) : run(&j);
@@ -448,5 +460,6 @@ int sweep(const options *o) {
     list_free(&j.columns);
     free(j.why);
     plan_free(&j.plan);
+    ranks_end(&j.ranks);
     return status;
 }

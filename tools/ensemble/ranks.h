@@ -1,0 +1,50 @@
+/* nevh sweep: processes of MPI that share a sweep.
+
+   nevh does not link MPI.  Started by mpirun with several processes it becomes
+   nevh-mpi, the same program with one file more, which has ranks_mpi.  Ranks take
+   chunks of members from a counter of rank 0 by one-sided operations, so that a
+   slow one holds up no other, and write records into the one file.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_RANKS_H
+#define NEVH_RANKS_H
+
+#include "store.h"
+
+/* What of MPI is used. */
+typedef struct {
+    /* rank, ranks, and those of this machine */
+    bool (*begin)(size_t *rank, size_t *count, size_t *local);
+    int (*largest)(int); /* of all ranks; waits without using a processor */
+    /* The file, for writing, and the counter; collective.  NULL, or why not. */
+    const char *(*open)(const char *name);
+    uint64_t (*add)(uint64_t); /* to the counter: what it was before */
+    bool (*write)(const void *bytes, size_t count, uint64_t at);
+    const char *(*close)(void); /* collective */
+    void (*end)(void);
+} ranks_functions;
+extern const ranks_functions ranks_mpi __attribute__((weak));
+
+typedef struct {
+    size_t rank, count, local; /* count 1: alone */
+    uint64_t first, members, chunk;
+    int stderr_kept; /* a rank above 0 is silent while all do the same */
+} ranks;
+
+/* Where mpirun started several processes for a sweep, nevh-mpi takes the place
+   of this one, if it is there. */
+void ranks_exec(char *argv[]);
+/* All return TOOL_OK or, with a message, TOOL_USAGE. */
+int ranks_begin(ranks *, const options *, bool array);
+/* The largest status of all ranks, from all of them. */
+int ranks_agree(ranks *, int status);
+/* Rank 0 creates the file, or goes on with it; others look at it. */
+int ranks_open(ranks *, store *, const char *name, bool resume, size_t threads);
+/* The next chunk; nevh_chunk_fn. */
+bool ranks_take(void *ranks, uint64_t *first, uint64_t *count);
+/* All have done what they took: the file is whole.  Returns as ranks_agree. */
+int ranks_close(ranks *, int status);
+void ranks_end(ranks *);
+/* Threads that a rank has processors for. */
+size_t ranks_threads(const ranks *);
+
+#endif
