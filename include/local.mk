@@ -1,6 +1,7 @@
 nevhincludedir = $(includedir)/nevh
 nevhinclude_HEADERS = \
 	include/nevh/body.h \
+	include/nevh/certain.h \
 	include/nevh/simd.h \
 	include/nevh/diagnose.h \
 	include/nevh/extend.h \

@@ -91,6 +91,9 @@ libnevh_core_la_SOURCES = \
 	lib/taylor/schedule.c \
 	lib/taylor/series_double.c \
 	lib/taylor/series_quad.c \
+	lib/taylor/quad_orbit_private.h \
+	lib/taylor/quad_orbit.c \
+	lib/taylor/certain.c \
 	lib/work/work_private.h \
 	lib/work/work.c \
 	lib/work/substeps.c \

@@ -170,6 +170,7 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_run.sh \
 	tests/tool/nevh_code.sh \
 	tests/tool/nevh_export.sh \
+	tests/tool/nevh_certain.sh \
 	tests/tool/nevh_memory.sh \
 	tests/tool/nevh_files.sh \
 	tests/tool/nevh_units.sh \

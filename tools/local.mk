@@ -55,6 +55,7 @@ tools_nevh_SOURCES = \
 	tools/orbit/trajectory.c \
 	tools/orbit/run.c \
 	tools/orbit/export.c \
+	tools/orbit/reference.c \
 	tools/experiment/stability.c \
 	tools/search/remedy.c \
 	tools/inspect/trial_run.c \

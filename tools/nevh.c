@@ -36,6 +36,8 @@ static const struct {
     {flow, FOR_FLOW, "SCENE",
      "a disc, a rectangle or Arnold's cat of starts carried along by each "
      "integrator: its area by time"},
+    {reference_command, FOR_REFERENCE, "SCENE",
+     "the state at the end, or at times, to digits that are certain"},
     {export_scene, FOR_EXPORT, "SCENE",
      "the steps of one integrator as a C program that needs nothing else"},
     {hard, FOR_HARD, "",

@@ -7,6 +7,7 @@
 #ifndef NEVH_H
 #define NEVH_H
 
+#include <nevh/certain.h>
 #include <nevh/diagnose.h>
 #include <nevh/ensemble.h>
 #include <nevh/gradient.h>

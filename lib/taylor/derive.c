@@ -42,14 +42,35 @@ static const char *why_not(unsigned operation) {
     case NEVH__FLOOR:
         return "is not analytic, so that its derivatives say nothing about it "
                "elsewhere";
-    case NEVH__BESSEL_J0:
-    case NEVH__BESSEL_J1:
-    case NEVH__ELLIPTIC_K:
-    case NEVH__ELLIPTIC_E:
-    case NEVH__ECCENTRIC:
-        return "is one whose recurrence is not known here";
-    default:
+    case NEVH__ADD:
+    case NEVH__SUBTRACT:
+    case NEVH__MULTIPLY:
+    case NEVH__DIVIDE:
+    case NEVH__POWER:
+    case NEVH__NEGATE:
+    case NEVH__SIN:
+    case NEVH__COS:
+    case NEVH__SINCOS:
+    case NEVH__TAN:
+    case NEVH__ASIN:
+    case NEVH__ACOS:
+    case NEVH__ATAN:
+    case NEVH__ATAN2:
+    case NEVH__SINH:
+    case NEVH__COSH:
+    case NEVH__TANH:
+    case NEVH__ASINH:
+    case NEVH__ACOSH:
+    case NEVH__ATANH:
+    case NEVH__EXP:
+    case NEVH__LOG:
+    case NEVH__LOG10:
+    case NEVH__SQRT:
+    case NEVH__CBRT:
+    case NEVH__HYPOT:
         return NULL;
+    default:
+        return "is one whose recurrence is not known here";
     }
 }
 

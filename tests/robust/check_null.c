@@ -17,6 +17,17 @@ static nevh_separability separability;
    a number that is 0, one that is 0 or NAN, an object that carries a status or is
    NULL, no pointer, or whatever. */
 #define CALLS(X)                                                               \
+    X(MADE, nevh_certain_new, (NULL, 0.1, in, in, 20))                         \
+    X(ANY, nevh_certain_free, (NULL))                                          \
+    X(STATUS, nevh_certain_status, (NULL))                                     \
+    X(TEXT, nevh_certain_message, (NULL))                                      \
+    X(STATUS, nevh_certain_go, (NULL, 0.1))                                    \
+    X(NUMBER, nevh_certain_series, (NULL))                                     \
+    X(REAL, nevh_certain_value, (NULL, 0))                                     \
+    X(REAL, nevh_certain_error, (NULL, 0))                                     \
+    X(REAL, nevh_certain_size, (NULL, 0))                                      \
+    X(NUMBER, nevh_certain_digits, (NULL, 0))                                  \
+    X(ANY, nevh_certain_text, (NULL, 0))                                       \
     X(MADE, nevh_energy_new, (NULL, NULL))                                     \
     X(ANY, nevh_energy_free, (NULL))                                           \
     X(STATUS, nevh_energy_status, (NULL))                                      \

@@ -175,6 +175,13 @@ int read_samples(options *o, const char *argument) {
     return read_count("samples", argument, &o->samples);
 }
 
+int read_digits(options *o, const char *argument) {
+    int status = read_count("digits", argument, &o->digits);
+    return status || o->digits <= 30
+               ? status
+               : tool_refuse("--digits takes 1 to 30, not %s", argument);
+}
+
 int read_repeat(options *o, const char *argument) {
     return read_count("repeat", argument, &o->repeats);
 }

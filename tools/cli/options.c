@@ -9,7 +9,7 @@
 enum {
     OF_COST = FOR_COST | FOR_GRADIENTS | FOR_RECOMMEND,
     OF_SCENES = FOR_EXPORT | FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_RUN |
-                FOR_SECTION | FOR_SWEEP | FOR_FLOW | OF_COST,
+                FOR_SECTION | FOR_SWEEP | FOR_FLOW | FOR_REFERENCE | OF_COST,
     OF_NATIVE = FOR_COMPARE | FOR_RUN | FOR_COST | FOR_RECOMMEND,
     OF_TABLES = (OF_SCENES & ~FOR_EXPORT) | FOR_LIST | FOR_HARD,
     OF_PLOTS = FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_COST | FOR_GRADIENTS |
@@ -60,11 +60,14 @@ static const struct {
      "a row each K steps, and at the end"},
     {"samples", "N", FOR_RUN | FOR_FLOW, read_samples,
      "N rows at equal times, the first and the last included"},
-    {"at", "T1,T2", FOR_RUN | FOR_FLOW, read_at, "rows at these times alone"},
+    {"at", "T1,T2", FOR_RUN | FOR_FLOW | FOR_REFERENCE, read_at,
+     "rows at these times alone"},
     {"shape", "SHAPE", FOR_FLOW, read_shape,
      "disc(x = 1, p_x = 0, RADIUS), box(x = 1, p_x = 0, WIDTH, HEIGHT), cat(x "
      "= 1, p_x = 0, SIZE), or loop(x = cos(t), p_x = sin(t)) of formulas of t "
      "from 0 to 2*pi; a cat round the start if not given"},
+    {"digits", "N", FOR_REFERENCE, read_digits,
+     "digits that states are to have, 1 to 30; 24 if not given"},
     {"resume", "FILE", FOR_RUN | FOR_SWEEP, read_resume,
      "go on with FILE, which nevh run or nevh sweep -o FILE left unfinished, "
      "as if never interrupted"},

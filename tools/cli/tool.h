@@ -7,6 +7,7 @@
        section     section.c
        sweep       sweep.c
        flow        flow.c, flow_shape.c
+       reference   reference.c
        cost        cost.c       studies of study.h: rows at many steps
        recommend   recommend.c  the same
        gradients   gradients.c
@@ -130,7 +131,8 @@ enum {
     FOR_SWEEP = 2048,
     FOR_EXPORT = 4096,
     FOR_FLOW = 8192,
-    FOR_LAST = FOR_FLOW
+    FOR_REFERENCE = 16384,
+    FOR_LAST = FOR_REFERENCE
 };
 
 const char *command_name(unsigned bit);
@@ -157,7 +159,7 @@ typedef struct {
     size_t tolerances;
     const char *t_end; /* a formula; NULL: the scene's */
     double gradient_step, energy_error, state_error, error; /* 0: not given */
-    size_t every, samples, repeats;                         /* 0: not given */
+    size_t every, samples, repeats, digits;                 /* 0: not given */
     table_format format;
     matching match;
     plot_kind plot_kind;
@@ -169,6 +171,7 @@ typedef struct {
     bool quiet, portable, all, by_state, diagnostics, impact, allow_code;
     nevh_native_use native;
     bool native_given, no_cache, header;
+    bool no_steps; /* the command takes no dt; it ends with the last of `at` */
     bool help, version;
     unsigned long long used; /* a bit an option */
 } options;
@@ -233,6 +236,6 @@ char *scene_file(const char *beside, const char *name);
 typedef int command(const options *);
 command compare, list_command, check, effects, run_scene, export_scene, section,
     new_scene;
-command cost, recommend, gradients, hard, sweep, flow;
+command cost, recommend, gradients, hard, sweep, flow, reference_command;
 
 #endif

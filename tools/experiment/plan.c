@@ -101,8 +101,8 @@ static int check_steps(const plan *p) {
     return TOOL_OK;
 }
 
-static int check_times(const plan *p) {
-    if (p->dts == 0)
+static int check_times(const plan *p, const options *o) {
+    if (p->dts == 0 && !o->no_steps)
         return tool_refuse("%s: no time step: give dt in [run], or --dt",
                            p->name);
     if (isnan(p->t_end))
@@ -116,7 +116,7 @@ static int check_times(const plan *p) {
         return tool_refuse("%s: the run ends at t = %g, before it begins at "
                            "t = %g",
                            p->name, p->t_end, p->run->t_start);
-    return check_steps(p);
+    return o->no_steps ? TOOL_OK : check_steps(p);
 }
 
 static int start(plan *p, const options *o) {
@@ -234,7 +234,9 @@ int plan_make(plan *p, const options *o) {
     take_lists(p, o);
     if (check_integrators(p) || check_gradients(p))
         return TOOL_USAGE;
-    return check_times(p) ? TOOL_USAGE : check_at(p, o);
+    for (size_t i = 0; o->no_steps && i < p->ats; i++)
+        p->t_end = i ? fmax(p->t_end, p->at[i]) : p->at[i];
+    return check_times(p, o) ? TOOL_USAGE : check_at(p, o);
 }
 
 void plan_free(plan *p) {

@@ -1,0 +1,217 @@
+/* nevh: states to digits that are certain.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "taylor/quad_orbit_private.h"
+#include <math.h>
+#include <nevh/certain.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_DIGITS = 30 };
+
+#ifdef NEVH_QUADMATH
+#include <quadmath.h>
+
+struct nevh_certain {
+    nevh__report report;
+    size_t n;
+    int digits;
+    nevh__recurrence *recurrence;
+    nevh__quad_orbit fine, coarse;
+    double *rates;
+    nevh__wide *start;
+};
+
+/* Rounding alone, of a series: inner sums have 106 bits. */
+static const double rounding = 1e-32;
+
+static int plan(nevh_certain *c, const nevh_system *system) {
+    /* Errors of some hundred series add up. */
+    double tolerance = pow(10, -c->digits - 4), finest = 2e-33;
+    bool damped = nevh_system_friction(system, c->rates);
+    c->recurrence =
+        nevh__recurrence_new(system, damped ? c->rates : NULL, &c->report);
+    if (!c->recurrence)
+        return c->report.status;
+    bool fine = nevh__quad_orbit_init(&c->coarse, c->recurrence,
+                                      fmax(tolerance, 10 * finest));
+    fine = nevh__quad_orbit_init(&c->fine, c->recurrence,
+                                 fmax(tolerance / 30, finest)) &&
+           fine;
+    return fine ? NEVH_OK
+                : nevh__fail(&c->report, NEVH_ENOMEM, "out of memory");
+}
+
+static int make(nevh_certain *c, const nevh_system *system, double t0,
+                const double q[], const double p[]) {
+    size_t n = system->n;
+    if (system->report.status)
+        return nevh__fail_as(&c->report, &system->report);
+    if (!q || !p || !isfinite(t0))
+        return nevh__fail(&c->report, NEVH_EINVAL,
+                          "an orbit needs a time and a state to start from");
+    if (c->digits < 1 || c->digits > MOST_DIGITS)
+        return nevh__fail(&c->report, NEVH_EINVAL,
+                          "%d digits: there are 1 to %d", c->digits,
+                          MOST_DIGITS);
+    c->n = n;
+    c->rates = nevh__array(n, sizeof *c->rates);
+    c->start = nevh__array(2 * n, sizeof *c->start);
+    if (!c->rates || !c->start)
+        return nevh__fail(&c->report, NEVH_ENOMEM, "out of memory");
+    for (size_t k = 0; k < n; k++) {
+        c->start[k] = q[k];
+        c->start[n + k] = p[k];
+    }
+    int status = plan(c, system);
+    if (!status)
+        status = nevh__quad_orbit_start(&c->coarse, t0, c->start, &c->report);
+    if (!status)
+        status = nevh__quad_orbit_start(&c->fine, t0, c->start, &c->report);
+    return status;
+}
+
+nevh_certain *nevh_certain_new(const nevh_system *system, double t0,
+                               const double q[], const double p[], int digits) {
+    nevh_certain *c = system ? nevh__array(1, sizeof *c) : NULL;
+    if (!c)
+        return NULL;
+    c->digits = digits;
+    if (make(c, system, t0, q, p) != NEVH_ENOMEM)
+        return c;
+    nevh_certain_free(c);
+    return NULL;
+}
+
+void nevh_certain_free(nevh_certain *c) {
+    if (!c)
+        return;
+    nevh__quad_orbit_clear(&c->fine);
+    nevh__quad_orbit_clear(&c->coarse);
+    nevh__recurrence_free(c->recurrence);
+    free(c->rates);
+    free(c->start);
+    free(c);
+}
+
+int nevh_certain_go(nevh_certain *c, double t) {
+    if (!c || !c->fine.count)
+        return nevh_certain_status(c);
+    c->report = (nevh__report){0};
+    if (!isfinite(t))
+        return nevh__fail(&c->report, NEVH_EINVAL,
+                          "the time %g is not a finite number", t);
+    int status = nevh__quad_orbit_go(&c->coarse, t, &c->report);
+    return status ? status : nevh__quad_orbit_go(&c->fine, t, &c->report);
+}
+
+size_t nevh_certain_series(const nevh_certain *c) {
+    return c ? c->fine.count + c->coarse.count : 0;
+}
+
+static bool has(const nevh_certain *c, size_t k) {
+    return c && c->fine.count && k < 2 * c->n;
+}
+
+double nevh_certain_value(const nevh_certain *c, size_t k) {
+    return has(c, k) ? (double)c->fine.state[k] : NAN;
+}
+
+double nevh_certain_error(const nevh_certain *c, size_t k) {
+    if (!has(c, k))
+        return NAN;
+    double apart = fabs((double)(c->fine.state[k] - c->coarse.state[k]));
+    double floor = rounding * sqrt((double)c->fine.count) * c->fine.most[k];
+    return fmax(2 * apart, floor);
+}
+
+double nevh_certain_size(const nevh_certain *c, size_t k) {
+    return has(c, k) ? c->fine.most[k] : NAN;
+}
+
+int nevh_certain_digits(const nevh_certain *c, size_t k) {
+    double value = fabs(nevh_certain_value(c, k));
+    double error = nevh_certain_error(c, k);
+    if (!(value > error))
+        return 0;
+    if (error == 0)
+        return c->digits;
+    double digits = floor(log10(value / error) - log10(0.5));
+    digits = digits < 0 ? 0 : digits;
+    return digits < c->digits ? (int)digits : c->digits;
+}
+
+char *nevh_certain_text(const nevh_certain *c, size_t k) {
+    enum { ROOM = 60 };
+    char *text = has(c, k) ? nevh__array(ROOM, 1) : NULL;
+    int digits = nevh_certain_digits(c, k);
+    if (text)
+        strcpy(text, "0");
+    if (text && digits > 0)
+        quadmath_snprintf(text, ROOM, "%#.*Qg", digits, c->fine.state[k]);
+    return text;
+}
+
+#else
+
+struct nevh_certain {
+    nevh__report report;
+};
+
+nevh_certain *nevh_certain_new(const nevh_system *system, double t0,
+                               const double q[], const double p[], int digits) {
+    nevh_certain *c = system ? nevh__array(1, sizeof *c) : NULL;
+    (void)t0, (void)q, (void)p, (void)digits;
+    if (c)
+        nevh__fail(&c->report, NEVH_ESTRUCT,
+                   "this nevh was built without libquadmath, which comes with "
+                   "GCC, and has no digits beyond those of doubles");
+    return c;
+}
+
+void nevh_certain_free(nevh_certain *c) {
+    free(c);
+}
+
+int nevh_certain_go(nevh_certain *c, double t) {
+    (void)t;
+    return nevh_certain_status(c);
+}
+
+size_t nevh_certain_series(const nevh_certain *c) {
+    (void)c;
+    return 0;
+}
+
+double nevh_certain_value(const nevh_certain *c, size_t k) {
+    (void)c, (void)k;
+    return NAN;
+}
+
+double nevh_certain_error(const nevh_certain *c, size_t k) {
+    (void)c, (void)k;
+    return NAN;
+}
+
+double nevh_certain_size(const nevh_certain *c, size_t k) {
+    (void)c, (void)k;
+    return NAN;
+}
+
+int nevh_certain_digits(const nevh_certain *c, size_t k) {
+    (void)c, (void)k;
+    return 0;
+}
+
+char *nevh_certain_text(const nevh_certain *c, size_t k) {
+    (void)c, (void)k;
+    return NULL;
+}
+#endif
+
+int nevh_certain_status(const nevh_certain *c) {
+    return c ? c->report.status : NEVH_ENOMEM;
+}
+
+const char *nevh_certain_message(const nevh_certain *c) {
+    return c ? c->report.text : "out of memory";
+}

@@ -1,0 +1,120 @@
+/* nevh reference: states to digits that are certain.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "experiment/plan.h"
+#include <math.h>
+#include <stdlib.h>
+
+static const size_t usual_digits = 24;
+
+typedef struct {
+    const plan *plan;
+    nevh_certain *orbit;
+    size_t digits, fewest; /* asked for; had */
+    double lost;           /* the first time with fewer; NAN */
+} job;
+
+static char *name_of(const plan *p, size_t k) {
+    return text_print("%s%s", k < p->n ? "" : "p_",
+                      nevh_scene_coordinate(p->scene, k % p->n));
+}
+
+static void put_text(table *t, char *text) {
+    table_text(t, text);
+    free(text);
+}
+
+static void put_state(job *j, double t, table *rows) {
+    for (size_t k = 0; k < 2 * j->plan->n; k++) {
+        size_t digits = (size_t)nevh_certain_digits(j->orbit, k);
+        double error = nevh_certain_error(j->orbit, k);
+        bool still = nevh_certain_value(j->orbit, k) == 0 && error < 1e-30;
+        put_text(rows, text_print("%.17g", t));
+        put_text(rows, name_of(j->plan, k));
+        put_text(rows, tool_owned(nevh_certain_text(j->orbit, k)));
+        table_shown(rows, "%zu", digits);
+        table_shown(rows, "%.0e", error);
+        if (digits >= j->digits || still ||
+            error <
+                nevh_certain_size(j->orbit, k) * pow(10, -(double)j->digits))
+            continue;
+        j->fewest = digits < j->fewest ? digits : j->fewest;
+        if (isnan(j->lost))
+            j->lost = t;
+    }
+}
+
+static int put_states(job *j, table *rows) {
+    const plan *p = j->plan;
+    const double *times = p->ats ? p->at : &p->t_end;
+    size_t count = p->ats ? p->ats : 1;
+    for (size_t i = 0; i < count; i++) {
+        if (nevh_certain_go(j->orbit, times[i])) {
+            tool_refuse("the orbit has no reference at t = %.9g: %s", times[i],
+                        nevh_certain_message(j->orbit));
+            return TOOL_FAILED;
+        }
+        if (i)
+            table_group(rows);
+        put_state(j, times[i], rows);
+    }
+    return TOOL_OK;
+}
+
+static void put_notes(const job *j, page *result) {
+    const plan *p = j->plan;
+    plan_notes(p, &result->before);
+    list_print(&result->before,
+               "Taylor series in quad precision; certain is what runs of two "
+               "orders and two tolerances have in common (%zu series)",
+               nevh_certain_series(j->orbit));
+    list_add(&result->before, "parameters, starts and times are the doubles "
+                              "nearest to what the scene says, taken exactly");
+    if (j->fewest < j->digits)
+        list_print(
+            &result->after,
+            "From t = %.9g on not all digits asked for are certain, but "
+            "%zu or more: the orbit makes differences in the last digits "
+            "grow%s.",
+            j->lost, j->fewest,
+            j->digits < 30 ? "; --digits 30 carries more of them" : "");
+}
+
+static int reference_of(const options *o, const plan *p) {
+    static const char *const columns[] = {"t", "variable", "value", "digits",
+                                          "error"};
+    job j = {
+        .plan = p, .digits = o->digits ? o->digits : usual_digits, .lost = NAN};
+    j.fewest = j.digits;
+    j.orbit = tool_owned(nevh_certain_new(p->system, p->run->t_start, p->q,
+                                          p->p, (int)j.digits));
+    page result = {.table = table_new()};
+    int status = TOOL_OK;
+    if (nevh_certain_status(j.orbit))
+        status = tool_refuse("there is no reference: %s",
+                             nevh_certain_message(j.orbit));
+    table_columns(result.table, columns, sizeof columns / sizeof *columns);
+    if (!status)
+        status = put_states(&j, result.table);
+    if (!status) {
+        put_notes(&j, &result);
+        status = output_page(o, &result, status);
+    }
+    nevh_certain_free(j.orbit);
+    page_free(&result);
+    return status;
+}
+
+int reference_command(const options *o) {
+    plan p = {0};
+    options untimed = *o;
+    untimed.no_steps = true;
+    int status = plan_make(&p, &untimed);
+    if (!status && o->file)
+        status = output_check(o->file);
+    if (!status)
+        numbers_sort(p.at, p.ats);
+    if (!status)
+        status = reference_of(o, &p);
+    plan_free(&p);
+    return status;
+}
