@@ -84,7 +84,7 @@ static void measure(const nevh_work *w, const nevh__planned *term,
 }
 
 /* In units of the lengths alone, light bodies would get a part of the energy
-   that heavy ones lack: where a gradient is corrected, units are of H.  Where
+   that heavy ones deficit: where a gradient is corrected, units are of H.  Where
    quotients of H leave nothing but rounding to correct, lengths do. */
 static int plan_metric(nevh_work *w) {
     const gradient_plan *g = w->plan;
@@ -183,7 +183,7 @@ static nevh__gradient_step lay_out(nevh_work *w, double h) {
     s.ends = take(&at, all);
     s.start = take_values(&at, width);
     s.end = take_values(&at, width);
-    s.lack = take(&at, width);
+    s.deficit = take(&at, width);
     s.times = take(&at, width);
     s.slopes = take(&at, nodes * all);
     s.points = take(&at, nodes * (all + width));
@@ -214,10 +214,10 @@ static int begin_balance(const nevh__gradient_step *s, const remembered *m) {
     set_times(s, m);
     int status = find_values(s, w->width, s->z, &s->start);
     for (size_t i = 0; !status && i < w->width; i++)
-        s->lack[i] = m->known[i] == 0
-                         ? 0
-                         : (m->energy[i] - s->start.h[i]) +
-                               (m->roundoff[i] - s->start.roundoff[i]);
+        s->deficit[i] = m->known[i] == 0
+                            ? 0
+                            : (m->energy[i] - s->start.h[i]) +
+                                  (m->roundoff[i] - s->start.roundoff[i]);
     set_times(s, NULL);
     if (!status && !autonomous)
         status = find_values(s, w->width, s->z, &s->start);
@@ -227,7 +227,7 @@ static int begin_balance(const nevh__gradient_step *s, const remembered *m) {
             continue;
         m->known[i] = 1;
         m->energy[i] = s->start.h[i];
-        m->roundoff[i] = s->start.roundoff[i] + s->lack[i];
+        m->roundoff[i] = s->start.roundoff[i] + s->deficit[i];
     }
     return status;
 }
@@ -263,18 +263,18 @@ static void find_ends(const nevh__gradient_step *s, size_t active,
 static double find_defect(const nevh__gradient_step *s, size_t active, size_t a,
                           size_t lane, const double out[]) {
     const nevh_work *w = s->work;
-    double way = 0, lack = (s->end.h[a] - s->start.h[lane]) +
-                           (s->end.roundoff[a] - s->start.roundoff[lane]) -
-                           s->lack[lane];
+    double way = 0, deficit = (s->end.h[a] - s->start.h[lane]) +
+                              (s->end.roundoff[a] - s->start.roundoff[lane]) -
+                              s->deficit[lane];
     for (size_t k = 0; k < 2 * w->n; k++) {
         double dz = s->ends[k * active + a] - s->z[k * w->width + lane];
-        lack -= out[nevh__conjugate(w, k) * active + a] * dz;
+        deficit -= out[nevh__conjugate(w, k) * active + a] * dz;
         way += dz * s->metric[k] * (dz * s->metric[k]);
     }
-    if (lack == 0)
+    if (deficit == 0)
         return 0;
-    double noise = tolerated * s->start.size[lane] / lack;
-    return lack / ((1 + noise * noise) * (way + nowhere / way));
+    double noise = tolerated * s->start.size[lane] / deficit;
+    return deficit / ((1 + noise * noise) * (way + nowhere / way));
 }
 
 /* Where H(ends) is not what D says, adds the smallest vector, by the

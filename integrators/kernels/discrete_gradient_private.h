@@ -26,7 +26,7 @@ typedef struct {
     double *ends;         /* 2n x active: where these lead */
     double *times;        /* width: all are t */
     nevh__values start;   /* width: H(t, z) */
-    double *lack;         /* width: what H(t, z) lacks of the orbit's energy */
+    double *deficit;      /* width: what H(t, z) lacks of the orbit's energy */
     nevh__values end;     /* active: H(t, ends) */
     const double *length; /* 2n: over which H varies */
     const double *metric; /* 2n: by which H varies most over lengths of 1; 0 for

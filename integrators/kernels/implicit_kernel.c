@@ -171,15 +171,23 @@ static void leave(void *data, size_t lane) {
     s->first = lane;
 }
 
-static void fetch(void *data, size_t lane, size_t sweeps) {
+static void count(void *data, size_t sweeps) {
     const family_step *s = data;
     nevh__sweeps_count(s->group, sweeps);
+}
+
+static void fetch(void *data, size_t lane) {
+    const family_step *s = data;
     nevh__sweeps_fetch(s->group, lane, s->work->width,
                        s->slopes + s->first + lane);
 }
 
-static const nevh__stage_group groups = {begin_group, sweep_group, fetch,
-                                         leave,       0,           guess};
+static const nevh__stage_group groups = {.begin = begin_group,
+                                         .sweep = sweep_group,
+                                         .count = count,
+                                         .fetch = fetch,
+                                         .leave = leave,
+                                         .guess = guess};
 
 /* Sweeps of some orbits, where these suit; false when memory is out. */
 static bool plan_group(nevh_work *w, const family_plan *g, nevh__swept kind,

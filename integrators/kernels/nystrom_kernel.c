@@ -38,13 +38,13 @@ struct nevh__nystrom_state {
     nevh_work *work;
     const nevh_nystrom *table;
     size_t n;
-    void *memory;      /* holds all arrays */
-    double *time;      /* a row */
-    double *rest;      /* n: T_p(0) */
-    double *inverse;   /* n: W, if that is diagonal by declaration */
-    double known_h;    /* that lanes of h are for */
-    size_t call_lanes; /* of the calls; 0: there are none */
-    nevh__call *kicks, drift;
+    void *memory;    /* holds all arrays */
+    double *time;    /* a row */
+    double *rest;    /* n: T_p(0) */
+    double *inverse; /* n: W, if that is diagonal by declaration */
+    double known_h;  /* that lanes of h are for */
+    size_t planned;  /* lanes of planned gradients; 0: there are none */
+    nevh__evaluation *kicks, drift;
     double *weights;
     size_t *offsets;
     nevh__sum *sums; /* those of the stages, and of the ends */
@@ -104,23 +104,19 @@ static void list_weights(nevh__nystrom_state *y) {
                          y->x.stride, y->weights + i * s, y->offsets + i * s);
 }
 
-static bool plan_calls(nevh__nystrom_state *y, size_t lanes) {
-    nevh_field *f = y->work->field;
-    y->drift = nevh__call_plan(f, lanes, y->time, y->x.points, y->x.momenta,
+static void plan_gradients(nevh__nystrom_state *y) {
+    const nevh_work *w = y->work;
+    size_t lanes = nevh__work_lanes(w, false, true);
+    if (w->width > 1 && lanes != w->width)
+        return; /* columns are not copied to longer rows */
+    y->planned = lanes;
+    if (!lanes)
+        return;
+    y->drift = nevh__work_plan(w, lanes, y->time, y->x.points, y->x.momenta,
                                NULL, y->x.velocities);
     for (size_t i = 0; i < y->table->stages; i++)
-        y->kicks[i] = nevh__call_plan(f, lanes, y->time, y->x.points, y->x.p,
+        y->kicks[i] = nevh__work_plan(w, lanes, y->time, y->x.points, y->x.p,
                                       y->x.slopes + i * y->x.stride, NULL);
-    return y->drift.count && y->kicks[0].count;
-}
-
-static void find_calls(nevh__nystrom_state *y) {
-    if (y->work->width > 1 || y->work->transform)
-        return;
-    if (plan_calls(y, 1))
-        y->call_lanes = 1;
-    else if (y->work->field->repeats && plan_calls(y, NEVH__LANES))
-        y->call_lanes = NEVH__LANES;
 }
 
 /* Lane 0 of the coordinates to plan at, at rest. */
@@ -209,7 +205,7 @@ static int plan_nystrom(nevh_work *w, nevh__nystrom_state **nystrom) {
     y->x.c = y->table->c;
     y->x.sums = y->sums;
     list_weights(y);
-    find_calls(y);
+    plan_gradients(y);
     int status = check_kinetic(y);
     return status ? status : find_kinetic(y);
 }
@@ -228,6 +224,7 @@ struct nevh__nystrom_owner {
 static void prepare_columns(nevh__nystrom_state *y, const nevh__stages *s) {
     size_t n = y->n, size = n * s->columns;
     y->x.lanes = s->columns;
+    y->x.equal = 1;
     y->x.size = size;
     y->known_h = NAN;
     memcpy(y->x.q, s->q, size * sizeof *y->x.q);
@@ -245,18 +242,18 @@ static void prepare_columns(nevh__nystrom_state *y, const nevh__stages *s) {
 NEVH_SIMD static void prepare_lanes(nevh__nystrom_state *y,
                                     const nevh__stages *s) {
     size_t n = y->n;
-    y->x.lanes = y->call_lanes;
+    y->x.lanes = y->x.equal = y->planned;
     y->x.size = n * y->x.lanes;
-    nevh__repeat(n, s->q, y->x.q);
-    nevh__repeat(n, s->p, y->x.p);
-    nevh__repeat(2 * n, s->carry, y->x.carry);
+    nevh__broadcast(n, s->q, y->x.q);
+    nevh__broadcast(n, s->p, y->x.p);
+    nevh__broadcast(2 * n, s->carry, y->x.carry);
     if (y->known_h == *s->h)
         return;
-    nevh__repeat(n, y->rest, y->x.at_rest);
+    nevh__broadcast(n, y->rest, y->x.at_rest);
     for (size_t k = 0; k < n; k++) {
         double h = *s->h, gain = y->x.diagonal ? h * h * y->inverse[k] : 0;
-        nevh__repeat(1, &h, y->x.h + k * y->x.lanes);
-        nevh__repeat(1, &gain, y->x.gain + k * y->x.lanes);
+        nevh__broadcast(1, &h, y->x.h + k * y->x.lanes);
+        nevh__broadcast(1, &gain, y->x.gain + k * y->x.lanes);
     }
     y->known_h = *s->h;
 }
@@ -274,8 +271,8 @@ NEVH__INLINE void nevh__nystrom_time(const nevh__nystrom_step *x, int way,
     }
 }
 
-NEVH__INLINE int run(nevh_work *w, const nevh__call *call, int way) {
-    return way == 1 ? nevh__work_run_points(w, call) : nevh__work_run(w, call);
+NEVH__INLINE int run(nevh_work *w, const nevh__evaluation *e, int way) {
+    return way == 1 ? nevh__work_run_points(w, e) : nevh__work_run(w, e);
 }
 
 NEVH__INLINE int nevh__nystrom_drift(const nevh__nystrom_step *x, int way) {
@@ -332,7 +329,7 @@ static int take_slopes(nevh__nystrom_state *y, const nevh__stages *s, int way,
                        size_t first, size_t until) {
     const struct nevh__nystrom_owner owner = {y, s};
     y->x.owner = &owner;
-    if (way > 1)
+    if (way > 1 && s->columns == 1)
         prepare_lanes(y, s);
     else
         prepare_columns(y, s);
@@ -348,12 +345,13 @@ static int take_slopes(nevh__nystrom_state *y, const nevh__stages *s, int way,
 
 static int take(nevh__stages *s, size_t first, size_t until) {
     nevh__nystrom_state *y = state_of(s->work);
-    s->planned = y->call_lanes && !s->work->accounts &&
-                 nevh__call_ready(&y->drift) && nevh__call_ready(y->kicks);
+    s->planned = y->planned && s->columns == s->work->width &&
+                 !s->work->accounts && nevh__evaluation_ready(&y->drift) &&
+                 nevh__evaluation_ready(y->kicks);
     if (s->planned) {
-        int status = take_slopes(y, s, (int)y->call_lanes, first, until);
+        int status = take_slopes(y, s, (int)y->planned, first, until);
         if (status == NEVH_OK)
-            s->work->field->gradients += until - first;
+            s->work->field->gradients += (until - first) * s->columns;
         if (status == NEVH_OK || nevh__work_failed(s->work))
             return status;
     }

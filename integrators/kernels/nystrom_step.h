@@ -15,6 +15,7 @@ typedef struct {
     const double *c;       /* of the stages */
     const nevh__sum *sums; /* sum_j a_ij D_j of each stage */
     size_t lanes, size;    /* orbits of a row; n x lanes */
+    size_t equal;          /* as many orbits side by side are the same */
     size_t stride;         /* from the slopes of a stage to the next */
     bool diagonal;         /* T_p(p) - T_p(0) is W p */
     bool moves;            /* T_p(0) is not 0 */
@@ -178,7 +179,7 @@ NEVH__INLINE int nevh__nystrom_take(const nevh__nystrom_step *x, int way,
         if (!status)
             status = nevh__nystrom_kick(x, way, i);
         const double *slopes = x->slopes + i * x->stride;
-        for (size_t k = 0; unchecked && k < x->size; k += x->lanes)
+        for (size_t k = 0; unchecked && k < x->size; k += x->equal)
             bad += slopes[k] - slopes[k];
     }
     return status || bad == 0 ? status : NEVH__NYSTROM_RANGE;

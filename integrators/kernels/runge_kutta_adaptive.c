@@ -39,12 +39,12 @@ typedef struct {
     bool held;      /* the last trial was rejected */
     bool ends;      /* this one ends the step */
     nevh__pace pace;
-} lane_walk;
+} lane_substeps;
 
 struct nevh__adaptive {
-    lane_walk *lanes;  /* width */
-    size_t *under_way; /* width */
-    size_t *unknown;   /* width: those of them without a first slope */
+    lane_substeps *lanes; /* width */
+    size_t *under_way;    /* width */
+    size_t *unknown;      /* width: those of them without a first slope */
 };
 
 /* The step of all lanes: rows of `width`. */
@@ -52,18 +52,18 @@ typedef struct {
     nevh_work *work;
     const nevh__family *family;
     double t, h;
-    lane_walk *lanes;
+    lane_substeps *lanes;
     double *y, *lost, *first; /* 2n rows: state, its carry, its slope */
     nevh__stages trial;       /* of some lanes, their columns side by side */
     double *begin, *each;     /* the trial's t and h */
     double *old;              /* the trial's state, 2n x columns as all below */
     double *carry, *next, *next_carry, *change, *error, *coarse;
-} walk;
+} step_state;
 
 static const double least_error = 1e-4; /* that is remembered */
 /* A single step may take NEVH__MOST_SUBSTEPS, one after another may not. */
 static const double usual_substeps = 1e5;
-enum { ROWS = 11 }; /* of 2n x width in a walk */
+enum { ROWS = 11 }; /* of 2n x width, in a step */
 
 static nevh__adaptive *plan_of(const nevh_work *w) {
     return ((const nevh__stages_plan *)w->plan)->adaptive;
@@ -99,13 +99,13 @@ int nevh__adaptive_plan(nevh_work *w) {
     return NEVH_OK;
 }
 
-static walk lay_out(nevh_work *w, double t, double h) {
+static step_state lay_out(nevh_work *w, double t, double h) {
     const nevh__stages_plan *plan = w->plan;
-    walk s = {.work = w,
-              .family = &plan->family,
-              .t = t,
-              .h = h,
-              .lanes = plan->adaptive->lanes};
+    step_state s = {.work = w,
+                    .family = &plan->family,
+                    .t = t,
+                    .h = h,
+                    .lanes = plan->adaptive->lanes};
     size_t each = 2 * w->size;
     double *at = w->scratch;
     double **const rows[ROWS] = {&s.y,      &s.lost,   &s.first,      &s.old,
@@ -123,7 +123,7 @@ static walk lay_out(nevh_work *w, double t, double h) {
     return s;
 }
 
-static void load(walk *s, const double q[], const double p[]) {
+static void load(step_state *s, const double q[], const double p[]) {
     const nevh_work *w = s->work;
     size_t n = w->size, width = w->width;
     const double *size = w->memory + 2 * n, *last = size + width;
@@ -137,14 +137,14 @@ static void load(walk *s, const double q[], const double p[]) {
         memcpy(s->first, first, 2 * n * sizeof *first);
     for (size_t lane = 0; lane < width; lane++)
         s->lanes[lane] =
-            (lane_walk){.size = size[lane],
-                        .last = last[lane],
-                        .before = before[lane],
-                        .excess = excess[lane],
-                        .has_first = keeps && has_first[lane] != 0};
+            (lane_substeps){.size = size[lane],
+                            .last = last[lane],
+                            .before = before[lane],
+                            .excess = excess[lane],
+                            .has_first = keeps && has_first[lane] != 0};
 }
 
-static void store(const walk *s, double q[], double p[]) {
+static void store(const step_state *s, double q[], double p[]) {
     const nevh_work *w = s->work;
     size_t n = w->size, width = w->width;
     double *size = w->memory + 2 * n, *last = size + width;
@@ -169,35 +169,36 @@ static void store(const walk *s, double q[], double p[]) {
 }
 
 /* Columns of the lanes, out of rows of all and back. */
-static void gather(const walk *s, const size_t lanes[], const double all[],
-                   double out[]) {
+static void gather(const step_state *s, const size_t lanes[],
+                   const double all[], double out[]) {
     size_t columns = s->trial.columns, width = s->work->width;
     for (size_t k = 0; k < 2 * s->work->n; k++)
         for (size_t c = 0; c < columns; c++)
             out[k * columns + c] = all[k * width + lanes[c]];
 }
 
-static void scatter(const walk *s, size_t column, size_t lane,
+static void scatter(const step_state *s, size_t column, size_t lane,
                     const double from[], double all[]) {
     size_t columns = s->trial.columns, width = s->work->width;
     for (size_t k = 0; k < 2 * s->work->n; k++)
         all[k * width + lane] = from[k * columns + column];
 }
 
-static void gather_states(walk *s, size_t count, const size_t lanes[]) {
+static void gather_states(step_state *s, size_t count, const size_t lanes[]) {
     s->trial.columns = count;
     s->trial.p = s->old + s->work->n * count;
     gather(s, lanes, s->y, s->old);
     gather(s, lanes, s->lost, s->carry);
     for (size_t c = 0; c < count; c++) {
-        const lane_walk *l = &s->lanes[lanes[c]];
+        const lane_substeps *l = &s->lanes[lanes[c]];
         s->begin[c] = s->t + copysign(l->done, s->h);
         s->each[c] = copysign(l->step, s->h);
     }
 }
 
 /* The slopes at the states of those lanes that do not know them. */
-static int take_first_slopes(walk *s, size_t count, const size_t lanes[]) {
+static int take_first_slopes(step_state *s, size_t count,
+                             const size_t lanes[]) {
     size_t *unknown = plan_of(s->work)->unknown, some = 0;
     for (size_t i = 0; i < count; i++)
         if (!s->lanes[lanes[i]].has_first)
@@ -228,7 +229,8 @@ double nevh__first_substep(const nevh_work *w, int power, double h,
 }
 
 /* The root mean square of estimates over max(|y|, scale), squared. */
-static double square(const walk *s, size_t column, const double estimate[]) {
+static double square(const step_state *s, size_t column,
+                     const double estimate[]) {
     const nevh_work *w = s->work;
     double sum = 0;
     for (size_t k = 0; k < 2 * w->n; k++) {
@@ -241,7 +243,7 @@ static double square(const walk *s, size_t column, const double estimate[]) {
 }
 
 /* The estimate over the tolerance; NaN where it is beyond numbers. */
-static double judge(const walk *s, size_t column) {
+static double judge(const step_state *s, size_t column) {
     double error = square(s, column, s->error), all = error;
     if (s->family->coarse)
         all += 0.01 * square(s, column, s->coarse);
@@ -249,7 +251,8 @@ static double judge(const walk *s, size_t column) {
     return err / s->work->options->tolerance;
 }
 
-static int give_up(const walk *s, const lane_walk *l, const char *why) {
+static int give_up(const step_state *s, const lane_substeps *l,
+                   const char *why) {
     const nevh_work *w = s->work;
     return nevh_work_fail(s->work, NEVH_EFAILED,
                           "%s gave up at t = %.9g: the step of %g takes %s at "
@@ -258,12 +261,12 @@ static int give_up(const walk *s, const lane_walk *l, const char *why) {
                           s->h, why, w->options->tolerance);
 }
 
-static bool too_short(const walk *s, const lane_walk *l) {
+static bool too_short(const step_state *s, const lane_substeps *l) {
     return !(l->size > DBL_EPSILON * fabs(s->h)) && l->size < fabs(s->h);
 }
 
 /* How much longer the next substep may be. */
-static double factor(const walk *s, const lane_walk *l, double err) {
+static double factor(const step_state *s, const lane_substeps *l, double err) {
     double k = s->family->error_power, beta = 0.2 / k, now = log2(err);
     double last = log2(l->last > 0 ? l->last : least_error);
     double usual = (0.75 * beta - 1 / k) * now + beta * last;
@@ -275,7 +278,7 @@ static double factor(const walk *s, const lane_walk *l, double err) {
 
 /* Near the end of an orbit the times themselves may be too coarse for a shorter
    substep: it would be rejected for ever. */
-static int reject(const walk *s, lane_walk *l, double err) {
+static int reject(const step_state *s, lane_substeps *l, double err) {
     double wanted = 0.9 * pow(err, -1. / s->family->error_power);
     l->size = l->step * (wanted > 0.2 ? fmin(wanted, 0.9) : 0.2);
     l->held = true;
@@ -287,8 +290,8 @@ static int reject(const walk *s, lane_walk *l, double err) {
 
 /* A substep cut short by the end of the step says nothing against longer
    ones. */
-static int accept(walk *s, size_t column, size_t lane, double err) {
-    lane_walk *l = &s->lanes[lane];
+static int accept(step_state *s, size_t column, size_t lane, double err) {
+    lane_substeps *l = &s->lanes[lane];
     double next = l->step * fmin(fmax(factor(s, l, err), 0.2), l->held ? 1 : 6);
     l->size = l->ends ? fmax(next, l->size) : next;
     l->done = l->ends ? fabs(s->h) : l->done + l->step;
@@ -304,7 +307,7 @@ static int accept(walk *s, size_t column, size_t lane, double err) {
 }
 
 /* Stages, estimates and new states of a trial. */
-static int take_trial(walk *s, size_t count, const size_t lanes[]) {
+static int take_trial(step_state *s, size_t count, const size_t lanes[]) {
     const nevh__family *family = s->family;
     nevh__stages *trial = &s->trial;
     size_t n = s->work->n * count;
@@ -323,7 +326,7 @@ static int take_trial(walk *s, size_t count, const size_t lanes[]) {
 
 /* One substep of each of the lanes, accepted or not.  Where together they
    fail, each goes alone, so that none depends on its neighbours. */
-static int try(walk *s, size_t count, const size_t lanes[]) {
+static int try(step_state *s, size_t count, const size_t lanes[]) {
     int status = take_trial(s, count, lanes);
     if (status == NEVH_EDOM && count > 1) {
         status = NEVH_OK;
@@ -332,7 +335,7 @@ static int try(walk *s, size_t count, const size_t lanes[]) {
         return status;
     }
     if (status == NEVH_EDOM) {
-        lane_walk *l = &s->lanes[*lanes];
+        lane_substeps *l = &s->lanes[*lanes];
         l->size = 0.2 * l->step;
         l->held = true;
         return too_short(s, l) ? status : NEVH_OK;
@@ -346,8 +349,8 @@ static int try(walk *s, size_t count, const size_t lanes[]) {
 }
 
 /* The next substep; the last one may stretch by a hundredth. */
-static int choose(const walk *s, size_t lane) {
-    lane_walk *l = &s->lanes[lane];
+static int choose(const step_state *s, size_t lane) {
+    lane_substeps *l = &s->lanes[lane];
     double length = fabs(s->h), left = length - l->done;
     if (l->size == 0)
         l->size =
@@ -370,7 +373,7 @@ static int choose(const walk *s, size_t lane) {
 static int adaptive_step(nevh_work *w, double t, double h, double q[],
                          double p[]) {
     size_t *lanes = plan_of(w)->under_way, count;
-    walk s = lay_out(w, t, h);
+    step_state s = lay_out(w, t, h);
     int status = NEVH_OK;
     if (w->accounts && w->width > 1)
         return nevh_work_fail(w, NEVH_EINVAL,

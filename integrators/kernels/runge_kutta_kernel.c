@@ -26,9 +26,9 @@ struct nevh__runge_kutta_state {
     double *slopes;                       /* 2n rows a stage */
     double *time;                         /* a row */
     size_t stride;  /* from the slopes of a stage to the next */
-    size_t planned; /* lanes of planned calls; 0: there are none */
+    size_t planned; /* lanes of planned gradients; 0: there are none */
     double known_h; /* that lanes of `step` are for */
-    nevh__call *calls;
+    nevh__evaluation *gradients;
     double *weights;
     size_t *offsets;
     nevh__sum *sums; /* those of the stages, and of the ends */
@@ -76,25 +76,20 @@ static void lay_out(nevh__arena *a, void *state) {
     y->point = nevh__arena_take(a, rows, each);
     y->slopes = nevh__arena_take(a, stages * rows, each);
     y->time = nevh__arena_take(a, y->lanes, each);
-    y->calls = nevh__arena_take(a, stages, sizeof *y->calls);
+    y->gradients = nevh__arena_take(a, stages, sizeof *y->gradients);
     y->weights = nevh__arena_take(a, lists, each);
     y->offsets = nevh__arena_take(a, lists, sizeof *y->offsets);
     y->sums = nevh__arena_take(a, stages + ENDS, sizeof *y->sums);
 }
 
-/* States that only fill vectors cost little where gradients are exact. */
-static void plan_calls(const nevh_work *w, nevh__runge_kutta_state *y) {
-    size_t lanes = y->lanes, half = w->n * lanes;
-    bool suits = w->width == 1 ? nevh__work_repeats(w)
-                               : w->width == lanes || nevh__work_lean(w);
-    if (w->transform || !suits)
-        return;
-    for (size_t i = 0; i < y->table->stages; i++) {
+static void plan_gradients(const nevh_work *w, nevh__runge_kutta_state *y) {
+    size_t half = w->n * y->lanes;
+    y->planned = nevh__work_lanes(w, true, false);
+    for (size_t i = 0; y->planned && i < y->table->stages; i++) {
         double *dh_dp = y->slopes + i * y->stride, *dh_dq = dh_dp + half;
-        y->calls[i] = nevh__call_plan(w->field, lanes, y->time, y->point,
-                                      y->point + half, dh_dq, dh_dp);
+        y->gradients[i] = nevh__work_plan(w, y->planned, y->time, y->point,
+                                          y->point + half, dh_dq, dh_dp);
     }
-    y->planned = y->calls[0].count ? lanes : 0;
 }
 
 /* Rows of columns; what is behind these repeats the first one. */
@@ -103,7 +98,7 @@ NEVH__INLINE void load(size_t rows, size_t columns, size_t lanes,
     if (columns == lanes)
         memcpy(to, from, rows * lanes * sizeof *to);
     else if (columns == 1)
-        nevh__repeat(rows, from, to);
+        nevh__broadcast(rows, from, to);
     else
         for (size_t k = 0; k < rows; k++)
             for (size_t i = 0; i < lanes; i++)
@@ -194,13 +189,13 @@ NEVH__INLINE int nevh__runge_kutta_slope(const nevh__runge_kutta_step *x,
     const nevh__runge_kutta_state *y = x->owner->state;
     size_t half = x->size / 2;
     double *dh_dp = x->slopes + stage * x->stride, *dh_dq = dh_dp + half;
-    const nevh__call *call = &y->calls[stage];
-    if (way == BY_WORK || call->timed)
+    const nevh__evaluation *e = &y->gradients[stage];
+    if (way == BY_WORK || e->timed)
         set_time(s, y, stage);
     int status = way == BY_WORK
                      ? nevh_work_gradient(s->work, s->lanes, y->time, x->point,
                                           x->point + half, dh_dq, dh_dp)
-                     : nevh__work_run(s->work, call);
+                     : nevh__work_run(s->work, e);
     if (status)
         return status;
     if (s->work->friction)
@@ -231,12 +226,12 @@ NEVH_SIMD static int take_by_work(const nevh__stages *s, size_t first,
     return take_stages(s, BY_WORK, first, until);
 }
 
-/* Where planned calls fail without a reason, the other way tells it. */
+/* Where planned gradients fail without a reason, the other way tells it. */
 static int take(nevh__stages *s, size_t first, size_t until) {
     nevh_work *w = s->work;
     const nevh__runge_kutta_state *y = state_of(w);
     if (y->planned && s->columns == w->width && !w->accounts &&
-        nevh__call_ready(y->calls)) {
+        nevh__evaluation_ready(y->gradients)) {
         s->lanes = y->planned;
         int status = take_planned(s, first, until);
         if (!status)
@@ -316,7 +311,7 @@ static int plan_state(nevh_work *w, nevh__runge_kutta_state **state) {
     if (!y->memory)
         return NEVH_ENOMEM;
     list_weights(y);
-    plan_calls(w, y);
+    plan_gradients(w, y);
     return NEVH_OK;
 }
 

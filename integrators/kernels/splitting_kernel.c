@@ -45,9 +45,9 @@ typedef struct {
     nevh__splitting_scheme scheme;
     gradient_way way;
     double *buffer;         /* holds all rows */
-    double *from, *by_work; /* those of calls, and those of the width */
+    double *from, *by_work; /* those of planned gradients, and of the width */
     size_t stride;          /* of a row of the former */
-    nevh__call kick, drift; /* unless the way is BY_WORK */
+    nevh__evaluation kick, drift; /* unless the way is BY_WORK */
 } splitting_plan;
 
 /* What is remembered of each half, and the last slope of a step. */
@@ -100,48 +100,38 @@ NEVH__INLINE rows lay_out(size_t size, bool copied, double *from) {
     return r;
 }
 
-/* Rows of the width, and before them others of `stride` if that differs. */
-static bool plan_rows(splitting_plan *o, const nevh_work *w, size_t stride) {
-    size_t copied = stride == w->width ? 0 : (10 * w->n + 1) * stride;
+/* Rows of the width, and before them those of planned gradients if these have
+   another stride.  Returns false when memory is out. */
+static bool plan_rows(splitting_plan *o, const nevh_work *w) {
+    size_t copied = o->stride == w->width ? 0 : (10 * w->n + 1) * o->stride;
     size_t size = copied + (5 * w->n + 1) * w->width + NEVH__LANES;
-    free(o->buffer);
     o->buffer = nevh__array(size, sizeof *o->buffer);
     if (!o->buffer)
         return false;
-    o->stride = stride;
     o->from = nevh__aligned(o->buffer);
     o->by_work = o->from + copied;
     return true;
 }
 
-static bool plan_calls(splitting_plan *o, const nevh_work *w) {
+static void plan_gradients(splitting_plan *o, const nevh_work *w) {
     size_t stride = o->stride;
     rows r = lay_out(w->n * stride, stride != w->width, o->from);
     const double *q = r.q.point, *p = r.p.point;
-    nevh_field *f = w->field;
-    o->kick = nevh__call_plan(f, stride, r.time, q, p, r.slope, NULL);
-    o->drift = nevh__call_plan(f, stride, r.time, q, p, NULL, r.slope);
-    return o->kick.count && o->drift.count;
+    o->kick = nevh__work_plan(w, stride, r.time, q, p, r.slope, NULL);
+    o->drift = nevh__work_plan(w, stride, r.time, q, p, NULL, r.slope);
 }
 
-/* One state is repeated over a vector where it is small and has no point
-   gradients.  Returns false when memory is out. */
 static bool find_way(splitting_plan *o, const nevh_work *w) {
-    bool one = w->width == 1, exact = w->field->gradient == nevh_exact;
-    o->way = exact ? BY_POINT : BY_NUMBER;
-    if (!plan_rows(o, w, w->width))
+    size_t lanes = nevh__work_lanes(w, false, true);
+    o->stride = lanes ? lanes : w->width;
+    if (!plan_rows(o, w))
         return false;
-    if (one && !w->transform && plan_calls(o, w))
-        return true;
-    o->way = BY_VECTOR;
-    bool whole = w->width % NEVH__LANES == 0; /* no states to fill vectors */
-    if (!w->transform && (one ? w->field->repeats : exact || whole)) {
-        if (!plan_rows(o, w, nevh__padded(w->width)))
-            return false;
-        if (plan_calls(o, w))
-            return true;
-    }
-    o->way = BY_WORK;
+    if (lanes)
+        plan_gradients(o, w);
+    o->way = lanes == 0      ? BY_WORK
+             : lanes > 1     ? BY_VECTOR
+             : o->kick.exact ? BY_POINT
+                             : BY_NUMBER;
     return true;
 }
 
@@ -200,18 +190,18 @@ NEVH__INLINE int slope_by_work(const nevh__splitting_step *x, size_t i,
 NEVH__INLINE int nevh__splitting_slope(const nevh__splitting_step *x, int way,
                                        size_t i, bool kick, bool kept) {
     const struct nevh__splitting_owner *o = x->owner;
-    const nevh__call *call = kick ? &o->plan->kick : &o->plan->drift;
+    const nevh__evaluation *e = kick ? &o->plan->kick : &o->plan->drift;
     if (way == BY_WORK)
         return slope_by_work(x, i, kick, kept);
     if (kept)
         return NEVH_OK;
-    if (call->timed)
+    if (e->timed)
         set_time(x, i);
     if (way == BY_VECTOR)
-        return nevh__work_run(o->work, call);
+        return nevh__work_run(o->work, e);
     if (way == BY_NUMBER)
-        return nevh__work_run_values(o->work, call);
-    nevh__call_run_points(call);
+        return nevh__work_run_values(o->work, e);
+    nevh__evaluation_run_points(e);
     return NEVH_OK;
 }
 
@@ -363,7 +353,7 @@ NEVH_SIMD static int step_by_work(nevh_work *w, double t, double h, double q[],
 static int step_planned(nevh_work *w, double t, double h, double q[],
                         double p[]) {
     const splitting_plan *o = w->plan;
-    if (!nevh__call_ready(&o->kick) || !nevh__call_ready(&o->drift))
+    if (!nevh__evaluation_ready(&o->kick) || !nevh__evaluation_ready(&o->drift))
         return NEVH_ESTALE;
     return (o->way == BY_VECTOR   ? step_vectors
             : o->way == BY_NUMBER ? step_number

@@ -17,15 +17,15 @@ struct nevh__stage_owner {
     nevh_work *work;
     const nevh__stage_weights *weights;
     nevh__swept kind;
-    size_t lanes;                  /* of a row: most orbits */
-    size_t used;                   /* points that count in an evaluation */
-    void *memory;                  /* holds all that follow */
-    double *times;                 /* a row */
-    double *loaded;                /* of several orbits: their state */
-    double *last;                  /* rows of stages of lanes */
-    double lowest[NEVH__LANES];    /* change of a sweep so far */
-    nevh__call whole, drift, kick; /* where H can be called as it is */
-    bool from_values;              /* so it is, of any orbits */
+    size_t lanes;               /* of a row: most orbits */
+    size_t used;                /* points that count in an evaluation */
+    void *memory;               /* holds all that follow */
+    double *times;              /* a row */
+    double *loaded;             /* of several orbits: their state */
+    double *last;               /* rows of stages of lanes */
+    double lowest[NEVH__LANES]; /* change of a sweep so far */
+    nevh__evaluation whole, drift, kick; /* the gradient, or its halves */
+    bool from_values;                    /* so it is, of any orbits */
 };
 
 static void pad(const nevh__stage_weights *w, size_t rows, const double from[],
@@ -99,12 +99,6 @@ double nevh__stage_continue(const nevh__stage_weights *w, size_t i,
     return nevh__stage_sum_orbit(w->row, w->stages, width, w->guess + i, last);
 }
 
-/* States that only fill vectors cost little where gradients are exact. */
-bool nevh__sweeps_suit(const nevh_work *w, size_t stages, nevh__swept kind) {
-    bool whole = kind != NEVH__ONE_ORBIT || stages % NEVH__LANES == 0;
-    return !w->transform && (nevh__work_lean(w) || whole);
-}
-
 static void lay_out(nevh__arena *a, void *sweeps) {
     nevh__sweeps *s = sweeps;
     nevh__stage_step *x = &s->x;
@@ -121,28 +115,32 @@ static void lay_out(nevh__arena *a, void *sweeps) {
     s->loaded = nevh__arena_take(a, 6 * x->n * lanes, each);
 }
 
-static void plan_calls(nevh__sweeps *s) {
+static void plan_gradients(nevh__sweeps *s) {
     const nevh__stage_step *x = &s->x;
-    nevh_field *f = s->work->field;
     size_t half = x->n * x->stride, width = x->stride;
     const double *q = x->points, *p = q + x->half, *t = s->times;
     double *dh_dp = x->gradient, *dh_dq = dh_dp + half;
     if (x->partitioned) {
-        s->drift = nevh__call_plan(f, width, t, q, p, NULL, dh_dp);
-        s->kick = nevh__call_plan(f, width, t, q, p, dh_dq, NULL);
+        s->drift = nevh__work_plan(s->work, width, t, q, p, NULL, dh_dp);
+        s->kick = nevh__work_plan(s->work, width, t, q, p, dh_dq, NULL);
     } else
-        s->whole = nevh__call_plan(f, width, t, q, p, dh_dq, dh_dp);
-}
-
-/* Of one orbit, whose stages stay where they are. */
-static bool has_values(const nevh_work *w) {
-    return w->width == 1 && !w->transform && !nevh__work_lean(w);
+        s->whole = nevh__work_plan(s->work, width, t, q, p, dh_dq, dh_dp);
 }
 
 static bool ready(const nevh__sweeps *s) {
-    return s->x.partitioned
-               ? nevh__call_ready(&s->drift) && nevh__call_ready(&s->kick)
-               : nevh__call_ready(&s->whole);
+    return s->x.partitioned ? nevh__evaluation_ready(&s->drift) &&
+                                  nevh__evaluation_ready(&s->kick)
+                            : nevh__evaluation_ready(&s->whole);
+}
+
+static size_t lanes_of(const nevh_work *w, nevh__swept kind) {
+    return kind == NEVH__ORBITS         ? w->width
+           : kind == NEVH__EIGHT_ORBITS ? NEVH__LANES
+                                        : 1;
+}
+
+bool nevh__sweeps_suit(const nevh_work *w, size_t stages, nevh__swept kind) {
+    return nevh__work_row(w, stages * lanes_of(w, kind));
 }
 
 nevh__sweeps *nevh__sweeps_new(nevh_work *w, const nevh__stage_weights *a,
@@ -153,9 +151,7 @@ nevh__sweeps *nevh__sweeps_new(nevh_work *w, const nevh__stage_weights *a,
     s->work = w;
     s->weights = a;
     s->kind = kind;
-    s->lanes = kind == NEVH__ORBITS         ? w->width
-               : kind == NEVH__EIGHT_ORBITS ? NEVH__LANES
-                                            : 1;
+    s->lanes = lanes_of(w, kind);
     s->used = a->stages;
     s->x = (nevh__stage_step){.n = w->n,
                               .stages = a->stages,
@@ -177,8 +173,8 @@ nevh__sweeps *nevh__sweeps_new(nevh_work *w, const nevh__stage_weights *a,
         return NULL;
     }
     s->changes.lowest = s->lowest;
-    if (kind != NEVH__ORBITS || has_values(w))
-        plan_calls(s);
+    if (kind != NEVH__ORBITS || w->width == 1)
+        plan_gradients(s);
     return s;
 }
 
@@ -200,13 +196,13 @@ static int ask(const nevh__sweeps *s, bool q, bool p) {
 /* Where it is exact and planned, it is not looked at yet. */
 NEVH__INLINE int nevh__stage_slopes(const nevh__stage_step *x, bool q, bool p) {
     const nevh__sweeps *s = x->owner;
-    const nevh__call *c = q && p ? &s->whole : q ? &s->kick : &s->drift;
+    const nevh__evaluation *e = q && p ? &s->whole : q ? &s->kick : &s->drift;
     if (x->unchecked)
-        return c->inverse ? NEVH_OK : nevh__work_run(s->work, c);
+        return e->inverse ? NEVH_OK : nevh__work_run(s->work, e);
     if (!s->from_values)
         return ask(s, q, p);
     s->work->field->gradients += q ? s->used : 0;
-    return nevh__work_run_values(s->work, c);
+    return nevh__work_run_values(s->work, e);
 }
 
 NEVH__INLINE const double *nevh__stage_inverse(const nevh__stage_step *x) {
@@ -409,7 +405,7 @@ static void load_slopes(nevh__sweeps *s, const nevh__sweep_start *x,
 
 static void set_columns(nevh__sweeps *s, const nevh__sweep_start *x) {
     s->used = s->x.stride = s->x.stages * x->count;
-    s->from_values = ready(s);
+    s->from_values = ready(s) && !s->whole.exact && !s->kick.exact;
     load_state(s, x, x->count);
     for (size_t i = 0; i < s->x.stride; i++)
         s->times[i] = x->t + s->weights->c[i / x->count] * x->h;

@@ -37,10 +37,11 @@ typedef struct {
     nevh__control control;
     gsl_odeiv2_evolve *evolve;
     double *y;
-} machine;
+} trial_run;
 
 /* From lane `at` of the samples to `count` states more. */
-static void run(nevh__step_selection *e, machine *m, size_t at, size_t count) {
+static void run(nevh__step_selection *e, trial_run *m, size_t at,
+                size_t count) {
     nevh__samples *s = &e->samples;
     size_t n = e->field->n;
     double *y = m->y, t = s->t[at];
@@ -63,11 +64,11 @@ static void run(nevh__step_selection *e, machine *m, size_t at, size_t count) {
 
 /* Memory that is out inside GSL ends in its error handler, which aborts, so
    as much is asked for first. */
-static bool assemble(machine *m, const nevh__step_selection *e) {
+static bool assemble(trial_run *m, const nevh__step_selection *e) {
     size_t d = 2 * e->field->n;
     double *trial = nevh__array(40 * d, sizeof *trial);
     free(trial);
-    *m = (machine){.ode = nevh_gsl_system(e->field)};
+    *m = (trial_run){.ode = nevh_gsl_system(e->field)};
     m->y = nevh__array(2 * d, sizeof *m->y);
     if (!trial || !m->y || !m->ode.jacobian)
         return false;
@@ -78,7 +79,7 @@ static bool assemble(machine *m, const nevh__step_selection *e) {
     return m->step && m->evolve;
 }
 
-static void dismantle(machine *m) {
+static void dismantle(trial_run *m) {
     if (m->step)
         gsl_odeiv2_step_free(m->step);
     if (m->evolve)
@@ -91,7 +92,7 @@ bool nevh__add_run(nevh__step_selection *e) {
     bool given = e->options->q || e->options->p;
     if (count == 0 || !given)
         return true;
-    machine m;
+    trial_run m;
     bool made = assemble(&m, e);
     for (size_t lane = 0; made && lane < e->lanes; lane++)
         run(e, &m, lane, count);

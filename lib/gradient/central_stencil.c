@@ -178,7 +178,7 @@ void nevh__central_stencil_clear(nevh__planned *term) {
 
 /* The width's lanes, or a part of them in whole vectors, for which there is
    room in a block; 0: there is none. */
-static size_t lanes_of(const nevh__call *e, const nevh__stencil *s) {
+static size_t lanes_of(const nevh__evaluation *e, const nevh__stencil *s) {
     size_t lanes = e->width;
     while (lanes > 0 &&
            (lanes * s->points > e->field->capacity || e->width % lanes))
@@ -186,7 +186,7 @@ static size_t lanes_of(const nevh__call *e, const nevh__stencil *s) {
     return lanes;
 }
 
-static bool applicable(const nevh__call *e) {
+static bool applicable(const nevh__evaluation *e) {
     const nevh_field *f = e->field;
     if (!f->gradient->offsets)
         return false; /* there are no points */
@@ -206,27 +206,27 @@ static bool applicable(const nevh__call *e) {
     return true;
 }
 
-static bool add_part(nevh__call *e, nevh__planned *term) {
+static bool add_part(nevh__evaluation *e, nevh__planned *term) {
     nevh_field *f = e->field;
     const nevh__stencil *s = term->stencil[nevh__part_of(&e->at)];
     size_t lanes = lanes_of(e, s);
-    if (e->count == NEVH__MOST_CALLED)
+    if (e->count == NEVH__MOST_PARTS)
         return false;
-    nevh__called *x = &e->terms[e->count++];
-    *x = (nevh__called){.term = term,
-                        .stencil = s,
-                        .lanes = lanes,
-                        .stride = nevh__padded(s->points * lanes),
-                        .c = nevh__constants_plan(term, s, lanes),
-                        .adds_q = term != f->whole_q,
-                        .adds_p = term != f->whole_p};
+    nevh__term_part *x = &e->terms[e->count++];
+    *x = (nevh__term_part){.term = term,
+                           .stencil = s,
+                           .lanes = lanes,
+                           .stride = nevh__padded(s->points * lanes),
+                           .c = nevh__constants_plan(term, s, lanes),
+                           .adds_q = term != f->whole_q,
+                           .adds_p = term != f->whole_p};
     e->timed |= term->term->decl.time;
     bool known = !term->term->decl.nc || x->c;
     f->starved |= !known;
     return known;
 }
 
-static bool plan(nevh__call *e) {
+static bool plan(nevh__evaluation *e) {
     nevh_field *f = e->field;
     e->clear_q = e->at.dh_dq && !f->whole_q;
     e->clear_p = e->at.dh_dp && !f->whole_p;
@@ -307,15 +307,16 @@ NEVH__INLINE void add_slope(const nevh_gradient *method, size_t offsets,
 
 /* Where the slope of a variable goes, from a lane on, and whether it is added
    there. */
-NEVH__INLINE double *place_of(const nevh__called *part, const nevh__places *at,
-                              const slope *x, size_t lane, bool *adds) {
+NEVH__INLINE double *place_of(const nevh__term_part *part,
+                              const nevh__places *at, const slope *x,
+                              size_t lane, bool *adds) {
     bool momentum = x->k >= part->term->nq;
     *adds = momentum ? part->adds_p : part->adds_q;
     return (momentum ? at->dh_dp : at->dh_dq) + x->target * at->width + lane;
 }
 
 /* The slopes of whole vectors of states; whether all are finite. */
-NEVH__INLINE bool add_vectors(const nevh_field *f, const nevh__called *part,
+NEVH__INLINE bool add_vectors(const nevh_field *f, const nevh__term_part *part,
                               const nevh__places *at, size_t lane) {
     const nevh__stencil *s = part->stencil;
     size_t lanes = part->lanes;
@@ -340,7 +341,7 @@ NEVH__INLINE bool add_vectors(const nevh_field *f, const nevh__called *part,
 }
 
 /* Of any number of states. */
-static bool add_lanes(const nevh_field *f, const nevh__called *part,
+static bool add_lanes(const nevh_field *f, const nevh__term_part *part,
                       const nevh__places *at, size_t lane) {
     const nevh__stencil *s = part->stencil;
     size_t lanes = part->lanes;
@@ -358,7 +359,7 @@ static bool add_lanes(const nevh_field *f, const nevh__called *part,
     return !bad;
 }
 
-NEVH__INLINE bool add_one(const nevh_field *f, const nevh__called *part,
+NEVH__INLINE bool add_one(const nevh_field *f, const nevh__term_part *part,
                           const nevh__places *at, size_t lane) {
     const nevh__stencil *s = part->stencil;
     double bad = 0;
@@ -377,7 +378,7 @@ typedef enum { ONE, VECTORS, LANES } layout;
 
 /* A block of the points of all lanes from `lane` on, their values, and the
    slopes; whether all are finite. */
-NEVH__INLINE bool take(nevh_field *f, const nevh__called *part,
+NEVH__INLINE bool take(nevh_field *f, const nevh__term_part *part,
                        const nevh__places *at, size_t lane, layout shape) {
     const nevh__stencil *s = part->stencil;
     nevh__planned *term = part->term;
@@ -408,24 +409,24 @@ NEVH__INLINE bool take(nevh_field *f, const nevh__called *part,
                               : add_lanes(f, part, at, lane);
 }
 
-NEVH_SIMD static bool take_one(nevh_field *f, const nevh__called *part,
+NEVH_SIMD static bool take_one(nevh_field *f, const nevh__term_part *part,
                                const nevh__places *at) {
     return take(f, part, at, 0, ONE);
 }
 
-NEVH_SIMD static bool take_vectors(nevh_field *f, const nevh__called *part,
+NEVH_SIMD static bool take_vectors(nevh_field *f, const nevh__term_part *part,
                                    const nevh__places *at, size_t lane) {
     return take(f, part, at, lane, VECTORS);
 }
 
-NEVH_SIMD static bool take_lanes(nevh_field *f, const nevh__called *part,
+NEVH_SIMD static bool take_lanes(nevh_field *f, const nevh__term_part *part,
                                  const nevh__places *at, size_t lane) {
     return take(f, part, at, lane, LANES);
 }
 
 /* Tells what is not finite: a value, or else the first such slope. */
-static int fail(nevh_field *f, const nevh__called *part, const nevh__places *at,
-                size_t lane) {
+static int fail(nevh_field *f, const nevh__term_part *part,
+                const nevh__places *at, size_t lane) {
     const nevh__stencil *s = part->stencil;
     size_t column = 0, used = s->points * part->lanes;
     nevh__block b = nevh__block_over(at->width, at->t, at->q, at->p, 1, 1);
@@ -452,14 +453,14 @@ static int fail(nevh_field *f, const nevh__called *part, const nevh__places *at,
                                     fabs(reach));
 }
 
-int nevh__central_stencil_run(const nevh__call *e) {
+int nevh__central_stencil_run(const nevh__evaluation *e) {
     nevh_field *f = e->field;
     size_t size = f->n * e->width * sizeof(double);
     if (e->clear_q)
         memset(e->at.dh_dq, 0, size);
     if (e->clear_p)
         memset(e->at.dh_dp, 0, size);
-    for (const nevh__called *x = e->terms; x < e->terms + e->count; x++) {
+    for (const nevh__term_part *x = e->terms; x < e->terms + e->count; x++) {
         if (e->width == 1 && !take_one(f, x, &e->at))
             return fail(f, x, &e->at, 0);
         for (size_t lane = 0; lane < e->width && e->width > 1; lane += x->lanes)
@@ -501,10 +502,10 @@ int nevh__gradient_central(nevh_field *f, nevh__planned *term,
     if (!s)
         return nevh__central_blocks(f, term, at);
     size_t most = lanes_in_block(f, s, at->width);
-    nevh__called x = {.term = term,
-                      .stencil = s,
-                      .adds_q = term != f->whole_q,
-                      .adds_p = term != f->whole_p};
+    nevh__term_part x = {.term = term,
+                         .stencil = s,
+                         .adds_q = term != f->whole_q,
+                         .adds_p = term != f->whole_p};
     for (size_t lane = 0; lane < at->width; lane += x.lanes) {
         x.lanes = at->width - lane < most ? at->width - lane : most;
         x.stride = nevh__padded(s->points * x.lanes);

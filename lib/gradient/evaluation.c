@@ -8,7 +8,7 @@
 
 /* Exact gradients have another way of their own, which looks at its results:
    who plans them takes them so where no evaluator is applicable. */
-static bool any_but_exact(const nevh__call *e) {
+static bool any_but_exact(const nevh__evaluation *e) {
     const nevh_field *f = e->field;
     if (f->gradient == nevh_exact)
         return false;
@@ -17,7 +17,7 @@ static bool any_but_exact(const nevh__call *e) {
     return true;
 }
 
-static bool plan_terms(nevh__call *e) {
+static bool plan_terms(nevh__evaluation *e) {
     e->count = e->field->n_terms;
     e->timed = true;
     return true;
@@ -30,8 +30,8 @@ static const nevh__evaluator *const evaluators[] = {
     &term_by_term};
 
 /* Where no other term reads momenta. */
-static const double *find_masses(const nevh__call *e) {
-    const nevh__called *x = e->terms;
+static const double *find_masses(const nevh__evaluation *e) {
+    const nevh__term_part *x = e->terms;
     const nevh_term *decl = &x->term->term->decl;
     const double *inverse = nevh__term_inverse_masses(x->term->term);
     size_t alone = e->width == 1 ? decl->count : 1;
@@ -41,14 +41,15 @@ static const double *find_masses(const nevh__call *e) {
     return e->width == 1 ? inverse : x->c;
 }
 
-nevh__call nevh__call_plan(nevh_field *f, size_t width, const double t[],
-                           const double q[], const double p[], double dh_dq[],
-                           double dh_dp[]) {
-    const nevh__call asked = {
+nevh__evaluation nevh__evaluation_plan(nevh_field *f, size_t width,
+                                       const double t[], const double q[],
+                                       const double p[], double dh_dq[],
+                                       double dh_dp[]) {
+    const nevh__evaluation asked = {
         .field = f, .width = width, .at = {width, t, q, p, dh_dq, dh_dp}};
     size_t count = sizeof evaluators / sizeof *evaluators;
     for (size_t i = 0; i < count && !nevh__field_ready(f); i++) {
-        nevh__call e = asked;
+        nevh__evaluation e = asked;
         if (!evaluators[i]->applicable(&e) || !evaluators[i]->plan(&e))
             continue;
         e.exact = f->gradient == nevh_exact;
@@ -56,12 +57,7 @@ nevh__call nevh__call_plan(nevh_field *f, size_t width, const double t[],
             e.inverse = find_masses(&e);
         return e;
     }
-    return (nevh__call){0};
-}
-
-int nevh__call_run_values(const nevh__call *e) {
-    return e->stencil ? nevh__central_stencil_run(e)
-                      : nevh__field_terms(e->field, &e->at);
+    return (nevh__evaluation){0};
 }
 
 int nevh__field_terms(nevh_field *f, const nevh__places *at) {
@@ -90,7 +86,7 @@ static void add_numbers(size_t size, const double x[], double sum[]) {
         sum[k] += x[k];
 }
 
-void nevh__call_add(const nevh__called *x) {
+void nevh__evaluation_add(const nevh__term_part *x) {
     void (*to)(size_t, const double *, double *) = x->point ? add_numbers : add;
     if (x->sum_q)
         to(x->size_q, x->dh_dq, x->sum_q);
@@ -149,18 +145,18 @@ const double *nevh__constants_plan(nevh__planned *term, const nevh__stencil *of,
 /* One state goes through places of the field's own, for dH/dq, dH/dp, or
    both. */
 struct nevh__single {
-    nevh__call of[3];
+    nevh__evaluation of[3];
     double t[NEVH__LANES], numbers[]; /* q, p, dH/dq, dH/dp */
 };
 
 /* A number for a state, or one for each lane of a vector. */
-static nevh__call plan_single(nevh_field *f, size_t width, size_t part) {
+static nevh__evaluation plan_single(nevh_field *f, size_t width, size_t part) {
     struct nevh__single *s = f->single;
     size_t size = f->n * NEVH__LANES;
     double *x = nevh__aligned(s->numbers);
-    return nevh__call_plan(f, width, s->t, x, x + size,
-                           part != 1 ? x + 2 * size : NULL,
-                           part != 0 ? x + 3 * size : NULL);
+    return nevh__evaluation_plan(f, width, s->t, x, x + size,
+                                 part != 1 ? x + 2 * size : NULL,
+                                 part != 0 ? x + 3 * size : NULL);
 }
 
 bool nevh__single_plan(nevh_field *f) {
@@ -169,9 +165,9 @@ bool nevh__single_plan(nevh_field *f) {
         return true;
     f->single = nevh__array(1, sizeof *f->single + size);
     for (size_t part = 0; f->single && part < 3; part++) {
-        nevh__call *e = &f->single->of[part];
+        nevh__evaluation *e = &f->single->of[part];
         *e = plan_single(f, 1, part);
-        if (!e->count && f->repeats)
+        if (!e->count && f->broadcasts)
             *e = plan_single(f, NEVH__LANES, part);
         if (!e->exact)
             e->count = 0; /* as well where the state is */
@@ -185,7 +181,7 @@ void nevh__single_free(struct nevh__single *s) {
 
 /* Stores in parts are slow to load as a vector. */
 NEVH_SIMD static void repeat(size_t count, const double from[], double to[]) {
-    nevh__repeat(count, from, to);
+    nevh__broadcast(count, from, to);
 }
 
 static void load(size_t width, size_t count, const double from[],
@@ -210,13 +206,14 @@ static double store(size_t width, size_t count, const double from[],
 
 /* False: there is no such evaluation, or something is not finite. */
 static bool take_single(nevh_field *f, const nevh__places *at) {
-    const nevh__call *e = f->single ? &f->single->of[nevh__part_of(at)] : NULL;
+    const nevh__evaluation *e =
+        f->single ? &f->single->of[nevh__part_of(at)] : NULL;
     if (!e || !e->count || (!at->dh_dq && !at->dh_dp))
         return false;
     load(e->width, 1, at->t, e->at.t);
     load(e->width, f->n, at->q, e->at.q);
     load(e->width, f->n, at->p, e->at.p);
-    nevh__call_run(e);
+    nevh__evaluation_run(e);
     return store(e->width, f->n, e->at.dh_dq, at->dh_dq) +
                store(e->width, f->n, e->at.dh_dp, at->dh_dp) ==
            0;

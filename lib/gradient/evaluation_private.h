@@ -19,7 +19,7 @@
 
 #include "gradient/field_private.h"
 
-enum { NEVH__MOST_CALLED = 8, NEVH__MOST_POINT_ROWS = 64 };
+enum { NEVH__MOST_PARTS = 8, NEVH__MOST_POINT_ROWS = 64 };
 
 /* A term's part of an evaluation, or that of one of its instances. */
 typedef struct {
@@ -35,9 +35,9 @@ typedef struct {
     const nevh__stencil *stencil;
     size_t lanes;        /* of each block of it */
     bool adds_q, adds_p; /* its slopes, to what is there */
-} nevh__called;
+} nevh__term_part;
 
-typedef struct nevh__call {
+typedef struct nevh__evaluation {
     nevh_field *field;
     nevh__places at;
     size_t count;          /* of parts; 0: there is no such evaluation */
@@ -46,55 +46,55 @@ typedef struct nevh__call {
     bool clear_q, clear_p; /* before stencils add to them */
     size_t width;          /* at.width */
     bool timed;            /* time is read, in all lanes */
-    nevh__called terms[NEVH__MOST_CALLED];
+    nevh__term_part terms[NEVH__MOST_PARTS];
     const double *inverse; /* n x width: of dH/dp alone, where T is that of
                               masses, what p is multiplied by; or NULL */
-} nevh__call;
+} nevh__evaluation;
 
 typedef struct {
     /* Conditions on the field and the places. */
-    bool (*applicable)(const nevh__call *);
+    bool (*applicable)(const nevh__evaluation *);
     /* Lists the parts; false: a condition on these is not met, or memory is
        out. */
-    bool (*plan)(nevh__call *);
+    bool (*plan)(nevh__evaluation *);
 } nevh__evaluator;
 
 extern const nevh__evaluator nevh__exact_point, nevh__exact_block,
     nevh__central_stencil;
 
 /* width is 1 or a multiple of NEVH__LANES; dh_dq or dh_dp may be NULL. */
-nevh__call nevh__call_plan(nevh_field *, size_t width, const double t[],
-                           const double q[], const double p[], double dh_dq[],
-                           double dh_dp[]);
+nevh__evaluation nevh__evaluation_plan(nevh_field *, size_t width,
+                                       const double t[], const double q[],
+                                       const double p[], double dh_dq[],
+                                       double dh_dp[]);
 /* Adds what a part wrote beside its place. */
-void nevh__call_add(const nevh__called *);
-/* Runs one that is not exact: values are counted, and failures told. */
-int nevh__call_run_values(const nevh__call *);
-int nevh__central_stencil_run(const nevh__call *);
+void nevh__evaluation_add(const nevh__term_part *);
+/* Runs one by central_stencil: values are counted, and failures told. */
+int nevh__central_stencil_run(const nevh__evaluation *);
 /* Runs one that is exact, but looks at no result, and counts nothing: of width
    1, or of any. */
-NEVH__INLINE void nevh__call_run_points(const nevh__call *c) {
-    const nevh__called *x = c->terms;
+NEVH__INLINE void nevh__evaluation_run_points(const nevh__evaluation *c) {
+    const nevh__term_part *x = c->terms;
     for (size_t left = c->count; left > 0; left--, x++) {
         x->point(*x->t, x->q, x->p, x->c, x->params, x->dh_dq, x->dh_dp);
         if (x->sums)
-            nevh__call_add(x);
+            nevh__evaluation_add(x);
     }
 }
-NEVH__INLINE void nevh__call_run(const nevh__call *c) {
+NEVH__INLINE void nevh__evaluation_run(const nevh__evaluation *c) {
     if (c->width == 1) {
-        nevh__call_run_points(c);
+        nevh__evaluation_run_points(c);
         return;
     }
-    for (const nevh__called *x = c->terms; x < c->terms + c->count; x++) {
+    for (const nevh__term_part *x = c->terms; x < c->terms + c->count; x++) {
         x->gradient(x->stride, x->t, x->q, x->p, x->c, x->params, x->dh_dq,
                     x->dh_dp);
         if (x->sums)
-            nevh__call_add(x);
+            nevh__evaluation_add(x);
     }
 }
 /* Whether there is such an evaluation, and it may be run. */
-static inline bool nevh__call_ready(const nevh__call *c) {
+static inline bool nevh__evaluation_ready(const nevh__evaluation *c) {
     return c->count && nevh__field_at_hand(c->field);
 }
 

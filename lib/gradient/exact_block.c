@@ -9,7 +9,7 @@
 
 /* Instances that a state repeated over a vector may have, and variables: more
    of them cost more than to gather one vector of instances. */
-enum { MOST_REPEATED = 2, MOST_ROWS = 8 };
+enum { MOST_BROADCAST = 2, MOST_ROWS = 8 };
 
 /* Whether the rows of all variables stand in the state as in a block. */
 static bool stands(const nevh__planned *term) {
@@ -18,15 +18,15 @@ static bool stands(const nevh__planned *term) {
            (!term->np || nevh__contiguous(decl->p, term->np, decl->count));
 }
 
-bool nevh__exact_block_repeats(const nevh_field *f) {
+bool nevh__exact_block_broadcasts(const nevh_field *f) {
     for (size_t i = 0; i < f->n_terms; i++)
-        if (f->terms[i].term->decl.count > MOST_REPEATED ||
+        if (f->terms[i].term->decl.count > MOST_BROADCAST ||
             !stands(&f->terms[i]))
             return false;
     return f->n <= MOST_ROWS;
 }
 
-static bool applicable(const nevh__call *e) {
+static bool applicable(const nevh__evaluation *e) {
     const nevh_field *f = e->field;
     if (f->gradient != nevh_exact)
         return false; /* terms need not bring derivatives */
@@ -50,7 +50,7 @@ static bool applicable(const nevh__call *e) {
 /* Where a half of a part's slopes goes: to its place if that is all of the half
    and nothing is there yet, else beside it, to be added.  False: something is
    to be added where nothing is. */
-static bool direct(const nevh__call *e, const size_t index[], size_t size,
+static bool direct(const nevh__evaluation *e, const size_t index[], size_t size,
                    bool *there, double *half, double *beside, double **written,
                    double **sum) {
     *written = *there ? beside : half;
@@ -60,22 +60,23 @@ static bool direct(const nevh__call *e, const size_t index[], size_t size,
     return known;
 }
 
-static bool add_part(nevh__call *e, nevh__planned *term, bool there[2]) {
+static bool add_part(nevh__evaluation *e, nevh__planned *term, bool there[2]) {
     nevh_field *f = e->field;
     const nevh_term *decl = &term->term->decl;
     size_t width = e->width, stride = decl->count * width;
     double *slopes_p = f->slopes + stride * term->nq;
-    if (e->count == NEVH__MOST_CALLED)
+    if (e->count == NEVH__MOST_PARTS)
         return false;
-    nevh__called *x = &e->terms[e->count++];
-    *x = (nevh__called){.term = term,
-                        .gradient = decl->gradient,
-                        .params = decl->params,
-                        .stride = stride,
-                        .t = decl->time ? e->at.t : f->zeros,
-                        .q = term->nq ? e->at.q + decl->q[0] * width : e->at.q,
-                        .p = term->np ? e->at.p + decl->p[0] * width : e->at.p,
-                        .c = nevh__constants_plan(term, NULL, width)};
+    nevh__term_part *x = &e->terms[e->count++];
+    *x = (nevh__term_part){
+        .term = term,
+        .gradient = decl->gradient,
+        .params = decl->params,
+        .stride = stride,
+        .t = decl->time ? e->at.t : f->zeros,
+        .q = term->nq ? e->at.q + decl->q[0] * width : e->at.q,
+        .p = term->np ? e->at.p + decl->p[0] * width : e->at.p,
+        .c = nevh__constants_plan(term, NULL, width)};
     bool known = !decl->nc || x->c;
     f->starved |= !known;
     e->timed |= decl->time;
@@ -93,7 +94,7 @@ static bool add_part(nevh__call *e, nevh__planned *term, bool there[2]) {
     return known;
 }
 
-static bool plan(nevh__call *e) {
+static bool plan(nevh__evaluation *e) {
     nevh_field *f = e->field;
     bool there[2] = {!e->at.dh_dq, !e->at.dh_dp};
     for (nevh__planned *term = f->terms; term < f->terms + f->n_terms; term++)

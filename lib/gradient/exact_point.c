@@ -5,7 +5,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/evaluation_private.h"
 
-static bool applicable(const nevh__call *e) {
+static bool applicable(const nevh__evaluation *e) {
     const nevh_field *f = e->field;
     if (f->gradient != nevh_exact)
         return false; /* terms need not bring derivatives */
@@ -38,26 +38,26 @@ static bool direct(uint64_t *there, uint64_t here, double *half, double *beside,
     return !met || met == here;
 }
 
-static bool add_part(nevh__call *e, nevh__planned *term, size_t instance,
+static bool add_part(nevh__evaluation *e, nevh__planned *term, size_t instance,
                      uint64_t there[2]) {
     const nevh_term *decl = &term->term->decl;
     const size_t *all_q = decl->q + instance * term->nq;
     const size_t *all_p = decl->p + instance * term->np;
     size_t q = term->nq ? all_q[0] : 0, p = term->np ? all_p[0] : 0;
-    if (e->count == NEVH__MOST_CALLED ||
+    if (e->count == NEVH__MOST_PARTS ||
         (term->nq && !nevh__contiguous(all_q, term->nq, 1)) ||
         (term->np && !nevh__contiguous(all_p, term->np, 1)))
         return false;
-    nevh__called *x = &e->terms[e->count++];
-    *x = (nevh__called){.term = term,
-                        .point = decl->point_gradient,
-                        .params = decl->params,
-                        .size_q = e->at.dh_dq ? term->nq : 0,
-                        .size_p = e->at.dh_dp ? term->np : 0,
-                        .t = decl->time ? e->at.t : e->field->zeros,
-                        .q = e->at.q + q,
-                        .p = e->at.p + p,
-                        .c = decl->c + instance * decl->nc};
+    nevh__term_part *x = &e->terms[e->count++];
+    *x = (nevh__term_part){.term = term,
+                           .point = decl->point_gradient,
+                           .params = decl->params,
+                           .size_q = e->at.dh_dq ? term->nq : 0,
+                           .size_p = e->at.dh_dp ? term->np : 0,
+                           .t = decl->time ? e->at.t : e->field->zeros,
+                           .q = e->at.q + q,
+                           .p = e->at.p + p,
+                           .c = decl->c + instance * decl->nc};
     double *beside = e->field->slopes;
     bool known = true;
     if (x->size_q)
@@ -71,7 +71,7 @@ static bool add_part(nevh__call *e, nevh__planned *term, size_t instance,
     return known;
 }
 
-static bool plan(nevh__call *e) {
+static bool plan(nevh__evaluation *e) {
     nevh_field *f = e->field;
     uint64_t there[2] = {0, 0}, all = bits(0, f->n);
     for (nevh__planned *term = f->terms; term < f->terms + f->n_terms; term++)

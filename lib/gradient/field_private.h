@@ -114,8 +114,8 @@ struct nevh_field {
     /* Of a half of the gradient: the first term with a share in it, if that has
        all of it; else NULL. */
     const nevh__planned *whole_q, *whole_p;
-    bool starved; /* memory was out when an evaluation was planned */
-    bool repeats; /* one state may as well be repeated over a vector */
+    bool starved;    /* memory was out when an evaluation was planned */
+    bool broadcasts; /* one state may as well be repeated over a vector */
     struct nevh__single
         *single; /* evaluations at one state; see evaluation.c */
     nevh__report report;
@@ -225,7 +225,7 @@ bool nevh__central_stencil_plan(nevh_field *);
 void nevh__central_stencil_clear(nevh__planned *);
 bool nevh__exact_gather_plan(nevh_field *);
 /* Whether one state may as well be repeated over a vector. */
-bool nevh__exact_block_repeats(const nevh_field *);
+bool nevh__exact_block_broadcasts(const nevh_field *);
 
 /* For `count` instances whose variable k of instance i is index[i*rows + k] of
    n; false when memory is out. */

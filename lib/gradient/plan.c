@@ -104,7 +104,7 @@ static int plan_workspace(nevh_field *f) {
     f->one = f->sums + 2 * columns;
     if (f->gradient != nevh_exact)
         return NEVH_OK;
-    f->repeats = nevh__exact_block_repeats(f);
+    f->broadcasts = nevh__exact_block_broadcasts(f);
     if (nevh__exact_gather_plan(f))
         return NEVH_OK;
     return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");

@@ -167,7 +167,7 @@ static int check_point(const check *c, size_t at, size_t round) {
 /* Thoroughly where it will be called. */
 static int check_points(const check *c, size_t at) {
     const nevh_term *decl = &c->term->term->decl;
-    size_t rounds = decl->count <= NEVH__MOST_CALLED ? ROUNDS : 1;
+    size_t rounds = decl->count <= NEVH__MOST_PARTS ? ROUNDS : 1;
     int status = NEVH_OK;
     for (size_t i = 0; decl->point_gradient && !status && i < rounds; i++)
         status = check_point(c, at, i);

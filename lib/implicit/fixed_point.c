@@ -202,9 +202,10 @@ static int settle(nevh__stage_solver *s, group_state *g, size_t i,
     g->settled[i] = true;
     g->left--;
     s->work->sweeps += sweeps;
+    e->group->count(e->data, sweeps);
     if (state != NEVH__DONE)
         return hand_over(s, g->first + i);
-    e->group->fetch(e->data, i, sweeps);
+    e->group->fetch(e->data, i);
     return NEVH_OK;
 }
 
@@ -231,9 +232,10 @@ static int iterate_one(nevh__stage_solver *s, size_t lane, size_t sweeps) {
             return s->status;
     }
     s->work->sweeps += sweeps;
+    e->group->count(e->data, sweeps);
     if (state != NEVH__DONE)
         return hand_over(s, lane);
-    e->group->fetch(e->data, 0, sweeps);
+    e->group->fetch(e->data, 0);
     return NEVH_OK;
 }
 

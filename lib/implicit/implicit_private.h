@@ -39,8 +39,10 @@ typedef struct {
     size_t (*begin)(void *data, size_t first, const double unit[]);
     /* Sweeps on from where begun, and tells what that changed. */
     int (*sweep)(void *data, nevh__stage_progress made[]);
-    /* Of a lane of the group, after so many sweeps: takes its x. */
-    void (*fetch)(void *data, size_t lane, size_t sweeps);
+    /* So many sweeps of a lane were made: counts what they evaluated. */
+    void (*count)(void *data, size_t sweeps);
+    /* Of a lane of the group: takes its x. */
+    void (*fetch)(void *data, size_t lane);
     /* So many lanes of a group, or fewer, had better leave it: what follows is
        of this lane alone, which goes on where it stands.  few 0: none does. */
     void (*leave)(void *data, size_t lane);

@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* More text than MOST_REPEATED is called instead of being repeated. */
-enum { MOST_OPERATIONS = 800, MOST_REPEATED = 800, LANES = 8 };
+/* More text than MOST_BROADCAST is called instead of being repeated. */
+enum { MOST_OPERATIONS = 800, MOST_BROADCAST = 800, LANES = 8 };
 
 /* What is added to one variable's derivative. */
 typedef struct {
@@ -405,7 +405,7 @@ static bool fits(nevh__writer *w, const nevh_field *f, size_t calls) {
         w->refusal = "its formulas are too long";
     if (w->width > 1 && f->gradient != nevh_exact && !f->gradient->offsets)
         w->refusal = "orbits stand side by side";
-    if (!w->readable && (kick + drift) * (double)calls > MOST_REPEATED)
+    if (!w->readable && (kick + drift) * (double)calls > MOST_BROADCAST)
         nevh__write(w, "#undef SLOPE\n"
                        "#define SLOPE static __attribute__((noinline))\n");
     return !w->refusal;

@@ -79,7 +79,8 @@ static inline double *nevh__take(double **from, size_t size) {
 
 /* Each of `count` numbers, over a vector of lanes; for functions in vectors,
    since stores in parts are slow to load as a whole. */
-NEVH__INLINE void nevh__repeat(size_t count, const double from[], double to[]) {
+NEVH__INLINE void nevh__broadcast(size_t count, const double from[],
+                                  double to[]) {
     for (size_t k = 0; k < count; k++) {
         double x = from[k];
         NEVH_LANES(i, NEVH__LANES) {

@@ -25,12 +25,41 @@ static int fail_field(nevh_work *w, int status) {
     return nevh_work_fail(w, status, "%s", nevh_field_message(w->field));
 }
 
-bool nevh__work_lean(const nevh_work *w) {
-    return w->field->gradient == nevh_exact && !w->transform;
+size_t nevh__work_row(const nevh_work *w, size_t points) {
+    size_t row = nevh__padded(points);
+    if (w->transform)
+        return 0; /* gradients are not those of H */
+    if (w->field->gradient != nevh_exact && row != points)
+        return 0; /* differences at points that do not count take as long */
+    return row;
 }
 
-bool nevh__work_repeats(const nevh_work *w) {
-    return w->width == 1 && w->field->repeats && !w->accounts && !w->transform;
+/* Whether rows of so many lanes can be planned, wherever they are. */
+static bool has_plan(const nevh_work *w, size_t lanes, bool whole) {
+    double *at = w->field->slopes;
+    nevh__evaluation q = nevh__work_plan(w, lanes, at, at, at, at, NULL);
+    nevh__evaluation p = nevh__work_plan(w, lanes, at, at, at, NULL, at);
+    nevh__evaluation both = nevh__work_plan(w, lanes, at, at, at, at, at);
+    return whole ? both.count : q.count && p.count;
+}
+
+size_t nevh__work_lanes(const nevh_work *w, bool whole, bool numbers) {
+    size_t row = nevh__work_row(w, w->width);
+    if (w->width > 1)
+        return row && has_plan(w, row, whole) ? row : 0;
+    if (numbers && has_plan(w, 1, whole))
+        return 1;
+    return w->field->broadcasts && has_plan(w, NEVH__LANES, whole) ? NEVH__LANES
+                                                                   : 0;
+}
+
+nevh__evaluation nevh__work_plan(const nevh_work *w, size_t lanes,
+                                 const double t[], const double q[],
+                                 const double p[], double dh_dq[],
+                                 double dh_dp[]) {
+    if (w->transform)
+        return (nevh__evaluation){0};
+    return nevh__evaluation_plan(w->field, lanes, t, q, p, dh_dq, dh_dp);
 }
 
 int nevh_work_gradient(nevh_work *w, size_t points, const double t[],
@@ -67,8 +96,9 @@ int nevh_work_account(nevh_work *w, unsigned parts, double weight,
     return status ? status : nevh__ledger_account(w, parts, weight, t, q, p);
 }
 
-int nevh__work_run_values(nevh_work *w, const nevh__call *c) {
-    int status = nevh__call_run_values(c);
+int nevh__work_run_values(nevh_work *w, const nevh__evaluation *e) {
+    int status = e->stencil ? nevh__central_stencil_run(e)
+                            : nevh__field_terms(e->field, &e->at);
     return status ? fail_field(w, status) : NEVH_OK;
 }
 

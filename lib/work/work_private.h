@@ -43,24 +43,38 @@ int nevh__work_gradient_padded(nevh_work *, size_t points, size_t used,
                                const double t[], const double q[],
                                const double p[], double dh_dq[],
                                double dh_dp[]);
-/* Whether such points cost little: gradients are exact and those of H. */
-bool nevh__work_lean(const nevh_work *);
-/* Whether one orbit may as well be repeated over a vector. */
-bool nevh__work_repeats(const nevh_work *);
 
-/* A planned call: an exact one looks at no result and counts nothing, others
+/* Planned gradients of H.  How a kernel's rows hold them is decided here alone.
+
+   The numbers of a row of so many points: whole vectors, which other points
+   fill where they cost little; 0: the points do not fill vectors. */
+size_t nevh__work_row(const nevh_work *, size_t points);
+/* The lanes of rows of the work's orbits: 1, of one orbit alone, where `numbers`
+   will do; whole vectors, over which one orbit is broadcast, or in which others
+   repeat the first; 0: nothing can be planned, and nevh_work_gradient takes any
+   width.  whole: dH/dq and dH/dp are taken together, else apart. */
+size_t nevh__work_lanes(const nevh_work *, bool whole, bool numbers);
+/* A gradient at states that stay where they are: nevh__evaluation_plan, or none
+   where time is transformed. */
+nevh__evaluation nevh__work_plan(const nevh_work *, size_t lanes,
+                                 const double t[], const double q[],
+                                 const double p[], double dh_dq[],
+                                 double dh_dp[]);
+
+/* Runs it: an exact one looks at no result and counts nothing, others
    count values, and fail as nevh_work_gradient does. */
-int nevh__work_run_values(nevh_work *, const nevh__call *);
-NEVH__INLINE int nevh__work_run(nevh_work *w, const nevh__call *c) {
+int nevh__work_run_values(nevh_work *, const nevh__evaluation *);
+NEVH__INLINE int nevh__work_run(nevh_work *w, const nevh__evaluation *c) {
     if (!c->exact)
         return nevh__work_run_values(w, c);
-    nevh__call_run(c);
+    nevh__evaluation_run(c);
     return NEVH_OK;
 }
-NEVH__INLINE int nevh__work_run_points(nevh_work *w, const nevh__call *c) {
+NEVH__INLINE int nevh__work_run_points(nevh_work *w,
+                                       const nevh__evaluation *c) {
     if (!c->exact)
         return nevh__work_run_values(w, c);
-    nevh__call_run_points(c);
+    nevh__evaluation_run_points(c);
     return NEVH_OK;
 }
 /* Whether such a call has failed, and told why. */

@@ -53,7 +53,7 @@ if test -s $work/twice; then
 fi
 
 # The word, or a part of a name between underscores.
-words='shelf|shelve|ladder|ladders|rung|rungs|climb|preflight|flown|explorer
+words='lean|rub|wiring|shelf|shelve|ladder|ladders|rung|rungs|climb|preflight|flown|explorer
     |unplan|damp|damps|obey'
 words=$(echo $words | tr -d ' ')
 banned() {
@@ -68,6 +68,14 @@ echo 'clean = step;' | banned >/dev/null && exit 1
 if test -s $work/words; then
     echo "words that have a standard term:"
     cat $work/words
+    status=1
+fi
+# Names of what is planned, and of the state of a step, in the library.
+grep -nE '\b(nevh__call(ed)?(_[a-z_]*)?|nevh__[a-z_]*_(lean|repeats)|lack|lane_walk)\b' \
+    $work/code >$work/terms || :
+if test -s $work/terms; then
+    echo "names that have a standard term:"
+    cat $work/terms
     status=1
 fi
 echo "$(wc -l <$work/files) files"
