@@ -42,6 +42,8 @@ libnevh_core_la_SOURCES = \
 	lib/gradient/block.c \
 	lib/gradient/evaluation.c \
 	lib/gradient/central_block.c \
+	lib/gradient/stencil_private.h \
+	lib/gradient/stencil_plan.c \
 	lib/gradient/central_stencil.c \
 	lib/gradient/exact_block.c \
 	lib/gradient/exact_point.c \

@@ -34,6 +34,7 @@ tools_nevh_SOURCES = \
 	tools/search/cost_price.c \
 	tools/search/cost_words.c \
 	tools/search/recommend_private.h \
+	tools/search/recommend_search.c \
 	tools/search/recommend.c \
 	tools/search/promise.c \
 	tools/search/advice.c \

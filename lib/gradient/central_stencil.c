@@ -1,244 +1,10 @@
-/* nevh: central differences whose points are laid out when planned.
-
-   For a few orbits most time would go into bookkeeping, and into waiting for
-   single numbers just written to be read back as vectors.  So the points of all
-   variables and instances of a term are made whole: each row is its variable
-   plus a row of shifts, -0 where the variable is not moved (x + -0 is x to the
-   last bit, also for -0).  A column is (point * lanes + lane); the points of
-   one variable stand side by side, + before -, nearest first.
+/* nevh: slopes from values at points that were laid out in stencil_plan.c.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "gradient/evaluation_private.h"
+#include "gradient/stencil_private.h"
 #include "system/vector_private.h"
 #include <math.h>
 #include <nevh/body.h>
-#include <stdlib.h>
 #include <string.h>
-
-enum { MOST_VARIABLES = 16, MOST_SLOPES = 64 };
-
-/* The difference by one variable of one instance. */
-typedef struct {
-    size_t k;      /* the variable */
-    size_t target; /* row of the half of the gradient that it belongs to */
-    size_t first;  /* of its points */
-    const nevh_gradient *method;
-} slope;
-
-/* What dH/dq, dH/dp or both of a term take. */
-struct nevh__stencil {
-    size_t points, padded;
-    double *shift;     /* nv x padded */
-    size_t *source;    /* nv x padded: what is shifted, of q or p */
-    size_t *until;     /* points: where those of the same instance end */
-    size_t *instance;  /* points */
-    double *constants; /* of any places: nc rows of so many lanes */
-    size_t lanes;      /* 0: of none yet */
-    size_t slopes;
-    slope slope[MOST_SLOPES];
-};
-
-size_t nevh__stencil_points(const nevh__stencil *s) {
-    return s->points;
-}
-
-size_t nevh__stencil_instance(const nevh__stencil *s, size_t point) {
-    return s->instance[point];
-}
-
-/* What a pass of a term has of the halves asked for. */
-typedef struct {
-    size_t begin, end;
-} range;
-
-static range vars_of(const nevh__pass *pass, size_t part) {
-    return (range){part == 1 ? pass->first_p : pass->begin,
-                   part == 0 ? pass->first_p : pass->end};
-}
-
-static void list_pass(const nevh_field *f, const nevh__planned *term,
-                      const nevh__pass *pass, size_t part, nevh__stencil *s) {
-    range r = vars_of(pass, part);
-    for (size_t i = 0; i < term->term->decl.count; i++) {
-        size_t from = s->points;
-        for (size_t v = r.begin; v < r.end; v++) {
-            size_t k = term->vars[v];
-            double delta = term->delta[i * term->nv + k];
-            s->slope[s->slopes++] =
-                (slope){k, nevh__index(term, i, k), s->points,
-                        pass->pairs == 1 ? nevh_central2 : f->gradient};
-            for (size_t j = 0; j < 2 * pass->pairs; j++) {
-                double move = (double)(j / 2 + 1) * delta;
-                s->shift[k * s->padded + s->points++] = j % 2 ? -move : move;
-            }
-        }
-        for (size_t at = from; at < s->points; at++) {
-            s->until[at] = s->points;
-            s->instance[at] = i;
-            for (size_t k = 0; k < term->nv; k++)
-                s->source[k * s->padded + at] = nevh__index(term, i, k);
-        }
-    }
-}
-
-/* Padding repeats the first column. */
-static void fill(const nevh_field *f, const nevh__planned *term, size_t part,
-                 nevh__stencil *s) {
-    s->points = 0;
-    for (size_t i = 0; i < term->nv * s->padded; i++)
-        s->shift[i] = -0.0;
-    list_pass(f, term, &term->pass[0], part, s);
-    list_pass(f, term, &term->pass[1], part, s);
-    for (size_t k = 0; k < term->nv; k++)
-        for (size_t i = s->points; i < s->padded; i++)
-            s->source[k * s->padded + i] = s->source[k * s->padded];
-}
-
-static size_t count_points(const nevh__planned *term, size_t part,
-                           size_t *slopes) {
-    size_t points = *slopes = 0;
-    for (const nevh__pass *pass = term->pass; pass < term->pass + 2; pass++) {
-        range r = vars_of(pass, part);
-        size_t count = (r.end - r.begin) * term->term->decl.count;
-        *slopes += count;
-        points += count * 2 * pass->pairs;
-    }
-    return points;
-}
-
-/* Returns false when memory is out. */
-static bool plan_part(const nevh_field *f, nevh__planned *term, size_t part) {
-    size_t slopes, points = count_points(term, part, &slopes);
-    if (slopes == 0)
-        return true; /* there is nothing to take */
-    if (term->nv > MOST_VARIABLES || slopes > MOST_SLOPES)
-        return true; /* most of a row would be variables at rest */
-    if (points > f->capacity)
-        return true; /* there is no room for all points at once */
-    nevh__stencil *s = term->stencil[part] = nevh__array(1, sizeof *s);
-    if (!s)
-        return false;
-    s->padded = nevh__padded(points);
-    s->shift = nevh__array(term->nv * s->padded, sizeof *s->shift);
-    s->source = nevh__array(term->nv * s->padded, sizeof *s->source);
-    s->until = nevh__array(points, sizeof *s->until);
-    s->instance = nevh__array(points, sizeof *s->instance);
-    s->constants =
-        nevh__array(term->term->decl.nc * f->capacity, sizeof *s->constants);
-    if (!s->shift || !s->source || !s->until || !s->instance || !s->constants)
-        return false;
-    fill(f, term, part, s);
-    return true;
-}
-
-/* Whether the slopes of a half are one for each row. */
-static bool covers(const nevh_field *f, const nevh__stencil *s) {
-    bool there[MOST_SLOPES] = {false};
-    if (!s || s->slopes != f->n)
-        return false;
-    for (const slope *x = s->slope; x < s->slope + s->slopes; x++) {
-        if (there[x->target])
-            return false;
-        there[x->target] = true;
-    }
-    return true;
-}
-
-bool nevh__central_stencil_plan(nevh_field *f) {
-    bool q = false, p = false; /* whether a term has a share in them */
-    for (nevh__planned *term = f->terms; term < f->terms + f->n_terms; term++) {
-        for (size_t part = 0; part < 3; part++)
-            if (!plan_part(f, term, part))
-                return false;
-        /* Both halves have a stencil, or else blocks add them. */
-        bool both = !term->nq || !term->np || term->stencil[2];
-        if (!q && both && covers(f, term->stencil[0]))
-            f->whole_q = term;
-        if (!p && both && covers(f, term->stencil[1]))
-            f->whole_p = term;
-        q |= term->nq > 0;
-        p |= term->np > 0;
-    }
-    return true;
-}
-
-void nevh__central_stencil_clear(nevh__planned *term) {
-    for (size_t part = 0; part < 3; part++) {
-        nevh__stencil *s = term->stencil[part];
-        if (!s)
-            continue;
-        free(s->shift);
-        free(s->source);
-        free(s->until);
-        free(s->instance);
-        free(s->constants);
-        free(s);
-        term->stencil[part] = NULL;
-    }
-}
-
-/* The width's lanes, or a part of them in whole vectors, for which there is
-   room in a block; 0: there is none. */
-static size_t lanes_of(const nevh__evaluation *e, const nevh__stencil *s) {
-    size_t lanes = e->width;
-    while (lanes > 0 &&
-           (lanes * s->points > e->field->capacity || e->width % lanes))
-        lanes -= lanes > NEVH__LANES ? NEVH__LANES : lanes;
-    return lanes;
-}
-
-static bool applicable(const nevh__evaluation *e) {
-    const nevh_field *f = e->field;
-    if (!f->gradient->offsets)
-        return false; /* there are no points */
-    if (e->width != 1 && e->width % NEVH__LANES)
-        return false; /* rows of points are whole vectors */
-    if (f->n > NEVH__MOST_POINT_ROWS)
-        return false; /* evaluations are for small systems */
-    for (size_t i = 0; i < f->n_terms; i++) {
-        const nevh__stencil *s = f->terms[i].stencil[nevh__part_of(&e->at)];
-        if (!nevh__wanted(&e->at, &f->terms[i]))
-            continue;
-        if (!s)
-            return false; /* it is taken in blocks */
-        if (!lanes_of(e, s))
-            return false; /* there is no room for a vector of states */
-    }
-    return true;
-}
-
-static bool add_part(nevh__evaluation *e, nevh__planned *term) {
-    nevh_field *f = e->field;
-    const nevh__stencil *s = term->stencil[nevh__part_of(&e->at)];
-    size_t lanes = lanes_of(e, s);
-    if (e->count == NEVH__MOST_PARTS)
-        return false;
-    nevh__term_part *x = &e->terms[e->count++];
-    *x = (nevh__term_part){.term = term,
-                           .stencil = s,
-                           .lanes = lanes,
-                           .stride = nevh__padded(s->points * lanes),
-                           .c = nevh__constants_plan(term, s, lanes),
-                           .adds_q = term != f->whole_q,
-                           .adds_p = term != f->whole_p};
-    e->timed |= term->term->decl.time;
-    bool known = !term->term->decl.nc || x->c;
-    f->starved |= !known;
-    return known;
-}
-
-static bool plan(nevh__evaluation *e) {
-    nevh_field *f = e->field;
-    e->clear_q = e->at.dh_dq && !f->whole_q;
-    e->clear_p = e->at.dh_dp && !f->whole_p;
-    for (nevh__planned *term = f->terms; term < f->terms + f->n_terms; term++) {
-        if (nevh__wanted(&e->at, term) && !add_part(e, term))
-            return false;
-    }
-    e->stencil = true;
-    return e->count > 0;
-}
-
-const nevh__evaluator nevh__central_stencil = {applicable, plan};
 
 /* One state: each row is a number plus a row of shifts, padding and all, or one
    number an instance. */
@@ -308,8 +74,9 @@ NEVH__INLINE void add_slope(const nevh_gradient *method, size_t offsets,
 /* Where the slope of a variable goes, from a lane on, and whether it is added
    there. */
 NEVH__INLINE double *place_of(const nevh__term_part *part,
-                              const nevh__places *at, const slope *x,
-                              size_t lane, bool *adds) {
+                              const nevh__places *at,
+                              const nevh__stencil_slope *x, size_t lane,
+                              bool *adds) {
     bool momentum = x->k >= part->term->nq;
     *adds = momentum ? part->adds_p : part->adds_q;
     return (momentum ? at->dh_dp : at->dh_dq) + x->target * at->width + lane;
@@ -322,7 +89,8 @@ NEVH__INLINE bool add_vectors(const nevh_field *f, const nevh__term_part *part,
     size_t lanes = part->lanes;
     nevh__vector bad = {0};
     double sum = 0;
-    for (const slope *x = s->slope; x < s->slope + s->slopes; x++) {
+    for (const nevh__stencil_slope *x = s->slope; x < s->slope + s->slopes;
+         x++) {
         const double *from = f->rows + x->k * part->stride + x->first * lanes;
         const double *h = f->h + x->first * lanes;
         bool adds;
@@ -346,7 +114,8 @@ static bool add_lanes(const nevh_field *f, const nevh__term_part *part,
     const nevh__stencil *s = part->stencil;
     size_t lanes = part->lanes;
     bool bad = false;
-    for (const slope *x = s->slope; x < s->slope + s->slopes; x++) {
+    for (const nevh__stencil_slope *x = s->slope; x < s->slope + s->slopes;
+         x++) {
         size_t first = x->first * lanes;
         bool adds;
         double *out = place_of(part, at, x, lane, &adds);
@@ -363,7 +132,8 @@ NEVH__INLINE bool add_one(const nevh_field *f, const nevh__term_part *part,
                           const nevh__places *at, size_t lane) {
     const nevh__stencil *s = part->stencil;
     double bad = 0;
-    for (const slope *x = s->slope; x < s->slope + s->slopes; x++) {
+    for (const nevh__stencil_slope *x = s->slope; x < s->slope + s->slopes;
+         x++) {
         const double *from = f->rows + x->k * part->stride + x->first;
         double sum = nevh__chord_slope(x->method, 1, from, f->h + x->first);
         bool adds;
@@ -433,7 +203,7 @@ static int fail(nevh_field *f, const nevh__term_part *part,
     while (column + 1 < used && f->h[column] - f->h[column] == 0)
         column++;
     size_t point = column / part->lanes, instance = s->instance[point];
-    const slope *x = s->slope;
+    const nevh__stencil_slope *x = s->slope;
     while (x + 1 < s->slope + s->slopes && x[1].first <= point)
         x++;
     b.lane = lane;

@@ -45,7 +45,7 @@ typedef struct {
     double *dh_dq, *dh_dp;
 } nevh__places;
 
-/* The points of the differences of a term; see central_stencil.c. */
+/* The points of the differences of a term; see stencil_plan.c. */
 typedef struct nevh__stencil nevh__stencil;
 
 /* From a half of the state to the rows of a block of all instances of a term,

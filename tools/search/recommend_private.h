@@ -20,6 +20,23 @@ typedef struct {
     char *not_longer;      /* why they were not; NULL */
 } advice;
 
+/* recommend_search.c */
+void advice_take_gradients(advice *, const options *);
+/* Follows studies to ever finer levels, until the cheapest that keep the target
+   are known and timed. */
+void advice_search(advice *);
+/* The cheapest level of a study that keeps the target, if it counts; NULL:
+   none does.  The same by work alone. */
+const row *advice_keeps(const advice *, const study *);
+const row *advice_least_worked(const advice *, const study *);
+/* The cheapest study that keeps the target and is not taken. */
+study *advice_next_best(const advice *, const bool taken[]);
+/* Times what may be an answer once; the best ones again. */
+void advice_time_once(advice *);
+void advice_time_best(advice *);
+/* Which studies the answers are. */
+void advice_choose(advice *);
+
 /* promise.c: the answers on the whole run, against a reference, and for how
    long they keep the target in one three times as long. */
 void advice_follow(advice *, plan *);
