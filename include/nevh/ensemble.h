@@ -102,6 +102,8 @@ NEVH_API const char *nevh_ensemble_message(const nevh_ensemble *);
 NEVH_API size_t nevh_ensemble_columns(const nevh_ensemble *);
 /* Orbits side by side. */
 NEVH_API size_t nevh_ensemble_width(const nevh_ensemble *);
+/* Whether their steps are compiled: nevh_stepper_native, of all side by side. */
+NEVH_API bool nevh_ensemble_native(const nevh_ensemble *, const char **why);
 
 /* Asks for the next orbit.
    member   out: any number, to tell it by

@@ -33,8 +33,10 @@ typedef struct {
                          parameters */
     double tolerance;
     bool portable;
-    size_t width, threads; /* 0: chosen; 1 */
-    bool ordered;          /* results come in order of members */
+    size_t width, threads;    /* 0: chosen; 1 */
+    bool ordered;             /* results come in order of members */
+    nevh_native_use native;   /* as in nevh_options */
+    const char *native_cache; /* the same; borrowed while the sweep lives */
 } nevh_sweep_options;
 
 /* A sweep over the members of a scene.  Member i is a function of the scene's
@@ -62,6 +64,10 @@ NEVH_API size_t nevh_sweep_varied(const nevh_sweep *);
 NEVH_API const char *nevh_sweep_column(const nevh_sweep *, size_t k);
 /* Whether column k is a nevh_verdict. */
 NEVH_API bool nevh_sweep_is_verdict(const nevh_sweep *, size_t k);
+
+/* Whether members whose orbits stand side by side take compiled steps.
+   why  out, may be NULL: what is in the way, or ""; of the sweep */
+NEVH_API bool nevh_sweep_native(const nevh_sweep *, const char **why);
 
 typedef enum {
     NEVH_MEMBER_MISSING, /* not yet run */

@@ -275,6 +275,7 @@ static int plan(nevh_ensemble *e) {
     e->alone = e->width == 1;
     e->abreast = !autonomous;
     status = plan_stepper(e, &o, e->width, &e->stepper);
+    o.native = NEVH_NATIVE_NEVER; /* it steps where others fail, and last */
     if (!status)
         status = plan_stepper(e, &o, 1, &e->narrow);
     if (!status && has_energy(e))
@@ -353,6 +354,10 @@ int nevh_ensemble_status(const nevh_ensemble *e) {
 
 const char *nevh_ensemble_message(const nevh_ensemble *e) {
     return e ? e->report.text : "out of memory";
+}
+
+bool nevh_ensemble_native(const nevh_ensemble *e, const char **why) {
+    return nevh_stepper_native(e ? e->stepper : NULL, why);
 }
 
 size_t nevh_ensemble_columns(const nevh_ensemble *e) {

@@ -99,6 +99,8 @@ static double seconds_foreseen(const nevh_work *w) {
             each += operation * (double)is->count *
                     (double)nevh__tape_length(is->params);
     }
+    if (w->width > 1) /* vectors of them */
+        each *= (double)w->width / 4;
     double gradients = w->integrator->gradients ? w->integrator->gradients : 1;
     return w->options->steps_foreseen * gradients * each;
 }

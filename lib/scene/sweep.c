@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/sweep_private.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -91,6 +92,9 @@ static int try(nevh_sweep *s) {
             nevh__fail(&s->report, nevh_ensemble_status(e), "%s",
                        nevh_ensemble_message(e));
     }
+    const char *why = "";
+    s->native = nevh_ensemble_native(e, &why);
+    snprintf(s->why_native, sizeof s->why_native, "%s", why);
     nevh_ensemble_free(e);
     nevh__variant_free(&x);
     free(room);
@@ -172,4 +176,10 @@ bool nevh_sweep_is_verdict(const nevh_sweep *s, size_t k) {
     if (!s)
         return false;
     return k < s->columns && s->verdicts[k];
+}
+
+bool nevh_sweep_native(const nevh_sweep *s, const char **why) {
+    if (why)
+        *why = s ? s->why_native : "out of memory";
+    return s && s->native;
 }

@@ -39,6 +39,8 @@ struct nevh_sweep {
     char **names; /* columns */
     bool *verdicts;
     nevh__report report;
+    bool native; /* steps of the scene as it is are compiled; else why not */
+    char why_native[400];
 
     /* A run. */
     pthread_mutex_t lock;           /* of all below, and of the scene */

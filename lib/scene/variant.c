@@ -155,6 +155,14 @@ static bool plan_state(const nevh__variant *x, double q[], double p[]) {
            !nevh__effect_not_finite(m->system, m->run.t_start, q, p, x->room);
 }
 
+/* Those of a thread, of orbits side by side: what one compiles, all load. */
+static double steps_foreseen(const nevh_sweep *s, double steps) {
+    size_t width = s->is.width ? s->is.width : 32; /* about */
+    double members = (double)nevh_sweep_members(s);
+    double foreseen = steps * members / (double)(width * s->is.threads);
+    return foreseen > 0 ? foreseen : 0;
+}
+
 nevh_ensemble_options nevh__variant_options(const nevh_sweep *s,
                                             const nevh__variant *x,
                                             nevh_options *o, double room[]) {
@@ -171,15 +179,17 @@ nevh_ensemble_options nevh__variant_options(const nevh_sweep *s,
                         .p = planned ? room + m->n : NULL,
                         .tolerance = s->is.tolerance,
                         .transform = s->is.transformed ? m->transform : NULL,
-                        .portable = s->is.portable};
+                        .portable = s->is.portable,
+                        .native = s->is.native,
+                        .native_cache = s->is.native_cache};
+    double t_end = s->is.t_end != 0 ? s->is.t_end : run->t_end;
+    double dt = s->is.dt > 0 ? s->is.dt : run->dts ? run->dt[0] : 0;
+    o->steps_foreseen = steps_foreseen(s, (t_end - run->t_start) / dt);
     return (nevh_ensemble_options){.integrator = s->is.integrator,
                                    .options = o,
                                    .t_start = run->t_start,
-                                   .t_end = s->is.t_end != 0 ? s->is.t_end
-                                                             : run->t_end,
-                                   .dt = s->is.dt > 0 ? s->is.dt
-                                         : run->dts   ? run->dt[0]
-                                                      : 0,
+                                   .t_end = t_end,
+                                   .dt = dt,
                                    .width = s->is.width,
                                    .energy_scale = run->energy_scale,
                                    .outcomes = x->outcomes,

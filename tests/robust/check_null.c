@@ -60,6 +60,8 @@ static nevh_separability separability;
     X(TEXT, nevh_ensemble_message, (NULL))                                     \
     X(NUMBER, nevh_ensemble_columns, (NULL))                                   \
     X(NUMBER, nevh_ensemble_width, (NULL))                                     \
+    X(NUMBER, nevh_ensemble_native, (NULL, NULL))                              \
+    X(NUMBER, nevh_sweep_native, (NULL, NULL))                                 \
     X(STATUS, nevh_ensemble_run, (NULL, NULL, NULL, NULL))                     \
     X(TEXT, nevh_gradient_name, (NULL))                                        \
     X(NUMBER, nevh_gradient_order, (NULL))                                     \

@@ -71,9 +71,13 @@ static double seconds(void) {
 /* How members are run. */
 
 static int make_sweep(job *j) {
-    const plan *p = &j->plan;
+    plan *p = &j->plan;
     const options *o = j->options;
+    nevh_native_use native = p->native;
+    const char *why;
+    p->native = NEVH_NATIVE_NEVER; /* that one takes no steps */
     nevh_stepper *first = plan_first(p, &j->integrator);
+    p->native = native;
     if (!first)
         return TOOL_USAGE;
     nevh_stepper_free(first);
@@ -86,13 +90,17 @@ static int make_sweep(job *j) {
                              .portable = p->portable,
                              .width = o->width,
                              .threads = j->threads,
-                             .ordered = !is_array(o)};
+                             .ordered = !is_array(o),
+                             .native = p->native,
+                             .native_cache = p->no_cache ? "" : NULL};
     is.integrator = plan_scheme(j->integrator, &is.transformed);
     is.transformed = plan_transform(p, j->integrator) != NULL;
     if (nevh_integrator_adaptive(is.integrator) && p->tolerances)
         is.tolerance = p->tolerance[0];
     j->sweep = nevh_sweep_new(p->scene, &is);
     tool_owned(j->sweep);
+    if (!nevh_sweep_native(j->sweep, &why))
+        plan_tell_why(why);
     return nevh_sweep_status(j->sweep)
                ? tool_refuse("%s: %s", p->name, nevh_sweep_message(j->sweep))
                : TOOL_OK;
@@ -105,6 +113,8 @@ static void note(job *j) {
     plan_notes(p, &j->notes);
     list_print(&j->notes, "scene: %s", p->name);
     settings_notes(j->options, &j->notes);
+    if (nevh_sweep_native(j->sweep, NULL))
+        list_add(&j->notes, "native: steps are compiled");
     for (size_t i = 0; i < j->options->vary.count; i++)
         list_print(&j->notes, "vary: %s", j->options->vary.item[i]);
     plan_note_first(p, j->integrator, &j->notes);

@@ -272,10 +272,14 @@ double plan_steps(const plan *p, double h) {
 }
 
 void plan_tell_native(const nevh_stepper *s) {
-    static char *told;
     const char *why;
-    if (nevh_stepper_status(s) || nevh_stepper_native(s, &why) || !*why ||
-        (told && strcmp(told, why) == 0))
+    if (!nevh_stepper_status(s) && !nevh_stepper_native(s, &why))
+        plan_tell_why(why);
+}
+
+void plan_tell_why(const char *why) {
+    static char *told;
+    if (!*why || (told && strcmp(told, why) == 0))
         return;
     fprintf(stderr, "nevh: steps are not compiled: %s\n", why);
     free(told);

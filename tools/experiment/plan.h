@@ -53,6 +53,7 @@ nevh_options plan_options(const plan *, const char *gradient);
 double plan_steps(const plan *, double h);
 /* Says once why steps could not be compiled. */
 void plan_tell_native(const nevh_stepper *);
+void plan_tell_why(const char *why); /* "": there is nothing to tell */
 /* The scheme of "gauss4" or "gauss4+transform"; NULL for other names. */
 const nevh_integrator *plan_scheme(const char *name, bool *transformed);
 /* The transform that it is to be planned with: of names with "+transform", and
