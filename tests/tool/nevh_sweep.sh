@@ -91,6 +91,19 @@ says '1 of 2 members failed; the first, member 0'
 has '^0,failed,0,,,$'
 has '^1,ok,1,'
 
+few='--vary phi=range(-3,3,50) --t-end 5 --gradient exact'
+# Compiled steps change no byte but the note; what cannot be compiled says so.
+if ${CC:-cc} --version >/dev/null 2>&1; then
+    exits 0 sweep pendulum $few --integrators verlet --native never
+    rows >$work/never.csv
+    exits 0 sweep pendulum $few --integrators verlet --native always --no-cache
+    has '^# native: steps are compiled'
+    rows | cmp - $work/never.csv || fails 'compiled steps have other bits'
+fi
+exits 0 sweep pendulum $few --native always --no-cache \
+    --integrators gauss10
+says 'steps are not compiled'
+
 refuses() {
     words=$1
     shift
