@@ -121,6 +121,7 @@ libnevh_core_la_SOURCES = \
 	lib/native/steps_text.c \
 	lib/native/splitting_text.c \
 	lib/native/runge_kutta_text.c \
+	lib/native/nystrom_text.c \
 	lib/native/program_text.c \
 	lib/native/cache.c \
 	lib/native/build.c \
@@ -203,9 +204,10 @@ libnevh_core_la_SOURCES = \
 # The kernels' steps as text, for steps that are compiled: strings, line by line.
 step_texts = integrators/kernels/splitting_step.h \
 	integrators/kernels/stage_sums_private.h \
-	integrators/kernels/runge_kutta_step.h
+	integrators/kernels/runge_kutta_step.h \
+	integrators/kernels/nystrom_step.h
 nodist_libnevh_core_la_SOURCES = lib/native/kernel_texts.c
-lib/native/kernel_texts.c: lib/native/kernel_texts.awk $(step_texts)
+lib/native/kernel_texts.c: lib/local.mk lib/native/kernel_texts.awk $(step_texts)
 	$(MKDIR_P) lib/native
 	cd $(srcdir) && $(AWK) -f lib/native/kernel_texts.awk $(step_texts) \
 	  >$(abs_builddir)/$@.new && mv $(abs_builddir)/$@.new $(abs_builddir)/$@

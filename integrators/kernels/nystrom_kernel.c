@@ -210,6 +210,12 @@ static int plan_nystrom(nevh_work *w, nevh__nystrom_state **nystrom) {
     return status ? status : find_kinetic(y);
 }
 
+nevh__nystrom_kinetic nevh__nystrom_kinetic_of(const nevh_work *w) {
+    const nevh__nystrom_state *y = state_of(w);
+    return (nevh__nystrom_kinetic){y->x.diagonal, y->x.moves, y->rest,
+                                   y->inverse};
+}
+
 /* How gradients are taken, a constant of inlined functions: planned, of so many
    lanes, or by nevh_work_gradient. */
 enum { BY_WORK = 0 };

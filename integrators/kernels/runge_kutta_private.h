@@ -49,6 +49,13 @@ typedef struct {
     nevh__adaptive *adaptive; /* NULL: steps do not adapt */
 } nevh__stages_plan;
 
+/* What planning found of T, for those who take the stages otherwise. */
+typedef struct {
+    bool diagonal, moves;         /* as in nevh__nystrom_step */
+    const double *rest, *inverse; /* n each: T_p(0); W, if it is diagonal */
+} nevh__nystrom_kinetic;
+nevh__nystrom_kinetic nevh__nystrom_kinetic_of(const nevh_work *);
+
 /* A step of either kernel. */
 int nevh__stages_step(nevh_work *, double t, double h, double q[], double p[]);
 /* Steps that adapt, for w->options->tolerance > 0. */

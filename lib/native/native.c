@@ -1,6 +1,7 @@
 /* nevh: native steps are planned and taken.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "native/native_private.h"
+#include "kernels/runge_kutta_private.h"
 #include "kernels/splitting_private.h"
 #include <dlfcn.h>
 #include <stdio.h>
@@ -40,13 +41,21 @@ static bool fill_runge_kutta(nevh__native *x, const nevh_work *w) {
     return true;
 }
 
+static bool fill_nystrom(nevh__native *x, const nevh_work *w) {
+    const nevh_nystrom *table = w->integrator->table;
+    x->kicks = table->stages;
+    x->drifts = nevh__nystrom_kinetic_of(w).diagonal ? 1 : table->stages;
+    return true;
+}
+
 static const struct {
     const nevh_kernel *kernel;
     bool (*write)(nevh__writer *, nevh_work *);
     bool (*fill)(nevh__native *, const nevh_work *);
 } families[] = {
     {&nevh_splitting_kernel, nevh__write_splitting, fill_splitting},
-    {&nevh_runge_kutta_kernel, nevh__write_runge_kutta, fill_runge_kutta}};
+    {&nevh_runge_kutta_kernel, nevh__write_runge_kutta, fill_runge_kutta},
+    {&nevh_nystrom_kernel, nevh__write_nystrom, fill_nystrom}};
 /* The steps' copies of the state stand on the stack. */
 enum { MOST_NUMBERS = 8192 };
 enum { FAMILIES = sizeof families / sizeof *families };
@@ -61,7 +70,7 @@ static size_t family_of(const nevh_work *w) {
 /* What is in the way; NULL: nothing that is known yet. */
 static const char *obstacle(const nevh_work *w) {
     return family_of(w) == FAMILIES
-               ? "only splitting and fixed Runge-Kutta steps can be"
+               ? "only splitting, Runge-Kutta and Nystroem steps can be"
            : w->accounts ? "the balance of the energy is kept"
            : w->width % NEVH__LANES && w->width > 1
                ? "orbits side by side fill no vectors"

@@ -34,6 +34,7 @@ typedef struct nevh__native {
    explicit Runge-Kutta method. */
 bool nevh__write_splitting(nevh__writer *, nevh_work *);
 bool nevh__write_runge_kutta(nevh__writer *, nevh_work *);
+bool nevh__write_nystrom(nevh__writer *, nevh_work *);
 /* Weights of all kicks and drifts, and the times of their slopes; to be freed.
    false when memory is out. */
 bool nevh__splitting_tables(const nevh_splitting *, double **weights,

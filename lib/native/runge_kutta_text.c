@@ -47,76 +47,28 @@ static size_t stages_of(const nevh_butcher *table) {
     return table->stages - table->last_is_first;
 }
 
-/* The weights of a sum that are not 0, and whose they are. */
-static size_t write_row(nevh__writer *w, size_t row, const double all[],
-                        size_t count) {
-    size_t some = 0;
-    for (int part = 0; part < 2; part++) {
-        const char *plus = part ? "static size_t offsets_%zu[] = {"
-                                : "static double weights_%zu[] = {";
-        for (size_t j = 0; j < count; j++) {
-            char number[NEVH__NAME];
-            if (all[j] == 0)
-                continue;
-            nevh__number_text(all[j], number);
-            if (*plus == 's')
-                nevh__write(w, plus, row);
-            else
-                nevh__write(w, "%s", plus);
-            if (part)
-                nevh__write(w, "%zu * 2 * DOF", j);
-            else
-                nevh__write(w, "%s", number);
-            plus = ", ";
-            some += !part;
-        }
-        if (some)
-            nevh__write(w, "};\n");
-    }
-    return some;
-}
-
 static void write_tables(nevh__writer *w, const nevh_butcher *table) {
-    size_t s = table->stages, used = stages_of(table), count[64];
-    for (size_t i = 0; i <= used; i++)
-        count[i] = i < used ? write_row(w, i, table->a + i * s, i)
-                            : write_row(w, i, table->b, used);
-    nevh__write(w, "static const nevh__sum sums[] = {\n");
-    for (size_t i = 0; i <= used; i++)
-        if (count[i])
-            nevh__write(w, "    {NULL, %zu, weights_%zu, offsets_%zu},\n",
-                        count[i], i, i);
-        else
-            nevh__write(w, "    {NULL, 0, NULL, NULL},\n");
-    nevh__write(w, "};\n\n");
+    size_t s = table->stages, used = stages_of(table);
+    nevh__sums_text sums = {0};
+    for (size_t i = 0; i < used; i++)
+        nevh__write_sum(w, &sums, table->a + i * s, i, "2 * DOF");
+    nevh__write_sum(w, &sums, table->b, used, "2 * DOF");
+    nevh__write_sums(w, &sums);
     nevh__write_numbers(w, "static const double times", used, table->c);
+    nevh__write(w, "\n");
 }
 
 static void write_step(nevh__writer *w, size_t stages) {
     char number[24];
     snprintf(number, sizeof number, "%zu", stages);
-    if (w->readable)
-        nevh__write(w, "/* A step of the state y, q and then p.  Returns 0 if "
-                       "all is finite. */\n"
-                       "static double take_step(double t, double h, double *y, "
-                       "double *lost,\n                        double *unused) "
-                       "");
-    else
-        nevh__write(w, "INLINE nevh__number take_step(const double *N, double "
-                       "*W, double *T, size_t operations, double t, double h, "
-                       "nevh__number *y, nevh__number *lost, nevh__number "
-                       "*kept) ");
+    nevh__write_step_head(w);
     nevh__write_filled(w, step_begins,
                        (const char *const[]){w->readable ? "" : "N, ", number});
     if (w->readable)
-        nevh__write(w,
-                    "    (void)unused;\n"
-                    "    nevh__runge_kutta_take(&x, 0, 0, %zu);\n",
-                    stages);
-    else
-        for (size_t i = 0; i < stages; i++)
-            nevh__write(w, "    nevh__runge_kutta_take(&x, 0, %zu, %zu);\n", i,
-                        i + 1);
+        nevh__write(w, "    nevh__runge_kutta_take(&x, 0, 0, %zu);\n", stages);
+    for (size_t i = 0; i < stages && !w->readable; i++)
+        nevh__write(w, "    nevh__runge_kutta_take(&x, 0, %zu, %zu);\n", i,
+                    i + 1);
     nevh__write_filled(w, step_ends, (const char *const[]){number});
 }
 
@@ -133,10 +85,7 @@ bool nevh__write_runge_kutta(nevh__writer *w, nevh_work *work) {
     nevh__write_filled(w, slope,
                        (const char *const[]){w->readable ? "" : "o->N, "});
     write_step(w, stages);
-    if (!w->readable)
-        nevh__write(w, "enum { KEPT = 0 };\n"
-                       "#define take_first(N, T, t, h, y, lost, kept) "
-                       "((nevh__number){0})\n");
-    nevh__write_driver(w);
+    nevh__write_unkept(w);
+    nevh__write_driver(w, false);
     return true;
 }

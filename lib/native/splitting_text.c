@@ -129,6 +129,6 @@ bool nevh__write_splitting(nevh__writer *w, nevh_work *work) {
                     kicks ? "kick_slope" : "drift_slope");
         nevh__write_filled(w, step, (const char *const[]){kick, keep});
     }
-    nevh__write_driver(w);
+    nevh__write_driver(w, true);
     return true;
 }

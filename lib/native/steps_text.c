@@ -117,8 +117,8 @@ static const char driver_for_readers[] =
     "    for (; done < steps; done++) {\n"
     "        memcpy(y, q, DOF * sizeof *q);\n"
     "        memcpy(y + DOF, p, DOF * sizeof *p);\n"
-    "        if (take_step(t0 + (double)(from + done) * h, h, y, lost,\n"
-    "                      memory + 2 * DOF) != 0)\n"
+    "        if (take_step(t0 + (double)(from + done) * h, h, y, lost$1) != "
+    "0)\n"
     "            break;\n"
     "        memcpy(q, y, DOF * sizeof *q);\n"
     "        memcpy(p, y + DOF, DOF * sizeof *p);\n"
@@ -152,6 +152,64 @@ void nevh__write_needs(nevh__writer *w, size_t n, bool finite, bool sums) {
                 n, w->width, w->width / lanes, lanes);
 }
 
-void nevh__write_driver(nevh__writer *w) {
-    nevh__write(w, "%s", w->readable ? driver_for_readers : driver);
+void nevh__write_driver(nevh__writer *w, bool keeps) {
+    if (!w->readable)
+        nevh__write(w, "%s", driver);
+    else
+        nevh__write_filled(
+            w, driver_for_readers,
+            (const char *const[]){keeps ? ", memory + 2 * DOF" : ""});
+}
+
+void nevh__write_sum(nevh__writer *w, nevh__sums_text *sums,
+                     const double weights[], size_t count, const char *apart) {
+    size_t some = 0, row = sums->rows++;
+    for (size_t j = 0; j < count; j++)
+        some += weights[j] != 0;
+    sums->count[row] = some;
+    if (!some)
+        return;
+    nevh__write(w, "static double weights_%zu[] = {", row);
+    for (size_t j = 0; j < count; j++) {
+        char number[NEVH__NAME];
+        nevh__number_text(weights[j], number);
+        if (weights[j] != 0)
+            nevh__write(w, "%s, ", number);
+    }
+    nevh__write(w, "};\nstatic size_t offsets_%zu[] = {", row);
+    for (size_t j = 0; j < count; j++)
+        if (weights[j] != 0)
+            nevh__write(w, "%zu * %s, ", j, apart);
+    nevh__write(w, "};\n");
+}
+
+void nevh__write_sums(nevh__writer *w, const nevh__sums_text *sums) {
+    nevh__write(w, "static const nevh__sum sums[] = {\n");
+    for (size_t i = 0; i < sums->rows; i++)
+        if (sums->count[i])
+            nevh__write(w, "    {NULL, %zu, weights_%zu, offsets_%zu},\n",
+                        sums->count[i], i, i);
+        else
+            nevh__write(w, "    {NULL, 0, NULL, NULL},\n");
+    nevh__write(w, "};\n");
+}
+
+void nevh__write_step_head(nevh__writer *w) {
+    nevh__write(w, "%s",
+                w->readable
+                    ? "/* A step of the state y, q and then p.  Returns 0 if "
+                      "all is finite. */\n"
+                      "static double take_step(double t, double h, double *y, "
+                      "double *lost) "
+                    : "INLINE nevh__number take_step(const double *N, double "
+                      "*W, double *T, size_t operations, double t, double h, "
+                      "nevh__number *y, nevh__number *lost, nevh__number "
+                      "*kept) ");
+}
+
+void nevh__write_unkept(nevh__writer *w) {
+    if (!w->readable)
+        nevh__write(w, "enum { KEPT = 0 };\n"
+                       "#define take_first(N, T, t, h, y, lost, kept) "
+                       "((nevh__number){0})\n");
 }

@@ -49,6 +49,7 @@ const char *nevh__number_type(const nevh__writer *);
 extern const char *const nevh__splitting_step_text[];
 extern const char *const nevh__stage_sums_text[];
 extern const char *const nevh__runge_kutta_step_text[];
+extern const char *const nevh__nystrom_step_text[];
 
 /* A formula at one point, or at eight of them side by side. */
 typedef struct nevh__formula_text {
@@ -88,10 +89,24 @@ void nevh__write_prelude(nevh__writer *);
 
 /* What kernels' texts need; finite: nevh__not_finite, sums: stage_sums. */
 void nevh__write_needs(nevh__writer *, size_t n, bool finite, bool sums);
+/* A list of sums over stages, "sums": the weights of each that are not 0, and
+   whose slopes they are for, which are so far apart (a text). */
+enum { NEVH__MOST_SUMS = 64 };
+typedef struct {
+    size_t rows, count[NEVH__MOST_SUMS];
+} nevh__sums_text;
+void nevh__write_sum(nevh__writer *, nevh__sums_text *, const double weights[],
+                     size_t count, const char *apart);
+void nevh__write_sums(nevh__writer *, const nevh__sums_text *);
+/* take_step up to its brace, of a family that keeps no slope; and what tells
+   that it keeps none. */
+void nevh__write_step_head(nevh__writer *);
+void nevh__write_unkept(nevh__writer *);
 /* The function that takes steps, of
        take_step(N, W, T, operations, t, h, y, lost, kept)
-   which returns 0 if all is well; for readers take_step(t, h, y, lost, kept). */
-void nevh__write_driver(nevh__writer *);
+   which returns 0 if all is well; for readers take_step(t, h, y, lost)
+   or, where slopes are kept, take_step(t, h, y, lost, kept). */
+void nevh__write_driver(nevh__writer *, bool keeps);
 
 /* Functions kick_slope and drift_slope
        NUMBER NAME(const double *N, double t, const NUMBER *q,

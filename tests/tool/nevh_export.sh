@@ -58,7 +58,7 @@ END
         fails 'writes functions that do not work'
 fi
 exits 2 export pendulum --integrators gauss4
-says 'no program of such steps: only splitting and fixed Runge-Kutta steps can be'
+says 'no program of such steps: only splitting, Runge-Kutta and Nystroem steps can be'
 exits 2 export no-such-scene
 
 exit $status
