@@ -14,7 +14,7 @@ FNR == 1 {
 /^#ifndef/ && guard == "" { guard = $2; next }
 guard == "" || /^#include/ || $0 == "#define " guard || /^#endif/ { next }
 {
-    gsub(/\\/, "\\\\")
+    gsub(/\\/, "&&")
     gsub(/"/, "\\\"")
     print "    \"" $0 "\\n\","
 }
