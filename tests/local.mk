@@ -183,7 +183,7 @@ dist_check_SCRIPTS = \
 	tests/robust/effects_off.sh \
 	tests/robust/valgrind.sh
 
-EXTRA_DIST += tests/build/outside.c tests/support/interrupt.c tests/support/starve.c tests/support/formula.h tests/support/scene.h tests/support/shipped.h \
+EXTRA_DIST += tests/build/outside.c tests/robust/long_sweeps.sh tests/support/interrupt.c tests/support/starve.c tests/support/formula.h tests/support/scene.h tests/support/shipped.h \
 	tests/support/nevh_support.sh tests/support/nevh_interrupt.sh tests/scene/bad tests/robust/fuzz
 
 TESTS = $(all_suites) $(dist_check_SCRIPTS)
@@ -223,6 +223,7 @@ check-slow:
 	$(MAKE) $(AM_MAKEFLAGS) check TESTS='$(all_suites)' \
 	  CHECK_TAGS=CK_INCLUDE_TAGS TEST_TIMEOUT=3600
 	NEVH_SCENES='$(srcdir)/scenes' tools/nevh hard --quiet
+	srcdir=$(srcdir) $(SHELL) $(srcdir)/tests/robust/long_sweeps.sh
 	$(MAKE) $(AM_MAKEFLAGS) bench/verdicts$(EXEEXT)
 	bench/verdicts$(EXEEXT) -s 0.1 -w 0.1 $(srcdir)
 	$(MAKE) $(AM_MAKEFLAGS) fuzz FUZZ_SECONDS=60

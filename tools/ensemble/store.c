@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { ALIGNED = 64, BEFORE_TEXT = 12, MOST_REASONS = 1000 };
+enum { ALIGNED = 64, BEFORE_TEXT = 12, MOST_REASONS = 1000, FORGET = 1 << 14 };
 static const char magic[] = "nevh sweep, 1\n";
 static const char reasons_begin[] = "\n[not done]\n";
 
@@ -313,9 +313,19 @@ int store_attach(store *s, const char *name) {
     return check_side(s) || check_file(s) ? TOOL_USAGE : map(s);
 }
 
+/* Pages that were looked at on the way to a member are given back: memory does
+   not grow with the file. */
+static void forget_before(const store *s, size_t at) {
+    size_t size = (size_t)sysconf(_SC_PAGESIZE);
+    madvise((void *)s->map, at / size * size, MADV_DONTNEED);
+}
+
 nevh_member_status store_status(const store *s, uint64_t member) {
-    return (nevh_member_status)
-        s->map[s->header + (member - s->first) * s->record];
+    uint64_t i = member - s->first;
+    size_t at = (size_t)(s->header + i * s->record);
+    if (i % FORGET == 0)
+        forget_before(s, at);
+    return (nevh_member_status)s->map[at];
 }
 
 static int add_reason(store *s, const nevh_sweep_result *r) {
