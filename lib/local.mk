@@ -196,6 +196,7 @@ libnevh_core_la_SOURCES = \
 	lib/scene/scene_outcome.c \
 	lib/scene/sweep_private.h \
 	lib/scene/variant.c \
+	lib/scene/variant_alike.c \
 	lib/scene/solve.c \
 	lib/scene/sweep.c \
 	lib/scene/crew.c \

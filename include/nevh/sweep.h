@@ -95,7 +95,8 @@ typedef bool (*nevh_wanted_fn)(void *data, uint64_t member);
             told of; NEVH_ENOMEM
    cost     memory does not grow with the number of members.  Where parameters
             are varied, the scene's system is made, and a stepper planned, for
-            each set of them, some milliseconds for a small one */
+            each set of them that changes more than the start, a millisecond or
+            two for a small one */
 NEVH_API int nevh_sweep_run(nevh_sweep *, uint64_t first, uint64_t count,
                             nevh_wanted_fn wanted, nevh_sweep_fn tell,
                             void *data);

@@ -1,6 +1,7 @@
 /* nevh: what is known of a tape, and a term made of it.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/tape_inside_private.h"
+#include <string.h>
 
 bool nevh__tape_reads(const nevh__tape *tape, nevh__variable v, size_t k) {
     return k < tape->count[v] && tape->read[v][k];
@@ -29,4 +30,26 @@ void nevh__tape_shape(nevh_term *term, const nevh__tape *tape) {
     term->np = tape->count[NEVH__P];
     term->nc = tape->count[NEVH__C];
     term->time = nevh__tape_reads(tape, NEVH__T, 0);
+}
+
+static bool same_operand(const nevh__tape *a, nevh__tape_operand x,
+                         const nevh__tape *b, nevh__tape_operand y) {
+    if (x.kind != y.kind)
+        return false;
+    return x.kind == NEVH__NUMBER ? memcmp(&a->numbers[x.at], &b->numbers[y.at],
+                                           sizeof *a->numbers) == 0
+                                  : x.at == y.at;
+}
+
+bool nevh__tape_same(const nevh__tape *a, const nevh__tape *b) {
+    if (a->length != b->length || !same_operand(a, a->result, b, b->result))
+        return false;
+    for (size_t i = 0; i < a->length; i++) {
+        const nevh__instruction *x = &a->code[i], *y = &b->code[i];
+        if (x->operation != y->operation || x->to != y->to ||
+            x->also != y->also || !same_operand(a, x->a, b, y->a) ||
+            !same_operand(a, x->b, b, y->b))
+            return false;
+    }
+    return true;
 }

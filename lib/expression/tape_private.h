@@ -133,6 +133,8 @@ bool nevh__tape_reads(const nevh__tape *, nevh__variable, size_t k);
 /* One more than the largest k that the builder was asked for, read or not: what
    a term must declare as nq, np, nc. */
 size_t nevh__tape_count(const nevh__tape *, nevh__variable);
+/* Whether two tapes do the same with the same numbers. */
+bool nevh__tape_same(const nevh__tape *, const nevh__tape *);
 /* No abs, min, max, sign, mod, floor of what depends on q or p: fit for the
    complex step. */
 bool nevh__tape_analytic(const nevh__tape *);

@@ -2,7 +2,9 @@
 
    Members are given out in chunks, in order.  Where no parameter is varied a
    thread has one ensemble, whose lanes take chunk after chunk; else it takes
-   the members of a chunk that share their parameters together.
+   the members of a chunk that share their parameters together.  Those whose
+   parameters change nothing but where they start are run by one ensemble, that of
+   the scene as it is; so is a member, whichever others there are.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/sweep_private.h"
 #include <math.h>
@@ -21,6 +23,11 @@ typedef struct {
     double *varied; /* n_varied of each member of the list */
     double *q, *p, *v, *room;
     size_t *order; /* of the list, by parameters */
+    /* Members that only start elsewhere: places in the list, with starts. */
+    nevh__variant scene;
+    nevh_ensemble *shared;
+    size_t *sharing, n_sharing, shared_at;
+    double *starts; /* 2n each */
     bool started;
 } worker;
 
@@ -175,24 +182,26 @@ static void out_of_memory(nevh_sweep *s) {
     pthread_mutex_unlock(&s->lock);
 }
 
-/* The ensemble of the variant with these values; NULL after a message. */
-static nevh_ensemble *open(worker *w, const double varied[],
-                           nevh__report *report) {
-    nevh_sweep *s = w->sweep;
-    nevh_options o;
+/* The variant with these values; NULL: those of the scene. */
+static bool make(nevh_sweep *s, const double varied[], nevh__variant *x,
+                 nevh__report *report) {
     pthread_mutex_lock(&s->lock); /* the scene is one */
-    bool made = nevh__variant_make(s, varied, &w->variant, report);
+    bool made = nevh__variant_make(s, varied, x, report);
     pthread_mutex_unlock(&s->lock);
-    if (!made)
-        return NULL;
-    double *room = nevh__array(2 * w->variant.model->n, sizeof *room);
+    return made;
+}
+
+/* An ensemble of so many members of a variant; NULL after a message. */
+static nevh_ensemble *open(const nevh_sweep *s, const nevh__variant *x,
+                           size_t members, nevh__report *report) {
+    nevh_options o;
+    double *room = nevh__array(2 * x->model->n, sizeof *room);
     nevh_ensemble *e = NULL;
     if (room) {
-        nevh_ensemble_options is =
-            nevh__variant_options(s, &w->variant, &o, room);
-        if (s->ensemble->parameters && !is.width)
-            is.width = w->group_end - w->at < NEVH__LANES ? 1 : 0;
-        e = nevh_ensemble_new(w->variant.model->system, &is);
+        nevh_ensemble_options is = nevh__variant_options(s, x, &o, room);
+        if (!is.width && members < NEVH__LANES)
+            is.width = 1;
+        e = nevh_ensemble_new(x->model->system, &is);
     }
     free(room);
     if (!e || nevh_ensemble_status(e))
@@ -213,10 +222,70 @@ static void refuse_group(worker *w, const nevh__report *report) {
     }
 }
 
-static void run_group(worker *w, const double varied[]) {
+/* Members of the group, which only start elsewhere. */
+static void share(worker *w) {
+    nevh_sweep *s = w->sweep;
+    size_t n = s->scene->model->n, n_varied = s->ensemble->n_varied;
+    for (; w->at < w->group_end; w->at++) {
+        size_t at = w->order[w->at];
+        double *q = w->starts + at * 2 * n, *varied = w->varied + at * n_varied;
+        nevh__report report = {0};
+        if (nevh__variant_start(s, &w->variant, varied, q, q + n, w->v,
+                                &report))
+            finish(w, w->list[at], varied, NEVH_MEMBER_NO_START, report.text,
+                   NULL);
+        else
+            w->sharing[w->n_sharing++] = at;
+    }
+}
+
+static bool next_sharing(void *data, uint64_t *member, double q[], double p[]) {
+    worker *w = data;
+    size_t n = w->sweep->scene->model->n;
+    if (w->sweep->draining || w->shared_at == w->n_sharing)
+        return false;
+    size_t at = w->sharing[w->shared_at++];
+    *member = at;
+    memcpy(q, w->starts + at * 2 * n, n * sizeof *q);
+    memcpy(p, w->starts + at * 2 * n + n, n * sizeof *p);
+    return true;
+}
+
+static int done_sharing(void *data, const nevh_member_result *r) {
+    worker *w = data;
+    finish(w, w->list[r->member],
+           w->varied + r->member * w->sweep->ensemble->n_varied,
+           r->status ? NEVH_MEMBER_FAILED : NEVH_MEMBER_DONE, r->message,
+           r->values);
+    return w->sweep->stopped;
+}
+
+static void run_sharing(worker *w) {
     nevh__report report = {0};
-    nevh_ensemble *e = open(w, varied, &report);
-    if (e)
+    w->shared_at = 0;
+    if (w->n_sharing && !w->shared)
+        w->shared = open(w->sweep, &w->scene, SIZE_MAX, &report);
+    if (w->shared)
+        nevh_ensemble_run(w->shared, next_sharing, done_sharing, w);
+    else if (w->n_sharing)
+        out_of_memory(w->sweep); /* it was planned before */
+    w->n_sharing = 0;
+}
+
+static void run_group(worker *w, const double varied[]) {
+    nevh_sweep *s = w->sweep;
+    nevh__report report = {0};
+    nevh_ensemble *e = NULL;
+    bool parameters = s->ensemble->parameters;
+    bool made = make(s, varied, &w->variant, &report);
+    bool alike = made && parameters && w->scene.model &&
+                 nevh__variants_alike(s, &w->scene, &w->variant);
+    if (made && !alike)
+        e = open(s, &w->variant, parameters ? w->group_end - w->at : SIZE_MAX,
+                 &report);
+    if (alike)
+        share(w);
+    else if (e)
         do
             nevh_ensemble_run(e, next, done, w);
         while (!w->sweep->ensemble->parameters && !w->sweep->stopped &&
@@ -273,12 +342,18 @@ static void run_chunk_by_groups(worker *w) {
             w->group_end++;
         run_group(w, w->varied + first * w->sweep->ensemble->n_varied);
     }
+    run_sharing(w);
 }
 
 static void *work(void *data) {
     worker *w = data;
     nevh_sweep *s = w->sweep;
+    nevh__report report = {0};
     if (s->ensemble->parameters)
+        make(s, NULL, &w->scene, &report);
+    if (report.status == NEVH_ENOMEM)
+        out_of_memory(s);
+    else if (s->ensemble->parameters)
         while (take_chunk(w, true))
             run_chunk_by_groups(w);
     else if (take_chunk(w, true))
@@ -296,10 +371,14 @@ static bool equip(worker *w, nevh_sweep *s) {
     w->p = nevh__array(n, sizeof *w->p);
     w->v = nevh__array(n, sizeof *w->v);
     w->room = nevh__array(varied, sizeof *w->room);
-    if (s->ensemble->parameters)
+    bool orders = s->ensemble->parameters;
+    if (orders) {
         w->order = nevh__array(CHUNK, sizeof *w->order);
+        w->sharing = nevh__array(CHUNK, sizeof *w->sharing);
+        w->starts = nevh__array(CHUNK * 2 * n, sizeof *w->starts);
+    }
     return w->list && w->values && w->varied && w->q && w->p && w->v &&
-           w->room && (w->order || !s->ensemble->parameters);
+           w->room && (!orders || (w->order && w->sharing && w->starts));
 }
 
 static void dismiss(worker *w) {
@@ -311,6 +390,10 @@ static void dismiss(worker *w) {
     free(w->v);
     free(w->room);
     free(w->order);
+    free(w->sharing);
+    free(w->starts);
+    nevh_ensemble_free(w->shared);
+    nevh__variant_free(&w->scene);
 }
 
 static bool open_window(nevh_sweep *s) {

@@ -60,6 +60,10 @@ struct nevh_sweep {
 bool nevh__variant_make(nevh_sweep *, const double varied[], nevh__variant *,
                         nevh__report *);
 void nevh__variant_free(nevh__variant *);
+/* variant_alike.c: whether members of both are orbits of one system, that are run
+   and looked at alike: they differ in where they start. */
+bool nevh__variants_alike(const nevh_sweep *, const nevh__variant *,
+                          const nevh__variant *);
 /* The options of an ensemble of the variant's members.  room: 2n */
 nevh_ensemble_options nevh__variant_options(const nevh_sweep *,
                                             const nevh__variant *,

@@ -282,3 +282,56 @@ TEST(lines_from_outside_replace) {
     nevh_sweep_free(s);
     nevh_scene_free(scene);
 }
+
+/* A parameter that only the start reads gives what the start itself does; one
+   that something else reads, too, gives what the scene with that value gives. */
+#define START_OF(system, run)                                                     \
+    "[parameters]\na = 1\n[coordinates]\nphi = %s ; period 2*pi\n" system         \
+    "[sections]\nswing = when phi = 0.1*%s, rising: phi\n[run]\nt_end = 30\n" run \
+    "[ensemble]\n%s\n"
+#define PLAIN "[effects]\nkinetic = p_phi^2/2\ngravity = -cos(phi)\n"
+
+static const struct {
+    const char *text;
+    const char *level, *outcomes; /* with a in them */
+    bool only;                    /* the start reads a */
+} uses[] = {
+    {START_OF(PLAIN, "dt = 0.1\n"), "1", "state, crossings", true},
+    {START_OF(PLAIN, "dt = 0.1*a\n"), "1", "state", false},
+    {START_OF(PLAIN, "dt = 0.1\nstop = phi < a/2\n"), "1", "t, state", false},
+    {START_OF(PLAIN, "dt = 0.1\n"), "1", "last(a*phi)", false},
+    {START_OF(PLAIN, "dt = 0.1\n"), "a", "period", false},
+    {START_OF("[effects]\nT = p_phi^2/2\nV = -cos(a*phi)\n", "dt = 0.1\n"), "1",
+     "state", false},
+    {START_OF("[effects]\nT = p_phi^2/2\nV = -sum(i = 1..2, a*cos(phi))\n",
+              "dt = 0.1\n"),
+     "1", "state", false},
+    {START_OF(PLAIN "[friction]\ndrag = all: 0.1*a\n", "dt = 0.1\n"), "1",
+     "state", false},
+};
+
+static results *run_use(int i, const char *varied, const char *phi) {
+    char text[900], lines[200];
+    nevh_sweep_options o = plain();
+    snprintf(lines, sizeof lines, "%s\noutcomes = %s", varied,
+             uses[i].outcomes);
+    snprintf(text, sizeof text, uses[i].text, phi, uses[i].level, lines);
+    o.integrator = nevh_rk4;
+    return run(text, o);
+}
+
+TEST_EACH(parameters_of_the_start_are_a_start, sizeof uses / sizeof *uses) {
+    results *by_a = run_use(_i, "a = 0.7, 1, 1.3", "a");
+    results *by_phi = run_use(_i, "phi = 0.7, 1, 1.3", "1");
+    results *both = run_use(_i, "a = 0.7, 1, 1.3\nphi = 0.7, 1, 1.3", "1");
+    size_t outcomes = (by_a->columns - 1) * sizeof(double);
+    for (int i = 0; i < 3; i++) {
+        /* both: rows 0, 4 and 8 have a and phi alike */
+        ck_assert_mem_eq(by_a->row[i] + 1, both->row[4 * i] + 2, outcomes);
+        bool same = memcmp(by_a->row[i] + 1, by_phi->row[i] + 1, outcomes) == 0;
+        ck_assert_int_eq(same, uses[_i].only || i == 1);
+    }
+    free(by_a);
+    free(by_phi);
+    free(both);
+}
