@@ -82,6 +82,7 @@ libnevh_core_la_SOURCES = \
 	lib/expression/evaluate.c \
 	lib/expression/variables.c \
 	lib/expression/split.c \
+	lib/expression/typeset.c \
 	lib/expression/walk.c \
 	lib/expression/instance.c \
 	lib/expression/formula.c \
@@ -171,6 +172,7 @@ libnevh_core_la_SOURCES = \
 	lib/ensemble/cross.c \
 	lib/ensemble/event.c \
 	lib/scene/scene_private.h \
+	lib/scene/equation.c \
 	lib/scene/lines.c \
 	lib/scene/piece.c \
 	lib/scene/message.c \

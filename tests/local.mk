@@ -29,6 +29,7 @@ suites = \
 	tests/scene/check_shipped \
 	tests/scene/check_scene_shown \
 	tests/scene/check_elements \
+	tests/scene/check_equation \
 	tests/scheme/check_registry \
 	tests/scheme/check_coefficients \
 	tests/system/check_masses \
@@ -165,6 +166,7 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_section.sh \
 	tests/tool/nevh_sweep.sh \
 	tests/tool/nevh_flow.sh \
+	tests/tool/nevh_report.sh \
 	tests/tool/nevh_sweep_file.sh \
 	tests/tool/nevh_sweep_mpi.sh \
 	tests/tool/nevh_run.sh \

@@ -11,6 +11,7 @@ tools_nevh_SOURCES = \
 	tools/cli/arguments.c \
 	tools/cli/words.c \
 	tools/cli/numbers.c \
+	tools/cli/table_private.h \
 	tools/cli/table.c \
 	tools/cli/output.c \
 	tools/cli/outputs.c \
@@ -72,6 +73,10 @@ tools_nevh_SOURCES = \
 	tools/ensemble/ranks.h \
 	tools/ensemble/ranks.c \
 	tools/ensemble/sweep.c \
+	tools/report/report_private.h \
+	tools/report/report.c \
+	tools/report/report_html.c \
+	tools/report/page_html.c \
 	tools/inspect/check.c \
 	tools/orbit/section.c \
 	tools/inspect/impact_private.h \

@@ -40,6 +40,8 @@ static const struct {
      "the state at the end, or at times, to digits that are certain"},
     {export_scene, FOR_EXPORT, "SCENE",
      "the steps of one integrator as a C program that needs nothing else"},
+    {report, FOR_REPORT, "SCENE...",
+     "what the other commands say of scenes, as one page of HTML"},
     {hard, FOR_HARD, "",
      "every integrator on cases that are hard to integrate"},
     {new_scene, FOR_NEW, "FILE", "makes a commented scene, FILE.nevh"},

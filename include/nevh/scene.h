@@ -234,6 +234,23 @@ NEVH_API int nevh_scene_part_values(nevh_scene *, size_t i, double t,
                                     const double q[], const double p[],
                                     double values[]);
 
+/* The lines that say what H is, in their order: NAME = VALUE of [parameters],
+   [coordinates], [definitions], [effects] and [friction].  Texts belong to the
+   scene, and are valid until it is changed; a parameter that was set has the
+   value set. */
+typedef struct {
+    const char *section; /* NULL: i was out of range */
+    const char *name, *value;
+    bool on; /* false of an effect that is off */
+} nevh_scene_equation;
+NEVH_API size_t nevh_scene_equation_count(const nevh_scene *);
+NEVH_API nevh_scene_equation nevh_scene_equation_at(const nevh_scene *,
+                                                    size_t i);
+/* The i-th as an element <math> of MathML Core, to be freed with free; sums are
+   not written out.  NULL: it is no single formula (a list, an array, C code), i
+   is out of range, or memory is out. */
+NEVH_API char *nevh_scene_equation_mathml(const nevh_scene *, size_t i);
+
 /* stop = FORMULA < VALUE, or with >: the text as written, or NULL, and whether
    a run is to end at a state. */
 NEVH_API bool nevh_scene_stops(nevh_scene *);

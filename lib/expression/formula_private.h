@@ -33,6 +33,9 @@ typedef struct nevh__tree nevh__tree;
    returns  NULL on error; names are looked up only when the tree is used */
 nevh__tree *nevh__tree_parse(const char *text, nevh__formula_error *);
 void nevh__tree_free(nevh__tree *); /* NULL is allowed */
+/* typeset.c: name = formula as an element of MathML Core, to be freed; NULL:
+   memory is out. */
+char *nevh__equation_mathml(const char *name, const nevh__tree *);
 
 /* The left side of a line: NAME, NAME[a], NAME[a..b] or NAME[i = a..b]. */
 typedef struct {

@@ -13,7 +13,7 @@ static const struct {
     {FOR_HARD, "hard"},           {FOR_NEW, "new"},
     {FOR_LIST, "list"},           {FOR_SWEEP, "sweep"},
     {FOR_EXPORT, "export"},       {FOR_FLOW, "flow"},
-    {FOR_REFERENCE, "reference"},
+    {FOR_REFERENCE, "reference"}, {FOR_REPORT, "report"},
 };
 
 const char *command_name(unsigned bit) {

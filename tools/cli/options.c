@@ -9,9 +9,10 @@
 enum {
     OF_COST = FOR_COST | FOR_GRADIENTS | FOR_RECOMMEND,
     OF_SCENES = FOR_EXPORT | FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_RUN |
-                FOR_SECTION | FOR_SWEEP | FOR_FLOW | FOR_REFERENCE | OF_COST,
+                FOR_SECTION | FOR_SWEEP | FOR_FLOW | FOR_REFERENCE |
+                FOR_REPORT | OF_COST,
     OF_NATIVE = FOR_COMPARE | FOR_RUN | FOR_COST | FOR_RECOMMEND,
-    OF_TABLES = (OF_SCENES & ~FOR_EXPORT) | FOR_LIST | FOR_HARD,
+    OF_TABLES = (OF_SCENES & ~(FOR_EXPORT | FOR_REPORT)) | FOR_LIST | FOR_HARD,
     OF_PLOTS = FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_COST | FOR_GRADIENTS |
                FOR_FLOW
 };
@@ -128,7 +129,7 @@ static const struct {
      "integrators. hard: each run"},
     {"format", "table|csv|json", OF_TABLES, read_format,
      "csv for run, section and sweep, table for others, if not given"},
-    {"output", "FILE", OF_TABLES | FOR_EXPORT, read_file,
+    {"output", "FILE", OF_TABLES | FOR_EXPORT | FOR_REPORT, read_file,
      "write to FILE, when all of it is there; nevh run: as it goes"},
     {"quiet", NULL, OF_TABLES | FOR_NEW, read_quiet,
      "the table alone: no # lines, no words, no progress"},

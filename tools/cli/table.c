@@ -1,21 +1,11 @@
 /* nevh: tables as aligned text, CSV (RFC 4180) and JSON (RFC 8259).
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "tool.h"
+#include "table_private.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-
-typedef enum { EMPTY, TEXT, NUMBER } kind;
-struct table {
-    list title, cell; /* cells row by row */
-    kind *kind;
-    bool *group; /* whether the row that begins with this cell begins a group */
-    bool begins;
-    bool *key;       /* of each column */
-    size_t breaking; /* the first column that may go below; 0: none may */
-};
 
 table *table_new(void) {
     return tool_allocate(1, sizeof(table));
@@ -50,7 +40,7 @@ void table_group(table *t) {
     t->begins = t->cell.count > 0;
 }
 
-static void add(table *t, kind k, const char *text) {
+static void add(table *t, table_kind k, const char *text) {
     size_t i = t->cell.count;
     list_add(&t->cell, text);
     t->kind = tool_enlarge(t->kind, i + 1, sizeof *t->kind);
@@ -66,7 +56,7 @@ void table_columns(table *t, const char *const titles[], size_t count) {
 }
 
 void table_text(table *t, const char *text) {
-    add(t, text ? TEXT : EMPTY, text ? text : "");
+    add(t, text ? TABLE_TEXT : TABLE_EMPTY, text ? text : "");
 }
 
 /* The shortest of 15 to 17 digits that is the number again. */
@@ -78,7 +68,7 @@ void table_number(table *t, double number) {
             break;
     }
     bool there = isfinite(number);
-    add(t, there ? NUMBER : EMPTY, there ? text : "");
+    add(t, there ? TABLE_NUMBER : TABLE_EMPTY, there ? text : "");
 }
 
 void table_shown(table *t, const char *format, ...) {
@@ -87,7 +77,7 @@ void table_shown(table *t, const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    add(t, NUMBER, text);
+    add(t, TABLE_NUMBER, text);
 }
 
 /* Characters of UTF-8 up to the end of a line, whatever the locale. */
@@ -136,7 +126,7 @@ static size_t column_width(const table *t, size_t j) {
 /* Columns without a number are set to the left. */
 static bool to_the_right(const table *t, size_t j) {
     for (size_t i = j; i < t->cell.count; i += t->title.count)
-        if (t->kind[i] == NUMBER)
+        if (t->kind[i] == TABLE_NUMBER)
             return true;
     return false;
 }
@@ -325,10 +315,10 @@ static void print_string(const char *text, FILE *f) {
 }
 
 static void print_value(const table *t, size_t i, FILE *f) {
-    if (t->kind[i] == TEXT)
+    if (t->kind[i] == TABLE_TEXT)
         print_string(t->cell.item[i], f);
     else
-        fputs(t->kind[i] == NUMBER ? t->cell.item[i] : "null", f);
+        fputs(t->kind[i] == TABLE_NUMBER ? t->cell.item[i] : "null", f);
 }
 
 static void print_rows(const table *t, FILE *f) {
@@ -410,7 +400,9 @@ static void print_all_wrapped(const list *l, FILE *f) {
 }
 
 void page_print(const page *p, const options *o, FILE *f) {
-    if (o->format == FORMAT_JSON) {
+    if (o->as_html) {
+        page_html(p, f);
+    } else if (o->format == FORMAT_JSON) {
         print_json(p, f);
     } else if (o->format == FORMAT_CSV) {
         if (!o->quiet)

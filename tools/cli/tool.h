@@ -14,6 +14,7 @@
        check       check.c      pace.h: a trial run
        effects     effects.c, impact.c
        hard        hard.c
+       report      report.c     other commands' pages and plots as HTML
        new, list   new.c, list.c
 
    All but the last three begin with a plan (plan.h): scene, options and
@@ -132,7 +133,8 @@ enum {
     FOR_EXPORT = 4096,
     FOR_FLOW = 8192,
     FOR_REFERENCE = 16384,
-    FOR_LAST = FOR_REFERENCE
+    FOR_REPORT = 1 << 20,
+    FOR_LAST = FOR_REPORT
 };
 
 const char *command_name(unsigned bit);
@@ -168,6 +170,7 @@ typedef struct {
     const char *shape;   /* of flow; NULL: chosen */
     const char *columns; /* NULL: not given */
     bool formatted;      /* --format was given */
+    bool as_html;        /* tables are parts of a report */
     bool quiet, portable, all, by_state, diagnostics, impact, allow_code;
     nevh_native_use native;
     bool native_given, no_cache, header;
@@ -204,6 +207,8 @@ int output_close(output *, int status);
 /* Opens what -o says, prints, closes. */
 int output_page(const options *, const page *, int status);
 void page_print(const page *, const options *, FILE *);
+/* page_html.c */
+void page_html(const page *, FILE *);
 
 /* outputs.c */
 /* Whether two names are of one regular file, or would be of one. */
@@ -236,6 +241,7 @@ char *scene_file(const char *beside, const char *name);
 typedef int command(const options *);
 command compare, list_command, check, effects, run_scene, export_scene, section,
     new_scene;
-command cost, recommend, gradients, hard, sweep, flow, reference_command;
+command cost, recommend, gradients, hard, sweep, flow, reference_command,
+    report;
 
 #endif

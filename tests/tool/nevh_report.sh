@@ -1,0 +1,74 @@
+#!/bin/sh
+# nevh report: one page of HTML that fetches nothing.
+
+. "${srcdir:-.}/tests/support/nevh_support.sh"
+
+page=$work/page.html
+
+# What is wrong is said, and there is no page.
+refused() { # PATTERN, ARGUMENT...
+    pattern=$1
+    shift
+    exits 2 "$@"
+    says "$pattern"
+    test ! -e $page || fails "leaves a page"
+}
+refused 'takes scenes' report -o $page
+refused 'needs a file' report pendulum
+refused 'no scene|cannot be read|there is no' report no-such-scene -o $page
+refused 'no option of nevh report' report pendulum -o $page --format csv
+refused 'cannot be written' report pendulum -o $work/no/folder.html
+
+if ! gnuplot --version >/dev/null 2>&1; then
+    refused 'gnuplot' report pendulum -o $page
+    echo "plots need gnuplot"
+    test $status = 0 && exit 77
+    exit 1
+fi
+printf '[coordinates\n' >$work/bad.nevh
+refused 'bad\.nevh:1' report $work/bad.nevh -o $page
+refused 'no integrator has a row' report double-pendulum -o $page \
+    --integrators verlet --t-end 1
+
+printf '%s\n' '[scene]' 'title = A <b> & "c"' 'effects = K, V' '[coordinates]' 'x = 1' \
+    '[effects]' 'K = p_x^2/2' 'V = x^2/2' 'W = x^4' '[run]' \
+    't_end = 5' 'dt = 0.1' 'integrators = verlet, rk4' \
+    >$work/own.nevh
+TMPDIR=$work exits 0 report $work/own.nevh pendulum -o $page --t-end 5
+test -s $work/err && { fails "prints messages"; cat $work/err; }
+ls $work | grep -q '^nevh\.' && fails "leaves its folder"
+cp $page $work/out
+has '^<!DOCTYPE html>'
+has '<h1>A &lt;b&gt; &amp; &quot;c&quot;</h1>'
+has '<dd class="off">\(off\) <math'
+lacks '(src|href)="'
+lacks 'https?://[^w]'
+lacks '[^a-z]nan[^a-z]'
+for heading in 'The Hamiltonian' 'Energy errors' 'The motion' 'Phase plane' \
+    'What accuracy costs' Effects Gradients 'Properties of H'; do
+    has "<h2>$heading</h2>"
+done
+for element in section figure svg table math dl main; do
+    opened=$(grep -o "<$element[ >]" $page | wc -l)
+    closed=$(grep -o "</$element>" $page | wc -l)
+    test "$opened" -gt 0 && test "$opened" = "$closed" ||
+        fails "has $opened <$element> and $closed </$element>"
+done
+grep -Eo "[ <](id)=['\"][^'\"]*" $page | sort | uniq -d | grep -q . &&
+    fails "names two things alike"
+for used in $(grep -Eo "xlink:href='#[^']*" $page | sed "s/.*#//" | sort -u); do
+    grep -q "id='$used'" $page || fails "uses $used, which is not there"
+done
+
+# The command that a part names makes its numbers.
+line=$(sed -n 's/^<p>Made by <code>nevh \(compare pendulum.*\)<\/code>.*/\1/p' \
+    $page | sed "s/'//g")
+test -n "$line" || fails "has no command"
+exits 0 $line
+energies=$(awk '$1 == "verlet" || $1 == "gauss4" { print $5 }' $work/out)
+test -n "$energies" || fails "has no energies"
+for number in $energies; do
+    grep -q "<td class=\"number\">$number</td>" $page || fails "lacks $number"
+done
+
+exit $status

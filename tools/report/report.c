@@ -1,0 +1,267 @@
+/* nevh report: what the other commands say of a scene, as one page of HTML.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "plot/plot.h"
+#include "report_private.h"
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+typedef struct {
+    const options *given;
+    nevh_scene *scene;
+    char *folder, *rows, *picture, *messages; /* files of one part */
+} report_work;
+
+typedef struct {
+    const char *title, *about, *arguments;
+    command *run;
+    bool (*wanted)(const nevh_scene *);
+    plot_kind kind;
+    bool rows, draws;
+} kind_of_part;
+
+static bool always(const nevh_scene *scene) {
+    (void)scene;
+    return true;
+}
+
+static bool has_picture(const nevh_scene *scene) {
+    return nevh_scene_part_count(scene) > 0;
+}
+
+static bool has_sections(const nevh_scene *scene) {
+    return nevh_scene_section_count(scene) > 0;
+}
+
+static const kind_of_part kinds[] = {
+    {"Energy errors",
+     "Each row is an integrator at one step. Bounded errors stay; drifting "
+     "errors grow with time. The picture shows the error against time.",
+     "compare", compare, always, PLOT_PHASE, true, true},
+    {"The motion", "The configuration at equal times, by the first integrator.",
+     "run --plot-kind configuration", run_scene, has_picture,
+     PLOT_CONFIGURATION, false, true},
+    {"Phase plane", "A coordinate and its momentum, by the first integrator.",
+     "run --plot-kind phase", run_scene, always, PLOT_PHASE, false, true},
+    {"Sections", "Points where the orbit crosses the section.", "section",
+     section, has_sections, PLOT_PHASE, false, true},
+    {"What accuracy costs",
+     "Processor time for each digit. The picture is the work-precision "
+     "diagram: lower left is better.",
+     "cost", cost, always, PLOT_PHASE, true, true},
+    {"Effects",
+     "What each effect reads and costs. Effects that are off cost "
+     "nothing.",
+     "effects", effects, always, PLOT_PHASE, true, false},
+    {"Gradients",
+     "Error and time of the gradient by each method. Long steps of a "
+     "difference truncate, short ones round.",
+     "gradients", gradients, always, PLOT_PHASE, true, true},
+    {"Properties of H", "Tested numerically at states around the start.",
+     "check", check, always, PLOT_PHASE, true, false},
+};
+enum { KINDS = sizeof kinds / sizeof *kinds };
+
+/* The whole file as text; NULL: there is none, or it is empty. */
+static char *read_text(const char *name) {
+    FILE *f = fopen(name, "rb");
+    size_t used = 0, room = 1 << 16, count = 1;
+    char *text = f ? tool_allocate(room, 1) : NULL;
+    while (text && (count = fread(text + used, 1, room - used - 1, f)) > 0) {
+        used += count;
+        if (used + 1 == room)
+            text = tool_enlarge(text, room *= 2, 1);
+    }
+    if (f)
+        fclose(f);
+    if (text)
+        text[used] = '\0';
+    if (used == 0) {
+        free(text);
+        return NULL;
+    }
+    return text;
+}
+
+/* --set, --with and others that the report was given. */
+static char *command_of(const report_work *w, const char *scene,
+                        const char *arguments) {
+    static const struct {
+        char mark;
+        const char *option;
+    } settings[] = {
+        {'=', "set"}, {'@', "start"}, {'+', "with"}, {'-', "without"}};
+    const options *o = w->given;
+    size_t word = strcspn(arguments, " ");
+    char *text = text_print("nevh %.*s %s%s", (int)word, arguments, scene,
+                            arguments + word);
+    const struct {
+        const list *items;
+        const char *option;
+    } lists[] = {{&o->integrators, "integrators"},
+                 {&o->gradients, "gradient"},
+                 {&o->dt, "dt"}};
+    for (size_t i = 0; i < o->settings.count; i++)
+        for (size_t k = 0; k < 4; k++)
+            if (o->settings.item[i][0] == settings[k].mark) {
+                char *more =
+                    text_print("%s --%s '%s'", text, settings[k].option,
+                               o->settings.item[i] + 1);
+                free(text);
+                text = more;
+            }
+    for (size_t k = 0; k < sizeof lists / sizeof *lists; k++) {
+        if (!lists[k].items->count)
+            continue;
+        char *joined = list_joined(lists[k].items);
+        char *more = text_print("%s --%s %s", text, lists[k].option, joined);
+        free(joined);
+        free(text);
+        text = more;
+    }
+    if (o->t_end) {
+        char *more = text_print("%s --t-end '%s'", text, o->t_end);
+        free(text);
+        text = more;
+    }
+    return text;
+}
+
+/* Runs a command with stderr in a file; -1 where that cannot be. */
+static int run_heard(command *run, const options *o, const char *messages) {
+    int kept = dup(STDERR_FILENO), status = -1;
+    FILE *heard = fopen(messages, "w");
+    fflush(stderr);
+    if (kept >= 0 && heard && dup2(fileno(heard), STDERR_FILENO) >= 0) {
+        status = run(o);
+        fflush(stderr);
+        dup2(kept, STDERR_FILENO);
+    }
+    if (heard)
+        fclose(heard);
+    if (kept >= 0)
+        close(kept);
+    return status;
+}
+
+static report_part make_part(const report_work *w, const kind_of_part *kind,
+                             char *scene) {
+    char *words[] = {"report", scene};
+    options o = *w->given;
+    o.operands = (list){words, 2};
+    o.file = kind->rows ? w->rows : NULL;
+    o.plot = kind->draws ? w->picture : NULL;
+    o.plot_kind = kind->kind;
+    o.as_html = true;
+    o.quiet = !kind->rows;
+    unlink(w->rows);
+    unlink(w->picture);
+    report_part part = {.title = kind->title, .about = kind->about};
+    part.status = run_heard(kind->run, &o, w->messages);
+    part.html = read_text(w->rows);
+    part.picture = read_text(w->picture);
+    part.messages = read_text(w->messages);
+    part.command = command_of(w, scene, kind->arguments);
+    return part;
+}
+
+static void free_part(report_part *part) {
+    free(part->command);
+    free(part->html);
+    free(part->picture);
+    free(part->messages);
+}
+
+/* The comparison is what a report is for: without it there is none. */
+static int refuse(const char *scene, const report_part *part) {
+    fputs(part->messages ? part->messages : "", stderr);
+    return tool_refuse("%s: no report, since no integrator has a row with "
+                       "numbers",
+                       scene);
+}
+
+static int add_scene(report_work *w, char *name, size_t *number, FILE *f) {
+    int status = scene_open_named(&w->scene, name, w->given);
+    if (status)
+        return status;
+    list told = {0};
+    html_scene(f, w->scene, name);
+    for (size_t i = 0; !status && i < KINDS; i++) {
+        if (!kinds[i].wanted(w->scene))
+            continue;
+        report_part part = make_part(w, &kinds[i], name);
+        if (kinds[i].run == compare && part.status != TOOL_OK &&
+            (part.status != TOOL_FAILED || !part.picture))
+            status = refuse(name, &part);
+        else
+            html_part(f, &part, ++*number, &told);
+        free_part(&part);
+    }
+    list_free(&told);
+    nevh_scene_free(w->scene);
+    return status;
+}
+
+static int make_folder(report_work *w) {
+    const char *parent = getenv("TMPDIR");
+    w->folder =
+        text_print("%s/nevh.XXXXXX", parent && *parent ? parent : "/tmp");
+    if (!mkdtemp(w->folder))
+        return tool_refuse("%s: a folder for parts of the report cannot be "
+                           "made: %s",
+                           w->folder, strerror(errno));
+    w->rows = text_print("%s/rows.html", w->folder);
+    w->picture = text_print("%s/picture.svg", w->folder);
+    w->messages = text_print("%s/messages", w->folder);
+    return TOOL_OK;
+}
+
+static void free_work(report_work *w) {
+    if (w->rows) {
+        unlink(w->rows);
+        unlink(w->picture);
+        unlink(w->messages);
+        rmdir(w->folder);
+    }
+    free(w->rows);
+    free(w->picture);
+    free(w->messages);
+    free(w->folder);
+}
+
+static int write_page(const options *o, const char *text) {
+    output out;
+    if (output_open(&out, o->file))
+        return TOOL_USAGE;
+    fputs(text, out.stream);
+    return output_close(&out, TOOL_OK);
+}
+
+int report(const options *o) {
+    report_work w = {.given = o};
+    char *text = NULL;
+    size_t size, number = 0;
+    if (o->operands.count < 2)
+        return tool_refuse("nevh report takes scenes, as in nevh report "
+                           "pendulum -o pendulum.html");
+    if (!o->file)
+        return tool_refuse("nevh report needs a file: -o FILE.html");
+    options drawn = {.plot = (char *)"report.svg"};
+    if (output_check(o->file) || plot_check(&drawn) || make_folder(&w)) {
+        free_work(&w);
+        return TOOL_USAGE;
+    }
+    FILE *f = tool_owned(open_memstream(&text, &size));
+    int status = TOOL_OK;
+    html_head(f, "nevh report");
+    for (size_t i = 1; !status && i < o->operands.count; i++)
+        status = add_scene(&w, o->operands.item[i], &number, f);
+    html_foot(f);
+    fclose(f);
+    free_work(&w);
+    if (!status)
+        status = write_page(o, tool_owned(text));
+    free(text);
+    return status;
+}

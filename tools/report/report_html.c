@@ -1,0 +1,168 @@
+/* nevh report: the parts of the page.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "config.h"
+#include "report_private.h"
+#include <stdlib.h>
+#include <string.h>
+
+static const char style[] =
+    ":root{color-scheme:light dark;--line:#8888}\n"
+    "body{font:16px/1.5 system-ui,sans-serif;max-width:62rem;margin:auto;"
+    "padding:1rem;overflow-wrap:anywhere}\n"
+    "h1,h2,h3{line-height:1.2}\n"
+    ".wide{overflow-x:auto}\n"
+    "table{border-collapse:collapse;font-size:.9rem;margin:1rem 0;"
+    "overflow-wrap:normal}\n"
+    "th,td{padding:.15rem .6rem;text-align:left;vertical-align:top;"
+    "font-weight:normal}\n"
+    "tbody th{white-space:nowrap}\n"
+    "thead th{border-bottom:1px solid var(--line);font-weight:bold;"
+    "vertical-align:bottom}\n"
+    "tbody{border-bottom:1px solid var(--line)}\n"
+    ".number{text-align:right;font-variant-numeric:tabular-nums;"
+    "white-space:nowrap}\n"
+    "figure{margin:1rem 0;background:#fff;color:#000;border-radius:4px;"
+    "overflow-x:auto}\n"
+    "svg{display:block;width:100%;height:auto;min-width:36rem;"
+    "max-height:95vh}\n"
+    "pre{overflow-x:auto;font-size:.85rem}\n"
+    "dd{overflow-x:auto;overflow-y:hidden;margin:.3rem 0 .3rem 1.5rem}\n"
+    "math{font-size:1.15em}\n"
+    ".off{opacity:.6}\n"
+    "@media print{tr,figure{break-inside:avoid}h2,h3{break-after:avoid}"
+    ".wide{overflow:visible}}\n";
+
+void html_head(FILE *f, const char *title) {
+    fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n"
+          "<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+          "content=\"width=device-width, initial-scale=1\">\n<title>",
+          f);
+    html_text(f, title);
+    fprintf(f, "</title>\n<style>\n%s</style>\n</head>\n<body>\n<main>\n",
+            style);
+}
+
+/* The names of parts, and what refers to them, with a prefix. */
+static void put_prefixed(FILE *f, const char *text, size_t number) {
+    static const char *const before[] = {" id='", " id=\"", "href='#",
+                                         "href=\"#", "url(#"};
+    enum { COUNT = sizeof before / sizeof *before };
+    while (*text) {
+        size_t i = 0;
+        while (i < COUNT && strncmp(text, before[i], strlen(before[i])) != 0)
+            i++;
+        if (i == COUNT)
+            fputc(*text++, f);
+        else {
+            fprintf(f, "%sp%zu_", before[i], number);
+            text += strlen(before[i]);
+        }
+    }
+}
+
+/* The drawing without the header of a file.  Several stand in one page, so that
+   names of its parts get a prefix. */
+static void put_picture(FILE *f, const report_part *p, size_t number) {
+    static const char after[] = "</desc>";
+    const char *tag = strstr(p->picture, "<svg");
+    const char *body = strstr(p->picture, after);
+    const char *box = strstr(p->picture, "viewBox=");
+    if (!tag || !body || !box || box > body)
+        return;
+    fprintf(f,
+            "<figure>\n<svg role=\"img\" aria-labelledby=\"t%zu\" %.*s "
+            "xmlns=\"http://www.w3.org/2000/svg\" "
+            "xmlns:xlink=\"http://www.w3.org/1999/xlink\">\n<title "
+            "id=\"t%zu\">",
+            number, (int)strcspn(box, "\n"), box, number);
+    html_text(f, p->title);
+    fputs(". ", f);
+    html_text(f, p->about);
+    fputs("</title>", f);
+    put_prefixed(f, body + sizeof after - 1, number);
+    fputs("</figure>\n", f);
+}
+
+/* Each line of notes once: most commands begin with the same ones. */
+static void put_notes_once(FILE *f, char *html, list *told) {
+    for (char *line = strtok(html, "\n"); line; line = strtok(NULL, "\n")) {
+        bool note = strncmp(line, "<p>", 3) == 0;
+        if (note && list_has(told, line))
+            continue;
+        if (note)
+            list_add(told, line);
+        fprintf(f, "%s\n", line);
+    }
+}
+
+void html_part(FILE *f, const report_part *p, size_t number, list *told) {
+    fputs("<section>\n<h2>", f);
+    html_text(f, p->title);
+    fputs("</h2>\n<p>", f);
+    html_text(f, p->about);
+    fputs("</p>\n", f);
+    if (p->picture)
+        put_picture(f, p, number);
+    if (p->html)
+        put_notes_once(f, p->html, told);
+    if (p->messages && *p->messages) {
+        fputs("<pre>", f);
+        for (char *line = strtok(p->messages, "\n"); line;
+             line = strtok(NULL, "\n")) {
+            html_text(f, line);
+            fputc('\n', f);
+        }
+        fputs("</pre>\n", f);
+    }
+    fputs("<p>Made by <code>", f);
+    html_text(f, p->command);
+    fputs("</code></p>\n</section>\n", f);
+}
+
+static void put_equation(FILE *f, const nevh_scene *scene, size_t i) {
+    nevh_scene_equation e = nevh_scene_equation_at(scene, i);
+    char *math = nevh_scene_equation_mathml(scene, i);
+    fprintf(f, "<dd%s>", e.on ? "" : " class=\"off\"");
+    if (strcmp(e.section, "effects") == 0 || strcmp(e.section, "friction") == 0)
+        fputs(e.on ? "" : "(off) ", f);
+    if (math)
+        fputs(math, f);
+    else {
+        fputs("<code>", f);
+        html_text(f, e.name);
+        fputs(" = ", f);
+        html_text(f, e.value);
+        fputs("</code>", f);
+    }
+    fputs("</dd>\n", f);
+    free(math);
+}
+
+void html_scene(FILE *f, const nevh_scene *scene, const char *name) {
+    const char *title = nevh_scene_title(scene), *section = "";
+    const char *source = nevh_scene_source(scene);
+    fputs("<h1>", f);
+    html_text(f, *title ? title : name);
+    fputs("</h1>\n", f);
+    if (*source) {
+        fputs("<p>Source: ", f);
+        html_text(f, source);
+        fputs("</p>\n", f);
+    }
+    fputs("<section>\n<h2>The Hamiltonian</h2>\n<p>H is the sum of the effects "
+          "that are on.</p>\n<dl>\n",
+          f);
+    for (size_t i = 0; i < nevh_scene_equation_count(scene); i++) {
+        nevh_scene_equation e = nevh_scene_equation_at(scene, i);
+        if (strcmp(section, e.section) != 0)
+            fprintf(f, "<dt>%s</dt>\n", section = e.section);
+        put_equation(f, scene, i);
+    }
+    fputs("</dl>\n</section>\n", f);
+}
+
+void html_foot(FILE *f) {
+    fputs("</main>\n<footer><p>Made by nevh " PACKAGE_VERSION
+          ".</p></footer>\n</body>\n</html>\n",
+          f);
+}
