@@ -203,6 +203,8 @@ NEVH__INLINE void nevh__stage_place(const nevh__stage_step *x, size_t lanes,
     size_t eight = NEVH__LANES, whole = lanes ? lanes * eight : eight;
     if (x->stages == eight && x->stride == whole)
         nevh__stage_place_rows(x, lanes, eight, eight, whole, q, inverse);
+    else if (x->stride == eight && lanes == NEVH__STAGES_TOGETHER)
+        nevh__stage_place_rows(x, lanes, x->stages, eight, eight, q, inverse);
     else if (x->row == eight)
         nevh__stage_place_rows(x, lanes, x->stages, eight, x->stride, q,
                                inverse);
