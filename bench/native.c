@@ -1,4 +1,5 @@
-/* nevh: compiled steps of scenes against loops written by hand.
+/* nevh: compiled steps of scenes against loops written by hand, and of 32 orbits
+   side by side against those of the tape.
 
    The loops have formulas, gradient and scheme inlined by the compiler, -O3
    -march=native, without compensated sums.  Runs are interleaved; medians.
@@ -152,6 +153,50 @@ static void compare(const subject *x, const char *name, const scheme *hand) {
     nevh_scene_free(scene);
 }
 
+/* A step and orbit of LANES side by side, h = 0.005. */
+enum { LANES = 32, SHORT = 2000 };
+static const char double_pendulum[] =
+    "[coordinates]\na = 2, 0\nb = 1, 0\n[effects]\n"
+    "T = (p_a^2 - 2*p_a*p_b*cos(a - b) + 2*p_b^2)/(2 + 2*sin(a - b)^2)\n"
+    "V = -19.6*cos(a) - 9.8*cos(b)\n";
+
+static double side_by_side(nevh_scene *scene, const char *name,
+                           const char *gradient, nevh_native_use use) {
+    double q1[DOF], p1[DOF], q[DOF * LANES], p[DOF * LANES], time[ROUNDS];
+    size_t n = nevh_scene_dof(scene);
+    nevh_scene_start(scene, q1, p1);
+    for (size_t i = 0; i < n * LANES; i++) {
+        q[i] = q1[i / LANES] * (1 + 0.001 * (double)(i % LANES));
+        p[i] = p1[i / LANES];
+    }
+    nevh_options o = {.gradient = nevh_gradient_named(gradient),
+                      .q = q,
+                      .p = p,
+                      .width = LANES,
+                      .native = use};
+    nevh_stepper *s = nevh_stepper_new(nevh_scene_system(scene),
+                                       nevh_integrator_named(name), &o);
+    for (int i = 0; i < ROUNDS; i++) {
+        double t = seconds();
+        nevh_run(s, 0, 0.005, SHORT, q, p, NULL, 0);
+        time[i] = seconds() - t;
+    }
+    nevh_stepper_free(s);
+    return median(time) * 1e9 / SHORT / LANES;
+}
+
+static void compare_lanes(const char *name, const char *text,
+                          const char *integrator) {
+    static const char *const gradients[] = {"exact", "central4"};
+    nevh_scene *scene = nevh_scene_parse(name, text);
+    for (int g = 0; g < 2; g++)
+        printf(
+            "%s,%s,%s,%.2f,%.2f\n", name, integrator, gradients[g],
+            side_by_side(scene, integrator, gradients[g], NEVH_NATIVE_NEVER),
+            side_by_side(scene, integrator, gradients[g], NEVH_NATIVE_ALWAYS));
+    nevh_scene_free(scene);
+}
+
 int main(void) {
     scheme long_one = eleven();
     puts(
@@ -161,5 +206,11 @@ int main(void) {
         compare(&subjects[i], "verlet", &verlet);
         compare(&subjects[i], "rkn11b", &long_one);
     }
+    puts("\n32 orbits,integrator,gradient,tape_ns,native_ns");
+    for (size_t i = 0; i < sizeof subjects / sizeof *subjects; i++) {
+        compare_lanes(subjects[i].name, subjects[i].text, "verlet");
+        compare_lanes(subjects[i].name, subjects[i].text, "rk4");
+    }
+    compare_lanes("double-pendulum", double_pendulum, "rk4");
     return 0;
 }

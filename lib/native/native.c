@@ -76,7 +76,6 @@ static const char *obstacle(const nevh_work *w) {
                ? "orbits side by side fill no vectors"
            : w->n * w->width > MOST_NUMBERS ? "the state is too large"
            : w->options->tolerance > 0      ? "steps adapt to a tolerance"
-           : w->friction                    ? "there is friction"
                                             : NULL;
 }
 

@@ -90,21 +90,6 @@ static void write_step(nevh__writer *w, const nevh__nystrom_kinetic *kinetic,
     nevh__write_filled(w, step_ends, (const char *const[]){count});
 }
 
-/* An array of numbers: of the table, or in digits. */
-static void write_array(nevh__writer *w, const char *what, size_t n,
-                        const double x[], char name[NEVH__NAME]) {
-    if (w->readable) {
-        char begin[60];
-        snprintf(begin, sizeof begin, "static const double %s", what);
-        nevh__write_numbers(w, begin, n, x);
-        snprintf(name, NEVH__NAME, "%s", what);
-        return;
-    }
-    snprintf(name, NEVH__NAME, "(N + %zu)", w->count);
-    for (size_t k = 0; k < n; k++)
-        nevh__writer_append(w, x[k]);
-}
-
 bool nevh__write_nystrom(nevh__writer *w, nevh_work *work) {
     const nevh_nystrom *table = work->integrator->table;
     nevh__nystrom_kinetic kinetic = nevh__nystrom_kinetic_of(work);
@@ -126,8 +111,8 @@ bool nevh__write_nystrom(nevh__writer *w, nevh_work *work) {
     nevh__write_sum(w, &sums, table->bp, s, "DOF");
     nevh__write_sums(w, &sums);
     nevh__write_numbers(w, "static const double times", s, table->c);
-    write_array(w, "at_rest", work->n, kinetic.rest, rest);
-    write_array(w, "inverse", work->n, kinetic.inverse, inverse);
+    nevh__write_array(w, "at_rest", "N", work->n, kinetic.rest, rest);
+    nevh__write_array(w, "inverse", "N", work->n, kinetic.inverse, inverse);
     nevh__write(w, "\n");
     nevh__write_filled(
         w, owner,

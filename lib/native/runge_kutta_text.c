@@ -13,7 +13,13 @@ static const char slope[] =
     "    (void)way;\n"
     "    *o->bad += kick_slope($1t, x->point, x->point + DOF, slopes + DOF);\n"
     "    *o->bad += drift_slope($1t, x->point, x->point + DOF, slopes);\n"
+    "$2"
     "    return 0;\n}\n\n";
+
+/* dp/dt = -(dH/dq + rate p). */
+static const char friction[] =
+    "    NEVH__EACH(k, 1, DOF)\n"
+    "        slopes[DOF + k] += $1[k] * x->point[DOF + k];\n";
 
 static const char owner[] =
     "struct nevh__runge_kutta_owner {\n"
@@ -72,6 +78,20 @@ static void write_step(nevh__writer *w, size_t stages) {
     nevh__write_filled(w, step_ends, (const char *const[]){number});
 }
 
+static void write_slope(nevh__writer *w, const nevh_work *work) {
+    nevh__writer part = {0};
+    char rates[NEVH__NAME];
+    if (work->friction) {
+        nevh__write_array(w, "rates", "o->N", work->n, work->friction, rates);
+        nevh__write_filled(&part, friction, (const char *const[]){rates});
+        w->failed |= part.failed;
+    }
+    nevh__write_filled(w, slope,
+                       (const char *const[]){w->readable ? "" : "o->N, ",
+                                             part.text ? part.text : ""});
+    nevh__writer_free(&part);
+}
+
 bool nevh__write_runge_kutta(nevh__writer *w, nevh_work *work) {
     const nevh_butcher *table = work->integrator->table;
     size_t stages = stages_of(table);
@@ -82,8 +102,7 @@ bool nevh__write_runge_kutta(nevh__writer *w, nevh_work *work) {
     nevh__write_lines(w, nevh__runge_kutta_step_text);
     write_tables(w, table);
     nevh__write(w, owner, w->readable ? "" : "    const double *N;\n");
-    nevh__write_filled(w, slope,
-                       (const char *const[]){w->readable ? "" : "o->N, "});
+    write_slope(w, work);
     write_step(w, stages);
     nevh__write_unkept(w);
     nevh__write_driver(w, false);

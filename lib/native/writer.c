@@ -98,3 +98,17 @@ void nevh__write_filled(nevh__writer *w, const char *text,
         text += 2;
     }
 }
+
+void nevh__write_array(nevh__writer *w, const char *what, const char *table,
+                       size_t count, const double x[], char name[NEVH__NAME]) {
+    if (w->readable) {
+        char begin[60];
+        snprintf(begin, sizeof begin, "static const double %.30s", what);
+        nevh__write_numbers(w, begin, count, x);
+        snprintf(name, NEVH__NAME, "%.30s", what);
+        return;
+    }
+    snprintf(name, NEVH__NAME, "(%.8s + %zu)", table, w->count);
+    for (size_t k = 0; k < count; k++)
+        nevh__writer_append(w, x[k]);
+}

@@ -40,6 +40,11 @@ void nevh__writer_append(nevh__writer *, double);
 /* NAME[count] = {...}; as C has it. */
 void nevh__write_numbers(nevh__writer *, const char *name, size_t count,
                          const double x[]);
+/* An array of numbers, "static const double WHAT", or of the table.
+   table  what that is called where the array is read
+   name   out: what it is called */
+void nevh__write_array(nevh__writer *, const char *what, const char *table,
+                       size_t count, const double x[], char name[NEVH__NAME]);
 void nevh__write_lines(nevh__writer *, const char *const lines[]);
 /* "double", or what orbits side by side are. */
 const char *nevh__number_type(const nevh__writer *);

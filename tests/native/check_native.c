@@ -218,6 +218,32 @@ TEST_EACH(functions_same_bits, FUNCTIONS) {
     remove_cache();
 }
 
+/* Friction, which Runge-Kutta methods have in their slopes and which stands
+   around the steps of others; of one orbit and of many. */
+TEST(friction_same_bits) {
+    static const char damped[] =
+        "[coordinates]\nx = 1, 0.2\ny = -0.5, 1\n[effects]\n"
+        "T = (p_x^2 + 2*p_y^2)/2\nV = x^4/4 + x*y^2*sin(t)\n"
+        "[friction]\nx = 0.3\ny = 0.1\n";
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    make_cache();
+    nevh_scene *scene = parsed(damped);
+    const nevh_integrator *schemes[] = {nevh_rk4, nevh_verlet, nevh_dop853};
+    for (size_t i = 0; i < 6; i++) {
+        pair x =
+            pair_of(scene, schemes[i % 3], i % 2 ? nevh_exact : nevh_central4,
+                    false, cache, i < 3 ? 1 : 16);
+        ck_assert_msg(nevh_stepper_native(x.native, NULL), "%s", x.why);
+        double before = x.b[x.n];
+        ck_assert_int_eq(pair_run(&x, 0.02, 300), NEVH_OK);
+        ck_assert(pair_same(&x) && x.b[x.n] != before);
+        pair_free(&x);
+    }
+    nevh_scene_free(scene);
+    remove_cache();
+}
+
 /* H leaves its domain: both stop at the same state, with the same words. */
 TEST(failures_same) {
     static const char *const gradients[] = {"exact", "central4",
