@@ -223,8 +223,8 @@ TEST_EACH(functions_same_bits, FUNCTIONS) {
 TEST(friction_same_bits) {
     static const char damped[] =
         "[coordinates]\nx = 1, 0.2\ny = -0.5, 1\n[effects]\n"
-        "T = (p_x^2 + 2*p_y^2)/2\nV = x^4/4 + x*y^2*sin(t)\n"
-        "[friction]\nx = 0.3\ny = 0.1\n";
+        "T = (p_x^2 + 2*p_y^2)/2\nV = x^4/4 + y^2 + x*y*sin(t)/5\n"
+        "[friction]\nair = x: 0.3, y: 0.1\n";
     if (!has_compiler())
         skip_test("there is no C compiler");
     make_cache();
