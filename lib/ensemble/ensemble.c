@@ -134,30 +134,49 @@ static int plan_motion(nevh_ensemble *e, const nevh_options *options) {
                       nevh_field_message(e->motion));
 }
 
-static double *numbers(size_t count) {
-    return nevh__array(count, sizeof(double));
+static double *numbers(nevh__arena *a, size_t count) {
+    return nevh__arena_take(a, count, sizeof(double));
 }
 
-static bool plan_snapshot(nevh_ensemble *e, nevh__snapshot *s, bool state) {
-    s->t = numbers(e->stride);
-    s->h = numbers(e->width);
-    s->value = numbers(e->n_outcomes * e->stride);
-    if (state && e->looks_back) {
-        s->q = numbers(e->n * e->width);
-        s->p = numbers(e->n * e->width);
-        s->memory = numbers(e->stepper->rows * e->width);
-        return s->t && s->h && s->value && s->q && s->p && s->memory;
-    }
-    return s->t && s->h && s->value;
+static void lay_out_snapshot(const nevh_ensemble *e, nevh__arena *a,
+                             nevh__snapshot *s, bool state) {
+    s->t = numbers(a, e->stride);
+    s->h = numbers(a, e->width);
+    s->value = numbers(a, e->n_outcomes * e->stride);
+    if (!state || !e->looks_back)
+        return;
+    s->q = numbers(a, e->n * e->width);
+    s->p = numbers(a, e->n * e->width);
+    s->memory = numbers(a, e->stepper->rows * e->width);
 }
 
-static void free_snapshot(nevh__snapshot *s) {
-    free(s->t);
-    free(s->h);
-    free(s->value);
-    free(s->q);
-    free(s->p);
-    free(s->memory);
+static void lay_out(nevh__arena *a, void *ensemble) {
+    nevh_ensemble *e = ensemble;
+    size_t n = e->n, width = e->width, stride = e->stride;
+    bool copies = stride != width;
+    e->lanes = nevh__arena_take(a, width, sizeof *e->lanes);
+    e->records = nevh__arena_take(a, e->n_outcomes * width, sizeof *e->records);
+    e->on = nevh__arena_take(a, width, sizeof *e->on);
+    e->step = nevh__arena_take(a, width, sizeof *e->step);
+    e->q = numbers(a, n * width);
+    e->p = numbers(a, n * width);
+    e->stop = numbers(a, stride);
+    e->v = numbers(a, n * stride);
+    e->wide_q = copies ? numbers(a, n * stride) : e->q;
+    e->wide_p = copies ? numbers(a, n * stride) : e->p;
+    e->run_q = numbers(a, n);
+    e->run_p = numbers(a, n);
+    e->q1 = numbers(a, n);
+    e->p1 = numbers(a, n);
+    e->wide_q1 = numbers(a, n * NEVH__LANES);
+    e->wide_p1 = numbers(a, n * NEVH__LANES);
+    e->v1 = numbers(a, n * NEVH__LANES);
+    e->t1 = numbers(a, NEVH__LANES);
+    e->value1 = numbers(a, NEVH__LANES);
+    e->result = numbers(a, e->columns);
+    lay_out_snapshot(e, a, &e->now, false);
+    lay_out_snapshot(e, a, &e->ago1, true);
+    lay_out_snapshot(e, a, &e->ago2, true);
 }
 
 /* GSL aborts where memory is out: ask first for more than it takes. */
@@ -169,36 +188,8 @@ static bool plan_root(nevh_ensemble *e) {
 }
 
 static int plan_rooms(nevh_ensemble *e) {
-    size_t n = e->n, width = e->width, stride = e->stride;
-    bool copies = stride != width;
-    e->lanes = nevh__array(width, sizeof *e->lanes);
-    e->q = numbers(n * width);
-    e->p = numbers(n * width);
-    e->records = nevh__array(e->n_outcomes * width, sizeof *e->records);
-    e->stop = numbers(stride);
-    e->v = numbers(n * stride);
-    e->wide_q = copies ? numbers(n * stride) : e->q;
-    e->wide_p = copies ? numbers(n * stride) : e->p;
-    e->run_q = numbers(n);
-    e->run_p = numbers(n);
-    e->q1 = numbers(n);
-    e->p1 = numbers(n);
-    e->wide_q1 = numbers(n * NEVH__LANES);
-    e->wide_p1 = numbers(n * NEVH__LANES);
-    e->v1 = numbers(n * NEVH__LANES);
-    e->t1 = numbers(NEVH__LANES);
-    e->value1 = numbers(NEVH__LANES);
-    e->on = nevh__array(width, sizeof *e->on);
-    e->step = nevh__array(width, sizeof *e->step);
-    e->result = numbers(e->columns);
-    bool all = e->lanes && e->q && e->p && e->records && e->stop && e->v &&
-               e->wide_q && e->wide_p && e->run_q && e->run_p && e->q1 &&
-               e->p1 && e->wide_q1 && e->wide_p1 && e->v1 && e->t1 &&
-               e->value1 && e->on && e->step && e->result && plan_root(e);
-    all = plan_snapshot(e, &e->now, false) && all;
-    all = plan_snapshot(e, &e->ago1, true) && all;
-    all = plan_snapshot(e, &e->ago2, true) && all;
-    return all ? NEVH_OK : out_of_memory(e);
+    e->memory = nevh__arena_new(lay_out, e);
+    return e->memory && plan_root(e) ? NEVH_OK : out_of_memory(e);
 }
 
 /* A section's value, at the state beside the orbits. */
@@ -317,34 +308,10 @@ void nevh_ensemble_free(nevh_ensemble *e) {
     nevh_stepper_free(e->narrow);
     if (e->root)
         gsl_root_fsolver_free(e->root);
-    if (e->wide_q != e->q)
-        free(e->wide_q);
-    if (e->wide_p != e->p)
-        free(e->wide_p);
-    free_snapshot(&e->now);
-    free_snapshot(&e->ago1);
-    free_snapshot(&e->ago2);
     free(e->outcomes);
     free(e->crossing_of);
     free(e->crossings);
-    free(e->lanes);
-    free(e->q);
-    free(e->p);
-    free(e->records);
-    free(e->stop);
-    free(e->v);
-    free(e->run_q);
-    free(e->run_p);
-    free(e->q1);
-    free(e->p1);
-    free(e->wide_q1);
-    free(e->wide_p1);
-    free(e->v1);
-    free(e->t1);
-    free(e->value1);
-    free(e->on);
-    free(e->step);
-    free(e->result);
+    free(e->memory);
     free(e);
 }
 

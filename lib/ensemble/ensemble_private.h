@@ -61,6 +61,7 @@ struct nevh_ensemble {
     nevh_field *motion;                   /* of velocities; or NULL */
     gsl_root_fsolver *root;
 
+    void *memory;          /* holds all arrays below */
     nevh__lane *lanes;     /* width */
     double *q, *p;         /* n rows of `width` */
     double *run_q, *run_p; /* n each: of nevh_run_until */
