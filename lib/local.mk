@@ -94,8 +94,11 @@ libnevh_core_la_SOURCES = \
 	lib/taylor/schedule.c \
 	lib/taylor/series_double.c \
 	lib/taylor/series_quad.c \
-	lib/taylor/quad_orbit_private.h \
+	lib/taylor/series_long.c \
+	lib/taylor/orbit_private.h \
+	lib/taylor/orbit_text.h \
 	lib/taylor/quad_orbit.c \
+	lib/taylor/long_orbit.c \
 	lib/taylor/certain.c \
 	lib/work/work_private.h \
 	lib/work/work.c \
@@ -155,6 +158,7 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/reference_run.c \
 	lib/diagnose/reference_watch.c \
 	lib/diagnose/reference_spread.c \
+	lib/diagnose/reference_series.c \
 	lib/diagnose/reference_walk.c \
 	lib/diagnose/state_error.c \
 	lib/diagnose/stability.c \

@@ -22,6 +22,7 @@ suites = \
 	tests/expression/check_random_formulas \
 	tests/taylor/check_series \
 	tests/taylor/check_taylor \
+	tests/taylor/check_certain \
 	tests/scene/check_scene \
 	tests/scene/check_scene_errors \
 	tests/scene/check_scene_write \

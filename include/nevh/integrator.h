@@ -94,8 +94,9 @@ NEVH_API extern const nevh_integrator *const nevh_gsl_msadams;
    for many digits, down to rounding (1e-16; the order grows by one a digit and
    a half).  Only for formulas, as scenes have them, that are analytic: no
    gradient is taken, the derivatives of all orders follow from the formula.
-   The end of a step of h is a value of the series there: h changes no digit of
-   the orbit where H does not read t. */
+   The end of a step of h is a value of the series there, so that h changes no
+   digit of the orbit, but: no series is longer than 8 steps of h, or one where
+   H reads t. */
 NEVH_API extern const nevh_integrator *const nevh_taylor;
 
 /* All schemes, ended by NULL. */

@@ -3,7 +3,7 @@
    An orbit is a chain of series, each of which holds as far as its last two
    coefficients say that the tolerance allows: no step h of the caller's cuts
    one short, and states between their ends are their values.  So the chain does
-   not depend on h.  The state at the beginning of a series is kept with the
+   not depend on h, unless that is very short.  The state at the beginning of a series is kept with the
    digits that its double lost.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "taylor_private.h"
@@ -18,8 +18,12 @@ typedef struct {
     nevh__recurrence *recurrence;
     nevh__series_double *series;
     size_t order;
-    bool timed; /* H reads t */
+    double longest; /* of a series, in steps of the caller's */
 } taylor_plan;
+
+/* What is narrow in H, a series sees from some ten times its width away, and
+   what steps of h would find it is not to pass. */
+static const double most_steps = 8;
 
 /* Of one lane, in memory or scratch. */
 typedef struct {
@@ -74,7 +78,8 @@ static int plan(nevh_work *w) {
     if (!plan)
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     plan->order = order_for(tolerance);
-    plan->timed = !(nevh_system_traits(w->system) & NEVH_AUTONOMOUS);
+    bool timed = !(nevh_system_traits(w->system) & NEVH_AUTONOMOUS);
+    plan->longest = timed ? 1 : most_steps;
     nevh__report report = {0};
     plan->recurrence = nevh__recurrence_new(w->system, w->friction, &report);
     if (!plan->recurrence)
@@ -163,8 +168,7 @@ static int begin(nevh_work *w, const chain *z, double t, double h) {
                               "derivatives there, or the state is out of its "
                               "domain",
                               t);
-    double reach = reach_of(w, z->rows);
-    *z->reach = plan->timed ? fmin(reach, fabs(h)) : reach;
+    *z->reach = fmin(reach_of(w, z->rows), plan->longest * fabs(h));
     *z->begun = 1;
     return NEVH_OK;
 }

@@ -142,6 +142,12 @@ static int use_exact(nevh_reference *r) {
 }
 
 static int use_run(nevh_reference *r) {
+    bool asked = r->integrator == nevh_taylor;
+    int status =
+        asked || !r->integrator ? nevh__reference_series(r) : NEVH_EFAILED;
+    if (!status || asked || status == NEVH_ENOMEM)
+        return status;
+    r->report = (nevh__report){0};
     if (!r->integrator)
         r->integrator =
             nevh_system_friction(r->system, NULL) ? nevh_dop853 : nevh_gauss12;
@@ -244,6 +250,7 @@ void nevh_reference_free(nevh_reference *r) {
     if (!r)
         return;
     nevh__exact_free(r->exact);
+    nevh__reference_series_free(r->series);
     nevh_stepper_free(r->walker);
     nevh_stepper_free(r->branch);
     free(r->orbit.states);
@@ -325,6 +332,10 @@ static int find_state(nevh_reference *r, long double elapsed, double q[],
     int status = check_time(r, (double)elapsed);
     if (status)
         return status;
+    if (r->series) {
+        nevh__reference_series_state(r, elapsed, q, p);
+        return NEVH_OK;
+    }
     if (!r->exact)
         return nevh__reference_walk(r, (double)elapsed, q, p);
     status =

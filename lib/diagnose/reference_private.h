@@ -30,8 +30,9 @@ struct nevh_reference {
     double *low, *high, *range; /* 2n each */
     double error, horizon, exponent, growth;
     nevh_reference_end end;
-    double longest;              /* step of a run; 0: not said */
-    nevh__exact_solution *exact; /* NULL: a run */
+    double longest;                        /* step of a run; 0: not said */
+    nevh__exact_solution *exact;           /* NULL: a run */
+    struct nevh__reference_series *series; /* NULL: a run of another kind */
     const nevh_integrator *integrator;
     size_t *kind; /* n: the first variable of the same kind; NULL: all differ */
     nevh__reference_orbit orbit;
@@ -100,6 +101,13 @@ enum { NEVH__MOST_TRACK = 16 << 20, NEVH__MOST_MEMO = 32 << 20 };
 /* An exact gradient where all terms bring one, else central8; NULL when memory
    is out. */
 nevh_stepper *nevh__reference_stepper(const nevh_reference *);
+/* Makes a run of Taylor series, where it can be had and afforded.
+   returns  NEVH_OK; else a status, and all is as before but the report */
+int nevh__reference_series(nevh_reference *);
+void nevh__reference_series_free(struct nevh__reference_series *); /* NULL */
+/* The state so long after its start. */
+void nevh__reference_series_state(const nevh_reference *, long double elapsed,
+                                  double q[], double p[]);
 /* Makes a run with the steps that it needs, its ranges, error and horizon. */
 int nevh__reference_run(nevh_reference *);
 /* The state of a run, so long after its start. */

@@ -1,6 +1,6 @@
 /* nevh: states to digits that are certain.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "taylor/quad_orbit_private.h"
+#include "taylor/orbit_private.h"
 #include <math.h>
 #include <nevh/certain.h>
 #include <stdlib.h>
@@ -16,7 +16,7 @@ struct nevh_certain {
     size_t n;
     int digits;
     nevh__recurrence *recurrence;
-    nevh__quad_orbit fine, coarse;
+    nevh__orbit_quad fine, coarse;
     double *rates;
     nevh__wide *start;
 };
@@ -32,9 +32,9 @@ static int plan(nevh_certain *c, const nevh_system *system) {
         nevh__recurrence_new(system, damped ? c->rates : NULL, &c->report);
     if (!c->recurrence)
         return c->report.status;
-    bool fine = nevh__quad_orbit_init(&c->coarse, c->recurrence,
+    bool fine = nevh__orbit_init_quad(&c->coarse, c->recurrence,
                                       fmax(tolerance, 10 * finest));
-    fine = nevh__quad_orbit_init(&c->fine, c->recurrence,
+    fine = nevh__orbit_init_quad(&c->fine, c->recurrence,
                                  fmax(tolerance / 30, finest)) &&
            fine;
     return fine ? NEVH_OK
@@ -64,9 +64,9 @@ static int make(nevh_certain *c, const nevh_system *system, double t0,
     }
     int status = plan(c, system);
     if (!status)
-        status = nevh__quad_orbit_start(&c->coarse, t0, c->start, &c->report);
+        status = nevh__orbit_start_quad(&c->coarse, t0, c->start, &c->report);
     if (!status)
-        status = nevh__quad_orbit_start(&c->fine, t0, c->start, &c->report);
+        status = nevh__orbit_start_quad(&c->fine, t0, c->start, &c->report);
     return status;
 }
 
@@ -85,8 +85,8 @@ nevh_certain *nevh_certain_new(const nevh_system *system, double t0,
 void nevh_certain_free(nevh_certain *c) {
     if (!c)
         return;
-    nevh__quad_orbit_clear(&c->fine);
-    nevh__quad_orbit_clear(&c->coarse);
+    nevh__orbit_clear_quad(&c->fine);
+    nevh__orbit_clear_quad(&c->coarse);
     nevh__recurrence_free(c->recurrence);
     free(c->rates);
     free(c->start);
@@ -100,8 +100,8 @@ int nevh_certain_go(nevh_certain *c, double t) {
     if (!isfinite(t))
         return nevh__fail(&c->report, NEVH_EINVAL,
                           "the time %g is not a finite number", t);
-    int status = nevh__quad_orbit_go(&c->coarse, t, &c->report);
-    return status ? status : nevh__quad_orbit_go(&c->fine, t, &c->report);
+    int status = nevh__orbit_go_quad(&c->coarse, t, &c->report);
+    return status ? status : nevh__orbit_go_quad(&c->fine, t, &c->report);
 }
 
 size_t nevh_certain_series(const nevh_certain *c) {

@@ -315,6 +315,8 @@ static void number_values(writer *w) {
     r->weighted = nevh__padded(w->lanes[0]);
     r->lanes = r->weighted + nevh__padded(w->lanes[1]);
     w->fill[1] = r->weighted;
+    r->used[0] = w->lanes[0];
+    r->used[1] = w->lanes[1];
 }
 
 static bool allocate(writer *w) {

@@ -3,6 +3,7 @@
 #include <math.h>
 
 typedef double real;
+typedef double stored;
 #define NAMED(name) name##_double
 #define FUNCTION(f) f
 #define ROWS        1

@@ -42,6 +42,7 @@ typedef struct {
    Lanes whose first operand counts with its order come first. */
 typedef struct {
     size_t n, values, n_batches, lanes, weighted, widest;
+    size_t used[2]; /* lanes, of either kind; others are 0 */
     size_t first_constant, n_constants; /* whose numbers are the first */
     size_t n_numbers;
     nevh__batch *batches;
@@ -68,6 +69,13 @@ void nevh__series_free_double(nevh__series_double *);
 bool nevh__series_expand_double(nevh__series_double *, double t,
                                 const double state[], double rows[]);
 
+/* The same in numbers of other kinds. */
+typedef struct nevh__series_long nevh__series_long;
+nevh__series_long *nevh__series_new_long(const nevh__recurrence *,
+                                         size_t order);
+void nevh__series_free_long(nevh__series_long *);
+bool nevh__series_expand_long(nevh__series_long *, long double t,
+                              const long double state[], long double rows[]);
 #ifdef NEVH_QUADMATH
 typedef struct nevh__series_quad nevh__series_quad;
 nevh__series_quad *nevh__series_new_quad(const nevh__recurrence *,

@@ -9,6 +9,7 @@
 #include <quadmath.h>
 
 typedef nevh__wide real;
+typedef double stored;
 #define NAMED(name) name##_quad
 #define FUNCTION(f) f##q
 #define ROWS        2

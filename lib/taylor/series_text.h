@@ -1,6 +1,7 @@
 /* nevh: Taylor coefficients in one kind of numbers.
 
-   Before this is included are defined: real, the numbers; NAMED(name), the name
+   Before this is included are defined: real, the numbers, and stored, those of
+   rows; NAMED(name), the name
    of a function; FUNCTION(f), a function of theirs as <math.h> has it; ROWS,
    numbers that a lane's operand takes in a row.  After it: how operands are
    stored in rows (store), and the inner sums of all lanes (add_up).
@@ -19,7 +20,7 @@ struct NAMED(nevh__series) {
     real *numbers;
     real *gathered;          /* a few times the widest batch */
     real *inverse;           /* 1/k */
-    double *rows_a, *rows_b; /* order x ROWS x lanes */
+    stored *rows_a, *rows_b; /* order x ROWS x lanes */
     void *memory;
 };
 typedef struct NAMED(nevh__series) series;
@@ -41,9 +42,9 @@ static void lay_out(nevh__arena *arena, void *data) {
         nevh__arena_take(arena, NEVH__MOST_SUMMANDS * r->widest, sizeof(real));
     s->inverse = nevh__arena_take(arena, s->order + 1, sizeof(real));
     s->rows_a =
-        nevh__arena_take(arena, s->order * ROWS * r->lanes, sizeof(double));
+        nevh__arena_take(arena, s->order * ROWS * r->lanes, sizeof(stored));
     s->rows_b =
-        nevh__arena_take(arena, s->order * ROWS * r->lanes, sizeof(double));
+        nevh__arena_take(arena, s->order * ROWS * r->lanes, sizeof(stored));
 }
 
 void NAMED(nevh__series_free)(series *s) {

@@ -27,7 +27,7 @@ for barrier in '20 0.01' '20 0.03' '33.1 0.1' '7.7 0.02'; do
     sed -i '/^t_end = 10$/d; /^dt = 0.1$/d; /^integrators = gauss4$/d' \
         $work/x.nevh
     error '$1 > 0 && $1 < 1e-6'
-    has '^# state error: .* gauss12 at dt = 0.00[0-9]+, own error'
+    has '^# state error: .* taylor in [0-9]+ bits, own error'
 done
 
 # A jump: no reference, and where; a steep slope of the same height that steps
@@ -59,7 +59,7 @@ has '^no state errors after t = 4\.[67]'
 has '^ gauss4 .* unknown'
 scene '-exp(t)*x^2'
 none 0
-has '^no state errors: gauss12 as a reference: the orbit has grown beyond all'
+has 'taylor in [0-9]+ bits, own'
 scene '-x^2/2' 'x = 1' 
 none 0
 has 'own error [0-9]e-1[0-9]'
@@ -98,7 +98,7 @@ has '^ gauss4 .* [0-9.]+e-0[5-9] .* bounded'
 scene 'x^2/2 - 0.1*log(x)' 'x = 0.01, 0'
 sed -i 's/^integr.*/integrators = verlet/' $work/x.nevh
 exits 1 compare $work/x.nevh --gradient central4 --gradient-step 0.02
-has 'a difference by q\[0\] reaches 0\.0[0-9]* from the orbit, where'
+has 'a difference by q\[0\] reaches 0\.0[0-9]* from the orbit'
 exits 0 compare $work/x.nevh --gradient central4 --dt 0.001
 
 # Late on the clock.
