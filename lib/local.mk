@@ -205,7 +205,8 @@ libnevh_core_la_SOURCES = \
 	lib/scene/variant_alike.c \
 	lib/scene/solve.c \
 	lib/scene/sweep.c \
-	lib/scene/crew.c \
+		lib/scene/crew.c \
+	lib/scene/member.c \
 	lib/scene/scene.c
 
 # The kernels' steps as text, for steps that are compiled: strings, line by line.

@@ -14,6 +14,7 @@ dist_scenes_DATA = \
 	scenes/fput-1000.nevh \
 	scenes/fput.nevh \
 	scenes/henon-heiles.nevh \
+	scenes/henon-heiles-chaotic.nevh \
 	scenes/kapitza.nevh \
 	scenes/kepler-0.9.nevh \
 	scenes/kepler.nevh \

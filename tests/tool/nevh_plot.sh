@@ -98,12 +98,19 @@ test "$(points 1)" = "$(grep -c '^strobe,' $work/points.csv)" ||
 # Larger where they are few.
 size() { sed -n 's/.*\$series1 .* pointsize \([0-9.]*\).*/\1/p' $work/out.gp; }
 small=$(size)
-draws section henon-heiles --t-end 100 --plot $svg --keep-plot-script $work/out.gp
+sed '/^\[ensemble\]/,/^$/d' "$srcdir/scenes/henon-heiles.nevh" >$work/single.nevh
+draws section $work/single.nevh --t-end 100 --plot $svg --keep-plot-script $work/out.gp
 test "$(cat $work/out)" = \
     "$svg: verlet, dt = 0.2, $(points 1) points; -o FILE writes the rows as CSV" ||
     fails "prints something else"
 shows 'verlet, dt = 0.2; gradient central4; t = 0 ... 100; H = 0.125 at the start'
 test "$(echo "$(size) > 1.5 * $small" | bc)" = 1 || fails "draws points of $(size), not above $small"
+# Orbits of an ensemble have a colour each.
+draws section henon-heiles --t-end 60 --plot $svg --keep-plot-script $work/out.gp
+shows 'verlet, dt = 0.2; gradient central4; t = 0 ... 60; 16 orbits'
+test "$(grep -c '^\$series' $work/out.gp)" = 16 || fails "has not 16 series"
+test "$(grep '^set linetype' $work/out.gp | sed 's/.*rgb//; s/ linewidth.*//' |
+    sort -u | wc -l)" = 16 || fails "has not 16 colours"
 # One degree of freedom: what crosses is 0 at all points, so time is across.
 draws section pendulum --t-end 100 --plot $svg
 for text in swing 't (s)' 'p_phi (J s)'; do shows "$text"; done

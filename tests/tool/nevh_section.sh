@@ -16,8 +16,12 @@ holds() {
         fails "does not hold: $1"
 }
 
+# One orbit, without the scene's ensemble.
+single=$work/single.nevh
+sed '/^\[ensemble\]/,/^$/d' "$srcdir/scenes/henon-heiles.nevh" >$single
+
 # The points lie on the surface of the energy, and p_x is positive.
-exits 0 section henon-heiles --integrators gauss8 --dt 0.1 --t-end 300
+exits 0 section $single --integrators gauss8 --dt 0.1 --t-end 300
 has '^# integrator: gauss8, dt = 0\.1$'
 has '^# section crossing: 48 points$'
 test "$(grep -v '^#' $work/out | head -n 1)" = section,t,direction,y,p_y ||
@@ -26,15 +30,51 @@ counts 48
 holds '$1 == "crossing" && $3 == 1'
 holds '1/8 - $5^2/2 - $4^2/2 + $4^3/3 > 0'
 rows >$work/gauss
-exits 0 section henon-heiles --integrators blanes-moan6 --dt 0.05 --t-end 300
+exits 0 section $single --integrators blanes-moan6 --dt 0.05 --t-end 300
 rows | paste -d, - $work/gauss | awk -F, 'function abs(x) {
         return x < 0 ? -x : x }
     abs($2 - $7) > 1e-6 || abs($4 - $9) > 1e-6 || abs($5 - $10) > 1e-6 {
         print; wrong = 1 } END { exit wrong || NR != 48 }' ||
     fails "has other points than gauss8"
 
+# The scene's 16 orbits of one energy: no point outside of its boundary, each
+# orbit with points of its own.  Member 10 (y = 0.2667, near the periodic orbit)
+# stays near it, member 4 (y = -0.1333) does not.
+exits 0 section henon-heiles --integrators blanes-moan6 --dt 0.1 --t-end 500
+has '^# members: 16$'
+test "$(grep -v '^#' $work/out | head -n 1)" = section,t,direction,y,p_y,member ||
+    fails "has other columns"
+holds '1/8 - $5^2/2 - $4^2/2 + $4^3/3 > -1e-9'
+rows | cut -d, -f6 | uniq >$work/numbers
+seq 0 15 | cmp -s - $work/numbers || fails "has other members"
+holds '$6 != 10 || abs($4 - 0.3) < 0.05 && abs($5) < 0.05'
+rows | awk -F, '$6 == 4 && ($4 > 0.3 || $5 > 0.3 || $5 < -0.3) { far++ }
+    END { exit far < 10 }' || fails "has no chaos"
+exits 0 section $single --integrators blanes-moan6 --dt 0.1 --t-end 100 \
+    --vary 'y = 0.1, 0.2' --vary 'p_x = solve(H = 1/8, from 0.4)'
+has '^# members: 2$'
+exits 1 section $single --t-end 50 --vary 'y = 0.1, -1' \
+    --vary 'p_x = solve(H = 1/8, from 0.4)'
+says '1 of 2 members have no start; the first, member 1: '
+has '^# members: 2, 1 without a start$'
+exits 2 section $single --vary 'y = -1, -2' \
+    --vary 'p_x = solve(H = 1/8, from 0.4)'
+says 'no member has a start; the first, member 0: p_x = solve'
+# One that escapes to infinity leaves the points of the others.
+exits 1 section $single --t-end 50 --vary 'y = 0.1, 3' \
+    --vary 'p_x = solve(H = 1/8, from 0.4)'
+says 'verlet member 1 failed: '
+has '^crossing,.*,0$'
+exits 2 section pendulum-rotating --vary 'g = 1, 2'
+says 'vary starts alone'
+exits 2 section $single --vary 'y = range(0, 0.1, 100000)'
+says '100000 members are more than a picture shows'
+# At 1/6, where some escape if a scheme makes errors of the energy.
+exits 0 section henon-heiles-chaotic --t-end 300
+holds '1/6 - $5^2/2 - $4^2/2 + $4^3/3 > -1e-6'
+
 # What is used where nobody says so.
-exits 0 section henon-heiles --t-end 20
+exits 0 section $single --t-end 20
 has '^# integrator: verlet, dt = 0\.2: the first integrator of the list'
 
 # An angle is wrapped, the state is not: a pendulum that goes round.

@@ -72,7 +72,7 @@ static const struct {
     {"resume", "FILE", FOR_RUN | FOR_SWEEP, read_resume,
      "go on with FILE, which nevh run or nevh sweep -o FILE left unfinished, "
      "as if never interrupted"},
-    {"vary", "NAME=WHAT", FOR_SWEEP, read_vary,
+    {"vary", "NAME=WHAT", FOR_SWEEP | FOR_SECTION, read_vary,
      "a line of [ensemble]: a list, range(A, B, N), normal(M, S), "
      "uniform(A, B) or solve(F = G, from X); repeated for more names"},
     {"outcomes", "A,B", FOR_SWEEP, read_outcomes,

@@ -1,5 +1,6 @@
 /* nevh section: points of Poincare and stroboscopic sections.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "ensemble/members.h"
 #include "plot/plot.h"
 #include <math.h>
 #include <nevh/section.h>
@@ -15,6 +16,7 @@ typedef struct {
     double low, high; /* of what crosses, LEFT - RIGHT, at steps */
     double *periods;  /* of items that are coordinates; 0: none */
     double *numbers;
+    size_t *members; /* whose point it is */
 } series;
 
 typedef struct {
@@ -22,6 +24,9 @@ typedef struct {
     series *all;
     size_t count;
     const char *integrator;
+    members members;
+    size_t at;      /* the member that is run */
+    size_t failed;  /* members */
     double stopped; /* where the scene's `stop` said; NAN */
     char *ended;    /* how, where that was not at t_end; or NULL */
 } job;
@@ -43,6 +48,7 @@ static double *new_point(series *s) {
             memcpy(more, s->numbers, s->points * width * sizeof *more);
         free(s->numbers);
         s->numbers = more;
+        s->members = tool_enlarge(s->members, s->capacity, sizeof *s->members);
     }
     return s->numbers + width * s->points++;
 }
@@ -51,6 +57,7 @@ static int keep(void *data, const nevh_point *point) {
     job *j = data;
     series *s = &j->all[point->section];
     double *numbers = new_point(s), *items = numbers + 2;
+    s->members[s->points - 1] = j->at;
     numbers[0] = point->t;
     numbers[1] = point->direction;
     if (nevh_scene_section_items(s->scene, s->number, point->t, point->q,
@@ -123,7 +130,9 @@ static void forget(job *j) {
     for (size_t i = 0; i < j->count; i++) {
         free(j->all[i].periods);
         free(j->all[i].numbers);
+        free(j->all[i].members);
     }
+    members_free(&j->members);
     free(j->all);
     free(j->ended);
 }
@@ -145,38 +154,49 @@ static nevh_sections *watch(job *j, const nevh_stepper *s) {
     return x;
 }
 
-/* How a run ended. */
+/* How a run ended, of several the first that did not go on to the end. */
 static int explain(job *j, int status, const nevh_stepper *s,
                    const nevh_sections *x) {
     const char *why = nevh_scene_message(j->plan->scene);
     int looking = nevh_sections_status(x);
-    if (isfinite(j->stopped))
+    bool told = j->ended != NULL;
+    if (isfinite(j->stopped) && !told)
         j->ended = stop_words(j->plan, j->stopped);
     if (!status)
         return TOOL_OK;
+    if (j->failed++)
+        return TOOL_FAILED;
     if (!*why)
         why = looking ? nevh_sections_message(x) : nevh_stepper_message(s);
-    j->ended = text_print("failed: %s", why);
+    free(j->ended);
+    j->ended = j->members.several ? text_print("member %zu failed: %s",
+                                               j->members.number[j->at], why)
+                                  : text_print("failed: %s", why);
     tool_refuse("%s: %s %s", j->plan->name, j->integrator, j->ended);
     return TOOL_FAILED;
 }
 
-static int run(job *j, nevh_stepper *s) {
+static int run_member(job *j, nevh_stepper *s) {
     const plan *p = j->plan;
     nevh_sections *x = watch(j, s);
     nevh_observer observer = {nevh_sections_observe, x, 1};
     int status = nevh_sections_status(x);
-    double *q = tool_allocate(p->n, sizeof *q);
-    double *m = tool_allocate(p->n, sizeof *m);
-    memcpy(q, p->q, p->n * sizeof *q);
-    memcpy(m, p->p, p->n * sizeof *m);
+    double *q = j->members.q + j->at * p->n, *m = j->members.p + j->at * p->n;
+    nevh_stepper_reset(s);
+    j->stopped = NAN;
     if (!status)
         status = plan_run(p, s, p->dt[0], q, m, &observer, 1, &j->stopped);
     status = explain(j, status, s, x);
-    free(q);
-    free(m);
     nevh_sections_free(x);
     return status;
+}
+
+static int run(job *j, nevh_stepper *s) {
+    int worst = members_tell(&j->members, j->plan);
+    for (j->at = 0; j->at < j->members.count; j->at++)
+        if (run_member(j, s))
+            worst = TOOL_FAILED;
+    return worst;
 }
 
 /* The columns that sections show, each once; t is there before. */
@@ -206,6 +226,8 @@ static void fill(table *t, const job *j, const list *items) {
             table_number(t, point[1]);
             for (size_t c = 0; c < items->count; c++)
                 table_number(t, number_of(s, point, items->item[c]));
+            if (j->members.several)
+                table_shown(t, "%zu", j->members.number[s->members[k]]);
         }
     }
 }
@@ -255,6 +277,7 @@ static void note(const job *j, const options *o, list *notes) {
     list_print(notes, "scene: %s", p->name);
     settings_notes(o, notes);
     plan_note_first(p, j->integrator, notes);
+    members_note(&j->members, notes);
     for (size_t i = 0; i < j->count; i++)
         note_points(j, &j->all[i], notes);
     if (j->ended)
@@ -281,7 +304,9 @@ static size_t count_points(const job *j) {
 
 static void add_note(const job *j, plot *to) {
     char *scheme = plot_scheme(j->plan, j->integrator);
-    char *energy = plot_energy_at_start(j->plan);
+    char *energy = j->members.several
+                       ? text_print("%zu orbits", j->members.count)
+                       : plot_energy_at_start(j->plan);
     char *more = text_print("%s%s%s", energy, j->ended ? "; " : "",
                             j->ended ? j->ended : "");
     plot_note_run(to, j->plan, scheme, more);
@@ -296,7 +321,8 @@ static int draw(const job *j, const options *o, int status) {
         return status ? status : refuse_empty(j);
     for (size_t i = 0; i < j->count; i++)
         section_plot(&to, j->plan, j->all[i].decl, j->all[i].points,
-                     j->all[i].numbers);
+                     j->all[i].numbers,
+                     j->members.several ? j->all[i].members : NULL, NULL);
     add_note(j, to);
     int drawn = plot_write(to, o);
     plot_free(to);
@@ -325,6 +351,8 @@ static int print(const job *j, const options *o, int status) {
     list_items(j, &items);
     for (size_t i = 0; i < items.count; i++)
         table_column(result.table, items.item[i]);
+    if (j->members.several)
+        table_column(result.table, "member");
     fill(result.table, j, &items);
     status = output_page(&as, &result, status);
     list_free(&items);
@@ -351,6 +379,8 @@ int section(const options *o) {
     int status = plan_make(&p, o);
     if (!status)
         status = choose(&j, &p, o);
+    if (!status)
+        status = members_read(&j.members, &p);
     if (!status)
         status = plot_check(&as);
     if (!status && !(s = plan_first(&p, &j.integrator)))

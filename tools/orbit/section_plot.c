@@ -63,8 +63,10 @@ static size_t new_series(plot *to, const char *name) {
 }
 
 static void add_panel(plot **to, const plan *p, const nevh_scene_section *decl,
-                      size_t points, const char *across, const char *up) {
-    char *heading = text_print(points ? "%s" : "%s: no points", decl->name);
+                      size_t points, const char *across, const char *up,
+                      const char *own) {
+    char *heading =
+        text_print(points ? "%s" : "%s: no points", own ? own : decl->name);
     char *x = plot_label(p, across, across), *y = plot_label(p, up, up);
     if (!*to) {
         *to = plot_new(p->title, x, y);
@@ -76,11 +78,24 @@ static void add_panel(plot **to, const plan *p, const nevh_scene_section *decl,
     free(y);
 }
 
+/* A series an orbit. */
+static void draw_members(plot *to, const column *x, const column *y,
+                         const size_t members[]) {
+    size_t series = 0;
+    plot_many_colours(to);
+    for (size_t k = 0; k < x->points; k++) {
+        for (size_t i = k ? members[k - 1] + 1 : 0; i <= members[k]; i++)
+                        plot_size(to, series = new_series(to, NULL), 0.6);
+        plot_point(to, series, value(x, k), value(y, k));
+    }
+}
+
 /* The first item and the second; a single one, or one beside another that does
    not change, against the time. */
 void section_plot(plot **to, const plan *p, const nevh_scene_section *decl,
-                  size_t points, const double numbers[]) {
-    bool two_ways = decl->direction == 0 && decl->every == 0;
+                  size_t points, const double numbers[], const size_t members[],
+                  const char *heading) {
+    bool two_ways = decl->direction == 0 && decl->every == 0 && !members;
     size_t width = 2 + decl->items, last = decl->items > 1 ? 1 : 0;
     column t = column_of(p, "t", points, numbers, width, 0);
     column first = column_of(p, decl->item[0], points, numbers, width, 2);
@@ -88,7 +103,11 @@ void section_plot(plot **to, const plan *p, const nevh_scene_section *decl,
     bool level = last == 0 || is_level(&first);
     column x = level ? t : first;
     add_panel(to, p, decl, points, level ? "t" : decl->item[0],
-              decl->item[last]);
+              decl->item[last], heading);
+    if (members) {
+        draw_members(*to, &x, &y, members);
+        return;
+    }
     size_t rising = new_series(*to, two_ways ? "rising" : NULL);
     size_t falling = two_ways ? new_series(*to, "falling") : rising;
     for (size_t k = 0; k < points; k++)

@@ -69,6 +69,10 @@ void plot_stack(plot *p) {
     p->stacked = true;
 }
 
+void plot_many_colours(plot *p) {
+    p->colourful = true;
+}
+
 void plot_columns(plot *p, size_t columns) {
     p->beside = columns;
 }

@@ -46,6 +46,8 @@ void plot_span_y(plot *, double low, double high);
 void plot_limit_y(plot *, double low, double high); /* no more than this */
 /* All panels show the same ranges. */
 void plot_same_ranges(plot *);
+/* Looks differ in colour alone, of which there are as many as looks. */
+void plot_many_colours(plot *);
 /* So many panels side by side, small ones where they are many. */
 void plot_columns(plot *, size_t columns);
 /* Panels are wide, one below the other, over one axis. */
@@ -76,9 +78,13 @@ char *plot_scheme(const plan *, const char *integrator);
 char *plot_energy_at_start(const plan *);
 
 /* section_plot.c: a panel, the first making the plot.
-   numbers  of each point t, direction, and the items of the section */
+      numbers  of each point t, direction, and the items of the section
+   members  of each point, rising: which orbit it is of, a colour each; NULL: all
+            of one
+   heading  NULL: the section's name */
 void section_plot(plot **, const plan *, const nevh_scene_section *,
-                  size_t points, const double numbers[]);
+                  size_t points, const double numbers[], const size_t members[],
+                  const char *heading);
 
 bool plot_wanted(const options *); /* --plot or --keep-plot-script */
 /* That plot_write will work as far as can be told: known ending, files that can

@@ -35,8 +35,9 @@ struct plot {
     series *series;
     size_t panels, count; /* count: of series */
     bool same_ranges, stacked;
-    size_t beside; /* panels side by side; 0: chosen */
-    size_t hidden; /* points that no logarithmic axis shows */
+    bool colourful; /* see plot_many_colours */
+    size_t beside;  /* panels side by side; 0: chosen */
+    size_t hidden;  /* points that no logarithmic axis shows */
 };
 
 /* plot_range.c: what an axis of a panel shows: the points, with some room, or

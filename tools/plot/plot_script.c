@@ -122,17 +122,38 @@ static void print_points(FILE *f, const series *s, size_t number) {
     fputs("EOD\n", f);
 }
 
+/* Neighbours are far apart on the circle of hues, and differ in lightness. */
+static void colour_of(const plot *p, size_t look, char text[16]) {
+    static const double golden = 0.6180339887498949;
+    if (!p->colourful) {
+        snprintf(text, 16, "%s", colours[look % COLOURS]);
+        return;
+    }
+    double light = 0.45 + 0.15 * (double)(look % 3);
+    unsigned part[3];
+    for (int i = 0; i < 3; i++) {
+        double hue = fmod((double)look * golden + i / 3.0, 1);
+        double wave = 0.5 + 0.5 * cos(2 * 3.141592653589793 * hue);
+        part[i] = (unsigned)(255 * fmin(light * (0.25 + 1.25 * wave), 1));
+    }
+    snprintf(text, 16, "#%02X%02X%02X", part[0] & 255, part[1] & 255,
+             part[2] & 255);
+}
+
 static void print_looks(FILE *f, const plot *p) {
     size_t looks = 0;
+    char colour[16];
     for (size_t i = 0; i < p->count; i++)
         if (p->series[i].look >= looks)
             looks = p->series[i].look + 1;
-    for (size_t k = 0; k < looks; k++)
+    for (size_t k = 0; k < looks; k++) {
+        colour_of(p, k, colour);
         fprintf(f,
                 "set linetype %zu linecolor rgb '%s' linewidth 1.5 dashtype %s "
                 "pointtype %d pointsize 0.7\n",
-                k + 1, colours[k % COLOURS], dashes[k % DASHES],
+                k + 1, colour, p->colourful ? "solid" : dashes[k % DASHES],
                 markers[k % MARKERS]);
+    }
 }
 
 static const double bob_size = 2.2;
@@ -188,7 +209,7 @@ static void print_form(FILE *f, const series *s, bool text) {
         break;
     case PLOT_DOTS:
         fprintf(f, " with points linetype %zu pointtype 7 pointsize %.2f",
-                number, dot_size(s->count));
+                number, dot_size(s->count) * s->size);
         break;
     case PLOT_RODS:
         fputs(" with lines linecolor rgb '#777777' linewidth 4 dashtype solid",

@@ -1,0 +1,67 @@
+/* nevh: the starts of an ensemble, for pictures.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "members.h"
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_MEMBERS = 10000 };
+
+static int read_all(members *m, const plan *p, uint64_t count) {
+    for (uint64_t i = 0; i < count; i++) {
+        int status = nevh_scene_member_start(
+            p->scene, i, m->q + m->count * m->n, m->p + m->count * m->n);
+        if (!status)
+            m->number[m->count++] = (size_t)i;
+        else if (status == NEVH_EINVAL || status == NEVH_ENOMEM)
+            return tool_refuse("%s: %s", p->name, nevh_scene_message(p->scene));
+        else if (!m->startless++)
+            m->why = text_print("member %" PRIu64 ": %s", i,
+                                nevh_scene_message(p->scene));
+    }
+    return m->count ? TOOL_OK
+                    : tool_refuse("%s: no member has a start; the first, %s",
+                                  p->name, m->why);
+}
+
+int members_read(members *m, const plan *p) {
+    uint64_t count = nevh_scene_members(p->scene);
+    *m = (members){.n = p->n, .several = count > 0};
+    if (count > MOST_MEMBERS)
+        return tool_refuse("%s: %" PRIu64 " members are more than a picture "
+                           "shows: vary fewer, at most %d",
+                           p->name, count, MOST_MEMBERS);
+    size_t room = count ? (size_t)count : 1;
+    m->number = tool_allocate(room, sizeof *m->number);
+    m->q = tool_allocate(room * p->n, sizeof *m->q);
+    m->p = tool_allocate(room * p->n, sizeof *m->p);
+    if (count)
+        return read_all(m, p, count);
+    memcpy(m->q, p->q, p->n * sizeof *m->q);
+    memcpy(m->p, p->p, p->n * sizeof *m->p);
+    m->count = 1;
+    return TOOL_OK;
+}
+
+void members_free(members *m) {
+    free(m->number);
+    free(m->q);
+    free(m->p);
+    free(m->why);
+}
+
+int members_tell(const members *m, const plan *p) {
+    if (!m->startless)
+        return TOOL_OK;
+    tool_refuse("%s: %zu of %zu members have no start; the first, %s", p->name,
+                m->startless, m->startless + m->count, m->why);
+    return TOOL_FAILED;
+}
+
+void members_note(const members *m, list *notes) {
+    if (m->several)
+        list_print(notes,
+                   m->startless ? "members: %zu, %zu without a start"
+                                : "members: %zu",
+                   m->count + m->startless, m->startless);
+}

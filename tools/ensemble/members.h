@@ -1,0 +1,23 @@
+/* nevh: the starts of an ensemble, for pictures.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_MEMBERS_H
+#define NEVH_MEMBERS_H
+
+#include "experiment/plan.h"
+
+/* Those that have a start. */
+typedef struct {
+    size_t n, count, startless;
+    bool several;   /* there is an ensemble; else it is the plan's start */
+    size_t *number; /* count: which member it is */
+    double *q, *p;  /* count x n, member by member */
+    char *why;      /* the first has none; or NULL */
+} members;
+/* returns  TOOL_OK, or TOOL_USAGE with the message printed */
+int members_read(members *, const plan *);
+void members_free(members *);
+/* Those without a start are told of.  TOOL_FAILED where there are some. */
+int members_tell(const members *, const plan *);
+void members_note(const members *, list *notes);
+
+#endif
