@@ -77,6 +77,8 @@ tools_nevh_SOURCES = \
 	tools/report/report.c \
 	tools/report/report_html.c \
 	tools/report/page_html.c \
+		tools/ensemble/map.h \
+	tools/ensemble/map.c \
 	tools/ensemble/members.h \
 	tools/ensemble/members.c \
 	tools/inspect/check.c \

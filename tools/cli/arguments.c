@@ -349,6 +349,11 @@ int read_observable(options *o, const char *argument) {
     return TOOL_OK;
 }
 
+int read_picture(options *o, const char *argument) {
+    o->picture = argument;
+    return TOOL_OK;
+}
+
 int read_shape(options *o, const char *argument) {
     o->shape = argument;
     return TOOL_OK;

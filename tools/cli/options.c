@@ -63,6 +63,9 @@ static const struct {
      "N rows at equal times, the first and the last included"},
     {"at", "T1,T2", FOR_RUN | FOR_FLOW | FOR_REFERENCE, read_at,
      "rows at these times alone"},
+    {"picture", "FILE", FOR_SWEEP, read_picture,
+     "draw the outcome over what is varied, one number or two: FILE.svg, .png "
+     "or .pdf"},
     {"shape", "SHAPE", FOR_FLOW, read_shape,
      "disc(x = 1, p_x = 0, RADIUS), box(x = 1, p_x = 0, WIDTH, HEIGHT), cat(x "
      "= 1, p_x = 0, SIZE), or loop(x = cos(t), p_x = sin(t)) of formulas of t "
@@ -114,7 +117,7 @@ static const struct {
      "what --plot-kind time or phase draws: a panel each, names\n"
      "                            joined by : in one; t, coordinates, p_NAME,\n"
      "                            observables, energy, energy_error"},
-    {"keep-plot-script", "FILE", OF_PLOTS, read_plot_script,
+    {"keep-plot-script", "FILE", OF_PLOTS | FOR_SWEEP, read_plot_script,
      "write what gnuplot is told, data included"},
     {"header", NULL, FOR_EXPORT, read_header,
      "functions for another program, instead of a program"},

@@ -168,6 +168,7 @@ typedef struct {
     const char *file, *plot, *plot_script, *transform, *resume, *from,
         *observable;
     const char *shape;   /* of flow; NULL: chosen */
+    const char *picture; /* of sweep; NULL: none */
     const char *columns; /* NULL: not given */
     bool formatted;      /* --format was given */
     bool as_html;        /* tables are parts of a report */

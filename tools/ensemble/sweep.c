@@ -3,6 +3,7 @@
 #include "config.h"
 #include "experiment/plan.h"
 #include "ranks.h"
+#include "map.h"
 #include "store.h"
 #include <ctype.h>
 #include <dirent.h>
@@ -20,6 +21,7 @@ typedef struct {
     plan plan;
     const char *integrator;
     nevh_sweep *sweep;
+    map *map; /* NULL: no picture */
     list notes, columns;
     output out;
     store store; /* of an array */
@@ -179,6 +181,13 @@ static void count(job *j, const nevh_sweep_result *r) {
     show_progress(j);
 }
 
+static int take_row(void *data, const nevh_sweep_result *r) {
+    job *j = data;
+    count(j, r);
+    map_take(j->map, r->member, r->status, r->values);
+    return 0;
+}
+
 static int print_row(void *data, const nevh_sweep_result *r) {
     job *j = data;
     FILE *f = j->out.stream;
@@ -192,7 +201,7 @@ static int print_row(void *data, const nevh_sweep_result *r) {
         else
             fprintf(f, ",%.17g", r->values[k]);
     fputc('\n', f);
-    count(j, r);
+    take_row(j, r);
     return ferror(f);
 }
 
@@ -211,7 +220,26 @@ static int tell_failures(const job *j) {
     return j->failed || j->startless ? TOOL_FAILED : TOOL_OK;
 }
 
+/* A picture alone. */
+static int draw(job *j) {
+    j->begun = j->shown = seconds();
+    int status = nevh_sweep_run(j->sweep, 0, nevh_sweep_members(j->sweep), NULL,
+                                take_row, j);
+    if (j->shown > j->begun)
+        fputs("\r\033[K", stderr);
+    if (status && status != NEVH_STOPPED)
+        return tool_refuse("%s", nevh_sweep_message(j->sweep));
+    if (map_draw(j->map, j->integrator))
+        return TOOL_USAGE;
+    if (!j->options->quiet)
+        printf("%s: %" PRIu64 " members; -o FILE writes them\n",
+               j->options->picture, j->count);
+    return tell_failures(j);
+}
+
 static int run(job *j) {
+    if (j->map && !j->options->file)
+        return draw(j);
     if (output_open(&j->out, j->options->file))
         return TOOL_USAGE;
     print_head(j);
@@ -223,7 +251,9 @@ static int run(job *j) {
     if (status && status != NEVH_STOPPED)
         return output_close(&j->out,
                             tool_refuse("%s", nevh_sweep_message(j->sweep)));
-    return output_close(&j->out, tell_failures(j));
+    status = output_close(&j->out, tell_failures(j));
+    return status != TOOL_USAGE && map_draw(j->map, j->integrator) ? TOOL_USAGE
+                                                                   : status;
 }
 
 /* An array of records. */
@@ -395,6 +425,21 @@ static int join(job *j) {
     return status;
 }
 
+/* As far as members were run. */
+static int draw_array(job *j, int status) {
+    const store *s = &j->store;
+    double *values = tool_allocate(j->columns.count, sizeof *values);
+    for (uint64_t i = 0; i < s->count; i++) {
+        memcpy(values, s->map + s->header + i * s->record + 8,
+               j->columns.count * sizeof *values);
+        if (store_status(s, s->first + i) != NEVH_MEMBER_MISSING)
+            map_take(j->map, s->first + i, store_status(s, s->first + i),
+                     values);
+    }
+    free(values);
+    return map_draw(j->map, j->integrator) ? TOOL_USAGE : status;
+}
+
 static int fill_array(job *j) {
     const options *o = j->options;
     char *settings = describe(j), *story = tell_story(j), *name = NULL;
@@ -418,6 +463,8 @@ static int fill_array(job *j) {
         if (!status)
             status = run_array(j);
     }
+    if (j->map && !j->ranks.rank && status != TOOL_USAGE)
+        status = draw_array(j, status);
     store_close(&j->store);
     free(name);
     free(settings);
@@ -431,6 +478,8 @@ static int check_options(const options *o) {
         return tool_refuse(
             "nevh sweep writes CSV, or with -o FILE.npy an array "
             "of NumPy");
+    if (o->plot_script && !o->picture)
+        return tool_refuse("--keep-plot-script is of --picture: give both");
     if (o->resume && o->file)
         return tool_refuse("--resume names the file: leave -o out");
     if (o->resume && o->tasks)
@@ -461,10 +510,13 @@ int sweep(const options *o) {
             status = make_sweep(&j);
         status = ranks_agree(&j.ranks, status);
     }
+    if (!status)
+        status = map_new(&j.map, o, &j.plan, j.sweep);
     if (!status) {
         note(&j);
         status = is_array(o) ? fill_array(&j) : run(&j);
     }
+    map_free(j.map);
     nevh_sweep_free(j.sweep);
     list_free(&j.notes);
     list_free(&j.columns);

@@ -85,7 +85,7 @@ static void draw_members(plot *to, const column *x, const column *y,
     plot_many_colours(to);
     for (size_t k = 0; k < x->points; k++) {
         for (size_t i = k ? members[k - 1] + 1 : 0; i <= members[k]; i++)
-                        plot_size(to, series = new_series(to, NULL), 0.6);
+            plot_size(to, series = new_series(to, NULL), 0.6);
         plot_point(to, series, value(x, k), value(y, k));
     }
 }

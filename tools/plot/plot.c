@@ -69,6 +69,35 @@ void plot_stack(plot *p) {
     p->stacked = true;
 }
 
+static double *copy_of(const double values[], size_t count) {
+    double *to = tool_allocate(count, sizeof *to);
+    return memcpy(to, values, count * sizeof *to);
+}
+
+void plot_map(plot *p, size_t columns, const double x[], size_t rows,
+              const double y[], const double z[], const char *label) {
+    static const double decades = 1e3;
+    range r = {INFINITY, -INFINITY};
+    p->map = (field_map){columns,
+                         rows,
+                         copy_of(x, columns),
+                         copy_of(y, rows),
+                         copy_of(z, columns * rows),
+                         copy(label),
+                         false,
+                         {0, 0}};
+    for (size_t i = 0; i < columns * rows; i++)
+        if (isfinite(z[i])) {
+            r.low = fmin(r.low, z[i]);
+            r.high = fmax(r.high, z[i]);
+        }
+    p->map.log = r.low > 0 && r.high > decades * r.low;
+    if (!(r.low < r.high))
+        r = (range){r.low - fmax(fabs(r.low), 1) / 2,
+                    r.high + fmax(fabs(r.high), 1) / 2};
+    p->map.shown = r;
+}
+
 void plot_many_colours(plot *p) {
     p->colourful = true;
 }
@@ -173,6 +202,10 @@ void plot_free(plot *p) {
     }
     if (!p)
         return;
+    free(p->map.x);
+    free(p->map.y);
+    free(p->map.z);
+    free(p->map.label);
     free(p->title);
     free(p->note);
     free(p->panel);

@@ -46,6 +46,11 @@ void plot_span_y(plot *, double low, double high);
 void plot_limit_y(plot *, double low, double high); /* no more than this */
 /* All panels show the same ranges. */
 void plot_same_ranges(plot *);
+/* The first panel is a map: values z[row*columns + column] at x[column], y[row],
+   equal steps apart, in colours that are lighter the larger they are, so that
+   they read in grey; hatched where they are NAN.  All are copied. */
+void plot_map(plot *, size_t columns, const double x[], size_t rows,
+              const double y[], const double z[], const char *label);
 /* Looks differ in colour alone, of which there are as many as looks. */
 void plot_many_colours(plot *);
 /* So many panels side by side, small ones where they are many. */

@@ -183,6 +183,8 @@ layout plot_lay_out(const plot *p, const target *t) {
     double entry = text ? 1 : 26; /* of the legend */
     double legend = entry * (double)(lines + 1);
     l.legend = lines ? l.letter * (double)(longest + 8) : 0;
+    if (p->map.columns)
+        l.legend = 17 * l.letter; /* the scale of colours */
     l.left = (text ? 9 : 12) * l.letter;
     l.right = 3 * l.letter;
     l.top = (text || has_headings(p) ? 1.8 : 0.7) * l.line;

@@ -29,12 +29,22 @@ typedef struct {
     range limit_y;
 } panel;
 
+/* See plot_map. */
+typedef struct {
+    size_t columns, rows; /* 0: there is none */
+    double *x, *y, *z;
+    char *label;
+    bool log; /* values span decades */
+    range shown;
+} field_map;
+
 struct plot {
     char *title, *note;
     panel *panel;
     series *series;
     size_t panels, count; /* count: of series */
     bool same_ranges, stacked;
+    field_map map;
     bool colourful; /* see plot_many_colours */
     size_t beside;  /* panels side by side; 0: chosen */
     size_t hidden;  /* points that no logarithmic axis shows */

@@ -279,9 +279,41 @@ static void print_guides(FILE *f, const plot *p, size_t number) {
     }
 }
 
+/* Cividis [J. R. Nunez, C. R. Anderton, R. S. Renslow, PLoS ONE 13 (2018)
+   e0199239]: its lightness grows evenly, also for those who see few colours. */
+static void print_map(FILE *f, const field_map *m, const layout *l) {
+    fputs("set palette defined (0 '#00204D', 1 '#31446B', 2 '#666970', 3 "
+          "'#958F78', 4 '#CBBA69', 5 '#FFEA46')\n"
+          "set object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor "
+          "rgb '#999999' fillstyle pattern 4 noborder\n",
+          f);
+    fprintf(f, "set cbrange [%.12g:%.12g]\n%s", m->shown.low, m->shown.high,
+            m->log ? "set logscale cb\nset format cb '10^{%T}'\n" : "");
+    quote_line(f, "set cblabel ", m->label, l->panel_height / l->letter,
+               " offset 0.5,0");
+    double left = (l->left + l->panel_width + 2 * l->letter) / l->width;
+    double top = 1 - (l->title + l->top) / l->height;
+    fprintf(f, "set colorbox user origin %.6f,%.6f size %.6f,%.6f\n", left,
+            top - l->panel_height / l->height, 2 * l->letter / l->width,
+            l->panel_height / l->height);
+    fputs("$map << EOD\n", f);
+    for (size_t i = 0; i < m->columns * m->rows; i++) {
+        fprintf(f, "%.15g %.15g ", m->x[i % m->columns], m->y[i / m->columns]);
+        if (isfinite(m->z[i]))
+            fprintf(f, "%.9g\n", m->z[i]);
+        else
+            fputs("NaN\n", f);
+    }
+    fputs("EOD\n", f);
+}
+
 static void print_plots(FILE *f, const plot *p, size_t number, bool legend,
                         bool text) {
     size_t printed = 0;
+    if (number == 0 && p->map.columns) {
+        separate(f, &printed);
+        fputs("$map using 1:2:3 with image notitle", f);
+    }
     for (size_t i = 0; i < p->count; i++)
         print_series(f, p, i, p->series[i].panel == number,
                      legend && plot_in_legend(p, i), text, &printed);
@@ -443,6 +475,8 @@ void plot_script(const plot *p, const target *t, FILE *f) {
     for (size_t i = 0; i < p->count; i++)
         if (p->series[i].count)
             print_points(f, &p->series[i], i + 1);
+    if (p->map.columns)
+        print_map(f, &p->map, &l);
     if (several)
         fputs("set multiplot\n", f);
     for (size_t i = 0; i < p->panels; i++) {

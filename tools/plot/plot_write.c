@@ -175,7 +175,7 @@ static bool is_empty(const plot *p) {
     for (size_t i = 0; i < p->count; i++)
         if (p->series[i].count)
             return false;
-    return true;
+    return p->map.columns == 0;
 }
 
 int plot_write(plot *p, const options *o) {

@@ -1,0 +1,262 @@
+/* nevh sweep --picture: an outcome over what is varied.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "map.h"
+#include "plot/plot.h"
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_MEMBERS = 1 << 24 };
+
+struct map {
+    options options; /* with --plot as --picture says */
+    const plan *plan;
+    const nevh_sweep *sweep;
+    size_t members, varied, missing;
+    double *values; /* members x (varied + 1): the last is the outcome */
+};
+
+/* The values that a varied number takes, sorted, each once. */
+typedef struct {
+    size_t column, count;
+    double *value;
+} direction;
+
+static int check_options(const options *o, const nevh_sweep *s) {
+    size_t varied = nevh_sweep_varied(s);
+    if (nevh_sweep_columns(s) != varied + 1)
+        return tool_refuse("--picture draws one outcome, and here are %zu: say "
+                           "which, as --outcomes 'first(x > 1)'",
+                           nevh_sweep_columns(s) - varied);
+    if (nevh_sweep_is_verdict(s, varied))
+        return tool_refuse("--picture draws numbers, and a verdict is none");
+    if (nevh_sweep_members(s) > MOST_MEMBERS)
+        return tool_refuse("--picture draws %d members at most", MOST_MEMBERS);
+    if (o->task || o->tasks)
+        return tool_refuse("--picture draws all members: give it to --join");
+    if (strcmp(o->picture, "-") == 0)
+        return tool_refuse("--picture takes FILE.svg, FILE.png or FILE.pdf");
+    return TOOL_OK;
+}
+
+int map_new(map **made, const options *o, const plan *p, const nevh_sweep *s) {
+    *made = NULL;
+    if (!o->picture)
+        return TOOL_OK;
+    options as = *o;
+    as.plot = o->picture;
+    if (check_options(o, s) || plot_check(&as))
+        return TOOL_USAGE;
+    map *m = *made = tool_allocate(1, sizeof *m);
+    m->options = as;
+    m->plan = p;
+    m->sweep = s;
+    m->members = (size_t)nevh_sweep_members(s);
+    m->varied = nevh_sweep_varied(s);
+    m->values = tool_allocate(m->members * (m->varied + 1), sizeof *m->values);
+    for (size_t i = 0; i < m->members * (m->varied + 1); i++)
+        m->values[i] = NAN;
+    return TOOL_OK;
+}
+
+void map_free(map *m) {
+    if (m)
+        free(m->values);
+    free(m);
+}
+
+void map_take(map *m, uint64_t member, nevh_member_status status,
+              const double values[]) {
+    if (!m || member >= m->members)
+        return;
+    double *to = m->values + member * (m->varied + 1);
+    memcpy(to, values, (m->varied + 1) * sizeof *to);
+    if (status != NEVH_MEMBER_DONE)
+        to[m->varied] = NAN;
+}
+
+static int by_size(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static direction direction_of(const map *m, size_t column) {
+    direction d = {column, 0, tool_allocate(m->members, sizeof(double))};
+    size_t count = 0;
+    for (size_t i = 0; i < m->members; i++) {
+        double x = m->values[i * (m->varied + 1) + column];
+        if (isfinite(x))
+            d.value[count++] = x;
+    }
+    qsort(d.value, count, sizeof *d.value, by_size);
+    for (size_t i = 0; i < count; i++)
+        if (i == 0 || d.value[i] > d.value[d.count - 1])
+            d.value[d.count++] = d.value[i];
+    return d;
+}
+
+static size_t place_of(const direction *d, double x) {
+    const double *found = bsearch(&x, d->value, d->count, sizeof x, by_size);
+    return found ? (size_t)(found - d->value) : d->count;
+}
+
+/* Where each value stands in the middle of a cell of equal size. */
+static bool is_regular(const direction *d) {
+    static const double rounding = 1e-6;
+    double length =
+        (d->value[d->count - 1] - d->value[0]) / (double)(d->count - 1);
+    for (size_t i = 0; i < d->count; i++)
+        if (fabs(d->value[i] - d->value[0] - length * (double)i) >
+            rounding * length * (double)d->count)
+            return false;
+    return true;
+}
+
+/* Half a cell more at either end. */
+static void span(const direction *d, double *low, double *high) {
+    double half =
+        (d->value[d->count - 1] - d->value[0]) / (double)(d->count - 1) / 2;
+    *low = d->value[0] - half;
+    *high = d->value[d->count - 1] + half;
+}
+
+static char *label_of(const map *m, size_t column) {
+    const char *name = nevh_sweep_column(m->sweep, column);
+    bool time = strncmp(name, "first(", 6) == 0 || strcmp(name, "t") == 0 ||
+                strncmp(name, "period", 6) == 0;
+    const char *inner = strchr(name, '(');
+    char *of = time ? text_print("t")
+               : inner && strncmp(name, "first", 5) != 0
+                   ? text_print("%.*s", (int)strcspn(inner + 1, ")"), inner + 1)
+                   : text_print("%s", name);
+    char *label = plot_label(m->plan, name, of);
+    free(of);
+    return label;
+}
+
+/* Two directions whose values are combined, each pair once. */
+static bool find_directions(const map *m, direction found[2], size_t *count) {
+    *count = 0;
+    direction *all = tool_allocate(m->varied, sizeof *all);
+    for (size_t k = 0; k < m->varied; k++)
+        all[k] = direction_of(m, k);
+    for (size_t a = 0; a < m->varied && !*count; a++)
+        for (size_t b = a + 1; b < m->varied && !*count; b++)
+            if (all[a].count > 1 && all[b].count > 1 &&
+                all[a].count * all[b].count == m->members) {
+                found[0] = all[a];
+                found[1] = all[b];
+                *count = 2;
+            }
+    for (size_t a = 0; a < m->varied && !*count; a++)
+        if (all[a].count == m->members && m->members > 1) {
+            found[0] = all[a];
+            *count = 1;
+        }
+    for (size_t k = 0; k < m->varied; k++)
+        if (!*count ||
+            (k != found[0].column && (*count == 1 || k != found[1].column)))
+            free(all[k].value);
+    free(all);
+    return *count > 0;
+}
+
+static plot *draw_line(map *m, const direction *d) {
+    char *x = label_of(m, d->column), *y = label_of(m, m->varied);
+    plot *to = plot_new(m->plan->title, x, y);
+    size_t series = plot_series(to, NULL),
+           *order = tool_allocate(m->members, sizeof *order);
+    plot_style(to, series, m->members <= 100 ? PLOT_BOTH : PLOT_TRAIL);
+    for (size_t i = 0; i < m->members; i++)
+        order[place_of(d, m->values[i * (m->varied + 1) + d->column])] = i;
+    for (size_t k = 0; k < d->count; k++) {
+        double value = m->values[order[k] * (m->varied + 1) + m->varied];
+        m->missing += isnan(value);
+        plot_point(to, series, d->value[k], value);
+    }
+    free(order);
+    free(x);
+    free(y);
+    return to;
+}
+
+static plot *draw_map(map *m, const direction d[2]) {
+    char *x = label_of(m, d[0].column), *y = label_of(m, d[1].column);
+    char *z = label_of(m, m->varied);
+    plot *to = plot_new(m->plan->title, x, y);
+    double *values = tool_allocate(m->members, sizeof *values), low, high;
+    for (size_t i = 0; i < m->members; i++)
+        values[i] = NAN;
+    for (size_t i = 0; i < m->members; i++) {
+        const double *from = m->values + i * (m->varied + 1);
+        size_t column = place_of(&d[0], from[d[0].column]);
+        size_t row = place_of(&d[1], from[d[1].column]);
+        if (column < d[0].count && row < d[1].count)
+            values[row * d[0].count + column] = from[m->varied];
+    }
+    for (size_t i = 0; i < m->members; i++)
+        m->missing += isnan(values[i]);
+    plot_map(to, d[0].count, d[0].value, d[1].count, d[1].value, values, z);
+    span(&d[0], &low, &high);
+    plot_span_x(to, low, high);
+    span(&d[1], &low, &high);
+    plot_span_y(to, low, high);
+    free(values);
+    free(x);
+    free(y);
+    free(z);
+    return to;
+}
+
+static int refuse_directions(const map *m) {
+    char *names = text_print("%s", "");
+    for (size_t k = 0; k < m->varied; k++) {
+        char *more = text_print("%s%s%s", names, k ? ", " : "",
+                                nevh_sweep_column(m->sweep, k));
+        free(names);
+        names = more;
+    }
+    int status = tool_refuse(
+        "--picture draws an outcome over one direction, or two whose values "
+        "are combined, as range(A, B, N) gives them: not over %s",
+        names);
+    free(names);
+    return status;
+}
+
+int map_draw(map *m, const char *integrator) {
+    direction d[2];
+    size_t count;
+    if (!m)
+        return TOOL_OK;
+    if (!find_directions(m, d, &count))
+        return refuse_directions(m);
+    int status = TOOL_OK;
+    if (count == 2 && !(is_regular(&d[0]) && is_regular(&d[1])))
+        status = tool_refuse(
+            "--picture draws a map of equal steps: %s takes "
+            "others",
+            nevh_sweep_column(m->sweep, d[is_regular(&d[0])].column));
+    plot *to = status       ? NULL
+               : count == 2 ? draw_map(m, d)
+                            : draw_line(m, &d[0]);
+    if (to) {
+        char *scheme = plot_scheme(m->plan, integrator);
+        char *more =
+            m->missing
+                ? text_print("%zu orbits, %zu without a value%s", m->members,
+                             m->missing, count == 2 ? " (hatched)" : "")
+                : text_print("%zu orbits", m->members);
+        plot_note_run(to, m->plan, scheme, more);
+        free(scheme);
+        free(more);
+        status = m->missing == m->members
+                     ? tool_refuse("nothing to draw: no member has a value")
+                     : plot_write(to, &m->options);
+    }
+    plot_free(to);
+    for (size_t i = 0; i < count; i++)
+        free(d[i].value);
+    return status;
+}
