@@ -168,6 +168,7 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_sweep.sh \
 	tests/tool/nevh_flow.sh \
 	tests/tool/nevh_report.sh \
+	tests/tool/nevh_portrait.sh \
 	tests/tool/nevh_map.sh \
 	tests/tool/nevh_sweep_file.sh \
 	tests/tool/nevh_sweep_mpi.sh \

@@ -116,6 +116,9 @@ tools_nevh_SOURCES = \
 	tools/orbit/time_plot.c \
 	tools/orbit/run_plot.c \
 	tools/orbit/section_plot.c \
+		tools/orbit/portrait.h \
+	tools/orbit/portrait.c \
+	tools/orbit/portrait_levels.c \
 	tools/orbit/flow.h \
 	tools/orbit/flow_shape.h \
 	tools/orbit/flow_shape.c \

@@ -33,6 +33,9 @@ static const struct {
     {sweep, FOR_SWEEP, "SCENE",
      "many orbits: a row for each member of the ensemble, with outcomes, as "
      "CSV or an array of NumPy (-o FILE.npy)"},
+    {portrait, FOR_PORTRAIT, "SCENE",
+     "draws the orbits of the ensemble by each integrator, over level curves of "
+     "H or in a plane of section"},
     {flow, FOR_FLOW, "SCENE",
      "a disc, a rectangle or Arnold's cat of starts carried along by each "
      "integrator: its area by time"},

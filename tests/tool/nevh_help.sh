@@ -8,6 +8,7 @@ narrow() {
         fails "is wider than 80 columns"
 }
 commands="compare run cost recommend gradients check effects section sweep flow reference export report hard new list"
+commands="compare run cost recommend gradients check effects section sweep portrait flow reference hard new list"
 
 exits 0 --help
 narrow

@@ -122,6 +122,6 @@ refuses 'needs H = T\(p\) \+ V\(q\)' double-pendulum --vary 'phi1 = 1, 2' \
     --integrators verlet
 refuses 'cannot be written' pendulum-periods -o $work/no/such/folder.csv
 exits 2 run pendulum --vary 'phi = 1'
-says '--vary is no option of nevh run; it is for sweep'
+says '--vary is no option of nevh run; it is for .*sweep'
 
 exit $status

@@ -13,8 +13,13 @@ enum {
                 FOR_REPORT | OF_COST,
     OF_NATIVE = FOR_COMPARE | FOR_RUN | FOR_COST | FOR_RECOMMEND,
     OF_TABLES = (OF_SCENES & ~(FOR_EXPORT | FOR_REPORT)) | FOR_LIST | FOR_HARD,
+                FOR_SECTION | FOR_SWEEP | FOR_FLOW | FOR_PORTRAIT |
+                FOR_REFERENCE | OF_COST,
+    OF_NATIVE = FOR_COMPARE | FOR_RUN | FOR_COST | FOR_RECOMMEND,
+    OF_TABLES =
+        (OF_SCENES & ~(FOR_EXPORT | FOR_PORTRAIT)) | FOR_LIST | FOR_HARD,
     OF_PLOTS = FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_COST | FOR_GRADIENTS |
-               FOR_FLOW
+               FOR_FLOW | FOR_PORTRAIT
 };
 
 /* The commands that each option is for, as an or. */
@@ -75,7 +80,7 @@ static const struct {
     {"resume", "FILE", FOR_RUN | FOR_SWEEP, read_resume,
      "go on with FILE, which nevh run or nevh sweep -o FILE left unfinished, "
      "as if never interrupted"},
-    {"vary", "NAME=WHAT", FOR_SWEEP | FOR_SECTION, read_vary,
+    {"vary", "NAME=WHAT", FOR_SWEEP | FOR_SECTION | FOR_PORTRAIT, read_vary,
      "a line of [ensemble]: a list, range(A, B, N), normal(M, S), "
      "uniform(A, B) or solve(F = G, from X); repeated for more names"},
     {"outcomes", "A,B", FOR_SWEEP, read_outcomes,
@@ -121,7 +126,8 @@ static const struct {
      "write what gnuplot is told, data included"},
     {"header", NULL, FOR_EXPORT, read_header,
      "functions for another program, instead of a program"},
-    {"section", "A,B", FOR_SECTION, read_section, "these alone, by name"},
+    {"section", "A,B", FOR_SECTION | FOR_PORTRAIT, read_section,
+     "these alone, by name"},
     {"from", "SCENE", FOR_NEW, read_from, "the scene to begin with"},
     {"allow-code", NULL, OF_SCENES | FOR_NEW, read_allow_code,
      "compile and run C code that the scene names"},
@@ -134,7 +140,7 @@ static const struct {
      "csv for run, section and sweep, table for others, if not given"},
     {"output", "FILE", OF_TABLES | FOR_EXPORT | FOR_REPORT, read_file,
      "write to FILE, when all of it is there; nevh run: as it goes"},
-    {"quiet", NULL, OF_TABLES | FOR_NEW, read_quiet,
+    {"quiet", NULL, OF_TABLES | FOR_NEW | FOR_PORTRAIT, read_quiet,
      "the table alone: no # lines, no words, no progress"},
     {"help", NULL, ~0u, read_help, "this text"},
     {"version", NULL, ~0u, read_version, "version and licence"},

@@ -7,6 +7,7 @@
        section     section.c
        sweep       sweep.c
        flow        flow.c, flow_shape.c
+       portrait    portrait.c, portrait_levels.c
        reference   reference.c
        cost        cost.c       studies of study.h: rows at many steps
        recommend   recommend.c  the same
@@ -135,6 +136,8 @@ enum {
     FOR_REFERENCE = 16384,
     FOR_REPORT = 1 << 20,
     FOR_LAST = FOR_REPORT
+    FOR_PORTRAIT = 32768,
+    FOR_LAST = FOR_PORTRAIT
 };
 
 const char *command_name(unsigned bit);
@@ -244,5 +247,7 @@ command compare, list_command, check, effects, run_scene, export_scene, section,
     new_scene;
 command cost, recommend, gradients, hard, sweep, flow, reference_command,
     report;
+command cost, recommend, gradients, hard, sweep, flow, portrait,
+    reference_command;
 
 #endif

@@ -1,7 +1,7 @@
 /* nevh section: points of Poincare and stroboscopic sections.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "ensemble/members.h"
-#include "plot/plot.h"
+#include "portrait.h"
 #include <math.h>
 #include <nevh/section.h>
 #include <stdlib.h>
@@ -369,6 +369,24 @@ static int show(const job *j, const options *o, int status) {
     if (plot_wanted(o) && !first && status != TOOL_USAGE)
         drawn = draw(j, o, status);
     return drawn > status ? drawn : status;
+}
+
+int section_panel(plot **to, const plan *p, const options *o,
+                  const char *integrator) {
+    job j = {.stopped = NAN, .integrator = integrator};
+    nevh_stepper *s = plan_stepper(p, integrator);
+    bool fits = !nevh_stepper_status(s);
+    int status = fits ? choose(&j, p, o) : TOOL_OK;
+    if (fits && !status)
+        status = members_read(&j.members, p);
+    if (fits && !status)
+        status = run(&j, s);
+    if (j.count && j.all[0].points && status != TOOL_USAGE)
+        section_plot(to, p, j.all[0].decl, j.all[0].points, j.all[0].numbers,
+                     j.all[0].members, integrator);
+    nevh_stepper_free(s);
+    forget(&j);
+    return status;
 }
 
 int section(const options *o) {

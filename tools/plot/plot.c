@@ -127,7 +127,9 @@ static size_t find_look(const plot *p, const char *name) {
         if (name && s->name && strcmp(name, s->name) == 0)
             return s->look;
         bool grey = s->form == PLOT_BEHIND || s->form == PLOT_RODS ||
-                    s->form == PLOT_GUIDE;
+                    s->form == PLOT_GUIDE || s->form == PLOT_LEVEL ||
+                    s->form == PLOT_SEPARATRIX || s->form == PLOT_CENTRE ||
+                    s->form == PLOT_SADDLE;
         if (!grey && (name || s->panel == p->panels - 1) && look <= s->look)
             look = s->look + 1;
     }

@@ -12,18 +12,22 @@
 typedef struct plot plot;
 typedef enum {
     PLOT_LINES,
-    PLOT_TRAIL,  /* lines that are never dashed */
-    PLOT_BEHIND, /* a thick pale line */
-    PLOT_MARKED, /* lines with a marker here and there */
-    PLOT_BOTH,   /* lines with a marker at each point */
-    PLOT_POINTS, /* markers */
-    PLOT_DOTS,   /* the smaller the more they are */
-    PLOT_RODS,   /* thick grey lines */
-    PLOT_BOBS,   /* large discs */
-    PLOT_START,  /* small circles */
-    PLOT_FILLED, /* a closed line, and what it encloses in a pale colour */
-    PLOT_HOLE,   /* a closed line, and what it encloses in white */
-    PLOT_GUIDE   /* a thin grey line with its name at the last point, and not in
+    PLOT_TRAIL,      /* lines that are never dashed */
+    PLOT_BEHIND,     /* a thick pale line */
+    PLOT_MARKED,     /* lines with a marker here and there */
+    PLOT_BOTH,       /* lines with a marker at each point */
+    PLOT_POINTS,     /* markers */
+    PLOT_DOTS,       /* the smaller the more they are */
+    PLOT_RODS,       /* thick grey lines */
+    PLOT_BOBS,       /* large discs */
+    PLOT_START,      /* small circles */
+    PLOT_LEVEL,      /* thin pale lines */
+    PLOT_SEPARATRIX, /* a dark line */
+    PLOT_CENTRE,     /* discs, dark */
+    PLOT_SADDLE,     /* crosses, dark */
+    PLOT_FILLED,     /* a closed line, and what it encloses in a pale colour */
+    PLOT_HOLE,       /* a closed line, and what it encloses in white */
+    PLOT_GUIDE /* a thin grey line with its name at the last point, and not in
                     the legend */
 } plot_form;
 

@@ -191,6 +191,25 @@ static void print_form(FILE *f, const series *s, bool text) {
                 "'#555555'",
                 number, text ? "empty" : "solid 1");
         break;
+    case PLOT_LEVEL:
+        fputs(" with lines linecolor rgb '#bbbbbb' linewidth 0.7 dashtype "
+              "solid",
+              f);
+        break;
+    case PLOT_SEPARATRIX:
+        fputs(" with lines linecolor rgb '#000000' linewidth 1.3 dashtype "
+              "solid",
+              f);
+        break;
+    case PLOT_CENTRE:
+        fputs(" with points linecolor rgb '#000000' pointtype 7 pointsize 0.8",
+              f);
+        break;
+    case PLOT_SADDLE:
+        fputs(" with points linecolor rgb '#000000' linewidth 2 pointtype 2 "
+              "pointsize 1.1",
+              f);
+        break;
     case PLOT_START:
         fprintf(f,
                 " with points linetype %zu linewidth 1.5 pointtype 6 pointsize "
@@ -245,7 +264,8 @@ static void print_name(FILE *f, const char *name) {
 static void print_series(FILE *f, const plot *p, size_t i, bool here,
                          bool titled, bool text, size_t *printed) {
     bool drawn = here && p->series[i].count;
-    if (text && p->series[i].form == PLOT_GUIDE)
+    if (text &&
+        (p->series[i].form == PLOT_GUIDE || p->series[i].form == PLOT_LEVEL))
         return;
     if (!drawn && !titled)
         return;

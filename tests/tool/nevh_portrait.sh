@@ -1,0 +1,94 @@
+#!/bin/sh
+# nevh portrait: orbits, level curves, equilibria, and what it refuses.
+
+. "${srcdir:-.}/tests/support/nevh_support.sh"
+
+exits 2 portrait pendulum
+says 'nevh portrait draws: give --plot FILE'
+exits 2 portrait pendulum --plot $work/a.doc
+says 'FILE.svg'
+exits 2 portrait pendulum --plot $work/a.svg -o $work/a.csv
+says 'writes no rows'
+if ! command -v gnuplot >/dev/null 2>&1; then
+    echo "there is no gnuplot"
+    exit $((status ? 1 : 77))
+fi
+exits 2 portrait pendulum --vary 'g = 1, 2' --plot $work/a.svg
+says 'vary starts alone'
+exits 2 portrait elastic-pendulum --plot $work/a.svg --section nothing
+says 'unknown section nothing'
+exits 2 portrait coupled-oscillators --plot $work/a.svg --section nothing
+says 'section'
+exits 2 portrait double-pendulum --integrators verlet --plot $work/a.svg
+says 'nothing to draw|fits'
+test -e $work/a.svg && fails "leaves a picture"
+
+# series NAME: points of the series of that name in the first panel.
+points() {
+    awk -v name="\$series$1" '$1 == name && $2 == "<<" { on = 1; next }
+        /^EOD/ { on = 0 } on && NF == 2' $work/gp
+}
+
+# The pendulum: level curves are those of H, and so is the separatrix.
+exits 0 portrait pendulum --vary 'phi = 0' --vary 'p_phi = 1, 3, 5, 8' \
+    --integrators verlet,euler --t-end 20 --dt 0.1 --plot $work/a.svg \
+    --keep-plot-script $work/gp
+test -s $work/a.svg || fails "draws nothing"
+has '^centre at phi = 0, p_phi = 0: H = -9\.8 J$'
+has '^saddle at phi = 3\.141592654, p_phi = 0: H = 9\.8 J$'
+has '^saddle at phi = -3\.141592654, p_phi = 0: H = 9\.8 J$'
+test "$(grep -c '^[cs]' $work/out)" -eq 3 || fails "has other equilibria"
+grep -q '^set title "verlet: H within ' $work/gp || fails "has no panel of verlet"
+grep -q '^set title "euler: H within ' $work/gp || fails "has no panel of euler"
+points 1 >$work/levels
+points 2 >$work/separatrix
+test "$(wc -l <$work/levels)" -gt 1000 || fails "has no levels"
+awk '{ h = $2^2/2 - 9.8*cos($1); near = 1
+       for (p = 1; p <= 8; p++) if (p != 2 && p != 4 && p < 6 || p == 8) {
+           d = h - (p^2/2 - 9.8); d = d < 0 ? -d : d
+           near = d < near ? d : near }
+       if (near > 0.02) { print; wrong = 1 } } END { exit wrong }' \
+    $work/levels || fails "draws other levels"
+awk '{ d = $2^2/2 - 9.8*cos($1) - 9.8
+       if (d > 0.02 || d < -0.02) { print; wrong = 1 } }
+    END { exit wrong || NR < 100 }' $work/separatrix ||
+    fails "draws another separatrix"
+# Angles are wrapped: the member that goes round stays in one period.
+points 8 >$work/round
+awk '$1 > 3.15 || $1 < -3.15 || $2 < 3 { print; wrong = 1 }
+    END { exit wrong || NR < 100 }' $work/round ||
+    fails "does not wrap the angle"
+
+# A double well: two centres, and a saddle between them.
+cat >$work/well.nevh <<'END'
+[coordinates]
+x = 1.2
+[effects]
+kinetic = p_x^2/2
+well = (x^2 - 1)^2
+[ensemble]
+x = range(0.2, 1.5, 5)
+p_x = solve(H = 2, from 1)
+[run]
+t_end = 20
+dt = 0.05
+integrators = verlet
+END
+exits 0 portrait $work/well.nevh --plot $work/b.svg
+has '^.*b.svg: 5 orbits by each integrator$'
+has '^centre at x = -1, p_x = 0: H = [0-9.e-]+$'
+has '^saddle at x = 0, p_x = 0: H = 1$'
+has '^centre at x = 1, p_x = 0: '
+exits 0 portrait $work/well.nevh --plot $work/b.svg --quiet
+test -s $work/out && fails "is not quiet"
+exits 1 portrait $work/well.nevh --plot $work/b.svg --vary 'x = 0, 9'
+says '1 of 2 members have no start'
+
+# More degrees of freedom: a plane of section, a panel an integrator.
+exits 0 portrait henon-heiles --integrators verlet,blanes-moan4 --t-end 60 \
+    --plot $work/c.svg --keep-plot-script $work/gp
+for text in verlet blanes-moan4; do
+    grep -q "^set title \"$text\"" $work/gp || fails "has no panel of $text"
+done
+test "$(grep -c '^\$series' $work/gp)" -eq 32 || fails "has not 32 series"
+exit $status

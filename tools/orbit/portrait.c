@@ -1,0 +1,301 @@
+/* nevh portrait: orbits by each integrator over level curves of H.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "portrait.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { USUAL_STEPS = 2000, MOST_POINTS = 4000, MOST_LEVELS = 16 };
+
+/* The orbits of all members by one integrator. */
+typedef struct {
+    const char *integrator;
+    double *points; /* x, y of each */
+    size_t *member; /* of each */
+    size_t count, room, every, at, failed;
+    char *status; /* why there are none, or the first that failed; or NULL */
+    bool refused;
+} orbits_of;
+
+typedef struct {
+    plan plan;
+    members members;
+    orbits_of *of;
+    size_t count;
+    levels levels;
+} job;
+
+static int take(void *data, size_t step, double t, const double q[],
+                const double p[]) {
+    orbits_of *o = data;
+    (void)step, (void)t;
+    if (o->count == o->room) {
+        o->room = 2 * o->room + 1024;
+        o->points = tool_enlarge(o->points, 2 * o->room, sizeof *o->points);
+        o->member = tool_enlarge(o->member, o->room, sizeof *o->member);
+    }
+    o->points[2 * o->count] = q[0];
+    o->points[2 * o->count + 1] = p[0];
+    o->member[o->count++] = o->at;
+    return 0;
+}
+
+static double end_of(const job *j, const options *o) {
+    const plan *p = &j->plan;
+    double usual = p->run->t_start + USUAL_STEPS * p->dt[0];
+    return o->t_end ? p->t_end : fmin(p->t_end, usual);
+}
+
+static void run_orbits(job *j, orbits_of *o) {
+    const plan *p = &j->plan;
+    nevh_stepper *s = plan_stepper(p, o->integrator);
+    if (nevh_stepper_status(s)) {
+        o->refused = true;
+        o->status = text_print("refused: %s", nevh_stepper_message(s));
+    }
+    o->every = (size_t)(plan_steps(p, p->dt[0]) / MOST_POINTS) + 1;
+    for (o->at = 0; !o->refused && o->at < j->members.count; o->at++) {
+        double q = j->members.q[o->at], m = j->members.p[o->at], stopped;
+        nevh_observer observer = {take, o, o->every};
+        nevh_stepper_reset(s);
+        if (plan_run(p, s, p->dt[0], &q, &m, &observer, 1, &stopped) &&
+            !o->failed++)
+            o->status = text_print("failed: %s", nevh_stepper_message(s));
+    }
+    nevh_stepper_free(s);
+}
+
+/* Into the period round 0. */
+static double wrapped(const job *j, double x) {
+    double period = nevh_scene_period(j->plan.scene, 0);
+    return period > 0 ? x - period * floor(x / period + 0.5) : x;
+}
+
+static bool is_symplectic(const orbits_of *o) {
+    bool transformed;
+    return !o->refused && nevh_integrator_symplectic(plan_scheme(
+                              o->integrator, &transformed)) == NEVH_YES;
+}
+
+/* Where symplectic integrators go, if there are any, and some room; of an angle a
+   period. */
+static portrait_window find_window(const job *j) {
+    static const double room = 0.2;
+    portrait_window w = {INFINITY, -INFINITY, INFINITY, -INFINITY};
+    double period = nevh_scene_period(j->plan.scene, 0);
+    bool any = false;
+    for (size_t i = 0; i < j->count; i++)
+        any = any || is_symplectic(&j->of[i]);
+    for (size_t i = 0; i < j->count; i++)
+        for (size_t k = 0;
+             (is_symplectic(&j->of[i]) || !any) && k < j->of[i].count; k++) {
+            w.low_x = fmin(w.low_x, j->of[i].points[2 * k]);
+            w.high_x = fmax(w.high_x, j->of[i].points[2 * k]);
+            w.low_y = fmin(w.low_y, j->of[i].points[2 * k + 1]);
+            w.high_y = fmax(w.high_y, j->of[i].points[2 * k + 1]);
+        }
+    double x = room * (w.high_x - w.low_x), y = room * (w.high_y - w.low_y);
+    x = x > 0 ? x : fmax(1, fabs(w.high_x));
+    y = y > 0 ? y : fmax(1, fabs(w.high_y));
+    w = (portrait_window){w.low_x - x, w.high_x + x, w.low_y - y, w.high_y + y};
+    if (period > 0) {
+        w.low_x = -period / 2;
+        w.high_x = period / 2;
+    }
+    return w;
+}
+
+static int by_size(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Of the members, some where they are many; of few others between. */
+static size_t choose_levels(const job *j, double energy[MOST_LEVELS]) {
+    size_t count = j->members.count, chosen = 0;
+    double *all = tool_allocate(count, sizeof *all);
+    for (size_t i = 0; i < count; i++)
+        all[i] = levels_energy(&j->levels, j->members.q[i], j->members.p[i]);
+    qsort(all, count, sizeof *all, by_size);
+    for (size_t i = 0; i < MOST_LEVELS && count > 1; i++) {
+        double level = all[i * (count - 1) / (MOST_LEVELS - 1)];
+        if (!chosen || level > energy[chosen - 1])
+            energy[chosen++] = level;
+    }
+    double lowest = all[0];
+    for (size_t i = 0; i < j->levels.count; i++)
+        lowest = fmin(lowest, j->levels.found[i].energy);
+    for (int i = 1; count == 1 && i <= 12; i++)
+        energy[chosen++] = lowest + (all[0] - lowest) * (i / 8.0) * (i / 8.0);
+    free(all);
+    return chosen;
+}
+
+static void draw_orbits(const job *j, const orbits_of *o, plot *to) {
+    size_t series = 0;
+    for (size_t k = 0, next = 0; k < o->count; k++) {
+        for (; next <= o->member[k]; next++) {
+            series = plot_series(to, NULL);
+            plot_style(to, series, PLOT_DOTS);
+            plot_size(to, series, 0.6);
+        }
+        plot_point(to, series, wrapped(j, o->points[2 * k]),
+                   o->points[2 * k + 1]);
+    }
+}
+
+/* The largest change of H along an orbit. */
+static double energy_change(const job *j, const orbits_of *o) {
+    double most = 0, first = NAN;
+    for (size_t k = 0; k < o->count; k++) {
+        double h =
+            levels_energy(&j->levels, o->points[2 * k], o->points[2 * k + 1]);
+        if (k == 0 || o->member[k] != o->member[k - 1])
+            first = h;
+        most = fmax(most, fabs(h - first));
+    }
+    return most;
+}
+
+static plot *draw_plane(job *j) {
+    const plan *p = &j->plan;
+    const char *name = nevh_scene_coordinate(p->scene, 0);
+    const char *unit = nevh_scene_label(p->scene, "energy");
+    char *momentum = text_print("p_%s", name);
+    char *x = plot_label(p, name, name), *y = plot_label(p, momentum, momentum);
+    double energy[MOST_LEVELS];
+    size_t count = choose_levels(j, energy);
+    plot *to = NULL;
+    for (size_t i = 0; i < j->count; i++) {
+        const orbits_of *o = &j->of[i];
+        if (o->refused)
+            continue;
+        char *heading = text_print("%s: H within %.2g%s%s%s", o->integrator,
+                                   energy_change(j, o), *unit ? " " : "", unit,
+                                   o->failed ? ", then failed" : "");
+        if (to) {
+            plot_panel(to, heading, x, y);
+        } else {
+            to = plot_new(p->title, x, y);
+            plot_heading(to, heading);
+            plot_many_colours(to);
+        }
+        plot_span_x(to, j->levels.window.low_x, j->levels.window.high_x);
+        plot_span_y(to, j->levels.window.low_y, j->levels.window.high_y);
+        levels_draw(&j->levels, to, energy, count);
+        draw_orbits(j, o, to);
+        free(heading);
+    }
+    free(momentum);
+    free(x);
+    free(y);
+    return to;
+}
+
+static int run_plane(job *j, plot **to, const options *o) {
+    int worst = members_tell(&j->members, &j->plan);
+    j->plan.t_end = end_of(j, o);
+    j->count = j->plan.integrators.count;
+    j->of = tool_allocate(j->count, sizeof *j->of);
+    size_t points = 0;
+    for (size_t i = 0; i < j->count; i++) {
+        j->of[i].integrator = j->plan.integrators.item[i];
+        run_orbits(j, &j->of[i]);
+        points += j->of[i].count;
+        worst = j->of[i].failed ? TOOL_FAILED : worst;
+    }
+    if (!points)
+        return tool_refuse("%s: none of the integrators fits; see nevh check",
+                           j->plan.name);
+    if (levels_new(&j->levels, &j->plan, find_window(j)))
+        return TOOL_USAGE;
+    *to = draw_plane(j);
+    return worst;
+}
+
+/* A plane of section. */
+static int run_section(job *j, plot **to, const options *o) {
+    int worst = members_tell(&j->members, &j->plan);
+    for (size_t i = 0; i < j->plan.integrators.count; i++) {
+        int status =
+            section_panel(to, &j->plan, o, j->plan.integrators.item[i]);
+        if (status == TOOL_USAGE)
+            return status;
+        worst = status > worst ? status : worst;
+    }
+    return *to ? worst
+               : tool_refuse("%s: there is nothing to draw: no integrator "
+                             "finds a point of the section",
+                             j->plan.name);
+}
+
+static void print_notes(const job *j, const options *o) {
+    static const char *const kinds[] = {"centre", "saddle", "degenerate"};
+    const char *unit = nevh_scene_label(j->plan.scene, "energy");
+    if (o->quiet)
+        return;
+    printf("%s: %zu orbit%s by each integrator\n",
+           o->plot ? o->plot : o->plot_script, j->members.count,
+           j->members.count == 1 ? "" : "s");
+    for (size_t i = 0; i < j->levels.count; i++) {
+        const equilibrium *e = &j->levels.found[i];
+        const char *name = nevh_scene_coordinate(j->plan.scene, 0);
+        printf("%s at %s = %.10g, p_%s = %.10g: H = %.10g%s%s\n",
+               kinds[e->kind], name, e->x, name, e->y, e->energy,
+               *unit ? " " : "", unit);
+    }
+    for (size_t i = 0; i < j->count; i++)
+        if (j->of[i].status)
+            printf("%s %s\n", j->of[i].integrator, j->of[i].status);
+}
+
+static int draw(job *j, const options *o) {
+    plot *to = NULL;
+    int status = j->plan.n == 1 ? run_plane(j, &to, o) : run_section(j, &to, o);
+    if (status == TOOL_USAGE) {
+        plot_free(to);
+        return status;
+    }
+    const char *unit = nevh_scene_label(j->plan.scene, "t");
+    char *more =
+        j->plan.n == 1
+            ? text_print("dt = %.4g%s%s; %zu orbit%s, grey: levels of H",
+                         j->plan.dt[0], *unit ? " " : "", unit,
+                         j->members.count, j->members.count == 1 ? "" : "s")
+            : text_print("dt = %.4g%s%s; %zu orbits", j->plan.dt[0],
+                         *unit ? " " : "", unit, j->members.count);
+    plot_note_run(to, &j->plan, NULL, more);
+    free(more);
+    int drawn = plot_write(to, o);
+    plot_free(to);
+    if (!drawn)
+        print_notes(j, o);
+    return drawn ? drawn : status;
+}
+
+int portrait(const options *o) {
+    job j = {0};
+    if (o->file)
+        return tool_refuse("nevh portrait writes no rows: give the picture's "
+                           "name to --plot, not to -o");
+    if (!plot_wanted(o))
+        return tool_refuse("nevh portrait draws: give --plot FILE.svg, or "
+                           "--plot - for the terminal");
+    int status = plan_make(&j.plan, o);
+    if (!status)
+        status = members_read(&j.members, &j.plan);
+    if (!status)
+        status = plot_check(o);
+    if (!status)
+        status = draw(&j, o);
+    for (size_t i = 0; i < j.count; i++) {
+        free(j.of[i].points);
+        free(j.of[i].member);
+        free(j.of[i].status);
+    }
+    free(j.of);
+    levels_free(&j.levels);
+    members_free(&j.members);
+    plan_free(&j.plan);
+    return status;
+}

@@ -1,0 +1,238 @@
+/* nevh portrait: level curves of H, its equilibria and separatrices.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "portrait.h"
+#include <gsl/gsl_multiroots.h>
+#include <math.h>
+#include <stdlib.h>
+
+enum { ACROSS = 201, UP = 161, STARTS = 24, MOST_STEPS = 60 };
+
+double levels_energy(const levels *l, double x, double y) {
+    double h, t = l->plan->run->t_start;
+    return nevh_field_value(l->field, 1, &t, &x, &y, &h) ? NAN : h;
+}
+
+static double x_at(const levels *l, size_t i) {
+    const portrait_window *w = &l->window;
+    return w->low_x + (w->high_x - w->low_x) * (double)i / (ACROSS - 1);
+}
+
+static double y_at(const levels *l, size_t k) {
+    const portrait_window *w = &l->window;
+    return w->low_y + (w->high_y - w->low_y) * (double)k / (UP - 1);
+}
+
+/* Equilibria. */
+
+static int gradient(const gsl_vector *z, void *data, gsl_vector *f) {
+    const levels *l = data;
+    double t = l->plan->run->t_start, dq, dp;
+    double x = gsl_vector_get(z, 0), y = gsl_vector_get(z, 1);
+    if (nevh_field_gradient(l->field, 1, &t, &x, &y, &dq, &dp))
+        return GSL_EDOM;
+    gsl_vector_set(f, 0, dq);
+    gsl_vector_set(f, 1, dp);
+    return GSL_SUCCESS;
+}
+
+/* By differences of the gradient, small against the window. */
+static int hessian(const gsl_vector *z, void *data, gsl_matrix *j) {
+    static const double part = 1e-5;
+    const levels *l = data;
+    double length[2] = {part * (l->window.high_x - l->window.low_x),
+                        part * (l->window.high_y - l->window.low_y)};
+    double at[2] = {gsl_vector_get(z, 0), gsl_vector_get(z, 1)};
+    double t = l->plan->run->t_start, high[2], low[2];
+    for (int k = 0; k < 2; k++) {
+        double here = at[k];
+        at[k] = here + length[k];
+        int status = nevh_field_gradient(l->field, 1, &t, &at[0], &at[1],
+                                         &high[0], &high[1]);
+        at[k] = here - length[k];
+        if (status || nevh_field_gradient(l->field, 1, &t, &at[0], &at[1],
+                                          &low[0], &low[1]))
+            return GSL_EDOM;
+        at[k] = here;
+        for (int i = 0; i < 2; i++)
+            gsl_matrix_set(j, (size_t)i, (size_t)k,
+                           (high[i] - low[i]) / (2 * length[k]));
+    }
+    return GSL_SUCCESS;
+}
+
+static int both(const gsl_vector *z, void *data, gsl_vector *f, gsl_matrix *j) {
+    int status = gradient(z, data, f);
+    return status ? status : hessian(z, data, j);
+}
+
+static bool is_inside(const portrait_window *w, double x, double y) {
+    double edge_x = 1e-6 * (w->high_x - w->low_x);
+    return x >= w->low_x - edge_x && x <= w->high_x + edge_x && y >= w->low_y &&
+           y <= w->high_y;
+}
+
+static void add(levels *l, const gsl_vector *z) {
+    static const double near = 1e-5, little = 1e-6;
+    const portrait_window *w = &l->window;
+    double width = w->high_x - w->low_x, height = w->high_y - w->low_y;
+    double x = gsl_vector_get(z, 0), y = gsl_vector_get(z, 1), part[4];
+    gsl_matrix_view j = gsl_matrix_view_array(part, 2, 2);
+    if (!is_inside(w, x, y) || hessian(z, l, &j.matrix))
+        return;
+    for (size_t i = 0; i < l->count; i++)
+        if (fabs(l->found[i].x - x) < near * width &&
+            fabs(l->found[i].y - y) < near * height)
+            return;
+    double a = part[0] * width * width, b = part[3] * height * height;
+    double c = part[1] * width * height, size = fmax(fabs(a), fabs(b));
+    double determinant = a * b - c * c;
+    l->found = tool_enlarge(l->found, l->count + 1, sizeof *l->found);
+    l->found[l->count++] = (equilibrium){
+        fabs(x) < near * width * 1e-3 ? 0 : x,
+        fabs(y) < near * height * 1e-3 ? 0 : y, levels_energy(l, x, y),
+        fabs(determinant) < little * size * size ? PORTRAIT_DEGENERATE
+        : determinant > 0                        ? PORTRAIT_CENTRE
+                                                 : PORTRAIT_SADDLE};
+}
+
+/* Newton's method from a place of the grid. */
+static void search(levels *l, gsl_multiroot_fdfsolver *s, double x, double y) {
+    static const double small = 1e-10;
+    gsl_multiroot_function_fdf f = {gradient, hessian, both, 2, l};
+    double start[2] = {x, y};
+    gsl_vector_view at = gsl_vector_view_array(start, 2);
+    const portrait_window *w = &l->window;
+    int status = gsl_multiroot_fdfsolver_set(s, &f, &at.vector);
+    for (int i = 0; !status && i < MOST_STEPS; i++) {
+        status = gsl_multiroot_fdfsolver_iterate(s);
+        double dx = gsl_vector_get(s->dx, 0), dy = gsl_vector_get(s->dx, 1);
+        if (!status && fabs(dx) < small * (w->high_x - w->low_x) &&
+            fabs(dy) < small * (w->high_y - w->low_y)) {
+            add(l, s->x);
+            return;
+        }
+    }
+}
+
+static int by_place(const void *a, const void *b) {
+    const equilibrium *one = a, *other = b;
+    return one->x != other->x ? (one->x > other->x) - (one->x < other->x)
+                              : (one->y > other->y) - (one->y < other->y);
+}
+
+static void find_equilibria(levels *l) {
+    const portrait_window *w = &l->window;
+    gsl_multiroot_fdfsolver *s =
+        gsl_multiroot_fdfsolver_alloc(gsl_multiroot_fdfsolver_gnewton, 2);
+    for (int i = 0; s && i < STARTS; i++)
+        for (int k = 0; k < STARTS; k++)
+            search(l, s, w->low_x + (w->high_x - w->low_x) * (i + 0.5) / STARTS,
+                   w->low_y + (w->high_y - w->low_y) * (k + 0.5) / STARTS);
+    if (s)
+        gsl_multiroot_fdfsolver_free(s);
+    if (l->count)
+        qsort(l->found, l->count, sizeof *l->found, by_place);
+}
+
+int levels_new(levels *l, const plan *p, portrait_window w) {
+    nevh_options o = plan_options(p, "exact");
+    *l = (levels){.plan = p, .window = w};
+    l->field = nevh_field_new(p->system, &o);
+    if (nevh_field_status(l->field)) {
+        nevh_field_free(l->field);
+        o.gradient = nevh_central6;
+        l->field = nevh_field_new(p->system, &o);
+    }
+    if (nevh_field_status(l->field))
+        return tool_refuse("%s: %s", p->name, nevh_field_message(l->field));
+    l->h = tool_allocate(ACROSS * UP, sizeof *l->h);
+    for (size_t k = 0; k < UP; k++)
+        for (size_t i = 0; i < ACROSS; i++)
+            l->h[k * ACROSS + i] = levels_energy(l, x_at(l, i), y_at(l, k));
+    find_equilibria(l);
+    return TOOL_OK;
+}
+
+void levels_free(levels *l) {
+    nevh_field_free(l->field);
+    free(l->h);
+    free(l->found);
+}
+
+/* Curves. */
+
+/* Where the level crosses the edge from one corner of a cell to the next. */
+static bool cross(const levels *l, double level, const size_t i[2],
+                  const size_t k[2], double *x, double *y) {
+    double a = l->h[k[0] * ACROSS + i[0]] - level;
+    double b = l->h[k[1] * ACROSS + i[1]] - level;
+    if (!((a < 0 && b >= 0) || (a >= 0 && b < 0)))
+        return false;
+    double part = a / (a - b);
+    *x = x_at(l, i[0]) + part * (x_at(l, i[1]) - x_at(l, i[0]));
+    *y = y_at(l, k[0]) + part * (y_at(l, k[1]) - y_at(l, k[0]));
+    return true;
+}
+
+/* Marching squares: the crossings of a cell's edges, two by two. */
+static void draw_level(const levels *l, plot *to, size_t series, double level) {
+    static const size_t corner[5][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
+    for (size_t k = 0; k + 1 < UP; k++)
+        for (size_t i = 0; i + 1 < ACROSS; i++) {
+            int count = 0;
+            for (int e = 0; e < 4; e++) {
+                size_t column[2] = {i + corner[e][0], i + corner[e + 1][0]};
+                size_t row[2] = {k + corner[e][1], k + corner[e + 1][1]};
+                double x, y;
+                if (!cross(l, level, column, row, &x, &y))
+                    continue;
+                plot_point(to, series, x, y);
+                if (++count % 2 == 0)
+                    plot_break(to, series);
+            }
+            if (count % 2)
+                plot_break(to, series);
+        }
+}
+
+static void draw_equilibria(const levels *l, plot *to) {
+    static const char *const names[] = {"centre", "saddle", "degenerate"};
+    static const plot_form forms[] = {PLOT_CENTRE, PLOT_SADDLE, PLOT_CENTRE};
+    for (int kind = PORTRAIT_CENTRE; kind <= PORTRAIT_DEGENERATE; kind++) {
+        size_t series = 0, count = 0;
+        for (size_t i = 0; i < l->count; i++) {
+            if ((int)l->found[i].kind != kind)
+                continue;
+            if (!count++) {
+                series = plot_series(to, names[kind]);
+                plot_style(to, series, forms[kind]);
+            }
+            plot_point(to, series, l->found[i].x, l->found[i].y);
+        }
+    }
+}
+
+void levels_draw(const levels *l, plot *to, const double energy[],
+                 size_t count) {
+    size_t series = plot_series(to, NULL);
+    bool any = false;
+    plot_style(to, series, PLOT_LEVEL);
+    for (size_t i = 0; i < count; i++)
+        draw_level(l, to, series, energy[i]);
+    for (size_t i = 0; i < l->count; i++)
+        any = any || l->found[i].kind == PORTRAIT_SADDLE;
+    if (any) {
+        series = plot_series(to, "separatrix");
+        plot_style(to, series, PLOT_SEPARATRIX);
+    }
+    for (size_t i = 0; any && i < l->count; i++) {
+        bool told = l->found[i].kind != PORTRAIT_SADDLE;
+        for (size_t k = 0; !told && k < i; k++)
+            told = l->found[k].kind == PORTRAIT_SADDLE &&
+                   fabs(l->found[k].energy - l->found[i].energy) <=
+                       1e-9 * fabs(l->found[i].energy);
+        if (!told)
+            draw_level(l, to, series, l->found[i].energy);
+    }
+    draw_equilibria(l, to);
+}
