@@ -77,7 +77,7 @@ tools_nevh_SOURCES = \
 	tools/report/report.c \
 	tools/report/report_html.c \
 	tools/report/page_html.c \
-		tools/ensemble/map.h \
+	tools/ensemble/map.h \
 	tools/ensemble/map.c \
 	tools/ensemble/members.h \
 	tools/ensemble/members.c \
@@ -116,7 +116,7 @@ tools_nevh_SOURCES = \
 	tools/orbit/time_plot.c \
 	tools/orbit/run_plot.c \
 	tools/orbit/section_plot.c \
-		tools/orbit/portrait.h \
+	tools/orbit/portrait.h \
 	tools/orbit/portrait.c \
 	tools/orbit/portrait_levels.c \
 	tools/orbit/flow.h \

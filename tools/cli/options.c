@@ -9,15 +9,11 @@
 enum {
     OF_COST = FOR_COST | FOR_GRADIENTS | FOR_RECOMMEND,
     OF_SCENES = FOR_EXPORT | FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_RUN |
-                FOR_SECTION | FOR_SWEEP | FOR_FLOW | FOR_REFERENCE |
-                FOR_REPORT | OF_COST,
-    OF_NATIVE = FOR_COMPARE | FOR_RUN | FOR_COST | FOR_RECOMMEND,
-    OF_TABLES = (OF_SCENES & ~(FOR_EXPORT | FOR_REPORT)) | FOR_LIST | FOR_HARD,
                 FOR_SECTION | FOR_SWEEP | FOR_FLOW | FOR_PORTRAIT |
-                FOR_REFERENCE | OF_COST,
+                FOR_REFERENCE | FOR_REPORT | OF_COST,
     OF_NATIVE = FOR_COMPARE | FOR_RUN | FOR_COST | FOR_RECOMMEND,
-    OF_TABLES =
-        (OF_SCENES & ~(FOR_EXPORT | FOR_PORTRAIT)) | FOR_LIST | FOR_HARD,
+    OF_TABLES = (OF_SCENES & ~(FOR_EXPORT | FOR_REPORT | FOR_PORTRAIT)) |
+                FOR_LIST | FOR_HARD,
     OF_PLOTS = FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_COST | FOR_GRADIENTS |
                FOR_FLOW | FOR_PORTRAIT
 };
@@ -40,7 +36,8 @@ static const struct {
     {"dt", "A,B", OF_SCENES, read_dt,
      "time steps, instead of the scene's; formulas such as pi/50"},
     {"tolerance", "A,B",
-     FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_SWEEP | FOR_FLOW, read_tolerance,
+     FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_SWEEP | FOR_FLOW | FOR_PORTRAIT,
+     read_tolerance,
      "of integrators that choose their steps; instead of the scene's"},
     {"t-end", "T", OF_SCENES, read_t_end,
      "the end, instead of the scene's; a formula"},
