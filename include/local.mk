@@ -3,6 +3,7 @@ nevhinclude_HEADERS = \
 	include/nevh/body.h \
 	include/nevh/certain.h \
 	include/nevh/simd.h \
+	include/nevh/chaos.h \
 	include/nevh/diagnose.h \
 	include/nevh/extend.h \
 	include/nevh/gradient.h \

@@ -59,6 +59,7 @@ libnevh_core_la_SOURCES = \
 	lib/expression/tape_finish.c \
 	lib/expression/tape_value.c \
 	lib/expression/tape_block.c \
+	lib/expression/tape_along.c \
 	lib/expression/tape_gradient.c \
 	lib/expression/tape_complex.c \
 	lib/expression/tape_special.c \
@@ -162,6 +163,12 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/reference_walk.c \
 	lib/diagnose/state_error.c \
 	lib/diagnose/stability.c \
+	lib/diagnose/variational.c \
+	lib/diagnose/chaos_private.h \
+	lib/diagnose/chaos.c \
+	lib/diagnose/chaos_walk.c \
+	lib/diagnose/chaos_starts.c \
+	lib/diagnose/chaos_report.c \
 	lib/diagnose/rates.c \
 	lib/diagnose/loop_private.h \
 	lib/diagnose/loop.c \

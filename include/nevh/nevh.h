@@ -8,6 +8,7 @@
 #define NEVH_H
 
 #include <nevh/certain.h>
+#include <nevh/chaos.h>
 #include <nevh/diagnose.h>
 #include <nevh/ensemble.h>
 #include <nevh/gradient.h>

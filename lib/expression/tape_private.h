@@ -167,6 +167,14 @@ void nevh__tape_block_time(size_t width, const double t[], const double q[],
 void nevh__tape_complex(double t, const double q[][2], const double p[][2],
                         const double c[], const void *tape, double h[2]);
 
+/* The derivative of a tape along (dq, dp): a tape that reads q and then dq, p
+   and then dp, twice as many of each; kinks have the derivatives above.
+   status   out: NEVH_OK; NEVH_ENOGRAD where it calls Bessel functions or
+            elliptic integrals; NEVH_ENOMEM, NEVH_EINVAL as of
+            nevh__tape_finish
+   returns  to be freed with nevh__tape_free; NULL on failure */
+nevh__tape *nevh__tape_along(const nevh__tape *, int *status);
+
 /* Fills in value, block, gradient, time_slope, complex_value (NULL unless
    analytic), params, nq, np, nc and time; leaves the rest, so q, p, c and count are the
    caller's, rows of nq, np and nc. */

@@ -1,0 +1,317 @@
+/* nevh: the analysis of chaos is planned.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "diagnose/chaos_private.h"
+#include "run/stepper_private.h"
+#include <math.h>
+#include <nevh/diagnose.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { STARTS = 8, MOST_LANES = 1 << 16, LOOKS_A_PERIOD = 24 };
+
+static int out_of_memory(nevh_chaos *c) {
+    return nevh__fail(&c->report, NEVH_ENOMEM, "out of memory");
+}
+
+static int check(nevh_chaos *c, const nevh_chaos_options *o) {
+    size_t most = 2 * c->n;
+    if (!o->options || !o->options->q || !o->options->p)
+        return nevh__fail(&c->report, NEVH_EINVAL,
+                          "chaos: there is no state to start from");
+    if (!o->integrator)
+        return nevh__fail(&c->report, NEVH_EINVAL,
+                          "the integrator is NULL: is its name spelt right?");
+    if (!(c->dt > 0) || !isfinite(c->dt) || !isfinite(c->t_start))
+        return nevh__fail(&c->report, NEVH_EINVAL,
+                          "chaos: a step of %g from t = %g is none", c->dt,
+                          c->t_start);
+    if (c->exponents > most)
+        return nevh__fail(&c->report, NEVH_EINVAL,
+                          "chaos: %zu exponents, but there are %zu",
+                          c->exponents, most);
+    if (c->deviations < 2 || c->deviations > most)
+        return nevh__fail(&c->report, NEVH_EINVAL,
+                          "chaos: %zu displacements, but it takes 2 ... %zu",
+                          c->deviations, most);
+    if (c->starts > MOST_LANES / most / 4)
+        return nevh__fail(&c->report, NEVH_EINVAL,
+                          "chaos: %zu starts are too many", c->starts);
+    if (o->options->transform)
+        return nevh__fail(&c->report, NEVH_ESTRUCT,
+                          "chaos: a transform of time makes steps depend on "
+                          "the state");
+    return NEVH_OK;
+}
+
+static int check_scheme(nevh_chaos *c, const nevh_integrator *scheme) {
+    if (scheme->own_time || scheme->needs_tolerance ||
+        (scheme->adaptive && c->options.tolerance != 0))
+        return nevh__fail(&c->report, NEVH_ESTRUCT,
+                          "chaos: %s chooses its steps by the state, so that "
+                          "neighbouring orbits take other ones; take a scheme "
+                          "of fixed steps",
+                          scheme->name);
+    return NEVH_OK;
+}
+
+/* Lengths, and the refusals of the scheme, come from a stepper of H. */
+static int plan_lengths(nevh_chaos *c, const nevh_integrator *scheme) {
+    nevh_stepper *s = nevh_stepper_new(c->system, scheme, &c->options);
+    if (!s)
+        return out_of_memory(c);
+    if (nevh_stepper_status(s))
+        nevh__fail_as(&c->report, &s->report);
+    else
+        memcpy(c->own + 2 * c->n, s->work.scale,
+               2 * c->n * sizeof *s->work.scale);
+    nevh_stepper_free(s);
+    c->options.scale = c->own + 2 * c->n;
+    return c->report.status;
+}
+
+/* Time in which the fastest motion turns once, or grows by exp(2 pi). */
+static int plan_period(nevh_chaos *c) {
+    nevh_options o = c->options;
+    double frequency = 0, growth = 0;
+    o.gradient = NULL;
+    nevh_rates *r = nevh_rates_new(c->system, &o);
+    if (!r)
+        return out_of_memory(c);
+    int status = nevh_rates_at(r, c->t_start, c->own, c->own + c->n, &frequency,
+                               &growth);
+    nevh_rates_free(r);
+    double rate = fmax(frequency, isfinite(growth) ? growth : 0);
+    c->period = !status && rate > 0 ? 2 * acos(-1) / rate : 8 * c->dt;
+    c->stride = (size_t)fmax(1, fmin(1e6, c->period / c->dt / LOOKS_A_PERIOD));
+    return NEVH_OK;
+}
+
+/* Gradients that terms bring, where they do. */
+static int plan_field(nevh_chaos *c) {
+    nevh_options o = c->options;
+    for (int i = 0; i < 2; i++) {
+        o.gradient = i ? c->options.gradient : nevh_exact;
+        nevh_field_free(c->field);
+        c->field = nevh_field_new(c->system, &o);
+        if (!c->field)
+            return out_of_memory(c);
+        if (nevh_field_status(c->field) != NEVH_ENOGRAD)
+            break;
+    }
+    if (nevh_field_status(c->field))
+        return nevh__fail(&c->report, nevh_field_status(c->field), "%s",
+                          nevh_field_message(c->field));
+    c->options.gradient = o.gradient;
+    return NEVH_OK;
+}
+
+/* A stepper of so many lanes, which are all planned for the same state: rows of
+   coordinates, then of momenta. */
+static int plan_stepper(nevh_chaos *c, const nevh_system *system, size_t rows,
+                        const double state[], const double scale[],
+                        const nevh_integrator *scheme, nevh__report *report) {
+    nevh_options o = c->options;
+    o.width = c->width;
+    o.scale = scale;
+    o.native = NEVH_NATIVE_NEVER;
+    o.gradient_steps = NULL;
+    o.balance = false;
+    for (size_t i = 0; i < rows * c->width; i++) {
+        c->q[i] = state[i / c->width];
+        c->p[i] = state[rows + i / c->width];
+    }
+    o.q = c->q;
+    o.p = c->p;
+    nevh_stepper *s = nevh_stepper_new(system, scheme, &o);
+    if (!s)
+        return nevh__fail(report, NEVH_ENOMEM, "out of memory");
+    if (nevh_stepper_status(s)) {
+        nevh__fail_as(report, &s->report);
+        nevh_stepper_free(s);
+        return report->status;
+    }
+    c->stepper = s;
+    return NEVH_OK;
+}
+
+static int plan_tangent(nevh_chaos *c, const nevh_integrator *scheme,
+                        nevh__report *report) {
+    size_t n = c->n;
+    double *state = nevh__array(8 * n, sizeof *state), *scale = state + 4 * n;
+    if (!state)
+        return nevh__fail(report, NEVH_ENOMEM, "out of memory");
+    for (size_t k = 0; k < n; k++) {
+        state[k] = c->own[k];
+        state[3 * n + k] = c->own[n + k];
+        state[n + k] = scale[k] = scale[n + k] = c->options.scale[k];
+        state[2 * n + k] = scale[2 * n + k] = scale[3 * n + k] =
+            c->options.scale[n + k];
+    }
+    nevh_options kept = c->options;
+    c->variational = nevh__variational_new(c->system, c->options.scale, report);
+    c->options.gradient = nevh_exact;
+    if (c->variational)
+        plan_stepper(c, c->variational->system, 2 * n, state, scale, scheme,
+                     report);
+    c->options = kept;
+    free(state);
+    return report->status;
+}
+
+/* Whether a step of the variational system is the derivative of a step. */
+static bool is_natural(const nevh_integrator *scheme) {
+    return scheme->symplectic != NEVH_EXTENDED &&
+           scheme->preserves_energy != NEVH_YES && !scheme->kernel->opaque;
+}
+
+static void set_lanes(nevh_chaos *c, bool tangent) {
+    size_t vectors = nevh__chaos_vectors(c);
+    c->tangent = tangent;
+    c->lanes = tangent ? vectors : 2 * vectors + 1;
+    c->width = nevh__padded(c->starts * c->lanes);
+}
+
+static int plan_walk(nevh_chaos *c, const nevh_integrator *scheme,
+                     bool differences) {
+    nevh__report why = {0};
+    if (!is_natural(scheme))
+        snprintf(c->why, sizeof c->why,
+                 "a step of %s on the variational equations is not its own "
+                 "derivative",
+                 scheme->name);
+    else if (differences)
+        snprintf(c->why, sizeof c->why, "differences were asked for");
+    else {
+        set_lanes(c, true);
+        if (!plan_tangent(c, scheme, &why))
+            return NEVH_OK;
+        if (why.status == NEVH_ENOMEM)
+            return nevh__fail_as(&c->report, &why);
+        snprintf(c->why, sizeof c->why, "%.*s", (int)sizeof c->why - 1,
+                 why.text);
+    }
+    set_lanes(c, false);
+    return plan_stepper(c, c->system, c->n, c->own, c->options.scale, scheme,
+                        &c->report);
+}
+
+static bool plan_start(const nevh_chaos *c, nevh__chaos_start *s) {
+    size_t vectors = nevh__chaos_vectors(c);
+    s->w = nevh__array(vectors * 2 * c->n, sizeof *s->w);
+    s->norm = nevh__array(vectors, sizeof *s->norm);
+    s->log = nevh__array(nevh__chaos_logs(c) * NEVH__BINS, sizeof *s->log);
+    s->gali = nevh__array(c->deviations + 1, sizeof *s->gali);
+    return s->w && s->norm && s->log && s->gali;
+}
+
+static int plan_rooms(nevh_chaos *c) {
+    size_t lanes = c->starts * (2 * nevh__chaos_vectors(c) + 1);
+    size_t room = 2 * c->n * nevh__padded(lanes);
+    c->own = nevh__array(4 * c->n, sizeof *c->own);
+    c->q = nevh__array(room, sizeof *c->q);
+    c->p = nevh__array(room, sizeof *c->p);
+    c->slope = nevh__array(2 * c->n, sizeof *c->slope);
+    c->place = nevh__array(2 * c->n * (c->deviations + 1), sizeof *c->place);
+    c->start = nevh__array(c->starts, sizeof *c->start);
+    bool all = c->own && c->q && c->p && c->slope && c->place && c->start;
+    for (size_t i = 0; all && i < c->starts; i++)
+        all = plan_start(c, &c->start[i]);
+    return all ? NEVH_OK : out_of_memory(c);
+}
+
+static int plan(nevh_chaos *c, const nevh_chaos_options *o) {
+    size_t n = c->n;
+    int status = check(c, o);
+    if (!status)
+        status = plan_rooms(c);
+    if (status)
+        return status;
+    c->options = *o->options;
+    c->options.width = 1;
+    memcpy(c->own, c->options.q, n * sizeof *c->own);
+    memcpy(c->own + n, c->options.p, n * sizeof *c->own);
+    c->options.q = c->own;
+    c->options.p = c->own + n;
+    status = plan_field(c);
+    if (!status)
+        status = plan_lengths(c, o->integrator);
+    if (!status)
+        status = check_scheme(c, o->integrator);
+    if (!status)
+        status = plan_period(c);
+    if (!status)
+        status = plan_walk(c, o->integrator, o->differences);
+    return status ? status : nevh__chaos_begin(c);
+}
+
+nevh_chaos *nevh_chaos_new(const nevh_system *system,
+                           const nevh_chaos_options *o) {
+    nevh_chaos *c = system && o ? nevh__array(1, sizeof *c) : NULL;
+    if (!c)
+        return NULL;
+    c->system = system;
+    c->n = system->n;
+    c->starts = o->starts ? o->starts : STARTS;
+    c->exponents = o->exponents ? o->exponents : 1;
+    c->deviations = o->deviations ? o->deviations : 2;
+    c->frame = c->exponents > 1 ? c->exponents : 0;
+    c->t_start = o->t_start;
+    c->dt = o->dt;
+    c->seed = o->seed;
+    int status = nevh_system_status(system);
+    if (status)
+        nevh__fail_as(&c->report, &system->report);
+    else
+        status = plan(c, o);
+    c->planned = !status;
+    return c;
+}
+
+void nevh_chaos_free(nevh_chaos *c) {
+    if (!c)
+        return;
+    for (size_t i = 0; c->start && i < c->starts; i++) {
+        free(c->start[i].w);
+        free(c->start[i].norm);
+        free(c->start[i].log);
+        free(c->start[i].gali);
+    }
+    nevh_stepper_free(c->stepper);
+    nevh__variational_free(c->variational);
+    nevh_field_free(c->field);
+    free(c->start);
+    free(c->own);
+    free(c->q);
+    free(c->p);
+    free(c->slope);
+    free(c->place);
+    free(c);
+}
+
+int nevh_chaos_restart(nevh_chaos *c, const double q[], const double p[],
+                       uint64_t seed) {
+    if (!c || !q || !p)
+        return NEVH_EINVAL;
+    if (!c->planned)
+        return c->report.status;
+    memcpy(c->own, q, c->n * sizeof *q);
+    memcpy(c->own + c->n, p, c->n * sizeof *p);
+    c->seed = seed;
+    c->report = (nevh__report){0};
+    return nevh__chaos_begin(c);
+}
+
+int nevh_chaos_status(const nevh_chaos *c) {
+    return c ? c->report.status : NEVH_ENOMEM;
+}
+
+const char *nevh_chaos_message(const nevh_chaos *c) {
+    return c ? c->report.text : "out of memory";
+}
+
+bool nevh_chaos_is_tangent(const nevh_chaos *c, const char **why) {
+    if (why)
+        *why = c ? c->why : "";
+    return c && c->tangent;
+}

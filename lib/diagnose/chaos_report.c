@@ -1,0 +1,127 @@
+/* nevh: exponents with their errors, and the word on an orbit.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "diagnose/chaos_private.h"
+#include <math.h>
+
+static const double dropped = 0.1; /* of the run, while displacements align */
+static const double aligned = 1e-8, aligned_by_differences = 1e-6;
+enum { BINS_A_BATCH = 4, TURNS = 100 };
+
+/* Of one start. */
+typedef struct {
+    double rate, error; /* error: INFINITY where there are too few batches */
+} estimate;
+
+static double elapsed(const nevh_chaos *c) {
+    return c->done * c->dt;
+}
+
+static size_t first_bin(const nevh_chaos *c) {
+    double t = 0;
+    size_t b = 0;
+    while (b < c->bin && t < dropped * elapsed(c))
+        t += c->span[b++];
+    return b;
+}
+
+static double batch_variance(const nevh_chaos *c, const double g[],
+                             size_t first, double rate) {
+    double sum = 0;
+    size_t count = 0;
+    for (size_t b = first; b + BINS_A_BATCH <= c->bin; b += BINS_A_BATCH) {
+        double growth = 0, time = 0;
+        for (size_t k = 0; k < BINS_A_BATCH; k++) {
+            growth += g[b + k];
+            time += c->span[b + k];
+        }
+        sum += pow(growth / time - rate, 2);
+        count++;
+    }
+    return count > 2 ? sum / (double)((count - 1) * count) : INFINITY;
+}
+
+static estimate estimate_start(const nevh_chaos *c, size_t start, size_t log) {
+    const double *g = c->start[start].log + log * NEVH__BINS;
+    double growth = 0, time = 0;
+    size_t first = first_bin(c);
+    for (size_t b = first; b <= c->bin && b < NEVH__BINS; b++) {
+        growth += g[b];
+        time += c->span[b];
+    }
+    double rate = growth / time;
+    return (estimate){rate, sqrt(batch_variance(c, g, first, rate))};
+}
+
+/* What linear growth leaves. */
+static double resolution(const nevh_chaos *c) {
+    return -log(dropped) / ((1 - dropped) * elapsed(c));
+}
+
+static double mean_indicator(const nevh_chaos *c, size_t start) {
+    return elapsed(c) > 0 ? c->start[start].area / elapsed(c) : 0;
+}
+
+static nevh_chaos_verdict verdict_on(const nevh_chaos *c, size_t start) {
+    if (!(elapsed(c) > 0))
+        return NEVH_EARLY;
+    estimate e = estimate_start(c, start, 0);
+    double error = hypot(e.error, resolution(c));
+    double megno = mean_indicator(c, start);
+    double limit = c->tangent ? aligned : aligned_by_differences;
+    if (e.rate > 2 * resolution(c) && c->start[start].sali < limit && megno > 4)
+        return NEVH_CHAOTIC;
+    if (e.rate < 2 * error && megno < 2.5 && elapsed(c) >= TURNS * c->period &&
+        isfinite(error))
+        return NEVH_REGULAR;
+    return NEVH_EARLY;
+}
+
+double nevh_chaos_exponent(const nevh_chaos *c, size_t i, double *error) {
+    double sum = 0, squares = 0, variance = 0, count = 0;
+    if (error)
+        *error = INFINITY;
+    if (!c || !c->planned || i >= c->exponents || !(elapsed(c) > 0))
+        return NAN;
+    nevh_chaos_verdict verdict = verdict_on(c, 0);
+    for (size_t k = 0; k < c->starts; k++) {
+        if (k && verdict_on(c, k) != verdict)
+            continue;
+        estimate e = estimate_start(c, k, i);
+        sum += e.rate;
+        squares += e.rate * e.rate;
+        variance += e.error * e.error;
+        count++;
+    }
+    double mean = sum / count;
+    double between =
+        count > 1 ? fmax(0, squares - sum * mean) / (count - 1) / count : 0;
+    double within = variance / (count * count);
+    if (error)
+        *error = hypot(sqrt(fmax(between, within)), resolution(c));
+    return mean;
+}
+
+nevh_chaos_report nevh_chaos_result(const nevh_chaos *c) {
+    nevh_chaos_report r = {0};
+    if (!c || !c->planned)
+        return r;
+    r.t = c->t_start + elapsed(c);
+    r.verdict = verdict_on(c, 0);
+    r.sali = c->start[0].sali;
+    r.megno = mean_indicator(c, 0);
+    r.starts = c->starts;
+    for (size_t k = 0; k < c->starts; k++)
+        r.agreeing += verdict_on(c, k) == r.verdict;
+    return r;
+}
+
+double nevh_chaos_gali(const nevh_chaos *c, size_t k) {
+    return c && c->planned && k >= 2 && k <= c->deviations ? c->start[0].gali[k]
+                                                           : NAN;
+}
+
+const char *nevh_chaos_verdict_name(nevh_chaos_verdict verdict) {
+    static const char *const names[] = {"early", "chaotic", "regular"};
+    size_t i = (size_t)verdict;
+    return i < sizeof names / sizeof *names ? names[i] : "unknown";
+}

@@ -1,0 +1,240 @@
+/* nevh: orbits and displacements are taken forward, and growth is written down.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "diagnose/chaos_private.h"
+#include <math.h>
+#include <string.h>
+
+/* Of orbits near by, on either side, in lengths of H. */
+static const double near_by = 1e-5;
+/* Displacements are made unit vectors again beyond that size, and looked at
+   more often where they grow by more. */
+static const double most_size = 1e3, most_growth = 3;
+
+static double *row_q(nevh_chaos *c, size_t k) {
+    return c->q + k * c->width;
+}
+
+static double *row_p(nevh_chaos *c, size_t k) {
+    return c->p + k * c->width;
+}
+
+/* Lanes of vector v: of tangents its own, else on either side of the orbit. */
+void nevh__chaos_put(nevh_chaos *c, size_t start, size_t v) {
+    const double *w = c->start[start].w + v * 2 * c->n, *s = c->options.scale;
+    size_t n = c->n, first = start * c->lanes, a = first + 2 * v + 1;
+    for (size_t k = 0; k < n; k++) {
+        double x = w[k] * s[k], y = w[n + k] * s[n + k];
+        if (c->tangent) {
+            row_q(c, n + k)[first + v] = x;
+            row_p(c, k)[first + v] = y;
+            continue;
+        }
+        double q = row_q(c, k)[first], p = row_p(c, k)[first];
+        row_q(c, k)[a] = q + near_by * x;
+        row_p(c, k)[a] = p + near_by * y;
+        row_q(c, k)[a + 1] = q - near_by * x;
+        row_p(c, k)[a + 1] = p - near_by * y;
+    }
+}
+
+static void take(nevh_chaos *c, size_t start, size_t v) {
+    double *w = c->start[start].w + v * 2 * c->n;
+    const double *s = c->options.scale;
+    size_t n = c->n, first = start * c->lanes, a = first + 2 * v + 1;
+    for (size_t k = 0; k < n; k++) {
+        double *q = row_q(c, k), *p = row_p(c, k);
+        double x = c->tangent ? row_q(c, n + k)[first + v]
+                              : (q[a] - q[a + 1]) / (2 * near_by);
+        double y = c->tangent ? row_p(c, k)[first + v]
+                              : (p[a] - p[a + 1]) / (2 * near_by);
+        w[k] = x / s[k];
+        w[n + k] = y / s[n + k];
+    }
+}
+
+static double dot(const double a[], const double b[], size_t m) {
+    double sum = 0;
+    for (size_t k = 0; k < m; k++)
+        sum += a[k] * b[k];
+    return sum;
+}
+
+static void scale_by(double a[], double x, size_t m) {
+    for (size_t k = 0; k < m; k++)
+        a[k] *= x;
+}
+
+/* What is left of b without its part along the unit vector a. */
+static void remove_part(double b[], const double a[], size_t m) {
+    double x = dot(a, b, m);
+    for (size_t k = 0; k < m; k++)
+        b[k] -= x * a[k];
+}
+
+/* Makes v orthogonal to the unit vectors before it, and a unit vector.
+   returns  its length before */
+static double orthonormalise(double all[], size_t v, size_t m) {
+    double *w = all + v * m;
+    for (int twice = 0; twice < 2; twice++)
+        for (size_t u = 0; u < v; u++)
+            remove_part(w, all + u * m, m);
+    double length = sqrt(dot(w, w, m));
+    if (length > 0)
+        scale_by(w, 1 / length, m);
+    return length;
+}
+
+static void add_growth(nevh_chaos *c, nevh__chaos_start *s, size_t log,
+                       double growth) {
+    s->log[log * NEVH__BINS + c->bin] += growth;
+}
+
+/* The indices of the deviations, as unit vectors in `place`. */
+static void index_alignment(nevh_chaos *c, nevh__chaos_start *s) {
+    size_t m = 2 * c->n;
+    double plus = 0, minus = 0, volume = 1;
+    memcpy(c->place, s->w, c->deviations * m * sizeof *s->w);
+    for (size_t v = 0; v < c->deviations; v++)
+        scale_by(c->place + v * m,
+                 1 / sqrt(dot(c->place + v * m, c->place + v * m, m)), m);
+    for (size_t k = 0; k < m; k++) {
+        plus += pow(c->place[k] + c->place[m + k], 2);
+        minus += pow(c->place[k] - c->place[m + k], 2);
+    }
+    s->sali = sqrt(fmin(plus, minus));
+    for (size_t v = 0; v < c->deviations; v++) {
+        volume *= orthonormalise(c->place, v, m);
+        s->gali[v + 1] = volume;
+    }
+    s->gali[2] = sqrt(plus * minus) / 2;
+}
+
+/* A deviation: its growth since the last look; NAN where it overflowed. */
+static double look_at_deviation(nevh_chaos *c, size_t start, size_t v) {
+    nevh__chaos_start *s = &c->start[start];
+    double *w = s->w + v * 2 * c->n;
+    take(c, start, v);
+    double norm = sqrt(dot(w, w, 2 * c->n)), before = s->norm[v];
+    if (!isfinite(norm) || norm == 0)
+        return NAN;
+    s->norm[v] = norm;
+    if (!c->tangent || norm > most_size || norm < 1 / most_size) {
+        scale_by(w, 1 / norm, 2 * c->n);
+        s->norm[v] = 1;
+        nevh__chaos_put(c, start, v);
+    }
+    return log(norm / before);
+}
+
+static double look_at_frame(nevh_chaos *c, size_t start) {
+    nevh__chaos_start *s = &c->start[start];
+    double *first = s->w + c->deviations * 2 * c->n, most = 0;
+    for (size_t v = 0; v < c->frame; v++)
+        take(c, start, c->deviations + v);
+    for (size_t v = 0; v < c->frame; v++) {
+        double growth = log(orthonormalise(first, v, 2 * c->n));
+        if (!isfinite(growth))
+            return NAN;
+        most = fmax(most, fabs(growth));
+        add_growth(c, s, v, growth);
+        nevh__chaos_put(c, start, c->deviations + v);
+    }
+    return most;
+}
+
+/* The orbit's lanes are made equal: implicit stages end as their tolerance
+   lets them. */
+static void align_orbit(nevh_chaos *c, size_t start) {
+    size_t first = start * c->lanes;
+    for (size_t k = 0; c->tangent && k < c->n; k++)
+        for (size_t i = 1; i < c->lanes; i++) {
+            row_q(c, k)[first + i] = row_q(c, k)[first];
+            row_p(c, c->n + k)[first + i] = row_p(c, c->n + k)[first];
+        }
+}
+
+/* returns  the largest growth; NAN where something is not finite */
+static double look_at_start(nevh_chaos *c, size_t start, double t0, double t1) {
+    nevh__chaos_start *s = &c->start[start];
+    double most = 0, before = s->indicator;
+    align_orbit(c, start);
+    for (size_t v = 0; v < c->deviations; v++) {
+        double growth = look_at_deviation(c, start, v);
+        if (!isfinite(growth))
+            return NAN;
+        if (v == 0) {
+            s->moment += (t0 + t1) / 2 * growth;
+            if (!c->frame)
+                add_growth(c, s, 0, growth);
+        }
+    }
+    index_alignment(c, s);
+    s->indicator = 2 * s->moment / t1;
+    s->area += (before + s->indicator) / 2 * (t1 - t0);
+    if (c->frame)
+        most = look_at_frame(c, start);
+    return most;
+}
+
+static void merge_bins(nevh_chaos *c) {
+    for (size_t b = 0; b < NEVH__BINS / 2; b++)
+        c->span[b] = c->span[2 * b] + c->span[2 * b + 1];
+    memset(c->span + NEVH__BINS / 2, 0, NEVH__BINS / 2 * sizeof *c->span);
+    for (size_t i = 0; i < c->starts; i++)
+        for (size_t v = 0; v < nevh__chaos_logs(c); v++) {
+            double *g = c->start[i].log + v * NEVH__BINS;
+            for (size_t b = 0; b < NEVH__BINS / 2; b++)
+                g[b] = g[2 * b] + g[2 * b + 1];
+            memset(g + NEVH__BINS / 2, 0, NEVH__BINS / 2 * sizeof *g);
+        }
+    c->bin = NEVH__BINS / 2;
+    c->looks_a_bin *= 2;
+}
+
+static void next_bin(nevh_chaos *c) {
+    if (++c->looks < c->looks_a_bin)
+        return;
+    c->looks = 0;
+    if (++c->bin == NEVH__BINS)
+        merge_bins(c);
+}
+
+static int look(nevh_chaos *c, double steps) {
+    double t0 = c->done * c->dt, t1 = (c->done + steps) * c->dt, most = 0;
+    for (size_t i = 0; i < c->starts; i++) {
+        double growth = look_at_start(c, i, t0, t1);
+        if (!isfinite(growth))
+            return nevh__fail(&c->report, NEVH_EDOM,
+                              "a displacement of start %zu has grown beyond "
+                              "all numbers, or vanished, at t = %.9g",
+                              i, c->t_start + t1);
+        most = fmax(most, growth);
+    }
+    c->span[c->bin] += t1 - t0;
+    c->done += steps;
+    if (most > most_growth && c->stride > 1)
+        c->stride /= 2;
+    next_bin(c);
+    return NEVH_OK;
+}
+
+int nevh_chaos_run(nevh_chaos *c, double until) {
+    if (!c || !isfinite(until))
+        return NEVH_EINVAL;
+    double last = rint((until - c->t_start) / c->dt);
+    while (!c->report.status && c->done < last) {
+        /* Looks come at multiples of the stride, however a run is cut. */
+        double steps =
+            fmin(last - c->done,
+                 (double)c->stride - fmod(c->done, (double)c->stride));
+        int status = nevh_run(c->stepper, c->t_start + c->done * c->dt, c->dt,
+                              (size_t)steps, c->q, c->p, NULL, 0);
+        if (status)
+            return nevh__fail(&c->report, status, "%s",
+                              nevh_stepper_message(c->stepper));
+        look(c, steps);
+        if (!c->tangent) /* what one lane remembers no other knows of */
+            nevh_stepper_reset(c->stepper);
+    }
+    return c->report.status;
+}
