@@ -57,6 +57,7 @@ suites = \
 	tests/scheme/check_own_time \
 	tests/scheme/check_eccentric \
 	tests/diagnose/check_energy \
+	tests/diagnose/check_chaos \
 	tests/diagnose/check_verdict \
 	tests/diagnose/check_loop \
 	tests/tool/check_grid \
@@ -165,6 +166,7 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_verdict.sh \
 	tests/tool/nevh_plot.sh \
 	tests/tool/nevh_section.sh \
+	tests/tool/nevh_chaos.sh \
 	tests/tool/nevh_sweep.sh \
 	tests/tool/nevh_flow.sh \
 	tests/tool/nevh_report.sh \

@@ -82,6 +82,7 @@ tools_nevh_SOURCES = \
 	tools/ensemble/members.h \
 	tools/ensemble/members.c \
 	tools/inspect/check.c \
+	tools/inspect/chaos.c \
 	tools/orbit/section.c \
 	tools/inspect/impact_private.h \
 	tools/inspect/impact.c \

@@ -30,6 +30,9 @@ static const struct {
      "what it changes"},
     {section, FOR_SECTION, "SCENE",
      "points of Poincare and stroboscopic sections, as CSV"},
+    {chaos, FOR_CHAOS, "SCENE",
+     "whether the orbit is chaotic: Lyapunov exponents with errors, alignment "
+     "indices, MEGNO"},
     {sweep, FOR_SWEEP, "SCENE",
      "many orbits: a row for each member of the ensemble, with outcomes, as "
      "CSV or an array of NumPy (-o FILE.npy)"},

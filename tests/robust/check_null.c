@@ -42,6 +42,17 @@ static nevh_separability separability;
     X(STATUS, nevh_reversal_defect, (NULL, 0.1, 0.1, 1, in, in, in, out))      \
     X(REAL, nevh_stability_limit, (NULL))                                      \
     X(REAL, nevh_stability_angle, (NULL, 0.1))                                 \
+    X(MADE, nevh_chaos_new, (NULL, NULL))                                      \
+    X(ANY, nevh_chaos_free, (NULL))                                            \
+    X(STATUS, nevh_chaos_status, (NULL))                                       \
+    X(TEXT, nevh_chaos_message, (NULL))                                        \
+    X(STATUS, nevh_chaos_restart, (NULL, in, in, 0))                           \
+    X(STATUS, nevh_chaos_run, (NULL, 0.1))                                     \
+    X(ANY, nevh_chaos_result, (NULL))                                          \
+    X(REAL, nevh_chaos_exponent, (NULL, 0, NULL))                              \
+    X(REAL, nevh_chaos_gali, (NULL, 2))                                        \
+    X(NUMBER, nevh_chaos_is_tangent, (NULL, NULL))                             \
+    X(TEXT, nevh_chaos_verdict_name, ((nevh_chaos_verdict)-1))                 \
     X(RATES, nevh_rates_new, (NULL, NULL))                                     \
     X(ANY, nevh_rates_free, (NULL))                                            \
     X(STATUS, nevh_rates_status, (NULL))                                       \

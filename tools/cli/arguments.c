@@ -182,6 +182,20 @@ int read_digits(options *o, const char *argument) {
                : tool_refuse("--digits takes 1 to 30, not %s", argument);
 }
 
+int read_starts(options *o, const char *argument) {
+    return read_count("starts", argument, &o->starts);
+}
+
+int read_gali(options *o, const char *argument) {
+    return read_count("gali", argument, &o->deviations);
+}
+
+int read_exponents(options *o, const char *argument) {
+    o->all_exponents = strcmp(argument, "all") == 0;
+    return o->all_exponents ? TOOL_OK
+                            : read_count("exponents", argument, &o->exponents);
+}
+
 int read_repeat(options *o, const char *argument) {
     return read_count("repeat", argument, &o->repeats);
 }

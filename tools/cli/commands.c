@@ -14,7 +14,7 @@ static const struct {
     {FOR_LIST, "list"},           {FOR_SWEEP, "sweep"},
     {FOR_EXPORT, "export"},       {FOR_FLOW, "flow"},
     {FOR_REFERENCE, "reference"}, {FOR_REPORT, "report"},
-    {FOR_PORTRAIT, "portrait"},
+    {FOR_PORTRAIT, "portrait"},   {FOR_CHAOS, "chaos"},
 };
 
 const char *command_name(unsigned bit) {

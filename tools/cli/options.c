@@ -10,7 +10,7 @@ enum {
     OF_COST = FOR_COST | FOR_GRADIENTS | FOR_RECOMMEND,
     OF_SCENES = FOR_EXPORT | FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_RUN |
                 FOR_SECTION | FOR_SWEEP | FOR_FLOW | FOR_PORTRAIT |
-                FOR_REFERENCE | FOR_REPORT | OF_COST,
+                FOR_REFERENCE | FOR_REPORT | FOR_CHAOS | OF_COST,
     OF_NATIVE = FOR_COMPARE | FOR_RUN | FOR_COST | FOR_RECOMMEND,
     OF_TABLES = (OF_SCENES & ~(FOR_EXPORT | FOR_REPORT | FOR_PORTRAIT)) |
                 FOR_LIST | FOR_HARD,
@@ -61,7 +61,7 @@ static const struct {
      "timed runs, of which the median counts"},
     {"every", "K", FOR_RUN | FOR_EXPORT, read_every,
      "a row each K steps, and at the end"},
-    {"samples", "N", FOR_RUN | FOR_FLOW, read_samples,
+    {"samples", "N", FOR_RUN | FOR_FLOW | FOR_CHAOS, read_samples,
      "N rows at equal times, the first and the last included"},
     {"at", "T1,T2", FOR_RUN | FOR_FLOW | FOR_REFERENCE, read_at,
      "rows at these times alone"},
@@ -74,6 +74,13 @@ static const struct {
      "from 0 to 2*pi; a cat round the start if not given"},
     {"digits", "N", FOR_REFERENCE, read_digits,
      "digits that states are to have, 1 to 30; 24 if not given"},
+    {"exponents", "N|all", FOR_CHAOS, read_exponents,
+     "the N largest exponents, or all, instead of the largest"},
+    {"starts", "N", FOR_CHAOS, read_starts,
+     "the orbit and such as start near by at the same energy, of whose spread "
+     "the error is made; 8 if not given"},
+    {"gali", "K", FOR_CHAOS, read_gali,
+     "the generalised alignment indices of up to K displacements"},
     {"resume", "FILE", FOR_RUN | FOR_SWEEP, read_resume,
      "go on with FILE, which nevh run or nevh sweep -o FILE left unfinished, "
      "as if never interrupted"},

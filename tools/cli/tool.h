@@ -12,6 +12,7 @@
        cost        cost.c       studies of study.h: rows at many steps
        recommend   recommend.c  the same
        gradients   gradients.c
+       chaos       chaos.c
        check       check.c      pace.h: a trial run
        effects     effects.c, impact.c
        hard        hard.c
@@ -134,6 +135,7 @@ enum {
     FOR_EXPORT = 4096,
     FOR_FLOW = 8192,
     FOR_REFERENCE = 16384,
+    FOR_CHAOS = 1 << 15,
     FOR_REPORT = 1 << 20,
     FOR_PORTRAIT = 1 << 21,
     FOR_LAST = FOR_PORTRAIT
@@ -158,6 +160,8 @@ typedef struct {
     size_t task, tasks;    /* part `task` of `tasks`; 0: not given */
     double stop_after;     /* seconds; 0: not given */
     bool retry, join;
+    size_t starts, exponents, deviations; /* of chaos; 0: not given */
+    bool all_exponents;
     list dt, at; /* formulas of the scene's parameters */
     double *tolerance;
     size_t tolerances;
@@ -244,9 +248,7 @@ char *scene_file(const char *beside, const char *name);
 typedef int command(const options *);
 command compare, list_command, check, effects, run_scene, export_scene, section,
     new_scene;
-command cost, recommend, gradients, hard, sweep, flow, reference_command,
-    report;
 command cost, recommend, gradients, hard, sweep, flow, portrait,
-    reference_command;
+    reference_command, report, chaos;
 
 #endif

@@ -1,0 +1,76 @@
+#!/bin/sh
+# nevh chaos: rows, words, history, and what it refuses.
+
+. "${srcdir:-.}/tests/support/nevh_support.sh"
+
+rows() { grep -v '^#' $work/out | tail -n +2; }
+holds() {
+    rows | awk -F, "function abs(x) { return x < 0 ? -x : x }
+        !($1) { print; wrong = 1 } END { exit wrong || NR == 0 }" ||
+        fails "does not hold: $1"
+}
+start='y=-0.25,p_x=0.42081,p_y=0'
+
+# Chaos and order, with words; a run goes on until it is clear which.
+exits 0 chaos henon-heiles --start $start
+has '^ scene +integrator +dt +t +exponent +value +error +sali +megno +verdict'
+has 'chaotic: neighbours part by a factor of e in 2[0-9.]+ '
+exits 0 chaos henon-heiles --format csv
+test "$(grep -v '^#' $work/out | head -n 1)" = \
+    scene,integrator,dt,t,exponent,value,error,sali,megno,verdict ||
+    fails "has other columns"
+holds '$1 == "henon-heiles" && $2 == "verlet" && $3 == 0.2 && $4 >= 1000 &&
+       $5 == 1 && abs($6) < 2*$7 && abs($9 - 2) < 0.5 && $10 == "regular"'
+test "$(rows | wc -l)" -eq 1 || fails "has not one row"
+
+# All exponents, in pairs; of each integrator and step that is named.
+exits 0 chaos henon-heiles --start $start --integrators verlet,gauss4 \
+    --dt 0.2,0.1 --t-end 200 --exponents all --starts 2 --format csv
+test "$(rows | wc -l)" -eq 16 || fails "has not 16 rows"
+rows | awk -F, '{ sum += $6 } $5 == 4 { if (sum > 1e-8 || sum < -1e-8) {
+        print; wrong = 1 } sum = 0; n++ } END { exit wrong || n != 4 }' ||
+    fails "has exponents that are no pairs"
+exits 0 chaos double-pendulum-chaotic --t-end 20 --exponents 3 --starts 1 \
+    --integrators midpoint --format csv
+test "$(rows | wc -l)" -eq 3 || fails "has not 3 rows"
+holds '$10 != "regular"'
+
+# The history: the end is that of a run without, and what is too early.
+exits 0 chaos henon-heiles --t-end 40 --samples 4 --format csv
+holds '$4 == 10*NR && $10 == "early"'
+rows | tail -n 1 >$work/last
+exits 0 chaos henon-heiles --t-end 40 --format csv
+rows | cmp -s - $work/last || fails "depends on who looks"
+exits 0 chaos henon-heiles --t-end 40
+has 'too early to say'
+exits 0 chaos henon-heiles --t-end 40 --gali 4 --format json
+has 'GALI_4 = '
+has '"verdict": "early"'
+
+# Schemes that are no derivatives of themselves.
+exits 0 chaos henon-heiles --t-end 20 --integrators gonzalez,tao4 --starts 1
+has 'gonzalez: displacements are differences of orbits near by'
+has 'tao4: displacements are differences'
+
+# A run that fails says when, and leaves what there was.
+printf '%s\n' '[coordinates]' 'x = 1' '[effects]' 'K = p_x^2/2' 'V = -x^4' \
+    '[run]' 't_end = 10' 'dt = 0.01' >$work/falls.nevh
+exits 1 chaos $work/falls.nevh --format csv
+has '^# failed: verlet, dt = 0\.01: '
+
+# What is no use.
+exits 2 chaos henon-heiles --exponents 5
+says '\-\-exponents 5: there are 4'
+exits 2 chaos henon-heiles --exponents none
+exits 2 chaos henon-heiles --gali 1
+says 'takes 2 to 4 displacements'
+exits 2 chaos henon-heiles --integrators taylor
+says 'tolerance'
+exits 2 chaos kepler-0.9 --integrators adaptive-verlet
+says 'depend on the state|chooses its steps'
+exits 2 chaos henon-heiles --integrators verlett
+exits 2 chaos henon-heiles --dt 0
+exits 2 chaos henon-heiles --plot x.svg
+says 'no option of nevh chaos'
+exits 2 chaos no-such-scene
+exit $status

@@ -1,0 +1,258 @@
+/* nevh chaos: is the orbit of a scene chaotic, and on which time scale.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "experiment/plan.h"
+#include <math.h>
+#include <nevh/chaos.h>
+#include <stdlib.h>
+
+/* Where no end is asked for, a run goes on until it is clear what the orbit is,
+   up to so many steps, or to the scene's own end. */
+static const double most_steps = 4e5, good_enough = 0.05;
+
+typedef struct {
+    const plan *plan;
+    const options *options;
+    size_t exponents;
+    page result;
+    bool early;
+} job;
+
+/* One integrator with one step. */
+typedef struct {
+    const char *integrator;
+    double dt;
+    nevh_chaos *chaos;
+} row;
+
+static void put_number(const job *j, double x) {
+    if (j->options->format == FORMAT_TABLE && isfinite(x))
+        table_shown(j->result.table, "%.4g", x);
+    else
+        table_number(j->result.table, x);
+}
+
+static void put_exponents(job *j, const row *r) {
+    nevh_chaos_report now = nevh_chaos_result(r->chaos);
+    for (size_t i = 0; i < j->exponents; i++) {
+        double error, value = nevh_chaos_exponent(r->chaos, i, &error);
+        table_text(j->result.table, j->plan->name);
+        table_text(j->result.table, r->integrator);
+        put_number(j, r->dt);
+        put_number(j, now.t);
+        table_shown(j->result.table, "%zu", i + 1);
+        put_number(j, value);
+        put_number(j, error);
+        put_number(j, now.sali);
+        put_number(j, now.megno);
+        table_text(j->result.table, nevh_chaos_verdict_name(now.verdict));
+    }
+}
+
+static int fail(job *j, const row *r) {
+    char *why = text_print("%s, dt = %g: %s", r->integrator, r->dt,
+                           nevh_chaos_message(r->chaos));
+    list_print(&j->result.before, "failed: %s", why);
+    tool_refuse("%s: %s", j->plan->name, why);
+    free(why);
+    return TOOL_FAILED;
+}
+
+static bool is_clear(const row *r) {
+    double error, value = nevh_chaos_exponent(r->chaos, 0, &error);
+    nevh_chaos_verdict verdict = nevh_chaos_result(r->chaos).verdict;
+    return verdict == NEVH_REGULAR ||
+           (verdict == NEVH_CHAOTIC && error < good_enough * value);
+}
+
+static int run_until_clear(const job *j, const row *r) {
+    double begin = j->plan->run->t_start, span = j->plan->t_end - begin;
+    double most = fmax(span, most_steps * r->dt);
+    int status = nevh_chaos_run(r->chaos, begin + span);
+    while (!status && !is_clear(r) && span < most) {
+        span = fmin(2 * span, most);
+        status = nevh_chaos_run(r->chaos, begin + span);
+    }
+    return status;
+}
+
+static int run_history(job *j, const row *r) {
+    const plan *p = j->plan;
+    int status = NEVH_OK;
+    for (size_t i = 1; !status && i <= j->options->samples; i++) {
+        double part = (double)i / (double)j->options->samples;
+        status = nevh_chaos_run(
+            r->chaos, p->run->t_start + part * (p->t_end - p->run->t_start));
+        if (!status)
+            put_exponents(j, r);
+    }
+    return status;
+}
+
+static int run_row(job *j, const row *r) {
+    int status;
+    if (j->options->samples) {
+        status = run_history(j, r);
+        return status ? fail(j, r) : TOOL_OK;
+    }
+    status = j->options->t_end ? nevh_chaos_run(r->chaos, j->plan->t_end)
+                               : run_until_clear(j, r);
+    if (nevh_chaos_result(r->chaos).t > j->plan->run->t_start)
+        put_exponents(j, r);
+    return status ? fail(j, r) : TOOL_OK;
+}
+
+static void note_row(job *j, const row *r) {
+    const char *why;
+    list *notes = &j->result.before;
+    if (!nevh_chaos_is_tangent(r->chaos, &why))
+        list_print(notes,
+                   "%s: displacements are differences of orbits near by: %s",
+                   r->integrator, why);
+    for (size_t k = 2; k <= j->options->deviations; k++)
+        list_print(notes, "%s, dt = %g: GALI_%zu = %.4g", r->integrator, r->dt,
+                   k, nevh_chaos_gali(r->chaos, k));
+}
+
+static void say_row(job *j, const row *r) {
+    nevh_chaos_report now = nevh_chaos_result(r->chaos);
+    double error, value = nevh_chaos_exponent(r->chaos, 0, &error);
+    char *what =
+        now.verdict == NEVH_CHAOTIC
+            ? text_print("chaotic: neighbours part by a factor of e in %.3g",
+                         1 / value)
+        : now.verdict == NEVH_REGULAR
+            ? text_print("regular: the largest exponent is 0 within %.1g",
+                         error)
+            : text_print("too early to say at t = %.6g; --t-end takes it "
+                         "further",
+                         now.t);
+    list_print(&j->result.after,
+               "%s, dt = %g: %s (%zu of %zu starts at this "
+               "energy agree).",
+               r->integrator, r->dt, what, now.agreeing, now.starts);
+    free(what);
+}
+
+static int run_one(job *j, const char *integrator, double dt) {
+    const plan *p = j->plan;
+    bool transformed;
+    nevh_options o = plan_options(p, p->gradients.item[0]);
+    o.transform = plan_transform(p, integrator);
+    nevh_chaos_options of = {.integrator =
+                                 plan_scheme(integrator, &transformed),
+                             .options = &o,
+                             .t_start = p->run->t_start,
+                             .dt = dt,
+                             .starts = j->options->starts,
+                             .exponents = j->exponents,
+                             .deviations = j->options->deviations};
+    row r = {integrator, dt, tool_owned(nevh_chaos_new(p->system, &of))};
+    int status =
+        nevh_chaos_status(r.chaos)
+            ? tool_refuse("%s: %s", p->name, nevh_chaos_message(r.chaos))
+            : run_row(j, &r);
+    if (status != TOOL_USAGE) {
+        note_row(j, &r);
+        table_group(j->result.table);
+        if (!status)
+            say_row(j, &r);
+    }
+    nevh_chaos_free(r.chaos);
+    return status;
+}
+
+/* All steps that were given, or the scene's first. */
+static int run_steps(job *j, const char *integrator) {
+    size_t count = j->options->dt.count ? j->plan->dts : 1;
+    int worst = TOOL_OK;
+    for (size_t i = 0; worst != TOOL_USAGE && i < count; i++) {
+        int status = run_one(j, integrator, j->plan->dt[i]);
+        worst = status > worst ? status : worst;
+    }
+    return worst;
+}
+
+/* All integrators that were given, or the scene's first of fixed steps. */
+static const char *first_of(const plan *p) {
+    for (size_t i = 0; i < p->integrators.count; i++) {
+        const char *name = p->integrators.item[i];
+        nevh_stepper *s = plan_stepper(p, name);
+        bool transformed, fits = !nevh_stepper_status(s);
+        const nevh_integrator *scheme = plan_scheme(name, &transformed);
+        nevh_stepper_free(s);
+        if (fits && !transformed && !nevh_integrator_own_time(scheme) &&
+            !nevh_integrator_adaptive(scheme))
+            return name;
+    }
+    return NULL;
+}
+
+static int run_all(job *j) {
+    const plan *p = j->plan;
+    int worst = TOOL_OK;
+    if (!j->options->integrators.count) {
+        const char *name = first_of(p);
+        if (!name)
+            return tool_refuse(
+                "%s: none of the integrators has fixed steps and "
+                "fits; name one with --integrators",
+                p->name);
+        list_print(&j->result.before, "integrator: %s, dt = %.9g%s", name,
+                   p->dt[0],
+                   p->integrators.count > 1 || p->dts > 1
+                       ? ": the first of fixed steps that fits, and the first "
+                         "dt"
+                       : "");
+        return run_steps(j, name);
+    }
+    for (size_t i = 0; worst != TOOL_USAGE && i < p->integrators.count; i++) {
+        int status = run_steps(j, p->integrators.item[i]);
+        worst = status > worst ? status : worst;
+    }
+    return worst;
+}
+
+static int check_numbers(job *j) {
+    size_t most = 2 * j->plan->n;
+    j->exponents = j->options->all_exponents ? most
+                   : j->options->exponents   ? j->options->exponents
+                                             : 1;
+    if (j->exponents > most)
+        return tool_refuse("--exponents %zu: there are %zu", j->exponents,
+                           most);
+    if (j->options->deviations == 1 || j->options->deviations > most)
+        return tool_refuse("--gali %zu: it takes 2 to %zu displacements",
+                           j->options->deviations, most);
+    if (j->options->samples && !j->options->t_end && !isfinite(j->plan->t_end))
+        return tool_refuse("--samples: no end: give --t-end");
+    return TOOL_OK;
+}
+
+static int chaos_of(const options *o, const plan *p) {
+    static const char *const columns[] = {
+        "scene", "integrator", "dt",   "t",     "exponent",
+        "value", "error",      "sali", "megno", "verdict"};
+    job j = {.plan = p, .options = o, .result = {.table = table_new()}};
+    int status = check_numbers(&j);
+    table_columns(j.result.table, columns, sizeof columns / sizeof *columns);
+    if (!status) {
+        plan_notes(p, &j.result.before);
+        settings_notes(o, &j.result.before);
+        status = run_all(&j);
+    }
+    if (status != TOOL_USAGE)
+        status = output_page(o, &j.result, status);
+    page_free(&j.result);
+    return status;
+}
+
+int chaos(const options *o) {
+    plan p = {0};
+    int status = plan_make(&p, o);
+    if (!status && o->file)
+        status = output_check(o->file);
+    if (!status)
+        status = chaos_of(o, &p);
+    plan_free(&p);
+    return status;
+}
