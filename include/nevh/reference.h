@@ -15,9 +15,12 @@ typedef struct nevh_reference nevh_reference;
 
 /* The orbit through (q, p) at t0, until t1 on either side of it.
    integrator  NULL: an exact solution where H is recognised to have one, else
-               gauss12, or dop853 where there is friction, which Gauss methods
-               only take to second order.  Not NULL: a run of that one.  Schemes
-               that choose their own times are refused with NEVH_EINVAL.
+               Taylor series in long double where H is of formulas that are
+               analytic and the work allows it, else gauss12, or dop853 where
+               there is friction, which Gauss methods only take to second order.
+               nevh_taylor: Taylor series, whatever the work.  Another one: a run
+               of it.  Other schemes that choose their own times are refused
+               with NEVH_EINVAL.
    returns     the reference, to be freed with nevh_reference_free; NULL only
                when memory is out.  Otherwise it carries NEVH_EINVAL, what
                planning or a step returned, or NEVH_EFAILED where no reference
