@@ -83,7 +83,8 @@ static int plan_period(nevh_chaos *c) {
     nevh_rates_free(r);
     double rate = fmax(frequency, isfinite(growth) ? growth : 0);
     c->period = !status && rate > 0 ? 2 * acos(-1) / rate : 8 * c->dt;
-    c->stride = (size_t)fmax(1, fmin(1e6, c->period / c->dt / LOOKS_A_PERIOD));
+    c->first_stride =
+        (size_t)fmax(1, fmin(1e6, c->period / c->dt / LOOKS_A_PERIOD));
     return NEVH_OK;
 }
 

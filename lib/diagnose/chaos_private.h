@@ -54,7 +54,8 @@ struct nevh_chaos {
     double *q, *p;         /* of the stepper */
     double *slope, *place; /* 2n */
     nevh__chaos_start *start;
-    double done;             /* steps */
+    double done; /* steps */
+    size_t first_stride;
     size_t stride;           /* steps between looks */
     double span[NEVH__BINS]; /* the time of each bin */
     size_t bin, looks, looks_a_bin;

@@ -86,6 +86,7 @@ static void forget(nevh_chaos *c) {
     memset(c->q, 0, 2 * c->n * c->width * sizeof *c->q);
     memset(c->p, 0, 2 * c->n * c->width * sizeof *c->p);
     c->done = 0;
+    c->stride = c->first_stride;
     c->bin = c->looks = 0;
     c->looks_a_bin = 1;
     nevh_stepper_reset(c->stepper);
