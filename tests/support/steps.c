@@ -3,6 +3,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include <math.h>
 #include <nevh/nevh.h>
+#include <nevh/scene.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -34,9 +35,18 @@ static int rescue(const nevh_integrator *scheme, double h, size_t steps,
     return status;
 }
 
+/* For schemes that need formulas. */
+static const char text[] =
+    "[coordinates]\nx = 0.3\ny = 0\n[effects]\nK = (p_x^2 + p_y^2)/2\n"
+    "V = (x^2 + y^2)/2 + x^2*y\n[run]\nt_end = 1\ndt = 0.01\n";
+
 static int run(const nevh_integrator *scheme, size_t steps) {
     const nevh_model *model = nevh_coupled_oscillators_model;
-    nevh_system *s = model->system(model->defaults);
+    nevh_system *own = model->system(model->defaults);
+    nevh_scene *scene = nevh_integrator_needs_formulas(scheme)
+                            ? nevh_scene_parse("steps", text)
+                            : NULL;
+    const nevh_system *s = scene ? nevh_scene_system(scene) : own;
     double q[] = {model->q[0], model->q[1]}, p[] = {model->p[0], model->p[1]};
     bool needs = nevh_integrator_needs_tolerance(scheme);
     nevh_options options = {.q = q, .p = p, .tolerance = needs ? 1e-12 : 0};
@@ -48,7 +58,8 @@ static int run(const nevh_integrator *scheme, size_t steps) {
         puts(nevh_stepper_message(stepper));
     nevh_energy_free(energy);
     nevh_stepper_free(stepper);
-    nevh_system_free(s);
+    nevh_scene_free(scene);
+    nevh_system_free(own);
     return status;
 }
 

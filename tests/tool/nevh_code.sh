@@ -137,7 +137,9 @@ SIGN=$PWD/$work/compiling
 HELD=$PWD/$work/held # whose reader ends when no compiler does any more
 export SIGN HELD
 mkfifo $HELD
-for signal in TERM HUP DEAF; do
+signals='TERM HUP DEAF'
+sh -c 'kill -HUP $$' && signals='TERM DEAF' # who started this ignores HUP
+for signal in $signals; do
     command="compare code.nevh ($signal)"
     rm -f $SIGN
     $limit cat $HELD &

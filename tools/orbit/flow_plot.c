@@ -99,8 +99,22 @@ static void draw_outline(plot *to, const flow_job *j, const nevh_loop *l,
     free(q);
 }
 
+static bool is_shown(const flow_job *j, const nevh_loop *l, size_t time,
+                     const window *w) {
+    double *q = tool_allocate(2 * j->plan.n, sizeof *q), *p = q + j->plan.n;
+    double shift = shift_of(j, l, time);
+    bool shown = false;
+    for (size_t k = 0; !shown && nevh_loop_shape(l, time, k, q, p); k++) {
+        double x = q[plane(j)] - shift, y = p[plane(j)];
+        shown =
+            x >= w->low_x && x <= w->high_x && y >= w->low_y && y <= w->high_y;
+    }
+    free(q);
+    return shown;
+}
+
 static char *heading_of(const flow_job *j, const flow_row *r, size_t time,
-                        bool named) {
+                        bool named, const window *w) {
     nevh_loop_area at = nevh_loop_result(r->loop, time);
     double ratio = at.area / nevh_loop_result(r->loop, 0).area;
     const char *unit = nevh_scene_label(j->plan.scene, "t");
@@ -109,10 +123,12 @@ static char *heading_of(const flow_job *j, const flow_row *r, size_t time,
                      ? text_print("area unresolved")
                  : fabs(ratio - 1) < 5e-7 ? text_print("area 1")
                                           : text_print("area %.4g", ratio);
+    const char *where =
+        isnan(at.area) || is_shown(j, r->loop, time, w) ? "" : ", out of range";
     char *text = named ? text_print("%s, t = %.4g%s%s", r->integrator, at.t,
                                     *unit ? " " : "", unit)
-                       : text_print("t = %.4g%s%s, %s", at.t, *unit ? " " : "",
-                                    unit, area);
+                       : text_print("t = %.4g%s%s, %s%s", at.t,
+                                    *unit ? " " : "", unit, area, where);
     free(area);
     return text;
 }
@@ -123,7 +139,7 @@ static void draw_panel(plot **to, const flow_job *j, const flow_row *r,
     char *momentum = text_print("p_%s", name);
     char *x = plot_label(&j->plan, name, name);
     char *y = plot_label(&j->plan, momentum, momentum);
-    char *heading = heading_of(j, r, time, named);
+    char *heading = heading_of(j, r, time, named, w);
     nevh_loop_area at = nevh_loop_result(r->loop, time);
     if (*to) {
         plot_panel(*to, heading, x, y);
