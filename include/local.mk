@@ -19,6 +19,7 @@ nevhinclude_HEADERS = \
 	include/nevh/ensemble.h \
 	include/nevh/sweep.h \
 	include/nevh/loop.h \
+	include/nevh/frequencies.h \
 	include/nevh/status.h \
 	include/nevh/system.h \
 	include/nevh/transform.h

@@ -170,6 +170,7 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/chaos_starts.c \
 	lib/diagnose/chaos_report.c \
 	lib/diagnose/rates.c \
+	lib/diagnose/frequencies.c \
 	lib/diagnose/loop_private.h \
 	lib/diagnose/loop.c \
 	lib/diagnose/loop_panel.c \

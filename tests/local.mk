@@ -60,6 +60,7 @@ suites = \
 	tests/diagnose/check_chaos \
 	tests/diagnose/check_verdict \
 	tests/diagnose/check_loop \
+	tests/diagnose/check_frequencies \
 	tests/tool/check_grid \
 	tests/system/check_friction \
 	tests/run/check_damped_orbits \
@@ -119,6 +120,7 @@ tests_tool_check_hard_judge_SOURCES = tests/tool/check_hard_judge.c \
 tests_tool_check_hard_judge_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE
 tests_ensemble_check_random_LDADD = $(INSIDE_LIBS)
 tests_ensemble_check_sweep_LDADD = $(TEST_LIBS) $(GSL_LIBS)
+tests_diagnose_check_frequencies_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_scheme_check_gsl_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_run_check_damped_orbits_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_robust_check_threads_CFLAGS = $(AM_CFLAGS) -pthread
@@ -169,6 +171,7 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_chaos.sh \
 	tests/tool/nevh_sweep.sh \
 	tests/tool/nevh_flow.sh \
+	tests/tool/nevh_frequencies.sh \
 	tests/tool/nevh_report.sh \
 	tests/tool/nevh_portrait.sh \
 	tests/tool/nevh_map.sh \

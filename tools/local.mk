@@ -120,6 +120,7 @@ tools_nevh_SOURCES = \
 	tools/orbit/portrait.h \
 	tools/orbit/portrait.c \
 	tools/orbit/portrait_levels.c \
+	tools/orbit/frequencies_command.c \
 	tools/orbit/flow.h \
 	tools/orbit/flow_shape.h \
 	tools/orbit/flow_shape.c \

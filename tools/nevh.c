@@ -39,6 +39,9 @@ static const struct {
     {portrait, FOR_PORTRAIT, "SCENE",
      "draws the orbits of the ensemble by each integrator, over level curves of "
      "H or in a plane of section"},
+    {frequencies_command, FOR_FREQUENCIES, "SCENE",
+     "the frequencies in the orbit by each integrator, with amplitudes, errors "
+     "and drift"},
     {flow, FOR_FLOW, "SCENE",
      "a disc, a rectangle or Arnold's cat of starts carried along by each "
      "integrator: its area by time"},

@@ -11,6 +11,7 @@
 #include <nevh/chaos.h>
 #include <nevh/diagnose.h>
 #include <nevh/ensemble.h>
+#include <nevh/frequencies.h>
 #include <nevh/gradient.h>
 #include <nevh/integrator.h>
 #include <nevh/loop.h>

@@ -39,7 +39,7 @@ folder_of='function folder(path, part) {
         of["transform"] = "system"
         of["gradient"] = of["gsl"] = of["probe"] = "gradient"
         of["integrator"] = of["extend"] = of["run"] = "work"
-        of["section"] = "run"; of["diagnose"] = of["reference"] = of["loop"] = "diagnose"
+        of["section"] = "run"; of["diagnose"] = of["reference"] = of["loop"] = of["frequencies"] = "diagnose"
         of["chaos"] = "diagnose"; of["certain"] = "taylor"
         of["ensemble"] = "ensemble"; of["sweep"] = "scene"
         of["scene"] = "scene"; of["models"] = "models"; of["nevh"] = "tools"

@@ -60,6 +60,7 @@ static nevh_separability separability;
     X(STATUS, nevh_rates_at, (NULL, 0.1, in, in, out, out))                    \
     X(NUMBER, nevh_scene_members, (NULL))                                      \
     X(STATUS, nevh_scene_member_start, (NULL, 0, out, out))                    \
+    X(STATUS, nevh_frequencies, (0.1, 64, NULL, 1, NULL, NULL))                \
     X(MADE, nevh_loop_new, (NULL, NULL, NULL, NULL))                           \
     X(ANY, nevh_loop_free, (NULL))                                             \
     X(STATUS, nevh_loop_status, (NULL))                                        \

@@ -10,7 +10,8 @@ enum {
     OF_COST = FOR_COST | FOR_GRADIENTS | FOR_RECOMMEND,
     OF_SCENES = FOR_EXPORT | FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_RUN |
                 FOR_SECTION | FOR_SWEEP | FOR_FLOW | FOR_PORTRAIT |
-                FOR_REFERENCE | FOR_REPORT | FOR_CHAOS | OF_COST,
+                FOR_REFERENCE | FOR_REPORT | FOR_CHAOS | FOR_FREQUENCIES |
+                OF_COST,
     OF_NATIVE = FOR_COMPARE | FOR_RUN | FOR_COST | FOR_RECOMMEND,
     OF_TABLES = (OF_SCENES & ~(FOR_EXPORT | FOR_REPORT | FOR_PORTRAIT)) |
                 FOR_LIST | FOR_HARD,
@@ -36,7 +37,8 @@ static const struct {
     {"dt", "A,B", OF_SCENES, read_dt,
      "time steps, instead of the scene's; formulas such as pi/50"},
     {"tolerance", "A,B",
-     FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_SWEEP | FOR_FLOW | FOR_PORTRAIT,
+     FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_SWEEP | FOR_FLOW | FOR_PORTRAIT |
+         FOR_FREQUENCIES,
      read_tolerance,
      "of integrators that choose their steps; instead of the scene's"},
     {"t-end", "T", OF_SCENES, read_t_end,
@@ -52,9 +54,9 @@ static const struct {
      "largest relative energy error allowed"},
     {"state-error", "X", FOR_RECOMMEND, read_state_error,
      "largest relative error of the orbit allowed"},
-    {"observable", "FORMULA", FOR_COMPARE | FOR_COST | FOR_RECOMMEND,
-     read_observable,
-     "errors are of this formula, or observable, relative to its range"},
+    {"observable", "FORMULA",
+     FOR_COMPARE | FOR_COST | FOR_RECOMMEND | FOR_FREQUENCIES, read_observable,
+     "errors, or frequencies, are of this formula, or observable; errors are relative to its range"},
     {"error", "X", FOR_RECOMMEND, read_error,
      "the largest that the observable may have"},
     {"repeat", "N", FOR_COMPARE | FOR_COST | FOR_RECOMMEND, read_repeat,

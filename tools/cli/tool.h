@@ -136,9 +136,10 @@ enum {
     FOR_FLOW = 8192,
     FOR_REFERENCE = 16384,
     FOR_CHAOS = 1 << 15,
-    FOR_REPORT = 1 << 20,
-    FOR_PORTRAIT = 1 << 21,
-    FOR_LAST = FOR_PORTRAIT
+    FOR_REPORT = 1 << 16,
+    FOR_PORTRAIT = 1 << 17,
+    FOR_FREQUENCIES = 1 << 18,
+    FOR_LAST = FOR_FREQUENCIES
 };
 
 const char *command_name(unsigned bit);
@@ -249,6 +250,6 @@ typedef int command(const options *);
 command compare, list_command, check, effects, run_scene, export_scene, section,
     new_scene;
 command cost, recommend, gradients, hard, sweep, flow, portrait,
-    reference_command, report, chaos;
+    reference_command, report, chaos, frequencies_command;
 
 #endif

@@ -87,6 +87,10 @@ static bool refuses_rightly(const hard_subject *s, const hard_result *r) {
      */
     if (s->balance && strncmp(nevh_integrator_name(r->scheme), "gsl-", 4) == 0)
         return true;
+    /* Series are of formulas that are analytic. */
+    if (nevh_integrator_needs_formulas(r->scheme) &&
+        is(s, HARD_BLACK_BOX | HARD_KINK | HARD_EDGE))
+        return true;
     /* A tolerance decides over steps that friction would be put around. */
     if (needs && nevh_integrator_adaptive(r->scheme) && is(s, HARD_FRICTION))
         return true;

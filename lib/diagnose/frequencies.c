@@ -1,0 +1,298 @@
+/* nevh: the frequencies in an orbit.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "system/system_private.h"
+#include <gsl/gsl_fft_real.h>
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <nevh/frequencies.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FEWEST = 64, ORDER = 5, LESS = 3, ROUNDS = 3 };
+static const double pi = 3.14159265358979323846;
+
+/* Samples of -1 ... 1, in units of half their length. */
+typedef struct {
+    size_t count;
+    double half;           /* the time of half the length */
+    const double *values;  /* given */
+    double *rest, *window; /* count each */
+    size_t lines;
+    double *w, *cosine, *sine; /* of each line: round the middle */
+    double mean;
+    size_t size;   /* of the transform, a power of 2 */
+    double *power; /* size */
+} analysis;
+
+static double time_of(const analysis *a, size_t k) {
+    return a->half * (2 * (double)k / (double)(a->count - 1) - 1);
+}
+
+/* (1 + cos(pi x))^order, whose sum with the trapezoidal rule is exact. */
+static void make_window(analysis *a, int order) {
+    double sum = 0;
+    for (size_t k = 0; k < a->count; k++) {
+        double x = time_of(a, k) / a->half;
+        a->window[k] = pow(1 + cos(pi * x), order);
+        sum += a->window[k];
+    }
+    for (size_t k = 0; k < a->count; k++)
+        a->window[k] /= sum;
+}
+
+/* The transform of the rest at w, and half the slope of its square. */
+static double transform(const analysis *a, double w, double *slope) {
+    double re = 0, im = 0, dre = 0, dim = 0;
+    for (size_t k = 0; k < a->count; k++) {
+        double t = time_of(a, k), f = a->window[k] * a->rest[k];
+        double c = f * cos(w * t), s = f * sin(w * t);
+        re += c;
+        im -= s;
+        dre -= t * s;
+        dim -= t * c;
+    }
+    *slope = re * dre + im * dim;
+    return re * re + im * im;
+}
+
+/* Where the square is largest, between two of the transform's own places: its
+   slope falls through 0 there. */
+static double refine(const analysis *a, double low, double high) {
+    double at_low, at_high, at_middle;
+    transform(a, low, &at_low);
+    transform(a, high, &at_high);
+    if (!(at_low > 0 && at_high < 0))
+        return (low + high) / 2;
+    int side = 0;
+    double w = (low + high) / 2;
+    for (int i = 0; i < 100 && high - low > 4e-16 * high; i++) {
+        w = (low * at_high - high * at_low) / (at_high - at_low);
+        if (!(w > low && w < high) || i % 3 == 2)
+            w = (low + high) / 2;
+        transform(a, w, &at_middle);
+        if (at_middle == 0)
+            break;
+        if (at_middle > 0) {
+            low = w;
+            at_low = at_middle;
+            at_high *= side == 1 ? 0.5 : 1;
+            side = 1;
+        } else {
+            high = w;
+            at_high = at_middle;
+            at_low *= side == -1 ? 0.5 : 1;
+            side = -1;
+        }
+    }
+    return w;
+}
+
+/* The width of the window's peak on either side, in w. */
+static double resolution(const analysis *a) {
+    return pi / a->half;
+}
+
+/* The largest of the transform. */
+static double search(analysis *a) {
+    memset(a->power, 0, a->size * sizeof *a->power);
+    for (size_t k = 0; k < a->count; k++)
+        a->power[k] = a->window[k] * a->rest[k];
+    gsl_fft_real_radix2_transform(a->power, 1, a->size);
+    double h = 2 * a->half / (double)(a->count - 1), most = 0;
+    size_t best = 1;
+    for (size_t j = 1; j < a->size / 2; j++) {
+        double re = a->power[j], im = a->power[a->size - j];
+        if (re * re + im * im > most) {
+            most = re * re + im * im;
+            best = j;
+        }
+    }
+    double unit = 2 * pi / ((double)a->size * h), w = unit * (double)best;
+    return refine(a, fmax(w - unit, unit / 8), w + unit);
+}
+
+/* What is left after all lines but `but`. */
+static void take_off(analysis *a, size_t but) {
+    for (size_t k = 0; k < a->count; k++) {
+        double t = time_of(a, k), sum = a->values[k] - a->mean;
+        for (size_t i = 0; i < a->lines; i++)
+            if (i != but)
+                sum -= a->cosine[i] * cos(a->w[i] * t) +
+                       a->sine[i] * sin(a->w[i] * t);
+        a->rest[k] = sum;
+    }
+}
+
+static double basis(const analysis *a, size_t i, double t) {
+    return i == 0  ? 1
+           : i % 2 ? cos(a->w[(i - 1) / 2] * t)
+                   : sin(a->w[(i - 1) / 2] * t);
+}
+
+/* Mean, cosines and sines by least squares under the window. */
+static bool fit(analysis *a) {
+    size_t n = 2 * a->lines + 1;
+    double *m = nevh__array(n * n + 2 * n, sizeof *m);
+    void *ask = nevh__array(4 * n, sizeof *m); /* GSL would abort */
+    free(ask);
+    if (!m || !ask) {
+        free(m);
+        return false;
+    }
+    double *b = m + n * n, *f = b + n;
+    for (size_t k = 0; k < a->count; k++) {
+        double t = time_of(a, k);
+        for (size_t i = 0; i < n; i++)
+            f[i] = basis(a, i, t);
+        for (size_t i = 0; i < n; i++) {
+            b[i] += a->window[k] * f[i] * a->values[k];
+            for (size_t j = 0; j < n; j++)
+                m[i * n + j] += a->window[k] * f[i] * f[j];
+        }
+    }
+    gsl_matrix_view matrix = gsl_matrix_view_array(m, n, n);
+    gsl_vector_view right = gsl_vector_view_array(b, n);
+    bool solved = !gsl_linalg_HH_svx(&matrix.matrix, &right.vector);
+    for (size_t i = 0; solved && i < a->lines; i++) {
+        a->cosine[i] = b[2 * i + 1];
+        a->sine[i] = b[2 * i + 2];
+    }
+    if (solved)
+        a->mean = b[0];
+    free(m);
+    return solved;
+}
+
+static double amplitude(const analysis *a, size_t i) {
+    return hypot(a->cosine[i], a->sine[i]);
+}
+
+/* Each line anew, with all others taken off. */
+static void refine_all(analysis *a) {
+    double width = resolution(a);
+    for (size_t i = 0; i < a->lines; i++) {
+        take_off(a, i);
+        a->w[i] = refine(a, fmax(a->w[i] - width, width / 8), a->w[i] + width);
+    }
+}
+
+static double largest_rest(const analysis *a) {
+    double most = 0;
+    for (size_t k = 0; k < a->count; k++)
+        most = fmax(most, fabs(a->rest[k]) * a->window[k] * (double)a->count);
+    return most;
+}
+
+/* A line that is nearer to another than can be told apart. */
+static bool is_double(const analysis *a, double w) {
+    for (size_t i = 0; i < a->lines; i++)
+        if (fabs(a->w[i] - w) < resolution(a))
+            return true;
+    return false;
+}
+
+static bool find_lines(analysis *a, size_t most) {
+    static const double nothing = 1e-12;
+    double largest = 0;
+    for (size_t k = 0; k < a->count; k++)
+        largest = fmax(largest, fabs(a->values[k]));
+    make_window(a, ORDER);
+    if (!fit(a))
+        return false;
+    while (a->lines < most) {
+        take_off(a, a->lines);
+        if (!(largest_rest(a) > nothing * largest))
+            break;
+        double w = search(a);
+        if (is_double(a, w))
+            break;
+        a->w[a->lines++] = w;
+        if (!fit(a))
+            return false;
+    }
+    for (int i = 0; i < ROUNDS; i++) {
+        refine_all(a);
+        if (!fit(a))
+            return false;
+    }
+    return true;
+}
+
+static bool open(analysis *a, double h, size_t count, const double values[],
+                 size_t most) {
+    *a = (analysis){.count = count,
+                    .half = h * (double)(count - 1) / 2,
+                    .values = values,
+                    .size = 1};
+    while (a->size < 2 * count)
+        a->size *= 2;
+    a->rest = nevh__array(2 * count, sizeof(double));
+    a->w = nevh__array(3 * most, sizeof(double));
+    a->power = nevh__array(a->size, sizeof(double));
+    if (!a->rest || !a->w || !a->power)
+        return false;
+    a->window = a->rest + count;
+    a->cosine = a->w + most;
+    a->sine = a->cosine + most;
+    return true;
+}
+
+static void close(analysis *a) {
+    free(a->rest);
+    free(a->w);
+    free(a->power);
+}
+
+/* Line i of the whole in a part: its frequency there, other lines as they are. */
+static double frequency_in(const analysis *whole, analysis *part, size_t i,
+                           size_t from, int order) {
+    double width = 2 * resolution(part);
+    make_window(part, order);
+    take_off((analysis *)whole, i);
+    memcpy(part->rest, whole->rest + from, part->count * sizeof *part->rest);
+    double low = fmax(whole->w[i] - width, width / 16);
+    return refine(part, low, whole->w[i] + width);
+}
+
+static bool describe(analysis *a, double h, nevh_spectral_line lines[],
+                     size_t *found) {
+    analysis half, again;
+    size_t count = (a->count + 1) / 2;
+    bool opened = open(&half, h, count, a->values, 1);
+    bool good = open(&again, h, a->count, a->values, 1) && opened;
+    for (size_t i = 0; good && i < a->lines; i++) {
+        double first = frequency_in(a, &half, i, 0, LESS);
+        double second = frequency_in(a, &half, i, a->count - count, LESS);
+        double less = frequency_in(a, &again, i, 0, LESS);
+        double phase = atan2(-a->sine[i], a->cosine[i]) - a->w[i] * a->half;
+        lines[(*found)++] = (nevh_spectral_line){
+            a->w[i], amplitude(a, i), remainder(phase, 2 * pi),
+            fmax(fabs(less - a->w[i]), 2e-16 * a->w[i]), second - first};
+    }
+    close(&again);
+    close(&half);
+    return good;
+}
+
+static int by_amplitude(const void *a, const void *b) {
+    double x = ((const nevh_spectral_line *)a)->amplitude;
+    double y = ((const nevh_spectral_line *)b)->amplitude;
+    return (x < y) - (x > y);
+}
+
+int nevh_frequencies(double h, size_t count, const double values[], size_t most,
+                     nevh_spectral_line lines[], size_t *found) {
+    analysis a;
+    if (!found || !lines || !values || count < FEWEST || !(h > 0) || !most)
+        return NEVH_EINVAL;
+    *found = 0;
+    for (size_t k = 0; k < count; k++)
+        if (!isfinite(values[k]))
+            return NEVH_EDOM;
+    bool good = open(&a, h, count, values, most) && find_lines(&a, most) &&
+                describe(&a, h, lines, found);
+    close(&a);
+    if (good)
+        qsort(lines, *found, sizeof *lines, by_amplitude);
+    return good ? NEVH_OK : NEVH_ENOMEM;
+}

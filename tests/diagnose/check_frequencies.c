@@ -1,0 +1,91 @@
+/* nevh tests: frequencies in a series.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "support.h"
+#include <gsl/gsl_sf_ellint.h>
+#include <math.h>
+
+enum { SAMPLES = 10001, LINES = 6 };
+static double values[SAMPLES];
+
+static int record(void *data, size_t step, double t, const double q[],
+                  const double p[]) {
+    (void)data, (void)t, (void)p;
+    values[step] = q[0];
+    return 0;
+}
+
+TEST(lines_of_a_sum_are_found) {
+    static const double w[] = {1.2345678901, 2.3, 0.7071067811865, 0.6};
+    static const double size[] = {1, 0.1, 1e-3, 1e-5};
+    static const double phase[] = {0.3, -1.5, 2, 0.1};
+    nevh_spectral_line lines[LINES];
+    size_t found;
+    for (size_t k = 0; k < SAMPLES; k++) {
+        values[k] = 0.3;
+        for (int i = 0; i < 4; i++)
+            values[k] += size[i] * cos(w[i] * 0.1 * (double)k + phase[i]);
+    }
+    ck_assert_int_eq(
+        nevh_frequencies(0.1, SAMPLES, values, LINES, lines, &found), NEVH_OK);
+    ck_assert_uint_ge(found, 4);
+    for (int i = 0; i < 4; i++) {
+        double noise = 1e-15 / size[i];
+        ck_assert_double_eq_tol(lines[i].frequency, w[i], 1e-14 + noise / 10);
+        ck_assert_double_eq_tol(lines[i].amplitude, size[i], 1e-13);
+        ck_assert_double_eq_tol(lines[i].phase, phase[i], 1e-10 + 20 * noise);
+        ck_assert_double_le(fabs(lines[i].drift), 1e-13 + noise);
+    }
+    /* A frequency that moves. */
+    for (size_t k = 0; k < SAMPLES; k++) {
+        double t = 0.1 * (double)k;
+        values[k] = cos(t + 1e-6 * t * t / 2);
+    }
+    nevh_frequencies(0.1, SAMPLES, values, 1, lines, &found);
+    ck_assert_uint_eq(found, 1);
+    ck_assert_double_eq_tol(lines[0].frequency, 1 + 5e-4, 1e-7);
+    ck_assert_double_eq_tol(lines[0].drift, 5e-4, 1e-6);
+}
+
+/* Its odd multiples are all there is in the angle. */
+TEST(frequency_of_the_pendulum_is_exact) {
+    nevh_scene *s = nevh_scene_parse("pendulum", "[coordinates]\nx = 2\n"
+                                                 "[effects]\n"
+                                                 "kinetic = p_x^2/2\n"
+                                                 "gravity = -9.8*cos(x)\n");
+    double q = 2, p = 0;
+    nevh_options o = {.gradient = nevh_exact, .q = &q, .p = &p};
+    nevh_stepper *r = nevh_stepper_new(nevh_scene_system(s), nevh_gauss16, &o);
+    nevh_observer observer = {record, NULL, 1};
+    ck_assert_int_eq(nevh_run(r, 0, 0.1, SAMPLES - 1, &q, &p, &observer, 1),
+                     NEVH_OK);
+    nevh_spectral_line lines[LINES];
+    size_t found;
+    nevh_frequencies(0.1, SAMPLES, values, LINES, lines, &found);
+    double exact = acos(-1) * sqrt(9.8) /
+                   (2 * gsl_sf_ellint_Kcomp(sin(1), GSL_PREC_DOUBLE));
+    ck_assert_uint_ge(found, 4);
+    for (int i = 0; i < 4; i++)
+        ck_assert_double_eq_tol(lines[i].frequency / exact / (2 * i + 1), 1,
+                                1e-12);
+    nevh_stepper_free(r);
+    nevh_scene_free(s);
+}
+
+TEST(bad_series_are_refused) {
+    nevh_spectral_line line;
+    size_t found;
+    for (size_t k = 0; k < 100; k++)
+        values[k] = 1;
+    ck_assert_int_eq(nevh_frequencies(0.1, 63, values, 1, &line, &found),
+                     NEVH_EINVAL);
+    ck_assert_int_eq(nevh_frequencies(0, 100, values, 1, &line, &found),
+                     NEVH_EINVAL);
+    ck_assert_int_eq(nevh_frequencies(NAN, 100, values, 1, &line, &found),
+                     NEVH_EINVAL);
+    ck_assert_int_eq(nevh_frequencies(0.1, 100, values, 1, &line, &found),
+                     NEVH_OK);
+    ck_assert_uint_eq(found, 0); /* a constant */
+    values[5] = NAN;
+    ck_assert_int_eq(nevh_frequencies(0.1, 100, values, 1, &line, &found),
+                     NEVH_EDOM);
+}

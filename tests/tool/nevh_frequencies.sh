@@ -1,0 +1,58 @@
+#!/bin/sh
+# nevh frequencies: rows, agreement between schemes, and what it refuses.
+
+. "${srcdir:-.}/tests/support/nevh_support.sh"
+
+rows() { grep -v '^#' $work/out | tail -n +2; }
+
+# The pendulum of 2 rad: pi sqrt(9.8)/(2 K(sin 1)), and three times that.
+exits 0 frequencies pendulum --integrators gauss16 --gradient exact \
+    --dt 0.1 --t-end 1000 --format csv
+test "$(grep -v '^#' $work/out | head -n 1)" = \
+    scene,integrator,observable,rank,frequency,error,amplitude,phase,drift,period ||
+    fails "has other columns"
+rows | awk -F, 'function abs(x) { return x < 0 ? -x : x }
+    $4 == 1 && abs($5/2.3556962007225665 - 1) < 1e-12 { first++ }
+    $4 == 2 && abs($5/2.3556962007225665/3 - 1) < 1e-12 { second++ }
+    END { exit first != 1 || second != 1 }' || fails "has other frequencies"
+
+# A torus of Henon and Heiles: two schemes agree.
+exits 0 frequencies henon-heiles --integrators gauss16,sofroniou-spaletta10 \
+    --gradient exact --dt 0.05 --t-end 2000 --observable x --format csv
+rows | awk -F, '$4 == 1 { if (n++) { d = $5 - last; d = d < 0 ? -d : d
+        exit d > 1e-10 }; last = $5 } END { if (n != 2) exit 1 }' ||
+    fails "two schemes do not agree"
+
+# One that goes round: what is quasi-periodic is its cosine.
+exits 0 frequencies pendulum-rotating --integrators gauss8 --t-end 200
+has '^ gauss8  .*cos\(phi\)  *1 '
+# Energy that is lost moves the frequency; a mistake is told.
+exits 0 frequencies pendulum --integrators rk4 --dt 0.1 --t-end 500
+has 'rk4, phi: the first frequency moves by '
+exits 0 frequencies pendulum --integrators verlet --start phi=0 --t-end 50
+has 'verlet, phi: it does not move'
+exits 0 frequencies kepler-0.9 --integrators adaptive-verlet,gauss8 --t-end 20
+has 'adaptive-verlet refused: it chooses times of its own'
+
+exits 2 frequencies pendulum --t-end 1
+says 'samples are too few'
+exits 2 frequencies pendulum --observable 'psi'
+says 'psi'
+exits 2 frequencies pendulum --plot a.svg
+says 'no option of nevh frequencies'
+cat >$work/edge.nevh <<'END'
+[coordinates]
+x = 1
+[effects]
+kinetic = p_x^2/2
+push = -x - sqrt(9 - x)
+[run]
+t_end = 10
+dt = 0.05
+END
+exits 1 frequencies $work/edge.nevh --integrators verlet
+has '^verlet failed: '
+exits 1 frequencies pendulum --observable 'sqrt(phi)' --t-end 50
+has 'failed: it is not finite'
+lacks ' -?nan'
+exit $status
