@@ -16,6 +16,7 @@ nevhinclude_HEADERS = \
 	include/nevh/run.h \
 	include/nevh/scene.h \
 	include/nevh/section.h \
+	include/nevh/shadow.h \
 	include/nevh/ensemble.h \
 	include/nevh/sweep.h \
 	include/nevh/loop.h \

@@ -169,6 +169,7 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/chaos_walk.c \
 	lib/diagnose/chaos_starts.c \
 	lib/diagnose/chaos_report.c \
+	lib/diagnose/shadow.c \
 	lib/diagnose/rates.c \
 	lib/diagnose/frequencies.c \
 	lib/diagnose/loop_private.h \

@@ -58,6 +58,7 @@ suites = \
 	tests/scheme/check_eccentric \
 	tests/diagnose/check_energy \
 	tests/diagnose/check_chaos \
+	tests/diagnose/check_shadow \
 	tests/diagnose/check_verdict \
 	tests/diagnose/check_loop \
 	tests/diagnose/check_frequencies \

@@ -21,6 +21,7 @@
 #include <nevh/run.h>
 #include <nevh/scene.h>
 #include <nevh/section.h>
+#include <nevh/shadow.h>
 #include <nevh/status.h>
 #include <nevh/sweep.h>
 #include <nevh/system.h>

@@ -42,7 +42,7 @@ done
 # Those that take an object are called with NULL in tests/robust/check_null.c; a
 # kernel is never called without its work.
 objects='energy|rates|field|probe|reference|state_error|stepper|scene|sections'
-objects="$objects|system|integrator|gradient|ensemble|sweep|loop|chaos"
+objects="$objects|system|integrator|gradient|ensemble|sweep|loop|chaos|shadow"
 for name in $(grep -E "^nevh_($objects)_" $work/declared); do
     case $name in
     nevh_*_named | nevh_system_from | nevh_scene_read* | nevh_scene_parse) ;;

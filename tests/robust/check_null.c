@@ -42,6 +42,14 @@ static nevh_separability separability;
     X(STATUS, nevh_reversal_defect, (NULL, 0.1, 0.1, 1, in, in, in, out))      \
     X(REAL, nevh_stability_limit, (NULL))                                      \
     X(REAL, nevh_stability_angle, (NULL, 0.1))                                 \
+    X(MADE, nevh_shadow_new, (NULL, NULL, 0.1, NULL))                          \
+    X(ANY, nevh_shadow_free, (NULL))                                           \
+    X(STATUS, nevh_shadow_status, (NULL))                                      \
+    X(TEXT, nevh_shadow_message, (NULL))                                       \
+    X(NUMBER, nevh_shadow_order, (NULL))                                       \
+    X(STATUS, nevh_shadow_value, (NULL, in, in, NULL, NULL))                   \
+    X(STATUS, nevh_shadow_observe, (NULL, 0, 0, in, in))                       \
+    X(ANY, nevh_shadow_result, (NULL))                                         \
     X(MADE, nevh_chaos_new, (NULL, NULL))                                      \
     X(ANY, nevh_chaos_free, (NULL))                                            \
     X(STATUS, nevh_chaos_status, (NULL))                                       \
