@@ -48,7 +48,7 @@ static void show(const advice *a, const study *l, const char *what, table *t) {
     const row *r = chosen(a, l);
     table_text(t, what);
     table_text(t, r->integrator);
-    table_text(t, r->gradient);
+    table_text(t, study_takes_gradients(l) ? r->gradient : NULL);
     table_shown(t, "%.4g", r->dt);
     table_shown(t, "%.1e", study_error(r, a->search.by_state));
     if (has_states(a))
@@ -129,8 +129,9 @@ static char *command_line(const advice *a, const options *o, const row *r) {
                       setting + 1);
     }
     text = append(text, "integrators", r->integrator);
-    text = append(text, "gradient", r->gradient);
-    if (p->gradient_step > 0)
+    if (study_takes_gradients(a->best))
+        text = append(text, "gradient", r->gradient);
+    if (study_takes_gradients(a->best) && p->gradient_step > 0)
         text = append_number(text, "gradient-step", p->gradient_step);
     text =
         append_number(text, "dt", r->tolerance > 0 ? a->search.landing : r->dt);
@@ -146,7 +147,8 @@ static char *command_line(const advice *a, const options *o, const row *r) {
 static void tell_lines(const advice *a, const row *r, list *words) {
     list_add(words, "  [run]");
     list_print(words, "  integrators = %s", r->integrator);
-    list_print(words, "  gradient = %s", r->gradient);
+    if (study_takes_gradients(a->best))
+        list_print(words, "  gradient = %s", r->gradient);
     list_print(words, "  dt = %.6g",
                r->tolerance > 0 ? a->search.landing : r->dt);
     if (r->tolerance > 0)
@@ -241,10 +243,12 @@ static void tell_answer(const advice *a, const options *o, list *words) {
     const row *r = chosen(a, a->best);
     const char *what = search_error(&a->search);
     char *line = command_line(a, o, r);
+    bool gradients = study_takes_gradients(a->best);
     list_print(words,
-               "Take %s with the %s gradient at %s = %.4g: the largest %s "
+               "Take %s%s%s%s at %s = %.4g: the largest %s "
                "error over the whole run is %.1e, of the %.1e allowed.",
-               r->integrator, r->gradient,
+               r->integrator, gradients ? " with the " : "",
+               gradients ? r->gradient : "", gradients ? " gradient" : "",
                r->tolerance > 0 ? "tolerance" : "dt",
                r->tolerance > 0 ? r->tolerance : r->dt, what,
                study_error(r, a->search.by_state), a->target);

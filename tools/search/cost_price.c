@@ -5,10 +5,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The cheapest for the most digits that are reached. */
+/* The cheapest of those that take gradients. */
+static const study *cheapest(const costs *c, double target) {
+    const study *best = NULL;
+    double least = INFINITY;
+    for (size_t i = 0; i < c->count; i++) {
+        const study *l = &c->study[i];
+        const row *r = study_cheapest(l, target, c->search.by_state);
+        if (costs_count(c, l) && r && r->seconds < least &&
+            study_takes_gradients(l))
+            least = r->seconds, best = l;
+    }
+    return best;
+}
+
+/* That for the most digits that are reached. */
 static const row *most_digits(const costs *c, const study **l) {
     for (size_t k = COST_TARGETS; k-- > 0;) {
-        *l = costs_cheapest(c, cost_target[k]);
+        *l = cheapest(c, cost_target[k]);
         if (*l && !cost_is_beyond(c, k))
             return study_cheapest(*l, cost_target[k], c->search.by_state);
     }

@@ -15,12 +15,14 @@ const row *advice_keeps(const advice *a, const study *l) {
                         : NULL;
 }
 
+/* Of those that take gradients: Taylor series that are far ahead do not end the
+   search for the best of the others. */
 static double least_work(const advice *a) {
     double least = INFINITY;
     for (size_t i = 0; i < a->count; i++) {
         const study *l = &a->study[i];
         const row *r = study_least_work(l, a->target, a->search.by_state);
-        if (counts(a, l) && r)
+        if (counts(a, l) && study_takes_gradients(l) && r)
             least = fmin(least, r->work);
     }
     return least;
@@ -134,11 +136,13 @@ static study with_gradient(advice *a, const study *l, int k,
 }
 
 /* The best, and those that take less than `factor` times as long; at most
-   `most`. */
-static size_t list_best(const advice *a, double factor, study *found[],
-                        size_t most) {
+   `most`.  With `gradients`: of those that take gradients. */
+static size_t list_best(const advice *a, double factor, bool gradients,
+                        study *found[], size_t most) {
     bool *taken = tool_allocate(a->count, sizeof *taken);
     size_t count = 0;
+    for (size_t i = 0; i < a->count; i++)
+        taken[i] = gradients && !study_takes_gradients(&a->study[i]);
     for (study *l; count < most && (l = advice_next_best(a, taken));) {
         if (count && advice_keeps(a, l)->seconds >
                          factor * advice_keeps(a, found[0])->seconds)
@@ -157,7 +161,7 @@ static void vary_gradients(advice *a) {
     static const double factor = 2.2;
     study *found[FEW], model[FEW];
     int k[FEW];
-    size_t count = list_best(a, factor, found, FEW);
+    size_t count = list_best(a, factor, true, found, FEW);
     for (size_t i = 0; i < count; i++) {
         model[i] = *found[i];
         k[i] = found[i]->k[advice_keeps(a, found[i]) - found[i]->level];
@@ -174,7 +178,7 @@ static void polish(advice *a) {
     enum { FEW = 8 };
     static const double factor = 1.4;
     study *found[FEW];
-    size_t count = list_best(a, factor, found, FEW);
+    size_t count = list_best(a, factor, false, found, FEW);
     for (size_t i = 0; i < count; i++)
         study_refine(&a->search, found[i], a->target, 1);
 }
@@ -185,7 +189,7 @@ static void look_beyond(advice *a) {
     enum { FEW = 8 };
     static const double factor = 1.4;
     study *found[FEW];
-    size_t count = list_best(a, factor, found, FEW);
+    size_t count = list_best(a, factor, false, found, FEW);
     for (size_t i = 0; i < count; i++) {
         int from = found[i]->k[advice_keeps(a, found[i]) - found[i]->level];
         for (int k = from - 1; k >= from - GRID_STRIDE / 2; k--)
@@ -204,7 +208,7 @@ void advice_time_best(advice *a) {
     static const double factor = 1.7;
     study *found[FEW];
     row *level[2 * FEW];
-    size_t count = list_best(a, factor, found, FEW), rows = 0;
+    size_t count = list_best(a, factor, false, found, FEW), rows = 0;
     size_t repeats = a->search.repeats;
     for (size_t i = 0; i < count; i++) {
         const row *quick = advice_keeps(a, found[i]);
@@ -239,7 +243,8 @@ void advice_choose(advice *a) {
             a->best = l;
         else if (!a->second && strcmp(name, a->best->integrator) != 0)
             a->second = l;
-        if (!a->alone && strcmp(l->gradient, "exact") != 0)
+        if (!a->alone && study_takes_gradients(l) &&
+            strcmp(l->gradient, "exact") != 0)
             a->alone = l;
         if (!a->steady && !row_drifts(advice_keeps(a, l)))
             a->steady = l;

@@ -454,6 +454,10 @@ const row *study_failure(const study *l) {
     return failed;
 }
 
+bool study_takes_gradients(const study *l) {
+    return !nevh_integrator_needs_formulas(l->scheme);
+}
+
 bool study_keeps_energy(const study *l) {
     return l->keeps && !study_failure(l);
 }

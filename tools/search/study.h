@@ -98,6 +98,8 @@ size_t study_run(search *, study *, int k); /* index of the level */
 /* Of states, or of the observable where rows have one; INFINITY: none. */
 double study_error(const row *, bool by_state);
 const char *search_error(const search *); /* "energy", "state", "observable" */
+/* Whether its scheme takes gradients: Taylor series take none. */
+bool study_takes_gradients(const study *);
 /* A level that failed, where none ran; NULL: some ran, or were refused. */
 const row *study_failure(const study *);
 /* The cheapest level by seconds, or by work; NULL: none keeps the target. */
