@@ -33,6 +33,9 @@ libnevh_core_la_SOURCES += \
 	integrators/euler.c \
 	integrators/implicit_euler.c \
 	integrators/rk2.c \
+	integrators/kernels/adams_bashforth_private.h \
+	integrators/kernels/adams_bashforth_kernel.c \
+	integrators/adams_bashforth.c \
 	integrators/rk3.c \
 	integrators/rk4.c \
 	integrators/dopri5.c \

@@ -52,6 +52,7 @@
     X(explicit_midpoint)                                                       \
     X(heun)                                                                    \
     X(ralston)                                                                 \
+    X(adams_bashforth2)                                                        \
     X(rk3)                                                                     \
     X(rk4)                                                                     \
     X(dopri5)                                                                  \

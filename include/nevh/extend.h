@@ -52,6 +52,7 @@ struct nevh_integrator {
     bool needs_tolerance; /* it has no steps of its own */
     bool own_time;        /* h is nominal: the step sets w->elapsed */
     bool needs_formulas;  /* refuses terms that are functions in C */
+    bool multistep;       /* a step depends on states before the last one */
     nevh_claim symplectic, symmetric, explicit_form, preserves_energy;
     unsigned needs;
     const nevh_kernel *kernel;

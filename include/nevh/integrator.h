@@ -82,6 +82,7 @@ NEVH_API extern const nevh_integrator *const nevh_implicit_euler;
 NEVH_API extern const nevh_integrator *const nevh_explicit_midpoint;
 NEVH_API extern const nevh_integrator *const nevh_heun;
 NEVH_API extern const nevh_integrator *const nevh_ralston;
+NEVH_API extern const nevh_integrator *const nevh_adams_bashforth2;
 NEVH_API extern const nevh_integrator *const nevh_rk3;
 NEVH_API extern const nevh_integrator *const nevh_rk4;
 NEVH_API extern const nevh_integrator *const nevh_dopri5;

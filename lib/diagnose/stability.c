@@ -8,7 +8,9 @@
 #include "system/system_private.h"
 #include <math.h>
 #include <nevh/diagnose.h>
+#include <nevh/extend.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Beyond that many radians a step no scheme is asked; the grid there; what is
    growth, in a step. */
@@ -18,7 +20,7 @@ static const double growing = 1e-5;
 typedef struct {
     nevh_system *system;
     nevh_stepper *stepper;
-    bool symplectic;
+    bool symplectic, multistep;
 } oscillator;
 
 static double half_square(double t, const double q[], const double p[],
@@ -62,7 +64,8 @@ static oscillator begin(const nevh_integrator *scheme) {
     nevh_options options = {.gradient = nevh_exact, .width = 2, .q = q, .p = p};
     nevh_system *s = new_system();
     return (oscillator){s, nevh_stepper_new(s, scheme, &options),
-                        nevh_integrator_symplectic(scheme) == NEVH_YES};
+                        nevh_integrator_symplectic(scheme) == NEVH_YES,
+                        scheme->multistep};
 }
 
 static void end(const oscillator *o) {
@@ -70,11 +73,41 @@ static void end(const oscillator *o) {
     nevh_system_free(o->system);
 }
 
+/* Of a multistep method: what one more step does after so many that nothing is
+   left of how it began. */
+static bool step_late(const oscillator *o, double x, double q[2], double p[2]) {
+    enum { EARLY = 64 };
+    double a[2], b[2];
+    for (int i = 0; i <= EARLY; i++) {
+        memcpy(a, q, sizeof a);
+        memcpy(b, p, sizeof b);
+        if (nevh_stepper_apply(o->stepper, i * x, x, q, p))
+            return false;
+    }
+    double area = a[0] * b[1] - a[1] * b[0];
+    double q0 = (q[0] * b[1] - q[1] * b[0]) / area;
+    double p0 = (p[0] * b[1] - p[1] * b[0]) / area;
+    q[1] = (a[0] * q[1] - a[1] * q[0]) / area;
+    p[1] = (a[0] * p[1] - a[1] * p[0]) / area;
+    q[0] = q0;
+    p[0] = p0;
+    return true;
+}
+
+/* The matrix of a step of x: the columns (q[0], p[0]) and (q[1], p[1]). */
+static bool take_matrix(const oscillator *o, double x, double q[2],
+                        double p[2]) {
+    q[0] = p[1] = 1;
+    q[1] = p[0] = 0;
+    nevh_stepper_reset(o->stepper);
+    return o->multistep ? step_late(o, x, q, p)
+                        : !nevh_stepper_apply(o->stepper, 0, x, q, p);
+}
+
 /* The spectral radius of a step of x, less 1; INFINITY where no step is. */
 static double excess(const oscillator *o, double x) {
-    double q[2] = {1, 0}, p[2] = {0, 1};
-    nevh_stepper_reset(o->stepper);
-    if (nevh_stepper_apply(o->stepper, 0, x, q, p))
+    double q[2], p[2];
+    if (!take_matrix(o, x, q, p))
         return INFINITY;
     double determinant = o->symplectic ? 1 : q[0] * p[1] - q[1] * p[0];
     double half = fabs(q[0] + p[1]) / 2,
@@ -88,9 +121,8 @@ static double excess(const oscillator *o, double x) {
 /* Half the trace's distance to 1 from below, which the tips of narrow unstable
    windows between points of the grid reach through. */
 static double closeness(const oscillator *o, double x) {
-    double q[2] = {1, 0}, p[2] = {0, 1};
-    nevh_stepper_reset(o->stepper);
-    if (nevh_stepper_apply(o->stepper, 0, x, q, p))
+    double q[2], p[2];
+    if (!take_matrix(o, x, q, p))
         return INFINITY;
     return fabs(q[0] + p[1]) / 2 - 1;
 }

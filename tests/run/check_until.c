@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "state.h"
 #include <math.h>
+#include <nevh/extend.h>
 #include <nevh/transform.h>
 #include <stdlib.h>
 #include <string.h>
@@ -380,8 +381,8 @@ TEST_EACH(a_branch_off_that_fails, scheme_count()) {
     bool own = nevh_integrator_own_time(scheme);
     last_time = own ? t + 0.5 * part : t;
     int status = nevh_run_until(m, 0, h0, t + 0.9 * part, x, x + 1, &watch, 1);
-    if (status == NEVH_OK)
-        ck_assert_int_eq(nevh_integrator_order(scheme), 1);
+    if (status == NEVH_OK) /* it takes no slope but where the step begins */
+        ck_assert(nevh_integrator_order(scheme) == 1 || scheme->multistep);
     else if (nevh_stepper_taken(m) == 4) /* it looks beyond its steps' ends */
         ck_assert(nevh_integrator_order(scheme) > 2 &&
                   nevh_integrator_explicit(scheme) == NEVH_YES);

@@ -87,6 +87,7 @@ TEST(public_pointers_are_listed) {
                                               nevh_explicit_midpoint,
                                               nevh_heun,
                                               nevh_ralston,
+                                              nevh_adams_bashforth2,
                                               nevh_rk3,
                                               nevh_rk4,
                                               nevh_dopri5,

@@ -15,7 +15,8 @@ static const double pi = 3.14159265358979323846;
    periodic stability (1995)].  Forest and Ruth: a step of Verlet's at x has the
    trace 2 - x^2; where three of them reach -2.  Kutta's of order 3: sqrt(3).
    Euler: sqrt(1 + x^2) = 1 + 1e-5, and two stages: sqrt(1 + x^4/4) = 1 + 1e-5.
-   The implicit Euler method: 1 / sqrt(1 + x^2). */
+   The implicit Euler method: 1 / sqrt(1 + x^2).  Adams and Bashforth of two
+   steps: the larger root of z^2 - (1 + 3ix/2) z + ix/2 is 1 + 1e-5. */
 static const struct {
     const nevh_integrator *const *scheme;
     double limit, tolerance;
@@ -36,6 +37,7 @@ static const struct {
                  {&nevh_explicit_midpoint, 0.0945742, 1e-6},
                  {&nevh_heun, 0.0945742, 1e-6},
                  {&nevh_ralston, 0.0945742, 1e-6},
+                 {&nevh_adams_bashforth2, 0.0792768, 1e-6},
                  {&nevh_implicit_euler, INFINITY, 0},
                  {&nevh_euler, 4.47215e-3, 1e-7}};
 enum { PUBLISHED = sizeof published / sizeof *published };

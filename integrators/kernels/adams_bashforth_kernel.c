@@ -1,0 +1,128 @@
+/* nevh: the explicit Adams method of two steps.
+
+   With the slopes f at the last two states, which are the step h1 apart,
+
+       y' = y + h ((1 + r/2) f(y) - r/2 f(y1)),   r = h/h1.
+
+   A lane without a last state, or whose step is longer than the last one or goes
+   back, takes a step of Heun's method.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "adams_bashforth_private.h"
+#include <string.h>
+
+/* Blocks of n rows in the memory, then the row of h1; 0: there is none.  The
+   last state is kept for the balance of the energy. */
+enum { CARRY_Q, CARRY_P, LAST_DQ, LAST_DP, LAST_Q, LAST_P, BLOCKS };
+/* In scratch: slopes at the state and at the end of Euler's step, which is in
+   CHANGE_Q and CHANGE_P until they hold what the step adds. */
+enum { DQ, DP, END_DQ, END_DP, CHANGE_Q, CHANGE_P, SCRATCH };
+
+static int plan(nevh_work *w) {
+    w->memory_rows = BLOCKS * w->n + 1;
+    w->scratch_size = SCRATCH * w->size + w->width;
+    return NEVH_OK;
+}
+
+static double *block(double *from, const nevh_work *w, size_t which) {
+    return from + which * w->size;
+}
+
+/* r of a lane; 0: it starts afresh. */
+static double ratio(const nevh_work *w, double h, size_t lane) {
+    double last = block(w->memory, w, BLOCKS)[lane];
+    double r = last != 0 ? h / last : 0;
+    return r > 0 && r <= 1 ? r : 0;
+}
+
+/* dq/dt and dp/dt. */
+static int take_slopes(nevh_work *w, double t, const double q[],
+                       const double p[], double dq[], double dp[]) {
+    double *time = block(w->scratch, w, SCRATCH);
+    for (size_t lane = 0; lane < w->width; lane++)
+        time[lane] = t;
+    int status = nevh_work_gradient(w, w->width, time, q, p, dp, dq);
+    for (size_t i = 0; !status && i < w->size; i++)
+        dp[i] = -dp[i] - (w->friction ? w->friction[i / w->width] * p[i] : 0);
+    return status;
+}
+
+static int take_end(nevh_work *w, double t, double h, const double q[],
+                    const double p[]) {
+    double *at = w->scratch, *end_q = block(at, w, CHANGE_Q);
+    double *end_p = block(at, w, CHANGE_P);
+    for (size_t i = 0; i < w->size; i++) {
+        bool fresh = ratio(w, h, i % w->width) == 0;
+        end_q[i] = q[i] + (fresh ? h * block(at, w, DQ)[i] : 0);
+        end_p[i] = p[i] + (fresh ? h * block(at, w, DP)[i] : 0);
+    }
+    return take_slopes(w, t + h, end_q, end_p, block(at, w, END_DQ),
+                       block(at, w, END_DP));
+}
+
+/* Of q and p together, whose blocks follow one another. */
+static void find_change(const nevh_work *w, double h) {
+    const double *now = block(w->scratch, w, DQ);
+    const double *end = block(w->scratch, w, END_DQ);
+    const double *last = block(w->memory, w, LAST_DQ);
+    double *change = block(w->scratch, w, CHANGE_Q);
+    for (size_t i = 0; i < 2 * w->size; i++) {
+        double r = ratio(w, h, i % w->width);
+        change[i] = r == 0 ? h / 2 * (now[i] + end[i])
+                           : h * (now[i] + r / 2 * (now[i] - last[i]));
+    }
+}
+
+/* All lanes are where the first one is: which are afresh is told apart only
+   where there is one. */
+static int account(nevh_work *w, double t, double h, const double q[],
+                   const double p[]) {
+    double *time = block(w->scratch, w, SCRATCH), r = ratio(w, h, 0);
+    bool fresh = r == 0;
+    double other = fresh ? h / 2 : -h * r / 2;
+    const double *from =
+        fresh ? block(w->scratch, w, CHANGE_Q) : block(w->memory, w, LAST_Q);
+    for (size_t lane = 0; lane < w->width; lane++)
+        time[lane] = t;
+    int status =
+        nevh_work_account(w, NEVH_OF_Q | NEVH_OF_P, h - other, time, q, p);
+    double last = t - block(w->memory, w, BLOCKS)[0];
+    for (size_t lane = 0; lane < w->width; lane++)
+        time[lane] = fresh ? t + h : last;
+    return status ? status
+                  : nevh_work_account(w, NEVH_OF_Q | NEVH_OF_P, other, time,
+                                      from, from + w->size);
+}
+
+static void remember(nevh_work *w, double h, const double slopes[],
+                     const double state[]) {
+    memcpy(block(w->memory, w, LAST_DQ), slopes, 2 * w->size * sizeof *slopes);
+    memcpy(block(w->memory, w, LAST_Q), state, 2 * w->size * sizeof *state);
+    for (size_t lane = 0; lane < w->width; lane++)
+        block(w->memory, w, BLOCKS)[lane] = h;
+}
+
+static int step(nevh_work *w, double t, double h, double q[], double p[]) {
+    double *slopes = w->scratch, *change = block(slopes, w, CHANGE_Q);
+    double *carry = w->memory, *state = block(slopes, w, END_DQ);
+    bool any = false;
+    for (size_t lane = 0; lane < w->width; lane++)
+        any |= ratio(w, h, lane) == 0;
+    int status = take_slopes(w, t, q, p, slopes, block(slopes, w, DP));
+    if (!status && any)
+        status = take_end(w, t, h, q, p);
+    if (!status && w->accounts)
+        status = account(w, t, h, q, p);
+    if (status)
+        return status;
+    find_change(w, h);
+    memcpy(state, q, w->size * sizeof *q); /* the ends are used up */
+    memcpy(state + w->size, p, w->size * sizeof *p);
+    status = nevh_work_commit(w, w->size, q, change, carry, p, change + w->size,
+                              carry + w->size);
+    if (!status)
+        remember(w, h, slopes, state);
+    return status;
+}
+
+const nevh_kernel nevh__adams_bashforth_kernel = {
+    .plan = plan, .step = step, .has_friction = true};
