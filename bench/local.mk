@@ -23,6 +23,12 @@ bench-counts: bench/counts$(EXEEXT)
 	$(SHELL) $(srcdir)/bench/counts.sh ./bench/counts$(EXEEXT) \
 	  bench/results-counts.csv "$(COUNTS)" $(SCHEMES)
 
+# How often the intervals of nevh fit hold the truth.
+EXTRA_DIST += bench/fit.sh
+bench-fit: all
+	$(SHELL) $(srcdir)/bench/fit.sh ./tools/nevh$(EXEEXT) \
+	  examples/add_noise$(EXEEXT) 400
+
 # What it judges with is the command's own, all but its main.
 EXTRA_PROGRAMS += bench/verdicts
 bench_verdicts_SOURCES = bench/verdicts.c bench/verdicts_private.h \
@@ -84,4 +90,4 @@ bench-verdicts: bench/verdicts$(EXEEXT)
 EXTRA_DIST += bench/recommend.sh bench/answers.sh bench/orbits
 CLEANFILES += bench/results-answers.csv bench/verdicts$(EXEEXT) bench/wrong-verdicts
 DISTCLEANFILES = bench/long-runs
-.PHONY: bench bench-counts bench-peers bench-recommend bench-verdicts
+.PHONY: bench bench-fit bench-counts bench-peers bench-recommend bench-verdicts

@@ -13,7 +13,8 @@ examples = \
 	examples/flip_map \
 	examples/gradient_error \
 	examples/gradient_cost \
-	examples/nevh_cost
+	examples/nevh_cost \
+	examples/add_noise
 noinst_PROGRAMS += $(examples)
 examples_first_hamiltonian_LDADD = libnevh.la
 examples_pendulum_energy_SOURCES = examples/pendulum_energy.c $(energy_table)
@@ -30,6 +31,7 @@ examples_conservation_LDADD = libnevh.la
 examples_steps_that_follow_LDADD = libnevh.la
 examples_flip_map_LDADD = libnevh.la
 examples_nevh_cost_LDADD = libnevh.la
+examples_add_noise_LDADD = -lm
 gradient_systems = \
 	examples/gradient_systems.c examples/gradient_systems.h
 examples_gradient_error_SOURCES = \
@@ -47,6 +49,8 @@ examples_sweep_mpi_LDADD = libnevh.la $(MPI_LIBS)
 # To read, and to compile with the installed library.
 exampledir = $(docdir)/examples
 dist_example_DATA = \
+	examples/add_noise.c \
+	examples/filmed.sh \
 	examples/catalogue.c \
 	examples/conservation.c \
 	examples/double_pendulum_energy.c \

@@ -22,6 +22,8 @@ dist_scenes_DATA = \
 	scenes/oscillator-paper.nevh \
 	scenes/oscillator.nevh \
 	scenes/outer-solar-system.nevh \
+	scenes/pendulum-filmed.nevh \
+	scenes/pendulum-filmed.csv \
 	scenes/pendulum-periods.nevh \
 	scenes/pendulum-rotating.nevh \
 	scenes/pendulum-separatrix.nevh \

@@ -173,6 +173,7 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_sweep.sh \
 	tests/tool/nevh_flow.sh \
 	tests/tool/nevh_frequencies.sh \
+	tests/tool/nevh_fit.sh \
 	tests/tool/nevh_report.sh \
 	tests/tool/nevh_portrait.sh \
 	tests/tool/nevh_map.sh \

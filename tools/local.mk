@@ -121,6 +121,12 @@ tools_nevh_SOURCES = \
 	tools/orbit/portrait.c \
 	tools/orbit/portrait_levels.c \
 	tools/orbit/frequencies_command.c \
+	tools/fit/measured.h \
+	tools/fit/measured.c \
+	tools/fit/fit_private.h \
+	tools/fit/fit_orbit.c \
+	tools/fit/fit_solve.c \
+	tools/fit/fit_command.c \
 	tools/orbit/flow.h \
 	tools/orbit/flow_shape.h \
 	tools/orbit/flow_shape.c \

@@ -42,6 +42,9 @@ static const struct {
     {frequencies_command, FOR_FREQUENCIES, "SCENE",
      "the frequencies in the orbit by each integrator, with amplitudes, errors "
      "and drift"},
+    {fit_command, FOR_FIT, "SCENE",
+     "parameters and starts from measured points: least squares, with errors "
+     "and correlations"},
     {flow, FOR_FLOW, "SCENE",
      "a disc, a rectangle or Arnold's cat of starts carried along by each "
      "integrator: its area by time"},

@@ -200,6 +200,15 @@ int read_repeat(options *o, const char *argument) {
     return read_count("repeat", argument, &o->repeats);
 }
 
+int read_data(options *o, const char *argument) {
+    o->data = argument;
+    return *argument ? TOOL_OK : tool_refuse("--data takes a file");
+}
+
+int read_sigma(options *o, const char *argument) {
+    return read_positive("sigma", argument, &o->sigma);
+}
+
 int read_vary(options *o, const char *argument) {
     list_add(&o->vary, argument);
     return TOOL_OK;

@@ -25,6 +25,7 @@ static const struct {
     {FOR_PORTRAIT, "portrait"},
     {FOR_CHAOS, "chaos"},
     {FOR_FREQUENCIES, "frequencies"},
+    {FOR_FIT, "fit"},
 };
 
 const char *command_name(unsigned bit) {

@@ -11,7 +11,7 @@ enum {
     OF_SCENES = FOR_EXPORT | FOR_COMPARE | FOR_CHECK | FOR_EFFECTS | FOR_RUN |
                 FOR_SECTION | FOR_SWEEP | FOR_FLOW | FOR_PORTRAIT |
                 FOR_REFERENCE | FOR_REPORT | FOR_CHAOS | FOR_FREQUENCIES |
-                OF_COST,
+                FOR_FIT | OF_COST,
     OF_NATIVE = FOR_COMPARE | FOR_RUN | FOR_COST | FOR_RECOMMEND,
     OF_TABLES = (OF_SCENES & ~(FOR_EXPORT | FOR_REPORT | FOR_PORTRAIT)) |
                 FOR_LIST | FOR_HARD,
@@ -38,7 +38,7 @@ static const struct {
      "time steps, instead of the scene's; formulas such as pi/50"},
     {"tolerance", "A,B",
      FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_SWEEP | FOR_FLOW | FOR_PORTRAIT |
-         FOR_FREQUENCIES,
+         FOR_FREQUENCIES | FOR_FIT,
      read_tolerance,
      "of integrators that choose their steps; instead of the scene's"},
     {"t-end", "T", OF_SCENES, read_t_end,
@@ -86,9 +86,16 @@ static const struct {
     {"resume", "FILE", FOR_RUN | FOR_SWEEP, read_resume,
      "go on with FILE, which nevh run or nevh sweep -o FILE left unfinished, "
      "as if never interrupted"},
-    {"vary", "NAME=WHAT", FOR_SWEEP | FOR_SECTION | FOR_PORTRAIT, read_vary,
+    {"vary", "NAME=WHAT", FOR_SWEEP | FOR_SECTION | FOR_PORTRAIT | FOR_FIT,
+     read_vary,
      "a line of [ensemble]: a list, range(A, B, N), normal(M, S), "
-     "uniform(A, B) or solve(F = G, from X); repeated for more names"},
+     "uniform(A, B) or solve(F = G, from X); repeated for more names; of fit: "
+     "names A,B of parameters and starts"},
+    {"data", "FILE", FOR_FIT, read_data,
+     "measured points, as CSV: t, and columns named as in the scene"},
+    {"sigma", "X", FOR_FIT, read_sigma,
+     "the standard deviation of all measured numbers; a column sigma or "
+     "sigma_NAME of the data says it of each"},
     {"outcomes", "A,B", FOR_SWEEP, read_outcomes,
      "columns: state, t, energy_error, verdict, first(A > B), last(F), min(F), "
      "max(F), mean(F), crossings, period"},
@@ -124,8 +131,8 @@ static const struct {
      "draw FILE.svg, .png or .pdf, or - in the terminal"},
     {"plot-kind", "KIND", FOR_RUN, read_plot_kind,
      "phase (the default), time, energy or configuration"},
-    {"columns", "A,B:C", FOR_RUN, read_columns,
-     "what --plot-kind time or phase draws: a panel each, names\n"
+    {"columns", "A,B:C", FOR_RUN | FOR_FIT, read_columns,
+     "of fit: the columns of the data to use; of run: what --plot-kind time or phase draws: a panel each, names\n"
      "                            joined by : in one; t, coordinates, p_NAME,\n"
      "                            observables, energy, energy_error"},
     {"keep-plot-script", "FILE", OF_PLOTS | FOR_SWEEP, read_plot_script,

@@ -17,6 +17,7 @@ reader read_with, read_without, read_set, read_start, read_integrators,
     read_allow_code, read_section, read_diagnostics, read_impact, read_shape,
     read_picture, read_vary, read_outcomes, read_threads, read_retry,
     read_exponents, read_starts, read_gali, read_stop_after, read_task,
-    read_join, read_width, read_digits, read_help, read_version;
+    read_join, read_data, read_sigma, read_width, read_digits, read_help,
+    read_version;
 
 #endif

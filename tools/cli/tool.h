@@ -13,6 +13,7 @@
        recommend   recommend.c  the same
        gradients   gradients.c
        chaos       chaos.c
+       fit         fit_command.c, fit_orbit.c, fit_solve.c
        check       check.c      pace.h: a trial run
        effects     effects.c, impact.c
        hard        hard.c
@@ -139,7 +140,8 @@ enum {
     FOR_REPORT = 1 << 16,
     FOR_PORTRAIT = 1 << 17,
     FOR_FREQUENCIES = 1 << 18,
-    FOR_LAST = FOR_FREQUENCIES
+    FOR_FIT = 1 << 20,
+    FOR_LAST = FOR_FIT
 };
 
 const char *command_name(unsigned bit);
@@ -167,8 +169,9 @@ typedef struct {
     double *tolerance;
     size_t tolerances;
     const char *t_end; /* a formula; NULL: the scene's */
-    double gradient_step, energy_error, state_error, error; /* 0: not given */
-    size_t every, samples, repeats, digits;                 /* 0: not given */
+    double gradient_step, energy_error, state_error, error, sigma; /* 0: not
+                                                                      given */
+    size_t every, samples, repeats, digits; /* 0: not given */
     table_format format;
     matching match;
     plot_kind plot_kind;
@@ -177,6 +180,7 @@ typedef struct {
     const char *shape;   /* of flow; NULL: chosen */
     const char *picture; /* of sweep; NULL: none */
     const char *columns; /* NULL: not given */
+    const char *data;    /* a file of measured points; NULL: none */
     bool formatted;      /* --format was given */
     bool as_html;        /* tables are parts of a report */
     bool quiet, portable, all, by_state, diagnostics, impact, allow_code;
@@ -250,6 +254,6 @@ typedef int command(const options *);
 command compare, list_command, check, effects, run_scene, export_scene, section,
     new_scene;
 command cost, recommend, gradients, hard, sweep, flow, portrait,
-    reference_command, report, chaos, frequencies_command;
+    reference_command, report, chaos, frequencies_command, fit_command;
 
 #endif

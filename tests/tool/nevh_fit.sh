@@ -1,0 +1,150 @@
+#!/bin/sh
+# nevh fit: numbers found from points with noise, their errors, and what it
+# refuses.
+
+. "${srcdir:-.}/tests/support/nevh_support.sh"
+
+rows() { grep -v '^#' $work/out | tail -n +2; }
+near() { # COLUMN NAME VALUE MOST
+    rows | awk -F, -v c="$1" -v name="$2" -v x="$3" -v most="$4" '
+        $4 == name { d = $c - x; found = d < most && d > -most }
+        END { exit !found }' || fails "$2 is not $3 within $4"
+}
+
+# What the manual says, from the points that ship; they are what makes them.
+sh "$srcdir/examples/filmed.sh" "$nevh" ./examples/add_noise >$work/made.csv ||
+    fails "filmed.sh fails"
+paste -d, "$srcdir/scenes/pendulum-filmed.csv" $work/made.csv |
+    awk -F, '/^[0-9]/ { for (i = 1; i <= 3; i++) {
+        d = $i - $(i + 3); if (d*d > 1e-11) wrong = 1 } n++ }
+        END { exit wrong || n != 121 }' || fails "the points are others"
+exits 0 fit pendulum-filmed --data pendulum-filmed.csv --vary l,g,gamma,start \
+    --format csv
+near 6 l 0.874 0.001
+near 6 g 9.812 0.012
+near 6 gamma 0.035 0.0012
+near 6 start 1.13 0.003
+# Within four errors, which are those that the noise makes.
+rows | awk -F, 'BEGIN { t["l"] = 0.874; t["g"] = 9.812; t["gamma"] = 0.035
+        t["start"] = 1.13 }
+    { z = ($6 - t[$4])/$7; if (z*z > 16 || $8 > $6 || $9 < $6) exit 1 }' ||
+    fails "is not within its errors"
+test "$(grep -v '^#' $work/out | head -n 1)" = \
+    scene,integrator,dt,parameter,start,value,error,low,high,residuals,degrees_of_freedom,chi_square,reduced_chi_square,correlation_l,correlation_g,correlation_gamma,correlation_start ||
+    fails "has other columns"
+exits 0 fit pendulum-filmed --data pendulum-filmed.csv --vary l,g,gamma,start \
+    --sigma 0.004
+has '242 residuals, 238 degrees of freedom: chi-square 2[0-9][0-9]'
+has '^ g +9\.81'
+lacks 'as large as sigma says'
+
+# A lack of an effect is seen in chi-square; so is a sigma that is too large.
+exits 0 fit pendulum-filmed --data pendulum-filmed.csv --vary l,g,start \
+    --sigma 0.004 --without drag
+has 'times as large as sigma says'
+exits 0 fit pendulum-filmed --data pendulum-filmed.csv --vary l,g,start,gamma \
+    --sigma 0.1
+has 'sigma is too large'
+
+# Points without noise: all digits, whatever is first; far away a turn ahead
+# would be a minimum of its own.
+"$nevh" run pendulum --dt 0.05 --t-end 20 --samples 101 --integrators gauss8 \
+    --quiet >$work/angle.csv
+exits 0 fit pendulum --data $work/angle.csv --columns phi --vary g,start --dt 0.05 \
+    --integrators gauss8 --set g=6.5 --format csv
+near 6 g 9.8 1e-8
+near 6 start 2 1e-8
+# Angles are compared modulo their period.
+awk -F, '/^#/ { next } /^t/ { print "t,phi"; next }
+    { printf "%s,%.17g\n", $1, $2 + 6.283185307179586*(NR % 3) }' $work/angle.csv >$work/turned.csv
+exits 0 fit pendulum --data $work/turned.csv --vary g --dt 0.05 \
+    --integrators gauss8 --set g=9 --format csv
+near 6 g 9.8 1e-8
+# Starts: an angle, a momentum, a velocity.
+exits 0 fit pendulum --data $work/angle.csv --vary phi,v_phi --dt 0.05 --columns phi,x \
+    --integrators gauss8 --start phi=1.8,v_phi=0.2 --format csv
+near 6 phi 2 1e-8
+near 6 v_phi 0 1e-8
+# Deviations of each point: those that lie far off do not count.
+awk -F, '/^#/ { next } /^t/ { print "t,phi,sigma_phi"; next }
+    NR % 7 == 0 { print $1 ",5,1e9"; next } { print $1 "," $2 ",1e-3" }' \
+    $work/angle.csv >$work/weights.csv
+exits 0 fit pendulum --data $work/weights.csv --vary g --dt 0.05 \
+    --integrators gauss8 --set g=9.5 --format csv
+near 6 g 9.8 1e-6
+sed 's/1e9/1e-3/' $work/weights.csv >$work/even.csv
+exits 0 fit pendulum --data $work/even.csv --vary g --dt 0.05 --integrators gauss8 \
+    --format csv
+rows | awk -F, '{ d = $6 - 9.8; exit d*d < 1e-6 }' ||
+    fails "finds g among points that lie far off"
+
+# The angle of a plain pendulum knows g/l alone.  As the manual has it:
+exits 0 run pendulum --dt 0.05 --t-end 20 --samples 101 --integrators gauss8 \
+    --quiet -o $work/angle.csv
+exits 1 fit pendulum --data $work/angle.csv --columns phi --vary l,g --dt 0.05
+says 'not determined by these data: l, g: where they change together, l by 1 % and g by 1 %, nothing that was measured changes'
+exits 1 fit pendulum --data $work/angle.csv --columns phi --vary g,m --dt 0.05
+says 'not determined by these data: m, which changes nothing'
+# The place of its bob knows both.
+exits 0 fit pendulum --data $work/angle.csv --columns x --vary l,g --dt 0.05 \
+    --set l=0.9,g=9.3 --integrators gauss8 --format csv
+near 6 l 1 1e-8
+near 6 g 9.8 1e-7
+
+# The intervals of 20 draws; bench/fit.sh takes 400.
+sh "$srcdir/bench/fit.sh" "$nevh" ./examples/add_noise 20 >$work/out ||
+    { command="fit.sh"; fails "intervals do not hold the truth"; cat $work/out; }
+
+refuses() { # WHAT TEXT, options
+    printf "$2" >$work/bad.csv
+    what=$1
+    shift 2
+    exits 2 fit pendulum --data $work/bad.csv --vary g "$@"
+    says "$what"
+}
+refuses 'is empty' ''
+refuses 'has no rows' 't,phi\n'
+refuses 'bad.csv:1: there is no column t' 'phi\n1\n'
+refuses 'no column is one of the scene' 't,psi\n0,1\n'
+refuses 'has no column x' 't,phi\n0,2\n1,1\n' --columns x
+refuses 'the scene has no psi' 't,psi\n0,2\n1,1\n' --columns psi
+refuses 'bad.csv:3: column phi: a value is missing' 't,phi\n0,2\n1,\n'
+refuses 'bad.csv:3: column phi: "two" is no number' 't,phi\n0,2\n1,two\n'
+refuses 'bad.csv:3: column phi: "nan" is no number' 't,phi\n0,2\n1,nan\n'
+refuses 'bad.csv:3: 1 values, and there are 2 columns' 't,phi\n0,2\n1\n'
+refuses 'there are two columns phi' 't,phi,phi\n0,2,2\n'
+refuses 'a standard deviation is above 0' 't,phi,sigma\n0,2,0\n'
+refuses 'no standard deviation' 't,phi,x,sigma_x\n0,2,1,1\n'
+refuses 'sigma_y: there is no column y' 't,phi,sigma_y\n0,2,1\n'
+refuses 'before the run begins' 't,phi\n-1,2\n1,2\n'
+refuses 'too few' 't,phi\n0,2\n'
+refuses 'no point is after the start' 't,phi\n0,2\n0,2.1\n'
+refuses 'standard deviations of its own' 't,phi,sigma\n0,2,1\n1,1,1\n' --sigma 1
+exits 2 fit pendulum --data $work/none.csv --vary g
+says 'cannot be read: No such file'
+exits 2 fit pendulum --vary g
+says 'takes --data'
+exits 2 fit pendulum --data $work/angle.csv --vary g=1
+says 'takes names alone'
+exits 2 fit pendulum --data $work/angle.csv --vary g,q
+says 'q'
+exits 2 fit pendulum --data $work/angle.csv --vary g,g
+says 'stands there twice'
+exits 2 fit pendulum --data $work/angle.csv --vary g --sigma -1
+says 'above 0'
+# No orbit: a length below 0 under a root.
+cat >$work/root.nevh <<'END'
+[parameters]
+l = 1
+[coordinates]
+x = 1
+[effects]
+kinetic = p_x^2/2
+spring = x^2/2*sqrt(l - 2)^2
+[run]
+t_end = 5
+dt = 0.05
+END
+exits 2 fit $work/root.nevh --data $work/angle.csv --vary l
+says 'spring'
+exit $status

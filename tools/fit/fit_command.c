@@ -1,0 +1,324 @@
+/* nevh fit: parameters and starts from measured points.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit_private.h"
+#include "plot/plot.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct {
+    plan plan;
+    measured data;
+    fitting fit;
+    double dt; /* fixed, though parameters change */
+    double *tolerance;
+} job;
+
+static int check_points(const job *j, const options *o) {
+    const measured *m = &j->data;
+    if (!o->data || !o->vary.count)
+        return tool_refuse(
+            "nevh fit takes --data FILE.csv and --vary A,B: what "
+            "was measured, and what is to be found");
+    if (m->points * m->columns <= j->fit.count)
+        return tool_refuse(
+            "--data %s: %zu measured numbers are too few for the "
+            "%zu of --vary",
+            m->file, m->points * m->columns, j->fit.count);
+    if (!(m->points && m->t[m->points - 1] > j->plan.run->t_start))
+        return tool_refuse("--data %s: no point is after the start, t = %g",
+                           m->file, j->plan.run->t_start);
+    return TOOL_OK;
+}
+
+/* Numbers that the scene's own would take along when it changes. */
+static void keep_steps(job *j) {
+    plan *p = &j->plan;
+    j->dt = p->dt[0];
+    p->dt = &j->dt;
+    p->dts = 1;
+    j->tolerance = tool_allocate(1, sizeof *j->tolerance);
+    if (p->tolerances)
+        *j->tolerance = p->tolerance[0];
+    p->tolerance = j->tolerance;
+    p->tolerances = p->tolerances > 0;
+    p->native = NEVH_NATIVE_NEVER;
+}
+
+/* Exact derivatives, where H has them and none are asked for: the orbits are the
+   same, and planning them anew takes no trial of difference steps. */
+static void choose_gradient(job *j, const options *o) {
+    list *names = &j->plan.gradients;
+    list before = *names;
+    if (o->gradients.count)
+        return;
+    *names = (list){0};
+    list_add(names, "exact");
+    nevh_stepper *s = plan_stepper(&j->plan, j->fit.integrator);
+    bool fits = !nevh_stepper_status(s);
+    nevh_stepper_free(s);
+    list_free(fits ? &before : names);
+    if (!fits)
+        *names = before;
+}
+
+static int begin(job *j, const options *o) {
+    options plain = *o;
+    plain.vary = (list){0}; /* names, no lines of [ensemble] */
+    if (!o->data || !o->vary.count)
+        return check_points(j, o);
+    if (plan_make(&j->plan, &plain) ||
+        measured_read(&j->data, &j->plan, o, o->columns))
+        return TOOL_USAGE;
+    measured_bound(&j->data, &j->plan, o);
+    keep_steps(j);
+    nevh_stepper *s = plan_first(&j->plan, &j->fit.integrator);
+    nevh_stepper_free(s);
+    if (!s)
+        return TOOL_USAGE;
+    choose_gradient(j, o);
+    j->fit.plan = &j->plan;
+    j->fit.data = &j->data;
+    j->fit.sigma = o->sigma > 0 ? o->sigma : 1;
+    j->fit.sigma_known = o->sigma > 0;
+    if (o->sigma > 0 && j->data.sigma)
+        return tool_refuse("--sigma: %s has standard deviations of its own",
+                           j->data.file);
+    return fit_begin(&j->fit, o) ? TOOL_USAGE : check_points(j, o);
+}
+
+/* Output. */
+
+static double reduced(const job *j) {
+    return j->fit.chi_square / (double)(j->fit.residuals - j->fit.count);
+}
+
+static bool sigma_known(const job *j) {
+    return j->fit.sigma_known || j->data.sigma;
+}
+
+static void add_columns(const job *j, table *t, bool is_table) {
+    static const char *const shown[] = {"parameter", "value", "error",
+                                        "95 % from", "to",    "started at"};
+    static const char *const csv[] = {"scene",
+                                      "integrator",
+                                      "dt",
+                                      "parameter",
+                                      "start",
+                                      "value",
+                                      "error",
+                                      "low",
+                                      "high",
+                                      "residuals",
+                                      "degrees_of_freedom",
+                                      "chi_square",
+                                      "reduced_chi_square"};
+    if (is_table)
+        table_columns(t, shown, sizeof shown / sizeof *shown);
+    else
+        table_columns(t, csv, sizeof csv / sizeof *csv);
+    for (size_t i = 0; i < j->fit.count; i++) {
+        char *title = text_print(is_table ? "corr.\n%s" : "correlation_%s",
+                                 j->fit.item[i].name);
+        table_column(t, title);
+        free(title);
+    }
+}
+
+/* As many digits as the error leaves, and two. */
+static void show_value(table *t, double value, double error) {
+    double places = 1 - floor(log10(error));
+    bool plain =
+        error > 0 && isfinite(places) && fabs(value) < 1e6 && places <= 12;
+    if (plain)
+        table_shown(t, "%.*f", (int)fmax(places, 0), value);
+    else
+        table_shown(t, "%.10g", value);
+}
+
+static void add_row(const job *j, table *t, size_t k) {
+    const varied *v = &j->fit.item[k];
+    table_text(t, v->name);
+    show_value(t, v->value, v->error);
+    table_shown(t, "%.2g", v->error);
+    show_value(t, v->low, v->error);
+    show_value(t, v->high, v->error);
+    table_shown(t, "%.6g", v->first);
+    for (size_t i = 0; i < j->fit.count; i++)
+        table_shown(t, "%.3f", j->fit.correlation[k * j->fit.count + i]);
+}
+
+static void add_record(const job *j, table *t, size_t k) {
+    const fitting *f = &j->fit;
+    const varied *v = &f->item[k];
+    const double numbers[] = {v->first, v->value, v->error, v->low, v->high};
+    table_text(t, j->plan.name);
+    table_text(t, f->integrator);
+    table_number(t, j->dt);
+    table_text(t, v->name);
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        table_number(t, numbers[i]);
+    table_shown(t, "%zu", f->residuals);
+    table_shown(t, "%zu", f->residuals - f->count);
+    table_number(t, f->chi_square);
+    table_number(t, reduced(j));
+    for (size_t i = 0; i < f->count; i++)
+        table_number(t, f->correlation[k * f->count + i]);
+}
+
+static void judge(const job *j, list *words) {
+    const fitting *f = &j->fit;
+    static const double close = 0.999;
+    double degrees = (double)(f->residuals - f->count), ratio = reduced(j);
+    double spread = 4 * sqrt(2 / degrees); /* four standard deviations */
+    if (sigma_known(j) && ratio > 1 + spread)
+        list_print(
+            words,
+            "The residuals are %.2g times as large as sigma says: the "
+            "scene lacks an effect, the fit is in another minimum (begin "
+            "nearer: --set, --start), or sigma is too small.",
+            sqrt(ratio));
+    if (sigma_known(j) && ratio < 1 - spread)
+        list_print(words,
+                   "The residuals are %.2g times sigma: sigma is too large.",
+                   sqrt(ratio));
+    for (size_t k = 0; k < f->count; k++)
+        for (size_t i = 0; i < k; i++)
+            if (fabs(f->correlation[k * f->count + i]) > close)
+                list_print(words,
+                           "%s and %s are hardly told apart (correlation "
+                           "%.5f): the data fix a combination of them better "
+                           "than each.",
+                           f->item[i].name, f->item[k].name,
+                           f->correlation[k * f->count + i]);
+}
+
+/* " --set l=1,g=2", of parameters or of starts; "" of none. */
+static char *options_of(const fitting *f, bool starts) {
+    char *text = text_print("%s", "");
+    for (size_t k = 0; k < f->count; k++) {
+        if (f->item[k].start != starts)
+            continue;
+        char *longer = text_print("%s%s%s=%.7g", text,
+                                  *text    ? ","
+                                  : starts ? " --start "
+                                           : " --set ",
+                                  f->item[k].name, f->item[k].value);
+        free(text);
+        text = longer;
+    }
+    return text;
+}
+
+static void add_next(const job *j, list *words) {
+    char *sets = options_of(&j->fit, false);
+    char *starts = options_of(&j->fit, true);
+    list_print(words, "Next: nevh run %s%s%s --plot-kind time --plot -",
+               j->plan.name, sets, starts);
+    free(sets);
+    free(starts);
+}
+
+static void add_words(const job *j, list *words) {
+    const fitting *f = &j->fit;
+    list_print(
+        words,
+        "%zu residuals, %zu degrees of freedom: chi-square %.4g, reduced "
+        "%.4g%s",
+        f->residuals, f->residuals - f->count, f->chi_square, reduced(j),
+        sigma_known(j) ? ""
+                       : " (sigma is unknown: errors are by the "
+                         "residuals themselves)");
+    for (size_t k = 0; k < j->data.columns; k++) {
+        const char *name = j->data.names.item[k];
+        const char *unit = nevh_scene_label(j->plan.scene, name);
+        list_print(words, "rms of the residuals of %s: %.3g%s%s", name,
+                   f->rms[k], *unit ? " " : "", unit);
+    }
+    judge(j, words);
+    add_next(j, words);
+}
+
+static void note(const job *j, const options *o, list *notes) {
+    plan_notes(&j->plan, notes);
+    settings_notes(o, notes);
+    measured_note(&j->data, notes);
+    plan_note_first(&j->plan, j->fit.integrator, notes);
+    list_print(notes, "sigma: %s",
+               j->data.sigma        ? "of the data"
+               : j->fit.sigma_known ? "of --sigma"
+                                    : "unknown, the same for all");
+}
+
+static int print(const job *j, const options *o) {
+    page result = {.table = table_new()};
+    bool is_table = o->format == FORMAT_TABLE;
+    add_columns(j, result.table, is_table);
+    for (size_t k = 0; k < j->fit.count; k++)
+        if (is_table)
+            add_row(j, result.table, k);
+        else
+            add_record(j, result.table, k);
+    if (!(o->quiet && is_table))
+        note(j, o, &result.before);
+    add_words(j, &result.after);
+    int status = output_page(o, &result, TOOL_OK);
+    page_free(&result);
+    return status;
+}
+
+/* Which numbers, and why. */
+static int tell_failure(const job *j) {
+    const fitting *f = &j->fit;
+    list names = {0};
+    for (size_t k = 0; f->undetermined && k < f->count; k++)
+        if (f->undetermined[k])
+            list_add(&names, f->item[k].name);
+    char *all = list_joined(&names);
+    if (names.count == 1)
+        tool_refuse("%s: not determined by these data: %s, which changes "
+                    "nothing that was measured; leave it out of --vary",
+                    j->plan.name, all);
+    else if (names.count)
+        tool_refuse("%s: not determined by these data: %s%s%s%s; leave one out "
+                    "of --vary, or measure what tells them apart",
+                    j->plan.name, all,
+                    *f->direction ? ": where they change together, " : "",
+                    f->direction,
+                    *f->direction ? ", nothing that was measured changes" : "");
+    else if (f->why)
+        tool_refuse("%s: no fit: there is no orbit: %s", j->plan.name, f->why);
+    else
+        tool_refuse("%s: the fit does not converge in %zu iterations; begin "
+                    "nearer: --set, --start, or with a shorter --t-end",
+                    j->plan.name, f->iterations);
+    free(all);
+    list_free(&names);
+    return TOOL_FAILED;
+}
+
+static void clear(job *j) {
+    fitting *f = &j->fit;
+    for (size_t k = 0; k < f->count; k++)
+        free((char *)f->item[k].name);
+    free(f->item);
+    free(f->correlation);
+    free(f->rms);
+    free(f->undetermined);
+    free(f->direction);
+    free(f->why);
+    measured_free(&j->data);
+    free(j->tolerance);
+    plan_free(&j->plan);
+}
+
+int fit_command(const options *o) {
+    job j = {0};
+    int status = begin(&j, o);
+    if (!status && fit_solve(&j.fit))
+        status = tell_failure(&j);
+    if (!status)
+        status = print(&j, o);
+    clear(&j);
+    return status;
+}

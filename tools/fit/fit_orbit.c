@@ -1,0 +1,149 @@
+/* nevh fit: the orbit of varied numbers, at the times of the data.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit_private.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool is_start(const plan *p, const char *name) {
+    if (strncmp(name, "p_", 2) == 0 || strncmp(name, "v_", 2) == 0)
+        name += 2;
+    for (size_t k = 0; k < p->n; k++)
+        if (strcmp(name, nevh_scene_coordinate(p->scene, k)) == 0)
+            return true;
+    return false;
+}
+
+/* What the scene says. */
+static int first_value(fitting *f, varied *v, const options *o) {
+    plan *p = f->plan;
+    v->start = is_start(p, v->name);
+    if (!v->start)
+        return scene_number(p->scene, o, v->name, &v->first);
+    if (nevh_scene_set_judged(p->scene, v->name) ||
+        nevh_scene_judged_value(p->scene, p->run->t_start, p->q, p->p,
+                                &v->first))
+        return scene_report(p->scene, o);
+    return TOOL_OK;
+}
+
+/* A setting tells a parameter that can be changed from one that cannot. */
+static int assign(fitting *f, const varied *v, double value) {
+    nevh_scene *s = f->plan->scene;
+    char *text = text_print("%s=%.17g", v->name, value);
+    int status =
+        v->start ? nevh_scene_set_start(s, text) : nevh_scene_set(s, text);
+    free(text);
+    return status;
+}
+
+/* The plan of the scene as it is now. */
+static int renew(plan *p) {
+    p->system = nevh_scene_system(p->scene);
+    p->run = nevh_scene_run_settings(p->scene);
+    if (p->gradient_steps)
+        p->gradient_steps = p->run->gradient_steps;
+    return nevh_scene_start(p->scene, p->q, p->p);
+}
+
+int fit_begin(fitting *f, const options *o) {
+    list names = {0};
+    int status = TOOL_OK;
+    for (size_t i = 0; i < o->vary.count; i++)
+        list_split(&names, o->vary.item[i]);
+    f->item = tool_allocate(names.count, sizeof *f->item);
+    for (size_t i = 0; !status && i < names.count; i++) {
+        varied *v = &f->item[f->count++];
+        v->name = text_print("%s", names.item[i]);
+        for (size_t k = 0; !status && k < i; k++)
+            if (strcmp(v->name, f->item[k].name) == 0)
+                status = tool_refuse("--vary: %s stands there twice", v->name);
+        if (!status && strchr(v->name, '='))
+            status = tool_refuse("--vary of nevh fit takes names alone: what "
+                                 "%s begins with is given by --set or --start",
+                                 v->name);
+        if (!status)
+            status = first_value(f, v, o);
+        if (!status && assign(f, v, v->first))
+            status = tool_refuse("--vary %s: %s", v->name,
+                                 nevh_scene_message(f->plan->scene));
+        v->value = v->first;
+        v->scale = v->first != 0 ? fabs(v->first) : 1;
+    }
+    list_free(&names);
+    if (!status && renew(f->plan))
+        status = scene_report(f->plan->scene, o);
+    return status;
+}
+
+typedef struct {
+    fitting *fitting;
+    quantities columns;
+    double *values, *residual;
+    size_t point;
+} comparison;
+
+/* At each point in turn. */
+static int compare_point(void *data, double t, const double q[],
+                         const double p[]) {
+    comparison *c = data;
+    const fitting *f = c->fitting;
+    const measured *m = f->data;
+    columns_values(&c->columns, t, q, p, c->values);
+    for (size_t k = 0; k < m->columns; k++) {
+        size_t i = c->point * m->columns + k;
+        c->residual[i] = measured_residual(m, c->point, k, c->values[k]) /
+                         (m->sigma ? m->sigma[i] : f->sigma);
+        if (!isfinite(c->residual[i]))
+            return TOOL_FAILED;
+    }
+    c->point++;
+    return TOOL_OK;
+}
+
+static bool fails(fitting *f, const char *why) {
+    free(f->why);
+    f->why = text_print("%s", why);
+    return false;
+}
+
+static bool follow(fitting *f, nevh_stepper *s, double residual[]) {
+    static const volatile sig_atomic_t no_signal;
+    const measured *m = f->data;
+    comparison c = {.fitting = f,
+                    .columns = columns_new(f->plan),
+                    .values = tool_allocate(m->columns, sizeof(double)),
+                    .residual = residual};
+    for (size_t k = 0; k < m->columns; k++)
+        columns_add(&c.columns, m->names.item[k]);
+    row_times times = measured_times(m);
+    times.count = f->used;
+    f->plan->t_end = m->t[f->used - 1];
+    trajectory *r =
+        trajectory_new(f->plan, f->integrator, s, &times,
+                       (sink){.take = compare_point, .data = &c, .mute = true});
+    trajectory_follow(r, &(trajectory_watch){.signal = &no_signal});
+    trajectory_free(r);
+    bool whole = c.point == f->used;
+    if (!whole && nevh_stepper_status(s))
+        fails(f, nevh_stepper_message(s));
+    else if (!whole)
+        fails(f, "the orbit ends before the data, or is not finite");
+    columns_free(&c.columns);
+    free(c.values);
+    return whole;
+}
+
+bool fit_orbit(fitting *f, const double x[], double residual[]) {
+    f->orbits++;
+    for (size_t i = 0; i < f->count; i++)
+        if (assign(f, &f->item[i], x[i] * f->item[i].scale))
+            return fails(f, nevh_scene_message(f->plan->scene));
+    if (renew(f->plan))
+        return fails(f, nevh_scene_message(f->plan->scene));
+    nevh_stepper *s = plan_stepper(f->plan, f->integrator);
+    bool good = nevh_stepper_status(s) ? fails(f, nevh_stepper_message(s))
+                                       : follow(f, s, residual);
+    nevh_stepper_free(s);
+    return good;
+}

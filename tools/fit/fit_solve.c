@@ -1,0 +1,267 @@
+/* nevh fit: nonlinear least squares, by GSL's Levenberg-Marquardt method.
+
+   A fit to a long orbit has many local minima, where the model is a turn ahead.
+   So it is made twice: from the first values, and by and by, from the first
+   eighth of the points to all of them; the better of the two counts. */
+#include "fit_private.h"
+#include <gsl/gsl_blas.h>
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_linalg.h>
+#include <gsl/gsl_multifit_nlinear.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_ITERATIONS = 100 };
+static const double tolerance = 1e-9;  /* of the numbers, relative */
+static const double difference = 6e-6; /* cube root of the rounding */
+static const double no_orbit = 1e100;  /* residuals of a step too far */
+static const double undetermined = 1e-6;
+static const double no_effect = 1e-8; /* what rounding makes is below */
+
+/* The model less the data, as GSL has it; a trial that has no orbit is worse than
+   any that has. */
+static int residuals(const gsl_vector *x, void *data, gsl_vector *r) {
+    fitting *f = data;
+    if (fit_orbit(f, x->data, r->data))
+        gsl_vector_scale(r, -1);
+    else
+        gsl_vector_set_all(r, no_orbit);
+    return GSL_SUCCESS;
+}
+
+/* Central differences. */
+static int derivatives(const gsl_vector *x, void *data, gsl_matrix *j) {
+    fitting *f = data;
+    size_t n = f->residuals;
+    double *at = tool_allocate(f->count + 2 * n, sizeof *at);
+    double *after = at + f->count, *before = after + n;
+    bool good = true;
+    memcpy(at, x->data, f->count * sizeof *at);
+    for (size_t k = 0; good && k < f->count; k++) {
+        double h = difference * (at[k] != 0 ? fabs(at[k]) : 1), middle = at[k];
+        volatile double right = middle + h, left = middle - h;
+        at[k] = right;
+        good = fit_orbit(f, at, after);
+        at[k] = left;
+        good = good && fit_orbit(f, at, before);
+        at[k] = middle;
+        for (size_t i = 0; good && i < n; i++)
+            gsl_matrix_set(j, i, k, (before[i] - after[i]) / (right - left));
+    }
+    free(at);
+    return good ? GSL_SUCCESS : GSL_EFAILED;
+}
+
+/* Relative changes along a direction: "l by 1 % and g by 1 %", the first being 1;
+   of numbers that are 0 there are none, and names alone are told. */
+static void tell_direction(fitting *f, const gsl_vector *along) {
+    static const double part_of_it = 0.03;
+    double first = 0;
+    bool relative = true;
+    free(f->direction);
+    f->direction = text_print("%s", "");
+    for (size_t k = 0; k < f->count; k++) {
+        double part = gsl_vector_get(along, k), size = f->item[k].value;
+        f->undetermined[k] = fabs(part) > part_of_it * gsl_blas_dnrm2(along);
+        if (!f->undetermined[k])
+            continue;
+        double change = part * f->item[k].scale / size;
+        relative = relative && isfinite(change);
+        first = first != 0 ? first : change;
+        char *longer = text_print("%s%s%s by %.3g %%", f->direction,
+                                  *f->direction ? " and " : "", f->item[k].name,
+                                  change / first);
+        free(f->direction);
+        f->direction = longer;
+    }
+    if (!relative)
+        *f->direction = '\0';
+}
+
+/* Whether all columns of the matrix, made as long as each other, are
+   independent. */
+static bool determined(fitting *f, const gsl_matrix *jacobian) {
+    size_t p = f->count;
+    gsl_matrix *a = gsl_matrix_alloc(f->residuals, p);
+    gsl_matrix *v = gsl_matrix_alloc(p, p);
+    gsl_vector *s = gsl_vector_alloc(p), *work = gsl_vector_alloc(p);
+    double *length = tool_allocate(p, sizeof *length), longest = 0;
+    bool good = a && v && s && work;
+    gsl_matrix_memcpy(a, jacobian);
+    for (size_t k = 0; k < p; k++) {
+        gsl_vector_view column = gsl_matrix_column(a, k);
+        length[k] = gsl_blas_dnrm2(&column.vector);
+        longest = fmax(longest, length[k]);
+    }
+    f->undetermined = tool_allocate(p, sizeof *f->undetermined);
+    for (size_t k = 0; k < p; k++) {
+        gsl_vector_view column = gsl_matrix_column(a, k);
+        bool none = !(length[k] > no_effect * longest);
+        f->undetermined[k] = none;
+        good = good && !none;
+        if (!none)
+            gsl_vector_scale(&column.vector, 1 / length[k]);
+    }
+    if (good) {
+        gsl_linalg_SV_decomp(a, v, s, work);
+        good = gsl_vector_get(s, p - 1) > undetermined * gsl_vector_get(s, 0);
+        gsl_vector_view along = gsl_matrix_column(v, p - 1);
+        for (size_t k = 0; !good && k < p; k++)
+            *gsl_vector_ptr(&along.vector, k) /= length[k];
+        if (!good)
+            tell_direction(f, &along.vector);
+    }
+    if (good) {
+        free(f->undetermined);
+        f->undetermined = NULL;
+    }
+    gsl_matrix_free(a);
+    gsl_matrix_free(v);
+    gsl_vector_free(s);
+    gsl_vector_free(work);
+    free(length);
+    return good;
+}
+
+/* One fit to the first `used` points.
+   x        in and out
+   returns  0, and w holds the result; a status of GSL */
+static int fit_part(fitting *f, size_t used, gsl_vector *x, double *chi_square,
+                    gsl_multifit_nlinear_workspace **w) {
+    gsl_multifit_nlinear_parameters how =
+        gsl_multifit_nlinear_default_parameters();
+    f->used = used;
+    f->residuals = used * f->data->columns;
+    gsl_multifit_nlinear_fdf what = {.f = residuals,
+                                     .df = derivatives,
+                                     .n = f->residuals,
+                                     .p = f->count,
+                                     .params = f};
+    int info = 0;
+    *w = tool_owned(gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &how,
+                                               f->residuals, f->count));
+    free(f->why);
+    f->why = NULL;
+    int status = gsl_multifit_nlinear_init(x, &what, *w);
+    if (!status && f->why)
+        status = GSL_EFAILED;
+    if (!status)
+        status = gsl_multifit_nlinear_driver(
+            MOST_ITERATIONS, tolerance, tolerance, 0, NULL, NULL, &info, *w);
+    f->iterations = gsl_multifit_nlinear_niter(*w);
+    gsl_vector *r = gsl_multifit_nlinear_residual(*w);
+    gsl_blas_ddot(r, r, chi_square);
+    if (status == GSL_ENOPROG) /* rounding is all that is left */
+        status = GSL_SUCCESS;
+    gsl_vector_memcpy(x, gsl_multifit_nlinear_position(*w));
+    return status;
+}
+
+static void start_values(const fitting *f, gsl_vector *x) {
+    for (size_t k = 0; k < f->count; k++)
+        gsl_vector_set(x, k, f->item[k].first / f->item[k].scale);
+}
+
+/* By and by; parts that fail leave the values as they are. */
+static void approach(fitting *f, gsl_vector *x) {
+    gsl_vector *before = gsl_vector_alloc(f->count);
+    start_values(f, x);
+    for (size_t part = 8; part > 1; part /= 2) {
+        gsl_multifit_nlinear_workspace *w;
+        size_t used = f->data->points / part;
+        double chi_square;
+        if (used * f->data->columns < 2 * f->count + 2)
+            continue;
+        gsl_vector_memcpy(before, x);
+        if (fit_part(f, used, x, &chi_square, &w) ||
+            !determined(f, gsl_multifit_nlinear_jac(w)))
+            gsl_vector_memcpy(x, before);
+        free(f->undetermined);
+        f->undetermined = NULL;
+        gsl_multifit_nlinear_free(w);
+    }
+    gsl_vector_free(before);
+}
+
+static void take_errors(fitting *f, const gsl_matrix *jacobian) {
+    size_t p = f->count;
+    double degrees = (double)(f->residuals - p);
+    double scale =
+        f->sigma_known || f->data->sigma ? 1 : f->chi_square / degrees;
+    double wide = f->sigma_known || f->data->sigma
+                      ? gsl_cdf_ugaussian_Pinv(0.975)
+                      : gsl_cdf_tdist_Pinv(0.975, degrees);
+    gsl_matrix *c = gsl_matrix_alloc(p, p);
+    gsl_multifit_nlinear_covar(jacobian, 0, c);
+    f->correlation = tool_allocate(p * p, sizeof *f->correlation);
+    for (size_t k = 0; k < p; k++) {
+        varied *v = &f->item[k];
+        v->error = sqrt(scale * gsl_matrix_get(c, k, k)) * v->scale;
+        v->low = v->value - wide * v->error;
+        v->high = v->value + wide * v->error;
+        for (size_t i = 0; i < p; i++)
+            f->correlation[k * p + i] =
+                gsl_matrix_get(c, k, i) /
+                sqrt(gsl_matrix_get(c, k, k) * gsl_matrix_get(c, i, i));
+    }
+    gsl_matrix_free(c);
+}
+
+/* Of each column, in its own unit. */
+static void take_rms(fitting *f, const gsl_vector *residual) {
+    const measured *m = f->data;
+    f->rms = tool_allocate(m->columns, sizeof *f->rms);
+    for (size_t i = 0; i < f->residuals; i++) {
+        double r =
+            gsl_vector_get(residual, i) * (m->sigma ? m->sigma[i] : f->sigma);
+        f->rms[i % m->columns] += r * r;
+    }
+    for (size_t k = 0; k < m->columns; k++)
+        f->rms[k] = sqrt(f->rms[k] / (double)m->points);
+}
+
+static int take_result(fitting *f, const gsl_vector *x,
+                       gsl_multifit_nlinear_workspace *w) {
+    for (size_t k = 0; k < f->count; k++)
+        f->item[k].value = gsl_vector_get(x, k) * f->item[k].scale;
+    if (!determined(f, gsl_multifit_nlinear_jac(w)))
+        return TOOL_FAILED;
+    take_rms(f, gsl_multifit_nlinear_residual(w));
+    take_errors(f, gsl_multifit_nlinear_jac(w));
+    /* The plan is that of the result. */
+    double *unused = tool_allocate(f->residuals, sizeof *unused);
+    bool good = fit_orbit(f, x->data, unused);
+    free(unused);
+    return good ? TOOL_OK : TOOL_FAILED;
+}
+
+int fit_solve(fitting *f) {
+    gsl_vector *x[2] = {gsl_vector_alloc(f->count), gsl_vector_alloc(f->count)};
+    gsl_multifit_nlinear_workspace *w[2];
+    double chi_square[2];
+    int status[2];
+    size_t all = f->data->points;
+    start_values(f, x[0]);
+    status[0] = fit_part(f, all, x[0], &chi_square[0], &w[0]);
+    char *why = f->why ? text_print("%s", f->why) : NULL;
+    size_t iterations = f->iterations;
+    approach(f, x[1]);
+    status[1] = fit_part(f, all, x[1], &chi_square[1], &w[1]);
+    bool second = !status[1] && (status[0] || chi_square[1] < chi_square[0]);
+    if (!second) {
+        free(f->why);
+        f->why = why;
+        f->iterations = iterations;
+    } else {
+        free(why);
+    }
+    f->chi_square = chi_square[second];
+    int result =
+        status[second] ? TOOL_FAILED : take_result(f, x[second], w[second]);
+    for (size_t i = 0; i < 2; i++) {
+        gsl_multifit_nlinear_free(w[i]);
+        gsl_vector_free(x[i]);
+    }
+    return result;
+}

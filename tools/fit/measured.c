@@ -1,0 +1,384 @@
+/* nevh: measured points.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "measured.h"
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { NOT_USED = -1, TIME = -2, SIGMA = -3, SIGMA_OF_ONE = -4 };
+
+typedef struct {
+    measured *m;
+    const plan *plan;
+    list header;
+    int *use; /* of each field: a column, or one of the above */
+    size_t *sigma_of;
+    size_t line;
+    bool sigmas;
+} reader_of_points;
+
+/* Text. */
+
+/* Of a file here, or beside the scenes. */
+static char *whole_file(const char *name) {
+    FILE *f = fopen(name, "r");
+    if (!f && errno == ENOENT && !strchr(name, '/')) {
+        char *shipped = text_print("%s/%s", scenes_folder(), name);
+        f = fopen(shipped, "r");
+        free(shipped);
+        errno = ENOENT;
+    }
+    size_t room = 1 << 16, used = 0;
+    char *text = f ? tool_allocate(room, 1) : NULL;
+    for (size_t got; f && (got = fread(text + used, 1, room - used - 1, f));) {
+        used += got;
+        if (room - used < 2)
+            text = tool_enlarge(text, room *= 2, 1);
+    }
+    bool failed = !f || ferror(f);
+    if (failed)
+        tool_refuse("--data %s cannot be read: %s", name, strerror(errno));
+    else if ((failed = memchr(text, '\0', used)))
+        tool_refuse("--data %s is no text", name);
+    else
+        text[used] = '\0';
+    if (f)
+        fclose(f);
+    if (!failed)
+        return text;
+    free(text);
+    return NULL;
+}
+
+/* The next line that is neither empty nor a remark; NULL: there is none. */
+static char *next_line(char **rest, size_t *number) {
+    while (*rest && **rest) {
+        char *line = *rest, *end = strchr(line, '\n');
+        *rest = end ? end + 1 : NULL;
+        if (end)
+            *end = '\0';
+        ++*number;
+        line[strcspn(line, "\r")] = '\0';
+        line += strspn(line, " \t");
+        if (*line && *line != '#')
+            return line;
+    }
+    return NULL;
+}
+
+/* Fields between commas, in quotes where they hold some. */
+static void split(list *fields, char *line) {
+    for (char *at = line; at;) {
+        at += strspn(at, " \t");
+        bool quoted = *at == '"';
+        char *field = at += quoted,
+             *end = field + strcspn(field, quoted ? "\"" : ",");
+        char *comma = strchr(end, ',');
+        while (!quoted && end > field && strchr(" \t", end[-1]))
+            end--;
+        *end = '\0';
+        list_add(fields, field);
+        at = comma ? comma + 1 : NULL;
+    }
+}
+
+/* The header. */
+
+static bool is_known(const plan *p, const char *name) {
+    bool momentum = strncmp(name, "p_", 2) == 0;
+    for (size_t k = 0; k < p->n; k++) {
+        const char *x = nevh_scene_coordinate(p->scene, k);
+        if (strcmp(name, x) == 0 || (momentum && strcmp(name + 2, x) == 0))
+            return true;
+    }
+    const char *shown;
+    for (size_t i = 0;
+         (shown = nevh_scene_shown_name(p->scene, NEVH_OBSERVABLES, i)); i++)
+        if (strcmp(name, shown) == 0)
+            return true;
+    return false;
+}
+
+static int use_of(reader_of_points *r, const list *only, const char *name) {
+    measured *m = r->m;
+    if (strcmp(name, "t") == 0)
+        return TIME;
+    if (strcmp(name, "sigma") == 0)
+        return SIGMA;
+    if (strncmp(name, "sigma_", 6) == 0)
+        return SIGMA_OF_ONE;
+    if (only->count && !list_has(only, name))
+        return NOT_USED;
+    if (!is_known(r->plan, name) && !only->count) {
+        list_add(&m->left_out, name);
+        return NOT_USED;
+    }
+    list_add(&m->names, name);
+    return (int)m->names.count - 1;
+}
+
+static int known_names(const plan *p, const char *name, const char *file) {
+    list known = {0};
+    for (size_t k = 0; k < p->n; k++) {
+        list_add(&known, nevh_scene_coordinate(p->scene, k));
+        list_print(&known, "p_%s", nevh_scene_coordinate(p->scene, k));
+    }
+    for (size_t i = 0; nevh_scene_shown_name(p->scene, NEVH_OBSERVABLES, i);
+         i++)
+        list_add(&known, nevh_scene_shown_name(p->scene, NEVH_OBSERVABLES, i));
+    char *all = list_joined(&known);
+    int status =
+        name ? tool_refuse("--data %s: the scene has no %s to compare the "
+                           "column of that name with; it has %s",
+                           file, name, all)
+             : tool_refuse("--data %s: no column is one of the scene's: %s",
+                           file, all);
+    free(all);
+    list_free(&known);
+    return status;
+}
+
+static int check_only(const reader_of_points *r, const list *only) {
+    const measured *m = r->m;
+    for (size_t i = 0; i < only->count; i++) {
+        const char *name = only->item[i];
+        if (!list_has(&r->header, name))
+            return tool_refuse("--columns: %s has no column %s", m->file, name);
+        if (!is_known(r->plan, name))
+            return known_names(r->plan, name, m->file);
+    }
+    return m->names.count ? TOOL_OK : known_names(r->plan, NULL, m->file);
+}
+
+static int check_header(const reader_of_points *r, const list *only) {
+    const list *h = &r->header;
+    list seen = {0};
+    int status = TOOL_OK;
+    for (size_t i = 0; !status && i < h->count; i++) {
+        if (list_has(&seen, h->item[i]))
+            status = tool_refuse("%s:%zu: there are two columns %s", r->m->file,
+                                 r->line, h->item[i]);
+        list_add(&seen, h->item[i]);
+    }
+    list_free(&seen);
+    if (status)
+        return status;
+    if (!list_has(h, "t"))
+        return tool_refuse("%s:%zu: there is no column t; the first line names "
+                           "the columns, separated by commas, as: t,%s",
+                           r->m->file, r->line,
+                           nevh_scene_coordinate(r->plan->scene, 0));
+    return check_only(r, only);
+}
+
+static int find_sigmas(reader_of_points *r) {
+    measured *m = r->m;
+    for (size_t i = 0; i < r->header.count; i++) {
+        const char *name = r->header.item[i];
+        r->sigmas =
+            r->sigmas || r->use[i] == SIGMA || r->use[i] == SIGMA_OF_ONE;
+        if (r->use[i] != SIGMA_OF_ONE)
+            continue;
+        r->sigma_of[i] = measured_find(m, name + strlen("sigma_"));
+        if (r->sigma_of[i] == m->columns &&
+            !list_has(&r->header, name + strlen("sigma_")))
+            return tool_refuse("%s:%zu: %s: there is no column %s", m->file,
+                               r->line, name, name + strlen("sigma_"));
+    }
+    return TOOL_OK;
+}
+
+static int read_header(reader_of_points *r, char *line, const char *only) {
+    measured *m = r->m;
+    list taken = {0};
+    if (only)
+        list_split(&taken, only);
+    split(&r->header, line);
+    r->use = tool_allocate(r->header.count, sizeof *r->use);
+    r->sigma_of = tool_allocate(r->header.count, sizeof *r->sigma_of);
+    for (size_t i = 0; i < r->header.count; i++)
+        r->use[i] = use_of(r, &taken, r->header.item[i]);
+    m->columns = m->names.count;
+    int status = check_header(r, &taken);
+    list_free(&taken);
+    m->period = tool_allocate(m->columns, sizeof *m->period);
+    for (size_t k = 0; k < m->columns; k++)
+        m->period[k] = plan_period(r->plan, m->names.item[k]);
+    return status ? status : find_sigmas(r);
+}
+
+/* Rows. */
+
+static int read_cell(const reader_of_points *r, size_t i, const char *text,
+                     double *number) {
+    char *end;
+    *number = strtod(text, &end);
+    if (!*text)
+        return tool_refuse("%s:%zu: column %s: a value is missing; leave out "
+                           "the row, or the column",
+                           r->m->file, r->line, r->header.item[i]);
+    if (end == text || *end || !isfinite(*number))
+        return tool_refuse("%s:%zu: column %s: \"%s\" is no number", r->m->file,
+                           r->line, r->header.item[i], text);
+    if ((r->use[i] == SIGMA || r->use[i] == SIGMA_OF_ONE) && !(*number > 0))
+        return tool_refuse(
+            "%s:%zu: column %s: a standard deviation is above 0, "
+            "not %s",
+            r->m->file, r->line, r->header.item[i], text);
+    return TOOL_OK;
+}
+
+static void put_cell(const reader_of_points *r, size_t i, double number,
+                     double *value, double *sigma, bool own[]) {
+    measured *m = r->m;
+    if (r->use[i] == TIME)
+        m->t[m->points] = number;
+    if (r->use[i] >= 0)
+        value[r->use[i]] = number;
+    if (r->use[i] == SIGMA_OF_ONE && r->sigma_of[i] < m->columns) {
+        sigma[r->sigma_of[i]] = number;
+        own[r->sigma_of[i]] = true;
+    }
+    for (size_t k = 0; r->use[i] == SIGMA && k < m->columns; k++)
+        if (!own[k])
+            sigma[k] = number;
+}
+
+static int read_row(reader_of_points *r, char *line, bool own[]) {
+    measured *m = r->m;
+    list fields = {0};
+    int status = TOOL_OK;
+    split(&fields, line);
+    if (fields.count != r->header.count)
+        status = tool_refuse("%s:%zu: %zu values, and there are %zu columns",
+                             m->file, r->line, fields.count, r->header.count);
+    m->t = tool_enlarge(m->t, m->points + 1, sizeof *m->t);
+    m->value =
+        tool_enlarge(m->value, (m->points + 1) * m->columns, sizeof *m->value);
+    m->sigma =
+        tool_enlarge(m->sigma, (m->points + 1) * m->columns, sizeof *m->sigma);
+    double *value = m->value + m->points * m->columns;
+    double *sigma = m->sigma + m->points * m->columns;
+    memset(own, 0, m->columns * sizeof *own);
+    memset(sigma, 0, m->columns * sizeof *sigma);
+    for (size_t i = 0; !status && i < fields.count; i++) {
+        double number = 0;
+        if (r->use[i] != NOT_USED)
+            status = read_cell(r, i, fields.item[i], &number);
+        put_cell(r, i, number, value, sigma, own);
+    }
+    for (size_t k = 0; !status && r->sigmas && k < m->columns; k++)
+        if (!(sigma[k] > 0))
+            status = tool_refuse("%s: column %s has no standard deviation: "
+                                 "give sigma_%s, or sigma for all",
+                                 m->file, m->names.item[k], m->names.item[k]);
+    if (!status && m->t[m->points] < r->plan->run->t_start)
+        status = tool_refuse("%s:%zu: t = %g is before the run begins, at %g",
+                             m->file, r->line, m->t[m->points],
+                             r->plan->run->t_start);
+    list_free(&fields);
+    m->points += !status;
+    return status;
+}
+
+/* In the order of time: insertion, for they mostly are. */
+static void sort(measured *m) {
+    size_t size = m->columns * sizeof(double);
+    double *row = tool_allocate(m->columns, sizeof *row);
+    for (size_t i = 1; i < m->points; i++)
+        for (size_t k = i; k > 0 && m->t[k] < m->t[k - 1]; k--) {
+            double t = m->t[k], *tables[] = {m->value, m->sigma};
+            m->t[k] = m->t[k - 1];
+            m->t[k - 1] = t;
+            for (size_t j = 0; j < 2; j++) {
+                double *a = tables[j] + k * m->columns, *b = a - m->columns;
+                memcpy(row, a, size);
+                memcpy(a, b, size);
+                memcpy(b, row, size);
+            }
+        }
+    free(row);
+}
+
+static int read_text(reader_of_points *r, char *text, const char *only) {
+    char *rest = text, *line = next_line(&rest, &r->line);
+    if (!line)
+        return tool_refuse("--data %s is empty", r->m->file);
+    int status = read_header(r, line, only);
+    bool *own = tool_allocate(r->m->columns, sizeof *own);
+    while (!status && (line = next_line(&rest, &r->line)))
+        status = read_row(r, line, own);
+    free(own);
+    if (!status && !r->m->points)
+        status = tool_refuse("--data %s has no rows", r->m->file);
+    if (!status)
+        sort(r->m);
+    return status;
+}
+
+int measured_read(measured *m, const plan *p, const options *o,
+                  const char *only) {
+    reader_of_points r = {.m = m, .plan = p};
+    *m = (measured){.file = o->data};
+    char *text = whole_file(o->data);
+    int status = text ? read_text(&r, text, only) : TOOL_USAGE;
+    if (!r.sigmas) {
+        free(m->sigma);
+        m->sigma = NULL;
+    }
+    list_free(&r.header);
+    free(r.use);
+    free(r.sigma_of);
+    free(text);
+    return status;
+}
+
+void measured_free(measured *m) {
+    list_free(&m->names);
+    list_free(&m->left_out);
+    free(m->t);
+    free(m->value);
+    free(m->sigma);
+    free(m->period);
+}
+
+size_t measured_find(const measured *m, const char *name) {
+    size_t k = 0;
+    while (k < m->columns && strcmp(m->names.item[k], name) != 0)
+        k++;
+    return k;
+}
+
+double measured_residual(const measured *m, size_t point, size_t column,
+                         double model) {
+    double r = m->value[point * m->columns + column] - model;
+    double period = m->period[column];
+    return period > 0 ? r - period * round(r / period) : r;
+}
+
+void measured_bound(measured *m, plan *p, const options *o) {
+    while (o->t_end && m->points && m->t[m->points - 1] > p->t_end) {
+        m->points--;
+        m->late++;
+    }
+    if (!o->t_end && m->points)
+        p->t_end = m->t[m->points - 1];
+}
+
+row_times measured_times(const measured *m) {
+    return (row_times){.by = BY_TIMES, .count = m->points, .time = m->t};
+}
+
+void measured_note(const measured *m, list *notes) {
+    char *names = list_joined(&m->names), *others = list_joined(&m->left_out);
+    list_print(notes, "measured: %zu points of %s in %s", m->points, names,
+               m->file);
+    if (m->left_out.count)
+        list_print(notes, "left out, the scene has none of that name: %s",
+                   others);
+    if (m->late)
+        list_print(notes, "left out, after the end: %zu points", m->late);
+    free(names);
+    free(others);
+}

@@ -1,0 +1,41 @@
+/* nevh: measured points, as --data names them.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_MEASURED_H
+#define NEVH_MEASURED_H
+
+#include "orbit/columns.h"
+#include "orbit/trajectory.h"
+
+/* A CSV file: lines that begin with # are left out, a header line, then a row a
+   point.  The column t, columns of coordinates, momenta (p_NAME) and observables,
+   in units of the scene, and standard deviations: sigma_NAME of one of them,
+   sigma of all. */
+typedef struct {
+    const char *file;
+    list names, left_out; /* left_out: columns that the scene does not know */
+    size_t points, columns;
+    double *t;      /* points; sorted */
+    double *value;  /* points x columns */
+    double *sigma;  /* the same; NULL: none is given */
+    double *period; /* columns; 0: none */
+    size_t late;    /* points after the end, which are left out */
+} measured;
+/* Reads what --data names.
+   only     the columns to take, as --columns has them; NULL: all that the scene
+            knows
+   returns  TOOL_OK, or TOOL_USAGE with the message printed, which names line and
+            column */
+int measured_read(measured *, const plan *, const options *, const char *only);
+void measured_free(measured *);
+/* The number of a column; `columns` where there is none of that name. */
+size_t measured_find(const measured *, const char *name);
+/* What is measured less `model`; of an angle the smallest of all turns. */
+double measured_residual(const measured *, size_t point, size_t column,
+                         double model);
+/* The plan ends at the last of the points, those of --t-end left out. */
+void measured_bound(measured *, plan *, const options *);
+row_times measured_times(const measured *);
+/* "120 points of x, y in FILE"; what was left out, a line each. */
+void measured_note(const measured *, list *notes);
+
+#endif
