@@ -110,6 +110,7 @@ libnevh_core_la_SOURCES = \
 	lib/work/ledger.c \
 	lib/implicit/implicit_private.h \
 	lib/implicit/stage_progress.h \
+	lib/implicit/stage_judge.h \
 	lib/implicit/fixed_point.c \
 	lib/implicit/judge.c \
 	lib/implicit/newton.c \
@@ -127,6 +128,8 @@ libnevh_core_la_SOURCES = \
 	lib/native/splitting_text.c \
 	lib/native/runge_kutta_text.c \
 	lib/native/nystrom_text.c \
+	lib/native/stage_text.c \
+	lib/native/noise_text.c \
 	lib/native/program_text.c \
 	lib/native/cache.c \
 	lib/native/build.c \
@@ -220,6 +223,9 @@ libnevh_core_la_SOURCES = \
 
 # The kernels' steps as text, for steps that are compiled: strings, line by line.
 step_texts = integrators/kernels/splitting_step.h \
+	lib/implicit/stage_progress.h \
+	lib/implicit/stage_judge.h \
+	integrators/kernels/stage_step.h \
 	integrators/kernels/stage_sums_private.h \
 	integrators/kernels/runge_kutta_step.h \
 	integrators/kernels/nystrom_step.h

@@ -342,6 +342,17 @@ NEVH__INLINE void nevh__stage_begin_sweeps(const nevh__stage_step *x,
         }
 }
 
+/* h b_j; the outer two share what the rounded others leave of h. */
+NEVH__INLINE void nevh__stage_split(size_t stages, const double b[], double h,
+                                    double hb[]) {
+    double rest = h;
+    for (size_t j = 1; j + 1 < stages; j++) {
+        hb[j] = h * b[j];
+        rest -= hb[j];
+    }
+    hb[0] = hb[stages - 1] = stages > 1 ? rest / 2 : rest;
+}
+
 /* sum + rest += h b x; what that loses is below the last bit of the rest. */
 NEVH__INLINE void nevh__stage_add(double hb, double slope, double *sum,
                                   double *rest) {

@@ -79,14 +79,9 @@ void nevh__stage_weights_take(nevh__stage_weights *w, const nevh__tableau *a) {
 void nevh__stage_weights_set(nevh__stage_weights *w, const nevh__tableau *a,
                              double h) {
     size_t s = w->stages;
-    double rest = h;
     if (h == w->h)
         return;
-    for (size_t j = 1; j + 1 < s; j++) {
-        w->hb[j] = h * a->b[j];
-        rest -= w->hb[j];
-    }
-    w->hb[0] = w->hb[s - 1] = s > 1 ? rest / 2 : rest;
+    nevh__stage_split(s, a->b, h, w->hb);
     for (size_t j = 0; j < s * NEVH__LANES; j++) {
         w->to_q[j] = w->hb[j / NEVH__LANES];
         w->to_p[j] = -w->hb[j / NEVH__LANES];

@@ -29,6 +29,16 @@ void nevh__stage_weights_take(nevh__stage_weights *, const nevh__tableau *);
 void nevh__stage_weights_set(nevh__stage_weights *, const nevh__tableau *,
                              double h);
 
+/* Whether H is T(p) + V(q) to sweeps. */
+static inline bool nevh__stages_are_partitioned(const nevh_work *w) {
+    return !w->transform && (nevh_system_traits(w->system) & NEVH_SEPARABLE);
+}
+
+/* Whether Newton's iteration is there for their equations. */
+static inline bool nevh__stages_have_newton(const nevh_work *w, size_t stages) {
+    return 2 * w->n * stages <= NEVH__MOST_DENSE;
+}
+
 /* Of stage i, what continues a variable's slopes of the last step, `width`
    apart. */
 double nevh__stage_continue(const nevh__stage_weights *, size_t i, size_t width,

@@ -11,6 +11,7 @@
 #ifndef NEVH_TABLEAU_PRIVATE_H
 #define NEVH_TABLEAU_PRIVATE_H
 
+#include <nevh/extend.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -41,6 +42,8 @@ nevh__tableau *nevh__lobatto_new(size_t stages);
 /* The implicit Euler method: one stage, at the end of the step.  NULL for more,
    or when memory is out. */
 nevh__tableau *nevh__implicit_euler_new(size_t stages);
+/* That of a scheme of one of the three. */
+nevh__tableau *nevh__stage_tableau_new(const nevh_integrator *);
 void nevh__tableau_free(nevh__tableau *);
 
 /* Collocation on the rule's nodes for coordinates, its mirror for momenta;

@@ -2,7 +2,7 @@
 
    Lanes are independent of each other: one that is done is left alone.  One
    that contracts too slowly, makes no progress at large changes, is still under
-   way after MOST_SWEEPS, or leaves the domain of H with changes that grow or
+   way after NEVH__STAGE_SWEEPS, or leaves the domain of H with changes that grow or
    exceed the scale is given to Newton's iteration, and where that had to be
    done, at once for the next HOLD steps, lest each waste the sweeps that fail.
 
@@ -10,21 +10,14 @@
    sweeps from scratch; 2 n stages plus about as many evaluations as stages buy
    Newton's matrix and six sweeps more, but a factored matrix costs what tens of
    sweeps do.  In a larger one, where it costs hundreds, more than 0.7: that
-   would not be through after MOST_SWEEPS.
+   would not be through after NEVH__STAGE_SWEEPS.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "implicit/implicit_private.h"
 #include "system/system_private.h"
 #include <math.h>
 #include <stdlib.h>
 
-enum {
-    MOST_SWEEPS = 100,
-    MOST_SLOW = 4,
-    SMALL_ROWS = 32,
-    HOLD = 50,
-    MOST_DENSE = 1024
-};
-static const double slow_small = 0.25, slow_large = 0.5; /* in two sweeps */
+enum { HOLD = 50 };
 
 static void lay_out(nevh__arena *a, void *solver) {
     nevh__stage_solver *s = solver;
@@ -50,7 +43,7 @@ nevh__stage_solver *nevh__stage_solver_new(nevh_work *w,
     s->first = shape->partitioned ? w->n : 0;
     s->rows = (2 * w->n - s->first) * s->stages;
     s->memory = nevh__arena_new(lay_out, s);
-    bool large = 2 * w->n * s->stages > MOST_DENSE;
+    bool large = 2 * w->n * s->stages > NEVH__MOST_DENSE;
     s->newton = large ? NULL : nevh__newton_new(s);
     s->rescue = large ? NULL : nevh__rescue_new(s);
     if (s->memory && (large || (s->newton && s->rescue)))
@@ -84,32 +77,12 @@ static void find_scales(nevh__stage_solver *s) {
     }
 }
 
-/* Whether the lane would take too long; looked at after a judgement. */
-static bool too_slow(nevh__stage_solver *s, size_t lane, double before) {
-    nevh__stage_lane *l = &s->lane[lane];
-    double most = s->rows <= SMALL_ROWS ? slow_small : slow_large;
-    bool slow = l->change > nevh__stage_tiny && l->change > most * before;
-    l->slow = slow ? l->slow + 1 : 0;
-    return l->slow >= MOST_SLOW && s->newton &&
-           !nevh__stage_small(s, lane, l->change);
-}
-
-static const nevh__stage_rule rule = {1, 0, nevh__stage_small};
-
-static nevh__stage_state judge(nevh__stage_solver *s, size_t lane,
-                               const nevh__stage_progress *made) {
-    double before = s->lane[lane].before;
-    nevh__stage_state state = nevh__stage_judge(s, lane, made, &rule);
-    return state == NEVH__GO_ON && too_slow(s, lane, before) ? NEVH__STUCK
-                                                             : state;
-}
-
 /* What becomes of a lane whose sweep is out[row*stride]. */
 static nevh__stage_state proceed(nevh__stage_solver *s, size_t lane,
                                  size_t stride, const double out[]) {
     nevh__stage_progress made =
-        nevh__stage_compare(s, lane, stride, out, &rule);
-    nevh__stage_state state = judge(s, lane, &made);
+        nevh__stage_compare(s, lane, stride, out, &nevh__fixed_point_rule);
+    nevh__stage_state state = nevh__fixed_point_judge(s, lane, &made);
     nevh__stage_take(s, lane, stride, out);
     return state;
 }
@@ -222,12 +195,12 @@ static int iterate_one(nevh__stage_solver *s, size_t lane, size_t sweeps) {
     const nevh__stage_problem *e = s->problem;
     nevh__stage_progress made;
     nevh__stage_state state = NEVH__GO_ON;
-    for (; state == NEVH__GO_ON && sweeps < MOST_SWEEPS; sweeps++) {
+    for (; state == NEVH__GO_ON && sweeps < NEVH__STAGE_SWEEPS; sweeps++) {
         int status = e->group->sweep(e->data, &made);
         bool lost = status == NEVH_EDOM && s->lane[lane].strays;
         if (status && !lost)
             return status;
-        state = lost ? NEVH__STUCK : judge(s, lane, &made);
+        state = lost ? NEVH__STUCK : nevh__fixed_point_judge(s, lane, &made);
         if (s->status)
             return s->status;
     }
@@ -256,10 +229,11 @@ static int sweep_group(nevh__stage_solver *s, group_state *g, size_t sweeps) {
     for (size_t i = 0; !status && i < g->count; i++) {
         if (g->settled[i])
             continue;
-        nevh__stage_state state = judge(s, g->first + i, &made[i]);
+        nevh__stage_state state =
+            nevh__fixed_point_judge(s, g->first + i, &made[i]);
         if (s->status)
             return s->status;
-        if (state != NEVH__GO_ON || sweeps == MOST_SWEEPS)
+        if (state != NEVH__GO_ON || sweeps == NEVH__STAGE_SWEEPS)
             status = settle(s, g, i, state, sweeps);
     }
     return status;
@@ -321,6 +295,6 @@ int nevh__stage_solve(nevh__stage_solver *s,
     if (!status)
         status = begin(s, first, width, &active);
     for (size_t i = 1; !status && active > 0; i++)
-        status = sweep(s, s->lanes, &active, i >= MOST_SWEEPS);
+        status = sweep(s, s->lanes, &active, i >= NEVH__STAGE_SWEEPS);
     return status;
 }

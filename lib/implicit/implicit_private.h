@@ -71,6 +71,8 @@ typedef struct {
     int (*noise)(void *data, size_t lane, double noise[]);
 } nevh__stage_problem;
 
+/* Unknown and known slopes of a lane up to which Newton's iteration is there. */
+enum { NEVH__MOST_DENSE = 1024 };
 /* For the work's n and width.  NULL when memory is out. */
 nevh__stage_solver *nevh__stage_solver_new(nevh_work *,
                                            const nevh__stage_shape *);
@@ -91,23 +93,12 @@ struct nevh__stage_solver {
     double *least;        /* rows x width: smallest change so far */
     double *noise;        /* 2n, of one lane */
     size_t *lanes;        /* lanes under way */
-    struct nevh__stage_lane *lane;
+    nevh__stage_lane *lane;
     struct nevh__newton *newton; /* these two: NULL for large systems */
     struct nevh__rescue *rescue;
     const nevh__stage_problem *problem;
     int status; /* of the noise, where it was asked for */
 };
-
-/* What is known of the iteration of one lane. */
-typedef struct nevh__stage_lane {
-    bool grace;      /* the last sweep was a grace sweep */
-    bool strays;     /* the largest change has grown, or exceeds the scale */
-    unsigned stalls; /* sweeps without progress while changes are large */
-    unsigned slow;   /* sweeps on end that contracted too little */
-    double change;   /* largest of the last sweep, in units of scale */
-    double before;   /* that of the sweep before */
-    double least;    /* the smallest of those so far */
-} nevh__stage_lane;
 
 /* Slopes times |h| over this are in units of the state's scales. */
 static inline double nevh__stage_unit(const nevh__stage_solver *s, size_t row,
@@ -121,13 +112,9 @@ static inline double nevh__stage_unit(const nevh__stage_solver *s, size_t row,
 extern const nevh__stage_lane nevh__stage_fresh;
 /* Forgets what is known of a lane's iteration, and its smallest changes. */
 void nevh__stage_begin(nevh__stage_solver *, size_t lane);
-/* Changes, in units of scale, that need not be looked at; and how many times
-   its estimate noise may be. */
-extern const double nevh__stage_tiny, nevh__stage_margin;
 /* Whether a change, in units of scale, is no more than rounding. */
 bool nevh__stage_small(nevh__stage_solver *, size_t lane, double change);
 
-typedef enum { NEVH__GO_ON, NEVH__DONE, NEVH__STUCK } nevh__stage_state;
 /* To s->noise, 2n: what noise of differences, at the start of the step, adds to
    a lane's slopes.  Sets s->status. */
 void nevh__stage_noise(nevh__stage_solver *, size_t lane);
@@ -147,6 +134,14 @@ nevh__stage_progress nevh__stage_compare(nevh__stage_solver *, size_t lane,
 nevh__stage_state nevh__stage_judge(nevh__stage_solver *, size_t lane,
                                     const nevh__stage_progress *,
                                     const nevh__stage_rule *);
+/* The same of fixed-point iteration by its rule; NEVH__STUCK, too, where that
+   would take too long. */
+extern const nevh__stage_rule nevh__fixed_point_rule;
+nevh__stage_state nevh__fixed_point_judge(nevh__stage_solver *, size_t lane,
+                                          const nevh__stage_progress *);
+/* The largest of a lane's noise over its scale, of 2n variables. */
+double nevh__stage_worst_noise(const nevh_work *, const double noise[],
+                               const double scale[], size_t lane);
 /* Makes that sweep the lane's slopes. */
 void nevh__stage_take(nevh__stage_solver *, size_t lane, size_t stride,
                       const double out[]);

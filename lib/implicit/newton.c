@@ -250,7 +250,7 @@ static bool no_more_than_noise(nevh__stage_solver *s, size_t lane,
                                double change) {
     struct nevh__newton *m = s->newton;
     double h = fabs(s->problem->h), most = 0;
-    if (change <= nevh__stage_tiny)
+    if (change <= NEVH__STAGE_TINY)
         return true;
     find_noise(s, lane);
     for (size_t row = 0; row < s->rows; row++) {
@@ -263,7 +263,7 @@ static bool no_more_than_noise(nevh__stage_solver *s, size_t lane,
         most = fmax(most, h * fabs(m->g[row]) * s->work->scale[k] /
                               s->scale[k * s->work->width + lane]);
     }
-    return !s->status && change <= nevh__stage_tiny + nevh__stage_margin * most;
+    return !s->status && change <= NEVH__STAGE_TINY + NEVH__STAGE_MARGIN * most;
 }
 
 /* NEVH_OK; NEVH_EMAXITER or NEVH_EDOM when it does not get there. */
@@ -285,7 +285,7 @@ static int iterate(nevh__stage_solver *s, size_t lane) {
         nevh__stage_take(s, lane, 1, m->out);
         if (state != NEVH__GO_ON || s->status)
             return state == NEVH__DONE ? s->status : NEVH_EMAXITER;
-        if (l->change > nevh__stage_tiny && l->change > refresh * l->before)
+        if (l->change > NEVH__STAGE_TINY && l->change > refresh * l->before)
             status = find_matrix(s, lane, false);
     }
     return status ? status : NEVH_EMAXITER;

@@ -1,4 +1,4 @@
-/* nevh: what a sweep over stages did to one orbit.
+/* nevh: what sweeps over stages do to one orbit.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef NEVH_STAGE_PROGRESS_H
 #define NEVH_STAGE_PROGRESS_H
@@ -6,11 +6,31 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+/* Changes, in units of scale, that need not be looked at; and how many times
+   its estimate noise may be. */
+#define NEVH__STAGE_TINY   1e-10
+#define NEVH__STAGE_MARGIN 16
+/* Sweeps after which fixed-point iteration ends. */
+enum { NEVH__STAGE_SWEEPS = 100 };
+
 typedef struct {
     bool moved;      /* something changed */
     size_t improved; /* unknowns whose change was smaller than ever */
     double change;   /* the largest, in units of scale; infinite, where it is
                         not finite */
 } nevh__stage_progress;
+
+typedef enum { NEVH__GO_ON, NEVH__DONE, NEVH__STUCK } nevh__stage_state;
+
+/* What is known of the iteration of one lane. */
+typedef struct nevh__stage_lane {
+    bool grace;      /* the last sweep was a grace sweep */
+    bool strays;     /* the largest change has grown, or exceeds the scale */
+    unsigned stalls; /* sweeps without progress while changes are large */
+    unsigned slow;   /* sweeps on end that contracted too little */
+    double change;   /* largest of the last sweep, in units of scale */
+    double before;   /* that of the sweep before */
+    double least;    /* the smallest of those so far */
+} nevh__stage_lane;
 
 #endif

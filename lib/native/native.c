@@ -48,6 +48,13 @@ static bool fill_nystrom(nevh__native *x, const nevh_work *w) {
     return true;
 }
 
+/* Of one stage. */
+static bool fill_stages(nevh__native *x, const nevh_work *w) {
+    x->stages = (size_t)w->integrator->stages;
+    x->kicks = x->drifts = 1;
+    return true;
+}
+
 static const struct {
     const nevh_kernel *kernel;
     bool (*write)(nevh__writer *, nevh_work *);
@@ -55,7 +62,10 @@ static const struct {
 } families[] = {
     {&nevh_splitting_kernel, nevh__write_splitting, fill_splitting},
     {&nevh_runge_kutta_kernel, nevh__write_runge_kutta, fill_runge_kutta},
-    {&nevh_nystrom_kernel, nevh__write_nystrom, fill_nystrom}};
+    {&nevh_nystrom_kernel, nevh__write_nystrom, fill_nystrom},
+    {&nevh_gauss_kernel, nevh__write_stages, fill_stages},
+    {&nevh_lobatto_kernel, nevh__write_stages, fill_stages},
+    {&nevh_implicit_euler_kernel, nevh__write_stages, fill_stages}};
 /* The steps' copies of the state stand on the stack. */
 enum { MOST_NUMBERS = 8192 };
 enum { FAMILIES = sizeof families / sizeof *families };
@@ -70,7 +80,8 @@ static size_t family_of(const nevh_work *w) {
 /* What is in the way; NULL: nothing that is known yet. */
 static const char *obstacle(const nevh_work *w) {
     return family_of(w) == FAMILIES
-               ? "only splitting, Runge-Kutta and Nystroem steps can be"
+               ? "only splitting, Runge-Kutta, Nystroem, Gauss and "
+                 "Lobatto steps can be"
            : w->accounts ? "the balance of the energy is kept"
            : w->width % NEVH__LANES && w->width > 1
                ? "orbits side by side fill no vectors"
@@ -158,6 +169,8 @@ void nevh__native_plan(nevh_work *w, char why[NEVH__WHY_NATIVE]) {
 static void count(nevh_work *w, const nevh__native *x, size_t steps,
                   bool kept) {
     size_t saved = x->keeps ? steps - !kept : 0;
+    if (!steps)
+        return;
     size_t kicks = steps * x->kicks - (x->kicks_first ? saved : 0);
     size_t drifts = steps * x->drifts - (x->kicks_first ? 0 : saved);
     kicks *= w->width;
@@ -178,10 +191,21 @@ static bool has_kept(const nevh_work *w) {
 }
 
 static size_t take(const nevh_work *w, double t0, double h, size_t from,
-                   size_t steps, double q[], double p[]) {
+                   size_t steps, double q[], double p[], size_t counted[2]) {
     const nevh__native *x = w->native;
     return x->steps(x->numbers, x->weights, x->times, x->kicks + x->drifts, t0,
-                    h, from, steps, q, p, w->memory);
+                    h, from, steps, q, p, w->memory, counted);
+}
+
+/* Gradients at stages, and values that told the noise of differences. */
+static void count_sweeps(nevh_work *w, const nevh__native *x,
+                         const size_t counted[2]) {
+    nevh_field *f = w->field;
+    count(w, x, counted[0] * x->stages, false);
+    w->sweeps += counted[0] * w->width;
+    for (size_t i = 0; i < f->n_terms; i++)
+        if (f->terms[i].delta)
+            f->terms[i].values += counted[1] * f->terms[i].term->decl.count;
 }
 
 size_t nevh__native_run(nevh_work *w, double t0, double h, size_t from,
@@ -190,10 +214,14 @@ size_t nevh__native_run(nevh_work *w, double t0, double h, size_t from,
     if (!nevh__field_at_hand(w->field))
         return 0;
     bool kept = x->keeps && has_kept(w);
-    size_t done = take(w, t0, h, from, steps, q, p);
-    if (done && done < steps) /* nothing has been stored */
-        done = take(w, t0, h, from, done, q, p);
-    if (done)
+    size_t counted[2] = {0, 0};
+    size_t done = take(w, t0, h, from, steps, q, p, counted);
+    if (x->stages)
+        count_sweeps(w, x, counted);
+    else {
+        if (done && done < steps) /* nothing has been stored */
+            done = take(w, t0, h, from, done, q, p, counted);
         count(w, x, done, kept);
+    }
     return done;
 }

@@ -12,12 +12,14 @@
 #include <nevh/extend.h>
 #include <nevh/run.h>
 
-/* Takes `steps` steps, or none, and returns how many of them can be taken. */
+/* Takes `steps` steps, or none, and returns how many of them can be taken.
+   counted  of implicit steps, which take as many as can be taken: sweeps, and
+            how often noise was asked for, are added */
 typedef size_t (*nevh__native_steps)(const double numbers[], double weights[],
                                      double times[], size_t operations,
                                      double t0, double h, size_t from,
                                      size_t steps, double q[], double p[],
-                                     double memory[]);
+                                     double memory[], size_t counted[2]);
 
 enum { NEVH__WHY_NATIVE = 400 };
 
@@ -27,6 +29,7 @@ typedef struct nevh__native {
     double *numbers, *weights, *times;
     size_t kicks, drifts; /* of a step */
     bool keeps, kicks_first;
+    size_t stages; /* of an implicit step; 0: it is explicit */
     uint64_t *kick_values, *drift_values; /* n_terms each, of one of them */
 } nevh__native;
 
@@ -35,6 +38,7 @@ typedef struct nevh__native {
 bool nevh__write_splitting(nevh__writer *, nevh_work *);
 bool nevh__write_runge_kutta(nevh__writer *, nevh_work *);
 bool nevh__write_nystrom(nevh__writer *, nevh_work *);
+bool nevh__write_stages(nevh__writer *, nevh_work *);
 /* Weights of all kicks and drifts, and the times of their slopes; to be freed.
    false when memory is out. */
 bool nevh__splitting_tables(const nevh_splitting *, double **weights,

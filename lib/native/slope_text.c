@@ -68,7 +68,7 @@ static void name_at_state(nevh__writer *w, const nevh__formula_text *f,
     const nevh_term *is = &s->term->term->decl;
     switch (kind) {
     case NEVH__T:
-        snprintf(name, NEVH__NAME, f->wide ? "ALL(t)" : "t");
+        snprintf(name, NEVH__NAME, f->wide && !w->stages ? "ALL(t)" : "t");
         break;
     case NEVH__Q:
         snprintf(name, NEVH__NAME, "q[%zu]", is->q[f->instance * is->nq + k]);
@@ -89,7 +89,7 @@ static void name_at_state(nevh__writer *w, const nevh__formula_text *f,
 static bool write_exact(sum *s) {
     const nevh_term *is = &s->term->term->decl;
     nevh__formula_text f = {.tape = is->params,
-                            .wide = s->w->width > 1,
+                            .wide = nevh__has_lanes(s->w),
                             .variable = name_at_state,
                             .data = s};
     unsigned first = s->w->formulas;
@@ -261,7 +261,7 @@ static void name_at_point(nevh__writer *w, const nevh__formula_text *f,
 }
 
 static bool write_points(nevh__writer *w, stencil *x) {
-    bool lanes = w->width > 1;
+    bool lanes = nevh__has_lanes(w);
     nevh__formula_text f = {.tape = x->s->term->term->decl.params,
                             .wide = lanes,
                             .scalar = !lanes || x->s->f->portable,
@@ -322,7 +322,7 @@ static void write_slopes(nevh__writer *w, sum *s, const stencil *x,
 
 /* Whether points of differences stand in a vector's lanes. */
 static bool side_by_side(const nevh__writer *w, const nevh_field *f) {
-    return !f->portable && !w->readable && w->width == 1;
+    return !f->portable && !w->readable && !nevh__has_lanes(w);
 }
 
 static bool write_central(sum *s) {
@@ -403,8 +403,10 @@ static bool fits(nevh__writer *w, const nevh_field *f, size_t calls) {
     double drift = half_operations(f, false, wide, &w->refusal);
     if ((kick > most || drift > most) && !w->refusal)
         w->refusal = "its formulas are too long";
-    if (w->width > 1 && f->gradient != nevh_exact && !f->gradient->offsets)
-        w->refusal = "orbits stand side by side";
+    if (nevh__has_lanes(w) && f->gradient != nevh_exact &&
+        !f->gradient->offsets)
+        w->refusal = w->stages ? "stages stand side by side"
+                               : "orbits stand side by side";
     if (!w->readable && (kick + drift) * (double)calls > MOST_BROADCAST)
         nevh__write(w, "#undef SLOPE\n"
                        "#define SLOPE static __attribute__((noinline))\n");
@@ -420,7 +422,7 @@ static void write_sums(const sum *s) {
                 nevh__write(s->w, "%s%s", plus, s->parts[i].name);
                 plus = " + ";
             }
-        const char *zero = s->w->width > 1 ? " ALL(0.0)" : " 0.0";
+        const char *zero = nevh__has_lanes(s->w) ? " ALL(0.0)" : " 0.0";
         nevh__write(s->w, "%s;\n", *plus == ' ' && !plus[1] ? zero : "");
     }
 }
@@ -432,10 +434,11 @@ static bool write_slope(nevh__writer *w, nevh_field *f, bool kick,
     bool fine = true;
     nevh__write_filled(
         w,
-        "$1 $2 $3($4double t, const $2 *q, const $2 *p,\n"
+        "$1 $2 $3($4$5 t, const $2 *q, const $2 *p,\n"
         "        $2 *slope) {\n    $2 bad = {0};\n",
         (const char *const[]){w->readable ? "static" : "SLOPE", type, name,
-                              w->readable ? "" : "const double *N, "});
+                              w->readable ? "" : "const double *N, ",
+                              w->stages ? "wide" : "double"});
     if (w->readable)
         nevh__write(w, "    (void)t, (void)q, (void)p;\n");
     for (size_t i = 0; fine && i < f->n_terms; i++) {

@@ -15,26 +15,47 @@ static const char needs[] =
     "#define NEVH_UNROLL _Pragma(\"GCC unroll 16\")\n"
     "#define NEVH__KNOWN_COUNT NEVH_UNROLL\n"
     "#define NEVH__EACH(i, lanes, size) \\\n"
-    "    NEVH_UNROLL for (size_t i = 0; i < (size); i += (lanes))\n"
-    "#define NEVH__VECTOR_AT(x) (*(x))\n"
-    "enum { NEVH__IN_VECTOR = 1 };\n";
+    "    NEVH_UNROLL for (size_t i = 0; i < (size); i += (lanes))\n";
+static const char one_in_a_vector[] = "#define NEVH__VECTOR_AT(x) (*(x))\n"
+                                      "enum { NEVH__IN_VECTOR = 1 };\n";
 
 /* Of the larger one of a and b what is lost follows in two operations instead
    of six, which all wait for one another; it is exact in both ways. */
 static const char needs_of_numbers[] =
-    "typedef double nevh__number, nevh__vector;\n"
+    "typedef double nevh__number;\n"
     "static __attribute__((noinline, cold)) double rare_roundoff(double sum, "
     "double a, double b) { return a - (sum - b); }\n"
     "INLINE double nevh__roundoff(double sum, double a, double b) {\n"
     "    if (__builtin_expect(!(fabs(a) >= fabs(b)), 0))\n"
     "        return rare_roundoff(sum, a, b);\n"
-    "    return b - (sum - a);\n}\n"
+    "    return b - (sum - a);\n}\n";
+static const char needs_of_one[] =
+    "typedef double nevh__vector;\n"
     "INLINE bool nevh__not_finite(size_t lanes, size_t size, const double *x, "
     "const double *y) {\n"
     "    double bad = 0;\n"
     "    NEVH__EACH(i, lanes, size) bad += (x[i] - x[i]) + (y[i] - y[i]);\n"
     "    return bad != 0;\n}\n"
     "INLINE bool is_bad(double bad) { return bad != 0; }\n";
+
+static const char is_bad[] =
+    "INLINE bool is_bad(wide bad) {\n"
+    "    return ((bad[0] + bad[1]) + (bad[2] + bad[3])) + ((bad[4] + bad[5]) + "
+    "(bad[6] + bad[7])) != 0;\n}\n";
+
+/* Numbers, and vectors of what stands side by side. */
+static const char needs_of_stages[] =
+    "typedef wide nevh__vector;\n"
+    "#define NEVH__VECTOR_AT(x) (*(nevh__vector *)(x))\n"
+    "enum { NEVH__IN_VECTOR = 8, NEVH__LANES = 8 };\n"
+    "#define NEVH_LANES(i, width) \\\n"
+    "    for (size_t i##_from = 0; i##_from < (width); i##_from += 8) \\\n"
+    "    _Pragma(\"GCC ivdep\") for (size_t i = i##_from; i != i##_from + 8; "
+    "i++)\n"
+    "extern double fma(double, double, double) CONST;\n"
+    "INLINE double nevh__sum_lanes(const double *x) {\n"
+    "    return ((x[0] + x[1]) + (x[2] + x[3])) + ((x[4] + x[5]) + (x[6] + "
+    "x[7]));\n}\n";
 
 /* What is not finite is found once for all blocks. */
 static const char needs_of_lanes[] =
@@ -43,10 +64,7 @@ static const char needs_of_lanes[] =
     "    wide part = sum - a;\n"
     "    return (a - (sum - part)) + (b - part);\n}\n"
     "INLINE bool nevh__not_finite(size_t lanes, size_t size, const wide *x, "
-    "const wide *y) { return false; }\n"
-    "INLINE bool is_bad(wide bad) {\n"
-    "    return ((bad[0] + bad[1]) + (bad[2] + bad[3])) + ((bad[4] + bad[5]) + "
-    "(bad[6] + bad[7])) != 0;\n}\n";
+    "const wide *y) { return false; }\n";
 
 static const char needs_of_readers[] =
     "/* Element by element. */\n"
@@ -74,7 +92,7 @@ static const char driver[] =
     "size_t nevh_native_steps(const double *restrict N, double *restrict W,\n"
     "        double *restrict T, size_t operations, double t0, double h,\n"
     "        size_t from, size_t steps, double *restrict Q,\n"
-    "        double *restrict P, double *restrict M) {\n"
+    "        double *restrict P, double *restrict M, size_t *counted) {\n"
     "    nevh__number y[BLOCKS][2 * DOF], lost[BLOCKS][2 * DOF];\n"
     "    nevh__number kept[BLOCKS][KEPT + 1];\n"
     "    double *flags = M + (2 * DOF + KEPT) * WIDTH;\n"
@@ -132,7 +150,7 @@ void nevh__write_lines(nevh__writer *w, const char *const lines[]) {
 }
 
 const char *nevh__number_type(const nevh__writer *w) {
-    return w->width > 1 ? "wide" : "double";
+    return nevh__has_lanes(w) ? "wide" : "double";
 }
 
 void nevh__write_needs(nevh__writer *w, size_t n, bool finite, bool sums) {
@@ -145,6 +163,11 @@ void nevh__write_needs(nevh__writer *w, size_t n, bool finite, bool sums) {
     size_t lanes = w->width > 1 ? NEVH__LANES : 1;
     nevh__write(w, "%s%s", needs,
                 lanes > 1 ? needs_of_lanes : needs_of_numbers);
+    if (w->stages)
+        nevh__write(w, "%s%s", needs_of_stages, is_bad);
+    else
+        nevh__write(w, "%s%s", one_in_a_vector,
+                    lanes > 1 ? is_bad : needs_of_one);
     nevh__write(w,
                 "enum { DOF = %zu, WIDTH = %zu, BLOCKS = %zu };\n"
                 "#define AT(x, row, b) "

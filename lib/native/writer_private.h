@@ -19,6 +19,7 @@ typedef struct {
     size_t count, number_room;
     unsigned formulas;   /* written so far: names of each are its own */
     size_t width;        /* orbits side by side, as vectors; 1: one orbit */
+    bool stages;         /* those of an implicit step are, of one orbit */
     bool readable;       /* numbers stand in the text, functions are libm's */
     bool failed;         /* memory is out */
     const char *refusal; /* why there is no text; NULL: there is */
@@ -46,12 +47,19 @@ void nevh__write_numbers(nevh__writer *, const char *name, size_t count,
 void nevh__write_array(nevh__writer *, const char *what, const char *table,
                        size_t count, const double x[], char name[NEVH__NAME]);
 void nevh__write_lines(nevh__writer *, const char *const lines[]);
-/* "double", or what orbits side by side are. */
+/* Whether anything stands side by side. */
+static inline bool nevh__has_lanes(const nevh__writer *w) {
+    return w->width > 1 || w->stages;
+}
+/* "double", or what stands side by side. */
 const char *nevh__number_type(const nevh__writer *);
 
 /* Kernels' headers, line by line, ended by NULL: made from them by
    kernel_texts.awk. */
 extern const char *const nevh__splitting_step_text[];
+extern const char *const nevh__stage_progress_text[];
+extern const char *const nevh__stage_judge_text[];
+extern const char *const nevh__stage_step_text[];
 extern const char *const nevh__stage_sums_text[];
 extern const char *const nevh__runge_kutta_step_text[];
 extern const char *const nevh__nystrom_step_text[];
@@ -119,6 +127,9 @@ void nevh__write_driver(nevh__writer *, bool keeps);
    that write dH/dq and dH/dp, n numbers, and return something that is 0 if all is
    well.  They are called so many times in the text. */
 bool nevh__write_slopes(nevh__writer *, nevh_field *, size_t calls);
+/* A function worst_noise(N, t, y, scale, bad): what rounding in H adds to
+   derivatives by differences at the state y, the largest over a scale. */
+bool nevh__write_noise(nevh__writer *, const nevh_field *);
 /* Values of each term that a slope takes, to values[]; 0 where it is exact. */
 void nevh__slope_values(const nevh_field *, bool kick, uint64_t values[]);
 

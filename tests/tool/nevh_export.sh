@@ -58,7 +58,9 @@ END
         fails 'writes functions that do not work'
 fi
 exits 2 export pendulum --integrators gauss4
-says 'no program of such steps: only splitting, Runge-Kutta and Nystroem steps can be'
+says 'no program of such steps: implicit steps have none'
+exits 2 export pendulum --integrators gonzalez
+says 'no program of such steps: only splitting, Runge-Kutta, Nystroem, Gauss and Lobatto steps can be'
 exits 2 export no-such-scene
 
 exit $status

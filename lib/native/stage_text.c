@@ -1,0 +1,234 @@
+/* nevh: steps of Gauss-Legendre methods and Lobatto pairs as C text: sweeps are
+   the kernel's, whose slopes are a scene's formulas at all stages side by side.
+
+   Where fixed-point iteration does not get on, or anything is not finite, a step
+   is left to the kernel, which begins it anew.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "kernels/stage_sweeps_private.h"
+#include "native/native_private.h"
+#include <stdio.h>
+
+/* The memory of the kernel, behind digits that sums have lost: slopes that the
+   last step solved for, its h, and for how many steps Newton's iteration is to
+   go first. */
+static const char sizes[] =
+    "enum { STAGES = %zu, ROW = %zu, FIRST = %zu, UNKNOWN = 2 * DOF - FIRST,\n"
+    "       SLOPES_AT = 2 * DOF, H_AT = SLOPES_AT + UNKNOWN * STAGES,\n"
+    "       HOLD_AT = H_AT + 1 };\n"
+    "#define PARTITIONED %s\n#define NOISY %s\n#define NEWTON %s\n";
+
+static const char owners[] =
+    "struct nevh__stage_owner {\n"
+    "    const double *N, *times;\n    wide *bad;\n};\n"
+    "struct nevh__stage_judge_owner {\n"
+    "    const double *N, *y, *scale;\n    double t, h, *level, *bad;\n"
+    "    size_t *noises;\n};\n";
+
+/* Those of vectors of stages. */
+static const char slopes[] =
+    "NEVH__INLINE int nevh__stage_slopes(const nevh__stage_step *x, bool q,\n"
+    "                                    bool p) {\n"
+    "    const struct nevh__stage_owner *o = x->owner;\n"
+    "    for (size_t from = 0; from < ROW; from += NEVH__LANES) {\n"
+    "        wide y[2 * DOF], slope[DOF], t = NEVH__VECTOR_AT(o->times + from);\n"
+    "        double *to = x->gradient + from;\n"
+    "        NEVH__EACH(k, 1, DOF) {\n"
+    "            y[k] = NEVH__VECTOR_AT(x->points + k * ROW + from);\n"
+    "            y[DOF + k] = NEVH__VECTOR_AT(x->points + x->half + k * ROW + "
+    "from);\n"
+    "        }\n"
+    "        if (p) {\n"
+    "            *o->bad += drift_slope(o->N, t, y, y + DOF, slope);\n"
+    "            NEVH__EACH(k, 1, DOF) NEVH__VECTOR_AT(to + k * ROW) = slope[k];\n"
+    "        }\n"
+    "        if (q) {\n"
+    "            *o->bad += kick_slope(o->N, t, y, y + DOF, slope);\n"
+    "            NEVH__EACH(k, 1, DOF)\n"
+    "                NEVH__VECTOR_AT(to + (DOF + k) * ROW) = slope[k];\n"
+    "        }\n"
+    "    }\n"
+    "    return 0;\n}\n"
+    "NEVH__INLINE const double *nevh__stage_inverse(const nevh__stage_step *x) "
+    "{\n    return NULL;\n}\n";
+
+/* The level is taken once a step. */
+static const char judges[] =
+    "NEVH__INLINE double nevh__stage_noise_level(const nevh__stage_judged *x) {\n"
+    "    const struct nevh__stage_judge_owner *o = x->owner;\n"
+    "    if (!NOISY)\n        return 0;\n"
+    "    if (*o->level < 0)\n"
+    "        *o->level = fabs(o->h) * worst_noise(o->N, o->t, o->y, o->scale,\n"
+    "                                            o->bad);\n"
+    "    ++*o->noises;\n"
+    "    return *o->level;\n}\n"
+    "NEVH__INLINE bool nevh__stage_is_small(const nevh__stage_judged *x,\n"
+    "                                       double change) {\n"
+    "    return change <= NEVH__STAGE_TINY ||\n"
+    "           (change < INFINITY &&\n"
+    "            change <= NEVH__STAGE_TINY +\n"
+    "                          NEVH__STAGE_MARGIN * "
+    "nevh__stage_noise_level(x));\n}\n";
+
+static const char step[] =
+    "typedef struct {\n"
+    "    double plus[STAGES], minus[STAGES];\n"
+    "    double to_q[STAGES * NEVH__LANES], to_p[STAGES * NEVH__LANES];\n"
+    "} step_weights;\n"
+    "INLINE bool add_step(const step_weights *w, const double *gradient,\n"
+    "                     double *y, double *M, double h) {\n"
+    "    double sum[2 * DOF], lost[2 * DOF], check = 0;\n"
+    "    NEVH__EACH(k, 1, 2 * DOF) {\n"
+    "        sum[k] = y[k];\n"
+    "        lost[k] = M[k];\n"
+    "        nevh__stage_advance(STAGES, order, k < DOF ? w->plus : w->minus, "
+    "1,\n"
+    "                            1, gradient + k * ROW, &sum[k], &lost[k]);\n"
+    "        check += sum[k] - sum[k];\n"
+    "    }\n"
+    "    if (check != 0)\n        return false;\n"
+    "    NEVH__EACH(k, 1, 2 * DOF) {\n"
+    "        y[k] = sum[k];\n"
+    "        M[k] = lost[k];\n"
+    "    }\n"
+    "    NEVH__EACH(k, 1, UNKNOWN)\n"
+    "        NEVH__EACH(i, 1, STAGES) {\n"
+    "            double slope = gradient[(FIRST + k) * ROW + i];\n"
+    "            M[SLOPES_AT + k * STAGES + i] = FIRST + k < DOF ? slope : "
+    "-slope;\n"
+    "        }\n"
+    "    M[H_AT] = h;\n"
+    "    return true;\n}\n"
+    "INLINE bool take_step(const double *N, const step_weights *w, double t,\n"
+    "                      double h, double *restrict y, double *restrict M,\n"
+    "                      size_t *counted) {\n"
+    "    double points[2 * DOF * ROW], gradient[2 * DOF * ROW], times[ROW];\n"
+    "    double before[UNKNOWN * ROW], least[UNKNOWN * ROW], unit[2 * DOF], scale[2 * DOF];\n"
+    "    double lowest = INFINITY, level = -1, unknown = 0;\n"
+    "    wide bad = {0};\n"
+    "    size_t sweeps = 0, noises = 0;\n"
+    "    struct nevh__stage_owner owner = {N, times, &bad};\n"
+    "    struct nevh__stage_judge_owner judge_owner = {N, y, scale, t, h, &level, "
+    "&unknown, &noises};\n"
+    "    nevh__stage_step x = {\n"
+    "        .n = DOF, .stages = STAGES, .row = ROW, .stride = ROW,\n"
+    "        .half = DOF * ROW, .partitioned = PARTITIONED, .unchecked = true,\n"
+    "        .mu_q = mu_q, .mu_p = mu_p, .to_q = w->to_q, .to_p = w->to_p,\n"
+    "        .q = y, .p = y + DOF, .carry = M, .points = points,\n"
+    "        .gradient = gradient, .owner = &owner};\n"
+    "    nevh__stage_changes changes = {FIRST, UNKNOWN, unit, before, least,\n"
+    "                                   &lowest};\n"
+    "    nevh__stage_judged judged = {0, true, NOISY, NEWTON, UNKNOWN * "
+    "STAGES,\n"
+    "                                 &judge_owner};\n"
+    "    nevh__stage_lane lane;\n"
+    "    nevh__stage_progress made;\n"
+    "    nevh__stage_state state = NEVH__GO_ON;\n"
+    "    if (M[HOLD_AT] > 0)\n        return false;\n"
+    "    NEVH__EACH(k, 1, 2 * DOF) {\n"
+    "        double size = fabs(y[k]), most = $1[k];\n"
+    "        scale[k] = size > most ? size : most;\n"
+    "        unit[k] = fabs(h) / scale[k];\n"
+    "    }\n"
+    "    NEVH_LANES(i, ROW) {\n        times[i] = t + nodes[i] * h;\n    }\n"
+    "    nevh__stage_forget(&lane);\n"
+    "    nevh__stage_begin_sweeps(&x, &changes, NEVH__STAGES_TOGETHER, guess,\n"
+    "                             M[H_AT] == h ? M + SLOPES_AT : NULL, "
+    "STAGES);\n"
+    "    while (state == NEVH__GO_ON && sweeps < NEVH__STAGE_SWEEPS) {\n"
+    "        if (nevh__stage_map(&x, NEVH__STAGES_TOGETHER))\n"
+    "            return false;\n"
+    "        nevh__stage_compare_sweep(&x, &changes, NEVH__STAGES_TOGETHER,\n"
+    "                                  &made);\n"
+    "        if (!(made.change < INFINITY))\n            return false;\n"
+    "        state = nevh__stage_judge_fixed_point(&judged, &lane, &made);\n"
+    "        sweeps++;\n"
+    "    }\n"
+    "    if (state != NEVH__DONE || is_bad(bad) || unknown != 0 ||\n"
+    "        !add_step(w, gradient, y, M, h))\n"
+    "        return false;\n"
+    "    counted[0] += sweeps;\n"
+    "    counted[1] += noises;\n"
+    "    return true;\n}\n";
+
+/* What steps have reached is stored, and the next one is the kernel's. */
+static const char driver[] =
+    "size_t nevh_native_steps(const double *restrict N, double *restrict W,\n"
+    "        double *restrict T, size_t operations, double t0, double h,\n"
+    "        size_t from, size_t steps, double *restrict Q,\n"
+    "        double *restrict P, double *restrict M, size_t *counted) {\n"
+    "    double y[2 * DOF];\n"
+    "    step_weights w;\n"
+    "    size_t done = 0;\n"
+    "    nevh__stage_split(STAGES, weights, h, w.plus);\n"
+    "    for (size_t j = 0; j < STAGES; j++) {\n"
+    "        w.minus[j] = -w.plus[j];\n"
+    "        NEVH_LANES(i, NEVH__LANES) {\n"
+    "            w.to_q[j * NEVH__LANES + i] = w.plus[j];\n"
+    "            w.to_p[j * NEVH__LANES + i] = w.minus[j];\n"
+    "        }\n"
+    "    }\n"
+    "    for (size_t k = 0; k < DOF; k++) {\n"
+    "        y[k] = Q[k];\n        y[DOF + k] = P[k];\n    }\n"
+    "    while (done < steps && take_step(N, &w, t0 + (double)(from + done) * "
+    "h,\n"
+    "                                     h, y, M, counted))\n"
+    "        done++;\n"
+    "    for (size_t k = 0; k < DOF; k++) {\n"
+    "        Q[k] = y[k];\n        P[k] = y[DOF + k];\n    }\n"
+    "    return done;\n}\n";
+
+static void write_tables(nevh__writer *w, const nevh__tableau *a,
+                         const nevh__stage_weights *padded) {
+    size_t matrix = padded->stages * padded->row;
+    nevh__write_numbers(w, "static const double mu_q", matrix, padded->mu_q);
+    nevh__write_numbers(w, "static const double mu_p", matrix, padded->mu_p);
+    nevh__write_numbers(w, "static const double guess", matrix, padded->guess);
+    nevh__write_numbers(w, "static const double nodes", padded->row, padded->c);
+    nevh__write_numbers(w, "static const double weights", a->stages, a->b);
+    nevh__write(w, "static const size_t order[] = {");
+    for (size_t i = 0; i < a->stages; i++)
+        nevh__write(w, "%zu, ", a->order[i]);
+    nevh__write(w, "};\n");
+}
+
+static void write_step(nevh__writer *w, const nevh_work *work,
+                       const nevh__tableau *a,
+                       const nevh__stage_weights *padded) {
+    bool partitioned = nevh__stages_are_partitioned(work);
+    bool noisy = work->field->gradient->offsets;
+    bool newton = nevh__stages_have_newton(work, a->stages);
+    char scales[NEVH__NAME];
+    nevh__write(w, sizes, a->stages, padded->row, partitioned ? work->n : 0,
+                partitioned ? "true" : "false", noisy ? "true" : "false",
+                newton ? "true" : "false");
+    write_tables(w, a, padded);
+    nevh__write_lines(w, nevh__stage_progress_text);
+    nevh__write_lines(w, nevh__stage_judge_text);
+    nevh__write_lines(w, nevh__stage_step_text);
+    nevh__write_array(w, "scales", "N", 2 * work->n, work->scale, scales);
+    nevh__write(w, "%s%s", owners, slopes);
+    nevh__write_noise(w, work->field);
+    nevh__write(w, "%s", judges);
+    nevh__write_filled(w, step, (const char *const[]){scales});
+    nevh__write(w, "%s", driver);
+}
+
+bool nevh__write_stages(nevh__writer *w, nevh_work *work) {
+    if (w->width > 1 || w->readable) {
+        w->refusal = w->readable ? "implicit steps have none"
+                                 : "orbits stand side by side";
+        return false;
+    }
+    w->stages = true;
+    nevh__write_needs(w, work->n, false, false);
+    if (!nevh__write_slopes(w, work->field, 1))
+        return false;
+    nevh__tableau *a = nevh__stage_tableau_new(work->integrator);
+    nevh__stage_weights *padded = a ? nevh__stage_weights_new(a) : NULL;
+    if (padded)
+        write_step(w, work, a, padded);
+    w->failed |= !padded;
+    nevh__stage_weights_free(padded);
+    nevh__tableau_free(a);
+    return !w->failed && !w->refusal;
+}
