@@ -54,6 +54,9 @@ echo "bench/verdicts" >&2
 bench/verdicts -s 0.35 -o bench/wrong-verdicts "$srcdir" bench/long-runs \
     2>/dev/null | sed -n '/^all:/,$p' >"$srcdir/doc/verdicts.txt"
 
+echo "paper.sh" >&2
+sh "$srcdir/examples/paper/paper.sh" "$nevh" "$examples" >"$srcdir/doc/paper.new" &&
+    mv "$srcdir/doc/paper.new" "$srcdir/doc/paper.txt"
 quote gradient-cost "$examples/gradient_cost"
 quote steps-that-follow "$examples/steps_that_follow"
 quote nevh-cost "$examples/nevh_cost"

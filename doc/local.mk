@@ -7,6 +7,7 @@ doc_nevh_TEXINFOS = \
 	doc/gradients-pendulum.txt \
 	doc/hard.txt \
 	doc/verdicts.txt \
+	doc/paper.txt \
 	doc/reference.texi
 AM_MAKEINFOHTMLFLAGS = --no-split
 # Without TeX; make pdf needs it.
@@ -47,6 +48,25 @@ endif
 EXTRA_DIST += doc/nevh.h2m doc/nevh.3.head doc/reference.awk doc/figures.sh doc/hard.awk \
 	doc/compare-first.txt doc/gradient-cost.txt doc/steps-that-follow.txt doc/nevh-cost.txt \
 	doc/hard-all.txt
+
+# Worksheets: every number is measured again.
+EXTRA_DIST += doc/sheets/sheets.texi doc/sheets/numbers.texi doc/sheets/numbers.list \
+	doc/sheets/quartic.nevh doc/sheets/sheets.sh
+CLEANFILES += doc/nevh-sheets.html doc/nevh-sheets.pdf
+run_sheets = $(SHELL) $(srcdir)/doc/sheets/sheets.sh $(srcdir) \
+	tools/nevh$(EXEEXT) examples
+sheets: all
+	$(run_sheets) check
+	$(MKDIR_P) doc
+	$(MAKEINFO) --html --no-split -I $(srcdir)/doc/sheets \
+	  -o doc/nevh-sheets.html $(srcdir)/doc/sheets/sheets.texi
+	if command -v texi2pdf >/dev/null && command -v tex >/dev/null; then \
+	  texi2pdf --quiet --clean -I $(srcdir)/doc/sheets \
+	    -o doc/nevh-sheets.pdf $(srcdir)/doc/sheets/sheets.texi; \
+	else echo "There is no TeX: the sheets are doc/nevh-sheets.html alone."; fi
+sheets-numbers: all
+	$(run_sheets) write
+.PHONY: sheets sheets-numbers
 
 # What the manual and the README quote, made anew.
 figures: all bench/verdicts$(EXEEXT)

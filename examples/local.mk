@@ -14,7 +14,8 @@ examples = \
 	examples/gradient_error \
 	examples/gradient_cost \
 	examples/nevh_cost \
-	examples/add_noise
+	examples/add_noise \
+	examples/paper/divergence
 noinst_PROGRAMS += $(examples)
 examples_first_hamiltonian_LDADD = libnevh.la
 examples_pendulum_energy_SOURCES = examples/pendulum_energy.c $(energy_table)
@@ -32,6 +33,7 @@ examples_steps_that_follow_LDADD = libnevh.la
 examples_flip_map_LDADD = libnevh.la
 examples_nevh_cost_LDADD = libnevh.la
 examples_add_noise_LDADD = -lm
+examples_paper_divergence_LDADD = libnevh.la
 gradient_systems = \
 	examples/gradient_systems.c examples/gradient_systems.h
 examples_gradient_error_SOURCES = \
@@ -66,6 +68,8 @@ dist_example_DATA = \
 	examples/integrators.c \
 	examples/nevh_cost.c \
 	examples/own_kernel.c \
+	examples/paper/divergence.c \
+	examples/paper/paper.sh \
 	examples/pendulum_energy.c \
 	examples/steps_that_follow.c \
 	examples/sweep_mpi.c

@@ -155,6 +155,8 @@ dist_check_SCRIPTS = \
 	tests/robust/fuzz_compiles.sh \
 	tests/build/cplusplus.sh \
 	tests/build/examples.sh \
+	tests/build/sheets.sh \
+	tests/build/paper.sh \
 	tests/tool/nevh.sh \
 	tests/tool/nevh_scenes.sh \
 	tests/tool/nevh_help.sh \

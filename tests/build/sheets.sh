@@ -1,0 +1,21 @@
+#!/bin/sh
+# The worksheets: each command runs, and each number is what its command prints.
+
+srcdir=${srcdir:-.}
+work=sheets-test.$$
+trap 'rm -rf $work' EXIT
+trap 'exit 1' HUP INT TERM
+mkdir -p $work/doc/sheets || exit 1
+sh "$srcdir/doc/sheets/sheets.sh" "$srcdir" ./tools/nevh examples check || exit 1
+
+# A number that is wrong is found.
+cp "$srcdir"/doc/sheets/* $work/doc/sheets/
+grep '^rk-twenty|' "$srcdir/doc/sheets/numbers.list" >$work/doc/sheets/numbers.list
+sed 's/^\(@set rk-twenty\) .*/\1 1.6e-04/' "$srcdir/doc/sheets/numbers.texi" \
+    >$work/doc/sheets/numbers.texi
+printf '@example\nnevh list scenes\n@end example\n@value{rk-twenty}\n' \
+    >$work/doc/sheets/sheets.texi
+ln -s "$(cd "$srcdir" && pwd)/scenes" $work/scenes
+sh "$srcdir/doc/sheets/sheets.sh" $work ./tools/nevh examples check >$work/out &&
+    { echo "a wrong number was not found"; exit 1; }
+grep -q "rk-twenty: the sheets say '1.6e-04'" $work/out || exit 1
