@@ -176,6 +176,7 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_flow.sh \
 	tests/tool/nevh_frequencies.sh \
 	tests/tool/nevh_fit.sh \
+	tests/tool/nevh_data.sh \
 	tests/tool/nevh_report.sh \
 	tests/tool/nevh_portrait.sh \
 	tests/tool/nevh_map.sh \

@@ -123,6 +123,7 @@ tools_nevh_SOURCES = \
 	tools/orbit/frequencies_command.c \
 	tools/fit/measured.h \
 	tools/fit/measured.c \
+	tools/fit/residuals.c \
 	tools/fit/fit_private.h \
 	tools/fit/fit_orbit.c \
 	tools/fit/fit_solve.c \

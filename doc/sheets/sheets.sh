@@ -65,7 +65,9 @@ test -s unknown && { cat unknown; status=1; }
 
 # All that stands in examples and begins with nevh is a command that runs.
 awk '/^@example/ { in_it = 1 } /^@end example/ { in_it = 0 }
-    in_it && /^nevh / { print }' "$sheets/sheets.texi" >commands
+    in_it && /^(nevh |    --)/ {
+        more = sub(/ \\$/, ""); printf "%s%s", $0, more ? " " : "\n"
+    }' "$sheets/sheets.texi" >commands
 commands=0
 while read -r command; do
     commands=$((commands + 1))

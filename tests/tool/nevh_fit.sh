@@ -86,6 +86,7 @@ says 'not determined by these data: l, g: where they change together, l by 1 % a
 exits 1 fit pendulum --data $work/angle.csv --columns phi --vary g,m --dt 0.05
 says 'not determined by these data: m, which changes nothing'
 # The place of its bob knows both.
+exits 0 fit pendulum --data $work/angle.csv --columns x --vary l,g --dt 0.05
 exits 0 fit pendulum --data $work/angle.csv --columns x --vary l,g --dt 0.05 \
     --set l=0.9,g=9.3 --integrators gauss8 --format csv
 near 6 l 1 1e-8

@@ -91,8 +91,9 @@ static const struct {
      "a line of [ensemble]: a list, range(A, B, N), normal(M, S), "
      "uniform(A, B) or solve(F = G, from X); repeated for more names; of fit: "
      "names A,B of parameters and starts"},
-    {"data", "FILE", FOR_FIT, read_data,
-     "measured points, as CSV: t, and columns named as in the scene"},
+    {"data", "FILE", FOR_FIT | FOR_RUN | FOR_PORTRAIT | FOR_SWEEP, read_data,
+     "measured points, as CSV: t, and columns named as in the scene; run prints "
+     "residuals, and pictures show the points"},
     {"sigma", "X", FOR_FIT, read_sigma,
      "the standard deviation of all measured numbers; a column sigma or "
      "sigma_NAME of the data says it of each"},
@@ -132,9 +133,9 @@ static const struct {
     {"plot-kind", "KIND", FOR_RUN, read_plot_kind,
      "phase (the default), time, energy or configuration"},
     {"columns", "A,B:C", FOR_RUN | FOR_FIT, read_columns,
-     "of fit: the columns of the data to use; of run: what --plot-kind time or phase draws: a panel each, names\n"
-     "                            joined by : in one; t, coordinates, p_NAME,\n"
-     "                            observables, energy, energy_error"},
+     "of fit: the columns of the data to use; of run: what --plot-kind time or "
+     "phase draws: a panel each, names joined by : in one; t, coordinates, "
+     "p_NAME, observables, energy, energy_error"},
     {"keep-plot-script", "FILE", OF_PLOTS | FOR_SWEEP, read_plot_script,
      "write what gnuplot is told, data included"},
     {"header", NULL, FOR_EXPORT, read_header,

@@ -1,6 +1,7 @@
 /* nevh sweep --picture: an outcome over what is varied.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "map.h"
+#include "fit/measured.h"
 #include "plot/plot.h"
 #include <inttypes.h>
 #include <math.h>
@@ -15,6 +16,8 @@ struct map {
     const nevh_sweep *sweep;
     size_t members, varied, missing;
     double *values; /* members x (varied + 1): the last is the outcome */
+    measured data;  /* of no points where there is none */
+    double rms;     /* of the data less the outcome; NAN */
 };
 
 /* The values that a varied number takes, sorted, each once. */
@@ -40,8 +43,21 @@ static int check_options(const options *o, const nevh_sweep *s) {
     return TOOL_OK;
 }
 
+/* Columns are what is varied, and the outcome. */
+static int read_data(map *m, const plan *p, const options *o) {
+    list names = {0};
+    for (size_t k = 0; k <= m->varied; k++)
+        list_add(&names, nevh_sweep_column(m->sweep, k));
+    int status =
+        o->data ? measured_read_named(&m->data, p, o, &names) : TOOL_OK;
+    list_free(&names);
+    return status;
+}
+
 int map_new(map **made, const options *o, const plan *p, const nevh_sweep *s) {
     *made = NULL;
+    if (!o->picture && o->data)
+        return tool_refuse("--data is drawn over a --picture");
     if (!o->picture)
         return TOOL_OK;
     options as = *o;
@@ -57,12 +73,15 @@ int map_new(map **made, const options *o, const plan *p, const nevh_sweep *s) {
     m->values = tool_allocate(m->members * (m->varied + 1), sizeof *m->values);
     for (size_t i = 0; i < m->members * (m->varied + 1); i++)
         m->values[i] = NAN;
-    return TOOL_OK;
+    m->rms = NAN;
+    return read_data(m, p, o);
 }
 
 void map_free(map *m) {
-    if (m)
+    if (m) {
         free(m->values);
+        measured_free(&m->data);
+    }
     free(m);
 }
 
@@ -162,11 +181,54 @@ static bool find_directions(const map *m, direction found[2], size_t *count) {
     return *count > 0;
 }
 
+static int draw_measured(map *m, plot *to, const char *x, const char *y,
+                         const char *name) {
+    measured *d = &m->data;
+    size_t column = measured_find(d, x), row = measured_find(d, y);
+    if (!d->points)
+        return TOOL_OK;
+    if (column == d->columns || row == d->columns)
+        return tool_refuse("--data %s: the picture takes columns %s and %s",
+                           d->file, x, y);
+    size_t series = plot_series(to, name);
+    plot_style(to, series, PLOT_POINTS);
+    for (size_t i = 0; i < d->points; i++)
+        plot_point(to, series, d->value[i * d->columns + column],
+                   d->value[i * d->columns + row]);
+    return TOOL_OK;
+}
+
+/* The outcome between the members on either side; NAN outside. */
+static double interpolated(const direction *d, const double outcome[],
+                           double x) {
+    for (size_t k = 0; k + 1 < d->count; k++)
+        if (x >= d->value[k] && x <= d->value[k + 1])
+            return outcome[k] + (outcome[k + 1] - outcome[k]) *
+                                    (x - d->value[k]) /
+                                    (d->value[k + 1] - d->value[k]);
+    return NAN;
+}
+
+static void take_rms(map *m, const direction *d, const double outcome[]) {
+    const measured *all = &m->data;
+    size_t x = measured_find(all, nevh_sweep_column(m->sweep, d->column));
+    size_t y = measured_find(all, nevh_sweep_column(m->sweep, m->varied));
+    double sum = 0, count = 0;
+    for (size_t i = 0; i < all->points; i++) {
+        const double *at = all->value + i * all->columns;
+        double r = at[y] - interpolated(d, outcome, at[x]);
+        sum += isnan(r) ? 0 : r * r;
+        count += !isnan(r);
+    }
+    m->rms = sqrt(sum / count);
+}
+
 static plot *draw_line(map *m, const direction *d) {
     char *x = label_of(m, d->column), *y = label_of(m, m->varied);
     plot *to = plot_new(m->plan->title, x, y);
-    size_t series = plot_series(to, NULL),
+    size_t series = plot_series(to, m->data.points ? "computed" : NULL),
            *order = tool_allocate(m->members, sizeof *order);
+    double *outcome = tool_allocate(m->members, sizeof *outcome);
     plot_style(to, series, m->members <= 100 ? PLOT_BOTH : PLOT_TRAIL);
     for (size_t i = 0; i < m->members; i++)
         order[place_of(d, m->values[i * (m->varied + 1) + d->column])] = i;
@@ -174,7 +236,16 @@ static plot *draw_line(map *m, const direction *d) {
         double value = m->values[order[k] * (m->varied + 1) + m->varied];
         m->missing += isnan(value);
         plot_point(to, series, d->value[k], value);
+        outcome[k] = value;
     }
+    if (draw_measured(m, to, nevh_sweep_column(m->sweep, d->column),
+                      nevh_sweep_column(m->sweep, m->varied), "measured")) {
+        plot_free(to);
+        to = NULL;
+    } else if (m->data.points) {
+        take_rms(m, d, outcome);
+    }
+    free(outcome);
     free(order);
     free(x);
     free(y);
@@ -202,6 +273,11 @@ static plot *draw_map(map *m, const direction d[2]) {
     plot_span_x(to, low, high);
     span(&d[1], &low, &high);
     plot_span_y(to, low, high);
+    if (draw_measured(m, to, nevh_sweep_column(m->sweep, d[0].column),
+                      nevh_sweep_column(m->sweep, d[1].column), NULL)) {
+        plot_free(to);
+        to = NULL;
+    }
     free(values);
     free(x);
     free(y);
@@ -241,13 +317,19 @@ int map_draw(map *m, const char *integrator) {
     plot *to = status       ? NULL
                : count == 2 ? draw_map(m, d)
                             : draw_line(m, &d[0]);
+    if (!to)
+        status = TOOL_USAGE;
     if (to) {
         char *scheme = plot_scheme(m->plan, integrator);
         char *more =
             m->missing
                 ? text_print("%zu orbits, %zu without a value%s", m->members,
                              m->missing, count == 2 ? " (hatched)" : "")
-                : text_print("%zu orbits", m->members);
+            : isnan(m->rms)
+                ? text_print("%zu orbits", m->members)
+                : text_print("%zu orbits; rms of what was measured less that: "
+                             "%.3g",
+                             m->members, m->rms);
         plot_note_run(to, m->plan, scheme, more);
         free(scheme);
         free(more);

@@ -210,16 +210,17 @@ static char *options_of(const fitting *f, bool starts) {
     return text;
 }
 
-static void add_next(const job *j, list *words) {
+static void add_next(const job *j, const options *o, list *words) {
     char *sets = options_of(&j->fit, false);
     char *starts = options_of(&j->fit, true);
-    list_print(words, "Next: nevh run %s%s%s --plot-kind time --plot -",
-               j->plan.name, sets, starts);
+    list_print(words,
+               "Next: nevh run %s%s%s --data %s --plot-kind time --plot -",
+               j->plan.name, sets, starts, o->data);
     free(sets);
     free(starts);
 }
 
-static void add_words(const job *j, list *words) {
+static void add_words(const job *j, const options *o, list *words) {
     const fitting *f = &j->fit;
     list_print(
         words,
@@ -236,7 +237,7 @@ static void add_words(const job *j, list *words) {
                    f->rms[k], *unit ? " " : "", unit);
     }
     judge(j, words);
-    add_next(j, words);
+    add_next(j, o, words);
 }
 
 static void note(const job *j, const options *o, list *notes) {
@@ -261,7 +262,7 @@ static int print(const job *j, const options *o) {
             add_record(j, result.table, k);
     if (!(o->quiet && is_table))
         note(j, o, &result.before);
-    add_words(j, &result.after);
+    add_words(j, o, &result.after);
     int status = output_page(o, &result, TOOL_OK);
     page_free(&result);
     return status;

@@ -11,6 +11,7 @@ enum { NOT_USED = -1, TIME = -2, SIGMA = -3, SIGMA_OF_ONE = -4 };
 typedef struct {
     measured *m;
     const plan *plan;
+    const list *named; /* NULL: the scene's names, and t */
     list header;
     int *use; /* of each field: a column, or one of the above */
     size_t *sigma_of;
@@ -85,7 +86,10 @@ static void split(list *fields, char *line) {
 
 /* The header. */
 
-static bool is_known(const plan *p, const char *name) {
+static bool is_known(const reader_of_points *r, const char *name) {
+    const plan *p = r->plan;
+    if (r->named)
+        return list_has(r->named, name);
     bool momentum = strncmp(name, "p_", 2) == 0;
     for (size_t k = 0; k < p->n; k++) {
         const char *x = nevh_scene_coordinate(p->scene, k);
@@ -102,7 +106,7 @@ static bool is_known(const plan *p, const char *name) {
 
 static int use_of(reader_of_points *r, const list *only, const char *name) {
     measured *m = r->m;
-    if (strcmp(name, "t") == 0)
+    if (strcmp(name, "t") == 0 && !r->named)
         return TIME;
     if (strcmp(name, "sigma") == 0)
         return SIGMA;
@@ -110,7 +114,7 @@ static int use_of(reader_of_points *r, const list *only, const char *name) {
         return SIGMA_OF_ONE;
     if (only->count && !list_has(only, name))
         return NOT_USED;
-    if (!is_known(r->plan, name) && !only->count) {
+    if (!is_known(r, name) && !only->count) {
         list_add(&m->left_out, name);
         return NOT_USED;
     }
@@ -118,22 +122,26 @@ static int use_of(reader_of_points *r, const list *only, const char *name) {
     return (int)m->names.count - 1;
 }
 
-static int known_names(const plan *p, const char *name, const char *file) {
+static int known_names(const reader_of_points *r, const char *name) {
+    const plan *p = r->plan;
+    const char *file = r->m->file;
     list known = {0};
-    for (size_t k = 0; k < p->n; k++) {
+    for (size_t i = 0; r->named && i < r->named->count; i++)
+        list_add(&known, r->named->item[i]);
+    for (size_t k = 0; !r->named && k < p->n; k++) {
         list_add(&known, nevh_scene_coordinate(p->scene, k));
         list_print(&known, "p_%s", nevh_scene_coordinate(p->scene, k));
     }
-    for (size_t i = 0; nevh_scene_shown_name(p->scene, NEVH_OBSERVABLES, i);
-         i++)
+    for (size_t i = 0;
+         !r->named && nevh_scene_shown_name(p->scene, NEVH_OBSERVABLES, i); i++)
         list_add(&known, nevh_scene_shown_name(p->scene, NEVH_OBSERVABLES, i));
     char *all = list_joined(&known);
     int status =
         name ? tool_refuse("--data %s: the scene has no %s to compare the "
                            "column of that name with; it has %s",
                            file, name, all)
-             : tool_refuse("--data %s: no column is one of the scene's: %s",
-                           file, all);
+             : tool_refuse("--data %s: no column is one of %s: %s", file,
+                           r->named ? "these" : "the scene's", all);
     free(all);
     list_free(&known);
     return status;
@@ -145,10 +153,10 @@ static int check_only(const reader_of_points *r, const list *only) {
         const char *name = only->item[i];
         if (!list_has(&r->header, name))
             return tool_refuse("--columns: %s has no column %s", m->file, name);
-        if (!is_known(r->plan, name))
-            return known_names(r->plan, name, m->file);
+        if (!is_known(r, name))
+            return known_names(r, name);
     }
-    return m->names.count ? TOOL_OK : known_names(r->plan, NULL, m->file);
+    return m->names.count ? TOOL_OK : known_names(r, NULL);
 }
 
 static int check_header(const reader_of_points *r, const list *only) {
@@ -164,7 +172,7 @@ static int check_header(const reader_of_points *r, const list *only) {
     list_free(&seen);
     if (status)
         return status;
-    if (!list_has(h, "t"))
+    if (!r->named && !list_has(h, "t"))
         return tool_refuse("%s:%zu: there is no column t; the first line names "
                            "the columns, separated by commas, as: t,%s",
                            r->m->file, r->line,
@@ -254,6 +262,7 @@ static int read_row(reader_of_points *r, char *line, bool own[]) {
         status = tool_refuse("%s:%zu: %zu values, and there are %zu columns",
                              m->file, r->line, fields.count, r->header.count);
     m->t = tool_enlarge(m->t, m->points + 1, sizeof *m->t);
+    m->t[m->points] = 0;
     m->value =
         tool_enlarge(m->value, (m->points + 1) * m->columns, sizeof *m->value);
     m->sigma =
@@ -273,7 +282,7 @@ static int read_row(reader_of_points *r, char *line, bool own[]) {
             status = tool_refuse("%s: column %s has no standard deviation: "
                                  "give sigma_%s, or sigma for all",
                                  m->file, m->names.item[k], m->names.item[k]);
-    if (!status && m->t[m->points] < r->plan->run->t_start)
+    if (!status && !r->named && m->t[m->points] < r->plan->run->t_start)
         status = tool_refuse("%s:%zu: t = %g is before the run begins, at %g",
                              m->file, r->line, m->t[m->points],
                              r->plan->run->t_start);
@@ -317,9 +326,9 @@ static int read_text(reader_of_points *r, char *text, const char *only) {
     return status;
 }
 
-int measured_read(measured *m, const plan *p, const options *o,
-                  const char *only) {
-    reader_of_points r = {.m = m, .plan = p};
+static int read_file_of(measured *m, const plan *p, const options *o,
+                        const list *named, const char *only) {
+    reader_of_points r = {.m = m, .plan = p, .named = named};
     *m = (measured){.file = o->data};
     char *text = whole_file(o->data);
     int status = text ? read_text(&r, text, only) : TOOL_USAGE;
@@ -332,6 +341,16 @@ int measured_read(measured *m, const plan *p, const options *o,
     free(r.sigma_of);
     free(text);
     return status;
+}
+
+int measured_read(measured *m, const plan *p, const options *o,
+                  const char *only) {
+    return read_file_of(m, p, o, NULL, only);
+}
+
+int measured_read_named(measured *m, const plan *p, const options *o,
+                        const list *names) {
+    return read_file_of(m, p, o, names, NULL);
 }
 
 void measured_free(measured *m) {

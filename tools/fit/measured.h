@@ -26,6 +26,9 @@ typedef struct {
    returns  TOOL_OK, or TOOL_USAGE with the message printed, which names line and
             column */
 int measured_read(measured *, const plan *, const options *, const char *only);
+/* Those of other names, without t. */
+int measured_read_named(measured *, const plan *, const options *,
+                        const list *names);
 void measured_free(measured *);
 /* The number of a column; `columns` where there is none of that name. */
 size_t measured_find(const measured *, const char *name);
@@ -35,6 +38,21 @@ double measured_residual(const measured *, size_t point, size_t column,
 /* The plan ends at the last of the points, those of --t-end left out. */
 void measured_bound(measured *, plan *, const options *);
 row_times measured_times(const measured *);
+
+/* Residuals of rows at the measured times, one by one. */
+typedef struct {
+    const measured *data;
+    quantities columns;
+    double *model, *squares; /* columns each */
+    size_t next;             /* the point that is due */
+} residuals_of_rows;
+void residuals_begin(residuals_of_rows *, const measured *, const plan *);
+void residuals_end(residuals_of_rows *);
+/* NAN where the time is not that of the point that is due. */
+void residuals_take(residuals_of_rows *, double t, const double q[],
+                    const double p[], double residual[]);
+/* "rms of the residuals of x: 0.004 m (121 points)", a line each. */
+void residuals_words(const residuals_of_rows *, const plan *, list *words);
 /* "120 points of x, y in FILE"; what was left out, a line each. */
 void measured_note(const measured *, list *notes);
 

@@ -107,8 +107,25 @@ static void draw_panel(plot **to, const run_picture *picture,
         draw_orbit(*to, &picture->orbits.item[i], k, period,
                    picture->orbits.count > 1 ? picture->orbits.item[i].name
                                              : NULL);
+    picture_measured(picture, *to, "measured", c->columns.item[k].name,
+                     c->columns.item[k + 1].name, period);
     free(x);
     free(y);
+}
+
+/* Points are drawn where both columns of a panel were measured. */
+static int check_measured(const run_picture *picture, const column_panels *c) {
+    const measured *m = &picture->data;
+    for (size_t k = 0; k + 1 < c->columns.count; k += 2)
+        if (measured_find(m, c->columns.item[k].name) < m->columns &&
+            measured_find(m, c->columns.item[k + 1].name) < m->columns)
+            return TOOL_OK;
+    return m->points ? tool_refuse("--data %s has no two columns that "
+                                   "--plot-kind phase draws over each other: "
+                                   "--columns A:B says which, or --plot-kind "
+                                   "time",
+                                   m->file)
+                     : TOOL_OK;
 }
 
 static char *say_more(const run_picture *picture) {
@@ -128,7 +145,8 @@ plot *plot_phase(run_picture *picture) {
     plot *to = NULL;
     row_times dense = orbit_dense_times(&picture->plan);
     char *names = pairs_of(picture->options, &picture->plan);
-    if (!column_panels_read(&c, &picture->plan, names) && !check_pairs(&c)) {
+    if (!column_panels_read(&c, &picture->plan, names) && !check_pairs(&c) &&
+        !check_measured(picture, &c)) {
         picture_follow(picture, &dense, c.columns.count, column_panels_fill,
                        &c);
         for (size_t i = 0; i < c.panels; i++)

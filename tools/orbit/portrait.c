@@ -1,6 +1,7 @@
 /* nevh portrait: orbits by each integrator over level curves of H.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "portrait.h"
+#include "fit/measured.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,6 +21,8 @@ typedef struct {
 typedef struct {
     plan plan;
     members members;
+    measured data; /* of no points where there is none */
+    size_t x, p_x; /* their columns */
     orbits_of *of;
     size_t count;
     levels levels;
@@ -144,6 +147,17 @@ static void draw_orbits(const job *j, const orbits_of *o, plot *to) {
     }
 }
 
+static void draw_measured(const job *j, plot *to) {
+    const measured *m = &j->data;
+    size_t series = m->points ? plot_series(to, "measured") : 0;
+    if (m->points)
+        plot_style(to, series, PLOT_POINTS);
+    for (size_t i = 0; i < m->points; i++) {
+        const double *at = m->value + i * m->columns;
+        plot_point(to, series, wrapped(j, at[j->x]), at[j->p_x]);
+    }
+}
+
 /* The largest change of H along an orbit. */
 static double energy_change(const job *j, const orbits_of *o) {
     double most = 0, first = NAN;
@@ -184,6 +198,7 @@ static plot *draw_plane(job *j) {
         plot_span_y(to, j->levels.window.low_y, j->levels.window.high_y);
         levels_draw(&j->levels, to, energy, count);
         draw_orbits(j, o, to);
+        draw_measured(j, to);
         free(heading);
     }
     free(momentum);
@@ -227,6 +242,29 @@ static int run_section(job *j, plot **to, const options *o) {
                : tool_refuse("%s: there is nothing to draw: no integrator "
                              "finds a point of the section",
                              j->plan.name);
+}
+
+static int read_data(job *j, const options *o) {
+    if (!o->data)
+        return TOOL_OK;
+    if (j->plan.n > 1)
+        return tool_refuse(
+            "--data is drawn in the plane of a coordinate and its "
+            "momentum; here are %zu",
+            j->plan.n);
+    if (measured_read(&j->data, &j->plan, o, NULL))
+        return TOOL_USAGE;
+    char *momentum =
+        text_print("p_%s", nevh_scene_coordinate(j->plan.scene, 0));
+    j->x = measured_find(&j->data, nevh_scene_coordinate(j->plan.scene, 0));
+    j->p_x = measured_find(&j->data, momentum);
+    bool both = j->x < j->data.columns && j->p_x < j->data.columns;
+    int status = both ? TOOL_OK
+                      : tool_refuse("--data %s: a portrait takes columns %s "
+                                    "and %s",
+                                    o->data, momentum + 2, momentum);
+    free(momentum);
+    return status;
 }
 
 static void print_notes(const job *j, const options *o) {
@@ -285,6 +323,8 @@ int portrait(const options *o) {
     if (!status)
         status = members_read(&j.members, &j.plan);
     if (!status)
+        status = read_data(&j, o);
+    if (!status)
         status = plot_check(o);
     if (!status)
         status = draw(&j, o);
@@ -296,6 +336,7 @@ int portrait(const options *o) {
     free(j.of);
     levels_free(&j.levels);
     members_free(&j.members);
+    measured_free(&j.data);
     plan_free(&j.plan);
     return status;
 }

@@ -1,6 +1,7 @@
 /* nevh run: the trajectory.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "config.h"
+#include "fit/measured.h"
 #include "plot/plot.h"
 #include "trajectory.h"
 #include <math.h>
@@ -18,6 +19,9 @@ typedef struct {
     row_times rows;
     char *rows_text;
     list notes;
+    measured data;               /* of no points where there is none */
+    residuals_of_rows residuals; /* then their data are NULL */
+    more_columns more;
     line_file lines;
     trajectory *trajectory;
     char *state, *settings; /* NULL: there is nothing to save */
@@ -76,7 +80,10 @@ static int choose_rows(job *j) {
     if (o->samples == 1)
         return tool_refuse("--samples takes at least 2: the first row and the "
                            "last");
-    if (o->at.count)
+    if (o->data) {
+        j->rows = measured_times(&j->data);
+        j->rows_text = text_print("at the times of %s", o->data);
+    } else if (o->at.count)
         take_times(j);
     else if (o->every)
         take_every(j, o->every);
@@ -102,7 +109,40 @@ static int check_options(const options *o) {
         return tool_refuse("--resume names the file: leave -o out");
     if (o->resume && other)
         return tool_refuse("only CSV is resumed");
+    if (o->data && (o->resume || o->every || o->samples || o->at.count))
+        return tool_refuse("--data makes a row at each of its times: leave out "
+                           "--every, --samples, --at and --resume");
     return TOOL_OK;
+}
+
+/* Those at the times of --data. */
+static int read_data(job *j) {
+    const options *o = j->options;
+    if (!o->data)
+        return TOOL_OK;
+    if (measured_read(&j->data, &j->plan, o, NULL))
+        return TOOL_USAGE;
+    measured_bound(&j->data, &j->plan, o);
+    if (!j->data.points || j->plan.t_end <= j->plan.run->t_start)
+        return tool_refuse("--data %s: no point is within the run", o->data);
+    return TOOL_OK;
+}
+
+static void fill_residuals(void *data, double t, const double q[],
+                           const double p[], double values[]) {
+    residuals_take(data, t, q, p, values);
+}
+
+static const more_columns *residual_columns(job *j) {
+    const list *names = &j->data.names;
+    if (!j->data.points)
+        return NULL;
+    residuals_begin(&j->residuals, &j->data, &j->plan);
+    for (size_t k = 0; k < names->count; k++)
+        list_print(&j->more.titles, "%s_residual", names->item[k]);
+    j->more.fill = fill_residuals;
+    j->more.data = &j->residuals;
+    return &j->more;
 }
 
 static void note(job *j) {
@@ -112,6 +152,8 @@ static void note(job *j) {
     settings_notes(j->options, &j->notes);
     plan_note_first(p, j->integrator, &j->notes);
     list_print(&j->notes, "rows: %s", j->rows_text);
+    if (j->data.points)
+        measured_note(&j->data, &j->notes);
     if (nevh_stepper_native(j->stepper, NULL))
         list_add(&j->notes, "native: steps are compiled");
 }
@@ -222,6 +264,11 @@ static int write_lines(job *j) {
         status = follow(j, save_often);
     if (!status && !trajectory_finished(j->trajectory))
         return give_up(j);
+    list words = {0};
+    residuals_words(&j->residuals, &j->plan, &words);
+    for (size_t i = 0; !j->options->quiet && i < words.count; i++)
+        lines_comment(&j->lines, words.item[i]);
+    list_free(&words);
     if (status == TOOL_USAGE || lines_flush(&j->lines))
         return TOOL_USAGE;
     if (j->state)
@@ -235,6 +282,7 @@ static int write_page(job *j, page *result) {
     int status = follow(j, NULL);
     if (status == TOOL_USAGE)
         return status;
+    residuals_words(&j->residuals, &j->plan, &result->after);
     if (!(j->options->quiet && j->options->format == FORMAT_TABLE))
         for (size_t i = 0; i < j->notes.count; i++)
             list_add(&result->before, j->notes.item[i]);
@@ -249,6 +297,7 @@ static int write_rows(job *j) {
         trajectory_new(&j->plan, j->integrator, j->stepper, &j->rows,
                        (sink){.lines = &j->lines,
                               .page = pages ? &result : NULL,
+                              .more = residual_columns(j),
                               .quiet = o->quiet});
     note(j);
     int status = pages ? write_page(j, &result) : write_lines(j);
@@ -278,8 +327,13 @@ int run_scene(const options *o) {
     if (!status)
         status = plan_make(&j.plan, o);
     if (!status)
+        status = read_data(&j);
+    if (!status)
         status = run_job(&j);
     nevh_stepper_free(j.stepper);
+    residuals_end(&j.residuals);
+    measured_free(&j.data);
+    list_free(&j.more.titles);
     plan_free(&j.plan);
     lines_close(&j.lines);
     list_free(&j.notes);

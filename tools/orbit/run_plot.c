@@ -70,12 +70,30 @@ static double rounded(double span) {
 char *picture_cut(run_picture *picture, double turns) {
     static const double most = 60, wanted = 25;
     double begin = picture->plan.run->t_start, whole = picture->plan.t_end;
-    if (picture->options->t_end || turns <= most)
+    if (picture->options->t_end || picture->data.points || turns <= most)
         return NULL;
     picture->plan.t_end = begin + rounded((whole - begin) * wanted / turns);
     for (size_t i = 0; i < picture->orbits.count; i++)
         picture->orbits.item[i].plan.t_end = picture->plan.t_end;
     return text_print("a part of the run: --t-end %g shows all", whole);
+}
+
+void picture_measured(const run_picture *picture, plot *to, const char *name,
+                      const char *x, const char *y, double period) {
+    const measured *m = &picture->data;
+    size_t across = x ? measured_find(m, x) : 0, up = measured_find(m, y);
+    if (!m->points || across == m->columns || up == m->columns)
+        return;
+    size_t series = plot_series(to, name);
+    plot_style(to, series, PLOT_POINTS);
+    plot_size(to, series, 0.6);
+    for (size_t i = 0; i < m->points; i++) {
+        const double *value = m->value + i * m->columns;
+        double at = x ? value[across] : m->t[i];
+        if (period > 0)
+            at -= period * floor(at / period + 0.5);
+        plot_point(to, series, at, value[up]);
+    }
 }
 
 void picture_note(const run_picture *picture, plot *to, const char *more) {
@@ -163,6 +181,8 @@ static plot *plot_energy(run_picture *picture) {
 static int check_kind(const options *o, const plan *p) {
     bool configuration = o->plot_kind == PLOT_CONFIGURATION;
     bool columns = o->plot_kind == PLOT_TIME || o->plot_kind == PLOT_PHASE;
+    if (o->data && plot_wanted(o) && !columns)
+        return tool_refuse("--data is drawn over --plot-kind time or phase");
     if (o->columns && !(plot_wanted(o) && columns))
         return tool_refuse("--columns is for --plot with --plot-kind time or "
                            "phase");
@@ -208,6 +228,9 @@ int run_plot(const options *o, const plan *p, const char *integrator,
                       .rows =
                           o->every || o->samples || o->at.count ? rows : NULL,
                       .quiet = !plot_replaces_rows(o)};
+    if (o->data && measured_read(&is.data, p, o, NULL))
+        return TOOL_USAGE;
+    measured_bound(&is.data, &is.plan, o);
     plot *to = draw[o->plot_kind](&is);
     int status = to ? plot_write(to, o) : TOOL_USAGE;
     if (!status) {
@@ -221,5 +244,6 @@ int run_plot(const options *o, const plan *p, const char *integrator,
     if (is.plan.no_reference != p->no_reference)
         free(is.plan.no_reference);
     orbits_free(&is.orbits);
+    measured_free(&is.data);
     return status;
 }

@@ -4,6 +4,7 @@
 #define NEVH_RUN_PLOT_PRIVATE_H
 
 #include "columns.h"
+#include "fit/measured.h"
 #include "orbit.h"
 #include "plot/plot.h"
 
@@ -12,6 +13,7 @@ typedef struct {
     plan plan; /* a copy, which may end earlier */
     orbits orbits;
     const row_times *rows; /* asked for by options; NULL: by the picture */
+    measured data;         /* of no points where there are none */
     bool quiet;            /* failures are not printed */
 } run_picture;
 
@@ -27,6 +29,12 @@ void column_panels_free(column_panels *);
 /* An orbit_fill; data are column_panels. */
 void column_panels_fill(void *, double t, const double q[], const double p[],
                         double values[]);
+
+/* Measured points, of the columns with these names, over the panel.
+   x, y    columns of the data; x: NULL for time
+   period  that x is taken modulo; 0: none */
+void picture_measured(const run_picture *, plot *, const char *name,
+                      const char *x, const char *y, double period);
 
 /* Runs of all; the worst of their statuses. */
 int picture_follow(run_picture *, const row_times *, size_t columns,

@@ -33,6 +33,14 @@ static char *usual_names(const plan *p) {
     return text;
 }
 
+/* Those that were measured. */
+static char *joined(const list *names) {
+    char *text = text_print("%s", "");
+    for (size_t i = 0; i < names->count && i < MOST_PANELS; i++)
+        add_name(&text, "", names->item[i]);
+    return text;
+}
+
 static double most_turns(const orbit *o, const quantities *c) {
     double most = 0;
     for (size_t k = 0; k < c->count; k++)
@@ -194,6 +202,16 @@ static void draw_panel(plot **to, run_picture *picture, column_panels *c,
         for (size_t i = 0; i < picture->orbits.count && c->panel[k] == panel;
              i++)
             draw_orbit(*to, picture, c, k, i, exact);
+    for (size_t k = 0; k < c->columns.count; k++) {
+        size_t count;
+        place_in_panel(c, k, &count);
+        const char *column = c->columns.item[k].name;
+        char *name = count > 1 ? text_print("measured %s", column)
+                               : text_print("measured");
+        if (c->panel[k] == panel)
+            picture_measured(picture, *to, name, NULL, column, 0);
+        free(name);
+    }
     free(x);
     free(y);
 }
@@ -203,7 +221,8 @@ plot *plot_time(run_picture *picture) {
     plot *to = NULL;
     char *names = picture->options->columns
                       ? text_print("%s", picture->options->columns)
-                      : usual_names(&picture->plan);
+                  : picture->data.points ? joined(&picture->data.names)
+                                         : usual_names(&picture->plan);
     int status = column_panels_read(&c, &picture->plan, names);
     if (!status && c.panels > MOST_PANELS)
         status = tool_refuse("--columns: %d panels at most, not %zu; names "

@@ -29,7 +29,7 @@ struct trajectory {
     run_state now;
     double kept_t, *kept_q, *kept_p; /* before the last step, with now.memory */
     double *q, *p;                   /* at the end of a branch */
-    double *observed;
+    double *observed, *more;
     size_t observables;
 };
 
@@ -61,6 +61,8 @@ static void reserve(trajectory *r) {
     r->p = tool_allocate(n, sizeof *r->p);
     r->observables = nevh_scene_shown_count(r->plan->scene, NEVH_OBSERVABLES);
     r->observed = tool_allocate(r->observables, sizeof *r->observed);
+    r->more = tool_allocate(r->to.more ? r->to.more->titles.count : 0,
+                            sizeof *r->more);
     memcpy(s->q, r->plan->q, n * sizeof *s->q);
     memcpy(s->p, r->plan->p, n * sizeof *s->p);
 }
@@ -92,6 +94,7 @@ void trajectory_free(trajectory *r) {
     free(r->q);
     free(r->p);
     free(r->observed);
+    free(r->more);
     free(r);
 }
 
@@ -106,6 +109,10 @@ static void add_title(trajectory *r, const char *prefix, const char *name) {
     free(title);
 }
 
+static size_t more_count(const trajectory *r) {
+    return r->to.more ? r->to.more->titles.count : 0;
+}
+
 void trajectory_header(trajectory *r) {
     const nevh_scene *s = r->plan->scene;
     add_title(r, "", "t");
@@ -118,7 +125,14 @@ void trajectory_header(trajectory *r) {
     if (r->to.page)
         table_column(r->to.page->table, "energy");
     else
-        lines_print(r->to.lines, "energy\n");
+        lines_print(r->to.lines, "energy");
+    for (size_t i = 0; i < more_count(r); i++)
+        if (r->to.page)
+            table_column(r->to.page->table, r->to.more->titles.item[i]);
+        else
+            lines_print(r->to.lines, ",%s", r->to.more->titles.item[i]);
+    if (!r->to.page)
+        lines_print(r->to.lines, "\n");
 }
 
 static void add_numbers(trajectory *r, const double numbers[], size_t count,
@@ -147,7 +161,13 @@ static int show(trajectory *r, double t, const double q[], const double p[]) {
     add_numbers(r, q, r->plan->n, ',');
     add_numbers(r, p, r->plan->n, ',');
     add_numbers(r, r->observed, r->observables, ',');
-    add_numbers(r, &energy, 1, '\n');
+    size_t more = more_count(r);
+    add_numbers(r, &energy, 1, more ? ',' : '\n');
+    if (more) {
+        r->to.more->fill(r->to.more->data, t, q, p, r->more);
+        add_numbers(r, r->more, more - 1, ',');
+        add_numbers(r, r->more + more - 1, 1, '\n');
+    }
     return r->to.page ? TOOL_OK : lines_end(r->to.lines);
 }
 

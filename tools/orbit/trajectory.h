@@ -70,6 +70,13 @@ typedef struct {
     size_t every, count; /* count: rows, where they are not by steps */
     double *time;        /* BY_TIMES */
 } row_times;
+/* Columns after those of the scene. */
+typedef struct {
+    list titles;
+    void (*fill)(void *data, double t, const double q[], const double p[],
+                 double values[]);
+    void *data;
+} more_columns;
 /* Where rows and remarks go: lines, or a page, or states to a function. */
 typedef struct {
     line_file *lines;
@@ -77,8 +84,9 @@ typedef struct {
     /* NULL: to the page or the lines; returns TOOL_OK, or what ends the run. */
     int (*take)(void *data, double t, const double q[], const double p[]);
     void *data;
-    bool quiet; /* without remarks on the lines */
-    bool mute;  /* failures are not printed */
+    const more_columns *more; /* NULL: none */
+    bool quiet;               /* without remarks on the lines */
+    bool mute;                /* failures are not printed */
 } sink;
 typedef struct trajectory trajectory;
 /* integrator  as plan_scheme takes it
