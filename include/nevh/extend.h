@@ -81,6 +81,7 @@ struct nevh_work {
     struct nevh__transform *transform; /* of H; NULL: there is none */
     struct nevh_ledger *ledger;        /* NULL: nobody asked for the balance */
     bool accounts;                     /* nevh_work_account is to be called */
+    bool planned; /* nevh's own kernels take gradients as they planned them */
 
     struct nevh__native *native; /* compiled steps, taken before the kernel's;
                                     NULL: there are none */

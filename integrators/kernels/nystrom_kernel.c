@@ -105,7 +105,7 @@ static void list_weights(nevh__nystrom_state *y) {
 }
 
 static void plan_gradients(nevh__nystrom_state *y) {
-    const nevh_work *w = y->work;
+    nevh_work *w = y->work;
     size_t lanes = nevh__work_lanes(w, false, true);
     if (w->width > 1 && lanes != w->width)
         return; /* columns are not copied to longer rows */
@@ -351,18 +351,13 @@ static int take_slopes(nevh__nystrom_state *y, const nevh__stages *s, int way,
 
 static int take(nevh__stages *s, size_t first, size_t until) {
     nevh__nystrom_state *y = state_of(s->work);
-    s->planned = y->planned && s->columns == s->work->width &&
-                 !s->work->accounts && nevh__evaluation_ready(&y->drift) &&
-                 nevh__evaluation_ready(y->kicks);
-    if (s->planned) {
-        int status = take_slopes(y, s, (int)y->planned, first, until);
-        if (status == NEVH_OK)
-            s->work->field->gradients += (until - first) * s->columns;
-        if (status == NEVH_OK || nevh__work_failed(s->work))
-            return status;
-    }
-    s->planned = false;
-    return take_slopes(y, s, BY_WORK, first, until);
+    s->planned = nevh__work_as_planned(s->work, y->planned, s->columns);
+    if (!s->planned)
+        return take_slopes(y, s, BY_WORK, first, until);
+    int status = take_slopes(y, s, (int)y->planned, first, until);
+    if (!status)
+        s->work->field->gradients += (until - first) * s->columns;
+    return status;
 }
 
 /* How far q moves, and -h sum_j weights[j] D_j, of each column. */

@@ -82,7 +82,7 @@ static void lay_out(nevh__arena *a, void *state) {
     y->sums = nevh__arena_take(a, stages + ENDS, sizeof *y->sums);
 }
 
-static void plan_gradients(const nevh_work *w, nevh__runge_kutta_state *y) {
+static void plan_gradients(nevh_work *w, nevh__runge_kutta_state *y) {
     size_t half = w->n * y->lanes;
     y->planned = nevh__work_lanes(w, true, false);
     for (size_t i = 0; y->planned && i < y->table->stages; i++) {
@@ -226,21 +226,17 @@ NEVH_SIMD static int take_by_work(const nevh__stages *s, size_t first,
     return take_stages(s, BY_WORK, first, until);
 }
 
-/* Where planned gradients fail without a reason, the other way tells it. */
 static int take(nevh__stages *s, size_t first, size_t until) {
     nevh_work *w = s->work;
-    const nevh__runge_kutta_state *y = state_of(w);
-    if (y->planned && s->columns == w->width && !w->accounts &&
-        nevh__evaluation_ready(y->gradients)) {
-        s->lanes = y->planned;
-        int status = take_planned(s, first, until);
-        if (!status)
-            w->field->gradients += (until - first) * s->columns;
-        if (!status || nevh__work_failed(w))
-            return status;
-    }
-    s->lanes = s->columns;
-    return take_by_work(s, first, until);
+    size_t planned = state_of(w)->planned;
+    bool as_planned = nevh__work_as_planned(w, planned, s->columns);
+    s->lanes = as_planned ? planned : s->columns;
+    if (!as_planned)
+        return take_by_work(s, first, until);
+    int status = take_planned(s, first, until);
+    if (!status)
+        w->field->gradients += (until - first) * s->columns;
+    return status;
 }
 
 /* All columns take the same h. */

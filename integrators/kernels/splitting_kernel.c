@@ -121,7 +121,7 @@ static void plan_gradients(splitting_plan *o, const nevh_work *w) {
     o->drift = nevh__work_plan(w, stride, r.time, q, p, NULL, r.slope);
 }
 
-static bool find_way(splitting_plan *o, const nevh_work *w) {
+static bool find_way(splitting_plan *o, nevh_work *w) {
     size_t lanes = nevh__work_lanes(w, false, true);
     o->stride = lanes ? lanes : w->width;
     if (!plan_rows(o, w))
@@ -349,28 +349,14 @@ NEVH_SIMD static int step_by_work(nevh_work *w, double t, double h, double q[],
     return step_along(w, BY_WORK, w->n, w->width, w->width, 1, t, h, q, p);
 }
 
-/* A step with planned gradients; NEVH_ESTALE: it may not be taken. */
-static int step_planned(nevh_work *w, double t, double h, double q[],
-                        double p[]) {
+static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     const splitting_plan *o = w->plan;
-    if (!nevh__evaluation_ready(&o->kick) || !nevh__evaluation_ready(&o->drift))
-        return NEVH_ESTALE;
-    return (o->way == BY_VECTOR   ? step_vectors
+    return (!w->planned           ? step_by_work
+            : o->way == BY_VECTOR ? step_vectors
             : o->way == BY_NUMBER ? step_number
             : w->n == 1           ? step_point
             : w->n == 2           ? step_points_of_two
                                   : step_points)(w, t, h, q, p);
-}
-
-/* Where such a step fails without a reason, the other way tells it. */
-static int step(nevh_work *w, double t, double h, double q[], double p[]) {
-    const splitting_plan *o = w->plan;
-    if (o->way != BY_WORK && !w->accounts) {
-        int status = step_planned(w, t, h, q, p);
-        if (!status || (status != NEVH_ESTALE && nevh__work_failed(w)))
-            return status;
-    }
-    return step_by_work(w, t, h, q, p);
 }
 
 /* What is kept is a dH/dp, or a dH/dq that may read p, unless declarations say

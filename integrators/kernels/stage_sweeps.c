@@ -120,12 +120,10 @@ static void plan_gradients(nevh__sweeps *s) {
         s->kick = nevh__work_plan(s->work, width, t, q, p, dh_dq, NULL);
     } else
         s->whole = nevh__work_plan(s->work, width, t, q, p, dh_dq, dh_dp);
-}
-
-static bool ready(const nevh__sweeps *s) {
-    return s->x.partitioned ? nevh__evaluation_ready(&s->drift) &&
-                                  nevh__evaluation_ready(&s->kick)
-                            : nevh__evaluation_ready(&s->whole);
+    bool planned = s->x.partitioned ? s->drift.count && s->kick.count
+                                    : s->whole.count > 0;
+    s->x.unchecked = planned && s->kind != NEVH__ORBITS;
+    s->from_values = planned && !s->whole.exact && !s->kick.exact;
 }
 
 static size_t lanes_of(const nevh_work *w, nevh__swept kind) {
@@ -276,7 +274,6 @@ static const double *load_last(const nevh__sweeps *s,
 }
 
 bool nevh__sweeps_begin(nevh__sweeps *s, const nevh__sweep_start *x) {
-    s->x.unchecked = ready(s);
     if (s->lanes > 1 && !s->x.unchecked)
         return false;
     for (size_t i = 0; i < s->lanes; i++)
@@ -297,7 +294,6 @@ static void pick(const nevh__sweeps *s, size_t rows, const double from[],
 
 void nevh__sweeps_take_over(nevh__sweeps *s, const nevh__sweep_start *x,
                             const nevh__sweeps *o, size_t lane) {
-    s->x.unchecked = ready(s);
     load_state(s, x, 1);
     for (size_t i = 0; i < s->x.stride; i++)
         s->times[i] = x->t + s->weights->c[i] * x->h;
@@ -400,7 +396,6 @@ static void load_slopes(nevh__sweeps *s, const nevh__sweep_start *x,
 
 static void set_columns(nevh__sweeps *s, const nevh__sweep_start *x) {
     s->used = s->x.stride = s->x.stages * x->count;
-    s->from_values = ready(s) && !s->whole.exact && !s->kick.exact;
     load_state(s, x, x->count);
     for (size_t i = 0; i < s->x.stride; i++)
         s->times[i] = x->t + s->weights->c[i / x->count] * x->h;

@@ -93,11 +93,6 @@ NEVH__INLINE void nevh__evaluation_run(const nevh__evaluation *c) {
             nevh__evaluation_add(x);
     }
 }
-/* Whether there is such an evaluation, and it may be run. */
-static inline bool nevh__evaluation_ready(const nevh__evaluation *c) {
-    return c->count && nevh__field_at_hand(c->field);
-}
-
 /* A term's constants as blocks of all instances, or the points of a stencil,
    and `width` states have them.  NULL: there are none, or memory is out. */
 const double *nevh__constants_plan(nevh__planned *, const nevh__stencil *,

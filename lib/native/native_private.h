@@ -9,6 +9,7 @@
 #define NEVH_NATIVE_PRIVATE_H
 
 #include "native/writer_private.h"
+#include "work/work_private.h"
 #include <nevh/extend.h>
 #include <nevh/run.h>
 
@@ -65,7 +66,7 @@ static inline int nevh__native_step(nevh_work *w, double t, double h,
                                     double q[], double p[]) {
     if (w->native && nevh__native_run(w, t, h, 0, 1, q, p))
         return NEVH_OK;
-    return w->integrator->kernel->step(w, t, h, q, p);
+    return nevh__work_step(w, t, h, q, p);
 }
 
 /* A compiled text, from the cache or made.

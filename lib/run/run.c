@@ -60,7 +60,7 @@ static int run_unseen(nevh_stepper *s, double t0, double h, size_t until,
         *t = s->last_t = nevh__next_time(s, t0, h);
         if (s->taken + 1 == until)
             break;
-        status = w->integrator->kernel->step(w, *t, h, q, p);
+        status = nevh__work_step(w, *t, h, q, p);
         if (status)
             break;
         s->taken++;

@@ -80,14 +80,14 @@ static int plan_parts(nevh_stepper *s) {
     if (!status)
         status = nevh__plan_friction(s);
     if (!status)
+        status = nevh__ledger_plan(w, s->rates);
+    w->accounts = w->transform || w->ledger;
+    if (!status)
         status = integrator->kernel->plan(w);
     if (!status && w->field->starved)
         status = nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     if (!status)
         status = nevh__friction_step_plan(s);
-    if (!status)
-        status = nevh__ledger_plan(w, s->rates);
-    w->accounts = w->transform || w->ledger;
     return status;
 }
 

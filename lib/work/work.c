@@ -43,14 +43,36 @@ static bool has_plan(const nevh_work *w, size_t lanes, bool whole) {
     return whole ? both.count : q.count && p.count;
 }
 
-size_t nevh__work_lanes(const nevh_work *w, bool whole, bool numbers) {
+static size_t find_lanes(const nevh_work *w, bool whole, bool numbers) {
     size_t row = nevh__work_row(w, w->width);
+    if (w->accounts)
+        return 0; /* each gradient is accounted for in rows of the width */
     if (w->width > 1)
         return row && has_plan(w, row, whole) ? row : 0;
     if (numbers && has_plan(w, 1, whole))
         return 1;
     return w->field->broadcasts && has_plan(w, NEVH__LANES, whole) ? NEVH__LANES
                                                                    : 0;
+}
+
+size_t nevh__work_lanes(nevh_work *w, bool whole, bool numbers) {
+    size_t lanes = find_lanes(w, whole, numbers);
+    w->planned = lanes > 0;
+    return lanes;
+}
+
+int nevh__work_step(nevh_work *w, double t, double h, double q[], double p[]) {
+    const nevh_kernel *kernel = w->integrator->kernel;
+    if (!nevh__field_at_hand(w->field) && nevh__field_ready(w->field))
+        return fail_field(w, w->field->report.status);
+    w->report->status = NEVH_OK;
+    int status = kernel->step(w, t, h, q, p);
+    if (!status || w->report->status || !w->planned)
+        return status;
+    w->planned = false;
+    status = kernel->step(w, t, h, q, p);
+    w->planned = true;
+    return status;
 }
 
 nevh__evaluation nevh__work_plan(const nevh_work *w, size_t lanes,

@@ -52,8 +52,19 @@ size_t nevh__work_row(const nevh_work *, size_t points);
 /* The lanes of rows of the work's orbits: 1, of one orbit alone, where `numbers`
    will do; whole vectors, over which one orbit is broadcast, or in which others
    repeat the first; 0: nothing can be planned, and nevh_work_gradient takes any
-   width.  whole: dH/dq and dH/dp are taken together, else apart. */
-size_t nevh__work_lanes(const nevh_work *, bool whole, bool numbers);
+   width.  whole: dH/dq and dH/dp are taken together, else apart.  Says so in
+   w->planned. */
+size_t nevh__work_lanes(nevh_work *, bool whole, bool numbers);
+/* Whether those of so many orbits are now taken as planned: nevh__work_lanes of
+   all orbits was `lanes`. */
+static inline bool nevh__work_as_planned(const nevh_work *w, size_t lanes,
+                                         size_t orbits) {
+    return w->planned && lanes && orbits == w->width;
+}
+/* The kernel's step.  One with planned gradients, at which nothing looks, may
+   fail without a message: it is taken again with nevh_work_gradient, which
+   gives one. */
+int nevh__work_step(nevh_work *, double t, double h, double q[], double p[]);
 /* A gradient at states that stay where they are: nevh__evaluation_plan, or none
    where time is transformed. */
 nevh__evaluation nevh__work_plan(const nevh_work *, size_t lanes,
@@ -76,10 +87,6 @@ NEVH__INLINE int nevh__work_run_points(nevh_work *w,
         return nevh__work_run_values(w, c);
     nevh__evaluation_run_points(c);
     return NEVH_OK;
-}
-/* Whether such a call has failed, and told why. */
-static inline bool nevh__work_failed(const nevh_work *w) {
-    return w->field->gradient != nevh_exact && w->field->report.status;
 }
 
 #endif
