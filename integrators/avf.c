@@ -21,8 +21,8 @@ void nevh__find_nodes(const nevh__gradient_step *s, size_t first, size_t nodes,
             for (size_t a = 0; a < active; a++) {
                 size_t i = k * w->width + lanes[a];
                 double way = s->h * x[i];
-                *point++ =
-                    s->z[i] + ((way / 2 + from_middle * way) + s->carry[i]);
+                *point++ = s->z[i] +
+                           ((way / 2 + from_middle * way) + s->compensation[i]);
             }
         }
     for (size_t j = first; j < first + nodes; j++)

@@ -116,12 +116,13 @@ typedef enum { NEVH_OF_Q = 1, NEVH_OF_P = 2 } nevh_part;
 NEVH_API int nevh_work_account(nevh_work *, unsigned parts, double weight,
                                const double t[], const double q[],
                                const double p[]);
-/* Adds increments to a state with compensation: y + d + carry, of which the
-   rounded sum goes to y and the rest to carry; count elements each.  Nothing
+/* Adds increments to a state with compensation: y + d + compensation, of which the
+   rounded sum goes to y and the rest to compensation; count elements each.  Nothing
    is written when a sum is not finite.  Returns NEVH_OK or NEVH_EDOM. */
 NEVH_API int nevh_work_commit(nevh_work *, size_t count, double q[],
-                              const double dq[], double carry_q[], double p[],
-                              const double dp[], double carry_p[]);
+                              const double dq[], double compensation_q[],
+                              double p[], const double dp[],
+                              double compensation_p[]);
 
 /* The kernels that come with nevh, and their tables. */
 

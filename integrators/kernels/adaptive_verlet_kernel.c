@@ -42,7 +42,7 @@ typedef struct {
     double unit_q, unit_p; /* of coordinates and of momenta, for |f| */
 } plan_data;
 
-/* What a step tells the next one, after the carries and dV/dq. */
+/* What a step tells the next one, after the compensations and dV/dq. */
 typedef struct {
     double begun;
     double unit;    /* s at the start of the orbit, or |f| */
@@ -246,12 +246,12 @@ static int account(nevh_work *w, unsigned part, double t, double length) {
                        : NEVH_OK;
 }
 
-static void move(size_t n, const double start[], const double carry[],
+static void move(size_t n, const double start[], const double compensation[],
                  double step, const double slope[], double change[],
                  double point[]) {
     for (size_t k = 0; k < n; k++) {
         change[k] += step * slope[k];
-        point[k] = start[k] + (change[k] + carry[k]);
+        point[k] = start[k] + (change[k] + compensation[k]);
     }
 }
 
@@ -260,24 +260,24 @@ static int leap(nevh_work *w, double t, double step, const double q[],
                 const double p[]) {
     plan_data *d = w->plan;
     size_t n = w->n;
-    const double *carry = w->memory;
+    const double *compensation = w->memory;
     memset(d->dq, 0, n * sizeof *d->dq);
     memset(d->dp, 0, n * sizeof *d->dp);
     int status = account(w, NEVH_OF_Q, t, step / 2);
-    move(n, p, carry + n, -step / 2, d->force, d->dp, d->p);
+    move(n, p, compensation + n, -step / 2, d->force, d->dp, d->p);
     if (!status)
         status = take(w, t + step / 2, NULL, d->speed);
     if (!status)
         status = account(w, NEVH_OF_P, t + step / 2, step);
     if (status)
         return status;
-    move(n, q, carry, step, d->speed, d->dq, d->q);
+    move(n, q, compensation, step, d->speed, d->dq, d->q);
     status = take(w, t + step, d->force, NULL);
     if (!status)
         status = account(w, NEVH_OF_Q, t + step, step / 2);
     if (status)
         return status;
-    move(n, p, carry + n, -step / 2, d->force, d->dp, d->p);
+    move(n, p, compensation + n, -step / 2, d->force, d->dp, d->p);
     return take(w, t + step, NULL, d->speed);
 }
 

@@ -40,7 +40,7 @@ typedef struct {
    the time it was taken at. */
 enum { STEPS = 3 };
 typedef struct {
-    double *carry;         /* 2n x width */
+    double *compensation;  /* 2n x width */
     double *slopes[STEPS]; /* parts x 2n x width each, the last step first */
     double *h[STEPS];      /* width */
     double *known, *energy, *roundoff, *t; /* width */
@@ -150,7 +150,7 @@ static double *take(double **from, size_t count) {
 
 static remembered find_memory(const nevh_work *w, double *from) {
     size_t width = w->width, slopes = 2 * w->size * table_of(w)->parts;
-    remembered m = {.carry = take(&from, 2 * w->size)};
+    remembered m = {.compensation = take(&from, 2 * w->size)};
     for (int i = 0; i < STEPS; i++)
         m.slopes[i] = take(&from, slopes);
     for (int i = 0; i < STEPS; i++)
@@ -177,7 +177,7 @@ static nevh__gradient_step lay_out(nevh_work *w, double h) {
     nevh__gradient_step s = {
         .work = w, .nodes = g->nodes, .length = g->length, .metric = g->metric};
     s.h = h / (double)table_of(w)->parts;
-    s.carry = w->scratch;
+    s.compensation = w->scratch;
     s.z = take(&at, all);
     s.x = take(&at, all);
     s.ends = take(&at, all);
@@ -254,7 +254,8 @@ static void find_ends(const nevh__gradient_step *s, size_t active,
     for (size_t k = 0; k < 2 * s->work->n; k++)
         for (size_t a = 0; a < active; a++) {
             size_t i = k * width + lanes[a];
-            s->ends[k * active + a] = s->z[i] + (s->h * x[i] + s->carry[i]);
+            s->ends[k * active + a] =
+                s->z[i] + (s->h * x[i] + s->compensation[i]);
         }
 }
 
@@ -310,13 +311,14 @@ static int map(void *data, size_t active, const size_t lanes[],
     return status;
 }
 
-/* z + carry += h x, the product's rounding included. */
-static void advance(const nevh__gradient_step *s, double *z, double *carry) {
+/* z + compensation += h x, the product's rounding included. */
+static void advance(const nevh__gradient_step *s, double *z,
+                    double *compensation) {
     for (size_t i = 0; i < 2 * s->work->size; i++) {
-        double way = s->h * s->x[i], d = way + carry[i], next = z[i] + d;
-        double lost =
-            fma(s->h, s->x[i], -way) + nevh__roundoff(d, way, carry[i]);
-        carry[i] = nevh__roundoff(next, z[i], d) + lost;
+        double way = s->h * s->x[i], d = way + compensation[i], next = z[i] + d;
+        double roundoff =
+            fma(s->h, s->x[i], -way) + nevh__roundoff(d, way, compensation[i]);
+        compensation[i] = nevh__roundoff(next, z[i], d) + roundoff;
         z[i] = next;
     }
 }
@@ -359,7 +361,7 @@ static int take_part(nevh__gradient_step *s, const remembered *m, double h) {
     for (int i = STEPS - 1; i > 0; i--)
         memcpy(m->slopes[i] + at, m->slopes[i - 1] + at, size);
     memcpy(m->slopes[0] + at, s->x, size);
-    advance(s, s->z, m->carry);
+    advance(s, s->z, m->compensation);
     return NEVH_OK;
 }
 
@@ -403,7 +405,7 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
 static void apply_friction(nevh_work *w, const double factor[]) {
     remembered m = find_memory(w, w->memory);
     for (size_t i = 0; i < w->size; i++)
-        m.carry[w->size + i] *= factor[i / w->width];
+        m.compensation[w->size + i] *= factor[i / w->width];
     for (size_t lane = 0; lane < w->width; lane++)
         m.known[lane] = 0;
 }

@@ -18,14 +18,14 @@ typedef struct {
    coordinates first; `active` lanes stand side by side. */
 typedef struct {
     nevh_work *work;
-    double t, h;          /* the middle of the part, and its length */
-    size_t part;          /* which one it is */
-    double *z;            /* 2n x width: where it starts */
-    const double *carry;  /* 2n x width: what earlier sums lost */
-    double *x;            /* 2n x width: mean slopes, the unknowns */
-    double *ends;         /* 2n x active: where these lead */
-    double *times;        /* width: all are t */
-    nevh__values start;   /* width: H(t, z) */
+    double t, h;                /* the middle of the part, and its length */
+    size_t part;                /* which one it is */
+    double *z;                  /* 2n x width: where it starts */
+    const double *compensation; /* 2n x width: what earlier sums lost */
+    double *x;                  /* 2n x width: mean slopes, the unknowns */
+    double *ends;               /* 2n x active: where these lead */
+    double *times;              /* width: all are t */
+    nevh__values start;         /* width: H(t, z) */
     double *deficit;      /* width: what H(t, z) lacks of the orbit's energy */
     nevh__values end;     /* active: H(t, ends) */
     const double *length; /* 2n: over which H varies */

@@ -44,21 +44,21 @@ typedef struct {
     nevh_work *work;
     double t, h;
     const double *q, *p;
-    double *slopes;      /* 2n x stages x width */
-    double *unknown;     /* the part of the slopes that is solved for */
-    double *sum;         /* 2n x width: the new state */
-    double *lost;        /* 2n x width: what that lost */
-    double *state;       /* 2n x width: that of a stage */
-    double *hold;        /* width; see nevh__stage_problem */
-    const double *unit;  /* 2n x width: |h| over scale */
-    nevh__sweeps *group; /* under way, from this lane on */
+    double *slopes;       /* 2n x stages x width */
+    double *unknown;      /* the part of the slopes that is solved for */
+    double *sum;          /* 2n x width: the new state */
+    double *compensation; /* 2n x width: what rounding it lost */
+    double *state;        /* 2n x width: that of a stage */
+    double *hold;         /* width; see nevh__stage_problem */
+    const double *unit;   /* 2n x width: |h| over scale */
+    nevh__sweeps *group;  /* under way, from this lane on */
     size_t first, first_of_eight;
 } family_step;
 
-/* Memory: carry, slopes of the last step that were solved for, their h (0:
+/* Memory: compensation, slopes of the last step that were solved for, their h (0:
    there are none), and how long Newton's iteration goes first. */
 typedef struct {
-    double *carry, *slopes, *h, *hold;
+    double *compensation, *slopes, *h, *hold;
 } family_memory;
 
 static family_memory recall(const nevh_work *w) {
@@ -91,8 +91,8 @@ static family_step lay_out(nevh_work *w, double t, double h, const double q[],
     family_step s = {w, t, h, q, p, .slopes = w->scratch};
     s.unknown = s.slopes + slopes - g->unknown * w->width;
     s.sum = s.slopes + slopes;
-    s.lost = s.sum + 2 * w->size;
-    s.state = s.lost + 2 * w->size;
+    s.compensation = s.sum + 2 * w->size;
+    s.state = s.compensation + 2 * w->size;
     s.hold = s.state + 2 * w->size;
     return s;
 }
@@ -107,7 +107,7 @@ static nevh__sweep_start start_of(const family_step *s, size_t count,
                                .h = s->h,
                                .q = s->q,
                                .p = s->p,
-                               .carry = recall(s->work).carry};
+                               .compensation = recall(s->work).compensation};
 }
 
 static int map(void *data, size_t active, const size_t lanes[],
@@ -283,9 +283,9 @@ static int commit(const family_step *s, const family_plan *g, double q[],
     double check = 0;
     memcpy(s->sum, q, n * sizeof *q);
     memcpy(s->sum + n, p, n * sizeof *p);
-    memcpy(s->lost, w->memory, 2 * n * sizeof *s->lost);
+    memcpy(s->compensation, w->memory, 2 * n * sizeof *s->compensation);
     nevh__stages_advance(g->tableau, g->weights->hb, 2 * w->n, w->width,
-                         s->slopes, s->sum, s->lost);
+                         s->slopes, s->sum, s->compensation);
     for (size_t i = 0; i < 2 * n; i++)
         check += s->sum[i] - s->sum[i];
     if (check != 0)
@@ -296,7 +296,7 @@ static int commit(const family_step *s, const family_plan *g, double q[],
     family_memory m = recall(w);
     memcpy(q, s->sum, n * sizeof *q);
     memcpy(p, s->sum + n, n * sizeof *p);
-    memcpy(m.carry, s->lost, 2 * n * sizeof *m.carry);
+    memcpy(m.compensation, s->compensation, 2 * n * sizeof *m.compensation);
     memcpy(m.slopes, s->unknown, g->unknown * w->width * sizeof *m.slopes);
     memcpy(m.hold, s->hold, w->width * sizeof *m.hold);
     for (size_t lane = 0; lane < w->width; lane++)
@@ -324,9 +324,9 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
 
 /* What sums of momenta lost belongs to momenta; slopes are only a guess. */
 static void apply_friction(nevh_work *w, const double factor[]) {
-    double *carry = recall(w).carry + w->size;
+    double *compensation = recall(w).compensation + w->size;
     for (size_t i = 0; i < w->size; i++)
-        carry[i] *= factor[i / w->width];
+        compensation[i] *= factor[i / w->width];
 }
 
 const nevh_kernel nevh_gauss_kernel = {.plan = plan_gauss,

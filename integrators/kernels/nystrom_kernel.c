@@ -75,7 +75,7 @@ static void lay_out(nevh__arena *a, void *state) {
     size_t lists = (stages + ENDS) * stages;
     y->x.q = nevh__arena_take(a, half, each);
     y->x.p = nevh__arena_take(a, half, each);
-    y->x.carry = nevh__arena_take(a, 2 * half, each);
+    y->x.compensation = nevh__arena_take(a, 2 * half, each);
     y->x.h = nevh__arena_take(a, half, each);
     y->x.way = nevh__arena_take(a, half, each);
     y->x.gain = nevh__arena_take(a, half, each);
@@ -235,7 +235,8 @@ static void prepare_columns(nevh__nystrom_state *y, const nevh__stages *s) {
     y->known_h = NAN;
     memcpy(y->x.q, s->q, size * sizeof *y->x.q);
     memcpy(y->x.p, s->p, size * sizeof *y->x.p);
-    memcpy(y->x.carry, s->carry, 2 * size * sizeof *y->x.carry);
+    memcpy(y->x.compensation, s->compensation,
+           2 * size * sizeof *y->x.compensation);
     for (size_t i = 0; i < size; i++) {
         y->x.h[i] = s->h[i % s->columns];
         y->x.at_rest[i] = y->rest[i / s->columns];
@@ -252,7 +253,7 @@ NEVH_SIMD static void prepare_lanes(nevh__nystrom_state *y,
     y->x.size = n * y->x.lanes;
     nevh__broadcast(n, s->q, y->x.q);
     nevh__broadcast(n, s->p, y->x.p);
-    nevh__broadcast(2 * n, s->carry, y->x.carry);
+    nevh__broadcast(2 * n, s->compensation, y->x.compensation);
     if (y->known_h == *s->h)
         return;
     nevh__broadcast(n, y->rest, y->x.at_rest);
@@ -439,9 +440,9 @@ static void clear(nevh_work *w) {
 }
 
 static void apply_friction(nevh_work *w, const double factor[]) {
-    double *carry = w->memory + w->size;
+    double *compensation = w->memory + w->size;
     for (size_t i = 0; i < w->size; i++)
-        carry[i] *= factor[i / w->width];
+        compensation[i] *= factor[i / w->width];
 }
 
 const nevh_kernel nevh_nystrom_kernel = {.plan = plan,

@@ -12,22 +12,22 @@
 #include <stdbool.h>
 
 typedef struct {
-    const double *c;       /* of the stages */
-    const nevh__sum *sums; /* sum_j a_ij D_j of each stage */
-    size_t lanes, size;    /* orbits of a row; n x lanes */
-    size_t equal;          /* as many orbits side by side are the same */
-    size_t stride;         /* from the slopes of a stage to the next */
-    bool diagonal;         /* T_p(p) - T_p(0) is W p */
-    bool moves;            /* T_p(0) is not 0 */
-    double *q, *p, *carry; /* the start; carry: 2n rows */
-    double *h;             /* n rows, of equal ones */
-    double *way;           /* h T_p(p), n rows; with a diagonal W */
-    double *gain;          /* h^2 W, n rows */
-    double *at_rest;       /* T_p(0), n rows */
-    double *momenta;       /* n rows: at which T_p is asked for */
-    double *velocities;    /* n rows: what it is */
-    double *points;        /* n rows: q_i */
-    double *slopes;        /* D_i: n rows a stage */
+    const double *c;              /* of the stages */
+    const nevh__sum *sums;        /* sum_j a_ij D_j of each stage */
+    size_t lanes, size;           /* orbits of a row; n x lanes */
+    size_t equal;                 /* as many orbits side by side are the same */
+    size_t stride;                /* from the slopes of a stage to the next */
+    bool diagonal;                /* T_p(p) - T_p(0) is W p */
+    bool moves;                   /* T_p(0) is not 0 */
+    double *q, *p, *compensation; /* the start; compensation: 2n rows */
+    double *h;                    /* n rows, of equal ones */
+    double *way;                  /* h T_p(p), n rows; with a diagonal W */
+    double *gain;                 /* h^2 W, n rows */
+    double *at_rest;              /* T_p(0), n rows */
+    double *momenta;              /* n rows: at which T_p is asked for */
+    double *velocities;           /* n rows: what it is */
+    double *points;               /* n rows: q_i */
+    double *slopes;               /* D_i: n rows a stage */
     const struct nevh__nystrom_owner *owner; /* the includer's */
 } nevh__nystrom_step;
 
@@ -47,19 +47,20 @@ NEVH__INLINE void nevh__nystrom_time(const nevh__nystrom_step *x, int way,
 /* Of T_p: c p - h sum. */
 NEVH__INLINE void nevh__nystrom_place_momenta(const nevh__nystrom_step *x,
                                               const nevh__sum *sum, double c) {
-    const double *carry = x->carry + x->size;
+    const double *compensation = x->compensation + x->size;
     size_t i = 0;
     for (; i + NEVH__IN_VECTOR <= x->size; i += NEVH__IN_VECTOR) {
         nevh__vector total;
         nevh__add_up(sum, 1, x->slopes + i, &total);
         NEVH__VECTOR_AT(x->momenta + i) =
-            c * NEVH__VECTOR_AT(x->p + i) + (c * NEVH__VECTOR_AT(carry + i) -
-                                             NEVH__VECTOR_AT(x->h + i) * total);
+            c * NEVH__VECTOR_AT(x->p + i) +
+            (c * NEVH__VECTOR_AT(compensation + i) -
+             NEVH__VECTOR_AT(x->h + i) * total);
     }
     for (; i < x->size; i++)
         x->momenta[i] =
-            c * x->p[i] +
-            (c * carry[i] - x->h[i] * nevh__add_up_one(sum, x->slopes + i));
+            c * x->p[i] + (c * compensation[i] -
+                           x->h[i] * nevh__add_up_one(sum, x->slopes + i));
 }
 
 /* What q moves by: h (T_p + (c - 1) T_p(0)). */
@@ -78,10 +79,10 @@ NEVH__INLINE void nevh__nystrom_place_points(const nevh__nystrom_step *x,
         NEVH__VECTOR_AT(x->points + i) =
             NEVH__VECTOR_AT(x->q + i) +
             (NEVH__NYSTROM_WAY(nevh__vector, x, i, c) +
-             NEVH__VECTOR_AT(x->carry + i));
+             NEVH__VECTOR_AT(x->compensation + i));
     for (; i < x->size; i++)
         x->points[i] =
-            x->q[i] + (NEVH__NYSTROM_WAY(double, x, i, c) + x->carry[i]);
+            x->q[i] + (NEVH__NYSTROM_WAY(double, x, i, c) + x->compensation[i]);
 }
 
 /* The same by W: of `rows` vectors. */
@@ -95,14 +96,16 @@ NEVH__INLINE void nevh__nystrom_place_vectors(const nevh__nystrom_step *x,
         size_t i = from + k * NEVH__IN_VECTOR;
         NEVH__VECTOR_AT(x->points + i) =
             NEVH__VECTOR_AT(x->q + i) +
-            ((c * NEVH__VECTOR_AT(x->way + i) + NEVH__VECTOR_AT(x->carry + i)) -
+            ((c * NEVH__VECTOR_AT(x->way + i) +
+              NEVH__VECTOR_AT(x->compensation + i)) -
              NEVH__VECTOR_AT(x->gain + i) * sums[k]);
     }
 }
 
 NEVH__INLINE void nevh__nystrom_place_number(const nevh__nystrom_step *x,
                                              double c, size_t i, double sum) {
-    x->points[i] = x->q[i] + ((c * x->way[i] + x->carry[i]) - x->gain[i] * sum);
+    x->points[i] =
+        x->q[i] + ((c * x->way[i] + x->compensation[i]) - x->gain[i] * sum);
 }
 
 NEVH__INLINE void nevh__nystrom_place_diagonal(const nevh__nystrom_step *x,
@@ -126,7 +129,7 @@ NEVH__INLINE void nevh__nystrom_place_diagonal(const nevh__nystrom_step *x,
 /* The state of the first stage. */
 NEVH__INLINE void nevh__nystrom_place_start(const nevh__nystrom_step *x) {
     for (size_t i = 0; i < x->size; i++)
-        x->points[i] = x->q[i] + x->carry[i];
+        x->points[i] = x->q[i] + x->compensation[i];
 }
 
 /* The state of a stage, to points, and its time. */
@@ -151,10 +154,10 @@ NEVH__INLINE int nevh__nystrom_place(const nevh__nystrom_step *x, int way,
 /* T_p(p), to velocities, unless these are known, and by how far it moves q. */
 NEVH__INLINE int nevh__nystrom_find_way(const nevh__nystrom_step *x, int way,
                                         bool known) {
-    const double *carry = x->carry + x->size;
+    const double *compensation = x->compensation + x->size;
     int status = 0;
     for (size_t i = 0; i < x->size; i++)
-        x->momenta[i] = x->p[i] + carry[i];
+        x->momenta[i] = x->p[i] + compensation[i];
     if (!known)
         status = nevh__nystrom_drift(x, way);
     for (size_t i = 0; i < x->size; i++)

@@ -53,11 +53,12 @@ typedef struct {
     const nevh__family *family;
     double t, h;
     lane_substeps *lanes;
-    double *y, *lost, *first; /* 2n rows: state, its carry, its slope */
-    nevh__stages trial;       /* of some lanes, their columns side by side */
-    double *begin, *each;     /* the trial's t and h */
-    double *old;              /* the trial's state, 2n x columns as all below */
-    double *carry, *next, *next_carry, *change, *error, *coarse;
+    double *y, *all_compensation,
+        *first;           /* 2n rows: state, its compensation, its slope */
+    nevh__stages trial;   /* of some lanes, their columns side by side */
+    double *begin, *each; /* the trial's t and h */
+    double *old;          /* the trial's state, 2n x columns as all below */
+    double *compensation, *next, *next_compensation, *change, *error, *coarse;
 } step_state;
 
 static const double least_error = 1e-4; /* that is remembered */
@@ -79,7 +80,7 @@ void nevh__adaptive_clear(nevh_work *w) {
     free(a);
 }
 
-/* Memory: carry, size, err and length of the last one, the excess; where the last stage is
+/* Memory: compensation, size, err and length of the last one, the excess; where the last stage is
    the next first one, also that slope and whether it is there. */
 int nevh__adaptive_plan(nevh_work *w) {
     nevh__stages_plan *plan = w->plan;
@@ -108,9 +109,17 @@ static step_state lay_out(nevh_work *w, double t, double h) {
                     .lanes = plan->adaptive->lanes};
     size_t each = 2 * w->size;
     double *at = w->scratch;
-    double **const rows[ROWS] = {&s.y,      &s.lost,   &s.first,      &s.old,
-                                 &s.carry,  &s.next,   &s.next_carry, &s.error,
-                                 &s.coarse, &s.change, &s.trial.slope};
+    double **const rows[ROWS] = {&s.y,
+                                 &s.all_compensation,
+                                 &s.first,
+                                 &s.old,
+                                 &s.compensation,
+                                 &s.next,
+                                 &s.next_compensation,
+                                 &s.error,
+                                 &s.coarse,
+                                 &s.change,
+                                 &s.trial.slope};
     for (int i = 0; i < ROWS; i++, at += each)
         *rows[i] = at;
     s.begin = at;
@@ -119,7 +128,7 @@ static step_state lay_out(nevh_work *w, double t, double h) {
     s.trial.t = s.begin;
     s.trial.h = s.each;
     s.trial.q = s.old;
-    s.trial.carry = s.carry;
+    s.trial.compensation = s.compensation;
     return s;
 }
 
@@ -132,7 +141,7 @@ static void load(step_state *s, const double q[], const double p[]) {
     bool keeps = s->family->last_is_first;
     memcpy(s->y, q, n * sizeof *q);
     memcpy(s->y + n, p, n * sizeof *p);
-    memcpy(s->lost, w->memory, 2 * n * sizeof *s->lost);
+    memcpy(s->all_compensation, w->memory, 2 * n * sizeof *s->all_compensation);
     if (keeps)
         memcpy(s->first, first, 2 * n * sizeof *first);
     for (size_t lane = 0; lane < width; lane++)
@@ -153,7 +162,7 @@ static void store(const step_state *s, double q[], double p[]) {
     bool keeps = s->family->last_is_first;
     memcpy(q, s->y, n * sizeof *q);
     memcpy(p, s->y + n, n * sizeof *p);
-    memcpy(w->memory, s->lost, 2 * n * sizeof *s->lost);
+    memcpy(w->memory, s->all_compensation, 2 * n * sizeof *s->all_compensation);
     if (keeps)
         memcpy(first, s->first, 2 * n * sizeof *first);
     for (size_t lane = 0; lane < width; lane++) {
@@ -188,7 +197,7 @@ static void gather_states(step_state *s, size_t count, const size_t lanes[]) {
     s->trial.columns = count;
     s->trial.p = s->old + s->work->n * count;
     gather(s, lanes, s->y, s->old);
-    gather(s, lanes, s->lost, s->carry);
+    gather(s, lanes, s->all_compensation, s->compensation);
     for (size_t c = 0; c < count; c++) {
         const lane_substeps *l = &s->lanes[lanes[c]];
         s->begin[c] = s->t + copysign(l->done, s->h);
@@ -300,7 +309,7 @@ static int accept(step_state *s, size_t column, size_t lane, double err) {
     l->held = false;
     l->has_first = s->family->last_is_first;
     scatter(s, column, lane, s->next, s->y);
-    scatter(s, column, lane, s->next_carry, s->lost);
+    scatter(s, column, lane, s->next_compensation, s->all_compensation);
     if (l->has_first)
         scatter(s, column, lane, s->trial.slope, s->first);
     return s->work->accounts ? s->family->account(&s->trial) : NEVH_OK;
@@ -319,9 +328,11 @@ static int take_trial(step_state *s, size_t count, const size_t lanes[]) {
     if (status)
         return status;
     memcpy(s->next, s->old, 2 * n * sizeof *s->next);
-    memcpy(s->next_carry, s->carry, 2 * n * sizeof *s->next_carry);
-    return nevh_work_commit(s->work, n, s->next, s->change, s->next_carry,
-                            s->next + n, s->change + n, s->next_carry + n);
+    memcpy(s->next_compensation, s->compensation,
+           2 * n * sizeof *s->next_compensation);
+    return nevh_work_commit(s->work, n, s->next, s->change,
+                            s->next_compensation, s->next + n, s->change + n,
+                            s->next_compensation + n);
 }
 
 /* One substep of each of the lanes, accepted or not.  Where together they
@@ -409,7 +420,7 @@ static int step_once(nevh_work *w, const nevh__family *family, double t,
                       .h = times + width,
                       .q = q,
                       .p = p,
-                      .carry = w->memory};
+                      .compensation = w->memory};
     for (size_t lane = 0; lane < width; lane++) {
         times[lane] = t;
         times[width + lane] = h;

@@ -22,9 +22,9 @@ struct nevh__runge_kutta_state {
     const nevh_butcher *table;
     void *memory; /* holds all that follow, rows of at most so many lanes */
     size_t lanes;
-    double *state, *carry, *step, *point; /* 2n rows */
-    double *slopes;                       /* 2n rows a stage */
-    double *time;                         /* a row */
+    double *state, *compensation, *step, *point; /* 2n rows */
+    double *slopes;                              /* 2n rows a stage */
+    double *time;                                /* a row */
     size_t stride;  /* from the slopes of a stage to the next */
     size_t planned; /* lanes of planned gradients; 0: there are none */
     double known_h; /* that lanes of `step` are for */
@@ -71,7 +71,7 @@ static void lay_out(nevh__arena *a, void *state) {
     size_t stages = y->table->stages, lists = (stages + ENDS) * stages;
     size_t each = sizeof(double), rows = y->stride;
     y->state = nevh__arena_take(a, rows, each);
-    y->carry = nevh__arena_take(a, rows, each);
+    y->compensation = nevh__arena_take(a, rows, each);
     y->step = nevh__arena_take(a, rows, each);
     y->point = nevh__arena_take(a, rows, each);
     y->slopes = nevh__arena_take(a, stages * rows, each);
@@ -126,7 +126,7 @@ NEVH__INLINE nevh__runge_kutta_step begin(const nevh__stages *s,
     size_t n = s->work->n, columns = s->columns, lanes = s->lanes;
     load(n, columns, lanes, s->q, y->state);
     load(n, columns, lanes, s->p, y->state + n * lanes);
-    load(2 * n, columns, lanes, s->carry, y->carry);
+    load(2 * n, columns, lanes, s->compensation, y->compensation);
     load_steps(s, y);
     if (has_first)
         load(2 * n, columns, lanes, s->slope, y->slopes);
@@ -134,7 +134,7 @@ NEVH__INLINE nevh__runge_kutta_step begin(const nevh__stages *s,
                                     .size = 2 * n * lanes,
                                     .stride = y->stride,
                                     .state = y->state,
-                                    .carry = y->carry,
+                                    .compensation = y->compensation,
                                     .step = y->step,
                                     .point = y->point,
                                     .slopes = y->slopes};
@@ -311,7 +311,7 @@ static int plan_state(nevh_work *w, nevh__runge_kutta_state **state) {
     return NEVH_OK;
 }
 
-/* Without a tolerance, memory is the carry alone, and a last stage that is the
+/* Without a tolerance, memory is the compensation alone, and a last stage that is the
    next step's first is left to that step. */
 static int plan(nevh_work *w) {
     const nevh_butcher *table = w->integrator->table;

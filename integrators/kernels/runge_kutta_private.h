@@ -11,9 +11,9 @@
 typedef struct {
     nevh_work *work;
     size_t columns;
-    const double *t, *h; /* columns each */
-    const double *q, *p; /* the state at t, n x columns each */
-    const double *carry; /* what its rounding lost, 2n x columns */
+    const double *t, *h;        /* columns each */
+    const double *q, *p;        /* the state at t, n x columns each */
+    const double *compensation; /* what its rounding lost, 2n x columns */
     double *
         slope; /* dH/dp and dH/dq at one stage, 2n x columns, or NULL: not wanted */
     size_t lanes; /* of the rows in which the stages were taken */

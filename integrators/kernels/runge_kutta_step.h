@@ -20,10 +20,10 @@ typedef struct {
     const nevh__sum *sums; /* sum_j a_ij k_j of each stage */
     size_t size;           /* numbers of a state: q, then p */
     size_t stride;         /* from the slopes of a stage to the next */
-    const nevh__number *state, *carry, *step;    /* y, e, s */
-    nevh__number *point;                         /* Y_i */
-    nevh__number *slopes;                        /* k_i of each stage */
-    const struct nevh__runge_kutta_owner *owner; /* the includer's */
+    const nevh__number *state, *compensation, *step; /* y, e, s */
+    nevh__number *point;                             /* Y_i */
+    nevh__number *slopes;                            /* k_i of each stage */
+    const struct nevh__runge_kutta_owner *owner;     /* the includer's */
 } nevh__runge_kutta_step;
 
 /* The includer's: takes the slopes of a stage at x->point.  Returns 0, or what
@@ -52,14 +52,14 @@ NEVH__INLINE void nevh__runge_kutta_place_rows(const nevh__runge_kutta_step *x,
         size_t i = from + k * NEVH__IN_VECTOR;
         NEVH__VECTOR_AT(x->point + i) =
             NEVH__VECTOR_AT(x->state + i) +
-            (change[k] + NEVH__VECTOR_AT(x->carry + i));
+            (change[k] + NEVH__VECTOR_AT(x->compensation + i));
     }
 }
 
 NEVH__INLINE void
 nevh__runge_kutta_place_number(const nevh__runge_kutta_step *x, size_t i,
                                nevh__number sum) {
-    x->point[i] = x->state[i] + (sum * x->step[i] + x->carry[i]);
+    x->point[i] = x->state[i] + (sum * x->step[i] + x->compensation[i]);
 }
 
 /* The stage's state.  Sums of several rows at once keep a processor busy. */

@@ -52,7 +52,7 @@ typedef struct {
 
 /* What is remembered of each half, and the last slope of a step. */
 typedef struct {
-    double *carry_q, *carry_p, *kept, *has_kept;
+    double *compensation_q, *compensation_p, *kept, *has_kept;
 } memory;
 
 /* size: of a half, n x width. */
@@ -93,8 +93,8 @@ NEVH__INLINE rows lay_out(size_t size, bool copied, double *from) {
     r.slope = nevh__take(&from, size);
     r.q.state = nevh__take(&from, copied ? size : 0);
     r.p.state = nevh__take(&from, copied ? size : 0);
-    r.q.carry = nevh__take(&from, copied ? size : 0);
-    r.p.carry = nevh__take(&from, copied ? size : 0);
+    r.q.compensation = nevh__take(&from, copied ? size : 0);
+    r.p.compensation = nevh__take(&from, copied ? size : 0);
     r.kept = nevh__take(&from, copied ? size : 0);
     r.time = from;
     return r;
@@ -241,8 +241,8 @@ NEVH__INLINE void load_all(const nevh_work *w, size_t stride, const rows *r,
                            bool has_kept) {
     load(w, stride, q, r->q.state);
     load(w, stride, p, r->p.state);
-    load(w, stride, m->carry_q, r->q.carry);
-    load(w, stride, m->carry_p, r->p.carry);
+    load(w, stride, m->compensation_q, r->q.compensation);
+    load(w, stride, m->compensation_p, r->p.compensation);
     if (has_kept)
         load(w, stride, m->kept, r->kept);
 }
@@ -252,8 +252,8 @@ NEVH__INLINE void store_all(const nevh_work *w, size_t stride, const rows *r,
                             bool keeps) {
     store(w, stride, r->q.state, q);
     store(w, stride, r->p.state, p);
-    store(w, stride, r->q.carry, m->carry_q);
-    store(w, stride, r->p.carry, m->carry_p);
+    store(w, stride, r->q.compensation, m->compensation_q);
+    store(w, stride, r->p.compensation, m->compensation_p);
     if (keeps)
         store(w, stride, r->kept, m->kept);
 }
@@ -264,8 +264,8 @@ NEVH__INLINE rows bind(size_t size, double *from, const memory *m, double q[],
     rows r = lay_out(size, false, from);
     r.q.state = q;
     r.p.state = p;
-    r.q.carry = m->carry_q;
-    r.p.carry = m->carry_p;
+    r.q.compensation = m->compensation_q;
+    r.p.compensation = m->compensation_p;
     r.kept = m->kept;
     return r;
 }
@@ -365,7 +365,7 @@ static void apply_friction(nevh_work *w, const double factor[]) {
     const splitting_plan *o = w->plan;
     memory m = recall(w, w->size);
     for (size_t i = 0; i < w->size; i++)
-        m.carry_p[i] *= factor[i / w->width];
+        m.compensation_p[i] *= factor[i / w->width];
     if (o->first == NEVH_KICK && nevh_system_traits(w->system) & NEVH_SEPARABLE)
         return;
     for (size_t lane = 0; lane < w->width; lane++)

@@ -22,10 +22,10 @@
 
 /* One half of the state: q under drifts, p under kicks.  Rows of lanes. */
 typedef struct {
-    nevh__number *state;  /* at the start of the step */
-    nevh__number *carry;  /* e: digits that earlier steps lost */
-    nevh__number *change; /* the increment so far */
-    nevh__number *point;  /* state + (change + carry) */
+    nevh__number *state;        /* at the start of the step */
+    nevh__number *compensation; /* e: digits that earlier steps lost */
+    nevh__number *change;       /* the increment so far */
+    nevh__number *point;        /* state + (change + compensation) */
 } nevh__half;
 
 typedef struct {
@@ -63,11 +63,12 @@ NEVH__INLINE void nevh__splitting_advance(size_t lanes, size_t size,
                                           const nevh__half *x, double step,
                                           const nevh__number *restrict slope) {
     nevh__number *restrict change = x->change, *restrict point = x->point;
-    const nevh__number *restrict state = x->state, *restrict carry = x->carry;
+    const nevh__number *restrict state = x->state, *restrict compensation =
+                                                       x->compensation;
     NEVH__EACH(i, lanes, size) {
         nevh__number sum = change[i] + step * slope[i];
         change[i] = sum;
-        point[i] = state[i] + (sum + carry[i]);
+        point[i] = state[i] + (sum + compensation[i]);
     }
 }
 
@@ -99,14 +100,14 @@ NEVH__INLINE int nevh__splitting_operate_both(const nevh__splitting_step *x,
         return status;
     NEVH__EACH(k, lanes, size) {
         nevh__number sum = p->change[k] + kick * slope[k];
-        nevh__number momentum = p->state[k] + (sum + p->carry[k]);
+        nevh__number momentum = p->state[k] + (sum + p->compensation[k]);
         nevh__number velocity = inverse[k] * momentum;
         nevh__number moved = q->change[k] + drift * velocity;
         slope[k] = velocity;
         p->change[k] = sum;
         p->point[k] = momentum;
         q->change[k] = moved;
-        q->point[k] = q->state[k] + (moved + q->carry[k]);
+        q->point[k] = q->state[k] + (moved + q->compensation[k]);
     }
     return 0;
 }
@@ -144,8 +145,8 @@ NEVH__INLINE int nevh__splitting_operate_all(const nevh__splitting_step *x,
 }
 
 NEVH__INLINE void nevh__splitting_commit(const nevh__half *x, size_t i) {
-    nevh__number start = x->state[i], d = x->change[i] + x->carry[i];
-    x->carry[i] = nevh__roundoff(x->point[i], start, d);
+    nevh__number start = x->state[i], d = x->change[i] + x->compensation[i];
+    x->compensation[i] = nevh__roundoff(x->point[i], start, d);
     x->state[i] = x->point[i];
 }
 
@@ -168,8 +169,8 @@ NEVH__INLINE int nevh__splitting_take(const nevh__splitting_step *x, int way,
     NEVH__EACH(i, lanes, size) {
         x->q.change[i] = (nevh__number){0};
         x->p.change[i] = (nevh__number){0};
-        x->q.point[i] = x->q.state[i] + x->q.carry[i];
-        x->p.point[i] = x->p.state[i] + x->p.carry[i];
+        x->q.point[i] = x->q.state[i] + x->q.compensation[i];
+        x->p.point[i] = x->p.state[i] + x->p.compensation[i];
     }
     int status = nevh__splitting_operate_all(x, way, lanes, size);
     if (status)

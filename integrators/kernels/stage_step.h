@@ -37,12 +37,13 @@ typedef struct {
     size_t half;      /* from the points of q to those of p */
     bool partitioned; /* H is T(p) + V(q) */
     bool unchecked;   /* slopes are not looked at when taken */
-    const double *mu_q, *mu_p;   /* mu_ij, column by column */
-    const double *to_q, *to_p;   /* h b_j, -h b_j: in all lanes of a vector */
-    const double *q, *p, *carry; /* n, n and 2n rows of lanes: the state, e */
-    double *products;            /* a row */
-    double *points;              /* 2n rows: Q_i, P_i */
-    double *gradient;            /* 2n rows: dH/dp, then dH/dq */
+    const double *mu_q, *mu_p; /* mu_ij, column by column */
+    const double *to_q, *to_p; /* h b_j, -h b_j: in all lanes of a vector */
+    const double *q, *p,
+        *compensation; /* n, n and 2n rows of lanes: the state, e */
+    double *products;  /* a row */
+    double *points;    /* 2n rows: Q_i, P_i */
+    double *gradient;  /* 2n rows: dH/dp, then dH/dq */
     const struct nevh__stage_owner *owner; /* the includer's */
 } nevh__stage_step;
 
@@ -123,20 +124,20 @@ NEVH__INLINE double nevh__stage_sum_orbit(size_t row, size_t stages,
 NEVH__INLINE void nevh__stage_place_stages(size_t stages, size_t row,
                                            const double *mu, const double *to,
                                            const double *slopes, double y,
-                                           double carry, double *points) {
+                                           double compensation,
+                                           double *points) {
     for (size_t from = 0; from < row; from += NEVH__IN_VECTOR) {
         nevh__vector sum;
         nevh__stage_sum_stages(row, stages, mu, false, to, slopes, from, &sum);
-        NEVH__VECTOR_AT(points + from) = y + (sum + carry);
+        NEVH__VECTOR_AT(points + from) = y + (sum + compensation);
     }
 }
 
-NEVH__INLINE void
-nevh__stage_place_orbits(size_t stages, size_t row, size_t lanes,
-                         const double *restrict mu, const double *restrict to,
-                         const double *restrict slopes,
-                         const double *restrict y, const double *restrict carry,
-                         double *restrict products, double *restrict points) {
+NEVH__INLINE void nevh__stage_place_orbits(
+    size_t stages, size_t row, size_t lanes, const double *restrict mu,
+    const double *restrict to, const double *restrict slopes,
+    const double *restrict y, const double *restrict compensation,
+    double *restrict products, double *restrict points) {
     const size_t one = NEVH__IN_VECTOR;
     for (size_t j = 0; j < stages; j++) {
         const double *restrict x = slopes + j * lanes;
@@ -156,13 +157,13 @@ nevh__stage_place_orbits(size_t stages, size_t row, size_t lanes,
                                    &sum);
             NEVH__VECTOR_AT(points + lane) =
                 NEVH__VECTOR_AT(y + lane) +
-                (sum + NEVH__VECTOR_AT(carry + lane));
+                (sum + NEVH__VECTOR_AT(compensation + lane));
         }
         for (; lane < lanes; lane++)
             points[lane] =
                 y[lane] + (nevh__stage_sum_orbit(row, stages, lanes, mu + i,
                                                  products + lane) +
-                           carry[lane]);
+                           compensation[lane]);
     }
 }
 
@@ -178,17 +179,17 @@ NEVH__INLINE void nevh__stage_place_rows(const nevh__stage_step *x,
     const double *restrict to = q ? x->to_q : x->to_p;
     const double *restrict slopes = x->gradient + (q ? 0 : n * stride);
     const double *restrict y = q ? x->q : x->p;
-    const double *restrict carry = x->carry + (q ? 0 : n * apart);
+    const double *restrict compensation = x->compensation + (q ? 0 : n * apart);
     double *restrict points = x->points + (q ? 0 : x->half);
     double *restrict velocities = x->gradient;
     for (size_t k = 0; k < n; k++) {
         size_t at = k * stride;
         if (together)
             nevh__stage_place_stages(stages, row, mu, to, slopes + at, y[k],
-                                     carry[k], points + at);
+                                     compensation[k], points + at);
         else
             nevh__stage_place_orbits(stages, row, lanes, mu, to, slopes + at,
-                                     y + k * lanes, carry + k * lanes,
+                                     y + k * lanes, compensation + k * lanes,
                                      x->products, points + at);
         for (size_t i = at; inverse && i < at + stride; i += NEVH__IN_VECTOR)
             NEVH__VECTOR_AT(velocities + i) =
@@ -366,18 +367,18 @@ NEVH__INLINE void nevh__stage_add(double hb, double slope, double *sum,
 NEVH__INLINE void nevh__stage_advance(size_t stages, const size_t order[],
                                       const double hb[], size_t lanes,
                                       size_t width, const double x[],
-                                      double sum[], double carry[]) {
+                                      double sum[], double compensation[]) {
     double total[NEVH__LANES], rest[NEVH__LANES];
     for (size_t i = 0; i < lanes; i++) {
         total[i] = sum[i];
-        rest[i] = carry[i];
+        rest[i] = compensation[i];
     }
     for (const size_t *j = order; j < order + stages; j++)
         for (size_t i = 0; i < lanes; i++)
             nevh__stage_add(hb[*j], x[*j * width + i], &total[i], &rest[i]);
     for (size_t i = 0; i < lanes; i++) {
         sum[i] = total[i] + rest[i];
-        carry[i] = nevh__roundoff(sum[i], total[i], rest[i]);
+        compensation[i] = nevh__roundoff(sum[i], total[i], rest[i]);
     }
 }
 

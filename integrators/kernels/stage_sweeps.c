@@ -120,8 +120,8 @@ static void plan_gradients(nevh__sweeps *s) {
         s->kick = nevh__work_plan(s->work, width, t, q, p, dh_dq, NULL);
     } else
         s->whole = nevh__work_plan(s->work, width, t, q, p, dh_dq, dh_dp);
-    bool planned = s->x.partitioned ? s->drift.count && s->kick.count
-                                    : s->whole.count > 0;
+    bool planned =
+        s->x.partitioned ? s->drift.count && s->kick.count : s->whole.count > 0;
     s->x.unchecked = planned && s->kind != NEVH__ORBITS;
     s->from_values = planned && !s->whole.exact && !s->kick.exact;
 }
@@ -243,16 +243,16 @@ static void load_state(nevh__sweeps *s, const nevh__sweep_start *x,
     double *to = s->loaded;
     s->x.q = x->q;
     s->x.p = x->p;
-    s->x.carry = x->carry;
+    s->x.compensation = x->compensation;
     s->changes.unit = x->unit;
     if (x->width == 1)
         return;
     load(x, lanes, x->q, n, to);
     load(x, lanes, x->p, n, to + half);
-    load(x, lanes, x->carry, 2 * n, to + 2 * half);
+    load(x, lanes, x->compensation, 2 * n, to + 2 * half);
     s->x.q = to;
     s->x.p = to + half;
-    s->x.carry = to + 2 * half;
+    s->x.compensation = to + 2 * half;
     if (!x->unit)
         return;
     load(x, lanes, x->unit, 2 * n, to + 4 * half);
@@ -448,22 +448,22 @@ const double *nevh__sweeps_stage(const nevh__sweeps *s, size_t stage,
 
 NEVH_SIMD static void advance(const nevh__tableau *a, const double hb[],
                               size_t rows, size_t width, const double slopes[],
-                              double sum[], double carry[]) {
+                              double sum[], double compensation[]) {
     size_t eight = NEVH__LANES;
     for (size_t k = 0; k < rows; k++, slopes += a->stages * width) {
         size_t i = k * width, end = i + width;
         const double *x = slopes;
         for (; i + eight <= end; i += eight, x += eight)
             nevh__stage_advance(a->stages, a->order, hb, eight, width, x,
-                                sum + i, carry + i);
+                                sum + i, compensation + i);
         for (; i < end; i++, x++)
             nevh__stage_advance(a->stages, a->order, hb, 1, width, x, sum + i,
-                                carry + i);
+                                compensation + i);
     }
 }
 
 void nevh__stages_advance(const nevh__tableau *a, const double hb[],
                           size_t rows, size_t width, const double slopes[],
-                          double sum[], double carry[]) {
-    advance(a, hb, rows, width, slopes, sum, carry);
+                          double sum[], double compensation[]) {
+    advance(a, hb, rows, width, slopes, sum, compensation);
 }

@@ -63,9 +63,9 @@ typedef struct {
     size_t width, count;
     const size_t *lanes;
     double t, h;
-    const double *q, *p;  /* n rows each */
-    const double *carry;  /* 2n rows */
-    const double *unit;   /* 2n rows: |h| over the scale */
+    const double *q, *p;        /* n rows each */
+    const double *compensation; /* 2n rows */
+    const double *unit;         /* 2n rows: |h| over the scale */
     const double *last;   /* the slopes solved for in the last step, to be */
     const double *last_h; /* continued where that was by h too; one row */
 } nevh__sweep_start;
@@ -96,10 +96,10 @@ void nevh__sweeps_place(nevh__sweeps *, const nevh__sweep_start *,
 const double *nevh__sweeps_stage(const nevh__sweeps *, size_t stage,
                                  double state[]);
 
-/* y += sum_j h b_j x_j of `rows` rows of a state, and what that loses to carry;
+/* y += sum_j h b_j x_j of `rows` rows of a state, and what that loses to compensation;
    rows of slopes are stages x width. */
 void nevh__stages_advance(const nevh__tableau *, const double hb[], size_t rows,
                           size_t width, const double slopes[], double sum[],
-                          double carry[]);
+                          double compensation[]);
 
 #endif

@@ -38,7 +38,7 @@ typedef struct {
    and of x and y, those being counted from q and p there. */
 typedef struct {
     nevh_work *work;
-    const double *start_q, *start_p, *carry_q, *carry_p;
+    const double *start_q, *start_p, *compensation_q, *compensation_p;
     double *q, *p, *x, *y;
     group a, b; /* at (q, y) and (x, p) */
 } doubled;
@@ -58,8 +58,8 @@ static doubled begin(nevh_work *w, const double q[], const double p[]) {
     doubled z = {w,
                  q,
                  p,
-                 block(w, NEVH__TAO_CARRY_Q),
-                 block(w, NEVH__TAO_CARRY_P),
+                 block(w, NEVH__TAO_COMPENSATION_Q),
+                 block(w, NEVH__TAO_COMPENSATION_P),
                  w->scratch,
                  w->scratch + n,
                  w->scratch + 2 * n,
@@ -74,8 +74,8 @@ static doubled begin(nevh_work *w, const double q[], const double p[]) {
 static void place(const doubled *z, const group *g, double t) {
     const double *q = g == &z->a ? z->q : z->x, *p = g == &z->a ? z->y : z->p;
     for (size_t i = 0; i < z->work->size; i++) {
-        g->q[i] = z->start_q[i] + (q[i] + z->carry_q[i]);
-        g->p[i] = z->start_p[i] + (p[i] + z->carry_p[i]);
+        g->q[i] = z->start_q[i] + (q[i] + z->compensation_q[i]);
+        g->p[i] = z->start_p[i] + (p[i] + z->compensation_p[i]);
     }
     for (size_t lane = 0; lane < z->work->width; lane++)
         g->t[lane] = t;
@@ -161,7 +161,7 @@ static int commit(const doubled *z, double q[], double p[]) {
                               "the two copies of the state are no longer "
                               "finite numbers apart: take a smaller step");
     int status = nevh_work_commit(w, w->size, q, z->q, block(w, 0), p, z->p,
-                                  block(w, NEVH__TAO_CARRY_P));
+                                  block(w, NEVH__TAO_COMPENSATION_P));
     if (status)
         return status;
     memcpy(block(w, NEVH__TAO_X), z->x, 2 * w->size * sizeof *z->x);
@@ -203,9 +203,10 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
 }
 
 static void apply_friction(nevh_work *w, const double factor[]) {
-    double *carry = block(w, NEVH__TAO_CARRY_P), *y = block(w, NEVH__TAO_Y);
+    double *compensation = block(w, NEVH__TAO_COMPENSATION_P),
+           *y = block(w, NEVH__TAO_Y);
     for (size_t i = 0; i < w->size; i++) {
-        carry[i] *= factor[i / w->width];
+        compensation[i] *= factor[i / w->width];
         y[i] *= factor[i / w->width];
     }
     memset(block(w, NEVH__TAO_BLOCKS), 0, w->width * sizeof *y);

@@ -25,8 +25,8 @@ bool nevh__add_run(nevh__step_selection *);
 
 /* The rows of a stepper's memory, in blocks of n. */
 enum {
-    NEVH__TAO_CARRY_Q, /* of the first copy */
-    NEVH__TAO_CARRY_P,
+    NEVH__TAO_COMPENSATION_Q, /* of the first copy */
+    NEVH__TAO_COMPENSATION_P,
     NEVH__TAO_X, /* the second copy less the first: x - q and y - p */
     NEVH__TAO_Y,
     NEVH__TAO_DH_DQ, /* the gradient at (q, y), where the next step begins */

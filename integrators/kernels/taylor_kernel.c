@@ -27,12 +27,12 @@ static const double most_steps = 8;
 
 /* Of one lane, in memory or scratch. */
 typedef struct {
-    double *begun;      /* whether there is a series */
-    double *since;      /* time since its beginning, of either sign, */
-    double *since_lost; /* and what that lost */
-    double *reach;      /* how long it holds, to either side */
-    double *lost;       /* 2n: of the state at its beginning */
-    double *rows;       /* 2n times order + 1: its coefficients */
+    double *begun;          /* whether there is a series */
+    double *since;          /* time since its beginning, of either sign, */
+    double *since_roundoff; /* and what that lost */
+    double *reach;          /* how long it holds, to either side */
+    double *roundoff;       /* 2n: of the state at its beginning */
+    double *rows;           /* 2n times order + 1: its coefficients */
 } chain;
 enum { HEAD = 4 };
 
@@ -44,9 +44,9 @@ static size_t chain_size(const nevh_work *w) {
 static chain chain_at(const nevh_work *w, double *from) {
     return (chain){.begun = from,
                    .since = from + 1,
-                   .since_lost = from + 2,
+                   .since_roundoff = from + 2,
                    .reach = from + 3,
-                   .lost = from + HEAD,
+                   .roundoff = from + HEAD,
                    .rows = from + HEAD + 2 * w->n};
 }
 
@@ -136,7 +136,7 @@ static void change_at(const nevh_work *w, const chain *z, double since,
             change[i] = (change[i] + row[i]) * since;
     }
     for (size_t i = 0; i < each; i++)
-        change[i] += z->lost[i];
+        change[i] += z->roundoff[i];
 }
 
 static void state_at(const nevh_work *w, const chain *z, double since,
@@ -149,9 +149,9 @@ static void state_at(const nevh_work *w, const chain *z, double since,
 /* A time since the beginning, so much later. */
 static void pass(const chain *z, double time) {
     double sum = *z->since + time;
-    *z->since_lost += nevh__roundoff(sum, *z->since, time);
-    double whole = sum + *z->since_lost;
-    *z->since_lost = nevh__roundoff(whole, sum, *z->since_lost);
+    *z->since_roundoff += nevh__roundoff(sum, *z->since, time);
+    double whole = sum + *z->since_roundoff;
+    *z->since_roundoff = nevh__roundoff(whole, sum, *z->since_roundoff);
     *z->since = whole;
 }
 
@@ -181,7 +181,7 @@ static int go_on(nevh_work *w, const chain *z, double step, double t,
     change_at(w, z, step, change);
     for (size_t i = 0; i < each; i++) {
         double sum = z->rows[i] + change[i];
-        z->lost[i] = nevh__roundoff(sum, z->rows[i], change[i]);
+        z->roundoff[i] = nevh__roundoff(sum, z->rows[i], change[i]);
         z->rows[i] = sum;
     }
     pass(z, -step);

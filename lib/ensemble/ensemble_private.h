@@ -22,7 +22,7 @@ typedef struct {
 
 /* An outcome of a lane on its way. */
 typedef struct {
-    double value, lost;
+    double value, roundoff;
     double first, last; /* of crossings */
     size_t count;
     bool known; /* it will not change any more */

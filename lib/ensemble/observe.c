@@ -76,10 +76,10 @@ double nevh__narrow_value(nevh_ensemble *e, size_t o, double t) {
     return e->value1[0];
 }
 
-/* sum + lost += x */
+/* sum + roundoff += x */
 static void add(nevh__record *r, double x) {
     double next = r->value + x;
-    r->lost += nevh__roundoff(next, r->value, x);
+    r->roundoff += nevh__roundoff(next, r->value, x);
     r->value = next;
 }
 
@@ -200,7 +200,7 @@ static double number_of(const nevh_ensemble *e, size_t lane, size_t o) {
     case NEVH_OUTCOME_VERDICT:
         return nevh_energy_result(e->energy, lane).verdict;
     case NEVH_OUTCOME_MEAN:
-        return span != 0 ? (r->value + r->lost) / span
+        return span != 0 ? (r->value + r->roundoff) / span
                          : e->now.value[o * e->stride + lane];
     case NEVH_OUTCOME_CROSSINGS:
         return (double)r->count;

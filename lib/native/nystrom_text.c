@@ -40,7 +40,7 @@ static const char step_begins[] =
     "    nevh__nystrom_step x = {\n"
     "        .c = times, .sums = sums, .lanes = 1, .size = DOF, .stride = "
     "DOF,\n"
-    "        .diagonal = $3, .moves = $4, .q = y, .p = y + DOF, .carry = "
+    "        .diagonal = $3, .moves = $4, .q = y, .p = y + DOF, .compensation = "
     "lost,\n"
     "        .h = steps, .way = ways, .gain = gain, .at_rest = rest,\n"
     "        .momenta = momenta, .velocities = velocities, .points = points,\n"

@@ -97,18 +97,18 @@ static void set_factors(const nevh_stepper *s, double h) {
     d->h = h;
 }
 
-/* p and its carry times the factors; whether all p are finite. */
+/* p and its compensation times the factors; whether all p are finite. */
 static bool multiply(const nevh_work *w, struct nevh__friction_step *d,
-                     double carry[]) {
+                     double compensation[]) {
     double check = 0;
     for (size_t i = 0; i < w->size; i++) {
         double factor = d->factor[i / w->width],
                remainder = d->remainder[i / w->width];
         double x = d->p[i], next = x * factor;
         double roundoff =
-            fma(x, factor, -next) + (x * remainder + carry[i] * factor);
+            fma(x, factor, -next) + (x * remainder + compensation[i] * factor);
         d->p[i] = next + roundoff;
-        carry[i] = roundoff - (d->p[i] - next);
+        compensation[i] = roundoff - (d->p[i] - next);
         check += d->p[i] - d->p[i];
     }
     return check == 0;

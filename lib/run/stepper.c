@@ -223,7 +223,7 @@ int nevh__begin(nevh_stepper *s, double t, double h, const double q[],
                           "since this was planned: make a new stepper");
     bool same = s->has_last && same_time(s, t, h);
     s->before_t = s->last_t;
-    s->before_lost = s->time_roundoff;
+    s->before_roundoff = s->time_roundoff;
     for (size_t lane = 0; lane < s->work.width; lane++)
         if (!same || !same_lane(s, lane, q, p)) {
             if (!s->forgot)
@@ -240,7 +240,7 @@ void nevh__undo(nevh_stepper *s) {
     if (s->forgot)
         memcpy(s->work.memory, s->before, memory_size(s));
     s->last_t = s->before_t;
-    s->time_roundoff = s->before_lost;
+    s->time_roundoff = s->before_roundoff;
 }
 
 static void pass_time(nevh_stepper *s, double t) {

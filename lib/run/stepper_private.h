@@ -13,7 +13,7 @@ struct nevh_stepper {
     nevh__report report;
     bool planned, own_time;
     unsigned long revision; /* of the transform's system when planned */
-    /* The kernel's memory begins a larger one: then the carry of friction, n
+    /* The kernel's memory begins a larger one: then the compensation of friction, n
        rows, or what the transform keeps, and the ledger's two.  A lane that
        starts afresh keeps the last. */
     size_t rows, fresh_rows;
@@ -27,8 +27,8 @@ struct nevh_stepper {
     bool forgot;    /* the last step or run began with less than `before` */
     double *before; /* the memory before that */
     size_t taken;
-    double time_roundoff;         /* of last_t, where steps vary, by rounding */
-    double before_t, before_lost; /* last_t and time_roundoff before that */
+    double time_roundoff; /* of last_t, where steps vary, by rounding */
+    double before_t, before_roundoff; /* last_t and time_roundoff before that */
     char why_native[NEVH__WHY_NATIVE]; /* why steps are not native, or "" */
 };
 

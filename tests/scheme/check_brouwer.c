@@ -132,16 +132,16 @@ static errors errors_without(const orbits *o, const nevh_kernel *kernel) {
     return errors_of(o, &i, LANES, STEPS);
 }
 
-static int step_without_carry(nevh_work *w, double t, double h, double q[],
-                              double p[]) {
+static int step_without_compensation(nevh_work *w, double t, double h,
+                                     double q[], double p[]) {
     int status = nevh_gauss_kernel.step(w, t, h, q, p);
     memset(w->memory, 0, 2 * w->size * sizeof *w->memory);
     return status;
 }
 
-TEST_EACH(sums_without_carry, 1) {
+TEST_EACH(sums_without_compensation, 1) {
     nevh_kernel kernel = nevh_gauss_kernel;
-    kernel.step = step_without_carry;
+    kernel.step = step_without_compensation;
     errors r = errors_without(&all[_i], &kernel);
     ck_assert_msg(r.late > 1.4e-14, "%.2e", r.late);
 }
@@ -172,18 +172,18 @@ TEST_EACH(rounded_coefficients_drift, 1) {
 }
 TEST_ALSO(rounded_coefficients_drift, NULL, 2, 3)
 
-/* The state is q + carry, in the stages as in the sum: a step is the same
+/* The state is q + compensation, in the stages as in the sum: a step is the same
    wherever the point is set. */
-static int step_with_carry(nevh_work *w, double t, double h, double q[],
-                           double p[]) {
+static int step_with_compensation(nevh_work *w, double t, double h, double q[],
+                                  double p[]) {
     w->memory[0] = 0.25;
     w->memory[1] = -0.125;
     return nevh_gauss_kernel.step(w, t, h, q, p);
 }
 
-TEST(carry_is_part_of_the_state) {
+TEST(compensation_is_part_of_the_state) {
     nevh_kernel kernel = nevh_gauss_kernel;
-    kernel.step = step_with_carry;
+    kernel.step = step_with_compensation;
     nevh_integrator split = *nevh_gauss8;
     split.kernel = &kernel;
     nevh_system *s = make_pendulum();

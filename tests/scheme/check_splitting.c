@@ -238,7 +238,7 @@ TEST_EACH(friction_between_steps, 5) {
     ck_assert_int_eq(nevh_run(damped, 0, h, 20, z, z + 1, NULL, 0), NEVH_OK);
     z[1] *= factor[0];
     memcpy(y, z, sizeof y);
-    damped->work.memory[1] = 0x1p-57; /* p's carry; it may have been 0 */
+    damped->work.memory[1] = 0x1p-57; /* p's compensation; it may have been 0 */
     fresh->work.memory[0] = damped->work.memory[0];
     fresh->work.memory[1] = damped->work.memory[1] * factor[0];
     uint64_t before = nevh_stepper_counts(damped).gradients;
