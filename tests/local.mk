@@ -11,8 +11,7 @@ suites = \
 	tests/system/check_body \
 	tests/gradient/check_point \
 	tests/gradient/check_lanes \
-	tests/gradient/check_one_orbit \
-	tests/gradient/check_one_orbit_terms \
+	tests/gradient/check_same_bits \
 	tests/system/check_probe \
 	tests/expression/check_tape \
 	tests/expression/check_tape_build \
@@ -136,6 +135,7 @@ if HAVE_CHECK
 check_PROGRAMS += $(suites)
 check_LTLIBRARIES += tests/support/libsupport.la
 tests_support_libsupport_la_SOURCES = tests/support/support.c tests/support/support.h \
+	tests/support/lanes.c tests/support/lanes.h \
 	tests/support/damped.h tests/support/driven.h tests/support/state.h \
 	tests/support/hard.h
 if HAVE_WRAP

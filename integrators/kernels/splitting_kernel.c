@@ -278,6 +278,35 @@ NEVH__INLINE bool all_kept(size_t lanes, const memory *m) {
     return none == 0;
 }
 
+/* Lanes that start afresh take their first slopes here, so that others keep
+   theirs: at t + h of the step before, which rounds otherwise than t. */
+static int complete_kept(nevh_work *w, double t, const double q[],
+                         const double p[], bool *all) {
+    const splitting_plan *o = w->plan;
+    memory m = recall(w, w->size);
+    rows r = lay_out(w->size, false, o->by_work);
+    size_t kept = 0;
+    for (size_t lane = 0; lane < w->width; lane++) {
+        kept += m.has_kept[lane] != 0;
+        r.time[lane] = t;
+    }
+    if (kept == 0)
+        return NEVH_OK;
+    for (size_t i = 0; i < w->size; i++) {
+        r.q.point[i] = q[i] + m.compensation_q[i];
+        r.p.point[i] = p[i] + m.compensation_p[i];
+    }
+    bool kick = o->scheme.kicks_first;
+    int status =
+        nevh_work_gradient(w, w->width, r.time, r.q.point, r.p.point,
+                           kick ? r.slope : NULL, kick ? NULL : r.slope);
+    for (size_t i = 0; !status && i < w->size; i++)
+        if (m.has_kept[i % w->width] == 0)
+            m.kept[i] = r.slope[i];
+    *all = !status;
+    return status;
+}
+
 /* A step of `width` orbits with n coordinates, in rows of `stride`. */
 NEVH__INLINE int step_along(nevh_work *w, gradient_way way, size_t n,
                             size_t width, size_t stride, size_t lanes, double t,
@@ -286,14 +315,19 @@ NEVH__INLINE int step_along(nevh_work *w, gradient_way way, size_t n,
     double *from = way == BY_WORK ? o->by_work : o->from;
     memory m = recall(w, n * width);
     bool copied = way == BY_VECTOR && stride != width;
+    bool has_kept = o->scheme.keeps && all_kept(width, &m);
+    int status = o->scheme.keeps && !has_kept && width > 1
+                     ? complete_kept(w, t, q, p, &has_kept)
+                     : NEVH_OK;
+    if (status)
+        return status;
     rows r = copied ? lay_out(n * stride, true, from)
                     : bind(n * stride, from, &m, q, p);
     struct nevh__splitting_owner owner = {w, o, stride, r.time};
     nevh__splitting_step x = {.t = t,
                               .h = h,
                               .scheme = &o->scheme,
-                              .has_kept =
-                                  o->scheme.keeps && all_kept(width, &m),
+                              .has_kept = has_kept,
                               .q = r.q,
                               .p = r.p,
                               .slope = r.slope,
@@ -301,7 +335,7 @@ NEVH__INLINE int step_along(nevh_work *w, gradient_way way, size_t n,
                               .owner = &owner};
     if (copied)
         load_all(w, stride, &r, &m, q, p, x.has_kept);
-    int status = nevh__splitting_take(&x, way, lanes, n * stride);
+    status = nevh__splitting_take(&x, way, lanes, n * stride);
     if (status == NEVH__SPLITTING_RANGE)
         return way == BY_WORK ? fail(w) : NEVH_EDOM;
     if (status)

@@ -58,8 +58,8 @@ size_t nevh__work_lanes(nevh_work *, bool whole, bool numbers);
 /* Whether those of so many orbits are now taken as planned: nevh__work_lanes of
    all orbits was `lanes`. */
 static inline bool nevh__work_as_planned(const nevh_work *w, size_t lanes,
-                                         size_t orbits) {
-    return w->planned && lanes && orbits == w->width;
+                                         size_t columns) {
+    return w->planned && lanes && columns == w->width;
 }
 /* The kernel's step.  One with planned gradients, at which nothing looks, may
    fail without a message: it is taken again with nevh_work_gradient, which

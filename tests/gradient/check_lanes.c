@@ -381,3 +381,59 @@ TEST_EACH(effects_sum_to_the_value, 2) {
     nevh_field_free(f);
     nevh_system_free(s);
 }
+
+static double bond(double t, const double q[], const double p[],
+                   const double c[], const void *params) {
+    (void)t, (void)p, (void)params;
+    return -c[0] * cos(q[0] - q[1]);
+}
+
+static void bond_gradient(size_t width, const double t[], const double q[],
+                          const double p[], const double c[],
+                          const void *params, double dq[], double dp[]) {
+    (void)t, (void)p, (void)params, (void)dp;
+    for (size_t i = 0; dq && i < width; i++) {
+        dq[i] = c[i] * sin(q[i] - q[width + i]);
+        dq[width + i] = -dq[i];
+    }
+}
+
+/* So many on one coordinate, and so unlike, that the order of a sum shows. */
+static nevh_system *bonds(void) {
+    static const size_t at[] = {0, 1, 1, 2, 2, 1, 1, 0, 2, 0};
+    static const double c[] = {1.25, 0.7, 1e-3, 3.1, 0.9};
+    nevh_system *s = nevh_system_new(3);
+    ck_assert(!nevh_system_add(s, &(nevh_term){.effect = "bonds",
+                                               .nq = 2,
+                                               .nc = 1,
+                                               .q = at,
+                                               .c = c,
+                                               .count = 5,
+                                               .value = bond,
+                                               .gradient = bond_gradient}));
+    return s;
+}
+
+/* Each lane has what it would have alone, to the last bit. */
+TEST_EACH(sums_in_one_order, 4) {
+    static const size_t widths[] = {1, 3, 8, 16};
+    enum { STATES = 40 };
+    size_t width = widths[_i];
+    nevh_system *s = bonds();
+    nevh_field *f = nevh_field_new(s, &(nevh_options){.gradient = nevh_exact});
+    ck_assert_int_eq(nevh_field_status(f), NEVH_OK);
+    for (int state = 0; state < STATES; state++) {
+        double t[16] = {0}, q[48], p[48] = {0}, g[48], x[3];
+        for (size_t k = 0; k < 3; k++)
+            x[k] = sin(1.7 * state + (double)k);
+        for (size_t i = 0; i < 3 * width; i++)
+            q[i] = x[i / width] + (i % width == width - 1 ? 0 : 0.01);
+        double a = sin(x[0] - x[1]), b = sin(x[1] - x[2]);
+        double c = sin(x[2] - x[1]), d = sin(x[1] - x[0]);
+        double second = 0.7 * b + 3.1 * d - 1.25 * a - 1e-3 * c;
+        ck_assert(!nevh_field_gradient(f, width, t, q, p, g, NULL));
+        ck_assert(g[2 * width - 1] == second);
+    }
+    nevh_field_free(f);
+    nevh_system_free(s);
+}

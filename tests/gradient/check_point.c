@@ -197,46 +197,6 @@ TEST(bits_are_at_stake) {
 #endif
 }
 
-/* An orbit of a model alone, without blocks where the scheme is a splitting,
-   and as one of eight. */
-static void run_model(const nevh_model *model, const nevh_integrator *scheme,
-                      size_t width, double x[]) {
-    double z[4 * LANES], *p = z + model->n * width;
-    nevh_system *s = model->system(model->defaults);
-    nevh_stepper *stepper = nevh_stepper_new(
-        s, scheme,
-        &(nevh_options){.gradient = nevh_exact,
-                        .width = width,
-                        .scale = (const double[]){1, 1, 1, 1}});
-    for (size_t i = 0; i < model->n * width; i++) {
-        z[i] = model->q[i / width] + 0.1;
-        p[i] = model->p[i / width] - 0.2;
-    }
-    ck_assert_str_eq(nevh_stepper_message(stepper), "");
-    ck_assert(!nevh_run(stepper, 0, 0.01, 200, z, p, NULL, 0));
-    for (size_t i = 0; i < 2 * model->n; i++)
-        x[i] = z[i * width + width / 2];
-    nevh_stepper_free(stepper);
-    nevh_system_free(s);
-}
-
-TEST_EACH(orbits_of_models, model_count()) {
-    const nevh_model *model = nevh_models()[_i];
-    nevh_system *s = model->system(model->defaults);
-    bool separable = nevh_system_traits(s) & NEVH_SEPARABLE;
-    double alone[4], among[4];
-    for (int i = 0; i < 3; i++) {
-        const nevh_integrator *scheme = i == 0       ? nevh_rk4
-                                        : !separable ? nevh_gauss4
-                                        : i == 1     ? nevh_verlet
-                                                     : nevh_blanes_moan4;
-        run_model(model, scheme, 1, alone);
-        run_model(model, scheme, LANES, among);
-        ck_assert_mem_eq(alone, among, 2 * model->n * sizeof *alone);
-    }
-    nevh_system_free(s);
-}
-
 /* Point gradients of q0 sin(q1) + p0^2, of which only the first is right. */
 NEVH_BODY(right, void,
           { return nevh_q(0) * nevh_sin(nevh_q(1)) + nevh_p(0) * nevh_p(0); })

@@ -46,41 +46,6 @@ TEST_EACH(memory_can_be_kept, scheme_count()) {
     nevh_system_free(s);
 }
 
-/* Lane 1 of three is the orbit that runs alone, also beside one that jumps. */
-TEST_EACH(lanes_are_alone, scheme_count()) {
-    const nevh_integrator *scheme = nevh_integrators()[_i];
-    const problem *b = problem_for(scheme);
-    enum { WIDTH = 3 };
-    if (refuses(scheme))
-        skip_test("it refuses friction");
-    nevh_system *s = damped(b, unequal);
-    nevh_options o = {.gradient_step = 0x1p-9,
-                      .tolerance = tolerance_for(scheme),
-                      .width = WIDTH};
-    nevh_stepper *three = nevh_stepper_new(s, scheme, &o);
-    o.width = 1;
-    nevh_stepper *one = nevh_stepper_new(s, scheme, &o);
-    double q[MOST_DOF * WIDTH], p[MOST_DOF * WIDTH];
-    for (size_t i = 0; i < b->n * WIDTH; i++) {
-        q[i] = b->q[i / WIDTH] * (1 + 0.3 * ((double)(i % WIDTH) - 1));
-        p[i] = b->p[i / WIDTH] * (1 - 0.4 * ((double)(i % WIDTH) - 1));
-    }
-    state x = start(b);
-    for (int i = 0; i < 40; i++) {
-        double t = b->t0 + 0.02 * i;
-        q[2] += i == 20 ? 0.125 : 0;
-        ck_assert_int_eq(nevh_stepper_apply(three, t, 0.02, q, p), NEVH_OK);
-        ck_assert_int_eq(nevh_stepper_apply(one, t, 0.02, x.q, x.p), NEVH_OK);
-    }
-    for (size_t k = 0; k < b->n; k++) {
-        ck_assert(q[k * WIDTH + 1] == x.q[k]);
-        ck_assert(p[k * WIDTH + 1] == x.p[k]);
-    }
-    nevh_stepper_free(three);
-    nevh_stepper_free(one);
-    nevh_system_free(s);
-}
-
 static int look(void *data, size_t step, double t, const double q[],
                 const double p[]) {
     (void)data, (void)step, (void)t, (void)q, (void)p;

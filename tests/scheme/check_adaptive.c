@@ -1,6 +1,6 @@
 /* nevh tests: steps that adapt to a tolerance.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "support.h"
+#include "lanes.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -443,28 +443,13 @@ TEST_EACH(lanes_are_alone, scheme_count()) {
     enum { WIDTH = 5 };
     bool rough = scheme == nevh_dopri5 || scheme == nevh_dop853;
     nevh_system *s = rough ? cliff(walls) : nevh_system_from(1, steep, NULL);
-    nevh_options o = {.gradient_step = 0x1p-20,
-                      .scale = (const double[]){1, 1},
-                      .tolerance = 1e-5,
-                      .width = WIDTH};
-    nevh_stepper *all = nevh_stepper_new(s, scheme, &o);
-    double q[WIDTH], p[WIDTH];
-    for (int i = 0; i < WIDTH; i++) {
-        q[i] = 0.2 * i;
-        p[i] = 0.02 * (i - 2);
-    }
-    ck_assert_int_eq(nevh_run(all, 0, 150, 6, q, p, NULL, 0), NEVH_OK);
-    o.width = 1;
-    for (int i = 0; i < WIDTH; i++) {
-        nevh_stepper *one_lane = nevh_stepper_new(s, scheme, &o);
-        double x = 0.2 * i, y = 0.02 * (i - 2);
-        ck_assert_int_eq(nevh_run(one_lane, 0, 150, 6, &x, &y, NULL, 0),
-                         NEVH_OK);
-        ck_assert_msg(x == q[i] && y == p[i], "%s, lane %d",
-                      nevh_integrator_name(scheme), i);
-        nevh_stepper_free(one_lane);
-    }
-    nevh_stepper_free(all);
+    const nevh_options o = {.gradient_step = 0x1p-20,
+                            .scale = (const double[]){1, 1},
+                            .tolerance = 1e-5};
+    const double q[WIDTH] = {0, 0.2, 0.4, 0.6, 0.8};
+    const double p[WIDTH] = {-0.04, -0.02, 0, 0.02, 0.04};
+    assert_lanes_are_alone(
+        &(many_orbits){s, scheme, &o, 1, WIDTH, 6, 0, 150, q, p, false, NULL});
     nevh_system_free(s);
 }
 
@@ -474,21 +459,12 @@ TEST_EACH(lanes_have_their_own_time, scheme_count()) {
     if (!scheme)
         skip_test("it does not adapt steps");
     nevh_system *s = driven_pendulum.make();
-    nevh_options o = {.gradient = nevh_exact, .tolerance = 1e-8, .width = 3};
-    nevh_stepper *all = nevh_stepper_new(s, scheme, &o);
-    double q[] = {0.9, 0.1, 2.8}, p[] = {0.3, 0, 0.1};
-    double x[] = {0.9, 0.1, 2.8}, y[] = {0.3, 0, 0.1};
-    ck_assert_int_eq(nevh_run(all, 0.3, 5, 3, q, p, NULL, 0), NEVH_OK);
-    o.width = 1;
-    for (int i = 0; i < 3; i++) {
-        nevh_stepper *alone = nevh_stepper_new(s, scheme, &o);
-        ck_assert_int_eq(nevh_run(alone, 0.3, 5, 3, x + i, y + i, NULL, 0),
-                         NEVH_OK);
-        nevh_stepper_free(alone);
-    }
-    ck_assert_mem_eq(q, x, sizeof q);
-    ck_assert_mem_eq(p, y, sizeof p);
-    nevh_stepper_free(all);
+    const nevh_options o = {.gradient = nevh_exact,
+                            .scale = (const double[]){1, 1},
+                            .tolerance = 1e-8};
+    const double q[] = {0.9, 0.1, 2.8}, p[] = {0.3, 0, 0.1};
+    assert_lanes_are_alone(
+        &(many_orbits){s, scheme, &o, 1, 3, 6, 0.3, 5, q, p, false, NULL});
     nevh_system_free(s);
 }
 

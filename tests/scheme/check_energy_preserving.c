@@ -1,6 +1,6 @@
 /* nevh tests: schemes that keep the energy, where it is easy to lose.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "support.h"
+#include "lanes.h"
 #include <float.h>
 #include <math.h>
 #include <nevh/extend.h>
@@ -381,25 +381,12 @@ TEST(symmetric_is_composed) {
 /* Lanes at rest, slow and fast ones side by side are what they are alone. */
 TEST_EACH(lanes_are_alone, SCHEMES) {
     enum { LANES = 5 };
-    static const double scale[] = {1, 1};
     const double q[LANES] = {1, 0.3, 1 + 1e-9, -1.4, 0.9};
     const double p[LANES] = {0, 0.2, 0, 1, 1e-7};
-    nevh_options options = {
-        .gradient = nevh_exact, .scale = scale, .width = LANES};
+    const nevh_options o = {.gradient = nevh_exact,
+                            .scale = (const double[]){1, 1}};
     nevh_system *s = double_well(1, 1, 1, 0);
-    nevh_stepper *all = nevh_stepper_new(s, scheme_at(_i), &options);
-    double x[LANES], y[LANES];
-    memcpy(x, q, sizeof q);
-    memcpy(y, p, sizeof p);
-    ck_assert_int_eq(nevh_run(all, 0, 0.1, 200, x, y, NULL, 0), NEVH_OK);
-    options.width = 1;
-    for (int lane = 0; lane < LANES; lane++) {
-        nevh_stepper *one = nevh_stepper_new(s, scheme_at(_i), &options);
-        double u = q[lane], v = p[lane];
-        nevh_run(one, 0, 0.1, 200, &u, &v, NULL, 0);
-        ck_assert(u == x[lane] && v == y[lane]);
-        nevh_stepper_free(one);
-    }
-    nevh_stepper_free(all);
+    assert_lanes_are_alone(&(many_orbits){s, scheme_at(_i), &o, 1, LANES, 200,
+                                          0, 0.1, q, p, false, NULL});
     nevh_system_free(s);
 }

@@ -3,9 +3,9 @@
 
    The order on the problems of all schemes is measured in check_order, and
    that lanes and one orbit give the same bits in check_lanes and
-   check_one_orbit.  Here: the coefficients, and what the equations of second
+   check_same_bits.  Here: the coefficients, and what the equations of second
    order ask of T. */
-#include "support.h"
+#include "lanes.h"
 #include <float.h>
 #include <math.h>
 #include <nevh/extend.h>
@@ -225,30 +225,15 @@ TEST(undeclared_in_lanes) {
     enum { WIDTH = 3 };
     nevh_system *one = nevh_system_from(2, whole, NULL);
     for (int adaptive = 0; adaptive < 2; adaptive++) {
-        nevh_options o = {.scale = (const double[]){1, 1, 1, 1},
-                          .gradient_step = 0x1p-12,
-                          .tolerance = adaptive ? 1e-9 : 0,
-                          .width = WIDTH};
-        nevh_stepper *all = nevh_stepper_new(one, nevh_dprkn12, &o);
-        double z[4 * WIDTH], h = adaptive ? 40 : 0.5;
+        const nevh_options o = {.scale = (const double[]){1, 1, 1, 1},
+                                .gradient_step = 0x1p-12,
+                                .tolerance = adaptive ? 1e-9 : 0};
+        double z[4 * WIDTH];
         for (size_t i = 0; i < 4 * WIDTH; i++)
             z[i] = 0.4 - 0.1 * (double)(i % 5);
-        double alone[4 * WIDTH];
-        memcpy(alone, z, sizeof z);
-        ck_assert(!nevh_run(all, 0.2, h, 7, z, z + 2 * WIDTH, NULL, 0));
-        o.width = 1;
-        for (size_t lane = 0; lane < WIDTH; lane++) {
-            nevh_stepper *m = nevh_stepper_new(one, nevh_dprkn12, &o);
-            double x[4];
-            for (size_t k = 0; k < 4; k++)
-                x[k] = alone[k * WIDTH + lane];
-            for (int i = 0; i < 7; i++)
-                ck_assert(!nevh_stepper_apply(m, 0.2 + h * i, h, x, x + 2));
-            for (size_t k = 0; k < 4; k++)
-                ck_assert(x[k] == z[k * WIDTH + lane]);
-            nevh_stepper_free(m);
-        }
-        nevh_stepper_free(all);
+        assert_lanes_are_alone(&(many_orbits){one, nevh_dprkn12, &o, 2, WIDTH,
+                                              14, 0.2, adaptive ? 40 : 0.5, z,
+                                              z + 2 * WIDTH, false, NULL});
     }
     nevh_system_free(one);
 }

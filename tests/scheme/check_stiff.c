@@ -4,7 +4,7 @@
    The spring of an elastic pendulum swings RATIO times as fast as the pendulum,
    and a step takes ten of its periods.  The orbit starts where the spring just
    holds the weight, from which it departs but slowly. */
-#include "support.h"
+#include "lanes.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -364,37 +364,20 @@ TEST_EACH(memory_of_newton, EXPECTED) {
 
 /* Lanes are stiff each for itself. */
 TEST_EACH(stiff_lanes_are_alone, EXPECTED) {
-    static const double scale[] = {1, 1, 1, 1};
-    const nevh_integrator *scheme = *expected[_i].scheme;
+    enum { MANY = 70 };
     bool polar = expected[_i].polar;
     nevh_system *s = polar ? make_polar() : make_plane();
-    nevh_options options = {.gradient = nevh_exact, .scale = scale, .width = 3};
-    nevh_stepper *m = nevh_stepper_new(s, scheme, &options);
-    double q[6], p[6];
-    for (size_t lane = 0; lane < 3; lane++) {
-        double x[2], y[2];
-        start(polar, x, y);
-        for (size_t k = 0; k < 2; k++) {
-            q[3 * k + lane] = x[k] * (1 + 1e-5 * (double)lane);
-            p[3 * k + lane] = y[k];
-        }
+    const nevh_options o = {.gradient = nevh_exact,
+                            .scale = (const double[]){1, 1, 1, 1}};
+    double q[6], p[6], x[2], y[2];
+    start(polar, x, y);
+    for (size_t i = 0; i < 6; i++) {
+        q[i] = x[i / 3] * (1 + 1e-5 * (double)(i % 3));
+        p[i] = y[i / 3];
     }
-    double q0[6], p0[6];
-    memcpy(q0, q, sizeof q);
-    memcpy(p0, p, sizeof p);
-    ck_assert_int_eq(nevh_run(m, 0, ten_periods, 70, q, p, NULL, 0), NEVH_OK);
-    ck_assert_uint_eq(nevh_stepper_counts(m).newtons, 3 * 70);
-    options.width = 1;
-    for (size_t lane = 0; lane < 3; lane++) {
-        nevh_stepper *alone = nevh_stepper_new(s, scheme, &options);
-        double x[] = {q0[lane], q0[3 + lane]}, y[] = {p0[lane], p0[3 + lane]};
-        nevh_run(alone, 0, ten_periods, 70, x, y, NULL, 0);
-        for (size_t k = 0; k < 2; k++) {
-            ck_assert(x[k] == q[3 * k + lane]);
-            ck_assert(y[k] == p[3 * k + lane]);
-        }
-        nevh_stepper_free(alone);
-    }
-    nevh_stepper_free(m);
+    nevh_counts counts = assert_lanes_are_alone(
+        &(many_orbits){s, *expected[_i].scheme, &o, 2, 3, MANY, 0, ten_periods,
+                       q, p, false, NULL});
+    ck_assert_uint_eq(counts.newtons, 3 * MANY);
     nevh_system_free(s);
 }

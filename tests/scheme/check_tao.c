@@ -426,7 +426,8 @@ TEST_EACH(friction_scales_the_memory, 3) {
     memcpy(before, now, sizeof before);
     m->work.integrator->kernel->apply_friction(&m->work, factor);
     for (size_t i = 0; i < 8; i++) {
-        bool momentum = i / 2 == NEVH__TAO_CARRY_P || i / 2 == NEVH__TAO_Y;
+        bool momentum =
+            i / 2 == NEVH__TAO_COMPENSATION_P || i / 2 == NEVH__TAO_Y;
         ck_assert(now[i] == before[i] * (momentum ? factor[i % 2] : 1));
     }
     ck_assert(before[6] != 0 && before[12] == 1 && now[12] == 0);
