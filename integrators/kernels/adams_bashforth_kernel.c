@@ -103,7 +103,7 @@ static void remember(nevh_work *w, double h, const double slopes[],
 
 static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     double *slopes = w->scratch, *change = block(slopes, w, CHANGE_Q);
-    double *carry = w->memory, *state = block(slopes, w, END_DQ);
+    double *compensation = w->memory, *state = block(slopes, w, END_DQ);
     bool any = false;
     for (size_t lane = 0; lane < w->width; lane++)
         any |= ratio(w, h, lane) == 0;
@@ -117,8 +117,8 @@ static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     find_change(w, h);
     memcpy(state, q, w->size * sizeof *q); /* the ends are used up */
     memcpy(state + w->size, p, w->size * sizeof *p);
-    status = nevh_work_commit(w, w->size, q, change, carry, p, change + w->size,
-                              carry + w->size);
+    status = nevh_work_commit(w, w->size, q, change, compensation, p,
+                              change + w->size, compensation + w->size);
     if (!status)
         remember(w, h, slopes, state);
     return status;
