@@ -33,7 +33,7 @@ doc/nevh.3: $(reference_headers) doc/reference.awk doc/nevh.3.head
 	  { cat doc/nevh.3.head && \
 	    $(AWK) -v form=man -f doc/reference.awk $(reference_headers); } \
 	    >doc/nevh.tmp && mv doc/nevh.tmp doc/nevh.3
-MAINTAINERCLEANFILES = doc/nevh.3 doc/reference.texi
+MAINTAINERCLEANFILES = doc/nevh.3 doc/reference.texi web/kit.html
 
 # nevh(1) is what nevh --help says, and in tarballs.
 if HAVE_PAGE

@@ -34,6 +34,7 @@ dist_scenes_DATA = \
 # What configure makes for the command in the build tree.
 distclean-local:
 	test ! -h scenes || rm -f scenes
+	test ! -h web/kit.html || rm -f web/kit.html
 
 # What nevh hard runs, beside the scenes.
 harddir = $(scenesdir)/hard

@@ -178,6 +178,8 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_fit.sh \
 	tests/tool/nevh_data.sh \
 	tests/tool/nevh_report.sh \
+	tests/tool/nevh_page.sh \
+	tests/tool/nevh_page_browser.sh \
 	tests/tool/nevh_portrait.sh \
 	tests/tool/nevh_map.sh \
 	tests/tool/nevh_sweep_file.sh \
@@ -199,7 +201,8 @@ dist_check_SCRIPTS = \
 	tests/robust/valgrind.sh
 
 EXTRA_DIST += tests/build/outside.c tests/robust/long_sweeps.sh tests/support/interrupt.c tests/support/starve.c tests/support/formula.h tests/support/scene.h tests/support/shipped.h \
-	tests/support/nevh_support.sh tests/support/nevh_interrupt.sh tests/scene/bad tests/robust/fuzz
+	tests/support/nevh_support.sh tests/support/nevh_interrupt.sh \
+	tests/support/browser.mjs tests/support/try_page.mjs tests/scene/bad tests/robust/fuzz
 
 TESTS = $(all_suites) $(dist_check_SCRIPTS)
 TEST_EXTENSIONS = .sh

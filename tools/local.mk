@@ -77,6 +77,7 @@ tools_nevh_SOURCES = \
 	tools/report/report.c \
 	tools/report/report_html.c \
 	tools/report/page_html.c \
+	tools/report/live_page.c \
 	tools/ensemble/map.h \
 	tools/ensemble/map.c \
 	tools/ensemble/members.h \
@@ -135,7 +136,7 @@ tools_nevh_SOURCES = \
 	tools/orbit/flow.c \
 	tools/search/cost_plot.c
 tools_nevh_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE \
-	-DNEVH_SCENES='"$(scenesdir)"'
+	-DNEVH_SCENES='"$(scenesdir)"' -DNEVH_PAGE='"$(pkgdatadir)/page.html"'
 tools_nevh_LDADD = libnevh.la $(GSL_LIBS)
 
 # nevh with ranks of MPI, which mpirun nevh sweep becomes.

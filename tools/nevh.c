@@ -54,6 +54,8 @@ static const struct {
      "the steps of one integrator as a C program that needs nothing else"},
     {report, FOR_REPORT, "SCENE...",
      "what the other commands say of scenes, as one page of HTML"},
+    {live_page, FOR_PAGE, "SCENE",
+     "a live page in one file: the scene runs in a browser, offline"},
     {hard, FOR_HARD, "",
      "every integrator on cases that are hard to integrate"},
     {new_scene, FOR_NEW, "FILE", "makes a commented scene, FILE.nevh"},

@@ -7,7 +7,7 @@ narrow() {
     awk 'length($0) > 80 { print; wide = 1 } END { exit wide }' $work/out ||
         fails "is wider than 80 columns"
 }
-commands="compare run cost recommend gradients check effects section chaos sweep portrait flow reference export report frequencies fit hard new list"
+commands="compare run cost recommend gradients check effects section chaos sweep portrait flow reference export report page frequencies fit hard new list"
 
 exits 0 --help
 narrow

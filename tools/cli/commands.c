@@ -26,6 +26,7 @@ static const struct {
     {FOR_CHAOS, "chaos"},
     {FOR_FREQUENCIES, "frequencies"},
     {FOR_FIT, "fit"},
+    {FOR_PAGE, "page"},
 };
 
 const char *command_name(unsigned bit) {

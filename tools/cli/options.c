@@ -26,15 +26,17 @@ static const struct {
     reader *read;
     const char *help;
 } known[] = {
-    {"with", "A,B", OF_SCENES | FOR_NEW, read_with, "switch effects on"},
-    {"without", "A,B", OF_SCENES | FOR_NEW, read_without, "switch effects off"},
-    {"set", "NAME=VALUE", OF_SCENES | FOR_NEW, read_set,
+    {"with", "A,B", OF_SCENES | FOR_NEW | FOR_PAGE, read_with,
+     "switch effects on"},
+    {"without", "A,B", OF_SCENES | FOR_NEW | FOR_PAGE, read_without,
+     "switch effects off"},
+    {"set", "NAME=VALUE", OF_SCENES | FOR_NEW | FOR_PAGE, read_set,
      "change a parameter; several: A=1,B=2"},
-    {"start", "NAME=VALUE", OF_SCENES, read_start,
+    {"start", "NAME=VALUE", OF_SCENES | FOR_PAGE, read_start,
      "where a coordinate x, a momentum p_x or a velocity v_x starts"},
-    {"integrators", "A,B", OF_SCENES | FOR_HARD, read_integrators,
+    {"integrators", "A,B", OF_SCENES | FOR_HARD | FOR_PAGE, read_integrators,
      "see nevh list integrators; instead of the scene's"},
-    {"dt", "A,B", OF_SCENES, read_dt,
+    {"dt", "A,B", OF_SCENES | FOR_PAGE, read_dt,
      "time steps, instead of the scene's; formulas such as pi/50"},
     {"tolerance", "A,B",
      FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_SWEEP | FOR_FLOW | FOR_PORTRAIT |
@@ -43,7 +45,7 @@ static const struct {
      "of integrators that choose their steps; instead of the scene's"},
     {"t-end", "T", OF_SCENES, read_t_end,
      "the end, instead of the scene's; a formula"},
-    {"gradient", "A,B", OF_SCENES | FOR_HARD, read_gradient,
+    {"gradient", "A,B", OF_SCENES | FOR_HARD | FOR_PAGE, read_gradient,
      "central2, central4, ...; see nevh list gradients"},
     {"gradient-step", "D", OF_SCENES, read_gradient_step,
      "step D of the finite differences, (H(x+D) - H(x-D))/2D; found "
@@ -152,8 +154,8 @@ static const struct {
      "integrators. hard: each run"},
     {"format", "table|csv|json", OF_TABLES, read_format,
      "csv for run, section and sweep, table for others, if not given"},
-    {"output", "FILE", OF_TABLES | FOR_EXPORT | FOR_REPORT, read_file,
-     "write to FILE, when all of it is there; nevh run: as it goes"},
+    {"output", "FILE", OF_TABLES | FOR_EXPORT | FOR_REPORT | FOR_PAGE,
+     read_file, "write to FILE, when all of it is there; nevh run: as it goes"},
     {"quiet", NULL, OF_TABLES | FOR_NEW | FOR_PORTRAIT, read_quiet,
      "the table alone: no # lines, no words, no progress"},
     {"help", NULL, ~0u, read_help, "this text"},

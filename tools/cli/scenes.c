@@ -29,15 +29,20 @@ static bool is_folder(const char *name) {
 
 /* Beside the program: in a build tree in tools/, or installed in bin/, also
    where the whole of what is installed was moved; NULL: neither. */
-static char *folder_beside(void) {
+static char *path_beside(const char *built, const char *installed) {
     char *program = program_folder(), *found = NULL;
     const char *last = program ? strrchr(program, '/') : NULL;
     if (last && strcmp(last, "/tools") == 0)
-        found = text_print("%.*s/scenes", (int)(last - program), program);
+        found = text_print("%.*s/%s", (int)(last - program), program, built);
     else if (last)
-        found = text_print("%.*s/share/nevh/scenes", (int)(last - program),
-                           program);
+        found = text_print("%.*s/share/nevh/%s", (int)(last - program), program,
+                           installed);
     free(program);
+    return found;
+}
+
+static char *folder_beside(void) {
+    char *found = path_beside("scenes", "scenes");
     if (found && is_folder(found))
         return found;
     free(found);
@@ -77,6 +82,14 @@ void scenes_installed(list *names, list *files) {
 static bool is_file(const char *name) {
     struct stat found;
     return stat(name, &found) == 0 && !S_ISDIR(found.st_mode);
+}
+
+char *page_kit(void) {
+    char *beside = path_beside("web/kit.html", "page.html");
+    if (beside && is_file(beside))
+        return beside;
+    free(beside);
+    return text_print("%s", NEVH_PAGE);
 }
 
 int scenes_missing(void) {

@@ -18,9 +18,10 @@
        effects     effects.c, impact.c
        hard        hard.c
        report      report.c     other commands' pages and plots as HTML
+       page        live_page.c  a scene put into web/kit.html
        new, list   new.c, list.c
 
-   All but the last three begin with a plan (plan.h): scene, options and
+   All but the last four begin with a plan (plan.h): scene, options and
    defaults made into what is to be run.  Most end with a page: notes, a table
    (table.c), words.  Those that draw fill a plot (plot.h), which gnuplot
    draws.  FILE_private.h is shared by the files that are named FILE_*.c.
@@ -140,6 +141,7 @@ enum {
     FOR_REPORT = 1 << 16,
     FOR_PORTRAIT = 1 << 17,
     FOR_FREQUENCIES = 1 << 18,
+    FOR_PAGE = 1 << 19,
     FOR_FIT = 1 << 20,
     FOR_LAST = FOR_FIT
 };
@@ -250,10 +252,15 @@ void scenes_installed(list *names, list *files);
    when there is none. */
 char *scene_file(const char *beside, const char *name);
 
+/* The live page without a scene, beside this program or where it was configured
+   to be; to be freed.  Whether it is there is not known. */
+char *page_kit(void);
+
 typedef int command(const options *);
 command compare, list_command, check, effects, run_scene, export_scene, section,
     new_scene;
 command cost, recommend, gradients, hard, sweep, flow, portrait,
-    reference_command, report, chaos, frequencies_command, fit_command;
+    reference_command, report, chaos, frequencies_command, fit_command,
+    live_page;
 
 #endif

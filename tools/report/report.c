@@ -63,8 +63,7 @@ static const kind_of_part kinds[] = {
 };
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
-/* The whole file as text; NULL: there is none, or it is empty. */
-static char *read_text(const char *name) {
+char *text_read(const char *name) {
     FILE *f = fopen(name, "rb");
     size_t used = 0, room = 1 << 16, count = 1;
     char *text = f ? tool_allocate(room, 1) : NULL;
@@ -159,9 +158,9 @@ static report_part make_part(const report_work *w, const kind_of_part *kind,
     unlink(w->picture);
     report_part part = {.title = kind->title, .about = kind->about};
     part.status = run_heard(kind->run, &o, w->messages);
-    part.html = read_text(w->rows);
-    part.picture = read_text(w->picture);
-    part.messages = read_text(w->messages);
+    part.html = text_read(w->rows);
+    part.picture = text_read(w->picture);
+    part.messages = text_read(w->messages);
     part.command = command_of(w, scene, kind->arguments);
     return part;
 }

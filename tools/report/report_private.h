@@ -13,6 +13,9 @@ typedef struct {
     int status;
 } report_part;
 
+/* report.c: a whole file, to be freed; NULL: there is none, or it is empty. */
+char *text_read(const char *name);
+
 /* report_html.c: text with markup's characters written out. */
 void html_text(FILE *, const char *);
 void html_head(FILE *, const char *title);

@@ -1,0 +1,37 @@
+#!/bin/sh
+# The live page in a browser: offline, without errors, with nevh run's digits.
+
+. "${srcdir:-.}/tests/support/nevh_support.sh"
+
+test -f web/kit.html || test -f "$srcdir/web/kit.html" || {
+    echo "there is no web/kit.html: make page was not run"
+    exit 77
+}
+for one in chromium chromium-browser google-chrome; do
+    command -v $one >/dev/null 2>&1 && browser=$one && break
+done
+test -n "$browser" && command -v node >/dev/null 2>&1 || {
+    echo "pages are tried with chromium and node, which are not here"
+    exit 77
+}
+command=page
+
+exits 0 page pendulum -o $work/pendulum.html
+exits 0 page kepler -o $work/kepler.html
+exits 0 page double-pendulum -o $work/double-pendulum.html
+
+# The states that the page is to have: SCENE SCHEME DT T_END.
+wanted() {
+    exits 0 run $1 --portable --integrators $2 --dt $3 --t-end $4 --samples 2
+    tail -n 1 $work/out >$work/$1-$2.csv
+}
+wanted pendulum verlet 0.0625 6.25
+wanted pendulum rk4 0.0625 6.25
+wanted kepler verlet 0.03125 3.125
+wanted double-pendulum gauss4 0.015625 1.5625
+
+$limit node "$srcdir/tests/support/try_page.mjs" $browser $PWD/$work >$work/tried 2>&1 ||
+    { fails "is wrong in $browser"; cat $work/tried; }
+cat $work/tried
+
+exit $status

@@ -1,0 +1,156 @@
+/* nevh page: a scene as a live page, which computes in the reader's browser.
+
+   The page is made when nevh is built (web/kit.html); a line of it says where
+   the scene goes, as JSON.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "report_private.h"
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_SCHEMES = 4 };
+static const char mark[] = "@SCENE@\n";
+
+/* A string of JSON that no end of an element can be in. */
+static void put_string(FILE *f, const char *text) {
+    fputc('"', f);
+    for (; *text; text++)
+        if ((unsigned char)*text < ' ' || strchr("\"\\<>&", *text))
+            fprintf(f, "\\u%04x", (unsigned)(unsigned char)*text);
+        else
+            fputc(*text, f);
+    fputc('"', f);
+}
+
+static void put_list(FILE *f, const char *name, const list *items) {
+    if (!items->count)
+        return;
+    fprintf(f, ",\"%s\":[", name);
+    for (size_t i = 0; i < items->count; i++) {
+        fputs(i ? "," : "", f);
+        put_string(f, items->item[i]);
+    }
+    fputc(']', f);
+}
+
+/* Parameters and effects are in the text; a start is not, and is set again. */
+static void put_starts(FILE *f, const options *o) {
+    bool first = true;
+    fputs(",\"changes\":[", f);
+    for (size_t i = 0; i < o->settings.count; i++)
+        if (o->settings.item[i][0] == '@') {
+            fputs(first ? "[\"@\"," : ",[\"@\",", f);
+            put_string(f, o->settings.item[i] + 1);
+            fputc(']', f);
+            first = false;
+        }
+    fputc(']', f);
+}
+
+static void put_scene(FILE *f, const options *o, const char *text, double dt) {
+    fputs("{\"name\":", f);
+    put_string(f, o->operands.item[1]);
+    fputs(",\"text\":", f);
+    put_string(f, text);
+    put_starts(f, o);
+    put_list(f, "integrators", &o->integrators);
+    put_list(f, "gradients", &o->gradients);
+    if (o->dt.count)
+        fprintf(f, ",\"dt\":%.17g", dt);
+    fputs("}\n", f);
+}
+
+/* The page has neither GSL nor transforms of time. */
+static int check_schemes(const options *o) {
+    if (o->integrators.count > MOST_SCHEMES || o->gradients.count > 1 ||
+        o->dt.count > 1)
+        return tool_refuse("a page takes up to %d integrators, with one step "
+                           "and one gradient",
+                           MOST_SCHEMES);
+    for (size_t i = 0; i < o->integrators.count; i++) {
+        const char *name = o->integrators.item[i];
+        if (strncmp(name, "gsl-", 4) == 0 || strncmp(name, "tao", 3) == 0)
+            return tool_refuse("%s needs GSL, which a page does not have",
+                               name);
+        if (strchr(name, '+'))
+            return tool_refuse("%s: a page has no transforms of time", name);
+        if (!nevh_integrator_named(name))
+            return tool_refuse("unknown integrator %s; see nevh list "
+                               "integrators",
+                               name);
+    }
+    return TOOL_OK;
+}
+
+static int check_scene(nevh_scene *scene, const options *o) {
+    char *code = nevh_scene_code_path(scene, 0);
+    size_t n = nevh_scene_dof(scene);
+    double *start = tool_allocate(2 * n, sizeof *start);
+    int status = TOOL_OK;
+    if (code)
+        status = tool_refuse("%s: a page cannot compile effects in C",
+                             o->operands.item[1]);
+    else if (nevh_scene_start(scene, start, start + n))
+        status = scene_report(scene, o);
+    free(code);
+    free(start);
+    return status;
+}
+
+/* The page without a scene, cut at the mark. */
+static int read_kit(char **head, char **tail) {
+    char *name = page_kit();
+    char *text = name ? text_read(name) : NULL;
+    char *cut = text ? strstr(text, mark) : NULL;
+    int status = TOOL_OK;
+    if (!cut)
+        status = tool_refuse("this nevh was built without the live page; make "
+                             "page makes it where clang, lld and wasi-libc "
+                             "are");
+    else {
+        *cut = '\0';
+        *head = text;
+        *tail = cut + strlen(mark);
+    }
+    if (status)
+        free(text);
+    free(name);
+    return status;
+}
+
+static int write_live(const options *o, nevh_scene *scene) {
+    char *head = NULL, *tail = NULL;
+    double dt = 0;
+    if (check_scene(scene, o))
+        return TOOL_USAGE;
+    if (o->dt.count && scene_number(scene, o, o->dt.item[0], &dt))
+        return TOOL_USAGE;
+    if (o->dt.count && !(dt > 0 && isfinite(dt)))
+        return tool_refuse("--dt: %s is no step", o->dt.item[0]);
+    if (read_kit(&head, &tail))
+        return TOOL_USAGE;
+    char *text = tool_owned(nevh_scene_write(scene, NULL));
+    output out;
+    int status = output_open(&out, o->file) ? TOOL_USAGE : TOOL_OK;
+    if (!status) {
+        fputs(head, out.stream);
+        put_scene(out.stream, o, text, dt);
+        fputs(tail, out.stream);
+        status = output_close(&out, TOOL_OK);
+    }
+    free(text);
+    free(head);
+    return status;
+}
+
+int live_page(const options *o) {
+    nevh_scene *scene;
+    if (!o->file)
+        return tool_refuse("nevh page needs a file: -o FILE.html");
+    if (check_schemes(o) || scene_open(&scene, o))
+        return TOOL_USAGE;
+    int status = write_live(o, scene);
+    nevh_scene_free(scene);
+    return status;
+}

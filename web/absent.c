@@ -1,0 +1,139 @@
+/* nevh: what the live page's module is without: GSL, and compiled steps.
+
+   GSL cannot be linked for this target where Debian packages it for the machine
+   alone.  Its functions that the library refers to end in an error here, which
+   the library tells as it tells GSL's own.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "kernels/gsl_private.h"
+#include "native/native_private.h"
+#include "page.h"
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_multiroots.h>
+#include <gsl/gsl_sf_bessel.h>
+#include <gsl/gsl_sf_ellint.h>
+#include <math.h>
+
+const char *page_absent;
+
+static int absent(const char *what) {
+    page_absent = what;
+    return GSL_EFAILED;
+}
+
+/* The reference integrators of GSL. */
+static int refuse(nevh_work *w) {
+    absent("the integrators of GSL");
+    return nevh_work_fail(w, NEVH_ESTRUCT, "GSL is not in the page");
+}
+const nevh_kernel nevh__gsl_kernel = {.plan = refuse};
+
+/* A solver of roots that finds none. */
+static const char roots[] = "GSL's solver for several unknowns";
+static gsl_multiroot_fdfsolver solver;
+static gsl_vector vector;
+const gsl_multiroot_fdfsolver_type *gsl_multiroot_fdfsolver_hybridsj;
+gsl_multiroot_fdfsolver *
+gsl_multiroot_fdfsolver_alloc(const gsl_multiroot_fdfsolver_type *type,
+                              size_t n) {
+    (void)type, (void)n;
+    return &solver;
+}
+void gsl_multiroot_fdfsolver_free(gsl_multiroot_fdfsolver *s) {
+    (void)s;
+}
+int gsl_multiroot_fdfsolver_set(gsl_multiroot_fdfsolver *s,
+                                gsl_multiroot_function_fdf *f,
+                                const gsl_vector *x) {
+    (void)s, (void)f, (void)x;
+    return absent(roots);
+}
+int gsl_multiroot_fdfsolver_iterate(gsl_multiroot_fdfsolver *s) {
+    (void)s;
+    return absent(roots);
+}
+gsl_vector *gsl_vector_calloc(const size_t n) {
+    (void)n;
+    return &vector;
+}
+void gsl_vector_free(gsl_vector *v) {
+    (void)v;
+}
+double gsl_vector_get(const gsl_vector *v, const size_t i) {
+    (void)v, (void)i;
+    return NAN;
+}
+void gsl_vector_set(gsl_vector *v, const size_t i, double x) {
+    (void)v, (void)i, (void)x;
+}
+void gsl_vector_set_zero(gsl_vector *v) {
+    (void)v;
+}
+int gsl_vector_memcpy(gsl_vector *to, const gsl_vector *from) {
+    (void)to, (void)from;
+    return absent(roots);
+}
+int gsl_vector_sub(gsl_vector *a, const gsl_vector *b) {
+    (void)a, (void)b;
+    return absent(roots);
+}
+int gsl_vector_scale(gsl_vector *a, const double x) {
+    (void)a, (void)x;
+    return absent(roots);
+}
+int gsl_matrix_set_col(gsl_matrix *m, const size_t j, const gsl_vector *v) {
+    (void)m, (void)j, (void)v;
+    return absent(roots);
+}
+
+/* Special functions. */
+static const char bessel[] = "Bessel functions";
+static const char elliptic[] = "elliptic integrals";
+int gsl_sf_bessel_J0_e(const double x, gsl_sf_result *result) {
+    (void)x, (void)result;
+    return absent(bessel);
+}
+int gsl_sf_bessel_J1_e(const double x, gsl_sf_result *result) {
+    (void)x, (void)result;
+    return absent(bessel);
+}
+int gsl_sf_ellint_Kcomp_e(double k, gsl_mode_t mode, gsl_sf_result *result) {
+    (void)k, (void)mode, (void)result;
+    return absent(elliptic);
+}
+int gsl_sf_ellint_Ecomp_e(double k, gsl_mode_t mode, gsl_sf_result *result) {
+    (void)k, (void)mode, (void)result;
+    return absent(elliptic);
+}
+int gsl_sf_ellint_Dcomp_e(double k, gsl_mode_t mode, gsl_sf_result *result) {
+    (void)k, (void)mode, (void)result;
+    return absent(elliptic);
+}
+double gsl_cdf_ugaussian_Pinv(const double x) {
+    (void)x;
+    absent("normal distributions");
+    return NAN;
+}
+
+/* Steps that would have to be compiled. */
+void nevh__native_plan(nevh_work *w, char why[NEVH__WHY_NATIVE]) {
+    (void)w;
+    why[0] = '\0';
+}
+void nevh__native_free(nevh__native *x) {
+    (void)x;
+}
+size_t nevh__native_run(nevh_work *w, double t0, double h, size_t from,
+                        size_t steps, double q[], double p[]) {
+    (void)w, (void)t0, (void)h, (void)from, (void)steps, (void)q, (void)p;
+    return 0;
+}
+bool nevh__native_write(nevh__writer *w, nevh_work *work) {
+    (void)w, (void)work;
+    return false;
+}
+bool nevh__write_program(nevh__writer *w, nevh_work *work,
+                         const nevh_program *program) {
+    (void)w, (void)work, (void)program;
+    return false;
+}

@@ -1,0 +1,311 @@
+// nevh: the live page's controls.
+// SPDX-License-Identifier: GPL-3.0-or-later
+"use strict";
+
+const element = (name, properties = {}, ...children) => {
+  const made = Object.assign(document.createElement(name), properties);
+  made.append(...children);
+  return made;
+};
+
+// ---- what is shown of a scene ----
+function show() {
+  document.title = (scene.title || given.name) + " - nevh";
+  at("title").textContent = scene.title || given.name;
+  at("source").textContent = scene.source;
+  at("text").value = S.text;
+  at("scene-caption").textContent = scene.parts.length
+    ? "The configuration" + (scene.parts.some((p) => p.kind === "bob")
+      ? ": drag a body to a new start." : ".") : "No picture is in the scene.";
+  at("phase-caption").textContent = "Coordinate and momentum" +
+    (scene.coordinates.length === 1 ? ", over levels of H" : "") +
+    ": drag to a new start.";
+  at("scene").setAttribute("aria-label", "The configuration, by scheme");
+  at("error").setAttribute("aria-label", "Energy errors against time");
+  at("phase").setAttribute("aria-label", "Phase plane");
+  showEffects();
+  showSchemes();
+  at("plane").replaceChildren(...scene.coordinates.map((c, k) =>
+    new Option(c.name, k, false, k === S.plane)));
+  at("plane-of").hidden = scene.coordinates.length === 1;
+  at("exact").checked = S.exact;
+  at("disc").checked = S.disc;
+  at("gradient").value = S.gradient;
+  showSliders();
+}
+function showEffects() {
+  const fields = [], numbers = [];
+  for (const e of scene.equations) {
+    if (e.section === "effects") {
+      const on = element("input", { type: "checkbox", checked: e.on });
+      on.setAttribute("aria-label", "effect " + e.name + " is on");
+      on.onchange = () => use(S.text, [...S.changes.filter(([mark, what]) =>
+        !"+-".includes(mark) || what !== e.name), [on.checked ? "+" : "-", e.name]])
+        .then(show);
+      const text = element("input", { type: "text", value: e.value, name: e.name,
+        spellcheck: false });
+      text.setAttribute("aria-label", "formula of " + e.name);
+      fields.push(on, element("span", {}, e.name + " ="), text);
+    } else if (e.section === "parameters" && /^[-+.\de]+$/i.test(e.value)) {
+      const value = element("input", { type: "number", value: e.value, step: "any",
+        size: 8 });
+      value.style.width = "7rem";
+      value.onchange = () => use(S.text, [...S.changes.filter(([mark, what]) =>
+        mark !== "=" || what.split("=")[0] !== e.name),
+      ["=", e.name + "=" + value.value]]);
+      numbers.push(element("label", {}, e.name, value));
+    }
+  }
+  at("effects").replaceChildren(...fields);
+  at("parameters").replaceChildren(...numbers);
+}
+function showSchemes() {
+  const many = S.schemes.length;
+  const choose = (i) => {
+    const menu = element("select");
+    menu.setAttribute("aria-label", "scheme " + (i + 1));
+    if (i > 0) menu.append(new Option("none", ""));
+    for (const s of scene.integrators)
+      menu.append(new Option(s.name + ", order " + s.order, s.name, false,
+        s.name === S.schemes[i]));
+    if (i >= many) menu.value = "";
+    menu.onchange = () => {
+      S.schemes[i] = menu.value;
+      S.schemes = S.schemes.filter(Boolean);
+      showSchemes();
+      race();
+    };
+    const mark = element("span", { className: "mark" }, NEVH_MARKS[i]);
+    mark.style.color = nevhColour(i);
+    return element("label", {}, mark, menu);
+  };
+  at("schemes").replaceChildren(...Array.from({ length: Math.min(4, many + 1) },
+    (_, i) => choose(i)));
+}
+// The slider goes by equal ratios, up to the limit.
+const stepOf = (value) => +(S.limit * 10 ** (3 * (value / 100 - 1))).toPrecision(4);
+function showSliders() {
+  at("dt").value = 100 * (1 + Math.log10(S.dt / S.limit) / 3);
+  at("dt-text").textContent = "dt = " + nevhNumber(S.dt) + unit(scene.t_label);
+  at("speed").value = S.speed;
+  at("speed-text").textContent = nevhNumber(seconds()) +
+    (scene.t_label ? " " + scene.t_label : "") + " a second";
+}
+function setPlaying(on) {
+  playing = on;
+  at("play").setAttribute("aria-pressed", on);
+  at("play").textContent = on ? "Pause" : "Play";
+  told = 0;
+}
+
+// ---- formulas ----
+// The scene's text, with other formulas for its effects.
+function rewritten() {
+  let section = "";
+  const wanted = new Map(Array.from(at("effects").querySelectorAll(
+    "input[type=text]"), (field) => [field.name, field.value]));
+  const lines = [];
+  for (const line of S.text.split("\n")) {
+    const head = line.match(/^\s*\[(\w+)\]/);
+    if (head) section = head[1];
+    const known = section === "effects" && line.match(/^\s*([^=#]+?)\s*=/);
+    if (known && wanted.has(known[1]) && before(known[1]) !== wanted.get(known[1]))
+      lines.push(known[1] + " = " + wanted.get(known[1]));
+    else lines.push(line);
+  }
+  return lines.join("\n");
+}
+const before = (name) => scene.equations.find((e) => e.section === "effects" &&
+  e.name === name)?.value;
+
+// ---- drags: the coordinates that bring a body nearest to the pointer ----
+async function pull(part, x, y) {
+  const n = scene.coordinates.length, from = offsetOf(part);
+  const state = (S.start || startOf()).slice();
+  for (let round = 0; round < 6; round++) {
+    const here = (await ask({ ask: "picture", at: state })).picture;
+    const r = [x - here[from], y - here[from + 1]], g = [];
+    for (let k = 0; k < n; k++) {
+      const moved = state.slice(), by = 1e-5 * Math.max(1, Math.abs(state[k]));
+      moved[k] += by;
+      const there = (await ask({ ask: "picture", at: moved })).picture;
+      g.push([(there[from] - here[from]) / by, (there[from + 1] - here[from + 1]) / by]);
+    }
+    // The smallest change of the coordinates: g'(g g' + tiny)^-1 r.
+    let [a, b, d] = [0, 0, 0];
+    for (const [u, v] of g) { a += u * u; b += u * v; d += v * v; }
+    const tiny = 1e-6 * (a + d) + 1e-30;
+    a += tiny; d += tiny;
+    const det = a * d - b * b;
+    const l = [(d * r[0] - b * r[1]) / det, (a * r[1] - b * r[0]) / det];
+    g.forEach(([u, v], k) => {
+      const change = u * l[0] + v * l[1];
+      if (Number.isFinite(change)) state[k] += change;
+    });
+  }
+  for (let k = n; k < 2 * n; k++) state[k] = startOf()[k];
+  return state;
+}
+const startOf = () => [...scene.coordinates.map((c) => c.start[0]),
+  ...scene.coordinates.map((c) => c.start[1])];
+const offsetOf = (part) => scene.parts.slice(0, part).reduce((sum, p) =>
+  sum + p.count, 0);
+
+function bodyAt(x, y) {
+  let best = -1, least = 28 / configuration.sx;
+  scene.parts.forEach((part, i) => {
+    if (part.kind !== "bob" || !pictures[0]) return;
+    const from = offsetOf(i);
+    const far = Math.hypot(pictures[0][from] - x, pictures[0][from + 1] - y);
+    if (far < least) [best, least] = [i, far];
+  });
+  return best;
+}
+function restartAt(state) {
+  S.start = state;
+  return race().then(() => report(true));
+}
+function listenToDrags() {
+  let body = -1, moving = false, next = null;
+  const drag = async () => { // one at a time, the latest place
+    if (moving) return;
+    moving = true;
+    while (next) {
+      const to = next;
+      next = null;
+      await restartAt(await to());
+    }
+    moving = false;
+  };
+  at("scene").onpointerdown = (event) => {
+    body = bodyAt(...configuration.under(event));
+    if (body >= 0) at("scene").setPointerCapture(event.pointerId);
+  };
+  at("scene").onpointermove = (event) => {
+    if (body < 0) return;
+    const place = configuration.under(event), part = body;
+    setPlaying(false);
+    next = () => pull(part, ...place);
+    drag();
+  };
+  at("scene").onpointerup = () => { body = -1; };
+  let inPlane = false;
+  const toPlane = (event) => {
+    const [q, p] = phase.under(event), state = (S.start || startOf()).slice();
+    state[S.plane] = q;
+    state[scene.coordinates.length + S.plane] = p;
+    setPlaying(false);
+    next = async () => state;
+    drag();
+  };
+  at("phase").onpointerdown = (event) => {
+    inPlane = true;
+    at("phase").setPointerCapture(event.pointerId);
+    toPlane(event);
+  };
+  at("phase").onpointermove = (event) => { if (inPlane) toPlane(event); };
+  at("phase").onpointerup = () => { inPlane = false; };
+}
+// Arrows in a picture move the start: the coordinate, and its momentum.
+function nudge(event) {
+  const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1],
+    ArrowDown: [0, -1] }[event.key];
+  if (!way) return;
+  event.preventDefault();
+  const state = (S.start || startOf()).slice(), n = scene.coordinates.length;
+  const box = phaseBox || [-1, 1, -1, 1];
+  state[S.plane] += way[0] * (box[1] - box[0]) / 100;
+  state[n + S.plane] += way[1] * (box[3] - box[2]) / 100;
+  setPlaying(false);
+  restartAt(state);
+}
+
+// ---- files ----
+function save(name, type, text) {
+  const link = element("a", { download: name,
+    href: URL.createObjectURL(new Blob([text], { type })) });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}
+function csv() {
+  const lines = ["# " + command(), "scheme,t,energy_error"];
+  histories.forEach((h, i) => h.t.forEach((t, j) => {
+    if (!(list[i].width > 1))
+      lines.push(list[i].scheme + "," + t + "," + h.most[j]);
+  }));
+  return lines.join("\n") + "\n";
+}
+
+// ---- all of it ----
+function listen() {
+  at("play").onclick = () => setPlaying(!playing);
+  at("step").onclick = () => { setPlaying(false); go(1).then(() => report(true)); };
+  at("restart").onclick = () => race();
+  at("speed").oninput = () => { S.speed = +at("speed").value; showSliders(); };
+  at("dt").oninput = () => {
+    S.dt = stepOf(+at("dt").value);
+    showSliders();
+    race();
+  };
+  at("exact").onchange = () => { S.exact = at("exact").checked; race(); };
+  at("disc").onchange = () => { S.disc = at("disc").checked; race(); };
+  at("plane").onchange = () => { S.plane = +at("plane").value; race(); };
+  at("gradient").onchange = () => { S.gradient = at("gradient").value; race(); };
+  at("formulas").onsubmit = (event) => {
+    event.preventDefault();
+    use(rewritten(), S.changes);
+  };
+  at("use").onclick = () => use(at("text").value, []);
+  at("save").onclick = () => save("own.nevh", "text/plain", at("text").value);
+  at("csv").onclick = () => save(given.name + ".csv", "text/csv", csv());
+  at("share").onclick = () => {
+    putFragment();
+    navigator.clipboard?.writeText(location.href).catch(() => {});
+  };
+  at("scene").onkeydown = at("phase").onkeydown = nudge;
+  document.onkeydown = (event) => {
+    if (event.target.closest("input,textarea,select,button") || event.ctrlKey ||
+      event.metaKey || event.altKey) return;
+    const key = { " ": "play", s: "step", r: "restart" }[event.key.toLowerCase()];
+    if (key) { event.preventDefault(); at(key).click(); }
+  };
+  listenToDrags();
+}
+const putFragment = () => window.history.replaceState(null, "", fragment());
+
+// #test=STEPS: takes them, and leaves what came of it in the page.
+async function test() {
+  let left = S.test;
+  while (left > 0) {
+    const done = await go(left);
+    if (done === 0) break;
+    left -= done;
+  }
+  draw();
+  const text = (v) => v === undefined ? "" : String(v);
+  document.body.append(element("pre", { id: "result" }, JSON.stringify({
+    steps, message: at("message").textContent, wrong: at("wrong").textContent,
+    runs: S.schemes.map((scheme, i) => ({ scheme, t: text(rows[i]?.[0]),
+      energy: text(rows[i]?.[1]), error: text(rows[i]?.[2]),
+      state: rows[i] ? Array.from(rows[i].slice(4), String) : [] })),
+  })));
+}
+async function begin() {
+  readFragment();
+  const loaded = await startWorker();
+  if (!loaded.ok) throw new Error(loaded.message);
+  listen();
+  let fine = await use(S.text, S.changes);
+  if (!fine && (S.text !== given.text || S.changes.length)) {
+    const why = at("wrong").textContent;
+    await use(given.text, []);
+    at("wrong").textContent = why;
+  }
+  window.nevhFirst = now();
+  if (S.test >= 0) return test();
+  requestAnimationFrame((time) => { last = time; frame(time); });
+  setPlaying(!matchMedia("(prefers-reduced-motion: reduce)").matches);
+}
+begin().catch((error) => {
+  at("message").textContent = "The page cannot start: " + error.message;
+});

@@ -1,0 +1,169 @@
+/* nevh: the live page's module: what is in a scene, as JSON.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "page.h"
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct {
+    char *text;
+    size_t used, room;
+    bool lacking; /* memory */
+} json;
+
+static void put_bytes(json *j, const char *bytes, size_t count) {
+    while (!j->lacking && j->used + count + 1 > j->room) {
+        char *more = realloc(j->text, j->room = 2 * j->room + 1000);
+        j->lacking = !more;
+        j->text = more ? more : j->text;
+    }
+    if (j->lacking)
+        return;
+    memcpy(j->text + j->used, bytes, count);
+    j->text[j->used += count] = '\0';
+}
+
+__attribute__((format(printf, 2, 3))) static void put(json *j,
+                                                      const char *format, ...) {
+    char line[400];
+    va_list arguments;
+    va_start(arguments, format);
+    int count = vsnprintf(line, sizeof line, format, arguments);
+    va_end(arguments);
+    put_bytes(j, line, count > 0 ? (size_t)count : 0);
+}
+
+static void put_string(json *j, const char *text) {
+    put_bytes(j, "\"", 1);
+    for (; text && *text; text++)
+        if ((unsigned char)*text < ' ')
+            put(j, "\\u%04x", (unsigned)*text);
+        else if (*text == '"' || *text == '\\')
+            put(j, "\\%c", *text);
+        else
+            put_bytes(j, text, 1);
+    put_bytes(j, "\"", 1);
+}
+
+static void put_key(json *j, const char *name, const char *text) {
+    put(j, ",\"%s\":", name);
+    put_string(j, text);
+}
+
+static void put_number(json *j, double number) {
+    if (isfinite(number))
+        put(j, "%.17g", number);
+    else
+        put(j, "null");
+}
+
+static void put_list(json *j, const char *name, size_t count,
+                     const char *const item[]) {
+    put(j, ",\"%s\":[", name);
+    for (size_t i = 0; i < count; i++) {
+        put(j, i ? "," : "");
+        put_string(j, item[i]);
+    }
+    put(j, "]");
+}
+
+static void put_coordinates(json *j, const page *g) {
+    put(j, ",\"coordinates\":[");
+    for (size_t k = 0; k < g->n; k++) {
+        const char *name = nevh_scene_coordinate(g->scene, k);
+        put(j, "%s{\"start\":[", k ? "," : "");
+        put_number(j, g->start ? g->start[k] : NAN);
+        put(j, ",");
+        put_number(j, g->start ? g->start[g->n + k] : NAN);
+        put(j, "],\"period\":%.17g", nevh_scene_period(g->scene, k));
+        put_key(j, "name", name);
+        put_key(j, "label", nevh_scene_label(g->scene, name));
+        put(j, "}");
+    }
+    put(j, "]");
+}
+
+static void put_equations(json *j, const page *g) {
+    put(j, ",\"equations\":[");
+    for (size_t i = 0; i < nevh_scene_equation_count(g->scene); i++) {
+        nevh_scene_equation e = nevh_scene_equation_at(g->scene, i);
+        put(j, "%s{\"on\":%s", i ? "," : "", e.on ? "true" : "false");
+        put_key(j, "section", e.section);
+        put_key(j, "name", e.name);
+        put_key(j, "value", e.value);
+        put(j, "}");
+    }
+    put(j, "]");
+}
+
+static void put_parts(json *j, const page *g) {
+    put(j, ",\"parts\":[");
+    for (size_t i = 0; i < nevh_scene_part_count(g->scene); i++) {
+        nevh_scene_part part = nevh_scene_part_at(g->scene, i);
+        put(j, "%s{\"count\":%zu", i ? "," : "", part.count);
+        put_key(j, "kind", part.kind);
+        put_key(j, "name", part.name);
+        put_list(j, "items", part.count, part.item);
+        put(j, "}");
+    }
+    put(j, "]");
+}
+
+/* Those that need GSL are not in the module. */
+static bool is_absent(const char *name) {
+    return strncmp(name, "gsl-", 4) == 0 || strncmp(name, "tao", 3) == 0;
+}
+
+static void put_integrators(json *j) {
+    const nevh_integrator *const *all = nevh_integrators();
+    bool first = true;
+    put(j, ",\"integrators\":[");
+    for (; *all; all++) {
+        const char *name = nevh_integrator_name(*all);
+        if (is_absent(name))
+            continue;
+        put(j, "%s{\"order\":%d,\"fixed\":%s", first ? "" : ",",
+            nevh_integrator_order(*all),
+            nevh_integrator_needs_tolerance(*all) ? "false" : "true");
+        put_key(j, "name", name);
+        put_key(j, "symplectic",
+                nevh_claim_name(nevh_integrator_symplectic(*all)));
+        put(j, "}");
+        first = false;
+    }
+    put(j, "]");
+}
+
+static void put_run(json *j, const nevh_scene_run *run) {
+    put(j, ",\"run\":{\"t_start\":%.17g,\"t_end\":", run->t_start);
+    put_number(j, run->t_end);
+    put(j, ",\"dt\":[");
+    for (size_t i = 0; i < run->dts; i++)
+        put(j, "%s%.17g", i ? "," : "", run->dt[i]);
+    put(j, "]");
+    put_list(j, "integrators", run->integrators, run->integrator);
+    put_list(j, "gradients", run->gradients, run->gradient);
+    put(j, "}");
+}
+
+char *page_scene_text(page *g) {
+    json j = {0};
+    put(&j, "{\"balance\":%s", g->balance ? "true" : "false");
+    put_key(&j, "title", nevh_scene_title(g->scene));
+    put_key(&j, "source", nevh_scene_source(g->scene));
+    put_key(&j, "t_label", nevh_scene_label(g->scene, "t"));
+    put_key(&j, "energy_label", nevh_scene_label(g->scene, "energy"));
+    put_coordinates(&j, g);
+    put_equations(&j, g);
+    put_parts(&j, g);
+    put_integrators(&j);
+    if (g->run)
+        put_run(&j, g->run);
+    put(&j, "}");
+    if (!j.lacking)
+        return j.text;
+    free(j.text);
+    return NULL;
+}

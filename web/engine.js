@@ -1,0 +1,140 @@
+// nevh: what the live page computes, in a worker: scenes are read and orbits
+// advanced by the module, by numbers of steps, never by the clock.
+// SPDX-License-Identifier: GPL-3.0-or-later
+"use strict";
+
+// send(message, buffers) posts an answer; returns what takes requests.
+function nevhEngine(send) {
+  const BUDGET = 12; // milliseconds in which a request takes steps
+  let x, page = 0, n = 0, parts = 0, runs = [];
+  const numbers = (at, count) => new Float64Array(x.memory.buffer, at, count);
+
+  function textOf(at) {
+    const bytes = new Uint8Array(x.memory.buffer, at);
+    return new TextDecoder().decode(bytes.slice(0, bytes.indexOf(0)));
+  }
+  function withTexts(texts, call) {
+    const at = texts.map((text) => {
+      const bytes = new TextEncoder().encode(text);
+      const to = x.page_take(bytes.length + 1);
+      if (!to) throw new Error("out of memory");
+      const memory = new Uint8Array(x.memory.buffer, to, bytes.length + 1);
+      memory.set(bytes);
+      memory[bytes.length] = 0;
+      return to;
+    });
+    const result = call(...at);
+    at.forEach((memory) => x.page_release(memory));
+    return result;
+  }
+  const fault = () => ({ ok: false, message: textOf(x.page_message(page)) });
+
+  async function load({ module }) {
+    // The C library refers to files, of which there are none: EBADF.
+    const none = new Proxy({}, { get: () => () => 8 });
+    const made = await WebAssembly.instantiate(module,
+      { wasi_snapshot_preview1: none });
+    x = (made.instance || made).exports;
+    x._initialize();
+    return { ok: true };
+  }
+
+  // A scene, changed: [["=", "g=1"], ["-", "drag"], ["@", "x=2"]].
+  function open({ name, text, changes }) {
+    if (page) x.page_close(page);
+    runs = [];
+    page = withTexts([name, text], (a, b) => x.page_open(a, b));
+    if (!page) throw new Error("out of memory");
+    if (x.page_status(page)) return fault();
+    for (const [mark, what] of changes)
+      if (withTexts([what], (at) =>
+        x.page_change(page, mark.charCodeAt(0), at))) return fault();
+    if (x.page_begin(page)) return fault();
+    n = x.page_dof(page);
+    const scene = JSON.parse(textOf(x.page_describe(page)));
+    parts = scene.parts.reduce((sum, part) => sum + part.count, 0);
+    return { ok: true, scene };
+  }
+
+  // Rows of numbers: t, energy, error, status, 2n of the state.
+  const state = (slot, width) =>
+    numbers(x.page_state(page, slot), 4 + 2 * n * width);
+  function pictureOf(row) {
+    if (!parts) return [];
+    const at = x.page_take(16 * n);
+    numbers(at, 2 * n).set(row.subarray(4));
+    const shown = numbers(x.page_picture(page, row[0], at), parts).slice();
+    x.page_release(at);
+    return shown;
+  }
+
+  function race({ start, list }) {
+    if (start) numbers(x.page_start(page), 2 * n).set(start);
+    runs = list.map((r, slot) => {
+      const status = withTexts([r.scheme, r.gradient], (scheme, gradient) =>
+        x.page_race(page, slot, scheme, gradient, r.h, r.tolerance || 1e-9,
+          r.width || 1, r.k || 0, r.dq || 0, r.dp || 0));
+      return status ? { ...fault(), width: 0 }
+        : { ok: true, message: "", width: r.width || 1 };
+    });
+    return { ok: true, runs: runs.map((r) => ({ ...r })), ...now() };
+  }
+
+  // The states as they are.
+  function now() {
+    const states = runs.map((r, slot) =>
+      r.width ? state(slot, r.width).slice() : null);
+    return {
+      states,
+      pictures: states.map((row, slot) =>
+        row && runs[slot].width === 1 ? pictureOf(row) : null),
+    };
+  }
+
+  // Up to `steps` steps of all runs, observed after each `every`; fewer where the
+  // time is up.
+  function go({ steps, every }) {
+    const began = performance.now(), samples = runs.map(() => []);
+    let done = 0;
+    while (done < steps && (done === 0 || performance.now() - began < BUDGET)) {
+      const count = Math.min(every, steps - done);
+      runs.forEach((r, slot) => {
+        if (!r.width || !r.ok) return;
+        if (x.page_advance(page, slot, count)) Object.assign(r, fault());
+        if (r.width === 1) samples[slot].push(...state(slot, 1));
+      });
+      done += count;
+    }
+    return { ok: true, done, busy: performance.now() - began,
+      runs: runs.map((r) => ({ ...r })),
+      samples: samples.map((rows) => new Float64Array(rows)), ...now() };
+  }
+
+  function levels({ at, k, box, nx, ny }) {
+    const memory = x.page_take(16 * n);
+    numbers(memory, 2 * n).set(at);
+    const values = x.page_levels(page, memory, k, ...box, nx, ny);
+    x.page_release(memory);
+    return { ok: true, values: numbers(values, nx * ny).slice() };
+  }
+
+  // The picture of a state that is dragged.
+  function picture({ at }) {
+    const row = new Float64Array(4 + 2 * n);
+    row.set(at, 4);
+    return { ok: true, picture: pictureOf(row) };
+  }
+
+  const known = { load, open, race, go, levels, picture };
+  return async function take(request) {
+    let answer;
+    try {
+      answer = await known[request.ask](request);
+    } catch (error) {
+      answer = { ok: false, broken: true, message: error instanceof
+        WebAssembly.RuntimeError ? "This takes more than the page has: memory, " +
+        "or depth of the stack." : String(error.message || error) };
+    }
+    send({ ...answer, number: request.number });
+  };
+}
