@@ -1,5 +1,6 @@
 nevhincludedir = $(includedir)/nevh
 nevhinclude_HEADERS = \
+	include/nevh/binding.h \
 	include/nevh/body.h \
 	include/nevh/certain.h \
 	include/nevh/simd.h \

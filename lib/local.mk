@@ -140,7 +140,10 @@ libnevh_core_la_SOURCES = \
 	lib/run/friction_step.c \
 	lib/run/save.c \
 	lib/run/run.c \
+	lib/run/branch_private.h \
+	lib/run/branch.c \
 	lib/run/until.c \
+	lib/run/run_at.c \
 	lib/run/section_private.h \
 	lib/run/section.c \
 	lib/run/section_branch.c \
@@ -217,7 +220,9 @@ libnevh_core_la_SOURCES = \
 	lib/scene/variant_alike.c \
 	lib/scene/solve.c \
 	lib/scene/sweep.c \
-		lib/scene/crew.c \
+	lib/scene/sweep_keep.c \
+	lib/scene/binding.c \
+	lib/scene/crew.c \
 	lib/scene/member.c \
 	lib/scene/scene.c
 

@@ -47,6 +47,7 @@ suites = \
 	tests/native/check_native \
 	tests/run/check_run \
 	tests/run/check_until \
+	tests/run/check_run_at \
 	tests/run/check_section \
 	tests/ensemble/check_random \
 	tests/ensemble/check_ensemble \
@@ -137,6 +138,7 @@ check_LTLIBRARIES += tests/support/libsupport.la
 tests_support_libsupport_la_SOURCES = tests/support/support.c tests/support/support.h \
 	tests/support/lanes.c tests/support/lanes.h \
 	tests/support/damped.h tests/support/driven.h tests/support/state.h \
+	tests/support/setting.h \
 	tests/support/hard.h
 if HAVE_WRAP
 memory_suite = tests/robust/check_memory
@@ -195,12 +197,13 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_hard.sh \
 	tests/tool/nevh_cost.sh \
 	tests/tool/nevh_recommend.sh \
+	tests/python/python.sh \
 	tests/build/pkgconfig.sh \
 	tests/build/install.sh \
 	tests/robust/effects_off.sh \
 	tests/robust/valgrind.sh
 
-EXTRA_DIST += tests/build/outside.c tests/robust/long_sweeps.sh tests/support/interrupt.c tests/support/starve.c tests/support/formula.h tests/support/scene.h tests/support/shipped.h \
+EXTRA_DIST += tests/python/module.py tests/build/outside.c tests/robust/long_sweeps.sh tests/support/interrupt.c tests/support/starve.c tests/support/formula.h tests/support/scene.h tests/support/shipped.h \
 	tests/support/nevh_support.sh tests/support/nevh_interrupt.sh \
 	tests/support/browser.mjs tests/support/try_page.mjs tests/scene/bad tests/robust/fuzz
 

@@ -7,6 +7,7 @@
 #ifndef NEVH_H
 #define NEVH_H
 
+#include <nevh/binding.h>
 #include <nevh/certain.h>
 #include <nevh/chaos.h>
 #include <nevh/diagnose.h>

@@ -159,7 +159,23 @@ NEVH_API int nevh_run_until(nevh_stepper *, double t0, double h, double t_end,
                             double q[], double p[],
                             const nevh_observer observers[],
                             size_t n_observers);
-/* Steps that the last nevh_run or nevh_run_until completed. */
+/* As nevh_run_until, of one orbit, whose states at given times are kept.  A time
+   between two steps is reached by a shorter step that branches off, so that the
+   orbit does not depend on the times.
+   times    in, count, in the order in which the run passes them, from t0 to
+            t_end; may be equal
+   states   out, 2n x count: states[k*count + i] at times[i], coordinates first,
+            then momenta
+   kept     out: how many of them there are, also where the run failed or was
+            stopped; NULL: not wanted
+   returns  as nevh_run_until; NEVH_EINVAL where a time is out of order, or the
+            stepper's width is not 1
+   cost     a step for each time between two steps */
+NEVH_API int nevh_run_at(nevh_stepper *, double t0, double h, double t_end,
+                         const double times[], size_t count, double states[],
+                         size_t *kept, double q[], double p[],
+                         const nevh_observer observers[], size_t n_observers);
+/* Steps that the last nevh_run, nevh_run_until or nevh_run_at completed. */
 NEVH_API size_t nevh_stepper_taken(const nevh_stepper *);
 
 #ifdef __cplusplus

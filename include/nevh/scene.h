@@ -257,6 +257,11 @@ NEVH_API bool nevh_scene_stops(nevh_scene *);
 NEVH_API const char *nevh_scene_stop_text(const nevh_scene *);
 NEVH_API int nevh_scene_stop_reached(nevh_scene *, double t, const double q[],
                                      const double p[], bool *reached);
+/* A nevh_observe_fn that ends a run there; data is the nevh_scene.  Where the
+   formula cannot be evaluated the scene carries that status, and the run ends,
+   too. */
+NEVH_API int nevh_scene_stop_observe(void *scene, size_t step, double t,
+                                     const double q[], const double p[]);
 
 #ifdef __cplusplus
 }

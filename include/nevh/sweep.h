@@ -96,6 +96,19 @@ typedef struct {
 /* Is called with each member, by one thread at a time.  A result other than 0
    stops the sweep: orbits under way are left. */
 typedef int (*nevh_sweep_fn)(void *data, const nevh_sweep_result *);
+/* What nevh_sweep_keep fills: a record a member, as files of nevh sweep hold
+   them, of a byte (a nevh_member_status), seven bytes that are 0, and as many
+   doubles as there are columns. */
+typedef struct {
+    unsigned char *records; /* borrowed */
+    uint64_t first, count;  /* the members that they are of: others are left */
+    size_t columns;         /* nevh_sweep_columns */
+    uint64_t failed;        /* out: how many members told are not done, */
+    uint64_t failed_member; /* the first of them that was told, */
+    char message[400];      /* and why, cut short */
+} nevh_sweep_records;
+/* A nevh_sweep_fn; data is a nevh_sweep_records.  It never stops a sweep. */
+NEVH_API int nevh_sweep_keep(void *records, const nevh_sweep_result *);
 /* Whether a member is to be run at all; NULL: all are.  Called by several
    threads at once. */
 typedef bool (*nevh_wanted_fn)(void *data, uint64_t member);

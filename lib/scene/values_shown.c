@@ -131,3 +131,11 @@ int nevh_scene_stop_reached(nevh_scene *s, double t, const double q[],
     *reached = stop->below ? value < stop->value : value > stop->value;
     return NEVH_OK;
 }
+
+int nevh_scene_stop_observe(void *scene, size_t step, double t,
+                            const double q[], const double p[]) {
+    bool reached = false;
+    int status = nevh_scene_stop_reached(scene, t, q, p, &reached);
+    (void)step;
+    return status ? status : reached;
+}

@@ -42,7 +42,7 @@ folder_of='function folder(path, part) {
         of["section"] = "run"; of["diagnose"] = of["reference"] = of["loop"] = of["frequencies"] = "diagnose"
         of["chaos"] = "diagnose"; of["shadow"] = "diagnose"; of["certain"] = "taylor"
         of["ensemble"] = "ensemble"; of["sweep"] = "scene"
-        of["scene"] = "scene"; of["models"] = "models"; of["nevh"] = "tools"
+        of["scene"] = of["binding"] = "scene"; of["models"] = "models"; of["nevh"] = "tools"
     }
     $3 ~ /^nevh\// { name = substr($3, 6); sub(/\.h$/, "", name)
         print folder($1), of[name] == "" ? "unknown" : of[name], $1, $3; next }

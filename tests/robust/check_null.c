@@ -164,6 +164,8 @@ static nevh_separability separability;
     X(POINTER, nevh_stepper_field, (NULL))                                     \
     X(STATUS, nevh_run, (NULL, 0.1, 0.1, 1, out, out, NULL, 0))                \
     X(STATUS, nevh_run_until, (NULL, 0.1, 0.1, 0.1, out, out, NULL, 0))        \
+    X(STATUS, nevh_run_at,                                                     \
+      (NULL, 0.1, 0.1, 0.1, in, 1, out, NULL, out, out, NULL, 0))              \
     X(NUMBER, nevh_stepper_taken, (NULL))                                      \
     X(ANY, nevh_scene_free, (NULL))                                            \
     X(STATUS, nevh_scene_status, (NULL))                                       \
@@ -205,6 +207,7 @@ static nevh_separability separability;
     X(NUMBER, nevh_scene_stops, (NULL))                                        \
     X(TEXT, nevh_scene_stop_text, (NULL))                                      \
     X(STATUS, nevh_scene_stop_reached, (NULL, 0.1, in, in, &flag))             \
+    X(STATUS, nevh_scene_stop_observe, (NULL, 0, 0.1, in, in))                 \
     X(MADE, nevh_sections_new, (NULL, NULL, 0, NULL, NULL))                    \
     X(ANY, nevh_sections_free, (NULL))                                         \
     X(STATUS, nevh_sections_status, (NULL))                                    \
@@ -224,6 +227,7 @@ static nevh_separability separability;
     X(NUMBER, nevh_sweep_is_verdict, (NULL, 0))                                \
     X(STATUS, nevh_sweep_run, (NULL, 0, 0, NULL, NULL, NULL))                  \
     X(STATUS, nevh_sweep_run_chunks, (NULL, NULL, NULL, NULL, NULL, NULL))     \
+    X(STATUS, nevh_sweep_keep, (NULL, NULL))                                   \
     X(ANY, nevh_sweep_stop, (NULL))                                            \
     X(ANY, nevh_system_free, (NULL))                                           \
     X(STATUS, nevh_system_add, (NULL, NULL))                                   \

@@ -1,9 +1,8 @@
 /* nevh tests: runs until a given time.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "state.h"
+#include "setting.h"
 #include <math.h>
 #include <nevh/extend.h>
-#include <nevh/transform.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -30,46 +29,6 @@ static int record(void *data, size_t step, double t, const double q[],
 
 static album empty(const problem *b) {
     return (album){.n = b->n, .stop_at = never};
-}
-
-/* A scheme on a problem that it fits, with time in it where possible; the last
-   of them is gauss4 under a transform. */
-typedef struct {
-    const problem *b;
-    nevh_system *system, *s;
-    const nevh_integrator *scheme;
-    bool own_time;
-} setting;
-
-static setting prepare(int i) {
-    setting a = {.b = &henon_heiles, .scheme = nevh_gauss4, .own_time = true};
-    if (i < scheme_count()) {
-        a.scheme = nevh_integrators()[i];
-        a.own_time = nevh_integrator_own_time(a.scheme);
-        a.b = fits(a.scheme, &double_pendulum) ? &double_pendulum
-                                               : &driven_pendulum;
-    } else {
-        a.s = nevh_distance_power(2, 2, 0.5);
-    }
-    a.system = a.b->make();
-    return a;
-}
-
-static void put_away(setting *a) {
-    nevh_system_free(a->system);
-    nevh_system_free(a->s);
-}
-
-static nevh_stepper *stepper_for(const setting *a) {
-    nevh_options o = {.t = a->b->t0,
-                      .q = a->b->q,
-                      .p = a->b->p,
-                      .tolerance = tolerance_for(a->scheme),
-                      .transform = a->s};
-    nevh_stepper *m = nevh_stepper_new(a->system, a->scheme, &o);
-    ck_assert_msg(nevh_stepper_status(m) == NEVH_OK, "%s",
-                  nevh_stepper_message(m));
-    return m;
 }
 
 static const double h0 = 0.03;

@@ -1,0 +1,1136 @@
+"""nevh: write the Hamiltonian, get the motion.
+
+    import nevh
+    orbit = nevh.solve("p_phi^2/2 - cos(phi)", (0, 100), [2, 0], "verlet", dt=0.1)
+    orbit.t, orbit.y, orbit.energy_error, orbit.verdict
+
+One file over the shared library libnevh, by ctypes: no compiler is needed, and
+NumPy only where arrays are asked for.  The library is looked for where the
+variable NEVH_LIBRARY says, beside this file, in the build tree and the prefix
+that this file stands in, then where the system's loader looks.
+
+SPDX-License-Identifier: GPL-3.0-or-later
+"""
+
+import csv
+import ctypes as c
+import html
+import inspect
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import warnings
+
+try:
+    import numpy as np
+except ImportError:
+    np = None
+
+__version__ = "0.1.0"
+__all__ = ["solve", "compare", "sweep", "HGrad", "Scene", "Error", "Refused",
+           "Failed", "integrators", "gradients", "verdicts", "library", "command"]
+
+verdicts = ("bounded", "random-walk", "drifts", "unstable", "undecided")
+_INVALID, _STOPPED, _STRUCTURE, _NO_GRADIENT = 4, 1027, 1024, 1025
+
+
+class Error(Exception):
+    """What the library says; `result` is the orbit so far, where there is one."""
+    result = None
+
+
+class Refused(Error, ValueError):
+    """Input is wrong, or the method does not fit this H."""
+
+
+class Failed(Error, ArithmeticError):
+    """A computation has no finite result."""
+
+
+def _check(status, message):
+    if status:
+        text = message.decode() if isinstance(message, bytes) else message
+        if status == 8:
+            raise MemoryError(text or "out of memory")
+        kind = Refused if status in (_INVALID, _STRUCTURE, _NO_GRADIENT) else Failed
+        raise kind(text)
+
+
+# The library: where it is, what it declares.
+
+_here = os.path.dirname(os.path.realpath(__file__))
+
+
+def _trees():
+    """Folders that hold what belongs together, installed or built."""
+    yield os.path.join(_here, "nevh_files")
+    for up in ("..", "../build", "../../..", "../../../.."):
+        yield os.path.normpath(os.path.join(_here, up))
+
+
+def _libraries():
+    given = os.environ.get("NEVH_LIBRARY")
+    if given:
+        yield given
+        return
+    names = ("libnevh.so.0", "libnevh.so", "libnevh.0.dylib")
+    machine = "/" + getattr(sys.implementation, "_multiarch", "")
+    for folder in [_here] + [os.path.join(tree, part) for tree in _trees()
+                             for part in (".libs", "lib", "lib64", "lib" + machine)]:
+        for name in names:
+            if os.path.exists(os.path.join(folder, name)):
+                yield os.path.join(folder, name)
+    yield from names
+
+
+class _Options(c.Structure):
+    _fields_ = [("gradient", c.c_void_p), ("gradient_step", c.c_double),
+                ("gradient_steps", c.c_void_p), ("scale", c.c_void_p),
+                ("t", c.c_double), ("q", c.c_void_p), ("p", c.c_void_p),
+                ("width", c.c_size_t), ("tolerance", c.c_double),
+                ("transform", c.c_void_p), ("binding", c.c_double),
+                ("portable", c.c_bool), ("balance", c.c_bool), ("native", c.c_int),
+                ("steps_foreseen", c.c_double), ("native_cache", c.c_char_p)]
+
+
+class _Observer(c.Structure):
+    _fields_ = [("observe", c.c_void_p), ("data", c.c_void_p), ("every", c.c_size_t)]
+
+
+class _Energy(c.Structure):
+    _fields_ = ([("samples", c.c_size_t)] + [(name, c.c_double) for name in (
+        "initial scale max rms final drift drift_error straightness first_fifth "
+        "last_fifth").split()] + [("verdict", c.c_int), ("theory", c.c_int)] +
+        [(name, c.c_double) for name in "span limit rounding gradient".split()] +
+        [("rate", c.c_double * 3), ("early", c.c_double), ("least", c.c_double),
+         ("gone", c.c_bool)])
+
+
+class _Counts(c.Structure):
+    _fields_ = [(name, c.c_uint64) for name in
+                "values gradients sweeps newtons rescues".split()] + [
+                    ("hamiltonians", c.c_double)]
+
+
+class _Separability(c.Structure):
+    _fields_ = [("separable", c.c_bool), ("term", c.c_char_p),
+                ("mixed", c.c_double), ("states", c.c_size_t)]
+
+
+class _Run(c.Structure):
+    _fields_ = ([("t_start", c.c_double), ("t_end", c.c_double)] +
+                [(name, c.c_size_t) for name in
+                 "dts integrators gradients tolerances".split()] +
+                [("dt", c.POINTER(c.c_double)), ("tolerance", c.POINTER(c.c_double)),
+                 ("integrator", c.POINTER(c.c_char_p)),
+                 ("gradient", c.POINTER(c.c_char_p)), ("gradient_step", c.c_double),
+                 ("gradient_steps", c.c_void_p), ("energy_scale", c.c_double),
+                 ("native", c.c_int), ("match_work", c.c_bool),
+                 ("reference", c.c_char_p), ("transform", c.c_char_p)])
+
+
+class _SweepOptions(c.Structure):
+    _fields_ = [("integrator", c.c_void_p), ("transformed", c.c_bool),
+                ("gradient", c.c_void_p), ("gradient_step", c.c_double),
+                ("gradient_steps", c.c_void_p), ("dt", c.c_double),
+                ("t_end", c.c_double), ("tolerance", c.c_double),
+                ("portable", c.c_bool), ("width", c.c_size_t),
+                ("threads", c.c_size_t), ("ordered", c.c_bool), ("native", c.c_int),
+                ("native_cache", c.c_char_p)]
+
+
+class _Records(c.Structure):
+    _fields_ = [("records", c.c_void_p), ("first", c.c_uint64), ("count", c.c_uint64),
+                ("columns", c.c_size_t), ("failed", c.c_uint64),
+                ("failed_member", c.c_uint64), ("message", c.c_char * 400)]
+
+
+_value_fn = c.CFUNCTYPE(c.c_double, c.c_double, c.c_void_p, c.c_void_p, c.c_void_p)
+_observe_fn = c.CFUNCTYPE(c.c_int, c.c_void_p, c.c_size_t, c.c_double, c.c_void_p,
+                          c.c_void_p)
+
+# NAME: RESULT ARGUMENTS, a letter each: p object or array, s text, i status,
+# z size, u 64 bits, d number, b truth, and structures.
+_functions = """version:s size_of:zs scene_read:ps scene_parse:pss
+scene_free:-p scene_status:ip scene_message:sp scene_set:ips scene_enable:ipsb
+scene_set_start:ips scene_write:pps scene_dof:zp scene_coordinate:spz
+scene_system:pp scene_start:ippp scene_run_settings:Rp scene_transform:pp
+scene_stops:bp scene_stop_text:sp scene_vary:ippz scene_set_outcomes:ips
+system_from:pzpp system_free:-p system_status:ip system_message:sp system_probe:ipdpppp
+system_traits:ip system_friction:bpp integrator_named:ps integrator_name:sp
+integrator_adaptive:bp integrator_own_time:bp integrator_needs:ip integrators:p
+integrator_needs_formulas:bp gradient_named:ps gradient_name:sp gradients:p
+stepper_new:pppp stepper_free:-p stepper_status:ip stepper_message:sp
+stepper_time:dp stepper_taken:zp stepper_counts:Cp run_at:ipdddpzpppppz
+energy_new:ppp energy_free:-p energy_status:ip energy_message:sp energy_follow:ipp
+energy_expect:ipp energy_set_scale:ipd energy_result:Epz field_new:ppp field_free:-p
+field_status:ip field_message:sp field_gradient:ipzppppp field_value:ipzpppp sweep_new:ppp sweep_free:-p
+sweep_status:ip sweep_message:sp sweep_members:up sweep_columns:zp sweep_column:spz
+sweep_is_verdict:bpz sweep_run:ipuuppp""".split()
+_types = {"p": c.c_void_p, "s": c.c_char_p, "i": c.c_int, "z": c.c_size_t,
+          "u": c.c_uint64, "d": c.c_double, "b": c.c_bool, "-": None,
+          "R": c.POINTER(_Run), "C": _Counts, "E": _Energy}
+
+
+class _Library:
+    def __init__(self):
+        tried = []
+        for name in _libraries():
+            try:
+                self.dll = c.CDLL(name)
+                self.path = name
+                break
+            except OSError as error:
+                tried.append("  " + str(error))
+        else:
+            raise ImportError("libnevh was not found; set NEVH_LIBRARY to its "
+                              "file:\n" + "\n".join(tried))
+        for line in _functions:
+            name, types = line.split(":")
+            try:
+                function = self.dll["nevh_" + name]
+            except AttributeError:
+                raise ImportError("%s has no nevh_%s: it is of another version than "
+                                  "%s" % (self.path, name, __file__)) from None
+            function.restype = _types[types[0]]
+            function.argtypes = [_types[letter] for letter in types[1:]]
+            setattr(self, name, function)
+        self.check()
+
+    def check(self):
+        version = self.version().decode()
+        if version != __version__:
+            raise ImportError("%s is nevh %s, and %s is for %s"
+                              % (self.path, version, __file__, __version__))
+        for name, declared in (("options", _Options), ("observer", _Observer),
+                               ("energy_report", _Energy), ("counts", _Counts),
+                               ("scene_run", _Run), ("sweep_options", _SweepOptions),
+                               ("sweep_records", _Records),
+                               ("separability", _Separability)):
+            size = self.size_of(b"nevh_" + name.encode())
+            if size != c.sizeof(declared):
+                raise ImportError("%s: nevh_%s has %d bytes, not %d: it was built for "
+                                  "another machine or version" % (
+                                      self.path, name, size, c.sizeof(declared)))
+
+    def address(self, name):
+        return c.cast(self.dll["nevh_" + name], c.c_void_p).value
+
+
+_lib = _Library()
+
+
+def library():
+    """The file of the library that is in use."""
+    return _lib.path
+
+
+def _names(objects, name):
+    array = c.cast(objects(), c.POINTER(c.c_void_p))
+    found = []
+    while array[len(found)]:
+        found.append(name(array[len(found)]).decode())
+    return found
+
+
+def integrators():
+    """The names of all methods."""
+    return _names(_lib.integrators, _lib.integrator_name)
+
+
+def gradients():
+    """The names of all gradients."""
+    return _names(_lib.gradients, _lib.gradient_name)
+
+
+_scipy_names = {"DOP853": "dop853", "RK45": "dopri5"}
+
+
+def _integrator(name):
+    name, plus, rest = name.partition("+")
+    found = _lib.integrator_named(_scipy_names.get(name, name).encode())
+    if not found or (plus and rest != "transform"):
+        raise Refused("there is no method %r; nevh.integrators() lists them" %
+                      (name + plus + rest))
+    return found, bool(plus)
+
+
+def _gradient(name):
+    found = _lib.gradient_named(name.encode())
+    if not found:
+        raise Refused("there is no gradient %r; there are %s"
+                      % (name, ", ".join(gradients())))
+    return found
+
+
+# Arrays: NumPy's, or lists.
+
+def _numbers(values):
+    """An array of doubles, and what its memory is passed as."""
+    if np is not None:
+        array = np.array(values, dtype=float, ndmin=1)
+        if array.ndim != 1:
+            raise Refused("an array of shape %s where numbers in a row are needed"
+                          % (array.shape,))
+        return array, array.ctypes.data
+    array = (c.c_double * len(values))(*values)
+    return array, c.addressof(array)
+
+
+def _table(rows, columns):
+    if np is not None:
+        array = np.empty((rows, columns))
+        return array, array.ctypes.data
+    array = (c.c_double * (rows * columns))()
+    return array, c.addressof(array)
+
+
+def _cut(array, rows, columns, kept):
+    if np is not None:
+        return array if kept == columns else array[:, :kept].copy()
+    return [array[k * columns:k * columns + kept] for k in range(rows)]
+
+
+class Result(dict):
+    """A dictionary whose items are attributes, too, as SciPy's results are."""
+
+    def __getattr__(self, name):
+        try:
+            return self[name]
+        except KeyError:
+            raise AttributeError(name) from None
+
+    def __dir__(self):
+        return list(self)
+
+    def __repr__(self):
+        width = max(map(len, self), default=0)
+        return "\n".join("%*s: %s" % (width, key, re.sub(
+            "\n", "\n" + " " * (width + 2), repr(value)[:300]))
+                         for key, value in self.items())
+
+
+# Scenes, files or formulas.
+
+def _value(value):
+    return value if isinstance(value, str) else repr(float(value))
+
+
+def _assign(name, value):
+    if isinstance(value, str) or not hasattr(value, "__len__"):
+        return "%s = %s" % (name, _value(value))
+    return "%s = %s" % (name, ", ".join(map(_value, value)))
+
+
+def _is_scene_text(text):
+    return re.search(r"^[ \t]*\[\w+\]", text, re.M) is not None
+
+
+def _scene_of_formula(formula, parameters, coordinates):
+    """The text of a scene whose H is that formula."""
+    definitions = ""
+    if coordinates is None:
+        coordinates = list(dict.fromkeys(re.findall(r"\bp_([^\W\d]\w*)", formula)))
+        if not coordinates and re.search(r"\bp\b", formula):
+            coordinates, definitions = ["q"], "[definitions]\np = p_q\n"
+        if not coordinates:
+            raise Refused("%r names no momentum p_NAME: give coordinates=[...]" % formula)
+    lines = ["[parameters]"]
+    for name, value in (parameters or {}).items():
+        if hasattr(value, "__len__") and not isinstance(value, str):
+            name = "%s[1..%d]" % (name, len(value))
+        lines.append(_assign(name, value))
+    lines.append("[coordinates]")
+    for name in coordinates:
+        lines.append(re.sub(r"\[(\w+)\]", r"[i = 1..\1]", name) + " = 0")
+    return "\n".join(lines) + "\n" + definitions + "[effects]\nH = %s\n[run]\n" \
+        "gradient = exact\n" % " ".join(formula.split())
+
+
+def _shipped(name):
+    folders = [os.environ.get("NEVH_SCENES", "")]
+    base = os.path.dirname(os.path.realpath(_lib.path))
+    for tree in (os.path.dirname(base), os.path.dirname(os.path.dirname(base)), *_trees()):
+        folders += [os.path.join(tree, "share/nevh/scenes"), os.path.join(tree, "scenes")]
+    for folder in filter(None, folders):
+        path = os.path.join(folder, name + ".nevh")
+        if os.path.exists(path):
+            return path
+    return None
+
+
+class Scene:
+    """A scene: the name of one that ships, a file, a scene's text, or H alone.
+
+    parameters   {name: number, formula or list}, of the scene or in the formula
+    coordinates  of a formula: names, "x[8]" for an array; default: all NAME of
+                 which it has p_NAME, in that order; q where it has q and p alone
+    with_effects, without_effects   names of effects to switch on and off
+    """
+
+    def __init__(self, source, parameters=None, coordinates=None, with_effects=(),
+                 without_effects=()):
+        text = os.fspath(source)
+        self.path = None
+        self.is_formula = False
+        if _is_scene_text(text):
+            self._made = _lib.scene_parse(b"scene", text.encode())
+        elif text.endswith(".nevh") or os.path.exists(text):
+            self.path = text
+        elif re.fullmatch(r"[\w./+-]+", text):
+            self.path = _shipped(text)
+        if self.path:
+            self._made = _lib.scene_read(os.fsencode(self.path))
+        elif not _is_scene_text(text):
+            self.is_formula = True
+            text = _scene_of_formula(text, parameters, coordinates)
+            self._made = _lib.scene_parse(b"H", text.encode())
+        self._check(_lib.scene_status(self._made))
+        if not self.is_formula:
+            for name, value in (parameters or {}).items():
+                self._check(_lib.scene_set(self._made, _assign(name, value).encode()))
+            self.changed = bool(parameters)
+        for names, on in ((with_effects, True), (without_effects, False)):
+            for name in [names] if isinstance(names, str) else names:
+                self._check(_lib.scene_enable(self._made, name.encode(), on))
+        self.starts = {}
+
+    def __del__(self):
+        if getattr(self, "_made", None):
+            _lib.scene_free(self._made)
+
+    def _check(self, status):
+        # A file that cannot be read is bad input, too.
+        _check(_INVALID if status == 5 else status, _lib.scene_message(self._made))
+
+    @property
+    def n(self):
+        """Degrees of freedom."""
+        return _lib.scene_dof(self._made)
+
+    @property
+    def names(self):
+        """Coordinates, then momenta, in the order of y."""
+        q = [_lib.scene_coordinate(self._made, k).decode() for k in range(self.n)]
+        return q + ["p_" + name for name in q]
+
+    def start(self, y0=None):
+        """The state to start from: y0, or where the scene starts; with a dictionary
+        {name: value}, what it names is replaced."""
+        if y0 is not None and not isinstance(y0, dict):
+            array, _ = _numbers(y0)
+            if len(array) != 2 * self.n:
+                raise Refused("y0 has %d numbers; it takes %d: %s"
+                              % (len(array), 2 * self.n, ", ".join(self.names)))
+            return array
+        for name, value in (y0 or {}).items():
+            self._check(_lib.scene_set_start(self._made, _assign(name, value).encode()))
+            self.starts[name] = value
+        array, at = _numbers([0.0] * (2 * self.n))
+        self._check(_lib.scene_start(self._made, at, at + 8 * self.n))
+        return array
+
+    @property
+    def text(self):
+        """The scene as text, as it is now, but for the start."""
+        free = c.CDLL(None).free
+        free.argtypes = [c.c_void_p]
+        address = _lib.scene_write(self._made, None)
+        if not address:
+            raise MemoryError("nevh: out of memory")
+        text = c.string_at(address).decode()
+        free(address)
+        return text
+
+    def _settings(self):
+        return _lib.scene_run_settings(self._made).contents
+
+
+# Functions: of Python, or addresses of functions in C.
+
+def _address(function):
+    """The address of a C function double H(double t, const double q[], const double
+    p[], const void *params), or None: a number, a ctypes or cffi pointer, what
+    numba's @cfunc gives, a scipy.LowLevelCallable."""
+    if isinstance(function, int):
+        return function
+    if hasattr(function, "address"):
+        return int(function.address)
+    if isinstance(function, c._CFuncPtr):
+        return c.cast(function, c.c_void_p).value
+    if type(function).__name__ == "LowLevelCallable":
+        capsule = tuple.__getitem__(function, 0)
+        name, pointer = c.pythonapi.PyCapsule_GetName, c.pythonapi.PyCapsule_GetPointer
+        name.restype, name.argtypes = c.c_char_p, [c.py_object]
+        pointer.restype, pointer.argtypes = c.c_void_p, [c.py_object, c.c_char_p]
+        return pointer(capsule, name(capsule))
+    return None
+
+
+class _Trap:
+    """Keeps what a function of Python raised until the library has returned.  While
+    it plans, H is tried at states where no orbit may come: there an error is but a
+    value that is not finite."""
+
+    def __init__(self):
+        self.error = None
+        self.planning = True
+
+    def spring(self):
+        error, self.error = self.error, None
+        if error is not None:
+            raise error
+
+    def planned(self, status):
+        self.planning = False
+        if status or not isinstance(self.error, Exception):
+            self.spring()
+        self.error = None
+
+
+class _PythonValue:
+    """H(t, y, *args, **parameters) of Python as a C function."""
+
+    def __init__(self, function, n, trap, args, parameters):
+        size = 8 * n
+        state = np.empty(2 * n) if np is not None else (c.c_double * (2 * n))()
+        at = state.ctypes.data if np is not None else c.addressof(state)
+        move = c.memmove
+
+        def value(t, q, p, _):
+            if trap.error is not None and not trap.planning:
+                return float("nan")
+            try:
+                move(at, q, size)
+                move(at + size, p, size)
+                return float(function(t, state.copy() if np is not None else state[:],
+                                      *args, **parameters))
+            except BaseException as error:
+                trap.error = error
+                return float("nan")
+        self.function = _value_fn(value)
+        self.address = c.cast(self.function, c.c_void_p).value
+
+
+class _Subject:
+    """A system, with what belongs to it: of a scene, or of a function."""
+
+    def __init__(self, H, n=None, parameters=None, args=(), coordinates=None,
+                 with_effects=(), without_effects=(), params=None):
+        self.scene = self.own = None
+        self.trap = _Trap()
+        if isinstance(H, (Scene, str, os.PathLike)):
+            self.scene = H if isinstance(H, Scene) else Scene(
+                H, parameters, coordinates, with_effects, without_effects)
+            self.system = _lib.scene_system(self.scene._made)
+            self.n = self.scene.n
+            return
+        address = _address(H)
+        if address is None and not callable(H):
+            raise TypeError("H is a text, a Scene, a function or the address of one, "
+                            "not %r" % type(H).__name__)
+        self.n = n
+        self.kept = H
+        if address is None:
+            self.kept = _PythonValue(H, n, self.trap, tuple(args), parameters or {})
+            address = self.kept.address
+        self.own = self.system = _lib.system_from(
+            n, address, c.cast(params, c.c_void_p) if params is not None else None)
+        _check(_lib.system_status(self.own), _lib.system_message(self.own))
+
+    def __del__(self):
+        if getattr(self, "own", None):
+            _lib.system_free(self.own)
+
+    def friction(self):
+        rates, at = _numbers([0.0] * self.n)
+        return rates if _lib.system_friction(self.system, at) else None
+
+    def reads_time(self, t, y):
+        """Whether H depends on t; of a function, whether some times differ."""
+        if not self.own:
+            return not _lib.system_traits(self.system) & 2
+        field = _lib.field_new(self.system, c.byref(_Options(gradient_step=1)))
+        h, found = c.c_double(), set()
+        for later in (0.0, 0.1234, 0.777, 1.618, 31.4, 1234.5):
+            _lib.field_value(field, 1, c.byref(c.c_double(t + later)), y[1],
+                             y[1] + 8 * self.n, c.byref(h))
+            found.add(h.value)
+        _lib.field_free(field)
+        return len(found) > 1
+
+    def separable(self, t, y):
+        if _lib.system_traits(self.system) & 1:
+            return True
+        found = _Separability()
+        _, at = y
+        _lib.system_probe(self.system, t, at, at + 8 * self.n, None, c.byref(found))
+        return found.separable
+
+
+# Runs.
+
+class _Plan:
+    """A stepper and what watches it."""
+
+    def __init__(self, subject, name, gradient, y, t0, tolerance, gradient_step):
+        self.subject = subject
+        integrator, transformed = _integrator(name)
+        o = self.options = _Options(t=t0, q=y[1], p=y[1] + 8 * subject.n,
+                                    tolerance=tolerance,
+                                    gradient=_gradient(gradient))
+        if transformed:
+            o.transform = subject.scene and _lib.scene_transform(subject.scene._made)
+            if not o.transform:
+                raise Refused("%s: there is no scene with a transform" % name)
+        if gradient_step is not None and hasattr(gradient_step, "__len__"):
+            self.steps, o.gradient_steps = _numbers(gradient_step)
+            if len(self.steps) != 2 * subject.n:
+                raise Refused("gradient_step has %d numbers; it takes one, or %d"
+                              % (len(self.steps), 2 * subject.n))
+        else:
+            o.gradient_step = gradient_step or 0
+        o.balance = subject.reads_time(t0, y) or subject.friction() is not None
+        self.stepper = _lib.stepper_new(subject.system, integrator, c.byref(o))
+        self.energy = _lib.energy_new(subject.system, c.byref(o))
+        status = _lib.stepper_status(self.stepper)
+        subject.trap.planned(status)
+        self.check(status)
+        if o.balance:
+            _lib.energy_follow(self.energy, self.stepper)
+        _lib.energy_expect(self.energy, self.stepper)
+
+    def __del__(self):
+        if hasattr(self, "energy"):
+            _lib.energy_free(self.energy)
+        if hasattr(self, "stepper"):
+            _lib.stepper_free(self.stepper)
+
+    def check(self, status):
+        _check(status, _lib.stepper_message(self.stepper))
+
+
+class _Interrupt:
+    """While the library runs, the interrupt key is noted, to be raised after."""
+
+    def __init__(self):
+        self.pressed = False
+        self.before = None
+
+    def __enter__(self):
+        main = threading.current_thread() is threading.main_thread()
+        if main and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+            self.before = signal.signal(signal.SIGINT, self.note)
+        return self
+
+    def note(self, *_):
+        self.pressed = True
+
+    def __exit__(self, *_):
+        if self.before is not None:
+            signal.signal(signal.SIGINT, self.before)
+
+
+def _watcher(observe, n, trap, interrupt):
+    """An observer that calls `observe`, and looks for the interrupt key."""
+    view = c.c_double * n
+
+    def watch(_, step, t, q, p):
+        try:
+            if interrupt.pressed:
+                raise KeyboardInterrupt
+            if observe is None:
+                return 0
+            y = list(view.from_address(q)) + list(view.from_address(p))
+            return bool(observe(t, np.array(y) if np is not None else y))
+        except BaseException as error:
+            trap.error = error
+            return 1
+    return _observe_fn(watch)
+
+
+def _times_of_steps(t0, t_end, h):
+    count = round((t_end - t0) / h)
+    if count > 0 and abs((t_end - t0) / h - count) <= 1e-9 * count:
+        h = (t_end - t0) / count
+        count -= 1
+    else:
+        count = int((t_end - t0) / h)
+    if np is not None:
+        times = np.empty(count + 2)
+        np.multiply(np.arange(count + 1), h, out=times[:-1])
+        times[:-1] += t0
+        times[-1] = t_end
+        return times
+    return [t0 + i * h for i in range(count + 1)] + [t_end]
+
+
+def _steps(method, dt, rtol, atol, span, y0):
+    """The step and the tolerance of a method."""
+    integrator, _ = _integrator(method)
+    if not _lib.integrator_adaptive(integrator):
+        if rtol is not None or atol is not None:
+            raise Refused("%s takes steps of dt and no tolerance: leave out rtol and "
+                          "atol" % method)
+        if dt is None:
+            raise Refused("%s takes steps of dt: give it" % method)
+        return dt, 0.0
+    rtol = 1e-9 if rtol is None else rtol
+    if atol:
+        rtol = min(rtol, atol / max(1.0, max(map(abs, y0))))
+    return abs(span) / 256 if dt is None else dt, rtol
+
+
+def _choose(subject, dt, t0, y):
+    if dt is None:
+        return "dop853" if subject.own else "taylor"
+    return "verlet" if subject.separable(t0, y) else "gauss4"
+
+
+def _run_plan(plan, t0, t_end, h, times, y, observe, every):
+    """The orbit as a Result, and the status of the library."""
+    subject, n = plan.subject, plan.subject.n
+    times, times_at = _numbers(times)
+    states, states_at = _table(2 * n, len(times))
+    kept, trap = c.c_size_t(), subject.trap
+    watched = [(_lib.address("energy_observe"), plan.energy, 1)]
+    if subject.scene and _lib.scene_stops(subject.scene._made):
+        watched.append((_lib.address("scene_stop_observe"), subject.scene._made, 1))
+    with _Interrupt() as interrupt:
+        watch = _watcher(observe, n, trap, interrupt)
+        watched.append((c.cast(watch, c.c_void_p).value, None, every))
+        observers = (_Observer * len(watched))(*watched)
+        status = _lib.run_at(plan.stepper, t0, h, t_end, times_at, len(times),
+                             states_at, c.byref(kept), y[1], y[1] + 8 * n, observers,
+                             len(watched))
+    report = _lib.energy_result(plan.energy, 0)
+    counts = _lib.stepper_counts(plan.stepper)
+    message = _lib.stepper_message(plan.stepper).decode()
+    if status == _STOPPED and _lib.energy_status(plan.energy):
+        status = _lib.energy_status(plan.energy)
+        message = _lib.energy_message(plan.energy).decode()
+    if status == _STOPPED and subject.scene and _lib.scene_stops(subject.scene._made):
+        message += ": " + _lib.scene_stop_text(subject.scene._made).decode()
+    reached = t_end if not status else (
+        _lib.stepper_time(plan.stepper) if _lib.stepper_taken(plan.stepper) else t0)
+    count = kept.value
+    return status, Result(
+        t=times[:count] if count < len(times) else times,
+        y=_cut(states, 2 * n, len(times), count),
+        nfev=counts.gradients, hamiltonian_evals=counts.hamiltonians,
+        status=0 if not status else 1 if status == _STOPPED else -1,
+        message=message or "The end of t_span was reached.",
+        success=status in (0, _STOPPED), energy_error=report.max,
+        verdict=verdicts[report.verdict], energy_drift=report.drift,
+        energy_scale=report.scale, t_reached=reached,
+        y_reached=y[0].copy() if np is not None else list(y[0]), sol=None)
+
+
+def solve(H, t_span=None, y0=None, method=None, *, dt=None, rtol=None, atol=None,
+          t_eval=None, gradient=None, gradient_step=None, parameters=None, args=(),
+          coordinates=None, with_effects=(), without_effects=(), params=None,
+          observe=None, every=1, check=True):
+    """Follow the orbit of a Hamiltonian from t_span[0] to t_span[1].
+
+    H        H as text ("p_x^2/2 + k*x^2/2"), a scene (see Scene), the address of a C
+             function H(t, q, p, params), or, slow, a function H(t, y, *args,
+             **parameters) of Python, where y has coordinates, then momenta
+    y0       coordinates, then momenta; of scenes also {name: value}, None: as they say
+    method   a name of nevh.integrators() or of SciPy's DOP853 and RK45.  None: the
+             first of the scene; else with dt verlet, or gauss4 where H is no sum of
+             T(p) and V(q); without dt taylor, or dop853 for functions
+    dt       the step.  Of methods that adapt it is where their steps end; None: a
+             256th of the time
+    rtol     of methods that adapt, relative to the larger of |y| and the length over
+             which H varies; default 1e-9.  atol can make it smaller only:
+             min(rtol, atol/max(1, |y0|))
+    t_eval   times to keep; default: all steps of dt.  They do not change the orbit
+    gradient default: of scenes what they say, exact of other texts, central4 of
+             functions
+    parameters, coordinates, with_effects, without_effects: see Scene
+    observe  called with (t, y) after `every` steps; what is true ends the run
+    check    False: a step that fails gives a result with status -1, as SciPy's
+
+    Returns t, y (a row a variable), nfev (gradients), status (0: the end; 1: stopped;
+    -1: failed), message, success, as SciPy does; energy_error (the largest over the
+    run, relative to energy_scale), verdict (of nevh.verdicts), energy_drift (a unit of
+    time), hamiltonian_evals, t_reached and y_reached (the last good state), method,
+    dt, tolerance, gradient, names.
+
+    Raises Refused for input that is wrong, Failed where a step fails, and what
+    `observe` or H raised; the orbit so far is then the exception's `result`.
+    """
+    if not isinstance(H, (Scene, str, os.PathLike)):
+        if y0 is None or t_span is None:
+            raise Refused("a function needs t_span and y0")
+        if len(y0) < 2 or len(y0) % 2:
+            raise Refused("y0 has %d numbers; it takes as many momenta as coordinates"
+                          % len(y0))
+    subject = _Subject(H, len(y0) // 2 if y0 is not None else None, parameters, args,
+                       coordinates, with_effects, without_effects, params)
+    scene = subject.scene
+    y = scene.start(y0) if scene else y0
+    if t_span is None:
+        settings = scene._settings()
+        t_span = settings.t_start, settings.t_end
+    t0, t_end = map(float, t_span)
+    y = _numbers(y)
+    if scene:
+        settings = scene._settings()
+        if method is None and settings.integrators:
+            method = settings.integrator[0].decode()
+        adapts = method and _lib.integrator_adaptive(_integrator(method)[0])
+        if dt is None and settings.dts and not adapts:
+            dt = settings.dt[0]
+        if rtol is None and settings.tolerances and adapts:
+            rtol = settings.tolerance[0]
+        gradient = gradient or settings.gradient[0].decode()
+    gradient = gradient or "central4"
+    if not t_end - t0 < float("inf") or t_end == t0:
+        raise Refused("t_span = %g, %g is no time to go" % (t0, t_end))
+    method = method or _choose(subject, dt, t0, y)
+    dt, tolerance = _steps(method, dt, rtol, atol, t_end - t0, y[0])
+    if not 0 < dt < float("inf"):
+        raise Refused("dt = %g is no step" % dt)
+    h = dt if t_end > t0 else -dt
+    plan = _Plan(subject, method, gradient, y, t0, tolerance, gradient_step)
+    if t_eval is None:
+        t_eval = _times_of_steps(t0, t_end, h)
+    if observe is None:
+        every = 16 if tolerance else 512
+    status, result = _run_plan(plan, t0, t_end, h, t_eval, y, observe, every)
+    names = scene.names if scene else None
+    result.update(method=method, dt=dt, tolerance=tolerance, gradient=gradient,
+                  names=names)
+    try:
+        subject.trap.spring()
+        if check and status not in (0, _STOPPED):
+            _check(status, result.message)
+    except BaseException as error:
+        result["success"], result["status"] = False, -1
+        result["message"] = str(error) or type(error).__name__
+        error.result = result
+        raise
+    return result
+
+
+class HGrad:
+    """The right-hand side f(t, y) of Hamilton's equations, for solve_ivp and others.
+
+        G = nevh.HGrad(H, k=4, m=1)
+        solve_ivp(G, (0, 3), [1, 0])
+
+    H   as of solve; of a function's other parameters `constants` are the values
+    ds  half the spread of the differences: a number, or one for each of y; default:
+        chosen where the first state is
+    gradient  default: central4 of values of H
+
+    y may be of shape (2n,), or (2n, k) for k states.  `counts` says how often H was
+    evaluated.  One thread at a time may call it.
+    """
+
+    def __init__(self, H, ds=None, *, gradient="central4", args=(), coordinates=None,
+                 with_effects=(), without_effects=(), params=None, parameters=None,
+                 **constants):
+        self._gradient = _gradient(gradient)
+        self._ds = ds
+        constants = dict(parameters or {}, **constants)
+        self._subject, self._field, self._width = None, None, 0
+        self._make = lambda n: _Subject(H, n, constants, args, coordinates,
+                                        with_effects, without_effects, params)
+        if isinstance(H, (Scene, str, os.PathLike)):
+            self._subject = self._make(None)
+
+    def __del__(self):
+        if getattr(self, "_field", None):
+            _lib.field_free(self._field)
+
+    def _plan(self, t, y):
+        size = len(y)
+        if self._subject is None:
+            if size % 2:
+                raise Refused("y has %d numbers; it takes as many momenta as "
+                              "coordinates" % size)
+            self._subject = self._make(size // 2)
+        n = self._n = self._subject.n
+        self._count(size)
+        first = [row[0] if hasattr(row, "__len__") else row for row in y]
+        start, at = _numbers(first)
+        o = _Options(t=t, q=at, p=at + 8 * n, gradient=self._gradient)
+        if hasattr(self._ds, "__len__"):
+            self._steps, o.gradient_steps = _numbers(self._ds)
+            if len(self._steps) != 2 * n:
+                raise Refused("ds has %d numbers; it takes one, or %d"
+                              % (len(self._ds), 2 * n))
+        else:
+            o.gradient_step = self._ds or 0
+        self._field = _lib.field_new(self._subject.system, c.byref(o))
+        status = _lib.field_status(self._field)
+        self._subject.trap.planned(status)
+        _check(status, _lib.field_message(self._field))
+        self._rates = self._subject.friction()
+
+    def _count(self, size):
+        if size != 2 * self._n:
+            raise Refused("y has %d numbers; it takes %d" % (size, 2 * self._n))
+
+    def _room(self, width):
+        self._width = width
+        half = 8 * self._n * width
+        self._y, at = _table(2 * self._n, width)
+        self._dy, out = _table(2 * self._n, width)
+        self._t, times = _numbers([0.0] * width)
+        self._call = (self._field, width, times, at, at + half, out + half, out)
+
+    def __call__(self, t, y):
+        if self._field is None:
+            self._plan(t, y)
+        if np is None:
+            return self._lists(t, y)
+        y = np.asarray(y)
+        width = y.shape[1] if y.ndim == 2 else 1
+        if width != self._width:
+            self._room(width)
+        n = self._n
+        if len(y) != 2 * n:
+            self._count(len(y))
+        self._t[:] = t
+        self._y[:] = y if y.ndim == 2 else y[:, None]
+        self._take()
+        dy = self._dy.copy()
+        np.negative(dy[n:], out=dy[n:])
+        if self._rates is not None:
+            dy[n:] -= np.asarray(self._rates)[:, None] * self._y[n:]
+        return dy if y.ndim == 2 else dy[:, 0]
+
+    def _lists(self, t, y):
+        if self._width != 1:
+            self._room(1)
+        n = self._n
+        self._count(len(y))
+        self._t[0] = t
+        self._y[:] = y
+        self._take()
+        rates = self._rates or [0.0] * n
+        return self._dy[:n] + [-d - r * p for d, r, p in
+                               zip(self._dy[n:], rates, self._y[n:])]
+
+    def _take(self):
+        status = _lib.field_gradient(*self._call)
+        self._subject.trap.spring()
+        if status:
+            _check(status, _lib.field_message(self._field))
+
+
+# Tables.
+
+class Table(list):
+    """Rows of `nevh compare`, dictionaries; `notes` is what stands above them."""
+    notes = ()
+    _shown = ("integrator", "order", "symplectic", "gradient", "dt", "status",
+              "max_energy_error", "energy_drift", "state_error", "hamiltonian_evals",
+              "seconds", "verdict")
+
+    def __getitem__(self, key):
+        """A row by its number, or a column by its name."""
+        return [row[key] for row in self] if isinstance(key, str) else \
+            list.__getitem__(self, key)
+
+    def _cell(self, name, value):
+        if value is None:
+            return ""
+        if isinstance(value, float):
+            return "%.1e" % value if "error" in name or "drift" in name else \
+                "%.4g" % value
+        return html.escape(str(value))
+
+    def _repr_html_(self):
+        columns = [name for name in self._shown
+                   if any(row.get(name) is not None for row in self)]
+        head = "".join("<th>%s</th>" % name.replace("_", " ") for name in columns)
+        rows = "".join("<tr>%s</tr>" % "".join(
+            "<td>%s</td>" % self._cell(name, row.get(name)) for name in columns)
+            for row in self)
+        notes = "<br>".join(map(html.escape, self.notes))
+        return "<table><caption>%s</caption><thead><tr>%s</tr></thead><tbody>%s" \
+            "</tbody></table>" % (notes, head, rows)
+
+    def __str__(self):
+        cells = [self._shown] + [[self._cell(name, row.get(name)) for name in
+                                  self._shown] for row in self]
+        widths = [max(len(row[k]) for row in cells) for k in range(len(self._shown))]
+        return "\n".join(list(self.notes) + ["  ".join(
+            cell.ljust(width) for cell, width in zip(row, widths)).rstrip()
+            for row in cells])
+
+
+def command():
+    """The file of the command nevh that belongs to the library."""
+    given = os.environ.get("NEVH_COMMAND")
+    base = os.path.dirname(os.path.realpath(_lib.path))
+    tries = [given] if given else [
+        os.path.join(tree, part) for tree in
+        (os.path.dirname(base), os.path.dirname(os.path.dirname(base)), *_trees())
+        for part in ("tools/nevh", "bin/nevh")]
+    for path in filter(None, tries):
+        if os.access(path, os.X_OK) and not os.path.isdir(path):
+            return path
+    raise Error("the command nevh was not found beside %s; set NEVH_COMMAND to its "
+                "file" % _lib.path)
+
+
+def _number(text):
+    try:
+        return int(text)
+    except ValueError:
+        try:
+            return float(text)
+        except ValueError:
+            return text or None
+
+
+def _options(**given):
+    for name, value in given.items():
+        if value is None:
+            continue
+        if not isinstance(value, str) and hasattr(value, "__iter__"):
+            value = ",".join(v if isinstance(v, str) else repr(v) for v in value)
+        yield "--" + name.replace("_", "-")
+        yield value if isinstance(value, str) else repr(value)
+
+
+def compare(scene, integrators=None, dt=None, t_end=None, *, y0=None, gradient=None,
+            tolerance=None, parameters=None, coordinates=None, with_effects=(),
+            without_effects=(), options=()):
+    """The table of `nevh compare`: what each integrator does to the energy, and at
+    which cost.
+
+    scene    as of Scene; a formula needs y0 and t_end
+    options  more options of the command: ["--match", "work"]
+
+    Returns rows, dictionaries with the columns of the command's CSV (see the manual),
+    which a notebook shows as a table.  rows["verdict"] is a column.
+
+    The command is run, since what it does (references, longer runs for the verdict,
+    timing) is its own and not the library's.
+    """
+    made = scene if isinstance(scene, Scene) else Scene(
+        scene, parameters, coordinates, with_effects, without_effects)
+    if y0 is not None and not isinstance(y0, dict):
+        y0 = dict(zip(made.names, y0))
+    made.start(y0)
+    arguments = [command(), "compare", "--format", "csv"]
+    arguments += _options(integrators=integrators, dt=dt, t_end=t_end,
+                          gradient=gradient, tolerance=tolerance)
+    for name, value in made.starts.items():
+        arguments += ["--start", "%s=%s" % (name, _value(value))]
+    with tempfile.TemporaryDirectory() as folder:
+        name = os.path.basename(made.path) if made.path else "H.nevh"
+        path = os.path.join(folder, name)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(made.text)
+        done = subprocess.run(arguments + list(options) + [path], text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              encoding="utf-8")
+    if done.returncode not in (0, 1):
+        raise Refused(done.stderr.strip())
+    lines = done.stdout.splitlines()
+    table = Table({name: _number(text) for name, text in row.items()} for row in
+                  csv.DictReader(line for line in lines if not line.startswith("#")))
+    table.notes = [line[2:] for line in lines if line.startswith("#")]
+    return table
+
+
+def _lines(vary):
+    if isinstance(vary, str):
+        return [vary]
+    return [_assign(name, value) for name, value in vary.items()] \
+        if isinstance(vary, dict) else list(vary)
+
+
+def sweep(scene, vary=None, outcomes=None, integrator=None, *, dt=None, t_end=None,
+          rtol=None, gradient=None, threads=None, count=None, seed=None, combine=None,
+          y0=None, parameters=None, coordinates=None, with_effects=(),
+          without_effects=()):
+    """Many orbits of a scene, side by side, into a structured array of NumPy.
+
+    vary      {name: what}: an array of values, or a text as "range(0, pi, 1000)",
+              "normal(1, 0.1)", as [ensemble] of a scene has them; default: the scene's
+    outcomes  as "state, last(x), period, verdict" (a number of nevh.verdicts);
+              default: the scene's, or state and energy_error
+    integrator, dt, t_end, rtol   default: the scene's
+    threads   default: all processors
+
+    Returns an array with a field for each name that is varied and each outcome, and
+    `status`: 1 where a member is done, 2 where it failed, 3 where it has no start.
+    A warning says how many members failed, and why the first did.
+    """
+    if np is None:
+        raise ImportError("nevh.sweep needs NumPy")
+    made = scene if isinstance(scene, Scene) else Scene(
+        scene, parameters, coordinates, with_effects, without_effects)
+    if y0 is not None:
+        made.start(y0 if isinstance(y0, dict) else dict(zip(made.names, y0)))
+    lines = _lines(vary) if vary is not None else []
+    lines += [_assign(name, value) if isinstance(value, str) else "%s = %d" % (
+        name, value) for name, value in (("count", count), ("seed", seed),
+                                         ("combine", combine)) if value is not None]
+    if lines:
+        encoded = (c.c_char_p * len(lines))(*(line.encode() for line in lines))
+        made._check(_lib.scene_vary(made._made, encoded, len(lines)))
+    if outcomes is not None:
+        text = outcomes if isinstance(outcomes, str) else ", ".join(outcomes)
+        made._check(_lib.scene_set_outcomes(made._made, text.encode()))
+    settings = made._settings()
+    if integrator is None and settings.integrators:
+        integrator = settings.integrator[0].decode()
+    found, transformed = _integrator(integrator or "verlet")
+    adapts = _lib.integrator_adaptive(found)
+    o = _SweepOptions(integrator=found, transformed=transformed, dt=dt or 0,
+                      t_end=t_end or 0, threads=threads or os.cpu_count() or 1,
+                      gradient=_gradient(gradient or settings.gradient[0].decode()),
+                      gradient_step=settings.gradient_step,
+                      tolerance=(rtol or 1e-9) if adapts else 0)
+    made_sweep = _lib.sweep_new(made._made, c.byref(o))
+    try:
+        return _sweep(made_sweep)
+    finally:
+        _lib.sweep_free(made_sweep)
+
+
+def _sweep(s):
+    def check(status):
+        _check(status, _lib.sweep_message(s))
+    check(_lib.sweep_status(s))
+    members, columns = _lib.sweep_members(s), _lib.sweep_columns(s)
+    names = [_lib.sweep_column(s, k).decode() for k in range(columns)]
+    size = 8 + 8 * columns
+    kind = np.dtype({"names": ["status"] + names, "formats": ["u1"] + ["f8"] * columns,
+                     "offsets": [0] + [8 + 8 * k for k in range(columns)],
+                     "itemsize": size})
+    array = np.zeros(members, kind)
+    records = _Records(records=array.ctypes.data, count=members, columns=columns)
+    with _Interrupt() as interrupt:
+        watch = c.CFUNCTYPE(c.c_bool, c.c_void_p, c.c_uint64)(
+            lambda _, member: not interrupt.pressed)
+        keep = _lib.address("sweep_keep")
+        del watch
+        for first in range(0, members, 1 << 16):
+            check(_lib.sweep_run(s, first, min(1 << 16, members - first), None, keep,
+                                 c.byref(records)))
+            if interrupt.pressed:
+                raise KeyboardInterrupt
+    if records.failed:
+        warnings.warn("%d of %d members failed; member %d: %s" % (
+            records.failed, members, records.failed_member,
+            records.message.decode()), stacklevel=3)
+    return array
+
+
+def main():
+    """The command nevh."""
+    os.execv(command(), ["nevh"] + sys.argv[1:])

@@ -1,0 +1,441 @@
+"""nevh tests: python/nevh.py.  Each test is a function; without NumPy or SciPy those
+that need it are skipped.
+
+SPDX-License-Identifier: GPL-3.0-or-later
+"""
+
+import ctypes
+import math
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+sys.dont_write_bytecode = True
+if os.environ.get("NEVH_TEST_WITHOUT_NUMPY"):
+    sys.modules["numpy"] = None
+import nevh  # noqa: E402
+
+np = nevh.np
+try:
+    import scipy.integrate as scipy_integrate
+except ImportError:
+    scipy_integrate = None
+
+PENDULUM = "p_phi^2/2 - cos(phi)"
+
+
+def needs(what):
+    missing = np is None if what == "NumPy" else scipy_integrate is None
+    if missing:
+        raise Skip("there is no " + what)
+
+
+class Skip(Exception):
+    pass
+
+
+def raised(kind, text, function, *arguments, **named):
+    try:
+        function(*arguments, **named)
+    except kind as error:
+        assert text in str(error), "%r is not in %r" % (text, str(error))
+        return error
+    raise AssertionError("%s was not raised" % kind.__name__)
+
+
+def close(a, b, tolerance):
+    return all(abs(x - y) <= tolerance for x, y in zip(a, b)) and len(a) == len(b)
+
+
+def last(orbit):
+    return [row[-1] for row in orbit.y]
+
+
+def rows_of(array):
+    return [list(row) for row in array]
+
+
+def command_rows(*arguments):
+    done = subprocess.run([nevh.command(), *arguments], stdout=subprocess.PIPE,
+                          check=True, text=True)
+    return [line.split(",") for line in done.stdout.splitlines()
+            if not line.startswith("#")][1:]
+
+
+# H as text, and scenes.
+
+def test_orbit_is_that_of_the_command():
+    orbit = nevh.solve("pendulum", (0, 5), method="rk4", dt=0.1)
+    rows = command_rows("run", "pendulum", "--integrators", "rk4", "--dt", "0.1",
+                        "--t-end", "5")
+    assert len(rows) == len(orbit.t) == 51
+    for i, row in enumerate(rows):
+        wanted = [float(cell) for cell in row[:3]]
+        assert [orbit.t[i], orbit.y[0][i], orbit.y[1][i]] == wanted
+    assert orbit.names == ["phi", "p_phi"] and orbit.nfev == 200
+
+
+def test_times_between_steps_are_those_of_the_command():
+    times = [0.0, 0.05, 0.7, 3.33, 5.0]
+    orbit = nevh.solve("pendulum", (0, 5), method="verlet", dt=0.1, t_eval=times)
+    rows = command_rows("run", "pendulum", "--integrators", "verlet", "--dt", "0.1",
+                        "--t-end", "5", "--at", ",".join(map(repr, times)))
+    assert [[float(cell) for cell in row[1:3]] for row in rows] == \
+        [[orbit.y[0][i], orbit.y[1][i]] for i in range(5)]
+
+
+def test_result_has_scipy_names():
+    orbit = nevh.solve(PENDULUM, (0, 10), [2, 0])
+    for name in ("t", "y", "nfev", "status", "message", "success", "sol",
+                 "energy_error", "verdict"):
+        assert name in orbit and getattr(orbit, name) is orbit[name]
+    assert orbit.status == 0 and orbit.success and orbit.method == "taylor"
+    assert orbit.energy_error < 1e-12
+    raised(AttributeError, "nothing", lambda: orbit.nothing)
+
+
+def test_verdicts_differ():
+    arguments = (PENDULUM, (0, 500), [2, 0])
+    verlet = nevh.solve(*arguments, "verlet", dt=0.1)
+    rk4 = nevh.solve(*arguments, "rk4", dt=0.1)
+    assert verlet.verdict == "bounded" and rk4.verdict == "drifts"
+    assert verlet.energy_error < 0.02
+
+
+def test_backwards():
+    there = nevh.solve(PENDULUM, (0, 3), [2, 0], "blanes-moan6", dt=0.01)
+    back = nevh.solve(PENDULUM, (3, 0), last(there), "blanes-moan6", dt=0.01)
+    assert close(last(back), [2, 0], 1e-12) and back.t[0] == 3 and back.t[-1] == 0
+
+
+def test_parameters_and_names():
+    H = "p_x^2/(2*m) + k/2*x^2 - E*x"
+    orbit = nevh.solve(H, (0, math.pi), {"x": 1, "p_x": 0}, "gauss12", dt=0.1,
+                       parameters={"m": 1, "k": 4, "E": "k/2"})
+    assert close(last(orbit), [1, 0], 1e-11)
+    q = nevh.solve("p^2/2 + q^2/2", (0, math.pi), [1, 0])
+    assert close(last(q), [-1, 0], 1e-9)
+    two = nevh.solve("p_b^2/2 + p_a^2/2 + a*b", (0, 1), [1, 2, 3, 4])
+    assert two.names == ["b", "a", "p_b", "p_a"]
+    array = nevh.solve("sum(i = 1..3, p_x[i]^2/2 + c[i]*x[i]^2/2)", (0, math.pi),
+                       [1, 1, 1, 0, 0, 0], parameters={"c": [1, 4, 9]},
+                       coordinates=["x[3]"])
+    assert close(last(array), [-1, 1, -1, 0, 0, 0], 1e-8)
+
+
+def test_effects():
+    free = nevh.solve("pendulum", (0, 1), [0, 1], "verlet", dt=0.1,
+                      without_effects="gravity")
+    assert close(last(free), [1, 1], 1e-14)
+    raised(nevh.Refused, "gravitation", nevh.solve, "pendulum", (0, 1),
+           with_effects=["gravitation"])
+
+
+def test_scene_starts():
+    scene = nevh.Scene("pendulum", parameters={"start": 1})
+    assert list(scene.start()) == [1, 0]
+    assert list(scene.start({"p_phi": 2})) == [1, 2]
+    assert "start = 1.0" in scene.text
+    assert nevh.Scene(scene.text).names == ["phi", "p_phi"]
+
+
+def test_defaults_without_a_method():
+    assert nevh.solve(PENDULUM, (0, 1), [1, 0], dt=0.1).method == "verlet"
+    mixed = nevh.solve("p_x^2*(1 + x^2)", (0, 1), [1, 1], dt=0.1)
+    assert mixed.method == "gauss4"
+    assert nevh.solve("pendulum", (0, 1)).method == "verlet"
+
+
+def test_tolerances():
+    exact = last(nevh.solve("double-pendulum", (0, 5), method="taylor", rtol=1e-15))
+    errors = [max(abs(x - y) for x, y in zip(exact, last(nevh.solve(
+        "double-pendulum", (0, 5), method="DOP853", dt=1, **named))))
+        for named in ({"rtol": 1e-5}, {"rtol": 1e-9}, {"rtol": 1e-5, "atol": 1e-9})]
+    assert errors[0] > 1e-6 and errors[1] < 1e-7 and errors[2] < 1e-7, errors
+
+
+def test_a_scene_may_stop():
+    text = nevh.Scene("pendulum").text + "stop = phi < 0\n"
+    orbit = nevh.solve(text, (0, 10), method="verlet", dt=0.01)
+    assert orbit.status == 1 and orbit.success and "phi < 0" in orbit.message
+    assert orbit.y[0][-1] < 0 <= orbit.y[0][-2] and orbit.t_reached == orbit.t[-1]
+
+
+def test_friction_and_time_have_a_balance():
+    orbit = nevh.solve("damped-driven-pendulum", (0, 20), method="rk4", dt=0.01)
+    assert orbit.energy_error < 1e-6
+
+
+# What is refused.
+
+def test_refusals():
+    solve = nevh.solve
+    error = raised(nevh.Refused, "H:", solve, "p^2/2 - coss(q)", (0, 1), [1, 0])
+    assert "did you mean cos" in str(error) and isinstance(error, ValueError)
+    raised(nevh.Refused, "2: phi, p_phi", solve, PENDULUM, (0, 1), [1, 0, 0])
+    raised(nevh.Refused, "no method 'verlett'", solve, PENDULUM, (0, 1), [1, 0],
+           "verlett", dt=0.1)
+    raised(nevh.Refused, "give it", solve, PENDULUM, (0, 1), [1, 0], "verlet")
+    raised(nevh.Refused, "no tolerance", solve, PENDULUM, (0, 1), [1, 0], "verlet",
+           dt=0.1, rtol=1e-9)
+    raised(nevh.Refused, "mixes coordinates and momenta", solve, "double-pendulum",
+           (0, 1), method="verlet", dt=0.1)
+    raised(nevh.Refused, "no time to go", solve, PENDULUM, (1, 1), [1, 0])
+    raised(nevh.Refused, "no gradient", solve, PENDULUM, (0, 1), [1, 0],
+           gradient="central3")
+    raised(nevh.Refused, "not between", solve, PENDULUM, (0, 1), [1, 0],
+           t_eval=[0, 2])
+    raised(nevh.Refused, "no momentum", solve, "x^2", (0, 1), [1, 0])
+    raised(nevh.Refused, "nowhere.nevh", solve, "nowhere.nevh")
+    raised(nevh.Refused, "no step", solve, PENDULUM, (0, 1), [1, 0], "rk4", dt=-0.1)
+    raised(nevh.Refused, "no step", solve, PENDULUM, (0, 1), [1, 0], "rk4",
+           dt=math.nan)
+    raised(nevh.Refused, "as many momenta", solve, lambda t, y: 0, (0, 1), [1, 0, 2])
+    raised(TypeError, "H is a text", solve, 3.5, (0, 1), [1, 0])
+
+
+def test_a_step_that_fails():
+    wall = "p^2/2 + log(1 - q)"
+    error = raised(nevh.Failed, "", nevh.solve, wall, (0, 50), [0, 1.0], "euler",
+                   dt=0.5)
+    orbit = error.result
+    assert not orbit.success and orbit.status == -1 and orbit.message == str(error)
+    assert 0 < len(orbit.t) and all(map(math.isfinite, orbit.y_reached))
+    assert abs(orbit.t_reached - orbit.t[-1]) < 1e-12
+    quiet = nevh.solve(wall, (0, 50), [0, 1.0], "euler", dt=0.5, check=False)
+    assert quiet.status == -1 and list(quiet.t) == list(orbit.t)
+
+
+# Functions.
+
+def value(t, y):
+    return y[1] ** 2 / 2 - math.cos(y[0])
+
+
+def test_a_function_of_python():
+    text = nevh.solve(PENDULUM, (0, 5), [2, 0], "verlet", dt=0.05)
+    mine = nevh.solve(value, (0, 5), [2, 0], "verlet", dt=0.05)
+    assert close(last(text), last(mine), 1e-9) and mine.gradient == "central4"
+    k = nevh.solve(lambda t, y, m, k=1: y[1]**2 / (2 * m) + k * y[0]**2 / 2,
+                   (0, math.pi), [1, 0], args=(1,), parameters={"k": 4})
+    assert close(last(k), [1, 0], 1e-6)
+
+
+def test_a_pointer():
+    kind = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double,
+                            ctypes.POINTER(ctypes.c_double),
+                            ctypes.POINTER(ctypes.c_double), ctypes.c_void_p)
+    mine = kind(lambda t, q, p, _: p[0] ** 2 / 2 - math.cos(q[0]))
+    address = ctypes.cast(mine, ctypes.c_void_p).value
+    text = nevh.solve(PENDULUM, (0, 1), [2, 0], "verlet", dt=0.1)
+
+    class Compiled:  # as numba's
+        pass
+    Compiled.address = address
+    for H in (mine, address, Compiled()):
+        orbit = nevh.solve(H, (0, 1), [2, 0], "verlet", dt=0.1)
+        assert close(last(orbit), last(text), 1e-9)
+
+
+def test_a_pointer_of_scipy():
+    needs("SciPy")
+    import scipy
+    kind = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double,
+                            ctypes.POINTER(ctypes.c_double),
+                            ctypes.POINTER(ctypes.c_double), ctypes.c_void_p)
+    H = scipy.LowLevelCallable(kind(lambda t, q, p, _: p[0] ** 2 / 2 + q[0] ** 2 / 2))
+    assert close(last(nevh.solve(H, (0, math.pi), [1, 0])), [-1, 0], 1e-7)
+
+
+class Mine(Exception):
+    pass
+
+
+def test_what_h_raises_stops_the_run():
+    def H(t, y):
+        if t > 1:
+            raise Mine("too late")
+        return value(t, y)
+    error = raised(Mine, "too late", nevh.solve, H, (0, 50), [2, 0], "rk4", dt=0.05,
+                   gradient_step=1e-3)
+    orbit = error.result
+    whole = nevh.solve(value, (0, 50), [2, 0], "rk4", dt=0.05, gradient_step=1e-3)
+    count = len(orbit.t)
+    assert 18 < count < 23 and not orbit.success and orbit.status == -1
+    assert rows_of(orbit.y) == [list(row[:count]) for row in rows_of(whole.y)]
+    assert list(orbit.y_reached) == last(orbit) and orbit.t_reached == orbit.t[-1]
+    raised(Mine, "", nevh.solve, H, (2, 3), [0, 0], "rk4", dt=0.05)
+
+
+def test_what_h_raises_elsewhere_is_no_matter():
+    def H(t, y):  # planning tries y[0] < 0
+        return y[1] ** 2 / 2 - math.sqrt(y[0])
+    orbit = nevh.solve(H, (0, 5), [1, 0], "rk4", dt=0.05)
+    assert orbit.energy_error < 1e-5
+
+
+def test_what_an_observer_raises_stops_the_run():
+    seen = []
+
+    def watch(t, y):
+        seen.append((t, list(y)))
+        if t > 1:
+            raise Mine("enough")
+    error = raised(Mine, "enough", nevh.solve, PENDULUM, (0, 50), [2, 0], "verlet",
+                   dt=0.1, observe=watch)
+    assert len(seen) == 12 and seen[0] == (0, [2, 0])
+    assert list(error.result.y_reached) == seen[-1][1]
+    orbit = nevh.solve(PENDULUM, (0, 50), [2, 0], "verlet", dt=0.1, every=5,
+                       observe=lambda t, y: t > 1)
+    assert orbit.status == 1 and orbit.success and len(orbit.t) == 16
+
+
+def test_the_interrupt_key():
+    def press():
+        time.sleep(0.3)
+        os.kill(os.getpid(), signal.SIGINT)
+    before = signal.getsignal(signal.SIGINT)
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    thread = threading.Thread(target=press)
+    thread.start()
+    try:
+        error = raised(KeyboardInterrupt, "", nevh.solve, PENDULUM, (0, 1e8), [2, 0],
+                       "verlet", dt=0.1, t_eval=[0, 1e8])
+    finally:
+        thread.join()
+        signal.signal(signal.SIGINT, before)
+    assert 0 < error.result.t_reached < 1e8
+    assert all(map(math.isfinite, error.result.y_reached))
+
+
+# The paper's class.
+
+def test_the_papers_listing():
+    needs("SciPy")
+
+    def H(t, s, k, m):
+        x, p = s
+        return 0.5 * k * x**2 + 0.5 * p**2 / m
+    G = nevh.HGrad(H, [0.1, 0.1], k=4 * math.pi ** 2, m=1.0)
+    assert close(G(0, [1.0, 0.0]), [0, -4 * math.pi ** 2], 1e-12)
+    orbit = scipy_integrate.solve_ivp(G, [0.0, 3.0], [1.0, 0.0], rtol=1e-8, atol=1e-8)
+    assert close(orbit.y[:, -1], [1, 0], 1e-5)
+
+
+def test_hgrad():
+    y = [1.0, 2.0, 3.0, 4.0]
+    exact = nevh.HGrad("double-pendulum", gradient="exact")
+    central = nevh.HGrad("double-pendulum")
+    coarse = nevh.HGrad("double-pendulum", 0.1, gradient="central2")
+    assert close(central(0, y), exact(0, y), 1e-9)
+    assert not close(coarse(0, y), exact(0, y), 1e-9)
+    damped = nevh.HGrad("[coordinates]\nx = 0\n[effects]\nH = p_x^2/2\n"
+                        "[friction]\ndrag = x: 0.5\n")
+    assert close(damped(0, [0, 2.0]), [2, -1], 1e-9)
+    raised(nevh.Refused, "takes 4", central, 0, [1.0, 2.0])
+    raised(nevh.Refused, "it takes 4", nevh.HGrad("double-pendulum"), 0, [1.0, 2.0])
+    raised(nevh.Refused, "one, or 2", nevh.HGrad(value, [1, 2, 3]), 0, [1.0, 0])
+
+    def bad(t, y):
+        raise Mine("no value")
+    raised(Mine, "no value", nevh.HGrad(bad), 0, [1.0, 2.0])
+
+
+def test_hgrad_of_many_states():
+    needs("NumPy")
+    G = nevh.HGrad("double-pendulum", gradient="exact")
+    y = np.random.default_rng(1).normal(size=(4, 13))
+    together = G(0, y)
+    assert together.shape == (4, 13)
+    for k in range(13):
+        assert list(G(0, y[:, k])) == list(together[:, k])
+
+
+# Tables and sweeps.
+
+def test_compare():
+    table = nevh.compare("pendulum", ["verlet", "rk4"], dt=[0.1, 0.05], t_end=200)
+    assert len(table) == 4 and table["integrator"] == ["verlet", "rk4"] * 2
+    assert table["verdict"] == ["bounded", "drifts"] * 2
+    assert isinstance(table[0]["max_energy_error"], float)
+    text = table._repr_html_()
+    assert text.count("<tr>") == 5 and "<th>verdict</th>" in text
+    assert any("energy_scale" in note for note in table.notes)
+    assert "bounded" in str(table)
+    formula = nevh.compare("p_x^2/2 + x^4/4", ["verlet"], dt=0.1, t_end=50, y0=[1, 0])
+    assert len(formula) == 1 and formula[0]["status"] == "ok"
+    raised(nevh.Refused, "did you mean verlet", nevh.compare, "pendulum", ["verlat"])
+    refused = nevh.compare("double-pendulum", ["verlet"], dt=0.1, t_end=5)
+    assert refused[0]["status"].startswith("refused")
+    assert refused[0]["max_energy_error"] is None
+
+
+def test_sweep():
+    needs("NumPy")
+    values = np.linspace(0.1, 3, 50)
+    arguments = "pendulum", {"phi": values}, "state, energy_error", "verlet"
+    named = dict(dt=0.05, t_end=5, gradient="exact")
+    array = nevh.sweep(*arguments, threads=1, **named)
+    assert array.dtype.names == ("status", "phi", "last(phi)", "last(p_phi)",
+                                 "energy_error")
+    assert (array["status"] == 1).all() and (array["phi"] == values).all()
+    for i in (0, 20, 49):
+        orbit = nevh.solve("pendulum", (0, 5), [values[i], 0], "verlet", dt=0.05,
+                           gradient="exact")
+        assert [array["last(phi)"][i], array["last(p_phi)"][i]] == last(orbit)
+    threads = nevh.sweep(*arguments, threads=4, **named)
+    assert threads.tobytes() == array.tobytes()
+
+
+def test_sweep_is_the_commands():
+    needs("NumPy")
+    import tempfile
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "a.npy")
+        subprocess.run([nevh.command(), "sweep", "pendulum", "--vary",
+                        "phi = range(0, 3, 40)", "--vary", "g = 9, 10", "--outcomes",
+                        "period, verdict", "--integrators", "verlet", "--dt", "0.05",
+                        "--t-end", "20", "-o", path, "--quiet"], check=True)
+        file = np.load(path, mmap_mode="r")
+        mine = nevh.sweep("pendulum", {"phi": "range(0, 3, 40)", "g": [9, 10]},
+                          ["period", "verdict"], "verlet", dt=0.05, t_end=20)
+        assert len(mine) == len(file) == 80
+        for name in mine.dtype.names:
+            assert np.array_equal(mine[name], file[name], equal_nan=True), name
+
+
+def test_sweep_of_members_that_fail():
+    needs("NumPy")
+    import warnings
+    with warnings.catch_warnings(record=True) as seen:
+        warnings.simplefilter("always")
+        array = nevh.sweep("p^2/2 - log(1 - q)", {"q": [0, 0.5, 2.0]}, "state",
+                           "rk4", dt=0.1, t_end=1)
+    assert list(array["status"]) == [1, 1, 3], array
+    assert len(seen) == 1 and "1 of 3 members failed; member 2" in str(seen[0].message)
+    raised(nevh.Refused, "phy", nevh.sweep, "pendulum", {"phy": [1, 2]})
+
+
+def main():
+    names = [name for name in sorted(globals()) if name.startswith("test_")]
+    counts = {"passed": 0, "failed": 0, "skipped": 0}
+    for name in names:
+        try:
+            globals()[name]()
+            counts["passed"] += 1
+        except Skip as why:
+            counts["skipped"] += 1
+            print("skipped %s: %s" % (name, why))
+        except BaseException:
+            import traceback
+            counts["failed"] += 1
+            print("failed %s" % name)
+            traceback.print_exc(file=sys.stdout)
+    print("%(passed)d passed, %(failed)d failed, %(skipped)d skipped" % counts)
+    return counts["failed"] > 0
+
+
+sys.exit(main())
