@@ -581,8 +581,11 @@ class _Plan:
         self.subject = subject
         integrator, transformed = _integrator(name)
         o = self.options = _Options(t=t0, q=y[1], p=y[1] + 8 * subject.n,
-                                    tolerance=tolerance,
-                                    gradient=_gradient(gradient))
+                                    tolerance=tolerance)
+        if gradient is None:  # none is taken: nothing is to be planned
+            o.gradient, gradient_step = _gradient("central2"), 1
+        else:
+            o.gradient = _gradient(gradient)
         if transformed:
             o.transform = subject.scene and _lib.scene_transform(subject.scene._made)
             if not o.transform:
@@ -759,7 +762,7 @@ def solve(H, t_span=None, y0=None, method=None, *, dt=None, rtol=None, atol=None
     -1: failed), message, success, as SciPy does; energy_error (the largest over the
     run, relative to energy_scale), verdict (of nevh.verdicts), energy_drift (a unit of
     time), hamiltonian_evals, t_reached and y_reached (the last good state), method,
-    dt, tolerance, gradient, names.
+    dt, tolerance, gradient (None where none is taken), names.
 
     Raises Refused for input that is wrong, Failed where a step fails, and what
     `observe` or H raised; the orbit so far is then the exception's `result`.
@@ -789,7 +792,6 @@ def solve(H, t_span=None, y0=None, method=None, *, dt=None, rtol=None, atol=None
         if rtol is None and settings.tolerances and adapts:
             rtol = settings.tolerance[0]
         gradient = gradient or settings.gradient[0].decode()
-    gradient = gradient or "central4"
     if not t_end - t0 < float("inf") or t_end == t0:
         raise Refused("t_span = %g, %g is no time to go" % (t0, t_end))
     method = method or _choose(subject, dt, t0, y)
@@ -797,6 +799,10 @@ def solve(H, t_span=None, y0=None, method=None, *, dt=None, rtol=None, atol=None
     if not 0 < dt < float("inf"):
         raise Refused("dt = %g is no step" % dt)
     h = dt if t_end > t0 else -dt
+    if _lib.integrator_needs_formulas(_integrator(method)[0]):
+        gradient = None
+    else:
+        gradient = gradient or "central4"
     plan = _Plan(subject, method, gradient, y, t0, tolerance, gradient_step)
     if t_eval is None:
         t_eval = _times_of_steps(t0, t_end, h)

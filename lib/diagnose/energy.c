@@ -179,7 +179,8 @@ int nevh_energy_expect(nevh_energy *e, const nevh_stepper *s) {
     if (status)
         return status;
     e->theory = theory_of(s);
-    find_blur(e, s->work.field);
+    if (!s->work.integrator->needs_formulas) /* those take no gradient */
+        find_blur(e, s->work.field);
     return NEVH_OK;
 }
 
