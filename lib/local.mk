@@ -175,6 +175,7 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/chaos_walk.c \
 	lib/diagnose/chaos_starts.c \
 	lib/diagnose/chaos_report.c \
+	lib/diagnose/chaos_crowd.c \
 	lib/diagnose/shadow.c \
 	lib/diagnose/rates.c \
 	lib/diagnose/frequencies.c \
@@ -190,6 +191,7 @@ libnevh_core_la_SOURCES = \
 	lib/ensemble/observe.c \
 	lib/ensemble/cross.c \
 	lib/ensemble/event.c \
+	lib/ensemble/chaotic.c \
 	lib/scene/scene_private.h \
 	lib/scene/equation.c \
 	lib/scene/lines.c \

@@ -51,6 +51,7 @@ suites = \
 	tests/run/check_section \
 	tests/ensemble/check_random \
 	tests/ensemble/check_ensemble \
+	tests/ensemble/check_ensemble_chaos \
 	tests/ensemble/check_sweep \
 	tests/system/check_closeness \
 	tests/run/check_transform \

@@ -48,7 +48,11 @@ typedef enum {
     NEVH_OUTCOME_MAXIMUM,
     NEVH_OUTCOME_MEAN, /* over time, by the trapezoidal rule on the steps */
     NEVH_OUTCOME_CROSSINGS, /* how often the quantity goes through 0 */
-    NEVH_OUTCOME_PERIOD     /* mean time between crossings; NAN below two */
+    NEVH_OUTCOME_PERIOD,    /* mean time between crossings; NAN below two */
+    NEVH_OUTCOME_LYAPUNOV, /* what nevh_chaos finds of the orbit with one start:
+                               its largest exponent, */
+    NEVH_OUTCOME_SALI,     /* the alignment of two displacements, */
+    NEVH_OUTCOME_MEGNO     /* and MEGNO */
 } nevh_outcome_kind;
 
 typedef struct {
@@ -75,7 +79,14 @@ typedef struct {
                            value NULL: none does */
 } nevh_ensemble_options;
 
-/* Orbits of one system by one scheme, side by side.  Each is the one that
+/* Displacements of NEVH_OUTCOME_LYAPUNOV to NEVH_OUTCOME_MEGNO are drawn as those
+   of a nevh_chaos of seed 0, in the lengths of H at the state to plan at.  They
+   are of orbits of their own, beside those of other outcomes, until the same
+   time.  SALI is taken once a turn of the fastest motion there, unless MEGNO is
+   asked for, too; an orbit ends where SALI is below 1e-8 and neither of the
+   other two is asked for.
+
+   Orbits of one system by one scheme, side by side.  Each is the one that
    nevh_run_until takes alone, to the last bit, whatever the width, its
    neighbours and the order in which the orbits begin.  An orbit ends at t_end,
    where it is to stop, once all its outcomes are known, or where a step fails;

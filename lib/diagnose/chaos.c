@@ -83,6 +83,7 @@ static int plan_period(nevh_chaos *c) {
     nevh_rates_free(r);
     double rate = fmax(frequency, isfinite(growth) ? growth : 0);
     c->period = !status && rate > 0 ? 2 * acos(-1) / rate : 8 * c->dt;
+    c->turn = (size_t)fmax(1, fmin(1e6, c->period / c->dt));
     c->first_stride =
         (size_t)fmax(1, fmin(1e6, c->period / c->dt / LOOKS_A_PERIOD));
     return NEVH_OK;
@@ -278,6 +279,7 @@ void nevh_chaos_free(nevh_chaos *c) {
         free(c->start[i].log);
         free(c->start[i].gali);
     }
+    nevh__chaos_crowd_free(c->crowd);
     nevh_stepper_free(c->stepper);
     nevh__variational_free(c->variational);
     nevh_field_free(c->field);

@@ -23,8 +23,16 @@ void nevh__variational_free(nevh__variational *);
 /* Batches in time; full, they are merged in pairs. */
 enum { NEVH__BINS = 64 };
 
+/* How far a start has come. */
+typedef struct {
+    double done, seen;       /* steps; those when it was last looked at */
+    double span[NEVH__BINS]; /* the time of each bin */
+    size_t bin, looks, looks_a_bin;
+} nevh__chaos_clock;
+
 /* A start. */
 typedef struct {
+    nevh__chaos_clock clock;
     double *w; /* deviations and frame: vectors x 2n, in units of the scale */
     double *norm; /* of deviations, when they were last looked at */
     double *log;  /* logs x NEVH__BINS: growth in each bin */
@@ -34,6 +42,8 @@ typedef struct {
     double indicator; /* 2 moment/t */
     double area;      /* int of that over time */
 } nevh__chaos_start;
+
+typedef struct nevh__chaos_crowd nevh__chaos_crowd;
 
 struct nevh_chaos {
     nevh__report report;
@@ -54,11 +64,9 @@ struct nevh_chaos {
     double *q, *p;         /* of the stepper */
     double *slope, *place; /* 2n */
     nevh__chaos_start *start;
-    double done; /* steps */
-    size_t first_stride;
-    size_t stride;           /* steps between looks */
-    double span[NEVH__BINS]; /* the time of each bin */
-    size_t bin, looks, looks_a_bin;
+    size_t first_stride, turn; /* turn: steps of a period */
+    size_t stride;             /* steps between looks */
+    nevh__chaos_crowd *crowd;  /* of members; or NULL */
 };
 
 static inline size_t nevh__chaos_vectors(const nevh_chaos *c) {
@@ -71,7 +79,49 @@ static inline size_t nevh__chaos_logs(const nevh_chaos *c) {
 
 /* chaos_starts.c: states and displacements at the start. */
 int nevh__chaos_begin(nevh_chaos *);
+/* The state (q, p), 2n, and the displacements that belong to draw number
+   `number`; the start has not taken a step. */
+void nevh__chaos_place(nevh_chaos *, size_t start, const double z[],
+                       uint64_t *drawn);
+/* Numbers for draw number `number`. */
+uint64_t nevh__chaos_draw(const nevh_chaos *, size_t number);
 /* chaos_walk.c: hands displacement v of a start to the stepper, or takes it. */
 void nevh__chaos_put(nevh_chaos *, size_t start, size_t v);
+/* Looks at a start, whose clock->done is set.
+   returns  the largest growth of its frame; NAN where a displacement has
+            overflowed or vanished */
+double nevh__chaos_look(nevh_chaos *, size_t start);
+/* The steps that lead nearest to `until`. */
+double nevh__chaos_steps(const nevh_chaos *, double until);
+/* chaos_report.c: of one start. */
+double nevh__chaos_rate(const nevh_chaos *, size_t start, size_t i);
+double nevh__chaos_megno(const nevh_chaos *, size_t start);
+
+/* chaos_crowd.c: starts that are orbits of their own, side by side, each from
+   t_start to a time of its own; the next takes the place of one that has ended.
+   What is found of one is what a nevh_chaos of one start finds, whatever its
+   neighbours. */
+typedef struct {
+    uint64_t member;
+    int status; /* of the step that failed, with a message; or NEVH_OK */
+    const char *message;
+    double exponent, sali, megno;
+} nevh__chaos_member;
+typedef struct {
+    bool (*next)(void *data, uint64_t *member, double q[], double p[],
+                 double *until);
+    int (*done)(void *data, const nevh__chaos_member *); /* not 0: stop */
+    void *data;
+    bool sparse;  /* MEGNO is not asked for: looks once a turn will do */
+    bool aligned; /* SALI alone is: an orbit ends where it has fallen below
+                     nevh__chaos_aligned */
+    bool abreast; /* H reads t: orbits begin together */
+} nevh__chaos_orders;
+/* What a crowd needs.  returns  whether there was memory */
+bool nevh__chaos_crowd_plan(nevh_chaos *);
+void nevh__chaos_crowd_free(nevh__chaos_crowd *); /* NULL is allowed */
+void nevh__chaos_crowd_run(nevh_chaos *, const nevh__chaos_orders *);
+/* Below it displacements are aligned. */
+double nevh__chaos_aligned(const nevh_chaos *);
 
 #endif

@@ -12,27 +12,28 @@ typedef struct {
     double rate, error; /* error: INFINITY where there are too few batches */
 } estimate;
 
-static double elapsed(const nevh_chaos *c) {
-    return c->done * c->dt;
+static double elapsed(const nevh_chaos *c, size_t start) {
+    return c->start[start].clock.done * c->dt;
 }
 
-static size_t first_bin(const nevh_chaos *c) {
+static size_t first_bin(const nevh_chaos *c, size_t start) {
+    const nevh__chaos_clock *clock = &c->start[start].clock;
     double t = 0;
     size_t b = 0;
-    while (b < c->bin && t < dropped * elapsed(c))
-        t += c->span[b++];
+    while (b < clock->bin && t < dropped * elapsed(c, start))
+        t += clock->span[b++];
     return b;
 }
 
-static double batch_variance(const nevh_chaos *c, const double g[],
+static double batch_variance(const nevh__chaos_clock *clock, const double g[],
                              size_t first, double rate) {
     double sum = 0;
     size_t count = 0;
-    for (size_t b = first; b + BINS_A_BATCH <= c->bin; b += BINS_A_BATCH) {
+    for (size_t b = first; b + BINS_A_BATCH <= clock->bin; b += BINS_A_BATCH) {
         double growth = 0, time = 0;
         for (size_t k = 0; k < BINS_A_BATCH; k++) {
             growth += g[b + k];
-            time += c->span[b + k];
+            time += clock->span[b + k];
         }
         sum += pow(growth / time - rate, 2);
         count++;
@@ -41,36 +42,47 @@ static double batch_variance(const nevh_chaos *c, const double g[],
 }
 
 static estimate estimate_start(const nevh_chaos *c, size_t start, size_t log) {
+    const nevh__chaos_clock *clock = &c->start[start].clock;
     const double *g = c->start[start].log + log * NEVH__BINS;
     double growth = 0, time = 0;
-    size_t first = first_bin(c);
-    for (size_t b = first; b <= c->bin && b < NEVH__BINS; b++) {
+    size_t first = first_bin(c, start);
+    for (size_t b = first; b <= clock->bin && b < NEVH__BINS; b++) {
         growth += g[b];
-        time += c->span[b];
+        time += clock->span[b];
     }
     double rate = growth / time;
-    return (estimate){rate, sqrt(batch_variance(c, g, first, rate))};
+    return (estimate){rate, sqrt(batch_variance(clock, g, first, rate))};
 }
 
 /* What linear growth leaves. */
-static double resolution(const nevh_chaos *c) {
-    return -log(dropped) / ((1 - dropped) * elapsed(c));
+static double resolution(const nevh_chaos *c, size_t start) {
+    return -log(dropped) / ((1 - dropped) * elapsed(c, start));
 }
 
-static double mean_indicator(const nevh_chaos *c, size_t start) {
-    return elapsed(c) > 0 ? c->start[start].area / elapsed(c) : 0;
+double nevh__chaos_rate(const nevh_chaos *c, size_t start, size_t i) {
+    return elapsed(c, start) > 0 ? estimate_start(c, start, i).rate : NAN;
+}
+
+double nevh__chaos_megno(const nevh_chaos *c, size_t start) {
+    double t = elapsed(c, start);
+    return t > 0 ? c->start[start].area / t : 0;
+}
+
+double nevh__chaos_aligned(const nevh_chaos *c) {
+    return c->tangent ? aligned : aligned_by_differences;
 }
 
 static nevh_chaos_verdict verdict_on(const nevh_chaos *c, size_t start) {
-    if (!(elapsed(c) > 0))
+    double t = elapsed(c, start);
+    if (!(t > 0))
         return NEVH_EARLY;
     estimate e = estimate_start(c, start, 0);
-    double error = hypot(e.error, resolution(c));
-    double megno = mean_indicator(c, start);
-    double limit = c->tangent ? aligned : aligned_by_differences;
-    if (e.rate > 2 * resolution(c) && c->start[start].sali < limit && megno > 4)
+    double least = resolution(c, start), error = hypot(e.error, least);
+    double megno = nevh__chaos_megno(c, start);
+    if (e.rate > 2 * least && megno > 4 &&
+        c->start[start].sali < nevh__chaos_aligned(c))
         return NEVH_CHAOTIC;
-    if (e.rate < 2 * error && megno < 2.5 && elapsed(c) >= TURNS * c->period &&
+    if (e.rate < 2 * error && megno < 2.5 && t >= TURNS * c->period &&
         isfinite(error))
         return NEVH_REGULAR;
     return NEVH_EARLY;
@@ -80,7 +92,7 @@ double nevh_chaos_exponent(const nevh_chaos *c, size_t i, double *error) {
     double sum = 0, squares = 0, variance = 0, count = 0;
     if (error)
         *error = INFINITY;
-    if (!c || !c->planned || i >= c->exponents || !(elapsed(c) > 0))
+    if (!c || !c->planned || i >= c->exponents || !(elapsed(c, 0) > 0))
         return NAN;
     nevh_chaos_verdict verdict = verdict_on(c, 0);
     for (size_t k = 0; k < c->starts; k++) {
@@ -97,7 +109,7 @@ double nevh_chaos_exponent(const nevh_chaos *c, size_t i, double *error) {
         count > 1 ? fmax(0, squares - sum * mean) / (count - 1) / count : 0;
     double within = variance / (count * count);
     if (error)
-        *error = hypot(sqrt(fmax(between, within)), resolution(c));
+        *error = hypot(sqrt(fmax(between, within)), resolution(c, 0));
     return mean;
 }
 
@@ -105,10 +117,10 @@ nevh_chaos_report nevh_chaos_result(const nevh_chaos *c) {
     nevh_chaos_report r = {0};
     if (!c || !c->planned)
         return r;
-    r.t = c->t_start + elapsed(c);
+    r.t = c->t_start + elapsed(c, 0);
     r.verdict = verdict_on(c, 0);
     r.sali = c->start[0].sali;
-    r.megno = mean_indicator(c, 0);
+    r.megno = nevh__chaos_megno(c, 0);
     r.starts = c->starts;
     for (size_t k = 0; k < c->starts; k++)
         r.agreeing += verdict_on(c, k) == r.verdict;

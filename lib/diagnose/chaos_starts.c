@@ -37,7 +37,7 @@ static int to_energy(nevh_chaos *c, double z[], double energy) {
 }
 
 /* To lane 0 of a start, of which the others are copies. */
-static void place(nevh_chaos *c, size_t start, const double z[]) {
+static void put_state(nevh_chaos *c, size_t start, const double z[]) {
     size_t n = c->n, from = c->tangent ? n : 0;
     for (size_t i = 0; i < c->lanes; i++)
         for (size_t k = 0; k < n; k++) {
@@ -73,23 +73,36 @@ static void draw_vectors(nevh_chaos *c, size_t start, uint64_t *state) {
     }
 }
 
-static void forget(nevh_chaos *c) {
-    for (size_t i = 0; i < c->starts; i++) {
-        nevh__chaos_start *s = &c->start[i];
-        memset(s->log, 0, nevh__chaos_logs(c) * NEVH__BINS * sizeof *s->log);
-        s->moment = s->indicator = s->area = 0;
-        s->sali = sqrt(2);
-        for (size_t k = 0; k <= c->deviations; k++)
-            s->gali[k] = 1;
-    }
-    memset(c->span, 0, sizeof c->span);
+static void forget(nevh_chaos *c, nevh__chaos_start *s) {
+    memset(s->log, 0, nevh__chaos_logs(c) * NEVH__BINS * sizeof *s->log);
+    s->moment = s->indicator = s->area = 0;
+    s->sali = sqrt(2);
+    for (size_t k = 0; k <= c->deviations; k++)
+        s->gali[k] = 1;
+    s->clock = (nevh__chaos_clock){.looks_a_bin = 1};
+}
+
+static void forget_all(nevh_chaos *c) {
     memset(c->q, 0, 2 * c->n * c->width * sizeof *c->q);
     memset(c->p, 0, 2 * c->n * c->width * sizeof *c->p);
-    c->done = 0;
     c->stride = c->first_stride;
-    c->bin = c->looks = 0;
-    c->looks_a_bin = 1;
     nevh_stepper_reset(c->stepper);
+}
+
+uint64_t nevh__chaos_draw(const nevh_chaos *c, size_t number) {
+    uint64_t state = (c->seed + 1) * 0x9e3779b97f4a7c15u + number;
+    for (int k = 0; k < 4; k++)
+        nevh__random(&state);
+    return state;
+}
+
+void nevh__chaos_place(nevh_chaos *c, size_t start, const double z[],
+                       uint64_t *drawn_from) {
+    forget(c, &c->start[start]);
+    put_state(c, start, z);
+    draw_vectors(c, start, drawn_from);
+    for (size_t v = 0; v < nevh__chaos_vectors(c); v++)
+        nevh__chaos_put(c, start, v);
 }
 
 /* Lanes that only fill up the last vector of eight are the last start's. */
@@ -107,20 +120,15 @@ int nevh__chaos_begin(nevh_chaos *c) {
     double energy;
     int status = nevh_field_value(c->field, 1, &c->t_start, c->own,
                                   c->own + c->n, &energy);
-    forget(c);
+    forget_all(c);
     for (size_t i = 0; !status && i < c->starts; i++) {
-        uint64_t state = (c->seed + 1) * 0x9e3779b97f4a7c15u + i;
-        for (int k = 0; k < 4; k++)
-            nevh__random(&state);
+        uint64_t state = nevh__chaos_draw(c, i);
         memcpy(c->place, c->own, m * sizeof *c->own);
         for (size_t k = 0; i && k < m; k++)
             c->place[k] += apart * c->options.scale[k] * drawn(&state);
         if (i)
             status = to_energy(c, c->place, energy);
-        place(c, i, c->place);
-        draw_vectors(c, i, &state);
-        for (size_t v = 0; v < nevh__chaos_vectors(c); v++)
-            nevh__chaos_put(c, i, v);
+        nevh__chaos_place(c, i, c->place, &state);
     }
     fill_up(c);
     return status ? nevh__fail(&c->report, status, "%s",

@@ -84,9 +84,8 @@ static double orthonormalise(double all[], size_t v, size_t m) {
     return length;
 }
 
-static void add_growth(nevh_chaos *c, nevh__chaos_start *s, size_t log,
-                       double growth) {
-    s->log[log * NEVH__BINS + c->bin] += growth;
+static void add_growth(nevh__chaos_start *s, size_t log, double growth) {
+    s->log[log * NEVH__BINS + s->clock.bin] += growth;
 }
 
 /* The indices of the deviations, as unit vectors in `place`. */
@@ -136,7 +135,7 @@ static double look_at_frame(nevh_chaos *c, size_t start) {
         if (!isfinite(growth))
             return NAN;
         most = fmax(most, fabs(growth));
-        add_growth(c, s, v, growth);
+        add_growth(s, v, growth);
         nevh__chaos_put(c, start, c->deviations + v);
     }
     return most;
@@ -165,7 +164,7 @@ static double look_at_start(nevh_chaos *c, size_t start, double t0, double t1) {
         if (v == 0) {
             s->moment += (t0 + t1) / 2 * growth;
             if (!c->frame)
-                add_growth(c, s, 0, growth);
+                add_growth(s, 0, growth);
         }
     }
     index_alignment(c, s);
@@ -176,58 +175,77 @@ static double look_at_start(nevh_chaos *c, size_t start, double t0, double t1) {
     return most;
 }
 
-static void merge_bins(nevh_chaos *c) {
-    for (size_t b = 0; b < NEVH__BINS / 2; b++)
-        c->span[b] = c->span[2 * b] + c->span[2 * b + 1];
-    memset(c->span + NEVH__BINS / 2, 0, NEVH__BINS / 2 * sizeof *c->span);
-    for (size_t i = 0; i < c->starts; i++)
-        for (size_t v = 0; v < nevh__chaos_logs(c); v++) {
-            double *g = c->start[i].log + v * NEVH__BINS;
-            for (size_t b = 0; b < NEVH__BINS / 2; b++)
-                g[b] = g[2 * b] + g[2 * b + 1];
-            memset(g + NEVH__BINS / 2, 0, NEVH__BINS / 2 * sizeof *g);
-        }
-    c->bin = NEVH__BINS / 2;
-    c->looks_a_bin *= 2;
+static void merge_bins(const nevh_chaos *c, nevh__chaos_start *s) {
+    nevh__chaos_clock *clock = &s->clock;
+    size_t half = NEVH__BINS / 2, bytes = half * sizeof(double);
+    for (size_t b = 0; b < half; b++)
+        clock->span[b] = clock->span[2 * b] + clock->span[2 * b + 1];
+    memset(clock->span + half, 0, bytes);
+    for (size_t v = 0; v < nevh__chaos_logs(c); v++) {
+        double *g = s->log + v * NEVH__BINS;
+        for (size_t b = 0; b < half; b++)
+            g[b] = g[2 * b] + g[2 * b + 1];
+        memset(g + half, 0, bytes);
+    }
+    clock->bin = half;
+    clock->looks_a_bin *= 2;
 }
 
-static void next_bin(nevh_chaos *c) {
-    if (++c->looks < c->looks_a_bin)
+static void next_bin(const nevh_chaos *c, nevh__chaos_start *s) {
+    nevh__chaos_clock *clock = &s->clock;
+    if (++clock->looks < clock->looks_a_bin)
         return;
-    c->looks = 0;
-    if (++c->bin == NEVH__BINS)
-        merge_bins(c);
+    clock->looks = 0;
+    if (++clock->bin == NEVH__BINS)
+        merge_bins(c, s);
+}
+
+double nevh__chaos_look(nevh_chaos *c, size_t start) {
+    nevh__chaos_start *s = &c->start[start];
+    nevh__chaos_clock *clock = &s->clock;
+    double t0 = clock->seen * c->dt, t1 = clock->done * c->dt;
+    double growth = look_at_start(c, start, t0, t1);
+    if (!isfinite(growth))
+        return growth;
+    clock->span[clock->bin] += t1 - t0;
+    clock->seen = clock->done;
+    next_bin(c, s);
+    return growth;
 }
 
 static int look(nevh_chaos *c, double steps) {
-    double t0 = c->done * c->dt, t1 = (c->done + steps) * c->dt, most = 0;
+    double most = 0;
     for (size_t i = 0; i < c->starts; i++) {
-        double growth = look_at_start(c, i, t0, t1);
-        if (!isfinite(growth))
+        nevh__chaos_clock *clock = &c->start[i].clock;
+        clock->done += steps;
+        double growth = nevh__chaos_look(c, i);
+        if (!isfinite(growth)) {
+            clock->done -= steps;
             return nevh__fail(&c->report, NEVH_EDOM,
                               "a displacement of start %zu has grown beyond "
                               "all numbers, or vanished, at t = %.9g",
-                              i, c->t_start + t1);
+                              i, c->t_start + (clock->done + steps) * c->dt);
+        }
         most = fmax(most, growth);
     }
-    c->span[c->bin] += t1 - t0;
-    c->done += steps;
     if (most > most_growth && c->stride > 1)
         c->stride /= 2;
-    next_bin(c);
     return NEVH_OK;
+}
+
+double nevh__chaos_steps(const nevh_chaos *c, double until) {
+    return rint((until - c->t_start) / c->dt);
 }
 
 int nevh_chaos_run(nevh_chaos *c, double until) {
     if (!c || !isfinite(until))
         return NEVH_EINVAL;
-    double last = rint((until - c->t_start) / c->dt);
-    while (!c->report.status && c->done < last) {
+    double last = nevh__chaos_steps(c, until);
+    while (!c->report.status && c->start[0].clock.done < last) {
         /* Looks come at multiples of the stride, however a run is cut. */
-        double steps =
-            fmin(last - c->done,
-                 (double)c->stride - fmod(c->done, (double)c->stride));
-        int status = nevh_run(c->stepper, c->t_start + c->done * c->dt, c->dt,
+        double done = c->start[0].clock.done, stride = (double)c->stride;
+        double steps = fmin(last - done, stride - fmod(done, stride));
+        int status = nevh_run(c->stepper, c->t_start + done * c->dt, c->dt,
                               (size_t)steps, c->q, c->p, NULL, 0);
         if (status)
             return nevh__fail(&c->report, status, "%s",

@@ -12,7 +12,7 @@ static int out_of_memory(nevh_ensemble *e) {
 }
 
 static bool has_quantity(const nevh_outcome *o) {
-    return o->kind >= NEVH_OUTCOME_FIRST;
+    return o->kind >= NEVH_OUTCOME_FIRST && o->kind <= NEVH_OUTCOME_PERIOD;
 }
 
 static bool crosses(const nevh_outcome *o) {
@@ -36,7 +36,7 @@ static int take_outcomes(nevh_ensemble *e) {
     for (size_t i = 0; i < e->n_outcomes; i++) {
         const nevh_outcome *o = &e->is.outcomes[i];
         e->outcomes[i] = *o;
-        if ((unsigned)o->kind > NEVH_OUTCOME_PERIOD ||
+        if ((unsigned)o->kind > NEVH_OUTCOME_MEGNO ||
             (has_quantity(o) && !o->quantity.value))
             return nevh__fail(&e->report, NEVH_EINVAL,
                               "outcome %zu is of no known kind, or lacks its "
@@ -275,6 +275,8 @@ static int plan(nevh_ensemble *e) {
         status = plan_motion(e, &o);
     if (!status)
         status = plan_rooms(e);
+    if (!status && nevh__ensemble_tells_chaos(e))
+        status = nevh__chaotic_plan(e, &o);
     return !status && e->n_crossings ? plan_sections(e) : status;
 }
 
@@ -300,6 +302,7 @@ void nevh_ensemble_free(nevh_ensemble *e) {
         return;
     nevh_energy_free(e->energy);
     nevh_sections_free(e->sections);
+    nevh__chaotic_free(e->chaotic);
     nevh__crossing_lanes_free(e->crossing_lanes);
     if (e->n_crossings && e->crossings)
         free(e->crossings[0].data);

@@ -38,6 +38,7 @@ typedef struct {
 } nevh__lane;
 
 typedef struct nevh__crossing_lanes nevh__crossing_lanes;
+typedef struct nevh__chaotic nevh__chaotic;
 
 struct nevh_ensemble {
     const nevh_system *system;
@@ -58,6 +59,7 @@ struct nevh_ensemble {
     size_t *crossing_of, n_crossings;
     size_t crossing_lane;                 /* whose points are told */
     nevh__crossing_lanes *crossing_lanes; /* NULL: not asked for, or alone */
+    nevh__chaotic *chaotic;               /* NULL: not asked for */
     nevh_field *motion;                   /* of velocities; or NULL */
     gsl_root_fsolver *root;
 
@@ -103,6 +105,19 @@ void nevh__ensemble_value(const nevh_ensemble *, size_t o, const double t[],
 bool nevh__crossing_lanes_plan(nevh_ensemble *); /* false: memory is out */
 void nevh__crossing_lanes_free(nevh__crossing_lanes *);
 void nevh__ensemble_look_at_crossings(nevh_ensemble *);
+
+/* chaotic.c: outcomes that tell chaos. */
+bool nevh__ensemble_tells_chaos(const nevh_ensemble *);
+int nevh__chaotic_plan(nevh_ensemble *, const nevh_options *);
+void nevh__chaotic_free(nevh__chaotic *); /* NULL is allowed */
+/* Keeps where a lane's orbit starts: e->q1, e->p1. */
+void nevh__chaotic_begin(nevh_ensemble *, size_t lane);
+/* An orbit whose other outcomes, in e->result, are known. */
+void nevh__chaotic_queue(nevh_ensemble *, size_t lane);
+/* Those that still wait. */
+void nevh__chaotic_finish(nevh_ensemble *);
+/* All orbits, where no other outcome is asked for; else returns false. */
+bool nevh__chaotic_run(nevh_ensemble *);
 
 /* event.c: the time at which outcome o of a lane first is above 0 between the
    snapshot and `until`, a part of the step from it, where it is above 0. */

@@ -75,6 +75,8 @@ static bool begin(nevh_ensemble *e, size_t lane) {
                       .t = e->is.t_start};
     put_column(e->q, e->n, e->width, lane, e->q1);
     put_column(e->p, e->n, e->width, lane, e->p1);
+    if (e->chaotic)
+        nevh__chaotic_begin(e, lane);
     double *memory = e->stepper->work.memory;
     for (size_t row = 0; row < e->stepper->rows; row++)
         memory[row * e->width + lane] = 0;
@@ -318,11 +320,15 @@ int nevh_ensemble_run(nevh_ensemble *e, nevh_member_fn next,
     e->stopped = false;
     for (size_t lane = 0; lane < e->width; lane++)
         e->lanes[lane].busy = false;
-    if (e->alone)
+    if (e->chaotic && nevh__chaotic_run(e))
+        ; /* nothing else is asked for */
+    else if (e->alone)
         while (!e->stopped && begin(e, 0))
             run_one(e);
     else
         run_lanes(e);
+    if (e->chaotic)
+        nevh__chaotic_finish(e);
     if (!e->stopped)
         return NEVH_OK;
     return nevh__fail(&e->report, NEVH_STOPPED, "the run was to stop");

@@ -51,7 +51,7 @@ static bool make_outcome(nevh__variant *x, const nevh__scene_outcome *from,
     if (from->kind == NEVH_OUTCOME_FIRST)
         return make_quantity(x, from->below ? right : left,
                              from->below ? left : right, &to->quantity, report);
-    if (from->kind < NEVH_OUTCOME_FIRST)
+    if (from->kind < NEVH_OUTCOME_FIRST || from->kind > NEVH_OUTCOME_PERIOD)
         return true;
     if (from->kind < NEVH_OUTCOME_CROSSINGS)
         return make_quantity(x, left, NULL, &to->quantity, report);

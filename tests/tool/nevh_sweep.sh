@@ -61,6 +61,21 @@ rows | awk -F, '$2 != "ok" || (2*cos($3) + cos($4) > 1 && $5 != "") {
     END { exit wrong || NR != 625 || flips < 300 }' ||
     fails "flips where the energy forbids it, or hardly ever"
 
+# Chaos and order, as nevh chaos has them, whatever the threads and the width.
+chaos="--integrators blanes-moan4 --dt 0.2 --t-end 500 --outcomes sali,megno"
+exits 0 sweep henon-heiles --vary 'y = -0.25, 0.1, 0.2' $chaos --quiet
+cp $work/out $work/one
+rows | awk -F, '($5 < 1e-8) != (NR == 1) || ($6 > 4) != (NR == 1) {
+        print; wrong = 1 } END { exit wrong || NR != 3 }' ||
+    fails "finds chaos elsewhere"
+exits 0 sweep henon-heiles --vary 'y = -0.25, 0.1, 0.2' $chaos --quiet \
+    --width 8 --threads 2
+cmp -s $work/out $work/one || fails "finds other displacements in other lanes"
+exits 0 chaos henon-heiles --integrators blanes-moan4 --dt 0.2 --t-end 500 \
+    --starts 1 --format csv --quiet
+test "$(rows | cut -d , -f 8-9)" = "$(sed -n 3p $work/one | cut -d , -f 5-6)" ||
+    fails "does not find what nevh chaos finds"
+
 # Draws: the same for the same seed.
 exits 0 sweep pendulum --vary 'phi = normal(1, 0.1)' --vary 'count = 20' \
     --vary 'seed = 5' --t-end 1 --outcomes t --quiet
@@ -113,6 +128,9 @@ refuses() {
 refuses 'nothing is varied' pendulum
 refuses 'there is no outcome frist; did you mean first' pendulum-periods \
     --outcomes 'frist(phi > 1)'
+refuses 'sali stands alone' pendulum-periods --outcomes 'sali(phi)'
+refuses 'take a scheme of fixed steps' henon-heiles --outcomes megno \
+    --integrators adaptive-verlet
 refuses 'from 2 to 1e\+11, not 0' pendulum --vary 'phi = range(0, 1, 0)'
 refuses '1e\+12 members' pendulum --vary 'phi = range(0, 1, 1e6)' \
     --vary 'p_phi = range(0, 1, 1e6)'

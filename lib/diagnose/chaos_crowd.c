@@ -1,0 +1,270 @@
+/* nevh: chaos of many orbits side by side.
+
+   All starts take steps together; each has its own clock, and is looked at after
+   as many steps as if it were alone.  Where a step of all fails, each start
+   takes it apart from the others, in copies that fill all lanes.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "diagnose/chaos_private.h"
+#include "run/stepper_private.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PATIENCE = 64 }; /* looks until the next orbit is asked for again */
+
+/* What is stepped: of the analysis, or a copy of it. */
+typedef struct {
+    double *q, *p, *memory;
+} rooms;
+
+typedef struct {
+    bool busy;
+    uint64_t member;
+    double last; /* steps */
+    nevh__report report;
+} place;
+
+struct nevh__chaos_crowd {
+    const nevh__chaos_orders *orders;
+    place *places;
+    rooms kept;
+    double *state; /* 2n */
+    double taken;  /* steps, by all together */
+    size_t stride;
+    bool stopped;
+};
+
+bool nevh__chaos_crowd_plan(nevh_chaos *c) {
+    size_t size = 2 * c->n * c->width;
+    nevh__chaos_crowd *x = c->crowd = nevh__array(1, sizeof *x);
+    if (!x)
+        return false;
+    x->places = nevh__array(c->starts, sizeof *x->places);
+    x->kept.q = nevh__array(size, sizeof(double));
+    x->kept.p = nevh__array(size, sizeof(double));
+    x->kept.memory =
+        nevh__array(c->stepper->rows * c->width + 1, sizeof(double));
+    x->state = nevh__array(2 * c->n, sizeof(double));
+    return x->places && x->kept.q && x->kept.p && x->kept.memory && x->state;
+}
+
+void nevh__chaos_crowd_free(nevh__chaos_crowd *x) {
+    if (!x)
+        return;
+    free(x->places);
+    free(x->kept.q);
+    free(x->kept.p);
+    free(x->kept.memory);
+    free(x->state);
+    free(x);
+}
+
+/* Lanes. */
+
+static rooms own_rooms(const nevh_chaos *c) {
+    return (rooms){c->q, c->p, c->stepper->work.memory};
+}
+
+static size_t rows_of(const nevh_chaos *c) {
+    return c->tangent ? 2 * c->n : c->n;
+}
+
+static void copy_all(const nevh_chaos *c, rooms from, rooms to) {
+    size_t bytes = rows_of(c) * c->width * sizeof(double);
+    memcpy(to.q, from.q, bytes);
+    memcpy(to.p, from.p, bytes);
+    memcpy(to.memory, from.memory,
+           c->stepper->rows * c->width * sizeof(double));
+}
+
+static void copy_columns(const nevh_chaos *c, size_t rows, const double *from,
+                         size_t a, double *to, size_t b) {
+    for (size_t k = 0; k < rows; k++)
+        memmove(to + k * c->width + b * c->lanes,
+                from + k * c->width + a * c->lanes, c->lanes * sizeof *to);
+}
+
+static void copy_start(const nevh_chaos *c, rooms from, size_t a, rooms to,
+                       size_t b) {
+    copy_columns(c, rows_of(c), from.q, a, to.q, b);
+    copy_columns(c, rows_of(c), from.p, a, to.p, b);
+    copy_columns(c, c->stepper->rows, from.memory, a, to.memory, b);
+}
+
+static void forget(nevh_chaos *c, size_t start) {
+    double *memory = c->stepper->work.memory + start * c->lanes;
+    for (size_t row = 0; row < c->stepper->rows; row++)
+        memset(memory + row * c->width, 0, c->lanes * sizeof *memory);
+}
+
+/* Steps. */
+
+static double time_now(const nevh_chaos *c) {
+    return c->t_start + c->crowd->taken * c->dt;
+}
+
+/* The lanes belong to the memory as it is. */
+static void settle(nevh_chaos *c) {
+    c->stepper->last_t = time_now(c);
+    nevh__remember(c->stepper, c->q, c->p);
+}
+
+static int take_steps(nevh_chaos *c, double steps) {
+    return nevh_run(c->stepper, time_now(c), c->dt, (size_t)steps, c->q, c->p,
+                    NULL, 0);
+}
+
+static void step_apart(nevh_chaos *c, double steps) {
+    nevh__chaos_crowd *x = c->crowd;
+    rooms own = own_rooms(c);
+    for (size_t i = 0; i < c->starts; i++) {
+        if (!x->places[i].busy)
+            continue;
+        for (size_t k = 0; k < c->starts; k++)
+            copy_start(c, x->kept, i, own, k);
+        settle(c);
+        if (take_steps(c, steps))
+            x->places[i].report = c->stepper->report;
+        else
+            copy_start(c, own, i, x->kept, i);
+    }
+    copy_all(c, x->kept, own);
+    x->taken += steps;
+    settle(c);
+    x->taken -= steps;
+}
+
+/* Lanes that were changed since the last step lose their memory first. */
+static void step_together(nevh_chaos *c, double steps) {
+    nevh__chaos_crowd *x = c->crowd;
+    if (!nevh__begin(c->stepper, time_now(c), c->dt, c->q, c->p))
+        settle(c);
+    copy_all(c, own_rooms(c), x->kept);
+    if (take_steps(c, steps))
+        step_apart(c, steps);
+    x->taken += steps;
+    for (size_t i = 0; i < c->starts; i++)
+        if (x->places[i].busy)
+            c->start[i].clock.done += steps;
+}
+
+/* Until the next look at a start. */
+static double steps_to_look(const nevh_chaos *c, size_t start) {
+    double done = c->start[start].clock.done;
+    double stride = (double)c->crowd->stride;
+    return fmin(c->crowd->places[start].last - done,
+                stride - fmod(done, stride));
+}
+
+/* Orbits. */
+
+static bool any_busy(const nevh_chaos *c, size_t *which) {
+    for (size_t i = 0; i < c->starts; i++)
+        if (c->crowd->places[i].busy) {
+            *which = i;
+            return true;
+        }
+    return false;
+}
+
+static void end(nevh_chaos *c, size_t start) {
+    nevh__chaos_crowd *x = c->crowd;
+    place *at = &x->places[start];
+    nevh__chaos_member found = {
+        at->member,           at->report.status,
+        at->report.text,      nevh__chaos_rate(c, start, 0),
+        c->start[start].sali, nevh__chaos_megno(c, start)};
+    at->busy = false;
+    x->stopped |= x->orders->done(x->orders->data, &found) != 0;
+}
+
+/* Draws are those of the first start: no member is told from another. */
+static bool begin(nevh_chaos *c, size_t start) {
+    nevh__chaos_crowd *x = c->crowd;
+    place *at = &x->places[start];
+    double until;
+    *at = (place){.busy = true};
+    if (x->stopped || !x->orders->next(x->orders->data, &at->member, x->state,
+                                       x->state + c->n, &until))
+        return at->busy = false;
+    uint64_t drawn = nevh__chaos_draw(c, 0);
+    nevh__chaos_place(c, start, x->state, &drawn);
+    forget(c, start);
+    at->last = nevh__chaos_steps(c, until);
+    if (!(at->last > 0))
+        end(c, start);
+    return true;
+}
+
+/* A start without an orbit goes along with another's. */
+static void fill(nevh_chaos *c) {
+    nevh__chaos_crowd *x = c->crowd;
+    size_t which;
+    bool more = !(x->orders->abreast && any_busy(c, &which));
+    if (more && x->orders->abreast)
+        x->taken = 0;
+    for (size_t i = 0; more && i < c->starts; i++)
+        while (more && !x->places[i].busy)
+            more = begin(c, i);
+    if (any_busy(c, &which))
+        for (size_t i = 0; i < c->starts; i++)
+            if (!x->places[i].busy)
+                copy_start(c, own_rooms(c), which, own_rooms(c), i);
+}
+
+/* Looks at a start whose turn it is.  Returns whether its orbit has ended. */
+static bool look(nevh_chaos *c, size_t start) {
+    nevh__chaos_crowd *x = c->crowd;
+    place *at = &x->places[start];
+    const nevh__chaos_clock *clock = &c->start[start].clock;
+    bool over = clock->done >= at->last || at->report.status;
+    if (at->report.status ||
+        !(over || fmod(clock->done, (double)x->stride) == 0))
+        return over;
+    if (!isfinite(nevh__chaos_look(c, start))) {
+        nevh__fail(&at->report, NEVH_EDOM,
+                   "a displacement has grown beyond all numbers, or vanished, "
+                   "at t = %.9g",
+                   c->t_start + clock->done * c->dt);
+        return true;
+    }
+    if (!c->tangent)
+        forget(c, start);
+    return over || (x->orders->aligned &&
+                    c->start[start].sali < nevh__chaos_aligned(c));
+}
+
+static bool look_at_all(nevh_chaos *c) {
+    bool any = false;
+    for (size_t i = 0; i < c->starts; i++)
+        if (c->crowd->places[i].busy && look(c, i)) {
+            end(c, i);
+            any = true;
+        }
+    return any;
+}
+
+void nevh__chaos_crowd_run(nevh_chaos *c, const nevh__chaos_orders *orders) {
+    nevh__chaos_crowd *x = c->crowd;
+    size_t which, looks = 0;
+    bool asks = true;
+    x->orders = orders;
+    x->stride = orders->sparse ? c->turn : c->first_stride;
+    x->taken = 0;
+    x->stopped = false;
+    for (size_t i = 0; i < c->starts; i++)
+        x->places[i].busy = false;
+    nevh_stepper_reset(c->stepper);
+    while (!x->stopped) {
+        if (asks)
+            fill(c);
+        if (!any_busy(c, &which))
+            break;
+        double steps = INFINITY;
+        for (size_t i = 0; i < c->starts; i++)
+            if (x->places[i].busy)
+                steps = fmin(steps, steps_to_look(c, i));
+        step_together(c, steps);
+        asks = look_at_all(c) || ++looks % PATIENCE == 0;
+    }
+}
