@@ -15,7 +15,7 @@ refuses 'draws one outcome, and here are 3' pendulum-periods \
     --outcomes state,energy_error --picture $work/a.svg
 refuses 'a verdict is none' pendulum-periods --outcomes verdict \
     --picture $work/a.svg
-refuses 'FILE.svg, FILE.png, FILE.pdf or -, not' pendulum-periods \
+refuses '--picture takes FILE.svg, FILE.png or FILE.pdf, not' pendulum-periods \
     --outcomes period --picture $work/a.doc
 refuses 'takes FILE.svg, FILE.png or FILE.pdf' pendulum-periods \
     --outcomes period --picture -
@@ -29,8 +29,6 @@ fi
 refuses 'over one direction, or two' pendulum --outcomes t \
     --vary 'phi = normal(1, 0.1)' --vary 'p_phi = normal(1, 0.1)' \
     --vary 'count = 1' --picture $work/a.svg --t-end 1
-refuses 'a map of equal steps: p_phi takes others' pendulum --outcomes t \
-    --vary 'phi = 0, 1' --vary 'p_phi = 0, 1, 4' --picture $work/a.svg --t-end 1
 test -e $work/a.svg && fails "leaves a picture"
 
 # A map: which start is where, what has none is left out and told.
@@ -61,6 +59,17 @@ grep -q "set cblabel \"first(phi > 3.5) (s)\"" $work/gp || fails "has no label"
 exits 0 sweep "$@" --outcomes 'first(phi > 3.5)' -o $work/map.npy
 awk '/^\$map/ { on = 1; next } /^EOD/ { on = 0 } on' $work/gp |
     cmp -s - $work/values || fails "draws other values from an array"
+
+# Steps that are not equal: cells that meet half way, none where no value is.
+exits 0 sweep pendulum --vary 'phi = 0, 1, 3' --vary 'p_phi = 0, 8, 9' \
+    --dt 0.05 --t-end 1 --picture $work/cells.svg --keep-plot-script $work/gp \
+    --outcomes 'first(phi > 3.5)'
+awk '/^\$map/ { on = 1; next } /^EOD/ { on = 0 }
+    on { print $1, $2, $4, $5, $6, $7 }' $work/gp >$work/cells
+grep -qx '1 8 0.5 2 4 8.5' $work/cells || fails "has another cell in the middle"
+grep -qx '3 9 2 4 8.5 9.5' $work/cells || fails "has another cell at the end"
+test "$(wc -l <$work/cells)" -lt 9 || fails "fills cells without a value"
+grep -q 'boxxyerror' $work/gp || fails "draws no cells"
 
 # A line, in order of what is varied, with rows where -o is given.
 exits 0 sweep pendulum --vary 'phi = 2, 1, 0.5' --outcomes 'max(p_phi)' \

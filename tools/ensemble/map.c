@@ -26,6 +26,15 @@ typedef struct {
     double *value;
 } direction;
 
+static bool names_picture(const char *file) {
+    static const char *const kinds[] = {".svg", ".png", ".pdf"};
+    size_t length = strlen(file);
+    for (size_t i = 0; i < 3; i++)
+        if (length > 4 && strcmp(file + length - 4, kinds[i]) == 0)
+            return true;
+    return false;
+}
+
 static int check_options(const options *o, const nevh_sweep *s) {
     size_t varied = nevh_sweep_varied(s);
     if (nevh_sweep_columns(s) != varied + 1)
@@ -38,8 +47,10 @@ static int check_options(const options *o, const nevh_sweep *s) {
         return tool_refuse("--picture draws %d members at most", MOST_MEMBERS);
     if (o->task || o->tasks)
         return tool_refuse("--picture draws all members: give it to --join");
-    if (strcmp(o->picture, "-") == 0)
-        return tool_refuse("--picture takes FILE.svg, FILE.png or FILE.pdf");
+    if (!names_picture(o->picture))
+        return tool_refuse("--picture takes FILE.svg, FILE.png or FILE.pdf, "
+                           "not \"%s\"",
+                           o->picture);
     return TOOL_OK;
 }
 
@@ -120,24 +131,11 @@ static size_t place_of(const direction *d, double x) {
     return found ? (size_t)(found - d->value) : d->count;
 }
 
-/* Where each value stands in the middle of a cell of equal size. */
-static bool is_regular(const direction *d) {
-    static const double rounding = 1e-6;
-    double length =
-        (d->value[d->count - 1] - d->value[0]) / (double)(d->count - 1);
-    for (size_t i = 0; i < d->count; i++)
-        if (fabs(d->value[i] - d->value[0] - length * (double)i) >
-            rounding * length * (double)d->count)
-            return false;
-    return true;
-}
-
 /* Half a cell more at either end. */
 static void span(const direction *d, double *low, double *high) {
-    double half =
-        (d->value[d->count - 1] - d->value[0]) / (double)(d->count - 1) / 2;
-    *low = d->value[0] - half;
-    *high = d->value[d->count - 1] + half;
+    const double *x = d->value, *last = x + d->count - 1;
+    *low = x[0] - (x[1] - x[0]) / 2;
+    *high = last[0] + (last[0] - last[-1]) / 2;
 }
 
 static char *label_of(const map *m, size_t column) {
@@ -308,35 +306,23 @@ int map_draw(map *m, const char *integrator) {
         return TOOL_OK;
     if (!find_directions(m, d, &count))
         return refuse_directions(m);
-    int status = TOOL_OK;
-    if (count == 2 && !(is_regular(&d[0]) && is_regular(&d[1])))
-        status = tool_refuse(
-            "--picture draws a map of equal steps: %s takes "
-            "others",
-            nevh_sweep_column(m->sweep, d[is_regular(&d[0])].column));
-    plot *to = status       ? NULL
-               : count == 2 ? draw_map(m, d)
-                            : draw_line(m, &d[0]);
-    if (!to)
-        status = TOOL_USAGE;
-    if (to) {
-        char *scheme = plot_scheme(m->plan, integrator);
-        char *more =
-            m->missing
-                ? text_print("%zu orbits, %zu without a value%s", m->members,
-                             m->missing, count == 2 ? " (hatched)" : "")
-            : isnan(m->rms)
-                ? text_print("%zu orbits", m->members)
-                : text_print("%zu orbits; rms of what was measured less that: "
-                             "%.3g",
-                             m->members, m->rms);
-        plot_note_run(to, m->plan, scheme, more);
-        free(scheme);
-        free(more);
-        status = m->missing == m->members
+    plot *to = count == 2 ? draw_map(m, d) : draw_line(m, &d[0]);
+    char *scheme = plot_scheme(m->plan, integrator);
+    char *more =
+        m->missing
+            ? text_print("%zu orbits, %zu without a value%s", m->members,
+                         m->missing, count == 2 ? " (hatched)" : "")
+        : isnan(m->rms)
+            ? text_print("%zu orbits", m->members)
+            : text_print("%zu orbits; rms of what was measured less that: "
+                         "%.3g",
+                         m->members, m->rms);
+    plot_note_run(to, m->plan, scheme, more);
+    free(scheme);
+    free(more);
+    int status = m->missing == m->members
                      ? tool_refuse("nothing to draw: no member has a value")
                      : plot_write(to, &m->options);
-    }
     plot_free(to);
     for (size_t i = 0; i < count; i++)
         free(d[i].value);

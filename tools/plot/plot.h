@@ -51,7 +51,7 @@ void plot_limit_y(plot *, double low, double high); /* no more than this */
 /* All panels show the same ranges. */
 void plot_same_ranges(plot *);
 /* The first panel is a map: values z[row*columns + column] at x[column], y[row],
-   equal steps apart, in colours that are lighter the larger they are, so that
+   in colours that are lighter the larger they are, so that
    they read in grey; hatched where they are NAN.  All are copied. */
 void plot_map(plot *, size_t columns, const double x[], size_t rows,
               const double y[], const double z[], const char *label);

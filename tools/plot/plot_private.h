@@ -38,6 +38,11 @@ typedef struct {
     range shown;
 } field_map;
 
+/* plot_map.c: the data block $map, and how it is drawn: as pixels, where values
+   are equal steps apart, else as cells that meet half way. */
+void plot_map_values(const field_map *, FILE *);
+void plot_map_style(const field_map *, FILE *);
+
 struct plot {
     char *title, *note;
     panel *panel;

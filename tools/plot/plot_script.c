@@ -316,15 +316,7 @@ static void print_map(FILE *f, const field_map *m, const layout *l) {
     fprintf(f, "set colorbox user origin %.6f,%.6f size %.6f,%.6f\n", left,
             top - l->panel_height / l->height, 2 * l->letter / l->width,
             l->panel_height / l->height);
-    fputs("$map << EOD\n", f);
-    for (size_t i = 0; i < m->columns * m->rows; i++) {
-        fprintf(f, "%.15g %.15g ", m->x[i % m->columns], m->y[i / m->columns]);
-        if (isfinite(m->z[i]))
-            fprintf(f, "%.9g\n", m->z[i]);
-        else
-            fputs("NaN\n", f);
-    }
-    fputs("EOD\n", f);
+    plot_map_values(m, f);
 }
 
 static void print_plots(FILE *f, const plot *p, size_t number, bool legend,
@@ -332,7 +324,7 @@ static void print_plots(FILE *f, const plot *p, size_t number, bool legend,
     size_t printed = 0;
     if (number == 0 && p->map.columns) {
         separate(f, &printed);
-        fputs("$map using 1:2:3 with image notitle", f);
+        plot_map_style(&p->map, f);
     }
     for (size_t i = 0; i < p->count; i++)
         print_series(f, p, i, p->series[i].panel == number,
