@@ -24,9 +24,9 @@ NEVH_API int nevh_scene_set_outcomes(nevh_scene *, const char *outcomes);
 
 /* How many members the scene's [ensemble] has; 0: nothing is varied. */
 NEVH_API uint64_t nevh_scene_members(const nevh_scene *);
-/* Where a member starts, of scenes whose parameters are not varied; n each.
-   returns  NEVH_OK; NEVH_EINVAL where there is none of that number or parameters
-            are varied; NEVH_EMAXITER or NEVH_EDOM, with a message, where it has
+/* Where a member starts; n each.
+   returns  NEVH_OK; NEVH_EINVAL where there is none of that number, or where
+            parameters that are varied change more than the start; NEVH_EMAXITER or NEVH_EDOM, with a message, where it has
             no start; NEVH_ENOMEM
    cost     as that of making the tapes of what is solved for */
 NEVH_API int nevh_scene_member_start(nevh_scene *, uint64_t member, double q[],

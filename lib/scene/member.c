@@ -16,25 +16,34 @@ static int refuse(nevh_scene *s, int status, const char *why) {
     return status;
 }
 
-static int find(nevh_scene *s, uint64_t member, double q[], double p[],
-                nevh__report *report) {
-    const nevh__scene_ensemble *e = s->model->ensemble;
-    nevh_sweep sweep = {.scene = s, .ensemble = e};
+/* Whether its parameters change the start and nothing else. */
+static int compare(nevh_sweep *s, const nevh__variant *x,
+                   nevh__report *report) {
+    nevh__variant own;
+    bool alike = nevh__variant_make(s, NULL, &own, report) &&
+                 nevh__variants_alike(s, &own, x);
+    nevh__variant_free(&own);
+    if (!alike && !report->status)
+        nevh__fail(report, NEVH_EINVAL,
+                   "parameters that are varied change more than where members "
+                   "start, which gives each a system of its own: vary "
+                   "coordinates, momenta, or parameters of these alone");
+    return report->status;
+}
+
+static int find(nevh_sweep *s, uint64_t member, double varied[], double q[],
+                double p[], double v[], nevh__report *report) {
+    const nevh__scene_ensemble *e = s->ensemble;
     nevh__variant x;
-    double *varied = nevh__array(e->n_varied, sizeof *varied);
-    double *v = nevh__array(s->model->n, sizeof *v);
-    int status = NEVH_ENOMEM;
-    if (varied && v && nevh__variant_make(&sweep, NULL, &x, report)) {
-        for (size_t i = 0; i < e->n_varied; i++)
-            varied[i] = nevh__varied_value(e, &e->varied[i], member);
-        status = nevh__variant_start(&sweep, &x, varied, q, p, v, report);
-    } else if (report->status) {
-        status = report->status;
-    }
-    if (varied && v)
-        nevh__variant_free(&x);
-    free(varied);
-    free(v);
+    for (size_t i = 0; i < e->n_varied; i++)
+        varied[i] = nevh__varied_value(e, &e->varied[i], member);
+    int status =
+        nevh__variant_make(s, varied, &x, report) ? NEVH_OK : report->status;
+    if (!status && e->parameters)
+        status = compare(s, &x, report);
+    if (!status)
+        status = nevh__variant_start(s, &x, varied, q, p, v, report);
+    nevh__variant_free(&x);
     return status;
 }
 
@@ -43,10 +52,13 @@ int nevh_scene_member_start(nevh_scene *s, uint64_t member, double q[],
     nevh__report report = {0};
     if (!s || !s->model || member >= nevh_scene_members(s))
         return NEVH_EINVAL;
-    if (s->model->ensemble->parameters)
-        return refuse(s, NEVH_EINVAL,
-                      "members have parameters of their own, and so each a "
-                      "system of its own: vary starts alone");
-    int status = find(s, member, q, p, &report);
+    nevh_sweep sweep = {.scene = s, .ensemble = s->model->ensemble};
+    double *varied = nevh__array(sweep.ensemble->n_varied, sizeof *varied);
+    double *v = nevh__array(s->model->n, sizeof *v);
+    int status = varied && v
+                     ? find(&sweep, member, varied, q, p, v, &report)
+                     : nevh__fail(&report, NEVH_ENOMEM, "out of memory");
+    free(varied);
+    free(v);
     return status ? refuse(s, status, report.text) : NEVH_OK;
 }

@@ -14,7 +14,7 @@ if ! command -v gnuplot >/dev/null 2>&1; then
     exit $((status ? 1 : 77))
 fi
 exits 2 portrait pendulum --vary 'g = 1, 2' --plot $work/a.svg
-says 'vary starts alone'
+says 'change more than where members start'
 exits 2 portrait elastic-pendulum --plot $work/a.svg --section nothing
 says 'unknown section nothing'
 exits 2 portrait coupled-oscillators --plot $work/a.svg --section nothing

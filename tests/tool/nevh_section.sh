@@ -66,7 +66,17 @@ exits 1 section $single --t-end 50 --vary 'y = 0.1, 3' \
 says 'verlet member 1 failed: '
 has '^crossing,.*,0$'
 exits 2 section pendulum-rotating --vary 'g = 1, 2'
-says 'vary starts alone'
+says 'change more than where members start'
+# A parameter that only the start reads is a start.
+sed 's/^\[coordinates\]/[parameters]\ny0 = 0.1\n&/; s/^y = .*/y = y0/
+    s/^p_x = .*/p_x = sqrt(2*(1\/8 - y0^2\/2 + y0^3\/3))/' $single >$work/by_y0.nevh
+exits 0 section $work/by_y0.nevh --t-end 50 --vary 'y0 = 0.1, 0.2'
+has '^# members: 2$'
+rows >$work/by_y0
+exits 0 section $single --t-end 50 --vary 'y = 0.1, 0.2' \
+    --vary 'p_x = sqrt(2*(1/8 - 0.1^2/2 + 0.1^3/3)), sqrt(2*(1/8 - 0.2^2/2 + 0.2^3/3))' \
+    --vary 'combine = zip'
+rows | cmp -s - $work/by_y0 || fails "has other points by a parameter"
 exits 2 section $single --vary 'y = range(0, 0.1, 100000)'
 says '100000 members are more than a picture shows'
 # At 1/6, where some escape if a scheme makes errors of the energy.
