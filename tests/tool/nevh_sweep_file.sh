@@ -128,6 +128,46 @@ if command -v flock >/dev/null 2>&1; then
         status=1
 fi
 
+# Where nothing can be written, or by two at once.
+exits 2 sweep $scene -o /dev/full
+says '^nevh: /dev/full cannot be written: No space left on device$'
+"$nevh" sweep $scene >/dev/full 2>$work/err
+test $? = 2 || fails "does not end with 2 where stdout is full"
+says 'the output cannot be written: (No space left|writing stopped before)'
+ln -s /dev/full $work/full.npy
+exits 2 sweep $scene -o $work/full.npy
+says 'is no file on a disk'
+mkdir $work/locked
+chmod 555 $work/locked
+if ! touch $work/locked/x 2>/dev/null; then
+    for file in x.csv x.npy; do
+        exits 2 sweep $scene -o $work/locked/$file
+        says "$file cannot be written: Permission denied"
+    done
+fi
+chmod 755 $work/locked
+cp $work/whole.npy $work/cut.npy
+cp $work/whole.npy.txt $work/cut.npy.txt
+chmod 444 $work/cut.npy
+if ! test -w $work/cut.npy; then
+    exits 2 sweep $scene --resume $work/cut.npy --retry
+    says 'cut.npy: Permission denied'
+fi
+rm -f $work/cut.npy*
+"$nevh" sweep $scene -o $work/twice.npy --width 1 --dt 5e-5 --threads 1 \
+    2>$work/first &
+first=$!
+until test -s $work/twice.npy; do kill -0 $first || break; done
+exits 2 sweep $scene -o $work/twice.npy --dt 5e-5
+says 'twice.npy: another sweep is writing it'
+exits 2 sweep $scene --resume $work/twice.npy --dt 5e-5
+says 'twice.npy: another sweep is writing it'
+wait $first
+test $? = 1 || fails "is disturbed by another sweep"
+grep -q 'of 300 members 0 failed and 16 have no start' $work/first ||
+    fails "loses members to another sweep"
+rm -f $work/twice.npy*
+
 # Killed in a write, or before it; the file is then gone on with.
 can_stop || exits_whole
 goes_on() {

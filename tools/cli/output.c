@@ -121,7 +121,10 @@ int output_close(output *o, int status) {
         wrong = rename(o->temporary, o->name);
     if (wrong)
         status = tool_refuse("%s cannot be written: %s",
-                             o->name ? o->name : "the output", strerror(errno));
+                             o->name ? o->name : "the output",
+                             errno ? strerror(errno)
+                                   : "writing stopped before the end: is the "
+                                     "disk full?");
     if (o->temporary && status == TOOL_USAGE)
         unlink(o->temporary);
     forget(o);
