@@ -11,6 +11,7 @@ examples = \
 	examples/conservation \
 	examples/steps_that_follow \
 	examples/flip_map \
+	examples/chaos_share \
 	examples/gradient_error \
 	examples/gradient_cost \
 	examples/nevh_cost \
@@ -31,6 +32,7 @@ examples_catalogue_LDADD = libnevh.la
 examples_conservation_LDADD = libnevh.la
 examples_steps_that_follow_LDADD = libnevh.la
 examples_flip_map_LDADD = libnevh.la
+examples_chaos_share_LDADD = libnevh.la
 examples_nevh_cost_LDADD = libnevh.la
 examples_add_noise_LDADD = -lm
 examples_paper_divergence_LDADD = libnevh.la
@@ -54,6 +56,7 @@ dist_example_DATA = \
 	examples/add_noise.c \
 	examples/filmed.sh \
 	examples/catalogue.c \
+	examples/chaos_share.c \
 	examples/conservation.c \
 	examples/double_pendulum_energy.c \
 	examples/effects.c \

@@ -79,6 +79,11 @@ look_closer() {
         has '^ +4 +4[345]\.'
         no_row 'NF == 1 && /[?]/'
         ;;
+    */chaos_share)
+        has '^ 0\.0833 .* [01]\.[0-9]$'
+        has '^ 0\.1250 .* (4[5-9]|5[0-6])\.[0-9]$'
+        has '^ 0\.1667 .* 9[0-9]\.[0-9]$'
+        ;;
     */nevh_cost)
         has '^ by hand .* 1\.00 '
         has '^ order 4, blocks of values '
