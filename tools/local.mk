@@ -50,6 +50,7 @@ tools_nevh_SOURCES = \
 	tools/experiment/energies.c \
 	tools/experiment/match.c \
 	tools/experiment/diagnostics.c \
+	tools/experiment/shadow.c \
 	tools/inspect/effects.c \
 	tools/orbit/trajectory.h \
 	tools/orbit/lines.c \

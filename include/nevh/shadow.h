@@ -79,7 +79,7 @@ typedef struct {
     double correction;     /* the largest |shadow - H| met */
     double rounding;       /* what rounding alone may change them by */
     bool breaks_down; /* the shadow changes by more than rounding, and by more
-                         than half of what H does: steps are too long for these
+                         than a quarter of what H does: steps are too long for these
                          terms of the series */
 } nevh_shadow_report;
 /* Zeros before the first observation and for NULL. */

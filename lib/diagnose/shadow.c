@@ -315,6 +315,6 @@ nevh_shadow_report nevh_shadow_result(const nevh_shadow *s) {
     if (!s)
         return (nevh_shadow_report){0};
     nevh_shadow_report r = s->result;
-    r.breaks_down = r.shadow > r.rounding && r.shadow > r.energy / 2;
+    r.breaks_down = r.shadow > r.rounding && r.shadow > r.energy / 4;
     return r;
 }

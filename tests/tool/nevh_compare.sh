@@ -160,6 +160,20 @@ holds straightness '$1 >= 0 && $1 <= 1'
 exits 0 compare kepler --t-end 10 --dt 0.02 --integrators gauss4 --diagnostics
 has 'symplecticity'
 has 'change of'
+# What steps keep instead of H: of a shadow, which falls with dt^4.
+exits 0 compare pendulum --t-end 50 --dt 0.5,0.1,0.05 --diagnostics --format csv \
+    --integrators midpoint,rk4
+holds max_energy_error '$3 / $5 > 3.8 && $3 / $5 < 4.2'
+holds shadow_error '$2 / $3 > 15 && $2 / $3 < 17 && $2 < 3e-4 && $1 > 0.1'
+field shadow_error | awk 'NR % 2 == 0 && NF { exit 1 }' || fails "has one of rk4"
+exits 0 compare pendulum --t-end 50 --dt 0.5,0.1,0.05 --diagnostics \
+    --integrators midpoint,rk4
+has '^ midpoint +0\.5 .* breaks down'
+has '^midpoint at dt = 0.05 follows a shadow of H, which changes 3[0-9]0 times'
+has '^The shadow of H breaks down for midpoint at dt = 0.5: such steps are too long'
+exits 0 compare damped-driven-pendulum --t-end 5 --integrators midpoint \
+    --diagnostics
+lacks 'shadow of H'
 # What the total energy does not show: the Moon is lost, which is light.  Short
 # steps keep it, and a run that is only late on its orbit loses nothing.
 exits 0 compare sun-earth-moon --dt 0.25,0.0125 --integrators rkn14a \

@@ -317,6 +317,19 @@ shows 'height'
 texts | grep -q '^distance (10.* km)$' || fails "does not show the distance"
 shows 'verlet, dt = 0.002 year; gradient central4; t = 0 ... 1 year'
 texts | grep -q 'but without moon' || fails "does not say what is off"
+# What steps keep beside what they do not, of the schemes of which it is known.
+draws run pendulum --plot-kind time --t-end 5 --plot $svg --integrators verlet,rk4 \
+    --columns energy_error,shadow_error --keep-plot-script $work/out.gp
+texts | grep -q '^error of shadow H' || fails "does not name the shadow"
+exits 0 run pendulum --plot-kind time --t-end 5 --plot $svg --integrators verlet \
+    --columns energy_error:shadow_error --keep-plot-script $work/out.gp
+awk '/^\$series[0-9]+ <</ { k++; on = 1; next } /^EOD/ { on = 0 }
+    on && NF == 2 { v = $2 < 0 ? -$2 : $2 + 0; if (v > most[k]) most[k] = v }
+    END { exit !(k == 3 && most[2] > 0.05 && most[3] < 0.002 && most[3] > 1e-4) }' \
+    $work/out.gp || fails "draws another shadow"
+exits 2 run pendulum --plot-kind time --t-end 5 --integrators rk4 --plot $svg \
+    --columns shadow_error
+says 'shadow H: its series is known for .*, not for rk4$'
 exits 2 run pendulum --plot-kind time --columns phj --plot $svg
 says 'unknown column phj; did you mean phi'
 exits 2 run damped-driven-pendulum --plot-kind time --columns energy_error --plot $svg

@@ -137,7 +137,7 @@ static const struct {
     {"columns", "A,B:C", FOR_RUN | FOR_FIT, read_columns,
      "of fit: the columns of the data to use; of run: what --plot-kind time or "
      "phase draws: a panel each, names joined by : in one; t, coordinates, "
-     "p_NAME, observables, energy, energy_error"},
+     "p_NAME, observables, energy, energy_error, shadow_error"},
     {"keep-plot-script", "FILE", OF_PLOTS | FOR_SWEEP, read_plot_script,
      "write what gnuplot is told, data included"},
     {"header", NULL, FOR_EXPORT, read_header,

@@ -227,6 +227,8 @@ static page make_page(const options *o, const plan *p, const row_list *r) {
     verdict_words(p, r->row, r->count, &result.after);
     energies_words(p, r->row, r->count, &result.after);
     if (is_table)
+        shadow_words(p, r->row, r->count, &result.after);
+    if (is_table)
         stability_words(p, r->row, r->count, &result.after);
     if (is_table)
         remedy_words(p, r->row, r->count, &result.after);

@@ -309,9 +309,8 @@ int map_draw(map *m, const char *integrator) {
     plot *to = count == 2 ? draw_map(m, d) : draw_line(m, &d[0]);
     char *scheme = plot_scheme(m->plan, integrator);
     char *more =
-        m->missing
-            ? text_print("%zu orbits, %zu without a value%s", m->members,
-                         m->missing, count == 2 ? " (hatched)" : "")
+        m->missing ? text_print("%zu orbits, %zu without a value%s", m->members,
+                                m->missing, count == 2 ? " (hatched)" : "")
         : isnan(m->rms)
             ? text_print("%zu orbits", m->members)
             : text_print("%zu orbits; rms of what was measured less that: "

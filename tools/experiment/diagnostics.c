@@ -81,7 +81,7 @@ static const char *const names[] = {
     "symplecticity_error", "reversal_error", "newtons", "rescues",
     "drift_error",         "straightness"};
 static const char *const shown[] = {"symplecticity\nerror", "reversal\nerror",
-                                    "Newton\nsteps"};
+                                    "Newton\nsteps", "shadow H\nerror"};
 
 void diagnostics_columns(table *t, const plan *p, bool is_table) {
     size_t count = nevh_scene_shown_count(p->scene, NEVH_INVARIANTS);
@@ -128,6 +128,7 @@ void diagnostics_show(table *t, const plan *p, const row *r) {
         table_shown(t, "%.0f", (double)r->counts.newtons);
     else
         table_text(t, NULL);
+    shadow_show(t, r);
     for (size_t i = 0; i < count; i++)
         show(t, r->ran, r->ran ? r->changes[i] : NAN);
 }

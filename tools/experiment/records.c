@@ -36,6 +36,8 @@ static void add_record(table *t, const plan *p, const row *r) {
         table_number(t, r->promise ? r->promise->until : NAN);
     energies_put(t, p, r, false);
     table_text(t, r->native ? "yes" : "no");
+    if (p->diagnostics)
+        table_number(t, shadow_error(r));
 }
 
 table *records(const plan *p, const row rows[], size_t count) {
@@ -69,6 +71,8 @@ table *records(const plan *p, const row rows[], size_t count) {
         table_column(t, "holds_until");
     energies_columns(t, p, false);
     table_column(t, "native");
+    if (p->diagnostics)
+        table_column(t, "shadow_error");
     for (size_t i = 0; i < count; i++)
         add_record(t, p, &rows[i]);
     return t;

@@ -187,8 +187,9 @@ static void watched(work *w, nevh_stepper *s) {
     nevh_energy *energy = row_energy(w->plan, w->row, s);
     nevh_state_error *state = nevh_state_error_new(w->plan->reference);
     invariants *kept = w->plan->diagnostics ? invariants_new(w->plan) : NULL;
+    nevh_shadow *shadow = row_shadow(w->plan, r);
     observable shown = {w->plan, 0};
-    nevh_observer observers[6] = {{nevh_energy_observe, energy, 1}};
+    nevh_observer observers[7] = {{nevh_energy_observe, energy, 1}};
     energy_trace trace = {r->errors, energy};
     size_t count = 1;
     if (state)
@@ -204,6 +205,8 @@ static void watched(work *w, nevh_stepper *s) {
             (nevh_observer){nevh_state_error_observe, state, 1};
     if (kept)
         observers[count++] = (nevh_observer){invariants_observe, kept, 1};
+    if (shadow)
+        observers[count++] = (nevh_observer){shadow_observe, shadow, 1};
     keeper keeps = {r->promise, energy, state, &shown};
     double steps = (w->plan->t_end - w->plan->run->t_start) / r->step;
     if (r->promise)
@@ -236,6 +239,9 @@ static void watched(work *w, nevh_stepper *s) {
     if (w->plan->energies && r->ran && !isnan(r->state_error))
         r->energies = energies_result(w->plan->energies);
     r->changes = kept ? invariants_result(kept) : NULL;
+    if (!nevh_shadow_status(shadow))
+        r->shadow = nevh_shadow_result(shadow);
+    nevh_shadow_free(shadow);
     nevh_state_error_free(state);
     nevh_energy_free(energy);
 }

@@ -42,6 +42,7 @@ typedef struct {
     double observable_error; /* the same */
     char state_unknown[160]; /* why; "" where it is known, or no run's fault */
     double symplecticity_error, reversal_error;
+    nevh_shadow_report shadow; /* without samples: its scheme has none */
     double *changes; /* of invariants, the largest; NULL: not asked for */
     struct envelope *errors; /* of the energy; NULL: not asked for */
     promise *promise;        /* NULL: none */
@@ -142,6 +143,15 @@ void diagnostics_columns(table *, const plan *, bool is_table);
 void diagnostics_record(table *, const plan *, const row *);
 void diagnostics_show(table *, const plan *, const row *);
 
+/* shadow.c: the modified H of rows whose scheme has one; NULL of others. */
+nevh_shadow *row_shadow(const plan *, const row *);
+/* A nevh_observe_fn that stops no run. */
+int shadow_observe(void *, size_t step, double t, const double q[],
+                   const double p[]);
+double
+shadow_error(const row *); /* in units of the scale; NAN: there is none */
+void shadow_show(table *, const row *);
+void shadow_words(const plan *, const row rows[], size_t count, list *words);
 /* compare_plot.c: as plot_write. */
 int compare_plot(const options *, const plan *, const row rows[], size_t count);
 

@@ -25,6 +25,7 @@ void columns_free(quantities *c) {
     free(c->item);
     free(c->observed);
     nevh_field_free(c->field);
+    nevh_shadow_free(c->shadow);
 }
 
 static bool find_state(const plan *p, const char *name, quantity *column) {
@@ -48,7 +49,8 @@ static bool find_other(const plan *p, const char *name, quantity *column) {
         column_kind kind;
     } known[] = {{"t", COLUMN_TIME},
                  {"energy", COLUMN_ENERGY},
-                 {"energy_error", COLUMN_ENERGY_ERROR}};
+                 {"energy_error", COLUMN_ENERGY_ERROR},
+                 {"shadow_error", COLUMN_SHADOW_ERROR}};
     size_t count = nevh_scene_shown_count(p->scene, NEVH_OBSERVABLES);
     column->kind = COLUMN_OBSERVABLE;
     for (column->index = 0; column->index < count; column->index++)
@@ -65,7 +67,7 @@ static bool find_other(const plan *p, const char *name, quantity *column) {
 
 static int refuse_name(const plan *p, const char *name) {
     list known = {0};
-    list_split(&known, "t,energy,energy_error");
+    list_split(&known, "t,energy,energy_error,shadow_error");
     for (size_t k = 0; k < p->n; k++) {
         list_add(&known, nevh_scene_coordinate(p->scene, k));
         list_print(&known, "p_%s", nevh_scene_coordinate(p->scene, k));
@@ -103,6 +105,27 @@ static bool any(const quantities *c, column_kind low, column_kind high) {
     return false;
 }
 
+int columns_follow(quantities *c, const char *integrator, double dt) {
+    const plan *p = c->plan;
+    bool transformed;
+    const nevh_integrator *scheme = plan_scheme(integrator, &transformed);
+    nevh_options o = plan_options(p, p->gradients.item[0]);
+    if (!any(c, COLUMN_SHADOW_ERROR, COLUMN_SHADOW_ERROR))
+        return NEVH_OK;
+    o.transform = plan_transform(p, integrator);
+    nevh_shadow_free(c->shadow);
+    c->shadow = nevh_shadow_new(p->system, scheme, dt, &o);
+    nevh_shadow_value(c->shadow, p->q, p->p, NULL, &c->shadow_start);
+    return nevh_shadow_status(c->shadow);
+}
+
+static double shadow_error(quantities *c, const double q[], const double p[]) {
+    double value;
+    if (!c->shadow || nevh_shadow_value(c->shadow, q, p, NULL, &value))
+        return NAN;
+    return (value - c->shadow_start) / c->scale;
+}
+
 void columns_values(quantities *c, double t, const double q[], const double p[],
                     double values[]) {
     double energy = NAN;
@@ -120,6 +143,8 @@ void columns_values(quantities *c, double t, const double q[], const double p[],
                     : column->kind == COLUMN_ENERGY     ? energy
                     : column->kind == COLUMN_ENERGY_ERROR
                         ? (energy - c->start) / c->scale
+                    : column->kind == COLUMN_SHADOW_ERROR
+                        ? shadow_error(c, q, p)
                     : observed ? c->observed[column->index]
                                : NAN;
     }
@@ -127,5 +152,6 @@ void columns_values(quantities *c, double t, const double q[], const double p[],
 
 char *column_label(const plan *p, const quantity *c) {
     return c->kind == COLUMN_ENERGY_ERROR ? text_print("energy error, relative")
-                                          : plot_label(p, c->name, c->name);
+           : c->kind == COLUMN_SHADOW_ERROR ? text_print("error of shadow H")
+                                            : plot_label(p, c->name, c->name);
 }

@@ -5,15 +5,17 @@
 
 #include "experiment/plan.h"
 
-/* t, coordinates, momenta (p_NAME), observables, energy, and energy_error:
-   (H - H0) over the scale of the energy. */
+/* t, coordinates, momenta (p_NAME), observables, energy, energy_error: (H - H0)
+   over the scale of the energy, and shadow_error: the same of the modified H of
+   the scheme. */
 typedef enum {
     COLUMN_TIME,
     COLUMN_COORDINATE,
     COLUMN_MOMENTUM,
     COLUMN_OBSERVABLE,
     COLUMN_ENERGY,
-    COLUMN_ENERGY_ERROR
+    COLUMN_ENERGY_ERROR,
+    COLUMN_SHADOW_ERROR
 } column_kind;
 typedef struct {
     column_kind kind;
@@ -28,12 +30,17 @@ typedef struct {
     double *observed;
     nevh_field *field; /* of values of H */
     double start, scale;
+    nevh_shadow *shadow; /* of the scheme followed; NULL: none is shown */
+    double shadow_start;
 } quantities;
 
 quantities columns_new(const plan *); /* of no columns */
 void columns_free(quantities *);
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int columns_add(quantities *, const char *name);
+/* Before a run of that scheme, with the plan's first dt: shadow_error is of that.
+   returns  the status; the message is that of the shadow */
+int columns_follow(quantities *, const char *integrator, double dt);
 /* What is not finite is NAN. */
 void columns_values(quantities *, double t, const double q[], const double p[],
                     double values[]);

@@ -146,9 +146,8 @@ plot *plot_phase(run_picture *picture) {
     row_times dense = orbit_dense_times(&picture->plan);
     char *names = pairs_of(picture->options, &picture->plan);
     if (!column_panels_read(&c, &picture->plan, names) && !check_pairs(&c) &&
-        !check_measured(picture, &c)) {
-        picture_follow(picture, &dense, c.columns.count, column_panels_fill,
-                       &c);
+        !check_measured(picture, &c) && !column_panels_check(picture, &c)) {
+        column_panels_follow(picture, &dense, &c);
         for (size_t i = 0; i < c.panels; i++)
             draw_panel(&to, picture, &c, i);
         char *more = say_more(picture);

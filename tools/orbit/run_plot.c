@@ -61,6 +61,29 @@ int picture_follow(run_picture *picture, const row_times *times, size_t columns,
     return worst;
 }
 
+int column_panels_follow(run_picture *picture, const row_times *times,
+                         column_panels *c) {
+    int worst = TOOL_OK;
+    for (size_t i = 0; i < picture->orbits.count; i++) {
+        orbit *o = &picture->orbits.item[i];
+        columns_follow(&c->columns, o->integrator, o->plan.dt[0]);
+        int status = orbit_follow(o, times, c->columns.count,
+                                  column_panels_fill, c, picture->quiet);
+        worst = status > worst ? status : worst;
+    }
+    return worst;
+}
+
+int column_panels_check(const run_picture *picture, column_panels *c) {
+    for (size_t i = 0; i < picture->orbits.count; i++) {
+        const orbit *o = &picture->orbits.item[i];
+        if (!columns_follow(&c->columns, o->integrator, o->plan.dt[0]))
+            return TOOL_OK;
+    }
+    return tool_refuse("--columns: shadow_error: %s",
+                       nevh_shadow_message(c->columns.shadow));
+}
+
 /* 1, 2 or 5 times a power of ten that is not longer. */
 static double rounded(double span) {
     double power = pow(10, floor(log10(span))), digits = span / power;

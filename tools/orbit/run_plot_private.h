@@ -39,6 +39,11 @@ void picture_measured(const run_picture *, plot *, const char *name,
 /* Runs of all; the worst of their statuses. */
 int picture_follow(run_picture *, const row_times *, size_t columns,
                    orbit_fill *, void *data);
+/* The same for columns, of which shadow_error needs to know whose run it is. */
+int column_panels_follow(run_picture *, const row_times *, column_panels *);
+/* Whether some of the orbits have the shadow H that is asked for: TOOL_OK, or
+   TOOL_USAGE with the message printed. */
+int column_panels_check(const run_picture *, column_panels *);
 /* Ends a run that goes round often after fewer turns, unless its length was
    asked for; it is to be followed again then.
    returns  what is to be said of it, to be freed; NULL: it stays */

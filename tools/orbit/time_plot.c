@@ -41,19 +41,22 @@ static char *joined(const list *names) {
     return text;
 }
 
+static bool is_energy(const quantity *what) {
+    return what->kind == COLUMN_ENERGY || what->kind == COLUMN_ENERGY_ERROR ||
+           what->kind == COLUMN_SHADOW_ERROR;
+}
+
 static double most_turns(const orbit *o, const quantities *c) {
     double most = 0;
     for (size_t k = 0; k < c->count; k++)
-        if (c->item[k].kind != COLUMN_ENERGY &&
-            c->item[k].kind != COLUMN_ENERGY_ERROR)
+        if (!is_energy(&c->item[k]))
             most = fmax(most, orbit_turns(o, k));
     return most;
 }
 
 static void follow(run_picture *picture, column_panels *c) {
     row_times dense = orbit_dense_times(&picture->plan);
-    picture_follow(picture, picture->rows ? picture->rows : &dense,
-                   c->columns.count, column_panels_fill, c);
+    column_panels_follow(picture, picture->rows ? picture->rows : &dense, c);
     free(dense.time);
 }
 
@@ -138,11 +141,10 @@ static size_t new_series(plot *to, const run_picture *picture,
 static bool is_shown(const orbit *o, const quantity *what, double t) {
     static const double whole = 1e-6;
     double steps = (t - o->plan.run->t_start) / o->plan.dt[0];
-    bool energy =
-        what->kind == COLUMN_ENERGY || what->kind == COLUMN_ENERGY_ERROR;
     bool transformed;
     const nevh_integrator *scheme = plan_scheme(o->integrator, &transformed);
-    return !energy || transformed || nevh_integrator_own_time(scheme) ||
+    return !is_energy(what) || transformed ||
+           nevh_integrator_own_time(scheme) ||
            fabs(steps - round(steps)) < whole;
 }
 
@@ -196,7 +198,8 @@ static void draw_panel(plot **to, run_picture *picture, column_panels *c,
         *to = plot_new(picture->plan.title, x, y);
     plot_span_x(*to, picture->plan.run->t_start, picture->plan.t_end);
     for (size_t k = 0; k < c->columns.count && exact; k++)
-        if (c->panel[k] == panel)
+        if (c->panel[k] == panel &&
+            c->columns.item[k].kind != COLUMN_SHADOW_ERROR)
             draw_exact(*to, picture, c, k, exact);
     for (size_t k = 0; k < c->columns.count; k++)
         for (size_t i = 0; i < picture->orbits.count && c->panel[k] == panel;
@@ -228,6 +231,8 @@ plot *plot_time(run_picture *picture) {
         status = tool_refuse("--columns: %d panels at most, not %zu; names "
                              "joined as A:B share one",
                              MOST_PANELS, c.panels);
+    if (!status)
+        status = column_panels_check(picture, &c);
     if (!status) {
         char *more = follow_and_cut(picture, &c);
         nevh_reference *exact = exact_solution(picture);
