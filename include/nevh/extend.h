@@ -75,6 +75,7 @@ struct nevh_work {
     size_t scratch_size; /* doubles */
     double *scratch;
     void *plan;
+    int order; /* of the steps, where `plan` chose it; 0: the integrator's */
     uint64_t sweeps, newtons, rescues;
     double elapsed; /* time that the step takes: h, unless own_time sets it */
     const double *friction; /* n rates; NULL: none, or it is split off */

@@ -76,8 +76,9 @@ NEVH_API void nevh_stepper_save(const nevh_stepper *, void *buffer);
             size of system or width, or is cut short */
 NEVH_API int nevh_stepper_load(nevh_stepper *, const void *buffer, size_t size);
 
-/* The order to expect: the scheme's own, but at most 2 where friction is put
-   around its steps.  0 where there is no integrator. */
+/* The order to expect: the scheme's own, or that of Taylor series of this
+   tolerance, but at most 2 where friction is put around its steps.  0 where there
+   is no integrator. */
 NEVH_API int nevh_stepper_order(const nevh_stepper *);
 
 /* The energy that lane `lane` gained from outside in all steps since the

@@ -78,6 +78,7 @@ static int plan(nevh_work *w) {
     if (!plan)
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     plan->order = order_for(tolerance);
+    w->order = (int)plan->order;
     bool timed = !(nevh_system_traits(w->system) & NEVH_AUTONOMOUS);
     plan->longest = timed ? 1 : most_steps;
     nevh__report report = {0};

@@ -156,6 +156,6 @@ int nevh__friction_step_apply(nevh_stepper *s, double t, double h, double q[],
 int nevh_stepper_order(const nevh_stepper *s) {
     if (!s || !s->work.integrator)
         return 0;
-    int order = s->work.integrator->order;
+    int order = s->work.order ? s->work.order : s->work.integrator->order;
     return s->friction && order > 2 ? 2 : order;
 }

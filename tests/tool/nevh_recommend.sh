@@ -72,6 +72,16 @@ has '(cheapest|runner-up) +taylor +[0-9]'
 lacks 'taylor with|taylor .*(central|complex)'
 has '(runner-up|from H alone) +gauss8 +c'
 
+# A series of low order costs less than one of high order: few digits take a loose
+# tolerance.
+exits 0 recommend henon-heiles --state-error 1e-2 --integrators taylor
+awk '$1 == "cheapest" { found = $4 > 1e-5 } END { exit !found }' $work/out ||
+    { fails "takes too tight a tolerance"; cat $work/out; }
+exits 0 compare henon-heiles --t-end 10 --integrators taylor \
+    --tolerance 1e-4,1e-12 --format csv
+awk -F, '$2 == "taylor" { order[++n] = $3 } END { exit !(order[2] > order[1] + 5) }' \
+    $work/out || { fails "has no higher order"; cat $work/out; }
+
 # How long an answer holds in a run three times as long: a drift passes the
 # target soon after the end, and when is told; a bounded error does not.
 number() { # what stands in the table's row of that name, in that column

@@ -31,7 +31,7 @@ static int ask(void *data, size_t step, double t, const double q[],
 }
 
 static double lengths(const plan *p, const row *r) {
-    double once = row_work(p, r->scheme, &r->counts, r->steps);
+    double once = row_work(p, r->scheme, r->order, &r->counts, r->steps);
     double work = p->follow > 0 ? p->follow : allowed;
     double times = once > 0 ? fmin(most, work / once) : most;
     return times < least ? 1 : exp2(floor(log2(times)));

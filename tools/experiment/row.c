@@ -88,10 +88,13 @@ static double side_by_side(const nevh_integrator *scheme) {
 /* Of gradients and values of formulas, as a processor of 2020 takes them, give
    or take a factor of two; an implicit step that Newton solves factors a matrix
    as well. */
-double row_work(const plan *p, const nevh_integrator *scheme,
+double row_work(const plan *p, const nevh_integrator *scheme, int order,
                 const nevh_counts *c, size_t steps) {
+    static const double an_order = 0.2; /* of a series, over a gradient */
     double n = (double)p->n, m = 2 * n;
     double gradient = c->hamiltonians > 0 ? 100 : 250 + 40 * n;
+    if (nevh_integrator_needs_formulas(scheme))
+        gradient *= an_order * order;
     double evaluations =
         gradient * (double)c->gradients + (100 + 40 * n) * c->hamiltonians;
     return 1e-9 *
@@ -123,7 +126,8 @@ static int mind_work(void *data, size_t step, double t, const double q[],
     nevh_counts c = row_counts(wait->stepper, wait->before);
     (void)t, (void)q, (void)p;
     wait->late =
-        row_work(wait->plan, wait->scheme, &c, step) > wait->plan->patience;
+        row_work(wait->plan, wait->scheme, nevh_stepper_order(wait->stepper),
+                 &c, step) > wait->plan->patience;
     return wait->late ? NEVH_STOPPED : NEVH_OK;
 }
 
@@ -292,7 +296,7 @@ void row_run(const plan *p, row *r) {
         if (r->ran && r->tolerance > 0)
             r->dt = mean_step(&w);
     }
-    r->work = row_work(p, r->scheme, &r->counts, r->steps);
+    r->work = row_work(p, r->scheme, r->order, &r->counts, r->steps);
     row_stepper_keep(p, r, p->balance, s);
     work_free(&w);
 }

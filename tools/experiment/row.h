@@ -62,8 +62,8 @@ bool row_drifts(const row *);
 double row_end(const plan *, const row *);
 /* What that many evaluations and steps cost, in seconds of no machine in
    particular: what is decided by it is decided alike on all. */
-double row_work(const plan *, const nevh_integrator *, const nevh_counts *,
-                size_t steps);
+double row_work(const plan *, const nevh_integrator *, int order,
+                const nevh_counts *, size_t steps);
 /* Of a row that ran in a hurry: when it became unstable. */
 void row_finish(const plan *, row *);
 /* Since those before. */

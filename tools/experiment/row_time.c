@@ -68,10 +68,12 @@ static double time_once(const stopwatch *w, double *spent) {
     run(w);
     *spent = cpu_seconds() - begin;
     nevh_counts c = row_counts(w->stepper, before);
-    double work = row_work(p, r->scheme, &c, nevh_stepper_taken(w->stepper));
+    double work =
+        row_work(p, r->scheme, r->order, &c, nevh_stepper_taken(w->stepper));
     if (work == 0) /* it stopped at its start */
         return *spent;
-    return *spent * row_work(p, r->scheme, &r->counts, r->steps) / work;
+    return *spent * row_work(p, r->scheme, r->order, &r->counts, r->steps) /
+           work;
 }
 
 /* So much of the run as takes long enough, by what a first try took. */

@@ -69,7 +69,7 @@ double plan_shorten(plan *p, double budget) {
     nevh_counts step = {.gradients = 1};
     double runs = (double)(RUNS * p->integrators.count);
     double share =
-        budget / 6 / (runs * row_work(p, nevh_verlet, &step, 1) * span / dt);
+        budget / 6 / (runs * row_work(p, nevh_verlet, 2, &step, 1) * span / dt);
     if (share < 1)
         p->t_end = p->run->t_start + share_below(share) * span;
     return whole;

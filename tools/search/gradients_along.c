@@ -312,7 +312,8 @@ static double step_work(const context *c) {
     int status = nevh_run(s, c->plan->run->t_start, c->dt, PILOT, state,
                           state + n, NULL, 0);
     nevh_counts spent = row_counts(s, before);
-    double work = row_work(c->plan, scheme_of(c), &spent, PILOT) / PILOT;
+    int order = nevh_stepper_order(s);
+    double work = row_work(c->plan, scheme_of(c), order, &spent, PILOT) / PILOT;
     nevh_stepper_free(s);
     free(state);
     return status ? 0 : work;

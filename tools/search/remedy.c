@@ -55,7 +55,7 @@ static attempt try_step(search *s, double dt) {
     int status = plan_run(p, stepper, dt, s->q, s->p,
                           &(nevh_observer){watch, &a, 1}, 1, &stopped);
     nevh_counts c = row_counts(stepper, before);
-    s->work += row_work(p, r.scheme, &c, a.steps);
+    s->work += row_work(p, r.scheme, nevh_stepper_order(stepper), &c, a.steps);
     a.kept = a.kept && !status;
     nevh_energy_free(a.energy);
     row_stepper_keep(p, &r, p->balance, stepper);
