@@ -42,6 +42,12 @@ quote cost-pendulum "$nevh" cost pendulum --t-end 100 \
 quote recommend-pendulum "$nevh" recommend pendulum --energy-error 1e-8 --t-end 100
 quote gradients-pendulum "$nevh" gradients pendulum --t-end 100
 
+for native in never always; do
+    quote native-$native "$nevh" compare henon-heiles --t-end 1000 --dt 0.05 \
+        --integrators verlet,blanes-moan6,rkn11b,gauss8,rk4 --gradient exact \
+        --native $native
+done
+
 # Of hard cases the counts, a line a case.
 echo "nevh hard" >&2
 "$nevh" hard --all --format csv -o "$srcdir/doc/hard.csv" 2>/dev/null

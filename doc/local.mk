@@ -8,6 +8,14 @@ doc_nevh_TEXINFOS = \
 	doc/hard.txt \
 	doc/verdicts.txt \
 	doc/paper.txt \
+	doc/compare-first.txt \
+	doc/hoop.nevh \
+	doc/native-never.txt \
+	doc/native-always.txt \
+	doc/tutorial.texi \
+	doc/catalogue.texi \
+	doc/performance.texi \
+	doc/bibliography.texi \
 	doc/reference.texi
 AM_MAKEINFOHTMLFLAGS = --no-split
 # Without TeX; make pdf needs it.
@@ -46,7 +54,7 @@ doc/nevh.1: $(tools_nevh_SOURCES) doc/nevh.h2m configure.ac \
 	    --include $(srcdir)/doc/nevh.h2m --output $@ ./tools/nevh$(EXEEXT)
 endif
 EXTRA_DIST += doc/nevh.h2m doc/nevh.3.head doc/reference.awk doc/figures.sh doc/hard.awk \
-	doc/compare-first.txt doc/gradient-cost.txt doc/steps-that-follow.txt doc/nevh-cost.txt \
+	doc/gradient-cost.txt doc/steps-that-follow.txt doc/nevh-cost.txt \
 	doc/hard-all.txt
 
 # Worksheets: every number is measured again.
@@ -69,5 +77,8 @@ sheets-numbers: all
 .PHONY: sheets sheets-numbers
 
 # What the manual and the README quote, made anew.
-figures: all bench/verdicts$(EXEEXT)
+EXTRA_PROGRAMS += doc/catalogue
+doc_catalogue_LDADD = libnevh.la
+figures: all bench/verdicts$(EXEEXT) doc/catalogue$(EXEEXT)
 	$(SHELL) $(srcdir)/doc/figures.sh $(srcdir) ./tools/nevh$(EXEEXT) examples
+	doc/catalogue >$(srcdir)/doc/catalogue.texi

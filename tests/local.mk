@@ -200,6 +200,7 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_recommend.sh \
 	tests/python/python.sh \
 	tests/build/pkgconfig.sh \
+	tests/build/manual.sh \
 	tests/build/install.sh \
 	tests/robust/effects_off.sh \
 	tests/robust/valgrind.sh
@@ -244,6 +245,7 @@ count-tests:
 check-slow:
 	$(MAKE) $(AM_MAKEFLAGS) check TESTS='$(all_suites)' \
 	  CHECK_TAGS=CK_INCLUDE_TAGS TEST_TIMEOUT=3600
+	srcdir=$(srcdir) SLOW=yes $(SHELL) $(srcdir)/tests/build/manual.sh
 	NEVH_SCENES='$(srcdir)/scenes' tools/nevh hard --quiet
 	srcdir=$(srcdir) $(SHELL) $(srcdir)/tests/robust/long_sweeps.sh
 	$(MAKE) $(AM_MAKEFLAGS) bench/verdicts$(EXEEXT)

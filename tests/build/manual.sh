@@ -1,0 +1,72 @@
+#!/bin/sh
+# The manual and the README: each command in them runs, and the catalogue of
+# integrators has what the registry has.  A command below "@c slow: WHY" runs where
+# SLOW is set; one below "@c elsewhere: WHY" needs what is not here.
+
+. "${srcdir:-.}/tests/support/nevh_support.sh"
+
+case $srcdir in
+/*) top=$srcdir ;;
+*) top=$PWD/$srcdir ;;
+esac
+NEVH_SCENES=$top/scenes
+test "${nevh#/}" != "$nevh" || nevh=$PWD/$nevh
+cp "$top"/doc/*.nevh $work/
+
+# A line a command, without "nevh" and what is said beside it.
+list_commands() {
+    awk -v slow="${SLOW:-}" '
+        function command(text) {
+            gsub(/@@/, "@", text)
+            gsub(/@\{/, "{", text)
+            gsub(/@\}/, "}", text)
+            sub(/^\.\//, "", text)
+            sub(/    *.*$/, "", text)
+            sub(/ *#.*$/, "", text)
+            if (text ~ /^nevh [a-z]/ && text !~ /[A-Z][A-Z][A-Z]|\.\.\.|^nevh help/)
+                print substr(text, 6)
+        }
+        FNR == 1 { inside = leave = 0; text = "" }
+        /^@c slow: / { leave = !slow }
+        /^@c elsewhere: / { leave = 1 }
+        /^@example/ || /^```/ && !inside { inside = 1; next }
+        /^@end example/ || /^```/ { inside = leave = 0; next }
+        inside && !leave {
+            more = /\\$/
+            line = $0
+            sub(/ *\\$/, "", line)
+            if (text != "")
+                sub(/^ */, " ", line)
+            text = text line
+            if (more)
+                next
+            command(text)
+            text = ""
+        }' "$@" | awk '!seen[$0]++'
+}
+list_commands "$top"/doc/*.texi "$top/README.md" >$work/commands
+test "$(wc -l <$work/commands)" -ge 20 ||
+    { command=manual; fails "has few commands: $(wc -l <$work/commands)"; }
+
+pictures=yes
+command -v gnuplot >/dev/null 2>&1 || pictures=
+while IFS= read -r command; do
+    case $pictures$command in
+    *--plot* | *--picture* | report* | portrait*)
+        test "$pictures" || continue ;;
+    esac
+    (cd $work && eval "set -- $command" && $limit "$nevh" "$@") \
+        >$work/out 2>$work/err </dev/null ||
+        { fails "exit status $?"; cat $work/err; }
+done <$work/commands
+
+command='list integrators'
+$limit "$nevh" list integrators --format csv >$work/out 2>$work/err </dev/null ||
+    fails "exit status $?"
+awk -F, '!/^#/ && $1 != "integrator" && $1 != "name" { print $1 }' $work/out |
+    sort >$work/registry
+sed -n '/@table/,/@end table/s/^@item //p' "$top/doc/catalogue.texi" |
+    sort >$work/catalogue
+diff $work/registry $work/catalogue ||
+    fails "has other schemes than doc/catalogue.texi: make figures"
+exit $status
