@@ -197,6 +197,39 @@ static void compare_lanes(const char *name, const char *text,
     nevh_scene_free(scene);
 }
 
+/* Implicit steps of one orbit, tape and compiled in turn. */
+static void compare_stages(const char *name, const char *text, double h) {
+    static const char *const gradients[] = {"exact", "central2", "central4"};
+    enum { WAYS = 3, FEWER = STEPS / 10 };
+    nevh_scene *scene = nevh_scene_parse(name, text);
+    run tape[WAYS], native[WAYS];
+    double exact = 0;
+    for (int g = 0; g < WAYS; g++) {
+        begin(&tape[g], scene, "gauss16", gradients[g], NEVH_NATIVE_NEVER);
+        begin(&native[g], scene, "gauss16", gradients[g], NEVH_NATIVE_ALWAYS);
+    }
+    for (int i = 0; i < ROUNDS; i++)
+        for (int g = 0; g < 2 * WAYS; g++) {
+            run *r = g % 2 ? &native[g / 2] : &tape[g / 2];
+            double t = seconds();
+            nevh_run(r->s, 0, h, FEWER, r->q, r->p, NULL, 0);
+            r->time[i] = seconds() - t;
+        }
+    for (int g = 0; g < WAYS; g++) {
+        nevh_counts counts = nevh_stepper_counts(native[g].s);
+        double own = median(native[g].time);
+        exact = g ? exact : own;
+        printf("%s,gauss16,%s,%.2f,%.0f,%.0f,%.2f,%s\n", name, gradients[g],
+               (double)counts.sweeps / FEWER / ROUNDS,
+               median(tape[g].time) * 1e9 / FEWER, own * 1e9 / FEWER,
+               own / exact,
+               nevh_stepper_native(native[g].s, NULL) ? "yes" : "no");
+        nevh_stepper_free(tape[g].s);
+        nevh_stepper_free(native[g].s);
+    }
+    nevh_scene_free(scene);
+}
+
 int main(void) {
     scheme long_one = eleven();
     puts(
@@ -206,11 +239,17 @@ int main(void) {
         compare(&subjects[i], "verlet", &verlet);
         compare(&subjects[i], "rkn11b", &long_one);
     }
+    puts("\none orbit,integrator,gradient,sweeps,tape_ns,native_ns,to exact,"
+         "native");
+    compare_stages(subjects[0].name, subjects[0].text, 0.1);
+    compare_stages("double-pendulum", double_pendulum, 0.02);
     puts("\n32 orbits,integrator,gradient,tape_ns,native_ns");
     for (size_t i = 0; i < sizeof subjects / sizeof *subjects; i++) {
         compare_lanes(subjects[i].name, subjects[i].text, "verlet");
         compare_lanes(subjects[i].name, subjects[i].text, "rk4");
     }
     compare_lanes("double-pendulum", double_pendulum, "rk4");
+    compare_lanes(subjects[0].name, subjects[0].text, "gauss16");
+    compare_lanes("double-pendulum", double_pendulum, "gauss16");
     return 0;
 }

@@ -114,11 +114,16 @@ NEVH_API char *nevh_stepper_program(nevh_stepper *, const nevh_program *);
 
 /* Whether steps run as native code: H and the scheme written as one C function,
    compiled and loaded when the stepper was made.  Only formulas of scenes do,
-   one orbit at a time, under splitting schemes and fixed steps of explicit
-   Runge-Kutta methods, and where nobody asked for the balance of the energy.
+   under schemes of nevh_integrator_native with fixed steps, and where nobody
+   asked for the balance of the energy; orbits side by side do if there is a
+   multiple of 8, but not by Nystroem methods, nor with the complex step.
+   Implicit steps take no complex step either; those whose iteration does not
+   converge are taken as others are.
    why      out, may be NULL: what is in the way, if they were to ("there is no C
             compiler: ..."), else ""; the stepper's own, never NULL */
 NEVH_API bool nevh_stepper_native(const nevh_stepper *, const char **why);
+/* Whether a scheme's steps can be compiled at all; NULL: no.  From any thread. */
+NEVH_API bool nevh_integrator_native(const nevh_integrator *);
 
 NEVH_API nevh_counts nevh_stepper_counts(const nevh_stepper *);
 /* The field that the stepper takes its gradients from: its counts, steps and

@@ -35,10 +35,6 @@ typedef struct {
     size_t *lanes;  /* all of them */
 } family_plan;
 
-/* Orbits of eight that had better be swept one by one, if stages fill vectors:
-   a sweep of one then costs about a sixth of one of eight. */
-enum { FEW = 2 };
-
 /* One step under way. */
 typedef struct {
     nevh_work *work;
@@ -207,7 +203,7 @@ static bool plan_sweeps(nevh_work *w, family_plan *g) {
         return false;
     g->groups = groups;
     if (g->one && g->weights->stages == g->weights->row)
-        g->groups.few = FEW;
+        g->groups.few = NEVH__FEW_TOGETHER;
     return true;
 }
 

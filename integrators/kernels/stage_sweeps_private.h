@@ -46,6 +46,9 @@ double nevh__stage_continue(const nevh__stage_weights *, size_t i, size_t width,
 
 /* Orbits that are worth the work of eight. */
 enum { NEVH__FEWEST_TOGETHER = 5 };
+/* Orbits of eight that had better be swept one by one, if stages fill vectors:
+   a sweep of one then costs about a sixth of one of eight. */
+enum { NEVH__FEW_TOGETHER = 2 };
 typedef enum { NEVH__ONE_ORBIT, NEVH__EIGHT_ORBITS, NEVH__ORBITS } nevh__swept;
 
 typedef struct nevh__stage_owner nevh__sweeps; /* see stage_step.h */

@@ -277,10 +277,8 @@ static void write_numbers(nevh__writer *w, nevh__formula_text *f) {
         if (b.kind == NEVH__NUMBER && b.at >= count)
             count = b.at + 1;
     }
-    f->first_number = w->count;
+    f->first_number = nevh__writer_share(w, count, tape->numbers);
     f->numbered = true;
-    for (size_t i = 0; i < count; i++)
-        nevh__writer_append(w, tape->numbers[i]);
 }
 
 static bool write_forwards(nevh__writer *w, nevh__formula_text *f, reading *r,

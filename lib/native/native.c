@@ -1,8 +1,8 @@
 /* nevh: native steps are planned and taken.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "native/native_private.h"
 #include "kernels/runge_kutta_private.h"
 #include "kernels/splitting_private.h"
+#include "native/native_private.h"
 #include <dlfcn.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -70,11 +70,25 @@ static const struct {
 enum { MOST_NUMBERS = 8192 };
 enum { FAMILIES = sizeof families / sizeof *families };
 
-static size_t family_of(const nevh_work *w) {
+static size_t family_of_scheme(const nevh_integrator *scheme) {
     size_t i = 0;
-    while (i < FAMILIES && families[i].kernel != w->integrator->kernel)
+    while (i < FAMILIES && families[i].kernel != scheme->kernel)
         i++;
     return i;
+}
+
+static size_t family_of(const nevh_work *w) {
+    return family_of_scheme(w->integrator);
+}
+
+bool nevh_integrator_native(const nevh_integrator *scheme) {
+    return scheme && family_of_scheme(scheme) < FAMILIES;
+}
+
+static size_t stages_of(const nevh_work *w) {
+    return families[family_of(w)].fill == fill_stages
+               ? (size_t)w->integrator->stages
+               : 1;
 }
 
 /* What is in the way; NULL: nothing that is known yet. */
@@ -85,9 +99,10 @@ static const char *obstacle(const nevh_work *w) {
            : w->accounts ? "the balance of the energy is kept"
            : w->width % NEVH__LANES && w->width > 1
                ? "orbits side by side fill no vectors"
-           : w->n * w->width > MOST_NUMBERS ? "the state is too large"
-           : w->options->tolerance > 0      ? "steps adapt to a tolerance"
-                                            : NULL;
+           : w->n * w->width * stages_of(w) > MOST_NUMBERS
+               ? "the state is too large"
+           : w->options->tolerance > 0 ? "steps adapt to a tolerance"
+                                       : NULL;
 }
 
 bool nevh__native_write(nevh__writer *text, nevh_work *w) {
@@ -169,8 +184,6 @@ void nevh__native_plan(nevh_work *w, char why[NEVH__WHY_NATIVE]) {
 static void count(nevh_work *w, const nevh__native *x, size_t steps,
                   bool kept) {
     size_t saved = x->keeps ? steps - !kept : 0;
-    if (!steps)
-        return;
     size_t kicks = steps * x->kicks - (x->kicks_first ? saved : 0);
     size_t drifts = steps * x->drifts - (x->kicks_first ? 0 : saved);
     kicks *= w->width;
@@ -191,7 +204,7 @@ static bool has_kept(const nevh_work *w) {
 }
 
 static size_t take(const nevh_work *w, double t0, double h, size_t from,
-                   size_t steps, double q[], double p[], size_t counted[2]) {
+                   size_t steps, double q[], double p[], size_t counted[3]) {
     const nevh__native *x = w->native;
     return x->steps(x->numbers, x->weights, x->times, x->kicks + x->drifts, t0,
                     h, from, steps, q, p, w->memory, counted);
@@ -199,13 +212,17 @@ static size_t take(const nevh_work *w, double t0, double h, size_t from,
 
 /* Gradients at stages, and values that told the noise of differences. */
 static void count_sweeps(nevh_work *w, const nevh__native *x,
-                         const size_t counted[2]) {
+                         const size_t counted[3]) {
     nevh_field *f = w->field;
-    count(w, x, counted[0] * x->stages, false);
-    w->sweeps += counted[0] * w->width;
-    for (size_t i = 0; i < f->n_terms; i++)
-        if (f->terms[i].delta)
-            f->terms[i].values += counted[1] * f->terms[i].term->decl.count;
+    size_t points = counted[2] * x->stages;
+    w->sweeps += counted[0];
+    f->gradients += counted[0] * x->stages;
+    for (size_t i = 0; i < f->n_terms; i++) {
+        nevh__planned *term = &f->terms[i];
+        term->values += points * (x->kick_values[i] + x->drift_values[i]);
+        if (term->delta)
+            term->values += counted[1] * term->term->decl.count;
+    }
 }
 
 size_t nevh__native_run(nevh_work *w, double t0, double h, size_t from,
@@ -214,14 +231,15 @@ size_t nevh__native_run(nevh_work *w, double t0, double h, size_t from,
     if (!nevh__field_at_hand(w->field))
         return 0;
     bool kept = x->keeps && has_kept(w);
-    size_t counted[2] = {0, 0};
+    size_t counted[3] = {0, 0, 0};
     size_t done = take(w, t0, h, from, steps, q, p, counted);
     if (x->stages)
         count_sweeps(w, x, counted);
     else {
         if (done && done < steps) /* nothing has been stored */
             done = take(w, t0, h, from, done, q, p, counted);
-        count(w, x, done, kept);
+        if (done)
+            count(w, x, done, kept);
     }
     return done;
 }

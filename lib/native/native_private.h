@@ -14,13 +14,14 @@
 #include <nevh/run.h>
 
 /* Takes `steps` steps, or none, and returns how many of them can be taken.
-   counted  of implicit steps, which take as many as can be taken: sweeps, and
-            how often noise was asked for, are added */
+   counted  of implicit steps, which take as many as can be taken: sweeps of
+            each orbit, how often noise was asked for, and sweeps evaluated, also
+            of orbits that are done, are added */
 typedef size_t (*nevh__native_steps)(const double numbers[], double weights[],
                                      double times[], size_t operations,
                                      double t0, double h, size_t from,
                                      size_t steps, double q[], double p[],
-                                     double memory[], size_t counted[2]);
+                                     double memory[], size_t counted[3]);
 
 enum { NEVH__WHY_NATIVE = 400 };
 

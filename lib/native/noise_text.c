@@ -48,13 +48,12 @@ bool nevh__write_noise(nevh__writer *w, const nevh_field *f) {
         nevh__write(w, "#define worst_noise(N, t, y, scale, bad) 0.0\n");
         return true;
     }
-    nevh__write(
-        w,
-        "static __attribute__((noinline)) double worst_noise(const "
-        "double *N, double t, const double *y, const double *scale, double *bad) {\n"
-        "    double noise[2 * DOF] = {0}, most = 0;\n");
+    nevh__write(w, "static __attribute__((noinline)) double worst_noise(const "
+                   "double *N, double t, const double *y, const double *scale, "
+                   "double *bad) {\n"
+                   "    double noise[2 * DOF] = {0}, most = 0;\n");
     for (size_t i = 0; fine && i < f->n_terms; i++) {
-        place at = {&f->terms[i], w->count};
+        place at = {&f->terms[i], 0};
         const nevh_term *is = &at.term->term->decl;
         nevh__formula_text formula = {.tape = is->params,
                                       .scalar = f->portable,
@@ -62,8 +61,7 @@ bool nevh__write_noise(nevh__writer *w, const nevh_field *f) {
                                       .data = &at};
         if (!at.term->delta)
             continue;
-        for (size_t k = 0; k < is->count * is->nc; k++)
-            nevh__writer_append(w, is->c[k]);
+        at.constants = nevh__writer_share(w, is->count * is->nc, is->c);
         for (size_t k = 0; fine && k < is->count; k++) {
             formula.instance = k;
             fine = write_instance(w, &formula);

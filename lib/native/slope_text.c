@@ -3,8 +3,8 @@
    Terms and instances stand one after the other, and what belongs to one
    variable is added in the order in which the field adds it: the same bits.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "native/writer_private.h"
 #include "expression/tape_inside_private.h"
+#include "native/writer_private.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -446,9 +446,8 @@ static bool write_slope(nevh__writer *w, nevh_field *f, bool kick,
         const nevh_term *is = &s.term->term->decl;
         if (!is_wanted(s.term, kick))
             continue;
-        s.constants = w->count;
-        for (size_t k = 0; k < is->count * is->nc && !w->readable; k++)
-            nevh__writer_append(w, is->c[k]);
+        if (!w->readable)
+            s.constants = nevh__writer_share(w, is->count * is->nc, is->c);
         fine = f->gradient == nevh_exact ? write_exact(&s)
                : f->gradient->offsets    ? write_central(&s)
                                          : write_complex(&s);

@@ -1,9 +1,9 @@
 /* nevh: steps of Gauss-Legendre methods and Lobatto pairs as C text: sweeps are
    the kernel's, whose slopes are a scene's formulas at all stages side by side.
 
-   Where fixed-point iteration does not get on, or anything is not finite, a step
-   is left to the kernel, which begins it anew.
-   SPDX-License-Identifier: GPL-3.0-or-later */
+   Where fixed-point iteration does not get on, or anything is not finite, a
+   step is left to the kernel, which begins it anew. SPDX-License-Identifier:
+   GPL-3.0-or-later */
 #include "kernels/stage_sweeps_private.h"
 #include "native/native_private.h"
 #include <stdio.h>
@@ -14,7 +14,8 @@
 static const char sizes[] =
     "enum { STAGES = %zu, ROW = %zu, FIRST = %zu, UNKNOWN = 2 * DOF - FIRST,\n"
     "       SLOPES_AT = 2 * DOF, H_AT = SLOPES_AT + UNKNOWN * STAGES,\n"
-    "       HOLD_AT = H_AT + 1 };\n"
+    "       HOLD_AT = H_AT + 1, APART = %zu, STRIDE = %zu,\n"
+    "       FEW = STAGES == ROW ? %d : 0 };\n"
     "#define PARTITIONED %s\n#define NOISY %s\n#define NEWTON %s\n";
 
 static const char owners[] =
@@ -24,27 +25,30 @@ static const char owners[] =
     "    const double *N, *y, *scale;\n    double t, h, *level, *bad;\n"
     "    size_t *noises;\n};\n";
 
-/* Those of vectors of stages. */
+/* Those of vectors of stages, or of orbits. */
 static const char slopes[] =
     "NEVH__INLINE int nevh__stage_slopes(const nevh__stage_step *x, bool q,\n"
     "                                    bool p) {\n"
     "    const struct nevh__stage_owner *o = x->owner;\n"
-    "    for (size_t from = 0; from < ROW; from += NEVH__LANES) {\n"
-    "        wide y[2 * DOF], slope[DOF], t = NEVH__VECTOR_AT(o->times + from);\n"
+    "    for (size_t from = 0; from < STRIDE; from += NEVH__LANES) {\n"
+    "        wide y[2 * DOF], slope[DOF], t = NEVH__VECTOR_AT(o->times + "
+    "from);\n"
     "        double *to = x->gradient + from;\n"
     "        NEVH__EACH(k, 1, DOF) {\n"
-    "            y[k] = NEVH__VECTOR_AT(x->points + k * ROW + from);\n"
-    "            y[DOF + k] = NEVH__VECTOR_AT(x->points + x->half + k * ROW + "
+    "            y[k] = NEVH__VECTOR_AT(x->points + k * STRIDE + from);\n"
+    "            y[DOF + k] = NEVH__VECTOR_AT(x->points + x->half + k * STRIDE "
+    "+ "
     "from);\n"
     "        }\n"
     "        if (p) {\n"
     "            *o->bad += drift_slope(o->N, t, y, y + DOF, slope);\n"
-    "            NEVH__EACH(k, 1, DOF) NEVH__VECTOR_AT(to + k * ROW) = slope[k];\n"
+    "            NEVH__EACH(k, 1, DOF) NEVH__VECTOR_AT(to + k * STRIDE) = "
+    "slope[k];\n"
     "        }\n"
     "        if (q) {\n"
     "            *o->bad += kick_slope(o->N, t, y, y + DOF, slope);\n"
     "            NEVH__EACH(k, 1, DOF)\n"
-    "                NEVH__VECTOR_AT(to + (DOF + k) * ROW) = slope[k];\n"
+    "                NEVH__VECTOR_AT(to + (DOF + k) * STRIDE) = slope[k];\n"
     "        }\n"
     "    }\n"
     "    return 0;\n}\n"
@@ -53,12 +57,19 @@ static const char slopes[] =
 
 /* The level is taken once a step. */
 static const char judges[] =
-    "NEVH__INLINE double nevh__stage_noise_level(const nevh__stage_judged *x) {\n"
+    "NEVH__INLINE double nevh__stage_noise_level(const nevh__stage_judged *x) "
+    "{\n"
     "    const struct nevh__stage_judge_owner *o = x->owner;\n"
     "    if (!NOISY)\n        return 0;\n"
-    "    if (*o->level < 0)\n"
-    "        *o->level = fabs(o->h) * worst_noise(o->N, o->t, o->y, o->scale,\n"
-    "                                            o->bad);\n"
+    "    if (*o->level < 0) {\n"
+    "        double y[2 * DOF], scale[2 * DOF];\n"
+    "        NEVH__EACH(k, 1, 2 * DOF) {\n"
+    "            y[k] = o->y[k * APART];\n"
+    "            scale[k] = o->scale[k * APART];\n"
+    "        }\n"
+    "        *o->level = fabs(o->h) * worst_noise(o->N, o->t, y, scale, "
+    "o->bad);\n"
+    "    }\n"
     "    ++*o->noises;\n"
     "    return *o->level;\n}\n"
     "NEVH__INLINE bool nevh__stage_is_small(const nevh__stage_judged *x,\n"
@@ -69,11 +80,13 @@ static const char judges[] =
     "                          NEVH__STAGE_MARGIN * "
     "nevh__stage_noise_level(x));\n}\n";
 
-static const char step[] =
+static const char step_weights[] =
     "typedef struct {\n"
     "    double plus[STAGES], minus[STAGES];\n"
     "    double to_q[STAGES * NEVH__LANES], to_p[STAGES * NEVH__LANES];\n"
-    "} step_weights;\n"
+    "} step_weights;\n";
+
+static const char step[] =
     "INLINE bool add_step(const step_weights *w, const double *gradient,\n"
     "                     double *y, double *M, double h) {\n"
     "    double sum[2 * DOF], lost[2 * DOF], check = 0;\n"
@@ -99,19 +112,23 @@ static const char step[] =
     "    M[H_AT] = h;\n"
     "    return true;\n}\n"
     "INLINE bool take_step(const double *N, const step_weights *w, double t,\n"
-    "                      double h, double *restrict y, double *restrict M,\n"
+    "                      double h, double *Q, double *P, double *M,\n"
     "                      size_t *counted) {\n"
+    "    double y[2 * DOF];\n"
     "    double points[2 * DOF * ROW], gradient[2 * DOF * ROW], times[ROW];\n"
-    "    double before[UNKNOWN * ROW], least[UNKNOWN * ROW], unit[2 * DOF], scale[2 * DOF];\n"
+    "    double before[UNKNOWN * ROW], least[UNKNOWN * ROW], unit[2 * DOF], "
+    "scale[2 * DOF];\n"
     "    double lowest = INFINITY, level = -1, unknown = 0;\n"
     "    wide bad = {0};\n"
     "    size_t sweeps = 0, noises = 0;\n"
     "    struct nevh__stage_owner owner = {N, times, &bad};\n"
-    "    struct nevh__stage_judge_owner judge_owner = {N, y, scale, t, h, &level, "
+    "    struct nevh__stage_judge_owner judge_owner = {N, y, scale, t, h, "
+    "&level, "
     "&unknown, &noises};\n"
     "    nevh__stage_step x = {\n"
     "        .n = DOF, .stages = STAGES, .row = ROW, .stride = ROW,\n"
-    "        .half = DOF * ROW, .partitioned = PARTITIONED, .unchecked = true,\n"
+    "        .half = DOF * ROW, .partitioned = PARTITIONED, .unchecked = "
+    "true,\n"
     "        .mu_q = mu_q, .mu_p = mu_p, .to_q = w->to_q, .to_p = w->to_p,\n"
     "        .q = y, .p = y + DOF, .carry = M, .points = points,\n"
     "        .gradient = gradient, .owner = &owner};\n"
@@ -125,7 +142,9 @@ static const char step[] =
     "    nevh__stage_state state = NEVH__GO_ON;\n"
     "    if (M[HOLD_AT] > 0)\n        return false;\n"
     "    NEVH__EACH(k, 1, 2 * DOF) {\n"
-    "        double size = fabs(y[k]), most = $1[k];\n"
+    "        double size, most = $1[k];\n"
+    "        y[k] = k < DOF ? Q[k] : P[k - DOF];\n"
+    "        size = fabs(y[k]);\n"
     "        scale[k] = size > most ? size : most;\n"
     "        unit[k] = fabs(h) / scale[k];\n"
     "    }\n"
@@ -146,8 +165,11 @@ static const char step[] =
     "    if (state != NEVH__DONE || is_bad(bad) || unknown != 0 ||\n"
     "        !add_step(w, gradient, y, M, h))\n"
     "        return false;\n"
+    "    NEVH__EACH(k, 1, DOF) {\n"
+    "        Q[k] = y[k];\n        P[k] = y[DOF + k];\n    }\n"
     "    counted[0] += sweeps;\n"
     "    counted[1] += noises;\n"
+    "    counted[2] += sweeps;\n"
     "    return true;\n}\n";
 
 /* What steps have reached is stored, and the next one is the kernel's. */
@@ -156,7 +178,6 @@ static const char driver[] =
     "        double *restrict T, size_t operations, double t0, double h,\n"
     "        size_t from, size_t steps, double *restrict Q,\n"
     "        double *restrict P, double *restrict M, size_t *counted) {\n"
-    "    double y[2 * DOF];\n"
     "    step_weights w;\n"
     "    size_t done = 0;\n"
     "    nevh__stage_split(STAGES, weights, h, w.plus);\n"
@@ -167,15 +188,152 @@ static const char driver[] =
     "            w.to_p[j * NEVH__LANES + i] = w.minus[j];\n"
     "        }\n"
     "    }\n"
-    "    for (size_t k = 0; k < DOF; k++) {\n"
-    "        y[k] = Q[k];\n        y[DOF + k] = P[k];\n    }\n"
     "    while (done < steps && take_step(N, &w, t0 + (double)(from + done) * "
     "h,\n"
-    "                                     h, y, M, counted))\n"
+    "                                     h, Q, P, M, counted))\n"
     "        done++;\n"
-    "    for (size_t k = 0; k < DOF; k++) {\n"
-    "        Q[k] = y[k];\n        P[k] = y[DOF + k];\n    }\n"
     "    return done;\n}\n";
+
+/* Orbits side by side: those that are done wait for the others.  Values are
+   counted as the kernel takes them, which sweeps the last few one by one. */
+static const char lanes_state[] =
+    "typedef struct {\n"
+    "    double y[2 * DOF * 8], lost[2 * DOF * 8], slopes[2 * DOF * STRIDE];\n"
+    "} block;\n"
+    "typedef struct {\n"
+    "    double points[2 * DOF * STRIDE], gradient[2 * DOF * STRIDE];\n"
+    "    double before[UNKNOWN * STRIDE], least[UNKNOWN * STRIDE];\n"
+    "    double last[UNKNOWN * STRIDE], times[STRIDE], products[STRIDE];\n"
+    "    double unit[2 * DOF * 8], scale[2 * DOF * 8], lowest[8];\n"
+    "} sweeps_room;\n"
+    "INLINE void load_block(const double *N, double h, const double *Q,\n"
+    "                       const double *P, const double *M, sweeps_room *r,\n"
+    "                       block *to) {\n"
+    "    for (size_t k = 0; k < 2 * DOF; k++) {\n"
+    "        const double *from = (k < DOF ? Q : P) + k % DOF * WIDTH;\n"
+    "        double most = $1[k];\n"
+    "        NEVH_LANES(i, 8) {\n"
+    "            double one = from[i], size = fabs(one);\n"
+    "            double scale = size > most ? size : most;\n"
+    "            to->y[k * 8 + i] = one;\n"
+    "            to->lost[k * 8 + i] = M[k * WIDTH + i];\n"
+    "            r->scale[k * 8 + i] = scale;\n"
+    "            r->unit[k * 8 + i] = fabs(h) / scale;\n"
+    "        }\n"
+    "    }\n"
+    "    for (size_t k = 0; k < UNKNOWN * STAGES; k++)\n"
+    "        NEVH_LANES(i, 8) {\n"
+    "            double one = M[(SLOPES_AT + k) * WIDTH + i];\n"
+    "            r->last[k * 8 + i] = M[H_AT * WIDTH + i] == h ? one : 0;\n"
+    "        }\n"
+    "}\n"
+    "INLINE bool add_block(const step_weights *w, block *to) {\n"
+    "    double check[8];\n"
+    "    NEVH_LANES(i, 8) {\n        check[i] = 0;\n    }\n"
+    "    for (size_t k = 0; k < 2 * DOF; k++) {\n"
+    "        nevh__stage_advance(STAGES, order, k < DOF ? w->plus : w->minus, "
+    "8,\n"
+    "                            8, to->slopes + k * STRIDE, to->y + k * 8,\n"
+    "                            to->lost + k * 8);\n"
+    "        NEVH_LANES(i, 8) {\n"
+    "            check[i] += to->y[k * 8 + i] - to->y[k * 8 + i];\n"
+    "        }\n"
+    "    }\n"
+    "    return nevh__sum_lanes(check) == 0;\n}\n";
+
+static const char lanes_step[] =
+    "INLINE bool take_block(const double *N, const step_weights *w, double t,\n"
+    "                       double h, const double *Q, const double *P,\n"
+    "                       const double *M, block *to, size_t *counted) {\n"
+    "    sweeps_room r;\n"
+    "    double unknown = 0, level[8];\n"
+    "    wide bad = {0};\n"
+    "    size_t left = 8;\n"
+    "    bool settled[8];\n"
+    "    nevh__stage_lane lane[8];\n"
+    "    nevh__stage_progress made[8];\n"
+    "    struct nevh__stage_owner owner = {N, r.times, &bad};\n"
+    "    nevh__stage_step x = {\n"
+    "        .n = DOF, .stages = STAGES, .row = ROW, .stride = STRIDE,\n"
+    "        .half = DOF * STRIDE, .partitioned = PARTITIONED,\n"
+    "        .unchecked = true, .mu_q = mu_q, .mu_p = mu_p, .to_q = w->to_q,\n"
+    "        .to_p = w->to_p, .q = to->y, .p = to->y + DOF * 8,\n"
+    "        .carry = to->lost, .products = r.products, .points = r.points,\n"
+    "        .gradient = r.gradient, .owner = &owner};\n"
+    "    nevh__stage_changes changes = {FIRST, UNKNOWN, r.unit, r.before,\n"
+    "                                   r.least, r.lowest};\n"
+    "    for (size_t i = 0; i < 8; i++) {\n"
+    "        if (M[HOLD_AT * WIDTH + i] > 0)\n            return false;\n"
+    "        nevh__stage_forget(&lane[i]);\n"
+    "        r.lowest[i] = INFINITY;\n"
+    "        level[i] = -1;\n"
+    "        settled[i] = false;\n"
+    "    }\n"
+    "    load_block(N, h, Q, P, M, &r, to);\n"
+    "    NEVH_LANES(i, STRIDE) {\n"
+    "        r.times[i] = t + nodes[i / 8] * h;\n    }\n"
+    "    nevh__stage_begin_sweeps(&x, &changes, 8, guess, r.last, STRIDE);\n"
+    "    for (size_t sweeps = 1; left > 0; sweeps++) {\n"
+    "        counted[2] += left > FEW ? 8 : left;\n"
+    "        if (nevh__stage_map(&x, 8))\n            return false;\n"
+    "        nevh__stage_compare_sweep(&x, &changes, 8, made);\n"
+    "        for (size_t i = 0; i < 8; i++) {\n"
+    "            struct nevh__stage_judge_owner judge_owner = {\n"
+    "                N, to->y + i, r.scale + i, t, h, &level[i], &unknown,\n"
+    "                &counted[1]};\n"
+    "            nevh__stage_judged judged = {0, true, NOISY, NEWTON,\n"
+    "                                         UNKNOWN * STAGES, "
+    "&judge_owner};\n"
+    "            nevh__stage_state state;\n"
+    "            if (settled[i])\n                continue;\n"
+    "            if (!(made[i].change < INFINITY))\n"
+    "                return false;\n"
+    "            state = nevh__stage_judge_fixed_point(&judged, &lane[i], "
+    "&made[i]);\n"
+    "            if (state == NEVH__STUCK ||\n"
+    "                (state == NEVH__GO_ON && sweeps == NEVH__STAGE_SWEEPS))\n"
+    "                return false;\n"
+    "            if (state == NEVH__GO_ON)\n                continue;\n"
+    "            settled[i] = true;\n"
+    "            left--;\n"
+    "            counted[0] += sweeps;\n"
+    "            for (size_t k = i; k < 2 * DOF * STRIDE; k += 8)\n"
+    "                to->slopes[k] = r.gradient[k];\n"
+    "        }\n"
+    "    }\n"
+    "    return !is_bad(bad) && unknown == 0 && add_block(w, to);\n}\n"
+    "INLINE void store_block(double h, const block *from, double *Q, double "
+    "*P,\n"
+    "                        double *M) {\n"
+    "    for (size_t k = 0; k < 2 * DOF; k++) {\n"
+    "        double *to = (k < DOF ? Q : P) + k % DOF * WIDTH;\n"
+    "        NEVH_LANES(i, 8) {\n"
+    "            to[i] = from->y[k * 8 + i];\n"
+    "            M[k * WIDTH + i] = from->lost[k * 8 + i];\n"
+    "        }\n"
+    "    }\n"
+    "    for (size_t k = 0; k < UNKNOWN * STAGES; k++) {\n"
+    "        double sign = FIRST + k / STAGES < DOF ? 1 : -1;\n"
+    "        NEVH_LANES(i, 8) {\n"
+    "            M[(SLOPES_AT + k) * WIDTH + i] =\n"
+    "                sign * from->slopes[FIRST * STRIDE + k * 8 + i];\n"
+    "        }\n"
+    "    }\n"
+    "    NEVH_LANES(i, 8) {\n        M[H_AT * WIDTH + i] = h;\n    }\n"
+    "}\n"
+    "static bool take_step(const double *N, const step_weights *w, double t,\n"
+    "                      double h, double *Q, double *P, double *M,\n"
+    "                      size_t *counted) {\n"
+    "    block next[BLOCKS];\n"
+    "    size_t found[3] = {0, 0, 0};\n"
+    "    for (size_t b = 0; b < BLOCKS; b++)\n"
+    "        if (!take_block(N, w, t, h, Q + 8 * b, P + 8 * b, M + 8 * b,\n"
+    "                        &next[b], found))\n"
+    "            return false;\n"
+    "    for (size_t b = 0; b < BLOCKS; b++)\n"
+    "        store_block(h, &next[b], Q + 8 * b, P + 8 * b, M + 8 * b);\n"
+    "    for (size_t i = 0; i < 3; i++) counted[i] += found[i];\n"
+    "    return true;\n}\n";
 
 static void write_tables(nevh__writer *w, const nevh__tableau *a,
                          const nevh__stage_weights *padded) {
@@ -198,7 +356,10 @@ static void write_step(nevh__writer *w, const nevh_work *work,
     bool noisy = work->field->gradient->offsets;
     bool newton = nevh__stages_have_newton(work, a->stages);
     char scales[NEVH__NAME];
+    bool one = w->width == 1;
     nevh__write(w, sizes, a->stages, padded->row, partitioned ? work->n : 0,
+                one ? (size_t)1 : (size_t)NEVH__LANES,
+                one ? padded->row : a->stages * NEVH__LANES, NEVH__FEW_TOGETHER,
                 partitioned ? "true" : "false", noisy ? "true" : "false",
                 newton ? "true" : "false");
     write_tables(w, a, padded);
@@ -208,15 +369,16 @@ static void write_step(nevh__writer *w, const nevh_work *work,
     nevh__write_array(w, "scales", "N", 2 * work->n, work->scale, scales);
     nevh__write(w, "%s%s", owners, slopes);
     nevh__write_noise(w, work->field);
-    nevh__write(w, "%s", judges);
-    nevh__write_filled(w, step, (const char *const[]){scales});
+    nevh__write(w, "%s%s", judges, step_weights);
+    nevh__write_filled(w, one ? step : lanes_state,
+                       (const char *const[]){scales});
+    nevh__write(w, "%s", one ? "" : lanes_step);
     nevh__write(w, "%s", driver);
 }
 
 bool nevh__write_stages(nevh__writer *w, nevh_work *work) {
-    if (w->width > 1 || w->readable) {
-        w->refusal = w->readable ? "implicit steps have none"
-                                 : "orbits stand side by side";
+    if (w->readable) {
+        w->refusal = "implicit steps have none";
         return false;
     }
     w->stages = true;

@@ -19,10 +19,15 @@ static const char needs[] =
 static const char one_in_a_vector[] = "#define NEVH__VECTOR_AT(x) (*(x))\n"
                                       "enum { NEVH__IN_VECTOR = 1 };\n";
 
+static const char needs_of_numbers[] = "typedef double nevh__number;\n";
+static const char roundoff_of_lanes[] =
+    "INLINE double nevh__roundoff(double sum, double a, double b) {\n"
+    "    double part = sum - a;\n"
+    "    return (a - (sum - part)) + (b - part);\n}\n";
+
 /* Of the larger one of a and b what is lost follows in two operations instead
    of six, which all wait for one another; it is exact in both ways. */
-static const char needs_of_numbers[] =
-    "typedef double nevh__number;\n"
+static const char roundoff_of_one[] =
     "static __attribute__((noinline, cold)) double rare_roundoff(double sum, "
     "double a, double b) { return a - (sum - b); }\n"
     "INLINE double nevh__roundoff(double sum, double a, double b) {\n"
@@ -161,13 +166,14 @@ void nevh__write_needs(nevh__writer *w, size_t n, bool finite, bool sums) {
         return;
     }
     size_t lanes = w->width > 1 ? NEVH__LANES : 1;
-    nevh__write(w, "%s%s", needs,
-                lanes > 1 ? needs_of_lanes : needs_of_numbers);
+    bool wide = lanes > 1 && !w->stages;
+    nevh__write(w, "%s%s", needs, wide ? needs_of_lanes : needs_of_numbers);
+    if (!wide)
+        nevh__write(w, "%s", lanes > 1 ? roundoff_of_lanes : roundoff_of_one);
     if (w->stages)
         nevh__write(w, "%s%s", needs_of_stages, is_bad);
     else
-        nevh__write(w, "%s%s", one_in_a_vector,
-                    lanes > 1 ? is_bad : needs_of_one);
+        nevh__write(w, "%s%s", one_in_a_vector, wide ? is_bad : needs_of_one);
     nevh__write(w,
                 "enum { DOF = %zu, WIDTH = %zu, BLOCKS = %zu };\n"
                 "#define AT(x, row, b) "

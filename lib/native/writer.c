@@ -53,6 +53,18 @@ void nevh__writer_append(nevh__writer *w, double x) {
     w->numbers[w->count++] = x;
 }
 
+size_t nevh__writer_share(nevh__writer *w, size_t count, const double x[]) {
+    size_t first = w->count;
+    for (size_t i = 0; i < w->shared_count; i++)
+        if (w->shared[i].numbers == x && w->shared[i].count == count)
+            return w->shared[i].first;
+    for (size_t k = 0; k < count; k++)
+        nevh__writer_append(w, x[k]);
+    if (w->shared_count < NEVH__MOST_SHARED)
+        w->shared[w->shared_count++] = (nevh__shared_numbers){x, count, first};
+    return first;
+}
+
 void nevh__number_text(double x, char name[NEVH__NAME]) {
     double found = NAN;
     /* As few digits as give it back. */

@@ -10,13 +10,21 @@
 #include "expression/tape_private.h"
 #include "gradient/field_private.h"
 
-enum { NEVH__NAME = 40 };
+enum { NEVH__NAME = 40, NEVH__MOST_SHARED = 32 };
+
+/* Numbers that stand in the table once, and where. */
+typedef struct {
+    const double *numbers;
+    size_t count, first;
+} nevh__shared_numbers;
 
 typedef struct {
     char *text;
     size_t used, room;
     double *numbers;
     size_t count, number_room;
+    nevh__shared_numbers shared[NEVH__MOST_SHARED];
+    size_t shared_count;
     unsigned formulas;   /* written so far: names of each are its own */
     size_t width;        /* orbits side by side, as vectors; 1: one orbit */
     bool stages;         /* those of an implicit step are, of one orbit */
@@ -38,6 +46,10 @@ void nevh__number_text(double, char name[NEVH__NAME]);
 /* A number that follows the last one, whatever it is: the place of the first of
    so many is the count before. */
 void nevh__writer_append(nevh__writer *, double);
+/* The place of numbers that do not change: of all who ask for those at one
+   address it is the same, so that compilers find what formulas have in common.
+*/
+size_t nevh__writer_share(nevh__writer *, size_t count, const double x[]);
 /* NAME[count] = {...}; as C has it. */
 void nevh__write_numbers(nevh__writer *, const char *name, size_t count,
                          const double x[]);

@@ -156,6 +156,9 @@ says 'has no transform'
 # The other commands.
 exits 0 list integrators
 has '^ verlet +2 '
+exits 0 list integrators --all --format csv
+has '^gauss16,16,yes,yes,no,no,no,,any,yes,'
+has '^gonzalez,2,no,yes,no,yes,no,,any,no,'
 exits 0 list gradients
 has '^ central4 +4 '
 exits 0 list models --format csv

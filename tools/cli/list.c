@@ -32,6 +32,7 @@ static void add_integrator(table *t, const nevh_integrator *s, bool all) {
     table_text(t, fits(s));
     if (!all)
         return;
+    table_text(t, nevh_integrator_native(s) ? "yes" : "no");
     table_text(t, nevh_integrator_aliases(s));
     table_text(t, nevh_integrator_source(s));
 }
@@ -45,6 +46,7 @@ static int list_integrators(table *t, bool all) {
     COLUMNS(t, names);
     table_break(t);
     if (all) {
+        table_column(t, "native");
         table_column(t, "elsewhere");
         table_column(t, "source");
     }
