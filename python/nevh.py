@@ -799,6 +799,8 @@ def solve(H, t_span=None, y0=None, method=None, *, dt=None, rtol=None, atol=None
     if not 0 < dt < float("inf"):
         raise Refused("dt = %g is no step" % dt)
     h = dt if t_end > t0 else -dt
+    if gradient:
+        _gradient(gradient)
     if _lib.integrator_needs_formulas(_integrator(method)[0]):
         gradient = None
     else:
