@@ -49,7 +49,7 @@ EXTRA_DIST += bench/RESULTS.md $(peers)/build $(peers)/paper.py $(peers)/problem
 	$(peers)/boost_peer.cpp $(peers)/sundials_peer.c $(peers)/scipy_peer.c
 PEERS_ROUNDS = 9
 CLEANFILES += bench/results-peers.csv bench/results-peers.md
-clean-local:
+clean-local: clean-python
 	rm -rf tests/cache
 	rm -rf $(peers)/*.o $(peers)/.libs $(peers)/peers $(peers)/empty* \
 	  $(peers)/circumstances.h $(peers)/build.log

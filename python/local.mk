@@ -1,4 +1,42 @@
 # The module for Python: one file over the shared library, which it finds from
 # where it is installed.  make install pythondir=DIR puts it elsewhere.
 pythondir = $(pkgdatadir)/python
-dist_python_DATA = python/nevh.py
+dist_python_DATA = python/nevh.py python/who-keeps-the-energy.ipynb
+EXTRA_DIST += python/pyproject.toml python/setup.py python/stage.sh \
+	tests/python/find_python.sh
+
+# A folder that runs wherever it is moved to: what a wheel and make portable hold.
+python/nevh_files: libnevh.la tools/nevh$(EXEEXT) python/stage.sh
+	$(AM_V_GEN)$(MKDIR_P) python && CC="$(CC)" LDFLAGS="$(LDFLAGS)" \
+	  OBJECTS="$(tools_nevh_OBJECTS)" GSL_LIBS="$(GSL_LIBS)" \
+	  LIBS="$(QUADMATH_LIBS) $(LIBS)" STRIP="$(STRIP)" srcdir="$(srcdir)" \
+	  $(SHELL) $(srcdir)/python/stage.sh $@
+
+# nevh-VERSION-py3-none-PLATFORM.whl, in python/; without a network.
+interpreter = $${PYTHON:-python3}
+wheel: python/nevh_files
+	rm -rf python/wheel && $(MKDIR_P) python/wheel
+	cp -R python/nevh_files $(srcdir)/python/nevh.py \
+	  $(srcdir)/python/pyproject.toml $(srcdir)/python/setup.py python/wheel
+	chmod -R u+w python/wheel
+	cd python/wheel && $(interpreter) -c \
+	  'import setuptools.build_meta as b; print(b.build_wheel(".."))' \
+	  >../wheel.log 2>&1 || { cat ../wheel.log; exit 1; }
+	rm -rf python/wheel && tail -n 1 python/wheel.log
+
+# One folder for a machine without root and compiler, packed.
+portable_name = $(PACKAGE)-$(VERSION)-portable
+portable: python/nevh_files
+	rm -rf $(portable_name) && cp -R python/nevh_files $(portable_name)
+	$(MKDIR_P) $(portable_name)/share/nevh/python $(portable_name)/share/doc/nevh
+	cp $(srcdir)/python/nevh.py $(portable_name)/share/nevh/python/
+	cp $(srcdir)/README.md $(srcdir)/COPYING $(portable_name)/share/doc/nevh/
+	-$(MAKE) html && cp doc/nevh.html $(portable_name)/share/doc/nevh/
+	tar -czf $(portable_name).tar.gz $(portable_name)
+	rm -rf $(portable_name)
+.PHONY: wheel portable
+
+clean-python:
+	rm -rf python/nevh_files python/nevh_files.new python/wheel python/wheel.log \
+	  python/*.whl $(portable_name) $(portable_name).tar.gz
+.PHONY: clean-python

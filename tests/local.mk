@@ -199,6 +199,8 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_cost.sh \
 	tests/tool/nevh_recommend.sh \
 	tests/python/python.sh \
+	tests/python/notebook.sh \
+	tests/python/wheel.sh \
 	tests/build/pkgconfig.sh \
 	tests/build/manual.sh \
 	tests/build/install.sh \
