@@ -15,7 +15,6 @@ SPDX-License-Identifier: GPL-3.0-or-later
 import csv
 import ctypes as c
 import html
-import inspect
 import os
 import re
 import signal
@@ -347,8 +346,9 @@ def _scene_of_formula(formula, parameters, coordinates):
     lines.append("[coordinates]")
     for name in coordinates:
         lines.append(re.sub(r"\[(\w+)\]", r"[i = 1..\1]", name) + " = 0")
-    return "\n".join(lines) + "\n" + definitions + "[effects]\nH = %s\n[run]\n" \
-        "gradient = exact\n" % " ".join(formula.split())
+    formula = " ".join(formula.split())
+    return "[scene]\ntitle = H = %s\n%s\n%s[effects]\nH = %s\n[run]\ngradient = exact\n" \
+        % (formula, "\n".join(lines), definitions, formula)
 
 
 def _shipped(name):
@@ -393,11 +393,9 @@ class Scene:
         if not self.is_formula:
             for name, value in (parameters or {}).items():
                 self._check(_lib.scene_set(self._made, _assign(name, value).encode()))
-            self.changed = bool(parameters)
         for names, on in ((with_effects, True), (without_effects, False)):
             for name in [names] if isinstance(names, str) else names:
                 self._check(_lib.scene_enable(self._made, name.encode(), on))
-        self.starts = {}
 
     def __del__(self):
         if getattr(self, "_made", None):
@@ -427,12 +425,16 @@ class Scene:
                 raise Refused("y0 has %d numbers; it takes %d: %s"
                               % (len(array), 2 * self.n, ", ".join(self.names)))
             return array
-        for name, value in (y0 or {}).items():
-            self._check(_lib.scene_set_start(self._made, _assign(name, value).encode()))
-            self.starts[name] = value
+        if y0:
+            return Scene(self.text)._set_start(y0).start()
         array, at = _numbers([0.0] * (2 * self.n))
         self._check(_lib.scene_start(self._made, at, at + 8 * self.n))
         return array
+
+    def _set_start(self, y0):
+        for name, value in y0.items():
+            self._check(_lib.scene_set_start(self._made, _assign(name, value).encode()))
+        return self
 
     @property
     def text(self):
@@ -448,6 +450,22 @@ class Scene:
 
     def _settings(self):
         return _lib.scene_run_settings(self._made).contents
+
+
+def _scene(source, parameters, coordinates, with_effects, without_effects):
+    """A Scene, which is made already or is to be."""
+    if not isinstance(source, Scene):
+        return Scene(source, parameters, coordinates, with_effects, without_effects)
+    if parameters or coordinates or with_effects or without_effects:
+        raise Refused("parameters, coordinates and effects are set when a Scene is made")
+    return source
+
+
+def _starts(scene, y0):
+    """{name: value} of what is to start elsewhere."""
+    if y0 is None or isinstance(y0, dict):
+        return y0 or {}
+    return dict(zip(scene.names, scene.start(y0)))
 
 
 # Functions: of Python, or addresses of functions in C.
@@ -524,8 +542,8 @@ class _Subject:
         self.scene = self.own = None
         self.trap = _Trap()
         if isinstance(H, (Scene, str, os.PathLike)):
-            self.scene = H if isinstance(H, Scene) else Scene(
-                H, parameters, coordinates, with_effects, without_effects)
+            self.scene = _scene(H, parameters, coordinates, with_effects,
+                                without_effects)
             self.system = _lib.scene_system(self.scene._made)
             self.n = self.scene.n
             return
@@ -1026,15 +1044,11 @@ def compare(scene, integrators=None, dt=None, t_end=None, *, y0=None, gradient=N
     The command is run, since what it does (references, longer runs for the verdict,
     timing) is its own and not the library's.
     """
-    made = scene if isinstance(scene, Scene) else Scene(
-        scene, parameters, coordinates, with_effects, without_effects)
-    if y0 is not None and not isinstance(y0, dict):
-        y0 = dict(zip(made.names, y0))
-    made.start(y0)
+    made = _scene(scene, parameters, coordinates, with_effects, without_effects)
     arguments = [command(), "compare", "--format", "csv"]
     arguments += _options(integrators=integrators, dt=dt, t_end=t_end,
                           gradient=gradient, tolerance=tolerance)
-    for name, value in made.starts.items():
+    for name, value in _starts(made, y0).items():
         arguments += ["--start", "%s=%s" % (name, _value(value))]
     with tempfile.TemporaryDirectory() as folder:
         name = os.path.basename(made.path) if made.path else "H.nevh"
@@ -1079,10 +1093,10 @@ def sweep(scene, vary=None, outcomes=None, integrator=None, *, dt=None, t_end=No
     """
     if np is None:
         raise ImportError("nevh.sweep needs NumPy")
-    made = scene if isinstance(scene, Scene) else Scene(
-        scene, parameters, coordinates, with_effects, without_effects)
-    if y0 is not None:
-        made.start(y0 if isinstance(y0, dict) else dict(zip(made.names, y0)))
+    made = _scene(scene, parameters, coordinates, with_effects, without_effects)
+    if made is scene:  # the caller's is not changed
+        made = Scene(made.text)
+    made._set_start(_starts(made, y0))
     lines = _lines(vary) if vary is not None else []
     lines += [_assign(name, value) if isinstance(value, str) else "%s = %d" % (
         name, value) for name, value in (("count", count), ("seed", seed),
@@ -1123,10 +1137,7 @@ def _sweep(s):
     array = np.zeros(members, kind)
     records = _Records(records=array.ctypes.data, count=members, columns=columns)
     with _Interrupt() as interrupt:
-        watch = c.CFUNCTYPE(c.c_bool, c.c_void_p, c.c_uint64)(
-            lambda _, member: not interrupt.pressed)
         keep = _lib.address("sweep_keep")
-        del watch
         for first in range(0, members, 1 << 16):
             check(_lib.sweep_run(s, first, min(1 << 16, members - first), None, keep,
                                  c.byref(records)))

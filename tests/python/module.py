@@ -138,6 +138,11 @@ def test_scene_starts():
     scene = nevh.Scene("pendulum", parameters={"start": 1})
     assert list(scene.start()) == [1, 0]
     assert list(scene.start({"p_phi": 2})) == [1, 2]
+    assert list(scene.start()) == [1, 0]  # as before
+    assert nevh.solve(scene, (0, 1), {"phi": 0.5}).y[0][0] == 0.5
+    assert nevh.solve(scene, (0, 1)).y[0][0] == 1
+    raised(nevh.Refused, "when a Scene is made", nevh.solve, scene, (0, 1),
+           parameters={"g": 1})
     assert "start = 1.0" in scene.text
     assert nevh.Scene(scene.text).names == ["phi", "p_phi"]
 
@@ -386,6 +391,10 @@ def test_sweep():
         orbit = nevh.solve("pendulum", (0, 5), [values[i], 0], "verlet", dt=0.05,
                            gradient="exact")
         assert [array["last(phi)"][i], array["last(p_phi)"][i]] == last(orbit)
+    scene = nevh.Scene("pendulum")
+    made = nevh.sweep(scene, *arguments[1:], **named)
+    assert made.tobytes() == array.tobytes()
+    raised(nevh.Refused, "nothing is varied", nevh.sweep, scene, t_end=1)
     threads = nevh.sweep(*arguments, threads=4, **named)
     assert threads.tobytes() == array.tobytes()
 
