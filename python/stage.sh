@@ -32,4 +32,8 @@ ${STRIP:-strip} -S "$folder.new"/lib/*.so* "$folder.new/bin/nevh" 2>/dev/null ||
 chmod 644 "$folder.new"/lib/*
 cp "$srcdir"/scenes/*.nevh "$folder.new/share/nevh/scenes/"
 cp "$srcdir"/scenes/hard/*.nevh "$folder.new/share/nevh/scenes/hard/"
+# The kit of nevh page, where it was made.
+for kit in web/kit.html "$srcdir/web/kit.html"; do
+    test ! -f "$kit" || cp "$kit" "$folder.new/share/nevh/page.html"
+done
 mv "$folder.new" "$folder"
