@@ -21,7 +21,9 @@ test -n "$python" || { echo "there is no Python 3"; exit 77; }
 
 NEVH_LIBRARY=$library
 NEVH_COMMAND=${NEVH:-$PWD/tools/nevh}
-NEVH_SCENES=$srcdir/scenes
-PYTHONPATH=$srcdir/python
+test "${NEVH_COMMAND#/}" != "$NEVH_COMMAND" || NEVH_COMMAND=$PWD/$NEVH_COMMAND
+top=$(CDPATH= cd "$srcdir" && pwd)
+NEVH_SCENES=$top/scenes
+PYTHONPATH=$top/python
 PYTHONDONTWRITEBYTECODE=1
 export NEVH_LIBRARY NEVH_COMMAND NEVH_SCENES PYTHONPATH PYTHONDONTWRITEBYTECODE
