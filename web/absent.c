@@ -5,6 +5,7 @@
    the library tells as it tells GSL's own.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "kernels/gsl_private.h"
+#include "kernels/tao_private.h"
 #include "native/native_private.h"
 #include "page.h"
 #include <gsl/gsl_cdf.h>
@@ -21,12 +22,14 @@ static int absent(const char *what) {
     return GSL_EFAILED;
 }
 
-/* The reference integrators of GSL. */
+/* The reference integrators of GSL, and Tao's methods, which choose their
+   binding along one of their orbits. */
 static int refuse(nevh_work *w) {
-    absent("the integrators of GSL");
-    return nevh_work_fail(w, NEVH_ESTRUCT, "GSL is not in the page");
+    absent("integrators that need GSL");
+    return nevh_work_fail(w, NEVH_ESTRUCT, "%s needs GSL", w->integrator->name);
 }
 const nevh_kernel nevh__gsl_kernel = {.plan = refuse};
+const nevh_kernel nevh__tao_kernel = {.plan = refuse};
 
 /* A solver of roots that finds none. */
 static const char roots[] = "GSL's solver for several unknowns";

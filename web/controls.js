@@ -16,7 +16,7 @@ function show() {
   at("text").value = S.text;
   at("scene-caption").textContent = scene.parts.length
     ? "The configuration" + (scene.parts.some((p) => p.kind === "bob")
-      ? ": drag a body to a new start." : ".") : "No picture is in the scene.";
+      ? ": drag a body to a new start." : ".") : "All coordinates, side by side.";
   at("phase-caption").textContent = "Coordinate and momentum" +
     (scene.coordinates.length === 1 ? ", over levels of H" : "") +
     ": drag to a new start.";
@@ -73,7 +73,7 @@ function showSchemes() {
       S.schemes[i] = menu.value;
       S.schemes = S.schemes.filter(Boolean);
       showSchemes();
-      race();
+      race().then(findLimit);
     };
     const mark = element("span", { className: "mark" }, NEVH_MARKS[i]);
     mark.style.color = nevhColour(i);
@@ -83,10 +83,14 @@ function showSchemes() {
     (_, i) => choose(i)));
 }
 // The slider goes by equal ratios, up to the limit.
-const stepOf = (value) => +(S.limit * 10 ** (3 * (value / 100 - 1))).toPrecision(4);
+const longest = () => S.limit || 8 * S.dt;
+const stepOf = (value) => +(longest() * 10 ** (3 * (value / 100 - 1))).toPrecision(4);
 function showSliders() {
-  at("dt").value = 100 * (1 + Math.log10(S.dt / S.limit) / 3);
-  at("dt-text").textContent = "dt = " + nevhNumber(S.dt) + unit(scene.t_label);
+  at("dt").value = 100 * (1 + Math.log10(S.dt / longest()) / 3);
+  const words = "dt = " + nevhNumber(S.dt) + unit(scene.t_label);
+  at("dt-text").textContent = words + (S.limited ? ", " + S.limited +
+    " is stable up to " + nevhNumber(S.limit) : "");
+  at("dt").setAttribute("aria-valuetext", words);
   at("speed").value = S.speed;
   at("speed-text").textContent = nevhNumber(seconds()) +
     (scene.t_label ? " " + scene.t_label : "") + " a second";
@@ -228,10 +232,12 @@ function save(name, type, text) {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 function csv() {
-  const lines = ["# " + command(), "scheme,t,energy_error"];
+  const name = scene.coordinates[S.plane].name;
+  const lines = ["# " + command(), "# energy_error: the largest until the next row",
+    `scheme,dt,t,${name},p_${name},energy_error`];
   histories.forEach((h, i) => h.t.forEach((t, j) => {
     if (!(list[i].width > 1))
-      lines.push(list[i].scheme + "," + t + "," + h.most[j]);
+      lines.push([list[i].scheme, S.dt, t, h.q[j], h.p[j], h.most[j]].join(","));
   }));
   return lines.join("\n") + "\n";
 }

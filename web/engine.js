@@ -6,7 +6,7 @@
 // send(message, buffers) posts an answer; returns what takes requests.
 function nevhEngine(send) {
   const BUDGET = 12; // milliseconds in which a request takes steps
-  let x, page = 0, n = 0, parts = 0, runs = [];
+  let x, page = 0, n = 0, parts = 0, runs = [], bobs = [];
   const numbers = (at, count) => new Float64Array(x.memory.buffer, at, count);
 
   function textOf(at) {
@@ -53,7 +53,20 @@ function nevhEngine(send) {
     n = x.page_dof(page);
     const scene = JSON.parse(textOf(x.page_describe(page)));
     parts = scene.parts.reduce((sum, part) => sum + part.count, 0);
+    bobs = [];
+    let from = 0;
+    for (const part of scene.parts) {
+      if (part.kind === "bob" && bobs.length < 12) bobs.push(from);
+      from += part.count;
+    }
+    scene.bobs = bobs.length;
     return { ok: true, scene };
+  }
+  // A state, and where its bodies are.
+  function observed(row) {
+    if (!bobs.length) return row;
+    const shown = pictureOf(row);
+    return [...row, ...bobs.flatMap((from) => [shown[from], shown[from + 1]])];
   }
 
   // Rows of numbers: t, energy, error, status, 2n of the state.
@@ -68,12 +81,19 @@ function nevhEngine(send) {
     return shown;
   }
 
+  // A disc has a tenth of the lengths over which H varies.
+  const radius = (i) => {
+    const length = 0.1 * x.page_length(page, i);
+    return length > 0 && length < Infinity ? length : 0.1;
+  };
   function race({ start, list }) {
     if (start) numbers(x.page_start(page), 2 * n).set(start);
+    const disc = list.find((r) => r.width > 1);
+    const [dq, dp] = disc ? [radius(disc.k), radius(n + disc.k)] : [0, 0];
     runs = list.map((r, slot) => {
       const status = withTexts([r.scheme, r.gradient], (scheme, gradient) =>
         x.page_race(page, slot, scheme, gradient, r.h, r.tolerance || 1e-9,
-          r.width || 1, r.k || 0, r.dq || 0, r.dp || 0));
+          r.width || 1, r.k || 0, dq, dp));
       return status ? { ...fault(), width: 0 }
         : { ok: true, message: "", width: r.width || 1 };
     });
@@ -101,7 +121,7 @@ function nevhEngine(send) {
       runs.forEach((r, slot) => {
         if (!r.width || !r.ok) return;
         if (x.page_advance(page, slot, count)) Object.assign(r, fault());
-        if (r.width === 1) samples[slot].push(...state(slot, 1));
+        if (r.width === 1) samples[slot].push(...observed(state(slot, 1)));
       });
       done += count;
     }
@@ -125,7 +145,20 @@ function nevhEngine(send) {
     return { ok: true, picture: pictureOf(row) };
   }
 
-  const known = { load, open, race, go, levels, picture };
+  // The largest step that each scheme is stable with, along the orbit.
+  const limits = new Map();
+  function limit({ h, schemes }) {
+    const fastest = x.page_fastest(page, h);
+    const steps = schemes.map((scheme) => {
+      if (!limits.has(scheme))
+        limits.set(scheme, withTexts([scheme], (at) => x.page_limit(at)));
+      const most = limits.get(scheme); // next to nothing: stable with no step
+      return fastest > 0 && most > 0.01 ? most / fastest : NaN;
+    });
+    return { ok: true, steps };
+  }
+
+  const known = { limit, load, open, race, go, levels, picture };
   return async function take(request) {
     let answer;
     try {

@@ -6,6 +6,30 @@
 # A line "@SCENE@" is where nevh page puts the scene.
 folder=$1
 module=$2
+
+# An element that holds a file: its length when compressed, then five letters for
+# four bytes.
+packed() { # ID
+    printf '<script type="text/plain" id="%s">' "$1"
+    gzip -9 -n | od -An -v -tu1 | LC_ALL=C awk '
+        BEGIN { letters = "!#$%*+,-./0123456789:;=?@ABCDEFGHIJKLMNOPQRSTUVWXYZ" \
+                    "[]^_abcdefghijklmnopqrstuvwxyz{|}~"
+                for (i = 0; i < 85; i++) letter[i] = substr(letters, i + 1, 1) }
+        function put(  i, text) {
+            for (i = 0; i < 5; i++) { text = letter[four % 85] text
+                four = int(four / 85) }
+            all = all text; four = 0
+            if (length(all) > 2000) { out[n++] = all; all = "" } }
+        { for (i = 1; i <= NF; i++) { four = 256 * four + $i
+              if (++count % 4 == 0) put() } }
+        END { total = count
+              while (count++ % 4) { four = 256 * four
+                  if (count % 4 == 0) put() }
+              printf "%d ", total
+              for (i = 0; i < n; i++) printf "%s", out[i]
+              printf "%s</script>\n", all }'
+}
+
 cat <<'HEAD'
 <!DOCTYPE html>
 <html lang="en">
@@ -19,14 +43,14 @@ cat "$folder/page.css" || exit 1
 printf '</style>\n</head>\n<body>\n<main>\n'
 cat "$folder/page.html" || exit 1
 printf '</main>\n<script type="application/json" id="given">\n@SCENE@\n</script>\n'
-printf '<script type="text/plain" id="module">\n'
-gzip -9 -n <"$module" | base64 -w 0 || exit 1
-printf '\n</script>\n<script type="text/plain" id="engine">\n'
-cat "$folder/engine.js" || exit 1
-printf '</script>\n'
-for script in view page controls; do
-    printf '<script>\n'
-    cat "$folder/$script.js" || exit 1
-    printf '</script>\n'
-done
-printf '</body>\n</html>\n'
+packed module <"$module" || exit 1
+# Without comments, and spaces before lines.
+short() {
+    sed 's/^ *//; /^\/\//d' "$@"
+}
+short "$folder/engine.js" | packed engine || exit 1
+short "$folder/view.js" "$folder/page.js" "$folder/draw.js" \
+    "$folder/controls.js" | packed scripts || exit 1
+printf '<script>\n'
+cat "$folder/unpack.js" || exit 1
+printf '</script>\n</body>\n</html>\n'

@@ -1,10 +1,10 @@
 # The live page without a scene, web/kit.html: the library as WebAssembly, and
 # scripts.  make page makes it, where there is clang for that; tarballs have it.
-page_sources = web/page.h web/page.c web/describe.c web/pair.c web/absent.c \
+page_sources = web/page.h web/page.c web/describe.c web/pace.c web/pair.c web/absent.c \
 	web/absent_code.c
-page_parts = web/page.css web/page.html web/engine.js web/view.js web/page.js \
+page_parts = web/page.css web/page.html web/unpack.js web/engine.js web/view.js web/page.js web/draw.js \
 	web/controls.js
-page_scripts = web/module.sh web/kit.sh
+page_scripts = web/module.sh web/kit.sh web/gallery.sh
 EXTRA_DIST += $(page_sources) $(page_parts) $(page_scripts)
 
 .PHONY: page
@@ -38,3 +38,9 @@ uninstall-local:
 	rm -f "$(DESTDIR)$(pkgdatadir)/page.html"
 CLEANFILES += web/objects/*.o web/objects/*.log web/objects/library.a \
 	web/objects/nevh.wasm web/objects/include/gsl
+
+# Pages of all scenes that ship, with an index, as they can be put on a site.
+.PHONY: gallery
+gallery: page tools/nevh$(EXEEXT)
+	$(SHELL) $(srcdir)/web/gallery.sh ./tools/nevh$(EXEEXT) gallery \
+	  $(srcdir)/scenes/*.nevh

@@ -26,11 +26,12 @@ compile() {
     case $1 in
     lib/expression/tape_gradient.c|lib/expression/tape_complex.c) how=$small ;;
     lib/expression/tape_*|lib/gradient/*_block.c|lib/gradient/*_point.c) how=-O2 ;;
-    integrators/kernels/splitting_kernel.c|lib/gradient/*_stencil.c) how=-O2 ;;
+    integrators/kernels/splitting_kernel.c) how='-Os -Dalways_inline=unused' ;;
+    lib/gradient/*_stencil.c) how=-O2 ;;
     lib/work/*|lib/run/stepper.c|lib/run/run.c) how=-O2 ;;
     *) how=$small ;;
     esac
-    $CC --target=wasm32-wasi --sysroot="$WASM_SYSROOT" $how -std=c11 \
+    $CC --target=wasm32-wasi --sysroot="$WASM_SYSROOT" -flto $how -std=c11 \
         -ffp-contract=off -ffunction-sections -fdata-sections \
         -DNDEBUG -DNEVH_PORTABLE -D_GNU_SOURCE \
         -isystem "$folder/include" -I"$srcdir/include" -I"$srcdir/lib" \
@@ -42,7 +43,8 @@ objects=
 out_of_it=
 for source in "$@"; do
     case $source in
-    *.h|lib/native/*|lib/scene/code.c|integrators/kernels/gsl_kernel.c) ;;
+    *.h|lib/native/*|lib/scene/code.c|integrators/kernels/gsl_kernel.c|\
+    integrators/kernels/tao_*) ;;
     *.c)
         if compile "$source"; then
             objects="$objects $object"
@@ -55,13 +57,13 @@ done
 
 # The module's own come whole; of the library what they need.
 own=
-for source in page describe pair absent absent_code; do
+for source in page describe pace pair absent absent_code; do
     compile web/$source.c || { cat "$object.log"; exit 1; }
     own="$own $object"
 done
 $AR rc "$folder/library.a" $objects || exit 1
-$CC --target=wasm32-wasi --sysroot="$WASM_SYSROOT" -mexec-model=reactor -O2 \
-    $own "$folder/library.a" -o "$out" -Wl,--gc-sections,--strip-all \
+$CC --target=wasm32-wasi --sysroot="$WASM_SYSROOT" -mexec-model=reactor -O2 -flto \
+    $own "$folder/library.a" -o "$out" -Wl,--gc-sections,--strip-all,--compress-relocations,--lto-O1 \
     -Wl,-z,stack-size=1048576 -Wl,--max-memory=536870912 2>"$folder/link.log"
 linked=$?
 test $linked = 0 || {

@@ -134,15 +134,16 @@ PAGE_EXPORT(page_describe) const char *page_describe(page *g) {
     return g->text ? g->text : "";
 }
 
-/* The sum over coordinates of the area that orbits enclose, in their order. */
-static double area(const page *g, const page_run *r) {
+/* The sum over coordinates of the area that every by-th orbit encloses, in their
+   order. */
+static double area(const page *g, const page_run *r, size_t by) {
     double sum = 0, lost = 0;
     const double *q = r->state + PAGE_STATE, *p = q + g->n * r->width;
     for (size_t k = 0; k < g->n; k++)
-        for (size_t i = 0; i < r->width; i++) {
+        for (size_t i = 0; i < r->width; i += by) {
             size_t a = k * r->width + i;
-            size_t b = k * r->width + (i + 1) % r->width;
-            double term = (p[a] + p[b]) * (q[b] - q[a]) / 2 - lost;
+            size_t b = k * r->width + (i + by) % r->width;
+            double term = (p[a] + p[b]) * (q[a] - q[b]) / 2 - lost;
             double next = sum + term;
             lost = next - sum - term;
             sum = next;
@@ -150,12 +151,14 @@ static double area(const page *g, const page_run *r) {
     return sum;
 }
 
-/* One orbit has an energy and its error; many have their area instead. */
+/* One orbit has an energy and its error; many have their area instead, and its
+   change where every second orbit is left out. */
 static void observe(page *g, page_run *r) {
     double *q = r->state + PAGE_STATE, *p = q + g->n * r->width;
     double t = r->state[PAGE_T];
     if (r->width > 1) {
-        r->state[PAGE_ENERGY] = area(g, r);
+        r->state[PAGE_ENERGY] = area(g, r, 1);
+        r->state[PAGE_ERROR] = area(g, r, 2) - area(g, r, 1);
         return;
     }
     if (nevh_field_value(g->field, 1, &t, q, p, &r->state[PAGE_ENERGY]))
@@ -204,8 +207,9 @@ PAGE_EXPORT(page_leave) void page_leave(page *g, size_t slot) {
         run_clear(&g->runs[slot]);
 }
 
-/* A scheme from the start on; `width` orbits stand on a circle around it, in the
-   plane of coordinate k, whose radii are dq and dp: 1 is the start itself. */
+/* A scheme from the start on; `width` orbits stand on a circle around it, in
+   the plane of coordinate k, whose radii are dq and dp: 1 is the start itself.
+ */
 PAGE_EXPORT(page_race)
 int page_race(page *g, size_t slot, const char *scheme, const char *gradient,
               double h, double tolerance, size_t width, size_t k, double dq,
@@ -269,8 +273,8 @@ static int step(page *g, page_run *r, size_t steps) {
     return status;
 }
 
-/* Steps of a run.  Returns 0 or its status, which ends it: the state is the last
-   good one. */
+/* Steps of a run.  Returns 0 or its status, which ends it: the state is the
+   last good one. */
 PAGE_EXPORT(page_advance)
 int page_advance(page *g, size_t slot, size_t steps) {
     page_run *r = run_at(g, slot);

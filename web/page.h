@@ -10,7 +10,7 @@
 
 #include <nevh/nevh.h>
 
-enum { PAGE_RUNS = 8, PAGE_MESSAGE = 2000 };
+enum { PAGE_RUNS = 10, PAGE_MESSAGE = 2000 };
 
 /* One scheme, in one slot of the page. */
 typedef struct {

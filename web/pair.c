@@ -1,5 +1,5 @@
-/* nevh: the live page's module has Fehlberg's pair of orders 4 and 5 in place of
-   GSL's, under the names that the library calls.
+/* nevh: the live page's module has Fehlberg's pair of orders 4 and 5 in place
+   of GSL's, under the names that the library calls.
 
    A short orbit by that pair shows a field where to try its difference steps.
    These are powers of two, which the last digits of that orbit do not change.
@@ -35,8 +35,6 @@ const gsl_odeiv2_step_type *gsl_odeiv2_step_rk8pd, *gsl_odeiv2_step_msadams;
 gsl_odeiv2_step *gsl_odeiv2_step_alloc(const gsl_odeiv2_step_type *type,
                                        size_t n) {
     gsl_odeiv2_step *s = type ? calloc(1, sizeof *s) : NULL;
-    if (!type)
-        page_absent = "Tao's methods, which need an integrator of GSL";
     if (!s)
         return NULL;
     *s = (gsl_odeiv2_step){.type = type, .dimension = n};

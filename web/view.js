@@ -7,9 +7,15 @@ const NEVH_MARKS = ["●", "■", "▲", "◆"];
 const NEVH_DASHES = [[], [8, 4], [3, 3], [10, 3, 2, 3]];
 
 function nevhColour(i) {
-  const name = i < 0 ? "--ghost" : "--c" + i % 4;
-  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const name = i === "fore" ? "--fore" : i < 0 ? "--ghost" : "--c" + i % 4;
+  if (!nevhColours.has(name)) nevhColours.set(name, getComputedStyle(
+    document.documentElement).getPropertyValue(name).trim());
+  return nevhColours.get(name);
 }
+// Looked up once, and again in another theme.
+const nevhColours = new Map();
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change",
+  () => nevhColours.clear());
 
 // A canvas with a box [x0, x1, y0, y1] of the plane.
 class NevhPlane {
@@ -37,7 +43,7 @@ class NevhPlane {
     Object.assign(this, { sx, sy, x0, x1, y0, y1,
       ox: this.left + (this.width - sx * (x1 - x0)) / 2,
       oy: this.top + (this.height + sy * (y1 - y0)) / 2 });
-    this.fore = getComputedStyle(document.body).color;
+    this.fore = nevhColour("fore");
     return this.pen;
   }
   x(v) { return this.ox + (v - this.x0) * this.sx; }
@@ -58,6 +64,16 @@ class NevhPlane {
       if (open) pen.lineTo(this.x(x), this.y(y));
       else pen.moveTo(this.x(x), this.y(y));
       open = true;
+    }
+    pen.stroke();
+  }
+  // Two points each.
+  segments(points) {
+    const pen = this.pen;
+    pen.beginPath();
+    for (let i = 0; i < points.length; i += 4) {
+      pen.moveTo(this.x(points[i]), this.y(points[i + 1]));
+      pen.lineTo(this.x(points[i + 2]), this.y(points[i + 3]));
     }
     pen.stroke();
   }
@@ -101,7 +117,7 @@ class NevhPlane {
     }
     pen.textAlign = "left";
     pen.textBaseline = "bottom";
-    pen.fillText(ylabel, 4, this.top - 4);
+    pen.fillText(ylabel, 4, this.top - 9);
     pen.restore();
     pen.beginPath();
     pen.rect(this.left, this.top, this.width, this.height);
@@ -149,15 +165,18 @@ function nevhContour(values, nx, ny, box, level) {
   return out;
 }
 
-// The largest |error| in each of at most MOST spans of time.
+// The largest |error| in each of at most 1200 spans of time, and the state in the
+// plane at their beginnings.
 class NevhHistory {
   constructor() {
     this.t = [];
     this.most = [];
+    this.q = [];
+    this.p = [];
     this.each = 1;
     this.left = 0;
   }
-  add(t, error) {
+  add(t, error, q, p) {
     const size = Math.abs(error), last = this.t.length - 1;
     if (this.left > 0) {
       this.left--;
@@ -165,12 +184,14 @@ class NevhHistory {
       return;
     }
     this.t.push(t);
+    this.q.push(q);
+    this.p.push(p);
     this.most.push(size);
     this.left = this.each - 1;
     if (this.t.length < 1200) return;
-    this.t = this.t.filter((_, i) => i % 2 === 0);
-    this.most = this.most.filter((_, i) => i % 2 === 0)
-      .map((v, i) => Math.max(v, this.most[2 * i + 1]));
+    this.most = this.most.map((v, i) => Math.max(v, this.most[i + 1] || 0));
+    for (const name of ["t", "most", "q", "p"])
+      this[name] = this[name].filter((_, i) => i % 2 === 0);
     this.each *= 2;
   }
 }

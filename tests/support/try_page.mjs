@@ -94,5 +94,70 @@ await tried("pendulum", "", async (page) => {
       "does not recover from " + text.slice(0, 30));
   }
 });
+// How many steps are asked for at a time changes no bit; a disc keeps its area.
+await tried("pendulum", "integrators=verlet,rk4,euler&disc=1&dt=0.0625", async (page) => {
+  check(await page.until("rows.length === 6"), "no disc");
+  const states = async (chunk) => {
+    await page.evaluate("setPlaying(false)");
+    await page.evaluate(`(async () => { await race();
+      for (let left = 240; left > 0;) left -= await go(Math.min(left, ${chunk})); })()`);
+    return page.evaluate("JSON.stringify(rows.map((row) => Array.from(row)))");
+  };
+  const one = await states(1), many = await states(240);
+  check(one === many, "chunks of steps change the orbit");
+  const ratio = (i) => page.evaluate(`Math.abs(rows[${i}][1] / list[${i}].area)`);
+  check(Math.abs(await ratio(3) - 1) < 0.01, "verlet's area changes: " + await ratio(3));
+  check(Math.abs(await ratio(5) - 1) > 0.1, "euler's area stays: " + await ratio(5));
+});
+
+// A telephone: nothing is wider; all controls have names; keys move them; the
+// address holds what was set; where motion is not wanted nothing moves.
+{
+  const page = await browse(program, `file://${folder}/kepler.html`, [360, 800],
+    [{ name: "prefers-reduced-motion", value: "reduce" }]);
+  try {
+    check(await page.until("rows.length > 0 && S.limit > 0"), "kepler does not start");
+    check(await page.evaluate("document.documentElement.scrollWidth") <= 360,
+      "the page is wider than a telephone");
+    await new Promise((resolve) => setTimeout(resolve, 500));
+    check(await page.evaluate("steps") === 0, "moves where motion is not wanted");
+    const nameless = await page.evaluate(`Array.from(document.querySelectorAll(
+      "button,input,select,textarea,canvas")).filter((e) => !(e.textContent.trim() ||
+      e.getAttribute("aria-label") || e.labels?.length)).map((e) => e.id).join(" ")`);
+    check(nameless === "", "controls without a name: " + nameless);
+    const dt = await page.evaluate("S.dt");
+    await page.evaluate("at('dt').focus()");
+    await page.key("ArrowRight");
+    check(await page.until(`S.dt > ${dt}`), "an arrow moves no slider");
+    await page.key("End");
+    check(await page.until("Math.abs(S.dt / S.limit - 1) < 1e-3"),
+      "the end is not the limit");
+    check(await page.evaluate("Math.abs(S.limit - 0.3578) < 0.01"),
+      "the limit of Verlet steps is " + await page.evaluate("S.limit"));
+    await page.evaluate("at('phase').focus()");
+    const x = await page.evaluate("rows[0][4]");
+    await page.key("ArrowRight");
+    check(await page.until(`rows[0][4] !== ${x}`), "an arrow moves no start");
+    await page.evaluate("at('share').click()");
+    const shared = await page.evaluate("location.hash");
+    check(/dt=/.test(shared) && /start=x/.test(shared), "shares " + shared);
+    await page.evaluate("location.reload()");
+    check(await page.until("typeof rows !== 'undefined' && rows.length > 0"), "no reload");
+    check(await page.evaluate("fragment()") === shared, "reads other settings than it shares: " + await page.evaluate("fragment()"));
+    const place = await page.evaluate(`(() => { const b = at("scene").getBoundingClientRect();
+      scrollTo(0, b.top); const c = at("scene").getBoundingClientRect(); draw();
+      return [c.left + configuration.x(pictures[0][0]),
+        c.top + configuration.y(pictures[0][1])]; })()`);
+    await page.pointer("mousePressed", ...place);
+    await page.pointer("mouseMoved", place[0] + 30, place[1] + 20);
+    await page.pointer("mouseReleased", place[0] + 30, place[1] + 20);
+    const before = JSON.stringify(await page.evaluate("Array.from(rows[0].slice(4))"));
+    check(await page.until(`JSON.stringify(Array.from(rows[0].slice(4))) !== ${
+      JSON.stringify(before)} || S.start && !playing`), "a body is not dragged");
+    check(page.faults.length === 0, "kepler: console: " + page.faults.join("; "));
+  } finally {
+    await page.close();
+  }
+}
 console.log(wrong + " wrong");
 process.exit(wrong ? 1 : 0);

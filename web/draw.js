@@ -1,0 +1,241 @@
+// nevh: the live page's pictures, and the text that says what they show.
+// SPDX-License-Identifier: GPL-3.0-or-later
+"use strict";
+
+// ---- drawing ----
+const configuration = new NevhPlane(at("scene"), [8, 8, 8, 8]);
+const errors = new NevhPlane(at("error"), [46, 36, 10, 28]);
+const phase = new NevhPlane(at("phase"), [50, 36, 10, 28]);
+
+function reach(x, y) {
+  const box = seen || [Infinity, -Infinity, Infinity, -Infinity];
+  if (Number.isFinite(x + y))
+    seen = [Math.min(box[0], x), Math.max(box[1], x),
+      Math.min(box[2], y), Math.max(box[3], y)];
+}
+function widen(picture) {
+  if (!picture || !picture.length) return;
+  let i = 0;
+  for (const part of scene.parts) {
+    for (let j = 0; j + 1 < part.count; j += 2, i += 2) {
+      reach(picture[i], picture[i + 1]);
+    }
+    i += part.count % 2;
+  }
+}
+function drawConfiguration() {
+  const b = seen || [-1, 1, -1, 1];
+  const reach = Math.max(b[1] - b[0], b[3] - b[2], 1e-9) / 2;
+  const cx = (b[0] + b[1]) / 2, cy = (b[2] + b[3]) / 2;
+  const fix = scene.parts.some((p) => p.kind === "rod");
+  const far = fix ? Math.max(...b.map(Math.abs)) * 1.12 : reach * 1.15;
+  configuration.box = fix ? [-far, far, -far, far]
+    : [cx - far, cx + far, cy - far, cy + far];
+  const pen = configuration.begin(true);
+  pen.lineWidth = 1;
+  pen.globalAlpha = 0.45;
+  paths.forEach((own, i) => {
+    pen.strokeStyle = nevhColour(list[i].colour);
+    own.forEach((path) => configuration.line(path));
+  });
+  pen.globalAlpha = 1;
+  for (let i = list.length - 1; i >= 0; i--)
+    if (pictures[i] && pictures[i].length) drawParts(pen, i);
+  if (!scene.parts.length) drawProfile(pen);
+}
+// Without a picture: all coordinates, side by side.
+function drawProfile(pen) {
+  const n = scene.coordinates.length;
+  let most = profile;
+  for (let k = 0; k < n && rows[0]; k++)
+    most = Math.max(most, Math.abs(rows[0][4 + k]) || 0);
+  profile = most;
+  configuration.box = [-0.5, n - 0.5, -1.1 * most, 1.1 * most];
+  configuration.begin(false);
+  for (let i = list.length - 1; i >= 0; i--) {
+    if (!rows[i] || list[i].width > 1) continue;
+    pen.strokeStyle = pen.fillStyle = nevhColour(list[i].colour);
+    pen.lineWidth = 1.5;
+    const points = [];
+    for (let k = 0; k < n; k++) points.push(k, rows[i][4 + k]);
+    configuration.line(points);
+    for (let k = 0; k < n && n <= 64; k++)
+      configuration.mark(k, rows[i][4 + k], list[i].colour, 4);
+  }
+}
+let profile = 1e-9;
+function drawParts(pen, i) {
+  const picture = pictures[i], colour = list[i].colour;
+  pen.save();
+  pen.strokeStyle = pen.fillStyle = nevhColour(colour);
+  pen.globalAlpha = i === 0 ? 1 : 0.75;
+  pen.lineWidth = i === 0 ? 3 : 2;
+  pen.setLineDash(colour < 0 ? [4, 4] : NEVH_DASHES[i % 4]);
+  let from = 0;
+  for (const part of scene.parts) {
+    const v = picture.subarray(from, from + part.count);
+    if (part.kind === "rod") configuration.line(v);
+    else configuration.mark(v[0], v[1], colour, i === 0 ? 8 : 7);
+    from += part.count;
+  }
+  pen.restore();
+}
+function drawErrors() {
+  let low = 1e-17, high = 1e-16, first = 0, end = 1e-9;
+  histories.forEach((h) => h.most.forEach((v, i) => {
+    if (Number.isFinite(v)) high = Math.max(high, v);
+    end = Math.max(end, h.t[i]);
+  }));
+  if (histories[0]?.t.length) first = histories[0].t[0];
+  high = Math.min(1e4, high * 2);
+  errors.box = [first, Math.max(end, first + 20 * S.dt), Math.log10(low),
+    Math.ceil(Math.log10(high))];
+  const pen = errors.begin(false), powers = [];
+  const by = Math.ceil((errors.box[3] - errors.box[2]) / 6);
+  for (let v = Math.ceil(errors.box[3]); v > errors.box[2]; v -= by)
+    powers.push(v);
+  pen.save();
+  errors.axes(nevhTicks(errors.box[0], errors.box[1]), powers,
+    "t" + unit(scene.t_label), "|energy error|", (v) => "1e" + v);
+  histories.forEach((h, i) => {
+    if (list[i].width > 1) return;
+    const points = [];
+    h.t.forEach((t, j) => points.push(t, Math.log10(Math.max(h.most[j], low))));
+    pen.strokeStyle = nevhColour(list[i].colour);
+    pen.lineWidth = 1.6;
+    pen.setLineDash(list[i].colour < 0 ? [4, 4] : NEVH_DASHES[i % 4]);
+    errors.line(points);
+  });
+  pen.restore();
+}
+const unit = (label) => label ? " (" + label + ")" : "";
+
+// The part of the plane that is shown grows with the first orbit.
+function choosePhaseBox() {
+  const c = scene.coordinates[S.plane], trail = trails[0] || [];
+  let [q0, q1, p0, p1] = [Infinity, -Infinity, Infinity, -Infinity];
+  for (let i = 0; i < trail.length; i += 2) {
+    q0 = Math.min(q0, wrapped(trail[i], c)); q1 = Math.max(q1, wrapped(trail[i], c));
+    p0 = Math.min(p0, trail[i + 1]); p1 = Math.max(p1, trail[i + 1]);
+  }
+  if (list[0] && rows[0] && !(q1 >= q0)) [q0, q1, p0, p1] = [-1, 1, -1, 1];
+  if (c.period > 0) { q0 = -c.period / 2; q1 = c.period / 2; }
+  const dq = Math.max(q1 - q0, 1e-3 * Math.abs(q0), 1e-9), dp = Math.max(p1 - p0,
+    1e-3 * Math.abs(p0), 1e-9);
+  const inside = phaseBox && q0 >= phaseBox[0] && q1 <= phaseBox[1] &&
+    p0 >= phaseBox[2] && p1 <= phaseBox[3];
+  if (inside) return;
+  phaseBox = [q0 - (c.period > 0 ? 0 : 0.25 * dq), q1 + (c.period > 0 ? 0 : 0.25 * dq),
+    p0 - 0.3 * dp, p1 + 0.3 * dp];
+  if (scene.coordinates.length === 1) askLevels(phaseBox.slice());
+}
+const wrapped = (q, c) => c.period > 0
+  ? q - c.period * Math.round(q / c.period) : q;
+let asking = false;
+async function askLevels(box) {
+  if (asking || !rows[0]) return;
+  asking = true;
+  const nx = 72, ny = 54;
+  const answer = await ask({ ask: "levels", at: rows[0].slice(4), k: S.plane,
+    box, nx, ny });
+  asking = false;
+  if (!answer.ok) return;
+  const finite = Array.from(answer.values).filter(Number.isFinite)
+    .sort((a, b) => a - b);
+  levels = [];
+  for (let i = 1; i < 14; i++)
+    levels.push(...nevhContour(answer.values, nx, ny, box,
+      finite[Math.floor(finite.length * i / 14)]));
+}
+function drawPhase() {
+  const c = scene.coordinates[S.plane];
+  choosePhaseBox();
+  phase.box = phaseBox;
+  const pen = phase.begin(false);
+  pen.save();
+  phase.axes(nevhTicks(phaseBox[0], phaseBox[1]), nevhTicks(phaseBox[2],
+    phaseBox[3]), c.name + unit(c.label), "p_" + c.name);
+  pen.strokeStyle = phase.fore;
+  pen.globalAlpha = 0.22;
+  pen.lineWidth = 1;
+  phase.segments(levels || []);
+  pen.globalAlpha = 1;
+  for (let i = list.length - 1; i >= 0; i--)
+    if (rows[i]) list[i].width > 1 ? drawDisc(pen, i, c) : drawOrbit(pen, i, c);
+  pen.restore();
+}
+function drawOrbit(pen, i, c) {
+  const points = [], trail = trails[i], n = scene.coordinates.length;
+  let before = NaN;
+  for (let j = 0; j < trail.length; j += 2) {
+    const q = wrapped(trail[j], c);
+    if (c.period > 0 && Math.abs(q - before) > c.period / 2)
+      points.push(NaN, NaN);
+    points.push(q, trail[j + 1]);
+    before = q;
+  }
+  pen.strokeStyle = pen.fillStyle = nevhColour(list[i].colour);
+  pen.lineWidth = 1.4;
+  pen.setLineDash(list[i].colour < 0 ? [4, 4] : []);
+  phase.line(points);
+  phase.mark(wrapped(rows[i][4 + S.plane], c), rows[i][4 + n + S.plane],
+    list[i].colour, 5);
+}
+function drawDisc(pen, i, c) {
+  const n = scene.coordinates.length, w = list[i].width;
+  pen.fillStyle = nevhColour(list[i].colour);
+  for (let j = 0; j < w; j++)
+    phase.mark(wrapped(rows[i][4 + S.plane * w + j], c),
+      rows[i][4 + (n + S.plane) * w + j], 0, 1.4);
+}
+let told = 0;
+function draw() {
+  drawConfiguration();
+  drawErrors();
+  drawPhase();
+  report(false);
+}
+
+// ---- text ----
+const digits = (v, count = 6) => Number.isFinite(v) ? v.toPrecision(count) : "";
+function report(atOnce) {
+  const body = at("states").tBodies[0];
+  const lines = S.schemes.length + S.exact;
+  while (body.rows.length > lines) body.deleteRow(-1);
+  while (body.rows.length < lines) {
+    const row = body.insertRow();
+    for (let j = 0; j < 4; j++) row.insertCell();
+  }
+  at("when").textContent = "The states at t = " + digits(rows[0]?.[0] ?? NaN) +
+    " " + scene.t_label;
+  for (let i = 0; i < lines; i++) {
+    const cells = body.rows[i].cells, row = rows[i], r = list[i];
+    const disc = list.findIndex((o) => o.width > 1 && o.scheme === r.scheme);
+    const name = (r.colour < 0 ? "○ exact" : NEVH_MARKS[i] + " " + r.scheme);
+    const values = [name, row ? digits(row[1], 9) : "",
+      row ? row[2].toExponential(2) : "refused",
+      disc >= 0 && rows[disc] ? areaText(rows[disc], list[disc].area) : ""];
+    values.forEach((v, j) => {
+      if (cells[j].textContent !== v) cells[j].textContent = v;
+    });
+    cells[0].style.color = nevhColour(r.colour);
+  }
+  if (!atOnce && (playing ? now() - told < 5000 : told > 0)) return;
+  told = now();
+  at("status").textContent = spoken();
+  at("command").textContent = command();
+}
+// Known to a third of what leaving out every second state changes, as a polygon's
+// area is.
+function areaText(row, first) {
+  const size = Math.abs(row[1] / first), doubt = Math.abs(row[2] / first) / 3;
+  if (!(doubt < 0.05)) return "too folded";
+  return digits(row[1], 4) + ", ratio " + size.toFixed(doubt < 1e-3 ? 4 : 2);
+}
+function spoken() {
+  if (!rows[0]) return "";
+  const state = scene.coordinates.slice(0, 6).map((c, k) =>
+    c.name + " = " + digits(rows[0][4 + k], 4)).join(", ");
+  return steps + " steps, t = " + digits(rows[0][0], 4) + ": " + S.schemes[0] +
+    " has " + state + ", energy error " + rows[0][2].toExponential(1) + ".";
+}
