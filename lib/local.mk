@@ -130,6 +130,7 @@ libnevh_core_la_SOURCES = \
 	lib/native/nystrom_text.c \
 	lib/native/stage_text.c \
 	lib/native/noise_text.c \
+	lib/native/taylor_text.c \
 	lib/native/program_text.c \
 	lib/native/cache.c \
 	lib/native/build.c \

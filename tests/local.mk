@@ -21,6 +21,7 @@ suites = \
 	tests/expression/check_random_formulas \
 	tests/taylor/check_series \
 	tests/taylor/check_taylor \
+	tests/taylor/check_compiled \
 	tests/taylor/check_certain \
 	tests/scene/check_scene \
 	tests/scene/check_scene_errors \

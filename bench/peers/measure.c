@@ -12,7 +12,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { LEVELS = 8, TOLERANCES = 14, FEWEST_STEPS = 4, DOUBLINGS = 24 };
+enum { LEVELS = 8, TOLERANCES = 17, FEWEST_STEPS = 4, DOUBLINGS = 24 };
 const double targets[TARGETS] = {1e-3, 1e-6, 1e-9, 1e-12};
 static const double least_time = 0.002; /* CPU seconds of a turn */
 

@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "nevh_systems.h"
 #include <nevh/body.h>
+#include <stdio.h>
 
 enum { PAIRS = BODIES * (BODIES - 1) / 2 };
 
@@ -118,4 +119,42 @@ nevh_system *nevh_system_of(const problem *p) {
     default:
         return outer_sun();
     }
+}
+
+static const char *const formulas[] = {
+    [PENDULUM] = "[coordinates]\nq = 0\n[effects]\n"
+                 "T = p_q^2/2\nV = -cos(q)\n",
+    [DOUBLE_PENDULUM] =
+        "[coordinates]\na = 0\nb = 0\n[effects]\n"
+        "T = (p_a^2 + 2*p_b^2 - 2*p_a*p_b*cos(a - b))/(2*(1 + sin(a - b)^2))\n"
+        "V = -9.8*(2*cos(a) + cos(b))\n",
+    [KEPLER] = "[coordinates]\nx = 1\ny = 0\n[effects]\n"
+               "T = (p_x^2 + p_y^2)/2\nV = -1/sqrt(x^2 + y^2)\n",
+    [HENON_HEILES] = "[coordinates]\nx = 0\ny = 0\n[effects]\n"
+                     "T = (p_x^2 + p_y^2)/2\n"
+                     "V = (x^2 + y^2)/2 + x^2*y - y^3/3\n"};
+
+/* q[3*i - 2] to q[3*i] are of body i. */
+static nevh_scene *outer_sun_scene(void) {
+    enum { ROOM = 2000 };
+    char text[ROOM];
+    int used = snprintf(text, ROOM, "[parameters]\nN = %d\nm[1..N] = ", BODIES);
+    for (int i = 0; i < BODIES; i++)
+        used += snprintf(text + used, (size_t)(ROOM - used), "%s%.17g",
+                         i ? ", " : "", sun_masses[i]);
+    snprintf(text + used, (size_t)(ROOM - used),
+             "\nG = %.17g\n[coordinates]\nq[i = 1..3*N] = i\n[effects]\n"
+             "T = sum(i = 1..N, (p_q[3*i - 2]^2 + p_q[3*i - 1]^2 + "
+             "p_q[3*i]^2)/(2*m[i]))\n"
+             "V = -G*sum(i = 1..N, j = i + 1..N, m[i]*m[j]/"
+             "sqrt((q[3*i - 2] - q[3*j - 2])^2 + (q[3*i - 1] - q[3*j - 1])^2 "
+             "+ (q[3*i] - q[3*j])^2))\n",
+             sun_gravity);
+    return nevh_scene_parse("outer-sun", text);
+}
+
+nevh_scene *nevh_scene_of(const problem *p) {
+    if (p - problems == OUTER_SUN)
+        return outer_sun_scene();
+    return nevh_scene_parse(p->name, formulas[p - problems]);
 }

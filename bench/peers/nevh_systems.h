@@ -7,5 +7,7 @@
 #include <nevh/nevh.h>
 
 nevh_system *nevh_system_of(const problem *);
+/* The same as formulas, which Taylor series need; coordinates in their order. */
+nevh_scene *nevh_scene_of(const problem *);
 
 #endif

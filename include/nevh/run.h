@@ -118,7 +118,8 @@ NEVH_API char *nevh_stepper_program(nevh_stepper *, const nevh_program *);
    asked for the balance of the energy; orbits side by side do if there is a
    multiple of 8, but not by Nystroem methods, nor with the complex step.
    Implicit steps take no complex step either; those whose iteration does not
-   converge are taken as others are.
+   converge are taken as others are.  Of nevh_taylor the series are compiled, in
+   all cases.
    why      out, may be NULL: what is in the way, if they were to ("there is no C
             compiler: ..."), else ""; the stepper's own, never NULL */
 NEVH_API bool nevh_stepper_native(const nevh_stepper *, const char **why);

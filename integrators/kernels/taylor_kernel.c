@@ -18,8 +18,24 @@ typedef struct {
     nevh__recurrence *recurrence;
     nevh__series_double *series;
     size_t order;
-    double longest; /* of a series, in steps of the caller's */
+    double longest;          /* of a series, in steps of the caller's */
+    nevh__series_code *code; /* NULL: there is none */
+    const double *numbers;
 } taylor_plan;
+
+const nevh__recurrence *nevh__taylor_recurrence(const nevh_work *w,
+                                                size_t *order) {
+    const taylor_plan *plan = w->plan;
+    *order = plan->order;
+    return plan->recurrence;
+}
+
+void nevh__taylor_use(nevh_work *w, nevh__series_code *code,
+                      const double numbers[]) {
+    taylor_plan *plan = w->plan;
+    plan->code = code;
+    plan->numbers = numbers;
+}
 
 /* What is narrow in H, a series sees from some ten times its width away, and
    what steps of h would find it is not to pass. */
@@ -123,21 +139,23 @@ static double reach_of(const nevh_work *w, const double rows[]) {
 }
 
 /* The state at a time since the beginning, in 2n; as its change, which is then
-   added. */
+   added.  Odd and even powers are two sums, which do not wait for each other. */
 static void change_at(const nevh_work *w, const chain *z, double since,
                       double change[]) {
     const taylor_plan *plan = w->plan;
     size_t each = 2 * w->n;
-    const double *row = z->rows + plan->order * each;
-    for (size_t i = 0; i < each; i++)
-        change[i] = row[i] * since;
-    for (size_t k = plan->order - 1; k > 0; k--) {
-        row -= each;
-        for (size_t i = 0; i < each; i++)
-            change[i] = (change[i] + row[i]) * since;
+    size_t last = plan->order - (plan->order % 2 == 0); /* the last odd one */
+    double square = since * since;
+    for (size_t i = 0; i < each; i++) {
+        const double *row = z->rows + last * each + i;
+        double odd = row[0], even = plan->order > last ? row[each] : 0;
+        for (size_t k = last; k > 1; k -= 2) {
+            row -= 2 * each;
+            odd = odd * square + row[0];
+            even = even * square + row[each];
+        }
+        change[i] = (odd + even * since) * since + z->roundoff[i];
     }
-    for (size_t i = 0; i < each; i++)
-        change[i] += z->roundoff[i];
 }
 
 static void state_at(const nevh_work *w, const chain *z, double since,
@@ -163,7 +181,10 @@ static int begin(nevh_work *w, const chain *z, double t, double h) {
     double *state = w->scratch + w->scratch_size - each;
     memcpy(state, z->rows, each * sizeof *state);
     w->field->gradients++;
-    if (!nevh__series_expand_double(plan->series, t, state, z->rows))
+    bool finite = plan->code ? plan->code(plan->numbers, t, state, z->rows)
+                             : nevh__series_expand_double(plan->series, t,
+                                                          state, z->rows);
+    if (!finite)
         return nevh_work_fail(w, NEVH_EDOM,
                               "the series at t = %.9g is not finite: H has no "
                               "derivatives there, or the state is out of its "

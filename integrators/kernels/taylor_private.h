@@ -3,8 +3,18 @@
 #ifndef NEVH_TAYLOR_PRIVATE_H
 #define NEVH_TAYLOR_PRIVATE_H
 
+#include "taylor/series_private.h"
 #include <nevh/extend.h>
 
 extern const nevh_kernel nevh__taylor_kernel;
+
+/* What coefficients are of; and compiled code that takes them, instead of the
+   recurrences.
+   numbers  those of the recurrence as doubles, borrowed */
+typedef int nevh__series_code(const double numbers[], double t,
+                              const double state[], double rows[]);
+const nevh__recurrence *nevh__taylor_recurrence(const nevh_work *,
+                                                size_t *order);
+void nevh__taylor_use(nevh_work *, nevh__series_code *, const double numbers[]);
 
 #endif

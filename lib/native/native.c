@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "kernels/runge_kutta_private.h"
 #include "kernels/splitting_private.h"
+#include "kernels/taylor_private.h"
 #include "native/native_private.h"
 #include <dlfcn.h>
 #include <stdio.h>
@@ -58,14 +59,15 @@ static bool fill_stages(nevh__native *x, const nevh_work *w) {
 static const struct {
     const nevh_kernel *kernel;
     bool (*write)(nevh__writer *, nevh_work *);
-    bool (*fill)(nevh__native *, const nevh_work *);
+    bool (*fill)(nevh__native *, const nevh_work *); /* NULL: of series */
 } families[] = {
     {&nevh_splitting_kernel, nevh__write_splitting, fill_splitting},
     {&nevh_runge_kutta_kernel, nevh__write_runge_kutta, fill_runge_kutta},
     {&nevh_nystrom_kernel, nevh__write_nystrom, fill_nystrom},
     {&nevh_gauss_kernel, nevh__write_stages, fill_stages},
     {&nevh_lobatto_kernel, nevh__write_stages, fill_stages},
-    {&nevh_implicit_euler_kernel, nevh__write_stages, fill_stages}};
+    {&nevh_implicit_euler_kernel, nevh__write_stages, fill_stages},
+    {&nevh__taylor_kernel, nevh__write_series, NULL}};
 /* The steps' copies of the state stand on the stack. */
 enum { MOST_NUMBERS = 8192 };
 enum { FAMILIES = sizeof families / sizeof *families };
@@ -81,6 +83,10 @@ static size_t family_of(const nevh_work *w) {
     return family_of_scheme(w->integrator);
 }
 
+static bool of_series(const nevh_work *w) {
+    return w->integrator->kernel == &nevh__taylor_kernel;
+}
+
 bool nevh_integrator_native(const nevh_integrator *scheme) {
     return scheme && family_of_scheme(scheme) < FAMILIES;
 }
@@ -93,7 +99,8 @@ static size_t stages_of(const nevh_work *w) {
 
 /* What is in the way; NULL: nothing that is known yet. */
 static const char *obstacle(const nevh_work *w) {
-    return family_of(w) == FAMILIES
+    return of_series(w) ? NULL
+           : family_of(w) == FAMILIES
                ? "only splitting, Runge-Kutta, Nystroem, Gauss and "
                  "Lobatto steps can be"
            : w->accounts ? "the balance of the energy is kept"
@@ -113,6 +120,8 @@ bool nevh__native_write(nevh__writer *text, nevh_work *w) {
 
 bool nevh__native_fill(nevh__native *x, const nevh_work *w) {
     size_t terms = w->field->n_terms;
+    if (of_series(w))
+        return true;
     x->kick_values = nevh__array(terms, sizeof *x->kick_values);
     x->drift_values = nevh__array(terms, sizeof *x->drift_values);
     if (!x->kick_values || !x->drift_values ||
@@ -122,6 +131,9 @@ bool nevh__native_fill(nevh__native *x, const nevh_work *w) {
     nevh__slope_values(w->field, false, x->drift_values);
     return true;
 }
+
+/* Gradients that a series takes as long as. */
+enum { SERIES = 30 };
 
 /* A guess of what the steps foreseen take from the tape. */
 static double seconds_foreseen(const nevh_work *w) {
@@ -135,8 +147,22 @@ static double seconds_foreseen(const nevh_work *w) {
     }
     if (w->width > 1) /* vectors of them */
         each *= (double)w->width / 4;
-    double gradients = w->integrator->gradients ? w->integrator->gradients : 1;
+    double gradients = of_series(w)               ? SERIES
+                       : w->integrator->gradients ? w->integrator->gradients
+                                                  : 1;
     return w->options->steps_foreseen * gradients * each;
+}
+
+static bool take_steps(nevh__native *x) {
+    *(void **)&x->steps = dlsym(x->library, "nevh_native_steps");
+    return x->steps;
+}
+
+static bool take_series(nevh_work *w, const nevh__native *x) {
+    nevh__series_code *code;
+    *(void **)&code = dlsym(x->library, "nevh_native_series");
+    nevh__taylor_use(w, code, x->numbers);
+    return code;
 }
 
 static bool plan(nevh_work *w, nevh__native *x, nevh__writer *text,
@@ -150,10 +176,9 @@ static bool plan(nevh_work *w, nevh__native *x, nevh__writer *text,
         nevh__native_load(text->text, w->options->native_cache, compile, why);
     if (!x->library)
         return false;
-    *(void **)&x->steps = dlsym(x->library, "nevh_native_steps");
     x->numbers = text->numbers;
     text->numbers = NULL;
-    return x->steps;
+    return of_series(w) ? take_series(w, x) : take_steps(x);
 }
 
 void nevh__native_plan(nevh_work *w, char why[NEVH__WHY_NATIVE]) {
@@ -228,7 +253,7 @@ static void count_sweeps(nevh_work *w, const nevh__native *x,
 size_t nevh__native_run(nevh_work *w, double t0, double h, size_t from,
                         size_t steps, double q[], double p[]) {
     const nevh__native *x = w->native;
-    if (!nevh__field_at_hand(w->field))
+    if (!x->steps || !nevh__field_at_hand(w->field))
         return 0;
     bool kept = x->keeps && has_kept(w);
     size_t counted[3] = {0, 0, 0};

@@ -27,7 +27,7 @@ enum { NEVH__WHY_NATIVE = 400 };
 
 typedef struct nevh__native {
     void *library;
-    nevh__native_steps steps;
+    nevh__native_steps steps; /* NULL: of series, which the kernel takes */
     double *numbers, *weights, *times;
     size_t kicks, drifts; /* of a step */
     bool keeps, kicks_first;
@@ -41,6 +41,8 @@ bool nevh__write_splitting(nevh__writer *, nevh_work *);
 bool nevh__write_runge_kutta(nevh__writer *, nevh_work *);
 bool nevh__write_nystrom(nevh__writer *, nevh_work *);
 bool nevh__write_stages(nevh__writer *, nevh_work *);
+/* Text of the coefficients of series, a nevh__series_code. */
+bool nevh__write_series(nevh__writer *, nevh_work *);
 /* Weights of all kicks and drifts, and the times of their slopes; to be freed.
    false when memory is out. */
 bool nevh__splitting_tables(const nevh_splitting *, double **weights,

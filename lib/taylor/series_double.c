@@ -24,19 +24,25 @@ NEVH__INLINE void store(series *s, size_t k) {
         value[r->lane_b[i]];
 }
 
+/* What the order before gave comes last, so that nothing else waits for it. */
 NEVH__INLINE void add_up(series *s, size_t k) {
     size_t lanes = s->of->lanes;
     for (size_t from = 0; from < lanes; from += NEVH__LANES) {
-        const double *a = s->rows_a + lanes + from;
-        const double *b = s->rows_b + (k - 1) * lanes + from;
+        const double *x = s->rows_a + from, *y = s->rows_b + from;
+        const double *a = x + 2 * lanes, *b = y + (k - 2) * lanes;
         nevh__vector even = {0}, odd = {0};
-        size_t j = 1;
-        for (; j + 1 < k; j += 2, a += 2 * lanes, b -= 2 * lanes) {
+        size_t j = 2;
+        for (; j + 2 < k; j += 2, a += 2 * lanes, b -= 2 * lanes) {
             even += NEVH__VECTOR_AT(a) * NEVH__VECTOR_AT(b);
             odd += NEVH__VECTOR_AT(a + lanes) * NEVH__VECTOR_AT(b - lanes);
         }
-        if (j < k)
+        if (j + 1 < k)
             even += NEVH__VECTOR_AT(a) * NEVH__VECTOR_AT(b);
-        NEVH__VECTOR_AT(s->sum + from) = even + odd;
+        nevh__vector outer =
+            NEVH__VECTOR_AT(x + lanes) * NEVH__VECTOR_AT(y + (k - 1) * lanes);
+        if (k > 2)
+            outer += NEVH__VECTOR_AT(x + (k - 1) * lanes) *
+                     NEVH__VECTOR_AT(y + lanes);
+        NEVH__VECTOR_AT(s->sum + from) = (even + odd) + outer;
     }
 }
