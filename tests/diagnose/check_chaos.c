@@ -99,6 +99,23 @@ TEST(the_largest_alone_is_that_of_all_exponents) {
     tear_down(&s);
 }
 
+/* Where log|w| grows by l t, 2/t int t' dlog|w| is l t, and its mean l t/2.  A
+   look that took the time of its beginning or of its end, half a unit away, would
+   be off by 0.48. */
+TEST(megno_weights_growth_by_the_time_in_the_middle) {
+    setup s;
+    double h = 0.5, half = 1 + h * h / 2, until = 200;
+    double rate = log(half + sqrt(half * half - 1)) / h;
+    saddle(&s, nevh_verlet);
+    s.of.dt = h;
+    s.of.exponents = 1;
+    run(&s, until);
+    ck_assert_double_eq_tol(exponent(&s, 0), rate, 1e-10);
+    ck_assert_double_eq_tol(nevh_chaos_result(s.chaos).megno, rate * until / 2,
+                            0.2);
+    tear_down(&s);
+}
+
 TEST_EACH(differences_and_tangents_agree, 3) {
     const nevh_integrator *scheme[] = {nevh_verlet, nevh_gauss4, nevh_rk4};
     setup a, b;
