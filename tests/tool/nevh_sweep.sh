@@ -116,7 +116,7 @@ if ${CC:-cc} --version >/dev/null 2>&1; then
     rows | cmp - $work/never.csv || fails 'compiled steps have other bits'
 fi
 exits 0 sweep pendulum $few --native always --no-cache \
-    --integrators gauss10
+    --integrators gonzalez
 says 'steps are not compiled'
 
 refuses() {
