@@ -150,11 +150,11 @@ int read_gradient_step(options *o, const char *argument) {
 }
 
 int read_energy_error(options *o, const char *argument) {
-    return read_positive("energy-error", argument, &o->energy_error);
+    return read_positive("energy-error", argument, &o->search.energy_error);
 }
 
 int read_state_error(options *o, const char *argument) {
-    return read_positive("state-error", argument, &o->state_error);
+    return read_positive("state-error", argument, &o->search.state_error);
 }
 
 static int read_count(const char *option, const char *text, size_t *count) {
@@ -183,30 +183,31 @@ int read_digits(options *o, const char *argument) {
 }
 
 int read_starts(options *o, const char *argument) {
-    return read_count("starts", argument, &o->starts);
+    return read_count("starts", argument, &o->chaos.starts);
 }
 
 int read_gali(options *o, const char *argument) {
-    return read_count("gali", argument, &o->deviations);
+    return read_count("gali", argument, &o->chaos.deviations);
 }
 
 int read_exponents(options *o, const char *argument) {
-    o->all_exponents = strcmp(argument, "all") == 0;
-    return o->all_exponents ? TOOL_OK
-                            : read_count("exponents", argument, &o->exponents);
+    o->chaos.all = strcmp(argument, "all") == 0;
+    return o->chaos.all
+               ? TOOL_OK
+               : read_count("exponents", argument, &o->chaos.exponents);
 }
 
 int read_repeat(options *o, const char *argument) {
-    return read_count("repeat", argument, &o->repeats);
+    return read_count("repeat", argument, &o->search.repeats);
 }
 
 int read_data(options *o, const char *argument) {
-    o->data = argument;
+    o->fit.data = argument;
     return *argument ? TOOL_OK : tool_refuse("--data takes a file");
 }
 
 int read_sigma(options *o, const char *argument) {
-    return read_positive("sigma", argument, &o->sigma);
+    return read_positive("sigma", argument, &o->fit.sigma);
 }
 
 int read_vary(options *o, const char *argument) {
@@ -313,7 +314,7 @@ int read_by(options *o, const char *argument) {
     static const char *const names[] = {"energy", "state", NULL};
     int which;
     int status = read_name("by", argument, names, &which);
-    o->by_state = which == 1;
+    o->search.by_state = which == 1;
     return status;
 }
 
@@ -340,12 +341,12 @@ int read_file(options *o, const char *argument) {
 }
 
 int read_plot(options *o, const char *argument) {
-    o->plot = argument;
+    o->plot.file = argument;
     return TOOL_OK;
 }
 
 int read_plot_script(options *o, const char *argument) {
-    o->plot_script = argument;
+    o->plot.script = argument;
     return TOOL_OK;
 }
 
@@ -354,7 +355,7 @@ int read_plot_kind(options *o, const char *argument) {
                                         "time", NULL};
     int which;
     int status = read_name("plot-kind", argument, names, &which);
-    o->plot_kind = (plot_kind)which;
+    o->plot.kind = (plot_kind)which;
     return status;
 }
 
@@ -364,7 +365,7 @@ int read_columns(options *o, const char *argument) {
 }
 
 int read_error(options *o, const char *argument) {
-    return read_positive("error", argument, &o->error);
+    return read_positive("error", argument, &o->search.error);
 }
 
 int read_observable(options *o, const char *argument) {
@@ -413,8 +414,8 @@ int read_native(options *o, const char *argument) {
     static const char *const names[] = {"auto", "always", "never", NULL};
     int which;
     int status = read_name("native", argument, names, &which);
-    o->native = (nevh_native_use)which;
-    o->native_given = true;
+    o->native.use = (nevh_native_use)which;
+    o->native.given = true;
     return status;
 }
 
@@ -426,7 +427,7 @@ int read_header(options *o, const char *argument) {
 
 int read_no_cache(options *o, const char *argument) {
     (void)argument;
-    o->no_cache = true;
+    o->native.no_cache = true;
     return TOOL_OK;
 }
 

@@ -40,8 +40,8 @@ static int check_against(const options *o, const char *file, const char *what) {
     const struct {
         const char *option, *name;
     } outputs[] = {{"-o", o->file},
-                   {"--plot", o->plot},
-                   {"--keep-plot-script", o->plot_script},
+                   {"--plot", o->plot.file},
+                   {"--keep-plot-script", o->plot.script},
                    {"--resume", o->resume}};
     for (size_t i = 0; i < sizeof outputs / sizeof *outputs; i++)
         if (outputs[i].name && file_is_same(outputs[i].name, file))

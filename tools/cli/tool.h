@@ -159,35 +159,47 @@ typedef enum {
 typedef struct {
     list operands, settings, integrators, gradients; /* settings: see below */
     list sections;
-    list vary; /* lines of [ensemble] */
-    const char *outcomes;
-    size_t threads, width; /* 0: not given */
-    size_t task, tasks;    /* part `task` of `tasks`; 0: not given */
-    double stop_after;     /* seconds; 0: not given */
-    bool retry, join;
-    size_t starts, exponents, deviations; /* of chaos; 0: not given */
-    bool all_exponents;
     list dt, at; /* formulas of the scene's parameters */
     double *tolerance;
     size_t tolerances;
-    const char *t_end; /* a formula; NULL: the scene's */
-    double gradient_step, energy_error, state_error, error, sigma; /* 0: not
-                                                                      given */
-    size_t every, samples, repeats, digits; /* 0: not given */
-    table_format format;
+    const char *t_end;    /* a formula; NULL: the scene's */
+    double gradient_step; /* 0: not given, as all numbers below */
+    size_t every, samples, digits;
     matching match;
-    plot_kind plot_kind;
-    const char *file, *plot, *plot_script, *transform, *resume, *from,
-        *observable;
-    const char *shape;   /* of flow; NULL: chosen */
-    const char *picture; /* of sweep; NULL: none */
-    const char *columns; /* NULL: not given */
-    const char *data;    /* a file of measured points; NULL: none */
-    bool formatted;      /* --format was given */
-    bool as_html;        /* tables are parts of a report */
-    bool quiet, portable, all, by_state, diagnostics, impact, allow_code;
-    nevh_native_use native;
-    bool native_given, no_cache, header;
+    const char *file, *transform, *resume, *from, *observable, *columns;
+    const char *shape; /* of flow; NULL: chosen */
+    table_format format;
+    bool formatted; /* --format was given */
+    bool as_html;   /* tables are parts of a report */
+    bool quiet, portable, all, diagnostics, impact, allow_code, header;
+    struct { /* --plot and what belongs to it; NULL: not given */
+        const char *file, *script;
+        plot_kind kind;
+    } plot;
+    struct {
+        nevh_native_use use;
+        bool given, no_cache;
+    } native;
+    struct { /* of cost and recommend */
+        double energy_error, state_error, error;
+        size_t repeats;
+        bool by_state;
+    } search;
+    struct { /* of fit; data: a file of measured points */
+        const char *data;
+        double sigma;
+    } fit;
+    struct {
+        size_t starts, exponents, deviations;
+        bool all; /* exponents */
+    } chaos;
+    /* Of sweep. */
+    list vary; /* lines of [ensemble] */
+    const char *outcomes, *picture;
+    size_t threads, width;
+    size_t task, tasks; /* part `task` of `tasks` */
+    double stop_after;  /* seconds */
+    bool retry, join;
     bool no_steps; /* the command takes no dt; it ends with the last of `at` */
     bool help, version;
     unsigned long long used; /* a bit an option */

@@ -60,19 +60,19 @@ static int read_data(map *m, const plan *p, const options *o) {
     for (size_t k = 0; k <= m->varied; k++)
         list_add(&names, nevh_sweep_column(m->sweep, k));
     int status =
-        o->data ? measured_read_named(&m->data, p, o, &names) : TOOL_OK;
+        o->fit.data ? measured_read_named(&m->data, p, o, &names) : TOOL_OK;
     list_free(&names);
     return status;
 }
 
 int map_new(map **made, const options *o, const plan *p, const nevh_sweep *s) {
     *made = NULL;
-    if (!o->picture && o->data)
+    if (!o->picture && o->fit.data)
         return tool_refuse("--data is drawn over a --picture");
     if (!o->picture)
         return TOOL_OK;
     options as = *o;
-    as.plot = o->picture;
+    as.plot.file = o->picture;
     if (check_options(o, s) || plot_check(&as))
         return TOOL_USAGE;
     map *m = *made = tool_allocate(1, sizeof *m);

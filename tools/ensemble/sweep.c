@@ -478,7 +478,7 @@ static int check_options(const options *o) {
         return tool_refuse(
             "nevh sweep writes CSV, or with -o FILE.npy an array "
             "of NumPy");
-    if (o->plot_script && !o->picture)
+    if (o->plot.script && !o->picture)
         return tool_refuse("--keep-plot-script is of --picture: give both");
     if (o->resume && o->file)
         return tool_refuse("--resume names the file: leave -o out");

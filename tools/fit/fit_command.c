@@ -16,7 +16,7 @@ typedef struct {
 
 static int check_points(const job *j, const options *o) {
     const measured *m = &j->data;
-    if (!o->data || !o->vary.count)
+    if (!o->fit.data || !o->vary.count)
         return tool_refuse(
             "nevh fit takes --data FILE.csv and --vary A,B: what "
             "was measured, and what is to be found");
@@ -65,7 +65,7 @@ static void choose_gradient(job *j, const options *o) {
 static int begin(job *j, const options *o) {
     options plain = *o;
     plain.vary = (list){0}; /* names, no lines of [ensemble] */
-    if (!o->data || !o->vary.count)
+    if (!o->fit.data || !o->vary.count)
         return check_points(j, o);
     if (plan_make(&j->plan, &plain) ||
         measured_read(&j->data, &j->plan, o, o->columns))
@@ -79,9 +79,9 @@ static int begin(job *j, const options *o) {
     choose_gradient(j, o);
     j->fit.plan = &j->plan;
     j->fit.data = &j->data;
-    j->fit.sigma = o->sigma > 0 ? o->sigma : 1;
-    j->fit.sigma_known = o->sigma > 0;
-    if (o->sigma > 0 && j->data.sigma)
+    j->fit.sigma = o->fit.sigma > 0 ? o->fit.sigma : 1;
+    j->fit.sigma_known = o->fit.sigma > 0;
+    if (o->fit.sigma > 0 && j->data.sigma)
         return tool_refuse("--sigma: %s has standard deviations of its own",
                            j->data.file);
     return fit_begin(&j->fit, o) ? TOOL_USAGE : check_points(j, o);
@@ -215,7 +215,7 @@ static void add_next(const job *j, const options *o, list *words) {
     char *starts = options_of(&j->fit, true);
     list_print(words,
                "Next: nevh run %s%s%s --data %s --plot-kind time --plot -",
-               j->plan.name, sets, starts, o->data);
+               j->plan.name, sets, starts, o->fit.data);
     free(sets);
     free(starts);
 }

@@ -329,8 +329,8 @@ static int read_text(reader_of_points *r, char *text, const char *only) {
 static int read_file_of(measured *m, const plan *p, const options *o,
                         const list *named, const char *only) {
     reader_of_points r = {.m = m, .plan = p, .named = named};
-    *m = (measured){.file = o->data};
-    char *text = whole_file(o->data);
+    *m = (measured){.file = o->fit.data};
+    char *text = whole_file(o->fit.data);
     int status = text ? read_text(&r, text, only) : TOOL_USAGE;
     if (!r.sigmas) {
         free(m->sigma);

@@ -108,7 +108,7 @@ static void note_row(job *j, const row *r) {
         list_print(notes,
                    "%s: displacements are differences of orbits near by: %s",
                    r->integrator, why);
-    for (size_t k = 2; k <= j->options->deviations; k++)
+    for (size_t k = 2; k <= j->options->chaos.deviations; k++)
         list_print(notes, "%s, dt = %g: GALI_%zu = %.4g", r->integrator, r->dt,
                    k, nevh_chaos_gali(r->chaos, k));
 }
@@ -143,9 +143,9 @@ static int run_one(job *j, const char *integrator, double dt) {
                              .options = &o,
                              .t_start = p->run->t_start,
                              .dt = dt,
-                             .starts = j->options->starts,
+                             .starts = j->options->chaos.starts,
                              .exponents = j->exponents,
-                             .deviations = j->options->deviations};
+                             .deviations = j->options->chaos.deviations};
     row r = {integrator, dt, tool_owned(nevh_chaos_new(p->system, &of))};
     int status =
         nevh_chaos_status(r.chaos)
@@ -214,15 +214,16 @@ static int run_all(job *j) {
 
 static int check_numbers(job *j) {
     size_t most = 2 * j->plan->n;
-    j->exponents = j->options->all_exponents ? most
-                   : j->options->exponents   ? j->options->exponents
-                                             : 1;
+    j->exponents = j->options->chaos.all         ? most
+                   : j->options->chaos.exponents ? j->options->chaos.exponents
+                                                 : 1;
     if (j->exponents > most)
         return tool_refuse("--exponents %zu: there are %zu", j->exponents,
                            most);
-    if (j->options->deviations == 1 || j->options->deviations > most)
+    if (j->options->chaos.deviations == 1 ||
+        j->options->chaos.deviations > most)
         return tool_refuse("--gali %zu: it takes 2 to %zu displacements",
-                           j->options->deviations, most);
+                           j->options->chaos.deviations, most);
     if (j->options->samples && !j->options->t_end && !isfinite(j->plan->t_end))
         return tool_refuse("--samples: no end: give --t-end");
     return TOOL_OK;

@@ -245,7 +245,7 @@ static int run_section(job *j, plot **to, const options *o) {
 }
 
 static int read_data(job *j, const options *o) {
-    if (!o->data)
+    if (!o->fit.data)
         return TOOL_OK;
     if (j->plan.n > 1)
         return tool_refuse(
@@ -262,7 +262,7 @@ static int read_data(job *j, const options *o) {
     int status = both ? TOOL_OK
                       : tool_refuse("--data %s: a portrait takes columns %s "
                                     "and %s",
-                                    o->data, momentum + 2, momentum);
+                                    o->fit.data, momentum + 2, momentum);
     free(momentum);
     return status;
 }
@@ -273,7 +273,7 @@ static void print_notes(const job *j, const options *o) {
     if (o->quiet)
         return;
     printf("%s: %zu orbit%s by each integrator\n",
-           o->plot ? o->plot : o->plot_script, j->members.count,
+           o->plot.file ? o->plot.file : o->plot.script, j->members.count,
            j->members.count == 1 ? "" : "s");
     for (size_t i = 0; i < j->levels.count; i++) {
         const equilibrium *e = &j->levels.found[i];

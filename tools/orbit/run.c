@@ -80,9 +80,9 @@ static int choose_rows(job *j) {
     if (o->samples == 1)
         return tool_refuse("--samples takes at least 2: the first row and the "
                            "last");
-    if (o->data) {
+    if (o->fit.data) {
         j->rows = measured_times(&j->data);
-        j->rows_text = text_print("at the times of %s", o->data);
+        j->rows_text = text_print("at the times of %s", o->fit.data);
     } else if (o->at.count)
         take_times(j);
     else if (o->every)
@@ -109,7 +109,7 @@ static int check_options(const options *o) {
         return tool_refuse("--resume names the file: leave -o out");
     if (o->resume && other)
         return tool_refuse("only CSV is resumed");
-    if (o->data && (o->resume || o->every || o->samples || o->at.count))
+    if (o->fit.data && (o->resume || o->every || o->samples || o->at.count))
         return tool_refuse("--data makes a row at each of its times: leave out "
                            "--every, --samples, --at and --resume");
     return TOOL_OK;
@@ -118,13 +118,14 @@ static int check_options(const options *o) {
 /* Those at the times of --data. */
 static int read_data(job *j) {
     const options *o = j->options;
-    if (!o->data)
+    if (!o->fit.data)
         return TOOL_OK;
     if (measured_read(&j->data, &j->plan, o, NULL))
         return TOOL_USAGE;
     measured_bound(&j->data, &j->plan, o);
     if (!j->data.points || j->plan.t_end <= j->plan.run->t_start)
-        return tool_refuse("--data %s: no point is within the run", o->data);
+        return tool_refuse("--data %s: no point is within the run",
+                           o->fit.data);
     return TOOL_OK;
 }
 

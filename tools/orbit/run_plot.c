@@ -202,9 +202,9 @@ static plot *plot_energy(run_picture *picture) {
 /* Kinds. */
 
 static int check_kind(const options *o, const plan *p) {
-    bool configuration = o->plot_kind == PLOT_CONFIGURATION;
-    bool columns = o->plot_kind == PLOT_TIME || o->plot_kind == PLOT_PHASE;
-    if (o->data && plot_wanted(o) && !columns)
+    bool configuration = o->plot.kind == PLOT_CONFIGURATION;
+    bool columns = o->plot.kind == PLOT_TIME || o->plot.kind == PLOT_PHASE;
+    if (o->fit.data && plot_wanted(o) && !columns)
         return tool_refuse("--data is drawn over --plot-kind time or phase");
     if (o->columns && !(plot_wanted(o) && columns))
         return tool_refuse("--columns is for --plot with --plot-kind time or "
@@ -251,10 +251,10 @@ int run_plot(const options *o, const plan *p, const char *integrator,
                       .rows =
                           o->every || o->samples || o->at.count ? rows : NULL,
                       .quiet = !plot_replaces_rows(o)};
-    if (o->data && measured_read(&is.data, p, o, NULL))
+    if (o->fit.data && measured_read(&is.data, p, o, NULL))
         return TOOL_USAGE;
     measured_bound(&is.data, &is.plan, o);
-    plot *to = draw[o->plot_kind](&is);
+    plot *to = draw[o->plot.kind](&is);
     int status = to ? plot_write(to, o) : TOOL_USAGE;
     if (!status) {
         plot_say_written(o, &is.orbits.item->plan, is.orbits.item->integrator,

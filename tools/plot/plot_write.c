@@ -10,7 +10,7 @@
 enum { USUAL_COLUMNS = 80, USUAL_LINES = 24 };
 
 static bool in_terminal(const options *o) {
-    return o->plot && strcmp(o->plot, "-") == 0;
+    return o->plot.file && strcmp(o->plot.file, "-") == 0;
 }
 
 static int find_medium(const options *o, medium *m) {
@@ -18,9 +18,9 @@ static int find_medium(const options *o, medium *m) {
         const char *ending;
         medium medium;
     } known[] = {{"svg", PLOT_SVG}, {"png", PLOT_PNG}, {"pdf", PLOT_PDF}};
-    const char *dot = o->plot ? strrchr(o->plot, '.') : NULL;
-    *m = o->plot ? PLOT_TEXT : PLOT_SCREEN;
-    if (!o->plot || in_terminal(o))
+    const char *dot = o->plot.file ? strrchr(o->plot.file, '.') : NULL;
+    *m = o->plot.file ? PLOT_TEXT : PLOT_SCREEN;
+    if (!o->plot.file || in_terminal(o))
         return TOOL_OK;
     for (size_t i = 0; dot && i < sizeof known / sizeof *known; i++)
         if (strcmp(dot + 1, known[i].ending) == 0) {
@@ -29,7 +29,7 @@ static int find_medium(const options *o, medium *m) {
         }
     return tool_refuse("--plot takes FILE.svg, FILE.png, FILE.pdf or -, not "
                        "\"%s\"",
-                       o->plot);
+                       o->plot.file);
 }
 
 static size_t columns_named(void) {
@@ -57,7 +57,7 @@ static int find_target(const options *o, target *t) {
 }
 
 bool plot_wanted(const options *o) {
-    return o->plot || o->plot_script;
+    return o->plot.file || o->plot.script;
 }
 
 bool plot_goes_first(const options *o) {
@@ -73,7 +73,7 @@ void plot_say_written(const options *o, const plan *p, const char *integrator,
     if (o->quiet || !plot_replaces_rows(o) || !plot_goes_first(o))
         return;
     char *scheme = plot_scheme(p, integrator);
-    printf("%s: %s", o->plot ? o->plot : o->plot_script, scheme);
+    printf("%s: %s", o->plot.file ? o->plot.file : o->plot.script, scheme);
     if (points)
         printf(", %zu points", points);
     puts("; -o FILE writes the rows as CSV");
@@ -88,10 +88,11 @@ static int check_names(const options *o) {
     target t;
     if (find_target(o, &t))
         return TOOL_USAGE;
-    if (same(o->plot, o->plot_script) || same(o->plot, o->file) ||
-        same(o->plot_script, o->file))
+    if (same(o->plot.file, o->plot.script) || same(o->plot.file, o->file) ||
+        same(o->plot.script, o->file))
         return tool_refuse("two outputs would have the same name, %s",
-                           same(o->plot, o->file) ? o->plot : o->plot_script);
+                           same(o->plot.file, o->file) ? o->plot.file
+                                                       : o->plot.script);
     if (in_terminal(o) && !o->file && o->format != FORMAT_TABLE)
         return tool_refuse("--plot - would draw among the rows; give them a "
                            "file with -o");
@@ -99,18 +100,18 @@ static int check_names(const options *o) {
 }
 
 int plot_check(const options *o) {
-    if (check_names(o) || (o->plot && gnuplot_check()) ||
-        (o->plot && !in_terminal(o) && output_check(o->plot)) ||
-        (o->plot_script && output_check(o->plot_script)))
+    if (check_names(o) || (o->plot.file && gnuplot_check()) ||
+        (o->plot.file && !in_terminal(o) && output_check(o->plot.file)) ||
+        (o->plot.script && output_check(o->plot.script)))
         return TOOL_USAGE;
     return TOOL_OK;
 }
 
 static int keep_script(const plot *p, const options *o, target t) {
     output out;
-    if (output_open(&out, o->plot_script))
+    if (output_open(&out, o->plot.script))
         return TOOL_USAGE;
-    t.file = in_terminal(o) ? NULL : o->plot;
+    t.file = in_terminal(o) ? NULL : o->plot.file;
     plot_script(p, &t, out.stream);
     return output_close(&out, TOOL_OK);
 }
@@ -166,7 +167,7 @@ static int draw(const plot *p, const options *o, const target *t) {
     output out;
     if (in_terminal(o))
         return draw_in_terminal(p, t);
-    if (output_open(&out, o->plot))
+    if (output_open(&out, o->plot.file))
         return TOOL_USAGE;
     return output_close(&out, draw_to(p, t, out.stream));
 }
@@ -187,8 +188,8 @@ int plot_write(plot *p, const options *o) {
                                        "are 0, which a logarithmic axis does "
                                        "not show"
                                      : "there is nothing to plot");
-    int status = o->plot_script ? keep_script(p, o, t) : TOOL_OK;
-    if (!status && o->plot)
+    int status = o->plot.script ? keep_script(p, o, t) : TOOL_OK;
+    if (!status && o->plot.file)
         status = draw(p, o, &t);
     return status;
 }

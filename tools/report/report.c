@@ -150,8 +150,8 @@ static report_part make_part(const report_work *w, const kind_of_part *kind,
     options o = *w->given;
     o.operands = (list){words, 2};
     o.file = kind->rows ? w->rows : NULL;
-    o.plot = kind->draws ? w->picture : NULL;
-    o.plot_kind = kind->kind;
+    o.plot.file = kind->draws ? w->picture : NULL;
+    o.plot.kind = kind->kind;
     o.as_html = true;
     o.quiet = !kind->rows;
     unlink(w->rows);
@@ -246,7 +246,7 @@ int report(const options *o) {
                            "pendulum -o pendulum.html");
     if (!o->file)
         return tool_refuse("nevh report needs a file: -o FILE.html");
-    options drawn = {.plot = (char *)"report.svg"};
+    options drawn = {.plot.file = "report.svg"};
     if (output_check(o->file) || plot_check(&drawn) || make_folder(&w)) {
         free_work(&w);
         return TOOL_USAGE;

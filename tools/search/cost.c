@@ -247,7 +247,7 @@ int cost(const options *o) {
         status = plan_search(&p, o);
     if (!status && !o->t_end && !o->dt.count)
         whole = plan_shorten(&p, SEARCH_BUDGET);
-    if (!status && (o->by_state || o->observable))
+    if (!status && (o->search.by_state || o->observable))
         status = plan_require_reference(&p);
     else if (!status && o->format != FORMAT_TABLE)
         status = plan_reference(&p, p.t_end);

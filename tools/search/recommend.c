@@ -141,9 +141,11 @@ static int advise(const options *o, plan *p, double whole) {
     advice a = {.search = search_begin(p, o, SEARCH_BUDGET),
                 .pilot = p->t_end,
                 .whole = whole,
-                .target = fmax(fmax(o->state_error, o->energy_error), o->error),
+                .target =
+                    fmax(fmax(o->search.state_error, o->search.energy_error),
+                         o->search.error),
                 .named = o->integrators.count > 0};
-    a.search.by_state = o->state_error > 0 || o->observable;
+    a.search.by_state = o->search.state_error > 0 || o->observable;
     a.search.keeping = a.named;
     advice_take_gradients(&a, o);
     advice_search(&a);
@@ -166,11 +168,11 @@ static int advise(const options *o, plan *p, double whole) {
 }
 
 static int check_target(const options *o) {
-    bool energy = o->energy_error > 0, state = o->state_error > 0;
-    if (o->observable && !(o->error > 0))
+    bool energy = o->search.energy_error > 0, state = o->search.state_error > 0;
+    if (o->observable && !(o->search.error > 0))
         return tool_refuse("--observable needs --error X, which X is to be "
                            "relative to its range");
-    if (o->error > 0 && !o->observable)
+    if (o->search.error > 0 && !o->observable)
         return tool_refuse("--error is that of --observable FORMULA");
     if (o->observable && (energy || state))
         return tool_refuse("nevh recommend takes one of --energy-error, "
@@ -195,11 +197,11 @@ static int check_observable(plan *p, const options *o) {
     int status = plan_require_reference(p);
     if (!status)
         status = plan_observe(p, o->observable);
-    if (status || o->error >= surely * p->observable_error)
+    if (status || o->search.error >= surely * p->observable_error)
         return status;
     tool_refuse("%s: an error of %g of %s cannot be told: the reference's own "
                 "is %.1e (%s)",
-                p->name, o->error, o->observable, p->observable_error,
+                p->name, o->search.error, o->observable, p->observable_error,
                 nevh_reference_text(p->reference));
     return TOOL_FAILED;
 }
@@ -225,8 +227,8 @@ int recommend(const options *o) {
         status = plan_search(&p, o);
     if (!status && !o->dt.count)
         whole = plan_shorten(&p, SEARCH_BUDGET);
-    if (!status && o->state_error > 0)
-        status = check_reference(&p, o->state_error);
+    if (!status && o->search.state_error > 0)
+        status = check_reference(&p, o->search.state_error);
     if (!status && o->observable)
         status = check_observable(&p, o);
     if (!status)

@@ -31,8 +31,8 @@ static double *ordered(const double numbers[], size_t count) {
 
 search search_begin(const plan *p, const options *o, double budget) {
     search s = {.plan = *p,
-                .repeats = o->repeats,
-                .by_state = o->by_state || o->observable,
+                .repeats = o->search.repeats,
+                .by_state = o->search.by_state || o->observable,
                 .quiet = o->quiet,
                 .budget = budget,
                 .started = cpu_seconds(),
