@@ -29,14 +29,9 @@ int nevh__model_state(size_t n, const long double from_q[],
 }
 
 const nevh_model *const *nevh_models(void) {
+#define NEVH__MODEL_ENTRY(id) &nevh__##id##_entry,
     static const nevh_model *const list[] = {
-        &nevh__oscillator_entry,
-        &nevh__pendulum_entry,
-        &nevh__double_pendulum_entry,
-        &nevh__double_pendulum_as_printed_entry,
-        &nevh__elastic_pendulum_entry,
-        &nevh__coupled_oscillators_entry,
-        NULL,
+        NEVH__MODELS(NEVH__MODEL_ENTRY) NULL,
     };
     return list;
 }

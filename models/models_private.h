@@ -6,9 +6,17 @@
 #include <nevh/body.h>
 #include <nevh/models.h>
 
-extern const nevh_model nevh__oscillator_entry, nevh__pendulum_entry,
-    nevh__double_pendulum_entry, nevh__double_pendulum_as_printed_entry,
-    nevh__elastic_pendulum_entry, nevh__coupled_oscillators_entry;
+/* All models, in the order of nevh_models. */
+#define NEVH__MODELS(X)                                                        \
+    X(oscillator)                                                              \
+    X(pendulum)                                                                \
+    X(double_pendulum)                                                         \
+    X(double_pendulum_as_printed)                                              \
+    X(elastic_pendulum)                                                        \
+    X(coupled_oscillators)
+
+#define NEVH__MODEL_DECLARE(id) extern const nevh_model nevh__##id##_entry;
+NEVH__MODELS(NEVH__MODEL_DECLARE)
 
 /* All numbers a model's term needs are constants of its instances, taken from
    the parameters when the system is made.  So a system of a model does not

@@ -6,7 +6,6 @@ tools_nevh_SOURCES = \
 	tools/experiment/pace.h \
 	tools/nevh.c \
 	tools/cli/options_private.h \
-	tools/cli/commands.c \
 	tools/cli/options.c \
 	tools/cli/arguments.c \
 	tools/cli/words.c \

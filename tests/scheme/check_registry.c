@@ -1,6 +1,7 @@
 /* nevh tests: what the registries say.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "support.h"
+#include "schemes_private.h"
 #include <nevh/extend.h>
 #include <string.h>
 
@@ -41,62 +42,8 @@ TEST(unknown_names) {
 }
 
 TEST(public_pointers_are_listed) {
-    const nevh_integrator *const schemes[] = {nevh_symplectic_euler_a,
-                                              nevh_symplectic_euler_b,
-                                              nevh_verlet,
-                                              nevh_position_verlet,
-                                              nevh_ruth3,
-                                              nevh_mclachlan_atela4,
-                                              nevh_forest_ruth,
-                                              nevh_pefrl,
-                                              nevh_suzuki4,
-                                              nevh_blanes_moan4,
-                                              nevh_blanes_moan6,
-                                              nevh_rkn6b,
-                                              nevh_rkn11b,
-                                              nevh_rkn14a,
-                                              nevh_yoshida6,
-                                              nevh_kahan_li6,
-                                              nevh_kahan_li8,
-                                              nevh_suzuki_umeno8,
-                                              nevh_sofroniou_spaletta10,
-                                              nevh_midpoint,
-                                              nevh_gauss4,
-                                              nevh_gauss6,
-                                              nevh_gauss8,
-                                              nevh_gauss10,
-                                              nevh_gauss12,
-                                              nevh_gauss14,
-                                              nevh_gauss16,
-                                              nevh_gauss18,
-                                              nevh_gauss20,
-                                              nevh_lobatto2,
-                                              nevh_lobatto4,
-                                              nevh_lobatto6,
-                                              nevh_tao2,
-                                              nevh_tao4,
-                                              nevh_tao6,
-                                              nevh_itoh_abe,
-                                              nevh_itoh_abe_symmetric,
-                                              nevh_gonzalez,
-                                              nevh_avf,
-                                              nevh_adaptive_verlet,
-                                              nevh_naive_adaptive_verlet,
-                                              nevh_euler,
-                                              nevh_implicit_euler,
-                                              nevh_explicit_midpoint,
-                                              nevh_heun,
-                                              nevh_ralston,
-                                              nevh_adams_bashforth2,
-                                              nevh_rk3,
-                                              nevh_rk4,
-                                              nevh_dopri5,
-                                              nevh_dop853,
-                                              nevh_dprkn12,
-                                              nevh_gsl_rkf45,
-                                              nevh_gsl_rk8pd,
-                                              nevh_gsl_msadams,
-                                              nevh_taylor};
+#define EXPORTED(id) nevh_##id,
+    const nevh_integrator *const schemes[] = {NEVH__SCHEMES(EXPORTED)};
     int count = sizeof schemes / sizeof *schemes;
     ck_assert_int_eq(registered_count(), count);
     for (int i = 0; i < count; i++)

@@ -4,6 +4,7 @@
    Parameters and states are of high entropy: where m = l = 1 nobody would see
    that m l stands for m l^2. */
 #include "support.h"
+#include "models/models_private.h"
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -88,10 +89,9 @@ static double size_of(nevh_field *field, size_t effects, const double q[],
 }
 
 TEST(list_is_complete) {
-    const nevh_model *const exported[] = {
-        nevh_oscillator_model,       nevh_pendulum_model,
-        nevh_double_pendulum_model,  nevh_double_pendulum_as_printed_model,
-        nevh_elastic_pendulum_model, nevh_coupled_oscillators_model};
+#define EXPORTED(id) nevh_##id##_model,
+    const nevh_model *const exported[] = {NEVH__MODELS(EXPORTED)};
+    ck_assert_uint_eq(sizeof exported / sizeof *exported, MODELS);
     for (size_t i = 0; i < MODELS; i++) {
         ck_assert_ptr_eq(nevh_models()[i], exported[i]);
         ck_assert_ptr_eq(nevh_model_named(known[i].name), exported[i]);

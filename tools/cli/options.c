@@ -252,11 +252,22 @@ int options_read(options *o, int argc, char **argv) {
     return status;
 }
 
+const char *command_name(unsigned bit) {
+#define COMMAND_NAME(run, id, name)                                            \
+    case FOR_##id:                                                             \
+        return name;
+    switch (bit) {
+        COMMANDS(COMMAND_NAME)
+    default:
+        return "";
+    }
+}
+
 /* With the commands that it is for, where they are few. */
 static int refuse_option(int k, const char *name) {
     enum { FEW = 5 };
     list those = {0};
-    for (unsigned bit = 1; bit <= FOR_LAST; bit *= 2)
+    for (unsigned bit = 1; bit < 1u << COMMAND_COUNT; bit *= 2)
         if (known[k].commands & bit)
             list_add(&those, command_name(bit));
     char *text = list_joined(&those);

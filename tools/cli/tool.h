@@ -120,31 +120,35 @@ void page_free(page *);
 /* sample.c */
 extern const char scene_sample[];
 
-/* The commands, as bits. */
-enum {
-    FOR_COMPARE = 1,
-    FOR_CHECK = 2,
-    FOR_EFFECTS = 4,
-    FOR_LIST = 8,
-    FOR_RUN = 16,
-    FOR_NEW = 32,
-    FOR_COST = 64,
-    FOR_GRADIENTS = 128,
-    FOR_RECOMMEND = 256,
-    FOR_SECTION = 512,
-    FOR_HARD = 1024,
-    FOR_SWEEP = 2048,
-    FOR_EXPORT = 4096,
-    FOR_FLOW = 8192,
-    FOR_REFERENCE = 16384,
-    FOR_CHAOS = 1 << 15,
-    FOR_REPORT = 1 << 16,
-    FOR_PORTRAIT = 1 << 17,
-    FOR_FREQUENCIES = 1 << 18,
-    FOR_PAGE = 1 << 19,
-    FOR_FIT = 1 << 20,
-    FOR_LAST = FOR_FIT
-};
+/* The commands: the function, the constant, and the name.  nevh.c has the help of
+   each; FOR_CHECK is the bit of check in the options that it takes. */
+#define COMMANDS(X)                                                            \
+    X(compare, COMPARE, "compare")                                             \
+    X(check, CHECK, "check")                                                   \
+    X(effects, EFFECTS, "effects")                                             \
+    X(list_command, LIST, "list")                                              \
+    X(run_scene, RUN, "run")                                                   \
+    X(new_scene, NEW, "new")                                                   \
+    X(cost, COST, "cost")                                                      \
+    X(gradients, GRADIENTS, "gradients")                                       \
+    X(recommend, RECOMMEND, "recommend")                                       \
+    X(section, SECTION, "section")                                             \
+    X(hard, HARD, "hard")                                                      \
+    X(sweep, SWEEP, "sweep")                                                   \
+    X(export_scene, EXPORT, "export")                                          \
+    X(flow, FLOW, "flow")                                                      \
+    X(reference_command, REFERENCE, "reference")                               \
+    X(chaos, CHAOS, "chaos")                                                   \
+    X(report, REPORT, "report")                                                \
+    X(portrait, PORTRAIT, "portrait")                                          \
+    X(frequencies_command, FREQUENCIES, "frequencies")                         \
+    X(fit_command, FIT, "fit")                                                 \
+    X(live_page, PAGE, "page")
+
+#define COMMAND_NUMBER(run, id, name) NUMBER_##id,
+#define COMMAND_BIT(run, id, name)    FOR_##id = 1 << NUMBER_##id,
+enum { COMMANDS(COMMAND_NUMBER) COMMAND_COUNT };
+enum { COMMANDS(COMMAND_BIT) FOR_NONE };
 
 const char *command_name(unsigned bit);
 
@@ -269,10 +273,7 @@ char *scene_file(const char *beside, const char *name);
 char *page_kit(void);
 
 typedef int command(const options *);
-command compare, list_command, check, effects, run_scene, export_scene, section,
-    new_scene;
-command cost, recommend, gradients, hard, sweep, flow, portrait,
-    reference_command, report, chaos, frequencies_command, fit_command,
-    live_page;
+#define COMMAND_FUNCTION(run, id, name) command run;
+COMMANDS(COMMAND_FUNCTION)
 
 #endif
