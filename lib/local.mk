@@ -22,6 +22,8 @@ libnevh_core_la_SOURCES = \
 	lib/system/swing.c \
 	lib/system/ellipse.c \
 	lib/gradient/field_private.h \
+	lib/gradient/block_private.h \
+	lib/gradient/scatter_map_private.h \
 	lib/gradient/evaluation_private.h \
 	lib/gradient/step_selection_private.h \
 	lib/gradient/methods.c \

@@ -1,6 +1,6 @@
 /* nevh: blocks of columns, filled and evaluated.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "gradient/field_private.h"
+#include "gradient/block_private.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

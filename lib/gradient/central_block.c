@@ -12,7 +12,7 @@
    about epsilon |h| / delta.  The step delta is fixed for the life of a
    field: one that followed the state would break time reversal.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "gradient/field_private.h"
+#include "gradient/block_private.h"
 #include <math.h>
 #include <nevh/body.h>
 #include <stdio.h>

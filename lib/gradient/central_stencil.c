@@ -1,5 +1,6 @@
 /* nevh: slopes from values at points that were laid out in stencil_plan.c.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradient/block_private.h"
 #include "gradient/stencil_private.h"
 #include "system/vector_private.h"
 #include <math.h>

@@ -5,7 +5,7 @@
    real functions", SIAM Rev. 40 (1998) 110-112]; with s = 1e-100
    nothing is left of the error but rounding in H itself.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "gradient/field_private.h"
+#include "gradient/block_private.h"
 #include <math.h>
 
 static const double step = 0x1p-332; /* 1e-100; dividing does not round */

@@ -3,7 +3,7 @@
 
    Where all instances fit into one block, maps and constants lie ready.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "gradient/field_private.h"
+#include "gradient/block_private.h"
 #include <math.h>
 #include <nevh/body.h>
 #include <string.h>

@@ -1,24 +1,11 @@
 /* nevh: inside a field.
-   SPDX-License-Identifier: GPL-3.0-or-later
-
-   Every kernel works on blocks.  A *column* is one point at which a term is
-   evaluated; columns stand side by side in rows, one row a variable that the
-   term reads:
-
-       column = (copy * groups + group) * lanes + lane
-
-   where a group is an instance (values, exact gradients: one copy) or a
-   variable of an instance (differences: one copy a stencil point).  Blocks
-   are padded to whole vectors; the padding repeats column 0. */
+   SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef NEVH_FIELD_PRIVATE_H
 #define NEVH_FIELD_PRIVATE_H
 
+#include "gradient/scatter_map_private.h"
 #include "system/system_private.h"
 #include <nevh/gradient.h>
-
-/* Terms are evaluated in blocks of at most so many columns, and of fewer where
-   a term reads so much that the rows would leave the cache. */
-enum { NEVH__COLUMNS = 512, NEVH__FEWEST_COLUMNS = 64, NEVH__ROOM = 16384 };
 
 /* The step of one variable, how it was found, and the worst estimates of its
    errors over the states that were tried. */
@@ -47,19 +34,6 @@ typedef struct {
 
 /* The points of the differences of a term; see stencil_plan.c. */
 typedef struct nevh__stencil nevh__stencil;
-
-/* From a half of the state to the rows of a block of all instances of a term,
-   one row for each variable of an instance, and back.  Lists of a variable's
-   numbers are in their order in the block. */
-typedef struct {
-    size_t rows, count, stride; /* count: instances; stride: padded */
-    size_t *source;             /* rows x stride: of one lane */
-    size_t targets;             /* variables that are written to */
-    size_t *target;
-    size_t *begin;   /* targets + 1: of the lists */
-    size_t *column;  /* each list: in rows of `stride`, of one lane */
-    bool contiguous; /* row after row, as they stand in the state */
-} nevh__scatter_map;
 
 typedef struct {
     const nevh__term_entry *term;
@@ -121,68 +95,6 @@ struct nevh_field {
     nevh__report report;
 };
 
-/* Where the states are, and which of them a block takes.  The first seven are
-   given; nevh__block_next sets the rest. */
-typedef struct {
-    size_t width; /* of q and p: the distance between their rows */
-    size_t until; /* lanes to be done */
-    const double *t, *q, *p;
-    size_t copies;        /* columns of a group and lane */
-    size_t per_instance;  /* groups an instance has */
-    size_t lane, lanes;   /* the lanes of this block */
-    size_t group, groups; /* and its groups */
-    size_t used, stride;  /* columns; the same padded: the rows' length */
-} nevh__block;
-
-/* A group as a variable of an instance. */
-typedef struct {
-    size_t instance, v; /* v < per_instance */
-} nevh__cursor;
-
-static inline nevh__cursor nevh__first_group(const nevh__block *b) {
-    if (b->group == 0)
-        return (nevh__cursor){0, 0};
-    return (nevh__cursor){b->group / b->per_instance,
-                          b->group % b->per_instance};
-}
-static inline void nevh__next_group(const nevh__block *b, nevh__cursor *c) {
-    if (++c->v == b->per_instance)
-        *c = (nevh__cursor){c->instance + 1, 0};
-}
-
-/* Fills rows and times for the next block of a term; false after the last. */
-bool nevh__block_next(nevh_field *, const nevh__planned *, nevh__block *);
-/* Evaluates the term on the filled block, and counts. */
-void nevh__block_evaluate(nevh_field *, nevh__planned *, const nevh__block *);
-/* The same, and checks that every value is finite. */
-int nevh__block_values(nevh_field *, nevh__planned *, const nevh__block *);
-/* NEVH_OK if every value is finite. */
-int nevh__block_check(nevh_field *, const nevh__planned *, const nevh__block *);
-/* Records that something of a term ("", "a derivative of ") is not finite in
-   a column. */
-int nevh__block_fail(nevh_field *, const nevh__planned *, const nevh__block *,
-                     size_t column, const char *what, double value);
-/* The same of a point of the difference by variable k, so far from the orbit. */
-int nevh__fail_outside(nevh_field *, const nevh__planned *, const nevh__block *,
-                       size_t column, size_t instance, size_t k, double reach);
-
-/* All lanes of states side by side. */
-static inline nevh__block nevh__block_over(size_t width, const double t[],
-                                           const double q[], const double p[],
-                                           size_t copies, size_t per_instance) {
-    return (nevh__block){.width = width,
-                         .until = width,
-                         .t = t,
-                         .q = q,
-                         .p = p,
-                         .copies = copies,
-                         .per_instance = per_instance};
-}
-
-static inline const double *nevh__row(const nevh_field *f, const nevh__block *b,
-                                      size_t k) {
-    return f->rows + k * b->stride;
-}
 /* The index of an instance's variable among the system's coordinates (first
    nq of them) or momenta. */
 static inline size_t nevh__index(const nevh__planned *term, size_t instance,
@@ -227,47 +139,11 @@ bool nevh__exact_gather_plan(nevh_field *);
 /* Whether one state may as well be repeated over a vector. */
 bool nevh__exact_block_broadcasts(const nevh_field *);
 
-/* For `count` instances whose variable k of instance i is index[i*rows + k] of
-   n; false when memory is out. */
-bool nevh__scatter_map_init(nevh__scatter_map *, size_t n, size_t rows,
-                            size_t count, const size_t index[]);
-void nevh__scatter_map_clear(nevh__scatter_map *);
-/* Fills rows of `stride` with all instances of `width` lanes, and then with
-   column 0; adds such rows to what they belong to, and tells whether all are
-   finite. */
-void nevh__gather(const nevh__scatter_map *, size_t width, size_t stride,
-                  const double from[], double to[]);
-bool nevh__scatter(const nevh__scatter_map *, size_t width, size_t stride,
-                   const double from[], double out[]);
-/* Whether variable k of instance i is number i + k: one row after another, in
-   a block of one instance or of one variable. */
-bool nevh__contiguous(const size_t index[], size_t variables, size_t count);
-
 /* nevh_field_gradient, of which `used` lanes count. */
 int nevh__field_gradient_padded(nevh_field *, size_t width, size_t used,
                                 const double t[], const double q[],
                                 const double p[], double dh_dq[],
                                 double dh_dp[]);
-
-/* The derivative from values at x +- j delta, copies being `apart` from each
-   other: + before -, nearest first. */
-static inline double nevh__chord_slope(const nevh_gradient *g, size_t apart,
-                                       const double *x, const double *h) {
-    double slope = 0;
-    for (size_t j = 0; j < g->offsets; j++) {
-        size_t plus = 2 * j * apart, minus = plus + apart;
-        slope += g->weights[j] * ((h[plus] - h[minus]) / (x[plus] - x[minus]));
-    }
-    return slope;
-}
-/* Adds the weighted chord slopes of one group to `out`, a value a lane; copies
-   are `apart` from each other.  Returns whether one is not finite. */
-bool nevh__add_slopes(const nevh_gradient *, size_t apart, size_t lanes,
-                      const double *x, const double *h, double *out);
-/* Tells what is not finite in a block of differences: a value, or else the
-   derivative by variable k of an instance. */
-int nevh__central_fail(nevh_field *, const nevh__planned *, const nevh__block *,
-                       size_t instance, size_t k);
 
 /* How far rounding in the values of H may move dH/dq and dH/dp at one state
    (width 1): the sum of epsilon |h| / delta over what reads each variable, n
@@ -299,15 +175,6 @@ int nevh__field_curvatures(nevh_field *, const nevh_options *,
 
 /* Values only: no gradients are asked for, and none are planned. */
 extern const nevh_gradient nevh__no_gradient;
-/* Chooses the steps that the user does not give, and the scales. */
-int nevh__field_select_steps(nevh_field *, const nevh_options *);
-/* Compares exact gradients with differences. */
-int nevh__field_verify(nevh_field *, const nevh_options *);
-/* Steps are kept for a part of the instances: the rows of term->steps, and
-   where the step of variable k of an instance is. */
-size_t nevh__step_rows(const nevh__planned *);
-size_t nevh__step_at(const nevh__planned *, size_t instance, size_t k);
-
 /* How dH/dt of a term is differenced; time.c. */
 typedef struct {
     const nevh_gradient *method; /* NULL: the term does not read t */

@@ -1,5 +1,6 @@
 /* nevh: a field is planned.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradient/block_private.h"
 #include "gradient/step_selection_private.h"
 #include "gradient/evaluation_private.h"
 #include <float.h>
@@ -76,7 +77,7 @@ static int plan_term(nevh_field *f, const nevh__term_entry *term) {
 }
 
 static size_t block_columns(size_t reads) {
-    size_t fit = NEVH__ROOM / (reads ? reads : 1) / NEVH__LANES * NEVH__LANES;
+    size_t fit = NEVH__BLOCK_SIZE / (reads ? reads : 1) / NEVH__LANES * NEVH__LANES;
     fit = fit < NEVH__COLUMNS ? fit : NEVH__COLUMNS;
     return fit > NEVH__FEWEST_COLUMNS ? fit : NEVH__FEWEST_COLUMNS;
 }

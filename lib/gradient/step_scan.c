@@ -1,5 +1,6 @@
 /* nevh: the difference step of each variable, by a scan of powers of two.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradient/block_private.h"
 #include "gradient/step_selection_private.h"
 #include <float.h>
 #include <math.h>

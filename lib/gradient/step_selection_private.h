@@ -97,4 +97,13 @@ nevh__step nevh__scan_line(const nevh__step_selection *, const nevh_gradient *,
 /* Chooses the steps of a term. */
 void nevh__scan_steps(nevh__step_selection *, nevh__planned *);
 
+/* Chooses the steps that the user does not give, and the scales. */
+int nevh__field_select_steps(nevh_field *, const nevh_options *);
+/* Compares exact gradients with differences. */
+int nevh__field_verify(nevh_field *, const nevh_options *);
+/* Steps are kept for a part of the instances: the rows of term->steps, and
+   where the step of variable k of an instance is. */
+size_t nevh__step_rows(const nevh__planned *);
+size_t nevh__step_at(const nevh__planned *, size_t instance, size_t k);
+
 #endif

@@ -9,6 +9,7 @@
    A term that brings the derivative is asked for it, where that is finite.
    Where H ends in time, as t^1.5 does at t = 0, differences are one-sided.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradient/block_private.h"
 #include "gradient/step_selection_private.h"
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* nevh: values of H, of its effects, and their rounding.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "gradient/field_private.h"
+#include "gradient/block_private.h"
 #include <float.h>
 #include <math.h>
 

@@ -7,6 +7,7 @@
    A point gradient must be the gradient to the last bit, so that an orbit does
    not depend on how many there are.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradient/block_private.h"
 #include "gradient/evaluation_private.h"
 #include "gradient/step_selection_private.h"
 #include <float.h>

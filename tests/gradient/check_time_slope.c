@@ -1,6 +1,6 @@
 /* nevh tests: dH/dt by differences, in any unit of time.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "gradient/field_private.h"
+#include "gradient/block_private.h"
 #include "support.h"
 #include <math.h>
 #include <nevh/scene.h>
