@@ -219,13 +219,13 @@ static void count(nevh_work *w, const nevh__native *x, size_t steps,
             kicks * x->kick_values[i] + drifts * x->drift_values[i];
 }
 
-/* Whether all lanes have the slope that the step before left. */
-static bool has_kept(const nevh_work *w) {
+/* How many lanes have the slope that the step before left. */
+static size_t count_kept(const nevh_work *w) {
     const double *flags = w->memory + 3 * w->size;
+    size_t kept = 0;
     for (size_t lane = 0; lane < w->width; lane++)
-        if (flags[lane] == 0)
-            return false;
-    return true;
+        kept += flags[lane] != 0;
+    return kept;
 }
 
 static size_t take(const nevh_work *w, double t0, double h, size_t from,
@@ -255,7 +255,9 @@ size_t nevh__native_run(nevh_work *w, double t0, double h, size_t from,
     const nevh__native *x = w->native;
     if (!x->steps || !nevh__field_at_hand(w->field))
         return 0;
-    bool kept = x->keeps && has_kept(w);
+    size_t kept = x->keeps ? count_kept(w) : 0;
+    if (kept > 0 && kept < w->width)
+        return 0; /* the kernel's step takes those that are missing */
     size_t counted[3] = {0, 0, 0};
     size_t done = take(w, t0, h, from, steps, q, p, counted);
     if (x->stages)
@@ -264,7 +266,7 @@ size_t nevh__native_run(nevh_work *w, double t0, double h, size_t from,
         if (done && done < steps) /* nothing has been stored */
             done = take(w, t0, h, from, done, q, p, counted);
         if (done)
-            count(w, x, done, kept);
+            count(w, x, done, kept > 0);
     }
     return done;
 }

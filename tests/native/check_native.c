@@ -306,6 +306,28 @@ TEST(failure_of_a_lane) {
     remove_cache();
 }
 
+/* Orbits beside one that starts afresh keep their last slopes, which were taken
+   at a time that rounds otherwise. */
+TEST(a_neighbours_jump_changes_nothing) {
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    make_cache();
+    nevh_scene *scene = parsed("[coordinates]\nx = 0.5\n[effects]\n"
+                               "T = p_x^2/2\nV = (1 + t^2/3)*x^4\n");
+    pair x = pair_of(scene, nevh_verlet, nevh_exact, false, cache, 8);
+    ck_assert_msg(nevh_stepper_native(x.native, NULL), "%s", x.why);
+    for (size_t i = 0; i < 12; i++) {
+        double t = 0.2 * (double)(6 * i);
+        ck_assert(!nevh_run(x.plain, t, 0.2, 6, x.a, x.a + 8, NULL, 0));
+        ck_assert(!nevh_run(x.native, t, 0.2, 6, x.b, x.b + 8, NULL, 0));
+        ck_assert(pair_same(&x));
+        x.a[7] = x.b[7] = 0.5;
+    }
+    pair_free(&x);
+    nevh_scene_free(scene);
+    remove_cache();
+}
+
 /* 0 times infinity is 0 in the chain rule: such a step is the tape's. */
 TEST(chain_rule) {
     if (!has_compiler())
