@@ -1,7 +1,7 @@
 libnevh_core_la_SOURCES += \
 	integrators/integrator.c \
 	integrators/schemes_private.h \
-	integrators/list.c \
+	integrators/schemes.c \
 	integrators/kernels/splitting_private.h \
 	integrators/kernels/splitting_step.h \
 	integrators/kernels/splitting_expand.c \

@@ -1,6 +1,6 @@
 libnevh_core_la_SOURCES += \
 	models/models_private.h \
-	models/list.c \
+	models/models.c \
 	models/oscillator.c \
 	models/pendulum.c \
 	models/double_pendulum.c \

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Private names are the standard terms.  No two names differ by underscores
-# alone, no type is defined twice, no two files of tools or tests have one name,
-# and metaphors that were renamed do not come back.
+# alone, no type is defined twice, no two files of the library, tools or tests
+# have one name, and metaphors that were renamed do not come back.
 
 srcdir=${srcdir:-.}
 work=names.$$
@@ -44,8 +44,10 @@ if test -s $work/types; then
     status=1
 fi
 
-sed -n 's,^\(tools\|tests\)/.*/\([^/]*\)$,\1 \2,p' $work/files | sort |
-    uniq -d >$work/twice
+# The library is in three folders.
+sed -n -e 's,^\(integrators\|models\)/,lib/,' \
+    -e 's,^\(lib\|tools\|tests\)/\(.*/\)*\([^/]*\)$,\1 \3,p' $work/files |
+    sort | uniq -d >$work/twice
 if test -s $work/twice; then
     echo "files of one name:"
     cat $work/twice
