@@ -130,7 +130,7 @@ static const char step[] =
     "        .half = DOF * ROW, .partitioned = PARTITIONED, .unchecked = "
     "true,\n"
     "        .mu_q = mu_q, .mu_p = mu_p, .to_q = w->to_q, .to_p = w->to_p,\n"
-    "        .q = y, .p = y + DOF, .carry = M, .points = points,\n"
+    "        .q = y, .p = y + DOF, .compensation = M, .points = points,\n"
     "        .gradient = gradient, .owner = &owner};\n"
     "    nevh__stage_changes changes = {FIRST, UNKNOWN, unit, before, least,\n"
     "                                   &lowest};\n"
