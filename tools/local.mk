@@ -99,6 +99,7 @@ tools_nevh_SOURCES = \
 	tools/plot/plot_layout.c \
 	tools/plot/plot_script.c \
 	tools/plot/plot_map.c \
+	tools/plot/plot_quote.c \
 	tools/plot/plot_gnuplot.c \
 	tools/plot/plot_write.c \
 	tools/plot/envelope.h \

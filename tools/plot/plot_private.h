@@ -121,6 +121,13 @@ bool plot_in_legend(const plot *, size_t series);
 /* Bytes of the letter, as UTF-8 has them; 0 where it is none. */
 size_t plot_letter_bytes(const unsigned char *);
 size_t plot_letters(const char *text);
+
+/* plot_quote.c: a text in double quotes: its first `bytes`, and `more`; at most
+   so many letters; with a command around it. */
+void plot_quote_part(FILE *, const char *text, size_t bytes, const char *more);
+void plot_quote(FILE *, const char *text, size_t longest);
+void plot_quote_line(FILE *, const char *before, const char *text,
+                     double length, const char *after);
 /* The bytes of the text up to where a line of so many letters ends, at a space
    if there is one. */
 size_t plot_line_bytes(const char *text, size_t letters);

@@ -21,53 +21,6 @@ enum {
     FONT = 14
 };
 
-/* In double quotes a backslash, a quote and a backquote (a command, to gnuplot)
-   mean something; written as numbers they do not. */
-static void quote_letter(FILE *f, const char *c, size_t bytes) {
-    if (bytes == 0)
-        fputc('?', f);
-    else if ((unsigned char)*c < ' ' || *c == 0x7f)
-        fputc(' ', f);
-    else if (strchr("\\\"`", *c))
-        fprintf(f, "\\%03o", (unsigned)*c);
-    else
-        fwrite(c, 1, bytes, f);
-}
-
-/* The first `bytes` of the text. */
-static void quote_part(FILE *f, const char *text, size_t bytes,
-                       const char *more) {
-    fputc('"', f);
-    for (const char *end = text + bytes; text < end;) {
-        size_t letter = plot_letter_bytes((const unsigned char *)text);
-        quote_letter(f, text, letter);
-        text += letter ? letter : 1;
-    }
-    fprintf(f, "%s\"", more);
-}
-
-static size_t bytes_of(const char *text, size_t letters) {
-    size_t at = 0;
-    while (text[at] && letters--) {
-        size_t bytes = plot_letter_bytes((const unsigned char *)text + at);
-        at += bytes ? bytes : 1;
-    }
-    return at;
-}
-
-static void quote(FILE *f, const char *text, size_t longest) {
-    bool cut = plot_letters(text) > longest;
-    quote_part(f, text, bytes_of(text, cut ? longest - 3 : longest),
-               cut ? "..." : "");
-}
-
-static void quote_line(FILE *f, const char *before, const char *text,
-                       double length, const char *after) {
-    fputs(before, f);
-    quote(f, text ? text : "", (size_t)fmax(length, 8));
-    fprintf(f, " noenhanced%s\n", after);
-}
-
 static void print_terminal(FILE *f, const target *t, const layout *l) {
     double w = l->width, h = l->height;
     switch (t->medium) {
@@ -255,7 +208,7 @@ static void print_name(FILE *f, const char *name) {
         return;
     }
     fputs(" title ", f);
-    quote(f, name, PLOT_LONGEST_NAME);
+    plot_quote(f, name, PLOT_LONGEST_NAME);
     fputs(" noenhanced", f);
 }
 
@@ -290,7 +243,7 @@ static void print_guides(FILE *f, const plot *p, size_t number) {
         if (s->panel != number || s->form != PLOT_GUIDE || !s->count)
             continue;
         fputs("set label ", f);
-        quote(f, s->name, PLOT_LONGEST_NAME);
+        plot_quote(f, s->name, PLOT_LONGEST_NAME);
         fprintf(f,
                 " at %.10g,%.10g left offset 0.5,0 noenhanced "
                 "textcolor rgb '#777777' font ',%d'\n",
@@ -309,8 +262,8 @@ static void print_map(FILE *f, const field_map *m, const layout *l) {
           f);
     fprintf(f, "set cbrange [%.12g:%.12g]\n%s", m->shown.low, m->shown.high,
             m->log ? "set logscale cb\nset format cb '10^{%T}'\n" : "");
-    quote_line(f, "set cblabel ", m->label, l->panel_height / l->letter,
-               " offset 0.5,0");
+    plot_quote_line(f, "set cblabel ", m->label, l->panel_height / l->letter,
+                    " offset 0.5,0");
     double left = (l->left + l->panel_width + 2 * l->letter) / l->width;
     double top = 1 - (l->title + l->top) / l->height;
     fprintf(f, "set colorbox user origin %.6f,%.6f size %.6f,%.6f\n", left,
@@ -354,7 +307,8 @@ static void print_y_label(FILE *f, const char *label, const layout *l) {
     double size = fmin(fmax(room / (letter * FONT * letters), smallest), 1);
     char font[32];
     snprintf(font, sizeof font, " font ',%.3g'", size * FONT);
-    quote_line(f, "set ylabel ", label, room / (letter * FONT * size), font);
+    plot_quote_line(f, "set ylabel ", label, room / (letter * FONT * size),
+                    font);
 }
 
 /* Text has no letters that lie on their side. */
@@ -363,16 +317,16 @@ static void print_texts(FILE *f, const panel *on, const axes *a,
     double width = l->panel_width / l->letter;
     char *x = plot_axis_label(&a->x, on->x, text);
     char *y = plot_axis_label(&a->y, on->y, text);
-    quote_line(f, "set xlabel ", x, width, text ? "" : " offset 0,0.5");
+    plot_quote_line(f, "set xlabel ", x, width, text ? "" : " offset 0,0.5");
     if (text) {
         char *title =
             text_print("%s%s%s", y ? y : "", on->heading && y ? ", " : "",
                        on->heading ? on->heading : "");
-        quote_line(f, "set title ", title, width + l->left, "");
+        plot_quote_line(f, "set title ", title, width + l->left, "");
         free(title);
     } else {
         print_y_label(f, y, l);
-        quote_line(f, "set title ", on->heading, width, " offset 0,-0.5");
+        plot_quote_line(f, "set title ", on->heading, width, " offset 0,-0.5");
     }
     free(x);
     free(y);
@@ -406,7 +360,7 @@ static void print_place(FILE *f, size_t number, const layout *l) {
 static void print_line(FILE *f, const char *text, size_t bytes, bool cut,
                        double line, const layout *l, const char *font) {
     fputs("set label ", f);
-    quote_part(f, text, bytes, cut ? " ..." : "");
+    plot_quote_part(f, text, bytes, cut ? " ..." : "");
     fprintf(f, " at screen 0.5,%.6f center noenhanced %s\n",
             1 - line * l->line / l->height, font);
 }
