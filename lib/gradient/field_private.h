@@ -54,13 +54,17 @@ typedef struct {
 typedef int (*nevh__gradient_fn)(nevh_field *, nevh__planned *,
                                  const nevh__places *);
 
+/* Chords of the longest central difference, on which buffers depend. */
+enum { NEVH__MOST_OFFSETS = 4 };
+
 struct nevh_gradient {
     const char *name;
     nevh__gradient_fn evaluate;
-    int order;         /* 0: without truncation error */
-    size_t offsets;    /* points x +- delta, ... on each side; 0: exact */
-    double weights[4]; /* dH/dx = sum of weights[j] times the slope of the
-                          chord from x - (j+1) delta to x + (j+1) delta */
+    int order;      /* 0: without truncation error */
+    size_t offsets; /* points x +- delta, ... on each side; 0: exact */
+    /* dH/dx = sum of weights[j] times the slope of the chord from
+       x - (j+1) delta to x + (j+1) delta. */
+    double weights[NEVH__MOST_OFFSETS];
     bool (*has)(const nevh_term *); /* NULL: any term will do */
     const char *wants;              /* what a term then lacks */
 };

@@ -13,7 +13,8 @@
                                      .evaluate = nevh__gradient_central,       \
                                      .order = (accuracy),                      \
                                      .offsets = (accuracy) / 2,                \
-                                     .weights = __VA_ARGS__}
+                                     .weights = __VA_ARGS__};                  \
+    _Static_assert((accuracy) / 2 <= NEVH__MOST_OFFSETS, #id)
 CENTRAL(central2, 2, {1});
 CENTRAL(central4, 4, {4. / 3, -1. / 3});
 CENTRAL(central6, 6, {3. / 2, -3. / 5, 1. / 10});

@@ -9,8 +9,8 @@
 
 /* Levels are powers of two times the variable's length. */
 enum { LOWEST = -30, HIGHEST = 3, LEVELS = HIGHEST - LOWEST + 1 };
-enum { FEW = 16, ENOUGH = 8 };      /* variables; states for each */
-enum { BUFFER = 8 * (LEVELS + 1) }; /* for differences of order 8 */
+enum { FEW = 16, ENOUGH = 8 }; /* variables; states for each */
+enum { BUFFER = 2 * NEVH__MOST_OFFSETS * (LEVELS + 1) };
 /* At the best step the two errors balance, unless values are worse than
    rounded. */
 static const double out_of_balance = 1e4;
