@@ -10,6 +10,7 @@ nevh_shadow *row_shadow(const plan *p, const row *r) {
         return NULL;
     o.transform = plan_transform(p, r->integrator);
     nevh_shadow *s = nevh_shadow_new(p->system, r->scheme, r->step, &o);
+    tool_owned(nevh_shadow_status(s) == NEVH_ENOMEM ? NULL : s);
     if (!nevh_shadow_status(s))
         return s;
     nevh_shadow_free(s);
