@@ -230,7 +230,8 @@ nevh__tableau *nevh__stage_tableau_new(const nevh_integrator *scheme) {
                : nevh__implicit_euler_new(stages);
 }
 
-static int plan_on(nevh_work *w, size_t fewest, size_t most) {
+static int plan_on(nevh_work *w, size_t fewest, size_t most,
+                   nevh__tableau *(*make)(size_t stages)) {
     size_t stages = (size_t)w->integrator->stages;
     if (stages < fewest || stages > most)
         return nevh_work_fail(w, NEVH_EINVAL,
@@ -238,7 +239,7 @@ static int plan_on(nevh_work *w, size_t fewest, size_t most) {
                               w->integrator->name, stages, fewest, most);
     family_plan *g = w->plan = nevh__array(1, sizeof *g);
     if (g)
-        g->tableau = nevh__stage_tableau_new(w->integrator);
+        g->tableau = make(stages);
     if (!g || !plan_solver(w, g))
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     w->memory_rows = 2 * w->n + g->unknown + 2;
@@ -247,15 +248,15 @@ static int plan_on(nevh_work *w, size_t fewest, size_t most) {
 }
 
 static int plan_gauss(nevh_work *w) {
-    return plan_on(w, 1, NEVH__MOST_STAGES);
+    return plan_on(w, 1, NEVH__MOST_STAGES, nevh__gauss_new);
 }
 
 static int plan_lobatto(nevh_work *w) {
-    return plan_on(w, 2, NEVH__MOST_STAGES);
+    return plan_on(w, 2, NEVH__MOST_STAGES, nevh__lobatto_new);
 }
 
 static int plan_implicit_euler(nevh_work *w) {
-    return plan_on(w, 1, 1);
+    return plan_on(w, 1, 1, nevh__implicit_euler_new);
 }
 
 /* The evaluations that moved the state: one a stage. */
