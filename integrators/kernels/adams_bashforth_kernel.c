@@ -67,7 +67,7 @@ static void find_change(const nevh_work *w, double h) {
     double *change = block(w->scratch, w, CHANGE_Q);
     for (size_t i = 0; i < 2 * w->size; i++) {
         double r = ratio(w, h, i % w->width);
-        change[i] = r == 0 ? h / 2 * (now[i] + end[i])
+        change[i] = r == 0 ? h / 2 * now[i] + h / 2 * end[i]
                            : h * (now[i] + r / 2 * (now[i] - last[i]));
     }
 }
