@@ -77,7 +77,8 @@ static int plan_term(nevh_field *f, const nevh__term_entry *term) {
 }
 
 static size_t block_columns(size_t reads) {
-    size_t fit = NEVH__BLOCK_SIZE / (reads ? reads : 1) / NEVH__LANES * NEVH__LANES;
+    size_t fit =
+        NEVH__BLOCK_SIZE / (reads ? reads : 1) / NEVH__LANES * NEVH__LANES;
     fit = fit < NEVH__COLUMNS ? fit : NEVH__COLUMNS;
     return fit > NEVH__FEWEST_COLUMNS ? fit : NEVH__FEWEST_COLUMNS;
 }
