@@ -21,6 +21,13 @@
 
 enum { NEVH__MOST_PARTS = 8, NEVH__MOST_POINT_ROWS = 64 };
 
+/* Rows of a half, at most that many, as bits. */
+static inline uint64_t nevh__row_bits(size_t first, size_t count) {
+    uint64_t low =
+        count < NEVH__MOST_POINT_ROWS ? (UINT64_C(1) << count) - 1 : UINT64_MAX;
+    return count ? low << first : 0;
+}
+
 /* A term's part of an evaluation, or that of one of its instances. */
 typedef struct {
     nevh__planned *term;

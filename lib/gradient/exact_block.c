@@ -47,20 +47,28 @@ static bool applicable(const nevh__evaluation *e) {
     return true;
 }
 
-/* Where a half of a part's slopes goes: to its place if that is all of the half
-   and nothing is there yet, else beside it, to be added.  False: something is
-   to be added where nothing is. */
-static bool direct(const nevh__evaluation *e, const size_t index[], size_t size,
-                   bool *there, double *half, double *beside, double **written,
-                   double **sum) {
-    *written = *there ? beside : half;
-    *sum = *there ? half + index[0] * e->width : NULL;
-    bool known = *there || size == e->field->n * e->width;
-    *there = true;
-    return known;
+/* All of a half stands for its rows where these are too many for bits. */
+static uint64_t rows_of(const nevh__evaluation *e, size_t first, size_t count) {
+    return e->field->n > NEVH__MOST_POINT_ROWS ? UINT64_MAX
+                                               : nevh__row_bits(first, count);
 }
 
-static bool add_part(nevh__evaluation *e, nevh__planned *term, bool there[2]) {
+/* Where a half of a part's slopes goes: to its place if nothing is there yet,
+   else beside it, to be added.  False: something is there in some of its rows
+   alone. */
+static bool direct(const nevh__evaluation *e, size_t first, size_t size,
+                   uint64_t *there, double *half, double *beside,
+                   double **written, double **sum) {
+    uint64_t here = rows_of(e, first, size / e->width), met = *there & here;
+    *written = met ? beside : half + first * e->width;
+    *sum = met ? half + first * e->width : NULL;
+    *there |= here;
+    bool counted = e->field->n <= NEVH__MOST_POINT_ROWS;
+    return met ? met == here : counted || size == e->field->n * e->width;
+}
+
+static bool add_part(nevh__evaluation *e, nevh__planned *term,
+                     uint64_t there[2]) {
     nevh_field *f = e->field;
     const nevh_term *decl = &term->term->decl;
     size_t width = e->width, stride = decl->count * width;
@@ -82,13 +90,13 @@ static bool add_part(nevh__evaluation *e, nevh__planned *term, bool there[2]) {
     e->timed |= decl->time;
     if (e->at.dh_dq && term->nq) {
         x->size_q = stride * term->nq;
-        known &= direct(e, decl->q, x->size_q, &there[0], e->at.dh_dq,
+        known &= direct(e, decl->q[0], x->size_q, &there[0], e->at.dh_dq,
                         f->slopes, &x->dh_dq, &x->sum_q);
     }
     if (e->at.dh_dp && term->np) {
         x->size_p = stride * term->np;
-        known &= direct(e, decl->p, x->size_p, &there[1], e->at.dh_dp, slopes_p,
-                        &x->dh_dp, &x->sum_p);
+        known &= direct(e, decl->p[0], x->size_p, &there[1], e->at.dh_dp,
+                        slopes_p, &x->dh_dp, &x->sum_p);
     }
     x->sums = x->sum_q || x->sum_p;
     return known;
@@ -96,11 +104,12 @@ static bool add_part(nevh__evaluation *e, nevh__planned *term, bool there[2]) {
 
 static bool plan(nevh__evaluation *e) {
     nevh_field *f = e->field;
-    bool there[2] = {!e->at.dh_dq, !e->at.dh_dp};
+    uint64_t there[2] = {0, 0}, all = rows_of(e, 0, f->n);
     for (nevh__planned *term = f->terms; term < f->terms + f->n_terms; term++)
         if (nevh__wanted(&e->at, term) && !add_part(e, term, there))
             return false;
-    return there[0] && there[1];
+    return (!e->at.dh_dq || there[0] == all) &&
+           (!e->at.dh_dp || there[1] == all);
 }
 
 const nevh__evaluator nevh__exact_block = {applicable, plan};

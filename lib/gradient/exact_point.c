@@ -20,13 +20,6 @@ static bool applicable(const nevh__evaluation *e) {
     return true;
 }
 
-/* The variables of a half that have something, as bits. */
-static uint64_t bits(size_t first, size_t count) {
-    uint64_t low =
-        count < NEVH__MOST_POINT_ROWS ? (UINT64_C(1) << count) - 1 : UINT64_MAX;
-    return count ? low << first : 0;
-}
-
 /* One half of what an instance gives: written if nothing is there, added if
    something is everywhere, and else there is no way. */
 static bool direct(uint64_t *there, uint64_t here, double *half, double *beside,
@@ -61,11 +54,12 @@ static bool add_part(nevh__evaluation *e, nevh__planned *term, size_t instance,
     double *beside = e->field->slopes;
     bool known = true;
     if (x->size_q)
-        known &= direct(&there[0], bits(q, x->size_q), e->at.dh_dq + q, beside,
-                        &x->dh_dq, &x->sum_q);
+        known &= direct(&there[0], nevh__row_bits(q, x->size_q),
+                        e->at.dh_dq + q, beside, &x->dh_dq, &x->sum_q);
     if (x->size_p)
-        known &= direct(&there[1], bits(p, x->size_p), e->at.dh_dp + p,
-                        beside + term->nq, &x->dh_dp, &x->sum_p);
+        known &=
+            direct(&there[1], nevh__row_bits(p, x->size_p), e->at.dh_dp + p,
+                   beside + term->nq, &x->dh_dp, &x->sum_p);
     x->sums = x->sum_q || x->sum_p;
     e->timed |= decl->time;
     return known;
@@ -73,7 +67,7 @@ static bool add_part(nevh__evaluation *e, nevh__planned *term, size_t instance,
 
 static bool plan(nevh__evaluation *e) {
     nevh_field *f = e->field;
-    uint64_t there[2] = {0, 0}, all = bits(0, f->n);
+    uint64_t there[2] = {0, 0}, all = nevh__row_bits(0, f->n);
     for (nevh__planned *term = f->terms; term < f->terms + f->n_terms; term++)
         for (size_t i = 0;
              nevh__wanted(&e->at, term) && i < term->term->decl.count; i++)
