@@ -53,7 +53,7 @@ const S = {
   exact: false, disc: false, plane: 0, speed: 0, start: null,
 };
 let scene = null, list = [], rows = [], pictures = [], results = [];
-let histories = [], trails = [], paths = [], playing = false, busy = false, due = 0, ahead = 0;
+let histories = [], trails = [], paths = [], playing = false, held = false, busy = false, due = 0, ahead = 0;
 let levels = null, seen = null, phaseBox = null, steps = 0, last = 0;
 
 function readFragment() {
@@ -119,15 +119,14 @@ async function open(text, list) {
 }
 // Takes a scene, or says what is wrong with it and keeps the one before.
 async function use(text, list) {
-  const before = playing;
-  playing = false;
+  held = true;
   await quiet();
   const answer = await open(text, list);
   if (!answer.ok) {
     if (scene) await ask({ ask: "open", name: given.name, text: S.text,
       changes: S.changes });
     if (scene) await race();
-    playing = before;
+    held = false;
     return false;
   }
   Object.assign(S, { text, changes: list, start: null });
@@ -136,7 +135,7 @@ async function use(text, list) {
   S.limit = S.limited = 0;
   show();
   await race();
-  playing = before;
+  held = false;
   findLimit();
   return true;
 }
@@ -249,7 +248,7 @@ async function quiet() {
 function frame(time) {
   const passed = Math.min(100, time - last) / 1000;
   last = time;
-  if (playing && scene) {
+  if (playing && !held && scene) {
     due += passed * seconds() / S.dt;
     const whole = Math.floor(due);
     if (whole > 0 && !busy) {
