@@ -37,6 +37,8 @@ refresh() {
 quote compare-first "$nevh" compare pendulum --dt 0.05 \
     --integrators verlet,gauss4,rk4
 quote compare-pendulum "$nevh" compare pendulum
+"$nevh" compare pendulum --dt 0.05 --integrators verlet,gauss4,rk4 --t-end 3000 \
+    --plot "$srcdir/doc/energy.svg" >/dev/null
 quote cost-pendulum "$nevh" cost pendulum --t-end 100 \
     --integrators verlet,blanes-moan4,gauss4,gauss8,rk4
 quote recommend-pendulum "$nevh" recommend pendulum --energy-error 1e-8 --t-end 100

@@ -9,6 +9,8 @@ doc_nevh_TEXINFOS = \
 	doc/verdicts.txt \
 	doc/paper.txt \
 	doc/compare-first.txt \
+	doc/gradient-cost.txt \
+	doc/steps-that-follow.txt \
 	doc/hoop.nevh \
 	doc/native-never.txt \
 	doc/native-always.txt \
@@ -54,7 +56,7 @@ doc/nevh.1: $(tools_nevh_SOURCES) doc/nevh.h2m configure.ac \
 	    --include $(srcdir)/doc/nevh.h2m --output $@ ./tools/nevh$(EXEEXT)
 endif
 EXTRA_DIST += doc/nevh.h2m doc/nevh.3.head doc/reference.awk doc/figures.sh doc/hard.awk \
-	doc/gradient-cost.txt doc/steps-that-follow.txt doc/nevh-cost.txt \
+	doc/nevh-cost.txt doc/energy.svg \
 	doc/hard-all.txt
 
 # Worksheets: every number is measured again.
