@@ -54,6 +54,8 @@ while IFS= read -r command; do
     case $pictures$command in
     *--plot* | *--picture* | report* | portrait*)
         test "$pictures" || continue ;;
+    *page\ *)
+        test -e "$top/web/kit.html" || continue ;; # make page makes it
     esac
     (cd $work && eval "set -- $command" && $limit "$nevh" "$@") \
         >$work/out 2>$work/err </dev/null ||
