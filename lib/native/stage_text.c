@@ -258,7 +258,7 @@ static const char lanes_step[] =
     "        .half = DOF * STRIDE, .partitioned = PARTITIONED,\n"
     "        .unchecked = true, .mu_q = mu_q, .mu_p = mu_p, .to_q = w->to_q,\n"
     "        .to_p = w->to_p, .q = to->y, .p = to->y + DOF * 8,\n"
-    "        .carry = to->lost, .products = r.products, .points = r.points,\n"
+    "        .compensation = to->lost, .products = r.products, .points = r.points,\n"
     "        .gradient = r.gradient, .owner = &owner};\n"
     "    nevh__stage_changes changes = {FIRST, UNKNOWN, r.unit, r.before,\n"
     "                                   r.least, r.lowest};\n"
