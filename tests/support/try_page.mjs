@@ -141,8 +141,9 @@ await tried("pendulum", "integrators=verlet,rk4,euler&disc=1&dt=0.0625", async (
     await page.evaluate("at('share').click()");
     const shared = await page.evaluate("location.hash");
     check(/dt=/.test(shared) && /start=x/.test(shared), "shares " + shared);
-    await page.evaluate("location.reload()");
-    check(await page.until("typeof rows !== 'undefined' && rows.length > 0"), "no reload");
+    await page.evaluate("window.left = true; location.reload()");
+    check(await page.until("typeof left === 'undefined' && typeof fragment === 'function'"
+      + " && typeof rows !== 'undefined' && rows.length > 0"), "no reload");
     check(await page.evaluate("fragment()") === shared, "reads other settings than it shares: " + await page.evaluate("fragment()"));
     const place = await page.evaluate(`(() => { const b = at("scene").getBoundingClientRect();
       scrollTo(0, b.top); const c = at("scene").getBoundingClientRect(); draw();
