@@ -64,12 +64,18 @@ exits 1 recommend sun-earth-moon --state-error 1e-12 --gradient exact \
     --integrators gauss20
 says 'a state error of 1e-12 cannot be told: that of the reference is [0-9.]+e-1[1-3]'
 
-# Taylor series take no gradient: neither the answer nor its command names one,
-# and they are not what values of H alone would take.
+# Taylor series take no gradient: the answer names none, and they are not what
+# values of H alone would take.  What is advised repeats the run.
 exits 0 recommend pendulum --energy-error 1e-10 --t-end 20 \
     --integrators taylor,gauss8
 has '(cheapest|runner-up) +taylor +[0-9]'
 lacks 'taylor with|taylor .*(central|complex)'
+exits 0 recommend earth-halley --state-error 1e-6 --integrators taylor
+eval "set -- $(sed -n 's/^  nevh compare //p' $work/out)"
+exits 0 compare "$@" --format csv
+keeps 1e-6 13
+exits 0 recommend pendulum --energy-error 1e-10 --t-end 20 \
+    --integrators taylor,gauss8
 has '(runner-up|from H alone) +gauss8 +c'
 
 # A series of low order costs less than one of high order: few digits take a loose

@@ -115,7 +115,8 @@ static char *append_number(char *text, const char *name, double value) {
     return text;
 }
 
-/* As the rows were run. */
+/* As the rows were run: with the gradient also of a scheme that takes none, since
+   the lengths that tolerances are relative to are found with it. */
 static char *command_line(const advice *a, const options *o, const row *r) {
     const plan *p = &a->search.plan;
     char *text = text_print("  nevh compare %s", p->name);
@@ -129,9 +130,8 @@ static char *command_line(const advice *a, const options *o, const row *r) {
                       setting + 1);
     }
     text = append(text, "integrators", r->integrator);
-    if (study_takes_gradients(a->best))
-        text = append(text, "gradient", r->gradient);
-    if (study_takes_gradients(a->best) && p->gradient_step > 0)
+    text = append(text, "gradient", r->gradient);
+    if (p->gradient_step > 0)
         text = append_number(text, "gradient-step", p->gradient_step);
     text =
         append_number(text, "dt", r->tolerance > 0 ? a->search.landing : r->dt);
@@ -147,8 +147,7 @@ static char *command_line(const advice *a, const options *o, const row *r) {
 static void tell_lines(const advice *a, const row *r, list *words) {
     list_add(words, "  [run]");
     list_print(words, "  integrators = %s", r->integrator);
-    if (study_takes_gradients(a->best))
-        list_print(words, "  gradient = %s", r->gradient);
+    list_print(words, "  gradient = %s", r->gradient);
     list_print(words, "  dt = %.6g",
                r->tolerance > 0 ? a->search.landing : r->dt);
     if (r->tolerance > 0)
