@@ -89,7 +89,11 @@ export async function browse(program, address, size = [1280, 900], features = []
     async close() {
       child.kill();
       await ended;
-      rmSync(folder, { recursive: true, force: true, maxRetries: 5 });
+      try { // its helpers may write for a while
+        rmSync(folder, { recursive: true, force: true, maxRetries: 20 });
+      } catch (error) {
+        console.log("not removed: " + error.message);
+      }
     },
   };
 }
