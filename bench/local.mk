@@ -1,19 +1,19 @@
-# Programs that only make bench builds and runs.  Results are of one machine:
-# they stay in the build tree.
-EXTRA_PROGRAMS += bench/gradient
+# Programs that make check builds, so that they compile, and only make bench
+# runs.  Results are of one machine: they stay in the build tree.
+check_PROGRAMS += bench/gradient
 bench_gradient_SOURCES = bench/gradient.c $(gradient_systems)
 bench_gradient_CPPFLAGS = $(AM_CPPFLAGS) -I$(top_srcdir)/examples
 bench_gradient_LDADD = libnevh.la
-EXTRA_PROGRAMS += bench/tape
+check_PROGRAMS += bench/tape
 bench_tape_LDADD = libnevh_core.la
-EXTRA_PROGRAMS += bench/scenes
+check_PROGRAMS += bench/scenes
 bench_scenes_LDADD = libnevh.la
-EXTRA_PROGRAMS += bench/native
+check_PROGRAMS += bench/native
 bench_native_CFLAGS = $(AM_CFLAGS) -O3 -march=native
 bench_native_LDADD = libnevh.la
 # Instructions, which do not depend on load: COUNTS=FILE compares with an
 # earlier table, SCHEMES='NAME ...' counts those alone.
-EXTRA_PROGRAMS += bench/counts
+check_PROGRAMS += bench/counts
 bench_counts_LDADD = libnevh.la
 bench_counts_LDFLAGS = -static-libtool-libs
 EXTRA_DIST += bench/counts.sh bench/python.py
@@ -23,6 +23,13 @@ bench-counts: bench/counts$(EXEEXT)
 	$(SHELL) $(srcdir)/bench/counts.sh ./bench/counts$(EXEEXT) \
 	  bench/results-counts.csv "$(COUNTS)" $(SCHEMES)
 
+# Brouwer's law over a million periods: minutes.
+check_PROGRAMS += bench/brouwer
+bench_brouwer_LDADD = libnevh.la
+CLEANFILES += bench/brouwer$(EXEEXT)
+bench-brouwer: bench/brouwer$(EXEEXT)
+	./bench/brouwer$(EXEEXT)
+
 # How often the intervals of nevh fit hold the truth.
 EXTRA_DIST += bench/fit.sh
 bench-fit: all
@@ -30,11 +37,11 @@ bench-fit: all
 	  examples/add_noise$(EXEEXT) 400
 
 # What it judges with is the command's own, all but its main.
-EXTRA_PROGRAMS += bench/verdicts
+check_PROGRAMS += bench/verdicts
 bench_verdicts_SOURCES = bench/verdicts.c bench/verdicts_private.h \
 	bench/verdicts_run.c bench/verdicts_label.c
 bench_verdicts_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE
-bench_verdicts_LDADD = $(tools_nevh_OBJECTS:tools/nevh-nevh.o=) libnevh.la
+bench_verdicts_LDADD = $(tools_nevh_OBJECTS:tools/nevh-nevh.o=) libnevh.la $(GSL_LIBS)
 bench_verdicts_DEPENDENCIES = $(tools_nevh_OBJECTS) libnevh.la
 CLEANFILES += bench/gradient$(EXEEXT) bench/results-gradient.csv \
 	bench/tape$(EXEEXT) bench/scenes$(EXEEXT) bench/native$(EXEEXT)
@@ -87,7 +94,14 @@ bench-verdicts: bench/verdicts$(EXEEXT)
 	./bench/verdicts$(EXEEXT) -s $(SHARE) -o bench/wrong-verdicts \
 	  $(srcdir) bench/long-runs
 
-EXTRA_DIST += bench/recommend.sh bench/answers.sh bench/orbits
+# Two threads, and two ranks, against one.
+bench-speedup: all
+	NEVH_SCENES=$(srcdir)/scenes $(SHELL) $(srcdir)/bench/speedup.sh \
+	  ./tools/nevh$(EXEEXT) \
+	  `test -x tools/nevh-mpi$(EXEEXT) && echo ./tools/nevh-mpi$(EXEEXT)`
+
+EXTRA_DIST += bench/speedup.sh bench/recommend.sh bench/answers.sh bench/orbits
 CLEANFILES += bench/results-answers.csv bench/verdicts$(EXEEXT) bench/wrong-verdicts
 DISTCLEANFILES = bench/long-runs
-.PHONY: bench bench-fit bench-counts bench-peers bench-recommend bench-verdicts
+.PHONY: bench bench-brouwer bench-fit bench-counts bench-peers bench-recommend bench-speedup \
+  bench-verdicts

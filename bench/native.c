@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <time.h>
 
 enum { ROUNDS = 9, STEPS = 100000, DOF = 2 };
@@ -230,6 +231,102 @@ static void compare_stages(const char *name, const char *text, double h) {
     nevh_scene_free(scene);
 }
 
+/* Chains of Fermi, Pasta, Ulam and Tsingou. */
+static double spring(double r) {
+    return r + 0.25 * r * r;
+}
+
+static void chain_force(size_t n, const double q[restrict],
+                        double f[restrict]) {
+    f[0] = spring(q[0]) - spring(q[1] - q[0]);
+    for (size_t i = 1; i + 1 < n; i++)
+        f[i] = spring(q[i] - q[i - 1]) - spring(q[i + 1] - q[i]);
+    f[n - 1] = spring(q[n - 1] - q[n - 2]) - spring(-q[n - 1]);
+}
+
+static void chain_loop(size_t n, double h, size_t steps, double q[restrict],
+                       double p[restrict], double f[restrict]) {
+    chain_force(n, q, f);
+    for (size_t s = 0; s < steps; s++) {
+        for (size_t i = 0; i < n; i++) {
+            p[i] -= h / 2 * f[i];
+            q[i] += h * p[i];
+        }
+        chain_force(n, q, f);
+        for (size_t i = 0; i < n; i++)
+            p[i] -= h / 2 * f[i];
+    }
+}
+
+/* Seconds of the processor that compiling took. */
+static double compiling(void) {
+    struct rusage use;
+    getrusage(RUSAGE_CHILDREN, &use);
+    return (double)(use.ru_utime.tv_sec + use.ru_stime.tv_sec) +
+           1e-6 * (double)(use.ru_utime.tv_usec + use.ru_stime.tv_usec);
+}
+
+static nevh_stepper *chain_stepper(nevh_scene *scene, nevh_native_use use,
+                                   double z[]) {
+    size_t n = nevh_scene_dof(scene);
+    nevh_scene_start(scene, z, z + n);
+    nevh_options o = {.gradient = nevh_exact,
+                      .q = z,
+                      .p = z + n,
+                      .native = use,
+                      .native_cache = ""};
+    return nevh_stepper_new(nevh_scene_system(scene), nevh_verlet, &o);
+}
+
+/* Nanoseconds of a mass and step: the loop, the tape, compiled. */
+static void time_chain(size_t n, nevh_stepper *const s[2], double *const z[3],
+                       double time[3]) {
+    size_t steps = n < 1000000 ? 2000000 / n : 10;
+    double all[3][ROUNDS], *f = calloc(n, sizeof *f);
+    for (int i = 0; i < ROUNDS; i++)
+        for (int k = 0; k < 3; k++) {
+            double t = seconds();
+            if (k == 0)
+                chain_loop(n, 0.05, steps, z[0], z[0] + n, f);
+            else
+                nevh_run(s[k - 1], 0, 0.05, steps, z[k], z[k] + n, NULL, 0);
+            all[k][i] = seconds() - t;
+        }
+    for (int k = 0; k < 3; k++)
+        time[k] = median(all[k]) * 1e9 / (double)n / (double)steps;
+    free(f);
+}
+
+/* Per mass and step. */
+static void compare_chain(size_t n) {
+    char text[500];
+    double *z[3], time[3];
+    snprintf(text, sizeof text,
+             "[parameters]\nN = %zu\na = 0.25\n[coordinates]\n"
+             "x[i = 1..N] = sin(0.6*i)\n[effects]\n"
+             "T = sum(i = 1..N, p_x[i]^2/2)\n"
+             "V = x[1]^2/2 + sum(i = 1..N-1, (x[i+1] - x[i])^2/2) + x[N]^2/2\n"
+             "U = a/3*(x[1]^3 + sum(i = 1..N-1, (x[i+1] - x[i])^3) - x[N]^3)\n",
+             n);
+    nevh_scene *scene = nevh_scene_parse("chain", text);
+    for (int k = 0; k < 3; k++)
+        z[k] = calloc(2 * n, sizeof *z[k]);
+    nevh_scene_start(scene, z[0], z[0] + n);
+    nevh_stepper *s[2] = {chain_stepper(scene, NEVH_NATIVE_NEVER, z[1])};
+    double begun = compiling();
+    s[1] = chain_stepper(scene, NEVH_NATIVE_ALWAYS, z[2]);
+    double compiled = compiling() - begun;
+    time_chain(n, s, z, time);
+    printf("%zu,verlet,%.2f,%.2f,%.2f,%.2f,%.0f,%s\n", n, time[0], time[1],
+           time[2], time[2] / time[0], compiled * 1e3,
+           nevh_stepper_native(s[1], NULL) ? "yes" : "no");
+    for (int k = 0; k < 3; k++)
+        free(z[k]);
+    nevh_stepper_free(s[0]);
+    nevh_stepper_free(s[1]);
+    nevh_scene_free(scene);
+}
+
 int main(void) {
     scheme long_one = eleven();
     puts(
@@ -251,5 +348,10 @@ int main(void) {
     compare_lanes("double-pendulum", double_pendulum, "rk4");
     compare_lanes(subjects[0].name, subjects[0].text, "gauss16");
     compare_lanes("double-pendulum", double_pendulum, "gauss16");
+    puts("\nmasses of a chain,integrator,by_hand_ns,tape_ns,exact_ns,"
+         "exact/by_hand,compiling_ms,native");
+    compare_chain(10);
+    compare_chain(1000);
+    compare_chain(1000000);
     return 0;
 }

@@ -140,13 +140,13 @@ static label of_run(const long_run *r, const long_run *own, group g) {
 
 group group_of(const nevh_integrator *scheme) {
     nevh_claim claim = nevh_integrator_symplectic(scheme);
-    const char *name = nevh_integrator_name(scheme);
     if (nevh_integrator_preserves_energy(scheme) == NEVH_YES)
         return KEEPING;
     if (claim == NEVH_YES || claim == NEVH_EXTENDED)
         return SYMPLECTIC;
-    return strcmp(name, "rk4") == 0 || strcmp(name, "euler") == 0 ? RUNGE_KUTTA
-                                                                  : OTHER;
+    return claim == NEVH_NO && nevh_integrator_symmetric(scheme) == NEVH_NO
+               ? RUNGE_KUTTA
+               : OTHER;
 }
 
 /* Of what a run of 30 times the length says, that is to be asked again. */

@@ -17,10 +17,11 @@ typedef struct {
     uint64_t key;   /* of scene, scheme, gradient, dt, t_end and spans */
     double spans;   /* as long as so many of the row's runs */
     double reached; /* so many of them were run before the scheme failed */
-    double work;   /* of row_work, of the part that is as long as the row, or of
+    double
+        work; /* as nevh_counts_seconds, of the part that is as long as the row, or of
                       what was run of it */
-    double effect; /* the largest effect at the start over the scale */
-    double noise;  /* rounding of one value of H over the scale */
+    double effect;    /* the largest effect at the start over the scale */
+    double noise;     /* rounding of one value of H over the scale */
     double wandering; /* by rounding in gradients, over one of the row's runs */
     bool afforded;    /* or the rest says nothing but `work` */
     window window[WINDOWS];
@@ -37,7 +38,7 @@ typedef struct {
 
 uint64_t hash_of(uint64_t before, const void *data, size_t size);
 /* Of the cache, or run and added to it.
-   work  that it may take, as row_work counts it */
+   work  that it may take, as nevh_counts_seconds */
 const long_run *long_run_of(const subject *, double spans, double work);
 /* Whether it was: else it says nothing. */
 bool is_afforded(const long_run *, double work);

@@ -114,7 +114,9 @@ static void add(long_run *r, size_t i, double e, size_t samples) {
 static double work_of(const trial *f, nevh_counts before, size_t steps) {
     nevh_counts c = row_counts(f->of->stepper, before);
     double balance = f->of->plan->balance ? 8 : 1; /* which counts do not say */
-    return balance * row_work(f->of->plan, f->of->scheme, &c, steps);
+    return balance * nevh_counts_seconds(&c, f->of->plan->n, f->of->scheme,
+                                         nevh_stepper_order(f->of->stepper),
+                                         steps);
 }
 
 static void integrate(trial *f, double work) {

@@ -10,6 +10,7 @@ examples = \
 	examples/catalogue \
 	examples/conservation \
 	examples/steps_that_follow \
+	examples/text_to_native \
 	examples/flip_map \
 	examples/chaos_share \
 	examples/gradient_error \
@@ -31,6 +32,7 @@ examples_own_kernel_LDADD = libnevh.la
 examples_catalogue_LDADD = libnevh.la
 examples_conservation_LDADD = libnevh.la
 examples_steps_that_follow_LDADD = libnevh.la
+examples_text_to_native_LDADD = libnevh.la
 examples_flip_map_LDADD = libnevh.la
 examples_chaos_share_LDADD = libnevh.la
 examples_nevh_cost_LDADD = libnevh.la
@@ -75,4 +77,5 @@ dist_example_DATA = \
 	examples/paper/paper.sh \
 	examples/pendulum_energy.c \
 	examples/steps_that_follow.c \
-	examples/sweep_mpi.c
+	examples/sweep_mpi.c \
+	examples/text_to_native.c

@@ -55,6 +55,8 @@ libnevh_core_la_SOURCES = \
 	lib/expression/tape_private.h \
 	lib/expression/tape_inside_private.h \
 	lib/expression/tape_operations_private.h \
+	lib/expression/tape_run.h \
+	lib/expression/tape_back.h \
 	lib/expression/tape.c \
 	lib/expression/tape_build.c \
 	lib/expression/tape_rules.c \
@@ -123,7 +125,14 @@ libnevh_core_la_SOURCES = \
 	lib/native/compiler.c \
 	lib/native/writer_private.h \
 	lib/native/writer.c \
+	lib/native/operation_text_private.h \
+	lib/native/operation_text.c \
 	lib/native/formula_text.c \
+	lib/native/slope_private.h \
+	lib/native/loop_differences.c \
+	lib/native/loop_pieces.c \
+	lib/native/loop_text.c \
+	lib/native/slope_length.c \
 	lib/native/slope_text.c \
 	lib/native/prelude_text.c \
 	lib/native/steps_text.c \
@@ -132,6 +141,7 @@ libnevh_core_la_SOURCES = \
 	lib/native/nystrom_text.c \
 	lib/native/stage_text.c \
 	lib/native/noise_text.c \
+	lib/native/energy_text.c \
 	lib/native/taylor_text.c \
 	lib/native/program_text.c \
 	lib/native/cache.c \
@@ -157,6 +167,7 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/trend_private.h \
 	lib/diagnose/trend.c \
 	lib/diagnose/verdict.c \
+	lib/diagnose/settle.c \
 	lib/diagnose/symplecticity.c \
 	lib/diagnose/exact_private.h \
 	lib/diagnose/exact.c \
@@ -178,7 +189,7 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/chaos_walk.c \
 	lib/diagnose/chaos_starts.c \
 	lib/diagnose/chaos_report.c \
-	lib/diagnose/chaos_crowd.c \
+	lib/diagnose/chaos_batch.c \
 	lib/diagnose/shadow.c \
 	lib/diagnose/rates.c \
 	lib/diagnose/frequencies.c \

@@ -109,6 +109,13 @@ class _Energy(c.Structure):
          ("gone", c.c_bool)])
 
 
+class _JudgedRun(c.Structure):
+    _fields_ = [("t", c.c_double), ("h", c.c_double), ("t_end", c.c_double),
+                ("q", c.c_void_p), ("p", c.c_void_p), ("stop", c.POINTER(_Observer)),
+                ("stops", c.c_size_t), ("seconds", c.c_double),
+                ("allowed", c.c_double)]
+
+
 class _Counts(c.Structure):
     _fields_ = [(name, c.c_uint64) for name in
                 "values gradients sweeps newtons rescues".split()] + [
@@ -164,9 +171,10 @@ system_traits:ip system_friction:bpp integrator_named:ps integrator_name:sp
 integrator_adaptive:bp integrator_own_time:bp integrator_needs:ip integrators:p
 integrator_needs_formulas:bp gradient_named:ps gradient_name:sp gradients:p
 stepper_new:pppp stepper_free:-p stepper_status:ip stepper_message:sp
-stepper_time:dp stepper_taken:zp stepper_counts:Cp run_at:ipdddpzpppppz
+stepper_time:dp stepper_taken:zp stepper_counts:Cp stepper_order:ip run_at:ipdddpzpppppz
 energy_new:ppp energy_free:-p energy_status:ip energy_message:sp energy_follow:ipp
-energy_expect:ipp energy_set_scale:ipd energy_result:Epz field_new:ppp field_free:-p
+energy_expect:ipp energy_set_scale:ipd energy_result:Epz verdict_settle:ipppp
+counts_seconds:dpzpiz field_new:ppp field_free:-p
 field_status:ip field_message:sp field_gradient:ipzppppp field_value:ipzpppp sweep_new:ppp sweep_free:-p
 sweep_status:ip sweep_message:sp sweep_members:up sweep_columns:zp sweep_column:spz
 sweep_is_verdict:bpz sweep_run:ipuuppp""".split()
@@ -207,6 +215,7 @@ class _Library:
                               % (self.path, version, __file__, __version__))
         for name, declared in (("options", _Options), ("observer", _Observer),
                                ("energy_report", _Energy), ("counts", _Counts),
+                               ("judged_run", _JudgedRun),
                                ("scene_run", _Run), ("sweep_options", _SweepOptions),
                                ("sweep_records", _Records),
                                ("separability", _Separability)):
@@ -295,7 +304,25 @@ def _cut(array, rows, columns, kept):
 
 
 class Result(dict):
-    """A dictionary whose items are attributes, too, as SciPy's results are."""
+    """A dictionary whose items are attributes, too, as SciPy's results are.
+
+    A verdict that the run leaves open is found when it is first asked for.
+    """
+
+    def __missing__(self, name):
+        settle = self.__dict__.get("_settle") if name == "verdict" else None
+        if not settle:
+            raise KeyError(name)
+        self["verdict"] = settle()
+        del self._settle
+        return self["verdict"]
+
+    def get(self, name, default=None):
+        return self[name] if name in self else default
+
+    def __contains__(self, name):
+        return dict.__contains__(self, name) or (
+            name == "verdict" and "_settle" in self.__dict__)
 
     def __getattr__(self, name):
         try:
@@ -311,6 +338,20 @@ class Result(dict):
         return "\n".join("%*s: %s" % (width, key, re.sub(
             "\n", "\n" + " " * (width + 2), repr(value)[:300]))
                          for key, value in self.items())
+
+
+def _whole(name):
+    """A method of dictionaries that takes all items."""
+    method = getattr(dict, name)
+
+    def call(self, *arguments):
+        self.get("verdict")
+        return method(self, *arguments)
+    return call
+
+
+for _name in "__eq__ __iter__ __len__ __reduce_ex__ copy items keys values".split():
+    setattr(Result, _name, _whole(_name))
 
 
 # Scenes, files or formulas.
@@ -540,6 +581,7 @@ class _Subject:
     def __init__(self, H, n=None, parameters=None, args=(), coordinates=None,
                  with_effects=(), without_effects=(), params=None):
         self.scene = self.own = None
+        self.calls_python = False
         self.trap = _Trap()
         if isinstance(H, (Scene, str, os.PathLike)):
             self.scene = _scene(H, parameters, coordinates, with_effects,
@@ -556,6 +598,7 @@ class _Subject:
         if address is None:
             self.kept = _PythonValue(H, n, self.trap, tuple(args), parameters or {})
             address = self.kept.address
+            self.calls_python = True
         self.own = self.system = _lib.system_from(
             n, address, c.cast(params, c.c_void_p) if params is not None else None)
         _check(_lib.system_status(self.own), _lib.system_message(self.own))
@@ -616,18 +659,26 @@ class _Plan:
         else:
             o.gradient_step = gradient_step or 0
         o.balance = subject.reads_time(t0, y) or subject.friction() is not None
+        self.integrator = integrator
         self.stepper = _lib.stepper_new(subject.system, integrator, c.byref(o))
-        self.energy = _lib.energy_new(subject.system, c.byref(o))
         status = _lib.stepper_status(self.stepper)
         subject.trap.planned(status)
         self.check(status)
-        if o.balance:
+        self.observe_energy()
+
+    def observe_energy(self):
+        """An observer of the energy that has seen nothing yet."""
+        _lib.energy_free(getattr(self, "energy", None))
+        self.energy = _lib.energy_new(self.subject.system, c.byref(self.options))
+        if self.options.balance:
             _lib.energy_follow(self.energy, self.stepper)
         _lib.energy_expect(self.energy, self.stepper)
+        scene = self.subject.scene
+        if scene and scene._settings().energy_scale > 0:
+            _lib.energy_set_scale(self.energy, scene._settings().energy_scale)
 
     def __del__(self):
-        if hasattr(self, "energy"):
-            _lib.energy_free(self.energy)
+        _lib.energy_free(getattr(self, "energy", None))
         if hasattr(self, "stepper"):
             _lib.stepper_free(self.stepper)
 
@@ -712,15 +763,46 @@ def _choose(subject, dt, t0, y):
     return "verlet" if subject.separable(t0, y) else "gauss4"
 
 
+def _stops(scene):
+    """The observers, none or one, that stop a run where the scene says."""
+    if scene and _lib.scene_stops(scene._made):
+        return [(_lib.address("scene_stop_observe"), scene._made, 1)]
+    return []
+
+
+def _settler(plan, t0, h, t_end, start, report):
+    """A function that gives the verdict on a run to the end, of a longer one."""
+    counts = _lib.stepper_counts(plan.stepper)
+    seconds = _lib.counts_seconds(c.byref(counts), plan.subject.n, plan.integrator,
+                                  _lib.stepper_order(plan.stepper),
+                                  _lib.stepper_taken(plan.stepper))
+
+    def settle():
+        subject = plan.subject
+        y, at = _numbers(start)
+        plan.observe_energy()
+        with _Interrupt() as interrupt:
+            watch = _watcher(None, subject.n, subject.trap, interrupt)
+            stops = _stops(subject.scene) + [(c.cast(watch, c.c_void_p).value, None, 64)]
+            run = _JudgedRun(t0, h, t_end, at, at + 8 * subject.n,
+                             (_Observer * len(stops))(*stops), len(stops), seconds)
+            status = _lib.verdict_settle(plan.stepper, plan.energy, c.byref(run),
+                                         c.byref(report))
+        subject.trap.spring()
+        _check(status, b"")
+        return verdicts[report.verdict]
+    return settle
+
+
 def _run_plan(plan, t0, t_end, h, times, y, observe, every):
     """The orbit as a Result, and the status of the library."""
     subject, n = plan.subject, plan.subject.n
+    start = list(y[0])
     times, times_at = _numbers(times)
     states, states_at = _table(2 * n, len(times))
     kept, trap = c.c_size_t(), subject.trap
     watched = [(_lib.address("energy_observe"), plan.energy, 1)]
-    if subject.scene and _lib.scene_stops(subject.scene._made):
-        watched.append((_lib.address("scene_stop_observe"), subject.scene._made, 1))
+    watched += _stops(subject.scene)
     with _Interrupt() as interrupt:
         watch = _watcher(observe, n, trap, interrupt)
         watched.append((c.cast(watch, c.c_void_p).value, None, every))
@@ -739,16 +821,22 @@ def _run_plan(plan, t0, t_end, h, times, y, observe, every):
     reached = t_end if not status else (
         _lib.stepper_time(plan.stepper) if _lib.stepper_taken(plan.stepper) else t0)
     count = kept.value
-    return status, Result(
+    result = Result(
         t=times[:count] if count < len(times) else times,
         y=_cut(states, 2 * n, len(times), count),
         nfev=counts.gradients, hamiltonian_evals=counts.hamiltonians,
         status=0 if not status else 1 if status == _STOPPED else -1,
         message=message or "The end of t_span was reached.",
         success=status in (0, _STOPPED), energy_error=report.max,
-        verdict=verdicts[report.verdict], energy_drift=report.drift,
+        energy_drift=report.drift,
         energy_scale=report.scale, t_reached=reached,
         y_reached=y[0].copy() if np is not None else list(y[0]), sol=None)
+    verdict = verdicts[report.verdict]
+    if verdict == "undecided" and not status and not subject.calls_python:
+        result._settle = _settler(plan, t0, h, t_end, start, report)
+    else:
+        result["verdict"] = verdict
+    return status, result
 
 
 def solve(H, t_span=None, y0=None, method=None, *, dt=None, rtol=None, atol=None,
@@ -778,8 +866,9 @@ def solve(H, t_span=None, y0=None, method=None, *, dt=None, rtol=None, atol=None
 
     Returns t, y (a row a variable), nfev (gradients), status (0: the end; 1: stopped;
     -1: failed), message, success, as SciPy does; energy_error (the largest over the
-    run, relative to energy_scale), verdict (of nevh.verdicts), energy_drift (a unit of
-    time), hamiltonian_evals, t_reached and y_reached (the last good state), method,
+    run, relative to energy_scale), verdict (of nevh.verdicts; what the run leaves open
+    is found as nevh compare finds it, by a longer run, when it is first asked for; but
+    for functions of Python), energy_drift (a unit of time), hamiltonian_evals, t_reached and y_reached (the last good state), method,
     dt, tolerance, gradient (None where none is taken), names.
 
     Raises Refused for input that is wrong, Failed where a step fails, and what
@@ -1041,8 +1130,8 @@ def compare(scene, integrators=None, dt=None, t_end=None, *, y0=None, gradient=N
     Returns rows, dictionaries with the columns of the command's CSV (see the manual),
     which a notebook shows as a table.  rows["verdict"] is a column.
 
-    The command is run, since what it does (references, longer runs for the verdict,
-    timing) is its own and not the library's.
+    The command is run, since the choice of a reference, and timing, are its own and
+    not the library's.
     """
     made = _scene(scene, parameters, coordinates, with_effects, without_effects)
     arguments = [command(), "compare", "--format", "csv"]

@@ -30,7 +30,7 @@ ldd "$folder.new/lib/libnevh.so.0" "$folder.new/bin/nevh" |
     done
 ${STRIP:-strip} -S "$folder.new"/lib/*.so* "$folder.new/bin/nevh" 2>/dev/null || :
 chmod 644 "$folder.new"/lib/*
-cp "$srcdir"/scenes/*.nevh "$folder.new/share/nevh/scenes/"
+cp "$srcdir"/scenes/*.nevh "$srcdir"/scenes/*.csv "$folder.new/share/nevh/scenes/"
 cp "$srcdir"/scenes/hard/*.nevh "$folder.new/share/nevh/scenes/hard/"
 # The kit of nevh page, where it was made.
 for kit in web/kit.html "$srcdir/web/kit.html"; do

@@ -17,8 +17,10 @@ suites = \
 	tests/expression/check_tape_build \
 	tests/expression/check_tape_terms \
 	tests/expression/check_formula \
+	tests/expression/check_formula_extremes \
 	tests/expression/check_formula_terms \
 	tests/expression/check_random_formulas \
+	tests/expression/check_random_terms \
 	tests/taylor/check_series \
 	tests/taylor/check_taylor \
 	tests/taylor/check_compiled \
@@ -45,11 +47,14 @@ suites = \
 	tests/scheme/check_stability \
 	tests/scheme/check_energy_preserving \
 	tests/scheme/check_evaluations \
+	tests/native/check_loops \
 	tests/native/check_native \
+	tests/native/check_native_cache \
 	tests/run/check_run \
 	tests/run/check_until \
 	tests/run/check_run_at \
 	tests/run/check_section \
+	tests/run/check_section_orbits \
 	tests/ensemble/check_random \
 	tests/ensemble/check_ensemble \
 	tests/ensemble/check_ensemble_chaos \
@@ -72,7 +77,9 @@ suites = \
 	tests/run/check_ledger \
 	tests/gradient/check_time_slope \
 	tests/system/check_models \
+	tests/system/check_models_exact \
 	tests/diagnose/check_reference \
+	tests/diagnose/check_reference_runs \
 	tests/diagnose/check_state_error \
 	tests/diagnose/check_reference_end \
 	tests/robust/check_failures \
@@ -86,6 +93,7 @@ suites = \
 	tests/scheme/check_brouwer \
 	tests/robust/check_threads \
 	tests/scheme/check_adaptive \
+	tests/scheme/check_adaptive_ends \
 	tests/scheme/check_damped \
 	tests/scheme/check_tao \
 	tests/scheme/check_gsl
@@ -95,7 +103,9 @@ INSIDE_LIBS = tests/support/libsupport.la libnevh_core.la $(CHECK_LIBS)
 tests_expression_check_random_formulas_LDADD = $(INSIDE_LIBS) $(MUPARSER_LIBS)
 tests_expression_check_random_formulas_CPPFLAGS = $(AM_CPPFLAGS) $(MUPARSER_CFLAGS)
 tests_scheme_check_coefficients_LDADD = $(INSIDE_LIBS)
+tests_native_check_loops_LDADD = $(INSIDE_LIBS)
 tests_native_check_native_LDADD = $(INSIDE_LIBS)
+tests_native_check_native_cache_LDADD = $(INSIDE_LIBS)
 tests_scheme_check_splitting_LDADD = $(INSIDE_LIBS)
 tests_scheme_check_damped_LDADD = $(INSIDE_LIBS)
 tests_scheme_check_brouwer_LDADD = $(INSIDE_LIBS)
@@ -109,6 +119,8 @@ tests_expression_check_tape_terms_LDADD = $(INSIDE_LIBS)
 tests_taylor_check_series_LDADD = $(INSIDE_LIBS)
 tests_expression_check_formula_LDADD = $(INSIDE_LIBS)
 tests_expression_check_formula_terms_LDADD = $(INSIDE_LIBS)
+tests_expression_check_formula_extremes_LDADD = $(INSIDE_LIBS)
+tests_expression_check_random_terms_LDADD = $(INSIDE_LIBS)
 tests_robust_check_hard_pendulum_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_tool_check_grid_SOURCES = tests/tool/check_grid.c tools/search/grid.c
 tests_tool_check_hard_judge_SOURCES = tests/tool/check_hard_judge.c \
@@ -138,18 +150,22 @@ if HAVE_CHECK
 check_PROGRAMS += $(suites)
 check_LTLIBRARIES += tests/support/libsupport.la
 tests_support_libsupport_la_SOURCES = tests/support/support.c tests/support/support.h \
+	tests/support/problems.c tests/support/models.h tests/support/section.h \
+	tests/support/adaptive.h tests/support/reference.h \
 	tests/support/lanes.c tests/support/lanes.h \
 	tests/support/damped.h tests/support/driven.h tests/support/state.h \
 	tests/support/setting.h \
 	tests/support/hard.h
 if HAVE_WRAP
-memory_suite = tests/robust/check_memory
-check_PROGRAMS += $(memory_suite)
+memory_suites = tests/robust/check_memory tests/robust/check_memory_scene
+check_PROGRAMS += $(memory_suites)
+wrap_flags = $(AM_LDFLAGS) -Wl,--wrap=malloc -Wl,--wrap=calloc -Wl,--wrap=realloc
 tests_robust_check_memory_LDADD = $(INSIDE_LIBS)
-tests_robust_check_memory_LDFLAGS = $(AM_LDFLAGS) \
-	-Wl,--wrap=malloc -Wl,--wrap=calloc -Wl,--wrap=realloc
+tests_robust_check_memory_LDFLAGS = $(wrap_flags)
+tests_robust_check_memory_scene_LDADD = $(INSIDE_LIBS)
+tests_robust_check_memory_scene_LDFLAGS = $(wrap_flags)
 endif
-all_suites = $(suites) $(memory_suite)
+all_suites = $(suites) $(memory_suites)
 endif
 
 dist_check_SCRIPTS = \
@@ -174,6 +190,7 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_reference.sh \
 	tests/tool/nevh_verdict.sh \
 	tests/tool/nevh_plot.sh \
+	tests/tool/nevh_plot_kinds.sh \
 	tests/tool/nevh_section.sh \
 	tests/tool/nevh_chaos.sh \
 	tests/tool/nevh_sweep.sh \
@@ -186,11 +203,13 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_page_browser.sh \
 	tests/tool/nevh_portrait.sh \
 	tests/tool/nevh_map.sh \
+	tests/tool/nevh_native.sh \
 	tests/tool/nevh_sweep_file.sh \
 	tests/tool/nevh_sweep_mpi.sh \
 	tests/tool/nevh_run.sh \
 	tests/tool/nevh_code.sh \
 	tests/tool/nevh_export.sh \
+	tests/tool/nevh_export_rows.sh \
 	tests/tool/nevh_certain.sh \
 	tests/tool/nevh_memory.sh \
 	tests/tool/nevh_files.sh \
@@ -205,10 +224,11 @@ dist_check_SCRIPTS = \
 	tests/build/pkgconfig.sh \
 	tests/build/manual.sh \
 	tests/build/install.sh \
+	tests/build/debian.sh \
 	tests/robust/effects_off.sh \
 	tests/robust/valgrind.sh
 
-EXTRA_DIST += tests/python/module.py tests/build/outside.c tests/robust/long_sweeps.sh tests/support/interrupt.c tests/support/starve.c tests/support/formula.h tests/support/scene.h tests/support/shipped.h \
+EXTRA_DIST += tests/python/module.py tests/build/outside.c tests/robust/long_sweeps.sh tests/support/interrupt.c tests/support/starve.c tests/support/formula.h tests/support/formula_terms.h tests/support/memory.h tests/support/native.h tests/support/scene.h tests/support/shipped.h \
 	tests/support/nevh_support.sh tests/support/nevh_interrupt.sh \
 	tests/support/browser.mjs tests/support/try_page.mjs tests/scene/bad tests/robust/fuzz
 
@@ -249,6 +269,7 @@ check-slow:
 	$(MAKE) $(AM_MAKEFLAGS) check TESTS='$(all_suites)' \
 	  CHECK_TAGS=CK_INCLUDE_TAGS TEST_TIMEOUT=3600
 	srcdir=$(srcdir) SLOW=yes $(SHELL) $(srcdir)/tests/build/manual.sh
+	srcdir=$(srcdir) SLOW=yes $(SHELL) $(srcdir)/tests/tool/nevh_export_rows.sh
 	NEVH_SCENES='$(srcdir)/scenes' tools/nevh hard --quiet
 	srcdir=$(srcdir) $(SHELL) $(srcdir)/tests/robust/long_sweeps.sh
 	$(MAKE) $(AM_MAKEFLAGS) bench/verdicts$(EXEEXT)
@@ -257,7 +278,7 @@ check-slow:
 
 # With clang; 77 is for what cannot be run here.
 FUZZ_SECONDS = 1800
-fuzz:
+fuzz: lib/native/kernel_texts.c
 	srcdir=$(srcdir) GSL_CFLAGS='$(GSL_CFLAGS)' GSL_LIBS='$(GSL_LIBS)' \
 	  $(SHELL) $(srcdir)/tests/robust/fuzz/run.sh $(FUZZ_SECONDS) || test $$? = 77
 

@@ -72,7 +72,9 @@ tools_nevh_SOURCES = \
 	tools/ensemble/store.c \
 	tools/ensemble/ranks.h \
 	tools/ensemble/ranks.c \
+	tools/ensemble/sweep_private.h \
 	tools/ensemble/sweep.c \
+	tools/ensemble/sweep_array.c \
 	tools/report/report_private.h \
 	tools/report/report.c \
 	tools/report/report_html.c \
@@ -106,6 +108,8 @@ tools_nevh_SOURCES = \
 	tools/plot/envelope.c \
 	tools/plot/energy_plot.h \
 	tools/plot/energy_plot.c \
+	tools/plot/order_plot.h \
+	tools/plot/order_plot.c \
 	tools/compare/compare_plot.c \
 	tools/plot/thinned.h \
 	tools/plot/thinned.c \

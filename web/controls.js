@@ -14,8 +14,10 @@ function show() {
   at("title").textContent = scene.title || given.name;
   at("source").textContent = scene.source;
   at("text").value = S.text;
-  at("scene-caption").textContent = scene.parts.length
-    ? "The configuration" + (scene.parts.some((p) => p.kind === "bob")
+  const names = scene.coordinates.map((c) => c.name);
+  at("scene-caption").textContent = scene.plain
+    ? names[1] + " over " + names[0] + ": drag the point to a new start."
+    : scene.parts.length ? "The configuration" + (scene.parts.some((p) => p.kind === "bob")
       ? ": drag a body to a new start." : ".") : "All coordinates, side by side.";
   at("phase-caption").textContent = "Coordinate and momentum" +
     (scene.coordinates.length === 1 ? ", over levels of H" : "") +
@@ -170,7 +172,7 @@ function restartAt(state) {
   return race().then(() => report(true));
 }
 function listenToDrags() {
-  let body = -1, moving = false, next = null;
+  let body = -1, inPlane = false, moving = false, next = null;
   const drag = async () => { // one at a time, the latest place
     if (moving) return;
     moving = true;
@@ -180,10 +182,15 @@ function listenToDrags() {
       await restartAt(await to());
     }
     moving = false;
+    end();
   };
+  // What is seen stays where it is while something is dragged.
+  const end = () => { pulling = moving || body >= 0 || inPlane; };
   at("scene").onpointerdown = (event) => {
     body = bodyAt(...configuration.under(event));
-    if (body >= 0) at("scene").setPointerCapture(event.pointerId);
+    if (body < 0) return;
+    pulling = true;
+    at("scene").setPointerCapture(event.pointerId);
   };
   at("scene").onpointermove = (event) => {
     if (body < 0) return;
@@ -192,8 +199,7 @@ function listenToDrags() {
     next = () => pull(part, ...place);
     drag();
   };
-  at("scene").onpointerup = () => { body = -1; };
-  let inPlane = false;
+  at("scene").onpointerup = () => { body = -1; end(); };
   const toPlane = (event) => {
     const [q, p] = phase.under(event), state = (S.start || startOf()).slice();
     state[S.plane] = q;
@@ -203,12 +209,12 @@ function listenToDrags() {
     drag();
   };
   at("phase").onpointerdown = (event) => {
-    inPlane = true;
+    inPlane = pulling = true;
     at("phase").setPointerCapture(event.pointerId);
     toPlane(event);
   };
   at("phase").onpointermove = (event) => { if (inPlane) toPlane(event); };
-  at("phase").onpointerup = () => { inPlane = false; };
+  at("phase").onpointerup = () => { inPlane = false; end(); };
 }
 // Arrows in a picture move the start: the coordinate, and its momentum.
 function nudge(event) {

@@ -29,7 +29,7 @@ function drawConfiguration() {
   const cx = (b[0] + b[1]) / 2, cy = (b[2] + b[3]) / 2;
   const fix = scene.parts.some((p) => p.kind === "rod");
   const far = fix ? Math.max(...b.map(Math.abs)) * 1.12 : reach * 1.15;
-  configuration.box = fix ? [-far, far, -far, far]
+  if (!pulling) configuration.box = fix ? [-far, far, -far, far]
     : [cx - far, cx + far, cy - far, cy + far];
   const pen = configuration.begin(true);
   pen.lineWidth = 1;
@@ -113,6 +113,7 @@ const unit = (label) => label ? " (" + label + ")" : "";
 // The part of the plane that is shown grows with the first orbit.
 function choosePhaseBox() {
   const c = scene.coordinates[S.plane], trail = trails[0] || [];
+  if (pulling && phaseBox) return;
   let [q0, q1, p0, p1] = [Infinity, -Infinity, Infinity, -Infinity];
   for (let i = 0; i < trail.length; i += 2) {
     q0 = Math.min(q0, wrapped(trail[i], c)); q1 = Math.max(q1, wrapped(trail[i], c));
@@ -211,14 +212,16 @@ function report(atOnce) {
   for (let i = 0; i < lines; i++) {
     const cells = body.rows[i].cells, row = rows[i], r = list[i];
     const disc = list.findIndex((o) => o.width > 1 && o.scheme === r.scheme);
-    const name = (r.colour < 0 ? "○ exact" : NEVH_MARKS[i] + " " + r.scheme);
-    const values = [name, row ? digits(row[1], 9) : "",
+    const mark = r.colour < 0 ? "○" : NEVH_MARKS[i];
+    const name = r.colour < 0 ? " exact" : " " + r.scheme;
+    const values = [mark + name, row ? digits(row[1], 9) : "",
       row ? row[2].toExponential(2) : "refused",
       disc >= 0 && rows[disc] ? areaText(rows[disc], list[disc].area) : ""];
     values.forEach((v, j) => {
-      if (cells[j].textContent !== v) cells[j].textContent = v;
+      if (cells[j].textContent !== v) j ? cells[j].textContent = v
+        : cells[0].replaceChildren(element("span", {}, mark), name);
     });
-    cells[0].style.color = nevhColour(r.colour);
+    cells[0].firstChild.style.color = nevhColour(r.colour);
   }
   if (!atOnce && (playing ? now() - told < 5000 : told > 0)) return;
   told = now();

@@ -6,7 +6,7 @@
 // send(message, buffers) posts an answer; returns what takes requests.
 function nevhEngine(send) {
   const BUDGET = 12; // milliseconds in which a request takes steps
-  let x, page = 0, n = 0, parts = 0, runs = [], bobs = [];
+  let x, page = 0, n = 0, parts = 0, plain = false, runs = [], bobs = [];
   const numbers = (at, count) => new Float64Array(x.memory.buffer, at, count);
 
   function textOf(at) {
@@ -52,6 +52,10 @@ function nevhEngine(send) {
     if (x.page_begin(page)) return fault();
     n = x.page_dof(page);
     const scene = JSON.parse(textOf(x.page_describe(page)));
+    // Two coordinates without a picture are drawn as a point of their plane.
+    plain = scene.parts.length === 0 && n === 2;
+    scene.plain = plain;
+    if (plain) scene.parts = [{ kind: "bob", count: 2 }];
     parts = scene.parts.reduce((sum, part) => sum + part.count, 0);
     bobs = [];
     let from = 0;
@@ -74,6 +78,7 @@ function nevhEngine(send) {
     numbers(x.page_state(page, slot), 4 + 2 * n * width);
   function pictureOf(row) {
     if (!parts) return [];
+    if (plain) return row.slice(4, 6);
     const at = x.page_take(16 * n);
     numbers(at, 2 * n).set(row.subarray(4));
     const shown = numbers(x.page_picture(page, row[0], at), parts).slice();

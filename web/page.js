@@ -35,11 +35,14 @@ function ask(request) {
   return new Promise((resolve) => {
     const mine = ++number;
     const timer = setTimeout(async () => {
-      waiting.delete(mine);
+      const lost = [...waiting.values()]; // all end with the worker
+      waiting.clear();
+      lost.forEach((wait) => clearTimeout(wait.timer));
       worker.terminate();
       await startWorker();
-      resolve({ ok: false, broken: true, message: "This takes longer than " +
-        PATIENCE / 1000 + " s, and was given up. Make H simpler." });
+      lost.forEach((wait) => wait.resolve({ ok: false, broken: true,
+        message: "This takes longer than " + PATIENCE / 1000 +
+          " s, and was given up. Make H simpler." }));
     }, PATIENCE);
     waiting.set(mine, { resolve, timer });
     worker.postMessage({ ...request, number: mine });
@@ -54,7 +57,7 @@ const S = {
 };
 let scene = null, list = [], rows = [], pictures = [], results = [];
 let histories = [], trails = [], paths = [], playing = false, held = false, busy = false, due = 0, ahead = 0;
-let levels = null, seen = null, phaseBox = null, steps = 0, last = 0;
+let limiting = 0, pulling = false, levels = null, seen = null, phaseBox = null, steps = 0, last = 0;
 
 function readFragment() {
   const from = new URLSearchParams(location.hash.slice(1));
@@ -120,6 +123,7 @@ async function open(text, list) {
 // Takes a scene, or says what is wrong with it and keeps the one before.
 async function use(text, list) {
   held = true;
+  clearTimeout(limiting);
   await quiet();
   const answer = await open(text, list);
   if (!answer.ok) {
@@ -136,7 +140,8 @@ async function use(text, list) {
   show();
   await race();
   held = false;
-  findLimit();
+  // Later, since a scene of many coordinates takes long for it.
+  limiting = setTimeout(findLimit, 500);
   return true;
 }
 // Settings that a scene asks for, where none are given.
@@ -184,7 +189,7 @@ async function race() {
   if (!answer.ok) { at("message").textContent = answer.message; return; }
   steps = 0;
   due = 0;
-  phaseBox = seen = levels = null;
+  if (!pulling) phaseBox = seen = levels = null;
   profile = 1e-9;
   histories = list.map(() => new NevhHistory());
   trails = list.map(() => []);
@@ -215,9 +220,14 @@ function sample(i, row) {
   if (trail.length > 2 * TRAIL) trail.splice(0, trail.length - 2 * TRAIL);
   for (let j = 0; j < scene.bobs && row.length > 4 + 2 * n; j++) {
     const path = paths[i][j] = paths[i][j] || [];
-    path.push(row[4 + 2 * n + 2 * j], row[5 + 2 * n + 2 * j]);
+    const [x, y] = row.subarray(4 + 2 * n + 2 * j);
+    if (i === 0) reach(x, y);
+    // Points that are nearer than a pixel to the one before are left out.
+    const size = seen ? Math.max(seen[1] - seen[0], seen[3] - seen[2]) : 0;
+    const far = Math.hypot(x - path.at(-2), y - path.at(-1));
+    if (far < size / 400) continue;
+    path.push(x, y);
     if (path.length > PATH) path.splice(0, path.length - PATH);
-    if (i === 0) reach(...path.slice(-2));
   }
 }
 // Steps between observations: by the settings alone, so that what is plotted

@@ -6,7 +6,12 @@
 #include "peer.h"
 #include <stdio.h>
 
-enum { TARGETS = 4, MOST_ROUNDS = 25, MOST_LIBRARIES = 8, MOST_ENTRIES = 2000 };
+enum {
+    TARGETS = 4,
+    MOST_ROUNDS = 25,
+    MOST_LIBRARIES = 10,
+    MOST_ENTRIES = 2000
+};
 extern const double targets[TARGETS]; /* of the state error, 1e-3 first */
 
 /* A method with the setting that is just good enough. */

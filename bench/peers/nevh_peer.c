@@ -1,4 +1,5 @@
-/* nevh: itself, with exact gradients and with differences of order 4.
+/* nevh: itself, with exact gradients and with differences of order 4, H being C
+   or a text.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "nevh_systems.h"
 #include "peer.h"
@@ -52,25 +53,37 @@ static void *open_numerical(const method *m, const problem *p, double setting) {
     return open_with(m, p, setting, nevh_central4);
 }
 
-/* In one step, of as many series as it takes.  Compiled where there is a
-   compiler, which is not timed. */
-static void *open_series(const method *m, const problem *p, double setting) {
+/* A text, compiled where there is a compiler, which is not timed. */
+static void *open_text_with(const method *m, const problem *p, double setting,
+                            const nevh_gradient *gradient) {
     run *r = calloc(1, sizeof *r);
     if (!r)
         return NULL;
-    nevh_options options = {.q = p->start,
+    nevh_options options = {.gradient = gradient,
+                            .q = p->start,
                             .p = p->start + p->n,
                             .native = NEVH_NATIVE_ALWAYS,
-                            .tolerance = setting};
-    (void)m;
-    *r = (run){
-        .problem = p, .scene = nevh_scene_of(p), .h = p->t_end, .steps = 1};
+                            .tolerance = m->adaptive ? setting : 0};
+    *r = (run){.problem = p,
+               .scene = nevh_scene_of(p),
+               .steps = m->adaptive ? 1 : (size_t)setting};
+    r->h = p->t_end / (double)r->steps;
     r->stepper =
-        nevh_stepper_new(nevh_scene_system(r->scene), nevh_taylor, &options);
+        nevh_stepper_new(nevh_scene_system(r->scene),
+                         *(const nevh_integrator *const *)m->data, &options);
     if (nevh_stepper_status(r->stepper) == NEVH_OK)
         return r;
     close_run(r);
     return NULL;
+}
+
+static void *open_text(const method *m, const problem *p, double setting) {
+    return open_text_with(m, p, setting, nevh_exact);
+}
+
+static void *open_text_numerical(const method *m, const problem *p,
+                                 double setting) {
+    return open_text_with(m, p, setting, nevh_central4);
 }
 
 static bool run_stepper(void *data, double y[], double *seconds) {
@@ -121,22 +134,26 @@ static bool run_stepper(void *data, double y[], double *seconds) {
              .order = 12},                                                     \
             __VA_ARGS__                                                        \
     }
-static const method exact[] = METHODS(open_exact, {.scheme = "taylor",
-                                                   .adaptive = true,
-                                                   .open = open_series,
-                                                   .run = run_stepper,
-                                                   .close = close_run,
-                                                   .order = 18});
+static const method exact[] = METHODS(open_exact, );
 static const method numerical[] = METHODS(open_numerical, );
+static const method text[] = METHODS(open_text, {.scheme = "taylor",
+                                                 .adaptive = true,
+                                                 .open = open_text,
+                                                 .run = run_stepper,
+                                                 .close = close_run,
+                                                 .data = &nevh_taylor,
+                                                 .order = 18});
+static const method text_numerical[] = METHODS(open_text_numerical, );
 
-const library nevh_library = {.name = "nevh",
-                              .version = NEVH_BENCH_COMMIT,
-                              .ahead = true,
-                              .count = sizeof exact / sizeof *exact,
-                              .methods = exact};
-const library nevh_numerical_library = {.name = "nevh, differences",
-                                        .version = NEVH_BENCH_COMMIT,
-                                        .ahead = true,
-                                        .count = sizeof numerical /
-                                                 sizeof *numerical,
-                                        .methods = numerical};
+#define NEVH_LIBRARY(its_name, of)                                             \
+    {                                                                          \
+        .name = its_name, .version = NEVH_BENCH_COMMIT, .ahead = true,         \
+        .count = sizeof of / sizeof *of, .methods = of                         \
+    }
+const library nevh_library = NEVH_LIBRARY("nevh", exact);
+const library nevh_numerical_library =
+    NEVH_LIBRARY("nevh with differences", numerical);
+const library nevh_text_library =
+    NEVH_LIBRARY("nevh from text and compiled", text);
+const library nevh_text_numerical_library = NEVH_LIBRARY(
+    "nevh from text and compiled with differences", text_numerical);

@@ -34,8 +34,9 @@ typedef struct {
 
 /* Weak: a library that was not found is not linked. */
 #define LIBRARY extern const library __attribute__((weak))
-LIBRARY nevh_library, nevh_numerical_library, gsl_library, boost_library,
-    sundials_library, scipy_library, paper_library;
+LIBRARY nevh_library, nevh_numerical_library, nevh_text_library,
+    nevh_text_numerical_library, gsl_library, boost_library, sundials_library,
+    scipy_library, paper_library;
 
 #ifdef __cplusplus
 }

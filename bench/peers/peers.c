@@ -95,6 +95,8 @@ int main(int argc, char **argv) {
     c.rounds = (size_t)rounds;
     enter(&c, &nevh_library, "nevh", missing);
     enter(&c, &nevh_numerical_library, "nevh", missing);
+    enter(&c, &nevh_text_library, "nevh", missing);
+    enter(&c, &nevh_text_numerical_library, "nevh", missing);
     enter(&c, &gsl_library, "GSL", missing);
     enter(&c, &boost_library, "Boost.odeint", missing);
     enter(&c, &sundials_library, "SUNDIALS", missing);

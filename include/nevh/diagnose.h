@@ -132,6 +132,41 @@ typedef struct {
 NEVH_API nevh_verdict nevh_energy_verdict(const nevh_energy_report *,
                                           double times);
 
+/* About how many seconds of a processor of 2020 that many evaluations of formulas
+   and steps take, by a model: what is decided by it is decided alike on all
+   machines, and with all loads.
+   dof      degrees of freedom
+   order    as nevh_stepper_order
+   Thread-safe. */
+NEVH_API double nevh_counts_seconds(const nevh_counts *, size_t dof,
+                                    const nevh_integrator *, int order,
+                                    size_t steps);
+
+/* A run of one orbit, to be taken again. */
+typedef struct {
+    double t, h, t_end;        /* as of nevh_run_until */
+    const double *q, *p;       /* its start, dof each */
+    const nevh_observer *stop; /* what else may stop the longer run */
+    size_t stops;              /* how many of them */
+    double seconds;            /* nevh_counts_seconds of the run */
+    double allowed;            /* of the longer run; 0: 8 */
+} nevh_judged_run;
+
+/* Where the verdict on a run is UNDECIDED, that of a longer one: from the start
+   again, to 2, 4 ... 32 lengths, until the verdict is another one or the seconds
+   allowed are spent.  What is then still open is judged by as much as was seen,
+   as are runs that are too long to be followed to 4 lengths.
+   stepper  as it took the run, of width 1; begins afresh
+   energy   as of the run (nevh_energy_expect, nevh_energy_follow), but new
+   report   in and out: nevh_energy_result of the run; of the longer one, whose
+            span is longer, where there was one
+   returns  NEVH_OK, also where the longer run failed; NEVH_ENOMEM
+   cost     nothing where the verdict is known; else a run, mostly of 4 to 16
+            lengths */
+NEVH_API int nevh_verdict_settle(nevh_stepper *, nevh_energy *,
+                                 const nevh_judged_run *,
+                                 nevh_energy_report *report);
+
 /* The last error of a lane, as `final` of the report, but at no cost. */
 NEVH_API double nevh_energy_error(const nevh_energy *, size_t lane);
 

@@ -66,7 +66,8 @@ struct nevh_work {
     const nevh_options *options;
     nevh_field *field;
     size_t n, width, size; /* size = n * width: elements of q, and of p */
-    const double *scale;   /* 2n lengths, coordinates first */
+    const double *scale;   /* 2n lengths, coordinates first; NULL before
+                              nevh_work_find_scale */
 
     /* What the next step needs to know of this one: memory_rows rows of
        `width` doubles.  A lane that starts afresh finds its column all 0. */
@@ -96,6 +97,11 @@ NEVH_API int nevh_work_fail(nevh_work *, int status, const char *format, ...)
     __attribute__((format(printf, 3, 4)))
 #endif
     ;
+/* Sets w->scale, in `plan`: the user's lengths, or typical sizes of the variables
+   over a coarse run from the state to plan at.  That run may cost more than all
+   other planning, so a kernel that reads no lengths does not call this.  Returns a
+   status; a failure is recorded. */
+NEVH_API int nevh_work_find_scale(nevh_work *);
 /* The gradient at `points` states side by side, as nevh_field_gradient, and
    values, as nevh_field_value: of H, or of K where time is transformed.  A
    failure is recorded. */

@@ -95,12 +95,16 @@ NEVH_API int nevh_stepper_order(const nevh_stepper *);
 NEVH_API double nevh_stepper_gain(const nevh_stepper *, size_t lane);
 
 /* The steps as a C program that needs nothing but the C library: it starts from
-   nevh_options.t, q and p, and prints t, q and p.  It gives the digits of a
-   stepper of differences that is portable, on a machine with the same libm.
+   nevh_options.t, q and p, and prints t, q and p; or, called with the word
+   "energy", errors of the energy as nevh compare has them.  Implicit steps are
+   iterated as here, but where Newton's iteration would have to help, the program
+   says so and ends.  It gives the digits of a stepper that is portable, on a
+   machine with the same libm.
    names      of the coordinates, n
    h, steps   as of nevh_run
    every      steps between rows, at least 1
    functions  the functions alone, for another program
+   energy_scale  that errors of the energy are relative to; 0: it prints none
    returns    the text, to be freed with free; NULL when memory is out, or with a
               status and message where the scheme or the system has no such text:
               see nevh_stepper_native */
@@ -109,12 +113,13 @@ typedef struct {
     double h;
     size_t steps, every;
     bool functions;
+    double energy_scale;
 } nevh_program;
 NEVH_API char *nevh_stepper_program(nevh_stepper *, const nevh_program *);
 
 /* Whether steps run as native code: H and the scheme written as one C function,
-   compiled and loaded when the stepper was made.  Only formulas of scenes do,
-   under schemes of nevh_integrator_native with fixed steps, and where nobody
+   compiled and loaded when the stepper was made, or foresaw more of them.  Only
+   formulas of scenes do, under schemes of nevh_integrator_native with fixed steps, and where nobody
    asked for the balance of the energy; orbits side by side do if there is a
    multiple of 8, but not by Nystroem methods, nor with the complex step.
    Implicit steps take no complex step either; those whose iteration does not
@@ -123,6 +128,11 @@ NEVH_API char *nevh_stepper_program(nevh_stepper *, const nevh_program *);
    why      out, may be NULL: what is in the way, if they were to ("there is no C
             compiler: ..."), else ""; the stepper's own, never NULL */
 NEVH_API bool nevh_stepper_native(const nevh_stepper *, const char **why);
+/* Says that a stepper will take more steps than it was told: those that are not
+   compiled are from here on, with NEVH_NATIVE_AUTO, where so many make up for it.
+   steps    nevh_options.steps_foreseen; fewer than before change nothing
+   returns  whether they make up for compiling, and are compiled */
+NEVH_API bool nevh_stepper_foresee(nevh_stepper *, double steps);
 /* Whether a scheme's steps can be compiled at all; NULL: no.  From any thread. */
 NEVH_API bool nevh_integrator_native(const nevh_integrator *);
 

@@ -59,8 +59,9 @@ NEVH_API int nevh_shadow_order(const nevh_shadow *);
 
 /* At one state, n each.
    energy   out, may be NULL: H there
-   shadow   out, may be NULL: the shadow there
-   returns  NEVH_OK; NEVH_EDOM where one of them is not finite; NEVH_ESTALE
+   shadow   out, may be NULL: the shadow there; undefined on failure, both
+   returns  NEVH_OK; NEVH_EDOM where one of them is not finite; NEVH_ESTALE where
+            the system has changed; what planning failed with; NEVH_EINVAL for NULL
    cost     some five gradients of H by formulas; some 20 where terms in C bring
             gradients, and 6 values for each variable of such a one where not */
 NEVH_API int nevh_shadow_value(nevh_shadow *, const double q[],

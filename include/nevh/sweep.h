@@ -26,7 +26,8 @@ NEVH_API int nevh_scene_set_outcomes(nevh_scene *, const char *outcomes);
 NEVH_API uint64_t nevh_scene_members(const nevh_scene *);
 /* Where a member starts; n each.
    returns  NEVH_OK; NEVH_EINVAL where there is none of that number, or where
-            parameters that are varied change more than the start; NEVH_EMAXITER or NEVH_EDOM, with a message, where it has
+            parameters that are varied change more than the start; NEVH_EMAXITER
+            or NEVH_EDOM, with a message, where it has
             no start; NEVH_ENOMEM
    cost     as that of making the tapes of what is solved for */
 NEVH_API int nevh_scene_member_start(nevh_scene *, uint64_t member, double q[],

@@ -8,14 +8,24 @@
    back, takes a step of Heun's method.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "adams_bashforth_private.h"
+#include <math.h>
 #include <string.h>
 
 /* Blocks of n rows in the memory, then the row of h1; 0: there is none.  The
    last state is kept for the balance of the energy. */
-enum { CARRY_Q, CARRY_P, LAST_DQ, LAST_DP, LAST_Q, LAST_P, BLOCKS };
+enum {
+    COMPENSATION_Q,
+    COMPENSATION_P,
+    LAST_DQ,
+    LAST_DP,
+    LAST_Q,
+    LAST_P,
+    BLOCKS
+};
 /* In scratch: slopes at the state and at the end of Euler's step, which is in
-   CHANGE_Q and CHANGE_P until they hold what the step adds. */
-enum { DQ, DP, END_DQ, END_DP, CHANGE_Q, CHANGE_P, SCRATCH };
+   CHANGE_Q and CHANGE_P until they hold what the step adds; points of the balance
+   of the energy. */
+enum { DQ, DP, END_DQ, END_DP, CHANGE_Q, CHANGE_P, AT_Q, AT_P, SCRATCH };
 
 static int plan(nevh_work *w) {
     w->memory_rows = BLOCKS * w->n + 1;
@@ -72,25 +82,51 @@ static void find_change(const nevh_work *w, double h) {
     }
 }
 
-/* All lanes are where the first one is: which are afresh is told apart only
-   where there is one. */
+/* Where slopes are taken, or were. */
+typedef enum { NOW, END, LAST } place;
+
+/* A group of points: lanes that start afresh, and others, each at a place. */
+static int account_at(nevh_work *w, double t, double h, const double q[],
+                      const double p[], double weight, place fresh,
+                      place other) {
+    const double *end = block(w->scratch, w, CHANGE_Q);
+    const double *last = block(w->memory, w, LAST_Q);
+    double *at = block(w->scratch, w, AT_Q),
+           *time = block(w->scratch, w, SCRATCH);
+    for (size_t lane = 0; lane < w->width; lane++) {
+        place is = ratio(w, h, lane) == 0 ? fresh : other;
+        time[lane] = is == NOW   ? t
+                     : is == END ? t + h
+                                 : t - block(w->memory, w, BLOCKS)[lane];
+        for (size_t i = lane; i < w->size; i += w->width) {
+            at[i] = is == NOW ? q[i] : is == END ? end[i] : last[i];
+            at[w->size + i] = is == NOW   ? p[i]
+                              : is == END ? end[w->size + i]
+                                          : last[w->size + i];
+        }
+    }
+    return nevh_work_account(w, NEVH_OF_Q | NEVH_OF_P, weight, time, at,
+                             at + w->size);
+}
+
+/* A lane is told the same points in the same order whatever others are; all that
+   have a last state have one r, and a step whose r is not 1 is rare. */
 static int account(nevh_work *w, double t, double h, const double q[],
                    const double p[]) {
-    double *time = block(w->scratch, w, SCRATCH), r = ratio(w, h, 0);
-    bool fresh = r == 0;
-    double other = fresh ? h / 2 : -h * r / 2;
-    const double *from =
-        fresh ? block(w->scratch, w, CHANGE_Q) : block(w->memory, w, LAST_Q);
+    double r = 0;
     for (size_t lane = 0; lane < w->width; lane++)
-        time[lane] = t;
-    int status =
-        nevh_work_account(w, NEVH_OF_Q | NEVH_OF_P, h - other, time, q, p);
-    double last = t - block(w->memory, w, BLOCKS)[0];
-    for (size_t lane = 0; lane < w->width; lane++)
-        time[lane] = fresh ? t + h : last;
-    return status ? status
-                  : nevh_work_account(w, NEVH_OF_Q | NEVH_OF_P, other, time,
-                                      from, from + w->size);
+        r = fmax(r, ratio(w, h, lane));
+    bool usual = r == 0 || r == 1;
+    int status = account_at(w, t, h, q, p, h, NOW, NOW);
+    if (!status)
+        status = account_at(w, t, h, q, p, h / 2, END, NOW);
+    if (!status)
+        status = account_at(w, t, h, q, p, -h / 2, NOW, usual ? LAST : NOW);
+    if (!status && !usual)
+        status = account_at(w, t, h, q, p, h * r / 2, NOW, NOW);
+    if (!status && !usual)
+        status = account_at(w, t, h, q, p, -h * r / 2, NOW, LAST);
+    return status;
 }
 
 static void remember(nevh_work *w, double h, const double slopes[],

@@ -109,6 +109,9 @@ static const double middle = 0.5;
 static const nevh__stage_shape shape = {1, false, &middle, &middle};
 
 static int plan_parts(nevh_work *w, size_t nodes) {
+    int status = nevh_work_find_scale(w);
+    if (status)
+        return status;
     gradient_plan *g = w->plan = nevh__array(1, sizeof *g);
     if (!g)
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");

@@ -68,7 +68,12 @@ static void plan_control(nevh_work *w) {
 /* An error of 0 over one of 0 is good enough for GSL. */
 static int check_tolerance(nevh_work *w) {
     double tolerance = w->options->tolerance;
-    for (size_t i = 0; tolerance > 0 && i < 2 * w->n; i++)
+    if (!(tolerance > 0))
+        return NEVH_OK;
+    int status = nevh_work_find_scale(w);
+    if (status)
+        return status;
+    for (size_t i = 0; i < 2 * w->n; i++)
         if (!(tolerance * w->scale[i] > 0))
             return nevh_work_fail(w, NEVH_EINVAL,
                                   "the tolerance %g of a length of %g is 0",

@@ -237,6 +237,9 @@ static int plan_on(nevh_work *w, size_t fewest, size_t most,
         return nevh_work_fail(w, NEVH_EINVAL,
                               "%s: %zu stages, where %zu to %zu are possible",
                               w->integrator->name, stages, fewest, most);
+    int status = nevh_work_find_scale(w);
+    if (status)
+        return status;
     family_plan *g = w->plan = nevh__array(1, sizeof *g);
     if (g)
         g->tableau = make(stages);

@@ -412,6 +412,8 @@ static int plan(nevh_work *w) {
     int status = plan ? check_friction(w)
                       : nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     if (!status)
+        status = nevh_work_find_scale(w);
+    if (!status)
         status = plan_nystrom(w, &plan->nystrom);
     if (status)
         return status;

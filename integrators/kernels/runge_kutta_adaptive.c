@@ -85,6 +85,9 @@ void nevh__adaptive_clear(nevh_work *w) {
 int nevh__adaptive_plan(nevh_work *w) {
     nevh__stages_plan *plan = w->plan;
     const nevh__family *family = &plan->family;
+    int status = nevh_work_find_scale(w);
+    if (status)
+        return status;
     nevh__adaptive *a = plan->adaptive = nevh__array(1, sizeof *a);
     if (!a)
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");

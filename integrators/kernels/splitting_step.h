@@ -54,10 +54,12 @@ enum { NEVH__SPLITTING_RANGE = -1 };
    step fail.  way: what the includer has handed to nevh__splitting_take. */
 NEVH__INLINE int nevh__splitting_slope(const nevh__splitting_step *x, int way,
                                        size_t i, bool kick, bool kept);
+#ifndef NEVH__FOR_READERS
 /* The includer's, too: where T is that of known masses, what momenta are
    multiplied by, as many as slopes; else NULL. */
 NEVH__INLINE const nevh__number *
 nevh__splitting_inverse(const nevh__splitting_step *x, int way);
+#endif
 
 NEVH__INLINE void nevh__splitting_advance(size_t lanes, size_t size,
                                           const nevh__half *x, double step,
@@ -84,6 +86,7 @@ NEVH__INLINE int nevh__splitting_operate(const nevh__splitting_step *x, int way,
     return status;
 }
 
+#ifndef NEVH__FOR_READERS
 /* A kick and a drift where T is that of known masses: velocities are momenta
    times these, and need not go through memory (15 to 25 % of a step of
    several kicks). */
@@ -111,6 +114,7 @@ NEVH__INLINE int nevh__splitting_operate_both(const nevh__splitting_step *x,
     }
     return 0;
 }
+#endif
 
 /* All kicks and drifts in turn. */
 NEVH__INLINE int nevh__splitting_operate_all(const nevh__splitting_step *x,
@@ -130,10 +134,12 @@ NEVH__INLINE int nevh__splitting_operate_all(const nevh__splitting_step *x,
         status =
             nevh__splitting_operate(x, way, lanes, size, i++, false, false);
     for (; !status && i + 1 < count; i += 2) {
+#ifndef NEVH__FOR_READERS
         if (nevh__splitting_inverse(x, way)) {
             status = nevh__splitting_operate_both(x, way, lanes, size, i);
             continue;
         }
+#endif
         status = nevh__splitting_operate(x, way, lanes, size, i, true, false);
         if (!status)
             status = nevh__splitting_operate(x, way, lanes, size, i + 1, false,
@@ -162,16 +168,22 @@ NEVH__INLINE void nevh__splitting_commit_all(const nevh__splitting_step *x,
     }
 }
 
-/* A step.  size: of the halves; lanes: a constant that divides it, by which
-   rows are gone through.  Unless 0, the state is as it was. */
-NEVH__INLINE int nevh__splitting_take(const nevh__splitting_step *x, int way,
-                                      size_t lanes, size_t size) {
+/* Nothing has changed yet. */
+NEVH__INLINE void nevh__splitting_place(const nevh__splitting_step *x,
+                                        size_t lanes, size_t size) {
     NEVH__EACH(i, lanes, size) {
         x->q.change[i] = (nevh__number){0};
         x->p.change[i] = (nevh__number){0};
         x->q.point[i] = x->q.state[i] + x->q.compensation[i];
         x->p.point[i] = x->p.state[i] + x->p.compensation[i];
     }
+}
+
+/* A step.  size: of the halves; lanes: a constant that divides it, by which
+   rows are gone through.  Unless 0, the state is as it was. */
+NEVH__INLINE int nevh__splitting_take(const nevh__splitting_step *x, int way,
+                                      size_t lanes, size_t size) {
+    nevh__splitting_place(x, lanes, size);
     int status = nevh__splitting_operate_all(x, way, lanes, size);
     if (status)
         return status;

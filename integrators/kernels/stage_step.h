@@ -63,9 +63,11 @@ enum { NEVH__STAGE_RANGE = -1 };
 /* The includer's: takes dH/dq, dH/dp or both at x->points to x->gradient.
    Returns 0, or what makes the sweep fail. */
 NEVH__INLINE int nevh__stage_slopes(const nevh__stage_step *x, bool q, bool p);
+#ifndef NEVH__FOR_READERS
 /* The includer's, too: where T is that of known masses, what momenta are
    multiplied by, n rows as points are; else NULL. */
 NEVH__INLINE const double *nevh__stage_inverse(const nevh__stage_step *x);
+#endif
 
 /* sum_j weights_ij (to_j x_j), or `plain` without to, of a vector of one orbit's
    stages from `from` on: even and odd j, which need not wait for each other. */
@@ -90,6 +92,7 @@ NEVH__INLINE void nevh__stage_sum_stages(size_t row, size_t stages,
 }
 #undef NEVH__STAGE_PRODUCT
 
+#ifndef NEVH__FOR_READERS
 /* sum_j weights[j*row] x[j*lanes] of a vector of orbits, and of one. */
 NEVH__INLINE void nevh__stage_sum_orbits(size_t row, size_t stages,
                                          size_t lanes, const double *weights,
@@ -119,6 +122,7 @@ NEVH__INLINE double nevh__stage_sum_orbit(size_t row, size_t stages,
         even += weights[j * row] * x[j * lanes];
     return even + odd;
 }
+#endif
 
 /* A variable's points from its slopes. */
 NEVH__INLINE void nevh__stage_place_stages(size_t stages, size_t row,
@@ -133,6 +137,7 @@ NEVH__INLINE void nevh__stage_place_stages(size_t stages, size_t row,
     }
 }
 
+#ifndef NEVH__FOR_READERS
 NEVH__INLINE void nevh__stage_place_orbits(
     size_t stages, size_t row, size_t lanes, const double *restrict mu,
     const double *restrict to, const double *restrict slopes,
@@ -166,6 +171,7 @@ NEVH__INLINE void nevh__stage_place_orbits(
                            compensation[lane]);
     }
 }
+#endif
 
 /* Stages' states, n rows, from the gradient; velocities too, where these are
    momenta over known masses. */
@@ -187,16 +193,24 @@ NEVH__INLINE void nevh__stage_place_rows(const nevh__stage_step *x,
         if (together)
             nevh__stage_place_stages(stages, row, mu, to, slopes + at, y[k],
                                      compensation[k], points + at);
+#ifndef NEVH__FOR_READERS
         else
             nevh__stage_place_orbits(stages, row, lanes, mu, to, slopes + at,
                                      y + k * lanes, compensation + k * lanes,
                                      x->products, points + at);
+#endif
         for (size_t i = at; inverse && i < at + stride; i += NEVH__IN_VECTOR)
             NEVH__VECTOR_AT(velocities + i) =
                 NEVH__VECTOR_AT(inverse + i) * NEVH__VECTOR_AT(points + i);
     }
 }
 
+#ifdef NEVH__FOR_READERS
+NEVH__INLINE void nevh__stage_place(const nevh__stage_step *x, size_t lanes,
+                                    bool q) {
+    nevh__stage_place_rows(x, lanes, x->stages, x->row, x->stride, q, NULL);
+}
+#else
 /* Methods of eight stages, and of less than eight, have loops of their own. */
 NEVH__INLINE void nevh__stage_place(const nevh__stage_step *x, size_t lanes,
                                     bool q) {
@@ -213,6 +227,7 @@ NEVH__INLINE void nevh__stage_place(const nevh__stage_step *x, size_t lanes,
         nevh__stage_place_rows(x, lanes, x->stages, x->row, x->stride, q,
                                inverse);
 }
+#endif
 
 NEVH__INLINE bool nevh__stage_finite(size_t size, const double x[]) {
     double bad[NEVH__LANES];
@@ -281,11 +296,15 @@ NEVH__INLINE double nevh__stage_greater(double x, double y) {
 }
 
 NEVH__INLINE double nevh__stage_greatest(const double x[NEVH__LANES]) {
+#ifdef NEVH__FOR_READERS
+    return x[0];
+#else
     return nevh__stage_greater(
         nevh__stage_greater(nevh__stage_greater(x[0], x[1]),
                             nevh__stage_greater(x[2], x[3])),
         nevh__stage_greater(nevh__stage_greater(x[4], x[5]),
                             nevh__stage_greater(x[6], x[7])));
+#endif
 }
 
 NEVH__INLINE void nevh__stage_tell(double all, double better, double most,
@@ -333,10 +352,12 @@ NEVH__INLINE void nevh__stage_begin_sweeps(const nevh__stage_step *x,
             if (last && together)
                 nevh__stage_sum_stages(x->row, x->stages, guess, true, NULL,
                                        last + k * numbers, from, &sum);
+#ifndef NEVH__FOR_READERS
             else if (last)
                 nevh__stage_sum_orbits(x->row, x->stages, lanes,
                                        guess + from / lanes,
                                        last + k * numbers + from % lanes, &sum);
+#endif
             NEVH__VECTOR_AT(c->before + at) = sign * sum;
             NEVH__VECTOR_AT(gradient + at) = sign * sum;
             NEVH__VECTOR_AT(c->least + at) = (nevh__vector){0} + INFINITY;

@@ -231,6 +231,9 @@ int nevh__binding_choose(nevh_work *w, nevh__binding *b) {
                               "the binding %g is not a positive number",
                               o->binding);
     b->omega = o->binding;
+    int status = nevh_work_find_scale(w);
+    if (status)
+        return status;
     for (size_t k = 0; k < w->n; k++)
         b->ratio[k] = w->scale[w->n + k] / w->scale[k];
     if (o->binding > 0 && o->scale)

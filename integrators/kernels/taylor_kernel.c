@@ -3,8 +3,13 @@
    An orbit is a chain of series, each of which holds as far as its last two
    coefficients say that the tolerance allows: no step h of the caller's cuts
    one short, and states between their ends are their values.  So the chain does
-   not depend on h, unless that is very short.  The state at the beginning of a series is kept with the
-   digits that its double lost.
+   not depend on h, unless that is very short.  The state at the beginning of a
+   series is kept with the digits that its double lost.
+
+   With a tolerance below rounding the first coefficients, too, have the digits that
+   doubles lose: they are those of the state with all its digits, taken in long
+   double.  The others add so little to a step that their rounding is far below that
+   of the state, so errors of steps are those of long double, nearly.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "taylor_private.h"
 #include "taylor/series_private.h"
@@ -18,6 +23,8 @@ typedef struct {
     nevh__recurrence *recurrence;
     nevh__series_double *series;
     size_t order;
+    nevh__series_long *first; /* of low orders; NULL: doubles will do */
+    long double *first_rows;
     double longest;          /* of a series, in steps of the caller's */
     nevh__series_code *code; /* NULL: there is none */
     const double *numbers;
@@ -49,21 +56,24 @@ typedef struct {
     double *reach;          /* how long it holds, to either side */
     double *roundoff;       /* 2n: of the state at its beginning */
     double *rows;           /* 2n times order + 1: its coefficients */
+    double *lost; /* 2n times FIRST: what those of orders 1 ... FIRST lost */
 } chain;
-enum { HEAD = 4 };
+enum { HEAD = 4, FIRST = 8 };
 
 static size_t chain_size(const nevh_work *w) {
     const taylor_plan *plan = w->plan;
-    return HEAD + 2 * w->n * (plan->order + 2);
+    return HEAD + 2 * w->n * (plan->order + 2 + (plan->first ? FIRST : 0));
 }
 
 static chain chain_at(const nevh_work *w, double *from) {
+    const taylor_plan *plan = w->plan;
     return (chain){.begun = from,
                    .since = from + 1,
                    .since_roundoff = from + 2,
                    .reach = from + 3,
                    .roundoff = from + HEAD,
-                   .rows = from + HEAD + 2 * w->n};
+                   .rows = from + HEAD + 2 * w->n,
+                   .lost = from + HEAD + 2 * w->n * (plan->order + 2)};
 }
 
 static void clear(nevh_work *w) {
@@ -71,6 +81,8 @@ static void clear(nevh_work *w) {
     if (!plan)
         return;
     nevh__series_free_double(plan->series);
+    nevh__series_free_long(plan->first);
+    free(plan->first_rows);
     nevh__recurrence_free(plan->recurrence);
     free(plan);
     w->plan = NULL;
@@ -82,6 +94,19 @@ static size_t order_for(double tolerance) {
     double digits = -log(fmax(tolerance, 1e-18));
     double order = ceil(3 + 0.72 * digits);
     return order < 4 ? 4 : (size_t)order;
+}
+
+/* Tolerances below this are of errors that doubles cannot hold. */
+static const double finest = DBL_EPSILON;
+
+static bool plan_series(const nevh_work *w, taylor_plan *plan) {
+    plan->series = nevh__series_new_double(plan->recurrence, plan->order);
+    if (!plan->series || !(w->options->tolerance < finest))
+        return plan->series;
+    plan->first = nevh__series_new_long(plan->recurrence, FIRST);
+    plan->first_rows =
+        nevh__array(2 * w->n * (FIRST + 2), sizeof *plan->first_rows);
+    return plan->first && plan->first_rows;
 }
 
 static int plan(nevh_work *w) {
@@ -101,8 +126,10 @@ static int plan(nevh_work *w) {
     plan->recurrence = nevh__recurrence_new(w->system, w->friction, &report);
     if (!plan->recurrence)
         return nevh_work_fail(w, report.status, "%s", report.text);
-    plan->series = nevh__series_new_double(plan->recurrence, plan->order);
-    if (!plan->series)
+    int status = nevh_work_find_scale(w);
+    if (status)
+        return status;
+    if (!plan_series(w, plan))
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     w->memory_rows = chain_size(w);
     w->scratch_size = chain_size(w) * (w->width > 1 ? w->width : 1) + 4 * w->n;
@@ -174,6 +201,20 @@ static void pass(const chain *z, double time) {
     *z->since = whole;
 }
 
+/* What the first coefficients lost, taken from the state with all its digits. */
+static void find_lost(const nevh_work *w, const chain *z, double t) {
+    const taylor_plan *plan = w->plan;
+    size_t each = 2 * w->n;
+    long double *rows = plan->first_rows, *state = rows + (FIRST + 1) * each;
+    for (size_t i = 0; i < each; i++)
+        state[i] = (long double)z->rows[i] + z->roundoff[i];
+    bool known = nevh__series_expand_long(plan->first, t, state, rows);
+    for (size_t i = 0; i < FIRST * each; i++) {
+        double x = z->rows[each + i];
+        z->lost[i] = known ? (double)(rows[each + i] - x) : 0;
+    }
+}
+
 /* A series at the state in rows, for the time t. */
 static int begin(nevh_work *w, const chain *z, double t, double h) {
     taylor_plan *plan = w->plan;
@@ -190,14 +231,34 @@ static int begin(nevh_work *w, const chain *z, double t, double h) {
                               "derivatives there, or the state is out of its "
                               "domain",
                               t);
+    if (plan->first)
+        find_lost(w, z, t);
     *z->reach = fmin(reach_of(w, z->rows), plan->longest * fabs(h));
     *z->begun = 1;
     return NEVH_OK;
 }
 
-/* The next series of the chain, `step` later. */
-static int go_on(nevh_work *w, const chain *z, double step, double t,
-                 double h) {
+/* The state `step` later, in rows and roundoff, with all digits: terms of low orders
+   in long double. */
+static void pass_finely(const nevh_work *w, const chain *z, double step) {
+    const taylor_plan *plan = w->plan;
+    size_t each = 2 * w->n;
+    for (size_t i = 0; i < each; i++) {
+        const double *row = z->rows + i;
+        double high = 0;
+        for (size_t k = plan->order; k > FIRST; k--)
+            high = high * step + row[k * each];
+        long double sum = high;
+        for (size_t k = FIRST; k > 0; k--)
+            sum = sum * step +
+                  ((long double)row[k * each] + z->lost[(k - 1) * each + i]);
+        sum = sum * step + z->roundoff[i] + row[0];
+        z->rows[i] = (double)sum;
+        z->roundoff[i] = (double)(sum - z->rows[i]);
+    }
+}
+
+static void pass_state(const nevh_work *w, const chain *z, double step) {
     size_t each = 2 * w->n;
     double *change = w->scratch + w->scratch_size - 2 * each;
     change_at(w, z, step, change);
@@ -206,6 +267,16 @@ static int go_on(nevh_work *w, const chain *z, double step, double t,
         z->roundoff[i] = nevh__roundoff(sum, z->rows[i], change[i]);
         z->rows[i] = sum;
     }
+}
+
+/* The next series of the chain, `step` later. */
+static int go_on(nevh_work *w, const chain *z, double step, double t,
+                 double h) {
+    const taylor_plan *plan = w->plan;
+    if (plan->first)
+        pass_finely(w, z, step);
+    else
+        pass_state(w, z, step);
     pass(z, -step);
     return begin(w, z, t, h);
 }

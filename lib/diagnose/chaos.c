@@ -60,7 +60,7 @@ static int plan_lengths(nevh_chaos *c, const nevh_integrator *scheme) {
     nevh_stepper *s = nevh_stepper_new(c->system, scheme, &c->options);
     if (!s)
         return out_of_memory(c);
-    if (nevh_stepper_status(s))
+    if (nevh_stepper_status(s) || nevh_work_find_scale(&s->work))
         nevh__fail_as(&c->report, &s->report);
     else
         memcpy(c->own + 2 * c->n, s->work.scale,
@@ -279,7 +279,7 @@ void nevh_chaos_free(nevh_chaos *c) {
         free(c->start[i].log);
         free(c->start[i].gali);
     }
-    nevh__chaos_crowd_free(c->crowd);
+    nevh__chaos_batch_free(c->batch);
     nevh_stepper_free(c->stepper);
     nevh__variational_free(c->variational);
     nevh_field_free(c->field);

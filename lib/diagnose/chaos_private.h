@@ -43,7 +43,7 @@ typedef struct {
     double area;      /* int of that over time */
 } nevh__chaos_start;
 
-typedef struct nevh__chaos_crowd nevh__chaos_crowd;
+typedef struct nevh__chaos_batch nevh__chaos_batch;
 
 struct nevh_chaos {
     nevh__report report;
@@ -66,7 +66,7 @@ struct nevh_chaos {
     nevh__chaos_start *start;
     size_t first_stride, turn; /* turn: steps of a period */
     size_t stride;             /* steps between looks */
-    nevh__chaos_crowd *crowd;  /* of members; or NULL */
+    nevh__chaos_batch *batch;  /* of members; or NULL */
 };
 
 static inline size_t nevh__chaos_vectors(const nevh_chaos *c) {
@@ -79,11 +79,13 @@ static inline size_t nevh__chaos_logs(const nevh_chaos *c) {
 
 /* chaos_starts.c: states and displacements at the start. */
 int nevh__chaos_begin(nevh_chaos *);
-/* The state (q, p), 2n, and the displacements that belong to draw number
-   `number`; the start has not taken a step. */
+/* A start at a state that has taken no step.
+   z      in, 2n: q, then p
+   drawn  the generator that displacements are drawn from, as nevh__chaos_draw
+          has it; in and out */
 void nevh__chaos_place(nevh_chaos *, size_t start, const double z[],
                        uint64_t *drawn);
-/* Numbers for draw number `number`. */
+/* The generator of start number `number`. */
 uint64_t nevh__chaos_draw(const nevh_chaos *, size_t number);
 /* chaos_walk.c: hands displacement v of a start to the stepper, or takes it. */
 void nevh__chaos_put(nevh_chaos *, size_t start, size_t v);
@@ -97,7 +99,7 @@ double nevh__chaos_steps(const nevh_chaos *, double until);
 double nevh__chaos_rate(const nevh_chaos *, size_t start, size_t i);
 double nevh__chaos_megno(const nevh_chaos *, size_t start);
 
-/* chaos_crowd.c: starts that are orbits of their own, side by side, each from
+/* chaos_batch.c: starts that are orbits of their own, side by side, each from
    t_start to a time of its own; the next takes the place of one that has ended.
    What is found of one is what a nevh_chaos of one start finds, whatever its
    neighbours. */
@@ -112,15 +114,15 @@ typedef struct {
                  double *until);
     int (*done)(void *data, const nevh__chaos_member *); /* not 0: stop */
     void *data;
-    bool sparse;  /* MEGNO is not asked for: looks once a turn will do */
-    bool aligned; /* SALI alone is: an orbit ends where it has fallen below
+    bool sparse;   /* MEGNO is not asked for: looks once a turn will do */
+    bool aligned;  /* SALI alone is: an orbit ends where it has fallen below
                      nevh__chaos_aligned */
-    bool abreast; /* H reads t: orbits begin together */
-} nevh__chaos_orders;
-/* What a crowd needs.  returns  whether there was memory */
-bool nevh__chaos_crowd_plan(nevh_chaos *);
-void nevh__chaos_crowd_free(nevh__chaos_crowd *); /* NULL is allowed */
-void nevh__chaos_crowd_run(nevh_chaos *, const nevh__chaos_orders *);
+    bool together; /* H reads t: orbits begin together */
+} nevh__chaos_jobs;
+/* What a batch needs.  returns  whether there was memory */
+bool nevh__chaos_batch_plan(nevh_chaos *);
+void nevh__chaos_batch_free(nevh__chaos_batch *); /* NULL is allowed */
+void nevh__chaos_batch_run(nevh_chaos *, const nevh__chaos_jobs *);
 /* Below it displacements are aligned. */
 double nevh__chaos_aligned(const nevh_chaos *);
 

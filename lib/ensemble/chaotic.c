@@ -22,7 +22,7 @@ typedef struct {
 
 struct nevh__chaotic {
     nevh_chaos *chaos;
-    nevh__chaos_orders orders;
+    nevh__chaos_jobs jobs;
     bool alone; /* no other outcome is asked for, and nothing stops an orbit */
     waiting *queue;
     size_t queued, taken;
@@ -78,7 +78,7 @@ static int plan_chaos(nevh_ensemble *e, const nevh_options *options) {
     if (nevh_chaos_status(x->chaos))
         return nevh__fail(&e->report, nevh_chaos_status(x->chaos), "%s",
                           nevh_chaos_message(x->chaos));
-    return nevh__chaos_crowd_plan(x->chaos)
+    return nevh__chaos_batch_plan(x->chaos)
                ? NEVH_OK
                : nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
 }
@@ -95,12 +95,12 @@ int nevh__chaotic_plan(nevh_ensemble *e, const nevh_options *options) {
         x->queue[i].values = x->queue[i].start + 2 * e->n;
     }
     x->alone = all_tell(e, NEVH_OUTCOME_LYAPUNOV);
-    x->orders = (nevh__chaos_orders){
+    x->jobs = (nevh__chaos_jobs){
         .data = e,
         .sparse = !asks(e, NEVH_OUTCOME_MEGNO),
         .aligned =
             !asks(e, NEVH_OUTCOME_MEGNO) && !asks(e, NEVH_OUTCOME_LYAPUNOV),
-        .abreast = e->abreast,
+        .together = e->together,
     };
     return plan_chaos(e, options);
 }
@@ -169,11 +169,11 @@ static int done_waiting(void *ensemble, const nevh__chaos_member *found) {
 
 static void run_waiting(nevh_ensemble *e) {
     nevh__chaotic *x = e->chaotic;
-    nevh__chaos_orders orders = x->orders;
-    orders.next = next_waiting;
-    orders.done = done_waiting;
+    nevh__chaos_jobs jobs = x->jobs;
+    jobs.next = next_waiting;
+    jobs.done = done_waiting;
     x->taken = 0;
-    nevh__chaos_crowd_run(x->chaos, &orders);
+    nevh__chaos_batch_run(x->chaos, &jobs);
     x->queued = 0;
 }
 
@@ -212,9 +212,9 @@ static int done_alone(void *ensemble, const nevh__chaos_member *found) {
 bool nevh__chaotic_run(nevh_ensemble *e) {
     if (!e->chaotic->alone)
         return false;
-    nevh__chaos_orders orders = e->chaotic->orders;
-    orders.next = next_alone;
-    orders.done = done_alone;
-    nevh__chaos_crowd_run(e->chaotic->chaos, &orders);
+    nevh__chaos_jobs jobs = e->chaotic->jobs;
+    jobs.next = next_alone;
+    jobs.done = done_alone;
+    nevh__chaos_batch_run(e->chaotic->chaos, &jobs);
     return true;
 }

@@ -264,7 +264,7 @@ static int plan(nevh_ensemble *e) {
     e->width = choose_width(e, &o);
     e->stride = nevh__padded(e->width);
     e->alone = e->width == 1;
-    e->abreast = !autonomous;
+    e->together = !autonomous;
     status = plan_stepper(e, &o, e->width, &e->stepper);
     o.native = NEVH_NATIVE_NEVER; /* it steps where others fail, and last */
     if (!status)

@@ -49,8 +49,8 @@ struct nevh_ensemble {
     nevh_stepper *stepper, *narrow; /* narrow: of one lane */
     double h, steps;                /* whole ones; of fixed steps */
     bool whole;                     /* they fill the run */
-    bool alone;   /* lanes are taken by nevh_run_until: there is one */
-    bool abreast; /* H reads t: lanes begin together */
+    bool alone;    /* lanes are taken by nevh_run_until: there is one */
+    bool together; /* H reads t: lanes begin together */
     bool looks_back, moving; /* snapshots, velocities are asked for */
     bool planned;
     nevh_energy *energy;     /* NULL: not asked for */

@@ -94,7 +94,7 @@ static void go_along(nevh_ensemble *e, size_t lane, size_t with) {
 /* Fills lanes that are free.  Returns whether any orbit is new. */
 static bool fill(nevh_ensemble *e) {
     size_t which;
-    bool any = false, more = !(e->abreast && any_busy(e, &which));
+    bool any = false, more = !(e->together && any_busy(e, &which));
     for (size_t lane = 0; lane < e->width; lane++)
         e->lanes[lane].look = false;
     for (size_t lane = 0; more && lane < e->width; lane++)

@@ -66,9 +66,6 @@ void nevh__names_free(nevh__names *);
    values   in, one or count of them; copied */
 int nevh__names_add_parameter(nevh__names *, const char *name, size_t count,
                               const double values[], nevh__formula_error *);
-/* New values of a parameter that is there, as many as it has. */
-int nevh__names_set_parameter(nevh__names *, const char *name,
-                              const double values[], nevh__formula_error *);
 /* count    as above; p_NAME and v_NAME come with it
    first    index of the (first) coordinate in the system */
 int nevh__names_add_coordinate(nevh__names *, const char *name, size_t count,

@@ -164,20 +164,6 @@ int nevh__names_add_parameter(nevh__names *names, const char *name,
     return NEVH_OK;
 }
 
-int nevh__names_set_parameter(nevh__names *names, const char *name,
-                              const double values[],
-                              nevh__formula_error *error) {
-    *error = (nevh__formula_error){0};
-    nevh__entry *entry = entry_exactly(names, name);
-    if (!entry || entry->meaning != NEVH__PARAMETER) {
-        refuse(name, error, "there is no parameter %s");
-        return error->status;
-    }
-    memcpy(entry->values, values,
-           (entry->count ? entry->count : 1) * sizeof *values);
-    return NEVH_OK;
-}
-
 int nevh__names_add_coordinate(nevh__names *names, const char *name,
                                size_t count, size_t first,
                                nevh__formula_error *error) {

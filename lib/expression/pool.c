@@ -4,7 +4,8 @@
 #include <stddef.h>
 #include <stdlib.h>
 
-enum { CHUNK = 16 << 10 };
+/* Of the first chunk, and the most: each is twice as large as that before. */
+enum { FEWEST = 512, MOST = 16 << 10 };
 
 struct nevh__chunk {
     struct nevh__chunk *next;
@@ -13,7 +14,9 @@ struct nevh__chunk {
 };
 
 static struct nevh__chunk *new_chunk(nevh__pool *pool, size_t bytes) {
-    size_t size = bytes > CHUNK ? bytes : CHUNK;
+    size_t size = pool->chunks ? 2 * pool->chunks->size : FEWEST;
+    size = size < MOST ? size : MOST;
+    size = size > bytes ? size : bytes;
     struct nevh__chunk *chunk = nevh__array(1, sizeof *chunk + size);
     if (!chunk)
         return NULL;

@@ -11,10 +11,6 @@ size_t nevh__tape_count(const nevh__tape *tape, nevh__variable v) {
     return tape->count[v];
 }
 
-bool nevh__tape_analytic(const nevh__tape *tape) {
-    return tape->analytic;
-}
-
 size_t nevh__tape_length(const nevh__tape *tape) {
     return tape->length;
 }

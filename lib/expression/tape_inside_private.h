@@ -49,6 +49,7 @@ typedef struct {
     size_t pitch[NEVH__KINDS];
     double *slots; /* base[NEVH__SLOT] */
     size_t columns;
+    bool portable; /* functions are libm's, not those of vectors */
 } nevh__rows;
 
 /* At most so many columns at once; scratch in doubles. */

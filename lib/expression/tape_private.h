@@ -135,9 +135,6 @@ bool nevh__tape_reads(const nevh__tape *, nevh__variable, size_t k);
 size_t nevh__tape_count(const nevh__tape *, nevh__variable);
 /* Whether two tapes do the same with the same numbers. */
 bool nevh__tape_same(const nevh__tape *, const nevh__tape *);
-/* No abs, min, max, sign, mod, floor of what depends on q or p: fit for the
-   complex step. */
-bool nevh__tape_analytic(const nevh__tape *);
 /* Operations; sine and cosine of one argument are one. */
 size_t nevh__tape_length(const nevh__tape *);
 
@@ -160,6 +157,11 @@ void nevh__tape_block_gradient(size_t width, const double t[], const double q[],
                                const double p[], const double c[],
                                const void *tape, double dh_dq[],
                                double dh_dp[]);
+/* The same by libm's functions, not those of vectors. */
+void nevh__tape_portable_gradient(size_t width, const double t[],
+                                  const double q[], const double p[],
+                                  const double c[], const void *tape,
+                                  double dh_dq[], double dh_dp[]);
 /* The derivative with respect to t. */
 void nevh__tape_block_time(size_t width, const double t[], const double q[],
                            const double p[], const double c[], const void *tape,

@@ -105,4 +105,8 @@ bool nevh__add_slopes(const nevh_gradient *, size_t apart, size_t lanes,
 int nevh__central_fail(nevh_field *, const nevh__planned *, const nevh__block *,
                        size_t instance, size_t k);
 
+/* What gives a term's derivatives: under `portable` a formula's by libm. */
+nevh_block_gradient_fn nevh__exact_gradient(const nevh_field *,
+                                            const nevh_term *);
+
 #endif

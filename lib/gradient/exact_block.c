@@ -4,6 +4,7 @@
    the gradient goes by the first term that has a share in it; the slopes of
    others are added.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradient/block_private.h"
 #include "gradient/evaluation_private.h"
 #include <nevh/body.h>
 
@@ -78,7 +79,7 @@ static bool add_part(nevh__evaluation *e, nevh__planned *term,
     nevh__term_part *x = &e->terms[e->count++];
     *x = (nevh__term_part){
         .term = term,
-        .gradient = decl->gradient,
+        .gradient = nevh__exact_gradient(f, decl),
         .params = decl->params,
         .stride = stride,
         .t = decl->time ? e->at.t : f->zeros,

@@ -3,6 +3,7 @@
 
    Where all instances fit into one block, maps and constants lie ready.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "expression/tape_private.h"
 #include "gradient/block_private.h"
 #include <math.h>
 #include <nevh/body.h>
@@ -106,6 +107,13 @@ static inline bool add(const nevh__scatter_map *map, size_t width,
     return !(found & 1);
 }
 
+nevh_block_gradient_fn nevh__exact_gradient(const nevh_field *f,
+                                            const nevh_term *term) {
+    return f->portable && term->gradient == nevh__tape_block_gradient
+               ? nevh__tape_portable_gradient
+               : term->gradient;
+}
+
 /* All instances in one block; whether all is finite. */
 static inline bool take_block(nevh_field *f, nevh__planned *term,
                               const nevh__places *at) {
@@ -121,9 +129,10 @@ static inline bool take_block(nevh_field *f, nevh__planned *term,
         slopes_q = at->dh_dq;
     if (of_p && in_place && term == f->whole_p)
         slopes_p = at->dh_dp;
-    decl->gradient(stride, times(f, decl, at, stride), q, p,
-                   constants(term, width, stride), decl->params,
-                   at->dh_dq ? slopes_q : NULL, at->dh_dp ? slopes_p : NULL);
+    nevh__exact_gradient(f, decl)(stride, times(f, decl, at, stride), q, p,
+                                  constants(term, width, stride), decl->params,
+                                  at->dh_dq ? slopes_q : NULL,
+                                  at->dh_dp ? slopes_p : NULL);
     bool finite = !of_q || add(&term->to_q, width, stride, slopes_q, at->dh_dq);
     return (!of_p || add(&term->to_p, width, stride, slopes_p, at->dh_dp)) &&
            finite;
@@ -160,9 +169,9 @@ static int take_part(nevh_field *f, nevh__planned *term, const nevh__block *b,
     const double *q = f->rows, *p = q + term->nq * b->stride;
     const double *c = p + term->np * b->stride;
     double *slopes_p = f->slopes + term->nq * b->stride;
-    decl->gradient(b->stride, decl->time ? f->times : f->zeros, q, p, c,
-                   decl->params, at->dh_dq ? f->slopes : NULL,
-                   at->dh_dp ? slopes_p : NULL);
+    nevh__exact_gradient(f, decl)(
+        b->stride, decl->time ? f->times : f->zeros, q, p, c, decl->params,
+        at->dh_dq ? f->slopes : NULL, at->dh_dp ? slopes_p : NULL);
     for (size_t k = at->dh_dq ? 0 : term->nq;
          k < (at->dh_dp ? term->nv : term->nq); k++) {
         const double *row = f->slopes + k * b->stride;

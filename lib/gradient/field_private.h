@@ -75,7 +75,8 @@ struct nevh_field {
     const nevh_gradient *gradient;
     bool portable, planned;
     size_t n;
-    double *scale; /* 2n */
+    double *scale; /* 2n; of an exact gradient after nevh__field_find_scale */
+    bool scaled;   /* by that */
     nevh__planned *terms;
     size_t n_terms, instances;
     size_t capacity;   /* columns that the rows below have room for */
@@ -171,6 +172,15 @@ int nevh__field_moving_values(nevh_field *, size_t width, const double t[],
    evaluates nothing, and the field's scales have to do. */
 int nevh__field_lengths(nevh_field *, const nevh_options *, double length[]);
 
+/* The field's scales as far as planning left them out: differences have found
+   theirs, exact gradients need none.  Takes a coarse run from the state to plan
+   at, which may cost more than all other planning.  What it evaluates is not
+   counted.  Returns a status, recorded in the field. */
+int nevh__field_find_scale(nevh_field *, const nevh_options *);
+/* What planning evaluates is not counted, and its failures are forgotten where the
+   status is NEVH_OK; returns the status. */
+int nevh__field_forget(nevh_field *, int status);
+
 /* How H varies with each variable, 2n: what it varies by within those lengths,
    over their squares.  Where H is quadratic that is nearly its second
    derivative, however much of H others make up. */
@@ -179,6 +189,8 @@ int nevh__field_curvatures(nevh_field *, const nevh_options *,
 
 /* Values only: no gradients are asked for, and none are planned. */
 extern const nevh_gradient nevh__no_gradient;
+/* Exact where all terms that are on have that, else differences of order 6. */
+const nevh_gradient *nevh__best_gradient(const nevh_system *);
 /* How dH/dt of a term is differenced; time.c. */
 typedef struct {
     const nevh_gradient *method; /* NULL: the term does not read t */

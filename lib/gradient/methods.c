@@ -49,6 +49,13 @@ static const nevh_gradient *const all[] = {
     &central2, &central4, &central6, &central8, &complex_step, &exact, NULL,
 };
 
+const nevh_gradient *nevh__best_gradient(const nevh_system *s) {
+    for (size_t i = 0; i < s->n_terms; i++)
+        if (nevh__term_on(s, s->terms[i]) && !s->terms[i]->decl.gradient)
+            return nevh_central6;
+    return nevh_exact;
+}
+
 const nevh_gradient *const *nevh_gradients(void) {
     return all;
 }

@@ -209,18 +209,22 @@ static int plan_steps(nevh_field *f, const nevh_options *o) {
     return status;
 }
 
-/* What planning evaluates is not counted, and its failures are forgotten. */
+int nevh__field_forget(nevh_field *f, int status) {
+    for (size_t i = 0; i < f->n_terms; i++)
+        f->terms[i].values = 0;
+    f->gradients = 0;
+    if (!status)
+        f->report = (nevh__report){0};
+    return status;
+}
+
 static int plan_gradient(nevh_field *f, const nevh_options *o) {
     int status = NEVH_OK;
     if (f->gradient->offsets)
         status = plan_steps(f, o);
     else if (f->gradient == nevh_exact)
         status = nevh__field_verify(f, o);
-    for (size_t i = 0; i < f->n_terms; i++)
-        f->terms[i].values = 0;
-    f->gradients = 0;
-    if (!status)
-        f->report = (nevh__report){0};
+    nevh__field_forget(f, status);
     if (!status && !nevh__single_plan(f))
         status = nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
     return status;

@@ -81,11 +81,20 @@ int nevh__field_verify(nevh_field *f, const nevh_options *o) {
     for (size_t i = 0; !status && i < f->n_terms; i++)
         if (f->terms[i].nv)
             status = nevh__verify(&e, &f->terms[i]);
-    e.samples.count = e.neighbours;
-    if (!status && !o->scale && !nevh__find_samples(&e))
-        status = nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
-    if (!status && !o->scale)
-        set_scales(&e);
     nevh__step_selection_clear(&e);
     return status;
+}
+
+int nevh__field_find_scale(nevh_field *f, const nevh_options *o) {
+    nevh__step_selection e;
+    if (f->gradient != nevh_exact || o->scale || f->scaled)
+        return NEVH_OK;
+    int status = nevh__step_selection_init(&e, f, o);
+    if (!status && !nevh__find_samples(&e))
+        status = nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+    if (!status)
+        set_scales(&e);
+    f->scaled = !status;
+    nevh__step_selection_clear(&e);
+    return nevh__field_forget(f, status);
 }

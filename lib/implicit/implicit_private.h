@@ -139,9 +139,6 @@ nevh__stage_state nevh__stage_judge(nevh__stage_solver *, size_t lane,
 extern const nevh__stage_rule nevh__fixed_point_rule;
 nevh__stage_state nevh__fixed_point_judge(nevh__stage_solver *, size_t lane,
                                           const nevh__stage_progress *);
-/* The largest of a lane's noise over its scale, of 2n variables. */
-double nevh__stage_worst_noise(const nevh_work *, const double noise[],
-                               const double scale[], size_t lane);
 /* Makes that sweep the lane's slopes. */
 void nevh__stage_take(nevh__stage_solver *, size_t lane, size_t stride,
                       const double out[]);

@@ -29,8 +29,9 @@ void nevh__stage_noise(nevh__stage_solver *s, size_t lane) {
         nevh__work_noise(s->work, e->t, q, p, s->noise + w->n, s->noise);
 }
 
-double nevh__stage_worst_noise(const nevh_work *w, const double noise[],
-                               const double scale[], size_t lane) {
+/* The largest of a lane's noise over its scale, of 2n variables. */
+static double worst_noise(const nevh_work *w, const double noise[],
+                          const double scale[], size_t lane) {
     double most = 0;
     for (size_t k = 0; k < 2 * w->n; k++)
         most = fmax(most, noise[k] / scale[k * w->width + lane]);
@@ -47,8 +48,7 @@ static double noise_level(nevh__stage_solver *s, size_t lane) {
     else
         nevh__stage_noise(s, lane);
     return s->status ? 0
-                     : fabs(e->h) *
-                           nevh__stage_worst_noise(w, s->noise, s->scale, lane);
+                     : fabs(e->h) * worst_noise(w, s->noise, s->scale, lane);
 }
 
 bool nevh__stage_small(nevh__stage_solver *s, size_t lane, double change) {

@@ -104,30 +104,30 @@ static void tell(const nevh__compiler_output *output, int status,
 
 static bool compile(const char *source, const char *const flags[],
                     const char *folder, const char *object,
-                    char why[NEVH__WHY_NATIVE]) {
+                    const sigset_t *before, char why[NEVH__WHY_NATIVE]) {
     nevh__compiler_output output = {.used = 0};
-    sigset_t before;
     char *path = nevh__text("%s/steps.c", folder);
     int status = -1;
-    nevh__signals_hold(&before);
     if (path && write_source(path, source))
-        status = nevh__compile(flags, path, object, folder, &before, &output);
+        status = nevh__compile(flags, path, object, folder, before, &output);
     if (status)
         tell(&output, status, why);
     free(path);
-    nevh__signals_release(&before);
     return status == 0;
 }
 
+/* A signal takes its course when the folder is gone. */
 static void *build(const char *source, const char *const flags[],
                    const char *cache, const char *kept,
                    char why[NEVH__WHY_NATIVE]) {
+    sigset_t before;
+    nevh__signals_hold(&before);
     char *folder = nevh__new_folder();
     char *object = folder ? nevh__text("%s/steps.so", folder) : NULL;
     void *library = NULL;
     if (!object)
         snprintf(why, NEVH__WHY_NATIVE, "no folder can be made to compile in");
-    else if (compile(source, flags, folder, object, why)) {
+    else if (compile(source, flags, folder, object, &before, why)) {
         bool stored = kept && nevh__cache_store(cache, object, kept);
         library = open_library(stored ? kept : object, why);
     }
@@ -135,6 +135,7 @@ static void *build(const char *source, const char *const flags[],
         nevh__folder_remove(folder);
     free(object);
     free(folder);
+    nevh__signals_release(&before);
     return library;
 }
 

@@ -1,108 +1,15 @@
 /* nevh: a tape as C text.
 
-   The text of each operation and of its derivatives is that of the table which
-   the tape itself runs on, with names for its arguments.  Text and tape do the
-   same operations in the same order, but that of 0 times infinity there is NaN
+   Text and tape do the same operations in the same order, but that of 0 times infinity there is NaN
    where the chain rule of the tape has 0: who calls such text looks for NaN,
    and asks the tape.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/tape_inside_private.h"
-#include "expression/tape_operations_private.h"
-#include "native/writer_private.h"
-#include <ctype.h>
+#include "native/operation_text_private.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Stringified, not expanded. */
-#define TEXTS(identifier, value, by_a, by_b) {#value, #by_a, #by_b},
-static const struct {
-    const char *value, *by_a, *by_b;
-} texts[] = {NEVH__FORMULAS(TEXTS)};
-#undef TEXTS
-
-/* What a name in the table stands for. */
-typedef struct {
-    const char *a, *b, *y, *g;
-    bool wide, scalar;
-} meaning;
-
-/* Which operations take vectors as they stand in the table. */
-static bool is_lanewise(unsigned operation) {
-    switch (operation) {
-    case NEVH__ATAN2:
-    case NEVH__ASINH:
-    case NEVH__ACOSH:
-    case NEVH__ATANH:
-    case NEVH__LOG10:
-    case NEVH__HYPOT:
-    case NEVH__ABS:
-    case NEVH__MIN:
-    case NEVH__MAX:
-    case NEVH__SIGN:
-    case NEVH__MOD:
-    case NEVH__FLOOR:
-        return true;
-    default:
-        return false;
-    }
-}
-
-/* Of GSL's or nevh's, which compiled text would have to be linked with. */
-static bool is_special(unsigned operation) {
-    return operation == NEVH__BESSEL_J0 || operation == NEVH__BESSEL_J1 ||
-           operation == NEVH__ELLIPTIC_K || operation == NEVH__ELLIPTIC_E ||
-           operation == NEVH__ECCENTRIC;
-}
-
-static bool is(const char *word, size_t length, const char *name) {
-    return strlen(name) == length && strncmp(word, name, length) == 0;
-}
-
-/* One word of the table; returns where the text goes on. */
-static const char *write_word(nevh__writer *w, const char *word, size_t length,
-                              const meaning *m) {
-    const char *after = word + length;
-    const char *name = is(word, length, "a")   ? m->a
-                       : is(word, length, "b") ? m->b
-                       : is(word, length, "y") ? m->y
-                       : is(word, length, "g") ? m->g
-                                               : NULL;
-    if (name)
-        nevh__write(w, "%s", name);
-    else if (is(word, length, "NEVH__F")) { /* NEVH__F(sin) */
-        size_t bytes = strcspn(after, ")") - 1;
-        nevh__write(w, "%s%.*s",
-                    m->wide     ? "wide_"
-                    : m->scalar ? ""
-                                : "lane_",
-                    (int)bytes, after + 1);
-        after += bytes + 2;
-    } else if (is(word, length, "NEVH__G"))
-        nevh__write(w, "%s * ", m->g);
-    else if (is(word, length, "NEVH__LN10"))
-        nevh__write(w, "2.302585092994045684");
-    else if (length > 6 && strncmp(word, "nevh__", 6) == 0)
-        nevh__write(w, "nevh_%.*s", (int)length - 6, word + 6);
-    else
-        nevh__write(w, "%.*s", (int)length, word);
-    return after;
-}
-
-static void write_text(nevh__writer *w, const char *text, const meaning *m) {
-    while (*text) {
-        size_t length = 0;
-        while (isalnum((unsigned char)text[length]) || text[length] == '_')
-            length++;
-        if (length && !isdigit((unsigned char)*text))
-            text = write_word(w, text, length, m);
-        else {
-            size_t bytes = length ? length : 1;
-            nevh__write(w, "%.*s", (int)bytes, text);
-            text += bytes;
-        }
-    }
-}
 
 /* Where the numbers of a tape are: which operation wrote what a slot holds. */
 typedef struct nevh__reading {
@@ -112,6 +19,8 @@ typedef struct nevh__reading {
     bool *cosine;     /* by operand, whether it is the second result */
     bool *begun, *begun_cosine; /* by result: whether it has an adjoint */
     bool *variable[NEVH__VARIABLES];
+    uint32_t last; /* which wrote the tape's result, if a slot holds that */
+    bool last_cosine;
 } reading;
 
 static void free_reading(reading *r) {
@@ -175,54 +84,8 @@ static double bound_of(const nevh__formula_text *f, const reading *r,
     return o.kind == NEVH__NUMBER ? fabs(f->tape->numbers[o.at]) : INFINITY;
 }
 
-/* How large a result can be where its arguments are finite. */
-static double bound(unsigned operation, double a, double b) {
-    switch (operation) {
-    case NEVH__SIN:
-    case NEVH__COS:
-    case NEVH__SINCOS:
-    case NEVH__TANH:
-    case NEVH__SIGN:
-        return 1;
-    case NEVH__ATAN:
-    case NEVH__ATAN2:
-        return 4;
-    case NEVH__NEGATE:
-    case NEVH__ABS:
-        return a;
-    case NEVH__ADD:
-    case NEVH__SUBTRACT:
-        return a + b;
-    case NEVH__MULTIPLY:
-        return a * b;
-    default:
-        return INFINITY;
-    }
-}
-
 static const char *type_of(const nevh__formula_text *f) {
     return f->wide ? "wide" : "double";
-}
-
-static void write_operation(nevh__writer *w, const nevh__formula_text *f,
-                            unsigned operation, const char *text,
-                            const char *to, const meaning *m) {
-    bool calls = f->scalar && strstr(text, "NEVH__F(");
-    if (!f->wide || (!calls && !is_lanewise(operation))) {
-        write_text(w, text, m);
-        nevh__write(w, ";\n");
-        return;
-    }
-    meaning one = {"a_", "b_", "y_", "g_", false, f->scalar};
-    nevh__write(w, "%s;\n    EACH_LANE { double a_ = %s[lane], b_ = %s[lane]",
-                m->a, m->a, m->b);
-    if (m->y)
-        nevh__write(w, ", y_ = %s[lane]", m->y);
-    if (m->g)
-        nevh__write(w, ", g_ = %s[lane]", m->g);
-    nevh__write(w, "; (void)a_, (void)b_; %s[lane] = ", to);
-    write_text(w, text, &one);
-    nevh__write(w, "; }\n");
 }
 
 /* One operation's operands and results. */
@@ -252,7 +115,7 @@ static void trace(const nevh__formula_text *f, reading *r, uint32_t i) {
         }
     double a = bound_of(f, r, at->a, r->a[i], r->cosine[2 * i]);
     double b = bound_of(f, r, at->b, r->b[i], r->cosine[2 * i + 1]);
-    r->bound[i] = bound(at->operation, a, b);
+    r->bound[i] = nevh__operation_bound(at->operation, a, b);
     r->holder[at->to] = i;
     r->holder[slots + at->to] = 0;
     if (at->operation == NEVH__SINCOS) {
@@ -290,28 +153,27 @@ static bool write_forwards(nevh__writer *w, nevh__formula_text *f, reading *r,
     for (uint32_t i = 0; i < tape->length; i++) {
         const nevh__instruction *at = &tape->code[i];
         names x;
-        if (is_special(at->operation)) {
+        if (nevh__operation_is_special(at->operation)) {
             w->refusal = "it calls a function that libm does not have";
             return false;
         }
         trace(f, r, i);
         find_names(w, f, r, i, &x);
-        meaning m = {x.a, x.b, NULL, NULL, f->wide, f->scalar};
-        nevh__write(w, "    %s %s = ", type_of(f), x.y);
+        nevh__operation_names m = {x.a, x.b, NULL, NULL, f->wide, f->scalar};
         bool pair = at->operation == NEVH__SINCOS;
-        unsigned first = pair ? NEVH__SIN : at->operation;
-        write_operation(w, f, first, texts[first].value, x.y, &m);
-        if (pair) {
-            nevh__write(w, "    %s %s = ", type_of(f), x.also);
-            write_operation(w, f, NEVH__COS, texts[NEVH__COS].value, x.also,
-                            &m);
-        }
+        nevh__write_operation(w, pair ? NEVH__SIN : at->operation,
+                              NEVH__OPERATION_VALUE, x.y, &m);
+        if (pair)
+            nevh__write_operation(w, NEVH__COS, NEVH__OPERATION_VALUE, x.also,
+                                  &m);
     }
     nevh__tape_operand o = tape->result;
-    uint32_t from = o.kind == NEVH__SLOT ? r->holder[o.at] : 0;
-    bool cosine = o.kind == NEVH__SLOT && r->holder[tape->slots + o.at];
-    operand_name(w, f, o, from, cosine, result);
-    *most = bound_of(f, r, o, from, cosine);
+    if (o.kind == NEVH__SLOT) {
+        r->last = r->holder[o.at];
+        r->last_cosine = r->holder[tape->slots + o.at];
+    }
+    operand_name(w, f, o, r->last, r->last_cosine, result);
+    *most = bound_of(f, r, o, r->last, r->last_cosine);
     return true;
 }
 
@@ -368,12 +230,10 @@ static void hand_on(nevh__writer *w, const nevh__formula_text *f,
         *begun = true;
         return;
     }
-    nevh__write(w, "    %s %s = ", type_of(f), product);
-    meaning m = {x->a, x->b, x->y, g, f->wide, f->scalar};
-    write_operation(w, f, at->operation,
-                    second ? texts[at->operation].by_b
-                           : texts[at->operation].by_a,
-                    product, &m);
+    nevh__write_operation(
+        w, at->operation, second ? NEVH__OPERATION_BY_B : NEVH__OPERATION_BY_A,
+        product,
+        &(nevh__operation_names){x->a, x->b, x->y, g, f->wide, f->scalar});
     if (*begun)
         nevh__write(w, "    %s += %s;\n", to, product);
     else
@@ -410,9 +270,7 @@ bool nevh__write_gradient(nevh__writer *w, nevh__formula_text *f,
     bool fine = write_forwards(w, f, &r, result, &most);
     nevh__tape_operand o = f->tape->result;
     if (fine && o.by & wanted) {
-        uint32_t from = o.kind == NEVH__SLOT ? r.holder[o.at] : 0;
-        bool cosine = o.kind == NEVH__SLOT && r.holder[f->tape->slots + o.at];
-        bool *begun = adjoint_name(f, &r, o, from, cosine, to);
+        bool *begun = adjoint_name(f, &r, o, r.last, r.last_cosine, to);
         if (!(most < safe))
             nevh__write(w, "    bad += %s - %s;\n", result, result);
         nevh__write(w, "    %s %s = %s;\n", type_of(f), to,
@@ -469,16 +327,18 @@ static void write_parts(nevh__writer *w, const nevh__formula_text *f,
         nevh__write(w, "    double iv%u_%u = ", f->id, i);
         if (a) {
             part_name(f, at->a, r->a[i], cosine_a, g);
-            write_text(w, texts[at->operation].by_a,
-                       &(meaning){x.a, x.b, x.y, g, false, true});
+            nevh__write_expression(
+                w, at->operation, NEVH__OPERATION_BY_A,
+                &(nevh__operation_names){x.a, x.b, x.y, g, false, true});
         }
         if (a && b)
             nevh__write(w, " + ");
         if (b) {
             nevh__write(w, "(");
             part_name(f, at->b, r->b[i], cosine_b, g);
-            write_text(w, texts[at->operation].by_b,
-                       &(meaning){x.a, x.b, x.y, g, false, true});
+            nevh__write_expression(
+                w, at->operation, NEVH__OPERATION_BY_B,
+                &(nevh__operation_names){x.a, x.b, x.y, g, false, true});
             nevh__write(w, ")");
         }
         nevh__write(w, ";\n");
@@ -497,12 +357,10 @@ bool nevh__write_complex(nevh__writer *w, nevh__formula_text *f,
     bool fine = write_forwards(w, f, &r, result, &most);
     if (fine) {
         nevh__tape_operand o = f->tape->result;
-        uint32_t from = o.kind == NEVH__SLOT ? r.holder[o.at] : 0;
-        bool cosine = o.kind == NEVH__SLOT && r.holder[f->tape->slots + o.at];
         nevh__write(w, "    bad += %s - %s;\n", result, result);
         write_parts(w, f, &r, by, k);
-        if (moves(&r, o, from, cosine, by, k))
-            part_name(f, o, from, cosine, result);
+        if (moves(&r, o, r.last, r.last_cosine, by, k))
+            part_name(f, o, r.last, r.last_cosine, result);
         else
             snprintf(result, NEVH__NAME, "0.0");
     }

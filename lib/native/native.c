@@ -9,9 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Seconds that the steps foreseen take from the tape, from which on compiling
-   (0.1 s), and loading what was compiled, pay. */
-static const double compiling_pays = 0.3, loading_pays = 2e-3;
+/* Seconds that the steps foreseen take from the tape, from which on loading what
+   was compiled pays. */
+static const double loading_pays = 2e-3;
+/* Seconds that a compiler takes for a character, and how many times what it makes
+   is used, being kept: numbers, steps and spans are no part of the text. */
+static const double a_character = 6e-6, uses = 3;
 
 void nevh__native_free(nevh__native *x) {
     if (!x)
@@ -21,6 +24,7 @@ void nevh__native_free(nevh__native *x) {
     free(x->numbers);
     free(x->weights);
     free(x->times);
+    free(x->room);
     free(x->kick_values);
     free(x->drift_values);
     free(x);
@@ -60,15 +64,16 @@ static const struct {
     const nevh_kernel *kernel;
     bool (*write)(nevh__writer *, nevh_work *);
     bool (*fill)(nevh__native *, const nevh_work *); /* NULL: of series */
+    bool loops; /* takes states of any length */
 } families[] = {
-    {&nevh_splitting_kernel, nevh__write_splitting, fill_splitting},
-    {&nevh_runge_kutta_kernel, nevh__write_runge_kutta, fill_runge_kutta},
-    {&nevh_nystrom_kernel, nevh__write_nystrom, fill_nystrom},
-    {&nevh_gauss_kernel, nevh__write_stages, fill_stages},
-    {&nevh_lobatto_kernel, nevh__write_stages, fill_stages},
-    {&nevh_implicit_euler_kernel, nevh__write_stages, fill_stages},
-    {&nevh__taylor_kernel, nevh__write_series, NULL}};
-/* The steps' copies of the state stand on the stack. */
+    {&nevh_splitting_kernel, nevh__write_splitting, fill_splitting, true},
+    {&nevh_runge_kutta_kernel, nevh__write_runge_kutta, fill_runge_kutta, true},
+    {&nevh_nystrom_kernel, nevh__write_nystrom, fill_nystrom, false},
+    {&nevh_gauss_kernel, nevh__write_stages, fill_stages, false},
+    {&nevh_lobatto_kernel, nevh__write_stages, fill_stages, false},
+    {&nevh_implicit_euler_kernel, nevh__write_stages, fill_stages, false},
+    {&nevh__taylor_kernel, nevh__write_series, NULL, false}};
+/* The steps' copies of the state stand on the stack, but for those of loops. */
 enum { MOST_NUMBERS = 8192 };
 enum { FAMILIES = sizeof families / sizeof *families };
 
@@ -97,6 +102,11 @@ static size_t stages_of(const nevh_work *w) {
                : 1;
 }
 
+static bool has_loops(const nevh_work *w) {
+    return w->width == 1 && families[family_of(w)].loops &&
+           nevh__has_loops(w->field);
+}
+
 /* What is in the way; NULL: nothing that is known yet. */
 static const char *obstacle(const nevh_work *w) {
     return of_series(w) ? NULL
@@ -106,7 +116,7 @@ static const char *obstacle(const nevh_work *w) {
            : w->accounts ? "the balance of the energy is kept"
            : w->width % NEVH__LANES && w->width > 1
                ? "orbits side by side fill no vectors"
-           : w->n * w->width * stages_of(w) > MOST_NUMBERS
+           : w->n * w->width * stages_of(w) > MOST_NUMBERS && !has_loops(w)
                ? "the state is too large"
            : w->options->tolerance > 0 ? "steps adapt to a tolerance"
                                        : NULL;
@@ -115,6 +125,7 @@ static const char *obstacle(const nevh_work *w) {
 bool nevh__native_write(nevh__writer *text, nevh_work *w) {
     text->refusal = obstacle(w);
     text->width = w->width;
+    text->loops = !text->refusal && has_loops(w);
     return !text->refusal && families[family_of(w)].write(text, w);
 }
 
@@ -132,8 +143,18 @@ bool nevh__native_fill(nevh__native *x, const nevh_work *w) {
     return true;
 }
 
-/* Gradients that a series takes as long as. */
-enum { SERIES = 30 };
+/* Gradients that a series takes as long as, and an implicit step of few stages,
+   which are taken side by side. */
+enum { SERIES = 30, SWEEPS = 12 };
+
+static double gradients_of(const nevh_work *w) {
+    const nevh_integrator *scheme = w->integrator;
+    if (of_series(w))
+        return SERIES;
+    if (families[family_of(w)].fill == fill_stages)
+        return SWEEPS * (1 + (double)scheme->stages / NEVH__LANES);
+    return scheme->gradients ? scheme->gradients : 1;
+}
 
 /* A guess of what the steps foreseen take from the tape. */
 static double seconds_foreseen(const nevh_work *w) {
@@ -147,10 +168,19 @@ static double seconds_foreseen(const nevh_work *w) {
     }
     if (w->width > 1) /* vectors of them */
         each *= (double)w->width / 4;
-    double gradients = of_series(w)               ? SERIES
-                       : w->integrator->gradients ? w->integrator->gradients
-                                                  : 1;
-    return w->options->steps_foreseen * gradients * each;
+    return w->options->steps_foreseen * gradients_of(w) * each;
+}
+
+/* Whether compiling a text takes less. */
+static bool compiling_pays(const nevh_work *w, size_t characters) {
+    const char *cache = w->options->native_cache;
+    double times = cache && !*cache ? 1 : uses;
+    return w->options->native == NEVH_NATIVE_ALWAYS ||
+           times * seconds_foreseen(w) > a_character * (double)characters;
+}
+
+bool nevh__native_pays(const nevh_work *w) {
+    return w->native && compiling_pays(w, w->native->characters);
 }
 
 static bool take_steps(nevh__native *x) {
@@ -165,43 +195,54 @@ static bool take_series(nevh_work *w, const nevh__native *x) {
     return code;
 }
 
+static bool make_room(nevh__native *x, size_t size) {
+    x->room = nevh__array(size + NEVH__LANES, sizeof *x->room);
+    return x->room;
+}
+
 static bool plan(nevh_work *w, nevh__native *x, nevh__writer *text,
-                 bool compile, char why[NEVH__WHY_NATIVE]) {
+                 char why[NEVH__WHY_NATIVE]) {
+    bool always = w->options->native == NEVH_NATIVE_ALWAYS;
     nevh__write_prelude(text);
-    if (!nevh__native_write(text, w) && text->refusal)
+    if (!nevh__native_write(text, w) && text->refusal && always)
         snprintf(why, NEVH__WHY_NATIVE, "%s", text->refusal);
     if (text->refusal || text->failed || !nevh__native_fill(x, w))
         return false;
+    x->characters = strlen(text->text);
+    bool compile = compiling_pays(w, x->characters);
     x->library =
         nevh__native_load(text->text, w->options->native_cache, compile, why);
+    if (!x->library && !compile)
+        why[0] = '\0';
     if (!x->library)
         return false;
     x->numbers = text->numbers;
     text->numbers = NULL;
+    if (text->rows && !make_room(x, text->rows * nevh__padded(w->n)))
+        return false;
     return of_series(w) ? take_series(w, x) : take_steps(x);
 }
 
 void nevh__native_plan(nevh_work *w, char why[NEVH__WHY_NATIVE]) {
     const nevh_options *o = w->options;
     bool always = o->native == NEVH_NATIVE_ALWAYS;
-    double seconds = seconds_foreseen(w);
     nevh__writer text = {0};
     why[0] = '\0';
-    if (o->native == NEVH_NATIVE_NEVER || (!always && seconds < loading_pays))
+    if (w->native || o->native == NEVH_NATIVE_NEVER)
         return;
     if (obstacle(w)) {
         if (always)
             snprintf(why, NEVH__WHY_NATIVE, "%s", obstacle(w));
         return;
     }
+    if (!always && seconds_foreseen(w) < loading_pays)
+        return;
     nevh__native *x = nevh__array(1, sizeof *x);
-    bool compile = always || seconds > compiling_pays;
-    if (x && plan(w, x, &text, compile, why))
+    if (x && plan(w, x, &text, why)) {
         w->native = x;
-    else
-        nevh__native_free(x);
-    if (w->native || !compile)
         why[0] = '\0';
+    } else
+        nevh__native_free(x);
     nevh__writer_free(&text);
 }
 
@@ -232,7 +273,8 @@ static size_t take(const nevh_work *w, double t0, double h, size_t from,
                    size_t steps, double q[], double p[], size_t counted[3]) {
     const nevh__native *x = w->native;
     return x->steps(x->numbers, x->weights, x->times, x->kicks + x->drifts, t0,
-                    h, from, steps, q, p, w->memory, counted);
+                    h, from, steps, q, p, w->memory, counted,
+                    x->room ? nevh__aligned(x->room) : NULL);
 }
 
 /* Gradients at stages, and values that told the noise of differences. */

@@ -21,7 +21,8 @@ typedef size_t (*nevh__native_steps)(const double numbers[], double weights[],
                                      double times[], size_t operations,
                                      double t0, double h, size_t from,
                                      size_t steps, double q[], double p[],
-                                     double memory[], size_t counted[3]);
+                                     double memory[], size_t counted[3],
+                                     double room[]);
 
 enum { NEVH__WHY_NATIVE = 400 };
 
@@ -29,6 +30,8 @@ typedef struct nevh__native {
     void *library;
     nevh__native_steps steps; /* NULL: of series, which the kernel takes */
     double *numbers, *weights, *times;
+    size_t characters; /* of its text */
+    double *room;      /* of states that are too long for the stack, or NULL */
     size_t kicks, drifts; /* of a step */
     bool keeps, kicks_first;
     size_t stages; /* of an implicit step; 0: it is explicit */
@@ -57,6 +60,8 @@ bool nevh__write_program(nevh__writer *, nevh_work *, const nevh_program *);
 /* Makes w->native if that is wanted, possible and worth while; `why`: else what
    is in the way, or "". */
 void nevh__native_plan(nevh_work *, char why[NEVH__WHY_NATIVE]);
+/* Whether there is one, and the steps foreseen make up for compiling it. */
+bool nevh__native_pays(const nevh_work *);
 void nevh__native_free(nevh__native *); /* NULL is allowed */
 /* Takes up to `steps` steps of h, step i from t0 + i h, and counts them: the
    first is number `from`.

@@ -13,9 +13,10 @@ static void name_at_state(nevh__writer *w, const nevh__formula_text *f,
                           char name[NEVH__NAME]) {
     const place *at = f->data;
     const nevh_term *is = &at->term->term->decl;
-    (void)w;
     if (kind == NEVH__T)
         snprintf(name, NEVH__NAME, "t");
+    else if (kind == NEVH__C && w->readable)
+        nevh__number_text(is->c[f->instance * is->nc + k], name);
     else if (kind == NEVH__C)
         snprintf(name, NEVH__NAME, "N[%zu]",
                  at->constants + f->instance * is->nc + k);
@@ -42,16 +43,25 @@ static bool write_instance(nevh__writer *w, nevh__formula_text *f) {
     return true;
 }
 
+static void write_head(nevh__writer *w) {
+    static const char head[] =
+        "static $1double worst_noise($2double t, const double *y,\n"
+        "                          const double *scale, double *bad) {\n"
+        "    double noise[2 * DOF] = {0}, most = 0;\n"
+        "    (void)t;\n";
+    if (w->readable)
+        nevh__write(w, "/* The largest noise of a derivative, over the scale: "
+                       "H is rounded by\n   2^-52 |H|, and a difference "
+                       "divides that by its step. */\n");
+    nevh__write_filled(
+        w, head,
+        (const char *const[]){w->readable ? "" : "__attribute__((noinline)) ",
+                              w->readable ? "" : "const double *N, "});
+}
+
 bool nevh__write_noise(nevh__writer *w, const nevh_field *f) {
     bool fine = true;
-    if (!f->gradient->offsets) {
-        nevh__write(w, "#define worst_noise(N, t, y, scale, bad) 0.0\n");
-        return true;
-    }
-    nevh__write(w, "static __attribute__((noinline)) double worst_noise(const "
-                   "double *N, double t, const double *y, const double *scale, "
-                   "double *bad) {\n"
-                   "    double noise[2 * DOF] = {0}, most = 0;\n");
+    write_head(w);
     for (size_t i = 0; fine && i < f->n_terms; i++) {
         place at = {&f->terms[i], 0};
         const nevh_term *is = &at.term->term->decl;
@@ -61,7 +71,8 @@ bool nevh__write_noise(nevh__writer *w, const nevh_field *f) {
                                       .data = &at};
         if (!at.term->delta)
             continue;
-        at.constants = nevh__writer_share(w, is->count * is->nc, is->c);
+        if (!w->readable)
+            at.constants = nevh__writer_share(w, is->count * is->nc, is->c);
         for (size_t k = 0; fine && k < is->count; k++) {
             formula.instance = k;
             fine = write_instance(w, &formula);
@@ -70,6 +81,6 @@ bool nevh__write_noise(nevh__writer *w, const nevh_field *f) {
     nevh__write(w, "    NEVH__EACH(k, 1, 2 * DOF) {\n"
                    "        double part = noise[k] / scale[k];\n"
                    "        most = part > most ? part : most;\n"
-                   "    }\n    return most;\n}\n");
+                   "    }\n    return most;\n}\n\n");
     return fine;
 }

@@ -42,6 +42,7 @@ static void rename_all(char *text) {
     static const struct {
         const char *from, *to;
     } names[] = {{"nevh__number", "double"},
+                 {"NEVH_LANES(", "EACH_LANE("},
                  {"NEVH__INLINE", "static"},
                  {"nevh__", ""},
                  {"NEVH__", ""},
@@ -86,10 +87,11 @@ static char **split_lines(char *text, size_t *count) {
 /* Whether "    double NAME = ...;" is asked for by a line that is left, up to
    the function's end. */
 static bool is_of_use(char **lines, size_t i, size_t count) {
-    static const char begin[] = "    double ";
-    if (!lines[i] || strncmp(lines[i], begin, sizeof begin - 1) != 0)
+    static const char begin[] = "double ";
+    const char *name = lines[i] ? lines[i] + strspn(lines[i], " ") : "";
+    if (name == lines[i] || strncmp(name, begin, sizeof begin - 1) != 0)
         return true;
-    const char *name = lines[i] + sizeof begin - 1;
+    name += sizeof begin - 1;
     size_t length = 0;
     while (is_word(name[length]))
         length++;
@@ -163,51 +165,156 @@ static bool write_used(nevh__writer *w, char *text) {
     return true;
 }
 
-/* Letters, digits and what names of elements have; anything else of a name
-   stays out of the text. */
-static void write_name(nevh__writer *w, const char *name) {
-    for (; *name; name++) {
-        unsigned char c = (unsigned char)*name;
-        bool plain = isalnum(c) || c == '_' || c == '[' || c == ']' || c > 127;
-        nevh__write(w, "%c", plain ? c : '-');
+/* What of nevh's row the steps alone make: errors of the energy. */
+static const char energy_row[] =
+    "/* The shortest of 15 to 17 digits that is the number again. */\n"
+    "static void print_number(double x) {\n"
+    "    char text[40];\n"
+    "    for (int digits = 15; digits <= 17; digits++) {\n"
+    "        snprintf(text, sizeof text, \"%.*g\", digits, x);\n"
+    "        if (strtod(text, NULL) == x)\n"
+    "            break;\n"
+    "    }\n"
+    "    printf(\",%s\", text);\n}\n\n"
+    "/* Errors of the energy after each step, relative to a scale: the largest,\n"
+    "   the root of the mean square, the last, and the slope of a straight line\n"
+    "   through all of them, a row as nevh compare prints it. */\n"
+    "static int print_energy(double t0, double h, size_t steps, double *q,\n"
+    "                        double *p, double *memory) {\n"
+    "    const double scale = $1, start = energy(t0, q, p);\n"
+    "    double error = 0, most = 0, squares = 0;\n"
+    "    double mean_t = 0, mean_error = 0, tt = 0, te = 0;\n"
+    "    for (size_t i = 0; i <= steps; i++) {\n"
+    "        double t = t0 + (double)i * h;\n"
+    "        double dt = t - mean_t, count = (double)(i + 1);\n"
+    "        if (i > 0 && advance(t0, h, i - 1, 1, q, p, memory) == 0)\n"
+    "            return fail(t0 + (double)(i - 1) * h);\n"
+    "        error = (energy(t, q, p) - start) / scale;\n"
+    "        most = fmax(most, fabs(error));\n"
+    "        squares += error * error;\n"
+    "        mean_t += dt / count;\n"
+    "        mean_error += (error - mean_error) / count;\n"
+    "        tt += dt * (t - mean_t);\n"
+    "        te += dt * (error - mean_error);\n"
+    "    }\n"
+    "    puts(\"integrator,gradient,dt,steps,max_energy_error,\"\n"
+    "         \"rms_energy_error,final_energy_error,energy_drift,sweeps\");\n"
+    "    printf(\"$2,$3\");\n"
+    "    print_number(h);\n"
+    "    printf(\",%zu\", steps);\n"
+    "    print_number(most);\n"
+    "    print_number(sqrt(squares / (double)(steps + 1)));\n"
+    "    print_number(error);\n"
+    "    print_number(tt > 0 ? te / tt : 0);\n"
+    "    printf(\",%.0f\\n\", $4);\n"
+    "    return 0;\n}\n\n";
+
+static const char trajectory[] =
+    "static void print_state(double t, const double *q, const double *p) {\n"
+    "    printf(\"%.17g\", t);\n"
+    "    EACH(k, 1, DOF)\n"
+    "        printf(\",%.17g\", q[k]);\n"
+    "    EACH(k, 1, DOF)\n"
+    "        printf(\",%.17g\", p[k]);\n"
+    "    puts(\"\");\n}\n\n"
+    "/* Rows of t, q and p, `every` steps apart, and the last one. */\n"
+    "static int print_trajectory(double t0, double h, size_t steps, size_t "
+    "every,\n"
+    "                            double *q, double *p, double *memory) {\n"
+    "    size_t taken = 0;\n"
+    "$1"
+    "    print_state(t0, q, p);\n"
+    "    while (taken < steps) {\n"
+    "        size_t next = steps - taken < every ? steps - taken : every;\n"
+    "        size_t done = advance(t0, h, taken, next, q, p, memory);\n"
+    "        taken += done;\n"
+    "        if (done < next)\n"
+    "            return fail(t0 + (double)taken * h);\n"
+    "        print_state(t0 + (double)taken * h, q, p);\n"
+    "    }\n"
+    "    return 0;\n}\n\n";
+
+static void write_fail(nevh__writer *w, bool implicit) {
+    nevh__write(w,
+                "static int fail(double t) {\n"
+                "    fprintf(stderr,\n            \"the step from t = %%.9g "
+                "%s\\n\",\n            t);\n"
+                "    return 1;\n}\n\n",
+                implicit
+                    ? "cannot be taken: fixed-point iteration does not \"\n"
+                      "            \"get to the stages' slopes; take a "
+                      "smaller step"
+                    : "leads to no finite numbers");
+}
+
+static void write_energy_row(nevh__writer *w, const nevh_work *work,
+                             double energy_scale) {
+    char scale[NEVH__NAME];
+    nevh__number_text(energy_scale, scale);
+    nevh__write_filled(
+        w, energy_row,
+        (const char *const[]){scale, work->integrator->name,
+                              nevh_gradient_name(work->field->gradient),
+                              w->stages ? "memory[SWEEPS_AT]" : "0.0"});
+}
+
+/* "t,x,p_x", in lines that compilers take and people read. */
+static void write_titles(nevh__writer *w, size_t n, const char *const names[]) {
+    enum { LINE = 60 };
+    size_t begin = w->used;
+    nevh__write(w, "    fputs(\"t");
+    for (size_t k = 0; k < 2 * n; k++) {
+        nevh__write(w, k < n ? "," : ",p_");
+        nevh__write_word(w, names[k % n]);
+        if (w->used - begin > LINE && k + 1 < 2 * n) {
+            nevh__write(w, "\", stdout);\n");
+            begin = w->used;
+            nevh__write(w, "    fputs(\"");
+        }
     }
+    nevh__write(w, "\\n\", stdout);\n");
+}
+
+static void write_trajectory(nevh__writer *w, size_t n,
+                             const char *const names[]) {
+    nevh__writer titles = {0};
+    write_titles(&titles, n, names);
+    w->failed |= titles.failed;
+    if (!titles.failed)
+        nevh__write_filled(w, trajectory, (const char *const[]){titles.text});
+    nevh__writer_free(&titles);
 }
 
 static void write_main(nevh__writer *w, const nevh_work *work,
                        const nevh_program *p) {
     const nevh_options *o = work->options;
+    bool energy = p->energy_scale > 0;
     char t[NEVH__NAME], h[NEVH__NAME];
     nevh__number_text(o->t, t);
     nevh__number_text(p->h, h);
-    nevh__write(w, "int main(void) {\n    ");
-    nevh__write_numbers(w, "double q", work->n, o->q);
+    write_fail(w, w->stages);
+    write_trajectory(w, work->n, p->names);
+    if (energy)
+        write_energy_row(w, work, p->energy_scale);
+    nevh__write(w, "int main(%s) {\n    ",
+                energy ? "int arguments, char **argument" : "void");
+    nevh__write_numbers(w, w->loops ? "static double q" : "double q", work->n,
+                        o->q);
     nevh__write(w, "    ");
-    nevh__write_numbers(w, "double p", work->n, o->p);
+    nevh__write_numbers(w, w->loops ? "static double p" : "double p", work->n,
+                        o->p);
     nevh__write(w,
-                "    double memory[%zu] = {0};\n    const double t0 = %s, h = "
-                "%s;\n    const size_t steps = %zu, every = %zu;\n    puts(\"t",
-                work->memory_rows, t, h, p->steps, p->every);
-    for (size_t k = 0; k < 2 * work->n; k++) {
-        nevh__write(w, k < work->n ? "," : ",p_");
-        write_name(w, p->names[k % work->n]);
-    }
-    nevh__write(
-        w,
-        "\");\n    for (size_t i = 0;; i += every) {\n"
-        "        size_t next = steps - i < every ? steps - i : every;\n"
-        "        printf(\"%%.17g\", t0 + (double)i * h);\n"
-        "        for (int k = 0; k < %zu; k++)\n"
-        "            printf(\",%%.17g\", q[k]);\n"
-        "        for (int k = 0; k < %zu; k++)\n"
-        "            printf(\",%%.17g\", p[k]);\n"
-        "        puts(\"\");\n"
-        "        if (next == 0)\n            return 0;\n"
-        "        if (advance(t0, h, i, next, q, p, memory) < next)\n"
-        "            break;\n"
-        "        if (next < every)\n            i -= every - next;\n    }\n"
-        "    fputs(\"the state is not finite any more\\n\", stderr);\n"
-        "    return 1;\n}\n",
-        work->n, work->n);
+                "    %sdouble memory[MEMORY] = {0};\n"
+                "    const double t0 = %s, h = %s;\n"
+                "    const size_t steps = %zu, every = %zu;\n",
+                w->loops ? "static " : "", t, h, p->steps, p->every);
+    if (energy)
+        nevh__write(w, "    if (arguments > 1 && strcmp(argument[1], "
+                       "\"energy\") == 0)\n"
+                       "        return print_energy(t0, h, steps, q, p, "
+                       "memory);\n");
+    nevh__write(w, "    return print_trajectory(t0, h, steps, every, q, p, "
+                   "memory);\n}\n");
 }
 
 static void write_comment(nevh__writer *w, const nevh_work *work,
@@ -217,38 +324,63 @@ static void write_comment(nevh__writer *w, const nevh_work *work,
                 x->source, nevh_gradient_name(work->field->gradient));
     for (size_t k = 0; k < work->n && k < 8; k++) {
         nevh__write(w, "%sq[%zu] is ", k ? ", " : "", k);
-        write_name(w, p->names[k]);
+        nevh__write_word(w, p->names[k]);
         nevh__write(w, " and p[%zu] its momentum", k);
     }
     nevh__write(w,
-                "%s.  Sums are compensated:\n   lost_q and lost_p are digits "
-                "that earlier steps have lost to rounding.\n\n   %s */\n",
+                "%s.  Sums are compensated:\n   what rounding has lost is "
+                "added to the next step.\n\n   %s */\n",
                 work->n > 8 ? " and so on" : "",
                 p->functions
                     ? "advance takes `steps` steps of h, the first "
-                      "being number `from`, and returns how many;\n   M "
-                      "is its memory, zeros at the start."
+                      "being number `from`, and returns how many;\n   "
+                      "double memory[MEMORY] is its memory, zeros at the start."
+                : p->energy_scale > 0
+                    ? "cc -O2 -ffp-contract=off -o prog THIS.c -lm\n"
+                      "   ./prog prints the trajectory, ./prog energy the "
+                      "errors of the energy."
                     : "cc -O2 -ffp-contract=off -o prog THIS.c -lm");
+}
+
+static const char includes[] = "#include <math.h>\n"
+                               "#include <stdbool.h>\n"
+                               "#include <stddef.h>\n";
+
+static void write_helpers(nevh__writer *w, const char *text) {
+    for (size_t i = 0; i < sizeof helpers / sizeof *helpers; i++)
+        if (strstr(text, helpers[i].call))
+            nevh__write(w, "%s\n", helpers[i].text);
+}
+
+/* All that is C: what remains unused is left out. */
+static bool write_body(nevh__writer *body, nevh_work *work,
+                       const nevh_program *p) {
+    if (!nevh__writer_name(body, work->n, p->names) ||
+        !nevh__native_write(body, work))
+        return false;
+    nevh__write(body, "enum { MEMORY = %zu };\n\n",
+                work->memory_rows + body->stages);
+    if (!p->functions && p->energy_scale > 0 &&
+        !nevh__write_energy(body, work->field))
+        return false;
+    if (!p->functions)
+        write_main(body, work, p);
+    return !body->failed;
 }
 
 bool nevh__write_program(nevh__writer *w, nevh_work *work,
                          const nevh_program *p) {
     nevh__writer body = {.readable = true};
-    bool fine = nevh__native_write(&body, work) && !body.failed;
+    bool fine = write_body(&body, work, p);
     w->refusal = body.refusal;
     if (fine) {
         rename_all(body.text);
         write_comment(w, work, p);
-        nevh__write(w,
-                    "#include <math.h>\n#include <stdbool.h>\n#include "
-                    "<stddef.h>\n%s#include <string.h>\n\n",
-                    p->functions ? "" : "#include <stdio.h>\n");
-        for (size_t i = 0; i < sizeof helpers / sizeof *helpers; i++)
-            if (strstr(body.text, helpers[i].call))
-                nevh__write(w, "%s\n", helpers[i].text);
+        nevh__write(w, "%s%s#include <string.h>\n\n", includes,
+                    p->functions ? ""
+                                 : "#include <stdio.h>\n#include <stdlib.h>\n");
+        write_helpers(w, body.text);
         fine = write_used(w, body.text);
-        if (!p->functions)
-            write_main(w, work, p);
     }
     nevh__writer_free(&body);
     return fine && !w->failed;

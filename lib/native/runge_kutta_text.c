@@ -11,8 +11,8 @@ static const char slope[] =
     "    nevh__number *slopes = x->slopes + stage * x->stride;\n"
     "    double t = o->t + times[stage] * o->h;\n"
     "    (void)way;\n"
-    "    *o->bad += kick_slope($1t, x->point, x->point + DOF, slopes + DOF);\n"
-    "    *o->bad += drift_slope($1t, x->point, x->point + DOF, slopes);\n"
+    "    *o->bad += kick_slope($1t, x->point, x->point + DOF, slopes + DOF$3);\n"
+    "    *o->bad += drift_slope($1t, x->point, x->point + DOF, slopes$3);\n"
     "$2"
     "    return 0;\n}\n\n";
 
@@ -26,8 +26,6 @@ static const char owner[] =
     "%s    double t, h;\n    nevh__number *bad;\n};\n\n";
 
 static const char step_begins[] =
-    "{\n"
-    "    nevh__number step[2 * DOF], point[2 * DOF], slopes[$2 * 2 * DOF];\n"
     "    nevh__number bad = {0};\n"
     "    struct nevh__runge_kutta_owner owner = {$1t, h, &bad};\n"
     "    nevh__runge_kutta_step x = {sums, 2 * DOF, 2 * DOF, y, lost,\n"
@@ -68,6 +66,10 @@ static void write_step(nevh__writer *w, size_t stages) {
     char number[24];
     snprintf(number, sizeof number, "%zu", stages);
     nevh__write_step_head(w);
+    nevh__write(w, "{\n");
+    nevh__write_rows(w, "step", 2);
+    nevh__write_rows(w, "point", 2);
+    nevh__write_rows(w, "slopes", 2 * stages);
     nevh__write_filled(w, step_begins,
                        (const char *const[]){w->readable ? "" : "N, ", number});
     if (w->readable)
@@ -87,8 +89,10 @@ static void write_slope(nevh__writer *w, const nevh_work *work) {
         w->failed |= part.failed;
     }
     nevh__write_filled(w, slope,
-                       (const char *const[]){w->readable ? "" : "o->N, ",
-                                             part.text ? part.text : ""});
+                       (const char *const[]){
+                           w->readable ? "" : "o->N, ",
+                           part.text ? part.text : "",
+                           w->loops && !w->readable ? NEVH__ALL_SLOPES : ""});
     nevh__writer_free(&part);
 }
 

@@ -4,14 +4,12 @@
    variable is added in the order in which the field adds it: the same bits.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/tape_inside_private.h"
-#include "native/writer_private.h"
-#include <math.h>
+#include "native/slope_private.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* More text than MOST_BROADCAST is called instead of being repeated. */
-enum { MOST_OPERATIONS = 800, MOST_BROADCAST = 800, LANES = 8 };
+enum { LANES = 8 };
 
 /* What is added to one variable's derivative. */
 typedef struct {
@@ -20,10 +18,7 @@ typedef struct {
 } part;
 
 typedef struct {
-    nevh__writer *w;
-    nevh_field *f;
-    const nevh__planned *term;
-    bool kick;
+    nevh__slope_text of;
     size_t constants; /* of the term, in the table of numbers */
     part *parts;
     size_t count, room;
@@ -34,7 +29,7 @@ static void add_part(sum *s, size_t target, const char *name) {
         size_t room = s->room ? 2 * s->room : 64;
         part *parts = nevh__grow(s->parts, room, sizeof *parts);
         if (!parts) {
-            s->w->failed = true;
+            s->of.w->failed = true;
             return;
         }
         s->parts = parts;
@@ -45,36 +40,21 @@ static void add_part(sum *s, size_t target, const char *name) {
     snprintf(p->name, sizeof p->name, "%s", name);
 }
 
-/* The first of the half's variables, and where they end. */
-static size_t first_of(const sum *s) {
-    return s->kick ? 0 : s->term->nq;
-}
-static size_t end_of(const sum *s) {
-    return s->kick ? s->term->nq : s->term->nv;
-}
-
-static bool is_read(const sum *s, size_t k) {
-    const nevh__tape *tape = s->term->term->decl.params;
-    size_t nq = s->term->nq;
-    return k < nq ? nevh__tape_reads(tape, NEVH__Q, k)
-                  : nevh__tape_reads(tape, NEVH__P, k - nq);
-}
-
 /* At the state. */
 static void name_at_state(nevh__writer *w, const nevh__formula_text *f,
                           nevh__variable kind, size_t k,
                           char name[NEVH__NAME]) {
     const sum *s = f->data;
-    const nevh_term *is = &s->term->term->decl;
+    const nevh_term *is = &s->of.term->term->decl;
     switch (kind) {
     case NEVH__T:
         snprintf(name, NEVH__NAME, f->wide && !w->stages ? "ALL(t)" : "t");
         break;
     case NEVH__Q:
-        snprintf(name, NEVH__NAME, "q[%zu]", is->q[f->instance * is->nq + k]);
+        nevh__state_name(w, false, is->q[f->instance * is->nq + k], name);
         break;
     case NEVH__P:
-        snprintf(name, NEVH__NAME, "p[%zu]", is->p[f->instance * is->np + k]);
+        nevh__state_name(w, true, is->p[f->instance * is->np + k], name);
         break;
     default:
         if (w->readable) {
@@ -87,39 +67,43 @@ static void name_at_state(nevh__writer *w, const nevh__formula_text *f,
 }
 
 static bool write_exact(sum *s) {
-    const nevh_term *is = &s->term->term->decl;
+    const nevh_term *is = &s->of.term->term->decl;
     nevh__formula_text f = {.tape = is->params,
-                            .wide = nevh__has_lanes(s->w),
+                            .wide = nevh__has_lanes(s->of.w),
+                            .scalar = s->of.f->portable,
                             .variable = name_at_state,
                             .data = s};
-    unsigned first = s->w->formulas;
+    unsigned first = s->of.w->formulas;
     for (f.instance = 0; f.instance < is->count; f.instance++)
-        if (!nevh__write_gradient(s->w, &f, s->kick ? NEVH__BY_Q : NEVH__BY_P))
+        if (!nevh__write_gradient(s->of.w, &f,
+                                  s->of.kick ? NEVH__BY_Q : NEVH__BY_P))
             return false;
-    for (size_t k = first_of(s); k < end_of(s); k++)
-        for (size_t i = 0; i < is->count && is_read(s, k); i++) {
+    for (size_t k = nevh__first_of(&s->of); k < nevh__end_of(&s->of); k++)
+        for (size_t i = 0; i < is->count && nevh__slope_reads(&s->of, k); i++) {
             char name[NEVH__NAME];
             f.id = first + (unsigned)i;
-            nevh__derivative_name(&f, s->kick ? NEVH__Q : NEVH__P,
-                                  s->kick ? k : k - s->term->nq, name);
-            add_part(s, nevh__index(s->term, i, k), name);
+            nevh__derivative_name(&f, s->of.kick ? NEVH__Q : NEVH__P,
+                                  s->of.kick ? k : k - s->of.term->nq, name);
+            add_part(s, nevh__index(s->of.term, i, k), name);
         }
     return true;
 }
 
 static bool write_complex(sum *s) {
-    const nevh_term *is = &s->term->term->decl;
+    const nevh_term *is = &s->of.term->term->decl;
     nevh__formula_text f = {
         .tape = is->params, .variable = name_at_state, .data = s};
     for (f.instance = 0; f.instance < is->count; f.instance++)
-        for (size_t k = first_of(s); k < end_of(s); k++) {
+        for (size_t k = nevh__first_of(&s->of); k < nevh__end_of(&s->of); k++) {
             char taken[NEVH__NAME], name[NEVH__NAME];
-            if (!nevh__write_complex(s->w, &f, s->kick ? NEVH__Q : NEVH__P,
-                                     s->kick ? k : k - s->term->nq, taken))
+            if (!nevh__write_complex(
+                    s->of.w, &f, s->of.kick ? NEVH__Q : NEVH__P,
+                    s->of.kick ? k : k - s->of.term->nq, taken))
                 return false;
             snprintf(name, sizeof name, "c%u", f.id);
-            nevh__write(s->w, "    double %s = %s * 0x1p332;\n", name, taken);
-            add_part(s, nevh__index(s->term, f.instance, k), name);
+            nevh__write(s->of.w, "    double %s = %s * 0x1p332;\n", name,
+                        taken);
+            add_part(s, nevh__index(s->of.term, f.instance, k), name);
         }
     return true;
 }
@@ -143,14 +127,14 @@ typedef struct {
 } stencil;
 
 static void list_points(const sum *s, stencil *x) {
-    const nevh__planned *term = s->term;
+    const nevh__planned *term = s->of.term;
     x->count = x->slope_count = 0;
     for (int i = 0; i < 2; i++) {
         const nevh__pass *pass = &term->pass[i];
-        size_t begin = s->kick ? pass->begin : pass->first_p;
-        size_t end = s->kick ? pass->first_p : pass->end;
+        size_t begin = s->of.kick ? pass->begin : pass->first_p;
+        size_t end = s->of.kick ? pass->first_p : pass->end;
         const nevh_gradient *method =
-            pass->pairs == 1 ? nevh_central2 : s->f->gradient;
+            pass->pairs == 1 ? nevh_central2 : s->of.f->gradient;
         for (size_t instance = 0; instance < term->term->decl.count; instance++)
             for (size_t v = begin; v < end; v++) {
                 size_t k = term->vars[v];
@@ -174,7 +158,7 @@ static const point *point_in(const stencil *x, size_t lane) {
 
 /* One variable of eight points. */
 static void write_wide(nevh__writer *w, const stencil *x, size_t k) {
-    const nevh__planned *term = x->s->term;
+    const nevh__planned *term = x->s->of.term;
     size_t index[LANES];
     bool same = true, moved = false;
     const char *half = k < term->nq ? "q" : "p";
@@ -203,7 +187,7 @@ static void name_in_block(nevh__writer *w, const nevh__formula_text *f,
                           nevh__variable kind, size_t k,
                           char name[NEVH__NAME]) {
     const stencil *x = f->data;
-    const nevh__planned *term = x->s->term;
+    const nevh__planned *term = x->s->of.term;
     const nevh_term *is = &term->term->decl;
     if (kind == NEVH__T)
         snprintf(name, NEVH__NAME, "ALL(t)");
@@ -228,13 +212,13 @@ static void name_in_block(nevh__writer *w, const nevh__formula_text *f,
 
 static bool write_blocks(nevh__writer *w, stencil *x) {
     for (x->at = 0; x->at < x->count; x->at += LANES) {
-        nevh__formula_text f = {.tape = x->s->term->term->decl.params,
+        nevh__formula_text f = {.tape = x->s->of.term->term->decl.params,
                                 .wide = true,
                                 .variable = name_in_block,
                                 .data = x};
         char result[NEVH__NAME];
         x->block = w->formulas;
-        for (size_t k = 0; k < x->s->term->nv; k++)
+        for (size_t k = 0; k < x->s->of.term->nv; k++)
             write_wide(w, x, k);
         if (!nevh__write_value(w, &f, result))
             return false;
@@ -248,7 +232,7 @@ static void name_at_point(nevh__writer *w, const nevh__formula_text *f,
                           nevh__variable kind, size_t k,
                           char name[NEVH__NAME]) {
     const stencil *x = f->data;
-    const nevh__planned *term = x->s->term;
+    const nevh__planned *term = x->s->of.term;
     size_t all = kind == NEVH__P ? term->nq + k : k;
     if ((kind == NEVH__Q || kind == NEVH__P) && x->points[x->at].k == all)
         snprintf(name, NEVH__NAME, "x%u", x->block);
@@ -262,20 +246,22 @@ static void name_at_point(nevh__writer *w, const nevh__formula_text *f,
 
 static bool write_points(nevh__writer *w, stencil *x) {
     bool lanes = nevh__has_lanes(w);
-    nevh__formula_text f = {.tape = x->s->term->term->decl.params,
+    nevh__formula_text f = {.tape = x->s->of.term->term->decl.params,
                             .wide = lanes,
-                            .scalar = !lanes || x->s->f->portable,
+                            .scalar = !lanes || x->s->of.f->portable,
                             .variable = name_at_point,
                             .data = x};
     for (x->at = 0; x->at < x->count; x->at++) {
         const point *at = &x->points[x->at];
         char result[NEVH__NAME];
         x->block = w->formulas;
-        char shift[NEVH__NAME];
+        char shift[NEVH__NAME], moved[NEVH__NAME];
         nevh__write_number(w, at->shift, shift);
-        nevh__write(w, "    %s x%u = %s[%zu] + %s;\n", nevh__number_type(w),
-                    x->block, at->k < x->s->term->nq ? "q" : "p",
-                    nevh__index(x->s->term, at->instance, at->k), shift);
+        nevh__state_name(w, at->k >= x->s->of.term->nq,
+                         nevh__index(x->s->of.term, at->instance, at->k),
+                         moved);
+        nevh__write(w, "    %s x%u = %s + %s;\n", nevh__number_type(w),
+                    x->block, moved, shift);
         if (!nevh__write_value(w, &f, result))
             return false;
         nevh__write(w, "    %s h%u = %s;\n", nevh__number_type(w), x->block,
@@ -316,149 +302,132 @@ static void write_slopes(nevh__writer *w, sum *s, const stencil *x,
             nevh__write(w, "))");
         }
         nevh__write(w, ";\n");
-        add_part(s, nevh__index(s->term, one->instance, one->k), name);
+        add_part(s, nevh__index(s->of.term, one->instance, one->k), name);
     }
 }
 
-/* Whether points of differences stand in a vector's lanes. */
-static bool side_by_side(const nevh__writer *w, const nevh_field *f) {
-    return !f->portable && !w->readable && !nevh__has_lanes(w);
-}
-
 static bool write_central(sum *s) {
-    size_t slopes = s->term->term->decl.count * s->term->nv;
+    size_t slopes = s->of.term->term->decl.count * s->of.term->nv;
     stencil x = {.s = s};
-    x.points = nevh__array(slopes * 2 * s->f->gradient->offsets, sizeof(point));
+    x.points =
+        nevh__array(slopes * 2 * s->of.f->gradient->offsets, sizeof(point));
     x.slopes = nevh__array(slopes, sizeof(slope));
-    bool fine = x.points && x.slopes, wide = side_by_side(s->w, s->f);
-    unsigned first = s->w->formulas;
+    bool fine = x.points && x.slopes,
+         wide = nevh__side_by_side(s->of.w, s->of.f);
+    unsigned first = s->of.w->formulas;
     if (fine) {
         list_points(s, &x);
-        fine = (wide ? write_blocks : write_points)(s->w, &x);
-        write_slopes(s->w, s, &x, first, wide);
+        fine = (wide ? write_blocks : write_points)(s->of.w, &x);
+        write_slopes(s->of.w, s, &x, first, wide);
     } else
-        s->w->failed = true;
+        s->of.w->failed = true;
     free(x.points);
     free(x.slopes);
     return fine;
 }
 
-static bool is_wanted(const nevh__planned *term, bool kick) {
-    return kick ? term->nq : term->np;
-}
-
-/* Points of a term's differences by the half's variables. */
-static size_t points_of(const nevh_field *f, const nevh__planned *term,
-                        bool kick) {
-    size_t points = 0;
-    for (int i = 0; i < 2; i++) {
-        const nevh__pass *pass = &term->pass[i];
-        size_t variables =
-            kick ? pass->first_p - pass->begin : pass->end - pass->first_p;
-        points += 2 * pass->pairs * variables;
-    }
-    if (!f->gradient->offsets)
-        points = f->gradient == nevh_exact ? 0 : kick ? term->nq : term->np;
-    return points * term->term->decl.count;
-}
-
-void nevh__slope_values(const nevh_field *f, bool kick, uint64_t values[]) {
-    for (size_t i = 0; i < f->n_terms; i++)
-        values[i] += is_wanted(&f->terms[i], kick)
-                         ? points_of(f, &f->terms[i], kick)
-                         : 0;
-}
-
-static bool is_tape(const nevh_term *is) {
-    return is->gradient == nevh__tape_block_gradient;
-}
-
-/* How long the text of one half is, in operations; INFINITY: there is none, and
-   why. */
-static double half_operations(const nevh_field *f, bool kick, bool wide,
-                              const char **why) {
-    double operations = 0;
-    for (size_t i = 0; i < f->n_terms; i++) {
-        const nevh__planned *term = &f->terms[i];
-        const nevh_term *is = &term->term->decl;
-        if (!is_wanted(term, kick))
-            continue;
-        if (!is_tape(is)) {
-            *why = "a term is no formula";
-            return INFINITY;
-        }
-        double times = (double)is->count;
-        if (f->gradient != nevh_exact)
-            times = (double)points_of(f, term, kick) /
-                    (f->gradient->offsets && wide ? LANES : 1);
-        operations += times * (double)nevh__tape_length(is->params);
-    }
-    return operations;
-}
-
-static bool fits(nevh__writer *w, const nevh_field *f, size_t calls) {
-    bool wide = side_by_side(w, f);
-    double most = w->readable ? 10 * MOST_OPERATIONS : MOST_OPERATIONS;
-    double kick = half_operations(f, true, wide, &w->refusal);
-    double drift = half_operations(f, false, wide, &w->refusal);
-    if ((kick > most || drift > most) && !w->refusal)
-        w->refusal = "its formulas are too long";
-    if (nevh__has_lanes(w) && f->gradient != nevh_exact &&
-        !f->gradient->offsets)
-        w->refusal = w->stages ? "stages stand side by side"
-                               : "orbits stand side by side";
-    if (!w->readable && (kick + drift) * (double)calls > MOST_BROADCAST)
-        nevh__write(w, "#undef SLOPE\n"
-                       "#define SLOPE static __attribute__((noinline))\n");
-    return !w->refusal;
-}
-
 static void write_sums(const sum *s) {
-    for (size_t v = 0; v < s->f->n; v++) {
-        nevh__write(s->w, "    slope[%zu] =", v);
+    for (size_t v = 0; v < s->of.f->n; v++) {
+        nevh__write(s->of.w, "    slope[%zu] =", v);
         const char *plus = " ";
         for (size_t i = 0; i < s->count; i++)
             if (s->parts[i].target == v) {
-                nevh__write(s->w, "%s%s", plus, s->parts[i].name);
+                nevh__write(s->of.w, "%s%s", plus, s->parts[i].name);
                 plus = " + ";
             }
-        const char *zero = nevh__has_lanes(s->w) ? " ALL(0.0)" : " 0.0";
-        nevh__write(s->w, "%s;\n", *plus == ' ' && !plus[1] ? zero : "");
+        const char *zero = nevh__has_lanes(s->of.w) ? " ALL(0.0)" : " 0.0";
+        nevh__write(s->of.w, "%s;\n", *plus == ' ' && !plus[1] ? zero : "");
     }
+}
+
+/* After loops: to what they have left. */
+static void write_added(sum *s) {
+    for (size_t i = 0; i < s->count; i++) {
+        size_t target = s->parts[i].target;
+        if (!s->of.w->readable)
+            nevh__write(s->of.w, "    if (%zu - first < past - first)\n    ",
+                        target);
+        nevh__write(s->of.w, "    slope[%zu] += %s;\n", target,
+                    s->parts[i].name);
+    }
+    s->count = 0;
+}
+
+static bool write_term(sum *s) {
+    nevh__writer *w = s->of.w;
+    const nevh_term *is = &s->of.term->term->decl;
+    if (w->loops && nevh__is_loop(s->of.term))
+        return nevh__write_loop(&s->of);
+    if (!w->readable)
+        s->constants = nevh__writer_share(w, is->count * is->nc, is->c);
+    else
+        nevh__write_effect(w, is);
+    if (w->loops && !w->readable)
+        nevh__write_asked(&s->of);
+    bool fine = s->of.f->gradient == nevh_exact ? write_exact(s)
+                : s->of.f->gradient->offsets    ? write_central(s)
+                                                : write_complex(s);
+    if (w->loops)
+        write_added(s);
+    if (w->loops && !w->readable)
+        nevh__write(w, "    }\n");
+    return fine;
+}
+
+static const char slope_begins[] =
+    "$1 $2 $3($4$5 t, const $2 *q, const $2 *p,\n"
+    "        $2 *slope) {\n    $2 bad = {0};\n";
+/* Numbers of vectors in which the state stands. */
+static const char loops_begin[] =
+    "SLOPE double $3(const double *N, double t, const wide *points,\n"
+    "        const wide *momenta, wide *slopes, size first, size past) {\n"
+    "    const double *q = (const double *)points;\n"
+    "    const double *p = (const double *)momenta;\n"
+    "    double *slope = (double *)slopes, bad = 0, rows_bad = 0;\n"
+    "    for (size k = first / 8; k < past / 8; k++) slopes[k] = (wide){0};\n";
+
+static void write_head(nevh__writer *w, const nevh_field *f, bool kick,
+                       const char *name) {
+    bool vectors = w->loops && !w->readable;
+    if (w->readable)
+        nevh__write(w, "/* %s at t, q, p. */\n", kick ? "dH/dq" : "dH/dp");
+    nevh__write_filled(
+        w, vectors ? loops_begin : slope_begins,
+        (const char *const[]){w->readable ? "static" : "SLOPE",
+                              nevh__number_type(w), name,
+                              w->readable ? "" : "const double *N, ",
+                              w->stages && !w->readable ? "wide" : "double"});
+    if (w->readable)
+        nevh__write(w, "    (void)t, (void)q, (void)p;\n");
+    nevh__write_state_names(w, f);
+    if (w->readable && w->loops)
+        nevh__write(w, "    NEVH__EACH(k, 1, DOF)\n        slope[k] = 0;\n");
 }
 
 static bool write_slope(nevh__writer *w, nevh_field *f, bool kick,
                         const char *name) {
-    sum s = {.w = w, .f = f, .kick = kick};
-    const char *type = nevh__number_type(w);
+    sum s = {.of = {.w = w, .f = f, .kick = kick}};
     bool fine = true;
-    nevh__write_filled(
-        w,
-        "$1 $2 $3($4$5 t, const $2 *q, const $2 *p,\n"
-        "        $2 *slope) {\n    $2 bad = {0};\n",
-        (const char *const[]){w->readable ? "static" : "SLOPE", type, name,
-                              w->readable ? "" : "const double *N, ",
-                              w->stages ? "wide" : "double"});
-    if (w->readable)
-        nevh__write(w, "    (void)t, (void)q, (void)p;\n");
+    write_head(w, f, kick, name);
     for (size_t i = 0; fine && i < f->n_terms; i++) {
-        s.term = &f->terms[i];
-        const nevh_term *is = &s.term->term->decl;
-        if (!is_wanted(s.term, kick))
-            continue;
-        if (!w->readable)
-            s.constants = nevh__writer_share(w, is->count * is->nc, is->c);
-        fine = f->gradient == nevh_exact ? write_exact(&s)
-               : f->gradient->offsets    ? write_central(&s)
-                                         : write_complex(&s);
+        s.of.term = &f->terms[i];
+        if (nevh__is_wanted(s.of.term, kick))
+            fine = write_term(&s);
     }
-    write_sums(&s);
-    nevh__write(w, "    return bad;\n}\n");
+    if (!w->loops)
+        write_sums(&s);
+    nevh__write(w, "    return bad%s;\n}\n%s",
+                w->loops && !w->readable ? " + rows_bad" : "",
+                w->readable ? "\n" : "");
     free(s.parts);
     return fine;
 }
 
 bool nevh__write_slopes(nevh__writer *w, nevh_field *f, size_t calls) {
-    return fits(w, f, calls) && write_slope(w, f, true, "kick_slope") &&
+    if (!nevh__slopes_fit(w, f, calls))
+        return false;
+    if (w->loops)
+        nevh__write_loop_helpers(w);
+    return write_slope(w, f, true, "kick_slope") &&
            write_slope(w, f, false, "drift_slope");
 }

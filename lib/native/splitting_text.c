@@ -6,6 +6,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+/* Vectors of a part of a state that is long; all that a step has of them are in
+   the nearest cache. */
+enum { PART = 32 };
+
 static const char slope[] =
     "NEVH__INLINE int nevh__splitting_slope(const nevh__splitting_step *x, int "
     "way,\n"
@@ -17,7 +21,9 @@ static const char slope[] =
     "                                            x->p.point, x->slope)\n"
     "                               : drift_slope($1t, x->q.point,\n"
     "                                             x->p.point, x->slope);\n"
-    "    return 0;\n}\n\n"
+    "    return 0;\n}\n\n";
+
+static const char inverse[] =
     "NEVH__INLINE const nevh__number *\n"
     "nevh__splitting_inverse(const nevh__splitting_step *x, int way) {\n"
     "    (void)x, (void)way;\n"
@@ -26,19 +32,18 @@ static const char slope[] =
 static const char first[] =
     "static __attribute__((noinline)) nevh__number take_first(const double *N, "
     "const double *T, double t, double h, const nevh__number *y, const "
-    "nevh__number *lost, nevh__number *kept) {\n"
-    "    nevh__number point[2 * DOF];\n"
+    "nevh__number *lost, nevh__number *kept, nevh__number *room) {\n";
+static const char first_ends[] =
     "    NEVH__EACH(k, 1, 2 * DOF) point[k] = y[k] + lost[k];\n"
-    "    return %s(N, t + T[0] * h, point, point + DOF, kept);\n}\n";
+    "    return (nevh__number){0} +\n"
+    "           %s(N, t + T[0] * h, point, point + DOF, kept%s);\n}\n";
 static const char no_first[] =
-    "#define take_first(N, T, t, h, y, lost, kept) ((nevh__number){0})\n";
+    "#define take_first(N, T, t, h, y, lost, kept, room) "
+    "((nevh__number){0})\n";
 
 /* The state's check of finite numbers is that of all lanes. */
 static const char step[] =
-    "INLINE nevh__number take_step(const double *N, double *W, double *T,\n"
-    "        size_t operations, double t, double h, nevh__number *y,\n"
-    "        nevh__number *lost, nevh__number *kept) {\n"
-    "    nevh__number change[2 * DOF], point[2 * DOF], slope[DOF], bad = {0};\n"
+    "    nevh__number bad = {0};\n"
     "    struct nevh__splitting_owner owner = {N, &bad};\n"
     "    nevh__splitting_scheme scheme = {operations, W, T, $1, $2};\n"
     "    nevh__splitting_step x = {t, h, &scheme, $2,\n"
@@ -49,13 +54,77 @@ static const char step[] =
     "    NEVH__EACH(k, 1, 2 * DOF) bad += point[k] - point[k];\n"
     "    return bad;\n}\n";
 
+/* Of states that are too long for the caches all operations are done on one part
+   after another.  A part of a slope is taken once all points that it reads are
+   there, and points are moved once all slopes have been taken that read them:
+   each operation lags behind the one before. */
+static const char slope_of_part[] =
+    "NEVH__INLINE int nevh__splitting_slope(const nevh__splitting_step *x, int "
+    "way,\n"
+    "                                       size_t i, bool kick, bool kept) {\n"
+    "    const struct nevh__splitting_owner *o = x->owner;\n"
+    "    double t = x->t + x->scheme->times[i] * x->h;\n"
+    "    const wide *q = x->q.point - o->first, *p = x->p.point - o->first;\n"
+    "    wide *slope = x->slope - o->first;\n"
+    "    if (!kept)\n"
+    "        *o->bad += (kick ? kick_slope : drift_slope)(\n"
+    "            o->N, t, q, p, slope, 8 * o->first, 8 * (o->first + o->size));\n"
+    "    return 0;\n}\n\n";
+/* What a step has but for the state is there for the parts that are in work, and
+   moved to the front where the room for it ends. */
+static const char step_of_parts[] =
+    "    wide bad = {0};\n"
+    "    nevh__splitting_scheme scheme = {operations, W, T, $1, $2};\n"
+    "    size_t origin = 0;\n"
+    "    for (size_t round = 0; round < PARTS + lags[$3 - 1]; round++) {\n"
+    "        if (round < PARTS && round * PART == origin + WINDOW) {\n"
+    "            size_t next = (round - IN_WORK) * PART;\n"
+    "            move_all(change, next - origin, 2);\n"
+    "            move_all(point, next - origin, 2);\n"
+    "            move_all(slope, next - origin, 1);\n"
+    "            origin = next;\n"
+    "        }\n"
+    "        for (size_t i = 0; i <= $3; i++) {\n"
+    "            size_t part = i ? round - lags[i - 1] : round;\n"
+    "            if (part >= PARTS) continue;\n"
+    "            size_t at = part * PART, here = at - origin;\n"
+    "            size_t size = DOF - at < PART ? DOF - at : PART;\n"
+    "            struct nevh__splitting_owner owner = {N, &bad, at, size};\n"
+    "            nevh__splitting_step x = {t, h, &scheme, $2,\n"
+    "                {y + at, lost + at, change + here, point + here},\n"
+    "                {y + DOF + at, lost + DOF + at, change + WINDOW + here,\n"
+    "                 point + WINDOW + here},\n"
+    "                slope + here, kept + at, &owner};\n"
+    "            if (i == 0) nevh__splitting_place(&x, 1, size);\n"
+    "            else operate(&x, size, i - 1, $1 == (i % 2 == 1), $2 && i == "
+    "1);\n"
+    "            if (i < $3) continue;\n"
+    "            NEVH__EACH(k, 1, size) bad += (x.q.point[k] - x.q.point[k]) +\n"
+    "                                          (x.p.point[k] - x.p.point[k]);\n"
+    "            nevh__splitting_commit_all(&x, 1, size, $2);\n"
+    "        }\n"
+    "    }\n"
+    "    return bad;\n}\n";
+static const char moving[] =
+    "INLINE void move_all(wide *x, size_t by, int rows) {\n"
+    "    for (; rows > 0; rows--, x += WINDOW)\n"
+    "        __builtin_memmove(x, x + by, (WINDOW - by) * sizeof *x);\n}\n";
+static const char operate_on_part[] =
+    "static __attribute__((noinline)) void operate(const nevh__splitting_step "
+    "*x, size_t size, size_t i, bool kick, bool kept) {\n"
+    "    if (kept) nevh__splitting_operate(x, 0, 1, size, i, $1, true);\n"
+    "    else if (kick) nevh__splitting_operate(x, 0, 1, size, i, true, "
+    "false);\n"
+    "    else nevh__splitting_operate(x, 0, 1, size, i, false, false);\n}\n";
+
 static const char step_for_readers[] =
     "/* A step of the state y, q and then p.  Returns 0 if all is finite. */\n"
     "static double take_step(double t, double h, double *y, double *lost,\n"
-    "                        double *kept) {\n"
+    "                        double *kept) {\n";
+static const char step_of_readers[] =
     "    static const nevh__splitting_scheme scheme = {$3, W, T, $1, "
     "$2};\n"
-    "    double change[2 * DOF], point[2 * DOF], slope[DOF], bad = 0;\n"
+    "    double bad = 0;\n"
     "    struct nevh__splitting_owner owner = {&bad};\n"
     "    nevh__splitting_step x = {\n"
     "        t, h, &scheme, $2 && kept[DOF] != 0,\n"
@@ -68,7 +137,7 @@ static const char step_for_readers[] =
     "    return bad;\n}\n\n";
 
 static const char owner[] = "struct nevh__splitting_owner {\n"
-                            "%s    nevh__number *bad;\n};\n\n";
+                            "%s    nevh__number *bad;\n%s};\n\n";
 
 /* A kick takes dH/dq at the drifts' time, a drift dH/dp at the kicks'. */
 bool nevh__splitting_tables(const nevh_splitting *table, double **weights,
@@ -101,6 +170,60 @@ static void write_tables(nevh__writer *w, const nevh_splitting *table) {
     free(times);
 }
 
+/* By how many parts each operation lags. */
+static void write_lags(nevh__writer *w, nevh_work *work, bool kicks_first,
+                       bool keeps, size_t count) {
+    size_t kick = nevh__slope_reach(w, work->field, true);
+    size_t drift = nevh__slope_reach(w, work->field, false);
+    size_t most = PART * NEVH__LANES, all = nevh__padded(work->n) / NEVH__LANES;
+    bool local = kick <= most && drift <= most, before = false;
+    size_t part = local ? PART : all, lag = 0;
+    nevh__write(w, "enum { PART = %zu, PARTS = %zu };\n", part,
+                (all + part - 1) / part);
+    nevh__write(w, "static const size_t lags[] = {");
+    for (size_t i = 0; i < count; i++) {
+        bool kicks = kicks_first == (i % 2 == 0);
+        bool reaches = (kicks ? kick : drift) > 0 && !(keeps && i == 0);
+        lag += local && (reaches || before);
+        before = reaches;
+        nevh__write(w, "%zu, ", lag);
+    }
+    nevh__write(w, "};\n");
+    /* A part before those that lag is read, too. */
+    size_t work_in = lag + 2, window = 5 * work_in * part;
+    nevh__write(w, "enum { IN_WORK = %zu, WINDOW = %zu };\n%s", work_in,
+                window < all ? window : all, moving);
+}
+
+static void write_first(nevh__writer *w, bool keeps, bool kicks) {
+    nevh__write(w, "%senum { KEPT = %s };\n", inverse, keeps ? "DOF" : "0");
+    if (!keeps) {
+        nevh__write(w, "%s", no_first);
+        return;
+    }
+    nevh__write(w, "%s", first);
+    nevh__write_rows(w, "point", 2);
+    nevh__write(w, first_ends, kicks ? "kick_slope" : "drift_slope",
+                w->loops ? NEVH__ALL_SLOPES : "");
+}
+
+static void write_step(nevh__writer *w, const char *const words[]) {
+    if (w->readable)
+        nevh__write(w, "%s", step_for_readers);
+    else {
+        nevh__write_step_head(w);
+        nevh__write(w, "{\n");
+    }
+    nevh__write_rows(w, "change", 2);
+    nevh__write_rows(w, "point", 2);
+    nevh__write_rows(w, "slope", 1);
+    nevh__write_filled(w,
+                       w->readable ? step_of_readers
+                       : w->loops  ? step_of_parts
+                                   : step,
+                       words);
+}
+
 bool nevh__write_splitting(nevh__writer *w, nevh_work *work) {
     const nevh_splitting *table = work->integrator->table;
     size_t count = nevh__splitting_operations(table);
@@ -115,20 +238,20 @@ bool nevh__write_splitting(nevh__writer *w, nevh_work *work) {
     if (w->readable)
         write_tables(w, table);
     nevh__write_lines(w, nevh__splitting_step_text);
-    nevh__write(w, owner, w->readable ? "" : "    const double *N;\n");
+    bool parts = w->loops && !w->readable;
+    nevh__write(w, owner, w->readable ? "" : "    const double *N;\n",
+                parts ? "    size_t first, size;\n" : "");
     nevh__write_filled(
-        w, slope, (const char *const[]){w->readable ? "" : "x->owner->N, "});
-    if (w->readable)
-        nevh__write_filled(
-            w, step_for_readers,
-            (const char *const[]){kick, keep, number,
-                                  keeps ? "    kept[DOF] = 1;\n" : ""});
-    else {
-        nevh__write(w, "enum { KEPT = %s };\n", keeps ? "DOF" : "0");
-        nevh__write(w, keeps ? first : no_first,
-                    kicks ? "kick_slope" : "drift_slope");
-        nevh__write_filled(w, step, (const char *const[]){kick, keep});
+        w, parts ? slope_of_part : slope,
+        (const char *const[]){w->readable ? "" : "x->owner->N, "});
+    if (!w->readable)
+        write_first(w, keeps, kicks);
+    if (parts) {
+        write_lags(w, work, kicks, keeps, count);
+        nevh__write_filled(w, operate_on_part, (const char *const[]){kick});
     }
+    write_step(w, (const char *const[]){kick, keep, number,
+                                        keeps ? "    kept[DOF] = 1;\n" : ""});
     nevh__write_driver(w, true);
     return true;
 }

@@ -14,88 +14,94 @@
 static const char sizes[] =
     "enum { STAGES = %zu, ROW = %zu, FIRST = %zu, UNKNOWN = 2 * DOF - FIRST,\n"
     "       SLOPES_AT = 2 * DOF, H_AT = SLOPES_AT + UNKNOWN * STAGES,\n"
-    "       HOLD_AT = H_AT + 1, APART = %zu, STRIDE = %zu,\n"
+    "       HOLD_AT = H_AT + 1, SWEEPS_AT, APART = %zu, STRIDE = %zu,\n"
     "       FEW = STAGES == ROW ? %d : 0 };\n"
     "#define PARTITIONED %s\n#define NOISY %s\n#define NEWTON %s\n";
 
 static const char owners[] =
     "struct nevh__stage_owner {\n"
-    "    const double *N, *times;\n    wide *bad;\n};\n"
+    "    const double $1*times;\n    nevh__vector *bad;\n};\n"
     "struct nevh__stage_judge_owner {\n"
-    "    const double *N, *y, *scale;\n    double t, h, *level, *bad;\n"
-    "    size_t *noises;\n};\n";
+    "    const double $1*y, *scale;\n    double t, h, *level, *bad;\n"
+    "    size_t *noises;\n};\n\n";
 
 /* Those of vectors of stages, or of orbits. */
 static const char slopes[] =
+    "/* dH/dp, dH/dq or both at the points of all stages. */\n"
     "NEVH__INLINE int nevh__stage_slopes(const nevh__stage_step *x, bool q,\n"
     "                                    bool p) {\n"
     "    const struct nevh__stage_owner *o = x->owner;\n"
     "    for (size_t from = 0; from < STRIDE; from += NEVH__LANES) {\n"
-    "        wide y[2 * DOF], slope[DOF], t = NEVH__VECTOR_AT(o->times + "
-    "from);\n"
+    "        nevh__vector y[2 * DOF], slope[DOF];\n"
+    "        nevh__vector t = NEVH__VECTOR_AT(o->times + from);\n"
     "        double *to = x->gradient + from;\n"
     "        NEVH__EACH(k, 1, DOF) {\n"
-    "            y[k] = NEVH__VECTOR_AT(x->points + k * STRIDE + from);\n"
-    "            y[DOF + k] = NEVH__VECTOR_AT(x->points + x->half + k * STRIDE "
-    "+ "
-    "from);\n"
+    "            const double *at = x->points + k * STRIDE + from;\n"
+    "            y[k] = NEVH__VECTOR_AT(at);\n"
+    "            y[DOF + k] = NEVH__VECTOR_AT(at + x->half);\n"
     "        }\n"
     "        if (p) {\n"
-    "            *o->bad += drift_slope(o->N, t, y, y + DOF, slope);\n"
-    "            NEVH__EACH(k, 1, DOF) NEVH__VECTOR_AT(to + k * STRIDE) = "
-    "slope[k];\n"
+    "            *o->bad += drift_slope($1t, y, y + DOF, slope);\n"
+    "            NEVH__EACH(k, 1, DOF)\n"
+    "                NEVH__VECTOR_AT(to + k * STRIDE) = slope[k];\n"
     "        }\n"
     "        if (q) {\n"
-    "            *o->bad += kick_slope(o->N, t, y, y + DOF, slope);\n"
+    "            *o->bad += kick_slope($1t, y, y + DOF, slope);\n"
     "            NEVH__EACH(k, 1, DOF)\n"
     "                NEVH__VECTOR_AT(to + (DOF + k) * STRIDE) = slope[k];\n"
     "        }\n"
     "    }\n"
-    "    return 0;\n}\n"
+    "    return 0;\n}\n\n";
+static const char inverse[] =
     "NEVH__INLINE const double *nevh__stage_inverse(const nevh__stage_step *x) "
     "{\n    return NULL;\n}\n";
 
 /* The level is taken once a step. */
-static const char judges[] =
+static const char noise_level[] =
+    "/* What noise of differences makes of a step, in units of scale. */\n"
     "NEVH__INLINE double nevh__stage_noise_level(const nevh__stage_judged *x) "
     "{\n"
     "    const struct nevh__stage_judge_owner *o = x->owner;\n"
-    "    if (!NOISY)\n        return 0;\n"
     "    if (*o->level < 0) {\n"
     "        double y[2 * DOF], scale[2 * DOF];\n"
     "        NEVH__EACH(k, 1, 2 * DOF) {\n"
     "            y[k] = o->y[k * APART];\n"
     "            scale[k] = o->scale[k * APART];\n"
     "        }\n"
-    "        *o->level = fabs(o->h) * worst_noise(o->N, o->t, y, scale, "
-    "o->bad);\n"
+    "        *o->level =\n"
+    "            fabs(o->h) * worst_noise($1o->t, y, scale, o->bad);\n"
     "    }\n"
     "    ++*o->noises;\n"
-    "    return *o->level;\n}\n"
+    "    return *o->level;\n}\n\n";
+static const char no_noise[] =
+    "NEVH__INLINE double nevh__stage_noise_level(const nevh__stage_judged *x) "
+    "{\n    (void)x;\n    return 0;\n}\n\n";
+static const char is_small[] =
     "NEVH__INLINE bool nevh__stage_is_small(const nevh__stage_judged *x,\n"
     "                                       double change) {\n"
     "    return change <= NEVH__STAGE_TINY ||\n"
     "           (change < INFINITY &&\n"
     "            change <= NEVH__STAGE_TINY +\n"
-    "                          NEVH__STAGE_MARGIN * "
-    "nevh__stage_noise_level(x));\n}\n";
+    "                          NEVH__STAGE_MARGIN *\n"
+    "                              nevh__stage_noise_level(x));\n}\n\n";
 
 static const char step_weights[] =
+    "/* h b_j and -h b_j. */\n"
     "typedef struct {\n"
     "    double plus[STAGES], minus[STAGES];\n"
     "    double to_q[STAGES * NEVH__LANES], to_p[STAGES * NEVH__LANES];\n"
-    "} step_weights;\n";
+    "} step_weights;\n\n";
 
 static const char step[] =
-    "INLINE bool add_step(const step_weights *w, const double *gradient,\n"
-    "                     double *y, double *M, double h) {\n"
+    "/* The new state from the slopes, which the next step continues. */\n"
+    "NEVH__INLINE bool add_step(const step_weights *w, const double *gradient,\n"
+    "                           double *y, double *M, double h) {\n"
     "    double sum[2 * DOF], lost[2 * DOF], check = 0;\n"
     "    NEVH__EACH(k, 1, 2 * DOF) {\n"
     "        sum[k] = y[k];\n"
     "        lost[k] = M[k];\n"
-    "        nevh__stage_advance(STAGES, order, k < DOF ? w->plus : w->minus, "
-    "1,\n"
-    "                            1, gradient + k * ROW, &sum[k], &lost[k]);\n"
+    "        nevh__stage_advance(STAGES, order, k < DOF ? w->plus : w->minus,\n"
+    "                            1, 1, gradient + k * ROW, &sum[k], &lost[k]);\n"
     "        check += sum[k] - sum[k];\n"
     "    }\n"
     "    if (check != 0)\n        return false;\n"
@@ -106,43 +112,42 @@ static const char step[] =
     "    NEVH__EACH(k, 1, UNKNOWN)\n"
     "        NEVH__EACH(i, 1, STAGES) {\n"
     "            double slope = gradient[(FIRST + k) * ROW + i];\n"
-    "            M[SLOPES_AT + k * STAGES + i] = FIRST + k < DOF ? slope : "
-    "-slope;\n"
+    "            M[SLOPES_AT + k * STAGES + i] =\n"
+    "                FIRST + k < DOF ? slope : -slope;\n"
     "        }\n"
     "    M[H_AT] = h;\n"
-    "    return true;\n}\n"
-    "INLINE bool take_step(const double *N, const step_weights *w, double t,\n"
-    "                      double h, double *Q, double *P, double *M,\n"
-    "                      size_t *counted) {\n"
+    "    return true;\n}\n\n"
+    "/* Sweeps until the slopes are those at the points that they lead to, but\n"
+    "   for rounding; false: they do not get there, and nothing has changed. */\n"
+    "NEVH__INLINE bool take_step($1const step_weights *w, double t, double h,\n"
+    "                            double *Q, double *P, double *M$2) {\n"
     "    double y[2 * DOF];\n"
     "    double points[2 * DOF * ROW], gradient[2 * DOF * ROW], times[ROW];\n"
-    "    double before[UNKNOWN * ROW], least[UNKNOWN * ROW], unit[2 * DOF], "
-    "scale[2 * DOF];\n"
+    "    double before[UNKNOWN * ROW], least[UNKNOWN * ROW];\n"
+    "    double unit[2 * DOF], scale[2 * DOF];\n"
     "    double lowest = INFINITY, level = -1, unknown = 0;\n"
-    "    wide bad = {0};\n"
+    "    nevh__vector bad = {0};\n"
     "    size_t sweeps = 0, noises = 0;\n"
-    "    struct nevh__stage_owner owner = {N, times, &bad};\n"
-    "    struct nevh__stage_judge_owner judge_owner = {N, y, scale, t, h, "
-    "&level, "
-    "&unknown, &noises};\n"
+    "    struct nevh__stage_owner owner = {$3times, &bad};\n"
+    "    struct nevh__stage_judge_owner judge_owner = {\n"
+    "        $3y, scale, t, h, &level, &unknown, &noises};\n"
     "    nevh__stage_step x = {\n"
     "        .n = DOF, .stages = STAGES, .row = ROW, .stride = ROW,\n"
-    "        .half = DOF * ROW, .partitioned = PARTITIONED, .unchecked = "
-    "true,\n"
-    "        .mu_q = mu_q, .mu_p = mu_p, .to_q = w->to_q, .to_p = w->to_p,\n"
-    "        .q = y, .p = y + DOF, .compensation = M, .points = points,\n"
-    "        .gradient = gradient, .owner = &owner};\n"
+    "        .half = DOF * ROW, .partitioned = PARTITIONED,\n"
+    "        .unchecked = true, .mu_q = mu_q, .mu_p = mu_p,\n"
+    "        .to_q = w->to_q, .to_p = w->to_p, .q = y, .p = y + DOF,\n"
+    "        .compensation = M, .points = points, .gradient = gradient,\n"
+    "        .owner = &owner};\n"
     "    nevh__stage_changes changes = {FIRST, UNKNOWN, unit, before, least,\n"
     "                                   &lowest};\n"
-    "    nevh__stage_judged judged = {0, true, NOISY, NEWTON, UNKNOWN * "
-    "STAGES,\n"
-    "                                 &judge_owner};\n"
+    "    nevh__stage_judged judged = {0, true, NOISY, NEWTON,\n"
+    "                                 UNKNOWN * STAGES, &judge_owner};\n"
     "    nevh__stage_lane lane;\n"
     "    nevh__stage_progress made;\n"
     "    nevh__stage_state state = NEVH__GO_ON;\n"
     "    if (M[HOLD_AT] > 0)\n        return false;\n"
     "    NEVH__EACH(k, 1, 2 * DOF) {\n"
-    "        double size, most = $1[k];\n"
+    "        double size, most = $4[k];\n"
     "        y[k] = k < DOF ? Q[k] : P[k - DOF];\n"
     "        size = fabs(y[k]);\n"
     "        scale[k] = size > most ? size : most;\n"
@@ -151,8 +156,8 @@ static const char step[] =
     "    NEVH_LANES(i, ROW) {\n        times[i] = t + nodes[i] * h;\n    }\n"
     "    nevh__stage_forget(&lane);\n"
     "    nevh__stage_begin_sweeps(&x, &changes, NEVH__STAGES_TOGETHER, guess,\n"
-    "                             M[H_AT] == h ? M + SLOPES_AT : NULL, "
-    "STAGES);\n"
+    "                             M[H_AT] == h ? M + SLOPES_AT : NULL,\n"
+    "                             STAGES);\n"
     "    while (state == NEVH__GO_ON && sweeps < NEVH__STAGE_SWEEPS) {\n"
     "        if (nevh__stage_map(&x, NEVH__STAGES_TOGETHER))\n"
     "            return false;\n"
@@ -167,17 +172,27 @@ static const char step[] =
     "        return false;\n"
     "    NEVH__EACH(k, 1, DOF) {\n"
     "        Q[k] = y[k];\n        P[k] = y[DOF + k];\n    }\n"
-    "    counted[0] += sweeps;\n"
-    "    counted[1] += noises;\n"
-    "    counted[2] += sweeps;\n"
-    "    return true;\n}\n";
+    "$5"
+    "    return true;\n}\n\n";
+static const char counts[] = "    counted[0] += sweeps;\n"
+                             "    counted[1] += noises;\n"
+                             "    counted[2] += sweeps;\n";
+static const char counts_for_readers[] =
+    "    M[SWEEPS_AT] += (double)sweeps;\n";
 
 /* What steps have reached is stored, and the next one is the kernel's. */
-static const char driver[] =
+static const char driver_head[] =
     "size_t nevh_native_steps(const double *restrict N, double *restrict W,\n"
     "        double *restrict T, size_t operations, double t0, double h,\n"
     "        size_t from, size_t steps, double *restrict Q,\n"
-    "        double *restrict P, double *restrict M, size_t *counted) {\n"
+    "        double *restrict P, double *restrict M, size_t *counted,\n"
+    "        double *room) {\n";
+static const char driver_head_for_readers[] =
+    "/* Takes up to `steps` steps of h, the first being number `from`, and\n"
+    "   returns how many of them it could take. */\n"
+    "static size_t advance(double t0, double h, size_t from, size_t steps,\n"
+    "                      double *Q, double *P, double *M) {\n";
+static const char driver[] =
     "    step_weights w;\n"
     "    size_t done = 0;\n"
     "    nevh__stage_split(STAGES, weights, h, w.plus);\n"
@@ -188,9 +203,8 @@ static const char driver[] =
     "            w.to_p[j * NEVH__LANES + i] = w.minus[j];\n"
     "        }\n"
     "    }\n"
-    "    while (done < steps && take_step(N, &w, t0 + (double)(from + done) * "
-    "h,\n"
-    "                                     h, Q, P, M, counted))\n"
+    "    while (done < steps &&\n"
+    "           take_step($1&w, t0 + (double)(from + done) * h, h, Q, P, M$2))\n"
     "        done++;\n"
     "    return done;\n}\n";
 
@@ -338,6 +352,10 @@ static const char lanes_step[] =
 static void write_tables(nevh__writer *w, const nevh__tableau *a,
                          const nevh__stage_weights *padded) {
     size_t matrix = padded->stages * padded->row;
+    nevh__write(w, "/* mu_ij = a_ij / b_j, column by column, by which slopes "
+                   "lead to the states of\n   stages; what continues the last "
+                   "step's slopes; nodes c_i; weights b_j, and\n   their order "
+                   "by size. */\n");
     nevh__write_numbers(w, "static const double mu_q", matrix, padded->mu_q);
     nevh__write_numbers(w, "static const double mu_p", matrix, padded->mu_p);
     nevh__write_numbers(w, "static const double guess", matrix, padded->guess);
@@ -345,52 +363,95 @@ static void write_tables(nevh__writer *w, const nevh__tableau *a,
     nevh__write_numbers(w, "static const double weights", a->stages, a->b);
     nevh__write(w, "static const size_t order[] = {");
     for (size_t i = 0; i < a->stages; i++)
-        nevh__write(w, "%zu, ", a->order[i]);
-    nevh__write(w, "};\n");
+        nevh__write(w, "%s%zu", i ? ", " : "", a->order[i]);
+    nevh__write(w, "};\n\n");
+}
+
+static void write_sizes(nevh__writer *w, const nevh_work *work,
+                        const nevh__stage_weights *padded) {
+    bool partitioned = nevh__stages_are_partitioned(work);
+    bool noisy = work->field->gradient->offsets, one = w->width == 1;
+    bool newton = nevh__stages_have_newton(work, padded->stages);
+    nevh__write(w, sizes, padded->stages, padded->row,
+                partitioned ? work->n : 0,
+                one ? (size_t)1 : (size_t)NEVH__LANES,
+                one ? padded->row : padded->stages * NEVH__LANES,
+                NEVH__FEW_TOGETHER, partitioned ? "true" : "false",
+                noisy ? "true" : "false", newton ? "true" : "false");
+}
+
+static void write_one_orbit(nevh__writer *w, const char *scales) {
+    bool plain = w->readable;
+    nevh__write_filled(w, step,
+                       (const char *const[]){
+                           plain ? "" : "const double *N, ",
+                           plain ? "" : ", size_t *counted", plain ? "" : "N, ",
+                           scales, plain ? counts_for_readers : counts});
 }
 
 static void write_step(nevh__writer *w, const nevh_work *work,
                        const nevh__tableau *a,
                        const nevh__stage_weights *padded) {
-    bool partitioned = nevh__stages_are_partitioned(work);
-    bool noisy = work->field->gradient->offsets;
-    bool newton = nevh__stages_have_newton(work, a->stages);
     char scales[NEVH__NAME];
-    bool one = w->width == 1;
-    nevh__write(w, sizes, a->stages, padded->row, partitioned ? work->n : 0,
-                one ? (size_t)1 : (size_t)NEVH__LANES,
-                one ? padded->row : a->stages * NEVH__LANES, NEVH__FEW_TOGETHER,
-                partitioned ? "true" : "false", noisy ? "true" : "false",
-                newton ? "true" : "false");
+    const char *const parameter[] = {w->readable ? "" : "*N, "};
+    const char *const argument[] = {w->readable ? "" : "o->N, "};
+    write_sizes(w, work, padded);
     write_tables(w, a, padded);
     nevh__write_lines(w, nevh__stage_progress_text);
     nevh__write_lines(w, nevh__stage_judge_text);
     nevh__write_lines(w, nevh__stage_step_text);
     nevh__write_array(w, "scales", "N", 2 * work->n, work->scale, scales);
-    nevh__write(w, "%s%s", owners, slopes);
-    nevh__write_noise(w, work->field);
-    nevh__write(w, "%s%s", judges, step_weights);
-    nevh__write_filled(w, one ? step : lanes_state,
-                       (const char *const[]){scales});
-    nevh__write(w, "%s", one ? "" : lanes_step);
-    nevh__write(w, "%s", driver);
+    nevh__write_filled(w, owners, parameter);
+    nevh__write_filled(w, slopes, argument);
+    nevh__write(w, "%s", w->readable ? "" : inverse);
+    if (work->field->gradient->offsets) {
+        nevh__write_noise(w, work->field);
+        nevh__write_filled(w, noise_level, argument);
+    } else
+        nevh__write(w, "%s", no_noise);
+    nevh__write(w, "%s%s", is_small, step_weights);
+    if (w->width == 1)
+        write_one_orbit(w, scales);
+    else {
+        nevh__write_filled(w, lanes_state, (const char *const[]){scales});
+        nevh__write(w, "%s", lanes_step);
+    }
+    nevh__write(w, "%s", w->readable ? driver_head_for_readers : driver_head);
+    nevh__write_filled(w, driver,
+                       (const char *const[]){w->readable ? "" : "N, ",
+                                             w->readable ? "" : ", counted"});
+}
+
+/* Readers have stages one after the other, and rows that are not padded. */
+static void write_plain(nevh__writer *w, const nevh_work *work,
+                        const nevh__tableau *a) {
+    const nevh__stage_weights plain = {.stages = a->stages,
+                                       .row = a->stages,
+                                       .mu_q = a->mu_q,
+                                       .mu_p = a->mu_p,
+                                       .guess = a->guess,
+                                       .c = a->c};
+    write_step(w, work, a, &plain);
+}
+
+static void write_padded(nevh__writer *w, const nevh_work *work,
+                         const nevh__tableau *a) {
+    nevh__stage_weights *padded = nevh__stage_weights_new(a);
+    if (padded)
+        write_step(w, work, a, padded);
+    w->failed |= !padded;
+    nevh__stage_weights_free(padded);
 }
 
 bool nevh__write_stages(nevh__writer *w, nevh_work *work) {
-    if (w->readable) {
-        w->refusal = "implicit steps have none";
-        return false;
-    }
     w->stages = true;
     nevh__write_needs(w, work->n, false, false);
     if (!nevh__write_slopes(w, work->field, 1))
         return false;
     nevh__tableau *a = nevh__stage_tableau_new(work->integrator);
-    nevh__stage_weights *padded = a ? nevh__stage_weights_new(a) : NULL;
-    if (padded)
-        write_step(w, work, a, padded);
-    w->failed |= !padded;
-    nevh__stage_weights_free(padded);
+    w->failed |= !a;
+    if (a)
+        (w->readable ? write_plain : write_padded)(w, work, a);
     nevh__tableau_free(a);
     return !w->failed && !w->refusal;
 }

@@ -2,6 +2,7 @@
    need, and the function that takes steps.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "native/native_private.h"
+#include <string.h>
 
 /* Sums go number by number: rows are short, and lanes are vectors already. */
 static const char needs[] =
@@ -12,7 +13,6 @@ static const char needs[] =
     "#define NULL ((void *)0)\n"
     "#define INFINITY __builtin_inf()\n"
     "#define NEVH__INLINE INLINE\n"
-    "#define NEVH_UNROLL _Pragma(\"GCC unroll 16\")\n"
     "#define NEVH__KNOWN_COUNT NEVH_UNROLL\n"
     "#define NEVH__EACH(i, lanes, size) \\\n"
     "    NEVH_UNROLL for (size_t i = 0; i < (size); i += (lanes))\n";
@@ -86,9 +86,12 @@ static const char not_finite_for_readers[] =
     "    NEVH__EACH(i, lanes, size)\n"
     "        bad += (x[i] - x[i]) + (y[i] - y[i]);\n"
     "    return bad != 0;\n}\n\n";
-static const char vectors_for_readers[] = "#define NEVH_UNROLL\n"
-                                          "#define NEVH__KNOWN_COUNT\n"
-                                          "#define NEVH__VECTOR_AT(x) (*(x))\n"
+static const char stages_for_readers[] =
+    "enum { NEVH__LANES = 1 };\n"
+    "#define NEVH_LANES(i, width) for (size_t i = 0; i < (width); i++)\n\n"
+    "static double nevh__sum_lanes(const double *x) {\n    return x[0];\n}\n\n"
+    "static bool is_bad(double bad) {\n    return bad != 0;\n}\n\n";
+static const char vectors_for_readers[] = "#define NEVH__VECTOR_AT(x) (*(x))\n"
                                           "enum { NEVH__IN_VECTOR = 1 };\n"
                                           "typedef double nevh__vector;\n\n";
 
@@ -97,7 +100,8 @@ static const char driver[] =
     "size_t nevh_native_steps(const double *restrict N, double *restrict W,\n"
     "        double *restrict T, size_t operations, double t0, double h,\n"
     "        size_t from, size_t steps, double *restrict Q,\n"
-    "        double *restrict P, double *restrict M, size_t *counted) {\n"
+    "        double *restrict P, double *restrict M, size_t *counted,\n"
+    "        double *room) {\n"
     "    nevh__number y[BLOCKS][2 * DOF], lost[BLOCKS][2 * DOF];\n"
     "    nevh__number kept[BLOCKS][KEPT + 1];\n"
     "    double *flags = M + (2 * DOF + KEPT) * WIDTH;\n"
@@ -112,14 +116,14 @@ static const char driver[] =
     "    for (int i = 0; KEPT && i < WIDTH; i++) has_kept &= flags[i] != 0;\n"
     "    for (int b = 0; KEPT && !has_kept && b < BLOCKS; b++)\n"
     "        if (is_bad(take_first(N, T, t0 + (double)from * h, h, y[b],\n"
-    "                              lost[b], kept[b])))\n"
+    "                              lost[b], kept[b], NULL)))\n"
     "            return 0;\n"
     "    for (; done < steps; done++) {\n"
     "        double t = t0 + (double)(from + done) * h;\n"
     "        nevh__number bad = {0};\n"
     "        for (int b = 0; b < BLOCKS; b++)\n"
     "            bad += take_step(N, W, T, operations, t, h, y[b], lost[b],\n"
-    "                             kept[b]);\n"
+    "                             kept[b], NULL);\n"
     "        if (is_bad(bad)) return done;\n"
     "    }\n"
     "    for (int b = 0; b < BLOCKS; b++) {\n"
@@ -131,10 +135,50 @@ static const char driver[] =
     "    for (int i = 0; KEPT && i < WIDTH; i++) flags[i] = 1;\n"
     "    return done;\n}\n";
 
+/* The same of one orbit, whose numbers are too many for the stack. */
+static const char loading[] =
+    "INLINE void load_all(double *to, const double *from) {\n"
+    "    __builtin_memcpy(to, from, COUNT * sizeof *to);\n"
+    "    for (size_t k = COUNT; k < 8 * DOF; k++) to[k] = 0;\n}\n"
+    "INLINE void store_all(double *to, const double *from) {\n"
+    "    __builtin_memcpy(to, from, COUNT * sizeof *to);\n}\n"
+    "size_t nevh_native_steps(const double *restrict N, double *restrict W,\n"
+    "        double *restrict T, size_t operations, double t0, double h,\n"
+    "        size_t from, size_t steps, double *restrict Q,\n"
+    "        double *restrict P, double *restrict M, size_t *counted,\n"
+    "        double *restrict numbers) {\n"
+    "    nevh__number *restrict room = (nevh__number *)numbers;\n";
+static const char long_driver[] =
+    "    double *flags = M + (2 + (KEPT > 0)) * COUNT;\n"
+    "    size_t done = 0;\n"
+    "    load_all((double *)y, Q);\n"
+    "    load_all((double *)(y + DOF), P);\n"
+    "    load_all((double *)lost, M);\n"
+    "    load_all((double *)(lost + DOF), M + COUNT);\n"
+    "    if (KEPT && *flags != 0) load_all((double *)kept, M + 2 * COUNT);\n"
+    "    else if (is_bad(take_first(N, T, t0 + (double)from * h, h, y, lost,\n"
+    "                               kept, room)))\n"
+    "        return 0;\n"
+    "    for (; done < steps; done++) {\n"
+    "        double t = t0 + (double)(from + done) * h;\n"
+    "        if (is_bad(take_step(N, W, T, operations, t, h, y, lost, kept,\n"
+    "                             room)))\n"
+    "            return done;\n"
+    "    }\n"
+    "    store_all(Q, (double *)y);\n"
+    "    store_all(P, (double *)(y + DOF));\n"
+    "    store_all(M, (double *)lost);\n"
+    "    store_all(M + COUNT, (double *)(lost + DOF));\n"
+    "    if (KEPT) {\n"
+    "        store_all(M + 2 * COUNT, (double *)kept);\n"
+    "        *flags = 1;\n"
+    "    }\n"
+    "    return done;\n}\n";
+
 static const char driver_for_readers[] =
     "static size_t advance(double t0, double h, size_t from, size_t steps,\n"
     "                      double *q, double *p, double *memory) {\n"
-    "    double y[2 * DOF], lost[2 * DOF];\n"
+    "    $2double y[2 * DOF], lost[2 * DOF];\n"
     "    size_t done = 0;\n"
     "    memcpy(lost, memory, sizeof lost);\n"
     "    for (; done < steps; done++) {\n"
@@ -149,7 +193,32 @@ static const char driver_for_readers[] =
     "    }\n"
     "    return done;\n}\n";
 
+static bool begins(const char *line, const char *word) {
+    return strncmp(line, word, strlen(word)) == 0;
+}
+
+/* Conditions on NEVH__FOR_READERS are resolved, hints to compilers left out. */
+static void write_for_readers(nevh__writer *w, const char *const lines[]) {
+    bool skips = false;
+    for (; *lines; lines++) {
+        const char *word = *lines + strspn(*lines, " ");
+        if (begins(word, "#if"))
+            skips = begins(word, "#ifndef");
+        else if (begins(word, "#else"))
+            skips = !skips;
+        else if (begins(word, "#endif"))
+            skips = false;
+        else if (!skips && strcmp(word, "NEVH_UNROLL\n") != 0 &&
+                 strcmp(word, "NEVH__KNOWN_COUNT\n") != 0)
+            nevh__write(w, "%s", *lines);
+    }
+}
+
 void nevh__write_lines(nevh__writer *w, const char *const lines[]) {
+    if (w->readable) {
+        write_for_readers(w, lines);
+        return;
+    }
     for (; *lines; lines++)
         nevh__write(w, "%s", *lines);
 }
@@ -162,11 +231,15 @@ void nevh__write_needs(nevh__writer *w, size_t n, bool finite, bool sums) {
     if (w->readable) {
         nevh__write(w, "enum { DOF = %zu };\n\n%s%s%s", n, needs_of_readers,
                     finite ? not_finite_for_readers : "",
-                    sums ? vectors_for_readers : "");
+                    sums || w->stages ? vectors_for_readers : "");
+        if (w->stages)
+            nevh__write(w, "%s", stages_for_readers);
         return;
     }
-    size_t lanes = w->width > 1 ? NEVH__LANES : 1;
+    size_t lanes = w->width > 1 || w->loops ? NEVH__LANES : 1;
     bool wide = lanes > 1 && !w->stages;
+    nevh__write(w, "#define NEVH_UNROLL%s\n",
+                w->loops ? "" : " _Pragma(\"GCC unroll 16\")");
     nevh__write(w, "%s%s", needs, wide ? needs_of_lanes : needs_of_numbers);
     if (!wide)
         nevh__write(w, "%s", lanes > 1 ? roundoff_of_lanes : roundoff_of_one);
@@ -174,6 +247,11 @@ void nevh__write_needs(nevh__writer *w, size_t n, bool finite, bool sums) {
         nevh__write(w, "%s%s", needs_of_stages, is_bad);
     else
         nevh__write(w, "%s%s", one_in_a_vector, wide ? is_bad : needs_of_one);
+    if (w->loops) {
+        nevh__write(w, "enum { DOF = %zu, COUNT = %zu };\n",
+                    nevh__padded(n) / NEVH__LANES, n);
+        return;
+    }
     nevh__write(w,
                 "enum { DOF = %zu, WIDTH = %zu, BLOCKS = %zu };\n"
                 "#define AT(x, row, b) "
@@ -181,13 +259,34 @@ void nevh__write_needs(nevh__writer *w, size_t n, bool finite, bool sums) {
                 n, w->width, w->width / lanes, lanes);
 }
 
+void nevh__write_rows(nevh__writer *w, const char *name, size_t rows) {
+    if (w->loops && !w->readable) {
+        nevh__write(w, "    nevh__number *%s = room + %zu * (size_t)DOF;\n",
+                    name, w->rows);
+        w->rows += rows;
+    } else
+        nevh__write(w, "    %snevh__number %s[%zu * DOF];\n",
+                    w->loops ? "static " : "", name, rows);
+}
+
+static void write_long_driver(nevh__writer *w) {
+    nevh__write(w, "%s", loading);
+    nevh__write_rows(w, "y", 2);
+    nevh__write_rows(w, "lost", 2);
+    nevh__write_rows(w, "kept", 1);
+    nevh__write(w, "%s", long_driver);
+}
+
 void nevh__write_driver(nevh__writer *w, bool keeps) {
-    if (!w->readable)
-        nevh__write(w, "%s", driver);
-    else
+    if (w->readable)
         nevh__write_filled(
             w, driver_for_readers,
-            (const char *const[]){keeps ? ", memory + 2 * DOF" : ""});
+            (const char *const[]){keeps ? ", memory + 2 * DOF" : "",
+                                  w->loops ? "static " : ""});
+    else if (w->loops)
+        write_long_driver(w);
+    else
+        nevh__write(w, "%s", driver);
 }
 
 void nevh__write_sum(nevh__writer *w, nevh__sums_text *sums,
@@ -233,12 +332,12 @@ void nevh__write_step_head(nevh__writer *w) {
                     : "INLINE nevh__number take_step(const double *N, double "
                       "*W, double *T, size_t operations, double t, double h, "
                       "nevh__number *y, nevh__number *lost, nevh__number "
-                      "*kept) ");
+                      "*kept, nevh__number *room) ");
 }
 
 void nevh__write_unkept(nevh__writer *w) {
     if (!w->readable)
         nevh__write(w, "enum { KEPT = 0 };\n"
-                       "#define take_first(N, T, t, h, y, lost, kept) "
+                       "#define take_first(N, T, t, h, y, lost, kept, room) "
                        "((nevh__number){0})\n");
 }

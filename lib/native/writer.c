@@ -36,6 +36,7 @@ void nevh__write(nevh__writer *w, const char *format, ...) {
 void nevh__writer_free(nevh__writer *w) {
     free(w->text);
     free(w->numbers);
+    free(w->names);
     *w = (nevh__writer){0};
 }
 
@@ -120,7 +121,9 @@ void nevh__write_array(nevh__writer *w, const char *what, const char *table,
         snprintf(name, NEVH__NAME, "%.30s", what);
         return;
     }
-    snprintf(name, NEVH__NAME, "(%.8s + %zu)", table, w->count);
-    for (size_t k = 0; k < count; k++)
-        nevh__writer_append(w, x[k]);
+    snprintf(name, NEVH__NAME,
+             w->loops ? "((const wide *)(%.8s + %zu))" : "(%.8s + %zu)", table,
+             w->count);
+    for (size_t k = 0; k < (w->loops ? nevh__padded(count) : count); k++)
+        nevh__writer_append(w, k < count ? x[k] : 0);
 }

@@ -25,12 +25,18 @@ typedef struct {
     size_t count, number_room;
     nevh__shared_numbers shared[NEVH__MOST_SHARED];
     size_t shared_count;
-    unsigned formulas;   /* written so far: names of each are its own */
-    size_t width;        /* orbits side by side, as vectors; 1: one orbit */
-    bool stages;         /* those of an implicit step are, of one orbit */
-    bool readable;       /* numbers stand in the text, functions are libm's */
-    bool failed;         /* memory is out */
-    const char *refusal; /* why there is no text; NULL: there is */
+    unsigned formulas; /* written so far: names of each are its own */
+    size_t width;      /* orbits side by side, as vectors; 1: one orbit */
+    bool stages;       /* those of an implicit step are, of one orbit; for
+                            readers one after the other */
+    bool loops;        /* over instances; the state is rows of vectors */
+    size_t rows;       /* of DOF vectors, for them */
+    bool readable;     /* numbers stand in the text, functions are libm's */
+    size_t n;
+    char (*names)[NEVH__NAME]; /* of q, and of p, in a text for readers; "": it
+                                  has none that C takes */
+    bool failed;               /* memory is out */
+    const char *refusal;       /* why there is no text; NULL: there is */
 } nevh__writer;
 
 void nevh__write(nevh__writer *, const char *format, ...)
@@ -59,9 +65,22 @@ void nevh__write_numbers(nevh__writer *, const char *name, size_t count,
 void nevh__write_array(nevh__writer *, const char *what, const char *table,
                        size_t count, const double x[], char name[NEVH__NAME]);
 void nevh__write_lines(nevh__writer *, const char *const lines[]);
+/* Variables get names in C like those of the coordinates, n; false when memory
+   is out. */
+bool nevh__writer_name(nevh__writer *, size_t n, const char *const names[]);
+/* What q[k] or p[k] is called, and declarations of the names that terms have
+   but for loops. */
+void nevh__state_name(const nevh__writer *, bool momentum, size_t k,
+                      char name[NEVH__NAME]);
+void nevh__write_state_names(nevh__writer *, const nevh_field *);
+/* Letters, digits and what names of elements have; anything else of a scene's
+   word stays out of the text. */
+void nevh__write_word(nevh__writer *, const char *word);
+/* A comment: which term follows. */
+void nevh__write_effect(nevh__writer *, const nevh_term *);
 /* Whether anything stands side by side. */
 static inline bool nevh__has_lanes(const nevh__writer *w) {
-    return w->width > 1 || w->stages;
+    return w->width > 1 || (w->stages && !w->readable);
 }
 /* "double", or what stands side by side. */
 const char *nevh__number_type(const nevh__writer *);
@@ -123,6 +142,9 @@ typedef struct {
 void nevh__write_sum(nevh__writer *, nevh__sums_text *, const double weights[],
                      size_t count, const char *apart);
 void nevh__write_sums(nevh__writer *, const nevh__sums_text *);
+/* An array of a step's, of so many times DOF numbers: on the stack, or where a
+   state is long in the room that the step is handed. */
+void nevh__write_rows(nevh__writer *, const char *name, size_t rows);
 /* take_step up to its brace, of a family that keeps no slope; and what tells
    that it keeps none. */
 void nevh__write_step_head(nevh__writer *);
@@ -137,11 +159,23 @@ void nevh__write_driver(nevh__writer *, bool keeps);
        NUMBER NAME(const double *N, double t, const NUMBER *q,
                    const NUMBER *p, NUMBER *slope)
    that write dH/dq and dH/dp, n numbers, and return something that is 0 if all is
-   well.  They are called so many times in the text. */
+   well.  They are called so many times in the text.  Loops have two arguments
+   more, the first slope that is wanted and the one after the last: multiples of
+   8. */
+#define NEVH__ALL_SLOPES ", 0, 8 * DOF"
 bool nevh__write_slopes(nevh__writer *, nevh_field *, size_t calls);
+/* Whether terms have so many instances that they are loops. */
+bool nevh__has_loops(const nevh_field *);
+/* How far apart the variables are, at most, that an instance of a term reads;
+   SIZE_MAX: its instances do not follow one another through the state. */
+size_t nevh__slope_reach(nevh__writer *, nevh_field *, bool kick);
 /* A function worst_noise(N, t, y, scale, bad): what rounding in H adds to
-   derivatives by differences at the state y, the largest over a scale. */
+   derivatives by differences at the state y, the largest over a scale; of a
+   field whose gradients are differences. */
 bool nevh__write_noise(nevh__writer *, const nevh_field *);
+/* For readers: a function energy(t, q, p), the value of H.  false: there is no
+   text of a term, and w->refusal says why. */
+bool nevh__write_energy(nevh__writer *, const nevh_field *);
 /* Values of each term that a slope takes, to values[]; 0 where it is exact. */
 void nevh__slope_values(const nevh_field *, bool kick, uint64_t values[]);
 

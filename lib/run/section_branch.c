@@ -10,7 +10,8 @@ enum { MOST_TRIALS = 100 };
 static const double certain = 4 * DBL_EPSILON; /* part of a step */
 static const double jump = 0.01; /* of the difference of the ends */
 
-int nevh__section_step(nevh_sections *x, double h) {
+/* A step of h from where the step at hand begins to q_try, p_try. */
+static int take_step(nevh_sections *x, double h) {
     nevh_stepper *s = x->branch;
     size_t size = s->work.size * sizeof(double);
     memcpy(x->q_try, x->q, size);
@@ -49,7 +50,7 @@ int nevh__section_value(nevh_sections *x, const nevh__section_state *k,
 int nevh__section_sample(nevh_sections *x, const nevh__section_state *k,
                          double s, double *value) {
     *value = NAN;
-    int status = nevh__section_step(x, s * x->h);
+    int status = take_step(x, s * x->h);
     return status ? status
                   : nevh__section_value(x, k, x->branch->last_t, x->q_try,
                                         x->p_try, value);
@@ -71,7 +72,7 @@ int nevh__section_take(nevh_sections *x, nevh__section_state *k, double h) {
         keep(x, k, 0, x->t, x->q, x->p);
     else if (h == x->h)
         keep(x, k, 1, x->t_after, x->q_after, x->p_after);
-    else if (!(status = nevh__section_step(x, h)))
+    else if (!(status = take_step(x, h)))
         keep(x, k, h / x->h, x->branch->last_t, x->q_try, x->p_try);
     return status;
 }

@@ -74,8 +74,6 @@ int nevh__sections_search(nevh_sections *);
 static const double nevh__section_ahead = 0x1p-20;
 
 /* section_branch.c.  All return a status, which is recorded. */
-/* A step of h from where the step at hand begins to q_try, p_try. */
-int nevh__section_step(nevh_sections *, double h);
 /* The time of a stroboscopic section's next point. */
 double nevh__section_due(const nevh_sections *, const nevh__section_state *);
 /* The section's value at a state; of stroboscopic ones, time since that. */

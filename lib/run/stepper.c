@@ -39,10 +39,11 @@ static int plan_memory(nevh_stepper *s) {
 
 static int plan_field(nevh_stepper *s) {
     nevh_work *w = &s->work;
+    if (w->integrator->needs_formulas) /* it takes no gradient */
+        s->options.gradient = nevh__best_gradient(w->system);
     w->field = nevh_field_new(w->system, &s->options);
     if (!w->field)
         return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
-    w->scale = w->field->scale;
     return w->field->report.status
                ? nevh__fail_as(&s->report, &w->field->report)
                : NEVH_OK;
@@ -317,6 +318,18 @@ bool nevh_stepper_native(const nevh_stepper *s, const char **why) {
     return s && s->work.native;
 }
 
+bool nevh_stepper_foresee(nevh_stepper *s, double steps) {
+    if (!s || !s->planned)
+        return false;
+    bool more = steps > s->options.steps_foreseen;
+    bool tried = s->work.native || s->why_native[0];
+    if (more)
+        s->options.steps_foreseen = steps;
+    if (more && !tried && s->options.native == NEVH_NATIVE_AUTO)
+        nevh__native_plan(&s->work, s->why_native);
+    return nevh__native_pays(&s->work);
+}
+
 char *nevh_stepper_program(nevh_stepper *s, const nevh_program *as) {
     nevh__writer text = {0};
     if (!s || !s->planned || !as)
@@ -326,7 +339,9 @@ char *nevh_stepper_program(nevh_stepper *s, const nevh_program *as) {
                    "a program needs a state to start from, and rows");
         return NULL;
     }
-    if (nevh__write_program(&text, &s->work, as)) {
+    if (s->friction)
+        text.refusal = "friction is put around its steps";
+    else if (nevh__write_program(&text, &s->work, as)) {
         free(text.numbers);
         return text.text;
     }

@@ -20,10 +20,11 @@ size_t nevh_size_of(const char *type) {
         size_t size;
     } sizes[] = {
         SIZE_OF(nevh_counts),        SIZE_OF(nevh_energy_report),
-        SIZE_OF(nevh_observer),      SIZE_OF(nevh_options),
-        SIZE_OF(nevh_scene_options), SIZE_OF(nevh_scene_run),
-        SIZE_OF(nevh_sweep_options), SIZE_OF(nevh_sweep_records),
-        SIZE_OF(nevh_separability),  SIZE_OF(nevh_term),
+        SIZE_OF(nevh_judged_run),    SIZE_OF(nevh_observer),
+        SIZE_OF(nevh_options),       SIZE_OF(nevh_scene_options),
+        SIZE_OF(nevh_scene_run),     SIZE_OF(nevh_sweep_options),
+        SIZE_OF(nevh_sweep_records), SIZE_OF(nevh_separability),
+        SIZE_OF(nevh_term),
     };
     for (size_t i = 0; type && i < sizeof sizes / sizeof *sizes; i++)
         if (strcmp(type, sizes[i].name) == 0)

@@ -155,12 +155,14 @@ static bool plan_state(const nevh__variant *x, double q[], double p[]) {
            !nevh__effect_not_finite(m->system, m->run.t_start, q, p, x->room);
 }
 
-/* Those of a thread, of orbits side by side: what one compiles, all load. */
+/* Steps are compiled for all members or for none, by the work of all: the last
+   digits must depend neither on width or threads nor on what the cache holds. */
 static double steps_foreseen(const nevh_sweep *s, double steps) {
-    size_t width = s->is.width ? s->is.width : 32; /* about */
+    static const double compiling_pays = 4e6; /* gradients */
+    int each = nevh_integrator_stages(s->is.integrator);
     double members = (double)nevh_sweep_members(s);
-    double foreseen = steps * members / (double)(width * s->is.threads);
-    return foreseen > 0 ? foreseen : 0;
+    return steps * members * (each > 1 ? each : 1) > compiling_pays ? INFINITY
+                                                                    : 0;
 }
 
 nevh_ensemble_options nevh__variant_options(const nevh_sweep *s,

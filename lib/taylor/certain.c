@@ -147,7 +147,8 @@ char *nevh_certain_text(const nevh_certain *c, size_t k) {
     if (text)
         strcpy(text, "0");
     if (text && digits > 0)
-        quadmath_snprintf(text, ROOM, "%#.*Qg", digits, c->fine.state[k]);
+        quadmath_snprintf(text, ROOM, digits > 1 ? "%#.*Qg" : "%.*Qg", digits,
+                          c->fine.state[k]);
     return text;
 }
 

@@ -237,6 +237,7 @@ NEVH__INLINE void next_batch(const series *s, const nevh__batch *b, size_t k) {
     default: /* y' = slope x' */
         NEVH__NO_ALIAS for (size_t i = 0; i < count; i++) y[i] =
             c[i] * ((sum[i] + order * x[i] * b0[i]) * inverse);
+        break;
     }
 }
 

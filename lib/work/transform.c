@@ -4,6 +4,7 @@
    grad K = s grad H + (H - H0) grad s, all over s0, from the gradient of H, one
    value of it, and a field of its own for s. */
 #include "work/transform_private.h"
+#include "gradient/field_private.h"
 #include "system/system_private.h"
 #include <nevh/probe.h>
 #include <float.h>
@@ -28,15 +29,6 @@ int nevh__transform_fail(nevh_work *w, const nevh_field *s) {
                           nevh_field_message(s));
 }
 
-/* grad s is multiplied by H - H0, which is next to nothing: where s has no
-   exact gradient, differences are good enough under any method of H's. */
-static const nevh_gradient *method(const nevh_system *s) {
-    for (size_t i = 0; i < s->n_terms; i++)
-        if (!s->terms[i]->decl.gradient)
-            return nevh_central6;
-    return nevh_exact;
-}
-
 int nevh__transform_field(nevh_work *w, nevh_field **field) {
     const nevh_system *s = w->options->transform;
     nevh_options own = *w->options;
@@ -49,7 +41,12 @@ int nevh__transform_field(nevh_work *w, nevh_field **field) {
                               s->n, w->n);
     if (!(nevh_system_traits(s) & NEVH_AUTONOMOUS))
         return nevh_work_fail(w, NEVH_EINVAL, "the transform reads the time");
-    own.gradient = method(s);
+    int status = nevh_work_find_scale(w);
+    if (status)
+        return status;
+    /* grad s is multiplied by H - H0, which is next to nothing: where s has no
+       exact gradient, differences will do under any method of H's. */
+    own.gradient = nevh__best_gradient(s);
     own.gradient_step = 0;
     own.gradient_steps = NULL;
     own.scale = w->scale;

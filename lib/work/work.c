@@ -25,6 +25,15 @@ static int fail_field(nevh_work *w, int status) {
     return nevh_work_fail(w, status, "%s", nevh_field_message(w->field));
 }
 
+int nevh_work_find_scale(nevh_work *w) {
+    int status =
+        w->scale ? NEVH_OK : nevh__field_find_scale(w->field, w->options);
+    if (status)
+        return fail_field(w, status);
+    w->scale = w->field->scale;
+    return NEVH_OK;
+}
+
 size_t nevh__work_row(const nevh_work *w, size_t points) {
     size_t row = nevh__padded(points);
     if (w->transform)
@@ -61,16 +70,16 @@ size_t nevh__work_lanes(nevh_work *w, bool whole, bool numbers) {
     return lanes;
 }
 
-int nevh__work_step(nevh_work *w, double t, double h, double q[], double p[]) {
-    const nevh_kernel *kernel = w->integrator->kernel;
-    if (!nevh__field_at_hand(w->field) && nevh__field_ready(w->field))
-        return fail_field(w, w->field->report.status);
-    w->report->status = NEVH_OK;
-    int status = kernel->step(w, t, h, q, p);
-    if (!status || w->report->status || !w->planned)
-        return status;
+int nevh__work_step_ready(nevh_work *w, double t, double h, double q[],
+                          double p[]) {
+    return nevh__field_ready(w->field) ? fail_field(w, w->field->report.status)
+                                       : nevh__work_step(w, t, h, q, p);
+}
+
+int nevh__work_step_again(nevh_work *w, double t, double h, double q[],
+                          double p[]) {
     w->planned = false;
-    status = kernel->step(w, t, h, q, p);
+    int status = w->integrator->kernel->step(w, t, h, q, p);
     w->planned = true;
     return status;
 }

@@ -61,10 +61,25 @@ static inline bool nevh__work_as_planned(const nevh_work *w, size_t lanes,
                                          size_t columns) {
     return w->planned && lanes && columns == w->width;
 }
+/* Where the field has to be made ready first. */
+int nevh__work_step_ready(nevh_work *, double t, double h, double q[],
+                          double p[]);
+/* A step that failed without a message, again. */
+int nevh__work_step_again(nevh_work *, double t, double h, double q[],
+                          double p[]);
 /* The kernel's step.  One with planned gradients, at which nothing looks, may
    fail without a message: it is taken again with nevh_work_gradient, which
    gives one. */
-int nevh__work_step(nevh_work *, double t, double h, double q[], double p[]);
+static inline int nevh__work_step(nevh_work *w, double t, double h, double q[],
+                                  double p[]) {
+    if (!nevh__field_at_hand(w->field))
+        return nevh__work_step_ready(w, t, h, q, p);
+    w->report->status = NEVH_OK;
+    int status = w->integrator->kernel->step(w, t, h, q, p);
+    return status && !w->report->status && w->planned
+               ? nevh__work_step_again(w, t, h, q, p)
+               : status;
+}
 /* A gradient at states that stay where they are: nevh__evaluation_plan, or none
    where time is transformed. */
 nevh__evaluation nevh__work_plan(const nevh_work *, size_t lanes,

@@ -8,6 +8,14 @@ trap 'exit 1' HUP INT TERM
 mkdir -p $work/doc/sheets || exit 1
 sh "$srcdir/doc/sheets/sheets.sh" "$srcdir" ./tools/nevh examples check || exit 1
 
+# Where TeX is, nothing is wider than the page.
+if command -v texi2pdf >/dev/null 2>&1 && command -v pdftex >/dev/null 2>&1; then
+    top=$(cd "$srcdir" && pwd)
+    (cd $work && texi2pdf --batch --quiet -I "$top/doc/sheets" -I "$top/build-aux" \
+        "$top/doc/sheets/sheets.texi") >$work/out 2>&1 || { cat $work/out; exit 1; }
+    grep -A 1 Overfull $work/sheets.log && exit 1
+fi
+
 # A number that is wrong is found.
 cp "$srcdir"/doc/sheets/* $work/doc/sheets/
 grep '^rk-twenty|' "$srcdir/doc/sheets/numbers.list" >$work/doc/sheets/numbers.list

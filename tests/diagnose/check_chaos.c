@@ -20,12 +20,7 @@ typedef struct {
 
 static void set_up(setup *s, const char *coordinates, const char *rest,
                    const nevh_integrator *scheme, double dt) {
-    char text[2000];
-    *s = (setup){0};
-    snprintf(text, sizeof text, "[coordinates]\n%s\n[effects]\n%s\n",
-             coordinates, rest);
-    s->scene = nevh_scene_parse("test", text);
-    ck_assert_str_eq(nevh_scene_message(s->scene), "");
+    *s = (setup){.scene = scene_with(coordinates, rest)};
     s->system = nevh_scene_system(s->scene);
     ck_assert_int_eq(nevh_scene_start(s->scene, s->q, s->p), NEVH_OK);
     s->options = (nevh_options){.q = s->q, .p = s->p};

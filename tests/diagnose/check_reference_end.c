@@ -4,7 +4,6 @@
 #include "support.h"
 #include <math.h>
 #include <nevh/scene.h>
-#include <stdio.h>
 #include <string.h>
 
 enum { MOST = 8 };
@@ -16,12 +15,8 @@ typedef struct {
 
 static setup refer(const char *coordinates, const char *effects, double t1,
                    const nevh_reference_options *o) {
-    char text[2000];
     double q[MOST], p[MOST];
-    snprintf(text, sizeof text, "[coordinates]\n%s\n[effects]\n%s\n",
-             coordinates, effects);
-    setup s = {.scene = nevh_scene_parse("test", text)};
-    ck_assert_str_eq(nevh_scene_message(s.scene), "");
+    setup s = {.scene = scene_with(coordinates, effects)};
     ck_assert_uint_le(nevh_scene_dof(s.scene), MOST);
     nevh_scene_start(s.scene, q, p);
     s.reference =

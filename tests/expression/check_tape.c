@@ -229,6 +229,25 @@ static bool is_kinked(const operation *f, double a, double b) {
     return (f->is == NEVH__MIN || f->is == NEVH__MAX) && fabs(a - b) < 0.01;
 }
 
+/* The derivatives of portable gradients have libm's bits. */
+TEST(portable_slopes_are_of_libm) {
+    enum { POINTS = 64 * 8, CALLS = 4 };
+    static const nevh__tape_operation is[CALLS] = {NEVH__SIN, NEVH__COS,
+                                                   NEVH__EXP, NEVH__SINH};
+    double (*const derivative[CALLS])(double) = {cos, sin, exp, cosh};
+    static double x[POINTS], zero[POINTS], dx[POINTS], dy[POINTS];
+    for (size_t i = 0; i < POINTS; i++)
+        x[i] = uniform(-3, 3);
+    for (int k = 0; k < CALLS; k++) {
+        nevh__tape *tape = tape_of(is[k]);
+        double sign = is[k] == NEVH__COS ? -1 : 1;
+        nevh__tape_portable_gradient(POINTS, zero, x, zero, NULL, tape, dx, dy);
+        for (size_t i = 0; i < POINTS; i++)
+            ck_assert_double_eq(dx[i], sign * derivative[k](x[i]));
+        nevh__tape_free(tape);
+    }
+}
+
 TEST_EACH(slopes, OPERATIONS) {
     const operation *f = &operations[_i];
     double x[WIDTH], y[WIDTH], t[WIDTH] = {0}, dx[WIDTH], dy[WIDTH], pair[2];

@@ -205,6 +205,83 @@ static void shaken_gradient(size_t width, const double t[], const double q[],
     }
 }
 
+/* What planning asks for: typical lengths take a coarse run. */
+
+static double bob_value(double t, const double q[], const double p[],
+                        const double c[], const void *params) {
+    (void)t, (void)p, (void)c, (void)params;
+    return -cos(q[0]);
+}
+
+static void bob_gradient(size_t width, const double t[], const double q[],
+                         const double p[], const double c[], const void *params,
+                         double dq[], double dp[]) {
+    const size_t *counter = params;
+    (void)t, (void)p, (void)c, (void)dp;
+    ++*(size_t *)counter;
+    for (size_t i = 0; dq && i < width; i++)
+        dq[i] = sin(q[i]);
+}
+
+static double half_square(double t, const double q[], const double p[],
+                          const double c[], const void *params) {
+    (void)t, (void)q, (void)c, (void)params;
+    return p[0] * p[0] / 2;
+}
+
+static void half_square_slope(size_t width, const double t[], const double q[],
+                              const double p[], const double c[],
+                              const void *params, double dq[], double dp[]) {
+    (void)t, (void)q, (void)c, (void)params, (void)dq;
+    for (size_t i = 0; dp && i < width; i++)
+        dp[i] = p[i];
+}
+
+/* Gradients of the bob that planning takes. */
+static size_t asked_by(const nevh_integrator *scheme, const double scale[]) {
+    size_t counter = 0;
+    static const size_t first = 0;
+    nevh_system *s = nevh_system_new(1);
+    nevh_system_add(s, &(nevh_term){.name = "bob",
+                                    .effect = "bob",
+                                    .nq = 1,
+                                    .q = &first,
+                                    .value = bob_value,
+                                    .gradient = bob_gradient,
+                                    .params = &counter});
+    nevh_system_add(s, &(nevh_term){.name = "kinetic",
+                                    .effect = "kinetic",
+                                    .np = 1,
+                                    .p = &first,
+                                    .value = half_square,
+                                    .gradient = half_square_slope});
+    nevh_options o = {.gradient = nevh_exact,
+                      .tolerance = 1e-6,
+                      .scale = scale,
+                      .q = (const double[]){1},
+                      .p = (const double[]){0}};
+    nevh_stepper *m = nevh_stepper_new(s, scheme, &o);
+    ck_assert_msg(!nevh_stepper_status(m), "%s", nevh_stepper_message(m));
+    ck_assert_uint_eq(nevh_stepper_counts(m).gradients, 0);
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+    return counter;
+}
+
+TEST(lengths_are_found_for_schemes_that_read_them) {
+    static const double ones[] = {1, 1};
+    const nevh_integrator *blind[] = {nevh_verlet, nevh_blanes_moan4, nevh_rk4,
+                                      nevh_euler};
+    const nevh_integrator *reads[] = {nevh_midpoint, nevh_gauss8, nevh_dopri5,
+                                      nevh_gonzalez, nevh_tao2};
+    size_t none = asked_by(nevh_verlet, ones);
+    for (size_t i = 0; i < sizeof blind / sizeof *blind; i++)
+        ck_assert_uint_le(asked_by(blind[i], NULL), none + 16);
+    for (size_t i = 0; i < sizeof reads / sizeof *reads; i++)
+        ck_assert_msg(asked_by(reads[i], NULL) > none + 200, "%s: %zu",
+                      nevh_integrator_name(reads[i]), asked_by(reads[i], NULL));
+}
+
 static double kepler_value(double t, const double q[], const double p[],
                            const double c[], const void *params) {
     (void)t, (void)params;

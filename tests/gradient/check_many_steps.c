@@ -12,21 +12,6 @@
 
 static const double now = 0;
 
-static void add_kinetic(nevh_system *s, size_t n, const double mass[]) {
-    size_t *index = calloc(n, sizeof *index);
-    for (size_t i = 0; i < n; i++)
-        index[i] = i;
-    nevh_system_add(s, &(nevh_term){.effect = "kinetic",
-                                    .np = 1,
-                                    .nc = 1,
-                                    .p = index,
-                                    .c = mass,
-                                    .count = n,
-                                    .value = mass_kinetic,
-                                    .gradient = mass_kinetic_gradient});
-    free(index);
-}
-
 /* Sun, Jupiter, Saturn, Uranus, Neptune, Pluto in AU, days, solar masses:
    Hairer, Lubich, Wanner, "Geometric Numerical Integration", I.2.4. */
 enum { BODIES = 6, PAIRS = 15, SOLAR = 3 * BODIES };

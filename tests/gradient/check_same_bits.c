@@ -313,15 +313,7 @@ static nevh_system *wavy(int kind) {
         add_waves(s, 1, some);
         add_waves(s, 3, rising);
     }
-    ck_assert(
-        !nevh_system_add(s, &(nevh_term){.effect = "kinetic",
-                                         .np = 1,
-                                         .nc = 1,
-                                         .p = rising,
-                                         .c = masses,
-                                         .count = 3,
-                                         .value = mass_kinetic,
-                                         .gradient = mass_kinetic_gradient}));
+    add_kinetic(s, 3, masses);
     return s;
 }
 
@@ -391,12 +383,7 @@ TEST_EACH(failures_name_the_term, 4) {
                                     .nq = 1,
                                     .value = free_value,
                                     .gradient = walled});
-    nevh_system_add(s, &(nevh_term){.effect = "kinetic",
-                                    .np = 1,
-                                    .nc = 1,
-                                    .c = mass,
-                                    .value = mass_kinetic,
-                                    .gradient = mass_kinetic_gradient});
+    add_kinetic(s, 1, mass);
     nevh_stepper *stepper =
         nevh_stepper_new(s, scheme,
                          &(nevh_options){.gradient = nevh_exact,
@@ -419,14 +406,7 @@ static void run_asked(const nevh_integrator *scheme, double tolerance,
     static const size_t all[] = {0, 1};
     nevh_system *s = nevh_system_new(2);
     add_waves(s, 2, all);
-    nevh_system_add(s, &(nevh_term){.effect = "kinetic",
-                                    .np = 1,
-                                    .nc = 1,
-                                    .p = all,
-                                    .c = masses,
-                                    .count = 2,
-                                    .value = mass_kinetic,
-                                    .gradient = mass_kinetic_gradient});
+    add_kinetic(s, 2, masses);
     nevh_stepper *stepper = nevh_stepper_new(
         s, scheme,
         &(nevh_options){.gradient = nevh_exact, .tolerance = tolerance});

@@ -42,14 +42,7 @@ static nevh_system *make_elastic(double L, double M) {
 
 static nevh_system *in_plane(double mass, const nevh_term *potential) {
     nevh_system *s = nevh_system_new(2);
-    nevh_system_add(s, &(nevh_term){.effect = "kinetic",
-                                    .np = 1,
-                                    .nc = 1,
-                                    .p = (const size_t[]){0, 1},
-                                    .c = (const double[]){mass, mass},
-                                    .count = 2,
-                                    .value = mass_kinetic,
-                                    .gradient = mass_kinetic_gradient});
+    add_kinetic(s, 2, (const double[]){mass, mass});
     nevh_system_add(s, potential);
     return s;
 }

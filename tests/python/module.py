@@ -105,6 +105,46 @@ def test_verdicts_differ():
     assert verlet.energy_error < 0.02
 
 
+def test_verdicts_are_those_of_the_command():
+    """Of runs that are too short to tell, too: both take a longer one."""
+    methods = ["verlet", "gauss4", "rk4", "euler"]
+    longer = 0
+    for scene, dt, t_end in (("pendulum", 0.1, 8), ("pendulum", 0.4, 30),
+                             ("henon-heiles", 0.3, 30), ("kepler", 0.05, 12),
+                             ("double-pendulum", 0.02, 5)):
+        rows = nevh.compare(scene, methods, dt=dt, t_end=t_end)
+        for row in rows:
+            if row["status"].startswith("refused"):
+                continue
+            orbit = nevh.solve(scene, (0, t_end), method=row["integrator"], dt=dt,
+                               t_eval=[t_end], check=False)
+            longer += not dict.__contains__(orbit, "verdict")
+            assert orbit.verdict == row["verdict"], (scene, row, orbit.verdict)
+            assert dict.__contains__(orbit, "verdict")
+    assert longer >= 6, longer
+
+
+def test_verdict_is_an_item_also_where_a_longer_run_finds_it():
+    import pickle
+
+    def short(H="pendulum"):
+        return nevh.solve(H, (0, 8), [2, 0], "verlet", dt=0.1)
+    known = nevh.compare("pendulum", ["verlet"], dt=0.1, t_end=8)["verdict"][0]
+    assert known != "undecided"
+    for take in (lambda o: o.verdict, lambda o: o["verdict"], lambda o: o.get("verdict"),
+                 lambda o: dict(o.items())["verdict"], lambda o: dict(**o)["verdict"],
+                 lambda o: np is None or pickle.loads(pickle.dumps(o)).verdict == known,
+                 lambda o: o.copy()["verdict"], lambda o: known in repr(o)):
+        assert take(short()) in (known, True)
+    assert "verdict" in short() and "verdict" in list(short())
+    assert short().get("nothing", 3) == 3 and "nothing" not in short()
+    assert nevh.solve(PENDULUM, (0, -8), [2, 0], "verlet", dt=0.1).verdict == known
+
+    def slow(t, y):
+        return y[1]**2/2 - 9.8*math.cos(y[0])
+    assert short(slow).verdict == "undecided"
+
+
 def test_backwards():
     there = nevh.solve(PENDULUM, (0, 3), [2, 0], "blanes-moan6", dt=0.01)
     back = nevh.solve(PENDULUM, (3, 0), last(there), "blanes-moan6", dt=0.01)

@@ -50,6 +50,8 @@ import sys
 import nevh
 for path in (nevh.library(), nevh.command(), nevh.Scene("pendulum").path):
     assert os.path.realpath(path).startswith(os.path.realpath(sys.argv[1])), path
+scenes = os.listdir(os.path.dirname(nevh.Scene("pendulum").path))
+assert "pendulum-filmed.csv" in scenes  # measured points come with their scene
 assert nevh.solve("pendulum", (0, 100), dt=0.02).verdict == "bounded"
 rows = nevh.compare("pendulum", ["verlet", "rk4"], dt=0.1, t_end=100)
 assert rows["verdict"] == ["bounded", "drifts"]

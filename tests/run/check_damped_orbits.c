@@ -12,12 +12,7 @@ static void assert_decay(const nevh_integrator *scheme, bool moves, double rate,
     nevh_system *s = nevh_system_new(1);
     const double mass = 1.3;
     if (moves)
-        nevh_system_add(s, &(nevh_term){.effect = "kinetic",
-                                        .np = 1,
-                                        .nc = 1,
-                                        .c = &mass,
-                                        .value = mass_kinetic,
-                                        .gradient = mass_kinetic_gradient});
+        add_kinetic(s, 1, &mass);
     nevh_system_add_friction(s, "drag", &rate);
     nevh_options o = {.gradient = nevh_exact};
     nevh_stepper *m = nevh_stepper_new(s, scheme, &o);
@@ -103,12 +98,7 @@ static void spring_gradient(size_t width, const double t[], const double q[],
 static nevh_system *make_spring(void) {
     static const double mass = 1.3;
     nevh_system *s = nevh_system_new(1);
-    nevh_system_add(s, &(nevh_term){.effect = "kinetic",
-                                    .np = 1,
-                                    .nc = 1,
-                                    .c = &mass,
-                                    .value = mass_kinetic,
-                                    .gradient = mass_kinetic_gradient});
+    add_kinetic(s, 1, &mass);
     nevh_system_add(s, &(nevh_term){.effect = "spring",
                                     .nq = 1,
                                     .value = spring,
@@ -292,8 +282,6 @@ TEST_EACH(memory_is_a_help_only, scheme_count()) {
     enum { STEPS = 200 };
     if (refuses(scheme) || nevh_integrator_symplectic(scheme) == NEVH_EXTENDED)
         skip_test("it refuses friction, or copies are bound");
-    if (scheme->multistep)
-        skip_test("it needs what it remembers");
     nevh_system *s = damped(b, unequal);
     nevh_stepper *kept = planned(s, b, scheme, nevh_exact);
     nevh_stepper *fresh = planned(s, b, scheme, nevh_exact);
@@ -305,8 +293,11 @@ TEST_EACH(memory_is_a_help_only, scheme_count()) {
         ck_assert_int_eq(nevh_stepper_apply(fresh, t, 0.01, y.q, y.p), 0);
     }
     double found = distance(b, &x, &y);
-    ck_assert_msg(found <= STEPS * 16 * DBL_EPSILON, "%s on %s: %.2e",
-                  nevh_integrator_name(scheme), b->name, found);
+    if (scheme->multistep) /* slopes of earlier steps are part of the step */
+        ck_assert_double_gt(found, 1e-8);
+    else
+        ck_assert_msg(found <= STEPS * 16 * DBL_EPSILON, "%s on %s: %.2e",
+                      nevh_integrator_name(scheme), b->name, found);
     nevh_stepper_free(kept);
     nevh_stepper_free(fresh);
     nevh_system_free(s);

@@ -98,7 +98,8 @@ TEST_EACH(gain_can_be_kept, scheme_count()) {
     }
 }
 
-/* A lane's gain is that of the orbit that runs alone. */
+/* A lane's gain is that of the orbit that runs alone; also where a neighbour, or
+   the lane itself, is put elsewhere. */
 TEST_EACH(lanes_are_alone, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     enum { WIDTH = 5 };
@@ -128,6 +129,14 @@ TEST_EACH(lanes_are_alone, scheme_count()) {
         ck_assert_int_eq(nevh_run(one, b->t0, 0.02, 30, x.q, x.p, NULL, 0), 0);
         ck_assert(nevh_stepper_gain(five, 3) == nevh_stepper_gain(one, 0));
         ck_assert(nevh_stepper_gain(five, 2) != nevh_stepper_gain(one, 0));
+        for (size_t lane = 0; lane <= 3; lane += 3) {
+            double t = b->t0 + 0.02 * (30 + (double)lane);
+            q[lane] *= 1.1;
+            x.q[0] = q[3];
+            ck_assert_int_eq(nevh_run(five, t, 0.02, 3, q, p, NULL, 0), 0);
+            ck_assert_int_eq(nevh_run(one, t, 0.02, 3, x.q, x.p, NULL, 0), 0);
+            ck_assert(nevh_stepper_gain(five, 3) == nevh_stepper_gain(one, 0));
+        }
         nevh_stepper_free(five);
         nevh_stepper_free(one);
         nevh_system_free(s);

@@ -31,14 +31,7 @@ static nevh_system *make_springs(void) {
     for (int k = 0; k < 2; k++)
         stiffness[k] = masses[k] * frequency[k] * frequency[k];
     nevh_system *s = nevh_system_new(2);
-    nevh_system_add(s, &(nevh_term){.effect = "kinetic",
-                                    .np = 1,
-                                    .nc = 1,
-                                    .p = both,
-                                    .c = masses,
-                                    .count = 2,
-                                    .value = mass_kinetic,
-                                    .gradient = mass_kinetic_gradient});
+    add_kinetic(s, 2, masses);
     nevh_system_add(s, &(nevh_term){.effect = "springs",
                                     .nq = 1,
                                     .nc = 1,

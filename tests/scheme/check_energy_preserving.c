@@ -201,14 +201,7 @@ static nevh_system *double_well(size_t n, double mass, double c,
                                 double offset) {
     const double masses[] = {mass, mass};
     nevh_system *s = nevh_system_new(n);
-    nevh_system_add(s, &(nevh_term){.effect = "kinetic",
-                                    .np = 1,
-                                    .nc = 1,
-                                    .p = (const size_t[]){0, 1},
-                                    .c = masses,
-                                    .count = n,
-                                    .value = mass_kinetic,
-                                    .gradient = mass_kinetic_gradient});
+    add_kinetic(s, n, masses);
     nevh_system_add(s, &(nevh_term){.effect = "well",
                                     .nq = 1,
                                     .nc = 1,

@@ -192,12 +192,7 @@ TEST_EACH(free_motion, SCHEMES) {
     static const double mass[] = {1};
     static const double steps[] = {0.1, 0.3, 1 / 3., 0.7, 1e-3, 123.4};
     nevh_system *s = nevh_system_new(1);
-    nevh_system_add(s, &(nevh_term){.effect = "kinetic",
-                                    .np = 1,
-                                    .nc = 1,
-                                    .c = mass,
-                                    .value = mass_kinetic,
-                                    .gradient = mass_kinetic_gradient});
+    add_kinetic(s, 1, mass);
     nevh_options options = {.gradient = nevh_exact};
     for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {
         nevh_stepper *m = nevh_stepper_new(s, *schemes[_i], &options);

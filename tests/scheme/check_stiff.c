@@ -173,25 +173,14 @@ static void chain_gradient(size_t width, const double t[], const double q[],
 
 static nevh_system *make_chain(size_t n) {
     nevh_system *s = nevh_system_new(n);
-    size_t *momenta = malloc(n * sizeof *momenta);
     double *masses = malloc(n * sizeof *masses);
-    for (size_t k = 0; k < n; k++) {
-        momenta[k] = k;
+    for (size_t k = 0; k < n; k++)
         masses[k] = 1;
-    }
-    nevh_system_add(s, &(nevh_term){.effect = "kinetic",
-                                    .np = 1,
-                                    .nc = 1,
-                                    .p = momenta,
-                                    .c = masses,
-                                    .count = n,
-                                    .value = mass_kinetic,
-                                    .gradient = mass_kinetic_gradient});
+    add_kinetic(s, n, masses);
     nevh_system_add(s, &(nevh_term){.effect = "springs",
                                     .nq = N,
                                     .value = chain,
                                     .gradient = chain_gradient});
-    free(momenta);
     free(masses);
     return s;
 }

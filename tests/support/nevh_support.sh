@@ -33,6 +33,14 @@ exits() {
 says() {
     grep -Eq -e "$1" $work/err || { fails "does not say '$1'"; cat $work/err; }
 }
+# refused PATTERN, ARGUMENT...: bad input, which leaves no $page.
+refused() {
+    pattern=$1
+    shift
+    exits 2 "$@"
+    says "$pattern"
+    test ! -e $page || fails "leaves a page"
+}
 has() {
     grep -Eq -e "$1" $work/out || { fails "lacks '$1'"; cat $work/out; }
 }

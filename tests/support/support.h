@@ -34,6 +34,8 @@ double mass_kinetic(double t, const double q[], const double p[],
 void mass_kinetic_gradient(size_t width, const double t[], const double q[],
                            const double p[], const double c[],
                            const void *params, double dq[], double dp[]);
+/* These of the momenta 0 to n - 1, as the term "kinetic". */
+void add_kinetic(nevh_system *, size_t n, const double masses[]);
 /* The same of two unit masses in one term. */
 double plane_kinetic(double t, const double q[], const double p[],
                      const double c[], const void *params);
@@ -54,6 +56,10 @@ void wave_gradient(size_t width, const double t[], const double q[],
                    const double p[], const double c[], const void *params,
                    double dq[], double dp[]);
 void add_waves(nevh_system *, size_t count, const size_t *at);
+
+/* A scene of lines of [coordinates] and [effects], after which other sections may
+   follow; fails the test where it cannot be read. */
+nevh_scene *scene_with(const char *coordinates, const char *rest);
 
 /* Attraction by pull/|q| in the plane, with exact gradients. */
 nevh_system *gravity_system(const double masses[2], double pull);

@@ -145,20 +145,71 @@ await tried("pendulum", "integrators=verlet,rk4,euler&disc=1&dt=0.0625", async (
     check(await page.until("typeof left === 'undefined' && typeof fragment === 'function'"
       + " && typeof rows !== 'undefined' && rows.length > 0"), "no reload");
     check(await page.evaluate("fragment()") === shared, "reads other settings than it shares: " + await page.evaluate("fragment()"));
-    const place = await page.evaluate(`(() => { const b = at("scene").getBoundingClientRect();
-      scrollTo(0, b.top); const c = at("scene").getBoundingClientRect(); draw();
-      return [c.left + configuration.x(pictures[0][0]),
-        c.top + configuration.y(pictures[0][1])]; })()`);
-    await page.pointer("mousePressed", ...place);
-    await page.pointer("mouseMoved", place[0] + 30, place[1] + 20);
-    await page.pointer("mouseReleased", place[0] + 30, place[1] + 20);
-    const before = JSON.stringify(await page.evaluate("Array.from(rows[0].slice(4))"));
-    check(await page.until(`JSON.stringify(Array.from(rows[0].slice(4))) !== ${
-      JSON.stringify(before)} || S.start && !playing`), "a body is not dragged");
+    // A body, and a point of the plane, are where they were dropped, also after
+    // moves in between.
+    await page.evaluate("setPlaying(false)");
+    const dragged = async (id, plane, from, path) => {
+      const [x, y] = await page.evaluate(`(() => {
+        at("${id}").scrollIntoView({ block: "center" }); draw();
+        const box = at("${id}").getBoundingClientRect();
+        return [box.left + ${plane}.x(${from[0]}), box.top + ${plane}.y(${from[1]})];
+      })()`);
+      const [right, down] = path.at(-1);
+      const wanted = await page.evaluate(
+        `${plane}.under({ clientX: ${x + right}, clientY: ${y + down} })`);
+      await page.pointer("mousePressed", x, y);
+      for (const [to, below] of path) {
+        await page.pointer("mouseMoved", x + to, y + below);
+        await new Promise((resolve) => setTimeout(resolve, 300));
+      }
+      await page.pointer("mouseReleased", x + right, y + down);
+      check(await page.until("!pulling"), "a drag does not end");
+      return wanted;
+    };
+    const near = (a, b) => Math.abs(a - b) < 2e-3;
+    const path = [[10, 30], [25, -20], [-20, 40]];
+    let to = await dragged("scene", "configuration", ["pictures[0][0]",
+      "pictures[0][1]"], path);
+    let start = await page.evaluate("S.start");
+    check(start && near(start[0], to[0]) && near(start[1], to[1]),
+      `a body dropped at ${to} starts at ${start}`);
+    to = await dragged("phase", "phase", ["rows[0][4]", "rows[0][6]"], path);
+    start = await page.evaluate("S.start");
+    check(start && near(start[0], to[0]) && near(start[2], to[1]),
+      `a state dropped at ${to} starts at ${start}`);
     check(page.faults.length === 0, "kepler: console: " + page.faults.join("; "));
   } finally {
     await page.close();
   }
 }
+// Two coordinates without a picture are drawn as a point of their plane.
+await tried("henon-heiles", "", async (page) => {
+  check(await page.until("paths[0] && paths[0][0] && paths[0][0].length > 20"),
+    "draws no path");
+  const off = await page.evaluate(`(() => { setPlaying(false); return Math.hypot(
+    pictures[0][0] - rows[0][4], pictures[0][1] - rows[0][5]); })()`);
+  check(off === 0, "draws another point, off by " + off);
+});
+// The steps of ten minutes of frames take no more memory than those of one: what is
+// kept is thinned.
+await tried("pendulum", "speed=3&integrators=verlet,rk4,euler,gauss4", async (page) => {
+  check(await page.until("steps > 5"), "nothing moves");
+  await page.evaluate("setPlaying(false)");
+  const frames = (count) => page.evaluate(`(async () => { await quiet();
+    for (let left = ${count}; left > 0;) { left -= await go(Math.min(left, 120));
+      draw(); } })()`);
+  const size = async () => {
+    await page.call("HeapProfiler.collectGarbage");
+    const { usedSize } = await page.call("Runtime.getHeapUsage");
+    return [usedSize, await page.evaluate("document.querySelectorAll('*').length")];
+  };
+  await frames(3600);
+  const [heap, elements] = await size();
+  await frames(32400);
+  const [more, after] = await size();
+  console.log("heap " + heap + ", later " + more);
+  check(after === elements, `${after} elements, ${elements} before`);
+  check(more < heap + 500000, `${more} bytes, ${heap} before`);
+});
 console.log(wrong + " wrong");
 process.exit(wrong ? 1 : 0);

@@ -189,6 +189,17 @@ TEST(automatic_names) {
     nevh_system_free(s);
 }
 
+/* The time to add a term does not grow with their number: comparing each name
+   with all others would take hours here, and the test's limit ends it. */
+TEST(many_terms_of_one_effect) {
+    enum { MANY = 200000 };
+    nevh_system *s = nevh_system_new(1);
+    for (int i = 0; i < MANY; i++)
+        ck_assert_int_eq(nevh_system_add(s, &gravity), NEVH_OK);
+    ck_assert_uint_eq(nevh_system_effect_count(s), 1);
+    nevh_system_free(s);
+}
+
 TEST(effects_group_terms) {
     nevh_system *s = pendulum();
     double t = 0, q = 0.4, p = 0.9, h[2];

@@ -194,6 +194,107 @@ TEST_EACH(lanes_are_orbits, 4) {
         nevh_scene_free(z[i].scene);
 }
 
+/* The relative error of the energy, root mean square over the last periods. */
+static double wandering(double e, double tolerance, int all, int last) {
+    orbit z = orbit_of(KEPLER TAIL);
+    z.q[0] = 1 - e;
+    z.p[1] = sqrt((1 + e) / (1 - e));
+    nevh_stepper *m = stepper_of(&z, tolerance);
+    long double first = 0;
+    double sum = 0, period = 2 * 3.141592653589793;
+    for (int i = 0; i <= all; i++) {
+        long double x = z.q[0], y = z.q[1], px = z.p[0], py = z.p[1];
+        long double h = (px * px + py * py) / 2 - 1 / sqrtl(x * x + y * y);
+        first = i ? first : h;
+        if (i > all - last)
+            sum += pow((double)(h / first - 1), 2) / last;
+        if (i < all)
+            travel(&z, m, period, 8);
+    }
+    nevh_stepper_free(m);
+    nevh_scene_free(z.scene);
+    return sum;
+}
+
+/* Below rounding, steps have errors of more digits than doubles have. */
+TEST(errors_of_rounding_stay_small) {
+    double fine = 0, coarse = 0;
+    for (int i = 0; i < 4; i++) {
+        fine += wandering(0.6 - 1e-3 * i, 1e-25, 600, 16) / 4;
+        coarse += wandering(0.6 - 1e-3 * i, 3e-16, 600, 16) / 4;
+    }
+    ck_assert_msg(sqrt(fine) < 1.5e-15, "%.2e", sqrt(fine));
+    ck_assert_msg(coarse > 16 * fine, "%.2e", sqrt(coarse));
+}
+
+static int upwards(void *data, double t, const double q[], const double p[],
+                   double *value) {
+    (void)data, (void)t, (void)p;
+    *value = q[0];
+    return 0;
+}
+
+static int count_point(void *points, const nevh_point *at) {
+    (void)at;
+    ++*(size_t *)points;
+    return 0;
+}
+
+/* Evaluations for points of a section, besides one slope a step. */
+static double spent_on_points(const nevh_integrator *scheme, size_t *points) {
+    enum { STEPS = 2000 };
+    orbit z = orbit_of(HENON_HEILES TAIL);
+    nevh_stepper *m =
+        stepper_with(&z, scheme, (nevh_options){.tolerance = 1e-12});
+    *points = 0;
+    nevh_sections *x = nevh_sections_new(m, &(nevh_section){.value = upwards},
+                                         1, count_point, points);
+    nevh_observer watch = {nevh_sections_observe, x, 1};
+    ck_assert_int_eq(nevh_run(m, 0, 0.1, STEPS, z.q, z.p, &watch, 1), NEVH_OK);
+    double spent = (double)nevh_sections_counts(x).gradients - STEPS - 1;
+    nevh_sections_free(x);
+    nevh_stepper_free(m);
+    nevh_scene_free(z.scene);
+    return spent;
+}
+
+/* They are roots of the series that is there. */
+TEST(section_points_take_no_series) {
+    size_t points, others;
+    double spent = spent_on_points(nevh_taylor, &points);
+    double sub_steps = spent_on_points(nevh_gauss8, &others);
+    ck_assert_uint_ge(points, 50);
+    ck_assert_uint_eq(points, others);
+    ck_assert_msg(spent < 0.5 * (double)points, "%g of %zu", spent, points);
+    ck_assert_msg(sub_steps > 20 * (double)points, "%g", sub_steps);
+}
+
+/* What a tolerance is relative to is found by a coarse run. */
+TEST(orbits_do_not_depend_on_the_gradient) {
+    static const char *const names[] = {"central2", "central8", "complex-step"};
+    orbit z = orbit_of(KEPLER TAIL), same, other;
+    same = other = z;
+    nevh_options o = {.tolerance = 1e-9, .q = z.q, .p = z.p};
+    nevh_stepper *m = stepper_with(&z, nevh_taylor, o);
+    travel(&same, m, 1, 3);
+    nevh_stepper_free(m);
+    for (size_t i = 0; i < 3; i++) {
+        o.gradient = nevh_gradient_named(names[i]);
+        o.gradient_step = i ? 0 : 0.5; /* given: nothing is tried */
+        orbit x = z;
+        m = nevh_stepper_new(z.system, nevh_taylor, &o);
+        travel(&x, m, 1, 3);
+        same_bits(&same, &x);
+        nevh_stepper_free(m);
+    }
+    o.scale = (const double[]){8, 8, 8, 8};
+    m = nevh_stepper_new(z.system, nevh_taylor, &o);
+    travel(&other, m, 1, 3);
+    ck_assert(distance(&other, &same) > 0); /* lengths do count */
+    nevh_stepper_free(m);
+    nevh_scene_free(z.scene);
+}
+
 TEST(memory_is_saved_and_copied) {
     orbit z = orbit_of(KEPLER TAIL), saved, copied;
     nevh_stepper *m = stepper_of(&z, 1e-13), *other = stepper_of(&z, 1e-13);

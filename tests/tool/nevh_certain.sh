@@ -63,4 +63,13 @@ says 'abs'
 scene fall 'x = 1' 'p_x^2/2 - 1/x'
 exits 1 reference $work/fall.nevh --at 3
 says 'no reference at t = 3'
+
+# Values without a certain digit are not shown, and no advice is given that the
+# next run would break.
+exits 0 reference double-pendulum-chaotic --at 20,80
+has '^ 80  phi1 +0  '
+has '^--digits 30 carries more of them'
+exits 0 reference double-pendulum-chaotic --at 80
+has 'At t = 80 no digit is left'
+lacks '--digits 30'
 exit $status

@@ -55,13 +55,13 @@ if command -v gnuplot >/dev/null; then
         --outcomes 'period(swing)' --data $work/periods.csv \
         --picture $work/periods.svg --keep-plot-script $work/periods.gp
     grep -q 'measured' $work/periods.gp || fails "draws no points"
-    grep -q 'rms of what was measured less that: 0\.00' $work/periods.gp ||
+    grep -q 'rms of the residuals: 0\.00' $work/periods.gp ||
         fails "does not say how far the points are"
     sed 's/2.33/2.5/' $work/periods.csv >$work/wrong.csv
     exits 0 sweep pendulum --vary 'start = range(0.2, 2, 10)' --dt 0.02 --t-end 20 \
         --outcomes 'period(swing)' --data $work/wrong.csv \
         --picture $work/periods.svg --keep-plot-script $work/periods.gp
-    grep -q 'rms of what was measured less that: 0\.\(09\|1\)' $work/periods.gp ||
+    grep -q 'rms of the residuals: 0\.\(09\|1\)' $work/periods.gp ||
         fails "does not see a point that is far off"
     exits 2 sweep pendulum --vary 'start = range(0.2, 2, 10)' --dt 0.02 --t-end 20 \
         --outcomes 'period(swing)' --data $work/frames.csv --picture $work/x.svg

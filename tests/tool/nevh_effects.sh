@@ -116,4 +116,10 @@ magnetic trap 5
 outer-solar-system planets 20000
 sun-earth-moon moon 0.5
 END
+
+# Runs that fail both ways are a failure.
+printf '[coordinates]\nx = 1\n[effects]\nK = p_x^2/2\nV = acos(x)\n[run]
+t_end = 2\ndt = 0.1\nintegrators = verlet\n' >$work/edge.nevh
+exits 1 effects $work/edge.nevh --impact
+has '^With V the run fails'
 exit $status

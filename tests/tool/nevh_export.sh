@@ -31,36 +31,53 @@ if ${CC:-cc} --version >/dev/null 2>&1; then
     same pendulum 1 forest-ruth complex-step 0.05 10 10
     same kepler 2 rkn11b exact 0.05 20 40
     same double-pendulum 2 rk4 central4 0.01 2 20
+    same damped-driven-pendulum 1 rk4 central4 0.05 5 20
+    # Loops, as long for a thousand masses as for thirty-two.
+    same fput 32 verlet exact 0.3 90 30
+    same fput-1000 1000 rk4 exact 0.1 20 20
+    same fput-1000 1000 verlet central4 0.1 20 20
+    exits 0 export fput-1000 --header --integrators verlet --gradient exact
+    has 'springs: 999 times, the first of x_2, x_1'
+    test "$(wc -l <$work/out)" -lt 500 || fails 'is long'
     same henon-heiles 2 symplectic-euler-b central2 0.05 10 10
+    same double-pendulum 2 gauss6 central4 0.01 2 20
     # Of a scene whose names are meant to get out of a comment or a string.
     cat >$work/hostile.nevh <<'END'
 [coordinates]
 main = 1
+for = 0
+x1 = 0
+y[i = 1..2] = i
+y_2 = 1/3
 [effects]
-system = p_main^2/2
-exit = main^2/2
+system = (p_main^2 + p_for^2 + p_x1^2 + p_y[1]^2 + p_y[2]^2 + p_y_2^2)/2
+exit = main^2/2 + for^4 + cos(main - for*x1) + sum(i = 1..2, y[i]^2)*y_2^2
 [run]
 dt = 0.1
 t_end = 1
 END
-    same $work/hostile.nevh 1 verlet exact 0.1 1 1
+    same $work/hostile.nevh 6 verlet central4 0.1 1 1
+    same $work/hostile.nevh 6 gauss4 central2 0.1 1 1
     # Functions for another program.
     exits 0 export pendulum --header --integrators verlet -o $work/steps.h
     cat >$work/own.c <<'END'
 #include <stdio.h>
 #include "steps.h"
 int main(void) {
-    double q = 2, p = 0, memory[4] = {0};
+    double q = 2, p = 0, memory[MEMORY] = {0};
     return advance(0, 0.1, 0, 10, &q, &p, memory) != 10 || !(q < 2);
 }
 END
     ${CC:-cc} -Wall -Wextra -Werror -o $work/own $work/own.c -lm && $work/own ||
         fails 'writes functions that do not work'
+    exits 0 export pendulum --header --integrators gauss4 -o $work/steps.h
+    ${CC:-cc} -Wall -Wextra -Werror -o $work/own $work/own.c -lm && $work/own ||
+        fails 'writes functions that do not work'
 fi
-exits 2 export pendulum --integrators gauss4
-says 'no program of such steps: implicit steps have none'
 exits 2 export pendulum --integrators gonzalez
 says 'no program of such steps: only splitting, Runge-Kutta, Nystroem, Gauss and Lobatto steps can be'
+exits 2 export damped-driven-pendulum --integrators midpoint
+says 'no program of such steps: friction is put around its steps'
 exits 2 export no-such-scene
 
 exit $status

@@ -60,6 +60,12 @@ awk -F, '/^#/ { next } /^t/ { print "t,phi"; next }
 exits 0 fit pendulum --data $work/turned.csv --vary g --dt 0.05 \
     --integrators gauss8 --set g=9 --format csv
 near 6 g 9.8 1e-8
+sed '/^#/d' $work/out >$work/turned
+# Rows come in any order, after the mark that spreadsheets put before UTF-8.
+{ printf '\357\273\277t,phi\n'; sed 1d $work/turned.csv | sort -t , -k 1,1 -nr; } >$work/sorted.csv
+exits 0 fit pendulum --data $work/sorted.csv --vary g --dt 0.05 \
+    --integrators gauss8 --set g=9 --format csv
+sed '/^#/d' $work/out | cmp -s - $work/turned || fails "depends on the order"
 # Starts: an angle, a momentum, a velocity.
 exits 0 fit pendulum --data $work/angle.csv --vary phi,v_phi --dt 0.05 --columns phi,x \
     --integrators gauss8 --start phi=1.8,v_phi=0.2 --format csv
@@ -148,4 +154,14 @@ dt = 0.05
 END
 exits 2 fit $work/root.nevh --data $work/angle.csv --vary l
 says 'spring'
+# A number that runs away: the message says where to.
+printf 't,x\n1,0\n2,0\n3,0\n' >$work/nothing.csv
+printf '[parameters]\nk = 1\n[coordinates]\nx = 0\n[effects]\nK = p_x^2/2\n%s\n' \
+    'V = x/log(3 + k^2)
+[run]
+t_end = 3
+dt = 0.05
+integrators = verlet' >$work/away.nevh
+exits 1 fit $work/away.nevh --data $work/nothing.csv --vary k --sigma 1e-3
+says 'does not converge: after 100 iterations it is at k = [0-9.]+e\+[0-9]+ \(from 1\), with residuals of rms [0-9.]+ standard deviations; begin nearer'
 exit $status

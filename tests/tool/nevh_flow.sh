@@ -39,6 +39,7 @@ has '^shape: cat\(phi = 2, p_phi = 0, '
 has '^ verlet  .* 1\.000000000 .* ok$'
 has '^heun, dt = 0\.1: (grows|shrinks) to '
 has '^Symplectic integrators keep the area: ratios are 1 within '
+lacks 'ensemble'
 
 # Two degrees of freedom: the sum, of a loop of formulas or of a disc.
 exits 0 flow henon-heiles --dt 0.1 --gradient exact --format csv --t-end 50 \
@@ -49,6 +50,9 @@ holds '$2 == "verlet" && abs($7 - 1) < 1e-9 || $2 == "rk4" && ($5 < 5 || $7 < 0.
 exits 0 flow henon-heiles --dt 0.1 --gradient exact --format csv --t-end 20 \
     --integrators midpoint --shape 'disc(y = 0.1, p_y = 0, 0.05)'
 holds 'abs($7 - 1) < 1e-9'
+
+# The shape is what starts, and the scene's own members are not.
+has "^# shape: disc.*the scene's .ensemble. is left aside"
 
 # Friction shrinks the area by exp(-gamma t).
 cat >$work/damped.nevh <<'END'
@@ -111,6 +115,8 @@ refuses 'x is given twice' henon-heiles --shape 'loop(x=sin(t), x=cos(t))'
 refuses 'encloses no area' henon-heiles --shape 'loop(x=sin(t))'
 refuses 'not finite' henon-heiles --shape 'loop(x=sqrt(cos(t)), p_x=sin(t))'
 refuses 'frobnicate' henon-heiles --shape 'loop(x=frobnicate(t), p_x=sin(t))'
+refuses 'no option of nevh flow: its starts are those of --shape; --set' pendulum \
+    --vary 'l=range(0.5,2,3)'
 refuses 'stays where it starts' pendulum --start phi=0
 refuses 'takes 1000 times' pendulum --samples 100000000
 refuses 'the run is from' pendulum --at -1
@@ -132,4 +138,14 @@ if command -v gnuplot >/dev/null 2>&1; then
     grep -q 't = 10 s, area .*, out of range' $work/script ||
         fails "leaves a panel empty"
 fi
+
+# Nothing is said of areas that no run has carried on.
+printf '[coordinates]\nx = 1\n[effects]\nK = p_x^2/2\nV = -1/x\n[run]
+t_end = 10\ndt = 0.1\nintegrators = gauss4, rk4\n' >$work/pole.nevh
+exits 1 flow $work/pole.nevh --shape 'disc(x = 1, p_x = 0, 2)'
+has '^gauss4 failed: a point of the curve failed before t = 0.1'
+lacks 'keep the area|shrinks|grows'
+sed -i 's/^x = 1/x = 0, 1/; /^V/d' $work/pole.nevh
+exits 2 flow $work/pole.nevh
+says 'no coordinate changes together with its momentum'
 exit $status

@@ -55,4 +55,12 @@ has '^verlet failed: '
 exits 1 frequencies pendulum --observable 'sqrt(phi)' --t-end 50
 has 'failed: it is not finite'
 lacks ' -?nan'
+
+# What grows is no sum of oscillations.
+printf '[coordinates]\nx = 0, 1\n[effects]\nK = p_x^2/2\n[run]\nt_end = 20
+dt = 0.1\nintegrators = verlet\n' >$work/free.nevh
+exits 0 frequencies $work/free.nevh
+has '^verlet, x: it changes along a straight line, by 1 a unit of time'
+exits 0 frequencies henon-heiles --integrators verlet
+lacks 'straight line'
 exit $status

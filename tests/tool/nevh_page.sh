@@ -6,13 +6,6 @@
 page=$work/page.html
 
 # What is wrong is said, and there is no page.
-refused() { # PATTERN, ARGUMENT...
-    pattern=$1
-    shift
-    exits 2 "$@"
-    says "$pattern"
-    test ! -e $page || fails "leaves a page"
-}
 refused 'needs a file' page pendulum
 refused 'no scene|there is no' page no-such-scene -o $page
 refused 'takes one scene' page -o $page

@@ -384,7 +384,7 @@ exits 2 run henon-heiles --plot-kind configuration --plot $svg
 says 'no \[picture\]'
 test -s $work/out && fails "runs before it looks for a picture"
 exits 2 run pendulum --plot-kind portrait --plot $svg
-says 'phase, energy, configuration or time'
+says 'phase, energy, configuration, time, order or animation'
 exits 2 run pendulum --plot - --format csv
 says 'with -o'
 exits 0 run pendulum --t-end 5 --plot -

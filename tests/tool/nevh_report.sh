@@ -6,13 +6,6 @@
 page=$work/page.html
 
 # What is wrong is said, and there is no page.
-refused() { # PATTERN, ARGUMENT...
-    pattern=$1
-    shift
-    exits 2 "$@"
-    says "$pattern"
-    test ! -e $page || fails "leaves a page"
-}
 refused 'takes scenes' report -o $page
 refused 'needs a file' report pendulum
 refused 'no scene|cannot be read|there is no' report no-such-scene -o $page
@@ -30,8 +23,8 @@ refused 'bad\.nevh:1' report $work/bad.nevh -o $page
 refused 'no integrator has a row' report double-pendulum -o $page \
     --integrators verlet --t-end 1
 
-printf '%s\n' '[scene]' 'title = A <b> & "c"' 'effects = K, V' '[coordinates]' 'x = 1' \
-    '[effects]' 'K = p_x^2/2' 'V = x^2/2' 'W = x^4' '[run]' \
+printf '%s\n' '[scene]' 'title = A <b> & "c"' 'effects = K, V' '[coordinates]' 'x = 1' 'y = 0' \
+    '[effects]' 'K = (p_x^2 + p_y^2)/2' 'V = (x^2 + y^2)/2' 'W = x^4' '[run]' \
     't_end = 5' 'dt = 0.1' 'integrators = verlet, rk4' \
     >$work/own.nevh
 TMPDIR=$work exits 0 report $work/own.nevh pendulum -o $page --t-end 5
@@ -45,7 +38,7 @@ lacks '(src|href)="'
 lacks 'https?://[^w]'
 lacks '[^a-z]nan[^a-z]'
 for heading in 'The Hamiltonian' 'Energy errors' 'The motion' 'Phase plane' \
-    'What accuracy costs' Effects Gradients 'Properties of H'; do
+    Portrait 'Order and chaos' 'What accuracy costs' Effects Gradients 'Properties of H'; do
     has "<h2>$heading</h2>"
 done
 for element in section figure svg table math dl main; do
@@ -71,4 +64,11 @@ for number in $energies; do
     grep -q "<td class=\"number\">$number</td>" $page || fails "lacks $number"
 done
 
+
+# An orbit without any energy error has a report, though no curve of it.
+printf '[coordinates]\nx = 0\n[effects]\nK = p_x^2/2\nV = x^2/2\n[run]
+t_end = 2\ndt = 0.1\nintegrators = verlet\n' >$work/rest.nevh
+exits 0 report $work/rest.nevh -o $work/rest.html
+grep -q '<td class="number">0.0e+00</td>' $work/rest.html ||
+    fails "lacks the errors, which are 0"
 exit $status

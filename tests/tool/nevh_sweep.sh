@@ -25,6 +25,27 @@ rows | awk -F, '
     }
     END { exit wrong || NR != 61 }' || fails "has other periods"
 
+# Members end, and others begin, at different times: what is found of a method of two
+# steps, whose balance of friction is of both, does not depend on the width.
+cat >$work/damped.nevh <<'SCENE'
+[coordinates]
+x = 1
+[effects]
+T = p_x^2/2
+V = x^2/2 + x^4/4
+[friction]
+drag = x: 0.1
+[run]
+t_end = 20
+stop = x^2 < 0.01
+SCENE
+for width in 1 8; do
+    exits 0 sweep $work/damped.nevh --vary 'x = range(0.5, 2, 40)' --dt 0.05 \
+        --integrators adams-bashforth2 --outcomes energy_error,t --quiet --width $width
+    cp $work/out $work/width$width
+done
+cmp -s $work/width1 $work/width8 || fails "depends on the width"
+
 # Bytes do not depend on widths, threads, or where they go.
 many="--vary phi=range(-3,3,40) --vary p_phi=range(-8,8,30)
     --integrators verlet --t-end 20"
@@ -43,6 +64,9 @@ grep -v '^#' $work/one | cmp -s - $work/out || fails "is not quiet"
 # What never happens is empty.
 has ',first\(abs\(phi\) > pi\),'
 awk -F, '$5 == ""' $work/out | grep -q . || fails "has no empty field"
+XDG_CACHE_HOME=$work/cache exits 0 sweep pendulum-periods "$@" --native always
+XDG_CACHE_HOME=$work/cache exits 0 sweep pendulum-periods "$@"
+cmp -s $work/out $work/one || fails "depends on the cache of compiled steps"
 
 # A parameter that changes the step changes it for its members alone.
 exits 0 sweep pendulum-periods --vary 'g = 1.6, 9.8' --vary 'phi = 1' \

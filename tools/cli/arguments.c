@@ -351,12 +351,23 @@ int read_plot_script(options *o, const char *argument) {
 }
 
 int read_plot_kind(options *o, const char *argument) {
-    static const char *const names[] = {"phase", "energy", "configuration",
-                                        "time", NULL};
+    static const char *const names[] = {
+        "phase", "energy", "configuration", "time", "order", "animation", NULL};
     int which;
     int status = read_name("plot-kind", argument, names, &which);
-    o->plot.kind = (plot_kind)which;
+    o->plot.kind = (plot_kind)(which + PLOT_PHASE);
     return status;
+}
+
+int plot_kind_check(const options *o, unsigned bit) {
+    bool order = o->plot.kind == PLOT_ORDER;
+    if (order && bit == FOR_RUN)
+        return tool_refuse("--plot-kind order is for nevh compare and nevh "
+                           "cost");
+    if (o->plot.kind && !order && bit != FOR_RUN)
+        return tool_refuse("--plot-kind of nevh %s is order, or not given",
+                           command_name(bit));
+    return TOOL_OK;
 }
 
 int read_columns(options *o, const char *argument) {

@@ -12,7 +12,8 @@ enum {
                 FOR_SECTION | FOR_SWEEP | FOR_FLOW | FOR_PORTRAIT |
                 FOR_REFERENCE | FOR_REPORT | FOR_CHAOS | FOR_FREQUENCIES |
                 FOR_FIT | OF_COST,
-    OF_NATIVE = FOR_COMPARE | FOR_RUN | FOR_COST | FOR_RECOMMEND,
+    OF_NATIVE = FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_SWEEP | FOR_PORTRAIT |
+                OF_COST,
     OF_TABLES = (OF_SCENES & ~(FOR_EXPORT | FOR_REPORT | FOR_PORTRAIT)) |
                 FOR_LIST | FOR_HARD,
     OF_PLOTS = FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_COST | FOR_GRADIENTS |
@@ -126,14 +127,16 @@ static const struct {
      "body"},
     {"portable", NULL, OF_SCENES, read_portable,
      "no vector code: the same digits with the same libm"},
-    {"native", "auto|never|always", OF_NATIVE | FOR_SWEEP, read_native,
-     "compile steps of formulas; auto (default): in run, where that pays"},
-    {"no-cache", NULL, OF_NATIVE | FOR_SWEEP, read_no_cache,
+    {"native", "auto|never|always", OF_NATIVE, read_native,
+     "compile steps of formulas; auto (default): where that pays"},
+    {"no-cache", NULL, OF_NATIVE, read_no_cache,
      "keep no compiled steps, and use none that were kept"},
     {"plot", "FILE", OF_PLOTS, read_plot,
      "draw FILE.svg, .png or .pdf, or - in the terminal"},
-    {"plot-kind", "KIND", FOR_RUN, read_plot_kind,
-     "phase (the default), time, energy or configuration"},
+    {"plot-kind", "KIND", FOR_RUN | FOR_COMPARE | FOR_COST, read_plot_kind,
+     "of run: phase (the default), time, energy, configuration or animation (a "
+     ".gif of that); of compare "
+     "and cost: order, errors against dt with slopes"},
     {"columns", "A,B:C", FOR_RUN | FOR_FIT, read_columns,
      "of fit: the columns of the data to use; of run: what --plot-kind time or "
      "phase draws: a panel each, names joined by : in one; t, coordinates, "
@@ -263,9 +266,29 @@ const char *command_name(unsigned bit) {
     }
 }
 
-/* With the commands that it is for, where they are few. */
-static int refuse_option(int k, const char *name) {
+/* What to do instead, of commands that could be thought to take an option. */
+static const struct {
+    const char *option;
+    unsigned commands;
+    const char *advice;
+} instead[] = {{"vary", FOR_FLOW,
+                "its starts are those of --shape; --set sets a parameter, for "
+                "a run for each value"}};
+
+static const char *advice_for(const char *option, unsigned of) {
+    for (size_t i = 0; i < sizeof instead / sizeof *instead; i++)
+        if (instead[i].commands & of && strcmp(instead[i].option, option) == 0)
+            return instead[i].advice;
+    return NULL;
+}
+
+/* With what to do instead, or the commands that it is for, where they are few. */
+static int refuse_option(int k, const char *name, unsigned of) {
     enum { FEW = 5 };
+    const char *advice = advice_for(known[k].name, of);
+    if (advice)
+        return tool_refuse("--%s is no option of nevh %s: %s", known[k].name,
+                           name, advice);
     list those = {0};
     for (unsigned bit = 1; bit < 1u << COMMAND_COUNT; bit *= 2)
         if (known[k].commands & bit)
@@ -284,8 +307,8 @@ static int refuse_option(int k, const char *name) {
 int options_check(const options *o, unsigned which) {
     for (int k = 0; k < KNOWN; k++)
         if (o->used >> k & 1 && !(known[k].commands & which))
-            return refuse_option(k, o->operands.item[0]);
-    return TOOL_OK;
+            return refuse_option(k, o->operands.item[0], which);
+    return plot_kind_check(o, which);
 }
 
 void settings_notes(const options *o, list *notes) {

@@ -19,5 +19,8 @@ reader read_with, read_without, read_set, read_start, read_integrators,
     read_exponents, read_starts, read_gali, read_stop_after, read_task,
     read_join, read_data, read_sigma, read_width, read_digits, read_help,
     read_version;
+/* That the kind of picture is one of the command's.
+   returns  TOOL_OK, or TOOL_USAGE with the message printed */
+int plot_kind_check(const options *, unsigned bit);
 
 #endif

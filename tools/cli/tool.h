@@ -155,10 +155,13 @@ const char *command_name(unsigned bit);
 /* options.c: the command line. */
 typedef enum { MATCH_SCENE, MATCH_STEPS, MATCH_WORK } matching;
 typedef enum {
+    PLOT_USUAL, /* the command's own */
     PLOT_PHASE,
     PLOT_ENERGY,
     PLOT_CONFIGURATION,
-    PLOT_TIME
+    PLOT_TIME,
+    PLOT_ORDER,
+    PLOT_ANIMATION
 } plot_kind;
 typedef struct {
     list operands, settings, integrators, gradients; /* settings: see below */

@@ -2,7 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "plot/envelope.h"
 #include "experiment/pace.h"
-#include "plot/plot.h"
+#include "plot/order_plot.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -84,8 +84,17 @@ static void time_rows(const plan *p, row_list *r) {
     free(ran);
 }
 
+static void settle_rows(const plan *p, row_list *r) {
+    row **all = tool_allocate(r->count, sizeof *all);
+    for (size_t i = 0; i < r->count; i++)
+        all[i] = &r->row[i];
+    rows_settle(p, all, r->count);
+    free(all);
+}
+
 static void run_rows(const plan *p, row_list *r, bool quiet) {
     time_t start = time(NULL);
+    settle_rows(p, r);
     for (size_t i = 0; i < r->count; i++) {
         if (!quiet)
             progress(r, i, difftime(time(NULL), start), false);
@@ -247,10 +256,16 @@ static void free_rows(row_list *r) {
     free(r->row);
 }
 
+static int draw_rows(const options *o, const plan *p, const row_list *r) {
+    return o->plot.kind == PLOT_ORDER ? order_plot(o, p, r->row, r->count)
+                                      : compare_plot(o, p, r->row, r->count);
+}
+
 static int compare_rows(const options *o, const plan *p, row_list *r) {
     output out;
     int status = TOOL_OK;
-    if (plot_check(o) || output_open(&out, o->file))
+    if (order_plot_check(o, p->dts) || plot_check(o) ||
+        output_open(&out, o->file))
         return TOOL_USAGE;
     for (size_t i = 0; plot_wanted(o) && i < r->count; i++)
         r->row[i].errors = envelope_new(p->run->t_start, p->t_end);
@@ -258,7 +273,7 @@ static int compare_rows(const options *o, const plan *p, row_list *r) {
     observe_orders(r->row, r->count);
     page result = make_page(o, p, r);
     bool first = plot_goes_first(o);
-    int drawn = first ? compare_plot(o, p, r->row, r->count) : TOOL_OK;
+    int drawn = first ? draw_rows(o, p, r) : TOOL_OK;
     page_print(&result, o, out.stream);
     page_free(&result);
     for (size_t i = 0; i < r->count; i++)
@@ -266,7 +281,7 @@ static int compare_rows(const options *o, const plan *p, row_list *r) {
             status = TOOL_FAILED;
     status = output_close(&out, status);
     if (plot_wanted(o) && !first)
-        drawn = compare_plot(o, p, r->row, r->count);
+        drawn = draw_rows(o, p, r);
     return drawn ? TOOL_USAGE : status;
 }
 

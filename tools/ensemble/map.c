@@ -311,11 +311,9 @@ int map_draw(map *m, const char *integrator) {
     char *more =
         m->missing ? text_print("%zu orbits, %zu without a value%s", m->members,
                                 m->missing, count == 2 ? " (hatched)" : "")
-        : isnan(m->rms)
-            ? text_print("%zu orbits", m->members)
-            : text_print("%zu orbits; rms of what was measured less that: "
-                         "%.3g",
-                         m->members, m->rms);
+        : isnan(m->rms) ? text_print("%zu orbits", m->members)
+                        : text_print("%zu orbits; rms of the residuals: %.3g",
+                                     m->members, m->rms);
     plot_note_run(to, m->plan, scheme, more);
     free(scheme);
     free(more);

@@ -2,68 +2,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "row.h"
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
-/* Lengths of the run: the most, and what is worth it at least. */
-static const double most = 32, least = 4;
-/* What following may take, as row_work counts.  A run that leaves no room for
-   the least is long as it is. */
-static const double allowed = 8;
-
-typedef struct {
-    nevh_energy *energy;
-    double start, span, times; /* at so many lengths the verdict is asked for */
-    nevh_energy_report report;
-    nevh_verdict verdict;
-} follower;
-
-static int ask(void *data, size_t step, double t, const double q[],
-               const double p[]) {
-    follower *f = data;
-    int status = nevh_energy_observe(f->energy, step, t, q, p);
-    if (status || t - f->start < f->times * f->span * (1 - 1e-9))
-        return status;
-    f->report = nevh_energy_result(f->energy, 0);
-    f->verdict = nevh_energy_verdict(&f->report, f->times);
-    f->times *= 2;
-    return f->verdict == NEVH_UNDECIDED ? NEVH_OK : NEVH_STOPPED;
-}
-
-static double lengths(const plan *p, const row *r) {
-    double once = row_work(p, r->scheme, r->order, &r->counts, r->steps);
-    double work = p->follow > 0 ? p->follow : allowed;
-    double times = once > 0 ? fmin(most, work / once) : most;
-    return times < least ? 1 : exp2(floor(log2(times)));
-}
-
-/* From the start, since the orbit is the same again. */
-static int run(const plan *p, const row *r, nevh_stepper *s, follower *f,
-               double times) {
-    double *q = tool_allocate(p->n, sizeof *q), stopped;
-    double *m = tool_allocate(p->n, sizeof *m);
-    plan longer = *p;
-    longer.t_end = f->start + times * f->span;
-    memcpy(q, p->q, p->n * sizeof *q);
-    memcpy(m, p->p, p->n * sizeof *m);
-    int status = plan_run(&longer, s, r->step, q, m,
-                          &(nevh_observer){ask, f, 1}, 1, &stopped);
-    free(q);
-    free(m);
-    return status;
-}
-
-/* What is left open is judged by as much as was seen: there is no more. */
-static void end(follower *f, int status) {
-    if (f->verdict != NEVH_UNDECIDED)
-        return;
-    f->report = nevh_energy_result(f->energy, 0);
-    bool failed = status != NEVH_OK && status != NEVH_STOPPED;
-    if (failed && !(f->report.max <= f->report.limit))
-        f->verdict = NEVH_UNSTABLE;
-    else
-        f->verdict = nevh_energy_verdict(&f->report, INFINITY);
-}
 
 bool row_drifts(const row *r) {
     return r->energy.verdict == NEVH_DRIFTS ||
@@ -72,24 +10,32 @@ bool row_drifts(const row *r) {
 }
 
 void row_follow(const plan *p, row *r) {
-    double start = p->run->t_start, times;
     if (!r->ran || r->energy.verdict != NEVH_UNDECIDED || isfinite(r->stopped))
         return;
-    times = lengths(p, r);
-    if (times < least) {
-        r->energy.verdict = nevh_energy_verdict(&r->energy, INFINITY);
-        return;
-    }
     nevh_stepper *s = row_stepper(p, r, p->balance);
-    follower f = {.energy = row_energy(p, r, s),
-                  .start = start,
-                  .span = r->t_end - start,
-                  .times = 2,
-                  .verdict = NEVH_UNDECIDED};
-    end(&f, run(p, r, s, &f, times));
-    r->energy.verdict = f.verdict;
-    r->followed = f.report.span / f.span;
-    r->longer = f.report;
-    nevh_energy_free(f.energy);
+    nevh_energy *energy = row_energy(p, r, s);
+    stop reached = {.scene = p->scene};
+    nevh_observer stops = {stop_observe, &reached, 1};
+    nevh_judged_run judged = {
+        .t = p->run->t_start,
+        .h = r->step,
+        .t_end = r->t_end,
+        .q = p->q,
+        .p = p->p,
+        .stop = &stops,
+        .stops = nevh_scene_stops(p->scene),
+        .seconds = nevh_counts_seconds(&r->counts, p->n, r->scheme, r->order,
+                                       r->steps),
+        .allowed = p->follow,
+    };
+    nevh_energy_report longer = r->energy;
+    if (nevh_verdict_settle(s, energy, &judged, &longer))
+        tool_owned(NULL);
+    r->energy.verdict = longer.verdict;
+    if (longer.span > r->energy.span) {
+        r->followed = longer.span / (judged.t_end - judged.t);
+        r->longer = longer;
+    }
+    nevh_energy_free(energy);
     row_stepper_keep(p, r, p->balance, s);
 }

@@ -32,7 +32,7 @@ void stability_words(const plan *, const row rows[], size_t count, list *words);
 
 /* remedy.c: steps with which unstable and drifting rows keep an error of 1 % to
    the end of the run.
-   cost  a few seconds an integrator at most, as row_work counts */
+   cost  a few seconds an integrator at most, as nevh_counts_seconds */
 void remedy_words(const plan *, const row rows[], size_t count, list *words);
 
 /* trial_run.c: what a short trial run says of a run. */

@@ -331,6 +331,15 @@ nevh_stepper *plan_first(const plan *p, const char **name) {
     return s;
 }
 
+bool plan_fits(const plan *p, const char **name) {
+    plan idle = *p;
+    idle.native = NEVH_NATIVE_NEVER;
+    nevh_stepper *s = plan_first(&idle, name);
+    bool fits = s != NULL;
+    nevh_stepper_free(s);
+    return fits;
+}
+
 void plan_note_first(const plan *p, const char *integrator, list *notes) {
     list_print(notes, "integrator: %s, dt = %.9g%s", integrator, p->dt[0],
                p->integrators.count > 1 || p->dts > 1
@@ -356,7 +365,8 @@ double plan_period(const plan *p, const char *shown) {
 double plan_energy_scale(const plan *p) {
     if (p->run->energy_scale > 0)
         return p->run->energy_scale;
-    nevh_energy *e = nevh_energy_new(p->system, NULL);
+    const nevh_options as = {.portable = p->portable};
+    nevh_energy *e = nevh_energy_new(p->system, &as);
     nevh_energy_observe(e, 0, p->run->t_start, p->q, p->p);
     double scale = nevh_energy_result(e, 0).scale;
     nevh_energy_free(e);

@@ -65,6 +65,8 @@ nevh_stepper *plan_stepper(const plan *, const char *name);
    for the first gradient; NULL, with a message, when none does.
    name  out: what the plan calls it; NULL: not asked for */
 nevh_stepper *plan_first(const plan *, const char **name);
+/* Whether one fits, as plan_first finds it: for those that take no step. */
+bool plan_fits(const plan *, const char **name);
 /* Of plans with several integrators or dt: which of them is taken. */
 void plan_note_first(const plan *, const char *integrator, list *notes);
 /* Title, effects, structure of H, span. */

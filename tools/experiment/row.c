@@ -77,31 +77,6 @@ nevh_counts row_counts(const nevh_stepper *s, nevh_counts before) {
     return c;
 }
 
-/* What a gradient costs of many stages that are taken side by side, a single
-   one being 1. */
-static double side_by_side(const nevh_integrator *scheme) {
-    static const double least = 0.15;
-    double stages = nevh_integrator_sweep_gradients(scheme);
-    return stages > 1 ? least + (1 - least) / stages : 1;
-}
-
-/* Of gradients and values of formulas, as a processor of 2020 takes them, give
-   or take a factor of two; an implicit step that Newton solves factors a matrix
-   as well. */
-double row_work(const plan *p, const nevh_integrator *scheme, int order,
-                const nevh_counts *c, size_t steps) {
-    static const double an_order = 0.2; /* of a series, over a gradient */
-    double n = (double)p->n, m = 2 * n;
-    double gradient = c->hamiltonians > 0 ? 100 : 250 + 40 * n;
-    if (nevh_integrator_needs_formulas(scheme))
-        gradient *= an_order * order;
-    double evaluations =
-        gradient * (double)c->gradients + (100 + 40 * n) * c->hamiltonians;
-    return 1e-9 *
-           (side_by_side(scheme) * evaluations + (50 + 10 * n) * (double)steps +
-            m * m * m / 2 * (double)c->newtons);
-}
-
 /* Of all steps tried, those that were too long for the tolerance included. */
 static double mean_step(const work *w) {
     int each = nevh_integrator_gradients(w->row->scheme);
@@ -125,9 +100,9 @@ static int mind_work(void *data, size_t step, double t, const double q[],
     patience *wait = data;
     nevh_counts c = row_counts(wait->stepper, wait->before);
     (void)t, (void)q, (void)p;
-    wait->late =
-        row_work(wait->plan, wait->scheme, nevh_stepper_order(wait->stepper),
-                 &c, step) > wait->plan->patience;
+    wait->late = nevh_counts_seconds(&c, wait->plan->n, wait->scheme,
+                                     nevh_stepper_order(wait->stepper),
+                                     step) > wait->plan->patience;
     return wait->late ? NEVH_STOPPED : NEVH_OK;
 }
 
@@ -296,7 +271,8 @@ void row_run(const plan *p, row *r) {
         if (r->ran && r->tolerance > 0)
             r->dt = mean_step(&w);
     }
-    r->work = row_work(p, r->scheme, r->order, &r->counts, r->steps);
+    r->work =
+        nevh_counts_seconds(&r->counts, p->n, r->scheme, r->order, r->steps);
     row_stepper_keep(p, r, p->balance, s);
     work_free(&w);
 }

@@ -25,7 +25,7 @@ typedef struct {
     size_t steps;
     char *status;
     bool observable; /* its error is that of one, not of states */
-    bool native;     /* steps were compiled */
+    bool native;     /* the steps whose time was taken are compiled */
     bool ran, late;  /* there are numbers; patience was at its end */
     nevh_energy_report energy;
     double followed; /* lengths of the run that the verdict is from; 0: its own
@@ -60,16 +60,18 @@ bool row_drifts(const row *);
 /* Where it will end: by a run that nobody watches; at the start where it has no
    numbers. */
 double row_end(const plan *, const row *);
-/* What that many evaluations and steps cost, in seconds of no machine in
-   particular: what is decided by it is decided alike on all. */
-double row_work(const plan *, const nevh_integrator *, int order,
-                const nevh_counts *, size_t steps);
 /* Of a row that ran in a hurry: when it became unstable. */
 void row_finish(const plan *, row *);
 /* Since those before. */
 nevh_counts row_counts(const nevh_stepper *, nevh_counts before);
 /* stepper_cache.c: planned for that row, by whom it is given back. */
 nevh_stepper *row_stepper(const plan *, const row *, bool balance);
+/* Where compiling pays for any of the rows that are timed, the steps of all that
+   can be are compiled, so that they are comparable, else of none: the first rows
+   that are timed decide, whatever the cache holds. */
+void rows_settle(const plan *, row *const rows[], size_t count);
+/* As row_stepper, of a row that is to be timed. */
+nevh_stepper *row_stepper_to_time(const plan *, const row *);
 void row_stepper_keep(const plan *, const row *, bool balance, nevh_stepper *);
 /* row_time.c: the seconds of rows that ran, medians of so many rounds, in which
    they are run one after the other, so that what else the machine does falls
@@ -88,6 +90,8 @@ table *records(const plan *, const row rows[], size_t count);
 void observe_orders(row rows[], size_t count);
 void row_notes(const options *, const plan *, const row rows[], size_t count,
                list *notes);
+/* Of whose rows the steps are compiled. */
+void native_notes(const plan *, const row rows[], size_t count, list *notes);
 /* verdict.c: the table in words. */
 void verdict_words(const plan *, const row rows[], size_t count, list *words);
 

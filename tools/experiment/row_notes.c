@@ -120,19 +120,13 @@ static void note_rows(const plan *p, const row rows[], size_t count,
 }
 
 /* Integrators some of whose rows ran compiled steps. */
-static void note_native(const plan *p, const row rows[], size_t count,
-                        list *notes) {
-    char *names = text_print("%s", "");
-    const char *last = "";
-    for (size_t i = 0; i < count; i++) {
-        if (!rows[i].native || strcmp(rows[i].integrator, last) == 0)
-            continue;
-        char *longer =
-            text_print("%s%s%s", names, *names ? ", " : "", rows[i].integrator);
-        free(names);
-        names = longer;
-        last = rows[i].integrator;
-    }
+void native_notes(const plan *p, const row rows[], size_t count, list *notes) {
+    list all = {0};
+    for (size_t i = 0; i < count; i++)
+        if (rows[i].native && !list_has(&all, rows[i].integrator))
+            list_add(&all, rows[i].integrator);
+    char *names = list_joined(&all);
+    list_free(&all);
     if (*names)
         list_print(notes, "native: steps of %s are compiled; others are not",
                    names);
@@ -149,5 +143,5 @@ void row_notes(const options *o, const plan *p, const row rows[], size_t count,
     note_balance(p, notes);
     note_rows(p, rows, count, notes);
     stop_notes(p, rows, count, notes);
-    note_native(p, rows, count, notes);
+    native_notes(p, rows, count, notes);
 }

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double part = 0.006; /* seconds, of a row that takes longer */
+static const double part = 0.002; /* seconds, of a row that takes longer */
 
 typedef struct {
     const plan *plan;
@@ -19,7 +19,7 @@ typedef struct {
 static stopwatch stopwatch_new(const plan *p, const row *r, size_t rounds) {
     stopwatch w = {.plan = p,
                    .row = r,
-                   .stepper = row_stepper(p, r, false),
+                   .stepper = row_stepper_to_time(p, r),
                    .q = tool_allocate(p->n, sizeof *w.q),
                    .p = tool_allocate(p->n, sizeof *w.p),
                    .share = 1,
@@ -68,11 +68,13 @@ static double time_once(const stopwatch *w, double *spent) {
     run(w);
     *spent = cpu_seconds() - begin;
     nevh_counts c = row_counts(w->stepper, before);
-    double work =
-        row_work(p, r->scheme, r->order, &c, nevh_stepper_taken(w->stepper));
+    double work = nevh_counts_seconds(&c, p->n, r->scheme, r->order,
+                                      nevh_stepper_taken(w->stepper));
     if (work == 0) /* it stopped at its start */
         return *spent;
-    return *spent * row_work(p, r->scheme, r->order, &r->counts, r->steps) /
+    return *spent *
+           nevh_counts_seconds(&r->counts, p->n, r->scheme, r->order,
+                               r->steps) /
            work;
 }
 
@@ -87,6 +89,7 @@ static void choose_share(stopwatch *w) {
 }
 
 static void finish(const stopwatch *w, row *r, size_t rounds) {
+    r->native = nevh_stepper_native(w->stepper, NULL);
     r->seconds = numbers_median(w->seconds, rounds);
     r->spread = (w->seconds[3 * rounds / 4] - w->seconds[rounds / 4]) / 2;
 }
@@ -95,6 +98,7 @@ void rows_time(const plan *p, row *const rows[], size_t count, size_t rounds,
                bool whole) {
     stopwatch *w = tool_allocate(count, sizeof *w);
     double spent;
+    rows_settle(p, rows, count);
     for (size_t i = 0; i < count; i++) {
         w[i] = stopwatch_new(p, rows[i], rounds);
         if (!whole)

@@ -2,6 +2,7 @@
    one takes longer than many a row.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "row.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,6 +17,7 @@ typedef struct {
 
 struct stepper_cache {
     place places[MOST];
+    bool settled, compiled; /* of rows that are timed: all that can be */
 };
 
 stepper_cache *stepper_cache_new(void) {
@@ -34,13 +36,28 @@ static bool is_alike(const place *at, const row *r, bool balance) {
            at->tolerance == r->tolerance && at->balance == balance;
 }
 
+/* As many as nevh compare takes of rows with all dt: each is watched once, and
+   timed as long as that some times more. */
+static double steps_compared(const plan *p) {
+    enum { RUNS = 4 };
+    double steps = 0;
+    for (size_t i = 0; i < p->dts; i++)
+        steps += plan_steps(p, p->dt[i]);
+    return RUNS * steps;
+}
+
+static double steps_foreseen(const plan *p, const row *r) {
+    if (p->hurried)
+        return plan_steps(p, r->dt);
+    return p->steppers->compiled ? INFINITY : steps_compared(p);
+}
+
 static nevh_stepper *plan_new(const plan *p, const row *r, bool balance) {
     nevh_options o = plan_options(p, r->gradient);
     o.transform = plan_transform(p, r->integrator);
     o.tolerance = r->tolerance;
     o.balance = balance;
-    /* No steps are foreseen: rows are compared in time, so that none is compiled
-       unasked, as long as some schemes have no compiled steps. */
+    o.steps_foreseen = steps_foreseen(p, r);
     nevh_stepper *s = nevh_stepper_new(p->system, r->scheme, &o);
     plan_tell_native(s);
     return s;
@@ -54,6 +71,7 @@ nevh_stepper *row_stepper(const plan *p, const row *r, bool balance) {
             continue;
         at->stepper = NULL;
         nevh_stepper_reset(s);
+        nevh_stepper_foresee(s, steps_foreseen(p, r));
         return s;
     }
     return plan_new(p, r, balance);
@@ -70,4 +88,29 @@ void row_stepper_keep(const plan *p, const row *r, bool balance,
             (place){r->integrator, r->gradient, r->tolerance, balance, s};
     else
         nevh_stepper_free(s);
+}
+
+void rows_settle(const plan *p, row *const rows[], size_t count) {
+    stepper_cache *all = p->steppers;
+    for (size_t i = 0; i < count && !all->settled; i++) {
+        nevh_stepper *s = row_stepper(p, rows[i], false);
+        all->compiled |= nevh_stepper_foresee(s, steps_compared(p));
+        plan_tell_native(s);
+        row_stepper_keep(p, rows[i], false, s);
+    }
+    all->settled |= count > 0;
+}
+
+nevh_stepper *row_stepper_to_time(const plan *p, const row *r) {
+    nevh_stepper *s = row_stepper(p, r, false);
+    if (p->steppers->compiled)
+        nevh_stepper_foresee(s, INFINITY);
+    else if (p->native == NEVH_NATIVE_AUTO && nevh_stepper_native(s, NULL)) {
+        plan tape = *p;
+        tape.native = NEVH_NATIVE_NEVER;
+        nevh_stepper_free(s);
+        s = plan_new(&tape, r, false);
+    }
+    plan_tell_native(s);
+    return s;
 }

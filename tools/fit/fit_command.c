@@ -268,6 +268,25 @@ static int print(const job *j, const options *o) {
     return status;
 }
 
+/* Numbers that have gone far off, or nowhere, are seen from where they are. */
+static void tell_where(const job *j) {
+    const fitting *f = &j->fit;
+    list items = {0};
+    for (size_t k = 0; k < f->count; k++)
+        list_print(&items, "%s = %.4g (from %.4g)", f->item[k].name,
+                   f->item[k].value, f->item[k].first);
+    char *all = list_joined(&items);
+    bool known = f->sigma_known || f->data->sigma;
+    tool_refuse("%s: the fit does not converge: after %zu iterations it is at "
+                "%s, with residuals of rms %.3g%s; begin nearer: --set, "
+                "--start, or with a shorter --t-end",
+                j->plan.name, f->iterations, all,
+                sqrt(f->chi_square / (double)f->residuals),
+                known ? " standard deviations" : "");
+    free(all);
+    list_free(&items);
+}
+
 /* Which numbers, and why. */
 static int tell_failure(const job *j) {
     const fitting *f = &j->fit;
@@ -290,9 +309,7 @@ static int tell_failure(const job *j) {
     else if (f->why)
         tool_refuse("%s: no fit: there is no orbit: %s", j->plan.name, f->why);
     else
-        tool_refuse("%s: the fit does not converge in %zu iterations; begin "
-                    "nearer: --set, --start, or with a shorter --t-end",
-                    j->plan.name, f->iterations);
+        tell_where(j);
     free(all);
     list_free(&names);
     return TOOL_FAILED;

@@ -19,6 +19,14 @@ static const double no_orbit = 1e100;  /* residuals of a step too far */
 static const double undetermined = 1e-6;
 static const double no_effect = 1e-8; /* what rounding makes is below */
 
+static gsl_vector *new_vector(size_t n) {
+    return tool_owned(gsl_vector_alloc(n));
+}
+
+static gsl_matrix *new_matrix(size_t rows, size_t columns) {
+    return tool_owned(gsl_matrix_alloc(rows, columns));
+}
+
 /* The model less the data, as GSL has it; a trial that has no orbit is worse than
    any that has. */
 static int residuals(const gsl_vector *x, void *data, gsl_vector *r) {
@@ -83,11 +91,10 @@ static void tell_direction(fitting *f, const gsl_vector *along) {
    independent. */
 static bool determined(fitting *f, const gsl_matrix *jacobian) {
     size_t p = f->count;
-    gsl_matrix *a = gsl_matrix_alloc(f->residuals, p);
-    gsl_matrix *v = gsl_matrix_alloc(p, p);
-    gsl_vector *s = gsl_vector_alloc(p), *work = gsl_vector_alloc(p);
+    gsl_matrix *a = new_matrix(f->residuals, p), *v = new_matrix(p, p);
+    gsl_vector *s = new_vector(p), *work = new_vector(p);
     double *length = tool_allocate(p, sizeof *length), longest = 0;
-    bool good = a && v && s && work;
+    bool good = true;
     gsl_matrix_memcpy(a, jacobian);
     for (size_t k = 0; k < p; k++) {
         gsl_vector_view column = gsl_matrix_column(a, k);
@@ -154,6 +161,10 @@ static int fit_part(fitting *f, size_t used, gsl_vector *x, double *chi_square,
     gsl_blas_ddot(r, r, chi_square);
     if (status == GSL_ENOPROG) /* rounding is all that is left */
         status = GSL_SUCCESS;
+    if (status != GSL_EFAILED) { /* an orbit that failed was a trial's */
+        free(f->why);
+        f->why = NULL;
+    }
     gsl_vector_memcpy(x, gsl_multifit_nlinear_position(*w));
     return status;
 }
@@ -165,7 +176,7 @@ static void start_values(const fitting *f, gsl_vector *x) {
 
 /* By and by; parts that fail leave the values as they are. */
 static void approach(fitting *f, gsl_vector *x) {
-    gsl_vector *before = gsl_vector_alloc(f->count);
+    gsl_vector *before = new_vector(f->count);
     start_values(f, x);
     for (size_t part = 8; part > 1; part /= 2) {
         gsl_multifit_nlinear_workspace *w;
@@ -192,7 +203,7 @@ static void take_errors(fitting *f, const gsl_matrix *jacobian) {
     double wide = f->sigma_known || f->data->sigma
                       ? gsl_cdf_ugaussian_Pinv(0.975)
                       : gsl_cdf_tdist_Pinv(0.975, degrees);
-    gsl_matrix *c = gsl_matrix_alloc(p, p);
+    gsl_matrix *c = new_matrix(p, p);
     gsl_multifit_nlinear_covar(jacobian, 0, c);
     f->correlation = tool_allocate(p * p, sizeof *f->correlation);
     for (size_t k = 0; k < p; k++) {
@@ -223,8 +234,6 @@ static void take_rms(fitting *f, const gsl_vector *residual) {
 
 static int take_result(fitting *f, const gsl_vector *x,
                        gsl_multifit_nlinear_workspace *w) {
-    for (size_t k = 0; k < f->count; k++)
-        f->item[k].value = gsl_vector_get(x, k) * f->item[k].scale;
     if (!determined(f, gsl_multifit_nlinear_jac(w)))
         return TOOL_FAILED;
     take_rms(f, gsl_multifit_nlinear_residual(w));
@@ -237,7 +246,7 @@ static int take_result(fitting *f, const gsl_vector *x,
 }
 
 int fit_solve(fitting *f) {
-    gsl_vector *x[2] = {gsl_vector_alloc(f->count), gsl_vector_alloc(f->count)};
+    gsl_vector *x[2] = {new_vector(f->count), new_vector(f->count)};
     gsl_multifit_nlinear_workspace *w[2];
     double chi_square[2];
     int status[2];
@@ -257,6 +266,8 @@ int fit_solve(fitting *f) {
         free(why);
     }
     f->chi_square = chi_square[second];
+    for (size_t k = 0; k < f->count; k++)
+        f->item[k].value = gsl_vector_get(x[second], k) * f->item[k].scale;
     int result =
         status[second] ? TOOL_FAILED : take_result(f, x[second], w[second]);
     for (size_t i = 0; i < 2; i++) {

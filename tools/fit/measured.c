@@ -291,27 +291,44 @@ static int read_row(reader_of_points *r, char *line, bool own[]) {
     return status;
 }
 
-/* In the order of time: insertion, for they mostly are. */
+typedef struct {
+    double t;
+    size_t at; /* in the file */
+} place_in_time;
+
+static int earlier(const void *a, const void *b) {
+    const place_in_time *x = a, *y = b;
+    return x->t != y->t ? (x->t > y->t) - (x->t < y->t)
+                        : (x->at > y->at) - (x->at < y->at);
+}
+
+/* Rows of a table in that order. */
+static double *reordered(double *from, const place_in_time order[], size_t rows,
+                         size_t columns) {
+    double *to = tool_allocate(rows * columns, sizeof *to);
+    for (size_t i = 0; i < rows; i++)
+        memcpy(to + i * columns, from + order[i].at * columns,
+               columns * sizeof *to);
+    free(from);
+    return to;
+}
+
+/* In the order of time; points of one time as in the file. */
 static void sort(measured *m) {
-    size_t size = m->columns * sizeof(double);
-    double *row = tool_allocate(m->columns, sizeof *row);
-    for (size_t i = 1; i < m->points; i++)
-        for (size_t k = i; k > 0 && m->t[k] < m->t[k - 1]; k--) {
-            double t = m->t[k], *tables[] = {m->value, m->sigma};
-            m->t[k] = m->t[k - 1];
-            m->t[k - 1] = t;
-            for (size_t j = 0; j < 2; j++) {
-                double *a = tables[j] + k * m->columns, *b = a - m->columns;
-                memcpy(row, a, size);
-                memcpy(a, b, size);
-                memcpy(b, row, size);
-            }
-        }
-    free(row);
+    place_in_time *order = tool_allocate(m->points, sizeof *order);
+    for (size_t i = 0; i < m->points; i++)
+        order[i] = (place_in_time){m->t[i], i};
+    qsort(order, m->points, sizeof *order, earlier);
+    m->t = reordered(m->t, order, m->points, 1);
+    m->value = reordered(m->value, order, m->points, m->columns);
+    m->sigma = reordered(m->sigma, order, m->points, m->columns);
+    free(order);
 }
 
 static int read_text(reader_of_points *r, char *text, const char *only) {
-    char *rest = text, *line = next_line(&rest, &r->line);
+    static const char bom[] = "\xEF\xBB\xBF"; /* as spreadsheets begin UTF-8 */
+    char *rest = text + (strncmp(text, bom, 3) == 0 ? 3 : 0);
+    char *line = next_line(&rest, &r->line);
     if (!line)
         return tool_refuse("--data %s is empty", r->m->file);
     int status = read_header(r, line, only);

@@ -262,10 +262,11 @@ static void columns(table *t) {
         table_column(t, titles[i]);
 }
 
-static void add_all(const options *o, plan *p, page *result) {
+/* returns  TOOL_FAILED where no effect could be compared, since runs failed */
+static int add_all(const options *o, plan *p, page *result) {
     size_t count = nevh_system_effect_count(p->system);
     double scale = plan_energy_scale(p);
-    bool apart = false;
+    bool apart = false, ran = false, failed = false;
     for (size_t i = 0; i < count; i++) {
         char *effect = text_print("%s", nevh_system_effect_name(p->system, i));
         bool on = nevh_system_effect_on(p->system, effect);
@@ -275,12 +276,15 @@ static void add_all(const options *o, plan *p, page *result) {
         else
             list_print(&result->after, "%s cannot be switched on: %s", effect,
                        nevh_scene_message(p->scene));
+        ran |= b.ran;
+        failed |= b.integrator && !b.ran;
         free_both(&b);
         switch_effect(p, effect, on);
         free(effect);
     }
     if (apart)
         say_chaos(p, &result->after);
+    return failed && !ran ? TOOL_FAILED : TOOL_OK;
 }
 
 int impact(const options *o, plan *p) {
@@ -295,7 +299,7 @@ int impact(const options *o, plan *p) {
              "differences of the state are divided by the range of each "
              "variable, those of the energy by energy_scale");
     columns(result.table);
-    add_all(o, p, &result);
+    int status = add_all(o, p, &result);
     if (!o->quiet)
         list_add(
             &result.after,
@@ -307,7 +311,7 @@ int impact(const options *o, plan *p) {
             "integrators that fit only without it.");
     if (o->quiet && o->format == FORMAT_TABLE)
         list_free(&result.before);
-    int status = output_page(o, &result, TOOL_OK);
+    status = output_page(o, &result, status);
     page_free(&result);
     return status;
 }

@@ -1,4 +1,4 @@
-/* nevh run --plot-kind configuration: the scene's picture: trails of its bobs,
+/* nevh run --plot-kind configuration, animation: the scene's picture: trails of its bobs,
    and where all is at the end.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run_plot_private.h"
@@ -168,7 +168,8 @@ static void follow_dense(run_picture *picture, bob_list *b) {
 /* returns  what is to be said of it; to be freed */
 static char *follow(run_picture *picture, bob_list *b) {
     follow_dense(picture, b);
-    char *words = picture_cut(picture, least_turns(b, picture->orbits.item));
+    char *words = picture_cut(picture, least_turns(b, picture->orbits.item),
+                              PICTURE_TURNS);
     if (!words)
         return text_print("%s", "");
     follow_dense(picture, b);
@@ -198,4 +199,153 @@ plot *plot_configuration(run_picture *picture) {
     free(x);
     free(y);
     return to;
+}
+
+/* Animations. */
+
+enum { FRAMES = 100, EACH = 10, TRAIL = 25 * EACH, MOST_PANELS = 4 };
+
+/* Of all parts, four numbers each. */
+static void fill_parts(void *data, double t, const double q[], const double p[],
+                       double values[]) {
+    const bob_list *b = data;
+    for (size_t i = 0; i < nevh_scene_part_count(b->scene); i++)
+        part(b->scene, i, t, q, p, values + 4 * i);
+}
+
+static void follow_evenly(run_picture *picture, bob_list *b) {
+    row_times even = {.by = BY_TIMES,
+                      .time = tool_allocate(FRAMES * EACH + 1, sizeof(double))};
+    double begin = picture->plan.run->t_start;
+    double span = picture->plan.t_end - begin;
+    for (size_t i = 0; i <= FRAMES * EACH; i++)
+        even.time[even.count++] = begin + span * (double)i / (FRAMES * EACH);
+    picture_follow(picture, &even, 4 * nevh_scene_part_count(b->scene),
+                   fill_parts, b);
+    free(even.time);
+}
+
+/* What the first orbit reaches, and some room: where others leave that, they are
+   seen to leave. */
+static void find_reach(const orbit *o, size_t parts, double low[2],
+                       double high[2]) {
+    static const double room = 0.2;
+    for (size_t k = 0; k < 2; k++) {
+        low[k] = INFINITY;
+        high[k] = -INFINITY;
+        for (size_t i = 0; i < o->rows.count; i++)
+            for (size_t j = 0; j < 2 * parts; j++)
+                if (isfinite(orbit_row(o, i)[2 * j + k])) {
+                    low[k] = fmin(low[k], orbit_row(o, i)[2 * j + k]);
+                    high[k] = fmax(high[k], orbit_row(o, i)[2 * j + k]);
+                }
+    }
+    double most = room * fmax(high[0] - low[0], high[1] - low[1]);
+    for (size_t k = 0; k < 2; k++) {
+        low[k] -= most > 0 ? most : 1;
+        high[k] += most > 0 ? most : 1;
+    }
+}
+
+/* Its name among others, and that it ended early. */
+static char *heading_of(const run_picture *picture, const orbit *o) {
+    char *name = text_print("%s", picture->orbits.count > 1 ? o->name : "");
+    if (!o->status)
+        return name;
+    char *text =
+        text_print("%s%sended at t = %.4g", name, *name ? ", " : "", o->t);
+    free(name);
+    return text;
+}
+
+/* One orbit up to row `last`, or to where it ended. */
+static void draw_moment(plot *to, const bob_list *b, const orbit *o,
+                        size_t last) {
+    static const double least = 0.35, less = 0.2;
+    size_t parts = nevh_scene_part_count(b->scene), trails[MOST_BOBS];
+    if (o->rows.count == 0)
+        return;
+    last = last < o->rows.count ? last : o->rows.count - 1;
+    for (size_t bob = 0; bob < b->count; bob++) {
+        trails[bob] = plot_series(to, NULL);
+        plot_style(to, trails[bob], PLOT_TRAIL);
+        for (size_t i = last > TRAIL ? last - TRAIL : 0; i <= last; i++)
+            plot_point(to, trails[bob], orbit_row(o, i)[4 * b->part[bob]],
+                       orbit_row(o, i)[4 * b->part[bob] + 1]);
+    }
+    for (size_t i = 0; i < parts; i++)
+        if (strcmp(nevh_scene_part_at(b->scene, i).kind, "rod") == 0)
+            draw_rod(to, orbit_row(o, last) + 4 * i);
+    for (size_t bob = 0; bob < b->count; bob++) {
+        const double *at = orbit_row(o, last) + 4 * b->part[bob];
+        size_t series = plot_series(to, NULL);
+        plot_style(to, series, PLOT_BOBS);
+        plot_size(to, series, fmax(1 - less * (double)bob, least));
+        plot_like(to, series, trails[bob]);
+        plot_point(to, series, at[0], at[1]);
+    }
+}
+
+static plot *draw_frame(const run_picture *picture, const bob_list *b,
+                        size_t frame, const double low[2], const double high[2],
+                        const char *more) {
+    const plan *p = &picture->plan;
+    const char *unit = nevh_scene_label(p->scene, "t");
+    double begin = p->run->t_start, span = p->t_end - begin;
+    int digits = (int)fmax(0, 2 - floor(log10(span)));
+    char *x = axis_label(p, b, 0), *y = axis_label(p, b, 1);
+    plot *to = plot_new(p->title, x, y);
+    for (size_t i = 0; i < picture->orbits.count; i++) {
+        const orbit *o = &picture->orbits.item[i];
+        char *heading = heading_of(picture, o);
+        if (i)
+            plot_panel(to, heading, x, y);
+        else
+            plot_heading(to, *heading ? heading : NULL);
+        free(heading);
+        plot_equal(to);
+        plot_span_x(to, low[0], high[0]);
+        plot_span_y(to, low[1], high[1]);
+        draw_moment(to, b, o, frame * EACH);
+    }
+    char *when = text_print("t = %.*f%s%s%s%s", digits,
+                            begin + span * (double)frame / FRAMES,
+                            *unit ? " " : "", unit, *more ? "; " : "", more);
+    picture_note(picture, to, when);
+    free(when);
+    free(x);
+    free(y);
+    return to;
+}
+
+plot *plot_animation(run_picture *picture) {
+    static const double turns = 6;
+    bob_list b = bobs_of(picture->plan.scene);
+    double low[2], high[2];
+    plot *first = NULL, *last = NULL;
+    if (picture->orbits.count > MOST_PANELS) {
+        tool_refuse("--plot-kind animation draws up to %d orbits side by side",
+                    MOST_PANELS);
+        return NULL;
+    }
+    bool quiet = picture->quiet;
+    double seen = 0;
+    picture->quiet = true;
+    follow_dense(picture, &b);
+    picture->quiet = quiet;
+    for (size_t i = 0; i < picture->orbits.count; i++)
+        seen = fmax(seen, least_turns(&b, &picture->orbits.item[i]));
+    char *cut = picture_cut(picture, seen, turns);
+    follow_evenly(picture, &b);
+    find_reach(picture->orbits.item, nevh_scene_part_count(b.scene), low, high);
+    for (size_t i = 0; i <= FRAMES; i++) {
+        plot *next = draw_frame(picture, &b, i, low, high, cut ? cut : "");
+        if (last)
+            plot_then(last, next);
+        else
+            first = next;
+        last = next;
+    }
+    free(cut);
+    return first;
 }

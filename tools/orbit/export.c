@@ -31,6 +31,8 @@ static int export_plan(const options *o, const plan *p) {
     for (size_t k = 0; k < p->n; k++)
         names[k] = nevh_scene_coordinate(p->scene, k);
     choose_steps(p, &as);
+    if (!p->friction && !p->balance)
+        as.energy_scale = plan_energy_scale(p);
     char *text = s ? nevh_stepper_program(s, &as) : NULL;
     int status = TOOL_USAGE;
     if (text)

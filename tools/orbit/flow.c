@@ -68,6 +68,7 @@ static nevh_loop *new_loop(flow_job *j, const flow_row *r, int eye,
                             .times = j->times,
                             .t0 = j->time[0],
                             .h = r->dt,
+                            .most_points = p->n > 1 ? 2048 : 0,
                             .shapes = shapes};
     nevh_loop *l = tool_owned(nevh_loop_new(p->system, scheme, &o, &is));
     free(steps);
@@ -224,7 +225,10 @@ static void note(const flow_job *j, const options *o, list *notes) {
     const plan *p = &j->plan;
     plan_notes(p, notes);
     settings_notes(o, notes);
-    list_print(notes, "shape: %s", j->shape.text);
+    list_print(notes, "shape: %s%s", j->shape.text,
+               nevh_scene_members(p->scene)
+                   ? "; the scene's [ensemble] is left aside"
+                   : "");
     list_print(notes, "area: %s%s",
                p->n > 1 ? "the sum over coordinates x of the integral of x "
                           "dp_x round the edge"
@@ -244,7 +248,7 @@ static void words(const flow_job *j, list *to) {
         const flow_row *r = &j->row[k];
         double first = nevh_loop_result(r->loop, 0).area;
         nevh_loop_area last = {.area = NAN};
-        for (size_t i = 0; i < j->times; i++) {
+        for (size_t i = 1; i < j->times; i++) {
             nevh_loop_area at = nevh_loop_result(r->loop, i);
             if (!isnan(at.area) && (at.inside || flow_resolved(at)))
                 last = at;

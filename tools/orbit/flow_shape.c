@@ -365,7 +365,9 @@ static int choose(shape *c) {
     }
     int status = measure(p, &e);
     size_t k = 0;
+    bool moves = false;
     for (; !status && k < p->n; k++) {
+        moves |= e.high[k] > e.low[k] || e.high[p->n + k] > e.low[p->n + k];
         c->width = part * (e.high[k] - e.low[k]);
         c->height = part * (e.high[p->n + k] - e.low[p->n + k]);
         if (c->width > 0 && c->height > 0 && isfinite(c->width * c->height))
@@ -376,9 +378,13 @@ static int choose(shape *c) {
     if (status)
         return status;
     if (k == p->n)
-        return tool_refuse("%s: the orbit stays where it starts: say which "
-                           "shape, as --shape 'disc(%s = 0, p_%s = 0, 0.1)'",
-                           p->name, nevh_scene_coordinate(p->scene, 0),
+        return tool_refuse("%s: %s: say which shape, as --shape "
+                           "'disc(%s = 0, p_%s = 0, 0.1)'",
+                           p->name,
+                           moves ? "along the orbit no coordinate changes "
+                                   "together with its momentum"
+                                 : "the orbit stays where it starts",
+                           nevh_scene_coordinate(p->scene, 0),
                            nevh_scene_coordinate(p->scene, 0));
     const char *name = nevh_scene_coordinate(p->scene, k);
     c->kind = FLOW_CAT;

@@ -160,6 +160,24 @@ static void add_row(job *j, const options *o, const char *integrator,
     table_shown(t, "%.4f", l->phase);
 }
 
+/* What grows steadily is no sum of oscillations. */
+static void judge_line(job *j, const char *integrator, const char *name,
+                       const double x[]) {
+    static const double straight = 0.9;
+    double n = (double)j->samples, mean = 0, tt = 0, tx = 0, xx = 0;
+    for (size_t k = 0; k < j->samples; k++)
+        mean += x[k] / n;
+    for (size_t k = 0; k < j->samples; k++) {
+        double t = (double)k - (n - 1) / 2, d = x[k] - mean;
+        tt += t * t, tx += t * d, xx += d * d;
+    }
+    if (xx > 0 && tx * tx > straight * tt * xx)
+        list_print(&j->words,
+                   "%s, %s: it changes along a straight line, by %.3g a unit "
+                   "of time: it is not periodic, or the run is too short.",
+                   integrator, name, tx / tt / j->h);
+}
+
 /* A frequency that moves is none. */
 static void judge(job *j, const char *integrator, const char *name,
                   const nevh_spectral_line *l) {
@@ -185,8 +203,10 @@ static int analyse(job *j, const options *o, const char *integrator) {
                        name);
         for (size_t k = 0; !status && k < found; k++)
             add_row(j, o, integrator, name, k + 1, &lines[k]);
-        if (!status && found)
+        if (!status && found) {
             judge(j, integrator, name, &lines[0]);
+            judge_line(j, integrator, name, a->values);
+        }
         if (status == NEVH_EDOM) {
             list_print(&j->words, "%s, %s failed: it is not finite", integrator,
                        name);

@@ -56,6 +56,7 @@ static void run_orbits(job *j, orbits_of *o) {
         o->refused = true;
         o->status = text_print("refused: %s", nevh_stepper_message(s));
     }
+    nevh_stepper_foresee(s, (double)j->members.count * plan_steps(p, p->dt[0]));
     o->every = (size_t)(plan_steps(p, p->dt[0]) / MOST_POINTS) + 1;
     for (o->at = 0; !o->refused && o->at < j->members.count; o->at++) {
         double q = j->members.q[o->at], m = j->members.p[o->at], stopped;

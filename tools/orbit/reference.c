@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+enum { MOST_DIGITS = 30 };
 static const size_t usual_digits = 24;
 
 typedef struct {
@@ -11,6 +12,7 @@ typedef struct {
     nevh_certain *orbit;
     size_t digits, fewest; /* asked for; had */
     double lost;           /* the first time with fewer; NAN */
+    size_t left;           /* the fewest then */
 } job;
 
 static char *name_of(const plan *p, size_t k) {
@@ -30,7 +32,10 @@ static void put_state(job *j, double t, table *rows) {
         bool still = nevh_certain_value(j->orbit, k) == 0 && error < 1e-30;
         put_text(rows, text_print("%.17g", t));
         put_text(rows, name_of(j->plan, k));
-        put_text(rows, tool_owned(nevh_certain_text(j->orbit, k)));
+        if (digits || still)
+            put_text(rows, tool_owned(nevh_certain_text(j->orbit, k)));
+        else
+            table_text(rows, NULL);
         table_shown(rows, "%zu", digits);
         table_shown(rows, "%.0e", error);
         if (digits >= j->digits || still ||
@@ -40,6 +45,8 @@ static void put_state(job *j, double t, table *rows) {
         j->fewest = digits < j->fewest ? digits : j->fewest;
         if (isnan(j->lost))
             j->lost = t;
+        if (j->lost == t)
+            j->left = j->fewest;
     }
 }
 
@@ -69,14 +76,22 @@ static void put_notes(const job *j, page *result) {
                nevh_certain_series(j->orbit));
     list_add(&result->before, "parameters, starts and times are the doubles "
                               "nearest to what the scene says, taken exactly");
-    if (j->fewest < j->digits)
-        list_print(
-            &result->after,
-            "From t = %.9g on not all digits asked for are certain, but "
-            "%zu or more: the orbit makes differences in the last digits "
-            "grow%s.",
-            j->lost, j->fewest,
-            j->digits < 30 ? "; --digits 30 carries more of them" : "");
+    if (j->fewest == j->digits)
+        return;
+    list_print(&result->after,
+               "From t = %.9g on not all digits asked for are certain, but "
+               "%zu or more: the orbit makes differences in the last digits "
+               "grow.",
+               j->lost, j->fewest);
+    if (!j->left)
+        list_print(&result->after,
+                   "At t = %.9g no digit is left: earlier times (--at) show "
+                   "how long digits last.",
+                   j->lost);
+    else if (j->digits < MOST_DIGITS)
+        list_print(&result->after,
+                   "--digits %d carries more of them, as far as 113 bits do.",
+                   MOST_DIGITS);
 }
 
 static int reference_of(const options *o, const plan *p) {

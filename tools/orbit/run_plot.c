@@ -90,8 +90,8 @@ static double rounded(double span) {
     return power * (digits >= 5 ? 5 : digits >= 2 ? 2 : 1);
 }
 
-char *picture_cut(run_picture *picture, double turns) {
-    static const double most = 60, wanted = 25;
+char *picture_cut(run_picture *picture, double turns, double wanted) {
+    const double most = 2.4 * wanted;
     double begin = picture->plan.run->t_start, whole = picture->plan.t_end;
     if (picture->options->t_end || picture->data.points || turns <= most)
         return NULL;
@@ -202,8 +202,10 @@ static plot *plot_energy(run_picture *picture) {
 /* Kinds. */
 
 static int check_kind(const options *o, const plan *p) {
-    bool configuration = o->plot.kind == PLOT_CONFIGURATION;
-    bool columns = o->plot.kind == PLOT_TIME || o->plot.kind == PLOT_PHASE;
+    bool configuration =
+        o->plot.kind == PLOT_CONFIGURATION || o->plot.kind == PLOT_ANIMATION;
+    bool columns = o->plot.kind == PLOT_TIME || o->plot.kind == PLOT_PHASE ||
+                   o->plot.kind == PLOT_USUAL;
     if (o->fit.data && plot_wanted(o) && !columns)
         return tool_refuse("--data is drawn over --plot-kind time or phase");
     if (o->columns && !(plot_wanted(o) && columns))
@@ -240,11 +242,13 @@ static int worst_status(const run_picture *picture) {
 
 int run_plot(const options *o, const plan *p, const char *integrator,
              const row_times *rows) {
-    static plot *(*const draw[])(run_picture *) = {[PLOT_PHASE] = plot_phase,
-                                                   [PLOT_CONFIGURATION] =
-                                                       plot_configuration,
-                                                   [PLOT_ENERGY] = plot_energy,
-                                                   [PLOT_TIME] = plot_time};
+    static plot *(*const draw[])(run_picture *) = {
+        [PLOT_USUAL] = plot_phase,
+        [PLOT_PHASE] = plot_phase,
+        [PLOT_CONFIGURATION] = plot_configuration,
+        [PLOT_ANIMATION] = plot_animation,
+        [PLOT_ENERGY] = plot_energy,
+        [PLOT_TIME] = plot_time};
     run_picture is = {.options = o,
                       .plan = *p,
                       .orbits = orbits_new(o, p, integrator),

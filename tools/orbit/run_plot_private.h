@@ -44,10 +44,11 @@ int column_panels_follow(run_picture *, const row_times *, column_panels *);
 /* Whether some of the orbits have the shadow H that is asked for: TOOL_OK, or
    TOOL_USAGE with the message printed. */
 int column_panels_check(const run_picture *, column_panels *);
-/* Ends a run that goes round often after fewer turns, unless its length was
-   asked for; it is to be followed again then.
+/* Ends a run that goes round often after about so many turns, unless its length
+   was asked for; it is to be followed again then.
    returns  what is to be said of it, to be freed; NULL: it stays */
-char *picture_cut(run_picture *, double turns);
+enum { PICTURE_TURNS = 25 };
+char *picture_cut(run_picture *, double turns, double wanted);
 /* Title, and the note with what is said of orbits, and more; a plot is made
    with the labels. */
 void picture_note(const run_picture *, plot *, const char *more);
@@ -55,6 +56,7 @@ void picture_note(const run_picture *, plot *, const char *more);
 /* Each makes a plot; NULL, with a message printed, where it cannot. */
 plot *plot_phase(run_picture *);         /* phase_plot.c */
 plot *plot_configuration(run_picture *); /* configuration_plot.c */
+plot *plot_animation(run_picture *);     /* the same */
 plot *plot_time(run_picture *);          /* time_plot.c */
 
 #endif

@@ -64,10 +64,12 @@ static void follow(run_picture *picture, column_panels *c) {
    returns  what is to be said of it; to be freed */
 static char *follow_and_cut(run_picture *picture, column_panels *c) {
     follow(picture, c);
-    char *words = picture->rows
-                      ? NULL
-                      : picture_cut(picture, most_turns(picture->orbits.item,
-                                                        &c->columns));
+    char *words =
+        picture->rows
+            ? NULL
+            : picture_cut(picture,
+                          most_turns(picture->orbits.item, &c->columns),
+                          PICTURE_TURNS);
     if (words)
         follow(picture, c);
     return words ? words : text_print("%s", "");

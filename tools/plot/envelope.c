@@ -12,7 +12,7 @@ envelope *envelope_new(double begin, double end) {
     return e;
 }
 
-void envelope_add(envelope *e, double t, double value) {
+static void add(envelope *e, double t, double value) {
     double place = (t - e->begin) / (e->end - e->begin) * ENVELOPE_PARTS;
     size_t i = (size_t)fmin(fmax(place, 0), ENVELOPE_PARTS - 1);
     if (fabs(value) > e->part[i].value) {
@@ -25,7 +25,6 @@ int energy_trace_observe(void *data, size_t step, double t, const double q[],
                          const double p[]) {
     energy_trace *trace = data;
     (void)step, (void)q, (void)p;
-    envelope_add(trace->envelope, t,
-                 nevh_energy_result(trace->energy, 0).final);
+    add(trace->envelope, t, nevh_energy_result(trace->energy, 0).final);
     return NEVH_OK;
 }

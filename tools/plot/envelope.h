@@ -16,7 +16,6 @@ typedef struct envelope {
 } envelope;
 
 envelope *envelope_new(double begin, double end); /* to be freed with free */
-void envelope_add(envelope *, double t, double value);
 
 /* A nevh_observe_fn: adds the energy error that `energy`, an observer called
    before, has just found. */

@@ -102,6 +102,10 @@ void plot_many_colours(plot *p) {
     p->colourful = true;
 }
 
+void plot_then(plot *p, plot *next) {
+    p->next = next;
+}
+
 void plot_columns(plot *p, size_t columns) {
     p->beside = columns;
 }
@@ -204,6 +208,7 @@ void plot_free(plot *p) {
     }
     if (!p)
         return;
+    plot_free(p->next);
     free(p->map.x);
     free(p->map.y);
     free(p->map.z);

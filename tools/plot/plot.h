@@ -62,6 +62,10 @@ void plot_columns(plot *, size_t columns);
 /* Panels are wide, one below the other, over one axis. */
 void plot_stack(plot *);
 
+/* The next frame of an animation, which is owned from then on: of the same panels
+   and ranges. */
+void plot_then(plot *, plot *next);
+
 /* A series of the current panel; returns its number.  Series of the same name
    look the same, and are in the legend once; NULL: not at all. */
 size_t plot_series(plot *, const char *name);

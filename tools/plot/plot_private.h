@@ -53,6 +53,7 @@ struct plot {
     bool colourful; /* see plot_many_colours */
     size_t beside;  /* panels side by side; 0: chosen */
     size_t hidden;  /* points that no logarithmic axis shows */
+    plot *next;     /* see plot_then; NULL: none */
 };
 
 /* plot_range.c: what an axis of a panel shows: the points, with some room, or
@@ -87,7 +88,14 @@ size_t plot_axis_letters(const axis *); /* of the longest number */
 char *plot_axis_label(const axis *, const char *label, bool text);
 
 /* plot_script.c: the whole in the language of gnuplot. */
-typedef enum { PLOT_SVG, PLOT_PNG, PLOT_PDF, PLOT_TEXT, PLOT_SCREEN } medium;
+typedef enum {
+    PLOT_SVG,
+    PLOT_PNG,
+    PLOT_PDF,
+    PLOT_GIF,
+    PLOT_TEXT,
+    PLOT_SCREEN
+} medium;
 typedef struct {
     medium medium;
     size_t columns, lines; /* of PLOT_TEXT */

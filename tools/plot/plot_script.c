@@ -37,6 +37,12 @@ static void print_terminal(FILE *f, const target *t, const layout *l) {
                 "background '#ffffff'\n",
                 2 * w, 2 * h, FONT); /* fonts: 96 pixels an inch */
         break;
+    case PLOT_GIF: /* so many hundredths of a second each frame */
+        fprintf(f,
+                "set terminal gif animate delay 6 loop 0 size %g,%g enhanced "
+                "font 'sans,%d' fontscale 0.75 background '#ffffff'\n",
+                w, h, FONT);
+        break;
     case PLOT_PDF:
         fprintf(f,
                 "set terminal pdfcairo size %gin,%gin enhanced font "
@@ -428,38 +434,45 @@ static void print_legend(FILE *f, const plot *p, const layout *l, bool text) {
     print_plots(f, p, p->panels, true, text);
 }
 
-void plot_script(const plot *p, const target *t, FILE *f) {
-    bool text = t->medium == PLOT_TEXT;
-    layout l = plot_lay_out(p, t);
-    bool apart = l.legend > 0 && l.legend_apart;
+static void print_picture(FILE *f, const plot *p, const layout *l, bool text) {
+    bool apart = l->legend > 0 && l->legend_apart;
     bool several = p->panels > 1 || apart;
-    print_terminal(f, t, &l);
-    if (t->file)
-        print_output(f, t->file);
-    print_frame(f, p, &l, text);
+    print_frame(f, p, l, text);
     print_looks(f, p);
     for (size_t i = 0; i < p->count; i++)
         if (p->series[i].count)
             print_points(f, &p->series[i], i + 1);
     if (p->map.columns)
-        print_map(f, &p->map, &l);
+        print_map(f, &p->map, l);
     if (several)
         fputs("set multiplot\n", f);
     for (size_t i = 0; i < p->panels; i++) {
-        bool legend = i == 0 && l.legend > 0 && !apart;
+        bool legend = i == 0 && l->legend > 0 && !apart;
         if (i)
             fputs("unset label\n", f);
         if (!text)
             print_guides(f, p, i);
-        print_place(f, i, &l);
-        print_axes(f, p, i, &l, text);
+        print_place(f, i, l);
+        print_axes(f, p, i, l, text);
         fputs("unset key\n", f);
         if (legend)
-            print_key(f, &l, text);
+            print_key(f, l, text);
         print_plots(f, p, i, legend, text);
     }
     if (apart)
-        print_legend(f, p, &l, text);
+        print_legend(f, p, l, text);
     if (several)
         fputs("unset multiplot\n", f);
+}
+
+void plot_script(const plot *p, const target *t, FILE *f) {
+    layout l = plot_lay_out(p, t);
+    print_terminal(f, t, &l);
+    if (t->file)
+        print_output(f, t->file);
+    for (; p; p = p->next) {
+        print_picture(f, p, &l, t->medium == PLOT_TEXT);
+        if (p->next)
+            fputs("unset label\n", f);
+    }
 }

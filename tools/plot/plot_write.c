@@ -17,9 +17,21 @@ static int find_medium(const options *o, medium *m) {
     static const struct {
         const char *ending;
         medium medium;
-    } known[] = {{"svg", PLOT_SVG}, {"png", PLOT_PNG}, {"pdf", PLOT_PDF}};
+    } known[] = {{"svg", PLOT_SVG},
+                 {"png", PLOT_PNG},
+                 {"pdf", PLOT_PDF},
+                 {"gif", PLOT_GIF}};
     const char *dot = o->plot.file ? strrchr(o->plot.file, '.') : NULL;
+    bool moves = o->plot.kind == PLOT_ANIMATION;
+    bool gif = dot && strcmp(dot, ".gif") == 0;
     *m = o->plot.file ? PLOT_TEXT : PLOT_SCREEN;
+    if (moves && !gif)
+        return tool_refuse("--plot-kind animation takes --plot FILE.gif");
+    if (gif && !moves)
+        return tool_refuse("--plot %s: a .gif is for nevh run --plot-kind "
+                           "animation; FILE.svg, FILE.png and FILE.pdf are for "
+                           "all",
+                           o->plot.file);
     if (!o->plot.file || in_terminal(o))
         return TOOL_OK;
     for (size_t i = 0; dot && i < sizeof known / sizeof *known; i++)
@@ -183,11 +195,15 @@ int plot_write(plot *p, const options *o) {
     target t;
     if (find_target(o, &t))
         return TOOL_USAGE;
-    if (is_empty(p))
-        return tool_refuse(p->hidden ? "there is nothing to plot: all values "
-                                       "are 0, which a logarithmic axis does "
-                                       "not show"
-                                     : "there is nothing to plot");
+    if (is_empty(p)) {
+        int refused =
+            tool_refuse(p->hidden ? "there is nothing to plot: all values "
+                                    "are 0, which a logarithmic axis does "
+                                    "not show"
+                                  : "there is nothing to plot");
+        /* A report shows the table alone. */
+        return p->hidden && o->as_html ? TOOL_OK : refused;
+    }
     int status = o->plot.script ? keep_script(p, o, t) : TOOL_OK;
     if (!status && o->plot.file)
         status = draw(p, o, &t);

@@ -16,52 +16,72 @@ typedef struct {
 typedef struct {
     const char *title, *about, *arguments;
     command *run;
-    bool (*wanted)(const nevh_scene *);
+    bool (*wanted)(nevh_scene *);
     plot_kind kind;
     bool rows, draws;
 } kind_of_part;
 
-static bool always(const nevh_scene *scene) {
+static bool always(nevh_scene *scene) {
     (void)scene;
     return true;
 }
 
-static bool has_picture(const nevh_scene *scene) {
+static bool has_picture(nevh_scene *scene) {
     return nevh_scene_part_count(scene) > 0;
 }
 
-static bool has_sections(const nevh_scene *scene) {
+static bool has_sections(nevh_scene *scene) {
     return nevh_scene_section_count(scene) > 0;
+}
+
+/* Levels of H are lines of the plane. */
+static bool has_plane(nevh_scene *scene) {
+    return nevh_scene_dof(scene) == 1;
+}
+
+/* Orbits that can be chaotic, and not so many coordinates that it takes long to
+   tell. */
+static bool has_room(nevh_scene *scene) {
+    enum { MOST = 40 };
+    bool driven =
+        !(nevh_system_traits(nevh_scene_system(scene)) & NEVH_AUTONOMOUS);
+    size_t n = nevh_scene_dof(scene);
+    return (n > 1 || driven) && n <= MOST;
 }
 
 static const kind_of_part kinds[] = {
     {"Energy errors",
      "Each row is an integrator at one step. Bounded errors stay; drifting "
      "errors grow with time. The picture shows the error against time.",
-     "compare", compare, always, PLOT_PHASE, true, true},
+     "compare", compare, always, PLOT_USUAL, true, true},
     {"The motion", "The configuration at equal times, by the first integrator.",
      "run --plot-kind configuration", run_scene, has_picture,
      PLOT_CONFIGURATION, false, true},
     {"Phase plane", "A coordinate and its momentum, by the first integrator.",
      "run --plot-kind phase", run_scene, always, PLOT_PHASE, false, true},
+    {"Portrait", "Orbits over level curves of H, a panel for each integrator.",
+     "portrait", portrait, has_plane, PLOT_USUAL, false, true},
     {"Sections", "Points where the orbit crosses the section.", "section",
-     section, has_sections, PLOT_PHASE, false, true},
+     section, has_sections, PLOT_USUAL, false, true},
+    {"Order and chaos",
+     "The Lyapunov exponent: how fast orbits that start near by separate.",
+     "chaos --starts 2", chaos, has_room, PLOT_USUAL, true, false},
     {"What accuracy costs",
      "Processor time for each digit. The picture is the work-precision "
      "diagram: lower left is better.",
-     "cost", cost, always, PLOT_PHASE, true, true},
+     "cost", cost, always, PLOT_USUAL, true, true},
     {"Effects",
      "What each effect reads and costs. Effects that are off cost "
      "nothing.",
-     "effects", effects, always, PLOT_PHASE, true, false},
+     "effects", effects, always, PLOT_USUAL, true, false},
     {"Gradients",
      "Error and time of the gradient by each method. Long steps of a "
      "difference truncate, short ones round.",
-     "gradients", gradients, always, PLOT_PHASE, true, true},
+     "gradients", gradients, always, PLOT_USUAL, true, true},
     {"Properties of H", "Tested numerically at states around the start.",
-     "check", check, always, PLOT_PHASE, true, false},
+     "check", check, always, PLOT_USUAL, true, false},
 };
-enum { KINDS = sizeof kinds / sizeof *kinds };
+enum { KINDS = sizeof kinds / sizeof *kinds, STARTS = 2 };
 
 char *text_read(const char *name) {
     FILE *f = fopen(name, "rb");
@@ -152,6 +172,7 @@ static report_part make_part(const report_work *w, const kind_of_part *kind,
     o.file = kind->rows ? w->rows : NULL;
     o.plot.file = kind->draws ? w->picture : NULL;
     o.plot.kind = kind->kind;
+    o.chaos.starts = kind->run == chaos ? STARTS : 0;
     o.as_html = true;
     o.quiet = !kind->rows;
     unlink(w->rows);

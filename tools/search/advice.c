@@ -83,13 +83,12 @@ static table *shown(const advice *a) {
     return t;
 }
 
-static table *recorded(const advice *a) {
+static size_t list_rows(const advice *a, row rows[ADVICE_MOST]) {
     const study *found[ADVICE_MOST];
-    row rows[ADVICE_MOST];
     size_t count = advice_list(a, found);
     for (size_t i = 0; i < count; i++)
         rows[i] = *chosen(a, found[i]);
-    return records(&a->search.plan, rows, count);
+    return count;
 }
 
 /* To be typed: quoted where a shell would read it otherwise. */
@@ -115,8 +114,7 @@ static char *append_number(char *text, const char *name, double value) {
     return text;
 }
 
-/* As the rows were run: with the gradient also of a scheme that takes none, since
-   the lengths that tolerances are relative to are found with it. */
+/* As the rows were run. */
 static char *command_line(const advice *a, const options *o, const row *r) {
     const plan *p = &a->search.plan;
     char *text = text_print("  nevh compare %s", p->name);
@@ -130,8 +128,9 @@ static char *command_line(const advice *a, const options *o, const row *r) {
                       setting + 1);
     }
     text = append(text, "integrators", r->integrator);
-    text = append(text, "gradient", r->gradient);
-    if (p->gradient_step > 0)
+    if (study_takes_gradients(a->best))
+        text = append(text, "gradient", r->gradient);
+    if (study_takes_gradients(a->best) && p->gradient_step > 0)
         text = append_number(text, "gradient-step", p->gradient_step);
     text =
         append_number(text, "dt", r->tolerance > 0 ? a->search.landing : r->dt);
@@ -147,7 +146,8 @@ static char *command_line(const advice *a, const options *o, const row *r) {
 static void tell_lines(const advice *a, const row *r, list *words) {
     list_add(words, "  [run]");
     list_print(words, "  integrators = %s", r->integrator);
-    list_print(words, "  gradient = %s", r->gradient);
+    if (study_takes_gradients(a->best))
+        list_print(words, "  gradient = %s", r->gradient);
     list_print(words, "  dt = %.6g",
                r->tolerance > 0 ? a->search.landing : r->dt);
     if (r->tolerance > 0)
@@ -282,12 +282,16 @@ static void tell_answer(const advice *a, const options *o, list *words) {
 }
 
 void advice_print(const advice *a, const options *o, FILE *f) {
+    const plan *searched = &a->search.plan;
     bool is_table = o->format == FORMAT_TABLE;
-    page p = {.table = is_table ? shown(a) : recorded(a)};
+    row rows[ADVICE_MOST];
+    size_t count = list_rows(a, rows);
+    page p = {.table = is_table ? shown(a) : records(searched, rows, count)};
     if (!is_table || !o->quiet) {
-        plan_notes(&a->search.plan, &p.before);
-        state_notes(&a->search.plan, &p.before);
-        observable_notes(&a->search.plan, &p.before);
+        plan_notes(searched, &p.before);
+        native_notes(searched, rows, count, &p.before);
+        state_notes(searched, &p.before);
+        observable_notes(searched, &p.before);
         tell_answer(a, o, &p.after);
     }
     page_print(&p, o, f);

@@ -1,7 +1,7 @@
 /* nevh cost: what a digit costs.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "cost_private.h"
-#include "plot/plot.h"
+#include "plot/order_plot.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -84,14 +84,36 @@ static bool may_win(const costs *c, const row *r, double target) {
     return r->work < nearly * least_work(c, target);
 }
 
-static void time_cells(costs *c) {
+static bool is_compared(const costs *c, const study *l, const row *r,
+                        double target) {
+    return r && (c->all || cost_is_yardstick(l) ||
+                 (costs_count(c, l) && may_win(c, r, target)));
+}
+
+/* Before the first of them is timed. */
+static void settle_cells(costs *c) {
+    row **all = tool_allocate(COST_TARGETS * c->count, sizeof *all);
+    size_t count = 0;
     for (size_t k = 0; k < COST_TARGETS; k++)
         for (size_t i = 0; i < c->count; i++) {
             study *l = &c->study[i];
             const row *r =
                 study_least_work(l, cost_target[k], c->search.by_state);
-            if (r && (c->all || cost_is_yardstick(l) ||
-                      (costs_count(c, l) && may_win(c, r, cost_target[k]))))
+            if (is_compared(c, l, r, cost_target[k]))
+                all[count++] = &l->level[r - l->level];
+        }
+    rows_settle(&c->search.plan, all, count);
+    free(all);
+}
+
+static void time_cells(costs *c) {
+    settle_cells(c);
+    for (size_t k = 0; k < COST_TARGETS; k++)
+        for (size_t i = 0; i < c->count; i++) {
+            study *l = &c->study[i];
+            const row *r =
+                study_least_work(l, cost_target[k], c->search.by_state);
+            if (is_compared(c, l, r, cost_target[k]))
                 study_time(&c->search, l, (size_t)(r - l->level));
         }
     for (size_t k = 0; k < COST_TARGETS; k++)
@@ -213,9 +235,20 @@ static int report_failures(const costs *c) {
     return status;
 }
 
+static int draw_costs(const options *o, const costs *c) {
+    size_t count;
+    if (o->plot.kind != PLOT_ORDER)
+        return cost_plot(o, c);
+    row *rows = list_rows(c, true, &count);
+    int status = order_plot(o, &c->search.plan, rows, count);
+    free(rows);
+    return status;
+}
+
 static int cost_plan(const options *o, plan *p, double whole) {
     output out;
-    if (plot_check(o) || output_open(&out, o->file))
+    if (order_plot_check(o, o->dt.count ? o->dt.count : 2) || plot_check(o) ||
+        output_open(&out, o->file))
         return TOOL_USAGE;
     costs c = {.search = search_begin(p, o, SEARCH_BUDGET),
                .whole = whole,
@@ -225,12 +258,12 @@ static int cost_plan(const options *o, plan *p, double whole) {
     page result = make_page(o, &c);
     search_end(&c.search);
     bool first = plot_goes_first(o);
-    int drawn = first ? cost_plot(o, &c) : TOOL_OK;
+    int drawn = first ? draw_costs(o, &c) : TOOL_OK;
     page_print(&result, o, out.stream);
     page_free(&result);
     int status = output_close(&out, report_failures(&c));
     if (plot_wanted(o) && !first)
-        drawn = cost_plot(o, &c);
+        drawn = draw_costs(o, &c);
     if (drawn)
         status = TOOL_USAGE;
     for (size_t i = 0; i < c.count; i++)

@@ -68,8 +68,9 @@ double plan_shorten(plan *p, double budget) {
         dt = fmin(dt, p->dt[i]);
     nevh_counts step = {.gradients = 1};
     double runs = (double)(RUNS * p->integrators.count);
-    double share =
-        budget / 6 / (runs * row_work(p, nevh_verlet, 2, &step, 1) * span / dt);
+    double share = budget / 6 /
+                   (runs * nevh_counts_seconds(&step, p->n, nevh_verlet, 2, 1) *
+                    span / dt);
     if (share < 1)
         p->t_end = p->run->t_start + share_below(share) * span;
     return whole;
@@ -98,8 +99,5 @@ int plan_search(plan *p, const options *o) {
         list_free(&p->integrators);
         fitting_integrators(p, &p->integrators);
     }
-    nevh_stepper *s = plan_first(p, NULL);
-    int status = s ? plan_goes_anywhere(p) : TOOL_USAGE;
-    nevh_stepper_free(s);
-    return status;
+    return plan_fits(p, NULL) ? plan_goes_anywhere(p) : TOOL_USAGE;
 }

@@ -129,11 +129,18 @@ static void tell(const context *c, page *result) {
     double own = 0;
     for (size_t i = 0; i < c->exact.count; i++)
         own = fmax(own, fabs(c->exact.h[i] - c->exact.h[0]) / c->scale);
-    if (!c->plan->balance)
+    if (!c->plan->balance && own == 0)
         list_print(&result->after,
-                   "%s itself makes an energy error of %.1e at this dt: a "
-                   "gradient whose part is well below that is good enough.",
-                   c->integrator, own);
+                   "%s itself keeps the energy exactly on this orbit.",
+                   c->integrator);
+    else if (!c->plan->balance)
+        list_print(&result->after,
+                   "%s itself makes an energy error of %.1e at this dt: %s",
+                   c->integrator, own,
+                   own > 1 ? "that is more than the energy: take a smaller "
+                             "step before you compare gradients."
+                           : "a gradient whose part is well below that is "
+                             "good enough.");
     list_add(&result->after, "ns are this machine's.");
 }
 

@@ -58,8 +58,11 @@ static nevh_options gradient_options(const context *c, const char *gradient,
 /* The orbit with that gradient, watched. */
 static int follow(const context *c, const char *gradient, double step,
                   const nevh_observer *observer) {
+    enum { RUNS = 6 }; /* with other half-spreads */
     nevh_options o = gradient_options(c, gradient, step);
+    o.steps_foreseen = RUNS * (double)c->steps;
     nevh_stepper *s = nevh_stepper_new(c->plan->system, scheme_of(c), &o);
+    plan_tell_native(s);
     size_t n = c->plan->n;
     double *q = tool_allocate(n, sizeof *q), *p = tool_allocate(n, sizeof *p);
     memcpy(q, c->plan->q, n * sizeof *q);
@@ -313,7 +316,9 @@ static double step_work(const context *c) {
                           state + n, NULL, 0);
     nevh_counts spent = row_counts(s, before);
     int order = nevh_stepper_order(s);
-    double work = row_work(c->plan, scheme_of(c), order, &spent, PILOT) / PILOT;
+    double work =
+        nevh_counts_seconds(&spent, c->plan->n, scheme_of(c), order, PILOT) /
+        PILOT;
     nevh_stepper_free(s);
     free(state);
     return status ? 0 : work;
@@ -336,10 +341,8 @@ static void choose_steps(context *c) {
 }
 
 int context_make(context *c, const plan *p) {
-    nevh_stepper *s = plan_first(p, &c->integrator);
-    if (!s)
+    if (!plan_fits(p, &c->integrator))
         return TOOL_USAGE;
-    nevh_stepper_free(s);
     c->plan = p;
     c->dt = p->dt[p->dts - 1];
     c->scale = plan_energy_scale(p);

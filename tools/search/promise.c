@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 static const double lengths = 3;
-static const double most_work = 6; /* as row_work counts */
+static const double most_work = 6; /* as nevh_counts_seconds */
 
 static row *chosen(const advice *a, const study *l) {
     const row *r = study_cheapest(l, a->target, a->search.by_state);

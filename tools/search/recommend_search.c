@@ -67,14 +67,6 @@ const row *advice_least_worked(const advice *a, const study *l) {
                         : NULL;
 }
 
-static void time_one(advice *a, study *l) {
-    const row *r = advice_least_worked(a, l);
-    if (!r || isfinite(r->seconds))
-        return;
-    row *level = &l->level[r - l->level];
-    rows_time(&a->search.plan, &level, 1, 1, a->search.repeats > 0);
-}
-
 /* The one that works least, of those without drift, or with another integrator
    than that of all; NULL: there is none. */
 static study *least_of(const advice *a, bool steady, const study *without) {
@@ -90,19 +82,31 @@ static study *least_of(const advice *a, bool steady, const study *without) {
     return best;
 }
 
-/* One run of each that may win, or be the runner-up or other evidence. */
-void advice_time_once(advice *a) {
+/* Those that may win, or be the runner-up or other evidence, and are not timed
+   yet; returns how many. */
+static size_t list_untimed(const advice *a, row *found[]) {
     double least = least_work(a);
     study *second = least_of(a, false, least_of(a, false, NULL));
     study *steady = least_of(a, true, NULL);
+    size_t count = 0;
     for (size_t i = 0; i < a->count; i++) {
         study *l = &a->study[i];
         const row *r = advice_least_worked(a, l);
         bool varied = strcmp(l->gradient, a->gradients.item[0]) != 0;
-        if (r &&
+        if (r && isnan(r->seconds) &&
             (varied || l == second || l == steady || r->work < nearly * least))
-            time_one(a, l);
+            found[count++] = &l->level[r - l->level];
     }
+    return count;
+}
+
+void advice_time_once(advice *a) {
+    row **found = tool_allocate(a->count, sizeof *found);
+    size_t count = list_untimed(a, found);
+    rows_settle(&a->search.plan, found, count);
+    for (size_t i = 0; i < count; i++)
+        rows_time(&a->search.plan, &found[i], 1, 1, a->search.repeats > 0);
+    free(found);
 }
 
 /* Of those not yet taken. */

@@ -9,7 +9,7 @@
 static const double target = 0.01;
 /* Below, a limit of stability is where growth is first seen: there is none. */
 static const double no_limit = 0.01;
-/* Of all runs together, as row_work counts; and of steps. */
+/* Of all runs together, as nevh_counts_seconds; and of steps. */
 static const double most_work = 4, most_steps = 3e5;
 enum { FINER = 3, HALVINGS = 60 };
 
@@ -42,8 +42,9 @@ static int watch(void *data, size_t step, double t, const double q[],
     return status || a->kept ? status : NEVH_STOPPED;
 }
 
-/* A run with that dt, for as long as the error keeps the target. */
-static attempt try_step(search *s, double dt) {
+/* A run with that dt, for as long as the error keeps the target at each of so
+   many steps. */
+static attempt run(search *s, double dt, size_t every) {
     const plan *p = s->plan;
     row r = *s->row;
     double stopped;
@@ -53,13 +54,20 @@ static attempt try_step(search *s, double dt) {
     memcpy(s->q, p->q, p->n * sizeof *s->q);
     memcpy(s->p, p->p, p->n * sizeof *s->p);
     int status = plan_run(p, stepper, dt, s->q, s->p,
-                          &(nevh_observer){watch, &a, 1}, 1, &stopped);
+                          &(nevh_observer){watch, &a, every}, 1, &stopped);
     nevh_counts c = row_counts(stepper, before);
-    s->work += row_work(p, r.scheme, nevh_stepper_order(stepper), &c, a.steps);
+    s->work += nevh_counts_seconds(&c, p->n, r.scheme,
+                                   nevh_stepper_order(stepper), a.steps);
     a.kept = a.kept && !status;
     nevh_energy_free(a.energy);
     row_stepper_keep(p, &r, p->balance, stepper);
     return a;
+}
+
+/* Most runs fail, for which a look from time to time is enough. */
+static attempt try_step(search *s, double dt) {
+    attempt a = run(s, dt, 8);
+    return a.kept ? run(s, dt, 1) : a;
 }
 
 static double rounded_down(double x, int digits) {

@@ -14,13 +14,13 @@ FUZZ_FOLDER=$work
 export FUZZ_FOLDER
 
 sanitized="-fsanitize=address,undefined -fno-sanitize-recover=undefined"
-flags="-std=c11 -O1 -g -D_GNU_SOURCE -DNEVH_PORTABLE -I$srcdir/include
+flags="-std=c11 -O1 -g -D_GNU_SOURCE -DNEVH_PORTABLE -I. -I$srcdir/include
     -I$srcdir/lib -I$srcdir/integrators -I$srcdir/tools ${GSL_CFLAGS}"
 # Flags are lists.
 # shellcheck disable=SC2086
 compile() {
-    for file in "$srcdir"/lib/*/*.c "$srcdir"/integrators/*.c \
-        "$srcdir"/integrators/kernels/*.c; do
+    for file in "$srcdir"/lib/*/*.c lib/native/kernel_texts.c \
+        "$srcdir"/integrators/*.c "$srcdir"/integrators/kernels/*.c; do
         name=$(basename "$(dirname "$file")")_$(basename "$file" .c)
         "$clang" $flags $sanitized -fsanitize=fuzzer-no-link \
             -c "$file" -o $work/"$name".o || return 1
@@ -37,6 +37,11 @@ link() {
     "$clang" $flags $sanitized -fsanitize=fuzzer '-DNEVH_SCENES="/nowhere"' '-DNEVH_PAGE="/nowhere"' \
         "$srcdir/tests/robust/fuzz/fuzz_$1.c" $parts $work/*.o \
         ${GSL_LIBS:--lgsl -lgslcblas} -lm -ldl -o "$work/fuzz_$1"
+}
+libfuzzer_works() {
+    echo 'int LLVMFuzzerTestOneInput(const char *x, long n) { return !x && n; }' \
+        >$work/works.c
+    "$clang" $sanitized -fsanitize=fuzzer $work/works.c -o $work/works
 }
 # row ROW HOW: a state after 10 steps, as fuzz_resume.c takes it.
 # shellcheck disable=SC2059
@@ -72,8 +77,10 @@ seeds() {
     printf '%s\n' '"nevh = 1\x0a"' >$work/resume.dict
 }
 
-compile >$work/log 2>&1 ||
+libfuzzer_works >$work/log 2>&1 ||
     { echo "fuzz: libFuzzer does not work here"; exit 77; }
+compile >$work/log 2>&1 ||
+    { cat $work/log; exit 1; }
 seeds
 result=0
 for target in scene resume arguments; do

@@ -10,48 +10,50 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PATIENCE = 64 }; /* looks until the next orbit is asked for again */
+enum {
+    LOOKS_TOGETHER = 64
+}; /* looks until the next orbit is asked for again */
 
 /* What is stepped: of the analysis, or a copy of it. */
 typedef struct {
     double *q, *p, *memory;
-} rooms;
+} columns;
 
 typedef struct {
     bool busy;
     uint64_t member;
     double last; /* steps */
     nevh__report report;
-} place;
+} orbit;
 
-struct nevh__chaos_crowd {
-    const nevh__chaos_orders *orders;
-    place *places;
-    rooms kept;
+struct nevh__chaos_batch {
+    const nevh__chaos_jobs *jobs;
+    orbit *orbits;
+    columns kept;
     double *state; /* 2n */
     double taken;  /* steps, by all together */
     size_t stride;
     bool stopped;
 };
 
-bool nevh__chaos_crowd_plan(nevh_chaos *c) {
+bool nevh__chaos_batch_plan(nevh_chaos *c) {
     size_t size = 2 * c->n * c->width;
-    nevh__chaos_crowd *x = c->crowd = nevh__array(1, sizeof *x);
+    nevh__chaos_batch *x = c->batch = nevh__array(1, sizeof *x);
     if (!x)
         return false;
-    x->places = nevh__array(c->starts, sizeof *x->places);
+    x->orbits = nevh__array(c->starts, sizeof *x->orbits);
     x->kept.q = nevh__array(size, sizeof(double));
     x->kept.p = nevh__array(size, sizeof(double));
     x->kept.memory =
         nevh__array(c->stepper->rows * c->width + 1, sizeof(double));
     x->state = nevh__array(2 * c->n, sizeof(double));
-    return x->places && x->kept.q && x->kept.p && x->kept.memory && x->state;
+    return x->orbits && x->kept.q && x->kept.p && x->kept.memory && x->state;
 }
 
-void nevh__chaos_crowd_free(nevh__chaos_crowd *x) {
+void nevh__chaos_batch_free(nevh__chaos_batch *x) {
     if (!x)
         return;
-    free(x->places);
+    free(x->orbits);
     free(x->kept.q);
     free(x->kept.p);
     free(x->kept.memory);
@@ -61,15 +63,15 @@ void nevh__chaos_crowd_free(nevh__chaos_crowd *x) {
 
 /* Lanes. */
 
-static rooms own_rooms(const nevh_chaos *c) {
-    return (rooms){c->q, c->p, c->stepper->work.memory};
+static columns own_columns(const nevh_chaos *c) {
+    return (columns){c->q, c->p, c->stepper->work.memory};
 }
 
 static size_t rows_of(const nevh_chaos *c) {
     return c->tangent ? 2 * c->n : c->n;
 }
 
-static void copy_all(const nevh_chaos *c, rooms from, rooms to) {
+static void copy_all(const nevh_chaos *c, columns from, columns to) {
     size_t bytes = rows_of(c) * c->width * sizeof(double);
     memcpy(to.q, from.q, bytes);
     memcpy(to.p, from.p, bytes);
@@ -84,7 +86,7 @@ static void copy_columns(const nevh_chaos *c, size_t rows, const double *from,
                 from + k * c->width + a * c->lanes, c->lanes * sizeof *to);
 }
 
-static void copy_start(const nevh_chaos *c, rooms from, size_t a, rooms to,
+static void copy_start(const nevh_chaos *c, columns from, size_t a, columns to,
                        size_t b) {
     copy_columns(c, rows_of(c), from.q, a, to.q, b);
     copy_columns(c, rows_of(c), from.p, a, to.p, b);
@@ -100,7 +102,7 @@ static void forget(nevh_chaos *c, size_t start) {
 /* Steps. */
 
 static double time_now(const nevh_chaos *c) {
-    return c->t_start + c->crowd->taken * c->dt;
+    return c->t_start + c->batch->taken * c->dt;
 }
 
 /* The lanes belong to the memory as it is. */
@@ -115,16 +117,16 @@ static int take_steps(nevh_chaos *c, double steps) {
 }
 
 static void step_apart(nevh_chaos *c, double steps) {
-    nevh__chaos_crowd *x = c->crowd;
-    rooms own = own_rooms(c);
+    nevh__chaos_batch *x = c->batch;
+    columns own = own_columns(c);
     for (size_t i = 0; i < c->starts; i++) {
-        if (!x->places[i].busy)
+        if (!x->orbits[i].busy)
             continue;
         for (size_t k = 0; k < c->starts; k++)
             copy_start(c, x->kept, i, own, k);
         settle(c);
         if (take_steps(c, steps))
-            x->places[i].report = c->stepper->report;
+            x->orbits[i].report = c->stepper->report;
         else
             copy_start(c, own, i, x->kept, i);
     }
@@ -136,23 +138,23 @@ static void step_apart(nevh_chaos *c, double steps) {
 
 /* Lanes that were changed since the last step lose their memory first. */
 static void step_together(nevh_chaos *c, double steps) {
-    nevh__chaos_crowd *x = c->crowd;
+    nevh__chaos_batch *x = c->batch;
     if (!nevh__begin(c->stepper, time_now(c), c->dt, c->q, c->p))
         settle(c);
-    copy_all(c, own_rooms(c), x->kept);
+    copy_all(c, own_columns(c), x->kept);
     if (take_steps(c, steps))
         step_apart(c, steps);
     x->taken += steps;
     for (size_t i = 0; i < c->starts; i++)
-        if (x->places[i].busy)
+        if (x->orbits[i].busy)
             c->start[i].clock.done += steps;
 }
 
 /* Until the next look at a start. */
 static double steps_to_look(const nevh_chaos *c, size_t start) {
     double done = c->start[start].clock.done;
-    double stride = (double)c->crowd->stride;
-    return fmin(c->crowd->places[start].last - done,
+    double stride = (double)c->batch->stride;
+    return fmin(c->batch->orbits[start].last - done,
                 stride - fmod(done, stride));
 }
 
@@ -160,7 +162,7 @@ static double steps_to_look(const nevh_chaos *c, size_t start) {
 
 static bool any_busy(const nevh_chaos *c, size_t *which) {
     for (size_t i = 0; i < c->starts; i++)
-        if (c->crowd->places[i].busy) {
+        if (c->batch->orbits[i].busy) {
             *which = i;
             return true;
         }
@@ -168,24 +170,24 @@ static bool any_busy(const nevh_chaos *c, size_t *which) {
 }
 
 static void end(nevh_chaos *c, size_t start) {
-    nevh__chaos_crowd *x = c->crowd;
-    place *at = &x->places[start];
+    nevh__chaos_batch *x = c->batch;
+    orbit *at = &x->orbits[start];
     nevh__chaos_member found = {
         at->member,           at->report.status,
         at->report.text,      nevh__chaos_rate(c, start, 0),
         c->start[start].sali, nevh__chaos_megno(c, start)};
     at->busy = false;
-    x->stopped |= x->orders->done(x->orders->data, &found) != 0;
+    x->stopped |= x->jobs->done(x->jobs->data, &found) != 0;
 }
 
 /* Draws are those of the first start: no member is told from another. */
 static bool begin(nevh_chaos *c, size_t start) {
-    nevh__chaos_crowd *x = c->crowd;
-    place *at = &x->places[start];
+    nevh__chaos_batch *x = c->batch;
+    orbit *at = &x->orbits[start];
     double until;
-    *at = (place){.busy = true};
-    if (x->stopped || !x->orders->next(x->orders->data, &at->member, x->state,
-                                       x->state + c->n, &until))
+    *at = (orbit){.busy = true};
+    if (x->stopped || !x->jobs->next(x->jobs->data, &at->member, x->state,
+                                     x->state + c->n, &until))
         return at->busy = false;
     uint64_t drawn = nevh__chaos_draw(c, 0);
     nevh__chaos_place(c, start, x->state, &drawn);
@@ -198,24 +200,24 @@ static bool begin(nevh_chaos *c, size_t start) {
 
 /* A start without an orbit goes along with another's. */
 static void fill(nevh_chaos *c) {
-    nevh__chaos_crowd *x = c->crowd;
+    nevh__chaos_batch *x = c->batch;
     size_t which;
-    bool more = !(x->orders->abreast && any_busy(c, &which));
-    if (more && x->orders->abreast)
+    bool more = !(x->jobs->together && any_busy(c, &which));
+    if (more && x->jobs->together)
         x->taken = 0;
     for (size_t i = 0; more && i < c->starts; i++)
-        while (more && !x->places[i].busy)
+        while (more && !x->orbits[i].busy)
             more = begin(c, i);
     if (any_busy(c, &which))
         for (size_t i = 0; i < c->starts; i++)
-            if (!x->places[i].busy)
-                copy_start(c, own_rooms(c), which, own_rooms(c), i);
+            if (!x->orbits[i].busy)
+                copy_start(c, own_columns(c), which, own_columns(c), i);
 }
 
 /* Looks at a start whose turn it is.  Returns whether its orbit has ended. */
 static bool look(nevh_chaos *c, size_t start) {
-    nevh__chaos_crowd *x = c->crowd;
-    place *at = &x->places[start];
+    nevh__chaos_batch *x = c->batch;
+    orbit *at = &x->orbits[start];
     const nevh__chaos_clock *clock = &c->start[start].clock;
     bool over = clock->done >= at->last || at->report.status;
     if (at->report.status ||
@@ -230,30 +232,30 @@ static bool look(nevh_chaos *c, size_t start) {
     }
     if (!c->tangent)
         forget(c, start);
-    return over || (x->orders->aligned &&
-                    c->start[start].sali < nevh__chaos_aligned(c));
+    return over ||
+           (x->jobs->aligned && c->start[start].sali < nevh__chaos_aligned(c));
 }
 
 static bool look_at_all(nevh_chaos *c) {
     bool any = false;
     for (size_t i = 0; i < c->starts; i++)
-        if (c->crowd->places[i].busy && look(c, i)) {
+        if (c->batch->orbits[i].busy && look(c, i)) {
             end(c, i);
             any = true;
         }
     return any;
 }
 
-void nevh__chaos_crowd_run(nevh_chaos *c, const nevh__chaos_orders *orders) {
-    nevh__chaos_crowd *x = c->crowd;
+void nevh__chaos_batch_run(nevh_chaos *c, const nevh__chaos_jobs *jobs) {
+    nevh__chaos_batch *x = c->batch;
     size_t which, looks = 0;
     bool asks = true;
-    x->orders = orders;
-    x->stride = orders->sparse ? c->turn : c->first_stride;
+    x->jobs = jobs;
+    x->stride = jobs->sparse ? c->turn : c->first_stride;
     x->taken = 0;
     x->stopped = false;
     for (size_t i = 0; i < c->starts; i++)
-        x->places[i].busy = false;
+        x->orbits[i].busy = false;
     nevh_stepper_reset(c->stepper);
     while (!x->stopped) {
         if (asks)
@@ -262,9 +264,9 @@ void nevh__chaos_crowd_run(nevh_chaos *c, const nevh__chaos_orders *orders) {
             break;
         double steps = INFINITY;
         for (size_t i = 0; i < c->starts; i++)
-            if (x->places[i].busy)
+            if (x->orbits[i].busy)
                 steps = fmin(steps, steps_to_look(c, i));
         step_together(c, steps);
-        asks = look_at_all(c) || ++looks % PATIENCE == 0;
+        asks = look_at_all(c) || ++looks % LOOKS_TOGETHER == 0;
     }
 }

@@ -1,0 +1,49 @@
+/* nevh: the operations of a tape, forwards, over columns side by side.
+   SPDX-License-Identifier: GPL-3.0-or-later
+
+   Included once for each form of libm's functions: NEVH__F(f) is that of f, and
+   NEVH__RUN the name of the function.  Both are undefined at the end. */
+/* Of whole vectors; numbers stay where they are. */
+#define EACH(row, value)                                                       \
+    for (size_t i = 0; i < columns; i += 8) {                                  \
+        const double *x = from_a + i * step_a, *z = from_b + i * step_b;       \
+        NEVH_LANES(lane, 8) {                                                  \
+            double a = x[lane], b = z[lane];                                   \
+            (void)b;                                                           \
+            (row)[i + lane] = value;                                           \
+        }                                                                      \
+    }
+#define CASE(identifier, value, by_a, by_b)                                    \
+    case NEVH__##identifier:                                                   \
+        EACH(to, value)                                                        \
+        break;
+
+NEVH_SIMD static double *NEVH__RUN(const nevh__rows *r,
+                                   const nevh__instruction *from,
+                                   const nevh__instruction *until,
+                                   double *journal) {
+    size_t columns = r->columns;
+    for (const nevh__instruction *at = from; at < until; at++) {
+        const double *from_a = nevh__rows_at(r, at->a);
+        const double *from_b = nevh__rows_at(r, at->b);
+        size_t step_a = at->a.kind != NEVH__NUMBER;
+        size_t step_b = at->b.kind != NEVH__NUMBER;
+        double *to = r->slots + at->to * columns;
+        double *also = r->slots + at->also * columns;
+        if (journal && !at->fresh)
+            journal = write_row(journal, to, columns);
+        if (journal && !at->also_fresh)
+            journal = write_row(journal, also, columns);
+        switch (at->operation) {
+            NEVH__FORMULAS(CASE)
+        case NEVH__SINCOS:
+            EACH(to, NEVH__F(sin)(a))
+            EACH(also, NEVH__F(cos)(a))
+        }
+    }
+    return journal;
+}
+#undef CASE
+#undef EACH
+#undef NEVH__F
+#undef NEVH__RUN

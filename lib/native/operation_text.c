@@ -1,0 +1,144 @@
+/* nevh: the text of one operation of a tape is that of the table which the tape
+   itself runs on, with names for its arguments.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "native/operation_text_private.h"
+#include "expression/tape_inside_private.h"
+#include "expression/tape_operations_private.h"
+#include <ctype.h>
+#include <string.h>
+
+/* Stringified, not expanded. */
+#define TEXTS(identifier, value, by_a, by_b) {#value, #by_a, #by_b},
+static const char *const texts[][NEVH__OPERATION_PARTS] = {
+    NEVH__FORMULAS(TEXTS)};
+#undef TEXTS
+
+/* Which operations take vectors as they stand in the table. */
+static bool is_lanewise(unsigned operation) {
+    switch (operation) {
+    case NEVH__ATAN2:
+    case NEVH__ASINH:
+    case NEVH__ACOSH:
+    case NEVH__ATANH:
+    case NEVH__LOG10:
+    case NEVH__HYPOT:
+    case NEVH__ABS:
+    case NEVH__MIN:
+    case NEVH__MAX:
+    case NEVH__SIGN:
+    case NEVH__MOD:
+    case NEVH__FLOOR:
+        return true;
+    default:
+        return false;
+    }
+}
+
+bool nevh__operation_is_special(unsigned operation) {
+    return operation == NEVH__BESSEL_J0 || operation == NEVH__BESSEL_J1 ||
+           operation == NEVH__ELLIPTIC_K || operation == NEVH__ELLIPTIC_E ||
+           operation == NEVH__ECCENTRIC;
+}
+
+static bool is(const char *word, size_t length, const char *name) {
+    return strlen(name) == length && strncmp(word, name, length) == 0;
+}
+
+/* One word of the table; returns where the text goes on. */
+static const char *write_word(nevh__writer *w, const char *word, size_t length,
+                              const nevh__operation_names *m) {
+    const char *after = word + length;
+    const char *name = is(word, length, "a")   ? m->a
+                       : is(word, length, "b") ? m->b
+                       : is(word, length, "y") ? m->y
+                       : is(word, length, "g") ? m->g
+                                               : NULL;
+    if (name)
+        nevh__write(w, "%s", name);
+    else if (is(word, length, "NEVH__F")) { /* NEVH__F(sin) */
+        size_t bytes = strcspn(after, ")") - 1;
+        nevh__write(w, "%s%.*s",
+                    m->wide     ? "wide_"
+                    : m->scalar ? ""
+                                : "lane_",
+                    (int)bytes, after + 1);
+        after += bytes + 2;
+    } else if (is(word, length, "NEVH__G"))
+        nevh__write(w, "%s * ", m->g);
+    else if (is(word, length, "NEVH__LN10"))
+        nevh__write(w, "2.302585092994045684");
+    else if (length > 6 && strncmp(word, "nevh__", 6) == 0)
+        nevh__write(w, "nevh_%.*s", (int)length - 6, word + 6);
+    else
+        nevh__write(w, "%.*s", (int)length, word);
+    return after;
+}
+
+static void write_text(nevh__writer *w, const char *text,
+                       const nevh__operation_names *m) {
+    while (*text) {
+        size_t length = 0;
+        while (isalnum((unsigned char)text[length]) || text[length] == '_')
+            length++;
+        if (length && !isdigit((unsigned char)*text))
+            text = write_word(w, text, length, m);
+        else {
+            size_t bytes = length ? length : 1;
+            nevh__write(w, "%.*s", (int)bytes, text);
+            text += bytes;
+        }
+    }
+}
+
+double nevh__operation_bound(unsigned operation, double a, double b) {
+    switch (operation) {
+    case NEVH__SIN:
+    case NEVH__COS:
+    case NEVH__SINCOS:
+    case NEVH__TANH:
+    case NEVH__SIGN:
+        return 1;
+    case NEVH__ATAN:
+    case NEVH__ATAN2:
+        return 4;
+    case NEVH__NEGATE:
+    case NEVH__ABS:
+        return a;
+    case NEVH__ADD:
+    case NEVH__SUBTRACT:
+        return a + b;
+    case NEVH__MULTIPLY:
+        return a * b;
+    default:
+        return INFINITY;
+    }
+}
+
+void nevh__write_expression(nevh__writer *w, unsigned operation,
+                            nevh__operation_part part,
+                            const nevh__operation_names *m) {
+    write_text(w, texts[operation][part], m);
+}
+
+void nevh__write_operation(nevh__writer *w, unsigned operation,
+                           nevh__operation_part part, const char *to,
+                           const nevh__operation_names *m) {
+    const char *text = texts[operation][part];
+    bool calls = m->scalar && strstr(text, "NEVH__F(");
+    nevh__write(w, "    %s %s = ", m->wide ? "wide" : "double", to);
+    if (!m->wide || (!calls && !is_lanewise(operation))) {
+        write_text(w, text, m);
+        nevh__write(w, ";\n");
+        return;
+    }
+    nevh__operation_names one = {"a_", "b_", "y_", "g_", false, m->scalar};
+    nevh__write(w, "%s;\n    EACH_LANE { double a_ = %s[lane], b_ = %s[lane]",
+                m->a, m->a, m->b);
+    if (m->y)
+        nevh__write(w, ", y_ = %s[lane]", m->y);
+    if (m->g)
+        nevh__write(w, ", g_ = %s[lane]", m->g);
+    nevh__write(w, "; (void)a_, (void)b_; %s[lane] = ", to);
+    write_text(w, text, &one);
+    nevh__write(w, "; }\n");
+}

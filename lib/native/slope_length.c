@@ -1,0 +1,73 @@
+/* nevh: how long the text of slopes is, and how many values they take.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "expression/tape_inside_private.h"
+#include "native/slope_private.h"
+#include <math.h>
+
+/* More text than MOST_BROADCAST is called instead of being repeated. */
+enum { MOST_OPERATIONS = 800, MOST_BROADCAST = 800 };
+
+/* Points of a term's differences by the half's variables. */
+static size_t points_of(const nevh_field *f, const nevh__planned *term,
+                        bool kick) {
+    size_t points = 0;
+    for (int i = 0; i < 2; i++) {
+        const nevh__pass *pass = &term->pass[i];
+        size_t variables =
+            kick ? pass->first_p - pass->begin : pass->end - pass->first_p;
+        points += 2 * pass->pairs * variables;
+    }
+    if (!f->gradient->offsets)
+        points = f->gradient == nevh_exact ? 0 : kick ? term->nq : term->np;
+    return points * term->term->decl.count;
+}
+
+void nevh__slope_values(const nevh_field *f, bool kick, uint64_t values[]) {
+    for (size_t i = 0; i < f->n_terms; i++)
+        values[i] += nevh__is_wanted(&f->terms[i], kick)
+                         ? points_of(f, &f->terms[i], kick)
+                         : 0;
+}
+
+/* How long the text of one half is, in operations; INFINITY: there is none, and
+   why. */
+static double half_operations(nevh__writer *w, const nevh_field *f, bool kick) {
+    bool wide = nevh__side_by_side(w, f);
+    double operations = 0;
+    for (size_t i = 0; i < f->n_terms; i++) {
+        const nevh__planned *term = &f->terms[i];
+        const nevh_term *is = &term->term->decl;
+        if (!nevh__is_wanted(term, kick))
+            continue;
+        if (!nevh__is_tape(is)) {
+            w->refusal = "a term is no formula";
+            return INFINITY;
+        }
+        double times = (double)is->count;
+        if (w->loops && nevh__is_loop(term))
+            times = f->gradient == nevh_exact
+                        ? 1
+                        : (double)points_of(f, term, kick) / times;
+        else if (f->gradient != nevh_exact)
+            times = (double)points_of(f, term, kick) /
+                    (f->gradient->offsets && wide ? NEVH__LANES : 1);
+        operations += times * (double)nevh__tape_length(is->params);
+    }
+    return operations;
+}
+
+bool nevh__slopes_fit(nevh__writer *w, const nevh_field *f, size_t calls) {
+    double most = w->readable ? 10 * MOST_OPERATIONS : MOST_OPERATIONS;
+    double kick = half_operations(w, f, true);
+    double drift = half_operations(w, f, false);
+    if ((kick > most || drift > most) && !w->refusal)
+        w->refusal = "its formulas are too long";
+    if (nevh__has_lanes(w) && f->gradient != nevh_exact &&
+        !f->gradient->offsets)
+        w->refusal = w->stages ? "stages stand side by side"
+                               : "orbits stand side by side";
+    if (!w->readable && (kick + drift) * (double)calls > MOST_BROADCAST)
+        nevh__write(w, "#undef SLOPE\n"
+                       "#define SLOPE static __attribute__((noinline))\n");
+    return !w->refusal;
+}

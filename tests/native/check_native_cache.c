@@ -1,0 +1,172 @@
+/* nevh tests: compiled steps without a compiler, or with a cache that cannot be used:
+   everything goes on.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#define _GNU_SOURCE
+#include "../support/native.h"
+#include "native/native_private.h"
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+TEST(no_compiler) {
+    nevh_scene *scene = parsed(pendulum);
+    make_cache();
+    setenv("CC", "no-such-compiler --really", 1);
+    pair x = pair_new(scene, nevh_verlet, nevh_exact, false, cache);
+    ck_assert(!nevh_stepper_native(x.native, NULL));
+    assert_says(x.why, "there is no C compiler");
+    ck_assert_int_eq(pair_run(&x, 0.1, 100), NEVH_OK);
+    ck_assert(pair_same(&x));
+    pair_free(&x);
+    setenv("CC", "false", 1);
+    x = pair_new(scene, nevh_verlet, nevh_exact, false, cache);
+    ck_assert(!nevh_stepper_native(x.native, NULL));
+    assert_says(x.why, "the C compiler fails");
+    pair_free(&x);
+    nevh_scene_free(scene);
+    remove_cache();
+}
+
+/* Nothing of a library is told about what it does not compile. */
+TEST(others_are_not) {
+    static const char whole[] = "[coordinates]\nx = 1\n[effects]\n"
+                                "H = p_x^2/2 + bessel_j0(x)\n";
+    nevh_scene *scene = parsed(pendulum), *special = parsed(whole);
+    make_cache();
+    pair x = pair_new(scene, nevh_gonzalez, nevh_exact, false, cache);
+    ck_assert(!nevh_stepper_native(x.native, NULL));
+    assert_says(x.why, "only splitting, Runge-Kutta, Nystroem, Gauss and ");
+    pair_free(&x);
+    x = pair_new(special, nevh_verlet, nevh_exact, false, cache);
+    ck_assert(!nevh_stepper_native(x.native, NULL));
+    assert_says(x.why, "libm does not have");
+    ck_assert_int_eq(pair_run(&x, 0.1, 10), NEVH_OK);
+    pair_free(&x);
+    /* By default nothing is compiled, unless steps are foreseen. */
+    nevh_options o = {.native_cache = cache};
+    nevh_stepper *s =
+        nevh_stepper_new(nevh_scene_system(scene), nevh_verlet, &o);
+    ck_assert(!nevh_stepper_native(s, NULL));
+    nevh_stepper_free(s);
+    o.steps_foreseen = 1e9;
+    s = nevh_stepper_new(nevh_scene_system(scene), nevh_verlet, &o);
+    ck_assert(nevh_stepper_native(s, NULL) == has_compiler());
+    nevh_stepper_free(s);
+    nevh_scene_free(scene);
+    nevh_scene_free(special);
+    remove_cache();
+}
+
+/* The only file of the cache. */
+static void find_file(char path[200]) {
+    DIR *all = opendir(cache);
+    size_t count = 0;
+    for (struct dirent *entry; (entry = readdir(all));)
+        if (entry->d_name[0] != '.') {
+            snprintf(path, 200, "%s/%.100s", cache, entry->d_name);
+            count++;
+        }
+    closedir(all);
+    ck_assert_uint_eq(count, 1);
+}
+
+static bool is_native(nevh_scene *scene, const char *folder) {
+    pair x = pair_new(scene, nevh_verlet, nevh_exact, false, folder);
+    bool native = nevh_stepper_native(x.native, NULL);
+    ck_assert_int_eq(pair_run(&x, 0.1, 100), NEVH_OK);
+    ck_assert(pair_same(&x));
+    pair_free(&x);
+    return native;
+}
+
+/* What is kept is found without a compiler, but made anew once it is broken. */
+TEST(cache_is_kept) {
+    char path[200];
+    struct stat found;
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    nevh_scene *scene = parsed(pendulum);
+    make_cache();
+    ck_assert(is_native(scene, cache));
+    find_file(path);
+    ck_assert_int_eq(stat(path, &found), 0);
+    ck_assert_uint_eq(found.st_mode & 077, 0);
+    ck_assert_int_eq(truncate(path, found.st_size / 2), 0);
+    ck_assert(!nevh__cache_is_whole(path));
+    ck_assert(is_native(scene, cache));
+    ck_assert(nevh__cache_is_whole(path));
+    /* Parameters are no part of it. */
+    nevh_scene *other = parsed("[coordinates]\nphi = 1\n[effects]\n"
+                               "T = p_phi^2/3\nV = -7.1*cos(phi)\n");
+    nevh_scene *third = parsed("[coordinates]\nu = 1\n[effects]\n"
+                               "kin = p_u^2/7\npot = -1.5*cos(u)\n");
+    ck_assert(is_native(other, cache));
+    ck_assert(is_native(third, cache));
+    DIR *all = opendir(cache);
+    size_t files = 0;
+    for (struct dirent *entry; (entry = readdir(all));)
+        files += entry->d_name[0] != '.';
+    closedir(all);
+    ck_assert_uint_le(files, 2);
+    nevh_scene_free(third);
+    nevh_scene_free(other);
+    nevh_scene_free(scene);
+    remove_cache();
+}
+
+/* Folders that others may write to are not used; steps are compiled all the
+   same, and nothing is kept. */
+TEST(cache_is_refused) {
+    char why[NEVH__WHY_NATIVE] = "", inside[100];
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    nevh_scene *scene = parsed(pendulum);
+    make_cache();
+    ck_assert_int_eq(chmod(cache, 0777), 0);
+    ck_assert_ptr_null(nevh__cache_folder(cache, why));
+    assert_says(why, "may be written to by others");
+    ck_assert(is_native(scene, cache));
+    ck_assert_int_eq(rmdir(cache), 0); /* it is empty */
+    ck_assert_int_eq(mkdir(cache, 0700), 0);
+    snprintf(inside, sizeof inside, "%s/link", cache);
+    ck_assert_int_eq(symlink("/tmp", inside), 0);
+    ck_assert_ptr_null(nevh__cache_folder(inside, why));
+    assert_says(why, "is no folder");
+    ck_assert(is_native(scene, inside));
+    if (geteuid() == 0) {
+        ck_assert_int_eq(chown(cache, 12345, 12345), 0);
+        ck_assert_ptr_null(nevh__cache_folder(cache, why));
+        assert_says(why, "another user's");
+        ck_assert(is_native(scene, cache));
+    }
+    ck_assert_int_eq(chmod(cache, 0500), 0); /* read-only, unless for root */
+    ck_assert(is_native(scene, cache));
+    ck_assert(is_native(scene, ""));
+    chmod(cache, 0700);
+    nevh_scene_free(scene);
+    remove_cache();
+}
+
+TEST(processes_at_once) {
+    enum { PROCESSES = 4 };
+    pid_t child[PROCESSES];
+    char path[200];
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    nevh_scene *scene = parsed(pendulum);
+    make_cache();
+    for (int i = 0; i < PROCESSES; i++) {
+        child[i] = fork();
+        if (!child[i])
+            _exit(is_native(scene, cache) ? 0 : 1);
+    }
+    for (int i = 0; i < PROCESSES; i++) {
+        int status;
+        waitpid(child[i], &status, 0);
+        ck_assert(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    }
+    find_file(path);
+    ck_assert(nevh__cache_is_whole(path));
+    nevh_scene_free(scene);
+    remove_cache();
+}

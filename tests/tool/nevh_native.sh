@@ -1,0 +1,121 @@
+#!/bin/sh
+# Steps that commands compile: tables have the same numbers with them, and say
+# which ran; short runs compile nothing; without a compiler, or when the command
+# is killed, nothing else changes.
+
+. "${srcdir:-.}/tests/support/nevh_support.sh"
+
+${CC:-cc} --version >/dev/null 2>&1 || exit 77
+cache=$PWD/$work/cache
+XDG_CACHE_HOME=$cache
+TMPDIR=$PWD/$work/tmp
+export XDG_CACHE_HOME TMPDIR
+mkdir $TMPDIR
+# But for seconds, their spread and what is compiled.
+numbers() {
+    grep -v '^#' $work/out | cut -d, -f 1-16,18,19
+}
+compiled() { # yes|no: how many rows
+    grep -v '^#' $work/out | awk -F, -v x=$1 '$21 == x { n++ } END { print n + 0 }'
+}
+kept() {
+    ls $cache/nevh 2>/dev/null | wc -l
+}
+
+# Every scheme, by a gradient of formulas and by one of values.
+every=$("$nevh" list integrators --all --format csv | grep -v '^#' |
+    awk -F, 'NR > 1 { printf "%s%s", c, $1; c = "," }')
+for scene in pendulum double-pendulum; do
+    for gradient in exact central4; do
+        for native in never always; do
+            exits 0 compare $scene --portable --native $native --t-end 1 \
+                --dt 0.02 --tolerance 1e-6 --gradient $gradient \
+                --integrators "$every" --format csv
+            numbers >$work/$native.csv
+            test $native = never || break
+            test $(compiled yes) = 0 || fails "compiles where it must not"
+            lacks '^# native: steps of'
+        done
+        test $(compiled yes) -gt 10 || fails "compiles next to nothing"
+        has '^# native: steps of (verlet|.*gauss4)'
+        cmp $work/never.csv $work/always.csv || fails "has other numbers"
+    done
+done
+exits 0 compare pendulum --integrators verlet,verlet --dt 0.1,0.05 --t-end 1 \
+    --native always
+has '^native: steps of verlet are compiled; others are not$'
+
+# Nothing is compiled for short runs.
+rm -rf $cache
+long='--set g=9.7 --gradient exact --t-end 20000'
+few='--set g=9.7 --gradient exact --t-end 5'
+for what in 'compare pendulum --integrators verlet,gauss8' \
+    'cost pendulum --integrators verlet,gauss8 --dt 0.1,0.05' \
+    'recommend pendulum --energy-error 1e-4 --integrators verlet,gauss8' \
+    'gradients pendulum'; do
+    case $what in
+    gradients*) exits 0 $what --t-end 5 ;;
+    *) exits 0 $what $few ;;
+    esac
+    test $(kept) = 0 || fails "compiles for a short run"
+    lacks 'native: '
+done
+
+rm -rf $cache
+# Those of long runs are: all of the table, or none.
+exits 0 compare pendulum $long --integrators euler,verlet,gauss8,gonzalez --dt 0.1
+test $(kept) = 3 || fails "keeps $(kept) compiled texts"
+has '^native: steps of euler, verlet, gauss8 are compiled; others are not$'
+# What the cache holds decides nothing.
+exits 0 compare pendulum --set g=9.7 --gradient exact --t-end 1600 \
+    --integrators verlet,ruth3 --dt 0.1
+lacks 'native: '
+exits 0 cost pendulum $long --integrators verlet,gauss8 --dt 0.1,0.2
+has '^native: steps of verlet, gauss8 are compiled; others are not$'
+exits 0 recommend pendulum $long --integrators gauss8 --energy-error 1e-3 --dt 0.2
+has '^native: steps of gauss8 are compiled; others are not$'
+exits 0 recommend pendulum $long --integrators gauss8 --energy-error 1e-3 \
+    --dt 0.2 --native never
+lacks 'native: '
+
+# Without a compiler one line says so.
+rm -rf $cache
+for what in 'compare pendulum --integrators euler,verlet --dt 0.1' \
+    'cost pendulum --integrators verlet,gauss8 --dt 0.1,0.2' \
+    'recommend pendulum --integrators gauss8 --energy-error 1e-3 --dt 0.2'; do
+    CC=no-such-compiler
+    export CC
+    exits 0 $what $long
+    unset CC
+    says '^nevh: steps are not compiled: there is no C compiler'
+    test $(wc -l <$work/err) = 1 || fails "says more than a line"
+    lacks 'native: '
+done
+test "$(ls -A $TMPDIR)" = '' || fails "leaves $(ls -A $TMPDIR)"
+
+# Who ends a command that compiles finds nothing of it left.
+cat >$work/compiler <<'END'
+#!/bin/sh
+touch "$SIGN"
+while :; do
+    sleep 1
+done
+END
+chmod +x $work/compiler
+SIGN=$PWD/$work/compiling
+export SIGN
+command='compare (TERM)'
+CC=$PWD/$work/compiler "$nevh" compare pendulum $long --integrators verlet \
+    --dt 0.1 >$work/out 2>$work/err </dev/null &
+compiling=$!
+until test -e $SIGN; do
+    kill -0 $compiling 2>/dev/null || { fails "does not compile"; break; }
+    sleep 1
+done
+kill -s TERM $compiling
+wait $compiling 2>/dev/null
+test $? -gt 128 || fails "goes on after a signal"
+unset SIGN
+test "$(ls -A $TMPDIR)" = '' || fails "leaves $(ls -A $TMPDIR)"
+
+exit $status

@@ -1,0 +1,250 @@
+/* nevh sweep: an array of NumPy is filled, in one go, in parts or by several
+   processes.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "config.h"
+#include "sweep_private.h"
+#include <ctype.h>
+#include <dirent.h>
+#include <inttypes.h>
+#include <math.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+/* What a signal stops; members under way are finished.  The second one ends the
+   program. */
+static nevh_sweep *volatile under_way;
+
+static void note_signal(int number) {
+    (void)number;
+    if (under_way)
+        nevh_sweep_stop(under_way);
+}
+
+static void mind_signals(double seconds) {
+    static const int numbers[] = {SIGHUP, SIGINT, SIGTERM, SIGALRM};
+    struct sigaction mind = {.sa_handler = note_signal,
+                             .sa_flags = (int)SA_RESETHAND};
+    struct sigaction found;
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        if (sigaction(numbers[i], NULL, &found) == 0 &&
+            found.sa_handler != SIG_IGN)
+            sigaction(numbers[i], &mind, NULL);
+    double whole = floor(fmin(seconds, 1e9));
+    struct itimerval timer = {
+        .it_value = {(time_t)whole, (suseconds_t)(1e6 * (seconds - whole))}};
+    if (seconds > 0)
+        setitimer(ITIMER_REAL, &timer, NULL);
+}
+
+/* All that a record depends on. */
+static char *describe(const sweep_job *j) {
+    const plan *p = &j->plan;
+    const options *o = j->options;
+    char *columns = list_joined(&j->columns);
+    char *all = text_print(
+        "nevh: %s\nscene: %016llx\nmembers: %llu\ncolumns: %s\n"
+        "integrator: %s\ndt: %.17g\nt_end: %.17g\ngradient: %s\n"
+        "gradient_step: %.17g\ntolerance: %.17g\nportable: %s\n",
+        PACKAGE_VERSION, (unsigned long long)nevh_scene_digest(p->scene),
+        (unsigned long long)nevh_sweep_members(j->sweep), columns,
+        j->integrator, o->dt.count ? p->dt[0] : 0, o->t_end ? p->t_end : 0,
+        p->gradients.item[0], o->gradient_step,
+        p->tolerances ? p->tolerance[0] : 0, p->portable ? "yes" : "no");
+    free(columns);
+    return all;
+}
+
+/* For who reads the side file. */
+static char *tell_story(const sweep_job *j) {
+    char *all = text_print("%s", "");
+    for (size_t i = 0; i < j->notes.count; i++) {
+        char *longer = text_print("%s# %s\n", all, j->notes.item[i]);
+        free(all);
+        all = longer;
+    }
+    char *scene = nevh_scene_write(j->plan.scene, NULL);
+    char *whole =
+        text_print("%s# status: 0 not yet run, 1 done, 2 failed, 3 no "
+                   "start\n\n[scene as run]\n%s",
+                   all, scene ? scene : "");
+    free(scene);
+    free(all);
+    return whole;
+}
+
+static bool is_wanted(void *data, uint64_t member) {
+    const sweep_job *j = data;
+    nevh_member_status status = store_status(&j->store, member);
+    return status == NEVH_MEMBER_MISSING ||
+           (j->options->retry && status == NEVH_MEMBER_FAILED);
+}
+
+static int keep(void *data, const nevh_sweep_result *r) {
+    sweep_job *j = data;
+    if (store_write(&j->store, r))
+        return 1;
+    sweep_count(j, r);
+    return 0;
+}
+
+/* What the file has, of all times that it was gone on with. */
+static int tell_array(const sweep_job *j) {
+    uint64_t have[4] = {0};
+    const store *s = &j->store;
+    for (uint64_t i = 0; i < s->count; i++)
+        have[store_status(s, s->first + i) & 3]++;
+    if (have[NEVH_MEMBER_FAILED] || have[NEVH_MEMBER_NO_START])
+        tool_refuse("%s: of %" PRIu64 " members %" PRIu64 " failed and %" PRIu64
+                    " have no start: see %s",
+                    s->name, s->count, have[NEVH_MEMBER_FAILED],
+                    have[NEVH_MEMBER_NO_START], s->side);
+    if (have[NEVH_MEMBER_MISSING]) {
+        tool_refuse("%s: stopped before %" PRIu64 " of %" PRIu64
+                    " members: go on with --resume %s",
+                    s->name, have[NEVH_MEMBER_MISSING], s->count, s->name);
+        return TOOL_STOPPED;
+    }
+    return have[NEVH_MEMBER_FAILED] || have[NEVH_MEMBER_NO_START] ? TOOL_FAILED
+                                                                  : TOOL_OK;
+}
+
+static int run_array(sweep_job *j) {
+    under_way = j->sweep;
+    mind_signals(j->options->stop_after);
+    sweep_begin(j);
+    bool shared = j->ranks.count > 1;
+    int status = shared ? nevh_sweep_run_chunks(j->sweep, ranks_take, &j->ranks,
+                                                is_wanted, keep, j)
+                        : nevh_sweep_run(j->sweep, j->store.first,
+                                         j->store.count, is_wanted, keep, j);
+    under_way = NULL;
+    status = sweep_end(j, status);
+    if (shared)
+        status = ranks_close(&j->ranks, status);
+    j->store.write = NULL;
+    if (!status && !j->ranks.rank)
+        status = store_finish(&j->store) ? TOOL_USAGE : tell_array(j);
+    return ranks_agree(&j->ranks, status);
+}
+
+/* The first member of a part. */
+static uint64_t begin_of(const sweep_job *j, uint64_t task, uint64_t tasks) {
+    uint64_t members = nevh_sweep_members(j->sweep);
+    return members / tasks * (task - 1) + members % tasks * (task - 1) / tasks;
+}
+
+static void take_part(const sweep_job *j, uint64_t task, uint64_t tasks,
+                      uint64_t *first, uint64_t *members) {
+    *first = begin_of(j, task, tasks);
+    *members = begin_of(j, task + 1, tasks) - *first;
+}
+
+/* N of FILE.1-of-N.npy; 0 with a message where there is none, or several. */
+static uint64_t find_parts(const char *file) {
+    const char *slash = strrchr(file, '/');
+    char *folder = slash ? text_print("%.*s", (int)(slash - file) + 1, file)
+                         : text_print("./");
+    const char *last = slash ? slash + 1 : file;
+    char *before = text_print("%.*s.1-of-", (int)strlen(last) - 4, last);
+    uint64_t found = 0, number;
+    DIR *all = opendir(folder);
+    int end, several = 0;
+    for (struct dirent *one; all && (one = readdir(all));) {
+        const char *tail = one->d_name + strlen(before);
+        if (strncmp(one->d_name, before, strlen(before)) == 0 &&
+            sscanf(tail, "%" SCNu64 ".npy%n", &number, &end) == 1 &&
+            !tail[end] && isdigit((unsigned char)*tail)) {
+            several += found != 0;
+            found = number;
+        }
+    }
+    if (all)
+        closedir(all);
+    if (several)
+        tool_refuse("%s%s...: there are parts of several sweeps: remove those "
+                    "of all but one",
+                    folder, before);
+    else if (!found)
+        tool_refuse("there is nothing to join: no %s%sN.npy", folder, before);
+    free(folder);
+    free(before);
+    return several ? 0 : found;
+}
+
+static int join(sweep_job *j) {
+    const char *file = j->options->file;
+    uint64_t parts = find_parts(file);
+    if (!parts)
+        return TOOL_USAGE;
+    if (parts > j->count)
+        return tool_refuse("%s: %" PRIu64 " parts of %" PRIu64 " members", file,
+                           parts, j->count);
+    int status = store_create(&j->store, file);
+    bool created = !status;
+    for (uint64_t i = 1; !status && i <= parts; i++) {
+        uint64_t first, members;
+        char *name = store_name(file, i, parts);
+        take_part(j, i, parts, &first, &members);
+        status = store_take(&j->store, name, first, members);
+        free(name);
+    }
+    if (!status)
+        status = store_finish(&j->store);
+    if (!status)
+        return tell_array(j);
+    if (created) {
+        unlink(j->store.name);
+        unlink(j->store.side);
+    }
+    return status;
+}
+
+/* As far as members were run. */
+static int draw_array(sweep_job *j, int status) {
+    const store *s = &j->store;
+    double *values = tool_allocate(j->columns.count, sizeof *values);
+    for (uint64_t i = 0; i < s->count; i++) {
+        memcpy(values, s->map + s->header + i * s->record + 8,
+               j->columns.count * sizeof *values);
+        if (store_status(s, s->first + i) != NEVH_MEMBER_MISSING)
+            map_take(j->map, s->first + i, store_status(s, s->first + i),
+                     values);
+    }
+    free(values);
+    return map_draw(j->map, j->integrator) ? TOOL_USAGE : status;
+}
+
+int sweep_array(sweep_job *j) {
+    const options *o = j->options;
+    char *settings = describe(j), *story = tell_story(j), *name = NULL;
+    j->store = (store){.file = -1,
+                       .columns = &j->columns,
+                       .settings = settings,
+                       .story = story,
+                       .count = j->count};
+    int status = TOOL_OK;
+    if (o->tasks)
+        take_part(j, o->task, o->tasks, &j->store.first, &j->store.count);
+    if (o->resume)
+        status = ranks_agree(&j->ranks, store_range(o->resume, &j->store.first,
+                                                    &j->store.count));
+    j->count = o->join ? j->count : j->store.count;
+    if (!status && o->join) {
+        status = join(j);
+    } else if (!status) {
+        name = store_name(o->resume ? o->resume : o->file, o->task, o->tasks);
+        status = ranks_open(&j->ranks, &j->store, name, o->resume, j->threads);
+        if (!status)
+            status = run_array(j);
+    }
+    if (j->map && !j->ranks.rank && status != TOOL_USAGE)
+        status = draw_array(j, status);
+    store_close(&j->store);
+    free(name);
+    free(settings);
+    free(story);
+    return status;
+}

@@ -1,0 +1,234 @@
+/* nevh compare and cost --plot-kind order: errors against the step, with slopes.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "order_plot.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double useless = 1, rounding = 1e-13; /* as errors */
+
+/* What is drawn, a panel each. */
+typedef double error_of(const row *);
+static double energy_error(const row *r) {
+    return r->energy.max;
+}
+static double state_error(const row *r) {
+    return r->state_error;
+}
+static double observable_error(const row *r) {
+    return r->observable ? r->observable_error : NAN;
+}
+enum { ERRORS = 3 };
+static const struct {
+    error_of *of;
+    const char *label;
+} errors[ERRORS] = {{energy_error, "largest energy error, relative"},
+                    {state_error, "largest state error, relative"},
+                    {observable_error, "largest error of the observable"}};
+
+/* The points of one scheme, by rising dt. */
+typedef struct {
+    size_t count, from, to; /* from, to: of the slope */
+    double *dt, *error, slope;
+} curve;
+
+int order_plot_check(const options *o, size_t steps) {
+    if (o->plot.kind == PLOT_ORDER && plot_wanted(o) && steps < 2)
+        return tool_refuse("--plot-kind order needs two steps or more, as "
+                           "--dt 0.1,0.05,0.02");
+    return TOOL_OK;
+}
+
+typedef struct {
+    double slope, worst; /* worst: distance from the line, of log y */
+} line;
+
+static line fit(const double x[], const double y[], size_t from, size_t to) {
+    double count = (double)(to - from), mx = 0, my = 0, xx = 0, xy = 0;
+    for (size_t i = from; i < to; i++) {
+        mx += log(x[i]) / count;
+        my += log(y[i]) / count;
+    }
+    for (size_t i = from; i < to; i++) {
+        xx += (log(x[i]) - mx) * (log(x[i]) - mx);
+        xy += (log(x[i]) - mx) * (log(y[i]) - my);
+    }
+    line l = {xy / xx, 0};
+    for (size_t i = from; i < to; i++)
+        l.worst =
+            fmax(l.worst, fabs(log(y[i]) - my - l.slope * (log(x[i]) - mx)));
+    return l;
+}
+
+double order_slope(const double x[], const double y[], size_t count,
+                   size_t *from, size_t *to) {
+    static const double near = 0.22, least = 0.5; /* log 1.25; of a slope */
+    static const double span = 1.5;               /* of x */
+    double slope = NAN;
+    *from = *to = 0;
+    for (size_t i = 0; i < count; i++)
+        for (size_t k = count; k > i + (count > 2 ? 2 : 1); k--) {
+            line l = fit(x, y, i, k);
+            bool good =
+                l.worst <= near && l.slope >= least && x[k - 1] > span * x[i];
+            if (!good || k - i <= *to - *from)
+                continue;
+            *from = i;
+            *to = k;
+            slope = l.slope;
+        }
+    return slope;
+}
+
+static bool is_same(const row *a, const row *b) {
+    return strcmp(a->integrator, b->integrator) == 0 &&
+           strcmp(a->gradient, b->gradient) == 0;
+}
+
+static bool is_first(const row rows[], size_t i) {
+    for (size_t k = 0; k < i; k++)
+        if (is_same(&rows[k], &rows[i]))
+            return false;
+    return true;
+}
+
+static void insert(curve *c, double dt, double error) {
+    size_t i = c->count++;
+    for (; i > 0 && c->dt[i - 1] > dt; i--) {
+        c->dt[i] = c->dt[i - 1];
+        c->error[i] = c->error[i - 1];
+    }
+    c->dt[i] = dt;
+    c->error[i] = error;
+}
+
+static curve curve_of(const row rows[], size_t count, size_t first,
+                      error_of *error) {
+    curve c = {.dt = tool_allocate(count, sizeof *c.dt),
+               .error = tool_allocate(count, sizeof *c.error)};
+    size_t above = 0; /* those that rounding makes */
+    for (size_t i = first; i < count; i++) {
+        const row *r = &rows[i];
+        double value = r->ran && r->tolerance == 0 ? error(r) : NAN;
+        if (is_same(r, &rows[first]) && value > 0 && value < useless)
+            insert(&c, r->dt, value);
+    }
+    while (above < c.count && !(c.error[above] > rounding))
+        above++;
+    c.slope = order_slope(c.dt + above, c.error + above, c.count - above,
+                          &c.from, &c.to);
+    c.from += above;
+    c.to += above;
+    return c;
+}
+
+static void free_curve(curve *c) {
+    free(c->dt);
+    free(c->error);
+}
+
+/* The kinds of errors that some scheme has at two steps. */
+static size_t find_kinds(const row rows[], size_t count, size_t kinds[]) {
+    size_t found = 0;
+    for (size_t k = 0; k < ERRORS; k++) {
+        bool drawn = false;
+        for (size_t i = 0; i < count && !drawn; i++) {
+            curve c = curve_of(rows, count, i, errors[k].of);
+            drawn = is_first(rows, i) && c.count > 1;
+            free_curve(&c);
+        }
+        if (drawn)
+            kinds[found++] = k;
+    }
+    return found;
+}
+
+/* With the slope in each panel. */
+static char *name_of(const plan *p, const row *r, const curve curves[],
+                     size_t panels) {
+    bool some = false;
+    char *name = p->gradients.count < 2
+                     ? text_print("%s", r->integrator)
+                     : text_print("%s, %s", r->integrator, r->gradient);
+    for (size_t k = 0; k < panels; k++)
+        some |= curves[k].slope > 0;
+    for (size_t k = 0; some && k < panels; k++) {
+        const char *before = k > 0        ? ", "
+                             : panels > 1 ? ": slopes "
+                                          : ": slope ";
+        char *more = curves[k].slope > 0
+                         ? text_print("%s%s%.2f", name, before, curves[k].slope)
+                         : text_print("%s%s-", name, before);
+        free(name);
+        name = more;
+    }
+    return name;
+}
+
+static void draw_points(plot *to, size_t series, const curve *c, size_t from,
+                        size_t end) {
+    for (size_t i = from; i < end; i++)
+        plot_point(to, series, c->dt[i], c->error[i]);
+}
+
+static void draw_curve(plot *to, const char *name, const curve *c) {
+    if (c->count < 2)
+        return;
+    size_t behind = plot_series(to, NULL);
+    plot_style(to, behind, PLOT_BEHIND);
+    draw_points(to, behind, c, c->from, c->to);
+    size_t series = plot_series(to, name);
+    plot_style(to, series, PLOT_BOTH);
+    draw_points(to, series, c, 0, c->count);
+}
+
+static void draw_panel(plot *to, const plan *p, const row rows[], size_t count,
+                       const size_t kinds[], size_t panels, size_t panel) {
+    for (size_t i = 0; i < count; i++) {
+        curve curves[ERRORS];
+        if (!is_first(rows, i))
+            continue;
+        for (size_t k = 0; k < panels; k++)
+            curves[k] = curve_of(rows, count, i, errors[kinds[k]].of);
+        char *name = name_of(p, &rows[i], curves, panels);
+        draw_curve(to, name, &curves[panel]);
+        free(name);
+        for (size_t k = 0; k < panels; k++)
+            free_curve(&curves[k]);
+    }
+}
+
+static void add_note(plot *to, const plan *p, const row rows[], size_t count) {
+    bool adaptive = false;
+    for (size_t i = 0; i < count; i++)
+        adaptive |= rows[i].tolerance > 0;
+    char *text = text_print(
+        "grey: the points that a slope is fitted to%s",
+        adaptive ? "; schemes that choose their steps are left out" : "");
+    plot_note_run(to, p, NULL, text);
+    free(text);
+}
+
+int order_plot(const options *o, const plan *p, const row rows[],
+               size_t count) {
+    size_t kinds[ERRORS], panels = find_kinds(rows, count, kinds);
+    plot *to = NULL;
+    if (panels == 0)
+        return tool_refuse("there is nothing to plot: no scheme has errors "
+                           "between 0 and %g at two steps",
+                           useless);
+    char *x = plot_label(p, "dt", "t");
+    for (size_t k = 0; k < panels; k++) {
+        if (to)
+            plot_panel(to, NULL, x, errors[kinds[k]].label);
+        else
+            to = plot_new(p->title, x, errors[kinds[k]].label);
+        plot_log(to, true, true);
+        draw_panel(to, p, rows, count, kinds, panels, k);
+    }
+    free(x);
+    add_note(to, p, rows, count);
+    int status = plot_write(to, o);
+    plot_free(to);
+    return status;
+}

@@ -1,0 +1,24 @@
+/* nevh: errors against the step, with slopes.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_ORDER_PLOT_H
+#define NEVH_ORDER_PLOT_H
+
+#include "experiment/row.h"
+#include "plot.h"
+
+/* Before the long work.
+   steps    how many each scheme is to have
+   returns  TOOL_OK, or TOOL_USAGE with the message printed */
+int order_plot_check(const options *, size_t steps);
+/* A panel for each kind of error that the rows have; as plot_write. */
+int order_plot(const options *, const plan *, const row rows[], size_t count);
+
+/* The slope of log y over log x, by least squares over as many neighbours as are
+   on a rising line to a factor of 1.25.
+   x         rising
+   from, to  out: the neighbours; to: past the last
+   returns   NAN where no three (of two: both) are on such a line */
+double order_slope(const double x[], const double y[], size_t count,
+                   size_t *from, size_t *to);
+
+#endif
