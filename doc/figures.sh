@@ -7,6 +7,16 @@ srcdir=$1 nevh=$2 examples=$3
 NEVH_SCENES=$srcdir/scenes
 export NEVH_SCENES
 
+# A command, in lines of a page's width.
+shown_lines() {
+    awk '{ while (length($0) > 84) {
+               for (i = 79; substr($0, i, 3) != " --" && i > 8; ) i--
+               print substr($0, 1, i) "\\"
+               $0 = "      " substr($0, i + 1)
+           }
+           print }'
+}
+
 # quote NAME COMMAND...: what it prints, below the command.
 quote() {
     file=$srcdir/doc/$1.txt
@@ -14,7 +24,7 @@ quote() {
     test "$2" = "$nevh" || shown=$(basename "$2")
     shift
     echo "$shown" >&2
-    { echo "\$ $shown" && "$@"; } >"$file.new" 2>&1 && mv "$file.new" "$file"
+    { echo "\$ $shown" | shown_lines && "$@"; } >"$file.new" 2>&1 && mv "$file.new" "$file"
 }
 
 # Puts doc/NAME.txt between <!-- NAME --> and <!-- end -->.

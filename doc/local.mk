@@ -14,6 +14,7 @@ doc_nevh_TEXINFOS = \
 	doc/hoop.nevh \
 	doc/native-never.txt \
 	doc/native-always.txt \
+	doc/installing.texi \
 	doc/tutorial.texi \
 	doc/catalogue.texi \
 	doc/performance.texi \
@@ -65,15 +66,15 @@ EXTRA_DIST += doc/sheets/sheets.texi doc/sheets/numbers.texi doc/sheets/numbers.
 CLEANFILES += doc/nevh-sheets.html doc/nevh-sheets.pdf
 run_sheets = $(SHELL) $(srcdir)/doc/sheets/sheets.sh $(srcdir) \
 	tools/nevh$(EXEEXT) examples
-sheets: all
+sheets: all doc/nevh-sheets.html
 	$(run_sheets) check
-	$(MKDIR_P) doc
-	$(MAKEINFO) --html --no-split -I $(srcdir)/doc/sheets \
-	  -o doc/nevh-sheets.html $(srcdir)/doc/sheets/sheets.texi
 	if command -v texi2pdf >/dev/null && command -v tex >/dev/null; then \
-	  texi2pdf --quiet --clean -I $(srcdir)/doc/sheets \
+	  texi2pdf --quiet --clean -I $(srcdir)/doc/sheets -I $(srcdir)/build-aux \
 	    -o doc/nevh-sheets.pdf $(srcdir)/doc/sheets/sheets.texi; \
 	else echo "There is no TeX: the sheets are doc/nevh-sheets.html alone."; fi
+doc/nevh-sheets.html: doc/sheets/sheets.texi doc/sheets/numbers.texi
+	$(AM_V_GEN)$(MKDIR_P) doc && $(MAKEINFO) --html --no-split \
+	  -I $(srcdir)/doc/sheets -o $@ $(srcdir)/doc/sheets/sheets.texi
 sheets-numbers: all
 	$(run_sheets) write
 .PHONY: sheets sheets-numbers
