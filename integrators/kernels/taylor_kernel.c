@@ -6,9 +6,9 @@
    not depend on h, unless that is very short.  The state at the beginning of a
    series is kept with the digits that its double lost.
 
-   With a tolerance below rounding the first coefficients, too, have the digits that
-   doubles lose: they are those of the state with all its digits, taken in long
-   double.  The others add so little to a step that their rounding is far below that
+   With a tolerance below rounding, and long doubles in the processor, the first
+   coefficients, too, have the digits that doubles lose: they are those of the
+   state with all its digits, taken in long double.  The others add so little to a step that their rounding is far below that
    of the state, so errors of steps are those of long double, nearly.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "taylor_private.h"
@@ -99,9 +99,14 @@ static size_t order_for(double tolerance) {
 /* Tolerances below this are of errors that doubles cannot hold. */
 static const double finest = DBL_EPSILON;
 
+/* Whether the processor has long doubles of its own, with 64 bits.  Elsewhere
+   they are as short as doubles, or made by a library, which takes a hundred
+   times as long: then doubles do. */
+enum { LONGER = LDBL_MANT_DIG == 64 };
+
 static bool plan_series(const nevh_work *w, taylor_plan *plan) {
     plan->series = nevh__series_new_double(plan->recurrence, plan->order);
-    if (!plan->series || !(w->options->tolerance < finest))
+    if (!LONGER || !plan->series || !(w->options->tolerance < finest))
         return plan->series;
     plan->first = nevh__series_new_long(plan->recurrence, FIRST);
     plan->first_rows =
@@ -231,7 +236,7 @@ static int begin(nevh_work *w, const chain *z, double t, double h) {
                               "derivatives there, or the state is out of its "
                               "domain",
                               t);
-    if (plan->first)
+    if (LONGER && plan->first)
         find_lost(w, z, t);
     *z->reach = fmin(reach_of(w, z->rows), plan->longest * fabs(h));
     *z->begun = 1;
@@ -273,7 +278,7 @@ static void pass_state(const nevh_work *w, const chain *z, double step) {
 static int go_on(nevh_work *w, const chain *z, double step, double t,
                  double h) {
     const taylor_plan *plan = w->plan;
-    if (plan->first)
+    if (LONGER && plan->first)
         pass_finely(w, z, step);
     else
         pass_state(w, z, step);

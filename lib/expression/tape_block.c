@@ -11,9 +11,14 @@ static double *write_row(double *journal, const double row[], size_t columns) {
     return journal + columns;
 }
 
+/* Without vector functions the two forms are the same. */
+#ifdef NEVH__VECTORS
 #define NEVH__F(f) nevh_simd_##f
 #define NEVH__RUN  run_vectors
 #include "expression/tape_run.h"
+#else
+#define run_vectors run_libm
+#endif
 #define NEVH__F(f) f
 #define NEVH__RUN  run_libm
 #include "expression/tape_run.h"

@@ -41,9 +41,14 @@ static const double *put_back(const sweep *s, uint32_t slot,
     return journal - columns;
 }
 
+/* Without vector functions the two forms are the same. */
+#ifdef NEVH__VECTORS
 #define NEVH__F(f)        nevh_simd_##f
 #define NEVH__NAMED(name) name##_vectors
 #include "expression/tape_back.h"
+#else
+#define backwards_vectors backwards_libm
+#endif
 #define NEVH__F(f)        f
 #define NEVH__NAMED(name) name##_libm
 #include "expression/tape_back.h"

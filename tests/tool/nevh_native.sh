@@ -60,6 +60,9 @@ for what in 'compare pendulum --integrators verlet,gauss8' \
     test $(kept) = 0 || fails "compiles for a short run"
     lacks 'native: '
 done
+exits 0 recommend pendulum --energy-error 1e-3
+test $(kept) = 0 || fails "compiles what a single run would not"
+lacks 'native: '
 
 rm -rf $cache
 # Those of long runs are: all of the table, or none.

@@ -88,7 +88,7 @@ static void settle_rows(const plan *p, row_list *r) {
     row **all = tool_allocate(r->count, sizeof *all);
     for (size_t i = 0; i < r->count; i++)
         all[i] = &r->row[i];
-    rows_settle(p, all, r->count);
+    rows_settle(p, all, r->count, false);
     free(all);
 }
 

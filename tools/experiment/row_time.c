@@ -98,7 +98,7 @@ void rows_time(const plan *p, row *const rows[], size_t count, size_t rounds,
                bool whole) {
     stopwatch *w = tool_allocate(count, sizeof *w);
     double spent;
-    rows_settle(p, rows, count);
+    rows_settle(p, rows, count, false);
     for (size_t i = 0; i < count; i++) {
         w[i] = stopwatch_new(p, rows[i], rounds);
         if (!whole)

@@ -90,11 +90,12 @@ void row_stepper_keep(const plan *p, const row *r, bool balance,
         nevh_stepper_free(s);
 }
 
-void rows_settle(const plan *p, row *const rows[], size_t count) {
+void rows_settle(const plan *p, row *const rows[], size_t count, bool alone) {
     stepper_cache *all = p->steppers;
     for (size_t i = 0; i < count && !all->settled; i++) {
         nevh_stepper *s = row_stepper(p, rows[i], false);
-        all->compiled |= nevh_stepper_foresee(s, steps_compared(p));
+        all->compiled |= nevh_stepper_foresee(
+            s, alone ? plan_steps(p, rows[i]->dt) : steps_compared(p));
         plan_tell_native(s);
         row_stepper_keep(p, rows[i], false, s);
     }

@@ -102,7 +102,7 @@ static void settle_cells(costs *c) {
             if (is_compared(c, l, r, cost_target[k]))
                 all[count++] = &l->level[r - l->level];
         }
-    rows_settle(&c->search.plan, all, count);
+    rows_settle(&c->search.plan, all, count, false);
     free(all);
 }
 

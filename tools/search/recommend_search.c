@@ -103,7 +103,7 @@ static size_t list_untimed(const advice *a, row *found[]) {
 void advice_time_once(advice *a) {
     row **found = tool_allocate(a->count, sizeof *found);
     size_t count = list_untimed(a, found);
-    rows_settle(&a->search.plan, found, count);
+    rows_settle(&a->search.plan, found, count, true);
     for (size_t i = 0; i < count; i++)
         rows_time(&a->search.plan, &found[i], 1, 1, a->search.repeats > 0);
     free(found);
