@@ -193,7 +193,7 @@ static nevh__tape_operand operand(const plan *p, int node) {
     return (nevh__tape_operand){.kind = n->kind, .by = r->by, .at = at};
 }
 
-static bool is_smooth(unsigned operation) {
+bool nevh__operation_is_smooth(unsigned operation) {
     switch (operation) {
     case NEVH__ABS:
     case NEVH__MIN:
@@ -205,6 +205,12 @@ static bool is_smooth(unsigned operation) {
     default:
         return true;
     }
+}
+
+bool nevh__operation_is_special(unsigned operation) {
+    return operation == NEVH__BESSEL_J0 || operation == NEVH__BESSEL_J1 ||
+           operation == NEVH__ELLIPTIC_K || operation == NEVH__ELLIPTIC_E ||
+           operation == NEVH__ECCENTRIC;
 }
 
 static void note_read(nevh__tape *tape, nevh__tape_operand o) {
@@ -246,7 +252,8 @@ static void write_code(nevh__tape *tape, const plan *p) {
         journal += !to->fresh + !to->also_fresh;
         note_read(tape, to->a);
         note_read(tape, to->b);
-        if (!is_smooth(to->operation) && ((to->a.by | to->b.by) & ~NEVH__BY_T))
+        if (!nevh__operation_is_smooth(to->operation) &&
+            ((to->a.by | to->b.by) & ~NEVH__BY_T))
             tape->analytic = false;
     }
     tape->code[p->length].journal = journal;

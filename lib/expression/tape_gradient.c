@@ -174,34 +174,22 @@ static void sweep_task(const task *job) {
         sweep_most(job);
 }
 
-void nevh__tape_block_gradient(size_t width, const double t[], const double q[],
-                               const double p[], const double c[],
-                               const void *tape, double dh_dq[],
-                               double dh_dp[]) {
-    sweep_task(&(task){.t = t,
-                       .q = q,
-                       .p = p,
-                       .c = c,
-                       .dh_dq = dh_dq,
-                       .dh_dp = dh_dp,
-                       .tape = tape,
-                       .width = width});
-}
-
-void nevh__tape_portable_gradient(size_t width, const double t[],
-                                  const double q[], const double p[],
-                                  const double c[], const void *tape,
-                                  double dh_dq[], double dh_dp[]) {
-    sweep_task(&(task){.t = t,
-                       .q = q,
-                       .p = p,
-                       .c = c,
-                       .dh_dq = dh_dq,
-                       .dh_dp = dh_dp,
-                       .tape = tape,
-                       .width = width,
-                       .portable = true});
-}
+#define GRADIENT(name, is_portable)                                            \
+    void name(size_t width, const double t[], const double q[],                \
+              const double p[], const double c[], const void *tape,            \
+              double dh_dq[], double dh_dp[]) {                                \
+        sweep_task(&(task){.t = t,                                             \
+                           .q = q,                                             \
+                           .p = p,                                             \
+                           .c = c,                                             \
+                           .dh_dq = dh_dq,                                     \
+                           .dh_dp = dh_dp,                                     \
+                           .tape = tape,                                       \
+                           .width = width,                                     \
+                           .portable = is_portable});                          \
+    }
+GRADIENT(nevh__tape_block_gradient, false)
+GRADIENT(nevh__tape_portable_gradient, true)
 
 void nevh__tape_block_time(size_t width, const double t[], const double q[],
                            const double p[], const double c[], const void *tape,

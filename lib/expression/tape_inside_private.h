@@ -6,6 +6,12 @@
 #include "expression/tape_private.h"
 #include "system/system_private.h"
 
+/* False of min, mod and the others that jump, or whose derivative does. */
+bool nevh__operation_is_smooth(unsigned operation);
+/* Whether it is a function of GSL's or nevh's: compiled text would have to be
+   linked with it, and its Taylor series has no recurrence here. */
+bool nevh__operation_is_special(unsigned operation);
+
 /* Where an operand is: among the variables of one kind, the results of
    operations, or the numbers. */
 enum { NEVH__SLOT = NEVH__VARIABLES, NEVH__NUMBER, NEVH__KINDS };

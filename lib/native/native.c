@@ -129,7 +129,8 @@ bool nevh__native_write(nevh__writer *text, nevh_work *w) {
     return !text->refusal && families[family_of(w)].write(text, w);
 }
 
-bool nevh__native_fill(nevh__native *x, const nevh_work *w) {
+/* What steps are handed, but for numbers; false when memory is out. */
+static bool fill(nevh__native *x, const nevh_work *w) {
     size_t terms = w->field->n_terms;
     if (of_series(w))
         return true;
@@ -206,7 +207,7 @@ static bool plan(nevh_work *w, nevh__native *x, nevh__writer *text,
     nevh__write_prelude(text);
     if (!nevh__native_write(text, w) && text->refusal && always)
         snprintf(why, NEVH__WHY_NATIVE, "%s", text->refusal);
-    if (text->refusal || text->failed || !nevh__native_fill(x, w))
+    if (text->refusal || text->failed || !fill(x, w))
         return false;
     x->characters = strlen(text->text);
     bool compile = compiling_pays(w, x->characters);

@@ -52,8 +52,6 @@ bool nevh__splitting_tables(const nevh_splitting *, double **weights,
                             double **times);
 /* Text of steps, if the scheme has one; else false, and w->refusal. */
 bool nevh__native_write(nevh__writer *, nevh_work *);
-/* What steps are handed, but for numbers; false when memory is out. */
-bool nevh__native_fill(nevh__native *, const nevh_work *);
 /* A program, or functions, that take the steps; false: as above. */
 bool nevh__write_program(nevh__writer *, nevh_work *, const nevh_program *);
 

@@ -22,22 +22,10 @@ static bool is_lanewise(unsigned operation) {
     case NEVH__ATANH:
     case NEVH__LOG10:
     case NEVH__HYPOT:
-    case NEVH__ABS:
-    case NEVH__MIN:
-    case NEVH__MAX:
-    case NEVH__SIGN:
-    case NEVH__MOD:
-    case NEVH__FLOOR:
         return true;
     default:
-        return false;
+        return !nevh__operation_is_smooth(operation);
     }
-}
-
-bool nevh__operation_is_special(unsigned operation) {
-    return operation == NEVH__BESSEL_J0 || operation == NEVH__BESSEL_J1 ||
-           operation == NEVH__ELLIPTIC_K || operation == NEVH__ELLIPTIC_E ||
-           operation == NEVH__ECCENTRIC;
 }
 
 static bool is(const char *word, size_t length, const char *name) {

@@ -19,9 +19,6 @@ typedef enum {
     NEVH__OPERATION_PARTS
 } nevh__operation_part;
 
-/* Whether it is a function of GSL's or nevh's, which compiled text would have to
-   be linked with. */
-bool nevh__operation_is_special(unsigned operation);
 /* How large a result can be where its arguments are finite, and below a and b. */
 double nevh__operation_bound(unsigned operation, double a, double b);
 /* The expression alone. */

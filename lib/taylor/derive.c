@@ -32,46 +32,14 @@ static int out_of_memory(const reader *r) {
                : nevh__fail(r->report, NEVH_ENOMEM, "out of memory");
 }
 
+/* NULL: its series is known. */
 static const char *why_not(unsigned operation) {
-    switch (operation) {
-    case NEVH__ABS:
-    case NEVH__MIN:
-    case NEVH__MAX:
-    case NEVH__SIGN:
-    case NEVH__MOD:
-    case NEVH__FLOOR:
+    if (!nevh__operation_is_smooth(operation))
         return "is not analytic, so that its derivatives say nothing about it "
                "elsewhere";
-    case NEVH__ADD:
-    case NEVH__SUBTRACT:
-    case NEVH__MULTIPLY:
-    case NEVH__DIVIDE:
-    case NEVH__POWER:
-    case NEVH__NEGATE:
-    case NEVH__SIN:
-    case NEVH__COS:
-    case NEVH__SINCOS:
-    case NEVH__TAN:
-    case NEVH__ASIN:
-    case NEVH__ACOS:
-    case NEVH__ATAN:
-    case NEVH__ATAN2:
-    case NEVH__SINH:
-    case NEVH__COSH:
-    case NEVH__TANH:
-    case NEVH__ASINH:
-    case NEVH__ACOSH:
-    case NEVH__ATANH:
-    case NEVH__EXP:
-    case NEVH__LOG:
-    case NEVH__LOG10:
-    case NEVH__SQRT:
-    case NEVH__CBRT:
-    case NEVH__HYPOT:
-        return NULL;
-    default:
-        return "is one whose recurrence is not known here";
-    }
+    return nevh__operation_is_special(operation)
+               ? "is one whose recurrence is not known here"
+               : NULL;
 }
 
 static int refuse_operation(const reader *r, const nevh_term *term,

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Folders of the source stand in one order, and what a file includes, or an
 # object refers to, is defined in its own folder or an earlier one.  No two
-# files of the library have the same name.
+# files of the library have the same name, and what one file alone uses is static.
 
 srcdir=${srcdir:-.}
 order='system expression taylor gradient work implicit integrators native run diagnose
@@ -25,6 +25,29 @@ echo 'gradient run contrast' | upward | grep -q 'must not use' || {
     exit 1
 }
 test -z "$(echo 'run gradient contrast' | upward)" || exit 1
+
+# From the words of tests, and lines FILE: NAME TYPE, names of which no other file
+# and no test has use.  Those with one underscore are public; one form of a text
+# that is compiled for several types may be without use.
+alone() {
+    awk -F': ' '
+        FNR == NR { tested[$1] = 1; next }
+        { split($2, word, " "); name = word[1]; sub(/\.libs\//, "", $1) }
+        name ~ /^_?nevh_[a-z]/ || name == "main" { next }
+        { plain = name; sub(/_(quad|long|double)$/, "", plain) }
+        word[2] ~ /^[TDBR]$/ { in_file[name] = $1; form[name] = plain; next }
+        word[2] == "U" { used[plain] = 1 }
+        END { for (name in in_file)
+            if (!used[form[name]] && !tested[name]) print in_file[name], name }
+        ' "$1" "$2"
+}
+echo tried >$work/tested
+printf '%s\n' 'a.o: tried T' 'a.o: seen T' 'b.o: seen U' 'a.o: hidden T' \
+    >$work/all
+test "$(alone $work/tested $work/all)" = 'a.o hidden' || {
+    echo "a name that only its file uses was not found"
+    exit 1
+}
 
 # lib/ROOM/..., or the first folder.
 folder_of='function folder(path, part) {
@@ -75,6 +98,15 @@ if test -n "$objects" && $nm --version >/dev/null 2>&1; then
         ' >$work/symbols
     upward <$work/symbols >>$work/wrong
     test -s $work/symbols || { echo "no symbol was found"; status=1; }
+    (cd "$srcdir" && cat $(find tests bench -name '*.c')) |
+        grep -oE '\b[a-z][a-z0-9_]*\b' | sort -u >$work/tested
+    $nm -A -P $objects 2>/dev/null | sed 's/\[[^]]*\]: */: /' >$work/all
+    alone $work/tested $work/all >$work/alone
+    if test -s $work/alone; then
+        echo "one file alone uses what is not static:"
+        cat $work/alone
+        status=1
+    fi
 fi
 
 if test -s $work/wrong; then

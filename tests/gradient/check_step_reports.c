@@ -7,23 +7,6 @@
 
 enum { STATES = 40 };
 
-static double gravity(double t, const double q[], const double p[],
-                      const double c[], const void *params) {
-    (void)t, (void)p, (void)c, (void)params;
-    return -1 / sqrt(q[0] * q[0] + q[1] * q[1]);
-}
-
-static void gravity_gradient(size_t width, const double t[], const double q[],
-                             const double p[], const double c[],
-                             const void *params, double dq[], double dp[]) {
-    (void)t, (void)p, (void)c, (void)params, (void)dp;
-    for (size_t i = 0; dq && i < width; i++) {
-        double r2 = q[i] * q[i] + q[width + i] * q[width + i];
-        dq[i] = q[i] / (r2 * sqrt(r2));
-        dq[width + i] = q[width + i] / (r2 * sqrt(r2));
-    }
-}
-
 static nevh_system *make_ellipse(void) {
     nevh_system *s = nevh_system_new(2);
     nevh_system_add(s, &(nevh_term){.effect = "kinetic",
@@ -32,7 +15,9 @@ static nevh_system *make_ellipse(void) {
                                     .gradient = plane_kinetic_gradient});
     nevh_system_add(s, &(nevh_term){.effect = "potential",
                                     .nq = 2,
-                                    .value = gravity,
+                                    .nc = 1,
+                                    .c = (const double[]){1},
+                                    .value = gravity_value,
                                     .gradient = gravity_gradient});
     return s;
 }

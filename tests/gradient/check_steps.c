@@ -47,30 +47,12 @@ static nevh_system *in_plane(double mass, const nevh_term *potential) {
     return s;
 }
 
-static double gravity(double t, const double q[], const double p[],
-                      const double c[], const void *params) {
-    (void)t, (void)p, (void)params;
-    return -c[0] / sqrt(q[0] * q[0] + q[1] * q[1]);
-}
-
-static void gravity_gradient(size_t width, const double t[], const double q[],
-                             const double p[], const double c[],
-                             const void *params, double dq[], double dp[]) {
-    (void)t, (void)p, (void)params, (void)dp;
-    if (dq)
-        EACH(i) {
-            double r = sqrt(q[i] * q[i] + q[width + i] * q[width + i]);
-            dq[i] = c[i] / r / r * (q[i] / r);
-            dq[width + i] = c[i] / r / r * (q[width + i] / r);
-        }
-}
-
 static nevh_system *make_kepler(double L, double M) {
     return in_plane(M, &(nevh_term){.effect = "potential",
                                     .nq = 2,
                                     .nc = 1,
                                     .c = (const double[]){M * L * L * L},
-                                    .value = gravity,
+                                    .value = gravity_value,
                                     .gradient = gravity_gradient});
 }
 

@@ -2,8 +2,7 @@
    give the bits of the tape, whatever instances read.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #define _GNU_SOURCE
-#include "../support/shipped.h"
-#include "native/compiler_private.h"
+#include "../support/native.h"
 #include "native/native_private.h"
 #include "run/stepper_private.h"
 #include <nevh/extend.h>
@@ -64,21 +63,10 @@ static const struct {
              {lattice, 40}, {bodies, 8},  {bodies, 50},  {apart, 300}};
 enum { CASES = sizeof cases / sizeof *cases };
 
-static bool has_compiler(void) {
-    char *name = nevh__compiler_name(), *rest = NULL;
-    char *found = nevh__command_find(strtok_r(name, " ", &rest));
-    bool has = found;
-    free(found);
-    free(name);
-    return has;
-}
-
-static nevh_scene *parsed(const char *format, int count) {
+static nevh_scene *counted(const char *format, int count) {
     char text[2000];
     snprintf(text, sizeof text, format, count);
-    nevh_scene *s = nevh_scene_parse("test", text);
-    ck_assert_msg(!nevh_scene_status(s), "%s", nevh_scene_message(s));
-    return s;
+    return parsed(text);
 }
 
 typedef struct {
@@ -141,7 +129,7 @@ static void assert_same(nevh_scene *scene, const nevh_integrator *scheme,
 TEST_EACH(same_bits, CASES) {
     if (!has_compiler())
         skip_test("there is no C compiler");
-    nevh_scene *scene = parsed(cases[_i].text, cases[_i].count);
+    nevh_scene *scene = counted(cases[_i].text, cases[_i].count);
     const nevh_integrator *schemes[] = {nevh_verlet, nevh_rk4,
                                         nevh_symplectic_euler_a};
     assert_same(scene, schemes[_i % 2], nevh_exact, true);
@@ -153,7 +141,7 @@ TEST_EACH(same_bits, CASES) {
 TEST_EACH(differences_same_bits, CASES) {
     if (!has_compiler())
         skip_test("there is no C compiler");
-    nevh_scene *scene = parsed(cases[_i].text, cases[_i].count);
+    nevh_scene *scene = counted(cases[_i].text, cases[_i].count);
     assert_same(scene, _i % 2 ? nevh_verlet : nevh_rk4,
                 _i % 3 ? nevh_central4 : nevh_central2, _i % 4 < 2);
     nevh_scene_free(scene);
@@ -167,7 +155,7 @@ TEST_EACH(parts_same_bits, 4) {
     const nevh_integrator *schemes[] = {nevh_verlet, nevh_position_verlet,
                                         nevh_symplectic_euler_a,
                                         nevh_forest_ruth};
-    nevh_scene *scene = parsed(_i % 2 ? apart : chain, _i % 2 ? 9000 : 20001);
+    nevh_scene *scene = counted(_i % 2 ? apart : chain, _i % 2 ? 9000 : 20001);
     assert_same(scene, schemes[_i], _i % 2 ? nevh_central4 : nevh_exact,
                 _i == 1);
     nevh_scene_free(scene);
@@ -178,7 +166,7 @@ TEST_EACH(parts_same_bits, 4) {
 TEST(failure_same) {
     if (!has_compiler())
         skip_test("there is no C compiler");
-    nevh_scene *scene = parsed(chain, 100);
+    nevh_scene *scene = counted(chain, 100);
     run tape = begin(scene, nevh_verlet, nevh_exact, false, NEVH_NATIVE_NEVER);
     run native =
         begin(scene, nevh_verlet, nevh_exact, false, NEVH_NATIVE_ALWAYS);
@@ -199,7 +187,7 @@ TEST(failure_same) {
 
 /* The text does not grow with the instances, but for a few digits. */
 static size_t length_of(const char *text, int count) {
-    nevh_scene *scene = parsed(text, count);
+    nevh_scene *scene = counted(text, count);
     run r = begin(scene, nevh_verlet, nevh_exact, false, NEVH_NATIVE_NEVER);
     nevh__writer w = {0};
     ck_assert_msg(nevh__native_write(&w, &r.s->work), "%s", w.refusal);

@@ -109,22 +109,23 @@ static nevh_system *make_driven(void) {
     return with_potential(1, true, driven_value, driven_gradient);
 }
 
-static double gravity(double t, const double q[], const double p[],
-                      const double c[], const void *params) {
+double gravity_value(double t, const double q[], const double p[],
+                     const double c[], const void *params) {
     (void)t, (void)p, (void)params;
     return -c[0] / sqrt(q[0] * q[0] + q[1] * q[1]);
 }
 
-static void gravity_gradient(size_t width, const double t[], const double q[],
-                             const double p[], const double c[],
-                             const void *params, double dq[], double dp[]) {
+/* The cube of r may be out of range where the slope is not. */
+void gravity_gradient(size_t width, const double t[], const double q[],
+                      const double p[], const double c[], const void *params,
+                      double dq[], double dp[]) {
     (void)t, (void)p, (void)params, (void)dp;
     const double *x = q, *y = q + width;
     if (dq)
         EACH(i) {
-            double r2 = x[i] * x[i] + y[i] * y[i], r3 = r2 * sqrt(r2);
-            dq[i] = c[i] * x[i] / r3;
-            dq[width + i] = c[i] * y[i] / r3;
+            double r = sqrt(x[i] * x[i] + y[i] * y[i]);
+            dq[i] = c[i] / r / r * (x[i] / r);
+            dq[width + i] = c[i] / r / r * (y[i] / r);
         }
 }
 
@@ -135,7 +136,7 @@ nevh_system *gravity_system(const double masses[2], double pull) {
                                     .nq = 2,
                                     .nc = 1,
                                     .c = &pull,
-                                    .value = gravity,
+                                    .value = gravity_value,
                                     .gradient = gravity_gradient});
     return s;
 }

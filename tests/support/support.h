@@ -48,6 +48,12 @@ double driven_value(double t, const double q[], const double p[],
 void driven_gradient(size_t width, const double t[], const double q[],
                      const double p[], const double c[], const void *params,
                      double dq[], double dp[]);
+/* -c/|q| in the plane. */
+double gravity_value(double t, const double q[], const double p[],
+                     const double c[], const void *params);
+void gravity_gradient(size_t width, const double t[], const double q[],
+                      const double p[], const double c[], const void *params,
+                      double dq[], double dp[]);
 /* -c cos(q), and up to three of them over the coordinates that are given, as a
    term. */
 double wave_value(double t, const double q[], const double p[],

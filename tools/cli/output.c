@@ -25,7 +25,6 @@ static const char *volatile unfinished;
 static void remove_and_end(int number) {
     if (unfinished)
         unlink(unfinished);
-    signal(number, SIG_DFL);
     raise(number);
 }
 
@@ -35,11 +34,17 @@ static void remove_unfinished(void) {
         unlink(unfinished);
 }
 
-static void mind_signals(void) {
+void signal_catch(int number, void (*note)(int)) {
+    struct sigaction found,
+        caught = {.sa_handler = note, .sa_flags = (int)SA_RESETHAND};
+    if (sigaction(number, NULL, &found) == 0 && found.sa_handler != SIG_IGN)
+        sigaction(number, &caught, NULL);
+}
+
+void signals_catch(void (*note)(int)) {
     static const int numbers[] = {SIGHUP, SIGINT, SIGTERM};
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
-        if (signal(numbers[i], remove_and_end) == SIG_IGN)
-            signal(numbers[i], SIG_IGN);
+        signal_catch(numbers[i], note);
 }
 
 /* A device or a pipe is written to as it is, and so is what a symbolic link
@@ -67,7 +72,7 @@ static void open_temporary(output *o) {
     allow_as_usual(file, o->name);
     unfinished = o->temporary;
     atexit(remove_unfinished);
-    mind_signals();
+    signals_catch(remove_and_end);
 }
 
 static void forget(output *o) {

@@ -11,7 +11,7 @@ table *table_new(void) {
     return tool_allocate(1, sizeof(table));
 }
 
-void table_free(table *t) {
+static void table_free(table *t) {
     if (!t)
         return;
     list_free(&t->title);

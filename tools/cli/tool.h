@@ -89,7 +89,6 @@ double cpu_seconds(void);
 typedef enum { FORMAT_TABLE, FORMAT_CSV, FORMAT_JSON } table_format;
 typedef struct table table;
 table *table_new(void);
-void table_free(table *);
 /* The next column; lines of the title are separated by \n, parts of a word by
    -\n.  CSV and JSON have it on one line. */
 void table_column(table *, const char *title);
@@ -231,6 +230,10 @@ typedef struct {
     char *name, *temporary;
 } output;
 int output_open(output *, const char *name); /* NULL: stdout */
+/* Calls `note` when one of the signals that end programs comes, unless it is
+   ignored.  The second one of a kind ends the program. */
+void signals_catch(void (*note)(int));
+void signal_catch(int number, void (*note)(int));
 /* That it can be opened, as far as can be told without changing it.  To be
    called while none is open. */
 int output_check(const char *name);

@@ -13,8 +13,7 @@
 #include <sys/time.h>
 #include <unistd.h>
 
-/* What a signal stops; members under way are finished.  The second one ends the
-   program. */
+/* What a signal stops; members under way are finished. */
 static nevh_sweep *volatile under_way;
 
 static void note_signal(int number) {
@@ -23,15 +22,10 @@ static void note_signal(int number) {
         nevh_sweep_stop(under_way);
 }
 
-static void mind_signals(double seconds) {
-    static const int numbers[] = {SIGHUP, SIGINT, SIGTERM, SIGALRM};
-    struct sigaction mind = {.sa_handler = note_signal,
-                             .sa_flags = (int)SA_RESETHAND};
-    struct sigaction found;
-    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
-        if (sigaction(numbers[i], NULL, &found) == 0 &&
-            found.sa_handler != SIG_IGN)
-            sigaction(numbers[i], &mind, NULL);
+/* Signals, and the end of so many seconds, unless they are 0. */
+static void stop_at_signals(double seconds) {
+    signals_catch(note_signal);
+    signal_catch(SIGALRM, note_signal);
     double whole = floor(fmin(seconds, 1e9));
     struct itimerval timer = {
         .it_value = {(time_t)whole, (suseconds_t)(1e6 * (seconds - whole))}};
@@ -113,7 +107,7 @@ static int tell_array(const sweep_job *j) {
 
 static int run_array(sweep_job *j) {
     under_way = j->sweep;
-    mind_signals(j->options->stop_after);
+    stop_at_signals(j->options->stop_after);
     sweep_begin(j);
     bool shared = j->ranks.count > 1;
     int status = shared ? nevh_sweep_run_chunks(j->sweep, ranks_take, &j->ranks,

@@ -5,6 +5,7 @@
 #include "plot/plot.h"
 #include "trajectory.h"
 #include <math.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -32,18 +33,6 @@ static volatile sig_atomic_t interrupted;
 
 static void note_signal(int number) {
     interrupted = number;
-}
-
-/* The second one ends the program. */
-static void mind_signals(void) {
-    static const int numbers[] = {SIGHUP, SIGINT, SIGTERM};
-    struct sigaction mind = {.sa_handler = note_signal,
-                             .sa_flags = (int)SA_RESETHAND};
-    struct sigaction found;
-    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
-        if (sigaction(numbers[i], NULL, &found) == 0 &&
-            found.sa_handler != SIG_IGN)
-            sigaction(numbers[i], &mind, NULL);
 }
 
 /* What to run. */
@@ -214,7 +203,7 @@ static void begin_saving(job *j, const char *name) {
 static int open_new(job *j) {
     const options *o = j->options;
     if (o->file)
-        mind_signals();
+        signals_catch(note_signal);
     if (lines_open(&j->lines, o->file))
         return TOOL_USAGE;
     for (size_t i = 0; !o->quiet && i < j->notes.count; i++)
@@ -229,7 +218,7 @@ static int open_new(job *j) {
 static int open_again(job *j) {
     const char *name = j->options->resume;
     run_state *s = trajectory_state(j->trajectory);
-    mind_signals();
+    signals_catch(note_signal);
     begin_saving(j, name);
     if (state_load(j->state, j->settings, s) ||
         trajectory_restore(j->trajectory) ||

@@ -43,8 +43,9 @@ void column_panels_free(column_panels *c) {
     free(c->panel);
 }
 
-void column_panels_fill(void *data, double t, const double q[],
-                        const double p[], double values[]) {
+/* An orbit_fill; data are column_panels. */
+static void fill_columns(void *data, double t, const double q[],
+                         const double p[], double values[]) {
     columns_values(&((column_panels *)data)->columns, t, q, p, values);
 }
 
@@ -67,8 +68,8 @@ int column_panels_follow(run_picture *picture, const row_times *times,
     for (size_t i = 0; i < picture->orbits.count; i++) {
         orbit *o = &picture->orbits.item[i];
         columns_follow(&c->columns, o->integrator, o->plan.dt[0]);
-        int status = orbit_follow(o, times, c->columns.count,
-                                  column_panels_fill, c, picture->quiet);
+        int status = orbit_follow(o, times, c->columns.count, fill_columns, c,
+                                  picture->quiet);
         worst = status > worst ? status : worst;
     }
     return worst;

@@ -26,9 +26,6 @@ typedef struct {
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int column_panels_read(column_panels *, const plan *, const char *text);
 void column_panels_free(column_panels *);
-/* An orbit_fill; data are column_panels. */
-void column_panels_fill(void *, double t, const double q[], const double p[],
-                        double values[]);
 
 /* Measured points, of the columns with these names, over the panel.
    x, y    columns of the data; x: NULL for time

@@ -60,8 +60,13 @@ static line fit(const double x[], const double y[], size_t from, size_t to) {
     return l;
 }
 
-double order_slope(const double x[], const double y[], size_t count,
-                   size_t *from, size_t *to) {
+/* The slope of log y over log x, by least squares over as many neighbours as are
+   on a rising line to a factor of 1.25.
+   x         rising
+   from, to  out: the neighbours; to: past the last
+   returns   NAN where no three (of two: both) are on such a line */
+static double order_slope(const double x[], const double y[], size_t count,
+                          size_t *from, size_t *to) {
     static const double near = 0.22, least = 0.5; /* log 1.25; of a slope */
     static const double span = 1.5;               /* of x */
     double slope = NAN;

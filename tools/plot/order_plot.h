@@ -13,12 +13,4 @@ int order_plot_check(const options *, size_t steps);
 /* A panel for each kind of error that the rows have; as plot_write. */
 int order_plot(const options *, const plan *, const row rows[], size_t count);
 
-/* The slope of log y over log x, by least squares over as many neighbours as are
-   on a rising line to a factor of 1.25.
-   x         rising
-   from, to  out: the neighbours; to: past the last
-   returns   NAN where no three (of two: both) are on such a line */
-double order_slope(const double x[], const double y[], size_t count,
-                   size_t *from, size_t *to);
-
 #endif

@@ -90,40 +90,54 @@ static bool is_compared(const costs *c, const study *l, const row *r,
                  (costs_count(c, l) && may_win(c, r, target)));
 }
 
-/* Before the first of them is timed. */
-static void settle_cells(costs *c) {
-    row **all = tool_allocate(COST_TARGETS * c->count, sizeof *all);
+static bool is_shown(const costs *c, const study *l, const row *r,
+                     double target) {
+    (void)target;
+    return r && cost_shows(c, l);
+}
+
+/* What a study needs for a target: one of its levels. */
+typedef struct {
+    study *study;
+    size_t level;
+} cell;
+
+/* The cells that are `wanted`, target by target; returns their number. */
+static size_t find_cells(costs *c,
+                         bool (*wanted)(const costs *, const study *,
+                                        const row *, double target),
+                         cell cells[]) {
     size_t count = 0;
     for (size_t k = 0; k < COST_TARGETS; k++)
         for (size_t i = 0; i < c->count; i++) {
             study *l = &c->study[i];
             const row *r =
                 study_least_work(l, cost_target[k], c->search.by_state);
-            if (is_compared(c, l, r, cost_target[k]))
-                all[count++] = &l->level[r - l->level];
+            if (wanted(c, l, r, cost_target[k]))
+                cells[count++] = (cell){l, (size_t)(r - l->level)};
         }
+    return count;
+}
+
+static void settle_cells(costs *c, const cell cells[], size_t count) {
+    row **all = tool_allocate(count, sizeof *all);
+    for (size_t i = 0; i < count; i++)
+        all[i] = &cells[i].study->level[cells[i].level];
     rows_settle(&c->search.plan, all, count, false);
     free(all);
 }
 
+/* Whether their steps are compiled is decided before the first is timed. */
 static void time_cells(costs *c) {
-    settle_cells(c);
-    for (size_t k = 0; k < COST_TARGETS; k++)
-        for (size_t i = 0; i < c->count; i++) {
-            study *l = &c->study[i];
-            const row *r =
-                study_least_work(l, cost_target[k], c->search.by_state);
-            if (is_compared(c, l, r, cost_target[k]))
-                study_time(&c->search, l, (size_t)(r - l->level));
-        }
-    for (size_t k = 0; k < COST_TARGETS; k++)
-        for (size_t i = 0; i < c->count; i++) {
-            study *l = &c->study[i];
-            const row *r =
-                study_least_work(l, cost_target[k], c->search.by_state);
-            if (r && cost_shows(c, l))
-                study_time(&c->search, l, (size_t)(r - l->level));
-        }
+    cell *cells = tool_allocate(COST_TARGETS * c->count, sizeof *cells);
+    size_t count = find_cells(c, is_compared, cells);
+    settle_cells(c, cells, count);
+    for (size_t i = 0; i < count; i++)
+        study_time(&c->search, cells[i].study, cells[i].level);
+    count = find_cells(c, is_shown, cells);
+    for (size_t i = 0; i < count; i++)
+        study_time(&c->search, cells[i].study, cells[i].level);
+    free(cells);
 }
 
 static void time_others(costs *c, bool shown) {

@@ -20,7 +20,7 @@ static bool fits(const plan *p, const nevh_integrator *scheme) {
     return !status;
 }
 
-void fitting_integrators(const plan *p, list *names) {
+static void fitting_integrators(const plan *p, list *names) {
     for (size_t i = 0; nevh_integrators()[i]; i++)
         if (fits(p, nevh_integrators()[i]))
             list_add(names, nevh_integrator_name(nevh_integrators()[i]));
@@ -76,7 +76,8 @@ double plan_shorten(plan *p, double budget) {
     return whole;
 }
 
-int plan_goes_anywhere(const plan *p) {
+/* TOOL_FAILED, with a message, where the run is to stop at its start. */
+static int plan_goes_anywhere(const plan *p) {
     bool reached = false;
     if (nevh_scene_stops(p->scene) &&
         !nevh_scene_stop_reached(p->scene, p->run->t_start, p->q, p->p,

@@ -109,8 +109,7 @@ const row *study_least_work(const study *, double target, bool by_state);
    study_begin found. */
 bool study_keeps_energy(const study *);
 
-/* fit.c: names of the schemes, and of the gradients, that fit. */
-void fitting_integrators(const plan *, list *names);
+/* fit.c: whether a gradient of that name fits. */
 bool gradient_fits(const plan *, const char *gradient, char **why);
 /* Makes the reference.  Otherwise the message is printed and the exit status
    returned. */
@@ -119,8 +118,6 @@ int plan_require_reference(plan *);
 /* Ends the plan earlier where runs of its integrators would take too long;
    returns the end that it had. */
 double plan_shorten(plan *, double budget);
-/* TOOL_FAILED, with a message, where the run is to stop at its start. */
-int plan_goes_anywhere(const plan *);
 /* How much a search may work. */
 enum { SEARCH_BUDGET = 15 };
 

@@ -1,9 +1,13 @@
 #!/bin/sh
-# run.sh SECONDS: fuzzes the readers of scenes, of states to resume and of the
-# command line, in turn, each so long, under sanitizers.  Needs clang with
-# libFuzzer; what is found is left in the current folder.
+# run.sh [SECONDS [TARGET...]]: fuzzes the readers of scenes, of states to resume
+# and of the command line, in turn, each so long, under sanitizers; or only the
+# targets named: scene, resume, arguments.  Needs clang with libFuzzer; the inputs
+# that fail are left in the current folder.
 
 srcdir=${srcdir:-.}
+seconds=${1:-60}
+test $# -eq 0 || shift
+test $# -gt 0 || set -- scene resume arguments
 clang=$(command -v clang || command -v clang-14) ||
     { echo "fuzz: there is no clang"; exit 77; }
 work=fuzz.$$
@@ -83,13 +87,13 @@ compile >$work/log 2>&1 ||
     { cat $work/log; exit 1; }
 seeds
 result=0
-for target in scene resume arguments; do
+for target; do
     if ! link "$target" >$work/log 2>&1; then
         cat $work/log
         exit 1
     fi
     # stderr has all messages of what is wrong
-    $work/fuzz_"$target" -max_total_time="${1:-60}" -timeout=20 \
+    $work/fuzz_"$target" -max_total_time="$seconds" -timeout=20 \
         -rss_limit_mb=4096 -max_len=4096 -dict=$work/"$target".dict \
         -close_fd_mask=2 -print_final_stats=1 $work/"$target" \
         >$work/log 2>&1
