@@ -41,6 +41,13 @@ has '^heun, dt = 0\.1: (grows|shrinks) to '
 has '^Symplectic integrators keep the area: ratios are 1 within '
 lacks 'ensemble'
 
+# A time comes once, whatever the step.
+for times in '--t-end 5' '--t-end 3 --samples 100' '--t-end 0.3'; do
+    exits 0 flow pendulum --dt 0.1,0.05 --format csv --integrators verlet $times
+    rows | cut -d, -f 4,5 | sort >$work/times
+    test "$(uniq -d $work/times)" = '' || fails "has a time twice: $(uniq -d $work/times)"
+done
+
 # Two degrees of freedom: the sum, of a loop of formulas or of a disc.
 exits 0 flow henon-heiles --dt 0.1 --gradient exact --format csv --t-end 50 \
     --integrators verlet,rk4 \
@@ -125,7 +132,7 @@ refuses 'FILE.svg' pendulum --plot nowhere.doc
 
 # The picture: panels an integrator and time.
 if command -v gnuplot >/dev/null 2>&1; then
-    exits 0 flow pendulum --integrators verlet,euler --t-end 3 \
+    exits 0 flow pendulum --integrators verlet,euler --t-end 10 \
         --plot $work/flow.svg --keep-plot-script $work/script
     test -s $work/flow.svg || fails "draws nothing"
     test "$(grep -c '^set lmargin at' $work/script)" -eq 10 ||

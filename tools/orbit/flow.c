@@ -18,6 +18,19 @@ static int by_size(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
+/* Times that are not a whole step of the longest dt apart make the same row. */
+static void drop_equal_times(flow_job *j, size_t dts) {
+    double longest = 0;
+    size_t kept = 1;
+    for (size_t d = 0; d < dts; d++)
+        longest = fmax(longest, j->plan.dt[d]);
+    for (size_t i = 1; i < j->times; i++)
+        if (llround((j->time[i] - j->time[0]) / longest) >
+            llround((j->time[kept - 1] - j->time[0]) / longest))
+            j->time[kept++] = j->time[i];
+    j->times = kept;
+}
+
 /* When the area is asked for: where the options say, else at once, and after 10,
    30, 100 and 1000 steps, or such parts of the run where that is shorter. */
 static int take_times(flow_job *j, const options *o) {
@@ -42,6 +55,8 @@ static int take_times(flow_job *j, const options *o) {
     qsort(j->time, j->times, sizeof *j->time, by_size);
     if (p->ats && j->times > 1 && j->time[1] == begin)
         memmove(j->time + 1, j->time + 2, (--j->times - 1) * sizeof *j->time);
+    if (!p->ats)
+        drop_equal_times(j, o->dt.count ? p->dts : 1);
     return TOOL_OK;
 }
 
