@@ -23,6 +23,15 @@ holds '$1 == "henon-heiles" && $2 == "verlet" && $3 == 0.2 && $4 >= 1000 &&
        $5 == 1 && abs($6) < 2*$7 && abs($9 - 2) < 0.5 && $10 == "regular"'
 test "$(rows | wc -l)" -eq 1 || fails "has not one row"
 
+# A budget that is spent ends the run where the scene ends it.
+sed 's/^t_end *=.*/t_end = 40/' "$NEVH_SCENES/henon-heiles.nevh" >$work/short.nevh
+exits 0 chaos $work/short.nevh --format csv --starts 1
+holds '$4 > 40 && $10 == "regular"'
+exits 0 chaos $work/short.nevh --format csv --starts 1 --budget 1e-9
+holds '$4 == 40 && $10 == "early"'
+exits 2 chaos henon-heiles --budget 0
+says 'above 0'
+
 # All exponents, in pairs; of each integrator and step that is named.
 exits 0 chaos henon-heiles --start $start --integrators verlet,gauss4 \
     --dt 0.2,0.1 --t-end 200 --exponents all --starts 2 --format csv

@@ -11,6 +11,10 @@ records() {
 exits 2 cost pendulum --repeat 0
 says 'repeat takes numbers above 0'
 exits 2 cost pendulum --repeat 1.5
+exits 2 cost pendulum --budget 0
+says 'budget takes numbers above 0'
+exits 2 recommend pendulum --energy-error 1e-3 --budget 1
+says 'no option of nevh recommend'
 exits 2 cost pendulum --by speed
 exits 2 cost pendulum --integrators verlat
 exits 2 cost double-pendulum --integrators verlet
@@ -29,6 +33,10 @@ exits 2 gradients pendulum --gradient centrall4
 exits 2 gradients double-pendulum --integrators verlet
 exits 2 cost pendulum --t-end 1 --dt 0.1 --integrators verlet \
     -o $work/nowhere/out.csv
+
+# Without seconds nothing is tried, which is said.
+exits 0 cost pendulum --budget 1e-9
+has 'were not tried, for lack of time'
 
 # Given steps, and no others; all but the seconds is the same on every run.
 for run in 1 2; do

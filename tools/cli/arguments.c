@@ -201,6 +201,10 @@ int read_repeat(options *o, const char *argument) {
     return read_count("repeat", argument, &o->search.repeats);
 }
 
+int read_budget(options *o, const char *argument) {
+    return read_positive("budget", argument, &o->search.budget);
+}
+
 int read_data(options *o, const char *argument) {
     o->fit.data = argument;
     return *argument ? TOOL_OK : tool_refuse("--data takes a file");

@@ -64,6 +64,9 @@ static const struct {
      "the largest that the observable may have"},
     {"repeat", "N", FOR_COMPARE | FOR_COST | FOR_RECOMMEND, read_repeat,
      "timed runs, of which the median counts"},
+    {"budget", "SECONDS", FOR_COST | FOR_CHAOS, read_budget,
+     "of processor time for all runs, about; if not given, cost takes a minute "
+     "at most"},
     {"every", "K", FOR_RUN | FOR_EXPORT, read_every,
      "a row each K steps, and at the end"},
     {"samples", "N", FOR_RUN | FOR_FLOW | FOR_CHAOS, read_samples,

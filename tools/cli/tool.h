@@ -188,6 +188,7 @@ typedef struct {
     } native;
     struct { /* of cost and recommend */
         double energy_error, state_error, error;
+        double budget; /* seconds; of chaos, too; 0: not given */
         size_t repeats;
         bool by_state;
     } search;

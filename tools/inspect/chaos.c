@@ -15,6 +15,7 @@ typedef struct {
     size_t exponents;
     page result;
     bool early;
+    double started; /* seconds of processor time */
 } job;
 
 /* One integrator with one step. */
@@ -64,11 +65,17 @@ static bool is_clear(const row *r) {
            (verdict == NEVH_CHAOTIC && error < good_enough * value);
 }
 
+/* Whether a run twice as long has room in the budget. */
+static bool may_double(const job *j) {
+    double budget = j->options->search.budget;
+    return budget == 0 || 2 * (cpu_seconds() - j->started) < budget;
+}
+
 static int run_until_clear(const job *j, const row *r) {
     double begin = j->plan->run->t_start, span = j->plan->t_end - begin;
     double most = fmax(span, most_steps * r->dt);
     int status = nevh_chaos_run(r->chaos, begin + span);
-    while (!status && !is_clear(r) && span < most) {
+    while (!status && !is_clear(r) && span < most && may_double(j)) {
         span = fmin(2 * span, most);
         status = nevh_chaos_run(r->chaos, begin + span);
     }
@@ -233,7 +240,10 @@ static int chaos_of(const options *o, const plan *p) {
     static const char *const columns[] = {
         "scene", "integrator", "dt",   "t",     "exponent",
         "value", "error",      "sali", "megno", "verdict"};
-    job j = {.plan = p, .options = o, .result = {.table = table_new()}};
+    job j = {.plan = p,
+             .options = o,
+             .result = {.table = table_new()},
+             .started = cpu_seconds()};
     int status = check_numbers(&j);
     table_columns(j.result.table, columns, sizeof columns / sizeof *columns);
     if (!status) {

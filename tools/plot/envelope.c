@@ -25,6 +25,6 @@ int energy_trace_observe(void *data, size_t step, double t, const double q[],
                          const double p[]) {
     energy_trace *trace = data;
     (void)step, (void)q, (void)p;
-    add(trace->envelope, t, nevh_energy_result(trace->energy, 0).final);
+    add(trace->envelope, t, nevh_energy_error(trace->energy, 0));
     return NEVH_OK;
 }

@@ -19,6 +19,7 @@ typedef struct {
     bool (*wanted)(nevh_scene *);
     plot_kind kind;
     bool rows, draws;
+    double budget; /* seconds; 0: as much as the command takes */
 } kind_of_part;
 
 static bool always(nevh_scene *scene) {
@@ -53,33 +54,34 @@ static const kind_of_part kinds[] = {
     {"Energy errors",
      "Each row is an integrator at one step. Bounded errors stay; drifting "
      "errors grow with time. The picture shows the error against time.",
-     "compare", compare, always, PLOT_USUAL, true, true},
+     "compare", compare, always, PLOT_USUAL, true, true, 0},
     {"The motion", "The configuration at equal times, by the first integrator.",
      "run --plot-kind configuration", run_scene, has_picture,
-     PLOT_CONFIGURATION, false, true},
+     PLOT_CONFIGURATION, false, true, 0},
     {"Phase plane", "A coordinate and its momentum, by the first integrator.",
-     "run --plot-kind phase", run_scene, always, PLOT_PHASE, false, true},
+     "run --plot-kind phase", run_scene, always, PLOT_PHASE, false, true, 0},
     {"Portrait", "Orbits over level curves of H, a panel for each integrator.",
-     "portrait", portrait, has_plane, PLOT_USUAL, false, true},
+     "portrait", portrait, has_plane, PLOT_USUAL, false, true, 0},
     {"Sections", "Points where the orbit crosses the section.", "section",
-     section, has_sections, PLOT_USUAL, false, true},
+     section, has_sections, PLOT_USUAL, false, true, 0},
     {"Order and chaos",
      "The Lyapunov exponent: how fast orbits that start near by separate.",
-     "chaos --starts 2", chaos, has_room, PLOT_USUAL, true, false},
+     "chaos --starts 2 --budget 4", chaos, has_room, PLOT_USUAL, true, false,
+     4},
     {"What accuracy costs",
      "Processor time for each digit. The picture is the work-precision "
      "diagram: lower left is better.",
-     "cost", cost, always, PLOT_USUAL, true, true},
+     "cost --budget 6", cost, always, PLOT_USUAL, true, true, 6},
     {"Effects",
      "What each effect reads and costs. Effects that are off cost "
      "nothing.",
-     "effects", effects, always, PLOT_USUAL, true, false},
+     "effects", effects, always, PLOT_USUAL, true, false, 0},
     {"Gradients",
      "Error and time of the gradient by each method. Long steps of a "
      "difference truncate, short ones round.",
-     "gradients", gradients, always, PLOT_USUAL, true, true},
+     "gradients", gradients, always, PLOT_USUAL, true, true, 0},
     {"Properties of H", "Tested numerically at states around the start.",
-     "check", check, always, PLOT_USUAL, true, false},
+     "check", check, always, PLOT_USUAL, true, false, 0},
 };
 enum { KINDS = sizeof kinds / sizeof *kinds, STARTS = 2 };
 
@@ -173,6 +175,7 @@ static report_part make_part(const report_work *w, const kind_of_part *kind,
     o.plot.file = kind->draws ? w->picture : NULL;
     o.plot.kind = kind->kind;
     o.chaos.starts = kind->run == chaos ? STARTS : 0;
+    o.search.budget = kind->budget;
     o.as_html = true;
     o.quiet = !kind->rows;
     unlink(w->rows);

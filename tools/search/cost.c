@@ -143,7 +143,8 @@ static void time_cells(costs *c) {
 static void time_others(costs *c, bool shown) {
     for (size_t i = 0; i < c->count; i++)
         for (size_t k = 0; k < c->study[i].count; k++)
-            if (!shown || cost_shows(c, &c->study[i]))
+            if (!shown ||
+                (cost_shows(c, &c->study[i]) && !search_is_late(&c->search)))
                 study_time(&c->search, &c->study[i], k);
 }
 
@@ -259,12 +260,16 @@ static int draw_costs(const options *o, const costs *c) {
     return status;
 }
 
+static double cost_budget(const options *o) {
+    return o->search.budget > 0 ? o->search.budget : SEARCH_BUDGET;
+}
+
 static int cost_plan(const options *o, plan *p, double whole) {
     output out;
     if (order_plot_check(o, o->dt.count ? o->dt.count : 2) || plot_check(o) ||
         output_open(&out, o->file))
         return TOOL_USAGE;
-    costs c = {.search = search_begin(p, o, SEARCH_BUDGET),
+    costs c = {.search = search_begin(p, o, cost_budget(o)),
                .whole = whole,
                .all = o->integrators.count > 0};
     make_studies(&c);
@@ -293,7 +298,7 @@ int cost(const options *o) {
     if (!status)
         status = plan_search(&p, o);
     if (!status && !o->t_end && !o->dt.count)
-        whole = plan_shorten(&p, SEARCH_BUDGET);
+        whole = plan_shorten(&p, cost_budget(o));
     if (!status && (o->search.by_state || o->observable))
         status = plan_require_reference(&p);
     else if (!status && o->format != FORMAT_TABLE)

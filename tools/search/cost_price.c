@@ -51,7 +51,7 @@ void cost_price(costs *c, list *words) {
     for (size_t i = 0; nevh_gradients()[i]; i++) {
         const char *name = nevh_gradient_name(nevh_gradients()[i]);
         study other = study_new(l->integrator, name);
-        if (strcmp(name, l->gradient) != 0 &&
+        if (strcmp(name, l->gradient) != 0 && !search_is_late(&c->search) &&
             gradient_fits(&c->search.plan, name, NULL)) {
             study_run(&c->search, &other, k);
             study_time(&c->search, &other, 0);

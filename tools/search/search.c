@@ -9,6 +9,7 @@
 static const double one_row =
     0.0125; /* of the budget, or more of few schemes */
 static const double one_scheme = 0.16;
+static const double most_seconds = 60;
 
 double search_longest_dt(const plan *p) {
     double longest = 0;
@@ -35,6 +36,7 @@ search search_begin(const plan *p, const options *o, double budget) {
                 .by_state = o->search.by_state || o->observable,
                 .quiet = o->quiet,
                 .budget = budget,
+                .seconds = o->search.budget > 0 ? budget : most_seconds,
                 .started = cpu_seconds(),
                 .landing = grid_dt(grid_dt_place(8 * search_longest_dt(p)))};
     s.plan.hurried = true;
@@ -54,16 +56,18 @@ const char *search_error(const search *s) {
                                 : "state";
 }
 
+bool search_is_late(const search *s) {
+    return cpu_seconds() - s->started > s->seconds;
+}
+
 /* Where a second is worth less work than anybody expects it ends, too. */
 bool search_is_over(const search *s, double share) {
-    static const double most_seconds = 60;
-    return s->spent > share * s->budget ||
-           cpu_seconds() - s->started > most_seconds;
+    return s->spent > share * s->budget || search_is_late(s);
 }
 
 bool search_may_time(const search *s) {
-    static const double enough = 12;
-    return cpu_seconds() - s->started < enough;
+    static const double enough = 0.8; /* of the budget */
+    return cpu_seconds() - s->started < enough * s->budget;
 }
 
 static bool shows_progress(const search *s) {

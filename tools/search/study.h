@@ -51,6 +51,7 @@ typedef struct {
     bool keeping;   /* steps of those that keep the energy at any are of use */
     size_t repeats; /* 0: chosen */
     double budget;  /* work for all rows */
+    double seconds; /* for all rows, whatever the work */
     double spent;
     double started;         /* seconds */
     double landing;         /* dt of adaptive schemes */
@@ -63,6 +64,8 @@ typedef struct {
  * tolerances of the plan. */
 search search_begin(const plan *, const options *, double budget);
 bool search_is_over(const search *, double share); /* of the budget */
+/* Whether no seconds are left. */
+bool search_is_late(const search *);
 /* Whether times may be measured again: seconds, of which no row depends. */
 bool search_may_time(const search *);
 /* Says on stderr, after a second, what is running. */
