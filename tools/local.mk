@@ -12,6 +12,7 @@ tools_nevh_SOURCES = \
 	tools/cli/numbers.c \
 	tools/cli/table_private.h \
 	tools/cli/table.c \
+	tools/cli/shell_line.c \
 	tools/cli/output.c \
 	tools/cli/outputs.c \
 	tools/cli/scenes.c \

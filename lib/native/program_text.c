@@ -126,8 +126,10 @@ static size_t end_of_function(char **lines, size_t i, size_t count) {
 /* A function that no other line names goes, and the comment before it. */
 static void drop_function(char **lines, size_t i, size_t count) {
     size_t end = end_of_function(lines, i, count);
+    if (end == i)
+        return;
     const char *name = strchr(lines[i], '('), *after = name;
-    if (end == i || strncmp(name, "(double t0", 10) == 0) /* advance */
+    if (strncmp(name, "(double t0", 10) == 0) /* advance */
         return;
     while (name > lines[i] && is_word(name[-1]))
         name--;

@@ -64,6 +64,16 @@ scene fall 'x = 1' 'p_x^2/2 - 1/x'
 exits 1 reference $work/fall.nevh --at 3
 says 'no reference at t = 3'
 
+# What would take too long is refused early, with how long; the parts that an
+# orbit is gone in do not change it.
+exits 1 reference pendulum --at 1,1e12 --stop-after 0.5
+says 't = 1e\+12 takes about [0-9.]+e\+0?[6-9] s .* more than the 0.5 s of --stop-after'
+exits 0 reference pendulum --at 0,7,20 --format csv --quiet
+has '^0,phi,2\.0+,24,'
+grep '^20,' $work/out >$work/parts
+exits 0 reference pendulum --at 20 --format csv --quiet
+sed 1d $work/out | cmp -s - $work/parts || fails 'depends on times before'
+
 # Values without a certain digit are not shown, and no advice is given that the
 # next run would break.
 exits 0 reference double-pendulum-chaotic --at 20,80

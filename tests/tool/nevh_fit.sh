@@ -164,4 +164,45 @@ dt = 0.05
 integrators = verlet' >$work/away.nevh
 exits 1 fit $work/away.nevh --data $work/nothing.csv --vary k --sigma 1e-3
 says 'does not converge: after 100 iterations it is at k = [0-9.]+e\+[0-9]+ \(from 1\), with residuals of rms [0-9.]+ standard deviations; begin nearer'
+
+# Each number is assigned where it begins, which changes the scene: a velocity
+# that depends on time is that at the start all the same.  glibc fills freed
+# memory with this byte.
+cat >$work/push.nevh <<'END'
+[parameters]
+k = 1
+[coordinates]
+x = 0.5
+p_x = 0.25
+[effects]
+kinetic = (p_x - sin(t))^2/2
+spring = k*x^2/2
+[run]
+t_start = 2
+t_end = 9
+dt = 0.05
+END
+exits 0 run $work/push.nevh --samples 20 --format csv --quiet
+cut -d, -f 1,2 $work/out >$work/push.csv
+MALLOC_PERTURB_=165
+GLIBC_TUNABLES=glibc.malloc.tcache_count=0
+export MALLOC_PERTURB_ GLIBC_TUNABLES
+exits 0 fit $work/push.nevh --data $work/push.csv --vary x,v_x --format csv --quiet
+unset MALLOC_PERTURB_ GLIBC_TUNABLES
+awk -F, '$4 == "v_x" { exit !(($5 - (0.25 - sin(2)))^2 < 1e-20) }' $work/out ||
+    fails 'does not begin with the velocity at the start'
+
+# What is to be typed next runs what was fitted, also where a shell would read
+# names otherwise.
+cp $srcdir/scenes/pendulum.nevh "$work/it's a scene.nevh"
+exits 0 run pendulum --set m=2,g=9.5 --dt 0.05 --t-end 4 --samples 30 --format csv --quiet
+cut -d, -f 1,2 $work/out >"$work/some data.csv"
+exits 0 fit "$work/it's a scene.nevh" --data "$work/some data.csv" --vary g --set m=2 \
+    --integrators blanes-moan4 --dt 0.01 --t-end 5
+next=$(sed -n '/^Next:$/{ n; s/^  nevh //; s/ --plot-kind time --plot -$//p; }' $work/out)
+eval "exits 0 $next --format csv"
+has '^# integrator: blanes-moan4'
+has '^# .*dt = 0\.01'
+has '^# .*m=2, g=9\.5'
+has '^4,'
 exit $status

@@ -47,8 +47,11 @@ static int make_file(const options *o, const char *file) {
     char *text = o->from ? text_from(o, file) : text_print("%s", scene_sample);
     int status = text ? write_new(file, text) : TOOL_USAGE;
     free(text);
-    if (!status && !o->quiet)
-        printf("%s is made.   Next: nevh compare %s\n", file, file);
+    if (!status && !o->quiet) {
+        char *next = shell_word(text_print("nevh compare"), file);
+        printf("%s is made.   Next: %s\n", file, next);
+        free(next);
+    }
     return status;
 }
 

@@ -108,9 +108,9 @@ static const struct {
      "max(F), mean(F), crossings, period"},
     {"retry", NULL, FOR_SWEEP, read_retry,
      "with --resume: run members that failed again"},
-    {"stop-after", "TIME", FOR_SWEEP, read_stop_after,
+    {"stop-after", "TIME", FOR_SWEEP | FOR_REFERENCE, read_stop_after,
      "finish the members under way after 50m, 2h or 90s, and end with exit "
-     "status 3"},
+     "status 3; of reference: refuse what takes longer (10m)"},
     {"task", "I/N", FOR_SWEEP, read_task,
      "run part I of N alone, into FILE.I-of-N.npy"},
     {"join", NULL, FOR_SWEEP, read_join,

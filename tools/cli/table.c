@@ -376,7 +376,8 @@ static void print_comments(const list *l, FILE *f) {
 static void print_wrapped(const char *text, FILE *f) {
     enum { WIDTH = 80 };
     if (*text == ' ') {
-        fprintf(f, "%s\n", text);
+        print_safely(text, strlen(text), f);
+        fputc('\n', f);
         return;
     }
     for (size_t in = 0; *text; in = 2) {

@@ -215,6 +215,13 @@ typedef struct {
    assignment to a parameter or of a start, in the order given.
    returns  TOOL_OK or TOOL_USAGE, the message being printed */
 int options_read(options *, int argc, char **argv);
+/* shell_line.c: a line for a shell, "  nevh COMMAND SCENE" and the settings given;
+   to be freed, unless it is made longer.  A word that a shell would change is
+   quoted. */
+char *shell_line(const options *, const char *run, const char *scene);
+char *shell_word(char *line, const char *word);
+char *shell_option(char *line, const char *name, const char *value);
+char *shell_number(char *line, const char *name, double value);
 /* That all options given are for this command. */
 int options_check(const options *, unsigned which);
 /* What --set and --start gave, a line each. */

@@ -193,31 +193,38 @@ static void judge(const job *j, list *words) {
                            f->correlation[k * f->count + i]);
 }
 
-/* " --set l=1,g=2", of parameters or of starts; "" of none. */
-static char *options_of(const fitting *f, bool starts) {
-    char *text = text_print("%s", "");
+/* With the values found, of parameters or of starts: "l=1,g=2". */
+static char *add_values(char *line, const fitting *f, bool starts) {
+    char *values = text_print("%s", "");
     for (size_t k = 0; k < f->count; k++) {
         if (f->item[k].start != starts)
             continue;
-        char *longer = text_print("%s%s%s=%.7g", text,
-                                  *text    ? ","
-                                  : starts ? " --start "
-                                           : " --set ",
+        char *longer = text_print("%s%s%s=%.7g", values, *values ? "," : "",
                                   f->item[k].name, f->item[k].value);
-        free(text);
-        text = longer;
+        free(values);
+        values = longer;
     }
-    return text;
+    if (*values)
+        line = shell_option(line, starts ? "start" : "set", values);
+    free(values);
+    return line;
 }
 
+/* The run of the values found, as they were fitted. */
 static void add_next(const job *j, const options *o, list *words) {
-    char *sets = options_of(&j->fit, false);
-    char *starts = options_of(&j->fit, true);
-    list_print(words,
-               "Next: nevh run %s%s%s --data %s --plot-kind time --plot -",
-               j->plan.name, sets, starts, o->fit.data);
-    free(sets);
-    free(starts);
+    char *line = shell_line(o, "run", j->plan.name);
+    line = add_values(line, &j->fit, false);
+    line = add_values(line, &j->fit, true);
+    if (o->integrators.count)
+        line = shell_option(line, "integrators", j->fit.integrator);
+    if (o->dt.count)
+        line = shell_number(line, "dt", j->dt);
+    if (o->t_end)
+        line = shell_option(line, "t-end", o->t_end);
+    line = shell_option(line, "data", o->fit.data);
+    list_add(words, "Next:");
+    list_print(words, "%s --plot-kind time --plot -", line);
+    free(line);
 }
 
 static void add_words(const job *j, const options *o, list *words) {

@@ -14,15 +14,15 @@ static bool is_start(const plan *p, const char *name) {
     return false;
 }
 
-/* What the scene says. */
+/* What the scene says, whose run settings are others after each assignment. */
 static int first_value(fitting *f, varied *v, const options *o) {
     plan *p = f->plan;
+    double t = nevh_scene_run_settings(p->scene)->t_start;
     v->start = is_start(p, v->name);
     if (!v->start)
         return scene_number(p->scene, o, v->name, &v->first);
     if (nevh_scene_set_judged(p->scene, v->name) ||
-        nevh_scene_judged_value(p->scene, p->run->t_start, p->q, p->p,
-                                &v->first))
+        nevh_scene_judged_value(p->scene, t, p->q, p->p, &v->first))
         return scene_report(p->scene, o);
     return TOOL_OK;
 }

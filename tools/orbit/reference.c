@@ -3,9 +3,11 @@
 #include "experiment/plan.h"
 #include <math.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 enum { MOST_DIGITS = 30 };
 static const size_t usual_digits = 24;
+static const double usual_seconds = 600;
 
 typedef struct {
     const plan *plan;
@@ -13,6 +15,10 @@ typedef struct {
     size_t digits, fewest; /* asked for; had */
     double lost;           /* the first time with fewer; NAN */
     size_t left;           /* the fewest then */
+    double t, part;        /* where the orbit is; what to go at once */
+    double end;
+    double budget, begun, shown; /* in seconds of processor time */
+    bool progress;               /* to be shown on stderr */
 } job;
 
 static char *name_of(const plan *p, size_t k) {
@@ -50,16 +56,68 @@ static void put_state(job *j, double t, table *rows) {
     }
 }
 
+/* The way that is left is taken to cost what the way behind did. */
+static double seconds_left(const job *j) {
+    double start = j->plan->run->t_start;
+    return (cpu_seconds() - j->begun) * (j->end - j->t) / (j->t - start);
+}
+
+static void show_progress(job *j) {
+    double now = cpu_seconds();
+    if (!j->progress || now < j->shown + 1)
+        return;
+    j->shown = now;
+    fprintf(stderr, "\r\033[Kt = %.4g of %.4g, %zu series, %.2g s left", j->t,
+            j->end, nevh_certain_series(j->orbit), seconds_left(j));
+}
+
+static void clear_progress(const job *j) {
+    fputs(j->progress ? "\r\033[K" : "", stderr);
+}
+
+/* Before a hundredth of the budget is spent nothing is foreseen. */
+static int check_budget(const job *j) {
+    double start = j->plan->run->t_start, spent = cpu_seconds() - j->begun;
+    double whole = spent + seconds_left(j);
+    if (spent < j->budget / 100 || whole <= j->budget)
+        return TOOL_OK;
+    clear_progress(j);
+    tool_refuse("%s: t = %.9g takes about %.2g s of processor time, more than "
+                "the %g s of --stop-after, which reach t = %.2g",
+                j->plan->name, j->end, whole, j->budget,
+                start + (j->t - start) * j->budget / spent);
+    return TOOL_FAILED;
+}
+
+/* In parts of a tenth of a second or so; the orbit does not depend on them. */
+static int go(job *j, double t) {
+    while (j->t < t) {
+        double before = cpu_seconds(), next = fmin(j->t + j->part, t);
+        next = next > j->t ? next : nextafter(j->t, t);
+        if (nevh_certain_go(j->orbit, next)) {
+            clear_progress(j);
+            tool_refuse("the orbit has no reference at t = %.9g: %s", t,
+                        nevh_certain_message(j->orbit));
+            return TOOL_FAILED;
+        }
+        j->t = next;
+        j->part *= cpu_seconds() - before < 0.1 ? 2 : 0.5;
+        show_progress(j);
+        int status = check_budget(j);
+        if (status)
+            return status;
+    }
+    return TOOL_OK;
+}
+
 static int put_states(job *j, table *rows) {
     const plan *p = j->plan;
     const double *times = p->ats ? p->at : &p->t_end;
     size_t count = p->ats ? p->ats : 1;
     for (size_t i = 0; i < count; i++) {
-        if (nevh_certain_go(j->orbit, times[i])) {
-            tool_refuse("the orbit has no reference at t = %.9g: %s", times[i],
-                        nevh_certain_message(j->orbit));
-            return TOOL_FAILED;
-        }
+        int status = go(j, times[i]);
+        if (status)
+            return status;
         if (i)
             table_group(rows);
         put_state(j, times[i], rows);
@@ -97,9 +155,18 @@ static void put_notes(const job *j, page *result) {
 static int reference_of(const options *o, const plan *p) {
     static const char *const columns[] = {"t", "variable", "value", "digits",
                                           "error"};
-    job j = {
-        .plan = p, .digits = o->digits ? o->digits : usual_digits, .lost = NAN};
+    double start = p->run->t_start, now = cpu_seconds();
+    job j = {.plan = p,
+             .digits = o->digits ? o->digits : usual_digits,
+             .lost = NAN,
+             .t = start,
+             .end = p->ats ? p->at[p->ats - 1] : p->t_end,
+             .budget = o->stop_after > 0 ? o->stop_after : usual_seconds,
+             .begun = now,
+             .shown = now,
+             .progress = !o->quiet && isatty(STDERR_FILENO)};
     j.fewest = j.digits;
+    j.part = 0x1p-60 * (j.end - start);
     j.orbit = tool_owned(nevh_certain_new(p->system, p->run->t_start, p->q,
                                           p->p, (int)j.digits));
     page result = {.table = table_new()};
@@ -111,6 +178,7 @@ static int reference_of(const options *o, const plan *p) {
     if (!status)
         status = put_states(&j, result.table);
     if (!status) {
+        clear_progress(&j);
         put_notes(&j, &result);
         status = output_page(o, &result, status);
     }

@@ -91,55 +91,23 @@ static size_t list_rows(const advice *a, row rows[ADVICE_MOST]) {
     return count;
 }
 
-/* To be typed: quoted where a shell would read it otherwise. */
-static char *append(char *text, const char *name, const char *value) {
-    bool plain = !value[strcspn(value, " ()*[]{}?<>|&;$\\\"'`!#~")];
-    const char *quote = plain || strchr(value, '\'') ? "" : "'";
-    char *longer =
-        text_print("%s --%s %s%s%s", text, name, quote, value, quote);
-    free(text);
-    return longer;
-}
-
-static char *append_number(char *text, const char *name, double value) {
-    char *number = text_print("%.17g", value);
-    for (int digits = 6; digits < 17; digits++) {
-        free(number);
-        number = text_print("%.*g", digits, value);
-        if (strtod(number, NULL) == value)
-            break;
-    }
-    text = append(text, name, number);
-    free(number);
-    return text;
-}
-
 /* As the rows were run. */
 static char *command_line(const advice *a, const options *o, const row *r) {
     const plan *p = &a->search.plan;
-    char *text = text_print("  nevh compare %s", p->name);
-    for (size_t i = 0; i < o->settings.count; i++) {
-        const char *setting = o->settings.item[i];
-        text = append(text,
-                      *setting == '+'   ? "with"
-                      : *setting == '-' ? "without"
-                      : *setting == '@' ? "start"
-                                        : "set",
-                      setting + 1);
-    }
-    text = append(text, "integrators", r->integrator);
+    char *text = shell_line(o, "compare", p->name);
+    text = shell_option(text, "integrators", r->integrator);
     if (study_takes_gradients(a->best))
-        text = append(text, "gradient", r->gradient);
+        text = shell_option(text, "gradient", r->gradient);
     if (study_takes_gradients(a->best) && p->gradient_step > 0)
-        text = append_number(text, "gradient-step", p->gradient_step);
+        text = shell_number(text, "gradient-step", p->gradient_step);
     text =
-        append_number(text, "dt", r->tolerance > 0 ? a->search.landing : r->dt);
+        shell_number(text, "dt", r->tolerance > 0 ? a->search.landing : r->dt);
     if (r->tolerance > 0)
-        text = append_number(text, "tolerance", r->tolerance);
+        text = shell_number(text, "tolerance", r->tolerance);
     if (o->t_end)
-        text = append(text, "t-end", o->t_end);
+        text = shell_option(text, "t-end", o->t_end);
     if (p->observable)
-        text = append(text, "observable", p->observable);
+        text = shell_option(text, "observable", p->observable);
     return text;
 }
 

@@ -1,0 +1,68 @@
+/* nevh: lines to be typed into a shell.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "tool.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* Appends bytes, and frees the text. */
+static char *longer(char *text, const char *from, size_t bytes) {
+    char *result = text_print("%s%.*s", text, (int)bytes, from);
+    free(text);
+    return result;
+}
+
+/* In single quotes, where a quote itself is '\''. */
+static char *quoted(const char *word) {
+    static const char special[] = " \t\n()*[]{}?<>|&;$\\\"'`!#~";
+    if (*word && !word[strcspn(word, special)])
+        return text_print("%s", word);
+    char *text = text_print("'");
+    while (*word) {
+        size_t bytes = strcspn(word, "'");
+        text = longer(text, word, bytes);
+        word += bytes;
+        if (*word)
+            text = longer(text, "'\\''", 4), word++;
+    }
+    return longer(text, "'", 1);
+}
+
+char *shell_word(char *line, const char *word) {
+    char *quotes = quoted(word), *result = text_print("%s %s", line, quotes);
+    free(quotes);
+    free(line);
+    return result;
+}
+
+char *shell_option(char *line, const char *name, const char *value) {
+    char *option = text_print("%s --%s", line, name);
+    free(line);
+    return shell_word(option, value);
+}
+
+char *shell_number(char *line, const char *name, double value) {
+    char *number = text_print("%.17g", value);
+    for (int digits = 6; digits < 17; digits++) {
+        free(number);
+        number = text_print("%.*g", digits, value);
+        if (strtod(number, NULL) == value)
+            break;
+    }
+    line = shell_option(line, name, number);
+    free(number);
+    return line;
+}
+
+char *shell_line(const options *o, const char *run, const char *scene) {
+    char *line = shell_word(text_print("  nevh %s", run), scene);
+    for (size_t i = 0; i < o->settings.count; i++) {
+        const char *setting = o->settings.item[i];
+        line = shell_option(line,
+                            *setting == '+'   ? "with"
+                            : *setting == '-' ? "without"
+                            : *setting == '@' ? "start"
+                                              : "set",
+                            setting + 1);
+    }
+    return line;
+}
