@@ -70,6 +70,7 @@ suites = \
 	tests/diagnose/check_loop \
 	tests/diagnose/check_frequencies \
 	tests/tool/check_grid \
+	tests/tool/check_plot_thin \
 	tests/system/check_friction \
 	tests/run/check_damped_orbits \
 	tests/run/check_damped_steps \
@@ -123,6 +124,9 @@ tests_expression_check_formula_extremes_LDADD = $(INSIDE_LIBS)
 tests_expression_check_random_terms_LDADD = $(INSIDE_LIBS)
 tests_robust_check_hard_pendulum_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_tool_check_grid_SOURCES = tests/tool/check_grid.c tools/search/grid.c
+tests_tool_check_plot_thin_SOURCES = tests/tool/check_plot_thin.c \
+	tools/plot/plot_thin.c \
+	tools/cli/words.c
 tests_tool_check_hard_judge_SOURCES = tests/tool/check_hard_judge.c \
 	tools/hard/hard_private.h \
 	tools/hard/hard_cases.c \

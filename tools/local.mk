@@ -101,6 +101,8 @@ tools_nevh_SOURCES = \
 	tools/plot/plot_ticks.c \
 	tools/plot/plot_layout.c \
 	tools/plot/plot_script.c \
+	tools/plot/plot_svg.c \
+	tools/plot/plot_thin.c \
 	tools/plot/plot_map.c \
 	tools/plot/plot_quote.c \
 	tools/plot/plot_gnuplot.c \

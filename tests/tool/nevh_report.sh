@@ -53,6 +53,10 @@ for used in $(grep -Eo "xlink:href='#[^']*" $page | sed "s/.*#//" | sort -u); do
     grep -q "id='$used'" $page || fails "uses $used, which is not there"
 done
 
+# Dots of an orbit are one path; marks are elements of their own.
+test "$(grep -c '<use' $page)" -lt 1000 || fails "has an element a dot"
+grep -q "stroke-linecap='round'" $page || fails "has no dots"
+
 # The command that a part names makes its numbers.
 line=$(sed -n 's/^<p>Made by <code>nevh \(compare pendulum.*\)<\/code>.*/\1/p' \
     $page | sed "s/'//g")

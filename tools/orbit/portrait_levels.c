@@ -161,38 +161,76 @@ void levels_free(levels *l) {
 
 /* Curves. */
 
-/* Where the level crosses the edge from one corner of a cell to the next. */
-static bool cross(const levels *l, double level, const size_t i[2],
-                  const size_t k[2], double *x, double *y) {
-    double a = l->h[k[0] * ACROSS + i[0]] - level;
-    double b = l->h[k[1] * ACROSS + i[1]] - level;
+/* Where a level crosses an edge of the grid: from a corner to the one on its
+   right, or, those after them, to the one above it. */
+typedef struct {
+    double x, y;
+    size_t count, next[2]; /* crossings that a curve goes on to */
+} crossing;
+enum { EDGES = 2 * ACROSS * UP };
+
+static bool cross(const levels *l, double level, size_t edge, crossing *c) {
+    bool upright = edge >= ACROSS * UP;
+    size_t from = edge % (ACROSS * UP), to = from + (upright ? ACROSS : 1);
+    size_t i[2] = {from % ACROSS, to % ACROSS};
+    size_t k[2] = {from / ACROSS, to / ACROSS};
+    double a = l->h[from] - level, b = l->h[to] - level;
     if (!((a < 0 && b >= 0) || (a >= 0 && b < 0)))
         return false;
     double part = a / (a - b);
-    *x = x_at(l, i[0]) + part * (x_at(l, i[1]) - x_at(l, i[0]));
-    *y = y_at(l, k[0]) + part * (y_at(l, k[1]) - y_at(l, k[0]));
+    c->x = x_at(l, i[0]) + part * (x_at(l, i[1]) - x_at(l, i[0]));
+    c->y = y_at(l, k[0]) + part * (y_at(l, k[1]) - y_at(l, k[0]));
     return true;
 }
 
+static void join(crossing *all, size_t a, size_t b) {
+    all[a].next[all[a].count++] = b;
+    all[b].next[all[b].count++] = a;
+}
+
 /* Marching squares: the crossings of a cell's edges, two by two. */
-static void draw_level(const levels *l, plot *to, size_t series, double level) {
-    static const size_t corner[5][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
+static void find_crossings(const levels *l, double level, crossing *all) {
     for (size_t k = 0; k + 1 < UP; k++)
         for (size_t i = 0; i + 1 < ACROSS; i++) {
-            int count = 0;
+            size_t at = k * ACROSS + i, up = ACROSS * UP + at;
+            size_t edge[4] = {at, up + 1, at + ACROSS, up}, last = EDGES;
             for (int e = 0; e < 4; e++) {
-                size_t column[2] = {i + corner[e][0], i + corner[e + 1][0]};
-                size_t row[2] = {k + corner[e][1], k + corner[e + 1][1]};
-                double x, y;
-                if (!cross(l, level, column, row, &x, &y))
+                if (!cross(l, level, edge[e], &all[edge[e]]))
                     continue;
-                plot_point(to, series, x, y);
-                if (++count % 2 == 0)
-                    plot_break(to, series);
+                if (last < EDGES)
+                    join(all, last, edge[e]);
+                last = last < EDGES ? EDGES : edge[e];
             }
-            if (count % 2)
-                plot_break(to, series);
         }
+}
+
+static void leave(crossing *c, size_t to) {
+    if (c->next[0] == to)
+        c->next[0] = c->next[1];
+    c->count--;
+}
+
+static void draw_curve(crossing *all, size_t at, plot *to, size_t series) {
+    plot_point(to, series, all[at].x, all[at].y);
+    while (all[at].count) {
+        size_t next = all[at].next[0];
+        leave(&all[at], next);
+        leave(&all[next], at);
+        at = next;
+        plot_point(to, series, all[at].x, all[at].y);
+    }
+    plot_break(to, series);
+}
+
+/* Curves that end at the window first, then those that are closed. */
+static void draw_level(const levels *l, plot *to, size_t series, double level) {
+    crossing *all = tool_allocate(EDGES, sizeof *all);
+    find_crossings(l, level, all);
+    for (size_t count = 1; count <= 2; count++)
+        for (size_t i = 0; i < EDGES; i++)
+            if (all[i].count == count)
+                draw_curve(all, i, to, series);
+    free(all);
 }
 
 static void draw_equilibria(const levels *l, plot *to) {

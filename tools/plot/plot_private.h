@@ -101,6 +101,7 @@ typedef struct {
     size_t columns, lines; /* of PLOT_TEXT */
     bool colours;          /* of PLOT_TEXT */
     const char *file;      /* NULL: gnuplot's stdout */
+    bool on_page; /* of a report: small, without points that are not seen */
 } target;
 void plot_script(const plot *, const target *, FILE *);
 
@@ -130,6 +131,27 @@ bool plot_in_legend(const plot *, size_t series);
 size_t plot_letter_bytes(const unsigned char *);
 size_t plot_letters(const char *text);
 
+/* plot_thin.c: fewer points, which look the same on a panel of that size. */
+typedef struct {
+    range x, y;
+    bool log_x, log_y;
+    double width, height; /* pixels */
+} plot_screen;
+typedef enum {
+    THIN_NONE,
+    THIN_LINE,
+    THIN_SOLID, /* also: no part that lies over another of the series */
+    THIN_DOTS   /* none that lies over another */
+} plot_thinning;
+/* How far, in pixels, a point of what is left out, within the panel, is at most
+   from what is drawn. */
+double plot_thin_error(plot_thinning);
+/* to  has room for twice as many; points of `from`, and breaks
+   returns  how many they are */
+size_t plot_thin(const plot_screen *, plot_thinning, const pair from[],
+                 size_t count, pair to[]);
+pair plot_in_pixels(const plot_screen *, pair);
+
 /* plot_quote.c: a text in double quotes: its first `bytes`, and `more`; at most
    so many letters; with a command around it. */
 void plot_quote_part(FILE *, const char *text, size_t bytes, const char *more);
@@ -143,6 +165,9 @@ enum { PLOT_NOTE_LINES = 3, PLOT_NOTE_FONT = 11 };
 size_t plot_note_letters(const layout *); /* of a line of the note */
 enum { PLOT_TITLE_LINES = 2 };
 size_t plot_title_letters(const layout *); /* of a line of the title */
+
+/* plot_svg.c: the same picture of SVG in fewer bytes. */
+void plot_svg_shorten(FILE *from, FILE *to);
 
 /* plot_gnuplot.c: gnuplot --version, and a script to be drawn to a file.
    returns  TOOL_OK, or TOOL_USAGE with the message printed */

@@ -71,14 +71,65 @@ static void print_output(FILE *f, const char *file) {
     fputs("\"\n", f);
 }
 
-static void print_points(FILE *f, const series *s, size_t number) {
-    fprintf(f, "$series%zu << EOD\n", number);
-    for (size_t k = 0; k < s->count; k++)
-        if (isnan(s->point[k].x))
+/* Where all points of a form matter, none is left out. */
+static plot_thinning thinning_of(const plot *p, const series *s) {
+    switch (s->form) {
+    case PLOT_LINES:
+        return p->colourful || s->look % DASHES == 0 ? THIN_SOLID : THIN_LINE;
+    case PLOT_TRAIL:
+        return s->dash % DASHES == 0 ? THIN_SOLID : THIN_LINE;
+    case PLOT_BEHIND:
+    case PLOT_LEVEL:
+    case PLOT_SEPARATRIX:
+        return THIN_SOLID;
+    case PLOT_FILLED:
+    case PLOT_HOLE:
+        return THIN_LINE;
+    case PLOT_POINTS:
+    case PLOT_DOTS:
+        return THIN_DOTS;
+    default:
+        return THIN_NONE;
+    }
+}
+
+static plot_screen screen_of(const plot *p, size_t number, const layout *l) {
+    axes a = plot_axes(p, number, l, false);
+    return (plot_screen){a.x.shown, a.y.shown,      a.x.log,
+                         a.y.log,   l->panel_width, l->panel_height};
+}
+
+static void print_points(FILE *f, const pair point[], size_t count) {
+    for (size_t k = 0; k < count; k++)
+        if (isnan(point[k].x))
             fputc('\n', f);
         else
-            fprintf(f, "%.15g %.15g\n", s->point[k].x, s->point[k].y);
+            fprintf(f, "%.15g %.15g\n", point[k].x, point[k].y);
+}
+
+/* screens  of the panels; NULL: no point is left out */
+static void print_data(FILE *f, const plot *p, size_t i,
+                       const plot_screen *screens) {
+    const series *s = &p->series[i];
+    pair *seen = tool_allocate(2 * s->count, sizeof *seen);
+    size_t count = screens ? plot_thin(&screens[s->panel], thinning_of(p, s),
+                                       s->point, s->count, seen)
+                           : 0;
+    fprintf(f, "$series%zu << EOD\n", i + 1);
+    print_points(f, screens ? seen : s->point, screens ? count : s->count);
     fputs("EOD\n", f);
+    free(seen);
+}
+
+static void print_all_data(FILE *f, const plot *p, const layout *l,
+                           bool thins) {
+    plot_screen *screens = tool_allocate(p->panels, sizeof *screens);
+    for (size_t i = 0; i < p->panels && thins; i++)
+        screens[i] = screen_of(p, i, l);
+    for (size_t i = 0; i < p->count; i++)
+        if (p->series[i].count)
+            print_data(f, p, i, thins ? screens : NULL);
+    free(screens);
 }
 
 /* Neighbours are far apart on the circle of hues, and differ in lightness. */
@@ -434,14 +485,13 @@ static void print_legend(FILE *f, const plot *p, const layout *l, bool text) {
     print_plots(f, p, p->panels, true, text);
 }
 
-static void print_picture(FILE *f, const plot *p, const layout *l, bool text) {
+static void print_picture(FILE *f, const plot *p, const layout *l, bool text,
+                          bool on_page) {
     bool apart = l->legend > 0 && l->legend_apart;
     bool several = p->panels > 1 || apart;
     print_frame(f, p, l, text);
     print_looks(f, p);
-    for (size_t i = 0; i < p->count; i++)
-        if (p->series[i].count)
-            print_points(f, &p->series[i], i + 1);
+    print_all_data(f, p, l, on_page);
     if (p->map.columns)
         print_map(f, &p->map, l);
     if (several)
@@ -470,8 +520,9 @@ void plot_script(const plot *p, const target *t, FILE *f) {
     print_terminal(f, t, &l);
     if (t->file)
         print_output(f, t->file);
+    bool text = t->medium == PLOT_TEXT;
     for (; p; p = p->next) {
-        print_picture(f, p, &l, t->medium == PLOT_TEXT);
+        print_picture(f, p, &l, text, t->on_page);
         if (p->next)
             fputs("unset label\n", f);
     }

@@ -60,7 +60,7 @@ static void measure_terminal(target *t) {
 }
 
 static int find_target(const options *o, target *t) {
-    *t = (target){0};
+    *t = (target){.on_page = o->as_html};
     if (find_medium(o, &t->medium))
         return TOOL_USAGE;
     if (t->medium == PLOT_TEXT)
@@ -175,13 +175,26 @@ static int draw_in_terminal(const plot *p, const target *t) {
     return status;
 }
 
+static int draw_shorter(const plot *p, const target *t, FILE *to) {
+    FILE *drawing = tmpfile();
+    if (!drawing)
+        return tool_refuse("no temporary file: %s", strerror(errno));
+    int status = draw_to(p, t, drawing);
+    if (!status)
+        plot_svg_shorten(drawing, to);
+    fclose(drawing);
+    return status;
+}
+
 static int draw(const plot *p, const options *o, const target *t) {
     output out;
     if (in_terminal(o))
         return draw_in_terminal(p, t);
     if (output_open(&out, o->plot.file))
         return TOOL_USAGE;
-    return output_close(&out, draw_to(p, t, out.stream));
+    return output_close(&out, t->on_page && t->medium == PLOT_SVG
+                                  ? draw_shorter(p, t, out.stream)
+                                  : draw_to(p, t, out.stream));
 }
 
 static bool is_empty(const plot *p) {

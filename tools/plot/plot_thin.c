@@ -1,0 +1,226 @@
+/* nevh: plots: curves and dots as far as a screen can show them.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "plot_private.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Pixels: plot_thin_error follows from them. */
+static const double tolerance = 0.1, cell = 0.2;
+
+static double part(double value, range r, bool log) {
+    return log ? log10(value / r.low) / log10(r.high / r.low)
+               : (value - r.low) / (r.high - r.low);
+}
+
+pair plot_in_pixels(const plot_screen *s, pair p) {
+    return (pair){s->width * part(p.x, s->x, s->log_x),
+                  s->height * part(p.y, s->y, s->log_y)};
+}
+
+static bool is_inside(const plot_screen *s, pair at) {
+    return at.x >= 0 && at.x <= s->width && at.y >= 0 && at.y <= s->height;
+}
+
+/* Directions from a point through the circles of the tolerance round those after
+   it, relative to the first that is farther away than that. [C. M. Williams, An
+   efficient algorithm for the piecewise linear approximation of planar curves,
+   Computer Graphics and Image Processing 8 (1978) 286-293] */
+typedef struct {
+    pair from, first;
+    double low, high, farthest;
+} sleeve;
+
+static sleeve sleeve_at(pair from) {
+    return (sleeve){from, {0, 0}, -INFINITY, INFINITY, 0};
+}
+
+/* Whether a line to that point is near enough to all points before it.  None of
+   these is farther away, so that none is beyond its end. */
+static bool sleeve_reaches(sleeve *v, pair to) {
+    pair d = {to.x - v->from.x, to.y - v->from.y};
+    double distance = hypot(d.x, d.y);
+    if (distance <= tolerance)
+        return v->farthest == 0;
+    if (!(distance >= v->farthest && distance < INFINITY))
+        return false;
+    if (v->farthest == 0)
+        v->first = d;
+    double angle = atan2(v->first.x * d.y - v->first.y * d.x,
+                         v->first.x * d.x + v->first.y * d.y);
+    double half = asin(tolerance / distance);
+    if (!(angle >= v->low && angle <= v->high))
+        return false;
+    v->low = fmax(v->low, angle - half);
+    v->high = fmin(v->high, angle + half);
+    v->farthest = distance;
+    return true;
+}
+
+/* Of a line without breaks.  Where it crosses the border both points stay:
+   gnuplot draws no line between two points that are outside. */
+static size_t thin_line(const plot_screen *s, const pair from[], size_t count,
+                        pair to[]) {
+    size_t kept = 0, last = 0; /* that was kept */
+    to[kept++] = from[0];
+    pair before = plot_in_pixels(s, from[0]);
+    sleeve v = sleeve_at(before);
+    for (size_t i = 1; i < count; i++) {
+        pair at = plot_in_pixels(s, from[i]);
+        bool crosses = is_inside(s, at) != is_inside(s, before);
+        if (crosses || !sleeve_reaches(&v, at)) {
+            if (last < i - 1)
+                to[kept++] = from[last = i - 1];
+            v = sleeve_at(before);
+            if (crosses || !sleeve_reaches(&v, at)) {
+                to[kept++] = from[last = i];
+                v = sleeve_at(at);
+            }
+        }
+        before = at;
+    }
+    if (last < count - 1)
+        to[kept++] = from[count - 1];
+    return kept;
+}
+
+/* Cells of the panel in which something is drawn. */
+typedef struct {
+    const plot_screen *screen;
+    size_t columns, rows;
+    bool *drawn;
+} cells;
+
+static cells cells_new(const plot_screen *s) {
+    cells c = {s, (size_t)(s->width / cell) + 1, (size_t)(s->height / cell) + 1,
+               NULL};
+    c.drawn = tool_allocate(c.columns * c.rows, sizeof *c.drawn);
+    return c;
+}
+
+/* NULL: outside, where nothing is seen. */
+static bool *cell_of(const cells *c, pair at) {
+    if (!is_inside(c->screen, at))
+        return NULL;
+    return &c->drawn[(size_t)(at.y / cell) * c->columns +
+                     (size_t)(at.x / cell)];
+}
+
+/* Whether the line from a to b has a cell of its own; draws it. */
+static bool walk_line(const cells *c, pair a, pair b, bool draws) {
+    double length = hypot(b.x - a.x, b.y - a.y);
+    size_t count = (size_t)ceil(length / cell);
+    bool is_new = false;
+    for (size_t i = 0; i <= count; i++) {
+        double along = count ? (double)i / (double)count : 0;
+        bool *drawn = cell_of(
+            c, (pair){a.x + along * (b.x - a.x), a.y + along * (b.y - a.y)});
+        is_new |= drawn && !*drawn;
+        if (drawn && draws)
+            *drawn = true;
+    }
+    return is_new;
+}
+
+/* Lines that are much longer than a panel are always drawn. */
+static bool draw_line(const cells *c, pair a, pair b) {
+    static const double longest = 1e4;
+    if (!(hypot(b.x - a.x, b.y - a.y) < longest))
+        return true;
+    return walk_line(c, a, b, false) && walk_line(c, a, b, true);
+}
+
+/* Parts of a line where nothing is drawn yet. */
+static size_t thin_drawn(const cells *c, const pair from[], size_t count,
+                         bool first, pair to[]) {
+    size_t kept = 0;
+    bool on = false;
+    for (size_t i = 1; i < count; i++) {
+        bool was_on = on;
+        on = draw_line(c, plot_in_pixels(c->screen, from[i - 1]),
+                       plot_in_pixels(c->screen, from[i]));
+        if (on && !was_on) {
+            if (kept || !first)
+                to[kept++] = (pair){NAN, NAN};
+            to[kept++] = from[i - 1];
+        }
+        if (on)
+            to[kept++] = from[i];
+    }
+    return kept;
+}
+
+static size_t run_length(const pair from[], size_t count) {
+    size_t length = 0;
+    while (length < count && !isnan(from[length].x))
+        length++;
+    return length;
+}
+
+static size_t thin_lines(const plot_screen *s, bool solid, const pair from[],
+                         size_t count, pair to[]) {
+    cells c = cells_new(s);
+    pair *line = tool_allocate(count, sizeof *line);
+    size_t kept = 0, length;
+    for (size_t i = 0; i < count; i += length + 1) {
+        length = run_length(from + i, count - i);
+        size_t points = length ? thin_line(s, from + i, length, line) : 0;
+        if (points && solid) {
+            kept += thin_drawn(&c, line, points, kept == 0, to + kept);
+        } else if (points) {
+            if (kept)
+                to[kept++] = (pair){NAN, NAN};
+            memcpy(to + kept, line, points * sizeof *to);
+            kept += points;
+        }
+    }
+    free(line);
+    free(c.drawn);
+    return kept;
+}
+
+static size_t thin_dots(const plot_screen *s, const pair from[], size_t count,
+                        pair to[]) {
+    cells c = cells_new(s);
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++) {
+        bool *drawn = cell_of(&c, plot_in_pixels(s, from[i]));
+        if (drawn && !*drawn) {
+            *drawn = true;
+            to[kept++] = from[i];
+        }
+    }
+    free(c.drawn);
+    return kept;
+}
+
+double plot_thin_error(plot_thinning how) {
+    double apart = how == THIN_LINE ? 0 : sqrt(2) * cell;
+    if (how == THIN_SOLID)
+        apart += cell / 2;
+    return (how == THIN_DOTS ? 0 : tolerance) + apart;
+}
+
+static size_t thin(const plot_screen *s, plot_thinning how, const pair from[],
+                   size_t count, pair to[]) {
+    switch (how) {
+    case THIN_DOTS:
+        return thin_dots(s, from, count, to);
+    case THIN_LINE:
+    case THIN_SOLID:
+        return thin_lines(s, how == THIN_SOLID, from, count, to);
+    case THIN_NONE:
+        break;
+    }
+    return 0;
+}
+
+size_t plot_thin(const plot_screen *s, plot_thinning how, const pair from[],
+                 size_t count, pair to[]) {
+    size_t kept = thin(s, how, from, count, to);
+    if (kept == 0 && how == THIN_NONE)
+        memcpy(to, from, (kept = count) * sizeof *to);
+    if (kept == 0 && count) /* gnuplot takes no series without points */
+        to[kept++] = from[0];
+    return kept;
+}
