@@ -12,8 +12,31 @@ refused 'no scene|cannot be read|there is no' report no-such-scene -o $page
 refused 'no option of nevh report' report pendulum -o $page --format csv
 refused 'cannot be written' report pendulum -o $work/no/folder.html
 
+# Without gnuplot there are tables and words, and no pictures, which is said.
+mkdir $work/bin
+# In the build tree nevh may be a script of libtool's, which needs these.
+for tool in sh sed ls cat expr basename dirname uname mv rm mkdir chmod printf cp grep wc; do
+    found=$(command -v $tool) && test -x "$found" && ln -s "$found" $work/bin/$tool
+done
+limit_then=$limit
+limit= # is not in that PATH
+with=$PATH
+PATH=$(pwd)/$work/bin
+exits 0 report pendulum -o $page --t-end 5
+says '^nevh: pictures are left out: gnuplot was not found'
+test "$(wc -l <$work/err)" = 1 || { fails "says more"; cat $work/err; }
+cp $page $work/out
+has '<p>Pictures are left out: gnuplot was not found.</p>'
+has '<h2>Portrait</h2>'
+has '<td>bounded</td>'
+has '<p>The picture is left out.</p>'
+lacks '<figure>'
+rm $page
+refused 'no integrator has a row' report double-pendulum -o $page \
+    --integrators verlet --t-end 1
+PATH=$with
+limit=$limit_then
 if ! gnuplot --version >/dev/null 2>&1; then
-    refused 'gnuplot' report pendulum -o $page
     echo "plots need gnuplot"
     test $status = 0 && exit 77
     exit 1

@@ -99,6 +99,8 @@ void section_plot(plot **, const plan *, const nevh_scene_section *,
                   size_t points, const double numbers[], const size_t members[],
                   const char *heading);
 
+/* That gnuplot is at hand; plot_check says more where it is not. */
+bool plot_is_possible(void);
 bool plot_wanted(const options *); /* --plot or --keep-plot-script */
 /* That plot_write will work as far as can be told: known ending, files that can
    be written, gnuplot at hand.  To be called before the long work, and before

@@ -66,6 +66,18 @@ static int refuse_end(int status, FILE *messages) {
     return refused;
 }
 
+bool plot_is_possible(void) {
+    char *const arguments[] = {"gnuplot", "--version", NULL};
+    FILE *nothing = fopen("/dev/null", "r+");
+    pid_t child;
+    bool can = nothing && !start(arguments, fileno(nothing), fileno(nothing),
+                                 fileno(nothing), &child);
+    can = can && await(child) == 0;
+    if (nothing)
+        fclose(nothing);
+    return can;
+}
+
 static int run(char *const arguments[], FILE *in, FILE *out, FILE *messages) {
     pid_t child;
     int wrong =

@@ -11,6 +11,7 @@ typedef struct {
     const options *given;
     nevh_scene *scene;
     char *folder, *rows, *picture, *messages; /* files of one part */
+    bool draws;                               /* gnuplot is at hand */
 } report_work;
 
 typedef struct {
@@ -172,7 +173,7 @@ static report_part make_part(const report_work *w, const kind_of_part *kind,
     options o = *w->given;
     o.operands = (list){words, 2};
     o.file = kind->rows ? w->rows : NULL;
-    o.plot.file = kind->draws ? w->picture : NULL;
+    o.plot.file = kind->draws && w->draws ? w->picture : NULL;
     o.plot.kind = kind->kind;
     o.chaos.starts = kind->run == chaos ? STARTS : 0;
     o.search.budget = kind->budget;
@@ -180,8 +181,11 @@ static report_part make_part(const report_work *w, const kind_of_part *kind,
     o.quiet = !kind->rows;
     unlink(w->rows);
     unlink(w->picture);
-    report_part part = {.title = kind->title, .about = kind->about};
-    part.status = run_heard(kind->run, &o, w->messages);
+    report_part part = {.title = kind->title,
+                        .about = kind->about,
+                        .undrawn = kind->draws && !w->draws};
+    if (kind->rows || w->draws)
+        part.status = run_heard(kind->run, &o, w->messages);
     part.html = text_read(w->rows);
     part.picture = text_read(w->picture);
     part.messages = text_read(w->messages);
@@ -194,6 +198,18 @@ static void free_part(report_part *part) {
     free(part->html);
     free(part->picture);
     free(part->messages);
+}
+
+/* Whether a row of the comparison has numbers, and so a verdict. */
+static bool has_verdict(const report_part *part) {
+    for (int v = 0; part->html && v <= NEVH_UNDECIDED; v++) {
+        char *cell = text_print("<td>%s</td>", nevh_verdict_name(v));
+        bool found = strstr(part->html, cell);
+        free(cell);
+        if (found)
+            return true;
+    }
+    return false;
 }
 
 /* The comparison is what a report is for: without it there is none. */
@@ -214,8 +230,8 @@ static int add_scene(report_work *w, char *name, size_t *number, FILE *f) {
         if (!kinds[i].wanted(w->scene))
             continue;
         report_part part = make_part(w, &kinds[i], name);
-        if (kinds[i].run == compare && part.status != TOOL_OK &&
-            (part.status != TOOL_FAILED || !part.picture))
+        if (kinds[i].run == compare &&
+            (part.status == TOOL_USAGE || !has_verdict(&part)))
             status = refuse(name, &part);
         else
             html_part(f, &part, ++*number, &told);
@@ -270,19 +286,25 @@ int report(const options *o) {
                            "pendulum -o pendulum.html");
     if (!o->file)
         return tool_refuse("nevh report needs a file: -o FILE.html");
-    options drawn = {.plot.file = "report.svg"};
-    if (output_check(o->file) || plot_check(&drawn) || make_folder(&w)) {
+    if (output_check(o->file) || make_folder(&w)) {
         free_work(&w);
         return TOOL_USAGE;
     }
     FILE *f = tool_owned(open_memstream(&text, &size));
     int status = TOOL_OK;
     html_head(f, "nevh report");
+    w.draws = plot_is_possible();
+    if (!w.draws)
+        html_undrawn(f);
     for (size_t i = 1; !status && i < o->operands.count; i++)
         status = add_scene(&w, o->operands.item[i], &number, f);
     html_foot(f);
     fclose(f);
     free_work(&w);
+    if (!status && !w.draws)
+        fputs("nevh: pictures are left out: gnuplot was not found (Debian has "
+              "it as gnuplot-nox)\n",
+              stderr);
     if (!status)
         status = write_page(o, tool_owned(text));
     free(text);

@@ -42,6 +42,10 @@ void html_head(FILE *f, const char *title) {
             style);
 }
 
+void html_undrawn(FILE *f) {
+    fputs("<p>Pictures are left out: gnuplot was not found.</p>\n", f);
+}
+
 /* The names of parts, and what refers to them, with a prefix. */
 static void put_prefixed(FILE *f, const char *text, size_t number) {
     static const char *const before[] = {" id='", " id=\"", "href='#",
@@ -103,6 +107,8 @@ void html_part(FILE *f, const report_part *p, size_t number, list *told) {
     fputs("</p>\n", f);
     if (p->picture)
         put_picture(f, p, number);
+    if (p->undrawn)
+        fputs("<p>The picture is left out.</p>\n", f);
     if (p->html)
         put_notes_once(f, p->html, told);
     if (p->messages && *p->messages) {

@@ -11,6 +11,7 @@ typedef struct {
     const char *title, *about; /* about: how to read it */
     char *command, *html, *picture, *messages;
     int status;
+    bool undrawn; /* its picture is left out */
 } report_part;
 
 /* report.c: a whole file, to be freed; NULL: there is none, or it is empty. */
@@ -19,6 +20,8 @@ char *text_read(const char *name);
 /* report_html.c: text with markup's characters written out. */
 void html_text(FILE *, const char *);
 void html_head(FILE *, const char *title);
+/* That pictures are left out, and why. */
+void html_undrawn(FILE *);
 /* number  of its picture in the page
    told    notes that parts before it have, and then its own */
 void html_part(FILE *, const report_part *, size_t number, list *told);
