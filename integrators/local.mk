@@ -27,6 +27,7 @@ libnevh_core_la_SOURCES += \
 	integrators/kernels/stage_step.h \
 	integrators/kernels/stage_sweeps.c \
 	integrators/kernels/runge_kutta_private.h \
+	integrators/kernels/adaptive_step.h \
 	integrators/kernels/runge_kutta_step.h \
 	integrators/kernels/runge_kutta_kernel.c \
 	integrators/kernels/runge_kutta_adaptive.c \

@@ -105,6 +105,7 @@ libnevh_core_la_SOURCES = \
 	lib/taylor/quad_orbit.c \
 	lib/taylor/long_orbit.c \
 	lib/taylor/certain.c \
+	lib/work/pace.h \
 	lib/work/work_private.h \
 	lib/work/work.c \
 	lib/work/substeps.c \
@@ -145,6 +146,7 @@ libnevh_core_la_SOURCES = \
 	lib/native/taylor_text.c \
 	lib/native/program_text.c \
 	lib/native/cache.c \
+	lib/native/adaptive_text.c \
 	lib/native/build.c \
 	lib/native/native.c \
 	lib/run/stepper_private.h \
@@ -249,7 +251,9 @@ step_texts = integrators/kernels/splitting_step.h \
 	integrators/kernels/stage_step.h \
 	integrators/kernels/stage_sums_private.h \
 	integrators/kernels/runge_kutta_step.h \
-	integrators/kernels/nystrom_step.h
+	integrators/kernels/nystrom_step.h \
+	lib/work/pace.h \
+	integrators/kernels/adaptive_step.h
 nodist_libnevh_core_la_SOURCES = lib/native/kernel_texts.c
 lib/native/kernel_texts.c: lib/local.mk lib/native/kernel_texts.awk $(step_texts)
 	$(MKDIR_P) lib/native

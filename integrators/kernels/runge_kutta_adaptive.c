@@ -1,58 +1,30 @@
 /* nevh: Runge-Kutta steps, one of h or as many as a tolerance needs.
 
-   Every lane goes from t to t + h in substeps of its own; lanes that are under
-   way take their slopes together.  Step control is that of E. Hairer, S. P.
-   Norsett, G. Wanner, Solving Ordinary Differential Equations I (1993), II.4:
-   with err the estimate over the tolerance, a root mean square of components
-   relative to max(|y|, scale),
-
-       next = size * 0.9 err^(-1/k + 3/4 beta) err_last^beta,  beta = 1/(5k),
-
-   where the estimate falls with size^k; between a fifth and six times of size,
-   and not above it after a rejection.  Nor above what the last two steps
-   predict if the estimate goes on growing as it did between them,
-
-       next = size * 0.9 size/size_last (err_last / err^2)^(1/k)
-
-   [K. Gustafsson, Control-theoretic techniques for stepsize selection in
-   implicit Runge-Kutta methods, ACM Trans. Math. Softw. 20 (1994) 496-517]: on
-   the way to a pericentre this saves most rejections.  Where H is not finite at
-   a trial's stages, the trial is rejected as well.
+   Lanes that are under way take their slopes together; each has substeps of its
+   own, adaptive_step.h.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "adaptive_step.h"
 #include "runge_kutta_private.h"
 #include "work/work_private.h"
 #include "system/system_private.h"
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Lengths are without sign: done and size go from t towards t + h. */
-typedef struct {
-    double done;
-    double size;    /* of the next substep; 0: not known */
-    double step;    /* under trial: size, or what is left */
-    double last;    /* err of the last accepted one; 0: there is none */
-    double before;  /* its length */
-    double excess;  /* substeps beyond the usual of the steps before */
-    bool has_first; /* the slope at the state is known */
-    bool held;      /* the last trial was rejected */
-    bool ends;      /* this one ends the step */
-    nevh__pace pace;
-} lane_substeps;
-
 struct nevh__adaptive {
-    lane_substeps *lanes; /* width */
-    size_t *under_way;    /* width */
-    size_t *unknown;      /* width: those of them without a first slope */
+    nevh__adaptive_rule rule;
+    nevh__substeps *lanes; /* width */
+    size_t *under_way;     /* width */
+    size_t *unknown;       /* width: those of them without a first slope */
 };
 
 /* The step of all lanes: rows of `width`. */
 typedef struct {
     nevh_work *work;
     const nevh__family *family;
+    const nevh__adaptive_rule *rule;
     double t, h;
-    lane_substeps *lanes;
+    nevh__substeps *lanes;
     double *y, *all_compensation,
         *first;           /* 2n rows: state, its compensation, its slope */
     nevh__stages trial;   /* of some lanes, their columns side by side */
@@ -61,9 +33,6 @@ typedef struct {
     double *compensation, *next, *next_compensation, *change, *error, *coarse;
 } step_state;
 
-static const double least_error = 1e-4; /* that is remembered */
-/* A single step may take NEVH__MOST_SUBSTEPS, one after another may not. */
-static const double usual_substeps = 1e5;
 enum { ROWS = 11 }; /* of 2n x width, in a step */
 
 static nevh__adaptive *plan_of(const nevh_work *w) {
@@ -80,6 +49,30 @@ void nevh__adaptive_clear(nevh_work *w) {
     free(a);
 }
 
+const nevh__adaptive_rule *nevh__adaptive_rule_of(const nevh_work *w) {
+    return &plan_of(w)->rule;
+}
+
+static nevh__adaptive_rule rule_of(const nevh_work *w,
+                                   const nevh__family *family) {
+    double k = family->error_power, tolerance = w->options->tolerance;
+    return (nevh__adaptive_rule){.size = 2 * w->n,
+                                 .power = k,
+                                 .coarse = family->coarse,
+                                 .keeps = family->last_is_first,
+                                 .tolerance = tolerance,
+                                 .part = 0.5 * pow(tolerance, 1. / k),
+                                 .scale = w->scale};
+}
+
+double nevh__first_substep(const nevh_work *w, int power, double h,
+                           size_t stride, const double y[],
+                           const double slopes[]) {
+    const nevh__family family = {.error_power = power};
+    nevh__adaptive_rule rule = rule_of(w, &family);
+    return nevh__substeps_first(&rule, h, stride, y, slopes);
+}
+
 /* Memory: compensation, size, err and length of the last one, the excess; where the last stage is
    the next first one, also that slope and whether it is there. */
 int nevh__adaptive_plan(nevh_work *w) {
@@ -91,6 +84,7 @@ int nevh__adaptive_plan(nevh_work *w) {
     nevh__adaptive *a = plan->adaptive = nevh__array(1, sizeof *a);
     if (!a)
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
+    a->rule = rule_of(w, family);
     a->lanes = nevh__array(w->width, sizeof *a->lanes);
     a->under_way = nevh__array(w->width, sizeof *a->under_way);
     a->unknown = nevh__array(w->width, sizeof *a->unknown);
@@ -107,6 +101,7 @@ static step_state lay_out(nevh_work *w, double t, double h) {
     const nevh__stages_plan *plan = w->plan;
     step_state s = {.work = w,
                     .family = &plan->family,
+                    .rule = &plan->adaptive->rule,
                     .t = t,
                     .h = h,
                     .lanes = plan->adaptive->lanes};
@@ -149,11 +144,11 @@ static void load(step_state *s, const double q[], const double p[]) {
         memcpy(s->first, first, 2 * n * sizeof *first);
     for (size_t lane = 0; lane < width; lane++)
         s->lanes[lane] =
-            (lane_substeps){.size = size[lane],
-                            .last = last[lane],
-                            .before = before[lane],
-                            .excess = excess[lane],
-                            .has_first = keeps && has_first[lane] != 0};
+            (nevh__substeps){.size = size[lane],
+                             .last = last[lane],
+                             .before = before[lane],
+                             .excess = excess[lane],
+                             .has_first = keeps && has_first[lane] != 0};
 }
 
 static void store(const step_state *s, double q[], double p[]) {
@@ -172,9 +167,7 @@ static void store(const step_state *s, double q[], double p[]) {
         size[lane] = s->lanes[lane].size;
         last[lane] = s->lanes[lane].last;
         before[lane] = s->lanes[lane].before;
-        excess[lane] =
-            fmax(0, s->lanes[lane].excess + s->lanes[lane].pace.substeps -
-                        usual_substeps);
+        excess[lane] = nevh__substeps_excess(&s->lanes[lane]);
         if (keeps)
             has_first[lane] = s->lanes[lane].has_first;
     }
@@ -202,7 +195,7 @@ static void gather_states(step_state *s, size_t count, const size_t lanes[]) {
     gather(s, lanes, s->y, s->old);
     gather(s, lanes, s->all_compensation, s->compensation);
     for (size_t c = 0; c < count; c++) {
-        const lane_substeps *l = &s->lanes[lanes[c]];
+        const nevh__substeps *l = &s->lanes[lanes[c]];
         s->begin[c] = s->t + copysign(l->done, s->h);
         s->each[c] = copysign(l->step, s->h);
     }
@@ -226,44 +219,7 @@ static int take_first_slopes(step_state *s, size_t count,
     return status;
 }
 
-double nevh__first_substep(const nevh_work *w, int power, double h,
-                           size_t stride, const double y[],
-                           const double slopes[]) {
-    double sum = 0;
-    for (size_t i = 0; i < 2 * w->n; i++) {
-        double rate =
-            slopes[i * stride] / fmax(fabs(y[i * stride]), w->scale[i]);
-        sum += rate * rate;
-    }
-    double rate = sqrt(sum / (2 * (double)w->n));
-    double size = 0.5 * pow(w->options->tolerance, 1. / power) / rate;
-    return size <= DBL_MAX ? size : fabs(h);
-}
-
-/* The root mean square of estimates over max(|y|, scale), squared. */
-static double square(const step_state *s, size_t column,
-                     const double estimate[]) {
-    const nevh_work *w = s->work;
-    double sum = 0;
-    for (size_t k = 0; k < 2 * w->n; k++) {
-        size_t i = k * s->trial.columns + column;
-        double most = fmax(fabs(s->old[i]), fabs(s->next[i]));
-        double x = estimate[i] / fmax(most, w->scale[k]);
-        sum += x * x;
-    }
-    return sum / (2 * (double)w->n);
-}
-
-/* The estimate over the tolerance; NaN where it is beyond numbers. */
-static double judge(const step_state *s, size_t column) {
-    double error = square(s, column, s->error), all = error;
-    if (s->family->coarse)
-        all += 0.01 * square(s, column, s->coarse);
-    double err = s->family->coarse && all > 0 ? error / sqrt(all) : sqrt(error);
-    return err / s->work->options->tolerance;
-}
-
-static int give_up(const step_state *s, const lane_substeps *l,
+static int give_up(const step_state *s, const nevh__substeps *l,
                    const char *why) {
     const nevh_work *w = s->work;
     return nevh_work_fail(s->work, NEVH_EFAILED,
@@ -273,44 +229,15 @@ static int give_up(const step_state *s, const lane_substeps *l,
                           s->h, why, w->options->tolerance);
 }
 
-static bool too_short(const step_state *s, const lane_substeps *l) {
-    return !(l->size > DBL_EPSILON * fabs(s->h)) && l->size < fabs(s->h);
+static int reject(const step_state *s, nevh__substeps *l, double err) {
+    return nevh__substeps_reject(s->rule, l, s->h, err)
+               ? NEVH_OK
+               : give_up(s, l, "substeps too short to be taken");
 }
 
-/* How much longer the next substep may be. */
-static double factor(const step_state *s, const lane_substeps *l, double err) {
-    double k = s->family->error_power, beta = 0.2 / k, now = log2(err);
-    double last = log2(l->last > 0 ? l->last : least_error);
-    double usual = (0.75 * beta - 1 / k) * now + beta * last;
-    if (!(l->last > 0))
-        return 0.9 * exp2(usual);
-    double growing = log2(l->step / l->before) + (last - 2 * now) / k;
-    return 0.9 * exp2(fmin(usual, growing));
-}
-
-/* Near the end of an orbit the times themselves may be too coarse for a shorter
-   substep: it would be rejected for ever. */
-static int reject(const step_state *s, lane_substeps *l, double err) {
-    double wanted = 0.9 * pow(err, -1. / s->family->error_power);
-    l->size = l->step * (wanted > 0.2 ? fmin(wanted, 0.9) : 0.2);
-    l->held = true;
-    bool shorter = l->done + l->size < l->done + l->step;
-    return too_short(s, l) || !shorter
-               ? give_up(s, l, "substeps too short to be taken")
-               : NEVH_OK;
-}
-
-/* A substep cut short by the end of the step says nothing against longer
-   ones. */
 static int accept(step_state *s, size_t column, size_t lane, double err) {
-    lane_substeps *l = &s->lanes[lane];
-    double next = l->step * fmin(fmax(factor(s, l, err), 0.2), l->held ? 1 : 6);
-    l->size = l->ends ? fmax(next, l->size) : next;
-    l->done = l->ends ? fabs(s->h) : l->done + l->step;
-    l->last = fmax(err, least_error);
-    l->before = l->step;
-    l->held = false;
-    l->has_first = s->family->last_is_first;
+    nevh__substeps *l = &s->lanes[lane];
+    nevh__substeps_accept(s->rule, l, s->h, err);
     scatter(s, column, lane, s->next, s->y);
     scatter(s, column, lane, s->next_compensation, s->all_compensation);
     if (l->has_first)
@@ -348,39 +275,33 @@ static int try(step_state *s, size_t count, const size_t lanes[]) {
             status = try(s, 1, lanes + i);
         return status;
     }
-    if (status == NEVH_EDOM) {
-        lane_substeps *l = &s->lanes[*lanes];
-        l->size = 0.2 * l->step;
-        l->held = true;
-        return too_short(s, l) ? status : NEVH_OK;
-    }
+    if (status == NEVH_EDOM)
+        return nevh__substeps_retreat(&s->lanes[*lanes], s->h) ? NEVH_OK
+                                                               : status;
     for (size_t c = 0; !status && c < count; c++) {
-        double err = judge(s, c);
+        double err =
+            nevh__substeps_judge(s->rule, count, s->error + c, s->coarse + c,
+                                 s->old + c, s->next + c);
         status = err <= 1 ? accept(s, c, lanes[c], err)
                           : reject(s, &s->lanes[lanes[c]], err);
     }
     return status;
 }
 
-/* The next substep; the last one may stretch by a hundredth. */
 static int choose(const step_state *s, size_t lane) {
-    lane_substeps *l = &s->lanes[lane];
-    double length = fabs(s->h), left = length - l->done;
+    nevh__substeps *l = &s->lanes[lane];
     if (l->size == 0)
-        l->size =
-            nevh__first_substep(s->work, s->family->error_power, s->h,
-                                s->work->width, s->y + lane, s->first + lane);
-    if (too_short(s, l))
+        l->size = nevh__substeps_first(s->rule, s->h, s->work->width,
+                                       s->y + lane, s->first + lane);
+    if (nevh__substeps_too_short(l, s->h))
         return give_up(s, l, "substeps too short to be taken");
     char why[NEVH__WHY];
     if (nevh__too_many(&l->pace, fabs(s->h), l->done, why))
         return give_up(s, l, why);
-    if (l->excess + l->pace.substeps > NEVH__MOST_SUBSTEPS)
+    if (nevh__substeps_exceed(l))
         return give_up(s, l,
                        "more than 100000 substeps, as do those before it,");
-    double next = l->done + l->size; /* so that the sum of steps is exact */
-    l->ends = 1.01 * l->size >= left;
-    l->step = l->ends ? left : next - l->done;
+    nevh__substeps_choose(l, s->h);
     return NEVH_OK;
 }
 

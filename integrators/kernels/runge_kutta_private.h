@@ -3,6 +3,7 @@
 #ifndef NEVH_RUNGE_KUTTA_PRIVATE_H
 #define NEVH_RUNGE_KUTTA_PRIVATE_H
 
+#include "adaptive_step.h"
 #include "gradient/field_private.h"
 #include <nevh/extend.h>
 
@@ -61,5 +62,7 @@ int nevh__stages_step(nevh_work *, double t, double h, double q[], double p[]);
 /* Steps that adapt, for w->options->tolerance > 0. */
 int nevh__adaptive_plan(nevh_work *);
 void nevh__adaptive_clear(nevh_work *);
+/* That of a work whose steps adapt. */
+const nevh__adaptive_rule *nevh__adaptive_rule_of(const nevh_work *);
 
 #endif

@@ -42,14 +42,22 @@ static bool fill_splitting(nevh__native *x, const nevh_work *w) {
 
 static bool fill_runge_kutta(nevh__native *x, const nevh_work *w) {
     const nevh_butcher *table = w->integrator->table;
-    x->kicks = x->drifts = table->stages - table->last_is_first;
+    bool adapts = nevh__adapts(w);
+    x->kicks = x->drifts =
+        table->stages - (adapts || table->last_is_first ? 1 : 0);
+    x->adapts = adapts;
+    x->first_drifts = 1;
     return true;
 }
 
 static bool fill_nystrom(nevh__native *x, const nevh_work *w) {
     const nevh_nystrom *table = w->integrator->table;
-    x->kicks = table->stages;
-    x->drifts = nevh__nystrom_kinetic_of(w).diagonal ? 1 : table->stages;
+    bool diagonal = nevh__nystrom_kinetic_of(w).diagonal;
+    size_t s = table->stages;
+    x->adapts = nevh__adapts(w);
+    x->kicks = x->adapts ? s - 1 : s;
+    x->drifts = x->adapts ? (diagonal ? 0 : s + 1) : diagonal ? 1 : s;
+    x->first_drifts = 1;
     return true;
 }
 
@@ -103,7 +111,7 @@ static size_t stages_of(const nevh_work *w) {
 }
 
 static bool has_loops(const nevh_work *w) {
-    return w->width == 1 && families[family_of(w)].loops &&
+    return w->width == 1 && families[family_of(w)].loops && !nevh__adapts(w) &&
            nevh__has_loops(w->field);
 }
 
@@ -118,8 +126,9 @@ static const char *obstacle(const nevh_work *w) {
                ? "orbits side by side fill no vectors"
            : w->n * w->width * stages_of(w) > MOST_NUMBERS && !has_loops(w)
                ? "the state is too large"
-           : w->options->tolerance > 0 ? "steps adapt to a tolerance"
-                                       : NULL;
+           : nevh__adapts(w) && w->width > 1
+               ? "orbits side by side adapt to a tolerance each on its own"
+               : NULL;
 }
 
 bool nevh__native_write(nevh__writer *text, nevh_work *w) {
@@ -247,18 +256,22 @@ void nevh__native_plan(nevh_work *w, char why[NEVH__WHY_NATIVE]) {
     nevh__writer_free(&text);
 }
 
-/* Gradients and values of so many steps, as the kernel counts them. */
+/* Gradients, and values of their terms. */
+static void add_counts(nevh_work *w, const nevh__native *x, size_t kicks,
+                       size_t drifts) {
+    w->field->gradients += kicks;
+    for (size_t i = 0; i < w->field->n_terms; i++)
+        w->field->terms[i].values +=
+            kicks * x->kick_values[i] + drifts * x->drift_values[i];
+}
+
+/* Those of so many steps, as the kernel counts them. */
 static void count(nevh_work *w, const nevh__native *x, size_t steps,
                   bool kept) {
     size_t saved = x->keeps ? steps - !kept : 0;
     size_t kicks = steps * x->kicks - (x->kicks_first ? saved : 0);
     size_t drifts = steps * x->drifts - (x->kicks_first ? 0 : saved);
-    kicks *= w->width;
-    drifts *= w->width;
-    w->field->gradients += kicks;
-    for (size_t i = 0; i < w->field->n_terms; i++)
-        w->field->terms[i].values +=
-            kicks * x->kick_values[i] + drifts * x->drift_values[i];
+    add_counts(w, x, kicks * w->width, drifts * w->width);
 }
 
 /* How many lanes have the slope that the step before left. */
@@ -305,6 +318,9 @@ size_t nevh__native_run(nevh_work *w, double t0, double h, size_t from,
     size_t done = take(w, t0, h, from, steps, q, p, counted);
     if (x->stages)
         count_sweeps(w, x, counted);
+    else if (x->adapts)
+        add_counts(w, x, counted[0] + counted[1] * x->kicks,
+                   counted[0] * x->first_drifts + counted[1] * x->drifts);
     else {
         if (done && done < steps) /* nothing has been stored */
             done = take(w, t0, h, from, done, q, p, counted);

@@ -8,15 +8,17 @@
 #ifndef NEVH_NATIVE_PRIVATE_H
 #define NEVH_NATIVE_PRIVATE_H
 
+#include "kernels/adaptive_step.h"
 #include "native/writer_private.h"
 #include "work/work_private.h"
 #include <nevh/extend.h>
 #include <nevh/run.h>
 
 /* Takes `steps` steps, or none, and returns how many of them can be taken.
-   counted  of implicit steps, which take as many as can be taken: sweeps of
-            each orbit, how often noise was asked for, and sweeps evaluated, also
-            of orbits that are done, are added */
+   counted  of steps that take as many as can be taken are added: of implicit
+            ones sweeps of each orbit, how often noise was asked for, and sweeps
+            evaluated, also of orbits that are done; of those that adapt slopes at
+            states, and trials */
 typedef size_t (*nevh__native_steps)(const double numbers[], double weights[],
                                      double times[], size_t operations,
                                      double t0, double h, size_t from,
@@ -34,7 +36,9 @@ typedef struct nevh__native {
     double *room;      /* of states that are too long for the stack, or NULL */
     size_t kicks, drifts; /* of a step */
     bool keeps, kicks_first;
-    size_t stages; /* of an implicit step; 0: it is explicit */
+    size_t stages;       /* of an implicit step; 0: it is explicit */
+    bool adapts;         /* kicks and drifts are those of a trial */
+    size_t first_drifts; /* before the first of a substep's trials */
     uint64_t *kick_values, *drift_values; /* n_terms each, of one of them */
 } nevh__native;
 
@@ -44,6 +48,20 @@ bool nevh__write_splitting(nevh__writer *, nevh_work *);
 bool nevh__write_runge_kutta(nevh__writer *, nevh_work *);
 bool nevh__write_nystrom(nevh__writer *, nevh_work *);
 bool nevh__write_stages(nevh__writer *, nevh_work *);
+/* Text of steps under a rule, after that of two functions of one orbit,
+       double take_first(const double *N, double t, double h, double *y,
+                         double *lost, double *first)
+       double take_trial(const double *N, double t, double h, double *y,
+                         double *lost, double *first, double *ahead,
+                         double *change, double *error, double *coarse)
+   which return 0 if all is well: the slope at y, and what the other stages come
+   to; ahead: the last stage's slope.  For readers both are without N. */
+void nevh__write_adaptive(nevh__writer *, const nevh_work *,
+                          const nevh__adaptive_rule *);
+/* Whether steps adapt to a tolerance. */
+static inline bool nevh__adapts(const nevh_work *w) {
+    return w->integrator->adaptive && w->options->tolerance > 0;
+}
 /* Text of the coefficients of series, a nevh__series_code. */
 bool nevh__write_series(nevh__writer *, nevh_work *);
 /* Weights of all kicks and drifts, and the times of their slopes; to be freed.

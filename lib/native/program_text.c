@@ -348,9 +348,16 @@ static const char includes[] = "#include <math.h>\n"
                                "#include <stdbool.h>\n"
                                "#include <stddef.h>\n";
 
+static bool is_called(const char *text, const char *call) {
+    for (const char *at = text; (at = strstr(at, call)); at++)
+        if (at == text || !is_word(at[-1]))
+            return true;
+    return false;
+}
+
 static void write_helpers(nevh__writer *w, const char *text) {
     for (size_t i = 0; i < sizeof helpers / sizeof *helpers; i++)
-        if (strstr(text, helpers[i].call))
+        if (is_called(text, helpers[i].call))
             nevh__write(w, "%s\n", helpers[i].text);
 }
 
@@ -378,7 +385,9 @@ bool nevh__write_program(nevh__writer *w, nevh_work *work,
     if (fine) {
         rename_all(body.text);
         write_comment(w, work, p);
-        nevh__write(w, "%s%s#include <string.h>\n\n", includes,
+        nevh__write(w, "%s%s%s#include <string.h>\n\n",
+                    strstr(body.text, "DBL_MAX") ? "#include <float.h>\n" : "",
+                    includes,
                     p->functions ? ""
                                  : "#include <stdio.h>\n#include <stdlib.h>\n");
         write_helpers(w, body.text);

@@ -180,18 +180,6 @@ static const char counts[] = "    counted[0] += sweeps;\n"
 static const char counts_for_readers[] =
     "    M[SWEEPS_AT] += (double)sweeps;\n";
 
-/* What steps have reached is stored, and the next one is the kernel's. */
-static const char driver_head[] =
-    "size_t nevh_native_steps(const double *restrict N, double *restrict W,\n"
-    "        double *restrict T, size_t operations, double t0, double h,\n"
-    "        size_t from, size_t steps, double *restrict Q,\n"
-    "        double *restrict P, double *restrict M, size_t *counted,\n"
-    "        double *room) {\n";
-static const char driver_head_for_readers[] =
-    "/* Takes up to `steps` steps of h, the first being number `from`, and\n"
-    "   returns how many of them it could take. */\n"
-    "static size_t advance(double t0, double h, size_t from, size_t steps,\n"
-    "                      double *Q, double *P, double *M) {\n";
 static const char driver[] =
     "    step_weights w;\n"
     "    size_t done = 0;\n"
@@ -416,7 +404,7 @@ static void write_step(nevh__writer *w, const nevh_work *work,
         nevh__write_filled(w, lanes_state, (const char *const[]){scales});
         nevh__write(w, "%s", lanes_step);
     }
-    nevh__write(w, "%s", w->readable ? driver_head_for_readers : driver_head);
+    nevh__write_driver_head(w);
     nevh__write_filled(w, driver,
                        (const char *const[]){w->readable ? "" : "N, ",
                                              w->readable ? "" : ", counted"});

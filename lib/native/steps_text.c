@@ -193,6 +193,18 @@ static const char driver_for_readers[] =
     "    }\n"
     "    return done;\n}\n";
 
+/* What steps have reached is stored, and the next one is the kernel's. */
+static const char driver_head[] =
+    "size_t nevh_native_steps(const double *restrict N, double *restrict W,\n"
+    "        double *restrict T, size_t operations, double t0, double h,\n"
+    "        size_t from, size_t steps, double *restrict Q,\n"
+    "        double *restrict P, double *restrict M, size_t *counted,\n"
+    "        double *room) {\n";
+static const char driver_head_for_readers[] =
+    "/* Takes up to `steps` steps of h, the first being number `from`, and\n"
+    "   returns how many of them it could take. */\n"
+    "static size_t advance(double t0, double h, size_t from, size_t steps,\n"
+    "                      double *Q, double *P, double *M) {\n";
 static bool begins(const char *line, const char *word) {
     return strncmp(line, word, strlen(word)) == 0;
 }
@@ -287,6 +299,10 @@ void nevh__write_driver(nevh__writer *w, bool keeps) {
         write_long_driver(w);
     else
         nevh__write(w, "%s", driver);
+}
+
+void nevh__write_driver_head(nevh__writer *w) {
+    nevh__write(w, "%s", w->readable ? driver_head_for_readers : driver_head);
 }
 
 void nevh__write_sum(nevh__writer *w, nevh__sums_text *sums,

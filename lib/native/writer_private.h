@@ -94,6 +94,8 @@ extern const char *const nevh__stage_step_text[];
 extern const char *const nevh__stage_sums_text[];
 extern const char *const nevh__runge_kutta_step_text[];
 extern const char *const nevh__nystrom_step_text[];
+extern const char *const nevh__pace_text[];
+extern const char *const nevh__adaptive_step_text[];
 
 /* A formula at one point, or at eight of them side by side. */
 typedef struct nevh__formula_text {
@@ -154,6 +156,8 @@ void nevh__write_unkept(nevh__writer *);
    which returns 0 if all is well; for readers take_step(t, h, y, lost)
    or, where slopes are kept, take_step(t, h, y, lost, kept). */
 void nevh__write_driver(nevh__writer *, bool keeps);
+/* That function up to its body, of a family whose steps write to Q, P and M. */
+void nevh__write_driver_head(nevh__writer *);
 
 /* Functions kick_slope and drift_slope
        NUMBER NAME(const double *N, double t, const NUMBER *q,

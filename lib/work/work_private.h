@@ -4,10 +4,8 @@
 #define NEVH_WORK_PRIVATE_H
 
 #include "gradient/evaluation_private.h"
+#include "work/pace.h"
 #include <nevh/extend.h>
-
-/* Trials that step control may make within one step of a lane. */
-enum { NEVH__MOST_SUBSTEPS = 1000000 };
 
 /* NEVH_EDOM: the new state is not finite. */
 int nevh__fail_range(nevh_work *, double t, double h);
@@ -18,17 +16,7 @@ double nevh__first_substep(const nevh_work *, int power, double h,
                            size_t stride, const double y[],
                            const double slopes[]);
 
-/* How fast substeps of a step get on; zeros at its start. */
-typedef struct {
-    double substeps; /* trials so far */
-    double begun;    /* of them, when the pace was last looked at */
-    double done;     /* of the step, then */
-    double each;     /* what one did, then */
-    int slows;       /* times in a row it was hopeless, and fell */
-} nevh__pace;
-
-/* Counts one more, before it is tried; whether it should not be, and why.
-   length, done: of the step, without sign. */
+/* nevh__pace_count, and why another one should not be tried. */
 enum { NEVH__WHY = 120 };
 bool nevh__too_many(nevh__pace *, double length, double done,
                     char why[NEVH__WHY]);

@@ -133,6 +133,95 @@ TEST_EACH(functions_same_bits, FUNCTIONS) {
     remove_cache();
 }
 
+/* Steps that adapt: substeps that are rejected, cut short, or many of one
+   step; back, step by step, and what is saved of them. */
+static const nevh_integrator *const *const adaptive[] = {
+    &nevh_dopri5, &nevh_dop853, &nevh_dprkn12};
+enum { ADAPTIVE = sizeof adaptive / sizeof *adaptive };
+
+static void assert_memory_same(const pair *x) {
+    size_t size = nevh_stepper_save_size(x->plain);
+    void *a = malloc(size), *b = malloc(size);
+    nevh_stepper_save(x->plain, a);
+    nevh_stepper_save(x->native, b);
+    ck_assert_mem_eq(a, b, size);
+    free(a);
+    free(b);
+}
+
+static void assert_adapts(nevh_scene *scene, const nevh_integrator *scheme,
+                          int way, double tolerance) {
+    pair x = pair_under(scene, scheme, nevh_gradient_named(ways[way].gradient),
+                        ways[way].portable, cache, 1, tolerance);
+    ck_assert_int_eq(nevh_stepper_status(x.plain), NEVH_OK);
+    ck_assert_msg(nevh_stepper_native(x.native, NULL), "%s: %s", scheme->name,
+                  x.why);
+    static const double lengths[] = {0.9, -0.01, 3, 0.003};
+    static const size_t steps[] = {12, 40, 2, 1};
+    for (int i = 0; i < 4; i++) {
+        ck_assert_int_eq(pair_run(&x, lengths[i], steps[i]), NEVH_OK);
+        ck_assert_msg(pair_same(&x), "%s, %s, h = %g", scheme->name,
+                      ways[way].gradient, lengths[i]);
+        assert_memory_same(&x);
+    }
+    pair_free(&x);
+}
+
+TEST_EACH(tolerance_same_bits, ADAPTIVE) {
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    make_cache();
+    nevh_scene *scene = parsed(
+        "[coordinates]\nx = 0.5, 0\ny = 0, 1.6\n[effects]\n"
+        "T = (p_x^2 + 2*p_y^2)/2\nV = -1/sqrt(x^2 + y^2) + x*sin(t)/50\n");
+    for (int way = _i % 2; way < WAYS; way += 2)
+        assert_adapts(scene, *adaptive[_i], way, way % 2 ? 1e-6 : 1e-9);
+    nevh_scene_free(scene);
+    /* T_p(0) is not 0, and T takes two momenta together. */
+    scene = parsed("[coordinates]\nx = 0.5, 0\ny = 0, 0.7\n[effects]\n"
+                   "T = (p_x + p_y/2)^2/2 + p_y^2/2 + p_x/3\n"
+                   "V = x^4/4 + x*y/5 + y^2\n");
+    assert_adapts(scene, *adaptive[_i], _i % 2 ? 3 : 0, 1e-7);
+    nevh_scene_free(scene);
+    remove_cache();
+}
+
+/* Orbits side by side adapt each on its own: their steps are not compiled. */
+TEST(tolerance_of_lanes) {
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    make_cache();
+    nevh_scene *scene = parsed(pendulum);
+    pair x = pair_under(scene, nevh_dopri5, nevh_exact, false, cache, 8, 1e-6);
+    ck_assert(!nevh_stepper_native(x.native, NULL));
+    ck_assert_ptr_nonnull(strstr(x.why, "each on its own"));
+    pair_free(&x);
+    nevh_scene_free(scene);
+    remove_cache();
+}
+
+/* Trials beyond the domain of H are the kernel's; where the orbit leaves it, or
+   ends, both give up with the same words. */
+TEST_EACH(tolerance_failures_same, 2 * ADAPTIVE) {
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    make_cache();
+    nevh_scene *scene = parsed(_i % 2 ? "[coordinates]\nx = 1, 0\n[effects]\n"
+                                        "T = p_x^2/2\nV = -x^4\n"
+                                      : "[coordinates]\nx = 1, -1\n[effects]\n"
+                                        "T = p_x^2/2\nV = sqrt(x - 0.2)\n");
+    pair x =
+        pair_under(scene, *adaptive[_i / 2],
+                   _i % 4 ? nevh_central4 : nevh_exact, false, cache, 1, 1e-8);
+    ck_assert_msg(nevh_stepper_native(x.native, NULL), "%s", x.why);
+    ck_assert_int_ne(pair_run(&x, 0.05, 1000), NEVH_OK);
+    ck_assert(nevh_stepper_taken(x.native) > 3 && pair_same(&x));
+    ck_assert(isfinite(x.b[0]) && isfinite(x.b[1]));
+    pair_free(&x);
+    nevh_scene_free(scene);
+    remove_cache();
+}
+
 /* Friction, which Runge-Kutta methods have in their slopes and which stands
    around the steps of others; of one orbit and of many. */
 TEST(friction_same_bits) {
@@ -144,6 +233,8 @@ TEST(friction_same_bits) {
         skip_test("there is no C compiler");
     make_cache();
     nevh_scene *scene = parsed(damped);
+    assert_adapts(scene, nevh_dopri5, 0, 1e-7);
+    assert_adapts(scene, nevh_dop853, 3, 1e-7);
     const nevh_integrator *schemes[] = {nevh_rk4, nevh_verlet, nevh_dop853};
     for (size_t i = 0; i < 6; i++) {
         pair x =

@@ -28,10 +28,12 @@ typedef struct {
     const char *why;
 } pair;
 
-/* Orbits that start side by side, a little apart. */
-static inline pair pair_of(nevh_scene *scene, const nevh_integrator *scheme,
-                           const nevh_gradient *gradient, bool portable,
-                           const char *folder, size_t width) {
+/* Orbits that start side by side, a little apart; a tolerance of 0: steps do not
+   adapt. */
+static inline pair pair_under(nevh_scene *scene, const nevh_integrator *scheme,
+                              const nevh_gradient *gradient, bool portable,
+                              const char *folder, size_t width,
+                              double tolerance) {
     const nevh_system *s = nevh_scene_system(scene);
     size_t dof = nevh_scene_dof(scene), n = dof * width;
     pair x = {.n = n};
@@ -48,6 +50,7 @@ static inline pair pair_of(nevh_scene *scene, const nevh_integrator *scheme,
                       .p = x.start + n,
                       .width = width,
                       .portable = portable,
+                      .tolerance = tolerance,
                       .native = NEVH_NATIVE_NEVER,
                       .native_cache = folder};
     x.plain = nevh_stepper_new(s, scheme, &o);
@@ -56,6 +59,12 @@ static inline pair pair_of(nevh_scene *scene, const nevh_integrator *scheme,
     ck_assert(!nevh_stepper_native(x.plain, &x.why) && !*x.why);
     nevh_stepper_native(x.native, &x.why);
     return x;
+}
+
+static inline pair pair_of(nevh_scene *scene, const nevh_integrator *scheme,
+                           const nevh_gradient *gradient, bool portable,
+                           const char *folder, size_t width) {
+    return pair_under(scene, scheme, gradient, portable, folder, width, 0);
 }
 
 static inline pair pair_new(nevh_scene *scene, const nevh_integrator *scheme,

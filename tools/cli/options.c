@@ -41,7 +41,7 @@ static const struct {
      "time steps, instead of the scene's; formulas such as pi/50"},
     {"tolerance", "A,B",
      FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_SWEEP | FOR_FLOW | FOR_PORTRAIT |
-         FOR_FREQUENCIES | FOR_FIT,
+         FOR_FREQUENCIES | FOR_FIT | FOR_EXPORT,
      read_tolerance,
      "of integrators that choose their steps; instead of the scene's"},
     {"t-end", "T", OF_SCENES, read_t_end,
