@@ -138,6 +138,9 @@ libnevh_core_la_SOURCES = \
 	lib/native/prelude_text.c \
 	lib/native/steps_text.c \
 	lib/native/splitting_text.c \
+	lib/native/splitting_groups.c \
+	lib/native/vector_text_private.h \
+	lib/native/vector_text.c \
 	lib/native/runge_kutta_text.c \
 	lib/native/nystrom_text.c \
 	lib/native/stage_text.c \

@@ -257,6 +257,15 @@ static void write_backwards(nevh__writer *w, const nevh__formula_text *f,
     }
 }
 
+/* A sum of values is not finite where one of them is not; that of slopes is looked
+   at when they are there. */
+static void write_check(nevh__writer *w, const char *value) {
+    if (w->readable)
+        nevh__write(w, "    bad += %s - %s;\n", value, value);
+    else
+        nevh__write(w, "    bad += %s;\n", value);
+}
+
 bool nevh__write_gradient(nevh__writer *w, nevh__formula_text *f,
                           unsigned wanted) {
     static const double safe = 1e300;
@@ -272,7 +281,7 @@ bool nevh__write_gradient(nevh__writer *w, nevh__formula_text *f,
     if (fine && o.by & wanted) {
         bool *begun = adjoint_name(f, &r, o, r.last, r.last_cosine, to);
         if (!(most < safe))
-            nevh__write(w, "    bad += %s - %s;\n", result, result);
+            write_check(w, result);
         nevh__write(w, "    %s %s = %s;\n", type_of(f), to,
                     f->wide ? "ALL(1.0)" : "1.0");
         *begun = true;
@@ -357,7 +366,7 @@ bool nevh__write_complex(nevh__writer *w, nevh__formula_text *f,
     bool fine = write_forwards(w, f, &r, result, &most);
     if (fine) {
         nevh__tape_operand o = f->tape->result;
-        nevh__write(w, "    bad += %s - %s;\n", result, result);
+        write_check(w, result);
         write_parts(w, f, &r, by, k);
         if (moves(&r, o, r.last, r.last_cosine, by, k))
             part_name(f, o, r.last, r.last_cosine, result);

@@ -63,7 +63,9 @@ static const char helpers[] =
     "#define EACH_PIECE(g, fields) \\\n"
     "    for (size begin = from, end; begin < until && \\\n"
     "         (end = g[fields] < until ? g[fields] : until, 1); \\\n"
-    "         g += g[fields] == end ? fields : 0, begin = end)\n";
+    "         g += g[fields] == end ? fields : 0, begin = end)\n"
+    "#undef SLOPE\n"
+    "#define SLOPE static __attribute__((noinline))\n";
 
 void nevh__write_loop_helpers(nevh__writer *w) {
     if (!w->readable)
@@ -200,13 +202,14 @@ static void write_adds(const nevh__term_loop *x) {
 
 void nevh__write_row(const nevh__term_loop *x, size_t k, const char *name) {
     nevh__write(x->s->w,
-                x->s->w->readable ? "    row%u_%zu[i - from] = %s;\n"
-                                  : "    *(wide *)(row%u_%zu + (i - from)) = "
-                                    "%s;\n",
+                x->in_registers     ? "    wide row%u_%zu = %s;\n"
+                : x->s->w->readable ? "    row%u_%zu[i - from] = %s;\n"
+                                    : "    *(wide *)(row%u_%zu + (i - from)) = "
+                                      "%s;\n",
                 x->id, k, name);
 }
 
-static bool write_body(const nevh__term_loop *x) {
+bool nevh__write_loop_body(const nevh__term_loop *x) {
     nevh__formula_text f = {.tape = term_of(x)->params,
                             .wide = !x->s->w->readable,
                             .scalar = x->s->f->portable,
@@ -284,7 +287,7 @@ static bool write_block(const nevh__term_loop *x) {
     nevh__write(w, "        for (size i = begin; i < end; i += 8) {\n"
                    "    const size left = end - i;\n");
     write_loads(x, constants);
-    if (!write_body(x))
+    if (!nevh__write_loop_body(x))
         return false;
     nevh__write(w, "        }\n");
     write_adds(x);
@@ -393,7 +396,7 @@ static bool write_for_readers(const nevh__term_loop *x) {
     write_rows(x, size);
     nevh__write(w, "        for (size_t i = from; i < until; i++) {\n");
     size_t body = w->used;
-    if (!write_body(x))
+    if (!nevh__write_loop_body(x))
         return false;
     indent(w, body, 8);
     nevh__write(w, "        }\n");
@@ -419,18 +422,21 @@ static bool write_part(const nevh__term_loop *x) {
            (x->s->w->readable ? write_for_readers : write_block)(x);
 }
 
+void nevh__loop_take_pass(nevh__term_loop *x, int i) {
+    const nevh__pass *pass = &x->s->term->pass[i];
+    size_t begin = x->s->kick ? pass->begin : pass->first_p;
+    size_t end = x->s->kick ? pass->first_p : pass->end;
+    x->id = x->s->w->formulas;
+    x->method = pass->pairs == 1 ? nevh_central2 : x->s->f->gradient;
+    x->n_vars = end - begin;
+    memcpy(x->vars, x->s->term->vars + begin, x->n_vars * sizeof *x->vars);
+}
+
 /* Passes one after the other. */
 static bool write_passes(nevh__term_loop *x) {
-    const nevh__planned *term = x->s->term;
     bool fine = true;
     for (int i = 0; fine && i < 2; i++) {
-        const nevh__pass *pass = &term->pass[i];
-        size_t begin = x->s->kick ? pass->begin : pass->first_p;
-        size_t end = x->s->kick ? pass->first_p : pass->end;
-        x->id = x->s->w->formulas;
-        x->method = pass->pairs == 1 ? nevh_central2 : x->s->f->gradient;
-        x->n_vars = end - begin;
-        memcpy(x->vars, term->vars + begin, x->n_vars * sizeof *x->vars);
+        nevh__loop_take_pass(x, i);
         fine = write_part(x);
     }
     return fine;

@@ -45,6 +45,9 @@ typedef struct nevh__native {
 /* Text of steps, and of the slopes before them: of a splitting, and of an
    explicit Runge-Kutta method. */
 bool nevh__write_splitting(nevh__writer *, nevh_work *);
+/* The same of states that are long, and w->takes_steps; false: terms read what
+   is far, and nothing is written. */
+bool nevh__write_splitting_groups(nevh__writer *, nevh_work *);
 bool nevh__write_runge_kutta(nevh__writer *, nevh_work *);
 bool nevh__write_nystrom(nevh__writer *, nevh_work *);
 bool nevh__write_stages(nevh__writer *, nevh_work *);

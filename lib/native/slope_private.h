@@ -38,6 +38,7 @@ typedef struct {
     bool listed;                 /* indices are read: there are no pieces */
     size_t *vars, n_vars;        /* whose slopes are taken */
     const nevh_gradient *method; /* of differences; else NULL */
+    bool in_registers; /* what instances give is not written to rows */
 } nevh__term_loop;
 
 /* false when memory is out; to be cleared in all cases. */
@@ -65,6 +66,10 @@ void nevh__loop_name(nevh__writer *, const nevh__formula_text *, nevh__variable,
 /* The loop's body where it takes differences: the slopes of eight instances, or
    for readers of one, to rows. */
 bool nevh__write_differences(const nevh__term_loop *);
+/* Slopes are those of one of the two passes of differences. */
+void nevh__loop_take_pass(nevh__term_loop *, int pass);
+/* The loop's body: the slopes of eight instances, or for readers of one. */
+bool nevh__write_loop_body(const nevh__term_loop *);
 /* "row3_1 ... = NAME;" */
 void nevh__write_row(const nevh__term_loop *, size_t k, const char *name);
 /* Columns of differences' steps where instances have their own, for readers. */

@@ -417,7 +417,9 @@ static bool write_slope(nevh__writer *w, nevh_field *f, bool kick,
     if (!w->loops)
         write_sums(&s);
     nevh__write(w, "    return bad%s;\n}\n%s",
-                w->loops && !w->readable ? " + rows_bad" : "",
+                w->readable ? ""
+                : w->loops  ? " - bad + (rows_bad - rows_bad)"
+                            : " - bad",
                 w->readable ? "\n" : "");
     free(s.parts);
     return fine;

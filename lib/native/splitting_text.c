@@ -224,6 +224,33 @@ static void write_step(nevh__writer *w, const char *const words[]) {
                        words);
 }
 
+static bool keeps_slope(const nevh_splitting *table) {
+    return nevh__splitting_operations(table) % 2 == 1;
+}
+
+static void write_parts(nevh__writer *w, nevh_work *work,
+                        const char *const words[]) {
+    const nevh_splitting *table = work->integrator->table;
+    bool keeps = keeps_slope(table), kicks = table->first == NEVH_KICK;
+    nevh__write(w, owner, "    const double *N;\n",
+                "    size_t first, size;\n");
+    nevh__write(w, "%s", slope_of_part);
+    write_first(w, keeps, kicks);
+    write_lags(w, work, kicks, keeps, nevh__splitting_operations(table));
+    nevh__write_filled(w, operate_on_part, words);
+    write_step(w, words);
+}
+
+static void write_whole(nevh__writer *w, const nevh_splitting *table,
+                        const char *const words[]) {
+    nevh__write(w, owner, w->readable ? "" : "    const double *N;\n", "");
+    nevh__write_filled(
+        w, slope, (const char *const[]){w->readable ? "" : "x->owner->N, "});
+    if (!w->readable)
+        write_first(w, keeps_slope(table), table->first == NEVH_KICK);
+    write_step(w, words);
+}
+
 bool nevh__write_splitting(nevh__writer *w, nevh_work *work) {
     const nevh_splitting *table = work->integrator->table;
     size_t count = nevh__splitting_operations(table);
@@ -238,20 +265,14 @@ bool nevh__write_splitting(nevh__writer *w, nevh_work *work) {
     if (w->readable)
         write_tables(w, table);
     nevh__write_lines(w, nevh__splitting_step_text);
-    bool parts = w->loops && !w->readable;
-    nevh__write(w, owner, w->readable ? "" : "    const double *N;\n",
-                parts ? "    size_t first, size;\n" : "");
-    nevh__write_filled(
-        w, parts ? slope_of_part : slope,
-        (const char *const[]){w->readable ? "" : "x->owner->N, "});
-    if (!w->readable)
+    const char *const words[] = {kick, keep, number,
+                                 keeps ? "    kept[DOF] = 1;\n" : ""};
+    if (w->loops && !w->readable && nevh__write_splitting_groups(w, work))
         write_first(w, keeps, kicks);
-    if (parts) {
-        write_lags(w, work, kicks, keeps, count);
-        nevh__write_filled(w, operate_on_part, (const char *const[]){kick});
-    }
-    write_step(w, (const char *const[]){kick, keep, number,
-                                        keeps ? "    kept[DOF] = 1;\n" : ""});
+    else if (w->loops && !w->readable)
+        write_parts(w, work, words);
+    else
+        write_whole(w, table, words);
     nevh__write_driver(w, true);
     return true;
 }

@@ -159,12 +159,10 @@ static const char long_driver[] =
     "    else if (is_bad(take_first(N, T, t0 + (double)from * h, h, y, lost,\n"
     "                               kept, room)))\n"
     "        return 0;\n"
-    "    for (; done < steps; done++) {\n"
-    "        double t = t0 + (double)(from + done) * h;\n"
-    "        if (is_bad(take_step(N, W, T, operations, t, h, y, lost, kept,\n"
-    "                             room)))\n"
+    "    while (done < steps)\n"
+    "        if (!take_steps(N, W, T, operations, t0, h, from + done,\n"
+    "                        steps - done, y, lost, kept, room, &done))\n"
     "            return done;\n"
-    "    }\n"
     "    store_all(Q, (double *)y);\n"
     "    store_all(P, (double *)(y + DOF));\n"
     "    store_all(M, (double *)lost);\n"
@@ -281,7 +279,19 @@ void nevh__write_rows(nevh__writer *w, const char *name, size_t rows) {
                     w->loops ? "static " : "", name, rows);
 }
 
+static const char take_one[] =
+    "INLINE bool take_steps(const double *N, double *W, double *T, size_t "
+    "operations, double t0, double h, size_t from, size_t steps, wide *y, wide "
+    "*lost, wide *kept, wide *room, size_t *done) {\n"
+    "    double t = t0 + (double)from * h;\n"
+    "    bool fine = !is_bad(take_step(N, W, T, operations, t, h, y, lost, kept,\n"
+    "                                  room));\n"
+    "    *done += fine;\n"
+    "    return fine;\n}\n";
+
 static void write_long_driver(nevh__writer *w) {
+    if (!w->takes_steps)
+        nevh__write(w, "%s", take_one);
     nevh__write(w, "%s", loading);
     nevh__write_rows(w, "y", 2);
     nevh__write_rows(w, "lost", 2);

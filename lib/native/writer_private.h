@@ -30,6 +30,7 @@ typedef struct {
     bool stages;       /* those of an implicit step are, of one orbit; for
                             readers one after the other */
     bool loops;        /* over instances; the state is rows of vectors */
+    bool takes_steps;  /* several at once: there is a function take_steps */
     size_t rows;       /* of DOF vectors, for them */
     bool readable;     /* numbers stand in the text, functions are libm's */
     size_t n;
@@ -154,7 +155,12 @@ void nevh__write_unkept(nevh__writer *);
 /* The function that takes steps, of
        take_step(N, W, T, operations, t, h, y, lost, kept)
    which returns 0 if all is well; for readers take_step(t, h, y, lost)
-   or, where slopes are kept, take_step(t, h, y, lost, kept). */
+   or, where slopes are kept, take_step(t, h, y, lost, kept).  Where
+   w->takes_steps it is of
+       take_steps(N, W, T, operations, t0, h, from, steps, y, lost, kept, room,
+                  done)
+   which adds to `done` how many steps are fine, and returns whether it is all
+   that were taken, of up to `steps`. */
 void nevh__write_driver(nevh__writer *, bool keeps);
 /* That function up to its body, of a family whose steps write to Q, P and M. */
 void nevh__write_driver_head(nevh__writer *);
