@@ -79,6 +79,9 @@ tools_nevh_SOURCES = \
 	tools/report/report_private.h \
 	tools/report/report.c \
 	tools/report/report_html.c \
+	tools/report/film.c \
+	tools/report/film_html.c \
+	tools/report/film_private.h \
 	tools/report/page_html.c \
 	tools/report/live_page.c \
 	tools/ensemble/map.h \

@@ -23,14 +23,14 @@ limit= # is not in that PATH
 with=$PATH
 PATH=$(pwd)/$work/bin
 exits 0 report pendulum -o $page --t-end 5
-says '^nevh: pictures are left out: gnuplot was not found'
+says '^nevh: pictures by gnuplot are left out: it was not found'
 test "$(wc -l <$work/err)" = 1 || { fails "says more"; cat $work/err; }
 cp $page $work/out
-has '<p>Pictures are left out: gnuplot was not found.</p>'
+has '<p>Pictures by gnuplot are left out: it was not found.</p>'
 has '<h2>Portrait</h2>'
 has '<td>bounded</td>'
 has '<p>The picture is left out.</p>'
-lacks '<figure>'
+lacks gnuplot_canvas
 rm $page
 refused 'no integrator has a row' report double-pendulum -o $page \
     --integrators verlet --t-end 1
@@ -91,6 +91,27 @@ for number in $energies; do
     grep -q "<td class=\"number\">$number</td>" $page || fails "lacks $number"
 done
 
+
+# What moves: a still picture without scripts, steps on demand; its numbers are
+# those of the command beside it.
+film=$work/film
+sed -n '/<h1>Pendulum/,$p' $page |
+    sed -n '/<h2>A symplectic scheme beside rk4/,/<\/section>/p' >$film
+grep -q '<title>The motion by ' $film && grep -q '<desc>' $film || fails "has no film"
+grep -q 'prefers-reduced-motion' $film || fails "moves against the reader's will"
+grep -q 'class="controls" hidden' $film || fails "has controls without a script"
+grep -Eq '<span class="stamp">step 400, t = [0-9.]+</span> s' $film ||
+    fails "has no stamp"
+test "$(wc -c <$film)" -lt 150000 || fails "has a large film"
+numbers=$(sed -n 's/.*"places":\[\[\(.*\)\],*$/\1/p' $film | tr , '\n' | wc -l)
+test "$numbers" = $((401 * 6)) || fails "has $numbers numbers of places"
+line=$(sed -n 's/^<p>The same runs: <code>nevh \(.*\)<\/code>.*/\1/p' $film)
+exits 0 $line
+most=$(sed -n 's/.*error of [a-z0-9-]* stays within \([0-9.]*\) %.*/\1/p' $film |
+    awk '{ printf "%.1e", $1/100 }')
+awk -v most="$most" '$2 == 2 && $5 == most { found = 1 } 
+    $1 == "rk4" && $NF == "drifts" { lost = 1 } END { exit !(found && lost) }' $work/out ||
+    { fails "has a film with other numbers than $most"; cat $work/out; }
 
 # An orbit without any energy error has a report, though no curve of it.
 printf '[coordinates]\nx = 0\n[effects]\nK = p_x^2/2\nV = x^2/2\n[run]

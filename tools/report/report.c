@@ -1,6 +1,7 @@
 /* nevh report: what the other commands say of a scene, as one page of HTML.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "plot/plot.h"
+#include "film_private.h"
 #include "report_private.h"
 #include <errno.h>
 #include <stdlib.h>
@@ -12,6 +13,7 @@ typedef struct {
     nevh_scene *scene;
     char *folder, *rows, *picture, *messages; /* files of one part */
     bool draws;                               /* gnuplot is at hand */
+    size_t films;                             /* on the page */
 } report_work;
 
 typedef struct {
@@ -59,6 +61,10 @@ static const kind_of_part kinds[] = {
     {"The motion", "The configuration at equal times, by the first integrator.",
      "run --plot-kind configuration", run_scene, has_picture,
      PLOT_CONFIGURATION, false, true, 0},
+    {"A symplectic scheme beside rk4",
+     "Both take the same steps, the shortest at which rk4 loses or gains "
+     "energy before they end, if there are such.",
+     "compare", NULL, has_picture, PLOT_USUAL, false, false, 0},
     {"Phase plane", "A coordinate and its momentum, by the first integrator.",
      "run --plot-kind phase", run_scene, always, PLOT_PHASE, false, true, 0},
     {"Portrait", "Orbits over level curves of H, a panel for each integrator.",
@@ -72,7 +78,7 @@ static const kind_of_part kinds[] = {
     {"What accuracy costs",
      "Processor time for each digit. The picture is the work-precision "
      "diagram: lower left is better.",
-     "cost --budget 6", cost, always, PLOT_USUAL, true, true, 6},
+     "cost --budget 5", cost, always, PLOT_USUAL, true, true, 5},
     {"Effects",
      "What each effect reads and costs. Effects that are off cost "
      "nothing.",
@@ -84,7 +90,7 @@ static const kind_of_part kinds[] = {
     {"Properties of H", "Tested numerically at states around the start.",
      "check", check, always, PLOT_USUAL, true, false, 0},
 };
-enum { KINDS = sizeof kinds / sizeof *kinds, STARTS = 2 };
+enum { KINDS = sizeof kinds / sizeof *kinds, STARTS = 2, FILM_BYTES = 100000 };
 
 char *text_read(const char *name) {
     FILE *f = fopen(name, "rb");
@@ -106,48 +112,33 @@ char *text_read(const char *name) {
     return text;
 }
 
-/* --set, --with and others that the report was given. */
+static char *add_list(char *line, const char *option, const list *items) {
+    char *joined = text_print("%s", items->count ? items->item[0] : "");
+    for (size_t i = 1; i < items->count; i++) {
+        char *more = text_print("%s,%s", joined, items->item[i]);
+        free(joined);
+        joined = more;
+    }
+    if (items->count)
+        line = shell_option(line, option, joined);
+    free(joined);
+    return line;
+}
+
+/* With the options that the report was given. */
 static char *command_of(const report_work *w, const char *scene,
                         const char *arguments) {
-    static const struct {
-        char mark;
-        const char *option;
-    } settings[] = {
-        {'=', "set"}, {'@', "start"}, {'+', "with"}, {'-', "without"}};
     const options *o = w->given;
     size_t word = strcspn(arguments, " ");
-    char *text = text_print("nevh %.*s %s%s", (int)word, arguments, scene,
-                            arguments + word);
-    const struct {
-        const list *items;
-        const char *option;
-    } lists[] = {{&o->integrators, "integrators"},
-                 {&o->gradients, "gradient"},
-                 {&o->dt, "dt"}};
-    for (size_t i = 0; i < o->settings.count; i++)
-        for (size_t k = 0; k < 4; k++)
-            if (o->settings.item[i][0] == settings[k].mark) {
-                char *more =
-                    text_print("%s --%s '%s'", text, settings[k].option,
-                               o->settings.item[i] + 1);
-                free(text);
-                text = more;
-            }
-    for (size_t k = 0; k < sizeof lists / sizeof *lists; k++) {
-        if (!lists[k].items->count)
-            continue;
-        char *joined = list_joined(lists[k].items);
-        char *more = text_print("%s --%s %s", text, lists[k].option, joined);
-        free(joined);
-        free(text);
-        text = more;
-    }
-    if (o->t_end) {
-        char *more = text_print("%s --t-end '%s'", text, o->t_end);
-        free(text);
-        text = more;
-    }
-    return text;
+    char *run = text_print("%.*s", (int)word, arguments);
+    char *line = shell_line(o, run, scene);
+    char *text = text_print("%s%s", line + strspn(line, " "), arguments + word);
+    free(run);
+    free(line);
+    text = add_list(text, "integrators", &o->integrators);
+    text = add_list(text, "gradient", &o->gradients);
+    text = add_list(text, "dt", &o->dt);
+    return o->t_end ? shell_option(text, "t-end", o->t_end) : text;
 }
 
 /* Runs a command with stderr in a file; -1 where that cannot be. */
@@ -193,6 +184,49 @@ static report_part make_part(const report_work *w, const kind_of_part *kind,
     return part;
 }
 
+/* The command whose rows have the errors that the picture moves by. */
+static char *film_command(const report_work *w, const film *f,
+                          const char *scene) {
+    options o = *w->given;
+    report_work as = {.given = &o};
+    double end = f->plan->run->t_start + (double)f->most * f->dt;
+    char *dt = text_print("%.3g", f->dt), *t_end = text_print("%.15g", end);
+    o.integrators = o.dt = (list){0};
+    list_add(&o.integrators, f->reel[0].integrator);
+    list_add(&o.integrators, f->reel[1].integrator);
+    list_add(&o.dt, dt);
+    o.t_end = t_end;
+    char *text = command_of(&as, scene, "compare");
+    list_free(&o.integrators);
+    list_free(&o.dt);
+    free(dt);
+    free(t_end);
+    return text;
+}
+
+/* Without HTML where there is none. */
+static report_part make_film(const report_work *w, const kind_of_part *kind,
+                             char *scene) {
+    char *words[] = {"report", scene};
+    options o = *w->given;
+    report_part part = {.title = kind->title, .about = kind->about};
+    size_t size;
+    plan p = {0};
+    film f = {0};
+    o.operands = (list){words, 2};
+    if (!plan_make(&p, &o) && film_make(&f, &p, FILM_BYTES / w->films)) {
+        FILE *to = tool_owned(open_memstream(&part.html, &size));
+        film_html(&f, to);
+        fclose(to);
+        tool_owned(part.html);
+        part.command = film_command(w, &f, scene);
+        part.by = "The same runs:";
+    }
+    film_free(&f);
+    plan_free(&p);
+    return part;
+}
+
 static void free_part(report_part *part) {
     free(part->command);
     free(part->html);
@@ -229,11 +263,12 @@ static int add_scene(report_work *w, char *name, size_t *number, FILE *f) {
     for (size_t i = 0; !status && i < KINDS; i++) {
         if (!kinds[i].wanted(w->scene))
             continue;
-        report_part part = make_part(w, &kinds[i], name);
+        report_part part = kinds[i].run ? make_part(w, &kinds[i], name)
+                                        : make_film(w, &kinds[i], name);
         if (kinds[i].run == compare &&
             (part.status == TOOL_USAGE || !has_verdict(&part)))
             status = refuse(name, &part);
-        else
+        else if (part.command)
             html_part(f, &part, ++*number, &told);
         free_part(&part);
     }
@@ -278,7 +313,7 @@ static int write_page(const options *o, const char *text) {
 }
 
 int report(const options *o) {
-    report_work w = {.given = o};
+    report_work w = {.given = o, .films = o->operands.count};
     char *text = NULL;
     size_t size, number = 0;
     if (o->operands.count < 2)
@@ -302,9 +337,10 @@ int report(const options *o) {
     fclose(f);
     free_work(&w);
     if (!status && !w.draws)
-        fputs("nevh: pictures are left out: gnuplot was not found (Debian has "
-              "it as gnuplot-nox)\n",
-              stderr);
+        fputs(
+            "nevh: pictures by gnuplot are left out: it was not found (Debian has "
+            "it as gnuplot-nox)\n",
+            stderr);
     if (!status)
         status = write_page(o, tool_owned(text));
     free(text);

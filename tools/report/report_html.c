@@ -25,6 +25,7 @@ static const char style[] =
     "overflow-x:auto}\n"
     "svg{display:block;width:100%;height:auto;min-width:36rem;"
     "max-height:95vh}\n"
+    "figcaption{padding:.3rem .6rem}input{width:50%}\n"
     "pre{overflow-x:auto;font-size:.85rem}\n"
     "dd{overflow-x:auto;overflow-y:hidden;margin:.3rem 0 .3rem 1.5rem}\n"
     "math{font-size:1.15em}\n"
@@ -43,7 +44,7 @@ void html_head(FILE *f, const char *title) {
 }
 
 void html_undrawn(FILE *f) {
-    fputs("<p>Pictures are left out: gnuplot was not found.</p>\n", f);
+    fputs("<p>Pictures by gnuplot are left out: it was not found.</p>\n", f);
 }
 
 /* The names of parts, and what refers to them, with a prefix. */
@@ -120,7 +121,7 @@ void html_part(FILE *f, const report_part *p, size_t number, list *told) {
         }
         fputs("</pre>\n", f);
     }
-    fputs("<p>Made by <code>", f);
+    fprintf(f, "<p>%s <code>", p->by ? p->by : "Made by");
     html_text(f, p->command);
     fputs("</code></p>\n</section>\n", f);
 }

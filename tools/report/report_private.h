@@ -9,6 +9,7 @@
    is NULL where there is none. */
 typedef struct {
     const char *title, *about; /* about: how to read it */
+    const char *by;            /* before the command; NULL: Made by */
     char *command, *html, *picture, *messages;
     int status;
     bool undrawn; /* its picture is left out */

@@ -54,6 +54,7 @@ typedef struct {
     double seconds; /* for all rows, whatever the work */
     double spent;
     double started;         /* seconds */
+    double compiled;        /* seconds of compilers until then */
     double landing;         /* dt of adaptive schemes */
     double *dt, *tolerance; /* coarse to fine; NULL: those of the grid */
     size_t dts, tolerances;
