@@ -20,7 +20,8 @@ static const struct {
      "the trajectory as CSV: t, coordinates, momenta, observables, energy"},
     {cost, FOR_COST, "SCENE", "what each digit costs, for each integrator"},
     {recommend, FOR_RECOMMEND, "SCENE",
-     "the cheapest integrator, gradient and step that keep an error"},
+     "the cheapest integrator, gradient and step whose error stays below a "
+     "target"},
     {gradients, FOR_GRADIENTS, "SCENE",
      "error and cost of each gradient method and step along the orbit"},
     {check, FOR_CHECK, "SCENE",
@@ -46,14 +47,14 @@ static const struct {
      "parameters and starts from measured points: least squares, with errors "
      "and correlations"},
     {flow, FOR_FLOW, "SCENE",
-     "a disc, a rectangle or Arnold's cat of starts carried along by each "
-     "integrator: its area by time"},
+     "the area of a disc, a rectangle or Arnold's cat of starts against time, "
+     "for each integrator"},
     {reference_command, FOR_REFERENCE, "SCENE",
-     "the state at the end, or at times, to digits that are certain"},
+     "the state at the end, or at given times, with certain digits"},
     {export_scene, FOR_EXPORT, "SCENE",
      "the steps of one integrator as a C program that needs nothing else"},
     {report, FOR_REPORT, "SCENE...",
-     "what the other commands say of scenes, as one page of HTML"},
+     "one page of HTML with the tables and pictures of the other commands"},
     {live_page, FOR_PAGE, "SCENE",
      "a live page in one file: the scene runs in a browser, offline"},
     {hard, FOR_HARD, "",

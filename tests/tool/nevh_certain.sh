@@ -57,6 +57,10 @@ says '1 to 30'
 exits 2 reference pendulum --at -1
 says 'before it begins'
 exits 2 reference pendulum --dt
+for option in '--dt 0.1' '--integrators verlet' '--gradient exact' --portable; do
+    exits 2 reference pendulum --at 1 $option
+    says 'is no option of nevh reference'
+done
 scene wall 'x = 1' 'p_x^2/2 + abs(x)'
 exits 2 reference $work/wall.nevh --at 1
 says 'abs'

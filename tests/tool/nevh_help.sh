@@ -45,6 +45,17 @@ if help2man --version >/dev/null 2>&1; then
     done
 fi
 
+# --quiet: a table begins with its header, and nothing follows it.
+bare() {
+    exits 0 "$@" --quiet
+    head -n 1 $work/out | grep -q '^  *[a-z]' || fails 'is not a table alone'
+    lacks '^[A-Za-z]'
+}
+bare chaos pendulum --t-end 30 --starts 2
+bare compare pendulum --t-end 3
+bare frequencies pendulum --integrators verlet --t-end 100
+bare flow pendulum --integrators verlet --at 1
+
 # --quiet: CSV that begins with its header.
 quiet() {
     exits 0 "$@" --quiet --format csv

@@ -12,6 +12,7 @@ enum {
                 FOR_SECTION | FOR_SWEEP | FOR_FLOW | FOR_PORTRAIT |
                 FOR_REFERENCE | FOR_REPORT | FOR_CHAOS | FOR_FREQUENCIES |
                 FOR_FIT | OF_COST,
+    OF_STEPS = OF_SCENES & ~FOR_REFERENCE, /* of an integrator */
     OF_NATIVE = FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_SWEEP | FOR_PORTRAIT |
                 OF_COST,
     OF_TABLES = (OF_SCENES & ~(FOR_EXPORT | FOR_REPORT | FOR_PORTRAIT)) |
@@ -35,9 +36,9 @@ static const struct {
      "change a parameter; several: A=1,B=2"},
     {"start", "NAME=VALUE", OF_SCENES | FOR_PAGE, read_start,
      "where a coordinate x, a momentum p_x or a velocity v_x starts"},
-    {"integrators", "A,B", OF_SCENES | FOR_HARD | FOR_PAGE, read_integrators,
+    {"integrators", "A,B", OF_STEPS | FOR_HARD | FOR_PAGE, read_integrators,
      "see nevh list integrators; instead of the scene's"},
-    {"dt", "A,B", OF_SCENES | FOR_PAGE, read_dt,
+    {"dt", "A,B", OF_STEPS | FOR_PAGE, read_dt,
      "time steps, instead of the scene's; formulas such as pi/50"},
     {"tolerance", "A,B",
      FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_SWEEP | FOR_FLOW | FOR_PORTRAIT |
@@ -46,9 +47,9 @@ static const struct {
      "of integrators that choose their steps; instead of the scene's"},
     {"t-end", "T", OF_SCENES, read_t_end,
      "the end, instead of the scene's; a formula"},
-    {"gradient", "A,B", OF_SCENES | FOR_HARD | FOR_PAGE, read_gradient,
+    {"gradient", "A,B", OF_STEPS | FOR_HARD | FOR_PAGE, read_gradient,
      "central2, central4, ...; see nevh list gradients"},
-    {"gradient-step", "D", OF_SCENES, read_gradient_step,
+    {"gradient-step", "D", OF_STEPS, read_gradient_step,
      "step D of the finite differences, (H(x+D) - H(x-D))/2D; found "
      "automatically if not given"},
     {"by", "energy|state", FOR_COST, read_by,
@@ -59,20 +60,21 @@ static const struct {
      "largest relative error of the orbit allowed"},
     {"observable", "FORMULA",
      FOR_COMPARE | FOR_COST | FOR_RECOMMEND | FOR_FREQUENCIES, read_observable,
-     "errors, or frequencies, are of this formula, or observable; errors are relative to its range"},
+     "the formula, or observable, whose errors or frequencies are found; errors "
+     "are relative to its range"},
     {"error", "X", FOR_RECOMMEND, read_error,
-     "the largest that the observable may have"},
+     "largest error of the observable allowed"},
     {"repeat", "N", FOR_COMPARE | FOR_COST | FOR_RECOMMEND, read_repeat,
-     "timed runs, of which the median counts"},
+     "number of timed runs; the median is printed"},
     {"budget", "SECONDS", FOR_COST | FOR_CHAOS, read_budget,
      "of processor time for all runs, about; if not given, cost takes a minute "
      "at most"},
     {"every", "K", FOR_RUN | FOR_EXPORT, read_every,
-     "a row each K steps, and at the end"},
+     "a row after every K steps, and at the end"},
     {"samples", "N", FOR_RUN | FOR_FLOW | FOR_CHAOS, read_samples,
      "N rows at equal times, the first and the last included"},
     {"at", "T1,T2", FOR_RUN | FOR_FLOW | FOR_REFERENCE, read_at,
-     "rows at these times alone"},
+     "rows at these times only"},
     {"picture", "FILE", FOR_SWEEP, read_picture,
      "draw the outcome over what is varied, one number or two: FILE.svg, .png "
      "or .pdf"},
@@ -81,17 +83,16 @@ static const struct {
      "= 1, p_x = 0, SIZE), or loop(x = cos(t), p_x = sin(t)) of formulas of t "
      "from 0 to 2*pi; a cat round the start if not given"},
     {"digits", "N", FOR_REFERENCE, read_digits,
-     "digits that states are to have, 1 to 30; 24 if not given"},
+     "digits of the states, 1 to 30; 24 if not given"},
     {"exponents", "N|all", FOR_CHAOS, read_exponents,
      "the N largest exponents, or all, instead of the largest"},
     {"starts", "N", FOR_CHAOS, read_starts,
-     "the orbit and such as start near by at the same energy, of whose spread "
-     "the error is made; 8 if not given"},
+     "run N orbits that start close together at the same energy; the error "
+     "contains their spread; 8 if not given"},
     {"gali", "K", FOR_CHAOS, read_gali,
      "the generalised alignment indices of up to K displacements"},
     {"resume", "FILE", FOR_RUN | FOR_SWEEP, read_resume,
-     "go on with FILE, which nevh run or nevh sweep -o FILE left unfinished, "
-     "as if never interrupted"},
+     "continue FILE, which nevh run or nevh sweep -o FILE left unfinished"},
     {"vary", "NAME=WHAT", FOR_SWEEP | FOR_SECTION | FOR_PORTRAIT | FOR_FIT,
      read_vary,
      "a line of [ensemble]: a list, range(A, B, N), normal(M, S), "
@@ -101,25 +102,25 @@ static const struct {
      "measured points, as CSV: t, and columns named as in the scene; run prints "
      "residuals, and pictures show the points"},
     {"sigma", "X", FOR_FIT, read_sigma,
-     "the standard deviation of all measured numbers; a column sigma or "
-     "sigma_NAME of the data says it of each"},
+     "the standard deviation of all measured numbers; columns sigma or "
+     "sigma_NAME of the data give it for each point"},
     {"outcomes", "A,B", FOR_SWEEP, read_outcomes,
      "columns: state, t, energy_error, verdict, first(A > B), last(F), min(F), "
-     "max(F), mean(F), crossings, period"},
+     "max(F), mean(F), crossings, period, lyapunov, sali, megno"},
     {"retry", NULL, FOR_SWEEP, read_retry,
-     "with --resume: run members that failed again"},
+     "with --resume: repeat the members that failed"},
     {"stop-after", "TIME", FOR_SWEEP | FOR_REFERENCE, read_stop_after,
-     "finish the members under way after 50m, 2h or 90s, and end with exit "
-     "status 3; of reference: refuse what takes longer (10m)"},
+     "sweep: after 50m, 2h or 90s finish the running members and end with "
+     "exit status 3; reference: refuse orbits that take longer (10m)"},
     {"task", "I/N", FOR_SWEEP, read_task,
-     "run part I of N alone, into FILE.I-of-N.npy"},
+     "run only part I of N, into FILE.I-of-N.npy"},
     {"join", NULL, FOR_SWEEP, read_join,
-     "make -o FILE.npy of the parts FILE.1-of-N.npy, ..."},
+     "combine the parts FILE.1-of-N.npy, ... into -o FILE.npy"},
     {"threads", "N", FOR_SWEEP, read_threads,
-     "threads that take members; as many as processors if not given"},
+     "number of threads; as many as processors if not given"},
     {"width", "N", FOR_SWEEP, read_width,
-     "orbits that a thread takes side by side, which changes no digit; chosen "
-     "if not given"},
+     "number of orbits that a thread runs side by side; changes no digit; "
+     "chosen if not given"},
     {"transform", "FORMULA", FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_SWEEP,
      read_transform,
      "of time, for integrators NAME+transform; instead of the scene's"},
@@ -128,10 +129,10 @@ static const struct {
     {"diagnostics", NULL, FOR_COMPARE, read_diagnostics,
      "symplecticity, reversal, solvers, invariants, energies by effect and "
      "body"},
-    {"portable", NULL, OF_SCENES, read_portable,
+    {"portable", NULL, OF_STEPS, read_portable,
      "no vector code: the same digits with the same libm"},
     {"native", "auto|never|always", OF_NATIVE, read_native,
-     "compile steps of formulas; auto (default): where that pays"},
+     "compile steps of formulas; auto (default): if that saves time"},
     {"no-cache", NULL, OF_NATIVE, read_no_cache,
      "keep no compiled steps, and use none that were kept"},
     {"plot", "FILE", OF_PLOTS, read_plot,
@@ -145,11 +146,11 @@ static const struct {
      "phase draws: a panel each, names joined by : in one; t, coordinates, "
      "p_NAME, observables, energy, energy_error, shadow_error"},
     {"keep-plot-script", "FILE", OF_PLOTS | FOR_SWEEP, read_plot_script,
-     "write what gnuplot is told, data included"},
+     "write the commands for gnuplot, with the data"},
     {"header", NULL, FOR_EXPORT, read_header,
-     "functions for another program, instead of a program"},
+     "write functions for another program, instead of a program"},
     {"section", "A,B", FOR_SECTION | FOR_PORTRAIT, read_section,
-     "these alone, by name"},
+     "only these sections"},
     {"from", "SCENE", FOR_NEW, read_from, "the scene to begin with"},
     {"allow-code", NULL, OF_SCENES | FOR_NEW, read_allow_code,
      "compile and run C code that the scene names"},
@@ -161,9 +162,9 @@ static const struct {
     {"format", "table|csv|json", OF_TABLES, read_format,
      "csv for run, section and sweep, table for others, if not given"},
     {"output", "FILE", OF_TABLES | FOR_EXPORT | FOR_REPORT | FOR_PAGE,
-     read_file, "write to FILE, when all of it is there; nevh run: as it goes"},
+     read_file, "write FILE when it is complete; nevh run: line by line"},
     {"quiet", NULL, OF_TABLES | FOR_NEW | FOR_PORTRAIT, read_quiet,
-     "the table alone: no # lines, no words, no progress"},
+     "only the table: no # lines, no notes, no progress"},
     {"help", NULL, ~0u, read_help, "this text"},
     {"version", NULL, ~0u, read_version, "version and licence"},
 };

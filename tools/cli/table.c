@@ -410,11 +410,13 @@ void page_print(const page *p, const options *o, FILE *f) {
             print_comments(&p->before, f);
         print_csv(p->table, f);
     } else {
-        print_all_wrapped(&p->before, f);
-        fputs(p->before.count ? "\n" : "", f);
+        if (!o->quiet)
+            print_all_wrapped(&p->before, f);
+        fputs(!o->quiet && p->before.count ? "\n" : "", f);
         print_table(p->table, f);
-        fputs(p->after.count ? "\n" : "", f);
-        print_all_wrapped(&p->after, f);
+        fputs(!o->quiet && p->after.count ? "\n" : "", f);
+        if (!o->quiet)
+            print_all_wrapped(&p->after, f);
     }
 }
 
