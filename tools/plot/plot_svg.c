@@ -1,6 +1,7 @@
 /* nevh: plots: the SVG that gnuplot wrote, in fewer bytes.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "plot_private.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,40 +25,65 @@ static bool discs_match(const disc *a, const disc *b) {
     return a->radius == b->radius && strcmp(a->colour, b->colour) == 0;
 }
 
-/* Closes the path of the last disc. */
-static void end_path(bool *open, FILE *to) {
-    if (*open)
-        fputs("'/>\n", to);
-    *open = false;
+/* Of one look, one after the other. */
+typedef struct {
+    disc *item;
+    size_t count, room;
+} discs;
+
+static void discs_add(discs *d, const disc *next) {
+    if (d->count == d->room)
+        d->item =
+            tool_enlarge(d->item, d->room = 2 * d->room + 64, sizeof *d->item);
+    d->item[d->count++] = *next;
 }
 
-static void put_disc(const disc *d, bool goes_on, FILE *to) {
-    if (!goes_on)
-        fprintf(to,
-                "\t<path fill='none' stroke='%s' stroke-width='%.2f' "
-                "stroke-linecap='round' d='",
-                d->colour, 2 * d->radius);
-    fprintf(to, "%sM%.2f,%.2fh0", goes_on ? "\n" : "", d->x, d->y);
+/* Near ones follow each other: by rows of a pixel. */
+static int by_place(const void *a, const void *b) {
+    const disc *one = a, *other = b;
+    double rows = floor(one->y) - floor(other->y);
+    return rows < 0 || (rows == 0 && one->x < other->x)   ? -1
+           : rows > 0 || (rows == 0 && one->x > other->x) ? 1
+                                                          : 0;
+}
+
+/* In tenths of a pixel, each from the one before. */
+static void discs_put(discs *d, FILE *to) {
+    if (!d->count)
+        return;
+    qsort(d->item, d->count, sizeof *d->item, by_place);
+    fprintf(to,
+            "\t<path transform='scale(.1)' fill='none' stroke='%s' "
+            "stroke-width='%.1f' stroke-linecap='round' d='",
+            d->item->colour, 20 * d->item->radius);
+    int x = 0, y = 0;
+    for (size_t i = 0; i < d->count; i++) {
+        int right = (int)lround(10 * d->item[i].x) - x;
+        int down = (int)lround(10 * d->item[i].y) - y;
+        fprintf(to, "m%d%s%dh0%s", right, down < 0 ? "" : " ", down,
+                i % 16 == 15 ? "\n" : "");
+        x += right, y += down;
+    }
+    fputs("'/>\n", to);
+    d->count = 0;
 }
 
 void plot_svg_shorten(FILE *from, FILE *to) {
     char *line = NULL;
     size_t room = 0;
-    disc last = {0}, next;
-    bool open = false;
+    discs all = {NULL, 0, 0};
+    disc next;
     rewind(from);
     while (getline(&line, &room, from) >= 0) {
-        if (disc_read(line, &next)) {
-            bool goes_on = open && discs_match(&last, &next);
-            if (!goes_on)
-                end_path(&open, to);
-            put_disc(&next, goes_on, to);
-            last = next, open = true;
-            continue;
-        }
-        end_path(&open, to);
-        fputs(line, to);
+        bool is_disc = disc_read(line, &next);
+        if (!is_disc || (all.count && !discs_match(all.item, &next)))
+            discs_put(&all, to);
+        if (is_disc)
+            discs_add(&all, &next);
+        else
+            fputs(line, to);
     }
-    end_path(&open, to);
+    discs_put(&all, to);
+    free(all.item);
     free(line);
 }

@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* Pixels: plot_thin_error follows from them. */
-static const double tolerance = 0.1, cell = 0.2;
+static const double tolerance = 0.1, cell = 0.2, apart = 0.4;
 
 static double part(double value, range r, bool log) {
     return log ? log10(value / r.low) / log10(r.high / r.low)
@@ -179,26 +179,56 @@ static size_t thin_lines(const plot_screen *s, bool solid, const pair from[],
     return kept;
 }
 
+/* Dots that are drawn, of which a cell has one at most: its diagonal is `apart`.
+   Places are from 1 on; 0: none. */
+typedef struct {
+    size_t columns, rows;
+    float (*at)[2];
+} dots;
+
+/* Whether a dot near by is drawn. */
+static bool dots_near(const dots *d, size_t column, size_t row, pair at) {
+    enum { REACH = 2 }; /* cells */
+    size_t left = column < REACH ? 0 : column - REACH;
+    size_t below = row < REACH ? 0 : row - REACH;
+    for (size_t k = below; k <= row + REACH && k < d->rows; k++)
+        for (size_t i = left; i <= column + REACH && i < d->columns; i++) {
+            const float *other = d->at[k * d->columns + i];
+            if (other[0] > 0 &&
+                hypot(other[0] - 1 - at.x, other[1] - 1 - at.y) <= apart)
+                return true;
+        }
+    return false;
+}
+
 static size_t thin_dots(const plot_screen *s, const pair from[], size_t count,
                         pair to[]) {
-    cells c = cells_new(s);
+    double side = apart / sqrt(2);
+    dots d = {(size_t)(s->width / side) + 1, (size_t)(s->height / side) + 1,
+              NULL};
+    d.at = tool_allocate(d.columns * d.rows, sizeof *d.at);
     size_t kept = 0;
     for (size_t i = 0; i < count; i++) {
-        bool *drawn = cell_of(&c, plot_in_pixels(s, from[i]));
-        if (drawn && !*drawn) {
-            *drawn = true;
-            to[kept++] = from[i];
-        }
+        pair at = plot_in_pixels(s, from[i]);
+        if (!is_inside(s, at))
+            continue;
+        size_t column = (size_t)(at.x / side), row = (size_t)(at.y / side);
+        if (dots_near(&d, column, row, at))
+            continue;
+        d.at[row * d.columns + column][0] = (float)(1 + at.x);
+        d.at[row * d.columns + column][1] = (float)(1 + at.y);
+        to[kept++] = from[i];
     }
-    free(c.drawn);
+    free(d.at);
     return kept;
 }
 
 double plot_thin_error(plot_thinning how) {
-    double apart = how == THIN_LINE ? 0 : sqrt(2) * cell;
-    if (how == THIN_SOLID)
-        apart += cell / 2;
-    return (how == THIN_DOTS ? 0 : tolerance) + apart;
+    if (how == THIN_NONE)
+        return 0;
+    if (how == THIN_DOTS)
+        return apart;
+    return tolerance + (how == THIN_SOLID ? (sqrt(2) + 0.5) * cell : 0);
 }
 
 static size_t thin(const plot_screen *s, plot_thinning how, const pair from[],
