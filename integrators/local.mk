@@ -52,6 +52,7 @@ libnevh_core_la_SOURCES += \
 	integrators/gauss.c \
 	integrators/lobatto.c \
 	integrators/kernels/tao_private.h \
+	integrators/kernels/tao_step.h \
 	integrators/kernels/tao_run.c \
 	integrators/kernels/tao_binding.c \
 	integrators/kernels/tao_kernel.c \

@@ -146,6 +146,7 @@ libnevh_core_la_SOURCES = \
 	lib/native/stage_text.c \
 	lib/native/noise_text.c \
 	lib/native/energy_text.c \
+	lib/native/tao_text.c \
 	lib/native/taylor_text.c \
 	lib/native/program_text.c \
 	lib/native/cache.c \
@@ -255,6 +256,7 @@ step_texts = integrators/kernels/splitting_step.h \
 	integrators/kernels/stage_sums_private.h \
 	integrators/kernels/runge_kutta_step.h \
 	integrators/kernels/nystrom_step.h \
+	integrators/kernels/tao_step.h \
 	lib/work/pace.h \
 	integrators/kernels/adaptive_step.h
 nodist_libnevh_core_la_SOURCES = lib/native/kernel_texts.c

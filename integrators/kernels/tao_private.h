@@ -10,10 +10,15 @@
    a time; its `first` does not matter. */
 double nevh__composition_part(const nevh_splitting *, size_t i, double h);
 
+enum { NEVH__TAO_MOST_WEIGHTS = 4 }; /* of a table */
+
 /* What holds the two copies together. */
 typedef struct {
     double omega;
     double *ratio; /* n: lengths of p over lengths of q */
+    double weights[NEVH__TAO_MOST_WEIGHTS];
+    double known_h; /* of which the following are */
+    double lengths[3 * (2 * NEVH__TAO_MOST_WEIGHTS + 1)];
 } nevh__binding;
 
 /* Chooses both; a status, of which work keeps the message. */

@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "kernels/runge_kutta_private.h"
 #include "kernels/splitting_private.h"
+#include "kernels/tao_private.h"
 #include "kernels/taylor_private.h"
 #include "native/native_private.h"
 #include <dlfcn.h>
@@ -34,6 +35,7 @@ static bool fill_splitting(nevh__native *x, const nevh_work *w) {
     const nevh_splitting *table = w->integrator->table;
     size_t count = nevh__splitting_operations(table);
     x->keeps = count % 2 == 1;
+    x->flags_at = 3;
     x->kicks_first = table->first == NEVH_KICK;
     x->kicks = (count + x->kicks_first) / 2;
     x->drifts = count - x->kicks;
@@ -61,6 +63,17 @@ static bool fill_nystrom(nevh__native *x, const nevh_work *w) {
     return true;
 }
 
+/* The first slope is kept; weights: room for h, and what depends on it. */
+static bool fill_tao(nevh__native *x, const nevh_work *w) {
+    const nevh_splitting *table = w->integrator->table;
+    size_t parts = 2 * table->count + 1;
+    x->keeps = x->whole = true;
+    x->flags_at = NEVH__TAO_BLOCKS;
+    x->kicks = x->drifts = 3 * parts + 1;
+    x->weights = nevh__array(3 * parts + 1, sizeof *x->weights);
+    return x->weights;
+}
+
 /* Of one stage. */
 static bool fill_stages(nevh__native *x, const nevh_work *w) {
     x->stages = (size_t)w->integrator->stages;
@@ -80,6 +93,7 @@ static const struct {
     {&nevh_gauss_kernel, nevh__write_stages, fill_stages, false},
     {&nevh_lobatto_kernel, nevh__write_stages, fill_stages, false},
     {&nevh_implicit_euler_kernel, nevh__write_stages, fill_stages, false},
+    {&nevh__tao_kernel, nevh__write_tao, fill_tao, false},
     {&nevh__taylor_kernel, nevh__write_series, NULL, false}};
 /* The steps' copies of the state stand on the stack, but for those of loops. */
 enum { MOST_NUMBERS = 8192 };
@@ -119,7 +133,7 @@ static bool has_loops(const nevh_work *w) {
 static const char *obstacle(const nevh_work *w) {
     return of_series(w) ? NULL
            : family_of(w) == FAMILIES
-               ? "only splitting, Runge-Kutta, Nystroem, Gauss and "
+               ? "only splitting, Tao, Runge-Kutta, Nystroem, Gauss and "
                  "Lobatto steps can be"
            : w->accounts ? "the balance of the energy is kept"
            : w->width % NEVH__LANES && w->width > 1
@@ -269,14 +283,16 @@ static void add_counts(nevh_work *w, const nevh__native *x, size_t kicks,
 static void count(nevh_work *w, const nevh__native *x, size_t steps,
                   bool kept) {
     size_t saved = x->keeps ? steps - !kept : 0;
-    size_t kicks = steps * x->kicks - (x->kicks_first ? saved : 0);
-    size_t drifts = steps * x->drifts - (x->kicks_first ? 0 : saved);
+    bool of_kicks = x->whole || x->kicks_first;
+    bool of_drifts = x->whole || !x->kicks_first;
+    size_t kicks = steps * x->kicks - (of_kicks ? saved : 0);
+    size_t drifts = steps * x->drifts - (of_drifts ? saved : 0);
     add_counts(w, x, kicks * w->width, drifts * w->width);
 }
 
 /* How many lanes have the slope that the step before left. */
 static size_t count_kept(const nevh_work *w) {
-    const double *flags = w->memory + 3 * w->size;
+    const double *flags = w->memory + w->native->flags_at * w->size;
     size_t kept = 0;
     for (size_t lane = 0; lane < w->width; lane++)
         kept += flags[lane] != 0;

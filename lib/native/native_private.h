@@ -36,6 +36,8 @@ typedef struct nevh__native {
     double *room;      /* of states that are too long for the stack, or NULL */
     size_t kicks, drifts; /* of a step */
     bool keeps, kicks_first;
+    bool whole;          /* what is kept is dH/dq and dH/dp */
+    size_t flags_at;     /* halves of a state before what tells that */
     size_t stages;       /* of an implicit step; 0: it is explicit */
     bool adapts;         /* kicks and drifts are those of a trial */
     size_t first_drifts; /* before the first of a substep's trials */
@@ -51,6 +53,7 @@ bool nevh__write_splitting_groups(nevh__writer *, nevh_work *);
 bool nevh__write_runge_kutta(nevh__writer *, nevh_work *);
 bool nevh__write_nystrom(nevh__writer *, nevh_work *);
 bool nevh__write_stages(nevh__writer *, nevh_work *);
+bool nevh__write_tao(nevh__writer *, nevh_work *);
 /* Text of steps under a rule, after that of two functions of one orbit,
        double take_first(const double *N, double t, double h, double *y,
                          double *lost, double *first)

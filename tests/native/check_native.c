@@ -3,6 +3,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #define _GNU_SOURCE
 #include "../support/native.h"
+#include "kernels/tao_private.h"
 #include "native/native_private.h"
 #include <dlfcn.h>
 #include <math.h>
@@ -17,7 +18,8 @@ static bool is_implicit(const nevh_integrator *scheme) {
 static bool compiles(const nevh_integrator *scheme) {
     return is_implicit(scheme) || scheme->kernel == &nevh_splitting_kernel ||
            scheme->kernel == &nevh_runge_kutta_kernel ||
-           scheme->kernel == &nevh_nystrom_kernel;
+           scheme->kernel == &nevh_nystrom_kernel ||
+           scheme->kernel == &nevh__tao_kernel;
 }
 
 /* Scenes that ship, gradients by _i: every explicit scheme that is compiled on the
@@ -235,11 +237,12 @@ TEST(friction_same_bits) {
     nevh_scene *scene = parsed(damped);
     assert_adapts(scene, nevh_dopri5, 0, 1e-7);
     assert_adapts(scene, nevh_dop853, 3, 1e-7);
-    const nevh_integrator *schemes[] = {nevh_rk4, nevh_verlet, nevh_dop853};
-    for (size_t i = 0; i < 6; i++) {
-        pair x =
-            pair_of(scene, schemes[i % 3], i % 2 ? nevh_exact : nevh_central4,
-                    false, cache, i < 3 ? 1 : 16);
+    const nevh_integrator *schemes[] = {nevh_rk4, nevh_verlet, nevh_dop853,
+                                        nevh_tao4};
+    for (size_t i = 0; i < 8; i++) {
+        pair x = pair_of(scene, schemes[i % 4],
+                         (i + i / 4) % 2 ? nevh_exact : nevh_central4, false,
+                         cache, i < 4 ? 1 : 16);
         ck_assert_msg(nevh_stepper_native(x.native, NULL), "%s", x.why);
         double before = x.b[x.n];
         ck_assert_int_eq(pair_run(&x, 0.02, 300), NEVH_OK);
@@ -259,8 +262,11 @@ TEST(failures_same) {
     make_cache();
     nevh_scene *scene = parsed("[coordinates]\nx = 1, -1\n[effects]\n"
                                "T = p_x^2/2\nV = sqrt(x - 0.2)\n");
-    for (size_t i = 0; i < 5; i++) {
-        pair x = pair_new(scene, i < 3 ? nevh_verlet : nevh_gauss6,
+    for (size_t i = 0; i < 6; i++) {
+        pair x = pair_new(scene,
+                          i < 3   ? nevh_verlet
+                          : i < 5 ? nevh_gauss6
+                                  : nevh_tao4,
                           nevh_gradient_named(gradients[i % 3]), false, cache);
         ck_assert(nevh_stepper_native(x.native, NULL));
         ck_assert_int_eq(pair_run(&x, 0.01, 1000), NEVH_EDOM);
@@ -392,13 +398,14 @@ TEST_EACH(rescue_same_bits, 8) {
 }
 
 /* Memory that one has saved the other goes on with. */
-TEST_EACH(memory_is_shared, 2) {
+TEST_EACH(memory_is_shared, 3) {
     if (!has_compiler())
         skip_test("there is no C compiler");
     make_cache();
     nevh_scene *scene = parsed(pendulum);
-    pair x = pair_new(scene, _i ? nevh_gauss8 : nevh_forest_ruth, nevh_exact,
-                      false, cache);
+    const nevh_integrator *schemes[] = {nevh_forest_ruth, nevh_gauss8,
+                                        nevh_tao4};
+    pair x = pair_new(scene, schemes[_i], nevh_exact, false, cache);
     ck_assert_int_eq(pair_run(&x, 0.1, 500), NEVH_OK);
     size_t size = nevh_stepper_save_size(x.plain);
     void *saved = malloc(size), *other = malloc(size);

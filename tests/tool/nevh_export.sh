@@ -75,7 +75,7 @@ END
         fails 'writes functions that do not work'
 fi
 exits 2 export pendulum --integrators gonzalez
-says 'no program of such steps: only splitting, Runge-Kutta, Nystroem, Gauss and Lobatto steps can be'
+says 'no program of such steps: only splitting, Tao, Runge-Kutta, Nystroem, Gauss and Lobatto steps can be'
 exits 2 export damped-driven-pendulum --integrators midpoint
 says 'no program of such steps: friction is put around its steps'
 exits 2 export no-such-scene

@@ -78,7 +78,7 @@ if test "$SLOW" = yes; then
     test $(echo "$schemes" | wc -l) -gt 35 || fails 'lists too few schemes'
     for scheme in $schemes; do
         gradients=exact
-        case $scheme in verlet | rk4 | dopri5 | dprkn12 | rkn11b | gauss4 | lobatto4)
+        case $scheme in verlet | rk4 | tao2 | dopri5 | dprkn12 | rkn11b | gauss4 | lobatto4)
             gradients='exact central2 central4 complex-step' ;;
         esac
         all_scenes $scheme
@@ -92,6 +92,8 @@ else
     agrees fput rkn11b exact 0.1 2 $one
     agrees double-pendulum midpoint complex-step 0.01 0.4 $one
     agrees double-pendulum rk4 exact 0.01 0.4 $one
+    agrees double-pendulum tao4 exact 0.01 0.4 $compilers
+    agrees kepler tao2 central2 0.02 1 $one
     agrees kepler dopri5 exact 0.1 2 $compilers
     agrees double-pendulum dop853 central4 0.1 0.4 $one
     agrees henon-heiles dprkn12 exact 0.5 4 $one
