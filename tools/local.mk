@@ -79,6 +79,7 @@ tools_nevh_SOURCES = \
 	tools/report/report_private.h \
 	tools/report/report.c \
 	tools/report/report_html.c \
+	tools/report/variants.c \
 	tools/report/film.c \
 	tools/report/film_html.c \
 	tools/report/film_private.h \

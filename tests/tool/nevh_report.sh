@@ -92,6 +92,28 @@ for number in $energies; do
 done
 
 
+# Variants stand side by side; each names the commands that make its numbers, which
+# are not those of the other.
+exits 2 report pendulum -o $work/none.html --variant nothing=1
+says 'nothing'
+test -e $work/none.html && fails "writes a page"
+exits 2 compare pendulum --variant l=1
+says 'no option of nevh compare'
+exits 0 report pendulum -o $work/variants.html --variant l=1 --variant l=2,m=3 \
+    --set g=9 --t-end 2
+cp $work/variants.html $work/out
+has '<h2>Energy errors: l=1</h2>'
+has '<h2>Energy errors: l=2,m=3</h2>'
+has '<code>nevh check pendulum --set g=9 --set l=2 --set m=3 --t-end 2</code>'
+test "$(grep -c '<div class="variants">' $work/variants.html)" = \
+    "$(grep -c '<h2>.*: l=1</h2>' $work/variants.html)" || fails "does not pair variants"
+for set in '--set l=1' '--set l=2 --set m=3'; do
+    exits 0 compare pendulum --set g=9 $set --t-end 2
+    scale=$(sed -n 's/^energy_scale: \([0-9.]*\).*/\1/p' $work/out)
+    test "$(grep -c "<p>energy_scale: $scale " $work/variants.html)" = 1 ||
+        fails "has not the energy $scale of $set"
+done
+
 # What moves: a still picture without scripts, steps on demand; its numbers are
 # those of the command beside it.
 film=$work/film

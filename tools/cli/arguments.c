@@ -65,6 +65,11 @@ int read_set(options *o, const char *argument) {
     return read_assignments(&o->settings, '=', argument);
 }
 
+int read_variant(options *o, const char *argument) {
+    list_add(&o->variants, argument);
+    return TOOL_OK;
+}
+
 int read_start(options *o, const char *argument) {
     return read_assignments(&o->settings, '@', argument);
 }

@@ -34,6 +34,9 @@ static const struct {
      "switch effects off"},
     {"set", "NAME=VALUE", OF_SCENES | FOR_NEW | FOR_PAGE, read_set,
      "change a parameter; several: A=1,B=2"},
+    {"variant", "NAME=VALUE", FOR_REPORT, read_variant,
+     "each scene also with these parameters, beside the other variants; "
+     "several: A=1,B=2; repeated for more variants"},
     {"start", "NAME=VALUE", OF_SCENES | FOR_PAGE, read_start,
      "where a coordinate x, a momentum p_x or a velocity v_x starts"},
     {"integrators", "A,B", OF_STEPS | FOR_HARD | FOR_PAGE, read_integrators,
@@ -329,6 +332,7 @@ void options_free(options *o) {
     list_free(&o->integrators);
     list_free(&o->gradients);
     list_free(&o->sections);
+    list_free(&o->variants);
     list_free(&o->vary);
     list_free(&o->dt);
     list_free(&o->at);

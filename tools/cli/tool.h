@@ -165,6 +165,7 @@ typedef enum {
 typedef struct {
     list operands, settings, integrators, gradients; /* settings: see below */
     list sections;
+    list variants; /* of report: settings, as --set takes them */
     list dt, at; /* formulas of the scene's parameters */
     double *tolerance;
     size_t tolerances;

@@ -10,10 +10,10 @@
 
 typedef struct {
     const options *given;
-    nevh_scene *scene;
     char *folder, *rows, *picture, *messages; /* files of one part */
     bool draws;                               /* gnuplot is at hand */
     size_t films;                             /* on the page */
+    size_t parts;                             /* so far */
 } report_work;
 
 typedef struct {
@@ -254,26 +254,53 @@ static int refuse(const char *scene, const report_part *part) {
                        scene);
 }
 
-static int add_scene(report_work *w, char *name, size_t *number, FILE *f) {
-    int status = scene_open_named(&w->scene, name, w->given);
-    if (status)
-        return status;
-    list told = {0};
-    html_scene(f, w->scene, name);
-    for (size_t i = 0; !status && i < KINDS; i++) {
-        if (!kinds[i].wanted(w->scene))
-            continue;
-        report_part part = kinds[i].run ? make_part(w, &kinds[i], name)
-                                        : make_film(w, &kinds[i], name);
-        if (kinds[i].run == compare &&
-            (part.status == TOOL_USAGE || !has_verdict(&part)))
-            status = refuse(name, &part);
-        else if (part.command)
-            html_part(f, &part, ++*number, &told);
-        free_part(&part);
+/* Not where the part has nothing to show. */
+static int add_part(report_work *w, const kind_of_part *kind, char *name,
+                    variant *v, FILE *f) {
+    int status = TOOL_OK;
+    w->given = &v->given;
+    report_part part =
+        kind->run ? make_part(w, kind, name) : make_film(w, kind, name);
+    part.variant = v->name;
+    if (kind->run == compare &&
+        (part.status == TOOL_USAGE || !has_verdict(&part)))
+        status = refuse(name, &part);
+    else if (part.command)
+        html_part(f, &part, ++w->parts, &v->told);
+    free_part(&part);
+    return status;
+}
+
+/* Variants side by side. */
+static int add_kind(report_work *w, const kind_of_part *kind, char *name,
+                    const variants *all, FILE *f) {
+    int status = TOOL_OK;
+    size_t wanted = 0;
+    for (size_t i = 0; i < all->count; i++)
+        wanted += kind->wanted(all->item[i].scene);
+    if (!wanted)
+        return TOOL_OK;
+    html_side_by_side(f, all->count, true);
+    for (size_t i = 0; !status && i < all->count; i++)
+        if (kind->wanted(all->item[i].scene))
+            status = add_part(w, kind, name, &all->item[i], f);
+    html_side_by_side(f, all->count, false);
+    return status;
+}
+
+static int add_scene(report_work *w, const options *o, char *name, FILE *f) {
+    variants all;
+    int status = variants_open(&all, o, name);
+    if (!status) {
+        html_title(f, all.item->scene, name);
+        html_side_by_side(f, all.count, true);
+        for (size_t i = 0; i < all.count; i++)
+            html_scene(f, all.item[i].scene, all.item[i].name);
+        html_side_by_side(f, all.count, false);
     }
-    list_free(&told);
-    nevh_scene_free(w->scene);
+    for (size_t i = 0; !status && i < KINDS; i++)
+        status = add_kind(w, &kinds[i], name, &all, f);
+    variants_close(&all);
     return status;
 }
 
@@ -313,9 +340,9 @@ static int write_page(const options *o, const char *text) {
 }
 
 int report(const options *o) {
-    report_work w = {.given = o, .films = o->operands.count};
+    report_work w = {.given = o};
     char *text = NULL;
-    size_t size, number = 0;
+    size_t size;
     if (o->operands.count < 2)
         return tool_refuse("nevh report takes scenes, as in nevh report "
                            "pendulum -o pendulum.html");
@@ -327,12 +354,14 @@ int report(const options *o) {
     }
     FILE *f = tool_owned(open_memstream(&text, &size));
     int status = TOOL_OK;
-    html_head(f, "nevh report");
+    html_head(f, "nevh report", o->variants.count > 1);
     w.draws = plot_is_possible();
+    w.films =
+        (o->operands.count - 1) * (o->variants.count ? o->variants.count : 1);
     if (!w.draws)
         html_undrawn(f);
     for (size_t i = 1; !status && i < o->operands.count; i++)
-        status = add_scene(&w, o->operands.item[i], &number, f);
+        status = add_scene(&w, o, o->operands.item[i], f);
     html_foot(f);
     fclose(f);
     free_work(&w);

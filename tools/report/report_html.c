@@ -33,14 +33,33 @@ static const char style[] =
     "@media print{tr,figure{break-inside:avoid}h2,h3{break-after:avoid}"
     ".wide{overflow:visible}}\n";
 
-void html_head(FILE *f, const char *title) {
+static const char wide_style[] =
+    "body{max-width:120rem}\n"
+    ".variants{display:grid;gap:0 2rem;"
+    "grid-template-columns:repeat(auto-fit,minmax(min(100%,32rem),1fr))}\n"
+    ".variants>section{min-width:0}.variants svg{min-width:30rem}\n";
+
+void html_head(FILE *f, const char *title, bool wide) {
     fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n"
           "<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
           "content=\"width=device-width, initial-scale=1\">\n<title>",
           f);
     html_text(f, title);
-    fprintf(f, "</title>\n<style>\n%s</style>\n</head>\n<body>\n<main>\n",
-            style);
+    fprintf(f, "</title>\n<style>\n%s%s</style>\n</head>\n<body>\n<main>\n",
+            style, wide ? wide_style : "");
+}
+
+void html_side_by_side(FILE *f, size_t count, bool begins) {
+    if (count > 1)
+        fputs(begins ? "<div class=\"variants\">\n" : "</div>\n", f);
+}
+
+static void put_heading(FILE *f, const char *title, const char *name) {
+    fputs("<h2>", f);
+    html_text(f, title);
+    fputs(name ? ": " : "", f);
+    html_text(f, name ? name : "");
+    fputs("</h2>\n", f);
 }
 
 void html_undrawn(FILE *f) {
@@ -101,9 +120,9 @@ static void put_notes_once(FILE *f, char *html, list *told) {
 }
 
 void html_part(FILE *f, const report_part *p, size_t number, list *told) {
-    fputs("<section>\n<h2>", f);
-    html_text(f, p->title);
-    fputs("</h2>\n<p>", f);
+    fputs("<section>\n", f);
+    put_heading(f, p->title, p->variant);
+    fputs("<p>", f);
     html_text(f, p->about);
     fputs("</p>\n", f);
     if (p->picture)
@@ -145,8 +164,8 @@ static void put_equation(FILE *f, const nevh_scene *scene, size_t i) {
     free(math);
 }
 
-void html_scene(FILE *f, const nevh_scene *scene, const char *name) {
-    const char *title = nevh_scene_title(scene), *section = "";
+void html_title(FILE *f, const nevh_scene *scene, const char *name) {
+    const char *title = nevh_scene_title(scene);
     const char *source = nevh_scene_source(scene);
     fputs("<h1>", f);
     html_text(f, *title ? title : name);
@@ -156,9 +175,13 @@ void html_scene(FILE *f, const nevh_scene *scene, const char *name) {
         html_text(f, source);
         fputs("</p>\n", f);
     }
-    fputs("<section>\n<h2>The Hamiltonian</h2>\n<p>H is the sum of the effects "
-          "that are on.</p>\n<dl>\n",
-          f);
+}
+
+void html_scene(FILE *f, const nevh_scene *scene, const char *name) {
+    const char *section = "";
+    fputs("<section>\n", f);
+    put_heading(f, "The Hamiltonian", name);
+    fputs("<p>H is the sum of the effects that are on.</p>\n<dl>\n", f);
     for (size_t i = 0; i < nevh_scene_equation_count(scene); i++) {
         nevh_scene_equation e = nevh_scene_equation_at(scene, i);
         if (strcmp(section, e.section) != 0)

@@ -9,24 +9,46 @@
    is NULL where there is none. */
 typedef struct {
     const char *title, *about; /* about: how to read it */
+    const char *variant;       /* NULL: there is one */
     const char *by;            /* before the command; NULL: Made by */
     char *command, *html, *picture, *messages;
     int status;
     bool undrawn; /* its picture is left out */
 } report_part;
 
+/* variants.c: a scene with settings of its own. */
+typedef struct {
+    const char *name; /* its settings; NULL: none */
+    options given;
+    nevh_scene *scene;
+    list told; /* notes that its parts have so far */
+} variant;
+typedef struct {
+    size_t count;
+    variant *item;
+} variants;
+/* As --variant says; to be closed in any case.
+   returns  TOOL_OK, or TOOL_USAGE with the message printed */
+int variants_open(variants *, const options *, const char *scene);
+void variants_close(variants *);
+
 /* report.c: a whole file, to be freed; NULL: there is none, or it is empty. */
 char *text_read(const char *name);
 
 /* report_html.c: text with markup's characters written out. */
 void html_text(FILE *, const char *);
-void html_head(FILE *, const char *title);
+/* wide: things stand side by side */
+void html_head(FILE *, const char *title, bool wide);
+/* Of as many as `count`, where they are several. */
+void html_side_by_side(FILE *, size_t count, bool begins);
 /* That pictures are left out, and why. */
 void html_undrawn(FILE *);
 /* number  of its picture in the page
    told    notes that parts before it have, and then its own */
 void html_part(FILE *, const report_part *, size_t number, list *told);
-/* Title, source, the lines that say what H is. */
+/* Title and source. */
+void html_title(FILE *, const nevh_scene *, const char *name);
+/* The lines that say what H is.  name: of the variant; NULL: there is one. */
 void html_scene(FILE *, const nevh_scene *, const char *name);
 void html_foot(FILE *);
 
