@@ -166,7 +166,7 @@ typedef struct {
     list operands, settings, integrators, gradients; /* settings: see below */
     list sections;
     list variants; /* of report: settings, as --set takes them */
-    list dt, at; /* formulas of the scene's parameters */
+    list dt, at;   /* formulas of the scene's parameters */
     double *tolerance;
     size_t tolerances;
     const char *t_end;    /* a formula; NULL: the scene's */
