@@ -72,6 +72,8 @@ says 'no reference at t = 3'
 # orbit is gone in do not change it.
 exits 1 reference pendulum --at 1,1e12 --stop-after 0.5
 says 't = 1e\+12 takes about [0-9.]+e\+0?[6-9] s .* more than the 0.5 s of --stop-after'
+exits 1 reference pendulum --at 1e300 --stop-after 0.5
+says 't = 1e\+300 takes about'
 exits 0 reference pendulum --at 0,7,20 --format csv --quiet
 has '^0,phi,2\.0+,24,'
 grep '^20,' $work/out >$work/parts

@@ -166,7 +166,7 @@ static int reference_of(const options *o, const plan *p) {
              .shown = now,
              .progress = !o->quiet && isatty(STDERR_FILENO)};
     j.fewest = j.digits;
-    j.part = 0x1p-60 * (j.end - start);
+    j.part = 0x1p-60 * fmin(j.end - start, 1e18);
     j.orbit = tool_owned(nevh_certain_new(p->system, p->run->t_start, p->q,
                                           p->p, (int)j.digits));
     page result = {.table = table_new()};

@@ -105,9 +105,9 @@ static int read_kit(char **head, char **tail) {
     char *cut = text ? strstr(text, mark) : NULL;
     int status = TOOL_OK;
     if (!cut)
-        status = tool_refuse("this nevh was built without the live page; make "
-                             "page makes it where clang, lld and wasi-libc "
-                             "are");
+        status = tool_refuse("this nevh was built without the live page; to "
+                             "add it, install clang, lld and wasi-libc, and "
+                             "run configure and make page");
     else {
         *cut = '\0';
         *head = text;
