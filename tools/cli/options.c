@@ -18,7 +18,7 @@ enum {
     OF_TABLES = (OF_SCENES & ~(FOR_EXPORT | FOR_REPORT | FOR_PORTRAIT)) |
                 FOR_LIST | FOR_HARD,
     OF_PLOTS = FOR_COMPARE | FOR_RUN | FOR_SECTION | FOR_COST | FOR_GRADIENTS |
-               FOR_FLOW | FOR_PORTRAIT
+               FOR_FLOW | FOR_PORTRAIT | FOR_EFFECTS
 };
 
 /* The commands that each option is for, as an or. */

@@ -1,5 +1,6 @@
 /* nevh effects: what each effect reads and costs.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "plot/plot.h"
 #include "experiment/plan.h"
 #include <math.h>
 #include <stdlib.h>
@@ -235,6 +236,9 @@ static int effects_of(const options *o, plan *p) {
 
 int effects(const options *o) {
     plan p;
+    if (plot_wanted(o) && !o->impact)
+        return tool_refuse("nevh effects draws with --impact --plot %s",
+                           o->plot.file ? o->plot.file : "FILE");
     int status = plan_make(&p, o);
     if (!status && o->file)
         status = output_check(o->file);

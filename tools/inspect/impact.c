@@ -85,6 +85,18 @@ static bool switch_effect(plan *p, const char *effect, bool on) {
     return true;
 }
 
+static void draw(plot **to, plan *p, const char *effect, const both *b) {
+    trace dense[2];
+    difference d = trace_difference(&b->trace[0], &b->trace[1]);
+    for (int on = 0; on < 2; on++) {
+        switch_effect(p, effect, on);
+        dense[on] = trace_dense(p, b->integrator);
+    }
+    impact_draw(to, p, effect, dense, &d);
+    trace_free(&dense[0]);
+    trace_free(&dense[1]);
+}
+
 static bool look(plan *p, const char *effect, both *b) {
     for (int on = 0; on < 2; on++) {
         if (!switch_effect(p, effect, on))
@@ -263,7 +275,7 @@ static void columns(table *t) {
 }
 
 /* returns  TOOL_FAILED where no effect could be compared, since runs failed */
-static int add_all(const options *o, plan *p, page *result) {
+static int add_all(const options *o, plan *p, page *result, plot **to) {
     size_t count = nevh_system_effect_count(p->system);
     double scale = plan_energy_scale(p);
     bool apart = false, ran = false, failed = false;
@@ -276,6 +288,8 @@ static int add_all(const options *o, plan *p, page *result) {
         else
             list_print(&result->after, "%s cannot be switched on: %s", effect,
                        nevh_scene_message(p->scene));
+        if (plot_wanted(o) && b.ran)
+            draw(to, p, effect, &b);
         ran |= b.ran;
         failed |= b.integrator && !b.ran;
         free_both(&b);
@@ -287,8 +301,21 @@ static int add_all(const options *o, plan *p, page *result) {
     return failed && !ran ? TOOL_FAILED : TOOL_OK;
 }
 
+static int write_plot(const options *o, plot *to) {
+    if (!plot_wanted(o))
+        return TOOL_OK;
+    return to ? plot_write(to, o)
+              : tool_refuse("there is nothing to plot: no effect has runs with "
+                            "and without it");
+}
+
 int impact(const options *o, plan *p) {
     page result = {.table = table_new()};
+    plot *to = NULL;
+    if (plot_check(o)) {
+        page_free(&result);
+        return TOOL_USAGE;
+    }
     plan_notes(p, &result.before);
     list_print(&result.before,
                "each row: the run with all effects that are on compared with "
@@ -299,7 +326,7 @@ int impact(const options *o, plan *p) {
              "differences of the state are divided by the range of each "
              "variable, those of the energy by energy_scale");
     columns(result.table);
-    int status = add_all(o, p, &result);
+    int status = add_all(o, p, &result, &to);
     if (!o->quiet)
         list_add(
             &result.after,
@@ -311,7 +338,12 @@ int impact(const options *o, plan *p) {
             "integrators that fit only without it.");
     if (o->quiet && o->format == FORMAT_TABLE)
         list_free(&result.before);
+    bool first = plot_goes_first(o);
+    int drawn = first ? write_plot(o, to) : TOOL_OK;
     status = output_page(o, &result, status);
+    if (!first)
+        drawn = write_plot(o, to);
+    plot_free(to);
     page_free(&result);
-    return status;
+    return drawn ? TOOL_USAGE : status;
 }

@@ -21,19 +21,20 @@ static int keep(void *data, size_t step, double t, const double q[],
         o->low[k] = fmin(o->low[k], o->last[k]);
         o->high[k] = fmax(o->high[k], o->last[k]);
     }
-    if (step % o->every == 0 && step / o->every < SAMPLES) {
+    if (step % o->every == 0 && step / o->every < o->most) {
         memcpy(o->states + step / o->every * 2 * n, o->last, 2 * n * sizeof *q);
         o->kept = step / o->every + 1;
     }
     return 0;
 }
 
-static trace new_trace(const plan *p) {
+static trace new_trace(const plan *p, size_t most) {
     size_t n = 2 * p->n;
     double steps = (p->t_end - p->run->t_start) / p->dt[0];
     trace o = {.plan = p,
-               .every = (size_t)(steps / SAMPLES) + 1,
-               .states = tool_allocate(SAMPLES * n, sizeof(double)),
+               .most = most,
+               .every = (size_t)(steps / (double)most) + 1,
+               .states = tool_allocate(most * n, sizeof(double)),
                .last = tool_allocate(n, sizeof(double)),
                .low = tool_allocate(n, sizeof(double)),
                .high = tool_allocate(n, sizeof(double))};
@@ -80,7 +81,7 @@ static void measure(trace *o, nevh_stepper *s) {
 }
 
 trace trace_run(const plan *p, const char *integrator) {
-    trace o = new_trace(p);
+    trace o = new_trace(p, SAMPLES);
     nevh_stepper *s = plan_stepper(p, integrator);
     o.status = go(&o, s, &(nevh_observer){keep, &o, 1});
     if (o.status)
@@ -90,6 +91,16 @@ trace trace_run(const plan *p, const char *integrator) {
     nevh_field *field = nevh_stepper_field(s);
     o.energy = NAN;
     nevh_field_value(field, 1, &o.t, o.last, o.last + p->n, &o.energy);
+    nevh_stepper_free(s);
+    return o;
+}
+
+trace trace_dense(const plan *p, const char *integrator) {
+    enum { NUMBERS = 4000000, MOST = 40000 };
+    size_t most = NUMBERS / (2 * p->n);
+    trace o = new_trace(p, most < MOST ? most + 2 : MOST);
+    nevh_stepper *s = plan_stepper(p, integrator);
+    o.status = go(&o, s, &(nevh_observer){keep, &o, 1});
     nevh_stepper_free(s);
     return o;
 }

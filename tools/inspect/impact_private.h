@@ -3,12 +3,12 @@
 #ifndef NEVH_IMPACT_PRIVATE_H
 #define NEVH_IMPACT_PRIVATE_H
 
-#include "experiment/plan.h"
+#include "plot/plot.h"
 
 /* A run, and where it came by: `kept` states after every `every` steps. */
 typedef struct {
     const plan *plan;
-    size_t every, kept;
+    size_t every, kept, most;
     double *states, *last, t;     /* some x 2n, 2n */
     double *low, *high;           /* 2n */
     double energy, seconds, work; /* energy at the end; work: evaluations */
@@ -23,7 +23,15 @@ typedef struct {
 
 /* Of one orbit with the first dt and gradient; to be freed. */
 trace trace_run(const plan *, const char *integrator);
+/* With so many states that a curve looks like one, and without times. */
+trace trace_dense(const plan *, const char *integrator);
 void trace_free(trace *);
 difference trace_difference(const trace *, const trace *);
+
+/* impact_plot.c: a panel, the first making the plot: the coordinate that an
+   effect changes most, without it and with it.
+   dense  without, with */
+void impact_draw(plot **, const plan *, const char *effect,
+                 const trace dense[2], const difference *);
 
 #endif
