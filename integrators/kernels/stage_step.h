@@ -205,7 +205,8 @@ NEVH__INLINE void nevh__stage_place_rows(const nevh__stage_step *x,
     }
 }
 
-#ifdef NEVH__FOR_READERS
+/* NEVH__ONE_SHAPE: sizes are constants of the includer. */
+#ifdef NEVH__ONE_SHAPE
 NEVH__INLINE void nevh__stage_place(const nevh__stage_step *x, size_t lanes,
                                     bool q) {
     nevh__stage_place_rows(x, lanes, x->stages, x->row, x->stride, q, NULL);

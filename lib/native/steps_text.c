@@ -51,6 +51,7 @@ static const char is_bad[] =
 /* Numbers, and vectors of what stands side by side. */
 static const char needs_of_stages[] =
     "typedef wide nevh__vector;\n"
+    "#define NEVH__ONE_SHAPE\n"
     "#define NEVH__VECTOR_AT(x) (*(nevh__vector *)(x))\n"
     "enum { NEVH__IN_VECTOR = 8, NEVH__LANES = 8 };\n"
     "#define NEVH_LANES(i, width) \\\n"
