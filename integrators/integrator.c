@@ -50,6 +50,8 @@ bool nevh_integrator_own_time(const nevh_integrator *i) {
 
 const char *nevh_claim_name(nevh_claim claim) {
     static const char *const names[] = {"no", "yes", "unproven", "extended"};
+    _Static_assert(sizeof names / sizeof *names == NEVH_EXTENDED + 1,
+                   "each claim");
     return claim <= NEVH_EXTENDED ? names[claim] : "unknown";
 }
 

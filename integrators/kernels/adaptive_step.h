@@ -28,7 +28,6 @@
 
 #include "system/vector_private.h"
 #include "work/pace.h"
-#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -58,12 +57,6 @@ typedef struct {
     nevh__pace pace;
 } nevh__substeps;
 
-/* Of err that is remembered, the least, and its logarithm to base 2. */
-#define NEVH__LEAST_ERROR     1e-4
-#define NEVH__LOG_LEAST_ERROR -0x1.a934f0979a371p+3
-/* A single step may take NEVH__MOST_SUBSTEPS, one after another may not. */
-#define NEVH__USUAL_SUBSTEPS 1e5
-
 /* A careful first length, without sign: a part of the time in which y, its
    numbers `stride` apart, changes by max(|y|, scale). */
 NEVH__INLINE double nevh__substeps_first(const nevh__adaptive_rule *x, double h,
@@ -76,7 +69,7 @@ NEVH__INLINE double nevh__substeps_first(const nevh__adaptive_rule *x, double h,
         sum += rate * rate;
     }
     double size = x->part / sqrt(sum / (double)x->size);
-    return size <= DBL_MAX ? size : fabs(h);
+    return size < INFINITY ? size : fabs(h);
 }
 
 /* The root mean square of estimates over max(|y|, scale), squared; numbers of
@@ -111,14 +104,15 @@ NEVH__INLINE double nevh__substeps_judge(const nevh__adaptive_rule *x,
 }
 
 NEVH__INLINE bool nevh__substeps_too_short(const nevh__substeps *l, double h) {
-    return !(l->size > DBL_EPSILON * fabs(h)) && l->size < fabs(h);
+    return !(l->size > 0x1p-52 * fabs(h)) && l->size < fabs(h);
 }
 
-/* How much longer the next substep may be. */
+/* How much longer the next substep may be.  Before the first one err_last is the
+   least that is remembered, 1e-4; its logarithm is written out. */
 NEVH__INLINE double nevh__substeps_factor(const nevh__adaptive_rule *x,
                                           const nevh__substeps *l, double err) {
     double k = x->power, beta = 0.2 / k, now = log2(err);
-    double last = l->last > 0 ? log2(l->last) : NEVH__LOG_LEAST_ERROR;
+    double last = l->last > 0 ? log2(l->last) : -0x1.a934f0979a371p+3;
     double usual = (0.75 * beta - 1 / k) * now + beta * last;
     if (!(l->last > 0))
         return 0.9 * exp2(usual);
@@ -154,7 +148,7 @@ NEVH__INLINE void nevh__substeps_accept(const nevh__adaptive_rule *x,
     next = l->step * fmin(fmax(next, 0.2), l->held ? 1 : 6);
     l->size = l->ends ? fmax(next, l->size) : next;
     l->done = l->ends ? fabs(h) : l->done + l->step;
-    l->last = fmax(err, NEVH__LEAST_ERROR);
+    l->last = fmax(err, 1e-4);
     l->before = l->step;
     l->held = false;
     l->has_first = x->keeps;
@@ -173,9 +167,10 @@ NEVH__INLINE bool nevh__substeps_exceed(const nevh__substeps *l) {
     return l->excess + l->pace.substeps > NEVH__MOST_SUBSTEPS;
 }
 
-/* What the next step is to know of it. */
+/* What the next step is to know of it: a single step may take
+   NEVH__MOST_SUBSTEPS, one after another may not. */
 NEVH__INLINE double nevh__substeps_excess(const nevh__substeps *l) {
-    return fmax(0, l->excess + l->pace.substeps - NEVH__USUAL_SUBSTEPS);
+    return fmax(0, l->excess + l->pace.substeps - 1e5);
 }
 
 #endif

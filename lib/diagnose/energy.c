@@ -371,5 +371,7 @@ nevh_energy_report nevh_energy_result(const nevh_energy *e, size_t lane) {
 const char *nevh_verdict_name(nevh_verdict verdict) {
     static const char *const names[] = {"bounded", "random-walk", "drifts",
                                         "unstable", "undecided"};
+    _Static_assert(sizeof names / sizeof *names == NEVH_UNDECIDED + 1,
+                   "each verdict");
     return verdict <= NEVH_UNDECIDED ? names[verdict] : "unknown";
 }

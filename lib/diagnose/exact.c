@@ -15,6 +15,8 @@ const char *nevh__exact_name(const nevh__exact_solution *e) {
     static const char *const names[] = {[NEVH__PENDULUM] = "Jacobi sn",
                                         [NEVH__OSCILLATOR] = "cosine",
                                         [NEVH__KEPLER] = "Kepler's equation"};
+    _Static_assert(sizeof names / sizeof *names == NEVH__EXACT_KINDS,
+                   "each solution");
     return names[e->kind];
 }
 

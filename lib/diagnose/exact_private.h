@@ -8,7 +8,12 @@
 
 enum { NEVH__EXACT_DOF = 3 }; /* the most that any of them has */
 
-typedef enum { NEVH__PENDULUM, NEVH__OSCILLATOR, NEVH__KEPLER } nevh__kind;
+typedef enum {
+    NEVH__PENDULUM,
+    NEVH__OSCILLATOR,
+    NEVH__KEPLER,
+    NEVH__EXACT_KINDS
+} nevh__kind;
 
 /* H = a p^2/2 + V(q) + const with
        V = -b cos(q - c)      a pendulum, b > 0

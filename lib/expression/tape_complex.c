@@ -40,6 +40,9 @@ typedef struct {
 } parts;
 static const size_t re_pitch[] = {1, 2, 2, 1, 2, 1};
 static const size_t im_pitch[] = {0, 2, 2, 0, 2, 0};
+_Static_assert(sizeof re_pitch / sizeof *re_pitch == NEVH__KINDS &&
+                   sizeof im_pitch / sizeof *im_pitch == NEVH__KINDS,
+               "each kind of operand");
 
 static inline number fetch(const parts *s, nevh__tape_operand o) {
     return (number){s->re[o.kind][o.at * re_pitch[o.kind]],

@@ -95,6 +95,8 @@ static void put_within(FILE *f, const nevh__syntax_node *node,
         [NEVH__NODE_NAME] = 5,  [NEVH__NODE_ELEMENT] = 5,
         [NEVH__NODE_CALL] = 5,
     };
+    _Static_assert(sizeof binding / sizeof *binding == NEVH__NODE_POWER + 1,
+                   "each kind of node");
     bool tight =
         binding[node->kind] > binding[kind] ||
         (binding[node->kind] == binding[kind] && kind == NEVH__NODE_PRODUCT);

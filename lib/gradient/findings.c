@@ -191,6 +191,8 @@ const char *nevh_question_name(nevh_question question) {
     static const char *const names[] = {"separable", "autonomous",
                                         "quadratic in the momenta",
                                         "reversible", "smooth"};
+    _Static_assert(sizeof names / sizeof *names == NEVH_FINDINGS,
+                   "each question");
     return question < NEVH_FINDINGS ? names[question] : "unknown";
 }
 

@@ -8,8 +8,6 @@
 #include "native/native_private.h"
 
 static const char needs[] =
-    "#define DBL_EPSILON __DBL_EPSILON__\n"
-    "#define DBL_MAX __DBL_MAX__\n"
     "extern double log2(double) CONST, exp2(double) CONST;\n"
     "extern double fmin(double, double) CONST, fmax(double, double) CONST;\n"
     "extern double copysign(double, double) CONST;\n";
@@ -17,8 +15,7 @@ static const char needs[] =
 /* The memory of the kernel, behind digits that sums have lost. */
 static const char sizes[] =
     "enum { LENGTH_AT = 2 * DOF, LAST_AT, BEFORE_AT, EXCESS_AT, FIRST_AT,\n"
-    "       HAS_FIRST_AT = FIRST_AT + 2 * DOF };\n"
-    "#define KEEPS $1\n";
+    "       HAS_FIRST_AT = FIRST_AT + 2 * DOF, KEEPS = $1 };\n\n";
 
 static const char step[] =
     "/* A step from t to t + h in as many substeps as the tolerance needs; false:\n"

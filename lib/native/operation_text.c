@@ -8,10 +8,13 @@
 #include <string.h>
 
 /* Stringified, not expanded. */
-#define TEXTS(identifier, value, by_a, by_b) {#value, #by_a, #by_b},
+#define TEXTS(identifier, value, by_a, by_b)                                   \
+    [NEVH__##identifier] = {#value, #by_a, #by_b},
 static const char *const texts[][NEVH__OPERATION_PARTS] = {
     NEVH__FORMULAS(TEXTS)};
 #undef TEXTS
+_Static_assert(sizeof texts / sizeof *texts == NEVH__OPERATION_COUNT,
+               "each operation");
 
 /* Which operations take vectors as they stand in the table. */
 static bool is_lanewise(unsigned operation) {

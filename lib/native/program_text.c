@@ -385,9 +385,7 @@ bool nevh__write_program(nevh__writer *w, nevh_work *work,
     if (fine) {
         rename_all(body.text);
         write_comment(w, work, p);
-        nevh__write(w, "%s%s%s#include <string.h>\n\n",
-                    strstr(body.text, "DBL_MAX") ? "#include <float.h>\n" : "",
-                    includes,
+        nevh__write(w, "%s%s#include <string.h>\n\n", includes,
                     p->functions ? ""
                                  : "#include <stdio.h>\n#include <stdlib.h>\n");
         write_helpers(w, body.text);

@@ -28,8 +28,9 @@ typedef enum {
     NEVH__GRAPH_MULTIPLY, /* a b */
     NEVH__GRAPH_INVERT,   /* 1/a */
     NEVH__GRAPH_POWER,    /* a^number, not a whole one */
-    NEVH__GRAPH_CALL      /* f(a), or f(a, b) whose derivative by b is another
+    NEVH__GRAPH_CALL,     /* f(a), or f(a, b) whose derivative by b is another
                              call's; f = nevh__tape_operation, or NEVH__NOTHING */
+    NEVH__GRAPH_KINDS
 } nevh__graph_kind;
 /* The function that begins at 0: the second half of atan2. */
 enum { NEVH__NOTHING = NEVH__OPERATION_COUNT };

@@ -195,6 +195,8 @@ static int item_for(scheduler *s, const nevh__graph_node *n, int node) {
                                 [NEVH__GRAPH_INVERT] = NEVH__BATCH_INVERT,
                                 [NEVH__GRAPH_POWER] = NEVH__BATCH_POWER,
                                 [NEVH__GRAPH_CALL] = NEVH__BATCH_CALL};
+    _Static_assert(sizeof kinds / sizeof *kinds == NEVH__GRAPH_KINDS,
+                   "each kind of node");
     item x = {.kind = kinds[n->kind],
               .function = n->function,
               .slope = -1,

@@ -102,6 +102,19 @@ else
     agrees fput-1000 verlet central4 0.1 2 $compilers
 fi
 
+# Coordinates named as what steps under a tolerance define.
+cat >$work/named.nevh <<'END'
+[coordinates]
+KEEPS = 1
+substeps = 0.5, 0.1
+rule = 0.2
+first = 0.1
+[effects]
+T = (p_KEEPS^2 + p_substeps^2 + p_rule^2 + p_first^2)/2
+V = (KEEPS^2 + substeps^2 + rule^2*KEEPS + first^4)/2
+END
+agrees $work/named.nevh dopri5 exact 0.1 1 ${compilers##* }
+
 # Where Newton's iteration takes over, the program ends and says so.
 exits 0 export pendulum --integrators gauss4 --dt 3 --t-end 30 -o $work/prog.c
 ${compilers##* } $flags -o $work/prog $work/prog.c -lm 2>$work/err || cat $work/err

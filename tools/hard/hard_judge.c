@@ -17,6 +17,8 @@ const char *hard_verdict_name(hard_verdict v) {
     static const char *const names[] = {"none",   "wrong orbit", "bounded",
                                         "drifts", "unstable",    "refused",
                                         "failed"};
+    _Static_assert(sizeof names / sizeof *names == HARD_VERDICTS,
+                   "each verdict");
     return v < HARD_VERDICTS ? names[v] : "none";
 }
 

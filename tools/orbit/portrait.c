@@ -270,6 +270,7 @@ static int read_data(job *j, const options *o) {
 
 static void print_notes(const job *j, const options *o) {
     static const char *const kinds[] = {"centre", "saddle", "degenerate"};
+    _Static_assert(sizeof kinds / sizeof *kinds == PORTRAIT_KINDS, "each kind");
     const char *unit = nevh_scene_label(j->plan.scene, "energy");
     if (o->quiet)
         return;

@@ -13,7 +13,12 @@ typedef struct {
 /* Where dH is 0, of one degree of freedom. */
 typedef struct {
     double x, y, energy;
-    enum { PORTRAIT_CENTRE, PORTRAIT_SADDLE, PORTRAIT_DEGENERATE } kind;
+    enum {
+        PORTRAIT_CENTRE,
+        PORTRAIT_SADDLE,
+        PORTRAIT_DEGENERATE,
+        PORTRAIT_KINDS
+    } kind;
 } equilibrium;
 
 /* portrait_levels.c: H at t_start over a window, from its values alone. */

@@ -236,7 +236,10 @@ static void draw_level(const levels *l, plot *to, size_t series, double level) {
 static void draw_equilibria(const levels *l, plot *to) {
     static const char *const names[] = {"centre", "saddle", "degenerate"};
     static const plot_form forms[] = {PLOT_CENTRE, PLOT_SADDLE, PLOT_CENTRE};
-    for (int kind = PORTRAIT_CENTRE; kind <= PORTRAIT_DEGENERATE; kind++) {
+    _Static_assert(sizeof names / sizeof *names == PORTRAIT_KINDS &&
+                       sizeof forms / sizeof *forms == PORTRAIT_KINDS,
+                   "each kind");
+    for (int kind = 0; kind < PORTRAIT_KINDS; kind++) {
         size_t series = 0, count = 0;
         for (size_t i = 0; i < l->count; i++) {
             if ((int)l->found[i].kind != kind)
