@@ -135,6 +135,11 @@ awk -v most="$most" '$2 == 2 && $5 == most { found = 1 }
     $1 == "rk4" && $NF == "drifts" { lost = 1 } END { exit !(found && lost) }' $work/out ||
     { fails "has a film with other numbers than $most"; cat $work/out; }
 
+# There is no film where steps that tell nothing leave no orbit to be seen.
+exits 0 report earth-halley -o $work/halley.html --t-end 10
+grep -q '<h2>The motion</h2>' $work/halley.html || fails "has no picture"
+grep -q 'scheme beside rk4' $work/halley.html && fails "shows what is no orbit"
+
 # An orbit without any energy error has a report, though no curve of it.
 printf '[coordinates]\nx = 0\n[effects]\nK = p_x^2/2\nV = x^2/2\n[run]
 t_end = 2\ndt = 0.1\nintegrators = verlet\n' >$work/rest.nevh

@@ -6,8 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of the energy: what is seen; and where rk4 is no longer on an orbit. */
-static const double seen = 0.15, lost = 1;
+/* Of the energy: what is seen; where rk4 is no longer on an orbit; what the other
+   keeps. */
+static const double seen = 0.15, lost = 1, kept = 0.1;
 enum { MOST_FRAMES = 400, FEWEST_FRAMES = 60, BYTES_A_NUMBER = 5 };
 
 typedef struct {
@@ -108,7 +109,8 @@ static bool is_telling(const film *f) {
     if (other->frames <= f->most || rk4->frames <= f->most)
         return false;
     double change = fabs(rk4->error[f->most]);
-    return change >= seen && worst(rk4) <= lost && 2 * worst(other) < change;
+    return change >= seen && worst(rk4) <= lost && worst(other) < kept &&
+           2 * worst(other) < change;
 }
 
 /* With three digits, as commands take it. */
@@ -134,8 +136,9 @@ static bool is_fit(const plan *p, const char *name) {
            nevh_integrator_symplectic(scheme) == NEVH_YES && p->dts > 0;
 }
 
-/* The first scheme, and the shortest step, that tell; else the scene's. */
-static void choose(film *f) {
+/* The first scheme, and the shortest step, that tell; else the scene's.
+   returns  whether its errors leave an orbit to be seen */
+static bool choose(film *f) {
     enum { STEPS = 13 };
     const plan *p = f->plan;
     const char *first = NULL;
@@ -149,12 +152,14 @@ static void choose(film *f) {
         for (int k = 0; k < STEPS; k++) {
             shoot_both(f, name, rounded(dt * pow(2, k / 2.)));
             if (is_telling(f))
-                return;
+                return true;
             first = !first && f->reel[0].frames ? name : first;
         }
     }
-    if (first)
-        shoot_both(f, first, rounded(dt));
+    if (!first)
+        return false;
+    shoot_both(f, first, rounded(dt));
+    return worst(&f->reel[0]) < seen;
 }
 
 bool film_make(film *f, plan *p, size_t bytes) {
@@ -170,8 +175,7 @@ bool film_make(film *f, plan *p, size_t bytes) {
         frame && bytes / frame < MOST_FRAMES ? bytes / frame : MOST_FRAMES;
     if (!parts || f->most < FEWEST_FRAMES)
         return false;
-    choose(f);
-    return f->reel[0].frames > 1 && f->reel[1].frames > 1;
+    return choose(f) && f->reel[0].frames > 1 && f->reel[1].frames > 1;
 }
 
 void film_free(film *f) {
