@@ -40,6 +40,7 @@ libnevh_core_la_SOURCES = \
 	lib/gradient/verify.c \
 	lib/gradient/scatter_map.c \
 	lib/gradient/field.c \
+	lib/gradient/field_lanes.c \
 	lib/gradient/exact_gather.c \
 	lib/gradient/block.c \
 	lib/gradient/evaluation.c \
@@ -64,6 +65,7 @@ libnevh_core_la_SOURCES = \
 	lib/expression/tape_value.c \
 	lib/expression/tape_block.c \
 	lib/expression/tape_along.c \
+	lib/expression/tape_open.c \
 	lib/expression/tape_gradient.c \
 	lib/expression/tape_complex.c \
 	lib/expression/tape_special.c \
@@ -206,8 +208,10 @@ libnevh_core_la_SOURCES = \
 	lib/ensemble/random_private.h \
 	lib/ensemble/random.c \
 	lib/ensemble/ensemble_private.h \
+	lib/ensemble/own_private.h \
 	lib/ensemble/ensemble.c \
 	lib/ensemble/lanes.c \
+	lib/ensemble/own.c \
 	lib/ensemble/observe.c \
 	lib/ensemble/cross.c \
 	lib/ensemble/event.c \
@@ -240,6 +244,7 @@ libnevh_core_la_SOURCES = \
 	lib/scene/sweep_private.h \
 	lib/scene/variant.c \
 	lib/scene/variant_alike.c \
+	lib/scene/variant_lanes.c \
 	lib/scene/solve.c \
 	lib/scene/sweep.c \
 	lib/scene/sweep_keep.c \

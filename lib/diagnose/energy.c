@@ -22,7 +22,7 @@ struct nevh_energy {
     double *largest; /* width: the largest sum of terms' |values| met */
     double *seen;    /* width: the |error| at which that was looked for */
     nevh_theory theory;
-    double noise, blur;        /* of the gradient, relative */
+    double *noise, *blur;      /* width: of the gradient, relative */
     size_t *steps, *next_look; /* width */
     bool *started;             /* width */
     double *effects;
@@ -49,6 +49,8 @@ static int plan(nevh_energy *e, const nevh_system *s, bool portable) {
     e->limit = nevh__array(width, sizeof *e->limit);
     e->largest = nevh__array(width, sizeof *e->largest);
     e->seen = nevh__array(width, sizeof *e->seen);
+    e->noise = nevh__array(width, sizeof *e->noise);
+    e->blur = nevh__array(width, sizeof *e->blur);
     e->trend = nevh__array(width, sizeof *e->trend);
     e->steps = nevh__array(width, sizeof *e->steps);
     e->next_look = nevh__array(width, sizeof *e->next_look);
@@ -56,8 +58,8 @@ static int plan(nevh_energy *e, const nevh_system *s, bool portable) {
     e->effects = nevh__array(s->n_effects, sizeof *e->effects);
     e->state = nevh__array(2 * s->n, sizeof *e->state);
     if (e->t && e->h && e->initial && e->gained && e->scale && e->limit &&
-        e->largest && e->seen && e->trend && e->steps && e->next_look &&
-        e->started && e->effects && e->state)
+        e->largest && e->seen && e->noise && e->blur && e->trend && e->steps &&
+        e->next_look && e->started && e->effects && e->state)
         return NEVH_OK;
     return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
 }
@@ -86,6 +88,8 @@ void nevh_energy_free(nevh_energy *e) {
     free(e->limit);
     free(e->largest);
     free(e->seen);
+    free(e->noise);
+    free(e->blur);
     free(e->trend);
     free(e->steps);
     free(e->next_look);
@@ -158,18 +162,23 @@ static nevh_theory theory_of(const nevh_stepper *s) {
 
 /* How far rounding moves derivatives by differences, and how far these are
    from derivatives of any H, relative to them. */
-static void find_blur(nevh_energy *e, const nevh_field *f) {
-    e->noise = e->blur = 0;
+static void find_blur(const nevh_field *f, double *noise, double *blur) {
+    *noise = *blur = 0;
     for (size_t i = 0; f && i < nevh_field_step_count(f); i++) {
         nevh_step_report step = nevh_field_step_report(f, i);
         if (step.given)
-            e->blur = INFINITY;
+            *blur = INFINITY;
         else if (step.size > 0) {
             double both = step.truncation + step.rounding;
-            e->noise = fmax(e->noise, step.rounding / step.size);
-            e->blur = fmax(e->blur, both / step.size);
+            *noise = fmax(*noise, step.rounding / step.size);
+            *blur = fmax(*blur, both / step.size);
         }
     }
+}
+
+static void expect_in(nevh_energy *e, size_t lane, const nevh_stepper *s) {
+    if (!s->work.integrator->needs_formulas) /* those take no gradient */
+        find_blur(s->work.field, &e->noise[lane], &e->blur[lane]);
 }
 
 int nevh_energy_expect(nevh_energy *e, const nevh_stepper *s) {
@@ -179,9 +188,19 @@ int nevh_energy_expect(nevh_energy *e, const nevh_stepper *s) {
     if (status)
         return status;
     e->theory = theory_of(s);
-    if (!s->work.integrator->needs_formulas) /* those take no gradient */
-        find_blur(e, s->work.field);
+    for (size_t lane = 0; lane < e->width; lane++)
+        expect_in(e, lane, s);
     return NEVH_OK;
+}
+
+void nevh__energy_lane_take(nevh_energy *e, size_t lane,
+                            const double *const c[], const nevh_stepper *s) {
+    nevh__field_lane_take(e->field, lane, c, NULL);
+    expect_in(e, lane, s);
+}
+
+void nevh__energy_lane_copy(nevh_energy *e, size_t from, size_t to) {
+    nevh__field_lane_copy(e->field, from, to);
 }
 
 /* What came in from outside so far. */
@@ -203,6 +222,8 @@ int nevh_energy_set_scale(nevh_energy *e, double scale) {
 
 static void gather(nevh_energy *e, size_t lane, const double q[],
                    const double p[]) {
+    if (e->field->lanes)
+        nevh__field_alone(e->field, lane);
     for (size_t k = 0; k < e->n; k++) {
         e->state[k] = q[k * e->width + lane];
         e->state[e->n + k] = p[k * e->width + lane];
@@ -347,7 +368,7 @@ double nevh_energy_error(const nevh_energy *e, size_t lane) {
 /* Of values, and of a random walk in the steps, whose gradients are off by that
    or by the noise of differences. */
 static double rounding_of(const nevh_energy *e, size_t lane) {
-    double each = fmax(DBL_EPSILON, e->noise / 16);
+    double each = fmax(DBL_EPSILON, e->noise[lane] / 16);
     double walk = 4 * each * sqrt((double)e->steps[lane]);
     return (16 * DBL_EPSILON + walk) * e->largest[lane] / e->scale[lane];
 }
@@ -361,8 +382,8 @@ nevh_energy_report nevh_energy_result(const nevh_energy *e, size_t lane) {
     report.theory = e->theory;
     report.limit = fmax(1, e->limit[lane] / e->scale[lane]);
     report.rounding = rounding_of(e, lane);
-    report.gradient =
-        e->blur * (double)e->steps[lane] * e->largest[lane] / e->scale[lane];
+    report.gradient = e->blur[lane] * (double)e->steps[lane] *
+                      e->largest[lane] / e->scale[lane];
     nevh__trend_report(&e->trend[lane], &report);
     report.verdict = nevh_energy_verdict(&report, 1);
     return report;

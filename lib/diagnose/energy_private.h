@@ -11,6 +11,12 @@
 void nevh__energy_observe_lanes(nevh_energy *, bool on[], const size_t step[],
                                 const double t[], const double q[],
                                 const double p[]);
+/* Of a system whose lanes have constants of their own: a lane takes those of
+   each term, and expects what a stepper of them leaves. */
+void nevh__energy_lane_take(nevh_energy *, size_t lane, const double *const c[],
+                            const nevh_stepper *);
+/* A lane takes the constants that another has. */
+void nevh__energy_lane_copy(nevh_energy *, size_t from, size_t to);
 /* The lane's next observation is its first. */
 void nevh__energy_restart(nevh_energy *, size_t lane);
 

@@ -87,14 +87,15 @@ static int repeat_state(nevh_ensemble *e, size_t width, nevh_options *o,
     return NEVH_OK;
 }
 
-static int plan_stepper(nevh_ensemble *e, const nevh_options *options,
-                        size_t width, nevh_stepper **s) {
+int nevh__ensemble_stepper(nevh_ensemble *e, const nevh_system *system,
+                           const nevh_options *options, size_t width,
+                           nevh_stepper **s) {
     nevh_options o = *options;
     double *room;
     int status = repeat_state(e, width, &o, &room);
     if (status)
         return status;
-    *s = nevh_stepper_new(e->system, e->is.integrator, &o);
+    *s = nevh_stepper_new(system, e->is.integrator, &o);
     free(room);
     if (!*s)
         return out_of_memory(e);
@@ -258,17 +259,19 @@ static int plan(nevh_ensemble *e) {
         status = take_outcomes(e);
     if (status)
         return status;
-    bool autonomous = nevh_system_traits(e->system) & NEVH_AUTONOMOUS;
+    const nevh_system *system = e->system;
+    bool autonomous = nevh_system_traits(system) & NEVH_AUTONOMOUS;
     o.balance =
         has_energy(e) && (!autonomous || nevh_system_friction(e->system, NULL));
     e->width = choose_width(e, &o);
     e->stride = nevh__padded(e->width);
     e->alone = e->width == 1;
     e->together = !autonomous;
-    status = plan_stepper(e, &o, e->width, &e->stepper);
+    status = nevh__ensemble_stepper(e, system, &o, e->width, &e->stepper);
     o.native = NEVH_NATIVE_NEVER; /* it steps where others fail, and last */
     if (!status)
-        status = plan_stepper(e, &o, 1, &e->narrow);
+        status = nevh__ensemble_stepper(e, system, &o, 1, &e->spare);
+    e->narrow = e->spare;
     if (!status && has_energy(e))
         status = plan_energy(e, &o);
     if (!status && e->moving)
@@ -308,7 +311,7 @@ void nevh_ensemble_free(nevh_ensemble *e) {
         free(e->crossings[0].data);
     nevh_field_free(e->motion);
     nevh_stepper_free(e->stepper);
-    nevh_stepper_free(e->narrow);
+    nevh_stepper_free(e->spare);
     if (e->root)
         gsl_root_fsolver_free(e->root);
     free(e->outcomes);

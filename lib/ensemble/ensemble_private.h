@@ -9,6 +9,7 @@
 #define NEVH_ENSEMBLE_PRIVATE_H
 
 #include "diagnose/energy_private.h"
+#include "ensemble/own_private.h"
 #include "run/section_private.h"
 #include "run/stepper_private.h"
 #include <gsl/gsl_roots.h>
@@ -34,7 +35,8 @@ typedef struct {
     uint64_t member;
     size_t step;
     double t;
-    nevh__report report; /* of what failed */
+    nevh__report report;  /* of what failed */
+    nevh_stepper *narrow; /* of its own system; NULL: lanes share one */
 } nevh__lane;
 
 typedef struct nevh__crossing_lanes nevh__crossing_lanes;
@@ -46,9 +48,10 @@ struct nevh_ensemble {
     nevh_ensemble_options is;
     nevh_outcome *outcomes; /* the ensemble's own */
     size_t n_outcomes, columns;
-    nevh_stepper *stepper, *narrow; /* narrow: of one lane */
-    double h, steps;                /* whole ones; of fixed steps */
-    bool whole;                     /* they fill the run */
+    nevh_stepper *stepper;        /* of all lanes */
+    nevh_stepper *spare, *narrow; /* of one: narrow is spare, or a lane's */
+    double h, steps;              /* whole ones; of fixed steps */
+    bool whole;                   /* they fill the run */
     bool alone;    /* lanes are taken by nevh_run_until: there is one */
     bool together; /* H reads t: lanes begin together */
     bool looks_back, moving; /* snapshots, velocities are asked for */
@@ -81,10 +84,19 @@ struct nevh_ensemble {
     double *result; /* columns */
     nevh_member_fn next;
     nevh_result_fn done;
+    nevh__own_fn own; /* NULL: members share a system */
+    nevh__refused_fn refused;
     void *data;
     bool stopped;
     nevh__report report;
 };
+
+/* own.c: a lane's own system.  False: it is refused. */
+bool nevh__own_take(nevh_ensemble *, size_t lane, uint64_t member);
+void nevh__own_copy(nevh_ensemble *, size_t from, size_t to);
+void nevh__own_drop(nevh_ensemble *, size_t lane);
+int nevh__ensemble_stepper(nevh_ensemble *, const nevh_system *,
+                           const nevh_options *, size_t width, nevh_stepper **);
 
 /* observe.c: looks at the lanes that are to be looked at, after a step or at
    their start; sets `over`. */

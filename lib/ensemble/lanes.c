@@ -34,6 +34,8 @@ static void copy_column(double rows[], size_t count, size_t width, size_t from,
 
 void nevh__lane_to_narrow(nevh_ensemble *e, const double q[], const double p[],
                           const double memory[], size_t lane) {
+    if (e->lanes[lane].narrow)
+        e->narrow = e->lanes[lane].narrow;
     get_column(q, e->n, e->width, lane, e->q1);
     get_column(p, e->n, e->width, lane, e->p1);
     get_column(memory, e->stepper->rows, e->width, lane,
@@ -63,15 +65,26 @@ static bool any_busy(const nevh_ensemble *e, size_t *which) {
     return false;
 }
 
+/* The next member, which a lane can take. */
+static bool next_member(nevh_ensemble *e, size_t lane, uint64_t *member) {
+    while (e->next(e->data, member, e->q1, e->p1)) {
+        if (!e->own || nevh__own_take(e, lane, *member))
+            return true;
+        e->refused(e->data, *member);
+    }
+    return false;
+}
+
 static bool begin(nevh_ensemble *e, size_t lane) {
     nevh__lane *l = &e->lanes[lane];
     uint64_t member;
-    if (!e->next(e->data, &member, e->q1, e->p1))
+    if (!next_member(e, lane, &member))
         return false;
     *l = (nevh__lane){.busy = true,
                       .fresh = true,
                       .look = true,
                       .member = member,
+                      .narrow = l->narrow,
                       .t = e->is.t_start};
     put_column(e->q, e->n, e->width, lane, e->q1);
     put_column(e->p, e->n, e->width, lane, e->p1);
@@ -89,6 +102,8 @@ static void go_along(nevh_ensemble *e, size_t lane, size_t with) {
     copy_column(e->stepper->work.memory, e->stepper->rows, e->width, with,
                 lane);
     e->lanes[lane].t = e->lanes[with].t;
+    if (e->own)
+        nevh__own_copy(e, with, lane);
 }
 
 /* Fills lanes that are free.  Returns whether any orbit is new. */
@@ -329,6 +344,8 @@ int nevh_ensemble_run(nevh_ensemble *e, nevh_member_fn next,
         run_lanes(e);
     if (e->chaotic)
         nevh__chaotic_finish(e);
+    for (size_t lane = 0; lane < e->width; lane++)
+        nevh__own_drop(e, lane);
     if (!e->stopped)
         return NEVH_OK;
     return nevh__fail(&e->report, NEVH_STOPPED, "the run was to stop");

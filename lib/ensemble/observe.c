@@ -236,6 +236,7 @@ void nevh__ensemble_end(nevh_ensemble *e, size_t lane) {
     nevh_member_result result = {l->member, l->report.status, l->report.text,
                                  e->result};
     l->busy = l->over = false;
+    nevh__own_drop(e, lane);
     if (e->chaotic && !l->report.status) {
         nevh__chaotic_queue(e, lane);
         return;

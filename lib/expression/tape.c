@@ -28,6 +28,12 @@ void nevh__tape_shape(nevh_term *term, const nevh__tape *tape) {
     term->time = nevh__tape_reads(tape, NEVH__T, 0);
 }
 
+static bool same_place(const nevh__tape *a, nevh__tape_operand x,
+                       const nevh__tape *b, nevh__tape_operand y) {
+    (void)a, (void)b;
+    return x.kind == y.kind && x.at == y.at;
+}
+
 static bool same_operand(const nevh__tape *a, nevh__tape_operand x,
                          const nevh__tape *b, nevh__tape_operand y) {
     if (x.kind != y.kind)
@@ -37,15 +43,27 @@ static bool same_operand(const nevh__tape *a, nevh__tape_operand x,
                                   : x.at == y.at;
 }
 
-bool nevh__tape_same(const nevh__tape *a, const nevh__tape *b) {
-    if (a->length != b->length || !same_operand(a, a->result, b, b->result))
+static bool compare(const nevh__tape *a, const nevh__tape *b,
+                    bool (*same)(const nevh__tape *, nevh__tape_operand,
+                                 const nevh__tape *, nevh__tape_operand)) {
+    if (a->length != b->length || !same(a, a->result, b, b->result))
         return false;
     for (size_t i = 0; i < a->length; i++) {
         const nevh__instruction *x = &a->code[i], *y = &b->code[i];
         if (x->operation != y->operation || x->to != y->to ||
-            x->also != y->also || !same_operand(a, x->a, b, y->a) ||
-            !same_operand(a, x->b, b, y->b))
+            x->also != y->also || !same(a, x->a, b, y->a) ||
+            !same(a, x->b, b, y->b))
             return false;
     }
     return true;
+}
+
+bool nevh__tape_same(const nevh__tape *a, const nevh__tape *b) {
+    return compare(a, b, same_operand);
+}
+
+bool nevh__tape_alike(const nevh__tape *a, const nevh__tape *b) {
+    return a->n_numbers == b->n_numbers &&
+           memcmp(a->count, b->count, sizeof a->count) == 0 &&
+           compare(a, b, same_place);
 }

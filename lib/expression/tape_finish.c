@@ -292,6 +292,7 @@ static nevh__tape *allocate(const plan *p) {
         nevh__tape_free(tape);
         return NULL;
     }
+    tape->n_numbers = numbers;
     memcpy(tape->count, count, sizeof tape->count);
     for (int v = 0; v < NEVH__VARIABLES; at += count[v++])
         tape->read[v] = tape->read[0] + at;

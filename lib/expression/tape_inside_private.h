@@ -39,7 +39,8 @@ typedef struct {
 struct nevh__tape {
     nevh__instruction *code; /* one more, for its `journal` */
     size_t length, slots;
-    double *numbers;    /* each once */
+    double *numbers; /* each once */
+    size_t n_numbers;
     const double *wide; /* each NEVH__LANES times, in whole cache lines */
     double *wide_memory;
     nevh__tape_operand result;

@@ -135,6 +135,14 @@ bool nevh__tape_reads(const nevh__tape *, nevh__variable, size_t k);
 size_t nevh__tape_count(const nevh__tape *, nevh__variable);
 /* Whether two tapes do the same with the same numbers. */
 bool nevh__tape_same(const nevh__tape *, const nevh__tape *);
+/* Whether they do the same with numbers of their own, as many. */
+bool nevh__tape_alike(const nevh__tape *, const nevh__tape *);
+/* Its numbers, each once. */
+size_t nevh__tape_numbers(const nevh__tape *, const double **);
+/* The same with some of its numbers, opened[i] of number i, as constants after
+   those that it has: it gives the same bits where these are the numbers.
+   returns  to be freed with nevh__tape_free; NULL when memory is out */
+nevh__tape *nevh__tape_open(const nevh__tape *, const bool opened[]);
 /* Operations; sine and cosine of one argument are one. */
 size_t nevh__tape_length(const nevh__tape *);
 

@@ -45,20 +45,27 @@ static void fill_one(nevh_field *f, const nevh__planned *term,
     for (size_t k = 0; k < term->np; k++, row += b->stride)
         fill_all(b, b->p[decl->p[k] * b->width + b->lane], row);
     for (size_t k = 0; k < decl->nc; k++, row += b->stride)
-        fill_all(b, decl->c[k], row);
+        fill_all(b,
+                 nevh__constant(f, term, 0, k,
+                                nevh__lane_of(f, b->width, b->first + b->lane)),
+                 row);
     if (decl->time)
         fill_all(b, b->t[b->lane], f->times);
 }
 
-static void fill_constants(const nevh__planned *term, const nevh__block *b,
-                           double *row) {
+static void fill_constants(const nevh_field *f, const nevh__planned *term,
+                           const nevh__block *b, double *row) {
     const nevh_term *decl = &term->term->decl;
     for (size_t k = 0; k < decl->nc; k++, row += b->stride) {
         nevh__cursor at = nevh__first_group(b);
         for (size_t group = 0; group < b->groups; group++) {
-            for (size_t lane = 0; lane < b->lanes; lane++)
-                row[group * b->lanes + lane] =
-                    decl->c[at.instance * decl->nc + k];
+            double *to = row + group * b->lanes;
+            for (size_t lane = 0; lane < b->lanes && f->lanes; lane++)
+                to[lane] = nevh__constant(
+                    f, term, at.instance, k,
+                    nevh__lane_of(f, b->width, b->first + b->lane + lane));
+            for (size_t lane = 0; lane < b->lanes && !f->lanes; lane++)
+                to[lane] = decl->c[at.instance * decl->nc + k];
             nevh__next_group(b, &at);
         }
         fill_rest(b, row);
@@ -78,7 +85,7 @@ static void fill_many(nevh_field *f, const nevh__planned *term,
         fill_first(b, b->p, decl->p + k, term->np, row);
         fill_rest(b, row);
     }
-    fill_constants(term, b, row);
+    fill_constants(f, term, b, row);
     if (decl->time) {
         fill_first(b, b->t, &zero, 0, f->times);
         fill_rest(b, f->times);

@@ -23,11 +23,12 @@ enum {
     NEVH__BLOCK_SIZE = 16384
 };
 
-/* Where the states are, and which of them a block takes.  The first seven are
+/* Where the states are, and which of them a block takes.  The first eight are
    given; nevh__block_next sets the rest. */
 typedef struct {
     size_t width; /* of q and p: the distance between their rows */
     size_t until; /* lanes to be done */
+    size_t first; /* the lane that q and p begin with, of constants */
     const double *t, *q, *p;
     size_t copies;        /* columns of a group and lane */
     size_t per_instance;  /* groups an instance has */

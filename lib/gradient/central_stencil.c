@@ -42,6 +42,30 @@ NEVH__INLINE void shift_vectors(const nevh__stencil *s, size_t lanes,
         }
 }
 
+/* The same by what each lane has for the variable's steps; other shifts are
+   -0.  Apart, so that the others stay as they are. */
+__attribute__((noinline)) static void shift_by_lane(const nevh_field *f,
+                                                    const nevh__term_part *part,
+                                                    size_t lane, size_t k,
+                                                    double *row) {
+    const nevh__stencil *s = part->stencil;
+    size_t nv = part->term->nv, lanes = part->lanes;
+    for (const nevh__stencil_slope *x = s->slope; x < s->slope + s->slopes;
+         x++) {
+        if (x->k != k)
+            continue;
+        const double *delta = part->term->lane_delta +
+                              (s->instance[x->first] * nv + k) * f->lanes;
+        double *plus = row + x->first * lanes, *minus = plus + lanes;
+        for (size_t j = 0; j < x->method->offsets; j++)
+            for (size_t i = 0; i < lanes; i++) {
+                double move = (double)(j + 1) * delta[(lane + i) % f->lanes];
+                plus[2 * j * lanes + i] += move;
+                minus[2 * j * lanes + i] -= move;
+            }
+    }
+}
+
 /* Any number of states. */
 NEVH__INLINE void shift_lanes(const nevh__stencil *s, size_t lanes,
                               size_t width, const double *x,
@@ -166,6 +190,8 @@ NEVH__INLINE bool take(nevh_field *f, const nevh__term_part *part,
             shift_vectors(s, part->lanes, at->width, x, source, shift, row);
         else
             shift_lanes(s, part->lanes, at->width, x, source, shift, row);
+        if (f->lanes && shape != ONE)
+            shift_by_lane(f, part, lane, k, row);
         for (size_t i = used; shape == LANES && i < part->stride; i++)
             row[i] = row[0];
     }
@@ -173,7 +199,8 @@ NEVH__INLINE bool take(nevh_field *f, const nevh__term_part *part,
         f->times[i] = at->t[lane + (shape == ONE ? 0 : i % part->lanes)];
     nevh__term_values(term->term, f->portable, part->stride, used,
                       decl->time ? f->times : f->zeros, f->rows,
-                      f->rows + term->nq * part->stride, part->c, f->h, f->one);
+                      f->rows + term->nq * part->stride,
+                      part->c + lane * part->pitch, f->h, f->one);
     term->values += used;
     return shape == ONE       ? add_one(f, part, at, lane)
            : shape == VECTORS ? add_vectors(f, part, at, lane)
@@ -241,14 +268,18 @@ int nevh__central_stencil_run(const nevh__evaluation *e) {
     return NEVH_OK;
 }
 
-/* Any places: constants are filled where other lanes are asked for. */
-static const double *constants(const nevh__planned *term, nevh__stencil *s,
-                               size_t lanes, size_t stride) {
-    const nevh_term *decl = &term->term->decl;
-    for (size_t i = 0; s->lanes != lanes && i < decl->nc * stride; i++) {
+/* Any places: constants are filled where other lanes are asked for, or lanes
+   have their own. */
+static const double *constants(const nevh_field *f, const nevh__planned *term,
+                               nevh__stencil *s, size_t lane, size_t lanes,
+                               size_t stride) {
+    size_t size = term->term->decl.nc * stride;
+    for (size_t i = 0; (s->lanes != lanes || f->lanes) && i < size; i++) {
         size_t point = i % stride / lanes;
         size_t instance = s->instance[point < s->points ? point : 0];
-        s->constants[i] = decl->c[instance * decl->nc + i / stride];
+        s->constants[i] =
+            nevh__constant(f, term, instance, i / stride,
+                           nevh__lane_of(f, 0, lane + i % stride % lanes));
     }
     s->lanes = lanes;
     return s->constants;
@@ -272,6 +303,9 @@ int nevh__gradient_central(nevh_field *f, nevh__planned *term,
     nevh__stencil *s = term->stencil[nevh__part_of(at)];
     if (!s)
         return nevh__central_blocks(f, term, at);
+    if (f->lanes && at->width == 1)
+        return nevh__fail(&f->report, NEVH_EINVAL,
+                          "differences at one state have no lane's steps");
     size_t most = lanes_in_block(f, s, at->width);
     nevh__term_part x = {.term = term,
                          .stencil = s,
@@ -280,7 +314,7 @@ int nevh__gradient_central(nevh_field *f, nevh__planned *term,
     for (size_t lane = 0; lane < at->width; lane += x.lanes) {
         x.lanes = at->width - lane < most ? at->width - lane : most;
         x.stride = nevh__padded(s->points * x.lanes);
-        x.c = constants(term, s, x.lanes, x.stride);
+        x.c = constants(f, term, s, lane, x.lanes, x.stride);
         bool finite = at->width == 1          ? take_one(f, &x, at)
                       : x.lanes % NEVH__LANES ? take_lanes(f, &x, at, lane)
                                               : take_vectors(f, &x, at, lane);

@@ -98,7 +98,7 @@ void nevh__evaluation_add(const nevh__term_part *x) {
 struct nevh__constants {
     struct nevh__constants *next;
     const nevh__stencil *of; /* NULL: of instances */
-    size_t width;
+    size_t width, blocks;
     double rows[];
 };
 
@@ -110,24 +110,37 @@ void nevh__constants_free(struct nevh__constants *c) {
     }
 }
 
-static void fill(const nevh_term *decl, size_t columns,
+static size_t columns_of(const nevh__planned *term, const nevh__stencil *of) {
+    return of ? nevh__stencil_points(of) : term->term->decl.count;
+}
+
+static void fill(const nevh_field *f, const nevh__planned *term,
                  struct nevh__constants *c) {
-    size_t stride = nevh__padded(columns * c->width);
-    for (size_t i = 0; i < decl->nc * stride; i++) {
+    size_t columns = columns_of(term, c->of), nc = term->term->decl.nc;
+    size_t stride = nevh__padded(columns * c->width), size = nc * stride;
+    for (size_t i = 0; i < c->blocks * size; i++) {
         size_t column = i % stride / c->width;
         size_t x = column < columns ? column : 0;
         size_t instance = c->of ? nevh__stencil_instance(c->of, x) : x;
-        c->rows[i] = decl->c[instance * decl->nc + i / stride];
+        size_t state = i / size * c->width + i % stride % c->width;
+        c->rows[i] = nevh__constant(f, term, instance, i % size / stride,
+                                    nevh__lane_of(f, c->width, state));
     }
 }
 
-const double *nevh__constants_plan(nevh__planned *term, const nevh__stencil *of,
-                                   size_t width) {
-    const nevh_term *decl = &term->term->decl;
-    size_t columns = of ? nevh__stencil_points(of) : decl->count;
-    size_t count = decl->nc * nevh__padded(columns * width);
+void nevh__constants_fill(const nevh_field *f, const nevh__planned *term) {
+    for (struct nevh__constants *c = term->constants; c; c = c->next)
+        fill(f, term, c);
+}
+
+const double *nevh__constants_plan(const nevh_field *f, nevh__planned *term,
+                                   const nevh__stencil *of, size_t width,
+                                   size_t total) {
+    size_t blocks = f->lanes ? total / width : 1;
+    size_t rows = nevh__padded(columns_of(term, of) * width);
+    size_t count = term->term->decl.nc * rows * blocks;
     struct nevh__constants *c = term->constants;
-    while (c && (c->width != width || c->of != of))
+    while (c && (c->width != width || c->of != of || c->blocks != blocks))
         c = c->next;
     if (c || !count)
         return c ? c->rows : NULL;
@@ -137,8 +150,9 @@ const double *nevh__constants_plan(nevh__planned *term, const nevh__stencil *of,
     c->next = term->constants;
     c->of = of;
     c->width = width;
+    c->blocks = blocks;
     term->constants = c;
-    fill(decl, columns, c);
+    fill(f, term, c);
     return c->rows;
 }
 
@@ -229,7 +243,7 @@ int nevh__field_gradient_padded(nevh_field *f, size_t width, size_t used,
         return status;
     if (dh_dq)
         f->gradients += used;
-    if (width == 1 && take_single(f, &at))
+    if (width == 1 && !f->lanes && take_single(f, &at))
         return NEVH_OK;
     return nevh__field_terms(f, &at);
 }

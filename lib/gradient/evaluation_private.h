@@ -41,6 +41,8 @@ typedef struct {
     bool sums;             /* any is added */
     const nevh__stencil *stencil;
     size_t lanes;        /* of each block of it */
+    size_t pitch;        /* of constants, from a lane to the next; 0: they are
+                            those of all blocks */
     bool adds_q, adds_p; /* its slopes, to what is there */
 } nevh__term_part;
 
@@ -101,9 +103,13 @@ NEVH__INLINE void nevh__evaluation_run(const nevh__evaluation *c) {
     }
 }
 /* A term's constants as blocks of all instances, or the points of a stencil,
-   and `width` states have them.  NULL: there are none, or memory is out. */
-const double *nevh__constants_plan(nevh__planned *, const nevh__stencil *,
-                                   size_t width);
+   and `width` states have them.  Where lanes have their own: as many such blocks
+   as `total` states fill.  NULL: there are none, or memory is out. */
+const double *nevh__constants_plan(const nevh_field *, nevh__planned *,
+                                   const nevh__stencil *, size_t width,
+                                   size_t total);
+/* Again, where lanes have other constants. */
+void nevh__constants_fill(const nevh_field *, const nevh__planned *);
 void nevh__constants_free(struct nevh__constants *);
 /* Columns of a stencil and a state; the instance of each. */
 size_t nevh__stencil_points(const nevh__stencil *);

@@ -33,6 +33,8 @@ static bool applicable(const nevh__evaluation *e) {
         return false; /* terms need not bring derivatives */
     if (e->width % NEVH__LANES)
         return false; /* nothing may be written beyond the rows */
+    if (f->lanes && e->width % f->lanes)
+        return false; /* some lanes' constants would be left out */
     for (size_t i = 0; i < f->n_terms; i++) {
         const nevh__planned *term = &f->terms[i];
         const nevh_term *decl = &term->term->decl;
@@ -85,7 +87,7 @@ static bool add_part(nevh__evaluation *e, nevh__planned *term,
         .t = decl->time ? e->at.t : f->zeros,
         .q = term->nq ? e->at.q + decl->q[0] * width : e->at.q,
         .p = term->np ? e->at.p + decl->p[0] * width : e->at.p,
-        .c = nevh__constants_plan(term, NULL, width)};
+        .c = nevh__constants_plan(f, term, NULL, width, width)};
     bool known = !decl->nc || x->c;
     f->starved |= !known;
     e->timed |= decl->time;

@@ -41,15 +41,16 @@ bool nevh__exact_gather_plan(nevh_field *f) {
 }
 
 /* The constants of the last width are kept. */
-static inline const double *constants(nevh__planned *term, size_t width,
-                                      size_t stride) {
+static inline const double *constants(const nevh_field *f, nevh__planned *term,
+                                      size_t width, size_t stride) {
     const nevh_term *decl = &term->term->decl;
     size_t used = decl->count * width;
     if (term->gathered_width != width)
         for (size_t k = 0; k < decl->nc; k++)
             for (size_t i = 0; i < stride; i++)
                 term->gathered[k * stride + i] =
-                    decl->c[(i < used ? i / width : 0) * decl->nc + k];
+                    nevh__constant(f, term, i < used ? i / width : 0, k,
+                                   nevh__lane_of(f, width, i % width));
     term->gathered_width = width;
     return term->gathered;
 }
@@ -130,8 +131,8 @@ static inline bool take_block(nevh_field *f, nevh__planned *term,
     if (of_p && in_place && term == f->whole_p)
         slopes_p = at->dh_dp;
     nevh__exact_gradient(f, decl)(stride, times(f, decl, at, stride), q, p,
-                                  constants(term, width, stride), decl->params,
-                                  at->dh_dq ? slopes_q : NULL,
+                                  constants(f, term, width, stride),
+                                  decl->params, at->dh_dq ? slopes_q : NULL,
                                   at->dh_dp ? slopes_p : NULL);
     bool finite = !of_q || add(&term->to_q, width, stride, slopes_q, at->dh_dq);
     return (!of_p || add(&term->to_p, width, stride, slopes_p, at->dh_dp)) &&

@@ -11,6 +11,8 @@ static bool applicable(const nevh__evaluation *e) {
         return false; /* terms need not bring derivatives */
     if (e->width != 1)
         return false; /* such functions take one state */
+    if (f->lanes)
+        return false; /* its constants are a lane's */
     if (f->n > NEVH__MOST_POINT_ROWS)
         return false; /* rows are counted as bits, and calls are for few */
     for (size_t i = 0; i < f->n_terms; i++)

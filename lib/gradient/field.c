@@ -12,6 +12,8 @@ void nevh_field_free(nevh_field *f) {
         free(f->terms[i].steps);
         free(f->terms[i].vars);
         free(f->terms[i].gathered);
+        free(f->terms[i].lane_c);
+        free(f->terms[i].lane_delta);
         nevh__constants_free(f->terms[i].constants);
         nevh__central_stencil_clear(&f->terms[i]);
         nevh__scatter_map_clear(&f->terms[i].to_q);

@@ -48,6 +48,9 @@ typedef struct {
     nevh__scatter_map to_q, to_p;      /* of exact_gather: no targets: none */
     double *gathered; /* constants of a block of all instances and of so many */
     size_t gathered_width; /* states, those that were asked for last */
+    /* Rows of the field's lanes, where these differ, in place of the term's
+       constants and of delta: count x nc and count x nv. */
+    double *lane_c, *lane_delta;
 } nevh__planned;
 
 /* Adds a term's gradient at any places, or writes it: nevh__writes. */
@@ -95,6 +98,9 @@ struct nevh_field {
     const nevh__planned *whole_q, *whole_p;
     bool starved;    /* memory was out when an evaluation was planned */
     bool broadcasts; /* one state may as well be repeated over a vector */
+    size_t lanes;    /* that have constants of their own: state i of some side
+                        by side those of lane i % lanes; 0: all have the same */
+    size_t alone;    /* the lane whose constants a single state has */
     struct nevh__single
         *single; /* evaluations at one state; see evaluation.c */
     nevh__report report;
@@ -126,6 +132,35 @@ static inline bool nevh__wanted(const nevh__places *at,
                                 const nevh__planned *term) {
     return (at->dh_dq && term->nq) || (at->dh_dp && term->np);
 }
+
+/* The lane whose constants a state has, of so many side by side. */
+static inline size_t nevh__lane_of(const nevh_field *f, size_t width,
+                                   size_t state) {
+    return width == 1 ? f->alone : f->lanes ? state % f->lanes : 0;
+}
+/* An instance's constant k, in a lane. */
+static inline double nevh__constant(const nevh_field *f,
+                                    const nevh__planned *term, size_t instance,
+                                    size_t k, size_t lane) {
+    size_t at = instance * term->term->decl.nc + k;
+    return f->lanes ? term->lane_c[at * f->lanes + lane]
+                    : term->term->decl.c[at];
+}
+
+/* field_lanes.c: each lane of a field gets constants of its own, those of the
+   terms at first.  Evaluations are planned afterwards.
+   returns  NEVH_OK or a status, recorded: NEVH_ESTRUCT where there is a term
+            whose gradient cannot be taken so */
+int nevh__field_lanes_plan(nevh_field *, size_t lanes);
+/* A lane takes the constants of each term, count x nc, and, of differences, the
+   steps of `own`, a field of the same terms with these constants.
+   returns  whether these are differenced alike; else nothing is taken */
+bool nevh__field_lane_take(nevh_field *, size_t lane, const double *const c[],
+                           const nevh_field *own);
+/* A lane takes what another has. */
+void nevh__field_lane_copy(nevh_field *, size_t from, size_t to);
+/* The lane whose constants single states have from now on. */
+void nevh__field_alone(nevh_field *, size_t lane);
 
 /* For each method; nevh__gradient_fn. */
 int nevh__gradient_central(nevh_field *, nevh__planned *, const nevh__places *);

@@ -248,6 +248,8 @@ static int plan_field(nevh_field *f, const nevh_options *o) {
         return status;
     f->planned = true; /* it can be asked, and planning does */
     status = plan_gradient(f, o);
+    if (!status && s->by_lane)
+        status = nevh__field_lanes_plan(f, o->width ? o->width : 1);
     f->planned = !status;
     return status;
 }

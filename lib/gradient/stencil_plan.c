@@ -168,6 +168,8 @@ static bool applicable(const nevh__evaluation *e) {
         return false; /* there are no points */
     if (e->width != 1 && e->width % NEVH__LANES)
         return false; /* rows of points are whole vectors */
+    if (f->lanes && e->width % f->lanes)
+        return false; /* some lanes' constants would be left out */
     if (f->n > NEVH__MOST_POINT_ROWS)
         return false; /* evaluations are for small systems */
     for (size_t i = 0; i < f->n_terms; i++) {
@@ -189,13 +191,15 @@ static bool add_part(nevh__evaluation *e, nevh__planned *term) {
     if (e->count == NEVH__MOST_PARTS)
         return false;
     nevh__term_part *x = &e->terms[e->count++];
-    *x = (nevh__term_part){.term = term,
-                           .stencil = s,
-                           .lanes = lanes,
-                           .stride = nevh__padded(s->points * lanes),
-                           .c = nevh__constants_plan(term, s, lanes),
-                           .adds_q = term != f->whole_q,
-                           .adds_p = term != f->whole_p};
+    *x = (nevh__term_part){
+        .term = term,
+        .stencil = s,
+        .lanes = lanes,
+        .stride = nevh__padded(s->points * lanes),
+        .c = nevh__constants_plan(f, term, s, lanes, e->width),
+        .pitch = f->lanes ? s->points * term->term->decl.nc : 0,
+        .adds_q = term != f->whole_q,
+        .adds_p = term != f->whole_p};
     e->timed |= term->term->decl.time;
     bool known = !term->term->decl.nc || x->c;
     f->starved |= !known;

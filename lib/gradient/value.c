@@ -34,6 +34,7 @@ static nevh__block lanes_from(const nevh_field *f, size_t lane, size_t width,
                               const double p[]) {
     nevh__block b = nevh__block_over(width, t + lane, q + lane, p + lane, 1, 1);
     size_t rest = width - lane;
+    b.first = lane;
     b.until = rest < f->capacity ? rest : f->capacity;
     return b;
 }

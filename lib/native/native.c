@@ -135,7 +135,8 @@ static const char *obstacle(const nevh_work *w) {
            : family_of(w) == FAMILIES
                ? "only splitting, Tao, Runge-Kutta, Nystroem, Gauss and "
                  "Lobatto steps can be"
-           : w->accounts ? "the balance of the energy is kept"
+           : w->accounts     ? "the balance of the energy is kept"
+           : w->field->lanes ? "orbits side by side have constants of their own"
            : w->width % NEVH__LANES && w->width > 1
                ? "orbits side by side fill no vectors"
            : w->n * w->width * stages_of(w) > MOST_NUMBERS && !has_loops(w)

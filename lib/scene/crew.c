@@ -2,7 +2,8 @@
 
    Members are given out in chunks, in order.  Where no parameter is varied a
    thread has one ensemble, whose lanes take chunk after chunk; else it takes
-   the members of a chunk that share their parameters together.  Those whose
+   the members of a chunk that share their parameters together, or, where these
+   are few, members whose formulas differ in numbers alone.  Those whose
    parameters change nothing but where they start are run by one ensemble, that of
    the scene as it is; so is a member, whichever others there are.
    SPDX-License-Identifier: GPL-3.0-or-later */
@@ -28,6 +29,15 @@ typedef struct {
     nevh_ensemble *shared;
     size_t *sharing, n_sharing, shared_at;
     double *starts; /* 2n each */
+    /* Members whose systems differ in numbers: places in the order. */
+    nevh__lane_form form;
+    nevh_ensemble *by_lane; /* NULL: there is no such form */
+    nevh__variant *own;     /* of the list's members that are under way */
+    nevh__own parts;
+    nevh_options options; /* of the member that was asked for last */
+    double *plan_at;      /* its state to plan at: 2n */
+    size_t *queue, n_queue, queue_at;
+    size_t *left, n_left; /* those that are to be run apart */
     bool started;
 } worker;
 
@@ -272,7 +282,103 @@ static void run_sharing(worker *w) {
     w->n_sharing = 0;
 }
 
-static void run_group(worker *w, const double varied[]) {
+/* Members by lane. */
+
+/* The next of the queue that has a start; others are told of, or left. */
+static bool next_by_lane(void *data, uint64_t *member, double q[], double p[]) {
+    worker *w = data;
+    nevh_sweep *s = w->sweep;
+    while (!s->draining && w->queue_at < w->n_queue) {
+        size_t at = w->queue[w->queue_at++], i = w->order[at];
+        double *varied = w->varied + i * s->ensemble->n_varied;
+        nevh__report report = {0};
+        nevh__variant_free(&w->own[i]);
+        if (!make(s, varied, &w->own[i], &report) ||
+            !nevh__lane_form_fits(s, &w->form, &w->own[i])) {
+            w->left[w->n_left++] = at;
+            continue;
+        }
+        *member = at;
+        if (!nevh__variant_start(s, &w->own[i], varied, q, p, w->v, &report))
+            return true;
+        finish(w, w->list[i], varied, NEVH_MEMBER_NO_START, report.text, NULL);
+    }
+    return false;
+}
+
+static const nevh__own *own_of(void *data, uint64_t member) {
+    worker *w = data;
+    const nevh__variant *x = &w->own[w->order[member]];
+    nevh__variant_options(w->sweep, x, &w->options, w->plan_at);
+    w->parts = (nevh__own){x->model->system, &w->options,
+                           (const double *const *)w->form.of_field};
+    return &w->parts;
+}
+
+static void leave(void *data, uint64_t member) {
+    worker *w = data;
+    w->left[w->n_left++] = (size_t)member;
+}
+
+static int done_by_lane(void *data, const nevh_member_result *r) {
+    worker *w = data;
+    size_t i = w->order[r->member];
+    finish(w, w->list[i], w->varied + i * w->sweep->ensemble->n_varied,
+           r->status ? NEVH_MEMBER_FAILED : NEVH_MEMBER_DONE, r->message,
+           r->values);
+    nevh__variant_free(&w->own[i]);
+    return w->sweep->stopped;
+}
+
+/* A member's variant, by number of the sweep. */
+static bool make_member(worker *w, uint64_t member, nevh__variant *x) {
+    nevh__report ignored = {0};
+    return make(w->sweep, varied_now(w, member, w->room), x, &ignored);
+}
+
+/* Looks at some members, so that most numbers that differ are seen. */
+static bool make_form(worker *w) {
+    nevh_sweep *s = w->sweep;
+    uint64_t count = nevh_sweep_members(s);
+    const uint64_t others[] = {0, count / 3, count - 1};
+    nevh__variant x;
+    bool made =
+        make_member(w, count / 2, &x) && nevh__lane_form_begin(&w->form, &x);
+    nevh__variant_free(&x);
+    for (size_t i = 0; made && i < sizeof others / sizeof *others; i++) {
+        if (make_member(w, others[i], &x))
+            nevh__lane_form_see(s, &w->form, &x);
+        nevh__variant_free(&x);
+    }
+    return made && nevh__lane_form_finish(&w->form);
+}
+
+static void open_form(worker *w) {
+    nevh_options o;
+    nevh_ensemble *e = NULL;
+    if (nevh_sweep_members(w->sweep) >= NEVH__LANES && make_form(w)) {
+        nevh_ensemble_options is =
+            nevh__variant_options(w->sweep, &w->form.base, &o, w->plan_at);
+        e = nevh_ensemble_new(w->form.system, &is);
+    }
+    if (nevh__ensemble_vary(e, own_of, leave))
+        w->by_lane = e;
+    else
+        nevh_ensemble_free(e);
+}
+
+/* Whether members by lane pay, and are no less than what is asked for. */
+static bool goes_by_lane(const worker *w) {
+    return w->by_lane && w->sweep->is.native != NEVH_NATIVE_ALWAYS &&
+           w->group_end - w->at < NEVH__LANES;
+}
+
+static void queue_group(worker *w) {
+    for (; w->at < w->group_end; w->at++)
+        w->queue[w->n_queue++] = w->at;
+}
+
+static void run_group(worker *w, const double varied[], bool apart) {
     nevh_sweep *s = w->sweep;
     nevh__report report = {0};
     nevh_ensemble *e = NULL;
@@ -280,11 +386,16 @@ static void run_group(worker *w, const double varied[]) {
     bool made = make(s, varied, &w->variant, &report);
     bool alike = made && parameters && w->scene.model &&
                  nevh__variants_alike(s, &w->scene, &w->variant);
-    if (made && !alike)
+    bool by_lane = made && parameters && !alike && !apart && goes_by_lane(w);
+    if (by_lane)
+        queue_group(w);
+    else if (made && !alike)
         e = open(s, &w->variant, parameters ? w->group_end - w->at : SIZE_MAX,
                  &report);
     if (alike)
         share(w);
+    else if (by_lane)
+        ; /* with others */
     else if (e)
         do
             nevh_ensemble_run(e, next, done, w);
@@ -330,6 +441,29 @@ static void sort(worker *w) {
     }
 }
 
+/* Members that are left, each apart. */
+static void run_left(worker *w, const size_t left[], size_t count) {
+    for (size_t i = 0; i < count && !w->sweep->stopped && !w->sweep->draining;
+         i++) {
+        w->at = left[i];
+        w->group_end = w->at + 1;
+        run_group(w, w->varied + w->order[w->at] * w->sweep->ensemble->n_varied,
+                  true);
+    }
+}
+
+static void run_queue(worker *w) {
+    w->queue_at = w->n_left = 0;
+    if (w->n_queue >= NEVH__LANES) {
+        nevh_ensemble_run(w->by_lane, next_by_lane, done_by_lane, w);
+        run_left(w, w->left, w->n_left);
+    } else
+        run_left(w, w->queue, w->n_queue);
+    for (size_t i = 0; w->n_queue && i < CHUNK; i++)
+        nevh__variant_free(&w->own[i]);
+    w->n_queue = 0;
+}
+
 static void run_chunk_by_groups(worker *w) {
     for (size_t i = 0; i < w->count; i++)
         varied_of(w, i);
@@ -340,24 +474,27 @@ static void run_chunk_by_groups(worker *w) {
         while (w->group_end < w->count &&
                same_group(w, first, w->order[w->group_end]))
             w->group_end++;
-        run_group(w, w->varied + first * w->sweep->ensemble->n_varied);
+        run_group(w, w->varied + first * w->sweep->ensemble->n_varied, false);
     }
     run_sharing(w);
+    run_queue(w);
 }
 
 static void *work(void *data) {
     worker *w = data;
     nevh_sweep *s = w->sweep;
     nevh__report report = {0};
-    if (s->ensemble->parameters)
+    if (s->ensemble->parameters) {
         make(s, NULL, &w->scene, &report);
+        open_form(w);
+    }
     if (report.status == NEVH_ENOMEM)
         out_of_memory(s);
     else if (s->ensemble->parameters)
         while (take_chunk(w, true))
             run_chunk_by_groups(w);
     else if (take_chunk(w, true))
-        run_group(w, w->varied);
+        run_group(w, w->varied, false);
     return NULL;
 }
 
@@ -376,9 +513,15 @@ static bool equip(worker *w, nevh_sweep *s) {
         w->order = nevh__array(CHUNK, sizeof *w->order);
         w->sharing = nevh__array(CHUNK, sizeof *w->sharing);
         w->starts = nevh__array(CHUNK * 2 * n, sizeof *w->starts);
+        w->own = nevh__array(CHUNK, sizeof *w->own);
+        w->plan_at = nevh__array(2 * n, sizeof *w->plan_at);
+        w->queue = nevh__array(CHUNK, sizeof *w->queue);
+        w->left = nevh__array(CHUNK, sizeof *w->left);
     }
     return w->list && w->values && w->varied && w->q && w->p && w->v &&
-           w->room && (!orders || (w->order && w->sharing && w->starts));
+           w->room &&
+           (!orders || (w->order && w->sharing && w->starts && w->own &&
+                        w->plan_at && w->queue && w->left));
 }
 
 static void dismiss(worker *w) {
@@ -392,6 +535,14 @@ static void dismiss(worker *w) {
     free(w->order);
     free(w->sharing);
     free(w->starts);
+    for (size_t i = 0; w->own && i < CHUNK; i++)
+        nevh__variant_free(&w->own[i]);
+    free(w->own);
+    free(w->plan_at);
+    free(w->queue);
+    free(w->left);
+    nevh_ensemble_free(w->by_lane);
+    nevh__lane_form_free(&w->form);
     nevh_ensemble_free(w->shared);
     nevh__variant_free(&w->scene);
 }

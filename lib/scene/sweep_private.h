@@ -3,6 +3,7 @@
 #ifndef NEVH_SWEEP_PRIVATE_H
 #define NEVH_SWEEP_PRIVATE_H
 
+#include "ensemble/own_private.h"
 #include "scene/scene_ensemble_private.h"
 #include <nevh/sweep.h>
 #include <pthread.h>
@@ -64,6 +65,10 @@ void nevh__variant_free(nevh__variant *);
    and looked at alike: they differ in where they start. */
 bool nevh__variants_alike(const nevh_sweep *, const nevh__variant *,
                           const nevh__variant *);
+/* Whether they are run and looked at alike, by systems of the same terms but
+   for numbers in formulas and for constants of instances. */
+bool nevh__variants_differ_in_numbers(const nevh_sweep *, const nevh__variant *,
+                                      const nevh__variant *);
 /* The options of an ensemble of the variant's members.  room: 2n */
 nevh_ensemble_options nevh__variant_options(const nevh_sweep *,
                                             const nevh__variant *,
@@ -74,6 +79,30 @@ nevh_ensemble_options nevh__variant_options(const nevh_sweep *,
 int nevh__variant_start(const nevh_sweep *, const nevh__variant *,
                         double varied[], double q[], double p[], double v[],
                         nevh__report *);
+
+/* variant_lanes.c: a system whose lanes have the numbers of variants. */
+typedef struct {
+    nevh__variant base; /* one of them */
+    nevh_system *system;
+    nevh__owned tapes;
+    bool **opened;      /* a term: which numbers of its tape differ */
+    double **constants; /* a term: count x nc of the system's, of the variant
+                           that was asked for last */
+    double **of_field;  /* those of the terms that are on */
+} nevh__lane_form;
+/* base: taken over.  False when memory is out. */
+bool nevh__lane_form_begin(nevh__lane_form *, nevh__variant *base);
+/* Numbers in which the variant differs from the base are to be those of
+   lanes. */
+void nevh__lane_form_see(const nevh_sweep *, nevh__lane_form *,
+                         const nevh__variant *);
+/* Makes the system; false when memory is out. */
+bool nevh__lane_form_finish(nevh__lane_form *);
+void nevh__lane_form_free(nevh__lane_form *);
+/* Whether a variant differs from the base in such numbers alone; then its
+   constants are form->of_field. */
+bool nevh__lane_form_fits(const nevh_sweep *, nevh__lane_form *,
+                          const nevh__variant *);
 
 /* solve.c: finds the value of varied number i at which its sides are equal, in
    the state.  Returns whether there is one. */

@@ -10,13 +10,22 @@ static bool same_bytes(const void *a, const void *b, size_t count,
 }
 
 /* Terms that are no formulas have no numbers to compare. */
-static bool same_term(const nevh__term_entry *a, const nevh__term_entry *b) {
+static bool same_shape(const nevh__term_entry *a, const nevh__term_entry *b) {
     const nevh_term *x = &a->decl, *y = &b->decl;
     return x->value == nevh__tape_value && y->value == nevh__tape_value &&
            a->effect == b->effect && x->count == y->count && x->nq == y->nq &&
            x->np == y->np && x->nc == y->nc &&
            same_bytes(x->q, y->q, x->count * x->nq, sizeof *x->q) &&
-           same_bytes(x->p, y->p, x->count * x->np, sizeof *x->p) &&
+           same_bytes(x->p, y->p, x->count * x->np, sizeof *x->p);
+}
+
+static bool alike_terms(const nevh__term_entry *a, const nevh__term_entry *b) {
+    return same_shape(a, b) && nevh__tape_alike(a->decl.params, b->decl.params);
+}
+
+static bool same_terms(const nevh__term_entry *a, const nevh__term_entry *b) {
+    const nevh_term *x = &a->decl, *y = &b->decl;
+    return same_shape(a, b) &&
            same_bytes(x->c, y->c, x->count * x->nc, sizeof *x->c) &&
            nevh__tape_same(x->params, y->params);
 }
@@ -30,11 +39,13 @@ static bool same_friction(const nevh_system *a, const nevh_system *b) {
     return same;
 }
 
-static bool same_system(const nevh_system *a, const nevh_system *b) {
+static bool compare_systems(const nevh_system *a, const nevh_system *b,
+                            bool (*same)(const nevh__term_entry *,
+                                         const nevh__term_entry *)) {
     if (a->n != b->n || a->n_terms != b->n_terms || !same_friction(a, b))
         return false;
     for (size_t i = 0; i < a->n_terms; i++)
-        if (!same_term(a->terms[i], b->terms[i]))
+        if (!same(a->terms[i], b->terms[i]))
             return false;
     return true;
 }
@@ -65,9 +76,21 @@ static bool same_outcomes(const nevh_sweep *s, const nevh__variant *a,
     return true;
 }
 
+static bool
+compare(const nevh_sweep *s, const nevh__variant *a, const nevh__variant *b,
+        bool (*same)(const nevh__term_entry *, const nevh__term_entry *)) {
+    const nevh__scene_model *x = a->model, *y = b->model;
+    return !s->is.transformed && compare_systems(x->system, y->system, same) &&
+           same_run(&x->run, &y->run, x->n) && same_outcomes(s, a, b);
+}
+
 bool nevh__variants_alike(const nevh_sweep *s, const nevh__variant *a,
                           const nevh__variant *b) {
-    const nevh__scene_model *x = a->model, *y = b->model;
-    return !s->is.transformed && same_system(x->system, y->system) &&
-           same_run(&x->run, &y->run, x->n) && same_outcomes(s, a, b);
+    return compare(s, a, b, same_terms);
+}
+
+bool nevh__variants_differ_in_numbers(const nevh_sweep *s,
+                                      const nevh__variant *a,
+                                      const nevh__variant *b) {
+    return compare(s, a, b, alike_terms);
 }

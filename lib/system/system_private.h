@@ -101,6 +101,8 @@ struct nevh_system {
     nevh__friction *frictions;
     size_t n_frictions;
     unsigned long revision; /* counts changes */
+    bool by_lane;           /* of states side by side each has constants of its
+                               own: see lib/gradient/field_lanes.c */
     nevh_value_fn whole;    /* of nevh_system_from */
     const void *whole_params;
     nevh__report report;
