@@ -336,17 +336,20 @@ static bool make_member(worker *w, uint64_t member, nevh__variant *x) {
     return make(w->sweep, varied_now(w, member, w->room), x, &ignored);
 }
 
-/* Looks at some members, so that most numbers that differ are seen. */
+/* Looks at some members here and there, so that most numbers that differ are
+   seen: in some a number is special, as 2^k. */
 static bool make_form(worker *w) {
+    enum { LOOKS = 12 };
+    static const double golden = 0.6180339887498949;
     nevh_sweep *s = w->sweep;
     uint64_t count = nevh_sweep_members(s);
-    const uint64_t others[] = {0, count / 3, count - 1};
     nevh__variant x;
     bool made =
         make_member(w, count / 2, &x) && nevh__lane_form_begin(&w->form, &x);
     nevh__variant_free(&x);
-    for (size_t i = 0; made && i < sizeof others / sizeof *others; i++) {
-        if (make_member(w, others[i], &x))
+    for (int i = 1; made && i <= LOOKS; i++) {
+        double part = i * golden - floor(i * golden);
+        if (make_member(w, (uint64_t)(part * (double)count), &x))
             nevh__lane_form_see(s, &w->form, &x);
         nevh__variant_free(&x);
     }

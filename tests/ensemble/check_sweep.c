@@ -357,7 +357,7 @@ TEST_EACH(parameters_of_the_start_are_a_start, sizeof uses / sizeof *uses) {
     "[run]\nt_end = 2\ndt = 0.05\n[ensemble]\n"
 
 static const char *const varying[] = {
-    ROD "l = range(0.5, 2, 41)\noutcomes = state, energy_error, verdict\n",
+    ROD "l = range(0.5, 2, 40)\noutcomes = state, energy_error, verdict\n",
     ROD "l = range(0.6, 2, 7)\nphi = 1, 2\nm = 1, 2, 3.1\n"
         "outcomes = state, energy_error, max(phi)\n",
     ROD "g = uniform(1, 20)\ncount = 30\n"
