@@ -77,7 +77,8 @@ NEVH_API const char *nevh_sweep_column(const nevh_sweep *, size_t k);
 NEVH_API bool nevh_sweep_is_verdict(const nevh_sweep *, size_t k);
 
 /* Whether members whose orbits stand side by side take compiled steps.
-   why  out, may be NULL: what is in the way, or ""; of the sweep */
+   why  out, may be NULL: what is in the way; where steps are compiled, of which
+        members, if not of all; else ""; of the sweep */
 NEVH_API bool nevh_sweep_native(const nevh_sweep *, const char **why);
 
 typedef enum {

@@ -17,11 +17,15 @@ static bool plans_nothing(const nevh_stepper *s) {
            kernel == &nevh_runge_kutta_kernel;
 }
 
+bool nevh__ensemble_may_vary(const nevh_ensemble *e) {
+    return e && e->planned && !e->alone && !e->moving && !e->n_crossings &&
+           !e->chaotic && plans_nothing(e->stepper);
+}
+
 bool nevh__ensemble_vary(nevh_ensemble *e, nevh__own_fn own,
                          nevh__refused_fn refused) {
-    if (!e || !e->planned || e->alone || e->moving || e->n_crossings ||
-        e->chaotic || e->stepper->work.field->lanes != e->width ||
-        !plans_nothing(e->stepper))
+    if (!nevh__ensemble_may_vary(e) ||
+        e->stepper->work.field->lanes != e->width)
         return false;
     e->own = own;
     e->refused = refused;

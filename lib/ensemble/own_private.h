@@ -25,5 +25,7 @@ typedef void (*nevh__refused_fn)(void *data, uint64_t member);
    returns  whether the ensemble can: it may have no more than orbits of fixed
             explicit steps, their energies, and quantities that all share */
 bool nevh__ensemble_vary(nevh_ensemble *, nevh__own_fn, nevh__refused_fn);
+/* Whether an ensemble like that one, but by_lane, can. */
+bool nevh__ensemble_may_vary(const nevh_ensemble *);
 
 #endif

@@ -310,6 +310,7 @@ static const nevh__own *own_of(void *data, uint64_t member) {
     worker *w = data;
     const nevh__variant *x = &w->own[w->order[member]];
     nevh__variant_options(w->sweep, x, &w->options, w->plan_at);
+    w->options.native = NEVH_NATIVE_NEVER; /* it steps where others fail */
     w->parts = (nevh__own){x->model->system, &w->options,
                            (const double *const *)w->form.of_field};
     return &w->parts;

@@ -94,6 +94,9 @@ static int try(nevh_sweep *s) {
     }
     const char *why = "";
     s->native = nevh_ensemble_native(e, &why);
+    if (s->native && s->ensemble->parameters &&
+        s->is.native != NEVH_NATIVE_ALWAYS && nevh__ensemble_may_vary(e))
+        why = "where eight members or more have the same parameters";
     snprintf(s->why_native, sizeof s->why_native, "%s", why);
     nevh_ensemble_free(e);
     nevh__variant_free(&x);

@@ -81,6 +81,15 @@ exits 0 recommend pendulum $long --integrators gauss8 --energy-error 1e-3 \
     --dt 0.2 --native never
 lacks 'native: '
 
+# Members that differ in numbers of H go side by side, but not by compiled steps.
+of_eight='--integrators verlet --gradient exact --t-end 100000 --outcomes t'
+exits 0 sweep pendulum --vary 'phi = range(0.5, 2, 8)' $of_eight
+has '^# native: steps are compiled$'
+exits 0 sweep pendulum --vary 'l = range(0.5, 2, 8)' $of_eight
+has '^# native: steps are compiled where eight members or more have the same parameters$'
+exits 0 sweep pendulum --vary 'l = range(0.5, 2, 8)' $of_eight --native always
+has '^# native: steps are compiled$'
+
 # Without a compiler one line says so.
 rm -rf $cache
 for what in 'compare pendulum --integrators euler,verlet --dt 0.1' \

@@ -241,7 +241,7 @@ texts | grep -q slope && fails "draws a slope where there is none"
 exits 2 gradients oscillator --gradient complex-step --plot $svg
 says 'nothing to plot: all values are 0'
 exits 2 effects pendulum --plot $svg
-says '--plot is no option of nevh effects$'
+says 'nevh effects draws with --impact --plot '
 
 # Orbits: an angle that goes round stays within its period, lines end there.
 # Where there is a picture rows are for files, and the picture says what it is.

@@ -64,7 +64,7 @@ for count in 1 2 3; do
 done
 ranks 2 2 sweep $scene
 says 'share one array'
-test "$(wc -l <$work/err)" = 1 || fails "says it twice"
+test "$(grep -c "^nevh" $work/err)" = 1 || fails "says it twice"
 ranks 2 2 sweep $scene -o $work/ranks.npy --join
 says 'share one array'
 ranks 2 2 sweep $scene -o $work/no/such/folder.npy

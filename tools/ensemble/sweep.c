@@ -60,8 +60,10 @@ static void note(sweep_job *j) {
     plan_notes(p, &j->notes);
     list_print(&j->notes, "scene: %s", p->name);
     settings_notes(j->options, &j->notes);
-    if (nevh_sweep_native(j->sweep, NULL))
-        list_add(&j->notes, "native: steps are compiled");
+    const char *where;
+    if (nevh_sweep_native(j->sweep, &where))
+        list_print(&j->notes, "native: steps are compiled%s%s",
+                   *where ? " " : "", where);
     for (size_t i = 0; i < j->options->vary.count; i++)
         list_print(&j->notes, "vary: %s", j->options->vary.item[i]);
     plan_note_first(p, j->integrator, &j->notes);
