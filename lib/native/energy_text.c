@@ -9,24 +9,24 @@
 /* What means something else where formulas stand, other than names that begin
    with one or two letters and a digit. */
 static const char *const words[] = {
-    "t",        "q",        "p",        "y",      "slope",    "bad",
-    "h",        "sum",      "lost",     "most",   "noise",    "scale",
-    "auto",     "break",    "case",     "char",   "const",    "continue",
-    "default",  "do",       "double",   "else",   "enum",     "extern",
-    "float",    "for",      "goto",     "if",     "inline",   "int",
-    "long",     "register", "restrict", "return", "short",    "signed",
-    "sizeof",   "static",   "struct",   "switch", "typedef",  "union",
-    "unsigned", "void",     "volatile", "while",  "asm",      "typeof",
-    "true",     "false",    "bool",     "linux",  "unix",     "add",
-    "choose",   "real_min", "real_max", "sign",   "chain",    "mod",
-    "fabs",     "floor",    "rint",     "fmod",   "sqrt",     "cbrt",
-    "sin",      "cos",      "tan",      "asin",   "acos",     "atan",
-    "atan2",    "sinh",     "cosh",     "tanh",   "asinh",    "acosh",
-    "atanh",    "exp",      "log",      "log10",  "pow",      "hypot",
-    "DOF",      "EACH",     "NULL",     "NAN",    "INFINITY", "LANES",
-    "STAGES",   "ROW",      "FIRST",    "NOISY",  "NEWTON",   "APART",
-    "STRIDE",   "FEW",      "UNKNOWN",  "MEMORY", "W",        "T",
-    "stdin",    "stdout",   "stderr",   "EOF",    "nevh"};
+    "t",        "q",        "p",        "y",      "slope",      "bad",
+    "h",        "sum",      "lost",     "most",   "noise",      "scale",
+    "auto",     "break",    "case",     "char",   "const",      "continue",
+    "default",  "do",       "double",   "else",   "enum",       "extern",
+    "float",    "for",      "goto",     "if",     "inline",     "int",
+    "long",     "register", "restrict", "return", "short",      "signed",
+    "sizeof",   "static",   "struct",   "switch", "typedef",    "union",
+    "unsigned", "void",     "volatile", "while",  "asm",        "typeof",
+    "true",     "false",    "bool",     "linux",  "unix",       "add",
+    "choose",   "real_min", "real_max", "sign",   "chain",      "mod",
+    "fabs",     "floor",    "rint",     "fmod",   "sqrt",       "cbrt",
+    "sin",      "cos",      "tan",      "asin",   "acos",       "atan",
+    "atan2",    "sinh",     "cosh",     "tanh",   "asinh",      "acosh",
+    "atanh",    "exp",      "log",      "log10",  "pow",        "hypot",
+    "DOF",      "EACH",     "NULL",     "NAN",    "INFINITY",   "LANES",
+    "STAGES",   "ROW",      "FIRST",    "NOISY",  "NEWTON",     "APART",
+    "STRIDE",   "FEW",      "UNKNOWN",  "MEMORY", "W",          "T",
+    "stdin",    "stdout",   "stderr",   "EOF",    "PARTITIONED"};
 
 /* As generated names do. */
 static bool is_generated(const char *name) {
@@ -40,10 +40,12 @@ static bool is_taken(const char *name) {
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
         if (strcmp(name, words[i]) == 0)
             return true;
-    return is_generated(name) || strstr(name, "__");
+    return is_generated(name) || strstr(name, "__") ||
+           strncmp(name, "STAGE_", strlen("STAGE_")) == 0;
 }
 
-/* x[3] is x_3.  "": the name has characters that names in C have not. */
+/* x[3] is x_3.  "": the name has characters that names in C have not, or that of
+   the library, which programs have nowhere. */
 static void name_variable(const char *prefix, const char *from,
                           char name[NEVH__NAME]) {
     size_t used = (size_t)snprintf(name, NEVH__NAME, "%s", prefix);
@@ -56,7 +58,7 @@ static void name_variable(const char *prefix, const char *from,
         name[used++] = *from == '[' ? '_' : *from;
     }
     name[used] = '\0';
-    if (*from || !isalpha((unsigned char)name[0]))
+    if (*from || !isalpha((unsigned char)name[0]) || strstr(name, "nevh"))
         name[0] = '\0';
     else if (is_taken(name))
         strcat(name, "_");

@@ -28,8 +28,10 @@ static bool is_word(char c) {
     return isalnum((unsigned char)c) || c == '_';
 }
 
-/* Whether a line has a word. */
+/* Whether a line that is no comment has a word. */
 static bool has_word(const char *line, const char *word, size_t length) {
+    if (strncmp(line + strspn(line, " "), "/*", 2) == 0)
+        return false;
     for (const char *at = line; (at = strchr(at, *word)); at++)
         if (strncmp(at, word, length) == 0 &&
             (at == line || !is_word(at[-1])) && !is_word(at[length]))

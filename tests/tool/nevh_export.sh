@@ -58,6 +58,25 @@ t_end = 1
 END
     same $work/hostile.nevh 6 verlet central4 0.1 1 1
     same $work/hostile.nevh 6 gauss4 central2 0.1 1 1
+    # Of a scene whose coordinates have the names that the program has.
+    for scheme in gauss4 rk4; do
+        exits 0 export pendulum --integrators $scheme -o $work/prog.c
+        sed 's/"[^"]*"//g; s/^ *\/\*.*//' $work/prog.c |
+            grep -o '[A-Za-z_][A-Za-z0-9_]*' | sort -u | grep -v '^_\|^[pv]_' >$work/own
+        printf '%s\n' t pi phi energy if sum abs min max sign mod sin cos sqrt fabs \
+            floor fmod exp log rint cbrt >$work/refused
+        grep -vxFf $work/refused $work/own >$work/names
+        awk '{ name[NR] = $1 }
+            END { print "[coordinates]"
+                  for (i = 1; i <= NR; i++) print name[i] " = 1"
+                  printf "[effects]\nwhole = 0"
+                  for (i = 1; i <= NR; i++)
+                      printf " + p_%s^2/2 + %s^4", name[i], name[i]
+                  print "\n[run]\nt_end = 1\ndt = 0.1" }' $work/names >$work/own.nevh
+        exits 0 export $work/own.nevh --integrators $scheme -o $work/prog.c
+        ${CC:-cc} -std=c11 -Wall -Wextra -Werror -fsyntax-only $work/prog.c 2>$work/err ||
+            { fails 'does not compile'; head -n 5 $work/err; }
+    done
     # Functions for another program.
     exits 0 export pendulum --header --integrators verlet -o $work/steps.h
     cat >$work/own.c <<'END'
