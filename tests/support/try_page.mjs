@@ -190,8 +190,8 @@ await tried("henon-heiles", "", async (page) => {
     pictures[0][0] - rows[0][4], pictures[0][1] - rows[0][5]); })()`);
   check(off === 0, "draws another point, off by " + off);
 });
-// The steps of ten minutes of frames take no more memory than those of one: what is
-// kept is thinned.
+// The steps of twenty minutes of frames take no more memory than those of one: what is
+// kept is thinned when it is full, so the heap rises and falls by 0.6 MB.
 await tried("pendulum", "speed=3&integrators=verlet,rk4,euler,gauss4", async (page) => {
   check(await page.until("steps > 5"), "nothing moves");
   await page.evaluate("setPlaying(false)");
@@ -205,11 +205,11 @@ await tried("pendulum", "speed=3&integrators=verlet,rk4,euler,gauss4", async (pa
   };
   await frames(3600);
   const [heap, elements] = await size();
-  await frames(32400);
+  await frames(72000);
   const [more, after] = await size();
   console.log("heap " + heap + ", later " + more);
   check(after === elements, `${after} elements, ${elements} before`);
-  check(more < heap + 500000, `${more} bytes, ${heap} before`);
+  check(more < heap + 800000, `${more} bytes, ${heap} before`);
 });
 console.log(wrong + " wrong");
 process.exit(wrong ? 1 : 0);
