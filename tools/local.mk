@@ -106,6 +106,7 @@ tools_nevh_SOURCES = \
 	tools/plot/plot_ticks.c \
 	tools/plot/plot_layout.c \
 	tools/plot/plot_script.c \
+	tools/plot/plot_series.c \
 	tools/plot/plot_svg.c \
 	tools/plot/plot_thin.c \
 	tools/plot/plot_map.c \

@@ -7,39 +7,12 @@
    parameters change nothing but where they start are run by one ensemble, that of
    the scene as it is; so is a member, whichever others there are.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "scene/sweep_private.h"
+#include "scene/crew_private.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHUNK = 256, WINDOW = 1 << 14 }; /* members; those that may wait */
-
-typedef struct {
-    nevh_sweep *sweep;
-    pthread_t thread;
-    nevh__variant variant;
-    uint64_t *list; /* the members of a chunk */
-    size_t count, at, group_end;
-    double *values; /* columns of one result */
-    double *varied; /* n_varied of each member of the list */
-    double *q, *p, *v, *room;
-    size_t *order; /* of the list, by parameters */
-    /* Members that only start elsewhere: places in the list, with starts. */
-    nevh__variant scene;
-    nevh_ensemble *shared;
-    size_t *sharing, n_sharing, shared_at;
-    double *starts; /* 2n each */
-    /* Members whose systems differ in numbers: places in the order. */
-    nevh__lane_form form;
-    nevh_ensemble *by_lane; /* NULL: there is no such form */
-    nevh__variant *own;     /* of the list's members that are under way */
-    nevh__own parts;
-    nevh_options options; /* of the member that was asked for last */
-    double *plan_at;      /* its state to plan at: 2n */
-    size_t *queue, n_queue, queue_at;
-    size_t *left, n_left; /* those that are to be run apart */
-    bool started;
-} worker;
+enum { WINDOW = 1 << 14 }; /* members that may wait */
 
 /* Results, under the lock. */
 
@@ -83,10 +56,9 @@ static void hand_on(nevh_sweep *s, uint64_t member, nevh_member_status status,
     pthread_mutex_unlock(&s->lock);
 }
 
-/* A result of the worker's: what is varied, and outcomes or NULL. */
-static void finish(worker *w, uint64_t member, const double varied[],
-                   nevh_member_status status, const char *message,
-                   const double outcomes[]) {
+void nevh__worker_finish(nevh__worker *w, uint64_t member,
+                         const double varied[], nevh_member_status status,
+                         const char *message, const double outcomes[]) {
     nevh_sweep *s = w->sweep;
     size_t n = s->ensemble->n_varied;
     memcpy(w->values, varied, n * sizeof *varied);
@@ -109,18 +81,18 @@ static void ask_for_chunk(nevh_sweep *s) {
 }
 
 /* Takes the next one; waits for room where it may. */
-static bool take_chunk(worker *w, bool may_wait) {
+static bool take_chunk(nevh__worker *w, bool may_wait) {
     nevh_sweep *s = w->sweep;
     pthread_mutex_lock(&s->lock);
     while (may_wait && s->waiting && !s->stopped && !s->draining &&
-           s->next < s->end && s->next + CHUNK > s->low + WINDOW)
+           s->next < s->end && s->next + NEVH__CHUNK > s->low + WINDOW)
         pthread_cond_wait(&s->moved, &s->lock);
     if (s->chunks && s->next == s->end && !s->stopped && !s->draining)
         ask_for_chunk(s);
-    bool room = !s->waiting || s->next + CHUNK <= s->low + WINDOW;
+    bool room = !s->waiting || s->next + NEVH__CHUNK <= s->low + WINDOW;
     uint64_t from = s->next, to = from;
     if (room && !s->stopped && !s->draining && from < s->end)
-        to = s->end - from < CHUNK ? s->end : from + CHUNK;
+        to = s->end - from < NEVH__CHUNK ? s->end : from + NEVH__CHUNK;
     s->next = to;
     pthread_mutex_unlock(&s->lock);
     w->at = w->count = 0;
@@ -133,26 +105,18 @@ static bool take_chunk(worker *w, bool may_wait) {
     return to > from;
 }
 
-static const double *varied_of(worker *w, size_t at) {
-    const nevh__scene_ensemble *e = w->sweep->ensemble;
-    double *all = w->varied + at * e->n_varied;
-    for (size_t i = 0; i < e->n_varied; i++)
-        all[i] = nevh__varied_value(e, &e->varied[i], w->list[at]);
-    return all;
-}
-
-/* The values of what is varied, by the place of the member in the list: kept
-   until its result comes, by then another chunk may be there. */
-static double *varied_now(worker *w, uint64_t member, double room[]) {
+/* The values of what is varied of a member, by its number. */
+static double *varied_values(nevh__worker *w, uint64_t member,
+                             double varied[]) {
     const nevh__scene_ensemble *e = w->sweep->ensemble;
     for (size_t i = 0; i < e->n_varied; i++)
-        room[i] = nevh__varied_value(e, &e->varied[i], member);
-    return room;
+        varied[i] = nevh__varied_value(e, &e->varied[i], member);
+    return varied;
 }
 
 /* The next member of the group that has a start. */
 static bool next(void *data, uint64_t *member, double q[], double p[]) {
-    worker *w = data;
+    nevh__worker *w = data;
     nevh_sweep *s = w->sweep;
     for (;;) {
         if (s->draining)
@@ -163,23 +127,24 @@ static bool next(void *data, uint64_t *member, double q[], double p[]) {
         nevh__report report = {0};
         *member = w->list[w->order ? w->order[w->at] : w->at];
         w->at++;
-        double *varied = varied_now(w, *member, w->room);
+        double *varied = varied_values(w, *member, w->room);
         if (!nevh__variant_start(s, &w->variant, varied, q, p, w->v, &report))
             return true;
-        finish(w, *member, varied, NEVH_MEMBER_NO_START, report.text, NULL);
+        nevh__worker_finish(w, *member, varied, NEVH_MEMBER_NO_START,
+                            report.text, NULL);
     }
 }
 
 static int done(void *data, const nevh_member_result *r) {
-    worker *w = data;
-    double *varied = varied_now(w, r->member, w->room);
+    nevh__worker *w = data;
+    double *varied = varied_values(w, r->member, w->room);
     nevh__report ignored = {0};
     if (w->sweep->ensemble->solves) /* once more, for the solution */
         nevh__variant_start(w->sweep, &w->variant, varied, w->q, w->p, w->v,
                             &ignored);
-    finish(w, r->member, varied,
-           r->status ? NEVH_MEMBER_FAILED : NEVH_MEMBER_DONE, r->message,
-           r->values);
+    nevh__worker_finish(w, r->member, varied,
+                        r->status ? NEVH_MEMBER_FAILED : NEVH_MEMBER_DONE,
+                        r->message, r->values);
     return w->sweep->stopped;
 }
 
@@ -192,9 +157,8 @@ static void out_of_memory(nevh_sweep *s) {
     pthread_mutex_unlock(&s->lock);
 }
 
-/* The variant with these values; NULL: those of the scene. */
-static bool make(nevh_sweep *s, const double varied[], nevh__variant *x,
-                 nevh__report *report) {
+bool nevh__sweep_variant(nevh_sweep *s, const double varied[], nevh__variant *x,
+                         nevh__report *report) {
     pthread_mutex_lock(&s->lock); /* the scene is one */
     bool made = nevh__variant_make(s, varied, x, report);
     pthread_mutex_unlock(&s->lock);
@@ -224,16 +188,16 @@ static nevh_ensemble *open(const nevh_sweep *s, const nevh__variant *x,
 }
 
 /* Members of the group, whose ensemble could not be made. */
-static void refuse_group(worker *w, const nevh__report *report) {
+static void refuse_group(nevh__worker *w, const nevh__report *report) {
     for (; w->at < w->group_end; w->at++) {
         uint64_t member = w->list[w->order ? w->order[w->at] : w->at];
-        finish(w, member, varied_now(w, member, w->room), NEVH_MEMBER_FAILED,
-               report->text, NULL);
+        nevh__worker_finish(w, member, varied_values(w, member, w->room),
+                            NEVH_MEMBER_FAILED, report->text, NULL);
     }
 }
 
 /* Members of the group, which only start elsewhere. */
-static void share(worker *w) {
+static void share(nevh__worker *w) {
     nevh_sweep *s = w->sweep;
     size_t n = s->scene->model->n, n_varied = s->ensemble->n_varied;
     for (; w->at < w->group_end; w->at++) {
@@ -242,15 +206,15 @@ static void share(worker *w) {
         nevh__report report = {0};
         if (nevh__variant_start(s, &w->variant, varied, q, q + n, w->v,
                                 &report))
-            finish(w, w->list[at], varied, NEVH_MEMBER_NO_START, report.text,
-                   NULL);
+            nevh__worker_finish(w, w->list[at], varied, NEVH_MEMBER_NO_START,
+                                report.text, NULL);
         else
             w->sharing[w->n_sharing++] = at;
     }
 }
 
 static bool next_sharing(void *data, uint64_t *member, double q[], double p[]) {
-    worker *w = data;
+    nevh__worker *w = data;
     size_t n = w->sweep->scene->model->n;
     if (w->sweep->draining || w->shared_at == w->n_sharing)
         return false;
@@ -262,15 +226,15 @@ static bool next_sharing(void *data, uint64_t *member, double q[], double p[]) {
 }
 
 static int done_sharing(void *data, const nevh_member_result *r) {
-    worker *w = data;
-    finish(w, w->list[r->member],
-           w->varied + r->member * w->sweep->ensemble->n_varied,
-           r->status ? NEVH_MEMBER_FAILED : NEVH_MEMBER_DONE, r->message,
-           r->values);
+    nevh__worker *w = data;
+    nevh__worker_finish(w, w->list[r->member],
+                        w->varied + r->member * w->sweep->ensemble->n_varied,
+                        r->status ? NEVH_MEMBER_FAILED : NEVH_MEMBER_DONE,
+                        r->message, r->values);
     return w->sweep->stopped;
 }
 
-static void run_sharing(worker *w) {
+static void run_sharing(nevh__worker *w) {
     nevh__report report = {0};
     w->shared_at = 0;
     if (w->n_sharing && !w->shared)
@@ -282,117 +246,18 @@ static void run_sharing(worker *w) {
     w->n_sharing = 0;
 }
 
-/* Members by lane. */
-
-/* The next of the queue that has a start; others are told of, or left. */
-static bool next_by_lane(void *data, uint64_t *member, double q[], double p[]) {
-    worker *w = data;
-    nevh_sweep *s = w->sweep;
-    while (!s->draining && w->queue_at < w->n_queue) {
-        size_t at = w->queue[w->queue_at++], i = w->order[at];
-        double *varied = w->varied + i * s->ensemble->n_varied;
-        nevh__report report = {0};
-        nevh__variant_free(&w->own[i]);
-        if (!make(s, varied, &w->own[i], &report) ||
-            !nevh__lane_form_fits(s, &w->form, &w->own[i])) {
-            w->left[w->n_left++] = at;
-            continue;
-        }
-        *member = at;
-        if (!nevh__variant_start(s, &w->own[i], varied, q, p, w->v, &report))
-            return true;
-        finish(w, w->list[i], varied, NEVH_MEMBER_NO_START, report.text, NULL);
-    }
-    return false;
-}
-
-static const nevh__own *own_of(void *data, uint64_t member) {
-    worker *w = data;
-    const nevh__variant *x = &w->own[w->order[member]];
-    nevh__variant_options(w->sweep, x, &w->options, w->plan_at);
-    w->options.native = NEVH_NATIVE_NEVER; /* it steps where others fail */
-    w->parts = (nevh__own){x->model->system, &w->options,
-                           (const double *const *)w->form.of_field};
-    return &w->parts;
-}
-
-static void leave(void *data, uint64_t member) {
-    worker *w = data;
-    w->left[w->n_left++] = (size_t)member;
-}
-
-static int done_by_lane(void *data, const nevh_member_result *r) {
-    worker *w = data;
-    size_t i = w->order[r->member];
-    finish(w, w->list[i], w->varied + i * w->sweep->ensemble->n_varied,
-           r->status ? NEVH_MEMBER_FAILED : NEVH_MEMBER_DONE, r->message,
-           r->values);
-    nevh__variant_free(&w->own[i]);
-    return w->sweep->stopped;
-}
-
-/* A member's variant, by number of the sweep. */
-static bool make_member(worker *w, uint64_t member, nevh__variant *x) {
-    nevh__report ignored = {0};
-    return make(w->sweep, varied_now(w, member, w->room), x, &ignored);
-}
-
-/* Looks at some members here and there, so that most numbers that differ are
-   seen: in some a number is special, as 2^k. */
-static bool make_form(worker *w) {
-    enum { LOOKS = 12 };
-    static const double golden = 0.6180339887498949;
-    nevh_sweep *s = w->sweep;
-    uint64_t count = nevh_sweep_members(s);
-    nevh__variant x;
-    bool made =
-        make_member(w, count / 2, &x) && nevh__lane_form_begin(&w->form, &x);
-    nevh__variant_free(&x);
-    for (int i = 1; made && i <= LOOKS; i++) {
-        double part = i * golden - floor(i * golden);
-        if (make_member(w, (uint64_t)(part * (double)count), &x))
-            nevh__lane_form_see(s, &w->form, &x);
-        nevh__variant_free(&x);
-    }
-    return made && nevh__lane_form_finish(&w->form);
-}
-
-static void open_form(worker *w) {
-    nevh_options o;
-    nevh_ensemble *e = NULL;
-    if (nevh_sweep_members(w->sweep) >= NEVH__LANES && make_form(w)) {
-        nevh_ensemble_options is =
-            nevh__variant_options(w->sweep, &w->form.base, &o, w->plan_at);
-        e = nevh_ensemble_new(w->form.system, &is);
-    }
-    if (nevh__ensemble_vary(e, own_of, leave))
-        w->by_lane = e;
-    else
-        nevh_ensemble_free(e);
-}
-
-/* Whether members by lane pay, and are no less than what is asked for. */
-static bool goes_by_lane(const worker *w) {
-    return w->by_lane && w->sweep->is.native != NEVH_NATIVE_ALWAYS &&
-           w->group_end - w->at < NEVH__LANES;
-}
-
-static void queue_group(worker *w) {
-    for (; w->at < w->group_end; w->at++)
-        w->queue[w->n_queue++] = w->at;
-}
-
-static void run_group(worker *w, const double varied[], bool apart) {
+static void run_group(nevh__worker *w, const double varied[], bool apart) {
     nevh_sweep *s = w->sweep;
     nevh__report report = {0};
     nevh_ensemble *e = NULL;
     bool parameters = s->ensemble->parameters;
-    bool made = make(s, varied, &w->variant, &report);
+    bool made = nevh__sweep_variant(s, varied, &w->variant, &report);
     bool alike = made && parameters && w->scene.model &&
                  nevh__variants_alike(s, &w->scene, &w->variant);
-    bool by_lane = made && parameters && !alike && !apart && goes_by_lane(w);
+    bool by_lane =
+        made && parameters && !alike && !apart && nevh__lane_members_pay(w);
     if (by_lane)
-        queue_group(w);
+        nevh__lane_members_add(w);
     else if (made && !alike)
         e = open(s, &w->variant, parameters ? w->group_end - w->at : SIZE_MAX,
                  &report);
@@ -415,7 +280,7 @@ static void run_group(worker *w, const double varied[], bool apart) {
 
 /* Whether two members of the list have the same parameters; else which comes
    first: less than 0 where a does. */
-static int compare(const worker *w, size_t a, size_t b) {
+static int compare(const nevh__worker *w, size_t a, size_t b) {
     const nevh__scene_ensemble *e = w->sweep->ensemble;
     for (size_t i = 0; i < e->n_varied; i++) {
         double x = w->varied[a * e->n_varied + i];
@@ -426,7 +291,7 @@ static int compare(const worker *w, size_t a, size_t b) {
     return a < b ? -1 : a > b;
 }
 
-static bool same_group(const worker *w, size_t a, size_t b) {
+static bool same_group(const nevh__worker *w, size_t a, size_t b) {
     const nevh__scene_ensemble *e = w->sweep->ensemble;
     for (size_t i = 0; i < e->n_varied; i++)
         if (e->varied[i].is == NEVH__PARAMETER &&
@@ -436,7 +301,7 @@ static bool same_group(const worker *w, size_t a, size_t b) {
 }
 
 /* By insertion: chunks are short, and mostly in order. */
-static void sort(worker *w) {
+static void sort(nevh__worker *w) {
     for (size_t i = 0; i < w->count; i++) {
         size_t k = i;
         for (; k > 0 && compare(w, i, w->order[k - 1]) < 0; k--)
@@ -446,7 +311,7 @@ static void sort(worker *w) {
 }
 
 /* Members that are left, each apart. */
-static void run_left(worker *w, const size_t left[], size_t count) {
+static void run_left(nevh__worker *w, const size_t left[], size_t count) {
     for (size_t i = 0; i < count && !w->sweep->stopped && !w->sweep->draining;
          i++) {
         w->at = left[i];
@@ -456,21 +321,10 @@ static void run_left(worker *w, const size_t left[], size_t count) {
     }
 }
 
-static void run_queue(worker *w) {
-    w->queue_at = w->n_left = 0;
-    if (w->n_queue >= NEVH__LANES) {
-        nevh_ensemble_run(w->by_lane, next_by_lane, done_by_lane, w);
-        run_left(w, w->left, w->n_left);
-    } else
-        run_left(w, w->queue, w->n_queue);
-    for (size_t i = 0; w->n_queue && i < CHUNK; i++)
-        nevh__variant_free(&w->own[i]);
-    w->n_queue = 0;
-}
-
-static void run_chunk_by_groups(worker *w) {
+static void run_chunk_by_groups(nevh__worker *w) {
     for (size_t i = 0; i < w->count; i++)
-        varied_of(w, i);
+        varied_values(w, w->list[i],
+                      w->varied + i * w->sweep->ensemble->n_varied);
     sort(w);
     while (w->at < w->count && !w->sweep->stopped && !w->sweep->draining) {
         size_t first = w->order[w->at];
@@ -481,16 +335,17 @@ static void run_chunk_by_groups(worker *w) {
         run_group(w, w->varied + first * w->sweep->ensemble->n_varied, false);
     }
     run_sharing(w);
-    run_queue(w);
+    size_t left = nevh__lane_members_run(w);
+    run_left(w, w->lanes.left, left);
 }
 
 static void *work(void *data) {
-    worker *w = data;
+    nevh__worker *w = data;
     nevh_sweep *s = w->sweep;
     nevh__report report = {0};
     if (s->ensemble->parameters) {
-        make(s, NULL, &w->scene, &report);
-        open_form(w);
+        nevh__sweep_variant(s, NULL, &w->scene, &report);
+        nevh__lane_members_open(w);
     }
     if (report.status == NEVH_ENOMEM)
         out_of_memory(s);
@@ -502,33 +357,29 @@ static void *work(void *data) {
     return NULL;
 }
 
-static bool equip(worker *w, nevh_sweep *s) {
+static bool equip(nevh__worker *w, nevh_sweep *s) {
     size_t n = s->scene->model->n, varied = s->ensemble->n_varied;
-    *w = (worker){.sweep = s};
-    w->list = nevh__array(CHUNK, sizeof *w->list);
+    *w = (nevh__worker){.sweep = s};
+    w->list = nevh__array(NEVH__CHUNK, sizeof *w->list);
     w->values = nevh__array(s->columns, sizeof *w->values);
-    w->varied = nevh__array(CHUNK * varied, sizeof *w->varied);
+    w->varied = nevh__array(NEVH__CHUNK * varied, sizeof *w->varied);
     w->q = nevh__array(n, sizeof *w->q);
     w->p = nevh__array(n, sizeof *w->p);
     w->v = nevh__array(n, sizeof *w->v);
     w->room = nevh__array(varied, sizeof *w->room);
     bool orders = s->ensemble->parameters;
     if (orders) {
-        w->order = nevh__array(CHUNK, sizeof *w->order);
-        w->sharing = nevh__array(CHUNK, sizeof *w->sharing);
-        w->starts = nevh__array(CHUNK * 2 * n, sizeof *w->starts);
-        w->own = nevh__array(CHUNK, sizeof *w->own);
-        w->plan_at = nevh__array(2 * n, sizeof *w->plan_at);
-        w->queue = nevh__array(CHUNK, sizeof *w->queue);
-        w->left = nevh__array(CHUNK, sizeof *w->left);
+        w->order = nevh__array(NEVH__CHUNK, sizeof *w->order);
+        w->sharing = nevh__array(NEVH__CHUNK, sizeof *w->sharing);
+        w->starts = nevh__array(NEVH__CHUNK * 2 * n, sizeof *w->starts);
     }
     return w->list && w->values && w->varied && w->q && w->p && w->v &&
            w->room &&
-           (!orders || (w->order && w->sharing && w->starts && w->own &&
-                        w->plan_at && w->queue && w->left));
+           (!orders || (w->order && w->sharing && w->starts &&
+                        nevh__lane_members_equip(&w->lanes, n)));
 }
 
-static void dismiss(worker *w) {
+static void dismiss(nevh__worker *w) {
     free(w->list);
     free(w->values);
     free(w->varied);
@@ -539,14 +390,7 @@ static void dismiss(worker *w) {
     free(w->order);
     free(w->sharing);
     free(w->starts);
-    for (size_t i = 0; w->own && i < CHUNK; i++)
-        nevh__variant_free(&w->own[i]);
-    free(w->own);
-    free(w->plan_at);
-    free(w->queue);
-    free(w->left);
-    nevh_ensemble_free(w->by_lane);
-    nevh__lane_form_free(&w->form);
+    nevh__lane_members_free(&w->lanes);
     nevh_ensemble_free(w->shared);
     nevh__variant_free(&w->scene);
 }
@@ -593,7 +437,7 @@ static int run(nevh_sweep *s, nevh_wanted_fn wanted, nevh_sweep_fn tell_fn,
     s->data = data;
     s->stopped = s->failed = false;
     size_t threads = s->is.threads;
-    worker *all = nevh__array(threads, sizeof *all);
+    nevh__worker *all = nevh__array(threads, sizeof *all);
     bool ready = all && open_window(s);
     for (size_t i = 0; ready && i < threads; i++)
         ready = equip(&all[i], s);

@@ -123,13 +123,27 @@ typedef struct {
     axis x, y;
 } axes;
 axes plot_axes(const plot *, size_t panel, const layout *, bool text);
-
 layout plot_lay_out(const plot *, const target *);
 /* Whether the series is the one of its name that the legend shows. */
 bool plot_in_legend(const plot *, size_t series);
 /* Bytes of the letter, as UTF-8 has them; 0 where it is none. */
 size_t plot_letter_bytes(const unsigned char *);
 size_t plot_letters(const char *text);
+
+/* plot_series.c: looks, points and curves in the language of gnuplot. */
+
+void plot_script_looks(FILE *, const plot *);
+
+/* The points of all series; those that cannot be told apart are left out where
+   thins is set. */
+void plot_script_data(FILE *, const plot *, const layout *, bool thins);
+
+/* Names at the ends of the guides of a panel. */
+void plot_script_guides(FILE *, const plot *, size_t number);
+
+/* The curves of a panel, with the legend of the whole plot if need be. */
+void plot_script_series(FILE *, const plot *, size_t number, bool legend,
+                        bool text);
 
 /* plot_thin.c: fewer points, which look the same on a panel of that size. */
 typedef struct {
