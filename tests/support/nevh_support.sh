@@ -47,3 +47,23 @@ has() {
 lacks() {
     grep -Eq -e "$1" $work/out && { fails "has '$1'"; cat $work/out; }
 }
+# in_browsers PROGRAM ARGUMENT: runs tests/support/PROGRAM in each browser that is here.
+in_browsers() {
+    command -v node >/dev/null 2>&1 || {
+        echo "pages are tried with node, which is not here"
+        exit 77
+    }
+    tried=
+    for names in 'chromium chromium-browser google-chrome' 'firefox-esr firefox'; do
+        browser=
+        for one in $names; do
+            command -v $one >/dev/null 2>&1 && browser=$one && break
+        done
+        test -n "$browser" || { echo "not tried in ${names##* }: it is not here"; continue; }
+        tried=yes
+        $limit node "$srcdir/tests/support/$1" $browser "$2" >$work/tried 2>&1 ||
+            fails "is wrong in $browser"
+        cat $work/tried
+    done
+    test $status = 1 || test -n "$tried" || exit 77
+}

@@ -5,15 +5,11 @@
 // FOLDER holds pages, and SCENE-SCHEME.csv: the last line of nevh run, whose state
 // the page is to have after 100 steps.
 import { readFileSync } from "node:fs";
-import { browse } from "./browser.mjs";
+import { basename } from "node:path";
+import { browse, trial } from "./browser.mjs";
 
 const [program, folder] = process.argv.slice(2);
-let wrong = 0;
-const check = (fine, what) => {
-  if (fine) return;
-  wrong++;
-  console.log("wrong: " + what);
-};
+const { check, saved, ended } = trial();
 const open = (scene, fragment) => browse(program, "file://" + folder + "/" + scene +
   ".html" + (fragment ? "#" + fragment : ""));
 // Closed also where a try fails.
@@ -21,6 +17,7 @@ async function tried(scene, fragment, body) {
   const page = await open(scene, fragment);
   try {
     await body(page);
+    await saved(page, `${basename(program)}-page-${scene}`);
     check(page.faults.length === 0, scene + ": console: " + page.faults.join("; "));
     const far = page.requests.filter((r) => !/^(file|blob|data):/.test(r));
     check(far.length === 0, scene + ": requests " + far.join(" "));
@@ -113,8 +110,8 @@ await tried("pendulum", "integrators=verlet,rk4,euler&disc=1&dt=0.0625", async (
 // A telephone: nothing is wider; all controls have names; keys move them; the
 // address holds what was set; where motion is not wanted nothing moves.
 {
-  const page = await browse(program, `file://${folder}/kepler.html`, [360, 800],
-    [{ name: "prefers-reduced-motion", value: "reduce" }]);
+  const page = await browse(program, `file://${folder}/kepler.html`, {
+    size: [360, 800], still: true });
   try {
     check(await page.until("rows.length > 0 && S.limit > 0"), "kepler does not start");
     check(await page.evaluate("document.documentElement.scrollWidth") <= 360,
@@ -177,6 +174,7 @@ await tried("pendulum", "integrators=verlet,rk4,euler&disc=1&dt=0.0625", async (
     start = await page.evaluate("S.start");
     check(start && near(start[0], to[0]) && near(start[2], to[1]),
       `a state dropped at ${to} starts at ${start}`);
+    await saved(page, `${basename(program)}-page-narrow`);
     check(page.faults.length === 0, "kepler: console: " + page.faults.join("; "));
   } finally {
     await page.close();
@@ -198,11 +196,8 @@ await tried("pendulum", "speed=3&integrators=verlet,rk4,euler,gauss4", async (pa
   const frames = (count) => page.evaluate(`(async () => { await quiet();
     for (let left = ${count}; left > 0;) { left -= await go(Math.min(left, 120));
       draw(); } })()`);
-  const size = async () => {
-    await page.call("HeapProfiler.collectGarbage");
-    const { usedSize } = await page.call("Runtime.getHeapUsage");
-    return [usedSize, await page.evaluate("document.querySelectorAll('*').length")];
-  };
+  const size = async () => [await page.heap(),
+    await page.evaluate("document.querySelectorAll('*').length")];
   await frames(3600);
   const [heap, elements] = await size();
   await frames(72000);
@@ -211,5 +206,4 @@ await tried("pendulum", "speed=3&integrators=verlet,rk4,euler,gauss4", async (pa
   check(after === elements, `${after} elements, ${elements} before`);
   check(more < heap + 800000, `${more} bytes, ${heap} before`);
 });
-console.log(wrong + " wrong");
-process.exit(wrong ? 1 : 0);
+ended();

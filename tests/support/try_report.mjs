@@ -1,0 +1,111 @@
+// Tries a report in a browser, and what moves in it:
+//
+//     node try_report.mjs PROGRAM FILE
+import { basename } from "node:path";
+import { browse, trial } from "./browser.mjs";
+
+const [program, file] = process.argv.slice(2);
+const { check, saved, ended } = trial();
+const wait = (time) => new Promise((resolve) => setTimeout(resolve, time));
+
+// In the page: the film's parts, and the step that its picture, its stamp, its errors,
+// its cursor and its slider show, which is to be one; -1 where it is not.
+const FILM = `(() => {
+  const film = document.querySelector("figure:has(.stamp)");
+  const part = (name) => film.querySelector(name);
+  const data = JSON.parse(part("script").textContent);
+  const shown = () => {
+    const k = +part(".stamp").textContent.match(/^step (\\d+), /)[1];
+    const wanted = "step " + k + ", t = " + (data.start + k*data.dt).toFixed(data.digits);
+    const place = (a, e, names, j) => names.every((name, i) =>
+      +e.getAttribute(name) === a[j + i]);
+    const same = part(".stamp").textContent === wanted &&
+      +part("input").value === k &&
+      +part(".cursor").getAttribute("x1") === data.width * k / data.steps &&
+      [...film.querySelectorAll(".orbit")].every((orbit, i) => {
+        const l = Math.min(k, data.places[i].length / data.columns - 1);
+        const a = data.places[i], o = l * data.columns;
+        const trails = [...orbit.querySelectorAll("polyline")];
+        return film.querySelectorAll(".error")[i].textContent ===
+            data.errors[i][l] + " %" &&
+          [...orbit.querySelectorAll("line")].every((e, j) =>
+            place(a, e, ["x1", "y1", "x2", "y2"], o + 4 * j)) &&
+          [...orbit.querySelectorAll("circle")].every((e, j) =>
+            place(a, e, ["cx", "cy"], o + 4 * data.rods + 2 * j) &&
+            trails[j].getAttribute("points").trim().split(" ").at(-1) ===
+              e.getAttribute("cx") + "," + e.getAttribute("cy") &&
+            trails[j].getAttribute("points").trim().split(" ").length ===
+              Math.min(l, data.trail) + 1);
+      });
+    return same ? k : -1;
+  };
+  window.film = { play: part("button"), bar: part("input"), shown,
+    steps: data.steps, controls: part(".controls") };
+})()`;
+
+async function tried(name, options, body) {
+  const page = await browse(program, "file://" + file, options);
+  try {
+    check(await page.until("document.readyState === 'complete'"), name + ": no page");
+    await page.evaluate(FILM);
+    await body(page, await page.evaluate("film.steps"));
+    await page.evaluate("film.play.closest('figure').scrollIntoView()");
+    await saved(page, `${basename(program)}-report-${name}`);
+    check(await page.evaluate("document.documentElement.scrollWidth <= innerWidth"),
+      name + ": the report is wider than its window");
+    check(page.faults.length === 0, name + ": console: " + page.faults.join("; "));
+    const far = page.requests.filter((r) => !/^(file|data):/.test(r));
+    check(far.length === 0, name + ": requests " + far.join(" "));
+  } finally {
+    await page.close();
+  }
+}
+const stands = async (page, step, what) => {
+  await wait(300);
+  const shown = await page.evaluate("film.shown()");
+  check(shown === step, `${what}: step ${shown} for ${step}`);
+};
+
+// It stands until it is asked to play, stops when it is asked to, and at its end.
+await tried("wide", {}, async (page, steps) => {
+  check(await page.evaluate("film.controls.checkVisibility()"), "has no controls");
+  await stands(page, steps, "before it plays");
+  await page.evaluate("film.play.focus()");
+  await page.key("Enter", "Enter", "\r");
+  check(await page.until("film.shown() > 3 && film.shown() < film.steps",
+    10), "does not play");
+  check(await page.evaluate("film.play.textContent") === "Pause", "cannot be stopped");
+  await page.key("Enter", "Enter", "\r");
+  const at = await page.evaluate("film.shown()");
+  check(at > 3 && at < steps, "stops at " + at);
+  await stands(page, at, "after it was stopped");
+  check(await page.evaluate("film.play.textContent") === "Play", "cannot go on");
+  await page.evaluate("film.bar.focus()");
+  await page.key("Home");
+  await stands(page, 0, "at the slider's beginning");
+  await page.key("ArrowRight");
+  await stands(page, 1, "an arrow after it");
+  await page.key("End");
+  await page.key("ArrowLeft");
+  await stands(page, steps - 1, "an arrow before the end");
+  await page.evaluate("film.play.click()");
+  check(await page.until("film.play.textContent === 'Play'", 10), "does not end");
+  await stands(page, steps, "at its end");
+  await page.evaluate("film.play.click()");
+  check(await page.until("film.shown() > 0 && film.shown() < film.steps", 10),
+    "does not play again");
+  await page.evaluate("film.bar.focus()");
+  await page.key("Home");
+  await stands(page, 0, "a slider that is moved while it plays");
+});
+// Where motion is not wanted, there is a slider alone.
+await tried("still", { size: [360, 800], still: true }, async (page, steps) => {
+  check(await page.evaluate("!film.play.checkVisibility() && film.bar.checkVisibility()"),
+    "plays where motion is not wanted");
+  await stands(page, steps, "where motion is not wanted");
+  await page.evaluate("film.bar.focus()");
+  await page.key("Home");
+  await page.key("ArrowRight");
+  await stands(page, 1, "an arrow where motion is not wanted");
+});
+ended();
