@@ -4,8 +4,8 @@
 
 // ---- drawing ----
 const configuration = new NevhPlane(at("scene"), [8, 8, 8, 8]);
-const errors = new NevhPlane(at("error"), [46, 36, 10, 28]);
-const phase = new NevhPlane(at("phase"), [50, 36, 10, 28]);
+const errors = new NevhPlane(at("error"), [46, 36, 18, 28]);
+const phase = new NevhPlane(at("phase"), [50, 36, 18, 28]);
 
 function reach(x, y) {
   const box = seen || [Infinity, -Infinity, Infinity, -Infinity];
@@ -81,15 +81,17 @@ function drawParts(pen, i) {
   pen.restore();
 }
 function drawErrors() {
-  let low = 1e-17, high = 1e-16, first = 0, end = 1e-9;
+  let low = Infinity, high = 1e-16, first = 0, end = 1e-9;
   histories.forEach((h) => h.most.forEach((v, i) => {
     if (Number.isFinite(v)) high = Math.max(high, v);
+    if (v > 0) low = Math.min(low, v);
     end = Math.max(end, h.t[i]);
   }));
   if (histories[0]?.t.length) first = histories[0].t[0];
   high = Math.min(1e4, high * 2);
-  errors.box = [first, Math.max(end, first + 20 * S.dt), Math.log10(low),
-    Math.ceil(Math.log10(high))];
+  low = Math.max(1e-17, Math.min(low, high / 1e3));
+  errors.box = [first, Math.max(end, first + 20 * S.dt),
+    Math.floor(Math.log10(low)), Math.ceil(Math.log10(high))];
   const pen = errors.begin(false), powers = [];
   const by = Math.ceil((errors.box[3] - errors.box[2]) / 6);
   for (let v = Math.ceil(errors.box[3]); v > errors.box[2]; v -= by)
@@ -100,7 +102,7 @@ function drawErrors() {
   histories.forEach((h, i) => {
     if (list[i].width > 1) return;
     const points = [];
-    h.t.forEach((t, j) => points.push(t, Math.log10(Math.max(h.most[j], low))));
+    h.t.forEach((t, j) => points.push(t, Math.log10(h.most[j]))); // none of 0
     pen.strokeStyle = nevhColour(list[i].colour);
     pen.lineWidth = 1.6;
     pen.setLineDash(list[i].colour < 0 ? [4, 4] : NEVH_DASHES[i % 4]);
@@ -110,7 +112,9 @@ function drawErrors() {
 }
 const unit = (label) => label ? " (" + label + ")" : "";
 
-// The part of the plane that is shown grows with the first orbit.
+// The part of the plane that is shown grows with the first orbit; before the first
+// step it is of the size of the start.
+let stood = false;
 function choosePhaseBox() {
   const c = scene.coordinates[S.plane], trail = trails[0] || [];
   if (pulling && phaseBox) return;
@@ -121,11 +125,14 @@ function choosePhaseBox() {
   }
   if (list[0] && rows[0] && !(q1 >= q0)) [q0, q1, p0, p1] = [-1, 1, -1, 1];
   if (c.period > 0) { q0 = -c.period / 2; q1 = c.period / 2; }
-  const dq = Math.max(q1 - q0, 1e-3 * Math.abs(q0), 1e-9), dp = Math.max(p1 - p0,
-    1e-3 * Math.abs(p0), 1e-9);
-  const inside = phaseBox && q0 >= phaseBox[0] && q1 <= phaseBox[1] &&
+  const n = scene.coordinates.length, least = (from, q) => steps > 0 || !rows[0]
+    ? Math.max(1e-3 * Math.abs(q), 1e-9)
+    : 0.2 * Math.max(...rows[0].slice(from, from + n).map(Math.abs)) || 0.2;
+  const dq = Math.max(q1 - q0, least(4, q0)), dp = Math.max(p1 - p0, least(4 + n, p0));
+  const inside = phaseBox && stood === (steps === 0) && q0 >= phaseBox[0] && q1 <= phaseBox[1] &&
     p0 >= phaseBox[2] && p1 <= phaseBox[3];
   if (inside) return;
+  stood = steps === 0;
   phaseBox = [q0 - (c.period > 0 ? 0 : 0.25 * dq), q1 + (c.period > 0 ? 0 : 0.25 * dq),
     p0 - 0.3 * dp, p1 + 0.3 * dp];
   if (scene.coordinates.length === 1) askLevels(phaseBox.slice());
@@ -207,6 +214,7 @@ function report(atOnce) {
     const row = body.insertRow();
     for (let j = 0; j < 4; j++) row.insertCell();
   }
+  at("states").classList.toggle("bare", !S.disc);
   at("when").textContent = "The states at t = " + digits(rows[0]?.[0] ?? NaN) +
     " " + scene.t_label;
   for (let i = 0; i < lines; i++) {

@@ -105,14 +105,14 @@ class NevhPlane {
     pen.textAlign = "center";
     pen.textBaseline = "top";
     for (const v of xs) {
-      pen.fillText(nevhNumber(v), this.x(v), bottom + 5);
+      pen.fillText(nevhNumber(v, xs), this.x(v), bottom + 5);
       pen.fillRect(this.x(v), bottom, 1, 4);
     }
     pen.fillText(xlabel, this.left + this.width / 2, bottom + 19);
     pen.textAlign = "right";
     pen.textBaseline = "middle";
     for (const v of ys) {
-      pen.fillText(yText ? yText(v) : nevhNumber(v), this.left - 5, this.y(v));
+      pen.fillText(yText ? yText(v) : nevhNumber(v, ys), this.left - 5, this.y(v));
       pen.fillRect(this.left - 4, this.y(v), 4, 1);
     }
     pen.textAlign = "left";
@@ -136,11 +136,14 @@ function nevhTicks(from, to, most = 5) {
     ticks.push(i * by);
   return ticks;
 }
-function nevhNumber(v) {
+// With as many digits as tell it from the others of some ticks.
+function nevhNumber(v, ticks = []) {
   if (v === 0 || Math.abs(v) < 1e-300) return "0";
+  const digits = ticks.length < 2 ? 4 : Math.min(16, Math.max(4,
+    Math.ceil(Math.log10(Math.abs(v) / (ticks[1] - ticks[0]))) + 1));
   const small = Math.abs(v) < 1e-3 || Math.abs(v) >= 1e5;
-  return small ? v.toExponential(1).replace(".0e", "e").replace("e+", "e")
-    : String(+v.toPrecision(4));
+  return small ? v.toExponential(digits > 4 ? digits - 1 : 1).replace(".0e", "e")
+    .replace("e+", "e") : String(+v.toPrecision(digits));
 }
 
 // Lines where a grid of values has a level: points, two a line.

@@ -122,6 +122,20 @@ await tried("pendulum", "integrators=verlet,rk4,euler&disc=1&dt=0.0625", async (
       "button,input,select,textarea,canvas")).filter((e) => !(e.textContent.trim() ||
       e.getAttribute("aria-label") || e.labels?.length)).map((e) => e.id).join(" ")`);
     check(nameless === "", "controls without a name: " + nameless);
+    // Before it moves, the plane has the size over which H varies, and its ticks,
+    // between which a start is, are told apart.
+    const ticks = await page.evaluate(`nevhTicks(phaseBox[0], phaseBox[1]).map((v, i,
+      all) => nevhNumber(v, all))`);
+    check(ticks.length > 1 && new Set(ticks).size === ticks.length,
+      "ticks alike: " + ticks);
+    check(await page.evaluate("phaseBox[1] - phaseBox[0] > 0.01 && " +
+      "phaseBox[3] - phaseBox[2] > 0.01"), "an empty plane");
+    check(await page.evaluate(`[0.40001, 0.40002, 0.40003].map((v, i, all) =>
+      nevhNumber(v, all)).join(" ")`) === "0.40001 0.40002 0.40003", "ticks alike");
+    await page.evaluate("at('command').scrollIntoView()");
+    check(await page.evaluate(`["command", "states"].every((id) =>
+      at(id).scrollWidth <= at(id).parentElement.clientWidth)`),
+    "the command, or the table, is cut");
     const dt = await page.evaluate("S.dt");
     await page.evaluate("at('dt').focus()");
     await page.key("ArrowRight");
