@@ -175,6 +175,7 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/trend_private.h \
 	lib/diagnose/trend.c \
 	lib/diagnose/verdict.c \
+	lib/diagnose/samples.c \
 	lib/diagnose/settle.c \
 	lib/diagnose/symplecticity.c \
 	lib/diagnose/exact_private.h \

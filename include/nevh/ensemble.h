@@ -49,6 +49,9 @@ typedef enum {
     NEVH_OUTCOME_MEAN, /* over time, by the trapezoidal rule on the steps */
     NEVH_OUTCOME_CROSSINGS, /* how often the quantity goes through 0 */
     NEVH_OUTCOME_PERIOD,    /* mean time between crossings; NAN below two */
+    NEVH_OUTCOME_FREQUENCY, /* of the largest line of the quantity, as
+                               nevh_frequencies has it; NAN where it does not
+                               move, or below 64 steps */
     NEVH_OUTCOME_LYAPUNOV, /* what nevh_chaos finds of the orbit with one start:
                                its largest exponent, */
     NEVH_OUTCOME_SALI,     /* the alignment of two displacements, */
@@ -57,15 +60,19 @@ typedef enum {
 
 typedef struct {
     nevh_outcome_kind kind;
-    nevh_quantity quantity; /* of FIRST to PERIOD */
+    nevh_quantity quantity; /* of FIRST to FREQUENCY */
     int direction;          /* of CROSSINGS and PERIOD, as in nevh_section */
-    double modulus;         /* likewise: multiples of it count, too; 0: none */
+    double modulus;         /* likewise: multiples of it count, too; 0: none; of
+                               FREQUENCY: the period of an angle, whose cosine
+                               is taken where it goes round */
 } nevh_outcome;
 
 /* Times of NEVH_OUTCOME_FIRST, NEVH_OUTCOME_CROSSINGS and NEVH_OUTCOME_PERIOD
    are found to rounding, by shorter steps that branch off from the orbit, not
    by interpolation.  FIRST also finds what holds only between two steps, where
-   the quantity has a maximum that a parabola through three steps tells of. */
+   the quantity has a maximum that a parabola through three steps tells of.
+   NEVH_OUTCOME_FREQUENCY keeps at most 4096 samples of an orbit, as nevh_spectral_samples
+   does, and needs steps of equal length. */
 typedef struct {
     const nevh_integrator *integrator;
     const nevh_options *options; /* NULL: the defaults; q and p: one state to

@@ -4,11 +4,14 @@
 #define NEVH_FREQUENCIES_H
 
 #include <nevh/status.h>
+#include <stdbool.h>
 #include <stddef.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+enum { NEVH_FEWEST_SAMPLES = 64 };
 
 /* A line of a quasi-periodic function, amplitude cos(frequency t + phase). */
 typedef struct {
@@ -29,7 +32,7 @@ typedef struct {
    quasi-periodic function the error falls with a high power of the length.
 
    h        time between samples
-   values   `count` samples, at least 64
+   values   `count` samples, at least NEVH_FEWEST_SAMPLES
    lines    out, `most` of them, by amplitude, the largest first; the
             mean is taken off
    found    out: how many there are; fewer than `most` where the rest is below
@@ -40,6 +43,46 @@ typedef struct {
 NEVH_API int nevh_frequencies(double h, size_t count, const double values[],
                               size_t most, nevh_spectral_line lines[],
                               size_t *found);
+
+/* Samples of an orbit at equal times, for nevh_frequencies.  Each step is taken
+   while there is room.  Where the room is full every second sample is left out
+   and twice as many steps are between two from then on, if the lines in the
+   faster half of the spectrum are below 1e-6 of the largest one.  Else what
+   follows is not taken: frequencies are those of the first part of the run, and
+   no fast line passes for a slow one.
+
+   One thread at a time may use an object. */
+typedef struct nevh_spectral_samples nevh_spectral_samples;
+
+/* room     samples, at least NEVH_FEWEST_SAMPLES
+   returns  to be freed with nevh_spectral_samples_free; NULL when memory is out, or for
+            less room */
+NEVH_API nevh_spectral_samples *nevh_spectral_samples_new(size_t room);
+NEVH_API void
+nevh_spectral_samples_free(nevh_spectral_samples *); /* NULL is allowed */
+
+/* Forgets all samples. */
+NEVH_API void nevh_spectral_samples_restart(nevh_spectral_samples *);
+
+/* The value x after `step` steps, at t; calls come in order of steps.  A shorter
+   last step is left out.  Allocates nothing. */
+NEVH_API void nevh_spectral_samples_take(nevh_spectral_samples *, size_t step,
+                                         double t, double x);
+
+/* Samples of an angle that goes round once or more become their cosine, which is
+   quasi-periodic; others stay as they are.  No sample may be taken afterwards.
+
+   period   of the angle; 0: it is none
+   returns  whether they have become a cosine */
+NEVH_API bool nevh_spectral_samples_straighten(nevh_spectral_samples *,
+                                               double period);
+
+/* count    out: how many samples there are; NULL is allowed
+   h        out: the time between two of them; NULL is allowed
+   returns  the samples, until the next call; NULL where the object is NULL */
+NEVH_API const double *
+nevh_spectral_samples_values(const nevh_spectral_samples *, size_t *count,
+                             double *h);
 
 #ifdef __cplusplus
 }

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FEWEST = 64, ORDER = 5, LESS = 3, ROUNDS = 3 };
+enum { ORDER = 5, LESS = 3, ROUNDS = 3 };
 static const double pi = 3.14159265358979323846;
 
 /* Samples of -1 ... 1, in units of half their length. */
@@ -283,7 +283,8 @@ static int by_amplitude(const void *a, const void *b) {
 int nevh_frequencies(double h, size_t count, const double values[], size_t most,
                      nevh_spectral_line lines[], size_t *found) {
     analysis a;
-    if (!found || !lines || !values || count < FEWEST || !(h > 0) || !most)
+    if (!found || !lines || !values || count < NEVH_FEWEST_SAMPLES ||
+        !(h > 0) || !most)
         return NEVH_EINVAL;
     *found = 0;
     for (size_t k = 0; k < count; k++)

@@ -6,13 +6,14 @@
 #include <string.h>
 
 enum { WIDTH = 32, MOST_NUMBERS = 1 << 14 }; /* chosen; n times width */
+enum { MOST_SAMPLES = 1 << 12 };             /* of an orbit */
 
 static int out_of_memory(nevh_ensemble *e) {
     return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
 }
 
 static bool has_quantity(const nevh_outcome *o) {
-    return o->kind >= NEVH_OUTCOME_FIRST && o->kind <= NEVH_OUTCOME_PERIOD;
+    return o->kind >= NEVH_OUTCOME_FIRST && o->kind <= NEVH_OUTCOME_FREQUENCY;
 }
 
 static bool crosses(const nevh_outcome *o) {
@@ -193,6 +194,25 @@ static int plan_rooms(nevh_ensemble *e) {
     return e->memory && plan_root(e) ? NEVH_OK : out_of_memory(e);
 }
 
+/* Room for samples of each lane, where frequencies are asked for. */
+static int plan_samples(nevh_ensemble *e, const nevh_options *o) {
+    for (size_t i = 0; i < e->n_outcomes; i++) {
+        if (e->outcomes[i].kind != NEVH_OUTCOME_FREQUENCY)
+            continue;
+        if (e->is.integrator->own_time || o->transform)
+            return nevh__fail(&e->report, NEVH_EINVAL,
+                              "frequency: it needs samples at equal times, and "
+                              "%s chooses times of its own: choose another "
+                              "integrator",
+                              e->is.integrator->name);
+        for (size_t lane = 0; lane < e->width; lane++)
+            if (!(e->records[i * e->width + lane].samples =
+                      nevh_spectral_samples_new(MOST_SAMPLES)))
+                return out_of_memory(e);
+    }
+    return NEVH_OK;
+}
+
 /* A section's value, at the state beside the orbits. */
 typedef struct {
     nevh_ensemble *ensemble;
@@ -278,6 +298,8 @@ static int plan(nevh_ensemble *e) {
         status = plan_motion(e, &o);
     if (!status)
         status = plan_rooms(e);
+    if (!status)
+        status = plan_samples(e, &o);
     if (!status && nevh__ensemble_tells_chaos(e))
         status = nevh__chaotic_plan(e, &o);
     return !status && e->n_crossings ? plan_sections(e) : status;
@@ -303,6 +325,8 @@ nevh_ensemble *nevh_ensemble_new(const nevh_system *system,
 void nevh_ensemble_free(nevh_ensemble *e) {
     if (!e)
         return;
+    for (size_t i = 0; e->memory && i < e->n_outcomes * e->width; i++)
+        nevh_spectral_samples_free(e->records[i].samples);
     nevh_energy_free(e->energy);
     nevh_sections_free(e->sections);
     nevh__chaotic_free(e->chaotic);

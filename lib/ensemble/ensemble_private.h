@@ -14,6 +14,7 @@
 #include "run/stepper_private.h"
 #include <gsl/gsl_roots.h>
 #include <nevh/ensemble.h>
+#include <nevh/frequencies.h>
 
 typedef struct {
     double *q, *p, *memory; /* rows of `width` */
@@ -26,7 +27,8 @@ typedef struct {
     double value, roundoff;
     double first, last; /* of crossings */
     size_t count;
-    bool known; /* it will not change any more */
+    bool known;                     /* it will not change any more */
+    nevh_spectral_samples *samples; /* NULL: not asked for */
 } nevh__record;
 
 typedef struct {

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+enum { LINES = 3 }; /* of a spectrum, of which the largest is told */
+
 /* Rows of `width`, in rows of `stride` that repeat the first lane. */
 static void widen(const nevh_ensemble *e, const double from[], double to[]) {
     if (from == to)
@@ -102,7 +104,7 @@ static void take(nevh_ensemble *e, size_t lane, size_t o) {
     size_t i = o * e->stride + lane;
     double value = e->now.value[i];
     if (l->fresh)
-        *r = (nevh__record){.value = NAN};
+        *r = (nevh__record){.value = NAN, .samples = r->samples};
     switch (e->outcomes[o].kind) {
     case NEVH_OUTCOME_FIRST:
         if (!r->known)
@@ -122,6 +124,11 @@ static void take(nevh_ensemble *e, size_t lane, size_t o) {
             r->value = 0;
         else
             add(r, (l->t - e->ago1.t[lane]) / 2 * (e->ago1.value[i] + value));
+        break;
+    case NEVH_OUTCOME_FREQUENCY:
+        if (l->fresh)
+            nevh_spectral_samples_restart(r->samples);
+        nevh_spectral_samples_take(r->samples, l->step, l->t, value);
         break;
     default:
         break;
@@ -189,6 +196,17 @@ void nevh__ensemble_fail(nevh_ensemble *e, size_t lane,
     e->lanes[lane].over = true;
 }
 
+/* Of the largest line; NAN where there is none, or too few samples. */
+static double frequency_of(const nevh__record *r, double period) {
+    nevh_spectral_line lines[LINES];
+    size_t found = 0, count;
+    double h;
+    nevh_spectral_samples_straighten(r->samples, period);
+    const double *values = nevh_spectral_samples_values(r->samples, &count, &h);
+    int status = nevh_frequencies(h, count, values, LINES, lines, &found);
+    return !status && found ? lines[0].frequency : NAN;
+}
+
 static double number_of(const nevh_ensemble *e, size_t lane, size_t o) {
     const nevh__record *r = &e->records[o * e->width + lane];
     double span = e->lanes[lane].t - e->is.t_start;
@@ -202,6 +220,8 @@ static double number_of(const nevh_ensemble *e, size_t lane, size_t o) {
     case NEVH_OUTCOME_MEAN:
         return span != 0 ? (r->value + r->roundoff) / span
                          : e->now.value[o * e->stride + lane];
+    case NEVH_OUTCOME_FREQUENCY:
+        return frequency_of(r, e->outcomes[o].modulus);
     case NEVH_OUTCOME_CROSSINGS:
         return (double)r->count;
     case NEVH_OUTCOME_PERIOD:

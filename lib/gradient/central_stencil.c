@@ -197,10 +197,10 @@ NEVH__INLINE bool take(nevh_field *f, const nevh__term_part *part,
     }
     for (size_t i = 0; decl->time && i < part->stride; i++)
         f->times[i] = at->t[lane + (shape == ONE ? 0 : i % part->lanes)];
+    const double *c = part->pitch ? part->c + lane * part->pitch : part->c;
     nevh__term_values(term->term, f->portable, part->stride, used,
                       decl->time ? f->times : f->zeros, f->rows,
-                      f->rows + term->nq * part->stride,
-                      part->c + lane * part->pitch, f->h, f->one);
+                      f->rows + term->nq * part->stride, c, f->h, f->one);
     term->values += used;
     return shape == ONE       ? add_one(f, part, at, lane)
            : shape == VECTORS ? add_vectors(f, part, at, lane)

@@ -44,15 +44,16 @@ static bool add_part(nevh__evaluation *e, nevh__planned *term, size_t instance,
         (term->np && !nevh__contiguous(all_p, term->np, 1)))
         return false;
     nevh__term_part *x = &e->terms[e->count++];
-    *x = (nevh__term_part){.term = term,
-                           .point = decl->point_gradient,
-                           .params = decl->params,
-                           .size_q = e->at.dh_dq ? term->nq : 0,
-                           .size_p = e->at.dh_dp ? term->np : 0,
-                           .t = decl->time ? e->at.t : e->field->zeros,
-                           .q = e->at.q + q,
-                           .p = e->at.p + p,
-                           .c = decl->c + instance * decl->nc};
+    *x =
+        (nevh__term_part){.term = term,
+                          .point = decl->point_gradient,
+                          .params = decl->params,
+                          .size_q = e->at.dh_dq ? term->nq : 0,
+                          .size_p = e->at.dh_dp ? term->np : 0,
+                          .t = decl->time ? e->at.t : e->field->zeros,
+                          .q = e->at.q + q,
+                          .p = e->at.p + p,
+                          .c = decl->nc ? decl->c + instance * decl->nc : NULL};
     double *beside = e->field->slopes;
     bool known = true;
     if (x->size_q)

@@ -21,6 +21,7 @@ static const struct {
     [NEVH_OUTCOME_MEAN] = {"mean", FORMULA},
     [NEVH_OUTCOME_CROSSINGS] = {"crossings", SECTION},
     [NEVH_OUTCOME_PERIOD] = {"period", SECTION},
+    [NEVH_OUTCOME_FREQUENCY] = {"frequency", FORMULA},
     [NEVH_OUTCOME_LYAPUNOV] = {"lyapunov", NOTHING},
     [NEVH_OUTCOME_SALI] = {"sali", NOTHING},
     [NEVH_OUTCOME_MEGNO] = {"megno", NOTHING},

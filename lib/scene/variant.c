@@ -44,6 +44,14 @@ static bool make_quantity(nevh__variant *x, const char *left, const char *right,
     return true;
 }
 
+/* Of a coordinate that is an angle; 0 of other formulas. */
+static double period_of(const nevh__scene_model *m, const char *formula) {
+    for (size_t k = 0; k < m->n; k++)
+        if (strcmp(m->coordinate_names[k], formula) == 0)
+            return m->period[k];
+    return 0;
+}
+
 static bool make_outcome(nevh__variant *x, const nevh__scene_outcome *from,
                          nevh_outcome *to, nevh__report *report) {
     const char *left = from->left.text, *right = from->right.text;
@@ -51,9 +59,12 @@ static bool make_outcome(nevh__variant *x, const nevh__scene_outcome *from,
     if (from->kind == NEVH_OUTCOME_FIRST)
         return make_quantity(x, from->below ? right : left,
                              from->below ? left : right, &to->quantity, report);
-    if (from->kind < NEVH_OUTCOME_FIRST || from->kind > NEVH_OUTCOME_PERIOD)
+    if (from->kind < NEVH_OUTCOME_FIRST || from->kind > NEVH_OUTCOME_FREQUENCY)
         return true;
-    if (from->kind < NEVH_OUTCOME_CROSSINGS)
+    if (from->kind == NEVH_OUTCOME_FREQUENCY)
+        to->modulus = period_of(x->model, left);
+    if (from->kind < NEVH_OUTCOME_CROSSINGS ||
+        from->kind == NEVH_OUTCOME_FREQUENCY)
         return make_quantity(x, left, NULL, &to->quantity, report);
     const nevh_scene_section *is = &x->model->crossings[from->section].decl;
     to->direction = is->direction;

@@ -71,6 +71,60 @@ TEST(frequency_of_the_pendulum_is_exact) {
     nevh_scene_free(s);
 }
 
+/* Samples of 1e6 steps in a room of 1000: a fast line, however small, keeps them
+   dense, so that it does not pass for a slow one. */
+TEST(samples_of_a_long_run_are_dense_enough) {
+    static const double fast[] = {0, 0.3, 0.01, 1e-5};
+    enum { ROOM = 1000, STEPS = 1000000 };
+    nevh_spectral_samples *s = nevh_spectral_samples_new(ROOM);
+    nevh_spectral_line lines[LINES];
+    double h;
+    for (int i = 0; i < 4; i++) {
+        size_t found, count;
+        nevh_spectral_samples_restart(s);
+        for (size_t k = 0; k <= STEPS; k++) {
+            double t = 5 + 0.001 * (double)k;
+            nevh_spectral_samples_take(s, k, t,
+                                       cos(t) + fast[i] * cos(41.3 * t));
+        }
+        const double *x = nevh_spectral_samples_values(s, &count, &h);
+        ck_assert_uint_ge(count, ROOM / 2);
+        ck_assert_uint_le(count, ROOM);
+        ck_assert_double_lt(fast[i] > 0 ? 41.3 * h : h,
+                            fast[i] > 0 ? 3 : 0.512 * 3);
+        ck_assert_int_eq(nevh_frequencies(h, count, x, 2, lines, &found),
+                         NEVH_OK);
+        if (fast[i] > 0) {
+            ck_assert_uint_eq(found, 2);
+            ck_assert_double_eq_tol(lines[1].frequency, 41.3, 1e-3);
+        }
+        ck_assert_double_eq_tol(lines[0].frequency, 1,
+                                fast[i] > 0 ? 1e-4 : 1e-12);
+    }
+    nevh_spectral_samples_free(s);
+}
+
+/* A last step that is shorter is no sample; steps that end early are few. */
+TEST(samples_are_at_equal_times) {
+    nevh_spectral_samples *s = nevh_spectral_samples_new(NEVH_FEWEST_SAMPLES);
+    size_t count;
+    double h;
+    for (size_t k = 0; k < 50; k++)
+        nevh_spectral_samples_take(s, k, 0.1 * (double)k, (double)k);
+    nevh_spectral_samples_take(s, 50, 4.93, 50);
+    const double *x = nevh_spectral_samples_values(s, &count, &h);
+    ck_assert_uint_eq(count, 50);
+    ck_assert_double_eq_tol(h, 0.1, 1e-15);
+    ck_assert_double_eq(x[49], 49);
+    ck_assert(!nevh_spectral_samples_straighten(s, 0));
+    ck_assert(!nevh_spectral_samples_straighten(s, 100));
+    ck_assert(nevh_spectral_samples_straighten(s, 2));
+    ck_assert_double_eq_tol(x[3], -1, 1e-14);
+    nevh_spectral_samples_free(s);
+    ck_assert_ptr_null(nevh_spectral_samples_new(NEVH_FEWEST_SAMPLES - 1));
+    ck_assert_ptr_null(nevh_spectral_samples_new((size_t)-1));
+}
+
 TEST(bad_series_are_refused) {
     nevh_spectral_line line;
     size_t found;

@@ -322,6 +322,13 @@ TEST(nonsense_is_refused) {
     ck_assert_int_eq(nevh_ensemble_status(e), NEVH_EINVAL);
     nevh_ensemble_free(e);
     is.dt = 0.1;
+    is.integrator = nevh_adaptive_verlet;
+    is.outcomes = &(nevh_outcome){.kind = NEVH_OUTCOME_FREQUENCY,
+                                  .quantity = {first_coordinate, &zero, false}};
+    e = nevh_ensemble_new(s, &is);
+    ck_assert_int_eq(nevh_ensemble_status(e), NEVH_EINVAL);
+    assert_says(nevh_ensemble_message(e), "samples at equal times");
+    nevh_ensemble_free(e);
     is.integrator = NULL;
     e = nevh_ensemble_new(s, &is);
     ck_assert_int_eq(nevh_ensemble_status(e), NEVH_EINVAL);

@@ -69,6 +69,11 @@ static nevh_separability separability;
     X(NUMBER, nevh_scene_members, (NULL))                                      \
     X(STATUS, nevh_scene_member_start, (NULL, 0, out, out))                    \
     X(STATUS, nevh_frequencies, (0.1, 64, NULL, 1, NULL, NULL))                \
+    X(ANY, nevh_spectral_samples_free, (NULL))                                 \
+    X(ANY, nevh_spectral_samples_restart, (NULL))                              \
+    X(ANY, nevh_spectral_samples_take, (NULL, 0, 0.1, 0.1))                    \
+    X(NUMBER, nevh_spectral_samples_straighten, (NULL, 1))                     \
+    X(ANY, nevh_spectral_samples_values, (NULL, NULL, NULL))                   \
     X(MADE, nevh_loop_new, (NULL, NULL, NULL, NULL))                           \
     X(ANY, nevh_loop_free, (NULL))                                             \
     X(STATUS, nevh_loop_status, (NULL))                                        \

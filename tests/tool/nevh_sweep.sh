@@ -95,6 +95,27 @@ rows | awk -F, '($6 < 1e-8) != (NR == 1) || ($7 > 4) != (NR == 1) {
 exits 0 sweep henon-heiles --vary 'y = -0.25, 0.1, 0.2' $chaos --quiet \
     --width 8 --threads 2
 cmp -s $work/out $work/one || fails "finds other displacements in other lanes"
+# Frequencies: pi sqrt(9.8)/(2 K(sin(start/2))) of the pendulum; of an angle that
+# goes round that of its cosine, as nevh frequencies has it; none at rest.
+pendulum="pendulum --integrators gauss16 --gradient exact --t-end 200 --quiet"
+lines="--outcomes frequency(phi),frequency(p_phi)"
+exits 0 sweep $pendulum --vary 'start = 0, 1, 2, 3' $lines
+cp $work/out $work/lines
+rows | awk -F, '
+    function off(x) { x = x/w[NR] - 1; return x > 1e-9 || x < -1e-9 }
+    BEGIN { w[2] = 2.9357541328863244; w[3] = 2.3556962007225665
+            w[4] = 1.2175069363870312 }
+    NR == 1 ? $4 $5 != "" : off($4) || off($5) { print; wrong = 1 }
+    END { exit wrong || NR != 4 }' || fails "has other frequencies"
+exits 0 sweep $pendulum --vary 'start = 0, 1, 2, 3' $lines --width 1 \
+    --threads 2
+cmp -s $work/out $work/lines || fails "has other frequencies in other lanes"
+exits 0 sweep $pendulum --vary 'p_phi = 8' --outcomes 'frequency(phi)'
+turning=$(rows | cut -d, -f 4)
+exits 0 frequencies $pendulum --start p_phi=8 --format csv
+rows | awk -F, -v w="$turning" '$4 == 1 { d = $5/w - 1
+    exit d > 1e-9 || d < -1e-9 }' || fails "has another frequency of rotation"
+
 exits 0 chaos henon-heiles --integrators blanes-moan4 --dt 0.2 --t-end 500 \
     --starts 1 --format csv --quiet
 test "$(rows | cut -d , -f 8-9)" = "$(sed -n 3p $work/one | cut -d , -f 6-7)" ||
@@ -153,6 +174,10 @@ refuses 'nothing is varied' pendulum
 refuses 'there is no outcome frist; did you mean first' pendulum-periods \
     --outcomes 'frist(phi > 1)'
 refuses 'sali stands alone' pendulum-periods --outcomes 'sali(phi)'
+refuses 'needs samples at equal times' kepler-0.9 --vary 'x = 1, 1.1' \
+    --outcomes 'frequency(x)' --integrators adaptive-verlet
+refuses 'this is written frequency\(FORMULA\)' pendulum --vary 'phi = 1, 2' \
+    --outcomes frequency
 refuses 'take a scheme of fixed steps' henon-heiles --outcomes megno \
     --integrators adaptive-verlet
 refuses 'from 2 to 1e\+11, not 0' pendulum --vary 'phi = range(0, 1, 0)'

@@ -11,19 +11,18 @@ enum { LINES = 6, MOST_SAMPLES = 1 << 17, MOST_COORDINATES = 4 };
 /* A coordinate, or a formula. */
 typedef struct {
     char *name;
-    size_t k;       /* of the coordinate */
-    bool formula;   /* the scene's judged one */
-    double period;  /* an angle: its cosine is taken where it goes round */
-    double *values; /* samples */
-    double low, high;
+    size_t k;      /* of the coordinate */
+    bool formula;  /* the scene's judged one */
+    double period; /* an angle: its cosine is taken where it goes round */
+    nevh_spectral_samples *samples;
 } observed;
 
 typedef struct {
     plan plan;
     observed *all;
-    size_t count, samples, room, every;
-    double t0, h; /* h: between samples; 0: not yet known */
-    int failed;   /* a formula's status */
+    size_t count;
+    double begin, end; /* of the run */
+    int failed;        /* a formula's status */
     table *table;
     list words;
     int worst;
@@ -42,33 +41,21 @@ static int choose(job *j, const options *o) {
                                          : nevh_scene_coordinate(p->scene, i)),
             .k = i,
             .formula = o->observable != NULL,
-            .period = o->observable ? 0 : nevh_scene_period(p->scene, i)};
+            .period = o->observable ? 0 : nevh_scene_period(p->scene, i),
+            .samples = nevh_spectral_samples_new(MOST_SAMPLES)};
+    for (size_t i = 0; i < j->count; i++)
+        if (!j->all[i].samples)
+            return tool_refuse("out of memory");
     return o->observable && nevh_scene_set_judged(p->scene, o->observable)
                ? scene_report(p->scene, o)
                : TOOL_OK;
 }
 
-static void make_room(job *j) {
-    if (j->samples < j->room)
-        return;
-    j->room = 2 * j->room + 1024;
-    for (size_t i = 0; i < j->count; i++)
-        j->all[i].values =
-            tool_enlarge(j->all[i].values, j->room, sizeof(double));
-}
-
-/* At equal times alone: the last step of a run may be shorter. */
 static int take(void *data, size_t step, double t, const double q[],
                 const double p[]) {
     job *j = data;
-    if (j->samples == 0)
-        j->t0 = t;
-    if (j->samples == 1)
-        j->h = t - j->t0;
-    double place = j->samples < 2 ? 0 : (t - j->t0) / j->h - (double)j->samples;
-    if (step % j->every != 0 || fabs(place) > 1e-6)
-        return 0;
-    make_room(j);
+    j->begin = step ? j->begin : t;
+    j->end = t;
     for (size_t i = 0; i < j->count; i++) {
         observed *a = &j->all[i];
         double x = q[a->k];
@@ -76,11 +63,8 @@ static int take(void *data, size_t step, double t, const double q[],
             j->failed = nevh_scene_judged_value(j->plan.scene, t, q, p, &x);
         if (j->failed)
             return 1;
-        a->values[j->samples] = x;
-        a->low = j->samples ? fmin(a->low, x) : x;
-        a->high = j->samples ? fmax(a->high, x) : x;
+        nevh_spectral_samples_take(a->samples, step, t, x);
     }
-    j->samples++;
     return 0;
 }
 
@@ -94,9 +78,9 @@ static int run(job *j, const char *integrator) {
     double *q = tool_allocate(2 * p->n, sizeof *q), *m = q + p->n, stopped;
     nevh_observer observer = {take, j, 1};
     int status = nevh_stepper_status(s);
-    j->samples = 0;
     j->failed = 0;
-    j->every = (size_t)(plan_steps(p, p->dt[0]) / MOST_SAMPLES) + 1;
+    for (size_t i = 0; i < j->count; i++)
+        nevh_spectral_samples_restart(j->all[i].samples);
     memcpy(q, p->q, p->n * sizeof *q);
     memcpy(m, p->p, p->n * sizeof *q);
     if (status || own) {
@@ -120,12 +104,10 @@ static int run(job *j, const char *integrator) {
 }
 
 /* What of an angle that goes round is quasi-periodic. */
-static char *straighten(const job *j, observed *a) {
+static char *straighten(const observed *a) {
     static const double turn = 6.283185307179586;
-    if (!(a->period > 0 && a->high - a->low > a->period))
+    if (!nevh_spectral_samples_straighten(a->samples, a->period))
         return text_print("%s", a->name);
-    for (size_t k = 0; k < j->samples; k++)
-        a->values[k] = cos(turn / a->period * a->values[k]);
     return a->period == turn
                ? text_print("cos(%s)", a->name)
                : text_print("cos(%.17g*%s)", turn / a->period, a->name);
@@ -162,12 +144,12 @@ static void add_row(job *j, const options *o, const char *integrator,
 
 /* What grows steadily is no sum of oscillations. */
 static void judge_line(job *j, const char *integrator, const char *name,
-                       const double x[]) {
+                       const double x[], size_t count, double h) {
     static const double straight = 0.9;
-    double n = (double)j->samples, mean = 0, tt = 0, tx = 0, xx = 0;
-    for (size_t k = 0; k < j->samples; k++)
+    double n = (double)count, mean = 0, tt = 0, tx = 0, xx = 0;
+    for (size_t k = 0; k < count; k++)
         mean += x[k] / n;
-    for (size_t k = 0; k < j->samples; k++) {
+    for (size_t k = 0; k < count; k++) {
         double t = (double)k - (n - 1) / 2, d = x[k] - mean;
         tt += t * t, tx += t * d, xx += d * d;
     }
@@ -175,7 +157,17 @@ static void judge_line(job *j, const char *integrator, const char *name,
         list_print(&j->words,
                    "%s, %s: it changes along a straight line, by %.3g a unit "
                    "of time: it is not periodic, or the run is too short.",
-                   integrator, name, tx / tt / j->h);
+                   integrator, name, tx / tt / h);
+}
+
+/* Where samples of the whole run have no room, those of its beginning tell. */
+static void judge_length(job *j, const char *integrator, const char *name,
+                         double length, double run) {
+    if (length < 0.49 * run)
+        list_print(&j->words,
+                   "%s, %s: of the first %.6g of the run: there is no room for "
+                   "more samples as dense as the fastest motion needs.",
+                   integrator, name, length);
 }
 
 /* A frequency that moves is none. */
@@ -194,10 +186,12 @@ static int analyse(job *j, const options *o, const char *integrator) {
     nevh_spectral_line lines[LINES];
     for (size_t i = 0; i < j->count; i++) {
         observed *a = &j->all[i];
-        size_t found = 0;
-        char *name = straighten(j, a);
-        int status =
-            nevh_frequencies(j->h, j->samples, a->values, LINES, lines, &found);
+        size_t found = 0, count;
+        double h;
+        char *name = straighten(a);
+        const double *values =
+            nevh_spectral_samples_values(a->samples, &count, &h);
+        int status = nevh_frequencies(h, count, values, LINES, lines, &found);
         if (!status && !found)
             list_print(&j->words, "%s, %s: it does not move.", integrator,
                        name);
@@ -205,7 +199,9 @@ static int analyse(job *j, const options *o, const char *integrator) {
             add_row(j, o, integrator, name, k + 1, &lines[k]);
         if (!status && found) {
             judge(j, integrator, name, &lines[0]);
-            judge_line(j, integrator, name, a->values);
+            judge_line(j, integrator, name, values, count, h);
+            judge_length(j, integrator, name, h * (double)(count - 1),
+                         j->end - j->begin);
         }
         if (status == NEVH_EDOM) {
             list_print(&j->words, "%s, %s failed: it is not finite", integrator,
@@ -215,7 +211,7 @@ static int analyse(job *j, const options *o, const char *integrator) {
         free(name);
         if (status == NEVH_EINVAL)
             return tool_refuse("%s: %zu samples are too few: 64 steps at least",
-                               j->plan.name, j->samples);
+                               j->plan.name, count);
         if (status == NEVH_ENOMEM)
             return tool_refuse("out of memory");
         table_group(j->table);
@@ -274,7 +270,7 @@ int frequencies_command(const options *o) {
         status = analyse_all(&j, o);
     for (size_t i = 0; i < j.count; i++) {
         free(j.all[i].name);
-        free(j.all[i].values);
+        nevh_spectral_samples_free(j.all[i].samples);
     }
     free(j.all);
     plan_free(&j.plan);
