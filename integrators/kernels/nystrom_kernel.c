@@ -40,8 +40,9 @@ struct nevh__nystrom_state {
     size_t n;
     void *memory;    /* holds all arrays */
     double *time;    /* a row */
-    double *rest;    /* n: T_p(0) */
-    double *inverse; /* n: W, if that is diagonal by declaration */
+    size_t lanes;    /* of the next two: 1, or the field's */
+    double *rest;    /* n rows: T_p(0) */
+    double *inverse; /* n rows: W, if that is diagonal by declaration */
     double known_h;  /* that lanes of h are for */
     size_t planned;  /* lanes of planned gradients; 0: there are none */
     nevh__evaluation *kicks, drift;
@@ -85,8 +86,8 @@ static void lay_out(nevh__arena *a, void *state) {
     y->x.points = nevh__arena_take(a, half, each);
     y->x.slopes = nevh__arena_take(a, stages * half, each);
     y->time = nevh__arena_take(a, most_lanes(y->work), each);
-    y->rest = nevh__arena_take(a, y->n, each);
-    y->inverse = nevh__arena_take(a, y->n, each);
+    y->rest = nevh__arena_take(a, y->n * y->lanes, each);
+    y->inverse = nevh__arena_take(a, y->n * y->lanes, each);
     y->kicks = nevh__arena_take(a, stages, sizeof *y->kicks);
     y->weights = nevh__arena_take(a, lists, each);
     y->offsets = nevh__arena_take(a, lists, sizeof *y->offsets);
@@ -185,6 +186,10 @@ static int find_kinetic(nevh__nystrom_state *y) {
         status = ask(y, y->inverse);
     for (size_t k = 0; !status && y->x.diagonal && k < y->n; k++)
         y->inverse[k] = (y->inverse[k] - y->rest[k]) / y->x.momenta[k];
+    for (size_t i = y->n * y->lanes; !status && y->lanes > 1 && i-- > 0;) {
+        y->rest[i] = y->rest[i / y->lanes];
+        y->inverse[i] = y->inverse[i / y->lanes];
+    }
     forget(y->work->field);
     return status;
 }
@@ -197,6 +202,7 @@ static int plan_nystrom(nevh_work *w, nevh__nystrom_state **nystrom) {
     y->table = w->integrator->table;
     y->n = w->n;
     y->x.stride = w->n * most_lanes(w);
+    y->lanes = w->field->lanes ? w->field->lanes : 1;
     y->known_h = NAN;
     y->memory = nevh__arena_new(lay_out, y);
     if (!y->memory)
@@ -208,6 +214,26 @@ static int plan_nystrom(nevh_work *w, nevh__nystrom_state **nystrom) {
     plan_gradients(y);
     int status = check_kinetic(y);
     return status ? status : find_kinetic(y);
+}
+
+bool nevh__nystrom_lane_take(nevh_work *w, size_t lane, const nevh_work *own) {
+    nevh__nystrom_state *y = state_of(w);
+    const nevh__nystrom_state *from = state_of(own);
+    if (y->x.moves != from->x.moves)
+        return false;
+    for (size_t k = 0; k < y->n; k++) {
+        y->rest[k * y->lanes + lane] = from->rest[k];
+        y->inverse[k * y->lanes + lane] = from->inverse[k];
+    }
+    return true;
+}
+
+void nevh__nystrom_lane_copy(nevh_work *w, size_t from, size_t to) {
+    nevh__nystrom_state *y = state_of(w);
+    for (size_t k = 0; k < y->n * y->lanes; k += y->lanes) {
+        y->rest[k + to] = y->rest[k + from];
+        y->inverse[k + to] = y->inverse[k + from];
+    }
 }
 
 nevh__nystrom_kinetic nevh__nystrom_kinetic_of(const nevh_work *w) {
@@ -239,9 +265,11 @@ static void prepare_columns(nevh__nystrom_state *y, const nevh__stages *s) {
            2 * size * sizeof *y->x.compensation);
     for (size_t i = 0; i < size; i++) {
         y->x.h[i] = s->h[i % s->columns];
-        y->x.at_rest[i] = y->rest[i / s->columns];
+        size_t lane = nevh__lane_of(y->work->field, s->columns, i % s->columns);
+        size_t at = i / s->columns * y->lanes + (y->lanes > 1 ? lane : 0);
+        y->x.at_rest[i] = y->rest[at];
         if (y->x.diagonal)
-            y->x.gain[i] = y->x.h[i] * y->x.h[i] * y->inverse[i / s->columns];
+            y->x.gain[i] = y->x.h[i] * y->x.h[i] * y->inverse[at];
     }
 }
 

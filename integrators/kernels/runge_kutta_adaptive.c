@@ -16,6 +16,7 @@ struct nevh__adaptive {
     nevh__substeps *lanes; /* width */
     size_t *under_way;     /* width */
     size_t *unknown;       /* width: those of them without a first slope */
+    double *scale;         /* 2n: of one lane */
 };
 
 /* The step of all lanes: rows of `width`. */
@@ -46,6 +47,7 @@ void nevh__adaptive_clear(nevh_work *w) {
     free(a->lanes);
     free(a->under_way);
     free(a->unknown);
+    free(a->scale);
     free(a);
 }
 
@@ -88,7 +90,8 @@ int nevh__adaptive_plan(nevh_work *w) {
     a->lanes = nevh__array(w->width, sizeof *a->lanes);
     a->under_way = nevh__array(w->width, sizeof *a->under_way);
     a->unknown = nevh__array(w->width, sizeof *a->unknown);
-    if (!a->lanes || !a->under_way || !a->unknown)
+    a->scale = nevh__array(2 * w->n, sizeof *a->scale);
+    if (!a->lanes || !a->under_way || !a->unknown || !a->scale)
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
     w->memory_rows = 2 * w->n + 4;
     if (family->last_is_first)
@@ -190,6 +193,8 @@ static void scatter(const step_state *s, size_t column, size_t lane,
 }
 
 static void gather_states(step_state *s, size_t count, const size_t lanes[]) {
+    if (s->work->field->lanes)
+        nevh__field_choose(s->work->field, count, lanes);
     s->trial.columns = count;
     s->trial.p = s->old + s->work->n * count;
     gather(s, lanes, s->y, s->old);
@@ -217,6 +222,14 @@ static int take_first_slopes(step_state *s, size_t count,
         s->lanes[unknown[c]].has_first = true;
     }
     return status;
+}
+
+/* The rule, with the lane's scale. */
+static nevh__adaptive_rule rule_in(const step_state *s, size_t lane) {
+    const nevh_work *w = s->work;
+    nevh__adaptive_rule rule = *s->rule;
+    rule.scale = nevh__field_lane_scale(w->field, lane, plan_of(w)->scale);
+    return rule;
 }
 
 static int give_up(const step_state *s, const nevh__substeps *l,
@@ -279,9 +292,9 @@ static int try(step_state *s, size_t count, const size_t lanes[]) {
         return nevh__substeps_retreat(&s->lanes[*lanes], s->h) ? NEVH_OK
                                                                : status;
     for (size_t c = 0; !status && c < count; c++) {
-        double err =
-            nevh__substeps_judge(s->rule, count, s->error + c, s->coarse + c,
-                                 s->old + c, s->next + c);
+        const nevh__adaptive_rule rule = rule_in(s, lanes[c]);
+        double err = nevh__substeps_judge(
+            &rule, count, s->error + c, s->coarse + c, s->old + c, s->next + c);
         status = err <= 1 ? accept(s, c, lanes[c], err)
                           : reject(s, &s->lanes[lanes[c]], err);
     }
@@ -290,9 +303,10 @@ static int try(step_state *s, size_t count, const size_t lanes[]) {
 
 static int choose(const step_state *s, size_t lane) {
     nevh__substeps *l = &s->lanes[lane];
+    const nevh__adaptive_rule rule = rule_in(s, lane);
     if (l->size == 0)
-        l->size = nevh__substeps_first(s->rule, s->h, s->work->width,
-                                       s->y + lane, s->first + lane);
+        l->size = nevh__substeps_first(&rule, s->h, s->work->width, s->y + lane,
+                                       s->first + lane);
     if (nevh__substeps_too_short(l, s->h))
         return give_up(s, l, "substeps too short to be taken");
     char why[NEVH__WHY];

@@ -57,6 +57,11 @@ typedef struct {
 } nevh__nystrom_kinetic;
 nevh__nystrom_kinetic nevh__nystrom_kinetic_of(const nevh_work *);
 
+/* Where lanes have constants of their own: one takes those of a work of one orbit,
+   or those of another lane.  False: T is at rest in one alone. */
+bool nevh__nystrom_lane_take(nevh_work *, size_t lane, const nevh_work *own);
+void nevh__nystrom_lane_copy(nevh_work *, size_t from, size_t to);
+
 /* A step of either kernel. */
 int nevh__stages_step(nevh_work *, double t, double h, double q[], double p[]);
 /* Steps that adapt, for w->options->tolerance > 0. */

@@ -24,6 +24,7 @@ struct nevh__stage_owner {
     double *loaded;             /* of several orbits: their state */
     double *last;               /* rows of stages of lanes */
     double lowest[NEVH__LANES]; /* change of a sweep so far */
+    size_t chosen[NEVH__LANES]; /* of several: whose constants points have */
     nevh__evaluation whole, drift, kick; /* the gradient, or its halves */
     bool from_values;                    /* so it is, of any orbits */
 };
@@ -223,6 +224,20 @@ NEVH_SIMD static void begin_eight(nevh__sweeps *s, double t, double h,
     begin(s, NEVH__LANES, t, h, last);
 }
 
+/* Points are those of `count` lanes; what is left repeats the first. */
+static void choose(nevh__sweeps *s, const nevh__sweep_start *x, size_t count) {
+    nevh_field *f = s->work->field;
+    if (!f->lanes)
+        return;
+    for (size_t i = 0; s->kind == NEVH__EIGHT_ORBITS && i < count; i++)
+        s->chosen[i] = x->lanes[i < x->count ? i : 0];
+    nevh__field_choose(f, count,
+                       s->kind == NEVH__EIGHT_ORBITS ? s->chosen : x->lanes);
+    nevh__evaluation_refresh(&s->whole);
+    nevh__evaluation_refresh(&s->drift);
+    nevh__evaluation_refresh(&s->kick);
+}
+
 /* Rows of `count` lanes; what is left repeats the first. */
 static void load(const nevh__sweep_start *x, size_t lanes, const double from[],
                  size_t rows, double to[]) {
@@ -245,6 +260,7 @@ static void load_state(nevh__sweeps *s, const nevh__sweep_start *x,
     s->x.p = x->p;
     s->x.compensation = x->compensation;
     s->changes.unit = x->unit;
+    choose(s, x, lanes);
     if (x->width == 1)
         return;
     load(x, lanes, x->q, n, to);
@@ -323,6 +339,8 @@ NEVH_SIMD static int sweep_eight(nevh__sweeps *s, nevh__stage_progress made[]) {
 
 int nevh__sweeps_sweep(nevh__sweeps *s, nevh__stage_progress made[]) {
     if (s->lanes > 1) {
+        if (s->work->field->lanes) /* one may have been taken alone */
+            nevh__field_choose(s->work->field, s->lanes, s->chosen);
         int status = sweep_eight(s, made);
         return status == NEVH__STAGE_RANGE ? NEVH_EDOM : status;
     }

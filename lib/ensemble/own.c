@@ -6,20 +6,34 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "ensemble/ensemble_private.h"
 #include "gradient/field_private.h"
+#include "kernels/runge_kutta_private.h"
 
-/* Kernels whose plan holds nothing that constants of H change, where steps are
-   fixed. */
-static bool plans_nothing(const nevh_stepper *s) {
-    const nevh_kernel *kernel = s->work.integrator->kernel;
-    if (s->options.tolerance > 0 || s->work.accounts)
-        return false;
-    return kernel == &nevh_splitting_kernel ||
-           kernel == &nevh_runge_kutta_kernel;
+/* Kernels whose plans hold nothing that constants of H change but scales, or
+   take it from the plan of a stepper of their own. */
+static const struct {
+    const nevh_kernel *kernel;
+    bool (*take)(nevh_work *, size_t lane, const nevh_work *own);
+    void (*copy)(nevh_work *, size_t from, size_t to);
+} kernels[] = {
+    {&nevh_splitting_kernel, NULL, NULL},
+    {&nevh_runge_kutta_kernel, NULL, NULL},
+    {&nevh_nystrom_kernel, nevh__nystrom_lane_take, nevh__nystrom_lane_copy},
+    {&nevh_gauss_kernel, NULL, NULL},
+    {&nevh_lobatto_kernel, NULL, NULL},
+    {&nevh_implicit_euler_kernel, NULL, NULL}};
+enum { KERNELS = sizeof kernels / sizeof *kernels };
+
+static size_t kernel_of(const nevh_stepper *s) {
+    size_t i = 0;
+    while (i < KERNELS && kernels[i].kernel != s->work.integrator->kernel)
+        i++;
+    return i;
 }
 
 bool nevh__ensemble_may_vary(const nevh_ensemble *e) {
     return e && e->planned && !e->alone && !e->moving && !e->n_crossings &&
-           !e->chaotic && plans_nothing(e->stepper);
+           !e->chaotic && !e->stepper->work.accounts &&
+           kernel_of(e->stepper) < KERNELS;
 }
 
 bool nevh__ensemble_vary(nevh_ensemble *e, nevh__own_fn own,
@@ -41,9 +55,13 @@ void nevh__own_drop(nevh_ensemble *e, size_t lane) {
 /* The lane's constants, in all that reads them. */
 static bool take(nevh_ensemble *e, size_t lane, const nevh__own *own,
                  const nevh_stepper *narrow) {
-    nevh_field *f = e->stepper->work.field;
+    nevh_work *w = &e->stepper->work;
+    size_t kernel = kernel_of(e->stepper);
     if (narrow->rows != e->stepper->rows ||
-        !nevh__field_lane_take(f, lane, own->constants, narrow->work.field))
+        (kernels[kernel].take &&
+         !kernels[kernel].take(w, lane, &narrow->work)) ||
+        !nevh__field_lane_take(w->field, lane, own->constants,
+                               narrow->work.field))
         return false;
     if (e->energy)
         nevh__energy_lane_take(e->energy, lane, own->constants, narrow);
@@ -66,7 +84,11 @@ bool nevh__own_take(nevh_ensemble *e, size_t lane, uint64_t member) {
 }
 
 void nevh__own_copy(nevh_ensemble *e, size_t from, size_t to) {
-    nevh__field_lane_copy(e->stepper->work.field, from, to);
+    nevh_work *w = &e->stepper->work;
+    size_t kernel = kernel_of(e->stepper);
+    nevh__field_lane_copy(w->field, from, to);
+    if (kernels[kernel].copy)
+        kernels[kernel].copy(w, from, to);
     if (e->energy)
         nevh__energy_lane_copy(e->energy, from, to);
 }

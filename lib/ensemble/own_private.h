@@ -22,8 +22,8 @@ typedef void (*nevh__refused_fn)(void *data, uint64_t member);
    by side.  What is not run so is refused: those whose differences have other
    points, or whose stepper is not made.  Functions are called with the data
    of nevh_ensemble_run.
-   returns  whether the ensemble can: it may have no more than orbits of fixed
-            explicit steps, their energies, and quantities that all share */
+   returns  whether the ensemble can: it may have no more than orbits by kernels
+            that own.c lists, their energies, and quantities that all share */
 bool nevh__ensemble_vary(nevh_ensemble *, nevh__own_fn, nevh__refused_fn);
 /* Whether an ensemble like that one, but by_lane, can. */
 bool nevh__ensemble_may_vary(const nevh_ensemble *);

@@ -46,23 +46,24 @@ NEVH__INLINE void shift_vectors(const nevh__stencil *s, size_t lanes,
    -0.  Apart, so that the others stay as they are. */
 __attribute__((noinline)) static void shift_by_lane(const nevh_field *f,
                                                     const nevh__term_part *part,
-                                                    size_t lane, size_t k,
-                                                    double *row) {
+                                                    size_t width, size_t lane,
+                                                    size_t k, double *row) {
     const nevh__stencil *s = part->stencil;
-    size_t nv = part->term->nv, lanes = part->lanes;
+    size_t lanes = part->lanes;
     for (const nevh__stencil_slope *x = s->slope; x < s->slope + s->slopes;
          x++) {
         if (x->k != k)
             continue;
-        const double *delta = part->term->lane_delta +
-                              (s->instance[x->first] * nv + k) * f->lanes;
         double *plus = row + x->first * lanes, *minus = plus + lanes;
-        for (size_t j = 0; j < x->method->offsets; j++)
-            for (size_t i = 0; i < lanes; i++) {
-                double move = (double)(j + 1) * delta[(lane + i) % f->lanes];
+        for (size_t i = 0; i < lanes; i++) {
+            double delta = nevh__delta(f, part->term, s->instance[x->first], k,
+                                       nevh__lane_of(f, width, lane + i));
+            for (size_t j = 0; j < x->method->offsets; j++) {
+                double move = (double)(j + 1) * delta;
                 plus[2 * j * lanes + i] += move;
                 minus[2 * j * lanes + i] -= move;
             }
+        }
     }
 }
 
@@ -191,7 +192,7 @@ NEVH__INLINE bool take(nevh_field *f, const nevh__term_part *part,
         else
             shift_lanes(s, part->lanes, at->width, x, source, shift, row);
         if (f->lanes && shape != ONE)
-            shift_by_lane(f, part, lane, k, row);
+            shift_by_lane(f, part, at->width, lane, k, row);
         for (size_t i = used; shape == LANES && i < part->stride; i++)
             row[i] = row[0];
     }
@@ -271,15 +272,15 @@ int nevh__central_stencil_run(const nevh__evaluation *e) {
 /* Any places: constants are filled where other lanes are asked for, or lanes
    have their own. */
 static const double *constants(const nevh_field *f, const nevh__planned *term,
-                               nevh__stencil *s, size_t lane, size_t lanes,
-                               size_t stride) {
+                               nevh__stencil *s, size_t width, size_t lane,
+                               size_t lanes, size_t stride) {
     size_t size = term->term->decl.nc * stride;
     for (size_t i = 0; (s->lanes != lanes || f->lanes) && i < size; i++) {
         size_t point = i % stride / lanes;
         size_t instance = s->instance[point < s->points ? point : 0];
         s->constants[i] =
             nevh__constant(f, term, instance, i / stride,
-                           nevh__lane_of(f, 0, lane + i % stride % lanes));
+                           nevh__lane_of(f, width, lane + i % stride % lanes));
     }
     s->lanes = lanes;
     return s->constants;
@@ -288,6 +289,8 @@ static const double *constants(const nevh_field *f, const nevh__planned *term,
 /* All lanes, or as many vectors of them in each block as may be. */
 static size_t lanes_in_block(const nevh_field *f, const nevh__stencil *s,
                              size_t lanes) {
+    if (lanes == 1)
+        return 1;
     size_t most = f->capacity / s->points;
     if (lanes <= most)
         return lanes;
@@ -303,9 +306,6 @@ int nevh__gradient_central(nevh_field *f, nevh__planned *term,
     nevh__stencil *s = term->stencil[nevh__part_of(at)];
     if (!s)
         return nevh__central_blocks(f, term, at);
-    if (f->lanes && at->width == 1)
-        return nevh__fail(&f->report, NEVH_EINVAL,
-                          "differences at one state have no lane's steps");
     size_t most = lanes_in_block(f, s, at->width);
     nevh__term_part x = {.term = term,
                          .stencil = s,
@@ -314,9 +314,9 @@ int nevh__gradient_central(nevh_field *f, nevh__planned *term,
     for (size_t lane = 0; lane < at->width; lane += x.lanes) {
         x.lanes = at->width - lane < most ? at->width - lane : most;
         x.stride = nevh__padded(s->points * x.lanes);
-        x.c = constants(f, term, s, lane, x.lanes, x.stride);
-        bool finite = at->width == 1          ? take_one(f, &x, at)
-                      : x.lanes % NEVH__LANES ? take_lanes(f, &x, at, lane)
+        x.c = constants(f, term, s, at->width, lane, x.lanes, x.stride);
+        bool finite = at->width == 1 && !f->lanes ? take_one(f, &x, at)
+                      : x.lanes % NEVH__LANES     ? take_lanes(f, &x, at, lane)
                                               : take_vectors(f, &x, at, lane);
         if (!finite)
             return fail(f, &x, at, lane);

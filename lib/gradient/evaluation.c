@@ -133,6 +133,13 @@ void nevh__constants_fill(const nevh_field *f, const nevh__planned *term) {
         fill(f, term, c);
 }
 
+void nevh__evaluation_refresh(const nevh__evaluation *e) {
+    for (const nevh__term_part *x = e->terms; x < e->terms + e->count; x++)
+        for (struct nevh__constants *c = x->term->constants; c; c = c->next)
+            if (c->rows == x->c)
+                fill(e->field, x->term, c);
+}
+
 const double *nevh__constants_plan(const nevh_field *f, nevh__planned *term,
                                    const nevh__stencil *of, size_t width,
                                    size_t total) {

@@ -110,6 +110,7 @@ const double *nevh__constants_plan(const nevh_field *, nevh__planned *,
                                    size_t total);
 /* Again, where lanes have other constants. */
 void nevh__constants_fill(const nevh_field *, const nevh__planned *);
+void nevh__evaluation_refresh(const nevh__evaluation *); /* one's alone */
 void nevh__constants_free(struct nevh__constants *);
 /* Columns of a stencil and a state; the instance of each. */
 size_t nevh__stencil_points(const nevh__stencil *);

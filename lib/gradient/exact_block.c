@@ -33,8 +33,6 @@ static bool applicable(const nevh__evaluation *e) {
         return false; /* terms need not bring derivatives */
     if (e->width % NEVH__LANES)
         return false; /* nothing may be written beyond the rows */
-    if (f->lanes && e->width % f->lanes)
-        return false; /* some lanes' constants would be left out */
     for (size_t i = 0; i < f->n_terms; i++) {
         const nevh__planned *term = &f->terms[i];
         const nevh_term *decl = &term->term->decl;

@@ -23,6 +23,8 @@ void nevh_field_free(nevh_field *f) {
     nevh__single_free(f->single);
     free(f->scale);
     free(f->jacobian);
+    free(f->chosen);
+    free(f->lane_scale);
     free(f->workspace);
     free(f);
 }

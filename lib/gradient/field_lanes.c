@@ -56,6 +56,12 @@ static bool plan_term(nevh__planned *term, size_t lanes) {
     return true;
 }
 
+static void choose_all(nevh_field *f) {
+    f->n_chosen = f->lanes;
+    for (size_t lane = 0; lane < f->lanes; lane++)
+        f->chosen[lane] = lane;
+}
+
 int nevh__field_lanes_plan(nevh_field *f, size_t lanes) {
     if (!can_differ(f))
         return nevh__fail(&f->report, NEVH_ESTRUCT,
@@ -63,7 +69,12 @@ int nevh__field_lanes_plan(nevh_field *f, size_t lanes) {
     for (size_t i = 0; i < f->n_terms; i++)
         if (!plan_term(&f->terms[i], lanes))
             return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+    f->chosen = nevh__array(lanes, sizeof *f->chosen);
+    f->lane_scale = nevh__array(2 * f->n * lanes, sizeof *f->lane_scale);
+    if (!f->chosen || !f->lane_scale)
+        return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
     f->lanes = lanes;
+    choose_all(f);
     return NEVH_OK;
 }
 
@@ -81,6 +92,7 @@ static bool differenced_alike(const nevh_field *a, const nevh_field *b) {
 
 /* Constants of other lanes lie in the same rows. */
 static void fill_again(nevh_field *f) {
+    choose_all(f);
     for (size_t i = 0; i < f->n_terms; i++) {
         f->terms[i].gathered_width = 0;
         nevh__constants_fill(f, &f->terms[i]);
@@ -105,6 +117,8 @@ bool nevh__field_lane_take(nevh_field *f, size_t lane, const double *const c[],
             put(decl->count * term->nv, f->lanes, lane, own->terms[i].delta,
                 term->lane_delta);
     }
+    if (own && own->scale)
+        put(2 * f->n, f->lanes, lane, own->scale, f->lane_scale);
     fill_again(f);
     return true;
 }
@@ -119,6 +133,8 @@ void nevh__field_lane_copy(nevh_field *f, size_t from, size_t to) {
         for (size_t k = 0; k < decl->count * term->nv * f->lanes; k += f->lanes)
             term->lane_delta[k + to] = term->lane_delta[k + from];
     }
+    for (size_t k = 0; k < 2 * f->n * f->lanes; k += f->lanes)
+        f->lane_scale[k + to] = f->lane_scale[k + from];
     fill_again(f);
 }
 
@@ -126,4 +142,17 @@ void nevh__field_alone(nevh_field *f, size_t lane) {
     f->alone = lane;
     for (size_t i = 0; i < f->n_terms; i++)
         f->terms[i].gathered_width = 0;
+}
+
+const double *nevh__field_lane_scale(const nevh_field *f, size_t lane,
+                                     double room[]) {
+    for (size_t k = 0; f->lanes && k < 2 * f->n; k++)
+        room[k] = f->lane_scale[k * f->lanes + lane];
+    return f->lanes ? room : f->scale;
+}
+
+void nevh__field_choose(nevh_field *f, size_t count, const size_t lanes[]) {
+    f->n_chosen = count;
+    memcpy(f->chosen, lanes, count * sizeof *lanes);
+    nevh__field_alone(f, lanes[0]);
 }

@@ -98,9 +98,11 @@ struct nevh_field {
     const nevh__planned *whole_q, *whole_p;
     bool starved;    /* memory was out when an evaluation was planned */
     bool broadcasts; /* one state may as well be repeated over a vector */
-    size_t lanes;    /* that have constants of their own: state i of some side
-                        by side those of lane i % lanes; 0: all have the same */
-    size_t alone;    /* the lane whose constants a single state has */
+    size_t lanes; /* that have constants of their own; 0: all have the same */
+    size_t *chosen, n_chosen; /* state i of some side by side has those of lane
+                                 chosen[i % n_chosen] */
+    size_t alone;             /* the lane whose constants a single state has */
+    double *lane_scale;       /* 2n rows of lanes: their scales */
     struct nevh__single
         *single; /* evaluations at one state; see evaluation.c */
     nevh__report report;
@@ -136,7 +138,9 @@ static inline bool nevh__wanted(const nevh__places *at,
 /* The lane whose constants a state has, of so many side by side. */
 static inline size_t nevh__lane_of(const nevh_field *f, size_t width,
                                    size_t state) {
-    return width == 1 ? f->alone : f->lanes ? state % f->lanes : 0;
+    return width == 1 ? f->alone
+           : f->lanes ? f->chosen[state % f->n_chosen]
+                      : 0;
 }
 /* An instance's constant k, in a lane. */
 static inline double nevh__constant(const nevh_field *f,
@@ -145,6 +149,12 @@ static inline double nevh__constant(const nevh_field *f,
     size_t at = instance * term->term->decl.nc + k;
     return f->lanes ? term->lane_c[at * f->lanes + lane]
                     : term->term->decl.c[at];
+}
+/* The step of its difference by variable k, in a lane. */
+static inline double nevh__delta(const nevh_field *f, const nevh__planned *term,
+                                 size_t instance, size_t k, size_t lane) {
+    size_t at = instance * term->nv + k;
+    return f->lanes ? term->lane_delta[at * f->lanes + lane] : term->delta[at];
 }
 
 /* field_lanes.c: each lane of a field gets constants of its own, those of the
@@ -161,6 +171,14 @@ bool nevh__field_lane_take(nevh_field *, size_t lane, const double *const c[],
 void nevh__field_lane_copy(nevh_field *, size_t from, size_t to);
 /* The lane whose constants single states have from now on. */
 void nevh__field_alone(nevh_field *, size_t lane);
+/* The field's scale, or that of a lane in room, 2n. */
+const double *nevh__field_lane_scale(const nevh_field *, size_t lane,
+                                     double room[]);
+/* From now on state i of some side by side has the constants of the lane
+   lanes[i % count], count at most those of the field, and single states have
+   those of the first; until a lane takes others.  Evaluations that were planned
+   keep those of all lanes until nevh__evaluation_refresh. */
+void nevh__field_choose(nevh_field *, size_t count, const size_t lanes[]);
 
 /* For each method; nevh__gradient_fn. */
 int nevh__gradient_central(nevh_field *, nevh__planned *, const nevh__places *);
@@ -175,6 +193,7 @@ int nevh__field_terms(nevh_field *, const nevh__places *);
    is out. */
 bool nevh__central_stencil_plan(nevh_field *);
 void nevh__central_stencil_clear(nevh__planned *);
+void nevh__central_stencils_clear(nevh_field *); /* those of all terms */
 bool nevh__exact_gather_plan(nevh_field *);
 /* Whether one state may as well be repeated over a vector. */
 bool nevh__exact_block_broadcasts(const nevh_field *);

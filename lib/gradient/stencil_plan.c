@@ -152,6 +152,12 @@ void nevh__central_stencil_clear(nevh__planned *term) {
     }
 }
 
+void nevh__central_stencils_clear(nevh_field *f) {
+    for (size_t i = 0; i < f->n_terms; i++)
+        nevh__central_stencil_clear(&f->terms[i]);
+    f->whole_q = f->whole_p = NULL;
+}
+
 /* The width's lanes, or a part of them in whole vectors, for which there is
    room in a block; 0: there is none. */
 static size_t lanes_of(const nevh__evaluation *e, const nevh__stencil *s) {
@@ -168,8 +174,6 @@ static bool applicable(const nevh__evaluation *e) {
         return false; /* there are no points */
     if (e->width != 1 && e->width % NEVH__LANES)
         return false; /* rows of points are whole vectors */
-    if (f->lanes && e->width % f->lanes)
-        return false; /* some lanes' constants would be left out */
     if (f->n > NEVH__MOST_POINT_ROWS)
         return false; /* evaluations are for small systems */
     for (size_t i = 0; i < f->n_terms; i++) {

@@ -63,8 +63,9 @@ int nevh__field_select_steps(nevh_field *f, const nevh_options *o) {
     int status = nevh__step_selection_init(&e, f, o);
     if (!status)
         nevh__set_crude_steps(&e);
-    if (!status && !nevh__find_samples(&e))
+    if (!status && (!nevh__central_stencil_plan(f) || !nevh__find_samples(&e)))
         status = nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
+    nevh__central_stencils_clear(f); /* of crude steps */
     if (!status && !o->scale)
         set_scales(&e);
     for (size_t i = 0; !status && i < f->n_terms; i++)

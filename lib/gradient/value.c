@@ -156,7 +156,7 @@ static int add_noise(nevh_field *f, nevh__planned *term, nevh__block b,
             double *noise = k < term->nq ? noise_q : noise_p;
             noise[nevh__index(term, instance, k)] +=
                 DBL_EPSILON * fabs(f->h[at]) /
-                term->delta[instance * term->nv + k];
+                nevh__delta(f, term, instance, k, f->alone);
         }
     }
     return status;

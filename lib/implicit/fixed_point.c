@@ -12,6 +12,7 @@
    sweeps do.  In a larger one, where it costs hundreds, more than 0.7: that
    would not be through after NEVH__STAGE_SWEEPS.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradient/field_private.h"
 #include "implicit/implicit_private.h"
 #include "system/system_private.h"
 #include <math.h>
@@ -28,6 +29,7 @@ static void lay_out(nevh__arena *a, void *solver) {
     s->out = nevh__arena_take(a, unknowns, each);
     s->least = nevh__arena_take(a, unknowns, each);
     s->noise = nevh__arena_take(a, 4 * s->work->n, each);
+    s->one_scale = nevh__arena_take(a, 2 * s->work->n, each);
     s->lanes = nevh__arena_take(a, width, sizeof *s->lanes);
     s->lane = nevh__arena_take(a, width, sizeof *s->lane);
 }
@@ -70,7 +72,9 @@ static void find_scales(nevh__stage_solver *s) {
         size_t at = row * w->width;
         for (size_t i = 0; i < w->width; i++) {
             double size = fabs(y[row % w->n * w->width + i]);
-            double scale = size > w->scale[row] ? size : w->scale[row];
+            double least =
+                w->field->lanes ? w->field->lane_scale[at + i] : w->scale[row];
+            double scale = size > least ? size : least;
             s->scale[at + i] = scale;
             s->unit[at + i] = h / scale;
         }

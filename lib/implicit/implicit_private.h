@@ -84,15 +84,17 @@ int nevh__stage_solve(nevh__stage_solver *, const nevh__stage_problem *);
 struct nevh__stage_solver {
     nevh_work *work;
     nevh__stage_shape shape;
-    size_t stages, first; /* first: the variable that row 0 belongs to */
-    size_t rows;          /* 2 n stages or n stages: unknowns of a lane */
-    void *memory;         /* holds all arrays that follow */
-    double *scale;        /* 2n x width: sizes that changes are held against */
-    double *unit;         /* 2n x width: |h| over them */
-    double *out;          /* rows x width */
-    double *least;        /* rows x width: smallest change so far */
-    double *noise;        /* 2n, of one lane */
-    size_t *lanes;        /* lanes under way */
+    size_t stages, first;  /* first: the variable that row 0 belongs to */
+    size_t rows;           /* 2 n stages or n stages: unknowns of a lane */
+    void *memory;          /* holds all arrays that follow */
+    double *scale;         /* 2n x width: sizes that changes are held against */
+    double *unit;          /* 2n x width: |h| over them */
+    double *out;           /* rows x width */
+    double *least;         /* rows x width: smallest change so far */
+    double *noise;         /* 2n, of one lane */
+    double *one_scale;     /* 2n: of Newton's lane */
+    const double *typical; /* 2n: sizes of the variables, of that lane */
+    size_t *lanes;         /* lanes under way */
     nevh__stage_lane *lane;
     struct nevh__newton *newton; /* these two: NULL for large systems */
     struct nevh__rescue *rescue;

@@ -25,6 +25,8 @@ void nevh__stage_noise(nevh__stage_solver *s, size_t lane) {
         q[k] = e->q[k * w->width + lane];
         p[k] = e->p[k * w->width + lane];
     }
+    if (w->field->lanes)
+        nevh__field_alone(w->field, lane);
     s->status =
         nevh__work_noise(s->work, e->t, q, p, s->noise + w->n, s->noise);
 }

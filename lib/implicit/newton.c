@@ -16,6 +16,7 @@
    which M^-1 mixes, makes some improve by chance, and where it makes a stiff G
    a flight of stairs, M^-1 goes down by tiny steps.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gradient/field_private.h"
 #include "implicit/implicit_private.h"
 #include "system/system_private.h"
 #include <float.h>
@@ -102,7 +103,7 @@ static void spread(const nevh__stage_solver *s, size_t first, size_t last) {
     }
     for (size_t k = first; k < last; k++) {
         double *moved = (k < n ? m->q : m->p) + k % n * points + k - first + 1;
-        *moved += fmax(part * s->work->scale[k], 0x1p-30 * fabs(*moved));
+        *moved += fmax(part * s->typical[k], 0x1p-30 * fabs(*moved));
     }
 }
 
@@ -115,7 +116,7 @@ static double derivative(const nevh__stage_solver *s, size_t row, size_t k,
     const double *x = (k < n ? m->q : m->p) + k % n * points;
     const double *f = (row < n ? m->dp : m->dq) + row % n * points;
     double slope = (f[i] - f[0]) / (x[i] - x[0]);
-    slope *= s->work->scale[k] / s->work->scale[row];
+    slope *= s->typical[k] / s->typical[row];
     return row < n ? slope : -slope;
 }
 
@@ -216,12 +217,12 @@ static int improve(nevh__stage_solver *s, size_t lane) {
     s->work->sweeps++;
     for (size_t row = 0; row < s->rows; row++) {
         size_t k = s->first + row / s->stages;
-        m->out[row] = (m->g[row] - x[row * width]) / s->work->scale[k];
+        m->out[row] = (m->g[row] - x[row * width]) / s->typical[k];
     }
     nevh__solve(s->rows, m->matrix, m->pivot, m->out);
     for (size_t row = 0; row < s->rows; row++) {
         size_t k = s->first + row / s->stages;
-        m->out[row] = x[row * width] + m->out[row] * s->work->scale[k];
+        m->out[row] = x[row * width] + m->out[row] * s->typical[k];
         check += m->out[row] - m->out[row];
     }
     return check == 0 ? NEVH_OK : NEVH_EDOM;
@@ -232,7 +233,7 @@ static int improve(nevh__stage_solver *s, size_t lane) {
    variable; in units of scale.  Added to what differences bring. */
 static void find_noise(nevh__stage_solver *s, size_t lane) {
     const struct nevh__newton *m = s->newton;
-    const double *scale = s->work->scale;
+    const double *scale = s->typical;
     size_t n = s->work->n, all = s->shape.partitioned ? n : 2 * n;
     nevh__stage_noise(s, lane);
     for (size_t k = s->first; !s->status && k < 2 * n; k++) {
@@ -260,7 +261,7 @@ static bool no_more_than_noise(nevh__stage_solver *s, size_t lane,
     nevh__solve(s->rows, m->matrix, m->pivot, m->g);
     for (size_t row = 0; row < s->rows; row++) {
         size_t k = s->first + row / s->stages;
-        most = fmax(most, h * fabs(m->g[row]) * s->work->scale[k] /
+        most = fmax(most, h * fabs(m->g[row]) * s->typical[k] /
                               s->scale[k * s->work->width + lane]);
     }
     return !s->status && change <= NEVH__STAGE_TINY + NEVH__STAGE_MARGIN * most;
@@ -291,9 +292,18 @@ static int iterate(nevh__stage_solver *s, size_t lane) {
     return status ? status : NEVH_EMAXITER;
 }
 
+/* Gradients and sizes are the lane's from now on. */
+static void choose(nevh__stage_solver *s, size_t lane) {
+    nevh_field *f = s->work->field;
+    if (f->lanes)
+        nevh__field_choose(f, 1, &lane);
+    s->typical = nevh__field_lane_scale(f, lane, s->one_scale);
+}
+
 int nevh__newton_lane(nevh__stage_solver *s, size_t lane) {
     const nevh__stage_problem *e = s->problem;
     int status = NEVH_EMAXITER;
+    choose(s, lane);
     if (s->newton) {
         s->work->newtons++;
         status = iterate(s, lane);

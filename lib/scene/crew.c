@@ -436,6 +436,7 @@ static int run(nevh_sweep *s, nevh_wanted_fn wanted, nevh_sweep_fn tell_fn,
     s->tell = tell_fn;
     s->data = data;
     s->stopped = s->failed = false;
+    s->by_lane = 0;
     size_t threads = s->is.threads;
     nevh__worker *all = nevh__array(threads, sizeof *all);
     bool ready = all && open_window(s);

@@ -76,6 +76,7 @@ static int done(void *data, const nevh_member_result *r) {
                         r->status ? NEVH_MEMBER_FAILED : NEVH_MEMBER_DONE,
                         r->message, r->values);
     nevh__variant_free(&w->lanes.own[i]);
+    w->lanes.n_done++;
     return w->sweep->stopped;
 }
 
@@ -141,7 +142,11 @@ size_t nevh__lane_members_run(nevh__worker *w) {
         return queued;
     }
     l->n_queue = queued;
+    l->n_done = 0;
     nevh_ensemble_run(l->ensemble, next, done, w);
+    pthread_mutex_lock(&w->sweep->lock);
+    w->sweep->by_lane += l->n_done;
+    pthread_mutex_unlock(&w->sweep->lock);
     free_variants(l);
     l->n_queue = 0;
     return l->n_left;

@@ -17,6 +17,7 @@ typedef struct {
     double *plan_at;      /* its state to plan at: 2n */
     size_t *queue, n_queue, queue_at;
     size_t *left, n_left; /* those that are to be run apart */
+    size_t n_done;        /* of the queue */
 } nevh__lane_members;
 
 typedef struct {

@@ -52,6 +52,7 @@ struct nevh_sweep {
     void *data;
     nevh__waiting *waiting; /* NULL: the order does not matter */
     bool stopped, failed;
+    uint64_t by_lane;     /* members whose lanes had constants of their own */
     nevh_chunk_fn chunks; /* where next and end come from; NULL: they stay */
     void *chunks_data;
     volatile sig_atomic_t draining;
