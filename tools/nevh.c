@@ -55,7 +55,7 @@ static const struct {
      "the steps of one integrator as a C program that needs nothing else"},
     {report, FOR_REPORT, "SCENE...",
      "one page of HTML with the tables and pictures of the other commands"},
-    {live_page, FOR_PAGE, "SCENE",
+    {live_page, FOR_PAGE, "SCENE...",
      "a live page in one file: the scene runs in a browser, offline"},
     {hard, FOR_HARD, "",
      "every integrator on cases that are hard to integrate"},

@@ -282,6 +282,13 @@ function listen() {
     if (key) { event.preventDefault(); at(key).click(); }
   };
   listenToDrags();
+  at("scenes").hidden = all.length < 2;
+  const choice = at("scenes").lastChild;
+  choice.append(...all.map((one) => new Option(one.name, one.name, false, one === given)));
+  choice.onchange = () => {
+    location.hash = new URLSearchParams({ scene: choice.value });
+    location.reload();
+  };
 }
 const putFragment = () => window.history.replaceState(null, "", fragment());
 

@@ -3,7 +3,9 @@
 "use strict";
 
 const at = (id) => document.getElementById(id);
-const given = JSON.parse(at("given").textContent);
+const all = JSON.parse(at("given").textContent); // scenes
+const asked = new URLSearchParams(location.hash.slice(1)).get("scene");
+const given = all.find((one) => one.name === asked) || all[0];
 const PATIENCE = 5000; // milliseconds until a request is given up
 const TRAIL = 3000, PATH = 800;
 const now = () => performance.now();
@@ -78,6 +80,7 @@ function readFragment() {
 }
 function fragment() {
   const to = new URLSearchParams();
+  if (all.length > 1) to.append("scene", given.name);
   if (S.text !== given.text) to.append("text", S.text);
   to.append("dt", S.dt);
   to.append("integrators", S.schemes.join(","));

@@ -55,6 +55,20 @@ await digits("pendulum", ["verlet", "rk4"], 0.0625);
 await digits("kepler", ["verlet"], 0.03125);
 await digits("double-pendulum", ["gauss4"], 0.015625);
 
+// Two scenes in one page: one is chosen, and its address keeps the choice.
+await tried("both", "", async (page) => {
+  check(await page.until("steps > 5 && !at('scenes').hidden"), "no choice of scenes");
+  const title = await page.evaluate("document.title");
+  await page.evaluate(`(() => { const choice = at('scenes').lastChild;
+    choice.value = 'kepler';
+    choice.dispatchEvent(new Event('change')); })()`);
+  check(await page.until("typeof given === 'object' && given.name === 'kepler' && steps > 5"),
+    "the other scene does not run");
+  check(await page.evaluate("document.title") !== title, "the title stays");
+  check(await page.evaluate("fragment()").then((text) => /scene=kepler/.test(text)),
+    "the address forgets the scene");
+});
+
 // It moves, alone, and stops and goes by keys; formulas are changed, and wrong
 // ones are refused with the place.
 await tried("pendulum", "", async (page) => {

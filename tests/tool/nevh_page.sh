@@ -8,7 +8,7 @@ page=$work/page.html
 # What is wrong is said, and there is no page.
 refused 'needs a file' page pendulum
 refused 'no scene|there is no' page no-such-scene -o $page
-refused 'takes one scene' page -o $page
+refused 'needs a scene' page -o $page
 refused 'no option of nevh page' page pendulum -o $page --format csv
 refused 'needs GSL' page pendulum -o $page --integrators gsl-rkf45
 refused 'needs GSL' page pendulum -o $page --integrators verlet,tao4
@@ -48,11 +48,20 @@ has '"integrators":\["rk4","verlet"\]'
 has 'k = 2\.5'
 has 'A \\u003c/script\\u003e\\u003cb\\u003e \\u0026 \\u0022c\\u0022'
 for element in script figure section main table; do
-    opened=$(grep -v '^{"name"' $page | grep -o "<$element[ >]" | wc -l)
-    closed=$(grep -v '^{"name"' $page | grep -o "</$element>" | wc -l)
+    opened=$(grep -v '^\[*{"name"' $page | grep -o "<$element[ >]" | wc -l)
+    closed=$(grep -v '^\[*{"name"' $page | grep -o "</$element>" | wc -l)
     test "$opened" -gt 0 && test "$opened" = "$closed" ||
         fails "has $opened <$element> and $closed </$element>"
 done
+
+# Several scenes in one page; none where one of them is wrong.
+exits 0 page pendulum $work/own.nevh -o $page
+cp $page $work/out
+has '^\[\{"name":"pendulum",'
+has '^\{"name":"[^"]*own.nevh",'
+rm $page
+refused 'psi' page pendulum $work/own.nevh --set psi=1 -o $page
+test ! -e $page || fails "leaves a page"
 
 # The same scene gives the same page; a page is not large.
 exits 0 page pendulum -o $page

@@ -11,6 +11,7 @@ command=page
 
 exits 0 page pendulum -o $work/pendulum.html
 exits 0 page kepler -o $work/kepler.html
+exits 0 page pendulum kepler -o $work/both.html
 exits 0 page henon-heiles -o $work/henon-heiles.html
 exits 0 page double-pendulum -o $work/double-pendulum.html
 

@@ -48,9 +48,10 @@ static void put_starts(FILE *f, const options *o) {
     fputc(']', f);
 }
 
-static void put_scene(FILE *f, const options *o, const char *text, double dt) {
+static void put_scene(FILE *f, const options *o, const char *name,
+                      const char *text, double dt) {
     fputs("{\"name\":", f);
-    put_string(f, o->operands.item[1]);
+    put_string(f, name);
     fputs(",\"text\":", f);
     put_string(f, text);
     put_starts(f, o);
@@ -58,7 +59,7 @@ static void put_scene(FILE *f, const options *o, const char *text, double dt) {
     put_list(f, "gradients", &o->gradients);
     if (o->dt.count)
         fprintf(f, ",\"dt\":%.17g", dt);
-    fputs("}\n", f);
+    fputc('}', f);
 }
 
 /* The page has neither GSL nor transforms of time. */
@@ -83,14 +84,13 @@ static int check_schemes(const options *o) {
     return TOOL_OK;
 }
 
-static int check_scene(nevh_scene *scene, const options *o) {
+static int check_scene(nevh_scene *scene, const char *name, const options *o) {
     char *code = nevh_scene_code_path(scene, 0);
     size_t n = nevh_scene_dof(scene);
     double *start = tool_allocate(2 * n, sizeof *start);
     int status = TOOL_OK;
     if (code)
-        status = tool_refuse("%s: a page cannot compile effects in C",
-                             o->operands.item[1]);
+        status = tool_refuse("%s: a page cannot compile effects in C", name);
     else if (nevh_scene_start(scene, start, start + n))
         status = scene_report(scene, o);
     free(code);
@@ -119,38 +119,46 @@ static int read_kit(char **head, char **tail) {
     return status;
 }
 
-static int write_live(const options *o, nevh_scene *scene) {
-    char *head = NULL, *tail = NULL;
+/* Adds a scene, as the page takes it. */
+static int add_scene(FILE *f, const options *o, const char *name) {
+    nevh_scene *scene;
     double dt = 0;
-    if (check_scene(scene, o))
-        return TOOL_USAGE;
-    if (o->dt.count && scene_number(scene, o, o->dt.item[0], &dt))
-        return TOOL_USAGE;
-    if (o->dt.count && !(dt > 0 && isfinite(dt)))
-        return tool_refuse("--dt: %s is no step", o->dt.item[0]);
-    if (read_kit(&head, &tail))
-        return TOOL_USAGE;
-    char *text = tool_owned(nevh_scene_write(scene, NULL));
-    output out;
-    int status = output_open(&out, o->file) ? TOOL_USAGE : TOOL_OK;
+    int status = scene_open_named(&scene, name, o);
+    if (!status)
+        status = check_scene(scene, name, o);
+    if (!status && o->dt.count)
+        status = scene_number(scene, o, o->dt.item[0], &dt);
+    if (!status && o->dt.count && !(dt > 0 && isfinite(dt)))
+        status = tool_refuse("--dt: %s is no step", o->dt.item[0]);
     if (!status) {
-        fputs(head, out.stream);
-        put_scene(out.stream, o, text, dt);
-        fputs(tail, out.stream);
-        status = output_close(&out, TOOL_OK);
+        char *text = tool_owned(nevh_scene_write(scene, NULL));
+        put_scene(f, o, name, text, dt);
+        free(text);
     }
-    free(text);
-    free(head);
-    return status;
+    nevh_scene_free(scene);
+    return status ? TOOL_USAGE : TOOL_OK;
 }
 
 int live_page(const options *o) {
-    nevh_scene *scene;
+    char *head = NULL, *tail = NULL;
+    output out;
     if (!o->file)
         return tool_refuse("nevh page needs a file: -o FILE.html");
-    if (check_schemes(o) || scene_open(&scene, o))
+    if (o->operands.count < 2)
+        return tool_refuse("nevh page needs a scene: a file, or a name of nevh "
+                           "list scenes");
+    if (check_schemes(o) || read_kit(&head, &tail))
         return TOOL_USAGE;
-    int status = write_live(o, scene);
-    nevh_scene_free(scene);
+    int status = output_open(&out, o->file) ? TOOL_USAGE : TOOL_OK;
+    if (!status) {
+        fprintf(out.stream, "%s[", head);
+        for (size_t i = 1; !status && i < o->operands.count; i++) {
+            fputs(i > 1 ? ",\n" : "", out.stream);
+            status = add_scene(out.stream, o, o->operands.item[i]);
+        }
+        fprintf(out.stream, "]\n%s", tail);
+        status = output_close(&out, status);
+    }
+    free(head);
     return status;
 }
