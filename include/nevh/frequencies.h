@@ -17,8 +17,9 @@ enum { NEVH_FEWEST_SAMPLES = 64 };
 typedef struct {
     double frequency;        /* radians a unit of time, 0 or more */
     double amplitude, phase; /* t is 0 at the first sample */
-    double
-        error; /* of the frequency: an estimate, from a window of less order */
+    double error; /* of the frequency: an estimate, from a window of less
+                     order, or the width of the peak where that does not show
+                     the line */
     double drift; /* the frequency in the second half less that in the first;
                      NAN where a half does not show the line */
 } nevh_spectral_line;

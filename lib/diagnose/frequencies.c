@@ -55,14 +55,14 @@ static double transform(const analysis *a, double w, double *slope) {
     return re * re + im * im;
 }
 
-/* Where the square is largest, between two of the transform's own places: its
-   slope falls through 0 there. */
-static double refine(const analysis *a, double low, double high) {
+/* Where the square is largest between two places: its slope falls through 0
+   there.  NAN where it does not fall from one to the other. */
+static double peak(const analysis *a, double low, double high) {
     double at_low, at_high, at_middle;
     transform(a, low, &at_low);
     transform(a, high, &at_high);
     if (!(at_low > 0 && at_high < 0))
-        return (low + high) / 2;
+        return NAN;
     int side = 0;
     double w = (low + high) / 2;
     for (int i = 0; i < 100 && high - low > 4e-16 * high; i++) {
@@ -85,6 +85,11 @@ static double refine(const analysis *a, double low, double high) {
         }
     }
     return w;
+}
+
+static double refine(const analysis *a, double low, double high) {
+    double w = peak(a, low, high);
+    return isnan(w) ? (low + high) / 2 : w;
 }
 
 /* The width of the window's peak on either side, in w. */
@@ -243,7 +248,8 @@ static void close(analysis *a) {
     free(a->power);
 }
 
-/* Line i of the whole in a part: its frequency there, other lines as they are. */
+/* Line i of the whole in a part: its frequency there, other lines as they are;
+   NAN where the part does not show it. */
 static double frequency_in(const analysis *whole, analysis *part, size_t i,
                            size_t from, int order) {
     double width = 2 * resolution(part);
@@ -251,7 +257,7 @@ static double frequency_in(const analysis *whole, analysis *part, size_t i,
     take_off((analysis *)whole, i);
     memcpy(part->rest, whole->rest + from, part->count * sizeof *part->rest);
     double low = fmax(whole->w[i] - width, width / 16);
-    return refine(part, low, whole->w[i] + width);
+    return peak(part, low, whole->w[i] + width);
 }
 
 static bool describe(analysis *a, double h, nevh_spectral_line lines[],
@@ -264,10 +270,11 @@ static bool describe(analysis *a, double h, nevh_spectral_line lines[],
         double first = frequency_in(a, &half, i, 0, LESS);
         double second = frequency_in(a, &half, i, a->count - count, LESS);
         double less = frequency_in(a, &again, i, 0, LESS);
+        double error = isnan(less) ? resolution(a) : fabs(less - a->w[i]);
         double phase = atan2(-a->sine[i], a->cosine[i]) - a->w[i] * a->half;
         lines[(*found)++] = (nevh_spectral_line){
             a->w[i], amplitude(a, i), remainder(phase, 2 * pi),
-            fmax(fabs(less - a->w[i]), 2e-16 * a->w[i]), second - first};
+            fmax(error, 2e-16 * a->w[i]), second - first};
     }
     close(&again);
     close(&half);

@@ -46,6 +46,18 @@ TEST(lines_of_a_sum_are_found) {
     ck_assert_double_eq_tol(lines[0].drift, 5e-4, 1e-6);
 }
 
+TEST(a_line_of_one_half_has_no_drift) {
+    nevh_spectral_line line;
+    size_t found;
+    for (size_t k = 0; k < SAMPLES; k++)
+        values[k] = cos((k < SAMPLES / 2 ? 2.2 : 1.1) * 0.1 * (double)k);
+    ck_assert_int_eq(nevh_frequencies(0.1, SAMPLES, values, 1, &line, &found),
+                     NEVH_OK);
+    ck_assert_uint_eq(found, 1);
+    ck_assert_double_nan(line.drift);
+    ck_assert_double_gt(line.error, 1e-6);
+}
+
 /* Its odd multiples are all there is in the angle. */
 TEST(frequency_of_the_pendulum_is_exact) {
     nevh_scene *s = nevh_scene_parse("pendulum", "[coordinates]\nx = 2\n"

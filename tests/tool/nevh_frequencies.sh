@@ -29,6 +29,9 @@ has '^ gauss8  .*cos\(phi\)  *1 '
 # Energy that is lost moves the frequency; a mistake is told.
 exits 0 frequencies pendulum --integrators rk4 --dt 0.1 --t-end 500
 has 'rk4, phi: the first frequency moves by '
+exits 0 frequencies double-pendulum --integrators gauss8 --t-end 400
+has 'phi2: a half of the run does not show the first frequency'
+lacks ' -?nan'
 exits 0 frequencies pendulum --integrators verlet --start phi=0 --t-end 50
 has 'verlet, phi: it does not move'
 exits 0 frequencies kepler-0.9 --integrators adaptive-verlet,gauss8 --t-end 20

@@ -136,7 +136,10 @@ static void add_row(job *j, const options *o, const char *integrator,
     table_shown(t, "%zu", rank);
     table_shown(t, "%.15g", l->frequency);
     table_shown(t, "%.0e", l->error);
-    table_shown(t, "%.0e", l->drift);
+    if (isnan(l->drift))
+        table_text(t, "-");
+    else
+        table_shown(t, "%.0e", l->drift);
     table_shown(t, "%.10g", period);
     table_shown(t, "%.6g", l->amplitude);
     table_shown(t, "%.4f", l->phase);
@@ -174,7 +177,13 @@ static void judge_length(job *j, const char *integrator, const char *name,
 static void judge(job *j, const char *integrator, const char *name,
                   const nevh_spectral_line *l) {
     static const double moving = 1e-6;
-    if (fabs(l->drift) > moving * l->frequency)
+    if (isnan(l->drift))
+        list_print(&j->words,
+                   "%s, %s: a half of the run does not show the first "
+                   "frequency: the orbit is chaotic, loses energy, or the run "
+                   "is too short to tell lines apart.",
+                   integrator, name);
+    else if (fabs(l->drift) > moving * l->frequency)
         list_print(&j->words,
                    "%s, %s: the first frequency moves by %.1e between the "
                    "halves of the run: the orbit is chaotic, loses energy, or "
