@@ -31,7 +31,7 @@ bench-brouwer: bench/brouwer$(EXEEXT)
 	./bench/brouwer$(EXEEXT)
 
 # How often the intervals of nevh fit hold the truth.
-EXTRA_DIST += bench/fit.sh
+EXTRA_DIST += bench/fit.sh bench/walk.sh
 bench-fit: all
 	$(SHELL) $(srcdir)/bench/fit.sh ./tools/nevh$(EXEEXT) \
 	  examples/add_noise$(EXEEXT) 400

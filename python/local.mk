@@ -29,7 +29,8 @@ portable_name = $(PACKAGE)-$(VERSION)-portable
 portable: python/nevh_files
 	rm -rf $(portable_name) && cp -R python/nevh_files $(portable_name)
 	$(MKDIR_P) $(portable_name)/share/nevh/python $(portable_name)/share/doc/nevh
-	cp $(srcdir)/python/nevh.py $(portable_name)/share/nevh/python/
+	cp $(srcdir)/python/nevh.py $(srcdir)/python/who-keeps-the-energy.ipynb \
+	  $(portable_name)/share/nevh/python/
 	cp $(srcdir)/README.md $(srcdir)/COPYING $(portable_name)/share/doc/nevh/
 	-$(MAKE) html && cp doc/nevh.html $(portable_name)/share/doc/nevh/
 	tar -czf $(portable_name).tar.gz $(portable_name)
