@@ -41,6 +41,23 @@ says 'is for nevh compare and nevh cost'
 exits 2 compare oscillator --plot-kind phase --plot $svg
 says 'is order, or not given'
 
+# Each axis has two numbers or more, also where panels are low.
+exits 0 run henon-heiles --plot-kind time --t-end 100 --keep-plot-script $work/out.gp
+test "$(grep -c '^set ytics' $work/out.gp)" = 5 || fails "has other panels"
+awk '/^set [xy]tics/ && split($0, a, "\"") < 5 { few = 1 } END { exit few }' \
+    $work/out.gp || { fails "has a single number at an axis"; grep '^set ytics' $work/out.gp; }
+# A narrow range of errors is in the middle of its axis.
+exits 0 run pendulum --plot-kind energy --keep-plot-script $work/out.gp
+awk '/^set yrange/ { gsub("[^0-9.e-]", " "); low = $(NF - 1); high = $NF }
+    END { exit !(low > 0.055 && high < 0.073 && high > 0.068) }' $work/out.gp ||
+    { fails "has another axis"; grep '^set yrange' $work/out.gp; }
+# What is beyond the times that are shown does not stretch the other axis.
+exits 0 effects kepler --impact --keep-plot-script $work/out.gp
+awk '/^set xrange/ { gsub("[^0-9.e-]", " "); t = $NF }
+    /^set yrange/ { gsub("[^0-9.e-]", " "); far = $NF > 2.2*t ? 1 : far }
+    END { exit far }' $work/out.gp ||
+    { fails "shows what is later"; grep '^set [xy]range' $work/out.gp; }
+
 # An animation: frames of two orbits, each with its time; both begin alike, and at
 # the end the one that is not symplectic is elsewhere.
 exits 0 run kepler --integrators verlet,rk4 --dt 0.15 --t-end 30 \

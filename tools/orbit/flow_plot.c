@@ -124,7 +124,7 @@ static char *heading_of(const flow_job *j, const flow_row *r, size_t time,
                  : fabs(ratio - 1) < 5e-7 ? text_print("area 1")
                                           : text_print("area %.4g", ratio);
     const char *where =
-        isnan(at.area) || is_shown(j, r->loop, time, w) ? "" : ", out of range";
+        isnan(at.area) || is_shown(j, r->loop, time, w) ? "" : ", outside";
     char *text = named ? text_print("%s, t = %.4g%s%s", r->integrator, at.t,
                                     *unit ? " " : "", unit)
                        : text_print("t = %.4g%s%s, %s%s", at.t,

@@ -19,13 +19,16 @@ static void widen(range *r, double value) {
     r->high = fmax(r->high, value);
 }
 
-/* Of the points of a panel, or of all; empty where there are none. */
+/* Of the points of a panel that it shows, or of all; empty where there are none. */
 static range extent(const plot *p, size_t number, coordinate *of) {
-    range r = {INFINITY, -INFINITY};
+    range r = {INFINITY, -INFINITY}, seen = p->panel[number].span_x;
+    if (!(seen.low < seen.high))
+        seen = (range){-INFINITY, INFINITY};
     for (size_t i = 0; i < p->count; i++) {
         const series *s = &p->series[i];
         for (size_t k = 0; k < s->count; k++)
-            if ((s->panel == number || p->same_ranges) && !isnan(s->point[k].x))
+            if ((s->panel == number || p->same_ranges) &&
+                s->point[k].x >= seen.low && s->point[k].x <= seen.high)
                 widen(&r, of(&s->point[k]));
     }
     return r;
@@ -50,13 +53,16 @@ static double round_above(double value) {
     return digits[i] * power;
 }
 
+/* Of a logarithmic axis: round numbers, or, where they would be far from a range
+   that is narrow, what is as far on either side, and no less than a quarter. */
 static range decades(range r) {
     if (r.low > r.high)
         return (range){0.1, 10};
-    double low = round_below(r.low), high = round_above(r.high);
-    if (low >= high * (1 - few_digits))
-        return (range){round_below(low / 1.01), round_above(high * 1.01)};
-    return (range){low, high};
+    if (r.high >= 2 * r.low)
+        return (range){round_below(r.low), round_above(r.high)};
+    double middle = sqrt(r.low) * sqrt(r.high);
+    double half = sqrt(fmax(pow(r.high / r.low, 1 + 2 * room), 1.25));
+    return (range){middle / half, middle * half};
 }
 
 static range with_room(range r) {

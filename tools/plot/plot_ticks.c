@@ -46,13 +46,21 @@ static double common_part(range r, double step) {
     return largest < long_numbers * step ? 0 : floor(middle / round) * round;
 }
 
-static double least_step(range r, double count) {
-    return round_step((r.high - r.low) / fmax(count, 2));
+static double numbers_of(range r, double step) {
+    return floor(r.high / step + rounding) - ceil(r.low / step - rounding) + 1;
+}
+
+/* About as many numbers as were asked for, and two, which an axis needs. */
+static double step_of(range r, double count) {
+    double step = round_step((r.high - r.low) / fmax(count, 2));
+    for (int i = 0; i < 2 && numbers_of(r, step) < 2; i++)
+        step = round_step(0.4 * step);
+    return step;
 }
 
 static void add_numbers(axis *a, double count) {
     range r = a->shown;
-    double step = least_step(r, count);
+    double step = step_of(r, count);
     a->base = common_part(r, step);
     double low = r.low - a->base, high = r.high - a->base;
     a->power = power_of(fmax(fabs(low), fabs(high)));
