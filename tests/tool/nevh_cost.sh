@@ -210,4 +210,8 @@ exits 0 gradients double-pendulum --t-end 1 --gradient central4 \
 has '^ central4 +0\.02 '
 lacks 'auto'
 has 'itself makes an energy error'
+# A difference that meets the centre is told with its half-spread and the reason.
+exits 0 gradients kepler --gradient central8
+has '^central8, half-spread 0.1: a difference by q\[0\]'
+
 exit $status

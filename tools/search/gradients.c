@@ -29,10 +29,13 @@ static void add_numbers(const finding *g, table *t, bool for_people) {
 
 static void add_finding(page *result, const finding *g, bool for_people) {
     table *t = result->table;
-    if (!g->good) {
+    if (!g->good && g->step > 0)
+        list_print(&result->after, "%s, half-spread %.2g: %s", g->gradient,
+                   g->step, g->why);
+    else if (!g->good)
         list_print(&result->after, "%s: %s", g->gradient, g->why);
+    if (!g->good)
         return;
-    }
     table_text(t, g->gradient);
     if (g->step > 0 && for_people)
         table_shown(t, "%.2g", g->step);

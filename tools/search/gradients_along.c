@@ -100,15 +100,16 @@ static int evaluate_yardstick(context *c) {
     return status;
 }
 
-/* The largest at all states, relative; INFINITY where H fails. */
+/* The largest at all states, relative; INFINITY where H fails, with a message
+   of the field's. */
 static double largest_error(const context *c, nevh_field *f) {
     size_t n = c->exact.n;
     double *dq = tool_allocate(n, sizeof *dq),
            *dp = tool_allocate(n, sizeof *dp), error = 0;
-    for (size_t i = 0; i < c->exact.count; i++) {
+    for (size_t i = 0; i < c->exact.count && !isinf(error); i++) {
         if (evaluate(c, f, i, dq, dp))
             error = INFINITY;
-        for (size_t k = 0; k < n; k++) {
+        for (size_t k = 0; k < n && !isinf(error); k++) {
             error = fmax(error, fabs(dq[k] - c->dq[i * n + k]));
             error = fmax(error, fabs(dp[k] - c->dp[i * n + k]));
         }
@@ -261,10 +262,11 @@ finding gradient_find(const context *c, const char *gradient, double step) {
         .gradient = gradient, .step = step, .good = true, .floor = NAN};
     nevh_options o = gradient_options(c, gradient, step);
     nevh_field *f = nevh_field_new(c->plan->system, &o);
-    g.why = text_print("%s", nevh_field_message(f));
     g.good = !nevh_field_status(f);
-    if (g.good) {
+    if (g.good)
         errors_along(c, f, &g);
+    g.why = text_print("%s", g.good ? "" : nevh_field_message(f));
+    if (g.good) {
         take_estimates(c, f, &g);
         g.nanoseconds = time_of(c, f);
         g.energy = energy_along(c, &g);
