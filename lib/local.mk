@@ -101,10 +101,14 @@ libnevh_core_la_SOURCES = \
 	lib/taylor/schedule.c \
 	lib/taylor/series_double.c \
 	lib/taylor/series_quad.c \
+	lib/taylor/series_dd.c \
 	lib/taylor/series_long.c \
 	lib/taylor/orbit_private.h \
+	lib/taylor/dd_private.h \
+	lib/taylor/number_text.h \
 	lib/taylor/orbit_text.h \
 	lib/taylor/quad_orbit.c \
+	lib/taylor/dd_orbit.c \
 	lib/taylor/long_orbit.c \
 	lib/taylor/certain.c \
 	lib/work/pace.h \
@@ -183,7 +187,7 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/recognise.c \
 	lib/diagnose/reference_private.h \
 	lib/diagnose/reference.c \
-	lib/diagnose/reference_pair_private.h \
+	lib/diagnose/reference_dd_private.h \
 	lib/diagnose/reference_pair.c \
 	lib/diagnose/reference_run.c \
 	lib/diagnose/reference_watch.c \

@@ -15,7 +15,7 @@ typedef struct nevh_reference nevh_reference;
 
 /* The orbit through (q, p) at t0, until t1 on either side of it.
    integrator  NULL: an exact solution where H is recognised to have one, else
-               Taylor series in long double where H is of formulas that are
+               Taylor series where H is of formulas that are
                analytic and the work allows it, else gauss12, or dop853 where
                there is friction, which Gauss methods only take to second order.
                nevh_taylor: Taylor series, whatever the work.  Another one: a run
@@ -35,7 +35,13 @@ typedef struct nevh_reference nevh_reference;
        p^2/(2 m) - k/|q| + const             n = 2, 3, bound orbits
    in any units; the constants are fitted.
 
-   A run is repeated with smaller steps until runs with h and h/2 agree to 1e-11
+   Taylor series have 106 bits where there is libquadmath, else those of long
+   double.  Two runs, of two orders and tolerances, are repeated once with smaller
+   tolerances where their difference is above 5e-16 of the range of a variable.
+   Each time they cost three seconds or so at most, by counted operations; where
+   the second time would cost more, the first is kept and the text says so.
+
+   A run of another scheme is repeated with smaller steps until runs with h and h/2 agree to 1e-11
    of the range of each variable, or to rounding, or to 1e-9 where they cost
    more than a twentieth of the following, or as well as can be afforded: 1e7
    gradients, or 2e8 evaluations of term instances, whichever is less.  The one
@@ -80,11 +86,15 @@ NEVH_API const char *nevh_reference_text(const nevh_reference *);
 /* Its own error in the units of state errors, the largest over its time:
    of an exact solution, what the last digits of the fitted constants do to the
    state, or rounding where long double has no more digits than double; of a
-   run, the difference of those with h and h/2.  Smaller state errors mean
-   nothing. */
+   run, the difference of those with h and h/2; of Taylor series, twice the
+   difference of two runs, before states are rounded to doubles.  Smaller state
+   errors mean nothing. */
 NEVH_API double nevh_reference_error(const nevh_reference *);
 /* The time after which state errors mean nothing, because the runs of which it
-   was made have separated by more than 1e-3 of the range of a variable.
+   was made have separated by more than 1e-3 of the range of a variable: of Taylor
+   series, runs with tolerances of 1e-20 and 1e-19.  Until then their own error is
+   that of runs with smaller tolerances, and the time may be earlier to keep that
+   below 1e-15.
    INFINITY (-INFINITY where t1 < t0) where that does not happen. */
 NEVH_API double nevh_reference_horizon(const nevh_reference *);
 /* Why there is a horizon. */

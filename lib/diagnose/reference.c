@@ -147,11 +147,17 @@ static int use_run(nevh_reference *r) {
         asked || !r->integrator ? nevh__reference_series(r) : NEVH_EFAILED;
     if (!status || asked || status == NEVH_ENOMEM)
         return status;
+    bool dear = !r->integrator && strstr(r->report.text, "cost too much");
     r->report = (nevh__report){0};
     if (!r->integrator)
         r->integrator =
             nevh_system_friction(r->system, NULL) ? nevh_dop853 : nevh_gauss12;
-    return nevh__reference_run(r);
+    status = nevh__reference_run(r);
+    size_t used = strlen(r->text);
+    if (!status && dear)
+        snprintf(r->text + used, sizeof r->text - used,
+                 " (Taylor series cost too much)");
+    return status;
 }
 
 static int make(nevh_reference *r) {
@@ -182,13 +188,15 @@ static int make(nevh_reference *r) {
 
 static bool allocate(nevh_reference *r, const double q[], const double p[]) {
     size_t n = r->n;
-    r->start = nevh__array(10 * n, sizeof *r->start);
-    if (!r->start)
+    r->start = nevh__array(12 * n, sizeof *r->start);
+    r->state = nevh__array(2 * n, sizeof *r->state);
+    if (!r->start || !r->state)
         return false;
     r->low = r->start + 2 * n;
     r->high = r->low + 2 * n;
     r->range = r->high + 2 * n;
     r->walked = r->range + 2 * n;
+    r->found = r->walked + 2 * n;
     memcpy(r->start, q, n * sizeof *q);
     memcpy(r->start + n, p, n * sizeof *p);
     memcpy(r->low, r->start, 2 * n * sizeof *q);
@@ -257,6 +265,7 @@ void nevh_reference_free(nevh_reference *r) {
     free(r->memo.keys);
     free(r->memo.states);
     free(r->start);
+    free(r->state);
     free(r->kind);
     free(r);
 }
@@ -323,8 +332,8 @@ static int check_time(nevh_reference *r, double elapsed) {
 }
 
 /* A reference that was not made keeps its status; others forget a failure. */
-static int find_state(nevh_reference *r, long double elapsed, double q[],
-                      double p[]) {
+int nevh__reference_find(nevh_reference *r, long double elapsed,
+                         long double state[]) {
     if (!r || !*r->text)
         return nevh_reference_status(r);
     r->report.status = NEVH_OK;
@@ -333,17 +342,30 @@ static int find_state(nevh_reference *r, long double elapsed, double q[],
     if (status)
         return status;
     if (r->series) {
-        nevh__reference_series_state(r, elapsed, q, p);
+        nevh__reference_series_state(r, elapsed, state);
         return NEVH_OK;
     }
-    if (!r->exact)
-        return nevh__reference_walk(r, (double)elapsed, q, p);
-    status =
-        nevh__exact_state(r->exact, elapsed, r->start, r->start + r->n, q, p);
-    return status ? nevh__fail(&r->report, status,
-                               "the exact solution has no state at t = %.9g",
-                               (double)(r->t0 + elapsed))
-                  : NEVH_OK;
+    double *q = r->found, *p = r->found + r->n;
+    status = r->exact ? nevh__exact_state(r->exact, elapsed, r->start,
+                                          r->start + r->n, q, p)
+                      : nevh__reference_walk(r, (double)elapsed, q, p);
+    for (size_t k = 0; k < 2 * r->n; k++)
+        state[k] = r->found[k];
+    return status && r->exact
+               ? nevh__fail(&r->report, status,
+                            "the exact solution has no state at t = %.9g",
+                            (double)(r->t0 + elapsed))
+               : status;
+}
+
+static int find_state(nevh_reference *r, long double elapsed, double q[],
+                      double p[]) {
+    int status = nevh__reference_find(r, elapsed, r ? r->state : NULL);
+    for (size_t k = 0; !status && k < r->n; k++) {
+        q[k] = (double)r->state[k];
+        p[k] = (double)r->state[r->n + k];
+    }
+    return status;
 }
 
 int nevh_reference_state(nevh_reference *r, double t, double q[], double p[]) {

@@ -39,8 +39,9 @@ struct nevh_reference {
     nevh__memo memo;
     /* From the last checkpoint on, and from there to times between steps. */
     nevh_stepper *walker, *branch;
-    double *walked; /* 2n */
-    size_t steps;   /* walked since the start */
+    double *walked, *found; /* 2n each */
+    long double *state;     /* 2n */
+    size_t steps;           /* walked since the start */
     bool walking;
 };
 
@@ -107,7 +108,11 @@ int nevh__reference_series(nevh_reference *);
 void nevh__reference_series_free(struct nevh__reference_series *); /* NULL */
 /* The state so long after its start. */
 void nevh__reference_series_state(const nevh_reference *, long double elapsed,
-                                  double q[], double p[]);
+                                  long double state[]);
+/* Of any reference, with the digits that it has.
+   returns  as nevh_reference_state_after */
+int nevh__reference_find(nevh_reference *, long double elapsed,
+                         long double state[]);
 /* Makes a run with the steps that it needs, its ranges, error and horizon. */
 int nevh__reference_run(nevh_reference *);
 /* The state of a run, so long after its start. */

@@ -1,7 +1,9 @@
-/* nevh: a reference by Taylor series in long doubles.
+/* nevh: a reference by Taylor series.
 
    Two runs that differ in order and tolerance go side by side.  The series of
-   the finer one are kept: the state at any time is a value of one of them.
+   the finer one are kept: the state at any time is a value of one of them.  Where
+   the orbit makes the difference grow beyond what is wanted, both are taken again
+   with tolerances that are smaller by as much.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/reference_private.h"
 #include "taylor/orbit_private.h"
@@ -11,45 +13,61 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double fine = 1e-20, coarse = 1e-19; /* tolerances */
-static const double apart = 1e-3;                 /* as the header says */
-static const double most_work = 4e8;              /* about a second */
+typedef NEVH__FINE(nevh__orbit) orbit;
+
+static const double usual = 1e-20;  /* tolerance of the finer run */
+static const double finer = 10;     /* than the other one */
+static const double apart = 1e-3;   /* as the header says */
+static const double wanted = 1e-15; /* of the own error */
+static const double certain = 2;    /* the difference times this is the error */
+static const double most_work = 3e9; /* of two runs: about three seconds */
 enum { LOOKS = 6, MOST_KEPT = 64 << 20 };
 
 struct nevh__reference_series {
     nevh__recurrence *recurrence;
-    nevh__orbit_long fine, coarse;
+    orbit fine, coarse;
     double *rates;
-    size_t each, count, capacity; /* each: numbers of a series */
+    double until; /* where it is to end, or where runs were not yet apart */
+    bool parts;
+    double limit;    /* of the difference, in ranges, for it to go on */
+    double foreseen; /* series; 0: not known */
+    size_t rows;     /* numbers of a series */
+    size_t each, count, capacity; /* each: numbers kept of one */
+    bool thin;                    /* its first row alone is kept */
     double *parted;     /* of both, where each series begins, in ranges */
-    long double *kept;  /* the time since t0 when it begins, and its rows */
+    long double *kept;  /* the time since t0 when it begins, what rounding took
+                           from that, and its rows */
+    long double *shown; /* the rows of one series */
+    size_t at;          /* which one */
+    long double *value; /* 2n */
     double *difference; /* 2n: the largest so far */
 };
 typedef struct nevh__reference_series chain;
+enum { TIMES = 2 }; /* before the rows */
 
 void nevh__reference_series_free(chain *c) {
     if (!c)
         return;
-    nevh__orbit_clear_long(&c->fine);
-    nevh__orbit_clear_long(&c->coarse);
+    NEVH__FINE(nevh__orbit_clear)(&c->fine);
+    NEVH__FINE(nevh__orbit_clear)(&c->coarse);
     nevh__recurrence_free(c->recurrence);
     free(c->rates);
     free(c->kept);
+    free(c->shown);
+    free(c->value);
     free(c->parted);
     free(c->difference);
     free(c);
 }
 
-/* In nanoseconds, or so; on any machine the same. */
-static double work_of(const nevh__orbit_long *o) {
-    const nevh__recurrence *r = o->recurrence;
-    double order = (double)o->order;
-    double sums = (double)(r->used[0] + r->used[1]) * order * order / 2;
-    return sums + order * (2 * (double)r->values + 20) + 500;
+static double work_of(const chain *c) {
+    return NEVH__FINE(nevh__orbit_work)(&c->fine) +
+           NEVH__FINE(nevh__orbit_work)(&c->coarse);
 }
 
-static double bytes_of(const chain *c) {
-    return (double)(c->each * sizeof(long double));
+/* Of as many series where they are thin. */
+static double bytes_of(const nevh_reference *r, double series) {
+    return series * (double)((TIMES + 2 * r->n) * sizeof(long double));
 }
 
 /* What is narrow, a series sees from some ten times its width away: it is not to
@@ -57,138 +75,191 @@ static double bytes_of(const chain *c) {
 static double longest(const nevh_reference *r, const chain *c) {
     static const double steps = 8, fewest = 128;
     double span = fabs(r->t1 - r->t0);
-    double work = work_of(&c->fine) + work_of(&c->coarse);
-    double most = fmin(most_work / work, MOST_KEPT / bytes_of(c)) / 4;
-    double wanted = r->longest > 0 ? steps * r->longest : span / fewest;
-    return fmin(fmax(wanted, span / most), span / fewest);
+    double most = fmin(most_work / work_of(c), MOST_KEPT / bytes_of(r, 1)) / 4;
+    double shortest = r->longest > 0 ? steps * r->longest : span / fewest;
+    return fmin(fmax(shortest, span / most), span / fewest);
 }
 
 static int out_of_memory(nevh_reference *r) {
     return nevh__fail(&r->report, NEVH_ENOMEM, "out of memory");
 }
 
-static int plan(nevh_reference *r, chain *c) {
+static int plan(nevh_reference *r, chain *c, double tolerance) {
     bool damped = nevh_system_friction(r->system, c->rates);
     c->recurrence =
         nevh__recurrence_new(r->system, damped ? c->rates : NULL, &r->report);
     if (!c->recurrence)
         return r->report.status;
-    bool made = nevh__orbit_init_long(&c->fine, c->recurrence, fine);
-    made = nevh__orbit_init_long(&c->coarse, c->recurrence, coarse) && made;
+    bool made =
+        NEVH__FINE(nevh__orbit_init)(&c->fine, c->recurrence, tolerance);
+    made = NEVH__FINE(nevh__orbit_init)(&c->coarse, c->recurrence,
+                                        finer * tolerance) &&
+           made;
     if (!made)
         return out_of_memory(r);
-    c->each = 1 + 2 * r->n * (c->fine.order + 1);
+    c->rows = 2 * r->n * (c->fine.order + 1);
+    c->each = TIMES + c->rows;
+    c->shown = nevh__array(c->rows, sizeof *c->shown);
     c->fine.longest = c->coarse.longest = longest(r, c);
-    return NEVH_OK;
+    return c->shown ? NEVH_OK : out_of_memory(r);
 }
 
 static int start(nevh_reference *r, chain *c) {
-    long double *state = nevh__array(2 * r->n, sizeof *state);
+    nevh__wide *state = nevh__array(2 * r->n, sizeof *state);
     if (!state)
         return out_of_memory(r);
     for (size_t k = 0; k < 2 * r->n; k++)
         state[k] = r->start[k];
-    int status = nevh__orbit_start_long(&c->coarse, r->t0, state, &r->report);
+    int status =
+        NEVH__FINE(nevh__orbit_start)(&c->coarse, r->t0, state, &r->report);
     if (!status)
-        status = nevh__orbit_start_long(&c->fine, r->t0, state, &r->report);
+        status =
+            NEVH__FINE(nevh__orbit_start)(&c->fine, r->t0, state, &r->report);
     free(state);
     return status;
 }
 
-static bool keep(const nevh_reference *r, chain *c) {
-    if (c->count == c->capacity) {
-        size_t capacity = 2 * c->capacity + 64;
-        long double *kept =
-            nevh__grow(c->kept, capacity * c->each, sizeof *kept);
-        c->kept = kept ? kept : c->kept;
-        double *parted = nevh__grow(c->parted, capacity, sizeof *parted);
-        c->parted = parted ? parted : c->parted;
-        if (!kept || !parted)
-            return false;
-        c->capacity = capacity;
-    }
-    long double *to = c->kept + c->count++ * c->each;
-    *to = c->fine.t - r->t0;
-    memcpy(to + 1, c->fine.rows, (c->each - 1) * sizeof *to);
+/* Only where series begin, from which their rows follow. */
+static void make_thin(const nevh_reference *r, chain *c) {
+    size_t each = TIMES + 2 * r->n;
+    for (size_t i = 1; i < c->count; i++)
+        memmove(c->kept + i * each, c->kept + i * c->each,
+                each * sizeof *c->kept);
+    c->each = each;
+    c->thin = true;
+}
+
+static bool make_room(const nevh_reference *r, chain *c) {
+    if (!c->thin && (c->count + 1) * c->each > MOST_KEPT / sizeof *c->kept)
+        make_thin(r, c);
+    if (c->count < c->capacity)
+        return true;
+    size_t capacity = 2 * c->capacity + 16;
+    long double *kept = nevh__grow(c->kept, capacity * c->each, sizeof *kept);
+    c->kept = kept ? kept : c->kept;
+    double *parted = nevh__grow(c->parted, capacity, sizeof *parted);
+    c->parted = parted ? parted : c->parted;
+    if (!kept || !parted)
+        return false;
+    c->capacity = capacity;
     return true;
 }
 
-static void value_at(const nevh_reference *r, const long double *kept,
-                     long double elapsed, double state[]) {
-    size_t each = 2 * r->n, order = r->series->fine.order;
-    long double since = elapsed - *kept;
+static bool keep(const nevh_reference *r, chain *c) {
+    if (!make_room(r, c))
+        return false;
+    long double *to = c->kept + c->count * c->each;
+    nevh__wide passed = c->fine.t - r->t0;
+    to[0] = (long double)passed;
+    to[1] = (long double)(passed - to[0]);
+    NEVH__FINE(nevh__orbit_rows)(&c->fine, c->shown);
+    memcpy(to + TIMES, c->shown, (c->each - TIMES) * sizeof *to);
+    c->at = c->count++;
+    return true;
+}
+
+/* The rows of one series. */
+static const long double *rows_of(const nevh_reference *r, chain *c, size_t i) {
+    const long double *kept = c->kept + i * c->each;
+    if (!c->thin)
+        return kept + TIMES;
+    if (c->at == i)
+        return c->shown;
+    for (size_t k = 0; k < 2 * r->n; k++)
+        c->fine.state[k] = kept[TIMES + k];
+    nevh__report ignored = {0}; /* it was finite before */
+    NEVH__FINE(nevh__orbit_start)
+    (&c->fine, (nevh__wide)r->t0 + kept[0] + kept[1], c->fine.state, &ignored);
+    NEVH__FINE(nevh__orbit_rows)(&c->fine, c->shown);
+    c->at = i;
+    return c->shown;
+}
+
+/* From one of the series. */
+static void value_at(const nevh_reference *r, chain *c, size_t which,
+                     long double elapsed, long double state[]) {
+    size_t each = 2 * r->n, order = c->fine.order;
+    const long double *kept = c->kept + which * c->each;
+    const long double *rows = rows_of(r, c, which);
+    long double since = (elapsed - kept[0]) - kept[1];
     for (size_t i = 0; i < each; i++) {
-        const long double *row = kept + 1 + order * each + i;
+        const long double *row = rows + order * each + i;
         long double sum = *row;
         for (size_t k = order; k-- > 0;)
             sum = sum * since + *(row -= each);
-        state[i] = (double)sum;
+        state[i] = sum;
     }
+}
+
+static void widen(nevh_reference *r, const long double state[]) {
+    for (size_t k = 0; k < 2 * r->n; k++)
+        r->walked[k] = (double)state[k];
+    nevh__reference_widen(r, r->low, r->high, r->walked);
 }
 
 /* Extremes within the last series, as far as it is used. */
-static void look(nevh_reference *r, const chain *c) {
-    const long double *kept = c->kept + (c->count - 1) * c->each;
-    long double span = (long double)r->t1 - r->t0;
-    long double step = copysignl(c->fine.reach, span);
+static void look(nevh_reference *r, chain *c) {
+    size_t last = c->count - 1;
+    long double span = (long double)c->until - r->t0;
+    long double step = copysignl((long double)c->fine.reach, span);
     for (int i = 0; i <= LOOKS; i++) {
-        long double elapsed = *kept + step * i / LOOKS;
+        long double elapsed = c->kept[last * c->each] + step * i / LOOKS;
         if ((elapsed - span) * (span > 0 ? 1 : -1) > 0)
             elapsed = span;
-        value_at(r, kept, elapsed, r->walked);
-        nevh__reference_widen(r, r->low, r->high, r->walked);
+        value_at(r, c, last, elapsed, c->value);
+        widen(r, c->value);
     }
 }
 
-/* How far apart both are, in ranges up to there. */
+/* How far apart both are, in ranges up to there; counted where they go on. */
 static double compare(nevh_reference *r, chain *c) {
-    const long double *state = c->fine.state; /* where the series begins */
+    const nevh__wide *state = c->fine.state; /* where the series begins */
     double most = 0;
     nevh__reference_scale(r, r->low, r->high, r->range);
     for (size_t k = 0; k < 2 * r->n; k++) {
-        double by = (double)fabsl(state[k] - c->coarse.state[k]);
-        c->difference[k] = fmax(c->difference[k], by);
+        double by = fabs((double)(state[k] - c->coarse.state[k]));
         most = fmax(most, by / r->range[k]);
+    }
+    for (size_t k = 0; most <= c->limit && k < 2 * r->n; k++) {
+        double by = fabs((double)(state[k] - c->coarse.state[k]));
+        c->difference[k] = fmax(c->difference[k], by);
     }
     return most;
 }
 
 /* Whether both can come to the end. */
 static bool affordable(const nevh_reference *r, const chain *c) {
-    double part = (double)(c->fine.t - r->t0) / (r->t1 - r->t0);
+    double part = (double)(c->fine.t - r->t0) / (c->until - r->t0);
     double series = (double)c->count / fmax(part, 1e-300);
-    double bytes = series * bytes_of(c);
-    double work = series * (work_of(&c->fine) + work_of(&c->coarse));
     if (c->count < 16)
         return true;
-    return bytes <= MOST_KEPT &&
-           (work <= most_work || r->integrator == nevh_taylor);
+    if (c->foreseen > 0)
+        series = fmax(c->foreseen, (double)c->count);
+    return bytes_of(r, series) <= MOST_KEPT &&
+           (series * work_of(c) <= most_work || r->integrator == nevh_taylor);
 }
 
-static void end_at(nevh_reference *r, const chain *c) {
-    bool room = r->n > 1 || !(nevh_system_traits(r->system) & NEVH_AUTONOMOUS);
-    double reached = (double)(c->fine.t - r->t0);
-    nevh__spread s = {0};
-    for (size_t i = 1; i < c->count; i++)
-        nevh__spread_add(&s, (double)c->kept[i * c->each] / reached,
-                         c->parted[i] / (double)LDBL_EPSILON);
-    r->horizon = r->t0 + reached;
-    r->end = room && nevh__spread_steady(&s) ? NEVH_REFERENCE_CHAOS
-                                             : NEVH_REFERENCE_SENSITIVE;
-    r->growth = s.most;
-    r->exponent = nevh__spread_rate(&s, reached);
+/* Where the last series begins that was not too far from the other run. */
+static int part_at(nevh_reference *r, chain *c) {
+    c->parts = true;
+    c->until = r->t0 + (double)c->kept[(c->count - 2) * c->each];
+    return c->until != r->t0 ? NEVH_OK
+                             : nevh__fail(&r->report, NEVH_EFAILED,
+                                          "two Taylor series part within one "
+                                          "step");
 }
 
 /* Side by side, to the end or to where they part. */
 static int run(nevh_reference *r, chain *c) {
     int status = keep(r, c) ? NEVH_OK : out_of_memory(r);
-    double forward = r->t1 > r->t0 ? 1 : -1;
+    double forward = c->until > r->t0 ? 1 : -1;
     if (!status)
         look(r, c);
-    while (!status && (r->t1 - c->fine.t) * forward > c->fine.reach) {
-        status = nevh__orbit_next_long(&c->fine, r->t1, &r->report);
+    while (!status && (c->until - c->fine.t) * forward > c->fine.reach) {
+        status = NEVH__FINE(nevh__orbit_next)(&c->fine, c->until, &r->report);
         if (!status)
-            status = nevh__orbit_go_long(&c->coarse, c->fine.t, &r->report);
+            status =
+                NEVH__FINE(nevh__orbit_go)(&c->coarse, c->fine.t, &r->report);
         if (!status && !keep(r, c))
             status = out_of_memory(r);
         if (status)
@@ -199,63 +270,122 @@ static int run(nevh_reference *r, chain *c) {
             return nevh__fail(&r->report, NEVH_EFAILED,
                               "Taylor series cost too much for a reference "
                               "until t = %.9g",
-                              r->t1);
-        if (by > apart) {
-            end_at(r, c);
-            return NEVH_OK;
-        }
+                              c->until);
+        if (by > c->limit)
+            return part_at(r, c);
     }
     if (!status)
-        status = nevh__orbit_go_long(&c->coarse, r->t1, &r->report);
+        status = NEVH__FINE(nevh__orbit_go)(&c->coarse, c->until, &r->report);
     if (!status)
-        status = nevh__orbit_go_long(&c->fine, r->t1, &r->report);
+        status = NEVH__FINE(nevh__orbit_go)(&c->fine, c->until, &r->report);
     if (!status)
         compare(r, c);
     return status;
 }
 
-static void describe(nevh_reference *r, const chain *c) {
-    static const double times = 2; /* the difference, to be certain */
-    nevh__reference_scale(r, r->low, r->high, r->range);
-    r->error = DBL_EPSILON;
-    for (size_t k = 0; k < 2 * r->n; k++)
-        r->error = fmax(r->error, times * c->difference[k] / r->range[k]);
-    if (!isfinite(r->horizon))
-        snprintf(r->text, sizeof r->text, "taylor in %d bits, own error %.0e",
-                 LDBL_MANT_DIG, r->error);
-    else
-        snprintf(r->text, sizeof r->text, "taylor in %d bits, until %st = %.4g",
-                 LDBL_MANT_DIG,
-                 r->end == NEVH_REFERENCE_CHAOS ? "chaos at " : "", r->horizon);
-}
-
-int nevh__reference_series(nevh_reference *r) {
-    chain *c = r->series = nevh__array(1, sizeof *c);
-    if (!c)
-        return out_of_memory(r);
-    c->rates = nevh__array(r->n, sizeof *c->rates);
-    c->difference = nevh__array(2 * r->n, sizeof *c->difference);
-    int status = c->rates && c->difference ? plan(r, c) : out_of_memory(r);
+/* By that tolerance; NULL, with the reason in the report.
+   first  a coarser one, or NULL */
+static chain *chain_new(nevh_reference *r, double tolerance,
+                        const chain *first) {
+    bool parted = first && first->parts;
+    chain *c = nevh__array(1, sizeof *c);
+    int status = c ? NEVH_OK : out_of_memory(r);
+    if (!status) {
+        *c =
+            (chain){.until = parted ? first->until : r->t1,
+                    .limit = parted ? wanted / certain : apart,
+                    .foreseen = first ? (double)first->count : 0,
+                    .rates = nevh__array(r->n, sizeof *c->rates),
+                    .value = nevh__array(2 * r->n, sizeof *c->value),
+                    .difference = nevh__array(2 * r->n, sizeof *c->difference)};
+        bool made = c->rates && c->value && c->difference;
+        status = made ? plan(r, c, tolerance) : out_of_memory(r);
+    }
     if (!status)
         status = start(r, c);
     if (!status)
         status = run(r, c);
-    if (!status) {
-        describe(r, c);
-        r->integrator = nevh_taylor;
-        return NEVH_OK;
-    }
+    if (!status)
+        return c;
     nevh__reference_series_free(c);
-    r->series = NULL;
-    r->horizon = copysign(INFINITY, r->t1 - r->t0);
-    memcpy(r->low, r->start, 2 * r->n * sizeof *r->low);
-    memcpy(r->high, r->start, 2 * r->n * sizeof *r->high);
-    return status;
+    return NULL;
+}
+
+static double error_of(const nevh_reference *r, const chain *c) {
+    double error = DBL_EPSILON;
+    for (size_t k = 0; k < 2 * r->n; k++)
+        error = fmax(error, certain * c->difference[k] / r->range[k]);
+    return error;
+}
+
+/* Of the first runs, which have parted. */
+static void end_at(nevh_reference *r, const chain *c) {
+    bool room = r->n > 1 || !(nevh_system_traits(r->system) & NEVH_AUTONOMOUS);
+    double reached = c->until - r->t0;
+    nevh__spread s = {0};
+    for (size_t i = 1; i < c->count; i++)
+        nevh__spread_add(&s, (double)c->kept[i * c->each] / reached,
+                         c->parted[i] / (finer * usual));
+    r->horizon = c->until;
+    r->end = room && nevh__spread_steady(&s) ? NEVH_REFERENCE_CHAOS
+                                             : NEVH_REFERENCE_SENSITIVE;
+    r->growth = s.most;
+    r->exponent = nevh__spread_rate(&s, reached);
+}
+
+/* Tolerances that make up for what the orbit does to differences, as far as the
+   numbers have digits; where runs have parted, to where they did and no further
+   than the error is as wanted. */
+static void refine(nevh_reference *r) {
+    double finest = ldexp(1, -NEVH__FINE_BITS);
+    double error = error_of(r, r->series);
+    double tolerance = usual * fmin(wanted / (4 * error), 1 / finer);
+    if (error <= wanted || finest > usual / finer)
+        return;
+    chain *c = chain_new(r, fmax(tolerance, finest), r->series);
+    bool better = c && error_of(r, c) < error;
+    nevh__reference_series_free(better ? r->series : c);
+    if (better)
+        r->series = c;
+    if (better && c->parts)
+        r->horizon = c->until;
+}
+
+static void describe(nevh_reference *r, bool dear) {
+    nevh__reference_scale(r, r->low, r->high, r->range);
+    r->error = error_of(r, r->series);
+    const char *why = dear
+                          ? " (a smaller one costs too much)"
+                          : " (the digits of its numbers allow no smaller one)";
+    int used =
+        snprintf(r->text, sizeof r->text, "taylor in %d bits, own error %.0e%s",
+                 NEVH__FINE_BITS, r->error, r->error > wanted ? why : "");
+    size_t left = sizeof r->text - (size_t)used;
+    if (isfinite(r->horizon))
+        snprintf(r->text + used, left, ", until %st = %.4g",
+                 r->end == NEVH_REFERENCE_CHAOS ? "chaos at " : "", r->horizon);
+}
+
+int nevh__reference_series(nevh_reference *r) {
+    r->series = chain_new(r, usual, NULL);
+    if (r->series && r->series->parts)
+        end_at(r, r->series);
+    if (r->series)
+        refine(r);
+    if (!r->series || r->report.status == NEVH_ENOMEM) {
+        memcpy(r->low, r->start, 2 * r->n * sizeof *r->low);
+        memcpy(r->high, r->start, 2 * r->n * sizeof *r->high);
+        return r->report.status;
+    }
+    describe(r, r->report.status == NEVH_EFAILED);
+    r->report = (nevh__report){0};
+    r->integrator = nevh_taylor;
+    return NEVH_OK;
 }
 
 void nevh__reference_series_state(const nevh_reference *r, long double elapsed,
-                                  double q[], double p[]) {
-    const chain *c = r->series;
+                                  long double state[]) {
+    chain *c = r->series;
     size_t from = 0, until = c->count;
     long double forward = r->t1 > r->t0 ? 1 : -1;
     while (until - from > 1) {
@@ -263,7 +393,5 @@ void nevh__reference_series_state(const nevh_reference *r, long double elapsed,
         bool later = (elapsed - c->kept[middle * c->each]) * forward >= 0;
         *(later ? &from : &until) = middle;
     }
-    value_at(r, c->kept + from * c->each, elapsed, r->walked);
-    memcpy(q, r->walked, r->n * sizeof *q);
-    memcpy(p, r->walked + r->n, r->n * sizeof *p);
+    value_at(r, c, from, elapsed, state);
 }

@@ -19,18 +19,20 @@ struct nevh_state_error {
     bool observed, unknown;
     nevh_pair_fn hand; /* NULL: nobody wants the pairs */
     void *hand_data;
-    double *difference; /* 2n: the largest so far */
-    double state[];     /* 2n, then the differences */
+    double *difference;  /* 2n: the largest so far */
+    double *rounded;     /* 2n: the state of the reference */
+    long double state[]; /* 2n: with the digits that it has; then all of that */
 };
 
 nevh_state_error *nevh_state_error_new(nevh_reference *r) {
     size_t n = r ? r->n : 0;
-    nevh_state_error *e =
-        r ? nevh__array(1, sizeof *e + 4 * n * sizeof *e->state) : NULL;
+    size_t room = 2 * n * (sizeof(long double) + 2 * sizeof(double));
+    nevh_state_error *e = r ? nevh__array(1, sizeof *e + room) : NULL;
     if (!e)
         return NULL;
     e->reference = r;
-    e->difference = e->state + 2 * n;
+    e->difference = (double *)(e->state + 2 * n);
+    e->rounded = e->difference + 2 * n;
     return e;
 }
 
@@ -84,7 +86,7 @@ static double elapsed(nevh_state_error *e, size_t step, double t) {
 }
 
 static void add(nevh_state_error *e, size_t k, double value) {
-    double difference = fabs(value - e->state[k]);
+    double difference = (double)fabsl(value - e->state[k]);
     double error = difference / nevh_reference_range(e->reference, k);
     e->worst = fmax(e->worst, isfinite(error) ? error : INFINITY);
     e->difference[k] =
@@ -101,14 +103,15 @@ int nevh_state_error_observe(void *state_error, size_t step, double t,
     if (e->unknown || !is_due(e, t))
         return NEVH_OK;
     e->observed = true;
-    e->unknown = nevh_reference_state_after(e->reference, passed, e->state,
-                                            e->state + n) != NEVH_OK;
+    e->unknown = nevh__reference_find(e->reference, passed, e->state);
     for (size_t k = 0; !e->unknown && k < n; k++) {
         add(e, k, q[k]);
         add(e, n + k, p[k]);
     }
+    for (size_t k = 0; k < 2 * n; k++)
+        e->rounded[k] = (double)e->state[k];
     if (!e->unknown && e->hand)
-        e->hand(e->hand_data, t, q, p, e->state);
+        e->hand(e->hand_data, t, q, p, e->rounded);
     return NEVH_OK;
 }
 

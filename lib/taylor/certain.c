@@ -17,6 +17,7 @@ struct nevh_certain {
     int digits;
     nevh__recurrence *recurrence;
     nevh__orbit_quad fine, coarse;
+    bool parted; /* both, by now */
     double *rates;
     nevh__wide *start;
 };
@@ -93,6 +94,19 @@ void nevh_certain_free(nevh_certain *c) {
     free(c);
 }
 
+static double apart(const nevh_certain *c, size_t k) {
+    return fabs((double)(c->fine.state[k] - c->coarse.state[k]));
+}
+
+/* Then what digits a variable has in common is chance. */
+static bool have_parted(const nevh_certain *c) {
+    static const double far = 0.05; /* of what a variable was at most */
+    bool parted = false;
+    for (size_t k = 0; k < 2 * c->n; k++)
+        parted = parted || apart(c, k) > far * c->fine.most[k];
+    return parted;
+}
+
 int nevh_certain_go(nevh_certain *c, double t) {
     if (!c || !c->fine.count)
         return nevh_certain_status(c);
@@ -101,7 +115,10 @@ int nevh_certain_go(nevh_certain *c, double t) {
         return nevh__fail(&c->report, NEVH_EINVAL,
                           "the time %g is not a finite number", t);
     int status = nevh__orbit_go_quad(&c->coarse, t, &c->report);
-    return status ? status : nevh__orbit_go_quad(&c->fine, t, &c->report);
+    if (!status)
+        status = nevh__orbit_go_quad(&c->fine, t, &c->report);
+    c->parted = !status && have_parted(c);
+    return status;
 }
 
 size_t nevh_certain_series(const nevh_certain *c) {
@@ -119,9 +136,10 @@ double nevh_certain_value(const nevh_certain *c, size_t k) {
 double nevh_certain_error(const nevh_certain *c, size_t k) {
     if (!has(c, k))
         return NAN;
-    double apart = fabs((double)(c->fine.state[k] - c->coarse.state[k]));
     double floor = rounding * sqrt((double)c->fine.count) * c->fine.most[k];
-    return fmax(2 * apart, floor);
+    if (c->parted)
+        floor = 2 * c->fine.most[k];
+    return fmax(2 * apart(c, k), floor);
 }
 
 double nevh_certain_size(const nevh_certain *c, size_t k) {

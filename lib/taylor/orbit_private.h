@@ -7,15 +7,17 @@
 
 /* A chain of series in numbers of one kind; the present one begins at time t.
    Functions return a status, with a message in the report. */
-#define NEVH__ORBIT(kind, real)                                                \
+#define NEVH__ORBIT(kind, real, number)                                        \
     typedef struct nevh__orbit_##kind {                                        \
         const nevh__recurrence *recurrence;                                    \
         struct nevh__series_##kind *series;                                    \
         size_t n, order, count; /* count: series so far */                     \
         double tolerance;                                                      \
         double longest; /* of a series; INFINITY: any */                       \
+        double unit;    /* of time, in rows: a power of two */                 \
         real t, reach;  /* the series holds so long, to either side */         \
-        real *rows;     /* 2n times order + 1 */                               \
+        number *rows;   /* 2n times order + 1 */                               \
+        real *start;    /* 2n: of the series */                                \
         real *state;    /* 2n: as asked for last */                            \
         double *most;   /* 2n: of each variable, so far */                     \
     } nevh__orbit_##kind;                                                      \
@@ -27,11 +29,25 @@
     /* The next series, towards a time; */                                     \
     int nevh__orbit_next_##kind(nevh__orbit_##kind *, real t, nevh__report *); \
     /* the state at a time, in `state`. */                                     \
-    int nevh__orbit_go_##kind(nevh__orbit_##kind *, real t, nevh__report *);
+    int nevh__orbit_go_##kind(nevh__orbit_##kind *, real t, nevh__report *);   \
+    /* The rows of the present series, by a unit of 1. */                      \
+    void nevh__orbit_rows_##kind(const nevh__orbit_##kind *,                   \
+                                 long double rows[]);                          \
+    /* What it costs, in nanoseconds or so: the same on any machine. */        \
+    double nevh__orbit_work_##kind(const nevh__orbit_##kind *);
 
-NEVH__ORBIT(long, long double)
+/* Names of the kind of orbit that references are of, and its bits; states are
+   nevh__wide. */
 #ifdef NEVH_QUADMATH
-NEVH__ORBIT(quad, nevh__wide)
+NEVH__ORBIT(quad, nevh__wide, nevh__wide)
+NEVH__ORBIT(dd, nevh__wide, nevh__dd)
+#define NEVH__FINE(name) name##_dd
+enum { NEVH__FINE_BITS = 106 };
+#else
+#include <float.h>
+NEVH__ORBIT(long, long double, long double)
+#define NEVH__FINE(name) name##_long
+enum { NEVH__FINE_BITS = LDBL_MANT_DIG };
 #endif
 
 #endif

@@ -1,9 +1,11 @@
 /* nevh: an orbit along Taylor series in one kind of numbers.
 
-   Before this is included are defined: real, the numbers; NAMED(name), the name
-   of a function; FUNCTION(f), a function of theirs as <math.h> has it; SHORTEST,
-   of a time that is left, for series to be taken.
+   Before this is included are defined: real, of which states are, and DOUBLE_DOUBLE
+   where coefficients are not; NAMED(name), the name of a function; FUNCTION(f), a
+   function of theirs as <math.h> has it; SHORTEST, of a time that is left, for
+   series to be taken.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "taylor/number_text.h"
 #include "taylor/orbit_private.h"
 #include <math.h>
 #include <stdlib.h>
@@ -18,17 +20,20 @@ bool NAMED(nevh__orbit_init)(orbit *o, const nevh__recurrence *r,
                  .n = r->n,
                  .order = order,
                  .tolerance = tolerance,
-                 .longest = INFINITY};
+                 .longest = INFINITY,
+                 .unit = 1};
     o->series = NAMED(nevh__series_new)(r, order);
     o->rows = nevh__array(2 * r->n * (order + 1), sizeof *o->rows);
+    o->start = nevh__array(2 * r->n, sizeof *o->start);
     o->state = nevh__array(2 * r->n, sizeof *o->state);
     o->most = nevh__array(2 * r->n, sizeof *o->most);
-    return o->series && o->rows && o->state && o->most;
+    return o->series && o->rows && o->start && o->state && o->most;
 }
 
 void NAMED(nevh__orbit_clear)(orbit *o) {
     NAMED(nevh__series_free)(o->series);
     free(o->rows);
+    free(o->start);
     free(o->state);
     free(o->most);
     memset(o, 0, sizeof *o);
@@ -44,28 +49,48 @@ static double size_of(const orbit *o, size_t i) {
     return most > 0 ? most : 1;
 }
 
-static real largest(const orbit *o, size_t order) {
-    real most = 0;
+static long double largest(const orbit *o, size_t order) {
+    long double most = 0;
     for (size_t i = 0; i < 2 * o->n; i++) {
-        real x = FUNCTION(fabs)(o->rows[order * 2 * o->n + i]) / size_of(o, i);
-        most = x > most ? x : most;
+        long double x = lengthen(o->rows[order * 2 * o->n + i]);
+        most = fmaxl(most, fabsl(x) / size_of(o, i));
     }
     return most;
 }
 
 static real reach_of(const orbit *o) {
-    real last = FUNCTION(log)(o->tolerance / largest(o, o->order));
-    real before = FUNCTION(log)(o->tolerance / largest(o, o->order - 1));
-    return FUNCTION(exp)(
-        FUNCTION(fmin)(last / (real)o->order, before / (real)(o->order - 1)));
+    long double last = logl(o->tolerance / largest(o, o->order));
+    long double before = logl(o->tolerance / largest(o, o->order - 1));
+    return o->unit * expl(fminl(last / (long double)o->order,
+                                before / (long double)(o->order - 1)));
+}
+
+static void take_unit(orbit *o, double unit) {
+    if (!isfinite(unit) || unit == 0)
+        return;
+    o->unit = ldexp(1, ilogb(unit));
+    NAMED(nevh__series_in)(o->series, o->unit);
+}
+
+/* Where coefficients are too large for the unit, a shorter one is tried. */
+static bool expand(orbit *o, real t, const real state[]) {
+    static const double shorter = 0x1p-15;
+    enum { TRIES = 64 };
+    for (int i = 0; i < TRIES; i++) {
+        if (NAMED(nevh__series_expand)(o->series, t, state, o->rows))
+            return true;
+        take_unit(o, o->unit * shorter);
+    }
+    return false;
 }
 
 static int begin(orbit *o, real t, const real state[], nevh__report *report) {
     for (size_t i = 0; i < 2 * o->n; i++)
         o->most[i] = fmax(o->most[i], fabs((double)state[i]));
+    memcpy(o->start, state, 2 * o->n * sizeof *state);
     o->t = t;
     o->count++;
-    if (!NAMED(nevh__series_expand)(o->series, t, state, o->rows))
+    if (!expand(o, t, state))
         return nevh__fail(report, NEVH_EDOM,
                           "the series at t = %.9g is not finite: H has no "
                           "derivatives there, or the state is out of its "
@@ -78,16 +103,19 @@ static int begin(orbit *o, real t, const real state[], nevh__report *report) {
 int NAMED(nevh__orbit_start)(orbit *o, real t, const real state[],
                              nevh__report *report) {
     memcpy(o->state, state, 2 * o->n * sizeof *state);
+    take_unit(o, o->longest);
     return begin(o, t, state, report);
 }
 
 static void evaluate(orbit *o, real since) {
     size_t each = 2 * o->n;
+    number by = narrow(since / o->unit);
     for (size_t i = 0; i < each; i++) {
-        real sum = o->rows[o->order * each + i];
-        for (size_t k = o->order; k-- > 0;)
-            sum = sum * since + o->rows[k * each + i];
-        o->state[i] = sum;
+        const number *row = o->rows + o->order * each + i;
+        number sum = *row;
+        for (size_t k = o->order; --k > 0;)
+            sum = plus(times(sum, by), *(row -= each));
+        o->state[i] = widen(times(sum, by)) + o->start[i];
     }
 }
 
@@ -99,6 +127,7 @@ int NAMED(nevh__orbit_next)(orbit *o, real t, nevh__report *report) {
                           "end there?",
                           (double)o->t);
     evaluate(o, next - o->t);
+    take_unit(o, (double)o->reach);
     return begin(o, next, o->state, report);
 }
 
@@ -109,4 +138,22 @@ int NAMED(nevh__orbit_go)(orbit *o, real t, nevh__report *report) {
     if (!status)
         evaluate(o, t - o->t);
     return status;
+}
+
+void NAMED(nevh__orbit_rows)(const orbit *o, long double rows[]) {
+    const number *row = o->rows;
+    long double factor = 1;
+    for (size_t k = 0; k <= o->order; k++, factor /= o->unit)
+        for (size_t i = 0; i < 2 * o->n; i++)
+            *rows++ = lengthen(*row++) * factor;
+}
+
+double NAMED(nevh__orbit_work)(const orbit *o) {
+    const nevh__recurrence *r = o->recurrence;
+    double order = (double)o->order, called = 0;
+    for (size_t i = 0; i < r->n_batches; i++)
+        if (r->batches[i].kind >= NEVH__BATCH_INVERT)
+            called += r->batches[i].count;
+    return order * (order / 4 * (double)r->lanes + 6 * (double)r->values) +
+           500 * called + 2000 * (double)r->n + 5000;
 }

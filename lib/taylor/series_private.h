@@ -17,6 +17,7 @@
 #define NEVH_SERIES_PRIVATE_H
 
 #include "taylor/graph_private.h"
+#include "taylor/dd_private.h"
 
 typedef enum {
     NEVH__BATCH_SUM, /* of up to four multiples */
@@ -64,6 +65,9 @@ typedef struct nevh__series_double nevh__series_double;
 nevh__series_double *nevh__series_new_double(const nevh__recurrence *,
                                              size_t order);
 void nevh__series_free_double(nevh__series_double *);
+/* From now on time is counted in that unit: 1 at first.  By powers of two this
+   changes nothing but the exponents of coefficients. */
+void nevh__series_in_double(nevh__series_double *, double unit);
 /* The coefficients at a state: rows of 2n, from that of order 0, the state
    itself, on.  Returns whether they are finite. */
 bool nevh__series_expand_double(nevh__series_double *, double t,
@@ -74,6 +78,7 @@ typedef struct nevh__series_long nevh__series_long;
 nevh__series_long *nevh__series_new_long(const nevh__recurrence *,
                                          size_t order);
 void nevh__series_free_long(nevh__series_long *);
+void nevh__series_in_long(nevh__series_long *, double unit);
 bool nevh__series_expand_long(nevh__series_long *, long double t,
                               const long double state[], long double rows[]);
 #ifdef NEVH_QUADMATH
@@ -81,8 +86,15 @@ typedef struct nevh__series_quad nevh__series_quad;
 nevh__series_quad *nevh__series_new_quad(const nevh__recurrence *,
                                          size_t order);
 void nevh__series_free_quad(nevh__series_quad *);
+void nevh__series_in_quad(nevh__series_quad *, double unit);
 bool nevh__series_expand_quad(nevh__series_quad *, nevh__wide t,
                               const nevh__wide state[], nevh__wide rows[]);
+typedef struct nevh__series_dd nevh__series_dd;
+nevh__series_dd *nevh__series_new_dd(const nevh__recurrence *, size_t order);
+void nevh__series_free_dd(nevh__series_dd *);
+void nevh__series_in_dd(nevh__series_dd *, double unit);
+bool nevh__series_expand_dd(nevh__series_dd *, nevh__wide t,
+                            const nevh__wide state[], nevh__dd rows[]);
 #endif
 
 #endif

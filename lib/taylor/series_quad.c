@@ -32,39 +32,16 @@ static void store(series *s, size_t k) {
     }
 }
 
-/* The sum of products of pairs (a, a_low) and (b, b_low), for eight lanes: high
-   parts are added exactly, what is lost is summed up [T. Ogita, S. M. Rump, S.
-   Oishi, Accurate sum and dot product, SIAM J. Sci. Comput. 26 (2005)
-   1955-1988]. */
 NEVH_SIMD static void add_pairs(size_t lanes, size_t k, const double rows_a[],
-                                const double rows_b[], double high[],
-                                double low[]) {
-    for (size_t from = 0; from < lanes; from += NEVH__LANES) {
-        double sum[NEVH__LANES] = {0}, rest[NEVH__LANES] = {0};
-        for (size_t j = 1; j < k; j++) {
-            const double *a = rows_a + ROWS * j * lanes + from;
-            const double *b = rows_b + ROWS * (k - j) * lanes + from;
-            for (size_t i = 0; i < NEVH__LANES; i++) {
-                double product = a[i] * b[i];
-                double lost = __builtin_fma(a[i], b[i], -product);
-                double next = sum[i] + product;
-                lost += nevh__roundoff(next, sum[i], product);
-                sum[i] = next;
-                rest[i] += lost + (a[i] * b[lanes + i] + a[lanes + i] * b[i]);
-            }
-        }
-        for (size_t i = 0; i < NEVH__LANES; i++) {
-            high[from + i] = sum[i];
-            low[from + i] = rest[i];
-        }
-    }
+                                const double rows_b[], nevh__dd sums[]) {
+    for (size_t from = 0; from < lanes; from += NEVH__LANES)
+        nevh__dd_sums(lanes, k, rows_a + from, rows_b + from, sums + from);
 }
 
 static void add_up(series *s, size_t k) {
-    size_t lanes = s->of->lanes;
-    double *high = s->rows_a, *low = high + lanes; /* row 0 is not stored */
-    add_pairs(lanes, k, s->rows_a, s->rows_b, high, low);
-    for (size_t i = 0; i < lanes; i++)
-        s->sum[i] = (real)high[i] + low[i];
+    nevh__dd *sums = (nevh__dd *)s->rows_a; /* row 0 is not stored */
+    add_pairs(s->of->lanes, k, s->rows_a, s->rows_b, sums);
+    for (size_t i = 0; i < s->of->lanes; i++)
+        s->sum[i] = (real)sums[i].high + sums[i].low;
 }
 #endif

@@ -1,25 +1,28 @@
 /* nevh: Taylor coefficients in one kind of numbers.
 
-   Before this is included are defined: real, the numbers, and stored, those of
-   rows; NAMED(name), the name
-   of a function; FUNCTION(f), a function of theirs as <math.h> has it; ROWS,
-   numbers that a lane's operand takes in a row.  After it: how operands are
-   stored in rows (store), and the inner sums of all lanes (add_up).
+   Before this is included are defined: real, of which states are, and DOUBLE_DOUBLE
+   where coefficients are not; stored, what rows are of; NAMED(name), the name of
+   a function; FUNCTION(f), a function of theirs as <math.h> has it; ROWS, numbers
+   that a lane's operand takes in a row.  After it: how operands are stored in
+   rows (store), and the inner sums of all lanes (add_up).
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "taylor/number_text.h"
 #include "taylor/series_private.h"
 #include <stdlib.h>
 
 struct NAMED(nevh__series) {
     const nevh__recurrence *of;
     size_t order;
-    real *value;   /* the coefficients of the present order */
-    real *slope;   /* 2n */
-    real *a0, *b0; /* lanes: operands of order 0 */
-    real *sum;     /* lanes */
-    real *each;    /* by number: of inverses of what is divided by */
-    real *numbers;
-    real *gathered;          /* a few times the widest batch */
-    real *inverse;           /* 1/k */
+    number *value;   /* the coefficients of the present order */
+    number *slope;   /* 2n */
+    number *a0, *b0; /* lanes: operands of order 0 */
+    number *sum;     /* lanes */
+    number *each;    /* by number: of inverses of what is divided by */
+    number *numbers;
+    number *gathered;        /* a few times the widest batch */
+    number *inverse;         /* 1/k */
+    number *rate;            /* unit/k */
+    number unit;             /* of time, in which coefficients are */
     stored *rows_a, *rows_b; /* order x ROWS x lanes */
     void *memory;
 };
@@ -31,16 +34,17 @@ static void add_up(series *, size_t k);
 static void lay_out(nevh__arena *arena, void *data) {
     series *s = data;
     const nevh__recurrence *r = s->of;
-    s->value = nevh__arena_take(arena, r->values, sizeof(real));
-    s->slope = nevh__arena_take(arena, 2 * r->n, sizeof(real));
-    s->a0 = nevh__arena_take(arena, r->lanes, sizeof(real));
-    s->b0 = nevh__arena_take(arena, r->lanes, sizeof(real));
-    s->sum = nevh__arena_take(arena, r->lanes, sizeof(real));
-    s->each = nevh__arena_take(arena, r->values, sizeof(real));
-    s->numbers = nevh__arena_take(arena, r->n_numbers, sizeof(real));
-    s->gathered =
-        nevh__arena_take(arena, NEVH__MOST_SUMMANDS * r->widest, sizeof(real));
-    s->inverse = nevh__arena_take(arena, s->order + 1, sizeof(real));
+    s->value = nevh__arena_take(arena, r->values, sizeof(number));
+    s->slope = nevh__arena_take(arena, 2 * r->n, sizeof(number));
+    s->a0 = nevh__arena_take(arena, r->lanes, sizeof(number));
+    s->b0 = nevh__arena_take(arena, r->lanes, sizeof(number));
+    s->sum = nevh__arena_take(arena, r->lanes, sizeof(number));
+    s->each = nevh__arena_take(arena, r->values, sizeof(number));
+    s->numbers = nevh__arena_take(arena, r->n_numbers, sizeof(number));
+    s->gathered = nevh__arena_take(arena, NEVH__MOST_SUMMANDS * r->widest,
+                                   sizeof(number));
+    s->inverse = nevh__arena_take(arena, s->order + 1, sizeof(number));
+    s->rate = nevh__arena_take(arena, s->order + 1, sizeof(number));
     s->rows_a =
         nevh__arena_take(arena, s->order * ROWS * r->lanes, sizeof(stored));
     s->rows_b =
@@ -52,6 +56,12 @@ void NAMED(nevh__series_free)(series *s) {
         return;
     free(s->memory);
     free(s);
+}
+
+void NAMED(nevh__series_in)(series *s, double unit) {
+    s->unit = narrow((real)unit);
+    for (size_t k = 1; k <= s->order; k++)
+        s->rate[k] = times(s->unit, s->inverse[k]);
 }
 
 series *NAMED(nevh__series_new)(const nevh__recurrence *r, size_t order) {
@@ -66,49 +76,52 @@ series *NAMED(nevh__series_new)(const nevh__recurrence *r, size_t order) {
         return NULL;
     }
     for (size_t i = 0; i < r->n_numbers; i++)
-        s->numbers[i] = (real)r->numbers[i];
+        s->numbers[i] = narrow((real)r->numbers[i]);
     for (size_t k = 1; k <= order; k++)
-        s->inverse[k] = (real)1 / (real)k;
+        s->inverse[k] = narrow((real)1 / (real)k);
+    NAMED(nevh__series_in)(s, 1);
     return s;
 }
 
 /* The present values of a batch's operand. */
-NEVH__INLINE const real *operand(const series *s, const nevh__batch *b,
-                                 int which) {
+NEVH__INLINE const number *operand(const series *s, const nevh__batch *b,
+                                   int which) {
     if (b->together[which])
         return s->value + b->operand[which];
     const uint32_t *index = s->of->index + b->operand[which];
-    real *to = s->gathered + (size_t)which * s->of->widest;
+    number *to = s->gathered + (size_t)which * s->of->widest;
     NEVH__NO_ALIAS for (size_t i = 0; i < b->count; i++) to[i] =
         s->value[index[i]];
     return to;
 }
 
 NEVH__INLINE void add_summands(const series *s, const nevh__batch *b) {
-    real *restrict y = s->value + b->first;
+    number *restrict y = s->value + b->first;
     size_t count = b->count;
-    const real *c = s->numbers + b->number, *x = operand(s, b, 0);
-    const real *d = c + count, *z;
+    const number *c = s->numbers + b->number, *x = operand(s, b, 0);
+    const number *d = c + count, *z;
     switch (b->arity) {
     case 1:
-        NEVH__NO_ALIAS for (size_t i = 0; i < count; i++) y[i] = c[i] * x[i];
+        NEVH__NO_ALIAS for (size_t i = 0; i < count; i++) y[i] =
+            times(c[i], x[i]);
         return;
     case 2:
         z = operand(s, b, 1);
         NEVH__NO_ALIAS for (size_t i = 0; i < count; i++) y[i] =
-            c[i] * x[i] + d[i] * z[i];
+            plus(times(c[i], x[i]), times(d[i], z[i]));
         return;
     default:
         z = operand(s, b, 1);
-        const real *e = d + count, *u = operand(s, b, 2);
+        const number *e = d + count, *u = operand(s, b, 2);
         if (b->arity == 3) {
-            NEVH__NO_ALIAS for (size_t i = 0; i < count; i++) y[i] =
-                c[i] * x[i] + d[i] * z[i] + e[i] * u[i];
+            NEVH__NO_ALIAS for (size_t i = 0; i < count; i++) y[i] = plus(
+                plus(times(c[i], x[i]), times(d[i], z[i])), times(e[i], u[i]));
             return;
         }
-        const real *f = e + count, *v = operand(s, b, 3);
+        const number *f = e + count, *v = operand(s, b, 3);
         NEVH__NO_ALIAS for (size_t i = 0; i < count; i++) y[i] =
-            (c[i] * x[i] + d[i] * z[i]) + (e[i] * u[i] + f[i] * v[i]);
+            plus(plus(times(c[i], x[i]), times(d[i], z[i])),
+                 plus(times(e[i], u[i]), times(f[i], v[i])));
     }
 }
 
@@ -163,9 +176,10 @@ static real power(real x, real exponent) {
 
 /* Order 0. */
 static void begin_batch(const series *s, const nevh__batch *b) {
-    real *y = s->value + b->first, *each = s->each + b->first;
-    const real *x = operand(s, b, 0), *z;
-    const real *c = s->numbers + b->number;
+    number *y = s->value + b->first, *each = s->each + b->first;
+    const number *x = operand(s, b, 0), *z;
+    const number *c = s->numbers + b->number;
+    real root;
     switch (b->kind) {
     case NEVH__BATCH_SUM:
         add_summands(s, b);
@@ -173,95 +187,100 @@ static void begin_batch(const series *s, const nevh__batch *b) {
     case NEVH__BATCH_MULTIPLY:
         z = operand(s, b, 1);
         for (size_t i = 0; i < b->count; i++)
-            y[i] = x[i] * z[i];
+            y[i] = times(x[i], z[i]);
         break;
     case NEVH__BATCH_INVERT:
-        for (size_t i = 0; i < b->count; i++)
-            each[i] = -(y[i] = 1 / x[i]);
+        for (size_t i = 0; i < b->count; i++) {
+            y[i] = narrow(1 / widen(x[i]));
+            each[i] = times(narrow(-1), y[i]);
+        }
         break;
     case NEVH__BATCH_ROOT:
         for (size_t i = 0; i < b->count; i++) {
-            y[i] = FUNCTION(sqrt)(x[i]);
-            each[i] = (real)0.5 / y[i];
+            root = FUNCTION(sqrt)(widen(x[i]));
+            y[i] = narrow(root);
+            each[i] = narrow((real)0.5 / root);
         }
         break;
     case NEVH__BATCH_POWER:
         for (size_t i = 0; i < b->count; i++) {
-            y[i] = power(x[i], c[i]);
-            each[i] = 1 / x[i];
+            y[i] = narrow(power(widen(x[i]), widen(c[i])));
+            each[i] = narrow(1 / widen(x[i]));
         }
         break;
     default:
         z = b->arity > 1 ? operand(s, b, 1) : x;
         for (size_t i = 0; i < b->count; i++)
-            y[i] = function(b, x[i], z[i]);
+            y[i] = narrow(function(b, widen(x[i]), widen(z[i])));
     }
 }
 
 /* Order k, from the inner sums. */
 NEVH__INLINE void next_batch(const series *s, const nevh__batch *b, size_t k) {
     size_t count = b->count;
-    real *restrict y = s->value + b->first;
-    const real *each = s->each + b->first;
+    number *restrict y = s->value + b->first;
+    const number *each = s->each + b->first;
     if (b->kind == NEVH__BATCH_SUM) {
         add_summands(s, b);
         return;
     }
-    const real *x = operand(s, b, 0), *z;
-    const real *c = s->numbers + b->number, *sum = s->sum + b->lane;
-    const real *a0 = s->a0 + b->lane, *b0 = s->b0 + b->lane;
-    real order = (real)k, inverse = s->inverse[k];
+    const number *x = operand(s, b, 0), *z;
+    const number *c = s->numbers + b->number, *sum = s->sum + b->lane;
+    const number *a0 = s->a0 + b->lane, *b0 = s->b0 + b->lane;
+    number order = narrow((real)k), inverse = s->inverse[k];
     switch (b->kind) {
     case NEVH__BATCH_MULTIPLY:
         z = operand(s, b, 1);
         NEVH__NO_ALIAS for (size_t i = 0; i < count; i++) y[i] =
-            sum[i] + (a0[i] * z[i] + x[i] * b0[i]);
+            plus(sum[i], plus(times(a0[i], z[i]), times(x[i], b0[i])));
         break;
     case NEVH__BATCH_INVERT: /* x y = 1 */
         NEVH__NO_ALIAS for (size_t i = 0; i < count; i++) y[i] =
-            (sum[i] + x[i] * b0[i]) * each[i];
+            times(plus(sum[i], times(x[i], b0[i])), each[i]);
         break;
     case NEVH__BATCH_ROOT: /* y y = x */
         NEVH__NO_ALIAS for (size_t i = 0; i < count; i++) y[i] =
-            (x[i] - sum[i]) * each[i];
+            times(minus(x[i], sum[i]), each[i]);
         break;
     case NEVH__BATCH_POWER: { /* x y' = c y x' */
-        const real *plain = s->sum + b->also;
+        const number *plain = s->sum + b->also;
         b0 = s->b0 + b->also;
         NEVH__NO_ALIAS for (size_t i = 0; i < count; i++) y[i] =
-            ((c[i] + 1) * (sum[i] * inverse + x[i] * b0[i]) -
-             (plain[i] + x[i] * b0[i])) *
-            each[i];
+            times(minus(times(plus(c[i], narrow(1)),
+                              plus(times(sum[i], inverse), times(x[i], b0[i]))),
+                        plus(plain[i], times(x[i], b0[i]))),
+                  each[i]);
         break;
     }
     default: /* y' = slope x' */
         NEVH__NO_ALIAS for (size_t i = 0; i < count; i++) y[i] =
-            c[i] * ((sum[i] + order * x[i] * b0[i]) * inverse);
+            times(c[i], times(plus(sum[i], times(times(order, x[i]), b0[i])),
+                              inverse));
         break;
     }
 }
 
 /* Coefficients of order k of the state, from slopes of order k - 1. */
-NEVH__INLINE void advance(series *s, size_t k, real row[]) {
+NEVH__INLINE void advance(series *s, size_t k, number row[]) {
     const nevh__recurrence *r = s->of;
-    const real *factor = s->numbers + r->slope_number;
+    const number *factor = s->numbers + r->slope_number;
     size_t n = 2 * r->n;
     for (size_t i = 0; i < n; i++)
-        row[i] = factor[i] * s->value[r->slope[i]] * s->inverse[k];
+        row[i] = times(times(factor[i], s->value[r->slope[i]]), s->rate[k]);
     for (size_t i = 0; i < n; i++)
         s->value[i] = row[i];
-    s->value[n] = k == 1;
+    s->value[n] = k == 1 ? s->unit : narrow(0);
     if (k == 1)
         for (size_t i = 0; i < r->n_constants; i++)
-            s->value[r->first_constant + i] = 0;
+            s->value[r->first_constant + i] = narrow(0);
 }
 
 /* Order 0 of everything. */
-static void begin(series *s, real t, const real state[], real row[]) {
+static void begin(series *s, real t, const real state[], number row[]) {
     const nevh__recurrence *r = s->of;
     for (size_t i = 0; i < 2 * r->n; i++)
-        row[i] = s->value[i] = state[i];
-    s->value[2 * r->n] = t;
+        row[i] = s->value[i] = narrow(state[i]);
+    s->value[2 * r->n] = narrow(t);
     for (size_t i = 0; i < r->n_constants; i++)
         s->value[r->first_constant + i] = s->numbers[i];
     for (size_t i = 0; i < r->n_batches; i++)
@@ -272,7 +291,7 @@ static void begin(series *s, real t, const real state[], real row[]) {
     }
 }
 
-VECTORS static void go_on(series *s, real rows[]) {
+VECTORS static void go_on(series *s, number rows[]) {
     const nevh__recurrence *r = s->of;
     size_t each = 2 * r->n;
     for (size_t k = 1; k < s->order; k++) {
@@ -287,14 +306,15 @@ VECTORS static void go_on(series *s, real rows[]) {
 }
 
 bool NAMED(nevh__series_expand)(series *s, real t, const real state[],
-                                real rows[]) {
+                                number rows[]) {
     size_t each = 2 * s->of->n;
     begin(s, t, state, rows);
     for (size_t i = 0; i < s->of->lanes; i++)
-        s->sum[i] = 0;
+        s->sum[i] = narrow(0);
     go_on(s, rows);
-    real bad = 0;
+    const number *last = rows + s->order * each;
+    number bad = narrow(0);
     for (size_t i = 0; i < each; i++)
-        bad += rows[s->order * each + i] - rows[s->order * each + i];
-    return bad == 0;
+        bad = plus(bad, minus(last[i], last[i]));
+    return widen(bad) == 0;
 }

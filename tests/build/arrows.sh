@@ -34,7 +34,7 @@ alone() {
         FNR == NR { tested[$1] = 1; next }
         { split($2, word, " "); name = word[1]; sub(/\.libs\//, "", $1) }
         name ~ /^_?nevh_[a-z]/ || name == "main" { next }
-        { plain = name; sub(/_(quad|long|double)$/, "", plain) }
+        { plain = name; sub(/_(dd|quad|long|double)$/, "", plain) }
         word[2] ~ /^[TDBR]$/ { in_file[name] = $1; form[name] = plain; next }
         word[2] == "U" { used[plain] = 1 }
         END { for (name in in_file)

@@ -148,6 +148,36 @@ TEST_EACH(quad_series_hold_thirty_digits, FUNCTIONS) {
                             4e-14);
     plan_done(&x);
 }
+
+/* Pairs of doubles have the coefficients of quad precision, in any unit of
+   time. */
+TEST_EACH(pair_series_are_quad_series, FUNCTIONS) {
+    enum { HIGH = 30, SIZE = (HIGH + 1) * MOST };
+    char text[200];
+    snprintf(text, sizeof text, "p_x + %s", functions[_i].f);
+    planned_series x = plan_of(text, NULL);
+    nevh__wide state[MOST] = {functions[_i].x}, wide[SIZE];
+    nevh__dd pairs[SIZE], scaled[SIZE];
+    nevh__series_quad *quad = nevh__series_new_quad(x.r, HIGH);
+    nevh__series_dd *pair = nevh__series_new_dd(x.r, HIGH);
+    ck_assert(nevh__series_expand_quad(quad, 0, state, wide));
+    ck_assert(nevh__series_expand_dd(pair, 0, state, pairs));
+    nevh__series_in_dd(pair, 0x1p-10);
+    ck_assert(nevh__series_expand_dd(pair, 0, state, scaled));
+    double most = 1;
+    for (int i = 0; i < SIZE; i++) {
+        int k = i / MOST;
+        double by = (double)(pairs[i].high - wide[i] + pairs[i].low);
+        most = fmax(most, fabs((double)wide[i]));
+        ck_assert_msg(fabs(by) < 1e-29 * most, "%s, order %d: %g of %g", text,
+                      k, by, most);
+        ck_assert_double_eq(scaled[i].high, ldexp(pairs[i].high, -10 * k));
+        ck_assert_double_eq(scaled[i].low, ldexp(pairs[i].low, -10 * k));
+    }
+    nevh__series_free_quad(quad);
+    nevh__series_free_dd(pair);
+    plan_done(&x);
+}
 #endif
 
 TEST(time_and_friction_have_their_series) {
