@@ -8,7 +8,15 @@ here=$(cd "$(dirname "$0")/.." && pwd)
 mkdir -p "$1"
 folder=$(cd "$1" && pwd)
 
+root=
+leave() {
+    test -z "$root" || ! test -e "$root/proc/self" || umount "$root/proc"
+}
+trap leave EXIT
+trap 'exit 1' HUP INT TERM
+
 bare() {
+    leave
     root=$folder/$1
     if ! test -e "$root/.bare"; then
         rm -rf "$root"
@@ -16,6 +24,7 @@ bare() {
         debootstrap --variant=minbase "$1" "$root" >"$folder/$1.log" 2>&1
         touch "$root/.bare"
     fi
+    mount -t proc proc "$root/proc"
     echo
     echo "$(. "$root/etc/os-release" && echo "$PRETTY_NAME"), load $(cut -d ' ' -f 1 /proc/loadavg)"
 }
@@ -26,7 +35,7 @@ timed() {
     chroot --userspec="$1" "$root" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin \
         HOME="$2" LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
         sh -c "cd $2 && $3" >"$root/out" 2>&1 </dev/null ||
-        { echo "failed: $3"; tail -n 30 "$root/out"; exit 1; }
+        { echo "failed: $3"; tail -n 30 "$root/out" | cut -c 1-300; exit 1; }
     echo "$began $(date +%s.%N)" | awk '{ printf "%7.1f s  ", $2 - $1 }'
     echo "$3"
 }
