@@ -103,6 +103,11 @@ await tried("still", { size: [360, 800], still: true }, async (page, steps) => {
   check(await page.evaluate("!film.play.checkVisibility() && film.bar.checkVisibility()"),
     "plays where motion is not wanted");
   await stands(page, steps, "where motion is not wanted");
+  check(await page.evaluate(`(() => { const figure = film.play.closest("figure");
+    return figure.scrollWidth <= figure.clientWidth; })()`), "the picture is cut");
+  check(await page.evaluate(`[...film.play.closest("figure").querySelectorAll("text")]
+    .every((e) => e.getBoundingClientRect().height > 10 &&
+      e.getBoundingClientRect().right < innerWidth)`), "its text is small, or cut");
   await page.evaluate("film.bar.focus()");
   await page.key("Home");
   await page.key("ArrowRight");

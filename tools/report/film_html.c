@@ -129,7 +129,7 @@ static void put_panel(const film *f, size_t i, const view *v, FILE *to) {
     const reel *r = &f->reel[i];
     int left = i ? WIDTH - PANEL : 0;
     fprintf(to,
-            "<text x=\"%d\" y=\"54\" fill=\"%s\">%s, energy error <tspan "
+            "<text x=\"%d\" y=\"58\" fill=\"%s\">%s, error <tspan "
             "class=\"error\">%.2g %%</tspan></text>\n"
             "<svg x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" viewBox=\"0 0 "
             "%d %d\">\n<rect width=\"%d\" height=\"%d\" fill=\"#f4f4f4\"/>\n",
@@ -153,7 +153,7 @@ static void put_strip(const film *f, int top, FILE *to) {
             "%.2g %% to %.2g %%</text>\n<svg x=\"0\" y=\"%d\" width=\"%d\" "
             "height=\"%d\" viewBox=\"0 -4 %d %d\">\n<path stroke=\"#999\" "
             "stroke-width=\"2\" d=\"M0,%.0fH%d\"/>\n",
-            top + 54, 100 * low, 100 * high, top + HEAD, WIDTH, STRIP + 8,
+            top + 60, 100 * low, 100 * high, top + HEAD, WIDTH, STRIP + 8,
             WIDTH, STRIP + 8, high * scale, WIDTH);
     for (int i = 0; i < 2; i++) {
         fprintf(to,
@@ -252,8 +252,8 @@ void film_html(const film *f, FILE *to) {
     put_words(f, to);
     fprintf(
         to,
-        "<figure>\n<svg role=\"img\" viewBox=\"0 0 %d "
-        "%d\" font-family=\"sans-serif\" font-size=\"44\">\n<title>The "
+        "<figure>\n<svg role=\"img\" style=\"min-width:0\" viewBox=\"0 0 %d "
+        "%d\" font-family=\"sans-serif\" font-size=\"60\">\n<title>The "
         "motion by %s and by rk4</title>\n<desc>Left: %s. Right: rk4. "
         "Below: the energy errors of both, %s blue, rk4 orange. Without a script, and before it plays, the picture shows "
         "step %zu.</desc>\n",
