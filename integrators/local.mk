@@ -26,6 +26,7 @@ libnevh_core_la_SOURCES += \
 	integrators/kernels/stage_sweeps_private.h \
 	integrators/kernels/stage_step.h \
 	integrators/kernels/stage_sweeps.c \
+	integrators/kernels/stage_weights.c \
 	integrators/kernels/runge_kutta_private.h \
 	integrators/kernels/adaptive_step.h \
 	integrators/kernels/runge_kutta_step.h \
@@ -46,6 +47,7 @@ libnevh_core_la_SOURCES += \
 	integrators/kernels/nystrom_kernel.c \
 	integrators/kernels/tableau_private.h \
 	integrators/kernels/tableau.c \
+	integrators/kernels/stage_guess.c \
 	integrators/kernels/gauss_coefficients.c \
 	integrators/kernels/lobatto_coefficients.c \
 	integrators/kernels/implicit_kernel.c \

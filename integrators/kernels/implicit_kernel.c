@@ -9,8 +9,9 @@
    momenta add up to 1 exactly across the diagonal, and the h b_j add up to h:
    the form of Antonana, Makazaga and Murua, in which rounding leaves
    the map symplectic.  The sum goes from small weights to large ones with
-   compensation, the products' own rounding included.  First guess: the
-   collocation polynomial of the previous step, continued.
+   compensation, the products' own rounding included.  First guess: what slopes
+   of the last steps lead to, see stage_guess.c; of one step, its collocation
+   polynomial, continued.
 
    For H = T(p) + V(q) unknown are the slopes of the momenta alone, which halves
    the number of sweeps.  A sweep is stage_step.h.
@@ -51,17 +52,19 @@ typedef struct {
     size_t first, first_of_eight;
 } family_step;
 
-/* Memory: compensation, slopes of the last step that were solved for, their h (0:
-   there are none), and how long Newton's iteration goes first. */
+/* Memory: compensation, slopes of the last steps that were solved for, a variable
+   after the other, the last step's first; their h and of how many steps they are,
+   and how long Newton's iteration goes first. */
 typedef struct {
-    double *compensation, *slopes, *h, *hold;
+    double *compensation, *slopes, *h, *steps, *hold;
 } family_memory;
 
 static family_memory recall(const nevh_work *w) {
     const family_plan *g = w->plan;
     family_memory m = {w->memory, .slopes = w->memory + 2 * w->size};
-    m.h = m.slopes + g->unknown * w->width;
-    m.hold = m.h + w->width;
+    m.h = m.slopes + g->tableau->steps * g->unknown * w->width;
+    m.steps = m.h + w->width;
+    m.hold = m.steps + w->width;
     return m;
 }
 
@@ -115,21 +118,20 @@ static int map(void *data, size_t active, const size_t lanes[],
     return nevh__sweeps_map(g->any, &start, s->slopes, out);
 }
 
-/* Continues the last step's polynomial where there is one. */
+/* Continues the last steps where there are any. */
 static void guess(void *data, size_t lane) {
     const family_step *s = data;
     const nevh_work *w = s->work;
     const family_plan *g = w->plan;
     family_memory last = recall(w);
-    size_t stages = g->tableau->stages;
+    size_t stages = g->tableau->stages, steps = g->tableau->steps;
+    double known = last.h[lane] == s->h ? last.steps[lane] : 0;
     for (size_t row = 0; row < g->unknown; row += stages) {
-        const double *x = last.slopes + row * w->width + lane;
+        const double *x = last.slopes + row * steps * w->width + lane;
         double *to = s->unknown + row * w->width + lane;
         for (size_t i = 0; i < stages; i++)
             to[i * w->width] =
-                last.h[lane] == s->h
-                    ? nevh__stage_continue(g->weights, i, w->width, x)
-                    : 0;
+                nevh__stage_continue(g->weights, i, w->width, known, x);
     }
 }
 
@@ -144,8 +146,9 @@ static size_t begin_group(void *data, size_t first, const double unit[]) {
     size_t most = many ? NEVH__LANES : 1, count = rest < most ? rest : most;
     nevh__sweep_start start = start_of(s, count, g->lanes + first);
     start.unit = unit;
-    start.last = last.slopes;
-    start.last_h = last.h;
+    start.past = last.slopes;
+    start.steps = last.steps;
+    start.past_h = last.h;
     s->group = many ? g->eight : g->one;
     s->first = s->first_of_eight = first;
     s->unit = unit;
@@ -245,7 +248,7 @@ static int plan_on(nevh_work *w, size_t fewest, size_t most,
         g->tableau = make(stages);
     if (!g || !plan_solver(w, g))
         return nevh_work_fail(w, NEVH_ENOMEM, "out of memory");
-    w->memory_rows = 2 * w->n + g->unknown + 2;
+    w->memory_rows = 2 * w->n + g->tableau->steps * g->unknown + 3;
     w->scratch_size = (2 * w->n * stages + 6 * w->n + 1) * w->width;
     return NEVH_OK;
 }
@@ -276,6 +279,25 @@ static int account(const family_step *s, const family_plan *g) {
     return status;
 }
 
+/* Those of earlier steps move on. */
+static void keep_slopes(const family_step *s, const family_plan *g,
+                        const family_memory *m) {
+    size_t width = s->work->width, step = g->tableau->stages * width;
+    size_t steps = g->tableau->steps, row = steps * step;
+    double *to = m->slopes;
+    for (const double *x = s->unknown; x < s->unknown + g->unknown * width;
+         x += step, to += row) {
+        memmove(to + step, to, (row - step) * sizeof *to);
+        memcpy(to, x, step * sizeof *to);
+    }
+    for (size_t lane = 0; lane < width; lane++) {
+        double known = m->h[lane] == s->h ? m->steps[lane] : 0;
+        m->steps[lane] = nevh__stage_remember(known, (double)steps,
+                                              g->solver->lane[lane].first);
+        m->h[lane] = s->h;
+    }
+}
+
 static int commit(const family_step *s, const family_plan *g, double q[],
                   double p[]) {
     nevh_work *w = s->work;
@@ -297,10 +319,8 @@ static int commit(const family_step *s, const family_plan *g, double q[],
     memcpy(q, s->sum, n * sizeof *q);
     memcpy(p, s->sum + n, n * sizeof *p);
     memcpy(m.compensation, s->compensation, 2 * n * sizeof *m.compensation);
-    memcpy(m.slopes, s->unknown, g->unknown * w->width * sizeof *m.slopes);
     memcpy(m.hold, s->hold, w->width * sizeof *m.hold);
-    for (size_t lane = 0; lane < w->width; lane++)
-        m.h[lane] = s->h;
+    keep_slopes(s, g, &m);
     return NEVH_OK;
 }
 

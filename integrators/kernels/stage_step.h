@@ -336,12 +336,12 @@ NEVH__INLINE void nevh__stage_compare_sweep(const nevh__stage_step *x,
                          &c->lowest[i], &made[i]);
 }
 
-/* The slopes that continue those of the last step, `numbers` a row (NULL: there
-   are none), by the weights of `guess`. */
+/* The slopes that continue those of steps before, `numbers` a row, of which the
+   first `count` stages take part, by the weights of `guess`. */
 NEVH__INLINE void nevh__stage_begin_sweeps(const nevh__stage_step *x,
                                            const nevh__stage_changes *c,
                                            size_t lanes, const double *guess,
-                                           const double last[],
+                                           size_t count, const double past[],
                                            size_t numbers) {
     bool together = lanes == NEVH__STAGES_TOGETHER;
     double *gradient = x->gradient + c->first * x->stride;
@@ -350,20 +350,39 @@ NEVH__INLINE void nevh__stage_begin_sweeps(const nevh__stage_step *x,
              from += NEVH__IN_VECTOR, at += NEVH__IN_VECTOR) {
             double sign = c->first + k < x->n ? 1 : -1;
             nevh__vector sum = {0};
-            if (last && together)
-                nevh__stage_sum_stages(x->row, x->stages, guess, true, NULL,
-                                       last + k * numbers, from, &sum);
+            if (together)
+                nevh__stage_sum_stages(x->row, count, guess, true, NULL,
+                                       past + k * numbers, from, &sum);
 #ifndef NEVH__FOR_READERS
-            else if (last)
-                nevh__stage_sum_orbits(x->row, x->stages, lanes,
+            else
+                nevh__stage_sum_orbits(x->row, count, lanes,
                                        guess + from / lanes,
-                                       last + k * numbers + from % lanes, &sum);
+                                       past + k * numbers + from % lanes, &sum);
 #endif
             NEVH__VECTOR_AT(c->before + at) = sign * sum;
             NEVH__VECTOR_AT(gradient + at) = sign * sum;
             NEVH__VECTOR_AT(c->least + at) = (nevh__vector){0} + INFINITY;
         }
 }
+
+#ifndef NEVH__FOR_READERS
+/* The same of one of NEVH__LANES orbits, which has another past. */
+NEVH__INLINE void nevh__stage_begin_lane(const nevh__stage_step *x,
+                                         const nevh__stage_changes *c,
+                                         size_t lane, const double *guess,
+                                         size_t count, const double past[],
+                                         size_t numbers) {
+    double *gradient = x->gradient + c->first * x->stride;
+    for (size_t at = lane; at < c->rows * x->stride; at += NEVH__LANES) {
+        size_t k = at / x->stride, stage = at % x->stride / NEVH__LANES;
+        double sign = c->first + k < x->n ? 1 : -1;
+        c->before[at] = gradient[at] =
+            sign * nevh__stage_sum_orbit(x->row, count, NEVH__LANES,
+                                         guess + stage,
+                                         past + k * numbers + lane);
+    }
+}
+#endif
 
 /* h b_j; the outer two share what the rounded others leave of h. */
 NEVH__INLINE void nevh__stage_split(size_t stages, const double b[], double h,

@@ -22,60 +22,12 @@ struct nevh__stage_owner {
     void *memory;               /* holds all that follow */
     double *times;              /* a row */
     double *loaded;             /* of several orbits: their state */
-    double *last;               /* rows of stages of lanes */
+    double *past;               /* rows of steps of stages of lanes */
     double lowest[NEVH__LANES]; /* change of a sweep so far */
     size_t chosen[NEVH__LANES]; /* of several: whose constants points have */
     nevh__evaluation whole, drift, kick; /* the gradient, or its halves */
     bool from_values;                    /* so it is, of any orbits */
 };
-
-static void pad(const nevh__stage_weights *w, size_t rows, const double from[],
-                double to[]) {
-    for (size_t i = 0; i < rows * w->row; i++) {
-        size_t stage = i % w->row;
-        to[i] = from[i / w->row * w->stages + (stage < w->stages) * stage];
-    }
-}
-
-static void lay_out_weights(nevh__arena *a, void *weights) {
-    nevh__stage_weights *w = weights;
-    size_t matrix = w->stages * w->row, each = sizeof(double);
-    w->mu_q = nevh__arena_take(a, matrix, each);
-    w->mu_p = nevh__arena_take(a, matrix, each);
-    w->guess = nevh__arena_take(a, matrix, each);
-    w->c = nevh__arena_take(a, w->row, each);
-    w->hb = nevh__arena_take(a, w->stages, each);
-    w->to_q = nevh__arena_take(a, w->stages * NEVH__LANES, each);
-    w->to_p = nevh__arena_take(a, w->stages * NEVH__LANES, each);
-}
-
-nevh__stage_weights *nevh__stage_weights_new(const nevh__tableau *a) {
-    nevh__stage_weights *w = nevh__array(1, sizeof *w);
-    if (!w)
-        return NULL;
-    w->stages = a->stages;
-    w->row = nevh__padded(a->stages);
-    w->memory = nevh__arena_new(lay_out_weights, w);
-    if (!w->memory) {
-        free(w);
-        return NULL;
-    }
-    nevh__stage_weights_take(w, a);
-    return w;
-}
-
-void nevh__stage_weights_free(nevh__stage_weights *w) {
-    if (w)
-        free(w->memory);
-    free(w);
-}
-
-void nevh__stage_weights_take(nevh__stage_weights *w, const nevh__tableau *a) {
-    pad(w, w->stages, a->mu_q, w->mu_q);
-    pad(w, w->stages, a->mu_p, w->mu_p);
-    pad(w, w->stages, a->guess, w->guess);
-    pad(w, 1, a->c, w->c);
-}
 
 void nevh__stage_weights_set(nevh__stage_weights *w, const nevh__tableau *a,
                              double h) {
@@ -90,9 +42,19 @@ void nevh__stage_weights_set(nevh__stage_weights *w, const nevh__tableau *a,
     w->h = h;
 }
 
+/* Stages that take part, and their weights. */
+static size_t past_stages(const nevh__stage_weights *w, double steps,
+                          const double **guess) {
+    bool all = steps >= (double)w->steps;
+    *guess = all ? w->long_guess : w->guess;
+    return all ? w->steps * w->stages : steps > 0 ? w->stages : 0;
+}
+
 double nevh__stage_continue(const nevh__stage_weights *w, size_t i,
-                            size_t width, const double last[]) {
-    return nevh__stage_sum_orbit(w->row, w->stages, width, w->guess + i, last);
+                            size_t width, double steps, const double past[]) {
+    const double *guess;
+    size_t count = past_stages(w, steps, &guess);
+    return nevh__stage_sum_orbit(w->row, count, width, guess + i, past);
 }
 
 static void lay_out(nevh__arena *a, void *sweeps) {
@@ -106,7 +68,8 @@ static void lay_out(nevh__arena *a, void *sweeps) {
     x->gradient = nevh__arena_take(a, 2 * x->n * x->stride, each);
     s->changes.before = nevh__arena_take(a, all, each);
     s->changes.least = nevh__arena_take(a, all, each);
-    s->last = nevh__arena_take(a, all, each);
+    s->past = nevh__arena_take(
+        a, lanes > 1 || s->work->width > 1 ? s->weights->steps * all : 0, each);
     x->products = nevh__arena_take(a, x->stride, each);
     s->loaded = nevh__arena_take(a, 6 * x->n * lanes, each);
 }
@@ -203,25 +166,28 @@ NEVH__INLINE const double *nevh__stage_inverse(const nevh__stage_step *x) {
     return x->unchecked ? x->owner->drift.inverse : NULL;
 }
 
-/* The gradient that continues the last slopes. */
+/* The gradient that continues the slopes of so many steps. */
 NEVH__INLINE void begin(nevh__sweeps *s, size_t lanes, double t, double h,
-                        const double last[]) {
+                        double steps, const double past[]) {
     const nevh__stage_step *x = &s->x;
+    const nevh__stage_weights *w = s->weights;
     size_t columns = lanes == NEVH__STAGES_TOGETHER ? 1 : lanes;
+    const double *guess;
+    size_t count = past_stages(w, steps, &guess);
     for (size_t i = 0; i < x->stride; i++)
-        s->times[i] = t + s->weights->c[i / columns] * h;
-    nevh__stage_begin_sweeps(x, &s->changes, lanes, s->weights->guess, last,
-                             x->stages * columns);
+        s->times[i] = t + w->c[i / columns] * h;
+    nevh__stage_begin_sweeps(x, &s->changes, lanes, guess, count, past,
+                             w->steps * x->stages * columns);
 }
 
 NEVH_SIMD static void begin_one(nevh__sweeps *s, double t, double h,
-                                const double last[]) {
-    begin(s, NEVH__STAGES_TOGETHER, t, h, last);
+                                double steps, const double past[]) {
+    begin(s, NEVH__STAGES_TOGETHER, t, h, steps, past);
 }
 
 NEVH_SIMD static void begin_eight(nevh__sweeps *s, double t, double h,
-                                  const double last[]) {
-    begin(s, NEVH__LANES, t, h, last);
+                                  double steps, const double past[]) {
+    begin(s, NEVH__LANES, t, h, steps, past);
 }
 
 /* Points are those of `count` lanes; what is left repeats the first. */
@@ -275,27 +241,32 @@ static void load_state(nevh__sweeps *s, const nevh__sweep_start *x,
     s->changes.unit = to + 4 * half;
 }
 
-/* The last slopes, 0 where they are of another step; NULL: all are. */
-static const double *load_last(const nevh__sweeps *s,
-                               const nevh__sweep_start *x) {
-    size_t rows = s->changes.rows * s->x.stages;
-    if (x->width == 1)
-        return *x->last_h == x->h ? x->last : NULL;
-    load(x, s->lanes, x->last, rows, s->last);
-    for (size_t i = 0; i < s->lanes; i++)
-        if (x->last_h[x->lanes[i < x->count ? i : 0]] != x->h)
-            for (size_t row = 0; row < rows; row++)
-                s->last[row * s->lanes + i] = 0;
-    return s->last;
+/* Of how many steps by h the orbit knows slopes. */
+static double steps_of(const nevh__sweep_start *x, size_t i) {
+    size_t lane = x->lanes[i < x->count ? i : 0];
+    return x->past_h[lane] == x->h ? x->steps[lane] : 0;
 }
 
 bool nevh__sweeps_begin(nevh__sweeps *s, const nevh__sweep_start *x) {
+    size_t rows = s->changes.rows * s->weights->steps * s->x.stages;
+    double steps = steps_of(x, 0);
     if (s->lanes > 1 && !s->x.unchecked)
         return false;
     for (size_t i = 0; i < s->lanes; i++)
         s->lowest[i] = INFINITY;
     load_state(s, x, s->lanes);
-    (s->lanes == 1 ? begin_one : begin_eight)(s, x->t, x->h, load_last(s, x));
+    if (x->width > 1)
+        load(x, s->lanes, x->past, rows, s->past);
+    (s->lanes == 1 ? begin_one : begin_eight)(s, x->t, x->h, steps,
+                                              x->width > 1 ? s->past : x->past);
+    for (size_t i = 1; i < s->lanes; i++) {
+        double own = steps_of(x, i);
+        const double *guess;
+        size_t count = past_stages(s->weights, own, &guess);
+        if (own != steps)
+            nevh__stage_begin_lane(&s->x, &s->changes, i, guess, count, s->past,
+                                   s->weights->steps * s->x.stride);
+    }
     return true;
 }
 

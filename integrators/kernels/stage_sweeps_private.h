@@ -12,13 +12,15 @@
 
 /* A tableau and its weights in a step by h, as sweeps take them. */
 typedef struct {
-    size_t stages, row;          /* row: stages, padded to whole vectors */
-    void *memory;                /* holds all that follow */
-    double *mu_q, *mu_p, *guess; /* the tableau's, columns of `row` */
-    double *c;                   /* a row */
-    double *hb;                  /* h b_j */
-    double *to_q, *to_p;         /* h b_j, - h b_j: vectors of each */
-    double h;                    /* 0: none yet */
+    size_t stages, row;  /* row: stages, padded to whole vectors */
+    size_t steps;        /* see nevh__guess_steps */
+    void *memory;        /* holds all that follow */
+    double *mu_q, *mu_p; /* the tableau's, columns of `row` */
+    double *guess, *long_guess;
+    double *c;           /* a row */
+    double *hb;          /* h b_j */
+    double *to_q, *to_p; /* h b_j, - h b_j: vectors of each */
+    double h;            /* 0: none yet */
 } nevh__stage_weights;
 
 nevh__stage_weights *nevh__stage_weights_new(const nevh__tableau *);
@@ -39,10 +41,10 @@ static inline bool nevh__stages_have_newton(const nevh_work *w, size_t stages) {
     return 2 * w->n * stages <= NEVH__MOST_DENSE;
 }
 
-/* Of stage i, what continues a variable's slopes of the last step, `width`
-   apart. */
+/* Of stage i, what continues a variable's slopes of so many steps, `width` apart:
+   by those of all that are kept, or of one.  0: there are none. */
 double nevh__stage_continue(const nevh__stage_weights *, size_t i, size_t width,
-                            const double last[]);
+                            double steps, const double past[]);
 
 /* Orbits that are worth the work of eight. */
 enum { NEVH__FEWEST_TOGETHER = 5 };
@@ -69,8 +71,9 @@ typedef struct {
     const double *q, *p;        /* n rows each */
     const double *compensation; /* 2n rows */
     const double *unit;         /* 2n rows: |h| over the scale */
-    const double *last;   /* the slopes solved for in the last step, to be */
-    const double *last_h; /* continued where that was by h too; one row */
+    const double *past;   /* the slopes solved for in the last steps, to be */
+    const double *steps;  /* continued: of how many, one row */
+    const double *past_h; /* by which these were; one row */
 } nevh__sweep_start;
 
 /* Of one orbit, or of lanes next to each other: whether they can be swept, which

@@ -67,14 +67,16 @@ static void fill(nevh__tableau *a, const nevh__rule *r, bool alike) {
         for (size_t j = 0; j < s; j++)
             a->guess[j * s + i] = (double)lagrange(r, j, 1 + r->c[i]);
     }
+    if (a->steps > 1)
+        nevh__guess_weights(r, a->long_guess);
     fill_matrices(a, r, alike);
     fill_order(a);
 }
 
 nevh__tableau *nevh__tableau_new(const nevh__rule *r, bool alike) {
-    size_t s = r->stages;
+    size_t s = r->stages, steps = nevh__guess_steps(s);
     nevh__tableau *a = nevh__array(1, sizeof *a);
-    double *all = nevh__array(s * (5 * s + 2), sizeof *all);
+    double *all = nevh__array(s * ((5 + steps) * s + 2), sizeof *all);
     size_t *order = nevh__array(s, sizeof *order);
     if (!a || !all || !order) {
         free(a);
@@ -82,12 +84,13 @@ nevh__tableau *nevh__tableau_new(const nevh__rule *r, bool alike) {
         free(order);
         return NULL;
     }
-    *a = (nevh__tableau){s, all, all + s, .order = order};
+    *a = (nevh__tableau){s, all, all + s, .steps = steps, .order = order};
     a->mu_q = a->b + s;
     a->mu_p = a->mu_q + s * s;
     a->a_q = a->mu_p + s * s;
     a->a_p = a->a_q + s * s;
     a->guess = a->a_p + s * s;
+    a->long_guess = steps > 1 ? a->guess + s * s : a->guess;
     fill(a, r, alike);
     return a;
 }

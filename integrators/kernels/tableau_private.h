@@ -32,6 +32,8 @@ typedef struct {
     double *a_q, *a_p;   /* rounded mu times b */
     double *guess;       /* guess[j*stages + i]: Lagrange polynomial j at
                             1 + c_i */
+    size_t steps;        /* that a guess from several steps takes slopes of */
+    double *long_guess;  /* the same of these, the last step's first */
     size_t *order;       /* stages by rising weight */
 } nevh__tableau;
 
@@ -50,6 +52,10 @@ void nevh__tableau_free(nevh__tableau *);
    `alike`: they are the same but for rounding, and are to be so exactly. */
 nevh__tableau *nevh__tableau_new(const nevh__rule *, bool alike);
 void nevh__gauss_rule(size_t stages, nevh__rule *);
+/* How many steps' slopes lead to a guess of the next; if several, their weights: of the
+   slope at stage j, k steps before the last, guess[(k*stages + j)*stages + i]. */
+size_t nevh__guess_steps(size_t stages);
+void nevh__guess_weights(const nevh__rule *, double guess[]);
 /* P_s(x) and its derivative, |x| < 1; s from 1. */
 long double nevh__legendre(size_t s, long double x, long double *slope);
 

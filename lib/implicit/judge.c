@@ -7,8 +7,10 @@
 #include "system/system_private.h"
 #include <math.h>
 
-const nevh__stage_lane nevh__stage_fresh = {
-    .change = INFINITY, .before = INFINITY, .least = INFINITY};
+const nevh__stage_lane nevh__stage_fresh = {.change = INFINITY,
+                                            .before = INFINITY,
+                                            .least = INFINITY,
+                                            .first = INFINITY};
 
 void nevh__stage_begin(nevh__stage_solver *s, size_t lane) {
     size_t width = s->work->width;

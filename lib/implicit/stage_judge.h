@@ -65,7 +65,7 @@ NEVH__INLINE double nevh__stage_noise_level(const nevh__stage_judged *);
 NEVH__INLINE void nevh__stage_forget(nevh__stage_lane *l) {
     l->grace = l->strays = false;
     l->stalls = l->slow = 0;
-    l->change = l->before = l->least = INFINITY;
+    l->change = l->before = l->least = l->first = INFINITY;
 }
 
 /* Differences only: the last sweep drew noise and nothing else. */
@@ -84,6 +84,7 @@ nevh__stage_judge_sweep(const nevh__stage_judged *x, nevh__stage_lane *l,
                  (made->change > l->change && made->change > NEVH__STAGE_TINY);
     l->before = l->change;
     l->change = made->change;
+    l->first = l->before < INFINITY ? l->first : made->change;
     if (!made->moved || nevh__stage_drowned(x, l, made))
         return NEVH__DONE;
     bool falls = x->falls && made->change < l->least;

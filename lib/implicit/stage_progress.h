@@ -3,6 +3,7 @@
 #ifndef NEVH_STAGE_PROGRESS_H
 #define NEVH_STAGE_PROGRESS_H
 
+#include <nevh/simd.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -10,6 +11,9 @@
    its estimate noise may be. */
 #define NEVH__STAGE_TINY   1e-10
 #define NEVH__STAGE_MARGIN 16
+/* First guesses that are further off, in units of scale, are of no use for the
+   next. */
+#define NEVH__STAGE_FAR 0.25
 /* Sweeps after which fixed-point iteration ends. */
 enum { NEVH__STAGE_SWEEPS = 100 };
 
@@ -31,6 +35,16 @@ typedef struct nevh__stage_lane {
     double change;   /* largest of the last sweep, in units of scale */
     double before;   /* that of the sweep before */
     double least;    /* the smallest of those so far */
+    double first;    /* that of the first sweep */
 } nevh__stage_lane;
+
+/* How many steps' slopes continue the next, of `steps` before by h, at most
+   `most`: where a guess was far off, none but the last step's. */
+NEVH__INLINE double nevh__stage_remember(double steps, double most,
+                                         double first_change) {
+    return !(first_change <= NEVH__STAGE_FAR) ? 1
+           : steps < most                     ? steps + 1
+                                              : most;
+}
 
 #endif

@@ -9,12 +9,13 @@
 #include <stdio.h>
 
 /* The memory of the kernel, behind digits that sums have lost: slopes that the
-   last step solved for, its h, and for how many steps Newton's iteration is to
-   go first. */
+   last PAST steps solved for, their h, of how many steps they are, and for how
+   many steps Newton's iteration is to go first. */
 static const char sizes[] =
     "enum { STAGES = %zu, ROW = %zu, FIRST = %zu, UNKNOWN = 2 * DOF - FIRST,\n"
-    "       SLOPES_AT = 2 * DOF, H_AT = SLOPES_AT + UNKNOWN * STAGES,\n"
-    "       HOLD_AT = H_AT + 1, SWEEPS_AT, APART = %zu, STRIDE = %zu,\n"
+    "       PAST = %zu, KEPT_STAGES = PAST * STAGES, SLOPES_AT = 2 * DOF,\n"
+    "       H_AT = SLOPES_AT + UNKNOWN * KEPT_STAGES, STEPS_AT, HOLD_AT,\n"
+    "       SWEEPS_AT, APART = %zu, STRIDE = %zu,\n"
     "       FEW = STAGES == ROW ? %d : 0 };\n"
     "#define PARTITIONED %s\n#define NOISY %s\n#define NEWTON %s\n";
 
@@ -92,10 +93,11 @@ static const char step_weights[] =
     "    double to_q[STAGES * NEVH__LANES], to_p[STAGES * NEVH__LANES];\n"
     "} step_weights;\n\n";
 
-static const char step[] =
+static const char addition[] =
     "/* The new state from the slopes, which the next step continues. */\n"
     "NEVH__INLINE bool add_step(const step_weights *w, const double *gradient,\n"
-    "                           double *y, double *M, double h) {\n"
+    "                           double first_change, double *y, double *M,\n"
+    "                           double h) {\n"
     "    double sum[2 * DOF], lost[2 * DOF], check = 0;\n"
     "    NEVH__EACH(k, 1, 2 * DOF) {\n"
     "        sum[k] = y[k];\n"
@@ -109,14 +111,24 @@ static const char step[] =
     "        y[k] = sum[k];\n"
     "        M[k] = lost[k];\n"
     "    }\n"
-    "    NEVH__EACH(k, 1, UNKNOWN)\n"
+    "    for (size_t k = 0; k < UNKNOWN; k++) {\n"
+    "        double older[KEPT_STAGES], *kept = M + SLOPES_AT + k * KEPT_STAGES;\n"
+    "        NEVH__EACH(i, 1, KEPT_STAGES - STAGES)\n"
+    "            older[i] = kept[i];\n"
     "        NEVH__EACH(i, 1, STAGES) {\n"
     "            double slope = gradient[(FIRST + k) * ROW + i];\n"
-    "            M[SLOPES_AT + k * STAGES + i] =\n"
-    "                FIRST + k < DOF ? slope : -slope;\n"
+    "            kept[i] = FIRST + k < DOF ? slope : -slope;\n"
     "        }\n"
+    "        NEVH__EACH(i, 1, KEPT_STAGES - STAGES)\n"
+    "            kept[STAGES + i] = older[i];\n"
+    "    }\n"
+    "    M[STEPS_AT] = nevh__stage_remember(M[H_AT] == h ? M[STEPS_AT] : 0, "
+    "PAST,\n"
+    "                                       first_change);\n"
     "    M[H_AT] = h;\n"
-    "    return true;\n}\n\n"
+    "    return true;\n}\n\n";
+
+static const char step[] =
     "/* Sweeps until the slopes are those at the points that they lead to, but\n"
     "   for rounding; false: they do not get there, and nothing has changed. */\n"
     "NEVH__INLINE bool take_step($1const step_weights *w, double t, double h,\n"
@@ -155,9 +167,16 @@ static const char step[] =
     "    }\n"
     "    NEVH_LANES(i, ROW) {\n        times[i] = t + nodes[i] * h;\n    }\n"
     "    nevh__stage_forget(&lane);\n"
-    "    nevh__stage_begin_sweeps(&x, &changes, NEVH__STAGES_TOGETHER, guess,\n"
-    "                             M[H_AT] == h ? M + SLOPES_AT : NULL,\n"
-    "                             STAGES);\n"
+    "    if (M[H_AT] == h && M[STEPS_AT] >= PAST)\n"
+    "        nevh__stage_begin_sweeps(&x, &changes, NEVH__STAGES_TOGETHER,\n"
+    "                                 long_guess, KEPT_STAGES, M + SLOPES_AT,\n"
+    "                                 KEPT_STAGES);\n"
+    "    else\n"
+    "        nevh__stage_begin_sweeps(&x, &changes, NEVH__STAGES_TOGETHER, "
+    "guess,\n"
+    "                                 M[H_AT] == h && M[STEPS_AT] > 0 ? STAGES : "
+    "0,\n"
+    "                                 M + SLOPES_AT, KEPT_STAGES);\n"
     "    while (state == NEVH__GO_ON && sweeps < NEVH__STAGE_SWEEPS) {\n"
     "        if (nevh__stage_map(&x, NEVH__STAGES_TOGETHER))\n"
     "            return false;\n"
@@ -168,7 +187,7 @@ static const char step[] =
     "        sweeps++;\n"
     "    }\n"
     "    if (state != NEVH__DONE || is_bad(bad) || unknown != 0 ||\n"
-    "        !add_step(w, gradient, y, M, h))\n"
+    "        !add_step(w, gradient, lane.first, y, M, h))\n"
     "        return false;\n"
     "    NEVH__EACH(k, 1, DOF) {\n"
     "        Q[k] = y[k];\n        P[k] = y[DOF + k];\n    }\n"
@@ -201,11 +220,12 @@ static const char driver[] =
 static const char lanes_state[] =
     "typedef struct {\n"
     "    double y[2 * DOF * 8], lost[2 * DOF * 8], slopes[2 * DOF * STRIDE];\n"
+    "    double steps[8], first_change[8];\n"
     "} block;\n"
     "typedef struct {\n"
     "    double points[2 * DOF * STRIDE], gradient[2 * DOF * STRIDE];\n"
     "    double before[UNKNOWN * STRIDE], least[UNKNOWN * STRIDE];\n"
-    "    double last[UNKNOWN * STRIDE], times[STRIDE], products[STRIDE];\n"
+    "    double past[UNKNOWN * PAST * STRIDE], times[STRIDE], products[STRIDE];\n"
     "    double unit[2 * DOF * 8], scale[2 * DOF * 8], lowest[8];\n"
     "} sweeps_room;\n"
     "INLINE void load_block(const double *N, double h, const double *Q,\n"
@@ -223,10 +243,12 @@ static const char lanes_state[] =
     "            r->unit[k * 8 + i] = fabs(h) / scale;\n"
     "        }\n"
     "    }\n"
-    "    for (size_t k = 0; k < UNKNOWN * STAGES; k++)\n"
+    "    for (size_t i = 0; i < 8; i++)\n"
+    "        to->steps[i] = M[H_AT * WIDTH + i] == h ? M[STEPS_AT * WIDTH + i] : "
+    "0;\n"
+    "    for (size_t k = 0; k < UNKNOWN * KEPT_STAGES; k++)\n"
     "        NEVH_LANES(i, 8) {\n"
-    "            double one = M[(SLOPES_AT + k) * WIDTH + i];\n"
-    "            r->last[k * 8 + i] = M[H_AT * WIDTH + i] == h ? one : 0;\n"
+    "            r->past[k * 8 + i] = M[(SLOPES_AT + k) * WIDTH + i];\n"
     "        }\n"
     "}\n"
     "INLINE bool add_block(const step_weights *w, block *to) {\n"
@@ -274,7 +296,13 @@ static const char lanes_step[] =
     "    load_block(N, h, Q, P, M, &r, to);\n"
     "    NEVH_LANES(i, STRIDE) {\n"
     "        r.times[i] = t + nodes[i / 8] * h;\n    }\n"
-    "    nevh__stage_begin_sweeps(&x, &changes, 8, guess, r.last, STRIDE);\n"
+    "    nevh__stage_begin_sweeps(&x, &changes, 8, long_guess, KEPT_STAGES,\n"
+    "                             r.past, PAST * STRIDE);\n"
+    "    for (size_t i = 0; i < 8; i++)\n"
+    "        if (to->steps[i] < PAST)\n"
+    "            nevh__stage_begin_lane(&x, &changes, i, guess,\n"
+    "                                   to->steps[i] > 0 ? STAGES : 0, r.past,\n"
+    "                                   PAST * STRIDE);\n"
     "    for (size_t sweeps = 1; left > 0; sweeps++) {\n"
     "        counted[2] += left > FEW ? 8 : left;\n"
     "        if (nevh__stage_map(&x, 8))\n            return false;\n"
@@ -297,13 +325,16 @@ static const char lanes_step[] =
     "                return false;\n"
     "            if (state == NEVH__GO_ON)\n                continue;\n"
     "            settled[i] = true;\n"
+    "            to->first_change[i] = lane[i].first;\n"
     "            left--;\n"
     "            counted[0] += sweeps;\n"
     "            for (size_t k = i; k < 2 * DOF * STRIDE; k += 8)\n"
     "                to->slopes[k] = r.gradient[k];\n"
     "        }\n"
     "    }\n"
-    "    return !is_bad(bad) && unknown == 0 && add_block(w, to);\n}\n"
+    "    return !is_bad(bad) && unknown == 0 && add_block(w, to);\n}\n";
+
+static const char lanes_store[] =
     "INLINE void store_block(double h, const block *from, double *Q, double "
     "*P,\n"
     "                        double *M) {\n"
@@ -314,14 +345,24 @@ static const char lanes_step[] =
     "            M[k * WIDTH + i] = from->lost[k * 8 + i];\n"
     "        }\n"
     "    }\n"
-    "    for (size_t k = 0; k < UNKNOWN * STAGES; k++) {\n"
-    "        double sign = FIRST + k / STAGES < DOF ? 1 : -1;\n"
-    "        NEVH_LANES(i, 8) {\n"
-    "            M[(SLOPES_AT + k) * WIDTH + i] =\n"
-    "                sign * from->slopes[FIRST * STRIDE + k * 8 + i];\n"
-    "        }\n"
+    "    for (size_t k = 0; k < UNKNOWN; k++) {\n"
+    "        double sign = FIRST + k < DOF ? 1 : -1;\n"
+    "        double *kept = M + (SLOPES_AT + k * KEPT_STAGES) * WIDTH;\n"
+    "        for (size_t j = KEPT_STAGES; j-- > 0;)\n"
+    "            NEVH_LANES(i, 8) {\n"
+    "                kept[j * WIDTH + i] =\n"
+    "                    j < STAGES ? sign * from->slopes[(FIRST + k) * STRIDE + "
+    "j * 8 + i]\n"
+    "                               : kept[(j - STAGES) * WIDTH + i];\n"
+    "            }\n"
     "    }\n"
-    "    NEVH_LANES(i, 8) {\n        M[H_AT * WIDTH + i] = h;\n    }\n"
+    "    for (size_t i = 0; i < 8; i++) {\n"
+    "        M[STEPS_AT * WIDTH + i] = nevh__stage_remember(from->steps[i], "
+    "PAST,\n"
+    "                                                       "
+    "from->first_change[i]);\n"
+    "        M[H_AT * WIDTH + i] = h;\n"
+    "    }\n"
     "}\n"
     "static bool take_step(const double *N, const step_weights *w, double t,\n"
     "                      double h, double *Q, double *P, double *M,\n"
@@ -340,13 +381,16 @@ static const char lanes_step[] =
 static void write_tables(nevh__writer *w, const nevh__tableau *a,
                          const nevh__stage_weights *padded) {
     size_t matrix = padded->stages * padded->row;
-    nevh__write(w, "/* mu_ij = a_ij / b_j, column by column, by which slopes "
-                   "lead to the states of\n   stages; what continues the last "
-                   "step's slopes; nodes c_i; weights b_j, and\n   their order "
-                   "by size. */\n");
+    nevh__write(w,
+                "/* mu_ij = a_ij / b_j, column by column, by which slopes "
+                "lead to the states of\n   stages; what continues the slopes "
+                "of the last step, and of PAST steps; nodes c_i;\n   weights "
+                "b_j, and their order by size. */\n");
     nevh__write_numbers(w, "static const double mu_q", matrix, padded->mu_q);
     nevh__write_numbers(w, "static const double mu_p", matrix, padded->mu_p);
     nevh__write_numbers(w, "static const double guess", matrix, padded->guess);
+    nevh__write_numbers(w, "static const double long_guess",
+                        padded->steps * matrix, padded->long_guess);
     nevh__write_numbers(w, "static const double nodes", padded->row, padded->c);
     nevh__write_numbers(w, "static const double weights", a->stages, a->b);
     nevh__write(w, "static const size_t order[] = {");
@@ -361,7 +405,7 @@ static void write_sizes(nevh__writer *w, const nevh_work *work,
     bool noisy = work->field->gradient->offsets, one = w->width == 1;
     bool newton = nevh__stages_have_newton(work, padded->stages);
     nevh__write(w, sizes, padded->stages, padded->row,
-                partitioned ? work->n : 0,
+                partitioned ? work->n : 0, padded->steps,
                 one ? (size_t)1 : (size_t)NEVH__LANES,
                 one ? padded->row : padded->stages * NEVH__LANES,
                 NEVH__FEW_TOGETHER, partitioned ? "true" : "false",
@@ -370,6 +414,7 @@ static void write_sizes(nevh__writer *w, const nevh_work *work,
 
 static void write_one_orbit(nevh__writer *w, const char *scales) {
     bool plain = w->readable;
+    nevh__write(w, "%s", addition);
     nevh__write_filled(w, step,
                        (const char *const[]){
                            plain ? "" : "const double *N, ",
@@ -402,7 +447,7 @@ static void write_step(nevh__writer *w, const nevh_work *work,
         write_one_orbit(w, scales);
     else {
         nevh__write_filled(w, lanes_state, (const char *const[]){scales});
-        nevh__write(w, "%s", lanes_step);
+        nevh__write(w, "%s%s", lanes_step, lanes_store);
     }
     nevh__write_driver_head(w);
     nevh__write_filled(w, driver,
@@ -415,9 +460,11 @@ static void write_plain(nevh__writer *w, const nevh_work *work,
                         const nevh__tableau *a) {
     const nevh__stage_weights plain = {.stages = a->stages,
                                        .row = a->stages,
+                                       .steps = a->steps,
                                        .mu_q = a->mu_q,
                                        .mu_p = a->mu_p,
                                        .guess = a->guess,
+                                       .long_guess = a->long_guess,
                                        .c = a->c};
     write_step(w, work, a, &plain);
 }

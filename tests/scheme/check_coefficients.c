@@ -192,6 +192,62 @@ TEST_RANGE(gauss_guess_extrapolates, 1, MOST_STAGES) {
     nevh__tableau_free(g);
 }
 
+/* What the guess from several steps makes of slopes x at node j, `back` steps
+   before the last. */
+static double continued(const nevh__tableau *g, size_t i,
+                        double (*x)(double back, double node, size_t j),
+                        double *size) {
+    double sum = 0;
+    *size = 0;
+    for (size_t j = 0; j < g->steps * g->stages; j++) {
+        double weight = g->long_guess[j * g->stages + i];
+        size_t node = j % g->stages, back = j / g->stages;
+        double one = weight * x((double)back, g->c[node], node);
+        sum += one;
+        *size += fabs(one);
+    }
+    return sum;
+}
+
+static size_t power, chosen;
+static double of_time(double back, double node, size_t j) {
+    (void)j;
+    return pow((node - back) / 2, (double)power);
+}
+static double of_one_node(double back, double node, size_t j) {
+    (void)node;
+    return j == chosen ? pow(back / 8, (double)power) : 0;
+}
+
+/* The guess from several steps is exact for polynomials in time, of few stages
+   up to a degree that exceeds that of the last step's, and, in methods of few stages, for slopes
+   that at each node are a polynomial of their own in the number of the step. */
+TEST_RANGE(long_guess_extrapolates, 1, MOST_STAGES) {
+    size_t s = (size_t)_i;
+    for (int lobatto = s < 2; lobatto < 2; lobatto++) {
+        nevh__tableau *g =
+            lobatto && s > 1 ? nevh__lobatto_new(s) : nevh__gauss_new(s);
+        size_t most = 2 * s - (g->c[0] > 0 ? 1 : 2);
+        size_t degree = s > 5 ? s - 1 : s + 2 < most ? s + 2 : most;
+        double size;
+        ck_assert_uint_eq(g->steps, s == 1 ? 9 : s > 5 ? 1 : 16 / s);
+        for (size_t i = 0; i < s; i++) {
+            for (power = 0; power <= degree; power++) {
+                double sum = continued(g, i, of_time, &size);
+                double due = pow((1 + g->c[i]) / 2, (double)power);
+                ck_assert_double_eq_tol(sum, due, 1e-15 * size);
+            }
+            for (power = 0; power + 2 < g->steps; power++)
+                for (chosen = 0; chosen < s; chosen++) {
+                    double sum = continued(g, i, of_one_node, &size);
+                    double due = i == chosen ? pow(-1. / 8, (double)power) : 0;
+                    ck_assert_double_eq_tol(sum, due, 1e-15 * size);
+                }
+        }
+        nevh__tableau_free(g);
+    }
+}
+
 TEST_RANGE(gauss_order_rises, 1, MOST_STAGES) {
     size_t s = (size_t)_i, seen = 0;
     nevh__tableau *g = nevh__gauss_new(s);

@@ -95,6 +95,49 @@ TEST_EACH(partitioned_form_is_the_scheme, 3 * SCHEMES) {
                           (uint64_t)nevh_integrator_sweep_gradients(scheme));
 }
 
+/* Sweeps of every second step; `fresh`: a guess knows the step before alone. */
+static size_t count_sweeps(const problem *b, const nevh_integrator *scheme,
+                           double h, bool fresh) {
+    nevh_system *s = b->make();
+    double q[MOST_DOF], p[MOST_DOF];
+    size_t counted = 0;
+    for (size_t k = 0; k < b->n; k++) {
+        q[k] = b->q[k];
+        p[k] = b->p[k];
+    }
+    nevh_options options = {.gradient = nevh_exact, .t = b->t0};
+    nevh_stepper *m = nevh_stepper_new(s, scheme, &options);
+    for (size_t i = 0; i < 2 * STEPS; i++) {
+        size_t before = nevh_stepper_counts(m).sweeps;
+        double t = b->t0 + (double)i * h;
+        if (fresh && i % 2 == 0)
+            nevh_stepper_reset(m);
+        ck_assert_int_eq(nevh_stepper_apply(m, t, h, q, p), NEVH_OK);
+        counted += i % 2 * (nevh_stepper_counts(m).sweeps - before);
+    }
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+    return counted;
+}
+
+/* A guess from several steps saves sweeps, the more of them the fewer stages
+   there are; of eight there is none. */
+TEST_EACH(several_steps_lead_closer, SCHEMES) {
+    static const problem *const subjects[] = {&driven_pendulum, &henon_heiles,
+                                              &double_pendulum, &kepler};
+    static const double part[SCHEMES] = {0.7,  0.83, 0.9, 1.01,
+                                         0.93, 0.89, 0.92};
+    const nevh_integrator *scheme = *schemes[_i];
+    double h = fmin(0.01 * nevh_integrator_order(scheme), 0.05);
+    size_t all = 0, one = 0;
+    for (size_t i = 0; i < sizeof subjects / sizeof *subjects; i++) {
+        all += count_sweeps(subjects[i], scheme, h, false);
+        one += count_sweeps(subjects[i], scheme, h, true);
+    }
+    ck_assert_msg((double)all <= part[_i] * (double)one, "%s: %zu, not %zu",
+                  nevh_integrator_name(scheme), all, one);
+}
+
 /* lobatto2 is the general Stoermer-Verlet method: on T(p) + V(q), verlet. */
 TEST_EACH(lobatto2_is_verlet, 3) {
     const problem *b = separable[_i];
