@@ -207,4 +207,14 @@ for command in cost 'recommend --energy-error 1e-3'; do
 done
 exits 0 compare $work/still.nevh --integrators verlet
 lacks 'nan'
+# A long run, of which a part is searched: errors of a gradient that grow leave it
+# to another gradient, a drift to a shorter step.  What is said to hold holds for
+# the run itself.
+if test "$SLOW" = yes; then
+    exits 0 recommend pendulum --energy-error 1e-8 --t-end 1e6 \
+        --integrators gauss16,taylor --format csv --quiet
+    awk -F, 'NR > 1 && !($9 <= 1e-8 && $21 >= 1e6) { print; wrong = 1 }
+        END { exit wrong || NR < 2 }' $work/out ||
+        fails "breaks its promise in a long run"
+fi
 exit $status

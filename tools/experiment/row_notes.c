@@ -119,20 +119,37 @@ static void note_rows(const plan *p, const row rows[], size_t count,
                         "as verlet with that dt; dt is what they take");
 }
 
-/* Integrators some of whose rows ran compiled steps. */
+/* Which integrators ran compiled steps, in all of their rows or in some. */
 void native_notes(const plan *p, const row rows[], size_t count, list *notes) {
-    list all = {0};
+    list all = {0}, some = {0}, none = {0};
     for (size_t i = 0; i < count; i++)
-        if (rows[i].native && !list_has(&all, rows[i].integrator))
-            list_add(&all, rows[i].integrator);
-    char *names = list_joined(&all);
-    list_free(&all);
-    if (*names)
-        list_print(notes, "native: steps of %s are compiled; others are not",
-                   names);
+        if (!rows[i].native)
+            list_add(&none, rows[i].integrator);
+    for (size_t i = 0; i < count; i++) {
+        list *to = list_has(&none, rows[i].integrator) ? &some : &all;
+        if (rows[i].native && !list_has(to, rows[i].integrator))
+            list_add(to, rows[i].integrator);
+    }
+    char *names = list_joined(&all), *in_part = list_joined(&some);
+    if (!none.count && *names)
+        list_add(notes, "native: all steps are compiled");
+    else if (*names)
+        list_print(notes,
+                   "native: steps of %s are compiled%s%s; others are "
+                   "not",
+                   names, *in_part ? ", in some rows those of " : "", in_part);
+    else if (*in_part)
+        list_print(notes,
+                   "native: in some rows steps of %s are compiled; "
+                   "others are not",
+                   in_part);
     else if (p->native == NEVH_NATIVE_ALWAYS)
         list_add(notes, "native: no steps are compiled");
+    list_free(&all);
+    list_free(&some);
+    list_free(&none);
     free(names);
+    free(in_part);
 }
 
 void row_notes(const options *o, const plan *p, const row rows[], size_t count,

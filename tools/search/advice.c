@@ -162,11 +162,14 @@ static void tell_longer(const advice *a, const row *r, list *words) {
                    "In a longer run that holds until t = %.6g: beyond it ask "
                    "again, with --t-end.",
                    holds);
-    else if (r->promise)
+    else if (r->promise && holds > a->search.plan.t_end)
         list_print(words,
                    "In a longer run that holds until t = %.6g at least, up to "
                    "which it was followed.",
                    holds);
+    else if (r->promise)
+        list_add(words, "Longer runs were not followed to their end, for the "
+                        "time that they take.");
 }
 
 /* That the error which was asked for does not see. */

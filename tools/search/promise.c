@@ -44,6 +44,8 @@ static void follow(const advice *a, const plan *longer, row *r) {
     else if (!copy.ran && !made->unknown)
         made->broken = true;
     free(copy.status);
+    if (!made->broken) /* the run itself keeps it */
+        made->until = fmax(made->until, a->search.plan.t_end);
     r->promise = made;
 }
 

@@ -4,10 +4,17 @@
 #include "recommend_private.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-/* How many places finer a level must be, as its order tells, at least one. */
-static int places_short(const advice *a, const row *r) {
-    double over = study_error(r, a->search.by_state) / a->target;
+/* How much longer the whole is than the pilot. */
+static double stretch(const advice *a) {
+    double start = a->search.plan.run->t_start;
+    return (a->whole - start) / (a->pilot - start);
+}
+
+/* How many places finer a level must be for an error `over` times less, as its
+   order tells, at least one. */
+static int places_short(const row *r, double over) {
     double places = nevh_integrator_adaptive(r->scheme)
                         ? GRID_STRIDE * log10(over)
                         : 40 * log10(over) / r->order;
@@ -18,9 +25,15 @@ static int places_short(const advice *a, const row *r) {
 /* As much as the whole should take by what the pilot took, and some more. */
 static double patience_for(const advice *a, const row *pilot) {
     static const double more = 4;
-    double start = a->search.plan.run->t_start;
-    return fmax(more * pilot->work * (a->whole - start) / (a->pilot - start),
-                a->search.plan.patience);
+    return fmax(more * pilot->work * stretch(a), a->search.plan.patience);
+}
+
+/* Where the energy drifts, finer by as much as the error grows. */
+static int first_place(const advice *a, const study *l) {
+    const row *r = advice_keeps(a, l);
+    double over = study_error(r, a->search.by_state) / a->target * stretch(a);
+    int k = l->k[r - l->level];
+    return row_drifts(r) && over > 1 ? k + places_short(r, over) : k;
 }
 
 /* Whether the next place that is coarser was tried. */
@@ -33,16 +46,18 @@ static bool was_polished(const study *l, size_t level) {
 static study verified(advice *a, const study *l) {
     enum { TRIES = 6 };
     study full = study_like(l, l->gradient);
-    int k = l->k[advice_keeps(a, l) - l->level];
-    if (was_polished(l, (size_t)(advice_keeps(a, l) - l->level)))
+    int k = first_place(a, l);
+    if (k == l->k[advice_keeps(a, l) - l->level] &&
+        was_polished(l, (size_t)(advice_keeps(a, l) - l->level)))
         full.topped = 1; /* longer steps failed sooner */
     a->search.plan.patience = patience_for(a, advice_keeps(a, l));
     for (int i = 0; i < TRIES && !(i && search_is_over(&a->search, 1)); i++) {
         size_t level = study_run(&a->search, &full, k);
         const row *r = &full.level[level];
-        if (study_error(r, a->search.by_state) <= a->target || r->late)
+        double over = study_error(r, a->search.by_state) / a->target;
+        if (over <= 1 || r->late)
             break;
-        k += places_short(a, r) + i;
+        k += places_short(r, over) + i;
     }
     study_refine(&a->search, &full, a->target, 1);
     full.end =
@@ -70,11 +85,51 @@ static size_t list_next(const advice *a, bool taken[],
     return count;
 }
 
+/* The pilot of the same integrator with the gradient that all were tried with;
+   NULL: there is none that keeps the target. */
+static const study *usual_gradient(const advice *a, const study *l) {
+    for (size_t i = 0; i < a->count; i++)
+        if (strcmp(a->study[i].integrator, l->integrator) == 0 &&
+            a->study[i].gradient == a->gradients.item[0] &&
+            advice_keeps(a, &a->study[i]))
+            return &a->study[i];
+    return NULL;
+}
+
+/* Whether the errors of a gradient may pass the target in the whole run, if they
+   grow with its length. */
+static bool adds_up(const advice *a, const study *l, const study *usual) {
+    double least = INFINITY;
+    int k = l->k[advice_keeps(a, l) - l->level];
+    for (size_t i = 0; i < usual->count; i++)
+        if (usual->k[i] <= k)
+            least = study_error(&usual->level[i], false);
+    double own = study_error(advice_keeps(a, l), false) - least;
+    return least + stretch(a) * fabs(own) > a->target;
+}
+
+/* The answers of the pilot; where errors of a gradient may add up, the usual
+   gradient instead. */
+static size_t list_pilots(const advice *a, const study *found[ADVICE_MOST]) {
+    size_t listed = advice_list(a, found), count = 0;
+    for (size_t i = 0; i < listed; i++) {
+        const study *l = found[i], *usual = usual_gradient(a, l);
+        bool known = false;
+        if (!a->search.by_state && usual && adds_up(a, l, usual))
+            l = usual;
+        for (size_t k = 0; k < count; k++)
+            known |= found[k] == l;
+        if (!known)
+            found[count++] = l;
+    }
+    return count;
+}
+
 /* The answers of the pilot, and where none of them keeps the target over the
    whole run, as the gradient's own errors may add up in it, what is next. */
 static void verify_pilots(advice *a) {
     const study *pilots[ADVICE_MOST];
-    size_t count = advice_list(a, pilots), done = 0;
+    size_t count = list_pilots(a, pilots), done = 0;
     study *full = tool_allocate(a->count + 1, sizeof *full);
     bool *taken = tool_allocate(a->count, sizeof *taken), kept = false;
     for (size_t i = 0; i < count; i++)
@@ -109,7 +164,7 @@ static void verify(advice *a, plan *p) {
         a->search.plan.observable_scale = p->observable_scale;
         a->search.plan.observable_level = p->observable_level;
     }
-    a->search.budget = a->search.spent + SEARCH_BUDGET;
+    a->search.budget = a->search.spent + 2 * SEARCH_BUDGET;
     verify_pilots(a);
     advice_time_once(a);
     advice_time_best(a);
