@@ -138,7 +138,7 @@ tests_tool_check_hard_judge_SOURCES = tests/tool/check_hard_judge.c \
 	tools/cli/words.c
 tests_tool_check_hard_judge_CPPFLAGS = $(AM_CPPFLAGS) -D_GNU_SOURCE
 tests_ensemble_check_random_LDADD = $(INSIDE_LIBS)
-tests_ensemble_check_sweep_LDADD = $(TEST_LIBS) $(GSL_LIBS)
+tests_ensemble_check_sweep_LDADD = $(INSIDE_LIBS) $(GSL_LIBS)
 tests_diagnose_check_frequencies_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_scheme_check_gsl_LDADD = $(TEST_LIBS) $(GSL_LIBS)
 tests_run_check_damped_orbits_LDADD = $(TEST_LIBS) $(GSL_LIBS)

@@ -7,6 +7,7 @@
 #include "ensemble/ensemble_private.h"
 #include "gradient/field_private.h"
 #include "kernels/runge_kutta_private.h"
+#include "native/native_private.h"
 
 /* Kernels whose plans hold nothing that constants of H change but scales, or
    take it from the plan of a stepper of their own. */
@@ -36,6 +37,11 @@ bool nevh__ensemble_may_vary(const nevh_ensemble *e) {
            kernel_of(e->stepper) < KERNELS;
 }
 
+bool nevh__ensemble_may_vary_compiled(const nevh_ensemble *e) {
+    return nevh__ensemble_may_vary(e) &&
+           nevh__native_by_lane(&e->stepper->work);
+}
+
 bool nevh__ensemble_vary(nevh_ensemble *e, nevh__own_fn own,
                          nevh__refused_fn refused) {
     if (!nevh__ensemble_may_vary(e) ||
@@ -63,6 +69,7 @@ static bool take(nevh_ensemble *e, size_t lane, const nevh__own *own,
         !nevh__field_lane_take(w->field, lane, own->constants,
                                narrow->work.field))
         return false;
+    nevh__native_lane_take(w, lane);
     if (e->energy)
         nevh__energy_lane_take(e->energy, lane, own->constants, narrow);
     return true;
@@ -89,6 +96,7 @@ void nevh__own_copy(nevh_ensemble *e, size_t from, size_t to) {
     nevh__field_lane_copy(w->field, from, to);
     if (kernels[kernel].copy)
         kernels[kernel].copy(w, from, to);
+    nevh__native_lane_take(w, to);
     if (e->energy)
         nevh__energy_lane_copy(e->energy, from, to);
 }

@@ -27,5 +27,7 @@ typedef void (*nevh__refused_fn)(void *data, uint64_t member);
 bool nevh__ensemble_vary(nevh_ensemble *, nevh__own_fn, nevh__refused_fn);
 /* Whether an ensemble like that one, but by_lane, can. */
 bool nevh__ensemble_may_vary(const nevh_ensemble *);
+/* And by compiled steps, where it has these. */
+bool nevh__ensemble_may_vary_compiled(const nevh_ensemble *);
 
 #endif

@@ -23,6 +23,7 @@ void nevh__native_free(nevh__native *x) {
     if (x->library)
         dlclose(x->library);
     free(x->numbers);
+    free(x->own);
     free(x->weights);
     free(x->times);
     free(x->room);
@@ -85,16 +86,18 @@ static const struct {
     const nevh_kernel *kernel;
     bool (*write)(nevh__writer *, nevh_work *);
     bool (*fill)(nevh__native *, const nevh_work *); /* NULL: of series */
-    bool loops; /* takes states of any length */
+    bool loops;   /* takes states of any length */
+    bool by_lane; /* takes orbits that have constants of their own */
 } families[] = {
-    {&nevh_splitting_kernel, nevh__write_splitting, fill_splitting, true},
-    {&nevh_runge_kutta_kernel, nevh__write_runge_kutta, fill_runge_kutta, true},
-    {&nevh_nystrom_kernel, nevh__write_nystrom, fill_nystrom, false},
-    {&nevh_gauss_kernel, nevh__write_stages, fill_stages, false},
-    {&nevh_lobatto_kernel, nevh__write_stages, fill_stages, false},
-    {&nevh_implicit_euler_kernel, nevh__write_stages, fill_stages, false},
-    {&nevh__tao_kernel, nevh__write_tao, fill_tao, false},
-    {&nevh__taylor_kernel, nevh__write_series, NULL, false}};
+    {&nevh_splitting_kernel, nevh__write_splitting, fill_splitting, true, true},
+    {&nevh_runge_kutta_kernel, nevh__write_runge_kutta, fill_runge_kutta, true,
+     true},
+    {&nevh_nystrom_kernel, nevh__write_nystrom, fill_nystrom, false, false},
+    {&nevh_gauss_kernel, nevh__write_stages, fill_stages, false, true},
+    {&nevh_lobatto_kernel, nevh__write_stages, fill_stages, false, true},
+    {&nevh_implicit_euler_kernel, nevh__write_stages, fill_stages, false, true},
+    {&nevh__tao_kernel, nevh__write_tao, fill_tao, false, false},
+    {&nevh__taylor_kernel, nevh__write_series, NULL, false, false}};
 /* The steps' copies of the state stand on the stack, but for those of loops. */
 enum { MOST_NUMBERS = 8192 };
 enum { FAMILIES = sizeof families / sizeof *families };
@@ -118,6 +121,14 @@ bool nevh_integrator_native(const nevh_integrator *scheme) {
     return scheme && family_of_scheme(scheme) < FAMILIES;
 }
 
+/* Noise of differences is told of one orbit. */
+bool nevh__native_by_lane(const nevh_work *w) {
+    size_t i = family_of(w);
+    return i < FAMILIES && families[i].by_lane && w->width > 1 &&
+           (families[i].fill != fill_stages ||
+            w->field->gradient == nevh_exact);
+}
+
 static size_t stages_of(const nevh_work *w) {
     return families[family_of(w)].fill == fill_stages
                ? (size_t)w->integrator->stages
@@ -135,8 +146,9 @@ static const char *obstacle(const nevh_work *w) {
            : family_of(w) == FAMILIES
                ? "only splitting, Tao, Runge-Kutta, Nystroem, Gauss and "
                  "Lobatto steps can be"
-           : w->accounts     ? "the balance of the energy is kept"
-           : w->field->lanes ? "orbits side by side have constants of their own"
+           : w->accounts ? "the balance of the energy is kept"
+           : w->field->lanes && !nevh__native_by_lane(w)
+               ? "orbits side by side have constants of their own"
            : w->width % NEVH__LANES && w->width > 1
                ? "orbits side by side fill no vectors"
            : w->n * w->width * stages_of(w) > MOST_NUMBERS && !has_loops(w)
@@ -149,6 +161,7 @@ static const char *obstacle(const nevh_work *w) {
 bool nevh__native_write(nevh__writer *text, nevh_work *w) {
     text->refusal = obstacle(w);
     text->width = w->width;
+    text->by_lane = w->field->lanes > 0;
     text->loops = !text->refusal && has_loops(w);
     return !text->refusal && families[family_of(w)].write(text, w);
 }
@@ -220,6 +233,28 @@ static bool take_series(nevh_work *w, const nevh__native *x) {
     return code;
 }
 
+/* A table for each vector of lanes. */
+static bool take_numbers(nevh__native *x, nevh__writer *text) {
+    size_t tables = text->by_lane ? text->width / NEVH__LANES : 1;
+    x->pitch = text->count;
+    x->numbers = nevh__array(tables * x->pitch, sizeof *x->numbers);
+    for (size_t i = 0; x->numbers && i < tables * x->pitch; i++)
+        x->numbers[i] = text->numbers[i % x->pitch];
+    x->own = text->own;
+    x->own_count = text->own_count;
+    text->own = NULL;
+    return x->numbers;
+}
+
+void nevh__native_lane_take(nevh_work *w, size_t lane) {
+    const nevh__native *x = w->native;
+    for (size_t i = 0; x && i < x->own_count; i++) {
+        const nevh__lane_numbers *own = &x->own[i];
+        x->numbers[lane / NEVH__LANES * x->pitch + own->first +
+                   lane % NEVH__LANES] = own->times * own->row[lane];
+    }
+}
+
 static bool make_room(nevh__native *x, size_t size) {
     x->room = nevh__array(size + NEVH__LANES, sizeof *x->room);
     return x->room;
@@ -241,8 +276,8 @@ static bool plan(nevh_work *w, nevh__native *x, nevh__writer *text,
         why[0] = '\0';
     if (!x->library)
         return false;
-    x->numbers = text->numbers;
-    text->numbers = NULL;
+    if (!take_numbers(x, text))
+        return false;
     if (text->rows && !make_room(x, text->rows * nevh__padded(w->n)))
         return false;
     return of_series(w) ? take_series(w, x) : take_steps(x);

@@ -32,8 +32,11 @@ typedef struct nevh__native {
     void *library;
     nevh__native_steps steps; /* NULL: of series, which the kernel takes */
     double *numbers, *weights, *times;
-    size_t characters; /* of its text */
-    double *room;      /* of states that are too long for the stack, or NULL */
+    nevh__lane_numbers
+        *own; /* of lanes: numbers are a table a vector of them */
+    size_t own_count, pitch; /* pitch: of the tables */
+    size_t characters;       /* of its text */
+    double *room; /* of states that are too long for the stack, or NULL */
     size_t kicks, drifts; /* of a step */
     bool keeps, kicks_first;
     bool whole;          /* what is kept is dH/dq and dH/dp */
@@ -84,7 +87,10 @@ bool nevh__write_program(nevh__writer *, nevh_work *, const nevh_program *);
 void nevh__native_plan(nevh_work *, char why[NEVH__WHY_NATIVE]);
 /* Whether there is one, and the steps foreseen make up for compiling it. */
 bool nevh__native_pays(const nevh_work *);
-void nevh__native_free(nevh__native *); /* NULL is allowed */
+/* Whether steps of orbits that have constants of their own can be compiled. */
+bool nevh__native_by_lane(const nevh_work *);
+void nevh__native_lane_take(nevh_work *, size_t lane); /* its numbers anew */
+void nevh__native_free(nevh__native *);                /* NULL is allowed */
 /* Takes up to `steps` steps of h, step i from t0 + i h, and counts them: the
    first is number `from`.
    returns  how many; the next is to be taken by the kernel */

@@ -61,6 +61,13 @@ static void name_at_state(nevh__writer *w, const nevh__formula_text *f,
             nevh__number_text(is->c[f->instance * is->nc + k], name);
             break;
         }
+        if (w->by_lane) {
+            nevh__write_own(w,
+                            s->of.term->lane_c +
+                                (f->instance * is->nc + k) * s->of.f->lanes,
+                            1, name);
+            break;
+        }
         snprintf(name, NEVH__NAME, f->wide ? "ALL(N[%zu])" : "N[%zu]",
                  s->constants + f->instance * is->nc + k);
     }
@@ -111,7 +118,7 @@ static bool write_complex(sum *s) {
 /* The points of central differences of a term, in the field's order. */
 typedef struct {
     size_t instance, k;
-    double shift;
+    double times, shift; /* shift: so many times the step */
 } point;
 typedef struct {
     size_t instance, k, first; /* first: of its points */
@@ -142,9 +149,10 @@ static void list_points(const sum *s, stencil *x) {
                 x->slopes[x->slope_count++] =
                     (slope){instance, k, x->count, method};
                 for (size_t j = 0; j < 2 * pass->pairs; j++) {
-                    double move = (double)(j / 2 + 1) * delta;
+                    double times = (double)(j / 2 + 1);
+                    times = j % 2 ? -times : times;
                     x->points[x->count++] =
-                        (point){instance, k, j % 2 ? -move : move};
+                        (point){instance, k, times, times * delta};
                 }
             }
     }
@@ -244,6 +252,12 @@ static void name_at_point(nevh__writer *w, const nevh__formula_text *f,
     }
 }
 
+static const double *lane_steps(const sum *s, const point *at) {
+    const nevh__planned *term = s->of.term;
+    return term->lane_delta +
+           (at->instance * term->nv + at->k) * s->of.f->lanes;
+}
+
 static bool write_points(nevh__writer *w, stencil *x) {
     bool lanes = nevh__has_lanes(w);
     nevh__formula_text f = {.tape = x->s->of.term->term->decl.params,
@@ -256,7 +270,10 @@ static bool write_points(nevh__writer *w, stencil *x) {
         char result[NEVH__NAME];
         x->block = w->formulas;
         char shift[NEVH__NAME], moved[NEVH__NAME];
-        nevh__write_number(w, at->shift, shift);
+        if (w->by_lane)
+            nevh__write_own(w, lane_steps(x->s, at), at->times, shift);
+        else
+            nevh__write_number(w, at->shift, shift);
         nevh__state_name(w, at->k >= x->s->of.term->nq,
                          nevh__index(x->s->of.term, at->instance, at->k),
                          moved);

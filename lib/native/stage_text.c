@@ -233,9 +233,8 @@ static const char lanes_state[] =
     "                       block *to) {\n"
     "    for (size_t k = 0; k < 2 * DOF; k++) {\n"
     "        const double *from = (k < DOF ? Q : P) + k % DOF * WIDTH;\n"
-    "        double most = $1[k];\n"
     "        NEVH_LANES(i, 8) {\n"
-    "            double one = from[i], size = fabs(one);\n"
+    "            double one = from[i], size = fabs(one), most = $1[k$2];\n"
     "            double scale = size > most ? size : most;\n"
     "            to->y[k * 8 + i] = one;\n"
     "            to->lost[k * 8 + i] = M[k * WIDTH + i];\n"
@@ -370,7 +369,7 @@ static const char lanes_store[] =
     "    block next[BLOCKS];\n"
     "    size_t found[3] = {0, 0, 0};\n"
     "    for (size_t b = 0; b < BLOCKS; b++)\n"
-    "        if (!take_block(N, w, t, h, Q + 8 * b, P + 8 * b, M + 8 * b,\n"
+    "        if (!take_block(TABLE(b), w, t, h, Q + 8 * b, P + 8 * b, M + 8 * b,\n"
     "                        &next[b], found))\n"
     "            return false;\n"
     "    for (size_t b = 0; b < BLOCKS; b++)\n"
@@ -422,6 +421,15 @@ static void write_one_orbit(nevh__writer *w, const char *scales) {
                            scales, plain ? counts_for_readers : counts});
 }
 
+/* Vectors of lanes, one after the other. */
+static void write_lane_scales(nevh__writer *w, const nevh_field *f,
+                              char scales[NEVH__NAME]) {
+    char name[NEVH__NAME];
+    snprintf(scales, NEVH__NAME, "(N + %zu)", w->count);
+    for (size_t k = 0; k < 2 * f->n; k++)
+        nevh__write_own(w, f->lane_scale + k * f->lanes, 1, name);
+}
+
 static void write_step(nevh__writer *w, const nevh_work *work,
                        const nevh__tableau *a,
                        const nevh__stage_weights *padded) {
@@ -433,7 +441,10 @@ static void write_step(nevh__writer *w, const nevh_work *work,
     nevh__write_lines(w, nevh__stage_progress_text);
     nevh__write_lines(w, nevh__stage_judge_text);
     nevh__write_lines(w, nevh__stage_step_text);
-    nevh__write_array(w, "scales", "N", 2 * work->n, work->scale, scales);
+    if (w->by_lane)
+        write_lane_scales(w, work->field, scales);
+    else
+        nevh__write_array(w, "scales", "N", 2 * work->n, work->scale, scales);
     nevh__write_filled(w, owners, parameter);
     nevh__write_filled(w, slopes, argument);
     nevh__write(w, "%s", w->readable ? "" : inverse);
@@ -446,7 +457,10 @@ static void write_step(nevh__writer *w, const nevh_work *work,
     if (w->width == 1)
         write_one_orbit(w, scales);
     else {
-        nevh__write_filled(w, lanes_state, (const char *const[]){scales});
+        nevh__write_filled(
+            w, lanes_state,
+            (const char *const[]){scales, w->by_lane ? " * 8 + i" : ""});
+        nevh__write_table(w);
         nevh__write(w, "%s%s", lanes_step, lanes_store);
     }
     nevh__write_driver_head(w);

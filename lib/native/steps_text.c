@@ -116,15 +116,15 @@ static const char driver[] =
     "    }\n"
     "    for (int i = 0; KEPT && i < WIDTH; i++) has_kept &= flags[i] != 0;\n"
     "    for (int b = 0; KEPT && !has_kept && b < BLOCKS; b++)\n"
-    "        if (is_bad(take_first(N, T, t0 + (double)from * h, h, y[b],\n"
-    "                              lost[b], kept[b], NULL)))\n"
+    "        if (is_bad(take_first(TABLE(b), T, t0 + (double)from * h, h,\n"
+    "                              y[b], lost[b], kept[b], NULL)))\n"
     "            return 0;\n"
     "    for (; done < steps; done++) {\n"
     "        double t = t0 + (double)(from + done) * h;\n"
     "        nevh__number bad = {0};\n"
     "        for (int b = 0; b < BLOCKS; b++)\n"
-    "            bad += take_step(N, W, T, operations, t, h, y[b], lost[b],\n"
-    "                             kept[b], NULL);\n"
+    "            bad += take_step(TABLE(b), W, T, operations, t, h, y[b],\n"
+    "                             lost[b], kept[b], NULL);\n"
     "        if (is_bad(bad)) return done;\n"
     "    }\n"
     "    for (int b = 0; b < BLOCKS; b++) {\n"
@@ -300,6 +300,13 @@ static void write_long_driver(nevh__writer *w) {
     nevh__write(w, "%s", long_driver);
 }
 
+void nevh__write_table(nevh__writer *w) {
+    if (w->by_lane)
+        nevh__write(w, "#define TABLE(b) (N + (b) * (size_t)%zu)\n", w->count);
+    else
+        nevh__write(w, "#define TABLE(b) N\n");
+}
+
 void nevh__write_driver(nevh__writer *w, bool keeps) {
     if (w->readable)
         nevh__write_filled(
@@ -308,8 +315,10 @@ void nevh__write_driver(nevh__writer *w, bool keeps) {
                                   w->loops ? "static " : ""});
     else if (w->loops)
         write_long_driver(w);
-    else
+    else {
+        nevh__write_table(w);
         nevh__write(w, "%s", driver);
+    }
 }
 
 void nevh__write_driver_head(nevh__writer *w) {

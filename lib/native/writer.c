@@ -37,6 +37,7 @@ void nevh__writer_free(nevh__writer *w) {
     free(w->text);
     free(w->numbers);
     free(w->names);
+    free(w->own);
     *w = (nevh__writer){0};
 }
 
@@ -86,6 +87,33 @@ void nevh__write_number(nevh__writer *w, double x, char name[NEVH__NAME]) {
     }
     snprintf(name, NEVH__NAME, "N[%zu]", w->count);
     nevh__writer_append(w, x);
+}
+
+static size_t place_of_own(nevh__writer *w, const double row[], double times) {
+    size_t first = w->count;
+    for (size_t i = 0; i < w->own_count; i++)
+        if (w->own[i].row == row && w->own[i].times == times)
+            return w->own[i].first;
+    if (w->own_count == w->own_room) {
+        size_t room = w->own_room ? 2 * w->own_room : 16;
+        nevh__lane_numbers *own = nevh__grow(w->own, room, sizeof *own);
+        if (!own) {
+            w->failed = true;
+            return first;
+        }
+        w->own = own;
+        w->own_room = room;
+    }
+    w->own[w->own_count++] = (nevh__lane_numbers){row, times, first};
+    for (size_t lane = 0; lane < NEVH__LANES; lane++)
+        nevh__writer_append(w, times * row[lane]);
+    return first;
+}
+
+void nevh__write_own(nevh__writer *w, const double row[], double times,
+                     char name[NEVH__NAME]) {
+    snprintf(name, NEVH__NAME, "(*(const wide *)(N + %zu))",
+             place_of_own(w, row, times));
 }
 
 void nevh__write_numbers(nevh__writer *w, const char *name, size_t count,

@@ -18,6 +18,14 @@ typedef struct {
     size_t count, first;
 } nevh__shared_numbers;
 
+/* Numbers that each of eight orbits has of its own, and where: `times` what a
+   row of all lanes says. */
+typedef struct {
+    const double *row;
+    double times;
+    size_t first;
+} nevh__lane_numbers;
+
 typedef struct {
     char *text;
     size_t used, room;
@@ -25,6 +33,10 @@ typedef struct {
     size_t count, number_room;
     nevh__shared_numbers shared[NEVH__MOST_SHARED];
     size_t shared_count;
+    bool by_lane; /* orbits side by side have numbers of their own: N is that of
+                     a vector of them, TABLE(b) */
+    nevh__lane_numbers *own;
+    size_t own_count, own_room;
     unsigned formulas; /* written so far: names of each are its own */
     size_t width;      /* orbits side by side, as vectors; 1: one orbit */
     bool stages;       /* those of an implicit step are, of one orbit; for
@@ -48,6 +60,9 @@ void nevh__write_filled(nevh__writer *, const char *text,
 void nevh__writer_free(nevh__writer *);
 /* What a number is called. */
 void nevh__write_number(nevh__writer *, double, char name[NEVH__NAME]);
+/* What those of a vector of lanes are called. */
+void nevh__write_own(nevh__writer *, const double row[], double times,
+                     char name[NEVH__NAME]);
 /* A number as C has it. */
 void nevh__number_text(double, char name[NEVH__NAME]);
 /* A number that follows the last one, whatever it is: the place of the first of
@@ -163,6 +178,8 @@ void nevh__write_unkept(nevh__writer *);
    which adds to `done` how many steps are fine, and returns whether it is all
    that were taken, of up to `steps`. */
 void nevh__write_driver(nevh__writer *, bool keeps);
+/* TABLE(b), the numbers of a vector of orbits; none is added later. */
+void nevh__write_table(nevh__writer *);
 /* That function up to its body, of a family whose steps write to Q, P and M. */
 void nevh__write_driver_head(nevh__writer *);
 

@@ -124,7 +124,9 @@ void nevh__lane_members_open(nevh__worker *w) {
 }
 
 bool nevh__lane_members_pay(const nevh__worker *w) {
-    return w->lanes.ensemble && w->sweep->is.native != NEVH_NATIVE_ALWAYS &&
+    bool compiled = nevh_ensemble_native(w->lanes.ensemble, NULL);
+    return w->lanes.ensemble &&
+           (compiled || w->sweep->is.native != NEVH_NATIVE_ALWAYS) &&
            w->group_end - w->at < NEVH__LANES;
 }
 

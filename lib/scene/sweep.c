@@ -95,7 +95,8 @@ static int try(nevh_sweep *s) {
     const char *why = "";
     s->native = nevh_ensemble_native(e, &why);
     if (s->native && s->ensemble->parameters &&
-        s->is.native != NEVH_NATIVE_ALWAYS && nevh__ensemble_may_vary(e))
+        s->is.native != NEVH_NATIVE_ALWAYS && nevh__ensemble_may_vary(e) &&
+        !nevh__ensemble_may_vary_compiled(e))
         why = "where eight members or more have the same parameters";
     snprintf(s->why_native, sizeof s->why_native, "%s", why);
     nevh_ensemble_free(e);

@@ -1,5 +1,7 @@
 /* nevh tests: members of a scene, and what becomes of them.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#define _GNU_SOURCE
+#include "../support/native.h"
 #include "scene/sweep_private.h"
 #include "support.h"
 #include <gsl/gsl_sf_ellint.h>
@@ -430,6 +432,30 @@ TEST_EACH(parameters_by_lane_are_those_of_orbits_alone, VARYING *EACH) {
     o.portable = g == 1;
     compare_with_alone(varying[which].text, goes ? varying[which].by_lane : 0,
                        o);
+}
+
+/* Under `always` members go by lane where such steps are compiled. */
+TEST_EACH(compiled_steps_by_lane, 5) {
+    const struct {
+        const nevh_integrator *integrator;
+        const nevh_gradient *gradient;
+        size_t which;
+    } some[] = {{nevh_verlet, nevh_exact, 0},
+                {nevh_verlet, nevh_central4, 3},
+                {nevh_rk4, nevh_central4, 0},
+                {nevh_gauss4, nevh_exact, 6},
+                {nevh_lobatto4, nevh_exact, 3}};
+    size_t which = some[_i].which;
+    nevh_sweep_options o = plain();
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    make_cache();
+    o.integrator = some[_i].integrator;
+    o.gradient = some[_i].gradient;
+    o.native = NEVH_NATIVE_ALWAYS;
+    o.native_cache = cache;
+    compare_with_alone(varying[which].text, varying[which].by_lane, o);
+    remove_cache();
 }
 
 static const nevh_integrator *const *const adaptive[] = {

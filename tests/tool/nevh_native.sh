@@ -81,8 +81,11 @@ exits 0 recommend pendulum $long --integrators gauss8 --energy-error 1e-3 \
     --dt 0.2 --native never
 lacks 'native: '
 
-# Members that differ in numbers of H go side by side, but not by compiled steps.
+# Members that differ in numbers of H go side by side, but not all by compiled steps.
 of_eight='--integrators verlet --gradient exact --t-end 100000 --outcomes t'
+exits 0 sweep pendulum --vary 'l = range(0.5, 2, 8)' $of_eight
+has '^# native: steps are compiled$'
+of_eight='--integrators gauss16 --gradient central4 --t-end 7000 --outcomes t'
 exits 0 sweep pendulum --vary 'phi = range(0.5, 2, 8)' $of_eight
 has '^# native: steps are compiled$'
 exits 0 sweep pendulum --vary 'l = range(0.5, 2, 8)' $of_eight
