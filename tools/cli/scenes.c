@@ -6,6 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#ifdef __linux__
+#include <sys/auxv.h>
+#endif
 
 static const char ending[] = ".nevh";
 
@@ -13,6 +16,10 @@ static const char ending[] = ".nevh";
    where the system does not tell. */
 static char *program_folder(void) {
     char *program = realpath("/proc/self/exe", NULL);
+#ifdef __linux__
+    if (!program) /* without /proc, as in a plain chroot */
+        program = realpath((const char *)getauxval(AT_EXECFN), NULL);
+#endif
     char *slash = program ? strrchr(program, '/') : NULL;
     if (slash)
         *slash = '\0';
