@@ -187,7 +187,6 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/recognise.c \
 	lib/diagnose/reference_private.h \
 	lib/diagnose/reference.c \
-	lib/diagnose/reference_dd_private.h \
 	lib/diagnose/reference_pair.c \
 	lib/diagnose/reference_run.c \
 	lib/diagnose/reference_watch.c \

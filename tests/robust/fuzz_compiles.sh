@@ -32,6 +32,7 @@ done
 # shellcheck disable=SC2086
 for target in "$srcdir"/tests/robust/fuzz/*.c; do
     compile "$target" $work/main.c $work/*.o .libs/libnevh_core.a \
-        ${GSL_LIBS:--lgsl -lgslcblas} -lm -ldl -o $work/target || exit 1
+        ${GSL_LIBS:--lgsl -lgslcblas} $QUADMATH_LIBS -lm -ldl \
+        -o $work/target || exit 1
     $work/target || exit 1
 done

@@ -139,6 +139,24 @@ static int add_scene(FILE *f, const options *o, const char *name) {
     return status ? TOOL_USAGE : TOOL_OK;
 }
 
+/* Scenes as the page takes them; to be freed, NULL after a message. */
+static char *all_scenes(const options *o) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *f = tool_owned(open_memstream(&text, &size));
+    int status = TOOL_OK;
+    for (size_t i = 1; !status && i < o->operands.count; i++) {
+        fputs(i > 1 ? ",\n" : "[", f);
+        status = add_scene(f, o, o->operands.item[i]);
+    }
+    fputs("]\n", f);
+    fclose(f);
+    if (!status)
+        return text;
+    free(text);
+    return NULL;
+}
+
 int live_page(const options *o) {
     char *head = NULL, *tail = NULL;
     output out;
@@ -147,18 +165,14 @@ int live_page(const options *o) {
     if (o->operands.count < 2)
         return tool_refuse("nevh page needs a scene: a file, or a name of nevh "
                            "list scenes");
-    if (check_schemes(o) || read_kit(&head, &tail))
-        return TOOL_USAGE;
-    int status = output_open(&out, o->file) ? TOOL_USAGE : TOOL_OK;
-    if (!status) {
-        fprintf(out.stream, "%s[", head);
-        for (size_t i = 1; !status && i < o->operands.count; i++) {
-            fputs(i > 1 ? ",\n" : "", out.stream);
-            status = add_scene(out.stream, o, o->operands.item[i]);
-        }
-        fprintf(out.stream, "]\n%s", tail);
-        status = output_close(&out, status);
-    }
+    char *scenes = check_schemes(o) ? NULL : all_scenes(o);
+    int status = !scenes || read_kit(&head, &tail) ? TOOL_USAGE : TOOL_OK;
+    if (!status && !output_open(&out, o->file)) {
+        fprintf(out.stream, "%s%s%s", head, scenes, tail);
+        status = output_close(&out, TOOL_OK);
+    } else
+        status = TOOL_USAGE;
+    free(scenes);
     free(head);
     return status;
 }
