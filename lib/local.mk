@@ -185,6 +185,7 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/exact_private.h \
 	lib/diagnose/exact.c \
 	lib/diagnose/recognise.c \
+	lib/diagnose/reference_pair_private.h \
 	lib/diagnose/reference_private.h \
 	lib/diagnose/reference.c \
 	lib/diagnose/reference_pair.c \

@@ -13,7 +13,7 @@ const wait = (time) => new Promise((resolve) => setTimeout(resolve, time));
 const FILM = `(() => {
   const film = document.querySelector("figure:has(.stamp)");
   const part = (name) => film.querySelector(name);
-  const data = JSON.parse(part("script").textContent);
+  const data = JSON.parse(film.nextElementSibling.textContent);
   const shown = () => {
     const k = +part(".stamp").textContent.match(/^step (\\d+), /)[1];
     const wanted = "step " + k + ", t = " + (data.start + k*data.dt).toFixed(data.digits);

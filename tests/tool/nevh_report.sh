@@ -56,7 +56,7 @@ ls $work | grep -q '^nevh\.' && fails "leaves its folder"
 cp $page $work/out
 has '^<!DOCTYPE html>'
 has '<h1>A &lt;b&gt; &amp; &quot;c&quot;</h1>'
-has '<dd class="off">\(off\) <math'
+has '<dd class="off" tabindex="0">\(off\) <math'
 lacks '(src|href)="'
 lacks 'https?://[^w]'
 lacks '[^a-z]nan[^a-z]'

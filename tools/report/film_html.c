@@ -23,9 +23,10 @@ static const char *const colours[] = {"#0072B2", "#D55E00", "#009E73",
 enum { COLOURS = sizeof colours / sizeof *colours };
 
 static const char script[] =
-    "(function(){var f=document.currentScript.parentNode,\n"
+    "(function(){var given=document.currentScript.previousElementSibling,\n"
+    "f=given.previousElementSibling,\n"
     "all=function(e,s){return[].slice.call(e.querySelectorAll(s))},\n"
-    "d=JSON.parse(all(f,'script')[0].textContent),n=d.steps,at=n,timer=0,\n"
+    "d=JSON.parse(given.textContent),n=d.steps,at=n,timer=0,\n"
     "still=matchMedia('(prefers-reduced-motion: reduce)'),\n"
     "box=all(f,'.controls')[0],play=all(f,'button')[0],bar=all(f,'input')[0],\n"
     "stamp=all(f,'.stamp')[0],cursor=all(f,'.cursor')[0];\n"
@@ -242,7 +243,7 @@ static void put_caption(const film *f, FILE *to) {
             "\n<span class=\"controls\" hidden><button "
             "type=\"button\">Play</button> <input type=\"range\" min=\"0\" "
             "max=\"%zu\" value=\"%zu\" aria-label=\"step\"></span>"
-            "</figcaption>\n",
+            "</figcaption>\n</figure>\n",
             f->most, f->most);
 }
 
@@ -255,8 +256,8 @@ void film_html(const film *f, FILE *to) {
         "<figure>\n<svg role=\"img\" style=\"min-width:0\" viewBox=\"0 0 %d "
         "%d\" font-family=\"sans-serif\" font-size=\"60\">\n<title>The "
         "motion by %s and by rk4</title>\n<desc>Left: %s. Right: rk4. "
-        "Below: the energy errors of both, %s blue, rk4 orange. Without a script, and before it plays, the picture shows "
-        "step %zu.</desc>\n",
+        "Below: the energy errors of both, %s blue, rk4 orange. Without a "
+        "script, and before it plays, the picture shows step %zu.</desc>\n",
         WIDTH, top + HEAD + STRIP + FOOT - 50, f->reel->integrator,
         f->reel->integrator, f->reel->integrator, f->most);
     put_panel(f, 0, &v, to);
@@ -265,5 +266,5 @@ void film_html(const film *f, FILE *to) {
     fputs("</svg>\n", to);
     put_caption(f, to);
     put_data(f, &v, to);
-    fprintf(to, "<script>\n%s</script>\n</figure>\n", script);
+    fprintf(to, "<script>\n%s</script>\n", script);
 }

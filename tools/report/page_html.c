@@ -35,7 +35,7 @@ static void put_lines(FILE *f, const list *l) {
     for (size_t i = 0; i < l->count; i++) {
         bool is_set = l->item[i][0] == ' ';
         if (is_set != set)
-            fputs(is_set ? "<pre>" : "</pre>\n", f);
+            fputs(is_set ? "<pre tabindex=\"0\">" : "</pre>\n", f);
         fputs(is_set ? "" : "<p>", f);
         html_text(f, l->item[i]);
         fputs(is_set ? "\n" : "</p>\n", f);
@@ -49,11 +49,12 @@ static void put_table(FILE *f, const table *t) {
     size_t rows = columns ? t->cell.count / columns : 0;
     if (rows == 0)
         return;
-    fputs("<div class=\"wide\"><table>\n<thead><tr>", f);
+    fputs("<div class=\"wide\" tabindex=\"0\"><table>\n<thead><tr>", f);
     for (size_t j = 0; j < columns; j++) {
-        fputs("<th scope=\"col\">", f);
+        bool titled = *t->title.item[j];
+        fputs(titled ? "<th scope=\"col\">" : "<td>", f);
         html_text(f, t->title.item[j]);
-        fputs("</th>", f);
+        fputs(titled ? "</th>" : "</td>", f);
     }
     fputs("</tr></thead>\n<tbody>\n", f);
     for (size_t i = 0; i < rows * columns; i++) {

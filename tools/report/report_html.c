@@ -93,12 +93,13 @@ static void put_picture(FILE *f, const report_part *p, size_t number) {
     const char *box = strstr(p->picture, "viewBox=");
     if (!tag || !body || !box || box > body)
         return;
-    fprintf(f,
-            "<figure>\n<svg role=\"img\" aria-labelledby=\"t%zu\" %.*s "
-            "xmlns=\"http://www.w3.org/2000/svg\" "
-            "xmlns:xlink=\"http://www.w3.org/1999/xlink\">\n<title "
-            "id=\"t%zu\">",
-            number, (int)strcspn(box, "\n"), box, number);
+    fprintf(
+        f,
+        "<figure tabindex=\"0\">\n<svg role=\"img\" aria-labelledby=\"t%zu\" %.*s "
+        "xmlns=\"http://www.w3.org/2000/svg\" "
+        "xmlns:xlink=\"http://www.w3.org/1999/xlink\">\n<title "
+        "id=\"t%zu\">",
+        number, (int)strcspn(box, "\n"), box, number);
     html_text(f, p->title);
     fputs(". ", f);
     html_text(f, p->about);
@@ -132,7 +133,7 @@ void html_part(FILE *f, const report_part *p, size_t number, list *told) {
     if (p->html)
         put_notes_once(f, p->html, told);
     if (p->messages && *p->messages) {
-        fputs("<pre>", f);
+        fputs("<pre tabindex=\"0\">", f);
         for (char *line = strtok(p->messages, "\n"); line;
              line = strtok(NULL, "\n")) {
             html_text(f, line);
@@ -148,7 +149,7 @@ void html_part(FILE *f, const report_part *p, size_t number, list *told) {
 static void put_equation(FILE *f, const nevh_scene *scene, size_t i) {
     nevh_scene_equation e = nevh_scene_equation_at(scene, i);
     char *math = nevh_scene_equation_mathml(scene, i);
-    fprintf(f, "<dd%s>", e.on ? "" : " class=\"off\"");
+    fprintf(f, "<dd%s tabindex=\"0\">", e.on ? "" : " class=\"off\"");
     if (strcmp(e.section, "effects") == 0 || strcmp(e.section, "friction") == 0)
         fputs(e.on ? "" : "(off) ", f);
     if (math)
