@@ -2,8 +2,8 @@
    the kernel's, whose slopes are a scene's formulas at all stages side by side.
 
    Where fixed-point iteration does not get on, or anything is not finite, a
-   step is left to the kernel, which begins it anew. SPDX-License-Identifier:
-   GPL-3.0-or-later */
+   step is left to the kernel, which begins it anew.
+   SPDX-License-Identifier: GPL-3.0-or-later */
 #include "kernels/stage_sweeps_private.h"
 #include "native/native_private.h"
 #include <stdio.h>
