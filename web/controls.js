@@ -251,7 +251,8 @@ function csv() {
 // ---- all of it ----
 function listen() {
   at("play").onclick = () => setPlaying(!playing);
-  at("step").onclick = () => { setPlaying(false); go(1).then(() => report(true)); };
+  at("step").onclick = () => { setPlaying(false);
+    quiet().then(() => go(1)).then(() => report(true)); };
   at("restart").onclick = () => race();
   at("speed").oninput = () => { S.speed = +at("speed").value; showSliders(); };
   at("dt").oninput = () => {

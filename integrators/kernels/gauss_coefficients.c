@@ -24,8 +24,8 @@ long double nevh__legendre(size_t s, long double x, long double *slope) {
 void nevh__gauss_rule(size_t s, nevh__rule *r) {
     r->stages = s;
     for (size_t i = 0; i < s; i++) {
-        long double x = cosl(acosl(-1.0L) * ((long double)i + 0.75L) /
-                             ((long double)s + 0.5L));
+        long double x =
+            cos(acos(-1.0) * ((double)i + 0.75) / ((double)s + 0.5));
         long double slope = 1;
         for (int k = 0; k < ROUNDS; k++)
             x -= nevh__legendre(s, x, &slope) / slope;

@@ -13,7 +13,7 @@ enum { ROUNDS = 8 };
 static void find_node(nevh__rule *r, size_t i) {
     size_t s = r->stages;
     long double m = (long double)((s - 1) * s), value = 1, slope = 0;
-    long double x = cosl(acosl(-1.0L) * (long double)i / (long double)(s - 1));
+    long double x = cos(acos(-1.0) * (double)i / (double)(s - 1));
     for (int k = 0; i > 0 && k < ROUNDS; k++) {
         value = nevh__legendre(s - 1, x, &slope);
         x -= slope * (1 - x * x) / (2 * x * slope - m * value);

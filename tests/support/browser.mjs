@@ -31,7 +31,7 @@ export async function browse(program, address, { size = [1280, 900],
     .catch((error) => { remove(); throw error; });
   return {
     ...page,
-    async until(expression, seconds = 30) {
+    async until(expression, seconds = 120) {
       for (let i = 0; i < seconds * 20; i++) {
         if (await page.evaluate(expression).catch(() => false)) return true;
         await new Promise((resolve) => setTimeout(resolve, 50));

@@ -13,17 +13,22 @@ exits 0 page pendulum -o $work/pendulum.html
 exits 0 page kepler -o $work/kepler.html
 exits 0 page pendulum kepler -o $work/both.html
 exits 0 page henon-heiles -o $work/henon-heiles.html
-exits 0 page double-pendulum -o $work/double-pendulum.html
+# Exact gradients: differences multiply what C libraries' sines differ by.
+cp "$srcdir/scenes/double-pendulum.nevh" $work
+printf '\n[run]\ngradient = exact\n' >>$work/double-pendulum.nevh
+exits 0 page $work/double-pendulum.nevh -o $work/double-pendulum.html
 
-# The states that the page is to have: SCENE SCHEME DT T_END.
+# The states that the page is to have: SCENE SCHEME DT T_END [GRADIENT].
 wanted() {
-    exits 0 run $1 --portable --integrators $2 --dt $3 --t-end $4 --samples 2
-    tail -n 1 $work/out >$work/$1-$2.csv
+    scene=$1 scheme=$2
+    exits 0 run $scene --portable --integrators $scheme --dt $3 --t-end $4 \
+        --samples 2 ${5:+--gradient $5}
+    tail -n 1 $work/out >$work/$scene-$scheme.csv
 }
 wanted pendulum verlet 0.0625 6.25
 wanted pendulum rk4 0.0625 6.25
 wanted kepler verlet 0.03125 3.125
-wanted double-pendulum gauss4 0.015625 1.5625
+wanted double-pendulum gauss4 0.015625 1.5625 exact
 
 command="page in a browser"
 in_browsers try_page.mjs "$PWD/$work"

@@ -33,7 +33,7 @@ static double least_work(const costs *c, double target) {
     double least = INFINITY;
     for (size_t i = 0; i < c->count; i++) {
         const study *l = &c->study[i];
-        const row *r = study_least_work(l, target, c->search.by_state);
+        const row *r = study_cheapest(l, target, c->search.by_state);
         if (costs_count(c, l) && r)
             least = fmin(least, r->work);
     }
@@ -70,7 +70,7 @@ static void refine_cheapest(costs *c) {
         for (size_t i = 0; i < c->count; i++) {
             study *l = &c->study[i];
             const row *r =
-                study_least_work(l, cost_target[k], c->search.by_state);
+                study_cheapest(l, cost_target[k], c->search.by_state);
             if (costs_count(c, l) && r && r->work <= nearly * least &&
                 !cost_is_beyond(c, k))
                 study_refine(&c->search, l, cost_target[k], 1);
@@ -112,7 +112,7 @@ static size_t find_cells(costs *c,
         for (size_t i = 0; i < c->count; i++) {
             study *l = &c->study[i];
             const row *r =
-                study_least_work(l, cost_target[k], c->search.by_state);
+                study_cheapest(l, cost_target[k], c->search.by_state);
             if (wanted(c, l, r, cost_target[k]))
                 cells[count++] = (cell){l, (size_t)(r - l->level)};
         }

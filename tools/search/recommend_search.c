@@ -21,7 +21,7 @@ static double least_work(const advice *a) {
     double least = INFINITY;
     for (size_t i = 0; i < a->count; i++) {
         const study *l = &a->study[i];
-        const row *r = study_least_work(l, a->target, a->search.by_state);
+        const row *r = study_cheapest(l, a->target, a->search.by_state);
         if (counts(a, l) && study_takes_gradients(l) && r)
             least = fmin(least, r->work);
     }
@@ -63,7 +63,7 @@ static void refine(advice *a) {
 }
 
 const row *advice_least_worked(const advice *a, const study *l) {
-    return counts(a, l) ? study_least_work(l, a->target, a->search.by_state)
+    return counts(a, l) ? study_cheapest(l, a->target, a->search.by_state)
                         : NULL;
 }
 

@@ -420,28 +420,18 @@ void study_fill(search *s, study *l, size_t count) {
     }
 }
 
-static const row *least(const study *l, double target, bool by_state,
-                        bool by_work) {
-    double *error = tool_allocate(l->count, sizeof *error);
-    double *price = tool_allocate(l->count, sizeof *price);
-    for (size_t i = 0; i < l->count; i++) {
-        error[i] = study_error(&l->level[i], by_state);
-        price[i] = by_work ? l->level[i].work : l->level[i].seconds;
-        if (isnan(price[i]))
-            error[i] = INFINITY;
-    }
-    size_t i = grid_cheapest(error, price, l->count, target);
-    free(error);
-    free(price);
-    return i < l->count ? &l->level[i] : NULL;
-}
-
 const row *study_cheapest(const study *l, double target, bool by_state) {
-    return least(l, target, by_state, false);
-}
-
-const row *study_least_work(const study *l, double target, bool by_state) {
-    return least(l, target, by_state, true);
+    double *error = tool_allocate(l->count, sizeof *error);
+    double *work = tool_allocate(l->count, sizeof *work);
+    for (size_t i = 0; i < l->count; i++) {
+        work[i] = l->level[i].work;
+        error[i] =
+            isnan(work[i]) ? INFINITY : study_error(&l->level[i], by_state);
+    }
+    size_t i = grid_cheapest(error, work, l->count, target);
+    free(error);
+    free(work);
+    return i < l->count ? &l->level[i] : NULL;
 }
 
 const row *study_failure(const study *l) {

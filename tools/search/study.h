@@ -106,9 +106,9 @@ const char *search_error(const search *); /* "energy", "state", "observable" */
 bool study_takes_gradients(const study *);
 /* A level that failed, where none ran; NULL: some ran, or were refused. */
 const row *study_failure(const study *);
-/* The cheapest level by seconds, or by work; NULL: none keeps the target. */
+/* The level of least work: of one scheme and gradient that is the cheapest, on a
+   busy machine too; NULL: none keeps the target. */
 const row *study_cheapest(const study *, double target, bool by_state);
-const row *study_least_work(const study *, double target, bool by_state);
 /* Whether the energy says nothing of its orbits, being kept at any step: as
    study_begin found. */
 bool study_keeps_energy(const study *);
