@@ -150,6 +150,7 @@ libnevh_core_la_SOURCES = \
 	lib/native/runge_kutta_text.c \
 	lib/native/nystrom_text.c \
 	lib/native/stage_text.c \
+	lib/native/stage_lanes_text.c \
 	lib/native/noise_text.c \
 	lib/native/energy_text.c \
 	lib/native/tao_text.c \

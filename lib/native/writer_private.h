@@ -182,6 +182,8 @@ void nevh__write_driver(nevh__writer *, bool keeps);
 void nevh__write_table(nevh__writer *);
 /* That function up to its body, of a family whose steps write to Q, P and M. */
 void nevh__write_driver_head(nevh__writer *);
+/* Steps of orbits side by side; scales: the name of the coordinates' scales. */
+void nevh__write_stage_lanes(nevh__writer *, const char *scales);
 
 /* Functions kick_slope and drift_slope
        NUMBER NAME(const double *N, double t, const NUMBER *q,
