@@ -8,7 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { LEAST_CHUNK = 32, MOST_CHUNK = 4096, SHARE = 8 };
+enum { LEAST_CHUNK = 32, MOST_CHUNK = 4096, SHARE = 4 };
 
 static bool has_mpi(void) {
     return &ranks_mpi != NULL;
@@ -93,14 +93,14 @@ int ranks_begin(ranks *r, const options *o, bool array) {
 int ranks_agree(ranks *r, int status) {
     if (!has_mpi() || r->count == 1)
         return status;
-    int most = ranks_mpi.largest(status);
-    int least = -ranks_mpi.largest(-status);
+    int ends[] = {status, -status};
+    ranks_mpi.largest(ends);
     speak(r);
-    if (status && least == TOOL_OK && r->rank)
+    if (status && -ends[1] == TOOL_OK && r->rank)
         tool_refuse("rank %zu cannot begin: are its scene and folder those of "
                     "rank 0?",
                     r->rank);
-    return most;
+    return ends[0];
 }
 
 size_t ranks_threads(const ranks *r) {
@@ -133,21 +133,29 @@ int ranks_open(ranks *r, store *s, const char *name, bool resume,
     s->write = ranks_mpi.write;
     r->first = s->first;
     r->members = s->count;
-    r->chunk = s->count / (SHARE * r->count * threads);
-    r->chunk = r->chunk < LEAST_CHUNK  ? LEAST_CHUNK
-               : r->chunk > MOST_CHUNK ? MOST_CHUNK
-                                       : r->chunk;
+    int most[] = {(int)threads, 0};
+    ranks_mpi.largest(most);
+    r->threads = r->count * (size_t)most[0];
     return ranks_agree(r, status);
+}
+
+/* Chunks get smaller towards the end, so that all ranks end together.  They are
+   the same on all ranks. */
+static uint64_t chunk_at(const ranks *r, uint64_t at) {
+    uint64_t left = r->members - at, chunk = left / (SHARE * r->threads);
+    chunk = chunk < LEAST_CHUNK  ? LEAST_CHUNK
+            : chunk > MOST_CHUNK ? MOST_CHUNK
+                                 : chunk;
+    return left < chunk ? left : chunk;
 }
 
 bool ranks_take(void *data, uint64_t *first, uint64_t *count) {
     ranks *r = data;
-    uint64_t at = ranks_mpi.add(r->chunk);
-    if (at >= r->members)
-        return false;
-    *first = r->first + at;
-    *count = r->members - at < r->chunk ? r->members - at : r->chunk;
-    return true;
+    for (uint64_t k = ranks_mpi.next(); r->taken < k; r->taken++)
+        r->at += chunk_at(r, r->at);
+    *first = r->first + r->at;
+    *count = chunk_at(r, r->at);
+    return *count > 0;
 }
 
 int ranks_close(ranks *r, int status) {

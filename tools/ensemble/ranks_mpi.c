@@ -10,6 +10,7 @@
 
 static MPI_Win window;
 static MPI_File file;
+static uint64_t answer;
 static char why[MPI_MAX_ERROR_STRING];
 
 static const char *reason(int status) {
@@ -39,18 +40,31 @@ static bool begin(size_t *rank, size_t *count, size_t *local) {
     return true;
 }
 
-static int largest(int own) {
-    const struct timespec longest = {0, 10000000};
+static void largest(int values[2]) {
+    const struct timespec longest = {0, 1000000};
     struct timespec pause = {0, 1000};
     MPI_Request request;
-    int all = own, over = 0;
-    MPI_Iallreduce(&own, &all, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD, &request);
+    int over = 0;
+    MPI_Iallreduce(MPI_IN_PLACE, values, 2, MPI_INT, MPI_MAX, MPI_COMM_WORLD,
+                   &request);
     while (!MPI_Test(&request, &over, MPI_STATUS_IGNORE) && !over) {
         nanosleep(&pause, NULL);
         if (pause.tv_nsec < longest.tv_nsec)
             pause.tv_nsec *= 2;
     }
-    return all;
+}
+
+/* One more is asked for ahead: rank 0 answers when it calls MPI. */
+static void ask(void) {
+    static const uint64_t one = 1;
+    MPI_Fetch_and_op(&one, &answer, MPI_UINT64_T, 0, 0, MPI_SUM, window);
+}
+
+static uint64_t next(void) {
+    MPI_Win_flush(0, window);
+    uint64_t number = answer;
+    ask();
+    return number;
 }
 
 /* The counter begins with 0. */
@@ -69,14 +83,8 @@ static const char *open_file(const char *name) {
         MPI_Win_sync(window);
     }
     MPI_Barrier(MPI_COMM_WORLD);
+    ask();
     return NULL;
-}
-
-static uint64_t add(uint64_t more) {
-    uint64_t before = 0;
-    MPI_Fetch_and_op(&more, &before, MPI_UINT64_T, 0, 0, MPI_SUM, window);
-    MPI_Win_flush(0, window);
-    return before;
 }
 
 /* Rank 0 also looks whether others ask for its counter. */
@@ -105,5 +113,5 @@ static void end(void) {
     MPI_Finalize();
 }
 
-const ranks_functions ranks_mpi = {begin,      largest,    open_file, add,
+const ranks_functions ranks_mpi = {begin,      largest,    open_file, next,
                                    write_file, close_file, end};
