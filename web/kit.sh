@@ -44,11 +44,9 @@ printf '</style>\n</head>\n<body>\n<main>\n'
 cat "$folder/page.html" || exit 1
 printf '</main>\n<script type="application/json" id="given">\n@SCENE@\n</script>\n'
 # Smaller by 5 %, where zopfli is.
-if command -v zopfli >/dev/null 2>&1; then
-    zopfli -c "$module"
-else
-    gzip -9 -n -c "$module"
-fi | packed module || exit 1
+zopfli -c "$module" 2>/dev/null >"$module.gz" ||
+    gzip -9 -n -c "$module" >"$module.gz" || exit 1
+packed module <"$module.gz" || exit 1
 # Without comments, and spaces before lines.
 short() {
     sed 's/^ *//; /^\/\//d' "$@"

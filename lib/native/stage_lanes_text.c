@@ -2,7 +2,7 @@
    by side: those that are done wait for the others.  Values are counted as the
    kernel takes them, which sweeps the last few one by one.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "native/native_private.h"
+#include "native/writer_private.h"
 
 static const char state[] =
     "typedef struct {\n"

@@ -20,10 +20,9 @@ exits 0 page $work/double-pendulum.nevh -o $work/double-pendulum.html
 
 # The states that the page is to have: SCENE SCHEME DT T_END [GRADIENT].
 wanted() {
-    scene=$1 scheme=$2
-    exits 0 run $scene --portable --integrators $scheme --dt $3 --t-end $4 \
-        --samples 2 ${5:+--gradient $5}
-    tail -n 1 $work/out >$work/$scene-$scheme.csv
+    exits 0 run $1 --portable --integrators $2 --dt $3 --t-end $4 --samples 2 \
+        ${5:+--gradient $5}
+    tail -n 1 $work/out >$work/$1-$2.csv
 }
 wanted pendulum verlet 0.0625 6.25
 wanted pendulum rk4 0.0625 6.25

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { LEAST_CHUNK = 32, MOST_CHUNK = 4096, SHARE = 4 };
+enum { LEAST_CHUNK = 32, MOST_CHUNK = 2048, SHARE = 16 };
 
 static bool has_mpi(void) {
     return &ranks_mpi != NULL;
@@ -139,8 +139,8 @@ int ranks_open(ranks *r, store *s, const char *name, bool resume,
     return ranks_agree(r, status);
 }
 
-/* Chunks get smaller towards the end, so that all ranks end together.  They are
-   the same on all ranks. */
+/* The chunk that begins there, the same on all ranks.  Chunks get smaller, so that
+   ranks end together, though a slow one has two of them: one is asked for ahead. */
 static uint64_t chunk_at(const ranks *r, uint64_t at) {
     uint64_t left = r->members - at, chunk = left / (SHARE * r->threads);
     chunk = chunk < LEAST_CHUNK  ? LEAST_CHUNK

@@ -14,11 +14,12 @@
 typedef struct {
     /* rank, ranks, and those of this machine */
     bool (*begin)(size_t *rank, size_t *count, size_t *local);
-    /* Of all ranks, of each; waits without using a processor. */
+    /* Each becomes that of the rank where it is largest; collective; waits
+       without using a processor. */
     void (*largest)(int values[2]);
     /* The file, for writing, and the counter; collective.  NULL, or why not. */
     const char *(*open)(const char *name);
-    uint64_t (*next)(void); /* number of the counter, from 0 on */
+    uint64_t (*next)(void); /* the counter, which is one more then */
     bool (*write)(const void *bytes, size_t count, uint64_t at);
     const char *(*close)(void); /* collective */
     void (*end)(void);
@@ -26,10 +27,11 @@ typedef struct {
 extern const ranks_functions ranks_mpi __attribute__((weak));
 
 typedef struct {
-    size_t rank, count, local;        /* count 1: alone */
-    uint64_t first, members, threads; /* threads: at most, of all ranks */
-    uint64_t taken, at;               /* the last chunk, and where it begins */
-    int stderr_kept; /* a rank above 0 is silent while all do the same */
+    size_t rank, count, local; /* count 1: alone */
+    uint64_t first, members;
+    uint64_t threads;   /* ranks times the most that one has */
+    uint64_t taken, at; /* the number of the last chunk, its first member */
+    int stderr_kept;    /* a rank above 0 is silent while all do the same */
 } ranks;
 
 /* Where mpirun started several processes for a sweep, nevh-mpi takes the place

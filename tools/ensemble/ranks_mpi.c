@@ -54,7 +54,7 @@ static void largest(int values[2]) {
     }
 }
 
-/* One more is asked for ahead: rank 0 answers when it calls MPI. */
+/* Rank 0 answers when it calls MPI, and so may take a while. */
 static void ask(void) {
     static const uint64_t one = 1;
     MPI_Fetch_and_op(&one, &answer, MPI_UINT64_T, 0, 0, MPI_SUM, window);

@@ -137,7 +137,7 @@ static void verify_pilots(advice *a) {
     while (count) {
         for (size_t i = 0; i < count; i++, done++) {
             full[done] = verified(a, pilots[i]);
-            kept |= advice_least_worked(a, &full[done]) != NULL;
+            kept |= advice_keeps(a, &full[done]) != NULL;
         }
         count = kept || search_is_over(&a->search, 1)
                     ? 0

@@ -26,10 +26,10 @@ void advice_take_gradients(advice *, const options *);
    are known and timed. */
 void advice_search(advice *);
 /* The cheapest level of a study that keeps the target, if it counts; NULL:
-   none does.  The same by work alone. */
+   none does. */
 const row *advice_keeps(const advice *, const study *);
-const row *advice_least_worked(const advice *, const study *);
-/* The cheapest study that keeps the target and is not taken. */
+/* The study that took least time, of those that keep the target, were timed and
+   are not taken; NULL: there is none. */
 study *advice_next_best(const advice *, const bool taken[]);
 /* Times what may be an answer once; the best ones again. */
 void advice_time_once(advice *);

@@ -62,28 +62,30 @@ static void refine(advice *a) {
     }
 }
 
-const row *advice_least_worked(const advice *a, const study *l) {
-    return counts(a, l) ? study_cheapest(l, a->target, a->search.by_state)
-                        : NULL;
-}
-
 /* The one that works least, of those without drift, or with another integrator
    than that of all; NULL: there is none. */
 static study *least_of(const advice *a, bool steady, const study *without) {
     study *best = NULL;
     for (size_t i = 0; i < a->count; i++) {
         study *l = &a->study[i];
-        const row *r = advice_least_worked(a, l);
+        const row *r = advice_keeps(a, l);
         if (r && !(steady && row_drifts(r)) &&
             !(without && strcmp(without->integrator, l->integrator) == 0) &&
-            (!best || r->work < advice_least_worked(a, best)->work))
+            (!best || r->work < advice_keeps(a, best)->work))
             best = l;
     }
     return best;
 }
 
+static bool was_timed(const study *l) {
+    bool timed = false;
+    for (size_t i = 0; i < l->count; i++)
+        timed |= isfinite(l->level[i].seconds);
+    return timed;
+}
+
 /* Those that may win, or be the runner-up or other evidence, and are not timed
-   yet; returns how many. */
+   yet, or have a cheaper level since; returns how many. */
 static size_t list_untimed(const advice *a, row *found[]) {
     double least = least_work(a);
     study *second = least_of(a, false, least_of(a, false, NULL));
@@ -91,10 +93,11 @@ static size_t list_untimed(const advice *a, row *found[]) {
     size_t count = 0;
     for (size_t i = 0; i < a->count; i++) {
         study *l = &a->study[i];
-        const row *r = advice_least_worked(a, l);
+        const row *r = advice_keeps(a, l);
         bool varied = strcmp(l->gradient, a->gradients.item[0]) != 0;
         if (r && isnan(r->seconds) &&
-            (varied || l == second || l == steady || r->work < nearly * least))
+            (varied || was_timed(l) || l == second || l == steady ||
+             r->work < nearly * least))
             found[count++] = &l->level[r - l->level];
     }
     return count;
@@ -109,13 +112,13 @@ void advice_time_once(advice *a) {
     free(found);
 }
 
-/* Of those not yet taken. */
 study *advice_next_best(const advice *a, const bool taken[]) {
     study *best = NULL;
+    double least = INFINITY;
     for (size_t i = 0; i < a->count; i++) {
         const row *r = taken[i] ? NULL : advice_keeps(a, &a->study[i]);
-        if (r && (!best || r->seconds < advice_keeps(a, best)->seconds))
-            best = &a->study[i];
+        if (r && r->seconds < least)
+            least = r->seconds, best = &a->study[i];
     }
     return best;
 }
@@ -205,23 +208,18 @@ static void look_beyond(advice *a) {
     }
 }
 
-/* Medians for those that may win: of each the level that took least time, and
-   the one that works least, of which one time may have been taken badly. */
+/* Medians for those that may win. */
 void advice_time_best(advice *a) {
     enum { FEW = 24, USUAL = 9 };
     static const double factor = 1.7;
     study *found[FEW];
-    row *level[2 * FEW];
-    size_t count = list_best(a, factor, false, found, FEW), rows = 0;
+    row *level[FEW];
+    size_t count = list_best(a, factor, false, found, FEW);
     size_t repeats = a->search.repeats;
-    for (size_t i = 0; i < count; i++) {
-        const row *quick = advice_keeps(a, found[i]);
-        const row *light = advice_least_worked(a, found[i]);
-        level[rows++] = &found[i]->level[quick - found[i]->level];
-        if (light != quick && isfinite(light->seconds))
-            level[rows++] = &found[i]->level[light - found[i]->level];
-    }
-    rows_time(&a->search.plan, level, rows, repeats ? repeats : USUAL,
+    for (size_t i = 0; i < count; i++)
+        level[i] =
+            &found[i]->level[advice_keeps(a, found[i]) - found[i]->level];
+    rows_time(&a->search.plan, level, count, repeats ? repeats : USUAL,
               repeats > 0);
 }
 
