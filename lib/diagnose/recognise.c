@@ -2,9 +2,12 @@
 
    Its gradient is taken at many states, the constants of a candidate are fitted
    to it, and from them the region that the orbit stays in; that is repeated
-   there.  What is left over must be rounding at every state.
+   there.  What is left over must be rounding at every state.  Where H has a
+   Taylor series, its first coefficients are a gradient with more digits than a
+   double: the constants are fitted to that again.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/exact_private.h"
+#include "taylor/orbit_private.h"
 #include <float.h>
 #include <math.h>
 #include <nevh/gradient.h>
@@ -23,15 +26,18 @@ static const double margin = 1.25; /* around the region of the orbit */
 static const double narrowest = 1e-7;
 
 typedef struct {
+    const nevh_system *system;
     nevh_field *field;
     size_t n;
     double t0, t1;
     const double *q0, *p0;
     double rounding;
+    double least_doubt; /* of the constants */
     uint64_t random;
-    double *t;       /* STATES */
-    double *q, *p;   /* n x STATES */
-    double *dq, *dp; /* the gradient there */
+    double *t;            /* STATES */
+    double *q, *p;        /* n x STATES */
+    double *taken;        /* the gradient there, 2n x STATES, in doubles */
+    long double *dq, *dp; /* the same, or with more digits */
 } trial;
 
 /* Where states are taken: of n = 1, q around `middle` and, every other one,
@@ -85,8 +91,12 @@ static bool sample(trial *b, const region *r) {
         else
             b->q[i] = random_between(b, r->low, r->high);
     }
-    return nevh_field_gradient(b->field, STATES, b->t, b->q, b->p, b->dq,
-                               b->dp) == NEVH_OK;
+    if (nevh_field_gradient(b->field, STATES, b->t, b->q, b->p, b->taken,
+                            b->taken + b->n * STATES))
+        return false;
+    for (size_t i = 0; i < 2 * b->n * STATES; i++)
+        b->dq[i] = b->taken[i];
+    return true;
 }
 
 /* What is left over, its root mean square in units of `size`. */
@@ -196,11 +206,11 @@ static region oscillator_region(const trial *b, const nevh__exact_solution *e) {
     return (region){c, most, c - most, c + most, most / ratio};
 }
 
-static double length(const trial *b, const double *v, size_t stride) {
-    double square = 0;
+static long double length(const trial *b, const double *v, size_t stride) {
+    long double square = 0;
     for (size_t k = 0; k < b->n; k++)
-        square += v[k * stride] * v[k * stride];
-    return sqrt(square);
+        square += (long double)v[k * stride] * v[k * stride];
+    return sqrtl(square);
 }
 
 /* dV/dq = b q/|q|^3. */
@@ -266,7 +276,7 @@ static region region_of(const trial *b, const nevh__exact_solution *e) {
 }
 
 static bool fits(const trial *b, nevh__exact_solution *e, const region *r) {
-    e->doubt = DBL_EPSILON / 8;
+    e->doubt = b->least_doubt;
     if (!mass_fits(b, e, r))
         return false;
     if (e->kind == NEVH__PENDULUM)
@@ -288,7 +298,8 @@ static double longest_step(const trial *b, bool momentum) {
 
 /* Lengths to begin with: of the start, or those that differences see. */
 static region first_region(const trial *b, const nevh__exact_solution *e) {
-    double q0 = b->q0[0], r = length(b, b->q0, 1), p = length(b, b->p0, 1);
+    double q0 = b->q0[0];
+    double r = (double)length(b, b->q0, 1), p = (double)length(b, b->p0, 1);
     double half =
         e->kind == NEVH__PENDULUM ? PI : fmax(r, 64 * longest_step(b, false));
     p = fmax(p, 64 * longest_step(b, true));
@@ -304,6 +315,50 @@ static bool is_usable(const region *r) {
            isfinite(r->p) && r->low < r->high;
 }
 
+/* dp = dq/dt and dq = -dp/dt from series of an order as low as can be. */
+static bool take_series(trial *b, NEVH__FINE(nevh__orbit) * orbit) {
+    size_t n = b->n;
+    nevh__wide state[2 * NEVH__EXACT_DOF];
+    long double *rows = nevh__array(2 * n * (orbit->order + 1), sizeof *rows);
+    nevh__report ignored = {0};
+    bool taken = rows != NULL;
+    for (size_t i = 0; taken && i < STATES; i++) {
+        for (size_t k = 0; k < n; k++) {
+            state[k] = b->q[k * STATES + i];
+            state[n + k] = b->p[k * STATES + i];
+        }
+        taken = !NEVH__FINE(nevh__orbit_start)(orbit, b->t[i], state, &ignored);
+        if (!taken)
+            break;
+        NEVH__FINE(nevh__orbit_rows)(orbit, rows);
+        for (size_t k = 0; k < n; k++) {
+            b->dp[k * STATES + i] = rows[2 * n + k];
+            b->dq[k * STATES + i] = -rows[3 * n + k];
+        }
+    }
+    free(rows);
+    return taken;
+}
+
+/* The constants with the digits of long double, at the states of the last pass;
+   what there was stays where that cannot be. */
+static void refine(trial *b, nevh__exact_solution *e, const region *r) {
+    static const double tolerance = 0.1;
+    nevh__exact_solution finer = *e;
+    NEVH__FINE(nevh__orbit) orbit = {0};
+    nevh__report ignored = {0};
+    nevh__recurrence *series = nevh__recurrence_new(b->system, NULL, &ignored);
+    if (series && NEVH__FINE(nevh__orbit_init)(&orbit, series, tolerance) &&
+        take_series(b, &orbit)) {
+        fit(b, &finer);
+        b->least_doubt = 0;
+        if (fits(b, &finer, r) && finer.doubt < e->doubt)
+            *e = finer;
+    }
+    NEVH__FINE(nevh__orbit_clear)(&orbit);
+    nevh__recurrence_free(series);
+}
+
 static bool recognise(trial *b, nevh__exact_solution *e) {
     region r = first_region(b, e);
     for (int pass = 0; pass < PASSES; pass++) {
@@ -313,8 +368,12 @@ static bool recognise(trial *b, nevh__exact_solution *e) {
         if (!(e->a > 0 && e->b > 0 && isfinite((double)e->a) &&
               isfinite((double)e->b)))
             return false;
-        if (pass == PASSES - 1)
-            return fits(b, e, &r);
+        if (pass == PASSES - 1) {
+            bool found = fits(b, e, &r);
+            if (found)
+                refine(b, e, &r);
+            return found;
+        }
         r = region_of(b, e);
     }
     return false;
@@ -340,20 +399,22 @@ static bool try_kinds(trial *b, nevh__exact_solution *e) {
     return recognise(b, e);
 }
 
-static void divide(trial *b, double *memory) {
+static void divide(trial *b, double *memory, long double *gradient) {
     b->t = memory;
     b->q = memory + STATES;
     b->p = b->q + b->n * STATES;
-    b->dq = b->p + b->n * STATES;
-    b->dp = b->dq + b->n * STATES;
+    b->taken = b->p + b->n * STATES;
+    b->dq = gradient;
+    b->dp = gradient + b->n * STATES;
 }
 
 static int try_all(trial *b, nevh__exact_solution **exact) {
     double *memory = nevh__array((1 + 4 * b->n) * STATES, sizeof *memory);
+    long double *gradient = nevh__array(2 * b->n * STATES, sizeof *gradient);
     nevh__exact_solution *e = nevh__array(1, sizeof *e);
-    int status = memory && e ? NEVH_OK : NEVH_ENOMEM;
+    int status = memory && gradient && e ? NEVH_OK : NEVH_ENOMEM;
     if (!status)
-        divide(b, memory);
+        divide(b, memory, gradient);
     bool found = !status && try_kinds(b, e);
     if (found && e->kind == NEVH__KEPLER && !(e->solver = make_solver()))
         status = NEVH_ENOMEM;
@@ -361,6 +422,7 @@ static int try_all(trial *b, nevh__exact_solution **exact) {
         *exact = e;
     else
         nevh__exact_free(e);
+    free(gradient);
     free(memory);
     return status;
 }
@@ -368,7 +430,14 @@ static int try_all(trial *b, nevh__exact_solution **exact) {
 int nevh__exact_recognise(nevh__exact_solution **exact, const nevh_system *s,
                           double t0, double t1, const double q[],
                           const double p[]) {
-    trial b = {.n = s->n, .t0 = t0, .t1 = t1, .q0 = q, .p0 = p, .random = 1};
+    trial b = {.system = s,
+               .n = s->n,
+               .t0 = t0,
+               .t1 = t1,
+               .q0 = q,
+               .p0 = p,
+               .least_doubt = DBL_EPSILON / 8,
+               .random = 1};
     *exact = NULL;
     if (s->n > NEVH__EXACT_DOF || nevh_system_friction(s, NULL))
         return NEVH_OK;
