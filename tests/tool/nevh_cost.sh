@@ -159,10 +159,15 @@ exits 0 cost pendulum --t-end 2 --integrators gauss18,gauss20
 has '^ gauss(18|20) .* =( |$)'
 has '^=: the same run as for the digits to its left'
 lacks '^ gauss.* x 0\.'
-# Digits that the reference does not have make no column.
-exits 0 cost kepler-0.9 --by state --integrators gauss16,gauss20
-has '^ integrator +1e-2 +1e-4 +1e-6 +1e-8 +1e-10$'
-has '^12 digits and more cannot be told: the reference'
+# Digits that the reference does not have make no column: the constants of this
+# exact solution are fitted to values of H, as the absolute value has no series.
+sed 's|^gravity .*|gravity = -1/abs(sqrt(x^2 + y^2))|' \
+    "$srcdir/scenes/kepler-0.9.nevh" >$work/coarse.nevh
+exits 0 cost $work/coarse.nevh --by state --integrators gauss16,gauss20
+digits=$(sed -n 's/^\([0-9]*\) digits and more cannot be told: the ref.*/\1/p' \
+    $work/out)
+test "${digits:-0}" -eq 10 || test "${digits:-0}" -eq 12 || fails "tells too much"
+has "^ integrator +1e-2 .* 1e-$((${digits:-0} - 2))\$"
 lacks '^floor: '
 exits 0 cost pendulum --t-end 5 --integrators dop853
 has '^dt of adaptive schemes is their mean step$'

@@ -60,15 +60,22 @@ for file in "$srcdir"/scenes/*.nevh; do
 done
 
 # Errors near that of the reference are not promised: another one would differ.
-# What is refused is below three times that error, and what is above is not.
-exits 1 recommend kepler-0.9 --state-error 1e-10 --gradient exact \
+# What is refused is below three times that error, and what is above is not.  The
+# absolute value has no Taylor series: the constants of the exact solution are fitted
+# to values of H in doubles, and have fewer digits than those of the shipped scene.
+sed 's|^gravity .*|gravity = -1/abs(sqrt(x^2 + y^2))|' \
+    "$srcdir/scenes/kepler-0.9.nevh" >$work/coarse.nevh
+exits 0 recommend kepler-0.9 --state-error 1e-10 --gradient exact \
+    --integrators gauss20 --format csv
+keeps 1e-10 13
+exits 1 recommend $work/coarse.nevh --state-error 1e-10 --gradient exact \
     --integrators gauss20
 says 'a state error of 1e-10 cannot be told: that of the reference is [0-9.]+e-[0-9]+ '
 own=$(sed -n 's/.*that of the reference is \([0-9.e-]*\) .*/\1/p' $work/err)
 awk -v own="$own" 'BEGIN { exit !(own > 1e-10 / 3 && own < 1e-9) }' ||
     fails "refuses 1e-10 with a reference of $own"
 more=$(awk -v own="$own" 'BEGIN { printf "%.3g", 3.2 * own }')
-exits 0 recommend kepler-0.9 --state-error $more --gradient exact \
+exits 0 recommend $work/coarse.nevh --state-error $more --gradient exact \
     --integrators gauss20 --format csv
 keeps $more 13
 
