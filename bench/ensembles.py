@@ -121,7 +121,7 @@ def sweeps_of(pid):
     found = []
     for name in os.listdir("/proc"):
         try:
-            if name.isdigit() and os.getpgid(int(name)) != os.getpgid(0):
+            if name.isdigit():
                 with open("/proc/%s/cmdline" % name, "rb") as file:
                     program = file.read().split(b"\0")[0]
                 if program.endswith(b"nevh-mpi") and descends(int(name), pid):
@@ -148,6 +148,8 @@ def stopped():
     begin = time.time()
     run = ranks(3, *LONG, "--threads", "1", "-o", name)
     while len(sweeps_of(run.pid)) < 3 or not os.path.exists(name):
+        if run.poll() is not None:
+            raise SystemExit("mpirun ended with status %d" % run.returncode)
         time.sleep(0.01)
     time.sleep(0.5)
     one = random.choice(sweeps_of(run.pid))
@@ -175,6 +177,8 @@ def kills():
                                     stderr=subprocess.DEVNULL))
             time.sleep(random.uniform(0.02, length))
             try:
+                if run.poll() is not None:
+                    raise ProcessLookupError
                 os.kill(random.choice(sweeps_of(run.pid)) if kind == "rank"
                         else run.pid, signal.SIGKILL)
                 landed += 1
