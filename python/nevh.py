@@ -14,7 +14,9 @@ SPDX-License-Identifier: GPL-3.0-or-later
 
 import csv
 import ctypes as c
+import difflib
 import html
+import math
 import os
 import re
 import signal
@@ -31,7 +33,7 @@ except ImportError:
 
 __version__ = "0.1.0"
 __all__ = ["solve", "compare", "sweep", "HGrad", "Scene", "Error", "Refused",
-           "Failed", "integrators", "gradients", "verdicts", "library", "command"]
+           "Failed", "integrators", "gradients", "scenes", "verdicts", "library", "command"]
 
 verdicts = ("bounded", "random-walk", "drifts", "unstable", "undecided")
 _INVALID, _STOPPED, _STRUCTURE, _NO_GRADIENT = 4, 1027, 1024, 1025
@@ -177,7 +179,7 @@ energy_expect:ipp energy_set_scale:ipd energy_result:Epz verdict_settle:ipppp
 counts_seconds:dpzpiz field_new:ppp field_free:-p
 field_status:ip field_message:sp field_gradient:ipzppppp field_value:ipzpppp sweep_new:ppp sweep_free:-p
 sweep_status:ip sweep_message:sp sweep_members:up sweep_columns:zp sweep_column:spz
-sweep_is_verdict:bpz sweep_run:ipuuppp""".split()
+sweep_is_verdict:bpz sweep_run:ipuuppp sweep_stop:-p""".split()
 _types = {"p": c.c_void_p, "s": c.c_char_p, "i": c.c_int, "z": c.c_size_t,
           "u": c.c_uint64, "d": c.c_double, "b": c.c_bool, "-": None,
           "R": c.POINTER(_Run), "C": _Counts, "E": _Energy}
@@ -258,17 +260,34 @@ def gradients():
 _scipy_names = {"DOP853": "dop853", "RK45": "dopri5"}
 
 
+def _text(what, value):
+    if not isinstance(value, str):
+        raise TypeError("%s is a text, not %r" % (what, value))
+    return value
+
+
+def _closest(name, names):
+    """" (did you mean NAME?)", or nothing."""
+    folded = {known.lower(): known for known in names}
+    close = difflib.get_close_matches(name.lower(), folded, 1)
+    return " (did you mean %s?)" % folded[close[0]] if close else ""
+
+
 def _integrator(name):
-    name, plus, rest = name.partition("+")
+    if isinstance(name, type):  # scipy.integrate.DOP853
+        name = name.__name__
+    name, plus, rest = _text("method", name).partition("+")
     found = _lib.integrator_named(_scipy_names.get(name, name).encode())
     if not found or (plus and rest != "transform"):
-        raise Refused("there is no method %r; nevh.integrators() lists them" %
-                      (name + plus + rest))
+        raise Refused("there is no method %r%s; nevh.integrators() lists them, and of "
+                      "SciPy's %s are known" % (
+                          name + plus + rest, _closest(name, integrators()),
+                          " and ".join(_scipy_names)))
     return found, bool(plus)
 
 
 def _gradient(name):
-    found = _lib.gradient_named(name.encode())
+    found = _lib.gradient_named(_text("gradient", name).encode())
     if not found:
         raise Refused("there is no gradient %r; there are %s"
                       % (name, ", ".join(gradients())))
@@ -277,16 +296,51 @@ def _gradient(name):
 
 # Arrays: NumPy's, or lists.
 
-def _numbers(values):
+def _numbers(values, what="the array"):
     """An array of doubles, and what its memory is passed as."""
-    if np is not None:
-        array = np.array(values, dtype=float, ndmin=1)
-        if array.ndim != 1:
-            raise Refused("an array of shape %s where numbers in a row are needed"
-                          % (array.shape,))
-        return array, array.ctypes.data
-    array = (c.c_double * len(values))(*values)
-    return array, c.addressof(array)
+    try:
+        if np is not None:
+            array = np.array(values, ndmin=1)
+            if array.dtype.kind not in "biufO":
+                raise TypeError
+            array = array.astype(float, order="C", copy=False)
+            if array.ndim != 1:
+                raise Refused("%s has the shape %s; it takes numbers in a row"
+                              % (what, array.shape))
+            return array, array.ctypes.data
+        if isinstance(values, (int, float)):
+            values = [values]
+        array = (c.c_double * len(values))(*values)
+        return array, c.addressof(array)
+    except (TypeError, ValueError) as error:
+        if isinstance(error, Refused):
+            raise
+        raise Refused("%s takes real numbers in a row, not %.80r"
+                      % (what, values)) from None
+
+
+def _real(what, value):
+    """A number as a float: of Python or NumPy, no text."""
+    try:
+        if isinstance(value, str):
+            raise TypeError
+        return float(value)
+    except (TypeError, ValueError):
+        raise Refused("%s = %.80r is not a real number" % (what, value)) from None
+
+
+def _positive(what, value):
+    number = _real(what, value)
+    if not 0 < number < math.inf:
+        raise Refused("%s = %g: it takes a number above 0" % (what, number))
+    return number
+
+
+def _whole_from_one(what, value):
+    number = _real(what, value)
+    if number < 1 or number % 1:
+        raise Refused("%s = %g: it takes a whole number from 1" % (what, number))
+    return int(number)
 
 
 def _table(rows, columns):
@@ -356,14 +410,30 @@ for _name in "__eq__ __iter__ __len__ __reduce_ex__ copy items keys values".spli
 
 # Scenes, files or formulas.
 
-def _value(value):
-    return value if isinstance(value, str) else repr(float(value))
+def _is_row(value):
+    return (hasattr(value, "__len__") and not isinstance(value, str)
+            and getattr(value, "ndim", 1) > 0)
+
+
+def _value(name, value):
+    if isinstance(value, str):
+        return value
+    number = _real(name, value)
+    if not math.isfinite(number):
+        raise Refused("%s = %g is not finite" % (name, number))
+    return repr(number)
 
 
 def _assign(name, value):
-    if isinstance(value, str) or not hasattr(value, "__len__"):
-        return "%s = %s" % (name, _value(value))
-    return "%s = %s" % (name, ", ".join(map(_value, value)))
+    _text("a name", name)
+    if not _is_row(value):
+        return "%s = %s" % (name, _value(name, value))
+    if not len(value):
+        raise Refused("there is no value for %s" % name)
+    if getattr(value, "ndim", 1) != 1:
+        raise Refused("%s has the shape %s; it takes numbers in a row"
+                      % (name, value.shape))
+    return "%s = %s" % (name, ", ".join(_value(name, one) for one in value))
 
 
 def _is_scene_text(text):
@@ -378,10 +448,13 @@ def _scene_of_formula(formula, parameters, coordinates):
         if not coordinates and re.search(r"\bp\b", formula):
             coordinates, definitions = ["q"], "[definitions]\np = p_q\n"
         if not coordinates:
+            if re.fullmatch(r"[^\W\d][\w-]*", formula):
+                raise Refused("there is no scene %r%s; as a formula it has no momentum "
+                              "p_NAME" % (formula, _closest(formula, scenes())))
             raise Refused("%r names no momentum p_NAME: give coordinates=[...]" % formula)
     lines = ["[parameters]"]
     for name, value in (parameters or {}).items():
-        if hasattr(value, "__len__") and not isinstance(value, str):
+        if _is_row(value):
             name = "%s[1..%d]" % (name, len(value))
         lines.append(_assign(name, value))
     lines.append("[coordinates]")
@@ -392,16 +465,32 @@ def _scene_of_formula(formula, parameters, coordinates):
         % (formula, "\n".join(lines), definitions, formula)
 
 
-def _shipped(name):
+def _scene_folders():
     folders = [os.environ.get("NEVH_SCENES", "")]
     base = os.path.dirname(os.path.realpath(_lib.path))
     for tree in (os.path.dirname(base), os.path.dirname(os.path.dirname(base)), *_trees()):
         folders += [os.path.join(tree, "share/nevh/scenes"), os.path.join(tree, "scenes")]
-    for folder in filter(None, folders):
+    return [folder for folder in folders if folder and os.path.isdir(folder)]
+
+
+def _shipped(name):
+    for folder in _scene_folders():
         path = os.path.join(folder, name + ".nevh")
         if os.path.exists(path):
             return path
     return None
+
+
+def scenes():
+    """The names of the scenes that ship."""
+    return sorted({file[:-5] for folder in _scene_folders()
+                   for file in os.listdir(folder) if file.endswith(".nevh")})
+
+
+def _again(text, path, is_formula):
+    scene = Scene(text)
+    scene.path, scene.is_formula = path, is_formula
+    return scene
 
 
 class Scene:
@@ -415,8 +504,11 @@ class Scene:
 
     def __init__(self, source, parameters=None, coordinates=None, with_effects=(),
                  without_effects=()):
+        self._made = self.path = None
+        if not isinstance(source, (str, os.PathLike)):
+            raise TypeError("a scene is a text, the name of a file or of a scene, not %r"
+                            % type(source).__name__)
         text = os.fspath(source)
-        self.path = None
         self.is_formula = False
         if _is_scene_text(text):
             self._made = _lib.scene_parse(b"scene", text.encode())
@@ -436,7 +528,11 @@ class Scene:
                 self._check(_lib.scene_set(self._made, _assign(name, value).encode()))
         for names, on in ((with_effects, True), (without_effects, False)):
             for name in [names] if isinstance(names, str) else names:
-                self._check(_lib.scene_enable(self._made, name.encode(), on))
+                name = _text("an effect", name).encode()
+                self._check(_lib.scene_enable(self._made, name, on))
+
+    def __reduce__(self):  # to copy and to pickle it
+        return _again, (self.text, self.path, self.is_formula)
 
     def __del__(self):
         if getattr(self, "_made", None):
@@ -461,9 +557,9 @@ class Scene:
         """The state to start from: y0, or where the scene starts; with a dictionary
         {name: value}, what it names is replaced."""
         if y0 is not None and not isinstance(y0, dict):
-            array, _ = _numbers(y0)
+            array, _ = _numbers(y0, "y0")
             if len(array) != 2 * self.n:
-                raise Refused("y0 has %d numbers; it takes %d: %s"
+                raise Refused("y0 has %d of the %d numbers that it takes: %s"
                               % (len(array), 2 * self.n, ", ".join(self.names)))
             return array
         if y0:
@@ -516,6 +612,8 @@ def _address(function):
     p[], const void *params), or None: a number, a ctypes or cffi pointer, what
     numba's @cfunc gives, a scipy.LowLevelCallable."""
     if isinstance(function, int):
+        if isinstance(function, bool) or not 4095 < function < 1 << 64:
+            raise TypeError("%r is not the address of a function" % function)
         return function
     if hasattr(function, "address"):
         return int(function.address)
@@ -593,6 +691,8 @@ class _Subject:
         if address is None and not callable(H):
             raise TypeError("H is a text, a Scene, a function or the address of one, "
                             "not %r" % type(H).__name__)
+        if with_effects or without_effects or coordinates:
+            raise Refused("a function has neither effects nor names of coordinates")
         self.n = n
         self.kept = H
         if address is None:
@@ -652,7 +752,7 @@ class _Plan:
             if not o.transform:
                 raise Refused("%s: there is no scene with a transform" % name)
         if gradient_step is not None and hasattr(gradient_step, "__len__"):
-            self.steps, o.gradient_steps = _numbers(gradient_step)
+            self.steps, o.gradient_steps = _numbers(gradient_step, "gradient_step")
             if len(self.steps) != 2 * subject.n:
                 raise Refused("gradient_step has %d numbers; it takes one, or %d"
                               % (len(self.steps), 2 * subject.n))
@@ -751,9 +851,13 @@ def _steps(method, dt, rtol, atol, span, y0):
         if dt is None:
             raise Refused("%s takes steps of dt: give it" % method)
         return dt, 0.0
-    rtol = 1e-9 if rtol is None else rtol
-    if atol:
-        rtol = min(rtol, atol / max(1.0, max(map(abs, y0))))
+    rtol = 1e-9 if rtol is None else _positive("rtol", rtol)
+    if atol is not None:
+        least = min(_numbers(atol, "atol")[0])
+        if least > 0:
+            rtol = min(rtol, least / max(1.0, max(map(abs, y0))))
+        elif not least == 0:
+            raise Refused("atol = %g: it takes 0 or a number above it" % least)
     return abs(span) / 256 if dt is None else dt, rtol
 
 
@@ -839,6 +943,36 @@ def _run_plan(plan, t0, t_end, h, times, y, observe, every):
     return status, result
 
 
+def _span(scene, t_span):
+    if t_span is None:
+        settings = scene._settings()
+        return settings.t_start, settings.t_end
+    try:
+        t0, t_end = t_span
+    except (TypeError, ValueError):
+        raise Refused("t_span = %.80r: it takes two times" % (t_span,)) from None
+    return _real("t_span[0]", t0), _real("t_span[1]", t_end)
+
+
+def _times_to_keep(t_eval, t0, t_end):
+    times, _ = _numbers(t_eval, "t_eval")
+    least, most = min(t0, t_end), max(t0, t_end)
+    ahead = math.copysign(1, t_end - t0)
+    if np is not None and (least <= times).all() and (times <= most).all() and (
+            np.diff(times) * ahead >= 0).all():
+        return times
+    before = t0
+    for k, t in enumerate(times):
+        if not least <= t <= most:
+            raise Refused("t_eval[%d] = %g is not within t_span = %g, %g"
+                          % (k, t, t0, t_end))
+        if (t - before) * ahead < 0:
+            raise Refused("t_eval[%d] = %g is not in the order of the run: it comes after "
+                          "%g" % (k, t, before))
+        before = t
+    return times
+
+
 def solve(H, t_span=None, y0=None, method=None, *, dt=None, rtol=None, atol=None,
           t_eval=None, gradient=None, gradient_step=None, parameters=None, args=(),
           coordinates=None, with_effects=(), without_effects=(), params=None,
@@ -874,21 +1008,30 @@ def solve(H, t_span=None, y0=None, method=None, *, dt=None, rtol=None, atol=None
     Raises Refused for input that is wrong, Failed where a step fails, and what
     `observe` or H raised; the orbit so far is then the exception's `result`.
     """
+    n = None
     if not isinstance(H, (Scene, str, os.PathLike)):
         if y0 is None or t_span is None:
             raise Refused("a function needs t_span and y0")
+        y0, _ = _numbers(y0, "y0")
         if len(y0) < 2 or len(y0) % 2:
-            raise Refused("y0 has %d numbers; it takes as many momenta as coordinates"
+            raise Refused("y0 takes as many momenta as coordinates, not %d in all"
                           % len(y0))
-    subject = _Subject(H, len(y0) // 2 if y0 is not None else None, parameters, args,
+        n = len(y0) // 2
+    if observe is not None and not callable(observe):
+        raise TypeError("observe is a function, not %r" % type(observe).__name__)
+    every = _whole_from_one("every", every)
+    subject = _Subject(H, n, parameters, args,
                        coordinates, with_effects, without_effects, params)
     scene = subject.scene
+    if scene and scene.is_formula and (y0 is None or t_span is None):
+        raise Refused("a formula needs t_span and y0")
     y = scene.start(y0) if scene else y0
-    if t_span is None:
-        settings = scene._settings()
-        t_span = settings.t_start, settings.t_end
-    t0, t_end = map(float, t_span)
+    t0, t_end = _span(scene, t_span)
     y = _numbers(y)
+    if not all(map(math.isfinite, y[0])):
+        k = next(k for k, number in enumerate(y[0]) if not math.isfinite(number))
+        raise Refused("y0[%d]%s is %g" % (
+            k, ", the start of %s," % scene.names[k] if scene else "", y[0][k]))
     if scene:
         settings = scene._settings()
         if method is None and settings.integrators:
@@ -901,10 +1044,9 @@ def solve(H, t_span=None, y0=None, method=None, *, dt=None, rtol=None, atol=None
         gradient = gradient or settings.gradient[0].decode()
     if not t_end - t0 < float("inf") or t_end == t0:
         raise Refused("t_span = %g, %g is no time to go" % (t0, t_end))
+    dt = None if dt is None else _positive("dt", dt)
     method = method or _choose(subject, dt, t0, y)
     dt, tolerance = _steps(method, dt, rtol, atol, t_end - t0, y[0])
-    if not 0 < dt < float("inf"):
-        raise Refused("dt = %g is no step" % dt)
     h = dt if t_end > t0 else -dt
     if gradient:
         _gradient(gradient)
@@ -915,6 +1057,8 @@ def solve(H, t_span=None, y0=None, method=None, *, dt=None, rtol=None, atol=None
     plan = _Plan(subject, method, gradient, y, t0, tolerance, gradient_step)
     if t_eval is None:
         t_eval = _times_of_steps(t0, t_end, h)
+    else:
+        t_eval = _times_to_keep(t_eval, t0, t_end)
     if observe is None:
         every = 16 if tolerance else 512
     status, result = _run_plan(plan, t0, t_end, h, t_eval, y, observe, every)
@@ -931,6 +1075,10 @@ def solve(H, t_span=None, y0=None, method=None, *, dt=None, rtol=None, atol=None
         error.result = result
         raise
     return result
+
+
+def _hgrad(H, ds, named):
+    return HGrad(H, ds, **named)
 
 
 class HGrad:
@@ -951,6 +1099,10 @@ class HGrad:
     def __init__(self, H, ds=None, *, gradient="central4", args=(), coordinates=None,
                  with_effects=(), without_effects=(), params=None, parameters=None,
                  **constants):
+        self._given = H, ds, dict(
+            constants, gradient=gradient, args=args, coordinates=coordinates,
+            with_effects=with_effects, without_effects=without_effects, params=params,
+            parameters=parameters)
         self._gradient = _gradient(gradient)
         self._ds = ds
         constants = dict(parameters or {}, **constants)
@@ -959,6 +1111,9 @@ class HGrad:
                                         with_effects, without_effects, params)
         if isinstance(H, (Scene, str, os.PathLike)):
             self._subject = self._make(None)
+
+    def __reduce__(self):  # to copy and to pickle it
+        return _hgrad, self._given
 
     def __del__(self):
         if getattr(self, "_field", None):
@@ -977,7 +1132,7 @@ class HGrad:
         start, at = _numbers(first)
         o = _Options(t=t, q=at, p=at + 8 * n, gradient=self._gradient)
         if hasattr(self._ds, "__len__"):
-            self._steps, o.gradient_steps = _numbers(self._ds)
+            self._steps, o.gradient_steps = _numbers(self._ds, "ds")
             if len(self._steps) != 2 * n:
                 raise Refused("ds has %d numbers; it takes one, or %d"
                               % (len(self._ds), 2 * n))
@@ -1002,11 +1157,17 @@ class HGrad:
         self._call = (self._field, width, times, at, at + half, out + half, out)
 
     def __call__(self, t, y):
+        if np is not None:
+            y = np.asarray(y)
+            if y.ndim not in (1, 2) or y.dtype.kind not in "biufO":
+                raise Refused("y has the shape %s of %s; it takes real numbers, (2n,) or "
+                              "(2n, k)" % (y.shape, y.dtype))
+            if y.ndim == 2 and not y.shape[1]:
+                return np.empty(y.shape)
         if self._field is None:
             self._plan(t, y)
         if np is None:
             return self._lists(t, y)
-        y = np.asarray(y)
         width = y.shape[1] if y.ndim == 2 else 1
         if width != self._width:
             self._room(width)
@@ -1038,6 +1199,9 @@ class HGrad:
         status = _lib.field_gradient(*self._call)
         self._subject.trap.spring()
         if status:
+            for k, number in enumerate(self._y if np is None else self._y.ravel()):
+                if not math.isfinite(number):
+                    raise Failed("y[%d] is %g" % (k // self._width, number))
             _check(status, _lib.field_message(self._field))
 
 
@@ -1134,11 +1298,13 @@ def compare(scene, integrators=None, dt=None, t_end=None, *, y0=None, gradient=N
     not the library's.
     """
     made = _scene(scene, parameters, coordinates, with_effects, without_effects)
+    if made.is_formula and (y0 is None or t_end is None):
+        raise Refused("a formula needs y0 and t_end")
     arguments = [command(), "compare", "--format", "csv"]
     arguments += _options(integrators=integrators, dt=dt, t_end=t_end,
                           gradient=gradient, tolerance=tolerance)
     for name, value in _starts(made, y0).items():
-        arguments += ["--start", "%s=%s" % (name, _value(value))]
+        arguments += ["--start", "%s=%s" % (name, _value(name, value))]
     with tempfile.TemporaryDirectory() as folder:
         name = os.path.basename(made.path) if made.path else "H.nevh"
         path = os.path.join(folder, name)
@@ -1178,7 +1344,9 @@ def sweep(scene, vary=None, outcomes=None, integrator=None, *, dt=None, t_end=No
 
     Returns an array with a field for each name that is varied and each outcome, and
     `status`: 1 where a member is done, 2 where it failed, 3 where it has no start.
-    A warning says how many members failed, and why the first did.
+    A warning says how many members failed, and why the first did.  The interrupt key
+    lets the members under way end; the exception's `result` is the array, with status
+    0 of those that did not begin.
     """
     if np is None:
         raise ImportError("nevh.sweep needs NumPy")
@@ -1201,16 +1369,33 @@ def sweep(scene, vary=None, outcomes=None, integrator=None, *, dt=None, t_end=No
         integrator = settings.integrator[0].decode()
     found, transformed = _integrator(integrator or "verlet")
     adapts = _lib.integrator_adaptive(found)
-    o = _SweepOptions(integrator=found, transformed=transformed, dt=dt or 0,
-                      t_end=t_end or 0, threads=threads or os.cpu_count() or 1,
+    if made.is_formula and (t_end is None or dt is None and not adapts):
+        raise Refused("a formula needs t_end, and dt but for methods that adapt")
+    if rtol is not None and not adapts:
+        raise Refused("%s takes steps of dt and no tolerance: leave out rtol"
+                      % (integrator or "verlet"))
+    o = _SweepOptions(integrator=found, transformed=transformed,
+                      dt=0 if dt is None else _positive("dt", dt),
+                      t_end=0 if t_end is None else _ends(settings, t_end),
+                      threads=(os.cpu_count() or 1) if threads is None else
+                      _whole_from_one("threads", threads),
                       gradient=_gradient(gradient or settings.gradient[0].decode()),
                       gradient_step=settings.gradient_step,
-                      tolerance=(rtol or 1e-9) if adapts else 0)
+                      tolerance=0 if not adapts else 1e-9 if rtol is None else
+                      _positive("rtol", rtol))
     made_sweep = _lib.sweep_new(made._made, c.byref(o))
     try:
         return _sweep(made_sweep)
     finally:
         _lib.sweep_free(made_sweep)
+
+
+def _ends(settings, t_end):
+    t_end = _real("t_end", t_end)
+    if not settings.t_start < t_end < math.inf:
+        raise Refused("t_end = %g: it takes a time after the start, %g"
+                      % (t_end, settings.t_start))
+    return t_end
 
 
 def _sweep(s):
@@ -1225,13 +1410,26 @@ def _sweep(s):
                      "itemsize": size})
     array = np.zeros(members, kind)
     records = _Records(records=array.ctypes.data, count=members, columns=columns)
-    with _Interrupt() as interrupt:
-        keep = _lib.address("sweep_keep")
-        for first in range(0, members, 1 << 16):
-            check(_lib.sweep_run(s, first, min(1 << 16, members - first), None, keep,
-                                 c.byref(records)))
-            if interrupt.pressed:
-                raise KeyboardInterrupt
+    status, done = [], threading.Event()
+
+    def run():
+        status.append(_lib.sweep_run(s, 0, members, None, _lib.address("sweep_keep"),
+                                     c.byref(records)))
+        done.set()
+    # In a thread of its own, for that of the caller takes the interrupt key.  Its join
+    # would not do: of Python 3.11 it takes an interrupted thread for one that has ended.
+    threading.Thread(target=run).start()
+    pressed = None
+    while not done.is_set():
+        try:
+            done.wait()
+        except BaseException as error:
+            pressed = error
+            _lib.sweep_stop(s)
+    if pressed is not None:
+        pressed.result = array
+        raise pressed
+    check(status[0])
     if records.failed:
         warnings.warn("%d of %d members failed; member %d: %s" % (
             records.failed, members, records.failed_member,

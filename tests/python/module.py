@@ -220,7 +220,8 @@ def test_refusals():
     solve = nevh.solve
     error = raised(nevh.Refused, "H:", solve, "p^2/2 - coss(q)", (0, 1), [1, 0])
     assert "did you mean cos" in str(error) and isinstance(error, ValueError)
-    raised(nevh.Refused, "2: phi, p_phi", solve, PENDULUM, (0, 1), [1, 0, 0])
+    raised(nevh.Refused, "3 of the 2 numbers that it takes: phi, p_phi", solve, PENDULUM,
+           (0, 1), [1, 0, 0])
     raised(nevh.Refused, "no method 'verlett'", solve, PENDULUM, (0, 1), [1, 0],
            "verlett", dt=0.1)
     raised(nevh.Refused, "give it", solve, PENDULUM, (0, 1), [1, 0], "verlet")
@@ -231,15 +232,135 @@ def test_refusals():
     raised(nevh.Refused, "no time to go", solve, PENDULUM, (1, 1), [1, 0])
     raised(nevh.Refused, "no gradient", solve, PENDULUM, (0, 1), [1, 0],
            gradient="central3")
-    raised(nevh.Refused, "not between", solve, PENDULUM, (0, 1), [1, 0],
+    raised(nevh.Refused, "t_eval[1] = 2 is not within", solve, PENDULUM, (0, 1), [1, 0],
            t_eval=[0, 2])
     raised(nevh.Refused, "no momentum", solve, "x^2", (0, 1), [1, 0])
     raised(nevh.Refused, "nowhere.nevh", solve, "nowhere.nevh")
-    raised(nevh.Refused, "no step", solve, PENDULUM, (0, 1), [1, 0], "rk4", dt=-0.1)
-    raised(nevh.Refused, "no step", solve, PENDULUM, (0, 1), [1, 0], "rk4",
+    raised(nevh.Refused, "dt = -0.1", solve, PENDULUM, (0, 1), [1, 0], "rk4", dt=-0.1)
+    raised(nevh.Refused, "dt = nan", solve, PENDULUM, (0, 1), [1, 0], "rk4",
            dt=math.nan)
     raised(nevh.Refused, "as many momenta", solve, lambda t, y: 0, (0, 1), [1, 0, 2])
     raised(TypeError, "H is a text", solve, 3.5, (0, 1), [1, 0])
+
+
+def test_arguments_are_named_where_they_are_wrong():
+    """All of them raise what Python has for it, and say which argument it was."""
+    def of(H=PENDULUM, t_span=(0, 3), y0=(2, 0), method="verlet", dt=0.1, **named):
+        return lambda: nevh.solve(H, t_span, y0, method, dt=dt, **named)
+
+    def value(t, y):
+        return 0.0
+    refused = nevh.Refused
+    for kind, text, call in (
+            (refused, "t_eval[1] = 2 is not in the order", of(t_eval=[3, 2, 1])),
+            (refused, "it comes after 0", of(t_span=(3, 0), t_eval=[0, 1])),
+            (refused, "t_eval[1] = nan", of(t_eval=[1, math.nan])),
+            (refused, "t_eval takes real numbers", of(t_eval="1,2")),
+            (refused, "t_eval takes real numbers", of(t_eval=iter([1, 2]))),
+            (refused, "y0[0], the start of phi, is nan", of(y0=[math.nan, 0])),
+            (refused, "y0[1] is inf", of(value, y0=[0, math.inf])),
+            (refused, "y0 takes real numbers", of(y0=[1 + 1j, 0])),
+            (refused, "y0 takes real numbers", of(y0=["a", "b"])),
+            (refused, "1 of the 2 numbers", of(y0=2.0)),
+            (refused, "as many momenta", of(value, y0=2.0)),
+            (refused, "psi", of(y0={"psi": 1})),
+            (refused, "a formula needs t_span and y0", of(y0=None)),
+            (refused, "a formula needs t_span and y0", of(t_span=None)),
+            (refused, "t_span = 5: it takes two times", of(t_span=5)),
+            (refused, "t_span = (0, 1, 2)", of(t_span=(0, 1, 2))),
+            (refused, "t_span[1] = 'b'", of(t_span=(0, "b"))),
+            (refused, "dt = '0.1' is not a real number", of(dt="0.1")),
+            (refused, "did you mean verlet?", of(method="verlat")),
+            (refused, "DOP853 and RK45", of(method="Radau", dt=None)),
+            (TypeError, "method is a text, not 7", of(method=7)),
+            (refused, "rtol = 0", of(method="RK45", rtol=0)),
+            (refused, "atol = -1", of(method="RK45", atol=[1, -1])),
+            (TypeError, "gradient is a text", of(gradient=3)),
+            (refused, "g = nan is not finite", of(parameters={"g": math.nan})),
+            (refused, "there is no value for g", of(parameters={"g": []})),
+            (refused, "no scene 'pendulumm' (did you mean pendulum?)",
+             of("pendulumm")),
+            (TypeError, "an effect is a text", of("pendulum", without_effects=[3])),
+            (refused, "neither effects", of(value, without_effects=["gravity"])),
+            (TypeError, "True is not the address", of(True)),
+            (TypeError, "0 is not the address", of(0)),
+            (TypeError, "not 'bytes'", of(b"p^2/2")),
+            (refused, "every = 0", of(observe=print, every=0)),
+            (TypeError, "observe is a function", of(observe=3)),
+            (TypeError, "not 'function'", lambda: nevh.compare(value)),
+            (refused, "needs y0 and t_end", lambda: nevh.compare(PENDULUM, "verlet"))):
+        raised(kind, text, call)
+    for y0 in ((2, 0), [2, 0], {"phi": 2}):
+        assert nevh.solve(PENDULUM, (0, 1), y0, "verlet", dt=0.1).y[0][0] == 2
+    once = nevh.solve(PENDULUM, (0, 3), [2, 0], "verlet", dt=0.1, t_eval=2)
+    twice = nevh.solve(PENDULUM, (0, 3), [2, 0], "verlet", dt=0.1, t_eval=[1, 2, 2])
+    assert last(once) == last(twice) == [row[1] for row in twice.y]
+    none = nevh.solve(PENDULUM, (0, 3), [2, 0], "verlet", dt=0.1, t_eval=[])
+    assert len(none.t) == 0 and [len(row) for row in none.y] == [0, 0]
+    assert "pendulum" in nevh.scenes() and len(nevh.scenes()) >= 28
+
+
+def test_arrays_of_any_kind():
+    needs("NumPy")
+    asked = [nevh.solve(PENDULUM, span, y0, "verlet", dt=dt, t_eval=times,
+                        parameters={"g": np.array(9.8)})
+             for span, y0, dt, times in (
+                 ((0, 3), [2, 0], 0.25, [0, 1, 2, 3]),
+                 (np.array([0, 3]), np.array([2, 9, 0, 9], np.float32)[::2],
+                  np.float32(0.25), np.arange(4)))]
+    for orbit in asked:
+        assert orbit.y.dtype == orbit.t.dtype == float and orbit.y.shape == (2, 4)
+        assert (orbit.y == asked[0].y).all()
+    none = nevh.solve(PENDULUM, (0, 3), [2, 0], "verlet", dt=0.1, t_eval=[])
+    assert none.y.shape == (2, 0)
+    raised(nevh.Refused, "y0 has the shape (2, 1)", nevh.solve, PENDULUM, (0, 1),
+           np.ones((2, 1)), "verlet", dt=0.1)
+    loose = nevh.solve(PENDULUM, (0, 3), [2, 0], "RK45", rtol=1e-3, atol=[1e-7, 1e-8])
+    assert loose.tolerance == 5e-9
+    G = nevh.HGrad(PENDULUM)
+    assert G(0, np.empty((2, 0))).shape == (2, 0)
+    assert list(G(0, [1, 2])) == list(G(0, [1.0, 2.0]))
+    raised(nevh.Refused, "(2, 2, 2) of float64", G, 0, np.ones((2, 2, 2)))
+    raised(nevh.Refused, "complex128", G, 0, np.array([1j, 0]))
+    raised(nevh.Failed, "y[1] is nan", G, 0, [0, math.nan])
+
+
+def test_copies_have_a_library_object_of_their_own():
+    import copy
+    import pickle
+    scene = nevh.Scene("p_x^2/2 + k*x^2/2", {"k": 4})
+    G = nevh.HGrad("double-pendulum", gradient="exact", without_effects=())
+    y = [1.0, 2.0, 3.0, 4.0]
+    for take in (copy.copy, copy.deepcopy, lambda x: pickle.loads(pickle.dumps(x))):
+        other = take(scene)
+        assert other._made != scene._made and other.names == scene.names
+        assert other.is_formula and last(nevh.solve(other, (0, 1), [1, 0])) == \
+            last(nevh.solve(scene, (0, 1), [1, 0]))
+        assert list(take(G)(0, y)) == list(G(0, y))
+        assert take(nevh.Scene("pendulum")).path == nevh.Scene("pendulum").path
+
+
+def test_threads():
+    """Each has its own orbit; a scene may be shared."""
+    scene = nevh.Scene("pendulum")
+
+    def mine(t, y):
+        return y[1] ** 2 / 2 - math.cos(y[0])
+    ends = {}
+
+    def run(k):
+        try:
+            ends[k] = [last(nevh.solve(H, (0, 20), [2, 0], "verlet", dt=0.05,
+                                       t_eval=[20])) for H in (scene, PENDULUM, mine)]
+        except BaseException as error:
+            ends[k] = error
+    threads = [threading.Thread(target=run, args=(k,)) for k in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    run("alone")
+    assert all(ends[k] == ends["alone"] for k in range(4)), ends
 
 
 def test_a_step_that_fails():
@@ -338,22 +459,48 @@ def test_what_an_observer_raises_stops_the_run():
     assert orbit.status == 1 and orbit.success and len(orbit.t) == 16
 
 
-def test_the_interrupt_key():
+def interrupted(name, function, *arguments, **named):
+    """The exception that the interrupt key makes of a call, once it is in that function
+    of the library."""
+    begun, real = threading.Event(), getattr(nevh._lib, name)
+
     def press():
+        begun.wait(60)
         time.sleep(0.3)
         os.kill(os.getpid(), signal.SIGINT)
+
+    def noted(*arguments):
+        begun.set()
+        return real(*arguments)
+    setattr(nevh._lib, name, noted)
     before = signal.getsignal(signal.SIGINT)
     signal.signal(signal.SIGINT, signal.default_int_handler)
     thread = threading.Thread(target=press)
     thread.start()
     try:
-        error = raised(KeyboardInterrupt, "", nevh.solve, PENDULUM, (0, 1e8), [2, 0],
-                       "verlet", dt=0.1, t_eval=[0, 1e8])
+        return raised(KeyboardInterrupt, "", function, *arguments, **named)
     finally:
         thread.join()
         signal.signal(signal.SIGINT, before)
+        setattr(nevh._lib, name, real)
+
+
+def test_the_interrupt_key():
+    error = interrupted("run_at", nevh.solve, PENDULUM, (0, 1e8), [2, 0],
+                        "verlet", dt=0.1, t_eval=[0, 1e8])
     assert 0 < error.result.t_reached < 1e8
     assert all(map(math.isfinite, error.result.y_reached))
+
+
+def test_the_interrupt_key_ends_a_sweep():
+    needs("NumPy")
+    begin = time.monotonic()
+    error = interrupted("sweep_run", nevh.sweep, PENDULUM,
+                        {"phi": np.linspace(0, 2, 1 << 16)}, "state", "verlet",
+                        dt=0.001, t_end=300, threads=1)
+    status = error.result["status"]
+    assert (status[-100:] == 0).all() and set(status) <= {0, 1}
+    assert time.monotonic() - begin < 60
 
 
 # The paper's class.
@@ -435,6 +582,15 @@ def test_sweep():
     made = nevh.sweep(scene, *arguments[1:], **named)
     assert made.tobytes() == array.tobytes()
     raised(nevh.Refused, "nothing is varied", nevh.sweep, scene, t_end=1)
+    for text, wrong in (("t_end = 0", dict(t_end=0)), ("dt = 0", dict(dt=0)),
+                        ("threads = -1", dict(threads=-1)), ("no tolerance", dict(
+                            rtol=1e-6)), ("there is no value", dict(vary={"phi": []})),
+                        ("(2, 2)", dict(vary={"phi": np.ones((2, 2))}))):
+        raised(nevh.Refused, text, nevh.sweep, scene, **dict(
+            dict(vary={"phi": values}, integrator="verlet", t_end=1), **wrong))
+    raised(nevh.Refused, "rtol = 0", nevh.sweep, scene, {"phi": values}, None, "DOP853",
+           t_end=1, rtol=0)
+    raised(nevh.Refused, "needs t_end", nevh.sweep, PENDULUM, {"phi": values})
     threads = nevh.sweep(*arguments, threads=4, **named)
     assert threads.tobytes() == array.tobytes()
 
