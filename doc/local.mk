@@ -61,20 +61,26 @@ EXTRA_DIST += doc/nevh.h2m doc/nevh.3.head doc/reference.awk doc/figures.sh doc/
 	doc/hard-all.txt
 
 # Worksheets: every number is measured again.
-EXTRA_DIST += doc/sheets/sheets.texi doc/sheets/numbers.texi doc/sheets/numbers.list \
+EXTRA_DIST += doc/sheets/sheets.texi doc/sheets/answers.texi doc/sheets/numbers.texi \
+	doc/sheets/numbers.list \
 	doc/sheets/quartic.nevh doc/sheets/sheets.sh
-CLEANFILES += doc/nevh-sheets.html doc/nevh-sheets.pdf
+sheets_html = doc/nevh-sheets.html doc/nevh-answers.html
+CLEANFILES += $(sheets_html) doc/nevh-sheets.pdf doc/nevh-answers.pdf
 run_sheets = $(SHELL) $(srcdir)/doc/sheets/sheets.sh $(srcdir) \
 	tools/nevh$(EXEEXT) examples
-sheets: all doc/nevh-sheets.html
+sheets: all $(sheets_html)
 	$(run_sheets) check
 	if command -v texi2pdf >/dev/null && command -v tex >/dev/null; then \
-	  texi2pdf --quiet --clean -I $(srcdir)/doc/sheets -I $(srcdir)/build-aux \
-	    -o doc/nevh-sheets.pdf $(srcdir)/doc/sheets/sheets.texi; \
-	else echo "There is no TeX: the sheets are doc/nevh-sheets.html alone."; fi
-doc/nevh-sheets.html: doc/sheets/sheets.texi doc/sheets/numbers.texi
-	$(AM_V_GEN)$(MKDIR_P) doc && $(MAKEINFO) --html --no-split \
-	  -I $(srcdir)/doc/sheets -o $@ $(srcdir)/doc/sheets/sheets.texi
+	  for name in sheets answers; do \
+	    texi2pdf --quiet --clean -I $(srcdir)/doc/sheets -I $(srcdir)/build-aux \
+	      -o doc/nevh-$$name.pdf $(srcdir)/doc/sheets/$$name.texi || exit 1; \
+	  done; \
+	else echo "There is no TeX: the sheets are $(sheets_html) alone."; fi
+sheet_to_html = $(MKDIR_P) doc && $(MAKEINFO) --html --no-split -I $(srcdir)/doc/sheets -o $@
+doc/nevh-sheets.html: doc/sheets/sheets.texi doc/sheets/quartic.nevh
+	$(AM_V_GEN)$(sheet_to_html) $(srcdir)/doc/sheets/sheets.texi
+doc/nevh-answers.html: doc/sheets/answers.texi doc/sheets/numbers.texi
+	$(AM_V_GEN)$(sheet_to_html) $(srcdir)/doc/sheets/answers.texi
 sheets-numbers: all
 	$(run_sheets) write
 .PHONY: sheets sheets-numbers

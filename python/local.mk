@@ -32,7 +32,8 @@ portable: python/nevh_files
 	cp $(srcdir)/python/nevh.py $(srcdir)/python/who-keeps-the-energy.ipynb \
 	  $(portable_name)/share/nevh/python/
 	cp $(srcdir)/README.md $(srcdir)/COPYING $(portable_name)/share/doc/nevh/
-	-$(MAKE) html && cp doc/nevh.html $(portable_name)/share/doc/nevh/
+	-$(MAKE) html $(sheets_html) && \
+	  cp doc/nevh.html $(sheets_html) $(portable_name)/share/doc/nevh/
 	tar -czf $(portable_name).tar.gz $(portable_name)
 	rm -rf $(portable_name)
 .PHONY: wheel portable

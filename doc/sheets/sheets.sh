@@ -57,10 +57,15 @@ cat numbers
 grep -q : numbers && status=1
 
 # Each number that is shown is one of the list.
-sed -n 's/.*@value{\([a-z-]*\)}.*/\1/p; ' "$sheets/sheets.texi" | sort -u |
+cat "$sheets/sheets.texi" "$sheets/answers.texi" | tr '@' '\n' |
+    sed -n 's/^value{\([a-z-]*\)}.*/\1/p' | sort -u |
     while read -r key; do
         cut -d'|' -f1 list | grep -qx -e "$key" || echo "$key is shown, and not measured"
     done >unknown
+test -s unknown && { cat unknown; status=1; }
+cut -d'|' -f1 list | while read -r key; do
+    grep -q "@value{$key}" "$sheets/answers.texi" || echo "$key is measured, and not shown"
+done >unknown
 test -s unknown && { cat unknown; status=1; }
 
 # All that stands in examples and begins with nevh is a command that runs.

@@ -48,19 +48,57 @@ case " $flags" in
     fails "users of the shared library need not link GSL" ;;
 esac
 
+# What README.md and the manual show of C: programs, and two ways to write a term.
 awk '/^```c *$/ { inside = 1; next } /^```/ && inside { exit } inside' \
     "$srcdir/README.md" >"$dest/readme.c" || fails "there is no README.md"
-test -s "$dest/readme.c" || fails "README.md has no block of C"
-# Unquoted: compilers with options, and lists of flags.
-# shellcheck disable=SC2086
-${CC:-cc} -std=c11 -o "$dest/readme" "$dest/readme.c" $SANITIZE_FLAGS $flags \
-    -lm || fails "the program of README.md does not compile"
-"$dest/readme" >"$dest/out" </dev/null ||
-    { cat "$dest/out"; fails "the program of README.md fails"; }
-test -s "$dest/out" || fails "the program of README.md prints nothing"
-if grep -Eiw '[-+]?(nan|inf|infinity)' "$dest/out"; then
-    fails "the program of README.md prints a number that is not finite"
-fi
+# manual PATTERN: the first example with it in the manual, as it is printed.
+manual() {
+    awk -v pattern="$1" '
+        /^@example/ { inside = 1; text = ""; next }
+        inside && /^@end example/ {
+            inside = 0
+            if (text ~ pattern) { printf "%s", text; exit }
+            next
+        }
+        inside { gsub(/@@/, "@"); gsub(/@\{/, "{"); gsub(/@\}/, "}"); text = text $0 "\n" }
+        ' "$srcdir/doc/nevh.texi"
+}
+manual 'int main' >"$dest/manual.c"
+{
+    echo '#include <nevh/body.h>'
+    echo '#include <nevh/nevh.h>'
+    manual 'NEVH_BODY\(pendulum' | sed '/nevh_term/d'
+    manual 'NEVH_GRADIENT\(pendulum'
+    cat <<'END'
+int main(void) {
+    nevh_system *s = nevh_system_new(1);
+    int status = nevh_system_add(s, &term);
+    nevh_options exact = {.gradient = nevh_exact};
+    nevh_stepper *step = nevh_stepper_new(s, nevh_verlet, &exact);
+    double q = 2, p = 0;
+    status += nevh_run(step, 0, 0.05, 100, &q, &p, NULL, 0);
+    puts(status || !(q * q < 4.1) ? "fails: inf" : nevh_stepper_message(step));
+    printf("%g %g\n", q, p);
+    nevh_stepper_free(step);
+    nevh_system_free(s);
+    return status != 0;
+}
+END
+} | sed '1i #include <stdio.h>' >"$dest/terms.c"
+grep -q 'NEVH_GRADIENTS(pendulum)' "$dest/terms.c" || fails "the manual has no terms"
+for program in readme manual terms; do
+    test -s "$dest/$program.c" || fails "there is no C in $program"
+    # Unquoted: compilers with options, and lists of flags.
+    # shellcheck disable=SC2086
+    ${CC:-cc} -std=c11 -o "$dest/$program" "$dest/$program.c" $SANITIZE_FLAGS $flags \
+        -lm || fails "the C of $program does not compile"
+    "$dest/$program" >"$dest/out" </dev/null ||
+        { cat "$dest/out"; fails "the program of $program fails"; }
+    test -s "$dest/out" || fails "the program of $program prints nothing"
+    if grep -Eiw '[-+]?(nan|inf|infinity)' "$dest/out"; then
+        fails "the program of $program prints a number that is not finite"
+    fi
+done
 
 # builds_body COMPILER FLAGS...: and runs it.
 builds_body() {

@@ -11,9 +11,15 @@ sh "$srcdir/doc/sheets/sheets.sh" "$srcdir" ./tools/nevh examples check || exit 
 # Where TeX is, nothing is wider than the page.
 if command -v texi2pdf >/dev/null 2>&1 && command -v pdftex >/dev/null 2>&1; then
     top=$(cd "$srcdir" && pwd)
-    (cd $work && texi2pdf --batch --quiet -I "$top/doc/sheets" -I "$top/build-aux" \
-        "$top/doc/sheets/sheets.texi") >$work/out 2>&1 || { cat $work/out; exit 1; }
-    grep -A 1 Overfull $work/sheets.log && exit 1
+    for name in sheets answers; do
+        (cd $work && texi2pdf --batch --quiet -I "$top/doc/sheets" \
+            -I "$top/build-aux" "$top/doc/sheets/$name.texi") >$work/out 2>&1 ||
+            { cat $work/out; exit 1; }
+        grep -A 1 Overfull $work/$name.log && exit 1
+    done
+    # A title, and a page a sheet: each can be handed out.
+    grep -q 'Output written on sheets.pdf (9 pages' $work/sheets.log ||
+        { grep 'Output written' $work/sheets.log; exit 1; }
 fi
 
 # A number that is wrong is found.
@@ -21,9 +27,11 @@ cp "$srcdir"/doc/sheets/* $work/doc/sheets/
 grep '^rk-twenty|' "$srcdir/doc/sheets/numbers.list" >$work/doc/sheets/numbers.list
 sed 's/^\(@set rk-twenty\) .*/\1 1.6e-04/' "$srcdir/doc/sheets/numbers.texi" \
     >$work/doc/sheets/numbers.texi
-printf '@example\nnevh list scenes\n@end example\n@value{rk-twenty}\n' \
-    >$work/doc/sheets/sheets.texi
+printf '@example\nnevh list scenes\n@end example\n' >$work/doc/sheets/sheets.texi
+printf '@value{rk-twenty} and @value{first-p}; @value{rk-twenty}\n' \
+    >$work/doc/sheets/answers.texi
 ln -s "$(cd "$srcdir" && pwd)/scenes" $work/scenes
 sh "$srcdir/doc/sheets/sheets.sh" $work ./tools/nevh examples check >$work/out &&
     { echo "a wrong number was not found"; exit 1; }
 grep -q "rk-twenty: the sheets say '1.6e-04'" $work/out || exit 1
+grep -q "first-p is shown, and not measured" $work/out || exit 1

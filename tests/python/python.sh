@@ -9,6 +9,7 @@ status=0
 "$python" -c 'import numpy' 2>/dev/null || echo "there is no NumPy"
 "$python" "$check" || status=1
 NEVH_TEST_WITHOUT_NUMPY=1 "$python" "$check" || status=1
+"$python" "$srcdir/tests/python/programs.py" "$srcdir" || status=1
 
 # A library of another kind is refused, as is one that is not there.
 NEVH_LIBRARY=$PWD/no-such-library "$python" -c 'import nevh' 2>&1 |

@@ -1,0 +1,44 @@
+"""nevh tests: the Python of README.md and of the manual runs as it is printed.  Each
+block after the other, in one room of names, as a reader would type them.
+
+    programs.py FOLDER, which has README.md and doc/nevh.texi
+
+SPDX-License-Identifier: GPL-3.0-or-later
+"""
+
+import os
+import re
+import sys
+
+sys.dont_write_bytecode = True
+names, arrays = {}, True
+try:
+    from math import pi
+    import numpy
+    from scipy.integrate import solve_ivp
+    names = {"numpy": numpy, "solve_ivp": solve_ivp, "PI": pi}
+except ImportError:
+    arrays = False
+    print("there is no NumPy, or no SciPy: blocks that name them do not run")
+
+
+def blocks_of(path):
+    with open(path, encoding="utf-8") as file:
+        text = file.read()
+    if path.endswith(".md"):
+        return re.findall(r"^```python\n(.*?)^```", text, re.M | re.S)
+    chapter = re.search(r"^@chapter Python$.*?^@chapter", text, re.M | re.S).group()
+    blocks = re.findall(r"^@example\n(.*?)^@end example", chapter, re.M | re.S)
+    return [re.sub(r"@([@{}])", r"\1", block) for block in blocks
+            if re.search(r"\bnevh\.\w+\(|^import nevh", block) and "@dots" not in block]
+
+
+ran = 0
+for path in (os.path.join(sys.argv[1], name) for name in ("README.md", "doc/nevh.texi")):
+    for block in blocks_of(path):
+        if not arrays and re.search(r"\b(numpy|solve_ivp)\b", block):
+            continue
+        exec(compile(block, path, "exec"), names)
+        ran += 1
+print("%d blocks of Python ran" % ran)
+assert ran >= 3, "there are fewer than there were"
