@@ -1,14 +1,6 @@
 # For tests that interrupt the command at places they ask for; to be sourced after
 # nevh_support.sh.  tests/support/interrupt.c comes between it and a shared libnevh.
 
-# The command itself, and not libtool's wrapper: that would be interrupted, too.
-if test -z "$NEVH" && LD_LIBRARY_PATH=./.libs ./tools/.libs/nevh --version \
-    >/dev/null 2>&1; then
-    LD_LIBRARY_PATH=./.libs${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
-    export LD_LIBRARY_PATH
-    nevh=./tools/.libs/nevh
-fi
-
 TERM=15
 KILL=9
 
