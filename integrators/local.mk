@@ -20,6 +20,7 @@ libnevh_core_la_SOURCES += \
 	integrators/suzuki_umeno.c \
 	integrators/sofroniou_spaletta.c \
 	integrators/kernels/adaptive_verlet_private.h \
+	integrators/kernels/adaptive_verlet_step.h \
 	integrators/kernels/adaptive_verlet_kernel.c \
 	integrators/adaptive_verlet.c \
 	integrators/kernels/stage_sums_private.h \

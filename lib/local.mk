@@ -154,6 +154,7 @@ libnevh_core_la_SOURCES = \
 	lib/native/noise_text.c \
 	lib/native/energy_text.c \
 	lib/native/tao_text.c \
+	lib/native/adaptive_verlet_text.c \
 	lib/native/taylor_text.c \
 	lib/native/program_text.c \
 	lib/native/cache.c \
@@ -270,6 +271,7 @@ step_texts = integrators/kernels/splitting_step.h \
 	integrators/kernels/runge_kutta_step.h \
 	integrators/kernels/nystrom_step.h \
 	integrators/kernels/tao_step.h \
+	integrators/kernels/adaptive_verlet_step.h \
 	lib/work/pace.h \
 	integrators/kernels/adaptive_step.h
 nodist_libnevh_core_la_SOURCES = lib/native/kernel_texts.c

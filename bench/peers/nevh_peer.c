@@ -103,9 +103,9 @@ static bool run_stepper(void *data, double y[], double *seconds) {
     {                                                                          \
         METHOD(how, verlet, false, 2),                                         \
             METHOD(how, mclachlan_atela4, false, 4),                           \
-            METHOD(how, blanes_moan4, false, 4), METHOD(how, rkn6b, false, 4), \
-            METHOD(how, rkn11b, false, 6), METHOD(how, rkn14a, false, 6),      \
-            METHOD(how, kahan_li8, false, 8),                                  \
+            METHOD(how, pefrl, false, 4), METHOD(how, blanes_moan4, false, 4), \
+            METHOD(how, rkn6b, false, 4), METHOD(how, rkn11b, false, 6),       \
+            METHOD(how, rkn14a, false, 6), METHOD(how, kahan_li8, false, 8),   \
             METHOD(how, sofroniou_spaletta10, false, 10),                      \
             METHOD(how, gauss8, false, 8), METHOD(how, gauss12, false, 12),    \
             METHOD(how, gauss16, false, 16), METHOD(how, gauss20, false, 20),  \

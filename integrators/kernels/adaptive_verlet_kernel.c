@@ -20,6 +20,7 @@
    by its value at the start.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "adaptive_verlet_private.h"
+#include "adaptive_verlet_step.h"
 #include "gradient/field_private.h"
 #include "system/system_private.h"
 #include "work/transform_private.h"
@@ -27,29 +28,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double power = 0.75;
-static const double most_stretch = 10; /* of |f|, from its size at the start */
-static const double spread = 1e-2;     /* of differences along the orbit */
+struct nevh__leap_owner {
+    nevh_work *work;
+};
 
 typedef struct {
-    nevh_field *s;         /* of the user's s; NULL: |f| is taken */
-    double *q, *p;         /* the state under way */
-    double *force, *speed; /* dV/dq and dT/dp there */
-    double *dq, *dp;       /* increments of the step */
-    double *pair;          /* two states beside each other: q, p, */
-    double *pair_slopes;   /* dV/dq, dT/dp */
+    nevh_field *s; /* of the user's s; NULL: |f| is taken */
     double *ds_dq, *ds_dp;
     double unit_q, unit_p; /* of coordinates and of momenta, for |f| */
+    struct nevh__leap_owner owner;
 } plan_data;
 
-/* What a step tells the next one, after the compensations and dV/dq. */
-typedef struct {
-    double begun;
-    double unit;    /* s at the start of the orbit, or |f| */
-    double density; /* rho */
-    double change;  /* G */
-} control;
-enum { CONTROL_ROWS = sizeof(control) / sizeof(double) };
+/* What a step tells the next one stands after the compensations and dV/dq. */
+enum { CONTROL_ROWS = sizeof(nevh__density) / sizeof(double) };
 
 static void clear(nevh_work *w) {
     plan_data *d = w->plan;
@@ -60,15 +51,10 @@ static void clear(nevh_work *w) {
     w->plan = NULL;
 }
 
-/* n doubles each, in the order of plan_data. */
-static void divide(const nevh_work *w, plan_data *d) {
-    double **const parts[] = {&d->q,  &d->p,  &d->force, &d->speed,
-                              &d->dq, &d->dp, &d->ds_dq, &d->ds_dp};
-    double *at = w->scratch;
-    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++, at += w->n)
-        *parts[i] = at;
-    d->pair = at;
-    d->pair_slopes = at + 4 * w->n;
+double nevh__adaptive_verlet_units(const nevh_work *w, double *unit_p) {
+    const plan_data *d = w->plan;
+    *unit_p = d->unit_p;
+    return d->unit_q;
 }
 
 /* Not w->scale, which is the size of the orbit where that is less. */
@@ -98,137 +84,120 @@ static int plan(nevh_work *w) {
                                  : plan_units(w);
 }
 
-/* dV/dq, dT/dp or both at the state under way. */
-static int take(nevh_work *w, double t, double force[], double speed[]) {
-    const plan_data *d = w->plan;
-    return nevh_work_gradient(w, 1, &t, d->q, d->p, force, speed);
+NEVH__INLINE int nevh__leap_slopes(const nevh__leap *x, double t, double *force,
+                                   double *speed) {
+    return nevh_work_gradient(x->owner->work, 1, &t, x->q, x->p, force, speed);
 }
 
-/* |f|, in those units. */
-static double field_size(const nevh_work *w) {
-    const plan_data *d = w->plan;
-    double size = 0;
-    for (size_t k = 0; k < w->n; k++) {
-        size = hypot(size, d->speed[k] / d->unit_q);
-        size = hypot(size, d->force[k] / d->unit_p);
-    }
-    return size;
+NEVH__INLINE int nevh__leap_pair(const nevh__leap *x, double t) {
+    const double times[2] = {t, t};
+    return nevh_work_gradient(x->owner->work, 2, times, x->pair,
+                              x->pair + 2 * x->n, x->pair_slopes,
+                              x->pair_slopes + 2 * x->n);
 }
 
-/* |f| squared over itself guarded from 0. */
-static double guard(double size, double unit) {
-    double least = unit / most_stretch / size;
-    return 1 / (1 + least * least);
+NEVH__INLINE int nevh__leap_account(const nevh__leap *x, bool of_q, double t,
+                                    double length) {
+    nevh_work *w = x->owner->work;
+    return w->accounts ? nevh_work_account(w, of_q ? NEVH_OF_Q : NEVH_OF_P,
+                                           length, &t, x->q, x->p)
+                       : NEVH_OK;
 }
 
-/* The part of another field along the unit vector of f. */
-static double along_field(const nevh_work *w, double size, const double force[],
-                          const double speed[]) {
-    const plan_data *d = w->plan;
-    double sum = 0, q = d->unit_q, p = d->unit_p;
-    for (size_t k = 0; k < w->n; k++)
-        sum += d->speed[k] / q / size * (speed[2 * k] / q) +
-               d->force[k] / p / size * (force[2 * k] / p);
-    return sum;
-}
-
-/* -d(ln s)/dt for s = |f|^-power, by a difference along the orbit. */
-static int change_of_field(nevh_work *w, double t, double unit, double *g) {
+/* n doubles each, the pair's 4n. */
+static nevh__leap divide(nevh_work *w) {
     plan_data *d = w->plan;
+    double *at = w->scratch;
     size_t n = w->n;
-    double size = field_size(w), times[2] = {t, t}, time = spread / size;
-    double *q = d->pair, *p = q + 2 * n, *force = d->pair_slopes;
-    double *speed = force + 2 * n;
-    *g = 0;
-    if (!(size > 0))
-        return NEVH_OK;
-    for (size_t k = 0; k < n; k++) {
-        q[2 * k] = d->q[k] + time * d->speed[k];
-        q[2 * k + 1] = d->q[k] - time * d->speed[k];
-        p[2 * k] = d->p[k] - time * d->force[k];
-        p[2 * k + 1] = d->p[k] + time * d->force[k];
-    }
-    int status = nevh_work_gradient(w, 2, times, q, p, force, speed);
-    if (status)
-        return status;
-    double ahead = along_field(w, size, force, speed);
-    double behind = along_field(w, size, force + 1, speed + 1);
-    *g = power * guard(size, unit) * ((ahead - behind) / (2 * spread));
-    return NEVH_OK;
+    d->owner.work = w;
+    d->ds_dq = at + 6 * n;
+    d->ds_dp = at + 7 * n;
+    return (nevh__leap){.n = n,
+                        .unit_q = d->unit_q,
+                        .unit_p = d->unit_p,
+                        .compensation = w->memory,
+                        .q = at,
+                        .p = at + n,
+                        .force = at + 2 * n,
+                        .speed = at + 3 * n,
+                        .dq = at + 4 * n,
+                        .dp = at + 5 * n,
+                        .pair = at + 8 * n,
+                        .pair_slopes = at + 12 * n,
+                        .owner = &d->owner};
 }
 
 /* The user's s. */
-static int value_of_s(nevh_work *w, double t, double *s) {
+static int value_of_s(nevh_work *w, const nevh__leap *x, double t, double *s) {
     const plan_data *d = w->plan;
-    if (nevh_field_value(d->s, 1, &t, d->q, d->p, s))
+    if (nevh_field_value(d->s, 1, &t, x->q, x->p, s))
         return nevh__transform_fail(w, d->s);
     if (*s > 0)
         return NEVH_OK;
     return nevh_work_fail(w, NEVH_EDOM,
                           "the step function s is %g, not positive, at t = "
                           "%.9g, q[0] = %.9g, p[0] = %.9g",
-                          *s, t, d->q[0], d->p[0]);
+                          *s, t, x->q[0], x->p[0]);
 }
 
 /* -(ds/dt)/s for it. */
-static int change_of_s(nevh_work *w, double t, double *g) {
+static int change_of_s(nevh_work *w, const nevh__leap *x, double t, double *g) {
     const plan_data *d = w->plan;
     double s, sum = 0;
-    int status = value_of_s(w, t, &s);
+    int status = value_of_s(w, x, t, &s);
     if (status)
         return status;
-    if (nevh_field_gradient(d->s, 1, &t, d->q, d->p, d->ds_dq, d->ds_dp))
+    if (nevh_field_gradient(d->s, 1, &t, x->q, x->p, d->ds_dq, d->ds_dp))
         return nevh__transform_fail(w, d->s);
     for (size_t k = 0; k < w->n; k++)
-        sum += d->ds_dq[k] * d->speed[k] - d->ds_dp[k] * d->force[k];
+        sum += d->ds_dq[k] * x->speed[k] - d->ds_dp[k] * x->force[k];
     *g = -sum / s;
     return NEVH_OK;
 }
 
-static int find_change(nevh_work *w, double t, control *c) {
+static int find_change(nevh_work *w, const nevh__leap *x, double t,
+                       nevh__density *c) {
     const plan_data *d = w->plan;
-    return d->s ? change_of_s(w, t, &c->change)
-                : change_of_field(w, t, c->unit, &c->change);
+    return d->s ? change_of_s(w, x, t, &c->change)
+                : nevh__leap_change(x, t, c->unit, &c->change);
 }
 
 /* Where an orbit begins; dV/dq and dT/dp are known. */
-static int begin(nevh_work *w, double t, control *c) {
+static int begin(nevh_work *w, const nevh__leap *x, double t,
+                 nevh__density *c) {
     const plan_data *d = w->plan;
     const nevh__step_control *table = w->integrator->table;
     int status = NEVH_OK;
     c->begun = c->density = 1;
-    c->unit = field_size(w);
+    c->unit = nevh__leap_size(x);
     if (d->s)
-        status = value_of_s(w, t, &c->unit);
-    return status || !table->reversible ? status : find_change(w, t, c);
+        status = value_of_s(w, x, t, &c->unit);
+    return status || !table->reversible ? status : find_change(w, x, t, c);
 }
 
 /* s over its value at the start, at the state under way. */
-static int stretch(nevh_work *w, double t, const control *c, double *s) {
+static int stretch(nevh_work *w, const nevh__leap *x, double t,
+                   const nevh__density *c, double *s) {
     const plan_data *d = w->plan;
-    if (d->s) {
-        int status = value_of_s(w, t, s);
-        *s /= c->unit;
-        return status;
+    if (!d->s) {
+        *s = nevh__leap_stretch(x, c->unit);
+        return NEVH_OK;
     }
-    double size = field_size(w), least = c->unit / most_stretch;
-    double ratio = hypot(c->unit, least) / hypot(size, least);
-    *s = ratio > 0 ? pow(ratio, power) : 1;
-    return NEVH_OK;
+    int status = value_of_s(w, x, t, s);
+    *s /= c->unit;
+    return status;
 }
 
 /* The length of this step; the density moves on by half of h. */
-static int choose_step(nevh_work *w, double t, double h, control *c,
-                       double *step) {
+static int choose_step(nevh_work *w, const nevh__leap *x, double t, double h,
+                       nevh__density *c, double *step) {
     const nevh__step_control *table = w->integrator->table;
     double s = 1;
     int status = NEVH_OK;
-    if (table->reversible) {
-        c->density += h / 2 * c->change;
-        s = 1 / c->density;
-    } else {
-        status = stretch(w, t, c, &s);
-    }
+    if (table->reversible)
+        s = nevh__leap_rate(c, h);
+    else
+        status = stretch(w, x, t, c, &s);
     *step = h * s;
     if (status || (s > NEVH__LEAST_RATE && isfinite(*step)))
         return status;
@@ -239,85 +208,38 @@ static int choose_step(nevh_work *w, double t, double h, control *c,
                           t, s, h);
 }
 
-/* Of a kick or drift at the state under way. */
-static int account(nevh_work *w, unsigned part, double t, double length) {
-    const plan_data *d = w->plan;
-    return w->accounts ? nevh_work_account(w, part, length, &t, d->q, d->p)
-                       : NEVH_OK;
-}
-
-static void move(size_t n, const double start[], const double compensation[],
-                 double step, const double slope[], double change[],
-                 double point[]) {
-    for (size_t k = 0; k < n; k++) {
-        change[k] += step * slope[k];
-        point[k] = start[k] + (change[k] + compensation[k]);
-    }
-}
-
-/* Kick, drift, kick; leaves dV/dq and dT/dp of the new state. */
-static int leap(nevh_work *w, double t, double step, const double q[],
-                const double p[]) {
-    plan_data *d = w->plan;
-    size_t n = w->n;
-    const double *compensation = w->memory;
-    memset(d->dq, 0, n * sizeof *d->dq);
-    memset(d->dp, 0, n * sizeof *d->dp);
-    int status = account(w, NEVH_OF_Q, t, step / 2);
-    move(n, p, compensation + n, -step / 2, d->force, d->dp, d->p);
-    if (!status)
-        status = take(w, t + step / 2, NULL, d->speed);
-    if (!status)
-        status = account(w, NEVH_OF_P, t + step / 2, step);
-    if (status)
-        return status;
-    move(n, q, compensation, step, d->speed, d->dq, d->q);
-    status = take(w, t + step, d->force, NULL);
-    if (!status)
-        status = account(w, NEVH_OF_Q, t + step, step / 2);
-    if (status)
-        return status;
-    move(n, p, compensation + n, -step / 2, d->force, d->dp, d->p);
-    return take(w, t + step, NULL, d->speed);
-}
-
 /* The state at the start and its field. */
-static int open_step(nevh_work *w, double t, const double q[], const double p[],
-                     control *c) {
-    plan_data *d = w->plan;
+static int open_step(nevh_work *w, const nevh__leap *x, double t,
+                     const double q[], const double p[], nevh__density *c) {
     size_t n = w->n;
-    divide(w, d);
     memcpy(c, w->memory + 3 * n, sizeof *c);
-    for (size_t k = 0; k < n; k++) {
-        d->q[k] = q[k] + w->memory[k];
-        d->p[k] = p[k] + w->memory[n + k];
-        d->force[k] = w->memory[2 * n + k];
-    }
-    int status = take(w, t, c->begun == 0 ? d->force : NULL, d->speed);
-    return status || c->begun != 0 ? status : begin(w, t, c);
+    nevh__leap_place(x, q, p, w->memory + 2 * n);
+    int status =
+        nevh__leap_slopes(x, t, c->begun == 0 ? x->force : NULL, x->speed);
+    return status || c->begun != 0 ? status : begin(w, x, t, c);
 }
 
 static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     const nevh__step_control *table = w->integrator->table;
-    plan_data *d = w->plan;
-    control c;
+    nevh__leap x = divide(w);
+    nevh__density c;
     size_t n = w->n;
     double length = h;
-    int status = open_step(w, t, q, p, &c);
+    int status = open_step(w, &x, t, q, p, &c);
     if (!status)
-        status = choose_step(w, t, h, &c, &length);
+        status = choose_step(w, &x, t, h, &c, &length);
     if (!status)
-        status = leap(w, t, length, q, p);
+        status = nevh__leap_take(&x, t, length, q, p);
     if (!status && table->reversible) {
-        status = find_change(w, t + length, &c);
+        status = find_change(w, &x, t + length, &c);
         c.density += h / 2 * c.change;
     }
     if (!status)
-        status = nevh_work_commit(w, n, q, d->dq, w->memory, p, d->dp,
-                                  w->memory + n);
+        status =
+            nevh_work_commit(w, n, q, x.dq, w->memory, p, x.dp, w->memory + n);
     if (status)
         return status;
-    memcpy(w->memory + 2 * n, d->force, n * sizeof *d->force);
+    memcpy(w->memory + 2 * n, x.force, n * sizeof *x.force);
     memcpy(w->memory + 3 * n, &c, sizeof c);
     w->elapsed = length;
     return NEVH_OK;

@@ -1,5 +1,6 @@
 /* nevh: native steps are planned and taken.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "kernels/adaptive_verlet_private.h"
 #include "kernels/runge_kutta_private.h"
 #include "kernels/splitting_private.h"
 #include "kernels/tao_private.h"
@@ -75,6 +76,17 @@ static bool fill_tao(nevh__native *x, const nevh_work *w) {
     return x->weights;
 }
 
+/* Where an orbit goes on; the length of a step follows from slopes ahead and
+   behind, or from that at its beginning. */
+static bool fill_adaptive_verlet(nevh__native *x, const nevh_work *w) {
+    const nevh__step_control *table = w->integrator->table;
+    x->own_time = true;
+    x->kicks = table->reversible ? 3 : 1;
+    x->drifts = table->reversible ? 5 : 3;
+    x->times = nevh__array(1, sizeof *x->times);
+    return x->times;
+}
+
 /* Of one stage. */
 static bool fill_stages(nevh__native *x, const nevh_work *w) {
     x->stages = (size_t)w->integrator->stages;
@@ -97,6 +109,8 @@ static const struct {
     {&nevh_lobatto_kernel, nevh__write_stages, fill_stages, false, true},
     {&nevh_implicit_euler_kernel, nevh__write_stages, fill_stages, false, true},
     {&nevh__tao_kernel, nevh__write_tao, fill_tao, false, false},
+    {&nevh__adaptive_verlet_kernel, nevh__write_adaptive_verlet,
+     fill_adaptive_verlet, false, false},
     {&nevh__taylor_kernel, nevh__write_series, NULL, false, false}};
 /* The steps' copies of the state stand on the stack, but for those of loops. */
 enum { MOST_NUMBERS = 8192 };
@@ -141,12 +155,14 @@ static bool has_loops(const nevh_work *w) {
 }
 
 /* What is in the way; NULL: nothing that is known yet. */
-static const char *obstacle(const nevh_work *w) {
+static const char *obstacle(const nevh_work *w, bool program) {
     return of_series(w) ? NULL
            : family_of(w) == FAMILIES
-               ? "only splitting, Tao, Runge-Kutta, Nystroem, Gauss and "
-                 "Lobatto steps can be"
-           : w->accounts ? "the balance of the energy is kept"
+               ? program ? NEVH__ONLY_PROGRAMS
+                         : "only splitting, Tao, Runge-Kutta, Nystroem, Gauss, "
+                           "Lobatto and adaptive Verlet steps can be"
+           : w->accounts           ? "the balance of the energy is kept"
+           : w->options->transform ? "the step follows a formula of the user"
            : w->field->lanes && !nevh__native_by_lane(w)
                ? "orbits side by side have constants of their own"
            : w->width % NEVH__LANES && w->width > 1
@@ -159,7 +175,7 @@ static const char *obstacle(const nevh_work *w) {
 }
 
 bool nevh__native_write(nevh__writer *text, nevh_work *w) {
-    text->refusal = obstacle(w);
+    text->refusal = obstacle(w, text->readable);
     text->width = w->width;
     text->by_lane = w->field->lanes > 0;
     text->loops = !text->refusal && has_loops(w);
@@ -290,9 +306,9 @@ void nevh__native_plan(nevh_work *w, char why[NEVH__WHY_NATIVE]) {
     why[0] = '\0';
     if (w->native || o->native == NEVH_NATIVE_NEVER)
         return;
-    if (obstacle(w)) {
+    if (obstacle(w, false)) {
         if (always)
-            snprintf(why, NEVH__WHY_NATIVE, "%s", obstacle(w));
+            snprintf(why, NEVH__WHY_NATIVE, "%s", obstacle(w, false));
         return;
     }
     if (!always && seconds_foreseen(w) < loading_pays)
@@ -378,6 +394,8 @@ size_t nevh__native_run(nevh_work *w, double t0, double h, size_t from,
             done = take(w, t0, h, from, done, q, p, counted);
         if (done)
             count(w, x, done, kept > 0);
+        if (done && x->own_time)
+            w->elapsed = x->times[0];
     }
     return done;
 }

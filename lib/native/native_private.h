@@ -27,6 +27,9 @@ typedef size_t (*nevh__native_steps)(const double numbers[], double weights[],
                                      double room[]);
 
 enum { NEVH__WHY_NATIVE = 400 };
+/* Why there is no program: "no program of such steps: ...". */
+#define NEVH__ONLY_PROGRAMS                                                    \
+    "only splitting, Tao, Runge-Kutta, Nystroem, Gauss and Lobatto steps can be"
 
 typedef struct nevh__native {
     void *library;
@@ -43,6 +46,7 @@ typedef struct nevh__native {
     size_t flags_at;     /* halves of a state before what tells that */
     size_t stages;       /* of an implicit step; 0: it is explicit */
     bool adapts;         /* kicks and drifts are those of a trial */
+    bool own_time;       /* a step's length is its own: times[0] */
     size_t first_drifts; /* before the first of a substep's trials */
     uint64_t *kick_values, *drift_values; /* n_terms each, of one of them */
 } nevh__native;
@@ -57,6 +61,8 @@ bool nevh__write_runge_kutta(nevh__writer *, nevh_work *);
 bool nevh__write_nystrom(nevh__writer *, nevh_work *);
 bool nevh__write_stages(nevh__writer *, nevh_work *);
 bool nevh__write_tao(nevh__writer *, nevh_work *);
+/* Steps that choose their length, one at a time: it is left in `times`. */
+bool nevh__write_adaptive_verlet(nevh__writer *, nevh_work *);
 /* Text of steps under a rule, after that of two functions of one orbit,
        double take_first(const double *N, double t, double h, double *y,
                          double *lost, double *first)

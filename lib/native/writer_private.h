@@ -111,6 +111,7 @@ extern const char *const nevh__stage_sums_text[];
 extern const char *const nevh__runge_kutta_step_text[];
 extern const char *const nevh__nystrom_step_text[];
 extern const char *const nevh__tao_step_text[];
+extern const char *const nevh__adaptive_verlet_step_text[];
 extern const char *const nevh__pace_text[];
 extern const char *const nevh__adaptive_step_text[];
 

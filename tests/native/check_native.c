@@ -3,6 +3,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #define _GNU_SOURCE
 #include "../support/native.h"
+#include "kernels/adaptive_verlet_private.h"
 #include "kernels/tao_private.h"
 #include "native/native_private.h"
 #include <dlfcn.h>
@@ -19,7 +20,8 @@ static bool compiles(const nevh_integrator *scheme) {
     return is_implicit(scheme) || scheme->kernel == &nevh_splitting_kernel ||
            scheme->kernel == &nevh_runge_kutta_kernel ||
            scheme->kernel == &nevh_nystrom_kernel ||
-           scheme->kernel == &nevh__tao_kernel;
+           scheme->kernel == &nevh__tao_kernel ||
+           scheme->kernel == &nevh__adaptive_verlet_kernel;
 }
 
 /* Scenes that ship, gradients by _i: every explicit scheme that is compiled on the
@@ -185,6 +187,40 @@ TEST_EACH(tolerance_same_bits, ADAPTIVE) {
                    "V = x^4/4 + x*y/5 + y^2\n");
     assert_adapts(scene, *adaptive[_i], _i % 2 ? 3 : 0, 1e-7);
     nevh_scene_free(scene);
+    remove_cache();
+}
+
+/* Steps that choose their length: their times, what is kept of them, where the
+   field vanishes, and where H ends. */
+TEST_EACH(own_time_same_bits, 2) {
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    make_cache();
+    const nevh_integrator *scheme =
+        _i ? nevh_naive_adaptive_verlet : nevh_adaptive_verlet;
+    static const char *const texts[] = {
+        "[coordinates]\nx = 0.2, 0\ny = 0, 2.9\n[effects]\n"
+        "T = (p_x^2 + 2*p_y^2)/2\nV = -1/sqrt(x^2 + y^2) + x*sin(t)/50\n",
+        "[coordinates]\nx = 0\n[effects]\nT = p_x^2/2\nV = -cos(x)\n",
+        "[coordinates]\nx = 1, -1\n[effects]\nT = p_x^2/2\nV = sqrt(x - 0.2)\n"};
+    for (int at = 0; at < 3; at++) {
+        nevh_scene *scene = parsed(texts[at]);
+        for (int way = at ? WAYS - 1 : 0; way < WAYS; way++) {
+            pair x =
+                pair_new(scene, scheme, nevh_gradient_named(ways[way].gradient),
+                         ways[way].portable, cache);
+            ck_assert_msg(nevh_stepper_native(x.native, NULL), "%s", x.why);
+            int status = pair_run(&x, 0.01, 3000);
+            ck_assert_int_eq(status == NEVH_OK, at < 2);
+            pair_run(&x, -0.02, 40);
+            ck_assert_msg(pair_same(&x), "%d, %s", at, ways[way].gradient);
+            ck_assert_double_eq(nevh_stepper_time(x.plain),
+                                nevh_stepper_time(x.native));
+            assert_memory_same(&x);
+            pair_free(&x);
+        }
+        nevh_scene_free(scene);
+    }
     remove_cache();
 }
 

@@ -95,6 +95,8 @@ END
 fi
 exits 2 export pendulum --integrators gonzalez
 says 'no program of such steps: only splitting, Tao, Runge-Kutta, Nystroem, Gauss and Lobatto steps can be'
+exits 2 export kepler --integrators adaptive-verlet
+says 'no program of such steps: only splitting, Tao, Runge-Kutta, Nystroem, Gauss and Lobatto steps can be'
 exits 2 export damped-driven-pendulum --integrators midpoint
 says 'no program of such steps: friction is put around its steps'
 exits 2 export no-such-scene
