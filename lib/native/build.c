@@ -88,7 +88,13 @@ static bool write_source(const char *path, const char *source) {
     return file && fclose(file) == 0 && fine;
 }
 
-/* What the compiler says first. */
+/* The first line that is an error; where there is none, the first. */
+static const char *first_error(const char *text) {
+    static const char mark[] = "error: ";
+    const char *error = strstr(text, mark);
+    return error ? error + sizeof mark - 1 : text;
+}
+
 static void tell(const nevh__compiler_output *output, int status,
                  char why[NEVH__WHY_NATIVE]) {
     if (output->interrupted)
@@ -97,9 +103,11 @@ static void tell(const nevh__compiler_output *output, int status,
         snprintf(why, NEVH__WHY_NATIVE,
                  "there is no C compiler: install one, or name it in the "
                  "environment, CC=...");
-    else
+    else {
+        const char *error = first_error(output->text);
         snprintf(why, NEVH__WHY_NATIVE, "the C compiler fails: %.*s",
-                 (int)strcspn(output->text, "\n"), output->text);
+                 (int)strcspn(error, "\n"), error);
+    }
 }
 
 static bool compile(const char *source, const char *const flags[],

@@ -36,7 +36,7 @@ static const char basis[] =
     "y; }\n"
     "INLINE double nevh_sign(double x) { return x != x ? x : x > 0 ? 1 : x < 0 "
     "? -1 : 0; }\n"
-    "INLINE double nevh_chain(double x, double y) { return x * y; }\n"
+    "#define nevh_chain(x, y) ((x) * (y)) /* of numbers and of vectors */\n"
     "extern double fmod(double, double) CONST;\n"
     "INLINE double nevh_mod(double x, double y) { double rest = fmod(x, y); "
     "return rest != 0 && (rest < 0) != (y < 0) ? rest + y : rest; }\n"

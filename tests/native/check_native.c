@@ -111,6 +111,19 @@ static const char *const functions[] = {
     "x*sqrt(4 + y)*t"};
 enum { FUNCTIONS = sizeof functions / sizeof *functions };
 
+static void assert_function(nevh_scene *scene, const nevh_integrator *scheme,
+                            int way, size_t width) {
+    pair x = pair_of(scene, scheme, nevh_gradient_named(ways[way].gradient),
+                     ways[way].portable, cache, width);
+    if (!nevh_stepper_status(x.plain)) {
+        ck_assert_msg(nevh_stepper_native(x.native, NULL), "%s", x.why);
+        pair_run(&x, 0.05, 400);
+        ck_assert_msg(pair_same(&x), "%s, %s", scheme->name,
+                      ways[way].gradient);
+    }
+    pair_free(&x);
+}
+
 TEST_EACH(functions_same_bits, FUNCTIONS) {
     char text[300];
     if (!has_compiler())
@@ -121,18 +134,10 @@ TEST_EACH(functions_same_bits, FUNCTIONS) {
              "T = p_x^2/2 + p_y^2/3 + p_x^4/50\nU = (x^2 + y^2)/2\nV = %s\n",
              functions[_i]);
     nevh_scene *scene = parsed(text);
-    for (int way = 0; way < WAYS; way++) {
-        pair x = pair_new(scene, nevh_verlet,
-                          nevh_gradient_named(ways[way].gradient),
-                          ways[way].portable, cache);
-        if (!nevh_stepper_status(x.plain)) {
-            ck_assert_msg(nevh_stepper_native(x.native, NULL), "%s", x.why);
-            pair_run(&x, 0.05, 400);
-            ck_assert_msg(pair_same(&x), "%s, %s", functions[_i],
-                          ways[way].gradient);
-        }
-        pair_free(&x);
-    }
+    for (int way = 0; way < WAYS; way++)
+        assert_function(scene, nevh_verlet, way, 1);
+    assert_function(scene, nevh_verlet, 0, 8); /* in vectors */
+    assert_function(scene, nevh_gauss4, 0, 1);
     nevh_scene_free(scene);
     remove_cache();
 }
