@@ -108,6 +108,25 @@ static void find_jump(nevh__watch *w, const double after[]) {
     };
 }
 
+/* By how much H changes where each variable is rounded the other way: of one that
+   is small beside its own offset, by more than its digits tell. */
+static double find_rounding(nevh__watch *w, const double z[]) {
+    double sum = 0, size;
+    memcpy(w->between, z, 2 * w->n * sizeof *z);
+    long double h = value(w, w->between, &size);
+    for (size_t k = 0; k < 2 * w->n; k++) {
+        double kept = w->between[k], most = 0;
+        for (int side = -1; side <= 1; side += 2) {
+            w->between[k] = nextafter(kept, side * HUGE_VAL);
+            double change = (double)fabsl(value(w, w->between, &size) - h);
+            most = fmax(most, change); /* that is not NaN */
+        }
+        w->between[k] = kept;
+        sum += most;
+    }
+    return sum;
+}
+
 bool nevh__watch_step(nevh__watch *w, const double coarse[],
                       const double fine[]) {
     double size = 0;
@@ -118,7 +137,8 @@ bool nevh__watch_step(nevh__watch *w, const double coarse[],
     w->size = fmax(w->size, size);
     w->apart = fmax(w->apart, (double)fabsl(a - b));
     w->changed = fmax(w->changed, change);
-    if (change > far_above * w->apart + rounding * w->size) {
+    double allowed = far_above * w->apart + rounding * w->size;
+    if (change > allowed && change > allowed + 2 * find_rounding(w, fine)) {
         find_jump(w, fine);
         return false;
     }

@@ -181,7 +181,8 @@ int nevh__block_fail(nevh_field *f, const nevh__planned *term,
         &f->report, NEVH_EDOM,
         "%sterm \"%s\" of effect \"%s\"%s is %g at %s: keep the orbit away "
         "from there, or take a smaller step",
-        what, decl->name, decl->effect, which, value, where);
+        what, decl->name, decl->effect, which,
+        isnan(value) ? fabs(value) : value, where);
 }
 
 /* Whether all are finite: x - x is 0 then, and NaN otherwise. */

@@ -65,8 +65,9 @@ int nevh__block_check(nevh_field *, const nevh__planned *, const nevh__block *);
    a column. */
 int nevh__block_fail(nevh_field *, const nevh__planned *, const nevh__block *,
                      size_t column, const char *what, double value);
-/* The same of a point of the difference by variable k, so far from the orbit. */
-int nevh__fail_outside(nevh_field *, const nevh__planned *, const nevh__block *,
+/* The same of a point of the difference by variable k, so far from the orbit, or
+   of the orbit, where it has no value either. */
+int nevh__fail_outside(nevh_field *, nevh__planned *, const nevh__block *,
                        size_t column, size_t instance, size_t k, double reach);
 
 /* All lanes of states side by side. */
@@ -103,7 +104,7 @@ bool nevh__add_slopes(const nevh_gradient *, size_t apart, size_t lanes,
                       const double *x, const double *h, double *out);
 /* Tells what is not finite in a block of differences: a value, or else the
    derivative by variable k of an instance. */
-int nevh__central_fail(nevh_field *, const nevh__planned *, const nevh__block *,
+int nevh__central_fail(nevh_field *, nevh__planned *, const nevh__block *,
                        size_t instance, size_t k);
 
 /* What gives a term's derivatives: under `portable` a formula's by libm. */

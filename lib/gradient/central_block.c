@@ -82,20 +82,46 @@ static double reach_of(const nevh_field *f, const nevh__planned *term,
     return most;
 }
 
-/* It is a point of the difference that has no value, not the orbit. */
-int nevh__fail_outside(nevh_field *f, const nevh__planned *term,
-                       const nevh__block *b, size_t column, size_t instance,
-                       size_t k, double reach) {
+/* Told and true where an instance has no value on the orbit itself.  Fills the
+   rows. */
+static bool fails_on_orbit(nevh_field *f, nevh__planned *term,
+                           const nevh__block *b, size_t lane, size_t instance) {
+    nevh__block one = nevh__block_over(b->width, b->t, b->q, b->p, 1, 1);
+    uint64_t counted = term->values;
+    one.first = b->first;
+    one.lane = lane;
+    one.until = lane + 1;
+    while (nevh__block_next(f, term, &one) &&
+           one.group + one.groups <= instance)
+        continue;
+    nevh__block_evaluate(f, term, &one);
+    term->values = counted;
+    size_t column = instance - one.group;
+    if (isfinite(f->h[column]))
+        return false;
+    nevh__block_fail(f, term, &one, column, "", f->h[column]);
+    return true;
+}
+
+/* It is a point of the difference that has no value, or the orbit. */
+int nevh__fail_outside(nevh_field *f, nevh__planned *term, const nevh__block *b,
+                       size_t column, size_t instance, size_t k, double reach) {
     char where[200];
+    nevh__report report = f->report;
     snprintf(where, sizeof where,
              "a difference by %c[%zu] reaches %.3g from the orbit (the exact "
              "gradient reads no such point), where ",
              k < term->nq ? 'q' : 'p', nevh__index(term, instance, k), reach);
-    return nevh__block_fail(f, term, b, column, where, f->h[column]);
+    int status = nevh__block_fail(f, term, b, column, where, f->h[column]);
+    nevh__report outside = f->report;
+    f->report = report;
+    if (!fails_on_orbit(f, term, b, b->lane + column % b->lanes, instance))
+        f->report = outside;
+    return status;
 }
 
-int nevh__central_fail(nevh_field *f, const nevh__planned *term,
-                       const nevh__block *b, size_t instance, size_t k) {
+int nevh__central_fail(nevh_field *f, nevh__planned *term, const nevh__block *b,
+                       size_t instance, size_t k) {
     const nevh_term *decl = &term->term->decl;
     if (nevh__block_check(f, term, b)) {
         size_t column = 0, moved = 0;

@@ -101,6 +101,22 @@ exits 1 compare $work/x.nevh --gradient central4 --gradient-step 0.02
 has 'a difference by q\[0\] reaches 0\.0[0-9]* from the orbit'
 exits 0 compare $work/x.nevh --gradient central4 --dt 0.001
 
+# Where the orbit itself has left the domain, no difference is at fault; NaN has
+# no sign.
+scene 'log(x)' 'x = 0.01, -1'
+sed -i 's/^integr.*/integrators = rk4/' $work/x.nevh
+exits 1 compare $work/x.nevh --gradient central4 --dt 0.1
+tr '\n' ' ' <$work/out | tr -s ' ' | grep -q '"V" is nan at q\[0\] = -' ||
+    { fails "says nothing of the orbit"; cat $work/out; }
+lacks 'a difference by|-nan'
+
+# Variables that are rounded, being small beside their offset, are no jump.
+printf '[coordinates]\nx = 1e8 + 1\n[effects]\nK = p_x^2/2\nV = (x - 1e8)^2/2
+[run]\nt_end = 100\ndt = 0.1\nintegrators = verlet, gauss4\n' >$work/offset.nevh
+exits 0 compare $work/offset.nevh
+lacks 'jumps'
+has '^ gauss4 .* [0-9]e-06 '
+
 # Late on the clock.
 printf '[coordinates]\nx = 1\n[effects]\nK = p_x^2/2\nV = x^2/2 + x^4/4
 [run]\nt_start = 1e9\nt_end = 1e9 + 10\ndt = 0.05\nintegrators = gauss8\n' \
