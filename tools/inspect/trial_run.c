@@ -326,23 +326,36 @@ static void tell_edge(const plan *p, const trial_run *f, list *notes) {
                    p->run->t_start + f->length, f->failure);
 }
 
+/* When rounding errors of a chaotic orbit are as large as it is. */
+static void tell_horizon(const plan *p, const trial_run *f, list *notes) {
+    const char *unit = nevh_scene_label(p->scene, "t");
+    const char *space = *unit ? " " : "", *per = *unit ? "/" : "";
+    double start = p->run->t_start, grown = -log(DBL_EPSILON);
+    double horizon = start + grown / f->exponent;
+    double soon = start + grown / (f->exponent + f->error);
+    double late = start + grown / (f->exponent - f->error);
+    char *range = f->error < f->exponent
+                      ? text_print("%.3g to %.3g", soon, late)
+                      : text_print("%.3g or later", soon);
+    list_print(notes,
+               "Chaotic: Lyapunov exponent %.2g +- %.1g%s%s (over %.3g%s%s)."
+               "  Predictability horizon: %sabout t = %.3g%s%s (%s, as the "
+               "exponent is uncertain): rounding errors have then grown to the "
+               "size of the orbit.  Positions after it cannot be predicted; "
+               "energies and averages can.",
+               f->exponent, f->error, per, unit, f->length, space, unit,
+               horizon < p->t_end ? "" : "beyond the run, ", horizon, space,
+               unit, range);
+    free(range);
+}
+
 /* Of the time followed, and what it means for a longer run. */
 static void tell_outlook(const plan *p, const trial_run *f, list *notes) {
     const char *unit = nevh_scene_label(p->scene, "t");
     const char *space = *unit ? " " : "", *per = *unit ? "/" : "";
-    double horizon = p->run->t_start - log(DBL_EPSILON) / f->exponent;
-    bool within = horizon < p->t_end;
     switch (f->outlook) {
     case OUTLOOK_CHAOTIC:
-        list_print(
-            notes,
-            "Chaotic: Lyapunov exponent %.2g +- %.1g%s%s (over %.3g%s%s)."
-            "  Predictability horizon: %s t = %.3g%s%s rounding errors have "
-            "grown to the size of the orbit.  Positions%s cannot be "
-            "predicted; energies and averages can.",
-            f->exponent, f->error, per, unit, f->length, space, unit,
-            within ? "after" : "beyond the run, after", horizon, space, unit,
-            within ? "" : " after it");
+        tell_horizon(p, f, notes);
         break;
     case OUTLOOK_PLANE:
         list_add(notes, "Regular: one degree of freedom without a drive cannot "
