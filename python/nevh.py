@@ -106,7 +106,7 @@ class _Energy(c.Structure):
     _fields_ = ([("samples", c.c_size_t)] + [(name, c.c_double) for name in (
         "initial scale max rms final drift drift_error straightness first_fifth "
         "last_fifth").split()] + [("verdict", c.c_int), ("theory", c.c_int)] +
-        [(name, c.c_double) for name in "span limit rounding gradient".split()] +
+        [(name, c.c_double) for name in "span limit met rounding gradient".split()] +
         [("rate", c.c_double * 3), ("early", c.c_double), ("least", c.c_double),
          ("gone", c.c_bool)])
 

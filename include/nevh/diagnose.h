@@ -92,8 +92,11 @@ typedef struct {
     double first_fifth, last_fifth; /* largest |error| there */
     nevh_verdict verdict;           /* nevh_energy_verdict(this, 1) */
     nevh_theory theory;
-    double span;     /* of time observed */
-    double limit;    /* the largest |effect| at the start over scale, or 1 */
+    double span;  /* of time observed */
+    double limit; /* the largest |effect| at the start over scale, or 1; of
+                        theory OPEN, at least a tenth of `met`: energy that
+                        comes in from outside makes errors larger */
+    double met;   /* the largest sum of the terms' |values| met, over scale */
     double rounding; /* an error that rounding alone may have made by now: a
                         random walk of the largest energies met */
     double gradient; /* one that gradients by differences may have made, since
@@ -126,7 +129,7 @@ typedef struct {
                  bring), RANDOM_WALK where growth is slower and lasts
    NONE          BOUNDED as for OPEN, DRIFTS along a line, else RANDOM_WALK, of
                  the run as it is
-   UNDECIDED     otherwise: a longer run may tell
+   UNDECIDED     otherwise: a longer run may tell; also before the first step
 
    Thread-safe. */
 NEVH_API nevh_verdict nevh_energy_verdict(const nevh_energy_report *,
@@ -155,7 +158,10 @@ typedef struct {
 /* Where the verdict on a run is UNDECIDED, that of a longer one: from the start
    again, to 2, 4 ... 32 lengths, until the verdict is another one or the seconds
    allowed are spent.  What is then still open is judged by as much as was seen,
-   as are runs that are too long to be followed to 4 lengths.
+   as are runs that are too long to be followed to 4 lengths, and those whose
+   energies grow, of H that depends on time, to more than 4 times what the run
+   itself met.  UNSTABLE of a longer run says nothing of a run whose errors are
+   below 1 % of the limit: that stays UNDECIDED.
    stepper  as it took the run, of width 1; begins afresh
    energy   as of the run (nevh_energy_expect, nevh_energy_follow), but new
    report   in and out: nevh_energy_result of the run; of the longer one, whose

@@ -11,6 +11,9 @@
 /* Below this part of the largest effect, H0 is no measure of the energy. */
 static const double cancelled = 1e-6;
 
+/* Of the energies met, an error that exceeds all at the start is beyond measure. */
+static const double of_met = 0.1;
+
 struct nevh_energy {
     nevh_field *field; /* for values only */
     size_t n, width;
@@ -381,6 +384,9 @@ nevh_energy_report nevh_energy_result(const nevh_energy *e, size_t lane) {
     report.scale = e->scale[lane];
     report.theory = e->theory;
     report.limit = fmax(1, e->limit[lane] / e->scale[lane]);
+    report.met = e->largest[lane] / e->scale[lane];
+    if (e->theory == NEVH_THEORY_OPEN)
+        report.limit = fmax(report.limit, of_met * report.met);
     report.rounding = rounding_of(e, lane);
     report.gradient = e->blur[lane] * (double)e->steps[lane] *
                       e->largest[lane] / e->scale[lane];

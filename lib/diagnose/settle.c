@@ -12,6 +12,11 @@ static const double most = 32, least = 4;
    is long as it is. */
 static const double usual = 8;
 
+/* Of the energies that the run itself met: what is driven has left its orbit. */
+static const double grown = 4;
+/* Of the limit: errors of a run that is not unstable. */
+static const double much_smaller = 0.01;
+
 /* What a gradient costs of many stages that are taken side by side, a single
    one being 1. */
 static double side_by_side(const nevh_integrator *scheme) {
@@ -40,6 +45,8 @@ double nevh_counts_seconds(const nevh_counts *c, size_t dof,
 typedef struct {
     nevh_energy *energy;
     double start, span, times; /* at so many lengths the verdict is asked for */
+    double most_met;           /* energies above are those of another motion */
+    bool departs;              /* such were met */
     nevh_energy_report report;
 } longer_run;
 
@@ -50,6 +57,9 @@ static int ask(void *data, size_t step, double t, const double q[],
     if (status || fabs(t - l->start) < l->times * fabs(l->span) * (1 - 1e-9))
         return status;
     l->report = nevh_energy_result(l->energy, 0);
+    l->departs = l->report.met > l->most_met;
+    if (l->departs)
+        return NEVH_STOPPED;
     l->report.verdict = nevh_energy_verdict(&l->report, l->times);
     l->times *= 2;
     return l->report.verdict == NEVH_UNDECIDED ? NEVH_OK : NEVH_STOPPED;
@@ -106,7 +116,9 @@ int nevh_verdict_settle(nevh_stepper *s, nevh_energy *energy,
         report->verdict = nevh_energy_verdict(report, INFINITY);
         return NEVH_OK;
     }
+    bool driven = report->theory == NEVH_THEORY_OPEN;
     longer_run l = {.energy = energy,
+                    .most_met = driven ? grown * report->met : INFINITY,
                     .start = r->t,
                     .span = r->t_end - r->t,
                     .times = 2,
@@ -114,7 +126,14 @@ int nevh_verdict_settle(nevh_stepper *s, nevh_energy *energy,
     int status = run(r, s, &l, times);
     if (status == NEVH_ENOMEM)
         return status;
+    if (l.departs) {
+        report->verdict = nevh_energy_verdict(report, INFINITY);
+        return NEVH_OK;
+    }
     end(&l, status);
+    bool small = report->max <= much_smaller * report->limit;
     *report = l.report;
+    if (small && report->verdict == NEVH_UNSTABLE)
+        report->verdict = NEVH_UNDECIDED;
     return NEVH_OK;
 }

@@ -110,6 +110,8 @@ static nevh_verdict judge_alone(const nevh_energy_report *r) {
 nevh_verdict nevh_energy_verdict(const nevh_energy_report *r, double times) {
     if (r->theory == NEVH_THEORY_NONE)
         times = INFINITY;
+    if (r->samples == 1) /* of the start alone */
+        return NEVH_UNDECIDED;
     if (r->max <= r->rounding)
         return judge_rounding(r, times);
     if (!(r->max <= r->limit))

@@ -68,6 +68,53 @@ verdicts 'gauss8=(bounded|random-walk)'
 scene 'x = 1' 'K = p_x^2/2\nV = -x^2/2' 't_end = 60\ndt = 0.1' away
 compares $work/away.nevh --integrators gauss8 --gradient exact
 verdicts 'gauss8=(bounded|random-walk)'
+exits 0 compare $work/away.nevh --integrators gauss4,rk4 --gradient exact
+has '^gauss4 at dt = 0\.1: the error, up to .* times the energy scale, is rounding:'
+lacks 'take a shorter step'
+
+# A drift over the run is no larger than the errors of the run.
+compares $work/driven.nevh --integrators gauss4 --gradient exact
+most=$(grep -v '^[#s]' $work/out | cut -d, -f9)
+exits 0 compare $work/driven.nevh --integrators gauss4 --gradient exact
+awk -v most="$most" '$1 == "gauss4" && NF > 5 { found++
+        bad += $6 > 2 * most || $6 < -2 * most }
+    END { exit bad || !found }' $work/out || { fails "drifts more than it errs"; cat $work/out; }
+
+# What a longer run meets says nothing of a good run: energy that a drive adds, and
+# bodies that come close.
+scene 'x = 0.01' 'K = p_x^2/2\nV = (1 + 0.3*cos(2*t))*x^2/2' \
+    't_end = 60\ndt = 0.1' tongue
+compares $work/tongue.nevh --integrators verlet,gauss4,gauss8
+grep -q ',unstable,' $work/out && { fails "calls resonance unstable"; cat $work/out; }
+scene 'x[1..3] = 1, -0.5, -0.5\ny[1..3] = 0, sqrt(3)/2, -sqrt(3)/2
+p_x[1..3] = 0, -0.6, 0.6\np_y[1..3] = 0.7, -0.35, -0.35' \
+    'K = sum(i = 1..3, (p_x[i]^2 + p_y[i]^2)/2)
+V = -sum(i = 1..2, sum(j = i+1..3, 1/sqrt((x[i] - x[j])^2 + (y[i] - y[j])^2)))' \
+    't_end = 30\ndt = 0.005' three
+exits 0 compare $work/three.nevh --integrators gauss8 --repeat 1
+tr '\n' ' ' <$work/out | tr -s ' ' | grep -Eq \
+    'gauss8 at dt = 0\.005: the energy error is at most [0-9.]+e-1[0-2] in the run, but' ||
+    { fails "says nothing of the run itself"; cat $work/out; }
+lacks 'is unstable|keeps its error below 1 %'
+
+# A run that breaks off is compared no further than it came, and says so.
+scene 'x = 1' 'K = p_x^2/2\nV = -exp(t)*x^2' 't_end = 10\ndt = 0.1' bursting
+exits 0 compare $work/bursting.nevh --integrators rk4
+has '^rk4 is unstable'
+has '^rk4 at dt = 0\.1 has no state error: it broke off after t = [1-9]'
+compares $work/bursting.nevh --integrators rk4
+grep -v '^[#s]' $work/out | cut -d, -f13 | grep -q . &&
+    fails "has a state error of a part of the run"
+
+# A run of no steps shows nothing.
+scene 'x = 1' 'K = p_x^2/2\nV = x^2/2' 't_end = 10\ndt = 0.1\nstop = x > 0' still
+exits 0 compare $work/still.nevh --integrators verlet
+has '^verlet at dt = 0\.1: it stopped at t = 0, too early for a verdict'
+lacks 'keeps the energy bounded'
+
+# Schemes that choose their steps are told by the tolerance.
+exits 0 compare pendulum --integrators dopri5 --tolerance 1e-6 --t-end 100
+has '^dopri5 at tolerance = 1e-06 (loses|gains) energy'
 
 # Steps that are advised are confirmed by the next run, and are not far too
 # short.

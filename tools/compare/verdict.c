@@ -89,6 +89,15 @@ static char *unit_of(const plan *p, const char *before) {
     return text_print("%s%s", *unit ? before : "", unit);
 }
 
+/* What the row was asked for: a step, or a tolerance. */
+static char *step_of(const plan *p, const row *r) {
+    char *unit = unit_of(p, " ");
+    char *text = r->tolerance > 0 ? text_print("tolerance = %.4g", r->tolerance)
+                                  : text_print("dt = %.4g%s", r->dt, unit);
+    free(unit);
+    return text;
+}
+
 /* When the drifting error passes, or would pass, the bounded one. */
 static void tell_crossing(const plan *p, const row *r, const row *b,
                           const char *text, list *words) {
@@ -127,25 +136,26 @@ static void tell_drift(const plan *p, const row rows[], size_t count,
     const nevh_energy_report *e = known(r);
     const char *against = p->balance ? " against the balance" : "";
     char *name = name_of(rows, count, r), *unit = unit_of(p, " ");
-    char *per = unit_of(p, "/"), *text = NULL;
+    char *per = unit_of(p, "/"), *place = step_of(p, r), *text = NULL;
     double span = r->t_end - p->run->t_start;
     if (is_steady(e)) {
-        text = text_print("%s at dt = %.4g%s %s energy steadily%s, %.2g %% of "
+        text = text_print("%s at %s %s energy steadily%s, %.2g %% of "
                           "the scale over the run (slope (%.3g +- %.1g)%s, "
                           "R^2 = %.4f)",
-                          name, r->dt, unit, e->drift < 0 ? "loses" : "gains",
+                          name, place, e->drift < 0 ? "loses" : "gains",
                           against, 100 * fabs(e->drift) * span, e->drift,
                           e->drift_error, per, e->straightness);
         tell_crossing(p, r, bounded_beside(rows, count, r), text, words);
     } else
         list_print(words,
-                   "%s at dt = %.4g%s %s energy for good%s, %.2g %% of the "
+                   "%s at %s %s energy for good%s, %.2g %% of the "
                    "scale by the end of the run.",
-                   name, r->dt, unit, r->energy.final < 0 ? "loses" : "gains",
+                   name, place, r->energy.final < 0 ? "loses" : "gains",
                    against, 100 * fabs(r->energy.final));
     free(name);
     free(unit);
     free(per);
+    free(place);
     free(text);
 }
 
@@ -161,32 +171,54 @@ static void tell_open(const plan *p, const row rows[], size_t count,
     double start = p->run->t_start, span = r->t_end - start;
     double seen = r->followed > 0 ? r->followed : 1;
     char *name = name_of(rows, count, r), *unit = unit_of(p, " ");
+    char *place = step_of(p, r);
     char *further = r->followed > 0
                         ? text_print(", also when continued until t = %.4g%s",
                                      start + seen * span, unit)
                         : text_print("%s", "");
-    list_print(words,
-               "%s at dt = %.4g%s: the run is too short for a verdict on the "
-               "energy%s; a run until t = %g%s may decide.",
-               name, r->dt, unit, further, rounded_up(start + 4 * seen * span),
-               unit);
+    if (r->followed > 0 && r->longer.max > r->longer.limit)
+        list_print(words,
+                   "%s at %s: the energy error is at most %.1e in the run, but "
+                   "exceeds all energies when the run is continued until t = "
+                   "%.4g%s: such steps fail in an encounter there, or are "
+                   "unstable in the long run.",
+                   name, place, r->energy.max, start + seen * span, unit);
+    else if (isfinite(r->stopped))
+        list_print(words,
+                   "%s at %s: it stopped at t = %.4g%s, too early for a "
+                   "verdict on the energy.",
+                   name, place, r->stopped, unit);
+    else
+        list_print(words,
+                   "%s at %s: the run is too short for a verdict on the "
+                   "energy%s; a run until t = %g%s may decide.",
+                   name, place, further, rounded_up(start + 4 * seen * span),
+                   unit);
     free(name);
     free(unit);
+    free(place);
     free(further);
 }
 
 /* Errors that do not grow, but are no small part of the energy. */
-static void tell_large(const row rows[], size_t count, list *words) {
+static void tell_large(const plan *p, const row rows[], size_t count,
+                       list *words) {
     for (size_t i = 0; i < count; i++) {
         const row *r = &rows[i];
         if (!is(r, NEVH_BOUNDED) || !(r->energy.max > 1))
             continue;
-        char *name = name_of(rows, count, r);
+        char *name = name_of(rows, count, r), *place = step_of(p, r);
+        bool rounded = r->energy.max <= r->energy.rounding;
         list_print(words,
-                   "%s at dt = %.4g: the error is bounded but large, up to "
-                   "%.2g times the energy scale: take a shorter step.",
-                   name, r->dt, r->energy.max);
+                   rounded ? "%s at %s: the error, up to %.2g times the energy "
+                             "scale, is rounding: far larger energies cancel "
+                             "in H, and a shorter step does not reduce it."
+                           : "%s at %s: the error is bounded but large, up to "
+                             "%.2g times the energy scale: take a shorter "
+                             "step.",
+                   name, place, r->energy.max);
         free(name);
+        free(place);
     }
 }
 
@@ -316,7 +348,7 @@ void verdict_words(const plan *p, const row rows[], size_t count, list *words) {
              words);
     for (size_t i = 0; i < count; i++)
         tell_mixed(rows, count, i, words);
-    tell_large(rows, count, words);
+    tell_large(p, rows, count, words);
     for (size_t i = 0; i < count; i++)
         if (is(&rows[i], NEVH_UNDECIDED))
             tell_open(p, rows, count, &rows[i], words);

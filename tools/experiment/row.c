@@ -150,9 +150,20 @@ static bool compares_states(const plan *p, const row *r) {
     return r->t_end - p->run->t_start >= least * span;
 }
 
-static void explain_unknown(const plan *p, row *r) {
+/* What broke off is out of step, if that was seen, or is compared no longer. */
+static double state_error_of(const plan *p, const row *r,
+                             const nevh_state_error *state) {
+    double error = nevh_state_error_result(state);
+    bool whole = !r->broken || error > STATE_OUT_OF_STEP;
+    return whole && compares_states(p, r) ? error : NAN;
+}
+
+static void explain_unknown(const plan *p, row *r, const char *why) {
     const char *message = nevh_reference_message(p->reference);
-    if (!compares_states(p, r))
+    if (r->broken)
+        snprintf(r->state_unknown, sizeof r->state_unknown,
+                 "it broke off after t = %.6g: %s", r->t_end, why);
+    else if (!compares_states(p, r))
         snprintf(r->state_unknown, sizeof r->state_unknown,
                  "it ended at t = %.6g, too early to be compared", r->t_end);
     else
@@ -197,7 +208,9 @@ static void watched(work *w, nevh_stepper *s) {
     double begin = cpu_seconds();
     int status = run(w, s, observers, count, &r->stopped);
     r->watched = cpu_seconds() - begin;
-    r->t_end = isfinite(r->stopped) ? r->stopped : w->plan->t_end;
+    r->t_end = status                 ? nevh_stepper_time(s)
+               : isfinite(r->stopped) ? r->stopped
+                                      : w->plan->t_end;
     const char *why = wait.late                ? "it takes too long"
                       : status == NEVH_STOPPED ? nevh_energy_message(energy)
                                                : nevh_stepper_message(s);
@@ -207,13 +220,13 @@ static void watched(work *w, nevh_stepper *s) {
     r->late = wait.late;
     r->ran = !r->late && (!status || r->energy.verdict == NEVH_UNSTABLE);
     r->failed = !r->ran;
+    r->broken = status && r->ran;
     r->status = status ? text_print("failed: %s (after t = %.9g)", why,
                                     nevh_stepper_time(s))
                        : text_print("ok");
-    r->state_error =
-        compares_states(w->plan, r) ? nevh_state_error_result(state) : NAN;
+    r->state_error = state_error_of(w->plan, r, state);
     if (state && isnan(r->state_error))
-        explain_unknown(w->plan, r);
+        explain_unknown(w->plan, r, why);
     r->observable_error = isnan(r->state_error) ? NAN : shown.worst;
     if (w->plan->energies && r->ran && !isnan(r->state_error))
         r->energies = energies_result(w->plan->energies);

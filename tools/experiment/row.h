@@ -27,6 +27,7 @@ typedef struct {
     bool observable; /* its error is that of one, not of states */
     bool native;     /* the steps whose time was taken are compiled */
     bool ran, late;  /* there are numbers; patience was at its end */
+    bool broken;     /* ran, as an unstable one, until it failed */
     nevh_energy_report energy;
     double followed; /* lengths of the run that the verdict is from; 0: its own
                         alone */
@@ -40,7 +41,7 @@ typedef struct {
     double observed_order;  /* NAN: unknown */
     double state_error;     /* NAN: unknown or meaningless */
     double observable_error; /* the same */
-    char state_unknown[160]; /* why; "" where it is known, or no run's fault */
+    char state_unknown[300]; /* why; "" where it is known, or no run's fault */
     double symplecticity_error, reversal_error;
     nevh_shadow_report shadow; /* without samples: its scheme has none */
     double *changes; /* of invariants, the largest; NULL: not asked for */
@@ -101,6 +102,7 @@ void verdict_words(const plan *, const row rows[], size_t count, list *words);
    state errors; TOOL_OK, or TOOL_USAGE with the message printed. */
 int plan_reference(plan *, double end);
 void state_notes(const plan *, list *notes);
+#define STATE_OUT_OF_STEP 0.5 /* an error */
 bool state_out_of_step(const row *);
 void state_show(table *, const plan *, const row *);
 void state_words(const plan *, const row rows[], size_t count, list *words);

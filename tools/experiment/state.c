@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double out_of_step = 0.5;
 static const double a_few = 4; /* steps of rows, to one of the reference */
 
 /* Why there is no reference, or NULL. */
@@ -124,7 +123,7 @@ void state_notes(const plan *p, list *notes) {
 }
 
 bool state_out_of_step(const row *r) {
-    return r->ran && r->state_error > out_of_step;
+    return r->ran && r->state_error > STATE_OUT_OF_STEP;
 }
 
 void state_show(table *t, const plan *p, const row *r) {
