@@ -18,7 +18,8 @@ function show() {
   at("scene-caption").textContent = scene.plain
     ? names[1] + " over " + names[0] + ": drag the point to a new start."
     : scene.parts.length ? "The configuration" + (scene.parts.some((p) => p.kind === "bob")
-      ? ": drag a body to a new start." : ".") : "All coordinates, side by side.";
+      ? ": drag a body to a new start." : ".") : names.length === 1 ? names[0] + " against time."
+    : "All coordinates, side by side.";
   at("phase-caption").textContent = "Coordinate and momentum" +
     (scene.coordinates.length === 1 ? ", over levels of H" : "") +
     ": drag to a new start.";
@@ -81,6 +82,13 @@ function showSchemes() {
     mark.style.color = nevhColour(i);
     return element("label", {}, mark, menu);
   };
+  const marked = [...S.schemes.map((name, i) => [NEVH_MARKS[i], name, i]),
+    ...S.exact ? [["○", "exact", -1]] : []];
+  at("legend").replaceChildren(...marked.flatMap(([mark, name, i]) => {
+    const made = element("span", {}, mark);
+    made.style.color = nevhColour(i);
+    return [made, " " + name + " "];
+  }));
   at("schemes").replaceChildren(...Array.from({ length: Math.min(4, many + 1) },
     (_, i) => choose(i)));
 }
@@ -89,13 +97,13 @@ const longest = () => S.limit || 8 * S.dt;
 const stepOf = (value) => +(longest() * 10 ** (3 * (value / 100 - 1))).toPrecision(4);
 function showSliders() {
   at("dt").value = 100 * (1 + Math.log10(S.dt / longest()) / 3);
-  const words = "dt = " + nevhNumber(S.dt) + unit(scene.t_label);
-  at("dt-text").textContent = words + (S.limited ? ", " + S.limited +
-    " is stable up to " + nevhNumber(S.limit) : "");
+  const words = "dt = " + nevhNumber(S.dt) + after(scene.t_label);
+  at("dt-text").textContent = words + (S.limited ? "; " + S.limited +
+    " is stable up to " + +S.limit.toPrecision(3) + after(scene.t_label) : "");
   at("dt").setAttribute("aria-valuetext", words);
   at("speed").value = S.speed;
-  at("speed-text").textContent = nevhNumber(seconds()) +
-    (scene.t_label ? " " + scene.t_label : "") + " a second";
+  at("speed-text").textContent = "t grows by " + nevhNumber(seconds()) +
+    after(scene.t_label) + " per second";
 }
 function setPlaying(on) {
   playing = on;
@@ -199,7 +207,11 @@ function listenToDrags() {
     next = () => pull(part, ...place);
     drag();
   };
-  at("scene").onpointerup = () => { body = -1; end(); };
+  at("scene").onpointerup = at("scene").onpointercancel = () => { body = -1; end(); };
+  // A finger elsewhere scrolls the page.
+  at("scene").addEventListener("touchstart", (event) => {
+    if (bodyAt(...configuration.under(event.touches[0])) >= 0) event.preventDefault();
+  }, { passive: false });
   const toPlane = (event) => {
     const [q, p] = phase.under(event), state = (S.start || startOf()).slice();
     state[S.plane] = q;
@@ -214,7 +226,7 @@ function listenToDrags() {
     toPlane(event);
   };
   at("phase").onpointermove = (event) => { if (inPlane) toPlane(event); };
-  at("phase").onpointerup = () => { inPlane = false; end(); };
+  at("phase").onpointerup = at("phase").onpointercancel = () => { inPlane = false; end(); };
 }
 // Arrows in a picture move the start: the coordinate, and its momentum.
 function nudge(event) {
@@ -260,7 +272,7 @@ function listen() {
     showSliders();
     race();
   };
-  at("exact").onchange = () => { S.exact = at("exact").checked; race(); };
+  at("exact").onchange = () => { S.exact = at("exact").checked; showSchemes(); race(); };
   at("disc").onchange = () => { S.disc = at("disc").checked; race(); };
   at("plane").onchange = () => { S.plane = +at("plane").value; race(); };
   at("gradient").onchange = () => { S.gradient = at("gradient").value; race(); };
@@ -273,7 +285,10 @@ function listen() {
   at("csv").onclick = () => save(given.name + ".csv", "text/csv", csv());
   at("share").onclick = () => {
     putFragment();
-    navigator.clipboard?.writeText(location.href).catch(() => {});
+    const say = (text) => { at("shared").textContent = text; };
+    const elsewhere = () => say("It is in the address bar.");
+    navigator.clipboard ? navigator.clipboard.writeText(location.href)
+      .then(() => say("Copied."), elsewhere) : elsewhere();
   };
   at("scene").onkeydown = at("phase").onkeydown = nudge;
   document.onkeydown = (event) => {

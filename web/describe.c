@@ -69,6 +69,13 @@ static void put_list(json *j, const char *name, size_t count,
     put(j, "]");
 }
 
+static void put_momentum_label(json *j, const page *g, const char *coordinate) {
+    char name[256];
+    bool fits =
+        snprintf(name, sizeof name, "p_%s", coordinate) < (int)sizeof name;
+    put_key(j, "momentum", fits ? nevh_scene_label(g->scene, name) : "");
+}
+
 static void put_coordinates(json *j, const page *g) {
     put(j, ",\"coordinates\":[");
     for (size_t k = 0; k < g->n; k++) {
@@ -80,6 +87,7 @@ static void put_coordinates(json *j, const page *g) {
         put(j, "],\"period\":%.17g", nevh_scene_period(g->scene, k));
         put_key(j, "name", name);
         put_key(j, "label", nevh_scene_label(g->scene, name));
+        put_momentum_label(j, g, name);
         put(j, "}");
     }
     put(j, "]");

@@ -5,6 +5,8 @@
 // ---- drawing ----
 const configuration = new NevhPlane(at("scene"), [8, 8, 8, 8]);
 const errors = new NevhPlane(at("error"), [46, 36, 18, 28]);
+const margins = (left, bottom, right, top) =>
+  Object.assign(configuration, { left, bottom, right, top });
 const phase = new NevhPlane(at("phase"), [50, 36, 18, 28]);
 
 function reach(x, y) {
@@ -24,6 +26,11 @@ function widen(picture) {
   }
 }
 function drawConfiguration() {
+  if (!scene.parts.length) {
+    margins(50, 36, 18, 28);
+    return scene.coordinates.length === 1 ? drawMotion() : drawProfile();
+  }
+  margins(8, 8, 8, 8);
   const b = seen || [-1, 1, -1, 1];
   const reach = Math.max(b[1] - b[0], b[3] - b[2], 1e-9) / 2;
   const cx = (b[0] + b[1]) / 2, cy = (b[2] + b[3]) / 2;
@@ -41,27 +48,80 @@ function drawConfiguration() {
   pen.globalAlpha = 1;
   for (let i = list.length - 1; i >= 0; i--)
     if (pictures[i] && pictures[i].length) drawParts(pen, i);
-  if (!scene.parts.length) drawProfile(pen);
+  if (rows[0]) stamp(pen);
 }
-// Without a picture: all coordinates, side by side.
-function drawProfile(pen) {
+const when = () => "t = " + +digits(rows[0]?.[0] ?? 0, 5) + after(scene.t_label);
+function stamp(pen) {
+  pen.font = "13px system-ui,sans-serif";
+  pen.fillStyle = nevhColour("fore");
+  pen.textAlign = "left";
+  pen.textBaseline = "top";
+  pen.fillText(when(), 8, 6);
+  let [a, b] = [-99, -99];
+  for (let i = 0, from = 0; i < scene.parts.length; from += scene.parts[i++].count) {
+    const { name } = scene.parts[i];
+    if (!name || scene.plain) continue;
+    const x = configuration.x(pictures[0][from]) + 12;
+    const y = configuration.y(pictures[0][from + 1]) - 18;
+    if (Math.abs(x - a) < 50 && Math.abs(y - b) < 14) continue; // over another
+    pen.fillText(name, x, y);
+    [a, b] = [x, y];
+  }
+}
+// Without a picture: the one coordinate against time.
+function drawMotion() {
+  const c = scene.coordinates[0];
+  let box = [0, 20 * S.dt, Infinity, -Infinity];
+  histories.forEach((h) => h.t.forEach((t, j) => {
+    if (j === 0) box[0] = t;
+    box[1] = Math.max(box[1], t);
+    box[2] = Math.min(box[2], h.q[j]); box[3] = Math.max(box[3], h.q[j]);
+  }));
+  const room = 0.08 * (box[3] - box[2]) || 0.1 * Math.abs(box[3]) || 1;
+  configuration.box = [box[0], ahead(...box), box[2] - room, box[3] + room];
+  const pen = configuration.begin(false);
+  pen.save();
+  configuration.axes(nevhTicks(box[0], box[1]),
+    nevhTicks(configuration.box[2], configuration.box[3]),
+    "t" + unit(scene.t_label), c.name + unit(c.label));
+  for (let i = list.length - 1; i >= 0; i--) {
+    if (list[i].width > 1) continue;
+    const h = histories[i], points = h.t.flatMap((t, j) => [t, h.q[j]]);
+    dashed(pen, i);
+    configuration.line(points);
+    if (rows[i]) configuration.mark(rows[i][0], rows[i][4], list[i].colour, 5);
+  }
+  pen.restore();
+}
+const ahead = (from, to) => to + 0.03 * (to - from); // of the last mark
+function dashed(pen, i) {
+  pen.strokeStyle = pen.fillStyle = nevhColour(list[i].colour);
+  pen.lineWidth = 1.6;
+  pen.setLineDash(list[i].colour < 0 ? [4, 4] : NEVH_DASHES[i % 4]);
+}
+// All coordinates, side by side.
+function drawProfile() {
   const n = scene.coordinates.length;
   let most = profile;
   for (let k = 0; k < n && rows[0]; k++)
     most = Math.max(most, Math.abs(rows[0][4 + k]) || 0);
   profile = most;
-  configuration.box = [-0.5, n - 0.5, -1.1 * most, 1.1 * most];
-  configuration.begin(false);
+  configuration.box = [0.5, n + 0.5, -1.1 * most, 1.1 * most];
+  const pen = configuration.begin(false);
+  pen.save();
+  configuration.axes(nevhTicks(1, n), nevhTicks(-1.1 * most, 1.1 * most),
+    "number of the coordinate, at " + when(), "coordinate" + unit(scene.coordinates[0].label));
   for (let i = list.length - 1; i >= 0; i--) {
     if (!rows[i] || list[i].width > 1) continue;
     pen.strokeStyle = pen.fillStyle = nevhColour(list[i].colour);
     pen.lineWidth = 1.5;
     const points = [];
-    for (let k = 0; k < n; k++) points.push(k, rows[i][4 + k]);
+    for (let k = 0; k < n; k++) points.push(k + 1, rows[i][4 + k]);
     configuration.line(points);
     for (let k = 0; k < n && n <= 64; k++)
-      configuration.mark(k, rows[i][4 + k], list[i].colour, 4);
+      configuration.mark(k + 1, rows[i][4 + k], list[i].colour, 4);
   }
+  pen.restore();
 }
 let profile = 1e-9;
 function drawParts(pen, i) {
@@ -90,7 +150,7 @@ function drawErrors() {
   if (histories[0]?.t.length) first = histories[0].t[0];
   high = Math.min(1e4, high * 2);
   low = Math.max(1e-17, Math.min(low, high / 1e3));
-  errors.box = [first, Math.max(end, first + 20 * S.dt),
+  errors.box = [first, ahead(first, Math.max(end, first + 20 * S.dt)),
     Math.floor(Math.log10(low)), Math.ceil(Math.log10(high))];
   const pen = errors.begin(false), powers = [];
   const by = Math.ceil((errors.box[3] - errors.box[2]) / 6);
@@ -103,14 +163,21 @@ function drawErrors() {
     if (list[i].width > 1) return;
     const points = [];
     h.t.forEach((t, j) => points.push(t, Math.log10(h.most[j]))); // none of 0
-    pen.strokeStyle = nevhColour(list[i].colour);
-    pen.lineWidth = 1.6;
-    pen.setLineDash(list[i].colour < 0 ? [4, 4] : NEVH_DASHES[i % 4]);
+    dashed(pen, i);
     errors.line(points);
+    pen.setLineDash([]);
+    errors.mark(...points.slice(-2), list[i].colour, 4);
   });
   pen.restore();
 }
 const unit = (label) => label ? " (" + label + ")" : "";
+const after = (label) => label ? " " + label : "";
+// What makes p dq/dt an energy, an angle being a number, where the scene has none.
+function momentumUnit(c) {
+  const parts = [scene.energy_label, scene.t_label, c.label];
+  return unit(c.momentum || (parts.some((text) => !/^[^ /*^()]+$/.test(text)) ? ""
+    : parts[0] + " " + parts[1] + (c.label === "rad" ? "" : "/" + c.label)));
+}
 
 // The part of the plane that is shown grows with the first orbit; before the first
 // step it is of the size of the start.
@@ -118,13 +185,16 @@ let stood = false;
 function choosePhaseBox() {
   const c = scene.coordinates[S.plane], trail = trails[0] || [];
   if (pulling && phaseBox) return;
+  const own = trail.filter((_, i) => i % 2 === 0);
+  turns = c.period > 0 && (!own.length || Math.max(...own) - Math.min(...own) > c.period / 2
+    || Math.abs(own[0] - c.period * Math.round(own[0] / c.period)) < 0.4 * c.period);
   let [q0, q1, p0, p1] = [Infinity, -Infinity, Infinity, -Infinity];
   for (let i = 0; i < trail.length; i += 2) {
     q0 = Math.min(q0, wrapped(trail[i], c)); q1 = Math.max(q1, wrapped(trail[i], c));
     p0 = Math.min(p0, trail[i + 1]); p1 = Math.max(p1, trail[i + 1]);
   }
   if (list[0] && rows[0] && !(q1 >= q0)) [q0, q1, p0, p1] = [-1, 1, -1, 1];
-  if (c.period > 0) { q0 = -c.period / 2; q1 = c.period / 2; }
+  if (turns) { q0 = -c.period / 2; q1 = c.period / 2; }
   const n = scene.coordinates.length, least = (from, q) => steps > 0 || !rows[0]
     ? Math.max(1e-3 * Math.abs(q), 1e-9)
     : 0.2 * Math.max(...rows[0].slice(from, from + n).map(Math.abs)) || 0.2;
@@ -133,27 +203,34 @@ function choosePhaseBox() {
     p0 >= phaseBox[2] && p1 <= phaseBox[3];
   if (inside) return;
   stood = steps === 0;
-  phaseBox = [q0 - (c.period > 0 ? 0 : 0.25 * dq), q1 + (c.period > 0 ? 0 : 0.25 * dq),
+  phaseBox = [q0 - (turns ? 0 : 0.25 * dq), q1 + (turns ? 0 : 0.25 * dq),
     p0 - 0.3 * dp, p1 + 0.3 * dp];
   if (scene.coordinates.length === 1) askLevels(phaseBox.slice());
 }
-const wrapped = (q, c) => c.period > 0
+// A coordinate with a period is shown within one of them, but where it stays near
+// the end of that: a pendulum that swings about the top.
+let turns = false;
+const wrapped = (q, c) => turns
   ? q - c.period * Math.round(q / c.period) : q;
-let asking = false;
+let asking = false, boxAsked = null;
 async function askLevels(box) {
-  if (asking || !rows[0]) return;
+  boxAsked = box;
+  if (asking) return;
   asking = true;
-  const nx = 72, ny = 54;
-  const answer = await ask({ ask: "levels", at: rows[0].slice(4), k: S.plane,
-    box, nx, ny });
+  while (boxAsked && rows[0]) {
+    const nx = 72, ny = 54, of = boxAsked;
+    boxAsked = null;
+    const answer = await ask({ ask: "levels", at: rows[0].slice(4), k: S.plane,
+      box: of, nx, ny });
+    if (!answer.ok) continue;
+    const finite = Array.from(answer.values).filter(Number.isFinite)
+      .sort((a, b) => a - b);
+    levels = [];
+    for (let i = 1; i < 14; i++)
+      levels.push(...nevhContour(answer.values, nx, ny, of,
+        finite[Math.floor(finite.length * i / 14)]));
+  }
   asking = false;
-  if (!answer.ok) return;
-  const finite = Array.from(answer.values).filter(Number.isFinite)
-    .sort((a, b) => a - b);
-  levels = [];
-  for (let i = 1; i < 14; i++)
-    levels.push(...nevhContour(answer.values, nx, ny, box,
-      finite[Math.floor(finite.length * i / 14)]));
 }
 function drawPhase() {
   const c = scene.coordinates[S.plane];
@@ -162,7 +239,7 @@ function drawPhase() {
   const pen = phase.begin(false);
   pen.save();
   phase.axes(nevhTicks(phaseBox[0], phaseBox[1]), nevhTicks(phaseBox[2],
-    phaseBox[3]), c.name + unit(c.label), "p_" + c.name);
+    phaseBox[3]), c.name + unit(c.label), "p_" + c.name + momentumUnit(c));
   pen.strokeStyle = phase.fore;
   pen.globalAlpha = 0.22;
   pen.lineWidth = 1;
@@ -177,7 +254,7 @@ function drawOrbit(pen, i, c) {
   let before = NaN;
   for (let j = 0; j < trail.length; j += 2) {
     const q = wrapped(trail[j], c);
-    if (c.period > 0 && Math.abs(q - before) > c.period / 2)
+    if (turns && Math.abs(q - before) > c.period / 2)
       points.push(NaN, NaN);
     points.push(q, trail[j + 1]);
     before = q;
@@ -234,7 +311,9 @@ function report(atOnce) {
   if (!atOnce && (playing ? now() - told < 5000 : told > 0)) return;
   told = now();
   at("status").textContent = spoken();
-  at("command").textContent = command();
+  // Lines end between options alone.
+  at("command").replaceChildren(...command().split(/ (?=--)/).flatMap((text, i) =>
+    [i ? " " : "", element("span", {}, text)]));
 }
 // Known to a third of what leaving out every second state changes, as a polygon's
 // area is.

@@ -58,7 +58,7 @@ const S = {
   exact: false, disc: false, plane: 0, speed: 0, start: null,
 };
 let scene = null, list = [], rows = [], pictures = [], results = [];
-let histories = [], trails = [], paths = [], playing = false, held = false, busy = false, due = 0, ahead = 0;
+let histories = [], trails = [], paths = [], playing = false, held = false, busy = false, due = 0;
 let limiting = 0, pulling = false, levels = null, seen = null, phaseBox = null, steps = 0, last = 0;
 
 function readFragment() {

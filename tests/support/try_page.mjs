@@ -202,6 +202,18 @@ await tried("pendulum", "integrators=verlet,rk4,euler&disc=1&dt=0.0625", async (
     start = await page.evaluate("S.start");
     check(start && near(start[0], to[0]) && near(start[2], to[1]),
       `a state dropped at ${to} starts at ${start}`);
+    // A drag that the browser takes over, as for scrolling, ends; fingers scroll the
+    // page over pictures in which nothing is dragged.
+    const [right, down] = await page.evaluate(`(() => { const box =
+      at("phase").getBoundingClientRect();
+      return [box.left + box.width / 2, box.top + box.height / 2]; })()`);
+    await page.pointer("mousePressed", right, down);
+    check(await page.until("pulling"), "is not dragged");
+    await page.evaluate("at('phase').dispatchEvent(new PointerEvent('pointercancel'))");
+    check(await page.until("!pulling", 10), "a drag that is taken over does not end");
+    await page.pointer("mouseReleased", right, down);
+    check(await page.evaluate(`["scene", "error"].every((id) =>
+      getComputedStyle(at(id)).touchAction === "auto")`), "pictures do not scroll");
     await saved(page, `${basename(program)}-page-narrow`);
     check(page.faults.length === 0, "kepler: console: " + page.faults.join("; "));
   } finally {
@@ -215,6 +227,30 @@ await tried("henon-heiles", "", async (page) => {
   const off = await page.evaluate(`(() => { setPlaying(false); return Math.hypot(
     pictures[0][0] - rows[0][4], pictures[0][1] - rows[0][5]); })()`);
   check(off === 0, "draws another point, off by " + off);
+});
+// One coordinate without a picture is drawn against time; a pendulum that stands on its
+// head is shown about the top, in one piece, over levels of all that is shown.
+await tried("kapitza", "", async (page) => {
+  check(await page.until("steps > 60"), "nothing moves");
+  await page.evaluate("setPlaying(false); quiet()");
+  check(await page.evaluate("configuration.box[1] >= rows[0][0] && " +
+    "configuration.box[2] > 2.8 && configuration.box[3] < 3.5"),
+  "does not draw phi against time");
+  check(await page.evaluate("phaseBox[0] > Math.PI/2 && phaseBox[1] < 3*Math.PI/2"),
+    "the plane does not show the top");
+  // A box that is asked for while the levels of another are made.
+  await page.evaluate(`askLevels(phaseBox.slice()); phaseBox[3] += 100;
+    askLevels(phaseBox.slice())`);
+  check(await page.until("!asking && levels.some((v, i) => i % 2 && v > 50)", 20),
+    "no levels of the later box");
+  check(await page.evaluate("!at('scenes').checkVisibility()"),
+    "offers scenes where there is one");
+  check(await page.evaluate("/● verlet .*■/.test(at('legend').textContent)"),
+    "no legend: " + await page.evaluate("at('legend').textContent"));
+  check(await page.evaluate("momentumUnit(scene.coordinates[0])") === " (J s)",
+    "the momentum has no unit");
+  await page.evaluate("at('share').click()");
+  check(await page.until("at('shared').textContent", 10), "does not say what it shares");
 });
 // The steps of twenty minutes of frames take no more memory than those of one: what is
 // kept is thinned when it is full, so the heap rises and falls by 0.6 MB.

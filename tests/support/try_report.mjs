@@ -66,9 +66,40 @@ const stands = async (page, step, what) => {
   check(shown === step, `${what}: step ${shown} for ${step}`);
 };
 
+// Of each picture the variant for that width is shown, whose texts are large enough,
+// lie within it, and over no other.
+async function legible(page, look) {
+  const faults = JSON.parse(await page.evaluate(`(() => {
+    const faults = [], figures = [...document.querySelectorAll("figure.sized")];
+    if (!figures.length) faults.push("no picture");
+    for (const figure of figures) {
+      const shown = [...figure.querySelectorAll("svg[role]")]
+        .filter((svg) => svg.checkVisibility());
+      if (shown.length !== 1 || !shown[0].classList.contains("${look}"))
+        faults.push("other drawings than one that is ${look}");
+      const box = shown[0].getBoundingClientRect();
+      const texts = [...shown[0].querySelectorAll("text")]
+        .filter((e) => e.textContent.trim())
+        .map((e) => [e.textContent.trim(), e.getBoundingClientRect()]);
+      texts.forEach(([text, a], i) => {
+        if (Math.max(a.width, a.height) < 10)
+          faults.push("small: " + text);
+        if (a.left < box.left - 1 || a.right > box.right + 1 ||
+          a.top < box.top - 1 || a.bottom > box.bottom + 1) faults.push("cut: " + text);
+        for (const [other, b] of texts.slice(i + 1))
+          if (Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 &&
+            Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 4)
+            faults.push(text + " over " + other);
+      });
+    }
+    return JSON.stringify(faults); })()`));
+  check(!faults.length, look + " pictures: " + faults.slice(0, 9).join("; "));
+}
+
 // It stands until it is asked to play, stops when it is asked to, and at its end.
 await tried("wide", {}, async (page, steps) => {
   check(await page.evaluate("film.controls.checkVisibility()"), "has no controls");
+  await legible(page, "broad");
   await stands(page, steps, "before it plays");
   await page.evaluate("film.play.focus()");
   await page.key("Enter", "Enter", "\r");
@@ -112,5 +143,6 @@ await tried("still", { size: [360, 800], still: true }, async (page, steps) => {
   await page.key("Home");
   await page.key("ArrowRight");
   await stands(page, 1, "an arrow where motion is not wanted");
+  await legible(page, "narrow");
 });
 ended();

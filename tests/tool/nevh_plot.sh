@@ -525,4 +525,24 @@ says 'signal 9'
 fake 'test "$1" = --version && exit; while read x; do echo $x >&2; done; exit 3'
 fakes 'talk much'
 says 'exit status 3\): set terminal svg'
+# A name that is too long for its axis is cut, its factor is not.
+cat >$work/long.nevh <<'END'
+[coordinates]
+displacement_of_the_first_mass_from_rest = 1e-9, 0
+displacement_of_the_second_mass_from_rest = 2e12, 0
+[effects]
+kinetic = p_displacement_of_the_first_mass_from_rest^2/2 + p_displacement_of_the_second_mass_from_rest^2/2
+springs = displacement_of_the_first_mass_from_rest^2/2 + displacement_of_the_second_mass_from_rest^2/2
+[labels]
+displacement_of_the_first_mass_from_rest = furlong per fortnight
+[run]
+t_end = 10
+dt = 0.1
+END
+draws run $work/long.nevh --plot-kind time --keep-plot-script $work/out.gp
+for label in 'displ[a-z_]*\.\.\. (10⁻⁹ furl' 'displacement[a-z_]*\.\.\. (10¹²)'; do
+    grep -q "^set ylabel \"$label" $work/out.gp ||
+        { fails "has no label $label"; grep '^set ylabel' $work/out.gp; }
+done
+
 exit $status

@@ -181,6 +181,7 @@ typedef struct {
     bool quiet, portable, all, diagnostics, impact, allow_code, header;
     struct { /* --plot and what belongs to it; NULL: not given */
         const char *file, *script;
+        const char *narrow; /* of a report: the same for a telephone */
         plot_kind kind;
     } plot;
     struct {

@@ -5,6 +5,8 @@
 #include <string.h>
 
 static const double title_letter = 0.63 * 14; /* pixels, at scale 1 */
+static const double narrow_width = 360;
+enum { TITLE_LINES = 2, NOTE_LINES = 3, NARROW_LINES = 9 };
 
 size_t plot_letter_bytes(const unsigned char *c) {
     size_t more = *c >= 0xf0 && *c < 0xf5   ? 3
@@ -73,8 +75,7 @@ static bool has_headings(const plot *p) {
 }
 
 /* As the picture is. */
-static void shape_panel(layout *l, const plot *p) {
-    static const double width = 560;
+static void shape_panel(layout *l, const plot *p, double width) {
     range x = plot_range_x(p, 0), y = plot_range_y(p, 0);
     double height = width * (y.high - y.low) / (x.high - x.low);
     l->panel_width = width;
@@ -105,8 +106,16 @@ static void choose_panels(layout *l, const plot *p, const target *t) {
         l->panel_width = fmax(fmin(1200 / (double)l->columns, 400), 200);
         l->panel_height = 0.8 * l->panel_width;
     }
+    if (t->narrow) {
+        double height = l->panel_height / l->panel_width;
+        l->columns = 1;
+        l->panel_width = narrow_width - l->left - l->right;
+        l->panel_height = p->stacked
+                              ? fmin(l->panel_height, 200)
+                              : fmin(fmax(height, 0.75), 1) * l->panel_width;
+    }
     if (p->panels == 1 && p->panel->equal)
-        shape_panel(l, p);
+        shape_panel(l, p, t->narrow ? l->panel_width : 560);
     if (t->medium == PLOT_TEXT) {
         double beside = l->left + l->right + l->legend;
         l->columns = 1;
@@ -130,14 +139,17 @@ axes plot_axes(const plot *p, size_t number, const layout *l, bool text) {
 }
 
 /* The numbers at the widest axis, and its label. */
-static double room_beside(const plot *p, const layout *l, bool text) {
+static double room_beside(const plot *p, const layout *l, const target *t) {
+    bool text = t->medium == PLOT_TEXT;
     size_t longest = 0;
     for (size_t i = 0; i < p->panels; i++) {
         axes a = plot_axes(p, i, l, text);
         size_t letters = plot_axis_letters(&a.y);
         longest = letters > longest ? letters : longest;
     }
-    return text ? (double)longest + 4 : 9 * (double)longest + 52;
+    return text        ? (double)longest + 4
+           : t->narrow ? 8.5 * (double)longest + 20
+                       : 9 * (double)longest + 52;
 }
 
 /* As it is cut into lines of so many letters. */
@@ -185,27 +197,40 @@ layout plot_lay_out(const plot *p, const target *t) {
     l.legend = lines ? l.letter * (double)(longest + 8) : 0;
     if (p->map.columns)
         l.legend = 17 * l.letter; /* the scale of colours */
+    else if (t->narrow) {
+        l.narrow = true;
+        l.legend = 0;
+    }
     l.left = (text ? 9 : 12) * l.letter;
     l.right = 3 * l.letter;
     l.top = (text || has_headings(p) ? 1.8 : 0.7) * l.line;
+    l.top += l.narrow ? 1.3 * l.line : 0;
     l.bottom = (text ? 3 : 3.7) * l.line;
     if (p->stacked && !text)
         l.bottom = 2.2 * l.line;
     choose_panels(&l, p, t);
-    l.left = room_beside(p, &l, text);
-    if (text)
+    l.left = room_beside(p, &l, t);
+    if (text || t->narrow)
         choose_panels(&l, p, t);
+    if (t->narrow) { /* other numbers at other sizes */
+        l.left = fmax(l.left, room_beside(p, &l, t));
+        choose_panels(&l, p, t);
+    }
     l.width = (l.left + l.panel_width + l.right) * (double)l.columns + l.legend;
     l.title_scale = title_scale(p, &l);
-    l.title_lines =
-        lines_of(p->title, plot_title_letters(&l), PLOT_TITLE_LINES);
-    l.note_lines = lines_of(p->note, plot_note_letters(&l), PLOT_NOTE_LINES);
+    l.title_lines = lines_of(p->title, plot_title_letters(&l),
+                             t->narrow ? NARROW_LINES : TITLE_LINES);
+    l.note_lines = lines_of(p->note, plot_note_letters(&l),
+                            t->narrow ? NARROW_LINES : NOTE_LINES);
     l.title = room_above(p, &l);
     l.height = (l.top + l.panel_height + l.bottom) * (double)l.rows + l.title;
     if (p->stacked && !text)
         l.height += 1.5 * l.line;
-    l.legend_apart = legend > l.panel_height;
-    l.height = fmax(l.height, l.title + l.top + legend);
+    if (l.narrow)
+        l.height += l.legend_height = lines ? legend : 0;
+    else
+        l.height = fmax(l.height, l.title + l.top + legend);
+    l.legend_apart = l.narrow || legend > l.panel_height;
     l.width = ceil(l.width); /* gnuplot takes whole pixels */
     l.height = ceil(l.height);
     return l;

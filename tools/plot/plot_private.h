@@ -102,6 +102,7 @@ typedef struct {
     bool colours;          /* of PLOT_TEXT */
     const char *file;      /* NULL: gnuplot's stdout */
     bool on_page; /* of a report: small, without points that are not seen */
+    bool narrow;  /* for a telephone: panels and legend one below the other */
 } target;
 void plot_script(const plot *, const target *, FILE *);
 
@@ -117,6 +118,8 @@ typedef struct {
     size_t title_lines, note_lines;
     double title_scale; /* of its letters */
     bool legend_apart;  /* it is longer than a panel */
+    bool narrow;        /* the legend is below, labels of y axes above */
+    double legend_height;
 } layout;
 /* What the axes of a panel show. */
 typedef struct {
@@ -139,7 +142,7 @@ void plot_script_looks(FILE *, const plot *);
 void plot_script_data(FILE *, const plot *, const layout *, bool thins);
 
 /* Names at the ends of the guides of a panel. */
-void plot_script_guides(FILE *, const plot *, size_t number);
+void plot_script_guides(FILE *, const plot *, size_t number, const layout *);
 
 /* The curves of a panel, with the legend of the whole plot if need be. */
 void plot_script_series(FILE *, const plot *, size_t number, bool legend,
@@ -175,9 +178,8 @@ void plot_quote_line(FILE *, const char *before, const char *text,
 /* The bytes of the text up to where a line of so many letters ends, at a space
    if there is one. */
 size_t plot_line_bytes(const char *text, size_t letters);
-enum { PLOT_NOTE_LINES = 3, PLOT_NOTE_FONT = 11 };
-size_t plot_note_letters(const layout *); /* of a line of the note */
-enum { PLOT_TITLE_LINES = 2 };
+enum { PLOT_NOTE_FONT = 11 };
+size_t plot_note_letters(const layout *);  /* of a line of the note */
 size_t plot_title_letters(const layout *); /* of a line of the title */
 
 /* plot_svg.c: the same picture of SVG in fewer bytes. */

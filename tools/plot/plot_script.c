@@ -89,34 +89,73 @@ static void print_axis(FILE *f, char letter, const axis *a) {
     fputs(a->count ? ")\n" : "", f);
 }
 
-/* As long as the panel and what is above and below it, if need be smaller. */
-static void print_y_label(FILE *f, const char *label, const layout *l) {
+/* A third of so many letters is the name's at least; the unit, which begins with a
+   factor, has the others.  To be freed. */
+static char *shorter_label(const char *label, size_t letters) {
+    const char *unit = strrchr(label, '(');
+    size_t name = unit ? plot_letters(label) - plot_letters(unit) : 0;
+    size_t least = letters / 3, unit_and_dots = plot_letters(label) - name + 4;
+    size_t kept =
+        letters > unit_and_dots + least ? letters - unit_and_dots : least;
+    size_t bytes = 0;
+    if (!unit || plot_letters(label) <= letters || name <= kept)
+        return text_print("%s", label);
+    while (kept--)
+        bytes += plot_letter_bytes((const unsigned char *)label + bytes);
+    return text_print("%.*s... %s", (int)bytes, label, unit);
+}
+
+/* Smaller where it has no room otherwise. */
+static void print_label(FILE *f, const char *before, const char *label,
+                        double room, const char *after) {
     static const double letter = 0.57, smallest = 0.75;
-    double room = l->panel_height + l->top + 0.8 * l->bottom;
     double letters = fmax(label ? (double)plot_letters(label) : 0, 1);
     double size = fmin(fmax(room / (letter * FONT * letters), smallest), 1);
-    char font[32];
-    snprintf(font, sizeof font, " font ',%.3g'", size * FONT);
-    plot_quote_line(f, "set ylabel ", label, room / (letter * FONT * size),
-                    font);
+    double most = fmax(room / (letter * FONT * size), 8);
+    char *text = shorter_label(label ? label : "", (size_t)most);
+    char font[64];
+    snprintf(font, sizeof font, " font ',%.3g'%s", size * FONT, after);
+    plot_quote_line(f, before, text, most, font);
+    free(text);
+}
+
+static double top_of(size_t number, const layout *l) {
+    double row = (double)(number / l->columns);
+    return l->height - l->title - l->top -
+           row * (l->top + l->panel_height + l->bottom);
+}
+
+/* top  of the panel, of the picture's height */
+static void print_y_label(FILE *f, const char *label, double top,
+                          const layout *l) {
+    double beside = l->panel_height + l->top + 0.8 * l->bottom;
+    char place[64];
+    snprintf(place, sizeof place, " at screen %.6f,%.6f left",
+             l->letter / l->width, top + 1.2 * l->line / l->height);
+    if (l->narrow)
+        print_label(f, "set label ", label, l->width - 2 * l->letter, place);
+    else
+        print_label(f, "set ylabel ", label, beside, "");
 }
 
 /* Text has no letters that lie on their side. */
-static void print_texts(FILE *f, const panel *on, const axes *a,
+static void print_texts(FILE *f, const panel *on, const axes *a, double top,
                         const layout *l, bool text) {
-    double width = l->panel_width / l->letter;
+    double width = l->panel_width + 2 * l->right;
     char *x = plot_axis_label(&a->x, on->x, text);
     char *y = plot_axis_label(&a->y, on->y, text);
-    plot_quote_line(f, "set xlabel ", x, width, text ? "" : " offset 0,0.5");
     if (text) {
+        plot_quote_line(f, "set xlabel ", x, l->panel_width, "");
         char *title =
             text_print("%s%s%s", y ? y : "", on->heading && y ? ", " : "",
                        on->heading ? on->heading : "");
-        plot_quote_line(f, "set title ", title, width + l->left, "");
+        plot_quote_line(f, "set title ", title, l->panel_width + l->left, "");
         free(title);
     } else {
-        print_y_label(f, y, l);
-        plot_quote_line(f, "set title ", on->heading, width, " offset 0,-0.5");
+        print_label(f, "set xlabel ", x, width, " offset 0,0.5");
+        print_y_label(f, y, top, l);
+        print_label(f, "set title ", on->heading, width,
+                    l->narrow ? " offset 0,0.4" : " offset 0,-0.5");
     }
     free(x);
     free(y);
@@ -130,15 +169,13 @@ static void print_axes(FILE *f, const plot *p, size_t number, const layout *l,
     panel on = p->panel[number];
     if (p->stacked && number + 1 < p->panels)
         on.x = NULL;
-    print_texts(f, &on, &a, l, text);
+    print_texts(f, &on, &a, top_of(number, l) / l->height, l, text);
 }
 
 static void print_place(FILE *f, size_t number, const layout *l) {
     double left = l->left + (double)(number % l->columns) *
                                 (l->left + l->panel_width + l->right);
-    double top =
-        l->height - l->title - l->top -
-        (double)(number / l->columns) * (l->top + l->panel_height + l->bottom);
+    double top = top_of(number, l);
     fprintf(f,
             "set lmargin at screen %.6f\nset rmargin at screen %.6f\n"
             "set tmargin at screen %.6f\nset bmargin at screen %.6f\n",
@@ -182,12 +219,18 @@ static void print_title(FILE *f, const plot *p, const layout *l) {
                 text ? 1 : 0.95, l, font);
 }
 
+static double legend_top(const layout *l) {
+    return l->narrow ? l->legend_height / l->height
+                     : 1 - (l->title + l->top) / l->height;
+}
+
 static void print_key(FILE *f, const layout *l, bool text) {
     fprintf(f,
             "set key at screen %.6f,%.6f left top vertical maxcols 1 Left "
             "reverse samplen %d spacing 1.2 noautotitle\n",
-            (l->width - l->legend) / l->width,
-            1 - (l->title + l->top) / l->height, text ? 3 : 2);
+            l->narrow ? l->letter / l->width
+                      : (l->width - l->legend) / l->width,
+            legend_top(l), text ? 3 : 2);
 }
 
 static void print_frame(FILE *f, const plot *p, const layout *l, bool text) {
@@ -208,8 +251,7 @@ static void print_legend(FILE *f, const plot *p, const layout *l, bool text) {
     fprintf(f,
             "set lmargin at screen %.6f\nset rmargin at screen 1\n"
             "set tmargin at screen %.6f\nset bmargin at screen 0\n",
-            (l->width - l->legend) / l->width,
-            1 - (l->title + l->top) / l->height);
+            l->narrow ? 0 : (l->width - l->legend) / l->width, legend_top(l));
     fputs("unset logscale\nunset border\nunset tics\nunset label\n"
           "set xlabel ''\nset ylabel ''\nset title ''\n"
           "set xrange [0:1]\nset yrange [0:1]\n",
@@ -220,7 +262,7 @@ static void print_legend(FILE *f, const plot *p, const layout *l, bool text) {
 
 static void print_picture(FILE *f, const plot *p, const layout *l, bool text,
                           bool on_page) {
-    bool apart = l->legend > 0 && l->legend_apart;
+    bool apart = l->legend + l->legend_height > 0 && l->legend_apart;
     bool several = p->panels > 1 || apart;
     print_frame(f, p, l, text);
     plot_script_looks(f, p);
@@ -234,7 +276,7 @@ static void print_picture(FILE *f, const plot *p, const layout *l, bool text,
         if (i)
             fputs("unset label\n", f);
         if (!text)
-            plot_script_guides(f, p, i);
+            plot_script_guides(f, p, i, l);
         print_place(f, i, l);
         print_axes(f, p, i, l, text);
         fputs("unset key\n", f);

@@ -240,19 +240,58 @@ static void print_series(FILE *f, const plot *p, size_t i, bool here,
                 i + 1, bob_size * p->series[i].size);
 }
 
-void plot_script_guides(FILE *f, const plot *p, size_t number) {
+typedef struct {
+    double left, right, middle; /* pixels */
+} guide_name;
+
+static bool is_covered(const guide_name *all, size_t count,
+                       const guide_name *one) {
+    for (size_t i = 0; i < count; i++)
+        if (one->left < all[i].right && all[i].left < one->right &&
+            fabs(one->middle - all[i].middle) < 1.2 * PLOT_NOTE_FONT)
+            return true;
+    return false;
+}
+
+/* Near the guide's end, or further down it, so that it is within the picture and over
+   no other; false where it has no place. */
+static bool place_name(const series *s, const plot_screen *on, double right,
+                       const guide_name *others, size_t count, guide_name *to) {
+    enum { PLACES = 10 };
+    pair first = plot_in_pixels(on, s->point[0]);
+    pair last = plot_in_pixels(on, s->point[s->count - 1]);
+    double width = 0.6 * PLOT_NOTE_FONT * (double)plot_letters(s->name);
+    for (int k = 0; k < PLACES; k++) {
+        double share = (double)k / PLACES;
+        double x = last.x + share * (first.x - last.x) + 4;
+        *to = (guide_name){x, x + width, last.y + share * (first.y - last.y)};
+        if (to->right < right && !is_covered(others, count, to))
+            return true;
+    }
+    return false;
+}
+
+void plot_script_guides(FILE *f, const plot *p, size_t number,
+                        const layout *l) {
+    plot_screen on = screen_of(p, number, l);
+    guide_name *names = tool_allocate(p->count + 1, sizeof *names);
+    size_t count = 0;
     for (size_t i = 0; i < p->count; i++) {
         const series *s = &p->series[i];
         if (s->panel != number || s->form != PLOT_GUIDE || !s->count)
             continue;
+        guide_name *to = &names[count];
+        if (!place_name(s, &on, on.width + l->right, names, count, to))
+            continue;
+        count++;
         fputs("set label ", f);
         plot_quote(f, s->name, PLOT_LONGEST_NAME);
         fprintf(f,
-                " at %.10g,%.10g left offset 0.5,0 noenhanced "
+                " at graph %.6f,%.6f left noenhanced "
                 "textcolor rgb '#777777' font ',%d'\n",
-                s->point[s->count - 1].x, s->point[s->count - 1].y,
-                PLOT_NOTE_FONT);
+                to->left / on.width, to->middle / on.height, PLOT_NOTE_FONT);
     }
+    free(names);
 }
 
 void plot_script_series(FILE *f, const plot *p, size_t number, bool legend,

@@ -186,15 +186,23 @@ static int draw_shorter(const plot *p, const target *t, FILE *to) {
     return status;
 }
 
-static int draw(const plot *p, const options *o, const target *t) {
+static int draw_to_file(const plot *p, const char *file, const target *t) {
     output out;
-    if (in_terminal(o))
-        return draw_in_terminal(p, t);
-    if (output_open(&out, o->plot.file))
+    if (output_open(&out, file))
         return TOOL_USAGE;
     return output_close(&out, t->on_page && t->medium == PLOT_SVG
                                   ? draw_shorter(p, t, out.stream)
                                   : draw_to(p, t, out.stream));
+}
+
+static int draw(const plot *p, const options *o, const target *t) {
+    if (in_terminal(o))
+        return draw_in_terminal(p, t);
+    int status = draw_to_file(p, o->plot.file, t);
+    target narrow = *t;
+    narrow.narrow = true;
+    return status || !o->plot.narrow ? status
+                                     : draw_to_file(p, o->plot.narrow, &narrow);
 }
 
 static bool is_empty(const plot *p) {

@@ -251,15 +251,14 @@ void film_html(const film *f, FILE *to) {
     view v = view_of(&f->reel[0]);
     int top = HEAD + v.height;
     put_words(f, to);
-    fprintf(
-        to,
-        "<figure>\n<svg role=\"img\" style=\"min-width:0\" viewBox=\"0 0 %d "
-        "%d\" font-family=\"sans-serif\" font-size=\"60\">\n<title>The "
-        "motion by %s and by rk4</title>\n<desc>Left: %s. Right: rk4. "
-        "Below: the energy errors of both, %s blue, rk4 orange. Without a "
-        "script, and before it plays, the picture shows step %zu.</desc>\n",
-        WIDTH, top + HEAD + STRIP + FOOT - 50, f->reel->integrator,
-        f->reel->integrator, f->reel->integrator, f->most);
+    fprintf(to,
+            "<figure>\n<svg role=\"img\" viewBox=\"0 0 %d "
+            "%d\" font-family=\"sans-serif\" font-size=\"60\">\n<title>The "
+            "motion by %s and by rk4</title>\n<desc>Left: %s. Right: rk4. "
+            "Below: the energy errors of both, %s blue, rk4 orange. Without a "
+            "script, and before it plays, the picture shows step %zu.</desc>\n",
+            WIDTH, top + HEAD + STRIP + FOOT - 50, f->reel->integrator,
+            f->reel->integrator, f->reel->integrator, f->most);
     put_panel(f, 0, &v, to);
     put_panel(f, 1, &v, to);
     put_strip(f, top, to);

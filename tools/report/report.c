@@ -10,10 +10,10 @@
 
 typedef struct {
     const options *given;
-    char *folder, *rows, *picture, *messages; /* files of one part */
-    bool draws;                               /* gnuplot is at hand */
-    size_t films;                             /* on the page */
-    size_t parts;                             /* so far */
+    char *folder, *rows, *picture, *narrow, *messages; /* files of one part */
+    bool draws;                                        /* gnuplot is at hand */
+    size_t films;                                      /* on the page */
+    size_t parts;                                      /* so far */
 } report_work;
 
 typedef struct {
@@ -165,6 +165,7 @@ static report_part make_part(const report_work *w, const kind_of_part *kind,
     o.operands = (list){words, 2};
     o.file = kind->rows ? w->rows : NULL;
     o.plot.file = kind->draws && w->draws ? w->picture : NULL;
+    o.plot.narrow = w->narrow;
     o.plot.kind = kind->kind;
     o.chaos.starts = kind->run == chaos ? STARTS : 0;
     o.search.budget = kind->budget;
@@ -172,6 +173,7 @@ static report_part make_part(const report_work *w, const kind_of_part *kind,
     o.quiet = !kind->rows;
     unlink(w->rows);
     unlink(w->picture);
+    unlink(w->narrow);
     report_part part = {.title = kind->title,
                         .about = kind->about,
                         .undrawn = kind->draws && !w->draws};
@@ -179,6 +181,7 @@ static report_part make_part(const report_work *w, const kind_of_part *kind,
         part.status = run_heard(kind->run, &o, w->messages);
     part.html = text_read(w->rows);
     part.picture = text_read(w->picture);
+    part.narrow = text_read(w->narrow);
     part.messages = text_read(w->messages);
     part.command = command_of(w, scene, kind->arguments);
     return part;
@@ -231,6 +234,7 @@ static void free_part(report_part *part) {
     free(part->command);
     free(part->html);
     free(part->picture);
+    free(part->narrow);
     free(part->messages);
 }
 
@@ -314,6 +318,7 @@ static int make_folder(report_work *w) {
                            w->folder, strerror(errno));
     w->rows = text_print("%s/rows.html", w->folder);
     w->picture = text_print("%s/picture.svg", w->folder);
+    w->narrow = text_print("%s/narrow.svg", w->folder);
     w->messages = text_print("%s/messages", w->folder);
     return TOOL_OK;
 }
@@ -322,11 +327,13 @@ static void free_work(report_work *w) {
     if (w->rows) {
         unlink(w->rows);
         unlink(w->picture);
+        unlink(w->narrow);
         unlink(w->messages);
         rmdir(w->folder);
     }
     free(w->rows);
     free(w->picture);
+    free(w->narrow);
     free(w->messages);
     free(w->folder);
 }

@@ -21,10 +21,12 @@ static const char style[] =
     "tbody{border-bottom:1px solid var(--line)}\n"
     ".number{text-align:right;font-variant-numeric:tabular-nums;"
     "white-space:nowrap}\n"
-    "figure{margin:1rem 0;background:#fff;color:#000;border-radius:4px;"
-    "overflow-x:auto}\n"
-    "svg{display:block;width:100%;height:auto;min-width:36rem;"
-    "max-height:95vh}\n"
+    "figure{margin:1rem 0;background:#fff;color:#000;border-radius:4px}\n"
+    "svg{display:block;width:100%;height:auto;max-height:95vh}\n"
+    ".sized{container-type:inline-size}\n"
+    ".narrow{display:none;max-width:32rem;max-height:none}\n"
+    "@container(max-width:42rem){.broad{display:none}"
+    ".narrow{display:block}}\n"
     "figcaption{padding:.3rem .6rem}input{width:50%}\n"
     "pre{overflow-x:auto;font-size:.85rem}\n"
     "dd{overflow-x:auto;overflow-y:hidden;margin:.3rem 0 .3rem 1.5rem}\n"
@@ -37,7 +39,7 @@ static const char wide_style[] =
     "body{max-width:120rem}\n"
     ".variants{display:grid;gap:0 2rem;"
     "grid-template-columns:repeat(auto-fit,minmax(min(100%,32rem),1fr))}\n"
-    ".variants>section{min-width:0}.variants svg{min-width:30rem}\n";
+    ".variants>section{min-width:0}\n";
 
 void html_head(FILE *f, const char *title, bool wide) {
     fputs("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n"
@@ -85,26 +87,34 @@ static void put_prefixed(FILE *f, const char *text, size_t number) {
 }
 
 /* The drawing without the header of a file.  Several stand in one page, so that
-   names of its parts get a prefix. */
-static void put_picture(FILE *f, const report_part *p, size_t number) {
+   names of its parts get a prefix: the number. */
+static void put_drawing(FILE *f, const report_part *p, const char *drawing,
+                        const char *look, size_t number) {
     static const char after[] = "</desc>";
-    const char *tag = strstr(p->picture, "<svg");
-    const char *body = strstr(p->picture, after);
-    const char *box = strstr(p->picture, "viewBox=");
+    const char *tag = strstr(drawing, "<svg");
+    const char *body = strstr(drawing, after);
+    const char *box = strstr(drawing, "viewBox=");
     if (!tag || !body || !box || box > body)
         return;
-    fprintf(
-        f,
-        "<figure tabindex=\"0\">\n<svg role=\"img\" aria-labelledby=\"t%zu\" %.*s "
-        "xmlns=\"http://www.w3.org/2000/svg\" "
-        "xmlns:xlink=\"http://www.w3.org/1999/xlink\">\n<title "
-        "id=\"t%zu\">",
-        number, (int)strcspn(box, "\n"), box, number);
+    fprintf(f,
+            "<svg class=\"%s\" role=\"img\" aria-labelledby=\"t%zu\" %.*s "
+            "xmlns=\"http://www.w3.org/2000/svg\" "
+            "xmlns:xlink=\"http://www.w3.org/1999/xlink\">\n<title "
+            "id=\"t%zu\">",
+            look, number, (int)strcspn(box, "\n"), box, number);
     html_text(f, p->title);
     fputs(". ", f);
     html_text(f, p->about);
     fputs("</title>", f);
     put_prefixed(f, body + sizeof after - 1, number);
+}
+
+/* Twice: one of both is shown, by the room that there is. */
+static void put_picture(FILE *f, const report_part *p, size_t number) {
+    fputs("<figure class=\"sized\">\n", f);
+    put_drawing(f, p, p->picture, "broad", 2 * number);
+    if (p->narrow)
+        put_drawing(f, p, p->narrow, "narrow", 2 * number + 1);
     fputs("</figure>\n", f);
 }
 

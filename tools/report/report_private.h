@@ -12,6 +12,7 @@ typedef struct {
     const char *variant;       /* NULL: there is one */
     const char *by;            /* before the command; NULL: Made by */
     char *command, *html, *picture, *messages;
+    char *narrow; /* the picture for a telephone */
     int status;
     bool undrawn; /* its picture is left out */
 } report_part;
