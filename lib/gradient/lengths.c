@@ -7,6 +7,9 @@
 
 /* A length is where this part of a variation is not that of a quadratic. */
 static const double not_quadratic = 0.2;
+/* Of the kinetic energy: less is a force that acts elsewhere, and says nothing of
+   the momenta. */
+static const double out_of_reach = 0x1p-26;
 enum { FARTHEST = 400, LEAP = 8 }; /* powers of two from the first guess */
 enum { FEWEST_AHEAD = 2, MOST_AHEAD = 30 }; /* distances at once */
 enum { NEARER = 3, NEAREST = 24 }; /* below a distance that may be periods */
@@ -253,6 +256,13 @@ static void find_energy(nevh__step_selection *e, const nevh__planned *term,
     *energy = fmax(*energy, isfinite(whole) ? whole : 0);
 }
 
+/* The same of momenta alone. */
+static void find_kinetic(nevh__step_selection *e, const nevh__planned *term,
+                         size_t instance, size_t k, size_t i, double *energy) {
+    if (i >= e->field->n)
+        find_energy(e, term, instance, k, i, energy);
+}
+
 /* The rest: where H varies by that energy. */
 static void find_straight(nevh__step_selection *e, const nevh__planned *term,
                           size_t instance, size_t k, size_t i, double *energy) {
@@ -345,10 +355,14 @@ void nevh__find_curvatures(nevh__step_selection *e, double changes[],
 }
 
 void nevh__find_lengths(nevh__step_selection *e) {
-    double energy = 0, last = 1;
+    double energy = 0, kinetic = 0, last = 1;
     find_over_lanes(e, &energy);
     if (energy == 0)
         visit_all(e, find_energy, &energy);
+    else
+        visit_all(e, find_kinetic, &kinetic);
+    if (energy < out_of_reach * kinetic)
+        energy = kinetic;
     visit_all(e, find_straight, &energy); /* kept apart by their sign */
     for (size_t i = 0; i < 2 * e->field->n; i++) {
         last = e->length[i] != 0 ? fabs(e->length[i]) : last;

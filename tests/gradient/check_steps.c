@@ -398,3 +398,28 @@ TEST_RANGE(all_lanes_are_seen, 2, WIDEST + 1) {
                       "lane %zu of %zu is not seen", lane, width);
     nevh_system_free(s);
 }
+
+/* A hill of width 1, with the particle far outside: V is 7e-44 there, and T 0.5. */
+static double hill(double t, const double q[], const double p[],
+                   const double c[], const void *params) {
+    (void)t, (void)p, (void)c, (void)params;
+    return 0.3 * exp(-q[0] * q[0] - q[1] * q[1]);
+}
+
+static double hill_energy(const double q[], const double p[]) {
+    return (p[0] * p[0] + p[1] * p[1]) / 2 + hill(0, q, p, NULL, NULL);
+}
+
+TEST_RANGE(a_distant_force_does_not_scale_momenta, 3, 12) {
+    double q[] = {-_i, 0.3}, p[] = {1, 0}, start = hill_energy(q, p);
+    nevh_system *s =
+        in_plane(1, &(nevh_term){.effect = "hill", .nq = 2, .value = hill});
+    nevh_options o = {.gradient = nevh_central4, .q = q, .p = p};
+    nevh_stepper *m = nevh_stepper_new(s, nevh_gauss8, &o);
+    int status = nevh_run(m, 0, 0.05, 40 * (size_t)_i, q, p, NULL, 0);
+    ck_assert_msg(status == 0, "%s", nevh_stepper_message(m));
+    ck_assert_double_gt(q[0], 0);
+    ck_assert_double_lt(fabs(hill_energy(q, p) - start), 1e-9);
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}

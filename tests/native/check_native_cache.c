@@ -11,6 +11,8 @@
 TEST(no_compiler) {
     nevh_scene *scene = parsed(pendulum);
     make_cache();
+    const char *compiler = getenv("CC");
+    char *before = compiler ? strdup(compiler) : NULL;
     setenv("CC", "no-such-compiler --really", 1);
     pair x = pair_new(scene, nevh_verlet, nevh_exact, false, cache);
     ck_assert(!nevh_stepper_native(x.native, NULL));
@@ -23,6 +25,10 @@ TEST(no_compiler) {
     ck_assert(!nevh_stepper_native(x.native, NULL));
     assert_says(x.why, "the C compiler fails");
     pair_free(&x);
+    unsetenv("CC");
+    if (before)
+        setenv("CC", before, 1);
+    free(before);
     nevh_scene_free(scene);
     remove_cache();
 }

@@ -1,10 +1,14 @@
 /* nevh tests: measurements, and how suites are run.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#define _GNU_SOURCE
 #include "support.h"
 #include <math.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 int order_on(const problem *b, const nevh_integrator *scheme) {
     if (scheme == nevh_itoh_abe && b->n == 1 && b->separable)
@@ -290,21 +294,27 @@ void register_test(test_entry *entry) {
     *at = entry;
 }
 
+/* Seconds that a test may take where all are in one process; 0: Check's timer
+   ends those that have a process each. */
+static unsigned limit;
+
+static void limit_test(void) {
+    if (limit == 0)
+        return;
+    signal(SIGALRM, SIG_DFL); /* Check's handler would kill the process group */
+    alarm(limit);
+}
+
 static void add_test(Suite *suite, const test_entry *entry) {
     TCase *cases = tcase_create((*entry->test)->name);
     if (entry->tag)
         tcase_set_tags(cases, entry->tag);
+    tcase_add_checked_fixture(cases, limit_test, NULL);
     tcase_add_loop_test(cases, *entry->test, entry->from, entry->until());
     suite_add_tcase(suite, cases);
 }
 
-int main(int argc, char **argv) {
-    (void)argc;
-    const char *slash = strrchr(argv[0], '/');
-    Suite *suite = suite_create(slash ? slash + 1 : argv[0]);
-    for (const test_entry *entry = registered; entry; entry = entry->next)
-        add_test(suite, entry);
-    SRunner *runner = srunner_create(suite);
+static int run(SRunner *runner) {
     srunner_run_all(runner, CK_ENV);
     int failed = srunner_ntests_failed(runner), skips = 0;
     TestResult **results = srunner_results(runner);
@@ -314,5 +324,45 @@ int main(int argc, char **argv) {
     srunner_free(runner);
     if (skips)
         printf("skipped: %d\n", skips);
-    return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+    return failed;
+}
+
+/* What the process of all tests returns at its end; neither is the status of a
+   test that ends it, or of a sanitizer. */
+enum { ALL_PASSED = 93, SOME_FAILED = 94 };
+
+/* Runs all tests in one process, since a process each is most of the time of
+   short ones.  Returns its status, or -1 where a signal ended it. */
+static int run_together(SRunner *runner) {
+    const char *seconds = getenv("CK_DEFAULT_TIMEOUT");
+    fflush(NULL);
+    pid_t child = fork();
+    if (child == 0) {
+        limit = seconds ? (unsigned)atoi(seconds) : 4;
+        srunner_set_fork_status(runner, CK_NOFORK);
+        exit(run(runner) == 0 ? ALL_PASSED : SOME_FAILED);
+    }
+    int status;
+    if (child < 0 || waitpid(child, &status, 0) < 0 || !WIFEXITED(status))
+        return -1;
+    return WEXITSTATUS(status);
+}
+
+int main(int argc, char **argv) {
+    (void)argc;
+    const char *slash = strrchr(argv[0], '/');
+    Suite *suite = suite_create(slash ? slash + 1 : argv[0]);
+    for (const test_entry *entry = registered; entry; entry = entry->next)
+        add_test(suite, entry);
+    SRunner *runner = srunner_create(suite);
+    if (getenv("CK_FORK"))
+        return run(runner) == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+    int status = run_together(runner);
+    if (status == ALL_PASSED)
+        return EXIT_SUCCESS;
+    if (status != SOME_FAILED) {
+        puts("A test ended the process of all tests; now each has its own.");
+        run(runner);
+    }
+    return EXIT_FAILURE;
 }
