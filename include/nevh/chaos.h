@@ -67,21 +67,25 @@ NEVH_API int nevh_chaos_restart(nevh_chaos *, const double q[],
 NEVH_API int nevh_chaos_run(nevh_chaos *, double until);
 
 typedef enum {
-    NEVH_EARLY,   /* too early to say */
-    NEVH_CHAOTIC, /* displacements grow exponentially */
-    NEVH_REGULAR  /* they grow as those of a regular orbit */
+    NEVH_EARLY,         /* too early to say */
+    NEVH_CHAOTIC,       /* displacements grow exponentially */
+    NEVH_REGULAR,       /* they grow as those of a regular orbit */
+    NEVH_UNSTABLE_ORBIT /* they grow exponentially, but that is not chaos */
 } nevh_chaos_verdict;
-/* "early", "chaotic", "regular"; "unknown" for other numbers. */
+/* "early", "chaotic", "regular", "unstable"; "unknown" for other numbers. */
 NEVH_API const char *nevh_chaos_verdict_name(nevh_chaos_verdict);
 
 /* Of the orbit itself; of all starts where it says so.
 
-   CHAOTIC  the largest exponent is above twice what linear growth leaves, SALI
-            has fallen below 1e-8 (1e-6 by differences), and MEGNO is above 4.  So is an orbit that
-            stays at an unstable equilibrium.
-   REGULAR  MEGNO is within 0.5 of 2, or below, the exponent is below 2 of its
-            errors, and the run is 100 times as long as the fastest motion near
-            the start takes for one turn */
+   CHAOTIC  the largest exponent is above two of its errors, SALI has fallen below
+            1e-8 (1e-6 by differences), and MEGNO is above 4
+   REGULAR  MEGNO is below 2.5, the exponent is below two of its errors, and the
+            run is 100 times as long as the fastest motion near the start takes
+            for one turn
+   UNSTABLE as CHAOTIC, but there is one degree of freedom and H does not read t;
+            or the orbit rests at an equilibrium; or it runs away as its
+            neighbours do; or it is alone so: at least 4 starts, of which most are
+            regular */
 typedef struct {
     double t;
     nevh_chaos_verdict verdict;
@@ -94,7 +98,7 @@ typedef struct {
                         exponent in chaos [P. M. Cincotta, C. M. Giordano, C.
                         Simo, Physica D 182 (2003) 151] */
     size_t starts; /* of all that run, */
-    size_t agreeing; /* those that have this verdict */
+    size_t agreeing; /* those of which the same is found, each by itself */
 } nevh_chaos_report;
 /* Zeros, and EARLY, before the first step and for NULL. */
 NEVH_API nevh_chaos_report nevh_chaos_result(const nevh_chaos *);

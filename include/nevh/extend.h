@@ -41,6 +41,10 @@ typedef struct {
     bool opaque;
     /* Takes no gradients: a transform of time is refused. */
     bool own_slopes;
+    /* Of one orbit: whether a step of h from such memory, of either sign, is
+       read off what it holds, and stays on the orbit that was taken.  Points of
+       sections are then looked for there.  NULL: memory holds no orbit. */
+    bool (*holds)(const nevh_work *, const double memory[], double h);
 } nevh_kernel;
 
 struct nevh_integrator {

@@ -17,9 +17,10 @@ enum { NEVH_FEWEST_SAMPLES = 64 };
 typedef struct {
     double frequency;        /* radians a unit of time, 0 or more */
     double amplitude, phase; /* t is 0 at the first sample */
-    double error; /* of the frequency: an estimate, from a window of less
-                     order, or the width of the peak where that does not show
-                     the line */
+    double error; /* of the frequency, an estimate: the largest of the drift,
+                     the difference from a window of less order, and the last
+                     move of Newton's method; the width of the peak where a half
+                     or that window does not show the line */
     double drift; /* the frequency in the second half less that in the first;
                      NAN where a half does not show the line */
 } nevh_spectral_line;
@@ -28,8 +29,9 @@ typedef struct {
    the solar system, Icarus 88 (1990) 266-291; Introduction to frequency map
    analysis, in Hamiltonian Systems with Three or More Degrees of Freedom (1999)
    134-150].  A line is where the integral of the function times exp(-i w t) and a
-   window is largest; lines are fitted together, taken off, and the next one is
-   looked for; at the end each is refined with all others taken off.  For a
+   window is largest; lines are fitted together with their frequencies, taken off,
+   and the next one is looked for.  Two lines are told apart where they beat twice
+   over the length.  For a
    quasi-periodic function the error falls with a high power of the length.
 
    h        time between samples

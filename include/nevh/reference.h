@@ -69,6 +69,9 @@ typedef struct {
                        the steps that are compared with it, so that it sees what
                        they see; 0: a 128th of the time.  Shorter ones than may
                        be afforded are not asked for. */
+    bool finest; /* Taylor series in place of an exact solution whose own error
+                    is above 1e-15, where they have a smaller one and can be
+                    afforded */
 } nevh_reference_options;
 /* options  borrowed for the call; NULL: zeros */
 NEVH_API nevh_reference *

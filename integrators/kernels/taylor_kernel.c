@@ -424,6 +424,11 @@ static int step_lanes(nevh_work *w, double t, double h, double q[],
     return status;
 }
 
+static bool holds(const nevh_work *w, const double memory[], double h) {
+    chain z = chain_at(w, (double *)memory);
+    return reaches(&z, h) && *z.since * (*z.since + h) >= 0;
+}
+
 static int step(nevh_work *w, double t, double h, double q[], double p[]) {
     if (w->accounts && w->width > 1)
         return nevh_work_fail(w, NEVH_EINVAL,
@@ -437,4 +442,5 @@ const nevh_kernel nevh__taylor_kernel = {.plan = plan,
                                          .step = step,
                                          .clear = clear,
                                          .has_friction = true,
-                                         .own_slopes = true};
+                                         .own_slopes = true,
+                                         .holds = holds};

@@ -8,7 +8,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { STARTS = 8, MOST_LANES = 1 << 16, LOOKS_A_PERIOD = 24 };
+enum {
+    STARTS = 8,
+    MOST_LANES = 1 << 16,
+    LOOKS_A_PERIOD = 24,
+    MOST_STRIDE = 64, /* steps */
+    STATES_NEAR = 7
+};
 
 static int out_of_memory(nevh_chaos *c) {
     return nevh__fail(&c->report, NEVH_ENOMEM, "out of memory");
@@ -70,22 +76,46 @@ static int plan_lengths(nevh_chaos *c, const nevh_integrator *scheme) {
     return c->report.status;
 }
 
+/* How fast displacements turn, or grow, at a state; 0 where that is unknown. */
+static double rate_at(const nevh_chaos *c, nevh_rates *r, const double z[]) {
+    double frequency = 0, growth = 0;
+    if (nevh_rates_at(r, c->t_start, z, z + c->n, &frequency, &growth))
+        return 0;
+    double rate = fmax(frequency, isfinite(growth) ? growth : 0);
+    return isfinite(rate) ? rate : 0;
+}
+
+/* The median of states that are a length of H away: forces may be straight where
+   the orbit starts, as those of a pendulum at a right angle. */
+static double rate_near(const nevh_chaos *c, nevh_rates *r) {
+    double rates[STATES_NEAR];
+    uint64_t random = 1;
+    for (size_t i = 0; i < STATES_NEAR; i++) {
+        for (size_t k = 0; k < 2 * c->n; k++)
+            c->place[k] =
+                c->own[k] + c->options.scale[k] * nevh__random(&random);
+        double rate = rate_at(c, r, c->place);
+        size_t at = i;
+        for (; at > 0 && rates[at - 1] > rate; at--)
+            rates[at] = rates[at - 1];
+        rates[at] = rate;
+    }
+    return rates[STATES_NEAR / 2];
+}
+
 /* Time in which the fastest motion turns once, or grows by exp(2 pi). */
 static int plan_period(nevh_chaos *c) {
     nevh_options o = c->options;
-    double frequency = 0, growth = 0;
     o.gradient = NULL;
     nevh_rates *r = nevh_rates_new(c->system, &o);
     if (!r)
         return out_of_memory(c);
-    int status = nevh_rates_at(r, c->t_start, c->own, c->own + c->n, &frequency,
-                               &growth);
+    double rate = fmax(rate_at(c, r, c->own), rate_near(c, r) / 2);
     nevh_rates_free(r);
-    double rate = fmax(frequency, isfinite(growth) ? growth : 0);
-    c->period = !status && rate > 0 ? 2 * acos(-1) / rate : 8 * c->dt;
+    c->period = rate > 0 ? 2 * acos(-1) / rate : 8 * c->dt;
     c->turn = (size_t)fmax(1, fmin(1e6, c->period / c->dt));
     c->first_stride =
-        (size_t)fmax(1, fmin(1e6, c->period / c->dt / LOOKS_A_PERIOD));
+        (size_t)fmax(1, fmin(MOST_STRIDE, c->period / c->dt / LOOKS_A_PERIOD));
     return NEVH_OK;
 }
 
@@ -204,7 +234,8 @@ static bool plan_start(const nevh_chaos *c, nevh__chaos_start *s) {
     s->norm = nevh__array(vectors, sizeof *s->norm);
     s->log = nevh__array(nevh__chaos_logs(c) * NEVH__BINS, sizeof *s->log);
     s->gali = nevh__array(c->deviations + 1, sizeof *s->gali);
-    return s->w && s->norm && s->log && s->gali;
+    s->first = nevh__array(2 * c->n, sizeof *s->first);
+    return s->w && s->norm && s->log && s->gali && s->first;
 }
 
 static int plan_rooms(nevh_chaos *c) {
@@ -278,6 +309,7 @@ void nevh_chaos_free(nevh_chaos *c) {
         free(c->start[i].norm);
         free(c->start[i].log);
         free(c->start[i].gali);
+        free(c->start[i].first);
     }
     nevh__chaos_batch_free(c->batch);
     nevh_stepper_free(c->stepper);

@@ -38,6 +38,8 @@ typedef struct {
     double *log;  /* logs x NEVH__BINS: growth in each bin */
     double *gali; /* deviations + 1 */
     double sali;
+    double *first;    /* 2n: where the orbit started, in units of the scale */
+    double moved;     /* how far from there it was at most */
     double moment;    /* int t dlog|w| of the first deviation */
     double indicator; /* 2 moment/t */
     double area;      /* int of that over time */

@@ -72,6 +72,28 @@ double nevh__chaos_aligned(const nevh_chaos *c) {
     return c->tangent ? aligned : aligned_by_differences;
 }
 
+/* In a plane orbits do not mix. */
+static bool has_room(const nevh_chaos *c) {
+    return c->n > 1 || !(nevh_system_traits(c->system) & NEVH_AUTONOMOUS);
+}
+
+/* All growth of displacements, as a logarithm. */
+static double growth_of(const nevh_chaos *c, size_t start) {
+    const nevh__chaos_start *s = &c->start[start];
+    double sum = 0;
+    for (size_t b = 0; b <= s->clock.bin && b < NEVH__BINS; b++)
+        sum += s->log[b];
+    return sum;
+}
+
+/* Whether the orbit itself goes on changing as chaos needs: it neither rests nor
+   runs away as fast as its neighbours do. */
+static bool wanders(const nevh_chaos *c, size_t start) {
+    static const double at_rest = 1e-6; /* in lengths of H */
+    double moved = c->start[start].moved;
+    return moved > at_rest && log(moved) < growth_of(c, start) / 2;
+}
+
 static nevh_chaos_verdict verdict_on(const nevh_chaos *c, size_t start) {
     double t = elapsed(c, start);
     if (!(t > 0))
@@ -79,9 +101,10 @@ static nevh_chaos_verdict verdict_on(const nevh_chaos *c, size_t start) {
     estimate e = estimate_start(c, start, 0);
     double least = resolution(c, start), error = hypot(e.error, least);
     double megno = nevh__chaos_megno(c, start);
-    if (e.rate > 2 * least && megno > 4 &&
+    if (e.rate > 2 * error && megno > 4 &&
         c->start[start].sali < nevh__chaos_aligned(c))
-        return NEVH_CHAOTIC;
+        return has_room(c) && wanders(c, start) ? NEVH_CHAOTIC
+                                                : NEVH_UNSTABLE_ORBIT;
     if (e.rate < 2 * error && megno < 2.5 && t >= TURNS * c->period &&
         isfinite(error))
         return NEVH_REGULAR;
@@ -113,17 +136,34 @@ double nevh_chaos_exponent(const nevh_chaos *c, size_t i, double *error) {
     return mean;
 }
 
+static size_t starts_of(const nevh_chaos *c, nevh_chaos_verdict verdict) {
+    size_t count = 0;
+    for (size_t k = 0; k < c->starts; k++)
+        count += verdict_on(c, k) == verdict;
+    return count;
+}
+
+/* Where the orbit seems chaotic alone, it is an unstable one among others. */
+static nevh_chaos_verdict verdict_among_starts(const nevh_chaos *c) {
+    static const size_t enough = 4; /* starts to judge by */
+    nevh_chaos_verdict own = verdict_on(c, 0);
+    if (own != NEVH_CHAOTIC || c->starts < enough ||
+        starts_of(c, NEVH_CHAOTIC) > 1)
+        return own;
+    return 2 * starts_of(c, NEVH_REGULAR) > c->starts ? NEVH_UNSTABLE_ORBIT
+                                                      : NEVH_EARLY;
+}
+
 nevh_chaos_report nevh_chaos_result(const nevh_chaos *c) {
     nevh_chaos_report r = {0};
     if (!c || !c->planned)
         return r;
     r.t = c->t_start + elapsed(c, 0);
-    r.verdict = verdict_on(c, 0);
+    r.verdict = verdict_among_starts(c);
     r.sali = c->start[0].sali;
     r.megno = nevh__chaos_megno(c, 0);
     r.starts = c->starts;
-    for (size_t k = 0; k < c->starts; k++)
-        r.agreeing += verdict_on(c, k) == r.verdict;
+    r.agreeing = starts_of(c, verdict_on(c, 0));
     return r;
 }
 
@@ -133,7 +173,8 @@ double nevh_chaos_gali(const nevh_chaos *c, size_t k) {
 }
 
 const char *nevh_chaos_verdict_name(nevh_chaos_verdict verdict) {
-    static const char *const names[] = {"early", "chaotic", "regular"};
+    static const char *const names[] = {"early", "chaotic", "regular",
+                                        "unstable"};
     size_t i = (size_t)verdict;
     return i < sizeof names / sizeof *names ? names[i] : "unknown";
 }

@@ -75,7 +75,7 @@ static void draw_vectors(nevh_chaos *c, size_t start, uint64_t *state) {
 
 static void forget(nevh_chaos *c, nevh__chaos_start *s) {
     memset(s->log, 0, nevh__chaos_logs(c) * NEVH__BINS * sizeof *s->log);
-    s->moment = s->indicator = s->area = 0;
+    s->moment = s->indicator = s->area = s->moved = 0;
     s->sali = sqrt(2);
     for (size_t k = 0; k <= c->deviations; k++)
         s->gali[k] = 1;
@@ -100,6 +100,8 @@ void nevh__chaos_place(nevh_chaos *c, size_t start, const double z[],
                        uint64_t *drawn_from) {
     forget(c, &c->start[start]);
     put_state(c, start, z);
+    for (size_t k = 0; k < 2 * c->n; k++)
+        c->start[start].first[k] = z[k] / c->options.scale[k];
     draw_vectors(c, start, drawn_from);
     for (size_t v = 0; v < nevh__chaos_vectors(c); v++)
         nevh__chaos_put(c, start, v);

@@ -152,11 +152,24 @@ static void align_orbit(nevh_chaos *c, size_t start) {
         }
 }
 
+static void look_at_orbit(nevh_chaos *c, size_t start) {
+    nevh__chaos_start *s = &c->start[start];
+    size_t lane = start * c->lanes, from = c->tangent ? c->n : 0;
+    for (size_t k = 0; k < c->n; k++) {
+        const double *scale = c->options.scale + k;
+        double q = row_q(c, k)[lane] / scale[0];
+        double p = row_p(c, from + k)[lane] / scale[c->n];
+        s->moved = fmax(s->moved, fabs(q - s->first[k]));
+        s->moved = fmax(s->moved, fabs(p - s->first[c->n + k]));
+    }
+}
+
 /* returns  the largest growth; NAN where something is not finite */
 static double look_at_start(nevh_chaos *c, size_t start, double t0, double t1) {
     nevh__chaos_start *s = &c->start[start];
     double most = 0, before = s->indicator;
     align_orbit(c, start);
+    look_at_orbit(c, start);
     for (size_t v = 0; v < c->deviations; v++) {
         double growth = look_at_deviation(c, start, v);
         if (!isfinite(growth))

@@ -2,13 +2,12 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "system/system_private.h"
 #include <gsl/gsl_fft_real.h>
-#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <nevh/frequencies.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { ORDER = 5, LESS = 3, ROUNDS = 3 };
+enum { ORDER = 5, LESS = 3, ROUNDS = 20 };
 static const double pi = 3.14159265358979323846;
 
 /* Samples of -1 ... 1, in units of half their length. */
@@ -19,6 +18,7 @@ typedef struct {
     double *rest, *window; /* count each */
     size_t lines;
     double *w, *cosine, *sine; /* of each line: round the middle */
+    double *move, *before;     /* by which w was last off; w before a line */
     double mean;
     size_t size;   /* of the transform, a power of 2 */
     double *power; /* size */
@@ -128,57 +128,121 @@ static void take_off(analysis *a, size_t but) {
     }
 }
 
-static double basis(const analysis *a, size_t i, double t) {
-    return i == 0  ? 1
-           : i % 2 ? cos(a->w[(i - 1) / 2] * t)
-                   : sin(a->w[(i - 1) / 2] * t);
+/* 1, then cosine and sine of each line, then what the line changes by where its
+   frequency does, in units of 1/half: in f, `most` of them. */
+static void basis(const analysis *a, double t, size_t most, double f[]) {
+    size_t n = 2 * a->lines + 1;
+    f[0] = 1;
+    for (size_t i = 0; i < a->lines; i++) {
+        double c = f[2 * i + 1] = cos(a->w[i] * t);
+        double s = f[2 * i + 2] = sin(a->w[i] * t);
+        if (n < most)
+            f[n + i] = t / a->half * (a->sine[i] * c - a->cosine[i] * s);
+    }
 }
 
-/* Mean, cosines and sines by least squares under the window. */
-static bool fit(analysis *a) {
-    size_t n = 2 * a->lines + 1;
-    double *m = nevh__array(n * n + 2 * n, sizeof *m);
-    void *ask = nevh__array(4 * n, sizeof *m); /* GSL would abort */
-    free(ask);
-    if (!m || !ask) {
-        free(m);
-        return false;
+/* Solves m x = b, m symmetric and not negative, by Cholesky's factors; b becomes x.
+   What depends on unknowns before it is left at 0. */
+static void solve(double m[], double b[], size_t n) {
+    static const double dependent = 1e-14;
+    for (size_t j = 0; j < n; j++) {
+        double *row = m + j * n, own = row[j];
+        for (size_t i = 0; i < j; i++) {
+            for (size_t k = 0; k < i; k++)
+                row[i] -= row[k] * m[i * n + k];
+            row[i] = m[i * n + i] > 0 ? row[i] / m[i * n + i] : 0;
+            row[j] -= row[i] * row[i];
+            b[j] -= row[i] * b[i];
+        }
+        row[j] = row[j] > dependent * own ? sqrt(row[j]) : 0;
+        b[j] = row[j] > 0 ? b[j] / row[j] : 0;
     }
+    for (size_t j = n; j-- > 0;) {
+        for (size_t i = j + 1; i < n; i++)
+            b[j] -= m[i * n + j] * b[i];
+        b[j] = m[j * n + j] > 0 ? b[j] / m[j * n + j] : 0;
+    }
+}
+
+/* Mean, cosines and sines by least squares under the window; with `moves`,
+   together with changes of frequencies to first order, which are in it then. */
+static bool fit(analysis *a, double moves[]) {
+    size_t n = (moves ? 3 : 2) * a->lines + 1;
+    double *m = nevh__array(n * n + 2 * n, sizeof *m);
+    if (!m)
+        return false;
     double *b = m + n * n, *f = b + n;
     for (size_t k = 0; k < a->count; k++) {
-        double t = time_of(a, k);
-        for (size_t i = 0; i < n; i++)
-            f[i] = basis(a, i, t);
+        basis(a, time_of(a, k), n, f);
         for (size_t i = 0; i < n; i++) {
-            b[i] += a->window[k] * f[i] * a->values[k];
-            for (size_t j = 0; j < n; j++)
-                m[i * n + j] += a->window[k] * f[i] * f[j];
+            double part = a->window[k] * f[i];
+            b[i] += part * a->values[k];
+            for (size_t j = 0; j <= i; j++)
+                m[i * n + j] += part * f[j];
         }
     }
-    gsl_matrix_view matrix = gsl_matrix_view_array(m, n, n);
-    gsl_vector_view right = gsl_vector_view_array(b, n);
-    bool solved = !gsl_linalg_HH_svx(&matrix.matrix, &right.vector);
-    for (size_t i = 0; solved && i < a->lines; i++) {
+    solve(m, b, n);
+    a->mean = b[0];
+    for (size_t i = 0; i < a->lines; i++) {
         a->cosine[i] = b[2 * i + 1];
         a->sine[i] = b[2 * i + 2];
+        if (moves)
+            moves[i] = b[2 * a->lines + 1 + i] / a->half;
     }
-    if (solved)
-        a->mean = b[0];
     free(m);
-    return solved;
+    return true;
 }
 
 static double amplitude(const analysis *a, size_t i) {
     return hypot(a->cosine[i], a->sine[i]);
 }
 
-/* Each line anew, with all others taken off. */
-static void refine_all(analysis *a) {
-    double width = resolution(a);
-    for (size_t i = 0; i < a->lines; i++) {
-        take_off(a, i);
-        a->w[i] = refine(a, fmax(a->w[i] - width, width / 8), a->w[i] + width);
+/* All lines together, as their peaks overlap: Newton's method, as long as moves
+   get smaller.  They end at what rounding does. */
+static bool refine_all(analysis *a) {
+    static const double still = 1e-16, slower = 0.7;
+    double before = resolution(a);
+    for (int i = 0; i < ROUNDS; i++) {
+        double most = 0, part = 0;
+        if (!fit(a, a->move))
+            return false;
+        for (size_t k = 0; k < a->lines; k++) {
+            most = fmax(most, fabs(a->move[k]));
+            part = fmax(part, fabs(a->move[k]) / a->w[k]);
+        }
+        if (!(most < before))
+            break;
+        for (size_t k = 0; k < a->lines; k++)
+            a->w[k] = fmax(a->w[k] + a->move[k], resolution(a) / 8);
+        if (part < still)
+            break;
+        before = slower * most;
     }
+    return fit(a, NULL);
+}
+
+/* The line that came last is left out again where it and another are one. */
+static bool split_line(const analysis *a) {
+    for (size_t i = 0; i < a->lines; i++)
+        for (size_t k = 0; k < i; k++)
+            if (fabs(a->w[i] - a->w[k]) < resolution(a) / 2)
+                return true;
+    return false;
+}
+
+/* Adds a line near w.  returns  false where memory is out */
+static bool add_line(analysis *a, double w, bool *split) {
+    size_t bytes = a->lines * sizeof *a->w;
+    memcpy(a->before, a->w, bytes);
+    a->w[a->lines++] = w;
+    if (!fit(a, NULL) || !refine_all(a))
+        return false;
+    *split = split_line(a);
+    if (!*split)
+        return true;
+    a->lines--;
+    memcpy(a->w, a->before, bytes);
+    return fit(a, NULL) && refine_all(a);
 }
 
 static double largest_rest(const analysis *a) {
@@ -199,10 +263,11 @@ static bool is_double(const analysis *a, double w) {
 static bool find_lines(analysis *a, size_t most) {
     static const double nothing = 1e-12;
     double largest = 0;
+    bool split;
     for (size_t k = 0; k < a->count; k++)
         largest = fmax(largest, fabs(a->values[k]));
     make_window(a, ORDER);
-    if (!fit(a))
+    if (!fit(a, NULL))
         return false;
     while (a->lines < most) {
         take_off(a, a->lines);
@@ -211,14 +276,10 @@ static bool find_lines(analysis *a, size_t most) {
         double w = search(a);
         if (is_double(a, w))
             break;
-        a->w[a->lines++] = w;
-        if (!fit(a))
+        if (!add_line(a, w, &split))
             return false;
-    }
-    for (int i = 0; i < ROUNDS; i++) {
-        refine_all(a);
-        if (!fit(a))
-            return false;
+        if (split)
+            break;
     }
     return true;
 }
@@ -232,13 +293,15 @@ static bool open(analysis *a, double h, size_t count, const double values[],
     while (a->size < 2 * count)
         a->size *= 2;
     a->rest = nevh__array(2 * count, sizeof(double));
-    a->w = nevh__array(3 * most, sizeof(double));
+    a->w = nevh__array(5 * most, sizeof(double));
     a->power = nevh__array(a->size, sizeof(double));
     if (!a->rest || !a->w || !a->power)
         return false;
     a->window = a->rest + count;
     a->cosine = a->w + most;
     a->sine = a->cosine + most;
+    a->move = a->sine + most;
+    a->before = a->move + most;
     return true;
 }
 
@@ -270,7 +333,10 @@ static bool describe(analysis *a, double h, nevh_spectral_line lines[],
         double first = frequency_in(a, &half, i, 0, LESS);
         double second = frequency_in(a, &half, i, a->count - count, LESS);
         double less = frequency_in(a, &again, i, 0, LESS);
-        double error = isnan(less) ? resolution(a) : fabs(less - a->w[i]);
+        double error = fmax(fabs(less - a->w[i]), fabs(second - first));
+        error = fmax(error, fabs(a->move[i]));
+        if (isnan(less) || isnan(second - first))
+            error = resolution(a);
         double phase = atan2(-a->sine[i], a->cosine[i]) - a->w[i] * a->half;
         lines[(*found)++] = (nevh_spectral_line){
             a->w[i], amplitude(a, i), remainder(phase, 2 * pi),

@@ -141,6 +141,40 @@ static int use_exact(nevh_reference *r) {
     return NEVH_OK;
 }
 
+static void forget_ranges(nevh_reference *r) {
+    memcpy(r->low, r->start, 2 * r->n * sizeof *r->low);
+    memcpy(r->high, r->start, 2 * r->n * sizeof *r->high);
+}
+
+/* Series in place of an exact solution whose constants, or phase, have too few
+   digits; the solution where series are no better, or cost too much. */
+static int use_exact_or_series(nevh_reference *r) {
+    int status = use_exact(r);
+    if (status || !r->finest || r->error <= nevh__reference_wanted)
+        return status;
+    nevh__exact_solution *exact = r->exact;
+    double error = r->error, whole = r->horizon;
+    r->exact = NULL;
+    forget_ranges(r);
+    status = nevh__reference_series(r);
+    if (!status && r->horizon == whole && r->error < error) {
+        nevh__exact_free(exact);
+        return NEVH_OK;
+    }
+    nevh__reference_series_free(r->series);
+    r->series = NULL;
+    r->exact = exact;
+    r->integrator = NULL;
+    r->horizon = whole;
+    r->end = NEVH_REFERENCE_WHOLE;
+    r->exponent = r->growth = NAN;
+    r->report = (nevh__report){0};
+    forget_ranges(r);
+    return status == NEVH_ENOMEM
+               ? nevh__fail(&r->report, status, "out of memory")
+               : use_exact(r);
+}
+
 static int use_run(nevh_reference *r) {
     bool asked = r->integrator == nevh_taylor;
     int status =
@@ -183,7 +217,7 @@ static int make(nevh_reference *r) {
                                        r->start, r->start + r->n);
     if (status)
         return nevh__fail(&r->report, status, "out of memory");
-    return r->exact ? use_exact(r) : use_run(r);
+    return r->exact ? use_exact_or_series(r) : use_run(r);
 }
 
 static bool allocate(nevh_reference *r, const double q[], const double p[]) {
@@ -247,6 +281,7 @@ nevh_reference *nevh_reference_with(const nevh_system *s,
     r->error = NAN;
     r->exponent = r->growth = NAN;
     r->longest = o->longest;
+    r->finest = o->finest;
     r->integrator = o->integrator;
     if (allocate(r, q, p) && take_kinds(r, o->kind) && make(r) != NEVH_ENOMEM)
         return r;

@@ -31,6 +31,7 @@ struct nevh_reference {
     double error, horizon, exponent, growth;
     nevh_reference_end end;
     double longest;                        /* step of a run; 0: not said */
+    bool finest;                           /* as the options say */
     nevh__exact_solution *exact;           /* NULL: a run */
     struct nevh__reference_series *series; /* NULL: a run of another kind */
     const nevh_integrator *integrator;
@@ -95,6 +96,9 @@ bool nevh__spread_add(nevh__spread *, double part, double growth);
 double nevh__spread_rate(const nevh__spread *, double time);
 /* Whether it grows in most quarters of the time. */
 bool nevh__spread_steady(const nevh__spread *);
+
+/* Of the own error, in ranges. */
+static const double nevh__reference_wanted = 1e-15;
 
 /* Bytes of checkpoints, and of remembered states. */
 enum { NEVH__MOST_TRACK = 16 << 20, NEVH__MOST_MEMO = 32 << 20 };

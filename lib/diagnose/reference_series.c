@@ -15,11 +15,10 @@
 
 typedef NEVH__FINE(nevh__orbit) orbit;
 
-static const double usual = 1e-20;  /* tolerance of the finer run */
-static const double finer = 10;     /* than the other one */
-static const double apart = 1e-3;   /* as the header says */
-static const double wanted = 1e-15; /* of the own error */
-static const double certain = 2;    /* the difference times this is the error */
+static const double usual = 1e-20; /* tolerance of the finer run */
+static const double finer = 10;    /* than the other one */
+static const double apart = 1e-3;  /* as the header says */
+static const double certain = 2;   /* the difference times this is the error */
 static const double most_work = 3e9; /* of two runs: about three seconds */
 enum { LOOKS = 6, MOST_KEPT = 64 << 20 };
 
@@ -293,7 +292,7 @@ static chain *chain_new(nevh_reference *r, double tolerance,
     if (!status) {
         *c =
             (chain){.until = parted ? first->until : r->t1,
-                    .limit = parted ? wanted / certain : apart,
+                    .limit = parted ? nevh__reference_wanted / certain : apart,
                     .foreseen = first ? (double)first->count : 0,
                     .rates = nevh__array(r->n, sizeof *c->rates),
                     .value = nevh__array(2 * r->n, sizeof *c->value),
@@ -339,8 +338,9 @@ static void end_at(nevh_reference *r, const chain *c) {
 static void refine(nevh_reference *r) {
     double finest = ldexp(1, -NEVH__FINE_BITS);
     double error = error_of(r, r->series);
-    double tolerance = usual * fmin(wanted / (4 * error), 1 / finer);
-    if (error <= wanted || finest > usual / finer)
+    double tolerance =
+        usual * fmin(nevh__reference_wanted / (4 * error), 1 / finer);
+    if (error <= nevh__reference_wanted || finest > usual / finer)
         return;
     chain *c = chain_new(r, fmax(tolerance, finest), r->series);
     bool better = c && error_of(r, c) < error;
@@ -357,9 +357,9 @@ static void describe(nevh_reference *r, bool dear) {
     const char *why = dear
                           ? " (a smaller one costs too much)"
                           : " (the digits of its numbers allow no smaller one)";
-    int used =
-        snprintf(r->text, sizeof r->text, "taylor in %d bits, own error %.0e%s",
-                 NEVH__FINE_BITS, r->error, r->error > wanted ? why : "");
+    int used = snprintf(r->text, sizeof r->text,
+                        "taylor in %d bits, own error %.0e%s", NEVH__FINE_BITS,
+                        r->error, r->error > nevh__reference_wanted ? why : "");
     size_t left = sizeof r->text - (size_t)used;
     if (isfinite(r->horizon))
         snprintf(r->text + used, left, ", until %st = %.4g",

@@ -126,10 +126,14 @@ static void load_states(nevh_ensemble *e, size_t lane) {
         e->run_q[k] = e->q[at];
         e->run_p[k] = e->p[at];
     }
-    for (size_t row = 0; row < e->stepper->rows; row++)
-        x->memory[row] = e->ago1.memory[row * e->width + lane];
+    for (size_t row = 0; row < e->stepper->rows; row++) {
+        size_t at = row * e->width + lane;
+        x->memory[row] = e->ago1.memory[at];
+        e->run_memory[row] = e->stepper->work.memory[at];
+    }
     x->q_after = e->run_q;
     x->p_after = e->run_p;
+    x->memory_after = e->run_memory;
 }
 
 /* Whether all values are finite; else the orbit fails, as it does alone. */

@@ -167,6 +167,7 @@ static void lay_out(nevh__arena *a, void *ensemble) {
     e->wide_q = copies ? numbers(a, n * stride) : e->q;
     e->wide_p = copies ? numbers(a, n * stride) : e->p;
     e->run_q = numbers(a, n);
+    e->run_memory = numbers(a, e->stepper->rows);
     e->run_p = numbers(a, n);
     e->q1 = numbers(a, n);
     e->p1 = numbers(a, n);

@@ -72,6 +72,7 @@ struct nevh_ensemble {
     nevh__lane *lanes;     /* width */
     double *q, *p;         /* n rows of `width` */
     double *run_q, *run_p; /* n each: of nevh_run_until */
+    double *run_memory;    /* of one lane, after a step */
     nevh__snapshot now;    /* of values alone, and times */
     nevh__snapshot ago1, ago2;
     nevh__record *records; /* n_outcomes rows of `width` */

@@ -240,6 +240,7 @@ static int tell(nevh_sections *x) {
 
 int nevh__sections_search(nevh_sections *x) {
     int status = NEVH_OK;
+    x->tried = NAN;
     for (size_t i = 0; !status && i < x->count; i++)
         status = look(x, &x->states[i]);
     return status ? status : tell(x);
@@ -268,6 +269,7 @@ static int pass(nevh_sections *x, double t, const double q[],
     x->h = x->stepper->last_h;
     x->q_after = q;
     x->p_after = p;
+    x->memory_after = x->stepper->work.memory;
     int status = search(x);
     for (nevh__section_state *k = x->states; k < x->states + x->count; k++) {
         k->value = k->value_after;

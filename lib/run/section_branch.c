@@ -10,15 +10,46 @@ enum { MOST_TRIALS = 100 };
 static const double certain = 4 * DBL_EPSILON; /* part of a step */
 static const double jump = 0.01; /* of the difference of the ends */
 
+static bool holds(const nevh_sections *x, const double memory[], double h) {
+    const nevh_work *w = &x->branch->work;
+    const nevh_kernel *kernel = w->integrator->kernel;
+    return kernel->holds && kernel->holds(w, memory, h);
+}
+
+static void branch_off(nevh_sections *x, const double q[], const double p[],
+                       const double memory[]) {
+    const nevh_stepper *s = x->branch;
+    size_t size = s->work.size * sizeof(double);
+    memcpy(x->q_try, q, size);
+    memcpy(x->p_try, p, size);
+    memcpy(s->work.memory, memory, s->rows * s->work.width * sizeof(double));
+}
+
+/* The part of the step at hand, as a time, from whose end one of h is to branch
+   off: the last such step or the whole one, where its memory holds the orbit. */
+static double branch_at(const nevh_sections *x, double h) {
+    if (holds(x, x->memory, h))
+        return 0;
+    if (holds(x, x->memory_after, h - x->h))
+        return x->h;
+    return holds(x, x->branch->work.memory, h - x->tried) ? x->tried : 0;
+}
+
 /* A step of h from where the step at hand begins to q_try, p_try. */
 static int take_step(nevh_sections *x, double h) {
     nevh_stepper *s = x->branch;
-    size_t size = s->work.size * sizeof(double);
-    memcpy(x->q_try, x->q, size);
-    memcpy(x->p_try, x->p, size);
-    memcpy(s->work.memory, x->memory, s->rows * s->work.width * sizeof(double));
-    int status = nevh__advance(s, x->t, h, x->q_try, x->p_try);
-    return status ? nevh__fail_as(&x->report, &s->report) : NEVH_OK;
+    double from = branch_at(x, h);
+    if (from == 0)
+        branch_off(x, x->q, x->p, x->memory);
+    else if (from == x->h)
+        branch_off(x, x->q_after, x->p_after, x->memory_after);
+    int status = nevh__advance(s, x->t + from, h - from, x->q_try, x->p_try);
+    x->tried = status ? NAN : h;
+    if (status)
+        return nevh__fail_as(&x->report, &s->report);
+    if (from != 0)
+        s->last_t = x->t + h;
+    return NEVH_OK;
 }
 
 double nevh__section_due(const nevh_sections *x, const nevh__section_state *k) {

@@ -58,7 +58,8 @@ struct nevh_sections {
     double t, *q, *p, *memory;
     /* Where it ends, and its length. */
     double t_after, h;
-    const double *q_after, *p_after;
+    const double *q_after, *p_after, *memory_after;
+    double tried; /* its part that the branch has taken, as a time; NAN: none */
 
     double *q_try, *p_try; /* of a shorter step, or near a state */
     double *dq, *dp;       /* the flow there */

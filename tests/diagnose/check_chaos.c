@@ -220,6 +220,58 @@ TEST(chaos_and_order_are_told_apart) {
     tear_down(&s);
 }
 
+/* Displacements grow exponentially, and there is no chaos: in a plane, at an
+   equilibrium, on an escape, on a periodic orbit among tori.  Of the last two
+   no more is asked for than that they are not called chaotic on the way. */
+static const struct {
+    const char *start, *hamiltonian;
+    double until;
+    bool certain;
+} unstable[] = {
+    {"x = pi", "H = p_x^2/2 - cos(x)", 20, true},
+    {"x = 0\np_x = 2", "H = p_x^2/2 - cos(x)", 20, true},
+    {"x = 0.1", "H = p_x^2/2 - x^2/2", 30, true},
+    {"x = 0.1\ny = 0.3", "H = (p_x^2 + p_y^2)/2 - x^2/2 + y^2", 100, true},
+    {"x = 1\np_x = 0.3", "H = p_x^2/2 + (1 + 0.4*cos(2*t))*x^2/2", 300, true},
+    {"x = 0\ny = 0", "H = (p_x^2 + p_y^2)/2 - cos(x) + cos(y) - cos(x - y)", 60,
+     true},
+    {"x = 1.414213", "H = p_x^2/2 - x^2/2 + x^4/4", 100, false},
+    {"x = 0\ny = 0.7\np_y = 0.3",
+     "H = (p_x^2 + p_y^2 - x^2)/2 + x^4/4 + y^4/4 + y^2/2", 100, false},
+};
+
+TEST_EACH(instability_is_not_called_chaos, sizeof unstable / sizeof *unstable) {
+    setup s;
+    set_up(&s, unstable[_i].start, unstable[_i].hamiltonian, nevh_blanes_moan4,
+           0.05);
+    run(&s, unstable[_i].until);
+    nevh_chaos_verdict verdict = nevh_chaos_result(s.chaos).verdict;
+    ck_assert_int_ne(verdict, NEVH_CHAOTIC);
+    if (unstable[_i].certain)
+        ck_assert_int_eq(verdict, NEVH_UNSTABLE_ORBIT);
+    tear_down(&s);
+}
+
+/* Where the curvature of H vanishes at the start, that is no measure of time. */
+TEST(a_start_of_straight_forces_is_like_others) {
+    setup s;
+    double error, value;
+    set_up(&s, "x = pi/2", "H = p_x^2/2 - cos(x)", nevh_blanes_moan4, 0.1);
+    run(&s, 3000);
+    ck_assert_int_eq(nevh_chaos_result(s.chaos).verdict, NEVH_REGULAR);
+    tear_down(&s);
+    set_up(&s, "x = pi/2\ny = pi/2",
+           "H = (p_x^2 + 2*p_y^2 - 2*p_x*p_y*cos(x - y))/(2*(1 + sin(x - y)^2))"
+           " - 9.8*(2*cos(x) + cos(y))",
+           nevh_gauss4, 0.04);
+    run(&s, 200);
+    value = nevh_chaos_exponent(s.chaos, 0, &error);
+    ck_assert_int_eq(nevh_chaos_result(s.chaos).verdict, NEVH_CHAOTIC);
+    ck_assert_double_lt(fabs(value - 0.92), 2 * hypot(error, 0.015));
+    ck_assert_int_eq(nevh_chaos_run(s.chaos, 1000), NEVH_OK);
+    tear_down(&s);
+}
+
 TEST(a_short_run_says_nothing) {
     setup s;
     set_up_henon(&s, -0.25, nevh_verlet, 0.1);
@@ -399,5 +451,6 @@ TEST(an_orbit_that_escapes_says_when) {
 TEST(names_of_verdicts) {
     ck_assert_str_eq(nevh_chaos_verdict_name(NEVH_CHAOTIC), "chaotic");
     ck_assert_str_eq(nevh_chaos_verdict_name(NEVH_REGULAR), "regular");
+    ck_assert_str_eq(nevh_chaos_verdict_name(NEVH_UNSTABLE_ORBIT), "unstable");
     ck_assert_str_eq(nevh_chaos_verdict_name((nevh_chaos_verdict)9), "unknown");
 }

@@ -46,6 +46,28 @@ TEST(lines_of_a_sum_are_found) {
     ck_assert_double_eq_tol(lines[0].drift, 5e-4, 1e-6);
 }
 
+/* Two lines, some tenths of a peak's width to some widths apart: whether they are
+   told apart or not, none is claimed with digits that are false. */
+TEST_EACH(errors_of_near_lines_hold_the_truth, 16) {
+    double apart = 0.15 / pow(1.5, _i), h = 0.1;
+    nevh_spectral_line lines[LINES];
+    size_t found;
+    for (size_t k = 0; k < SAMPLES; k++) {
+        double t = h * (double)k;
+        values[k] = cos(t) + 0.7 * cos((1 + apart) * t + 1);
+    }
+    ck_assert_int_eq(nevh_frequencies(h, SAMPLES, values, LINES, lines, &found),
+                     NEVH_OK);
+    for (size_t i = 0; i < found && lines[i].amplitude > 0.3; i++) {
+        double w = lines[i].frequency;
+        double off = fmin(fabs(w - 1), fabs(w - 1 - apart));
+        ck_assert_msg(off <= 3 * lines[i].error, "%g apart: %g off, error %g",
+                      apart, off, lines[i].error);
+        if (apart * h * (SAMPLES - 1) > 4 * acos(-1))
+            ck_assert_double_lt(off, 1e-13);
+    }
+}
+
 TEST(a_line_of_one_half_has_no_drift) {
     nevh_spectral_line line;
     size_t found;

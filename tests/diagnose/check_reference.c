@@ -62,6 +62,35 @@ TEST_EACH(exact_solutions_are_recognised, RECOGNISED) {
     tear_down(&b);
 }
 
+/* Exact solutions whose phase has too few digits in long double: series have
+   more, where there are wide numbers, and take their place. */
+static const orbit long_ones[] = {
+    {"x = 0.1\ny = 0\np_y = sqrt(19)",
+     "T = (p_x^2 + p_y^2)/2\nV = -1/hypot(x, y)", 0, 628},
+    {"q = 0\np_q = 8", "T = p_q^2/2\nV = -9.8*cos(q)", 0, 1000},
+};
+
+TEST_EACH(series_replace_exact_solutions_of_too_few_digits,
+          sizeof long_ones / sizeof *long_ones) {
+    const orbit *o = &long_ones[_i];
+    setup a = refer_to(o, NULL);
+    nevh_reference_options finest = {.finest = true};
+    nevh_reference *r =
+        nevh_reference_with(a.system, &finest, o->t0, o->t1, a.q, a.p);
+    double exact = nevh_reference_error(a.reference),
+           own = nevh_reference_error(r);
+    assert_says(nevh_reference_text(a.reference), "exact");
+    ck_assert_double_gt(exact, 1e-14);
+    ck_assert_double_lt(own, exact);
+    if (LDBL_MANT_DIG == 64) {
+        assert_says(nevh_reference_text(r), "taylor in ");
+        ck_assert_double_le(own, 1e-15);
+    }
+    ck_assert_double_eq(nevh_reference_horizon(r), INFINITY);
+    nevh_reference_free(r);
+    tear_down(&a);
+}
+
 /* Nearly the same, or no such motion. */
 static const struct {
     const char *coordinates, *effects;

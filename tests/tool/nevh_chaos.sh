@@ -23,6 +23,12 @@ holds '$1 == "henon-heiles" && $2 == "verlet" && $3 == 0.2 && $4 >= 1000 &&
        $5 == 1 && abs($6) < 2*$7 && abs($9 - 2) < 0.5 && $10 == "regular"'
 test "$(rows | wc -l)" -eq 1 || fails "has not one row"
 
+# What is unstable is told from chaos.
+exits 0 chaos pendulum --start phi=pi --format csv
+holds '$6 > 1 && $10 == "unstable"'
+exits 0 chaos pendulum --start phi=pi
+has 'unstable, not chaotic: neighbours part by a factor of e in 0\.3'
+
 # A budget that is spent ends the run where the scene ends it.
 sed 's/^t_end *=.*/t_end = 40/' "$NEVH_SCENES/henon-heiles.nevh" >$work/short.nevh
 exits 0 chaos $work/short.nevh --format csv --starts 1

@@ -41,7 +41,8 @@ make_reference(const plan *p, const nevh_integrator *scheme, double end) {
         kind[k] = nevh_scene_array(p->scene, k);
     nevh_reference_options o = {.integrator = scheme,
                                 .kind = kind,
-                                .longest = a_few * shortest_step(p)};
+                                .longest = a_few * shortest_step(p),
+                                .finest = !p->run->reference};
     nevh_reference *made =
         nevh_reference_with(p->system, &o, p->run->t_start, end, p->q, p->p);
     free(kind);
@@ -109,15 +110,20 @@ static void note_horizon(const plan *p, list *notes) {
 
 void state_notes(const plan *p, list *notes) {
     const char *text = nevh_reference_text(p->reference);
+    bool is_exact = strncmp(text, "exact", 5) == 0;
+    double error = nevh_reference_error(p->reference);
+    char own[40] = "";
+    if (error > 1e-15)
+        snprintf(own, sizeof own, ", own error %.0e", error);
     if (p->no_reference)
         list_print(notes, "no state errors: %s", p->no_reference);
     else if (is_beyond(p))
         note_horizon(p, notes);
     else if (p->reference)
         list_print(notes,
-                   "state error: largest difference from %s%s, divided by the "
-                   "range of that variable%s",
-                   strncmp(text, "exact", 5) == 0 ? "the " : "", text,
+                   "state error: largest difference from %s%s%s, divided by "
+                   "the range of that variable%s",
+                   is_exact ? "the " : "", text, is_exact ? own : "",
                    has_arrays(p) ? "; elements of an array share the widest"
                                  : "");
 }

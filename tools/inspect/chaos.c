@@ -62,7 +62,7 @@ static bool is_clear(const row *r) {
     double error, value = nevh_chaos_exponent(r->chaos, 0, &error);
     nevh_chaos_verdict verdict = nevh_chaos_result(r->chaos).verdict;
     return verdict == NEVH_REGULAR ||
-           (verdict == NEVH_CHAOTIC && error < good_enough * value);
+           (verdict != NEVH_EARLY && error < good_enough * value);
 }
 
 /* Whether a run twice as long has room in the budget. */
@@ -126,6 +126,11 @@ static void say_row(job *j, const row *r) {
     char *what =
         now.verdict == NEVH_CHAOTIC
             ? text_print("chaotic: neighbours part by a factor of e in %.3g",
+                         1 / value)
+        : now.verdict == NEVH_UNSTABLE_ORBIT
+            ? text_print("unstable, not chaotic: neighbours part by a factor "
+                         "of e in %.3g, as they do from an unstable "
+                         "equilibrium or periodic orbit, or on an escape",
                          1 / value)
         : now.verdict == NEVH_REGULAR
             ? text_print("regular: the largest exponent is 0 within %.1g",
