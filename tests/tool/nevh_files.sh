@@ -72,6 +72,32 @@ for names in 'a.svg ./a.svg' 'a.svg folder/../a.svg'; do
     done
 done
 
+# Measured points, the picture of a sweep, and what is written beside a file.
+printf 't,x\n0,0.1\n1,0.2\n2,0.1\n' >$work/points.csv
+cp $work/points.csv $work/points.kept
+for run in 'fit --vary k --sigma 0.1' 'run'; do
+    exits 2 ${run%% *} $work/my.nevh ${run#"${run%% *}"} \
+        --data $work/points.csv -o $work/folder/../points.csv
+    says 'over the measured points of --data; nothing was changed$'
+    cmp -s $work/points.csv $work/points.kept || fails "changed the points"
+done
+cp $work/kept $work/my.npy.txt
+cp $work/kept $work/my.csv.state
+exits 2 sweep $work/my.svg --vary k=1,2 --outcomes energy_error \
+    --picture $work/my.svg
+says '^nevh: --picture .* over the scene itself'
+exits 2 sweep $work/my.npy.txt --vary k=1,2 -o $work/my.npy
+says 'my.npy.txt would be written over the scene itself'
+exits 2 run $work/my.csv.state -o $work/my.csv
+says 'my.csv.state would be written over the scene itself'
+exits 2 sweep $work/my.nevh --vary k=1,2 -o $work/a.npy \
+    --outcomes energy_error --picture $work/a.svg \
+    --keep-plot-script $work/a.npy.txt
+says 'two outputs would have the same name'
+for name in my.svg my.npy.txt my.csv.state; do
+    cmp -s $work/$name $work/kept || fails "changed the scene $name"
+done
+
 # The mode of a file that was there; of one that was not that of the umask.
 for run in 'compare' 'check' 'effects' 'run'; do
     : >$work/private

@@ -83,6 +83,8 @@ starves 12 compare pendulum --t-end 1 --diagnostics \
     --integrators verlet,gauss4,gsl-rk8pd,dopri5,tao4,gonzalez
 starves 5 compare double-pendulum --t-end 0.5 --integrators gauss4,itoh-abe \
     -o $work/made.txt
+starves 3 portrait pendulum --t-end 1 --vary phi=0.5,1 \
+    --keep-plot-script $work/made.gp
 starves 5 effects pendulum --impact --t-end 0.5
 starves 5 check pendulum --t-end 0.5
 starves 4 gradients pendulum --t-end 0.5

@@ -36,28 +36,97 @@ bool file_is_same(const char *a, const char *b) {
            first.st_ino == second.st_ino;
 }
 
-static int check_against(const options *o, const char *file, const char *what) {
-    const struct {
-        const char *option, *name;
-    } outputs[] = {{"-o", o->file},
-                   {"--plot", o->plot.file},
-                   {"--keep-plot-script", o->plot.script},
-                   {"--resume", o->resume}};
-    for (size_t i = 0; i < sizeof outputs / sizeof *outputs; i++)
-        if (outputs[i].name && file_is_same(outputs[i].name, file))
+/* All that is written, an option and a file each: with what stands beside a
+   file, its state or what an array was made from. */
+typedef struct {
+    list options, files;
+} outputs;
+
+static void outputs_add(outputs *all, const char *option, const char *file) {
+    if (!file)
+        return;
+    list_add(&all->options, option);
+    list_add(&all->files, file);
+}
+
+/* nevh run keeps a state beside its rows, nevh sweep a text beside an array. */
+static const char *ending_beside(const options *o, const char *file) {
+    const char *name = o->operands.count ? o->operands.item[0] : "";
+    const char *ending = strrchr(file, '.');
+    if (strcmp(name, command_name(FOR_RUN)) == 0)
+        return ".state";
+    if (strcmp(name, command_name(FOR_SWEEP)) == 0 && ending &&
+        strcmp(ending, ".npy") == 0)
+        return ".txt";
+    return NULL;
+}
+
+static void outputs_add_rows(outputs *all, const options *o, const char *option,
+                             const char *file) {
+    const char *ending = file ? ending_beside(o, file) : NULL;
+    outputs_add(all, option, file);
+    if (ending) {
+        char *beside = text_print("%s%s", file, ending);
+        outputs_add(all, option, beside);
+        free(beside);
+    }
+}
+
+static void outputs_list(outputs *all, const options *o) {
+    *all = (outputs){0};
+    outputs_add_rows(all, o, "-o", o->file);
+    outputs_add(all, "--plot", o->plot.file);
+    outputs_add(all, "--picture", o->picture);
+    outputs_add(all, "--keep-plot-script", o->plot.script);
+}
+
+static void outputs_free(outputs *all) {
+    list_free(&all->options);
+    list_free(&all->files);
+}
+
+static int check_against(const outputs *all, const char *file,
+                         const char *what) {
+    for (size_t i = 0; file && i < all->files.count; i++)
+        if (file_is_same(all->files.item[i], file))
             return tool_refuse("%s %s would be written over %s; nothing was "
                                "changed",
-                               outputs[i].option, outputs[i].name, what);
+                               all->options.item[i], all->files.item[i], what);
     return TOOL_OK;
 }
 
-int outputs_check(const options *o, const nevh_scene *scene, const char *file) {
-    int status = check_against(o, file, "the scene itself");
+static int check_each_other(const outputs *all) {
+    for (size_t i = 0; i < all->files.count; i++)
+        for (size_t k = 0; k < i; k++)
+            if (file_is_same(all->files.item[i], all->files.item[k]))
+                return tool_refuse("two outputs would have the same name, %s",
+                                   all->files.item[i]);
+    return TOOL_OK;
+}
+
+static int check_inputs(const outputs *all, const options *o,
+                        const nevh_scene *scene, const char *file) {
+    int status = check_against(all, file, "the scene itself");
     char *code;
+    if (!status)
+        status =
+            check_against(all, o->fit.data, "the measured points of --data");
     for (size_t i = 0; !status && (code = nevh_scene_code_path(scene, i));
          i++) {
-        status = check_against(o, code, "the scene's own C code");
+        status = check_against(all, code, "the scene's own C code");
         free(code);
     }
+    return status;
+}
+
+int outputs_check(const options *o, const nevh_scene *scene, const char *file) {
+    outputs all;
+    outputs_list(&all, o);
+    int status = check_each_other(&all);
+    /* What is resumed may be the file of -o. */
+    outputs_add_rows(&all, o, "--resume", o->resume);
+    if (!status)
+        status = check_inputs(&all, o, scene, file);
+    outputs_free(&all);
     return status;
 }

@@ -176,6 +176,13 @@ static bool is_one_of(const list *l, const char *text, size_t length) {
     return false;
 }
 
+static bool is_within(const char *given, const char *text, size_t length) {
+    char *part = text_print("%.*s", (int)length, text);
+    bool found = given && strstr(given, part);
+    free(part);
+    return found;
+}
+
 /* The option that was given that text. */
 static const char *option_of(const options *o, const char *text,
                              size_t length) {
@@ -195,10 +202,11 @@ static const char *option_of(const options *o, const char *text,
                    : *one == '@' ? "--start"
                                  : "--set";
     }
-    return is_text(o->t_end, text, length)   ? "--t-end"
-           : is_one_of(&o->at, text, length) ? "--at"
-           : is_one_of(&o->dt, text, length) ? "--dt"
-                                             : "--set";
+    return is_text(o->t_end, text, length)     ? "--t-end"
+           : is_one_of(&o->at, text, length)   ? "--at"
+           : is_one_of(&o->dt, text, length)   ? "--dt"
+           : is_within(o->shape, text, length) ? "--shape"
+                                               : "--set";
 }
 
 /* The scene's own messages have file, line and column; the line and the caret

@@ -259,7 +259,8 @@ void page_html(const page *, FILE *);
 /* outputs.c */
 /* Whether two names are of one regular file, or would be of one. */
 bool file_is_same(const char *, const char *);
-/* That no option writes over the file of a scene, or over its C code. */
+/* That no option writes over the file of a scene, its C code, measured points, or
+   what another option writes. */
 int outputs_check(const options *, const nevh_scene *, const char *file);
 
 /* scenes.c: scenes by file or name, changed as the options say. */

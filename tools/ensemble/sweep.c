@@ -46,11 +46,11 @@ static int make_sweep(sweep_job *j) {
         is.tolerance = p->tolerance[0];
     j->sweep = nevh_sweep_new(p->scene, &is);
     tool_owned(j->sweep);
+    if (nevh_sweep_status(j->sweep))
+        return tool_refuse("%s: %s", p->name, nevh_sweep_message(j->sweep));
     if (!nevh_sweep_native(j->sweep, &why))
         plan_tell_why(why);
-    return nevh_sweep_status(j->sweep)
-               ? tool_refuse("%s: %s", p->name, nevh_sweep_message(j->sweep))
-               : TOOL_OK;
+    return TOOL_OK;
 }
 
 /* Lines. */

@@ -1,7 +1,6 @@
 /* nevh portrait: level curves of H, its equilibria and separatrices.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "portrait.h"
-#include <gsl/gsl_multiroots.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -24,45 +23,29 @@ static double y_at(const levels *l, size_t k) {
 
 /* Equilibria. */
 
-static int gradient(const gsl_vector *z, void *data, gsl_vector *f) {
-    const levels *l = data;
-    double t = l->plan->run->t_start, dq, dp;
-    double x = gsl_vector_get(z, 0), y = gsl_vector_get(z, 1);
-    if (nevh_field_gradient(l->field, 1, &t, &x, &y, &dq, &dp))
-        return GSL_EDOM;
-    gsl_vector_set(f, 0, dq);
-    gsl_vector_set(f, 1, dp);
-    return GSL_SUCCESS;
+/* Newton's method in two variables is written out: GSL's allocates in each step,
+   and does not look whether it got the memory. */
+static int gradient(const levels *l, const double z[2], double f[2]) {
+    double t = l->plan->run->t_start;
+    return nevh_field_gradient(l->field, 1, &t, &z[0], &z[1], &f[0], &f[1]);
 }
 
-/* By differences of the gradient, small against the window. */
-static int hessian(const gsl_vector *z, void *data, gsl_matrix *j) {
+/* j[2*i + k] = d f[i]/d z[k], by differences that are small against the window. */
+static int hessian(const levels *l, const double z[2], double j[4]) {
     static const double part = 1e-5;
-    const levels *l = data;
     double length[2] = {part * (l->window.high_x - l->window.low_x),
                         part * (l->window.high_y - l->window.low_y)};
-    double at[2] = {gsl_vector_get(z, 0), gsl_vector_get(z, 1)};
-    double t = l->plan->run->t_start, high[2], low[2];
     for (int k = 0; k < 2; k++) {
-        double here = at[k];
-        at[k] = here + length[k];
-        int status = nevh_field_gradient(l->field, 1, &t, &at[0], &at[1],
-                                         &high[0], &high[1]);
-        at[k] = here - length[k];
-        if (status || nevh_field_gradient(l->field, 1, &t, &at[0], &at[1],
-                                          &low[0], &low[1]))
-            return GSL_EDOM;
-        at[k] = here;
+        double at[2] = {z[0], z[1]}, high[2], low[2];
+        at[k] = z[k] + length[k];
+        int status = gradient(l, at, high);
+        at[k] = z[k] - length[k];
+        if (status || (status = gradient(l, at, low)))
+            return status;
         for (int i = 0; i < 2; i++)
-            gsl_matrix_set(j, (size_t)i, (size_t)k,
-                           (high[i] - low[i]) / (2 * length[k]));
+            j[2 * i + k] = (high[i] - low[i]) / (2 * length[k]);
     }
-    return GSL_SUCCESS;
-}
-
-static int both(const gsl_vector *z, void *data, gsl_vector *f, gsl_matrix *j) {
-    int status = gradient(z, data, f);
-    return status ? status : hessian(z, data, j);
+    return 0;
 }
 
 static bool is_inside(const portrait_window *w, double x, double y) {
@@ -71,13 +54,12 @@ static bool is_inside(const portrait_window *w, double x, double y) {
            y <= w->high_y;
 }
 
-static void add(levels *l, const gsl_vector *z) {
+static void add(levels *l, const double z[2]) {
     static const double near = 1e-5, little = 1e-6;
     const portrait_window *w = &l->window;
     double width = w->high_x - w->low_x, height = w->high_y - w->low_y;
-    double x = gsl_vector_get(z, 0), y = gsl_vector_get(z, 1), part[4];
-    gsl_matrix_view j = gsl_matrix_view_array(part, 2, 2);
-    if (!is_inside(w, x, y) || hessian(z, l, &j.matrix))
+    double x = z[0], y = z[1], part[4];
+    if (!is_inside(w, x, y) || hessian(l, z, part))
         return;
     for (size_t i = 0; i < l->count; i++)
         if (fabs(l->found[i].x - x) < near * width &&
@@ -95,22 +77,52 @@ static void add(levels *l, const gsl_vector *z) {
                                                  : PORTRAIT_SADDLE};
 }
 
-/* Newton's method from a place of the grid. */
-static void search(levels *l, gsl_multiroot_fdfsolver *s, double x, double y) {
+/* j dz = -f; false where that has no solution. */
+static bool solve(const double j[4], const double f[2], double dz[2]) {
+    double determinant = j[0] * j[3] - j[1] * j[2];
+    dz[0] = (j[1] * f[1] - j[3] * f[0]) / determinant;
+    dz[1] = (j[2] * f[0] - j[0] * f[1]) / determinant;
+    return isfinite(dz[0]) && isfinite(dz[1]);
+}
+
+/* The longest part of dz, halved at most so often, that makes the gradient, f,
+   smaller; z, f and dz become those of that step. */
+static bool go(const levels *l, double z[2], double f[2], double dz[2]) {
+    enum { HALVINGS = 30 };
+    double size = hypot(f[0], f[1]);
+    for (int i = 0; i < HALVINGS; i++) {
+        double at[2] = {z[0] + dz[0], z[1] + dz[1]}, next[2];
+        if (!gradient(l, at, next) && hypot(next[0], next[1]) <= size) {
+            for (int k = 0; k < 2; k++) {
+                z[k] = at[k];
+                f[k] = next[k];
+            }
+            return true;
+        }
+        dz[0] /= 2;
+        dz[1] /= 2;
+    }
+    return false;
+}
+
+/* Damped Newton steps from a place of the grid. */
+static void search(levels *l, double x, double y) {
     static const double small = 1e-10;
-    gsl_multiroot_function_fdf f = {gradient, hessian, both, 2, l};
-    double start[2] = {x, y};
-    gsl_vector_view at = gsl_vector_view_array(start, 2);
     const portrait_window *w = &l->window;
-    int status = gsl_multiroot_fdfsolver_set(s, &f, &at.vector);
-    for (int i = 0; !status && i < MOST_STEPS; i++) {
-        status = gsl_multiroot_fdfsolver_iterate(s);
-        double dx = gsl_vector_get(s->dx, 0), dy = gsl_vector_get(s->dx, 1);
-        if (!status && fabs(dx) < small * (w->high_x - w->low_x) &&
-            fabs(dy) < small * (w->high_y - w->low_y)) {
-            add(l, s->x);
+    double z[2] = {x, y}, f[2], j[4], dz[2];
+    if (gradient(l, z, f))
+        return;
+    for (int i = 0; i < MOST_STEPS; i++) {
+        if (hessian(l, z, j) || !solve(j, f, dz))
+            return;
+        bool near = fabs(dz[0]) < small * (w->high_x - w->low_x) &&
+                    fabs(dz[1]) < small * (w->high_y - w->low_y);
+        if (near) {
+            add(l, (double[]){z[0] + dz[0], z[1] + dz[1]});
             return;
         }
+        if (!go(l, z, f, dz))
+            return;
     }
 }
 
@@ -122,14 +134,10 @@ static int by_place(const void *a, const void *b) {
 
 static void find_equilibria(levels *l) {
     const portrait_window *w = &l->window;
-    gsl_multiroot_fdfsolver *s =
-        gsl_multiroot_fdfsolver_alloc(gsl_multiroot_fdfsolver_gnewton, 2);
-    for (int i = 0; s && i < STARTS; i++)
+    for (int i = 0; i < STARTS; i++)
         for (int k = 0; k < STARTS; k++)
-            search(l, s, w->low_x + (w->high_x - w->low_x) * (i + 0.5) / STARTS,
+            search(l, w->low_x + (w->high_x - w->low_x) * (i + 0.5) / STARTS,
                    w->low_y + (w->high_y - w->low_y) * (k + 0.5) / STARTS);
-    if (s)
-        gsl_multiroot_fdfsolver_free(s);
     if (l->count)
         qsort(l->found, l->count, sizeof *l->found, by_place);
 }

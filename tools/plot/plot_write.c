@@ -92,19 +92,10 @@ void plot_say_written(const options *o, const plan *p, const char *integrator,
     free(scheme);
 }
 
-static bool same(const char *a, const char *b) {
-    return a && b && file_is_same(a, b);
-}
-
-static int check_names(const options *o) {
+static int check_target(const options *o) {
     target t;
     if (find_target(o, &t))
         return TOOL_USAGE;
-    if (same(o->plot.file, o->plot.script) || same(o->plot.file, o->file) ||
-        same(o->plot.script, o->file))
-        return tool_refuse("two outputs would have the same name, %s",
-                           same(o->plot.file, o->file) ? o->plot.file
-                                                       : o->plot.script);
     if (in_terminal(o) && !o->file && o->format != FORMAT_TABLE)
         return tool_refuse("--plot - would draw among the rows; give them a "
                            "file with -o");
@@ -112,7 +103,7 @@ static int check_names(const options *o) {
 }
 
 int plot_check(const options *o) {
-    if (check_names(o) || (o->plot.file && gnuplot_check()) ||
+    if (check_target(o) || (o->plot.file && gnuplot_check()) ||
         (o->plot.file && !in_terminal(o) && output_check(o->plot.file)) ||
         (o->plot.script && output_check(o->plot.script)))
         return TOOL_USAGE;
