@@ -559,7 +559,7 @@ class Scene:
         if y0 is not None and not isinstance(y0, dict):
             array, _ = _numbers(y0, "y0")
             if len(array) != 2 * self.n:
-                raise Refused("y0 has %d of the %d numbers that it takes: %s"
+                raise Refused("y0 has the length %d; it takes %d numbers: %s"
                               % (len(array), 2 * self.n, ", ".join(self.names)))
             return array
         if y0:

@@ -220,7 +220,7 @@ def test_refusals():
     solve = nevh.solve
     error = raised(nevh.Refused, "H:", solve, "p^2/2 - coss(q)", (0, 1), [1, 0])
     assert "did you mean cos" in str(error) and isinstance(error, ValueError)
-    raised(nevh.Refused, "3 of the 2 numbers that it takes: phi, p_phi", solve, PENDULUM,
+    raised(nevh.Refused, "length 3; it takes 2 numbers: phi, p_phi", solve, PENDULUM,
            (0, 1), [1, 0, 0])
     raised(nevh.Refused, "no method 'verlett'", solve, PENDULUM, (0, 1), [1, 0],
            "verlett", dt=0.1)
@@ -261,7 +261,7 @@ def test_arguments_are_named_where_they_are_wrong():
             (refused, "y0[1] is inf", of(value, y0=[0, math.inf])),
             (refused, "y0 takes real numbers", of(y0=[1 + 1j, 0])),
             (refused, "y0 takes real numbers", of(y0=["a", "b"])),
-            (refused, "1 of the 2 numbers", of(y0=2.0)),
+            (refused, "length 1; it takes 2 numbers", of(y0=2.0)),
             (refused, "as many momenta", of(value, y0=2.0)),
             (refused, "psi", of(y0={"psi": 1})),
             (refused, "a formula needs t_span and y0", of(y0=None)),
