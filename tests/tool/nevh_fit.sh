@@ -129,6 +129,8 @@ refuses 'no point is after the start' 't,phi\n0,2\n0,2.1\n'
 refuses 'standard deviations of its own' 't,phi,sigma\n0,2,1\n1,1,1\n' --sigma 1
 exits 2 fit pendulum --data $work/none.csv --vary g
 says 'cannot be read: No such file'
+exits 2 fit pendulum --data /dev/zero --vary g
+says '/dev/zero cannot be read: it is no text'
 exits 2 fit pendulum --vary g
 says 'takes --data'
 exits 2 fit pendulum --data $work/angle.csv --vary g=1

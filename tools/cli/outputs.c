@@ -25,7 +25,8 @@ static bool is_same_place(const char *a, const char *b) {
            strcmp(name[0], name[1]) == 0;
 }
 
-bool file_is_same(const char *a, const char *b) {
+/* Whether two names are of one regular file, or would be of one. */
+static bool file_is_same(const char *a, const char *b) {
     struct stat first, second;
     bool there = stat(a, &first) == 0;
     if (there != (stat(b, &second) == 0))

@@ -257,8 +257,6 @@ void page_print(const page *, const options *, FILE *);
 void page_html(const page *, FILE *);
 
 /* outputs.c */
-/* Whether two names are of one regular file, or would be of one. */
-bool file_is_same(const char *, const char *);
 /* That no option writes over the file of a scene, its C code, measured points, or
    what another option writes. */
 int outputs_check(const options *, const nevh_scene *, const char *file);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 enum { NOT_USED = -1, TIME = -2, SIGMA = -3, SIGMA_OF_ONE = -4 };
+enum { MOST_BYTES = 1 << 28 };
 
 typedef struct {
     measured *m;
@@ -30,24 +31,27 @@ static char *whole_file(const char *name) {
         free(shipped);
         errno = ENOENT;
     }
+    const char *why = f ? NULL : strerror(errno);
     size_t room = 1 << 16, used = 0;
-    char *text = f ? tool_allocate(room, 1) : NULL;
-    for (size_t got; f && (got = fread(text + used, 1, room - used - 1, f));) {
+    char *text = tool_allocate(room, 1);
+    for (size_t got;
+         !why && (got = fread(text + used, 1, room - used - 1, f));) {
+        if (memchr(text + used, '\0', got))
+            why = "it is no text";
         used += got;
-        if (room - used < 2)
+        if (used > MOST_BYTES)
+            why = "it is longer than 256 MB";
+        else if (room - used < 2)
             text = tool_enlarge(text, room *= 2, 1);
     }
-    bool failed = !f || ferror(f);
-    if (failed)
-        tool_refuse("--data %s cannot be read: %s", name, strerror(errno));
-    else if ((failed = memchr(text, '\0', used)))
-        tool_refuse("--data %s is no text", name);
-    else
-        text[used] = '\0';
+    if (!why && ferror(f))
+        why = strerror(errno);
+    text[used] = '\0';
     if (f)
         fclose(f);
-    if (!failed)
+    if (!why)
         return text;
+    tool_refuse("--data %s cannot be read: %s", name, why);
     free(text);
     return NULL;
 }
