@@ -267,7 +267,7 @@ def _text(what, value):
 
 
 def _closest(name, names):
-    """" (did you mean NAME?)", or nothing."""
+    """The words (did you mean NAME?), or none."""
     folded = {known.lower(): known for known in names}
     close = difflib.get_close_matches(name.lower(), folded, 1)
     return " (did you mean %s?)" % folded[close[0]] if close else ""

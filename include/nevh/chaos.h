@@ -84,8 +84,8 @@ NEVH_API const char *nevh_chaos_verdict_name(nevh_chaos_verdict);
             for one turn
    UNSTABLE as CHAOTIC, but there is one degree of freedom and H does not read t;
             or the orbit rests at an equilibrium; or it runs away as its
-            neighbours do; or it is alone so: at least 4 starts, of which most are
-            regular */
+            neighbours do; or, of at least 4 starts, only this one is chaotic and
+            most are regular */
 typedef struct {
     double t;
     nevh_chaos_verdict verdict;
@@ -98,7 +98,8 @@ typedef struct {
                         exponent in chaos [P. M. Cincotta, C. M. Giordano, C.
                         Simo, Physica D 182 (2003) 151] */
     size_t starts; /* of all that run, */
-    size_t agreeing; /* those of which the same is found, each by itself */
+    size_t
+        agreeing; /* those on which the verdict is that on the orbit, each by itself */
 } nevh_chaos_report;
 /* Zeros, and EARLY, before the first step and for NULL. */
 NEVH_API nevh_chaos_report nevh_chaos_result(const nevh_chaos *);

@@ -142,7 +142,8 @@ static void basis(const analysis *a, double t, size_t most, double f[]) {
 }
 
 /* Solves m x = b, m symmetric and not negative, by Cholesky's factors; b becomes x.
-   What depends on unknowns before it is left at 0. */
+   An unknown that depends on those before it is left at 0, where GSL's solvers would
+   call its error handler, which aborts. */
 static void solve(double m[], double b[], size_t n) {
     static const double dependent = 1e-14;
     for (size_t j = 0; j < n; j++) {

@@ -58,6 +58,8 @@ TEST_EACH(errors_of_near_lines_hold_the_truth, 16) {
     }
     ck_assert_int_eq(nevh_frequencies(h, SAMPLES, values, LINES, lines, &found),
                      NEVH_OK);
+    ck_assert_uint_ge(found, 1);
+    ck_assert_double_gt(lines[0].amplitude, 0.3);
     for (size_t i = 0; i < found && lines[i].amplitude > 0.3; i++) {
         double w = lines[i].frequency;
         double off = fmin(fabs(w - 1), fabs(w - 1 - apart));

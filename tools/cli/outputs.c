@@ -55,10 +55,10 @@ static const char *ending_beside(const options *o, const char *file) {
     const char *name = o->operands.count ? o->operands.item[0] : "";
     const char *ending = strrchr(file, '.');
     if (strcmp(name, command_name(FOR_RUN)) == 0)
-        return ".state";
+        return STATE_ENDING;
     if (strcmp(name, command_name(FOR_SWEEP)) == 0 && ending &&
         strcmp(ending, ".npy") == 0)
-        return ".txt";
+        return ARRAY_TEXT_ENDING;
     return NULL;
 }
 

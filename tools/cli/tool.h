@@ -257,6 +257,10 @@ void page_print(const page *, const options *, FILE *);
 void page_html(const page *, FILE *);
 
 /* outputs.c */
+/* Of what stands beside an output: the state of nevh run, and what an array of
+   nevh sweep was made from. */
+#define STATE_ENDING      ".state"
+#define ARRAY_TEXT_ENDING ".txt"
 /* That no option writes over the file of a scene, its C code, measured points, or
    what another option writes. */
 int outputs_check(const options *, const nevh_scene *, const char *file);

@@ -110,7 +110,7 @@ static uint64_t whole_size(const store *s) {
 
 static void measure(store *s, const char *name) {
     s->name = text_print("%s", name);
-    s->side = text_print("%s.txt", name);
+    s->side = text_print("%s" ARRAY_TEXT_ENDING, name);
     s->record = 8 + 8 * s->columns->count;
     s->bytes = tool_allocate(s->record, 1);
     free(make_header(s));
@@ -168,7 +168,7 @@ static int write_side(const store *s, const char *reasons) {
 }
 
 int store_range(const char *name, uint64_t *first, uint64_t *count) {
-    char *side = text_print("%s.txt", name);
+    char *side = text_print("%s" ARRAY_TEXT_ENDING, name);
     char *text = read_side(side);
     const char *at = text ? strstr(text, "\nmembers_here: ") : NULL;
     int status = TOOL_OK;

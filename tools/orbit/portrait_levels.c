@@ -87,7 +87,7 @@ static bool solve(const double j[4], const double f[2], double dz[2]) {
 
 /* The longest part of dz, halved at most so often, that makes the gradient, f,
    smaller; z, f and dz become those of that step. */
-static bool go(const levels *l, double z[2], double f[2], double dz[2]) {
+static bool take_step(const levels *l, double z[2], double f[2], double dz[2]) {
     enum { HALVINGS = 30 };
     double size = hypot(f[0], f[1]);
     for (int i = 0; i < HALVINGS; i++) {
@@ -121,7 +121,7 @@ static void search(levels *l, double x, double y) {
             add(l, (double[]){z[0] + dz[0], z[1] + dz[1]});
             return;
         }
-        if (!go(l, z, f, dz))
+        if (!take_step(l, z, f, dz))
             return;
     }
 }

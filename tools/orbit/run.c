@@ -193,7 +193,7 @@ static int save_often(void *data) {
 }
 
 static void begin_saving(job *j, const char *name) {
-    j->state = text_print("%s.state", name);
+    j->state = text_print("%s" STATE_ENDING, name);
     j->settings = describe(j);
     j->saves = true;
 }
