@@ -233,10 +233,11 @@ await tried("henon-heiles", "", async (page) => {
 await tried("kapitza", "", async (page) => {
   check(await page.until("steps > 60"), "nothing moves");
   await page.evaluate("setPlaying(false); quiet()");
-  check(await page.evaluate("configuration.box[1] >= rows[0][0] && " +
-    "configuration.box[2] > 2.8 && configuration.box[3] < 3.5"),
+  // The next frame draws the last states.
+  check(await page.until("configuration.box[1] >= rows[0][0] && " +
+    "configuration.box[2] > 2.8 && configuration.box[3] < 3.5", 10),
   "does not draw phi against time");
-  check(await page.evaluate("phaseBox[0] > Math.PI/2 && phaseBox[1] < 3*Math.PI/2"),
+  check(await page.until("phaseBox[0] > Math.PI/2 && phaseBox[1] < 3*Math.PI/2", 10),
     "the plane does not show the top");
   // A box that is asked for while the levels of another are made.
   await page.evaluate(`askLevels(phaseBox.slice()); phaseBox[3] += 100;
