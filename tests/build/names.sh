@@ -59,14 +59,14 @@ words='lean|rub|wiring|shelf|shelve|ladder|ladders|rung|rungs|climb|preflight|fl
     |unplan|damp|damps|obey'
 words=$(echo $words | tr -d ' ')
 banned() {
-    grep -noE "(^|[^A-Za-z])($words)([^A-Za-z]|\$)"
+    awk -v word="(^|[^A-Za-z])($words)([^A-Za-z]|\$)" '{ gsub(/"[^"]*"/, "") }
+        $0 ~ word { print FILENAME ":" FNR ": " $0; found = 1 }
+        END { exit !found }' "$@"
 }
 echo 'x = shelf_new();' | banned >/dev/null || exit 1
 echo 'clean = step;' | banned >/dev/null && exit 1
-(cd "$srcdir" && banned_in() { sed 's/"[^"]*"//g' "$1" | banned |
-    sed "s,^,$1:,"; }
-    while read -r file; do banned_in "$file"; done) \
-    <$work/files >$work/words
+files=$(cat $work/files)
+(cd "$srcdir" && banned $files) >$work/words
 if test -s $work/words; then
     echo "words that have a standard term:"
     cat $work/words

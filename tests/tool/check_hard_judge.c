@@ -174,7 +174,7 @@ static int explode(nevh_work *w, double t, double h, double q[], double p[]) {
 }
 
 static int hang(nevh_work *w, double t, double h, double q[], double p[]) {
-    volatile bool waits = true;
+    volatile bool waits = t > 1; /* not while the limit of h is sought */
     while (waits)
         ;
     return nevh_gauss_kernel.step(w, t, h, q, p);

@@ -140,12 +140,19 @@ static void time_cells(costs *c) {
     free(cells);
 }
 
+/* Programs read the verdict of each row; the table has none, and an orbit
+   followed further for it takes longer than all else. */
 static void time_others(costs *c, bool shown) {
     for (size_t i = 0; i < c->count; i++)
-        for (size_t k = 0; k < c->study[i].count; k++)
-            if (!shown ||
-                (cost_shows(c, &c->study[i]) && !search_is_late(&c->search)))
-                study_time(&c->search, &c->study[i], k);
+        for (size_t k = 0; k < c->study[i].count; k++) {
+            row *r = &c->study[i].level[k];
+            if (shown &&
+                (!cost_shows(c, &c->study[i]) || search_is_late(&c->search)))
+                continue;
+            study_time(&c->search, &c->study[i], k);
+            if (!shown && r->ran)
+                row_finish(&c->search.plan, r);
+        }
 }
 
 /* Those that the table does not show are for programs to read. */

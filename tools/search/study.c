@@ -335,7 +335,6 @@ void study_time(const search *s, study *l, size_t i) {
     row *r = &l->level[i];
     if (!r->ran || isfinite(r->seconds))
         return;
-    row_finish(&s->plan, r);
     rows_time(&s->plan, &r, 1,
               s->repeats           ? s->repeats
               : search_may_time(s) ? ROUNDS
