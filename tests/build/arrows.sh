@@ -79,15 +79,16 @@ test -s $work/includes || { echo "no include was found"; status=1; }
 
 nm=${NM:-nm}
 # Those of files that are there: a tree that was built before may hold others.
-find lib integrators models tools -name '*.o' 2>/dev/null | while read -r object; do
-    source=$(echo "$object" | sed 's,\.libs/,,; s,nevh-,,; s,\.o$,.c,')
-    test ! -f "$srcdir/$source" || echo "$object"
-done >$work/objects
+find lib integrators models tools -name '*.o' 2>/dev/null |
+    sed 'h; s,\.libs/,,; s,nevh-,,; s,\.o$,.c,; G; s/\n/ /' |
+    while read -r source object; do
+        test ! -f "$srcdir/$source" || echo "$object"
+    done >$work/objects
 objects=$(cat $work/objects)
 if test -n "$objects" && $nm --version >/dev/null 2>&1; then
     # Unquoted: $NM may bring options of its own.
-    $nm -A -P $objects 2>/dev/null | sed 's/\[[^]]*\]: */: /' |
-        awk -F': ' "$folder_of"'
+    $nm -A -P $objects 2>/dev/null | sed 's/\[[^]]*\]: */: /' >$work/all
+    awk -F': ' "$folder_of"'
         { split($2, word, " ") }
         word[1] !~ /^_?nevh_|^_?tool_/ && folder($1) != "tools" { next }
         word[2] ~ /^[TDBRCVWi]$/ { of[word[1]] = folder($1); next }
@@ -95,12 +96,11 @@ if test -n "$objects" && $nm --version >/dev/null 2>&1; then
             user[++n] = folder($1); used[n] = word[1]; file[n] = $1 }
         END { for (i = 1; i <= n; i++)
             if (used[i] in of) print user[i], of[used[i]], file[i], used[i] }
-        ' >$work/symbols
+        ' $work/all >$work/symbols
     upward <$work/symbols >>$work/wrong
     test -s $work/symbols || { echo "no symbol was found"; status=1; }
     (cd "$srcdir" && cat $(find tests bench -name '*.c')) |
-        grep -oE '\b[a-z][a-z0-9_]*\b' | sort -u >$work/tested
-    $nm -A -P $objects 2>/dev/null | sed 's/\[[^]]*\]: */: /' >$work/all
+        tr -cs 'A-Za-z0-9_' '\n' | sort -u >$work/tested
     alone $work/tested $work/all >$work/alone
     if test -s $work/alone; then
         echo "one file alone uses what is not static:"
