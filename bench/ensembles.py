@@ -20,37 +20,14 @@ import sys
 import tempfile
 import time
 
+import promises
+from promises import broken, command, row, seconds, table
+
 SIDE = int(os.environ.get("SIDE", 1000))
 KILLS = int(os.environ.get("KILLS", 30))
 STOPPED = float(os.environ.get("STOPPED", 60))
 work = tempfile.mkdtemp(prefix="ensembles.")
-nevh, mpi, broken = None, None, []
-
-
-def row(what, goal, here, kept):
-    print(" %-44s %-22s %-26s %s" % (what, goal, here, "" if kept else "MISSED"),
-          flush=True)
-    if not kept:
-        broken.append(what)
-
-
-def command(*words, allowed=(0,)):
-    done = subprocess.run([nevh, *words, "--quiet"], capture_output=True, text=True)
-    if done.returncode not in allowed:
-        raise SystemExit("%s: %s" % (" ".join(words), done.stderr))
-    return done.stdout
-
-
-def table(*words):
-    text = command(*words, "--format", "csv")
-    return list(csv.DictReader(line for line in text.splitlines()
-                               if not line.startswith("#")))
-
-
-def seconds(*words):
-    begin = time.time()
-    command(*words)
-    return time.time() - begin
+mpi = None
 
 
 def bytes_of(name):
@@ -173,7 +150,7 @@ def kills():
             name = new(work + "/killed.npy")
             words = LONG + ["-o", name]
             run = (ranks(2, *words, "--threads", "1") if kind == "rank" else
-                   subprocess.Popen([nevh, *words, "--quiet"],
+                   subprocess.Popen([promises.nevh, *words, "--quiet"],
                                     stderr=subprocess.DEVNULL))
             time.sleep(random.uniform(0.02, length))
             try:
@@ -230,7 +207,7 @@ def memory():
     for members in 10000, 100000, 1000000:
         name = new(work + "/memory.npy")
         run = subprocess.Popen([
-            nevh, "sweep", "pendulum", "--vary", "phi = range(0.1, 3, %d)" % members,
+            promises.nevh, "sweep", "pendulum", "--vary", "phi = range(0.1, 3, %d)" % members,
             "--t-end", "1", "--integrators", "verlet", "--dt", "0.1", "--outcomes",
             "max(p_phi)", "-o", name, "--quiet"])
         peak = 0
@@ -336,12 +313,12 @@ PARTS = (flips, stopped, kills, same, memory, period, area, section)
 
 
 def main():
-    global nevh, mpi
+    global mpi
     names = {part.__name__: part for part in PARTS}
     words = sys.argv[1:]
     if not words:
         raise SystemExit(__doc__)
-    nevh = words.pop(0)
+    promises.nevh = words.pop(0)
     if words and words[0] not in names:
         mpi = words.pop(0)
     for word in words or names:

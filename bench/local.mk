@@ -102,17 +102,22 @@ bench-speedup: all
 
 # What sweeps, sections and flow are promised to do: ten minutes.
 bench-ensembles: all
-	NEVH_SCENES=$(srcdir)/scenes python3 $(srcdir)/bench/ensembles.py \
+	NEVH_SCENES=$(srcdir)/scenes python3 -B $(srcdir)/bench/ensembles.py \
 	  ./tools/nevh$(EXEEXT) \
 	  `test -x tools/nevh-mpi$(EXEEXT) && echo ./tools/nevh-mpi$(EXEEXT)`
+
+# What references, exponents and frequencies are promised to be: ten minutes.
+bench-certain: all
+	NEVH_SCENES=$(srcdir)/scenes python3 -B $(srcdir)/bench/certain.py \
+	  ./tools/nevh$(EXEEXT)
 
 # Members that differ in a constant of H, against those that start elsewhere.
 bench-lanes: all
 	NEVH_SCENES=$(srcdir)/scenes $(SHELL) $(srcdir)/bench/lanes.sh \
 	  ./tools/nevh$(EXEEXT)
 
-EXTRA_DIST += bench/ensembles.py bench/lanes.sh bench/speedup.sh bench/recommend.sh bench/answers.sh bench/orbits
+EXTRA_DIST += bench/ensembles.py bench/promises.py bench/certain.py bench/lanes.sh bench/speedup.sh bench/recommend.sh bench/answers.sh bench/orbits
 CLEANFILES += bench/results-answers.csv bench/verdicts$(EXEEXT) bench/wrong-verdicts
 DISTCLEANFILES = bench/long-runs
-.PHONY: bench bench-brouwer bench-ensembles bench-fit bench-counts bench-lanes bench-peers bench-recommend bench-speedup \
+.PHONY: bench bench-brouwer bench-certain bench-ensembles bench-fit bench-counts bench-lanes bench-peers bench-recommend bench-speedup \
   bench-verdicts
