@@ -124,6 +124,7 @@ static void step_apart(nevh_chaos *c, double steps) {
             continue;
         for (size_t k = 0; k < c->starts; k++)
             copy_start(c, x->kept, i, own, k);
+        nevh__chaos_fill_up(c);
         settle(c);
         if (take_steps(c, steps))
             x->orbits[i].report = c->stepper->report;
@@ -212,6 +213,7 @@ static void fill(nevh_chaos *c) {
         for (size_t i = 0; i < c->starts; i++)
             if (!x->orbits[i].busy)
                 copy_start(c, own_columns(c), which, own_columns(c), i);
+    nevh__chaos_fill_up(c);
 }
 
 /* Looks at a start whose turn it is.  Returns whether its orbit has ended. */

@@ -87,6 +87,9 @@ int nevh__chaos_begin(nevh_chaos *);
           has it; in and out */
 void nevh__chaos_place(nevh_chaos *, size_t start, const double z[],
                        uint64_t *drawn);
+/* Lanes that only fill up the last vector of eight become those of the last start,
+   whose displacements are kept from growing. */
+void nevh__chaos_fill_up(nevh_chaos *);
 /* The generator of start number `number`. */
 uint64_t nevh__chaos_draw(const nevh_chaos *, size_t number);
 /* chaos_walk.c: hands displacement v of a start to the stepper, or takes it. */

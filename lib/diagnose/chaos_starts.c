@@ -107,8 +107,7 @@ void nevh__chaos_place(nevh_chaos *c, size_t start, const double z[],
         nevh__chaos_put(c, start, v);
 }
 
-/* Lanes that only fill up the last vector of eight are the last start's. */
-static void fill_up(nevh_chaos *c) {
+void nevh__chaos_fill_up(nevh_chaos *c) {
     size_t used = c->starts * c->lanes, rows = c->tangent ? 2 * c->n : c->n;
     for (size_t k = 0; k < rows; k++)
         for (size_t lane = used; lane < c->width; lane++) {
@@ -132,7 +131,7 @@ int nevh__chaos_begin(nevh_chaos *c) {
             status = to_energy(c, c->place, energy);
         nevh__chaos_place(c, i, c->place, &state);
     }
-    fill_up(c);
+    nevh__chaos_fill_up(c);
     return status ? nevh__fail(&c->report, status, "%s",
                                nevh_field_message(c->field))
                   : NEVH_OK;

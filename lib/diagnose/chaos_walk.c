@@ -241,6 +241,7 @@ static int look(nevh_chaos *c, double steps) {
         }
         most = fmax(most, growth);
     }
+    nevh__chaos_fill_up(c);
     if (most > most_growth && c->stride > 1)
         c->stride /= 2;
     return NEVH_OK;

@@ -67,6 +67,17 @@ static void saddle(setup *s, const nevh_integrator *scheme) {
     s->of.exponents = 4;
 }
 
+/* Displacements grow by e^1000, and so would those of lanes that only fill up a
+   vector. */
+TEST_EACH(no_lane_overflows, 2) {
+    setup s;
+    saddle(&s, nevh_verlet);
+    s.of.exponents = _i ? 4 : 1;
+    run(&s, 1000);
+    ck_assert_double_eq_tol(exponent(&s, 0), 1, 0.01);
+    tear_down(&s);
+}
+
 TEST(the_saddle_has_the_exponents_of_the_step_not_of_the_flow) {
     setup s;
     double h = 0.1, half = 1 + h * h / 2;
