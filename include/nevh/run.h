@@ -133,6 +133,13 @@ NEVH_API bool nevh_stepper_native(const nevh_stepper *, const char **why);
    steps    nevh_options.steps_foreseen; fewer than before change nothing
    returns  whether they make up for compiling, and are compiled */
 NEVH_API bool nevh_stepper_foresee(nevh_stepper *, double steps);
+/* Seconds that compiling would save: about what so many steps take from formulas,
+   each time that what is compiled is used, less the time of the compiler.  Of several
+   steppers that are to be compiled together, or not at all, the sum decides.
+   Nothing is compiled.
+   returns  NAN where steps cannot be compiled, or options.native leaves no
+            choice and they are not compiled */
+NEVH_API double nevh_stepper_native_saves(nevh_stepper *, double steps);
 /* Whether a scheme's steps can be compiled at all; NULL: no.  From any thread. */
 NEVH_API bool nevh_integrator_native(const nevh_integrator *);
 

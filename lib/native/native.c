@@ -225,12 +225,32 @@ static double seconds_foreseen(const nevh_work *w) {
     return w->options->steps_foreseen * gradients_of(w) * each;
 }
 
-/* Whether compiling a text takes less. */
-static bool compiling_pays(const nevh_work *w, size_t characters) {
+/* What steps foreseen take from the tape in all uses of what is compiled, less
+   the time to compile a text. */
+static double saved_by(const nevh_work *w, size_t characters) {
     const char *cache = w->options->native_cache;
     double times = cache && !*cache ? 1 : uses;
+    return times * seconds_foreseen(w) - a_character * (double)characters;
+}
+
+double nevh__native_saves(nevh_work *w) {
+    nevh__writer text = {0};
+    double seconds = NAN;
+    if (w->native)
+        return saved_by(w, w->native->characters);
+    if (w->options->native != NEVH_NATIVE_AUTO || obstacle(w, false))
+        return NAN;
+    nevh__write_prelude(&text);
+    if (nevh__native_write(&text, w) && !text.failed)
+        seconds = saved_by(w, strlen(text.text));
+    nevh__writer_free(&text);
+    return seconds;
+}
+
+/* Whether compiling a text takes less. */
+static bool compiling_pays(const nevh_work *w, size_t characters) {
     return w->options->native == NEVH_NATIVE_ALWAYS ||
-           times * seconds_foreseen(w) > a_character * (double)characters;
+           saved_by(w, characters) > 0;
 }
 
 bool nevh__native_pays(const nevh_work *w) {

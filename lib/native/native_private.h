@@ -93,6 +93,8 @@ bool nevh__write_program(nevh__writer *, nevh_work *, const nevh_program *);
 void nevh__native_plan(nevh_work *, char why[NEVH__WHY_NATIVE]);
 /* Whether there is one, and the steps foreseen make up for compiling it. */
 bool nevh__native_pays(const nevh_work *);
+/* nevh_stepper_native_saves, of the steps foreseen. */
+double nevh__native_saves(nevh_work *);
 /* Whether steps of orbits that have constants of their own can be compiled. */
 bool nevh__native_by_lane(const nevh_work *);
 void nevh__native_lane_take(nevh_work *, size_t lane); /* its numbers anew */

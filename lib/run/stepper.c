@@ -330,6 +330,16 @@ bool nevh_stepper_foresee(nevh_stepper *s, double steps) {
     return nevh__native_pays(&s->work);
 }
 
+double nevh_stepper_native_saves(nevh_stepper *s, double steps) {
+    if (!s || !s->planned)
+        return NAN;
+    double before = s->options.steps_foreseen;
+    s->options.steps_foreseen = steps;
+    double saved = nevh__native_saves(&s->work);
+    s->options.steps_foreseen = before;
+    return saved;
+}
+
 char *nevh_stepper_program(nevh_stepper *s, const nevh_program *as) {
     nevh__writer text = {0};
     if (!s || !s->planned || !as)

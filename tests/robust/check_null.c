@@ -165,6 +165,7 @@ static nevh_separability separability;
     X(REAL, nevh_stepper_gain, (NULL, 0))                                      \
     X(ANY, nevh_stepper_native, (NULL, NULL))                                  \
     X(ANY, nevh_stepper_foresee, (NULL, 1e9))                                  \
+    X(REAL, nevh_stepper_native_saves, (NULL, 1e9))                            \
     X(ANY, nevh_integrator_native, (NULL))                                     \
     X(POINTER, nevh_stepper_program, (NULL, NULL))                             \
     X(ANY, nevh_stepper_counts, (NULL))                                        \

@@ -67,11 +67,11 @@ void row_finish(const plan *, row *);
 nevh_counts row_counts(const nevh_stepper *, nevh_counts before);
 /* stepper_cache.c: planned for that row, by whom it is given back. */
 nevh_stepper *row_stepper(const plan *, const row *, bool balance);
-/* Where compiling pays for any of the rows that are timed, the steps of all that
-   can be are compiled, so that they are comparable, else of none: the first rows
+/* Where compiling pays for the rows that are timed, all together, the steps of all
+   that can be are compiled, so that they are comparable, else of none: the first rows
    that are timed decide, whatever the cache holds.
    alone   whether it has to pay in one run of one row, as in nevh run; else in all
-           runs of a scheme's rows */
+           runs of all */
 void rows_settle(const plan *, row *const rows[], size_t count, bool alone);
 /* As row_stepper, of a row that is to be timed. */
 nevh_stepper *row_stepper_to_time(const plan *, const row *);

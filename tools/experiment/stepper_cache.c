@@ -36,20 +36,21 @@ static bool is_alike(const place *at, const row *r, bool balance) {
            at->tolerance == r->tolerance && at->balance == balance;
 }
 
-/* As many as nevh compare takes of rows with all dt: each is watched once, and
-   timed as long as that some times more. */
+/* As many as nevh compare takes of rows with all dt: each is watched once, and what
+   is timed of a long one is short, unless repeats are asked for. */
 static double steps_compared(const plan *p) {
-    enum { RUNS = 4 };
     double steps = 0;
     for (size_t i = 0; i < p->dts; i++)
         steps += plan_steps(p, p->dt[i]);
-    return RUNS * steps;
+    return steps * (1 + (double)p->repeats);
 }
 
 static double steps_foreseen(const plan *p, const row *r) {
     if (p->hurried)
         return plan_steps(p, r->dt);
-    return p->steppers->compiled ? INFINITY : steps_compared(p);
+    if (p->steppers->settled)
+        return p->steppers->compiled ? INFINITY : 0;
+    return steps_compared(p);
 }
 
 static nevh_stepper *plan_new(const plan *p, const row *r, bool balance) {
@@ -90,16 +91,34 @@ void row_stepper_keep(const plan *p, const row *r, bool balance,
         nevh_stepper_free(s);
 }
 
+/* Whether an earlier row has steps that are planned alike. */
+static bool has_its_like(row *const rows[], size_t i) {
+    const row *r = rows[i];
+    for (size_t k = 0; k < i; k++)
+        if (strcmp(rows[k]->integrator, r->integrator) == 0 &&
+            strcmp(rows[k]->gradient, r->gradient) == 0 &&
+            rows[k]->tolerance == r->tolerance)
+            return true;
+    return false;
+}
+
 void rows_settle(const plan *p, row *const rows[], size_t count, bool alone) {
     stepper_cache *all = p->steppers;
-    for (size_t i = 0; i < count && !all->settled; i++) {
+    double sum = 0, most = -INFINITY;
+    if (all->settled || !count)
+        return;
+    all->settled = true;
+    for (size_t i = 0; i < count; i++) {
+        if (!alone && has_its_like(rows, i))
+            continue;
         nevh_stepper *s = row_stepper(p, rows[i], false);
-        all->compiled |= nevh_stepper_foresee(
+        double saved = nevh_stepper_native_saves(
             s, alone ? plan_steps(p, rows[i]->dt) : steps_compared(p));
-        plan_tell_native(s);
+        sum += isfinite(saved) ? saved : 0;
+        most = fmax(most, saved);
         row_stepper_keep(p, rows[i], false, s);
     }
-    all->settled |= count > 0;
+    all->compiled = (alone ? most : sum) > 0;
 }
 
 nevh_stepper *row_stepper_to_time(const plan *p, const row *r) {
