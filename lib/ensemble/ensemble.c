@@ -33,6 +33,7 @@ static int take_outcomes(nevh_ensemble *e) {
     e->crossings = nevh__array(e->n_outcomes, sizeof *e->crossings);
     if (!e->outcomes || !e->crossing_of || !e->crossings)
         return out_of_memory(e);
+    e->watches = e->is.stop.value;
     e->moving = e->is.stop.value && e->is.stop.velocities;
     for (size_t i = 0; i < e->n_outcomes; i++) {
         const nevh_outcome *o = &e->is.outcomes[i];
@@ -46,6 +47,9 @@ static int take_outcomes(nevh_ensemble *e) {
         e->columns += o->kind == NEVH_OUTCOME_STATE ? 2 * e->n : 1;
         e->moving |= has_quantity(o) && o->quantity.velocities;
         e->looks_back |= o->kind == NEVH_OUTCOME_FIRST || crosses(o);
+        e->watches |= o->kind != NEVH_OUTCOME_STATE &&
+                      o->kind != NEVH_OUTCOME_TIME &&
+                      o->kind != NEVH_OUTCOME_LAST;
         if (crosses(o))
             e->crossing_of[e->n_crossings++] = i;
     }

@@ -57,6 +57,7 @@ struct nevh_ensemble {
     bool alone;    /* lanes are taken by nevh_run_until: there is one */
     bool together; /* H reads t: lanes begin together */
     bool looks_back, moving; /* snapshots, velocities are asked for */
+    bool watches; /* each step; else ends are all that is asked for */
     bool planned;
     nevh_energy *energy;     /* NULL: not asked for */
     nevh_sections *sections; /* NULL: not asked for */

@@ -253,6 +253,16 @@ static bool look_and_end(nevh_ensemble *e) {
     return end_lanes(e);
 }
 
+/* Whether a lane has ended, or each step is to be looked at. */
+static bool to_look(const nevh_ensemble *e) {
+    bool any = e->watches;
+    for (size_t lane = 0; !any && lane < e->width; lane++) {
+        const nevh__lane *l = &e->lanes[lane];
+        any = l->busy && (l->over || (double)l->step >= e->steps);
+    }
+    return any;
+}
+
 static void run_lanes(nevh_ensemble *e) {
     size_t steps = 0, which;
     bool asks = true;
@@ -264,9 +274,10 @@ static void run_lanes(nevh_ensemble *e) {
         }
         if (!any_busy(e, &which))
             break;
-        look_back(e, e->h);
+        if (e->watches)
+            look_back(e, e->h);
         step_together(e);
-        asks = look_and_end(e) || ++steps % PATIENCE == 0;
+        asks = (to_look(e) && look_and_end(e)) || ++steps % PATIENCE == 0;
     }
 }
 

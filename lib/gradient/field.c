@@ -22,6 +22,7 @@ void nevh_field_free(nevh_field *f) {
     free(f->terms);
     nevh__single_free(f->single);
     free(f->scale);
+    free(f->length);
     free(f->jacobian);
     free(f->chosen);
     free(f->lane_scale);

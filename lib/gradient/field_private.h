@@ -78,8 +78,10 @@ struct nevh_field {
     const nevh_gradient *gradient;
     bool portable, planned;
     size_t n;
-    double *scale; /* 2n; of an exact gradient after nevh__field_find_scale */
-    bool scaled;   /* by that */
+    double *scale;  /* 2n; of an exact gradient after nevh__field_find_scale */
+    bool scaled;    /* by that */
+    double *length; /* 2n: of an exact gradient of one orbit, found when it was
+                       verified; or NULL */
     nevh__planned *terms;
     size_t n_terms, instances;
     size_t capacity;   /* columns that the rows below have room for */

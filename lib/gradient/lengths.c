@@ -354,8 +354,22 @@ void nevh__find_curvatures(nevh__step_selection *e, double changes[],
     e->at = 0;
 }
 
+bool nevh__keep_lengths(const nevh__step_selection *e) {
+    nevh_field *f = e->field;
+    if (e->options->width > 1)
+        return true; /* which lanes matter would be to keep, too */
+    f->length = nevh__copy(e->length, 2 * f->n, sizeof *f->length);
+    return f->length;
+}
+
 void nevh__find_lengths(nevh__step_selection *e) {
     double energy = 0, kinetic = 0, last = 1;
+    if (e->field->length) {
+        load(e, 0, 0);
+        e->lanes = e->samples.count = 1;
+        memcpy(e->length, e->field->length, 2 * e->field->n * sizeof(double));
+        return;
+    }
     find_over_lanes(e, &energy);
     if (energy == 0)
         visit_all(e, find_energy, &energy);

@@ -95,8 +95,12 @@ static void integrate(nevh__step_selection *e, int steps,
                                          0.5 * DBL_MAX, &h, y);
         if (!status && runs_away(e, y))
             break;
-        if (!status && i % (steps / PILOT_SAMPLES) == 0)
-            add_sample(e, t, y, y + n);
+        if (status || i % (steps / PILOT_SAMPLES) != 0)
+            continue;
+        add_sample(e, t, y, y + n);
+        if (e->scales_alone &&
+            nevh__sizes_settled(e, e->samples.count - e->lanes))
+            break;
     }
 }
 

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 enum { LARGE = 65536 };
+enum { FEWEST_SAMPLES = 4 }; /* of the pilot, for scales */
 
 size_t nevh__stride(size_t count) {
     return (count + NEVH__PROBED - 1) / NEVH__PROBED;
@@ -25,16 +26,37 @@ size_t nevh__step_at(const nevh__planned *term, size_t instance, size_t k) {
     return instance / nevh__stride(term->term->decl.count) * term->nv + k;
 }
 
-/* The largest sizes met on the way, or the lengths, which are where H varies
-   and not where the origin is, if these are shorter. */
+/* The largest size of a variable in the first `count` samples. */
+static double largest(const nevh__step_selection *e, size_t i, size_t count) {
+    size_t n = e->field->n;
+    const double *x = i < n ? e->samples.q : e->samples.p;
+    double most = 0;
+    for (size_t at = 0; at < count; at++)
+        most = fmax(most, fabs(x[at * n + i % n]));
+    return most;
+}
+
+bool nevh__sizes_settled(const nevh__step_selection *e, size_t count) {
+    if (count < FEWEST_SAMPLES || (count & (count - 1)) != 0)
+        return false;
+    for (size_t i = 0; i < 2 * e->field->n; i++) {
+        double before = largest(e, i, e->lanes + count / 2);
+        if (before < e->length[i] &&
+            largest(e, i, e->lanes + count) > 2 * before)
+            return false;
+    }
+    return true;
+}
+
+/* The largest sizes met on the way until they settle, or the lengths, which are
+   where H varies and not where the origin is, if these are shorter. */
 static void set_scales(nevh__step_selection *e) {
     nevh_field *f = e->field;
-    size_t n = f->n;
-    for (size_t i = 0; i < 2 * n; i++) {
-        const double *x = i < n ? e->samples.q : e->samples.p;
-        double most = 0;
-        for (size_t at = 0; at < e->neighbours; at++)
-            most = fmax(most, fabs(x[at * n + i % n]));
+    size_t count = 0;
+    while (e->lanes + count < e->neighbours && !nevh__sizes_settled(e, count))
+        count++;
+    for (size_t i = 0; i < 2 * f->n; i++) {
+        double most = largest(e, i, e->lanes + count);
         f->scale[i] = most > 0 ? fmin(most, e->length[i]) : e->length[i];
     }
 }
@@ -82,6 +104,8 @@ int nevh__field_verify(nevh_field *f, const nevh_options *o) {
     for (size_t i = 0; !status && i < f->n_terms; i++)
         if (f->terms[i].nv)
             status = nevh__verify(&e, &f->terms[i]);
+    if (!status && !nevh__keep_lengths(&e))
+        status = nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
     nevh__step_selection_clear(&e);
     return status;
 }
@@ -91,6 +115,7 @@ int nevh__field_find_scale(nevh_field *f, const nevh_options *o) {
     if (f->gradient != nevh_exact || o->scale || f->scaled)
         return NEVH_OK;
     int status = nevh__step_selection_init(&e, f, o);
+    e.scales_alone = true;
     if (!status && !nevh__find_samples(&e))
         status = nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
     if (!status)

@@ -43,6 +43,7 @@ typedef struct {
     size_t at;         /* the one whose lengths are looked for */
     bool shortened;    /* a length, there */
     size_t neighbours; /* the first sample displaced at random */
+    bool scales_alone; /* no steps are tried: the pilot ends with the scales */
 } nevh__step_selection;
 
 /* Distances between the instances, and between the variables of one kind, that
@@ -69,6 +70,9 @@ double nevh__curve_length(const nevh__step_selection *, const nevh__planned *,
 /* Fills length with the shortest over the lanes, of which it makes those
    samples that matter. */
 void nevh__find_lengths(nevh__step_selection *);
+/* From now on they are those of the field, of one orbit; false when memory is
+   out. */
+bool nevh__keep_lengths(const nevh__step_selection *);
 /* Of each variable, the largest over samples of what H varies by within its
    length, over the square of that; 2n, zeros at first.
    changes: room for 4n. */
@@ -83,6 +87,9 @@ void nevh__set_crude_steps(nevh__step_selection *);
    dydt     out, 2n */
 double nevh__first_step(const nevh__step_selection *, const void *ode, double t,
                         const double y[], double dydt[]);
+/* Whether the first `count` samples of the pilot suffice for scales: those of the
+   second half doubled no size that is below its length. */
+bool nevh__sizes_settled(const nevh__step_selection *, size_t count);
 /* Adds samples; false when memory is out. */
 bool nevh__find_samples(nevh__step_selection *);
 /* Adds only those displaced at random. */

@@ -272,6 +272,45 @@ static double fall(double t, const double q[], const double p[],
 
 static const problem falling = {.name = "falling", .n = 1, .q = {1}, .p = {2}};
 
+static void counted_coordinate(const void *data, size_t width, const double t[],
+                               const double q[], const double p[],
+                               const double v[], double values[]) {
+    size_t *calls = *(size_t *const *)data;
+    ++*calls;
+    first_coordinate(&zero, width, t, q, p, v, values);
+}
+
+/* What is asked for at the end is evaluated there, and is what it is beside an
+   outcome of all steps. */
+TEST_EACH(ends_alone_are_not_watched, 2) {
+    const problem *b = &henon_heiles;
+    size_t calls = 0, *counter = &calls;
+    const nevh_quantity counted = {.value = counted_coordinate,
+                                   .data = &counter};
+    const nevh_outcome outcomes[] = {
+        {.kind = NEVH_OUTCOME_LAST, .quantity = counted},
+        {.kind = NEVH_OUTCOME_STATE},
+        {.kind = NEVH_OUTCOME_TIME},
+        {.kind = NEVH_OUTCOME_MAXIMUM, .quantity = q0}};
+    nevh_options o;
+    nevh_ensemble_options is = options_of(b, 8, nevh_verlet, &o);
+    is.t_end -= _i * 0.3 * is.dt; /* whole steps, or not */
+    is.outcomes = outcomes;
+    is.n_outcomes = sizeof outcomes / sizeof *outcomes;
+    nevh_system *s = b->make();
+    members watched = run(s, &is, b, false);
+    size_t all = calls;
+    calls = 0;
+    is.n_outcomes--;
+    members ends = run(s, &is, b, false);
+    nevh_system_free(s);
+    ck_assert_uint_gt(all, 40);
+    ck_assert_msg(calls <= 4 * MEMBERS / 8, "%zu of %zu", calls, all);
+    for (size_t i = 0; i < MEMBERS; i++)
+        for (size_t k = 0; k < ends.columns; k++)
+            ck_assert(ends.values[i][k] == watched.values[i][k]);
+}
+
 TEST(failures_stop_no_neighbour) {
     nevh_system *s = nevh_system_from(1, fall, NULL);
     nevh_options o = {.q = falling.q, .p = falling.p, .gradient_step = 1e-3};

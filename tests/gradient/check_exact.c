@@ -2,6 +2,8 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "support.h"
 #include <math.h>
+#include <nevh/extend.h>
+#include <nevh/models.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -280,6 +282,61 @@ TEST(lengths_are_found_for_schemes_that_read_them) {
     for (size_t i = 0; i < sizeof reads / sizeof *reads; i++)
         ck_assert_msg(asked_by(reads[i], NULL) > none + 200, "%s: %zu",
                       nevh_integrator_name(reads[i]), asked_by(reads[i], NULL));
+}
+
+/* A swing shows its sizes in a few steps of the 240. */
+TEST(the_pilot_for_scales_ends_once_sizes_settle) {
+    static const double ones[] = {1, 1};
+    size_t none = asked_by(nevh_dop853, ones);
+    ck_assert_uint_lt(asked_by(nevh_dop853, NULL), none + 500);
+}
+
+/* A kernel that only finds its scales. */
+static double scales[8];
+
+static int note_scales(nevh_work *w) {
+    int status = nevh_work_find_scale(w);
+    if (!status)
+        memcpy(scales, w->scale, 2 * w->n * sizeof *scales);
+    return status;
+}
+
+static const nevh_kernel only_scales = {.plan = note_scales};
+static const nevh_integrator scales_of = {
+    .name = "scales", .order = 1, .kernel = &only_scales};
+
+static void find_scales(const nevh_model *model, const nevh_gradient *gradient,
+                        const double q[], const double p[]) {
+    nevh_system *s = model->system(model->defaults);
+    nevh_stepper *m = nevh_stepper_new(
+        s, &scales_of, &(nevh_options){.gradient = gradient, .q = q, .p = p});
+    ck_assert_msg(!nevh_stepper_status(m), "%s", nevh_stepper_message(m));
+    nevh_stepper_free(m);
+    nevh_system_free(s);
+}
+
+TEST(scales_are_the_same_for_exact_gradients_and_differences) {
+    for (const nevh_model *const *m = nevh_models(); *m; m++) {
+        double exact[8];
+        find_scales(*m, nevh_exact, (*m)->q, (*m)->p);
+        memcpy(exact, scales, sizeof exact);
+        find_scales(*m, nevh_central4, (*m)->q, (*m)->p);
+        for (size_t i = 0; i < 2 * (*m)->n; i++)
+            ck_assert_msg(fabs(scales[i] / exact[i] - 1) < 1e-3,
+                          "%s, %zu: %g, %g", (*m)->name, i, scales[i],
+                          exact[i]);
+    }
+}
+
+/* The pendulum stands nearly upright for long, where p is far below its size. */
+TEST(the_pilot_for_scales_waits_until_the_orbit_sets_out) {
+    for (double off = 0.1; off > 1e-12; off /= 10)
+        for (int i = 0; i < 2; i++) {
+            find_scales(nevh_pendulum_model, i ? nevh_central4 : nevh_exact,
+                        (const double[]){3.141592653589793 - off},
+                        (const double[]){0});
+            ck_assert_msg(scales[1] > 1, "%g: %g", off, scales[1]);
+        }
 }
 
 static double kepler_value(double t, const double q[], const double p[],
