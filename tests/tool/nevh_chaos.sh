@@ -84,6 +84,13 @@ says 'tolerance'
 exits 2 chaos kepler-0.9 --integrators adaptive-verlet
 says 'depend on the state|chooses its steps'
 exits 2 chaos henon-heiles --integrators verlett
+# An orbit that loses its energy is not one of H.
+lacks 'does not keep the energy'
+exits 0 chaos double-pendulum --integrators rk4 --dt 0.1 --t-end 1000
+has 'rk4 at dt = 0.1 does not keep the energy .error [0-9.]+ of its scale.: what'
+exits 0 chaos double-pendulum --integrators rk4 --dt 0.01 --t-end 10
+lacks 'does not keep the energy'
+
 exits 2 chaos henon-heiles --dt 0
 exits 2 chaos henon-heiles --plot x.svg
 says 'no option of nevh chaos'

@@ -4,10 +4,13 @@
 #include <math.h>
 #include <nevh/chaos.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Where no end is asked for, a run goes on until it is clear what the orbit is,
    up to so many steps, or to the scene's own end. */
 static const double most_steps = 4e5, good_enough = 0.05;
+/* Of the energy's scale: an orbit that changes its energy by more is not one of H. */
+static const double lost = 0.1;
 
 typedef struct {
     const plan *plan;
@@ -145,6 +148,32 @@ static void say_row(job *j, const row *r) {
     free(what);
 }
 
+/* What is found is of the scheme's own map, whose orbits may keep no energy. */
+static void note_energy(job *j, const row *r) {
+    const plan *p = j->plan;
+    nevh_options o = plan_options(p, p->gradients.item[0]);
+    nevh_stepper *s = plan_stepper(p, r->integrator);
+    nevh_energy *energy = tool_owned(nevh_energy_new(p->system, &o));
+    double *q = tool_allocate(2 * p->n, sizeof *q);
+    memcpy(q, p->q, p->n * sizeof *q);
+    memcpy(q + p->n, p->p, p->n * sizeof *q);
+    if (p->run->energy_scale > 0)
+        nevh_energy_set_scale(energy, p->run->energy_scale);
+    nevh_run_until(s, p->run->t_start, r->dt, nevh_chaos_result(r->chaos).t, q,
+                   q + p->n, &(nevh_observer){nevh_energy_observe, energy, 1},
+                   1);
+    double error = nevh_energy_result(energy, 0).max;
+    if (error > lost)
+        list_print(&j->result.after,
+                   "%s at dt = %g does not keep the energy (error %.2g of its "
+                   "scale): what is found is of these steps, not of H; take a "
+                   "smaller dt.",
+                   r->integrator, r->dt, error);
+    free(q);
+    nevh_energy_free(energy);
+    nevh_stepper_free(s);
+}
+
 static int run_one(job *j, const char *integrator, double dt) {
     const plan *p = j->plan;
     bool transformed;
@@ -168,6 +197,8 @@ static int run_one(job *j, const char *integrator, double dt) {
         table_group(j->result.table);
         if (!status)
             say_row(j, &r);
+        if (!status && !p->balance)
+            note_energy(j, &r);
     }
     nevh_chaos_free(r.chaos);
     return status;
