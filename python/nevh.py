@@ -1039,7 +1039,8 @@ def solve(H, t_span=None, y0=None, method=None, *, dt=None, rtol=None, atol=None
         adapts = method and _lib.integrator_adaptive(_integrator(method)[0])
         if dt is None and settings.dts and not adapts:
             dt = settings.dt[0]
-        if rtol is None and settings.tolerances and adapts:
+        if (rtol is None and settings.tolerances and adapts and
+                not scene.is_formula):
             rtol = settings.tolerance[0]
         gradient = gradient or settings.gradient[0].decode()
     if not t_end - t0 < float("inf") or t_end == t0:

@@ -194,7 +194,8 @@ NEVH_API int nevh_run_until(nevh_stepper *, double t0, double h, double t_end,
             stopped; NULL: not wanted
    returns  as nevh_run_until; NEVH_EINVAL where a time is out of order, or the
             stepper's width is not 1
-   cost     a step for each time between two steps */
+   cost     a step for each time between two steps; of taylor no series, unless
+            a step is longer than two */
 NEVH_API int nevh_run_at(nevh_stepper *, double t0, double h, double t_end,
                          const double times[], size_t count, double states[],
                          size_t *kept, double q[], double p[],

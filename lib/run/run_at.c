@@ -2,7 +2,9 @@
 
    An observer of each step branches off to the times that come before the next
    one.  Where steps take times of their own, it does so afterwards, from what
-   it kept of the step before.
+   it kept of the step before.  So it does where the memory of a scheme holds the
+   orbit beside a state, as series do: there the state before the step, that after
+   it, or the last one branched off to is a place from which others are read.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/branch_private.h"
 #include <float.h>
@@ -12,7 +14,9 @@
 
 typedef struct {
     nevh_stepper *stepper;
-    nevh__branch from, now; /* now: of schemes of own time */
+    nevh__branch from, now; /* now: where states are found afterwards */
+    nevh__branch
+        tried; /* the last state that was not to be read; t: NAN if none */
     const double *times;
     size_t count, kept;
     double *states;
@@ -89,10 +93,71 @@ static int sample_own(sampler *a, double t, const double q[],
     return status;
 }
 
+/* Whether the memory of steps holds the orbit beside their ends. */
+static bool is_held(const nevh_stepper *s) {
+    return !s->own_time && s->work.integrator->kernel->holds;
+}
+
+/* Steps to the next time from where that needs no evaluations, or else from the
+   start of the step. */
+static int read_next(sampler *a) {
+    const nevh_work *w = &a->stepper->work;
+    nevh__branch *places[] = {&a->from, &a->now, &a->tried}, *b = NULL;
+    double due = a->times[a->kept];
+    for (size_t i = 0; !b && i < 3; i++)
+        if (w->integrator->kernel->holds(w, places[i]->memory,
+                                         due - places[i]->t))
+            b = places[i];
+    bool read = b;
+    b = read ? b : &a->from;
+    b->t_end = due;
+    b->h = due - b->t;
+    int status = nevh__branch_step(b);
+    if (!status)
+        put(a, b->q_end, b->p_end);
+    if (!status && !read)
+        nevh__branch_keep(&a->tried, due, b->q_end, b->p_end);
+    return status;
+}
+
+static int sample_held(sampler *a, double t, const double q[],
+                       const double p[]) {
+    if (is_due(a, t)) {
+        nevh__branch_keep(&a->now, t, q, p);
+        a->tried.t = NAN;
+        while (!a->status && is_due(a, t))
+            a->status = read_next(a);
+        if (a->status)
+            a->report = a->stepper->report;
+        nevh__branch_resume(&a->now);
+    }
+    put_here(a, t, q, p);
+    nevh__branch_keep(&a->from, t, q, p);
+    return a->status;
+}
+
+/* What comes before the place within a step where that failed. */
+static void read_before_failure(sampler *a, const double q[],
+                                const double p[]) {
+    nevh__report report = a->stepper->report;
+    double last = a->stepper->last_t;
+    double left = a->t_end - a->from.t;
+    double next = fabs(left) < fabs(a->h) ? a->t_end : a->from.t + a->h;
+    nevh__branch_keep(&a->now, last, q, p);
+    a->now.t = a->tried.t = NAN;
+    while (is_due(a, next) && !read_next(a))
+        ;
+    a->now.t = last;
+    nevh__branch_resume(&a->now);
+    a->stepper->report = report;
+}
+
 static int sample(void *data, size_t step, double t, const double q[],
                   const double p[]) {
     sampler *a = data;
     (void)step;
+    if (is_held(a->stepper))
+        return sample_held(a, t, q, p);
     return (a->stepper->own_time ? sample_own : sample_fixed)(a, t, q, p);
 }
 
@@ -123,6 +188,8 @@ static int run_sampled(sampler *a, double t0, double h, double q[], double p[],
     int status = all ? nevh__branch_open(&a->from, a->stepper) : NEVH_ENOMEM;
     if (!status)
         status = nevh__branch_open(&a->now, a->stepper);
+    if (!status)
+        status = nevh__branch_open(&a->tried, a->stepper);
     if (all && count)
         memcpy(all + 1, observers, count * sizeof *all);
     if (all)
@@ -132,8 +199,12 @@ static int run_sampled(sampler *a, double t0, double h, double q[], double p[],
             nevh_run_until(a->stepper, t0, h, a->t_end, q, p, all, count + 1);
     else
         nevh__fail(&a->stepper->report, status, "out of memory");
+    if (status && status != NEVH_STOPPED && all && a->tried.q &&
+        is_held(a->stepper))
+        read_before_failure(a, q, p);
     nevh__branch_close(&a->from);
     nevh__branch_close(&a->now);
+    nevh__branch_close(&a->tried);
     free(all);
     return a->status ? nevh__fail_as(&a->stepper->report, &a->report) : status;
 }

@@ -87,6 +87,36 @@ def test_times_between_steps_are_those_of_the_command():
         [[orbit.y[0][i], orbit.y[1][i]] for i in range(5)]
 
 
+def test_taylor_reads_states_off_its_series():
+    """Forward and back, in time or not; rounding is all that differs from runs that
+    end at these times."""
+    for H, y0 in ((PENDULUM, [2, 0]), ("p_x^2/2 - cos(x)*(1 + 0.3*cos(t))", [2, 0.1])):
+        for span in ((0, 12), (3, -9)):
+            count = 400
+            times = [span[0] + (span[1] - span[0]) * i / count for i in range(count + 1)]
+            named = {"method": "taylor", "rtol": 1e-12}
+            plain = nevh.solve(H, span, y0, dt=0.5, t_eval=[span[1]], **named)
+            dense = nevh.solve(H, span, y0, dt=0.5, t_eval=times, **named)
+            assert len(dense.t) == count + 1
+            # None more; where H reads t, not more than again as many.
+            most = plain.nfev if H == PENDULUM else 2 * plain.nfev
+            assert plain.nfev <= dense.nfev <= most, (plain.nfev, dense.nfev)
+            assert last(dense) == last(plain)
+            for i in range(7, count, 57):
+                alone = nevh.solve(H, (span[0], times[i]), y0, dt=0.5, t_eval=[times[i]],
+                                   **named)
+                assert close([row[i] for row in dense.y], last(alone), 1e-13)
+
+
+def test_taylor_keeps_what_comes_before_a_failure():
+    times = [0.05 * i for i in range(101)]
+    orbit = nevh.solve("p_x^2/2 - 1/x", (0, 5), [1, -0.5], "taylor", dt=5, rtol=1e-6,
+                       t_eval=times, check=False)
+    assert orbit.status == -1 and "the step of 5 " in orbit.message
+    assert list(orbit.t) == times[:16] and times[15] < 0.759 < times[16]
+    assert all(math.isfinite(x) for row in orbit.y for x in row)
+
+
 def test_result_has_scipy_names():
     orbit = nevh.solve(PENDULUM, (0, 10), [2, 0])
     for name in ("t", "y", "nfev", "status", "message", "success", "sol",
@@ -185,6 +215,10 @@ def test_scene_starts():
            parameters={"g": 1})
     assert "start = 1.0" in scene.text
     assert nevh.Scene(scene.text).names == ["phi", "p_phi"]
+
+
+def test_a_formula_has_the_default_tolerance():
+    assert nevh.solve(PENDULUM, (0, 1), [1, 0], "dop853").tolerance == 1e-9
 
 
 def test_defaults_without_a_method():

@@ -11,6 +11,14 @@ near() { # COLUMN NAME VALUE MOST
         END { exit !found }' || fails "$2 is not $3 within $4"
 }
 
+# Numbers whose squares overflow, and angles without digits, had residuals of 0.
+printf 't,p_phi\n0,1\n1,1e308\n2,1\n' >$work/large.csv
+exits 2 fit pendulum --data $work/large.csv --vary g --dt 0.05
+says 'large.csv:3: column p_phi: the square of 1e308 overflows'
+printf 't,phi\n0,1\n1,1e308\n2,1\n' >$work/large.csv
+exits 2 fit pendulum --data $work/large.csv --vary g --dt 0.05
+says 'large.csv:3: column phi: 1e308 is so many turns'
+
 # What the manual says, from the points that ship; they are what makes them.
 sh "$srcdir/examples/filmed.sh" "$nevh" ./examples/add_noise >$work/made.csv ||
     fails "filmed.sh fails"

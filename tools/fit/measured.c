@@ -222,6 +222,24 @@ static int read_header(reader_of_points *r, char *line, const char *only) {
 
 /* Rows. */
 
+/* Squares of larger numbers overflow; larger angles have no digits left within a
+   turn. */
+static const double largest = 1e150, most_turns = 1e12;
+
+static int check_size(const reader_of_points *r, size_t i, const char *text,
+                      double number) {
+    double period = r->use[i] >= 0 ? r->m->period[r->use[i]] : 0;
+    if (period > 0 && fabs(number) > most_turns * period)
+        return tool_refuse("%s:%zu: column %s: %s is so many turns that no "
+                           "digits are left of the angle",
+                           r->m->file, r->line, r->header.item[i], text);
+    if (fabs(number) > largest)
+        return tool_refuse("%s:%zu: column %s: the square of %s overflows; "
+                           "take another unit",
+                           r->m->file, r->line, r->header.item[i], text);
+    return TOOL_OK;
+}
+
 static int read_cell(const reader_of_points *r, size_t i, const char *text,
                      double *number) {
     char *end;
@@ -238,7 +256,7 @@ static int read_cell(const reader_of_points *r, size_t i, const char *text,
             "%s:%zu: column %s: a standard deviation is above 0, "
             "not %s",
             r->m->file, r->line, r->header.item[i], text);
-    return TOOL_OK;
+    return check_size(r, i, text, *number);
 }
 
 static void put_cell(const reader_of_points *r, size_t i, double number,
