@@ -275,8 +275,7 @@ TEST(a_start_of_straight_forces_is_like_others) {
            "H = (p_x^2 + 2*p_y^2 - 2*p_x*p_y*cos(x - y))/(2*(1 + sin(x - y)^2))"
            " - 9.8*(2*cos(x) + cos(y))",
            nevh_gauss4, 0.04);
-    s.of.starts = 2;
-    run(&s, 200);
+    run(&s, 300);
     value = nevh_chaos_exponent(s.chaos, 0, &error);
     ck_assert_int_eq(nevh_chaos_result(s.chaos).verdict, NEVH_CHAOTIC);
     ck_assert_double_lt(fabs(value - 0.92), 2 * hypot(error, 0.015));
