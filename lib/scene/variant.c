@@ -28,15 +28,19 @@ static bool make_quantity(nevh__variant *x, const char *left, const char *right,
     nevh__tape *tape =
         tree ? nevh__tree_tape(tree, x->model->names, ANYTHING, &error) : NULL;
     nevh__tree_free(tree);
-    free(text);
     nevh__tape **all =
         tape ? nevh__grow(x->tapes.tapes, x->tapes.count + 1, sizeof *all)
              : NULL;
     if (!all) {
         nevh__tape_free(tape);
-        return fail(report, error.status ? error.status : NEVH_ENOMEM,
-                    error.status ? error.text : "out of memory");
+        if (text && error.status && error.status != NEVH_ENOMEM)
+            nevh__fail(report, error.status, "%s: %s", text, error.text);
+        else
+            fail(report, NEVH_ENOMEM, "out of memory");
+        free(text);
+        return false;
     }
+    free(text);
     x->tapes.tapes = all;
     all[x->tapes.count++] = tape;
     *quantity =

@@ -188,6 +188,8 @@ refuses 'writes CSV' pendulum-periods --format json
 refuses 'needs H = T\(p\) \+ V\(q\)' double-pendulum --vary 'phi1 = 1, 2' \
     --integrators verlet
 refuses 'cannot be written' pendulum-periods -o $work/no/such/folder.csv
+exits 2 sweep pendulum --vary phi=0.5 --outcomes 'max(phi),mean(log(-1))'
+says 'pendulum: log.-1.: this is not a number'
 exits 2 run pendulum --vary 'phi = 1'
 says '--vary is no option of nevh run; it is for .*sweep'
 
