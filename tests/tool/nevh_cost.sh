@@ -35,6 +35,8 @@ exits 2 cost pendulum --t-end 1 --dt 0.1 --integrators verlet \
     -o $work/nowhere/out.csv
 
 # Without seconds nothing is tried, which is said.
+exits 0 cost pendulum --t-end 10 --integrators verlet,taylor
+lacks 'friction'
 exits 0 cost pendulum --budget 1e-9
 has 'were not tried, for lack of time'
 

@@ -73,8 +73,7 @@ static void note_balance(const plan *p, list *notes) {
 }
 
 static bool is_limited(const plan *p, const row *r) {
-    (void)p;
-    return r->order < nevh_integrator_order(r->scheme);
+    return p->friction && r->order < nevh_integrator_order(r->scheme);
 }
 
 static bool has_nominal_steps(const plan *p, const row *r) {
@@ -119,15 +118,17 @@ static void note_rows(const plan *p, const row rows[], size_t count,
                         "as verlet with that dt; dt is what they take");
 }
 
-/* Which integrators ran compiled steps, in all of their rows or in some. */
+/* Which integrators ran compiled steps, in all of their rows that were timed or in
+   some. */
 void native_notes(const plan *p, const row rows[], size_t count, list *notes) {
     list all = {0}, some = {0}, none = {0};
     for (size_t i = 0; i < count; i++)
-        if (!rows[i].native)
+        if (!rows[i].native && isfinite(rows[i].seconds))
             list_add(&none, rows[i].integrator);
     for (size_t i = 0; i < count; i++) {
         list *to = list_has(&none, rows[i].integrator) ? &some : &all;
-        if (rows[i].native && !list_has(to, rows[i].integrator))
+        if (rows[i].native && isfinite(rows[i].seconds) &&
+            !list_has(to, rows[i].integrator))
             list_add(to, rows[i].integrator);
     }
     char *names = list_joined(&all), *in_part = list_joined(&some);

@@ -123,7 +123,7 @@ static void settle_cells(costs *c, const cell cells[], size_t count) {
     row **all = tool_allocate(count, sizeof *all);
     for (size_t i = 0; i < count; i++)
         all[i] = &cells[i].study->level[cells[i].level];
-    rows_settle(&c->search.plan, all, count, false);
+    rows_settle(&c->search.plan, all, count, true);
     free(all);
 }
 
