@@ -16,15 +16,12 @@ import math
 import os
 import re
 import subprocess
-import sys
-import tempfile
 import time
 from decimal import Decimal, getcontext
 
 import promises
-from promises import broken, command, row, table
+from promises import command, row, table, work
 
-work = tempfile.mkdtemp(prefix="certain.")
 getcontext().prec = 60
 
 # Found by a Gauss method of order 16 in arithmetic of 113 bits, without nevh's code;
@@ -184,13 +181,14 @@ def share():
     for energy, known in ("1/12", 0.0), ("1/8", 0.5), ("1/6", 1.0):
         side = 400
         begin = time.time()
-        found = table("sweep", "henon-heiles", "--vary",
-                      "y = range(-0.55, 1, %d)" % side, "--vary",
-                      "p_y = range(-0.6, 0.6, %d)" % side, "--vary",
-                      "p_x = solve(H = %s, from 0.4)" % energy, "--outcomes", "sali",
-                      "--integrators", "forest-ruth", "--t-end", "1000",
-                      "--picture", os.path.join(work, "map.png"), "-o",
-                      os.path.join(work, "map.csv"), allowed=(0, 1)) or read_map()
+        command("sweep", "henon-heiles", "--vary",
+                "y = range(-0.55, 1, %d)" % side, "--vary",
+                "p_y = range(-0.6, 0.6, %d)" % side, "--vary",
+                "p_x = solve(H = %s, from 0.4)" % energy, "--outcomes", "sali",
+                "--integrators", "forest-ruth", "--t-end", "1000",
+                "--picture", os.path.join(work, "map.png"), "-o",
+                os.path.join(work, "map.csv"), allowed=(0, 1))
+        found = read_map()
         taken = time.time() - begin
         there = [line for line in found if line["status"] == "ok"]
         chaotic = sum(float(line["sali"]) < 1e-8 for line in there)
@@ -208,21 +206,5 @@ def read_map():
 
 PARTS = (states, scenes, exponents, pairs, frequencies, share)
 
-
-def main():
-    names = {part.__name__: part for part in PARTS}
-    words = sys.argv[1:]
-    if not words:
-        raise SystemExit(__doc__)
-    promises.nevh = words.pop(0)
-    for word in words or names:
-        names[word]()
-    return 1 if broken else 0
-
-
-try:
-    sys.exit(main())
-finally:
-    for name in os.listdir(work):
-        os.unlink(os.path.join(work, name))
-    os.rmdir(work)
+if __name__ == "__main__":
+    promises.main(__doc__, PARTS)

@@ -16,18 +16,14 @@ import os
 import random
 import signal
 import subprocess
-import sys
-import tempfile
 import time
 
 import promises
-from promises import broken, command, row, seconds, table
+from promises import command, row, seconds, table, work
 
 SIDE = int(os.environ.get("SIDE", 1000))
 KILLS = int(os.environ.get("KILLS", 30))
 STOPPED = float(os.environ.get("STOPPED", 60))
-work = tempfile.mkdtemp(prefix="ensembles.")
-mpi = None
 
 
 def bytes_of(name):
@@ -88,8 +84,8 @@ def whole():
 
 
 def ranks(count, *words):
-    return subprocess.Popen(["mpirun", "-n", str(count), mpi, *words, "--quiet"],
-                            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+    return subprocess.Popen(["mpirun", "-n", str(count), promises.mpi, *words,
+                             "--quiet"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                             start_new_session=True)
 
 
@@ -119,7 +115,7 @@ def descends(pid, ancestor):
 
 def stopped():
     """Three ranks on two cores, one of which is stopped for a minute."""
-    if not mpi:
+    if not promises.mpi:
         return
     expected, name = whole(), new(work + "/stopped.npy")
     begin = time.time()
@@ -144,9 +140,9 @@ def kills():
     """kill -9 at random moments, then --resume."""
     expected = whole()
     length = seconds(*LONG, "-o", new(work + "/length.npy"))
-    for kind in ("process",) + (("rank",) if mpi else ()):
+    for kind in ("process",) + (("rank",) if promises.mpi else ()):
         same = landed = 0
-        for _ in range(KILLS // 2 if mpi else KILLS):
+        for _ in range(KILLS // 2 if promises.mpi else KILLS):
             name = new(work + "/killed.npy")
             words = LONG + ["-o", name]
             run = (ranks(2, *words, "--threads", "1") if kind == "rank" else
@@ -164,7 +160,7 @@ def kills():
             run.wait()
             command(*LONG, "--resume" if os.path.exists(name) else "-o", name)
             same += bytes_of(name) == expected
-        count = KILLS // 2 if mpi else KILLS
+        count = KILLS // 2 if promises.mpi else KILLS
         row("kill -9 of a %s, then --resume" % kind, "identical bytes",
             "%d of %d (%d hit)" % (same, count, landed), same == count)
 
@@ -193,7 +189,7 @@ def same():
         compare(name, "%d parts" % parts)
         for part in range(1, parts + 1):
             new(work + "/same.%d-of-%d.npy" % (part, parts))
-    for count in (1, 2, 3) if mpi else ():
+    for count in (1, 2, 3) if promises.mpi else ():
         name = new(work + "/same.npy")
         ranks(count, *LONG, "--threads", "1", "-o", name).wait()
         compare(name, "%d ranks" % count)
@@ -311,24 +307,5 @@ def section():
 
 PARTS = (flips, stopped, kills, same, memory, period, area, section)
 
-
-def main():
-    global mpi
-    names = {part.__name__: part for part in PARTS}
-    words = sys.argv[1:]
-    if not words:
-        raise SystemExit(__doc__)
-    promises.nevh = words.pop(0)
-    if words and words[0] not in names:
-        mpi = words.pop(0)
-    for word in words or names:
-        names[word]()
-    return 1 if broken else 0
-
-
-try:
-    sys.exit(main())
-finally:
-    for name in os.listdir(work):
-        os.unlink(os.path.join(work, name))
-    os.rmdir(work)
+if __name__ == "__main__":
+    promises.main(__doc__, PARTS, takes_mpi=True)

@@ -4,10 +4,14 @@ SPDX-License-Identifier: GPL-3.0-or-later
 """
 
 import csv
+import os
 import subprocess
+import sys
+import tempfile
 import time
 
-nevh, broken = None, []
+nevh, mpi, broken = None, None, []
+work = tempfile.mkdtemp(prefix="promises.")
 
 
 def row(what, goal, here, kept):
@@ -34,3 +38,25 @@ def seconds(*words, allowed=(0,)):
     begin = time.time()
     command(*words, allowed=allowed)
     return time.time() - begin
+
+
+def main(document, parts, takes_mpi=False):
+    """Runs the parts that are named, or all; ends with the exit status."""
+    global nevh, mpi
+    names = {part.__name__: part for part in parts}
+    words = sys.argv[1:]
+    try:
+        if not words:
+            raise SystemExit(document)
+        nevh = words.pop(0)
+        if takes_mpi and words and words[0] not in names:
+            mpi = words.pop(0)
+        for word in words or names:
+            if word not in names:
+                raise SystemExit("%s is none of %s" % (word, ", ".join(names)))
+            names[word]()
+    finally:
+        for name in os.listdir(work):
+            os.unlink(os.path.join(work, name))
+        os.rmdir(work)
+    sys.exit(1 if broken else 0)

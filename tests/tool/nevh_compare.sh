@@ -296,5 +296,7 @@ printf '%s\n' '[coordinates]' 'x = 1' '[effects]' 'K = p_x^2/2' \
     'V = x^2/2 + 1e-3*sin(1e15*x)' '[run]' 't_end = 2' 'dt = 0.1' \
     'integrators = dopri5' 'tolerance = 1e-12' >$work/noisy.nevh
 exits 1 compare $work/noisy.nevh
-has '^dopri5 failed: dopri5 gave up at t = .*: the step of 0\.1 takes more'
+# However its lines are broken.
+tr -s '\n ' '  ' <$work/out | grep -Eq 'dopri5 failed: dopri5 gave up at t = [^ ]*: the step of 0\.1 takes more than 100000 substeps' ||
+    fails 'does not say why dopri5 gave up'
 exit $status
