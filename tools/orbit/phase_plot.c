@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_COORDINATES = 4 };
+enum { MOST_COORDINATES = 4, PHASE_TURNS = 50 };
 
 /* x is x:p_x. */
 static char *pairs_of(const options *o, const plan *p) {
@@ -128,34 +128,71 @@ static int check_measured(const run_picture *picture, const column_panels *c) {
                      : TOOL_OK;
 }
 
-static char *say_more(const run_picture *picture) {
+static char *say_more(const run_picture *picture, const char *cut) {
     const plan *p = &picture->plan;
-    char *energy = plot_energy_at_start(p);
-    char *text = p->n > MOST_COORDINATES && !picture->options->columns
-                     ? text_print("%s; the first %d of %zu coordinates: "
-                                  "--columns chooses others",
-                                  energy, MOST_COORDINATES, p->n)
-                     : text_print("%s", energy);
+    char *energy = plot_energy_at_start(p), *others = text_print("%s", "");
+    if (p->n > MOST_COORDINATES && !picture->options->columns) {
+        free(others);
+        others = text_print("; the first %d of %zu coordinates: --columns "
+                            "chooses others",
+                            MOST_COORDINATES, p->n);
+    }
+    char *text =
+        text_print("%s%s%s%s", energy, others, cut ? "; " : "", cut ? cut : "");
+    free(others);
     free(energy);
     return text;
+}
+
+static void follow(run_picture *picture, column_panels *c) {
+    row_times dense = orbit_dense_times(&picture->plan);
+    column_panels_follow(picture, &dense, c);
+    free(dense.time);
+}
+
+/* How often the slowest panel of those that move goes round. */
+static double least_turns(const orbit *o, size_t panels) {
+    double least = INFINITY;
+    for (size_t k = 0; k < 2 * panels; k += 2) {
+        double turns = fmax(orbit_turns(o, k), orbit_turns(o, k + 1));
+        least = turns > 0 ? fmin(least, turns) : least;
+    }
+    return isfinite(least) ? least : 0;
+}
+
+/* A curve that does not close would fill an area: its run is cut.
+   returns  what is to be said of it; to be freed */
+static char *follow_and_cut(run_picture *picture, column_panels *c) {
+    const plan *p = &picture->plan;
+    bool closes =
+        p->n == 1 &&
+        (nevh_system_traits(nevh_scene_system(p->scene)) & NEVH_AUTONOMOUS);
+    follow(picture, c);
+    char *words =
+        closes
+            ? NULL
+            : picture_cut(picture, least_turns(picture->orbits.item, c->panels),
+                          PHASE_TURNS);
+    if (words)
+        follow(picture, c);
+    return words;
 }
 
 plot *plot_phase(run_picture *picture) {
     column_panels c = {0};
     plot *to = NULL;
-    row_times dense = orbit_dense_times(&picture->plan);
     char *names = pairs_of(picture->options, &picture->plan);
     if (!column_panels_read(&c, &picture->plan, names) && !check_pairs(&c) &&
         !check_measured(picture, &c) && !column_panels_check(picture, &c)) {
-        column_panels_follow(picture, &dense, &c);
+        char *cut = follow_and_cut(picture, &c);
         for (size_t i = 0; i < c.panels; i++)
             draw_panel(&to, picture, &c, i);
-        char *more = say_more(picture);
+        char *more = say_more(picture, cut);
         picture_note(picture, to, more);
         free(more);
+        free(cut);
     }
     column_panels_free(&c);
-    free(dense.time);
     free(names);
     return to;
 }
