@@ -14,18 +14,18 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/*     change_q = change_p = 0,  Q = q + e_q,  P = p + e_p
+/*     change_q = e_q,  change_p = e_p,  Q = q + e_q,  P = p + e_p
        for each operation i
-           kick:   change_p -= w_i h dV/dq(Q),  P = p + (change_p + e_p)
-           drift:  change_q += w_i h dT/dp(P),  Q = q + (change_q + e_q)
+           kick:   change_p -= w_i h dV/dq(Q),  P = p + change_p
+           drift:  change_q += w_i h dT/dp(P),  Q = q + change_q
        q = Q,  p = P, and e is what that lost to rounding. */
 
 /* One half of the state: q under drifts, p under kicks.  Rows of lanes. */
 typedef struct {
     nevh__number *state;        /* at the start of the step */
     nevh__number *compensation; /* e: digits that earlier steps lost */
-    nevh__number *change;       /* the increment so far */
-    nevh__number *point;        /* state + (change + compensation) */
+    nevh__number *change;       /* e and the increment so far */
+    nevh__number *point;        /* state + change */
 } nevh__half;
 
 typedef struct {
@@ -65,12 +65,11 @@ NEVH__INLINE void nevh__splitting_advance(size_t lanes, size_t size,
                                           const nevh__half *x, double step,
                                           const nevh__number *restrict slope) {
     nevh__number *restrict change = x->change, *restrict point = x->point;
-    const nevh__number *restrict state = x->state, *restrict compensation =
-                                                       x->compensation;
+    const nevh__number *restrict state = x->state;
     NEVH__EACH(i, lanes, size) {
         nevh__number sum = change[i] + step * slope[i];
         change[i] = sum;
-        point[i] = state[i] + (sum + compensation[i]);
+        point[i] = state[i] + sum;
     }
 }
 
@@ -103,14 +102,14 @@ NEVH__INLINE int nevh__splitting_operate_both(const nevh__splitting_step *x,
         return status;
     NEVH__EACH(k, lanes, size) {
         nevh__number sum = p->change[k] + kick * slope[k];
-        nevh__number momentum = p->state[k] + (sum + p->compensation[k]);
+        nevh__number momentum = p->state[k] + sum;
         nevh__number velocity = inverse[k] * momentum;
         nevh__number moved = q->change[k] + drift * velocity;
         slope[k] = velocity;
         p->change[k] = sum;
         p->point[k] = momentum;
         q->change[k] = moved;
-        q->point[k] = q->state[k] + (moved + q->compensation[k]);
+        q->point[k] = q->state[k] + moved;
     }
     return 0;
 }
@@ -151,8 +150,7 @@ NEVH__INLINE int nevh__splitting_operate_all(const nevh__splitting_step *x,
 }
 
 NEVH__INLINE void nevh__splitting_commit(const nevh__half *x, size_t i) {
-    nevh__number start = x->state[i], d = x->change[i] + x->compensation[i];
-    x->compensation[i] = nevh__roundoff(x->point[i], start, d);
+    x->compensation[i] = nevh__roundoff(x->point[i], x->state[i], x->change[i]);
     x->state[i] = x->point[i];
 }
 
@@ -172,8 +170,8 @@ NEVH__INLINE void nevh__splitting_commit_all(const nevh__splitting_step *x,
 NEVH__INLINE void nevh__splitting_place(const nevh__splitting_step *x,
                                         size_t lanes, size_t size) {
     NEVH__EACH(i, lanes, size) {
-        x->q.change[i] = (nevh__number){0};
-        x->p.change[i] = (nevh__number){0};
+        x->q.change[i] = x->q.compensation[i];
+        x->p.change[i] = x->p.compensation[i];
         x->q.point[i] = x->q.state[i] + x->q.compensation[i];
         x->p.point[i] = x->p.state[i] + x->p.compensation[i];
     }
