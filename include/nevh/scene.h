@@ -129,6 +129,13 @@ NEVH_API uint64_t nevh_scene_digest(const nevh_scene *);
    read.  Every term brings values, blocks and an exact gradient; C code has
    what it defines. */
 NEVH_API const nevh_system *nevh_scene_system(nevh_scene *);
+/* The same, where numbers that follow from parameters, such as G*m[1]*m[2], are
+   not rounded to doubles: for nevh_certain_new, which then works them out with all
+   its digits.  Parameters themselves, starts and friction are doubles.  A step
+   takes longer than of the other system.
+   returns  NULL with a message (nevh_scene_message): memory is out, or the scene
+            was not read */
+NEVH_API const nevh_system *nevh_scene_exact_system(nevh_scene *);
 /* The state at t_start, n each; initial velocities are solved for momenta, with
    the effects that are on.
    returns  NEVH_OK; NEVH_EMAXITER when no momenta give these velocities (the

@@ -97,7 +97,9 @@ nevh__expression *nevh__expression_finish(nevh__resolver *r,
         return NULL;
     }
     bool constant = !e->reads && !e->indices && e->form != NEVH__FORM_NUMBER;
-    if (constant) {
+    bool exact = e->form == NEVH__FORM_PARAMETER ||
+                 (e->form == NEVH__FORM_APPLY && e->operation == NEVH__NEGATE);
+    if (constant && (exact || !r->names->unfolded)) {
         e->number = nevh__expression_value(&r->scope, e);
         e->form = NEVH__FORM_NUMBER;
         e->n = 0;

@@ -105,6 +105,7 @@ int nevh__tree_add_terms(const nevh__tree *tree, const nevh__names *names,
         .pool = &pool, .error = error, .stamp = (uint64_t)1 << 63};
     nevh__adder adder = {.system = system, .effect = effect, .owned = owned};
     adder.walk.limit = NEVH__INSTANCE_LENGTH;
+    adder.walk.unfolded = names->unfolded;
     if (e && nevh__split(&parts, e))
         add_parts(&adder, names, &parts);
     free(parts.parts);

@@ -124,6 +124,7 @@ struct nevh__names {
     nevh__entry *entries;
     size_t count;
     size_t chain[NEVH__CHAINS]; /* by name: the last entry, from 1; 0: none */
+    bool unfolded;
 };
 /* meaning: also of p_NAME and v_NAME, whose entry is that of NAME. */
 const nevh__entry *nevh__entry_named(const nevh__names *, const char *name,
@@ -256,6 +257,7 @@ typedef struct {
     nevh__scope scope;
     nevh__tape_builder *builder;
     bool whole; /* slots are indices in the system */
+    bool unfolded; /* numbers are operated on by the tape */
     size_t limit, length;
     uint64_t stamp;
 

@@ -62,6 +62,10 @@ size_t nevh__formula_extent(const char *text, const char *stops);
 typedef struct nevh__names nevh__names;
 nevh__names *nevh__names_new(void); /* NULL when memory is out */
 void nevh__names_free(nevh__names *);
+/* Whether terms that are added from now on keep operations on numbers alone,
+   instead of the doubles that these give: who reads the tape may carry them out
+   with more digits. */
+void nevh__names_unfold(nevh__names *, bool);
 /* count    0: one number; else an array 1 ... count
    values   in, one or count of them; copied */
 int nevh__names_add_parameter(nevh__names *, const char *name, size_t count,

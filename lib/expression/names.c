@@ -15,6 +15,10 @@ static void entry_free(nevh__entry *entry) {
     nevh__tree_free(entry->tree);
 }
 
+void nevh__names_unfold(nevh__names *names, bool unfolded) {
+    names->unfolded = unfolded;
+}
+
 void nevh__names_free(nevh__names *names) {
     for (size_t i = 0; names && i < names->count; i++)
         entry_free(&names->entries[i]);

@@ -11,6 +11,10 @@ nevh__tape_builder *nevh__tape_builder_new(void) {
     return nevh__array(1, sizeof(nevh__tape_builder));
 }
 
+void nevh__tape_unfold(nevh__tape_builder *b) {
+    b->unfolded = true;
+}
+
 void nevh__tape_abandon(nevh__tape_builder *b) {
     if (!b)
         return;

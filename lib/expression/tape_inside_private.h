@@ -90,7 +90,7 @@ struct nevh__tape_builder {
     int *table; /* open addressing; -1 is empty */
     size_t table_size;
     size_t count[NEVH__VARIABLES];
-    bool failed;
+    bool unfolded, failed;
 };
 
 /* The node that is such, or -1. */

@@ -97,6 +97,8 @@ typedef struct nevh__tape nevh__tape;
 /* NULL when memory is out; that may be handed on: each function below then
    returns -1 or NULL. */
 nevh__tape_builder *nevh__tape_builder_new(void);
+/* Operations on numbers alone are left for the tape from now on. */
+void nevh__tape_unfold(nevh__tape_builder *);
 /* Without a tape having been made of it. */
 void nevh__tape_abandon(nevh__tape_builder *);
 

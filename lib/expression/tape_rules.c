@@ -185,7 +185,8 @@ int nevh__tape_apply(nevh__tape_builder *b, nevh__tape_operation of, int x,
         y = x;
     if (x < 0 || y < 0 || !b || b->failed)
         return -1;
-    if (nevh__tape_is_number(b, x, &c) && nevh__tape_is_number(b, y, &d))
+    if (!b->unfolded && nevh__tape_is_number(b, x, &c) &&
+        nevh__tape_is_number(b, y, &d))
         return nevh__tape_number(b, nevh__operation_value(of, c, d));
     return rewritten(b, of, x, y);
 }

@@ -75,6 +75,12 @@ static int walk_constant(nevh__walk *w, const nevh__expression *e) {
     return number(w, e->number);
 }
 
+/* Whether a number is more than one that is given. */
+static bool is_operation(const nevh__expression *e) {
+    return e->form == NEVH__FORM_SUM || e->form == NEVH__FORM_PRODUCT ||
+           e->form == NEVH__FORM_APPLY || e->form == NEVH__FORM_LOOP;
+}
+
 /* Variables. */
 
 static size_t slot_of(nevh__walk *w, nevh__variable kind, size_t index) {
@@ -111,7 +117,7 @@ typedef struct {
 static prefix take_prefix(nevh__walk *w, bool negative,
                           const nevh__expression_operand *factors, size_t n) {
     prefix p = {factors, n, 0, 1, true};
-    for (; p.used < n && !factors[p.used].of->reads; p.used++) {
+    for (; p.used < n && !w->unfolded && !factors[p.used].of->reads; p.used++) {
         const nevh__expression *e = factors[p.used].of;
         p.numbers = p.numbers && e->form == NEVH__FORM_NUMBER;
         if (!noting(w) && !p.numbers)
@@ -227,7 +233,7 @@ static int walk(nevh__walk *w, nevh__expression *e) {
                          w->limit);
         return -1;
     }
-    if (!e->reads)
+    if (!e->reads && !(w->unfolded && is_operation(e)))
         return walk_constant(w, e);
     if (e->shared && e->stamp == w->stamp)
         return e->node;
@@ -287,6 +293,8 @@ nevh__tape *nevh__walk_tape(nevh__walk *w, const nevh__formula_part *part) {
         nevh__formula_no_memory(error);
         return NULL;
     }
+    if (w->unfolded)
+        nevh__tape_unfold(w->builder);
     w->length = w->at_shape = w->at_constant = 0;
     w->stamp++;
     int node = walk_part(w, part), status = NEVH_OK;

@@ -14,7 +14,9 @@ void nevh__model_free(nevh__scene_model *m) {
         return;
     nevh_system_free(m->system);
     nevh_system_free(m->transform);
+    nevh_system_free(m->exact);
     nevh__owned_free(&m->owned);
+    nevh__owned_free(&m->owned_exact);
     nevh__owned_free(&m->owned_transform);
     nevh__owned_free(&m->owned_shown);
     free(m->velocities);

@@ -114,7 +114,8 @@ typedef struct {
     const nevh__statement **moving; /* n: what gave p[k] or v[k], or NULL */
     bool *by_velocity;              /* n: v[k] is given, p[k] follows */
     nevh_system *system, *transform;
-    nevh__owned owned, owned_transform;
+    nevh_system *exact; /* NULL until asked for */
+    nevh__owned owned, owned_transform, owned_exact;
     nevh_scene_run run;
     nevh__items shown[2]; /* by nevh_shown */
     nevh__crossing *crossings;

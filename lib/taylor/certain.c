@@ -11,35 +11,78 @@ enum { MOST_DIGITS = 30 };
 #ifdef NEVH_QUADMATH
 #include <quadmath.h>
 
+/* Series of pairs of doubles, or of quad precision, which take some ten times as
+   long. */
+typedef struct {
+    bool pairs;
+    nevh__orbit_dd dd;
+    nevh__orbit_quad quad;
+} orbit;
+
 struct nevh_certain {
     nevh__report report;
     size_t n;
     int digits;
     nevh__recurrence *recurrence;
-    nevh__orbit_quad fine, coarse;
+    bool pairs;
+    orbit fine, coarse;
     bool parted; /* both, by now */
-    double *rates;
+    double t0, *rates;
     nevh__wide *start;
 };
 
-/* Rounding alone, of a series: inner sums have 106 bits. */
-static const double rounding = 1e-32;
+/* So many digits pairs may do for. */
+enum { DIGITS_OF_PAIRS = 24 };
+/* Rounding alone, of a series: inner sums have 106 bits, pairs 104 or so. */
+static const double rounding = 1e-32, rounding_of_pairs = 1e-31;
 
-static int plan(nevh_certain *c, const nevh_system *system) {
+static void clear(orbit *o) {
+    nevh__orbit_clear_dd(&o->dd);
+    nevh__orbit_clear_quad(&o->quad);
+}
+
+static int start(nevh_certain *c, orbit *o, double tolerance) {
+    clear(o);
+    o->pairs = c->pairs;
+    bool fine = o->pairs
+                    ? nevh__orbit_init_dd(&o->dd, c->recurrence, tolerance)
+                    : nevh__orbit_init_quad(&o->quad, c->recurrence, tolerance);
+    return !fine ? nevh__fail(&c->report, NEVH_ENOMEM, "out of memory")
+           : o->pairs
+               ? nevh__orbit_start_dd(&o->dd, c->t0, c->start, &c->report)
+               : nevh__orbit_start_quad(&o->quad, c->t0, c->start, &c->report);
+}
+
+static int go(nevh_certain *c, orbit *o, double t) {
+    return o->pairs ? nevh__orbit_go_dd(&o->dd, t, &c->report)
+                    : nevh__orbit_go_quad(&o->quad, t, &c->report);
+}
+
+static nevh__wide state(const orbit *o, size_t k) {
+    return o->pairs ? o->dd.state[k] : o->quad.state[k];
+}
+
+static double most(const orbit *o, size_t k) {
+    return o->pairs ? o->dd.most[k] : o->quad.most[k];
+}
+
+static size_t count(const orbit *o) {
+    return o->pairs ? o->dd.count : o->quad.count;
+}
+
+static int start_both(nevh_certain *c) {
     /* Errors of some hundred series add up. */
     double tolerance = pow(10, -c->digits - 4), finest = 2e-33;
+    int status = start(c, &c->coarse, fmax(tolerance, 10 * finest));
+    return status ? status : start(c, &c->fine, fmax(tolerance / 30, finest));
+}
+
+static int plan(nevh_certain *c, const nevh_system *system) {
     bool damped = nevh_system_friction(system, c->rates);
     c->recurrence =
         nevh__recurrence_new(system, damped ? c->rates : NULL, &c->report);
-    if (!c->recurrence)
-        return c->report.status;
-    bool fine = nevh__orbit_init_quad(&c->coarse, c->recurrence,
-                                      fmax(tolerance, 10 * finest));
-    fine = nevh__orbit_init_quad(&c->fine, c->recurrence,
-                                 fmax(tolerance / 30, finest)) &&
-           fine;
-    return fine ? NEVH_OK
-                : nevh__fail(&c->report, NEVH_ENOMEM, "out of memory");
+    c->pairs = c->digits <= DIGITS_OF_PAIRS;
+    return c->recurrence ? start_both(c) : c->report.status;
 }
 
 static int make(nevh_certain *c, const nevh_system *system, double t0,
@@ -63,12 +106,8 @@ static int make(nevh_certain *c, const nevh_system *system, double t0,
         c->start[k] = q[k];
         c->start[n + k] = p[k];
     }
-    int status = plan(c, system);
-    if (!status)
-        status = nevh__orbit_start_quad(&c->coarse, t0, c->start, &c->report);
-    if (!status)
-        status = nevh__orbit_start_quad(&c->fine, t0, c->start, &c->report);
-    return status;
+    c->t0 = t0;
+    return plan(c, system);
 }
 
 nevh_certain *nevh_certain_new(const nevh_system *system, double t0,
@@ -86,8 +125,8 @@ nevh_certain *nevh_certain_new(const nevh_system *system, double t0,
 void nevh_certain_free(nevh_certain *c) {
     if (!c)
         return;
-    nevh__orbit_clear_quad(&c->fine);
-    nevh__orbit_clear_quad(&c->coarse);
+    clear(&c->fine);
+    clear(&c->coarse);
     nevh__recurrence_free(c->recurrence);
     free(c->rates);
     free(c->start);
@@ -95,7 +134,7 @@ void nevh_certain_free(nevh_certain *c) {
 }
 
 static double apart(const nevh_certain *c, size_t k) {
-    return fabs((double)(c->fine.state[k] - c->coarse.state[k]));
+    return fabs((double)(state(&c->fine, k) - state(&c->coarse, k)));
 }
 
 /* Then what digits a variable has in common is chance. */
@@ -103,47 +142,67 @@ static bool have_parted(const nevh_certain *c) {
     static const double far = 0.05; /* of what a variable was at most */
     bool parted = false;
     for (size_t k = 0; k < 2 * c->n; k++)
-        parted = parted || apart(c, k) > far * c->fine.most[k];
+        parted = parted || apart(c, k) > far * most(&c->fine, k);
     return parted;
 }
 
+static int go_both(nevh_certain *c, double t) {
+    int status = go(c, &c->coarse, t);
+    if (!status)
+        status = go(c, &c->fine, t);
+    c->parted = !status && have_parted(c);
+    return status;
+}
+
+/* Whether a variable has fewer digits than were asked for, which counts where
+   they are not those of a number that passes zero. */
+static bool lacks_digits(const nevh_certain *c) {
+    bool lacks = false;
+    for (size_t k = 0; k < 2 * c->n; k++)
+        lacks = lacks || nevh_certain_error(c, k) >
+                             0.5 * pow(10, -c->digits) * most(&c->fine, k);
+    return lacks;
+}
+
 int nevh_certain_go(nevh_certain *c, double t) {
-    if (!c || !c->fine.count)
+    if (!c || !count(&c->fine))
         return nevh_certain_status(c);
     c->report = (nevh__report){0};
     if (!isfinite(t))
         return nevh__fail(&c->report, NEVH_EINVAL,
                           "the time %g is not a finite number", t);
-    int status = nevh__orbit_go_quad(&c->coarse, t, &c->report);
-    if (!status)
-        status = nevh__orbit_go_quad(&c->fine, t, &c->report);
-    c->parted = !status && have_parted(c);
-    return status;
+    int status = go_both(c, t);
+    if (status || !c->pairs || !lacks_digits(c))
+        return status;
+    c->pairs = false;
+    status = start_both(c);
+    return status ? status : go_both(c, t);
 }
 
 size_t nevh_certain_series(const nevh_certain *c) {
-    return c ? c->fine.count + c->coarse.count : 0;
+    return c ? count(&c->fine) + count(&c->coarse) : 0;
 }
 
 static bool has(const nevh_certain *c, size_t k) {
-    return c && c->fine.count && k < 2 * c->n;
+    return c && count(&c->fine) && k < 2 * c->n;
 }
 
 double nevh_certain_value(const nevh_certain *c, size_t k) {
-    return has(c, k) ? (double)c->fine.state[k] : NAN;
+    return has(c, k) ? (double)state(&c->fine, k) : NAN;
 }
 
 double nevh_certain_error(const nevh_certain *c, size_t k) {
     if (!has(c, k))
         return NAN;
-    double floor = rounding * sqrt((double)c->fine.count) * c->fine.most[k];
+    double once = c->pairs ? rounding_of_pairs : rounding;
+    double floor = once * sqrt((double)count(&c->fine)) * most(&c->fine, k);
     if (c->parted)
-        floor = 2 * c->fine.most[k];
+        floor = 2 * most(&c->fine, k);
     return fmax(2 * apart(c, k), floor);
 }
 
 double nevh_certain_size(const nevh_certain *c, size_t k) {
-    return has(c, k) ? c->fine.most[k] : NAN;
+    return has(c, k) ? most(&c->fine, k) : NAN;
 }
 
 int nevh_certain_digits(const nevh_certain *c, size_t k) {
@@ -166,7 +225,7 @@ char *nevh_certain_text(const nevh_certain *c, size_t k) {
         strcpy(text, "0");
     if (text && digits > 0)
         quadmath_snprintf(text, ROOM, digits > 1 ? "%#.*Qg" : "%.*Qg", digits,
-                          c->fine.state[k]);
+                          state(&c->fine, k));
     return text;
 }
 

@@ -5,8 +5,15 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/tape_inside_private.h"
 #include "taylor/graph_private.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#ifdef NEVH_QUADMATH
+#include <quadmath.h>
+#define WIDE(f) f##q
+#else
+#define WIDE(f) f##l
+#endif
 
 typedef struct {
     nevh__graph *g;
@@ -89,7 +96,74 @@ static int power(nevh__graph *g, int a, int b) {
         nevh__graph_multiply(g, b, nevh__graph_call(g, NEVH__LOG, a, -1)), -1);
 }
 
+/* An operation on numbers; of functions that have no series, of doubles. */
+static nevh__wide number_of(unsigned operation, nevh__wide x, nevh__wide y) {
+    switch (operation) {
+    case NEVH__ADD:
+        return x + y;
+    case NEVH__SUBTRACT:
+        return x - y;
+    case NEVH__MULTIPLY:
+        return x * y;
+    case NEVH__DIVIDE:
+        return x / y;
+    case NEVH__POWER:
+        return WIDE(pow)(x, y);
+    case NEVH__NEGATE:
+        return -x;
+    case NEVH__SIN:
+    case NEVH__SINCOS:
+        return WIDE(sin)(x);
+    case NEVH__COS:
+        return WIDE(cos)(x);
+    case NEVH__TAN:
+        return WIDE(tan)(x);
+    case NEVH__ASIN:
+        return WIDE(asin)(x);
+    case NEVH__ACOS:
+        return WIDE(acos)(x);
+    case NEVH__ATAN:
+        return WIDE(atan)(x);
+    case NEVH__ATAN2:
+        return WIDE(atan2)(x, y);
+    case NEVH__SINH:
+        return WIDE(sinh)(x);
+    case NEVH__COSH:
+        return WIDE(cosh)(x);
+    case NEVH__TANH:
+        return WIDE(tanh)(x);
+    case NEVH__ASINH:
+        return WIDE(asinh)(x);
+    case NEVH__ACOSH:
+        return WIDE(acosh)(x);
+    case NEVH__ATANH:
+        return WIDE(atanh)(x);
+    case NEVH__EXP:
+        return WIDE(exp)(x);
+    case NEVH__LOG:
+        return WIDE(log)(x);
+    case NEVH__LOG10:
+        return WIDE(log10)(x);
+    case NEVH__SQRT:
+        return WIDE(sqrt)(x);
+    case NEVH__CBRT:
+        return WIDE(cbrt)(x);
+    case NEVH__HYPOT:
+        return WIDE(hypot)(x, y);
+    case NEVH__ABS:
+        return WIDE(fabs)(x);
+    case NEVH__FLOOR:
+        return WIDE(floor)(x);
+    default:
+        return nevh__operation_value((nevh__tape_operation)operation, (double)x,
+                                     (double)y);
+    }
+}
+
 static int operate(nevh__graph *g, unsigned operation, int a, int b) {
+    nevh__wide x, y;
+    if (nevh__graph_is_number(g, a, &x) && nevh__graph_is_number(g, b, &y))
+        return nevh__graph_number(g, number_of(operation, x, y));
     switch (operation) {
     case NEVH__ADD:
         return nevh__graph_add(g, a, b);
@@ -115,13 +189,14 @@ static int read_instance(reader *r, const nevh_term *term, size_t instance,
     const nevh__tape *tape = term->params;
     for (size_t i = 0; i < tape->length; i++) {
         const nevh__instruction *c = &tape->code[i];
-        if (why_not(c->operation))
-            return refuse_operation(r, term, c->operation);
         int a = operand(r, term, instance, slots, c->a);
         int b = operand(r, term, instance, slots, c->b);
+        if (why_not(c->operation) && !(nevh__graph_is_number(r->g, a, NULL) &&
+                                       nevh__graph_is_number(r->g, b, NULL)))
+            return refuse_operation(r, term, c->operation);
         slots[c->to] = operate(r->g, c->operation, a, b);
         if (c->operation == NEVH__SINCOS)
-            slots[c->also] = nevh__graph_call(r->g, NEVH__COS, a, -1);
+            slots[c->also] = operate(r->g, NEVH__COS, a, a);
         tag(r, (int)i, false);
     }
     int root = operand(r, term, instance, slots, tape->result);

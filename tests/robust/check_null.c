@@ -192,6 +192,7 @@ static nevh_separability separability;
     X(POINTER, nevh_scene_code_path, (NULL, 0))                                \
     X(NUMBER, nevh_scene_digest, (NULL))                                       \
     X(POINTER, nevh_scene_system, (NULL))                                      \
+    X(POINTER, nevh_scene_exact_system, (NULL))                                \
     X(STATUS, nevh_scene_start, (NULL, out, out))                              \
     X(POINTER, nevh_scene_run_settings, (NULL))                                \
     X(POINTER, nevh_scene_transform, (NULL))                                   \

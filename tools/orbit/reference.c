@@ -19,6 +19,7 @@ typedef struct {
     double end;
     double budget, begun, shown; /* in seconds of processor time */
     bool progress;               /* to be shown on stderr */
+    bool folded;                 /* numbers of formulas are doubles */
 } job;
 
 static char *name_of(const plan *p, size_t k) {
@@ -132,8 +133,13 @@ static void put_notes(const job *j, page *result) {
                "Taylor series in quad precision; certain is what runs of two "
                "orders and two tolerances have in common (%zu series)",
                nevh_certain_series(j->orbit));
-    list_add(&result->before, "parameters, starts and times are the doubles "
-                              "nearest to what the scene says, taken exactly");
+    list_print(&result->before,
+               "parameters, starts and times are the doubles nearest to what "
+               "the scene says, taken exactly%s",
+               j->folded
+                   ? "; so are numbers that follow from parameters, since "
+                     "the formulas are too long with these written out"
+                   : "");
     if (j->fewest == j->digits)
         return;
     list_print(&result->after,
@@ -167,8 +173,10 @@ static int reference_of(const options *o, const plan *p) {
              .progress = !o->quiet && isatty(STDERR_FILENO)};
     j.fewest = j.digits;
     j.part = 0x1p-60 * fmin(j.end - start, 1e18);
-    j.orbit = tool_owned(nevh_certain_new(p->system, p->run->t_start, p->q,
-                                          p->p, (int)j.digits));
+    const nevh_system *exact = nevh_scene_exact_system(p->scene);
+    j.folded = !exact;
+    j.orbit = tool_owned(nevh_certain_new(
+        exact ? exact : p->system, p->run->t_start, p->q, p->p, (int)j.digits));
     page result = {.table = table_new()};
     int status = TOOL_OK;
     if (nevh_certain_status(j.orbit))
