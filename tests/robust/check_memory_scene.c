@@ -74,7 +74,7 @@ static int make_scene(const setting *a) {
         "[parameters]\na = 2\nb[1..2] = a, 1\n"
         "[coordinates]\nx[1..2] = 1\nv_x[1..2] = 0.5\n"
         "y = 1, 2 ; period pi\n[definitions]\nc = x[1]*y\n"
-        "[effects]\nC = file(\"none.c\", y, b)\nT = sum(i = 1..2, p_x[i]^2/b[i]) + "
+        "[effects]\nC = file(\"none.c\", y, b)\nT = sum(i = 1..2, p_x[i]^2/(2*b[i])) + "
         "p_x[1]*p_x[2]*cos(c) + p_y^2\nV = c^2\n"
         "[friction]\nd = x: 0.1, y: 0.2\n"
         "[invariants]\nL = x[1] ; without V\n"
@@ -87,6 +87,8 @@ static int make_scene(const setting *a) {
         status = nevh_scene_set(s, "a = 3");
     if (!status)
         status = nevh_scene_start(s, q, p);
+    if (!status && !nevh_scene_exact_system(s))
+        status = nevh_scene_status(s);
     if (!status)
         status = ask_scene(s, q, p);
     strcpy(text, nevh_scene_message(s));
