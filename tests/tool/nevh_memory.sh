@@ -91,5 +91,9 @@ starves 4 gradients pendulum --t-end 0.5
 starves 4 cost pendulum --t-end 0.5 --integrators verlet,gauss4
 starves 4 recommend pendulum --t-end 0.5 --integrators verlet,gauss8 \
     --energy-error 1e-3
+TMPDIR=$work
+export TMPDIR
+starves 2 report pendulum --t-end 0.5 -o $work/made.html
+ls $work | grep '^nevh\.' && fails "leaves its folder"
 starves 3 hard 'pendulum at rest' --integrators verlet,gauss4,dop853
 exit $status
