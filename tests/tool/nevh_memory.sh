@@ -59,7 +59,8 @@ starves() {
             case $code in
             0) steady $work/out | cmp -s - $work/right || test -z "$same" ||
                 fails "prints something else" ;;
-            1 | 2) cat $work/out $work/err | grep -Eiq 'memory|cannot' ||
+            1 | 2) grep -q '^out of memory' $work/err && fails "does not say who"
+                cat $work/out $work/err | grep -Eiq 'memory|cannot' ||
                 { fails "does not say why (exit status $code)"
                   cat $work/err; } ;;
             *) fails "crashes (exit status $code)" ;;

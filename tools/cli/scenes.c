@@ -215,6 +215,8 @@ int scene_report(const nevh_scene *scene, const options *o) {
     const char *message = nevh_scene_message(scene);
     const char *what = strstr(message, ": error: "),
                *line = strchr(message, '\n');
+    if (nevh_scene_status(scene) == NEVH_ENOMEM)
+        return tool_refuse("%s", message);
     if (strncmp(message, "assignment:", 11) != 0 || !what || !line)
         return fprintf(stderr, "%s\n", message), TOOL_USAGE;
     return tool_refuse("%s: %s",
