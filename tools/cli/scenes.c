@@ -203,6 +203,7 @@ static const char *option_of(const options *o, const char *text,
                                  : "--set";
     }
     return is_text(o->t_end, text, length)     ? "--t-end"
+           : is_text(o->after, text, length)   ? "--after"
            : is_one_of(&o->at, text, length)   ? "--at"
            : is_one_of(&o->dt, text, length)   ? "--dt"
            : is_within(o->shape, text, length) ? "--shape"

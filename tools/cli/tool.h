@@ -170,6 +170,7 @@ typedef struct {
     double *tolerance;
     size_t tolerances;
     const char *t_end;    /* a formula; NULL: the scene's */
+    const char *after;    /* of section: a formula, or NULL */
     double gradient_step; /* 0: not given, as all numbers below */
     size_t every, samples, digits;
     matching match;
