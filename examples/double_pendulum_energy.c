@@ -12,7 +12,7 @@ int main(void) {
     const nevh_integrator *const schemes[] = {nevh_verlet, nevh_midpoint,
                                               nevh_gauss4, nevh_gauss6,
                                               nevh_gauss8, nevh_rk4};
-    const double q[] = {1, 0}, p[] = {0, 0}, t_end = 500;
+    const double *q = model->q, *p = model->p, t_end = 500;
     const double steps[] = {0.02, 0.01};
     int status = NEVH_OK;
     nevh_system *system = model->system(model->defaults);

@@ -55,6 +55,7 @@ examples_sweep_mpi_LDADD = libnevh.la $(MPI_LIBS)
 # To read, and to compile with the installed library.
 exampledir = $(docdir)/examples
 dist_example_DATA = \
+	examples/Makefile \
 	examples/add_noise.c \
 	examples/filmed.sh \
 	examples/catalogue.c \

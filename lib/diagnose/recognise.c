@@ -16,7 +16,7 @@
 
 #define PI 3.141592653589793238462643383279502884
 
-enum { STATES = 1024, PASSES = 3 };
+enum { STATES = 1024, PASSES = 3, MOST_INSTANCES = 10000 };
 
 /* Of what is left over, in units of the size of the gradient there. */
 static const double exact_rounding = 64 * DBL_EPSILON;
@@ -427,6 +427,16 @@ static int try_all(trial *b, nevh__exact_solution **exact) {
     return status;
 }
 
+/* A search takes thousands of gradients: longer than most runs where H is a sum
+   of very many. */
+static bool is_too_long(const nevh_system *s) {
+    size_t instances = 0;
+    for (size_t i = 0; i < s->n_terms; i++)
+        if (nevh__term_on(s, s->terms[i]))
+            instances += s->terms[i]->decl.count;
+    return instances > MOST_INSTANCES;
+}
+
 int nevh__exact_recognise(nevh__exact_solution **exact, const nevh_system *s,
                           double t0, double t1, const double q[],
                           const double p[]) {
@@ -439,7 +449,8 @@ int nevh__exact_recognise(nevh__exact_solution **exact, const nevh_system *s,
                .least_doubt = DBL_EPSILON / 8,
                .random = 1};
     *exact = NULL;
-    if (s->n > NEVH__EXACT_DOF || nevh_system_friction(s, NULL))
+    if (s->n > NEVH__EXACT_DOF || nevh_system_friction(s, NULL) ||
+        is_too_long(s))
         return NEVH_OK;
     b.field = make_field(s, &b);
     int status = b.field ? NEVH_OK : NEVH_ENOMEM;

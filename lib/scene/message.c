@@ -127,6 +127,13 @@ bool nevh__scene_fail_formula(nevh_scene *s, const nevh__piece *piece,
                                error->length, error->text);
 }
 
+bool nevh__scene_one_name(nevh_scene *s, const nevh__piece *name) {
+    return !strpbrk(name->text, " \t") ||
+           nevh__scene_fail(s, NEVH_EINVAL, name,
+                            "names are separated by commas, not \"%s\"",
+                            name->text);
+}
+
 bool nevh__scene_fail_word(nevh_scene *s, const nevh__piece *at,
                            const char *what, const char *word,
                            const char *const known[], size_t count) {

@@ -75,7 +75,7 @@ static bool take_names(nevh_scene *s, nevh__scene_model *m,
         if (!list[i].text[0])
             return nevh__scene_fail(s, NEVH_EINVAL, &list[i],
                                     "a name is missing here");
-        if (!check(s, &list[i]))
+        if (!nevh__scene_one_name(s, &list[i]) || !check(s, &list[i]))
             return false;
         all[i] = list[i].text;
     }

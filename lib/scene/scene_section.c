@@ -3,14 +3,29 @@
 #include "scene/scene_private.h"
 #include <string.h>
 
-static bool take_direction(nevh_scene *s, const nevh__piece *word,
-                           const nevh__piece *missing, int *direction) {
+static bool is_direction(const char *word, int *direction) {
     static const char *const known[] = {"falling", "both", "rising"};
     for (int i = 0; i < 3; i++) {
         *direction = i - 1;
-        if (strcmp(word->text, known[i]) == 0)
+        if (strcmp(word, known[i]) == 0)
             return true;
     }
+    return false;
+}
+
+/* FORMULA rising */
+static bool has_comma(nevh_scene *s, const nevh__piece *value) {
+    const char *blank = strrchr(value->text, ' ');
+    int ignored;
+    return !blank || !is_direction(blank + 1, &ignored) ||
+           nevh__scene_fail(s, NEVH_EINVAL, value,
+                            "a comma is missing before \"%s\"", blank + 1);
+}
+
+static bool take_direction(nevh_scene *s, const nevh__piece *word,
+                           const nevh__piece *missing, int *direction) {
+    if (is_direction(word->text, direction))
+        return true;
     return nevh__scene_fail(s, NEVH_EINVAL, word->text[0] ? word : missing,
                             "a section says rising, falling or both");
 }
@@ -51,6 +66,7 @@ static bool take_when(nevh_scene *s, nevh__scene_model *m, nevh__piece *rest,
                                 "rising: ...");
     if (!nevh__piece_split(s, &m->pool, rest, ",", &right, &stop) ||
         !nevh__formula_check(s, m, &left, &crossing->left) ||
+        !has_comma(s, &right) ||
         !nevh__formula_check(s, m, &right, &crossing->right))
         return false;
     crossing->decl.left = left.text;

@@ -54,7 +54,8 @@ static bool switch_on(nevh_scene *s, const nevh__piece *name) {
                                 "the name of an effect is missing");
     nevh__switch *effect = nevh__scene_effect(s, name->text);
     if (!effect)
-        return nevh__scene_fail_effect(s, name);
+        return nevh__scene_one_name(s, name) &&
+               nevh__scene_fail_effect(s, name);
     effect->on = true;
     return true;
 }

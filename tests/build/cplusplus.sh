@@ -24,8 +24,8 @@ compiles() {
     shift
     # GSL's headers are not ours to keep free of warnings.
     # shellcheck disable=SC2086
-    "$@" -fsyntax-only -Wall -Wextra -pedantic -Werror -I"$srcdir/include" \
-        $isystem $work/file.$language || {
+    "$@" -fsyntax-only -Wall -Wextra -pedantic -Wconversion -Wsign-conversion -Wundef \
+        -Werror -I"$srcdir/include" $isystem $work/file.$language || {
         echo "$header does not compile: $*"
         status=1
     }

@@ -73,6 +73,15 @@ for sources in first_hamiltonian.c 'pendulum_energy.c energy_table.c' effects.c;
     test -s "$dest/out" || fails "$sources prints nothing"
 done
 
+# All of them by their own Makefile.
+cp -R "$examples" "$dest-moved/examples"
+if "${MAKE:-make}" --version 2>/dev/null | grep -q GNU && test -z "$static$SANITIZE_FLAGS"; then
+    "${MAKE:-make}" -C "$dest-moved/examples" CC="${CC:-cc}" CFLAGS= \
+        >"$dest-moved/log" 2>&1 ||
+        { cat "$dest-moved/log"; fails "the Makefile of the examples fails"; }
+    test -x "$dest-moved/examples/gradient_cost" || fails "make leaves an example out"
+fi
+
 # Nothing of nevh stays: no file, no folder of its own.  The prefix itself may
 # have nevh in its name.
 prefix=$(dirname "$(dirname "$(find "$dest" -path '*/bin/nevh')")")

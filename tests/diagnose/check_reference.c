@@ -126,6 +126,14 @@ TEST_EACH(near_misses_are_refused, NEAR_MISSES) {
     tear_down(&s);
 }
 
+/* An exact solution is not searched for where that takes longer than the run. */
+TEST(long_sums_are_not_searched) {
+    setup s = set_up("x = 1", "T = p_x^2/2\nV = sum(i = 1..20000, x^2)/40000");
+    refer(&s, NULL, 0, 3);
+    ck_assert_ptr_null(strstr(nevh_reference_text(s.reference), "exact"));
+    tear_down(&s);
+}
+
 /* States of another program in quadruple precision, good to 20 digits and more;
    coordinates first.  H as a function has no exact gradient. */
 static const struct {

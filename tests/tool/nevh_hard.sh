@@ -30,7 +30,7 @@ has '^"stiff spring 1e2, resolved",verlet,.*,bounded$'
 has '^"stiff spring 1e2, stepped over",verlet,.*stable up to 2.*,(unstable|failed)$'
 has '^"double pendulum, regular",verlet,.*needs H = T.*,refused$'
 has '^H ends on the way,gauss4,.*,failed$'
-has '^resonance h w = sqrt\(3\),verlet,.*,(unstable|failed)$'
+has '^resonance omega dt = sqrt\(3\),verlet,.*,(unstable|failed)$'
 has '^"1e9 steps, one output",verlet,.*stopped by the budget.*,bounded$'
 has '^dt = 1e300,rk4,.*,(failed|unstable)$'
 has '^dt = 1e-300,verlet,.*,bounded$'
@@ -38,7 +38,7 @@ has '^dt = 1e-300,verlet,.*,bounded$'
 # compare names the cause, and a step to take.
 exits 0 compare "$srcdir/scenes/hard/elastic-pendulum.nevh" --dt 0.025 \
     --t-end 2 --integrators verlet,midpoint
-has '^verlet at dt = 0.025: h w = 2\.5 near'
+has '^verlet at dt = 0.025: omega dt = 2\.5 near'
 has 'stable up to 2'
 lacks '^midpoint at dt = 0.025:'
 

@@ -59,7 +59,8 @@ starves() {
             case $code in
             0) steady $work/out | cmp -s - $work/right || test -z "$same" ||
                 fails "prints something else" ;;
-            1 | 2) cat $work/out $work/err | grep -Eiq 'memory|cannot' ||
+            1 | 2) grep -q '^out of memory' $work/err && fails "does not say who"
+                cat $work/out $work/err | grep -Eiq 'memory|cannot' ||
                 { fails "does not say why (exit status $code)"
                   cat $work/err; } ;;
             *) fails "crashes (exit status $code)" ;;
@@ -91,5 +92,9 @@ starves 4 gradients pendulum --t-end 0.5
 starves 4 cost pendulum --t-end 0.5 --integrators verlet,gauss4
 starves 4 recommend pendulum --t-end 0.5 --integrators verlet,gauss8 \
     --energy-error 1e-3
+TMPDIR=$work
+export TMPDIR
+starves 2 report pendulum --t-end 0.5 -o $work/made.html
+ls $work | grep '^nevh\.' && fails "leaves its folder"
 starves 3 hard 'pendulum at rest' --integrators verlet,gauss4,dop853
 exit $status

@@ -136,6 +136,7 @@ exits 0 recommend sun-earth-moon --energy-error 1e-4 --gradient exact \
     --integrators rkn14a,gauss8
 has '^Warning: the orbit is out of step'
 has '^A step is [0-9.]+ times 0.06'
+lacks ' $'
 has '^ cheapest .* > 50 %'
 # The run is short for a verdict on steps as long: it was followed further.
 has '^ cheapest .* bounded$'

@@ -53,6 +53,32 @@ printf '%s\n' '[scene]' 'title = A <b> & "c"' 'effects = K, V' '[coordinates]' '
 TMPDIR=$work exits 0 report $work/own.nevh pendulum -o $page --t-end 5
 test -s $work/err && { fails "prints messages"; cat $work/err; }
 ls $work | grep -q '^nevh\.' && fails "leaves its folder"
+
+# Nor where a signal comes while a picture is drawn.
+mkdir $work/slow
+cat >$work/slow/gnuplot <<'END'
+#!/bin/sh
+test "$1" = --version && echo gnuplot 5 && exit
+touch "$SIGN"
+while test -e "$SIGN"; do
+    sleep 1
+done
+END
+chmod +x $work/slow/gnuplot
+command="report own.nevh (TERM)"
+SIGN=$PWD/$work/drawing PATH=$PWD/$work/slow:$PATH TMPDIR=$work \
+    "$nevh" report $work/own.nevh -o $work/never.html --t-end 1000 --dt 0.001 \
+    >$work/out 2>$work/err </dev/null &
+reporting=$!
+until test -e $work/drawing; do
+    kill -0 $reporting 2>/dev/null || { fails "draws nothing"; break; }
+    sleep 1
+done
+kill -s TERM $reporting
+wait $reporting 2>/dev/null
+test $? -gt 128 || fails "goes on after a signal"
+rm -f $work/drawing
+ls $work | grep '^nevh\.\|^never' && fails "leaves its files"
 cp $page $work/out
 has '^<!DOCTYPE html>'
 has '<h1>A &lt;b&gt; &amp; &quot;c&quot;</h1>'

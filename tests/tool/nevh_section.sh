@@ -148,6 +148,20 @@ has '^# failed: '
 has '^down,1\.57079632'
 has '^both,1\.04719755'
 
+# Without the transient: the same points, but for those before that time.
+driven="section damped-driven-pendulum --t-end 94.2"
+exits 0 $driven
+rows | awk -F, '$2 >= 47' >$work/late
+exits 0 $driven --after '5*2*pi/w'
+has '^# section strobe: 5 points after t = 47'
+rows | cmp -s - $work/late || fails "has other points"
+exits 0 $driven --after 94.1
+has '^# section strobe: 0 points after t = 94\.1$'
+exits 2 $driven --after 95
+says 'the run is from t = 0 to 94\.2'
+exits 2 $driven --after x
+says '^nevh: --after: '
+
 # What is no use.
 exits 2 section kepler
 says 'no \[sections\]'

@@ -142,6 +142,8 @@ tr '\n' ' ' <$work/out | grep -Eq \
     'euler gains energy at every dt, and +would .* only with +dt below about +[5-7]e-07 s' ||
     { fails "has no dt for euler"; cat $work/out; }
 lacks 'stable up to 0\.00'
+has 'omega dt = *$'
+lacks 'h w'
 
 # Orders are not read from rounding.
 exits 0 compare pendulum --integrators gauss8 --dt 0.02,0.01 --t-end 100 \

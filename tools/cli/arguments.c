@@ -150,6 +150,11 @@ int read_t_end(options *o, const char *argument) {
     return TOOL_OK;
 }
 
+int read_after(options *o, const char *argument) {
+    o->after = argument;
+    return TOOL_OK;
+}
+
 int read_gradient_step(options *o, const char *argument) {
     return read_positive("gradient-step", argument, &o->gradient_step);
 }

@@ -155,6 +155,8 @@ static const struct {
      "write functions for another program, instead of a program"},
     {"section", "A,B", FOR_SECTION | FOR_PORTRAIT, read_section,
      "only these sections"},
+    {"after", "T", FOR_SECTION, read_after,
+     "leave out points before T, as of a transient; a formula"},
     {"from", "SCENE", FOR_NEW, read_from, "the scene to begin with"},
     {"allow-code", NULL, OF_SCENES | FOR_NEW, read_allow_code,
      "compile and run C code that the scene names"},

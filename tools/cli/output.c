@@ -19,19 +19,50 @@ static void allow_as_usual(int file, const char *replaced) {
         fchmod(file, 0666 & ~mask);
 }
 
-/* The temporary file to remove when a signal ends the program. */
-static const char *volatile unfinished;
+/* The temporary files to remove when a signal ends the program: rows, and a
+   picture of them, may be open together. */
+enum { MOST_OPEN = 8 };
+static const char *volatile unfinished[MOST_OPEN];
+static void (*volatile leave)(int);
+
+static void remember(const char *forgotten, const char *name) {
+    for (int i = 0; i < MOST_OPEN; i++)
+        if (unfinished[i] == forgotten) {
+            unfinished[i] = name;
+            return;
+        }
+}
+
+static void remove_all(int number) {
+    for (int i = 0; i < MOST_OPEN; i++)
+        if (unfinished[i])
+            unlink(unfinished[i]);
+    if (leave)
+        leave(number);
+}
 
 static void remove_and_end(int number) {
-    if (unfinished)
-        unlink(unfinished);
+    remove_all(number);
     raise(number);
 }
 
 /* Where memory is out the program ends from anywhere. */
-static void remove_unfinished(void) {
-    if (unfinished)
-        unlink(unfinished);
+static void remove_at_exit(void) {
+    remove_all(0);
+}
+
+static void watch_the_end(void) {
+    static bool watched;
+    if (!watched)
+        atexit(remove_at_exit);
+    watched = true;
+    signals_catch(remove_and_end);
+}
+
+void output_leave(void (*call)(int)) {
+    leave = call;
+    if (call)
+        watch_the_end();
 }
 
 void signal_catch(int number, void (*note)(int)) {
@@ -70,13 +101,12 @@ static void open_temporary(output *o) {
     if (!o->stream)
         return;
     allow_as_usual(file, o->name);
-    unfinished = o->temporary;
-    atexit(remove_unfinished);
-    signals_catch(remove_and_end);
+    remember(NULL, o->temporary);
+    watch_the_end();
 }
 
 static void forget(output *o) {
-    unfinished = NULL;
+    remember(o->temporary, NULL);
     free(o->name);
     free(o->temporary);
 }

@@ -203,6 +203,7 @@ static const char *option_of(const options *o, const char *text,
                                  : "--set";
     }
     return is_text(o->t_end, text, length)     ? "--t-end"
+           : is_text(o->after, text, length)   ? "--after"
            : is_one_of(&o->at, text, length)   ? "--at"
            : is_one_of(&o->dt, text, length)   ? "--dt"
            : is_within(o->shape, text, length) ? "--shape"
@@ -215,6 +216,8 @@ int scene_report(const nevh_scene *scene, const options *o) {
     const char *message = nevh_scene_message(scene);
     const char *what = strstr(message, ": error: "),
                *line = strchr(message, '\n');
+    if (nevh_scene_status(scene) == NEVH_ENOMEM)
+        return tool_refuse("%s", message);
     if (strncmp(message, "assignment:", 11) != 0 || !what || !line)
         return fprintf(stderr, "%s\n", message), TOOL_USAGE;
     return tool_refuse("%s: %s",

@@ -371,13 +371,20 @@ static void print_comments(const list *l, FILE *f) {
     }
 }
 
+/* No line ends in spaces. */
+static void print_line(const char *text, size_t bytes, FILE *f) {
+    while (bytes > 0 && text[bytes - 1] == ' ')
+        bytes--;
+    print_safely(text, bytes, f);
+    fputc('\n', f);
+}
+
 /* At spaces, so that lines have at most 80 characters; further lines of a text
    are set in.  What begins with a space is as it is. */
 static void print_wrapped(const char *text, FILE *f) {
     enum { WIDTH = 80 };
     if (*text == ' ') {
-        print_safely(text, strlen(text), f);
-        fputc('\n', f);
+        print_line(text, strlen(text), f);
         return;
     }
     for (size_t in = 0; *text; in = 2) {
@@ -388,8 +395,7 @@ static void print_wrapped(const char *text, FILE *f) {
             end = last ? last : strcspn(text, " ");
         }
         fprintf(f, "%*s", (int)in, "");
-        print_safely(text, end, f);
-        fputc('\n', f);
+        print_line(text, end, f);
         text += end;
         text += strspn(text, " ");
     }

@@ -170,6 +170,7 @@ typedef struct {
     double *tolerance;
     size_t tolerances;
     const char *t_end;    /* a formula; NULL: the scene's */
+    const char *after;    /* of section: a formula, or NULL */
     double gradient_step; /* 0: not given, as all numbers below */
     size_t every, samples, digits;
     matching match;
@@ -244,6 +245,10 @@ int output_open(output *, const char *name); /* NULL: stdout */
    ignored.  The second one of a kind ends the program. */
 void signals_catch(void (*note)(int));
 void signal_catch(int number, void (*note)(int));
+/* Calls `leave` where the program ends before it is taken back by NULL: with the
+   number of the signal, or with 0 where memory is out.  It may call only what
+   handlers of signals may. */
+void output_leave(void (*leave)(int number));
 /* That it can be opened, as far as can be told without changing it.  To be
    called while none is open. */
 int output_check(const char *name);

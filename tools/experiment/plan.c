@@ -94,9 +94,9 @@ static int check_steps(const plan *p) {
                                "%g to %g",
                                p->name, p->dt[i], p->run->t_start, p->t_end);
         if (!(span / p->dt[i] <= 0x1p53))
-            return tool_refuse("%s: dt = %g makes %g steps, more than can be "
+            return tool_refuse("%s: dt = %g makes more steps than can be "
                                "counted",
-                               p->name, p->dt[i], span / p->dt[i]);
+                               p->name, p->dt[i]);
     }
     return TOOL_OK;
 }

@@ -53,7 +53,7 @@ static char *cause_at(const nevh_integrator *scheme, double limit, double x,
     if (x > 1)
         return text_print("%s: a turn has %.2g steps", where, 2 * M_PI / x);
     return adds_up ? text_print("%s is not symplectic, and errors add up at "
-                                "h w = %.3g",
+                                "omega dt = %.3g",
                                 name, x)
                    : NULL;
 }
@@ -64,9 +64,10 @@ char *stability_cause(const nevh_integrator *scheme, double limit, double dt,
     const char *turn = resonance(scheme, x);
     if (!(x > 0) || !isfinite(x))
         return NULL;
-    char *where = text_print("h w = %.3g near t = %.4g, where the orbit is "
-                             "fastest (w = %.3g)",
-                             x, fastest->turning_at, w);
+    char *where =
+        text_print("omega dt = %.3g near t = %.4g, where the orbit is "
+                   "fastest (omega = %.3g)",
+                   x, fastest->turning_at, w);
     char *text = cause_at(scheme, limit, x, where);
     if (turn && (x <= limit)) {
         char *longer =

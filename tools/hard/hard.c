@@ -225,8 +225,8 @@ static void show_bundle(table *t, const case_results *c, hard_verdict v,
 
 static table *shown(const suite *all) {
     static const char *const names[] = {
-        "case", "asked",       "h w",  "verdict",
-        "rows", "error\nfrom", "\nto", "the worst of them"};
+        "case", "asked",       "omega\ndt", "verdict",
+        "rows", "error\nfrom", "\nto",      "the worst of them"};
     table *t = table_new();
     columns(t, names, sizeof names / sizeof *names);
     for (size_t i = 0; i < all->n_cases; i++) {

@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "ensemble/members.h"
 #include "portrait.h"
+#include <float.h>
 #include <math.h>
 #include <nevh/section.h>
 #include <stdlib.h>
@@ -25,6 +26,7 @@ typedef struct {
     size_t count;
     const char *integrator;
     members members;
+    double after;   /* earlier points are left out */
     size_t at;      /* the member that is run */
     size_t failed;  /* members */
     double stopped; /* where the scene's `stop` said; NAN */
@@ -56,6 +58,8 @@ static double *new_point(series *s) {
 static int keep(void *data, const nevh_point *point) {
     job *j = data;
     series *s = &j->all[point->section];
+    if (point->t < j->after)
+        return 0;
     double *numbers = new_point(s), *items = numbers + 2;
     s->members[s->points - 1] = j->at;
     numbers[0] = point->t;
@@ -114,10 +118,25 @@ static int check_names(const plan *p, const list *names) {
     return status;
 }
 
+/* Within the run, so that something is left. */
+static int take_after(job *j, const plan *p, const options *o) {
+    j->after = -INFINITY;
+    if (!o->after)
+        return TOOL_OK;
+    if (scene_number(p->scene, o, o->after, &j->after))
+        return TOOL_USAGE;
+    if (!(j->after <= p->t_end))
+        return tool_refuse("--after %s: the run is from t = %g to %g", o->after,
+                           p->run->t_start, p->t_end);
+    /* A multiple of a period, rounded another way, is not before it. */
+    j->after -= 16 * DBL_EPSILON * fabs(j->after);
+    return TOOL_OK;
+}
+
 static int choose(job *j, const plan *p, const options *o) {
     size_t count = nevh_scene_section_count(p->scene);
     j->plan = p;
-    if (check_names(p, &o->sections))
+    if (check_names(p, &o->sections) || take_after(j, p, o))
         return TOOL_USAGE;
     j->all = tool_allocate(count, sizeof *j->all);
     for (size_t i = 0; i < count; i++)
@@ -265,9 +284,13 @@ static char *reason(const job *j, const series *s) {
 }
 
 static void note_points(const job *j, const series *s, list *notes) {
-    char *why = s->points ? NULL : reason(j, s);
-    list_print(notes, "section %s: %zu points%s%s", s->decl->name, s->points,
-               why ? ": " : "", why ? why : "");
+    bool part = isfinite(j->after);
+    char *why = s->points || part ? NULL : reason(j, s);
+    char *from =
+        part ? text_print(" after t = %g", j->after) : text_print("%s", "");
+    list_print(notes, "section %s: %zu points%s%s%s", s->decl->name, s->points,
+               from, why ? ": " : "", why ? why : "");
+    free(from);
     free(why);
 }
 
@@ -307,8 +330,12 @@ static void add_note(const job *j, plot *to) {
     char *energy = j->members.several
                        ? text_print("%zu orbits", j->members.count)
                        : plot_energy_at_start(j->plan);
-    char *more = text_print("%s%s%s", energy, j->ended ? "; " : "",
+    char *from = isfinite(j->after)
+                     ? text_print("; points after t = %g", j->after)
+                     : text_print("%s", "");
+    char *more = text_print("%s%s%s%s", energy, from, j->ended ? "; " : "",
                             j->ended ? j->ended : "");
+    free(from);
     plot_note_run(to, j->plan, scheme, more);
     free(scheme);
     free(energy);

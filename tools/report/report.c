@@ -4,6 +4,7 @@
 #include "film_private.h"
 #include "report_private.h"
 #include <errno.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -14,6 +15,7 @@ typedef struct {
     bool draws;                                        /* gnuplot is at hand */
     size_t films;                                      /* on the page */
     size_t parts;                                      /* so far */
+    int terminal; /* stderr, where messages of a part go to a file; else -1 */
 } report_work;
 
 typedef struct {
@@ -142,14 +144,16 @@ static char *command_of(const report_work *w, const char *scene,
 }
 
 /* Runs a command with stderr in a file; -1 where that cannot be. */
-static int run_heard(command *run, const options *o, const char *messages) {
+static int run_heard(report_work *w, command *run, const options *o) {
     int kept = dup(STDERR_FILENO), status = -1;
-    FILE *heard = fopen(messages, "w");
+    FILE *heard = fopen(w->messages, "w");
     fflush(stderr);
     if (kept >= 0 && heard && dup2(fileno(heard), STDERR_FILENO) >= 0) {
+        w->terminal = kept;
         status = run(o);
         fflush(stderr);
         dup2(kept, STDERR_FILENO);
+        w->terminal = -1;
     }
     if (heard)
         fclose(heard);
@@ -158,7 +162,7 @@ static int run_heard(command *run, const options *o, const char *messages) {
     return status;
 }
 
-static report_part make_part(const report_work *w, const kind_of_part *kind,
+static report_part make_part(report_work *w, const kind_of_part *kind,
                              char *scene) {
     char *words[] = {"report", scene};
     options o = *w->given;
@@ -178,7 +182,7 @@ static report_part make_part(const report_work *w, const kind_of_part *kind,
                         .about = kind->about,
                         .undrawn = kind->draws && !w->draws};
     if (kind->rows || w->draws)
-        part.status = run_heard(kind->run, &o, w->messages);
+        part.status = run_heard(w, kind->run, &o);
     part.html = text_read(w->rows);
     part.picture = text_read(w->picture);
     part.narrow = text_read(w->narrow);
@@ -308,6 +312,36 @@ static int add_scene(report_work *w, const options *o, char *name, FILE *f) {
     return status;
 }
 
+static void remove_folder(const report_work *w) {
+    const char *const files[] = {w->rows, w->picture, w->narrow, w->messages};
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++)
+        if (files[i])
+            unlink(files[i]);
+    rmdir(w->folder);
+}
+
+/* What a part has said, where it ends the program. */
+static void tell(const report_work *w) {
+    char text[512];
+    int file = w->terminal < 0 ? -1 : open(w->messages, O_RDONLY);
+    for (ssize_t bytes = 0; file >= 0 && bytes >= 0;) {
+        bytes = read(file, text, sizeof text);
+        if (bytes <= 0 || write(w->terminal, text, (size_t)bytes) < 0)
+            break;
+    }
+    if (file >= 0)
+        close(file);
+}
+
+/* The report that is being made. */
+static const report_work *volatile unfinished;
+
+static void leave(int number) {
+    if (!number)
+        tell(unfinished);
+    remove_folder(unfinished);
+}
+
 static int make_folder(report_work *w) {
     const char *parent = getenv("TMPDIR");
     w->folder =
@@ -316,6 +350,8 @@ static int make_folder(report_work *w) {
         return tool_refuse("%s: a folder for parts of the report cannot be "
                            "made: %s",
                            w->folder, strerror(errno));
+    unfinished = w;
+    output_leave(leave);
     w->rows = text_print("%s/rows.html", w->folder);
     w->picture = text_print("%s/picture.svg", w->folder);
     w->narrow = text_print("%s/narrow.svg", w->folder);
@@ -324,13 +360,9 @@ static int make_folder(report_work *w) {
 }
 
 static void free_work(report_work *w) {
-    if (w->rows) {
-        unlink(w->rows);
-        unlink(w->picture);
-        unlink(w->narrow);
-        unlink(w->messages);
-        rmdir(w->folder);
-    }
+    output_leave(NULL);
+    if (w->messages)
+        remove_folder(w);
     free(w->rows);
     free(w->picture);
     free(w->narrow);
@@ -347,7 +379,7 @@ static int write_page(const options *o, const char *text) {
 }
 
 int report(const options *o) {
-    report_work w = {.given = o};
+    report_work w = {.given = o, .terminal = -1};
     char *text = NULL;
     size_t size;
     if (o->operands.count < 2)
