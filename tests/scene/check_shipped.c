@@ -320,6 +320,33 @@ TEST_TAGGED(long_chains_cost_in_proportion, "slow", 0, 1) {
     ck_assert_double_lt(long_one, 30);
 }
 
+/* Numbers that the tape works out are those that were worked out before. */
+TEST(exact_systems_are_those_of_the_scenes) {
+    find_shipped();
+    for (size_t i = 0; i < n_shipped; i++) {
+        nevh_scene *s = read_shipped(shipped[i]);
+        size_t n = nevh_scene_dof(s);
+        double *z = calloc(6 * n, sizeof *z), *a = z + 2 * n, *b = z + 4 * n;
+        double t = 0.3;
+        ck_assert_int_eq(nevh_scene_start(s, z, z + n), NEVH_OK);
+        const nevh_system *exact = nevh_scene_exact_system(s);
+        ck_assert_msg(exact, "%s", nevh_scene_message(s));
+        ck_assert_ptr_eq(nevh_scene_exact_system(s), exact);
+        nevh_field *f[2] = {field_of(nevh_scene_system(s)), field_of(exact)};
+        nevh_field_gradient(f[0], 1, &t, z, z + n, a, a + n);
+        nevh_field_gradient(f[1], 1, &t, z, z + n, b, b + n);
+        double size = size_of(a, 2 * n);
+        for (size_t k = 0; k < 2 * n; k++)
+            ck_assert_msg(fabs(a[k] - b[k]) <= 64 * DBL_EPSILON * size,
+                          "%s, component %zu: %.17g, not %.17g", shipped[i], k,
+                          b[k], a[k]);
+        nevh_field_free(f[0]);
+        nevh_field_free(f[1]);
+        free(z);
+        nevh_scene_free(s);
+    }
+}
+
 /* Each has what a student needs. */
 TEST(scenes_are_complete) {
     find_shipped();
