@@ -142,9 +142,9 @@ static void say_row(job *j, const row *r) {
                          "further",
                          now.t);
     list_print(&j->result.after,
-               "%s, dt = %g: %s (%zu of %zu starts at this "
-               "energy agree).",
-               r->integrator, r->dt, what, now.agreeing, now.starts);
+               "%s, dt = %g: %s (%zu of %zu starts %s agree).", r->integrator,
+               r->dt, what, now.agreeing, now.starts,
+               j->plan->balance ? "near by" : "at this energy");
     free(what);
 }
 
@@ -163,8 +163,11 @@ static void note_energy(job *j, const row *r) {
                    q + p->n, &(nevh_observer){nevh_energy_observe, energy, 1},
                    1);
     double error = nevh_energy_result(energy, 0).max;
+    /* Notes after a table are none of CSV. */
+    list *notes =
+        j->options->format == FORMAT_CSV ? &j->result.before : &j->result.after;
     if (error > lost)
-        list_print(&j->result.after,
+        list_print(notes,
                    "%s at dt = %g does not keep the energy (error %.2g of its "
                    "scale): what is found is of these steps, not of H; take a "
                    "smaller dt.",
