@@ -161,6 +161,19 @@ awk -v most="$most" '$2 == 2 && $5 == most { found = 1 }
     $1 == "rk4" && $NF == "drifts" { lost = 1 } END { exit !(found && lost) }' $work/out ||
     { fails "has a film with other numbers than $most"; cat $work/out; }
 
+# The whole way of each body is in it, and some step between two is found where rk4
+# loses energy at neither, or all of it.
+test "$(grep -c '<path fill="none" .* d="M[0-9]*,' $film)" = 2 || fails "shows no ways"
+exits 0 report outer-solar-system -o $work/planets.html --t-end 2000
+grep -q 'rk4 has then lost .* of the energy scale' $work/planets.html ||
+    fails "shows no loss of rk4"
+
+# Levels of H say nothing of driven orbits, nor is a scheme symplectic with friction.
+exits 0 report damped-driven-pendulum -o $work/driven.html --t-end 5
+grep -q '<h2>Phase plane</h2>' $work/driven.html || fails "has no phase plane"
+grep -q '<h2>Portrait</h2>' $work/driven.html && fails "has levels of an H of time"
+grep -q 'scheme beside rk4' $work/driven.html && fails "calls a damped scheme symplectic"
+
 # There is no film where steps that tell nothing leave no orbit to be seen.
 exits 0 report earth-halley -o $work/halley.html --t-end 10
 grep -q '<h2>The motion</h2>' $work/halley.html || fails "has no picture"

@@ -136,10 +136,38 @@ static bool is_fit(const plan *p, const char *name) {
            nevh_integrator_symplectic(scheme) == NEVH_YES && p->dts > 0;
 }
 
+static bool tells(film *f, const char *integrator, double dt) {
+    shoot_both(f, integrator, rounded(dt));
+    return f->tells = is_telling(f);
+}
+
+static bool is_lost(const film *f) {
+    return f->reel[1].frames <= f->most || worst(&f->reel[1]) > lost;
+}
+
+/* The shortest step that tells, from dt on.  Where rk4 is lost from one step to
+   the next, some between them are tried.
+   fits  out, if so: the scheme takes steps */
+static bool find_step(film *f, const char *name, double dt, bool *fits) {
+    enum { STEPS = 13, BETWEEN = 4 };
+    const double factor = sqrt(2), little = pow(2, 0.5 / BETWEEN);
+    bool before = true;
+    for (int k = 0; k < STEPS; k++, dt *= factor) {
+        if (tells(f, name, dt))
+            return true;
+        bool gone = is_lost(f), between = gone && !before;
+        *fits |= f->reel[0].frames > 0;
+        for (int j = 1; between && j < BETWEEN; j++)
+            if (tells(f, name, dt / factor * pow(little, j)))
+                return true;
+        before = gone;
+    }
+    return false;
+}
+
 /* The first scheme, and the shortest step, that tell; else the scene's.
    returns  whether its errors leave an orbit to be seen */
 static bool choose(film *f) {
-    enum { STEPS = 13 };
     const plan *p = f->plan;
     const char *first = NULL;
     double dt = 0;
@@ -147,14 +175,10 @@ static bool choose(film *f) {
         dt = fmax(dt, p->dt[i]);
     for (size_t i = 0; i < p->integrators.count; i++) {
         const char *name = p->integrators.item[i];
-        if (!is_fit(p, name))
-            continue;
-        for (int k = 0; k < STEPS; k++) {
-            shoot_both(f, name, rounded(dt * pow(2, k / 2.)));
-            if (is_telling(f))
-                return true;
-            first = !first && f->reel[0].frames ? name : first;
-        }
+        bool fits = false;
+        if (is_fit(p, name) && find_step(f, name, dt, &fits))
+            return true;
+        first = !first && fits ? name : first;
     }
     if (!first)
         return false;
@@ -173,7 +197,7 @@ bool film_make(film *f, plan *p, size_t bytes) {
     size_t frame = 2 * BYTES_A_NUMBER * (4 * f->rods + 2 * f->bobs);
     f->most =
         frame && bytes / frame < MOST_FRAMES ? bytes / frame : MOST_FRAMES;
-    if (!parts || f->most < FEWEST_FRAMES)
+    if (!parts || f->most < FEWEST_FRAMES || p->friction)
         return false;
     return choose(f) && f->reel[0].frames > 1 && f->reel[1].frames > 1;
 }

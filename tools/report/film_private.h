@@ -18,10 +18,12 @@ typedef struct {
     plan *plan;
     size_t rods, bobs, most; /* most: frames */
     double dt;
+    bool tells; /* rk4 loses or gains what the other keeps */
     reel reel[2];
 } film;
 
-/* film.c: false: there is no picture, no scheme fits, or it would be too large.
+/* film.c: false: there is no picture, no scheme fits, it would be too large, or
+   there is friction, with which no scheme is symplectic.
    bytes  that its places may take */
 bool film_make(film *, plan *, size_t bytes);
 void film_free(film *);

@@ -40,19 +40,21 @@ static bool has_sections(nevh_scene *scene) {
     return nevh_scene_section_count(scene) > 0;
 }
 
-/* Levels of H are lines of the plane. */
+static bool is_driven(nevh_scene *scene) {
+    return !(nevh_system_traits(nevh_scene_system(scene)) & NEVH_AUTONOMOUS);
+}
+
+/* Levels of H are lines of the plane, which orbits of a driven system leave. */
 static bool has_plane(nevh_scene *scene) {
-    return nevh_scene_dof(scene) == 1;
+    return nevh_scene_dof(scene) == 1 && !is_driven(scene);
 }
 
 /* Orbits that can be chaotic, and not so many coordinates that it takes long to
    tell. */
 static bool has_room(nevh_scene *scene) {
     enum { MOST = 40 };
-    bool driven =
-        !(nevh_system_traits(nevh_scene_system(scene)) & NEVH_AUTONOMOUS);
     size_t n = nevh_scene_dof(scene);
-    return (n > 1 || driven) && n <= MOST;
+    return (n > 1 || is_driven(scene)) && n <= MOST;
 }
 
 static const kind_of_part kinds[] = {
@@ -60,7 +62,7 @@ static const kind_of_part kinds[] = {
      "Each row is an integrator at one step. Bounded errors stay; drifting "
      "errors grow with time. The picture shows the error against time.",
      "compare", compare, always, PLOT_USUAL, true, true, 0},
-    {"The motion", "The configuration at equal times, by the first integrator.",
+    {"The motion", "The way of each body, by the first integrator.",
      "run --plot-kind configuration", run_scene, has_picture,
      PLOT_CONFIGURATION, false, true, 0},
     {"A symplectic scheme beside rk4",
@@ -74,7 +76,8 @@ static const kind_of_part kinds[] = {
     {"Sections", "Points where the orbit crosses the section.", "section",
      section, has_sections, PLOT_USUAL, false, true, 0},
     {"Order and chaos",
-     "The Lyapunov exponent: how fast orbits that start near by separate.",
+     "The Lyapunov exponent of the orbit from the scene's start: how fast "
+     "orbits near by separate.",
      "chaos --starts 2 --budget 4", chaos, has_room, PLOT_USUAL, true, false,
      4},
     {"What accuracy costs",
