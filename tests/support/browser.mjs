@@ -6,8 +6,8 @@ import { basename } from "node:path";
 import { chromium } from "./chromium.mjs";
 import { firefox } from "./firefox.mjs";
 
-// Opens `address`; size: [width, height]; still: little motion is wanted.  The result
-// has
+// Opens `address`; size: [width, height]; still: little motion is wanted; paper: as it
+// is printed, in Chromium alone.  The result has
 //   evaluate(text)  the value of an expression, awaited
 //   until(text, seconds)  waits until an expression is true, which it returns
 //   key, pointer    events of input
@@ -17,7 +17,7 @@ import { firefox } from "./firefox.mjs";
 //   requests        addresses that were asked for
 //   close()
 export async function browse(program, address, { size = [1280, 900],
-  still = false } = {}) {
+  still = false, paper = false } = {}) {
   const folder = mkdtempSync(tmpdir() + "/nevh-browser.");
   const drive = /firefox/.test(basename(program)) ? firefox : chromium;
   const remove = () => {
@@ -27,7 +27,7 @@ export async function browse(program, address, { size = [1280, 900],
       console.log("not removed: " + error.message);
     }
   };
-  const page = await drive(program, folder, address, { size, still })
+  const page = await drive(program, folder, address, { size, still, paper })
     .catch((error) => { remove(); throw error; });
   return {
     ...page,

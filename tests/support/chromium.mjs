@@ -2,7 +2,7 @@
 // pages.
 import { spawn } from "node:child_process";
 
-export async function chromium(program, folder, address, { size, still }) {
+export async function chromium(program, folder, address, { size, still, paper }) {
   const child = spawn(program, ["--headless", "--no-sandbox", "--disable-gpu",
     "--disable-dev-shm-usage", "--no-first-run", "--user-data-dir=" + folder,
     "--remote-debugging-pipe", "about:blank"],
@@ -48,7 +48,7 @@ export async function chromium(program, folder, address, { size, still }) {
     await call(domain + ".enable");
   await call("Emulation.setDeviceMetricsOverride", { width: size[0],
     height: size[1], deviceScaleFactor: 1, mobile: size[0] < 500 });
-  await call("Emulation.setEmulatedMedia", { features: [
+  await call("Emulation.setEmulatedMedia", { media: paper ? "print" : "", features: [
     { name: "prefers-reduced-motion", value: still ? "reduce" : "" }] });
   await call("Network.emulateNetworkConditions", { offline: true, latency: 0,
     downloadThroughput: -1, uploadThroughput: -1 });

@@ -26,6 +26,7 @@ const FILM = `(() => {
         const l = Math.min(k, data.places[i].length / data.columns - 1);
         const a = data.places[i], o = l * data.columns;
         const trails = [...orbit.querySelectorAll("polyline")];
+        const ways = [...orbit.querySelectorAll("path")];
         return film.querySelectorAll(".error")[i].textContent ===
             data.errors[i][l] + " %" &&
           [...orbit.querySelectorAll("line")].every((e, j) =>
@@ -35,7 +36,8 @@ const FILM = `(() => {
             trails[j].getAttribute("points").trim().split(" ").at(-1) ===
               e.getAttribute("cx") + "," + e.getAttribute("cy") &&
             trails[j].getAttribute("points").trim().split(" ").length ===
-              Math.min(l, data.trail) + 1);
+              Math.min(l, data.trail) + 1 &&
+            ways[j].getAttribute("d").trim().split(" ").length === l + 1);
       });
     return same ? k : -1;
   };
@@ -96,6 +98,16 @@ async function legible(page, look) {
   check(!faults.length, look + " pictures: " + faults.slice(0, 9).join("; "));
 }
 
+// On paper a picture stands on the page of its heading, and controls are left out.
+if (!/firefox/.test(basename(program))) await tried("paper", { paper: true }, async (page) => {
+  check(await page.evaluate(`[...document.querySelectorAll("h2")].every((e) =>
+    getComputedStyle(e).breakAfter === "avoid" &&
+    getComputedStyle(e.nextElementSibling).breakAfter === "avoid")`),
+    "headings are on other pages than what they head");
+  check(await page.evaluate(`[...document.querySelectorAll("svg[role]")].every((e) =>
+    e.getBoundingClientRect().height < 500)`), "pictures fill pages");
+  check(await page.evaluate("!film.bar.checkVisibility()"), "paper has a slider");
+});
 // It stands until it is asked to play, stops when it is asked to, and at its end.
 await tried("wide", {}, async (page, steps) => {
   check(await page.evaluate("film.controls.checkVisibility()"), "has no controls");

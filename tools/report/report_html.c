@@ -29,11 +29,14 @@ static const char style[] =
     ".narrow{display:block}}\n"
     "figcaption{padding:.3rem .6rem}input{width:50%}\n"
     "pre{overflow-x:auto;font-size:.85rem}\n"
-    "dd{overflow-x:auto;overflow-y:hidden;margin:.3rem 0 .3rem 1.5rem}\n"
+    "dd{overflow-x:auto;overflow-y:hidden;margin:0 0 0 1.5rem;"
+    "padding:.3rem 0}\n"
     "math{font-size:1.15em}\n"
     ".off{opacity:.6}\n"
-    "@media print{tr,figure{break-inside:avoid}h2,h3{break-after:avoid}"
-    ".wide{overflow:visible}}\n";
+    "@media print{tr,figure{break-inside:avoid}"
+    "h2,h3,h2+p,h2+p+p{break-after:avoid}"
+    "p{orphans:3;widows:3}svg{max-height:13cm}"
+    "dd,pre,.wide{overflow:visible}button,input{display:none}}\n";
 
 static const char wide_style[] =
     "body{max-width:120rem}\n"
