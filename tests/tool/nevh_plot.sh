@@ -310,6 +310,12 @@ shows 'verlet, dt = 0.1 s; gradient central4; t = 0 ... 50 s; a part of the run:
 for text in 'phi (rad)' 'p_phi (J s)' 'energy (J)'; do shows "$text"; done
 draws run pendulum --plot-kind time --plot $svg --t-end 1000 --columns phi
 shows 'verlet, dt = 0.1 s; gradient central4; t = 0 ... 1000 s'
+# So is a phase plane of more steps than are kept: of some it has lines.
+draws run kepler-0.9 --plot $svg --keep-plot-script $work/out.gp
+texts | grep -q 't = 0 ... 50; .*a part of the run: --t-end 628.319 shows all' ||
+    { fails "does not cut the run"; texts; }
+grep -q '^ *\$series1 using 1:2 with lines\|plot \$series1 using 1:2 with lines' $work/out.gp ||
+    fails "draws dots"
 # What the scene shows, where there are many coordinates.
 draws run sun-earth-moon --plot-kind time --plot $svg --t-end 1 --without moon
 

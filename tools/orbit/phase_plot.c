@@ -160,6 +160,15 @@ static double least_turns(const orbit *o, size_t panels) {
     return isfinite(least) ? least : 0;
 }
 
+/* Some fifty turns, or fewer of which all steps are kept, so that they are lines
+   and not dots. */
+static double turns_wanted(const orbit *o, double turns) {
+    static const double fewest = 5;
+    double kept = turns * o->rows.part;
+    return o->rows.part < 1 && kept > fewest ? fmin(kept, PHASE_TURNS)
+                                             : PHASE_TURNS;
+}
+
 /* A curve that does not close would fill an area: its run is cut.
    returns  what is to be said of it; to be freed */
 static char *follow_and_cut(run_picture *picture, column_panels *c) {
@@ -168,11 +177,10 @@ static char *follow_and_cut(run_picture *picture, column_panels *c) {
         p->n == 1 &&
         (nevh_system_traits(nevh_scene_system(p->scene)) & NEVH_AUTONOMOUS);
     follow(picture, c);
+    const orbit *first = picture->orbits.item;
+    double turns = least_turns(first, c->panels);
     char *words =
-        closes
-            ? NULL
-            : picture_cut(picture, least_turns(picture->orbits.item, c->panels),
-                          PHASE_TURNS);
+        closes ? NULL : picture_cut(picture, turns, turns_wanted(first, turns));
     if (words)
         follow(picture, c);
     return words;
