@@ -84,6 +84,22 @@ test -s $work/out && fails "is not quiet"
 exits 1 portrait $work/well.nevh --plot $work/b.svg --vary 'x = 0, 9'
 says '1 of 2 members have no start'
 
+# An orbit that fails does so on stderr; what is drawn ends there.
+cat >$work/edge.nevh <<'END'
+[coordinates]
+x = 1
+[effects]
+kinetic = p_x^2/2
+root = sqrt(x)
+[run]
+t_end = 20
+dt = 0.05
+integrators = verlet
+END
+exits 1 portrait $work/edge.nevh --plot $work/b.svg
+lacks failed
+says '^nevh: .*edge.nevh: verlet failed: '
+
 # More degrees of freedom: a plane of section, a panel an integrator.
 exits 0 portrait henon-heiles --integrators verlet,blanes-moan4 --t-end 60 \
     --plot $work/c.svg --keep-plot-script $work/gp

@@ -285,8 +285,15 @@ static void print_notes(const job *j, const options *o) {
                *unit ? " " : "", unit);
     }
     for (size_t i = 0; i < j->count; i++)
-        if (j->of[i].status)
+        if (j->of[i].refused)
             printf("%s %s\n", j->of[i].integrator, j->of[i].status);
+}
+
+static void tell_failures(const job *j) {
+    for (size_t i = 0; i < j->count; i++)
+        if (j->of[i].failed)
+            tool_refuse("%s: %s %s", j->plan.name, j->of[i].integrator,
+                        j->of[i].status);
 }
 
 static int draw(job *j, const options *o) {
@@ -310,6 +317,7 @@ static int draw(job *j, const options *o) {
     plot_free(to);
     if (!drawn)
         print_notes(j, o);
+    tell_failures(j);
     return drawn ? drawn : status;
 }
 
