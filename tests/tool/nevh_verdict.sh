@@ -175,5 +175,10 @@ exits 0 compare pendulum --integrators gauss16,rk4 --dt 0.1 --t-end 200
 tr '\n' ' ' <$work/out | tr -s ' ' |
     grep -q "above gauss16's [^ ]* from the first step on" ||
     { fails "passes before the first step"; cat $work/out; }
+# A line that errors do not follow says nothing of first steps.
+exits 0 compare fput --integrators blanes-moan4,rk4
+tr '\n' ' ' <$work/out | tr -s ' ' |
+    grep -q "rk4 .* at the end it is far above blanes-moan4's" ||
+    { fails "tells of first steps by the whole run"; cat $work/out; }
 
 exit $status

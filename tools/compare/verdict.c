@@ -102,12 +102,17 @@ static char *step_of(const plan *p, const row *r) {
 static void tell_crossing(const plan *p, const row *r, const row *b,
                           const char *text, list *words) {
     static const double long_after = 1e4; /* runs: of no practical meaning */
+    static const double straight =
+        0.999; /* R^2: the line tells of first steps */
     double span = r->t_end - p->run->t_start;
     double passes = b ? b->energy.max / fabs(known(r)->drift) : 0;
     double t = p->run->t_start + passes;
     char *unit = unit_of(p, " ");
     if (!b)
         list_print(words, "%s.", text);
+    else if (passes < fabs(r->step) && known(r)->straightness < straight)
+        list_print(words, "%s; at the end it is far above %s's %.1e.", text,
+                   b->integrator, b->energy.max);
     else if (passes < fabs(r->step))
         list_print(words, "%s; it is above %s's %.1e from the first step on.",
                    text, b->integrator, b->energy.max);
