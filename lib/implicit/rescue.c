@@ -146,12 +146,14 @@ static int give_up(const nevh__stage_solver *s, size_t lane) {
     const struct nevh__rescue *r = s->rescue;
     if (r && r->residual == INFINITY && r->status)
         return r->status; /* G could not be evaluated at all */
+    char which[40] = "";
+    if (s->work->width > 1)
+        snprintf(which, sizeof which, " (lane %zu)", lane);
     return nevh_work_fail(
         s->work, NEVH_EMAXITER,
-        "the stage equations of %s were not solved at t = %.9g, h = %g (lane "
-        "%zu): fixed-point iteration does not contract, and %s: take a "
-        "smaller step",
-        s->work->integrator->name, e->t, e->h, lane,
+        "the stage equations of %s were not solved at t = %.9g, h = %g%s: "
+        "fixed-point iteration does not contract, and %s: take a smaller step",
+        s->work->integrator->name, e->t, e->h, which,
         r ? "neither simplified Newton nor GSL's hybrid solver found a root"
           : "the system is too large for Newton's and GSL's solvers");
 }

@@ -86,6 +86,7 @@ has '<dd class="off" tabindex="0">\(off\) <math'
 lacks '(src|href)="'
 lacks 'https?://[^w]'
 lacks '[^a-z]nan[^a-z]'
+lacks '<p></p>'
 for heading in 'The Hamiltonian' 'Energy errors' 'The motion' 'Phase plane' \
     Portrait 'Order and chaos' 'What accuracy costs' Effects Gradients 'Properties of H'; do
     has "<h2>$heading</h2>"

@@ -29,11 +29,13 @@ void html_text(FILE *f, const char *text) {
         }
 }
 
-/* Lines that begin with a space are set as they are. */
+/* Lines that begin with a space are set as they are; empty ones are the terminal's. */
 static void put_lines(FILE *f, const list *l) {
     bool set = false;
     for (size_t i = 0; i < l->count; i++) {
         bool is_set = l->item[i][0] == ' ';
+        if (!*l->item[i])
+            continue;
         if (is_set != set)
             fputs(is_set ? "<pre tabindex=\"0\">" : "</pre>\n", f);
         fputs(is_set ? "" : "<p>", f);

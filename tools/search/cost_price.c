@@ -40,7 +40,8 @@ static char *price(const costs *c, const row *best, const row *r) {
     return text_print("%s x%.2g", r->gradient, factor);
 }
 
-/* One after the other, so that nothing but the gradient differs. */
+/* One after the other, so that nothing but the gradient differs; nothing where there
+   was no time for any other. */
 void cost_price(costs *c, list *words) {
     const study *l;
     const row *best = most_digits(c, &l);
@@ -48,6 +49,7 @@ void cost_price(costs *c, list *words) {
         return;
     int k = l->k[best - l->level];
     char *text = text_print("%s 1", l->gradient);
+    size_t others = 0;
     for (size_t i = 0; nevh_gradients()[i]; i++) {
         const char *name = nevh_gradient_name(nevh_gradients()[i]);
         study other = study_new(l->integrator, name);
@@ -58,14 +60,17 @@ void cost_price(costs *c, list *words) {
             char *more = price(c, best, &other.level[0]);
             char *longer = more ? text_print("%s, %s", text, more)
                                 : text_print("%s", text);
+            others += more != NULL;
             free(text);
             free(more);
             text = longer;
         }
         study_free(&other);
     }
-    list_print(words, "price of the gradient (%s at dt = %.4g, error %.1g): %s",
-               l->integrator, best->dt, study_error(best, c->search.by_state),
-               text);
+    if (others)
+        list_print(words,
+                   "price of the gradient (%s at dt = %.4g, error %.1g): %s",
+                   l->integrator, best->dt,
+                   study_error(best, c->search.by_state), text);
     free(text);
 }

@@ -337,10 +337,14 @@ static void tell_legend(const costs *c, list *words) {
     if (any_word(c, "floor"))
         list_add(words, "floor: shorter steps do not lessen the error, for "
                         "rounding or what the gradient lacks.");
+    double spread = 100 * typical_spread(c);
+    char *share =
+        text_print(", half of which lie within %.1g %% of them", spread);
     list_print(words,
-               "ms are this machine's: medians of repeated runs, half of which "
-               "lie within %.1g %% of them; evaluations are exact.",
-               100 * typical_spread(c));
+               "ms are this machine's: medians of repeated runs%s; evaluations "
+               "are exact.",
+               spread > 0 ? share : "");
+    free(share);
     free(longest);
 }
 

@@ -146,7 +146,10 @@ static char *words(const drawing *d) {
                       "the %s gradient, relative to its largest component%s",
                       c->exact.count, c->integrator, c->dt, *unit ? " " : "",
                       unit, c->yardstick,
-                      d->relative ? "" : "; discs: steps that nevh chooses");
+                      d->relative
+                          ? ""
+                          : "; discs: with a step for each variable, as "
+                            "nevh chooses, over the shortest");
 }
 
 int gradients_plot(const options *o, const context *c) {
