@@ -68,6 +68,19 @@ const stands = async (page, step, what) => {
   check(shown === step, `${what}: step ${shown} for ${step}`);
 };
 
+// Names of lines of an order lie over no curve, which has a colour.
+const CROSSED = `((svg, name) => {
+  const box = name.getBoundingClientRect();
+  return [...svg.querySelectorAll("path")].some((path) => {
+    const stroke = getComputedStyle(path).stroke.match(/\\d+/g) || [0, 0, 0];
+    if (Math.max(...stroke) - Math.min(...stroke) < 40) return false;
+    const back = path.getScreenCTM().inverse();
+    for (let x = box.left; x < box.right; x += 0.4)
+      if (path.isPointInStroke(new DOMPoint(x, box.top + box.height / 2)
+        .matrixTransform(back))) return true;
+    return false;
+  }); })`;
+
 // Of each picture the variant for that width is shown, whose texts are large enough,
 // lie within it, and over no other.
 async function legible(page, look) {
@@ -83,6 +96,9 @@ async function legible(page, look) {
       const texts = [...shown[0].querySelectorAll("text")]
         .filter((e) => e.textContent.trim())
         .map((e) => [e.textContent.trim(), e.getBoundingClientRect()]);
+      for (const name of shown[0].querySelectorAll("text"))
+        if (/^(order|slope) \\d/.test(name.textContent.trim()) &&
+          ${CROSSED}(shown[0], name)) faults.push("crossed: " + name.textContent);
       texts.forEach(([text, a], i) => {
         if (Math.max(a.width, a.height) < 10)
           faults.push("small: " + text);

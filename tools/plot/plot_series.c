@@ -253,22 +253,74 @@ static bool is_covered(const guide_name *all, size_t count,
     return false;
 }
 
-/* Near the guide's end, or further down it, so that it is within the picture and over
-   no other; false where it has no place. */
-static bool place_name(const series *s, const plot_screen *on, double right,
-                       const guide_name *others, size_t count, guide_name *to) {
-    enum { PLACES = 10 };
+/* Whether a part of the line from a to b is on that side of a limit, as far as from
+   and to, which shrink: shares of the line. */
+static bool clip(double along, double room, double *from, double *to) {
+    if (along > 0)
+        *to = fmin(*to, room / along);
+    else if (along < 0)
+        *from = fmax(*from, room / along);
+    else if (room < 0)
+        return false;
+    return *from <= *to;
+}
+
+static bool is_crossed_by(const guide_name *one, pair a, pair b) {
+    const double half = 0.6 * PLOT_NOTE_FONT;
+    double from = 0, to = 1, x = b.x - a.x, y = b.y - a.y;
+    return isfinite(x) && isfinite(y) &&
+           clip(x, one->right - a.x, &from, &to) &&
+           clip(-x, a.x - one->left, &from, &to) &&
+           clip(y, one->middle + half - a.y, &from, &to) &&
+           clip(-y, a.y - one->middle + half, &from, &to);
+}
+
+/* By a curve of the panel, or another guide. */
+static bool is_crossed(const plot *p, const series *guide,
+                       const plot_screen *on, const guide_name *one) {
+    for (size_t i = 0; i < p->count; i++) {
+        const series *s = &p->series[i];
+        if (s == guide || s->panel != guide->panel)
+            continue;
+        for (size_t k = 1; k < s->count; k++)
+            if (is_crossed_by(one, plot_in_pixels(on, s->point[k - 1]),
+                              plot_in_pixels(on, s->point[k])))
+                return true;
+    }
+    return false;
+}
+
+/* Beside the guide, from its end on, so that it is within the picture and over no
+   other, nor, if need be, over a curve; false where it has no place. */
+static bool place_beside(const plot *p, const series *s, const plot_screen *on,
+                         double right, bool apart, const guide_name *others,
+                         size_t count, guide_name *to) {
+    enum { PLACES = 10, AWAY = 4 };
+    static const double sides[] = {4, -4, 14, -14, 24, -24, 34, -34, 44, -44};
+    enum { SIDES = sizeof sides / sizeof *sides };
     pair first = plot_in_pixels(on, s->point[0]);
     pair last = plot_in_pixels(on, s->point[s->count - 1]);
     double width = 0.6 * PLOT_NOTE_FONT * (double)plot_letters(s->name);
-    for (int k = 0; k < PLACES; k++) {
-        double share = (double)k / PLACES;
-        double x = last.x + share * (first.x - last.x) + 4;
-        *to = (guide_name){x, x + width, last.y + share * (first.y - last.y)};
-        if (to->right < right && !is_covered(others, count, to))
-            return true;
-    }
+    for (size_t i = 0; i < (apart ? SIDES : 1); i++)
+        for (int k = 0; k < PLACES; k++) {
+            double share = (double)k / PLACES;
+            double x = last.x + share * (first.x - last.x) + sides[i] -
+                       (sides[i] < 0 ? width : 0);
+            double y = last.y + share * (first.y - last.y);
+            *to = (guide_name){x, x + width, y};
+            bool within = x > AWAY && y > AWAY && y < on->height - AWAY;
+            if (to->right < right && !is_covered(others, count, to) &&
+                (!apart || (within && !is_crossed(p, s, on, to))))
+                return true;
+        }
     return false;
+}
+
+static bool place_name(const plot *p, const series *s, const plot_screen *on,
+                       double right, const guide_name *others, size_t count,
+                       guide_name *to) {
+    return place_beside(p, s, on, right, true, others, count, to) ||
+           place_beside(p, s, on, right, false, others, count, to);
 }
 
 void plot_script_guides(FILE *f, const plot *p, size_t number,
@@ -281,7 +333,7 @@ void plot_script_guides(FILE *f, const plot *p, size_t number,
         if (s->panel != number || s->form != PLOT_GUIDE || !s->count)
             continue;
         guide_name *to = &names[count];
-        if (!place_name(s, &on, on.width + l->right, names, count, to))
+        if (!place_name(p, s, &on, on.width + l->right, names, count, to))
             continue;
         count++;
         fputs("set label ", f);

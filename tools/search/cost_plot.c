@@ -40,8 +40,10 @@ static bool is_outdone(const drawing *d, const study *l, size_t k) {
     return false;
 }
 
+/* Without a break where there was no time to measure it. */
 static bool is_drawn(const drawing *d, const study *l, size_t k) {
-    return isfinite(error_of(d, l, k)) && !is_outdone(d, l, k);
+    return isfinite(error_of(d, l, k)) && d->work(&l->level[k]) > 0 &&
+           !is_outdone(d, l, k);
 }
 
 static void draw_study(drawing *d, const study *l) {
@@ -54,7 +56,7 @@ static void draw_study(drawing *d, const study *l) {
         if (is_drawn(d, l, k))
             plot_point(d->to, series, d->work(&l->level[k]), error_of(d, l, k));
         else
-            d->left_out += isfinite(error_of(d, l, k));
+            d->left_out += isfinite(error_of(d, l, k)) && is_outdone(d, l, k);
     free(name);
 }
 

@@ -62,10 +62,11 @@ static double place(const drawing *d, double x) {
     return d->relative ? x : x * d->unit;
 }
 
-/* The slope of the truncation, beside where it is seen. */
+/* The slope of the truncation, to the left of where it is seen: to the right are
+   the curves of higher orders. */
 static void draw_slope(const drawing *d, const char *gradient, double x,
                        double error) {
-    static const double aside = 2.5, decades = 1.2;
+    static const double aside = 0.4, decades = 1.2;
     int order = nevh_gradient_order(nevh_gradient_named(gradient));
     char *name = text_print("slope %d", order);
     size_t series = plot_series(d->to, name);
@@ -77,21 +78,22 @@ static void draw_slope(const drawing *d, const char *gradient, double x,
 }
 
 static size_t draw_curve(const drawing *d, const char *gradient) {
-    static const double largest = 1e-2, useless = 10;
+    static const double useless = 10;
     static const int steepest = 4; /* of slopes that can be told apart */
     size_t series = plot_series(d->to, gradient);
+    int order = nevh_gradient_order(nevh_gradient_named(gradient));
     double x_of_slope = NAN, error_of_slope = NAN;
+    double largest = pow(10, -2 - order); /* lower, curves are farther apart */
     plot_style(d->to, series, PLOT_TRAIL);
     for (int i = LEAST * EACH; i <= MOST * EACH; i++) {
         double x = place(d, pow(10, (double)i / EACH));
         double error = error_at(d, gradient, x);
         if (error < useless)
             plot_point(d->to, series, x, error);
-        if (error < largest && error > 1e-6)
+        if (error < largest && error > 1e-4 * largest)
             x_of_slope = x, error_of_slope = error;
     }
-    if (nevh_gradient_order(nevh_gradient_named(gradient)) <= steepest &&
-        isfinite(x_of_slope) &&
+    if (order <= steepest && isfinite(x_of_slope) &&
         error_at(d, gradient, x_of_slope / 2) < error_of_slope / 2)
         draw_slope(d, gradient, x_of_slope, error_of_slope);
     return series;
