@@ -8,6 +8,12 @@ const element = (name, properties = {}, ...children) => {
   return made;
 };
 
+// The first line is a sentence, and wraps; those below it keep the caret's place.
+function sayWrong(text) {
+  const end = text.indexOf("\n") + 1 || text.length;
+  at("wrong").replaceChildren(element("span", {}, text.slice(0, end)), text.slice(end));
+}
+
 // ---- what is shown of a scene ----
 function show() {
   document.title = (scene.title || given.name) + " - nevh";
@@ -109,7 +115,8 @@ function setPlaying(on) {
   playing = on;
   at("play").setAttribute("aria-pressed", on);
   at("play").textContent = on ? "Pause" : "Play";
-  told = 0;
+  at("status").classList.toggle("heard", on); // what is seen moves on
+  told = -Infinity;
 }
 
 // ---- formulas ----
@@ -334,7 +341,7 @@ async function begin() {
   if (!fine && (S.text !== given.text || S.changes.length)) {
     const why = at("wrong").textContent;
     await use(given.text, []);
-    at("wrong").textContent = why;
+    sayWrong(why);
   }
   window.nevhFirst = now();
   if (S.test >= 0) return test();

@@ -273,7 +273,7 @@ function drawDisc(pen, i, c) {
     phase.mark(wrapped(rows[i][4 + S.plane * w + j], c),
       rows[i][4 + (n + S.plane) * w + j], 0, 1.4);
 }
-let told = 0;
+let told = -Infinity;
 function draw() {
   drawConfiguration();
   drawErrors();

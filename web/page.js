@@ -120,7 +120,7 @@ function command() {
 async function open(text, list) {
   const answer = await ask({ ask: "open", name: given.name, text,
     changes: list });
-  at("wrong").textContent = answer.ok ? "" : answer.message;
+  sayWrong(answer.ok ? "" : answer.message);
   return answer;
 }
 // Takes a scene, or says what is wrong with it and keeps the one before.
@@ -164,8 +164,13 @@ function contrast(names) {
     i.name === name && i.symplectic === "no"));
   return other && other !== names[0] ? [names[0], other] : names.slice(0, 2);
 }
-const seconds = () => // of the orbit, in one second
-  (scene.t_label === "s" ? 1 : 40 * (scene.run.dt[0] || S.dt)) * 2 ** S.speed;
+// Of the orbit, in one second: in real time where that is known; else as much as shows
+// the scene's run, which is many turns, in 400 s, by 40 to 600 of its steps.
+function seconds() {
+  const h = scene.run.dt[0] || S.dt, run = scene.run.t_end - scene.run.t_start;
+  const usual = Math.max(40 * h, Math.min(600 * h, run / 400 || 0));
+  return (scene.t_label === "s" ? 1 : usual) * 2 ** S.speed;
+}
 
 // The longest step that the schemes are stable with, which is the slider's end.
 async function findLimit() {

@@ -87,11 +87,15 @@ await tried("pendulum", "", async (page) => {
   await type("gravity", "-m*g*l*cos(phi) + * 2");
   check(await page.until("/:\\d+:\\d+: error/.test(at('wrong').textContent) && " +
     "/\\^/.test(at('wrong').textContent)"), "no caret");
+  check(await page.evaluate(`(() => { const line = at("wrong").firstChild;
+    return line.scrollWidth <= line.parentNode.clientWidth; })()`), "a sentence is cut");
   await type("gravity", "9*phi^2/2");
   check(await page.until("at('wrong').textContent === '' && /9\\*phi/.test(S.text)"),
     "the formula is not taken");
   await page.evaluate("setPlaying(true)");
   check(await page.until("steps > 5"), "the new one does not move");
+  check(await page.evaluate("playing && at('status').offsetHeight < 2"),
+    "shows words of before while it plays");
   // Hostile ones end in a message, and the page goes on.
   for (const text of ["(".repeat(100000) + "phi" + ")".repeat(100000),
     "sum(i = 1..100000000, cos(i*phi))", "sqrt(-1 - phi^2)", "1/0*phi", "bessel_j0(phi)"]) {
@@ -252,6 +256,12 @@ await tried("kapitza", "", async (page) => {
     "the momentum has no unit");
   await page.evaluate("at('share').click()");
   check(await page.until("at('shared').textContent", 10), "does not say what it shares");
+});
+// A turn takes some seconds, also where steps are short.
+await tried("kepler-0.9", "", async (page) => {
+  check(await page.until("steps > 5"), "nothing moves");
+  const turn = await page.evaluate("2 * Math.PI / seconds()");
+  check(turn > 2 && turn < 8, "a turn takes " + turn + " s");
 });
 // The steps of twenty minutes of frames take no more memory than those of one: what is
 // kept is thinned when it is full, so the heap rises and falls by 0.6 MB.
