@@ -87,6 +87,7 @@ lacks '(src|href)="'
 lacks 'https?://[^w]'
 lacks '[^a-z]nan[^a-z]'
 lacks '<p></p>'
+has '<title>nevh report: .*own\.nevh, pendulum</title>'
 for heading in 'The Hamiltonian' 'Energy errors' 'The motion' 'Phase plane' \
     Portrait 'Order and chaos' 'What accuracy costs' Effects Gradients 'Properties of H'; do
     has "<h2>$heading</h2>"

@@ -381,6 +381,19 @@ static int write_page(const options *o, const char *text) {
     return output_close(&out, TOOL_OK);
 }
 
+/* What tabs and bookmarks say: the scenes. */
+static void begin_page(const options *o, FILE *f) {
+    char *title = text_print("%s", "nevh report");
+    for (size_t i = 1; i < o->operands.count; i++) {
+        char *more = text_print("%s%s%s", title, i > 1 ? ", " : ": ",
+                                o->operands.item[i]);
+        free(title);
+        title = more;
+    }
+    html_head(f, title, o->variants.count > 1);
+    free(title);
+}
+
 int report(const options *o) {
     report_work w = {.given = o, .terminal = -1};
     char *text = NULL;
@@ -396,7 +409,7 @@ int report(const options *o) {
     }
     FILE *f = tool_owned(open_memstream(&text, &size));
     int status = TOOL_OK;
-    html_head(f, "nevh report", o->variants.count > 1);
+    begin_page(o, f);
     w.draws = plot_is_possible();
     w.films =
         (o->operands.count - 1) * (o->variants.count ? o->variants.count : 1);
