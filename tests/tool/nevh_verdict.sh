@@ -28,8 +28,8 @@ compares magnetic --integrators gauss6,rk4 --dt 1.641 --t-end 772.8
 verdicts gauss6=bounded rk4=drifts
 
 # Passages of the pericentre; energy that goes from mode to mode; chaos.  Of the
-# first two the largest error of a run ten times as long is 2.5 and 2.9 times as
-# large, and then stays.
+# first two the largest error of a run ten times as long is 2.3 and 2.9 times as
+# large.
 compares earth-halley --dt 0.05 --t-end 1355.4 \
     --integrators lobatto4,mclachlan-atela4,blanes-moan4,gauss6,rk4
 verdicts 'lobatto4=(bounded|random-walk)' \
