@@ -54,6 +54,22 @@ static estimate estimate_start(const nevh_chaos *c, size_t start, size_t log) {
     return (estimate){rate, sqrt(batch_variance(clock, g, first, rate))};
 }
 
+/* Adds the growth in the first half of a start's time, and in the second. */
+static void add_halves(const nevh_chaos *c, size_t start, size_t log,
+                       double growth[2], double time[2]) {
+    const nevh__chaos_clock *clock = &c->start[start].clock;
+    size_t first = first_bin(c, start);
+    double t = 0, all = 0;
+    for (size_t b = first; b <= clock->bin && b < NEVH__BINS; b++)
+        all += clock->span[b];
+    for (size_t b = first; b <= clock->bin && b < NEVH__BINS; b++) {
+        bool second = t + clock->span[b] / 2 > all / 2;
+        growth[second] += c->start[start].log[log * NEVH__BINS + b];
+        time[second] += clock->span[b];
+        t += clock->span[b];
+    }
+}
+
 /* What linear growth leaves. */
 static double resolution(const nevh_chaos *c, size_t start) {
     return -log(dropped) / ((1 - dropped) * elapsed(c, start));
@@ -111,8 +127,12 @@ static nevh_chaos_verdict verdict_on(const nevh_chaos *c, size_t start) {
     return NEVH_EARLY;
 }
 
+/* The error is the largest of three: starts near by differ, and batches in time;
+   and all of them may come from where chaos is stronger than it is elsewhere,
+   which halves of the run tell. */
 double nevh_chaos_exponent(const nevh_chaos *c, size_t i, double *error) {
     double sum = 0, squares = 0, variance = 0, count = 0;
+    double growth[2] = {0, 0}, time[2] = {0, 0};
     if (error)
         *error = INFINITY;
     if (!c || !c->planned || i >= c->exponents || !(elapsed(c, 0) > 0))
@@ -125,14 +145,17 @@ double nevh_chaos_exponent(const nevh_chaos *c, size_t i, double *error) {
         sum += e.rate;
         squares += e.rate * e.rate;
         variance += e.error * e.error;
+        add_halves(c, k, i, growth, time);
         count++;
     }
     double mean = sum / count;
     double between =
         count > 1 ? fmax(0, squares - sum * mean) / (count - 1) / count : 0;
     double within = variance / (count * count);
+    double change = (growth[1] / time[1] - growth[0] / time[0]) / 2;
+    double largest = fmax(fmax(between, within), change * change);
     if (error)
-        *error = hypot(sqrt(fmax(between, within)), resolution(c, 0));
+        *error = hypot(sqrt(largest), resolution(c, 0));
     return mean;
 }
 

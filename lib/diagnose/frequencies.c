@@ -324,6 +324,23 @@ static double frequency_in(const analysis *whole, analysis *part, size_t i,
     return peak(part, low, whole->w[i] + width);
 }
 
+/* What a line near by is off this one is off, too, by as much as the other is
+   smaller; and two that hardly are two share their distance. */
+static void share_errors(const analysis *a, nevh_spectral_line lines[]) {
+    for (size_t i = 0; i < a->lines; i++)
+        a->before[i] = lines[i].error;
+    for (size_t i = 0; i < a->lines; i++)
+        for (size_t k = 0; k < a->lines; k++) {
+            double apart = fabs(a->w[i] - a->w[k]);
+            double part = lines[k].amplitude / lines[i].amplitude;
+            double off = apart < 1.25 * resolution(a)
+                             ? fmax(a->before[k], apart / 4)
+                             : a->before[k];
+            if (k != i && apart < 3 * resolution(a) && lines[i].amplitude > 0)
+                lines[i].error = fmax(lines[i].error, off * fmin(1, part));
+        }
+}
+
 static bool describe(analysis *a, double h, nevh_spectral_line lines[],
                      size_t *found) {
     analysis half, again;
@@ -343,6 +360,7 @@ static bool describe(analysis *a, double h, nevh_spectral_line lines[],
             a->w[i], amplitude(a, i), remainder(phase, 2 * pi),
             fmax(error, 2e-16 * a->w[i]), second - first};
     }
+    share_errors(a, lines);
     close(&again);
     close(&half);
     return good;

@@ -1,6 +1,7 @@
 /* nevh: what formulas are good for: numbers, tapes, terms.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/formula_inside_private.h"
+#include <math.h>
 #include <stdlib.h>
 
 int nevh__tree_check(const nevh__tree *tree, const nevh__names *names,
@@ -23,8 +24,9 @@ int nevh__tree_number(const nevh__tree *tree, const nevh__names *names,
     nevh__pool pool = {0};
     nevh__expression *e = nevh__resolve(tree, names, at, 0, &pool, error);
     nevh__scope scope = {.error = error};
-    if (e && nevh__scope_finite(&scope, e->number, e))
-        *value = e->number;
+    double number = e ? nevh__expression_value(&scope, e) : NAN;
+    if (e && nevh__scope_finite(&scope, number, e))
+        *value = number;
     nevh__pool_free(&pool);
     return error->status;
 }

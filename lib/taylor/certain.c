@@ -62,8 +62,10 @@ static nevh__wide state(const orbit *o, size_t k) {
     return o->pairs ? o->dd.state[k] : o->quad.state[k];
 }
 
+/* Of a variable so far: where series begin, and now. */
 static double most(const orbit *o, size_t k) {
-    return o->pairs ? o->dd.most[k] : o->quad.most[k];
+    double begun = o->pairs ? o->dd.most[k] : o->quad.most[k];
+    return fmax(begun, fabs((double)state(o, k)));
 }
 
 static size_t count(const orbit *o) {

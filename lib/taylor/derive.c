@@ -5,14 +5,10 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/tape_inside_private.h"
 #include "taylor/graph_private.h"
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #ifdef NEVH_QUADMATH
 #include <quadmath.h>
-#define WIDE(f) f##q
-#else
-#define WIDE(f) f##l
 #endif
 
 typedef struct {
@@ -96,7 +92,8 @@ static int power(nevh__graph *g, int a, int b) {
         nevh__graph_multiply(g, b, nevh__graph_call(g, NEVH__LOG, a, -1)), -1);
 }
 
-/* An operation on numbers; of functions that have no series, of doubles. */
+/* An operation on numbers; functions that have no series are of doubles, and so are
+   all where nothing is certain to more digits. */
 static nevh__wide number_of(unsigned operation, nevh__wide x, nevh__wide y) {
     switch (operation) {
     case NEVH__ADD:
@@ -107,53 +104,55 @@ static nevh__wide number_of(unsigned operation, nevh__wide x, nevh__wide y) {
         return x * y;
     case NEVH__DIVIDE:
         return x / y;
-    case NEVH__POWER:
-        return WIDE(pow)(x, y);
     case NEVH__NEGATE:
         return -x;
+#ifdef NEVH_QUADMATH
+    case NEVH__POWER:
+        return powq(x, y);
     case NEVH__SIN:
     case NEVH__SINCOS:
-        return WIDE(sin)(x);
+        return sinq(x);
     case NEVH__COS:
-        return WIDE(cos)(x);
+        return cosq(x);
     case NEVH__TAN:
-        return WIDE(tan)(x);
+        return tanq(x);
     case NEVH__ASIN:
-        return WIDE(asin)(x);
+        return asinq(x);
     case NEVH__ACOS:
-        return WIDE(acos)(x);
+        return acosq(x);
     case NEVH__ATAN:
-        return WIDE(atan)(x);
+        return atanq(x);
     case NEVH__ATAN2:
-        return WIDE(atan2)(x, y);
+        return atan2q(x, y);
     case NEVH__SINH:
-        return WIDE(sinh)(x);
+        return sinhq(x);
     case NEVH__COSH:
-        return WIDE(cosh)(x);
+        return coshq(x);
     case NEVH__TANH:
-        return WIDE(tanh)(x);
+        return tanhq(x);
     case NEVH__ASINH:
-        return WIDE(asinh)(x);
+        return asinhq(x);
     case NEVH__ACOSH:
-        return WIDE(acosh)(x);
+        return acoshq(x);
     case NEVH__ATANH:
-        return WIDE(atanh)(x);
+        return atanhq(x);
     case NEVH__EXP:
-        return WIDE(exp)(x);
+        return expq(x);
     case NEVH__LOG:
-        return WIDE(log)(x);
+        return logq(x);
     case NEVH__LOG10:
-        return WIDE(log10)(x);
+        return log10q(x);
     case NEVH__SQRT:
-        return WIDE(sqrt)(x);
+        return sqrtq(x);
     case NEVH__CBRT:
-        return WIDE(cbrt)(x);
+        return cbrtq(x);
     case NEVH__HYPOT:
-        return WIDE(hypot)(x, y);
+        return hypotq(x, y);
     case NEVH__ABS:
-        return WIDE(fabs)(x);
+        return fabsq(x);
     case NEVH__FLOOR:
-        return WIDE(floor)(x);
+        return floorq(x);
+#endif
     default:
         return nevh__operation_value((nevh__tape_operation)operation, (double)x,
                                      (double)y);

@@ -70,6 +70,29 @@ TEST_EACH(errors_of_near_lines_hold_the_truth, 16) {
     }
 }
 
+/* The same of two pendulums that beat, with lines beside: half a beat to fifty. */
+TEST_EACH(errors_of_beats_hold_the_truth, 40) {
+    double apart = 0.16, h = 0.1, end = 20 * pow(1.12, _i);
+    size_t count = (size_t)(end / h) + 1, found;
+    nevh_spectral_line lines[LINES];
+    static double x[SAMPLES];
+    count = count < SAMPLES ? count : SAMPLES;
+    for (size_t k = 0; k < count; k++) {
+        double t = h * (double)k;
+        x[k] = 0.26 * cos(3.1 * t) + 0.24 * cos((3.1 + apart) * t) +
+               0.0097 * cos((3.1 - apart) * t) +
+               0.0093 * cos((3.1 + 2 * apart) * t);
+    }
+    ck_assert_int_eq(nevh_frequencies(h, count, x, LINES, lines, &found),
+                     NEVH_OK);
+    for (size_t i = 0; i < found && lines[i].amplitude > 0.15; i++) {
+        double w = lines[i].frequency;
+        double off = fmin(fabs(w - 3.1), fabs(w - 3.1 - apart));
+        ck_assert_msg(off <= 3 * lines[i].error, "until %g: %g off, error %g",
+                      end, off, lines[i].error);
+    }
+}
+
 TEST(a_line_of_one_half_has_no_drift) {
     nevh_spectral_line line;
     size_t found;

@@ -86,6 +86,17 @@ sed -i '1i [parameters]\nm = 0.9\nk = 0.1\nl = 0.7' $work/numbers.nevh
 exits 0 reference $work/numbers.nevh --at 100 --digits 30 --format csv --quiet
 has '^100,x,0\.9603509600125637737820292029'
 
+# One series from rest; and a damped orbit, whose rate is a formula, beside that of
+# a scheme.
+exits 0 reference oscillator --at 2 --digits 16 --format csv --quiet
+has '^2,x,-0\.4161468365471424,16'
+exits 0 reference damped-driven-pendulum --at 2 --digits 16 --format csv --quiet
+phi=$(awk -F, '$2 == "phi" { print $3 }' $work/out)
+exits 0 run damped-driven-pendulum --integrators taylor --tolerance 1e-15 --at 2 \
+    --t-end 2 --format csv --quiet
+tail -n 1 $work/out | awk -F, -v phi=$phi '{ d = $2 - phi; exit !(d * d < 1e-26) }' ||
+    { fails "phi is not $phi"; cat $work/out; }
+
 # Fewer digits of a chaotic orbit, and it says so.
 exits 0 reference double-pendulum-chaotic --at 2,40
 has 'From t = 40 on not all digits'

@@ -61,11 +61,14 @@ static int fail(job *j, const row *r) {
     return TOOL_FAILED;
 }
 
-static bool is_clear(const row *r) {
+/* An exponent is clear where its error has been small twice: errors that are small
+   by chance would end runs early. */
+static bool is_clear(const row *r, int *times) {
     double error, value = nevh_chaos_exponent(r->chaos, 0, &error);
     nevh_chaos_verdict verdict = nevh_chaos_result(r->chaos).verdict;
-    return verdict == NEVH_REGULAR ||
-           (verdict != NEVH_EARLY && error < good_enough * value);
+    bool small = verdict != NEVH_EARLY && error < good_enough * value;
+    *times = small ? *times + 1 : 0;
+    return verdict == NEVH_REGULAR || *times > 1;
 }
 
 /* Whether a run twice as long has room in the budget. */
@@ -77,8 +80,8 @@ static bool may_double(const job *j) {
 static int run_until_clear(const job *j, const row *r) {
     double begin = j->plan->run->t_start, span = j->plan->t_end - begin;
     double most = fmax(span, most_steps * r->dt);
-    int status = nevh_chaos_run(r->chaos, begin + span);
-    while (!status && !is_clear(r) && span < most && may_double(j)) {
+    int times = 0, status = nevh_chaos_run(r->chaos, begin + span);
+    while (!status && !is_clear(r, &times) && span < most && may_double(j)) {
         span = fmin(2 * span, most);
         status = nevh_chaos_run(r->chaos, begin + span);
     }
