@@ -118,7 +118,10 @@ rows | awk -F, -v w="$turning" '$4 == 1 { d = $5/w - 1
 
 exits 0 chaos henon-heiles --integrators blanes-moan4 --dt 0.2 --t-end 500 \
     --starts 1 --format csv --quiet
-test "$(rows | cut -d , -f 8-9)" = "$(sed -n 3p $work/one | cut -d , -f 6-7)" ||
+# The same numbers, which the two print in 17 digits and in the fewest.
+{ rows | cut -d , -f 8-9 && sed -n 3p $work/one | cut -d , -f 6-7; } |
+    awk -F, 'NR == 1 { sali = $1; megno = $2 }
+        END { exit !(NR == 2 && $1 + 0 == sali + 0 && $2 + 0 == megno + 0) }' ||
     fails "does not find what nevh chaos finds"
 
 # Draws: the same for the same seed.
