@@ -130,8 +130,9 @@ static void put_notes(const job *j, page *result) {
     const plan *p = j->plan;
     plan_notes(p, &result->before);
     list_print(&result->before,
-               "Taylor series in quad precision; certain is what runs of two "
-               "orders and two tolerances have in common (%zu series)",
+               "Taylor series of more than double precision; certain is what "
+               "runs of two orders and two tolerances have in common (%zu "
+               "series)",
                nevh_certain_series(j->orbit));
     list_print(&result->before,
                "parameters, starts and times are the doubles nearest to what "
