@@ -256,7 +256,7 @@ bool nevh__variables_hash(nevh__parts *, const nevh__summand *, uint64_t *hash);
 typedef struct {
     nevh__scope scope;
     nevh__tape_builder *builder;
-    bool whole; /* slots are indices in the system */
+    bool whole;    /* slots are indices in the system */
     bool unfolded; /* numbers are operated on by the tape */
     size_t limit, length;
     uint64_t stamp;
