@@ -133,8 +133,10 @@ NEVH_API const nevh_system *nevh_scene_system(nevh_scene *);
    not rounded to doubles: for nevh_certain_new, which then works them out with all
    its digits.  Parameters themselves, starts and friction are doubles.  A step
    takes longer than of the other system.
-   returns  NULL with a message (nevh_scene_message): memory is out, or the scene
-            was not read */
+   returns  borrowed until the scene changes; NULL with a status and a message of
+            the scene: NEVH_ENOMEM; NEVH_EINVAL where a formula is too long with
+            these numbers written out; the scene was not read
+   cost     the first time, that of making all terms anew */
 NEVH_API const nevh_system *nevh_scene_exact_system(nevh_scene *);
 /* The state at t_start, n each; initial velocities are solved for momenta, with
    the effects that are on.

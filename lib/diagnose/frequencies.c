@@ -324,8 +324,9 @@ static double frequency_in(const analysis *whole, analysis *part, size_t i,
     return peak(part, low, whole->w[i] + width);
 }
 
-/* What a line near by is off this one is off, too, by as much as the other is
-   smaller; and two that hardly are two share their distance. */
+/* The error of a line near by counts for this one, too, times the ratio of their
+   amplitudes, at most 1.  Two lines that are hardly apart may both be off by a
+   quarter of their distance. */
 static void share_errors(const analysis *a, nevh_spectral_line lines[]) {
     for (size_t i = 0; i < a->lines; i++)
         a->before[i] = lines[i].error;

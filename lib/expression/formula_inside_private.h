@@ -124,7 +124,7 @@ struct nevh__names {
     nevh__entry *entries;
     size_t count;
     size_t chain[NEVH__CHAINS]; /* by name: the last entry, from 1; 0: none */
-    bool unfolded;
+    bool unfolded;              /* nevh__names_unfold */
 };
 /* meaning: also of p_NAME and v_NAME, whose entry is that of NAME. */
 const nevh__entry *nevh__entry_named(const nevh__names *, const char *name,

@@ -171,9 +171,9 @@ bool nevh__scene_fail_formula(nevh_scene *, const nevh__piece *,
 bool nevh__scene_no_memory(nevh_scene *);
 /* Adds what somebody else said, as further lines. */
 void nevh__scene_quote(nevh_scene *, const char *text);
-/* Says that a word is none of those that are known, with the closest. */
 /* False, and a message, where a part of a list is two names side by side. */
 bool nevh__scene_one_name(nevh_scene *, const nevh__piece *);
+/* Says that a word is none of those that are known, with the closest. */
 bool nevh__scene_fail_word(nevh_scene *, const nevh__piece *, const char *what,
                            const char *word, const char *const known[],
                            size_t count);

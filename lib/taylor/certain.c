@@ -24,9 +24,8 @@ struct nevh_certain {
     size_t n;
     int digits;
     nevh__recurrence *recurrence;
-    bool pairs;
-    orbit fine, coarse;
-    bool parted; /* both, by now */
+    orbit fine, coarse; /* both of pairs, or neither */
+    bool parted;        /* both, by now */
     double t0, *rates;
     nevh__wide *start;
 };
@@ -41,9 +40,9 @@ static void clear(orbit *o) {
     nevh__orbit_clear_quad(&o->quad);
 }
 
-static int start(nevh_certain *c, orbit *o, double tolerance) {
+static int start(nevh_certain *c, orbit *o, bool pairs, double tolerance) {
     clear(o);
-    o->pairs = c->pairs;
+    o->pairs = pairs;
     bool fine = o->pairs
                     ? nevh__orbit_init_dd(&o->dd, c->recurrence, tolerance)
                     : nevh__orbit_init_quad(&o->quad, c->recurrence, tolerance);
@@ -72,19 +71,20 @@ static size_t count(const orbit *o) {
     return o->pairs ? o->dd.count : o->quad.count;
 }
 
-static int start_both(nevh_certain *c) {
+static int start_both(nevh_certain *c, bool pairs) {
     /* Errors of some hundred series add up. */
     double tolerance = pow(10, -c->digits - 4), finest = 2e-33;
-    int status = start(c, &c->coarse, fmax(tolerance, 10 * finest));
-    return status ? status : start(c, &c->fine, fmax(tolerance / 30, finest));
+    int status = start(c, &c->coarse, pairs, fmax(tolerance, 10 * finest));
+    return status ? status
+                  : start(c, &c->fine, pairs, fmax(tolerance / 30, finest));
 }
 
 static int plan(nevh_certain *c, const nevh_system *system) {
     bool damped = nevh_system_friction(system, c->rates);
     c->recurrence =
         nevh__recurrence_new(system, damped ? c->rates : NULL, &c->report);
-    c->pairs = c->digits <= DIGITS_OF_PAIRS;
-    return c->recurrence ? start_both(c) : c->report.status;
+    return c->recurrence ? start_both(c, c->digits <= DIGITS_OF_PAIRS)
+                         : c->report.status;
 }
 
 static int make(nevh_certain *c, const nevh_system *system, double t0,
@@ -156,8 +156,8 @@ static int go_both(nevh_certain *c, double t) {
     return status;
 }
 
-/* Whether a variable has fewer digits than were asked for, which counts where
-   they are not those of a number that passes zero. */
+/* Whether a variable's error is above the digits that were asked for, of the
+   largest that it was. */
 static bool lacks_digits(const nevh_certain *c) {
     bool lacks = false;
     for (size_t k = 0; k < 2 * c->n; k++)
@@ -174,10 +174,9 @@ int nevh_certain_go(nevh_certain *c, double t) {
         return nevh__fail(&c->report, NEVH_EINVAL,
                           "the time %g is not a finite number", t);
     int status = go_both(c, t);
-    if (status || !c->pairs || !lacks_digits(c))
+    if (status || !c->fine.pairs || !lacks_digits(c))
         return status;
-    c->pairs = false;
-    status = start_both(c);
+    status = start_both(c, false);
     return status ? status : go_both(c, t);
 }
 
@@ -196,7 +195,7 @@ double nevh_certain_value(const nevh_certain *c, size_t k) {
 double nevh_certain_error(const nevh_certain *c, size_t k) {
     if (!has(c, k))
         return NAN;
-    double once = c->pairs ? rounding_of_pairs : rounding;
+    double once = c->fine.pairs ? rounding_of_pairs : rounding;
     double floor = once * sqrt((double)count(&c->fine)) * most(&c->fine, k);
     if (c->parted)
         floor = 2 * most(&c->fine, k);

@@ -176,6 +176,8 @@ static int reference_of(const options *o, const plan *p) {
     j.part = 0x1p-60 * fmin(j.end - start, 1e18);
     const nevh_system *exact = nevh_scene_exact_system(p->scene);
     j.folded = !exact;
+    if (!exact && nevh_scene_status(p->scene) == NEVH_ENOMEM)
+        tool_owned(NULL); /* ends */
     j.orbit = tool_owned(nevh_certain_new(
         exact ? exact : p->system, p->run->t_start, p->q, p->p, (int)j.digits));
     page result = {.table = table_new()};
