@@ -168,6 +168,7 @@ libnevh_core_la_SOURCES = \
 	lib/run/save.c \
 	lib/run/run.c \
 	lib/run/branch_private.h \
+	lib/run/fraction_private.h \
 	lib/run/branch.c \
 	lib/run/until.c \
 	lib/run/run_at.c \
@@ -273,7 +274,8 @@ step_texts = integrators/kernels/splitting_step.h \
 	integrators/kernels/tao_step.h \
 	integrators/kernels/adaptive_verlet_step.h \
 	lib/work/pace.h \
-	integrators/kernels/adaptive_step.h
+	integrators/kernels/adaptive_step.h \
+	lib/run/fraction_private.h
 nodist_libnevh_core_la_SOURCES = lib/native/kernel_texts.c
 lib/native/kernel_texts.c: lib/local.mk lib/native/kernel_texts.awk $(step_texts)
 	$(MKDIR_P) lib/native

@@ -101,7 +101,7 @@ NEVH_API double nevh_stepper_gain(const nevh_stepper *, size_t lane);
    says so and ends.  It gives the digits of a stepper that is portable, on a
    machine with the same libm.
    names      of the coordinates, n
-   h, steps   as of nevh_run
+   h, t_end   as of nevh_run_until
    every      steps between rows, at least 1
    functions  the functions alone, for another program
    energy_scale  that errors of the energy are relative to; 0: it prints none
@@ -110,8 +110,8 @@ NEVH_API double nevh_stepper_gain(const nevh_stepper *, size_t lane);
               see nevh_stepper_native */
 typedef struct {
     const char *const *names;
-    double h;
-    size_t steps, every;
+    double h, t_end;
+    size_t every;
     bool functions;
     double energy_scale;
 } nevh_program;

@@ -155,14 +155,11 @@ static bool has_loops(const nevh_work *w) {
 }
 
 /* What is in the way; NULL: nothing that is known yet. */
-static const char *obstacle(const nevh_work *w, bool program) {
-    return of_series(w) ? NULL
-           : family_of(w) == FAMILIES
-               ? program ? NEVH__ONLY_PROGRAMS
-                         : "only splitting, Tao, Runge-Kutta, Nystroem, Gauss, "
-                           "Lobatto and adaptive Verlet steps can be"
-           : w->accounts           ? "the balance of the energy is kept"
-           : w->options->transform ? "the step follows a formula of the user"
+static const char *obstacle(const nevh_work *w) {
+    return of_series(w)               ? NULL
+           : family_of(w) == FAMILIES ? NEVH__ONLY_FAMILIES
+           : w->accounts              ? "the balance of the energy is kept"
+           : w->options->transform    ? "the step follows a formula of the user"
            : w->field->lanes && !nevh__native_by_lane(w)
                ? "orbits side by side have constants of their own"
            : w->width % NEVH__LANES && w->width > 1
@@ -175,7 +172,7 @@ static const char *obstacle(const nevh_work *w, bool program) {
 }
 
 bool nevh__native_write(nevh__writer *text, nevh_work *w) {
-    text->refusal = obstacle(w, text->readable);
+    text->refusal = obstacle(w);
     text->width = w->width;
     text->by_lane = w->field->lanes > 0;
     text->loops = !text->refusal && has_loops(w);
@@ -238,7 +235,7 @@ double nevh__native_saves(nevh_work *w) {
     double seconds = NAN;
     if (w->native)
         return saved_by(w, w->native->characters);
-    if (w->options->native != NEVH_NATIVE_AUTO || obstacle(w, false))
+    if (w->options->native != NEVH_NATIVE_AUTO || obstacle(w))
         return NAN;
     nevh__write_prelude(&text);
     if (nevh__native_write(&text, w) && !text.failed)
@@ -326,9 +323,9 @@ void nevh__native_plan(nevh_work *w, char why[NEVH__WHY_NATIVE]) {
     why[0] = '\0';
     if (w->native || o->native == NEVH_NATIVE_NEVER)
         return;
-    if (obstacle(w, false)) {
+    if (obstacle(w)) {
         if (always)
-            snprintf(why, NEVH__WHY_NATIVE, "%s", obstacle(w, false));
+            snprintf(why, NEVH__WHY_NATIVE, "%s", obstacle(w));
         return;
     }
     if (!always && seconds_foreseen(w) < loading_pays)

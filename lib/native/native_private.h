@@ -27,9 +27,11 @@ typedef size_t (*nevh__native_steps)(const double numbers[], double weights[],
                                      double room[]);
 
 enum { NEVH__WHY_NATIVE = 400 };
-/* Why there is no program: "no program of such steps: ...". */
-#define NEVH__ONLY_PROGRAMS                                                    \
-    "only splitting, Tao, Runge-Kutta, Nystroem, Gauss and Lobatto steps can be"
+/* Why there are none: "no native steps: ..." or "no program of such steps: ...".
+ */
+#define NEVH__ONLY_FAMILIES                                                    \
+    "only splitting, Tao, Runge-Kutta, Nystroem, Gauss, Lobatto and adaptive " \
+    "Verlet steps can be"
 
 typedef struct nevh__native {
     void *library;

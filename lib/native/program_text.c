@@ -1,7 +1,9 @@
 /* nevh: steps as a program that needs nothing but the C library.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "native/native_private.h"
+#include "run/stepper_private.h"
 #include <ctype.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -108,44 +110,56 @@ static bool is_of_use(char **lines, size_t i, size_t count) {
     return false;
 }
 
-/* Where a function ends that begins at line i; i: none does. */
-static size_t end_of_function(char **lines, size_t i, size_t count) {
+/* Where a function ends that begins at line i, or its declaration alone; i: none
+   does. */
+static size_t end_of_function(char **lines, size_t i, size_t count,
+                              bool *declared_only) {
     size_t end = i;
     if (!lines[i] || strncmp(lines[i], "static ", 7) != 0 ||
-        !strchr(lines[i], '('))
+        !strchr(lines[i], '(') || strchr(lines[i], '='))
         return i;
     while (end < count && lines[end] && !strchr(lines[end], '{') &&
            !strchr(lines[end], ';'))
         end++;
-    if (end == count || !lines[end] || !strchr(lines[end], '{') ||
-        strchr(lines[i], '='))
+    if (end == count || !lines[end])
         return i;
-    while (end < count && lines[end][0] != '}')
+    *declared_only = !strchr(lines[end], '{');
+    if (*declared_only)
+        return end + 1;
+    while (end < count && (!lines[end] || lines[end][0] != '}'))
         end++;
-    return end < count ? end : i;
+    return end < count ? end + 1 : i;
 }
 
-/* A function that no other line names goes, and the comment before it. */
-static void drop_function(char **lines, size_t i, size_t count) {
-    size_t end = end_of_function(lines, i, count);
+/* A function that no other line names goes, and the comment before it; whether it
+   went. */
+static bool drop_function(char **lines, size_t i, size_t count) {
+    bool declared_only, other_declared_only;
+    size_t end = end_of_function(lines, i, count, &declared_only);
     if (end == i)
-        return;
+        return false;
     const char *name = strchr(lines[i], '('), *after = name;
-    if (strncmp(name, "(double t0", 10) == 0) /* advance */
-        return;
+    if (strncmp(name, "(double t0", 10) == 0 ||
+        strncmp(name, "(double *t", 10) == 0) /* advance */
+        return false;
     while (name > lines[i] && is_word(name[-1]))
         name--;
-    for (size_t k = 0; k < count; k++)
-        if ((k < i || k > end) && lines[k] &&
-            has_word(lines[k], name, (size_t)(after - name)))
-            return;
-    while (end + 1 > i)
-        lines[end--] = NULL;
+    for (size_t k = 0; k < count; k++) {
+        if ((k >= i && k < end) || !lines[k] ||
+            !has_word(lines[k], name, (size_t)(after - name)))
+            continue;
+        if (end_of_function(lines, k, count, &other_declared_only) == k ||
+            !other_declared_only || declared_only)
+            return false;
+    }
+    while (end > i)
+        lines[--end] = NULL;
     bool comment = i > 0 && lines[i - 1] && strstr(lines[i - 1], "*/");
     while (comment && i-- > 0) {
-        comment = strncmp(lines[i], "/*", 2) != 0;
+        comment = lines[i] && strncmp(lines[i], "/*", 2) != 0;
         lines[i] = NULL;
     }
+    return true;
 }
 
 /* Values that only other derivatives would need are left out. */
@@ -154,8 +168,12 @@ static bool write_used(nevh__writer *w, char *text) {
     char **lines = split_lines(text, &count);
     if (!lines)
         return false;
-    for (size_t i = count; i-- > 0;)
-        drop_function(lines, i, count);
+    bool dropped = true;
+    while (dropped) {
+        dropped = false;
+        for (size_t i = count; i-- > 0;)
+            dropped |= drop_function(lines, i, count);
+    }
     for (size_t i = count; i-- > 0;)
         if (!is_of_use(lines, i, count))
             lines[i] = NULL;
@@ -168,6 +186,36 @@ static bool write_used(nevh__writer *w, char *text) {
     free(lines);
     return true;
 }
+
+/* What steps lead from T0 to T_END; where their time is not their own, the last
+   one is shorter or h fits. */
+static const char run_of_own_time[] =
+    "/* The run. */\n"
+    "static const double T0 = $1, T_END = $2, STEP = $3;\n\n"
+    "/* Takes the next step; *t goes along.  Returns whether it could. */\n"
+    "static bool next_step(size_t taken, double *t, double *q, double *p,\n"
+    "                      double *memory) {\n"
+    "    (void)taken;\n"
+    "    return advance(t, T_END, STEP, 1, q, p, memory) == 1;\n}\n\n";
+static const char run_of_steps[] =
+    "/* The run: so many steps$4 lead from T0 to T_END. */\n"
+    "static const double T0 = $1, T_END = $2, STEP = $3;\n"
+    "static const size_t STEPS = $5;\n\n"
+    "/* Takes the step after so many; *t goes along.  Returns whether it could. "
+    "*/\n"
+    "static bool next_step(size_t taken, double *t, double *q, double *p,\n"
+    "                      double *memory) {\n";
+static const char whole_steps[] =
+    "    if (advance(T0, STEP, taken, 1, q, p, memory) == 0)\n"
+    "        return false;\n"
+    "    *t = taken + 1 < STEPS ? T0 + (double)(taken + 1) * STEP : T_END;\n"
+    "    return true;\n}\n\n";
+static const char steps_and_rest[] =
+    "    if (taken == STEPS ? advance(*t, T_END - *t, 0, 1, q, p, memory) == 0\n"
+    "                       : advance(T0, STEP, taken, 1, q, p, memory) == 0)\n"
+    "        return false;\n"
+    "    *t = taken < STEPS ? T0 + (double)(taken + 1) * STEP : T_END;\n"
+    "    return true;\n}\n\n";
 
 /* What of nevh's row the steps alone make: errors of the energy. */
 static const char energy_row[] =
@@ -183,16 +231,13 @@ static const char energy_row[] =
     "/* Errors of the energy after each step, relative to a scale: the largest,\n"
     "   the root of the mean square, the last, and the slope of a straight line\n"
     "   through all of them, a row as nevh compare prints it. */\n"
-    "static int print_energy(double t0, double h, size_t steps, double *q,\n"
-    "                        double *p, double *memory) {\n"
-    "    const double scale = $1, start = energy(t0, q, p);\n"
-    "    double error = 0, most = 0, squares = 0;\n"
+    "static int print_energy(double *q, double *p, double *memory) {\n"
+    "    const double scale = $1, start = energy(T0, q, p);\n"
+    "    double t = T0, error = 0, most = 0, squares = 0;\n"
     "    double mean_t = 0, mean_error = 0, tt = 0, te = 0;\n"
-    "    for (size_t i = 0; i <= steps; i++) {\n"
-    "        double t = t0 + (double)i * h;\n"
-    "        double dt = t - mean_t, count = (double)(i + 1);\n"
-    "        if (i > 0 && advance(t0, h, i - 1, 1, q, p, memory) == 0)\n"
-    "            return fail(t0 + (double)(i - 1) * h);\n"
+    "    size_t steps = 0;\n"
+    "    for (;; steps++) {\n"
+    "        double dt = t - mean_t, count = (double)(steps + 1);\n"
     "        error = (energy(t, q, p) - start) / scale;\n"
     "        most = fmax(most, fabs(error));\n"
     "        squares += error * error;\n"
@@ -200,11 +245,15 @@ static const char energy_row[] =
     "        mean_error += (error - mean_error) / count;\n"
     "        tt += dt * (t - mean_t);\n"
     "        te += dt * (error - mean_error);\n"
+    "        if (t == T_END)\n"
+    "            break;\n"
+    "        if (!next_step(steps, &t, q, p, memory))\n"
+    "            return fail(t);\n"
     "    }\n"
     "    puts(\"integrator,gradient,dt,steps,max_energy_error,\"\n"
     "         \"rms_energy_error,final_energy_error,energy_drift,sweeps\");\n"
     "    printf(\"$2,$3\");\n"
-    "    print_number(h);\n"
+    "    print_number(STEP);\n"
     "    printf(\",%zu\", steps);\n"
     "    print_number(most);\n"
     "    print_number(sqrt(squares / (double)(steps + 1)));\n"
@@ -221,33 +270,53 @@ static const char trajectory[] =
     "    EACH(k, 1, DOF)\n"
     "        printf(\",%.17g\", p[k]);\n"
     "    puts(\"\");\n}\n\n"
-    "/* Rows of t, q and p, `every` steps apart, and the last one. */\n"
-    "static int print_trajectory(double t0, double h, size_t steps, size_t "
-    "every,\n"
-    "                            double *q, double *p, double *memory) {\n"
-    "    size_t taken = 0;\n"
-    "$1"
-    "    print_state(t0, q, p);\n"
-    "    while (taken < steps) {\n"
-    "        size_t next = steps - taken < every ? steps - taken : every;\n"
-    "        size_t done = advance(t0, h, taken, next, q, p, memory);\n"
-    "        taken += done;\n"
-    "        if (done < next)\n"
-    "            return fail(t0 + (double)taken * h);\n"
-    "        print_state(t0 + (double)taken * h, q, p);\n"
+    "/* Rows of t, q and p, some steps apart, and the last one. */\n"
+    "static int print_trajectory(double *q, double *p, double *memory) {\n"
+    "    const size_t every = $1;\n"
+    "    double t = T0;\n"
+    "$2"
+    "    print_state(t, q, p);\n"
+    "    for (size_t steps = 1; t != T_END; steps++) {\n"
+    "        if (!next_step(steps - 1, &t, q, p, memory))\n"
+    "            return fail(t);\n"
+    "        if (steps % every == 0 || t == T_END)\n"
+    "            print_state(t, q, p);\n"
     "    }\n"
     "    return 0;\n}\n\n";
 
-static void write_fail(nevh__writer *w, bool implicit) {
+static void write_run(nevh__writer *w, const nevh_work *work,
+                      const nevh_program *p) {
+    double t0 = work->options->t, h = p->h, steps;
+    char begin[NEVH__NAME], end[NEVH__NAME], step[NEVH__NAME];
+    bool whole = nevh__whole_steps(p->t_end - t0, &h, &steps);
+    if (w->own_time)
+        h = p->h;
+    nevh__number_text(t0, begin);
+    nevh__number_text(p->t_end, end);
+    nevh__number_text(h, step);
+    char count[NEVH__NAME];
+    snprintf(count, sizeof count, "%.0f", steps);
+    nevh__write_filled(w, w->own_time ? run_of_own_time : run_of_steps,
+                       (const char *const[]){begin, end, step,
+                                             whole ? "" : " and a shorter one",
+                                             count});
+    if (!w->own_time)
+        nevh__write(w, "%s", whole ? whole_steps : steps_and_rest);
+}
+
+static void write_fail(nevh__writer *w) {
     nevh__write(w,
                 "static int fail(double t) {\n"
                 "    fprintf(stderr,\n            \"the step from t = %%.9g "
                 "%s\\n\",\n            t);\n"
                 "    return 1;\n}\n\n",
-                implicit
+                w->stages
                     ? "cannot be taken: fixed-point iteration does not \"\n"
                       "            \"get to the stages' slopes; take a "
                       "smaller step"
+                : w->own_time
+                    ? "would take no time, or leads to no finite numbers; take "
+                      "a \"\n            \"smaller step"
                     : "leads to no finite numbers");
 }
 
@@ -279,13 +348,15 @@ static void write_titles(nevh__writer *w, size_t n, const char *const names[]) {
     nevh__write(w, "\\n\", stdout);\n");
 }
 
-static void write_trajectory(nevh__writer *w, size_t n,
-                             const char *const names[]) {
+static void write_trajectory(nevh__writer *w, size_t n, const nevh_program *p) {
     nevh__writer titles = {0};
-    write_titles(&titles, n, names);
+    char every[NEVH__NAME];
+    snprintf(every, sizeof every, "%zu", p->every);
+    write_titles(&titles, n, p->names);
     w->failed |= titles.failed;
     if (!titles.failed)
-        nevh__write_filled(w, trajectory, (const char *const[]){titles.text});
+        nevh__write_filled(w, trajectory,
+                           (const char *const[]){every, titles.text});
     nevh__writer_free(&titles);
 }
 
@@ -293,11 +364,9 @@ static void write_main(nevh__writer *w, const nevh_work *work,
                        const nevh_program *p) {
     const nevh_options *o = work->options;
     bool energy = p->energy_scale > 0;
-    char t[NEVH__NAME], h[NEVH__NAME];
-    nevh__number_text(o->t, t);
-    nevh__number_text(p->h, h);
-    write_fail(w, w->stages);
-    write_trajectory(w, work->n, p->names);
+    write_run(w, work, p);
+    write_fail(w);
+    write_trajectory(w, work->n, p);
     if (energy)
         write_energy_row(w, work, p->energy_scale);
     nevh__write(w, "int main(%s) {\n    ",
@@ -307,18 +376,13 @@ static void write_main(nevh__writer *w, const nevh_work *work,
     nevh__write(w, "    ");
     nevh__write_numbers(w, w->loops ? "static double p" : "double p", work->n,
                         o->p);
-    nevh__write(w,
-                "    %sdouble memory[MEMORY] = {0};\n"
-                "    const double t0 = %s, h = %s;\n"
-                "    const size_t steps = %zu, every = %zu;\n",
-                w->loops ? "static " : "", t, h, p->steps, p->every);
+    nevh__write(w, "    %sdouble memory[MEMORY] = {0};\n",
+                w->loops ? "static " : "");
     if (energy)
         nevh__write(w, "    if (arguments > 1 && strcmp(argument[1], "
                        "\"energy\") == 0)\n"
-                       "        return print_energy(t0, h, steps, q, p, "
-                       "memory);\n");
-    nevh__write(w, "    return print_trajectory(t0, h, steps, every, q, p, "
-                   "memory);\n}\n");
+                       "        return print_energy(q, p, memory);\n");
+    nevh__write(w, "    return print_trajectory(q, p, memory);\n}\n");
 }
 
 static void write_comment(nevh__writer *w, const nevh_work *work,
@@ -335,7 +399,11 @@ static void write_comment(nevh__writer *w, const nevh_work *work,
                 "%s.  Sums are compensated:\n   what rounding has lost is "
                 "added to the next step.\n\n   %s */\n",
                 work->n > 8 ? " and so on" : "",
-                p->functions
+                p->functions && work->integrator->own_time
+                    ? "advance takes up to `steps` steps of h, and returns how "
+                      "many; time goes its own way, and ends at t_end;\n   "
+                      "double memory[MEMORY] is its memory, zeros at the start."
+                : p->functions
                     ? "advance takes `steps` steps of h, the first "
                       "being number `from`, and returns how many;\n   "
                       "double memory[MEMORY] is its memory, zeros at the start."
@@ -370,7 +438,7 @@ static bool write_body(nevh__writer *body, nevh_work *work,
         !nevh__native_write(body, work))
         return false;
     nevh__write(body, "enum { MEMORY = %zu };\n\n",
-                work->memory_rows + body->stages);
+                work->memory_rows + body->stages + body->own_time);
     if (!p->functions && p->energy_scale > 0 &&
         !nevh__write_energy(body, work->field))
         return false;

@@ -322,7 +322,7 @@ bool nevh__write_series(nevh__writer *text, nevh_work *w) {
     a.r = nevh__taylor_recurrence(w, &a.order);
     const nevh__recurrence *r = a.r;
     if (text->readable)
-        text->refusal = NEVH__ONLY_PROGRAMS;
+        text->refusal = NEVH__ONLY_FAMILIES;
     else if (r->values > MOST_VALUES || r->lanes > MOST_LANES)
         text->refusal = "H has too many operations for its series to be";
     if (text->refusal)

@@ -43,6 +43,7 @@ typedef struct {
                             readers one after the other */
     bool loops;        /* over instances; the state is rows of vectors */
     bool takes_steps;  /* several at once: there is a function take_steps */
+    bool own_time;     /* steps of a program take times of their own */
     size_t rows;       /* of DOF vectors, for them */
     bool readable;     /* numbers stand in the text, functions are libm's */
     size_t n;
@@ -114,6 +115,7 @@ extern const char *const nevh__tao_step_text[];
 extern const char *const nevh__adaptive_verlet_step_text[];
 extern const char *const nevh__pace_text[];
 extern const char *const nevh__adaptive_step_text[];
+extern const char *const nevh__fraction_text[];
 
 /* A formula at one point, or at eight of them side by side. */
 typedef struct nevh__formula_text {

@@ -1,14 +1,12 @@
 /* nevh: a step that branches off from the main orbit to a given time.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/branch_private.h"
-#include <float.h>
-#include <gsl/gsl_errno.h>
+#include "run/fraction_private.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 static const double close_enough = 1e-9; /* of the time of a step */
-enum { MOST_TRIALS = 100 };
 
 static size_t state_size(const nevh_stepper *s) {
     return s->work.size * sizeof(double);
@@ -18,20 +16,11 @@ static size_t memory_size(const nevh_stepper *s) {
     return s->rows * s->work.width * sizeof(double);
 }
 
-/* GSL aborts where memory is out: ask first for more than it takes. */
-static bool memory_suffices(void) {
-    void *trial = nevh__array(64, sizeof(double));
-    free(trial);
-    return trial != NULL;
-}
-
 int nevh__branch_open(nevh__branch *b, nevh_stepper *s) {
     size_t size = s->work.size, memory = s->rows * s->work.width;
     b->stepper = s;
     b->q = nevh__array(4 * size + memory, sizeof *b->q);
-    if (b->q && s->own_time && memory_suffices())
-        b->solver = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
-    if (!b->q || (s->own_time && !b->solver))
+    if (!b->q)
         return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
     b->p = b->q + size;
     b->q_end = b->p + size;
@@ -41,8 +30,6 @@ int nevh__branch_open(nevh__branch *b, nevh_stepper *s) {
 }
 
 void nevh__branch_close(nevh__branch *b) {
-    if (b->solver)
-        gsl_root_fsolver_free(b->solver);
     free(b->q);
 }
 
@@ -78,33 +65,17 @@ int nevh__branch_measure(nevh__branch *b) {
     return status;
 }
 
-/* How far the time after a step of `fraction` of h is from the end, as a part
-   of the main orbit's step.  The ends of the bracket are known. */
-static double miss(double fraction, void *data) {
-    nevh__branch *b = data;
-    double due = (b->t_end - b->t) / b->elapsed;
-    if (b->status || fraction == 0)
-        return -due;
-    if (fraction == 1)
-        return 1 - due;
-    b->status = try_step(b, fraction * b->h);
-    return b->status ? -due : b->stepper->work.elapsed / b->elapsed - due;
-}
+struct nevh__fraction_owner {
+    nevh__branch *branch;
+    double due;
+    int status;
+};
 
-/* The fraction of h after which the time is t_end. */
-static double find_fraction(nevh__branch *b) {
-    gsl_function f = {miss, b};
-    double fraction = (b->t_end - b->t) / b->elapsed;
-    int status = gsl_root_fsolver_set(b->solver, &f, 0, 1);
-    for (int i = 0; !status && !b->status && i < MOST_TRIALS; i++) {
-        status = gsl_root_fsolver_iterate(b->solver);
-        fraction = gsl_root_fsolver_root(b->solver);
-        double low = gsl_root_fsolver_x_lower(b->solver);
-        double high = gsl_root_fsolver_x_upper(b->solver);
-        if (high - low <= 4 * DBL_EPSILON * fraction)
-            break;
-    }
-    return fraction;
+NEVH__INLINE double nevh__fraction_miss(struct nevh__fraction_owner *o,
+                                        double fraction) {
+    nevh__branch *b = o->branch;
+    o->status = try_step(b, fraction * b->h);
+    return o->status ? NAN : b->stepper->work.elapsed / b->elapsed - o->due;
 }
 
 int nevh__branch_step(nevh__branch *b) {
@@ -112,8 +83,11 @@ int nevh__branch_step(nevh__branch *b) {
     double due = b->t_end - b->t;
     if (!s->own_time || due / b->elapsed >= 1)
         return try_step(b, b->h);
-    double fraction = find_fraction(b);
-    int status = b->status ? b->status : try_step(b, fraction * b->h);
+    struct nevh__fraction_owner owner = {b, due / b->elapsed, NEVH_OK};
+    double fraction = nevh__fraction_find(&owner, owner.due);
+    int status = owner.status;
+    if (!status)
+        status = try_step(b, fraction * b->h);
     if (status || fabs(s->work.elapsed - due) <= close_enough * fabs(due))
         return status;
     return nevh__fail(&s->report, NEVH_EMAXITER,

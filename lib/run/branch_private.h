@@ -4,7 +4,6 @@
 #define NEVH_BRANCH_PRIVATE_H
 
 #include "run/stepper_private.h"
-#include <gsl/gsl_roots.h>
 
 /* The way from a state of the main orbit to a time before its next step
    ends. */
@@ -15,8 +14,6 @@ typedef struct {
     double elapsed;         /* by a step of h */
     double *q, *p, *memory; /* the main orbit's */
     double *q_end, *p_end;  /* after nevh__branch_step */
-    int status;
-    gsl_root_fsolver *solver; /* NULL: times are not the scheme's own */
 } nevh__branch;
 
 /* Zeros before; closed also where it failed. */

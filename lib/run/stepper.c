@@ -349,6 +349,8 @@ char *nevh_stepper_program(nevh_stepper *s, const nevh_program *as) {
                    "a program needs a state to start from, and rows");
         return NULL;
     }
+    if (!as->functions && nevh__span_check(s, s->options.t, as->h, as->t_end))
+        return NULL;
     if (s->friction)
         text.refusal = "friction is put around its steps";
     else if (nevh__write_program(&text, &s->work, as)) {

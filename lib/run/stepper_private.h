@@ -55,6 +55,9 @@ int nevh__run_steps(nevh_stepper *, double t0, double h, size_t steps,
                     bool ends, double q[], double p[],
                     const nevh_observer observers[], size_t count);
 void nevh__end_run(nevh_stepper *, const double q[], const double p[]);
+/* NEVH_OK where some number of steps leads from t0 to t_end; not where one of the
+   three is no number. */
+int nevh__span_check(nevh_stepper *, double t0, double h, double t_end);
 /* Of a run of fixed steps: whether whole steps fill the span, h then being
    adjusted to it; else the whole ones before the rest. */
 bool nevh__whole_steps(double span, double *h, double *steps);

@@ -124,8 +124,7 @@ static int run_fixed(nevh__branch *b, double h, double q[], double p[],
     return branch_off(b, b->t_end - b->t, q, p, observers, count);
 }
 
-/* Also where h or a time is not a number. */
-static int check(nevh_stepper *s, double t0, double h, double t_end) {
+int nevh__span_check(nevh_stepper *s, double t0, double h, double t_end) {
     double steps = (t_end - t0) / h;
     if (steps >= 0 && steps < 0x1p53)
         return NEVH_OK;
@@ -141,7 +140,7 @@ int nevh_run_until(nevh_stepper *s, double t0, double h, double t_end,
     if (status)
         return status;
     nevh__branch b = {.t = t0, .t_end = t_end};
-    status = check(s, t0, h, t_end);
+    status = nevh__span_check(s, t0, h, t_end);
     if (!status)
         status = nevh__branch_open(&b, s);
     if (status)

@@ -152,7 +152,7 @@ TEST(series_have_no_program) {
     setup s;
     const char *const names[] = {"x", "y"};
     set_up(&s, scenes[0], 1e-9, 1);
-    nevh_program program = {.names = names, .h = 0.1, .steps = 3, .every = 1};
+    nevh_program program = {.names = names, .h = 0.1, .t_end = 0.3, .every = 1};
     ck_assert_ptr_null(nevh_stepper_program(s.stepper[0], &program));
     assert_says(nevh_stepper_message(s.stepper[0]), "only splitting");
     tear_down(&s);

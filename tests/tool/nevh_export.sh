@@ -40,6 +40,11 @@ if ${CC:-cc} --version >/dev/null 2>&1; then
     has 'springs: 999 times, the first of x_2, x_1'
     test "$(wc -l <$work/out)" -lt 500 || fails 'is long'
     same henon-heiles 2 symplectic-euler-b central2 0.05 10 10
+    # The end is no whole number of steps away.
+    same pendulum 1 verlet central4 0.03 10 50
+    same double-pendulum 2 gauss4 central4 0.07 10 20
+    same kepler 2 adaptive-verlet central4 0.05 20 20
+    same pendulum 1 naive-adaptive-verlet exact 0.05 20 40
     same double-pendulum 2 gauss6 central4 0.01 2 20
     # Of a scene whose names are meant to get out of a comment or a string.
     cat >$work/hostile.nevh <<'END'
@@ -78,6 +83,20 @@ END
             { fails 'does not compile'; head -n 5 $work/err; }
     done
     # Functions for another program.
+    exits 0 export kepler --header --integrators adaptive-verlet -o $work/steps.h
+    cat >$work/own.c <<'END'
+#include "steps.h"
+int main(void) {
+    double t = 0, q[] = {1, 0}, p[] = {0, 1}, memory[MEMORY] = {0};
+    size_t done = advance(&t, 1.2, 0.05, 10, q, p, memory);
+    if (done != 10 || !(t > 0.4 && t < 0.6))
+        return 1;
+    done = advance(&t, 1.2, 0.05, 100, q, p, memory);
+    return done == 100 || t != 1.2 || fabs(q[0] - cos(1.2)) > 1e-3;
+}
+END
+    ${CC:-cc} -Wall -Wextra -Werror -o $work/own $work/own.c -lm && $work/own ||
+        fails 'writes functions that do not work'
     exits 0 export pendulum --header --integrators verlet -o $work/steps.h
     cat >$work/own.c <<'END'
 #include <stdio.h>
@@ -94,9 +113,7 @@ END
         fails 'writes functions that do not work'
 fi
 exits 2 export pendulum --integrators gonzalez
-says 'no program of such steps: only splitting, Tao, Runge-Kutta, Nystroem, Gauss and Lobatto steps can be'
-exits 2 export kepler --integrators adaptive-verlet
-says 'no program of such steps: only splitting, Tao, Runge-Kutta, Nystroem, Gauss and Lobatto steps can be'
+says 'no program of such steps: only splitting, Tao, Runge-Kutta, Nystroem, Gauss, Lobatto and adaptive Verlet steps can be'
 exits 2 export damped-driven-pendulum --integrators midpoint
 says 'no program of such steps: friction is put around its steps'
 exits 2 export no-such-scene

@@ -184,4 +184,8 @@ tr '\n' ' ' <$work/out | tr -s ' ' |
     grep -q "rk4 .* at the end it is far above blanes-moan4's" ||
     { fails "tells of first steps by the whole run"; cat $work/out; }
 
+# A run that is told unstable by what follows it says so.
+exits 0 compare double-pendulum --integrators tao4 --dt 0.03 --t-end 1 --format csv
+has ',unstable: after t = 1,'
+
 exit $status

@@ -52,6 +52,7 @@ nevh_energy *row_energy(const plan *p, const row *r, const nevh_stepper *s) {
     return energy;
 }
 
+/* The run itself, or what follows it. */
 static void unstable_since(work *w) {
     bool balance = w->plan->balance;
     nevh_stepper *s = row_stepper(w->plan, w->row, balance);
@@ -60,7 +61,10 @@ static void unstable_since(work *w) {
     double stopped;
     run(w, s, &(nevh_observer){stop_when_unstable, &unstable, 1}, 1, &stopped);
     free(w->row->status);
-    w->row->status = text_print("unstable: since t = %.9g", unstable.since);
+    w->row->status =
+        isnan(unstable.since)
+            ? text_print("unstable: after t = %.9g", w->plan->t_end)
+            : text_print("unstable: since t = %.9g", unstable.since);
     nevh_energy_free(unstable.energy);
     row_stepper_keep(w->plan, w->row, balance, s);
 }

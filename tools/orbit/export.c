@@ -4,16 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Steps to t_end: h is adjusted where that is a whole number of them, but for
-   roundings, as nevh run does. */
-static void choose_steps(const plan *p, nevh_program *as) {
-    double span = p->t_end - p->run->t_start, count = span / p->dt[0];
-    double whole = round(count);
-    bool fits = whole >= 1 && fabs(count - whole) <= 1e-9 * whole;
-    as->steps = (size_t)(fits ? whole : floor(count));
-    as->h = fits ? span / whole : p->dt[0];
-}
-
 static int write_text(const options *o, const char *text) {
     output out;
     if (output_open(&out, o->file))
@@ -26,11 +16,12 @@ static int export_plan(const options *o, const plan *p) {
     const char *name, **names = tool_allocate(p->n, sizeof *names);
     nevh_stepper *s = plan_first(p, &name);
     nevh_program as = {.names = names,
+                       .h = p->dt[0],
+                       .t_end = p->t_end,
                        .every = o->every ? o->every : 1,
                        .functions = o->header};
     for (size_t k = 0; k < p->n; k++)
         names[k] = nevh_scene_coordinate(p->scene, k);
-    choose_steps(p, &as);
     if (!p->friction && !p->balance)
         as.energy_scale = plan_energy_scale(p);
     char *text = s ? nevh_stepper_program(s, &as) : NULL;
