@@ -2,7 +2,9 @@
    side by side against those of the tape.
 
    The loops have formulas, gradient and scheme inlined by the compiler, -O3
-   -march=native, without compensated sums.  Runs are interleaved; medians.
+   -march=native; once with plain sums, and once with compensated ones, as nevh's
+   steps have them: what a step loses to rounding begins the next one.  Runs are
+   interleaved; medians.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include <math.h>
 #include <nevh/nevh.h>
@@ -64,6 +66,44 @@ LOOP(pendulum_loop, 1, pendulum_force)
 LOOP(kepler_loop, 2, kepler_force)
 LOOP(henon_loop, 2, henon_force)
 
+/* What rounding loses of a + b. */
+static inline double roundoff(double sum, double a, double b) {
+    return fabs(a) >= fabs(b) ? b - (sum - a) : a - (sum - b);
+}
+
+/* The same with compensated sums. */
+#define COMPENSATED(name, n, force)                                            \
+    static void name(const scheme *s, double h, size_t steps, double q[],      \
+                     double p[]) {                                             \
+        double x[n] = {0}, v[n] = {0}, dx[n] = {0}, dv[n] = {0}, f[n];         \
+        force(q, f);                                                           \
+        for (size_t i = 0; i < steps; i++) {                                   \
+            for (int k = 0; k < (n); k++) {                                    \
+                dv[k] -= s->w[0] * h * f[k];                                   \
+                v[k] = p[k] + dv[k];                                           \
+            }                                                                  \
+            for (size_t j = 1; j + 1 < s->count; j += 2) {                     \
+                for (int k = 0; k < (n); k++) {                                \
+                    dx[k] += s->w[j] * h * v[k];                               \
+                    x[k] = q[k] + dx[k];                                       \
+                }                                                              \
+                force(x, f);                                                   \
+                for (int k = 0; k < (n); k++) {                                \
+                    dv[k] -= s->w[j + 1] * h * f[k];                           \
+                    v[k] = p[k] + dv[k];                                       \
+                }                                                              \
+            }                                                                  \
+            for (int k = 0; k < (n); k++) {                                    \
+                dx[k] = roundoff(x[k], q[k], dx[k]);                           \
+                dv[k] = roundoff(v[k], p[k], dv[k]);                           \
+                q[k] = x[k], p[k] = v[k];                                      \
+            }                                                                  \
+        }                                                                      \
+    }
+COMPENSATED(pendulum_compensated, 1, pendulum_force)
+COMPENSATED(kepler_compensated, 2, kepler_force)
+COMPENSATED(henon_compensated, 2, henon_force)
+
 static const scheme verlet = {{0.5, 1, 0.5}, 3};
 /* As many stages as rkn11b has; what they weigh does not change the time. */
 static scheme eleven(void) {
@@ -76,21 +116,24 @@ static scheme eleven(void) {
 typedef void loop(const scheme *, double, size_t, double[], double[]);
 typedef struct {
     const char *name, *text;
-    loop *by_hand;
+    loop *by_hand[2];
     double h;
 } subject;
 static const subject subjects[] = {
     {"pendulum",
      "[coordinates]\nphi = 2\n[effects]\nT = p_phi^2/2\nV = -9.8*cos(phi)\n",
-     pendulum_loop, 0.01},
+     {pendulum_loop, pendulum_compensated},
+     0.01},
     {"kepler",
      "[coordinates]\nx = 0.4, 0\ny = 0, 2\n[effects]\n"
      "T = (p_x^2 + p_y^2)/2\nV = -1/sqrt(x^2 + y^2)\n",
-     kepler_loop, 0.01},
+     {kepler_loop, kepler_compensated},
+     0.01},
     {"henon-heiles",
      "[coordinates]\nx = 0, 0.3\ny = 0.1, 0\n[effects]\n"
      "T = (p_x^2 + p_y^2)/2\nV = (x^2 + y^2)/2 + x^2*y - y^3/3\n",
-     henon_loop, 0.01}};
+     {henon_loop, henon_compensated},
+     0.01}};
 
 static int by_size(const void *a, const void *b) {
     double x = *(const double *)a, y = *(const double *)b;
@@ -123,30 +166,33 @@ static void compare(const subject *x, const char *name, const scheme *hand) {
                                             "complex-step"};
     nevh_scene *scene = nevh_scene_parse(x->name, x->text);
     run tape, native[4];
-    double q[DOF], p[DOF], time[ROUNDS];
-    nevh_scene_start(scene, q, p);
+    double q[2][DOF], p[2][DOF], time[2][ROUNDS];
+    for (int c = 0; c < 2; c++)
+        nevh_scene_start(scene, q[c], p[c]);
     begin(&tape, scene, name, "exact", NEVH_NATIVE_NEVER);
     for (int g = 0; g < 4; g++)
         begin(&native[g], scene, name, gradients[g], NEVH_NATIVE_ALWAYS);
     for (int i = 0; i < ROUNDS; i++) {
-        double t = seconds();
-        x->by_hand(hand, x->h, STEPS, q, p);
-        time[i] = seconds() - t;
+        for (int c = 0; c < 2; c++) {
+            double t = seconds();
+            x->by_hand[c](hand, x->h, STEPS, q[c], p[c]);
+            time[c][i] = seconds() - t;
+        }
         for (int g = 0; g < 5; g++) {
             run *r = g < 4 ? &native[g] : &tape;
-            t = seconds();
+            double t = seconds();
             nevh_run(r->s, 0, x->h, STEPS, r->q, r->p, NULL, 0);
             r->time[i] = seconds() - t;
         }
     }
-    double own = median(time), unit = 1e9 / STEPS;
-    printf("%s,%s,%.1f,%.1f", x->name, name, own * unit,
-           median(tape.time) * unit);
+    double own = median(time[0]), compensated = median(time[1]);
+    double exact = median(native[0].time), unit = 1e9 / STEPS;
+    printf("%s,%s,%.1f,%.1f,%.1f", x->name, name, own * unit,
+           compensated * unit, median(tape.time) * unit);
     for (int g = 0; g < 4; g++)
         printf(",%.1f", median(native[g].time) * unit);
-    double exact = median(native[0].time);
-    printf(",%.2f,%.2f,%.2f,%s\n", exact / own, median(native[1].time) / exact,
-           median(native[2].time) / exact,
+    printf(",%.2f,%.2f,%.2f,%.2f,%s\n", exact / own, exact / compensated,
+           median(native[1].time) / exact, median(native[2].time) / exact,
            nevh_stepper_native(native[0].s, NULL) ? "yes" : "no");
     for (int g = 0; g < 4; g++)
         nevh_stepper_free(native[g].s);
@@ -329,9 +375,9 @@ static void compare_chain(size_t n) {
 
 int main(void) {
     scheme long_one = eleven();
-    puts(
-        "system,integrator,by_hand_ns,tape_ns,exact_ns,central2_ns,central4_ns,"
-        "complex_ns,exact/by_hand,central2/exact,central4/exact,native");
+    puts("system,integrator,by_hand_ns,compensated_ns,tape_ns,exact_ns,"
+         "central2_ns,central4_ns,complex_ns,exact/by_hand,exact/compensated,"
+         "central2/exact,central4/exact,native");
     for (size_t i = 0; i < sizeof subjects / sizeof *subjects; i++) {
         compare(&subjects[i], "verlet", &verlet);
         compare(&subjects[i], "rkn11b", &long_one);

@@ -1,8 +1,10 @@
 /* nevh: a tape as C text.
 
-   Text and tape do the same operations in the same order, but that of 0 times infinity there is NaN
-   where the chain rule of the tape has 0: who calls such text looks for NaN,
-   and asks the tape.
+   Text and tape do the same operations in the same order, but for two:
+   0 times infinity is NaN here where the chain rule of the tape has 0: who calls
+   such text looks for NaN, and asks the tape.  The derivative g a + g a of a square
+   is (g + g) a, which is the same unless g a is less than the least normal number:
+   compilers find g + g once, and leave out a factor of 1.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/tape_inside_private.h"
 #include "native/operation_text_private.h"
@@ -59,21 +61,27 @@ static void result_name(const nevh__formula_text *f, uint32_t at, bool cosine,
     snprintf(name, NEVH__NAME, "%c%u_%u", cosine ? 'w' : 'v', f->id, at);
 }
 
+/* Factors that compilers may leave out stand in the text. */
+static bool is_plain(double x) {
+    return fabs(x) == 0.5 || fabs(x) == 1 || fabs(x) == 2;
+}
+
 static void operand_name(nevh__writer *w, const nevh__formula_text *f,
                          nevh__tape_operand o, uint32_t from, bool cosine,
                          char name[NEVH__NAME]) {
+    bool number = o.kind == NEVH__NUMBER;
     if (o.kind == NEVH__SLOT)
         result_name(f, from, cosine, name);
-    else if (o.kind == NEVH__NUMBER && w->readable)
+    else if (number && (w->readable || is_plain(f->tape->numbers[o.at])))
         nevh__number_text(f->tape->numbers[o.at], name);
-    else if (o.kind == NEVH__NUMBER)
+    else if (number)
         snprintf(name, NEVH__NAME, "N[%zu]", f->first_number + o.at);
     else
         f->variable(w, f, (nevh__variable)o.kind, o.at, name);
-    if (f->wide && o.kind == NEVH__NUMBER) {
+    if (f->lanes && number) {
         char plain[NEVH__NAME];
         memcpy(plain, name, sizeof plain);
-        snprintf(name, NEVH__NAME, "ALL(%.30s)", plain);
+        snprintf(name, NEVH__NAME, "%s(%.30s)", f->lanes->all, plain);
     }
 }
 
@@ -85,7 +93,7 @@ static double bound_of(const nevh__formula_text *f, const reading *r,
 }
 
 static const char *type_of(const nevh__formula_text *f) {
-    return f->wide ? "wide" : "double";
+    return f->lanes ? f->lanes->type : "double";
 }
 
 /* One operation's operands and results. */
@@ -159,7 +167,7 @@ static bool write_forwards(nevh__writer *w, nevh__formula_text *f, reading *r,
         }
         trace(f, r, i);
         find_names(w, f, r, i, &x);
-        nevh__operation_names m = {x.a, x.b, NULL, NULL, f->wide, f->scalar};
+        nevh__operation_names m = {x.a, x.b, NULL, NULL, f->lanes, f->scalar};
         bool pair = at->operation == NEVH__SINCOS;
         nevh__write_operation(w, pair ? NEVH__SIN : at->operation,
                               NEVH__OPERATION_VALUE, x.y, &m);
@@ -207,6 +215,30 @@ static bool *adjoint_name(const nevh__formula_text *f, const reading *r,
     return cosine ? &r->begun_cosine[from] : &r->begun[from];
 }
 
+static bool is_square(const reading *r, const nevh__instruction *at,
+                      uint32_t i) {
+    return at->operation == NEVH__MULTIPLY && at->a.kind == at->b.kind &&
+           (at->a.kind == NEVH__SLOT
+                ? r->a[i] == r->b[i] && r->cosine[2 * i] == r->cosine[2 * i + 1]
+                : at->a.at == at->b.at);
+}
+
+/* A square is the first to hand on to its argument. */
+static bool hand_on_square(nevh__writer *w, const nevh__formula_text *f,
+                           const reading *r, uint32_t i, const names *x) {
+    const nevh__instruction *at = &f->tape->code[i];
+    char to[NEVH__NAME];
+    if (!is_square(r, at, i))
+        return false;
+    bool *begun = adjoint_name(f, r, at->a, r->a[i], r->cosine[2 * i], to);
+    if (*begun)
+        return false;
+    nevh__write(w, "    %s %s = (dv%u_%u + dv%u_%u) * %s;\n", type_of(f), to,
+                f->id, i, f->id, i, x->a);
+    *begun = true;
+    return true;
+}
+
 /* The adjoint of an operation's result is handed on to one argument. */
 static void hand_on(nevh__writer *w, const nevh__formula_text *f,
                     const reading *r, uint32_t i, bool second, const names *x) {
@@ -233,7 +265,7 @@ static void hand_on(nevh__writer *w, const nevh__formula_text *f,
     nevh__write_operation(
         w, at->operation, second ? NEVH__OPERATION_BY_B : NEVH__OPERATION_BY_A,
         product,
-        &(nevh__operation_names){x->a, x->b, x->y, g, f->wide, f->scalar});
+        &(nevh__operation_names){x->a, x->b, x->y, g, f->lanes, f->scalar});
     if (*begun)
         nevh__write(w, "    %s += %s;\n", to, product);
     else
@@ -250,6 +282,8 @@ static void write_backwards(nevh__writer *w, const nevh__formula_text *f,
         if (!((at->a.by | at->b.by) & wanted))
             continue;
         find_names(w, f, r, i, &x);
+        if (hand_on_square(w, f, r, i, &x))
+            continue;
         if (at->a.by & wanted)
             hand_on(w, f, r, i, false, &x);
         if (at->b.by & wanted)
@@ -282,8 +316,8 @@ bool nevh__write_gradient(nevh__writer *w, nevh__formula_text *f,
         bool *begun = adjoint_name(f, &r, o, r.last, r.last_cosine, to);
         if (!(most < safe))
             write_check(w, result);
-        nevh__write(w, "    %s %s = %s;\n", type_of(f), to,
-                    f->wide ? "ALL(1.0)" : "1.0");
+        nevh__write(w, "    %s %s = %s(1.0);\n", type_of(f), to,
+                    f->lanes ? f->lanes->all : "");
         *begun = true;
         write_backwards(w, f, &r, wanted);
     }
@@ -338,7 +372,7 @@ static void write_parts(nevh__writer *w, const nevh__formula_text *f,
             part_name(f, at->a, r->a[i], cosine_a, g);
             nevh__write_expression(
                 w, at->operation, NEVH__OPERATION_BY_A,
-                &(nevh__operation_names){x.a, x.b, x.y, g, false, true});
+                &(nevh__operation_names){x.a, x.b, x.y, g, NULL, true});
         }
         if (a && b)
             nevh__write(w, " + ");
@@ -347,7 +381,7 @@ static void write_parts(nevh__writer *w, const nevh__formula_text *f,
             part_name(f, at->b, r->b[i], cosine_b, g);
             nevh__write_expression(
                 w, at->operation, NEVH__OPERATION_BY_B,
-                &(nevh__operation_names){x.a, x.b, x.y, g, false, true});
+                &(nevh__operation_names){x.a, x.b, x.y, g, NULL, true});
             nevh__write(w, ")");
         }
         nevh__write(w, ";\n");

@@ -80,7 +80,7 @@ static bool write_point(const nevh__term_loop *x, size_t k, const char *step,
     nevh__writer *w = x->s->w;
     moved m = {x, k, w->formulas};
     nevh__formula_text f = {.tape = x->s->term->term->decl.params,
-                            .wide = !w->readable,
+                            .lanes = w->readable ? NULL : &nevh__eight,
                             .scalar = x->s->f->portable,
                             .variable = name_moved,
                             .data = &m};

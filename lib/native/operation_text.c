@@ -49,7 +49,7 @@ static const char *write_word(nevh__writer *w, const char *word, size_t length,
     else if (is(word, length, "NEVH__F")) { /* NEVH__F(sin) */
         size_t bytes = strcspn(after, ")") - 1;
         nevh__write(w, "%s%.*s",
-                    m->wide     ? "wide_"
+                    m->lanes    ? m->lanes->call
                     : m->scalar ? ""
                                 : "lane_",
                     (int)bytes, after + 1);
@@ -116,15 +116,15 @@ void nevh__write_operation(nevh__writer *w, unsigned operation,
                            const nevh__operation_names *m) {
     const char *text = texts[operation][part];
     bool calls = m->scalar && strstr(text, "NEVH__F(");
-    nevh__write(w, "    %s %s = ", m->wide ? "wide" : "double", to);
-    if (!m->wide || (!calls && !is_lanewise(operation))) {
+    nevh__write(w, "    %s %s = ", m->lanes ? m->lanes->type : "double", to);
+    if (!m->lanes || (!calls && !is_lanewise(operation))) {
         write_text(w, text, m);
         nevh__write(w, ";\n");
         return;
     }
-    nevh__operation_names one = {"a_", "b_", "y_", "g_", false, m->scalar};
-    nevh__write(w, "%s;\n    EACH_LANE { double a_ = %s[lane], b_ = %s[lane]",
-                m->a, m->a, m->b);
+    nevh__operation_names one = {"a_", "b_", "y_", "g_", NULL, m->scalar};
+    nevh__write(w, "%s;\n    %s { double a_ = %s[lane], b_ = %s[lane]", m->a,
+                m->lanes->each, m->a, m->b);
     if (m->y)
         nevh__write(w, ", y_ = %s[lane]", m->y);
     if (m->g)

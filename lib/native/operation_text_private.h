@@ -9,7 +9,8 @@
    and of the result's adjoint, which values do without. */
 typedef struct {
     const char *a, *b, *y, *g;
-    bool wide, scalar; /* as in nevh__formula_text */
+    const nevh__lane_words *lanes; /* as in nevh__formula_text */
+    bool scalar;
 } nevh__operation_names;
 
 typedef enum {

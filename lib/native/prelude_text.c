@@ -9,6 +9,9 @@
 #include <stdio.h>
 #include <string.h>
 
+const nevh__lane_words nevh__eight = {"wide", "ALL", "EACH_LANE", "wide_"};
+const nevh__lane_words nevh__four = {"few", "ALL_FOUR", "EACH_OF_FOUR", "few_"};
+
 int nevh__vector_lanes(void) {
 #ifdef NEVH__VECTORS
     __builtin_cpu_init();
@@ -28,6 +31,9 @@ static const char basis[] =
     "typedef double wide __attribute__((vector_size(64), aligned(8)));\n"
     "#define ALL(x) ((wide){x, x, x, x, x, x, x, x})\n"
     "#define EACH_LANE for (int lane = 0; lane < 8; lane++)\n"
+    "typedef double few __attribute__((vector_size(32), aligned(8)));\n"
+    "#define ALL_FOUR(x) ((few){x, x, x, x})\n"
+    "#define EACH_OF_FOUR for (int lane = 0; lane < 4; lane++)\n"
     "INLINE double nevh_choose(int first, double x, double y) { return first ? "
     "x : y; }\n"
     "INLINE double nevh_real_min(double x, double y) { return x != x || x < y ? x : "
@@ -48,6 +54,8 @@ static const char basis[] =
     "CONST, log10(double) CONST, sqrt(double) CONST;\n"
     "#define lane_sqrt __builtin_sqrt\n"
     "INLINE wide wide_sqrt(wide x) { wide y; EACH_LANE y[lane] = "
+    "__builtin_sqrt(x[lane]); return y; }\n"
+    "INLINE few few_sqrt(few x) { few y; EACH_OF_FOUR y[lane] = "
     "__builtin_sqrt(x[lane]); return y; }\n";
 
 /* Functions of libm, and which of them have a form for vectors. */
@@ -73,12 +81,18 @@ static const bool has_more = false;
 
 /* Without vectors, lane by lane. */
 static void write_plain(nevh__writer *w, const char *f, bool two) {
-    const char *second = two ? ", wide y" : "", *y = two ? ", y[lane]" : "";
-    nevh__write(w,
-                "#define lane_%s %s\n"
-                "INLINE wide wide_%s(wide x%s) { wide z; EACH_LANE z[lane] = "
-                "%s(x[lane]%s); return z; }\n",
-                f, f, f, second, f, y);
+    const nevh__lane_words *words[] = {&nevh__eight, &nevh__four};
+    nevh__write(w, "#define lane_%s %s\n", f, f);
+    for (int i = 0; i < 2; i++)
+        nevh__write_filled(
+            w,
+            "INLINE $1 $2$3($1 x$4) { $1 z; $5 z[lane] = $3(x[lane]$6); return "
+            "z; }\n",
+            (const char *const[]){words[i]->type, words[i]->call, f,
+                                  !two ? ""
+                                  : i  ? ", few y"
+                                       : ", wide y",
+                                  words[i]->each, two ? ", y[lane]" : ""});
 }
 
 static void vector_name(const char *f, bool two, int lanes, char name[40]) {
@@ -96,8 +110,33 @@ static void write_lane(nevh__writer *w, const char *f) {
     nevh__write_filled(w,
                        "extern four $1(four) CONST;\n"
                        "INLINE double lane_$2(double x) { return $1((four){x, "
-                       "x, x, x})[0]; }\n",
+                       "x, x, x})[0]; }\n"
+                       "INLINE few few_$2(few x) { return $1(x); }\n",
                        (const char *const[]){name, f});
+}
+
+/* What stands side by side by vectors of fewer lanes: $1 the type, $2 what its
+   functions' names begin with, $3 the function, $4 $5 a second argument, $6 how
+   many vectors, $7 the vectors' function, $8 their second argument. */
+static const char by_parts[] =
+    "INLINE $1 $2$3($1 x$4) { union { $1 all; vector part[$6]; } u = {x}$5; for "
+    "(int i = 0; i < $6; i++) u.part[i] = $7(u.part[i]$8); return u.all; }\n";
+/* Four by eight, of which the others are not needed. */
+static const char by_eight[] =
+    "INLINE few few_$1(few x$2) { wide z = wide_$1((wide){x[0], x[1], x[2], x[3], "
+    "x[0], x[1], x[2], x[3]}$3); return (few){z[0], z[1], z[2], z[3]}; }\n";
+
+static void write_parts(nevh__writer *w, const char *f, bool two,
+                        const nevh__lane_words *words, int parts,
+                        const char *vector) {
+    char count[12], second[20];
+    snprintf(count, sizeof count, "%d", parts);
+    snprintf(second, sizeof second, ", %s y", words->type);
+    nevh__write_filled(w, by_parts,
+                       (const char *const[]){words->type, words->call, f,
+                                             two ? second : "",
+                                             two ? ", v = {y}" : "", count,
+                                             vector, two ? ", v.part[i]" : ""});
 }
 
 static void write_vector(nevh__writer *w, const char *f, bool two, int lanes,
@@ -106,19 +145,24 @@ static void write_vector(nevh__writer *w, const char *f, bool two, int lanes,
     vector_name(f, two, lanes, name);
     nevh__write(w, "extern vector %s(vector%s) CONST;\n", name,
                 two ? ", vector" : "");
-    if (alike && lanes == 8)
+    write_parts(w, f, two, &nevh__eight, 8 / lanes, name);
+    if (alike && lanes == 8) {
         write_lane(w, f);
-    else
-        nevh__write(w,
-                    "INLINE double lane_%s(double x%s) { return "
-                    "%s(SAME(x)%s)[0]; }\n",
-                    f, two ? ", double y" : "", name, two ? ", SAME(y)" : "");
+        return;
+    }
     nevh__write(w,
-                "INLINE wide wide_%s(wide x%s) { union { wide all; vector "
-                "part[%d]; } u = {x}%s; for (int i = 0; i < %d; i++) u.part[i] "
-                "= %s(u.part[i]%s); return u.all; }\n",
-                f, two ? ", wide y" : "", 8 / lanes, two ? ", v = {y}" : "",
-                8 / lanes, name, two ? ", v.part[i]" : "");
+                "INLINE double lane_%s(double x%s) { return "
+                "%s(SAME(x)%s)[0]; }\n",
+                f, two ? ", double y" : "", name, two ? ", SAME(y)" : "");
+    if (lanes < 8)
+        write_parts(w, f, two, &nevh__four, 4 / lanes, name);
+    else
+        nevh__write_filled(
+            w, by_eight,
+            (const char *const[]){
+                f, two ? ", few y" : "",
+                two ? ", (wide){y[0], y[1], y[2], y[3], y[0], y[1], y[2], y[3]}"
+                    : ""});
 }
 
 void nevh__write_prelude(nevh__writer *w) {

@@ -48,7 +48,7 @@ static void name_at_state(nevh__writer *w, const nevh__formula_text *f,
     const nevh_term *is = &s->of.term->term->decl;
     switch (kind) {
     case NEVH__T:
-        snprintf(name, NEVH__NAME, f->wide && !w->stages ? "ALL(t)" : "t");
+        snprintf(name, NEVH__NAME, f->lanes && !w->stages ? "ALL(t)" : "t");
         break;
     case NEVH__Q:
         nevh__state_name(w, false, is->q[f->instance * is->nq + k], name);
@@ -68,7 +68,7 @@ static void name_at_state(nevh__writer *w, const nevh__formula_text *f,
                             1, name);
             break;
         }
-        snprintf(name, NEVH__NAME, f->wide ? "ALL(N[%zu])" : "N[%zu]",
+        snprintf(name, NEVH__NAME, f->lanes ? "ALL(N[%zu])" : "N[%zu]",
                  s->constants + f->instance * is->nc + k);
     }
 }
@@ -76,7 +76,8 @@ static void name_at_state(nevh__writer *w, const nevh__formula_text *f,
 static bool write_exact(sum *s) {
     const nevh_term *is = &s->of.term->term->decl;
     nevh__formula_text f = {.tape = is->params,
-                            .wide = nevh__has_lanes(s->of.w),
+                            .lanes =
+                                nevh__has_lanes(s->of.w) ? &nevh__eight : NULL,
                             .scalar = s->of.f->portable,
                             .variable = name_at_state,
                             .data = s};
@@ -158,33 +159,44 @@ static void list_points(const sum *s, stencil *x) {
     }
 }
 
+/* A block of no more than four points takes vectors of four. */
+static const nevh__lane_words *words_of(const stencil *x) {
+    return x->count - x->at > 4 ? &nevh__eight : &nevh__four;
+}
+static size_t lanes_of(const stencil *x) {
+    return x->count - x->at > 4 ? LANES : 4;
+}
+
 /* The point that is in a lane; those beyond the last repeat the first. */
 static const point *point_in(const stencil *x, size_t lane) {
     size_t at = x->at + lane;
     return &x->points[at < x->count ? at : x->at];
 }
 
-/* One variable of eight points. */
-static void write_wide(nevh__writer *w, const stencil *x, size_t k) {
+/* One variable of a block's points. */
+static void write_variable(nevh__writer *w, const stencil *x, size_t k) {
     const nevh__planned *term = x->s->of.term;
-    size_t index[LANES];
+    size_t index[LANES], lanes = lanes_of(x);
+    const nevh__lane_words *words = words_of(x);
     bool same = true, moved = false;
     const char *half = k < term->nq ? "q" : "p";
-    for (size_t lane = 0; lane < LANES; lane++) {
+    for (size_t lane = 0; lane < lanes; lane++) {
         const point *at = point_in(x, lane);
         index[lane] = nevh__index(term, at->instance, k);
         same &= index[lane] == index[0];
         moved |= at->k == k;
     }
-    nevh__write(w, "    wide x%u_%zu = ", x->block, k);
+    nevh__write(w, "    %s x%u_%zu = ", words->type, x->block, k);
     if (same)
-        nevh__write(w, "ALL(%s[%zu])", half, index[0]);
-    for (size_t lane = 0; lane < LANES && !same; lane++)
-        nevh__write(w, "%s%s[%zu]%s", lane ? ", " : "(wide){", half,
-                    index[lane], lane + 1 < LANES ? "" : "}");
+        nevh__write(w, "%s(%s[%zu])", words->all, half, index[0]);
+    else
+        nevh__write(w, "(%s){", words->type);
+    for (size_t lane = 0; lane < lanes && !same; lane++)
+        nevh__write(w, "%s%s[%zu]%s", lane ? ", " : "", half, index[lane],
+                    lane + 1 < lanes ? "" : "}");
     if (moved)
-        nevh__write(w, " + *(const wide *)(N + %zu)", w->count);
-    for (size_t lane = 0; lane < LANES && moved; lane++) {
+        nevh__write(w, " + *(const %s *)(N + %zu)", words->type, w->count);
+    for (size_t lane = 0; lane < lanes && moved; lane++) {
         const point *at = point_in(x, lane);
         nevh__writer_append(w, at->k == k ? at->shift : -0.0);
     }
@@ -198,21 +210,23 @@ static void name_in_block(nevh__writer *w, const nevh__formula_text *f,
     const nevh__planned *term = x->s->of.term;
     const nevh_term *is = &term->term->decl;
     if (kind == NEVH__T)
-        snprintf(name, NEVH__NAME, "ALL(t)");
+        snprintf(name, NEVH__NAME, "%s(t)", f->lanes->all);
     else if (kind != NEVH__C)
         snprintf(name, NEVH__NAME, "x%u_%zu", x->block,
                  kind == NEVH__Q ? k : term->nq + k);
     else {
         bool same = true;
-        for (size_t lane = 1; lane < LANES; lane++)
+        size_t lanes = lanes_of(x);
+        for (size_t lane = 1; lane < lanes; lane++)
             same &= point_in(x, lane)->instance == point_in(x, 0)->instance;
         if (same) {
-            snprintf(name, NEVH__NAME, "ALL(N[%zu])",
+            snprintf(name, NEVH__NAME, "%s(N[%zu])", f->lanes->all,
                      x->s->constants + point_in(x, 0)->instance * is->nc + k);
             return;
         }
-        snprintf(name, NEVH__NAME, "(*(const wide *)(N + %zu))", w->count);
-        for (size_t lane = 0; lane < LANES; lane++)
+        snprintf(name, NEVH__NAME, "(*(const %s *)(N + %zu))", f->lanes->type,
+                 w->count);
+        for (size_t lane = 0; lane < lanes; lane++)
             nevh__writer_append(
                 w, is->c[point_in(x, lane)->instance * is->nc + k]);
     }
@@ -221,16 +235,16 @@ static void name_in_block(nevh__writer *w, const nevh__formula_text *f,
 static bool write_blocks(nevh__writer *w, stencil *x) {
     for (x->at = 0; x->at < x->count; x->at += LANES) {
         nevh__formula_text f = {.tape = x->s->of.term->term->decl.params,
-                                .wide = true,
+                                .lanes = words_of(x),
                                 .variable = name_in_block,
                                 .data = x};
         char result[NEVH__NAME];
         x->block = w->formulas;
         for (size_t k = 0; k < x->s->of.term->nv; k++)
-            write_wide(w, x, k);
+            write_variable(w, x, k);
         if (!nevh__write_value(w, &f, result))
             return false;
-        nevh__write(w, "    wide h%u = %s;\n", x->block, result);
+        nevh__write(w, "    %s h%u = %s;\n", f.lanes->type, x->block, result);
     }
     return true;
 }
@@ -261,7 +275,7 @@ static const double *lane_steps(const sum *s, const point *at) {
 static bool write_points(nevh__writer *w, stencil *x) {
     bool lanes = nevh__has_lanes(w);
     nevh__formula_text f = {.tape = x->s->of.term->term->decl.params,
-                            .wide = lanes,
+                            .lanes = lanes ? &nevh__eight : NULL,
                             .scalar = !lanes || x->s->of.f->portable,
                             .variable = name_at_point,
                             .data = x};
@@ -297,6 +311,14 @@ static void write_point(nevh__writer *w, const char *letter, unsigned first,
         nevh__write(w, "[%zu]", at % LANES);
 }
 
+static void write_weight(nevh__writer *w, double weight) {
+    char name[NEVH__NAME];
+    if (weight == 1)
+        return;
+    nevh__write_number(w, weight, name);
+    nevh__write(w, "%s * ", name);
+}
+
 static void write_slopes(nevh__writer *w, sum *s, const stencil *x,
                          unsigned first, bool wide) {
     for (size_t i = 0; i < x->slope_count; i++) {
@@ -306,9 +328,9 @@ static void write_slopes(nevh__writer *w, sum *s, const stencil *x,
         nevh__write(w, "    %s %s = ", nevh__number_type(w), name);
         for (size_t j = 0; j < one->method->offsets; j++) {
             size_t plus = one->first + 2 * j, minus = plus + 1;
-            char weight[NEVH__NAME];
-            nevh__write_number(w, one->method->weights[j], weight);
-            nevh__write(w, "%s%s * ((", j ? " + " : "", weight);
+            nevh__write(w, "%s", j ? " + " : "");
+            write_weight(w, one->method->weights[j]);
+            nevh__write(w, "((");
             write_point(w, "h", first, plus, wide, one->k);
             nevh__write(w, " - ");
             write_point(w, "h", first, minus, wide, one->k);

@@ -117,11 +117,20 @@ extern const char *const nevh__pace_text[];
 extern const char *const nevh__adaptive_step_text[];
 extern const char *const nevh__fraction_text[];
 
-/* A formula at one point, or at eight of them side by side. */
+/* How C text has numbers side by side. */
+typedef struct {
+    const char *type;
+    const char *all;  /* so many times one number */
+    const char *each; /* a loop over them */
+    const char *call; /* what a function's name begins with */
+} nevh__lane_words;
+extern const nevh__lane_words nevh__eight, nevh__four;
+
+/* A formula at one point, or at several of them side by side. */
 typedef struct nevh__formula_text {
     const nevh__tape *tape;
-    bool wide;   /* eight points */
-    bool scalar; /* functions of libm, not of vectors */
+    const nevh__lane_words *lanes; /* NULL: one point */
+    bool scalar;                   /* functions of libm, not of vectors */
     /* What a variable is called. */
     void (*variable)(nevh__writer *, const struct nevh__formula_text *,
                      nevh__variable, size_t k, char name[NEVH__NAME]);
