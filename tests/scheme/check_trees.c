@@ -142,21 +142,24 @@ static bool holds(const nevh_integrator *scheme, const tableau *x) {
     return worst <= rounding;
 }
 
+/* Scheme i of those with a Butcher table; NULL where there are fewer. */
 static const nevh_integrator *scheme_at(int i) {
-    const nevh_integrator *schemes[] = {nevh_euler,  nevh_explicit_midpoint,
-                                        nevh_heun,   nevh_ralston,
-                                        nevh_rk3,    nevh_rk4,
-                                        nevh_dopri5, nevh_dop853};
-    return schemes[i];
+    for (int k = 0; k < scheme_count(); k++)
+        if (nevh_integrators()[k]->kernel == &nevh_runge_kutta_kernel &&
+            i-- == 0)
+            return nevh_integrators()[k];
+    return NULL;
 }
-enum { SCHEMES = 8 };
 
-/* None is forgotten above. */
-TEST(all_tables_are_checked) {
+static int table_count(void) {
     int count = 0;
-    for (int i = 0; i < scheme_count(); i++)
-        count += nevh_integrators()[i]->kernel == &nevh_runge_kutta_kernel;
-    ck_assert_int_eq(count, SCHEMES);
+    while (scheme_at(count))
+        count++;
+    return count;
+}
+
+TEST(tables_are_found) {
+    ck_assert_int_ge(table_count(), 8);
 }
 
 /* Sloane's A000081. */
@@ -175,7 +178,7 @@ TEST(number_of_trees) {
     ck_assert(bushy == 1 && tall == 40320);
 }
 
-TEST_EACH(conditions_hold, SCHEMES) {
+TEST_EACH(conditions_hold, table_count()) {
     const nevh_integrator *scheme = scheme_at(_i);
     plant();
     tableau x = tableau_of(scheme->table);
@@ -189,7 +192,7 @@ TEST_EACH(conditions_hold, SCHEMES) {
 
 /* An estimate is blind up to its method's order and no further, and falls with
    the power that is said. */
-TEST_EACH(estimates_have_their_orders, SCHEMES) {
+TEST_EACH(estimates_have_their_orders, table_count()) {
     const nevh_integrator *scheme = scheme_at(_i);
     const nevh_butcher *table = scheme->table;
     plant();
@@ -225,7 +228,7 @@ static int list_entries(tableau *x, long double *entries[]) {
 }
 
 /* Every entry counts: a change by a millionth is noticed. */
-TEST_EACH(every_entry_counts, SCHEMES) {
+TEST_EACH(every_entry_counts, table_count()) {
     const nevh_integrator *scheme = scheme_at(_i);
     plant();
     tableau x = tableau_of(scheme->table);
@@ -243,7 +246,7 @@ TEST_EACH(every_entry_counts, SCHEMES) {
 }
 
 /* Of the a_ij the trees notice it without the row sums. */
-TEST_EACH(trees_see_the_matrix, SCHEMES) {
+TEST_EACH(trees_see_the_matrix, table_count()) {
     const nevh_integrator *scheme = scheme_at(_i);
     plant();
     tableau x = tableau_of(scheme->table);
