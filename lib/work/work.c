@@ -21,7 +21,7 @@ int nevh__fail_range(nevh_work *w, double t, double h) {
                           t, h);
 }
 
-static int fail_field(nevh_work *w, int status) {
+int nevh__work_fail_field(nevh_work *w, int status) {
     return nevh_work_fail(w, status, "%s", nevh_field_message(w->field));
 }
 
@@ -29,7 +29,7 @@ int nevh_work_find_scale(nevh_work *w) {
     int status =
         w->scale ? NEVH_OK : nevh__field_find_scale(w->field, w->options);
     if (status)
-        return fail_field(w, status);
+        return nevh__work_fail_field(w, status);
     w->scale = w->field->scale;
     return NEVH_OK;
 }
@@ -72,8 +72,9 @@ size_t nevh__work_lanes(nevh_work *w, bool whole, bool numbers) {
 
 int nevh__work_step_ready(nevh_work *w, double t, double h, double q[],
                           double p[]) {
-    return nevh__field_ready(w->field) ? fail_field(w, w->field->report.status)
-                                       : nevh__work_step(w, t, h, q, p);
+    return nevh__field_ready(w->field)
+               ? nevh__work_fail_field(w, w->field->report.status)
+               : nevh__work_step(w, t, h, q, p);
 }
 
 int nevh__work_step_again(nevh_work *w, double t, double h, double q[],
@@ -106,7 +107,7 @@ int nevh__work_gradient_padded(nevh_work *w, size_t points, size_t used,
     int status = nevh__field_gradient_padded(w->field, points, used, t, q, p,
                                              dh_dq, dh_dp);
     if (status)
-        return fail_field(w, status);
+        return nevh__work_fail_field(w, status);
     return w->transform
                ? nevh__transform_gradient(w, points, t, q, p, dh_dq, dh_dp)
                : NEVH_OK;
@@ -117,7 +118,7 @@ int nevh_work_value(nevh_work *w, size_t points, const double t[],
     if (w->transform)
         return nevh__transform_value(w, points, t, q, p, h);
     int status = nevh_field_value(w->field, points, t, q, p, h);
-    return status ? fail_field(w, status) : NEVH_OK;
+    return status ? nevh__work_fail_field(w, status) : NEVH_OK;
 }
 
 int nevh_work_account(nevh_work *w, unsigned parts, double weight,
@@ -127,17 +128,11 @@ int nevh_work_account(nevh_work *w, unsigned parts, double weight,
     return status ? status : nevh__ledger_account(w, parts, weight, t, q, p);
 }
 
-int nevh__work_run_values(nevh_work *w, const nevh__evaluation *e) {
-    int status = e->stencil ? nevh__central_stencil_run(e)
-                            : nevh__field_terms(e->field, &e->at);
-    return status ? fail_field(w, status) : NEVH_OK;
-}
-
 int nevh__work_noise(nevh_work *w, double t, const double q[], const double p[],
                      double noise_q[], double noise_p[]) {
     int status = nevh__field_noise(w->field, t, q, p, noise_q, noise_p);
     if (status)
-        return fail_field(w, status);
+        return nevh__work_fail_field(w, status);
     return w->transform ? nevh__transform_noise(w, t, q, p, noise_q, noise_p)
                         : NEVH_OK;
 }

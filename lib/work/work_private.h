@@ -49,6 +49,8 @@ static inline bool nevh__work_as_planned(const nevh_work *w, size_t lanes,
                                          size_t columns) {
     return w->planned && lanes && columns == w->width;
 }
+/* The field's message becomes that of the step; returns its status. */
+int nevh__work_fail_field(nevh_work *, int status);
 /* Where the field has to be made ready first. */
 int nevh__work_step_ready(nevh_work *, double t, double h, double q[],
                           double p[]);
@@ -77,7 +79,12 @@ nevh__evaluation nevh__work_plan(const nevh_work *, size_t lanes,
 
 /* Runs it: an exact one looks at no result and counts nothing, others
    count values, and fail as nevh_work_gradient does. */
-int nevh__work_run_values(nevh_work *, const nevh__evaluation *);
+NEVH__INLINE int nevh__work_run_values(nevh_work *w,
+                                       const nevh__evaluation *e) {
+    int status = e->stencil ? nevh__central_stencil_run(e)
+                            : nevh__field_terms(e->field, &e->at);
+    return status ? nevh__work_fail_field(w, status) : NEVH_OK;
+}
 NEVH__INLINE int nevh__work_run(nevh_work *w, const nevh__evaluation *c) {
     if (!c->exact)
         return nevh__work_run_values(w, c);
