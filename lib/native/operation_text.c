@@ -81,6 +81,11 @@ static void write_text(nevh__writer *w, const char *text,
     }
 }
 
+bool nevh__operation_calls(unsigned operation) {
+    return operation != NEVH__SQRT && operation < NEVH__OPERATION_COUNT &&
+           strstr(texts[operation][NEVH__OPERATION_VALUE], "NEVH__F(");
+}
+
 double nevh__operation_bound(unsigned operation, double a, double b) {
     switch (operation) {
     case NEVH__SIN:

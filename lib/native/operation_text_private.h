@@ -20,6 +20,8 @@ typedef enum {
     NEVH__OPERATION_PARTS
 } nevh__operation_part;
 
+/* Whether its value is that of a function of vectors, which is called. */
+bool nevh__operation_calls(unsigned operation);
 /* How large a result can be where its arguments are finite, and below a and b. */
 double nevh__operation_bound(unsigned operation, double a, double b);
 /* The expression alone. */

@@ -1,7 +1,6 @@
 /* nevh: steps as a program that needs nothing but the C library.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "native/native_private.h"
-#include "run/stepper_private.h"
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>

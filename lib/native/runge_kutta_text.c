@@ -12,15 +12,16 @@ static const char slope[] =
     "    nevh__number *slopes = x->slopes + stage * x->stride;\n"
     "    double t = o->t + times[stage] * o->h;\n"
     "    (void)way;\n"
-    "    *o->bad += kick_slope($1t, x->point, x->point + DOF, slopes + DOF$3);\n"
-    "    *o->bad += drift_slope($1t, x->point, x->point + DOF, slopes$3);\n"
-    "$2"
+    "$4    *o->bad += kick_slope($1t, x->point$5, x->point + DOF$5, slopes + "
+    "DOF$5$3);\n"
+    "    *o->bad += drift_slope($1t, x->point$5, x->point + DOF$5, slopes$5$3);\n"
+    "$6$2"
     "    return 0;\n}\n\n";
 
 /* dp/dt = -(dH/dq + rate p). */
 static const char friction[] =
     "    NEVH__EACH(k, 1, DOF)\n"
-    "        slopes[DOF + k] += $1[k] * x->point[DOF + k];\n";
+    "        slopes[DOF + k] += $1[k$2] * x->point[DOF + k];\n";
 
 static const char owner[] =
     "struct nevh__runge_kutta_owner {\n"
@@ -150,14 +151,19 @@ static void write_slope(nevh__writer *w, const nevh_work *work) {
     char rates[NEVH__NAME];
     if (work->friction) {
         nevh__write_array(w, "rates", "o->N", work->n, work->friction, rates);
-        nevh__write_filled(&part, friction, (const char *const[]){rates});
+        nevh__write_filled(
+            &part, friction,
+            (const char *const[]){rates, w->group > 1 ? " % ONE" : ""});
         w->failed |= part.failed;
     }
-    nevh__write_filled(w, slope,
-                       (const char *const[]){
-                           w->readable ? "" : "o->N, ",
-                           part.text ? part.text : "",
-                           w->loops && !w->readable ? NEVH__ALL_SLOPES : ""});
+    bool several = w->group > 1; /* both slopes have much in common */
+    nevh__write_filled(
+        w, slope,
+        (const char *const[]){
+            w->readable ? "" : "o->N, ", part.text ? part.text : "",
+            w->loops && !w->readable ? NEVH__ALL_SLOPES : "",
+            several ? "    for (size_t i = 0; i < DOF; i += ONE) {\n" : "",
+            several ? " + i" : "", several ? "    }\n" : ""});
     nevh__writer_free(&part);
 }
 
@@ -165,6 +171,7 @@ bool nevh__write_runge_kutta(nevh__writer *w, nevh_work *work) {
     const nevh_butcher *table = work->integrator->table;
     bool adapts = nevh__adapts(work);
     size_t stages = adapts ? table->stages : stages_of(table);
+    nevh__write_in_groups(w, work->field, 2 * stages);
     nevh__write_needs(w, work->n, false, true);
     if (!nevh__write_slopes(w, work->field, stages))
         return false;

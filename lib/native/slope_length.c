@@ -1,11 +1,13 @@
 /* nevh: how long the text of slopes is, and how many values they take.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/tape_inside_private.h"
+#include "native/operation_text_private.h"
 #include "native/slope_private.h"
 #include <math.h>
 
-/* More text than MOST_BROADCAST is called instead of being repeated. */
-enum { MOST_OPERATIONS = 800, MOST_BROADCAST = 800 };
+/* More text than MOST_BROADCAST is called instead of being repeated.  Of two
+   vectors at once the numbers of MOST_OF_TWO operations are still near. */
+enum { MOST_OPERATIONS = 800, MOST_BROADCAST = 800, MOST_OF_TWO = 20 };
 
 /* Points of a term's differences by the half's variables. */
 static size_t points_of(const nevh_field *f, const nevh__planned *term,
@@ -70,4 +72,30 @@ bool nevh__slopes_fit(nevh__writer *w, const nevh_field *f, size_t calls) {
         nevh__write(w, "#undef SLOPE\n"
                        "#define SLOPE static __attribute__((noinline))\n");
     return !w->refusal;
+}
+
+static bool calls_functions(const nevh__tape *tape) {
+    for (size_t i = 0; i < tape->length; i++)
+        if (nevh__operation_calls(tape->code[i].operation))
+            return true;
+    return false;
+}
+
+/* Measured on the pendulum, Kepler's problem, Henon-Heiles and the double pendulum:
+   where a step has but two slopes it fits the registers, unless it calls functions;
+   points of differences are many vectors already. */
+bool nevh__slopes_of_two(nevh__writer *w, const nevh_field *f, size_t slopes) {
+    double operations = 0;
+    bool calls = false;
+    if (w->by_lane || w->width % (2 * NEVH__LANES) != 0)
+        return false;
+    for (size_t i = 0; i < f->n_terms; i++) {
+        const nevh_term *is = &f->terms[i].term->decl;
+        if (!nevh__is_tape(is))
+            return false;
+        operations += (double)is->count * (double)nevh__tape_length(is->params);
+        calls |= calls_functions(is->params);
+    }
+    return operations <= MOST_OF_TWO &&
+           (slopes > 2 || (calls && f->gradient == nevh_exact));
 }

@@ -17,10 +17,11 @@ static const char slope[] =
     "    double t = x->t + x->scheme->times[i] * x->h;\n"
     "    (void)way;\n"
     "    if (!kept)\n"
-    "        *x->owner->bad += kick ? kick_slope($1t, x->q.point,\n"
-    "                                            x->p.point, x->slope)\n"
-    "                               : drift_slope($1t, x->q.point,\n"
-    "                                             x->p.point, x->slope);\n"
+    "$2"
+    "        *x->owner->bad += kick ? kick_slope($1t, x->q.point$3,\n"
+    "                                            x->p.point$3, x->slope$3)\n"
+    "                               : drift_slope($1t, x->q.point$3,\n"
+    "                                             x->p.point$3, x->slope$3);\n"
     "    return 0;\n}\n\n";
 
 static const char inverse[] =
@@ -34,9 +35,11 @@ static const char first[] =
     "const double *T, double t, double h, const nevh__number *y, const "
     "nevh__number *lost, nevh__number *kept, nevh__number *room) {\n";
 static const char first_ends[] =
+    "    nevh__number bad = {0};\n"
     "    NEVH__EACH(k, 1, 2 * DOF) point[k] = y[k] + lost[k];\n"
-    "    return (nevh__number){0} +\n"
-    "           %s(N, t + T[0] * h, point, point + DOF, kept%s);\n}\n";
+    "    for (size_t i = 0; i < DOF; i += ONE)\n"
+    "        bad += %s(N, t + T[0] * h, point + i, point + DOF + i, kept + i%s);\n"
+    "    return bad;\n}\n";
 static const char no_first[] =
     "#define take_first(N, T, t, h, y, lost, kept, room) "
     "((nevh__number){0})\n";
@@ -245,7 +248,11 @@ static void write_whole(nevh__writer *w, const nevh_splitting *table,
                         const char *const words[]) {
     nevh__write(w, owner, w->readable ? "" : "    const double *N;\n", "");
     nevh__write_filled(
-        w, slope, (const char *const[]){w->readable ? "" : "x->owner->N, "});
+        w, slope,
+        (const char *const[]){
+            w->readable ? "" : "x->owner->N, ",
+            w->readable ? "" : "    for (size_t k = 0; k < DOF; k += ONE)\n",
+            w->readable ? "" : " + k"});
     if (!w->readable)
         write_first(w, keeps_slope(table), table->first == NEVH_KICK);
     write_step(w, words);
@@ -259,6 +266,7 @@ bool nevh__write_splitting(nevh__writer *w, nevh_work *work) {
     snprintf(number, sizeof number, "%zu", count);
     const char *keep = keeps ? "true" : "false",
                *kick = kicks ? "true" : "false";
+    nevh__write_in_groups(w, work->field, keeps ? count - 1 : count);
     nevh__write_needs(w, work->n, true, false);
     if (!nevh__write_slopes(w, work->field, 2))
         return false;

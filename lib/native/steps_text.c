@@ -2,6 +2,7 @@
    need, and the function that takes steps.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "native/native_private.h"
+#include "native/slope_private.h"
 #include <string.h>
 
 /* Sums go number by number: rows are short, and lanes are vectors already. */
@@ -105,7 +106,7 @@ static const char driver[] =
     "        double *room) {\n"
     "    nevh__number y[BLOCKS][2 * DOF], lost[BLOCKS][2 * DOF];\n"
     "    nevh__number kept[BLOCKS][KEPT + 1];\n"
-    "    double *flags = M + (2 * DOF + KEPT) * WIDTH;\n"
+    "    double *flags = M + (2 * DOF + KEPT) / GROUP * WIDTH;\n"
     "    bool has_kept = true;\n"
     "    size_t done = 0;\n"
     "    for (int b = 0; b < BLOCKS; b++) {\n"
@@ -238,6 +239,19 @@ const char *nevh__number_type(const nevh__writer *w) {
     return nevh__has_lanes(w) ? "wide" : "double";
 }
 
+/* A number of all orbits, where it is that of a block. */
+static const char at_in_row[] =
+    "#define AT(x, row, b) (*(nevh__number *)((x) + (row) * WIDTH + (b) * "
+    "LANES))\n";
+static const char at_in_group[] =
+    "#define AT(x, row, b) (*(nevh__number *)((x) + ((row) / DOF * ONE + (row) % "
+    "ONE) * WIDTH + ((b) * GROUP + (row) % DOF / ONE) * LANES))\n";
+
+void nevh__write_in_groups(nevh__writer *w, const nevh_field *f,
+                           size_t slopes) {
+    w->group = nevh__slopes_of_two(w, f, slopes) ? 2 : 1;
+}
+
 void nevh__write_needs(nevh__writer *w, size_t n, bool finite, bool sums) {
     if (w->readable) {
         nevh__write(w, "enum { DOF = %zu };\n\n%s%s%s", n, needs_of_readers,
@@ -259,15 +273,17 @@ void nevh__write_needs(nevh__writer *w, size_t n, bool finite, bool sums) {
     else
         nevh__write(w, "%s%s", one_in_a_vector, wide ? is_bad : needs_of_one);
     if (w->loops) {
-        nevh__write(w, "enum { DOF = %zu, COUNT = %zu };\n",
+        nevh__write(w, "enum { DOF = %zu, ONE = DOF, COUNT = %zu };\n",
                     nevh__padded(n) / NEVH__LANES, n);
         return;
     }
-    nevh__write(w,
-                "enum { DOF = %zu, WIDTH = %zu, BLOCKS = %zu };\n"
-                "#define AT(x, row, b) "
-                "(*(nevh__number *)((x) + (row) * WIDTH + (b) * %zu))\n",
-                n, w->width, w->width / lanes, lanes);
+    size_t group = w->group ? w->group : 1;
+    nevh__write(
+        w,
+        "enum { ONE = %zu, GROUP = %zu, DOF = ONE * GROUP };\n"
+        "enum { WIDTH = %zu, LANES = %zu, BLOCKS = WIDTH / LANES / GROUP "
+        "};\n%s",
+        n, group, w->width, lanes, group > 1 ? at_in_group : at_in_row);
 }
 
 void nevh__write_rows(nevh__writer *w, const char *name, size_t rows) {

@@ -39,6 +39,7 @@ typedef struct {
     size_t own_count, own_room;
     unsigned formulas; /* written so far: names of each are its own */
     size_t width;      /* orbits side by side, as vectors; 1: one orbit */
+    size_t group;      /* vectors of them that a step takes at once; 0: one */
     bool stages;       /* those of an implicit step are, of one orbit; for
                             readers one after the other */
     bool loops;        /* over instances; the state is rows of vectors */
@@ -162,7 +163,12 @@ void nevh__derivative_name(const nevh__formula_text *, nevh__variable, size_t k,
 /* What formulas need before them. */
 void nevh__write_prelude(nevh__writer *);
 
-/* What kernels' texts need; finite: nevh__not_finite, sums: stage_sums. */
+/* What a step of so many slopes takes at once is w->group: families then go
+   through all its vectors, ONE numbers each, where they take slopes.  Before
+   nevh__write_needs. */
+void nevh__write_in_groups(nevh__writer *, const nevh_field *, size_t slopes);
+/* What kernels' texts need; finite: nevh__not_finite, sums: stage_sums.  DOF is the
+   numbers of a half of a step's state. */
 void nevh__write_needs(nevh__writer *, size_t n, bool finite, bool sums);
 /* A list of sums over stages, "sums": the weights of each that are not 0, and
    whose slopes they are for, which are so far apart (a text). */

@@ -58,9 +58,6 @@ void nevh__end_run(nevh_stepper *, const double q[], const double p[]);
 /* NEVH_OK where some number of steps leads from t0 to t_end; not where one of the
    three is no number. */
 int nevh__span_check(nevh_stepper *, double t0, double h, double t_end);
-/* Of a run of fixed steps: whether whole steps fill the span, h then being
-   adjusted to it; else the whole ones before the rest. */
-bool nevh__whole_steps(double span, double *h, double *steps);
 /* Finds the friction, and whether the scheme takes it. */
 int nevh__plan_friction(nevh_stepper *);
 /* Makes room for friction around steps; after the kernel's plan. */

@@ -8,8 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-static const double whole = 1e-9; /* how near to a whole number of steps */
-
 static size_t state_size(const nevh_stepper *s) {
     return s->work.size * sizeof(double);
 }
@@ -93,18 +91,6 @@ static int run_whole(nevh__branch *b, double h, double steps, double q[],
     }
     nevh__end_run(s, q, p);
     return status;
-}
-
-bool nevh__whole_steps(double span, double *h, double *steps) {
-    *steps = round(span / *h);
-    if (span == 0)
-        return true;
-    if (*steps > 0 && fabs(span / *h - *steps) <= whole * *steps) {
-        *h = span / *steps;
-        return true;
-    }
-    *steps = floor(span / *h);
-    return false;
 }
 
 /* Whole steps, and what is left. */

@@ -5,6 +5,7 @@
 #include "system/system_private.h"
 #include "work/ledger_private.h"
 #include "work/transform_private.h"
+#include <math.h>
 
 int nevh_work_fail(nevh_work *w, int status, const char *format, ...) {
     va_list arguments;
@@ -171,4 +172,17 @@ int nevh_work_commit(nevh_work *w, size_t count, double q[], const double dq[],
     add(count, q, dq, compensation_q);
     add(count, p, dp, compensation_p);
     return NEVH_OK;
+}
+
+bool nevh__whole_steps(double span, double *h, double *steps) {
+    static const double near = 1e-9; /* to a whole number, as a part of it */
+    *steps = round(span / *h);
+    if (span == 0)
+        return true;
+    if (*steps > 0 && fabs(span / *h - *steps) <= near * *steps) {
+        *h = span / *steps;
+        return true;
+    }
+    *steps = floor(span / *h);
+    return false;
 }

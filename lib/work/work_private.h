@@ -99,4 +99,8 @@ NEVH__INLINE int nevh__work_run_points(nevh_work *w,
     return NEVH_OK;
 }
 
+/* Of a run of fixed steps: whether whole steps fill the span, h then being
+   adjusted to it; else the whole ones before the rest. */
+bool nevh__whole_steps(double span, double *h, double *steps);
+
 #endif
