@@ -7,6 +7,9 @@
 
 static const double lengths = 3;
 static const double most_work = 6; /* as nevh_counts_seconds */
+/* What is left of an error that a longer run may have: the last bits of h change
+   errors that walk. */
+static const double margin = 0.98;
 
 static row *chosen(const advice *a, const study *l) {
     const row *r = study_cheapest(l, a->target, a->search.by_state);
@@ -37,7 +40,9 @@ static void follow(const advice *a, const plan *longer, row *r) {
     double start = longer->run->t_start;
     promise *made = tool_allocate(1, sizeof *made);
     *made = (promise){
-        .most = a->target, .by_state = a->search.by_state, .until = start};
+        .most = fmax(margin * a->target, study_error(r, a->search.by_state)),
+        .by_state = a->search.by_state,
+        .until = start};
     row copy = again(longer, r, made);
     if (copy.late)
         made->unknown = true;
