@@ -114,10 +114,12 @@ static void take(nevh_ensemble *e, size_t lane, size_t o) {
         r->value = value;
         break;
     case NEVH_OUTCOME_MINIMUM:
-        r->value = l->fresh ? value : fmin(r->value, value);
+        if (l->fresh || isnan(value) || value < r->value)
+            r->value = value;
         break;
     case NEVH_OUTCOME_MAXIMUM:
-        r->value = l->fresh ? value : fmax(r->value, value);
+        if (l->fresh || isnan(value) || value > r->value)
+            r->value = value;
         break;
     case NEVH_OUTCOME_MEAN:
         if (l->fresh)

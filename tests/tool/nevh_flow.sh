@@ -156,4 +156,7 @@ lacks 'keep the area|shrinks|grows'
 sed -i 's/^x = 1/x = 0, 1/; /^V/d' $work/pole.nevh
 exits 2 flow $work/pole.nevh
 says 'no coordinate changes together with its momentum'
+exits 2 flow pendulum --set g=1e200
+says 'pendulum: the orbit fails, so that no shape follows from it: '
+
 exit $status

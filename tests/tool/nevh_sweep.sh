@@ -196,4 +196,10 @@ says 'pendulum: log.-1.: this is not a number'
 exits 2 run pendulum --vary 'phi = 1'
 says '--vary is no option of nevh run; it is for .*sweep'
 
+# An outcome that is undefined along part of an orbit has no value, and is told.
+exits 0 sweep pendulum --vary 'phi=1, 2' --t-end 5 --quiet \
+    --outcomes 'mean(log(phi)),max(log(phi)),min(sqrt(phi)),max(phi)'
+has '^0,ok,1,,,,1$'
+says 'pendulum: 2 of 2 members have no value of an outcome; the first, mean\(log\(phi\)\), is undefined'
+
 exit $status

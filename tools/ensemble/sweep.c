@@ -118,11 +118,34 @@ static void show_progress(sweep_job *j) {
             (double)(members - j->told) / rate);
 }
 
+/* Outcomes of values that may be undefined; others may have no value, as the time
+   of what never happens. */
+static bool is_of_values(const char *outcome) {
+    static const char *const begins[] = {"mean(", "min(", "max(", "last("};
+    for (size_t i = 0; i < sizeof begins / sizeof *begins; i++)
+        if (strncmp(outcome, begins[i], strlen(begins[i])) == 0)
+            return true;
+    return false;
+}
+
+static void count_undefined(sweep_job *j, const nevh_sweep_result *r) {
+    for (size_t k = 0; k < nevh_sweep_columns(j->sweep); k++) {
+        const char *outcome = nevh_sweep_column(j->sweep, k);
+        if (isfinite(r->values[k]) || !is_of_values(outcome))
+            continue;
+        j->outcome = j->outcome ? j->outcome : outcome;
+        j->undefined++;
+        return;
+    }
+}
+
 void sweep_count(sweep_job *j, const nevh_sweep_result *r) {
     j->told++;
     j->failed += r->status == NEVH_MEMBER_FAILED;
     j->startless += r->status == NEVH_MEMBER_NO_START;
-    if (r->status != NEVH_MEMBER_DONE && !j->why)
+    if (r->status == NEVH_MEMBER_DONE)
+        count_undefined(j, r);
+    else if (!j->why)
         j->why = text_print("member %llu: %s", (unsigned long long)r->member,
                             r->message);
     show_progress(j);
@@ -183,6 +206,12 @@ static int tell_failures(const sweep_job *j) {
                     (unsigned long long)nevh_sweep_members(j->sweep),
                     j->failed ? "the first that is not done, " : "the first, ",
                     j->why);
+    if (j->undefined)
+        tool_refuse("%s: %llu of %llu members have no value of an outcome; the "
+                    "first, %s, is undefined at some time",
+                    j->plan.name, (unsigned long long)j->undefined,
+                    (unsigned long long)nevh_sweep_members(j->sweep),
+                    j->outcome);
     return j->failed || j->startless ? TOOL_FAILED : TOOL_OK;
 }
 

@@ -347,10 +347,16 @@ static int measure(const plan *p, extent *e) {
     memcpy(q, p->q, p->n * sizeof *q);
     memcpy(m, p->p, p->n * sizeof *q);
     nevh_observer observer = {widen, e, 1};
-    nevh_run(s, p->run->t_start, p->dt[0], 1000, q, m, &observer, 1);
+    int status =
+        nevh_run(s, p->run->t_start, p->dt[0], 1000, q, m, &observer, 1);
+    status = status && nevh_stepper_status(s) != NEVH_STOPPED
+                 ? tool_refuse("%s: the orbit fails, so that no shape follows "
+                               "from it: %s",
+                               p->name, nevh_stepper_message(s))
+                 : TOOL_OK;
     free(q);
     nevh_stepper_free(s);
-    return TOOL_OK;
+    return status;
 }
 
 /* A cat round the start, a fifth of the orbit in size. */
