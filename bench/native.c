@@ -72,7 +72,7 @@ static inline double roundoff(double sum, double a, double b) {
 }
 
 /* The same with compensated sums. */
-#define COMPENSATED(name, n, force)                                            \
+#define COMPENSATED_LOOP(name, n, force)                                       \
     static void name(const scheme *s, double h, size_t steps, double q[],      \
                      double p[]) {                                             \
         double x[n] = {0}, v[n] = {0}, dx[n] = {0}, dv[n] = {0}, f[n];         \
@@ -100,9 +100,9 @@ static inline double roundoff(double sum, double a, double b) {
             }                                                                  \
         }                                                                      \
     }
-COMPENSATED(pendulum_compensated, 1, pendulum_force)
-COMPENSATED(kepler_compensated, 2, kepler_force)
-COMPENSATED(henon_compensated, 2, henon_force)
+COMPENSATED_LOOP(pendulum_compensated, 1, pendulum_force)
+COMPENSATED_LOOP(kepler_compensated, 2, kepler_force)
+COMPENSATED_LOOP(henon_compensated, 2, henon_force)
 
 static const scheme verlet = {{0.5, 1, 0.5}, 3};
 /* As many stages as rkn11b has; what they weigh does not change the time. */
@@ -304,6 +304,29 @@ static void chain_loop(size_t n, double h, size_t steps, double q[restrict],
     }
 }
 
+/* With compensated sums: what q and p have lost stands in dq and dp. */
+static void chain_compensated(size_t n, double h, size_t steps,
+                              double q[restrict], double p[restrict],
+                              double f[restrict], double dq[restrict],
+                              double dp[restrict]) {
+    chain_force(n, q, f);
+    for (size_t s = 0; s < steps; s++) {
+        for (size_t i = 0; i < n; i++) {
+            dp[i] -= h / 2 * f[i];
+            double d = dq[i] + h * (p[i] + dp[i]), x = q[i] + d,
+                   part = x - q[i];
+            dq[i] = (q[i] - (x - part)) + (d - part);
+            q[i] = x;
+        }
+        chain_force(n, q, f);
+        for (size_t i = 0; i < n; i++) {
+            double d = dp[i] - h / 2 * f[i], v = p[i] + d, part = v - p[i];
+            dp[i] = (p[i] - (v - part)) + (d - part);
+            p[i] = v;
+        }
+    }
+}
+
 /* Seconds of the processor that compiling took. */
 static double compiling(void) {
     struct rusage use;
@@ -324,21 +347,25 @@ static nevh_stepper *chain_stepper(nevh_scene *scene, nevh_native_use use,
     return nevh_stepper_new(nevh_scene_system(scene), nevh_verlet, &o);
 }
 
-/* Nanoseconds of a mass and step: the loop, the tape, compiled. */
-static void time_chain(size_t n, nevh_stepper *const s[2], double *const z[3],
-                       double time[3]) {
+/* Nanoseconds of a mass and step: the tape, compiled, the loops. */
+enum { TAPE, COMPILED, PLAIN, COMPENSATED, CHAINS };
+static void time_chain(size_t n, nevh_stepper *const s[2],
+                       double *const z[CHAINS], double time[CHAINS]) {
     size_t steps = n < 1000000 ? 2000000 / n : 10;
-    double all[3][ROUNDS], *f = calloc(n, sizeof *f);
+    double all[CHAINS][ROUNDS], *f = calloc(3 * n, sizeof *f);
     for (int i = 0; i < ROUNDS; i++)
-        for (int k = 0; k < 3; k++) {
+        for (int k = 0; k < CHAINS; k++) {
             double t = seconds();
-            if (k == 0)
-                chain_loop(n, 0.05, steps, z[0], z[0] + n, f);
+            if (k == PLAIN)
+                chain_loop(n, 0.05, steps, z[k], z[k] + n, f);
+            else if (k == COMPENSATED)
+                chain_compensated(n, 0.05, steps, z[k], z[k] + n, f, f + n,
+                                  f + 2 * n);
             else
-                nevh_run(s[k - 1], 0, 0.05, steps, z[k], z[k] + n, NULL, 0);
+                nevh_run(s[k], 0, 0.05, steps, z[k], z[k] + n, NULL, 0);
             all[k][i] = seconds() - t;
         }
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < CHAINS; k++)
         time[k] = median(all[k]) * 1e9 / (double)n / (double)steps;
     free(f);
 }
@@ -346,7 +373,7 @@ static void time_chain(size_t n, nevh_stepper *const s[2], double *const z[3],
 /* Per mass and step. */
 static void compare_chain(size_t n) {
     char text[500];
-    double *z[3], time[3];
+    double *z[CHAINS], time[CHAINS];
     snprintf(text, sizeof text,
              "[parameters]\nN = %zu\na = 0.25\n[coordinates]\n"
              "x[i = 1..N] = sin(0.6*i)\n[effects]\n"
@@ -355,18 +382,21 @@ static void compare_chain(size_t n) {
              "U = a/3*(x[1]^3 + sum(i = 1..N-1, (x[i+1] - x[i])^3) - x[N]^3)\n",
              n);
     nevh_scene *scene = nevh_scene_parse("chain", text);
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < CHAINS; k++) {
         z[k] = calloc(2 * n, sizeof *z[k]);
-    nevh_scene_start(scene, z[0], z[0] + n);
-    nevh_stepper *s[2] = {chain_stepper(scene, NEVH_NATIVE_NEVER, z[1])};
+        nevh_scene_start(scene, z[k], z[k] + n);
+    }
+    nevh_stepper *s[2] = {chain_stepper(scene, NEVH_NATIVE_NEVER, z[TAPE])};
     double begun = compiling();
-    s[1] = chain_stepper(scene, NEVH_NATIVE_ALWAYS, z[2]);
+    s[COMPILED] = chain_stepper(scene, NEVH_NATIVE_ALWAYS, z[COMPILED]);
     double compiled = compiling() - begun;
     time_chain(n, s, z, time);
-    printf("%zu,verlet,%.2f,%.2f,%.2f,%.2f,%.0f,%s\n", n, time[0], time[1],
-           time[2], time[2] / time[0], compiled * 1e3,
-           nevh_stepper_native(s[1], NULL) ? "yes" : "no");
-    for (int k = 0; k < 3; k++)
+    double own = time[COMPILED];
+    printf("%zu,verlet,%.2f,%.2f,%.2f,%.2f,%.2f,%.2f,%.0f,%s\n", n, time[PLAIN],
+           time[COMPENSATED], time[TAPE], own, own / time[PLAIN],
+           own / time[COMPENSATED], compiled * 1e3,
+           nevh_stepper_native(s[COMPILED], NULL) ? "yes" : "no");
+    for (int k = 0; k < CHAINS; k++)
         free(z[k]);
     nevh_stepper_free(s[0]);
     nevh_stepper_free(s[1]);
@@ -394,8 +424,8 @@ int main(void) {
     compare_lanes("double-pendulum", double_pendulum, "rk4");
     compare_lanes(subjects[0].name, subjects[0].text, "gauss16");
     compare_lanes("double-pendulum", double_pendulum, "gauss16");
-    puts("\nmasses of a chain,integrator,by_hand_ns,tape_ns,exact_ns,"
-         "exact/by_hand,compiling_ms,native");
+    puts("\nmasses of a chain,integrator,by_hand_ns,compensated_ns,tape_ns,"
+         "exact_ns,exact/by_hand,exact/compensated,compiling_ms,native");
     compare_chain(10);
     compare_chain(1000);
     compare_chain(1000000);
