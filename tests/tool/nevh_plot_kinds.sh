@@ -14,7 +14,7 @@ slope() {
     texts | sed -n "s/^$1: slopes* //p" | cut -d , -f $2
 }
 between() {
-    test "$(echo "$2 < $1 && $1 < $3" | bc)" = 1 || fails "has $4 of $1"
+    echo "$1 $2 $3" | awk '{ exit !($2 < $1 && $1 < $3) }' || fails "has $4 of $1"
 }
 
 # The state errors of a harmonic oscillator have the scheme's order, and the
