@@ -156,6 +156,7 @@ lacks 'keep the area|shrinks|grows'
 sed -i 's/^x = 1/x = 0, 1/; /^V/d' $work/pole.nevh
 exits 2 flow $work/pole.nevh
 says 'no coordinate changes together with its momentum'
+# An orbit that fails has the shape of what there is of it.
 exits 2 flow pendulum --set g=1e200
 says 'pendulum: the orbit fails, so that no shape follows from it: '
 

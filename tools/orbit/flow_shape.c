@@ -339,6 +339,14 @@ static int widen(void *data, size_t step, double t, const double q[],
     return 0;
 }
 
+static bool moves(const extent *e) {
+    for (size_t k = 0; k < 2 * e->n; k++)
+        if (e->high[k] > e->low[k])
+            return true;
+    return false;
+}
+
+/* As far as the orbit can be followed. */
 static int measure(const plan *p, extent *e) {
     nevh_stepper *s = plan_first(p, NULL);
     if (!s)
@@ -349,11 +357,12 @@ static int measure(const plan *p, extent *e) {
     nevh_observer observer = {widen, e, 1};
     int status =
         nevh_run(s, p->run->t_start, p->dt[0], 1000, q, m, &observer, 1);
-    status = status && nevh_stepper_status(s) != NEVH_STOPPED
-                 ? tool_refuse("%s: the orbit fails, so that no shape follows "
-                               "from it: %s",
-                               p->name, nevh_stepper_message(s))
-                 : TOOL_OK;
+    if (status && !moves(e))
+        status = tool_refuse("%s: the orbit fails, so that no shape follows "
+                             "from it: %s",
+                             p->name, nevh_stepper_message(s));
+    else
+        status = TOOL_OK;
     free(q);
     nevh_stepper_free(s);
     return status;
@@ -371,9 +380,8 @@ static int choose(shape *c) {
     }
     int status = measure(p, &e);
     size_t k = 0;
-    bool moves = false;
+    bool moved = moves(&e);
     for (; !status && k < p->n; k++) {
-        moves |= e.high[k] > e.low[k] || e.high[p->n + k] > e.low[p->n + k];
         c->width = part * (e.high[k] - e.low[k]);
         c->height = part * (e.high[p->n + k] - e.low[p->n + k]);
         if (c->width > 0 && c->height > 0 && isfinite(c->width * c->height))
@@ -387,7 +395,7 @@ static int choose(shape *c) {
         return tool_refuse("%s: %s: say which shape, as --shape "
                            "'disc(%s = 0, p_%s = 0, 0.1)'",
                            p->name,
-                           moves ? "along the orbit no coordinate changes "
+                           moved ? "along the orbit no coordinate changes "
                                    "together with its momentum"
                                  : "the orbit stays where it starts",
                            nevh_scene_coordinate(p->scene, 0),
