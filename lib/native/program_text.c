@@ -40,35 +40,82 @@ static bool has_word(const char *line, const char *word, size_t length) {
     return false;
 }
 
+/* A line of text before and after names become shorter, and the parentheses that
+   are open: what follows them stands below them. */
+enum { MOST_OPEN = 32 };
+typedef struct {
+    const char *from;
+    char *to;
+    const char *from_line, *to_line; /* where they begin */
+    struct {
+        size_t from, to; /* columns behind it */
+    } open[MOST_OPEN];
+    size_t depth;
+    bool text, comment; /* a string, or a comment: has none */
+} renaming;
+
+static void take_line(renaming *r) {
+    size_t indent = strspn(r->from, " ");
+    r->from_line = r->from;
+    r->to_line = r->to;
+    if (!r->depth || r->depth > MOST_OPEN ||
+        r->open[r->depth - 1].from != indent)
+        return;
+    r->from += indent;
+    memset(r->to, ' ', r->open[r->depth - 1].to);
+    r->to += r->open[r->depth - 1].to;
+}
+
+static void take_character(renaming *r) {
+    char c = *r->from, next = r->from[1];
+    if (r->comment)
+        r->comment = !(c == '*' && next == '/');
+    else if (c == '"' && (r->from == r->from_line || r->from[-1] != '\\'))
+        r->text = !r->text;
+    else if (c == '/' && next == '*')
+        r->comment = true;
+    *r->to++ = *r->from++;
+    if (c == '(' && !r->text && !r->comment) {
+        if (r->depth < MOST_OPEN) {
+            r->open[r->depth].from = (size_t)(r->from - r->from_line);
+            r->open[r->depth].to = (size_t)(r->to - r->to_line);
+        }
+        r->depth++;
+    } else if (c == ')' && !r->text && !r->comment && r->depth)
+        r->depth--;
+    else if (c == '\n')
+        take_line(r);
+}
+
 /* Names without what they have in the library. */
 static void rename_all(char *text) {
     static const struct {
         const char *from, *to;
     } names[] = {{"nevh__number", "double"},
-                 {"NEVH_LANES(", "EACH_LANE("},
+                 {"NEVH_LANES", "EACH_LANE"},
                  {"NEVH__INLINE", "static"},
                  {"nevh__", ""},
                  {"NEVH__", ""},
                  {"NEVH_", ""},
                  {"nevh_", ""}};
-    char *to = text;
+    renaming r = {.from = text, .to = text, .from_line = text, .to_line = text};
     bool begins = true;
-    while (*text) {
+    while (*r.from) {
         size_t i = 0, count = sizeof names / sizeof *names;
         while (i < count &&
-               strncmp(text, names[i].from, strlen(names[i].from)) != 0)
+               strncmp(r.from, names[i].from, strlen(names[i].from)) != 0)
             i++;
         if (!begins || i == count) {
-            begins = !is_word(*text);
-            *to++ = *text++;
+            begins = !is_word(*r.from);
+            take_character(&r);
             continue;
         }
-        text += strlen(names[i].from);
+        r.from += strlen(names[i].from);
         for (const char *c = names[i].to; *c; c++)
-            *to++ = *c;
+            *r.to++ = *c;
         begins = false;
     }
-    *to = '\0';
+    *r.to = '\0';
 }
 
 /* Lines become strings. */
@@ -384,33 +431,67 @@ static void write_main(nevh__writer *w, const nevh_work *work,
     nevh__write(w, "    return print_trajectory(q, p, memory);\n}\n");
 }
 
+/* As a comment of lines that are no longer than those of code. */
+static void write_wrapped(nevh__writer *w, const char *text) {
+    enum { LINE = 78, INDENT = 3 };
+    size_t column = INDENT;
+    nevh__write(w, "/* ");
+    while (*text) {
+        size_t bytes = strcspn(text, " \n"), spaces = strspn(text, " ");
+        if (*text == '\n') {
+            nevh__write(w, text[1] && text[1] != '\n' ? "\n   " : "\n");
+            column = INDENT;
+            text++;
+            continue;
+        }
+        if (spaces)
+            bytes = spaces + strcspn(text + spaces, " \n");
+        if (spaces && column + bytes > LINE) {
+            nevh__write(w, "\n   ");
+            column = INDENT;
+            text += spaces;
+            bytes -= spaces;
+        }
+        nevh__write(w, "%.*s", (int)bytes, text);
+        column += bytes;
+        text += bytes;
+    }
+    nevh__write(w, " */\n");
+}
+
 static void write_comment(nevh__writer *w, const nevh_work *work,
                           const nevh_program *p) {
     const nevh_integrator *x = work->integrator;
-    nevh__write(w, "/* %s: %s\n   Gradient: %s.\n\n   State: ", x->name,
-                x->source, nevh_gradient_name(work->field->gradient));
+    nevh__writer text = {0};
+    nevh__write(&text, "%s: %s\nGradient: %s.\n\nState: ", x->name, x->source,
+                nevh_gradient_name(work->field->gradient));
     for (size_t k = 0; k < work->n && k < 8; k++) {
-        nevh__write(w, "%sq[%zu] is ", k ? ", " : "", k);
-        nevh__write_word(w, p->names[k]);
-        nevh__write(w, " and p[%zu] its momentum", k);
+        nevh__write(&text, "%sq[%zu] is ", k ? ", " : "", k);
+        nevh__write_word(&text, p->names[k]);
+        nevh__write(&text, " and p[%zu] its momentum", k);
     }
-    nevh__write(w,
-                "%s.  Sums are compensated:\n   what rounding has lost is "
-                "added to the next step.\n\n   %s */\n",
-                work->n > 8 ? " and so on" : "",
-                p->functions && work->integrator->own_time
-                    ? "advance takes up to `steps` steps of h, and returns how "
-                      "many; time goes its own way, and ends at t_end;\n   "
-                      "double memory[MEMORY] is its memory, zeros at the start."
-                : p->functions
-                    ? "advance takes `steps` steps of h, the first "
-                      "being number `from`, and returns how many;\n   "
-                      "double memory[MEMORY] is its memory, zeros at the start."
-                : p->energy_scale > 0
-                    ? "cc -O2 -ffp-contract=off -o prog THIS.c -lm\n"
-                      "   ./prog prints the trajectory, ./prog energy the "
-                      "errors of the energy."
-                    : "cc -O2 -ffp-contract=off -o prog THIS.c -lm");
+    nevh__write(
+        &text,
+        "%s.  Sums are compensated: what rounding has lost is added to the next "
+        "step.\n\n%s",
+        work->n > 8 ? " and so on" : "",
+        p->functions && work->integrator->own_time
+            ? "advance takes up to `steps` steps of h, and returns how many; "
+              "time goes its own way, and ends at t_end.\n"
+              "double memory[MEMORY] is its memory, zeros at the start."
+        : p->functions
+            ? "advance takes `steps` steps of h, the first being number `from`, "
+              "and returns how many.\n"
+              "double memory[MEMORY] is its memory, zeros at the start."
+        : p->energy_scale > 0
+            ? "cc -O2 -ffp-contract=off -o prog THIS.c -lm\n"
+              "./prog prints the trajectory, ./prog energy the errors of the "
+              "energy."
+            : "cc -O2 -ffp-contract=off -o prog THIS.c -lm");
+    w->failed |= text.failed;
+    if (!text.failed)
+        write_wrapped(w, text.text);
+    nevh__writer_free(&text);
 }
 
 static const char includes[] = "#include <math.h>\n"

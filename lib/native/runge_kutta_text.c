@@ -3,6 +3,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "kernels/runge_kutta_private.h"
 #include "native/native_private.h"
+#include "native/slope_private.h"
 #include <stdio.h>
 
 static const char slope[] =
@@ -171,7 +172,7 @@ bool nevh__write_runge_kutta(nevh__writer *w, nevh_work *work) {
     const nevh_butcher *table = work->integrator->table;
     bool adapts = nevh__adapts(work);
     size_t stages = adapts ? table->stages : stages_of(table);
-    nevh__write_in_groups(w, work->field, 2 * stages);
+    w->group = nevh__vectors_at_once(w, work->field, 2 * stages);
     nevh__write_needs(w, work->n, false, true);
     if (!nevh__write_slopes(w, work->field, stages))
         return false;

@@ -84,18 +84,20 @@ static bool calls_functions(const nevh__tape *tape) {
 /* Measured on the pendulum, Kepler's problem, Henon-Heiles and the double pendulum:
    where a step has but two slopes it fits the registers, unless it calls functions;
    points of differences are many vectors already. */
-bool nevh__slopes_of_two(nevh__writer *w, const nevh_field *f, size_t slopes) {
+size_t nevh__vectors_at_once(const nevh__writer *w, const nevh_field *f,
+                             size_t slopes) {
     double operations = 0;
     bool calls = false;
     if (w->by_lane || w->width % (2 * NEVH__LANES) != 0)
-        return false;
+        return 1;
     for (size_t i = 0; i < f->n_terms; i++) {
         const nevh_term *is = &f->terms[i].term->decl;
         if (!nevh__is_tape(is))
-            return false;
+            return 1;
         operations += (double)is->count * (double)nevh__tape_length(is->params);
         calls |= calls_functions(is->params);
     }
-    return operations <= MOST_OF_TWO &&
-           (slopes > 2 || (calls && f->gradient == nevh_exact));
+    bool two = operations <= MOST_OF_TWO &&
+               (slopes > 2 || (calls && f->gradient == nevh_exact));
+    return two ? 2 : 1;
 }

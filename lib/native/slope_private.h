@@ -87,9 +87,10 @@ static inline bool nevh__side_by_side(const nevh__writer *w,
 /* Whether the text of slopes that are called so often is short enough; else
    w->refusal. */
 bool nevh__slopes_fit(nevh__writer *, const nevh_field *, size_t calls);
-/* Whether a step of so many slopes takes two vectors of orbits at once: one waits
-   while the other is at it. */
-bool nevh__slopes_of_two(nevh__writer *, const nevh_field *, size_t slopes);
+/* How many vectors of orbits a step of so many slopes takes at once, 1 or 2: one
+   waits while the other is at it. */
+size_t nevh__vectors_at_once(const nevh__writer *, const nevh_field *,
+                             size_t slopes);
 /* Whether a term is a loop where w->loops is set. */
 bool nevh__is_loop(const nevh__planned *);
 /* "if (...) {": whether any of a term's slopes are asked for. */

@@ -415,7 +415,7 @@ static bool write_term(sum *s) {
 
 static const char slope_begins[] =
     "$1 $2 $3($4$5 t, const $2 *q, const $2 *p,\n"
-    "        $2 *slope) {\n    $2 bad = {0};\n";
+    "$6$2 *slope) {\n    $2 bad = {0};\n";
 /* Numbers of vectors in which the state stands. */
 static const char loops_begin[] =
     "SLOPE double $3(const double *N, double t, const wide *points,\n"
@@ -428,14 +428,17 @@ static const char loops_begin[] =
 static void write_head(nevh__writer *w, const nevh_field *f, bool kick,
                        const char *name) {
     bool vectors = w->loops && !w->readable;
+    char below[NEVH__NAME]; /* the parenthesis */
+    snprintf(below, sizeof below, "%*s",
+             (int)(strlen("static double (") + strlen(name)), "");
     if (w->readable)
         nevh__write(w, "/* %s at t, q, p. */\n", kick ? "dH/dq" : "dH/dp");
     nevh__write_filled(
         w, vectors ? loops_begin : slope_begins,
-        (const char *const[]){w->readable ? "static" : "SLOPE",
-                              nevh__number_type(w), name,
-                              w->readable ? "" : "const double *N, ",
-                              w->stages && !w->readable ? "wide" : "double"});
+        (const char *const[]){
+            w->readable ? "static" : "SLOPE", nevh__number_type(w), name,
+            w->readable ? "" : "const double *N, ",
+            w->stages && !w->readable ? "wide" : "double", below});
     if (w->readable)
         nevh__write(w, "    (void)t, (void)q, (void)p;\n");
     nevh__write_state_names(w, f);

@@ -3,6 +3,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "kernels/splitting_private.h"
 #include "native/native_private.h"
+#include "native/slope_private.h"
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -266,7 +267,7 @@ bool nevh__write_splitting(nevh__writer *w, nevh_work *work) {
     snprintf(number, sizeof number, "%zu", count);
     const char *keep = keeps ? "true" : "false",
                *kick = kicks ? "true" : "false";
-    nevh__write_in_groups(w, work->field, keeps ? count - 1 : count);
+    w->group = nevh__vectors_at_once(w, work->field, keeps ? count - 1 : count);
     nevh__write_needs(w, work->n, true, false);
     if (!nevh__write_slopes(w, work->field, 2))
         return false;

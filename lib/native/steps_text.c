@@ -247,11 +247,6 @@ static const char at_in_group[] =
     "#define AT(x, row, b) (*(nevh__number *)((x) + ((row) / DOF * ONE + (row) % "
     "ONE) * WIDTH + ((b) * GROUP + (row) % DOF / ONE) * LANES))\n";
 
-void nevh__write_in_groups(nevh__writer *w, const nevh_field *f,
-                           size_t slopes) {
-    w->group = nevh__slopes_of_two(w, f, slopes) ? 2 : 1;
-}
-
 void nevh__write_needs(nevh__writer *w, size_t n, bool finite, bool sums) {
     if (w->readable) {
         nevh__write(w, "enum { DOF = %zu };\n\n%s%s%s", n, needs_of_readers,

@@ -163,11 +163,7 @@ void nevh__derivative_name(const nevh__formula_text *, nevh__variable, size_t k,
 /* What formulas need before them. */
 void nevh__write_prelude(nevh__writer *);
 
-/* What a step of so many slopes takes at once is w->group: families then go
-   through all its vectors, ONE numbers each, where they take slopes.  Before
-   nevh__write_needs. */
-void nevh__write_in_groups(nevh__writer *, const nevh_field *, size_t slopes);
-/* What kernels' texts need; finite: nevh__not_finite, sums: stage_sums.  DOF is the
+/* After w->group was chosen: what kernels' texts need; finite: nevh__not_finite, sums: stage_sums.  DOF is the
    numbers of a half of a step's state. */
 void nevh__write_needs(nevh__writer *, size_t n, bool finite, bool sums);
 /* A list of sums over stages, "sums": the weights of each that are not 0, and

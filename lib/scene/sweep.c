@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { VARIED = -1 }; /* no outcome */
+
 static int out_of_memory(nevh_sweep *s) {
     return nevh__fail(&s->report, NEVH_ENOMEM, "out of memory");
 }
@@ -28,16 +30,20 @@ static bool name_state(nevh_sweep *s) {
 
 static bool name_columns(nevh_sweep *s) {
     const nevh__scene_ensemble *e = s->ensemble;
-    for (size_t i = 0; i < e->n_varied; i++)
+    for (size_t i = 0; i < e->n_varied; i++) {
+        s->kinds[i] = VARIED;
         if (!name_column(s, "%s", e->varied[i].name))
             return false;
+    }
     for (size_t i = 0; i < s->n_outcomes; i++) {
         const nevh__scene_outcome *o = &s->outcomes[i];
-        s->verdicts[s->columns] = o->kind == NEVH_OUTCOME_VERDICT;
+        size_t first = s->columns;
         if (o->kind == NEVH_OUTCOME_STATE
                 ? !name_state(s)
                 : !name_column(s, "%s", o->piece.text))
             return false;
+        for (size_t k = first; k < s->columns; k++)
+            s->kinds[k] = (int)o->kind;
     }
     return true;
 }
@@ -65,8 +71,8 @@ static int take_outcomes(nevh_sweep *s) {
     }
     size_t most = e->n_varied + s->n_outcomes * 2 * s->scene->model->n;
     s->names = nevh__array(most, sizeof *s->names);
-    s->verdicts = nevh__array(most, sizeof *s->verdicts);
-    if (!s->names || !s->verdicts || !name_columns(s))
+    s->kinds = nevh__array(most, sizeof *s->kinds);
+    if (!s->names || !s->kinds || !name_columns(s))
         return out_of_memory(s);
     return check_names(s);
 }
@@ -140,7 +146,7 @@ void nevh_sweep_free(nevh_sweep *s) {
     for (size_t i = 0; i < s->columns; i++)
         free(s->names[i]);
     free(s->names);
-    free(s->verdicts);
+    free(s->kinds);
     pthread_mutex_destroy(&s->lock);
     pthread_cond_destroy(&s->moved);
     free(s);
@@ -179,7 +185,15 @@ const char *nevh_sweep_column(const nevh_sweep *s, size_t k) {
 bool nevh_sweep_is_verdict(const nevh_sweep *s, size_t k) {
     if (!s)
         return false;
-    return k < s->columns && s->verdicts[k];
+    return k < s->columns && s->kinds[k] == NEVH_OUTCOME_VERDICT;
+}
+
+bool nevh_sweep_is_of_values(const nevh_sweep *s, size_t k) {
+    if (!s || k >= s->columns)
+        return false;
+    int kind = s->kinds[k];
+    return kind == NEVH_OUTCOME_LAST || kind == NEVH_OUTCOME_MINIMUM ||
+           kind == NEVH_OUTCOME_MAXIMUM || kind == NEVH_OUTCOME_MEAN;
 }
 
 bool nevh_sweep_native(const nevh_sweep *s, const char **why) {

@@ -38,7 +38,7 @@ struct nevh_sweep {
     const nevh__scene_outcome *outcomes;
     size_t n_outcomes, columns;
     char **names; /* columns */
-    bool *verdicts;
+    int *kinds;   /* nevh_outcome_kind; VARIED of what is varied */
     nevh__report report;
     bool native; /* steps of the scene as it is are compiled; else why not */
     char why_native[400];

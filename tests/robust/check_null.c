@@ -233,6 +233,7 @@ static nevh_separability separability;
     X(NUMBER, nevh_sweep_columns, (NULL))                                      \
     X(NUMBER, nevh_sweep_varied, (NULL))                                       \
     X(TEXT, nevh_sweep_column, (NULL, 0))                                      \
+    X(NUMBER, nevh_sweep_is_of_values, (NULL, 0))                              \
     X(NUMBER, nevh_sweep_is_verdict, (NULL, 0))                                \
     X(STATUS, nevh_sweep_run, (NULL, 0, 0, NULL, NULL, NULL))                  \
     X(STATUS, nevh_sweep_run_chunks, (NULL, NULL, NULL, NULL, NULL, NULL))     \

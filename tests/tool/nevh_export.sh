@@ -26,6 +26,13 @@ same() {
 exits 0 export pendulum
 has '^#include <math\.h>'
 lacks 'nevh/'
+# Names are shorter than in the library, and lines go on below their parentheses.
+exits 0 export pendulum --integrators blanes-moan4
+awk '/\*\// { exit } length > 80' $work/out | grep . && fails 'begins with long lines'
+awk '/^static .*\([^()]*,$/ { column = index($0, "("); next }
+     column && match($0, /[^ ]/) != column + 1 { print; wrong = 1 }
+     { column = 0 }
+     END { exit !wrong }' $work/out && fails 'has lines that are not aligned'
 if ${CC:-cc} --version >/dev/null 2>&1; then
     same pendulum 1 verlet central4 0.1 30 7
     same pendulum 1 forest-ruth complex-step 0.05 10 10

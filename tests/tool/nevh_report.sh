@@ -130,6 +130,7 @@ says 'no option of nevh compare'
 exits 0 report pendulum -o $work/variants.html --variant l=1 --variant l=2,m=3 \
     --set g=9 --t-end 2
 cp $work/variants.html $work/out
+has '<h1>Pendulum[^<]*, but g=9</h1>'
 has '<h2>Energy errors: l=1</h2>'
 has '<h2>Energy errors: l=2,m=3</h2>'
 has '<code>nevh check pendulum --set g=9 --set l=2 --set m=3 --t-end 2</code>'

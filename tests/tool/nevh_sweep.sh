@@ -201,5 +201,11 @@ exits 0 sweep pendulum --vary 'phi=1, 2' --t-end 5 --quiet \
     --outcomes 'mean(log(phi)),max(log(phi)),min(sqrt(phi)),max(phi)'
 has '^0,ok,1,,,,1$'
 says 'pendulum: 2 of 2 members have no value of an outcome; the first, mean\(log\(phi\)\), is undefined'
+exits 0 sweep pendulum --vary 'phi=1, 2' --t-end 5 --quiet \
+    --outcomes 'max( log(phi) )' -o $work/undefined.npy
+says 'pendulum: 2 of 2 members have no value of an outcome; the first, max'
+exits 0 sweep pendulum --vary 'phi=1' --t-end 5 --quiet \
+    --outcomes 'first(phi > 9),period' -o $work/never.npy
+test -s $work/err && fails "says that something is undefined"
 
 exit $status

@@ -118,22 +118,11 @@ static void show_progress(sweep_job *j) {
             (double)(members - j->told) / rate);
 }
 
-/* Outcomes of values that may be undefined; others may have no value, as the time
-   of what never happens. */
-static bool is_of_values(const char *outcome) {
-    static const char *const begins[] = {"mean(", "min(", "max(", "last("};
-    for (size_t i = 0; i < sizeof begins / sizeof *begins; i++)
-        if (strncmp(outcome, begins[i], strlen(begins[i])) == 0)
-            return true;
-    return false;
-}
-
-static void count_undefined(sweep_job *j, const nevh_sweep_result *r) {
+void sweep_check_values(sweep_job *j, const double values[]) {
     for (size_t k = 0; k < nevh_sweep_columns(j->sweep); k++) {
-        const char *outcome = nevh_sweep_column(j->sweep, k);
-        if (isfinite(r->values[k]) || !is_of_values(outcome))
+        if (isfinite(values[k]) || !nevh_sweep_is_of_values(j->sweep, k))
             continue;
-        j->outcome = j->outcome ? j->outcome : outcome;
+        j->outcome = j->outcome ? j->outcome : nevh_sweep_column(j->sweep, k);
         j->undefined++;
         return;
     }
@@ -143,9 +132,7 @@ void sweep_count(sweep_job *j, const nevh_sweep_result *r) {
     j->told++;
     j->failed += r->status == NEVH_MEMBER_FAILED;
     j->startless += r->status == NEVH_MEMBER_NO_START;
-    if (r->status == NEVH_MEMBER_DONE)
-        count_undefined(j, r);
-    else if (!j->why)
+    if (r->status != NEVH_MEMBER_DONE && !j->why)
         j->why = text_print("member %llu: %s", (unsigned long long)r->member,
                             r->message);
     show_progress(j);
@@ -173,6 +160,8 @@ static int run_all(sweep_job *j, nevh_sweep_fn done) {
 static int take_row(void *data, const nevh_sweep_result *r) {
     sweep_job *j = data;
     sweep_count(j, r);
+    if (r->status == NEVH_MEMBER_DONE)
+        sweep_check_values(j, r->values);
     map_take(j->map, r->member, r->status, r->values);
     return 0;
 }
@@ -194,6 +183,14 @@ static int print_row(void *data, const nevh_sweep_result *r) {
     return ferror(f);
 }
 
+void sweep_tell_undefined(const sweep_job *j) {
+    if (j->undefined)
+        tool_refuse("%s: %llu of %llu members have no value of an outcome; the "
+                    "first, %s, is undefined at some time",
+                    j->plan.name, (unsigned long long)j->undefined,
+                    (unsigned long long)j->count, j->outcome);
+}
+
 /* Members that are not done are told of, never dropped. */
 static int tell_failures(const sweep_job *j) {
     if (j->failed)
@@ -206,12 +203,7 @@ static int tell_failures(const sweep_job *j) {
                     (unsigned long long)nevh_sweep_members(j->sweep),
                     j->failed ? "the first that is not done, " : "the first, ",
                     j->why);
-    if (j->undefined)
-        tool_refuse("%s: %llu of %llu members have no value of an outcome; the "
-                    "first, %s, is undefined at some time",
-                    j->plan.name, (unsigned long long)j->undefined,
-                    (unsigned long long)nevh_sweep_members(j->sweep),
-                    j->outcome);
+    sweep_tell_undefined(j);
     return j->failed || j->startless ? TOOL_FAILED : TOOL_OK;
 }
 

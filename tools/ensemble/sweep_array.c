@@ -84,12 +84,25 @@ static int keep(void *data, const nevh_sweep_result *r) {
     return 0;
 }
 
+static void take_values(const store *s, uint64_t i, double values[]) {
+    memcpy(values, s->map + s->header + i * s->record + 8,
+           s->columns->count * sizeof *values);
+}
+
 /* What the file has, of all times that it was gone on with. */
-static int tell_array(const sweep_job *j) {
+static int tell_array(sweep_job *j) {
     uint64_t have[4] = {0};
     const store *s = &j->store;
-    for (uint64_t i = 0; i < s->count; i++)
-        have[store_status(s, s->first + i) & 3]++;
+    double *values = tool_allocate(s->columns->count, sizeof *values);
+    for (uint64_t i = 0; i < s->count; i++) {
+        nevh_member_status status = store_status(s, s->first + i);
+        have[status & 3]++;
+        take_values(s, i, values);
+        if (status == NEVH_MEMBER_DONE)
+            sweep_check_values(j, values);
+    }
+    free(values);
+    sweep_tell_undefined(j);
     if (have[NEVH_MEMBER_FAILED] || have[NEVH_MEMBER_NO_START])
         tool_refuse("%s: of %" PRIu64 " members %" PRIu64 " failed and %" PRIu64
                     " have no start: see %s",
@@ -201,8 +214,7 @@ static int draw_array(sweep_job *j, int status) {
     const store *s = &j->store;
     double *values = tool_allocate(j->columns.count, sizeof *values);
     for (uint64_t i = 0; i < s->count; i++) {
-        memcpy(values, s->map + s->header + i * s->record + 8,
-               j->columns.count * sizeof *values);
+        take_values(s, i, values);
         if (store_status(s, s->first + i) != NEVH_MEMBER_MISSING)
             map_take(j->map, s->first + i, store_status(s, s->first + i),
                      values);

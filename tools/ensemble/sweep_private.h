@@ -30,6 +30,10 @@ typedef struct {
 void sweep_begin(sweep_job *);
 /* A member is done: it counts, and progress is shown. */
 void sweep_count(sweep_job *, const nevh_sweep_result *);
+/* The outcomes of a member that is done: whether any is undefined. */
+void sweep_check_values(sweep_job *, const double values[]);
+/* On stderr, where there are such. */
+void sweep_tell_undefined(const sweep_job *);
 /* status   of nevh_sweep_run
    returns  TOOL_OK, also where the run was stopped, or TOOL_USAGE with the
             message printed */

@@ -205,11 +205,9 @@ static char *change_of(const char *setting) {
     return text_print("%.*s changed", (int)strcspn(text, " =["), text);
 }
 
-/* What options change follows the scene's own title, which may tell of what was
-   there before. */
-static char *title_of(const plan *p, const options *o) {
-    const char *own = nevh_scene_title(p->scene);
-    char *title = text_print("%s", *own ? own : p->name);
+char *plan_title(const nevh_scene *scene, const char *name, const options *o) {
+    const char *own = nevh_scene_title(scene);
+    char *title = text_print("%s", *own ? own : name);
     for (size_t i = 0; i < o->settings.count; i++) {
         char *change = change_of(o->settings.item[i]);
         char *longer = text_print("%s%s%s", title, i ? ", " : ", but ", change);
@@ -228,7 +226,7 @@ int plan_make(plan *p, const options *o) {
     take_settings(p, o);
     if (take_times(p, o))
         return TOOL_USAGE;
-    p->title = title_of(p, o);
+    p->title = plan_title(p->scene, p->name, o);
     if (start(p, o))
         return TOOL_USAGE;
     take_lists(p, o);

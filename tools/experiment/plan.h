@@ -45,6 +45,8 @@ typedef struct {
     bool promises;           /* rows tell how long they keep what they should */
     stepper_cache *steppers; /* of steppers */
 } plan;
+/* The scene's own title, else its name, and what options change; to be freed. */
+char *plan_title(const nevh_scene *, const char *name, const options *);
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int plan_make(plan *, const options *);
 void plan_free(plan *);

@@ -303,7 +303,9 @@ static int add_scene(report_work *w, const options *o, char *name, FILE *f) {
     variants all;
     int status = variants_open(&all, o, name);
     if (!status) {
-        html_title(f, all.item->scene, name);
+        char *title = plan_title(all.item->scene, name, o);
+        html_title(f, all.item->scene, title);
+        free(title);
         html_side_by_side(f, all.count, true);
         for (size_t i = 0; i < all.count; i++)
             html_scene(f, all.item[i].scene, all.item[i].name);

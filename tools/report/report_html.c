@@ -179,11 +179,10 @@ static void put_equation(FILE *f, const nevh_scene *scene, size_t i) {
     free(math);
 }
 
-void html_title(FILE *f, const nevh_scene *scene, const char *name) {
-    const char *title = nevh_scene_title(scene);
+void html_title(FILE *f, const nevh_scene *scene, const char *title) {
     const char *source = nevh_scene_source(scene);
     fputs("<h1>", f);
-    html_text(f, *title ? title : name);
+    html_text(f, title);
     fputs("</h1>\n", f);
     if (*source) {
         fputs("<p>Source: ", f);

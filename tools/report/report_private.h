@@ -48,7 +48,7 @@ void html_undrawn(FILE *);
    told    notes that parts before it have, and then its own */
 void html_part(FILE *, const report_part *, size_t number, list *told);
 /* Title and source. */
-void html_title(FILE *, const nevh_scene *, const char *name);
+void html_title(FILE *, const nevh_scene *, const char *title);
 /* The lines that say what H is.  name: of the variant; NULL: there is one. */
 void html_scene(FILE *, const nevh_scene *, const char *name);
 void html_foot(FILE *);
