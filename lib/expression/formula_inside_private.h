@@ -119,7 +119,7 @@ typedef struct {
     nevh__tree *tree;
     size_t next; /* of the same chain, from 1; 0: none */
 } nevh__entry;
-enum { NEVH__CHAINS = 512 };
+enum { NEVH__CHAINS = 4096 };
 struct nevh__names {
     nevh__entry *entries;
     size_t count;

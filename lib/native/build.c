@@ -99,6 +99,9 @@ static void tell(const nevh__compiler_output *output, int status,
                  char why[NEVH__WHY_NATIVE]) {
     if (output->interrupted)
         snprintf(why, NEVH__WHY_NATIVE, "a signal ended the compiler");
+    else if (output->late)
+        snprintf(why, NEVH__WHY_NATIVE,
+                 "the C compiler took more than two minutes");
     else if (status == NEVH__NO_COMPILER)
         snprintf(why, NEVH__WHY_NATIVE,
                  "there is no C compiler: install one, or name it in the "

@@ -22,7 +22,9 @@
 
 extern char **environ;
 
-enum { LOOKS_APART = 20, PATIENCE = 2000 }; /* milliseconds */
+/* Milliseconds: between looks, for a compiler to end that was asked to, and for
+   any to compile. */
+enum { LOOKS_APART = 20, PATIENCE = 2000, LONGEST = 120000 };
 static const int minded[] = {SIGHUP, SIGINT, SIGQUIT, SIGTERM};
 enum { MINDED = sizeof minded / sizeof *minded };
 
@@ -136,12 +138,13 @@ static bool has_ended(int pipe, nevh__compiler_output *output) {
 }
 
 /* Reads until all of the group have ended, which is when nobody holds the
-   pipe, or until `give_up` milliseconds have passed; 0: until a signal comes. */
+   pipe, until `give_up` milliseconds have passed, or until a signal comes;
+   before  NULL: signals are not looked for */
 static bool listen_to(int pipe, const sigset_t *before, int give_up,
                       nevh__compiler_output *output) {
     struct pollfd look = {.fd = pipe, .events = POLLIN};
     for (int waited = 0;
-         give_up ? waited < give_up : !is_interrupted(before);) {
+         waited < give_up && !(before && is_interrupted(before));) {
         int ready = poll(&look, 1, LOOKS_APART);
         if (ready > 0 && has_ended(pipe, output))
             return true;
@@ -151,12 +154,11 @@ static bool listen_to(int pipe, const sigset_t *before, int give_up,
     return false;
 }
 
-static void end_group(pid_t group, int pipe, const sigset_t *before,
-                      nevh__compiler_output *output) {
+static void end_group(pid_t group, int pipe, nevh__compiler_output *output) {
     kill(-group, SIGTERM);
-    if (!listen_to(pipe, before, PATIENCE, output))
+    if (!listen_to(pipe, NULL, PATIENCE, output))
         kill(-group, SIGKILL);
-    listen_to(pipe, before, PATIENCE, output);
+    listen_to(pipe, NULL, PATIENCE, output);
 }
 
 /* returns  its exit status, or -1 */
@@ -180,9 +182,11 @@ static int run(char *const arguments[], char *const environment[],
         status = wrong == ENOENT ? NEVH__NO_COMPILER : -1;
     close(ends[1]);
     if (!wrong) {
-        output->interrupted = !listen_to(ends[0], before, 0, output);
-        if (output->interrupted)
-            end_group(child, ends[0], before, output);
+        if (!listen_to(ends[0], before, LONGEST, output)) {
+            output->interrupted = is_interrupted(before);
+            output->late = !output->interrupted;
+            end_group(child, ends[0], output);
+        }
         status = await(child);
     }
     close(ends[0]);

@@ -12,6 +12,7 @@ typedef struct {
     char text[NEVH__MOST_OUTPUT + 1]; /* the beginning of what it says */
     size_t used;
     bool interrupted; /* by a signal, which is still pending */
+    bool late;        /* ended after two minutes */
 } nevh__compiler_output;
 /* Between these the calling thread gets none of the signals that end a process
    from outside.

@@ -34,6 +34,8 @@ static const char *load(const char *path, const char *folder,
     int status = nevh__compile(flags, path, object, folder, before, &output);
     if (output.interrupted)
         return "%s was not compiled: a signal ended its compiler";
+    if (output.late)
+        return "%s was not compiled: the C compiler took more than two minutes";
     if (status == NEVH__NO_COMPILER)
         return "%s needs a C compiler, and there is none: install one, or name "
                "it in the environment, CC=...";

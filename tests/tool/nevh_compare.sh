@@ -158,6 +158,7 @@ holds newtons '$1 == 0 && $2 == 0'
 holds change_momentum '$1 < 1e-12 && $2 > 1e-8'
 holds straightness '$1 >= 0 && $1 <= 1'
 exits 0 compare kepler --t-end 10 --dt 0.02 --integrators gauss4 --diagnostics
+has '^changes of invariants are absolute'
 has 'symplecticity'
 has 'change of'
 # What steps keep instead of H: of a shadow, which falls with dt^4.

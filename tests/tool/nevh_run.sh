@@ -75,6 +75,7 @@ has '^# set: l=2'
 has 'off: gravity'
 exits 0 run pendulum --t-end 1 --samples 3 --format table
 has '^ +t +phi +p_phi +x +y +energy$'
+has '^ *0\.5 +0\.[0-9]{7,10} '
 exits 0 run pendulum --t-end 1 --samples 3 --format json
 has '^    \{"t": 0\.5, "phi": '
 if command -v python3 >/dev/null 2>&1; then

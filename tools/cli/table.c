@@ -59,11 +59,15 @@ void table_text(table *t, const char *text) {
     add(t, text ? TABLE_TEXT : TABLE_EMPTY, text ? text : "");
 }
 
+void table_round(table *t) {
+    t->rounds = true;
+}
+
 /* The shortest of 15 to 17 digits that is the number again. */
 void table_number(table *t, double number) {
     char text[40] = "";
     for (int digits = 15; digits <= 17; digits++) {
-        snprintf(text, sizeof text, "%.*g", digits, number);
+        snprintf(text, sizeof text, "%.*g", t->rounds ? 10 : digits, number);
         if (strtod(text, NULL) == number)
             break;
     }

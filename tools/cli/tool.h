@@ -101,7 +101,8 @@ void table_key(table *);
 /* The next cell of the row.  NULL, and numbers that are not finite, leave it
    empty. */
 void table_text(table *, const char *text);
-void table_number(table *, double number); /* all its digits */
+void table_number(table *, double number); /* all its digits, */
+void table_round(table *);                 /* or, from here on, ten */
 /* A number as it is to be shown, set to the right. */
 __attribute__((format(printf, 2, 3))) void table_shown(table *,
                                                        const char *format, ...);

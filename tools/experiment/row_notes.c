@@ -160,6 +160,10 @@ void row_notes(const options *o, const plan *p, const row rows[], size_t count,
     note_scale(p, rows, count, notes);
     note_balance(p, notes);
     note_rows(p, rows, count, notes);
+    if (p->diagnostics &&
+        nevh_scene_shown_count(p->scene, NEVH_INVARIANTS) > 0)
+        list_add(notes, "changes of invariants are absolute: the largest "
+                        "|I(t) - I(0)|");
     stop_notes(p, rows, count, notes);
     native_notes(p, rows, count, notes);
 }

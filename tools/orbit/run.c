@@ -268,6 +268,8 @@ static int write_lines(job *j) {
 
 static int write_page(job *j, page *result) {
     result->table = table_new();
+    if (j->options->format == FORMAT_TABLE)
+        table_round(result->table);
     trajectory_header(j->trajectory);
     int status = follow(j, NULL);
     if (status == TOOL_USAGE)

@@ -371,6 +371,8 @@ static int print(const job *j, const options *o, int status) {
     page result = {.table = table_new()};
     options as = with_format(o);
     list items = {0};
+    if (as.format == FORMAT_TABLE)
+        table_round(result.table);
     if (!(o->quiet && as.format == FORMAT_TABLE))
         note(j, o, &result.before);
     for (size_t i = 0; i < 3; i++)
