@@ -68,10 +68,11 @@ test "$(grep -c '^unset multiplot' $work/out.gp)" = 101 ||
 for t in 0.0 15.0 30.0; do
     grep -q "t = $t" $work/out.gp || fails "has no frame of t = $t"
 done
-# The bobs are the second and the fourth series of a frame.
+# The bodies are the third and the seventh series of a frame: tracks and bobs, and the
+# centre's.
 awk '/^\$series/ { n = $1 } /^EOD/ { n = "" }
-    n == "$series2" && NF == 2 { a = $1; b = $2 }
-    n == "$series4" && NF == 2 { frame++; d = sqrt((a - $1)^2 + (b - $2)^2)
+    n == "$series3" && NF == 2 { a = $1; b = $2 }
+    n == "$series7" && NF == 2 { frame++; d = sqrt((a - $1)^2 + (b - $2)^2)
         if (frame == 1) first = d }
     END { exit !(frame == 101 && first == 0 && d > 0.3) }' $work/out.gp ||
     fails "draws other orbits"
