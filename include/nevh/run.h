@@ -133,6 +133,11 @@ NEVH_API bool nevh_stepper_native(const nevh_stepper *, const char **why);
    steps    nevh_options.steps_foreseen; fewer than before change nothing
    returns  whether they make up for compiling, and are compiled */
 NEVH_API bool nevh_stepper_foresee(nevh_stepper *, double steps);
+/* The same of several steppers, some of which may be NULL: compilers work side by
+   side, as many as there are processors, where what they make is kept.  A table of
+   four schemes waits for two compilers in turn on two processors, not for four. */
+NEVH_API void nevh_steppers_foresee(nevh_stepper *const[], size_t count,
+                                    double steps);
 /* Seconds that compiling would save: about what so many steps take from formulas,
    each time that what is compiled is used, less the time of the compiler.  Of several
    steppers that are to be compiled together, or not at all, the sum decides.

@@ -95,78 +95,156 @@ static const char *first_error(const char *text) {
     return error ? error + sizeof mark - 1 : text;
 }
 
-static void tell(const nevh__compiler_output *output, int status,
-                 char why[NEVH__WHY_NATIVE]) {
-    if (output->interrupted)
+static void tell(const nevh__compiling *run, char why[NEVH__WHY_NATIVE]) {
+    if (run->output.interrupted)
         snprintf(why, NEVH__WHY_NATIVE, "a signal ended the compiler");
-    else if (output->late)
+    else if (run->output.late)
         snprintf(why, NEVH__WHY_NATIVE,
                  "the C compiler took more than two minutes");
-    else if (status == NEVH__NO_COMPILER)
+    else if (run->status == NEVH__NO_COMPILER)
         snprintf(why, NEVH__WHY_NATIVE,
                  "there is no C compiler: install one, or name it in the "
                  "environment, CC=...");
     else {
-        const char *error = first_error(output->text);
+        const char *error = first_error(run->output.text);
         snprintf(why, NEVH__WHY_NATIVE, "the C compiler fails: %.*s",
                  (int)strcspn(error, "\n"), error);
     }
 }
 
-static bool compile(const char *source, const char *const flags[],
-                    const char *folder, const char *object,
-                    const sigset_t *before, char why[NEVH__WHY_NATIVE]) {
-    nevh__compiler_output output = {.used = 0};
-    char *path = nevh__text("%s/steps.c", folder);
-    int status = -1;
-    if (path && write_source(path, source))
-        status = nevh__compile(flags, path, object, folder, before, &output);
-    if (status)
-        tell(&output, status, why);
-    free(path);
-    return status == 0;
+/* The flags, and the name of what is compiled in the cache. */
+typedef struct {
+    const char *flags[sizeof most / sizeof *most];
+    char *cache, *kept; /* NULL: there is none */
+} place;
+
+/* cache: as of nevh__native_load */
+static place place_of(const char *source, const char *cache,
+                      char why[NEVH__WHY_NATIVE]) {
+    place p = {.kept = NULL};
+    memcpy(p.flags, most, sizeof most);
+    p.flags[LAST] = processor();
+    key k = key_of(source, p.flags);
+    p.cache = cache && !*cache ? NULL : nevh__cache_folder(cache, why);
+    if (p.cache)
+        p.kept = nevh__text("%s/%016llx%016llx.so", p.cache,
+                            (unsigned long long)k.part[0],
+                            (unsigned long long)k.part[1]);
+    return p;
+}
+
+static void free_place(place *p) {
+    free(p->kept);
+    free(p->cache);
+}
+
+/* What a text is compiled from and to. */
+typedef struct {
+    char *folder, *object, *source; /* NULL: no folder could be made */
+} files;
+
+static void begin(files *f, const char *source, const place *p,
+                  const sigset_t *before, nevh__compiling *run) {
+    f->folder = nevh__new_folder();
+    f->object = f->folder ? nevh__text("%s/steps.so", f->folder) : NULL;
+    f->source = f->object ? nevh__text("%s/steps.c", f->folder) : NULL;
+    *run = (nevh__compiling){.status = -1};
+    if (f->source && write_source(f->source, source))
+        nevh__compile_begin(p->flags, f->source, f->object, f->folder, before,
+                            run);
+}
+
+static void remove_files(files *f) {
+    if (f->folder)
+        nevh__folder_remove(f->folder);
+    free(f->source);
+    free(f->object);
+    free(f->folder);
 }
 
 /* A signal takes its course when the folder is gone. */
-static void *build(const char *source, const char *const flags[],
-                   const char *cache, const char *kept,
+static void *build(const char *source, const place *p,
                    char why[NEVH__WHY_NATIVE]) {
     sigset_t before;
-    nevh__signals_hold(&before);
-    char *folder = nevh__new_folder();
-    char *object = folder ? nevh__text("%s/steps.so", folder) : NULL;
+    files f;
+    nevh__compiling run;
     void *library = NULL;
-    if (!object)
+    nevh__signals_hold(&before);
+    begin(&f, source, p, &before, &run);
+    nevh__compile_await(&run, 1, &before);
+    if (!f.object)
         snprintf(why, NEVH__WHY_NATIVE, "no folder can be made to compile in");
-    else if (compile(source, flags, folder, object, &before, why)) {
-        bool stored = kept && nevh__cache_store(cache, object, kept);
-        library = open_library(stored ? kept : object, why);
+    else if (run.status)
+        tell(&run, why);
+    else {
+        bool stored = p->kept && nevh__cache_store(p->cache, f.object, p->kept);
+        library = open_library(stored ? p->kept : f.object, why);
     }
-    if (folder)
-        nevh__folder_remove(folder);
-    free(object);
-    free(folder);
+    remove_files(&f);
     nevh__signals_release(&before);
     return library;
 }
 
 void *nevh__native_load(const char *source, const char *cache, bool may_compile,
                         char why[NEVH__WHY_NATIVE]) {
-    const char *flags[sizeof most / sizeof *most];
-    memcpy(flags, most, sizeof most);
-    flags[LAST] = processor();
-    key k = key_of(source, flags);
-    char *folder = cache && !*cache ? NULL : nevh__cache_folder(cache, why);
-    char *kept = folder ? nevh__text("%s/%016llx%016llx.so", folder,
-                                     (unsigned long long)k.part[0],
-                                     (unsigned long long)k.part[1])
-                        : NULL;
+    place p = place_of(source, cache, why);
     void *library = NULL;
-    if (kept && nevh__cache_is_whole(kept))
-        library = open_library(kept, why);
+    if (p.kept && nevh__cache_is_whole(p.kept))
+        library = open_library(p.kept, why);
     if (!library && may_compile)
-        library = build(source, flags, folder, kept, why);
-    free(kept);
-    free(folder);
+        library = build(source, &p, why);
+    free_place(&p);
     return library;
+}
+
+static bool is_missing(const place *p) {
+    return p->kept && !nevh__cache_is_whole(p->kept);
+}
+
+static size_t processors(void) {
+    long count = sysconf(_SC_NPROCESSORS_ONLN);
+    return count < 1                      ? 1
+           : count > NEVH__MOST_COMPILERS ? NEVH__MOST_COMPILERS
+                                          : (size_t)count;
+}
+
+/* The first texts, as many as there are processors to compile them.
+   returns  how many are in the cache now: 0, and why, where one is not */
+static size_t build_some(char *const sources[], size_t count, const char *cache,
+                         const sigset_t *before, char why[NEVH__WHY_NATIVE]) {
+    files f[NEVH__MOST_COMPILERS];
+    place p[NEVH__MOST_COMPILERS];
+    nevh__compiling run[NEVH__MOST_COMPILERS];
+    size_t begun = 0, most_begun = processors(), next = 0;
+    bool fine = true;
+    for (; next < count && begun < most_begun; next++) {
+        p[begun] = place_of(sources[next], cache, why);
+        if (is_missing(&p[begun])) {
+            begin(&f[begun], sources[next], &p[begun], before, &run[begun]);
+            begun++;
+        } else
+            free_place(&p[begun]);
+    }
+    nevh__compile_await(run, begun, before);
+    for (size_t i = 0; i < begun; i++) {
+        if (run[i].status && fine)
+            tell(&run[i], why);
+        fine &= !run[i].status;
+        if (!run[i].status)
+            nevh__cache_store(p[i].cache, f[i].object, p[i].kept);
+        remove_files(&f[i]);
+        free_place(&p[i]);
+    }
+    return fine ? next : 0;
+}
+
+size_t nevh__native_build(char *const sources[], size_t count,
+                          const char *cache, char why[NEVH__WHY_NATIVE]) {
+    sigset_t before;
+    size_t done = 0, more = 1;
+    nevh__signals_hold(&before);
+    for (; done < count && more; done += more)
+        more = build_some(sources + done, count - done, cache, &before, why);
+    nevh__signals_release(&before);
+    return done;
 }

@@ -125,9 +125,10 @@ static int start(char *const arguments[], char *const environment[],
 
 /* Reads what there is, and keeps the beginning.
    returns  whether the pipe's other end is closed by all */
-static bool has_ended(int pipe, nevh__compiler_output *output) {
+static bool has_ended(nevh__compiling *c) {
+    nevh__compiler_output *output = &c->output;
     char block[512];
-    ssize_t count = read(pipe, block, sizeof block);
+    ssize_t count = read(c->pipe, block, sizeof block);
     if (count < 0)
         return errno != EINTR;
     size_t left = sizeof output->text - 1 - output->used,
@@ -137,28 +138,36 @@ static bool has_ended(int pipe, nevh__compiler_output *output) {
     return count == 0;
 }
 
-/* Reads until all of the group have ended, which is when nobody holds the
-   pipe, until `give_up` milliseconds have passed, or until a signal comes;
-   before  NULL: signals are not looked for */
-static bool listen_to(int pipe, const sigset_t *before, int give_up,
-                      nevh__compiler_output *output) {
-    struct pollfd look = {.fd = pipe, .events = POLLIN};
+/* Reads until all groups have ended, which is when nobody holds their pipes, until
+   `give_up` milliseconds have passed, or until a signal comes; before  NULL: signals
+   are not looked for */
+static bool listen_to(nevh__compiling all[], size_t count,
+                      const sigset_t *before, int give_up) {
     for (int waited = 0;
          waited < give_up && !(before && is_interrupted(before));) {
-        int ready = poll(&look, 1, LOOKS_APART);
-        if (ready > 0 && has_ended(pipe, output))
+        struct pollfd looks[NEVH__MOST_COMPILERS];
+        nfds_t running = 0;
+        for (size_t i = 0; i < count; i++)
+            if (all[i].runs)
+                looks[running++] =
+                    (struct pollfd){.fd = all[i].pipe, .events = POLLIN};
+        if (!running)
             return true;
+        int ready = poll(looks, running, LOOKS_APART);
+        for (size_t i = 0, k = 0; ready > 0 && i < count; i++)
+            if (all[i].runs && looks[k++].revents)
+                all[i].runs = !has_ended(&all[i]);
         if (ready == 0)
             waited += LOOKS_APART;
     }
     return false;
 }
 
-static void end_group(pid_t group, int pipe, nevh__compiler_output *output) {
-    kill(-group, SIGTERM);
-    if (!listen_to(pipe, NULL, PATIENCE, output))
-        kill(-group, SIGKILL);
-    listen_to(pipe, NULL, PATIENCE, output);
+static void signal_groups(const nevh__compiling all[], size_t count,
+                          int number) {
+    for (size_t i = 0; i < count; i++)
+        if (all[i].runs)
+            kill(-all[i].child, number);
 }
 
 /* returns  its exit status, or -1 */
@@ -170,27 +179,43 @@ static int await(pid_t child) {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-static int run(char *const arguments[], char *const environment[],
-               const sigset_t *before, nevh__compiler_output *output) {
+void nevh__compile_await(nevh__compiling all[], size_t count,
+                         const sigset_t *before) {
+    if (!listen_to(all, count, before, LONGEST)) {
+        bool interrupted = is_interrupted(before);
+        for (size_t i = 0; i < count; i++) {
+            all[i].output.interrupted = all[i].runs && interrupted;
+            all[i].output.late = all[i].runs && !interrupted;
+        }
+        signal_groups(all, count, SIGTERM);
+        if (!listen_to(all, count, NULL, PATIENCE))
+            signal_groups(all, count, SIGKILL);
+        listen_to(all, count, NULL, PATIENCE);
+    }
+    for (size_t i = 0; i < count; i++) {
+        if (!all[i].child)
+            continue;
+        all[i].status = await(all[i].child);
+        close(all[i].pipe);
+    }
+}
+
+static void begin(char *const arguments[], char *const environment[],
+                  const sigset_t *before, nevh__compiling *c) {
     int ends[2];
-    pid_t child;
     if (pipe(ends))
-        return -1;
+        return;
     fcntl(ends[0], F_SETFD, FD_CLOEXEC);
     fcntl(ends[1], F_SETFD, FD_CLOEXEC);
-    int wrong = start(arguments, environment, before, ends[1], &child),
-        status = wrong == ENOENT ? NEVH__NO_COMPILER : -1;
+    int wrong = start(arguments, environment, before, ends[1], &c->child);
     close(ends[1]);
-    if (!wrong) {
-        if (!listen_to(ends[0], before, LONGEST, output)) {
-            output->interrupted = is_interrupted(before);
-            output->late = !output->interrupted;
-            end_group(child, ends[0], output);
-        }
-        status = await(child);
-    }
+    c->pipe = ends[0];
+    c->runs = !wrong;
+    if (!wrong)
+        return;
     close(ends[0]);
-    return status;
+    c->child = 0;
+    c->status = wrong == ENOENT ? NEVH__NO_COMPILER : -1;
 }
 
 /* The file that the shell would run; NULL: there is none. */
@@ -226,9 +251,10 @@ char *nevh__compiler_name(void) {
 }
 
 /* NAME FLAGS -o OBJECT SOURCE -lm */
-static int compile(char *name, const char *const flags[], const char *source,
-                   const char *object, char *const environment[],
-                   const sigset_t *before, nevh__compiler_output *output) {
+static void begin_words(char *name, const char *const flags[],
+                        const char *source, const char *object,
+                        char *const environment[], const sigset_t *before,
+                        nevh__compiling *c) {
     const char *arguments[NEVH__MOST_ARGUMENTS + 5];
     size_t count = 0;
     char *rest = NULL;
@@ -240,20 +266,18 @@ static int compile(char *name, const char *const flags[], const char *source,
         arguments[count++] = *flags;
     const char *last[] = {"-o", object, source, "-lm", NULL};
     memcpy(arguments + count, last, sizeof last);
-    return run((char *const *)arguments, environment, before, output);
+    begin((char *const *)arguments, environment, before, c);
 }
 
-int nevh__compile(const char *const flags[], const char *source,
-                  const char *object, const char *folder,
-                  const sigset_t *before, nevh__compiler_output *output) {
+void nevh__compile_begin(const char *const flags[], const char *source,
+                         const char *object, const char *folder,
+                         const sigset_t *before, nevh__compiling *c) {
     char *name = nevh__compiler_name(), **environment = environment_in(folder);
-    *output = (nevh__compiler_output){.used = 0};
-    int status = name && environment ? compile(name, flags, source, object,
-                                               environment, before, output)
-                                     : -1;
+    *c = (nevh__compiling){.status = -1};
+    if (name && environment)
+        begin_words(name, flags, source, object, environment, before, c);
     free(name);
     free_environment(environment);
-    return status;
 }
 
 char *nevh__new_folder(void) {

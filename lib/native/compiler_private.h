@@ -6,6 +6,7 @@
 #include <signal.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <sys/types.h>
 
 enum { NEVH__MOST_OUTPUT = 1200 };
 typedef struct {
@@ -24,14 +25,25 @@ void nevh__signals_release(const sigset_t *before);
 char *nevh__compiler_name(void);
 /* The file that a command is; to be freed.  NULL: there is none. */
 char *nevh__command_find(const char *name);
+enum { NEVH__NO_COMPILER = 127, NEVH__MOST_ARGUMENTS = 40 };
+/* A compiler at work.  So many may be at once. */
+enum { NEVH__MOST_COMPILERS = 16 };
+typedef struct {
+    pid_t child; /* 0: it was not started */
+    int pipe;    /* what it says */
+    bool runs;
+    int status; /* once it has ended: its exit status, NEVH__NO_COMPILER, or -1 */
+    nevh__compiler_output output;
+} nevh__compiling;
 /* Compiles a source into a shared object, all signals being held and without a
    shell.  The compiler's own files go to the folder.
-   flags    ended by NULL
-   returns  the compiler's exit status, NEVH__NO_COMPILER; or -1 */
-enum { NEVH__NO_COMPILER = 127, NEVH__MOST_ARGUMENTS = 40 };
-int nevh__compile(const char *const flags[], const char *source,
-                  const char *object, const char *folder,
-                  const sigset_t *before, nevh__compiler_output *);
+   flags    ended by NULL */
+void nevh__compile_begin(const char *const flags[], const char *source,
+                         const char *object, const char *folder,
+                         const sigset_t *before, nevh__compiling *);
+/* Waits until all have ended, or ends them: after a signal, or two minutes. */
+void nevh__compile_await(nevh__compiling[], size_t count,
+                         const sigset_t *before);
 /* A folder of nobody else's, in that of temporary files; to be removed and
    freed.  NULL: none can be made. */
 char *nevh__new_folder(void);

@@ -339,6 +339,55 @@ void nevh__native_plan(nevh_work *w, char why[NEVH__WHY_NATIVE]) {
     nevh__writer_free(&text);
 }
 
+/* The text of what is to be compiled; NULL: nothing is. */
+static char *text_to_build(nevh_work *w) {
+    nevh__writer text = {0};
+    char *found = NULL;
+    if (w->native || w->options->native != NEVH_NATIVE_AUTO || obstacle(w))
+        return NULL;
+    nevh__write_prelude(&text);
+    if (nevh__native_write(&text, w) && !text.failed &&
+        compiling_pays(w, strlen(text.text))) {
+        found = text.text;
+        text.text = NULL;
+    }
+    nevh__writer_free(&text);
+    return found;
+}
+
+static size_t place_in(char *const texts[], size_t count, const char *text) {
+    size_t i = 0;
+    while (i < count && strcmp(texts[i], text) != 0)
+        i++;
+    return i;
+}
+
+void nevh__native_prepare(nevh_work *const all[], size_t count,
+                          char (*why)[NEVH__WHY_NATIVE]) {
+    char **texts = nevh__array(count, sizeof *texts);
+    size_t *of = nevh__array(count, sizeof *of), found = 0, done = 0;
+    const char *cache = count ? all[0]->options->native_cache : NULL;
+    char problem[NEVH__WHY_NATIVE] = "";
+    bool keeps = !(cache && !*cache);
+    for (size_t i = 0; texts && of && keeps && i < count; i++) {
+        char *text = text_to_build(all[i]);
+        of[i] = text ? place_in(texts, found, text) : SIZE_MAX;
+        if (of[i] == found)
+            texts[found++] = text;
+        else
+            free(text);
+    }
+    if (found > 1)
+        done = nevh__native_build(texts, found, cache, problem);
+    for (size_t i = 0; found > 1 && i < count; i++)
+        if (of[i] != SIZE_MAX && of[i] >= done)
+            snprintf(why[i], NEVH__WHY_NATIVE, "%s", problem);
+    while (found > 0)
+        free(texts[--found]);
+    free(texts);
+    free(of);
+}
+
 /* Gradients, and values of their terms. */
 static void add_counts(nevh_work *w, const nevh__native *x, size_t kicks,
                        size_t drifts) {

@@ -93,6 +93,10 @@ bool nevh__write_program(nevh__writer *, nevh_work *, const nevh_program *);
 /* Makes w->native if that is wanted, possible and worth while; `why`: else what
    is in the way, or "". */
 void nevh__native_plan(nevh_work *, char why[NEVH__WHY_NATIVE]);
+/* Has what nevh__native_plan would compile of all compiled side by side, so that it
+   is in the cache.  why: out, of each: what is in the way, or "". */
+void nevh__native_prepare(nevh_work *const[], size_t count,
+                          char (*why)[NEVH__WHY_NATIVE]);
 /* Whether there is one, and the steps foreseen make up for compiling it. */
 bool nevh__native_pays(const nevh_work *);
 /* nevh_stepper_native_saves, of the steps foreseen. */
@@ -122,6 +126,13 @@ static inline int nevh__native_step(nevh_work *w, double t, double h,
    returns  a library to be closed with dlclose; NULL: there is none */
 void *nevh__native_load(const char *source, const char *cache, bool compile,
                         char why[NEVH__WHY_NATIVE]);
+
+/* Compiles those texts that are not in the cache, and keeps them there: as many side
+   by side as there are processors.
+   cache, why  as above
+   returns     how many were done; the first of the others was in the way */
+size_t nevh__native_build(char *const sources[], size_t count,
+                          const char *cache, char why[NEVH__WHY_NATIVE]);
 
 /* The folder of compiled steps, which is made; to be freed.  NULL: it cannot
    be made, is not a folder, or others may write to it. */

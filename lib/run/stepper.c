@@ -330,6 +330,33 @@ bool nevh_stepper_foresee(nevh_stepper *s, double steps) {
     return nevh__native_pays(&s->work);
 }
 
+void nevh_steppers_foresee(nevh_stepper *const all[], size_t count,
+                           double steps) {
+    nevh_stepper **some = nevh__array(count, sizeof *some);
+    nevh_work **works = nevh__array(count, sizeof *works);
+    double *before = nevh__array(count, sizeof *before);
+    char(*why)[NEVH__WHY_NATIVE] = nevh__array(count, sizeof *why);
+    size_t ready = 0;
+    for (size_t i = 0; some && works && before && why && i < count; i++)
+        if (all[i] && all[i]->planned && !all[i]->why_native[0]) {
+            some[ready] = all[i];
+            works[ready] = &all[i]->work;
+            before[ready++] = all[i]->options.steps_foreseen;
+            all[i]->options.steps_foreseen = steps;
+        }
+    nevh__native_prepare(works, ready, why);
+    for (size_t i = 0; i < ready; i++) {
+        some[i]->options.steps_foreseen = before[i];
+        memcpy(some[i]->why_native, why[i], sizeof why[i]);
+    }
+    free(some);
+    free(works);
+    free(before);
+    free(why);
+    for (size_t i = 0; i < count; i++)
+        nevh_stepper_foresee(all[i], steps);
+}
+
 double nevh_stepper_native_saves(nevh_stepper *s, double steps) {
     if (!s || !s->planned)
         return NAN;

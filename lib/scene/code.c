@@ -30,17 +30,18 @@ static bool find_functions(nevh__code *code) {
 static const char *load(const char *path, const char *folder,
                         const char *object, const sigset_t *before,
                         nevh__code *code) {
-    nevh__compiler_output output;
-    int status = nevh__compile(flags, path, object, folder, before, &output);
-    if (output.interrupted)
+    nevh__compiling run;
+    nevh__compile_begin(flags, path, object, folder, before, &run);
+    nevh__compile_await(&run, 1, before);
+    if (run.output.interrupted)
         return "%s was not compiled: a signal ended its compiler";
-    if (output.late)
+    if (run.output.late)
         return "%s was not compiled: the C compiler took more than two minutes";
-    if (status == NEVH__NO_COMPILER)
+    if (run.status == NEVH__NO_COMPILER)
         return "%s needs a C compiler, and there is none: install one, or name "
                "it in the environment, CC=...";
-    if (status) {
-        keep_output(code, output.text);
+    if (run.status) {
+        keep_output(code, run.output.text);
         return "%s does not compile:";
     }
     code->library = dlopen(object, RTLD_NOW | RTLD_LOCAL);

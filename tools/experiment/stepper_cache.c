@@ -102,6 +102,19 @@ static bool has_its_like(row *const rows[], size_t i) {
     return false;
 }
 
+/* Compilers work side by side. */
+static void compile_all(const plan *p, row *const rows[], size_t count) {
+    nevh_stepper **all = tool_allocate(count, sizeof *all);
+    for (size_t i = 0; i < count; i++)
+        if (!has_its_like(rows, i))
+            all[i] = row_stepper(p, rows[i], false);
+    nevh_steppers_foresee(all, count, INFINITY);
+    for (size_t i = 0; i < count; i++)
+        if (all[i])
+            row_stepper_keep(p, rows[i], false, all[i]);
+    free(all);
+}
+
 void rows_settle(const plan *p, row *const rows[], size_t count, bool alone) {
     stepper_cache *all = p->steppers;
     double sum = 0, most = -INFINITY;
@@ -118,6 +131,8 @@ void rows_settle(const plan *p, row *const rows[], size_t count, bool alone) {
         most = fmax(most, saved);
         row_stepper_keep(p, rows[i], false, s);
     }
+    if ((alone ? most : sum) > 0 && p->n <= MOST_DOF)
+        compile_all(p, rows, count);
     all->compiled = (alone ? most : sum) > 0;
 }
 
