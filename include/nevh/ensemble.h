@@ -51,7 +51,8 @@ typedef enum {
     NEVH_OUTCOME_PERIOD,    /* mean time between crossings; NAN below two */
     NEVH_OUTCOME_FREQUENCY, /* of the largest line of the quantity, as
                                nevh_frequencies has it; NAN where it does not
-                               move, or below 64 steps */
+                               move, makes less than one turn, or below 64
+                               steps */
     NEVH_OUTCOME_LYAPUNOV, /* what nevh_chaos finds of the orbit with one start:
                                its largest exponent, */
     NEVH_OUTCOME_SALI,     /* the alignment of two displacements, */

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+static const double pi = 3.14159265358979323846;
 enum { LINES = 3 }; /* of a spectrum, of which the largest is told */
 
 /* Rows of `width`, in rows of `stride` that repeat the first lane. */
@@ -198,7 +199,8 @@ void nevh__ensemble_fail(nevh_ensemble *e, size_t lane,
     e->lanes[lane].over = true;
 }
 
-/* Of the largest line; NAN where there is none, or too few samples. */
+/* Of the largest line; NAN where there is none, or too few samples, or less than
+   a turn of it. */
 static double frequency_of(const nevh__record *r, double period) {
     nevh_spectral_line lines[LINES];
     size_t found = 0, count;
@@ -206,7 +208,10 @@ static double frequency_of(const nevh__record *r, double period) {
     nevh_spectral_samples_straighten(r->samples, period);
     const double *values = nevh_spectral_samples_values(r->samples, &count, &h);
     int status = nevh_frequencies(h, count, values, LINES, lines, &found);
-    return !status && found ? lines[0].frequency : NAN;
+    if (status || !found)
+        return NAN;
+    double turns = lines[0].frequency * h * (double)(count - 1) / (2 * pi);
+    return turns < 1 ? NAN : lines[0].frequency;
 }
 
 static double number_of(const nevh_ensemble *e, size_t lane, size_t o) {

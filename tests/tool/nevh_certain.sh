@@ -144,4 +144,7 @@ has '^--digits 30 carries more of them'
 exits 0 reference double-pendulum-chaotic --at 80
 has 'At t = 80 no digit is left'
 lacks '--digits 30'
+exits 0 reference henon-heiles-chaotic --at 120 --digits 3
+has 'no digit is left'
+has '^--digits 30 carries more of them'
 exit $status

@@ -35,6 +35,11 @@ has '^"1e9 steps, one output",verlet,.*stopped by the budget.*,bounded$'
 has '^dt = 1e300,rk4,.*,(failed|unstable)$'
 has '^dt = 1e-300,verlet,.*,bounded$'
 
+# What is not symplectic is bounded only within rounding.
+grep ',rk4,.*,bounded$' $work/out | sed 's/"[^"]*"//g' |
+    awk -F, '$8 > 1e-8 { print; wrong = 1 } END { exit wrong }' ||
+    fails "calls rk4 bounded"
+
 # compare names the cause, and a step to take.
 exits 0 compare "$srcdir/scenes/hard/elastic-pendulum.nevh" --dt 0.025 \
     --t-end 2 --integrators verlet,midpoint

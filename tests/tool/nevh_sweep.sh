@@ -196,6 +196,12 @@ says 'pendulum: log.-1.: this is not a number'
 exits 2 run pendulum --vary 'phi = 1'
 says '--vary is no option of nevh run; it is for .*sweep'
 
+# What escapes makes no turn, and has no frequency.
+printf '%s\n' '[coordinates]' 'x = 0' '[effects]' 'kinetic = p_x^2/2' \
+    'morse = 10*(1 - exp(-x))^2' '[run]' 'dt = 0.02' 't_end = 100' >$work/morse.nevh
+exits 0 sweep $work/morse.nevh --vary 'p_x = 2, 5' --quiet --outcomes 'frequency(x)'
+has '^0,ok,2,4\.0005'
+has '^1,ok,5,$'
 # An outcome that is undefined along part of an orbit has no value, and is told.
 exits 0 sweep pendulum --vary 'phi=1, 2' --t-end 5 --quiet \
     --outcomes 'mean(log(phi)),max(log(phi)),min(sqrt(phi)),max(phi)'

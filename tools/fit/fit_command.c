@@ -193,14 +193,22 @@ static void judge(const job *j, list *words) {
                            f->correlation[k * f->count + i]);
 }
 
+/* So that what is cut off is below a hundredth of the error. */
+static int digits_of(double value, double error) {
+    double digits = error > 0 ? log10(fabs(value) / error) + 3 : 0;
+    return (int)fmin(fmax(digits, 7), 12);
+}
+
 /* With the values found, of parameters or of starts: "l=1,g=2". */
 static char *add_values(char *line, const fitting *f, bool starts) {
     char *values = text_print("%s", "");
     for (size_t k = 0; k < f->count; k++) {
         if (f->item[k].start != starts)
             continue;
-        char *longer = text_print("%s%s%s=%.7g", values, *values ? "," : "",
-                                  f->item[k].name, f->item[k].value);
+        double value = f->item[k].value;
+        char *longer = text_print("%s%s%s=%.*g", values, *values ? "," : "",
+                                  f->item[k].name,
+                                  digits_of(value, f->item[k].error), value);
         free(values);
         values = longer;
     }

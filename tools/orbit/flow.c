@@ -255,6 +255,17 @@ static void note(const flow_job *j, const options *o, list *notes) {
         list_print(notes, "dt = %.9g: the first of the list", p->dt[0]);
 }
 
+/* What a scheme does to the area that H keeps. */
+static void tell_change(const flow_row *r, double ratio, double t, list *to) {
+    const char *way = ratio > 1 ? "grows" : "shrinks";
+    if (fabs(ratio - 1) < 0.1)
+        list_print(to, "%s, dt = %g: the area %s by %.1e of it by t = %.6g.",
+                   r->integrator, r->dt, way, fabs(ratio - 1), t);
+    else
+        list_print(to, "%s, dt = %g: the area %s to %.3g of it by t = %.6g.",
+                   r->integrator, r->dt, way, ratio, t);
+}
+
 /* The largest |ratio - 1| of symplectic rows, and what others do. */
 static void words(const flow_job *j, list *to) {
     double worst = 0;
@@ -273,11 +284,9 @@ static void words(const flow_job *j, list *to) {
                 any = true;
             }
         }
-        if (!isnan(last.area) && strcmp(symplectic(r), "yes") != 0)
-            list_print(to, "%s, dt = %g: %s to %.6g of the area by t = %.6g.",
-                       r->integrator, r->dt,
-                       last.area > first ? "grows" : "shrinks",
-                       last.area / first, last.t);
+        if (!isnan(last.area) && strcmp(symplectic(r), "yes") != 0 &&
+            !j->plan.friction)
+            tell_change(r, last.area / first, last.t, to);
         if (r->status)
             list_print(to, "%s %s", r->integrator, r->status);
     }

@@ -153,7 +153,7 @@ static void put_notes(const job *j, page *result) {
                    "At t = %.9g no digit is left: earlier times (--at) show "
                    "how long digits last.",
                    j->lost);
-    else if (j->digits < MOST_DIGITS)
+    if (j->digits < (j->left ? MOST_DIGITS : usual_digits))
         list_print(&result->after,
                    "--digits %d carries more of them, as far as 113 bits do.",
                    MOST_DIGITS);
