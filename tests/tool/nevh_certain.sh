@@ -147,4 +147,7 @@ lacks '--digits 30'
 exits 0 reference henon-heiles-chaotic --at 120 --digits 3
 has 'no digit is left'
 has '^--digits 30 carries more of them'
+sed 's/^t_end .*/&\nstop = phi < 0/' "$srcdir/scenes/pendulum.nevh" >$work/stops.nevh
+exits 0 reference $work/stops.nevh --at 2
+has '^the stop of .run. is left aside$'
 exit $status

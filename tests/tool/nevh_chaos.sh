@@ -103,4 +103,10 @@ exits 2 chaos henon-heiles --dt 0
 exits 2 chaos henon-heiles --plot x.svg
 says 'no option of nevh chaos'
 exits 2 chaos no-such-scene
+# Under friction neighbours come together: exp(-g t/2) of a damped oscillator.
+printf '%s\n' '[coordinates]' 'x = 1' '[effects]' 'kinetic = p_x^2/2' \
+    'spring = x^2/2' '[friction]' 'drag = x: 0.1' '[run]' 'dt = 0.1' 't_end = 100' \
+    >$work/damped.nevh
+exits 0 chaos $work/damped.nevh
+has 'regular: neighbours come together by a factor of e in (19|20|21)'
 exit $status

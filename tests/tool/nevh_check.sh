@@ -68,6 +68,33 @@ if command -v python3 >/dev/null 2>&1; then
     python3 -m json.tool $work/out >/dev/null || fails "is no JSON"
 fi
 
+# Where neighbours part because the orbit itself moves away there is no chaos: a
+# saddle, which is linear, and parametric resonance, whose exponent Floquet's
+# theory gives as 0.0748.
+printf '%s\n' '[coordinates]' 'x = 0.01' 'y = 1' '[effects]' \
+    'kinetic = (p_x^2 + p_y^2)/2' 'saddle = -x^2/8 + 2*y^2' '[run]' 'dt = 0.05' \
+    't_end = 30' >$work/saddle.nevh
+for t_end in 30 100 300; do
+    exits 0 check $work/saddle.nevh --t-end $t_end
+    has '^Unstable, not chaotic: '
+    has 'exponent about 0\.(49|5)'
+    lacks 'Chaotic'
+done
+printf '%s\n' '[coordinates]' 'x = 0.1' '[effects]' 'kinetic = p_x^2/2' \
+    'spring = (1 + 0.3*cos(2*t))*x^2/2' '[run]' 'dt = 0.05' 't_end = 200' >$work/pumped.nevh
+for t_end in 200 300 1000; do
+    exits 0 check $work/pumped.nevh --t-end $t_end
+    has '^Unstable, not chaotic: '
+    has 'exponent about 0\.07'
+done
+# Differences of momenta of 1e29 kg m/s.
+printf '%s\n' '[parameters]' 'G = 6.6743e-11' 'M = 1.98892e30' 'm = 5.9722e24' \
+    '[coordinates]' 'x, y, z = elements(1.495978707e11, 0.0167, 0.01, 0.3, 0.5, 0.1, G*M)' \
+    '[effects]' 'kinetic = (p_x^2 + p_y^2 + p_z^2)/(2*m)' \
+    'gravity = -G*M*m/sqrt(x^2 + y^2 + z^2)' '[run]' 't_end = 3e8' 'dt = 86400' >$work/si.nevh
+exits 0 check $work/si.nevh
+lacks 'dprkn12: '
+
 # What grows is no frequency: a pendulum upside down, and a hill alone.
 printf '%s\n' '[coordinates]' 'x = 1e-6' '[effects]' 'K = p_x^2/2' 'V = -x^2/2' \
     '[run]' 't_end = 3' 'dt = 0.1' 'integrators = verlet' >$work/hill.nevh

@@ -37,7 +37,7 @@ has '^dt = 1e-300,verlet,.*,bounded$'
 
 # What is not symplectic is bounded only within rounding.
 grep ',rk4,.*,bounded$' $work/out | sed 's/"[^"]*"//g' |
-    awk -F, '$8 > 1e-8 { print; wrong = 1 } END { exit wrong }' ||
+    awk -F, '$8 > 1e-8 && !/kink/ { print; wrong = 1 } END { exit wrong }' ||
     fails "calls rk4 bounded"
 
 # compare names the cause, and a step to take.

@@ -81,4 +81,8 @@ awk '/^\$series1/ { on = 1; next } /^EOD/ { on = 0 } on { print $1 }' $work/gp |
 exits 2 sweep pendulum --vary 'phi = 1, 2' --outcomes 'first(phi > 9)' \
     --dt 0.05 --t-end 1 --picture $work/none.svg
 says 'no member has a value'
+printf 't,phi\n0,2\n1,-1.5\n' >$work/other.csv
+exits 2 sweep pendulum --vary 'phi = range(0.5, 2.5, 3)' --outcomes period \
+    --t-end 10 --picture $work/none.svg --data $work/other.csv
+says 'the picture takes columns phi and period$'
 exit $status

@@ -307,6 +307,10 @@ int map_draw(map *m, const char *integrator) {
     if (!find_directions(m, d, &count))
         return refuse_directions(m);
     plot *to = count == 2 ? draw_map(m, d) : draw_line(m, &d[0]);
+    for (size_t i = 0; i < count; i++)
+        free(d[i].value);
+    if (!to)
+        return TOOL_USAGE;
     char *scheme = plot_scheme(m->plan, integrator);
     char *more =
         m->missing ? text_print("%zu orbits, %zu without a value%s", m->members,
@@ -321,7 +325,5 @@ int map_draw(map *m, const char *integrator) {
                      ? tool_refuse("nothing to draw: no member has a value")
                      : plot_write(to, &m->options);
     plot_free(to);
-    for (size_t i = 0; i < count; i++)
-        free(d[i].value);
     return status;
 }

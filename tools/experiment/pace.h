@@ -40,7 +40,8 @@ typedef enum {
     OUTLOOK_OPEN,    /* the trial run was too short to tell */
     OUTLOOK_PLANE,   /* one degree of freedom, H without time: no chaos */
     OUTLOOK_REGULAR, /* neighbours part no faster than a power of the time */
-    OUTLOOK_CHAOTIC
+    OUTLOOK_CHAOTIC,
+    OUTLOOK_LEAVES /* the orbit moves away as fast as neighbours part */
 } outlook;
 typedef struct {
     double frequency, frequency_at; /* 0: none is known */
@@ -48,6 +49,7 @@ typedef struct {
     outlook outlook;
     double exponent, error; /* largest Lyapunov exponent over its time */
     double length;          /* time */
+    double followed;        /* of it the neighbour could be told apart */
     double noise;           /* of the gradient: relative energy error; NAN */
     double edge; /* of H: distance in lengths; INFINITY: none is near */
     size_t edge_variable; /* coordinates first */

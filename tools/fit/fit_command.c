@@ -176,7 +176,8 @@ static void judge(const job *j, list *words) {
             words,
             "The residuals are %.2g times as large as sigma says: the "
             "scene lacks an effect, the fit is in another minimum (begin "
-            "nearer: --set, --start), or sigma is too small.",
+            "nearer: --set, --start), the steps are too long (--dt, "
+            "--integrators), or sigma is too small.",
             sqrt(ratio));
     if (sigma_known(j) && ratio < 1 - spread)
         list_print(words,

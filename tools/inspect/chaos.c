@@ -138,6 +138,10 @@ static void say_row(job *j, const row *r) {
                          "of e in %.3g, as they do from an unstable "
                          "equilibrium or periodic orbit, or on an escape",
                          1 / value)
+        : now.verdict == NEVH_REGULAR && value < -2 * error
+            ? text_print("regular: neighbours come together by a factor of e "
+                         "in %.3g",
+                         -1 / value)
         : now.verdict == NEVH_REGULAR
             ? text_print("regular: the largest exponent is 0 within %.1g",
                          error)

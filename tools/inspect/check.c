@@ -138,11 +138,17 @@ static void add_scheme(fitting *f, const nevh_integrator *scheme) {
     const plan *p = f->plan;
     nevh_options o = plan_options(p, p->gradients.item[0]);
     const char *name = nevh_integrator_name(scheme);
-    if (o.gradient_step == 0)
+    bool chosen = o.gradient_step == 0;
+    if (chosen)
         o.gradient_step = 1e-3; /* nothing is run: no need to choose it */
     if (nevh_integrator_needs_tolerance(scheme))
         o.tolerance = 1e-6;
     nevh_stepper *s = nevh_stepper_new(p->system, scheme, &o);
+    if (chosen && nevh_stepper_status(s)) { /* masses are by differences */
+        nevh_stepper_free(s);
+        o.gradient_step = 0;
+        s = nevh_stepper_new(p->system, scheme, &o);
+    }
     int status = nevh_stepper_status(s);
     if (f->all || is_planned(p, scheme))
         add_row(f, scheme, s);

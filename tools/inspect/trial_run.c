@@ -37,6 +37,7 @@ typedef struct {
     double *trial;            /* 2n */
     double folds;             /* when the neighbour was last brought back */
     double fold[SAMPLES + 1]; /* of each sample */
+    double way[SAMPLES + 1];  /* its distance from the start, as a logarithm */
     size_t samples;
     nevh_stepper *stepper;
     double looks, instances; /* instances: of terms, in H */
@@ -86,6 +87,30 @@ static void look_for_edge(trial *f, double t) {
 static void put_beside(trial *f) {
     for (size_t i = 0; i < 2 * f->plan->n; i++)
         f->z[2 * i + 1] = f->z[2 * i] + (i ? 0 : beside * f->length[i]);
+}
+
+/* Whether rounding, of some hundred steps, leaves little of the distance: the orbit
+   is far away. */
+static bool is_lost(const trial *f) {
+    static const double rounded = 100 * DBL_EPSILON;
+    double apart = 0, lost = 0;
+    for (size_t i = 0; i < 2 * f->plan->n; i++) {
+        double d = (f->z[2 * i + 1] - f->z[2 * i]) / f->length[i];
+        double rounding = rounded * f->z[2 * i] / f->length[i];
+        apart += d * d;
+        lost += rounding * rounding;
+    }
+    return sqrt(lost) > 0.01 * sqrt(apart);
+}
+
+static void follow_orbit(trial *f, size_t sample) {
+    const plan *p = f->plan;
+    double most = 0;
+    for (size_t i = 0; i < 2 * p->n; i++) {
+        double start = i < p->n ? p->q[i] : p->p[i - p->n];
+        most = fmax(most, fabs(f->z[2 * i] - start) / f->length[i]);
+    }
+    f->way[sample] = log(fmax(most, DBL_MIN));
 }
 
 /* Notes how far the neighbour has parted in all, and brings it back to its
@@ -170,6 +195,7 @@ static void run(trial *f) {
     nevh_stepper *s = f->stepper;
     double begin = p->run->t_start, t = begin, h = (p->t_end - t) / SAMPLES;
     int status = nevh_stepper_status(s);
+    bool lost = false;
     /* Of a large H a sample alone may take all that is allowed. */
     int parts = f->instances > large ? PARTS : 1;
     look(f, 0, t);
@@ -183,7 +209,12 @@ static void run(trial *f) {
         }
         if (status)
             break;
-        follow_neighbour(f, (size_t)i);
+        lost = lost || is_lost(f);
+        if (!lost) {
+            follow_neighbour(f, (size_t)i);
+            follow_orbit(f, (size_t)i);
+            f->found->followed = t - begin;
+        }
         if (is_stopped(f, t)) {
             t = look_up_to_stop(f, begin + (i - 1) * h, h);
             break;
@@ -221,7 +252,7 @@ static double spread(const trial *f) {
 static void judge(const trial *f) {
     trial_run *found = f->found;
     size_t last = f->samples, half = last / 2;
-    double time = found->length, turns = found->frequency * time / (2 * M_PI);
+    double time = found->followed, turns = found->frequency * time / (2 * M_PI);
     if (f->plan->n == 1 && !f->plan->time) {
         found->outlook = OUTLOOK_PLANE;
         return;
@@ -229,9 +260,12 @@ static void judge(const trial *f) {
     if (last < 2)
         return;
     double late = most(f->fold, half, last) - most(f->fold, 0, half);
+    double left = most(f->way, half, last) - most(f->way, 1, half);
     found->exponent = f->fold[last] / time;
     found->error = spread(f) / time;
-    if (f->fold[last] > parted && late > parted_late)
+    if (late > parted_late && left > late / 2)
+        found->outlook = OUTLOOK_LEAVES;
+    else if (f->fold[last] > parted && late > parted_late)
         found->outlook = OUTLOOK_CHAOTIC;
     else if (late < parted_little && turns > many_turns)
         found->outlook = OUTLOOK_REGULAR;
@@ -343,7 +377,7 @@ static void tell_horizon(const plan *p, const trial_run *f, list *notes) {
                "exponent is uncertain): rounding errors have then grown to the "
                "size of the orbit.  Positions after it cannot be predicted; "
                "energies and averages can.",
-               f->exponent, f->error, per, unit, f->length, space, unit,
+               f->exponent, f->error, per, unit, f->followed, space, unit,
                horizon < p->t_end ? "" : "beyond the run, ", horizon, space,
                unit, range);
     free(range);
@@ -361,18 +395,27 @@ static void tell_outlook(const plan *p, const trial_run *f, list *notes) {
         list_add(notes, "Regular: one degree of freedom without a drive cannot "
                         "be chaotic.");
         break;
+    case OUTLOOK_LEAVES:
+        list_print(
+            notes,
+            "Unstable, not chaotic: over %.3g%s%s the orbit itself moves "
+            "away exponentially, and neighbours part with it (Lyapunov "
+            "exponent about %.2g%s%s).",
+            f->followed, space, unit, f->exponent, per, unit);
+        break;
     case OUTLOOK_REGULAR:
         list_print(
             notes,
             "Regular: over %.3g%s%s the distance of neighbouring orbits "
             "does not grow exponentially (Lyapunov exponent below %.1g%s%s).",
-            f->length, space, unit, 2 * parted_little / f->length, per, unit);
+            f->followed, space, unit, 2 * parted_little / f->followed, per,
+            unit);
         break;
     default:
         list_print(notes,
                    "Chaotic or regular: %.3g%s%s are too short to decide; "
                    "--t-end makes the run longer.",
-                   f->length, space, unit);
+                   f->followed, space, unit);
     }
 }
 

@@ -172,10 +172,22 @@ static double energy_change(const job *j, const orbits_of *o) {
     return most;
 }
 
+/* Orbits of a drive, or under friction, leave the levels of H. */
+static char *heading_of(const job *j, const orbits_of *o) {
+    const plan *p = &j->plan;
+    const char *unit = nevh_scene_label(p->scene, "energy");
+    const char *failed = o->failed ? ", then failed" : "";
+    if (p->time || p->friction)
+        return text_print("%s; lines: H at t = %.6g%s%s", o->integrator,
+                          p->run->t_start,
+                          p->friction ? ", without friction" : "", failed);
+    return text_print("%s: H within %.2g%s%s%s", o->integrator,
+                      energy_change(j, o), *unit ? " " : "", unit, failed);
+}
+
 static plot *draw_plane(job *j) {
     const plan *p = &j->plan;
     const char *name = nevh_scene_coordinate(p->scene, 0);
-    const char *unit = nevh_scene_label(p->scene, "energy");
     char *momentum = text_print("p_%s", name);
     char *x = plot_label(p, name, name), *y = plot_label(p, momentum, momentum);
     double energy[MOST_LEVELS];
@@ -185,9 +197,7 @@ static plot *draw_plane(job *j) {
         const orbits_of *o = &j->of[i];
         if (o->refused)
             continue;
-        char *heading = text_print("%s: H within %.2g%s%s%s", o->integrator,
-                                   energy_change(j, o), *unit ? " " : "", unit,
-                                   o->failed ? ", then failed" : "");
+        char *heading = heading_of(j, o);
         if (to) {
             plot_panel(to, heading, x, y);
         } else {

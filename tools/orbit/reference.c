@@ -141,6 +141,8 @@ static void put_notes(const job *j, page *result) {
                    ? "; so are numbers that follow from parameters, since "
                      "the formulas are too long with these written out"
                    : "");
+    if (nevh_scene_stops(p->scene))
+        list_add(&result->before, "the stop of [run] is left aside");
     if (j->fewest == j->digits)
         return;
     list_print(&result->after,
