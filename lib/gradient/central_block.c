@@ -130,13 +130,19 @@ int nevh__central_fail(nevh_field *f, nevh__planned *term, const nevh__block *b,
         double reach = reach_of(f, term, b, column, &moved);
         return nevh__fail_outside(f, term, b, column, instance, moved, reach);
     }
+    char half = k < term->nq ? 'q' : 'p', when[40] = "";
+    size_t index = nevh__index(term, instance, k);
+    const double *z = k < term->nq ? b->q : b->p;
+    if (decl->time)
+        snprintf(when, sizeof when, ", t = %.9g", b->t[b->lane]);
     return nevh__fail(
         &f->report, NEVH_EDOM,
         "the derivative of term \"%s\" of effect \"%s\" with respect to "
-        "%c[%zu] is not finite at t = %.9g: its step of %g is lost in a value "
-        "too large, or too small for the values of H; give a gradient step",
-        decl->name, decl->effect, k < term->nq ? 'q' : 'p',
-        nevh__index(term, instance, k), b->t[b->lane],
+        "%c[%zu] is not finite at %c[%zu] = %.9g%s: its step of %g is lost in a "
+        "value too large, or too small for the values of H; take a smaller "
+        "step, or give a gradient step",
+        decl->name, decl->effect, half, index, half, index,
+        z[index * b->width + b->lane], when,
         term->delta[instance * term->nv + k]);
 }
 

@@ -160,4 +160,12 @@ says 'no coordinate changes together with its momentum'
 exits 2 flow pendulum --set g=1e200
 says 'pendulum: the orbit fails, so that no shape follows from it: '
 
+# The default shape does not run away with the first integrator; what fails far out
+# names where.
+exits 0 flow pendulum --integrators euler --dt 0.1 --t-end 1
+has '^shape: cat\(phi = 2, p_phi = 0, 0\.4, 1\.0[0-9]\)'
+printf '%s\n' '[coordinates]' 'x = 2' '[effects]' 'kinetic = p_x^2/2' \
+    'hill = x^2/2 - x^4/4' '[run]' 'dt = 0.1' 't_end = 50' >$work/hill.nevh
+exits 1 run $work/hill.nevh --integrators verlet
+says 'is not finite at p\[0\] = [0-9.]*e\+[0-9]*: its step of .* take a smaller step'
 exit $status

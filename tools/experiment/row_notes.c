@@ -102,8 +102,9 @@ static void note_rows(const plan *p, const row rows[], size_t count,
                                     "or the scheme chooses its own"},
                 {match_unmatched, "schemes that take no gradients, but values "
                                   "of H alone, keep the dt given"},
-                {match_dearer, "some implicit schemes cost more at every dt: "
-                               "they take the cheapest dt"},
+                {match_dearer,
+                 "some implicit schemes cost more at each dt tried: "
+                 "they take the cheapest dt"},
                 {has_tolerance, "adaptive schemes have a row for each "
                                 "tolerance; dt is their mean step"},
                 {has_mean_step, "dt of adaptive schemes is their mean step"}};
@@ -160,8 +161,7 @@ void row_notes(const options *o, const plan *p, const row rows[], size_t count,
     note_scale(p, rows, count, notes);
     note_balance(p, notes);
     note_rows(p, rows, count, notes);
-    if (p->diagnostics &&
-        nevh_scene_shown_count(p->scene, NEVH_INVARIANTS) > 0)
+    if (p->diagnostics && nevh_scene_shown_count(p->scene, NEVH_INVARIANTS) > 0)
         list_add(notes, "changes of invariants are absolute: the largest "
                         "|I(t) - I(0)|");
     stop_notes(p, rows, count, notes);

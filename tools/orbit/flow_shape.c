@@ -346,9 +346,21 @@ static bool moves(const extent *e) {
     return false;
 }
 
+/* Steps that keep the orbit in place. */
+static nevh_stepper *plan_symplectic(const plan *p) {
+    const char *name;
+    bool transformed;
+    nevh_stepper *s = plan_first(p, &name);
+    if (!s ||
+        nevh_integrator_symplectic(plan_scheme(name, &transformed)) != NEVH_NO)
+        return s;
+    nevh_stepper_free(s);
+    return plan_stepper(p, "gauss4");
+}
+
 /* As far as the orbit can be followed. */
 static int measure(const plan *p, extent *e) {
-    nevh_stepper *s = plan_first(p, NULL);
+    nevh_stepper *s = plan_symplectic(p);
     if (!s)
         return TOOL_USAGE;
     double *q = tool_allocate(2 * p->n, sizeof *q), *m = q + p->n;
