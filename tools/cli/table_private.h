@@ -11,7 +11,7 @@ struct table {
     table_kind *kind;
     bool *group; /* whether the row that begins with this cell begins a group */
     bool begins;
-    bool rounds; /* numbers, to ten digits */
+    bool rounds;     /* numbers, to ten digits */
     bool *key;       /* of each column */
     size_t breaking; /* the first column that may go below; 0: none may */
 };

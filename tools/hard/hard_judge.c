@@ -155,8 +155,8 @@ static bool climbs(const hard_subject *s, const hard_result *r) {
 
 static hard_verdict judge_energy(const hard_subject *s, hard_result *r) {
     double most = r->energy.max;
-    bool level = r->energy.verdict == NEVH_BOUNDED &&
-                 most <= r->floor + rounding(s, r);
+    bool level =
+        r->energy.verdict == NEVH_BOUNDED && most <= r->floor + rounding(s, r);
     r->happened = text_print(
         r->whole ? "energy error %.1e"
                  : "energy error %.1e; stopped by the budget after %zu of %.0e "
