@@ -18,6 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 extern char **environ;
@@ -143,7 +144,9 @@ static bool has_ended(nevh__compiling *c) {
    are not looked for */
 static bool listen_to(nevh__compiling all[], size_t count,
                       const sigset_t *before, int give_up) {
-    for (int waited = 0;
+    struct timespec begun, now;
+    clock_gettime(CLOCK_MONOTONIC, &begun);
+    for (double waited = 0;
          waited < give_up && !(before && is_interrupted(before));) {
         struct pollfd looks[NEVH__MOST_COMPILERS];
         nfds_t running = 0;
@@ -157,8 +160,9 @@ static bool listen_to(nevh__compiling all[], size_t count,
         for (size_t i = 0, k = 0; ready > 0 && i < count; i++)
             if (all[i].runs && looks[k++].revents)
                 all[i].runs = !has_ended(&all[i]);
-        if (ready == 0)
-            waited += LOOKS_APART;
+        clock_gettime(CLOCK_MONOTONIC, &now);
+        waited = 1e3 * (double)(now.tv_sec - begun.tv_sec) +
+                 1e-6 * (double)(now.tv_nsec - begun.tv_nsec);
     }
     return false;
 }

@@ -107,4 +107,9 @@ for text in verlet blanes-moan4; do
     grep -q "^set title \"$text\"" $work/gp || fails "has no panel of $text"
 done
 test "$(grep -c '^\$series' $work/gp)" -eq 32 || fails "has not 32 series"
+# Under a drive and friction H does change, and its levels are those of the start.
+exits 0 portrait damped-driven-pendulum --integrators verlet --plot $work/d.svg \
+    --keep-plot-script $work/gp
+grep -q '^set title "verlet; lines: H at t = 0, without friction"' $work/gp ||
+    fails "tells a change of H"
 exit $status

@@ -188,4 +188,11 @@ tr '\n' ' ' <$work/out | tr -s ' ' |
 exits 0 compare double-pendulum --integrators tao4 --dt 0.03 --t-end 1 --format csv
 has ',unstable: after t = 1,'
 
+# Strong friction, which rk4 follows up to gamma dt = 2.78.
+printf '%s\n' '[coordinates]' 'x = 1' '[effects]' 'kinetic = p_x^2/2' \
+    'spring = x^2/2' '[friction]' 'drag = x: 50' '[run]' 'dt = 0.1' 't_end = 100' >$work/drag.nevh
+exits 0 compare $work/drag.nevh --integrators rk4
+tr '\n' ' ' <$work/out | tr -s ' ' |
+    grep -q 'omega dt = 0.1, or dt is too long for a rate of friction' ||
+    { fails "blames omega dt"; cat $work/out; }
 exit $status

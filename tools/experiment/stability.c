@@ -156,8 +156,16 @@ static char *cause_of(const plan *p, const row *r) {
     o.balance = p->balance;
     pace fastest = stability_pace(p->system, r->scheme, &o,
                                   p->run->energy_scale, r->dt, p->t_end);
-    return stability_cause(r->scheme, nevh_stability_limit(r->scheme), r->dt,
-                           &fastest);
+    double limit = nevh_stability_limit(r->scheme);
+    double x = fabs(r->dt) * fastest.turning;
+    char *cause = stability_cause(r->scheme, limit, r->dt, &fastest);
+    if (!cause || !p->friction || x > 1 ||
+        stability_exceeded(r->scheme, limit, x))
+        return cause;
+    char *longer =
+        text_print("%s, or dt is too long for a rate of friction", cause);
+    free(cause);
+    return longer;
 }
 
 /* All rows from there on that the same is to be said of; their causes go. */
