@@ -157,6 +157,7 @@ libnevh_core_la_SOURCES = \
 	lib/native/adaptive_verlet_text.c \
 	lib/native/taylor_text.c \
 	lib/native/program_text.c \
+	lib/native/program_words.c \
 	lib/native/cache.c \
 	lib/native/adaptive_text.c \
 	lib/native/build.c \

@@ -90,6 +90,14 @@ bool nevh__native_write(nevh__writer *, nevh_work *);
 /* A program, or functions, that take the steps; false: as above. */
 bool nevh__write_program(nevh__writer *, nevh_work *, const nevh_program *);
 
+/* program_words.c: names without what they have in the library, in place. */
+void nevh__names_shorten(char *text);
+/* All but functions and values that nothing else asks for.  Cuts the text into
+   lines; false: memory is out. */
+bool nevh__write_used(nevh__writer *, char *text);
+/* Whether a text has such a call, "name(". */
+bool nevh__text_calls(const char *text, const char *call);
+
 /* Makes w->native if that is wanted, possible and worth while; `why`: else what
    is in the way, or "". */
 void nevh__native_plan(nevh_work *, char why[NEVH__WHY_NATIVE]);

@@ -1,0 +1,220 @@
+/* nevh: the text of a program becomes what people read: names without what they have
+   in the library, and nothing that is not asked for.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "native/native_private.h"
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool is_word(char c) {
+    return isalnum((unsigned char)c) || c == '_';
+}
+
+/* Whether a line that is no comment has a word. */
+static bool has_word(const char *line, const char *word, size_t length) {
+    if (strncmp(line + strspn(line, " "), "/*", 2) == 0)
+        return false;
+    for (const char *at = line; (at = strchr(at, *word)); at++)
+        if (strncmp(at, word, length) == 0 &&
+            (at == line || !is_word(at[-1])) && !is_word(at[length]))
+            return true;
+    return false;
+}
+
+/* A line of text before and after names become shorter, and the parentheses that
+   are open: what follows them stands below them. */
+enum { MOST_OPEN = 32 };
+typedef struct {
+    const char *from;
+    char *to;
+    const char *from_line, *to_line; /* where they begin */
+    struct {
+        size_t from, to; /* columns behind it */
+    } open[MOST_OPEN];
+    size_t depth;
+    bool text, comment; /* a string, or a comment: has none */
+} renaming;
+
+static void take_line(renaming *r) {
+    size_t indent = strspn(r->from, " ");
+    r->from_line = r->from;
+    r->to_line = r->to;
+    if (!r->depth || r->depth > MOST_OPEN ||
+        r->open[r->depth - 1].from != indent)
+        return;
+    r->from += indent;
+    memset(r->to, ' ', r->open[r->depth - 1].to);
+    r->to += r->open[r->depth - 1].to;
+}
+
+static void take_character(renaming *r) {
+    char c = *r->from, next = r->from[1];
+    if (r->comment)
+        r->comment = !(c == '*' && next == '/');
+    else if (c == '"' && (r->from == r->from_line || r->from[-1] != '\\'))
+        r->text = !r->text;
+    else if (c == '/' && next == '*')
+        r->comment = true;
+    *r->to++ = *r->from++;
+    if (c == '(' && !r->text && !r->comment) {
+        if (r->depth < MOST_OPEN) {
+            r->open[r->depth].from = (size_t)(r->from - r->from_line);
+            r->open[r->depth].to = (size_t)(r->to - r->to_line);
+        }
+        r->depth++;
+    } else if (c == ')' && !r->text && !r->comment && r->depth)
+        r->depth--;
+    else if (c == '\n')
+        take_line(r);
+}
+
+void nevh__names_shorten(char *text) {
+    static const struct {
+        const char *from, *to;
+    } names[] = {{"nevh__number", "double"},
+                 {"NEVH_LANES", "EACH_LANE"},
+                 {"NEVH__INLINE", "static"},
+                 {"nevh__", ""},
+                 {"NEVH__", ""},
+                 {"NEVH_", ""},
+                 {"nevh_", ""}};
+    renaming r = {.from = text, .to = text, .from_line = text, .to_line = text};
+    bool begins = true;
+    while (*r.from) {
+        size_t i = 0, count = sizeof names / sizeof *names;
+        while (i < count &&
+               strncmp(r.from, names[i].from, strlen(names[i].from)) != 0)
+            i++;
+        if (!begins || i == count) {
+            begins = !is_word(*r.from);
+            take_character(&r);
+            continue;
+        }
+        r.from += strlen(names[i].from);
+        for (const char *c = names[i].to; *c; c++)
+            *r.to++ = *c;
+        begins = false;
+    }
+    *r.to = '\0';
+}
+
+/* Lines become strings. */
+static char **split_lines(char *text, size_t *count) {
+    size_t lines = 0;
+    for (const char *c = text; *c; c++)
+        lines += *c == '\n';
+    char **all = nevh__array(lines + 1, sizeof *all);
+    for (*count = 0; all && *text; (*count)++) {
+        size_t bytes = strcspn(text, "\n");
+        all[*count] = text;
+        if (text[bytes])
+            text[bytes++] = '\0';
+        text += bytes;
+    }
+    return all;
+}
+
+/* Whether "    double NAME = ...;" is asked for by a line that is left, up to
+   the function's end. */
+static bool is_of_use(char **lines, size_t i, size_t count) {
+    static const char begin[] = "double ";
+    const char *name = lines[i] ? lines[i] + strspn(lines[i], " ") : "";
+    if (name == lines[i] || strncmp(name, begin, sizeof begin - 1) != 0)
+        return true;
+    name += sizeof begin - 1;
+    size_t length = 0;
+    while (is_word(name[length]))
+        length++;
+    char word[64];
+    if (strncmp(name + length, " = ", 3) != 0 || length >= sizeof word)
+        return true;
+    memcpy(word, name, length);
+    word[length] = '\0';
+    for (size_t k = i + 1; k < count && (!lines[k] || lines[k][0] != '}'); k++)
+        if (lines[k] && has_word(lines[k], word, length))
+            return true;
+    return false;
+}
+
+/* Where a function ends that begins at line i, or its declaration alone; i: none
+   does. */
+static size_t end_of_function(char **lines, size_t i, size_t count,
+                              bool *declared_only) {
+    size_t end = i;
+    if (!lines[i] || strncmp(lines[i], "static ", 7) != 0 ||
+        !strchr(lines[i], '(') || strchr(lines[i], '='))
+        return i;
+    while (end < count && lines[end] && !strchr(lines[end], '{') &&
+           !strchr(lines[end], ';'))
+        end++;
+    if (end == count || !lines[end])
+        return i;
+    *declared_only = !strchr(lines[end], '{');
+    if (*declared_only)
+        return end + 1;
+    while (end < count && (!lines[end] || lines[end][0] != '}'))
+        end++;
+    return end < count ? end + 1 : i;
+}
+
+/* A function that no other line names goes, and the comment before it; whether it
+   went. */
+static bool drop_function(char **lines, size_t i, size_t count) {
+    bool declared_only, other_declared_only;
+    size_t end = end_of_function(lines, i, count, &declared_only);
+    if (end == i)
+        return false;
+    const char *name = strchr(lines[i], '('), *after = name;
+    if (strncmp(name, "(double t0", 10) == 0 ||
+        strncmp(name, "(double *t", 10) == 0) /* advance */
+        return false;
+    while (name > lines[i] && is_word(name[-1]))
+        name--;
+    for (size_t k = 0; k < count; k++) {
+        if ((k >= i && k < end) || !lines[k] ||
+            !has_word(lines[k], name, (size_t)(after - name)))
+            continue;
+        if (end_of_function(lines, k, count, &other_declared_only) == k ||
+            !other_declared_only || declared_only)
+            return false;
+    }
+    while (end > i)
+        lines[--end] = NULL;
+    bool comment = i > 0 && lines[i - 1] && strstr(lines[i - 1], "*/");
+    while (comment && i-- > 0) {
+        comment = lines[i] && strncmp(lines[i], "/*", 2) != 0;
+        lines[i] = NULL;
+    }
+    return true;
+}
+
+bool nevh__write_used(nevh__writer *w, char *text) {
+    size_t count;
+    char **lines = split_lines(text, &count);
+    if (!lines)
+        return false;
+    bool dropped = true;
+    while (dropped) {
+        dropped = false;
+        for (size_t i = count; i-- > 0;)
+            dropped |= drop_function(lines, i, count);
+    }
+    for (size_t i = count; i-- > 0;)
+        if (!is_of_use(lines, i, count))
+            lines[i] = NULL;
+    bool empty = true; /* no two empty lines */
+    for (size_t i = 0; i < count; i++)
+        if (lines[i] && (lines[i][0] || !empty)) {
+            nevh__write(w, "%s\n", lines[i]);
+            empty = !lines[i][0];
+        }
+    free(lines);
+    return true;
+}
+
+bool nevh__text_calls(const char *text, const char *call) {
+    for (const char *at = text; (at = strstr(at, call)); at++)
+        if (at == text || !is_word(at[-1]))
+            return true;
+    return false;
+}
