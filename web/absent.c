@@ -126,6 +126,10 @@ void nevh__native_plan(nevh_work *w, char why[NEVH__WHY_NATIVE]) {
 void nevh__native_free(nevh__native *x) {
     (void)x;
 }
+bool nevh__native_await(nevh__native *x) {
+    (void)x;
+    return false;
+}
 size_t nevh__native_run(nevh_work *w, double t0, double h, size_t from,
                         size_t steps, double q[], double p[]) {
     (void)w, (void)t0, (void)h, (void)from, (void)steps, (void)q, (void)p;

@@ -118,7 +118,10 @@ typedef struct {
 NEVH_API char *nevh_stepper_program(nevh_stepper *, const nevh_program *);
 
 /* Whether steps run as native code: H and the scheme written as one C function,
-   compiled and loaded when the stepper was made, or foresaw more of them.  Only
+   compiled and loaded when the stepper was made, or foresaw more of them.  With
+   NEVH_NATIVE_AUTO one orbit does not wait for the compiler: its steps are taken from
+   the formulas until then, and have the same bits.  This function waits for it, and so
+   does nevh_stepper_free.  Only
    formulas of scenes do, under schemes of nevh_integrator_native with fixed steps, and where nobody
    asked for the balance of the energy; orbits side by side do if there is a
    multiple of 8, but not by Nystroem methods, nor with the complex step.
@@ -128,6 +131,9 @@ NEVH_API char *nevh_stepper_program(nevh_stepper *, const nevh_program *);
    why      out, may be NULL: what is in the way, if they were to ("there is no C
             compiler: ..."), else ""; the stepper's own, never NULL */
 NEVH_API bool nevh_stepper_native(const nevh_stepper *, const char **why);
+/* Whether a compiler is at work in the background, and steps are not native yet.
+   Never waits. */
+NEVH_API bool nevh_stepper_compiles(const nevh_stepper *);
 /* Says that a stepper will take more steps than it was told: those that are not
    compiled are from here on, with NEVH_NATIVE_AUTO, where so many make up for it.
    steps    nevh_options.steps_foreseen; fewer than before change nothing

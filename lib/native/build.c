@@ -4,10 +4,13 @@
 #include "native/compiler_private.h"
 #include "native/native_private.h"
 #include <dlfcn.h>
+#include <errno.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 /* What changes no result, and the vectors that the library itself takes. */
@@ -143,9 +146,10 @@ typedef struct {
     char *folder, *object, *source; /* NULL: no folder could be made */
 } files;
 
-static void begin(files *f, const char *source, const place *p,
+/* folder: given away; NULL: none could be made */
+static void begin(files *f, char *folder, const char *source, const place *p,
                   const sigset_t *before, nevh__compiling *run) {
-    f->folder = nevh__new_folder();
+    f->folder = folder;
     f->object = f->folder ? nevh__text("%s/steps.so", f->folder) : NULL;
     f->source = f->object ? nevh__text("%s/steps.c", f->folder) : NULL;
     *run = (nevh__compiling){.status = -1};
@@ -162,6 +166,12 @@ static void remove_files(files *f) {
     free(f->folder);
 }
 
+static void *open_compiled(const files *f, const place *p,
+                           char why[NEVH__WHY_NATIVE]) {
+    bool stored = p->kept && nevh__cache_store(p->cache, f->object, p->kept);
+    return open_library(stored ? p->kept : f->object, why);
+}
+
 /* A signal takes its course when the folder is gone. */
 static void *build(const char *source, const place *p,
                    char why[NEVH__WHY_NATIVE]) {
@@ -170,16 +180,14 @@ static void *build(const char *source, const place *p,
     nevh__compiling run;
     void *library = NULL;
     nevh__signals_hold(&before);
-    begin(&f, source, p, &before, &run);
+    begin(&f, nevh__new_folder(), source, p, &before, &run);
     nevh__compile_await(&run, 1, &before);
     if (!f.object)
         snprintf(why, NEVH__WHY_NATIVE, "no folder can be made to compile in");
     else if (run.status)
         tell(&run, why);
-    else {
-        bool stored = p->kept && nevh__cache_store(p->cache, f.object, p->kept);
-        library = open_library(stored ? p->kept : f.object, why);
-    }
+    else
+        library = open_compiled(&f, p, why);
     remove_files(&f);
     nevh__signals_release(&before);
     return library;
@@ -220,7 +228,8 @@ static size_t build_some(char *const sources[], size_t count, const char *cache,
     for (; next < count && begun < most_begun; next++) {
         p[begun] = place_of(sources[next], cache, why);
         if (is_missing(&p[begun])) {
-            begin(&f[begun], sources[next], &p[begun], before, &run[begun]);
+            begin(&f[begun], nevh__new_folder(), sources[next], &p[begun],
+                  before, &run[begun]);
             begun++;
         } else
             free_place(&p[begun]);
@@ -247,4 +256,144 @@ size_t nevh__native_build(char *const sources[], size_t count,
         more = build_some(sources + done, count - done, cache, &before, why);
     nevh__signals_release(&before);
     return done;
+}
+
+/* A compiler that a thread waits for.  Its folder is in the cache, under the name
+   of what is compiled: a second program, or stepper, that finds it there waits for
+   what the first one stores.  A program that is killed leaves the folder, which the
+   next one removes once it is old. */
+struct nevh__background {
+    pthread_t thread;
+    place p;
+    files f;
+    nevh__compiling run;
+    bool waits; /* for another compiler */
+    void *library;
+    nevh__steps_at_work *steps;
+    char why[NEVH__WHY_NATIVE];
+};
+
+enum { OLD = 150 }; /* seconds, more than a compiler is given */
+
+static bool is_old(const char *folder) {
+    struct stat found;
+    return !lstat(folder, &found) && time(NULL) - found.st_mtime > OLD;
+}
+
+/* returns  whether there is one that nobody has made; errno EEXIST: somebody has */
+static bool claim(const char *folder) {
+    if (!mkdir(folder, 0700))
+        return true;
+    if (errno != EEXIST || !is_old(folder))
+        return false;
+    nevh__folder_remove(folder);
+    return !mkdir(folder, 0700);
+}
+
+/* Until a file is there, or nobody is at work any more. */
+static bool await_other(const char *kept, const char *folder) {
+    static const struct timespec a_while = {0, 5000000};
+    while (access(kept, F_OK)) {
+        if ((access(folder, F_OK) && access(kept, F_OK)) || is_old(folder))
+            return false;
+        nanosleep(&a_while, NULL);
+    }
+    return nevh__cache_is_whole(kept);
+}
+
+static void *load_other(nevh__background *b) {
+    if (await_other(b->p.kept, b->f.folder))
+        return open_library(b->p.kept, b->why);
+    snprintf(b->why, NEVH__WHY_NATIVE,
+             "the C compiler of another program fails");
+    return NULL;
+}
+
+static void *load_own(nevh__background *b) {
+    sigset_t all;
+    void *library = NULL;
+    sigfillset(&all); /* signals are for other threads */
+    nevh__compile_await(&b->run, 1, &all);
+    if (b->run.status)
+        tell(&b->run, b->why);
+    else
+        library = open_compiled(&b->f, &b->p, b->why);
+    nevh__folder_remove(b->f.folder);
+    return library;
+}
+
+static void *await_compiler(void *data) {
+    nevh__background *b = data;
+    nevh__native_steps steps = NULL;
+    b->library = b->waits ? load_other(b) : load_own(b);
+    if (b->library)
+        *(void **)&steps = dlsym(b->library, "nevh_native_steps");
+    atomic_store(b->steps, steps);
+    return NULL;
+}
+
+static void free_background(nevh__background *b) {
+    free(b->f.folder);
+    free(b->f.object);
+    free(b->f.source);
+    free_place(&b->p);
+    free(b);
+}
+
+static bool start_thread(nevh__background *b) {
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, &before);
+    bool started = !pthread_create(&b->thread, NULL, await_compiler, b);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return started;
+}
+
+/* Ends what cannot be waited for. */
+static void abandon(nevh__background *b) {
+    if (!b->waits) {
+        sigset_t all;
+        sigfillset(&all);
+        nevh__compile_await(&b->run, 1, &all);
+        nevh__folder_remove(b->f.folder);
+    }
+    free_background(b);
+}
+
+nevh__background *nevh__background_begin(const char *source, const char *cache,
+                                         nevh__steps_at_work *steps) {
+    char why[NEVH__WHY_NATIVE];
+    nevh__background *b = nevh__array(1, sizeof *b);
+    sigset_t before;
+    if (!b)
+        return NULL;
+    b->steps = steps;
+    b->p = place_of(source, cache, why);
+    char *folder = b->p.kept ? nevh__text("%s.work", b->p.kept) : NULL;
+    bool claimed = folder && claim(folder);
+    if (!folder || (!claimed && errno != EEXIST)) {
+        free(folder);
+        free_background(b);
+        return NULL;
+    }
+    b->waits = !claimed;
+    b->f.folder = folder;
+    if (claimed) {
+        nevh__signals_hold(&before);
+        begin(&b->f, folder, source, &b->p, &before, &b->run);
+        nevh__signals_release(&before);
+    }
+    if ((b->waits || b->run.child) && start_thread(b))
+        return b;
+    abandon(b);
+    return NULL;
+}
+
+void *nevh__background_end(nevh__background *b, char why[NEVH__WHY_NATIVE]) {
+    pthread_join(b->thread, NULL);
+    void *library = b->library;
+    if (!library)
+        memcpy(why, b->why, sizeof b->why);
+    free_background(b);
+    return library;
 }

@@ -18,9 +18,18 @@ static const double loading_pays = 2e-3;
    is used, being kept: numbers, steps and spans are no part of the text. */
 static const double a_character = 6e-6, uses = 3;
 
+bool nevh__native_await(nevh__native *x) {
+    if (x && x->compiler)
+        x->library = nevh__background_end(x->compiler, x->why);
+    if (x)
+        x->compiler = NULL;
+    return x && x->library;
+}
+
 void nevh__native_free(nevh__native *x) {
     if (!x)
         return;
+    nevh__native_await(x);
     if (x->library)
         dlclose(x->library);
     free(x->numbers);
@@ -251,12 +260,17 @@ static bool compiling_pays(const nevh_work *w, size_t characters) {
 }
 
 bool nevh__native_pays(const nevh_work *w) {
-    return w->native && compiling_pays(w, w->native->characters);
+    const nevh__native *x = w->native;
+    return x && (x->library || x->compiler) && compiling_pays(w, x->characters);
 }
 
 static bool take_steps(nevh__native *x) {
-    *(void **)&x->steps = dlsym(x->library, "nevh_native_steps");
-    return x->steps;
+    nevh__native_steps steps;
+    if (x->compiler)
+        return true;
+    *(void **)&steps = dlsym(x->library, "nevh_native_steps");
+    x->steps = steps;
+    return steps;
 }
 
 static bool take_series(nevh_work *w, const nevh__native *x) {
@@ -293,6 +307,22 @@ static bool make_room(nevh__native *x, size_t size) {
     return x->room;
 }
 
+/* One orbit does not wait for a compiler: its steps are the kernel's until there are
+   others, which give the same bits. */
+static bool load(const nevh_work *w, nevh__native *x, const char *text,
+                 bool compile, char why[NEVH__WHY_NATIVE]) {
+    const char *cache = w->options->native_cache;
+    bool waits = w->options->native == NEVH_NATIVE_ALWAYS || w->width > 1 ||
+                 of_series(w);
+    x->library = nevh__native_load(text, cache, compile && waits, why);
+    if (!x->library && compile && !waits) {
+        x->compiler = nevh__background_begin(text, cache, &x->steps);
+        if (!x->compiler)
+            x->library = nevh__native_load(text, cache, true, why);
+    }
+    return x->library || x->compiler;
+}
+
 static bool plan(nevh_work *w, nevh__native *x, nevh__writer *text,
                  char why[NEVH__WHY_NATIVE]) {
     bool always = w->options->native == NEVH_NATIVE_ALWAYS;
@@ -303,12 +333,11 @@ static bool plan(nevh_work *w, nevh__native *x, nevh__writer *text,
         return false;
     x->characters = strlen(text->text);
     bool compile = compiling_pays(w, x->characters);
-    x->library =
-        nevh__native_load(text->text, w->options->native_cache, compile, why);
-    if (!x->library && !compile)
-        why[0] = '\0';
-    if (!x->library)
+    if (!load(w, x, text->text, compile, why)) {
+        if (!compile)
+            why[0] = '\0';
         return false;
+    }
     if (!take_numbers(x, text))
         return false;
     if (text->rows && !make_room(x, text->rows * nevh__padded(w->n)))
@@ -420,7 +449,8 @@ static size_t count_kept(const nevh_work *w) {
 static size_t take(const nevh_work *w, double t0, double h, size_t from,
                    size_t steps, double q[], double p[], size_t counted[3]) {
     const nevh__native *x = w->native;
-    return x->steps(x->numbers, x->weights, x->times, x->kicks + x->drifts, t0,
+    nevh__native_steps compiled = x->steps;
+    return compiled(x->numbers, x->weights, x->times, x->kicks + x->drifts, t0,
                     h, from, steps, q, p, w->memory, counted,
                     x->room ? nevh__aligned(x->room) : NULL);
 }

@@ -13,6 +13,7 @@
 #include "work/work_private.h"
 #include <nevh/extend.h>
 #include <nevh/run.h>
+#include <stdatomic.h>
 
 /* Takes `steps` steps, or none, and returns how many of them can be taken.
    counted  of steps that take as many as can be taken are added: of implicit
@@ -26,6 +27,10 @@ typedef size_t (*nevh__native_steps)(const double numbers[], double weights[],
                                      double memory[], size_t counted[3],
                                      double room[]);
 
+/* Those that are taken, which appear once a compiler in the background is done. */
+typedef _Atomic(nevh__native_steps) nevh__steps_at_work;
+typedef struct nevh__background nevh__background;
+
 enum { NEVH__WHY_NATIVE = 400 };
 /* Why there are none: "no native steps: ..." or "no program of such steps: ...".
  */
@@ -35,7 +40,10 @@ enum { NEVH__WHY_NATIVE = 400 };
 
 typedef struct nevh__native {
     void *library;
-    nevh__native_steps steps; /* NULL: of series, which the kernel takes */
+    nevh__background *compiler; /* at work; NULL: none is */
+    nevh__steps_at_work steps;  /* NULL: not yet; of series, never: the kernel
+                                   takes them */
+    char why[NEVH__WHY_NATIVE]; /* why a compiler at work made none */
     double *numbers, *weights, *times;
     nevh__lane_numbers
         *own; /* of lanes: numbers are a table a vector of them */
@@ -105,8 +113,12 @@ void nevh__native_plan(nevh_work *, char why[NEVH__WHY_NATIVE]);
    is in the cache.  why: out, of each: what is in the way, or "". */
 void nevh__native_prepare(nevh_work *const[], size_t count,
                           char (*why)[NEVH__WHY_NATIVE]);
-/* Whether there is one, and the steps foreseen make up for compiling it. */
+/* Whether there is one, or a compiler is at work, and the steps foreseen make up for
+   compiling it. */
 bool nevh__native_pays(const nevh_work *);
+/* Waits for a compiler at work.
+   returns  whether steps are native; NULL is allowed */
+bool nevh__native_await(nevh__native *);
 /* nevh_stepper_native_saves, of the steps foreseen. */
 double nevh__native_saves(nevh_work *);
 /* Whether steps of orbits that have constants of their own can be compiled. */
@@ -134,6 +146,19 @@ static inline int nevh__native_step(nevh_work *w, double t, double h,
    returns  a library to be closed with dlclose; NULL: there is none */
 void *nevh__native_load(const char *source, const char *cache, bool compile,
                         char why[NEVH__WHY_NATIVE]);
+
+/* Has a text compiled that is not in the cache, while the caller goes on.  A thread
+   waits for the compiler, and for one that another program has at work at the same
+   text.
+   cache    as above
+   steps    set once they are loaded
+   returns  to be ended; NULL: there is no cache, or the compiler does not start */
+nevh__background *nevh__background_begin(const char *source, const char *cache,
+                                         nevh__steps_at_work *steps);
+/* Waits for it.
+   why      out: what was in the way
+   returns  as nevh__native_load */
+void *nevh__background_end(nevh__background *, char why[NEVH__WHY_NATIVE]);
 
 /* Compiles those texts that are not in the cache, and keeps them there: as many side
    by side as there are processors.

@@ -312,10 +312,17 @@ nevh_field *nevh_stepper_field(nevh_stepper *s) {
     return s ? s->work.field : NULL;
 }
 
+bool nevh_stepper_compiles(const nevh_stepper *s) {
+    return s && s->work.native && s->work.native->compiler &&
+           !s->work.native->steps;
+}
+
 bool nevh_stepper_native(const nevh_stepper *s, const char **why) {
+    nevh__native *x = s ? s->work.native : NULL;
+    bool native = nevh__native_await(x);
     if (why)
-        *why = s ? s->why_native : "out of memory";
-    return s && s->work.native;
+        *why = !s ? "out of memory" : x ? x->why : s->why_native;
+    return native;
 }
 
 bool nevh_stepper_foresee(nevh_stepper *s, double steps) {

@@ -4,6 +4,7 @@
 #define _GNU_SOURCE
 #include "../support/native.h"
 #include "native/native_private.h"
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -174,6 +175,130 @@ TEST(processes_at_once) {
     }
     find_file(path);
     ck_assert(nevh__cache_is_whole(path));
+    nevh_scene_free(scene);
+    remove_cache();
+}
+
+/* A compiler that writes a line to a file, and waits for another one. */
+static void write_compiler(const char *path) {
+    FILE *file = fopen(path, "w");
+    ck_assert_ptr_nonnull(file);
+    fprintf(file, "#!/bin/sh\n"
+                  "echo >>\"$0.starts\"\n"
+                  "until test -e \"$0.may\"; do sleep 0.02; done\n"
+                  "exec ${C_COMPILER:-cc} \"$@\"\n");
+    fclose(file);
+    ck_assert_int_eq(chmod(path, 0700), 0);
+}
+
+static off_t size_of(const char *path) {
+    struct stat found;
+    return stat(path, &found) ? 0 : found.st_size;
+}
+
+static nevh_stepper *foreseen(nevh_scene *scene, nevh_native_use native) {
+    nevh_options o = {
+        .native = native, .native_cache = cache, .steps_foreseen = 1e9};
+    return nevh_stepper_new(nevh_scene_system(scene), nevh_gauss8, &o);
+}
+
+static int run_on(nevh_stepper *s, size_t steps, double y[2]) {
+    return nevh_run(s, 0, 0.1, steps, &y[0], &y[1], NULL, 0);
+}
+
+static void set_compiler(const char *command) {
+    const char *now = getenv("CC");
+    if (now)
+        setenv("C_COMPILER", now, 0);
+    setenv("CC", command, 1);
+}
+
+/* Steps are the kernel's while the compiler is at work: the first stepper starts
+   one, and the second waits for it. */
+TEST(in_the_background) {
+    char compiler[100], starts[120], may[120];
+    double a[2] = {2, 0}, b[2] = {2, 0}, c[2] = {2, 0};
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    nevh_scene *scene = parsed(pendulum);
+    make_cache();
+    snprintf(compiler, sizeof compiler, "./%s/compiler", cache);
+    snprintf(starts, sizeof starts, "%s.starts", compiler);
+    snprintf(may, sizeof may, "%s.may", compiler);
+    write_compiler(compiler);
+    set_compiler(compiler);
+    nevh_stepper *plain = foreseen(scene, NEVH_NATIVE_NEVER);
+    nevh_stepper *first = foreseen(scene, NEVH_NATIVE_AUTO);
+    nevh_stepper *second = foreseen(scene, NEVH_NATIVE_AUTO);
+    for (int i = 0; i < 20; i++) {
+        ck_assert_int_eq(run_on(plain, 50, a), NEVH_OK);
+        ck_assert_int_eq(run_on(first, 50, b), NEVH_OK);
+        ck_assert_int_eq(run_on(second, 50, c), NEVH_OK);
+        if (i < 10) {
+            ck_assert(nevh_stepper_compiles(first));
+            ck_assert(nevh_stepper_compiles(second));
+        } else {
+            FILE *file = fopen(may, "w");
+            ck_assert_ptr_nonnull(file);
+            fclose(file);
+        }
+    }
+    ck_assert(nevh_stepper_native(first, NULL));
+    ck_assert(nevh_stepper_native(second, NULL));
+    ck_assert(!nevh_stepper_compiles(first));
+    ck_assert_int_eq(size_of(starts), 1);
+    ck_assert_int_eq(run_on(plain, 50, a), NEVH_OK);
+    ck_assert_int_eq(run_on(first, 50, b), NEVH_OK);
+    ck_assert_int_eq(run_on(second, 50, c), NEVH_OK);
+    ck_assert(memcmp(a, b, sizeof a) == 0 && memcmp(a, c, sizeof a) == 0);
+    ck_assert_uint_eq(nevh_stepper_counts(plain).gradients,
+                      nevh_stepper_counts(first).gradients);
+    nevh_stepper_free(plain);
+    nevh_stepper_free(first);
+    nevh_stepper_free(second);
+    nevh_scene_free(scene);
+    remove_cache();
+}
+
+/* Of a compiler that fails, and of a program that was killed while its own was at
+   work. */
+TEST(background_fails) {
+    char path[200], work[220];
+    double a[2] = {2, 0};
+    const char *why = NULL;
+    struct timespec old[2] = {{.tv_sec = 1}, {.tv_sec = 1}};
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    nevh_scene *scene = parsed(pendulum);
+    make_cache();
+    nevh_stepper *s = foreseen(scene, NEVH_NATIVE_AUTO);
+    ck_assert(nevh_stepper_native(s, NULL));
+    nevh_stepper_free(s);
+    set_compiler("false");
+    s = foreseen(scene, NEVH_NATIVE_AUTO);
+    ck_assert(!nevh_stepper_native(s, &why));
+    assert_says(why, "the C compiler fails");
+    ck_assert(!nevh_stepper_foresee(s, 1e12));
+    ck_assert_int_eq(run_on(s, 50, a), NEVH_OK);
+    nevh_stepper_free(s);
+    find_file(path);
+    ck_assert_int_eq(unlink(path), 0);
+    snprintf(work, sizeof work, "%s.work", path);
+    setenv("CC", getenv("C_COMPILER") ? getenv("C_COMPILER") : "cc", 1);
+    for (int is_old = 0; is_old < 2; is_old++) {
+        ck_assert_int_eq(mkdir(work, 0700), 0);
+        if (is_old)
+            ck_assert_int_eq(utimensat(AT_FDCWD, work, old, 0), 0);
+        s = foreseen(scene, NEVH_NATIVE_AUTO);
+        ck_assert_int_eq(run_on(s, 50, a), NEVH_OK);
+        if (!is_old)
+            ck_assert(nevh_stepper_compiles(s) && rmdir(work) == 0);
+        ck_assert(nevh_stepper_native(s, &why) == (is_old != 0));
+        ck_assert_str_eq(
+            why, is_old ? "" : "the C compiler of another program fails");
+        nevh_stepper_free(s);
+    }
+    find_file(path);
     nevh_scene_free(scene);
     remove_cache();
 }

@@ -164,6 +164,7 @@ static nevh_separability separability;
     X(NUMBER, nevh_stepper_order, (NULL))                                      \
     X(REAL, nevh_stepper_gain, (NULL, 0))                                      \
     X(ANY, nevh_stepper_native, (NULL, NULL))                                  \
+    X(ANY, nevh_stepper_compiles, (NULL))                                      \
     X(ANY, nevh_steppers_foresee, (NULL, 0, 1e9))                              \
     X(ANY, nevh_stepper_foresee, (NULL, 1e9))                                  \
     X(REAL, nevh_stepper_native_saves, (NULL, 1e9))                            \

@@ -87,7 +87,7 @@ static int choose_rows(job *j) {
 
 static int choose_integrator(job *j) {
     j->stepper = plan_first(&j->plan, &j->integrator);
-    if (j->stepper)
+    if (j->stepper && !nevh_stepper_compiles(j->stepper))
         plan_tell_native(j->stepper);
     return j->stepper ? TOOL_OK : TOOL_USAGE;
 }
@@ -144,7 +144,9 @@ static void note(job *j) {
     list_print(&j->notes, "rows: %s", j->rows_text);
     if (j->data.points)
         measured_note(&j->data, &j->notes);
-    if (nevh_stepper_native(j->stepper, NULL))
+    if (nevh_stepper_compiles(j->stepper))
+        list_add(&j->notes, "native: a compiler is at work as the steps begin");
+    else if (nevh_stepper_native(j->stepper, NULL))
         list_add(&j->notes, "native: steps are compiled");
 }
 
@@ -238,6 +240,7 @@ static int give_up(job *j) {
         fprintf(stderr, "nevh: interrupted; to go on: --resume %s\n", name);
     lines_close(&j->lines);
     signal(number, SIG_DFL);
+    nevh_stepper_native(j->stepper, NULL); /* a compiler at work has files */
     raise(number);
     return TOOL_FAILED;
 }
@@ -322,6 +325,8 @@ int run_scene(const options *o) {
         status = read_data(&j);
     if (!status)
         status = run_job(&j);
+    fflush(stdout);
+    plan_tell_native(j.stepper); /* of a compiler in the background */
     nevh_stepper_free(j.stepper);
     residuals_end(&j.residuals);
     measured_free(&j.data);
