@@ -9,8 +9,9 @@
 static const double target = 0.01;
 /* Below, a limit of stability is where growth is first seen: there is none. */
 static const double no_limit = 0.01;
-/* Of all runs together, as nevh_counts_seconds; and of steps. */
-static const double most_work = 4, most_steps = 3e5;
+/* Of all runs together, as nevh_counts_seconds; of steps of a run; and of one that a
+   guess may be made from. */
+static const double most_work = 4, most_steps = 3e5, enough_steps = 1e5;
 enum { FINER = 3, HALVINGS = 60 };
 
 /* The longest step, in two digits, that keeps the target. */
@@ -100,19 +101,32 @@ static double guess(const search *s, double dt, double keeps, double longer_dt,
     return rounded_down(dt * pow(keeps / span, 1 / power), 1);
 }
 
+/* Of a run with half the step, by how their number has grown. */
+static double next_steps(const search *s, double dt, double steps,
+                         double steps_before) {
+    double span = s->plan->t_end - s->plan->run->t_start;
+    return fmin(span / dt, fmax(steps, steps * steps / steps_before));
+}
+
 static remedy look(search *s) {
     double start = s->plan->run->t_start;
-    double before = s->row->dt, kept_before = NAN;
+    double before = s->row->dt, kept_before = NAN, steps_before = NAN;
     for (int i = 0; i < HALVINGS; i++) {
         double dt = rounded_down(before / 2, 2);
         attempt a = try_step(s, dt);
         double keeps = a.t - start;
         if (a.kept)
             return (remedy){refine(s, dt, before), false};
-        if (s->work > most_work || (double)a.steps > most_steps)
-            return (remedy){guess(s, dt, keeps, before, kept_before), true};
+        double steps = (double)a.steps, guessed = 0;
+        bool last = s->work > most_work || steps > most_steps;
+        if (last || (steps > enough_steps &&
+                     next_steps(s, dt / 2, steps, steps_before) > most_steps))
+            guessed = guess(s, dt, keeps, before, kept_before);
+        if (last || guessed > 0)
+            return (remedy){guessed, true};
         before = dt;
         kept_before = keeps;
+        steps_before = steps;
     }
     return (remedy){0, false};
 }
