@@ -5,12 +5,13 @@
 #include "native/native_private.h"
 #include <dlfcn.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
 /* What changes no result, and the vectors that the library itself takes. */
@@ -258,51 +259,27 @@ size_t nevh__native_build(char *const sources[], size_t count,
     return done;
 }
 
-/* A compiler that a thread waits for.  Its folder is in the cache, under the name
-   of what is compiled: a second program, or stepper, that finds it there waits for
-   what the first one stores.  A program that is killed leaves the folder, which the
-   next one removes once it is old. */
+/* A compiler that a thread waits for.  A file beside what is to be kept is locked
+   meanwhile: a second program, or stepper, waits for that lock, and not for a
+   program that was killed. */
 struct nevh__background {
     pthread_t thread;
+    pid_t process;
     place p;
     files f;
     nevh__compiling run;
-    bool waits; /* for another compiler */
+    char *lock_path;
+    int lock;
+    bool waits; /* for the lock: another compiler is at work */
     void *library;
     nevh__steps_at_work *steps;
     char why[NEVH__WHY_NATIVE];
 };
 
-enum { OLD = 150 }; /* seconds, more than a compiler is given */
-
-static bool is_old(const char *folder) {
-    struct stat found;
-    return !lstat(folder, &found) && time(NULL) - found.st_mtime > OLD;
-}
-
-/* returns  whether there is one that nobody has made; errno EEXIST: somebody has */
-static bool claim(const char *folder) {
-    if (!mkdir(folder, 0700))
-        return true;
-    if (errno != EEXIST || !is_old(folder))
-        return false;
-    nevh__folder_remove(folder);
-    return !mkdir(folder, 0700);
-}
-
-/* Until a file is there, or nobody is at work any more. */
-static bool await_other(const char *kept, const char *folder) {
-    static const struct timespec a_while = {0, 5000000};
-    while (access(kept, F_OK)) {
-        if ((access(folder, F_OK) && access(kept, F_OK)) || is_old(folder))
-            return false;
-        nanosleep(&a_while, NULL);
-    }
-    return nevh__cache_is_whole(kept);
-}
-
 static void *load_other(nevh__background *b) {
-    if (await_other(b->p.kept, b->f.folder))
+    while (flock(b->lock, LOCK_EX) && errno == EINTR)
+        continue;
+    if (nevh__cache_is_whole(b->p.kept))
         return open_library(b->p.kept, b->why);
     snprintf(b->why, NEVH__WHY_NATIVE,
              "the C compiler of another program fails");
@@ -319,6 +296,9 @@ static void *load_own(nevh__background *b) {
     else
         library = open_compiled(&b->f, &b->p, b->why);
     nevh__folder_remove(b->f.folder);
+    unlink(b->lock_path);
+    close(b->lock);
+    b->lock = -1;
     return library;
 }
 
@@ -333,11 +313,39 @@ static void *await_compiler(void *data) {
 }
 
 static void free_background(nevh__background *b) {
+    if (b->lock >= 0)
+        close(b->lock);
+    free(b->lock_path);
     free(b->f.folder);
     free(b->f.object);
     free(b->f.source);
     free_place(&b->p);
     free(b);
+}
+
+/* returns  whether there is one to hold, or to wait for */
+static bool open_lock(nevh__background *b) {
+    b->lock_path = b->p.kept ? nevh__text("%s.lock", b->p.kept) : NULL;
+    if (b->lock_path)
+        b->lock = open(b->lock_path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+    b->waits = b->lock >= 0 && flock(b->lock, LOCK_EX | LOCK_NB);
+    return b->lock >= 0 && (!b->waits || errno == EWOULDBLOCK);
+}
+
+/* In the cache, where a killed program's folder is removed once it is old. */
+static char *folder_in_cache(const nevh__background *b) {
+    char *folder = nevh__text("%s.%ld", b->p.kept, (long)b->process);
+    if (folder && !mkdir(folder, 0700))
+        return folder;
+    free(folder);
+    return NULL;
+}
+
+static void start_compiler(nevh__background *b, const char *source) {
+    sigset_t before;
+    nevh__signals_hold(&before);
+    begin(&b->f, folder_in_cache(b), source, &b->p, &before, &b->run);
+    nevh__signals_release(&before);
 }
 
 static bool start_thread(nevh__background *b) {
@@ -349,14 +357,15 @@ static bool start_thread(nevh__background *b) {
     return started;
 }
 
-/* Ends what cannot be waited for. */
+/* Ends what no thread waits for. */
 static void abandon(nevh__background *b) {
-    if (!b->waits) {
-        sigset_t all;
-        sigfillset(&all);
-        nevh__compile_await(&b->run, 1, &all);
+    sigset_t all;
+    sigfillset(&all);
+    nevh__compile_await(&b->run, 1, &all);
+    if (b->f.folder)
         nevh__folder_remove(b->f.folder);
-    }
+    if (b->lock >= 0 && !b->waits)
+        unlink(b->lock_path);
     free_background(b);
 }
 
@@ -364,32 +373,27 @@ nevh__background *nevh__background_begin(const char *source, const char *cache,
                                          nevh__steps_at_work *steps) {
     char why[NEVH__WHY_NATIVE];
     nevh__background *b = nevh__array(1, sizeof *b);
-    sigset_t before;
     if (!b)
         return NULL;
     b->steps = steps;
+    b->process = getpid();
+    b->lock = -1;
     b->p = place_of(source, cache, why);
-    char *folder = b->p.kept ? nevh__text("%s.work", b->p.kept) : NULL;
-    bool claimed = folder && claim(folder);
-    if (!folder || (!claimed && errno != EEXIST)) {
-        free(folder);
-        free_background(b);
-        return NULL;
-    }
-    b->waits = !claimed;
-    b->f.folder = folder;
-    if (claimed) {
-        nevh__signals_hold(&before);
-        begin(&b->f, folder, source, &b->p, &before, &b->run);
-        nevh__signals_release(&before);
-    }
-    if ((b->waits || b->run.child) && start_thread(b))
+    bool opened = open_lock(b);
+    if (opened && !b->waits)
+        start_compiler(b, source);
+    if (opened && (b->waits || b->run.child) && start_thread(b))
         return b;
     abandon(b);
     return NULL;
 }
 
+/* A copy of the process has no such thread. */
 void *nevh__background_end(nevh__background *b, char why[NEVH__WHY_NATIVE]) {
+    if (b->process != getpid()) {
+        snprintf(why, NEVH__WHY_NATIVE, "the compiler is another process's");
+        return NULL;
+    }
     pthread_join(b->thread, NULL);
     void *library = b->library;
     if (!library)

@@ -4,6 +4,7 @@
    is made anew instead of being loaded.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #define _XOPEN_SOURCE 700
+#include "native/compiler_private.h"
 #include "native/native_private.h"
 #include <dirent.h>
 #include <errno.h>
@@ -13,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 enum { MOST_BYTES = 1 << 26, MOST_OBJECT = 1 << 24 };
@@ -102,6 +104,17 @@ bool nevh__cache_is_whole(const char *path) {
     return whole;
 }
 
+/* What a program that was killed left. */
+static void remove_old(const char *folder, const char *name, time_t made) {
+    enum { OLD = 3600 };
+    char *path = NULL;
+    if (strstr(name, ".so.") && time(NULL) - made > OLD)
+        path = nevh__text("%s/%s", folder, name);
+    if (path)
+        nevh__folder_remove(path);
+    free(path);
+}
+
 /* Bytes of all files; `oldest`: out, the one to go next. */
 static double look(const char *folder, char oldest[]) {
     double bytes = 0;
@@ -109,8 +122,11 @@ static double look(const char *folder, char oldest[]) {
     DIR *all = opendir(folder);
     oldest[0] = '\0';
     for (struct dirent *file; all && (file = readdir(all));) {
-        if (fstatat(dirfd(all), file->d_name, &found, AT_SYMLINK_NOFOLLOW) ||
-            !S_ISREG(found.st_mode))
+        if (fstatat(dirfd(all), file->d_name, &found, AT_SYMLINK_NOFOLLOW))
+            continue;
+        if (S_ISDIR(found.st_mode))
+            remove_old(folder, file->d_name, found.st_mtime);
+        if (!S_ISREG(found.st_mode))
             continue;
         bytes += (double)found.st_size;
         if (!oldest[0] || found.st_mtime < first.st_mtime) {

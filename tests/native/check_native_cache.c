@@ -5,6 +5,7 @@
 #include "../support/native.h"
 #include "native/native_private.h"
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -213,6 +214,15 @@ static void set_compiler(const char *command) {
     setenv("CC", command, 1);
 }
 
+static void reset_compiler(void) {
+    const char *before = getenv("C_COMPILER");
+    if (before)
+        setenv("CC", before, 1);
+    else
+        unsetenv("CC");
+    unsetenv("C_COMPILER");
+}
+
 /* Steps are the kernel's while the compiler is at work: the first stepper starts
    one, and the second waits for it. */
 TEST(in_the_background) {
@@ -257,13 +267,14 @@ TEST(in_the_background) {
     nevh_stepper_free(first);
     nevh_stepper_free(second);
     nevh_scene_free(scene);
+    reset_compiler();
     remove_cache();
 }
 
 /* Of a compiler that fails, and of a program that was killed while its own was at
    work. */
 TEST(background_fails) {
-    char path[200], work[220];
+    char path[200], lock[220], left[220];
     double a[2] = {2, 0};
     const char *why = NULL;
     struct timespec old[2] = {{.tv_sec = 1}, {.tv_sec = 1}};
@@ -283,22 +294,51 @@ TEST(background_fails) {
     nevh_stepper_free(s);
     find_file(path);
     ck_assert_int_eq(unlink(path), 0);
-    snprintf(work, sizeof work, "%s.work", path);
-    setenv("CC", getenv("C_COMPILER") ? getenv("C_COMPILER") : "cc", 1);
-    for (int is_old = 0; is_old < 2; is_old++) {
-        ck_assert_int_eq(mkdir(work, 0700), 0);
-        if (is_old)
-            ck_assert_int_eq(utimensat(AT_FDCWD, work, old, 0), 0);
-        s = foreseen(scene, NEVH_NATIVE_AUTO);
-        ck_assert_int_eq(run_on(s, 50, a), NEVH_OK);
-        if (!is_old)
-            ck_assert(nevh_stepper_compiles(s) && rmdir(work) == 0);
-        ck_assert(nevh_stepper_native(s, &why) == (is_old != 0));
-        ck_assert_str_eq(
-            why, is_old ? "" : "the C compiler of another program fails");
-        nevh_stepper_free(s);
-    }
+    reset_compiler();
+    /* Another program at work, which ends without a result. */
+    snprintf(lock, sizeof lock, "%s.lock", path);
+    int file = open(lock, O_RDWR | O_CREAT, 0600);
+    ck_assert_int_eq(flock(file, LOCK_EX), 0);
+    s = foreseen(scene, NEVH_NATIVE_AUTO);
+    ck_assert_int_eq(run_on(s, 50, a), NEVH_OK);
+    ck_assert(nevh_stepper_compiles(s));
+    close(file);
+    ck_assert(!nevh_stepper_native(s, &why));
+    assert_says(why, "of another program fails");
+    nevh_stepper_free(s);
+    /* One that was killed left its lock, which nobody holds, and a folder. */
+    snprintf(left, sizeof left, "%s.1", path);
+    ck_assert_int_eq(mkdir(left, 0700), 0);
+    ck_assert_int_eq(utimensat(AT_FDCWD, left, old, 0), 0);
+    s = foreseen(scene, NEVH_NATIVE_AUTO);
+    ck_assert(nevh_stepper_native(s, &why));
+    ck_assert_str_eq(why, "");
+    nevh_stepper_free(s);
     find_file(path);
+    nevh_scene_free(scene);
+    remove_cache();
+}
+
+/* A copy of a process waits for nothing. */
+TEST(copied_process) {
+    double a[2] = {2, 0};
+    int status;
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    nevh_scene *scene = parsed(pendulum);
+    make_cache();
+    nevh_stepper *s = foreseen(scene, NEVH_NATIVE_AUTO);
+    bool compiles = nevh_stepper_compiles(s);
+    pid_t child = fork();
+    if (!child) {
+        bool fine = run_on(s, 50, a) == NEVH_OK;
+        nevh_stepper_free(s);
+        _exit(fine ? 0 : 1);
+    }
+    waitpid(child, &status, 0);
+    ck_assert(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    ck_assert(compiles && nevh_stepper_native(s, NULL));
+    nevh_stepper_free(s);
     nevh_scene_free(scene);
     remove_cache();
 }
