@@ -137,7 +137,8 @@ NEVH_API bool nevh_stepper_compiles(const nevh_stepper *);
 /* Says that a stepper will take more steps than it was told: those that are not
    compiled are from here on, with NEVH_NATIVE_AUTO, where so many make up for it.
    steps    nevh_options.steps_foreseen; fewer than before change nothing
-   returns  whether they make up for compiling, and are compiled */
+   returns  whether they make up for compiling, and are compiled, or a compiler is
+            at work */
 NEVH_API bool nevh_stepper_foresee(nevh_stepper *, double steps);
 /* The same of several steppers, some of which may be NULL: compilers work side by
    side, as many as there are processors, where what they make is kept.  A table of

@@ -297,8 +297,7 @@ static void *load_own(nevh__background *b) {
         library = open_compiled(&b->f, &b->p, b->why);
     nevh__folder_remove(b->f.folder);
     unlink(b->lock_path);
-    close(b->lock);
-    b->lock = -1;
+    flock(b->lock, LOCK_UN); /* a copy of the process has the file open, too */
     return library;
 }
 
