@@ -3,6 +3,8 @@
    The stages are runge_kutta_step.h, compiled for rows of whole vectors (one
    orbit that is repeated over a vector, or orbits side by side), in which
    gradients are planned, and for rows of any width with gradients of any kind.
+   Differences of one orbit are planned for that orbit alone: their points fill
+   vectors.
    The sum is added to the state with compensation.  Friction is a part of f.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "runge_kutta_step.h"
@@ -83,8 +85,9 @@ static void lay_out(nevh__arena *a, void *state) {
 }
 
 static void plan_gradients(nevh_work *w, nevh__runge_kutta_state *y) {
-    size_t half = w->n * y->lanes;
-    y->planned = nevh__work_lanes(w, true, false);
+    bool differences = w->field->gradient != nevh_exact;
+    y->planned = nevh__work_lanes(w, true, differences);
+    size_t half = w->n * y->planned;
     for (size_t i = 0; y->planned && i < y->table->stages; i++) {
         double *dh_dp = y->slopes + i * y->stride, *dh_dq = dh_dp + half;
         y->gradients[i] = nevh__work_plan(w, y->planned, y->time, y->point,
@@ -192,6 +195,8 @@ NEVH__INLINE int nevh__runge_kutta_slope(const nevh__runge_kutta_step *x,
     const nevh__evaluation *e = &y->gradients[stage];
     if (way == BY_WORK || e->timed)
         set_time(s, y, stage);
+    if (way == PLANNED && !e->exact)
+        s->work->field->gradients += s->columns;
     int status = way == BY_WORK
                      ? nevh_work_gradient(s->work, s->lanes, y->time, x->point,
                                           x->point + half, dh_dq, dh_dp)
@@ -234,7 +239,7 @@ static int take(nevh__stages *s, size_t first, size_t until) {
     if (!as_planned)
         return take_by_work(s, first, until);
     int status = take_planned(s, first, until);
-    if (!status)
+    if (!status && w->field->gradient == nevh_exact)
         w->field->gradients += (until - first) * s->columns;
     return status;
 }
