@@ -134,22 +134,40 @@ NEVH__INLINE bool add_vectors(const nevh_field *f, const nevh__term_part *part,
     return sum == 0;
 }
 
+/* Of a few states, one after the other: as nevh__add_slopes. */
+NEVH__INLINE bool add_few(const nevh_gradient *method, size_t lanes, bool adds,
+                          const double *x, const double *h, double *out) {
+    double bad = 0;
+    for (size_t lane = 0; lane < lanes; lane++) {
+        double sum = nevh__chord_slope(method, lanes, x + lane, h + lane);
+        out[lane] = (adds ? out[lane] : 0) + sum;
+        bad += sum - sum;
+    }
+    return bad != 0;
+}
+
+static bool add_many(const nevh_gradient *method, size_t lanes, bool adds,
+                     const double *x, const double *h, double *out) {
+    if (!adds)
+        memset(out, 0, lanes * sizeof *out);
+    return nevh__add_slopes(method, lanes, lanes, x, h, out);
+}
+
 /* Of any number of states. */
-static bool add_lanes(const nevh_field *f, const nevh__term_part *part,
-                      const nevh__places *at, size_t lane) {
+NEVH__INLINE bool add_lanes(const nevh_field *f, const nevh__term_part *part,
+                            const nevh__places *at, size_t lane) {
     const nevh__stencil *s = part->stencil;
     size_t lanes = part->lanes;
     bool bad = false;
     for (const nevh__stencil_slope *x = s->slope; x < s->slope + s->slopes;
          x++) {
-        size_t first = x->first * lanes;
+        const double *from = f->rows + x->k * part->stride + x->first * lanes;
+        const double *h = f->h + x->first * lanes;
         bool adds;
         double *out = place_of(part, at, x, lane, &adds);
-        if (!adds)
-            memset(out, 0, lanes * sizeof *out);
-        bad |= nevh__add_slopes(x->method, lanes, lanes,
-                                f->rows + x->k * part->stride + first,
-                                f->h + first, out);
+        bad |= lanes < NEVH__LANES
+                   ? add_few(x->method, lanes, adds, from, h, out)
+                   : add_many(x->method, lanes, adds, from, h, out);
     }
     return !bad;
 }
@@ -262,8 +280,9 @@ int nevh__central_stencil_run(const nevh__evaluation *e) {
     for (const nevh__term_part *x = e->terms; x < e->terms + e->count; x++) {
         if (e->width == 1 && !take_one(f, x, &e->at))
             return fail(f, x, &e->at, 0);
+        bool vectors = x->lanes % NEVH__LANES == 0;
         for (size_t lane = 0; lane < e->width && e->width > 1; lane += x->lanes)
-            if (!take_vectors(f, x, &e->at, lane))
+            if (!(vectors ? take_vectors : take_lanes)(f, x, &e->at, lane))
                 return fail(f, x, &e->at, lane);
     }
     return NEVH_OK;

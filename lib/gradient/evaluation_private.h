@@ -71,7 +71,8 @@ typedef struct {
 extern const nevh__evaluator nevh__exact_point, nevh__exact_block,
     nevh__central_stencil;
 
-/* width is 1 or a multiple of NEVH__LANES; dh_dq or dh_dp may be NULL. */
+/* width is 1 or a multiple of NEVH__LANES, or any of differences; dh_dq or dh_dp may
+   be NULL. */
 nevh__evaluation nevh__evaluation_plan(nevh_field *, size_t width,
                                        const double t[], const double q[],
                                        const double p[], double dh_dq[],

@@ -172,8 +172,8 @@ static bool applicable(const nevh__evaluation *e) {
     const nevh_field *f = e->field;
     if (!f->gradient->offsets)
         return false; /* there are no points */
-    if (e->width != 1 && e->width % NEVH__LANES)
-        return false; /* rows of points are whole vectors */
+    if (f->lanes && e->width % NEVH__LANES)
+        return false; /* constants of lanes are whole vectors */
     if (f->n > NEVH__MOST_POINT_ROWS)
         return false; /* evaluations are for small systems */
     for (size_t i = 0; i < f->n_terms; i++) {
