@@ -56,6 +56,12 @@ static void store_result(const nevh__tape *tape, const nevh__rows *r,
         h[i] = from[0];
 }
 
+/* Whether the last operation gives the result, which needs no place of its own. */
+static bool is_last(const nevh__tape *tape) {
+    return tape->length && tape->result.kind == NEVH__SLOT &&
+           tape->code[tape->length - 1].to == tape->result.at;
+}
+
 /* As many columns as there is room for. */
 static size_t fitting(const nevh__tape *tape, size_t room) {
     size_t columns = NEVH__TAPE_COLUMNS;
@@ -73,12 +79,16 @@ typedef struct {
 
 static void run_all(const task *job, double *slots, size_t room) {
     size_t most = fitting(job->tape, room), columns;
+    bool last = is_last(job->tape);
     for (size_t from = 0; from < job->width; from += columns) {
         columns = job->width - from < most ? job->width - from : most;
         nevh__rows r = nevh__rows_of(job->tape, job->width, from, columns,
                                      job->t, job->q, job->p, job->c, slots);
+        if (last)
+            r.out = job->h + from;
         nevh__rows_run(&r, job->tape->code, job->tape->length, NULL);
-        store_result(job->tape, &r, job->h + from);
+        if (!last)
+            store_result(job->tape, &r, job->h + from);
     }
 }
 

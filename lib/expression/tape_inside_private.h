@@ -57,6 +57,7 @@ typedef struct {
     double *slots; /* base[NEVH__SLOT] */
     size_t columns;
     bool portable; /* functions are libm's, not those of vectors */
+    double *out; /* where the last operation's value goes; NULL: to its slot */
 } nevh__rows;
 
 /* At most so many columns at once; scratch in doubles. */

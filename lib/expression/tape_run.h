@@ -28,7 +28,8 @@ NEVH_SIMD static double *NEVH__RUN(const nevh__rows *r,
         const double *from_b = nevh__rows_at(r, at->b);
         size_t step_a = at->a.kind != NEVH__NUMBER;
         size_t step_b = at->b.kind != NEVH__NUMBER;
-        double *to = r->slots + at->to * columns;
+        bool last = r->out && at + 1 == until;
+        double *to = last ? r->out : r->slots + at->to * columns;
         double *also = r->slots + at->also * columns;
         if (journal && !at->fresh)
             journal = write_row(journal, to, columns);
