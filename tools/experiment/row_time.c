@@ -78,12 +78,13 @@ static double time_once(const stopwatch *w, double *spent) {
            work;
 }
 
-/* So much of the run as takes long enough, by what a first try took. */
+/* So much of the run as takes long enough, by what a short first try took. */
 static void choose_share(stopwatch *w) {
+    static const double tried = 0.25; /* of that */
     double spent;
-    w->share = fmin(1, part / w->row->watched);
-    if (w->share >= 1)
+    if (part >= w->row->watched)
         return;
+    w->share = tried * part / w->row->watched;
     time_once(w, &spent);
     w->share = fmin(1, w->share * part / spent);
 }
