@@ -273,6 +273,7 @@ struct nevh__background {
     bool waits; /* for the lock: another compiler is at work */
     void *library;
     nevh__steps_at_work *steps;
+    atomic_bool done;
     char why[NEVH__WHY_NATIVE];
 };
 
@@ -308,6 +309,7 @@ static void *await_compiler(void *data) {
     if (b->library)
         *(void **)&steps = dlsym(b->library, "nevh_native_steps");
     atomic_store(b->steps, steps);
+    atomic_store(&b->done, true);
     return NULL;
 }
 
@@ -385,6 +387,10 @@ nevh__background *nevh__background_begin(const char *source, const char *cache,
         return b;
     abandon(b);
     return NULL;
+}
+
+bool nevh__background_is_done(nevh__background *b) {
+    return atomic_load(&b->done);
 }
 
 /* A copy of the process has no such thread. */

@@ -155,6 +155,8 @@ void *nevh__native_load(const char *source, const char *cache, bool compile,
    returns  to be ended; NULL: there is no cache, or the compiler does not start */
 nevh__background *nevh__background_begin(const char *source, const char *cache,
                                          nevh__steps_at_work *steps);
+/* Whether it has loaded steps, or failed. */
+bool nevh__background_is_done(nevh__background *);
 /* Waits for it.
    why      out: what was in the way
    returns  as nevh__native_load */

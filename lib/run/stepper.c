@@ -314,7 +314,7 @@ nevh_field *nevh_stepper_field(nevh_stepper *s) {
 
 bool nevh_stepper_compiles(const nevh_stepper *s) {
     return s && s->work.native && s->work.native->compiler &&
-           !s->work.native->steps;
+           !nevh__background_is_done(s->work.native->compiler);
 }
 
 bool nevh_stepper_native(const nevh_stepper *s, const char **why) {
