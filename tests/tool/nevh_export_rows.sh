@@ -87,6 +87,7 @@ else
     set -- $compilers
     one=$1
     agrees pendulum gauss6 exact 0.05 2 $compilers
+    agrees kepler gauss12 exact 0.02 1 $compilers
     agrees double-pendulum lobatto4 central2 0.01 0.4 $one
     agrees kepler verlet complex-step 0.02 1 $compilers
     agrees fput rkn11b exact 0.1 2 $one
