@@ -10,6 +10,7 @@ libnevh_core_la_SOURCES += \
 	integrators/verlet.c \
 	integrators/ruth3.c \
 	integrators/mclachlan_atela.c \
+	integrators/mclachlan.c \
 	integrators/forest_ruth.c \
 	integrators/pefrl.c \
 	integrators/suzuki.c \

@@ -12,6 +12,8 @@
     X(position_verlet)                                                         \
     X(ruth3)                                                                   \
     X(mclachlan_atela4)                                                        \
+    X(mclachlan_sb3a4)                                                         \
+    X(mclachlan_sb3a5)                                                         \
     X(forest_ruth)                                                             \
     X(pefrl)                                                                   \
     X(suzuki4)                                                                 \

@@ -103,6 +103,8 @@ static bool run_stepper(void *data, double y[], double *seconds) {
     {                                                                          \
         METHOD(how, verlet, false, 2),                                         \
             METHOD(how, mclachlan_atela4, false, 4),                           \
+            METHOD(how, mclachlan_sb3a4, false, 4),                            \
+            METHOD(how, mclachlan_sb3a5, false, 4),                            \
             METHOD(how, pefrl, false, 4), METHOD(how, blanes_moan4, false, 4), \
             METHOD(how, rkn6b, false, 4), METHOD(how, rkn11b, false, 6),       \
             METHOD(how, rkn14a, false, 6), METHOD(how, kahan_li8, false, 8),   \

@@ -28,6 +28,8 @@ NEVH_API extern const nevh_integrator *const nevh_verlet;
 NEVH_API extern const nevh_integrator *const nevh_position_verlet;
 NEVH_API extern const nevh_integrator *const nevh_ruth3;
 NEVH_API extern const nevh_integrator *const nevh_mclachlan_atela4;
+NEVH_API extern const nevh_integrator *const nevh_mclachlan_sb3a4;
+NEVH_API extern const nevh_integrator *const nevh_mclachlan_sb3a5;
 NEVH_API extern const nevh_integrator *const nevh_forest_ruth;
 NEVH_API extern const nevh_integrator *const nevh_pefrl;
 NEVH_API extern const nevh_integrator *const nevh_suzuki4;

@@ -36,12 +36,20 @@ static const struct {
     const nevh_integrator *const *scheme;
     double error;
 } figures[] = {
-    {&nevh_verlet, 5.00e-3},           {&nevh_forest_ruth, 6.269e-5},
-    {&nevh_suzuki4, 5.760e-6},         {&nevh_mclachlan_atela4, 7.52e-7},
-    {&nevh_blanes_moan4, 2.243e-7},    {&nevh_yoshida6, 1.2825e-7},
-    {&nevh_rkn6b, 1.557e-9},           {&nevh_blanes_moan6, 2.4515e-10},
-    {&nevh_suzuki_umeno8, 1.2133e-11}, {&nevh_rkn11b, 9.149e-12},
-    {&nevh_rkn14a, 6.29e-13},          {&nevh_kahan_li6, 1.525e-8},
+    {&nevh_verlet, 5.00e-3},
+    {&nevh_forest_ruth, 6.269e-5},
+    {&nevh_suzuki4, 5.760e-6},
+    {&nevh_mclachlan_atela4, 7.52e-7},
+    {&nevh_blanes_moan4, 2.243e-7},
+    {&nevh_yoshida6, 1.2825e-7},
+    {&nevh_rkn6b, 1.557e-9},
+    {&nevh_blanes_moan6, 2.4515e-10},
+    {&nevh_suzuki_umeno8, 1.2133e-11},
+    {&nevh_rkn11b, 9.149e-12},
+    {&nevh_rkn14a, 6.29e-13},
+    {&nevh_kahan_li6, 1.525e-8},
+    {&nevh_mclachlan_sb3a4, 2.5264e-6},
+    {&nevh_mclachlan_sb3a5, 1.7055e-7},
 };
 
 TEST_EACH(oscillator, sizeof figures / sizeof *figures) {

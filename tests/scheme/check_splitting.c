@@ -193,7 +193,7 @@ TEST(patterns) {
 }
 
 /* What papers give besides, and the tables leave out. */
-TEST_EACH(weights_that_follow, 13) {
+TEST_EACH(weights_that_follow, 16) {
     static const struct {
         const char *name;
         size_t operation;
@@ -202,6 +202,9 @@ TEST_EACH(weights_that_follow, 13) {
                  {"ruth3", 5, 1},
                  {"mclachlan-atela4", 6, 0.334003603286321425},
                  {"mclachlan-atela4", 7, 0.128846158365384185},
+                 {"mclachlan-sb3a4", 3, -1. / 2},
+                 {"mclachlan-sb3a4", 4, 2. / 3},
+                 {"mclachlan-sb3a5", 5, 1 + 6. / 73 - 34. / 59},
                  {"pefrl", 3, -0.2123418310626054},
                  {"pefrl", 5, -0.2123418310626054},
                  {"blanes-moan4", 5, 0.4343366665664560},
