@@ -133,6 +133,11 @@ static int change_of_one(sweep *s, unsigned f, dual a, int y) {
     switch (f) {
     case NEVH__NEGATE:
         return negative(s, a.d);
+    case NEVH__SQUARE:
+        return product(s, apply(s, NEVH__MULTIPLY, number(s, 2), a.y), a.d);
+    case NEVH__CUBE:
+        return product(
+            s, apply(s, NEVH__MULTIPLY, number(s, 3), square(s, a.y)), a.d);
     case NEVH__SIN:
         return product(s, call(s, NEVH__COS, a.y), a.d);
     case NEVH__COS:

@@ -46,6 +46,8 @@ enum { NEVH__VARIABLES = 4 };
     X(DIVIDE, "/", 2)                                                          \
     X(POWER, "^", 2)                                                           \
     X(NEGATE, "-", 1)                                                          \
+    X(SQUARE, "^2", 1)                                                         \
+    X(CUBE, "^3", 1)                                                           \
     X(SIN, "sin", 1)                                                           \
     X(COS, "cos", 1)                                                           \
     X(TAN, "tan", 1)                                                           \

@@ -100,6 +100,8 @@ static int multiply(nevh__tape_builder *b, int x, int y) {
         return multiply_number(b, y, c, x);
     if (is_negated(b, x, &z) && is_negated(b, y, &w))
         return nevh__tape_apply(b, NEVH__MULTIPLY, z, w);
+    if (x == y)
+        return operation(b, NEVH__SQUARE, x, x);
     return commutative(b, NEVH__MULTIPLY, x, y);
 }
 
@@ -124,6 +126,8 @@ static int divide(nevh__tape_builder *b, int x, int y) {
 static int multiplied(nevh__tape_builder *b, int x, int n) {
     if (n == 1)
         return x;
+    if (n == 3)
+        return nevh__tape_apply(b, NEVH__CUBE, x, x);
     int most = multiplied(b, x, n % 2 ? n - 1 : n / 2);
     return nevh__tape_apply(b, NEVH__MULTIPLY, n % 2 ? x : most, most);
 }

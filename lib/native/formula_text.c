@@ -1,10 +1,8 @@
 /* nevh: a tape as C text.
 
-   Text and tape do the same operations in the same order, but for two:
+   Text and tape do the same operations in the same order, but for one:
    0 times infinity is NaN here where the chain rule of the tape has 0: who calls
-   such text looks for NaN, and asks the tape.  The derivative g a + g a of a square
-   is (g + g) a, which is the same unless g a is less than the least normal number:
-   compilers find g + g once, and leave out a factor of 1.
+   such text looks for NaN, and asks the tape.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/tape_inside_private.h"
 #include "native/operation_text_private.h"
@@ -215,30 +213,6 @@ static bool *adjoint_name(const nevh__formula_text *f, const reading *r,
     return cosine ? &r->begun_cosine[from] : &r->begun[from];
 }
 
-static bool is_square(const reading *r, const nevh__instruction *at,
-                      uint32_t i) {
-    return at->operation == NEVH__MULTIPLY && at->a.kind == at->b.kind &&
-           (at->a.kind == NEVH__SLOT
-                ? r->a[i] == r->b[i] && r->cosine[2 * i] == r->cosine[2 * i + 1]
-                : at->a.at == at->b.at);
-}
-
-/* A square is the first to hand on to its argument. */
-static bool hand_on_square(nevh__writer *w, const nevh__formula_text *f,
-                           const reading *r, uint32_t i, const names *x) {
-    const nevh__instruction *at = &f->tape->code[i];
-    char to[NEVH__NAME];
-    if (!is_square(r, at, i))
-        return false;
-    bool *begun = adjoint_name(f, r, at->a, r->a[i], r->cosine[2 * i], to);
-    if (*begun)
-        return false;
-    nevh__write(w, "    %s %s = (dv%u_%u + dv%u_%u) * %s;\n", type_of(f), to,
-                f->id, i, f->id, i, x->a);
-    *begun = true;
-    return true;
-}
-
 /* The adjoint of an operation's result is handed on to one argument. */
 static void hand_on(nevh__writer *w, const nevh__formula_text *f,
                     const reading *r, uint32_t i, bool second, const names *x) {
@@ -282,8 +256,6 @@ static void write_backwards(nevh__writer *w, const nevh__formula_text *f,
         if (!((at->a.by | at->b.by) & wanted))
             continue;
         find_names(w, f, r, i, &x);
-        if (hand_on_square(w, f, r, i, &x))
-            continue;
         if (at->a.by & wanted)
             hand_on(w, f, r, i, false, &x);
         if (at->b.by & wanted)

@@ -56,6 +56,8 @@ static const char *write_word(nevh__writer *w, const char *word, size_t length,
         after += bytes + 2;
     } else if (is(word, length, "NEVH__G"))
         nevh__write(w, "%s * ", m->g);
+    else if (is(word, length, "NEVH__TWICE_G"))
+        nevh__write(w, "(%s + %s) * ", m->g, m->g);
     else if (is(word, length, "NEVH__LN10"))
         nevh__write(w, "2.302585092994045684");
     else if (length > 6 && strncmp(word, "nevh__", 6) == 0)
@@ -105,6 +107,10 @@ double nevh__operation_bound(unsigned operation, double a, double b) {
         return a + b;
     case NEVH__MULTIPLY:
         return a * b;
+    case NEVH__SQUARE:
+        return a * a;
+    case NEVH__CUBE:
+        return a * a * a;
     default:
         return INFINITY;
     }

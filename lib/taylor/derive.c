@@ -106,6 +106,10 @@ static nevh__wide number_of(unsigned operation, nevh__wide x, nevh__wide y) {
         return x / y;
     case NEVH__NEGATE:
         return -x;
+    case NEVH__SQUARE:
+        return x * x;
+    case NEVH__CUBE:
+        return x * (x * x);
 #ifdef NEVH_QUADMATH
     case NEVH__POWER:
         return powq(x, y);
@@ -176,6 +180,10 @@ static int operate(nevh__graph *g, unsigned operation, int a, int b) {
         return power(g, a, b);
     case NEVH__NEGATE:
         return nevh__graph_scale(g, -1, a);
+    case NEVH__SQUARE:
+        return nevh__graph_multiply(g, a, a);
+    case NEVH__CUBE:
+        return nevh__graph_multiply(g, a, nevh__graph_multiply(g, a, a));
     case NEVH__SINCOS:
         return nevh__graph_call(g, NEVH__SIN, a, -1);
     default:

@@ -56,6 +56,8 @@ OF(multiply, a *b)
 OF(divide, a / b)
 OF(power, powl(a, b))
 OF(negate, -a)
+OF(square, a *a)
+OF(cube, a *a *a)
 OF(sin, sinl(a))
 OF(cos, cosl(a))
 OF(tan, tanl(a))
@@ -105,6 +107,8 @@ static const operation operations[] = {
     ROW(DIVIDE, divide, -2, 2, 0.3, 2, 0.51),
     ROW(POWER, power, 0.1, 4, -4, 4, 1),
     ROW(NEGATE, negate, -2, 2, 0, 1, 0),
+    ROW(SQUARE, square, -2, 2, 0, 1, 0.51),
+    ROW(CUBE, cube, -2, 2, 0, 1, 2),
     ROW(SIN, sin, -20, 20, 0, 1, 1),
     ROW(COS, cos, -20, 20, 0, 1, 1),
     ROW(TAN, tan, -1.5, 1.5, 0, 1, 1),
