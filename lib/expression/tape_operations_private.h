@@ -43,8 +43,9 @@ NEVH__INLINE double nevh__chain(double x, double y) {
     bool undecided = (product != product) & !isunordered(x, y);
     return undecided ? 0 : product;
 }
-#define NEVH__G(slope)       nevh__chain(g, slope)
-#define NEVH__TWICE_G(slope) nevh__chain(g + g, slope)
+#define NEVH__G(slope)        nevh__chain(g, slope)
+#define NEVH__TWICE_G(slope)  nevh__chain(2 * g, slope)
+#define NEVH__THRICE_G(slope) nevh__chain(3 * g, slope)
 
 #define NEVH__LN10 2.302585092994045684
 
@@ -59,7 +60,7 @@ NEVH__INLINE double nevh__chain(double x, double y) {
       NEVH__G(nevh__chain(y, NEVH__F(log)(a))))                                \
     X(NEGATE, -a, -g, 0)                                                       \
     X(SQUARE, a * a, NEVH__TWICE_G(a), 0)                                      \
-    X(CUBE, a * (a * a), NEVH__G(3 * (a * a)), 0)                              \
+    X(CUBE, a * (a * a), NEVH__THRICE_G(a * a), 0)                             \
     X(SIN, NEVH__F(sin)(a), NEVH__G(NEVH__F(cos)(a)), 0)                       \
     X(COS, NEVH__F(cos)(a), NEVH__G(-NEVH__F(sin)(a)), 0)                      \
     X(TAN, NEVH__F(tan)(a), NEVH__G(1 + y * y), 0)                             \

@@ -272,6 +272,33 @@ static void write_check(nevh__writer *w, const char *value) {
         nevh__write(w, "    bad += %s;\n", value);
 }
 
+/* |c| of a number c, else NAN. */
+static double size_of(const nevh__tape *tape, nevh__tape_operand o) {
+    return o.kind == NEVH__NUMBER ? fabs(tape->numbers[o.at]) : NAN;
+}
+
+/* What is finite where the value is: that without a sign and factors up to 1. */
+static void finite_with(nevh__writer *w, const nevh__formula_text *f,
+                        const reading *r, char value[NEVH__NAME]) {
+    const nevh__tape *tape = f->tape;
+    nevh__tape_operand o = tape->result;
+    uint32_t from = r->last;
+    bool cosine = r->last_cosine;
+    while (o.kind == NEVH__SLOT && !cosine) {
+        const nevh__instruction *at = &tape->code[from];
+        double a = size_of(tape, at->a), b = size_of(tape, at->b);
+        bool first = at->operation == NEVH__NEGATE ||
+                     (at->operation == NEVH__MULTIPLY && b <= 1) ||
+                     (at->operation == NEVH__DIVIDE && b >= 1);
+        if (!first && !(at->operation == NEVH__MULTIPLY && a <= 1))
+            break;
+        o = first ? at->a : at->b;
+        cosine = r->cosine[2 * from + !first];
+        from = first ? r->a[from] : r->b[from];
+    }
+    operand_name(w, f, o, from, cosine, value);
+}
+
 bool nevh__write_gradient(nevh__writer *w, nevh__formula_text *f,
                           unsigned wanted) {
     static const double safe = 1e300;
@@ -286,6 +313,8 @@ bool nevh__write_gradient(nevh__writer *w, nevh__formula_text *f,
     nevh__tape_operand o = f->tape->result;
     if (fine && o.by & wanted) {
         bool *begun = adjoint_name(f, &r, o, r.last, r.last_cosine, to);
+        if (!w->readable)
+            finite_with(w, f, &r, result);
         if (!(most < safe))
             write_check(w, result);
         nevh__write(w, "    %s %s = %s(1.0);\n", type_of(f), to,

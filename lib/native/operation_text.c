@@ -57,7 +57,9 @@ static const char *write_word(nevh__writer *w, const char *word, size_t length,
     } else if (is(word, length, "NEVH__G"))
         nevh__write(w, "%s * ", m->g);
     else if (is(word, length, "NEVH__TWICE_G"))
-        nevh__write(w, "(%s + %s) * ", m->g, m->g);
+        nevh__write(w, "(2 * %s) * ", m->g);
+    else if (is(word, length, "NEVH__THRICE_G"))
+        nevh__write(w, "(3 * %s) * ", m->g);
     else if (is(word, length, "NEVH__LN10"))
         nevh__write(w, "2.302585092994045684");
     else if (length > 6 && strncmp(word, "nevh__", 6) == 0)
