@@ -54,7 +54,7 @@ NEVH__INLINE double nevh__chain(double x, double y) {
     X(ADD, a + b, g, g)                                                        \
     X(SUBTRACT, a - b, g, -g)                                                  \
     X(MULTIPLY, a * b, NEVH__G(b), NEVH__G(a))                                 \
-    X(DIVIDE, a / b, NEVH__G(1 / b), NEVH__G(-y / b))                          \
+    X(DIVIDE, a / b, NEVH__G(1 / b), NEVH__G(-y * (1 / b)))                    \
     X(POWER, NEVH__F(pow)(a, b),                                               \
       NEVH__G(nevh__chain(b, NEVH__F(pow)(a, b - 1))),                         \
       NEVH__G(nevh__chain(y, NEVH__F(log)(a))))                                \
@@ -82,7 +82,7 @@ NEVH__INLINE double nevh__chain(double x, double y) {
     X(EXP, NEVH__F(exp)(a), NEVH__G(y), 0)                                     \
     X(LOG, NEVH__F(log)(a), NEVH__G(1 / a), 0)                                 \
     X(LOG10, log10(a), NEVH__G(1 / (a * NEVH__LN10)), 0)                       \
-    X(SQRT, NEVH__F(sqrt)(a), NEVH__G(0.5 / y), 0)                             \
+    X(SQRT, NEVH__F(sqrt)(a), NEVH__G(0.5 * (1 / y)), 0)                       \
     X(CBRT, NEVH__F(cbrt)(a), NEVH__G(1 / (3 * y * y)), 0)                     \
     X(HYPOT, NEVH__F(hypot)(a, b), NEVH__G(nevh__choose(y == 0, 0, a / y)),    \
       NEVH__G(nevh__choose(y == 0, 0, b / y)))                                 \
