@@ -43,7 +43,8 @@ NEVH__INLINE double nevh__chain(double x, double y) {
     bool undecided = (product != product) & !isunordered(x, y);
     return undecided ? 0 : product;
 }
-#define NEVH__G(slope)        nevh__chain(g, slope)
+#define NEVH__G(slope) nevh__chain(g, slope)
+/* Where g is a constant, so are 2 g and 3 g. */
 #define NEVH__TWICE_G(slope)  nevh__chain(2 * g, slope)
 #define NEVH__THRICE_G(slope) nevh__chain(3 * g, slope)
 

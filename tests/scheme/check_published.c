@@ -47,9 +47,9 @@ static const struct {
     {&nevh_suzuki_umeno8, 1.2133e-11},
     {&nevh_rkn11b, 9.149e-12},
     {&nevh_rkn14a, 6.29e-13},
-    {&nevh_kahan_li6, 1.525e-8},
     {&nevh_mclachlan_sb3a4, 2.5264e-6},
     {&nevh_mclachlan_sb3a5, 1.7055e-7},
+    {&nevh_kahan_li6, 1.525e-8},
 };
 
 TEST_EACH(oscillator, sizeof figures / sizeof *figures) {
