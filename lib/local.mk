@@ -294,4 +294,5 @@ CLEANFILES += lib/native/kernel_texts.c
 lib_LTLIBRARIES += libnevh.la
 libnevh_la_SOURCES =
 libnevh_la_LIBADD = libnevh_core.la
+EXTRA_libnevh_la_DEPENDENCIES = installed-folders
 libnevh_la_LDFLAGS = -version-info 0:0:0 -no-undefined $(SANITIZE_FLAGS)

@@ -229,6 +229,7 @@ dist_check_SCRIPTS = \
 	tests/build/pkgconfig.sh \
 	tests/build/manual.sh \
 	tests/build/install.sh \
+	tests/build/install_prefix.sh \
 	tests/build/debian.sh \
 	tests/robust/effects_off.sh \
 	tests/robust/valgrind.sh
