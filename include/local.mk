@@ -5,6 +5,7 @@ nevhinclude_HEADERS = \
 	include/nevh/certain.h \
 	include/nevh/simd.h \
 	include/nevh/chaos.h \
+	include/nevh/confirm.h \
 	include/nevh/diagnose.h \
 	include/nevh/extend.h \
 	include/nevh/gradient.h \

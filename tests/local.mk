@@ -65,6 +65,7 @@ suites = \
 	tests/scheme/check_eccentric \
 	tests/diagnose/check_energy \
 	tests/diagnose/check_chaos \
+	tests/diagnose/check_confirm \
 	tests/diagnose/check_shadow \
 	tests/diagnose/check_verdict \
 	tests/diagnose/check_loop \

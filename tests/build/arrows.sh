@@ -63,7 +63,7 @@ folder_of='function folder(path, part) {
         of["gradient"] = of["gsl"] = of["probe"] = "gradient"
         of["integrator"] = of["extend"] = of["run"] = "work"
         of["section"] = "run"; of["diagnose"] = of["reference"] = of["loop"] = of["frequencies"] = "diagnose"
-        of["chaos"] = "diagnose"; of["shadow"] = "diagnose"; of["certain"] = "taylor"
+        of["chaos"] = "diagnose"; of["confirm"] = "diagnose"; of["shadow"] = "diagnose"; of["certain"] = "taylor"
         of["ensemble"] = "ensemble"; of["sweep"] = "scene"
         of["scene"] = of["binding"] = "scene"; of["models"] = "models"; of["nevh"] = "tools"
     }

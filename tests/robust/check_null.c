@@ -5,6 +5,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "support.h"
 #include <math.h>
+#include <nevh/confirm.h>
 #include <string.h>
 
 enum { ROOM = 64 };
@@ -28,6 +29,19 @@ static nevh_separability separability;
     X(REAL, nevh_certain_size, (NULL, 0))                                      \
     X(NUMBER, nevh_certain_digits, (NULL, 0))                                  \
     X(ANY, nevh_certain_text, (NULL, 0))                                       \
+    X(MADE, nevh_finer_new, (NULL, NULL))                                      \
+    X(ANY, nevh_finer_free, (NULL))                                            \
+    X(STATUS, nevh_finer_status, (NULL))                                       \
+    X(TEXT, nevh_finer_message, (NULL))                                        \
+    X(NUMBER, nevh_finer_how, (NULL))                                          \
+    X(TEXT, nevh_finer_text, (NULL))                                           \
+    X(POINTER, nevh_finer_integrator, (NULL))                                  \
+    X(POINTER, nevh_finer_options, (NULL))                                     \
+    X(REAL, nevh_finer_dt, (NULL))                                             \
+    X(REAL, nevh_finer_part, (NULL))                                           \
+    X(STATUS, nevh_finer_run, (NULL, 1, out, out, NULL, 0, NULL))              \
+    X(POINTER, nevh_finer_stepper, (NULL))                                     \
+    X(ANY, nevh_agree, (0, 0, 0, 0))                                           \
     X(MADE, nevh_energy_new, (NULL, NULL))                                     \
     X(ANY, nevh_energy_free, (NULL))                                           \
     X(STATUS, nevh_energy_status, (NULL))                                      \
