@@ -10,8 +10,6 @@ typedef struct {
     plan plan;
     measured data;
     fitting fit;
-    double dt; /* fixed, though parameters change */
-    double *tolerance;
 } job;
 
 static int check_points(const job *j, const options *o) {
@@ -34,15 +32,32 @@ static int check_points(const job *j, const options *o) {
 /* Numbers that the scene's own would take along when it changes. */
 static void keep_steps(job *j) {
     plan *p = &j->plan;
-    j->dt = p->dt[0];
-    p->dt = &j->dt;
+    fit_scheme *now = &j->fit.now;
+    now->dt = p->dt[0];
+    now->tolerance = p->tolerances ? p->tolerance[0] : 0;
+    j->fit.given = *now;
+    p->dt = &now->dt;
     p->dts = 1;
-    j->tolerance = tool_allocate(1, sizeof *j->tolerance);
-    if (p->tolerances)
-        *j->tolerance = p->tolerance[0];
-    p->tolerance = j->tolerance;
-    p->tolerances = p->tolerances > 0;
+    p->tolerance = &now->tolerance;
+    p->tolerances = 1;
     p->native = NEVH_NATIVE_NEVER;
+}
+
+/* Of the data about the mean of each column, in units of their deviations. */
+static double spread_of(const fitting *f) {
+    const measured *m = f->data;
+    double sum = 0;
+    for (size_t k = 0; k < m->columns; k++) {
+        double mean = 0;
+        for (size_t i = k; i < m->points * m->columns; i += m->columns)
+            mean += m->value[i] / (double)m->points;
+        for (size_t i = k; i < m->points * m->columns; i += m->columns) {
+            double r =
+                (m->value[i] - mean) / (m->sigma ? m->sigma[i] : f->sigma);
+            sum += r * r;
+        }
+    }
+    return sqrt(sum);
 }
 
 /* Exact derivatives, where H has them and none are asked for: the orbits are the
@@ -54,7 +69,7 @@ static void choose_gradient(job *j, const options *o) {
         return;
     *names = (list){0};
     list_add(names, "exact");
-    nevh_stepper *s = plan_stepper(&j->plan, j->fit.integrator);
+    nevh_stepper *s = plan_stepper(&j->plan, j->fit.now.integrator);
     bool fits = !nevh_stepper_status(s);
     nevh_stepper_free(s);
     list_free(fits ? &before : names);
@@ -72,15 +87,17 @@ static int begin(job *j, const options *o) {
         return TOOL_USAGE;
     measured_bound(&j->data, &j->plan, o);
     keep_steps(j);
-    nevh_stepper *s = plan_first(&j->plan, &j->fit.integrator);
+    nevh_stepper *s = plan_first(&j->plan, &j->fit.now.integrator);
     nevh_stepper_free(s);
     if (!s)
         return TOOL_USAGE;
+    j->fit.given.integrator = j->fit.now.integrator;
     choose_gradient(j, o);
     j->fit.plan = &j->plan;
     j->fit.data = &j->data;
     j->fit.sigma = o->fit.sigma > 0 ? o->fit.sigma : 1;
     j->fit.sigma_known = o->fit.sigma > 0;
+    j->fit.spread = spread_of(&j->fit);
     if (o->fit.sigma > 0 && j->data.sigma)
         return tool_refuse("--sigma: %s has standard deviations of its own",
                            j->data.file);
@@ -123,6 +140,10 @@ static void add_columns(const job *j, table *t, bool is_table) {
         table_column(t, title);
         free(title);
     }
+    if (!is_table) {
+        table_column(t, "tolerance");
+        table_column(t, "scheme_error");
+    }
 }
 
 /* As many digits as the error leaves, and two. */
@@ -148,13 +169,18 @@ static void add_row(const job *j, table *t, size_t k) {
         table_shown(t, "%.3f", j->fit.correlation[k * j->fit.count + i]);
 }
 
+static bool is_adaptive(const fitting *f) {
+    return nevh_integrator_adaptive(
+        plan_scheme(f->now.integrator, &(bool){false}));
+}
+
 static void add_record(const job *j, table *t, size_t k) {
     const fitting *f = &j->fit;
     const varied *v = &f->item[k];
     const double numbers[] = {v->first, v->value, v->error, v->low, v->high};
     table_text(t, j->plan.name);
-    table_text(t, f->integrator);
-    table_number(t, j->dt);
+    table_text(t, f->now.integrator);
+    table_number(t, f->now.dt);
     table_text(t, v->name);
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
         table_number(t, numbers[i]);
@@ -164,6 +190,14 @@ static void add_record(const job *j, table *t, size_t k) {
     table_number(t, reduced(j));
     for (size_t i = 0; i < f->count; i++)
         table_number(t, f->correlation[k * f->count + i]);
+    if (is_adaptive(f))
+        table_number(t, f->now.tolerance);
+    else
+        table_text(t, "");
+    if (f->evidence == FIT_UNCHECKED)
+        table_text(t, "");
+    else
+        table_number(t, fabs(v->moved));
 }
 
 static void judge(const job *j, list *words) {
@@ -176,8 +210,7 @@ static void judge(const job *j, list *words) {
             words,
             "The residuals are %.2g times as large as sigma says: the "
             "scene lacks an effect, the fit is in another minimum (begin "
-            "nearer: --set, --start), the steps are too long (--dt, "
-            "--integrators), or sigma is too small.",
+            "nearer: --set, --start), or sigma is too small.",
             sqrt(ratio));
     if (sigma_known(j) && ratio < 1 - spread)
         list_print(words,
@@ -219,15 +252,24 @@ static char *add_values(char *line, const fitting *f, bool starts) {
     return line;
 }
 
+static char *add_scheme(char *line, const fitting *f, const options *o) {
+    const fit_scheme *now = &f->now, *given = &f->given;
+    bool other = strcmp(now->integrator, given->integrator) != 0;
+    if (o->integrators.count || other)
+        line = shell_option(line, "integrators", now->integrator);
+    if (o->dt.count || now->dt != given->dt)
+        line = shell_number(line, "dt", now->dt);
+    if (is_adaptive(f) && (o->tolerances || other))
+        line = shell_number(line, "tolerance", now->tolerance);
+    return line;
+}
+
 /* The run of the values found, as they were fitted. */
 static void add_next(const job *j, const options *o, list *words) {
     char *line = shell_line(o, "run", j->plan.name);
     line = add_values(line, &j->fit, false);
     line = add_values(line, &j->fit, true);
-    if (o->integrators.count)
-        line = shell_option(line, "integrators", j->fit.integrator);
-    if (o->dt.count)
-        line = shell_number(line, "dt", j->dt);
+    line = add_scheme(line, &j->fit, o);
     if (o->t_end)
         line = shell_option(line, "t-end", o->t_end);
     line = shell_option(line, "data", o->fit.data);
@@ -252,7 +294,9 @@ static void add_words(const job *j, const options *o, list *words) {
         list_print(words, "rms of the residuals of %s: %.3g%s%s", name,
                    f->rms[k], *unit ? " " : "", unit);
     }
+    fit_scheme_words(f, words);
     judge(j, words);
+    fit_residual_words(f, f->residual, words);
     add_next(j, o, words);
 }
 
@@ -260,7 +304,7 @@ static void note(const job *j, const options *o, list *notes) {
     plan_notes(&j->plan, notes);
     settings_notes(o, notes);
     measured_note(&j->data, notes);
-    plan_note_first(&j->plan, j->fit.integrator, notes);
+    plan_note_first(&j->plan, j->fit.now.integrator, notes);
     list_print(notes, "sigma: %s",
                j->data.sigma        ? "of the data"
                : j->fit.sigma_known ? "of --sigma"
@@ -338,11 +382,12 @@ static void clear(job *j) {
     free(f->item);
     free(f->correlation);
     free(f->rms);
+    free(f->residual);
+    free(f->unchecked);
     free(f->undetermined);
     free(f->direction);
     free(f->why);
     measured_free(&j->data);
-    free(j->tolerance);
     plan_free(&j->plan);
 }
 

@@ -107,6 +107,17 @@ static bool fails(fitting *f, const char *why) {
     return false;
 }
 
+typedef struct {
+    const nevh_stepper *stepper;
+    uint64_t most; /* gradients; 0: any */
+} budget;
+
+static int check_budget(void *data) {
+    const budget *b = data;
+    uint64_t taken = nevh_stepper_counts(b->stepper).gradients;
+    return b->most && taken > b->most ? TOOL_FAILED : TOOL_OK;
+}
+
 static bool follow(fitting *f, nevh_stepper *s, double residual[]) {
     static const volatile sig_atomic_t no_signal;
     const measured *m = f->data;
@@ -120,12 +131,19 @@ static bool follow(fitting *f, nevh_stepper *s, double residual[]) {
     times.count = f->used;
     f->plan->t_end = m->t[f->used - 1];
     trajectory *r =
-        trajectory_new(f->plan, f->integrator, s, &times,
+        trajectory_new(f->plan, f->now.integrator, s, &times,
                        (sink){.take = compare_point, .data = &c, .mute = true});
-    trajectory_follow(r, &(trajectory_watch){.signal = &no_signal});
+    budget b = {s, f->most};
+    trajectory_follow(r, &(trajectory_watch){.signal = &no_signal,
+                                             .save = check_budget,
+                                             .data = &b});
     trajectory_free(r);
-    bool whole = c.point == f->used;
-    if (!whole && nevh_stepper_status(s))
+    f->cost = nevh_stepper_counts(s).gradients;
+    bool dear = check_budget(&b) != TOOL_OK;
+    bool whole = c.point == f->used && !dear;
+    if (dear)
+        fails(f, "it takes too many steps");
+    else if (!whole && nevh_stepper_status(s))
         fails(f, nevh_stepper_message(s));
     else if (!whole)
         fails(f, "the orbit ends before the data, or is not finite");
@@ -135,13 +153,12 @@ static bool follow(fitting *f, nevh_stepper *s, double residual[]) {
 }
 
 bool fit_orbit(fitting *f, const double x[], double residual[]) {
-    f->orbits++;
     for (size_t i = 0; i < f->count; i++)
         if (assign(f, &f->item[i], x[i] * f->item[i].scale))
             return fails(f, nevh_scene_message(f->plan->scene));
     if (renew(f->plan))
         return fails(f, nevh_scene_message(f->plan->scene));
-    nevh_stepper *s = plan_stepper(f->plan, f->integrator);
+    nevh_stepper *s = plan_stepper(f->plan, f->now.integrator);
     bool good = nevh_stepper_status(s) ? fails(f, nevh_stepper_message(s))
                                        : follow(f, s, residual);
     nevh_stepper_free(s);

@@ -12,21 +12,41 @@ typedef struct {
     double first, scale; /* where it begins; what its changes are measured by */
     double value, error; /* fitted; error: one standard deviation */
     double low, high;    /* of 95 % of samples */
+    double moved;        /* by the last change of the scheme */
 } varied;
+
+/* How orbits are computed. */
+typedef struct {
+    const char *integrator;
+    double dt, tolerance;
+} fit_scheme;
+
+/* What the error of the scheme is, beside those of the numbers. */
+typedef enum {
+    FIT_UNCHECKED, /* no finer orbit; `unchecked` says why */
+    FIT_SMALL,
+    FIT_WIDENED /* the intervals are longer by `moved` */
+} fit_evidence;
 
 typedef struct {
     plan *plan;
-    const char *integrator;
+    fit_scheme given, now; /* the plan points to dt and tolerance of `now` */
+    fit_evidence evidence;
+    char *unchecked;
+    size_t worst;      /* the number that the given scheme changes most, */
+    double worst_part; /* by that many of its errors */
     measured *data;
     double sigma; /* of all, where the data have none; 1: unknown */
     bool sigma_known;
     varied *item;
     size_t count, used;  /* used: points so far */
     size_t residuals;    /* used x columns */
-    size_t orbits;       /* that were taken */
+    uint64_t cost, most; /* gradients of an orbit; most: allowed, 0: any */
     char *why;           /* the last orbit failed; NULL */
     double *correlation; /* count x count */
     double chi_square, *rms;
+    double spread;      /* of the data about their means, in such units */
+    double *residual;   /* of the result, in units of their deviations */
     bool *undetermined; /* NULL: all are determined */
     char *direction;    /* the change that the data do not see */
     size_t iterations;
@@ -40,6 +60,16 @@ int fit_begin(fitting *, const options *);
    these values, in units of their scales.
    returns  whether there is one; else `why` says more */
 bool fit_orbit(fitting *, const double x[], double residual[]);
+
+/* fit_scheme.c: orbits of smaller errors.
+   level    from 0 on: tolerances of dop853; with `stepwise`, of the given scheme
+            at shorter steps
+   returns  false where there is none */
+bool fit_scheme_finer(const fitting *, size_t level, bool stepwise,
+                      fit_scheme *);
+void fit_scheme_words(const fitting *, list *words);
+/* Whether neighbouring residuals of a column are alike, which noise is not. */
+void fit_residual_words(const fitting *, const double residual[], list *words);
 
 /* fit_solve.c
    returns  TOOL_OK, with values, errors and correlations; TOOL_FAILED where the

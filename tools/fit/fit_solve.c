@@ -2,7 +2,10 @@
 
    A fit to a long orbit has many local minima, where the model is a turn ahead.
    So it is made twice: from the first values, and by and by, from the first
-   eighth of the points to all of them; the better of the two counts. */
+   eighth of the points to all of them; the better of the two counts.
+
+   Its orbits are then computed by a finer scheme, and it is made again, until that
+   changes no number by more than a tenth of its error. */
 #include "fit_private.h"
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_cdf.h>
@@ -15,6 +18,7 @@
 enum { MOST_ITERATIONS = 100 };
 static const double tolerance = 1e-9;  /* of the numbers, relative */
 static const double difference = 6e-6; /* cube root of the rounding */
+static const double least_size = 0.01; /* of a number, in its scale */
 static const double no_orbit = 1e100;  /* residuals of a step too far */
 static const double undetermined = 1e-6;
 static const double no_effect = 1e-8; /* what rounding makes is below */
@@ -47,7 +51,7 @@ static int derivatives(const gsl_vector *x, void *data, gsl_matrix *j) {
     bool good = true;
     memcpy(at, x->data, f->count * sizeof *at);
     for (size_t k = 0; good && k < f->count; k++) {
-        double h = difference * (at[k] != 0 ? fabs(at[k]) : 1), middle = at[k];
+        double h = difference * fmax(fabs(at[k]), least_size), middle = at[k];
         volatile double right = middle + h, left = middle - h;
         at[k] = right;
         good = fit_orbit(f, at, after);
@@ -101,6 +105,7 @@ static bool determined(fitting *f, const gsl_matrix *jacobian) {
         length[k] = gsl_blas_dnrm2(&column.vector);
         longest = fmax(longest, length[k]);
     }
+    free(f->undetermined);
     f->undetermined = tool_allocate(p, sizeof *f->undetermined);
     for (size_t k = 0; k < p; k++) {
         gsl_vector_view column = gsl_matrix_column(a, k);
@@ -209,8 +214,9 @@ static void take_errors(fitting *f, const gsl_matrix *jacobian) {
     for (size_t k = 0; k < p; k++) {
         varied *v = &f->item[k];
         v->error = sqrt(scale * gsl_matrix_get(c, k, k)) * v->scale;
-        v->low = v->value - wide * v->error;
-        v->high = v->value + wide * v->error;
+        double more = f->evidence == FIT_WIDENED ? fabs(v->moved) : 0;
+        v->low = v->value - wide * v->error - more;
+        v->high = v->value + wide * v->error + more;
         for (size_t i = 0; i < p; i++)
             f->correlation[k * p + i] =
                 gsl_matrix_get(c, k, i) /
@@ -239,40 +245,173 @@ static int take_result(fitting *f, const gsl_vector *x,
     take_rms(f, gsl_multifit_nlinear_residual(w));
     take_errors(f, gsl_multifit_nlinear_jac(w));
     /* The plan is that of the result. */
-    double *unused = tool_allocate(f->residuals, sizeof *unused);
-    bool good = fit_orbit(f, x->data, unused);
-    free(unused);
-    return good ? TOOL_OK : TOOL_FAILED;
+    f->residual = tool_allocate(f->residuals, sizeof *f->residual);
+    return fit_orbit(f, x->data, f->residual) ? TOOL_OK : TOOL_FAILED;
+}
+
+/* A fit to all points. */
+typedef struct {
+    gsl_vector *x;
+    gsl_multifit_nlinear_workspace *w;
+    double chi_square;
+    int status;
+    size_t iterations;
+    char *why;
+} attempt;
+
+/* x  is taken over */
+static attempt attempt_from(fitting *f, gsl_vector *x) {
+    attempt a = {.x = x};
+    a.status = fit_part(f, f->data->points, a.x, &a.chi_square, &a.w);
+    a.iterations = f->iterations;
+    a.why = f->why;
+    f->why = NULL;
+    return a;
+}
+
+static void attempt_free(attempt *a) {
+    gsl_multifit_nlinear_free(a->w);
+    gsl_vector_free(a->x);
+    free(a->why);
+}
+
+/* The better of two; the other is freed. */
+static attempt better(attempt a, attempt b) {
+    bool second = !b.status && (a.status || b.chi_square < a.chi_square);
+    attempt_free(second ? &a : &b);
+    return second ? b : a;
+}
+
+static attempt attempt_all(fitting *f) {
+    gsl_vector *x[2] = {new_vector(f->count), new_vector(f->count)};
+    start_values(f, x[0]);
+    attempt a = attempt_from(f, x[0]);
+    approach(f, x[1]);
+    return better(a, attempt_from(f, x[1]));
+}
+
+/* What orbits of another scheme change. */
+typedef struct {
+    bool orbit; /* there is one; else f->why */
+    bool small; /* in numbers, and in residuals that numbers do not explain */
+    bool far;   /* so much that the minimum may be another one */
+} change;
+
+/* The least squares solution of J x = d, or of its part that x does not explain,
+   in d. */
+static void explain(const gsl_matrix *jacobian, gsl_vector *d, gsl_matrix *c,
+                    gsl_vector *x) {
+    gsl_vector *slope = new_vector(x->size);
+    gsl_multifit_nlinear_covar(jacobian, 0, c);
+    gsl_blas_dgemv(CblasTrans, 1, jacobian, d, 0, slope);
+    gsl_blas_dgemv(CblasNoTrans, 1, c, slope, 0, x);
+    gsl_blas_dgemv(CblasNoTrans, -1, jacobian, x, 1, d);
+    gsl_vector_free(slope);
+}
+
+static double variance(const fitting *f, double chi_square) {
+    return f->sigma_known || f->data->sigma
+               ? 1
+               : chi_square / (double)(f->residuals - f->count);
+}
+
+static void judge_change(fitting *f, const attempt *a, gsl_vector *d,
+                         change *result) {
+    static const double part = 0.1, phase = 0.1;
+    gsl_matrix *c = new_matrix(f->count, f->count);
+    gsl_vector *x = new_vector(f->count);
+    double s = variance(f, a->chi_square), all = gsl_blas_dnrm2(d), worst = 0;
+    double level = gsl_blas_dnrm2(gsl_multifit_nlinear_residual(a->w));
+    explain(gsl_multifit_nlinear_jac(a->w), d, c, x);
+    for (size_t k = 0; k < f->count; k++) {
+        double moved = -gsl_vector_get(x, k);
+        double of_error = fabs(moved) / sqrt(s * gsl_matrix_get(c, k, k));
+        f->item[k].moved = moved * f->item[k].scale;
+        if (!(of_error <= worst)) {
+            worst = of_error;
+            f->worst = f->evidence == FIT_UNCHECKED ? k : f->worst;
+        }
+    }
+    if (f->evidence == FIT_UNCHECKED)
+        f->worst_part = worst;
+    result->small = worst < part && gsl_blas_dnrm2(d) < part * level;
+    result->far = all > phase * f->spread;
+    gsl_matrix_free(c);
+    gsl_vector_free(x);
+}
+
+/* The plan computes orbits by `finer` afterwards. */
+static change compare_scheme(fitting *f, const attempt *a,
+                             const fit_scheme *finer) {
+    change result = {0};
+    gsl_vector *d = new_vector(f->residuals);
+    f->now = *finer;
+    result.orbit = fit_orbit(f, a->x->data, d->data);
+    if (result.orbit) {
+        gsl_vector_scale(d, -1);
+        gsl_vector_sub(d, gsl_multifit_nlinear_residual(a->w));
+        judge_change(f, a, d, &result);
+    }
+    gsl_vector_free(d);
+    return result;
+}
+
+static gsl_vector *copy_vector(const gsl_vector *x) {
+    gsl_vector *copy = new_vector(x->size);
+    gsl_vector_memcpy(copy, x);
+    return copy;
+}
+
+/* Levels of smaller errors, until the next one changes nothing.
+   stepwise  as fit_scheme_finer has it
+   returns   false where a level has no orbit */
+static bool refine(fitting *f, attempt *a, bool stepwise) {
+    fit_scheme finer;
+    for (size_t level = 0; fit_scheme_finer(f, level, stepwise, &finer);
+         level++) {
+        fit_scheme before = f->now;
+        if (!determined(f, gsl_multifit_nlinear_jac(a->w)))
+            return true;
+        change c = compare_scheme(f, a, &finer);
+        if (!c.orbit || c.small)
+            f->now = before;
+        if (!c.orbit)
+            return false;
+        f->evidence = c.small ? FIT_SMALL : FIT_WIDENED;
+        if (c.small)
+            return true;
+        attempt b = attempt_from(f, copy_vector(a->x));
+        attempt_free(a);
+        *a = c.far || b.status ? better(b, attempt_all(f)) : b;
+        if (a->status)
+            return true;
+    }
+    return true;
+}
+
+static void check_scheme(fitting *f, attempt *a) {
+    static const uint64_t dearer = 300, least = 100000;
+    f->most = dearer * f->cost + least;
+    if (!refine(f, a, false) && f->evidence == FIT_UNCHECKED)
+        if (!refine(f, a, true)) {
+            f->unchecked = f->why;
+            f->why = NULL;
+        }
+    f->most = 0;
 }
 
 int fit_solve(fitting *f) {
-    gsl_vector *x[2] = {new_vector(f->count), new_vector(f->count)};
-    gsl_multifit_nlinear_workspace *w[2];
-    double chi_square[2];
-    int status[2];
-    size_t all = f->data->points;
-    start_values(f, x[0]);
-    status[0] = fit_part(f, all, x[0], &chi_square[0], &w[0]);
-    char *why = f->why ? text_print("%s", f->why) : NULL;
-    size_t iterations = f->iterations;
-    approach(f, x[1]);
-    status[1] = fit_part(f, all, x[1], &chi_square[1], &w[1]);
-    bool second = !status[1] && (status[0] || chi_square[1] < chi_square[0]);
-    if (!second) {
-        free(f->why);
-        f->why = why;
-        f->iterations = iterations;
-    } else {
-        free(why);
-    }
-    f->chi_square = chi_square[second];
+    attempt a = attempt_all(f);
+    if (!a.status)
+        check_scheme(f, &a);
+    f->chi_square = a.chi_square;
+    f->iterations = a.iterations;
     for (size_t k = 0; k < f->count; k++)
-        f->item[k].value = gsl_vector_get(x[second], k) * f->item[k].scale;
-    int result =
-        status[second] ? TOOL_FAILED : take_result(f, x[second], w[second]);
-    for (size_t i = 0; i < 2; i++) {
-        gsl_multifit_nlinear_free(w[i]);
-        gsl_vector_free(x[i]);
-    }
+        f->item[k].value = gsl_vector_get(a.x, k) * f->item[k].scale;
+    free(f->why);
+    f->why = a.why;
+    a.why = NULL;
+    int result = a.status ? TOOL_FAILED : take_result(f, a.x, a.w);
+    attempt_free(&a);
     return result;
 }

@@ -1,0 +1,99 @@
+/* nevh fit: the error of the scheme beside that of the data.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "fit_private.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool is_dop853(const char *integrator) {
+    return strcmp(integrator, "dop853") == 0;
+}
+
+/* Dormand and Prince's scheme of order 8 takes any H, and friction at its order. */
+static bool finer_tolerance(const fitting *f, size_t level, fit_scheme *finer) {
+    static const double tolerance[] = {1e-9, 1e-11, 1e-13};
+    enum { LEVELS = sizeof tolerance / sizeof *tolerance };
+    size_t first = 0;
+    while (is_dop853(f->given.integrator) && first < LEVELS &&
+           tolerance[first] >= f->given.tolerance)
+        first++;
+    if (first + level >= LEVELS)
+        return false;
+    *finer = (fit_scheme){"dop853", f->given.dt, tolerance[first + level]};
+    return true;
+}
+
+bool fit_scheme_finer(const fitting *f, size_t level, bool stepwise,
+                      fit_scheme *finer) {
+    enum { LEVELS = 3, SHORTER = 4 };
+    if (!stepwise)
+        return finer_tolerance(f, level, finer);
+    *finer = f->given;
+    finer->dt *= pow(SHORTER, -(double)(level + 1));
+    finer->tolerance *= pow(SHORTER, -2 * (double)(level + 1));
+    return level < LEVELS;
+}
+
+static bool is_given(const fitting *f) {
+    return strcmp(f->now.integrator, f->given.integrator) == 0 &&
+           f->now.dt == f->given.dt && f->now.tolerance == f->given.tolerance;
+}
+
+void fit_scheme_words(const fitting *f, list *words) {
+    const char *scheme = f->given.integrator, *worst = f->item[f->worst].name;
+    char *tolerance = is_dop853(f->now.integrator)
+                          ? text_print(", tolerance %.2g", f->now.tolerance)
+                          : text_print("%s", "");
+    if (f->evidence == FIT_UNCHECKED)
+        list_print(words,
+                   "The error of %s with dt = %.4g could not be checked: %s.  "
+                   "The intervals do not count it.",
+                   scheme, f->given.dt,
+                   f->unchecked ? f->unchecked : "there is no finer scheme");
+    else if (is_given(f))
+        list_print(words,
+                   "The error of %s with dt = %.4g changes %s by %.2g of its "
+                   "error, other numbers by less.",
+                   scheme, f->given.dt, worst, f->worst_part);
+    else
+        list_print(words,
+                   "The error of %s with dt = %.4g would change %s by %.2g of "
+                   "its errors: fitted with %s, dt = %.4g%s.",
+                   scheme, f->given.dt, worst, f->worst_part, f->now.integrator,
+                   f->now.dt, tolerance);
+    if (f->evidence == FIT_WIDENED)
+        list_print(words,
+                   "Its own error is not small beside the noise: the intervals "
+                   "are longer by what the last refinement changed.");
+    free(tolerance);
+}
+
+/* Sums of squares, and of products of neighbours. */
+static double neighbours(const fitting *f, const double residual[], size_t k) {
+    size_t columns = f->data->columns;
+    double squares = 0, products = 0;
+    for (size_t i = 0; i < f->data->points; i++) {
+        double r = residual[i * columns + k];
+        squares += r * r;
+        products += i ? r * residual[(i - 1) * columns + k] : 0;
+    }
+    return squares > 0 ? products / squares : 0;
+}
+
+void fit_residual_words(const fitting *f, const double residual[],
+                        list *words) {
+    enum { FEWEST = 20 };
+    static const double rounding = 1e-9, chance = 4; /* deviations */
+    double size = sqrt(f->chi_square);
+    for (size_t k = 0; k < f->data->columns; k++) {
+        double alike = neighbours(f, residual, k);
+        if (f->data->points >= FEWEST && size > rounding * f->spread &&
+            alike > chance / sqrt((double)f->data->points))
+            list_print(words,
+                       "Neighbouring residuals of %s are alike (correlation "
+                       "%.2f), as noise is not: the scene lacks an effect, the "
+                       "fit is in another minimum, or points share their "
+                       "errors.  The intervals are too short then.",
+                       f->data->names.item[k], alike);
+    }
+}
