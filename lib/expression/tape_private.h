@@ -181,6 +181,11 @@ void nevh__tape_block_time(size_t width, const double t[], const double q[],
 void nevh__tape_complex(double t, const double q[][2], const double p[][2],
                         const double c[], const void *tape, double h[2]);
 
+/* A bound, to first order, of what the rounding of all operations may do to the
+   value. */
+double nevh__tape_rounding(double t, const double q[], const double p[],
+                           const double c[], const void *tape);
+
 /* The derivative of a tape along (dq, dp): a tape that reads q and then dq, p
    and then dp, twice as many of each; kinks have the derivatives above.
    status   out: NEVH_OK; NEVH_ENOGRAD where it calls Bessel functions or

@@ -1,6 +1,7 @@
 /* nevh: over which lengths does H vary?
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/step_selection_private.h"
+#include "expression/tape_private.h"
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -53,6 +54,24 @@ void nevh__sample_line(const nevh__step_selection *e, const nevh__planned *term,
     memcpy(h, f->h, count * sizeof *h);
 }
 
+double nevh__sample_rounding(const nevh__step_selection *e,
+                             const nevh__planned *term, size_t instance,
+                             size_t k, size_t at, double move, double h) {
+    const nevh_term *decl = &term->term->decl;
+    size_t n = e->field->n;
+    double *x = e->field->one;
+    if (decl->value != nevh__tape_value)
+        return DBL_EPSILON * fabs(h);
+    for (size_t j = 0; j < term->nv; j++) {
+        const double *from = j < term->nq ? e->samples.q : e->samples.p;
+        x[j] = from[at * n + nevh__index(term, instance, j)];
+        x[j] += j == k ? move : 0;
+    }
+    return nevh__tape_rounding(
+        e->samples.t[at] + (k == NEVH__TIME ? move : 0), x, x + term->nq,
+        decl->nc ? decl->c + instance * decl->nc : NULL, decl->params);
+}
+
 /* How h varies within one distance: as a whole, what a quadratic through the
    half distance does not explain of it, and what may be rounding. */
 typedef struct {
@@ -79,6 +98,26 @@ static variation compare(double here, const double half[2],
         32 * DBL_EPSILON * most};
 }
 
+/* Beyond the length, or outside the domain. */
+static bool too_far(const variation *v) {
+    return !(v->rest <= not_quadratic * v->whole + v->rounding);
+}
+
+/* A formula may add up numbers that are far larger than its values: then the
+   rest may be rounding of these. */
+static void allow_for_rounding(const nevh__step_selection *e,
+                               const nevh__planned *term, size_t instance,
+                               size_t k, double distance, const double h[3],
+                               variation *v) {
+    const double moves[] = {0, distance, -distance};
+    double most = 0;
+    for (size_t i = 0; i < 3; i++)
+        most = larger(most, nevh__sample_rounding(e, term, instance, k, e->at,
+                                                  moves[i], h[i]));
+    if (isfinite(most) && isfinite(v->whole))
+        v->rounding = fmax(v->rounding, 16 * most);
+}
+
 /* Within a distance, twice that, and so on. */
 static void vary_on(const nevh__step_selection *e, const nevh__planned *term,
                     size_t instance, size_t k, double distance, size_t count,
@@ -91,8 +130,12 @@ static void vary_on(const nevh__step_selection *e, const nevh__planned *term,
         move[2 * i] = -move[2 * i - 1];
     }
     nevh__sample_line(e, term, instance, k, e->at, 3 + 2 * count, move, x, h);
-    for (size_t i = 0; i < count; i++)
+    for (size_t i = 0; i < count; i++, distance *= 2) {
+        const double outer[] = {h[0], h[3 + 2 * i], h[4 + 2 * i]};
         v[i] = compare(h[0], h + 1 + 2 * i, h + 3 + 2 * i);
+        if (too_far(&v[i]))
+            allow_for_rounding(e, term, instance, k, distance, outer, &v[i]);
+    }
 }
 
 static variation vary(const nevh__step_selection *e, const nevh__planned *term,
@@ -100,11 +143,6 @@ static variation vary(const nevh__step_selection *e, const nevh__planned *term,
     variation v;
     vary_on(e, term, instance, k, distance, 1, &v);
     return v;
-}
-
-/* Beyond the length, or outside the domain. */
-static bool too_far(const variation *v) {
-    return !(v->rest <= not_quadratic * v->whole + v->rounding);
 }
 
 /* A power of the distance has no length: its parts stay the same. */

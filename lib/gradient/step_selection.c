@@ -66,8 +66,8 @@ int nevh__step_selection_init(nevh__step_selection *e, nevh_field *f,
     size_t n = f->n, most = n > LARGE ? 4 : NEVH__MOST_SAMPLES;
     *e = (nevh__step_selection){.field = f, .options = o, .samples.most = most};
     e->length = nevh__array(2 * n, sizeof *e->length);
-    e->samples.q = nevh__array(most * n, sizeof *e->samples.q);
-    e->samples.p = nevh__array(most * n, sizeof *e->samples.p);
+    e->samples.q = nevh__array((most + 1) * n, sizeof *e->samples.q);
+    e->samples.p = nevh__array((most + 1) * n, sizeof *e->samples.p);
     if (!e->length || !e->samples.q || !e->samples.p)
         return nevh__fail(&f->report, NEVH_ENOMEM, "out of memory");
     nevh__find_lengths(e);

@@ -29,8 +29,8 @@ enum { NEVH__PROBED = 64 };
 enum { NEVH__MOST_SAMPLES = 32 };
 typedef struct {
     size_t count, most;
-    double t[NEVH__MOST_SAMPLES];
-    double *q, *p; /* most x n */
+    double t[NEVH__MOST_SAMPLES + 1];
+    double *q, *p; /* (most + 1) x n: the last one is nevh__verify's */
 } nevh__samples;
 
 /* What the plan knows while it looks around. */
@@ -58,6 +58,11 @@ size_t nevh__probed(const nevh__planned *, size_t k);
 void nevh__sample_line(const nevh__step_selection *, const nevh__planned *,
                        size_t instance, size_t k, size_t at, size_t count,
                        const double move[], double x[], double h[]);
+/* How far rounding may move the value of an instance there: of a formula, that
+   of all its operations; of other code, that of its value h. */
+double nevh__sample_rounding(const nevh__step_selection *,
+                             const nevh__planned *, size_t instance, size_t k,
+                             size_t at, double move, double h);
 
 /* Takes the states given and fills length; a status, recorded in the field. */
 int nevh__step_selection_init(nevh__step_selection *, nevh_field *,

@@ -2,7 +2,10 @@
 
    Compared with differences of order 8 at two steps, at a few states.  Where
    the two steps do not agree (a kink, the edge of the domain) or something is
-   not finite, nothing is said.
+   not finite, nothing is said.  A deviation may also be rounding of numbers that
+   the term adds up and that are larger than its value or its derivative, as
+   those of a charge at rest in a magnetic field are.  What they amount to is
+   read from states near by: rounding scatters there, an error does not.
 
    A point gradient must be the gradient to the last bit, so that an orbit does
    not depend on how many there are.
@@ -18,6 +21,12 @@
 static const double tolerance = 1e-6;
 enum { ROUNDS = 4 };
 static const double long_step = 0x1p-6, short_step = 0x1p-8; /* of lengths */
+/* States near by; the first is displaced by at most a part of the lengths, each
+   further one by a 16th of that. */
+enum { NEAR_BY = 8 };
+static const double farthest = 0x1p-12, nearer = 0x1p-4;
+static const double scattered = 4;   /* an error is larger than its scatter */
+static const double far_larger = 64; /* than the deviations near by */
 
 typedef struct {
     nevh__step_selection *selection;
@@ -37,8 +46,13 @@ static double by_difference(const check *c, size_t k, size_t at, double delta,
     nevh__sample_line(c->selection, c->term, c->instance, k, at, 8, move, x, h);
     for (size_t j = 0; j < 4; j++) {
         double weight = nevh_central8->weights[j] / (x[2 * j] - x[2 * j + 1]);
-        double size = fmax(fabs(h[2 * j]), fabs(h[2 * j + 1]));
-        *noise += 4 * fabs(weight) * (DBL_EPSILON * size + DBL_MIN);
+        double rounding = 0;
+        for (size_t i = 2 * j; i < 2 * j + 2; i++)
+            rounding =
+                fmax(rounding,
+                     nevh__sample_rounding(c->selection, c->term, c->instance,
+                                           k, at, move[i], h[i]));
+        *noise += 4 * fabs(weight) * (rounding + DBL_MIN);
     }
     return nevh__chord_slope(nevh_central8, 1, x, h);
 }
@@ -70,22 +84,90 @@ static int wrong(const check *c, size_t k, double own, double difference) {
         nevh__index(c->term, c->instance, k), own, difference);
 }
 
+/* The term's own derivative less that of its values, and how much the latter may
+   be off; NAN where nothing can be said. */
+typedef struct {
+    double own, near, deviation, allowed;
+} comparison;
+
+static double length_of(const check *c, size_t k) {
+    size_t i = nevh__index(c->term, c->instance, k);
+    return c->selection
+        ->length[k < c->term->nq ? i : c->selection->field->n + i];
+}
+
+static comparison compare(const check *c, size_t k, size_t at) {
+    double length = length_of(c, k), noise = 0, own = c->own[k];
+    double near = by_difference(c, k, at, short_step * length, &noise);
+    double far = by_difference(c, k, at, long_step * length, &noise);
+    double allowed =
+        tolerance * fmax(fabs(near), fabs(own)) + 64 * fabs(near - far) + noise;
+    bool defined = isfinite(own) && isfinite(allowed);
+    return (comparison){own, near, defined ? own - near : NAN, allowed};
+}
+
+static bool deviates(const comparison *d) {
+    return fabs(d->deviation) > d->allowed;
+}
+
+/* Sample `to` becomes sample `at`, the variables of the instance displaced by
+   parts of their lengths, or of themselves where they are shorter. */
+static void displace(const check *c, size_t at, size_t to, double part,
+                     bool of_shorter, uint64_t *seed) {
+    nevh__samples *s = &c->selection->samples;
+    size_t n = c->selection->field->n;
+    s->t[to] = s->t[at];
+    memcpy(s->q + to * n, s->q + at * n, n * sizeof *s->q);
+    memcpy(s->p + to * n, s->p + at * n, n * sizeof *s->p);
+    for (size_t k = 0; k < c->term->nv; k++) {
+        double *x = (k < c->term->nq ? s->q : s->p) + to * n +
+                    nevh__index(c->term, c->instance, k);
+        double length = length_of(c, k);
+        if (of_shorter && *x != 0)
+            length = fmin(length, fabs(*x));
+        *x += part * length * nevh__random(seed);
+    }
+}
+
+/* Whether states near by deviate, too, by about as much; or hardly at all, so
+   that it is this state alone. */
+static bool is_error(const check *c, size_t k, size_t at, double deviation) {
+    size_t to = c->selection->samples.most, count = 1;
+    double sum = 1, squares = 1, most = 0; /* parts of that deviation */
+    bool all = true;
+    uint64_t seed = at + 1;
+    double away = farthest;
+    for (int i = 0; i < NEAR_BY; i++, away *= nearer) {
+        displace(c, at, to, away, i % 2, &seed);
+        ask_term(c, to);
+        comparison d = compare(c, k, to);
+        double part = d.deviation / deviation;
+        if (!isfinite(part))
+            continue;
+        all &= deviates(&d);
+        most = fmax(most, fabs(part));
+        sum += part;
+        squares += part * part;
+        count++;
+    }
+    double mean = sum / (double)count;
+    double variance = fmax(0, squares / (double)count - mean * mean);
+    return (all && fabs(mean) > scattered * sqrt(variance)) ||
+           far_larger * most < 1;
+}
+
 static int check_sample(const check *c, size_t at) {
     const nevh__planned *term = c->term;
-    size_t n = c->selection->field->n;
     ask_term(c, at);
     for (size_t k = 0; k < term->nv; k++) {
-        size_t i = nevh__index(term, c->instance, k);
-        double length = c->selection->length[k < term->nq ? i : n + i];
-        double noise = 0;
-        double near = by_difference(c, k, at, short_step * length, &noise);
-        double far = by_difference(c, k, at, long_step * length, &noise);
-        double allowed = tolerance * fmax(fabs(near), fabs(c->own[k])) +
-                         64 * fabs(near - far) + noise;
-        bool defined = isfinite(near) && isfinite(far) && isfinite(c->own[k]);
-        if (defined && nevh__probed(term, k) == k &&
-            !(fabs(c->own[k] - near) <= allowed))
-            return wrong(c, k, c->own[k], near);
+        comparison d = {0};
+        if (nevh__probed(term, k) == k)
+            d = compare(c, k, at);
+        if (!deviates(&d))
+            continue;
+        if (is_error(c, k, at, d.deviation))
+            return wrong(c, k, d.own, d.near);
+        ask_term(c, at); /* is_error asked elsewhere */
     }
     return NEVH_OK;
 }
@@ -114,13 +196,10 @@ static void spread(const check *c, size_t at, size_t round) {
     uint64_t seed = ROUNDS * at + round;
     nevh__sample_line(c->selection, c->term, c->instance, 0, at, NEVH__LANES,
                       move, x, h);
-    for (size_t k = 0; k < c->term->nv; k++) {
-        size_t i = nevh__index(c->term, c->instance, k);
-        double length = c->selection->length[k < c->term->nq ? i : f->n + i];
+    for (size_t k = 0; k < c->term->nv; k++)
         for (size_t lane = 1; lane < NEVH__LANES; lane++)
             f->rows[k * NEVH__LANES + lane] +=
-                long_step * length * nevh__random(&seed);
-    }
+                long_step * length_of(c, k) * nevh__random(&seed);
     for (size_t lane = 1; lane < NEVH__LANES; lane++)
         f->times[lane] += long_step * fabs(nevh__random(&seed));
 }

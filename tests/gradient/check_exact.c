@@ -157,6 +157,134 @@ TEST_EACH(right_gradients_pass, STARTS) {
     nevh_system_free(s);
 }
 
+/* A charge in a magnetic field, in units of l for lengths and s for momenta: what
+   its gradient adds up is far larger than the sum where it is at rest. */
+typedef struct {
+    double field, unit, error; /* error: of the field, in the gradient alone */
+} charge;
+
+static double charge_value(double t, const double q[], const double p[],
+                           const double c[], const void *params) {
+    const charge *e = params;
+    double u = p[0] + e->field * q[1] / 2, v = p[1] - e->field * q[0] / 2;
+    (void)t, (void)c;
+    return (u * u + v * v) / (2 * e->unit);
+}
+
+static void charge_gradient(size_t width, const double t[], const double q[],
+                            const double p[], const double c[],
+                            const void *params, double dq[], double dp[]) {
+    const charge *e = params;
+    double half = e->field * (1 + e->error) / 2;
+    (void)t, (void)c;
+    for (size_t i = 0; i < width; i++) {
+        double u = (p[i] + q[width + i] * half) / e->unit;
+        double v = (p[width + i] - q[i] * half) / e->unit;
+        if (dq) {
+            dq[i] = -v * half;
+            dq[width + i] = u * half;
+        }
+        if (dp) {
+            dp[i] = u;
+            dp[width + i] = v;
+        }
+    }
+}
+
+static int status_of_charge(const charge *e, const double q[],
+                            const double p[]) {
+    nevh_system *s = nevh_system_new(2);
+    nevh_system_add(s, &(nevh_term){.effect = "charge",
+                                    .nq = 2,
+                                    .np = 2,
+                                    .value = charge_value,
+                                    .gradient = charge_gradient,
+                                    .params = e});
+    nevh_field *f = planned_exact(s, q, p);
+    int status = nevh_field_status(f);
+    nevh_field_free(f);
+    nevh_system_free(s);
+    return status;
+}
+
+TEST(charges_at_rest_pass_and_wrong_fields_do_not) {
+    for (int i = 0; i < 400; i++) {
+        double unit = i % 4 ? 1 : exp2(-90 + i / 2);
+        double field = 1.6 * sin(2.3 * i + 1) * unit;
+        double x = sin(1.7 * i + 1), y = cos(3.1 * i);
+        charge e = {field, unit, 0};
+        const double q[] = {x, y}, p[] = {-field * y / 2, field * x / 2};
+        ck_assert_msg(!status_of_charge(&e, q, p), "%a %a %a", field, x, y);
+        e.error = i % 2 ? 1e-4 : -2;
+        ck_assert_msg(status_of_charge(&e, q, p) == NEVH_ENOGRAD, "%a %a %a",
+                      field, x, y);
+    }
+}
+
+/* Of (exp(x) - 1 - x)/x^2, which cancels, the slope as it is and by 1e-3 less. */
+static double cancelling(double t, const double q[], const double p[],
+                         const double c[], const void *params) {
+    (void)t, (void)p, (void)c, (void)params;
+    return (exp(q[0]) - 1 - q[0]) / (q[0] * q[0]);
+}
+
+static void cancelling_gradient(size_t width, const double t[],
+                                const double q[], const double p[],
+                                const double c[], const void *params,
+                                double dq[], double dp[]) {
+    const double *factor = params;
+    (void)t, (void)p, (void)c, (void)dp;
+    for (size_t i = 0; dq && i < width; i++) {
+        double x = q[i], e = exp(x);
+        dq[i] = *factor * ((e - 1) / (x * x) - 2 * (e - 1 - x) / (x * x * x));
+    }
+}
+
+static int status_of_cancelling(double factor, double at) {
+    nevh_system *s = nevh_system_new(1);
+    nevh_system_add(s, &(nevh_term){.effect = "cancelling",
+                                    .nq = 1,
+                                    .value = cancelling,
+                                    .gradient = cancelling_gradient,
+                                    .params = &factor});
+    nevh_field *f = planned_exact(s, &at, (const double[]){0});
+    int status = nevh_field_status(f);
+    nevh_field_free(f);
+    nevh_system_free(s);
+    return status;
+}
+
+TEST(formulas_that_cancel_pass_and_wrong_slopes_do_not) {
+    for (double at = 2e-4; at < 3; at *= 1.37)
+        ck_assert_msg(!status_of_cancelling(1, at), "%g", at);
+    for (double at = 0.01; at < 3; at *= 1.37)
+        ck_assert_msg(status_of_cancelling(0.999, at) == NEVH_ENOGRAD, "%g",
+                      at);
+}
+
+/* Formulas that cancel near 0, until nothing but rounding is left of them. */
+static const char *const cancel[] = {
+    "(exp(x)-1-x)/x^2", "(1-cos(x))/x^2",      "(x-sin(x))/x^3",
+    "(cosh(x)-1)/x",    "log(1+x)/x",          "(tan(x)-x)/x^3",
+    "((1+x)^5-1)/x",    "(1e6+x)^2-1e12-2e6*x"};
+enum { CANCEL = sizeof cancel / sizeof *cancel };
+
+TEST_EACH(exact_gradients_of_formulas_that_cancel_pass, CANCEL) {
+    for (double x = 1e-10; x < 3; x *= 1.31) {
+        char text[200];
+        double p = 0;
+        snprintf(text, sizeof text,
+                 "[coordinates]\nx = %.17g\n[effects]\nK = p_x^2/2\nV = %s\n",
+                 x, cancel[_i]);
+        nevh_scene *scene = nevh_scene_parse("test", text);
+        nevh_field *f = planned_exact(nevh_scene_system(scene), &x, &p);
+        ck_assert_msg(!nevh_field_status(f), "%g: %s", x,
+                      nevh_field_message(f));
+        nevh_field_free(f);
+        nevh_scene_free(scene);
+    }
+}
+
 /* On all models and problems, at their own states and around zero. */
 TEST(right_gradients_of_models_pass) {
     for (const nevh_model *const *m = nevh_models(); *m; m++) {
