@@ -862,9 +862,15 @@ def _steps(method, dt, rtol, atol, span, y0):
 
 
 def _choose(subject, dt, t0, y):
+    """Methods, of which the first that is not refused is taken."""
     if dt is None:
-        return "dop853" if subject.own else "taylor"
-    return "verlet" if subject.separable(t0, y) else "gauss4"
+        return ["dop853"] if subject.own else ["taylor", "dop853"]
+    return ["verlet" if subject.separable(t0, y) else "gauss4"]
+
+
+def _takes_none(method):
+    """Whether a method takes no gradient."""
+    return _lib.integrator_needs_formulas(_integrator(method)[0])
 
 
 def _stops(scene):
@@ -985,7 +991,8 @@ def solve(H, t_span=None, y0=None, method=None, *, dt=None, rtol=None, atol=None
     y0       coordinates, then momenta; of scenes also {name: value}, None: as they say
     method   a name of nevh.integrators() or of SciPy's DOP853 and RK45.  None: the
              first of the scene; else with dt verlet, or gauss4 where H is no sum of
-             T(p) and V(q); without dt taylor, or dop853 for functions
+             T(p) and V(q); without dt taylor, or dop853 for functions and for
+             formulas that are not analytic
     dt       the step.  Of methods that adapt it is where their steps end; None: a
              256th of the time
     rtol     of methods that adapt, relative to the larger of |y| and the length over
@@ -1046,16 +1053,21 @@ def solve(H, t_span=None, y0=None, method=None, *, dt=None, rtol=None, atol=None
     if not t_end - t0 < float("inf") or t_end == t0:
         raise Refused("t_span = %g, %g is no time to go" % (t0, t_end))
     dt = None if dt is None else _positive("dt", dt)
-    method = method or _choose(subject, dt, t0, y)
-    dt, tolerance = _steps(method, dt, rtol, atol, t_end - t0, y[0])
+    methods = [method] if method else _choose(subject, dt, t0, y)
+    dt, tolerance = _steps(methods[0], dt, rtol, atol, t_end - t0, y[0])
     h = dt if t_end > t0 else -dt
     if gradient:
         _gradient(gradient)
-    if _lib.integrator_needs_formulas(_integrator(method)[0]):
-        gradient = None
-    else:
-        gradient = gradient or "central4"
-    plan = _Plan(subject, method, gradient, y, t0, tolerance, gradient_step)
+    for name in methods:
+        of = None if _takes_none(name) else gradient or "central4"
+        try:
+            plan = _Plan(subject, name, of, y, t0, tolerance, gradient_step)
+        except Refused:
+            if name == methods[-1]:
+                raise
+        else:
+            method, gradient = name, of
+            break
     if t_eval is None:
         t_eval = _times_of_steps(t0, t_end, h)
     else:

@@ -228,6 +228,17 @@ def test_defaults_without_a_method():
     assert nevh.solve("pendulum", (0, 1)).method == "verlet"
 
 
+def test_formulas_that_are_not_analytic_need_no_method():
+    period = 4 * math.sqrt(3)
+    orbit = nevh.solve("p_x^2/2 + abs(x)", (0, period), [1.5, 0])
+    assert orbit.method == "dop853" and orbit.gradient == "exact", orbit
+    assert close(last(orbit), [1.5, 0], 1e-4), last(orbit)
+    for text in ("p_x^2/2 + max(x, 1)^2", "p_x^2/2 + min(x, 2)^2", "p_x^2/2 + bessel_j0(x)",
+                 "abs(p_x)^3 + x^2", "p_x^2/2 + abs(x)*cos(t)"):
+        assert nevh.solve(text, (0, 1), [1.5, 0.1]).method == "dop853", text
+    raised(nevh.Refused, "abs", nevh.solve, "p_x^2/2 + abs(x)", (0, 1), [1, 0], "taylor")
+
+
 def test_tolerances():
     exact = last(nevh.solve("double-pendulum", (0, 5), method="taylor", rtol=1e-15))
     errors = [max(abs(x - y) for x, y in zip(exact, last(nevh.solve(
