@@ -15,7 +15,8 @@ cp $work/out $work/help
 exits 0 help
 cmp -s $work/out $work/help || fails "differs from --help"
 exits 2
-grep -q '^  nevh compare SCENE ' $work/err || fails "does not help"
+grep -q '^  compare  *[a-z]' $work/err || fails "does not help"
+test "$(wc -l <$work/err)" -lt 32 || fails "is longer than a screen"
 test -s $work/out && fails "prints to stdout"
 for one in $commands; do
     grep -q "^  nevh $one" $work/help || fails "lacks $one"
@@ -25,6 +26,22 @@ for one in $commands; do
     cp $work/out $work/one
     exits 0 $one --help
     cmp -s $work/out $work/one || fails "differs from nevh help $one"
+done
+# The examples of a command, each as a person would type it.  A page needs a kit.
+absolute=$(cd "$(dirname "$nevh")" && pwd -P)/$(basename "$nevh")
+for one in $commands; do
+    exits 0 help $one
+    sed -n '/^Examples:/,/^Options:/p' $work/out |
+        sed -e :a -e '/\\$/N; s/\\\n *//; ta' | sed -n 's/^  nevh //p' >$work/examples
+    test "$(wc -l <$work/examples)" = 2 || fails "help $one has no two examples"
+    case $one in
+    page | hard) continue ;; # a kit, half a minute
+    esac
+    while read -r example; do
+        (cd $work && eval "\"$absolute\" $example") >$work/out 2>$work/err </dev/null
+        code=$?
+        test $code = 0 || fails "exit status $code of the example $example"
+    done <$work/examples
 done
 exits 0 help run
 has '^  --samples N '
