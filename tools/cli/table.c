@@ -36,6 +36,10 @@ void table_break(table *t) {
     t->breaking = t->title.count;
 }
 
+void table_below(table *t) {
+    t->below = true;
+}
+
 void table_group(table *t) {
     t->begins = t->cell.count > 0;
 }
@@ -135,6 +139,49 @@ static bool to_the_right(const table *t, size_t j) {
     return false;
 }
 
+/* Control characters of names and texts are for nobody's terminal. */
+static void print_safely(const char *text, size_t bytes, FILE *f) {
+    for (size_t i = 0; i < bytes; i++) {
+        unsigned char c = (unsigned char)text[i];
+        fputc((c < ' ' && c != '\t') || c == 0x7F ? '?' : c, f);
+    }
+}
+
+/* No line ends in spaces. */
+static void print_line(const char *text, size_t bytes, FILE *f) {
+    while (bytes > 0 && text[bytes - 1] == ' ')
+        bytes--;
+    print_safely(text, bytes, f);
+    fputc('\n', f);
+}
+
+/* Breaks a text at spaces into lines of at most 80 characters.
+   first, more  the indentation of the first line and of the others */
+static void print_paragraph(const char *text, size_t first, size_t more,
+                            FILE *f) {
+    enum { WIDTH = 80 };
+    for (size_t in = first; *text; in = more) {
+        size_t end = strlen(text), last = 0;
+        if (in + end > WIDTH) {
+            for (size_t i = 0; i + in <= WIDTH; i++)
+                last = text[i] == ' ' ? i : last;
+            end = last ? last : strcspn(text, " ");
+        }
+        fprintf(f, "%*s", (int)in, "");
+        print_line(text, end, f);
+        text += end;
+        text += strspn(text, " ");
+    }
+}
+
+/* A text that begins with a space is printed as it is. */
+static void print_wrapped(const char *text, FILE *f) {
+    if (*text == ' ')
+        print_line(text, strlen(text), f);
+    else
+        print_paragraph(text, 0, 2, f);
+}
+
 /* How each column is set, found once. */
 typedef struct {
     size_t width;
@@ -201,6 +248,8 @@ static void print_panel(const table *t, const panel *p, FILE *f) {
         for (size_t j = 0; j < columns; j++)
             text[j] = t->cell.item[i * columns + j];
         print_row(t, p, text, f);
+        if (t->below)
+            print_paragraph(text[columns - 1], 4, 6, f);
     }
     free(text);
 }
@@ -217,7 +266,7 @@ static size_t panel_width(const table *t, const panel *p) {
    other if need be. */
 static panel panel_from(const table *t, const setting set[], size_t first) {
     enum { MOST = 100 };
-    panel p = {set, first, t->title.count, 2};
+    panel p = {set, first, t->title.count - t->below, 2};
     if (!t->breaking)
         return p;
     if (panel_width(t, &p) > MOST && first == 0)
@@ -231,7 +280,7 @@ static panel panel_from(const table *t, const setting set[], size_t first) {
 
 static void print_table(const table *t, FILE *f) {
     setting *set = set_columns(t);
-    for (size_t first = 0; first < t->title.count;) {
+    for (size_t first = 0; first < t->title.count - t->below;) {
         panel p = panel_from(t, set, first);
         if (first)
             fputc('\n', f);
@@ -359,49 +408,11 @@ static void print_json(const page *p, FILE *f) {
     fputs("\n}\n", f);
 }
 
-/* Control characters of names and texts are for nobody's terminal. */
-static void print_safely(const char *text, size_t bytes, FILE *f) {
-    for (size_t i = 0; i < bytes; i++) {
-        unsigned char c = (unsigned char)text[i];
-        fputc((c < ' ' && c != '\t') || c == 0x7F ? '?' : c, f);
-    }
-}
-
 static void print_comments(const list *l, FILE *f) {
     for (size_t i = 0; i < l->count; i++) {
         fputs("# ", f);
         print_safely(l->item[i], strlen(l->item[i]), f);
         fputc('\n', f);
-    }
-}
-
-/* No line ends in spaces. */
-static void print_line(const char *text, size_t bytes, FILE *f) {
-    while (bytes > 0 && text[bytes - 1] == ' ')
-        bytes--;
-    print_safely(text, bytes, f);
-    fputc('\n', f);
-}
-
-/* At spaces, so that lines have at most 80 characters; further lines of a text
-   are set in.  What begins with a space is as it is. */
-static void print_wrapped(const char *text, FILE *f) {
-    enum { WIDTH = 80 };
-    if (*text == ' ') {
-        print_line(text, strlen(text), f);
-        return;
-    }
-    for (size_t in = 0; *text; in = 2) {
-        size_t end = strlen(text), last = 0;
-        if (in + end > WIDTH) {
-            for (size_t i = 0; i + in <= WIDTH; i++)
-                last = text[i] == ' ' ? i : last;
-            end = last ? last : strcspn(text, " ");
-        }
-        fprintf(f, "%*s", (int)in, "");
-        print_line(text, end, f);
-        text += end;
-        text += strspn(text, " ");
     }
 }
 

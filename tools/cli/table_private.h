@@ -13,6 +13,7 @@ struct table {
     bool begins;
     bool rounds;     /* numbers, to ten digits */
     bool *key;       /* of each column */
+    bool below;      /* the last column is printed below its row */
     size_t breaking; /* the first column that may go below; 0: none may */
 };
 

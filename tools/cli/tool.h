@@ -98,6 +98,8 @@ void table_columns(table *, const char *const titles[], size_t count);
 void table_break(table *);
 /* The last column says which row it is: it is shown again there. */
 void table_key(table *);
+/* Aligned text has the last column below its row, in lines of 80 characters. */
+void table_below(table *);
 /* The next cell of the row.  NULL, and numbers that are not finite, leave it
    empty. */
 void table_text(table *, const char *text);

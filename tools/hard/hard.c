@@ -109,12 +109,30 @@ static void run_case(const suite *all, hard_subject *s, case_results *c) {
     }
 }
 
-static void progress(const options *o, const hard_case *c) {
+static size_t cases_wanted(const options *o) {
+    size_t count = 0;
+    for (const hard_case *c = hard_cases; c->name; c++)
+        count += wanted(o, c->name);
+    return count;
+}
+
+/* Runs take most of the budget of evaluations, or end early: 0.03 s on average on
+   the machines that this was measured on. */
+static void announce(const suite *all, const options *o) {
+    size_t runs = cases_wanted(o) * all->n_schemes * all->gradients.count;
+    double minutes = (double)runs * 0.03 / 60;
+    if (!o->quiet && minutes > 0.3)
+        fprintf(stderr, "nevh: %zu runs, about %.0f minute%s\n", runs,
+                ceil(minutes), ceil(minutes) > 1 ? "s" : "");
+}
+
+static void progress(const suite *all, const options *o, const hard_case *c) {
     if (o->quiet || !isatty(STDERR_FILENO))
         return;
     fputs("\r\033[K", stderr);
     if (c)
-        fputs(c->name, stderr);
+        fprintf(stderr, "%zu of %zu: %s", all->n_cases + 1, cases_wanted(o),
+                c->name);
     fflush(stderr);
 }
 
@@ -128,14 +146,14 @@ static int run_all(suite *all, const options *o) {
         hard_subject s;
         if (!wanted(o, hard_cases[i].name))
             continue;
-        progress(o, &hard_cases[i]);
+        progress(all, o, &hard_cases[i]);
         status = hard_open(&s, &hard_cases[i]);
         if (!status) {
             run_case(all, &s, &all->cases[all->n_cases++]);
             hard_close(&s);
         }
     }
-    progress(o, NULL);
+    progress(all, o, NULL);
     return status;
 }
 
@@ -229,6 +247,7 @@ static table *shown(const suite *all) {
         "rows", "error\nfrom", "\nto",      "the worst of them"};
     table *t = table_new();
     columns(t, names, sizeof names / sizeof *names);
+    table_below(t);
     for (size_t i = 0; i < all->n_cases; i++) {
         table_group(t);
         for (hard_verdict v = HARD_NONE; v < HARD_VERDICTS; v++) {
@@ -293,8 +312,10 @@ int hard(const options *o) {
         status = take_schemes(&all, o);
     if (!status)
         status = take_gradients(&all, o);
-    if (!status)
+    if (!status) {
+        announce(&all, o);
         status = run_all(&all, o);
+    }
     if (!status)
         status = print_suite(&all, o);
     suite_free(&all);
