@@ -49,6 +49,13 @@ refused() {
     says "$pattern"
     test ! -e $page || fails "leaves a page"
 }
+# all_digits: CSV with numbers of 17 digits, as exported programs print them; nevh
+# prints the shortest that read back.
+all_digits() {
+    awk -F, '{ for (i = 1; i <= NF; i++)
+        printf("%s%s", $i ~ /^-?[0-9.]/ ? sprintf("%.17g", $i) : $i,
+            i < NF ? "," : "\n") }'
+}
 has() {
     grep -Eq -e "$1" $work/out || { fails "lacks '$1'"; cat $work/out; }
 }

@@ -1,6 +1,7 @@
 /* nevh: numbers in order, and time.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tool.h"
+#include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
 
@@ -16,6 +17,15 @@ void numbers_sort(double numbers[], size_t count) {
 double numbers_median(double numbers[], size_t count) {
     numbers_sort(numbers, count);
     return count ? numbers[count / 2] : 0;
+}
+
+const char *number_text(char text[NUMBER_SIZE], double number) {
+    for (int digits = 15; digits <= 17; digits++) {
+        snprintf(text, NUMBER_SIZE, "%.*g", digits, number);
+        if (strtod(text, NULL) == number)
+            break;
+    }
+    return text;
 }
 
 double cpu_seconds(void) {

@@ -41,16 +41,8 @@ char *shell_option(char *line, const char *name, const char *value) {
 }
 
 char *shell_number(char *line, const char *name, double value) {
-    char *number = text_print("%.17g", value);
-    for (int digits = 6; digits < 17; digits++) {
-        free(number);
-        number = text_print("%.*g", digits, value);
-        if (strtod(number, NULL) == value)
-            break;
-    }
-    line = shell_option(line, name, number);
-    free(number);
-    return line;
+    char text[NUMBER_SIZE];
+    return shell_option(line, name, number_text(text, value));
 }
 
 char *shell_line(const options *o, const char *run, const char *scene) {

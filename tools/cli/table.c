@@ -67,15 +67,13 @@ void table_round(table *t) {
     t->rounds = true;
 }
 
-/* The shortest of 15 to 17 digits that is the number again. */
 void table_number(table *t, double number) {
-    char text[40] = "";
-    for (int digits = 15; digits <= 17; digits++) {
-        snprintf(text, sizeof text, "%.*g", t->rounds ? 10 : digits, number);
-        if (strtod(text, NULL) == number)
-            break;
-    }
+    char text[NUMBER_SIZE];
     bool there = isfinite(number);
+    if (t->rounds)
+        snprintf(text, sizeof text, "%.10g", number);
+    else
+        number_text(text, number);
     add(t, there ? TABLE_NUMBER : TABLE_EMPTY, there ? text : "");
 }
 

@@ -83,6 +83,10 @@ int tool_unknown(const char *kind, const char *name, const list *known);
 /* numbers.c */
 void numbers_sort(double[], size_t count);
 double numbers_median(double[], size_t count); /* sorts them; 0 of none */
+enum { NUMBER_SIZE = 32 };
+/* Writes the shortest of 15 to 17 digits that read back as the number; returns
+   `text`. */
+const char *number_text(char text[NUMBER_SIZE], double number);
 double cpu_seconds(void);
 
 /* table.c: rows of texts and numbers. */

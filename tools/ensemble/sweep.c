@@ -169,6 +169,7 @@ static int take_row(void *data, const nevh_sweep_result *r) {
 static int print_row(void *data, const nevh_sweep_result *r) {
     sweep_job *j = data;
     FILE *f = j->out.stream;
+    char text[NUMBER_SIZE];
     fprintf(f, "%llu,%s", (unsigned long long)r->member,
             status_word(r->status));
     for (size_t k = 0; k < nevh_sweep_columns(j->sweep); k++)
@@ -177,7 +178,7 @@ static int print_row(void *data, const nevh_sweep_result *r) {
         else if (nevh_sweep_is_verdict(j->sweep, k))
             fprintf(f, ",%s", nevh_verdict_name((nevh_verdict)r->values[k]));
         else
-            fprintf(f, ",%.17g", r->values[k]);
+            fprintf(f, ",%s", number_text(text, r->values[k]));
     fputc('\n', f);
     take_row(j, r);
     return ferror(f);

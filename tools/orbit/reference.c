@@ -33,11 +33,12 @@ static void put_text(table *t, char *text) {
 }
 
 static void put_state(job *j, double t, table *rows) {
+    char text[NUMBER_SIZE];
     for (size_t k = 0; k < 2 * j->plan->n; k++) {
         size_t digits = (size_t)nevh_certain_digits(j->orbit, k);
         double error = nevh_certain_error(j->orbit, k);
         bool still = nevh_certain_value(j->orbit, k) == 0 && error < 1e-30;
-        put_text(rows, text_print("%.17g", t));
+        table_text(rows, number_text(text, t));
         put_text(rows, name_of(j->plan, k));
         if (digits || still)
             put_text(rows, tool_owned(nevh_certain_text(j->orbit, k)));

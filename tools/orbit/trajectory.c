@@ -137,11 +137,13 @@ void trajectory_header(trajectory *r) {
 
 static void add_numbers(trajectory *r, const double numbers[], size_t count,
                         char end) {
+    char text[NUMBER_SIZE];
     for (size_t i = 0; i < count; i++)
         if (r->to.page)
             table_number(r->to.page->table, numbers[i]);
         else if (isfinite(numbers[i]))
-            lines_print(r->to.lines, "%.17g%c", numbers[i], end);
+            lines_print(r->to.lines, "%s%c", number_text(text, numbers[i]),
+                        end);
         else
             lines_print(r->to.lines, "%c", end);
 }
