@@ -44,7 +44,26 @@ doc/nevh.3: $(reference_headers) doc/reference.awk doc/nevh.3.head
 	  { cat doc/nevh.3.head && \
 	    $(AWK) -v form=man -f doc/reference.awk $(reference_headers); } \
 	    >doc/nevh.tmp && mv doc/nevh.tmp doc/nevh.3
-MAINTAINERCLEANFILES = doc/nevh.3 doc/reference.texi web/kit.html
+# A page a header, too: nevh_run(3) is <nevh/run.h>.
+header_pages = \
+	doc/nevh_status.3 doc/nevh_system.3 doc/nevh_body.3 doc/nevh_simd.3 \
+	doc/nevh_probe.3 doc/nevh_gradient.3 doc/nevh_integrator.3 doc/nevh_run.3 \
+	doc/nevh_transform.3 doc/nevh_diagnose.3 doc/nevh_loop.3 \
+	doc/nevh_frequencies.3 doc/nevh_chaos.3 doc/nevh_confirm.3 doc/nevh_shadow.3 \
+	doc/nevh_reference.3 doc/nevh_certain.3 doc/nevh_section.3 \
+	doc/nevh_ensemble.3 doc/nevh_scene.3 doc/nevh_sweep.3 doc/nevh_models.3 \
+	doc/nevh_binding.3 doc/nevh_gsl.3 doc/nevh_extend.3
+dist_man3_MANS += $(header_pages)
+$(header_pages): doc/nevh.3
+	$(AM_V_GEN)cd $(srcdir) && page=doc/`basename $@` && \
+	  header=include/nevh/`basename $@ .3 | sed 's/nevh_//'`.h && \
+	  { sed -n 's/^\.TH NEVH /.TH NEVH_'`basename $$header .h | tr a-z A-Z`' /p' \
+	      doc/nevh.3.head && \
+	    sed -n '1s|^/\* nevh: *\(.*[^.]\)\.* *$$|.SH NAME\nnevh_'`basename $$header .h`' \\- \1|p' \
+	      $$header && \
+	    $(AWK) -v form=man -f doc/reference.awk $$header && \
+	    printf '.SH SEE ALSO\n.BR nevh (3)\n'; } >$$page.tmp && mv $$page.tmp $$page
+MAINTAINERCLEANFILES = $(header_pages) doc/nevh.3 doc/reference.texi web/kit.html
 
 # nevh(1) is what nevh --help says, and in tarballs.
 if HAVE_PAGE

@@ -10,6 +10,11 @@
 extern "C" {
 #endif
 
+/* The version of these headers, for #if. */
+#define NEVH_VERSION_MAJOR 0
+#define NEVH_VERSION_MINOR 1
+#define NEVH_VERSION_PATCH 0
+
 /* The version of the library, as "0.1.0".  Thread-safe. */
 NEVH_API const char *nevh_version(void);
 

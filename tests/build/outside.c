@@ -6,6 +6,7 @@
 #include <nevh/nevh.h>
 #include <nevh/body.h>
 #include <stdio.h>
+#include <string.h>
 
 typedef struct {
     double m, l, g, rate;
@@ -81,7 +82,19 @@ static double complex_error(nevh_system *sys) {
     return worst;
 }
 
+/* The library is that of the headers. */
+static int version_differs(void) {
+    char text[40];
+    snprintf(text, sizeof text, "%d.%d.%d", NEVH_VERSION_MAJOR,
+             NEVH_VERSION_MINOR, NEVH_VERSION_PATCH);
+    return strcmp(text, nevh_version()) != 0;
+}
+
 int main(void) {
+    if (version_differs()) {
+        puts("the headers have another version than the library");
+        return 1;
+    }
     nevh_term term = {.effect = "all",
                       .nq = 2,
                       .np = 2,
