@@ -70,6 +70,9 @@ libnevh_core_la_SOURCES = \
 	lib/expression/tape_complex.c \
 	lib/expression/tape_rounding.c \
 	lib/expression/tape_special.c \
+	lib/expression/wide_private.h \
+	lib/expression/wide.c \
+	lib/expression/evaluate_text.h \
 	lib/expression/kepler.c \
 	lib/expression/formula_private.h \
 	lib/expression/formula_inside_private.h \
@@ -111,6 +114,7 @@ libnevh_core_la_SOURCES = \
 	lib/taylor/quad_orbit.c \
 	lib/taylor/dd_orbit.c \
 	lib/taylor/long_orbit.c \
+	lib/taylor/certain_private.h \
 	lib/taylor/certain.c \
 	lib/work/pace.h \
 	lib/work/work_private.h \
@@ -240,6 +244,8 @@ libnevh_core_la_SOURCES = \
 	lib/scene/values_shown.c \
 	lib/scene/scene_section.c \
 	lib/scene/scene_system.c \
+	lib/scene/scene_exact.c \
+	lib/scene/elements_text.h \
 	lib/scene/scene_friction.c \
 	lib/scene/scene_run.c \
 	lib/scene/velocity.c \

@@ -20,7 +20,8 @@ typedef struct nevh_certain nevh_certain;
             is out.  Otherwise it may carry NEVH_EINVAL, or NEVH_ESTRUCT where a
             term is not a formula or not analytic, or where nevh was built
             without libquadmath; the message says which.
-   Numbers of the system, and q and p, are taken as the doubles that they are.
+   Numbers of the system, and q and p, are taken as the doubles that they are;
+   nevh_scene_certain has all digits of a scene's.
    The system is borrowed and must not be changed.  Friction is counted in. */
 NEVH_API nevh_certain *nevh_certain_new(const nevh_system *, double t0,
                                         const double q[], const double p[],
@@ -37,6 +38,8 @@ NEVH_API const char *nevh_certain_message(const nevh_certain *);
    cost     of pendulums and planets some 0.1 ms for each time in which the
             orbit changes by itself; linear in the operations of H */
 NEVH_API int nevh_certain_go(nevh_certain *, double t);
+/* The same to time + rest: of a time that no double is. */
+NEVH_API int nevh_certain_go_to(nevh_certain *, double time, long double rest);
 /* Series that both runs took so far. */
 NEVH_API size_t nevh_certain_series(const nevh_certain *);
 
@@ -46,13 +49,16 @@ NEVH_API double nevh_certain_value(const nevh_certain *, size_t k);
 /* a bound of the error of all digits that there are: twice the difference of
    the runs, or rounding; */
 NEVH_API double nevh_certain_error(const nevh_certain *, size_t k);
-/* the largest that it was so far, where series began; */
+/* the largest that it was so far, where series began and within them; */
 NEVH_API double nevh_certain_size(const nevh_certain *, size_t k);
 /* how many digits that leaves, at most those asked for; 0: none; */
 NEVH_API int nevh_certain_digits(const nevh_certain *, size_t k);
 /* and these, as text, to be freed with free; "0" where no digit is certain.
    NULL out of range, and when memory is out. */
 NEVH_API char *nevh_certain_text(const nevh_certain *, size_t k);
+/* number + rest with 30 digits or fewer, to be freed with free; NULL when memory
+   is out. */
+NEVH_API char *nevh_certain_number(double number, long double rest);
 
 #ifdef __cplusplus
 }

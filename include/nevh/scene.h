@@ -13,6 +13,7 @@
 #ifndef NEVH_SCENE_H
 #define NEVH_SCENE_H
 
+#include <nevh/certain.h>
 #include <nevh/gradient.h>
 #include <stdint.h>
 
@@ -129,15 +130,28 @@ NEVH_API uint64_t nevh_scene_digest(const nevh_scene *);
    read.  Every term brings values, blocks and an exact gradient; C code has
    what it defines. */
 NEVH_API const nevh_system *nevh_scene_system(nevh_scene *);
-/* The same, where numbers that follow from parameters, such as G*m[1]*m[2], are
-   not rounded to doubles: for nevh_certain_new, which then works them out with all
-   its digits.  Parameters themselves, starts and friction are doubles.  A step
+/* The same, where numbers that are computed, such as 1/3, pi or G*m[1]*m[2], are
+   sums of doubles, which a Taylor series takes with all their digits.  A step
    takes longer than of the other system.
    returns  borrowed until the scene changes; NULL with a status and a message of
             the scene: NEVH_ENOMEM; NEVH_EINVAL where a formula is too long with
             these numbers written out; the scene was not read
-   cost     the first time, that of making all terms anew */
+   cost     the first time, that of reading the scene anew */
 NEVH_API const nevh_system *nevh_scene_exact_system(nevh_scene *);
+/* The orbit of that system from the scene's start, for nevh_certain_go.  Numbers
+   that are written, as 0.1, are the doubles nearest to them; what is computed of
+   them - parameters, starts, momenta of velocities, friction, times - has all
+   digits.
+   digits   as of nevh_certain_new
+   returns  to be freed with nevh_certain_free, before the scene changes; NULL
+            with a status and a message of the scene, as above, or NEVH_EMAXITER
+            where momenta of velocities have no more digits than doubles */
+NEVH_API nevh_certain *nevh_scene_certain(nevh_scene *, int digits);
+/* The number that a formula of parameters is, as number + rest; a NULL formula
+   is t_end.
+   returns  NEVH_OK, or a status with a message of the scene */
+NEVH_API int nevh_scene_exact_number(nevh_scene *, const char *formula,
+                                     double *number, long double *rest);
 /* The state at t_start, n each; initial velocities are solved for momenta, with
    the effects that are on.
    returns  NEVH_OK; NEVH_EMAXITER when no momenta give these velocities (the

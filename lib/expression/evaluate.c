@@ -99,65 +99,26 @@ bool nevh__scope_loop(nevh__scope *s, const nevh__expression *loop,
     return fine;
 }
 
-typedef struct {
-    nevh__scope *scope;
-    const nevh__expression *body;
-    double sum;
-} total;
+#define real               double
+#define NAMED(name)        name##_value
+#define OPERATION(f, a, b) nevh__operation_value(f, a, b)
+#define NUMBER(e)          (e)->number
+#define ELEMENT(e, index)  (e)->values[index]
+#include "expression/evaluate_text.h"
+#undef real
+#undef NAMED
+#undef OPERATION
+#undef NUMBER
+#undef ELEMENT
 
-static bool add_body(void *context) {
-    total *sum = context;
-    sum->sum += nevh__expression_value(sum->scope, sum->body);
-    return !sum->scope->error->status;
+/* Numbers that are written are doubles. */
+static nevh__wide element(const nevh__expression *e, size_t index) {
+    return e->wide_values ? e->wide_values[index] : e->values[index];
 }
 
-static double loop_value(nevh__scope *s, const nevh__expression *e) {
-    total sum = {s, e->operands[2].of, 0};
-    return nevh__scope_loop(s, e, add_body, &sum) ? sum.sum : NAN;
-}
-
-static double chain_value(nevh__scope *s, const nevh__expression *e) {
-    double value = nevh__expression_value(s, e->operands[0].of);
-    for (size_t i = 1; i < e->n; i++) {
-        double next = nevh__expression_value(s, e->operands[i].of);
-        bool inverse = e->operands[i].inverse;
-        if (e->form == NEVH__FORM_SUM)
-            value = inverse ? value - next : value + next;
-        else
-            value = inverse ? value / next : value * next;
-    }
-    return value;
-}
-
-static double apply_value(nevh__scope *s, const nevh__expression *e) {
-    double a = nevh__expression_value(s, e->operands[0].of);
-    double b = e->n > 1 ? nevh__expression_value(s, e->operands[1].of) : 0;
-    return nevh__operation_value(e->operation, a, b);
-}
-
-static double element_value(nevh__scope *s, const nevh__expression *e) {
-    size_t index;
-    return nevh__expression_element(s, e, &index) ? e->values[index] : NAN;
-}
-
-double nevh__expression_value(nevh__scope *s, const nevh__expression *e) {
-    switch (e->form) {
-    case NEVH__FORM_NUMBER:
-        return e->number;
-    case NEVH__FORM_INDEX:
-        return s->value[e->slot];
-    case NEVH__FORM_PARAMETER:
-        return element_value(s, e);
-    case NEVH__FORM_SUM:
-    case NEVH__FORM_PRODUCT:
-        return chain_value(s, e);
-    case NEVH__FORM_APPLY:
-        return apply_value(s, e);
-    case NEVH__FORM_LOOP:
-        return loop_value(s, e);
-    case NEVH__FORM_TIME:
-    case NEVH__FORM_VARIABLE:
-        break;
-    }
-    return NAN; /* who asks makes sure that nothing is read */
-}
+#define real               nevh__wide
+#define NAMED(name)        name##_wide
+#define OPERATION(f, a, b) nevh__operation_wide(f, a, b)
+#define NUMBER(e)          (e)->wide_number
+#define ELEMENT(e, index)  element(e, index)
+#include "expression/evaluate_text.h"

@@ -31,6 +31,20 @@ int nevh__tree_number(const nevh__tree *tree, const nevh__names *names,
     return error->status;
 }
 
+int nevh__tree_wide(const nevh__tree *tree, const nevh__names *names,
+                    const nevh__index *at, nevh__wide *value,
+                    nevh__formula_error *error) {
+    *error = (nevh__formula_error){0};
+    nevh__pool pool = {0};
+    nevh__expression *e = nevh__resolve(tree, names, at, 0, &pool, error);
+    nevh__scope scope = {.error = error};
+    nevh__wide number = e ? nevh__expression_wide(&scope, e) : NAN;
+    if (e && nevh__scope_finite(&scope, (double)number, e))
+        *value = number;
+    nevh__pool_free(&pool);
+    return error->status;
+}
+
 int nevh__tree_integer(const nevh__tree *tree, const nevh__names *names,
                        const nevh__index *at, long *value,
                        nevh__formula_error *error) {
@@ -107,7 +121,7 @@ int nevh__tree_add_terms(const nevh__tree *tree, const nevh__names *names,
         .pool = &pool, .error = error, .stamp = (uint64_t)1 << 63};
     nevh__adder adder = {.system = system, .effect = effect, .owned = owned};
     adder.walk.limit = NEVH__INSTANCE_LENGTH;
-    adder.walk.unfolded = names->unfolded;
+    adder.walk.exact = names->exact;
     if (e && nevh__split(&parts, e))
         add_parts(&adder, names, &parts);
     free(parts.parts);

@@ -116,6 +116,7 @@ typedef struct {
     nevh__meaning meaning; /* parameter, coordinate or definition */
     size_t count, first;
     double *values;
+    nevh__wide *wide; /* the same with more digits; NULL: these are all */
     nevh__tree *tree;
     size_t next; /* of the same chain, from 1; 0: none */
 } nevh__entry;
@@ -124,7 +125,7 @@ struct nevh__names {
     nevh__entry *entries;
     size_t count;
     size_t chain[NEVH__CHAINS]; /* by name: the last entry, from 1; 0: none */
-    bool unfolded;              /* nevh__names_unfold */
+    bool exact;                 /* nevh__names_exact */
 };
 /* meaning: also of p_NAME and v_NAME, whose entry is that of NAME. */
 const nevh__entry *nevh__entry_named(const nevh__names *, const char *name,
@@ -174,7 +175,9 @@ struct nevh__expression {
     const char *definition;
     const char *name; /* of an element, or of the index of a loop */
     double number;
+    nevh__wide wide_number; /* where names are exact: with more digits */
     const double *values;
+    const nevh__wide *wide_values; /* NULL: the others are all */
     nevh__variable kind;
     size_t first, count;
     nevh__tape_operation operation;
@@ -212,6 +215,8 @@ bool nevh__scope_finite(nevh__scope *, double, const nevh__expression *);
 /* The number that an expression stands for that reads nothing; NaN, with an
    error, when it has none. */
 double nevh__expression_value(nevh__scope *, const nevh__expression *);
+/* The same with more digits. */
+nevh__wide nevh__expression_wide(nevh__scope *, const nevh__expression *);
 /* A whole number, for an index or a bound (`what`). */
 bool nevh__expression_integer(nevh__scope *, const nevh__expression *,
                               const char *what, long *value);
@@ -256,8 +261,8 @@ bool nevh__variables_hash(nevh__parts *, const nevh__summand *, uint64_t *hash);
 typedef struct {
     nevh__scope scope;
     nevh__tape_builder *builder;
-    bool whole;    /* slots are indices in the system */
-    bool unfolded; /* numbers are operated on by the tape */
+    bool whole; /* slots are indices in the system */
+    bool exact; /* constants are sums of NEVH__WIDE_PARTS numbers */
     size_t limit, length;
     uint64_t stamp;
 

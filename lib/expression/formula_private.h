@@ -16,6 +16,7 @@
 #define NEVH_FORMULA_PRIVATE_H
 
 #include "expression/tape_private.h"
+#include "expression/wide_private.h"
 
 /* The first thing that is wrong; never NULL.  Every function clears it at
    first. */
@@ -62,14 +63,18 @@ size_t nevh__formula_extent(const char *text, const char *stops);
 typedef struct nevh__names nevh__names;
 nevh__names *nevh__names_new(void); /* NULL when memory is out */
 void nevh__names_free(nevh__names *);
-/* Whether terms that are added from now on keep operations on numbers alone,
-   instead of the doubles that these give: who reads the tape may carry them out
-   with more digits. */
-void nevh__names_unfold(nevh__names *, bool);
+/* From now on what is computed of numbers alone has the digits of nevh__wide;
+   numbers that are written are doubles.  In terms a constant is a sum of
+   doubles that the tape leaves for who reads it with more digits. */
+void nevh__names_exact(nevh__names *);
 /* count    0: one number; else an array 1 ... count
    values   in, one or count of them; copied */
 int nevh__names_add_parameter(nevh__names *, const char *name, size_t count,
                               const double values[], nevh__formula_error *);
+/* wide     the same values with more digits; NULL: there are none */
+int nevh__names_add_wide(nevh__names *, const char *name, size_t count,
+                         const double values[], const nevh__wide wide[],
+                         nevh__formula_error *);
 /* count    as above; p_NAME and v_NAME come with it
    first    index of the (first) coordinate in the system */
 int nevh__names_add_coordinate(nevh__names *, const char *name, size_t count,
@@ -118,6 +123,10 @@ typedef struct {
 int nevh__tree_number(const nevh__tree *, const nevh__names *,
                       const nevh__index *, double *value,
                       nevh__formula_error *);
+/* The same with more digits, of names that are exact. */
+int nevh__tree_wide(const nevh__tree *, const nevh__names *,
+                    const nevh__index *, nevh__wide *value,
+                    nevh__formula_error *);
 /* The same for what must be a whole number. */
 int nevh__tree_integer(const nevh__tree *, const nevh__names *,
                        const nevh__index *, long *value, nevh__formula_error *);

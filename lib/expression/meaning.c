@@ -75,6 +75,7 @@ static nevh__expression *new_parameter(nevh__resolver *r,
         return NULL;
     e->count = entry->count;
     e->values = entry->values;
+    e->wide_values = entry->wide;
     return take_index(r, node, e) ? nevh__expression_finish(r, e) : NULL;
 }
 
@@ -187,9 +188,14 @@ static nevh__expression *resolve_constant(nevh__resolver *r,
     if (node->kind == NEVH__NODE_ELEMENT)
         return nevh__resolver_fail_name(
             r, node, "%s is a single number: it has no index", "");
-    return node->name[0] == 't'
-               ? new_time(r, node)
-               : nevh__expression_number(r, node, 3.14159265358979323846);
+    if (node->name[0] == 't')
+        return new_time(r, node);
+    nevh__expression *pi = nevh__expression_new(r, NEVH__FORM_NUMBER, node, 0);
+    if (!pi)
+        return NULL;
+    pi->wide_number = nevh__wide_pi();
+    pi->number = (double)pi->wide_number;
+    return nevh__expression_finish(r, pi);
 }
 
 nevh__expression *nevh__resolve_name(nevh__resolver *r,

@@ -12,11 +12,12 @@ nevh__names *nevh__names_new(void) {
 static void entry_free(nevh__entry *entry) {
     free(entry->name);
     free(entry->values);
+    free(entry->wide);
     nevh__tree_free(entry->tree);
 }
 
-void nevh__names_unfold(nevh__names *names, bool unfolded) {
-    names->unfolded = unfolded;
+void nevh__names_exact(nevh__names *names) {
+    names->exact = true;
 }
 
 void nevh__names_free(nevh__names *names) {
@@ -149,23 +150,34 @@ static void drop_last_entry(nevh__names *names) {
     free(last->name);
 }
 
-int nevh__names_add_parameter(nevh__names *names, const char *name,
-                              size_t count, const double values[],
-                              nevh__formula_error *error) {
-    double *copy = nevh__copy(values, count ? count : 1, sizeof *values);
+int nevh__names_add_wide(nevh__names *names, const char *name, size_t count,
+                         const double values[], const nevh__wide wide[],
+                         nevh__formula_error *error) {
+    size_t n = count ? count : 1;
+    double *copy = nevh__copy(values, n, sizeof *values);
+    nevh__wide *wide_copy = wide ? nevh__copy(wide, n, sizeof *wide) : NULL;
+    bool copied = copy && (!wide || wide_copy);
     nevh__entry *entry = new_entry(names, name, error);
-    if (!entry || !copy) {
+    if (!entry || !copied) {
         if (entry)
             drop_last_entry(names);
         free(copy);
-        if (!copy)
+        free(wide_copy);
+        if (!copied)
             nevh__formula_no_memory(error);
         return error->status;
     }
     entry->meaning = NEVH__PARAMETER;
     entry->count = count;
     entry->values = copy;
+    entry->wide = wide_copy;
     return NEVH_OK;
+}
+
+int nevh__names_add_parameter(nevh__names *names, const char *name,
+                              size_t count, const double values[],
+                              nevh__formula_error *error) {
+    return nevh__names_add_wide(names, name, count, values, NULL, error);
 }
 
 int nevh__names_add_coordinate(nevh__names *names, const char *name,

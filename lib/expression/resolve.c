@@ -40,7 +40,7 @@ static nevh__expression *apply(nevh__resolver *r, const nevh__syntax_node *node,
     e->operation = operation;
     const nevh__expression *last = e->operands[e->n - 1].of;
     if (operation == NEVH__POWER && last->form == NEVH__FORM_NUMBER &&
-        last->number == 1)
+        last->wide_number == 1)
         return e->operands[0].of;
     return nevh__expression_finish(r, e);
 }

@@ -17,12 +17,18 @@ static bool failed(const nevh__walk *w) {
     return w->scope.error->status;
 }
 
-static int number(nevh__walk *w, double value) {
-    return nevh__tape_number(w->builder, value);
-}
-
 static int apply(nevh__walk *w, nevh__tape_operation operation, int a, int b) {
     return nevh__tape_apply(w->builder, operation, a, b);
+}
+
+static int number(nevh__walk *w, nevh__wide value) {
+    double part[NEVH__WIDE_PARTS];
+    nevh__wide_split(value, part);
+    int node = nevh__tape_number(w->builder, part[0]);
+    for (int i = 1; w->exact && i < NEVH__WIDE_PARTS && part[i] != 0; i++)
+        node =
+            apply(w, NEVH__ADD, node, nevh__tape_number(w->builder, part[i]));
+    return node;
 }
 
 /* Room for one more element; false when memory is out. */
@@ -67,18 +73,27 @@ static int constant(nevh__walk *w, double value, const nevh__expression *at) {
                : nevh__tape_variable(w->builder, NEVH__C, (size_t)column);
 }
 
+/* The same in parts, each of which may differ between instances. */
+static int wide_constant(nevh__walk *w, const nevh__expression *e) {
+    double part[NEVH__WIDE_PARTS] = {0};
+    if (noting(w))
+        nevh__wide_split(nevh__expression_wide(&w->scope, e), part);
+    int node = constant(w, part[0], e);
+    for (int i = 1; i < NEVH__WIDE_PARTS && !failed(w); i++) {
+        int next = constant(w, part[i], e);
+        node = apply(w, NEVH__ADD, node, next);
+    }
+    return node;
+}
+
 static int walk_constant(nevh__walk *w, const nevh__expression *e) {
+    if (e->form != NEVH__FORM_NUMBER && w->exact)
+        return wide_constant(w, e);
     if (e->form != NEVH__FORM_NUMBER)
         return constant(w, noting(w) ? nevh__expression_value(&w->scope, e) : 0,
                         e);
     nevh__scope_finite(&w->scope, e->number, e);
-    return number(w, e->number);
-}
-
-/* Whether a number is more than one that is given. */
-static bool is_operation(const nevh__expression *e) {
-    return e->form == NEVH__FORM_SUM || e->form == NEVH__FORM_PRODUCT ||
-           e->form == NEVH__FORM_APPLY || e->form == NEVH__FORM_LOOP;
+    return number(w, w->exact ? e->wide_number : e->number);
 }
 
 /* Variables. */
@@ -117,7 +132,7 @@ typedef struct {
 static prefix take_prefix(nevh__walk *w, bool negative,
                           const nevh__expression_operand *factors, size_t n) {
     prefix p = {factors, n, 0, 1, true};
-    for (; p.used < n && !w->unfolded && !factors[p.used].of->reads; p.used++) {
+    for (; p.used < n && !w->exact && !factors[p.used].of->reads; p.used++) {
         const nevh__expression *e = factors[p.used].of;
         p.numbers = p.numbers && e->form == NEVH__FORM_NUMBER;
         if (!noting(w) && !p.numbers)
@@ -233,7 +248,7 @@ static int walk(nevh__walk *w, nevh__expression *e) {
                          w->limit);
         return -1;
     }
-    if (!e->reads && !(w->unfolded && is_operation(e)))
+    if (!e->reads)
         return walk_constant(w, e);
     if (e->shared && e->stamp == w->stamp)
         return e->node;
@@ -293,7 +308,7 @@ nevh__tape *nevh__walk_tape(nevh__walk *w, const nevh__formula_part *part) {
         nevh__formula_no_memory(error);
         return NULL;
     }
-    if (w->unfolded)
+    if (w->exact)
         nevh__tape_unfold(w->builder);
     w->length = w->at_shape = w->at_constant = 0;
     w->stamp++;

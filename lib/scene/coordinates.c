@@ -54,6 +54,17 @@ static bool add_names(nevh_scene *s, nevh__scene_model *m,
     return true;
 }
 
+static bool reserve_exact(nevh__scene_model *m) {
+    nevh__exact_numbers *e = m->exact;
+    e->q = nevh__pool_take(&m->pool, 4 * m->n, sizeof *e->q);
+    if (!e->q)
+        return false;
+    e->p = e->q + m->n;
+    e->v = e->p + m->n;
+    e->rates = e->v + m->n;
+    return true;
+}
+
 static bool reserve(nevh_scene *s, nevh__scene_model *m) {
     m->coordinate_names = nevh__pool_take(&m->pool, m->n, sizeof(char *));
     m->q = nevh__pool_take(&m->pool, m->n, sizeof *m->q);
@@ -63,7 +74,7 @@ static bool reserve(nevh_scene *s, nevh__scene_model *m) {
     m->moving = nevh__pool_take(&m->pool, m->n, sizeof *m->moving);
     m->by_velocity = nevh__pool_take(&m->pool, m->n, sizeof *m->by_velocity);
     return (m->coordinate_names && m->q && m->p && m->v && m->period &&
-            m->moving && m->by_velocity) ||
+            m->moving && m->by_velocity && (!m->exact || reserve_exact(m))) ||
            nevh__scene_no_memory(s);
 }
 
@@ -125,18 +136,38 @@ static bool claim(nevh_scene *s, nevh__scene_model *m, size_t first,
     return true;
 }
 
+static nevh__wide *exact_q(const nevh__scene_model *m, size_t k) {
+    return m->exact ? m->exact->q + k : NULL;
+}
+
+static nevh__wide *exact_p(const nevh__scene_model *m, size_t k) {
+    return m->exact ? m->exact->p + k : NULL;
+}
+
+static nevh__wide *exact_v(const nevh__scene_model *m, size_t k) {
+    return m->exact ? m->exact->v + k : NULL;
+}
+
+static bool take_value(nevh_scene *s, nevh__scene_model *m,
+                       const nevh__piece *piece, double *value,
+                       nevh__wide *wide) {
+    return nevh__piece_number(s, m, piece, value) &&
+           (!wide || nevh__piece_wide(s, m, piece, wide));
+}
+
 /* VALUE or VALUE, MOMENTUM */
 static bool take_pair(nevh_scene *s, nevh__scene_model *m,
                       const nevh__coordinate *c, const nevh__piece *value) {
     size_t given, k = c->first;
     nevh__piece *parts = nevh__piece_list(s, &m->pool, value, &given);
-    if (!parts || !nevh__piece_number(s, m, &parts[0], &m->q[k]))
+    if (!parts || !take_value(s, m, &parts[0], &m->q[k], exact_q(m, k)))
         return false;
     if (given > 2)
         return nevh__scene_fail(s, NEVH_EINVAL, &parts[2],
                                 "a coordinate takes VALUE, or VALUE, MOMENTUM");
-    return given == 1 || (nevh__piece_number(s, m, &parts[1], &m->p[k]) &&
-                          claim(s, m, k, 1, c->statement));
+    return given == 1 ||
+           (take_value(s, m, &parts[1], &m->p[k], exact_p(m, k)) &&
+            claim(s, m, k, 1, c->statement));
 }
 
 /* A coordinate, or an array of them, with velocities. */
@@ -144,7 +175,8 @@ static bool take_elements(nevh_scene *s, nevh__scene_model *m,
                           const nevh__coordinate *c, const nevh__piece *value) {
     size_t count = c->count ? c->count : 1;
     if (!nevh__elements_values(s, m, c->statement, value, count,
-                               m->q + c->first, m->v + c->first) ||
+                               m->q + c->first, m->v + c->first,
+                               exact_q(m, c->first), exact_v(m, c->first)) ||
         !claim(s, m, c->first, count, c->statement))
         return false;
     for (size_t k = 0; k < count; k++)
@@ -159,10 +191,11 @@ static bool take_coordinate(nevh_scene *s, nevh__scene_model *m,
     if (!nevh__piece_split(s, &m->pool, &rest, ";", &value, &stop))
         return false;
     bool elements = c->statement->group || nevh__is_elements(&value);
-    bool fine = elements   ? take_elements(s, m, c, &value)
-                : c->count ? nevh__head_values(s, m, c->statement, &value,
-                                               c->count, m->q + c->first)
-                           : take_pair(s, m, c, &value);
+    bool fine = elements ? take_elements(s, m, c, &value)
+                : c->count
+                    ? nevh__head_values(s, m, c->statement, &value, c->count,
+                                        m->q + c->first, exact_q(m, c->first))
+                    : take_pair(s, m, c, &value);
     while (fine && stop)
         fine = nevh__piece_split(s, &m->pool, &rest, ";", &clause, &stop) &&
                take_period(s, m, c, &clause);
@@ -194,7 +227,8 @@ static bool take_motion(nevh_scene *s, nevh__scene_model *m,
     for (size_t k = 0; k < shape.count; k++)
         m->by_velocity[first + k] = velocity;
     return nevh__head_values(s, m, statement, &statement->value, shape.count,
-                             (velocity ? m->v : m->p) + first);
+                             (velocity ? m->v : m->p) + first,
+                             (velocity ? exact_v : exact_p)(m, first));
 }
 
 static const char *with_prefix(nevh_scene *s, nevh__scene_model *m,
@@ -248,13 +282,20 @@ static bool take_start(nevh_scene *s, nevh__scene_model *m,
                                          : m->v;
     /* The formula of an index is of x[first], x[first + 1], ... */
     size_t skipped = one->head.index ? from - first : 0;
-    double *values =
-        nevh__pool_take(&m->pool, skipped + to - from, sizeof *values);
-    if (!values)
+    nevh__wide *wide_all = (is == NEVH__COORDINATE ? exact_q
+                            : is == NEVH__MOMENTUM ? exact_p
+                                                   : exact_v)(m, 0);
+    size_t count = skipped + to - from;
+    double *values = nevh__pool_take(&m->pool, count, sizeof *values);
+    nevh__wide *wide =
+        wide_all ? nevh__pool_take(&m->pool, count, sizeof *wide) : NULL;
+    if (!values || (wide_all && !wide))
         return nevh__scene_no_memory(s);
-    if (!nevh__head_values(s, m, one, &one->value, skipped + to - from, values))
+    if (!nevh__head_values(s, m, one, &one->value, count, values, wide))
         return false;
     memcpy(all + from, values + skipped, (to - from) * sizeof *values);
+    if (wide)
+        memcpy(wide_all + from, wide + skipped, (to - from) * sizeof *wide);
     for (size_t k = from; is != NEVH__COORDINATE && k < to; k++) {
         m->moving[k] = one;
         m->by_velocity[k] = is == NEVH__VELOCITY;

@@ -10,6 +10,9 @@
 #include "scene/scene_private.h"
 #include <math.h>
 #include <string.h>
+#ifdef NEVH_QUADMATH
+#include <quadmath.h>
+#endif
 
 enum { A, E, INCLINATION, NODE, PERICENTRE, MEAN_ANOMALY, MU, ELEMENTS };
 static const char name[] = "elements";
@@ -21,36 +24,25 @@ bool nevh__is_elements(const nevh__piece *value) {
            after[strspn(after, " \t")] == '(';
 }
 
-/* Two axes in the plane of the orbit, towards the pericentre and square to it,
-   as far as coordinate k goes. */
-static void axes(const double *x, size_t k, double *along, double *across) {
-    double cos_w = cos(x[PERICENTRE]), sin_w = sin(x[PERICENTRE]);
-    double cos_n = cos(x[NODE]), sin_n = sin(x[NODE]);
-    double cos_i = cos(x[INCLINATION]), sin_i = sin(x[INCLINATION]);
-    if (k == 0) {
-        *along = cos_n * cos_w - sin_n * sin_w * cos_i;
-        *across = -cos_n * sin_w - sin_n * cos_w * cos_i;
-    } else if (k == 1) {
-        *along = sin_n * cos_w + cos_n * sin_w * cos_i;
-        *across = -sin_n * sin_w + cos_n * cos_w * cos_i;
-    } else {
-        *along = sin_w * sin_i;
-        *across = cos_w * sin_i;
-    }
-}
+#define real            double
+#define NAMED(name)     name
+#define FUNCTION(f)     f
+#define ECCENTRIC(M, e) nevh__operation_value(NEVH__ECCENTRIC, M, e)
+#include "scene/elements_text.h"
+#undef real
+#undef NAMED
+#undef FUNCTION
+#undef ECCENTRIC
 
-/* 1 - e cos E and cos E - e by the half angle, so that they do not cancel where
-   e is near 1. */
-static void place(const double *x, size_t k, double *q, double *v) {
-    double e = x[E], along, across;
-    double anomaly = nevh__operation_value(NEVH__ECCENTRIC, x[MEAN_ANOMALY], e);
-    double half = sin(anomaly / 2), sine = sin(anomaly), cosine = cos(anomaly);
-    double round = sqrt((1 - e) * (1 + e));
-    double speed = sqrt(x[MU] / x[A]) / ((1 - e) + 2 * e * half * half);
-    axes(x, k, &along, &across);
-    *q = x[A] * (((1 - e) - 2 * half * half) * along + round * sine * across);
-    *v = speed * (round * cosine * across - sine * along);
-}
+#define real        nevh__wide
+#define NAMED(name) wide_##name
+#ifdef NEVH_QUADMATH
+#define FUNCTION(f) f##q
+#else
+#define FUNCTION(f) f##l
+#endif
+#define ECCENTRIC(M, e) nevh__operation_wide(NEVH__ECCENTRIC, M, e)
+#include "scene/elements_text.h"
 
 static bool check(nevh_scene *s, const nevh__statement *one,
                   const nevh__piece arguments[], const double *x) {
@@ -78,7 +70,8 @@ static bool check(nevh_scene *s, const nevh__statement *one,
 
 bool nevh__elements_values(nevh_scene *s, nevh__scene_model *m,
                            const nevh__statement *one, const nevh__piece *value,
-                           size_t count, double q[], double v[]) {
+                           size_t count, double q[], double v[],
+                           nevh__wide wide_q[], nevh__wide wide_v[]) {
     nevh__piece *arguments = NULL;
     size_t given = 0;
     if (!nevh__piece_call(s, &m->pool, value, name, &arguments, &given))
@@ -89,11 +82,14 @@ bool nevh__elements_values(nevh_scene *s, nevh__scene_model *m,
                                 "inclination, node, pericentre, mean_anomaly, "
                                 "mu), or with x, y alone");
     double *all = nevh__pool_take(&m->pool, ELEMENTS * count, sizeof *all);
-    if (!all)
+    nevh__wide *wide =
+        wide_q ? nevh__pool_take(&m->pool, ELEMENTS * count, sizeof *wide)
+               : NULL;
+    if (!all || (wide_q && !wide))
         return nevh__scene_no_memory(s);
     for (size_t i = 0; i < ELEMENTS; i++)
-        if (!nevh__head_values(s, m, one, &arguments[i], count,
-                               all + i * count))
+        if (!nevh__head_values(s, m, one, &arguments[i], count, all + i * count,
+                               wide ? wide + i * count : NULL))
             return false;
     for (size_t k = 0; k < count; k++) {
         double x[ELEMENTS];
@@ -102,6 +98,12 @@ bool nevh__elements_values(nevh_scene *s, nevh__scene_model *m,
         if (!check(s, one, arguments, x))
             return false;
         place(x, one->member, &q[k], &v[k]);
+        if (!wide)
+            continue;
+        nevh__wide w[ELEMENTS];
+        for (size_t i = 0; i < ELEMENTS; i++)
+            w[i] = wide[i * count + k];
+        wide_place(w, one->member, &wide_q[k], &wide_v[k]);
     }
     return true;
 }

@@ -109,6 +109,17 @@ bool nevh__piece_number(nevh_scene *s, const nevh__scene_model *m,
     return !status || nevh__scene_fail_formula(s, piece, &error);
 }
 
+bool nevh__piece_wide(nevh_scene *s, const nevh__scene_model *m,
+                      const nevh__piece *piece, nevh__wide *value) {
+    nevh__formula_error error = {0};
+    nevh__tree *tree = nevh__piece_tree(s, piece);
+    if (!tree)
+        return false;
+    int status = nevh__tree_wide(tree, m->names, NULL, value, &error);
+    nevh__tree_free(tree);
+    return !status || nevh__scene_fail_formula(s, piece, &error);
+}
+
 bool nevh__piece_check(nevh_scene *s, const nevh__scene_model *m,
                        const nevh__piece *piece, unsigned allowed) {
     nevh__formula_error error = {0};

@@ -14,9 +14,7 @@ void nevh__model_free(nevh__scene_model *m) {
         return;
     nevh_system_free(m->system);
     nevh_system_free(m->transform);
-    nevh_system_free(m->exact);
     nevh__owned_free(&m->owned);
-    nevh__owned_free(&m->owned_exact);
     nevh__owned_free(&m->owned_transform);
     nevh__owned_free(&m->owned_shown);
     free(m->velocities);
@@ -26,27 +24,56 @@ void nevh__model_free(nevh__scene_model *m) {
     free(m);
 }
 
-static nevh__scene_model *new_model(nevh_scene *s) {
+static bool make_exact(nevh__scene_model *m) {
+    m->exact = nevh__pool_take(&m->pool, 1, sizeof *m->exact);
+    nevh__names_exact(m->names);
+    return m->exact;
+}
+
+static nevh__scene_model *new_model(nevh_scene *s, bool exact) {
     nevh__scene_model *m = nevh__array(1, sizeof *m);
     if (!m || !(m->names = nevh__names_new())) {
         free(m);
         nevh__scene_no_memory(s);
         return NULL;
     }
-    if (nevh__model_parameters(s, m) && nevh__model_coordinates(s, m) &&
-        nevh__model_definitions(s, m) && nevh__model_values(s, m) &&
-        nevh__model_terms(s, m) && nevh__model_shown(s, m) &&
-        nevh__model_labels(s, m) && nevh__model_run(s, m) &&
-        nevh__model_ensemble(s, m))
+    if (exact && !make_exact(m))
+        nevh__scene_no_memory(s);
+    else if (nevh__model_parameters(s, m) && nevh__model_coordinates(s, m) &&
+             nevh__model_definitions(s, m) && nevh__model_values(s, m) &&
+             nevh__model_terms(s, m) && nevh__model_shown(s, m) &&
+             nevh__model_labels(s, m) && nevh__model_run(s, m) &&
+             nevh__model_ensemble(s, m))
         return m;
     nevh__model_free(m);
     return NULL;
 }
 
+nevh__scene_model *nevh__scene_exact(nevh_scene *s) {
+    if (!nevh__scene_begin(s))
+        return NULL;
+    if (!s->exact)
+        s->exact = new_model(s, true);
+    return s->exact;
+}
+
+/* The other model is for what was before a change. */
+static void forget_exact(nevh_scene *s) {
+    nevh__model_free(s->exact);
+    s->exact = NULL;
+}
+
+/* After a change of the scene. */
+static void take_model(nevh_scene *s, nevh__scene_model *model) {
+    forget_exact(s);
+    nevh__model_free(s->model);
+    s->model = model;
+}
+
 nevh__scene_model *nevh__model_with(nevh_scene *s,
                                     const struct nevh__overrides *overrides) {
     s->overrides = overrides;
-    nevh__scene_model *m = new_model(s);
+    nevh__scene_model *m = new_model(s, false);
     s->overrides = NULL;
     return m;
 }
@@ -67,7 +94,7 @@ static void begin(nevh_scene *s, const nevh_scene_options *options,
     s->allow_code = options->allow_code;
     if (nevh__scene_cut(s, text, bytes) && nevh__scene_effects(s) &&
         nevh__scene_switch(s, options))
-        s->model = new_model(s);
+        s->model = new_model(s, false);
 }
 
 nevh_scene *nevh_scene_parse(const char *name, const char *text) {
@@ -131,6 +158,7 @@ nevh_scene *nevh_scene_read_with(const char *path,
 void nevh_scene_free(nevh_scene *s) {
     if (!s)
         return;
+    nevh__model_free(s->exact);
     nevh__model_free(s->model);
     nevh__scene_unload_code(s);
     for (size_t i = 0; i < s->n_statements; i++)
@@ -210,14 +238,13 @@ static bool check_assignment(nevh_scene *s, const nevh__statement *statement) {
 /* Takes the model anew, with what was put last on a list, or without it. */
 static int keep_if_fine(nevh_scene *s, nevh__statement *statement, bool fine,
                         size_t *count) {
-    nevh__scene_model *model = fine ? new_model(s) : NULL;
+    nevh__scene_model *model = fine ? new_model(s, false) : NULL;
     if (!model) {
         --*count;
         nevh__head_free(&statement->head);
         return s->status;
     }
-    nevh__model_free(s->model);
-    s->model = model;
+    take_model(s, model);
     return NEVH_OK;
 }
 
@@ -260,14 +287,13 @@ int nevh_scene_vary(nevh_scene *s, const char *const lines[], size_t count) {
         if (statement)
             s->varies[s->n_varies++] = statement;
     }
-    nevh__scene_model *model = s->status ? NULL : new_model(s);
+    nevh__scene_model *model = s->status ? NULL : new_model(s, false);
     if (!model) {
         while (s->n_varies > before)
             nevh__head_free(&s->varies[--s->n_varies]->head);
         return s->status;
     }
-    nevh__model_free(s->model);
-    s->model = model;
+    take_model(s, model);
     return NEVH_OK;
 }
 
@@ -304,13 +330,12 @@ int nevh_scene_set_transform(nevh_scene *s, const char *formula) {
     if (!piece)
         return s->status;
     s->transform = piece;
-    nevh__scene_model *model = new_model(s);
+    nevh__scene_model *model = new_model(s, false);
     if (!model) {
         s->transform = before;
         return s->status;
     }
-    nevh__model_free(s->model);
-    s->model = model;
+    take_model(s, model);
     return NEVH_OK;
 }
 
@@ -324,13 +349,12 @@ int nevh_scene_set_outcomes(nevh_scene *s, const char *outcomes) {
     if (!piece)
         return s->status;
     s->outcomes = piece;
-    nevh__scene_model *model = new_model(s);
+    nevh__scene_model *model = new_model(s, false);
     if (!model) {
         s->outcomes = before;
         return s->status;
     }
-    nevh__model_free(s->model);
-    s->model = model;
+    take_model(s, model);
     return NEVH_OK;
 }
 
@@ -356,6 +380,7 @@ int nevh_scene_enable(nevh_scene *s, const char *effect, bool on) {
     nevh__switch *found = nevh__scene_find_effect(s, effect);
     if (!found || (on && !nevh__scene_load_code(s, effect)))
         return s->status;
+    forget_exact(s);
     found->on = on;
     s->switched = true;
     return nevh_system_enable(s->model->system, effect, on);

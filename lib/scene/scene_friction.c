@@ -6,6 +6,7 @@
 typedef struct {
     double *rates;
     bool *given;
+    bool on;             /* and of a model that is exact */
     nevh__statement one; /* COORDINATE: RATE */
 } friction;
 
@@ -31,9 +32,14 @@ static bool set_rate(nevh_scene *s, nevh__scene_model *m, friction *d, size_t k,
                                 "a rate of %s is given twice",
                                 m->coordinate_names[k]);
     d->given[k] = true;
-    return !nevh__tree_number(tree, m->names, at.name ? &at : NULL,
-                              &d->rates[k], &error) ||
-           nevh__scene_fail_formula(s, &d->one.value, &error);
+    const nevh__index *index = at.name ? &at : NULL;
+    int status = nevh__tree_number(tree, m->names, index, &d->rates[k], &error);
+    nevh__wide rate = 0;
+    if (m->exact && !status)
+        status = nevh__tree_wide(tree, m->names, index, &rate, &error);
+    if (d->on && !status)
+        m->exact->rates[k] += rate;
+    return !status || nevh__scene_fail_formula(s, &d->one.value, &error);
 }
 
 static bool take_rates(nevh_scene *s, nevh__scene_model *m, friction *d) {
@@ -78,6 +84,7 @@ static bool add_friction(nevh_scene *s, nevh__scene_model *m,
                   .given = nevh__pool_take(&m->pool, m->n, sizeof *d.given)};
     if (!d.rates || !d.given)
         return nevh__scene_no_memory(s);
+    d.on = m->exact && nevh__scene_effect(s, statement->head.name)->on;
     nevh__piece *parts =
         nevh__piece_list(s, &m->pool, &statement->value, &count);
     if (!parts)

@@ -100,6 +100,12 @@ typedef struct {
     double value;
 } nevh__stop;
 
+/* What a model's numbers are with all their digits: n each. */
+typedef struct {
+    nevh__wide *q, *p, *v, *rates; /* rates: of the friction that is on */
+    nevh__wide t_start, t_end;
+} nevh__exact_numbers;
+
 typedef struct nevh__scene_ensemble
     nevh__scene_ensemble; /* "scene/scene_ensemble_private.h" */
 
@@ -110,12 +116,12 @@ typedef struct {
     size_t n_coordinates, n;
     char **coordinate_names;        /* n */
     double *q, *p, *v;              /* n; v: initial velocities */
+    nevh__exact_numbers *exact;     /* NULL: of doubles alone */
     double *period;                 /* n; 0: none */
     const nevh__statement **moving; /* n: what gave p[k] or v[k], or NULL */
     bool *by_velocity;              /* n: v[k] is given, p[k] follows */
     nevh_system *system, *transform;
-    nevh_system *exact; /* NULL until asked for */
-    nevh__owned owned, owned_transform, owned_exact;
+    nevh__owned owned, owned_transform;
     nevh_scene_run run;
     nevh__items shown[2]; /* by nevh_shown */
     nevh__crossing *crossings;
@@ -154,6 +160,7 @@ struct nevh_scene {
     const nevh__piece *transform; /* from outside; NULL: the scene's */
     const nevh__piece *judged;    /* from outside; NULL: none */
     nevh__scene_model *model;
+    nevh__scene_model *exact; /* the same; NULL until asked for */
     int status;
     char message[2000];
 };
@@ -200,6 +207,8 @@ size_t nevh__piece_column(const nevh__piece *);
 nevh__tree *nevh__piece_tree(nevh_scene *, const nevh__piece *);
 bool nevh__piece_number(nevh_scene *, const nevh__scene_model *,
                         const nevh__piece *, double *value);
+bool nevh__piece_wide(nevh_scene *, const nevh__scene_model *,
+                      const nevh__piece *, nevh__wide *value);
 bool nevh__piece_check(nevh_scene *, const nevh__scene_model *,
                        const nevh__piece *, unsigned allowed);
 
@@ -227,10 +236,11 @@ typedef struct {
 /* The shape that NAME, NAME[1..N] or NAME[i = 1..N] has. */
 bool nevh__head_shape(nevh_scene *, const nevh__scene_model *,
                       const nevh__statement *, nevh__shape *);
-/* Values: a list of `count`, one for all, or a formula of the index. */
+/* Values: a list of `count`, one for all, or a formula of the index.
+   wide  the same with more digits; NULL: not asked for */
 bool nevh__head_values(nevh_scene *, nevh__scene_model *,
                        const nevh__statement *, const nevh__piece *value,
-                       size_t count, double values[]);
+                       size_t count, double values[], nevh__wide wide[]);
 /* What a parameter was set to from outside, or NULL. */
 const nevh__statement *nevh__scene_assignment(const nevh_scene *,
                                               const char *name);
@@ -255,7 +265,8 @@ bool nevh__piece_call(nevh_scene *, nevh__pool *, const nevh__piece *,
 bool nevh__is_elements(const nevh__piece *);
 bool nevh__elements_values(nevh_scene *, nevh__scene_model *,
                            const nevh__statement *, const nevh__piece *value,
-                           size_t count, double q[], double v[]);
+                           size_t count, double q[], double v[],
+                           nevh__wide wide_q[], nevh__wide wide_v[]);
 
 /* Sections, in the order in which the model needs them. */
 bool nevh__model_parameters(nevh_scene *, nevh__scene_model *);
@@ -269,6 +280,9 @@ bool nevh__model_crossings(nevh_scene *, nevh__scene_model *);
 bool nevh__model_labels(nevh_scene *, nevh__scene_model *);
 bool nevh__model_run(nevh_scene *, nevh__scene_model *);
 void nevh__model_free(nevh__scene_model *);
+/* The model of the scene as it is, whose numbers have all their digits; NULL on
+   failure.  The scene owns it until it changes. */
+nevh__scene_model *nevh__scene_exact(nevh_scene *);
 
 /* v = dH/dp at one state, n each; every term brings its gradient.
    buffer       of nevh__velocity_buffer, to be freed; NULL when memory is out */

@@ -85,12 +85,14 @@ static bool take_names(nevh_scene *s, nevh__scene_model *m,
 
 static bool take_t_start(nevh_scene *s, nevh__scene_model *m,
                          const nevh__piece *v) {
-    return take_number(s, m, v, false, &m->run.t_start);
+    return take_number(s, m, v, false, &m->run.t_start) &&
+           (!m->exact || nevh__piece_wide(s, m, v, &m->exact->t_start));
 }
 
 static bool take_t_end(nevh_scene *s, nevh__scene_model *m,
                        const nevh__piece *v) {
-    return take_number(s, m, v, false, &m->run.t_end);
+    return take_number(s, m, v, false, &m->run.t_end) &&
+           (!m->exact || nevh__piece_wide(s, m, v, &m->exact->t_end));
 }
 
 static bool take_dt(nevh_scene *s, nevh__scene_model *m, const nevh__piece *v) {

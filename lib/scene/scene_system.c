@@ -130,27 +130,3 @@ bool nevh__model_terms(nevh_scene *s, nevh__scene_model *m) {
         nevh_system_enable(m->system, s->effects[i].name, s->effects[i].on);
     return !nevh_system_status(m->system) || nevh__scene_no_memory(s);
 }
-
-/* The terms of a model of its own, which shares the rest. */
-const nevh_system *nevh_scene_exact_system(nevh_scene *s) {
-    if (!s || !nevh__scene_begin(s))
-        return NULL;
-    nevh__scene_model *m = s->model;
-    if (m->exact)
-        return m->exact;
-    nevh__scene_model exact = *m;
-    exact.system = NULL;
-    exact.owned = (nevh__owned){0};
-    nevh__names_unfold(m->names, true);
-    bool fine = nevh__model_terms(s, &exact);
-    nevh__names_unfold(m->names, false);
-    m->pool = exact.pool;
-    if (fine) {
-        m->exact = exact.system;
-        m->owned_exact = exact.owned;
-        return m->exact;
-    }
-    nevh_system_free(exact.system);
-    nevh__owned_free(&exact.owned);
-    return NULL;
-}

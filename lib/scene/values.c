@@ -100,7 +100,7 @@ static void add_index(nevh__formula_error *error, const nevh__index *index) {
 static bool values_by_index(nevh_scene *s, const nevh__scene_model *m,
                             const nevh__statement *statement,
                             const nevh__piece *value, size_t count,
-                            double values[]) {
+                            double values[], nevh__wide wide[]) {
     nevh__formula_error error = {0};
     nevh__tree *tree = nevh__piece_tree(s, value);
     int status = 0;
@@ -108,6 +108,8 @@ static bool values_by_index(nevh_scene *s, const nevh__scene_model *m,
     for (size_t k = 0; tree && !status && k < count; k++) {
         nevh__index index = {statement->head.index, (long)k + 1, &work};
         status = nevh__tree_number(tree, m->names, &index, &values[k], &error);
+        if (wide && !status)
+            status = nevh__tree_wide(tree, m->names, &index, &wide[k], &error);
         if (status)
             add_index(&error, &index);
     }
@@ -117,24 +119,28 @@ static bool values_by_index(nevh_scene *s, const nevh__scene_model *m,
 
 bool nevh__head_values(nevh_scene *s, nevh__scene_model *m,
                        const nevh__statement *statement,
-                       const nevh__piece *value, size_t count,
-                       double values[]) {
+                       const nevh__piece *value, size_t count, double values[],
+                       nevh__wide wide[]) {
     size_t given;
     if (statement->head.index)
-        return values_by_index(s, m, statement, value, count, values);
+        return values_by_index(s, m, statement, value, count, values, wide);
     nevh__piece *parts = nevh__piece_list(s, &m->pool, value, &given);
     if (!parts)
         return false;
     for (size_t k = 0; k < given && k < count; k++)
-        if (!nevh__piece_number(s, m, &parts[k], &values[k]))
+        if (!nevh__piece_number(s, m, &parts[k], &values[k]) ||
+            (wide && !nevh__piece_wide(s, m, &parts[k], &wide[k])))
             return false;
     if (given != 1 && given != count)
         return nevh__scene_fail(
             s, NEVH_EINVAL, given > count ? &parts[count] : value,
             "%s takes %zu value%s, not %zu", statement->head.name, count,
             count == 1 ? "" : "s", given);
-    for (size_t k = given; k < count; k++)
+    for (size_t k = given; k < count; k++) {
         values[k] = values[0];
+        if (wide)
+            wide[k] = wide[0];
+    }
     return true;
 }
 
@@ -155,14 +161,16 @@ static bool add_parameter(nevh_scene *s, nevh__scene_model *m,
     if (!nevh__head_shape(s, m, statement, &shape))
         return false;
     double *values = nevh__pool_take(&m->pool, shape.count, sizeof *values);
-    if (!values)
+    nevh__wide *wide =
+        m->exact ? nevh__pool_take(&m->pool, shape.count, sizeof *wide) : NULL;
+    if (!values || (m->exact && !wide))
         return nevh__scene_no_memory(s);
-    if (!nevh__head_values(s, m, from, &from->value, shape.count, values))
+    if (!nevh__head_values(s, m, from, &from->value, shape.count, values, wide))
         return false;
     nevh__override(s, name, values);
     nevh__formula_error error = {0};
-    return !nevh__names_add_parameter(
-               m->names, name, shape.array ? shape.count : 0, values, &error) ||
+    return !nevh__names_add_wide(m->names, name, shape.array ? shape.count : 0,
+                                 values, wide, &error) ||
            nevh__scene_fail_formula(s, &statement->key, &error);
 }
 

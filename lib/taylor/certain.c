@@ -1,12 +1,13 @@
 /* nevh: states to digits that are certain.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "taylor/orbit_private.h"
+#include "taylor/certain_private.h"
+#include <float.h>
 #include <math.h>
-#include <nevh/certain.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_DIGITS = 30 };
+enum { MOST_DIGITS = 30, ROOM = 60 };
 
 #ifdef NEVH_QUADMATH
 #include <quadmath.h>
@@ -26,8 +27,7 @@ struct nevh_certain {
     nevh__recurrence *recurrence;
     orbit fine, coarse; /* both of pairs, or neither */
     bool parted;        /* both, by now */
-    double t0, *rates;
-    nevh__wide *start;
+    nevh__wide t0, *start;
 };
 
 /* So many digits pairs may do for. */
@@ -52,7 +52,7 @@ static int start(nevh_certain *c, orbit *o, bool pairs, double tolerance) {
                : nevh__orbit_start_quad(&o->quad, c->t0, c->start, &c->report);
 }
 
-static int go(nevh_certain *c, orbit *o, double t) {
+static int go(nevh_certain *c, orbit *o, nevh__wide t) {
     return o->pairs ? nevh__orbit_go_dd(&o->dd, t, &c->report)
                     : nevh__orbit_go_quad(&o->quad, t, &c->report);
 }
@@ -61,38 +61,45 @@ static nevh__wide state(const orbit *o, size_t k) {
     return o->pairs ? o->dd.state[k] : o->quad.state[k];
 }
 
-/* Of a variable so far: where series begin, and now. */
+/* Of a variable so far: where series begin and within them, and now. */
 static double most(const orbit *o, size_t k) {
-    double begun = o->pairs ? o->dd.most[k] : o->quad.most[k];
+    double begun = o->pairs ? o->dd.seen[k] : o->quad.seen[k];
     return fmax(begun, fabs((double)state(o, k)));
+}
+
+static double term(const orbit *o, size_t k) {
+    return o->pairs ? o->dd.term[k] : o->quad.term[k];
 }
 
 static size_t count(const orbit *o) {
     return o->pairs ? o->dd.count : o->quad.count;
 }
 
+/* The first coefficients, and what rounding did to them, are those of the other
+   run: so that this does not go unseen, the series is left earlier. */
+static void shorten_first(orbit *o) {
+    if (o->pairs)
+        o->dd.reach /= 2;
+    else
+        o->quad.reach /= 2;
+}
+
 static int start_both(nevh_certain *c, bool pairs) {
     /* Errors of some hundred series add up. */
     double tolerance = pow(10, -c->digits - 4), finest = 2e-33;
     int status = start(c, &c->coarse, pairs, fmax(tolerance, 10 * finest));
-    return status ? status
-                  : start(c, &c->fine, pairs, fmax(tolerance / 30, finest));
+    if (status)
+        return status;
+    shorten_first(&c->coarse);
+    return start(c, &c->fine, pairs, fmax(tolerance / 30, finest));
 }
 
-static int plan(nevh_certain *c, const nevh_system *system) {
-    bool damped = nevh_system_friction(system, c->rates);
-    c->recurrence =
-        nevh__recurrence_new(system, damped ? c->rates : NULL, &c->report);
-    return c->recurrence ? start_both(c, c->digits <= DIGITS_OF_PAIRS)
-                         : c->report.status;
-}
-
-static int make(nevh_certain *c, const nevh_system *system, double t0,
-                const double q[], const double p[]) {
+static int make(nevh_certain *c, const nevh_system *system,
+                const nevh__certain_start *from) {
     size_t n = system->n;
     if (system->report.status)
         return nevh__fail_as(&c->report, &system->report);
-    if (!q || !p || !isfinite(t0))
+    if (!from->q || !from->p || !isfinite((double)from->t))
         return nevh__fail(&c->report, NEVH_EINVAL,
                           "an orbit needs a time and a state to start from");
     if (c->digits < 1 || c->digits > MOST_DIGITS)
@@ -100,28 +107,51 @@ static int make(nevh_certain *c, const nevh_system *system, double t0,
                           "%d digits: there are 1 to %d", c->digits,
                           MOST_DIGITS);
     c->n = n;
-    c->rates = nevh__array(n, sizeof *c->rates);
     c->start = nevh__array(2 * n, sizeof *c->start);
-    if (!c->rates || !c->start)
+    if (!c->start)
         return nevh__fail(&c->report, NEVH_ENOMEM, "out of memory");
-    for (size_t k = 0; k < n; k++) {
-        c->start[k] = q[k];
-        c->start[n + k] = p[k];
-    }
-    c->t0 = t0;
-    return plan(c, system);
+    memcpy(c->start, from->q, n * sizeof *c->start);
+    memcpy(c->start + n, from->p, n * sizeof *c->start);
+    c->t0 = from->t;
+    c->recurrence = nevh__recurrence_wide(system, from->rates, &c->report);
+    return c->recurrence ? start_both(c, c->digits <= DIGITS_OF_PAIRS)
+                         : c->report.status;
 }
 
-nevh_certain *nevh_certain_new(const nevh_system *system, double t0,
-                               const double q[], const double p[], int digits) {
+nevh_certain *nevh__certain_from(const nevh_system *system,
+                                 const nevh__certain_start *from, int digits) {
     nevh_certain *c = system ? nevh__array(1, sizeof *c) : NULL;
     if (!c)
         return NULL;
     c->digits = digits;
-    if (make(c, system, t0, q, p) != NEVH_ENOMEM)
+    if (make(c, system, from) != NEVH_ENOMEM)
         return c;
     nevh_certain_free(c);
     return NULL;
+}
+
+nevh_certain *nevh_certain_new(const nevh_system *system, double t0,
+                               const double q[], const double p[], int digits) {
+    size_t n = system ? system->n : 0;
+    nevh__wide *wide = nevh__array(3 * n, sizeof *wide);
+    double *rates = nevh__array(n, sizeof *rates);
+    nevh_certain *c = NULL;
+    if (system && wide && rates) {
+        bool damped = nevh_system_friction(system, rates);
+        for (size_t k = 0; k < n; k++) {
+            wide[k] = q ? q[k] : 0;
+            wide[n + k] = p ? p[k] : 0;
+            wide[2 * n + k] = rates[k];
+        }
+        nevh__certain_start from = {.t = t0,
+                                    .q = q ? wide : NULL,
+                                    .p = p ? wide + n : NULL,
+                                    .rates = damped ? wide + 2 * n : NULL};
+        c = nevh__certain_from(system, &from, digits);
+    }
+    free(wide);
+    free(rates);
+    return c;
 }
 
 void nevh_certain_free(nevh_certain *c) {
@@ -130,7 +160,6 @@ void nevh_certain_free(nevh_certain *c) {
     clear(&c->fine);
     clear(&c->coarse);
     nevh__recurrence_free(c->recurrence);
-    free(c->rates);
     free(c->start);
     free(c);
 }
@@ -148,7 +177,7 @@ static bool have_parted(const nevh_certain *c) {
     return parted;
 }
 
-static int go_both(nevh_certain *c, double t) {
+static int go_both(nevh_certain *c, nevh__wide t) {
     int status = go(c, &c->coarse, t);
     if (!status)
         status = go(c, &c->fine, t);
@@ -166,13 +195,14 @@ static bool lacks_digits(const nevh_certain *c) {
     return lacks;
 }
 
-int nevh_certain_go(nevh_certain *c, double t) {
+int nevh_certain_go_to(nevh_certain *c, double time, long double rest) {
+    nevh__wide t = (nevh__wide)time + rest;
     if (!c || !count(&c->fine))
         return nevh_certain_status(c);
     c->report = (nevh__report){0};
-    if (!isfinite(t))
+    if (!isfinite((double)t))
         return nevh__fail(&c->report, NEVH_EINVAL,
-                          "the time %g is not a finite number", t);
+                          "the time %g is not a finite number", (double)t);
     int status = go_both(c, t);
     if (status || !c->fine.pairs || !lacks_digits(c))
         return status;
@@ -196,7 +226,8 @@ double nevh_certain_error(const nevh_certain *c, size_t k) {
     if (!has(c, k))
         return NAN;
     double once = c->fine.pairs ? rounding_of_pairs : rounding;
-    double floor = once * sqrt((double)count(&c->fine)) * most(&c->fine, k);
+    double size = fmax(most(&c->fine, k), term(&c->fine, k));
+    double floor = once * sqrt((double)count(&c->fine)) * size;
     if (c->parted)
         floor = 2 * most(&c->fine, k);
     return fmax(2 * apart(c, k), floor);
@@ -219,7 +250,6 @@ int nevh_certain_digits(const nevh_certain *c, size_t k) {
 }
 
 char *nevh_certain_text(const nevh_certain *c, size_t k) {
-    enum { ROOM = 60 };
     char *text = has(c, k) ? nevh__array(ROOM, 1) : NULL;
     int digits = nevh_certain_digits(c, k);
     if (text)
@@ -230,16 +260,24 @@ char *nevh_certain_text(const nevh_certain *c, size_t k) {
     return text;
 }
 
+char *nevh_certain_number(double number, long double rest) {
+    char *text = nevh__array(ROOM, 1);
+    if (text)
+        quadmath_snprintf(text, ROOM, "%.*Qg", MOST_DIGITS,
+                          (nevh__wide)number + rest);
+    return text;
+}
+
 #else
 
 struct nevh_certain {
     nevh__report report;
 };
 
-nevh_certain *nevh_certain_new(const nevh_system *system, double t0,
-                               const double q[], const double p[], int digits) {
+nevh_certain *nevh__certain_from(const nevh_system *system,
+                                 const nevh__certain_start *from, int digits) {
     nevh_certain *c = system ? nevh__array(1, sizeof *c) : NULL;
-    (void)t0, (void)q, (void)p, (void)digits;
+    (void)from, (void)digits;
     if (c)
         nevh__fail(&c->report, NEVH_ESTRUCT,
                    "this nevh was built without libquadmath, which comes with "
@@ -247,12 +285,18 @@ nevh_certain *nevh_certain_new(const nevh_system *system, double t0,
     return c;
 }
 
+nevh_certain *nevh_certain_new(const nevh_system *system, double t0,
+                               const double q[], const double p[], int digits) {
+    (void)t0, (void)q, (void)p;
+    return nevh__certain_from(system, NULL, digits);
+}
+
 void nevh_certain_free(nevh_certain *c) {
     free(c);
 }
 
-int nevh_certain_go(nevh_certain *c, double t) {
-    (void)t;
+int nevh_certain_go_to(nevh_certain *c, double time, long double rest) {
+    (void)time, (void)rest;
     return nevh_certain_status(c);
 }
 
@@ -285,6 +329,13 @@ char *nevh_certain_text(const nevh_certain *c, size_t k) {
     (void)c, (void)k;
     return NULL;
 }
+
+char *nevh_certain_number(double number, long double rest) {
+    char *text = nevh__array(ROOM, 1);
+    if (text)
+        snprintf(text, ROOM, "%.*Lg", LDBL_DIG, (long double)number + rest);
+    return text;
+}
 #endif
 
 int nevh_certain_status(const nevh_certain *c) {
@@ -293,4 +344,8 @@ int nevh_certain_status(const nevh_certain *c) {
 
 const char *nevh_certain_message(const nevh_certain *c) {
     return c ? c->report.text : "out of memory";
+}
+
+int nevh_certain_go(nevh_certain *c, double t) {
+    return nevh_certain_go_to(c, t, 0);
 }

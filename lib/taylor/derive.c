@@ -7,9 +7,6 @@
 #include "taylor/graph_private.h"
 #include <stdio.h>
 #include <stdlib.h>
-#ifdef NEVH_QUADMATH
-#include <quadmath.h>
-#endif
 
 typedef struct {
     nevh__graph *g;
@@ -92,75 +89,10 @@ static int power(nevh__graph *g, int a, int b) {
         nevh__graph_multiply(g, b, nevh__graph_call(g, NEVH__LOG, a, -1)), -1);
 }
 
-/* An operation on numbers; functions that have no series are of doubles, and so are
-   all where nothing is certain to more digits. */
+/* sin and cos of a number are two operations. */
 static nevh__wide number_of(unsigned operation, nevh__wide x, nevh__wide y) {
-    switch (operation) {
-    case NEVH__ADD:
-        return x + y;
-    case NEVH__SUBTRACT:
-        return x - y;
-    case NEVH__MULTIPLY:
-        return x * y;
-    case NEVH__DIVIDE:
-        return x / y;
-    case NEVH__NEGATE:
-        return -x;
-    case NEVH__SQUARE:
-        return x * x;
-    case NEVH__CUBE:
-        return x * (x * x);
-#ifdef NEVH_QUADMATH
-    case NEVH__POWER:
-        return powq(x, y);
-    case NEVH__SIN:
-    case NEVH__SINCOS:
-        return sinq(x);
-    case NEVH__COS:
-        return cosq(x);
-    case NEVH__TAN:
-        return tanq(x);
-    case NEVH__ASIN:
-        return asinq(x);
-    case NEVH__ACOS:
-        return acosq(x);
-    case NEVH__ATAN:
-        return atanq(x);
-    case NEVH__ATAN2:
-        return atan2q(x, y);
-    case NEVH__SINH:
-        return sinhq(x);
-    case NEVH__COSH:
-        return coshq(x);
-    case NEVH__TANH:
-        return tanhq(x);
-    case NEVH__ASINH:
-        return asinhq(x);
-    case NEVH__ACOSH:
-        return acoshq(x);
-    case NEVH__ATANH:
-        return atanhq(x);
-    case NEVH__EXP:
-        return expq(x);
-    case NEVH__LOG:
-        return logq(x);
-    case NEVH__LOG10:
-        return log10q(x);
-    case NEVH__SQRT:
-        return sqrtq(x);
-    case NEVH__CBRT:
-        return cbrtq(x);
-    case NEVH__HYPOT:
-        return hypotq(x, y);
-    case NEVH__ABS:
-        return fabsq(x);
-    case NEVH__FLOOR:
-        return floorq(x);
-#endif
-    default:
-        return nevh__operation_value((nevh__tape_operation)operation, (double)x,
-                                     (double)y);
-    }
+    return nevh__operation_wide(
+        operation == NEVH__SINCOS ? NEVH__SIN : operation, x, y);
 }
 
 static int operate(nevh__graph *g, unsigned operation, int a, int b) {
@@ -274,7 +206,7 @@ static void hand_back(nevh__graph *g, int i, int of[]) {
     }
 }
 
-static int sweep(reader *r, const double friction[], int slope[]) {
+static int sweep(reader *r, const nevh__wide friction[], int slope[]) {
     nevh__graph *g = r->g;
     size_t n = r->n;
     int used = g->used, zero = nevh__graph_number(g, 0);
@@ -300,16 +232,15 @@ static int sweep(reader *r, const double friction[], int slope[]) {
             slope[k - n] = of[i];
     }
     for (size_t k = 0; friction && k < n; k++)
-        slope[n + k] =
-            nevh__graph_add(g, slope[n + k],
-                            nevh__graph_scale(g, -(nevh__wide)friction[k],
-                                              nevh__graph_variable(g, n + k)));
+        slope[n + k] = nevh__graph_add(
+            g, slope[n + k],
+            nevh__graph_scale(g, -friction[k], nevh__graph_variable(g, n + k)));
     free(of);
     return g->failed ? out_of_memory(r) : NEVH_OK;
 }
 
 int nevh__graph_of_system(nevh__graph *g, const nevh_system *system,
-                          const double friction[], int slope[],
+                          const nevh__wide friction[], int slope[],
                           nevh__report *report) {
     reader r = {.g = g, .report = report, .n = system->n};
     int status = NEVH_OK;

@@ -10,15 +10,8 @@
 #define NEVH_GRAPH_PRIVATE_H
 
 #include "expression/tape_private.h"
+#include "expression/wide_private.h"
 #include "system/system_private.h"
-
-/* Numbers of a graph have more digits than double where they can: products of
-   numbers are rounded once. */
-#ifdef NEVH_QUADMATH
-__extension__ typedef __float128 nevh__wide;
-#else
-typedef long double nevh__wide;
-#endif
 
 typedef enum {
     NEVH__GRAPH_NUMBER,
@@ -76,6 +69,7 @@ bool nevh__graph_is_number(const nevh__graph *, int node, nevh__wide *value);
 /* Why a system has no series: a status and a message in the report.
    slope  out, 2n: nodes of dq/dt and dp/dt, friction counted in */
 int nevh__graph_of_system(nevh__graph *, const nevh_system *,
-                          const double friction[], int slope[], nevh__report *);
+                          const nevh__wide friction[], int slope[],
+                          nevh__report *);
 
 #endif

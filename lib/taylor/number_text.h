@@ -19,6 +19,10 @@ NEVH__INLINE long double lengthen(number x) {
     return (long double)x.high + x.low;
 }
 
+NEVH__INLINE double shorten(number x) {
+    return x.high;
+}
+
 NEVH__INLINE number plus(number x, number y) {
     return nevh__dd_add(x, y);
 }
@@ -43,6 +47,10 @@ NEVH__INLINE real widen(number x) {
 
 NEVH__INLINE long double lengthen(number x) {
     return (long double)x;
+}
+
+NEVH__INLINE double shorten(number x) {
+    return (double)x;
 }
 
 NEVH__INLINE number plus(number x, number y) {

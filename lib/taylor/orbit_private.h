@@ -20,6 +20,9 @@
         real *start;    /* 2n: of the series */                                \
         real *state;    /* 2n: as asked for last */                            \
         double *most;   /* 2n: of each variable, so far */                     \
+        double *seen;   /* 2n: the same, and within series */                  \
+        double *term; /* 2n: the largest term of a series, so far, which     \
+                           rounding is in proportion to */ \
     } nevh__orbit_##kind;                                                      \
     bool nevh__orbit_init_##kind(nevh__orbit_##kind *,                         \
                                  const nevh__recurrence *, double tolerance);  \

@@ -26,7 +26,9 @@ bool NAMED(nevh__orbit_init)(orbit *o, const nevh__recurrence *r,
     o->rows = nevh__array(2 * r->n * (order + 1), sizeof *o->rows);
     o->start = nevh__array(2 * r->n, sizeof *o->start);
     o->state = nevh__array(2 * r->n, sizeof *o->state);
-    o->most = nevh__array(2 * r->n, sizeof *o->most);
+    o->most = nevh__array(6 * r->n, sizeof *o->most);
+    o->seen = o->most ? o->most + 2 * r->n : NULL;
+    o->term = o->most ? o->most + 4 * r->n : NULL;
     return o->series && o->rows && o->start && o->state && o->most;
 }
 
@@ -87,6 +89,8 @@ static bool expand(orbit *o, real t, const real state[]) {
 static int begin(orbit *o, real t, const real state[], nevh__report *report) {
     for (size_t i = 0; i < 2 * o->n; i++)
         o->most[i] = fmax(o->most[i], fabs((double)state[i]));
+    for (size_t i = 0; i < 2 * o->n; i++)
+        o->seen[i] = fmax(o->seen[i], o->most[i]);
     memcpy(o->start, state, 2 * o->n * sizeof *state);
     o->t = t;
     o->count++;
@@ -107,8 +111,27 @@ int NAMED(nevh__orbit_start)(orbit *o, real t, const real state[],
     return begin(o, t, state, report);
 }
 
+/* Sizes of variables within a series, of which both ends may be zeros, and of its
+   terms. */
+static void note_sizes(orbit *o, double by) {
+    static const double within = 0.37;
+    size_t each = 2 * o->n;
+    for (size_t i = 0; i < each; i++) {
+        double value = 0, power = 1, part = 1;
+        for (size_t k = 0; k <= o->order; k++) {
+            double x = shorten(o->rows[k * each + i]);
+            o->term[i] = fmax(o->term[i], fabs(x) * power);
+            value += x * part;
+            power *= fabs(by);
+            part *= within * by;
+        }
+        o->seen[i] = fmax(o->seen[i], fabs(value));
+    }
+}
+
 static void evaluate(orbit *o, real since) {
     size_t each = 2 * o->n;
+    note_sizes(o, (double)(since / o->unit));
     number by = narrow(since / o->unit);
     for (size_t i = 0; i < each; i++) {
         const number *row = o->rows + o->order * each + i;

@@ -452,9 +452,9 @@ static bool schedule(nevh__recurrence *r, const nevh__graph *g,
     return fine;
 }
 
-nevh__recurrence *nevh__recurrence_new(const nevh_system *system,
-                                       const double friction[],
-                                       nevh__report *report) {
+nevh__recurrence *nevh__recurrence_wide(const nevh_system *system,
+                                        const nevh__wide friction[],
+                                        nevh__report *report) {
     nevh__graph g = {0};
     nevh__recurrence *r = nevh__array(1, sizeof *r);
     int *slope = nevh__array(2 * system->n, sizeof *slope);
@@ -473,6 +473,22 @@ nevh__recurrence *nevh__recurrence_new(const nevh_system *system,
         return r;
     nevh__recurrence_free(r);
     return NULL;
+}
+
+nevh__recurrence *nevh__recurrence_new(const nevh_system *system,
+                                       const double friction[],
+                                       nevh__report *report) {
+    if (!friction)
+        return nevh__recurrence_wide(system, NULL, report);
+    nevh__wide *rates = nevh__array(system->n, sizeof *rates);
+    for (size_t k = 0; rates && k < system->n; k++)
+        rates[k] = friction[k];
+    nevh__recurrence *r =
+        rates ? nevh__recurrence_wide(system, rates, report) : NULL;
+    if (!rates)
+        nevh__fail(report, NEVH_ENOMEM, "out of memory");
+    free(rates);
+    return r;
 }
 
 void nevh__recurrence_free(nevh__recurrence *r) {

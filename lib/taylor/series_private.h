@@ -58,6 +58,10 @@ typedef struct {
    returns   NULL, with the reason in the report */
 nevh__recurrence *nevh__recurrence_new(const nevh_system *,
                                        const double friction[], nevh__report *);
+/* The same of rates with more digits. */
+nevh__recurrence *nevh__recurrence_wide(const nevh_system *,
+                                        const nevh__wide friction[],
+                                        nevh__report *);
 void nevh__recurrence_free(nevh__recurrence *); /* NULL is allowed */
 
 /* Room to take coefficients up to an order in. */

@@ -23,6 +23,7 @@ static nevh_separability separability;
     X(STATUS, nevh_certain_status, (NULL))                                     \
     X(TEXT, nevh_certain_message, (NULL))                                      \
     X(STATUS, nevh_certain_go, (NULL, 0.1))                                    \
+    X(STATUS, nevh_certain_go_to, (NULL, 0.1, 0))                              \
     X(NUMBER, nevh_certain_series, (NULL))                                     \
     X(REAL, nevh_certain_value, (NULL, 0))                                     \
     X(REAL, nevh_certain_error, (NULL, 0))                                     \
@@ -209,6 +210,8 @@ static nevh_separability separability;
     X(NUMBER, nevh_scene_digest, (NULL))                                       \
     X(POINTER, nevh_scene_system, (NULL))                                      \
     X(POINTER, nevh_scene_exact_system, (NULL))                                \
+    X(POINTER, nevh_scene_certain, (NULL, 20))                                 \
+    X(STATUS, nevh_scene_exact_number, (NULL, "x", out, NULL))                 \
     X(STATUS, nevh_scene_start, (NULL, out, out))                              \
     X(POINTER, nevh_scene_run_settings, (NULL))                                \
     X(POINTER, nevh_scene_transform, (NULL))                                   \

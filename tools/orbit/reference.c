@@ -9,6 +9,12 @@ enum { MOST_DIGITS = 30 };
 static const size_t usual_digits = 24;
 static const double usual_seconds = 600;
 
+/* time + rest, of which few are doubles. */
+typedef struct {
+    double time;
+    long double rest;
+} moment;
+
 typedef struct {
     const plan *plan;
     nevh_certain *orbit;
@@ -17,9 +23,10 @@ typedef struct {
     size_t left;           /* the fewest then */
     double t, part;        /* where the orbit is; what to go at once */
     double end;
+    moment *moments; /* times that are asked for, in order */
+    size_t count;
     double budget, begun, shown; /* in seconds of processor time */
     bool progress;               /* to be shown on stderr */
-    bool folded;                 /* numbers of formulas are doubles */
 } job;
 
 static char *name_of(const plan *p, size_t k) {
@@ -32,13 +39,20 @@ static void put_text(table *t, char *text) {
     free(text);
 }
 
-static void put_state(job *j, double t, table *rows) {
+/* As many digits as tell the time from others. */
+static char *time_text(moment at) {
     char text[NUMBER_SIZE];
+    return at.rest == 0 ? text_print("%s", number_text(text, at.time))
+                        : tool_owned(nevh_certain_number(at.time, at.rest));
+}
+
+static void put_state(job *j, moment at, table *rows) {
+    double t = at.time;
     for (size_t k = 0; k < 2 * j->plan->n; k++) {
         size_t digits = (size_t)nevh_certain_digits(j->orbit, k);
         double error = nevh_certain_error(j->orbit, k);
         bool still = nevh_certain_value(j->orbit, k) == 0 && error < 1e-30;
-        table_text(rows, number_text(text, t));
+        put_text(rows, time_text(at));
         put_text(rows, name_of(j->plan, k));
         if (digits || still)
             put_text(rows, tool_owned(nevh_certain_text(j->orbit, k)));
@@ -92,13 +106,15 @@ static int check_budget(const job *j) {
 }
 
 /* In parts of a tenth of a second or so; the orbit does not depend on them. */
-static int go(job *j, double t) {
-    while (j->t < t) {
-        double before = cpu_seconds(), next = fmin(j->t + j->part, t);
-        next = next > j->t ? next : nextafter(j->t, t);
-        if (nevh_certain_go(j->orbit, next)) {
+static int go(job *j, moment at) {
+    bool there = j->t >= at.time;
+    while (!there) {
+        double before = cpu_seconds(), next = fmin(j->t + j->part, at.time);
+        next = next > j->t ? next : nextafter(j->t, at.time);
+        there = next == at.time;
+        if (nevh_certain_go_to(j->orbit, next, there ? at.rest : 0)) {
             clear_progress(j);
-            tool_refuse("the orbit has no reference at t = %.9g: %s", t,
+            tool_refuse("the orbit has no reference at t = %.9g: %s", at.time,
                         nevh_certain_message(j->orbit));
             return TOOL_FAILED;
         }
@@ -113,16 +129,13 @@ static int go(job *j, double t) {
 }
 
 static int put_states(job *j, table *rows) {
-    const plan *p = j->plan;
-    const double *times = p->ats ? p->at : &p->t_end;
-    size_t count = p->ats ? p->ats : 1;
-    for (size_t i = 0; i < count; i++) {
-        int status = go(j, times[i]);
+    for (size_t i = 0; i < j->count; i++) {
+        int status = go(j, j->moments[i]);
         if (status)
             return status;
         if (i)
             table_group(rows);
-        put_state(j, times[i], rows);
+        put_state(j, j->moments[i], rows);
     }
     return TOOL_OK;
 }
@@ -135,13 +148,10 @@ static void put_notes(const job *j, page *result) {
                "runs of two orders and two tolerances have in common (%zu "
                "series)",
                nevh_certain_series(j->orbit));
-    list_print(&result->before,
-               "parameters, starts and times are the doubles nearest to what "
-               "the scene says, taken exactly%s",
-               j->folded
-                   ? "; so are numbers that follow from parameters, since "
-                     "the formulas are too long with these written out"
-                   : "");
+    list_add(&result->before,
+             "numbers that are written, as 0.1, are the doubles nearest to "
+             "them, taken exactly; what is computed of them, and pi, has all "
+             "its digits");
     if (nevh_scene_stops(p->scene))
         list_add(&result->before, "the stop of [run] is left aside");
     if (j->fewest == j->digits)
@@ -162,6 +172,45 @@ static void put_notes(const job *j, page *result) {
                    MOST_DIGITS);
 }
 
+static int compare_moments(const void *a, const void *b) {
+    const moment *x = a, *y = b;
+    if (x->time != y->time)
+        return x->time < y->time ? -1 : 1;
+    return (x->rest > y->rest) - (x->rest < y->rest);
+}
+
+static int take_moment(const options *o, nevh_scene *scene, const char *formula,
+                       moment *at) {
+    return nevh_scene_exact_number(scene, formula, &at->time, &at->rest)
+               ? scene_report(scene, o)
+               : TOOL_OK;
+}
+
+static int take_moments(const options *o, job *j) {
+    const plan *p = j->plan;
+    j->count = p->ats ? p->ats : 1;
+    j->moments = tool_allocate(j->count, sizeof *j->moments);
+    int status =
+        p->ats ? TOOL_OK : take_moment(o, p->scene, o->t_end, &j->moments[0]);
+    for (size_t i = 0; !status && i < p->ats; i++)
+        status = take_moment(o, p->scene, o->at.item[i], &j->moments[i]);
+    qsort(j->moments, j->count, sizeof *j->moments, compare_moments);
+    return status;
+}
+
+static int start_orbit(const options *o, job *j) {
+    nevh_scene *scene = j->plan->scene;
+    j->orbit = nevh_scene_certain(scene, (int)j->digits);
+    if (!j->orbit && nevh_scene_status(scene) == NEVH_ENOMEM)
+        tool_owned(NULL); /* ends */
+    if (!j->orbit)
+        return scene_report(scene, o);
+    return nevh_certain_status(j->orbit)
+               ? tool_refuse("there is no reference: %s",
+                             nevh_certain_message(j->orbit))
+               : TOOL_OK;
+}
+
 static int reference_of(const options *o, const plan *p) {
     static const char *const columns[] = {"t", "variable", "value", "digits",
                                           "error"};
@@ -170,24 +219,17 @@ static int reference_of(const options *o, const plan *p) {
              .digits = o->digits ? o->digits : usual_digits,
              .lost = NAN,
              .t = start,
-             .end = p->ats ? p->at[p->ats - 1] : p->t_end,
              .budget = o->stop_after > 0 ? o->stop_after : usual_seconds,
              .begun = now,
              .shown = now,
              .progress = !o->quiet && isatty(STDERR_FILENO)};
     j.fewest = j.digits;
-    j.part = 0x1p-60 * fmin(j.end - start, 1e18);
-    const nevh_system *exact = nevh_scene_exact_system(p->scene);
-    j.folded = !exact;
-    if (!exact && nevh_scene_status(p->scene) == NEVH_ENOMEM)
-        tool_owned(NULL); /* ends */
-    j.orbit = tool_owned(nevh_certain_new(
-        exact ? exact : p->system, p->run->t_start, p->q, p->p, (int)j.digits));
     page result = {.table = table_new()};
-    int status = TOOL_OK;
-    if (nevh_certain_status(j.orbit))
-        status = tool_refuse("there is no reference: %s",
-                             nevh_certain_message(j.orbit));
+    int status = take_moments(o, &j);
+    j.end = j.moments[j.count - 1].time;
+    j.part = 0x1p-60 * fmin(j.end - start, 1e18);
+    if (!status)
+        status = start_orbit(o, &j);
     table_columns(result.table, columns, sizeof columns / sizeof *columns);
     if (!status)
         status = put_states(&j, result.table);
@@ -197,6 +239,7 @@ static int reference_of(const options *o, const plan *p) {
         status = output_page(o, &result, status);
     }
     nevh_certain_free(j.orbit);
+    free(j.moments);
     page_free(&result);
     return status;
 }
@@ -208,8 +251,6 @@ int reference_command(const options *o) {
     int status = plan_make(&p, &untimed);
     if (!status && o->file)
         status = output_check(o->file);
-    if (!status)
-        numbers_sort(p.at, p.ats);
     if (!status)
         status = reference_of(o, &p);
     plan_free(&p);

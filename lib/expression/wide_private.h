@@ -1,0 +1,27 @@
+/* nevh: numbers with more digits than double, for constants of formulas.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_WIDE_PRIVATE_H
+#define NEVH_WIDE_PRIVATE_H
+
+#ifdef NEVH_QUADMATH
+__extension__ typedef __float128 nevh__wide;
+#else
+typedef long double nevh__wide;
+#endif
+
+/* One nevh__tape_operation on numbers.  Without libquadmath functions are those
+   of doubles. */
+nevh__wide nevh__operation_wide(unsigned operation, nevh__wide a, nevh__wide b);
+nevh__wide nevh__wide_pi(void);
+
+/* Three doubles whose sum is the number. */
+enum { NEVH__WIDE_PARTS = 3 };
+static inline void nevh__wide_split(nevh__wide x,
+                                    double part[NEVH__WIDE_PARTS]) {
+    for (int i = 0; i < NEVH__WIDE_PARTS; i++) {
+        part[i] = (double)x;
+        x -= part[i];
+    }
+}
+
+#endif

@@ -1,0 +1,223 @@
+/* nevh: a scene with all digits of its numbers.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "scene/scene_private.h"
+#include "taylor/certain_private.h"
+#include <gsl/gsl_linalg.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const nevh_system *nevh_scene_exact_system(nevh_scene *s) {
+    const nevh__scene_model *m = s ? nevh__scene_exact(s) : NULL;
+    return m ? m->system : NULL;
+}
+
+int nevh_scene_exact_number(nevh_scene *s, const char *formula, double *number,
+                            long double *rest) {
+    const nevh__scene_model *m = s ? nevh__scene_exact(s) : NULL;
+    if (!m)
+        return s ? s->status : NEVH_EINVAL;
+    nevh__line line = {0, formula, formula ? strlen(formula) : 0};
+    nevh__piece piece = {&line, formula, formula};
+    nevh__wide value = m->exact->t_end;
+    if (formula && !nevh__piece_wide(s, m, &piece, &value))
+        return s->status;
+    *number = (double)value;
+    *rest = (long double)(value - *number);
+    return NEVH_OK;
+}
+
+#ifdef NEVH_QUADMATH
+#include <quadmath.h>
+
+/* Momenta that give the initial velocities, from those of doubles on. */
+typedef struct {
+    const nevh__scene_model *m;
+    nevh__series_quad *series;
+    nevh__wide *state, *rows; /* 2n, 3 times 2n */
+    nevh__wide *off;          /* of the velocities that are sought */
+    size_t *row, count;       /* which momenta these are of */
+} search;
+enum { ORDER = 2, ROUNDS = 6, MOST_ROWS = 500 };
+static const double solved = 1e-32, enough = 1e-30;
+
+/* By how much velocities are off, over the largest of them. */
+static double measure(search *s) {
+    size_t n = s->m->n;
+    double most = 0, size = 0;
+    if (!nevh__series_expand_quad(s->series, s->m->exact->t_start, s->state,
+                                  s->rows))
+        return INFINITY;
+    for (size_t j = 0; j < s->count; j++) {
+        size_t k = s->row[j];
+        s->off[j] = s->m->exact->v[k] - s->rows[2 * n + k];
+        most = fmax(most, fabs((double)s->off[j]));
+        size = fmax(size, fabs((double)s->m->exact->v[k]));
+    }
+    return most > 0 ? most / (size > 0 ? size : 1) : 0;
+}
+
+/* Each momentum by its own velocity, which is in proportion to it. */
+static double rescale(search *s) {
+    size_t n = s->m->n;
+    double off = measure(s);
+    for (int i = 0; i < ROUNDS && off > solved; i++) {
+        for (size_t j = 0; j < s->count; j++) {
+            size_t k = s->row[j];
+            nevh__wide has = s->rows[2 * n + k];
+            if (has != 0)
+                s->state[n + k] += s->off[j] * (s->state[n + k] / has);
+        }
+        double now = measure(s);
+        if (!(now < off))
+            return now;
+        off = now;
+    }
+    return off;
+}
+
+/* How velocities change with momenta. */
+static void find_slopes(search *s, gsl_matrix *slope, nevh__wide before[]) {
+    size_t n = s->m->n;
+    for (size_t i = 0; i < s->count; i++)
+        before[i] = s->rows[2 * n + s->row[i]];
+    for (size_t j = 0; j < s->count; j++) {
+        nevh__wide *p = &s->state[n + s->row[j]], kept = *p;
+        nevh__wide step = kept != 0 ? fabsq(kept) * 0x1p-56 : 0x1p-56;
+        *p += step;
+        measure(s);
+        for (size_t i = 0; i < s->count; i++)
+            gsl_matrix_set(
+                slope, i, j,
+                (double)((s->rows[2 * n + s->row[i]] - before[i]) / step));
+        *p = kept;
+    }
+    measure(s);
+}
+
+/* By Newton's iteration with one matrix. */
+static double iterate(search *s, gsl_matrix *slope, gsl_permutation *swaps,
+                      gsl_vector *x) {
+    int sign;
+    double off = measure(s);
+    gsl_linalg_LU_decomp(slope, swaps, &sign);
+    for (size_t i = 0; i < s->count; i++)
+        if (gsl_matrix_get(slope, i, i) == 0)
+            return off;
+    for (int i = 0; i < ROUNDS && off > solved; i++) {
+        for (size_t j = 0; j < s->count; j++)
+            gsl_vector_set(x, j, (double)s->off[j]);
+        gsl_linalg_LU_svx(slope, swaps, x);
+        for (size_t j = 0; j < s->count; j++)
+            s->state[s->m->n + s->row[j]] += gsl_vector_get(x, j);
+        off = measure(s);
+    }
+    return off;
+}
+
+/* GSL aborts when memory is out: so ask first for as much as it takes. */
+static int solve_together(search *s, double *off) {
+    size_t n = s->count;
+    void *trial = nevh__array(n * (n + 8) + 64, sizeof(double));
+    nevh__wide *before = nevh__array(n, sizeof *before);
+    free(trial);
+    if (trial && before) {
+        gsl_matrix *slope = gsl_matrix_alloc(n, n);
+        gsl_permutation *swaps = gsl_permutation_alloc(n);
+        gsl_vector *x = gsl_vector_alloc(n);
+        find_slopes(s, slope, before);
+        *off = iterate(s, slope, swaps, x);
+        gsl_matrix_free(slope);
+        gsl_permutation_free(swaps);
+        gsl_vector_free(x);
+    }
+    free(before);
+    return trial && before ? NEVH_OK : NEVH_ENOMEM;
+}
+
+static int solve(nevh_scene *scene, search *s) {
+    double off = rescale(s);
+    if (off > solved && s->count <= MOST_ROWS && solve_together(s, &off))
+        return nevh__scene_no_memory(scene), NEVH_ENOMEM;
+    if (off <= enough)
+        return NEVH_OK;
+    nevh__scene_fail(scene, NEVH_EMAXITER, &s->m->moving[s->row[0]]->key,
+                     "no momenta were found that give the initial velocities "
+                     "to more digits than those of doubles");
+    return NEVH_EMAXITER;
+}
+
+/* p[k] of n: in, doubles; out, with all digits. */
+static int find_momenta(nevh_scene *scene, const nevh__scene_model *m,
+                        nevh__wide p[]) {
+    nevh__report report = {0};
+    size_t n = m->n;
+    search s = {.m = m};
+    nevh__recurrence *r = nevh__recurrence_new(m->system, NULL, &report);
+    if (!r && report.status != NEVH_ENOMEM)
+        return NEVH_OK; /* there is no orbit, which says why */
+    s.series = r ? nevh__series_new_quad(r, ORDER) : NULL;
+    s.state = nevh__array((2 + 2 * (ORDER + 1) + 1) * n, sizeof *s.state);
+    s.row = nevh__array(n, sizeof *s.row);
+    int status = NEVH_ENOMEM;
+    if (s.series && s.state && s.row) {
+        s.rows = s.state + 2 * n;
+        s.off = s.rows + 2 * (ORDER + 1) * n;
+        memcpy(s.state, m->exact->q, n * sizeof *p);
+        memcpy(s.state + n, p, n * sizeof *p);
+        for (size_t k = 0; k < n; k++)
+            if (m->by_velocity[k])
+                s.row[s.count++] = k;
+        status = solve(scene, &s);
+        memcpy(p, s.state + n, n * sizeof *p);
+    } else {
+        nevh__scene_no_memory(scene);
+    }
+    nevh__series_free_quad(s.series);
+    nevh__recurrence_free(r);
+    free(s.state);
+    free(s.row);
+    return status;
+}
+#else
+static int find_momenta(nevh_scene *scene, const nevh__scene_model *m,
+                        nevh__wide p[]) {
+    (void)scene, (void)m, (void)p;
+    return NEVH_OK;
+}
+#endif
+
+/* Momenta as they are given; of velocities as doubles have them. */
+static int take_momenta(nevh_scene *s, const nevh__scene_model *m,
+                        nevh__wide p[]) {
+    double *state = nevh__array(2 * m->n, sizeof *state);
+    bool any = false;
+    if (!state)
+        return nevh__scene_no_memory(s), NEVH_ENOMEM;
+    int status = nevh_scene_start(s, state, state + m->n);
+    for (size_t k = 0; !status && k < m->n; k++) {
+        any = any || m->by_velocity[k];
+        p[k] = m->by_velocity[k] ? state[m->n + k] : m->exact->p[k];
+    }
+    free(state);
+    return status || !any ? status : find_momenta(s, m, p);
+}
+
+nevh_certain *nevh_scene_certain(nevh_scene *s, int digits) {
+    const nevh__scene_model *m = s ? nevh__scene_exact(s) : NULL;
+    nevh__wide *p = m ? nevh__array(m->n, sizeof *p) : NULL;
+    nevh_certain *c = NULL;
+    if (m && !p)
+        nevh__scene_no_memory(s);
+    if (p && !take_momenta(s, m, p)) {
+        nevh__certain_start from = {.t = m->exact->t_start,
+                                    .q = m->exact->q,
+                                    .p = p,
+                                    .rates = m->exact->rates};
+        c = nevh__certain_from(m->system, &from, digits);
+        if (!c)
+            nevh__scene_no_memory(s);
+    }
+    free(p);
+    return c;
+}

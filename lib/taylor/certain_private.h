@@ -1,0 +1,19 @@
+/* nevh: where orbits with certain digits start.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_CERTAIN_PRIVATE_H
+#define NEVH_CERTAIN_PRIVATE_H
+
+#include "taylor/orbit_private.h"
+#include <nevh/certain.h>
+
+typedef struct {
+    nevh__wide t;
+    const nevh__wide *q, *p; /* n each */
+    const nevh__wide *rates; /* n, of friction; NULL: there is none */
+} nevh__certain_start;
+
+/* As nevh_certain_new, of numbers with more digits, which are copied. */
+nevh_certain *nevh__certain_from(const nevh_system *,
+                                 const nevh__certain_start *, int digits);
+
+#endif
