@@ -42,4 +42,89 @@ completes 'nevh new x.nevh --from kepler-' kepler-0.9
 completes 'nevh swe' sweep
 completes 'nevh sweep pendulum --outcomes state,peri' state,period
 completes 'nevh compare --quiet keple' 'kepler-0.9 kepler'
+
+# Names that a shell would run, expand or divide are names, of scenes, files, folders
+# and all that nevh lists.
+completion=$(cd "$srcdir/tools/completion" && pwd)/nevh
+real=${NEVH:-./tools/nevh}
+real=$(cd "${real%/*}" && pwd)/${real##*/}
+work=$PWD/completion.$$
+trap 'rm -rf "$work"' EXIT
+trap 'exit 1' HUP INT TERM
+mkdir "$work" "$work/scenes" "$work/here" "$work/folders" || exit 1
+cd "$work" || exit 1
+cat >names <<'END'
+$(touch X)
+`touch X`
+a b; touch X
+*
+[a-z]?
+~
+$HOME
+{one,two}
+<(touch X)
+a"b
+a'b
+a\b
+a,b
+"a",b
+=1+1
+@SUM(1)
+!!
+tail$(touch X)
+END
+while IFS= read -r name; do
+    : >"scenes/$name.nevh"
+    : >"here/$name.nevh"
+    mkdir "folders/$name"
+done <names
+NEVH_SCENES=$work/scenes
+cat >nevh <<END # lists them as integrators
+#!/bin/sh
+case \$* in *--help) exec "$real" "\$@" ;; esac
+echo names
+sed 's/,/;/g; /^"/ { s/"/""/g; s/.*/"&"/; }' "$work/names"
+END
+chmod +x nevh
+
+# offers FILE FOLDER NEVH WORD...: of the last word the lines of FILE.
+offers() {
+    wanted=$1
+    (
+        cd "$2" || exit
+        shift 2
+        bash -c '
+            . "$1"
+            shift
+            COMP_WORDS=("$@")
+            COMP_CWORD=$(($# - 1))
+            _nevh
+            printf "%s\n" "${COMPREPLY[@]}"' bash "$completion" "$@" |
+            sort -u >"$work/found"
+    )
+    shift 3
+    sort -u "$wanted" >wanted
+    diff wanted found ||
+        { echo "completion: of 'nevh $*' it offers these names"; status=1; }
+    test -z "$(find . -name X)" ||
+        { echo "completion: 'nevh $*' runs a name"; status=1; }
+    find . -name X -exec rm {} +
+}
+grep -v '[$`]' names >scenes_of
+sed 's/$/.nevh/' names | cat scenes_of - >operands
+grep '^a' names >of_a
+printf '%s\n' 'a\b' >of_backslash
+sed -n '/^a/p; s/^a/x,a/p' names | grep '^x' | tr , ';' | sed 's/;/,/' >last
+for command in compare run; do
+    offers operands here "$real" $command ''
+    offers names folders "$real" $command ''
+    offers of_a folders "$real" $command a
+    offers of_backslash . "$real" $command 'a\\'
+done
+offers scenes_of . "$real" new x.nevh --from ''
+offers names folders "$real" run x -o ''
+tr , ';' <names >listed
+offers listed . "$work/nevh" compare x --integrators ''
+offers listed . "$work/nevh" compare x --gradient ''
+offers last . "$work/nevh" compare x --integrators x,a
 exit $status
