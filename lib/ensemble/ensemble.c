@@ -234,6 +234,7 @@ static int value_of_crossing(void *data, double t, const double q[],
     return NEVH_OK;
 }
 
+/* The crossings are freed with the ensemble, as data of the first. */
 static int plan_sections(nevh_ensemble *e) {
     crossing *data = nevh__array(e->n_crossings, sizeof *data);
     if (!data)
@@ -249,10 +250,8 @@ static int plan_sections(nevh_ensemble *e) {
     e->sections =
         nevh_sections_new(e->alone ? e->stepper : e->narrow, e->crossings,
                           e->n_crossings, nevh__ensemble_cross, e);
-    if (!e->sections) {
-        free(data);
+    if (!e->sections)
         return out_of_memory(e);
-    }
     if (nevh_sections_status(e->sections))
         return nevh__fail_as(&e->report, &e->sections->report);
     return e->alone || nevh__crossing_lanes_plan(e) ? NEVH_OK
