@@ -7,6 +7,8 @@ page_parts = web/page.css web/page.html web/unpack.js web/engine.js web/view.js 
 page_scripts = web/module.sh web/kit.sh web/gallery.sh
 EXTRA_DIST += $(page_sources) $(page_parts) $(page_scripts)
 
+page_packages = clang lld llvm wasi-libc libclang-rt-dev-wasm32
+
 .PHONY: page
 if HAVE_KIT
 page: web/kit.html
@@ -21,8 +23,9 @@ web/kit.html: web/local.mk $(page_sources) $(page_parts) $(page_scripts) \
 EXTRA_DIST += web/kit.html
 else
 page:
-	@echo "the live page needs clang, lld, wasi-libc, libclang-rt-dev-wasm32" >&2
-	@echo "and llvm; then run ./configure again" >&2
+	@echo "the live page needs clang for WebAssembly; on Debian and Ubuntu" >&2
+	@echo "  sudo apt-get install $(page_packages)" >&2
+	@echo "then ./quickstart, or configure and make page" >&2
 	@exit 1
 endif
 

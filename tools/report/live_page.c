@@ -106,8 +106,9 @@ static int read_kit(char **head, char **tail) {
     int status = TOOL_OK;
     if (!cut)
         status = tool_refuse("this nevh was built without the live page; to "
-                             "add it, install clang, lld and wasi-libc, and "
-                             "run configure and make page");
+                             "add it on Debian or Ubuntu: apt-get install "
+                             "clang lld llvm wasi-libc libclang-rt-dev-wasm32, "
+                             "then ./quickstart, or configure and make page");
     else {
         *cut = '\0';
         *head = text;
