@@ -326,6 +326,6 @@ function spoken() {
   if (!rows[0]) return "";
   const state = scene.coordinates.slice(0, 6).map((c, k) =>
     c.name + " = " + digits(rows[0][4 + k], 4)).join(", ");
-  return steps + " steps, t = " + digits(rows[0][0], 4) + ": " + S.schemes[0] +
+  return steps + (steps === 1 ? " step" : " steps") + ", t = " + digits(rows[0][0], 4) + ": " + S.schemes[0] +
     " has " + state + ", energy error " + rows[0][2].toExponential(1) + ".";
 }

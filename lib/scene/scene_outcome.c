@@ -53,8 +53,9 @@ static bool take_section(nevh_scene *s, nevh__scene_model *m,
         return nevh__scene_no_memory(s);
     if (!m->n_crossings)
         return nevh__scene_fail(s, NEVH_EINVAL, &o->piece,
-                                "this is of a section, and the scene has no "
-                                "[sections]");
+                                "%s needs a section: add [sections] to the "
+                                "scene, or use frequency(FORMULA)",
+                                o->piece.text);
     o->section = 0;
     for (size_t i = 0; i < m->n_crossings; i++)
         known[i] = m->crossings[i].decl.name;

@@ -85,7 +85,7 @@ holds '1/6 - $5^2/2 - $4^2/2 + $4^3/3 > -1e-6'
 
 # What is used where nobody says so.
 exits 0 section $single --t-end 20
-has '^# integrator: verlet, dt = 0\.2: the first integrator of the list'
+has '^# integrator: verlet, dt = 0\.2 \(the scene.s first that fits\)'
 
 # An angle is wrapped, the state is not: a pendulum that goes round.
 exits 0 section pendulum-rotating --t-end 20 --integrators gauss6 --dt 0.05

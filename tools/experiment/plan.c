@@ -341,8 +341,7 @@ bool plan_fits(const plan *p, const char **name) {
 void plan_note_first(const plan *p, const char *integrator, list *notes) {
     list_print(notes, "integrator: %s, dt = %.9g%s", integrator, p->dt[0],
                p->integrators.count > 1 || p->dts > 1
-                   ? ": the first integrator of the list that fits, and the "
-                     "first dt"
+                   ? " (the scene's first that fits)"
                    : "");
     bool transformed;
     if (nevh_integrator_adaptive(plan_scheme(integrator, &transformed)) &&

@@ -62,12 +62,12 @@ static const kind_of_part kinds[] = {
      "Each row is an integrator at one step. Bounded errors stay; drifting "
      "errors grow with time. The picture shows the error against time.",
      "compare", compare, always, PLOT_USUAL, true, true, 0},
-    {"The motion", "The way of each body, by the first integrator.",
+    {"The motion", "Paths of the bodies, computed by the first integrator.",
      "run --plot-kind configuration", run_scene, has_picture,
      PLOT_CONFIGURATION, false, true, 0},
     {"A symplectic scheme beside rk4",
-     "Both take the same steps, the shortest at which rk4 loses or gains "
-     "energy before they end, if there are such.",
+     "Both take the same dt: the smallest at which rk4's loss can be seen "
+     "within the animation.",
      "compare", NULL, has_picture, PLOT_USUAL, false, false, 0},
     {"Phase plane", "A coordinate and its momentum, by the first integrator.",
      "run --plot-kind phase", run_scene, always, PLOT_PHASE, false, true, 0},
@@ -89,8 +89,8 @@ static const kind_of_part kinds[] = {
      "nothing.",
      "effects", effects, always, PLOT_USUAL, true, false, 0},
     {"Gradients",
-     "Error and time of the gradient by each method. Long steps of a "
-     "difference truncate, short ones round.",
+     "Error and time of the gradient by each method. Large "
+     "differences suffer from truncation, small ones from rounding.",
      "gradients", gradients, always, PLOT_USUAL, true, true, 0},
     {"Properties of H", "Tested numerically at states around the start.",
      "check", check, always, PLOT_USUAL, true, false, 0},
