@@ -249,6 +249,7 @@ libnevh_core_la_SOURCES = \
 	lib/scene/scene_friction.c \
 	lib/scene/scene_run.c \
 	lib/scene/velocity.c \
+	lib/scene/momenta.c \
 	lib/scene/start.c \
 	lib/scene/access.c \
 	lib/scene/write.c \

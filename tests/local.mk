@@ -31,7 +31,7 @@ suites = \
 	tests/scene/check_scene_effects \
 	tests/scene/check_shipped \
 	tests/scene/check_scene_shown \
-	tests/scene/check_elements \
+	tests/scene/check_velocities tests/scene/check_elements \
 	tests/scene/check_equation \
 	tests/scheme/check_registry \
 	tests/scheme/check_coefficients \

@@ -62,8 +62,9 @@ double nevh__varied_value(const nevh__scene_ensemble *, const nevh__varied *,
                           uint64_t member);
 
 /* The momenta that give the velocities of the model at q, which may be another
-   than the scene's.  Returns a status. */
-int nevh__momenta_find(const nevh__scene_model *, double q[], double p[]);
+   than the scene's.  Returns a status, recorded with what stood in the way. */
+int nevh__momenta_find(const nevh__scene_model *, double q[], double p[],
+                       nevh__report *);
 
 /* Values that parameters have instead of the scene's, while a model is made. */
 struct nevh__overrides {

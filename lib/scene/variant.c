@@ -161,12 +161,13 @@ void nevh__variant_free(nevh__variant *x) {
    differences are chosen: the same for every member. */
 static bool plan_state(const nevh__variant *x, double q[], double p[]) {
     const nevh__scene_model *m = x->model;
+    nevh__report report = {0};
     bool any = false;
     for (size_t k = 0; k < m->n; k++)
         any |= m->by_velocity[k];
     memcpy(q, m->q, m->n * sizeof *q);
     memcpy(p, m->p, m->n * sizeof *p);
-    return (!any || !nevh__momenta_find(m, q, p)) &&
+    return (!any || !nevh__momenta_find(m, q, p, &report)) &&
            !nevh__effect_not_finite(m->system, m->run.t_start, q, p, x->room);
 }
 
@@ -239,13 +240,9 @@ int nevh__variant_start(const nevh_sweep *s, const nevh__variant *x,
     for (size_t k = 0; any && k < m.n; k++)
         if (e->by_velocity[k])
             p[k] = 0; /* until it is found */
-    int status = any ? nevh__momenta_find(&m, q, p) : NEVH_OK;
+    int status = any ? nevh__momenta_find(&m, q, p, report) : NEVH_OK;
     if (status)
-        return nevh__fail(report, status,
-                          status == NEVH_ENOMEM
-                              ? "out of memory"
-                              : "no momenta were found that give the initial "
-                                "velocities");
+        return status;
     for (size_t i = 0; i < e->n_varied; i++) {
         const nevh__varied *is = &e->varied[i];
         if (is->how != NEVH__VARY_SOLVE)
