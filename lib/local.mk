@@ -36,6 +36,7 @@ libnevh_core_la_SOURCES = \
 	lib/gradient/step_scan.c \
 	lib/gradient/complex.c \
 	lib/gradient/report.c \
+	lib/gradient/rest.c \
 	lib/gradient/findings.c \
 	lib/gradient/verify.c \
 	lib/gradient/scatter_map.c \

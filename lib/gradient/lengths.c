@@ -4,6 +4,7 @@
 #include "expression/tape_private.h"
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* A length is where this part of a variation is not that of a quadratic. */
@@ -251,6 +252,8 @@ static double first_guess(const nevh__step_selection *e, size_t i) {
     double x = fabs(i < n ? s->q[e->at * n + i] : s->p[e->at * n + i - n]);
     if (e->options->scale)
         x = e->options->scale[i];
+    else if (e->sizes)
+        x = e->sizes[i];
     return x > 0 && isfinite(x) ? exp2(floor(log2(x))) : 1;
 }
 
@@ -292,6 +295,24 @@ static void find_energy(nevh__step_selection *e, const nevh__planned *term,
     double x = i < n ? s->q[e->at * n + i] : s->p[e->at * n + i - n];
     double whole = vary(e, term, instance, k, fabs(x)).whole;
     *energy = fmax(*energy, isfinite(whole) ? whole : 0);
+}
+
+/* Nothing has a size: variations over those that the orbit has later, or over
+   coordinates of 1, with which momenta at least go together. */
+static void find_from_rest(nevh__step_selection *e, const nevh__planned *term,
+                           size_t instance, size_t k, size_t i,
+                           double *energy) {
+    double size = e->sizes ? e->sizes[i] : i < e->field->n ? 1 : 0;
+    double whole = vary(e, term, instance, k, size).whole;
+    *energy = fmax(*energy, isfinite(whole) ? whole : 0);
+}
+
+/* Returns the sizes, to be freed; NULL where there are none. */
+static double *look_from_rest(nevh__step_selection *e, double *energy) {
+    double *sizes = nevh__array(2 * e->field->n, sizeof *sizes);
+    e->sizes = sizes && nevh__sizes_from_rest(e, sizes) ? sizes : NULL;
+    visit_all(e, find_from_rest, energy);
+    return sizes;
 }
 
 /* The same of momenta alone. */
@@ -415,7 +436,10 @@ void nevh__find_lengths(nevh__step_selection *e) {
         visit_all(e, find_kinetic, &kinetic);
     if (energy < out_of_reach * kinetic)
         energy = kinetic;
+    double *sizes = energy == 0 ? look_from_rest(e, &energy) : NULL;
     visit_all(e, find_straight, &energy); /* kept apart by their sign */
+    e->sizes = NULL;
+    free(sizes);
     for (size_t i = 0; i < 2 * e->field->n; i++) {
         last = e->length[i] != 0 ? fabs(e->length[i]) : last;
         e->length[i] = e->options->scale ? e->options->scale[i] : last;

@@ -8,6 +8,7 @@
               it?  Found by doubling, without any idea of the user's units.
               Where H is quadratic in a variable (a momentum, often), the
               length is that over which H varies as much as over the others.
+   rest.c     the same of an orbit from rest at 0, where nothing has a length.
    pilot.c    states to try steps at: those given; some of a coarse adaptive
               run from there, so that a pericentre is seen before it is
               reached; and a few displaced at random by a part of those
@@ -39,9 +40,11 @@ typedef struct {
     const nevh_options *options;
     double *length; /* 2n */
     nevh__samples samples;
-    size_t lanes;      /* of them, given by the user: the first ones */
-    size_t at;         /* the one whose lengths are looked for */
-    bool shortened;    /* a length, there */
+    size_t lanes;   /* of them, given by the user: the first ones */
+    size_t at;      /* the one whose lengths are looked for */
+    bool shortened; /* a length, there */
+    const double
+        *sizes;        /* 2n: of an orbit from rest, while lengths are found */
     size_t neighbours; /* the first sample displaced at random */
     bool scales_alone; /* no steps are tried: the pilot ends with the scales */
 } nevh__step_selection;
@@ -75,6 +78,9 @@ double nevh__curve_length(const nevh__step_selection *, const nevh__planned *,
 /* Fills length with the shortest over the lanes, of which it makes those
    samples that matter. */
 void nevh__find_lengths(nevh__step_selection *);
+/* The largest size that each variable reaches, 2n, on the orbit from the first
+   sample, where it starts at rest at 0; false where that is not to be found. */
+bool nevh__sizes_from_rest(const nevh__step_selection *, double sizes[]);
 /* From now on they are those of the field, of one orbit; false when memory is
    out. */
 bool nevh__keep_lengths(const nevh__step_selection *);

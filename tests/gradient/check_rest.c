@@ -1,0 +1,90 @@
+/* nevh tests: orbits that start at rest at 0, in any units.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "support.h"
+#include <math.h>
+#include <nevh/scene.h>
+#include <stdio.h>
+
+/* With parameters m, k, f, w near 1 times units. */
+static const struct {
+    const char *coordinates, *h;
+    size_t n;
+    bool separable;
+} cases[] = {
+    {"x = 0", "p_x^2/(2*m) + k*x^2/2 - f*x*cos(0.7*w*t)", 1, true},
+    {"x = 0", "p_x^2/(2*m) + k*x^2/2 - f*x*sin(0.7*w*t)", 1, true},
+    {"x = 0", "p_x^2/(2*m) - f*x*cos(3*w*t)", 1, true},
+    {"x = 0", "p_x^2/(2*m) + k*x^2/2 - f*x", 1, true},
+    {"x = 0", "p_x^2/(2*m)*(1 + 0.3*sin(w*t)) + k*x^2/2 - f*x", 1, true},
+    {"x = 0", "p_x^2/(2*m) + k*(1 + 0.2*cos(2*w*t))*x^2/2 - f*x*w*t", 1, true},
+    {"x = 0\ny = 0",
+     "(p_x^2 + 3*p_y^2)/(2*m) + k*(x^2 + (x - y)^2)/2 - f*y*cos(w*t)", 2, true},
+    {"x = 0\ny = 0", "((p_x + m*w*y/2)^2 + (p_y - m*w*x/2)^2)/(2*m) - f*x", 2,
+     false},
+    {"x = 0\ny = 0",
+     "(p_x^2 + p_y^2)/(2*m) + w*(y*p_x - x*p_y) + k*(x^2 + y^2) - f*x", 2,
+     false},
+    {"x[1..6] = 0",
+     "sum(i = 1..6, p_x[i]^2)/(2*m) + sum(i = 1..5, (x[i+1] - x[i])^2)*k/2 - "
+     "f*x[1]*cos(w*t)",
+     6, true},
+};
+enum { CASES = sizeof cases / sizeof *cases, MOST = 6 };
+
+/* The state after 200 steps of a tenth of the unit of time. */
+static void follow(int which, const double unit[3], const nevh_gradient *g,
+                   double q[], double p[]) {
+    double length = unit[0], energy = unit[1], time = unit[2];
+    char text[800];
+    snprintf(text, sizeof text,
+             "[parameters]\nm = %.17g\nk = %.17g\nf = %.17g\nw = %.17g\n"
+             "[coordinates]\n%s\n[effects]\nH = %s\n",
+             1.3 * energy * time * time / length / length,
+             0.9 * energy / length / length, 0.7 * energy / length, 1.1 / time,
+             cases[which].coordinates, cases[which].h);
+    nevh_scene *scene = nevh_scene_parse("test", text);
+    ck_assert_str_eq(nevh_scene_message(scene), "");
+    ck_assert_int_eq(nevh_scene_start(scene, q, p), NEVH_OK);
+    nevh_options o = {.gradient = g, .q = q, .p = p};
+    nevh_stepper *s = nevh_stepper_new(
+        nevh_scene_system(scene),
+        cases[which].separable ? nevh_verlet : nevh_gauss4, &o);
+    ck_assert_msg(!nevh_stepper_status(s), "%s", nevh_stepper_message(s));
+    for (int i = 0; i < 200; i++)
+        ck_assert_msg(nevh_stepper_apply(s, 0.1 * time * i, 0.1 * time, q, p) ==
+                          NEVH_OK,
+                      "%s", nevh_stepper_message(s));
+    nevh_stepper_free(s);
+    nevh_scene_free(scene);
+}
+
+static void assert_same(int which, const double unit[3],
+                        const nevh_gradient *g) {
+    double q[2][MOST], p[2][MOST], most[2] = {0};
+    follow(which, unit, nevh_exact, q[0], p[0]);
+    follow(which, unit, g, q[1], p[1]);
+    for (size_t k = 0; k < cases[which].n; k++) {
+        most[0] = fmax(most[0], fabs(q[0][k]));
+        most[1] = fmax(most[1], fabs(p[0][k]));
+    }
+    for (size_t k = 0; k < cases[which].n; k++)
+        ck_assert_msg(fabs(q[1][k] - q[0][k]) <= 1e-9 * most[0] &&
+                          fabs(p[1][k] - p[0][k]) <= 1e-9 * most[1],
+                      "%s in %g, %g, %g: %g, %g for %g, %g", cases[which].h,
+                      unit[0], unit[1], unit[2], q[1][k], p[1][k], q[0][k],
+                      p[0][k]);
+}
+
+/* Units of length, energy and time near 1e-30 ... 1e30. */
+TEST_EACH(orbits_from_rest_do_not_depend_on_units, CASES) {
+    static const int powers[] = {0, -100, -50, -27, 27, 50, 100};
+    for (size_t i = 0; i < sizeof powers / sizeof *powers; i++)
+        for (int which = 0; which < (i ? 3 : 1); which++) {
+            double unit[3] = {1, 1, 1};
+            unit[which] = ldexp(1, powers[i]);
+            assert_same(_i, unit, nevh_central4);
+        }
+    assert_same(_i, (const double[]){0x1p-465, 0x1p-930, 1}, nevh_central4);
+    assert_same(_i, (const double[]){0x1p-100, 0x1p80, 0x1p-60}, nevh_central8);
+    assert_same(_i, (const double[]){0x1p90, 0x1p-80, 0x1p60}, nevh_central2);
+}
