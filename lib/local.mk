@@ -136,6 +136,7 @@ libnevh_core_la_SOURCES = \
 	lib/native/native_private.h \
 	lib/native/compiler_private.h \
 	lib/native/compiler.c \
+	lib/native/compiler_words.c \
 	lib/native/writer_private.h \
 	lib/native/writer.c \
 	lib/native/operation_text_private.h \

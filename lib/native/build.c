@@ -12,6 +12,7 @@
 #include <string.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 /* What changes no result, and the vectors that the library itself takes. */
@@ -49,39 +50,42 @@ static void add_bytes(key *k, const void *from, size_t count) {
 }
 
 /* A command is another one once its file has changed. */
-static void add_command(key *k, char *name) {
-    char *rest = NULL;
-    for (char *word = strtok_r(name, " \t\n", &rest); word;
-         word = strtok_r(NULL, " \t\n", &rest)) {
-        struct stat found;
-        char *path = nevh__command_find(word);
-        add_bytes(k, word, strlen(word) + 1);
-        if (path && !stat(path, &found)) {
-            add_bytes(k, path, strlen(path) + 1);
-            add_bytes(k, &found.st_size, sizeof found.st_size);
-            add_bytes(k, &found.st_mtime, sizeof found.st_mtime);
-        }
-        free(path);
+static void add_word(key *k, const char *word) {
+    struct stat found;
+    char *path = nevh__command_find(word);
+    add_bytes(k, word, strlen(word) + 1);
+    if (path && !stat(path, &found)) {
+        add_bytes(k, path, strlen(path) + 1);
+        add_bytes(k, &found.st_size, sizeof found.st_size);
+        add_bytes(k, &found.st_mtime, sizeof found.st_mtime);
     }
+    free(path);
 }
 
 static key key_of(const char *source, const char *const flags[]) {
     key k = {{0xcbf29ce484222325u, 0x2545f4914f6cdd1du}};
-    char *name = nevh__compiler_name();
+    char **words = nevh__compiler_words();
     add_bytes(&k, source, strlen(source) + 1);
     for (; *flags; flags++)
         add_bytes(&k, *flags, strlen(*flags) + 1);
-    if (name)
-        add_command(&k, name);
-    free(name);
+    for (char **word = words; word && *word; word++)
+        add_word(&k, *word);
+    free(words);
     return k;
 }
 
+/* Only a library that has steps, or a series. */
 static void *open_library(const char *path, char why[NEVH__WHY_NATIVE]) {
     void *library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
     if (!library) {
         const char *wrong = dlerror();
         snprintf(why, NEVH__WHY_NATIVE, "%.300s", wrong ? wrong : "");
+    } else if (!dlsym(library, "nevh_native_steps") &&
+               !dlsym(library, "nevh_native_series")) {
+        snprintf(why, NEVH__WHY_NATIVE,
+                 "what the C compiler makes has no steps");
+        dlclose(library);
+        library = NULL;
     }
     return library;
 }
@@ -92,28 +96,43 @@ static bool write_source(const char *path, const char *source) {
     return file && fclose(file) == 0 && fine;
 }
 
-/* The first line that is an error; where there is none, the first. */
+/* The first line that is an error; where there is none, the first that has
+   anything. */
 static const char *first_error(const char *text) {
     static const char mark[] = "error: ";
     const char *error = strstr(text, mark);
-    return error ? error + sizeof mark - 1 : text;
+    return error ? error + sizeof mark - 1 : text + strspn(text, " \t\r\n");
 }
 
-static void tell(const nevh__compiling *run, char why[NEVH__WHY_NATIVE]) {
+static void tell_failure(const nevh__compiling *run,
+                         char why[NEVH__WHY_NATIVE]) {
+    const char *error = first_error(run->output.text);
+    if (*error)
+        snprintf(why, NEVH__WHY_NATIVE, "the C compiler fails: %.*s",
+                 (int)strcspn(error, "\r\n"), error);
+    else if (run->status > 128)
+        snprintf(why, NEVH__WHY_NATIVE,
+                 "the C compiler fails: signal %d ended it", run->status - 128);
+    else
+        snprintf(why, NEVH__WHY_NATIVE,
+                 "the C compiler fails: exit status %d, without a message",
+                 run->status);
+}
+
+static void tell(const nevh__compiling *run, double seconds,
+                 char why[NEVH__WHY_NATIVE]) {
     if (run->output.interrupted)
         snprintf(why, NEVH__WHY_NATIVE, "a signal ended the compiler");
     else if (run->output.late)
         snprintf(why, NEVH__WHY_NATIVE,
-                 "the C compiler took more than two minutes");
+                 "the C compiler took more than %.0f seconds", seconds);
     else if (run->status == NEVH__NO_COMPILER)
         snprintf(why, NEVH__WHY_NATIVE,
-                 "there is no C compiler: install one, or name it in the "
-                 "environment, CC=...");
-    else {
-        const char *error = first_error(run->output.text);
-        snprintf(why, NEVH__WHY_NATIVE, "the C compiler fails: %.*s",
-                 (int)strcspn(error, "\n"), error);
-    }
+                 "there is no C compiler%s%.200s: install one, or name it in "
+                 "the environment, CC=...",
+                 *run->output.text ? " " : "", run->output.text);
+    else
+        tell_failure(run, why);
 }
 
 /* The flags, and the name of what is compiled in the cache. */
@@ -154,9 +173,16 @@ static void begin(files *f, char *folder, const char *source, const place *p,
     f->object = f->folder ? nevh__text("%s/steps.so", f->folder) : NULL;
     f->source = f->object ? nevh__text("%s/steps.c", f->folder) : NULL;
     *run = (nevh__compiling){.status = -1};
-    if (f->source && write_source(f->source, source))
-        nevh__compile_begin(p->flags, f->source, f->object, f->folder, before,
-                            run);
+    if (!f->source)
+        snprintf(run->output.text, sizeof run->output.text,
+                 "no folder can be made to compile in");
+    else if (!write_source(f->source, source))
+        snprintf(run->output.text, sizeof run->output.text,
+                 "%.300s cannot be written: %s", f->source, strerror(errno));
+    else
+        nevh__compile_begin(
+            &(nevh__compilation){p->flags, f->source, f->object, f->folder},
+            before, run);
 }
 
 static void remove_files(files *f) {
@@ -167,41 +193,47 @@ static void remove_files(files *f) {
     free(f->folder);
 }
 
-static void *open_compiled(const files *f, const place *p,
+/* What was compiled is kept once it is known to have steps. */
+static void *open_compiled(const nevh__compiling *run, double seconds,
+                           const files *f, const place *p,
                            char why[NEVH__WHY_NATIVE]) {
-    bool stored = p->kept && nevh__cache_store(p->cache, f->object, p->kept);
-    return open_library(stored ? p->kept : f->object, why);
+    if (run->status) {
+        tell(run, seconds, why);
+        return NULL;
+    }
+    void *library = open_library(f->object, why);
+    if (library && p->kept)
+        nevh__cache_store(p->cache, f->object, p->kept);
+    return library;
+}
+
+/* Of the cache. */
+static void *open_kept(const place *p, char why[NEVH__WHY_NATIVE]) {
+    return p->kept && nevh__cache_is_whole(p->kept) ? open_library(p->kept, why)
+                                                    : NULL;
 }
 
 /* A signal takes its course when the folder is gone. */
-static void *build(const char *source, const place *p,
+static void *build(const char *source, const place *p, double seconds,
                    char why[NEVH__WHY_NATIVE]) {
     sigset_t before;
     files f;
     nevh__compiling run;
-    void *library = NULL;
     nevh__signals_hold(&before);
     begin(&f, nevh__new_folder(), source, p, &before, &run);
-    nevh__compile_await(&run, 1, &before);
-    if (!f.object)
-        snprintf(why, NEVH__WHY_NATIVE, "no folder can be made to compile in");
-    else if (run.status)
-        tell(&run, why);
-    else
-        library = open_compiled(&f, p, why);
+    nevh__compile_await(&run, 1, &before, seconds);
+    void *library = open_compiled(&run, seconds, &f, p, why);
     remove_files(&f);
     nevh__signals_release(&before);
     return library;
 }
 
-void *nevh__native_load(const char *source, const char *cache, bool may_compile,
+void *nevh__native_load(const char *source, const char *cache, double seconds,
                         char why[NEVH__WHY_NATIVE]) {
     place p = place_of(source, cache, why);
-    void *library = NULL;
-    if (p.kept && nevh__cache_is_whole(p.kept))
-        library = open_library(p.kept, why);
-    if (!library && may_compile)
-        library = build(source, &p, why);
+    void *library = open_kept(&p, why);
+    if (!library && seconds > 0)
+        library = build(source, &p, seconds, why);
     free_place(&p);
     return library;
 }
@@ -220,10 +252,12 @@ static size_t processors(void) {
 /* The first texts, as many as there are processors to compile them.
    returns  how many are in the cache now: 0, and why, where one is not */
 static size_t build_some(char *const sources[], size_t count, const char *cache,
-                         const sigset_t *before, char why[NEVH__WHY_NATIVE]) {
+                         double seconds, const sigset_t *before,
+                         char why[NEVH__WHY_NATIVE]) {
     files f[NEVH__MOST_COMPILERS];
     place p[NEVH__MOST_COMPILERS];
     nevh__compiling run[NEVH__MOST_COMPILERS];
+    char other[NEVH__WHY_NATIVE];
     size_t begun = 0, most_begun = processors(), next = 0;
     bool fine = true;
     for (; next < count && begun < most_begun; next++) {
@@ -235,13 +269,13 @@ static size_t build_some(char *const sources[], size_t count, const char *cache,
         } else
             free_place(&p[begun]);
     }
-    nevh__compile_await(run, begun, before);
+    nevh__compile_await(run, begun, before, seconds);
     for (size_t i = 0; i < begun; i++) {
-        if (run[i].status && fine)
-            tell(&run[i], why);
-        fine &= !run[i].status;
-        if (!run[i].status)
-            nevh__cache_store(p[i].cache, f[i].object, p[i].kept);
+        void *library =
+            open_compiled(&run[i], seconds, &f[i], &p[i], fine ? why : other);
+        fine &= library != NULL;
+        if (library)
+            dlclose(library);
         remove_files(&f[i]);
         free_place(&p[i]);
     }
@@ -249,63 +283,97 @@ static size_t build_some(char *const sources[], size_t count, const char *cache,
 }
 
 size_t nevh__native_build(char *const sources[], size_t count,
-                          const char *cache, char why[NEVH__WHY_NATIVE]) {
+                          const char *cache, double seconds,
+                          char why[NEVH__WHY_NATIVE]) {
     sigset_t before;
     size_t done = 0, more = 1;
     nevh__signals_hold(&before);
     for (; done < count && more; done += more)
-        more = build_some(sources + done, count - done, cache, &before, why);
+        more = build_some(sources + done, count - done, cache, seconds, &before,
+                          why);
     nevh__signals_release(&before);
     return done;
 }
 
 /* A compiler that a thread waits for.  A file beside what is to be kept is locked
-   meanwhile: a second program, or stepper, waits for that lock, and not for a
-   program that was killed. */
+   meanwhile: a second program, or stepper, waits for that lock as long as it would
+   for a compiler, and goes on where the first one was killed, or fails.  Nobody
+   holds it longer than a compiler may take: a waiting one gives it up as soon as it
+   has it and finds the steps. */
 struct nevh__background {
     pthread_t thread;
     pid_t process;
+    char *source;
+    double seconds; /* at most */
+    sigset_t before;
     place p;
     files f;
     nevh__compiling run;
     char *lock_path;
     int lock;
-    bool waits; /* for the lock: another compiler is at work */
     void *library;
     nevh__steps_at_work *steps;
-    atomic_bool done;
+    atomic_bool unwanted, done;
     char why[NEVH__WHY_NATIVE];
 };
 
-static void *load_other(nevh__background *b) {
-    while (flock(b->lock, LOCK_EX) && errno == EINTR)
-        continue;
-    if (nevh__cache_is_whole(b->p.kept))
-        return open_library(b->p.kept, b->why);
-    snprintf(b->why, NEVH__WHY_NATIVE,
-             "the C compiler of another program fails");
+/* Without a lock that can be had, two compilers may be at work at the same steps.
+   returns  whether it waits no more for another one */
+static bool take_lock(nevh__background *b) {
+    enum { LOOKS_APART = 10 }; /* milliseconds */
+    const struct timespec pause = {.tv_nsec = LOOKS_APART * 1000000L};
+    double looks = b->seconds * 1000 / LOOKS_APART;
+    if (b->lock < 0)
+        return true;
+    while (flock(b->lock, LOCK_EX | LOCK_NB)) {
+        if (errno != EWOULDBLOCK && errno != EINTR)
+            return true;
+        if (atomic_load(&b->unwanted) || looks-- <= 0)
+            return false;
+        nanosleep(&pause, NULL);
+    }
+    return true;
+}
+
+/* A copy of the process has the file open, too. */
+static void give_up_lock(nevh__background *b) {
+    if (b->lock < 0)
+        return;
+    unlink(b->lock_path);
+    flock(b->lock, LOCK_UN);
+}
+
+/* In the cache, where a killed program's folder is removed once it is old. */
+static char *folder_in_cache(const nevh__background *b) {
+    char *folder = nevh__text("%s.%ld.XXXXXX", b->p.kept, (long)b->process);
+    if (folder && mkdtemp(folder))
+        return folder;
+    free(folder);
     return NULL;
 }
 
-static void *load_own(nevh__background *b) {
+static void *compile(nevh__background *b) {
     sigset_t all;
-    void *library = NULL;
     sigfillset(&all); /* signals are for other threads */
-    nevh__compile_await(&b->run, 1, &all);
-    if (b->run.status)
-        tell(&b->run, b->why);
-    else
-        library = open_compiled(&b->f, &b->p, b->why);
-    nevh__folder_remove(b->f.folder);
-    unlink(b->lock_path);
-    flock(b->lock, LOCK_UN); /* a copy of the process has the file open, too */
+    begin(&b->f, folder_in_cache(b), b->source, &b->p, &b->before, &b->run);
+    nevh__compile_await(&b->run, 1, &all, b->seconds);
+    void *library = open_compiled(&b->run, b->seconds, &b->f, &b->p, b->why);
+    remove_files(&b->f);
     return library;
 }
 
 static void *await_compiler(void *data) {
     nevh__background *b = data;
     nevh__native_steps steps = NULL;
-    b->library = b->waits ? load_other(b) : load_own(b);
+    if (take_lock(b)) {
+        b->library = open_kept(&b->p, b->why);
+        if (!b->library && !atomic_load(&b->unwanted))
+            b->library = compile(b);
+        give_up_lock(b);
+    } else
+        snprintf(b->why, NEVH__WHY_NATIVE,
+                 "another program has compiled them for %.0f seconds",
+                 b->seconds);
     if (b->library)
         *(void **)&steps = dlsym(b->library, "nevh_native_steps");
     atomic_store(b->steps, steps);
@@ -317,60 +385,30 @@ static void free_background(nevh__background *b) {
     if (b->lock >= 0)
         close(b->lock);
     free(b->lock_path);
-    free(b->f.folder);
-    free(b->f.object);
-    free(b->f.source);
+    free(b->source);
     free_place(&b->p);
     free(b);
 }
 
-/* returns  whether there is one to hold, or to wait for */
-static bool open_lock(nevh__background *b) {
-    b->lock_path = b->p.kept ? nevh__text("%s.lock", b->p.kept) : NULL;
-    if (b->lock_path)
-        b->lock = open(b->lock_path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-    b->waits = b->lock >= 0 && flock(b->lock, LOCK_EX | LOCK_NB);
-    return b->lock >= 0 && (!b->waits || errno == EWOULDBLOCK);
-}
-
-/* In the cache, where a killed program's folder is removed once it is old. */
-static char *folder_in_cache(const nevh__background *b) {
-    char *folder = nevh__text("%s.%ld", b->p.kept, (long)b->process);
-    if (folder && !mkdir(folder, 0700))
-        return folder;
-    free(folder);
-    return NULL;
-}
-
-static void start_compiler(nevh__background *b, const char *source) {
-    sigset_t before;
-    nevh__signals_hold(&before);
-    begin(&b->f, folder_in_cache(b), source, &b->p, &before, &b->run);
-    nevh__signals_release(&before);
+static void open_lock(nevh__background *b) {
+    b->lock_path = nevh__text("%s.lock", b->p.kept);
+    b->lock = b->lock_path
+                  ? open(b->lock_path,
+                         O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600)
+                  : -1;
 }
 
 static bool start_thread(nevh__background *b) {
-    sigset_t all, before;
+    sigset_t all;
     sigfillset(&all);
-    pthread_sigmask(SIG_BLOCK, &all, &before);
+    pthread_sigmask(SIG_BLOCK, &all, &b->before);
     bool started = !pthread_create(&b->thread, NULL, await_compiler, b);
-    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    pthread_sigmask(SIG_SETMASK, &b->before, NULL);
     return started;
 }
 
-/* Ends what no thread waits for. */
-static void abandon(nevh__background *b) {
-    sigset_t all;
-    sigfillset(&all);
-    nevh__compile_await(&b->run, 1, &all);
-    if (b->f.folder)
-        nevh__folder_remove(b->f.folder);
-    if (b->lock >= 0 && !b->waits)
-        unlink(b->lock_path);
-    free_background(b);
-}
-
 nevh__background *nevh__background_begin(const char *source, const char *cache,
+                                         double seconds,
                                          nevh__steps_at_work *steps) {
     char why[NEVH__WHY_NATIVE];
     nevh__background *b = nevh__array(1, sizeof *b);
@@ -379,13 +417,15 @@ nevh__background *nevh__background_begin(const char *source, const char *cache,
     b->steps = steps;
     b->process = getpid();
     b->lock = -1;
+    b->seconds = seconds;
+    b->source = nevh__text("%s", source);
     b->p = place_of(source, cache, why);
-    bool opened = open_lock(b);
-    if (opened && !b->waits)
-        start_compiler(b, source);
-    if (opened && (b->waits || b->run.child) && start_thread(b))
-        return b;
-    abandon(b);
+    if (b->source && b->p.kept) {
+        open_lock(b);
+        if (start_thread(b))
+            return b;
+    }
+    free_background(b);
     return NULL;
 }
 
@@ -394,11 +434,14 @@ bool nevh__background_is_done(nevh__background *b) {
 }
 
 /* A copy of the process has no such thread. */
-void *nevh__background_end(nevh__background *b, char why[NEVH__WHY_NATIVE]) {
+void *nevh__background_end(nevh__background *b, bool wanted,
+                           char why[NEVH__WHY_NATIVE]) {
     if (b->process != getpid()) {
         snprintf(why, NEVH__WHY_NATIVE, "the compiler is another process's");
         return NULL;
     }
+    if (!wanted)
+        atomic_store(&b->unwanted, true);
     pthread_join(b->thread, NULL);
     void *library = b->library;
     if (!library)

@@ -1,10 +1,13 @@
 /* nevh: the system's compiler, as a child in a process group of its own.
 
-   A signal that would end this process while the child runs must leave neither
-   the child nor its files behind.  A library owns no signal handlers, so the
-   calling thread blocks such signals and looks for pending ones while it waits.
-   When there is one, the group is ended, the folder is removed, and then the
-   signal takes its course.
+   A shell starts the compiler, and has a second child that waits for the end of a
+   pipe, which this process holds: when this process ends, in whatever way, or gives
+   the compiler up, the compiler is ended with all that it started, and its folder
+   is removed.
+
+   Signals that would end this process are blocked for the calling thread, so that
+   a folder is removed before they take their course; the thread looks for pending
+   ones while it waits.  A library owns no signal handlers.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #define _XOPEN_SOURCE 700
 #include "native/compiler_private.h"
@@ -15,6 +18,7 @@
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
@@ -23,28 +27,37 @@
 
 extern char **environ;
 
-/* Milliseconds: between looks, for a compiler to end that was asked to, and for
-   any to compile. */
-enum { LOOKS_APART = 20, PATIENCE = 2000, LONGEST = 120000 };
-static const int minded[] = {SIGHUP, SIGINT, SIGQUIT, SIGTERM};
-enum { MINDED = sizeof minded / sizeof *minded };
-
-void nevh__signals_hold(sigset_t *before) {
-    sigset_t held;
-    sigemptyset(&held);
-    for (size_t i = 0; i < MINDED; i++)
-        sigaddset(&held, minded[i]);
-    pthread_sigmask(SIG_BLOCK, &held, before);
-}
-
-void nevh__signals_release(const sigset_t *before) {
-    pthread_sigmask(SIG_SETMASK, before, NULL);
-}
+/* Milliseconds between looks, and seconds for a compiler to end that is given up. */
+enum { LOOKS_APART = 20, PATIENCE = 3 };
+/* The last ones may be used by a caller who has a handler: then they are let
+   through. */
+static const int minded[] = {SIGHUP,  SIGINT,  SIGQUIT, SIGTERM,
+                             SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM,
+                             SIGPROF, SIGXCPU, SIGPIPE};
+enum { MINDED = sizeof minded / sizeof *minded, ALWAYS_HELD = 4 };
 
 /* Linux keeps a blocked signal pending although it is ignored. */
 static bool is_ignored(int number) {
     struct sigaction found;
     return sigaction(number, NULL, &found) == 0 && found.sa_handler == SIG_IGN;
+}
+
+static bool has_no_handler(int number) {
+    struct sigaction found;
+    return sigaction(number, NULL, &found) == 0 && found.sa_handler == SIG_DFL;
+}
+
+void nevh__signals_hold(sigset_t *before) {
+    sigset_t held;
+    sigemptyset(&held);
+    for (size_t i = 0; i < MINDED; i++)
+        if (i < ALWAYS_HELD || has_no_handler(minded[i]))
+            sigaddset(&held, minded[i]);
+    pthread_sigmask(SIG_BLOCK, &held, before);
+}
+
+void nevh__signals_release(const sigset_t *before) {
+    pthread_sigmask(SIG_SETMASK, before, NULL);
 }
 
 /* One that is delivered as soon as it is released. */
@@ -85,26 +98,44 @@ static void free_environment(char **all) {
     free(all);
 }
 
+/* What the shell that starts a compiler does: its arguments are the folder and the
+   command, and 3 is the pipe that tells that nobody waits for it any more. */
+static const char watch[] =
+    "folder=$1; shift\n"
+    "(trap '' HUP INT QUIT TERM; exec >/dev/null 2>&1; read none <&3\n"
+    "kill -TERM 0; rm -rf \"$folder\"; sleep 1; kill -KILL 0) & watch=$!\n"
+    "\"$@\" 3<&-; status=$?\n"
+    "kill -KILL $watch; exit $status";
+enum { WATCH_WORDS = 5, LAST_WORDS = 5 };
+
 static int set_attributes(posix_spawnattr_t *how, const sigset_t *before) {
+    sigset_t
+        usual; /* a shell that ignores its children's ends waits for none */
+    sigemptyset(&usual);
+    sigaddset(&usual, SIGCHLD);
     int wrong = posix_spawnattr_setflags(how, POSIX_SPAWN_SETPGROUP |
-                                                  POSIX_SPAWN_SETSIGMASK);
+                                                  POSIX_SPAWN_SETSIGMASK |
+                                                  POSIX_SPAWN_SETSIGDEF);
+    if (!wrong)
+        wrong = posix_spawnattr_setsigdefault(how, &usual);
     if (!wrong)
         wrong = posix_spawnattr_setpgroup(how, 0);
     return wrong ? wrong : posix_spawnattr_setsigmask(how, before);
 }
 
-static int set_files(posix_spawn_file_actions_t *files, int out) {
+static int set_files(posix_spawn_file_actions_t *files, int out, int lifeline) {
     int wrong = posix_spawn_file_actions_addopen(files, STDIN_FILENO,
                                                  "/dev/null", O_RDONLY, 0);
     if (!wrong)
         wrong = posix_spawn_file_actions_adddup2(files, out, STDOUT_FILENO);
-    return wrong ? wrong
-                 : posix_spawn_file_actions_adddup2(files, out, STDERR_FILENO);
+    if (!wrong)
+        wrong = posix_spawn_file_actions_adddup2(files, out, STDERR_FILENO);
+    return wrong ? wrong : posix_spawn_file_actions_adddup2(files, lifeline, 3);
 }
 
 /* returns  0, or an error number */
-static int start(char *const arguments[], char *const environment[],
-                 const sigset_t *before, int out, pid_t *child) {
+static int start(const char *const arguments[], char *const environment[],
+                 const sigset_t *before, int out, int lifeline, pid_t *child) {
     posix_spawnattr_t how;
     posix_spawn_file_actions_t files;
     int wrong = posix_spawnattr_init(&how);
@@ -114,173 +145,218 @@ static int start(char *const arguments[], char *const environment[],
     if (!wrong) {
         wrong = set_attributes(&how, before);
         if (!wrong)
-            wrong = set_files(&files, out);
+            wrong = set_files(&files, out, lifeline);
         if (!wrong)
-            wrong = posix_spawnp(child, arguments[0], &files, &how, arguments,
-                                 environment);
+            wrong = posix_spawn(child, arguments[0], &files, &how,
+                                (char *const *)arguments, environment);
         posix_spawn_file_actions_destroy(&files);
     }
     posix_spawnattr_destroy(&how);
     return wrong;
 }
 
-/* Reads what there is, and keeps the beginning.
-   returns  whether the pipe's other end is closed by all */
-static bool has_ended(nevh__compiling *c) {
+/* Reads what there is, and keeps the beginning. */
+static void hear(nevh__compiling *c) {
     nevh__compiler_output *output = &c->output;
     char block[512];
-    ssize_t count = read(c->pipe, block, sizeof block);
-    if (count < 0)
-        return errno != EINTR;
-    size_t left = sizeof output->text - 1 - output->used,
-           kept = (size_t)count < left ? (size_t)count : left;
-    memcpy(output->text + output->used, block, kept);
-    output->used += kept;
-    return count == 0;
-}
-
-/* Reads until all groups have ended, which is when nobody holds their pipes, until
-   `give_up` milliseconds have passed, or until a signal comes; before  NULL: signals
-   are not looked for */
-static bool listen_to(nevh__compiling all[], size_t count,
-                      const sigset_t *before, int give_up) {
-    struct timespec begun, now;
-    clock_gettime(CLOCK_MONOTONIC, &begun);
-    for (double waited = 0;
-         waited < give_up && !(before && is_interrupted(before));) {
-        struct pollfd looks[NEVH__MOST_COMPILERS];
-        nfds_t running = 0;
-        for (size_t i = 0; i < count; i++)
-            if (all[i].runs)
-                looks[running++] =
-                    (struct pollfd){.fd = all[i].pipe, .events = POLLIN};
-        if (!running)
-            return true;
-        int ready = poll(looks, running, LOOKS_APART);
-        for (size_t i = 0, k = 0; ready > 0 && i < count; i++)
-            if (all[i].runs && looks[k++].revents)
-                all[i].runs = !has_ended(&all[i]);
-        clock_gettime(CLOCK_MONOTONIC, &now);
-        waited = 1e3 * (double)(now.tv_sec - begun.tv_sec) +
-                 1e-6 * (double)(now.tv_nsec - begun.tv_nsec);
+    ssize_t count;
+    for (int i = 0; i < 64 && (count = read(c->pipe, block, sizeof block)) > 0;
+         i++) {
+        size_t left = sizeof output->text - 1 - output->used,
+               kept = (size_t)count < left ? (size_t)count : left;
+        memcpy(output->text + output->used, block, kept);
+        output->used += kept;
     }
-    return false;
 }
 
-static void signal_groups(const nevh__compiling all[], size_t count,
-                          int number) {
+/* What a compiler has started, and left, may hold its pipe for ever. */
+static bool has_ended(const nevh__compiling *c) {
+    siginfo_t found = {.si_pid = 0};
+    int wrong =
+        waitid(P_PID, (id_t)c->child, &found, WEXITED | WNOHANG | WNOWAIT);
+    return found.si_pid == c->child || (wrong && errno == ECHILD);
+}
+
+static double seconds_since(const struct timespec *begun) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)(now.tv_sec - begun->tv_sec) +
+           1e-9 * (double)(now.tv_nsec - begun->tv_nsec);
+}
+
+/* Until one says something, or for a short time. */
+static void wait_a_little(const nevh__compiling all[], size_t count) {
+    struct pollfd looks[NEVH__MOST_COMPILERS];
+    nfds_t running = 0;
     for (size_t i = 0; i < count; i++)
         if (all[i].runs)
-            kill(-all[i].child, number);
+            looks[running++] =
+                (struct pollfd){.fd = all[i].pipe, .events = POLLIN};
+    poll(looks, running, LOOKS_APART);
 }
 
-/* returns  its exit status, or -1 */
+static bool any_runs(const nevh__compiling all[], size_t count) {
+    bool any = false;
+    for (size_t i = 0; i < count; i++)
+        any |= all[i].runs;
+    return any;
+}
+
+/* Reads until all have ended, so many seconds have passed, or a signal comes;
+   before  NULL: signals are not looked for */
+static bool listen_to(nevh__compiling all[], size_t count,
+                      const sigset_t *before, double seconds) {
+    struct timespec begun;
+    clock_gettime(CLOCK_MONOTONIC, &begun);
+    while (any_runs(all, count)) {
+        if (seconds_since(&begun) > seconds ||
+            (before && is_interrupted(before)))
+            return false;
+        wait_a_little(all, count);
+        for (size_t i = 0; i < count; i++)
+            if (all[i].runs) {
+                bool ended = has_ended(&all[i]);
+                hear(&all[i]);
+                all[i].runs = !ended;
+            }
+    }
+    return true;
+}
+
+/* returns  its exit status, as a shell has it; 0 where somebody else has taken it:
+   what was made tells */
 static int await(pid_t child) {
     int status = 0;
     while (waitpid(child, &status, 0) < 0)
         if (errno != EINTR)
-            return -1;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+            return errno == ECHILD ? 0 : -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+static void close_lifeline(nevh__compiling *c) {
+    if (c->lifeline >= 0)
+        close(c->lifeline);
+    c->lifeline = -1;
+}
+
+/* The watch ends them; where there is none, a signal does. */
+static void end_all(nevh__compiling all[], size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (all[i].runs)
+            close_lifeline(&all[i]);
+    if (listen_to(all, count, NULL, PATIENCE))
+        return;
+    for (size_t i = 0; i < count; i++)
+        if (all[i].runs)
+            kill(-all[i].child, SIGKILL);
+    listen_to(all, count, NULL, PATIENCE);
 }
 
 void nevh__compile_await(nevh__compiling all[], size_t count,
-                         const sigset_t *before) {
-    if (!listen_to(all, count, before, LONGEST)) {
+                         const sigset_t *before, double seconds) {
+    if (!listen_to(all, count, before, seconds)) {
         bool interrupted = is_interrupted(before);
         for (size_t i = 0; i < count; i++) {
             all[i].output.interrupted = all[i].runs && interrupted;
             all[i].output.late = all[i].runs && !interrupted;
         }
-        signal_groups(all, count, SIGTERM);
-        if (!listen_to(all, count, NULL, PATIENCE))
-            signal_groups(all, count, SIGKILL);
-        listen_to(all, count, NULL, PATIENCE);
+        end_all(all, count);
     }
     for (size_t i = 0; i < count; i++) {
         if (!all[i].child)
             continue;
         all[i].status = await(all[i].child);
+        if (all[i].output.late || all[i].output.interrupted)
+            all[i].status = -1;
         close(all[i].pipe);
+        close_lifeline(&all[i]);
     }
 }
 
-static void begin(char *const arguments[], char *const environment[],
+/* Away from 0, 1, 2 and 3, which the child has for itself. */
+static bool open_pipe(int ends[2]) {
+    enum { ABOVE = 4 };
+    int low[2];
+    ends[0] = ends[1] = -1;
+    if (pipe(low))
+        return false;
+    for (int i = 0; i < 2; i++) {
+        ends[i] = fcntl(low[i], F_DUPFD_CLOEXEC, ABOVE);
+        close(low[i]);
+    }
+    return ends[0] >= 0 && ends[1] >= 0;
+}
+
+static void close_pipe(const int ends[2]) {
+    for (int i = 0; i < 2; i++)
+        if (ends[i] >= 0)
+            close(ends[i]);
+}
+
+static void begin(const char *const arguments[], char *const environment[],
                   const sigset_t *before, nevh__compiling *c) {
-    int ends[2];
-    if (pipe(ends))
+    int out[2], life[2] = {-1, -1}, wrong = EMFILE;
+    if (open_pipe(out) && open_pipe(life))
+        wrong =
+            start(arguments, environment, before, out[1], life[0], &c->child);
+    if (wrong) {
+        c->child = 0;
+        snprintf(c->output.text, sizeof c->output.text,
+                 "it cannot be started: %s", strerror(wrong));
+        close_pipe(out);
+        close_pipe(life);
         return;
-    fcntl(ends[0], F_SETFD, FD_CLOEXEC);
-    fcntl(ends[1], F_SETFD, FD_CLOEXEC);
-    int wrong = start(arguments, environment, before, ends[1], &c->child);
-    close(ends[1]);
-    c->pipe = ends[0];
-    c->runs = !wrong;
-    if (!wrong)
-        return;
-    close(ends[0]);
-    c->child = 0;
-    c->status = wrong == ENOENT ? NEVH__NO_COMPILER : -1;
-}
-
-/* The file that the shell would run; NULL: there is none. */
-char *nevh__command_find(const char *name) {
-    const char *path = getenv("PATH");
-    char *found = NULL;
-    if (strchr(name, '/'))
-        return access(name, X_OK) ? NULL : nevh__text("%s", name);
-    for (const char *at = path ? path : ""; *at && !found;) {
-        size_t bytes = strcspn(at, ":");
-        found = nevh__text("%.*s/%s", (int)bytes, at, name);
-        if (found && (!bytes || access(found, X_OK))) {
-            free(found);
-            found = NULL;
-        }
-        at += bytes + (at[bytes] == ':');
     }
-    return found;
+    close(out[1]);
+    close(life[0]);
+    fcntl(out[0], F_SETFL, O_NONBLOCK);
+    c->pipe = out[0];
+    c->lifeline = life[1];
+    c->runs = true;
 }
 
-char *nevh__compiler_name(void) {
-    static const char *const usual[] = {"cc", "gcc", "clang"};
-    const char *given = getenv("CC");
-    if (given && given[strspn(given, " \t\n")])
-        return nevh__text("%s", given);
-    for (size_t i = 0; i < sizeof usual / sizeof *usual; i++) {
-        char *found = nevh__command_find(usual[i]);
-        free(found);
-        if (found)
-            return nevh__text("%s", usual[i]);
-    }
-    return nevh__text("%s", usual[0]);
-}
-
-/* NAME FLAGS -o OBJECT SOURCE -lm */
-static void begin_words(char *name, const char *const flags[],
-                        const char *source, const char *object,
-                        char *const environment[], const sigset_t *before,
-                        nevh__compiling *c) {
-    const char *arguments[NEVH__MOST_ARGUMENTS + 5];
+static size_t length_of(const char *const list[]) {
     size_t count = 0;
-    char *rest = NULL;
-    for (char *word = strtok_r(name, " \t\n", &rest);
-         word && count < NEVH__MOST_ARGUMENTS;
-         word = strtok_r(NULL, " \t\n", &rest))
-        arguments[count++] = word;
-    for (; *flags && count < NEVH__MOST_ARGUMENTS; flags++)
-        arguments[count++] = *flags;
-    const char *last[] = {"-o", object, source, "-lm", NULL};
-    memcpy(arguments + count, last, sizeof last);
-    begin((char *const *)arguments, environment, before, c);
+    while (list[count])
+        count++;
+    return count;
 }
 
-void nevh__compile_begin(const char *const flags[], const char *source,
-                         const char *object, const char *folder,
-                         const sigset_t *before, nevh__compiling *c) {
-    char *name = nevh__compiler_name(), **environment = environment_in(folder);
-    *c = (nevh__compiling){.status = -1};
-    if (name && environment)
-        begin_words(name, flags, source, object, environment, before, c);
-    free(name);
+/* The shell, NAME FLAGS -o OBJECT SOURCE -lm */
+static void begin_words(char *const words[], const char *command,
+                        const nevh__compilation *is, char *const environment[],
+                        const sigset_t *before, nevh__compiling *c) {
+    const char *first[] = {"/bin/sh", "-c", watch, "nevh", is->folder},
+               *last[] = {"-o", is->object, is->source, "-lm", NULL};
+    size_t count = length_of((const char *const *)words),
+           flags = length_of(is->flags);
+    const char **all =
+        nevh__array(WATCH_WORDS + count + flags + LAST_WORDS, sizeof *all);
+    if (!all)
+        return;
+    memcpy(all, first, sizeof first);
+    memcpy(all + WATCH_WORDS, words, count * sizeof *all);
+    all[WATCH_WORDS] = command;
+    memcpy(all + WATCH_WORDS + count, is->flags, flags * sizeof *all);
+    memcpy(all + WATCH_WORDS + count + flags, last, sizeof last);
+    begin(all, environment, before, c);
+    free(all);
+}
+
+void nevh__compile_begin(const nevh__compilation *is, const sigset_t *before,
+                         nevh__compiling *c) {
+    char **words = nevh__compiler_words(),
+         **environment = environment_in(is->folder);
+    char *command = words ? nevh__command_find(words[0]) : NULL;
+    *c = (nevh__compiling){.status = -1, .lifeline = -1};
+    if (words && !command) {
+        c->status = NEVH__NO_COMPILER;
+        snprintf(c->output.text, sizeof c->output.text, "%s", words[0]);
+    }
+    if (command && environment)
+        begin_words(words, command, is, environment, before, c);
+    free(command);
+    free(words);
     free_environment(environment);
 }
 

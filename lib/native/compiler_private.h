@@ -10,40 +10,49 @@
 
 enum { NEVH__MOST_OUTPUT = 1200 };
 typedef struct {
-    char text[NEVH__MOST_OUTPUT + 1]; /* the beginning of what it says */
+    char text[NEVH__MOST_OUTPUT +
+              1]; /* the beginning of what it says; where there
+                                         is no compiler, its name; where it was not
+                                         started, why */
     size_t used;
     bool interrupted; /* by a signal, which is still pending */
-    bool late;        /* ended after two minutes */
+    bool late;        /* ended because it took too long */
 } nevh__compiler_output;
 /* Between these the calling thread gets none of the signals that end a process
    from outside.
    before  out: the mask that was */
 void nevh__signals_hold(sigset_t *before);
 void nevh__signals_release(const sigset_t *before);
-/* What to call: words apart by spaces, CC of the environment, else the first of
-   cc, gcc and clang that there is; to be freed.  NULL: memory is out. */
-char *nevh__compiler_name(void);
+/* What to call: CC of the environment, which is the name of a file or words apart by
+   blanks, with quotes as a shell has them; else the first of cc, gcc and clang that
+   there is.  Ended by NULL, and to be freed in one piece.  NULL: memory is out. */
+char **nevh__compiler_words(void);
 /* The file that a command is; to be freed.  NULL: there is none. */
 char *nevh__command_find(const char *name);
-enum { NEVH__NO_COMPILER = 127, NEVH__MOST_ARGUMENTS = 40 };
+enum { NEVH__NO_COMPILER = 127 };
 /* A compiler at work.  So many may be at once. */
 enum { NEVH__MOST_COMPILERS = 16 };
 typedef struct {
-    pid_t child; /* 0: it was not started */
-    int pipe;    /* what it says */
+    pid_t child;  /* 0: it was not started */
+    int pipe;     /* what it says */
+    int lifeline; /* once that is closed, it is ended */
     bool runs;
-    int status; /* once it has ended: its exit status, NEVH__NO_COMPILER, or -1 */
+    int status; /* once it has ended: its exit status as a shell has it,
+                   NEVH__NO_COMPILER, or -1 */
     nevh__compiler_output output;
 } nevh__compiling;
-/* Compiles a source into a shared object, all signals being held and without a
-   shell.  The compiler's own files go to the folder.
-   flags    ended by NULL */
-void nevh__compile_begin(const char *const flags[], const char *source,
-                         const char *object, const char *folder,
-                         const sigset_t *before, nevh__compiling *);
-/* Waits until all have ended, or ends them: after a signal, or two minutes. */
+/* A source that becomes a shared object, by flags that are ended by NULL.  The
+   compiler's own files go to the folder. */
+typedef struct {
+    const char *const *flags, *source, *object, *folder;
+} nevh__compilation;
+/* Starts it, all signals being held. */
+void nevh__compile_begin(const nevh__compilation *, const sigset_t *before,
+                         nevh__compiling *);
+/* Waits until all have ended, or ends them: after a signal, or so many seconds. */
 void nevh__compile_await(nevh__compiling[], size_t count,
-                         const sigset_t *before);
+                         const sigset_t *before, double seconds);
+enum { NEVH__LONGEST_COMPILATION = 120 }; /* seconds */
 /* A folder of nobody else's, in that of temporary files; to be removed and
    freed.  NULL: none can be made. */
 char *nevh__new_folder(void);

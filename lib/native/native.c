@@ -6,7 +6,9 @@
 #include "kernels/tao_private.h"
 #include "kernels/taylor_private.h"
 #include "native/native_private.h"
+#include "native/compiler_private.h"
 #include <dlfcn.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,18 +20,22 @@ static const double loading_pays = 2e-3;
    is used, being kept: numbers, steps and spans are no part of the text. */
 static const double a_character = 6e-6, uses = 3;
 
+static void end_compiler(nevh__native *x, bool wanted) {
+    if (x->compiler)
+        x->library = nevh__background_end(x->compiler, wanted, x->why);
+    x->compiler = NULL;
+}
+
 bool nevh__native_await(nevh__native *x) {
-    if (x && x->compiler)
-        x->library = nevh__background_end(x->compiler, x->why);
     if (x)
-        x->compiler = NULL;
+        end_compiler(x, true);
     return x && x->library;
 }
 
 void nevh__native_free(nevh__native *x) {
     if (!x)
         return;
-    nevh__native_await(x);
+    end_compiler(x, false);
     if (x->library)
         dlclose(x->library);
     free(x->numbers);
@@ -307,18 +313,30 @@ static bool make_room(nevh__native *x, size_t size) {
     return x->room;
 }
 
+/* Seconds that a compiler may take: many times what a text takes on a machine with
+   other work; who asks for compiled steps in any case waits longer. */
+static double patience(const nevh_work *w, size_t characters) {
+    static const double slower = 50, least = 5;
+    double seconds = least + slower * a_character * (double)characters;
+    return w->options->native == NEVH_NATIVE_ALWAYS ||
+                   seconds > NEVH__LONGEST_COMPILATION
+               ? NEVH__LONGEST_COMPILATION
+               : seconds;
+}
+
 /* One orbit does not wait for a compiler: its steps are the kernel's until there are
    others, which give the same bits. */
 static bool load(const nevh_work *w, nevh__native *x, const char *text,
                  bool compile, char why[NEVH__WHY_NATIVE]) {
     const char *cache = w->options->native_cache;
+    double seconds = compile ? patience(w, x->characters) : 0;
     bool waits = w->options->native == NEVH_NATIVE_ALWAYS || w->width > 1 ||
                  of_series(w);
-    x->library = nevh__native_load(text, cache, compile && waits, why);
+    x->library = nevh__native_load(text, cache, waits ? seconds : 0, why);
     if (!x->library && compile && !waits) {
-        x->compiler = nevh__background_begin(text, cache, &x->steps);
+        x->compiler = nevh__background_begin(text, cache, seconds, &x->steps);
         if (!x->compiler)
-            x->library = nevh__native_load(text, cache, true, why);
+            x->library = nevh__native_load(text, cache, seconds, why);
     }
     return x->library || x->compiler;
 }
@@ -395,19 +413,22 @@ void nevh__native_prepare(nevh_work *const all[], size_t count,
                           char (*why)[NEVH__WHY_NATIVE]) {
     char **texts = nevh__array(count, sizeof *texts);
     size_t *of = nevh__array(count, sizeof *of), found = 0, done = 0;
+    double seconds = 0;
     const char *cache = count ? all[0]->options->native_cache : NULL;
     char problem[NEVH__WHY_NATIVE] = "";
     bool keeps = !(cache && !*cache);
     for (size_t i = 0; texts && of && keeps && i < count; i++) {
         char *text = text_to_build(all[i]);
         of[i] = text ? place_in(texts, found, text) : SIZE_MAX;
+        if (text)
+            seconds = fmax(seconds, patience(all[i], strlen(text)));
         if (of[i] == found)
             texts[found++] = text;
         else
             free(text);
     }
     if (found > 1)
-        done = nevh__native_build(texts, found, cache, problem);
+        done = nevh__native_build(texts, found, cache, seconds, problem);
     for (size_t i = 0; found > 1 && i < count; i++)
         if (of[i] != SIZE_MAX && of[i] >= done)
             snprintf(why[i], NEVH__WHY_NATIVE, "%s", problem);

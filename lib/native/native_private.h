@@ -141,33 +141,38 @@ static inline int nevh__native_step(nevh_work *w, double t, double h,
 
 /* A compiled text, from the cache or made.
    cache    a folder; "": none; NULL: the usual one
-   compile  else only what is in the cache
+   seconds  that a compiler may take; 0: only what is in the cache
    why      out: what is in the way
    returns  a library to be closed with dlclose; NULL: there is none */
-void *nevh__native_load(const char *source, const char *cache, bool compile,
+void *nevh__native_load(const char *source, const char *cache, double seconds,
                         char why[NEVH__WHY_NATIVE]);
 
 /* Has a text compiled that is not in the cache, while the caller goes on.  A thread
-   waits for the compiler, and for one that another program has at work at the same
-   text.
-   cache    as above
-   steps    set once they are loaded
-   returns  to be ended; NULL: there is no cache, or the compiler does not start */
+   waits for the compiler, and before that for one that another program has at work at
+   the same text; each for so many seconds at most.
+   cache, seconds  as above
+   steps           set once they are loaded
+   returns         to be ended; NULL: there is no cache */
 nevh__background *nevh__background_begin(const char *source, const char *cache,
+                                         double seconds,
                                          nevh__steps_at_work *steps);
 /* Whether it has loaded steps, or failed. */
 bool nevh__background_is_done(nevh__background *);
 /* Waits for it.
+   wanted   else other programs are not waited for, and a compiler only if it is at
+            work: for the next time
    why      out: what was in the way
    returns  as nevh__native_load */
-void *nevh__background_end(nevh__background *, char why[NEVH__WHY_NATIVE]);
+void *nevh__background_end(nevh__background *, bool wanted,
+                           char why[NEVH__WHY_NATIVE]);
 
 /* Compiles those texts that are not in the cache, and keeps them there: as many side
    by side as there are processors.
-   cache, why  as above
-   returns     how many were done; the first of the others was in the way */
+   cache, seconds, why  as above
+   returns  how many were done; the first of the others was in the way */
 size_t nevh__native_build(char *const sources[], size_t count,
-                          const char *cache, char why[NEVH__WHY_NATIVE]);
+                          const char *cache, double seconds,
+                          char why[NEVH__WHY_NATIVE]);
 
 /* The folder of compiled steps, which is made; to be freed.  NULL: it cannot
    be made, is not a folder, or others may write to it. */

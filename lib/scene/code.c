@@ -31,8 +31,9 @@ static const char *load(const char *path, const char *folder,
                         const char *object, const sigset_t *before,
                         nevh__code *code) {
     nevh__compiling run;
-    nevh__compile_begin(flags, path, object, folder, before, &run);
-    nevh__compile_await(&run, 1, before);
+    nevh__compile_begin(&(nevh__compilation){flags, path, object, folder},
+                        before, &run);
+    nevh__compile_await(&run, 1, before, NEVH__LONGEST_COMPILATION);
     if (run.output.interrupted)
         return "%s was not compiled: a signal ended its compiler";
     if (run.output.late)

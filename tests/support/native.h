@@ -101,11 +101,11 @@ static inline int pair_run(pair *x, double h, size_t steps) {
 }
 
 static inline bool has_compiler(void) {
-    char *name = nevh__compiler_name(), *rest = NULL;
-    char *found = nevh__command_find(strtok_r(name, " ", &rest));
+    char **words = nevh__compiler_words();
+    char *found = nevh__command_find(words[0]);
     bool has = found;
     free(found);
-    free(name);
+    free(words);
     return has;
 }
 

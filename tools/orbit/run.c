@@ -144,10 +144,10 @@ static void note(job *j) {
     list_print(&j->notes, "rows: %s", j->rows_text);
     if (j->data.points)
         measured_note(&j->data, &j->notes);
-    if (nevh_stepper_compiles(j->stepper))
-        list_add(&j->notes, "native: a compiler is at work as the steps begin");
-    else if (nevh_stepper_native(j->stepper, NULL))
-        list_add(&j->notes, "native: steps are compiled");
+    if (nevh_stepper_compiles(j->stepper) ||
+        nevh_stepper_native(j->stepper, NULL))
+        list_add(&j->notes, "native: steps are compiled, or those of the "
+                            "formulas until they are: the same digits");
 }
 
 /* All that the orbit and its rows depend on. */
@@ -240,7 +240,6 @@ static int give_up(job *j) {
         fprintf(stderr, "nevh: interrupted; to go on: --resume %s\n", name);
     lines_close(&j->lines);
     signal(number, SIG_DFL);
-    nevh_stepper_native(j->stepper, NULL); /* a compiler at work has files */
     raise(number);
     return TOOL_FAILED;
 }
