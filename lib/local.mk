@@ -4,9 +4,11 @@ noinst_LTLIBRARIES += libnevh_core.la
 libnevh_core_la_LIBADD = $(GSL_LIBS) $(QUADMATH_LIBS)
 libnevh_core_la_SOURCES = \
 	lib/system/system_private.h \
+	lib/system/print_private.h \
 	lib/system/vector_private.h \
 	lib/system/status.c \
 	lib/system/memory.c \
+	lib/system/print.c \
 	lib/system/register.c \
 	lib/system/system.c \
 	lib/system/friction.c \

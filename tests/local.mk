@@ -50,6 +50,7 @@ suites = \
 	tests/native/check_loops \
 	tests/native/check_native \
 	tests/native/check_native_cache \
+	tests/native/check_compilers \
 	tests/run/check_run \
 	tests/run/check_until \
 	tests/run/check_run_at \
@@ -108,6 +109,7 @@ tests_scheme_check_coefficients_LDADD = $(INSIDE_LIBS)
 tests_native_check_loops_LDADD = $(INSIDE_LIBS)
 tests_native_check_native_LDADD = $(INSIDE_LIBS)
 tests_native_check_native_cache_LDADD = $(INSIDE_LIBS)
+tests_native_check_compilers_LDADD = $(INSIDE_LIBS)
 tests_scheme_check_splitting_LDADD = $(INSIDE_LIBS)
 tests_scheme_check_damped_LDADD = $(INSIDE_LIBS)
 tests_scheme_check_brouwer_LDADD = $(INSIDE_LIBS)

@@ -1,6 +1,7 @@
 /* nevh: a finer run, by which a statement is confirmed.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "run/stepper_private.h"
+#include "system/print_private.h"
 #include <math.h>
 #include <nevh/confirm.h>
 #include <nevh/diagnose.h>
@@ -103,10 +104,10 @@ static void describe(nevh_finer *f) {
     if (c->kind != NEVH_FINER_STEPS)
         snprintf(f->text, sizeof f->text, "%s", name);
     else if (c->options.tolerance > 0)
-        snprintf(f->text, sizeof f->text, "%s, tolerance = %.3g", name,
-                 c->options.tolerance);
+        nevh__print(f->text, sizeof f->text, "%s, tolerance = %.3g", name,
+                    c->options.tolerance);
     else
-        snprintf(f->text, sizeof f->text, "%s, dt = %.4g", name, c->dt);
+        nevh__print(f->text, sizeof f->text, "%s, dt = %.4g", name, c->dt);
 }
 
 /* Takes that kind where it can be planned and costs no more than `most`; `whole`

@@ -7,6 +7,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/reference_pair_private.h"
 #include "run/stepper_private.h"
+#include "system/print_private.h"
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -105,8 +106,8 @@ static void keep(nevh__pair *b, const nevh__pair_outcome *o) {
     memcpy(r->high, b->high, size);
     memcpy(r->range, b->scale, size);
     r->error = fmax(o->error, DBL_EPSILON);
-    snprintf(r->text, sizeof r->text, "%s at dt = %.3g, own error %.0e",
-             nevh_integrator_name(r->integrator), fabs(o->h) / 2, r->error);
+    nevh__print(r->text, sizeof r->text, "%s at dt = %.3g, own error %.0e",
+                nevh_integrator_name(r->integrator), fabs(o->h) / 2, r->error);
 }
 
 /* As far as they stay together.  `why` they will not to the end. */
@@ -125,12 +126,12 @@ static void keep_part(nevh__pair *b, double h, nevh_reference_end why) {
     r->horizon = r->t0 + o.reached;
     r->end = why;
     if (why == NEVH_REFERENCE_CHAOS)
-        snprintf(r->text, sizeof r->text,
-                 "%s at dt = %.3g, until chaos at t = %.4g", name,
-                 fabs(o.h) / 2, r->horizon);
+        nevh__print(r->text, sizeof r->text,
+                    "%s at dt = %.3g, until chaos at t = %.4g", name,
+                    fabs(o.h) / 2, r->horizon);
     else
-        snprintf(r->text, sizeof r->text, "%s at dt = %.3g, until t = %.4g",
-                 name, fabs(o.h) / 2, r->horizon);
+        nevh__print(r->text, sizeof r->text, "%s at dt = %.3g, until t = %.4g",
+                    name, fabs(o.h) / 2, r->horizon);
 }
 
 /* Orbits in a plane, the energy being kept or lost, have no room for chaos. */

@@ -6,6 +6,7 @@
    with tolerances that are smaller by as much.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "diagnose/reference_private.h"
+#include "system/print_private.h"
 #include "taylor/orbit_private.h"
 #include <float.h>
 #include <math.h>
@@ -357,13 +358,15 @@ static void describe(nevh_reference *r, bool dear) {
     const char *why = dear
                           ? " (a smaller one costs too much)"
                           : " (the digits of its numbers allow no smaller one)";
-    int used = snprintf(r->text, sizeof r->text,
-                        "taylor in %d bits, own error %.0e%s", NEVH__FINE_BITS,
-                        r->error, r->error > nevh__reference_wanted ? why : "");
+    int used =
+        nevh__print(r->text, sizeof r->text,
+                    "taylor in %d bits, own error %.0e%s", NEVH__FINE_BITS,
+                    r->error, r->error > nevh__reference_wanted ? why : "");
     size_t left = sizeof r->text - (size_t)used;
     if (isfinite(r->horizon))
-        snprintf(r->text + used, left, ", until %st = %.4g",
-                 r->end == NEVH_REFERENCE_CHAOS ? "chaos at " : "", r->horizon);
+        nevh__print(r->text + used, left, ", until %st = %.4g",
+                    r->end == NEVH_REFERENCE_CHAOS ? "chaos at " : "",
+                    r->horizon);
 }
 
 int nevh__reference_series(nevh_reference *r) {

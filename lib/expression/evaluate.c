@@ -1,6 +1,7 @@
 /* nevh: the numbers that formulas of parameters stand for.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/formula_inside_private.h"
+#include "system/print_private.h"
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
@@ -11,9 +12,9 @@ static void add_indices(char *text, size_t room, const nevh__scope *s) {
     for (size_t k = 0; k < s->depth; k++) {
         size_t used = strlen(text);
         bool last = k + 1 == s->depth;
-        snprintf(text + used, room - used, "%s%s = %.0f%s", k ? ", " : " (",
-                 s->running[k]->name, s->value[s->running[k]->slot],
-                 last ? ")" : "");
+        nevh__print(text + used, room - used, "%s%s = %.0f%s", k ? ", " : " (",
+                    s->running[k]->name, s->value[s->running[k]->slot],
+                    last ? ")" : "");
     }
 }
 
@@ -22,7 +23,7 @@ bool nevh__scope_fail(nevh__scope *s, int status, const nevh__expression *at,
     char text[sizeof s->error->text] = "";
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    nevh__vprint(text, sizeof text, format, arguments);
     va_end(arguments);
     add_indices(text, sizeof text, s);
     if (!s->error->status)

@@ -1,6 +1,7 @@
 /* nevh: what is wrong with a formula.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/formula_inside_private.h"
+#include "system/print_private.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -24,7 +25,7 @@ bool nevh__formula_fail(nevh__formula_error *error, int status, size_t column,
     error->length = length;
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(error->text, sizeof error->text, format, arguments);
+    nevh__vprint(error->text, sizeof error->text, format, arguments);
     va_end(arguments);
     trim(error->text);
     return false;

@@ -1,6 +1,7 @@
 /* nevh: the tokens of a formula.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "expression/formula_inside_private.h"
+#include "system/print_private.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -47,7 +48,7 @@ static double convert(const char *at, size_t mantissa, long exponent) {
         exponent -= fraction && at[i] != '.';
     }
     snprintf(text + digits, sizeof text - digits, "e%ld", exponent);
-    return strtod(text, NULL);
+    return nevh__read_number(text);
 }
 
 static long exponent_of(const char *at, size_t bytes) {

@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #define _POSIX_C_SOURCE 200809L
 #include "expression/formula_inside_private.h"
+#include "system/print_private.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -61,8 +62,8 @@ static void put_name(FILE *f, const char *name, size_t bytes,
 static void put_number(FILE *f, double number) {
     char text[40];
     for (int digits = 6; digits <= 17; digits++) {
-        snprintf(text, sizeof text, "%.*g", digits, number);
-        if (strtod(text, NULL) == number)
+        nevh__print(text, sizeof text, "%.*g", digits, number);
+        if (nevh__read_number(text) == number)
             break;
     }
     char *power = strchr(text, 'e');

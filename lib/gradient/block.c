@@ -1,6 +1,7 @@
 /* nevh: blocks of columns, filled and evaluated.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/block_private.h"
+#include "system/print_private.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -136,13 +137,13 @@ static void describe(const nevh_field *f, const nevh__planned *term,
     size_t at = 0;
     text[0] = '\0';
     if (term->term->decl.time)
-        at = (size_t)snprintf(text, size, "t = %.9g",
-                              b->t[b->lane + column % b->lanes]);
+        at = (size_t)nevh__print(text, size, "t = %.9g",
+                                 b->t[b->lane + column % b->lanes]);
     for (size_t k = 0; k < term->nv && k < 6 && at < size; k++) {
-        int length =
-            snprintf(text + at, size - at, "%s%c[%zu] = %.9g", at ? ", " : "",
-                     k < term->nq ? 'q' : 'p', nevh__index(term, instance, k),
-                     nevh__row(f, b, k)[column]);
+        int length = nevh__print(text + at, size - at, "%s%c[%zu] = %.9g",
+                                 at ? ", " : "", k < term->nq ? 'q' : 'p',
+                                 nevh__index(term, instance, k),
+                                 nevh__row(f, b, k)[column]);
         at += length > 0 ? (size_t)length : 0;
     }
     if (term->nv > 6 && at < size)

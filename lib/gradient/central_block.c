@@ -13,6 +13,7 @@
    field: one that followed the state would break time reversal.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/block_private.h"
+#include "system/print_private.h"
 #include <math.h>
 #include <nevh/body.h>
 #include <stdio.h>
@@ -108,10 +109,11 @@ int nevh__fail_outside(nevh_field *f, nevh__planned *term, const nevh__block *b,
                        size_t column, size_t instance, size_t k, double reach) {
     char where[200];
     nevh__report report = f->report;
-    snprintf(where, sizeof where,
-             "a difference by %c[%zu] reaches %.3g from the orbit (the exact "
-             "gradient reads no such point), where ",
-             k < term->nq ? 'q' : 'p', nevh__index(term, instance, k), reach);
+    nevh__print(
+        where, sizeof where,
+        "a difference by %c[%zu] reaches %.3g from the orbit (the exact "
+        "gradient reads no such point), where ",
+        k < term->nq ? 'q' : 'p', nevh__index(term, instance, k), reach);
     int status = nevh__block_fail(f, term, b, column, where, f->h[column]);
     nevh__report outside = f->report;
     f->report = report;
@@ -134,7 +136,7 @@ int nevh__central_fail(nevh_field *f, nevh__planned *term, const nevh__block *b,
     size_t index = nevh__index(term, instance, k);
     const double *z = k < term->nq ? b->q : b->p;
     if (decl->time)
-        snprintf(when, sizeof when, ", t = %.9g", b->t[b->lane]);
+        nevh__print(when, sizeof when, ", t = %.9g", b->t[b->lane]);
     return nevh__fail(
         &f->report, NEVH_EDOM,
         "the derivative of term \"%s\" of effect \"%s\" with respect to "

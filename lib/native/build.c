@@ -3,6 +3,7 @@
 #define _XOPEN_SOURCE 700
 #include "native/compiler_private.h"
 #include "native/native_private.h"
+#include "system/print_private.h"
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -119,13 +120,15 @@ static void tell_failure(const nevh__compiling *run,
                  run->status);
 }
 
-static void tell(const nevh__compiling *run, double seconds,
-                 char why[NEVH__WHY_NATIVE]) {
+static const char too_long[] =
+    "the C compiler took too long; it is tried again "
+    "ten minutes later";
+
+static void tell(const nevh__compiling *run, char why[NEVH__WHY_NATIVE]) {
     if (run->output.interrupted)
         snprintf(why, NEVH__WHY_NATIVE, "a signal ended the compiler");
     else if (run->output.late)
-        snprintf(why, NEVH__WHY_NATIVE,
-                 "the C compiler took more than %.0f seconds", seconds);
+        snprintf(why, NEVH__WHY_NATIVE, "%s", too_long);
     else if (run->status == NEVH__NO_COMPILER)
         snprintf(why, NEVH__WHY_NATIVE,
                  "there is no C compiler%s%.200s: install one, or name it in "
@@ -139,6 +142,7 @@ static void tell(const nevh__compiling *run, double seconds,
 typedef struct {
     const char *flags[sizeof most / sizeof *most];
     char *cache, *kept; /* NULL: there is none */
+    char *late; /* a file as old as the compiler's last failure to end */
 } place;
 
 /* cache: as of nevh__native_load */
@@ -149,16 +153,47 @@ static place place_of(const char *source, const char *cache,
     p.flags[LAST] = processor();
     key k = key_of(source, p.flags);
     p.cache = cache && !*cache ? NULL : nevh__cache_folder(cache, why);
-    if (p.cache)
+    if (p.cache) {
+        key compiler = key_of("", p.flags);
+        p.late = nevh__text("%s/%016llx.late", p.cache,
+                            (unsigned long long)compiler.part[0]);
         p.kept = nevh__text("%s/%016llx%016llx.so", p.cache,
                             (unsigned long long)k.part[0],
                             (unsigned long long)k.part[1]);
+    }
     return p;
 }
 
 static void free_place(place *p) {
+    free(p->late);
     free(p->kept);
     free(p->cache);
+}
+
+/* Whether a compiler that took too long is to be left alone, so that a command that
+   has many texts waits for it once; who waits longest asks all the same. */
+static bool was_late(const place *p, double seconds,
+                     char why[NEVH__WHY_NATIVE]) {
+    enum { APART = 600 };
+    struct stat found;
+    if (seconds >= NEVH__LONGEST_COMPILATION || !p->late ||
+        stat(p->late, &found))
+        return false;
+    double age = difftime(time(NULL), found.st_mtime);
+    if (age < 0 || age > APART)
+        return false;
+    snprintf(why, NEVH__WHY_NATIVE, "%s", too_long);
+    return true;
+}
+
+static void note_late(const place *p) {
+    int file = p->late ? open(p->late,
+                              O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600)
+                       : -1;
+    if (file < 0)
+        return;
+    futimens(file, NULL);
+    close(file);
 }
 
 /* What a text is compiled from and to. */
@@ -194,11 +229,12 @@ static void remove_files(files *f) {
 }
 
 /* What was compiled is kept once it is known to have steps. */
-static void *open_compiled(const nevh__compiling *run, double seconds,
-                           const files *f, const place *p,
-                           char why[NEVH__WHY_NATIVE]) {
+static void *open_compiled(const nevh__compiling *run, const files *f,
+                           const place *p, char why[NEVH__WHY_NATIVE]) {
+    if (run->output.late)
+        note_late(p);
     if (run->status) {
-        tell(run, seconds, why);
+        tell(run, why);
         return NULL;
     }
     void *library = open_library(f->object, why);
@@ -219,10 +255,12 @@ static void *build(const char *source, const place *p, double seconds,
     sigset_t before;
     files f;
     nevh__compiling run;
+    if (was_late(p, seconds, why))
+        return NULL;
     nevh__signals_hold(&before);
     begin(&f, nevh__new_folder(), source, p, &before, &run);
     nevh__compile_await(&run, 1, &before, seconds);
-    void *library = open_compiled(&run, seconds, &f, p, why);
+    void *library = open_compiled(&run, &f, p, why);
     remove_files(&f);
     nevh__signals_release(&before);
     return library;
@@ -262,7 +300,10 @@ static size_t build_some(char *const sources[], size_t count, const char *cache,
     bool fine = true;
     for (; next < count && begun < most_begun; next++) {
         p[begun] = place_of(sources[next], cache, why);
-        if (is_missing(&p[begun])) {
+        if (is_missing(&p[begun]) && was_late(&p[begun], seconds, why)) {
+            free_place(&p[begun]);
+            fine = false;
+        } else if (is_missing(&p[begun])) {
             begin(&f[begun], nevh__new_folder(), sources[next], &p[begun],
                   before, &run[begun]);
             begun++;
@@ -272,7 +313,7 @@ static size_t build_some(char *const sources[], size_t count, const char *cache,
     nevh__compile_await(run, begun, before, seconds);
     for (size_t i = 0; i < begun; i++) {
         void *library =
-            open_compiled(&run[i], seconds, &f[i], &p[i], fine ? why : other);
+            open_compiled(&run[i], &f[i], &p[i], fine ? why : other);
         fine &= library != NULL;
         if (library)
             dlclose(library);
@@ -354,10 +395,12 @@ static char *folder_in_cache(const nevh__background *b) {
 
 static void *compile(nevh__background *b) {
     sigset_t all;
+    if (was_late(&b->p, b->seconds, b->why))
+        return NULL;
     sigfillset(&all); /* signals are for other threads */
     begin(&b->f, folder_in_cache(b), b->source, &b->p, &b->before, &b->run);
     nevh__compile_await(&b->run, 1, &all, b->seconds);
-    void *library = open_compiled(&b->run, b->seconds, &b->f, &b->p, b->why);
+    void *library = open_compiled(&b->run, &b->f, &b->p, b->why);
     remove_files(&b->f);
     return library;
 }
@@ -371,9 +414,9 @@ static void *await_compiler(void *data) {
             b->library = compile(b);
         give_up_lock(b);
     } else
-        snprintf(b->why, NEVH__WHY_NATIVE,
-                 "another program has compiled them for %.0f seconds",
-                 b->seconds);
+        nevh__print(b->why, NEVH__WHY_NATIVE,
+                    "another program has compiled them for %.0f seconds",
+                    b->seconds);
     if (b->library)
         *(void **)&steps = dlsym(b->library, "nevh_native_steps");
     atomic_store(b->steps, steps);

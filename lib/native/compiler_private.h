@@ -29,7 +29,7 @@ void nevh__signals_release(const sigset_t *before);
 char **nevh__compiler_words(void);
 /* The file that a command is; to be freed.  NULL: there is none. */
 char *nevh__command_find(const char *name);
-enum { NEVH__NO_COMPILER = 127 };
+enum { NEVH__NO_COMPILER = -2 };
 /* A compiler at work.  So many may be at once. */
 enum { NEVH__MOST_COMPILERS = 16 };
 typedef struct {

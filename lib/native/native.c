@@ -316,7 +316,7 @@ static bool make_room(nevh__native *x, size_t size) {
 /* Seconds that a compiler may take: many times what a text takes on a machine with
    other work; who asks for compiled steps in any case waits longer. */
 static double patience(const nevh_work *w, size_t characters) {
-    static const double slower = 50, least = 5;
+    static const double slower = 25, least = 4;
     double seconds = least + slower * a_character * (double)characters;
     return w->options->native == NEVH_NATIVE_ALWAYS ||
                    seconds > NEVH__LONGEST_COMPILATION

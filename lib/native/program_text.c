@@ -1,6 +1,7 @@
 /* nevh: steps as a program that needs nothing but the C library.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "native/native_private.h"
+#include "system/print_private.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -132,7 +133,7 @@ static void write_run(nevh__writer *w, const nevh_work *work,
     nevh__number_text(p->t_end, end);
     nevh__number_text(h, step);
     char count[NEVH__NAME];
-    snprintf(count, sizeof count, "%.0f", steps);
+    nevh__print(count, sizeof count, "%.0f", steps);
     nevh__write_filled(w, w->own_time ? run_of_own_time : run_of_steps,
                        (const char *const[]){begin, end, step,
                                              whole ? "" : " and a shorter one",

@@ -1,6 +1,7 @@
 /* nevh: C text in the making.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "native/writer_private.h"
+#include "system/print_private.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,11 +25,11 @@ void nevh__write(nevh__writer *w, const char *format, ...) {
     va_list arguments, again;
     va_start(arguments, format);
     va_copy(again, arguments);
-    int length = vsnprintf(NULL, 0, format, arguments);
+    int length = nevh__vprint(NULL, 0, format, arguments);
     w->failed |= length < 0 || !make_room(w, (size_t)length);
     if (!w->failed)
-        w->used += (size_t)vsnprintf(w->text + w->used, w->room - w->used,
-                                     format, again);
+        w->used += (size_t)nevh__vprint(w->text + w->used, w->room - w->used,
+                                        format, again);
     va_end(again);
     va_end(arguments);
 }
@@ -71,8 +72,8 @@ void nevh__number_text(double x, char name[NEVH__NAME]) {
     double found = NAN;
     /* As few digits as give it back. */
     for (int digits = 15; found != x && digits <= 17; digits++) {
-        snprintf(name, NEVH__NAME, signbit(x) ? "(%.*g" : "%.*g", digits, x);
-        found = strtod(name + (name[0] == '('), NULL);
+        nevh__print(name, NEVH__NAME, signbit(x) ? "(%.*g" : "%.*g", digits, x);
+        found = nevh__read_number(name + (name[0] == '('));
     }
     if (!strpbrk(name, ".en"))
         strcat(name, ".0");

@@ -1,6 +1,7 @@
 /* nevh: FILE:LINE:COLUMN: error: ..., the line, and a caret.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "scene/scene_private.h"
+#include "system/print_private.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -88,7 +89,7 @@ bool nevh__scene_fail(nevh_scene *s, int status, const nevh__piece *piece,
     char text[TEXT];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    nevh__vprint(text, sizeof text, format, arguments);
     va_end(arguments);
     return nevh__scene_fail_at(s, status, piece->line,
                                nevh__piece_column(piece),

@@ -1,6 +1,7 @@
 /* nevh: memory.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "system/system_private.h"
+#include "system/print_private.h"
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -54,13 +55,13 @@ void *nevh__grow(void *array, size_t count, size_t size) {
 char *nevh__text(const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    int length = vsnprintf(NULL, 0, format, arguments);
+    int length = nevh__vprint(NULL, 0, format, arguments);
     va_end(arguments);
     char *text = length < 0 ? NULL : nevh__array((size_t)length + 1, 1);
     if (!text)
         return NULL;
     va_start(arguments, format);
-    vsnprintf(text, (size_t)length + 1, format, arguments);
+    nevh__vprint(text, (size_t)length + 1, format, arguments);
     va_end(arguments);
     return text;
 }

@@ -1,6 +1,7 @@
 /* nevh: statuses and messages.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "system/system_private.h"
+#include "system/print_private.h"
 #include <gsl/gsl_errno.h>
 #include <stdio.h>
 
@@ -26,7 +27,7 @@ const char *nevh_status_text(int status) {
 int nevh__vfail(nevh__report *report, int status, const char *format,
                 va_list arguments) {
     report->status = status;
-    vsnprintf(report->text, sizeof report->text, format, arguments);
+    nevh__vprint(report->text, sizeof report->text, format, arguments);
     return status;
 }
 

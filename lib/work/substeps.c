@@ -1,6 +1,7 @@
 /* nevh: when step control gives up.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "work/work_private.h"
+#include "system/print_private.h"
 #include <stdio.h>
 
 bool nevh__too_many(nevh__pace *pace, double length, double done,
@@ -10,9 +11,10 @@ bool nevh__too_many(nevh__pace *pace, double length, double done,
     if (most)
         snprintf(why, NEVH__WHY, "more than a million substeps");
     else if (stops)
-        snprintf(why, NEVH__WHY,
-                 "ever shorter substeps (now %.2g; the rest would take %.0e of "
-                 "them: does the orbit end near by?)",
-                 pace->each, (length - done) / pace->each);
+        nevh__print(
+            why, NEVH__WHY,
+            "ever shorter substeps (now %.2g; the rest would take %.0e of "
+            "them: does the orbit end near by?)",
+            pace->each, (length - done) / pace->each);
     return stops;
 }

@@ -162,8 +162,8 @@ CC=$PWD/$work/compiler
 export CC
 exits 0 compare pendulum $long --integrators gauss8,verlet --dt 0.1
 unset CC
-says 'not compiled: the C compiler took more than [0-9]+ seconds'
-has '^gauss8 '
+says 'not compiled: the C compiler took too long'
+has '^ *gauss8 '
 unset SIGN
 test "$(ls -A $TMPDIR)" = '' || fails "leaves $(ls -A $TMPDIR)"
 

@@ -1,0 +1,294 @@
+/* nevh tests: C compilers that fail, never end, leave children or give other digits, and
+   callers with a locale or traps of their own: steps go on, and say why.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#define _GNU_SOURCE
+#include "../support/native.h"
+#include "native/native_private.h"
+#include <fcntl.h>
+#include <fenv.h>
+#include <locale.h>
+#include <nevh/run.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static char kept_compiler[1000];
+
+static void setup(void) {
+    const char *now = getenv("CC");
+    snprintf(kept_compiler, sizeof kept_compiler, "%s", now ? now : "cc");
+    setenv("C_COMPILER", kept_compiler, 1);
+    make_cache();
+    setenv("WHERE", cache, 1);
+}
+
+static void teardown(void) {
+    setenv("CC", kept_compiler, 1);
+    remove_cache();
+}
+
+/* A compiler that is a script, in a folder with a blank in its name. */
+static void write_script(const char *name, const char *text) {
+    char path[200];
+    snprintf(path, sizeof path, "%s/a folder", cache);
+    mkdir(path, 0700);
+    snprintf(path, sizeof path, "%s/a folder/%s", cache, name);
+    FILE *file = fopen(path, "w");
+    ck_assert_ptr_nonnull(file);
+    fprintf(file, "#!/bin/sh\n%s\n", text);
+    fclose(file);
+    ck_assert_int_eq(chmod(path, 0700), 0);
+    setenv("CC", path, 1);
+}
+
+static size_t libraries(void) {
+    size_t count = 0;
+    char folder[100];
+    snprintf(folder, sizeof folder, "%s/kept", cache);
+    DIR *all = opendir(folder);
+    for (struct dirent *entry; all && (entry = readdir(all));)
+        count += strstr(entry->d_name, ".so") != NULL;
+    if (all)
+        closedir(all);
+    return count;
+}
+
+static nevh_stepper *stepper(nevh_scene *scene, nevh_native_use native) {
+    static char folder[100];
+    snprintf(folder, sizeof folder, "%s/kept", cache);
+    nevh_options o = {
+        .native = native, .native_cache = folder, .steps_foreseen = 1e9};
+    return nevh_stepper_new(nevh_scene_system(scene), nevh_gauss8, &o);
+}
+
+static void run_on(nevh_stepper *s, double y[2]) {
+    ck_assert_int_eq(nevh_run(s, 0, 0.1, 50, &y[0], &y[1], NULL, 0), NEVH_OK);
+}
+
+/* said: NULL: steps are compiled all the same; kept: libraries in the cache */
+static void assert_compiler(nevh_native_use native, const char *said) {
+    double a[2] = {2, 0}, b[2] = {2, 0};
+    const char *why = NULL;
+    nevh_scene *scene = parsed(pendulum);
+    nevh_stepper *plain = stepper(scene, NEVH_NATIVE_NEVER);
+    nevh_stepper *s = stepper(scene, native);
+    bool is_native = nevh_stepper_native(s, &why);
+    if (said)
+        assert_says(why, said);
+    else
+        ck_assert_str_eq(why, "");
+    ck_assert(is_native == !said);
+    ck_assert_uint_eq(libraries(), said ? 0 : 1);
+    run_on(plain, a);
+    run_on(s, b);
+    ck_assert(memcmp(a, b, sizeof a) == 0);
+    nevh_stepper_free(plain);
+    nevh_stepper_free(s);
+    nevh_scene_free(scene);
+}
+
+/* What comes of a compiler; NULL: steps. */
+static const struct {
+    const char *script, *said;
+} compilers[] = {
+    {"exec $C_COMPILER \"$@\"", NULL},
+    {"sleep 100 & echo $! >\"$WHERE/left\"; exec $C_COMPILER \"$@\"", NULL},
+    {"echo a warning; exec $C_COMPILER \"$@\"", NULL},
+    {"exec >&- 2>&-; $C_COMPILER \"$@\"", NULL},
+    {"exit 0", "steps.so"},
+    {"exit 3", "the C compiler fails: exit status 3, without a message"},
+    {"kill -9 $$", "Killed"},
+    {"kill -15 $$", "Terminated"},
+    {"echo; echo; echo no licence; exit 1", "the C compiler fails: no licence"},
+    {"echo x.c:1: error: too odd; exit 1", "the C compiler fails: too odd"},
+    {"while test \"$1\" != -o; do shift; done; echo hello >\"$2\"", "steps.so"},
+    {"while test \"$1\" != -o; do shift; done; echo 'int x;' >\"$2.c\"\n"
+     "exec $C_COMPILER -shared -fPIC -o \"$2\" \"$2.c\"",
+     "has no steps"},
+};
+enum { COMPILERS = sizeof compilers / sizeof *compilers };
+
+TEST_EACH(odd_compilers, COMPILERS) {
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    setup();
+    for (int way = 0; way < 2; way++) {
+        char name[20];
+        snprintf(name, sizeof name, "compiler%d", way);
+        write_script(name, compilers[_i].script);
+        if (way && !compilers[_i].said) /* else it is in the cache */
+            ck_assert_int_eq(system("rm -r \"$WHERE/kept\""), 0);
+        assert_compiler(way ? NEVH_NATIVE_ALWAYS : NEVH_NATIVE_AUTO,
+                        compilers[_i].said);
+    }
+    ck_assert_int_ge(system("test ! -e \"$WHERE/left\" || "
+                            "kill $(cat \"$WHERE/left\")"),
+                     0);
+    teardown();
+}
+
+/* CC as words: more than a few, and quotes as a shell has them. */
+TEST(words_of_compilers) {
+    char words[2000] = "\"", *at;
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    setup();
+    write_script("my compiler", "exec $C_COMPILER \"$@\"");
+    strcat(strcat(words, getenv("CC")), "\" -DA='a b' -DB=\\ ");
+    at = words + strlen(words);
+    for (int i = 0; i < 100; i++)
+        at += sprintf(at, " -DC%d=1", i);
+    setenv("CC", words, 1);
+    assert_compiler(NEVH_NATIVE_ALWAYS, NULL);
+    ck_assert_int_eq(system("rm -r \"$WHERE/kept\""), 0);
+    setenv("CC", cache, 1);
+    assert_compiler(NEVH_NATIVE_ALWAYS, "there is no C compiler");
+    setenv("CC", "/dev/null", 1);
+    assert_compiler(NEVH_NATIVE_AUTO, "there is no C compiler /dev/null");
+    teardown();
+}
+
+/* What has ended, but was not waited for, is not. */
+static bool is_alive(const char *file) {
+    char command[200];
+    snprintf(command, sizeof command,
+             "ps -o stat= -p $(cat \"$WHERE/%s\") | grep -qv '^Z'", file);
+    return system(command) == 0;
+}
+
+static void await_death(const char *file) {
+    for (int i = 0; is_alive(file) && i < 1000; i++)
+        usleep(10000);
+    ck_assert(!is_alive(file));
+}
+
+static const char slow[] = "trap '' TERM\necho $$ >\"$WHERE/compiler\"\n"
+                           "sleep 1000 &\necho $! >\"$WHERE/child.new\"\n"
+                           "mv \"$WHERE/child.new\" \"$WHERE/child\"\nwait\n"
+                           "sleep 1000";
+
+/* One that never ends is ended, with what it started, and then left alone. */
+TEST(endless_compiler) {
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    setup();
+    write_script("slow", slow);
+    assert_compiler(NEVH_NATIVE_AUTO, "the C compiler took too long");
+    await_death("compiler");
+    await_death("child");
+    ck_assert_int_eq(system("rm \"$WHERE/child\""), 0);
+    assert_compiler(NEVH_NATIVE_AUTO, "the C compiler took too long");
+    ck_assert(access("child", F_OK) != 0);
+    teardown();
+}
+
+/* A compiler does not outlive who waits for it, killed by whatever signal; and nobody
+   else waits for that. */
+TEST_EACH(killed_callers, 4) {
+    static const int signals[] = {SIGKILL, SIGTERM, SIGXCPU, SIGUSR1};
+    char file[100];
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    setup();
+    write_script("slow", slow);
+    nevh_scene *scene = parsed(pendulum);
+    pid_t child = fork();
+    if (!child) {
+        signal(signals[_i], SIG_DFL); /* Check has handlers */
+        nevh_stepper *s =
+            stepper(scene, _i % 2 ? NEVH_NATIVE_ALWAYS : NEVH_NATIVE_AUTO);
+        nevh_stepper_native(s, NULL);
+        _exit(0);
+    }
+    snprintf(file, sizeof file, "%s/child", cache);
+    while (access(file, F_OK))
+        usleep(10000);
+    kill(child, signals[_i]);
+    waitpid(child, NULL, 0);
+    await_death("compiler");
+    await_death("child");
+    ck_assert_uint_le(libraries(), 1); /* the lock's file, which nobody holds */
+    write_script("fine", "exec $C_COMPILER \"$@\"");
+    nevh_stepper *s = stepper(scene, NEVH_NATIVE_AUTO);
+    ck_assert(nevh_stepper_native(s, NULL));
+    nevh_stepper_free(s);
+    nevh_scene_free(scene);
+    teardown();
+}
+
+/* Formulas with numbers of all kinds. */
+static const char decimal[] =
+    "[parameters]\na = 1.25e-3\n[coordinates]\nx = 0.5\ny = 0.25\n"
+    "[effects]\nT = (p_x^2 + 1.5*p_y^2)/2.5\n"
+    "V = 0.75*x^2 + a*x*y + 2.5*y^2 + 0.125*cos(1.5*x)\n";
+
+static void assert_texts(char *texts[2], int turn) {
+    char *mathml = NULL;
+    size_t bytes;
+    nevh_scene *scene = parsed(decimal);
+    FILE *out = open_memstream(&mathml, &bytes);
+    nevh_stepper *s =
+        nevh_stepper_new(nevh_scene_system(scene), nevh_verlet,
+                         &(nevh_options){.portable = true,
+                                         .q = (double[]){0.5, 0.25},
+                                         .p = (double[]){0.125, 1e-3}});
+    char *program = nevh_stepper_program(
+        s, &(nevh_program){.names = (const char *const[]){"x", "y"},
+                           .h = 0.125,
+                           .t_end = 1.5,
+                           .every = 1});
+    ck_assert_msg(program, "%s", nevh_stepper_message(s));
+    fprintf(out, "%s", program);
+    fclose(out);
+    free(program);
+    texts[turn] = mathml;
+    nevh_stepper_free(s);
+    nevh_scene_free(scene);
+}
+
+/* Texts are the same in a locale whose decimal point is a comma. */
+TEST(decimal_comma) {
+    char *texts[2], path[200], number[20];
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    setup();
+    if (system("localedef -i de_DE -f UTF-8 \"$WHERE/de_DE.UTF-8\" "
+               ">\"$WHERE/out\" 2>&1"))
+        skip_test("localedef makes no locale here");
+    assert_texts(texts, 0);
+    ck_assert_ptr_nonnull(realpath(cache, path));
+    setenv("LOCPATH", path, 1);
+    ck_assert_ptr_nonnull(setlocale(LC_ALL, "de_DE.UTF-8"));
+    snprintf(number, sizeof number, "%.1f", 0.5);
+    ck_assert_str_eq(number, "0,5");
+    assert_texts(texts, 1);
+    ck_assert_str_eq(texts[0], texts[1]);
+    nevh_scene *scene = parsed(decimal);
+    for (const nevh_integrator *scheme,
+         **all = (const nevh_integrator *[]){nevh_verlet, nevh_gauss8, nevh_rk4,
+                                             nevh_taylor, nevh_tao4, NULL};
+         (scheme = *all); all++)
+        for (int width = 1; width <= 8; width += 7) {
+            const nevh_gradient *gradient =
+                width > 1 || scheme == nevh_taylor ? nevh_exact : nevh_central4;
+            pair x =
+                pair_of(scene, scheme, gradient, false, cache, (size_t)width);
+            if (!nevh_stepper_status(x.plain) &&
+                !(width > 1 &&
+                  (scheme == nevh_tao4 || scheme == nevh_taylor))) {
+                ck_assert_msg(nevh_stepper_native(x.native, NULL), "%s: %s",
+                              scheme->name, x.why);
+                ck_assert_int_eq(pair_run(&x, 0.01, 100), NEVH_OK);
+                ck_assert(pair_same(&x));
+            }
+            pair_free(&x);
+        }
+    snprintf(number, sizeof number, "%.1f",
+             0.5); /* the caller's is as it was */
+    ck_assert_str_eq(number, "0,5");
+    nevh_scene_free(scene);
+    setlocale(LC_ALL, "C");
+    free(texts[0]);
+    free(texts[1]);
+    teardown();
+}
