@@ -12,11 +12,14 @@ that this file stands in, then where the system's loader looks.
 SPDX-License-Identifier: GPL-3.0-or-later
 """
 
+from __future__ import annotations
+
 import csv
 import ctypes as c
 import difflib
 import html
 import math
+import numbers
 import os
 import re
 import signal
@@ -25,6 +28,7 @@ import sys
 import tempfile
 import threading
 import warnings
+from typing import Any, Callable, Mapping, Sequence
 
 try:
     import numpy as np
@@ -34,6 +38,12 @@ except ImportError:
 __version__ = "0.1.0"
 __all__ = ["solve", "compare", "sweep", "HGrad", "Scene", "Error", "Refused",
            "Failed", "integrators", "gradients", "scenes", "verdicts", "library", "command"]
+
+
+
+def __dir__():
+    return __all__ + ["__doc__", "__version__"]
+
 
 verdicts = ("bounded", "random-walk", "drifts", "unstable", "undecided")
 _INVALID, _STOPPED, _STRUCTURE, _NO_GRADIENT = 4, 1027, 1024, 1025
@@ -69,6 +79,7 @@ _here = os.path.dirname(os.path.realpath(__file__))
 def _trees():
     """Folders that hold what belongs together, installed or built."""
     yield os.path.join(_here, "nevh_files")
+    yield os.path.join(os.path.dirname(_here), "nevh_files")
     for up in ("..", "../build", "../../..", "../../../.."):
         yield os.path.normpath(os.path.join(_here, up))
 
@@ -234,7 +245,7 @@ class _Library:
 _lib = _Library()
 
 
-def library():
+def library() -> str:
     """The file of the library that is in use."""
     return _lib.path
 
@@ -247,12 +258,12 @@ def _names(objects, name):
     return found
 
 
-def integrators():
+def integrators() -> list[str]:
     """The names of all methods."""
     return _names(_lib.integrators, _lib.integrator_name)
 
 
-def gradients():
+def gradients() -> list[str]:
     """The names of all gradients."""
     return _names(_lib.gradients, _lib.gradient_name)
 
@@ -300,6 +311,9 @@ def _numbers(values, what="the array"):
     """An array of doubles, and what its memory is passed as."""
     try:
         if np is not None:
+            if np.ma.is_masked(values):
+                raise Refused("%s has masked values; it takes a number in each place"
+                              % what)
             array = np.array(values, ndmin=1)
             if array.dtype.kind not in "biufO":
                 raise TypeError
@@ -312,7 +326,7 @@ def _numbers(values, what="the array"):
             values = [values]
         array = (c.c_double * len(values))(*values)
         return array, c.addressof(array)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         if isinstance(error, Refused):
             raise
         raise Refused("%s takes real numbers in a row, not %.80r"
@@ -325,7 +339,7 @@ def _real(what, value):
         if isinstance(value, str):
             raise TypeError
         return float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise Refused("%s = %.80r is not a real number" % (what, value)) from None
 
 
@@ -415,9 +429,17 @@ def _is_row(value):
             and getattr(value, "ndim", 1) > 0)
 
 
+def _one_line(what, text):
+    """A text that can stand in a line of a scene and ends no part of it."""
+    if not text.strip() or not text.isprintable() or "#" in text:
+        raise Refused("%s %r: it takes printable text in one line, without #"
+                      % (what, text))
+    return text
+
+
 def _value(name, value):
     if isinstance(value, str):
-        return value
+        return _one_line("the value of %s," % name, value)
     number = _real(name, value)
     if not math.isfinite(number):
         raise Refused("%s = %g is not finite" % (name, number))
@@ -425,7 +447,9 @@ def _value(name, value):
 
 
 def _assign(name, value):
-    _text("a name", name)
+    _one_line("the name", _text("a name", name))
+    if "=" in re.sub(r"\[.*\]", "", name):
+        raise Refused("the name %r has a =" % name)
     if not _is_row(value):
         return "%s = %s" % (name, _value(name, value))
     if not len(value):
@@ -481,7 +505,7 @@ def _shipped(name):
     return None
 
 
-def scenes():
+def scenes() -> list[str]:
     """The names of the scenes that ship."""
     return sorted({file[:-5] for folder in _scene_folders()
                    for file in os.listdir(folder) if file.endswith(".nevh")})
@@ -502,8 +526,11 @@ class Scene:
     with_effects, without_effects   names of effects to switch on and off
     """
 
-    def __init__(self, source, parameters=None, coordinates=None, with_effects=(),
-                 without_effects=()):
+    def __init__(self, source: str | os.PathLike,
+                 parameters: Mapping[str, Any] | None = None,
+                 coordinates: Sequence[str] | None = None,
+                 with_effects: str | Sequence[str] = (),
+                 without_effects: str | Sequence[str] = ()) -> None:
         self._made = self.path = None
         if not isinstance(source, (str, os.PathLike)):
             raise TypeError("a scene is a text, the name of a file or of a scene, not %r"
@@ -530,6 +557,16 @@ class Scene:
             for name in [names] if isinstance(names, str) else names:
                 name = _text("an effect", name).encode()
                 self._check(_lib.scene_enable(self._made, name, on))
+
+    @property
+    def name(self):
+        """The name of its file without .nevh, or H."""
+        return os.path.basename(self.path)[:-5] if self.path else "H"
+
+    def __repr__(self):
+        title = re.search(r"^title *= (.*)$", self.text, re.M)
+        return "<Scene %s: %s; %s>" % (self.name, title.group(1) if title else "no title",
+                                       ", ".join(self.names))
 
     def __reduce__(self):  # to copy and to pickle it
         return _again, (self.text, self.path, self.is_formula)
@@ -609,12 +646,16 @@ def _starts(scene, y0):
 
 def _address(function):
     """The address of a C function double H(double t, const double q[], const double
-    p[], const void *params), or None: a number, a ctypes or cffi pointer, what
-    numba's @cfunc gives, a scipy.LowLevelCallable."""
-    if isinstance(function, int):
-        if isinstance(function, bool) or not 4095 < function < 1 << 64:
+    p[], const void *params), or None: of a ctypes function or c_void_p, of what
+    numba's @cfunc gives, of a scipy.LowLevelCallable.  A plain number is refused:
+    nobody could tell that it is an address."""
+    if isinstance(function, numbers.Integral):
+        raise TypeError("H = %r is a number; an address of a C function is given as "
+                        "ctypes.c_void_p(address)" % (function,))
+    if isinstance(function, c.c_void_p):
+        if not function.value or function.value < 4096:
             raise TypeError("%r is not the address of a function" % function)
-        return function
+        return function.value
     if hasattr(function, "address"):
         return int(function.address)
     if isinstance(function, c._CFuncPtr):
@@ -735,6 +776,23 @@ class _Subject:
 
 # Runs.
 
+def _set_gradient_steps(o, scene, given, n, what):
+    """The half-spreads of differences in options: those given, a number or one for
+    each of y; else the scene's.  Returns what must be kept while the options are used."""
+    if given is None and scene:
+        settings = scene._settings()
+        o.gradient_step = settings.gradient_step
+        o.gradient_steps = settings.gradient_steps
+        return None
+    if not hasattr(given, "__len__"):
+        o.gradient_step = given or 0
+        return None
+    steps, o.gradient_steps = _numbers(given, what)
+    if len(steps) != 2 * n:
+        raise Refused("%s has %d numbers; it takes one, or %d" % (what, len(steps), 2 * n))
+    return steps
+
+
 class _Plan:
     """A stepper and what watches it."""
 
@@ -751,13 +809,8 @@ class _Plan:
             o.transform = subject.scene and _lib.scene_transform(subject.scene._made)
             if not o.transform:
                 raise Refused("%s: there is no scene with a transform" % name)
-        if gradient_step is not None and hasattr(gradient_step, "__len__"):
-            self.steps, o.gradient_steps = _numbers(gradient_step, "gradient_step")
-            if len(self.steps) != 2 * subject.n:
-                raise Refused("gradient_step has %d numbers; it takes one, or %d"
-                              % (len(self.steps), 2 * subject.n))
-        else:
-            o.gradient_step = gradient_step or 0
+        self.steps = _set_gradient_steps(o, subject.scene, gradient_step, subject.n,
+                                         "gradient_step")
         o.balance = subject.reads_time(t0, y) or subject.friction() is not None
         self.integrator = integrator
         self.stepper = _lib.stepper_new(subject.system, integrator, c.byref(o))
@@ -979,14 +1032,22 @@ def _times_to_keep(t_eval, t0, t_end):
     return times
 
 
-def solve(H, t_span=None, y0=None, method=None, *, dt=None, rtol=None, atol=None,
-          t_eval=None, gradient=None, gradient_step=None, parameters=None, args=(),
-          coordinates=None, with_effects=(), without_effects=(), params=None,
-          observe=None, every=1, check=True):
+def solve(H: Any, t_span: Sequence[float] | None = None,
+          y0: Sequence[float] | Mapping[str, float | str] | None = None,
+          method: str | type | None = None, *, dt: float | None = None,
+          rtol: float | None = None, atol: float | Sequence[float] | None = None,
+          t_eval: Sequence[float] | None = None, gradient: str | None = None,
+          gradient_step: float | Sequence[float] | None = None,
+          parameters: Mapping[str, Any] | None = None, args: Sequence[Any] = (),
+          coordinates: Sequence[str] | None = None,
+          with_effects: str | Sequence[str] = (),
+          without_effects: str | Sequence[str] = (), params: Any = None,
+          observe: Callable[[float, Any], Any] | None = None, every: int = 1,
+          check: bool = True) -> Result:
     """Follow the orbit of a Hamiltonian from t_span[0] to t_span[1].
 
-    H        H as text ("p_x^2/2 + k*x^2/2"), a scene (see Scene), the address of a C
-             function H(t, q, p, params), or, slow, a function H(t, y, *args,
+    H        H as text ("p_x^2/2 + k*x^2/2"), a scene (see Scene), a pointer of ctypes
+             to a C function H(t, q, p, params), or, slow, a function H(t, y, *args,
              **parameters) of Python, where y has coordinates, then momenta
     y0       coordinates, then momenta; of scenes also {name: value}, None: as they say
     method   a name of nevh.integrators() or of SciPy's DOP853 and RK45.  None: the
@@ -1001,6 +1062,8 @@ def solve(H, t_span=None, y0=None, method=None, *, dt=None, rtol=None, atol=None
     t_eval   times to keep; default: all steps of dt.  They do not change the orbit
     gradient default: of scenes what they say, exact of other texts, central4 of
              functions
+    gradient_step   half the spread of differences, a number or one for each of y;
+             default: the scene's, else chosen where the orbit starts
     parameters, coordinates, with_effects, without_effects: see Scene
     observe  called with (t, y) after `every` steps; what is true ends the run
     check    False: a step that fails gives a result with status -1, as SciPy's
@@ -1144,13 +1207,7 @@ class HGrad:
         first = [row[0] if hasattr(row, "__len__") else row for row in y]
         start, at = _numbers(first)
         o = _Options(t=t, q=at, p=at + 8 * n, gradient=self._gradient)
-        if hasattr(self._ds, "__len__"):
-            self._steps, o.gradient_steps = _numbers(self._ds, "ds")
-            if len(self._steps) != 2 * n:
-                raise Refused("ds has %d numbers; it takes one, or %d"
-                              % (len(self._ds), 2 * n))
-        else:
-            o.gradient_step = self._ds or 0
+        self._steps = _set_gradient_steps(o, self._subject.scene, self._ds, n, "ds")
         self._field = _lib.field_new(self._subject.system, c.byref(o))
         status = _lib.field_status(self._field)
         self._subject.trap.planned(status)
@@ -1224,8 +1281,8 @@ class Table(list):
     """Rows of `nevh compare`, dictionaries; `notes` is what stands above them."""
     notes = ()
     _shown = ("integrator", "order", "symplectic", "gradient", "dt", "status",
-              "max_energy_error", "energy_drift", "state_error", "hamiltonian_evals",
-              "seconds", "verdict")
+              "max_energy_error", "energy_drift", "state_error", "gradient_evals",
+              "hamiltonian_evals", "seconds", "verdict")
 
     def __getitem__(self, key):
         """A row by its number, or a column by its name."""
@@ -1242,7 +1299,8 @@ class Table(list):
 
     def _repr_html_(self):
         columns = [name for name in self._shown
-                   if any(row.get(name) is not None for row in self)]
+                   if any(row.get(name) is not None for row in self) and
+                   (name != "hamiltonian_evals" or any(row.get(name) for row in self))]
         head = "".join("<th>%s</th>" % name.replace("_", " ") for name in columns)
         rows = "".join("<tr>%s</tr>" % "".join(
             "<td>%s</td>" % self._cell(name, row.get(name)) for name in columns)
@@ -1260,7 +1318,7 @@ class Table(list):
             for row in cells])
 
 
-def command():
+def command() -> str:
     """The file of the command nevh that belongs to the library."""
     given = os.environ.get("NEVH_COMMAND")
     base = os.path.dirname(os.path.realpath(_lib.path))
@@ -1295,9 +1353,17 @@ def _options(**given):
         yield value if isinstance(value, str) else repr(value)
 
 
-def compare(scene, integrators=None, dt=None, t_end=None, *, y0=None, gradient=None,
-            tolerance=None, parameters=None, coordinates=None, with_effects=(),
-            without_effects=(), options=()):
+def compare(scene: str | os.PathLike | Scene,
+            integrators: str | Sequence[str] | None = None,
+            dt: float | Sequence[float] | None = None, t_end: float | None = None, *,
+            y0: Sequence[float] | Mapping[str, float | str] | None = None,
+            gradient: str | Sequence[str] | None = None,
+            tolerance: float | Sequence[float] | None = None,
+            parameters: Mapping[str, Any] | None = None,
+            coordinates: Sequence[str] | None = None,
+            with_effects: str | Sequence[str] = (),
+            without_effects: str | Sequence[str] = (),
+            options: Sequence[str] = ()) -> Table:
     """The table of `nevh compare`: what each integrator does to the energy, and at
     which cost.
 
@@ -1329,7 +1395,8 @@ def compare(scene, integrators=None, dt=None, t_end=None, *, y0=None, gradient=N
     if done.returncode not in (0, 1):
         raise Refused(done.stderr.strip())
     lines = done.stdout.splitlines()
-    table = Table({name: _number(text) for name, text in row.items()} for row in
+    table = Table(dict({name: _number(text) for name, text in row.items()},
+                       scene=made.name) for row in
                   csv.DictReader(line for line in lines if not line.startswith("#")))
     table.notes = [line[2:] for line in lines if line.startswith("#")]
     return table
@@ -1342,10 +1409,16 @@ def _lines(vary):
         if isinstance(vary, dict) else list(vary)
 
 
-def sweep(scene, vary=None, outcomes=None, integrator=None, *, dt=None, t_end=None,
-          rtol=None, gradient=None, threads=None, count=None, seed=None, combine=None,
-          y0=None, parameters=None, coordinates=None, with_effects=(),
-          without_effects=()):
+def sweep(scene: str | os.PathLike | Scene, vary: Any = None,
+          outcomes: str | Sequence[str] | None = None, integrator: str | None = None, *,
+          dt: float | None = None, t_end: float | None = None, rtol: float | None = None,
+          gradient: str | None = None, threads: int | None = None,
+          count: int | None = None, seed: int | None = None, combine: str | None = None,
+          y0: Sequence[float] | Mapping[str, float | str] | None = None,
+          parameters: Mapping[str, Any] | None = None,
+          coordinates: Sequence[str] | None = None,
+          with_effects: str | Sequence[str] = (),
+          without_effects: str | Sequence[str] = ()) -> Any:
     """Many orbits of a scene, side by side, into a structured array of NumPy.
 
     vary      {name: what}: an array of values, or a text as "range(0, pi, 1000)",
@@ -1394,13 +1467,21 @@ def sweep(scene, vary=None, outcomes=None, integrator=None, *, dt=None, t_end=No
                       _whole_from_one("threads", threads),
                       gradient=_gradient(gradient or settings.gradient[0].decode()),
                       gradient_step=settings.gradient_step,
-                      tolerance=0 if not adapts else 1e-9 if rtol is None else
-                      _positive("rtol", rtol))
+                      gradient_steps=settings.gradient_steps,
+                      tolerance=0 if not adapts else _tolerance(made, rtol))
     made_sweep = _lib.sweep_new(made._made, c.byref(o))
     try:
         return _sweep(made_sweep)
     finally:
         _lib.sweep_free(made_sweep)
+
+
+def _tolerance(scene, rtol):
+    """rtol, else the first of the scene's, else 1e-9."""
+    settings = scene._settings() if scene and not scene.is_formula else None
+    if rtol is None:
+        return settings.tolerance[0] if settings and settings.tolerances else 1e-9
+    return _positive("rtol", rtol)
 
 
 def _ends(settings, t_end):

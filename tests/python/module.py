@@ -327,8 +327,14 @@ def test_arguments_are_named_where_they_are_wrong():
              of("pendulumm")),
             (TypeError, "an effect is a text", of("pendulum", without_effects=[3])),
             (refused, "neither effects", of(value, without_effects=["gravity"])),
-            (TypeError, "True is not the address", of(True)),
-            (TypeError, "0 is not the address", of(0)),
+            (TypeError, "H = True is a number", of(True)),
+            (TypeError, "H = 12345 is a number", of(12345)),
+            (TypeError, "is not the address", of(ctypes.c_void_p(0))),
+            (refused, "takes printable text", of(parameters={"g\nh": 1})),
+            (refused, "takes printable text", of(parameters={"g": "1 # 2"})),
+            (refused, "the name 'g = 2' has a =", of(parameters={"g = 2": 1})),
+            (refused, "is not a real number", of(rtol=10 ** 400, method="RK45")),
+            (refused, "takes real numbers", of(y0=[10 ** 400, 0])),
             (TypeError, "not 'bytes'", of(b"p^2/2")),
             (refused, "every = 0", of(observe=print, every=0)),
             (TypeError, "observe is a function", of(observe=3)),
@@ -435,6 +441,39 @@ def test_a_function_of_python():
     assert close(last(k), [1, 0], 1e-6)
 
 
+def test_masked_values():
+    needs("NumPy")
+    import numpy
+    start = numpy.ma.masked_array([2.0, 0.0], [False, True])
+    raised(nevh.Refused, "masked", lambda: nevh.solve(PENDULUM, (0, 1), start, "verlet",
+                                                     dt=0.1))
+
+
+def test_names():
+    assert set(dir(nevh)) <= set(nevh.__all__) | {"__doc__", "__version__"}
+    assert repr(nevh.Scene("pendulum")).startswith("<Scene pendulum: Pendulum released")
+    rows = nevh.compare("pendulum", "verlet", t_end=1)
+    assert set(rows["scene"]) == {"pendulum"}
+
+
+def test_steps_of_the_scene():
+    """Differences of a scene take its steps, as the command's do."""
+    text = "[coordinates]\nx = 1\n[effects]\nH = p_x^2/2 + x^4/4\n[run]\nt_end = 1\n" \
+        "dt = 0.1\nintegrators = verlet\ngradient = central2\ngradient_step = %g\n"
+    fine, coarse = (nevh.solve(nevh.Scene(text % step)).y_reached[0] for step in
+                    (1e-5, 0.3))
+    assert abs(fine - coarse) > 1e-3
+    same = nevh.solve(nevh.Scene(text % 1e-5), gradient_step=0.3).y_reached[0]
+    assert same == coarse
+    slope = [nevh.HGrad(nevh.Scene(text % step), gradient="central2")(0, [1, 0])[1]
+             for step in (1e-5, 0.3)]
+    assert abs(slope[0] - slope[1]) > 1e-3
+    if np is not None:
+        ends = [nevh.sweep(nevh.Scene(text % step), {"x": [1.0]}, "last(x)")["last(x)"][0]
+                for step in (1e-5, 0.3)]
+        assert ends == [fine, coarse]
+
+
 def test_a_pointer():
     kind = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double,
                             ctypes.POINTER(ctypes.c_double),
@@ -446,7 +485,7 @@ def test_a_pointer():
     class Compiled:  # as numba's
         pass
     Compiled.address = address
-    for H in (mine, address, Compiled()):
+    for H in (mine, ctypes.c_void_p(address), Compiled()):
         orbit = nevh.solve(H, (0, 1), [2, 0], "verlet", dt=0.1)
         assert close(last(orbit), last(text), 1e-9)
 

@@ -11,6 +11,12 @@ status=0
 NEVH_TEST_WITHOUT_NUMPY=1 "$python" "$check" || status=1
 "$python" "$srcdir/tests/python/programs.py" "$srcdir" || status=1
 
+# The same states by all ways to take steps.
+folder=$PWD/same.$$
+trap 'rm -rf "$folder"' EXIT
+trap 'exit 1' HUP INT TERM
+mkdir "$folder" && "$python" "$srcdir/tests/python/same_states.py" "$folder" || status=1
+
 # A library of another kind is refused, as is one that is not there.
 NEVH_LIBRARY=$PWD/no-such-library "$python" -c 'import nevh' 2>&1 |
     grep -q 'set NEVH_LIBRARY' || { echo "a missing library is not named"; status=1; }

@@ -41,6 +41,7 @@ with zipfile.ZipFile(sys.argv[1]) as archive:
             file.write(archive.read(info))
         os.chmod(path, info.external_attr >> 16 & 0o777 or 0o644)
 END
+test -e "$work/nevh/py.typed" || { echo "the wheel does not say that it has hints"; exit 1; }
 unset NEVH_LIBRARY NEVH_COMMAND NEVH_SCENES LD_LIBRARY_PATH
 PYTHONPATH=$work
 export PYTHONPATH
