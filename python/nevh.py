@@ -576,8 +576,14 @@ class Scene:
             _lib.scene_free(self._made)
 
     def _check(self, status):
+        message = _lib.scene_message(self._made)
+        if status and self.is_formula:  # the user wrote one line, not a scene
+            message = re.sub(r"^H:\d+:(\d+): error(.*\nH = )", lambda at: "H, column %d%s"
+                             % (int(at.group(1)) - len("H = "), at.group(2)),
+                             message.decode())
+            message = re.sub(r"^H:\d+:\d+: error: ", "", message)
         # A file that cannot be read is bad input, too.
-        _check(_INVALID if status == 5 else status, _lib.scene_message(self._made))
+        _check(_INVALID if status == 5 else status, message)
 
     @property
     def n(self):

@@ -263,7 +263,7 @@ def test_friction_and_time_have_a_balance():
 
 def test_refusals():
     solve = nevh.solve
-    error = raised(nevh.Refused, "H:", solve, "p^2/2 - coss(q)", (0, 1), [1, 0])
+    error = raised(nevh.Refused, "H, column 9: there is no function coss", solve, "p^2/2 - coss(q)", (0, 1), [1, 0])
     assert "did you mean cos" in str(error) and isinstance(error, ValueError)
     raised(nevh.Refused, "length 3; it takes 2 numbers: phi, p_phi", solve, PENDULUM,
            (0, 1), [1, 0, 0])
