@@ -30,7 +30,7 @@ reference_headers = \
 	include/nevh/status.h include/nevh/system.h include/nevh/body.h \
 	include/nevh/simd.h include/nevh/probe.h include/nevh/gradient.h \
 	include/nevh/integrator.h include/nevh/run.h include/nevh/transform.h \
-	include/nevh/diagnose.h include/nevh/loop.h include/nevh/frequencies.h include/nevh/chaos.h include/nevh/confirm.h include/nevh/shadow.h include/nevh/reference.h include/nevh/certain.h \
+	include/nevh/diagnose.h include/nevh/loop.h include/nevh/frequencies.h include/nevh/confirm.h include/nevh/chaos.h include/nevh/shadow.h include/nevh/reference.h include/nevh/certain.h \
 	include/nevh/section.h include/nevh/ensemble.h include/nevh/scene.h \
 	include/nevh/sweep.h include/nevh/models.h include/nevh/binding.h \
 	include/nevh/gsl.h include/nevh/extend.h

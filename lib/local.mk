@@ -216,6 +216,7 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/chaos_starts.c \
 	lib/diagnose/chaos_report.c \
 	lib/diagnose/chaos_batch.c \
+	lib/diagnose/chaos_confirm.c \
 	lib/diagnose/confirm.c \
 	lib/diagnose/shadow.c \
 	lib/diagnose/rates.c \

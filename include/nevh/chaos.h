@@ -3,7 +3,7 @@
 #ifndef NEVH_CHAOS_H
 #define NEVH_CHAOS_H
 
-#include <nevh/run.h>
+#include <nevh/confirm.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -21,8 +21,8 @@ extern "C" {
 
    Other schemes (Tao's, those that keep the energy, GSL's) are differentiated
    as maps, by central differences of orbits near by, of which some steps at a
-   time begin from a fresh memory.  Schemes that choose their
-   steps by the state are refused. */
+   time begin from a fresh memory.  Schemes with a time of their own are refused;
+   those that keep a tolerance land on the end of each dt with all orbits. */
 typedef struct nevh_chaos nevh_chaos;
 
 /* Zeros are the defaults. */
@@ -67,25 +67,32 @@ NEVH_API int nevh_chaos_restart(nevh_chaos *, const double q[],
 NEVH_API int nevh_chaos_run(nevh_chaos *, double until);
 
 typedef enum {
-    NEVH_EARLY,         /* too early to say */
-    NEVH_CHAOTIC,       /* displacements grow exponentially */
-    NEVH_REGULAR,       /* they grow as those of a regular orbit */
-    NEVH_UNSTABLE_ORBIT /* they grow exponentially, but that is not chaos */
+    NEVH_EARLY,          /* too early to say */
+    NEVH_CHAOTIC,        /* displacements grow exponentially */
+    NEVH_REGULAR,        /* they grow as those of a regular orbit */
+    NEVH_UNSTABLE_ORBIT, /* they grow exponentially, but that is not chaos */
+    NEVH_UNRESOLVED /* CHAOTIC or REGULAR of the steps, but not of finer ones:
+                       never of nevh_chaos_result */
 } nevh_chaos_verdict;
-/* "early", "chaotic", "regular", "unstable"; "unknown" for other numbers. */
+/* "early", "chaotic", "regular", "unstable", "unresolved"; "unknown" for other
+   numbers. */
 NEVH_API const char *nevh_chaos_verdict_name(nevh_chaos_verdict);
 
 /* Of the orbit itself; of all starts where it says so.
 
-   CHAOTIC  the largest exponent is above two of its errors, SALI has fallen below
+   CHAOTIC  the largest exponent is above three of its errors, of this start and
+            of all that agree; displacements have grown by e^30, which is far more
+            than once from one start near by to the next; SALI has fallen below
             1e-8 (1e-6 by differences), and MEGNO is above 4
-   REGULAR  MEGNO is below 2.5, the exponent is below two of its errors, and the
-            run is 100 times as long as the fastest motion near the start takes
-            for one turn
-   UNSTABLE as CHAOTIC, but there is one degree of freedom and H does not read t;
-            or the orbit rests at an equilibrium; or it runs away as its
-            neighbours do; or, of at least 4 starts, only this one is chaotic and
-            most are regular */
+   REGULAR  MEGNO is below 2.5, the exponent is below two of its errors, the run
+            is 100 times as long as the fastest motion near the start takes for
+            one turn, and each coordinate or its momentum, unless one of them
+            rests, has gone through its range 40 times; or neighbours come
+            together
+   UNSTABLE as CHAOTIC, whatever the growth, but there is one degree of freedom
+            and H does not read t; or the orbit rests at an equilibrium; or it
+            runs away as its neighbours do; or, of at least 4 starts, only this
+            one is chaotic and most are regular or unstable */
 typedef struct {
     double t;
     nevh_chaos_verdict verdict;
@@ -116,6 +123,43 @@ NEVH_API double nevh_chaos_exponent(const nevh_chaos *, size_t i,
    deviations [Ch. Skokos, T. C. Bountis, Ch. Antonopoulos, Physica D 231 (2007)
    30]; NAN for other k. */
 NEVH_API double nevh_chaos_gali(const nevh_chaos *, size_t k);
+/* What the stepper evaluated so far, of all lanes; zeros for NULL. */
+NEVH_API nevh_counts nevh_chaos_counts(const nevh_chaos *);
+
+/* What the indicators say of H itself, by steps of dop853 with a tolerance. */
+typedef struct {
+    nevh_chaos_report report; /* of 4 starts, at the time that was reached */
+    double exponent, error;   /* as nevh_chaos_exponent */
+    double growth; /* of a displacement: its largest logarithm so far */
+} nevh_chaos_finding;
+/* The orbit of options->q and p from t0 towards t1.
+   options  as those of nevh_chaos_options; the tolerance is 1e-10
+   seconds  that it may cost, as nevh_counts_seconds has them; 0: 2
+   found    out: zeros, and EARLY, where nothing could be followed
+   returns  NEVH_OK; what nevh_chaos_new or nevh_chaos_run returned, and then what
+            was found until there is in `found`; NEVH_EINVAL unless t1 > t0
+   Thread-safe. */
+NEVH_API int nevh_chaos_find(const nevh_system *, const nevh_options *options,
+                             double t0, double t1, double seconds,
+                             nevh_chaos_finding *found);
+
+/* The verdict and the exponent of a run, by finer steps: see <nevh/confirm.h>. */
+typedef struct {
+    nevh_finer_kind how; /* NONE: nothing was to be confirmed, or could be */
+    char text[80];       /* nevh_finer_text */
+    nevh_chaos_finding found;
+    nevh_chaos_verdict verdict; /* that of the run, or UNRESOLVED: finer steps
+                                   contradict it, or leave chaos open */
+    bool agrees;                /* so do the exponents, by nevh_agree */
+} nevh_chaos_confirmation;
+/* CHAOTIC and REGULAR of a run that has ended are confirmed; others are taken as
+   they are.  A finer run of chaos ends as soon as it is chaotic.
+   budget   of what the run cost; 0: a half
+   returns  NEVH_OK; NEVH_ENOMEM; what the finer run returned: then nothing is
+            confirmed, and the verdict is UNRESOLVED */
+NEVH_API int nevh_chaos_confirm(const nevh_chaos *, double budget,
+                                nevh_chaos_confirmation *);
+
 /* Whether steps are those of the tangent map.
    why  out, may be NULL: why they are not, else ""; never NULL */
 NEVH_API bool nevh_chaos_is_tangent(const nevh_chaos *, const char **why);

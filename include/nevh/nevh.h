@@ -10,6 +10,7 @@
 #include <nevh/binding.h>
 #include <nevh/certain.h>
 #include <nevh/chaos.h>
+#include <nevh/confirm.h>
 #include <nevh/diagnose.h>
 #include <nevh/ensemble.h>
 #include <nevh/frequencies.h>

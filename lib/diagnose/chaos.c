@@ -51,8 +51,7 @@ static int check(nevh_chaos *c, const nevh_chaos_options *o) {
 }
 
 static int check_scheme(nevh_chaos *c, const nevh_integrator *scheme) {
-    if (scheme->own_time || scheme->needs_tolerance ||
-        (scheme->adaptive && c->options.tolerance != 0))
+    if (scheme->own_time)
         return nevh__fail(&c->report, NEVH_ESTRUCT,
                           "chaos: %s chooses its steps by the state, so that "
                           "neighbouring orbits take other ones; take a scheme "
@@ -235,7 +234,8 @@ static bool plan_start(const nevh_chaos *c, nevh__chaos_start *s) {
     s->log = nevh__array(nevh__chaos_logs(c) * NEVH__BINS, sizeof *s->log);
     s->gali = nevh__array(c->deviations + 1, sizeof *s->gali);
     s->first = nevh__array(2 * c->n, sizeof *s->first);
-    return s->w && s->norm && s->log && s->gali && s->first;
+    s->course = nevh__array(2 * c->n, sizeof *s->course);
+    return s->w && s->norm && s->log && s->gali && s->first && s->course;
 }
 
 static int plan_rooms(nevh_chaos *c) {
@@ -284,6 +284,7 @@ nevh_chaos *nevh_chaos_new(const nevh_system *system,
     if (!c)
         return NULL;
     c->system = system;
+    c->integrator = o->integrator;
     c->n = system->n;
     c->starts = o->starts ? o->starts : STARTS;
     c->exponents = o->exponents ? o->exponents : 1;
@@ -310,6 +311,7 @@ void nevh_chaos_free(nevh_chaos *c) {
         free(c->start[i].log);
         free(c->start[i].gali);
         free(c->start[i].first);
+        free(c->start[i].course);
     }
     nevh__chaos_batch_free(c->batch);
     nevh_stepper_free(c->stepper);
@@ -343,6 +345,10 @@ int nevh_chaos_status(const nevh_chaos *c) {
 
 const char *nevh_chaos_message(const nevh_chaos *c) {
     return c ? c->report.text : "out of memory";
+}
+
+nevh_counts nevh_chaos_counts(const nevh_chaos *c) {
+    return nevh_stepper_counts(c ? c->stepper : NULL);
 }
 
 bool nevh_chaos_is_tangent(const nevh_chaos *c, const char **why) {

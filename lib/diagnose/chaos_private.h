@@ -30,6 +30,13 @@ typedef struct {
     size_t bin, looks, looks_a_bin;
 } nevh__chaos_clock;
 
+/* A variable, in units of the scale: its range, and how often it has gone from
+   the lowest quarter of that to the highest, or back, since the range grew. */
+typedef struct {
+    double low, high, crossings;
+    int side; /* -1, 1: the last of these quarters; 0: none yet */
+} nevh__course;
+
 /* A start. */
 typedef struct {
     nevh__chaos_clock clock;
@@ -38,11 +45,12 @@ typedef struct {
     double *log;  /* logs x NEVH__BINS: growth in each bin */
     double *gali; /* deviations + 1 */
     double sali;
-    double *first;    /* 2n: where the orbit started, in units of the scale */
-    double moved;     /* how far from there it was at most */
-    double moment;    /* int t dlog|w| of the first deviation */
-    double indicator; /* 2 moment/t */
-    double area;      /* int of that over time */
+    double *first; /* 2n: where the orbit started, in units of the scale */
+    double moved;  /* how far from there it was at most */
+    nevh__course *course; /* 2n: of the variables */
+    double moment;        /* int t dlog|w| of the first deviation */
+    double indicator;     /* 2 moment/t */
+    double area;          /* int of that over time */
 } nevh__chaos_start;
 
 typedef struct nevh__chaos_batch nevh__chaos_batch;
@@ -52,6 +60,7 @@ struct nevh_chaos {
     bool planned, tangent;
     char why[400];
     const nevh_system *system;
+    const nevh_integrator *integrator;
     size_t n, starts, exponents, deviations, frame; /* frame: vectors that are
                                     kept orthonormal; 0: one exponent */
     size_t lanes;                                   /* of a start */
@@ -101,6 +110,8 @@ double nevh__chaos_look(nevh_chaos *, size_t start);
 /* The steps that lead nearest to `until`. */
 double nevh__chaos_steps(const nevh_chaos *, double until);
 /* chaos_report.c: of one start. */
+/* All growth of displacements, as a logarithm. */
+double nevh__chaos_growth(const nevh_chaos *, size_t start);
 double nevh__chaos_rate(const nevh_chaos *, size_t start, size_t i);
 double nevh__chaos_megno(const nevh_chaos *, size_t start);
 

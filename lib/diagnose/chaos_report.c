@@ -5,7 +5,11 @@
 
 static const double dropped = 0.1; /* of the run, while displacements align */
 static const double aligned = 1e-8, aligned_by_differences = 1e-6;
-enum { BINS_A_BATCH = 4, TURNS = 100 };
+static const double significant = 3; /* errors of an exponent of chaos */
+/* All growth of chaos, as a logarithm: starts near by, which are 1e-4 apart, have
+   long left what is unstable and not chaotic. */
+static const double grown = 30;
+enum { BINS_A_BATCH = 4, TURNS = 100, CROSSINGS = 40 };
 
 /* Of one start. */
 typedef struct {
@@ -93,8 +97,7 @@ static bool has_room(const nevh_chaos *c) {
     return c->n > 1 || !(nevh_system_traits(c->system) & NEVH_AUTONOMOUS);
 }
 
-/* All growth of displacements, as a logarithm. */
-static double growth_of(const nevh_chaos *c, size_t start) {
+double nevh__chaos_growth(const nevh_chaos *c, size_t start) {
     const nevh__chaos_start *s = &c->start[start];
     double sum = 0;
     for (size_t b = 0; b <= s->clock.bin && b < NEVH__BINS; b++)
@@ -107,7 +110,28 @@ static double growth_of(const nevh_chaos *c, size_t start) {
 static bool wanders(const nevh_chaos *c, size_t start) {
     static const double at_rest = 1e-6; /* in lengths of H */
     double moved = c->start[start].moved;
-    return moved > at_rest && log(moved) < growth_of(c, start) / 2;
+    return moved > at_rest && log(moved) < nevh__chaos_growth(c, start) / 2;
+}
+
+/* The crossings of the pair of variables that has made the fewest, of those that
+   move; INFINITY where none does. */
+static double fewest_crossings(const nevh_chaos *c, size_t start) {
+    static const double still = 1e-9; /* a range, in lengths of H */
+    double fewest = INFINITY;
+    for (size_t k = 0; k < c->n; k++) {
+        const nevh__course *q = &c->start[start].course[k], *p = q + c->n;
+        if (q->high - q->low > still && p->high - p->low > still)
+            fewest = fmin(fewest, fmax(q->crossings, p->crossings));
+    }
+    return fewest;
+}
+
+/* The slowest pair of variables has gone to and fro often enough, or neighbours
+   come together. */
+static bool has_recurred(const nevh_chaos *c, size_t start, double rate,
+                         double error) {
+    return elapsed(c, start) >= TURNS * c->period &&
+           (rate < -2 * error || fewest_crossings(c, start) >= CROSSINGS);
 }
 
 static nevh_chaos_verdict verdict_on(const nevh_chaos *c, size_t start) {
@@ -117,12 +141,14 @@ static nevh_chaos_verdict verdict_on(const nevh_chaos *c, size_t start) {
     estimate e = estimate_start(c, start, 0);
     double least = resolution(c, start), error = hypot(e.error, least);
     double megno = nevh__chaos_megno(c, start);
-    if (e.rate > 2 * error && megno > 4 &&
-        c->start[start].sali < nevh__chaos_aligned(c))
-        return has_room(c) && wanders(c, start) ? NEVH_CHAOTIC
-                                                : NEVH_UNSTABLE_ORBIT;
-    if (e.rate < 2 * error && megno < 2.5 && t >= TURNS * c->period &&
-        isfinite(error))
+    if (e.rate > significant * error && megno > 4 &&
+        c->start[start].sali < nevh__chaos_aligned(c)) {
+        if (!has_room(c) || !wanders(c, start))
+            return NEVH_UNSTABLE_ORBIT;
+        return nevh__chaos_growth(c, start) > grown ? NEVH_CHAOTIC : NEVH_EARLY;
+    }
+    if (e.rate < 2 * error && megno < 2.5 && isfinite(error) &&
+        has_recurred(c, start, e.rate, error))
         return NEVH_REGULAR;
     return NEVH_EARLY;
 }
@@ -166,15 +192,21 @@ static size_t starts_of(const nevh_chaos *c, nevh_chaos_verdict verdict) {
     return count;
 }
 
-/* Where the orbit seems chaotic alone, it is an unstable one among others. */
+/* Where the orbit seems chaotic alone, it is an unstable one among others.  The
+   exponent of all that agree must be significant, too. */
 static nevh_chaos_verdict verdict_among_starts(const nevh_chaos *c) {
     static const size_t enough = 4; /* starts to judge by */
     nevh_chaos_verdict own = verdict_on(c, 0);
-    if (own != NEVH_CHAOTIC || c->starts < enough ||
-        starts_of(c, NEVH_CHAOTIC) > 1)
+    if (own != NEVH_CHAOTIC)
         return own;
-    return 2 * starts_of(c, NEVH_REGULAR) > c->starts ? NEVH_UNSTABLE_ORBIT
-                                                      : NEVH_EARLY;
+    double error, value = nevh_chaos_exponent(c, 0, &error);
+    if (!(value > significant * error))
+        return NEVH_EARLY;
+    if (c->starts < enough || starts_of(c, NEVH_CHAOTIC) > 1)
+        return own;
+    size_t others =
+        starts_of(c, NEVH_REGULAR) + starts_of(c, NEVH_UNSTABLE_ORBIT);
+    return 2 * others > c->starts ? NEVH_UNSTABLE_ORBIT : NEVH_EARLY;
 }
 
 nevh_chaos_report nevh_chaos_result(const nevh_chaos *c) {
@@ -197,7 +229,7 @@ double nevh_chaos_gali(const nevh_chaos *c, size_t k) {
 
 const char *nevh_chaos_verdict_name(nevh_chaos_verdict verdict) {
     static const char *const names[] = {"early", "chaotic", "regular",
-                                        "unstable"};
+                                        "unstable", "unresolved"};
     size_t i = (size_t)verdict;
     return i < sizeof names / sizeof *names ? names[i] : "unknown";
 }

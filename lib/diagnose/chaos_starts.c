@@ -100,8 +100,10 @@ void nevh__chaos_place(nevh_chaos *c, size_t start, const double z[],
                        uint64_t *drawn_from) {
     forget(c, &c->start[start]);
     put_state(c, start, z);
-    for (size_t k = 0; k < 2 * c->n; k++)
-        c->start[start].first[k] = z[k] / c->options.scale[k];
+    for (size_t k = 0; k < 2 * c->n; k++) {
+        double x = c->start[start].first[k] = z[k] / c->options.scale[k];
+        c->start[start].course[k] = (nevh__course){.low = x, .high = x};
+    }
     draw_vectors(c, start, drawn_from);
     for (size_t v = 0; v < nevh__chaos_vectors(c); v++)
         nevh__chaos_put(c, start, v);

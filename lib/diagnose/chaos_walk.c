@@ -152,6 +152,23 @@ static void align_orbit(nevh_chaos *c, size_t start) {
         }
 }
 
+/* A range that has grown was not that of the motion: crossings of it are not yet
+   known. */
+static void follow(nevh__course *v, double x) {
+    static const double grown = 1.05, quarter = 0.25;
+    double before = v->high - v->low;
+    v->low = fmin(v->low, x);
+    v->high = fmax(v->high, x);
+    double range = v->high - v->low;
+    if (range > grown * before)
+        v->crossings = v->side = 0;
+    int side = x < v->low + quarter * range    ? -1
+               : x > v->high - quarter * range ? 1
+                                               : 0;
+    v->crossings += side * v->side < 0;
+    v->side = side ? side : v->side;
+}
+
 static void look_at_orbit(nevh_chaos *c, size_t start) {
     nevh__chaos_start *s = &c->start[start];
     size_t lane = start * c->lanes, from = c->tangent ? c->n : 0;
@@ -161,6 +178,8 @@ static void look_at_orbit(nevh_chaos *c, size_t start) {
         double p = row_p(c, from + k)[lane] / scale[c->n];
         s->moved = fmax(s->moved, fabs(q - s->first[k]));
         s->moved = fmax(s->moved, fabs(p - s->first[c->n + k]));
+        follow(&s->course[k], q);
+        follow(&s->course[c->n + k], p);
     }
 }
 

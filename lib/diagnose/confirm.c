@@ -79,12 +79,18 @@ static double cost_of(const nevh_finer *f, nevh_stepper *s, double dt,
     return status || cost > most ? INFINITY : cost;
 }
 
+static bool keeps_tolerance(const nevh_finer_question *q) {
+    return q->options->tolerance > 0 &&
+           (nevh_integrator_adaptive(q->integrator) ||
+            nevh_integrator_needs_tolerance(q->integrator));
+}
+
 static choice choice_of(const nevh_finer_question *q, nevh_finer_kind kind) {
     static const double finer = 16, finest = 1e-16;
     choice c = {kind, q->integrator, *q->options, q->dt};
     c.options.width = 1;
     c.options.balance = false;
-    if (kind == NEVH_FINER_STEPS && c.options.tolerance > 0)
+    if (kind == NEVH_FINER_STEPS && keeps_tolerance(q))
         c.options.tolerance = fmax(c.options.tolerance / finer, finest);
     else if (kind == NEVH_FINER_STEPS)
         c.dt /= 2;
@@ -103,7 +109,7 @@ static void describe(nevh_finer *f) {
     const char *name = nevh_integrator_name(c->integrator);
     if (c->kind != NEVH_FINER_STEPS)
         snprintf(f->text, sizeof f->text, "%s", name);
-    else if (c->options.tolerance > 0)
+    else if (keeps_tolerance(&f->question))
         nevh__print(f->text, sizeof f->text, "%s, tolerance = %.3g", name,
                     c->options.tolerance);
     else

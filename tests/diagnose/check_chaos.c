@@ -283,6 +283,90 @@ TEST(a_start_of_straight_forces_is_like_others) {
     tear_down(&s);
 }
 
+/* Steps that make Kepler's orbit chaotic, by omega dt = 0.5 and more at the
+   pericentre, and those that do not.  Finer ones tell, and confirm what is true. */
+static const struct {
+    const char *start, *hamiltonian, *scheme;
+    double dt, until;
+    nevh_chaos_verdict steps, confirmed;
+} confirmations[] = {
+    {"x = 0.03\ny = 0\np_y = sqrt(1.97/0.03)",
+     "H = (p_x^2 + p_y^2)/2 - 1/sqrt(x^2 + y^2)", "gauss8", 0.0062, 400,
+     NEVH_CHAOTIC, NEVH_UNRESOLVED},
+    {"x = 0.4\ny = 0\np_y = 2", "H = (p_x^2 + p_y^2)/2 - 1/sqrt(x^2 + y^2)",
+     "gauss8", 0.05, 1500, NEVH_REGULAR, NEVH_REGULAR},
+    {"x = 0\ny = -0.25\np_x = 0.42081",
+     "H = (p_x^2 + p_y^2 + x^2 + y^2)/2"
+     " + x^2*y - y^3/3",
+     "blanes-moan4", 0.2, 3000, NEVH_CHAOTIC, NEVH_CHAOTIC},
+};
+TEST_EACH(finer_steps_tell_chaos_of_steps,
+          sizeof confirmations / sizeof *confirmations) {
+    setup s;
+    nevh_chaos_confirmation c;
+    set_up(&s, confirmations[_i].start, confirmations[_i].hamiltonian,
+           nevh_integrator_named(confirmations[_i].scheme),
+           confirmations[_i].dt);
+    s.of.starts = 4;
+    run(&s, confirmations[_i].until);
+    ck_assert_int_eq(nevh_chaos_result(s.chaos).verdict,
+                     confirmations[_i].steps);
+    ck_assert_int_eq(nevh_chaos_confirm(s.chaos, 0, &c), NEVH_OK);
+    ck_assert_int_eq(c.verdict, confirmations[_i].confirmed);
+    ck_assert_int_eq(c.agrees, c.verdict != NEVH_UNRESOLVED);
+    ck_assert_int_ne(c.how, NEVH_FINER_NONE);
+    tear_down(&s);
+}
+
+/* H itself, by steps of its own: a factor that displacements have once, in a
+   saddle or a close pass, or each time anew and back, is no exponent. */
+static const struct {
+    const char *start, *hamiltonian;
+    double until;
+    nevh_chaos_verdict verdict;
+} findings[] = {
+    {"x = 0.001\ny = 0\np_y = sqrt(1.999/0.001)",
+     "H = (p_x^2 + p_y^2)/2 - 1/sqrt(x^2 + y^2)", 100, NEVH_EARLY},
+    {"x = 1e-6\ny = 1", "H = (p_x^2 - x^2 + p_y^2 + 1.7*y^2)/2 + x^4/4", 150,
+     NEVH_EARLY},
+    {"x = 1e-6\ny = 1", "H = (p_x^2 - x^2 + p_y^2 + 1.7*y^2)/2 + x^4/4", 14,
+     NEVH_EARLY},
+    {"x = 0.3\ny = 0.1\np_x = 0.2", "H = (p_x^2 + p_y^2 + x^2 + 1.7*y^2)/2",
+     1000, NEVH_REGULAR},
+    {"x = 0.3\ny = 1\np_x = 0.2",
+     "H = (p_x^2 + 1e6*x^2)/2 + p_y^2/2 + y^4/4 + 0.1*x^2*y^2", 1, NEVH_EARLY},
+    {"x = 0\ny = -0.25\np_x = 0.42081",
+     "H = (p_x^2 + p_y^2 + x^2 + y^2)/2 + x^2*y - y^3/3", 2000, NEVH_CHAOTIC},
+};
+TEST_EACH(chaos_of_h_itself, sizeof findings / sizeof *findings) {
+    setup s;
+    nevh_chaos_finding f;
+    set_up(&s, findings[_i].start, findings[_i].hamiltonian, nevh_verlet, 0.1);
+    ck_assert_int_eq(
+        nevh_chaos_find(s.system, &s.options, 0, findings[_i].until, 0, &f),
+        NEVH_OK);
+    ck_assert_msg(f.report.verdict == findings[_i].verdict, "%s: %s, %g +- %g",
+                  findings[_i].hamiltonian,
+                  nevh_chaos_verdict_name(f.report.verdict), f.exponent,
+                  f.error);
+    ck_assert_double_eq_tol(f.report.t, findings[_i].until, 1e-9);
+    tear_down(&s);
+}
+
+/* The slowest motion decides how long a run must be for `regular`, not the
+   fastest. */
+TEST(slow_motion_is_waited_for) {
+    setup s;
+    set_up(&s, "x = 0.1\ny = 1\np_y = 0.2",
+           "H = (p_x^2 + 1e4*x^2)/2 + p_y^2/2 + y^4/4 + 0.1*x^2*y^2",
+           nevh_blanes_moan4, 0.005);
+    run(&s, 10);
+    ck_assert_int_eq(nevh_chaos_result(s.chaos).verdict, NEVH_EARLY);
+    ck_assert_int_eq(nevh_chaos_run(s.chaos, 400), NEVH_OK);
+    ck_assert_int_eq(nevh_chaos_result(s.chaos).verdict, NEVH_REGULAR);
+    tear_down(&s);
+}
+
 TEST(a_short_run_says_nothing) {
     setup s;
     set_up_henon(&s, -0.25, nevh_verlet, 0.1);

@@ -5,7 +5,6 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "support.h"
 #include <math.h>
-#include <nevh/confirm.h>
 #include <string.h>
 
 enum { ROOM = 64 };
@@ -75,6 +74,9 @@ static nevh_separability separability;
     X(REAL, nevh_chaos_exponent, (NULL, 0, NULL))                              \
     X(REAL, nevh_chaos_gali, (NULL, 2))                                        \
     X(NUMBER, nevh_chaos_is_tangent, (NULL, NULL))                             \
+    X(ANY, nevh_chaos_counts, (NULL))                                          \
+    X(STATUS, nevh_chaos_find, (NULL, NULL, 0, 1, 0, NULL))                    \
+    X(STATUS, nevh_chaos_confirm, (NULL, 0, NULL))                             \
     X(TEXT, nevh_chaos_verdict_name, ((nevh_chaos_verdict)-1))                 \
     X(RATES, nevh_rates_new, (NULL, NULL))                                     \
     X(ANY, nevh_rates_free, (NULL))                                            \

@@ -33,6 +33,19 @@ holds '$6 > 1 && $10 == "unstable"'
 exits 0 chaos pendulum --start phi=pi --t-end 8
 has 'unstable, not chaotic: neighbours part by a factor of e in$'
 
+# Chaos of the steps is not that of H: Kepler's orbit at a step that is too long.  What is
+# chaotic is so by finer steps, too.
+exits 0 chaos kepler --set e=0.97 --integrators gauss8 --dt 0.0062 --t-end 300 \
+    --starts 2 --format csv
+holds '$6 > 3*$7 && $10 == "unresolved"'
+exits 0 chaos kepler --set e=0.97 --integrators gauss8 --dt 0.0062 --t-end 300 --starts 2
+has 'The steps of gauss8 at dt = 0.0062 are chaotic; by finer ones'
+exits 0 chaos henon-heiles --start $start --t-end 3000 --samples 2 --format csv
+holds '$10 == "chaotic" || NR == 1'
+exits 0 chaos kepler --set e=0.97 --integrators gauss8 --dt 0.0062 --t-end 300 \
+    --starts 2 --samples 3 --format csv
+holds '$10 != "chaotic"'
+
 # A budget that is spent ends the run where the scene ends it.
 sed 's/^t_end *=.*/t_end = 40/' "$NEVH_SCENES/henon-heiles.nevh" >$work/short.nevh
 exits 0 chaos $work/short.nevh --format csv --starts 1

@@ -26,7 +26,14 @@ typedef struct {
     const char *integrator;
     double dt;
     nevh_chaos *chaos;
+    nevh_chaos_confirmation confirmed;
 } row;
+
+/* What was found at a time. */
+typedef struct {
+    nevh_chaos_report now;
+    double *value, *error; /* of each exponent */
+} look;
 
 static void put_number(const job *j, double x) {
     if (j->options->format == FORMAT_TABLE && isfinite(x))
@@ -35,21 +42,36 @@ static void put_number(const job *j, double x) {
         table_number(j->result.table, x);
 }
 
-static void put_exponents(job *j, const row *r) {
-    nevh_chaos_report now = nevh_chaos_result(r->chaos);
+static look look_new(const job *j, const row *r) {
+    look l = {nevh_chaos_result(r->chaos),
+              tool_allocate(2 * j->exponents, sizeof *l.value), NULL};
+    l.error = l.value + j->exponents;
+    for (size_t i = 0; i < j->exponents; i++)
+        l.value[i] = nevh_chaos_exponent(r->chaos, i, &l.error[i]);
+    return l;
+}
+
+/* A verdict that finer steps contradict at the end is no better before it. */
+static nevh_chaos_verdict verdict_at(const row *r, const look *l) {
+    bool last = l->now.verdict == nevh_chaos_result(r->chaos).verdict;
+    return last ? r->confirmed.verdict : l->now.verdict;
+}
+
+static void put_exponents(job *j, const row *r, look *l) {
+    nevh_chaos_report now = l->now;
     for (size_t i = 0; i < j->exponents; i++) {
-        double error, value = nevh_chaos_exponent(r->chaos, i, &error);
         table_text(j->result.table, j->plan->name);
         table_text(j->result.table, r->integrator);
         put_number(j, r->dt);
         put_number(j, now.t);
         table_shown(j->result.table, "%zu", i + 1);
-        put_number(j, value);
-        put_number(j, error);
+        put_number(j, l->value[i]);
+        put_number(j, l->error[i]);
         put_number(j, now.sali);
         put_number(j, now.megno);
-        table_text(j->result.table, nevh_chaos_verdict_name(now.verdict));
+        table_text(j->result.table, nevh_chaos_verdict_name(verdict_at(r, l)));
     }
+    free(l->value);
 }
 
 static int fail(job *j, const row *r) {
@@ -88,29 +110,42 @@ static int run_until_clear(const job *j, const row *r) {
     return status;
 }
 
-static int run_history(job *j, const row *r) {
+/* What finer steps say; of a run that failed, nothing. */
+static void confirm(row *r, int status) {
+    r->confirmed.verdict = nevh_chaos_result(r->chaos).verdict;
+    if (!status && nevh_chaos_confirm(r->chaos, 0, &r->confirmed))
+        r->confirmed.verdict = NEVH_UNRESOLVED;
+}
+
+static int run_history(job *j, row *r) {
     const plan *p = j->plan;
+    size_t samples = j->options->samples, count = 0;
     int status = NEVH_OK;
-    for (size_t i = 1; !status && i <= j->options->samples; i++) {
-        double part = (double)i / (double)j->options->samples;
+    look *looks = tool_allocate(samples, sizeof *looks);
+    for (size_t i = 1; !status && i <= samples; i++) {
+        double part = (double)i / (double)samples;
         status = nevh_chaos_run(
             r->chaos, p->run->t_start + part * (p->t_end - p->run->t_start));
         if (!status)
-            put_exponents(j, r);
+            looks[count++] = look_new(j, r);
     }
-    return status;
+    confirm(r, status);
+    for (size_t i = 0; i < count; i++)
+        put_exponents(j, r, &looks[i]);
+    free(looks);
+    return status ? fail(j, r) : TOOL_OK;
 }
 
-static int run_row(job *j, const row *r) {
-    int status;
-    if (j->options->samples) {
-        status = run_history(j, r);
-        return status ? fail(j, r) : TOOL_OK;
+static int run_row(job *j, row *r) {
+    if (j->options->samples)
+        return run_history(j, r);
+    int status = j->options->t_end ? nevh_chaos_run(r->chaos, j->plan->t_end)
+                                   : run_until_clear(j, r);
+    confirm(r, status);
+    if (nevh_chaos_result(r->chaos).t > j->plan->run->t_start) {
+        look l = look_new(j, r);
+        put_exponents(j, r, &l);
     }
-    status = j->options->t_end ? nevh_chaos_run(r->chaos, j->plan->t_end)
-                               : run_until_clear(j, r);
-    if (nevh_chaos_result(r->chaos).t > j->plan->run->t_start)
-        put_exponents(j, r);
     return status ? fail(j, r) : TOOL_OK;
 }
 
@@ -126,8 +161,35 @@ static void note_row(job *j, const row *r) {
                    k, nevh_chaos_gali(r->chaos, k));
 }
 
+/* Finer steps find another orbit, or leave open what it is. */
+static void say_unresolved(job *j, const row *r) {
+    const nevh_chaos_confirmation *c = &r->confirmed;
+    nevh_chaos_verdict steps = nevh_chaos_result(r->chaos).verdict;
+    nevh_chaos_verdict finer = c->found.report.verdict;
+    char *what =
+        c->how == NEVH_FINER_NONE ? text_print("no finer steps could be taken")
+        : finer == NEVH_CHAOTIC
+            ? text_print("by finer ones (%s) the orbit is chaotic, with an "
+                         "exponent of %.3g +- %.1g: take a shorter dt",
+                         c->text, c->found.exponent, c->found.error)
+        : finer == NEVH_REGULAR
+            ? text_print("by finer ones (%s) the orbit is regular: take a "
+                         "shorter dt",
+                         c->text)
+            : text_print("finer ones (%s, until t = %.4g) do not confirm it: "
+                         "take a shorter dt, or a longer run with --t-end",
+                         c->text, c->found.report.t);
+    list_print(&j->result.after, "The steps of %s at dt = %g are %s; %s.",
+               r->integrator, r->dt, nevh_chaos_verdict_name(steps), what);
+    free(what);
+}
+
 static void say_row(job *j, const row *r) {
     nevh_chaos_report now = nevh_chaos_result(r->chaos);
+    if (r->confirmed.verdict == NEVH_UNRESOLVED) {
+        say_unresolved(j, r);
+        return;
+    }
     double error, value = nevh_chaos_exponent(r->chaos, 0, &error);
     char *what =
         now.verdict == NEVH_CHAOTIC
@@ -152,6 +214,12 @@ static void say_row(job *j, const row *r) {
                "%s, dt = %g: %s (%zu of %zu starts %s agree).", r->integrator,
                r->dt, what, now.agreeing, now.starts,
                j->plan->balance ? "near by" : "at this energy");
+    if (now.verdict == NEVH_CHAOTIC && !r->confirmed.agrees)
+        list_print(&j->result.after,
+                   "%s, dt = %g: the exponent is that of these steps: finer "
+                   "ones (%s) have %.3g +- %.1g.",
+                   r->integrator, r->dt, r->confirmed.text,
+                   r->confirmed.found.exponent, r->confirmed.found.error);
     free(what);
 }
 
@@ -197,7 +265,9 @@ static int run_one(job *j, const char *integrator, double dt) {
                              .starts = j->options->chaos.starts,
                              .exponents = j->exponents,
                              .deviations = j->options->chaos.deviations};
-    row r = {integrator, dt, tool_owned(nevh_chaos_new(p->system, &of))};
+    row r = {.integrator = integrator,
+             .dt = dt,
+             .chaos = tool_owned(nevh_chaos_new(p->system, &of))};
     int status =
         nevh_chaos_status(r.chaos)
             ? tool_refuse("%s: %s", p->name, nevh_chaos_message(r.chaos))

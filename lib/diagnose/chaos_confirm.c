@@ -1,0 +1,145 @@
+/* nevh: chaos of H itself, and whether finer steps confirm what steps show.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "diagnose/chaos_private.h"
+#include "run/stepper_private.h"
+#include <math.h>
+#include <nevh/diagnose.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double tolerance = 1e-10, usual_seconds = 2, usual_budget = 0.5;
+enum { STARTS = 4, LOOKS = 1024, PIECES = 64, LARGEST = 4096 };
+
+static double spent_by(const nevh_chaos *c) {
+    nevh_counts counts = nevh_chaos_counts(c);
+    size_t n = c->tangent ? 2 * c->n : c->n;
+    double steps = c->start[0].clock.done * (double)c->width;
+    return nevh_counts_seconds(&counts, n, c->integrator,
+                               nevh_stepper_order(c->stepper), (size_t)steps);
+}
+
+static nevh_chaos_finding finding(const nevh_chaos *c, double growth) {
+    nevh_chaos_finding f = {nevh_chaos_result(c), .growth = growth};
+    f.exponent = nevh_chaos_exponent(c, 0, &f.error);
+    return f;
+}
+
+/* Towards `until`, as long as it costs no more than that; of chaos no further
+   than until it is clear, where it is `sought`. */
+static int follow(nevh_chaos *c, double until, double seconds, bool sought,
+                  nevh_chaos_finding *f) {
+    double t0 = c->t_start, growth = 0;
+    int status = nevh_chaos_status(c);
+    for (int i = 1; !status && i <= PIECES && spent_by(c) < seconds; i++) {
+        status = nevh_chaos_run(c, t0 + i * (until - t0) / PIECES);
+        growth = fmax(growth, nevh__chaos_growth(c, 0));
+        if (sought && nevh_chaos_result(c).verdict == NEVH_CHAOTIC)
+            break;
+    }
+    *f = finding(c, growth);
+    return status;
+}
+
+int nevh_chaos_find(const nevh_system *system, const nevh_options *options,
+                    double t0, double t1, double seconds,
+                    nevh_chaos_finding *found) {
+    if (!system || !options || !found || !(t1 > t0))
+        return NEVH_EINVAL;
+    *found = (nevh_chaos_finding){.error = INFINITY};
+    if (system->n > LARGEST)
+        return NEVH_EFAILED;
+    nevh_options o = *options;
+    o.tolerance = tolerance;
+    o.transform = NULL;
+    nevh_chaos *c =
+        nevh_chaos_new(system, &(nevh_chaos_options){.integrator = nevh_dop853,
+                                                     .options = &o,
+                                                     .t_start = t0,
+                                                     .dt = (t1 - t0) / LOOKS,
+                                                     .starts = STARTS});
+    int status = nevh_chaos_status(c);
+    if (!status)
+        status =
+            follow(c, t1, seconds > 0 ? seconds : usual_seconds, false, found);
+    nevh_chaos_free(c);
+    return status;
+}
+
+/* Half as many starts, so that the time may be longer. */
+static nevh_chaos *finer_chaos(const nevh_chaos *c, const nevh_finer *f) {
+    nevh_options o = *nevh_finer_options(f);
+    if (nevh_finer_how(f) == NEVH_FINER_ADAPTIVE)
+        o.tolerance = tolerance;
+    size_t starts = c->starts > STARTS ? STARTS : c->starts;
+    return nevh_chaos_new(
+        c->system, &(nevh_chaos_options){.integrator = nevh_finer_integrator(f),
+                                         .options = &o,
+                                         .t_start = c->t_start,
+                                         .dt = nevh_finer_dt(f),
+                                         .starts = starts,
+                                         .deviations = 2,
+                                         .seed = c->seed,
+                                         .differences = !c->tangent});
+}
+
+/* A finer run may be too short for a verdict of its own. */
+static bool is_chaotic_too(const nevh_chaos_confirmation *c) {
+    const nevh_chaos_finding *f = &c->found;
+    return f->report.verdict == NEVH_CHAOTIC ||
+           (f->report.verdict == NEVH_EARLY && c->agrees &&
+            f->exponent > 2 * f->error);
+}
+
+static void judge(const nevh_chaos_report *run, double value, double error,
+                  nevh_chaos_confirmation *to) {
+    const nevh_chaos_finding *f = &to->found;
+    to->agrees = nevh_agree(value, error, f->exponent, f->error);
+    bool holds = run->verdict == NEVH_CHAOTIC
+                     ? is_chaotic_too(to)
+                     : f->report.verdict != NEVH_CHAOTIC;
+    to->verdict = holds ? run->verdict : NEVH_UNRESOLVED;
+}
+
+static int confirm(const nevh_chaos *c, const nevh_finer *f, double seconds,
+                   nevh_chaos_confirmation *to) {
+    nevh_chaos_report run = nevh_chaos_result(c);
+    double error, value = nevh_chaos_exponent(c, 0, &error);
+    nevh_chaos *finer = finer_chaos(c, f);
+    int status = nevh_chaos_status(finer);
+    to->how = nevh_finer_how(f);
+    snprintf(to->text, sizeof to->text, "%s", nevh_finer_text(f));
+    if (!status)
+        status = follow(finer, run.t, seconds, run.verdict == NEVH_CHAOTIC,
+                        &to->found);
+    nevh_chaos_free(finer);
+    if (!status)
+        judge(&run, value, error, to);
+    return status;
+}
+
+int nevh_chaos_confirm(const nevh_chaos *c, double budget,
+                       nevh_chaos_confirmation *to) {
+    if (!c || !c->planned || !to)
+        return c ? NEVH_EINVAL : NEVH_ENOMEM;
+    double part = budget > 0 ? budget : usual_budget;
+    nevh_chaos_verdict verdict = nevh_chaos_result(c).verdict;
+    *to = (nevh_chaos_confirmation){.verdict = verdict, .agrees = true};
+    if (verdict != NEVH_CHAOTIC && verdict != NEVH_REGULAR)
+        return NEVH_OK;
+    nevh_finer *f = nevh_finer_new(
+        c->system,
+        &(nevh_finer_question){.integrator = c->integrator,
+                               .options = &c->options,
+                               .t0 = c->t_start,
+                               .dt = c->dt,
+                               .steps = (size_t)c->start[0].clock.done,
+                               .kinds = NEVH_FINER_ADAPTIVE | NEVH_FINER_STEPS,
+                               .budget = part});
+    int status = nevh_finer_status(f);
+    to->verdict = NEVH_UNRESOLVED;
+    to->agrees = false;
+    if (!status)
+        status = confirm(c, f, part * spent_by(c), to);
+    nevh_finer_free(f);
+    return status;
+}
