@@ -89,7 +89,7 @@ run_sheets = $(SHELL) $(srcdir)/doc/sheets/sheets.sh $(srcdir) \
 	tools/nevh$(EXEEXT) examples
 sheets: all $(sheets_html)
 	$(run_sheets) check
-	if command -v texi2pdf >/dev/null && command -v tex >/dev/null; then \
+	@if command -v texi2pdf >/dev/null && command -v tex >/dev/null; then \
 	  for name in sheets answers; do \
 	    texi2pdf --quiet --clean -I $(srcdir)/doc/sheets -I $(srcdir)/build-aux \
 	      -o doc/nevh-$$name.pdf $(srcdir)/doc/sheets/$$name.texi || exit 1; \
