@@ -93,6 +93,19 @@ static int try_step(const gsl_odeiv2_system *system, size_t n, double t,
     return status;
 }
 
+/* One step of h, without slopes at its ends. */
+int gsl_odeiv2_step_apply(gsl_odeiv2_step *step, double t, double h, double y[],
+                          double yerr[], const double dydt_in[],
+                          double dydt_out[], const gsl_odeiv2_system *system) {
+    size_t n = step->dimension;
+    double *slope = step->state, *next = slope + STAGES * n;
+    (void)dydt_in, (void)dydt_out;
+    int status = try_step(system, n, t, h, y, slope, next, yerr);
+    if (!status)
+        memcpy(y, next, n * sizeof *y);
+    return status;
+}
+
 /* One step, as long as the control allows; *h is that of the next. */
 int gsl_odeiv2_evolve_apply(gsl_odeiv2_evolve *e, gsl_odeiv2_control *control,
                             gsl_odeiv2_step *step,
