@@ -135,6 +135,7 @@ tools_nevh_SOURCES = \
 	tools/orbit/section_plot.c \
 	tools/orbit/portrait.h \
 	tools/orbit/portrait.c \
+	tools/orbit/portrait_equilibria.c \
 	tools/orbit/portrait_levels.c \
 	tools/orbit/frequencies_command.c \
 	tools/fit/measured.h \

@@ -157,8 +157,8 @@ function nevhEngine(send) {
     const steps = schemes.map((scheme) => {
       if (!limits.has(scheme))
         limits.set(scheme, withTexts([scheme], (at) => x.page_limit(at)));
-      const most = limits.get(scheme); // next to nothing: stable with no step
-      return fastest > 0 && most > 0.01 ? most / fastest : NaN;
+      const most = limits.get(scheme); // 0: stable with no step
+      return fastest > 0 && most > 0 ? most / fastest : NaN;
     });
     return { ok: true, steps };
   }

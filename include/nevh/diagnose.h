@@ -200,9 +200,9 @@ NEVH_API int nevh_reversal_defect(nevh_stepper *, double t, double h,
 
 /* The largest h omega up to which steps of h stay bounded on an oscillator of
    frequency omega, H = (p^2 + omega^2 q^2)/2: there the spectral radius of the
-   step's matrix first passes 1 + 1e-5.  2 for Verlet's method, 2 sqrt(2) for
-   rk4; next to nothing for euler, whose orbits always grow; INFINITY where none
-   is found up to 16, as with Gauss-Legendre.  Of Tao's methods, in a space of
+   step's matrix first passes 1.  2 for Verlet's method, 2 sqrt(2) for rk4; 0 for
+   schemes whose orbits grow at every step, as those of euler, heun and gsl-rkf45
+   do; INFINITY where none is found up to 16, as with Gauss-Legendre.  Of Tao's methods, in a space of
    their own, what 500 steps show, to 1/32.  NAN for schemes that take no fixed
    step.  A nonlinear H has resonances below that, of which 2 pi/3 and pi/2 per
    step matter most.
@@ -210,6 +210,9 @@ NEVH_API int nevh_reversal_defect(nevh_stepper *, double t, double h,
             each returns with all schemes of nevh, and one that does not is not
             interrupted.  Thread-safe */
 NEVH_API double nevh_stability_limit(const nevh_integrator *);
+/* The factor by which the amplitude of that oscillator grows in a period at h omega
+   = x; 1 where it does not grow, or by less than 1e-11 a step.  NAN where there is no limit, and for x <= 0. */
+NEVH_API double nevh_stability_growth(const nevh_integrator *, double x);
 /* The angle, 0 ... pi, by which a step of h omega = x turns that oscillator's
    phase: x and an error of the scheme's order.  Steps that make a third or a
    quarter of a turn resonate with the terms of H beyond the quadratic.  NAN

@@ -39,7 +39,8 @@ typedef struct {
    lines    out, `most` of them, by amplitude, the largest first; the
             mean is taken off
    found    out: how many there are; fewer than `most` where the rest is below
-            1e-12 of the largest value
+            1e-12 of the largest value.  Lines below 1e-8 of the largest one that
+            the halves do not share are noise, and left out
    returns  NEVH_OK; NEVH_EINVAL for too few samples, or where h is not positive;
             NEVH_EDOM where a value is not finite; NEVH_ENOMEM
    cost     some hundred sums over the samples a line */

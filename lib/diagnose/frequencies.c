@@ -342,6 +342,26 @@ static void share_errors(const analysis *a, nevh_spectral_line lines[]) {
         }
 }
 
+/* What is far below the largest line and not the same in both halves is what
+   rounding and differences of H do. */
+static void leave_out_noise(const analysis *a, nevh_spectral_line lines[],
+                            size_t *found) {
+    static const double far_below = 1e-8, part = 0.125;
+    double largest = 0;
+    size_t kept = 0;
+    for (size_t i = 0; i < *found; i++)
+        largest = fmax(largest, lines[i].amplitude);
+    for (size_t i = 0; i < *found; i++) {
+        const nevh_spectral_line *l = &lines[i];
+        bool small = l->amplitude < far_below * largest;
+        bool steady = fabs(l->drift) < part * resolution(a) &&
+                      l->error < part * resolution(a);
+        if (!small || steady)
+            lines[kept++] = *l;
+    }
+    *found = kept;
+}
+
 static bool describe(analysis *a, double h, nevh_spectral_line lines[],
                      size_t *found) {
     analysis half, again;
@@ -362,6 +382,7 @@ static bool describe(analysis *a, double h, nevh_spectral_line lines[],
             fmax(error, 2e-16 * a->w[i]), second - first};
     }
     share_errors(a, lines);
+    leave_out_noise(a, lines, found);
     close(&again);
     close(&half);
     return good;

@@ -12,15 +12,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Beyond that many radians a step no scheme is asked; the grid there; what is
-   growth, in a step. */
+static const double pi = 3.14159265358979323846;
+/* Beyond that many radians a step no scheme is asked; the grid there.  */
 static const double farthest = 16, spacing = 1. / 64;
-static const double growing = 1e-5;
+/* What is growth, in a step: of a matrix of determinant 1 the root of a difference
+   that rounds; of others, far above the rounding. */
+static const double growing_kept = 1e-5, growing_lost = 1e-11;
 
 typedef struct {
     nevh_system *system;
     nevh_stepper *stepper;
     bool symplectic, multistep;
+    double growing;
 } oscillator;
 
 static double half_square(double t, const double q[], const double p[],
@@ -63,9 +66,10 @@ static oscillator begin(const nevh_integrator *scheme) {
     static const double q[2] = {1, 0}, p[2] = {0, 1};
     nevh_options options = {.gradient = nevh_exact, .width = 2, .q = q, .p = p};
     nevh_system *s = new_system();
-    return (oscillator){s, nevh_stepper_new(s, scheme, &options),
-                        nevh_integrator_symplectic(scheme) == NEVH_YES,
-                        scheme->multistep};
+    bool symplectic = nevh_integrator_symplectic(scheme) == NEVH_YES;
+    bool keeps = symplectic || scheme->preserves_energy == NEVH_YES;
+    return (oscillator){s, nevh_stepper_new(s, scheme, &options), symplectic,
+                        scheme->multistep, keeps ? growing_kept : growing_lost};
 }
 
 static void end(const oscillator *o) {
@@ -144,7 +148,7 @@ static double bisect(const oscillator *o, double a, double b) {
     enum { HALVINGS = 64 };
     for (int i = 0; i < HALVINGS && b - a > 1e-9 * b; i++) {
         double middle = (a + b) / 2;
-        if (excess(o, middle) > growing)
+        if (excess(o, middle) > o->growing)
             b = middle;
         else
             a = middle;
@@ -152,16 +156,23 @@ static double bisect(const oscillator *o, double a, double b) {
     return a;
 }
 
+/* Whether growth that is seen from x on sets in as a power of the step, so that
+   there is some at every step: beyond a limit it grows far faster. */
+static bool grows_from_nothing(const oscillator *o, double x) {
+    static const double beyond = 1.1, faster = 10; /* above its 20th power */
+    return excess(o, beyond * x) < faster * o->growing;
+}
+
 static double search(const oscillator *o) {
     double before[2] = {-1, -1};
     for (double x = spacing; x <= farthest; x += spacing) {
         double near = closeness(o, x);
-        if (excess(o, x) > growing)
+        if (excess(o, x) > o->growing)
             return bisect(o, x - spacing, x);
         if (o->symplectic && before[1] > -0.1 && before[1] >= before[0] &&
             before[1] >= near) {
             double top = tip(o, x - 2 * spacing, x);
-            if (excess(o, top) > growing)
+            if (excess(o, top) > o->growing)
                 return bisect(o, x - 2 * spacing, top);
         }
         before[0] = before[1];
@@ -207,8 +218,20 @@ double nevh_stability_limit(const nevh_integrator *scheme) {
     double limit = nevh_stepper_status(o.stepper) ? NAN
                    : extended                     ? search_extended(&o)
                                                   : search(&o);
+    if (is_linear(scheme) && isfinite(limit) && !o.symplectic &&
+        grows_from_nothing(&o, limit))
+        limit = 0;
     end(&o);
     return limit;
+}
+
+double nevh_stability_growth(const nevh_integrator *scheme, double x) {
+    if (!is_linear(scheme) || !(x > 0))
+        return NAN;
+    oscillator o = begin(scheme);
+    double most = nevh_stepper_status(o.stepper) ? NAN : excess(&o, x);
+    end(&o);
+    return most > o.growing ? pow(1 + most, 2 * pi / x) : isnan(most) ? NAN : 1;
 }
 
 double nevh_stability_angle(const nevh_integrator *scheme, double x) {

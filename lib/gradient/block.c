@@ -140,10 +140,12 @@ static void describe(const nevh_field *f, const nevh__planned *term,
         at = (size_t)nevh__print(text, size, "t = %.9g",
                                  b->t[b->lane + column % b->lanes]);
     for (size_t k = 0; k < term->nv && k < 6 && at < size; k++) {
-        int length = nevh__print(text + at, size - at, "%s%c[%zu] = %.9g",
-                                 at ? ", " : "", k < term->nq ? 'q' : 'p',
-                                 nevh__index(term, instance, k),
-                                 nevh__row(f, b, k)[column]);
+        char name[NEVH__VARIABLE];
+        nevh__variable_name(f->system, k >= term->nq,
+                            nevh__index(term, instance, k), name);
+        int length =
+            nevh__print(text + at, size - at, "%s%s = %.9g", at ? ", " : "",
+                        name, nevh__row(f, b, k)[column]);
         at += length > 0 ? (size_t)length : 0;
     }
     if (term->nv > 6 && at < size)
@@ -169,7 +171,7 @@ int nevh__block_fail(nevh_field *f, const nevh__planned *term,
     size_t instance = (b->group + group) / b->per_instance;
     char where[240], which[80] = "";
     describe(f, term, b, instance, column, where, sizeof where);
-    if (decl->count > 1 || b->width > 1)
+    if (!f->system->names && (decl->count > 1 || b->width > 1))
         snprintf(which, sizeof which, " (instance %zu, lane %zu)", instance,
                  lane);
     if (is_beyond(f, term, b, column))

@@ -103,9 +103,9 @@ static inline double nevh__chord_slope(const nevh_gradient *g, size_t apart,
 bool nevh__add_slopes(const nevh_gradient *, size_t apart, size_t lanes,
                       const double *x, const double *h, double *out);
 /* Tells what is not finite in a block of differences: a value, or else the
-   derivative by variable k of an instance. */
+   derivative by variable k of an instance, of that lane. */
 int nevh__central_fail(nevh_field *, nevh__planned *, const nevh__block *,
-                       size_t instance, size_t k);
+                       size_t lane, size_t instance, size_t k);
 
 /* What gives a term's derivatives: under `portable` a formula's by libm. */
 nevh_block_gradient_fn nevh__exact_gradient(const nevh_field *,

@@ -107,13 +107,14 @@ static bool fails_on_orbit(nevh_field *f, nevh__planned *term,
 /* It is a point of the difference that has no value, or the orbit. */
 int nevh__fail_outside(nevh_field *f, nevh__planned *term, const nevh__block *b,
                        size_t column, size_t instance, size_t k, double reach) {
-    char where[200];
+    char where[200], name[NEVH__VARIABLE];
     nevh__report report = f->report;
-    nevh__print(
-        where, sizeof where,
-        "a difference by %c[%zu] reaches %.3g from the orbit (the exact "
-        "gradient reads no such point), where ",
-        k < term->nq ? 'q' : 'p', nevh__index(term, instance, k), reach);
+    nevh__variable_name(f->system, k >= term->nq,
+                        nevh__index(term, instance, k), name);
+    nevh__print(where, sizeof where,
+                "a difference by %s reaches %.3g from the orbit (the exact "
+                "gradient reads no such point), where ",
+                name, reach);
     int status = nevh__block_fail(f, term, b, column, where, f->h[column]);
     nevh__report outside = f->report;
     f->report = report;
@@ -123,7 +124,7 @@ int nevh__fail_outside(nevh_field *f, nevh__planned *term, const nevh__block *b,
 }
 
 int nevh__central_fail(nevh_field *f, nevh__planned *term, const nevh__block *b,
-                       size_t instance, size_t k) {
+                       size_t lane, size_t instance, size_t k) {
     const nevh_term *decl = &term->term->decl;
     if (nevh__block_check(f, term, b)) {
         size_t column = 0, moved = 0;
@@ -132,19 +133,19 @@ int nevh__central_fail(nevh_field *f, nevh__planned *term, const nevh__block *b,
         double reach = reach_of(f, term, b, column, &moved);
         return nevh__fail_outside(f, term, b, column, instance, moved, reach);
     }
-    char half = k < term->nq ? 'q' : 'p', when[40] = "";
+    char name[NEVH__VARIABLE], when[40] = "";
     size_t index = nevh__index(term, instance, k);
     const double *z = k < term->nq ? b->q : b->p;
     if (decl->time)
-        nevh__print(when, sizeof when, ", t = %.9g", b->t[b->lane]);
+        nevh__print(when, sizeof when, ", t = %.9g", b->t[lane]);
+    nevh__variable_name(f->system, k >= term->nq, index, name);
     return nevh__fail(
         &f->report, NEVH_EDOM,
         "the derivative of term \"%s\" of effect \"%s\" with respect to "
-        "%c[%zu] is not finite at %c[%zu] = %.9g%s: its step of %g is lost in a "
+        "%s is not finite at %s = %.9g%s: its step of %g is lost in a "
         "value too large, or too small for the values of H; take a smaller "
         "step, or give a gradient step",
-        decl->name, decl->effect, half, index, half, index,
-        z[index * b->width + b->lane], when,
+        decl->name, decl->effect, name, name, z[index * b->width + lane], when,
         term->delta[instance * term->nv + k]);
 }
 
@@ -213,11 +214,19 @@ static int difference_one(nevh_field *f, nevh__planned *term, nevh__block *b,
     for (size_t i = 0; i < b->groups; i++, nevh__next_group(b, &at)) {
         size_t k = s.vars[at.v];
         if (bad && slope[i] - slope[i] != 0)
-            return nevh__central_fail(f, term, b, at.instance, k);
+            return nevh__central_fail(f, term, b, b->lane, at.instance, k);
         double *out = k < term->nq ? x->dh_dq : x->dh_dp;
         out[nevh__index(term, at.instance, k) * b->width + b->lane] += slope[i];
     }
     return NEVH_OK;
+}
+
+/* The first that is not finite; 0: none. */
+static size_t not_finite(const double x[], size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (!isfinite(x[i]))
+            return i;
+    return 0;
 }
 
 static int difference_lanes(nevh_field *f, nevh__planned *term, nevh__block *b,
@@ -235,7 +244,9 @@ static int difference_lanes(nevh_field *f, nevh__planned *term, nevh__block *b,
                                     f->rows + k * b->stride + first,
                                     f->h + first, out);
         if (bad)
-            return nevh__central_fail(f, term, b, at.instance, k);
+            return nevh__central_fail(f, term, b,
+                                      b->lane + not_finite(out, b->lanes),
+                                      at.instance, k);
         nevh__next_group(b, &at);
     }
     return NEVH_OK;

@@ -241,6 +241,24 @@ NEVH_SIMD static bool take_lanes(nevh_field *f, const nevh__term_part *part,
     return take(f, part, at, lane, LANES);
 }
 
+/* The first slope that is not finite, of values that are. */
+static int fail_slope(nevh_field *f, const nevh__term_part *part,
+                      const nevh__block *b) {
+    const nevh__stencil *s = part->stencil;
+    for (const nevh__stencil_slope *x = s->slope; x < s->slope + s->slopes; x++)
+        for (size_t i = 0; i < part->lanes; i++) {
+            size_t at = x->first * part->lanes + i;
+            double slope = nevh__chord_slope(x->method, part->lanes,
+                                             f->rows + x->k * part->stride + at,
+                                             f->h + at);
+            if (slope - slope != 0)
+                return nevh__central_fail(f, part->term, b, b->lane + i,
+                                          s->instance[x->first], x->k);
+        }
+    return nevh__central_fail(f, part->term, b, b->lane, s->instance[0],
+                              s->slope->k);
+}
+
 /* Tells what is not finite: a value, or else the first such slope. */
 static int fail(nevh_field *f, const nevh__term_part *part,
                 const nevh__places *at, size_t lane) {
@@ -260,8 +278,7 @@ static int fail(nevh_field *f, const nevh__term_part *part,
     b.used = used;
     b.stride = part->stride;
     if (f->h[column] - f->h[column] == 0)
-        return nevh__central_fail(f, part->term, &b, s->instance[0],
-                                  s->slope->k);
+        return fail_slope(f, part, &b);
     /* A point that is not shifted in any variable is the orbit's. */
     double reach = s->shift[x->k * s->padded + point];
     return reach == 0

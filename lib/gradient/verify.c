@@ -73,15 +73,21 @@ static void ask_term(const check *c, size_t at) {
         c->own[k] = f->slopes[k * NEVH__LANES];
 }
 
+static const char *variable(const check *c, size_t k,
+                            char text[NEVH__VARIABLE]) {
+    return nevh__variable_name(c->selection->field->system, k >= c->term->nq,
+                               nevh__index(c->term, c->instance, k), text);
+}
+
 static int wrong(const check *c, size_t k, double own, double difference) {
     const nevh_term *decl = &c->term->term->decl;
+    char text[NEVH__VARIABLE];
     return nevh__fail(
         &c->selection->field->report, NEVH_ENOGRAD,
         "the exact gradient of term \"%s\" of effect \"%s\" is wrong: its "
-        "derivative with respect to %c[%zu] is %.9g where differences of its "
+        "derivative with respect to %s is %.9g where differences of its "
         "values give %.9g",
-        decl->name, decl->effect, k < c->term->nq ? 'q' : 'p',
-        nevh__index(c->term, c->instance, k), own, difference);
+        decl->name, decl->effect, variable(c, k, text), own, difference);
 }
 
 /* The term's own derivative less that of its values, and how much the latter may
@@ -178,14 +184,14 @@ static bool same(double a, double b) {
 
 static int unlike(const check *c, size_t k, double point, double block) {
     const nevh_term *decl = &c->term->term->decl;
+    char text[NEVH__VARIABLE];
     return nevh__fail(
         &c->selection->field->report, NEVH_ENOGRAD,
         "the point gradient of term \"%s\" of effect \"%s\" is not its "
-        "gradient to the last bit: the derivative with respect to %c[%zu] is "
+        "gradient to the last bit: the derivative with respect to %s is "
         "%.17g where that of a block is %.17g; what is said of NEVH_GRADIENT "
         "in <nevh/body.h> may help, and to leave it out",
-        decl->name, decl->effect, k < c->term->nq ? 'q' : 'p',
-        nevh__index(c->term, c->instance, k), point, block);
+        decl->name, decl->effect, variable(c, k, text), point, block);
 }
 
 /* Fills a block with one sample and neighbours of it, of which nothing is known

@@ -225,6 +225,7 @@ static bool take_transform(nevh_scene *s, nevh__scene_model *m,
         nevh__tree_free(tree);
         return nevh__scene_no_memory(s);
     }
+    m->transform->names = (const char *const *)m->coordinate_names;
     int status = nevh__tree_add_terms(tree, m->names, m->transform, "transform",
                                       &m->owned_transform, &error);
     nevh__tree_free(tree);

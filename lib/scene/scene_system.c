@@ -123,6 +123,7 @@ bool nevh__model_terms(nevh_scene *s, nevh__scene_model *m) {
     m->system = nevh_system_new(m->n);
     if (!m->system)
         return nevh__scene_no_memory(s);
+    m->system->names = (const char *const *)m->coordinate_names;
     if (!nevh__scene_each(s, m, NEVH__EFFECTS, add_terms) ||
         !nevh__model_friction(s, m))
         return false;

@@ -121,6 +121,7 @@ bool nevh__lane_form_finish(nevh__lane_form *f) {
         nevh_system_enable(f->system, base->effects[i].name,
                            base->effects[i].on);
     f->system->by_lane = true;
+    f->system->names = base->names;
     return !f->system->report.status;
 }
 

@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "system/system_private.h"
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -256,6 +257,16 @@ void nevh_system_free(nevh_system *s) {
     free(s->effect_names.entries);
     free(s->frictions);
     free(s);
+}
+
+const char *nevh__variable_name(const nevh_system *s, bool momentum, size_t i,
+                                char text[NEVH__VARIABLE]) {
+    if (s->names)
+        snprintf(text, NEVH__VARIABLE, "%s%s", momentum ? "p_" : "",
+                 s->names[i]);
+    else
+        snprintf(text, NEVH__VARIABLE, "%c[%zu]", momentum ? 'p' : 'q', i);
+    return text;
 }
 
 int nevh_system_status(const nevh_system *s) {

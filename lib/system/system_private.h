@@ -105,8 +105,16 @@ struct nevh_system {
                                own: see lib/gradient/field_lanes.c */
     nevh_value_fn whole;    /* of nevh_system_from */
     const void *whole_params;
+    const char *const
+        *names; /* of coordinates, borrowed; NULL: q[0], q[1] ... */
     nevh__report report;
 };
+
+/* What messages call variable i of either half: "x", "p_x", or "q[0]".
+   returns  text */
+enum { NEVH__VARIABLE = 64 };
+const char *nevh__variable_name(const nevh_system *, bool momentum, size_t i,
+                                char text[NEVH__VARIABLE]);
 
 static inline bool nevh__term_on(const nevh_system *s,
                                  const nevh__term_entry *term) {

@@ -55,6 +55,7 @@ static nevh_separability separability;
     X(STATUS, nevh_symplecticity_defect, (NULL, 0.1, 0.1, in, in, in, out))    \
     X(STATUS, nevh_reversal_defect, (NULL, 0.1, 0.1, 1, in, in, in, out))      \
     X(REAL, nevh_stability_limit, (NULL))                                      \
+    X(REAL, nevh_stability_growth, (NULL, 0.1))                                \
     X(REAL, nevh_stability_angle, (NULL, 0.1))                                 \
     X(MADE, nevh_shadow_new, (NULL, NULL, 0.1, NULL))                          \
     X(ANY, nevh_shadow_free, (NULL))                                           \

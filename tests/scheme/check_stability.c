@@ -14,9 +14,10 @@ static const double pi = 3.14159265358979323846;
    stages: 2 sqrt(2) [L. O. Jay, L. R. Petzold, Highly oscillatory systems and
    periodic stability (1995)].  Forest and Ruth: a step of Verlet's at x has the
    trace 2 - x^2; where three of them reach -2.  Kutta's of order 3: sqrt(3).
-   Euler: sqrt(1 + x^2) = 1 + 1e-5, and two stages: sqrt(1 + x^4/4) = 1 + 1e-5.
-   The implicit Euler method: 1 / sqrt(1 + x^2).  Adams and Bashforth of two
-   steps: the larger root of z^2 - (1 + 3ix/2) z + ix/2 is 1 + 1e-5. */
+   None has an interval of which |R(ix)| is sqrt(1 + x^2), as Euler's, or sqrt(1 +
+   x^4/4), as that of two stages; Adams and Bashforth of two steps: the larger root
+   of z^2 - (1 + 3ix/2) z + ix/2 is 1 + x^4/4; Fehlberg's of order 5: |R|^2 - 1 is
+   x^6/551 to lowest order, since 1/360 - 2/2080 is above 0.  The implicit Euler method: 1 / sqrt(1 + x^2). */
 static const struct {
     const nevh_integrator *const *scheme;
     double limit, tolerance;
@@ -26,26 +27,30 @@ static const struct {
                  {&nevh_position_verlet, 2, 1e-7},
                  {&nevh_lobatto2, 2, 1e-7},
                  {&nevh_lobatto4, 2.8284271247, 1e-7},
-                 {&nevh_rk4, 2.8284271247, 1e-5},
+                 {&nevh_rk4, 2.8284271247, 1e-8},
                  {&nevh_forest_ruth, 1.573401947, 1e-6},
                  {&nevh_pefrl, 2.98945, 1e-4},
                  {&nevh_midpoint, INFINITY, 0},
                  {&nevh_gauss4, INFINITY, 0},
                  {&nevh_gauss8, INFINITY, 0},
                  {&nevh_gonzalez, INFINITY, 0},
-                 {&nevh_rk3, 1.7320508076, 1e-4},
-                 {&nevh_explicit_midpoint, 0.0945742, 1e-6},
-                 {&nevh_heun, 0.0945742, 1e-6},
-                 {&nevh_ralston, 0.0945742, 1e-6},
-                 {&nevh_adams_bashforth2, 0.0792768, 1e-6},
+                 {&nevh_rk3, 1.7320508076, 1e-8},
+                 {&nevh_explicit_midpoint, 0, 0},
+                 {&nevh_heun, 0, 0},
+                 {&nevh_ralston, 0, 0},
+                 {&nevh_adams_bashforth2, 0, 0},
+                 {&nevh_gsl_rkf45, 0, 0},
+                 {&nevh_gsl_rk8pd, 0, 0},
                  {&nevh_implicit_euler, INFINITY, 0},
-                 {&nevh_euler, 4.47215e-3, 1e-7}};
+                 {&nevh_euler, 0, 0}};
 enum { PUBLISHED = sizeof published / sizeof *published };
 
 TEST_EACH(published_limits, PUBLISHED) {
     double limit = nevh_stability_limit(*published[_i].scheme);
     if (isinf(published[_i].limit))
         ck_assert_double_infinite(limit);
+    else if (published[_i].limit == 0)
+        ck_assert_double_eq(limit, 0);
     else
         ck_assert_double_eq_tol(limit, published[_i].limit,
                                 published[_i].tolerance);
@@ -92,8 +97,15 @@ static double largest_above(const nevh_integrator *scheme, double limit) {
 TEST_EACH(limits_are_limits, scheme_count()) {
     const nevh_integrator *scheme = nevh_integrators()[_i];
     double limit = nevh_stability_limit(scheme);
-    if (nevh_integrator_symplectic(scheme) != NEVH_YES) {
-        ck_assert(isnan(limit) || limit >= 0);
+    bool symplectic = nevh_integrator_symplectic(scheme) == NEVH_YES;
+    ck_assert(isnan(limit) || limit >= 0);
+    if (isnan(limit) || nevh_integrator_symplectic(scheme) == NEVH_EXTENDED)
+        return;
+    if (limit == 0) {
+        double growth = nevh_stability_growth(scheme, 0.8);
+        double after = pow(growth, 1e4 * 0.8 / (2 * pi));
+        ck_assert_double_gt(growth, 1);
+        ck_assert_double_ge(largest_after(scheme, 0.8), 0.5 * fmin(after, 1e3));
         return;
     }
     if (isinf(limit)) {
@@ -101,7 +113,23 @@ TEST_EACH(limits_are_limits, scheme_count()) {
         return;
     }
     ck_assert_double_le(largest_after(scheme, limit * (1 - 1e-4)), 1e2);
-    ck_assert_double_ge(largest_above(scheme, limit), 3);
+    ck_assert_double_ge(symplectic ? largest_above(scheme, limit)
+                                   : largest_after(scheme, 1.3 * limit),
+                        3);
+}
+
+/* |R(ix)| of two stages; of Euler's method; none of Verlet's and rk4's. */
+TEST(growth_of_a_period) {
+    double x = 0.3, two = sqrt(1 + x * x * x * x / 4), one = sqrt(1 + x * x);
+    ck_assert_double_eq_tol(nevh_stability_growth(nevh_heun, x),
+                            pow(two, 2 * pi / x), 1e-12);
+    ck_assert_double_eq_tol(nevh_stability_growth(nevh_euler, x),
+                            pow(one, 2 * pi / x), 1e-12);
+    ck_assert_double_eq(nevh_stability_growth(nevh_verlet, x), 1);
+    ck_assert_double_eq(nevh_stability_growth(nevh_rk4, x), 1);
+    ck_assert_double_gt(nevh_stability_growth(nevh_verlet, 2.1), 2);
+    ck_assert_double_nan(nevh_stability_growth(nevh_verlet, 0));
+    ck_assert_double_nan(nevh_stability_growth(nevh_adaptive_verlet, x));
 }
 
 TEST(no_limit_is_told) {

@@ -8,7 +8,10 @@ exits 0 check pendulum --dt 0.1 --format csv
 has '^# Highest frequency: omega = 3\.13 rad/s \(t = .* s\); omega dt = 0\.313 at dt = 0\.1 s$'
 exits 0 check pendulum --dt 0.1 --all
 has '^ verlet +2 +yes +2 +0\.313$'
-has '^ euler +1 +yes +never +0\.313 +unstable'
+has '^ euler +1 +yes +never +0\.313 +unstable: amplitude times 2\.56 a period'
+# |R(iy)| > 1 for every y: (1 + 0.313^4/4)^(pi/0.313).
+has '^ heun +2 +yes +never +0\.313 +unstable: amplitude \+2\.4 % a period'
+has '^ gsl-rkf45 +5 +yes +never '
 exits 0 check "$srcdir/scenes/hard/elastic-pendulum.nevh" --dt 0.05 --t-end 5 --all
 has '^Highest frequency: omega = 100 '
 has '^ verlet +2 +yes +2 +5 +unstable'

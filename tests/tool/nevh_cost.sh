@@ -220,6 +220,6 @@ lacks 'auto'
 has 'itself makes an energy error'
 # A difference that meets the centre is told with its half-spread and the reason.
 exits 0 gradients kepler --gradient central8
-has '^central8, half-spread 0.1: a difference by q\[0\]'
+has '^central8, half-spread 0.1: a difference by x'
 
 exit $status

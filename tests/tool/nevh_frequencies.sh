@@ -9,7 +9,7 @@ rows() { grep -v '^#' $work/out | tail -n +2; }
 exits 0 frequencies pendulum --integrators gauss16 --gradient exact \
     --dt 0.1 --t-end 1000 --format csv
 test "$(grep -v '^#' $work/out | head -n 1)" = \
-    scene,integrator,observable,rank,frequency,error,amplitude,phase,drift,period ||
+    scene,integrator,observable,rank,frequency,error,amplitude,phase,drift,period,resolution ||
     fails "has other columns"
 rows | awk -F, 'function abs(x) { return x < 0 ? -x : x }
     $4 == 1 && abs($5/2.3556962007225665 - 1) < 1e-12 { first++ }
@@ -22,6 +22,14 @@ exits 0 frequencies henon-heiles --integrators gauss16,sofroniou-spaletta10 \
 rows | awk -F, '$4 == 1 { if (n++) { d = $5 - last; d = d < 0 ? -d : d
         exit d > 1e-10 }; last = $5 } END { if (n != 2) exit 1 }' ||
     fails "two schemes do not agree"
+
+# The error is that of the frequency: the scheme's own is in it, and far above what the
+# length of the run resolves.
+exits 0 frequencies pendulum --integrators verlet,rkn6b,midpoint --dt 0.05 --t-end 500 --format csv
+rows | awk -F, 'function abs(x) { return x < 0 ? -x : x }
+    $4 == 1 { d = abs($5 - 2.3556962007225665); n++
+        if (d > 2*$6 || $6 > 2*d + 1e-9 || $2 != "rkn6b" && $6 < 100*$11) wrong = 1 }
+    END { exit wrong || n != 3 }' || fails "errors are others"
 
 # One that goes round: what is quasi-periodic is its cosine.
 exits 0 frequencies pendulum-rotating --integrators gauss8 --t-end 200
@@ -63,7 +71,20 @@ lacks ' -?nan'
 printf '[coordinates]\nx = 0, 1\n[effects]\nK = p_x^2/2\n[run]\nt_end = 20
 dt = 0.1\nintegrators = verlet\n' >$work/free.nevh
 exits 0 frequencies $work/free.nevh
-has '^verlet, x: it changes along a straight line, by 1 a unit of time'
+has '^verlet, x: no frequencies: it changes along a straight line, by 1 a unit of'
+test "$(grep -c '^ verlet' $work/out)" = 0 || fails "has lines of a straight motion"
+lacks 'chaotic'
+# Nor is what goes one way all the time.
+printf '[coordinates]\nx = 0.1, 0.1\n[effects]\nK = p_x^2/2\nV = -x^2/2\n[run]\nt_end = 8
+dt = 0.1\nintegrators = verlet\n' >$work/escape.nevh
+exits 0 frequencies $work/escape.nevh
+has '^verlet, x: no frequencies: it goes one way all the time'
+# Nor what rounding does to a coordinate that rests.
+printf '[coordinates]\nx = 1\ny = 0\n[effects]\nK = ((p_x+p_y)^2 + (p_x-p_y)^2)/4
+V = ((x+0.1*y)^2+(0.1*x-y)^2)/2 + x*0.3*0\n[run]\nt_end = 200
+dt = 0.1\nintegrators = gauss4\n' >$work/rest.nevh
+exits 0 frequencies $work/rest.nevh --format csv
+rows | awk -F, '$3 == "y" || $7 < 1e-9 { exit 1 }' || fails "has lines of rounding"
 exits 0 frequencies henon-heiles --integrators verlet
 lacks 'straight line'
 exit $status

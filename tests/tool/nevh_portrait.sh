@@ -36,8 +36,8 @@ exits 0 portrait pendulum --vary 'phi = 0' --vary 'p_phi = 1, 3, 5, 8' \
 test -s $work/a.svg || fails "draws nothing"
 has '^centre at phi = 0, p_phi = 0: H = -9\.8 J$'
 has '^saddle at phi = 3\.141592654, p_phi = 0: H = 9\.8 J$'
-has '^saddle at phi = -3\.141592654, p_phi = 0: H = 9\.8 J$'
-test "$(grep -c '^[cs]' $work/out)" -eq 3 || fails "has other equilibria"
+lacks 'phi = -3\.14' # the same, a period on
+test "$(grep -c '^[cs]' $work/out)" -eq 2 || fails "has other equilibria"
 grep -q '^set title "verlet: H within ' $work/gp || fails "has no panel of verlet"
 grep -q '^set title "euler: H within ' $work/gp || fails "has no panel of euler"
 points 1 >$work/levels
@@ -79,6 +79,37 @@ has '^.*b.svg: 5 orbits by each integrator$'
 has '^centre at x = -1, p_x = 0: H = [0-9.e-]+$'
 has '^saddle at x = 0, p_x = 0: H = 1$'
 has '^centre at x = 1, p_x = 0: '
+
+# All of the window, those near the start first: 38 of a cosine, and the saddle at 0
+# of a rippled well, which Newton's method seldom finds from elsewhere.
+plane() { # V STARTS
+    printf '[coordinates]\nx = 0.2\n[effects]\nK = p_x^2/2\nV = %s\n[run]
+t_end = 0.5\ndt = 0.02\nintegrators = verlet\n' "$1" >$work/plane.nevh
+    exits 0 portrait $work/plane.nevh --vary "x = $2" --plot $work/plane.svg
+}
+plane 'cos(x)' 'range(-40, 40, 5)'
+places() { sed -n 's/^[a-z]* at x = \([^,]*\),.*/\1/p' $work/out; }
+# Multiples of pi, one by one from the start on.
+places | awk 'function abs(x) { return x < 0 ? -x : x }
+    { n = $1/3.14159265358979; d = abs(n - int(n + (n < 0 ? -0.5 : 0.5)))
+      if (d > 1e-8 || abs($1 - 0.2) < last || seen[$1]++) wrong = 1
+      last = abs($1 - 0.2); if (abs($1) < 40) inside++ }
+    END { exit wrong || inside != 25 }' || fails "is not all of a cosine"
+plane 'cos(10*x)/10 + x^2/20' 'range(-12, 12, 7)'
+test $(places | wc -l) = 63 || fails "is not all of a rippled well"
+has '^saddle at x = 0, p_x = 0: H = 0\.1$'
+# Degenerate ones, which derivatives cross, touch, or that fill a line.
+plane 'x^4' 'range(-1, 1, 4)'
+has '^degenerate at x = 0, p_x = 0: '
+plane 'x^3' 'range(-1, 1, 4)'
+has '^degenerate at x = 0, p_x = 0: '
+plane '0*x' 'range(-1, 1, 4)'
+has '^degenerate equilibria fill a curve'
+test $(places | wc -l) = 1 || fails "lists a line"
+# Of any unit of energy.
+plane '1e-20*cos(x)' 'range(-4, 4, 5)'
+has '^saddle at x = 0, p_x = 0: H = 1e-20$'
+has '^centre at x = 3\.14'
 exits 0 portrait $work/well.nevh --plot $work/b.svg --quiet
 test -s $work/out && fails "is not quiet"
 exits 1 portrait $work/well.nevh --plot $work/b.svg --vary 'x = 0, 9'

@@ -41,14 +41,11 @@ bool stability_exceeded(const nevh_integrator *scheme, double limit, double x) {
     return x > (extended ? limit - 1. / 32 : limit);
 }
 
-/* Below, a limit is where growth is first seen: there is none. */
-static const double no_limit = 0.01;
-
 static char *cause_at(const nevh_integrator *scheme, double limit, double x,
                       const char *where) {
     const char *name = nevh_integrator_name(scheme);
     bool adds_up = nevh_integrator_symplectic(scheme) == NEVH_NO;
-    if (limit > no_limit && stability_exceeded(scheme, limit, x))
+    if (limit > 0 && stability_exceeded(scheme, limit, x))
         return text_print("%s: %s is stable up to %.3g", where, name, limit);
     if (x > 1)
         return text_print("%s: a turn has %.2g steps", where, 2 * M_PI / x);

@@ -81,9 +81,20 @@ static void add_refusal(refusals *r, const char *scheme, const char *message) {
     free(why);
 }
 
-/* Below this growth of a step is no limit, but a pace at which euler is slow to
-   show that it is never stable. */
-static const double never = 0.01;
+/* "unstable", and by how much where no step is stable; NULL: nothing. */
+static char *prediction(const plan *p, const nevh_integrator *scheme,
+                        const trial_run *ahead, double limit) {
+    double x = p->dt[0] * ahead->frequency;
+    double growth = limit == 0 ? nevh_stability_growth(scheme, x) : NAN;
+    const char *verdict =
+        growth == 1 ? NULL : trial_run_verdict(ahead, limit, p->dt[0]);
+    if (growth >= 2)
+        return text_print("unstable: amplitude times %.3g a period", growth);
+    if (growth > 1)
+        return text_print("unstable: amplitude +%.2g %% a period",
+                          100 * (growth - 1));
+    return verdict ? text_print("%s", verdict) : NULL;
+}
 
 /* dt times the fastest frequency, against what the scheme bears. */
 static void add_trial_run(const plan *p, const nevh_integrator *scheme,
@@ -91,7 +102,7 @@ static void add_trial_run(const plan *p, const nevh_integrator *scheme,
                           table *t) {
     double limit = fits ? nevh_stability_limit(scheme) : NAN;
     double x = fits ? p->dt[0] * ahead->frequency : NAN;
-    if (!why && limit < never)
+    if (!why && limit == 0)
         table_text(t, "never");
     else if (isfinite(limit))
         table_shown(t, "%.3g", limit);
@@ -101,7 +112,9 @@ static void add_trial_run(const plan *p, const nevh_integrator *scheme,
         table_shown(t, "%.3g", x);
     else
         table_text(t, NULL);
-    table_text(t, fits ? trial_run_verdict(ahead, limit, p->dt[0]) : NULL);
+    char *text = fits ? prediction(p, scheme, ahead, limit) : NULL;
+    table_text(t, text);
+    free(text);
 }
 
 /* What the table holds, and what is said below it. */
@@ -161,9 +174,10 @@ static void add_scheme(fitting *f, const nevh_integrator *scheme) {
 
 static void tell_others(const fitting *f, list *words) {
     list_add(words,
-             "stable below: the largest omega dt at which the steps of an "
-             "oscillation stay bounded (never: they grow at any); empty where "
-             "the integrator chooses its own steps.");
+             "stable below: the largest omega dt at which the steps of a small "
+             "oscillation stay bounded (never: they grow at any); of large "
+             "ones, resonances may end it earlier.  Empty where the integrator "
+             "chooses its own steps.");
     char *others = list_joined(&f->others);
     if (*others)
         list_print(words, "Also fit (--all shows them): %s.", others);

@@ -1,4 +1,6 @@
 /* nevh frequencies: the lines of a spectrum, by integrator and observable.
+
+   Those of a run at half the step tell how much of a frequency is the scheme's.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "experiment/plan.h"
 #include <math.h>
@@ -14,19 +16,42 @@ typedef struct {
     size_t k;      /* of the coordinate */
     bool formula;  /* the scene's judged one */
     double period; /* an angle: its cosine is taken where it goes round */
+    double length; /* over which H varies; 0: not known */
     nevh_spectral_samples *samples;
 } observed;
+
+/* What one run shows of one of them. */
+typedef struct {
+    char *name;
+    nevh_spectral_line line[LINES];
+    size_t found;
+    double error[LINES]; /* with that of the scheme; NAN: not known */
+} spectrum;
 
 typedef struct {
     plan plan;
     observed *all;
     size_t count;
     double begin, end; /* of the run */
+    size_t finer;      /* steps between two samples, of dt / finer each */
     int failed;        /* a formula's status */
     table *table;
     list words;
     int worst;
 } job;
+
+/* Of the coordinates that are observed. */
+static void find_lengths(job *j) {
+    const plan *p = &j->plan;
+    nevh_options o = plan_options(p, p->gradients.item[0]);
+    nevh_probe *probe = nevh_probe_new(p->system, &o);
+    const double *length =
+        nevh_probe_status(probe) ? NULL : nevh_probe_lengths(probe);
+    for (size_t i = 0; length && i < j->count; i++)
+        if (!j->all[i].formula)
+            j->all[i].length = length[j->all[i].k];
+    nevh_probe_free(probe);
+}
 
 static int choose(job *j, const options *o) {
     const plan *p = &j->plan;
@@ -46,6 +71,7 @@ static int choose(job *j, const options *o) {
     for (size_t i = 0; i < j->count; i++)
         if (!j->all[i].samples)
             return tool_refuse("out of memory");
+    find_lengths(j);
     return o->observable && nevh_scene_set_judged(p->scene, o->observable)
                ? scene_report(p->scene, o)
                : TOOL_OK;
@@ -56,6 +82,8 @@ static int take(void *data, size_t step, double t, const double q[],
     job *j = data;
     j->begin = step ? j->begin : t;
     j->end = t;
+    if (step % j->finer)
+        return 0;
     for (size_t i = 0; i < j->count; i++) {
         observed *a = &j->all[i];
         double x = q[a->k];
@@ -63,13 +91,15 @@ static int take(void *data, size_t step, double t, const double q[],
             j->failed = nevh_scene_judged_value(j->plan.scene, t, q, p, &x);
         if (j->failed)
             return 1;
-        nevh_spectral_samples_take(a->samples, step, t, x);
+        nevh_spectral_samples_take(a->samples, step / j->finer, t, x);
     }
     return 0;
 }
 
-/* returns  TOOL_OK; TOOL_FAILED with the reason in the words */
-static int run(job *j, const char *integrator) {
+/* A run at dt / finer.
+   why      out: the reason, to be freed
+   returns  0; -1 refused; else a status */
+static int run(job *j, const char *integrator, size_t finer, char **why) {
     const plan *p = &j->plan;
     nevh_stepper *s = plan_stepper(p, integrator);
     bool transformed;
@@ -79,28 +109,26 @@ static int run(job *j, const char *integrator) {
     nevh_observer observer = {take, j, 1};
     int status = nevh_stepper_status(s);
     j->failed = 0;
+    j->finer = finer;
     for (size_t i = 0; i < j->count; i++)
         nevh_spectral_samples_restart(j->all[i].samples);
     memcpy(q, p->q, p->n * sizeof *q);
     memcpy(m, p->p, p->n * sizeof *q);
     if (status || own) {
-        list_print(&j->words, "%s refused: %s", integrator,
-                   status ? nevh_stepper_message(s)
-                          : "it chooses times of its own, and samples are at "
-                            "equal times");
+        *why = text_print("%s", status ? nevh_stepper_message(s)
+                                       : "it chooses times of its own, and "
+                                         "samples are at equal times");
         status = -1;
     } else {
-        status = plan_run(p, s, p->dt[0], q, m, &observer, 1, &stopped);
+        status = plan_run(p, s, p->dt[0] / (double)finer, q, m, &observer, 1,
+                          &stopped);
         if (status)
-            list_print(&j->words, "%s failed: %s", integrator,
-                       j->failed ? nevh_scene_message(p->scene)
-                                 : nevh_stepper_message(s));
+            *why = text_print("%s", j->failed ? nevh_scene_message(p->scene)
+                                              : nevh_stepper_message(s));
     }
-    if (status > 0)
-        j->worst = TOOL_FAILED;
     free(q);
     nevh_stepper_free(s);
-    return status ? TOOL_FAILED : TOOL_OK;
+    return status;
 }
 
 /* What of an angle that goes round is quasi-periodic. */
@@ -114,8 +142,11 @@ static char *straighten(const observed *a) {
 }
 
 static void add_row(job *j, const options *o, const char *integrator,
-                    const char *name, size_t rank,
-                    const nevh_spectral_line *l) {
+                    const spectrum *of, size_t k) {
+    const nevh_spectral_line *l = &of->line[k];
+    const char *name = of->name;
+    size_t rank = k + 1;
+    double error = of->error[k];
     table *t = j->table;
     double period = 6.283185307179586 / l->frequency;
     if (o->format != FORMAT_TABLE) {
@@ -124,17 +155,22 @@ static void add_row(job *j, const options *o, const char *integrator,
         table_text(t, name);
         table_shown(t, "%zu", rank);
         table_number(t, l->frequency);
-        table_number(t, l->error);
+        table_number(t, error);
         table_number(t, l->amplitude);
         table_number(t, l->phase);
         table_number(t, l->drift);
         table_number(t, period);
+        table_number(t, l->error);
         return;
     }
     table_text(t, integrator);
     table_text(t, name);
     table_shown(t, "%zu", rank);
     table_shown(t, "%.15g", l->frequency);
+    if (isnan(error))
+        table_text(t, "-");
+    else
+        table_shown(t, "%.0e", error);
     table_shown(t, "%.0e", l->error);
     if (isnan(l->drift))
         table_text(t, "-");
@@ -145,8 +181,21 @@ static void add_row(job *j, const options *o, const char *integrator,
     table_shown(t, "%.4f", l->phase);
 }
 
-/* What grows steadily is no sum of oscillations. */
-static void judge_line(job *j, const char *integrator, const char *name,
+/* Whether it never turns, but for rounding. */
+static bool is_monotone(const double x[], size_t count) {
+    static const double rounding = 1e-12;
+    double low = x[0], high = x[0], forth = 0, back = 0;
+    for (size_t k = 1; k < count; k++) {
+        double d = x[k] - x[k - 1];
+        low = fmin(low, x[k]), high = fmax(high, x[k]);
+        forth += fmax(d, 0), back += fmax(-d, 0);
+    }
+    return fmin(forth, back) <= rounding * fmax(high - low, fabs(high));
+}
+
+/* What grows steadily is no sum of oscillations.
+   returns  whether it does, with the reason in the words */
+static bool judge_line(job *j, const char *integrator, const char *name,
                        const double x[], size_t count, double h) {
     static const double straight = 0.9;
     double n = (double)count, mean = 0, tt = 0, tx = 0, xx = 0;
@@ -156,11 +205,19 @@ static void judge_line(job *j, const char *integrator, const char *name,
         double t = (double)k - (n - 1) / 2, d = x[k] - mean;
         tt += t * t, tx += t * d, xx += d * d;
     }
-    if (xx > 0 && tx * tx > straight * tt * xx)
+    bool line = xx > 0 && tx * tx > straight * tt * xx;
+    if (line)
         list_print(&j->words,
-                   "%s, %s: it changes along a straight line, by %.3g a unit "
-                   "of time: it is not periodic, or the run is too short.",
+                   "%s, %s: no frequencies: it changes along a straight line, "
+                   "by %.3g a unit of time: it is not periodic, or the run is "
+                   "too short.",
                    integrator, name, tx / tt / h);
+    else if (is_monotone(x, count))
+        list_print(&j->words,
+                   "%s, %s: no frequencies: it goes one way all the time, from "
+                   "%.4g to %.4g: it is not periodic, or the run is too short.",
+                   integrator, name, x[0], x[count - 1]);
+    return line || is_monotone(x, count);
 }
 
 /* Where samples of the whole run have no room, those of its beginning tell. */
@@ -191,50 +248,147 @@ static void judge(job *j, const char *integrator, const char *name,
                    integrator, name, l->drift);
 }
 
+/* Lines of less than what rounding does over a length of H are left out. */
+static void leave_out_rounding(const observed *a, spectrum *of) {
+    static const double rounding = 1e-12;
+    size_t kept = 0;
+    for (size_t k = 0; k < of->found; k++)
+        if (of->line[k].amplitude > rounding * a->length)
+            of->line[kept++] = of->line[k];
+    of->found = kept;
+}
+
+/* Of what was sampled last.
+   returns  TOOL_OK, also where there is none; TOOL_USAGE, with a message */
+static int find_spectrum(job *j, const char *integrator, observed *a, bool told,
+                         spectrum *of) {
+    size_t count, words = j->words.count;
+    double h;
+    of->name = straighten(a);
+    const double *values = nevh_spectral_samples_values(a->samples, &count, &h);
+    int status =
+        nevh_frequencies(h, count, values, LINES, of->line, &of->found);
+    if (status == NEVH_EINVAL)
+        return tool_refuse("%s: %zu samples are too few: 64 steps at least",
+                           j->plan.name, count);
+    if (status == NEVH_ENOMEM)
+        return tool_refuse("out of memory");
+    if (status == NEVH_EDOM && told) {
+        list_print(&j->words, "%s, %s failed: it is not finite", integrator,
+                   of->name);
+        j->worst = TOOL_FAILED;
+    }
+    leave_out_rounding(a, of);
+    if (!status && !of->found && told)
+        list_print(&j->words, "%s, %s: it does not move.", integrator,
+                   of->name);
+    if (!of->found)
+        return TOOL_OK;
+    if (judge_line(j, integrator, of->name, values, count, h))
+        of->found = 0;
+    else if (told)
+        judge(j, integrator, of->name, &of->line[0]);
+    if (told)
+        judge_length(j, integrator, of->name, h * (double)(count - 1),
+                     j->end - j->begin);
+    while (!told && j->words.count > words)
+        free(j->words.item[--j->words.count]);
+    return TOOL_OK;
+}
+
+/* The line of about that size that is nearest; NAN where there is none. */
+static double nearest(const spectrum *of, const nevh_spectral_line *l) {
+    static const double alike = 2;
+    double best = NAN;
+    for (size_t k = 0; k < of->found; k++) {
+        double ratio = of->line[k].amplitude / l->amplitude;
+        double apart = fabs(of->line[k].frequency - l->frequency);
+        if (ratio < alike && ratio > 1 / alike &&
+            !(apart >= fabs(best - l->frequency)))
+            best = of->line[k].frequency;
+    }
+    return best;
+}
+
+/* An error of h^order is the change at half the step, and a little more. */
+static void compare_lines(spectrum *of, const spectrum *finer, int order) {
+    double part = 1 - pow(2, -order);
+    for (size_t k = 0; k < of->found; k++) {
+        const nevh_spectral_line *l = &of->line[k];
+        double changed = fabs(nearest(finer, l) - l->frequency) / part;
+        of->error[k] = isnan(changed) ? NAN : hypot(changed, l->error);
+    }
+}
+
+static int order_of(const job *j, const char *integrator) {
+    nevh_stepper *s = plan_stepper(&j->plan, integrator);
+    int order = nevh_stepper_order(s);
+    nevh_stepper_free(s);
+    return order;
+}
+
+/* The errors of the lines that were found. */
+static int confirm(job *j, const char *integrator, spectrum *all) {
+    char *why = NULL;
+    int order = order_of(j, integrator), status = TOOL_OK;
+    bool ran = !run(j, integrator, 2, &why);
+    if (!ran)
+        list_print(&j->words,
+                   "%s: errors are not known: at half the step it fails: %s",
+                   integrator, why);
+    free(why);
+    for (size_t i = 0; ran && !status && i < j->count; i++) {
+        spectrum finer = {0};
+        status = find_spectrum(j, integrator, &j->all[i], false, &finer);
+        compare_lines(&all[i], &finer, order);
+        free(finer.name);
+    }
+    return status;
+}
+
 static int analyse(job *j, const options *o, const char *integrator) {
-    nevh_spectral_line lines[LINES];
-    for (size_t i = 0; i < j->count; i++) {
-        observed *a = &j->all[i];
-        size_t found = 0, count;
-        double h;
-        char *name = straighten(a);
-        const double *values =
-            nevh_spectral_samples_values(a->samples, &count, &h);
-        int status = nevh_frequencies(h, count, values, LINES, lines, &found);
-        if (!status && !found)
-            list_print(&j->words, "%s, %s: it does not move.", integrator,
-                       name);
-        for (size_t k = 0; !status && k < found; k++)
-            add_row(j, o, integrator, name, k + 1, &lines[k]);
-        if (!status && found) {
-            judge(j, integrator, name, &lines[0]);
-            judge_line(j, integrator, name, values, count, h);
-            judge_length(j, integrator, name, h * (double)(count - 1),
-                         j->end - j->begin);
-        }
-        if (status == NEVH_EDOM) {
-            list_print(&j->words, "%s, %s failed: it is not finite", integrator,
-                       name);
-            j->worst = TOOL_FAILED;
-        }
-        free(name);
-        if (status == NEVH_EINVAL)
-            return tool_refuse("%s: %zu samples are too few: 64 steps at least",
-                               j->plan.name, count);
-        if (status == NEVH_ENOMEM)
-            return tool_refuse("out of memory");
+    spectrum *all = tool_allocate(j->count, sizeof *all);
+    size_t lines = 0;
+    int status = TOOL_OK;
+    for (size_t i = 0; !status && i < j->count; i++) {
+        for (size_t k = 0; k < LINES; k++)
+            all[i].error[k] = NAN;
+        status = find_spectrum(j, integrator, &j->all[i], true, &all[i]);
+        lines += all[i].found;
+    }
+    if (!status && lines)
+        status = confirm(j, integrator, all);
+    for (size_t i = 0; !status && i < j->count; i++) {
+        for (size_t k = 0; k < all[i].found; k++)
+            add_row(j, o, integrator, &all[i], k);
         table_group(j->table);
     }
-    return TOOL_OK;
+    for (size_t i = 0; i < j->count; i++)
+        free(all[i].name);
+    free(all);
+    return status;
+}
+
+/* Of an integrator. */
+static int run_and_analyse(job *j, const options *o, const char *integrator) {
+    char *why = NULL;
+    int status = run(j, integrator, 1, &why);
+    if (status)
+        list_print(&j->words, "%s %s: %s", integrator,
+                   status < 0 ? "refused" : "failed", why);
+    free(why);
+    if (status > 0)
+        j->worst = TOOL_FAILED;
+    return status ? TOOL_OK : analyse(j, o, integrator);
 }
 
 static void make_table(job *j, const options *o) {
     static const char *const csv[] = {
-        "scene", "integrator", "observable", "rank",  "frequency",
-        "error", "amplitude",  "phase",      "drift", "period"};
-    static const char *const shown[] = {"integrator", "observable", "rank",
-                                        "frequency",  "error",      "drift",
-                                        "period",     "amplitude",  "phase"};
+        "scene",     "integrator", "observable", "rank",   "frequency", "error",
+        "amplitude", "phase",      "drift",      "period", "resolution"};
+    static const char *const shown[] = {
+        "integrator", "observable", "rank",   "frequency", "error",
+        "resolution", "drift",      "period", "amplitude", "phase"};
     j->table = table_new();
     if (o->format == FORMAT_TABLE)
         table_columns(j->table, shown, sizeof shown / sizeof *shown);
@@ -250,6 +404,9 @@ static void note(const job *j, const options *o, list *notes) {
                p->dt[0], p->dts > 1 ? ", the first of the list" : "");
     list_print(notes, "gradient: %s%s", p->gradients.item[0],
                p->gradients.count > 1 ? ", the first of the list" : "");
+    list_add(notes,
+             "error: of the frequency, the scheme's own included, from a "
+             "run at half the step; resolution: without that");
 }
 
 static int analyse_all(job *j, const options *o) {
@@ -257,8 +414,7 @@ static int analyse_all(job *j, const options *o) {
     int status = TOOL_OK;
     make_table(j, o);
     for (size_t i = 0; !status && i < j->plan.integrators.count; i++)
-        if (!run(j, j->plan.integrators.item[i]))
-            status = analyse(j, o, j->plan.integrators.item[i]);
+        status = run_and_analyse(j, o, j->plan.integrators.item[i]);
     result.table = j->table;
     result.after = j->words;
     j->words = (list){0};

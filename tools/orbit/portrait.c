@@ -278,22 +278,55 @@ static int read_data(job *j, const options *o) {
     return status;
 }
 
-static void print_notes(const job *j, const options *o) {
+/* Whether it is another one, a period on. */
+static bool is_again(const job *j, size_t i) {
+    const equilibrium *found = j->levels.found, *e = &found[i];
+    const portrait_window *w = &j->levels.window;
+    double period = nevh_scene_period(j->plan.scene, 0);
+    for (size_t k = 0; period > 0 && k < i; k++)
+        if (fabs(remainder(e->x - found[k].x, period)) < 1e-9 * period &&
+            fabs(e->y - found[k].y) < 1e-9 * (w->high_y - w->low_y))
+            return true;
+    return false;
+}
+
+/* Those near the start first. */
+static void print_equilibria(const job *j) {
+    enum { MOST_SHOWN = 200 };
     static const char *const kinds[] = {"centre", "saddle", "degenerate"};
     _Static_assert(sizeof kinds / sizeof *kinds == PORTRAIT_KINDS, "each kind");
     const char *unit = nevh_scene_label(j->plan.scene, "energy");
+    const char *name = nevh_scene_coordinate(j->plan.scene, 0);
+    size_t shown = 0, left_out = 0;
+    for (size_t i = 0; i < j->levels.count; i++) {
+        const equilibrium *e = &j->levels.found[i];
+        if (is_again(j, i))
+            continue;
+        if (shown == MOST_SHOWN) {
+            left_out++;
+            continue;
+        }
+        shown++;
+        printf("%s at %s = %.10g, p_%s = %.10g: H = %.10g%s%s\n",
+               kinds[e->kind], name, e->x, name, e->y, e->energy,
+               *unit ? " " : "", unit);
+    }
+    if (left_out)
+        printf("left out: %s%zu equilibria that are farther from the start\n",
+               j->levels.many ? "more than " : "", left_out);
+    if (j->levels.curve)
+        printf(
+            "degenerate equilibria fill a curve, of which the nearest to the "
+            "start is listed\n");
+}
+
+static void print_notes(const job *j, const options *o) {
     if (o->quiet)
         return;
     printf("%s: %zu orbit%s by each integrator\n",
            o->plot.file ? o->plot.file : o->plot.script, j->members.count,
            j->members.count == 1 ? "" : "s");
-    for (size_t i = 0; i < j->levels.count; i++) {
-        const equilibrium *e = &j->levels.found[i];
-        const char *name = nevh_scene_coordinate(j->plan.scene, 0);
-        printf("%s at %s = %.10g, p_%s = %.10g: H = %.10g%s%s\n",
-               kinds[e->kind], name, e->x, name, e->y, e->energy,
-               *unit ? " " : "", unit);
-    }
+    print_equilibria(j);
     for (size_t i = 0; i < j->count; i++)
         if (j->of[i].refused)
             printf("%s %s\n", j->of[i].integrator, j->of[i].status);

@@ -13,6 +13,7 @@ typedef struct {
 /* Where dH is 0, of one degree of freedom. */
 typedef struct {
     double x, y, energy;
+    double distance; /* from the start, in parts of the window */
     enum {
         PORTRAIT_CENTRE,
         PORTRAIT_SADDLE,
@@ -29,12 +30,16 @@ typedef struct {
     nevh_field *field;
     equilibrium *found;
     size_t count;
+    bool curve, many; /* degenerate ones fill it; there may be more */
 } levels;
 int levels_new(levels *, const plan *, portrait_window);
 void levels_free(levels *);
 /* Level curves through these energies, and through the saddles; the first panel
    names what is in the legend. */
 void levels_draw(const levels *, plot *, const double energy[], size_t count);
+/* portrait_equilibria.c: all of the window, those near the start first; of
+   degenerate ones that fill a curve, one. */
+void levels_find_equilibria(levels *);
 double levels_energy(const levels *, double x, double y);
 
 /* section.c: a panel, the points of the first section of all members by one

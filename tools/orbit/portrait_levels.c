@@ -1,10 +1,10 @@
-/* nevh portrait: level curves of H, its equilibria and separatrices.
+/* nevh portrait: level curves of H, and separatrices.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "portrait.h"
 #include <math.h>
 #include <stdlib.h>
 
-enum { ACROSS = 201, UP = 161, STARTS = 24, MOST_STEPS = 60 };
+enum { ACROSS = 201, UP = 161 };
 
 double levels_energy(const levels *l, double x, double y) {
     double h, t = l->plan->run->t_start;
@@ -19,127 +19,6 @@ static double x_at(const levels *l, size_t i) {
 static double y_at(const levels *l, size_t k) {
     const portrait_window *w = &l->window;
     return w->low_y + (w->high_y - w->low_y) * (double)k / (UP - 1);
-}
-
-/* Equilibria. */
-
-/* Newton's method in two variables is written out: GSL's allocates in each step,
-   and does not look whether it got the memory. */
-static int gradient(const levels *l, const double z[2], double f[2]) {
-    double t = l->plan->run->t_start;
-    return nevh_field_gradient(l->field, 1, &t, &z[0], &z[1], &f[0], &f[1]);
-}
-
-/* j[2*i + k] = d f[i]/d z[k], by differences that are small against the window. */
-static int hessian(const levels *l, const double z[2], double j[4]) {
-    static const double part = 1e-5;
-    double length[2] = {part * (l->window.high_x - l->window.low_x),
-                        part * (l->window.high_y - l->window.low_y)};
-    for (int k = 0; k < 2; k++) {
-        double at[2] = {z[0], z[1]}, high[2], low[2];
-        at[k] = z[k] + length[k];
-        int status = gradient(l, at, high);
-        at[k] = z[k] - length[k];
-        if (status || (status = gradient(l, at, low)))
-            return status;
-        for (int i = 0; i < 2; i++)
-            j[2 * i + k] = (high[i] - low[i]) / (2 * length[k]);
-    }
-    return 0;
-}
-
-static bool is_inside(const portrait_window *w, double x, double y) {
-    double edge_x = 1e-6 * (w->high_x - w->low_x);
-    return x >= w->low_x - edge_x && x <= w->high_x + edge_x && y >= w->low_y &&
-           y <= w->high_y;
-}
-
-static void add(levels *l, const double z[2]) {
-    static const double near = 1e-5, little = 1e-6;
-    const portrait_window *w = &l->window;
-    double width = w->high_x - w->low_x, height = w->high_y - w->low_y;
-    double x = z[0], y = z[1], part[4];
-    if (!is_inside(w, x, y) || hessian(l, z, part))
-        return;
-    for (size_t i = 0; i < l->count; i++)
-        if (fabs(l->found[i].x - x) < near * width &&
-            fabs(l->found[i].y - y) < near * height)
-            return;
-    double a = part[0] * width * width, b = part[3] * height * height;
-    double c = part[1] * width * height, size = fmax(fabs(a), fabs(b));
-    double determinant = a * b - c * c;
-    l->found = tool_enlarge(l->found, l->count + 1, sizeof *l->found);
-    l->found[l->count++] = (equilibrium){
-        fabs(x) < near * width * 1e-3 ? 0 : x,
-        fabs(y) < near * height * 1e-3 ? 0 : y, levels_energy(l, x, y),
-        fabs(determinant) < little * size * size ? PORTRAIT_DEGENERATE
-        : determinant > 0                        ? PORTRAIT_CENTRE
-                                                 : PORTRAIT_SADDLE};
-}
-
-/* j dz = -f; false where that has no solution. */
-static bool solve(const double j[4], const double f[2], double dz[2]) {
-    double determinant = j[0] * j[3] - j[1] * j[2];
-    dz[0] = (j[1] * f[1] - j[3] * f[0]) / determinant;
-    dz[1] = (j[2] * f[0] - j[0] * f[1]) / determinant;
-    return isfinite(dz[0]) && isfinite(dz[1]);
-}
-
-/* The longest part of dz, halved at most so often, that makes the gradient, f,
-   smaller; z, f and dz become those of that step. */
-static bool take_step(const levels *l, double z[2], double f[2], double dz[2]) {
-    enum { HALVINGS = 30 };
-    double size = hypot(f[0], f[1]);
-    for (int i = 0; i < HALVINGS; i++) {
-        double at[2] = {z[0] + dz[0], z[1] + dz[1]}, next[2];
-        if (!gradient(l, at, next) && hypot(next[0], next[1]) <= size) {
-            for (int k = 0; k < 2; k++) {
-                z[k] = at[k];
-                f[k] = next[k];
-            }
-            return true;
-        }
-        dz[0] /= 2;
-        dz[1] /= 2;
-    }
-    return false;
-}
-
-/* Damped Newton steps from a place of the grid. */
-static void search(levels *l, double x, double y) {
-    static const double small = 1e-10;
-    const portrait_window *w = &l->window;
-    double z[2] = {x, y}, f[2], j[4], dz[2];
-    if (gradient(l, z, f))
-        return;
-    for (int i = 0; i < MOST_STEPS; i++) {
-        if (hessian(l, z, j) || !solve(j, f, dz))
-            return;
-        bool near = fabs(dz[0]) < small * (w->high_x - w->low_x) &&
-                    fabs(dz[1]) < small * (w->high_y - w->low_y);
-        if (near) {
-            add(l, (double[]){z[0] + dz[0], z[1] + dz[1]});
-            return;
-        }
-        if (!take_step(l, z, f, dz))
-            return;
-    }
-}
-
-static int by_place(const void *a, const void *b) {
-    const equilibrium *one = a, *other = b;
-    return one->x != other->x ? (one->x > other->x) - (one->x < other->x)
-                              : (one->y > other->y) - (one->y < other->y);
-}
-
-static void find_equilibria(levels *l) {
-    const portrait_window *w = &l->window;
-    for (int i = 0; i < STARTS; i++)
-        for (int k = 0; k < STARTS; k++)
-            search(l, w->low_x + (w->high_x - w->low_x) * (i + 0.5) / STARTS,
-                   w->low_y + (w->high_y - w->low_y) * (k + 0.5) / STARTS);
-    if (l->count)
-        qsort(l->found, l->count, sizeof *l->found, by_place);
 }
 
 int levels_new(levels *l, const plan *p, portrait_window w) {
@@ -157,7 +36,7 @@ int levels_new(levels *l, const plan *p, portrait_window w) {
     for (size_t k = 0; k < UP; k++)
         for (size_t i = 0; i < ACROSS; i++)
             l->h[k * ACROSS + i] = levels_energy(l, x_at(l, i), y_at(l, k));
-    find_equilibria(l);
+    levels_find_equilibria(l);
     return TOOL_OK;
 }
 

@@ -7,8 +7,6 @@
 
 /* The error that steps are for. */
 static const double target = 0.01;
-/* Below, a limit of stability is where growth is first seen: there is none. */
-static const double no_limit = 0.01;
 /* Of all runs together, as nevh_counts_seconds; of steps of a run; and of one that a
    guess may be made from. */
 static const double most_work = 4, most_steps = 3e5, enough_steps = 1e5;
@@ -166,7 +164,7 @@ static const row *shortest(const row rows[], size_t count, const row *first) {
 static void tell_remedy(const plan *p, const row *r, list *words) {
     const char *unit = nevh_scene_label(p->scene, "t"), *gap = *unit ? " " : "";
     bool loses = nevh_integrator_symplectic(r->scheme) == NEVH_NO;
-    bool always = loses && nevh_stability_limit(r->scheme) < no_limit;
+    bool always = loses && nevh_stability_limit(r->scheme) == 0;
     const char *gains = always ? " gains energy at every dt, and" : "";
     const char *other = loses ? "; or take a symplectic scheme" : "";
     remedy found = find(p, r);
