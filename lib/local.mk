@@ -103,8 +103,12 @@ libnevh_core_la_SOURCES = \
 	lib/taylor/graph_private.h \
 	lib/taylor/graph.c \
 	lib/taylor/derive.c \
+	lib/taylor/edges.c \
+	lib/taylor/domain.c \
 	lib/taylor/series_private.h \
 	lib/taylor/series_text.h \
+	lib/taylor/schedule_private.h \
+	lib/taylor/schedule_items.c \
 	lib/taylor/schedule.c \
 	lib/taylor/series_double.c \
 	lib/taylor/series_quad.c \

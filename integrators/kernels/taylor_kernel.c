@@ -28,6 +28,7 @@ typedef struct {
     double longest;          /* of a series, in steps of the caller's */
     nevh__series_code *code; /* NULL: there is none */
     const double *numbers;
+    double *watched; /* what it watched last; order times n_watched */
 } taylor_plan;
 
 const nevh__recurrence *nevh__taylor_recurrence(const nevh_work *w,
@@ -83,6 +84,7 @@ static void clear(nevh_work *w) {
     nevh__series_free_double(plan->series);
     nevh__series_free_long(plan->first);
     free(plan->first_rows);
+    free(plan->watched);
     nevh__recurrence_free(plan->recurrence);
     free(plan);
     w->plan = NULL;
@@ -106,8 +108,11 @@ enum { LONGER = LDBL_MANT_DIG == 64 };
 
 static bool plan_series(const nevh_work *w, taylor_plan *plan) {
     plan->series = nevh__series_new_double(plan->recurrence, plan->order);
-    if (!LONGER || !plan->series || !(w->options->tolerance < finest))
-        return plan->series;
+    plan->watched = nevh__array(plan->order * plan->recurrence->n_watched,
+                                sizeof *plan->watched);
+    if (!LONGER || !plan->series || !plan->watched ||
+        !(w->options->tolerance < finest))
+        return plan->series && plan->watched;
     plan->first = nevh__series_new_long(plan->recurrence, FIRST);
     plan->first_rows =
         nevh__array(2 * w->n * (FIRST + 2), sizeof *plan->first_rows);
@@ -220,6 +225,24 @@ static void find_lost(const nevh_work *w, const chain *z, double t) {
     }
 }
 
+static const double *watched_by(const taylor_plan *plan) {
+    return plan->code ? plan->watched
+                      : nevh__series_watched_double(plan->series);
+}
+
+/* Why there is no series at t that holds for long, where a domain has an edge. */
+static int fail_at_edge(nevh_work *w, const chain *z, double t) {
+    const taylor_plan *plan = w->plan;
+    char why[200];
+    size_t edge = nevh__domain_edge(plan->recurrence, watched_by(plan),
+                                    plan->order, *z->reach);
+    if (edge == SIZE_MAX)
+        return NEVH_OK;
+    nevh__domain_words(plan->recurrence, edge, why, sizeof why);
+    return nevh_work_fail(w, NEVH_EDOM, "%s ended near t = %.9g: %s",
+                          w->integrator->name, t, why);
+}
+
 /* A series at the state in rows, for the time t. */
 static int begin(nevh_work *w, const chain *z, double t, double h) {
     taylor_plan *plan = w->plan;
@@ -227,9 +250,14 @@ static int begin(nevh_work *w, const chain *z, double t, double h) {
     double *state = w->scratch + w->scratch_size - each;
     memcpy(state, z->rows, each * sizeof *state);
     w->field->gradients++;
-    bool finite = plan->code ? plan->code(plan->numbers, t, state, z->rows)
-                             : nevh__series_expand_double(plan->series, t,
-                                                          state, z->rows);
+    if (*z->begun == 0)
+        *z->reach = fabs(h);
+    bool finite =
+        plan->code
+            ? plan->code(plan->numbers, t, state, z->rows, plan->watched)
+            : nevh__series_expand_double(plan->series, t, state, z->rows);
+    if (!finite && fail_at_edge(w, z, t))
+        return NEVH_EDOM;
     if (!finite)
         return nevh_work_fail(w, NEVH_EDOM,
                               "the series at t = %.9g is not finite: H has no "
@@ -239,6 +267,8 @@ static int begin(nevh_work *w, const chain *z, double t, double h) {
     if (LONGER && plan->first)
         find_lost(w, z, t);
     *z->reach = fmin(reach_of(w, z->rows), plan->longest * fabs(h));
+    *z->reach = nevh__domain_reach(plan->recurrence, watched_by(plan),
+                                   plan->order, *z->reach);
     *z->begun = 1;
     return NEVH_OK;
 }
@@ -329,7 +359,10 @@ static int advance(nevh_work *w, const chain *z, double end, double h) {
         double step = copysign(*z->reach, *z->since);
         double left = fabs(*z->since) - *z->reach;
         double t = end - copysign(left, *z->since);
-        if (!(*z->reach > DBL_EPSILON * fabs(h) / 8) || t - step == t)
+        bool ends = !(*z->reach > DBL_EPSILON * fabs(h) / 8) || t - step == t;
+        if (ends && fail_at_edge(w, z, t - step))
+            return NEVH_EDOM;
+        if (ends)
             return give_up(w, t, h, "series too short to be taken");
         if (nevh__too_many(&pace, fabs(h), fmax(0, fabs(h) - left), why))
             return give_up(w, t, h, why);

@@ -10,9 +10,11 @@ extern const nevh_kernel nevh__taylor_kernel;
 
 /* What coefficients are of; and compiled code that takes them, instead of the
    recurrences.
-   numbers  those of the recurrence as doubles, borrowed */
+   numbers  those of the recurrence as doubles, borrowed
+   watched  out: as nevh__series_watched_double */
 typedef int nevh__series_code(const double numbers[], double t,
-                              const double state[], double rows[]);
+                              const double state[], double rows[],
+                              double watched[]);
 const nevh__recurrence *nevh__taylor_recurrence(const nevh_work *,
                                                 size_t *order);
 void nevh__taylor_use(nevh_work *, nevh__series_code *, const double numbers[]);

@@ -211,7 +211,7 @@ static const char head[] =
     "may_alias));\n"
     "#define VECTOR(x) (*(vector *)(x))\n"
     "int nevh_native_series(const double *N, double t, const double *state, "
-    "double *rows);\n";
+    "double *rows, double *watched);\n";
 
 static const char sums[] =
     "for (count from = 0; from < LANES; from += 8) {\n"
@@ -279,6 +279,17 @@ static void write_advance(author *a, const char *k) {
                     i);
 }
 
+/* What edges of domains are looked for in. */
+static void write_watched(const author *a, const char *k) {
+    const nevh__recurrence *r = a->r;
+    char x[NEVH__NAME];
+    for (size_t i = 0; i < r->n_watched; i++) {
+        name_value(a, r->watched[i], x);
+        nevh__write(a->text, "watched[%s * %zu + %zu] = %s;\n", k, r->n_watched,
+                    i, x);
+    }
+}
+
 static void write_begin(author *a) {
     const nevh__recurrence *r = a->r;
     a->first = true;
@@ -289,6 +300,7 @@ static void write_begin(author *a) {
         nevh__write(a->text, "rows[%zu] = v%zu = state[%zu];\n", i, i, i);
     nevh__write(a->text, "v%zu = t;\n", 2 * r->n);
     each_operation(a, begin_operation);
+    write_watched(a, "0");
     write_outer(a);
 }
 
@@ -303,6 +315,7 @@ static void write_order(author *a, bool first) {
     if (!first)
         nevh__write(a->text, "%s", a->lanes < MANY_LANES ? sums : sums_of_two);
     each_operation(a, next_operation);
+    write_watched(a, "k");
     write_rows(a);
     nevh__write(a->text, "}\n");
 }
@@ -335,7 +348,8 @@ bool nevh__write_series(nevh__writer *text, nevh_work *w) {
                 head, a.order, a.lanes, 2 * r->n);
     nevh__write(text,
                 "int nevh_native_series(const double *N, double t, "
-                "const double *state, double *rows) {\n"
+                "const double *state, double *rows, double *watched) {\n"
+                "(void)watched;\n"
                 "double a[ORDER * LANES + 8] __attribute__((aligned(64)));\n"
                 "double b[ORDER * LANES + 8] __attribute__((aligned(64)));\n"
                 "double s[LANES + 8] __attribute__((aligned(64))) = {0};\n");

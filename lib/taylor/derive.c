@@ -133,6 +133,7 @@ static int read_instance(reader *r, const nevh_term *term, size_t instance,
         if (why_not(c->operation) && !(nevh__graph_is_number(r->g, a, NULL) &&
                                        nevh__graph_is_number(r->g, b, NULL)))
             return refuse_operation(r, term, c->operation);
+        nevh__graph_watch(r->g, c->operation, a, b, term->effect);
         slots[c->to] = operate(r->g, c->operation, a, b);
         if (c->operation == NEVH__SINCOS)
             slots[c->also] = operate(r->g, NEVH__COS, a, a);
@@ -166,6 +167,13 @@ static int read_term(reader *r, const nevh__term_entry *entry) {
         status = read_instance(r, term, i, slots);
     free(slots);
     return status;
+}
+
+/* What is watched is in no effect's name where the poles of several meet. */
+static int watch_poles(reader *r) {
+    nevh__graph_watch_poles(r->g, NULL);
+    tag(r, 0, false);
+    return r->g->failed ? out_of_memory(r) : NEVH_OK;
 }
 
 static void add_to(nevh__graph *g, int *sum, int what) {
@@ -247,6 +255,8 @@ int nevh__graph_of_system(nevh__graph *g, const nevh_system *system,
     for (size_t i = 0; !status && i < system->n_terms; i++)
         if (nevh__term_on(system, system->terms[i]))
             status = read_term(&r, system->terms[i]);
+    if (!status)
+        status = watch_poles(&r);
     if (!status)
         status = sweep(&r, friction, slope);
     free(r.roots);

@@ -8,6 +8,7 @@
 void nevh__graph_clear(nevh__graph *g) {
     free(g->nodes);
     free(g->table);
+    free(g->edges);
     memset(g, 0, sizeof *g);
 }
 
@@ -212,7 +213,8 @@ int nevh__graph_power(nevh__graph *g, int a, nevh__wide c) {
         return whole_power(g, a, (long)near);
     if (c == -1)
         return nevh__graph_invert(g, a);
-    if (at(g, a)->kind == NEVH__GRAPH_POWER && !whole)
+    double inner = (double)at(g, a)->number; /* a whole one: of either sign */
+    if (at(g, a)->kind == NEVH__GRAPH_POWER && !whole && inner != rint(inner))
         return nevh__graph_power(g, at(g, a)->a, at(g, a)->number * c);
     return operation(g, NEVH__GRAPH_POWER, c, a, -1);
 }

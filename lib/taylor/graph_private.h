@@ -30,14 +30,25 @@ enum { NEVH__NOTHING = NEVH__OPERATION_COUNT };
 
 typedef struct {
     uint8_t kind, function;
-    int a, b;  /* b: -1 where there is none */
-    int slope; /* of a call: the derivative by a */
-    int tag;   /* the same for what instances of a term do alike; rank: the
+    uint8_t watched; /* among the edges */
+    int a, b;        /* b: -1 where there is none */
+    int slope;       /* of a call: the derivative by a */
+    int tag; /* the same for what instances of a term do alike; rank: the
                   order of instances */
     int rank;
     size_t at;
     nevh__wide number;
 } nevh__graph_node;
+
+/* What is to keep away from 0 on the way, or a function is not the one whose
+   derivatives a series has: the arguments of roots, powers and logarithms, the
+   distance of others to the edge of their domain, and poles that a function sees. */
+typedef struct {
+    int node, also; /* also: of atan2, whose node is y, x; else -1 */
+    bool strict;    /* else it may touch 0: of a root that is squared again */
+    uint8_t function;
+    const char *effect; /* of the system */
+} nevh__graph_edge;
 
 /* Nodes in the order in which they were made: operands come first, but for
    slopes.  Zeros at first. */
@@ -46,6 +57,8 @@ typedef struct {
     int used, capacity;
     int *table; /* open addressing; 0 is empty, else a node and 1 */
     size_t slots;
+    nevh__graph_edge *edges; /* each once */
+    size_t n_edges, edge_capacity;
     bool failed;     /* memory is out */
     bool overflowed; /* too many nodes */
 } nevh__graph;
@@ -64,6 +77,11 @@ int nevh__graph_invert(nevh__graph *, int a);
 int nevh__graph_power(nevh__graph *, int a, nevh__wide exponent);
 /* An analytic function of one argument, or atan2 and hypot. */
 int nevh__graph_call(nevh__graph *, nevh__tape_operation, int a, int b);
+/* Adds what an operation on nodes asks for; its result is another node. */
+void nevh__graph_watch(nevh__graph *, unsigned operation, int a, int b,
+                       const char *effect);
+/* The same of all poles that functions have been given. */
+void nevh__graph_watch_poles(nevh__graph *, const char *effect);
 bool nevh__graph_is_number(const nevh__graph *, int node, nevh__wide *value);
 
 /* Why a system has no series: a status and a message in the report.

@@ -16,6 +16,7 @@
         double longest; /* of a series; INFINITY: any */                       \
         double unit;    /* of time, in rows: a power of two */                 \
         real t, reach;  /* the series holds so long, to either side */         \
+        real whole;     /* as long as coefficients say, no edge being met */   \
         number *rows;   /* 2n times order + 1 */                               \
         real *start;    /* 2n: of the series */                                \
         real *state;    /* 2n: as asked for last */                            \

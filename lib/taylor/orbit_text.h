@@ -86,6 +86,19 @@ static bool expand(orbit *o, real t, const real state[]) {
     return false;
 }
 
+/* Why there is no series at t that holds for long, where a domain has an edge. */
+static int fail_at_edge(const orbit *o, double t, nevh__report *report) {
+    char why[200];
+    size_t edge =
+        nevh__domain_edge(o->recurrence, NAMED(nevh__series_watched)(o->series),
+                          o->order, (double)(o->reach / o->unit));
+    if (edge == SIZE_MAX)
+        return NEVH_OK;
+    nevh__domain_words(o->recurrence, edge, why, sizeof why);
+    return nevh__fail(report, NEVH_EDOM, "the series ends near t = %.9g: %s", t,
+                      why);
+}
+
 static int begin(orbit *o, real t, const real state[], nevh__report *report) {
     for (size_t i = 0; i < 2 * o->n; i++)
         o->most[i] = fmax(o->most[i], fabs((double)state[i]));
@@ -94,13 +107,20 @@ static int begin(orbit *o, real t, const real state[], nevh__report *report) {
     memcpy(o->start, state, 2 * o->n * sizeof *state);
     o->t = t;
     o->count++;
-    if (!expand(o, t, state))
-        return nevh__fail(report, NEVH_EDOM,
-                          "the series at t = %.9g is not finite: H has no "
-                          "derivatives there, or the state is out of its "
-                          "domain",
-                          (double)t);
-    o->reach = FUNCTION(fmin)(reach_of(o), (real)o->longest);
+    if (!expand(o, t, state)) {
+        int status = fail_at_edge(o, (double)t, report);
+        return status ? status
+                      : nevh__fail(report, NEVH_EDOM,
+                                   "the series at t = %.9g is not finite: H "
+                                   "has no derivatives there, or the state is "
+                                   "out of its domain",
+                                   (double)t);
+    }
+    o->reach = o->whole = FUNCTION(fmin)(reach_of(o), (real)o->longest);
+    o->reach = nevh__domain_reach(o->recurrence,
+                                  NAMED(nevh__series_watched)(o->series),
+                                  o->order, (double)(o->reach / o->unit)) *
+               o->unit;
     return NEVH_OK;
 }
 
@@ -108,6 +128,7 @@ int NAMED(nevh__orbit_start)(orbit *o, real t, const real state[],
                              nevh__report *report) {
     memcpy(o->state, state, 2 * o->n * sizeof *state);
     take_unit(o, o->longest);
+    o->reach = o->unit;
     return begin(o, t, state, report);
 }
 
@@ -144,13 +165,17 @@ static void evaluate(orbit *o, real since) {
 
 int NAMED(nevh__orbit_next)(orbit *o, real t, nevh__report *report) {
     real next = t > o->t ? o->t + o->reach : o->t - o->reach;
-    if (!(o->reach > SHORTEST * FUNCTION(fabs)(t - o->t)) || next == o->t)
-        return nevh__fail(report, NEVH_EFAILED,
-                          "series get too short near t = %.9g: does the orbit "
-                          "end there?",
-                          (double)o->t);
+    if (!(o->reach > SHORTEST * FUNCTION(fabs)(t - o->t)) || next == o->t) {
+        int status = fail_at_edge(o, (double)o->t, report);
+        return status
+                   ? status
+                   : nevh__fail(report, NEVH_EFAILED,
+                                "series get too short near t = %.9g: does the "
+                                "orbit end there?",
+                                (double)o->t);
+    }
     evaluate(o, next - o->t);
-    take_unit(o, (double)o->reach);
+    take_unit(o, (double)o->whole);
     return begin(o, next, o->state, report);
 }
 

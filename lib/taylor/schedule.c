@@ -1,242 +1,13 @@
 /* nevh: the order in which recurrences run.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "taylor/series_private.h"
+#include "taylor/schedule_private.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* An operation, or a variable or number; operands are such items. */
-typedef struct {
-    int kind; /* nevh__batch_kind, or of what has no operation: */
-    uint8_t arity, function;
-    int operand[NEVH__MOST_SUMMANDS];
-    int slope;
-    nevh__wide number[NEVH__MOST_SUMMANDS];
-    int level, tag, rank;
-    uint32_t value;
-} item;
-enum { VARIABLE = -2, NUMBER = -1 };
-
-typedef struct {
-    int leaf;
-    nevh__wide factor;
-} summand;
-
-typedef struct {
-    const nevh__graph *g;
-    size_t n;
-    int *uses; /* by node: of live ones, and by what is no sum */
-    int *apart;
-    int *item_of; /* by node; -1: none */
-    item *items;
-    size_t count, capacity;
-    summand *sum;
-    size_t summands, sum_capacity;
-    int *stack;
-    nevh__wide *factors; /* of what is on the stack */
-    size_t depth, stack_capacity;
-    bool failed;
-} scheduler;
-
-static bool is_sum(const nevh__graph_node *x) {
-    return x->kind == NEVH__GRAPH_ADD || x->kind == NEVH__GRAPH_SCALE;
-}
-
-static void push(scheduler *s, int node, nevh__wide factor) {
-    if (s->depth == s->stack_capacity) {
-        size_t capacity = 2 * s->depth + 64;
-        int *stack = nevh__grow(s->stack, capacity, sizeof *stack);
-        if (stack)
-            s->stack = stack;
-        nevh__wide *factors = nevh__grow(s->factors, capacity, sizeof *factors);
-        if (factors)
-            s->factors = factors;
-        s->failed = s->failed || !stack || !factors;
-        if (s->failed)
-            return;
-        s->stack_capacity = capacity;
-    }
-    s->stack[s->depth] = node;
-    s->factors[s->depth++] = factor;
-}
-
-/* What remains of a multiple. */
-static int peel(const nevh__graph *g, int node, nevh__wide *factor) {
-    const nevh__graph_node *x = &g->nodes[node];
-    if (x->kind != NEVH__GRAPH_SCALE)
-        return node;
-    *factor *= x->number;
-    return x->a;
-}
-
-static void use(scheduler *s, int node, bool by_sum) {
-    if (node < 0)
-        return;
-    s->apart[node] += !by_sum;
-    if (s->uses[node]++ == 0)
-        push(s, node, 1);
-}
-
-/* Uses of all that the slopes need. */
-static void count_uses(scheduler *s, const int slope[]) {
-    for (size_t k = 0; k < 2 * s->n; k++) {
-        nevh__wide factor = 1;
-        use(s, peel(s->g, slope[k], &factor), false);
-    }
-    while (s->depth && !s->failed) {
-        const nevh__graph_node *x = &s->g->nodes[s->stack[--s->depth]];
-        nevh__wide factor = 1;
-        use(s, x->a, is_sum(x));
-        use(s, x->b, is_sum(x));
-        if (x->slope >= 0)
-            use(s, peel(s->g, x->slope, &factor), false);
-    }
-    for (int i = 0; i < s->g->used; i++) /* not written out twice */
-        if (s->uses[i] > 1 && s->g->nodes[i].kind == NEVH__GRAPH_SCALE)
-            s->apart[s->g->nodes[i].a]++;
-}
-
-/* Whether a sum is written into those that use it. */
-static bool dissolves(const scheduler *s, int node) {
-    const nevh__graph_node *x = &s->g->nodes[node];
-    return !s->apart[node] &&
-           (x->kind == NEVH__GRAPH_SCALE ||
-            (x->kind == NEVH__GRAPH_ADD && s->uses[node] == 1));
-}
-
-static int add_item(scheduler *s, item x) {
-    if (s->count == s->capacity) {
-        size_t capacity = 2 * s->capacity + 64;
-        item *items = nevh__grow(s->items, capacity, sizeof *items);
-        if (!items) {
-            s->failed = true;
-            return 0;
-        }
-        s->items = items;
-        s->capacity = capacity;
-    }
-    s->items[s->count] = x;
-    return (int)s->count++;
-}
-
-static void add_summand(scheduler *s, int leaf, nevh__wide factor) {
-    if (s->summands == s->sum_capacity) {
-        size_t capacity = 2 * s->sum_capacity + 64;
-        summand *sum = nevh__grow(s->sum, capacity, sizeof *sum);
-        if (!sum) {
-            s->failed = true;
-            return;
-        }
-        s->sum = sum;
-        s->sum_capacity = capacity;
-    }
-    s->sum[s->summands++] = (summand){leaf, factor};
-}
-
-/* The summands of a node, in order. */
-static void collect(scheduler *s, int node) {
-    const nevh__graph_node *x = &s->g->nodes[node];
-    nevh__wide factor = x->kind == NEVH__GRAPH_SCALE ? x->number : 1;
-    s->depth = s->summands = 0;
-    if (x->b >= 0)
-        push(s, x->b, 1);
-    push(s, x->a, factor);
-    while (s->depth && !s->failed) {
-        int at = s->stack[--s->depth];
-        factor = s->factors[s->depth];
-        x = &s->g->nodes[at];
-        if (!is_sum(x) || !dissolves(s, at)) {
-            add_summand(s, s->item_of[at], factor);
-            continue;
-        }
-        if (x->b >= 0)
-            push(s, x->b, factor);
-        push(s, x->a,
-             x->kind == NEVH__GRAPH_SCALE ? factor * x->number : factor);
-    }
-}
-
-static int level_over(const scheduler *s, int level, int operand) {
-    int below = s->items[operand].level;
-    return below >= level ? below + 1 : level;
-}
-
-/* The sum of a part of the summands. */
-static int part_of_sum(scheduler *s, const item *like, size_t from,
-                       size_t count) {
-    item x = *like;
-    size_t each = 1;
-    x.kind = NEVH__BATCH_SUM;
-    while (each * NEVH__MOST_SUMMANDS < count)
-        each *= NEVH__MOST_SUMMANDS;
-    for (size_t i = 0; i < count && !s->failed; i += each) {
-        size_t some = count - i < each ? count - i : each;
-        bool whole = some > 1;
-        x.operand[x.arity] = whole ? part_of_sum(s, like, from + i, some)
-                                   : s->sum[from + i].leaf;
-        x.number[x.arity] = whole ? 1 : s->sum[from + i].factor;
-        x.level = s->failed ? 0 : level_over(s, x.level, x.operand[x.arity]);
-        x.arity++;
-    }
-    return s->failed ? 0 : add_item(s, x);
-}
-
-static void take_operand(scheduler *s, item *x, int node) {
-    x->operand[x->arity] = s->item_of[node];
-    x->level = level_over(s, x->level, s->item_of[node]);
-    x->arity++;
-}
-
-static int item_for(scheduler *s, const nevh__graph_node *n, int node) {
-    static const int kinds[] = {[NEVH__GRAPH_NUMBER] = NUMBER,
-                                [NEVH__GRAPH_VARIABLE] = VARIABLE,
-                                [NEVH__GRAPH_ADD] = NEVH__BATCH_SUM,
-                                [NEVH__GRAPH_SCALE] = NEVH__BATCH_SUM,
-                                [NEVH__GRAPH_MULTIPLY] = NEVH__BATCH_MULTIPLY,
-                                [NEVH__GRAPH_INVERT] = NEVH__BATCH_INVERT,
-                                [NEVH__GRAPH_POWER] = NEVH__BATCH_POWER,
-                                [NEVH__GRAPH_CALL] = NEVH__BATCH_CALL};
-    _Static_assert(sizeof kinds / sizeof *kinds == NEVH__GRAPH_KINDS,
-                   "each kind of node");
-    item x = {.kind = kinds[n->kind],
-              .function = n->function,
-              .slope = -1,
-              .number = {n->number},
-              .tag = n->tag,
-              .rank = n->rank};
-    if (n->kind == NEVH__GRAPH_VARIABLE)
-        x.value = (uint32_t)n->at;
-    if (x.kind < 0)
-        return add_item(s, x);
-    if (is_sum(n)) {
-        collect(s, node);
-        x.number[0] = 0;
-        return s->failed ? 0 : part_of_sum(s, &x, 0, s->summands);
-    }
-    if (n->kind == NEVH__GRAPH_POWER && n->number == 0.5L)
-        x.kind = NEVH__BATCH_ROOT;
-    take_operand(s, &x, n->a);
-    if (n->b >= 0)
-        take_operand(s, &x, n->b);
-    return add_item(s, x);
-}
-
-/* Items of all that is needed; slopes follow when all are there. */
-static void make_items(scheduler *s) {
-    const nevh__graph *g = s->g;
-    for (int i = 0; i < g->used && !s->failed; i++)
-        s->item_of[i] = s->uses[i] && !(is_sum(&g->nodes[i]) && dissolves(s, i))
-                            ? item_for(s, &g->nodes[i], i)
-                            : -1;
-    for (int i = 0; i < g->used && !s->failed; i++)
-        if (s->item_of[i] >= 0 && g->nodes[i].slope >= 0) {
-            item *x = &s->items[s->item_of[i]];
-            x->number[0] = 1;
-            x->slope = s->item_of[peel(g, g->nodes[i].slope, &x->number[0])];
-        }
-}
-
 static int compare(const void *a, const void *b) {
-    const item *x = *(const item *const *)a, *y = *(const item *const *)b;
+    const nevh__work_item *x = *(const nevh__work_item *const *)a,
+                          *y = *(const nevh__work_item *const *)b;
 #define BY(what)                                                               \
     if (x->what != y->what)                                                    \
         return x->what < y->what ? -1 : 1;
@@ -253,7 +24,7 @@ static int compare(const void *a, const void *b) {
 /* Instances of one operation that are a batch of their own. */
 enum { MANY = 8 };
 
-static size_t alike(item *const *of, size_t from, size_t count) {
+static size_t alike(nevh__work_item *const *of, size_t from, size_t count) {
     size_t i = from + 1;
     while (i < count && of[i]->level == of[from]->level &&
            of[i]->kind == of[from]->kind && of[i]->arity == of[from]->arity &&
@@ -262,10 +33,11 @@ static size_t alike(item *const *of, size_t from, size_t count) {
     return i - from;
 }
 
-static size_t batch_size(item *const *of, size_t from, size_t count) {
+static size_t batch_size(nevh__work_item *const *of, size_t from,
+                         size_t count) {
     size_t all = alike(of, from, count);
     while (all < MANY && from + all < count) {
-        const item *x = of[from], *y = of[from + all];
+        const nevh__work_item *x = of[from], *y = of[from + all];
         size_t more = alike(of, from + all, count);
         if (x->level != y->level || x->kind != y->kind ||
             x->arity != y->arity || x->function != y->function || more >= MANY)
@@ -276,9 +48,9 @@ static size_t batch_size(item *const *of, size_t from, size_t count) {
 }
 
 typedef struct {
-    scheduler *s;
+    nevh__scheduler *s;
     nevh__recurrence *r;
-    item **order;
+    nevh__work_item **order;
     size_t count, index, lanes[2], fill[2]; /* lanes: weighted, plain */
 } writer;
 
@@ -301,12 +73,12 @@ static void number_values(writer *w) {
     size_t at = 2 * r->n + 1;
     r->first_constant = at;
     for (size_t i = 0; i < w->s->count; i++)
-        if (w->s->items[i].kind == NUMBER)
+        if (w->s->items[i].kind == NEVH__ITEM_NUMBER)
             w->s->items[i].value = (uint32_t)at++;
     r->n_constants = at - r->first_constant;
     r->n_numbers = r->n_constants + 2 * r->n;
     for (size_t i = 0; i < w->count; i++) {
-        item *x = w->order[i];
+        nevh__work_item *x = w->order[i];
         x->value = (uint32_t)at++;
         w->lanes[0] += has_lane(x->kind, true);
         w->lanes[1] += has_lane(x->kind, false);
@@ -340,7 +112,7 @@ static uint32_t lanes_for(writer *w, size_t from, size_t count, bool weighted) {
     size_t first = w->fill[!weighted];
     w->fill[!weighted] += count;
     for (size_t i = 0; i < count; i++) {
-        const item *x = w->order[from + i];
+        const nevh__work_item *x = w->order[from + i];
         uint32_t a = value_of(w, x->operand[0]), b = x->value;
         if (x->kind == NEVH__BATCH_MULTIPLY)
             b = value_of(w, x->operand[1]);
@@ -367,7 +139,7 @@ static void write_operand(writer *w, nevh__batch *b, size_t from, int which) {
 
 static void write_batch(writer *w, size_t from, size_t count) {
     nevh__recurrence *r = w->r;
-    const item *x = w->order[from];
+    const nevh__work_item *x = w->order[from];
     nevh__batch *b = &r->batches[r->n_batches++];
     *b = (nevh__batch){.kind = (uint8_t)x->kind,
                        .arity = x->arity,
@@ -395,14 +167,49 @@ static void write_slopes(writer *w, const int slope[]) {
     r->slope_number = r->n_numbers;
     for (size_t k = 0; k < 2 * r->n; k++) {
         nevh__wide factor = 1;
-        int node = peel(w->s->g, slope[k], &factor);
+        int node = nevh__schedule_peel(w->s->g, slope[k], &factor);
         r->slope[k] = value_of(w, w->s->item_of[node]);
         r->numbers[r->n_numbers++] = factor;
     }
 }
 
+/* Marks the nodes of which roots and powers are left that are no whole ones. */
+static bool *mark_roots(const nevh__scheduler *s) {
+    bool *root = nevh__array((size_t)s->g->used, sizeof *root);
+    for (int i = 0; root && i < s->g->used; i++) {
+        const nevh__graph_node *x = &s->g->nodes[i];
+        double c = (double)x->number;
+        if (s->uses[i] && x->kind == NEVH__GRAPH_POWER && c != rint(c))
+            root[x->a] = true;
+    }
+    return root;
+}
+
+static bool write_edges(writer *w) {
+    const nevh__graph *g = w->s->g;
+    nevh__recurrence *r = w->r;
+    bool *root = mark_roots(w->s);
+    r->edges = nevh__array(g->n_edges, sizeof *r->edges);
+    r->watched = nevh__array(2 * g->n_edges, sizeof *r->watched);
+    bool made = root && r->edges && r->watched;
+    size_t n = r->n_watched = r->n_edges = made ? g->n_edges : 0;
+    for (size_t i = 0; i < n; i++) {
+        const nevh__graph_edge *e = &g->edges[i];
+        r->watched[i] = value_of(w, w->s->item_of[e->node]);
+        r->edges[i] = (nevh__edge){.strict = e->strict || root[e->node],
+                                   .function = e->function,
+                                   .effect = e->effect};
+        if (e->also < 0)
+            continue;
+        r->edges[i].also = (uint32_t)r->n_watched;
+        r->watched[r->n_watched++] = value_of(w, w->s->item_of[e->also]);
+    }
+    free(root);
+    return made;
+}
+
 static bool write(writer *w, const int slope[]) {
-    scheduler *s = w->s;
+    nevh__scheduler *s = w->s;
     w->order = nevh__array(s->count, sizeof *w->order);
     if (!w->order)
         return false;
@@ -416,7 +223,7 @@ static bool write(writer *w, const int slope[]) {
     w->index = 0;
     w->r->n_numbers = 0;
     for (size_t i = 0; i < s->count; i++)
-        if (s->items[i].kind == NUMBER)
+        if (s->items[i].kind == NEVH__ITEM_NUMBER)
             w->r->numbers[w->r->n_numbers++] = s->items[i].number[0];
     for (size_t from = 0; from < w->count;) {
         size_t count = batch_size(w->order, from, w->count);
@@ -424,22 +231,14 @@ static bool write(writer *w, const int slope[]) {
         from += count;
     }
     write_slopes(w, slope);
-    return true;
+    return write_edges(w);
 }
 
 static bool schedule(nevh__recurrence *r, const nevh__graph *g,
                      const int slope[]) {
-    size_t nodes = (size_t)g->used;
-    scheduler s = {.g = g, .n = r->n};
+    nevh__scheduler s = {.g = g, .n = r->n};
     writer w = {.s = &s, .r = r};
-    s.uses = nevh__array(nodes, sizeof *s.uses);
-    s.apart = nevh__array(nodes, sizeof *s.apart);
-    s.item_of = nevh__array(nodes, sizeof *s.item_of);
-    s.failed = !s.uses || !s.apart || !s.item_of;
-    if (!s.failed)
-        count_uses(&s, slope);
-    if (!s.failed)
-        make_items(&s);
+    nevh__schedule_items(&s, slope);
     bool fine = !s.failed && write(&w, slope);
     free(s.uses);
     free(s.apart);
@@ -499,5 +298,7 @@ void nevh__recurrence_free(nevh__recurrence *r) {
     free(r->numbers);
     free(r->lane_a);
     free(r->slope);
+    free(r->edges);
+    free(r->watched);
     free(r);
 }

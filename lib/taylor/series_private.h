@@ -52,7 +52,31 @@ typedef struct {
     uint32_t *lane_a, *lane_b; /* lanes each */
     uint32_t *slope;           /* 2n values, and their factors' numbers */
     size_t slope_number;
+    struct nevh__edge *edges; /* what is to keep away from 0 */
+    size_t n_edges, n_watched;
+    uint32_t
+        *watched; /* values: of edges, then what else those of atan2 read */
 } nevh__recurrence;
+
+typedef struct nevh__edge {
+    bool strict;   /* as of a graph */
+    uint32_t also; /* of atan2: x among what is watched; 0: it is none */
+    uint8_t function;
+    const char *effect; /* NULL: of several */
+} nevh__edge;
+
+/* How long series hold, at most `reach`, before the edge of a domain is met, to
+   either side.
+   rows   coefficients of what is watched, n_watched each, of `orders` orders */
+double nevh__domain_reach(const nevh__recurrence *, const double rows[],
+                          size_t orders, double reach);
+/* The edge that a series meets which cannot be taken, or soon after it: by the
+   orders that are finite.  SIZE_MAX: none. */
+size_t nevh__domain_edge(const nevh__recurrence *, const double rows[],
+                         size_t orders, double reach);
+/* "sqrt(...) of effect "V" is not analytic ..." */
+void nevh__domain_words(const nevh__recurrence *, size_t edge, char text[],
+                        size_t room);
 
 /* friction  n rates or NULL
    returns   NULL, with the reason in the report */
@@ -76,6 +100,8 @@ void nevh__series_in_double(nevh__series_double *, double unit);
    itself, on.  Returns whether they are finite. */
 bool nevh__series_expand_double(nevh__series_double *, double t,
                                 const double state[], double rows[]);
+/* What is watched at that state, for nevh__domain_reach. */
+const double *nevh__series_watched_double(const nevh__series_double *);
 
 /* The same in numbers of other kinds. */
 typedef struct nevh__series_long nevh__series_long;
@@ -85,6 +111,7 @@ void nevh__series_free_long(nevh__series_long *);
 void nevh__series_in_long(nevh__series_long *, double unit);
 bool nevh__series_expand_long(nevh__series_long *, long double t,
                               const long double state[], long double rows[]);
+const double *nevh__series_watched_long(const nevh__series_long *);
 #ifdef NEVH_QUADMATH
 typedef struct nevh__series_quad nevh__series_quad;
 nevh__series_quad *nevh__series_new_quad(const nevh__recurrence *,
@@ -93,12 +120,14 @@ void nevh__series_free_quad(nevh__series_quad *);
 void nevh__series_in_quad(nevh__series_quad *, double unit);
 bool nevh__series_expand_quad(nevh__series_quad *, nevh__wide t,
                               const nevh__wide state[], nevh__wide rows[]);
+const double *nevh__series_watched_quad(const nevh__series_quad *);
 typedef struct nevh__series_dd nevh__series_dd;
 nevh__series_dd *nevh__series_new_dd(const nevh__recurrence *, size_t order);
 void nevh__series_free_dd(nevh__series_dd *);
 void nevh__series_in_dd(nevh__series_dd *, double unit);
 bool nevh__series_expand_dd(nevh__series_dd *, nevh__wide t,
                             const nevh__wide state[], nevh__dd rows[]);
+const double *nevh__series_watched_dd(const nevh__series_dd *);
 #endif
 
 #endif

@@ -24,6 +24,7 @@ struct NAMED(nevh__series) {
     number *rate;            /* unit/k */
     number unit;             /* of time, in which coefficients are */
     stored *rows_a, *rows_b; /* order x ROWS x lanes */
+    double *watched;         /* order x n_watched */
     void *memory;
 };
 typedef struct NAMED(nevh__series) series;
@@ -45,6 +46,8 @@ static void lay_out(nevh__arena *arena, void *data) {
                                    sizeof(number));
     s->inverse = nevh__arena_take(arena, s->order + 1, sizeof(number));
     s->rate = nevh__arena_take(arena, s->order + 1, sizeof(number));
+    s->watched =
+        nevh__arena_take(arena, s->order * r->n_watched, sizeof(double));
     s->rows_a =
         nevh__arena_take(arena, s->order * ROWS * r->lanes, sizeof(stored));
     s->rows_b =
@@ -260,6 +263,18 @@ NEVH__INLINE void next_batch(const series *s, const nevh__batch *b, size_t k) {
     }
 }
 
+/* Of order k, in which edges of domains are looked for. */
+NEVH__INLINE void note_watched(const series *s, size_t k) {
+    const nevh__recurrence *r = s->of;
+    double *to = s->watched + k * r->n_watched;
+    for (size_t i = 0; i < r->n_watched; i++)
+        to[i] = shorten(s->value[r->watched[i]]);
+}
+
+const double *NAMED(nevh__series_watched)(const series *s) {
+    return s->watched;
+}
+
 /* Coefficients of order k of the state, from slopes of order k - 1. */
 NEVH__INLINE void advance(series *s, size_t k, number row[]) {
     const nevh__recurrence *r = s->of;
@@ -285,6 +300,7 @@ static void begin(series *s, real t, const real state[], number row[]) {
         s->value[r->first_constant + i] = s->numbers[i];
     for (size_t i = 0; i < r->n_batches; i++)
         begin_batch(s, &r->batches[i]);
+    note_watched(s, 0);
     for (size_t i = 0; i < r->lanes; i++) {
         s->a0[i] = s->value[r->lane_a[i]];
         s->b0[i] = s->value[r->lane_b[i]];
@@ -300,6 +316,7 @@ VECTORS static void go_on(series *s, number rows[]) {
             add_up(s, k);
         for (size_t i = 0; i < r->n_batches; i++)
             next_batch(s, &r->batches[i], k);
+        note_watched(s, k);
         store(s, k);
     }
     advance(s, s->order, rows + s->order * each);

@@ -1,0 +1,146 @@
+/* nevh: how long series keep within the domains of what they are made of.
+
+   Where the argument of a root touches 0, or that of atan2 crosses its cut, the
+   series of an orbit may know nothing of it: sqrt(x^2) continues as x or as -x.
+   So the polynomials of these arguments are bounded over a series.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "taylor/series_private.h"
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+
+/* A polynomial: coefficients that far apart. */
+typedef struct {
+    const double *at;
+    size_t apart, orders;
+} polynomial;
+
+/* Of terms from order 1 on: the sum of their sizes by h. */
+static double size_of(polynomial p, double h) {
+    double sum = 0;
+    for (size_t k = p.orders; --k > 0;)
+        sum = sum * h + fabs(p.at[k * p.apart]);
+    return sum * h;
+}
+
+static double slope_of(polynomial p, double h) {
+    double sum = 0;
+    for (size_t k = p.orders; --k > 0;)
+        sum = sum * h + (double)k * fabs(p.at[k * p.apart]);
+    return sum;
+}
+
+static double value_of(polynomial p, double since) {
+    double sum = 0;
+    for (size_t k = p.orders; k-- > 0;)
+        sum = sum * since + p.at[k * p.apart];
+    return sum;
+}
+
+static const double noise = 8 * DBL_EPSILON; /* of a polynomial */
+
+/* Whether it keeps its sign from 0 to h, or to -h: by steps, none of which is
+   longer than its slope allows. */
+static bool keeps_on(polynomial p, double h, double size, double slope) {
+    enum { MOST_STEPS = 40 };
+    double sign = p.at[0] > 0 ? 1 : -1, t = 0;
+    for (int i = 0; i < MOST_STEPS && t < fabs(h); i++) {
+        double value = sign * value_of(p, copysign(t, h));
+        if (!(value > noise * size))
+            return false;
+        t += value / slope;
+    }
+    return t >= fabs(h);
+}
+
+static bool keeps_sign(polynomial p, double h) {
+    double change = size_of(p, h);
+    if (fabs(p.at[0]) > change)
+        return true;
+    double size = fabs(p.at[0]) + change, slope = slope_of(p, h);
+    return keeps_on(p, h, size, slope) && keeps_on(p, -h, size, slope);
+}
+
+/* It may touch 0, but not be less. */
+static bool is_not_negative(polynomial p, double h) {
+    enum { PLACES = 8 };
+    double least = -noise * (fabs(p.at[0]) + size_of(p, h));
+    bool not_less = true;
+    for (int i = -PLACES; i <= PLACES; i++)
+        not_less = not_less && value_of(p, h * i / PLACES) >= least;
+    return not_less;
+}
+
+/* The cut of atan2(y, x): y crosses 0 where x is not positive. */
+static bool is_off_cut(polynomial y, polynomial x, double h) {
+    return (x.at[0] > 0 && keeps_sign(x, h)) || keeps_sign(y, h);
+}
+
+static bool is_clear(const nevh__recurrence *r, const double rows[],
+                     size_t orders, size_t i, double h) {
+    const nevh__edge *e = &r->edges[i];
+    polynomial a = {rows + i, r->n_watched, orders};
+    polynomial b = {rows + e->also, r->n_watched, orders};
+    return e->also     ? is_off_cut(a, b, h)
+           : e->strict ? keeps_sign(a, h)
+                       : is_not_negative(a, h);
+}
+
+static double shorten(const nevh__recurrence *r, const double rows[],
+                      size_t orders, double reach, size_t *which) {
+    enum { MOST_HALVINGS = 200 };
+    static const double most =
+        0x1p60; /* of series that end, and hold for ever */
+    double h = fmin(reach, most);
+    int left = MOST_HALVINGS;
+    for (size_t i = 0; i < r->n_edges; i++)
+        while (h > 0 && !is_clear(r, rows, orders, i, h)) {
+            *which = i;
+            h = left-- > 0 ? h / 2 : 0;
+        }
+    return h < fmin(reach, most) ? h : reach;
+}
+
+double nevh__domain_reach(const nevh__recurrence *r, const double rows[],
+                          size_t orders, double reach) {
+    size_t which;
+    return r->n_edges ? shorten(r, rows, orders, reach, &which) : reach;
+}
+
+size_t nevh__domain_edge(const nevh__recurrence *r, const double rows[],
+                         size_t orders, double reach) {
+    static const double beyond = 16;
+    size_t which = SIZE_MAX, finite = 0;
+    for (bool all = true; all && finite < orders; finite += all)
+        for (size_t i = 0; i < r->n_watched; i++)
+            all = all && isfinite(rows[finite * r->n_watched + i]);
+    if (finite)
+        shorten(r, rows, finite, beyond * reach, &which);
+    return which;
+}
+
+void nevh__domain_words(const nevh__recurrence *r, size_t edge, char text[],
+                        size_t room) {
+    const nevh__edge *e = &r->edges[edge];
+    static const char *const what[] = {
+        [NEVH__SQRT] = "sqrt(...), whose argument reaches 0,",
+        [NEVH__POWER] =
+            "a power that is no whole number, whose base reaches 0,",
+        [NEVH__HYPOT] = "hypot(...), both of whose arguments reach 0,",
+        [NEVH__CBRT] = "cbrt(...), whose argument reaches 0,",
+        [NEVH__LOG] = "log(...), whose argument reaches 0,",
+        [NEVH__LOG10] = "log10(...), whose argument reaches 0,",
+        [NEVH__ASIN] = "asin(...), whose argument reaches 1 or -1,",
+        [NEVH__ACOS] = "acos(...), whose argument reaches 1 or -1,",
+        [NEVH__ATANH] = "atanh(...), whose argument reaches 1 or -1,",
+        [NEVH__ACOSH] = "acosh(...), whose argument reaches 1,",
+        [NEVH__ATAN2] = "atan2(...), which jumps where its direction is that "
+                        "of the negative axis,",
+        [NEVH__TAN] = "a function of tan(...), which has a pole there,",
+        [NEVH__DIVIDE] = "a function of a quotient, which has a pole there,"};
+    snprintf(text, room,
+             "%s%s%s%s is not analytic there, and a series knows "
+             "nothing of what follows",
+             what[e->function], e->effect ? " in effect \"" : "",
+             e->effect ? e->effect : "", e->effect ? "\"" : "");
+}

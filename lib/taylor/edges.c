@@ -1,0 +1,164 @@
+/* nevh: where the functions of a graph stop being analytic.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "taylor/graph_private.h"
+#include <math.h>
+#include <stdlib.h>
+
+static bool is_whole(const nevh__graph *g, int node) {
+    nevh__wide x;
+    return nevh__graph_is_number(g, node, &x) && (double)x == x &&
+           rint((double)x) == (double)x;
+}
+
+/* Whether a node is watched; it is from now on. */
+static bool has(nevh__graph *g, const nevh__graph_edge *e) {
+    enum { STRICT = 1, LOOSE = 2 };
+    uint8_t *watched = &g->nodes[e->node].watched;
+    for (size_t i = 0; e->also >= 0 && i < g->n_edges; i++)
+        if (g->edges[i].node == e->node && g->edges[i].also == e->also)
+            return true;
+    if (e->also >= 0)
+        return false;
+    bool had = *watched & (e->strict ? STRICT : STRICT | LOOSE);
+    *watched |= e->strict ? STRICT : LOOSE;
+    return had;
+}
+
+static void add(nevh__graph *g, nevh__graph_edge e) {
+    if (e.node < 0 || g->failed || nevh__graph_is_number(g, e.node, NULL))
+        return;
+    if (has(g, &e))
+        return;
+    if (g->n_edges == g->edge_capacity) {
+        size_t capacity = 2 * g->edge_capacity + 16;
+        nevh__graph_edge *edges = nevh__grow(g->edges, capacity, sizeof *edges);
+        g->failed = g->failed || !edges;
+        if (!edges)
+            return;
+        g->edges = edges;
+        g->edge_capacity = capacity;
+    }
+    g->edges[g->n_edges++] = e;
+}
+
+static int square(nevh__graph *g, int a) {
+    return nevh__graph_multiply(g, a, a);
+}
+
+/* 1 - a^2 */
+static int inside_one(nevh__graph *g, int a) {
+    return nevh__graph_add(g, nevh__graph_number(g, 1),
+                           nevh__graph_scale(g, -1, square(g, a)));
+}
+
+void nevh__graph_watch(nevh__graph *g, unsigned operation, int a, int b,
+                       const char *effect) {
+    nevh__graph_edge e = {.node = -1,
+                          .also = -1,
+                          .strict = true,
+                          .function = (uint8_t)operation,
+                          .effect = effect};
+    switch (operation) {
+    case NEVH__SQRT:
+        e.strict = false;
+        e.node = a;
+        break;
+    case NEVH__POWER:
+        e.strict = !nevh__graph_is_number(g, b, NULL);
+        e.node = is_whole(g, b) ? -1 : a;
+        break;
+    case NEVH__HYPOT:
+        e.strict = false;
+        e.node = nevh__graph_add(g, square(g, a), square(g, b));
+        break;
+    case NEVH__CBRT:
+    case NEVH__LOG:
+    case NEVH__LOG10:
+        e.node = a;
+        break;
+    case NEVH__ASIN:
+    case NEVH__ACOS:
+    case NEVH__ATANH:
+        e.node = inside_one(g, a);
+        break;
+    case NEVH__ACOSH:
+        e.node = nevh__graph_add(g, a, nevh__graph_number(g, -1));
+        break;
+    case NEVH__ATAN2:
+        e.node = a;
+        e.also = b;
+        break;
+    default:
+        return;
+    }
+    add(g, e);
+}
+
+/* Poles are no edges by themselves: 1/x is as analytic behind 0 as before, and
+   where a factor removes the pole the orbit passes.  But atan(1/x) jumps. */
+
+static bool has_pole(const nevh__graph_node *x) {
+    double c = (double)x->number;
+    return x->kind == NEVH__GRAPH_INVERT ||
+           (x->kind == NEVH__GRAPH_POWER && c < 0 && c == rint(c)) ||
+           (x->kind == NEVH__GRAPH_CALL && x->function == NEVH__TAN);
+}
+
+/* Whether poles of an operand are poles of the node. */
+static bool hands_on(const nevh__graph_node *x) {
+    double c = (double)x->number;
+    return x->kind == NEVH__GRAPH_ADD || x->kind == NEVH__GRAPH_SCALE ||
+           x->kind == NEVH__GRAPH_MULTIPLY || x->kind == NEVH__GRAPH_INVERT ||
+           (x->kind == NEVH__GRAPH_POWER && c == rint(c));
+}
+
+enum { POLAR = 1, SEEN = 2 };
+
+static void mark_polar(const nevh__graph *g, int used, unsigned char mark[]) {
+    for (int i = 0; i < used; i++) {
+        const nevh__graph_node *x = &g->nodes[i];
+        bool polar = has_pole(x);
+        if (hands_on(x))
+            polar = polar || (x->a >= 0 && mark[x->a] & POLAR) ||
+                    (x->b >= 0 && mark[x->b] & POLAR);
+        mark[i] = polar ? POLAR : 0;
+    }
+}
+
+/* From functions back to the poles that they see. */
+static void mark_seen(const nevh__graph *g, int used, unsigned char mark[]) {
+    for (int i = used - 1; i >= 0; i--) {
+        const nevh__graph_node *x = &g->nodes[i];
+        bool looks = mark[i] & SEEN && hands_on(x);
+        if (x->kind == NEVH__GRAPH_CALL ||
+            (x->kind == NEVH__GRAPH_POWER && !hands_on(x)))
+            looks = true;
+        int of[] = {x->a, x->b};
+        for (int k = 0; looks && k < 2; k++)
+            if (of[k] >= 0 && mark[of[k]] & POLAR)
+                mark[of[k]] |= SEEN;
+    }
+}
+
+void nevh__graph_watch_poles(nevh__graph *g, const char *effect) {
+    int used = g->used;
+    unsigned char *mark = nevh__array((size_t)used, sizeof *mark);
+    g->failed = g->failed || !mark;
+    if (!mark)
+        return;
+    mark_polar(g, used, mark);
+    mark_seen(g, used, mark);
+    for (int i = 0; i < used && !g->failed; i++) {
+        const nevh__graph_node x = g->nodes[i];
+        bool tangent = x.kind == NEVH__GRAPH_CALL;
+        if (mark[i] & SEEN && has_pole(&x))
+            add(g, (nevh__graph_edge){
+                       .node = tangent ? nevh__graph_call(g, NEVH__COS, x.a, -1)
+                                       : x.a,
+                       .also = -1,
+                       .strict = true,
+                       .function = tangent ? NEVH__TAN : NEVH__DIVIDE,
+                       .effect = effect});
+    }
+    free(mark);
+}
