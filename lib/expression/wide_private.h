@@ -5,8 +5,13 @@
 
 #ifdef NEVH_QUADMATH
 __extension__ typedef __float128 nevh__wide;
+#define NEVH__WIDE_FUNCTION(f) f##q
+#elif defined(__wasm__) /* long doubles are slow and large there */
+typedef double nevh__wide;
+#define NEVH__WIDE_FUNCTION(f) f
 #else
 typedef long double nevh__wide;
+#define NEVH__WIDE_FUNCTION(f) f##l
 #endif
 
 /* One nevh__tape_operation on numbers.  Without libquadmath functions are those

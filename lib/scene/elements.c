@@ -34,13 +34,9 @@ bool nevh__is_elements(const nevh__piece *value) {
 #undef FUNCTION
 #undef ECCENTRIC
 
-#define real        nevh__wide
-#define NAMED(name) wide_##name
-#ifdef NEVH_QUADMATH
-#define FUNCTION(f) f##q
-#else
-#define FUNCTION(f) f##l
-#endif
+#define real            nevh__wide
+#define NAMED(name)     wide_##name
+#define FUNCTION(f)     NEVH__WIDE_FUNCTION(f)
 #define ECCENTRIC(M, e) nevh__operation_wide(NEVH__ECCENTRIC, M, e)
 #include "scene/elements_text.h"
 

@@ -105,10 +105,11 @@ static int read_kit(char **head, char **tail) {
     char *cut = text ? strstr(text, mark) : NULL;
     int status = TOOL_OK;
     if (!cut)
-        status = tool_refuse("this nevh was built without the live page; to "
-                             "add it on Debian or Ubuntu: apt-get install "
-                             "clang lld llvm wasi-libc libclang-rt-dev-wasm32, "
-                             "then ./quickstart, or configure and make page");
+        status = tool_refuse(
+            "this nevh was built without the live page; to "
+            "add it on Debian or Ubuntu: apt-get install "
+            "clang lld llvm wasi-libc libclang-rt-dev-wasm32 "
+            "zopfli, then ./quickstart, or configure and make page");
     else {
         *cut = '\0';
         *head = text;
