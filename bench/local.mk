@@ -116,7 +116,7 @@ bench-lanes: all
 	NEVH_SCENES=$(srcdir)/scenes $(SHELL) $(srcdir)/bench/lanes.sh \
 	  ./tools/nevh$(EXEEXT)
 
-EXTRA_DIST += bench/ensembles.py bench/promises.py bench/certain.py bench/lanes.sh bench/speedup.sh bench/recommend.sh bench/answers.sh bench/orbits
+EXTRA_DIST += bench/ensembles.py bench/promises.py bench/certain.py bench/lanes.sh bench/speedup.sh bench/recommend.sh bench/answers.sh bench/integrable.sh bench/orbits
 CLEANFILES += bench/results-answers.csv bench/verdicts$(EXEEXT) bench/wrong-verdicts
 DISTCLEANFILES = bench/long-runs
 .PHONY: bench bench-brouwer bench-certain bench-ensembles bench-fit bench-counts bench-lanes bench-peers bench-recommend bench-speedup \

@@ -208,7 +208,6 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/reference_pair.c \
 	lib/diagnose/reference_run.c \
 	lib/diagnose/reference_watch.c \
-	lib/diagnose/reference_spread.c \
 	lib/diagnose/reference_series.c \
 	lib/diagnose/reference_walk.c \
 	lib/diagnose/state_error.c \

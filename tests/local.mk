@@ -225,6 +225,7 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_files.sh \
 	tests/tool/nevh_units.sh \
 	tests/tool/nevh_check.sh \
+	tests/tool/nevh_integrable.sh \
 	tests/tool/nevh_hard.sh \
 	tests/tool/nevh_cost.sh \
 	tests/tool/nevh_recommend.sh \

@@ -3,6 +3,7 @@
 #include "diagnose/reference_private.h"
 #include <float.h>
 #include <math.h>
+#include <nevh/chaos.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -48,6 +49,33 @@ void nevh__reference_scale(const nevh_reference *r, const double low[],
                            const double high[], double scale[]) {
     scale_half(r, low, high, scale);
     scale_half(r, low + r->n, high + r->n, scale + r->n);
+}
+
+static nevh_chaos_verdict find_chaos(const nevh_reference *r, double until,
+                                     nevh_chaos_finding *f) {
+    nevh_options o = {.t = r->t0, .q = r->start, .p = r->start + r->n};
+    bool found = !nevh_chaos_find(r->system, &o, r->t0, until, 0, f);
+    return found ? f->report.verdict : NEVH_EARLY;
+}
+
+bool nevh__reference_is_chaotic(nevh_reference *r, double reached,
+                                double *growth) {
+    static const double longer = 8;
+    bool room = r->n > 1 || !(nevh_system_traits(r->system) & NEVH_AUTONOMOUS);
+    nevh_chaos_finding f = {0};
+    double span = r->t1 - r->t0;
+    if (growth) {
+        find_chaos(r, r->t0 + reached, &f);
+        *growth = exp(f.growth);
+    }
+    if (!room)
+        return false;
+    nevh_chaos_verdict verdict = find_chaos(r, r->t1, &f);
+    if (verdict == NEVH_EARLY)
+        verdict = find_chaos(r, r->t0 + longer * span, &f);
+    if (verdict == NEVH_CHAOTIC)
+        r->exponent = f.exponent;
+    return verdict == NEVH_CHAOTIC;
 }
 
 static int exact_state(const nevh_reference *r, const nevh__exact_solution *e,

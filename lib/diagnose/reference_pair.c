@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double nudge = 1e-13;  /* of the start, that tells chaos */
 static const double separate = 0.1; /* that is not a beginning any more */
 static const double few = 16; /* steps, after which the motion has begun */
 
@@ -154,36 +153,6 @@ nevh__pair_outcome nevh__pair_run(nevh__pair *b, double h, double most) {
     }
     o.error = fmax(largest_difference(b), nevh__watch_error(&b->watch));
     return o;
-}
-
-static double distance(const nevh__pair *b) {
-    const nevh_reference *r = b->reference;
-    double most = 0;
-    for (size_t k = 0; k < 2 * r->n; k++)
-        most = fmax(most, fabs(b->a[k] - b->b[k]) / r->range[k]);
-    return most;
-}
-
-static void put_beside(nevh__pair *b, uint64_t *random) {
-    for (size_t k = 0; k < 2 * b->reference->n; k++)
-        b->a[k] += nudge * fabs(b->a[k]) * nevh__random(random);
-}
-
-nevh__spread nevh__pair_spread(nevh__pair *b, double h, double reached) {
-    nevh_reference *r = b->reference;
-    double steps = round(reached / h);
-    uint64_t random = 1;
-    nevh__spread s = {0};
-    memcpy(r->range, b->scale, 2 * r->n * sizeof *r->range);
-    begin(b, h);
-    for (double i = 0; i < steps && nevh__pair_spent(b) < 1; i++) {
-        double t = r->t0 + i * h;
-        if (step(b->coarse, t, h, b->a) || step(b->fine, t, h, b->b))
-            break;
-        if (nevh__spread_add(&s, i / steps, distance(b) / nudge))
-            put_beside(b, &random);
-    }
-    return s;
 }
 
 nevh__step_error nevh__pair_first_error(nevh__pair *b, double h) {

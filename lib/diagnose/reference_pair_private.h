@@ -46,9 +46,4 @@ double nevh__pair_spent(const nevh__pair *);
 nevh__pair_outcome nevh__pair_run(nevh__pair *, double h, double most);
 /* INFINITY when the step cannot be taken. */
 nevh__step_error nevh__pair_first_error(nevh__pair *, double h);
-/* How rounding grows until `reached`, by steps of h: one orbit is rounded to
-   fewer digits, again and again.  Differences are measured by the ranges up to
-   there. */
-nevh__spread nevh__pair_spread(nevh__pair *, double h, double reached);
-
 #endif

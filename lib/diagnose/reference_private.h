@@ -84,18 +84,12 @@ int nevh__watch_exact(nevh_reference *);
    explains it, 0. */
 double nevh__watch_error(const nevh__watch *);
 
-/* How a difference grows: its logarithm at equal parts of the time. */
-enum { NEVH__SPREADS = 64 };
-typedef struct {
-    double most, folds[NEVH__SPREADS];
-    size_t count;
-} nevh__spread;
-/* Whether it is the first in its part. */
-bool nevh__spread_add(nevh__spread *, double part, double growth);
-/* By least squares, over that time. */
-double nevh__spread_rate(const nevh__spread *, double time);
-/* Whether it grows in most quarters of the time. */
-bool nevh__spread_steady(const nevh__spread *);
+/* Whether the orbit is chaotic, by the indicators of nevh_chaos_find over the time
+   of the reference, or eight times that; `exponent` becomes that of chaos.
+   growth  out: of a displacement until `reached`; 0 where it is not known; NULL:
+           not wanted */
+bool nevh__reference_is_chaotic(nevh_reference *, double reached,
+                                double *growth);
 
 /* Of the own error, in ranges. */
 static const double nevh__reference_wanted = 1e-15;

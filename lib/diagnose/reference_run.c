@@ -134,11 +134,6 @@ static void keep_part(nevh__pair *b, double h, nevh_reference_end why) {
                     name, fabs(o.h) / 2, r->horizon);
 }
 
-/* Orbits in a plane, the energy being kept or lost, have no room for chaos. */
-static bool may_be_chaotic(const nevh_reference *r) {
-    return r->n > 1 || !(nevh_system_traits(r->system) & NEVH_AUTONOMOUS);
-}
-
 /* Why they have separated: by rounding, chaos or not, or by their steps.  Where
    these have `stalled` all that is as small as rounding, such as tolerances, may
    have been blown up. */
@@ -146,14 +141,16 @@ static nevh_reference_end explain(nevh__pair *b, const nevh__pair_outcome *o,
                                   bool stalled) {
     static const double many = 1e4;
     nevh_reference *r = b->reference;
-    nevh__spread s = nevh__pair_spread(b, o->h, o->reached);
-    bool chaos = may_be_chaotic(r) && nevh__spread_steady(&s);
-    bool rounding = s.most * DBL_EPSILON * 30 > hopeless;
-    r->growth = r->exponent = NAN;
-    if (!rounding && !(stalled && chaos && s.most > many))
+    double growth;
+    bool chaos = nevh__reference_is_chaotic(r, o->reached, &growth);
+    bool rounding = growth * DBL_EPSILON * 30 > hopeless;
+    if (!rounding && !(stalled && chaos && growth > many)) {
+        r->growth = r->exponent = NAN;
         return NEVH_REFERENCE_COARSE;
-    r->growth = s.most;
-    r->exponent = nevh__spread_rate(&s, o->reached);
+    }
+    r->growth = growth;
+    if (!chaos)
+        r->exponent = log(growth) / fabs(o->reached);
     return chaos ? NEVH_REFERENCE_CHAOS : NEVH_REFERENCE_SENSITIVE;
 }
 

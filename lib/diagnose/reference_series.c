@@ -320,17 +320,15 @@ static double error_of(const nevh_reference *r, const chain *c) {
 
 /* Of the first runs, which have parted. */
 static void end_at(nevh_reference *r, const chain *c) {
-    bool room = r->n > 1 || !(nevh_system_traits(r->system) & NEVH_AUTONOMOUS);
-    double reached = c->until - r->t0;
-    nevh__spread s = {0};
+    double reached = c->until - r->t0, parted = 0;
     for (size_t i = 1; i < c->count; i++)
-        nevh__spread_add(&s, (double)c->kept[i * c->each] / reached,
-                         c->parted[i] / (finer * usual));
+        parted = fmax(parted, c->parted[i]);
     r->horizon = c->until;
-    r->end = room && nevh__spread_steady(&s) ? NEVH_REFERENCE_CHAOS
-                                             : NEVH_REFERENCE_SENSITIVE;
-    r->growth = s.most;
-    r->exponent = nevh__spread_rate(&s, reached);
+    r->growth = parted / (finer * usual);
+    r->exponent = log(r->growth) / fabs(reached);
+    r->end = nevh__reference_is_chaotic(r, reached, NULL)
+                 ? NEVH_REFERENCE_CHAOS
+                 : NEVH_REFERENCE_SENSITIVE;
 }
 
 /* Tolerances that make up for what the orbit does to differences, as far as the

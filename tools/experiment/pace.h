@@ -4,6 +4,7 @@
 #define NEVH_PACE_H
 
 #include "row.h"
+#include <nevh/chaos.h>
 
 /* stability.c: why a run became unstable. */
 /* The largest frequency, or rate of growth, that an orbit's states have, and
@@ -36,29 +37,22 @@ void stability_words(const plan *, const row rows[], size_t count, list *words);
 void remedy_words(const plan *, const row rows[], size_t count, list *words);
 
 /* trial_run.c: what a short trial run says of a run. */
-typedef enum {
-    OUTLOOK_OPEN,    /* the trial run was too short to tell */
-    OUTLOOK_PLANE,   /* one degree of freedom, H without time: no chaos */
-    OUTLOOK_REGULAR, /* neighbours part no faster than a power of the time */
-    OUTLOOK_CHAOTIC,
-    OUTLOOK_LEAVES /* the orbit moves away as fast as neighbours part */
-} outlook;
 typedef struct {
     double frequency, frequency_at; /* 0: none is known */
     double pace, pace_at; /* the larger of that and of rates of growth */
-    outlook outlook;
-    double exponent, error; /* largest Lyapunov exponent over its time */
-    double length;          /* time */
-    double followed;        /* of it the neighbour could be told apart */
-    double noise;           /* of the gradient: relative energy error; NAN */
+    bool plane;           /* one degree of freedom, H without time: no chaos */
+    nevh_chaos_finding chaos; /* unless that; of a longer time, too */
+    double length;            /* time */
+    double noise;             /* of the gradient: relative energy error; NAN */
     double edge; /* of H: distance in lengths; INFINITY: none is near */
     size_t edge_variable; /* coordinates first */
     double edge_at, edge_time;
     char *failure; /* NULL, or why the orbit could not be followed */
 } trial_run;
 /* failure is to be freed.
-   cost     1e8 evaluations of terms, two seconds or so */
-trial_run trial_run_new(const plan *);
+   chaos    whether the indicators are asked for
+   cost     1e8 evaluations of terms, and two times nevh_chaos_find */
+trial_run trial_run_new(const plan *, bool chaos);
 void trial_run_words(const plan *, const trial_run *, list *notes);
 /* Of a scheme, its limit of stability given, at steps of dt; NULL: nothing. */
 const char *trial_run_verdict(const trial_run *, double limit, double dt);

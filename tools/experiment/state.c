@@ -96,8 +96,8 @@ static void note_horizon(const plan *p, list *notes) {
         list_print(
             notes,
             "predictability horizon t = %.4g, no state errors after it: "
-            "differences in the last digits have grown by %.0e, at a saddle of H or in "
-            "a close encounter; that is not chaos (%s)",
+            "error growth: differences in the last digits have grown by %.0e, as at a "
+            "saddle of H or in close encounters (%s)",
             horizon, nevh_reference_growth(r), text);
     else
         list_print(

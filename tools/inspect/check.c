@@ -208,7 +208,7 @@ static void add_schemes(fitting *f, page *result) {
 static int check_plan(const options *o, const plan *p) {
     page result = {.table = table_new()};
     bool is_table = o->format == FORMAT_TABLE;
-    trial_run ahead = trial_run_new(p);
+    trial_run ahead = trial_run_new(p, true);
     if (!o->quiet || !is_table) {
         plan_notes(p, &result.before);
         tell_state(p, &result.before);

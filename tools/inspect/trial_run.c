@@ -1,9 +1,6 @@
 /* nevh check: what a short trial run says of a run.
 
-   The orbit by a method of order 8 that adapts its steps, and a neighbour that
-   is brought back to it again and again [G. Benettin, L. Galgani, J.-M.
-   Strelcyn, Kolmogorov entropy and numerical experiments, Phys. Rev. A 14
-   (1976) 2338-2345].
+   The orbit by a method of order 8 that adapts its steps.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "experiment/pace.h"
 #include <float.h>
@@ -15,31 +12,21 @@ enum { SAMPLES = 256, PARTS = 16, EDGE_EVERY = 8, MOST_DOF = 48 };
 /* Evaluations of single terms, or of their derivatives, in all: a second or
    two, and as many on every machine. */
 static const double enough = 1e8;
-static const double large = 1e4;   /* instances of terms */
-static const double beside = 1e-7; /* of the lengths */
-static const double far_off = 1e3; /* times that */
-/* Factors of e by which a neighbour parts: in all, and in the second half of
-   the trial.  Apart from chaos it parts in proportion to the time (a factor 2
-   in the second half), with resonance to its square (4). */
-static const double parted = 12, parted_late = 3, parted_little = 1.5;
-static const double many_turns = 30;
+static const double large = 1e4; /* instances of terms */
 static const double tolerance = 1e-10;
 
 typedef struct {
     const plan *plan;
     trial_run *found;
     pace fastest;
-    nevh_field *field;        /* for values */
-    nevh_field *gradient;     /* the first that is asked for */
-    double scale;             /* of the energy */
-    double *length;           /* 2n */
-    double *z, *before;       /* 2n x 2, the neighbour in lane 1 */
-    double *trial;            /* 2n */
-    double folds;             /* when the neighbour was last brought back */
-    double fold[SAMPLES + 1]; /* of each sample */
-    double way[SAMPLES + 1];  /* its distance from the start, as a logarithm */
-    size_t samples;
+    nevh_field *field;    /* for values */
+    nevh_field *gradient; /* the first that is asked for */
+    double scale;         /* of the energy */
+    double *length;       /* 2n */
+    double *z, *before;   /* 2n */
+    double *trial;        /* 2n */
     nevh_stepper *stepper;
+    bool ends;               /* the orbit, or what may be spent, at a time */
     double looks, instances; /* instances: of terms, in H */
 } trial;
 
@@ -59,12 +46,12 @@ static double work_of(const trial *f) {
            gradients * f->instances;
 }
 
-/* H at the state of lane 0, variable k moved. */
+/* H at the state, variable k moved. */
 static bool is_there(trial *f, double t, size_t k, double move) {
     size_t n = f->plan->n;
     double h = NAN;
     for (size_t i = 0; i < 2 * n; i++)
-        f->trial[i] = f->z[2 * i] + (i == k ? move : 0);
+        f->trial[i] = f->z[i] + (i == k ? move : 0);
     return !nevh_field_value(f->field, 1, &t, f->trial, f->trial + n, &h) &&
            isfinite(h);
 }
@@ -79,63 +66,9 @@ static void look_for_edge(trial *f, double t) {
                 continue;
             f->found->edge = part;
             f->found->edge_variable = k;
-            f->found->edge_at = f->z[2 * k] + move;
+            f->found->edge_at = f->z[k] + move;
             f->found->edge_time = t;
         }
-}
-
-static void put_beside(trial *f) {
-    for (size_t i = 0; i < 2 * f->plan->n; i++)
-        f->z[2 * i + 1] = f->z[2 * i] + (i ? 0 : beside * f->length[i]);
-}
-
-/* Whether rounding, of some hundred steps, leaves little of the distance: the orbit
-   is far away. */
-static bool is_lost(const trial *f) {
-    static const double rounded = 100 * DBL_EPSILON;
-    double apart = 0, lost = 0;
-    for (size_t i = 0; i < 2 * f->plan->n; i++) {
-        double d = (f->z[2 * i + 1] - f->z[2 * i]) / f->length[i];
-        double rounding = rounded * f->z[2 * i] / f->length[i];
-        apart += d * d;
-        lost += rounding * rounding;
-    }
-    return sqrt(lost) > 0.01 * sqrt(apart);
-}
-
-static void follow_orbit(trial *f, size_t sample) {
-    const plan *p = f->plan;
-    double most = 0;
-    for (size_t i = 0; i < 2 * p->n; i++) {
-        double start = i < p->n ? p->q[i] : p->p[i - p->n];
-        most = fmax(most, fabs(f->z[2 * i] - start) / f->length[i]);
-    }
-    f->way[sample] = log(fmax(most, DBL_MIN));
-}
-
-/* Notes how far the neighbour has parted in all, and brings it back to its
-   distance where that is far off.  Not each time: the errors of the steps would
-   be brought back with it, and grow as if there were chaos. */
-static void follow_neighbour(trial *f, size_t sample) {
-    size_t n = f->plan->n;
-    double sum = 0;
-    for (size_t i = 0; i < 2 * n; i++) {
-        double d = (f->z[2 * i + 1] - f->z[2 * i]) / f->length[i];
-        sum += d * d;
-    }
-    double gained = sqrt(sum) / beside;
-    if (!(gained > 0) || !isfinite(gained)) {
-        f->fold[f->samples = sample] = f->folds;
-        put_beside(f);
-        return;
-    }
-    f->fold[f->samples = sample] = f->folds + log(gained);
-    if (gained > 1 / far_off && gained < far_off)
-        return;
-    f->folds += log(gained);
-    for (size_t i = 0; i < 2 * n; i++)
-        f->z[2 * i + 1] =
-            f->z[2 * i] + (f->z[2 * i + 1] - f->z[2 * i]) / gained;
 }
 
 /* Rounding noise of the first gradient over the steps of the first dt, at its
@@ -149,15 +82,10 @@ static void look_for_noise(trial *f, double t) {
         f->found->noise = fmax(f->found->noise, noise / f->scale);
 }
 
-static void take_first_lane(trial *f) {
-    for (size_t k = 0; k < 2 * f->plan->n; k++)
-        f->trial[k] = f->z[2 * k];
-}
-
 static void look(trial *f, int i, double t) {
     size_t n = f->plan->n;
     f->looks++;
-    take_first_lane(f);
+    memcpy(f->trial, f->z, 2 * f->plan->n * sizeof *f->z);
     pace_observe(&f->fastest, 0, t, f->trial, f->trial + n);
     look_for_noise(f, t);
     if (i % EDGE_EVERY == 0 && n <= MOST_DOF)
@@ -167,7 +95,7 @@ static void look(trial *f, int i, double t) {
 /* Whether the run would end here. */
 static bool is_stopped(trial *f, double t) {
     bool reached;
-    take_first_lane(f);
+    memcpy(f->trial, f->z, 2 * f->plan->n * sizeof *f->z);
     return !nevh_scene_stop_reached(f->plan->scene, t, f->trial,
                                     f->trial + f->plan->n, &reached) &&
            reached;
@@ -178,11 +106,11 @@ static bool is_stopped(trial *f, double t) {
 static double look_up_to_stop(trial *f, double t, double h) {
     enum { SHORTER = 64 };
     size_t n = f->plan->n;
-    memcpy(f->z, f->before, 4 * n * sizeof *f->z);
+    memcpy(f->z, f->before, 2 * n * sizeof *f->z);
     for (int i = 1; i <= SHORTER; i++) {
         double from = t + (i - 1) * h / SHORTER;
-        int status = nevh_stepper_apply(f->stepper, from, h / SHORTER, f->z,
-                                        f->z + 2 * n);
+        int status =
+            nevh_stepper_apply(f->stepper, from, h / SHORTER, f->z, f->z + n);
         if (status || is_stopped(f, from + h / SHORTER))
             return from + h / SHORTER;
         look(f, i, from + h / SHORTER);
@@ -195,80 +123,51 @@ static void run(trial *f) {
     nevh_stepper *s = f->stepper;
     double begin = p->run->t_start, t = begin, h = (p->t_end - t) / SAMPLES;
     int status = nevh_stepper_status(s);
-    bool lost = false;
     /* Of a large H a sample alone may take all that is allowed. */
     int parts = f->instances > large ? PARTS : 1;
     look(f, 0, t);
-    put_beside(f);
     for (int i = 1; !status && i <= SAMPLES && work_of(f) < enough; i++) {
-        memcpy(f->before, f->z, 4 * p->n * sizeof *f->z);
+        memcpy(f->before, f->z, 2 * p->n * sizeof *f->z);
         for (int k = 0; !status && k < parts && work_of(f) < enough; k++) {
-            status = nevh_stepper_apply(s, t, h / parts, f->z, f->z + 2 * p->n);
+            status = nevh_stepper_apply(s, t, h / parts, f->z, f->z + p->n);
             if (!status)
                 t = begin + (i - 1 + (k + 1.) / parts) * h;
         }
         if (status)
             break;
-        lost = lost || is_lost(f);
-        if (!lost) {
-            follow_neighbour(f, (size_t)i);
-            follow_orbit(f, (size_t)i);
-            f->found->followed = t - begin;
-        }
         if (is_stopped(f, t)) {
             t = look_up_to_stop(f, begin + (i - 1) * h, h);
+            f->ends = true;
             break;
         }
         look(f, i, t);
     }
     f->found->length = t - begin;
+    f->ends = f->ends || status || !(f->found->length >= p->t_end - begin);
     if (status)
         f->found->failure = text_print("%s", nevh_stepper_message(s));
 }
 
-static double most(const double numbers[], size_t from, size_t to) {
-    double found = numbers[from];
-    for (size_t i = from; i <= to; i++)
-        found = fmax(found, numbers[i]);
-    return found;
-}
-
-/* Of the last fold: from those of parts of the trial run, which differ. */
-static double spread(const trial *f) {
-    enum { OWN = 8 };
-    size_t last = f->samples;
-    double mean = f->fold[last] / OWN, sum = 0;
-    for (size_t i = 0; i < OWN; i++) {
-        double off =
-            f->fold[(i + 1) * last / OWN] - f->fold[i * last / OWN] - mean;
-        sum += off * off;
-    }
-    double halves = fabs(f->fold[last] - 2 * f->fold[last / 2]);
-    return fmax(halves, sqrt(sum * OWN / (OWN - 1)));
-}
-
-/* Whether neighbours part as in chaos; from the largest values of either half,
-   because their distance goes up and down with each turn. */
+/* The indicators of nevh chaos, of H itself; where the run is too short for them,
+   of a longer one, unless the orbit ends. */
 static void judge(const trial *f) {
+    static const double longer = 8;
+    const plan *p = f->plan;
     trial_run *found = f->found;
-    size_t last = f->samples, half = last / 2;
-    double time = found->followed, turns = found->frequency * time / (2 * M_PI);
-    if (f->plan->n == 1 && !f->plan->time) {
-        found->outlook = OUTLOOK_PLANE;
+    nevh_options o = plan_options(p, p->gradients.item[0]);
+    nevh_chaos_finding more;
+    double begin = p->run->t_start, length = found->length;
+    found->plane = p->n == 1 && !p->time;
+    if (found->plane || !(length > 0))
         return;
-    }
-    if (last < 2)
-        return;
-    double late = most(f->fold, half, last) - most(f->fold, 0, half);
-    double left = most(f->way, half, last) - most(f->way, 1, half);
-    found->exponent = f->fold[last] / time;
-    found->error = spread(f) / time;
-    if (late > parted_late && left > late / 2)
-        found->outlook = OUTLOOK_LEAVES;
-    else if (f->fold[last] > parted && late > parted_late)
-        found->outlook = OUTLOOK_CHAOTIC;
-    else if (late < parted_little && turns > many_turns)
-        found->outlook = OUTLOOK_REGULAR;
+    o.gradient_step = 0;
+    o.scale = f->length;
+    o.transform = NULL;
+    nevh_chaos_find(p->system, &o, begin, begin + length, 0, &found->chaos);
+    if (found->chaos.report.verdict == NEVH_EARLY && !f->ends &&
+        !nevh_chaos_find(p->system, &o, begin, begin + longer * length, 0,
+                         &more))
+        found->chaos = more;
 }
 
 static bool take_lengths(trial *f, const nevh_options *o) {
@@ -281,18 +180,15 @@ static bool take_lengths(trial *f, const nevh_options *o) {
     return there;
 }
 
-/* Both lanes start in lane 0's state, so that scales and steps are found around
-   it. */
 static nevh_stepper *new_stepper(const trial *f) {
     const plan *p = f->plan;
     nevh_options o = plan_options(p, "exact");
     for (size_t k = 0; k < p->n; k++) {
-        f->z[2 * k] = f->z[2 * k + 1] = p->q[k];
-        f->z[2 * (p->n + k)] = f->z[2 * (p->n + k) + 1] = p->p[k];
+        f->z[k] = p->q[k];
+        f->z[p->n + k] = p->p[k];
     }
     o.q = f->z;
-    o.p = f->z + 2 * p->n;
-    o.width = 2;
+    o.p = f->z + p->n;
     o.gradient_step = 0;
     o.tolerance = tolerance;
     o.scale = f->length;
@@ -307,14 +203,14 @@ static double count_instances(const trial *f) {
     return (double)nevh_field_counts(f->field).values;
 }
 
-trial_run trial_run_new(const plan *p) {
+trial_run trial_run_new(const plan *p, bool chaos) {
     trial_run found = {.edge = INFINITY};
     nevh_options given = plan_options(p, p->gradients.item[0]);
     nevh_options o = plan_options(p, "exact");
     trial f = {.plan = p, .found = &found};
     f.length = tool_allocate(2 * p->n, sizeof *f.length);
-    f.z = tool_allocate(4 * p->n, sizeof *f.z);
-    f.before = tool_allocate(4 * p->n, sizeof *f.z);
+    f.z = tool_allocate(2 * p->n, sizeof *f.z);
+    f.before = tool_allocate(2 * p->n, sizeof *f.z);
     f.trial = tool_allocate(2 * p->n, sizeof *f.trial);
     nevh_options values = plan_options(p, "central2");
     values.gradient_step = 1e-3; /* unused: H alone is asked for */
@@ -328,13 +224,14 @@ trial_run trial_run_new(const plan *p) {
         f.fastest.rates = nevh_rates_new(p->system, &o);
         f.stepper = new_stepper(&f);
         run(&f);
+        if (chaos)
+            judge(&f);
         nevh_stepper_free(f.stepper);
     }
     found.frequency = f.fastest.turning;
     found.frequency_at = f.fastest.turning_at;
     found.pace = f.fastest.frequency;
     found.pace_at = f.fastest.t;
-    judge(&f);
     nevh_rates_free(f.fastest.rates);
     nevh_field_free(f.field);
     nevh_field_free(f.gradient);
@@ -365,21 +262,19 @@ static void tell_horizon(const plan *p, const trial_run *f, list *notes) {
     const char *unit = nevh_scene_label(p->scene, "t");
     const char *space = *unit ? " " : "", *per = *unit ? "/" : "";
     double start = p->run->t_start, grown = -log(DBL_EPSILON);
-    double horizon = start + grown / f->exponent;
-    double soon = start + grown / (f->exponent + f->error);
-    double late = start + grown / (f->exponent - f->error);
-    char *range = f->error < f->exponent
-                      ? text_print("%.3g to %.3g", soon, late)
-                      : text_print("%.3g or later", soon);
+    double exponent = f->chaos.exponent, error = f->chaos.error;
+    double horizon = start + grown / exponent;
+    char *range = text_print("%.3g to %.3g", start + grown / (exponent + error),
+                             start + grown / (exponent - error));
     list_print(notes,
                "Chaotic: Lyapunov exponent %.2g +- %.1g%s%s (over %.3g%s%s)."
                "  Predictability horizon: %sabout t = %.3g%s%s (%s, as the "
                "exponent is uncertain): rounding errors have then grown to the "
                "size of the orbit.  Positions after it cannot be predicted; "
                "energies and averages can.",
-               f->exponent, f->error, per, unit, f->followed, space, unit,
-               horizon < p->t_end ? "" : "beyond the run, ", horizon, space,
-               unit, range);
+               exponent, error, per, unit, f->chaos.report.t - start, space,
+               unit, horizon < p->t_end ? "" : "beyond the run, ", horizon,
+               space, unit, range);
     free(range);
 }
 
@@ -387,35 +282,36 @@ static void tell_horizon(const plan *p, const trial_run *f, list *notes) {
 static void tell_outlook(const plan *p, const trial_run *f, list *notes) {
     const char *unit = nevh_scene_label(p->scene, "t");
     const char *space = *unit ? " " : "", *per = *unit ? "/" : "";
-    switch (f->outlook) {
-    case OUTLOOK_CHAOTIC:
-        tell_horizon(p, f, notes);
-        break;
-    case OUTLOOK_PLANE:
+    double time = f->chaos.report.t - p->run->t_start;
+    if (f->plane) {
         list_add(notes, "Regular: one degree of freedom without a drive cannot "
                         "be chaotic.");
+        return;
+    }
+    switch (f->chaos.report.verdict) {
+    case NEVH_CHAOTIC:
+        tell_horizon(p, f, notes);
         break;
-    case OUTLOOK_LEAVES:
+    case NEVH_UNSTABLE_ORBIT:
         list_print(
             notes,
-            "Unstable, not chaotic: over %.3g%s%s the orbit itself moves "
-            "away exponentially, and neighbours part with it (Lyapunov "
-            "exponent about %.2g%s%s).",
-            f->followed, space, unit, f->exponent, per, unit);
+            "Unstable, not chaotic: Lyapunov exponent about %.2g%s%s over "
+            "%.3g%s%s; neighbours part as they do from an unstable equilibrium "
+            "or periodic orbit, or on an escape.",
+            f->chaos.exponent, per, unit, time, space, unit);
         break;
-    case OUTLOOK_REGULAR:
-        list_print(
-            notes,
-            "Regular: over %.3g%s%s the distance of neighbouring orbits "
-            "does not grow exponentially (Lyapunov exponent below %.1g%s%s).",
-            f->followed, space, unit, 2 * parted_little / f->followed, per,
-            unit);
+    case NEVH_REGULAR:
+        list_print(notes,
+                   "Regular: over %.3g%s%s the distance of neighbouring orbits "
+                   "does not grow exponentially (Lyapunov exponent 0 within "
+                   "%.1g%s%s).",
+                   time, space, unit, f->chaos.error, per, unit);
         break;
     default:
         list_print(notes,
                    "Chaotic or regular: %.3g%s%s are too short to decide; "
                    "--t-end makes the run longer.",
-                   f->followed, space, unit);
+                   f->length, space, unit);
     }
 }
 

@@ -72,7 +72,7 @@ static plan longer_plan(advice *a) {
 }
 
 static void find_period(advice *a) {
-    trial_run f = trial_run_new(&a->search.plan);
+    trial_run f = trial_run_new(&a->search.plan, false);
     a->period = f.frequency > 0 ? 2 * acos(-1) / f.frequency : NAN;
     free(f.failure);
 }
