@@ -175,6 +175,7 @@ libnevh_core_la_SOURCES = \
 	lib/native/adaptive_text.c \
 	lib/native/build.c \
 	lib/native/native.c \
+	lib/native/take.c \
 	lib/run/stepper_private.h \
 	lib/run/structure.c \
 	lib/run/stepper.c \

@@ -213,6 +213,8 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_portrait.sh \
 	tests/tool/nevh_map.sh \
 	tests/tool/nevh_native.sh \
+	tests/tool/nevh_at_once.sh \
+	tests/tool/nevh_signals.sh \
 	tests/tool/nevh_sweep_file.sh \
 	tests/tool/nevh_sweep_mpi.sh \
 	tests/tool/nevh_run.sh \

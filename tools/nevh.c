@@ -4,6 +4,8 @@
 #include "config.h"
 #include "cli/tool.h"
 #include <errno.h>
+#include <unistd.h>
+#include <fcntl.h>
 #include <gsl/gsl_errno.h>
 #include <signal.h>
 #include <string.h>
@@ -220,9 +222,21 @@ static int dispatch(const options *o) {
     return status ? status : known[i].run(o);
 }
 
+/* So that no file of ours is taken for one of these.  Who writes to one that was
+   closed is told so. */
+static void open_standard_files(void) {
+    int file;
+    do
+        file = open("/dev/null", O_RDONLY);
+    while (file >= 0 && file <= STDERR_FILENO);
+    if (file >= 0)
+        close(file);
+}
+
 /* A limit of a file's size is an error like another, and GSL, whose own handler
    aborts, is to say what it lacks. */
 static void set_process(void) {
+    open_standard_files();
     signal(SIGXFSZ, SIG_IGN);
     gsl_set_error_handler_off();
 }

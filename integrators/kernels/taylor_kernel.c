@@ -29,6 +29,8 @@ typedef struct {
     nevh__series_code *code; /* NULL: there is none */
     const double *numbers;
     double *watched; /* what it watched last; order times n_watched */
+    bool *differs;   /* the code, from the recurrence */
+    size_t compared; /* series */
 } taylor_plan;
 
 const nevh__recurrence *nevh__taylor_recurrence(const nevh_work *w,
@@ -39,10 +41,11 @@ const nevh__recurrence *nevh__taylor_recurrence(const nevh_work *w,
 }
 
 void nevh__taylor_use(nevh_work *w, nevh__series_code *code,
-                      const double numbers[]) {
+                      const double numbers[], bool *differs) {
     taylor_plan *plan = w->plan;
     plan->code = code;
     plan->numbers = numbers;
+    plan->differs = differs;
 }
 
 /* What is narrow in H, a series sees from some ten times its width away, and
@@ -243,6 +246,28 @@ static int fail_at_edge(nevh_work *w, const chain *z, double t) {
                           w->integrator->name, t, why);
 }
 
+/* The first of them are compared with those of the recurrence. */
+static bool expand(taylor_plan *plan, size_t each, double t,
+                   const double state[], double rows[]) {
+    enum { COMPARED = 3 };
+    size_t bytes = (plan->order + 1) * each * sizeof *rows;
+    bool finite =
+        plan->code && plan->code(plan->numbers, t, state, rows, plan->watched);
+    double *coded = NULL;
+    if (plan->code && plan->compared == COMPARED)
+        return finite;
+    if (plan->code && finite && (coded = malloc(bytes)))
+        memcpy(coded, rows, bytes);
+    finite = nevh__series_expand_double(plan->series, t, state, rows);
+    if (coded && finite && memcmp(coded, rows, bytes) != 0) {
+        plan->code = NULL;
+        *plan->differs = true;
+    }
+    plan->compared += plan->code != NULL;
+    free(coded);
+    return finite;
+}
+
 /* A series at the state in rows, for the time t. */
 static int begin(nevh_work *w, const chain *z, double t, double h) {
     taylor_plan *plan = w->plan;
@@ -252,10 +277,7 @@ static int begin(nevh_work *w, const chain *z, double t, double h) {
     w->field->gradients++;
     if (*z->begun == 0)
         *z->reach = fabs(h);
-    bool finite =
-        plan->code
-            ? plan->code(plan->numbers, t, state, z->rows, plan->watched)
-            : nevh__series_expand_double(plan->series, t, state, z->rows);
+    bool finite = expand(plan, each, t, state, z->rows);
     if (!finite && fail_at_edge(w, z, t))
         return NEVH_EDOM;
     if (!finite)

@@ -7,6 +7,7 @@
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <fenv.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,9 +17,17 @@
 #include <time.h>
 #include <unistd.h>
 
-/* What changes no result, and the vectors that the library itself takes. */
+/* What changes no result, and takes back what words of CC may change, and the vectors that the library itself takes. */
 static const char *const most[] = {"-O2",
+                                   "-fno-fast-math",
+                                   "-fno-unsafe-math-optimizations",
+                                   "-fno-associative-math",
+                                   "-fno-reciprocal-math",
+                                   "-fno-finite-math-only",
+                                   "-fsigned-zeros",
                                    "-ffp-contract=off",
+                                   "-fno-sanitize=all",
+                                   "-fvisibility=default",
                                    "-fno-math-errno",
                                    "-fno-trapping-math",
                                    "-fno-tree-slp-vectorize",
@@ -77,7 +86,10 @@ static key key_of(const char *source, const char *const flags[]) {
 
 /* Only a library that has steps, or a series. */
 static void *open_library(const char *path, char why[NEVH__WHY_NATIVE]) {
+    fenv_t own; /* a library that was linked for speed alone may change it */
+    fegetenv(&own);
     void *library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+    fesetenv(&own);
     if (!library) {
         const char *wrong = dlerror();
         snprintf(why, NEVH__WHY_NATIVE, "%.300s", wrong ? wrong : "");
@@ -95,47 +107,6 @@ static bool write_source(const char *path, const char *source) {
     FILE *file = fopen(path, "w");
     bool fine = file && fputs(source, file) >= 0;
     return file && fclose(file) == 0 && fine;
-}
-
-/* The first line that is an error; where there is none, the first that has
-   anything. */
-static const char *first_error(const char *text) {
-    static const char mark[] = "error: ";
-    const char *error = strstr(text, mark);
-    return error ? error + sizeof mark - 1 : text + strspn(text, " \t\r\n");
-}
-
-static void tell_failure(const nevh__compiling *run,
-                         char why[NEVH__WHY_NATIVE]) {
-    const char *error = first_error(run->output.text);
-    if (*error)
-        snprintf(why, NEVH__WHY_NATIVE, "the C compiler fails: %.*s",
-                 (int)strcspn(error, "\r\n"), error);
-    else if (run->status > 128)
-        snprintf(why, NEVH__WHY_NATIVE,
-                 "the C compiler fails: signal %d ended it", run->status - 128);
-    else
-        snprintf(why, NEVH__WHY_NATIVE,
-                 "the C compiler fails: exit status %d, without a message",
-                 run->status);
-}
-
-static const char too_long[] =
-    "the C compiler took too long; it is tried again "
-    "ten minutes later";
-
-static void tell(const nevh__compiling *run, char why[NEVH__WHY_NATIVE]) {
-    if (run->output.interrupted)
-        snprintf(why, NEVH__WHY_NATIVE, "a signal ended the compiler");
-    else if (run->output.late)
-        snprintf(why, NEVH__WHY_NATIVE, "%s", too_long);
-    else if (run->status == NEVH__NO_COMPILER)
-        snprintf(why, NEVH__WHY_NATIVE,
-                 "there is no C compiler%s%.200s: install one, or name it in "
-                 "the environment, CC=...",
-                 *run->output.text ? " " : "", run->output.text);
-    else
-        tell_failure(run, why);
 }
 
 /* The flags, and the name of what is compiled in the cache. */
@@ -182,7 +153,7 @@ static bool was_late(const place *p, double seconds,
     double age = difftime(time(NULL), found.st_mtime);
     if (age < 0 || age > APART)
         return false;
-    snprintf(why, NEVH__WHY_NATIVE, "%s", too_long);
+    snprintf(why, NEVH__WHY_NATIVE, "%s", NEVH__TOO_LONG);
     return true;
 }
 
@@ -234,7 +205,7 @@ static void *open_compiled(const nevh__compiling *run, const files *f,
     if (run->output.late)
         note_late(p);
     if (run->status) {
-        tell(run, why);
+        nevh__compiler_tell(run, why, NEVH__WHY_NATIVE);
         return NULL;
     }
     void *library = open_library(f->object, why);

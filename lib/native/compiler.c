@@ -360,6 +360,42 @@ void nevh__compile_begin(const nevh__compilation *is, const sigset_t *before,
     free_environment(environment);
 }
 
+/* The first line that is an error; where there is none, the first that has
+   anything. */
+static const char *first_error(const char *text) {
+    static const char mark[] = "error: ";
+    const char *error = strstr(text, mark);
+    return error ? error + sizeof mark - 1 : text + strspn(text, " \t\r\n");
+}
+
+static void tell_failure(const nevh__compiling *run, char why[], size_t size) {
+    const char *error = first_error(run->output.text);
+    if (*error)
+        snprintf(why, size, "the C compiler fails: %.*s",
+                 (int)strcspn(error, "\r\n"), error);
+    else if (run->status > 128)
+        snprintf(why, size, "the C compiler fails: signal %d ended it",
+                 run->status - 128);
+    else
+        snprintf(why, size,
+                 "the C compiler fails: exit status %d, without a message",
+                 run->status);
+}
+
+void nevh__compiler_tell(const nevh__compiling *run, char why[], size_t size) {
+    if (run->output.interrupted)
+        snprintf(why, size, "a signal ended the compiler");
+    else if (run->output.late)
+        snprintf(why, size, "%s", NEVH__TOO_LONG);
+    else if (run->status == NEVH__NO_COMPILER)
+        snprintf(why, size,
+                 "there is no C compiler%s%.200s: install one, or name it in "
+                 "the environment, CC=...",
+                 *run->output.text ? " " : "", run->output.text);
+    else
+        tell_failure(run, why, size);
+}
+
 char *nevh__new_folder(void) {
     const char *where = getenv("TMPDIR");
     char *folder =

@@ -52,6 +52,10 @@ void nevh__compile_begin(const nevh__compilation *, const sigset_t *before,
 /* Waits until all have ended, or ends them: after a signal, or so many seconds. */
 void nevh__compile_await(nevh__compiling[], size_t count,
                          const sigset_t *before, double seconds);
+/* Why there is no object. */
+#define NEVH__TOO_LONG                                                         \
+    "the C compiler took too long; it is tried again ten minutes later"
+void nevh__compiler_tell(const nevh__compiling *, char why[], size_t size);
 enum { NEVH__LONGEST_COMPILATION = 120 }; /* seconds */
 /* A folder of nobody else's, in that of temporary files; to be removed and
    freed.  NULL: none can be made. */

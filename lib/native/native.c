@@ -29,7 +29,12 @@ static void end_compiler(nevh__native *x, bool wanted) {
 bool nevh__native_await(nevh__native *x) {
     if (x)
         end_compiler(x, true);
-    return x && x->library;
+    if (x && x->differs)
+        snprintf(
+            x->why, NEVH__WHY_NATIVE,
+            "what the C compiler makes gives other digits: its own options "
+            "change sums or products");
+    return x && x->library && !x->differs;
 }
 
 void nevh__native_free(nevh__native *x) {
@@ -267,7 +272,8 @@ static bool compiling_pays(const nevh_work *w, size_t characters) {
 
 bool nevh__native_pays(const nevh_work *w) {
     const nevh__native *x = w->native;
-    return x && (x->library || x->compiler) && compiling_pays(w, x->characters);
+    return x && (x->library || x->compiler) && !x->differs &&
+           compiling_pays(w, x->characters);
 }
 
 static bool take_steps(nevh__native *x) {
@@ -279,10 +285,10 @@ static bool take_steps(nevh__native *x) {
     return steps;
 }
 
-static bool take_series(nevh_work *w, const nevh__native *x) {
+static bool take_series(nevh_work *w, nevh__native *x) {
     nevh__series_code *code;
     *(void **)&code = dlsym(x->library, "nevh_native_series");
-    nevh__taylor_use(w, code, x->numbers);
+    nevh__taylor_use(w, code, x->numbers, &x->differs);
     return code;
 }
 
@@ -436,83 +442,4 @@ void nevh__native_prepare(nevh_work *const all[], size_t count,
         free(texts[--found]);
     free(texts);
     free(of);
-}
-
-/* Gradients, and values of their terms. */
-static void add_counts(nevh_work *w, const nevh__native *x, size_t kicks,
-                       size_t drifts) {
-    w->field->gradients += kicks;
-    for (size_t i = 0; i < w->field->n_terms; i++)
-        w->field->terms[i].values +=
-            kicks * x->kick_values[i] + drifts * x->drift_values[i];
-}
-
-/* Those of so many steps, as the kernel counts them. */
-static void count(nevh_work *w, const nevh__native *x, size_t steps,
-                  bool kept) {
-    size_t saved = x->keeps ? steps - !kept : 0;
-    bool of_kicks = x->whole || x->kicks_first;
-    bool of_drifts = x->whole || !x->kicks_first;
-    size_t kicks = steps * x->kicks - (of_kicks ? saved : 0);
-    size_t drifts = steps * x->drifts - (of_drifts ? saved : 0);
-    add_counts(w, x, kicks * w->width, drifts * w->width);
-}
-
-/* How many lanes have the slope that the step before left. */
-static size_t count_kept(const nevh_work *w) {
-    const double *flags = w->memory + w->native->flags_at * w->size;
-    size_t kept = 0;
-    for (size_t lane = 0; lane < w->width; lane++)
-        kept += flags[lane] != 0;
-    return kept;
-}
-
-static size_t take(const nevh_work *w, double t0, double h, size_t from,
-                   size_t steps, double q[], double p[], size_t counted[3]) {
-    const nevh__native *x = w->native;
-    nevh__native_steps compiled = x->steps;
-    return compiled(x->numbers, x->weights, x->times, x->kicks + x->drifts, t0,
-                    h, from, steps, q, p, w->memory, counted,
-                    x->room ? nevh__aligned(x->room) : NULL);
-}
-
-/* Gradients at stages, and values that told the noise of differences. */
-static void count_sweeps(nevh_work *w, const nevh__native *x,
-                         const size_t counted[3]) {
-    nevh_field *f = w->field;
-    size_t points = counted[2] * x->stages;
-    w->sweeps += counted[0];
-    f->gradients += counted[0] * x->stages;
-    for (size_t i = 0; i < f->n_terms; i++) {
-        nevh__planned *term = &f->terms[i];
-        term->values += points * (x->kick_values[i] + x->drift_values[i]);
-        if (term->delta)
-            term->values += counted[1] * term->term->decl.count;
-    }
-}
-
-size_t nevh__native_run(nevh_work *w, double t0, double h, size_t from,
-                        size_t steps, double q[], double p[]) {
-    const nevh__native *x = w->native;
-    if (!x->steps || !nevh__field_at_hand(w->field))
-        return 0;
-    size_t kept = x->keeps ? count_kept(w) : 0;
-    if (kept > 0 && kept < w->width)
-        return 0; /* the kernel's step takes those that are missing */
-    size_t counted[3] = {0, 0, 0};
-    size_t done = take(w, t0, h, from, steps, q, p, counted);
-    if (x->stages)
-        count_sweeps(w, x, counted);
-    else if (x->adapts)
-        add_counts(w, x, counted[0] + counted[1] * x->kicks,
-                   counted[0] * x->first_drifts + counted[1] * x->drifts);
-    else {
-        if (done && done < steps) /* nothing has been stored */
-            done = take(w, t0, h, from, done, q, p, counted);
-        if (done)
-            count(w, x, done, kept > 0);
-        if (done && x->own_time)
-            w->elapsed = x->times[0];
-    }
-    return done;
 }

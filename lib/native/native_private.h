@@ -50,7 +50,8 @@ typedef struct nevh__native {
     size_t own_count, pitch; /* pitch: of the tables */
     size_t characters;       /* of its text */
     double *room; /* of states that are too long for the stack, or NULL */
-    size_t kicks, drifts; /* of a step */
+    size_t kicks, drifts;   /* of a step */
+    bool compared, differs; /* with the kernel's steps, or series */
     bool keeps, kicks_first;
     bool whole;          /* what is kept is dH/dq and dH/dp */
     size_t flags_at;     /* halves of a state before what tells that */

@@ -4,6 +4,7 @@
 #include "gradient/field_private.h"
 #include "work/ledger_private.h"
 #include "work/transform_private.h"
+#include <fenv.h>
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -131,7 +132,10 @@ nevh_stepper *nevh_stepper_new(const nevh_system *system,
                           .width = width,
                           .size = n * width,
                           .report = &s->report};
+    fenv_t own; /* trial states may overflow: no exception is trapped */
+    feholdexcept(&own);
     int status = owned ? plan(s) : NEVH_ENOMEM;
+    fesetenv(&own);
     s->planned = status == NEVH_OK;
     s->revision = s->options.transform ? s->options.transform->revision : 0;
     if (status != NEVH_ENOMEM)

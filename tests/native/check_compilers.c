@@ -292,3 +292,95 @@ TEST(decimal_comma) {
     free(texts[1]);
     teardown();
 }
+
+/* Words of CC that change digits, if nobody takes them back or looks. */
+static const char *const words[] = {
+    "-ffast-math",
+    "-Ofast",
+    "-mfma -ffp-contract=fast",
+    "-funsafe-math-optimizations",
+    "-freciprocal-math",
+    "-fassociative-math -fno-signed-zeros -fno-trapping-math",
+    "-mfpmath=387",
+    "-m32",
+    "-fsingle-precision-constant",
+    "-fsanitize=address",
+    "-fvisibility=hidden",
+    "-Dh=(h*(1+1e-15))",
+    "-D__builtin_fma(a,b,c)=((a)*(b)+(c))",
+};
+enum { WORDS = sizeof words / sizeof *words };
+
+static const char two[] =
+    "[coordinates]\nx = 0.7\ny = 0.3\n[effects]\n"
+    "T = (p_x^2 + p_y^2)/2\nV = (x^2 + y^2)/2 + x^2*y/3 - y^3/7 + "
+    "exp(-x*y)/(1.1 + x^2 + y^2)\n";
+
+static void assert_digits(nevh_scene *scene, const nevh_integrator *scheme,
+                          size_t width) {
+    pair x = pair_of(scene, scheme, nevh_exact, false, cache, width);
+    ck_assert_int_eq(nevh_stepper_status(x.plain), NEVH_OK);
+    for (int i = 0; i < 4; i++) {
+        ck_assert_int_eq(pair_run(&x, 0.05, 100), NEVH_OK);
+        ck_assert_msg(pair_same(&x), "%s, %s", getenv("CC"), scheme->name);
+    }
+    const char *why;
+    ck_assert(nevh_stepper_native(x.native, &why) || *why);
+    volatile double small = 1e-310;
+    ck_assert_double_gt(small / 2,
+                        0); /* the processor's mode is the caller's */
+    pair_free(&x);
+}
+
+TEST_EACH(words_that_change_digits, WORDS) {
+    char command[2000];
+    if (!has_compiler())
+        skip_test("there is no C compiler");
+    setup();
+    snprintf(command, sizeof command, "%s '%s'", kept_compiler, words[_i]);
+    if (!strchr(words[_i], '('))
+        snprintf(command, sizeof command, "%s %s", kept_compiler, words[_i]);
+    setenv("CC", command, 1);
+    nevh_scene *scene = parsed(two);
+    assert_digits(scene, nevh_verlet, 1);
+    assert_digits(scene, nevh_gauss8, 1);
+    nevh_options o = {.tolerance = 1e-12,
+                      .q = (double[]){0.7, 0.3},
+                      .p = (double[]){0, 0},
+                      .native_cache = cache};
+    double y[2][4] = {{0.7, 0.3}, {0.7, 0.3}};
+    for (int i = 0; i < 2; i++) {
+        o.native = i ? NEVH_NATIVE_ALWAYS : NEVH_NATIVE_NEVER;
+        nevh_stepper *s =
+            nevh_stepper_new(nevh_scene_system(scene), nevh_taylor, &o);
+        ck_assert_int_eq(nevh_run(s, 0, 0.1, 200, &y[i][0], &y[i][2], NULL, 0),
+                         NEVH_OK);
+        nevh_stepper_free(s);
+    }
+    ck_assert_msg(memcmp(y[0], y[1], sizeof y[0]) == 0, "%s, taylor", command);
+    nevh_scene_free(scene);
+    teardown();
+}
+
+/* A caller that has floating-point exceptions trapped gets no signal from plans. */
+TEST(trapping_caller) {
+    static const int trapped =
+        FE_DIVBYZERO | FE_INVALID | FE_OVERFLOW | FE_UNDERFLOW | FE_INEXACT;
+    nevh_scene *scene = parsed(two);
+    for (const nevh_integrator *const *all = nevh_integrators(); *all; all++)
+        for (int way = 0; way < 3; way++) {
+            nevh_options o = {.native = NEVH_NATIVE_NEVER,
+                              .gradient = way ? nevh_central4 : nevh_exact,
+                              .tolerance = way == 2 ? 1e-9 : 0,
+                              .q = (double[]){0.7, 1e-160},
+                              .p = (double[]){0, 1e-300}};
+            feclearexcept(FE_ALL_EXCEPT);
+            ck_assert_int_ne(feenableexcept(trapped), -1);
+            nevh_stepper *s =
+                nevh_stepper_new(nevh_scene_system(scene), *all, &o);
+            int after = fedisableexcept(FE_ALL_EXCEPT);
+            ck_assert_int_eq(after & trapped, trapped);
+            nevh_stepper_free(s);
+        }
+    nevh_scene_free(scene);
+}

@@ -239,6 +239,8 @@ static int read_one(options *o, int code, char **argv) {
     const char *text = argv[optind - 1];
     if (code == ':')
         return tool_refuse("%s needs an argument", text);
+    if (code == 1)
+        return list_add(&o->operands, optarg), TOOL_OK;
     if (code == 'o')
         return read_file(o, optarg);
     if (code == 'h')
@@ -251,6 +253,7 @@ static int read_one(options *o, int code, char **argv) {
     return known[code - 256].read(o, optarg);
 }
 
+/* Operands come in turn, between options, also under POSIXLY_CORRECT. */
 int options_read(options *o, int argc, char **argv) {
     struct option described[KNOWN + 1];
     int status = TOOL_OK, code;
@@ -258,7 +261,7 @@ int options_read(options *o, int argc, char **argv) {
     describe(described);
     opterr = 0;
     while (!status &&
-           (code = getopt_long(argc, argv, ":o:h", described, NULL)) != -1)
+           (code = getopt_long(argc, argv, "-:o:h", described, NULL)) != -1)
         status = read_one(o, code, argv);
     for (int i = optind; i < argc; i++)
         list_add(&o->operands, argv[i]);

@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tool.h"
 #include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,6 +25,7 @@ static void allow_as_usual(int file, const char *replaced) {
 enum { MOST_OPEN = 8 };
 static const char *volatile unfinished[MOST_OPEN];
 static void (*volatile leave)(int);
+static volatile pid_t child; /* 0: none is at work */
 
 static void remember(const char *forgotten, const char *name) {
     for (int i = 0; i < MOST_OPEN; i++)
@@ -37,6 +39,8 @@ static void remove_all(int number) {
     for (int i = 0; i < MOST_OPEN; i++)
         if (unfinished[i])
             unlink(unfinished[i]);
+    if (child > 0)
+        kill(child, SIGTERM);
     if (leave)
         leave(number);
 }
@@ -51,12 +55,38 @@ static void remove_at_exit(void) {
     remove_all(0);
 }
 
+/* What ends a program that has no handler. */
+static void catch_where_none_is(int number) {
+    struct sigaction found;
+    if (sigaction(number, NULL, &found) == 0 && found.sa_handler == SIG_DFL)
+        signal_catch(number, remove_and_end);
+}
+
 static void watch_the_end(void) {
+    static const int others[] = {SIGQUIT,   SIGUSR1, SIGUSR2, SIGALRM,
+                                 SIGVTALRM, SIGPROF, SIGXCPU, SIGPIPE,
+                                 SIGSYS,    SIGABRT, SIGTRAP, SIGPOLL};
     static bool watched;
     if (!watched)
         atexit(remove_at_exit);
     watched = true;
     signals_catch(remove_and_end);
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        catch_where_none_is(others[i]);
+#ifdef SIGPWR
+    catch_where_none_is(SIGPWR);
+#endif
+#ifdef SIGSTKFLT
+    catch_where_none_is(SIGSTKFLT);
+#endif
+    for (int number = SIGRTMIN; number <= SIGRTMAX; number++)
+        catch_where_none_is(number);
+}
+
+void output_child(pid_t process) {
+    child = process;
+    if (process)
+        watch_the_end();
 }
 
 void output_leave(void (*call)(int)) {
@@ -95,20 +125,34 @@ static char *temporary_name(const char *name) {
 }
 
 static void open_temporary(output *o) {
+    sigset_t all, before;
+    sigfillset(&all);
     o->temporary = temporary_name(o->name);
-    int file = mkstemp(o->temporary);
-    o->stream = file < 0 ? NULL : fdopen(file, "w");
-    if (!o->stream)
-        return;
-    allow_as_usual(file, o->name);
-    remember(NULL, o->temporary);
     watch_the_end();
+    sigprocmask(SIG_BLOCK, &all, &before);
+    int file = mkstemp(o->temporary);
+    if (file >= 0)
+        remember(NULL, o->temporary);
+    sigprocmask(SIG_SETMASK, &before, NULL);
+    o->stream = file < 0 ? NULL : fdopen(file, "w");
+    if (o->stream)
+        allow_as_usual(file, o->name);
 }
 
 static void forget(output *o) {
     remember(o->temporary, NULL);
     free(o->name);
     free(o->temporary);
+}
+
+FILE *regular_open(const char *name) {
+    struct stat found;
+    int file = open(name, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (file >= 0 && fstat(file, &found) == 0 && S_ISREG(found.st_mode))
+        return fdopen(file, "rb");
+    if (file >= 0)
+        close(file);
+    return NULL;
 }
 
 int output_open(output *o, const char *name) {

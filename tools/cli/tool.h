@@ -32,6 +32,7 @@
 #include <nevh/nevh.h>
 #include <nevh/scene.h>
 #include <stdio.h>
+#include <sys/types.h>
 
 /* Exit statuses. */
 enum { TOOL_OK, TOOL_FAILED, TOOL_USAGE, TOOL_STOPPED };
@@ -255,6 +256,10 @@ void signal_catch(int number, void (*note)(int));
 /* Calls `leave` where the program ends before it is taken back by NULL: with the
    number of the signal, or with 0 where memory is out.  It may call only what
    handlers of signals may. */
+/* A child that is to end with this program; 0: it has ended. */
+void output_child(pid_t);
+/* A file to read, or NULL where it is none: a pipe or a device may have no end. */
+FILE *regular_open(const char *name);
 void output_leave(void (*leave)(int number));
 /* That it can be opened, as far as can be told without changing it.  To be
    called while none is open. */

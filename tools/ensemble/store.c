@@ -142,7 +142,7 @@ static int init(store *s) {
 /* The side file. */
 
 static char *read_side(const char *side) {
-    FILE *f = fopen(side, "rbe");
+    FILE *f = regular_open(side);
     char *text = NULL;
     size_t used = 0, room = 0;
     while (f && !feof(f) && !ferror(f)) {
@@ -255,6 +255,10 @@ static int open_locked(store *s, int how) {
 }
 
 /* A sweep that was left is not thrown away by chance. */
+uint64_t store_next(const store *s, uint64_t i) {
+    return store_skip_hole(s->file, s->header, s->record, i, s->count);
+}
+
 static int check_unfinished(store *s) {
     uint64_t first, count, missing = 0;
     char *text = read_side(s->side);
@@ -277,6 +281,9 @@ static int check_unfinished(store *s) {
         if (pread(s->file, &status, 1, (off_t)(header + i * record)) != 1)
             break;
         *(status ? &done : &missing) += 1;
+        uint64_t next = store_skip_hole(s->file, header, record, i + 1, count);
+        missing += next > i + 1;
+        i = next - 1;
     }
     return done && missing
                ? tool_refuse("%s is an unfinished sweep: go on with --resume "
@@ -470,8 +477,13 @@ int store_take(store *to, const char *shard, uint64_t first, uint64_t count) {
                   .count = count};
     int status = store_resume(&from, shard);
     uint64_t missing = 0;
-    for (uint64_t i = 0; !status && i < count; i++)
-        missing += store_status(&from, first + i) == NEVH_MEMBER_MISSING;
+    for (uint64_t i = 0, next; !status && i < count; i = next) {
+        next = store_next(&from, i);
+        missing += next - i;
+        if (next == i && next < count)
+            missing +=
+                store_status(&from, first + next++) == NEVH_MEMBER_MISSING;
+    }
     if (missing)
         status = tool_refuse("%s lacks %" PRIu64 " of its %" PRIu64
                              " members: go on with --resume %s",

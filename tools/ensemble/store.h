@@ -41,6 +41,11 @@ int store_attach(store *, const char *name);
 /* The first member, and how many, of a file that is to be resumed. */
 int store_range(const char *name, uint64_t *first, uint64_t *count);
 /* The status of a member. */
+/* The first record from the i-th on that is no hole of the file; those before are of
+   members that are missing. */
+uint64_t store_skip_hole(int file, uint64_t header, uint64_t record, uint64_t i,
+                         uint64_t count);
+uint64_t store_next(const store *, uint64_t i);
 nevh_member_status store_status(const store *, uint64_t member);
 int store_write(store *, const nevh_sweep_result *);
 /* Sorts the reasons, where all members were run; makes it last. */

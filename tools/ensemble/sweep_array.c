@@ -94,13 +94,16 @@ static int tell_array(sweep_job *j) {
     uint64_t have[4] = {0};
     const store *s = &j->store;
     double *values = tool_allocate(s->columns->count, sizeof *values);
-    for (uint64_t i = 0; i < s->count; i++) {
+    uint64_t looked = 0;
+    for (uint64_t i = store_next(s, 0); i < s->count;
+         i = store_next(s, i + 1), looked++) {
         nevh_member_status status = store_status(s, s->first + i);
         have[status & 3]++;
         take_values(s, i, values);
         if (status == NEVH_MEMBER_DONE)
             sweep_check_values(j, values);
     }
+    have[NEVH_MEMBER_MISSING] += s->count - looked;
     free(values);
     sweep_tell_undefined(j);
     if (have[NEVH_MEMBER_FAILED] || have[NEVH_MEMBER_NO_START])
@@ -213,7 +216,8 @@ static int join(sweep_job *j) {
 static int draw_array(sweep_job *j, int status) {
     const store *s = &j->store;
     double *values = tool_allocate(j->columns.count, sizeof *values);
-    for (uint64_t i = 0; i < s->count; i++) {
+    for (uint64_t i = store_next(s, 0); i < s->count;
+         i = store_next(s, i + 1)) {
         take_values(s, i, values);
         if (store_status(s, s->first + i) != NEVH_MEMBER_MISSING)
             map_take(j->map, s->first + i, store_status(s, s->first + i),

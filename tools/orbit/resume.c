@@ -85,7 +85,7 @@ int state_save(const char *name, const char *settings, const run_state *s,
 /* All of a file, freed by the caller; NULL when it cannot be read. */
 static char *read_all(const char *name, size_t *size) {
     size_t capacity = 1 << 12, count;
-    FILE *file = fopen(name, "rbe");
+    FILE *file = regular_open(name);
     char *all = file ? malloc(capacity) : NULL;
     *size = 0;
     while (all && (count = fread(all + *size, 1, capacity - *size, file)) > 0) {

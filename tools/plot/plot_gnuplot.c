@@ -87,7 +87,9 @@ static int run(char *const arguments[], FILE *in, FILE *out, FILE *messages) {
                            "has it as gnuplot-nox)");
     if (wrong)
         return tool_refuse("gnuplot cannot be run: %s", strerror(wrong));
+    output_child(child);
     int status = await(child);
+    output_child(0);
     return status ? refuse_end(status, messages) : TOOL_OK;
 }
 

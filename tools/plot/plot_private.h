@@ -184,6 +184,8 @@ size_t plot_title_letters(const layout *); /* of a line of the title */
 
 /* plot_svg.c: the same picture of SVG in fewer bytes. */
 void plot_svg_shorten(FILE *from, FILE *to);
+/* The same picture, where titles are text of XML. */
+void plot_svg_copy(FILE *from, FILE *to);
 
 /* plot_gnuplot.c: gnuplot --version, and a script to be drawn to a file.
    returns  TOOL_OK, or TOOL_USAGE with the message printed */

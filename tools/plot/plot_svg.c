@@ -114,6 +114,14 @@ static void path_put(path *p, const char *line, FILE *to) {
     fputs(p->open ? "\n" : line, to);
 }
 
+/* gnuplot leaves "]]>" of a title as it is, which no text of XML may have. */
+static void text_put(const char *line, FILE *to) {
+    static const char end[] = "]]>";
+    for (const char *at; (at = strstr(line, end)); line = at + sizeof end - 1)
+        fprintf(to, "%.*s]]&gt;", (int)(at - line), line);
+    fputs(line, to);
+}
+
 /* Marks, which have names, are too small for that. */
 static void line_put(path *p, const char *line, FILE *to) {
     static const char begin[] = " d='";
@@ -125,7 +133,9 @@ static void line_put(path *p, const char *line, FILE *to) {
         fwrite(line, 1, (size_t)(data - line), to);
         p->last = 0;
         path_put(p, data, to);
-    } else
+    } else if (strstr(line, "<text>"))
+        text_put(line, to);
+    else
         fputs(line, to);
 }
 
@@ -166,5 +176,17 @@ void plot_svg_shorten(FILE *from, FILE *to) {
     discs_put(&all, to);
     free(all.item);
     free(group);
+    free(line);
+}
+
+void plot_svg_copy(FILE *from, FILE *to) {
+    char *line = NULL;
+    size_t room = 0;
+    rewind(from);
+    while (getline(&line, &room, from) >= 0)
+        if (strstr(line, "<text>"))
+            text_put(line, to);
+        else
+            fputs(line, to);
     free(line);
 }

@@ -166,13 +166,15 @@ static int draw_in_terminal(const plot *p, const target *t) {
     return status;
 }
 
-static int draw_shorter(const plot *p, const target *t, FILE *to) {
+static int draw_svg(const plot *p, const target *t, FILE *to) {
     FILE *drawing = tmpfile();
     if (!drawing)
         return tool_refuse("no temporary file: %s", strerror(errno));
     int status = draw_to(p, t, drawing);
-    if (!status)
+    if (!status && t->on_page)
         plot_svg_shorten(drawing, to);
+    else if (!status)
+        plot_svg_copy(drawing, to);
     fclose(drawing);
     return status;
 }
@@ -181,8 +183,8 @@ static int draw_to_file(const plot *p, const char *file, const target *t) {
     output out;
     if (output_open(&out, file))
         return TOOL_USAGE;
-    return output_close(&out, t->on_page && t->medium == PLOT_SVG
-                                  ? draw_shorter(p, t, out.stream)
+    return output_close(&out, t->medium == PLOT_SVG
+                                  ? draw_svg(p, t, out.stream)
                                   : draw_to(p, t, out.stream));
 }
 

@@ -1,0 +1,111 @@
+#!/bin/sh
+# Each command four times at once over one empty cache, one folder and one output: all
+# end with the same bytes, but for times, and whole files; also where one of them is
+# killed, and where the compiler fails, hangs or leaves a child.
+
+. "${srcdir:-.}/tests/support/nevh_support.sh"
+
+XDG_CACHE_HOME=$PWD/$work/cache
+TMPDIR=$PWD/$work/tmp
+export XDG_CACHE_HOME TMPDIR
+mkdir $TMPDIR
+long='--t-end 20000 --gradient exact --integrators verlet --dt 0.1'
+
+# four PROCESS ARGUMENT...: PROCESS: who is killed (1), or 0.
+four() {
+    killed=$1
+    shift
+    command="four times $*"
+    rm -rf $XDG_CACHE_HOME
+    for k in 1 2 3 4; do
+        (
+            timeout 300 "$nevh" "$@" >$work/out.$k 2>$work/err.$k </dev/null &
+            echo $! >$work/process.$k
+            wait $!
+            echo $? >$work/code.$k
+        ) 2>/dev/null &
+    done
+    if test $killed = 1; then
+        sleep 0.1
+        kill -s KILL $(cat $work/process.1) 2>/dev/null
+    fi
+    wait
+    for k in $(test $killed = 1 || echo 1) 2 3 4; do
+        code=$(cat $work/code.$k)
+        test $code = 0 || fails "exit status $code: $(cat $work/err.$k)"
+        # Times of this machine, in columns of CSV, are not compared.
+        sed -e 's/[0-9.e+-]* \(ns\|ms\|s\)\>//g' $work/out.$k >$work/text.$k
+    done
+    case $1 in
+    compare | cost | recommend | gradients | effects) ;; # have times in columns
+    *)
+        cmp -s $work/text.2 $work/text.3 && cmp -s $work/text.3 $work/text.4 ||
+            fails "prints other bytes"
+        ;;
+    esac
+    test -z "$(find $XDG_CACHE_HOME -mindepth 2 -name '*.so.*' -type d 2>/dev/null)" ||
+        test $killed = 1 || fails "leaves a folder in the cache"
+}
+
+# Whole files: whoever was last.
+same_file() {
+    test -s $work/o || fails "wrote nothing"
+    for k in 1 2 3; do
+        cmp -s $work/o $work/first || fails "wrote another file"
+    done
+    test "$(ls $work | grep -c '^o\.')" = 0 || fails "leaves temporary files"
+}
+
+csv() { # ARGUMENT...: with one output
+    "$nevh" "$@" -o $work/o 2>$work/err </dev/null
+    mv $work/o $work/first
+    four 0 "$@" -o $work/o
+    same_file
+}
+
+four 0 run pendulum $long --samples 2
+four 0 run pendulum $long --samples 2 --native always
+four 0 compare pendulum $long
+four 0 cost pendulum $long --dt 0.1,0.2
+four 0 recommend pendulum $long --energy-error 0.1
+four 0 gradients pendulum --t-end 5
+four 0 effects pendulum
+four 0 check pendulum --t-end 5
+four 0 chaos henon-heiles --t-end 100
+four 0 frequencies pendulum --t-end 200
+four 0 reference pendulum --t-end 5
+four 0 list scenes
+csv export pendulum --integrators verlet --dt 0.1
+csv section henon-heiles --t-end 300
+csv sweep pendulum --vary 'phi = range(0.1, 3, 8)' --t-end 500 --outcomes energy_error
+csv fit pendulum-filmed --data pendulum-filmed.csv --vary l
+if command -v gnuplot >/dev/null 2>&1; then
+    four 0 run pendulum --t-end 5 --samples 3 --plot $work/p.svg
+    four 0 portrait pendulum --t-end 10 --plot $work/p.svg
+    four 0 flow pendulum --t-end 5 --plot $work/p.svg
+fi
+
+four 1 run pendulum $long --samples 2
+four 1 compare pendulum $long
+
+# Compilers: one that fails, one that hangs, one that leaves a child with the pipe.
+compiler() {
+    printf '#!/bin/sh\n%s\n' "$1" >$work/compiler
+    chmod +x $work/compiler
+    CC=$PWD/$work/compiler
+    export CC
+}
+C_COMPILER=${CC:-cc}
+export C_COMPILER
+compiler 'exit 1'
+four 0 run pendulum $long --samples 2 --quiet
+compiler 'sleep 20 & exec $C_COMPILER "$@"'
+four 0 run pendulum $long --samples 2 --quiet
+compiler 'while :; do sleep 1; done'
+four 0 run pendulum $long --samples 2 --quiet
+if test "$SLOW" = yes; then
+    four 0 compare pendulum --t-end 20000 --gradient exact
+    four 0 sweep pendulum --vary 'phi = range(0.1, 3, 8)' --t-end 50000
+    four 1 sweep pendulum --vary 'phi = range(0.1, 3, 8)' --t-end 50000
+fi
+exit $status

@@ -1,0 +1,113 @@
+#!/bin/sh
+# Signals leave no temporary file and no child behind; closed files, the order of operands,
+# titles that XML does not take and side files without an end harm nothing.
+
+. "${srcdir:-.}/tests/support/nevh_support.sh"
+
+XDG_CACHE_HOME=$PWD/$work/cache
+TMPDIR=$PWD/$work/tmp
+export XDG_CACHE_HOME TMPDIR
+mkdir $TMPDIR $work/bin $work/folder
+
+alive() { # FILE: whether the process whose number it has is there
+    ps -o stat= -p "$(cat $1)" 2>/dev/null | grep -qv '^Z'
+}
+dies() {
+    for i in 1 2 3 4 5 6 7 8 9 10; do
+        alive $1 || return
+        sleep 0.5
+    done
+    fails "leaves its child $1"
+}
+
+# gnuplot that takes its time: a picture is open meanwhile.
+cat >$work/bin/gnuplot <<'END_OF_GNUPLOT'
+#!/bin/sh
+test "$1" != --version || exit 0
+echo $$ >"$SIGN"
+exec sleep 100
+END_OF_GNUPLOT
+chmod +x $work/bin/gnuplot
+for name in TERM HUP XCPU USR1 USR2 ALRM PIPE VTALRM PROF ABRT; do
+    SIGN=$PWD/$work/sign
+    rm -f $SIGN
+    command="run --plot ($name)"
+    SIGN=$SIGN PATH=$PWD/$work/bin:$PATH "$nevh" run pendulum --t-end 5 \
+        --plot $work/folder/p.svg >/dev/null 2>$work/err </dev/null &
+    process=$!
+    until test -s $SIGN; do sleep 0.05; done
+    kill -s $name $process
+    wait $process 2>/dev/null
+    test $? -gt 128 || fails "goes on after a signal"
+    test "$(ls -A $work/folder)" = '' || fails "leaves $(ls -A $work/folder)"
+    dies $SIGN
+done
+
+# A compiler at work, too.
+cat >$work/compiler <<'END_OF_COMPILER'
+#!/bin/sh
+echo $$ >"$SIGN"
+sleep 100
+END_OF_COMPILER
+chmod +x $work/compiler
+for name in TERM XCPU KILL; do
+    SIGN=$PWD/$work/sign
+    rm -f $SIGN
+    command="run ($name)"
+    SIGN=$SIGN CC=$PWD/$work/compiler "$nevh" run pendulum --t-end 1e8 --dt 0.01 \
+        --samples 2 >/dev/null 2>&1 </dev/null &
+    process=$!
+    until test -s $SIGN; do sleep 0.05; done
+    kill -s $name $process
+    wait $process 2>/dev/null
+    dies $SIGN
+    for i in 1 2 3 4 5 6; do
+        test "$(find $XDG_CACHE_HOME -name '*.so.*' -type d)" != '' || break
+        sleep 0.5
+    done
+    test "$(find $XDG_CACHE_HOME -name '*.so.*' -type d)" = '' ||
+        fails "leaves $(find $XDG_CACHE_HOME)"
+done
+
+# Operands and options in any order, whatever the environment.
+exits 0 run pendulum --t-end 1 --samples 2
+cp $work/out $work/before
+POSIXLY_CORRECT=1
+export POSIXLY_CORRECT
+exits 0 run pendulum --t-end 1 --samples 2
+cmp -s $work/out $work/before || fails "prints something else"
+exits 0 run --t-end 1 pendulum --samples 2
+cmp -s $work/out $work/before || fails "prints something else"
+exits 0 run --t-end 1 --samples 2 -- pendulum
+cmp -s $work/out $work/before || fails "prints something else"
+unset POSIXLY_CORRECT
+
+if command -v gnuplot >/dev/null 2>&1; then
+    command='run --plot, without standard input'
+    "$nevh" run pendulum --t-end 5 --plot $work/p.svg <&- >/dev/null 2>$work/err ||
+        fails "fails: $(cat $work/err)"
+    grep -q '</svg>' $work/p.svg || fails "draws nothing"
+    printf '[scene]\ntitle = a ]]> b ]]]>\n[coordinates]\nx = 1\n[effects]\n' \
+        >$work/odd.nevh
+    printf 'T = p_x^2/2\nV = x^2/2\n[run]\nt_end = 5\ndt = 0.1\n' >>$work/odd.nevh
+    printf 'integrators = verlet\n' >>$work/odd.nevh
+    exits 0 run $work/odd.nevh --plot $work/odd.svg
+    grep -q 'a ]]&gt; b ]]]&gt;' $work/odd.svg || fails "lacks its title"
+    grep '<text>' $work/odd.svg | grep -q ']]>' && fails "is no XML"
+fi
+
+# Side files that never end, and sweeps of which next to nothing is there.
+exits 0 run pendulum --t-end 5 --samples 3 -o $work/rows.csv
+ln -s /dev/zero $work/rows.csv.state
+exits 2 run pendulum --t-end 5 --samples 3 --resume $work/rows.csv
+rm $work/rows.csv.state
+mkfifo $work/rows.csv.state
+exits 2 run pendulum --t-end 5 --samples 3 --resume $work/rows.csv
+exits 3 sweep pendulum --vary 'phi = range(0.1, 3, 100000000)' --t-end 1 \
+    --outcomes energy_error -o $work/x.npy --stop-after 0.2s
+says 'stopped before [0-9]+ of 100000000 members'
+rm $work/x.npy.txt
+ln -s /dev/zero $work/x.npy.txt
+exits 2 sweep pendulum --vary 'phi = range(0.1, 3, 100000000)' --t-end 1 \
+    --outcomes energy_error --resume $work/x.npy --stop-after 0.2s
+exit $status
