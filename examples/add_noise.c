@@ -62,6 +62,7 @@ int main(int argc, char **argv) {
     if (argc < 4 || columns > MOST)
         return explain(argc);
     double sigma = atof(argv[1]);
+    int places = sigma > 0 ? (int)fmax(0, 4 - floor(log10(sigma))) : 17;
     uint64_t seed = strtoull(argv[2], NULL, 10) * 0x2545f4914f6cdd1du;
     while (fgets(line, sizeof line, stdin)) {
         if (*line == '#')
@@ -82,7 +83,8 @@ int main(int argc, char **argv) {
         } else {
             printf("%s", field[0]);
             for (int k = 0; k < columns; k++)
-                printf(",%.6g", atof(field[place[k]]) + sigma * normal(&seed));
+                printf(",%.*f", places,
+                       atof(field[place[k]]) + sigma * normal(&seed));
         }
         puts("");
     }

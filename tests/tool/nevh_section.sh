@@ -187,4 +187,23 @@ holds '$2 > 4.7 && $4 < 1e-12 && $5 == 0'
 sed 's/(direction)$/direction/' $work/twice.nevh >$work/again.nevh
 exits 2 section $work/again.nevh
 says ':8:31: error: direction is a column of every section: write \(direction\)'
+
+# Half a period is one number, on whichever side of it rounding puts the point.
+printf '%s\n' '[coordinates]' 'phi = pi, 0.3 ; period 2*pi' 'x = 1' '[effects]' \
+    'K = (p_phi^2 + p_x^2)/2' 'V = x^2/2' '[sections]' \
+    's = when phi = pi, both: phi, x' '[run]' 't_end = 200' 'dt = 0.1' \
+    >$work/half.nevh
+exits 0 section $work/half.nevh
+counts 9
+holds '$4 > 3.14159 && $4 < 3.1416'
+
+# Orbits of several energies are told of, those of one are not.
+printf '%s\n' '[coordinates]' 'x = 0' 'y = 0.1' 'p_x = 0.1' '[effects]' \
+    'K = (p_x^2 + p_y^2)/2' 'V = (x^2 + y^2)/2 + x^2*y - y^3/3' '[sections]' \
+    's = when x = 0, rising: y, p_y' '[run]' 't_end = 20' 'dt = 0.1' >$work/surface.nevh
+exits 0 section $work/surface.nevh --vary 'y = range(-0.2, 0.3, 4)'
+has '^# energies: H = 0\.0050* \.\.\. 0\.0[0-9]+ of the 4 orbits: .*--vary .p_x = solve\(H = '
+exits 0 section $work/surface.nevh --vary 'y = range(-0.2, 0.3, 4)' \
+    --vary 'p_x = solve(H = 1/12, from 0.3)'
+lacks 'energies:'
 exit $status

@@ -138,8 +138,21 @@ static void span(const direction *d, double *low, double *high) {
     *high = last[0] + (last[0] - last[-1]) / 2;
 }
 
+/* Of rates, "frequency(x) (rad/s)"; NULL: the column is none. */
+static char *rate_label(const map *m, const char *name) {
+    const char *unit = nevh_scene_label(m->plan->scene, "t");
+    bool angle = strncmp(name, "frequency(", 10) == 0;
+    if (!angle && strcmp(name, "lyapunov") != 0)
+        return NULL;
+    return *unit ? text_print("%s (%s/%s)", name, angle ? "rad" : "1", unit)
+                 : text_print("%s", name);
+}
+
 static char *label_of(const map *m, size_t column) {
     const char *name = nevh_sweep_column(m->sweep, column);
+    char *rate = rate_label(m, name);
+    if (rate)
+        return rate;
     bool time = strncmp(name, "first(", 6) == 0 || strcmp(name, "t") == 0 ||
                 strncmp(name, "period", 6) == 0;
     const char *inner = strchr(name, '(');

@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "members.h"
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,9 +25,22 @@ static int read_all(members *m, const plan *p, uint64_t count) {
                                   p->name, m->why);
 }
 
+/* The least and the largest energy. */
+static void measure_energies(members *m, const plan *p) {
+    nevh_options values = {.gradient_step = 1e-3, .portable = p->portable};
+    nevh_field *f = nevh_field_new(p->system, &values);
+    double t = p->run->t_start, h;
+    for (size_t i = 0; i < m->count; i++)
+        if (!nevh_field_value(f, 1, &t, m->q + i * m->n, m->p + i * m->n, &h)) {
+            m->low = fmin(m->low, h);
+            m->high = fmax(m->high, h);
+        }
+    nevh_field_free(f);
+}
+
 int members_read(members *m, const plan *p) {
     uint64_t count = nevh_scene_members(p->scene);
-    *m = (members){.n = p->n, .several = count > 0};
+    *m = (members){.n = p->n, .several = count > 0, .low = NAN, .high = NAN};
     if (count > MOST_MEMBERS)
         return tool_refuse("%s: %" PRIu64 " members are more than a picture "
                            "shows: vary fewer, at most %d",
@@ -35,8 +49,12 @@ int members_read(members *m, const plan *p) {
     m->number = tool_allocate(room, sizeof *m->number);
     m->q = tool_allocate(room * p->n, sizeof *m->q);
     m->p = tool_allocate(room * p->n, sizeof *m->p);
-    if (count)
-        return read_all(m, p, count);
+    if (count) {
+        int status = read_all(m, p, count);
+        if (!status)
+            measure_energies(m, p);
+        return status;
+    }
     memcpy(m->q, p->q, p->n * sizeof *m->q);
     memcpy(m->p, p->p, p->n * sizeof *m->p);
     m->count = 1;
@@ -64,4 +82,20 @@ void members_note(const members *m, list *notes) {
                    m->startless ? "members: %zu, %zu without a start"
                                 : "members: %zu",
                    m->count + m->startless, m->startless);
+}
+
+void members_note_energies(const members *m, const plan *p, list *notes) {
+    static const double equal = 1e-6;
+    const char *unit = nevh_scene_label(p->scene, "energy");
+    bool apart = m->high - m->low > equal * fmax(fabs(m->low), fabs(m->high));
+    if (m->count > 1 && p->n > 1 && apart && !p->time && !p->friction)
+        list_print(
+            notes,
+            "energies: H = %.6g ... %.6g%s%s of the %zu orbits: they "
+            "are not on one surface of energy, and their curves may "
+            "cross; --vary 'p_%s = solve(H = %.6g, from %.3g)' gives all "
+            "the same",
+            m->low, m->high, *unit ? " " : "", unit, m->count,
+            nevh_scene_coordinate(p->scene, 0), m->high,
+            p->p[0] != 0 ? p->p[0] : 1);
 }

@@ -8,10 +8,11 @@
 /* Those that have a start. */
 typedef struct {
     size_t n, count, startless;
-    bool several;   /* there is an ensemble; else it is the plan's start */
-    size_t *number; /* count: which member it is */
-    double *q, *p;  /* count x n, member by member */
-    char *why;      /* the first has none; or NULL */
+    bool several;     /* there is an ensemble; else it is the plan's start */
+    size_t *number;   /* count: which member it is */
+    double *q, *p;    /* count x n, member by member */
+    char *why;        /* the first has none; or NULL */
+    double low, high; /* of their energies at the start; NAN: not known */
 } members;
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int members_read(members *, const plan *);
@@ -19,5 +20,7 @@ void members_free(members *);
 /* Those without a start are told of.  TOOL_FAILED where there are some. */
 int members_tell(const members *, const plan *);
 void members_note(const members *, list *notes);
+/* Of orbits whose points of a section lie on several surfaces of energy. */
+void members_note_energies(const members *, const plan *, list *notes);
 
 #endif

@@ -33,12 +33,13 @@ typedef struct {
     char *ended;    /* how, where that was not at t_end; or NULL */
 } job;
 
-/* Into (-period/2, period/2]. */
+/* Into (-period/2, period/2], where rounding makes no other of half a period. */
 static double wrapped(double x, double period) {
+    static const double rounding = 1e-9;
     if (period == 0)
         return x;
     x = remainder(x, period);
-    return x <= -period / 2 ? x + period : x;
+    return x <= (rounding - 0.5) * period ? x + period : x;
 }
 
 static double *new_point(series *s) {
@@ -301,6 +302,7 @@ static void note(const job *j, const options *o, list *notes) {
     settings_notes(o, notes);
     plan_note_first(p, j->integrator, notes);
     members_note(&j->members, notes);
+    members_note_energies(&j->members, p, notes);
     for (size_t i = 0; i < j->count; i++)
         note_points(j, &j->all[i], notes);
     if (j->ended)
