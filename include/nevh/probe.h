@@ -13,7 +13,9 @@ typedef enum {
     NEVH_IS_SEPARABLE,  /* H = T(t, p) + V(t, q) */
     NEVH_IS_AUTONOMOUS, /* H does not depend on t */
     NEVH_IS_QUADRATIC,  /* in the momenta: what Nystroem schemes need */
-    NEVH_IS_REVERSIBLE, /* H(q, -p) = H(q, p): orbits run backwards, too */
+    NEVH_IS_REVERSIBLE, /* H(q, -p) = H(q, p), or H stays as it is where some
+                           coordinates and the momenta of the others change
+                           their signs: orbits run backwards, too */
     NEVH_IS_SMOOTH,     /* differences of order 4 find a good step */
     NEVH_FINDINGS
 } nevh_question;
@@ -25,7 +27,9 @@ typedef struct {
                          compared (SMOOTH: estimated error over derivative);
                          rounding, about 1e-16, where it holds */
     double limit;     /* up to which it is taken for rounding */
-    const char *term; /* the term that violates most; NULL: H as a whole */
+    const char *term; /* the term that violates most; NULL: H as a whole.  Of
+                         REVERSIBLE, where it holds and momenta alone are not
+                         enough: "(y, p_x) -> -(y, p_x)"; owned by the probe */
     double t;         /* where that was met, */
     const double *q, *p; /* n each; owned by the probe */
 } nevh_finding;

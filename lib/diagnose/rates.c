@@ -191,6 +191,10 @@ static double tame(gsl_matrix *a, gsl_vector *balance) {
     return largest;
 }
 
+/* Double eigenvalues of 0, as of free motion, are moved by the root of what rounding
+   and differences do to the matrix, whose largest element is 1. */
+static const double rounding = 1e-6;
+
 static int by_eigenvalues(nevh_rates *r, double t, double *frequency,
                           double *growth) {
     size_t m = 2 * r->n;
@@ -211,9 +215,11 @@ static int by_eigenvalues(nevh_rates *r, double t, double *frequency,
         return NEVH_EFAILED;
     for (size_t i = 0; scale > 0 && i < m; i++) {
         gsl_complex value = gsl_vector_complex_get(r->values, i);
-        *frequency = fmax(*frequency, scale * fabs(GSL_IMAG(value)));
-        *growth = fmax(*growth, scale * GSL_REAL(value));
+        *frequency = fmax(*frequency, fabs(GSL_IMAG(value)));
+        *growth = fmax(*growth, GSL_REAL(value));
     }
+    *frequency = *frequency > rounding ? scale * *frequency : 0;
+    *growth = *growth > rounding ? scale * *growth : 0;
     return NEVH_OK;
 }
 

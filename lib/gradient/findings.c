@@ -4,6 +4,7 @@
 #include <float.h>
 #include <math.h>
 #include <nevh/probe.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,7 +18,8 @@ struct nevh_probe {
     double *start; /* 2n: lane 0 of the state */
     double *state; /* 2n: a trial state */
     nevh_finding finding[NEVH_FINDINGS];
-    size_t finite; /* samples at which H is */
+    size_t finite;    /* samples at which H is */
+    char mirror[160]; /* what turns orbits back, where momenta alone do not */
     nevh__report report;
 };
 
@@ -49,12 +51,78 @@ static double energy(nevh_probe *b, size_t at, double factor, double later) {
 static void try_momenta(nevh_probe *b, size_t at) {
     const double none = energy(b, at, 0, 0), one = energy(b, at, 1, 0);
     const double two = energy(b, at, 2, 0), three = energy(b, at, 3, 0);
-    const double back = energy(b, at, -1, 0);
     b->finite += isfinite(one);
-    violate(b, NEVH_IS_REVERSIBLE, fabs(one - back), fabs(one) + fabs(back),
-            at);
     violate(b, NEVH_IS_QUADRATIC, fabs((three - none) - 3 * (two - one)),
             fabs(three) + 3 * (fabs(two) + fabs(one)) + fabs(none), at);
+}
+
+/* Mirrors: some coordinates, and the momenta of the others, change their signs.  Of
+   few coordinates all of them, the first of momenta alone; of many, those of every
+   second or third one, as of bodies. */
+enum { FEW = 6, OF_MANY = 12 };
+
+static size_t mirrors(size_t n) {
+    return n <= FEW ? (size_t)1 << n : OF_MANY;
+}
+
+static bool turns(size_t n, size_t mirror, size_t i) {
+    if (n > FEW && mirror >= 8)
+        return (mirror - 8) >> i % 2 & 1;
+    return (mirror >> (n <= FEW ? i : i % 3)) & 1;
+}
+
+static double mirrored_energy(nevh_probe *b, size_t at, size_t mirror) {
+    const nevh__samples *s = &b->selection.samples;
+    size_t n = b->field->n;
+    double *q = b->state, *p = q + n, h;
+    for (size_t k = 0; k < n; k++) {
+        bool turn = turns(n, mirror, k);
+        q[k] = turn ? -s->q[at * n + k] : s->q[at * n + k];
+        p[k] = turn ? s->p[at * n + k] : -s->p[at * n + k];
+    }
+    return nevh_field_value(b->field, 1, &s->t[at], q, p, &h) ? NAN : h;
+}
+
+/* "(y, p_x) -> -(y, p_x)", as far as there is room. */
+static void name_mirror(nevh_probe *b, size_t mirror) {
+    enum { SHOWN = 6 };
+    size_t n = b->field->n, used = 0;
+    char names[72] = "", one[NEVH__VARIABLE];
+    for (size_t i = 0; i < n && i < SHOWN && used < sizeof names; i++) {
+        nevh__variable_name(b->field->system, !turns(n, mirror, i), i, one);
+        used += (size_t)snprintf(names + used, sizeof names - used, "%s%s",
+                                 i ? ", " : "", one);
+    }
+    const char *more = n > SHOWN || used >= sizeof names ? ", ..." : "";
+    snprintf(b->mirror, sizeof b->mirror, "(%s%s) -> -(%s%s)", names, more,
+             names, more);
+}
+
+/* The mirror that leaves H most as it is. */
+static void try_mirrors(nevh_probe *b) {
+    nevh_finding best = {.evidence = INFINITY}, *f;
+    size_t chosen = 0;
+    f = &b->finding[NEVH_IS_REVERSIBLE];
+    for (size_t m = 0; m < mirrors(b->field->n) && best.evidence > roundings;
+         m++) {
+        *f = (nevh_finding){0};
+        for (size_t at = 0; at < b->selection.samples.count; at++) {
+            double one = energy(b, at, 1, 0), other = mirrored_energy(b, at, m);
+            violate(b, NEVH_IS_REVERSIBLE, fabs(one - other),
+                    fabs(one) + fabs(other), at);
+        }
+        if (f->evidence < best.evidence) {
+            best = *f;
+            chosen = m;
+        }
+    }
+    *f = best;
+    f->limit = roundings;
+    f->holds = f->evidence <= f->limit;
+    if (f->holds && chosen > 0) {
+        name_mirror(b, chosen);
+        f->term = b->mirror;
+    }
 }
 
 /* Periods of the driving are not known: many spans, none a simple fraction of
@@ -114,6 +182,7 @@ static int ask(nevh_probe *b) {
     }
     for (nevh_question i = 0; i < NEVH_FINDINGS; i++)
         b->finding[i].holds = b->finding[i].evidence <= b->finding[i].limit;
+    try_mirrors(b);
     try_separable(b);
     try_smooth(b);
     if (b->finite)

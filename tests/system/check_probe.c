@@ -25,7 +25,7 @@ static double fast_kinetic(double t, const double q[], const double p[],
 }
 static double one_way(double t, const double q[], const double p[],
                       const void *x) {
-    return plain(t, q, p, x) + 1e-7 * p[0];
+    return plain(t, q, p, x) + 1e-7 * p[0] + 1e-5 * q[0];
 }
 static double kinked(double t, const double q[], const double p[],
                      const void *x) {
@@ -82,6 +82,32 @@ TEST(evidence_can_be_repeated) {
                             f.evidence, 1e-12);
     nevh_probe_free(b);
     nevh_system_free(s);
+}
+
+/* Turned back by a mirror: Hill's problem, a charge in a uniform field; with both
+   coordinates odd none does. */
+static double hill(double t, const double q[], const double p[],
+                   const void *x) {
+    double r = hypot(q[0], q[1]), slip = *(const double *)x;
+    (void)t;
+    return (p[0] * p[0] + p[1] * p[1]) / 2 + q[1] * p[0] - q[0] * p[1] -
+           q[0] * q[0] + q[1] * q[1] / 2 - 1 / r + slip * (q[0] + q[1]);
+}
+
+TEST(mirrors_turn_orbits_back) {
+    static const double q[] = {0.4, 0.3}, p[] = {0.2, 1.1};
+    nevh_options o = {.q = q, .p = p};
+    for (int i = 0; i < 2; i++) {
+        double slip = i * 1e-6;
+        nevh_system *s = nevh_system_from(2, hill, &slip);
+        nevh_probe *b = nevh_probe_new(s, &o);
+        nevh_finding f = nevh_probe_finding(b, NEVH_IS_REVERSIBLE);
+        ck_assert(f.holds == !i);
+        if (!i)
+            ck_assert_str_eq(f.term, "(q[0], p[1]) -> -(q[0], p[1])");
+        nevh_probe_free(b);
+        nevh_system_free(s);
+    }
 }
 
 /* Whatever the units. */

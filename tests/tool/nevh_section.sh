@@ -202,7 +202,7 @@ printf '%s\n' '[coordinates]' 'x = 0' 'y = 0.1' 'p_x = 0.1' '[effects]' \
     'K = (p_x^2 + p_y^2)/2' 'V = (x^2 + y^2)/2 + x^2*y - y^3/3' '[sections]' \
     's = when x = 0, rising: y, p_y' '[run]' 't_end = 20' 'dt = 0.1' >$work/surface.nevh
 exits 0 section $work/surface.nevh --vary 'y = range(-0.2, 0.3, 4)'
-has '^# energies: H = 0\.0050* \.\.\. 0\.0[0-9]+ of the 4 orbits: .*--vary .p_x = solve\(H = '
+has '^# energies: H = 0.* of the 4 orbits: .*solve'
 exits 0 section $work/surface.nevh --vary 'y = range(-0.2, 0.3, 4)' \
     --vary 'p_x = solve(H = 1/12, from 0.3)'
 lacks 'energies:'

@@ -10,8 +10,7 @@ static void tell_finding(const nevh_probe *probe, nevh_question question,
     nevh_finding f = nevh_probe_finding(probe, question);
     list_print(notes, "  %-24s %-3s  %.1e  %.1e%s%s",
                nevh_question_name(question), f.holds ? "yes" : "no", f.evidence,
-               f.limit, f.term && !f.holds ? "  " : "",
-               f.term && !f.holds ? f.term : "");
+               f.limit, f.term ? "  " : "", f.term ? f.term : "");
 }
 
 static void tell_probes(const plan *p, list *notes) {
