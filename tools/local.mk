@@ -62,6 +62,7 @@ tools_nevh_SOURCES = \
 	tools/experiment/stability.c \
 	tools/search/remedy.c \
 	tools/inspect/trial_run.c \
+	tools/inspect/smoothness.c \
 	tools/hard/hard_private.h \
 	tools/hard/hard_cases.c \
 	tools/hard/hard_subject.c \

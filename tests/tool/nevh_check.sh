@@ -113,6 +113,15 @@ exits 0 check $work/huge.nevh
 has '^Highest frequency: omega = 1e\+300 '
 lacks '[^a-z](inf|nan)'
 
+# A kink that differences beside the start do not reach is met by a Taylor series.
+for case in '(x^2)^1.5:no' 'x^2/2 + asin(sin(x)):no' 'sqrt(1 + x^2):yes'; do
+    printf '[coordinates]\nx = 1, 1.5\n[effects]\nT = p_x^2/2\nV = %s\n[run]\nt_end = 10\ndt = 0.1\nintegrators = verlet\n' \
+        "${case%:*}" >$work/kink.nevh
+    exits 0 check $work/kink.nevh
+    has "^  smooth  *${case##*:} "
+    test ${case##*:} = yes || has 'is not analytic there'
+done
+
 # How long the trial run is does not depend on the machine: here each look at the
 # time of computing takes ten seconds.
 . "$srcdir/tests/support/nevh_interrupt.sh"

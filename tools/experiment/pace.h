@@ -36,6 +36,16 @@ void stability_words(const plan *, const row rows[], size_t count, list *words);
    cost  a few seconds an integrator at most, as nevh_counts_seconds */
 void remedy_words(const plan *, const row rows[], size_t count, list *words);
 
+/* smoothness.c: whether H is smooth on the way of its orbit, as far as 5000 series
+   go. */
+typedef enum {
+    SMOOTHNESS_UNKNOWN, /* H has no Taylor series */
+    SMOOTHNESS_NONE,
+    SMOOTHNESS_ALL
+} smoothness;
+/* why  out, of SMOOTHNESS_NONE: where it is not; to be freed */
+smoothness smoothness_on_way(const plan *, char **why);
+
 /* trial_run.c: what a short trial run says of a run. */
 typedef struct {
     double frequency, frequency_at; /* 0: none is known */

@@ -13,6 +13,24 @@ static void tell_finding(const nevh_probe *probe, nevh_question question,
                f.limit, f.term ? "  " : "", f.term ? f.term : "");
 }
 
+/* On the orbit a Taylor series knows better than differences beside it. */
+static void tell_smooth(const plan *p, const nevh_probe *probe, list *notes) {
+    char *why = NULL;
+    smoothness on_way = smoothness_on_way(p, &why);
+    nevh_finding f = nevh_probe_finding(probe, NEVH_IS_SMOOTH);
+    if (on_way == SMOOTHNESS_UNKNOWN || (on_way == SMOOTHNESS_ALL) == f.holds)
+        tell_finding(probe, NEVH_IS_SMOOTH, notes);
+    else
+        list_print(notes,
+                   "  %-24s %-3s  %.1e  %.1e  on the orbit, by a Taylor "
+                   "series",
+                   nevh_question_name(NEVH_IS_SMOOTH), f.holds ? "no" : "yes",
+                   f.evidence, f.limit);
+    if (why)
+        list_print(notes, "  (%s)", why);
+    free(why);
+}
+
 static void tell_probes(const plan *p, list *notes) {
     enum { SHOWN = 8 };
     nevh_options o = plan_options(p, p->gradients.item[0]);
@@ -25,7 +43,10 @@ static void tell_probes(const plan *p, list *notes) {
         list_add(notes, "Properties of H, tested numerically: largest "
                         "deviation, and the deviation that rounding explains");
         for (int i = 0; i < NEVH_FINDINGS; i++)
-            tell_finding(probe, (nevh_question)i, notes);
+            if (i == NEVH_IS_SMOOTH)
+                tell_smooth(p, probe, notes);
+            else
+                tell_finding(probe, (nevh_question)i, notes);
         list_add(notes, "Lengths over which H varies:");
         for (size_t k = 0; k < p->n && k < SHOWN; k++)
             list_print(notes, "  %s: %.2g, p_%s: %.2g",
