@@ -92,6 +92,8 @@ tools_nevh_SOURCES = \
 	tools/ensemble/members.h \
 	tools/ensemble/members.c \
 	tools/inspect/check.c \
+	tools/inspect/conserved.h \
+	tools/inspect/conserved.c \
 	tools/inspect/chaos.c \
 	tools/orbit/section.c \
 	tools/inspect/impact_private.h \

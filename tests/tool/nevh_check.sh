@@ -136,4 +136,29 @@ if can_stop; then
 else
     echo "clocks were not tested: $why"
 fi
+
+# Invariants that are none, at any step; those that are pass, also at 0.
+cat >$work/central.nevh <<'END'
+[coordinates]
+x = 1
+y = 0
+p_y = 0.7
+[effects]
+K = (p_x^2 + p_y^2)/2
+V = -1/sqrt(x^2 + y^2)
+[invariants]
+L = x*p_y - y*p_x
+wrong = x*p_y + y*p_x
+[run]
+t_end = 10
+dt = 0.05
+integrators = verlet
+END
+exits 0 check $work/central.nevh --format csv
+has '^# wrong of \[invariants\] is not conserved: it changes by '
+lacks ' L of|# L '
+exits 0 check $work/central.nevh --start p_y=0.5,y=0.001,x=0.5,p_x=0.001 --format csv
+lacks '# L of'
+exits 0 check kepler --format csv
+lacks 'not conserved'
 exit $status

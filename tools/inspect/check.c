@@ -1,5 +1,6 @@
 /* nevh check: what can be said of a scene before it is run.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "conserved.h"
 #include "experiment/pace.h"
 #include <math.h>
 #include <stdlib.h>
@@ -234,6 +235,7 @@ static int check_plan(const options *o, const plan *p) {
         tell_state(p, &result.before);
         tell_probes(p, &result.before);
         trial_run_words(p, &ahead, &result.before);
+        conserved_words(p, &result.before);
     }
     add_schemes(&(fitting){.plan = p,
                            .ahead = &ahead,

@@ -1,0 +1,87 @@
+/* nevh check: whether what the scene calls invariants is conserved.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "conserved.h"
+#include "experiment/row.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_STEPS = 2000 };
+
+/* Their largest changes on an orbit by dop853; NULL: it fails.  To be freed. */
+static double *changes(const plan *p, double t_end, double tolerance) {
+    plan trial = *p;
+    double *q = tool_allocate(2 * p->n, sizeof *q), *m = q + p->n, stopped;
+    trial.t_end = t_end;
+    trial.tolerance = &tolerance;
+    trial.tolerances = 1;
+    trial.native = NEVH_NATIVE_NEVER;
+    nevh_stepper *s = plan_stepper(&trial, "dop853");
+    invariants *kept = invariants_new(&trial);
+    nevh_observer observer = {invariants_observe, kept, 1};
+    memcpy(q, p->q, p->n * sizeof *q);
+    memcpy(m, p->p, p->n * sizeof *m);
+    bool good = !nevh_stepper_status(s) &&
+                !plan_run(&trial, s, p->dt[0], q, m, &observer, 1, &stopped);
+    double *change = invariants_result(kept);
+    nevh_stepper_free(s);
+    free(q);
+    if (!good) {
+        free(change);
+        change = NULL;
+    }
+    return change;
+}
+
+/* How large they are at states beside the start; out, `count`.  A change that is
+   far below that is rounding. */
+static bool measure(const plan *p, size_t count, double size[]) {
+    nevh_options o = plan_options(p, p->gradients.item[0]);
+    nevh_probe *probe = nevh_probe_new(p->system, &o);
+    double *state = tool_allocate(2 * p->n + count, sizeof *state);
+    double *now = state + 2 * p->n;
+    bool good = !nevh_probe_status(probe);
+    for (int side = 0; good && side < 4; side++) {
+        const double *length = nevh_probe_lengths(probe);
+        for (size_t k = 0; k < 2 * p->n; k++) {
+            double start = k < p->n ? p->q[k] : p->p[k - p->n];
+            double sign = (side + k) % 2 ? 1 : -0.5;
+            state[k] = start + (side ? sign * length[k] : 0) / 4;
+        }
+        if (nevh_scene_shown_values(p->scene, NEVH_INVARIANTS, p->run->t_start,
+                                    state, state + p->n, now))
+            continue;
+        for (size_t i = 0; i < count; i++)
+            size[i] = isfinite(now[i]) ? fmax(size[i], fabs(now[i])) : size[i];
+    }
+    nevh_probe_free(probe);
+    free(state);
+    return good;
+}
+
+void conserved_words(const plan *p, list *notes) {
+    static const double coarse = 1e-7, fine = 1e-11, rounding = 1e-9;
+    size_t count = nevh_scene_shown_count(p->scene, NEVH_INVARIANTS);
+    double most = p->run->t_start + MOST_STEPS * p->dt[0];
+    double t_end = fmin(p->t_end, most);
+    const char *unit = nevh_scene_label(p->scene, "t");
+    if (!count)
+        return;
+    double *size = tool_allocate(count, sizeof *size);
+    double *one = changes(p, t_end, coarse), *two = changes(p, t_end, fine);
+    bool known = one && two && measure(p, count, size);
+    for (size_t i = 0; known && i < count; i++)
+        if (two[i] > 0.5 * one[i] && two[i] > rounding * size[i])
+            list_print(notes,
+                       "%s of [invariants] is not conserved: it changes by "
+                       "%.3g until t = %.4g%s%s, and by %.3g where errors of "
+                       "steps are 10000 times smaller.",
+                       nevh_scene_shown_name(p->scene, NEVH_INVARIANTS, i),
+                       one[i], t_end, *unit ? " " : "", unit, two[i]);
+    if (!known)
+        list_add(notes, "[invariants] were not checked: dop853 does not follow "
+                        "this orbit.");
+    free(size);
+    free(one);
+    free(two);
+}

@@ -1,0 +1,12 @@
+/* nevh check: whether invariants are conserved.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef NEVH_CONSERVED_H
+#define NEVH_CONSERVED_H
+
+#include "experiment/plan.h"
+
+/* Those of the scene that are not, on the orbit of a high order at two tolerances,
+   over at most 2000 dt. */
+void conserved_words(const plan *, list *notes);
+
+#endif
