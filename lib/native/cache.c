@@ -36,6 +36,23 @@ static void make_folders(char *path) {
     mkdir(path, 0700);
 }
 
+/* Whether others may put another folder in the place of one on the way.  Where the
+   sticky bit is set they may not. */
+static bool may_be_replaced(const char *folder) {
+    char *path = nevh__text("%s", folder);
+    bool open = !path;
+    for (char *slash = path; !open && (slash = strrchr(path, '/'));) {
+        struct stat found;
+        slash[slash == path] = '\0';
+        open = stat(path, &found) == 0 && (found.st_mode & S_IWOTH) &&
+               !(found.st_mode & S_ISVTX);
+        if (slash == path)
+            break;
+    }
+    free(path);
+    return open;
+}
+
 char *nevh__cache_folder(const char *given, char why[NEVH__WHY_NATIVE]) {
     struct stat found;
     char *folder = given ? nevh__text("%s", given) : usual_folder();
@@ -54,6 +71,8 @@ char *nevh__cache_folder(const char *given, char why[NEVH__WHY_NATIVE]) {
         wrong = "is another user's";
     else if (found.st_mode & 022)
         wrong = "may be written to by others";
+    else if (may_be_replaced(folder))
+        wrong = "stands in a folder that others may write to";
     if (!wrong)
         return folder;
     snprintf(why, NEVH__WHY_NATIVE, "%.300s %s", folder, wrong);
@@ -68,6 +87,13 @@ static uint64_t digest(const char *bytes, size_t count) {
         sum ^= sum >> 29;
     }
     return sum;
+}
+
+/* What is loaded must be this user's, and written by nobody else. */
+static bool is_own(const char *path) {
+    struct stat file;
+    return lstat(path, &file) == 0 && S_ISREG(file.st_mode) &&
+           file.st_uid == geteuid() && !(file.st_mode & 022);
 }
 
 /* To be freed; NULL: it cannot be read, or is too large. */
@@ -92,7 +118,7 @@ static char *read_file(const char *path, size_t *count) {
 bool nevh__cache_is_whole(const char *path) {
     size_t count;
     uint64_t end;
-    char *bytes = read_file(path, &count);
+    char *bytes = is_own(path) ? read_file(path, &count) : NULL;
     bool whole = bytes && count > sizeof end;
     if (whole) {
         memcpy(&end, bytes + count - sizeof end, sizeof end);

@@ -137,6 +137,16 @@ TEST(cache_is_refused) {
     ck_assert(is_native(scene, cache));
     ck_assert_int_eq(rmdir(cache), 0); /* it is empty */
     ck_assert_int_eq(mkdir(cache, 0700), 0);
+    snprintf(inside, sizeof inside, "%s/open", cache);
+    ck_assert_int_eq(mkdir(inside, 0777), 0);
+    ck_assert_int_eq(chmod(inside, 0777), 0);
+    snprintf(inside, sizeof inside, "%s/open/nevh", cache);
+    ck_assert_int_eq(mkdir(inside, 0700), 0);
+    ck_assert_ptr_null(nevh__cache_folder(inside, why));
+    assert_says(why, "in a folder that others may write to");
+    ck_assert_int_eq(rmdir(inside), 0);
+    snprintf(inside, sizeof inside, "%s/open", cache);
+    ck_assert_int_eq(rmdir(inside), 0);
     snprintf(inside, sizeof inside, "%s/link", cache);
     ck_assert_int_eq(symlink("/tmp", inside), 0);
     ck_assert_ptr_null(nevh__cache_folder(inside, why));
