@@ -87,12 +87,13 @@ bench-recommend: tools/nevh$(EXEEXT)
 	  ./tools/nevh$(EXEEXT) >bench/results-answers.csv; \
 	  tail -n 4 bench/results-answers.csv
 
-# Wrong rows are listed in bench/wrong-verdicts, long runs kept in
-# bench/long-runs, to be removed where schemes changed.
+# Wrong and undecided rows are listed in bench/wrong-verdicts, long runs kept in
+# bench/long-runs, to be removed where schemes changed.  LISTS= takes others.
 SHARE = 0.35
+LISTS = $(srcdir)/bench/orbits/list $(srcdir)/bench/textbook/list
 bench-verdicts: bench/verdicts$(EXEEXT)
 	./bench/verdicts$(EXEEXT) -s $(SHARE) -o bench/wrong-verdicts \
-	  $(srcdir) bench/long-runs
+	  -r bench/long-runs $(srcdir) $(LISTS)
 
 # Two threads, and two ranks, against one.
 bench-speedup: all
@@ -116,7 +117,7 @@ bench-lanes: all
 	NEVH_SCENES=$(srcdir)/scenes $(SHELL) $(srcdir)/bench/lanes.sh \
 	  ./tools/nevh$(EXEEXT)
 
-EXTRA_DIST += bench/ensembles.py bench/promises.py bench/certain.py bench/lanes.sh bench/speedup.sh bench/recommend.sh bench/answers.sh bench/integrable.sh bench/orbits
+EXTRA_DIST += bench/ensembles.py bench/promises.py bench/certain.py bench/lanes.sh bench/speedup.sh bench/recommend.sh bench/answers.sh bench/integrable.sh bench/orbits bench/textbook
 CLEANFILES += bench/results-answers.csv bench/verdicts$(EXEEXT) bench/wrong-verdicts
 DISTCLEANFILES = bench/long-runs
 .PHONY: bench bench-brouwer bench-certain bench-ensembles bench-fit bench-counts bench-lanes bench-peers bench-recommend bench-speedup \

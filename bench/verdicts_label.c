@@ -138,12 +138,13 @@ static label of_run(const long_run *r, const long_run *own, group g) {
     return g == RUNGE_KUTTA ? of_runge_kutta(&s) : of_symplectic(&s);
 }
 
-group group_of(const nevh_integrator *scheme) {
+group group_of(const subject *s) {
+    const nevh_integrator *scheme = s->scheme;
     nevh_claim claim = nevh_integrator_symplectic(scheme);
     if (nevh_integrator_preserves_energy(scheme) == NEVH_YES)
-        return KEEPING;
+        return s->plan->balance ? DRIVEN : KEEPING;
     if (claim == NEVH_YES || claim == NEVH_EXTENDED)
-        return SYMPLECTIC;
+        return s->plan->balance ? DRIVEN : SYMPLECTIC;
     return claim == NEVH_NO && nevh_integrator_symmetric(scheme) == NEVH_NO
                ? RUNGE_KUTTA
                : OTHER;
@@ -182,8 +183,25 @@ static bool is_long_enough(const truth *known, const subject *s) {
            s->plan->balance;
 }
 
+/* Relative to the largest energies met so far, what grows with its motion is
+   level, as far as the run goes. */
+static bool is_carried(const long_run *r) {
+    static const double grown = 100;
+    size_t all = (size_t)(WINDOWS * fmin(1, r->reached / r->spans));
+    double met = r->window[0].met, first = 0, last = 0;
+    for (size_t i = 0; i < all; i++) {
+        met = fmax(met, r->window[i].met);
+        double error = largest(r, i, i + 1) / met;
+        if (3 * i < all)
+            first = fmax(first, error);
+        else if (3 * i >= 2 * all)
+            last = fmax(last, error);
+    }
+    return met > grown * r->window[0].met && last <= 2 * first;
+}
+
 truth truth_of(const subject *s, double spans, double work, bool doubted) {
-    group g = group_of(s->scheme);
+    group g = group_of(s);
     const long_run *shortest = long_run_of(s, spans, work);
     truth known = {of_run(shortest, shortest, g), shortest, shortest};
     for (int i = 0; i < 2 && (doubted || !is_certain(known.is, g)); i++) {
@@ -198,6 +216,9 @@ truth truth_of(const subject *s, double spans, double work, bool doubted) {
         known.is = IS_OPEN;
     if (g != RUNGE_KUTTA && grows(known.is) && is_rounding(shortest))
         known.is = IS_ROUNDING;
+    if (g != RUNGE_KUTTA && grows(known.is) && s->plan->balance &&
+        is_carried(known.run))
+        known.is = IS_CARRIED;
     return known;
 }
 
@@ -217,7 +238,7 @@ const char *label_name(label is) {
         [IS_DRIFTING] = "drifts",    [IS_GROWING] = "grows",
         [IS_SPENT] = "spent, level", [IS_SETTLED] = "settled",
         [IS_UNSTABLE] = "unstable",  [WILL_BE_SO] = "later unst.",
-        [IS_OPEN] = "open"};
+        [IS_OPEN] = "open",          [IS_CARRIED] = "with motion"};
     return names[is];
 }
 
@@ -233,6 +254,7 @@ bool is_right(label is, const char *verdict) {
         [IS_SETTLED] = "bounded drifts random-walk",
         [IS_UNSTABLE] = "unstable",
         [WILL_BE_SO] = "drifts random-walk unstable",
-        [IS_OPEN] = "bounded random-walk drifts unstable"};
+        [IS_OPEN] = "bounded random-walk drifts unstable",
+        [IS_CARRIED] = ""};
     return strcmp(verdict, "undecided") == 0 || strstr(right[is], verdict);
 }

@@ -11,6 +11,7 @@
 enum { WINDOWS = 240 };
 typedef struct {
     float least, most, mean;
+    float met; /* the largest sum of |effects| seen, over the scale */
 } window;
 
 typedef struct {
@@ -60,12 +61,14 @@ typedef enum {
     IS_UNSTABLE, /* above the energy itself within the row's run */
     WILL_BE_SO,  /* later */
     IS_OPEN,     /* cannot be told from the longest run */
+    IS_CARRIED,  /* grows as the motion itself does, no faster */
     LABELS
 } label;
 const char *label_name(label);
 
-typedef enum { SYMPLECTIC, KEEPING, RUNGE_KUTTA, OTHER, GROUPS } group;
-group group_of(const nevh_integrator *);
+/* DRIVEN: of the first two, where H reads t or there is friction. */
+typedef enum { SYMPLECTIC, KEEPING, DRIVEN, RUNGE_KUTTA, OTHER, GROUPS } group;
+group group_of(const subject *);
 
 typedef struct {
     label is;

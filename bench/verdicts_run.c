@@ -62,7 +62,7 @@ typedef struct {
 } trial;
 
 /* What rounding of H and of the state makes of the energy. */
-static void probe_noise(trial *f, double t) {
+static void probe_noise(trial *f, double t, size_t place) {
     size_t n = f->of->plan->n,
            effects = nevh_system_effect_count(f->of->plan->system);
     double sum = 0;
@@ -71,6 +71,8 @@ static void probe_noise(trial *f, double t) {
         return;
     for (size_t i = 0; i < effects; i++)
         sum += fabs(f->effects[i]);
+    window *w = &f->run->window[place];
+    w->met = fmaxf(w->met, (float)(sum / f->scale));
     for (size_t k = 0; k < n; k++)
         sum += fabs(f->q[k] * f->dq[k]) + fabs(f->p[k] * f->dp[k]);
     f->run->noise = fmax(f->run->noise, DBL_EPSILON * sum / f->scale);
@@ -104,7 +106,7 @@ static void find_scale(trial *f) {
 static void add(long_run *r, size_t i, double e, size_t samples) {
     window *w = &r->window[i];
     if (samples == 0)
-        *w = (window){(float)e, (float)e, 0};
+        *w = (window){(float)e, (float)e, 0, w->met};
     w->least = fminf(w->least, (float)e);
     w->most = fmaxf(w->most, (float)e);
     w->mean += ((float)e - w->mean) / (float)(samples + 1);
@@ -131,7 +133,7 @@ static void integrate(trial *f, double work) {
     for (size_t i = 0; i < all; i++) {
         double t = start + (double)i * s->dt, next = t + s->dt;
         if (i % every == 0)
-            probe_noise(f, t);
+            probe_noise(f, t, i * WINDOWS / all);
         if (i == 0 ||
             (i % (every * PROBES * (WINDOWS / 8)) == 0 && s->plan->n < 100))
             probe_wandering(f, t);

@@ -119,14 +119,14 @@ class _Energy(c.Structure):
         "last_fifth").split()] + [("verdict", c.c_int), ("theory", c.c_int)] +
         [(name, c.c_double) for name in "span limit met rounding gradient".split()] +
         [("rate", c.c_double * 3), ("early", c.c_double), ("least", c.c_double),
-         ("gone", c.c_bool)])
+         ("gone", c.c_bool), ("grown", c.c_double), ("relative", c.c_double * 2)])
 
 
 class _JudgedRun(c.Structure):
     _fields_ = [("t", c.c_double), ("h", c.c_double), ("t_end", c.c_double),
                 ("q", c.c_void_p), ("p", c.c_void_p), ("stop", c.POINTER(_Observer)),
                 ("stops", c.c_size_t), ("seconds", c.c_double),
-                ("allowed", c.c_double)]
+                ("allowed", c.c_double), ("regular", c.c_bool)]
 
 
 class _Counts(c.Structure):

@@ -292,7 +292,7 @@ check-slow:
 	NEVH_SCENES='$(srcdir)/scenes' tools/nevh hard --quiet
 	srcdir=$(srcdir) $(SHELL) $(srcdir)/tests/robust/long_sweeps.sh
 	$(MAKE) $(AM_MAKEFLAGS) bench/verdicts$(EXEEXT)
-	bench/verdicts$(EXEEXT) -s 0.1 -w 0.1 $(srcdir)
+	bench/verdicts$(EXEEXT) -s 0.1 -w 0.1 $(srcdir) $(LISTS)
 	$(MAKE) $(AM_MAKEFLAGS) fuzz FUZZ_SECONDS=60
 
 # With clang; 77 is for what cannot be run here.

@@ -44,7 +44,7 @@ tools_nevh_SOURCES = \
 	tools/search/gradients_along.c \
 	tools/search/gradients_plot.c \
 	tools/compare/compare.c \
-	tools/compare/verdict.c \
+	tools/compare/verdict.c tools/compare/verdict_longer.c tools/compare/verdict_private.h \
 	tools/experiment/state.c \
 	tools/experiment/observable.c \
 	tools/experiment/energies.c \

@@ -55,7 +55,7 @@ NEVH_API int nevh_energy_observe(void *energy, size_t step, double t,
 NEVH_API int nevh_energy_expect(nevh_energy *, const nevh_stepper *stepper);
 
 typedef enum {
-    NEVH_BOUNDED,     /* does not grow, however large it is */
+    NEVH_BOUNDED,     /* level over the run, however large it is */
     NEVH_RANDOM_WALK, /* grows, but not along a line: rounding, or chaos */
     NEVH_DRIFTS,      /* its mean moves steadily, far above its uncertainty */
     NEVH_UNSTABLE,    /* above all energies at the start, and grows or stays */
@@ -109,17 +109,23 @@ typedef struct {
     double least;    /* smallest |error| in the last fifth */
     bool gone;       /* no error of the last fifth comes near one of the first
                         fifth */
+    double grown;    /* energies met by the end, over those met by the end of
+                        the first fifth */
+    double relative[2]; /* largest |error| in the first and in the last fifth,
+                           over the energies met by then */
 } nevh_energy_report;
 
 /* The verdict on a run, from the report on it, or on a run of the same steps
    that is `times` as long and begins alike; INFINITY: there will be none that
    is longer.
 
+   OPEN where the energies met grow a hundredfold, and the error no faster
+                 than they: UNDECIDED, for it grows with the motion
    max > limit   UNSTABLE for theory LOSES, or beyond all measure; else, once
-                 times >= 16, where the error grows, or stays above through the
-                 last fifth; else BOUNDED
+                 times >= 16, BOUNDED where the error comes back and is level,
+                 else UNSTABLE
    max at rounding: BOUNDED, or where it grows RANDOM_WALK, once times >= 16;
-                 never DRIFTS
+                 never DRIFTS; of LOSES UNDECIDED, for the drift is hidden
    LOSES         DRIFTS where the slope is above four times its error, or the
                  error never comes back
    KEEPS, OPEN   BOUNDED where the last fifth is at most twice the first, or,
@@ -129,7 +135,8 @@ typedef struct {
                  bring), RANDOM_WALK where growth is slower and lasts
    NONE          BOUNDED as for OPEN, DRIFTS along a line, else RANDOM_WALK, of
                  the run as it is
-   UNDECIDED     otherwise: a longer run may tell; also before the first step
+   UNDECIDED     otherwise: a longer run may tell; also before the first step,
+                 and of a report without samples
 
    Thread-safe. */
 NEVH_API nevh_verdict nevh_energy_verdict(const nevh_energy_report *,
@@ -153,22 +160,25 @@ typedef struct {
     size_t stops;              /* how many of them */
     double seconds;            /* nevh_counts_seconds of the run */
     double allowed;            /* of the longer run; 0: 8 */
+    bool regular; /* neighbours of the orbit are known not to part, and H does
+                     not read t: an error that is level stays so */
 } nevh_judged_run;
 
 /* Where the verdict on a run is UNDECIDED, that of a longer one: from the start
    again, to 2, 4 ... 32 lengths, until the verdict is another one or the seconds
-   allowed are spent.  What is then still open is judged by as much as was seen,
-   as are runs that are too long to be followed to 4 lengths, and those whose
-   energies grow, of H that depends on time, to more than 4 times what the run
-   itself met.  UNSTABLE of a longer run says nothing of a run whose errors are
-   below 1 % of the limit: that stays UNDECIDED.
+   allowed are spent.  BOUNDED is confirmed in the same way: by as many lengths
+   as take a tenth of a second, up to 128, and where neighbours may part by 4 that
+   take a second.  What is then still open is judged by as much as was seen, as are runs
+   that are too long to be followed to 4 lengths.  UNSTABLE of a longer run says
+   nothing of a run whose errors are below 1 % of the limit, or, of H that
+   depends on time, of one that met a quarter of its energies: UNDECIDED.
    stepper  as it took the run, of width 1; begins afresh
    energy   as of the run (nevh_energy_expect, nevh_energy_follow), but new
    report   in and out: nevh_energy_result of the run; of the longer one, whose
             span is longer, where there was one
    returns  NEVH_OK, also where the longer run failed; NEVH_ENOMEM
-   cost     nothing where the verdict is known; else a run, mostly of 4 to 16
-            lengths */
+   cost     nothing where the verdict is another one; else a run, mostly of 4 to
+            16 lengths */
 NEVH_API int nevh_verdict_settle(nevh_stepper *, nevh_energy *,
                                  const nevh_judged_run *,
                                  nevh_energy_report *report);
@@ -176,7 +186,7 @@ NEVH_API int nevh_verdict_settle(nevh_stepper *, nevh_energy *,
 /* The last error of a lane, as `final` of the report, but at no cost. */
 NEVH_API double nevh_energy_error(const nevh_energy *, size_t lane);
 
-/* lane < width.  All zeros before the first observation. */
+/* lane < width.  All zeros, and UNDECIDED, before the first observation. */
 NEVH_API nevh_energy_report nevh_energy_result(const nevh_energy *,
                                                size_t lane);
 

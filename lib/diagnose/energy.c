@@ -297,8 +297,9 @@ static int add_error(nevh_energy *e, size_t lane, double t) {
                           "the balance of the energy is not finite at t = "
                           "%.9g: %s does not account for whole steps",
                           t, e->followed->work.integrator->name);
-    nevh__trend_add(&e->trend[lane], t,
-                    (e->h[lane] - e->initial[lane] - came) / e->scale[lane]);
+    double error = (e->h[lane] - e->initial[lane] - came) / e->scale[lane];
+    nevh__trend_add(&e->trend[lane], t, error,
+                    e->largest[lane] / e->scale[lane]);
     return NEVH_OK;
 }
 
@@ -377,7 +378,7 @@ static double rounding_of(const nevh_energy *e, size_t lane) {
 }
 
 nevh_energy_report nevh_energy_result(const nevh_energy *e, size_t lane) {
-    nevh_energy_report report = {0};
+    nevh_energy_report report = {.verdict = NEVH_UNDECIDED};
     if (!e || !e->begun || lane >= e->width)
         return report;
     report.initial = e->initial[lane];

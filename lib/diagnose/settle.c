@@ -11,6 +11,10 @@ static const double most = 32, least = 4;
 /* Seconds that the longer run may take: a run that leaves no room for the least
    is long as it is. */
 static const double usual = 8;
+/* Seconds that nobody minds for a verdict to be confirmed, and lengths. */
+static const double cheap = 0.1, confirmed = 128;
+/* Those that what is open is worth beyond that. */
+static const double quick = 1, open = 512;
 
 /* Of the energies that the run itself met: what is driven has left its orbit. */
 static const double grown = 4;
@@ -45,10 +49,57 @@ double nevh_counts_seconds(const nevh_counts *c, size_t dof,
 typedef struct {
     nevh_energy *energy;
     double start, span, times; /* at so many lengths the verdict is asked for */
-    double most_met;           /* energies above are those of another motion */
-    bool departs;              /* such were met */
+    double enough; /* lengths that a verdict takes, unless it is UNSTABLE */
+    double own;    /* the largest error of the run itself */
+    bool decided;
+    double most_met; /* energies above are those of another motion */
+    bool departs;    /* such were met */
     nevh_energy_report report;
 } longer_run;
+
+/* That the error is level over so many lengths: a random walk would be above
+   that many times the run's own error by now, half of the time at least.  Or the
+   longer run explored more, and is level since. */
+static bool is_confirmed(const longer_run *l, double times) {
+    static const double slow = 2.5, level = 1.3, few = 16, many = 256;
+    const nevh_energy_report *r = &l->report;
+    bool ended = r->theory == NEVH_THEORY_KEEPS && r->rate[0] < level - 1 &&
+                 r->last_fifth <= level * r->first_fifth;
+    return r->max <= r->rounding || r->max > r->limit ||
+           r->max <= l->own * fmax(2, sqrt(times) / slow) ||
+           (r->max <= level * r->early && times >= few) ||
+           (ended && times >= many);
+}
+
+/* Growth has ended, in so many lengths, of an error that theory keeps. */
+static bool has_ended(const nevh_energy_report *r, double times) {
+    static const double none = 0.1, slow = 0.75, few = 16;
+    return r->theory == NEVH_THEORY_KEEPS && r->rate[0] < none &&
+           r->rate[1] < slow && times >= few;
+}
+
+/* By as much as was seen, where there will be no more. */
+static nevh_verdict judge_last(const longer_run *l, double times) {
+    const nevh_energy_report *r = &l->report;
+    nevh_verdict verdict = nevh_energy_verdict(r, INFINITY);
+    bool keeps = r->theory == NEVH_THEORY_KEEPS && r->max <= r->limit;
+    bool level = is_confirmed(l, times) || has_ended(r, times);
+    if (verdict == NEVH_BOUNDED && !level)
+        return NEVH_UNDECIDED;
+    return verdict == NEVH_UNDECIDED && keeps && level ? NEVH_BOUNDED : verdict;
+}
+
+/* Of a driven run that is left undecided because its motion grows when it is
+   continued: a line of its own. */
+static nevh_verdict judge_own(const nevh_energy_report *own,
+                              const nevh_energy_report *longer) {
+    static const double straight = 0.95;
+    bool line = own->theory == NEVH_THEORY_OPEN &&
+                longer->met > grown * own->met &&
+                own->straightness > straight &&
+                nevh_energy_verdict(own, INFINITY) == NEVH_DRIFTS;
+    return line ? NEVH_DRIFTS : NEVH_UNDECIDED;
+}
 
 static int ask(void *data, size_t step, double t, const double q[],
                const double p[]) {
@@ -57,18 +108,34 @@ static int ask(void *data, size_t step, double t, const double q[],
     if (status || fabs(t - l->start) < l->times * fabs(l->span) * (1 - 1e-9))
         return status;
     l->report = nevh_energy_result(l->energy, 0);
-    l->departs = l->report.met > l->most_met;
-    if (l->departs)
-        return NEVH_STOPPED;
     l->report.verdict = nevh_energy_verdict(&l->report, l->times);
+    nevh_verdict now = l->report.verdict;
+    bool early = now != NEVH_UNSTABLE && l->times < l->enough * (1 - 1e-9);
+    early = early || now == NEVH_RANDOM_WALK ||
+            (now == NEVH_BOUNDED && !is_confirmed(l, l->times));
     l->times *= 2;
-    return l->report.verdict == NEVH_UNDECIDED ? NEVH_OK : NEVH_STOPPED;
+    l->decided = !early && now != NEVH_UNDECIDED;
+    return l->decided ? NEVH_STOPPED : NEVH_OK;
+}
+
+/* A power of 2. */
+static double lengths_in(double seconds, const nevh_judged_run *r,
+                         double most_lengths) {
+    double times = r->seconds > 0 ? fmin(most_lengths, seconds / r->seconds)
+                                  : most_lengths;
+    return times < least ? 1 : exp2(floor(log2(times)));
 }
 
 static double lengths(const nevh_judged_run *r) {
     double allowed = r->allowed > 0 ? r->allowed : usual;
-    double times = r->seconds > 0 ? fmin(most, allowed / r->seconds) : most;
-    return times < least ? 1 : exp2(floor(log2(times)));
+    return fmax(lengths_in(allowed, r, most),
+                lengths_in(fmin(allowed, quick), r, open));
+}
+
+/* That an error which is level over the run is asked for. */
+static double confirming(const nevh_judged_run *r) {
+    double enough = lengths_in(cheap, r, confirmed);
+    return r->regular ? enough : fmax(enough, lengths_in(quick, r, least));
 }
 
 /* From the start, since the orbit is the same again. */
@@ -97,43 +164,49 @@ static int run(const nevh_judged_run *r, nevh_stepper *s, longer_run *l,
 /* What is left open is judged by as much as was seen: there is no more. */
 static void end(longer_run *l, int status) {
     nevh_energy_report *r = &l->report;
-    if (r->verdict != NEVH_UNDECIDED)
+    if (l->decided)
         return;
     *r = nevh_energy_result(l->energy, 0);
     bool failed = status != NEVH_OK && status != NEVH_STOPPED;
-    if (failed && !(r->max <= r->limit))
+    if (failed && !(r->max <= fmax(r->limit, r->rounding)))
         r->verdict = NEVH_UNSTABLE;
     else
-        r->verdict = nevh_energy_verdict(r, INFINITY);
+        r->verdict = judge_last(l, r->span / fabs(l->span));
 }
 
 int nevh_verdict_settle(nevh_stepper *s, nevh_energy *energy,
                         const nevh_judged_run *r, nevh_energy_report *report) {
-    double times = lengths(r);
-    if (report->verdict != NEVH_UNDECIDED)
+    bool level = report->verdict == NEVH_BOUNDED;
+    double enough = confirming(r);
+    double times = fmax(enough, lengths(r));
+    if (level ? enough < least : report->verdict != NEVH_UNDECIDED)
         return NEVH_OK;
     if (times < least) {
         report->verdict = nevh_energy_verdict(report, INFINITY);
         return NEVH_OK;
     }
-    bool driven = report->theory == NEVH_THEORY_OPEN;
     longer_run l = {.energy = energy,
-                    .most_met = driven ? grown * report->met : INFINITY,
                     .start = r->t,
                     .span = r->t_end - r->t,
                     .times = 2,
+                    .enough = enough,
+                    .own = report->max,
                     .report.verdict = NEVH_UNDECIDED};
     int status = run(r, s, &l, times);
     if (status == NEVH_ENOMEM)
         return status;
-    if (l.departs) {
-        report->verdict = nevh_energy_verdict(report, INFINITY);
-        return NEVH_OK;
-    }
     end(&l, status);
     bool small = report->max <= much_smaller * report->limit;
+    bool beyond = !(report->max <= fmax(report->limit, report->rounding));
+    bool driven = report->theory == NEVH_THEORY_OPEN && !beyond &&
+                  l.report.met > grown * report->met;
+    nevh_verdict line = judge_own(report, &l.report);
     *report = l.report;
-    if (small && report->verdict == NEVH_UNSTABLE)
+    if (report->verdict == NEVH_UNDECIDED)
+        report->verdict = line;
+    if (beyond && report->verdict != NEVH_BOUNDED)
+        report->verdict = NEVH_UNSTABLE;
+    if ((small || driven) && report->verdict == NEVH_UNSTABLE)
         report->verdict = NEVH_UNDECIDED;
     return NEVH_OK;
 }

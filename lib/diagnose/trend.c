@@ -15,13 +15,14 @@ static void merge_neighbours(nevh__trend *s) {
                                 fmin(a->lowest, b->lowest),
                                 fmax(a->highest, b->highest),
                                 fmin(a->least, b->least),
+                                fmax(a->met, b->met),
                                 a->samples + b->samples};
     }
     s->bins = NEVH__BINS / 2;
     s->per_bin *= 2;
 }
 
-static void add_to_bin(nevh__trend *s, double t, double e) {
+static void add_to_bin(nevh__trend *s, double t, double e, double met) {
     if (s->bins == 0)
         s->per_bin = 1;
     if (s->bins == 0 || s->bin[s->bins - 1].samples == s->per_bin) {
@@ -37,9 +38,10 @@ static void add_to_bin(nevh__trend *s, double t, double e) {
     bin->lowest = fmin(bin->lowest, e);
     bin->highest = fmax(bin->highest, e);
     bin->least = fmin(bin->least, fabs(e));
+    bin->met = fmax(bin->met, met);
 }
 
-void nevh__trend_add(nevh__trend *s, double t, double e) {
+void nevh__trend_add(nevh__trend *s, double t, double e, double met) {
     if (s->samples++ == 0)
         s->first_t = t;
     s->last_t = t;
@@ -51,7 +53,7 @@ void nevh__trend_add(nevh__trend *s, double t, double e) {
     s->squares += e * e;
     s->most = fmax(s->most, fabs(e));
     s->last = e;
-    add_to_bin(s, t, e);
+    add_to_bin(s, t, e, met);
 }
 
 /* Of some bins together. */
@@ -68,6 +70,15 @@ static nevh__bin join(const nevh__trend *s, size_t from, size_t to) {
 static double largest(const nevh__trend *s, size_t from, size_t to) {
     nevh__bin all = join(s, from, to);
     return fmax(fabs(all.lowest), fabs(all.highest));
+}
+
+/* |error| over the energies met by then. */
+static double largest_relative(const nevh__trend *s, size_t from, size_t to) {
+    double most = 0;
+    for (size_t i = from; i < to; i++)
+        if (s->bin[i].met > 0)
+            most = fmax(most, largest(s, i, i + 1) / s->bin[i].met);
+    return most;
 }
 
 /* The means of bins about the line.  Means of bins average out what oscillates
@@ -153,4 +164,8 @@ void nevh__trend_report(const nevh__trend *s, nevh_energy_report *r) {
     r->span = fabs(s->last_t - s->first_t);
     r->least = last.least;
     r->gone = is_gone(&first, &last);
+    double met = s->bin[fifth - 1].met;
+    r->grown = met > 0 ? s->bin[s->bins - 1].met / met : 1;
+    r->relative[0] = largest_relative(s, 0, fifth);
+    r->relative[1] = largest_relative(s, s->bins - fifth, s->bins);
 }

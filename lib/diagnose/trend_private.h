@@ -14,6 +14,7 @@ typedef struct {
     double t, e;            /* sums of time and error */
     double lowest, highest; /* errors */
     double least;           /* |error| */
+    double met;             /* energies, up to its end */
     size_t samples;
 } nevh__bin;
 
@@ -24,9 +25,10 @@ typedef struct {
     nevh__bin bin[NEVH__BINS];
 } nevh__trend;
 
-void nevh__trend_add(nevh__trend *, double t, double e);
-/* What the report says of the series, from samples to straightness, rate, least
-   and gone. */
+/* met  the largest energies so far, in units of the errors' scale */
+void nevh__trend_add(nevh__trend *, double t, double e, double met);
+/* What the report says of the series, from samples to straightness, rate, least,
+   gone, grown and relative. */
 void nevh__trend_report(const nevh__trend *, nevh_energy_report *);
 
 #endif

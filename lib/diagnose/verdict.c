@@ -8,6 +8,7 @@ static const double growth_allowed = 2;  /* of the last fifth to the first */
 static const double significant = 4;     /* of a slope, its own errors */
 static const double nearly_ended = 0.3;  /* a power of t */
 static const double along_a_line = 0.75; /* likewise */
+static const double no_walk = 2;         /* likewise: faster than a drift */
 static const double lasting =
     0.3; /* of the largest error: is never made good */
 /* Of the limit: above, steps may not resolve the orbit. */
@@ -38,6 +39,15 @@ static bool is_flat(const nevh_energy_report *r, double allowed) {
            (saturates && r->last_fifth <= allowed * r->first_fifth);
 }
 
+/* A drive makes the motion grow, and the error with it. */
+static bool is_carried(const nevh_energy_report *r) {
+    static const double much = 100, small = 0.5;
+    double before = r->relative[0], after = r->relative[1];
+    return r->theory == NEVH_THEORY_OPEN && r->grown > much &&
+           r->last_fifth > sqrt(r->grown) * r->first_fifth &&
+           after <= fmin(growth_allowed * before, small);
+}
+
 /* An error that large comes back where the orbit is still of use. */
 static nevh_verdict judge_large(const nevh_energy_report *r, double times) {
     static const double hopeless = 1e6, much = 10;
@@ -47,16 +57,16 @@ static nevh_verdict judge_large(const nevh_energy_report *r, double times) {
         return NEVH_UNSTABLE;
     if (times < (huge ? 2 * lasted : lasted))
         return NEVH_UNDECIDED;
-    if (returns && (huge ? r->max <= 1.05 * r->early : is_flat(r, 1.25)))
-        return NEVH_BOUNDED;
-    return returns && is_flat(r, 1.25) ? NEVH_UNDECIDED : NEVH_UNSTABLE;
+    bool level = huge ? r->max <= 1.05 * r->early : is_flat(r, 1.25);
+    return returns && level ? NEVH_BOUNDED : NEVH_UNSTABLE;
 }
 
 static nevh_verdict judge_rounding(const nevh_energy_report *r, double times) {
-    bool loses = r->theory == NEVH_THEORY_LOSES && is_line(r);
-    if (is_level(r) && !loses)
+    if (r->theory == NEVH_THEORY_LOSES)
+        return NEVH_UNDECIDED;
+    if (is_level(r))
         return NEVH_BOUNDED;
-    return loses || times < lasted ? NEVH_UNDECIDED : NEVH_RANDOM_WALK;
+    return times < lasted ? NEVH_UNDECIDED : NEVH_RANDOM_WALK;
 }
 
 static nevh_verdict judge_loss(const nevh_energy_report *r) {
@@ -71,6 +81,8 @@ static nevh_verdict judge_growth(const nevh_energy_report *r) {
     bool keeps = r->theory == NEVH_THEORY_KEEPS && r->max > r->gradient;
     bool line = is_line(r) && fmin(r->rate[0], r->rate[1]) > along_a_line;
     if (keeps && (slowest < nearly_ended || fastest > along_a_line))
+        return NEVH_UNDECIDED;
+    if (fastest > no_walk)
         return NEVH_UNDECIDED;
     return line && !noise ? NEVH_DRIFTS : NEVH_RANDOM_WALK;
 }
@@ -90,7 +102,8 @@ static nevh_verdict judge_kept(const nevh_energy_report *r, double times) {
     bool keeps = r->theory == NEVH_THEORY_KEEPS;
     bool line = !keeps && is_line(r);
     bool large = r->max > coarse * r->limit;
-    bool level = large || !keeps ? is_flat(r, large ? 1.25 : growth_allowed)
+    double of_large = times < lasted ? 1.25 : 1.6;
+    bool level = large || !keeps ? is_flat(r, large ? of_large : growth_allowed)
                                  : is_level(r);
     bool ending = !large && keeps && r->rate[0] < nearly_ended;
     if (!line && (level || ending))
@@ -110,7 +123,9 @@ static nevh_verdict judge_alone(const nevh_energy_report *r) {
 nevh_verdict nevh_energy_verdict(const nevh_energy_report *r, double times) {
     if (r->theory == NEVH_THEORY_NONE)
         times = INFINITY;
-    if (r->samples == 1) /* of the start alone */
+    if (r->samples <= 1) /* of the start alone */
+        return NEVH_UNDECIDED;
+    if (is_carried(r))
         return NEVH_UNDECIDED;
     if (r->max <= r->rounding)
         return judge_rounding(r, times);

@@ -95,6 +95,60 @@ TEST(theories) {
     ck_assert_str_eq(nevh_verdict_name(NEVH_UNDECIDED), "undecided");
 }
 
+/* Nothing was seen: nothing is said. */
+TEST(nothing_seen) {
+    nevh_system *s = nevh_system_from(1, coordinate, NULL);
+    nevh_energy *e = nevh_energy_new(s, NULL);
+    nevh_energy_report none = {0};
+    ck_assert_int_eq(nevh_energy_result(e, 0).verdict, NEVH_UNDECIDED);
+    ck_assert_int_eq(nevh_energy_result(NULL, 0).verdict, NEVH_UNDECIDED);
+    ck_assert_int_eq(nevh_energy_verdict(&none, 1), NEVH_UNDECIDED);
+    ck_assert_int_eq(nevh_energy_verdict(&none, INFINITY), NEVH_UNDECIDED);
+    nevh_energy_free(e);
+    nevh_system_free(s);
+}
+
+/* A drift that theory knows of, and that rounding hides, is not kept. */
+TEST(drift_below_rounding) {
+    nevh_energy_report r = report_on(wave, 400);
+    r.rounding = 2 * r.max;
+    ck_assert_int_eq(judge(r, NEVH_THEORY_KEEPS, 1), NEVH_BOUNDED);
+    ck_assert_int_eq(judge(r, NEVH_THEORY_LOSES, 1), NEVH_UNDECIDED);
+    ck_assert_int_eq(judge(r, NEVH_THEORY_LOSES, INFINITY), NEVH_UNDECIDED);
+}
+
+/* Errors that grow as the energies met do, and such that grow by themselves. */
+TEST(growth_of_the_motion) {
+    nevh_energy_report r = {.samples = 1000,
+                            .max = 1e3,
+                            .rms = 1e2,
+                            .first_fifth = 1e-3,
+                            .last_fifth = 1e3,
+                            .limit = 1e5,
+                            .met = 1e6,
+                            .rate = {0.5, 0.5, 0.5},
+                            .early = 1e-3,
+                            .grown = 1e6,
+                            .relative = {1e-3, 1e-3}};
+    ck_assert_int_eq(judge(r, NEVH_THEORY_OPEN, INFINITY), NEVH_UNDECIDED);
+    r.relative[1] = 1e-2;
+    ck_assert_int_eq(judge(r, NEVH_THEORY_OPEN, INFINITY), NEVH_RANDOM_WALK);
+    r.rate[0] = 3; /* faster than any drift */
+    ck_assert_int_eq(judge(r, NEVH_THEORY_OPEN, INFINITY), NEVH_UNDECIDED);
+}
+
+/* An error far above all energies is not left open when no run is longer. */
+TEST(far_above_the_energies) {
+    nevh_energy_report r = {.samples = 1000,
+                            .max = 590,
+                            .first_fifth = 500,
+                            .last_fifth = 590,
+                            .limit = 1,
+                            .early = 500};
+    ck_assert_int_eq(judge(r, NEVH_THEORY_KEEPS, 1), NEVH_UNDECIDED);
+    ck_assert_int_eq(judge(r, NEVH_THEORY_KEEPS, INFINITY), NEVH_UNSTABLE);
+}
+
 static nevh_theory theory_of(const problem *b, const nevh_integrator *scheme) {
     nevh_system *s = b->make();
     nevh_stepper *m = nevh_stepper_new(

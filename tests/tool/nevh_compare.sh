@@ -22,7 +22,7 @@ exits 0 compare pendulum --dt 0.1,0.05 --integrators verlet,gauss4,rk4 \
 has '^state error: largest difference from the exact solution \(Jacobi sn\)'
 has '^ verlet +2 +yes +0\.1 .* > 50 % .*bounded$'
 has '^ gauss4 +4 +yes +0\.05 .* 4e-04 +4\.0 .*bounded$'
-has 'Bounded energy is not an accurate orbit: verlet is out of step'
+has 'Bounded energy does not mean an accurate orbit: the phase of verlet is wrong'
 has 'loses energy steadily.*'
 has 'slope'
 has 'R\^2 = '

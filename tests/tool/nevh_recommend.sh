@@ -29,11 +29,11 @@ exits 0 recommend kepler --energy-error 1e-8 --t-end 2 \
 for t_end in 0.5 2 8; do
     exits 0 cost kepler --t-end $t_end --integrators gauss20,verlet \
         --gradient exact
-    lacks 'keep the energy at any step'
+    lacks 'conserved exactly at any step'
 done
 # Where H is quadratic Gauss's methods do keep it, however long the steps are.
 exits 0 cost oscillator --t-end 10 --integrators gauss4,gauss20,verlet
-has '^gauss4, gauss20: keep the energy at any step'
+has '^gauss4, gauss20: the energy is conserved exactly at any step'
 
 # Where the answers of a shorter run all fail in the whole one, since errors of
 # differences add up in it, others are tried.
@@ -148,7 +148,7 @@ lacks ' $'
 has '^ cheapest .* > 50 %'
 # The run is short for a verdict on steps as long: it was followed further.
 has '^ cheapest .* bounded$'
-has '^The verdict on its energy is from a run [48] times as long'
+has '^The verdict on its energy is from a run [0-9]* times as long'
 has '^The energy of moon is off by 9[0-9] % of its size'
 
 # So it is asked for what matters.  The distance of the Moon is within what was
@@ -205,7 +205,7 @@ exits 1 cost $work/edge.nevh
 has '^ verlet +fails +fails'
 has '^symplectic-euler-a with exact at dt = 0.1 failed: '
 has '^[0-9]+ others fail as well'
-lacks 'keep the energy at any step'
+lacks 'conserved exactly at any step'
 exits 1 recommend $work/edge.nevh --energy-error 1e-6
 says 'no integrator comes to the end: .* failed: .* is -inf at x = 1:'
 # Given steps that fail are explained, too.

@@ -39,9 +39,10 @@ compares fput --integrators midpoint,rk4 --dt 0.78431 --t-end 198
 verdicts midpoint=bounded rk4=drifts
 compares fput-1000 --integrators midpoint --dt 0.23041 --t-end 50
 verdicts midpoint=bounded
+# Of the chaotic one 480 lengths have an error 85 times as large, which grows.
 compares double-pendulum-chaotic --integrators gauss8,rk4 --dt 0.045249 \
     --t-end 60
-verdicts gauss8=bounded rk4=drifts
+verdicts 'gauss8=(random-walk|undecided)' rk4=drifts
 
 # Next to no energy is no measure of the error.
 scene() {
@@ -75,11 +76,12 @@ exits 0 compare $work/away.nevh --integrators gauss4,rk4 --gradient exact
 has '^gauss4 at dt = 0\.1: the error, up to .* times the energy scale, is rounding:'
 lacks 'take a shorter step'
 
-# A drift over the run is no larger than the errors of the run.
-compares $work/driven.nevh --integrators gauss4 --gradient exact
+# A drift over the run is no larger than the errors of the run, whose verdict a
+# longer one gives.
+compares pendulum --integrators rk4 --dt 0.05 --t-end 3
 most=$(grep -v '^[#s]' $work/out | cut -d, -f9)
-exits 0 compare $work/driven.nevh --integrators gauss4 --gradient exact
-awk -v most="$most" '$1 == "gauss4" && $3 == "yes" { found++
+exits 0 compare pendulum --integrators rk4 --dt 0.05 --t-end 3
+awk -v most="$most" '$1 == "rk4" && $3 == "no" { found++
         bad += $6 > 2 * most || $6 < -2 * most }
     END { exit bad || !found }' $work/out || { fails "drifts more than it errs"; cat $work/out; }
 
@@ -98,7 +100,7 @@ exits 0 compare $work/three.nevh --integrators gauss8 --repeat 1
 tr '\n' ' ' <$work/out | tr -s ' ' | grep -Eq \
     'gauss8 at dt = 0\.005: the energy error is at most [0-9.]+e-1[0-2] in the run, but' ||
     { fails "says nothing of the run itself"; cat $work/out; }
-lacks 'is unstable|keeps its error below 1 %'
+lacks 'is unstable|below 1 %'
 
 # A run that breaks off is compared no further than it came, and says so.
 scene 'x = 1' 'K = p_x^2/2\nV = -exp(t)*x^2' 't_end = 10\ndt = 0.1' bursting
@@ -108,6 +110,45 @@ has '^rk4 at dt = 0\.1 has no state error: it broke off after t = [1-9]'
 compares $work/bursting.nevh --integrators rk4
 grep -v '^[#s]' $work/out | cut -d, -f13 | grep -q . &&
     fails "has a state error of a part of the run"
+
+# Level over the run, and not beyond it: an escape over a saddle, chaos with a drive,
+# long steps; a motion that a drive makes grow, and the error with it.
+textbook=${srcdir:-.}/bench/textbook
+compares $textbook/tilted-quartic.nevh --integrators midpoint --dt 0.25 \
+    --t-end 31.5
+verdicts midpoint=undecided
+exits 0 compare $textbook/tilted-quartic.nevh --integrators midpoint --dt 0.25 \
+    --t-end 31.5
+has '^midpoint at dt = 0\.25: the energy error is at most 3\.3e-03 in the run, but'
+compares $textbook/driven-duffing.nevh --integrators gauss8,rkn14a --dt 0.33613 \
+    --t-end 28.57
+verdicts 'gauss8=(undecided|random-walk)'
+compares $textbook/phi-four.nevh --integrators verlet --dt 0.36697 --t-end 500
+verdicts 'verlet=(undecided|unstable)'
+compares $textbook/mathieu-tongue.nevh --integrators rkn11b --dt 1.1429 \
+    --t-end 31
+verdicts rkn11b=undecided
+exits 0 compare $textbook/mathieu-tongue.nevh --integrators rkn11b --dt 1.1429 \
+    --t-end 31
+has '^rkn11b at dt = 1\.143: the energies of the motion grow until t = '
+# And of like orbits those that stay so.
+compares $textbook/mathieu-stable.nevh --integrators verlet,gauss4 --dt 0.1 --t-end 60
+verdicts verlet=bounded gauss4=bounded
+compares $textbook/henon-heiles-edge.nevh --integrators blanes-moan4 --dt 0.1 \
+    --t-end 100
+verdicts blanes-moan4=bounded
+
+# A drift below the noise of differences.
+compares kepler --integrators rk4 --dt 0.002 --t-end 20
+verdicts rk4=undecided
+exits 0 compare kepler --integrators rk4 --dt 0.002 --t-end 20
+has '^rk4 at dt = 0\.002: the error is that of rounding in the gradient'
+compares kepler --integrators rk4 --dt 0.002 --t-end 20 --gradient exact
+verdicts rk4=drifts
+
+# Hundreds of times the energy.
+compares pendulum --integrators verlet --dt 0.6,0.5193 --t-end 190
+test "$(grep -c ',unstable,' $work/out)" = 2 || fails "leaves it open"
 
 # A run of no steps shows nothing.
 scene 'x = 1' 'K = p_x^2/2\nV = x^2/2' 't_end = 10\ndt = 0.1\nstop = x > 0' still
@@ -131,7 +172,7 @@ for scheme in verlet rk4 euler; do
     test $scheme = euler && end=1
     exits 0 compare pendulum --integrators $scheme --dt 0.5 --t-end $end
     dt=$(tr '\n' ' ' <$work/out |
-        sed -n 's/.*below 1 % until t = [0-9]* s with  *dt =  *\([0-9.e-]*\) s.*/\1/p')
+        sed -n 's/.*below 1 % until t = [0-9]* s  *take dt =  *\([0-9.e-]*\)  *s.*/\1/p')
     longer=$(awk "BEGIN { print 1.5 * ${dt:-0} }")
     { test -n "$dt" && error_at $scheme $dt $end && error_at $scheme $longer $end; } \
         >$work/errors || fails "advises no dt"
@@ -145,7 +186,7 @@ tr '\n' ' ' <$work/out | grep -Eq \
     'euler gains energy at every dt, and +would .* only with +dt below about +[5-7]e-07 s' ||
     { fails "has no dt for euler"; cat $work/out; }
 lacks 'stable up to 0\.00'
-has 'omega dt = *$'
+has 'omega dt = '
 lacks 'h w'
 
 # Orders are not read from rounding.
@@ -156,7 +197,7 @@ grep -v '^#' $work/out | tail -n 1 | cut -d, -f19 | grep -q . &&
 
 # What a longer run is needed for is said, and that a short one is followed.
 exits 0 compare pendulum --integrators gauss16 --dt 0.8 --t-end 100
-has '^The run is short for a verdict on gauss16: continued at most'
+has '^100 s is too short to judge gauss16: its verdict is from runs to t = '
 has '^gauss16 keeps the energy bounded'
 exits 0 compare pendulum --integrators rk4 --dt 0.05 --t-end 10
 lacks 'keeps? the energy bounded'
@@ -193,6 +234,6 @@ printf '%s\n' '[coordinates]' 'x = 1' '[effects]' 'kinetic = p_x^2/2' \
     'spring = x^2/2' '[friction]' 'drag = x: 50' '[run]' 'dt = 0.1' 't_end = 100' >$work/drag.nevh
 exits 0 compare $work/drag.nevh --integrators rk4
 tr '\n' ' ' <$work/out | tr -s ' ' |
-    grep -q 'omega dt = 0.1, or dt is too long for a rate of friction' ||
+    grep -q 'omega dt = 0\.1 that is soon large, or dt is too long for a rate of friction' ||
     { fails "blames omega dt"; cat $work/out; }
 exit $status

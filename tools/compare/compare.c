@@ -128,9 +128,7 @@ static void show_numbers(table *t, const plan *p, const row *r) {
     double span = r->t_end - p->run->t_start;
     table_shown(t, "%.1e", r->energy.max);
     if (r->energy.verdict == NEVH_DRIFTS || r->energy.verdict == NEVH_UNSTABLE)
-        table_shown(t, "%+.1e",
-                    (r->followed > 0 ? r->longer.drift : r->energy.drift) *
-                        span);
+        table_shown(t, "%+.1e", r->energy.drift * span);
     else
         table_shown(t, "-");
     state_show(t, p, r);

@@ -1,12 +1,18 @@
 /* nevh compare: the table in words.
    SPDX-License-Identifier: GPL-3.0-or-later */
-#include "experiment/row.h"
+#include "verdict_private.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static bool is(const row *r, nevh_verdict verdict) {
-    return r->ran && r->energy.verdict == verdict;
+/* Its own run is calm: what the longer one does has a sentence of its own. */
+static bool is_later(const row *r) {
+    return r->ran && r->energy.verdict == NEVH_UNSTABLE && r->followed > 0 &&
+           r->energy.max <= r->energy.limit;
+}
+
+bool verdict_is(const row *r, nevh_verdict verdict) {
+    return r->ran && r->energy.verdict == verdict && !is_later(r);
 }
 
 /* Whether all rows of that integrator have the verdict, and this is the first
@@ -15,7 +21,7 @@ static bool always(const row rows[], size_t count, size_t i,
                    nevh_verdict verdict) {
     for (size_t k = 0; k < count; k++)
         if (strcmp(rows[k].integrator, rows[i].integrator) == 0 &&
-            (!is(&rows[k], verdict) || k < i))
+            (!verdict_is(&rows[k], verdict) || k < i))
             return false;
     return true;
 }
@@ -41,7 +47,7 @@ static bool same_place(const row *a, const row *b) {
 /* Whether gradients make different verdicts there. */
 static bool differs(const row rows[], size_t count, const row *r) {
     for (size_t k = 0; k < count; k++)
-        if (same_place(&rows[k], r) && !is(&rows[k], r->energy.verdict))
+        if (same_place(&rows[k], r) && !verdict_is(&rows[k], r->energy.verdict))
             return true;
     return false;
 }
@@ -73,28 +79,33 @@ static char *name_of(const row rows[], size_t count, const row *r) {
 static const row *bounded_beside(const row rows[], size_t count,
                                  const row *drifting) {
     for (size_t i = 0; i < count; i++)
-        if (rows[i].group == drifting->group && is(&rows[i], NEVH_BOUNDED) &&
+        if (rows[i].group == drifting->group &&
+            verdict_is(&rows[i], NEVH_BOUNDED) &&
             nevh_integrator_symplectic(rows[i].scheme) == NEVH_YES)
             return &rows[i];
     return NULL;
 }
 
-/* Numbers of a row that its longer run knows better. */
-static const nevh_energy_report *known(const row *r) {
-    return r->followed > 0 ? &r->longer : &r->energy;
-}
-
-static char *unit_of(const plan *p, const char *before) {
+char *verdict_unit(const plan *p, const char *before) {
     const char *unit = nevh_scene_label(p->scene, "t");
     return text_print("%s%s", *unit ? before : "", unit);
 }
 
 /* What the row was asked for: a step, or a tolerance. */
 static char *step_of(const plan *p, const row *r) {
-    char *unit = unit_of(p, " ");
+    char *unit = verdict_unit(p, " ");
     char *text = r->tolerance > 0 ? text_print("tolerance = %.4g", r->tolerance)
                                   : text_print("dt = %.4g%s", r->dt, unit);
     free(unit);
+    return text;
+}
+
+char *verdict_subject(const plan *p, const row rows[], size_t count,
+                      const row *r) {
+    char *name = name_of(rows, count, r), *place = step_of(p, r);
+    char *text = text_print("%s at %s", name, place);
+    free(name);
+    free(place);
     return text;
 }
 
@@ -105,12 +116,12 @@ static void tell_crossing(const plan *p, const row *r, const row *b,
     static const double straight =
         0.999; /* R^2: the line tells of first steps */
     double span = r->t_end - p->run->t_start;
-    double passes = b ? b->energy.max / fabs(known(r)->drift) : 0;
+    double passes = b ? b->energy.max / fabs(r->energy.drift) : 0;
     double t = p->run->t_start + passes;
-    char *unit = unit_of(p, " ");
+    char *unit = verdict_unit(p, " ");
     if (!b)
         list_print(words, "%s.", text);
-    else if (passes < fabs(r->step) && known(r)->straightness < straight)
+    else if (passes < fabs(r->step) && r->energy.straightness < straight)
         list_print(words, "%s; at the end it is far above %s's %.1e.", text,
                    b->integrator, b->energy.max);
     else if (passes < fabs(r->step))
@@ -131,78 +142,72 @@ static void tell_crossing(const plan *p, const row *r, const row *b,
 }
 
 /* Whether the line is most of the error; else the loss was made at once. */
-static bool is_steady(const nevh_energy_report *e) {
-    return fabs(e->drift) > 4 * e->drift_error &&
+static bool has_line(const nevh_energy_report *e) {
+    static const double some = 0.5; /* R^2 */
+    return fabs(e->drift) > 4 * e->drift_error && e->straightness > some &&
            (fabs(e->drift) * e->span > e->max / 2 || e->least < e->max / 3);
+}
+
+/* "loses energy steadily", of a line that errors follow. */
+static char *drift_of(const nevh_energy_report *e) {
+    static const double straight = 0.9; /* R^2 */
+    return text_print("%s energy%s", e->drift < 0 ? "loses" : "gains",
+                      e->straightness > straight ? " steadily" : " unevenly");
+}
+
+static char *slope_of(const plan *p, const nevh_energy_report *e) {
+    char *per = verdict_unit(p, "/");
+    char *text = text_print("slope (%.3g +- %.1g)%s, R^2 = %.4f", e->drift,
+                            e->drift_error, per, e->straightness);
+    free(per);
+    return text;
+}
+
+static void tell_line(const plan *p, const row rows[], size_t count,
+                      const row *r, const char *subject, list *words) {
+    const nevh_energy_report *e = &r->energy;
+    double span = r->t_end - p->run->t_start;
+    char *drifts = drift_of(e), *slope = slope_of(p, e);
+    char *text =
+        text_print("%s %s%s, %.2g %% of the scale over the run (%s)", subject,
+                   drifts, p->balance ? " against the balance" : "",
+                   100 * fabs(e->drift) * span, slope);
+    tell_crossing(p, r, bounded_beside(rows, count, r), text, words);
+    free(drifts);
+    free(slope);
+    free(text);
+}
+
+static void tell_later_line(const plan *p, const row *r, const char *subject,
+                            list *words) {
+    char *drifts = drift_of(&r->longer), *slope = slope_of(p, &r->longer);
+    char *until = verdict_until(p, r);
+    list_print(words,
+               "%s has an energy error of at most %.1e in the run; continued "
+               "until t = %s it %s%s (%s).",
+               subject, r->energy.max, until, drifts,
+               p->balance ? " against the balance" : "", slope);
+    free(drifts);
+    free(slope);
+    free(until);
 }
 
 static void tell_drift(const plan *p, const row rows[], size_t count,
                        const row *r, list *words) {
-    const nevh_energy_report *e = known(r);
-    const char *against = p->balance ? " against the balance" : "";
-    char *name = name_of(rows, count, r), *unit = unit_of(p, " ");
-    char *per = unit_of(p, "/"), *place = step_of(p, r), *text = NULL;
-    double span = r->t_end - p->run->t_start;
-    if (is_steady(e)) {
-        text = text_print("%s at %s %s energy steadily%s, %.2g %% of "
-                          "the scale over the run (slope (%.3g +- %.1g)%s, "
-                          "R^2 = %.4f)",
-                          name, place, e->drift < 0 ? "loses" : "gains",
-                          against, 100 * fabs(e->drift) * span, e->drift,
-                          e->drift_error, per, e->straightness);
-        tell_crossing(p, r, bounded_beside(rows, count, r), text, words);
-    } else
-        list_print(words,
-                   "%s at %s %s energy for good%s, %.2g %% of the "
-                   "scale by the end of the run.",
-                   name, place, r->energy.final < 0 ? "loses" : "gains",
-                   against, 100 * fabs(r->energy.final));
-    free(name);
-    free(unit);
-    free(per);
-    free(place);
-    free(text);
-}
-
-/* Two digits upwards. */
-static double rounded_up(double x) {
-    double unit = pow(10, floor(log10(x)) - 1);
-    return ceil(x / unit) * unit;
-}
-
-/* A row that even a longer run leaves open. */
-static void tell_open(const plan *p, const row rows[], size_t count,
-                      const row *r, list *words) {
-    double start = p->run->t_start, span = r->t_end - start;
-    double seen = r->followed > 0 ? r->followed : 1;
-    char *name = name_of(rows, count, r), *unit = unit_of(p, " ");
-    char *place = step_of(p, r);
-    char *further = r->followed > 0
-                        ? text_print(", also when continued until t = %.4g%s",
-                                     start + seen * span, unit)
-                        : text_print("%s", "");
-    if (r->followed > 0 && r->longer.max > r->longer.limit)
-        list_print(words,
-                   "%s at %s: the energy error is at most %.1e in the run, but "
-                   "exceeds all energies when the run is continued until t = "
-                   "%.4g%s: such steps fail in an encounter there, or are "
-                   "unstable in the long run.",
-                   name, place, r->energy.max, start + seen * span, unit);
-    else if (isfinite(r->stopped))
-        list_print(words,
-                   "%s at %s: it stopped at t = %.4g%s, too early for a "
-                   "verdict on the energy.",
-                   name, place, r->stopped, unit);
+    char *subject = verdict_subject(p, rows, count, r);
+    if (has_line(&r->energy))
+        tell_line(p, rows, count, r, subject, words);
+    else if (r->followed > 0 && has_line(&r->longer))
+        tell_later_line(p, r, subject, words);
     else
-        list_print(words,
-                   "%s at %s: the run is too short for a verdict on the "
-                   "energy%s; a run until t = %g%s may decide.",
-                   name, place, further, rounded_up(start + 4 * seen * span),
-                   unit);
-    free(name);
-    free(unit);
-    free(place);
-    free(further);
+        list_print(
+            words,
+            "%s %s energy for good%s, %.2g %% of the scale by the end of "
+            "the run.",
+            subject, r->energy.final < 0 ? "loses" : "gains",
+            p->balance ? " against the balance" : "",
+            100 * fabs(r->energy.final));
+    free(subject);
 }
 
 /* Errors that do not grow, but are no small part of the energy. */
@@ -210,7 +215,7 @@ static void tell_large(const plan *p, const row rows[], size_t count,
                        list *words) {
     for (size_t i = 0; i < count; i++) {
         const row *r = &rows[i];
-        if (!is(r, NEVH_BOUNDED) || !(r->energy.max > 1))
+        if (!verdict_is(r, NEVH_BOUNDED) || !(r->energy.max > 1))
             continue;
         char *name = name_of(rows, count, r), *place = step_of(p, r);
         bool rounded = r->energy.max <= r->energy.rounding;
@@ -227,28 +232,37 @@ static void tell_large(const plan *p, const row rows[], size_t count,
     }
 }
 
-/* Which verdicts are not from the run alone. */
-static void tell_followed(const plan *p, const row rows[], size_t count,
-                          list *words) {
-    list names = {0};
-    double most = 0;
-    for (size_t i = 0; i < count; i++) {
-        if (rows[i].followed <= 0 || is(&rows[i], NEVH_UNDECIDED))
-            continue;
-        most = fmax(most, rows[i].followed);
-        if (!list_has(&names, rows[i].integrator))
-            list_add(&names, rows[i].integrator);
-    }
-    char *joined = list_joined(&names), *unit = unit_of(p, " ");
-    double start = p->run->t_start;
-    if (names.count)
-        list_print(words,
-                   "The run is short for a verdict on %s: continued at most "
-                   "until t = %.4g%s.",
-                   joined, start + most * (p->t_end - start), unit);
-    free(joined);
+/* How far the errors of all bounded rows were seen to be level. */
+static double level_until(const plan *p, const row rows[], size_t count) {
+    double least = INFINITY, start = p->run->t_start;
+    for (size_t i = 0; i < count; i++)
+        if (verdict_is(&rows[i], NEVH_BOUNDED))
+            least = fmin(least,
+                         fmax(1, rows[i].followed) * (rows[i].t_end - start));
+    return start + least;
+}
+
+static void tell_bounded(const plan *p, const row rows[], size_t count,
+                         list *words) {
+    double until = level_until(p, rows, count);
+    char *unit = verdict_unit(p, " ");
+    char *also =
+        until > p->t_end && isfinite(until)
+            ? text_print(", and up to t = %.4g%s at least, to which it "
+                         "was continued",
+                         until, unit)
+            : text_print("%s", "");
+    char *one = text_print("keeps the energy bounded: its error is level over "
+                           "the run%s.",
+                           also);
+    char *many = text_print("keep the energy bounded: their errors are level "
+                            "over the run%s.",
+                            also);
+    tell_all(rows, count, NEVH_BOUNDED, one, many, words);
     free(unit);
-    list_free(&names);
+    free(also);
+    free(one);
+    free(many);
 }
 
 /* Of an integrator with several verdicts, where it has that one. */
@@ -261,7 +275,7 @@ static void tell_some(const row rows[], size_t count, const char *integrator,
     list places = {0};
     for (size_t k = 0; k < count; k++) {
         if (strcmp(rows[k].integrator, integrator) != 0 ||
-            !is(&rows[k], verdict))
+            !verdict_is(&rows[k], verdict))
             continue;
         char *place = place_of(rows, count, &rows[k]);
         if (!list_has(&places, place))
@@ -334,10 +348,7 @@ static void warn_of_changes(const row rows[], size_t count, list *words) {
 }
 
 void verdict_words(const plan *p, const row rows[], size_t count, list *words) {
-    tell_all(rows, count, NEVH_BOUNDED,
-             "keeps the energy bounded: its error does not grow with time.",
-             "keep the energy bounded: their errors do not grow with time.",
-             words);
+    tell_bounded(p, rows, count, words);
     tell_all(rows, count, NEVH_RANDOM_WALK,
              "shows a random walk of the energy: its error grows, but not "
              "linearly.",
@@ -345,19 +356,25 @@ void verdict_words(const plan *p, const row rows[], size_t count, list *words) {
              "linearly.",
              words);
     for (size_t i = 0; i < count; i++)
-        if (is(&rows[i], NEVH_DRIFTS))
+        if (verdict_is(&rows[i], NEVH_DRIFTS))
             tell_drift(p, rows, count, &rows[i], words);
     tell_all(rows, count, NEVH_UNSTABLE,
-             "is unstable: its error exceeds all energies at the start.",
-             "are unstable: their errors exceed all energies at the start.",
+             "is unstable: its energy error has grown past every energy the "
+             "system started with.",
+             "are unstable: their energy errors have grown past every energy "
+             "the system started with.",
              words);
+    for (size_t i = 0; i < count; i++)
+        if (is_later(&rows[i]))
+            verdict_tell_later(p, rows, count, &rows[i], words);
     for (size_t i = 0; i < count; i++)
         tell_mixed(rows, count, i, words);
     tell_large(p, rows, count, words);
+    verdict_tell_larger(p, rows, count, words);
     for (size_t i = 0; i < count; i++)
-        if (is(&rows[i], NEVH_UNDECIDED))
-            tell_open(p, rows, count, &rows[i], words);
-    tell_followed(p, rows, count, words);
+        if (verdict_is(&rows[i], NEVH_UNDECIDED))
+            verdict_tell_open(p, rows, count, &rows[i], words);
+    verdict_tell_followed(p, rows, count, words);
     state_words(p, rows, count, words);
     warn_of_changes(rows, count, words);
 }

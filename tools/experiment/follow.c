@@ -10,7 +10,9 @@ bool row_drifts(const row *r) {
 }
 
 void row_follow(const plan *p, row *r) {
-    if (!r->ran || r->energy.verdict != NEVH_UNDECIDED || isfinite(r->stopped))
+    nevh_verdict own = r->energy.verdict;
+    if (!r->ran || (own != NEVH_UNDECIDED && own != NEVH_BOUNDED) ||
+        isfinite(r->stopped))
         return;
     nevh_stepper *s = row_stepper(p, r, p->balance);
     nevh_energy *energy = row_energy(p, r, s);
@@ -27,11 +29,13 @@ void row_follow(const plan *p, row *r) {
         .seconds = nevh_counts_seconds(&r->counts, p->n, r->scheme, r->order,
                                        r->steps),
         .allowed = p->follow,
+        .regular = p->n == 1 && !p->time && !p->friction,
     };
     nevh_energy_report longer = r->energy;
     if (nevh_verdict_settle(s, energy, &judged, &longer))
         tool_owned(NULL);
     r->energy.verdict = longer.verdict;
+    r->open = own == NEVH_UNDECIDED;
     if (longer.span > r->energy.span) {
         r->followed = longer.span / (judged.t_end - judged.t);
         r->longer = longer;

@@ -32,6 +32,7 @@ typedef struct {
     double followed; /* lengths of the run that the verdict is from; 0: its own
                         alone */
     nevh_energy_report longer; /* then */
+    bool open;                 /* its own leaves the verdict open */
     nevh_counts counts;
     double work;            /* by its counts: the same on every machine */
     double watched;         /* seconds, with all that watches */

@@ -6,9 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Above a bound of rounding that walks of four standard deviations keep. */
 static bool measures_order(const row *r) {
+    static const double above = 1.5;
     return r->ran && r->energy.verdict != NEVH_UNSTABLE && r->tolerance == 0 &&
-           r->energy.max > fmax(1e-13, 10 * r->energy.rounding);
+           r->energy.max > fmax(1e-13, above * r->energy.rounding);
 }
 
 /* Steps so close that their errors tell of their phases, not of the order. */

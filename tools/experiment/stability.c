@@ -49,9 +49,10 @@ static char *cause_at(const nevh_integrator *scheme, double limit, double x,
         return text_print("%s: %s is stable up to %.3g", where, name, limit);
     if (x > 1)
         return text_print("%s: a turn has %.2g steps", where, 2 * M_PI / x);
-    return adds_up ? text_print("%s is not symplectic, and errors add up at "
-                                "omega dt = %.3g",
-                                name, x)
+    return adds_up ? text_print("each step changes the energy a little, in one "
+                                "direction; with omega dt = %.3g that is soon "
+                                "large",
+                                x)
                    : NULL;
 }
 

@@ -89,8 +89,9 @@ static void note_horizon(const plan *p, list *notes) {
     if (is_chaos(p))
         list_print(
             notes,
-            "predictability horizon t = %.4g, no state errors after it: "
-            "chaos, where neighbouring orbits separate by a factor e in %.3g (%s)",
+            "predictability horizon t = %.4g: the motion is chaotic, and "
+            "neighbours separate e-fold every %.3g.  State errors are given until "
+            "then; after that no orbit can be computed (%s)",
             horizon, 1 / nevh_reference_exponent(r), text);
     else if (nevh_reference_why(r) == NEVH_REFERENCE_SENSITIVE)
         list_print(
@@ -174,8 +175,8 @@ static void explain_cells(const plan *p, const row rows[], size_t count,
         any |= state_out_of_step(&rows[i]);
     if (any)
         list_add(words,
-                 "State error > 50 %: the run is elsewhere on its orbit, "
-                 "or on another one.");
+                 "State error > 50 %: the computed position no longer has to "
+                 "do with the true one.");
     if (unknown && *unknown->state_unknown)
         list_print(words, "%s at dt = %.4g has no state error: %s.",
                    unknown->integrator, unknown->dt, unknown->state_unknown);
@@ -185,10 +186,11 @@ void state_words(const plan *p, const row rows[], size_t count, list *words) {
     list names = names_out_of_step(rows, count);
     char *text = list_joined(&names);
     if (names.count)
-        list_print(
-            words,
-            "Bounded energy is not an accurate orbit: %s %s out of step.", text,
-            names.count == 1 ? "is" : "are");
+        list_print(words,
+                   "Bounded energy does not mean an accurate orbit: the "
+                   "%s of %s %s wrong.",
+                   names.count == 1 ? "phase" : "phases", text,
+                   names.count == 1 ? "is" : "are");
     explain_cells(p, rows, count, words);
     list_free(&names);
     free(text);

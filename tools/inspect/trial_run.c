@@ -308,10 +308,16 @@ static void tell_outlook(const plan *p, const trial_run *f, list *notes) {
                    time, space, unit, f->chaos.error, per, unit);
         break;
     default:
-        list_print(notes,
-                   "Chaotic or regular: %.3g%s%s are too short to decide; "
-                   "--t-end makes the run longer.",
-                   f->length, space, unit);
+        if (f->length > 0)
+            list_print(notes,
+                       "Chaotic or regular: %.3g%s%s are too short to decide; "
+                       "--t-end makes the run longer.",
+                       f->length, space, unit);
+        else
+            list_print(notes,
+                       "Chaotic or regular: nothing is known, for the run ends "
+                       "where it starts%s%s.",
+                       f->failure ? ": " : "", f->failure ? f->failure : "");
     }
 }
 

@@ -198,7 +198,7 @@ static void warn(const advice *a, const row *r, list *words) {
 static void tell_verdict(const row *r, list *words) {
     if (row_drifts(r))
         list_add(words, "Its energy drifts: for longer runs ask again.");
-    if (r->followed > 0)
+    if (r->followed > 0 && (r->open || r->energy.verdict != NEVH_BOUNDED))
         list_print(
             words,
             "The verdict on its energy is from a run %.3g times as long.",

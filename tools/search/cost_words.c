@@ -252,8 +252,9 @@ static void tell_hidden(const costs *c, list *words) {
     }
     if (dear)
         list_print(words,
-                   "%zu more integrators work but are never the cheapest; list "
-                   "them with --integrators NAME, or all with --format csv.",
+                   "%zu more integrators work but are never the cheapest; name "
+                   "one with --integrators to see its row, or list all with "
+                   "--format csv.",
                    dear);
     if (untried)
         list_print(words,
@@ -330,20 +331,22 @@ static void tell_legend(const costs *c, list *words) {
         list_add(words, "=: the same run as for the digits to its left, whose "
                         "step keeps these as well.");
     if (any_word(c, "> limit"))
-        list_print(words,
-                   "> limit: would take longer than was tried (the longest run "
-                   "took %s ms), or others are far ahead.",
-                   longest);
+        list_print(
+            words,
+            "> limit: not reached within the longest run (%s ms); others "
+            "are much cheaper.",
+            longest);
     if (any_word(c, "floor"))
         list_add(words, "floor: shorter steps do not lessen the error, for "
                         "rounding or what the gradient lacks.");
     double spread = 100 * typical_spread(c);
     char *share =
         text_print(", half of which lie within %.1g %% of them", spread);
-    list_print(words,
-               "ms are this machine's: medians of repeated runs%s; evaluations "
-               "are exact.",
-               spread > 0 ? share : "");
+    list_print(
+        words,
+        "Times were measured on this machine: medians of repeated runs%s; "
+        "evaluations are exact.",
+        spread > 0 ? share : "");
     free(share);
     free(longest);
 }
@@ -358,10 +361,11 @@ void cost_words(costs *c, list *words) {
         "the error grows with time: a longer run costs more for the same "
         "digits.",
         drifts_here);
-    tell_names(c, words,
-               "keep the energy at any step, which says nothing of their "
-               "orbits.",
-               says_nothing);
+    tell_names(
+        c, words,
+        "the energy is conserved exactly at any step, so that this table "
+        "ranks nothing; use --by state.",
+        says_nothing);
     if (c->search.plan.friction && !c->search.by_state)
         list_add(words, "Friction around a step is exact in the balance, "
                         "though not in the orbit: compare --by state.");

@@ -144,7 +144,7 @@ static void tell(const context *c, page *result) {
                              "step before you compare gradients."
                            : "a gradient whose part is well below that is "
                              "good enough.");
-    list_add(&result->after, "ns are this machine's.");
+    list_add(&result->after, "Times were measured on this machine.");
 }
 
 static int gradients_plan(const options *o, const plan *p) {

@@ -69,9 +69,13 @@ static attempt try_step(search *s, double dt) {
     return a.kept ? run(s, dt, 1) : a;
 }
 
+/* The number that so many digits say, which is the one that is run. */
 static double rounded_down(double x, int digits) {
     double unit = pow(10, floor(log10(x)) - digits + 1);
-    return floor(x / unit * (1 + 1e-12)) * unit;
+    char text[32];
+    snprintf(text, sizeof text, "%.*g", digits,
+             floor(x / unit * (1 + 1e-12)) * unit);
+    return strtod(text, NULL);
 }
 
 /* Between steps that keep the target and such that do not. */
@@ -166,20 +170,21 @@ static void tell_remedy(const plan *p, const row *r, list *words) {
     bool loses = nevh_integrator_symplectic(r->scheme) == NEVH_NO;
     bool always = loses && nevh_stability_limit(r->scheme) == 0;
     const char *gains = always ? " gains energy at every dt, and" : "";
-    const char *other = loses ? "; or take a symplectic scheme" : "";
+    const char *other = loses ? ", or a symplectic scheme" : "";
     remedy found = find(p, r);
     if (found.dt > 0 && found.guessed)
         list_print(words,
                    "%s%s would keep its error below %g %% until t = %.4g%s%s "
                    "only with dt below about %.1g%s%s, as shorter runs show%s.",
                    r->integrator, gains, 100 * target, p->t_end, gap, unit,
-                   found.dt, gap, unit, other);
+                   found.dt, gap, unit,
+                   loses ? "; or take a symplectic scheme" : "");
     else if (found.dt > 0)
         list_print(words,
-                   "%s%s keeps its error below %g %% until t = %.4g%s%s with "
-                   "dt = %.2g%s%s%s.",
-                   r->integrator, gains, 100 * target, p->t_end, gap, unit,
-                   found.dt, gap, unit, other);
+                   "To keep the energy error of %s below %g %% until t = "
+                   "%.4g%s%s take dt = %.2g%s%s%s.",
+                   r->integrator, 100 * target, p->t_end, gap, unit, found.dt,
+                   gap, unit, other);
 }
 
 void remedy_words(const plan *p, const row rows[], size_t count, list *words) {

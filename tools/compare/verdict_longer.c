@@ -1,0 +1,158 @@
+/* nevh compare: what runs that are continued say of rows.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "verdict_private.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The end of the run that a row's verdict is from. */
+char *verdict_until(const plan *p, const row *r) {
+    double start = p->run->t_start;
+    char *unit = verdict_unit(p, " ");
+    char *text =
+        text_print("%.4g%s", start + r->followed * (r->t_end - start), unit);
+    free(unit);
+    return text;
+}
+
+/* Of a calm run, what it comes to when it is continued. */
+void verdict_tell_later(const plan *p, const row rows[], size_t count,
+                        const row *r, list *words) {
+    char *subject = verdict_subject(p, rows, count, r);
+    char *until = verdict_until(p, r);
+    list_print(words,
+               "%s: the energy error is at most %.1e in the run, but "
+               "exceeds all energies when the run is continued until t = %s.",
+               subject, r->energy.max, until);
+    free(subject);
+    free(until);
+}
+
+/* Two digits upwards. */
+static double rounded_up(double x) {
+    double unit = pow(10, floor(log10(x)) - 1);
+    return ceil(x / unit) * unit;
+}
+
+/* Why even a longer run leaves a row open, and what may decide it. */
+static void tell_open_run(const plan *p, const row *r, const char *subject,
+                          list *words) {
+    double start = p->run->t_start, span = r->t_end - start;
+    double seen = r->followed > 0 ? r->followed : 1;
+    double decides = rounded_up(start + 4 * seen * span);
+    char *unit = verdict_unit(p, " ");
+    char *until = verdict_until(p, r);
+    if (r->followed > 0 && r->longer.max > 2 * r->energy.max)
+        list_print(words,
+                   "%s: the energy error is at most %.1e in the run and %.1e "
+                   "when it is continued until t = %s; whether it goes on "
+                   "growing, a run until t = %g%s may decide.",
+                   subject, r->energy.max, r->longer.max, until, decides, unit);
+    else
+        list_print(
+            words,
+            "%s: the run is too short for a verdict on the energy%s%s; a "
+            "run until t = %g%s may decide.",
+            subject, r->followed > 0 ? ", also when continued until t = " : "",
+            r->followed > 0 ? until : "", decides, unit);
+    free(unit);
+    free(until);
+}
+
+/* The error grows because the motion does. */
+static bool is_carried(const nevh_energy_report *e) {
+    static const double much = 10;
+    return e->theory == NEVH_THEORY_OPEN && e->grown > much &&
+           e->relative[1] <= 0.5;
+}
+
+static bool is_hidden(const nevh_energy_report *e) {
+    return e->theory == NEVH_THEORY_LOSES && e->max <= e->rounding;
+}
+
+/* A row that even a longer run leaves open. */
+void verdict_tell_open(const plan *p, const row rows[], size_t count,
+                       const row *r, list *words) {
+    const nevh_energy_report *e = r->followed > 0 ? &r->longer : &r->energy;
+    char *subject = verdict_subject(p, rows, count, r);
+    char *until = r->followed > 0 ? verdict_until(p, r) : NULL;
+    char *unit = verdict_unit(p, " ");
+    if (is_carried(e))
+        list_print(
+            words,
+            "%s: the energies of the motion grow%s%s, and the error with "
+            "them: relative to them it is at most %.1e.",
+            subject, until ? " until t = " : "", until ? until : "",
+            fmax(e->relative[0], e->relative[1]));
+    else if (r->followed > 0 && e->max > e->limit)
+        verdict_tell_later(p, rows, count, r, words);
+    else if (isfinite(r->stopped))
+        list_print(words,
+                   "%s: it stopped at t = %.4g%s, too early for a verdict on "
+                   "the energy.",
+                   subject, r->stopped, unit);
+    else if (is_hidden(&r->energy))
+        list_print(
+            words,
+            "%s: the error is that of rounding%s; the drift that %s adds "
+            "with each step is hidden below it.",
+            subject,
+            strcmp(r->gradient, "exact") == 0 ? "" : " in the gradient",
+            r->integrator);
+    else
+        tell_open_run(p, r, subject, words);
+    free(subject);
+    free(until);
+    free(unit);
+}
+
+/* Level errors of a run that are larger when it is continued. */
+void verdict_tell_larger(const plan *p, const row rows[], size_t count,
+                         list *words) {
+    static const double larger = 3;
+    for (size_t i = 0; i < count; i++) {
+        const row *r = &rows[i];
+        if (!verdict_is(r, NEVH_BOUNDED) || r->followed <= 0 ||
+            !(r->longer.max > larger * r->energy.max) ||
+            r->longer.max <= r->longer.rounding)
+            continue;
+        char *subject = verdict_subject(p, rows, count, r);
+        char *until = verdict_until(p, r);
+        list_print(words,
+                   "%s: the energy error is at most %.1e in the run, and "
+                   "%.1e when it is continued until t = %s, level since.",
+                   subject, r->energy.max, r->longer.max, until);
+        free(subject);
+        free(until);
+    }
+}
+
+/* Which verdicts are not from the run alone. */
+void verdict_tell_followed(const plan *p, const row rows[], size_t count,
+                           list *words) {
+    list names = {0};
+    double most = 0;
+    for (size_t i = 0; i < count; i++) {
+        const row *r = &rows[i];
+        bool clear = r->energy.max > r->energy.limit;
+        if (r->followed <= 0 || !r->open || verdict_is(r, NEVH_UNDECIDED) ||
+            (clear && verdict_is(r, NEVH_UNSTABLE)))
+            continue;
+        most = fmax(most, rows[i].followed);
+        if (!list_has(&names, rows[i].integrator))
+            list_add(&names, rows[i].integrator);
+    }
+    char *joined = list_joined(&names), *unit = verdict_unit(p, " ");
+    double start = p->run->t_start, span = p->t_end - start;
+    if (names.count)
+        list_print(
+            words,
+            "%.4g%s is too short to judge %s: %s from runs to t = %.4g%s "
+            "at most, which the table does not show.",
+            span, unit, joined,
+            names.count == 1 ? "its verdict is" : "their verdicts are",
+            start + most * span, unit);
+    free(joined);
+    free(unit);
+    list_free(&names);
+}

@@ -1,0 +1,32 @@
+/* nevh compare: the table in words.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef VERDICT_PRIVATE_H
+#define VERDICT_PRIVATE_H
+
+#include "experiment/row.h"
+
+/* verdict.c: texts are to be freed. */
+bool verdict_is(const row *, nevh_verdict);
+/* "verlet at dt = 0.1", and the gradient where there are several. */
+char *verdict_subject(const plan *, const row rows[], size_t count,
+                      const row *);
+/* The unit of time after that, or "". */
+char *verdict_unit(const plan *, const char *before);
+
+/* verdict_longer.c: what runs that are continued say of rows. */
+/* The end of the run that a row's verdict is from. */
+char *verdict_until(const plan *, const row *);
+/* Of a calm run, what it comes to when it is continued. */
+void verdict_tell_later(const plan *, const row rows[], size_t count,
+                        const row *, list *words);
+/* A row that even a longer run leaves open. */
+void verdict_tell_open(const plan *, const row rows[], size_t count,
+                       const row *, list *words);
+/* Level errors of a run that are larger when it is continued. */
+void verdict_tell_larger(const plan *, const row rows[], size_t count,
+                         list *words);
+/* Which verdicts are not from the run alone. */
+void verdict_tell_followed(const plan *, const row rows[], size_t count,
+                           list *words);
+
+#endif
