@@ -194,6 +194,7 @@ libnevh_core_la_SOURCES = \
 	lib/run/section_level.c \
 	lib/diagnose/energy_private.h \
 	lib/diagnose/energy.c \
+	lib/diagnose/energy_scale.c \
 	lib/diagnose/trend_private.h \
 	lib/diagnose/trend.c \
 	lib/diagnose/verdict.c \

@@ -195,6 +195,7 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_new.sh \
 	tests/tool/nevh_effects.sh \
 	tests/tool/nevh_compare.sh \
+	tests/tool/nevh_scales.sh \
 	tests/tool/nevh_reference.sh \
 	tests/tool/nevh_verdict.sh \
 	tests/tool/nevh_plot.sh \

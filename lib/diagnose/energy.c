@@ -7,9 +7,14 @@
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Below this part of the largest effect, H0 is no measure of the energy. */
 static const double cancelled = 1e-6;
+
+/* Where all effects of the start are below that part of what they are on the way,
+   they are small by chance. */
+static const double by_chance = 0.01;
 
 /* Of the energies met, an error that exceeds all at the start is beyond measure. */
 static const double of_met = 0.1;
@@ -22,6 +27,10 @@ struct nevh_energy {
     double given_scale;                       /* by the user; 0: found */
     double *t, *h, *initial, *scale, *gained; /* width each */
     double *limit;   /* width: the largest effect at the start */
+    double *start;   /* 2n x width: the state there, and */
+    double *start_t; /* width: the time */
+    double *typical; /* width: the mean largest effect of the orbit; -1: not
+                        looked for yet */
     double *largest; /* width: the largest sum of terms' |values| met */
     double *seen;    /* width: the |error| at which that was looked for */
     nevh_theory theory;
@@ -51,6 +60,9 @@ static int plan(nevh_energy *e, const nevh_system *s, bool portable) {
     e->scale = nevh__array(width, sizeof *e->scale);
     e->limit = nevh__array(width, sizeof *e->limit);
     e->largest = nevh__array(width, sizeof *e->largest);
+    e->start = nevh__array(2 * s->n * width, sizeof *e->start);
+    e->start_t = nevh__array(width, sizeof *e->start_t);
+    e->typical = nevh__array(width, sizeof *e->typical);
     e->seen = nevh__array(width, sizeof *e->seen);
     e->noise = nevh__array(width, sizeof *e->noise);
     e->blur = nevh__array(width, sizeof *e->blur);
@@ -62,7 +74,8 @@ static int plan(nevh_energy *e, const nevh_system *s, bool portable) {
     e->state = nevh__array(2 * s->n, sizeof *e->state);
     if (e->t && e->h && e->initial && e->gained && e->scale && e->limit &&
         e->largest && e->seen && e->noise && e->blur && e->trend && e->steps &&
-        e->next_look && e->started && e->effects && e->state)
+        e->start && e->start_t && e->typical && e->next_look && e->started &&
+        e->effects && e->state)
         return NEVH_OK;
     return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
 }
@@ -90,6 +103,9 @@ void nevh_energy_free(nevh_energy *e) {
     free(e->scale);
     free(e->limit);
     free(e->largest);
+    free(e->start);
+    free(e->start_t);
+    free(e->typical);
     free(e->seen);
     free(e->noise);
     free(e->blur);
@@ -233,7 +249,20 @@ static void gather(nevh_energy *e, size_t lane, const double q[],
     }
 }
 
-/* |H0| of what reads something, or the largest of its effects. */
+/* That of the orbit, which does not depend on the run. */
+static double typical(const nevh_energy *e, size_t lane) {
+    if (e->typical[lane] < 0) {
+        const double *start = e->start + lane * 2 * e->n;
+        if (e->field->lanes)
+            nevh__field_alone(e->field, lane);
+        e->typical[lane] =
+            nevh__orbit_energy(e->field, e->start_t[lane], start, start + e->n);
+    }
+    return e->typical[lane];
+}
+
+/* |H0| of what reads something, or the largest of its effects, or, where there
+   is none, that of the orbit. */
 static int find_scale(nevh_energy *e, size_t lane, double t, const double q[],
                       const double p[]) {
     double sum = 0, most = 0;
@@ -244,13 +273,30 @@ static int find_scale(nevh_energy *e, size_t lane, double t, const double q[],
         sum += e->effects[i];
         most = fmax(most, fabs(e->effects[i]));
     }
+    memcpy(e->start + lane * 2 * e->n, e->state, 2 * e->n * sizeof *e->state);
+    e->start_t[lane] = t;
+    e->typical[lane] = -1;
     e->limit[lane] = most;
     e->scale[lane] = e->given_scale                  ? e->given_scale
                      : fabs(sum) >= cancelled * most ? fabs(sum)
                                                      : most;
+    if (!status && e->scale[lane] == 0)
+        e->scale[lane] = typical(e, lane);
     if (e->scale[lane] == 0)
-        e->scale[lane] = 1; /* H is 0 at the start: errors are absolute */
+        e->scale[lane] = 1; /* until energies are met */
     return status;
+}
+
+/* The scale, after all that was met. */
+static double final_scale(const nevh_energy *e, size_t lane) {
+    double most = e->limit[lane], met = e->largest[lane];
+    bool alone = e->trend[lane].samples == 1;
+    if (e->given_scale > 0 || (!alone && most >= by_chance * met))
+        return e->scale[lane];
+    double orbit = typical(e, lane);
+    if (most == 0 && orbit == 0)
+        return met > 0 ? met : e->scale[lane];
+    return most < by_chance * orbit ? orbit : e->scale[lane];
 }
 
 static int begin(nevh_energy *e, size_t lane, double t, const double q[],
@@ -371,27 +417,31 @@ double nevh_energy_error(const nevh_energy *e, size_t lane) {
 
 /* Of values, and of a random walk in the steps, whose gradients are off by that
    or by the noise of differences. */
-static double rounding_of(const nevh_energy *e, size_t lane) {
+static double rounding_of(const nevh_energy *e, size_t lane, double scale) {
     double each = fmax(DBL_EPSILON, e->noise[lane] / 16);
     double walk = 4 * each * sqrt((double)e->steps[lane]);
-    return (16 * DBL_EPSILON + walk) * e->largest[lane] / e->scale[lane];
+    return (16 * DBL_EPSILON + walk) * e->largest[lane] / scale;
 }
 
 nevh_energy_report nevh_energy_result(const nevh_energy *e, size_t lane) {
     nevh_energy_report report = {.verdict = NEVH_UNDECIDED};
     if (!e || !e->begun || lane >= e->width)
         return report;
+    double scale = final_scale(e, lane);
+    nevh__trend trend = e->trend[lane];
+    if (scale != e->scale[lane])
+        nevh__trend_multiply(&trend, e->scale[lane] / scale);
     report.initial = e->initial[lane];
-    report.scale = e->scale[lane];
+    report.scale = scale;
     report.theory = e->theory;
-    report.limit = fmax(1, e->limit[lane] / e->scale[lane]);
-    report.met = e->largest[lane] / e->scale[lane];
+    report.limit = fmax(1, e->limit[lane] / scale);
+    report.met = e->largest[lane] / scale;
     if (e->theory == NEVH_THEORY_OPEN)
         report.limit = fmax(report.limit, of_met * report.met);
-    report.rounding = rounding_of(e, lane);
-    report.gradient = e->blur[lane] * (double)e->steps[lane] *
-                      e->largest[lane] / e->scale[lane];
-    nevh__trend_report(&e->trend[lane], &report);
+    report.rounding = rounding_of(e, lane, scale);
+    report.gradient =
+        e->blur[lane] * (double)e->steps[lane] * e->largest[lane] / scale;
+    nevh__trend_report(&trend, &report);
     report.verdict = nevh_energy_verdict(&report, 1);
     return report;
 }

@@ -4,6 +4,7 @@
 #define NEVH_ENERGY_PRIVATE_H
 
 #include <nevh/diagnose.h>
+#include <nevh/gradient.h>
 
 /* As nevh_energy_observe, with a time and a number of steps for each lane.
    on    in and out, width: the lanes to observe; false afterwards where a
@@ -19,5 +20,10 @@ void nevh__energy_lane_take(nevh_energy *, size_t lane, const double *const c[],
 void nevh__energy_lane_copy(nevh_energy *, size_t from, size_t to);
 /* The lane's next observation is its first. */
 void nevh__energy_restart(nevh_energy *, size_t lane);
+
+/* The largest effect, a mean over the orbit from there on, of a field for values;
+   0 where the orbit cannot be followed until there is one. */
+double nevh__orbit_energy(nevh_field *, double t, const double q[],
+                          const double p[]);
 
 #endif

@@ -56,6 +56,21 @@ void nevh__trend_add(nevh__trend *s, double t, double e, double met) {
     add_to_bin(s, t, e, met);
 }
 
+void nevh__trend_multiply(nevh__trend *s, double factor) {
+    s->squares *= factor * factor;
+    s->most *= factor;
+    s->last *= factor;
+    s->mean_e *= factor;
+    s->te *= factor;
+    for (size_t i = 0; i < s->bins; i++) {
+        s->bin[i].e *= factor;
+        s->bin[i].lowest *= factor;
+        s->bin[i].highest *= factor;
+        s->bin[i].least *= factor;
+        s->bin[i].met *= factor;
+    }
+}
+
 /* Of some bins together. */
 static nevh__bin join(const nevh__trend *s, size_t from, size_t to) {
     nevh__bin all = s->bin[from];

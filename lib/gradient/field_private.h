@@ -243,6 +243,18 @@ int nevh__field_forget(nevh_field *, int status);
 int nevh__field_curvatures(nevh_field *, const nevh_options *,
                            double curvature[]);
 
+/* rest.c: follows an orbit until its scales are seen, without any idea of them:
+   by the terms' own gradients, or else those of the field.
+   sizes    out, 2n: the largest of each variable
+   visit    NULL, or called after each step once these are seen
+   returns  whether they are; not where the orbit is a power of the time, ends,
+            or is too much work */
+typedef void (*nevh__orbit_fn)(void *context, double t, double h,
+                               const double y[]);
+bool nevh__follow_orbit(nevh_field *, double t, const double q[],
+                        const double p[], double sizes[], nevh__orbit_fn visit,
+                        void *context);
+
 /* Values only: no gradients are asked for, and none are planned. */
 extern const nevh_gradient nevh__no_gradient;
 /* Exact where all terms that are on have that, else differences of order 6. */

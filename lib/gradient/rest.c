@@ -1,4 +1,5 @@
-/* nevh: how far does an orbit go that starts at rest at 0?
+/* nevh: how far does an orbit go, of which nothing is known, such as one that
+   starts at rest at 0?
 
    There no variable has a size, and where H is quadratic nothing has a length.
    So the terms' own gradients are followed from a step that is far too short
@@ -13,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { MOST_FAILED = 8 };
 enum { MOST_STEPS = 1600, ENOUGH = 100 }; /* all; those that are short */
 static const double short_step = 0x1p-4;  /* beside the time */
 static const double tolerance = 1e-3, growth = 8, shortest = 0x1p-400;
@@ -32,8 +34,9 @@ static void add_block(nevh_field *f, const nevh__planned *term, size_t first,
         for (size_t j = 0; j < rows; j++) {
             size_t of = j < term->nv ? nevh__index(term, instance, j) : 0;
             f->rows[j * NEVH__LANES + lane] =
-                j >= term->nv ? decl->c[instance * decl->nc + j - term->nv]
-                              : y[j < term->nq ? of : n + of];
+                j >= term->nv
+                    ? nevh__constant(f, term, instance, j - term->nv, f->alone)
+                    : y[j < term->nq ? of : n + of];
         }
     }
     double *q = f->rows, *p = q + term->nq * NEVH__LANES;
@@ -48,16 +51,43 @@ static void add_block(nevh_field *f, const nevh__planned *term, size_t first,
         }
 }
 
-static int motion(double t, const double y[], double dydt[], void *field) {
-    nevh_field *f = field;
-    double sum = 0;
-    memset(dydt, 0, 2 * f->n * sizeof *dydt);
+static bool has_gradients(const nevh_field *f) {
     for (size_t i = 0; i < f->n_terms; i++)
-        for (size_t first = 0; first < f->terms[i].term->decl.count;
+        if (f->terms[i].nv && !f->terms[i].term->decl.gradient)
+            return false;
+    return true;
+}
+
+static void add_terms(nevh_field *f, double t, const double y[],
+                      double dydt[]) {
+    for (size_t i = 0; i < f->n_terms; i++)
+        for (size_t first = 0;
+             f->terms[i].nv && first < f->terms[i].term->decl.count;
              first += NEVH__LANES)
-            if (f->terms[i].nv)
-                add_block(f, &f->terms[i], first, t, y, dydt);
-    for (size_t i = 0; i < 2 * f->n; i++)
+            add_block(f, &f->terms[i], first, t, y, dydt);
+}
+
+typedef struct {
+    nevh_field *field;
+    double *friction; /* n rates; NULL: there is none */
+} law;
+
+/* By the terms' own gradients, or else those of the field. */
+static int motion(double t, const double y[], double dydt[], void *of) {
+    const law *m = of;
+    nevh_field *f = m->field;
+    size_t n = f->n;
+    double sum = 0;
+    memset(dydt, 0, 2 * n * sizeof *dydt);
+    if (has_gradients(f))
+        add_terms(f, t, y, dydt);
+    else if (nevh_field_gradient(f, 1, &t, y, y + n, dydt + n, dydt))
+        return GSL_EBADFUNC;
+    for (size_t i = 0; i < n && !has_gradients(f); i++)
+        dydt[n + i] = -dydt[n + i];
+    for (size_t i = 0; m->friction && i < n; i++)
+        dydt[n + i] -= m->friction[i] * y[n + i];
+    for (size_t i = 0; i < 2 * n; i++)
         sum += dydt[i] - dydt[i];
     return sum == 0 ? GSL_SUCCESS : GSL_EBADFUNC;
 }
@@ -74,20 +104,33 @@ static double excess(size_t size, const double y[], const double error[],
     return most;
 }
 
+/* A small part of the time in which what is not 0 changes. */
+static double first_step(law *m, double t, const double y[], double dydt[]) {
+    double h = INFINITY;
+    if (motion(t, y, dydt, m))
+        return 0;
+    for (size_t i = 0; i < 2 * m->field->n; i++)
+        if (y[i] != 0 && dydt[i] != 0)
+            h = fmin(h, 0x1p-10 * fabs(y[i] / dydt[i]));
+    return fmax(h < INFINITY ? h : shortest, 0x1p-40 * fabs(t));
+}
+
 /* y: 4 x 2n; the first are the state.  Returns whether there are sizes. */
-static bool follow(nevh_field *f, gsl_odeiv2_step *step, double t, double *y,
-                   double sizes[]) {
-    size_t size = 2 * f->n;
+static bool follow(law *m, gsl_odeiv2_step *step, double t, double *y,
+                   double sizes[], nevh__orbit_fn visit, void *context) {
+    size_t size = 2 * m->field->n;
     double *before = y + size, *error = before + size, *last = error + size;
-    gsl_odeiv2_system ode = {motion, NULL, size, f};
-    double start = t, h = fmax(shortest, 0x1p-40 * fabs(t));
-    int settled = 0;
-    for (int i = 0; i < MOST_STEPS && settled < ENOUGH; i++) {
+    gsl_odeiv2_system ode = {motion, NULL, size, m};
+    double start = t, h = first_step(m, t, y, error);
+    int settled = 0, failed = 0;
+    for (int i = 0; h > 0 && i < MOST_STEPS && settled < ENOUGH; i++) {
         memcpy(before, y, size * sizeof *y);
         memcpy(last, sizes, size * sizeof *y);
         int status =
             gsl_odeiv2_step_apply(step, t, h, y, error, NULL, NULL, &ode);
         double over = status ? INFINITY : excess(size, y, error, sizes);
+        if (status && ++failed > MOST_FAILED)
+            return false;
         if (!(over <= 1)) {
             memcpy(y, before, size * sizeof *y);
             memcpy(sizes, last, size * sizeof *y);
@@ -95,7 +138,8 @@ static bool follow(nevh_field *f, gsl_odeiv2_step *step, double t, double *y,
             continue;
         }
         t += h;
-        settled += h < short_step * (t - start);
+        if (h < short_step * (t - start) && ++settled && visit)
+            visit(context, t, h, y);
         h *= over > 0 ? fmin(growth, 0.9 * pow(over, -0.2)) : growth;
         for (size_t k = 0; k < size; k++)
             if (!(sizes[k] < overflowing))
@@ -104,26 +148,36 @@ static bool follow(nevh_field *f, gsl_odeiv2_step *step, double t, double *y,
     return settled >= ENOUGH;
 }
 
-bool nevh__sizes_from_rest(const nevh__step_selection *e, double sizes[]) {
-    nevh_field *f = e->field;
-    memset(sizes, 0, 2 * f->n * sizeof *sizes);
-    for (size_t i = 0; i < f->n_terms; i++)
-        if (f->terms[i].nv && !f->terms[i].term->decl.gradient)
-            return false;
-    double *y = nevh__array(8 * f->n, sizeof *y);
-    double *trial = nevh__array(24 * f->n, sizeof *trial); /* as GSL takes */
+bool nevh__follow_orbit(nevh_field *f, double t, const double q[],
+                        const double p[], double sizes[], nevh__orbit_fn visit,
+                        void *context) {
+    size_t n = f->n;
+    memset(sizes, 0, 2 * n * sizeof *sizes);
+    if ((double)f->instances * MOST_STEPS > most_work)
+        return false;
+    double *y = nevh__array(9 * n, sizeof *y);
+    double *trial = nevh__array(24 * n, sizeof *trial); /* as GSL takes */
     free(trial);
     gsl_odeiv2_step *step =
-        y && trial && (double)f->instances * MOST_STEPS < most_work
-            ? gsl_odeiv2_step_alloc(gsl_odeiv2_step_rkf45, 2 * f->n)
-            : NULL;
+        y && trial ? gsl_odeiv2_step_alloc(gsl_odeiv2_step_rkf45, 2 * n) : NULL;
     if (step) {
-        memcpy(y, e->samples.q, f->n * sizeof *y);
-        memcpy(y + f->n, e->samples.p, f->n * sizeof *y);
+        memcpy(y, q, n * sizeof *y);
+        memcpy(y + n, p, n * sizeof *y);
     }
-    bool found = step && follow(f, step, e->samples.t[0], y, sizes);
+    for (size_t i = 0; step && i < 2 * n; i++)
+        sizes[i] = fabs(y[i]);
+    law m = {f, y ? y + 8 * n : NULL};
+    if (y && !nevh_system_friction(f->system, m.friction))
+        m.friction = NULL;
+    bool found = step && follow(&m, step, t, y, sizes, visit, context);
     if (step)
         gsl_odeiv2_step_free(step);
     free(y);
     return found;
+}
+
+bool nevh__sizes_from_rest(const nevh__step_selection *e, double sizes[]) {
+    const nevh__samples *s = &e->samples;
+    return has_gradients(e->field) &&
+           nevh__follow_orbit(e->field, s->t[0], s->q, s->p, sizes, NULL, NULL);
 }

@@ -359,15 +359,29 @@ double plan_period(const plan *p, const char *shown) {
     return 0;
 }
 
-double plan_energy_scale(const plan *p) {
-    if (p->run->energy_scale > 0)
-        return p->run->energy_scale;
+/* That of one observation, which may tell nothing. */
+static double scale_of_start(const plan *p, bool *known) {
     const nevh_options as = {.portable = p->portable};
     nevh_energy *e = nevh_energy_new(p->system, &as);
     nevh_energy_observe(e, 0, p->run->t_start, p->q, p->p);
-    double scale = nevh_energy_result(e, 0).scale;
+    nevh_energy_report start = nevh_energy_result(e, 0);
     nevh_energy_free(e);
-    return scale;
+    *known = start.scale > 0 && (start.scale != 1 || start.met > 0);
+    return start.scale;
+}
+
+double plan_energy_scale(const plan *p) {
+    bool known;
+    return p->run->energy_scale > 0 ? p->run->energy_scale
+                                    : scale_of_start(p, &known);
+}
+
+void plan_set_scale(const plan *p, nevh_energy *energy) {
+    bool known = true;
+    double scale = p->run->energy_scale > 0 ? p->run->energy_scale
+                                            : scale_of_start(p, &known);
+    if (known)
+        nevh_energy_set_scale(energy, scale);
 }
 
 static char *effects_that_are(const nevh_system *s, bool on) {

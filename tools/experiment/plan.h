@@ -105,6 +105,9 @@ char *stop_words(const plan *, double t);
 double plan_period(const plan *, const char *shown);
 /* The energy that errors are relative to: the scene's, or H at the start. */
 double plan_energy_scale(const plan *);
+/* Errors are relative to it; to what the run meets, where the start tells of no
+   energy at all. */
+void plan_set_scale(const plan *, nevh_energy *);
 
 /* impact.c: what nevh effects --impact prints. */
 int impact(const options *, plan *);

@@ -47,8 +47,7 @@ nevh_energy *row_energy(const plan *p, const row *r, const nevh_stepper *s) {
     nevh_energy_expect(energy, s);
     if (p->balance)
         nevh_energy_follow(energy, s);
-    if (p->run->energy_scale > 0)
-        nevh_energy_set_scale(energy, p->run->energy_scale);
+    plan_set_scale(p, energy);
     return energy;
 }
 

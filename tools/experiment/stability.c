@@ -152,8 +152,8 @@ static char *cause_of(const plan *p, const row *r) {
     o.transform = plan_transform(p, r->integrator);
     o.tolerance = r->tolerance;
     o.balance = p->balance;
-    pace fastest = stability_pace(p->system, r->scheme, &o,
-                                  p->run->energy_scale, r->dt, p->t_end);
+    pace fastest = stability_pace(p->system, r->scheme, &o, r->energy.scale,
+                                  r->dt, p->t_end);
     double limit = nevh_stability_limit(r->scheme);
     double x = fabs(r->dt) * fastest.turning;
     char *cause = stability_cause(r->scheme, limit, r->dt, &fastest);

@@ -232,8 +232,7 @@ static void note_energy(job *j, const row *r) {
     double *q = tool_allocate(2 * p->n, sizeof *q);
     memcpy(q, p->q, p->n * sizeof *q);
     memcpy(q + p->n, p->p, p->n * sizeof *q);
-    if (p->run->energy_scale > 0)
-        nevh_energy_set_scale(energy, p->run->energy_scale);
+    plan_set_scale(p, energy);
     nevh_run_until(s, p->run->t_start, r->dt, nevh_chaos_result(r->chaos).t, q,
                    q + p->n, &(nevh_observer){nevh_energy_observe, energy, 1},
                    1);

@@ -158,8 +158,7 @@ static nevh_energy *new_energy(const plan *p, const nevh_stepper *s) {
     nevh_energy *energy = nevh_energy_new(p->system, &planned);
     if (p->balance)
         nevh_energy_follow(energy, s);
-    if (p->run->energy_scale > 0)
-        nevh_energy_set_scale(energy, p->run->energy_scale);
+    plan_set_scale(p, energy);
     return energy;
 }
 

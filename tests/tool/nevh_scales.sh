@@ -1,0 +1,68 @@
+#!/bin/sh
+# nevh compare: what it says depends neither on the units of length, energy and
+# time nor on H being 0, or small by chance, at the start.
+
+. "${srcdir:-.}/tests/support/nevh_support.sh"
+
+# scene L E T COORDINATES H: with m, k, f and w in units of powers of two.
+scene() {
+    awk -v l="$1" -v e="$2" -v t="$3" -v q="$4" -v h="$5" 'BEGIN {
+        L = 2^l; E = 2^e; T = 2^t
+        printf "[parameters]\nl = %.17g\nm = %.17g\nk = %.17g\nf = %.17g\n", \
+            L, E*T*T/L/L, E/L/L, E/L
+        printf "w = %.17g\n[coordinates]\n%s\n[effects]\n%s\n", 1/T, q, h
+        printf "[run]\nt_end = %.17g\ndt = %.17g\n", 60*T, 0.1*T
+        print "integrators = verlet, euler, rk4" }' |
+        sed 's/;/\n/g' >$work/scene.nevh
+}
+# Columns without a unit, numbers to five digits; but for those of a row that
+# explodes, in which rounding grows.
+told() {
+    "$nevh" compare $work/scene.nevh --format csv --quiet >$work/out 2>&1
+    grep -v '^#' $work/out | awk -F, '
+        NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
+        { status = $at["status"]; sub(/:.*/, "", status)
+          printf "%s %s %s %s %s", $at["integrator"], $at["steps"], status, \
+              $at["verdict"], $at["observed_order"]
+          if ($at["max_energy_error"] < 1e9)
+              printf " %.5g %.5g", $at["max_energy_error"], $at["rms_energy_error"]
+          print "" }'
+}
+
+# Starts at rest at 0, at rest elsewhere, where H is small by chance, in motion.
+while IFS='|' read -r q h; do
+    scene 0 0 0 "$q" "$h"
+    told >$work/plain
+    test "$(wc -l <$work/plain)" -eq 3 || { fails "$h"; cat $work/out; }
+    for units in "-100 0 0" "0 -100 0" "0 0 -60" "50 -27 27" "30 90 -30"; do
+        scene $units "$q" "$h"
+        told >$work/scaled
+        cmp -s $work/plain $work/scaled ||
+            { fails "$h in $units"; diff $work/plain $work/scaled; }
+    done
+done <<'END'
+x = 0|H = p_x^2/(2*m) + k*x^2/2 - f*x*cos(1.3*w*t)
+x = 0|H = p_x^2/(2*m) + k*x^2/2 - f*x*sin(0.7*w*t)
+x = 0|H = p_x^2/(2*m) + k*x^2/2 + k*x^4/l^2 - f*x
+x = 1.0000001*l|K = p_x^2/(2*m);V = k*(x - l)*(x + l)/2
+x = l|K = p_x^2/(2*m);V = k*x^2/2
+x = l;y = 0, m*l*w/2|K = (p_x^2 + p_y^2)/(2*m);V = -k*l^3/hypot(x, y)
+END
+
+# A weak force gives the orbit of a strong one, in small.
+for f in 1 1e-9 1e-100; do
+    scene 0 0 0 "x = 0" "H = p_x^2/2 + x^2/2 - $f*x*cos(1.3*t)"
+    told >$work/$f
+    cmp -s $work/1 $work/$f || { fails "f = $f"; diff $work/1 $work/$f; }
+done
+
+# At pi/2 a pendulum at rest has no energy but rounding.
+scene 0 0 0 "x = pi/2" "K = p_x^2/2;V = -cos(x)"
+told >$work/told
+grep -q '^verlet .* ok bounded ' $work/told && grep -q '^euler .* unstable ' $work/told ||
+    { fails "pi/2"; cat $work/told; }
+for x in 1.0000001 1.001 0.9999; do
+    scene 0 0 0 "x = $x" "K = p_x^2/2;V = (x - 1)*(x + 1)/2"
+    told >$work/told
+    grep -q '^verlet .* ok bounded ' $work/told || { fails "$x"; cat $work/told; }
+done
