@@ -290,6 +290,7 @@ check-slow:
 	srcdir=$(srcdir) SLOW=yes $(SHELL) $(srcdir)/tests/tool/nevh_export_rows.sh
 	srcdir=$(srcdir) SLOW=yes $(SHELL) $(srcdir)/tests/tool/nevh_recommend.sh
 	srcdir=$(srcdir) SLOW=yes $(SHELL) $(srcdir)/tests/tool/nevh_native.sh
+	srcdir=$(srcdir) SLOW=yes $(SHELL) $(srcdir)/tests/tool/nevh_memory.sh
 	NEVH_SCENES='$(srcdir)/scenes' tools/nevh hard --quiet
 	srcdir=$(srcdir) $(SHELL) $(srcdir)/tests/robust/long_sweeps.sh
 	$(MAKE) $(AM_MAKEFLAGS) bench/verdicts$(EXEEXT)

@@ -72,7 +72,7 @@ tools_nevh_SOURCES = \
 	tools/hard/hard.c \
 	tools/ensemble/store.h \
 	tools/ensemble/store.c \
-	tools/ensemble/store_holes.c \
+	tools/ensemble/store_holes.c tools/ensemble/store_record.c \
 	tools/ensemble/ranks.h \
 	tools/ensemble/ranks.c \
 	tools/ensemble/sweep_private.h \

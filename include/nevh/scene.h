@@ -28,8 +28,8 @@ typedef struct nevh_scene nevh_scene;
             is out; carries NEVH_EINVAL or NEVH_EFAILED (not readable)
             otherwise: the message is FILE:LINE:COLUMN: error: ..., the line,
             and a caret under the column, or FILE: error: ... where the file
-            cannot be read
-   name     instead of FILE; copied, as the text is
+            cannot be read; NEVH_EINVAL where the path or the text is NULL
+   name     instead of FILE; copied, as the text is; NULL: "scene"
    cost     linear in the text and in the instances of all sums */
 NEVH_API nevh_scene *nevh_scene_read(const char *path);
 NEVH_API nevh_scene *nevh_scene_parse(const char *name, const char *text);

@@ -121,6 +121,8 @@ static nevh_verdict judge_alone(const nevh_energy_report *r) {
 }
 
 nevh_verdict nevh_energy_verdict(const nevh_energy_report *r, double times) {
+    if (!r)
+        return NEVH_UNDECIDED;
     if (r->theory == NEVH_THEORY_NONE)
         times = INFINITY;
     if (r->samples <= 1) /* of the start alone */

@@ -33,7 +33,7 @@ static void halves(uint64_t x, uint32_t out[2]) {
 double nevh_uniform_at(uint64_t seed, const char *name, uint64_t i) {
     uint64_t digest = 0xCBF29CE484222325u; /* FNV-1a */
     uint32_t key[2], counter[4] = {0, 0, 1, 0}, out[4];
-    for (; *name; name++)
+    for (; name && *name; name++)
         digest = (digest ^ (unsigned char)*name) * 0x100000001B3u;
     halves(seed, key);
     halves(digest, counter);

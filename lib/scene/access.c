@@ -48,7 +48,7 @@ size_t nevh_scene_array(const nevh_scene *s, size_t k) {
 }
 
 const char *nevh_scene_label(const nevh_scene *s, const char *name) {
-    if (!s)
+    if (!s || !name)
         return "";
     char array[NEVH__NAME_LENGTH + 1];
     const char *text = text_of(s, NEVH__LABELS, name);

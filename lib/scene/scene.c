@@ -80,6 +80,7 @@ nevh__scene_model *nevh__model_with(nevh_scene *s,
 
 static nevh_scene *new_scene(const char *name) {
     nevh_scene *s = nevh__array(1, sizeof *s);
+    name = name ? name : "scene";
     char *copy = s ? nevh__pool_take(&s->pool, strlen(name) + 1, 1) : NULL;
     if (!copy) {
         free(s);
@@ -97,16 +98,22 @@ static void begin(nevh_scene *s, const nevh_scene_options *options,
         s->model = new_model(s, false);
 }
 
-nevh_scene *nevh_scene_parse(const char *name, const char *text) {
-    nevh_scene *s = new_scene(name);
-    if (s)
-        begin(s, &(nevh_scene_options){0}, text, strlen(text));
-    return s;
+static void refuse(nevh_scene *s, int status, const char *why) {
+    s->status = status;
+    snprintf(s->message, sizeof s->message, "%.1000s: error: %s", s->name, why);
 }
 
 static void unreadable(nevh_scene *s, const char *why) {
-    s->status = NEVH_EFAILED;
-    snprintf(s->message, sizeof s->message, "%.1000s: error: %s", s->name, why);
+    refuse(s, NEVH_EFAILED, why);
+}
+
+nevh_scene *nevh_scene_parse(const char *name, const char *text) {
+    nevh_scene *s = new_scene(name);
+    if (s && text)
+        begin(s, &(nevh_scene_options){0}, text, strlen(text));
+    else if (s)
+        refuse(s, NEVH_EINVAL, "the text is NULL");
+    return s;
 }
 
 /* All of a file, freed by the caller; NULL when it is not to be read. */
@@ -140,10 +147,12 @@ nevh_scene *nevh_scene_read(const char *path) {
 nevh_scene *nevh_scene_read_with(const char *path,
                                  const nevh_scene_options *options) {
     nevh_scene *s = new_scene(path);
-    FILE *file = s ? fopen(path, "rb") : NULL;
+    FILE *file = s && path ? fopen(path, "rb") : NULL;
     if (!file) {
-        if (s)
+        if (s && path)
             unreadable(s, strerror(errno));
+        else if (s)
+            refuse(s, NEVH_EINVAL, "the path is NULL");
         return s;
     }
     size_t bytes;

@@ -92,7 +92,9 @@ bool nevh__scene_effects(nevh_scene *s) {
 
 bool nevh__scene_switch(nevh_scene *s, const nevh_scene_options *o) {
     for (size_t i = 0; i < o->n_effects; i++) {
-        nevh__switch *found = nevh__scene_find_effect(s, o->effects[i] + 1);
+        const char *effect = o->effects ? o->effects[i] : NULL;
+        nevh__switch *found =
+            nevh__scene_find_effect(s, effect && *effect ? effect + 1 : "");
         if (!found)
             return false;
         found->on = o->effects[i][0] == '+';

@@ -117,7 +117,7 @@ nevh_sweep *nevh_sweep_new(nevh_scene *scene,
     if (!s)
         return NULL;
     s->scene = scene;
-    s->is = *options;
+    s->is = options ? *options : (nevh_sweep_options){0};
     s->is.threads = s->is.threads ? s->is.threads : 1;
     pthread_mutex_init(&s->lock, NULL);
     pthread_cond_init(&s->moved, NULL);

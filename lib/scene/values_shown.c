@@ -62,7 +62,7 @@ int nevh_scene_shown_values(nevh_scene *s, nevh_shown which, double t,
 
 int nevh_scene_judged_value(nevh_scene *s, double t, const double q[],
                             const double p[], double *value) {
-    if (!s)
+    if (!s || !value)
         return NEVH_EINVAL;
     nevh__state at = {t, q, p, false};
     *value = NAN;
@@ -118,7 +118,7 @@ bool nevh_scene_stops(nevh_scene *s) {
 
 int nevh_scene_stop_reached(nevh_scene *s, double t, const double q[],
                             const double p[], bool *reached) {
-    if (!s)
+    if (!s || !reached)
         return NEVH_EINVAL;
     double value;
     *reached = false;

@@ -117,6 +117,8 @@ static int probe_term(const nevh__term_entry *term, nevh__origin *o,
 int nevh_system_probe(const nevh_system *s, double t, const double q[],
                       const double p[], const double scale[],
                       nevh_separability *result) {
+    if (!result)
+        return NEVH_EINVAL;
     *result = (nevh_separability){.separable = true};
     if (nevh_system_status(s))
         return nevh_system_status(s);

@@ -276,6 +276,43 @@ static nevh_separability separability;
     X(NUMBER, nevh_system_traits, (NULL))                                      \
     X(STATUS, nevh_system_probe, (NULL, 0.1, in, in, in, &separability))
 
+/* The same of texts and outputs, of an object that is there. */
+static const char scene_text[] =
+    "[coordinates]\nx = 1\n[effects]\nkinetic = p_x^2/2\nspring = x^2/2\n"
+    "[run]\nt_end = 1\ndt = 0.1\nintegrators = verlet\n";
+
+static void refuse_scene(nevh_scene *s) {
+    ck_assert_int_eq(nevh_scene_status(s), NEVH_EINVAL);
+    ck_assert_ptr_nonnull(nevh_scene_message(s));
+    nevh_scene_free(s);
+}
+
+TEST(null_texts_are_refused) {
+    static const char *const nothing[] = {NULL};
+    refuse_scene(nevh_scene_parse("x", NULL));
+    refuse_scene(nevh_scene_parse(NULL, NULL));
+    refuse_scene(nevh_scene_read(NULL));
+    refuse_scene(nevh_scene_read_with(NULL, NULL));
+    nevh_scene_free(nevh_scene_read_with(
+        "/dev/null",
+        &(nevh_scene_options){.effects = nothing, .n_effects = 1}));
+    nevh_scene_free(nevh_scene_read_with(
+        "/dev/null", &(nevh_scene_options){.n_effects = 1}));
+    nevh_scene *s = nevh_scene_parse(NULL, scene_text);
+    ck_assert_int_eq(nevh_scene_status(s), NEVH_OK);
+    ck_assert_ptr_nonnull(nevh_scene_label(s, NULL));
+    ck_assert_int_eq(nevh_scene_judged_value(s, 0, in, in, NULL), NEVH_EINVAL);
+    ck_assert_int_eq(nevh_scene_stop_reached(s, 0, in, in, NULL), NEVH_EINVAL);
+    nevh_sweep_free(nevh_sweep_new(s, NULL));
+    const nevh_system *system = nevh_scene_system(s);
+    ck_assert_int_eq(nevh_system_probe(system, 0, in, in, NULL, NULL),
+                     NEVH_EINVAL);
+    nevh_scene_free(s);
+    ck_assert_int_eq(nevh_energy_verdict(NULL, 1), NEVH_UNDECIDED);
+    ck_assert(nevh_uniform_at(1, NULL, 2) == nevh_uniform_at(1, "", 2));
+    ck_assert(isfinite(nevh_normal_at(1, NULL, 2)));
+}
+
 #define STATUS(name, call) ck_assert_int_ne(call, NEVH_OK)
 #define TEXT(name, call)   ck_assert_ptr_nonnull(call)
 #define NUMBER(name, call) ck_assert((call) == 0)

@@ -98,6 +98,52 @@ for name in my.svg my.npy.txt my.csv.state; do
     cmp -s $work/$name $work/kept || fails "changed the scene $name"
 done
 
+# Points that are found beside the scenes, by any name of theirs; and the scenes, which
+# a list of them reads.
+mkdir $work/scenes
+cp $work/points.kept $work/scenes/beside.csv
+cp $work/kept $work/scenes/mine.nevh
+ln -s scenes/beside.csv $work/soft.csv
+ln $work/scenes/beside.csv $work/hard.csv
+for name in $work/scenes/beside.csv ./$work/folder/../scenes/beside.csv \
+    $PWD/$work/scenes//beside.csv $work/soft.csv $work/hard.csv; do
+    for run in 'fit --vary k --sigma 0.1' 'run' 'run --plot-kind time'; do
+        (
+            NEVH_SCENES=$work/scenes
+            exits 2 ${run%% *} $work/my.nevh ${run#"${run%% *}"} --data beside.csv \
+                -o $name
+            says 'over the measured points of --data; nothing was changed$'
+            exits 2 run $work/my.nevh --data beside.csv --keep-plot-script $name
+            says '^nevh: --keep-plot-script .* over the measured points'
+            exit $status
+        ) || status=1
+    done
+done
+(
+    NEVH_SCENES=$work/scenes
+    exits 2 list scenes -o $work/folder/../scenes/mine.nevh
+    says 'over the scene itself'
+    exits 0 list scenes -o $work/scenes.txt
+    exit $status
+) || status=1
+cmp -s $work/scenes/beside.csv $work/points.kept || fails "changed the points"
+cmp -s $work/scenes/mine.nevh $work/kept || fails "changed the scene"
+# Links to one file that is not there yet; the parts of a sweep.
+ln -s coming.gp $work/link1
+ln -s folder/../coming.gp $work/link2
+exits 2 compare $work/my.nevh -o $work/link1 --keep-plot-script $work/link2
+says 'two outputs would have the same name'
+exits 2 compare $work/my.nevh -o $work/link1 --keep-plot-script $work/coming.gp
+says 'two outputs would have the same name'
+cp $work/kept $work/part.2-of-3.npy.txt
+cp $work/kept $work/part.2-of-3.npy
+for name in part.2-of-3.npy.txt part.2-of-3.npy; do
+    exits 2 sweep $work/$name --vary k=1,2,3 --outcomes energy_error \
+        -o $work/part.npy --task 2/3
+    says 'over the scene itself'
+    cmp -s $work/$name $work/kept || fails "changed the scene $name"
+done
+
 # The mode of a file that was there; of one that was not that of the umask.
 for run in 'compare' 'check' 'effects' 'run'; do
     : >$work/private
@@ -171,6 +217,22 @@ lines=$(printf '%s/a\nb.nevh' $work)
 cp $work/my.nevh "$lines"
 exits 0 run "$lines" --t-end 0.2
 test "$(grep -vc '^#' $work/out)" = 4 || { fails "has other rows"; cat $work/out; }
+
+# What a spreadsheet would compute is a text, and a number stays one.
+mkdir $work/formulas
+for name in '=1+1' '+1+1' '-1+1' '@SUM(1)' '=cmd,"x"'; do
+    rm -f $work/formulas/*
+    cp $work/kept "$work/formulas/$name.nevh"
+    (
+        NEVH_SCENES=$work/formulas
+        exits 0 list scenes --format csv --quiet
+        test "$(sed -n 2p $work/out | tr -d '"' | cut -c 1-2)" = \
+            "'$(printf %.1s "$name")" || { fails "begins a formula"; cat $work/out; }
+        exit $status
+    ) || status=1
+done
+exits 0 compare $work/my.nevh --format csv --quiet
+grep -q "'" $work/out && fails "quotes what is no formula"
 
 # What has no end is no state, and no code.
 : >$work/z.csv

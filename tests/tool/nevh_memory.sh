@@ -1,7 +1,7 @@
 #!/bin/sh
 # Every command where memory runs out: at one allocation, or from one on.  It
 # never crashes or hangs, says so, leaves no file that is begun, and what it does
-# print is right.
+# print is right.  SLOW=yes: at each allocation of each command.
 
 . "${srcdir:-.}/tests/support/nevh_support.sh"
 . "$srcdir/tests/support/nevh_interrupt.sh"
@@ -50,6 +50,7 @@ starves() {
     unset STARVE_COUNT
     test $code -le 1 || fails "does not work where there is memory ($code)"
     count=$(tail -n 1 $work/err)
+    test "$SLOW" = yes && places=$count
     steady $work/out >$work/right
     at=1
     while test $at -le $count; do
@@ -79,6 +80,14 @@ starves 6 section henon-heiles --t-end 20
 starves 6 new $work/made.nevh --from pendulum
 starves 5 list integrators
 starves 3 list scenes --format json
+starves 12 flow pendulum --t-end 1
+starves 8 sweep pendulum --vary 'phi=range(0.1,3,6)' --t-end 10 --threads 1 \
+    --outcomes period,energy_error,verdict
+starves 4 reference double-pendulum --t-end 1
+starves 4 chaos henon-heiles --t-end 20
+starves 4 frequencies henon-heiles --t-end 100
+starves 4 export kepler --integrators gauss4 --dt 0.1 -o $work/made.c
+starves 5 check pendulum --t-end 0.5
 same= # times are measured
 starves 12 compare pendulum --t-end 1 --diagnostics \
     --integrators verlet,gauss4,gsl-rk8pd,dopri5,tao4,gonzalez
@@ -87,7 +96,6 @@ starves 5 compare double-pendulum --t-end 0.5 --integrators gauss4,itoh-abe \
 starves 3 portrait pendulum --t-end 1 --vary phi=0.5,1 \
     --keep-plot-script $work/made.gp
 starves 5 effects pendulum --impact --t-end 0.5
-starves 5 check pendulum --t-end 0.5
 starves 4 gradients pendulum --t-end 0.5
 starves 4 cost pendulum --t-end 0.5 --integrators verlet,gauss4
 starves 4 recommend pendulum --t-end 0.5 --integrators verlet,gauss8 \

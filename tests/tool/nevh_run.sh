@@ -49,7 +49,7 @@ has 'resume FILE'
 exits 0 run pendulum --t-end 0.5
 has '^t,phi,p_phi,x,y,energy$'
 has '^0,2,0,0\.909297426825681'
-has '^# integrator: verlet, dt = 0\.1: the first .* that fits'
+has '^# integrator: verlet, dt = 0\.1 .*first that fits'
 has '^# effects on: kinetic, gravity'
 has '^# rows: after every step'
 columns 6

@@ -168,6 +168,59 @@ grep -q 'of 300 members 0 failed and 16 have no start' $work/first ||
     fails "loses members to another sweep"
 rm -f $work/twice.npy*
 
+# What was there stays until the new one can be written: the array, its side file, a
+# join of parts.
+cp $work/whole.npy $work/cut.npy
+mkdir $work/cut.npy.txt
+exits 2 sweep $scene -o $work/cut.npy --dt 0.02
+says 'cut.npy.txt cannot be written'
+cmp -s $work/whole.npy $work/cut.npy || fails "emptied what was there"
+rmdir $work/cut.npy.txt
+ln -s nowhere/side $work/cut.npy.txt
+exits 2 sweep $scene -o $work/cut.npy --dt 0.02
+cmp -s $work/whole.npy $work/cut.npy || fails "emptied what was there"
+rm $work/cut.npy.txt
+cp $work/whole.npy.txt $work/cut.npy.txt
+(
+    ulimit -f 8
+    exits 2 sweep $scene -o $work/cut.npy --dt 0.02
+    says 'cut.npy cannot be written: File too large'
+    exits 2 sweep $scene -o $work/none.npy
+    exit $status
+) || status=1
+same $work/cut.npy
+exits 2 sweep $scene -o $work/cut.npy --join
+same $work/cut.npy
+"$nevh" sweep $scene -o $work/cut.npy --task 1/2 2>/dev/null
+exits 2 sweep $scene -o $work/cut.npy --join
+says 'cut.2-of-2.npy: No such file'
+same $work/cut.npy
+mkdir $work/none.npy.txt
+exits 2 sweep $scene -o $work/none.npy
+rmdir $work/none.npy.txt
+test ! -e $work/none.npy || fails "left an empty array"
+rm -f $work/cut*
+test "$(echo $work/*.??????)" = "$work/*.??????" || fails "left a temporary file"
+
+# A record with any bit turned is not there, and its member is run again.
+flip() { # FILE BYTE BIT
+    flipped=$(od -A n -t u1 -j $2 -N 1 "$1" | tr -d ' ')
+    flipped=$(((flipped / (1 << $3) % 2 ? -1 : 1) * (1 << $3) + flipped))
+    printf "\\$(printf %o $flipped)" |
+        dd of="$1" bs=1 seek=$2 conv=notrunc 2>/dev/null
+}
+for at in "0 7" "16 2" "16 3" "16 6" "17 0" "17 5" "18 1" "300 2" "301 4" "307 1" \
+    "311 7" "160 1" "165 0" "11999 6" "11961 3"; do
+    cp $work/whole.npy $work/cut.npy
+    cp $work/whole.npy.txt $work/cut.npy.txt
+    flip $work/cut.npy $((header + ${at% *})) ${at#* }
+    cmp -s $work/whole.npy $work/cut.npy && fails "was not damaged"
+    exits 1 sweep $scene --resume $work/cut.npy
+    says '1 records were damaged|of 300 members'
+    same $work/cut.npy
+done
+rm -f $work/cut*
+
 # Killed in a write, or before it; the file is then gone on with.
 can_stop || exits_whole
 goes_on() {
@@ -175,7 +228,14 @@ goes_on() {
     same $work/killed.npy
     rm -f $work/killed.npy*
 }
-for at in 1 2 3 8 -8 41 42 99 -100 163 204 -205 301 450 516 599 -601; do
+# Before there are records nothing is there to go on with, and nothing is in the way.
+must_stop $KILL INTERRUPT_PWRITE=1 sweep $scene -o $work/killed.npy
+exits 2 sweep $scene --resume $work/killed.npy
+says 'there is nothing to resume'
+exits 1 sweep $scene -o $work/killed.npy
+same $work/killed.npy
+rm -f $work/killed.npy*
+for at in 2 3 8 -8 41 42 99 -100 163 204 -205 301 450 516 599 -601; do
     must_stop $KILL INTERRUPT_PWRITE=$at sweep $scene -o $work/killed.npy \
         --threads 2
     goes_on --threads $((1 + (at & 1)))

@@ -37,7 +37,7 @@ static void add_integrator(table *t, const nevh_integrator *s, bool all) {
     table_text(t, nevh_integrator_source(s));
 }
 
-static int list_integrators(table *t, bool all) {
+static int list_integrators(table *t, const options *o) {
     static const char *const names[] = {
         "order",        "sym-\nplectic", "sym-\nmetric", "ex-\nplicit",
         "energy\nkept", "adap-\ntive",   "gra-\ndients", "needs H ="};
@@ -45,19 +45,19 @@ static int list_integrators(table *t, bool all) {
     table_key(t);
     COLUMNS(t, names);
     table_break(t);
-    if (all) {
+    if (o->all) {
         table_column(t, "native");
         table_column(t, "elsewhere");
         table_column(t, "source");
     }
     for (size_t i = 0; nevh_integrators()[i]; i++)
-        add_integrator(t, nevh_integrators()[i], all);
+        add_integrator(t, nevh_integrators()[i], o->all);
     return TOOL_OK;
 }
 
-static int list_gradients(table *t, bool all) {
+static int list_gradients(table *t, const options *o) {
     static const char *const names[] = {"gradient", "order", "from"};
-    (void)all;
+    (void)o;
     COLUMNS(t, names);
     for (size_t i = 0; nevh_gradients()[i]; i++) {
         const nevh_gradient *g = nevh_gradients()[i];
@@ -75,10 +75,10 @@ static int list_gradients(table *t, bool all) {
     return TOOL_OK;
 }
 
-static int list_models(table *t, bool all) {
+static int list_models(table *t, const options *o) {
     static const char *const names[] = {"model", "degrees of\nfreedom",
                                         "title"};
-    (void)all;
+    (void)o;
     COLUMNS(t, names);
     for (size_t i = 0; nevh_models()[i]; i++) {
         const nevh_model *m = nevh_models()[i];
@@ -89,27 +89,28 @@ static int list_models(table *t, bool all) {
     return TOOL_OK;
 }
 
-static int list_scenes(table *t, bool all) {
+static int list_scenes(table *t, const options *o) {
     static const char *const titles[] = {"scene", "degrees of\nfreedom",
                                          "title"};
     list names = {0}, files = {0};
     COLUMNS(t, titles);
-    if (all)
+    int status = TOOL_OK;
+    if (o->all)
         table_column(t, "source");
     scenes_installed(&names, &files);
-    for (size_t i = 0; i < names.count; i++) {
-        nevh_scene *scene = nevh_scene_read(files.item[i]);
+    for (size_t i = 0; i < names.count && !status; i++) {
+        nevh_scene *scene = tool_owned(nevh_scene_read(files.item[i]));
         bool good = nevh_scene_status(scene) == NEVH_OK;
-        if (nevh_scene_status(scene) == NEVH_ENOMEM)
-            tool_owned(NULL);
+        status = outputs_check(o, scene, files.item[i]);
         table_text(t, names.item[i]);
         table_number(t, good ? (double)nevh_scene_dof(scene) : 0);
         table_text(t, good ? nevh_scene_title(scene) : "has errors");
-        if (all)
+        if (o->all)
             table_text(t, good ? nevh_scene_source(scene) : NULL);
         nevh_scene_free(scene);
     }
-    int status = names.count ? TOOL_OK : scenes_missing();
+    if (!names.count)
+        status = scenes_missing();
     list_free(&names);
     list_free(&files);
     return status;
@@ -118,7 +119,7 @@ static int list_scenes(table *t, bool all) {
 int list_command(const options *o) {
     static const struct {
         const char *name;
-        int (*list)(table *, bool all);
+        int (*list)(table *, const options *);
     } kinds[] = {{"integrators", list_integrators},
                  {"gradients", list_gradients},
                  {"models", list_models},
@@ -137,7 +138,7 @@ int list_command(const options *o) {
                     "scenes");
     else if (i == count)
         tool_unknown("kind", name, &names);
-    else if (!kinds[i].list(p.table, o->all))
+    else if (!kinds[i].list(p.table, o))
         status = output_page(o, &p, TOOL_OK);
     list_free(&names);
     page_free(&p);

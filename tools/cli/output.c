@@ -6,6 +6,7 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -135,14 +136,24 @@ static void open_temporary(output *o) {
         remember(NULL, o->temporary);
     sigprocmask(SIG_SETMASK, &before, NULL);
     o->stream = file < 0 ? NULL : fdopen(file, "w");
-    if (o->stream)
+    if (o->stream) {
         allow_as_usual(file, o->name);
+    } else if (file >= 0) {
+        int why = errno;
+        close(file);
+        unlink(o->temporary);
+        errno = why;
+    }
 }
 
 static void forget(output *o) {
     remember(o->temporary, NULL);
+    remember(o->made, NULL);
+    if (o->locks)
+        close(o->former);
     free(o->name);
     free(o->temporary);
+    free(o->made);
 }
 
 FILE *regular_open(const char *name) {
@@ -173,6 +184,52 @@ int output_open(output *o, const char *name) {
     return TOOL_USAGE;
 }
 
+static bool is_file_of(int file, const char *name) {
+    struct stat here, there;
+    return fstat(file, &here) == 0 && stat(name, &there) == 0 &&
+           here.st_dev == there.st_dev && here.st_ino == there.st_ino;
+}
+
+/* Locks what stands under the name, an empty file where nothing does. */
+static int lock_former(output *o, const char *name, const char *who) {
+    struct stat found;
+    if (stat(name, &found) != 0)
+        o->made = text_print("%s", name);
+    o->former = open(name, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    o->locks = o->former >= 0;
+    if (!o->locks) {
+        free(o->made);
+        o->made = NULL;
+        return tool_refuse("%s cannot be written: %s", name, strerror(errno));
+    }
+    bool busy = flock(o->former, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK;
+    if (!busy && is_file_of(o->former, name)) {
+        if (o->made)
+            remember(NULL, o->made);
+        return TOOL_OK;
+    }
+    return tool_refuse("%s: another %s is writing it", name, who);
+}
+
+int output_claim(output *o, const char *name, const char *who) {
+    struct stat found;
+    output claimed = {0};
+    bool lasts = stat(name, &found) != 0 || S_ISREG(found.st_mode);
+    int status = lasts ? lock_former(&claimed, name, who) : TOOL_OK;
+    if (status || output_open(o, name)) {
+        if (!status && claimed.made)
+            unlink(claimed.made);
+        forget(&claimed);
+        return TOOL_USAGE;
+    }
+    o->former = claimed.former;
+    o->locks = claimed.locks;
+    o->made = claimed.made;
+    if (o->locks)
+        flock(fileno(o->stream), LOCK_EX | LOCK_NB);
+    return TOOL_OK;
+}
+
 int output_check(const char *name) {
     output o;
     if (!can_be_replaced(name)) {
@@ -196,8 +253,10 @@ static int write_all(output *o) {
 int output_close(output *o, int status) {
     errno = 0;
     int wrong = write_all(o);
-    if (o->temporary && !wrong && status != TOOL_USAGE)
+    if (o->temporary && !wrong && status != TOOL_USAGE) {
+        remember(o->made, NULL);
         wrong = rename(o->temporary, o->name);
+    }
     if (wrong)
         status = tool_refuse("%s cannot be written: %s",
                              o->name ? o->name : "the output",
@@ -206,6 +265,8 @@ int output_close(output *o, int status) {
                                      "disk full?");
     if (o->temporary && status == TOOL_USAGE)
         unlink(o->temporary);
+    if (o->made && status == TOOL_USAGE)
+        unlink(o->made);
     forget(o);
     return status;
 }

@@ -2,11 +2,30 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tool.h"
 #include <stdlib.h>
+#include <inttypes.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
+
+/* What a symbolic link that stands for no file would make; to be freed. */
+static char *follow(const char *file) {
+    enum { MOST_LINKS = 40, MOST_BYTES = 4096 };
+    char target[MOST_BYTES], *at = text_print("%s", file);
+    for (int i = 0; i < MOST_LINKS; i++) {
+        ssize_t length = readlink(at, target, sizeof target);
+        if (length < 0 || length == sizeof target)
+            break;
+        const char *slash = strrchr(at, '/');
+        int folder = slash && *target != '/' ? (int)(slash - at) + 1 : 0;
+        char *next = text_print("%.*s%.*s", folder, at, (int)length, target);
+        free(at);
+        at = next;
+    }
+    return at;
+}
 
 /* Where a file is to be: its folder, and its name in it. */
-static bool is_same_place(const char *a, const char *b) {
+static bool places_are_same(const char *a, const char *b) {
     struct stat folder[2];
     const char *name[2] = {a, b};
     for (int i = 0; i < 2; i++) {
@@ -23,6 +42,14 @@ static bool is_same_place(const char *a, const char *b) {
     return folder[0].st_dev == folder[1].st_dev &&
            folder[0].st_ino == folder[1].st_ino &&
            strcmp(name[0], name[1]) == 0;
+}
+
+static bool is_same_place(const char *a, const char *b) {
+    char *first = follow(a), *second = follow(b);
+    bool same = places_are_same(first, second);
+    free(first);
+    free(second);
+    return same;
 }
 
 /* Whether two names are of one regular file, or would be of one. */
@@ -73,9 +100,21 @@ static void outputs_add_rows(outputs *all, const options *o, const char *option,
     }
 }
 
+char *output_part(const char *file, uint64_t task, uint64_t tasks) {
+    size_t length = strlen(file);
+    if (!tasks)
+        return text_print("%s", file);
+    if (length > 4 && strcmp(file + length - 4, ".npy") == 0)
+        length -= 4;
+    return text_print("%.*s.%" PRIu64 "-of-%" PRIu64 ".npy", (int)length, file,
+                      task, tasks);
+}
+
 static void outputs_list(outputs *all, const options *o) {
+    char *part = o->file ? output_part(o->file, o->task, o->tasks) : NULL;
     *all = (outputs){0};
-    outputs_add_rows(all, o, "-o", o->file);
+    outputs_add_rows(all, o, "-o", part);
+    free(part);
     outputs_add(all, "--plot", o->plot.file);
     outputs_add(all, "--picture", o->picture);
     outputs_add(all, "--keep-plot-script", o->plot.script);
@@ -108,10 +147,14 @@ static int check_each_other(const outputs *all) {
 static int check_inputs(const outputs *all, const options *o,
                         const nevh_scene *scene, const char *file) {
     int status = check_against(all, file, "the scene itself");
-    char *code;
+    char *code, *data = o->fit.data ? data_file(o->fit.data) : NULL;
+    char *kit = page_kit();
     if (!status)
-        status =
-            check_against(all, o->fit.data, "the measured points of --data");
+        status = check_against(all, data, "the measured points of --data");
+    if (!status)
+        status = check_against(all, kit, "the page without a scene");
+    free(data);
+    free(kit);
     for (size_t i = 0; !status && (code = nevh_scene_code_path(scene, i));
          i++) {
         status = check_against(all, code, "the scene's own C code");

@@ -3,6 +3,7 @@
 #include "tool.h"
 #include <nevh/sweep.h>
 #include <dirent.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -56,7 +57,10 @@ static char *folder_beside(void) {
     return NULL;
 }
 
-const char *scenes_folder(void) {
+/* Where scenes that are given by name are: what NEVH_SCENES in the environment
+   says, else the folder that belongs to this program (in the build tree or
+   beside bin/), else the one it was configured for. */
+static const char *scenes_folder(void) {
     static char *beside;
     const char *given = getenv("NEVH_SCENES");
     if (given && *given)
@@ -75,6 +79,8 @@ static int is_scene(const struct dirent *entry) {
 void scenes_installed(list *names, list *files) {
     struct dirent **entry = NULL;
     int count = scandir(scenes_folder(), &entry, is_scene, alphasort);
+    if (count < 0 && errno == ENOMEM)
+        tool_owned(NULL);
     for (int i = 0; i < count; i++) {
         const char *file = entry[i]->d_name;
         list_print(names, "%.*s", (int)(strlen(file) - sizeof ending + 1),
@@ -86,9 +92,22 @@ void scenes_installed(list *names, list *files) {
     free(entry);
 }
 
+static bool is_there(const char *name) {
+    struct stat found;
+    return stat(name, &found) == 0 || errno != ENOENT;
+}
+
 static bool is_file(const char *name) {
     struct stat found;
     return stat(name, &found) == 0 && !S_ISDIR(found.st_mode);
+}
+
+char *data_file(const char *name) {
+    char *file = text_print("%s/%s", scenes_folder(), name);
+    if (!strchr(name, '/') && !is_there(name) && is_file(file))
+        return file;
+    free(file);
+    return text_print("%s", name);
 }
 
 char *page_kit(void) {
@@ -216,8 +235,7 @@ int scene_report(const nevh_scene *scene, const options *o) {
     const char *message = nevh_scene_message(scene);
     const char *what = strstr(message, ": error: "),
                *line = strchr(message, '\n');
-    if (nevh_scene_status(scene) == NEVH_ENOMEM)
-        return tool_refuse("%s", message);
+    nevh_scene_status(scene); /* where memory is out it ends here */
     if (strncmp(message, "assignment:", 11) != 0 || !what || !line)
         return fprintf(stderr, "%s\n", message), TOOL_USAGE;
     return tool_refuse("%s: %s",

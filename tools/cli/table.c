@@ -288,12 +288,22 @@ static void print_table(const table *t, FILE *f) {
     free(set);
 }
 
+/* Spreadsheets compute a text that begins so, unless an apostrophe is before it. */
+static bool is_computed(const char *text) {
+    char *end;
+    if (!*text || !strchr("=+-@\t\r", *text))
+        return false;
+    strtod(text, &end);
+    return *end || end == text;
+}
+
 static void print_quoted(const char *text, FILE *f) {
+    const char *before = is_computed(text) ? "'" : "";
     if (!strpbrk(text, ",\"\r\n")) {
-        fputs(text, f);
+        fprintf(f, "%s%s", before, text);
         return;
     }
-    fputc('"', f);
+    fprintf(f, "\"%s", before);
     for (; *text; text++)
         fputs(*text == '"' ? "\"\"" : (char[]){*text, 0}, f);
     fputc('"', f);

@@ -29,8 +29,10 @@
 #ifndef NEVH_TOOL_H
 #define NEVH_TOOL_H
 
+#include <errno.h>
 #include <nevh/nevh.h>
 #include <nevh/scene.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <sys/types.h>
 
@@ -53,6 +55,40 @@ void *tool_allocate(size_t count, size_t size);        /* zeros */
 void *tool_enlarge(void *, size_t count, size_t size); /* as realloc */
 /* What is not NULL, which is what the library returns where memory is out. */
 void *tool_owned(void *);
+/* A status of the library; where it is NEVH_ENOMEM the program ends, too: a row
+   that is refused, or a value left out, would say something about the scheme. */
+int tool_status(int status);
+#define nevh_chaos_run(...)     tool_status(nevh_chaos_run(__VA_ARGS__))
+#define nevh_energy_status(...) tool_status(nevh_energy_status(__VA_ARGS__))
+#define nevh_field_status(...)  tool_status(nevh_field_status(__VA_ARGS__))
+#define nevh_loop_carry(...)    tool_status(nevh_loop_carry(__VA_ARGS__))
+#define nevh_loop_status(...)   tool_status(nevh_loop_status(__VA_ARGS__))
+#define nevh_run_until(...)     tool_status(nevh_run_until(__VA_ARGS__))
+#define nevh_scene_judged_value(...)                                           \
+    tool_status(nevh_scene_judged_value(__VA_ARGS__))
+#define nevh_scene_member_start(...)                                           \
+    tool_status(nevh_scene_member_start(__VA_ARGS__))
+#define nevh_scene_part_values(...)                                            \
+    tool_status(nevh_scene_part_values(__VA_ARGS__))
+#define nevh_scene_section_cross(...)                                          \
+    tool_status(nevh_scene_section_cross(__VA_ARGS__))
+#define nevh_scene_section_items(...)                                          \
+    tool_status(nevh_scene_section_items(__VA_ARGS__))
+#define nevh_scene_shown_values(...)                                           \
+    tool_status(nevh_scene_shown_values(__VA_ARGS__))
+#define nevh_scene_start(...)  tool_status(nevh_scene_start(__VA_ARGS__))
+#define nevh_scene_status(...) tool_status(nevh_scene_status(__VA_ARGS__))
+#define nevh_scene_stop_reached(...)                                           \
+    tool_status(nevh_scene_stop_reached(__VA_ARGS__))
+#define nevh_sections_status(...) tool_status(nevh_sections_status(__VA_ARGS__))
+#define nevh_stepper_apply(...)   tool_status(nevh_stepper_apply(__VA_ARGS__))
+#define nevh_stepper_status(...)  tool_status(nevh_stepper_status(__VA_ARGS__))
+/* What is NAN where memory is out. */
+double tool_number(double);
+#define nevh_stability_limit(...)                                              \
+    (errno = 0, tool_number(nevh_stability_limit(__VA_ARGS__)))
+#define nevh_stability_angle(...)                                              \
+    (errno = 0, tool_number(nevh_stability_angle(__VA_ARGS__)))
 /* So every object that the command asks for is there. */
 #define nevh_energy_new(...)                                                   \
     ((nevh_energy *)tool_owned(nevh_energy_new(__VA_ARGS__)))
@@ -89,6 +125,8 @@ enum { NUMBER_SIZE = 32 };
    `text`. */
 const char *number_text(char text[NUMBER_SIZE], double number);
 double cpu_seconds(void);
+uint64_t digest_begin(void);
+uint64_t digest_add(uint64_t digest, const void *bytes, size_t count);
 
 /* table.c: rows of texts and numbers. */
 typedef enum { FORMAT_TABLE, FORMAT_CSV, FORMAT_JSON } table_format;
@@ -247,8 +285,15 @@ void help_print(FILE *, int used, int column, const char *text);
 typedef struct {
     FILE *stream;
     char *name, *temporary;
+    char *made; /* an empty file that stands under the name until then */
+    int former; /* what stands there; open, and locked where `locks` */
+    bool locks;
 } output;
 int output_open(output *, const char *name); /* NULL: stdout */
+/* The same for a file that is closed before it is whole, and grows under its
+   name: it is locked, and what is there stays until it is closed.
+   who  "run": what is refused where another one has it locked */
+int output_claim(output *, const char *name, const char *who);
 /* Calls `note` when one of the signals that end programs comes, unless it is
    ignored.  The second one of a kind ends the program. */
 void signals_catch(void (*note)(int));
@@ -278,8 +323,11 @@ void page_html(const page *, FILE *);
    nevh sweep was made from. */
 #define STATE_ENDING      ".state"
 #define ARRAY_TEXT_ENDING ".txt"
+/* FILE.npy, or for task I of N (0: there are no tasks) FILE.I-of-N.npy; to be
+   freed. */
+char *output_part(const char *file, uint64_t task, uint64_t tasks);
 /* That no option writes over the file of a scene, its C code, measured points, or
-   what another option writes. */
+   what another option writes, whatever their names. */
 int outputs_check(const options *, const nevh_scene *, const char *file);
 
 /* scenes.c: scenes by file or name, changed as the options say. */
@@ -291,10 +339,6 @@ int scene_report(const nevh_scene *, const options *);
 /* returns  TOOL_OK, or TOOL_USAGE with the message printed and *scene NULL */
 int scene_open(nevh_scene **scene, const options *);
 int scene_open_named(nevh_scene **scene, const char *name, const options *);
-/* Where scenes that are given by name are: what NEVH_SCENES in the environment
-   says, else the folder that belongs to this program (in the build tree or
-   beside bin/), else the one it was configured for. */
-const char *scenes_folder(void);
 /* The message that none is there. */
 int scenes_missing(void);
 /* Names of installed scenes, sorted; with their files when `files` is not
@@ -303,6 +347,8 @@ void scenes_installed(list *names, list *files);
 /* The file of a scene in a folder given from that of the installed ones; NULL
    when there is none. */
 char *scene_file(const char *beside, const char *name);
+/* What --data names: a file here, or beside the installed scenes; to be freed. */
+char *data_file(const char *name);
 
 /* The live page without a scene, beside this program or where it was configured
    to be; to be freed.  Whether it is there is not known. */

@@ -1,6 +1,7 @@
 /* nevh: texts, lists of them, and messages.
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "tool.h"
+#include <math.h>
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -12,6 +13,18 @@ void *tool_owned(void *memory) {
         exit(TOOL_FAILED);
     }
     return memory;
+}
+
+int tool_status(int status) {
+    if (status == NEVH_ENOMEM)
+        tool_owned(NULL);
+    return status;
+}
+
+double tool_number(double number) {
+    if (isnan(number) && errno == ENOMEM)
+        tool_owned(NULL);
+    return number;
 }
 
 void *tool_allocate(size_t count, size_t size) {

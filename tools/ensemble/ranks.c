@@ -115,7 +115,9 @@ size_t ranks_threads(const ranks *r) {
 }
 
 static int open_store(store *s, const char *name, bool resume) {
-    return resume ? store_resume(s, name) : store_create(s, name);
+    if (resume)
+        return store_resume(s, name);
+    return store_create(s, name) ? TOOL_USAGE : store_settle(s);
 }
 
 int ranks_open(ranks *r, store *s, const char *name, bool resume,

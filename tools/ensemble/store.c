@@ -4,27 +4,15 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { ALIGNED = 64, BEFORE_TEXT = 12, MOST_REASONS = 1000, FORGET = 1 << 14 };
+enum { MOST_REASONS = 1000 };
 static const char magic[] = "nevh sweep, 1\n";
 static const char reasons_begin[] = "\n[not done]\n";
-
-char *store_name(const char *file, uint64_t task, uint64_t tasks) {
-    size_t length = strlen(file);
-    if (!tasks)
-        return text_print("%s", file);
-    if (length > 4 && strcmp(file + length - 4, ".npy") == 0)
-        length -= 4;
-    return text_print("%.*s.%" PRIu64 "-of-%" PRIu64 ".npy", (int)length, file,
-                      task, tasks);
-}
 
 static int unwritten(const store *s) {
     return tool_refuse("%s cannot be written: %s; what is there stays, and "
@@ -51,59 +39,6 @@ static bool write_at(const store *s, const void *bytes, size_t count,
     return true;
 }
 
-/* The header. */
-
-/* A text as Python writes it, in ASCII. */
-static char *python_text(const char *text) {
-    char *all = text_print("'");
-    const unsigned char *at = (const unsigned char *)text;
-    while (*at) {
-        unsigned code = *at++;
-        int more = code >= 0xF0 ? 3 : code >= 0xE0 ? 2 : code >= 0xC0 ? 1 : 0;
-        code &= more ? 0x3Fu >> more : 0x7Fu;
-        for (; more && *at; more--)
-            code = code << 6 | (*at++ & 0x3Fu);
-        char *longer = text_print(code == '\'' || code == '\\' ? "%s\\%c"
-                                  : code < 0x7F                ? "%s%c"
-                                  : code < 0x10000             ? "%s\\u%04x"
-                                                               : "%s\\U%08x",
-                                  all, code);
-        free(all);
-        all = longer;
-    }
-    char *whole = text_print("%s'", all);
-    free(all);
-    return whole;
-}
-
-/* The header, as long as s->header says, which is set; to be freed. */
-static char *make_header(store *s) {
-    char *fields = text_print("%s", "('status', '|u1'), ('', '|V7')");
-    for (size_t i = 0; i < s->columns->count; i++) {
-        char *name = python_text(s->columns->item[i]);
-        char *longer = text_print("%s, (%s, '<f8')", fields, name);
-        free(name);
-        free(fields);
-        fields = longer;
-    }
-    char *text = text_print("{'descr': [%s], 'fortran_order': False, 'shape': "
-                            "(%" PRIu64 ",), }",
-                            fields, s->count);
-    size_t length = strlen(text);
-    s->header = (BEFORE_TEXT + length + ALIGNED) / ALIGNED * ALIGNED;
-    char *all = tool_allocate(s->header, 1);
-    size_t rest = s->header - BEFORE_TEXT;
-    memcpy(all, "\x93NUMPY\x02\x00", 8);
-    for (int i = 0; i < 4; i++)
-        all[8 + i] = (char)(rest >> 8 * i & 0xFF);
-    memset(all + BEFORE_TEXT, ' ', rest);
-    memcpy(all + BEFORE_TEXT, text, length);
-    all[s->header - 1] = '\n';
-    free(text);
-    free(fields);
-    return all;
-}
-
 static uint64_t whole_size(const store *s) {
     return s->header + s->record * s->count;
 }
@@ -111,29 +46,32 @@ static uint64_t whole_size(const store *s) {
 static void measure(store *s, const char *name) {
     s->name = text_print("%s", name);
     s->side = text_print("%s" ARRAY_TEXT_ENDING, name);
+    s->place = s->side;
     s->record = 8 + 8 * s->columns->count;
     s->bytes = tool_allocate(s->record, 1);
-    free(make_header(s));
+    pthread_mutex_init(&s->block.lock, NULL);
+    free(store_header(s));
 }
 
-static int map(store *s) {
-    s->mapped = (size_t)whole_size(s);
-    void *at = mmap(NULL, s->mapped, PROT_READ, MAP_SHARED, s->file, 0);
-    if (at == MAP_FAILED)
-        return tool_refuse("%s cannot be read: %s", s->name, strerror(errno));
-    s->map = at;
-    return TOOL_OK;
+/* As long as the whole file.  A file of a usual size takes all its space at once, so
+   that no record lacks it later; one of very many members has holes. */
+static bool reserve(const store *s) {
+    const off_t usual = (off_t)1 << 30;
+    off_t size = (off_t)whole_size(s);
+    if (size <= usual && fallocate(s->file, 0, 0, size) == 0)
+        return true;
+    return (size > usual || errno == EOPNOTSUPP || errno == ENOSYS) &&
+           ftruncate(s->file, size) == 0;
 }
 
 /* Header and records without status; the file is empty. */
 static int init(store *s) {
-    char *header = make_header(s);
-    bool written = write_at(s, header, s->header, 0) &&
-                   ftruncate(s->file, (off_t)whole_size(s)) == 0;
+    char *header = store_header(s);
+    bool written = reserve(s) && write_at(s, header, s->header, 0);
     int wrong = errno;
     free(header);
     if (written)
-        return map(s);
+        return TOOL_OK;
     if (ftruncate(s->file, 0) != 0)
         wrong = errno;
     return tool_refuse("%s cannot be written: %s", s->name, strerror(wrong));
@@ -157,13 +95,16 @@ static char *read_side(const char *side) {
     return text;
 }
 
+static void print_side(const store *s, const char *reasons, FILE *f) {
+    fprintf(f, "%s%smembers_here: %" PRIu64 " from %" PRIu64 "\n%s%s%s", magic,
+            s->settings, s->count, s->first, s->story, reasons_begin, reasons);
+}
+
 static int write_side(const store *s, const char *reasons) {
     output out;
-    if (output_open(&out, s->side))
+    if (output_open(&out, s->place))
         return TOOL_USAGE;
-    fprintf(out.stream,
-            "%s%smembers_here: %" PRIu64 " from %" PRIu64 "\n%s%s%s", magic,
-            s->settings, s->count, s->first, s->story, reasons_begin, reasons);
+    print_side(s, reasons, out.stream);
     return output_close(&out, TOOL_OK);
 }
 
@@ -222,7 +163,7 @@ static int check_side(const store *s) {
 /* That a file has this store's header and length. */
 static int check_file(store *s) {
     struct stat found;
-    char *header = make_header(s), *there = tool_allocate(s->header, 1);
+    char *header = store_header(s), *there = tool_allocate(s->header, 1);
     bool same = fstat(s->file, &found) == 0 && S_ISREG(found.st_mode);
     uint64_t size = same ? (uint64_t)found.st_size : 0;
     same = same && pread(s->file, there, s->header, 0) == (ssize_t)s->header &&
@@ -239,77 +180,128 @@ static int check_file(store *s) {
                              s->name, size, whole_size(s));
 }
 
-static int open_locked(store *s, int how) {
-    s->file = open(s->name, how | O_CLOEXEC, 0666);
-    if (s->file < 0)
-        return tool_refuse(how & O_CREAT ? "%s cannot be written: %s"
-                                         : "there is nothing to resume: %s: %s",
-                           s->name, strerror(errno));
+static const char writer[] = "sweep";
+
+static int not_on_a_disk(const store *s) {
+    return tool_refuse("%s is no file on a disk, as an array must be", s->name);
+}
+
+static bool is_regular(int file) {
     struct stat found;
-    if (fstat(s->file, &found) != 0 || !S_ISREG(found.st_mode))
-        return tool_refuse("%s is no file on a disk, as an array must be",
-                           s->name);
+    return fstat(file, &found) == 0 && S_ISREG(found.st_mode);
+}
+
+static int open_locked(store *s) {
+    s->file = open(s->name, O_RDWR | O_CLOEXEC);
+    if (s->file < 0)
+        return tool_refuse("there is nothing to resume: %s: %s", s->name,
+                           strerror(errno));
+    if (!is_regular(s->file))
+        return not_on_a_disk(s);
     if (flock(s->file, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK)
-        return tool_refuse("%s: another sweep is writing it", s->name);
+        return tool_refuse("%s: another %s is writing it", s->name, writer);
     return TOOL_OK;
 }
 
-/* A sweep that was left is not thrown away by chance. */
 uint64_t store_next(const store *s, uint64_t i) {
     return store_skip_hole(s->file, s->header, s->record, i, s->count);
 }
 
-static int check_unfinished(store *s) {
-    uint64_t first, count, missing = 0;
+/* Whether some of so many records are done and some are not. */
+static bool is_begun(int file, uint64_t header, size_t record, uint64_t count) {
+    store_block b = {.bytes = NULL};
+    bool done = false, missing = false;
+    for (uint64_t i = 0; i < count && !(done && missing); i++) {
+        if (!block_reach(&b, file, header, record, count, i))
+            break;
+        unsigned char status = b.bytes[(i - b.first) * record];
+        bool known = status && status <= NEVH_MEMBER_NO_START;
+        *(known ? &done : &missing) = true;
+        uint64_t next = store_skip_hole(file, header, record, i + 1, count);
+        missing |= next > i + 1;
+        i = next - 1;
+    }
+    free(b.bytes);
+    return done && missing;
+}
+
+/* A sweep that was left is not thrown away by chance. */
+static int check_unfinished(const store *s, int file) {
+    uint64_t first, count;
     char *text = read_side(s->side);
     bool ours = text && strncmp(text, magic, strlen(magic)) == 0;
     free(text);
     struct stat found;
-    if (!ours || fstat(s->file, &found) != 0 ||
+    if (!ours || fstat(file, &found) != 0 ||
         store_range(s->name, &first, &count))
         return TOOL_OK;
-    unsigned char begin[BEFORE_TEXT];
-    if (pread(s->file, begin, sizeof begin, 0) != (ssize_t)sizeof begin)
+    unsigned char begin[STORE_BEFORE_TEXT];
+    if (pread(file, begin, sizeof begin, 0) != (ssize_t)sizeof begin)
         return TOOL_OK;
-    uint64_t header = BEFORE_TEXT + begin[8] + ((uint64_t)begin[9] << 8) +
+    uint64_t header = STORE_BEFORE_TEXT + begin[8] + ((uint64_t)begin[9] << 8) +
                       ((uint64_t)begin[10] << 16);
     uint64_t size = (uint64_t)found.st_size;
     uint64_t record = count && size > header ? (size - header) / count : 0;
-    uint64_t done = 0;
-    for (uint64_t i = 0; record && i < count && !(done && missing); i++) {
-        unsigned char status = 0;
-        if (pread(s->file, &status, 1, (off_t)(header + i * record)) != 1)
-            break;
-        *(status ? &done : &missing) += 1;
-        uint64_t next = store_skip_hole(s->file, header, record, i + 1, count);
-        missing += next > i + 1;
-        i = next - 1;
-    }
-    return done && missing
+    return record && is_begun(file, header, record, count)
                ? tool_refuse("%s is an unfinished sweep: go on with --resume "
                              "%s, or remove it",
                              s->name, s->name)
                : TOOL_OK;
 }
 
-int store_create(store *s, const char *name) {
-    measure(s, name);
-    if (open_locked(s, O_RDWR | O_CREAT) || check_unfinished(s))
+/* The side file beside it, written to the disk. */
+static int begin_side(store *s) {
+    if (output_open(&s->text, s->side))
         return TOOL_USAGE;
-    if (ftruncate(s->file, 0) != 0)
-        return unwritten(s);
-    return write_side(s, "") ? TOOL_USAGE : init(s);
+    s->place = s->text.temporary ? s->text.temporary : s->side;
+    print_side(s, "", s->text.stream);
+    if (!fflush(s->text.stream) && !ferror(s->text.stream))
+        return TOOL_OK;
+    int wrong =
+        tool_refuse("%s cannot be written: %s", s->side, strerror(errno));
+    output_close(&s->text, TOOL_USAGE);
+    return wrong;
+}
+
+static int begin_array(store *s) {
+    s->file = fcntl(fileno(s->array.stream), F_DUPFD_CLOEXEC, 0);
+    if (!s->array.locks || !is_regular(s->file))
+        return not_on_a_disk(s);
+    return check_unfinished(s, s->array.former) ? TOOL_USAGE : init(s);
+}
+
+int store_create(store *s, const char *name) {
+    struct stat found;
+    measure(s, name);
+    if (stat(name, &found) == 0 && !S_ISREG(found.st_mode) &&
+        !S_ISDIR(found.st_mode))
+        return not_on_a_disk(s);
+    if (output_claim(&s->array, name, writer))
+        return TOOL_USAGE;
+    s->waits = !begin_array(s) && !begin_side(s);
+    if (!s->waits)
+        output_close(&s->array, TOOL_USAGE);
+    return s->waits ? TOOL_OK : TOOL_USAGE;
+}
+
+/* The array first: one that is empty has no members of other settings, if the
+   program ends between the two. */
+int store_settle(store *s) {
+    s->waits = false;
+    s->place = s->side;
+    int status = output_close(&s->array, TOOL_OK);
+    return output_close(&s->text, status);
 }
 
 int store_resume(store *s, const char *name) {
     struct stat found;
     measure(s, name);
-    if (open_locked(s, O_RDWR) || check_side(s))
+    if (open_locked(s) || check_side(s))
         return TOOL_USAGE;
     /* It was left before there were records. */
     if (fstat(s->file, &found) == 0 && (uint64_t)found.st_size <= s->header)
         return init(s);
-    return check_file(s) ? TOOL_USAGE : map(s);
+    return check_file(s);
 }
 
 int store_attach(store *s, const char *name) {
@@ -317,29 +309,29 @@ int store_attach(store *s, const char *name) {
     s->file = open(s->name, O_RDONLY | O_CLOEXEC);
     if (s->file < 0)
         return tool_refuse("%s cannot be read: %s", s->name, strerror(errno));
-    return check_side(s) || check_file(s) ? TOOL_USAGE : map(s);
+    return check_side(s) || check_file(s) ? TOOL_USAGE : TOOL_OK;
 }
 
-/* Pages that were looked at on the way to a member are given back: memory does
-   not grow with the file. */
-static void forget_before(const store *s, size_t at) {
-    size_t size = (size_t)sysconf(_SC_PAGESIZE);
-    madvise((void *)s->map, at / size * size, MADV_DONTNEED);
-}
-
-nevh_member_status store_status(const store *s, uint64_t member) {
+/* What cannot be read is missing. */
+nevh_member_status store_read(store *s, uint64_t member, double values[]) {
     uint64_t i = member - s->first;
-    size_t at = (size_t)(s->header + i * s->record);
-    if (i % FORGET == 0)
-        forget_before(s, at);
-    return (nevh_member_status)s->map[at];
+    store_block *b = &s->block;
+    nevh_member_status status = NEVH_MEMBER_MISSING;
+    pthread_mutex_lock(&b->lock);
+    if (block_reach(b, s->file, s->header, s->record, s->count, i)) {
+        const unsigned char *record = b->bytes + (i - b->first) * s->record;
+        status = record_read(s, record, member, values);
+        s->damaged += status == NEVH_MEMBER_MISSING && record[0];
+    }
+    pthread_mutex_unlock(&b->lock);
+    return status;
 }
 
 static int add_reason(store *s, const nevh_sweep_result *r) {
     if (s->reasons++ >= MOST_REASONS)
         return TOOL_OK;
     char *line = text_print("%" PRIu64 ": %s\n", r->member, r->message);
-    int file = open(s->side, O_WRONLY | O_APPEND | O_CLOEXEC);
+    int file = open(s->place, O_WRONLY | O_APPEND | O_CLOEXEC);
     size_t count = strlen(line);
     bool written = file >= 0 && write(file, line, count) == (ssize_t)count;
     int status = written ? TOOL_OK
@@ -351,28 +343,29 @@ static int add_reason(store *s, const nevh_sweep_result *r) {
     return status;
 }
 
-/* Little-endian, whatever the machine. */
-static void put(char *to, double number) {
-    uint64_t bits;
-    if (isnan(number))
-        bits = 0x7FF8000000000000u; /* there are many; one is written */
-    else
-        memcpy(&bits, &number, sizeof bits);
-    for (int i = 0; i < 8; i++)
-        to[i] = (char)(bits >> 8 * i & 0xFF);
+/* What was read before is as it is now. */
+static void refresh_block(store *s, uint64_t i) {
+    store_block *b = &s->block;
+    pthread_mutex_lock(&b->lock);
+    if (i >= b->first && i - b->first < b->count)
+        memcpy(b->bytes + (i - b->first) * s->record, s->bytes, s->record);
+    pthread_mutex_unlock(&b->lock);
 }
 
 int store_write(store *s, const nevh_sweep_result *r) {
-    uint64_t at = s->header + (r->member - s->first) * s->record;
-    unsigned char status = (unsigned char)r->status;
-    memset(s->bytes, 0, 8);
-    for (size_t k = 0; k < s->columns->count; k++)
-        put(s->bytes + 8 + 8 * k, r->values[k]);
+    uint64_t i = r->member - s->first, at = s->header + i * s->record;
     if (r->status != NEVH_MEMBER_DONE && add_reason(s, r))
         return TOOL_USAGE;
-    return write_at(s, s->bytes, s->record, at) && write_at(s, &status, 1, at)
-               ? TOOL_OK
-               : unwritten(s);
+    record_write(s, s->bytes, r);
+    unsigned char status = s->bytes[0];
+    s->bytes[0] = 0;
+    bool written =
+        write_at(s, s->bytes, s->record, at) && write_at(s, &status, 1, at);
+    s->bytes[0] = status;
+    if (!written)
+        return unwritten(s);
+    refresh_block(s, i);
+    return TOOL_OK;
 }
 
 /* Reasons. */
@@ -391,14 +384,14 @@ static int by_member(const void *a, const void *b) {
 }
 
 /* Lines in order of members, the last one of each that is still not done. */
-static char *sorted(const store *s, char *lines) {
+static char *sorted(store *s, char *lines) {
     size_t count = 0, room = 0;
     reason *all = NULL;
     for (char *line = strtok(lines, "\n"); line; line = strtok(NULL, "\n")) {
         uint64_t member;
         if (sscanf(line, "%" SCNu64 ":", &member) != 1 || member < s->first ||
             member - s->first >= s->count ||
-            store_status(s, member) == NEVH_MEMBER_DONE)
+            store_read(s, member, NULL) == NEVH_MEMBER_DONE)
             continue;
         if (count == room)
             all = tool_enlarge(all, room = 2 * room + 64, sizeof *all);
@@ -419,7 +412,13 @@ static char *sorted(const store *s, char *lines) {
 }
 
 int store_finish(store *s) {
-    char *text = read_side(s->side);
+    if (s->damaged)
+        tool_refuse("%s: %" PRIu64 " records were damaged after they were "
+                    "written, and are run again",
+                    s->name, s->damaged);
+    s->damaged = 0;
+    s->block.count = 0; /* other processes wrote, too */
+    char *text = read_side(s->place);
     char *lines = text ? strstr(text, reasons_begin) : NULL;
     int status = TOOL_OK;
     if (lines) {
@@ -432,25 +431,29 @@ int store_finish(store *s) {
 }
 
 void store_close(store *s) {
-    if (s->map)
-        munmap((void *)s->map, s->mapped);
+    if (s->waits) {
+        output_close(&s->array, TOOL_USAGE);
+        output_close(&s->text, TOOL_USAGE);
+    }
     if (s->name && s->file >= 0)
         close(s->file);
     free(s->name);
     free(s->side);
     free(s->bytes);
+    free(s->block.bytes);
 }
 
 /* Shards. */
 
-static int copy_records(store *to, const store *from) {
-    enum { MUCH = 1 << 20 };
-    size_t size = from->record * from->count;
-    uint64_t at = to->header + (from->first - to->first) * to->record;
-    const char *records = (const char *)from->map + from->header;
-    for (size_t done = 0; done < size; done += MUCH) {
-        size_t now = size - done < MUCH ? size - done : MUCH;
-        if (!write_at(to, records + done, now, at + done))
+static int copy_records(store *to, store *from) {
+    store_block *b = &from->block;
+    for (uint64_t i = 0; i < from->count; i = b->first + b->count) {
+        uint64_t at = (from->first + i - to->first) * to->record;
+        if (!block_reach(b, from->file, from->header, from->record, from->count,
+                         i))
+            return tool_refuse("%s cannot be read: %s", from->name,
+                               strerror(errno));
+        if (!write_at(to, b->bytes, b->count * from->record, to->header + at))
             return unwritten(to);
     }
     return TOOL_OK;
@@ -460,7 +463,7 @@ static int copy_records(store *to, const store *from) {
 static int copy_reasons(const store *to, const store *from) {
     char *text = read_side(from->side);
     const char *lines = text ? strstr(text, reasons_begin) : NULL;
-    FILE *f = lines ? fopen(to->side, "ae") : NULL;
+    FILE *f = lines ? fopen(to->place, "ae") : NULL;
     bool written = f && fputs(lines + strlen(reasons_begin), f) >= 0;
     written = f && fclose(f) == 0 && written;
     free(text);
@@ -482,7 +485,7 @@ int store_take(store *to, const char *shard, uint64_t first, uint64_t count) {
         missing += next - i;
         if (next == i && next < count)
             missing +=
-                store_status(&from, first + next++) == NEVH_MEMBER_MISSING;
+                store_read(&from, first + next++, NULL) == NEVH_MEMBER_MISSING;
     }
     if (missing)
         status = tool_refuse("%s lacks %" PRIu64 " of its %" PRIu64

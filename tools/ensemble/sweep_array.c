@@ -70,8 +70,8 @@ static char *tell_story(const sweep_job *j) {
 }
 
 static bool is_wanted(void *data, uint64_t member) {
-    const sweep_job *j = data;
-    nevh_member_status status = store_status(&j->store, member);
+    sweep_job *j = data;
+    nevh_member_status status = store_read(&j->store, member, NULL);
     return status == NEVH_MEMBER_MISSING ||
            (j->options->retry && status == NEVH_MEMBER_FAILED);
 }
@@ -84,22 +84,16 @@ static int keep(void *data, const nevh_sweep_result *r) {
     return 0;
 }
 
-static void take_values(const store *s, uint64_t i, double values[]) {
-    memcpy(values, s->map + s->header + i * s->record + 8,
-           s->columns->count * sizeof *values);
-}
-
 /* What the file has, of all times that it was gone on with. */
 static int tell_array(sweep_job *j) {
     uint64_t have[4] = {0};
-    const store *s = &j->store;
+    store *s = &j->store;
     double *values = tool_allocate(s->columns->count, sizeof *values);
     uint64_t looked = 0;
     for (uint64_t i = store_next(s, 0); i < s->count;
          i = store_next(s, i + 1), looked++) {
-        nevh_member_status status = store_status(s, s->first + i);
-        have[status & 3]++;
-        take_values(s, i, values);
+        nevh_member_status status = store_read(s, s->first + i, values);
+        have[status]++;
         if (status == NEVH_MEMBER_DONE)
             sweep_check_values(j, values);
     }
@@ -193,10 +187,9 @@ static int join(sweep_job *j) {
         return tool_refuse("%s: %" PRIu64 " parts of %" PRIu64 " members", file,
                            parts, j->count);
     int status = store_create(&j->store, file);
-    bool created = !status;
     for (uint64_t i = 1; !status && i <= parts; i++) {
         uint64_t first, members;
-        char *name = store_name(file, i, parts);
+        char *name = output_part(file, i, parts);
         take_part(j, i, parts, &first, &members);
         status = store_take(&j->store, name, first, members);
         free(name);
@@ -204,24 +197,19 @@ static int join(sweep_job *j) {
     if (!status)
         status = store_finish(&j->store);
     if (!status)
-        return tell_array(j);
-    if (created) {
-        unlink(j->store.name);
-        unlink(j->store.side);
-    }
-    return status;
+        status = store_settle(&j->store);
+    return status ? status : tell_array(j);
 }
 
 /* As far as members were run. */
 static int draw_array(sweep_job *j, int status) {
-    const store *s = &j->store;
+    store *s = &j->store;
     double *values = tool_allocate(j->columns.count, sizeof *values);
     for (uint64_t i = store_next(s, 0); i < s->count;
          i = store_next(s, i + 1)) {
-        take_values(s, i, values);
-        if (store_status(s, s->first + i) != NEVH_MEMBER_MISSING)
-            map_take(j->map, s->first + i, store_status(s, s->first + i),
-                     values);
+        nevh_member_status found = store_read(s, s->first + i, values);
+        if (found != NEVH_MEMBER_MISSING)
+            map_take(j->map, s->first + i, found, values);
     }
     free(values);
     return map_draw(j->map, j->integrator) ? TOOL_USAGE : status;
@@ -245,7 +233,7 @@ int sweep_array(sweep_job *j) {
     if (!status && o->join) {
         status = join(j);
     } else if (!status) {
-        name = store_name(o->resume ? o->resume : o->file, o->task, o->tasks);
+        name = output_part(o->resume ? o->resume : o->file, o->task, o->tasks);
         status = ranks_open(&j->ranks, &j->store, name, o->resume, j->threads);
         if (!status)
             status = run_array(j);

@@ -22,16 +22,11 @@ typedef struct {
 
 /* Text. */
 
-/* Of a file here, or beside the scenes. */
 static char *whole_file(const char *name) {
-    FILE *f = fopen(name, "r");
-    if (!f && errno == ENOENT && !strchr(name, '/')) {
-        char *shipped = text_print("%s/%s", scenes_folder(), name);
-        f = fopen(shipped, "r");
-        free(shipped);
-        errno = ENOENT;
-    }
+    char *file = data_file(name);
+    FILE *f = fopen(file, "r");
     const char *why = f ? NULL : strerror(errno);
+    free(file);
     size_t room = 1 << 16, used = 0;
     char *text = tool_allocate(room, 1);
     for (size_t got;

@@ -12,19 +12,6 @@
 
 enum { MUCH = 1 << 15, PAGE = 1 << 12 };
 
-/* FNV-1a, 64 bits [G. Fowler, L. C. Noll, K.-P. Vo; draft-eastlake-fnv]: a
-   change of one byte always shows. */
-uint64_t digest_begin(void) {
-    return 0xCBF29CE484222325u;
-}
-
-uint64_t digest_add(uint64_t digest, const void *bytes, size_t count) {
-    const unsigned char *at = bytes;
-    while (count--)
-        digest = (digest ^ *at++) * 0x100000001B3u;
-    return digest;
-}
-
 static int unwritten(line_file *l) {
     l->stuck = true;
     return tool_refuse("%s cannot be written: %s",
@@ -36,22 +23,37 @@ static bool is_regular(int file) {
     return fstat(file, &found) == 0 && S_ISREG(found.st_mode);
 }
 
-static int open_file(line_file *l, const char *name, int how) {
-    *l = (line_file){.name = name,
-                     .file = name ? open(name, how, 0666) : STDOUT_FILENO,
-                     .digest = digest_begin()};
-    if (l->file < 0)
-        return unwritten(l);
-    l->regular = name && is_regular(l->file);
-    if (l->regular && flock(l->file, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK)
-        return tool_refuse("%s: another run is writing it", name);
-    return TOOL_OK;
-}
+static const char writer[] = "run";
 
 int lines_open(line_file *l, const char *name) {
-    if (open_file(l, name, O_WRONLY | O_CREAT | O_CLOEXEC))
+    *l = (line_file){
+        .name = name, .file = STDOUT_FILENO, .digest = digest_begin()};
+    if (!name)
+        return TOOL_OK;
+    l->file = -1;
+    if (output_claim(&l->claimed, name, writer))
         return TOOL_USAGE;
-    return l->regular && ftruncate(l->file, 0) ? unwritten(l) : TOOL_OK;
+    l->waits = true;
+    l->file = fcntl(fileno(l->claimed.stream), F_DUPFD_CLOEXEC, 0);
+    l->regular = is_regular(l->file);
+    return l->file < 0 ? unwritten(l) : TOOL_OK;
+}
+
+/* What was there gives way to lines that could be written. */
+static void settle(line_file *l) {
+    l->waits = false;
+    if (output_close(&l->claimed, l->stuck ? TOOL_USAGE : TOOL_OK))
+        l->stuck = true;
+}
+
+static int open_again(line_file *l, const char *name) {
+    *l = (line_file){.name = name, .file = open(name, O_RDWR | O_CLOEXEC)};
+    if (l->file < 0)
+        return unwritten(l);
+    l->regular = is_regular(l->file);
+    if (l->regular && flock(l->file, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK)
+        return tool_refuse("%s: another %s is writing it", name, writer);
+    return TOOL_OK;
 }
 
 /* Of the first bytes; false when there are less. */
@@ -71,7 +73,7 @@ static bool digest_file(int file, uint64_t bytes, uint64_t *digest) {
 
 int lines_reopen(line_file *l, const char *name, uint64_t bytes,
                  uint64_t digest) {
-    if (open_file(l, name, O_RDWR | O_CLOEXEC))
+    if (open_again(l, name))
         return TOOL_USAGE;
     if (!l->regular || !digest_file(l->file, bytes, &l->digest) ||
         l->digest != digest)
@@ -147,6 +149,8 @@ int lines_flush(line_file *l) {
     l->used = 0;
     if (whole < written && l->regular && ftruncate(l->file, (off_t)l->bytes))
         unwritten(l);
+    if (l->waits)
+        settle(l);
     return l->stuck ? TOOL_USAGE : TOOL_OK;
 }
 
@@ -155,6 +159,9 @@ int lines_end(line_file *l) {
 }
 
 void lines_close(line_file *l) {
+    if (l->waits)
+        output_close(&l->claimed, TOOL_USAGE);
+    l->waits = false;
     if (l->name && l->file >= 0)
         close(l->file);
     free(l->text);

@@ -204,17 +204,17 @@ static void begin_saving(job *j, const char *name) {
 
 static int open_new(job *j) {
     const options *o = j->options;
-    if (o->file)
-        signals_catch(note_signal);
     if (lines_open(&j->lines, o->file))
         return TOOL_USAGE;
     for (size_t i = 0; !o->quiet && i < j->notes.count; i++)
         lines_comment(&j->lines, j->notes.item[i]);
     trajectory_header(j->trajectory);
-    if (!j->lines.regular)
-        return TOOL_OK;
-    begin_saving(j, o->file);
-    return save(j, false);
+    if (j->lines.regular)
+        begin_saving(j, o->file);
+    int status = j->lines.regular ? save(j, false) : TOOL_OK;
+    if (o->file) /* the file stands: a signal leaves it to be resumed */
+        signals_catch(note_signal);
+    return status;
 }
 
 static int open_again(job *j) {
@@ -325,7 +325,8 @@ int run_scene(const options *o) {
     if (!status)
         status = run_job(&j);
     fflush(stdout);
-    plan_tell_native(j.stepper); /* of a compiler in the background */
+    if (j.stepper)
+        plan_tell_native(j.stepper); /* of a compiler in the background */
     nevh_stepper_free(j.stepper);
     residuals_end(&j.residuals);
     measured_free(&j.data);

@@ -19,10 +19,12 @@ typedef struct {
     char *text;   /* not yet written */
     size_t used, capacity;
     uint64_t bytes, digest; /* of what is written */
+    output claimed;
+    bool waits; /* what was there stays until lines are written */
 } line_file;
 /* Both return TOOL_OK or, with a message, TOOL_USAGE; another process must not
-   be writing the same file.  Open makes the file empty; reopen cuts it back to
-   its first `bytes`, which must have that digest. */
+   be writing the same file.  Open replaces the file when the first lines could be
+   written; reopen cuts it back to its first `bytes`, which must have that digest. */
 int lines_open(line_file *, const char *name);
 int lines_reopen(line_file *, const char *name, uint64_t bytes,
                  uint64_t digest);
@@ -35,8 +37,6 @@ int lines_flush(line_file *);
 /* At the end of a line: writes when there is much. */
 int lines_end(line_file *);
 void lines_close(line_file *);
-uint64_t digest_begin(void);
-uint64_t digest_add(uint64_t digest, const void *bytes, size_t count);
 
 /* resume.c: FILE.state, from which an interrupted run goes on. */
 typedef struct {

@@ -113,17 +113,35 @@ int gnuplot_check(void) {
     return status;
 }
 
-static bool is_empty(FILE *f) {
+/* What a drawing ends with; gnuplot says nothing where the disk is full. */
+static const struct {
+    const char *bytes;
+    size_t count;
+} ends[] = {
+    [PLOT_SVG] = {"</svg>", 6}, [PLOT_PNG] = {"IEND", 4},
+    [PLOT_PDF] = {"%%EOF", 5},  [PLOT_GIF] = {"\0;", 2},
+    [PLOT_TEXT] = {"", 0},      [PLOT_SCREEN] = {"", 0},
+};
+
+/* Of what is no file that can be read again it is not known. */
+static bool is_whole(FILE *f, medium m) {
+    enum { TAIL = 16 };
     struct stat found;
-    return fstat(fileno(f), &found) == 0 && S_ISREG(found.st_mode) &&
-           found.st_size == 0;
+    char tail[TAIL];
+    if (fstat(fileno(f), &found) != 0 || !S_ISREG(found.st_mode))
+        return true;
+    off_t from = found.st_size > TAIL ? found.st_size - TAIL : 0;
+    ssize_t count = pread(fileno(f), tail, sizeof tail, from);
+    return count < 0 || (count > 0 && memmem(tail, (size_t)count, ends[m].bytes,
+                                             ends[m].count));
 }
 
-int gnuplot_draw(FILE *script, FILE *drawing) {
+int gnuplot_draw(FILE *script, FILE *drawing, medium m) {
     /* Without the user's own settings. */
     char *const arguments[] = {"gnuplot", "--default-settings", NULL};
     int status = run_heard(arguments, script, drawing);
-    if (!status && is_empty(drawing))
-        return tool_refuse("gnuplot drew nothing");
+    if (!status && !is_whole(drawing, m))
+        return tool_refuse(
+            "gnuplot drew nothing, or a part: is the disk full?");
     return status;
 }

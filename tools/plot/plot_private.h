@@ -190,6 +190,6 @@ void plot_svg_copy(FILE *from, FILE *to);
 /* plot_gnuplot.c: gnuplot --version, and a script to be drawn to a file.
    returns  TOOL_OK, or TOOL_USAGE with the message printed */
 int gnuplot_check(void);
-int gnuplot_draw(FILE *script, FILE *drawing);
+int gnuplot_draw(FILE *script, FILE *drawing, medium);
 
 #endif

@@ -130,7 +130,7 @@ static int draw_to(const plot *p, const target *t, FILE *drawing) {
                              strerror(errno));
     rewind(script);
     if (!status)
-        status = gnuplot_draw(script, drawing);
+        status = gnuplot_draw(script, drawing, t->medium);
     fclose(script);
     return status;
 }
