@@ -30,7 +30,7 @@ reference_headers = \
 	include/nevh/status.h include/nevh/system.h include/nevh/body.h \
 	include/nevh/simd.h include/nevh/probe.h include/nevh/gradient.h \
 	include/nevh/integrator.h include/nevh/run.h include/nevh/transform.h \
-	include/nevh/diagnose.h include/nevh/loop.h include/nevh/frequencies.h include/nevh/confirm.h include/nevh/chaos.h include/nevh/shadow.h include/nevh/reference.h include/nevh/certain.h \
+	include/nevh/timing.h include/nevh/diagnose.h include/nevh/loop.h include/nevh/frequencies.h include/nevh/confirm.h include/nevh/chaos.h include/nevh/shadow.h include/nevh/reference.h include/nevh/certain.h \
 	include/nevh/section.h include/nevh/ensemble.h include/nevh/scene.h \
 	include/nevh/sweep.h include/nevh/models.h include/nevh/binding.h \
 	include/nevh/gsl.h include/nevh/extend.h
@@ -48,7 +48,7 @@ doc/nevh.3: $(reference_headers) doc/reference.awk doc/nevh.3.head
 header_pages = \
 	doc/nevh_status.3 doc/nevh_system.3 doc/nevh_body.3 doc/nevh_simd.3 \
 	doc/nevh_probe.3 doc/nevh_gradient.3 doc/nevh_integrator.3 doc/nevh_run.3 \
-	doc/nevh_transform.3 doc/nevh_diagnose.3 doc/nevh_loop.3 \
+	doc/nevh_transform.3 doc/nevh_timing.3 doc/nevh_diagnose.3 doc/nevh_loop.3 \
 	doc/nevh_frequencies.3 doc/nevh_chaos.3 doc/nevh_confirm.3 doc/nevh_shadow.3 \
 	doc/nevh_reference.3 doc/nevh_certain.3 doc/nevh_section.3 \
 	doc/nevh_ensemble.3 doc/nevh_scene.3 doc/nevh_sweep.3 doc/nevh_models.3 \

@@ -25,4 +25,5 @@ nevhinclude_HEADERS = \
 	include/nevh/frequencies.h \
 	include/nevh/status.h \
 	include/nevh/system.h \
+	include/nevh/timing.h \
 	include/nevh/transform.h

@@ -68,6 +68,12 @@ libnevh_core_la_SOURCES = \
 	lib/expression/tape_value.c \
 	lib/expression/tape_block.c \
 	lib/expression/tape_along.c \
+	lib/expression/range_private.h \
+	lib/expression/range.c \
+	lib/expression/timing_private.h \
+	lib/expression/timing_parts_private.h \
+	lib/expression/timing_parts.c \
+	lib/expression/timing.c \
 	lib/expression/tape_open.c \
 	lib/expression/tape_gradient.c \
 	lib/expression/tape_complex.c \
@@ -195,6 +201,8 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/energy_private.h \
 	lib/diagnose/energy.c \
 	lib/diagnose/energy_scale.c \
+	lib/diagnose/passage_private.h \
+	lib/diagnose/passage.c \
 	lib/diagnose/trend_private.h \
 	lib/diagnose/trend.c \
 	lib/diagnose/verdict.c \
@@ -207,6 +215,7 @@ libnevh_core_la_SOURCES = \
 	lib/diagnose/reference_pair_private.h \
 	lib/diagnose/reference_private.h \
 	lib/diagnose/reference.c \
+	lib/diagnose/ends.c \
 	lib/diagnose/reference_pair.c \
 	lib/diagnose/reference_run.c \
 	lib/diagnose/reference_watch.c \

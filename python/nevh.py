@@ -186,6 +186,7 @@ integrator_needs_formulas:bp gradient_named:ps gradient_name:sp gradients:p
 stepper_new:pppp stepper_free:-p stepper_status:ip stepper_message:sp
 stepper_time:dp stepper_taken:zp stepper_counts:Cp stepper_order:ip run_at:ipdddpzpppppz
 energy_new:ppp energy_free:-p energy_status:ip energy_message:sp energy_follow:ipp
+energy_passed:dpp
 energy_expect:ipp energy_set_scale:ipd energy_result:Epz verdict_settle:ipppp
 counts_seconds:dpzpiz field_new:ppp field_free:-p
 field_status:ip field_message:sp field_gradient:ipzppppp field_value:ipzpppp sweep_new:ppp sweep_free:-p
@@ -989,6 +990,12 @@ def _run_plan(plan, t0, t_end, h, times, y, observe, every):
         message += ": " + _lib.scene_stop_text(subject.scene._made).decode()
     reached = t_end if not status else (
         _lib.stepper_time(plan.stepper) if _lib.stepper_taken(plan.stepper) else t0)
+    effect = c.c_char_p()
+    passed = _lib.energy_passed(plan.energy, c.byref(effect))
+    if not math.isnan(passed) and status in (0, _STOPPED):
+        status = -1
+        message = (f"A step before t = {passed:.6g} passes a pole of "
+                   f"{effect.value.decode()}: what follows is not the orbit of H.")
     count = kept.value
     result = Result(
         t=times[:count] if count < len(times) else times,

@@ -15,6 +15,8 @@ suites = \
 	tests/system/check_probe \
 	tests/expression/check_tape \
 	tests/expression/check_tape_build \
+	tests/expression/check_range \
+	tests/expression/check_timing \
 	tests/expression/check_tape_terms \
 	tests/expression/check_formula \
 	tests/expression/check_formula_extremes \
@@ -86,6 +88,7 @@ suites = \
 	tests/diagnose/check_reference_runs \
 	tests/diagnose/check_state_error \
 	tests/diagnose/check_reference_end \
+	tests/diagnose/check_reference_time \
 	tests/robust/check_failures \
 	tests/robust/check_null \
 	tests/robust/check_hard_steps \
@@ -119,6 +122,7 @@ tests_scheme_check_tao_LDADD = $(INSIDE_LIBS)
 tests_gradient_check_time_slope_LDADD = $(INSIDE_LIBS)
 tests_run_check_transform_LDADD = $(INSIDE_LIBS)
 tests_expression_check_tape_LDADD = $(INSIDE_LIBS)
+tests_expression_check_range_LDADD = $(INSIDE_LIBS)
 tests_expression_check_tape_build_LDADD = $(INSIDE_LIBS)
 tests_expression_check_tape_terms_LDADD = $(INSIDE_LIBS)
 tests_taylor_check_series_LDADD = $(INSIDE_LIBS)
@@ -229,6 +233,7 @@ dist_check_SCRIPTS = \
 	tests/tool/nevh_units.sh \
 	tests/tool/nevh_check.sh \
 	tests/tool/nevh_integrable.sh \
+	tests/tool/nevh_time.sh \
 	tests/tool/nevh_hard.sh \
 	tests/tool/nevh_cost.sh \
 	tests/tool/nevh_recommend.sh \

@@ -23,6 +23,7 @@ tools_nevh_SOURCES = \
 	tools/experiment/row_time.c \
 	tools/experiment/stepper_cache.c \
 	tools/experiment/row_notes.c \
+	tools/experiment/time_words.c \
 	tools/experiment/records.c \
 	tools/search/study.h \
 	tools/search/grid.c \

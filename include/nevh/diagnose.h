@@ -4,6 +4,7 @@
 #define NEVH_DIAGNOSE_H
 
 #include <nevh/run.h>
+#include <nevh/timing.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -33,6 +34,22 @@ NEVH_API const char *nevh_energy_message(const nevh_energy *);
             another system or width, or the first observation was made;
             carried by the observer, which then stops the run */
 NEVH_API int nevh_energy_follow(nevh_energy *, const nevh_stepper *stepper);
+
+/* Jumps of H in time are energy from outside, too: between two observations the
+   difference of H after a jump and before it is booked, at the state between
+   the two.  Of one orbit, observed after each step, before the first
+   observation.
+   timing   borrowed, until the last observation; NULL: none
+   returns  NEVH_OK; NEVH_EINVAL when the observer is of more orbits */
+NEVH_API int nevh_energy_book(nevh_energy *, const nevh_timing *timing);
+
+/* Whether a step went past a pole of H, or past an end of its domain, on the
+   straight line between two states: then what follows is not the orbit of H.
+   It is looked for where the error changes by more than in other steps of one
+   orbit, in terms that are formulas.
+   effect   out, may be NULL: whose term it is
+   returns  the time after the first such step; NAN where there is none */
+NEVH_API double nevh_energy_passed(const nevh_energy *, const char **effect);
 
 /* Errors are to be relative to that energy, a positive number, instead of the
    one found at the first observation, before which it is given.

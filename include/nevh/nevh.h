@@ -27,6 +27,7 @@
 #include <nevh/status.h>
 #include <nevh/sweep.h>
 #include <nevh/system.h>
+#include <nevh/timing.h>
 #include <nevh/transform.h>
 
 #endif

@@ -119,6 +119,17 @@ NEVH_API nevh_reference_end nevh_reference_why(const nevh_reference *);
 NEVH_API double nevh_reference_exponent(const nevh_reference *);
 NEVH_API double nevh_reference_growth(const nevh_reference *);
 
+/* When the solution itself ends: near that time a coordinate or a momentum grows
+   without bound, as in a collision, and no scheme goes on.  Known also where
+   there is no reference for that reason.  NAN: not between t0 and t1, as far as
+   was seen. */
+NEVH_API double nevh_reference_ends(const nevh_reference *);
+/* The same without a reference, by Taylor series until near that time.
+   cost     some milliseconds for planets; at most a second or so, after which
+            the answer is NAN */
+NEVH_API double nevh_solution_ends(const nevh_system *, double t0, double t1,
+                                   const double q[], const double p[]);
+
 /* The state at a time between t0 and t1.
    q, p     out, n each
    returns  NEVH_OK; NEVH_EINVAL for times outside; NEVH_EDOM after the

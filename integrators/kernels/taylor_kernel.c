@@ -136,7 +136,8 @@ static int plan(nevh_work *w) {
     bool timed = !(nevh_system_traits(w->system) & NEVH_AUTONOMOUS);
     plan->longest = timed ? 1 : most_steps;
     nevh__report report = {0};
-    plan->recurrence = nevh__recurrence_new(w->system, w->friction, &report);
+    plan->recurrence =
+        nevh__recurrence_new(w->system, w->friction, false, &report);
     if (!plan->recurrence)
         return nevh_work_fail(w, report.status, "%s", report.text);
     int status = nevh_work_find_scale(w);

@@ -2,6 +2,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gradient/field_private.h"
 #include "diagnose/energy_private.h"
+#include "diagnose/passage_private.h"
 #include "diagnose/trend_private.h"
 #include "run/stepper_private.h"
 #include <float.h>
@@ -38,7 +39,11 @@ struct nevh_energy {
     size_t *steps, *next_look; /* width */
     bool *started;             /* width */
     double *effects;
-    double *state; /* 2n: one lane */
+    double *state;             /* 2n: one lane */
+    const nevh_timing *timing; /* NULL: no jumps are booked */
+    nevh__passage passage;     /* of one lane */
+    double booked;             /* what jumps brought in, one lane */
+    double sudden; /* the largest change of the error in one step, one lane */
     nevh__trend *trend;
     nevh__report report;
 };
@@ -72,6 +77,8 @@ static int plan(nevh_energy *e, const nevh_system *s, bool portable) {
     e->started = nevh__array(width, sizeof *e->started);
     e->effects = nevh__array(s->n_effects, sizeof *e->effects);
     e->state = nevh__array(2 * s->n, sizeof *e->state);
+    if (width == 1 && !nevh__passage_init(&e->passage, s))
+        return nevh__fail(&e->report, NEVH_ENOMEM, "out of memory");
     if (e->t && e->h && e->initial && e->gained && e->scale && e->limit &&
         e->largest && e->seen && e->noise && e->blur && e->trend && e->steps &&
         e->start && e->start_t && e->typical && e->next_look && e->started &&
@@ -115,6 +122,7 @@ void nevh_energy_free(nevh_energy *e) {
     free(e->started);
     free(e->effects);
     free(e->state);
+    nevh__passage_clear(&e->passage);
     free(e);
 }
 
@@ -336,8 +344,88 @@ static void look_again_later(nevh_energy *e, size_t lane) {
         e->next_look[lane] = samples + samples / 64 + 1;
 }
 
+int nevh_energy_book(nevh_energy *e, const nevh_timing *timing) {
+    if (!e)
+        return NEVH_EINVAL;
+    if (e->width > 1)
+        return nevh__fail(&e->report, NEVH_EINVAL,
+                          "jumps in time are booked of one orbit, not of %zu",
+                          e->width);
+    e->timing = timing;
+    return NEVH_OK;
+}
+
+double nevh_energy_passed(const nevh_energy *e, const char **effect) {
+    bool any = e && e->passage.found;
+    if (any && effect)
+        *effect = nevh_system_effect_name(e->field->system, e->passage.effect);
+    return any ? e->passage.at : NAN;
+}
+
+/* By how much H changes at a break after the last state. */
+static double jump(nevh_energy *e, const nevh_time_break *b, double t,
+                   const double q[], const double p[]) {
+    const double *from = e->passage.before;
+    size_t n = e->n;
+    double since = b->before - from[2 * n], h[2] = {NAN, NAN};
+    for (size_t k = 0; k < 2 * n; k++) {
+        double to = k < n ? q[k] : p[k - n];
+        e->state[k] = from[k] + (to - from[k]) * since / (t - from[2 * n]);
+    }
+    const double *z = e->state;
+    if (nevh_field_value(e->field, 1, &b->before, z, z + n, &h[0]) ||
+        nevh_field_value(e->field, 1, &b->after, z, z + n, &h[1]))
+        return 0;
+    return h[1] - h[0];
+}
+
+/* All jumps that a step passes. */
+static void book_jumps(nevh_energy *e, double t, const double q[],
+                       const double p[]) {
+    double from = e->passage.before[2 * e->n];
+    bool forward = t > from;
+    const nevh_time_break *b = nevh__timing_next(e->timing, from, forward);
+    for (; b && (forward ? b->after <= t : b->before >= t);
+         b = nevh__timing_next(e->timing, forward ? b->after : b->before,
+                               forward)) {
+        if (b->jump && e->followed)
+            e->booked += forward ? jump(e, b, t, q, p) : -jump(e, b, t, q, p);
+    }
+}
+
+/* At a break itself H is neither what it was nor what it will be: the value is
+   that before it. */
+static void stay_before(nevh_energy *e, double t, const double q[],
+                        const double p[]) {
+    double from = e->passage.before[2 * e->n];
+    bool forward = t > from;
+    const nevh_time_break *b = nevh__timing_next(e->timing, t, true);
+    if (b && b->jump && b->before < t && t < b->after)
+        nevh_field_value(e->field, 1, forward ? &b->before : &b->after, q, p,
+                         &e->h[0]);
+}
+
+/* Of one orbit: what lies between the last state and this one. */
+static void look_back(nevh_energy *e, double t, const double q[],
+                      const double p[]) {
+    static const double large = 1e-3; /* of the scale */
+    double before = e->trend->last;
+    if (e->trend->samples && e->timing)
+        stay_before(e, t, q, p);
+    double after =
+        (e->h[0] - e->initial[0] - gain(e, 0) + e->gained[0] - e->booked) /
+        e->scale[0];
+    if (e->trend->samples && e->timing)
+        book_jumps(e, t, q, p);
+    double change = fabs(after - before);
+    if (e->trend->samples && (!(change <= large) || change > 2 * e->sudden))
+        nevh__passage_look(&e->passage, t, q, p);
+    e->sudden = fmax(e->sudden, change);
+    nevh__passage_keep(&e->passage, t, q, p);
+}
+
 static int add_error(nevh_energy *e, size_t lane, double t) {
-    double came = gain(e, lane) - e->gained[lane];
+    double came = gain(e, lane) - e->gained[lane] + e->booked;
     if (!isfinite(came))
         return nevh__fail(&e->report, NEVH_EDOM,
                           "the balance of the energy is not finite at t = "
@@ -354,6 +442,8 @@ static int observe_lane(nevh_energy *e, size_t lane, size_t step,
     double t = e->t[lane];
     int status = e->started[lane] ? NEVH_OK : begin(e, lane, t, q, p);
     e->steps[lane] = step;
+    if (!status && e->width == 1)
+        look_back(e, t, q, p);
     if (!status)
         status = add_error(e, lane, t);
     if (!status && is_time_to_look(e, lane))
@@ -409,6 +499,7 @@ void nevh__energy_restart(nevh_energy *e, size_t lane) {
     e->largest[lane] = e->seen[lane] = 0;
     e->steps[lane] = e->next_look[lane] = 0;
     e->trend[lane] = (nevh__trend){0};
+    e->booked = 0;
 }
 
 double nevh_energy_error(const nevh_energy *e, size_t lane) {

@@ -347,7 +347,8 @@ static void refine(trial *b, nevh__exact_solution *e, const region *r) {
     nevh__exact_solution finer = *e;
     NEVH__FINE(nevh__orbit) orbit = {0};
     nevh__report ignored = {0};
-    nevh__recurrence *series = nevh__recurrence_new(b->system, NULL, &ignored);
+    nevh__recurrence *series =
+        nevh__recurrence_new(b->system, NULL, false, &ignored);
     if (series && NEVH__FINE(nevh__orbit_init)(&orbit, series, tolerance) &&
         take_series(b, &orbit)) {
         fit(b, &finer);

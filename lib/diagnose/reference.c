@@ -209,17 +209,26 @@ static int use_run(nevh_reference *r) {
         asked || !r->integrator ? nevh__reference_series(r) : NEVH_EFAILED;
     if (!status || asked || status == NEVH_ENOMEM)
         return status;
+    nevh__report ended = r->report;
     bool dear = !r->integrator && strstr(r->report.text, "cost too much");
     r->report = (nevh__report){0};
     if (!r->integrator)
         r->integrator =
             nevh_system_friction(r->system, NULL) ? nevh_dop853 : nevh_gauss12;
     status = nevh__reference_run(r);
+    if (status && isfinite(r->ends))
+        r->report = ended, status = ended.status;
     size_t used = strlen(r->text);
     if (!status && dear)
         snprintf(r->text + used, sizeof r->text - used,
                  " (Taylor series cost too much)");
     return status;
+}
+
+/* As far as is seen: solutions are recognised at some times alone. */
+static bool changes_with_time(const nevh_reference *r) {
+    return nevh_timing_breaks(r->timing) > 0 ||
+           isfinite(nevh_timing_shortest(r->timing, NULL, NULL));
 }
 
 static int make(nevh_reference *r) {
@@ -240,7 +249,13 @@ static int make(nevh_reference *r) {
         return nevh__fail(&r->report, NEVH_EINVAL,
                           "a reference from t = %g to %g has no length", r->t0,
                           r->t1);
-    if (!r->integrator)
+    if (!(nevh_system_traits(r->system) & NEVH_AUTONOMOUS)) {
+        r->timing =
+            nevh_timing_new(r->system, r->t0, r->t1, r->start, r->start + r->n);
+        if (!r->timing)
+            return nevh__fail(&r->report, NEVH_ENOMEM, "out of memory");
+    }
+    if (!r->integrator && !changes_with_time(r))
         status = nevh__exact_recognise(&r->exact, r->system, r->t0, r->t1,
                                        r->start, r->start + r->n);
     if (status)
@@ -306,7 +321,7 @@ nevh_reference *nevh_reference_with(const nevh_system *s,
     r->t0 = t0;
     r->t1 = t1;
     r->horizon = copysign(INFINITY, t1 - t0);
-    r->error = NAN;
+    r->error = r->ends = NAN;
     r->exponent = r->growth = NAN;
     r->longest = o->longest;
     r->finest = o->finest;
@@ -322,6 +337,7 @@ void nevh_reference_free(nevh_reference *r) {
         return;
     nevh__exact_free(r->exact);
     nevh__reference_series_free(r->series);
+    nevh_timing_free(r->timing);
     nevh_stepper_free(r->walker);
     nevh_stepper_free(r->branch);
     free(r->orbit.states);
@@ -363,6 +379,10 @@ double nevh_reference_exponent(const nevh_reference *r) {
 
 double nevh_reference_growth(const nevh_reference *r) {
     return r ? r->growth : NAN;
+}
+
+double nevh_reference_ends(const nevh_reference *r) {
+    return r ? r->ends : NAN;
 }
 
 double nevh_reference_range(const nevh_reference *r, size_t k) {

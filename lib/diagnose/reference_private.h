@@ -5,6 +5,7 @@
 
 #include "diagnose/exact_private.h"
 #include <nevh/reference.h>
+#include <nevh/timing.h>
 
 /* States of a run: the k-th after k*every steps of h, coordinates first. */
 typedef struct {
@@ -26,6 +27,8 @@ struct nevh_reference {
     const nevh_system *system;
     size_t n;
     double t0, t1;
+    nevh_timing *timing;        /* NULL: H reads no time */
+    double ends;                /* NAN, or when the solution does */
     double *start;              /* 2n, as all states: coordinates first */
     double *low, *high, *range; /* 2n each */
     double error, horizon, exponent, growth;

@@ -32,6 +32,7 @@ static double longest_step(const nevh_reference *r, double cost) {
     double span = fabs(r->t1 - r->t0), longest = span / fewest;
     if (r->longest > 0)
         longest = fmin(longest, fmax(r->longest, cost * span / part));
+    longest = fmin(longest, nevh_timing_shortest(r->timing, NULL, NULL) / 4);
     return copysign(longest, r->t1 - r->t0);
 }
 

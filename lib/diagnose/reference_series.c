@@ -86,8 +86,8 @@ static int out_of_memory(nevh_reference *r) {
 
 static int plan(nevh_reference *r, chain *c, double tolerance) {
     bool damped = nevh_system_friction(r->system, c->rates);
-    c->recurrence =
-        nevh__recurrence_new(r->system, damped ? c->rates : NULL, &r->report);
+    c->recurrence = nevh__recurrence_new(r->system, damped ? c->rates : NULL,
+                                         r->timing, &r->report);
     if (!c->recurrence)
         return r->report.status;
     bool made =
@@ -101,6 +101,8 @@ static int plan(nevh_reference *r, chain *c, double tolerance) {
     c->each = TIMES + c->rows;
     c->shown = nevh__array(c->rows, sizeof *c->shown);
     c->fine.longest = c->coarse.longest = longest(r, c);
+    c->fine.timing = c->coarse.timing = r->timing;
+    c->fine.backward = c->coarse.backward = r->t1 < r->t0;
     return c->shown ? NEVH_OK : out_of_memory(r);
 }
 
@@ -283,6 +285,16 @@ static int run(nevh_reference *r, chain *c) {
     return status;
 }
 
+/* Whether the solution ends where series have got too short. */
+static void find_end(nevh_reference *r, double t) {
+    r->ends =
+        nevh_solution_ends(r->system, r->t0, r->t1, r->start, r->start + r->n);
+    if (isnan(r->ends))
+        nevh__fail(&r->report, NEVH_EFAILED,
+                   "series get too short near t = %.9g, in a close encounter",
+                   t);
+}
+
 /* By that tolerance; NULL, with the reason in the report.
    first  a coarser one, or NULL */
 static chain *chain_new(nevh_reference *r, double tolerance,
@@ -307,12 +319,25 @@ static chain *chain_new(nevh_reference *r, double tolerance,
         status = run(r, c);
     if (!status)
         return c;
+    if (c && (c->fine.ended || c->coarse.ended))
+        find_end(r, (double)c->fine.t);
     nevh__reference_series_free(c);
     return NULL;
 }
 
+/* Breaks in time are known to a few roundings of t, while the state goes on as
+   before. */
+static double error_of_breaks(const nevh_reference *r) {
+    double late = 0, span = fabs(r->t1 - r->t0);
+    for (size_t i = 0; i < nevh_timing_breaks(r->timing); i++) {
+        nevh_time_break b = nevh_timing_break(r->timing, i);
+        late += b.after - b.before;
+    }
+    return late / span;
+}
+
 static double error_of(const nevh_reference *r, const chain *c) {
-    double error = DBL_EPSILON;
+    double error = fmax(DBL_EPSILON, error_of_breaks(r));
     for (size_t k = 0; k < 2 * r->n; k++)
         error = fmax(error, certain * c->difference[k] / r->range[k]);
     return error;
@@ -368,6 +393,11 @@ static void describe(nevh_reference *r, bool dear) {
 }
 
 int nevh__reference_series(nevh_reference *r) {
+    if (r->timing && !nevh_timing_whole(r->timing))
+        return nevh__fail(&r->report, NEVH_EFAILED,
+                          "H changes too often between t = %.9g and %.9g for "
+                          "Taylor series to see each change",
+                          r->t0, r->t1);
     r->series = chain_new(r, usual, NULL);
     if (r->series && r->series->parts)
         end_at(r, r->series);

@@ -153,7 +153,7 @@ static int find_momenta(nevh_scene *scene, const nevh__scene_model *m,
     nevh__report report = {0};
     size_t n = m->n;
     search s = {.m = m};
-    nevh__recurrence *r = nevh__recurrence_new(m->system, NULL, &report);
+    nevh__recurrence *r = nevh__recurrence_new(m->system, NULL, false, &report);
     if (!r && report.status != NEVH_ENOMEM)
         return NEVH_OK; /* there is no orbit, which says why */
     s.series = r ? nevh__series_new_quad(r, ORDER) : NULL;

@@ -27,6 +27,9 @@ struct nevh_certain {
     nevh__recurrence *recurrence;
     orbit fine, coarse; /* both of pairs, or neither */
     bool parted;        /* both, by now */
+    const nevh_system *system;
+    nevh_timing *timing; /* from t0 until `seen`; NULL: H reads no time */
+    double seen;
     nevh__wide t0, *start;
 };
 
@@ -46,6 +49,8 @@ static int start(nevh_certain *c, orbit *o, bool pairs, double tolerance) {
     bool fine = o->pairs
                     ? nevh__orbit_init_dd(&o->dd, c->recurrence, tolerance)
                     : nevh__orbit_init_quad(&o->quad, c->recurrence, tolerance);
+    o->dd.timing = o->quad.timing = c->timing;
+    o->dd.backward = o->quad.backward = c->seen < (double)c->t0;
     return !fine ? nevh__fail(&c->report, NEVH_ENOMEM, "out of memory")
            : o->pairs
                ? nevh__orbit_start_dd(&o->dd, c->t0, c->start, &c->report)
@@ -78,6 +83,7 @@ static size_t count(const orbit *o) {
 /* The first coefficients, and what rounding did to them, are those of the other
    run: so that this does not go unseen, the series is left earlier. */
 static void shorten_first(orbit *o) {
+    o->dd.stops = o->quad.stops = false;
     if (o->pairs)
         o->dd.reach /= 2;
     else
@@ -113,7 +119,10 @@ static int make(nevh_certain *c, const nevh_system *system,
     memcpy(c->start, from->q, n * sizeof *c->start);
     memcpy(c->start + n, from->p, n * sizeof *c->start);
     c->t0 = from->t;
-    c->recurrence = nevh__recurrence_wide(system, from->rates, &c->report);
+    c->seen = (double)c->t0;
+    c->system = system;
+    c->recurrence =
+        nevh__recurrence_wide(system, from->rates, false, &c->report);
     return c->recurrence ? start_both(c, c->digits <= DIGITS_OF_PAIRS)
                          : c->report.status;
 }
@@ -160,6 +169,7 @@ void nevh_certain_free(nevh_certain *c) {
     clear(&c->fine);
     clear(&c->coarse);
     nevh__recurrence_free(c->recurrence);
+    nevh_timing_free(c->timing);
     free(c->start);
     free(c);
 }
@@ -195,6 +205,33 @@ static bool lacks_digits(const nevh_certain *c) {
     return lacks;
 }
 
+/* What H does with time up to there; orbits begin again where that was not
+   known. */
+static int look_ahead(nevh_certain *c, double t) {
+    double t0 = (double)c->t0;
+    bool known =
+        fabs(t - t0) <= fabs(c->seen - t0) && (t - t0) * (c->seen - t0) >= 0;
+    if (known || nevh_system_traits(c->system) & NEVH_AUTONOMOUS)
+        return NEVH_OK;
+    size_t n = c->n;
+    double *state = nevh__array(2 * n, sizeof *state);
+    for (size_t k = 0; state && k < 2 * n; k++)
+        state[k] = (double)c->start[k];
+    nevh_timing_free(c->timing);
+    c->timing =
+        state ? nevh_timing_new(c->system, t0, t, state, state + n) : NULL;
+    free(state);
+    c->seen = t;
+    if (!c->timing)
+        return nevh__fail(&c->report, NEVH_ENOMEM, "out of memory");
+    if (!nevh_timing_whole(c->timing))
+        return nevh__fail(&c->report, NEVH_EFAILED,
+                          "H changes too often between t = %.9g and %.9g to "
+                          "be certain that no change is missed",
+                          t0, t);
+    return start_both(c, c->fine.pairs);
+}
+
 int nevh_certain_go_to(nevh_certain *c, double time, long double rest) {
     nevh__wide t = (nevh__wide)time + rest;
     if (!c || !count(&c->fine))
@@ -203,7 +240,9 @@ int nevh_certain_go_to(nevh_certain *c, double time, long double rest) {
     if (!isfinite((double)t))
         return nevh__fail(&c->report, NEVH_EINVAL,
                           "the time %g is not a finite number", (double)t);
-    int status = go_both(c, t);
+    int status = look_ahead(c, (double)t);
+    if (!status)
+        status = go_both(c, t);
     if (status || !c->fine.pairs || !lacks_digits(c))
         return status;
     status = start_both(c, false);

@@ -11,6 +11,7 @@
 typedef struct {
     nevh__graph *g;
     int tagged;
+    bool broken; /* kinks in t are allowed */
     nevh__report *report;
     size_t n;
     int *roots; /* of the instances */
@@ -123,6 +124,12 @@ static int operate(nevh__graph *g, unsigned operation, int a, int b) {
     }
 }
 
+/* Whether the operation has a kink that series can begin after. */
+static bool is_between_breaks(const reader *r, const nevh__instruction *c) {
+    return r->broken && !nevh__operation_is_smooth(c->operation) &&
+           (c->a.by | c->b.by) == NEVH__BY_T;
+}
+
 static int read_instance(reader *r, const nevh_term *term, size_t instance,
                          int slots[]) {
     const nevh__tape *tape = term->params;
@@ -130,8 +137,9 @@ static int read_instance(reader *r, const nevh_term *term, size_t instance,
         const nevh__instruction *c = &tape->code[i];
         int a = operand(r, term, instance, slots, c->a);
         int b = operand(r, term, instance, slots, c->b);
-        if (why_not(c->operation) && !(nevh__graph_is_number(r->g, a, NULL) &&
-                                       nevh__graph_is_number(r->g, b, NULL)))
+        if (why_not(c->operation) && !is_between_breaks(r, c) &&
+            !(nevh__graph_is_number(r->g, a, NULL) &&
+              nevh__graph_is_number(r->g, b, NULL)))
             return refuse_operation(r, term, c->operation);
         nevh__graph_watch(r->g, c->operation, a, b, term->effect);
         slots[c->to] = operate(r->g, c->operation, a, b);
@@ -248,9 +256,9 @@ static int sweep(reader *r, const nevh__wide friction[], int slope[]) {
 }
 
 int nevh__graph_of_system(nevh__graph *g, const nevh_system *system,
-                          const nevh__wide friction[], int slope[],
+                          const nevh__wide friction[], bool broken, int slope[],
                           nevh__report *report) {
-    reader r = {.g = g, .report = report, .n = system->n};
+    reader r = {.g = g, .broken = broken, .report = report, .n = system->n};
     int status = NEVH_OK;
     for (size_t i = 0; !status && i < system->n_terms; i++)
         if (nevh__term_on(system, system->terms[i]))

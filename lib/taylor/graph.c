@@ -300,9 +300,38 @@ static int angle(nevh__graph *g, int y, int x) {
     return nevh__graph_add(g, by_y, by_x);
 }
 
+/* A constant between its jumps. */
+static int stair(nevh__graph *g, nevh__tape_operation f, int a) {
+    int zero = nevh__graph_number(g, 0), y = raw_call(g, f, a, -1);
+    if (g->failed)
+        return -1;
+    g->nodes[y].slope = zero;
+    return y;
+}
+
+/* Of other functions with kinks, from a sign or a whole part. */
+static int broken(nevh__graph *g, nevh__tape_operation f, int a, int b) {
+    if (f == NEVH__ABS)
+        return nevh__graph_multiply(g, a, stair(g, NEVH__SIGN, a));
+    int apart = nevh__graph_add(g, a, nevh__graph_scale(g, -1, b));
+    if (f == NEVH__MOD) {
+        int ratio = nevh__graph_multiply(g, a, nevh__graph_invert(g, b));
+        int whole = nevh__graph_multiply(g, b, stair(g, NEVH__FLOOR, ratio));
+        return nevh__graph_add(g, a, nevh__graph_scale(g, -1, whole));
+    }
+    int half = nevh__graph_scale(g, 0.5L, broken(g, NEVH__ABS, apart, -1));
+    int mean = nevh__graph_scale(g, 0.5L, nevh__graph_add(g, a, b));
+    return nevh__graph_add(
+        g, mean, f == NEVH__MAX ? half : nevh__graph_scale(g, -1, half));
+}
+
 int nevh__graph_call(nevh__graph *g, nevh__tape_operation f, int a, int b) {
     if (bad(g, a, a))
         return -1;
+    if (f == NEVH__SIGN || f == NEVH__FLOOR)
+        return stair(g, f, a);
+    if (f == NEVH__ABS || f == NEVH__MIN || f == NEVH__MAX || f == NEVH__MOD)
+        return broken(g, f, a, b);
     if (f == NEVH__SQRT)
         return nevh__graph_power(g, a, 0.5L);
     if (f == NEVH__ATAN2)

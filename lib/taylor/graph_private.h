@@ -75,7 +75,8 @@ int nevh__graph_scale(nevh__graph *, nevh__wide, int a);
 int nevh__graph_multiply(nevh__graph *, int a, int b);
 int nevh__graph_invert(nevh__graph *, int a);
 int nevh__graph_power(nevh__graph *, int a, nevh__wide exponent);
-/* An analytic function of one argument, or atan2 and hypot. */
+/* An analytic function of one argument, atan2, hypot, or one that has kinks:
+   series then hold between these. */
 int nevh__graph_call(nevh__graph *, nevh__tape_operation, int a, int b);
 /* Adds what an operation on nodes asks for; its result is another node. */
 void nevh__graph_watch(nevh__graph *, unsigned operation, int a, int b,
@@ -85,9 +86,10 @@ void nevh__graph_watch_poles(nevh__graph *, const char *effect);
 bool nevh__graph_is_number(const nevh__graph *, int node, nevh__wide *value);
 
 /* Why a system has no series: a status and a message in the report.
-   slope  out, 2n: nodes of dq/dt and dp/dt, friction counted in */
+   broken  whether functions of t alone may have kinks
+   slope   out, 2n: nodes of dq/dt and dp/dt, friction counted in */
 int nevh__graph_of_system(nevh__graph *, const nevh_system *,
-                          const nevh__wide friction[], int slope[],
+                          const nevh__wide friction[], bool broken, int slope[],
                           nevh__report *);
 
 #endif

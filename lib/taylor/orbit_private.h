@@ -3,41 +3,51 @@
 #ifndef NEVH_ORBIT_PRIVATE_H
 #define NEVH_ORBIT_PRIVATE_H
 
+#include "expression/timing_private.h"
 #include "taylor/series_private.h"
 
 /* A chain of series in numbers of one kind; the present one begins at time t.
    Functions return a status, with a message in the report. */
-#define NEVH__ORBIT(kind, real, number)                                        \
-    typedef struct nevh__orbit_##kind {                                        \
-        const nevh__recurrence *recurrence;                                    \
-        struct nevh__series_##kind *series;                                    \
-        size_t n, order, count; /* count: series so far */                     \
-        double tolerance;                                                      \
-        double longest; /* of a series; INFINITY: any */                       \
-        double unit;    /* of time, in rows: a power of two */                 \
-        real t, reach;  /* the series holds so long, to either side */         \
-        real whole;     /* as long as coefficients say, no edge being met */   \
-        number *rows;   /* 2n times order + 1 */                               \
-        real *start;    /* 2n: of the series */                                \
-        real *state;    /* 2n: as asked for last */                            \
-        double *most;   /* 2n: of each variable, so far */                     \
-        double *seen;   /* 2n: the same, and within series */                  \
+enum { NEVH__ORBIT_PAST = 128 };
+#define NEVH__ORBIT(kind, real, number)                                            \
+    typedef struct nevh__orbit_##kind {                                            \
+        const nevh__recurrence *recurrence;                                        \
+        struct nevh__series_##kind *series;                                        \
+        size_t n, order, count; /* count: series so far */                         \
+        double tolerance;                                                          \
+        double longest;  /* of a series; INFINITY: any */                          \
+        double shortest; /* of the time that is left */                            \
+        double unit;     /* of time, in rows: a power of two */                    \
+        real t, reach;   /* the series holds so long, to either side */            \
+        real whole;      /* as long as coefficients say, no edge being met */      \
+        number *rows;    /* 2n times order + 1 */                                  \
+        real *start;     /* 2n: of the series */                                   \
+        real *state;     /* 2n: as asked for last */                               \
+        double *most;    /* 2n: of each variable, so far */                        \
+        double *seen;    /* 2n: the same, and within series */                     \
         double *term; /* 2n: the largest term of a series, so far, which     \
-                           rounding is in proportion to */ \
-    } nevh__orbit_##kind;                                                      \
-    bool nevh__orbit_init_##kind(nevh__orbit_##kind *,                         \
-                                 const nevh__recurrence *, double tolerance);  \
-    void nevh__orbit_clear_##kind(nevh__orbit_##kind *);                       \
-    int nevh__orbit_start_##kind(nevh__orbit_##kind *, real t,                 \
-                                 const real state[], nevh__report *);          \
-    /* The next series, towards a time; */                                     \
-    int nevh__orbit_next_##kind(nevh__orbit_##kind *, real t, nevh__report *); \
-    /* the state at a time, in `state`. */                                     \
-    int nevh__orbit_go_##kind(nevh__orbit_##kind *, real t, nevh__report *);   \
-    /* The rows of the present series, by a unit of 1. */                      \
-    void nevh__orbit_rows_##kind(const nevh__orbit_##kind *,                   \
-                                 long double rows[]);                          \
-    /* What it costs, in nanoseconds or so: the same on any machine. */        \
+                           rounding is in proportion to */     \
+        /* Of the last series: how far they held, and how fast the state         \
+           changes where they begin. */ \
+        double held[NEVH__ORBIT_PAST], speed[NEVH__ORBIT_PAST];                    \
+        bool ended; /* where the last one got too short, without bound */          \
+        const nevh_timing *timing; /* NULL: of no concern; borrowed */             \
+        bool backward, stops; /* stops: the series holds up to a break, */         \
+        real stop;            /* after which the next one begins */                \
+    } nevh__orbit_##kind;                                                          \
+    bool nevh__orbit_init_##kind(nevh__orbit_##kind *,                             \
+                                 const nevh__recurrence *, double tolerance);      \
+    void nevh__orbit_clear_##kind(nevh__orbit_##kind *);                           \
+    int nevh__orbit_start_##kind(nevh__orbit_##kind *, real t,                     \
+                                 const real state[], nevh__report *);              \
+    /* The next series, towards a time; */                                         \
+    int nevh__orbit_next_##kind(nevh__orbit_##kind *, real t, nevh__report *);     \
+    /* the state at a time, in `state`. */                                         \
+    int nevh__orbit_go_##kind(nevh__orbit_##kind *, real t, nevh__report *);       \
+    /* The rows of the present series, by a unit of 1. */                          \
+    void nevh__orbit_rows_##kind(const nevh__orbit_##kind *,                       \
+                                 long double rows[]);                              \
+    /* What it costs, in nanoseconds or so: the same on any machine. */            \
     double nevh__orbit_work_##kind(const nevh__orbit_##kind *);
 
 /* Names of the kind of orbit that references are of, and its bits; states are

@@ -21,6 +21,7 @@ bool NAMED(nevh__orbit_init)(orbit *o, const nevh__recurrence *r,
                  .order = order,
                  .tolerance = tolerance,
                  .longest = INFINITY,
+                 .shortest = SHORTEST,
                  .unit = 1};
     o->series = NAMED(nevh__series_new)(r, order);
     o->rows = nevh__array(2 * r->n * (order + 1), sizeof *o->rows);
@@ -99,6 +100,34 @@ static int fail_at_edge(const orbit *o, double t, nevh__report *report) {
                       why);
 }
 
+/* No further than what changes with time allows, and up to the next break. */
+static void limit_by_time(orbit *o) {
+    const nevh_time_break *next =
+        nevh__timing_next(o->timing, (double)o->t, !o->backward);
+    o->reach = FUNCTION(fmin)(
+        o->reach, (real)nevh__timing_reach(o->timing, (double)o->t));
+    o->stops = false;
+    if (!next || next->pole)
+        return;
+    o->stop = o->backward ? next->before : next->after;
+    real left = FUNCTION(fabs)(o->stop - o->t);
+    o->stops = o->reach >= left;
+    o->reach = o->stops ? left : o->reach;
+}
+
+/* What the state does while series get shorter and shorter: at the end of a
+   solution it changes ever faster, at a mere branch point it does not. */
+static bool ends(const orbit *o) {
+    static const double shrunk = 1e4, faster = 10;
+    size_t now = o->count % NEVH__ORBIT_PAST;
+    for (size_t i = 1; i < NEVH__ORBIT_PAST && i < o->count; i++) {
+        size_t then = (o->count - i) % NEVH__ORBIT_PAST;
+        if (o->held[then] > shrunk * o->held[now])
+            return o->speed[now] > faster * o->speed[then];
+    }
+    return false;
+}
+
 static int begin(orbit *o, real t, const real state[], nevh__report *report) {
     for (size_t i = 0; i < 2 * o->n; i++)
         o->most[i] = fmax(o->most[i], fabs((double)state[i]));
@@ -121,6 +150,10 @@ static int begin(orbit *o, real t, const real state[], nevh__report *report) {
                                   NAMED(nevh__series_watched)(o->series),
                                   o->order, (double)(o->reach / o->unit)) *
                o->unit;
+    if (o->timing)
+        limit_by_time(o);
+    o->held[o->count % NEVH__ORBIT_PAST] = (double)o->reach;
+    o->speed[o->count % NEVH__ORBIT_PAST] = (double)(largest(o, 1) / o->unit);
     return NEVH_OK;
 }
 
@@ -165,14 +198,18 @@ static void evaluate(orbit *o, real since) {
 
 int NAMED(nevh__orbit_next)(orbit *o, real t, nevh__report *report) {
     real next = t > o->t ? o->t + o->reach : o->t - o->reach;
-    if (!(o->reach > SHORTEST * FUNCTION(fabs)(t - o->t)) || next == o->t) {
-        int status = fail_at_edge(o, (double)o->t, report);
-        return status
-                   ? status
-                   : nevh__fail(report, NEVH_EFAILED,
-                                "series get too short near t = %.9g: does the "
-                                "orbit end there?",
-                                (double)o->t);
+    next = o->stops ? o->stop : next;
+    if (!(o->reach > o->shortest * FUNCTION(fabs)(t - o->t)) || next == o->t) {
+        o->ended = ends(o);
+        int status = o->ended ? NEVH_OK : fail_at_edge(o, (double)o->t, report);
+        return status ? status
+                      : nevh__fail(report, NEVH_EFAILED,
+                                   o->ended ? "the solution itself ends at t = "
+                                              "%.9g: it changes without bound "
+                                              "there"
+                                            : "series get too short near t = "
+                                              "%.9g: does the orbit end there?",
+                                   (double)o->t);
     }
     evaluate(o, next - o->t);
     take_unit(o, (double)o->whole);

@@ -253,14 +253,15 @@ static bool schedule(nevh__recurrence *r, const nevh__graph *g,
 
 nevh__recurrence *nevh__recurrence_wide(const nevh_system *system,
                                         const nevh__wide friction[],
-                                        nevh__report *report) {
+                                        bool broken, nevh__report *report) {
     nevh__graph g = {0};
     nevh__recurrence *r = nevh__array(1, sizeof *r);
     int *slope = nevh__array(2 * system->n, sizeof *slope);
     int status = NEVH_ENOMEM;
     if (r && slope) {
         r->n = system->n;
-        status = nevh__graph_of_system(&g, system, friction, slope, report);
+        status =
+            nevh__graph_of_system(&g, system, friction, broken, slope, report);
     }
     if (!status && !schedule(r, &g, slope))
         status = NEVH_ENOMEM;
@@ -275,15 +276,15 @@ nevh__recurrence *nevh__recurrence_wide(const nevh_system *system,
 }
 
 nevh__recurrence *nevh__recurrence_new(const nevh_system *system,
-                                       const double friction[],
+                                       const double friction[], bool broken,
                                        nevh__report *report) {
     if (!friction)
-        return nevh__recurrence_wide(system, NULL, report);
+        return nevh__recurrence_wide(system, NULL, broken, report);
     nevh__wide *rates = nevh__array(system->n, sizeof *rates);
     for (size_t k = 0; rates && k < system->n; k++)
         rates[k] = friction[k];
     nevh__recurrence *r =
-        rates ? nevh__recurrence_wide(system, rates, report) : NULL;
+        rates ? nevh__recurrence_wide(system, rates, broken, report) : NULL;
     if (!rates)
         nevh__fail(report, NEVH_ENOMEM, "out of memory");
     free(rates);

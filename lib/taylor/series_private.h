@@ -79,13 +79,16 @@ void nevh__domain_words(const nevh__recurrence *, size_t edge, char text[],
                         size_t room);
 
 /* friction  n rates or NULL
+   broken    functions of t alone may have kinks and jumps: series are then to
+             begin after them
    returns   NULL, with the reason in the report */
 nevh__recurrence *nevh__recurrence_new(const nevh_system *,
-                                       const double friction[], nevh__report *);
+                                       const double friction[], bool broken,
+                                       nevh__report *);
 /* The same of rates with more digits. */
 nevh__recurrence *nevh__recurrence_wide(const nevh_system *,
                                         const nevh__wide friction[],
-                                        nevh__report *);
+                                        bool broken, nevh__report *);
 void nevh__recurrence_free(nevh__recurrence *); /* NULL is allowed */
 
 /* Room to take coefficients up to an order in. */

@@ -164,6 +164,10 @@ static real function(const nevh__batch *b, real x, real second) {
         return FUNCTION(log10)(x);
     case NEVH__CBRT:
         return FUNCTION(cbrt)(x);
+    case NEVH__SIGN:
+        return (real)((x > 0) - (x < 0));
+    case NEVH__FLOOR:
+        return FUNCTION(floor)(x);
     default:
         return 0;
     }

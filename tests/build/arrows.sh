@@ -59,7 +59,7 @@ folder_of='function folder(path, part) {
     awk -F'[:"<>]' "$folder_of"'
     BEGIN {
         of["status"] = of["system"] = of["simd"] = of["body"] = "system"
-        of["transform"] = "system"
+        of["transform"] = "system"; of["timing"] = "expression"
         of["gradient"] = of["gsl"] = of["probe"] = "gradient"
         of["integrator"] = of["extend"] = of["run"] = "work"
         of["section"] = "run"; of["diagnose"] = of["reference"] = of["loop"] = of["frequencies"] = "diagnose"

@@ -47,6 +47,8 @@ static nevh_separability separability;
     X(STATUS, nevh_energy_status, (NULL))                                      \
     X(TEXT, nevh_energy_message, (NULL))                                       \
     X(STATUS, nevh_energy_follow, (NULL, NULL))                                \
+    X(STATUS, nevh_energy_book, (NULL, NULL))                                  \
+    X(REAL, nevh_energy_passed, (NULL, NULL))                                  \
     X(STATUS, nevh_energy_set_scale, (NULL, 0.1))                              \
     X(STATUS, nevh_energy_observe, (NULL, 0, 0.1, in, in))                     \
     X(STATUS, nevh_energy_expect, (NULL, NULL))                                \
@@ -154,6 +156,11 @@ static nevh_separability separability;
     X(TEXT, nevh_reference_text, (NULL))                                       \
     X(REAL, nevh_reference_error, (NULL))                                      \
     X(REAL, nevh_reference_horizon, (NULL))                                    \
+    X(REAL, nevh_reference_ends, (NULL))                                       \
+    X(REAL, nevh_solution_ends, (NULL, 0, 1, out, out))                        \
+    X(POINTER, nevh_timing_new, (NULL, 0, 1, out, out))                        \
+    X(ANY, nevh_timing_free, (NULL))                                           \
+    X(NUMBER, nevh_timing_breaks, (NULL))                                      \
     X(ANY, nevh_reference_why, (NULL))                                         \
     X(REAL, nevh_reference_exponent, (NULL))                                   \
     X(REAL, nevh_reference_growth, (NULL))                                     \

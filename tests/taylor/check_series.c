@@ -19,7 +19,7 @@ static planned_series plan_of(const char *text, const double friction[]) {
     planned_series x = {.names = formula_names()};
     x.s = system_of(text, x.names, FORMULA_DOF);
     ck_assert_msg(!x.s.error.status, "%s: %s", text, x.s.error.text);
-    x.r = nevh__recurrence_new(x.s.system, friction, &x.report);
+    x.r = nevh__recurrence_new(x.s.system, friction, false, &x.report);
     return x;
 }
 
@@ -243,7 +243,7 @@ TEST(what_has_no_series_is_refused) {
     plan_done(&x);
     nevh__report report = {0};
     nevh_system *s = double_pendulum.make();
-    ck_assert_ptr_null(nevh__recurrence_new(s, NULL, &report));
+    ck_assert_ptr_null(nevh__recurrence_new(s, NULL, false, &report));
     assert_says(report.text, "in C");
     nevh_system_free(s);
 }
@@ -273,7 +273,7 @@ TEST_EACH(first_coefficients_are_the_gradient, find_shipped()) {
     for (size_t k = 0; k < 2 * n; k++)
         state[k] += 1e-3 * (double)(k % 7);
     nevh__report report = {0};
-    nevh__recurrence *r = nevh__recurrence_new(system, NULL, &report);
+    nevh__recurrence *r = nevh__recurrence_new(system, NULL, false, &report);
     ck_assert_msg(r != NULL, "%s: %s", shipped[_i], report.text);
     nevh__series_double *s = nevh__series_new_double(r, 1);
     ck_assert(nevh__series_expand_double(s, 0.3, state, rows));

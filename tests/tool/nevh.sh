@@ -69,12 +69,12 @@ has 'off: gravity \(never evaluated\)'
 # CSV: the columns, as many in each row.
 columns=scene,integrator,order,symplectic,gradient,dt,steps,status,\
 max_energy_error,rms_energy_error,final_energy_error,energy_drift,state_error,\
-hamiltonian_evals,gradient_evals,sweeps,seconds,verdict,observed_order,seconds_spread,native
+hamiltonian_evals,gradient_evals,sweeps,seconds,verdict,observed_order,seconds_spread,native,tolerance
 exits 0 compare pendulum --integrators verlet,rk4,euler --format csv \
     --dt 0.1,0.05 --t-end 10.03
 test "$(grep -v '^#' $work/out | head -n 1)" = "$columns" ||
     fails "has other columns"
-grep -v '^#' $work/out | awk -F, 'NF != 21 { print; wrong = 1 }
+grep -v '^#' $work/out | awk -F, 'NF != 22 { print; wrong = 1 }
     END { exit wrong || NR != 7 }' || fails "has other rows"
 has '^# energy_scale: '
 has '^pendulum,verlet,2,yes,central4,0\.1,101,ok,'

@@ -52,7 +52,7 @@ records | awk -F, -v order=verlet:2,blanes-moan4:4,gauss4:4 'BEGIN {
         split(order, pair, ",")
         for (i in pair) { split(pair[i], word, ":"); p[word[1]] = word[2] } }
     NR > 1 { n++; if ($6 != (n % 3 == 1 ? 0.1 : n % 3 == 2 ? 0.05 : 0.025) ||
-             !($17 > 0) || !($20 >= 0) || !($13 > 0) || NF != 21) exit 1 }
+             !($17 > 0) || !($20 >= 0) || !($13 > 0) || NF != 22) exit 1 }
     NR > 1 && n % 3 != 1 { if ($19 < p[$2] - 0.2 || $19 > p[$2] + 0.2) exit 1 }
     END { if (n != 9) exit 1 }' || { fails "has other rows"; cat $work/out; }
 exits 0 cost pendulum --t-end 1 --dt 0.1 --integrators verlet --repeat 3 \

@@ -220,6 +220,35 @@ static void list_reasons(const row_list *r, list *words) {
     }
 }
 
+/* Whether a row came to grief, as all do where the solution ends. */
+static bool any_trouble(const row_list *r) {
+    for (size_t i = 0; i < r->count; i++)
+        if (r->row[i].failed ||
+            (r->row[i].ran && r->row[i].energy.verdict == NEVH_UNSTABLE))
+            return true;
+    return false;
+}
+
+/* Verdicts on runs past the end of their solution are none. */
+static void judge(const plan *p, const row_list *r, bool is_table,
+                  list *words) {
+    char *ends = ends_text(p, p->ends);
+    if (!ends)
+        verdict_words(p, r->row, r->count, words);
+    else
+        list_print(words, "No verdicts: %s.", ends);
+    energies_words(p, r->row, r->count, words);
+    if (is_table)
+        shadow_words(p, r->row, r->count, words);
+    if (is_table && !ends)
+        stability_words(p, r->row, r->count, words);
+    if (is_table && !ends)
+        remedy_words(p, r->row, r->count, words);
+    time_words(p, r->row, r->count, words);
+    passed_words(p, r->row, r->count, words);
+    free(ends);
+}
+
 static page make_page(const options *o, const plan *p, const row_list *r) {
     page result = {0};
     bool is_table = o->format == FORMAT_TABLE;
@@ -228,17 +257,11 @@ static page make_page(const options *o, const plan *p, const row_list *r) {
         return result;
     plan_notes(p, &result.before);
     row_notes(o, p, r->row, r->count, &result.before);
+    time_notes(p, &result.before);
     state_notes(p, &result.before);
     observable_notes(p, &result.before);
     energies_notes(p, &result.before);
-    verdict_words(p, r->row, r->count, &result.after);
-    energies_words(p, r->row, r->count, &result.after);
-    if (is_table)
-        shadow_words(p, r->row, r->count, &result.after);
-    if (is_table)
-        stability_words(p, r->row, r->count, &result.after);
-    if (is_table)
-        remedy_words(p, r->row, r->count, &result.after);
+    judge(p, r, is_table, &result.after);
     if (is_table)
         list_reasons(r, &result.after);
     return result;
@@ -259,7 +282,7 @@ static int draw_rows(const options *o, const plan *p, const row_list *r) {
                                       : compare_plot(o, p, r->row, r->count);
 }
 
-static int compare_rows(const options *o, const plan *p, row_list *r) {
+static int compare_rows(const options *o, plan *p, row_list *r) {
     output out;
     int status = TOOL_OK;
     if (order_plot_check(o, p->dts) || plot_check(o) ||
@@ -269,6 +292,8 @@ static int compare_rows(const options *o, const plan *p, row_list *r) {
         r->row[i].errors = envelope_new(p->run->t_start, p->t_end);
     run_rows(p, r, o->quiet);
     observe_orders(r->row, r->count);
+    if (isnan(p->ends) && !p->reference && any_trouble(r))
+        p->ends = plan_ends(p);
     page result = make_page(o, p, r);
     bool first = plot_goes_first(o);
     int drawn = first ? draw_rows(o, p, r) : TOOL_OK;

@@ -50,6 +50,8 @@ smoothness smoothness_on_way(const plan *, char **why);
 typedef struct {
     double frequency, frequency_at; /* 0: none is known */
     double pace, pace_at; /* the larger of that and of rates of growth */
+    double drive;         /* the largest frequency in t; 0: H reads no time */
+    const char *driver;   /* whose */
     bool plane;           /* one degree of freedom, H without time: no chaos */
     nevh_chaos_finding chaos; /* unless that; of a longer time, too */
     double length;            /* time */

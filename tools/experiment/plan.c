@@ -220,6 +220,7 @@ char *plan_title(const nevh_scene *scene, const char *name, const options *o) {
 
 int plan_make(plan *p, const options *o) {
     *p = (plan){.name = o->operands.count > 1 ? o->operands.item[1] : "",
+                .ends = NAN,
                 .steppers = stepper_cache_new()};
     if (scene_open(&p->scene, o))
         return TOOL_USAGE;
@@ -234,7 +235,10 @@ int plan_make(plan *p, const options *o) {
         return TOOL_USAGE;
     for (size_t i = 0; o->no_steps && i < p->ats; i++)
         p->t_end = i ? fmax(p->t_end, p->at[i]) : p->at[i];
-    return check_times(p, o) ? TOOL_USAGE : check_at(p, o);
+    if (check_times(p, o) || check_at(p, o))
+        return TOOL_USAGE;
+    plan_look_at_time(p);
+    return TOOL_OK;
 }
 
 void plan_free(plan *p) {
@@ -245,6 +249,8 @@ void plan_free(plan *p) {
     free(p->at);
     free(p->q);
     free(p->p);
+    nevh_timing_free(p->timing);
+    nevh_timing_free(p->jumps);
     nevh_reference_free(p->reference);
     energies_free(p->energies);
     stepper_cache_free(p->steppers);
@@ -346,7 +352,10 @@ void plan_note_first(const plan *p, const char *integrator, list *notes) {
     bool transformed;
     if (nevh_integrator_adaptive(plan_scheme(integrator, &transformed)) &&
         p->tolerances)
-        list_print(notes, "tolerance: %.9g%s", p->tolerance[0],
+        list_print(notes,
+                   "tolerance: %.9g%s; steps are no longer than dt, at whose "
+                   "multiples they end",
+                   p->tolerance[0],
                    p->tolerances > 1 ? ", the first of the list" : "");
     list_print(notes, "gradient: %s%s", p->gradients.item[0],
                p->gradients.count > 1 ? ", the first of the list" : "");

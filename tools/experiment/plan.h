@@ -34,8 +34,11 @@ typedef struct {
     double patience; /* work that a row may take; 0: any */
     double follow;   /* work that its verdict may take; 0: as usual */
     bool match_work, diagnostics;
+    nevh_timing *timing;       /* NULL: H reads no time */
+    nevh_timing *jumps;        /* of a longer time; NULL: there are none */
     nevh_reference *reference; /* NULL: not asked for, or there is none */
     double reference_end;
+    double ends; /* when the solution does; NAN: not, as far as is known */
     char *no_reference;      /* why there is none */
     const char *observable;  /* whose errors count, not of states; NULL */
     double observable_scale; /* that its errors are divided by */
@@ -74,6 +77,27 @@ void plan_note_first(const plan *, const char *integrator, list *notes);
 /* Title, effects, structure of H, span. */
 void plan_notes(const plan *, list *notes);
 char *plan_structure(const plan *);
+
+/* time_words.c: looks at what H does with time. */
+void plan_look_at_time(plan *);
+/* The largest angular frequency of a drive; 0: there is none.
+   effect  out: whose */
+double plan_drive(const plan *, const char **effect);
+/* When the solution itself ends; NAN: not before the plan does.
+   cost  a second at most */
+double plan_ends(const plan *);
+/* In words, to be freed; NULL: it does not. */
+char *ends_text(const plan *, double ends);
+/* Refuses a plan whose solution ends before it does: TOOL_FAILED. */
+int plan_refuse_end(const plan *);
+/* Why a run failed: its message, or that the solution ends; to be freed. */
+char *plan_why(const plan *, const char *message);
+/* What is wrong with a run whose energy changed by a good part: that the
+   solution ends, or that a step passed a pole; to be freed, NULL: nothing.
+   cost  the run again */
+char *plan_doubts(const plan *, const char *integrator);
+/* Where H jumps. */
+void time_notes(const plan *, list *notes);
 
 /* stepper_cache.c */
 stepper_cache *stepper_cache_new(void);

@@ -38,6 +38,7 @@ static void add_record(table *t, const plan *p, const row *r) {
     table_text(t, r->native ? "yes" : "no");
     if (p->diagnostics)
         table_number(t, shadow_error(r));
+    table_number(t, when(r->tolerance > 0, r->tolerance));
 }
 
 table *records(const plan *p, const row rows[], size_t count) {
@@ -73,6 +74,7 @@ table *records(const plan *p, const row rows[], size_t count) {
     table_column(t, "native");
     if (p->diagnostics)
         table_column(t, "shadow_error");
+    table_column(t, "tolerance");
     for (size_t i = 0; i < count; i++)
         add_record(t, p, &rows[i]);
     return t;

@@ -47,6 +47,8 @@ nevh_energy *row_energy(const plan *p, const row *r, const nevh_stepper *s) {
     nevh_energy_expect(energy, s);
     if (p->balance)
         nevh_energy_follow(energy, s);
+    if (p->balance && p->jumps)
+        nevh_energy_book(energy, p->jumps);
     plan_set_scale(p, energy);
     return energy;
 }
@@ -218,15 +220,18 @@ static void watched(work *w, nevh_stepper *s) {
                       : status == NEVH_STOPPED ? nevh_energy_message(energy)
                                                : nevh_stepper_message(s);
     r->energy = nevh_energy_result(energy, 0);
+    r->passed = nevh_energy_passed(energy, &r->passed_effect);
     r->steps = nevh_stepper_taken(s);
     r->counts = row_counts(s, wait.before);
     r->late = wait.late;
     r->ran = !r->late && (!status || r->energy.verdict == NEVH_UNSTABLE);
     r->failed = !r->ran;
     r->broken = status && r->ran;
-    r->status = status ? text_print("failed: %s (after t = %.9g)", why,
-                                    nevh_stepper_time(s))
+    char *ends = ends_text(w->plan, w->plan->ends);
+    r->status = status ? text_print("failed: %s (after t = %.9g)",
+                                    ends ? ends : why, nevh_stepper_time(s))
                        : text_print("ok");
+    free(ends);
     r->state_error = state_error_of(w->plan, r, state);
     if (state && isnan(r->state_error))
         explain_unknown(w->plan, r, why);
@@ -268,9 +273,36 @@ static void work_free(work *w) {
     free(w->p);
 }
 
+/* Where a scheme with a tolerance has to end steps for others to look at its
+   states: so far apart that the tolerance, not dt, says how long its steps are.
+   Of H of time it stays dt, which sees what changes within it. */
+static void space_ends(work *w) {
+    static const double limited = 0.5, longer = 4, fewest = 16;
+    row *r = w->row;
+    const plan *p = w->plan;
+    double longest = (p->t_end - p->run->t_start) / fewest, stopped;
+    int each = nevh_integrator_gradients(r->scheme);
+    if (r->tolerance == 0 || each == 0 || p->time || p->hurried ||
+        nevh_integrator_own_time(r->scheme))
+        return;
+    for (; longer * r->step <= longest; r->step *= longer) {
+        nevh_stepper *s = row_stepper(p, r, false);
+        uint64_t before = nevh_stepper_counts(s).gradients;
+        int status = nevh_stepper_status(s);
+        if (!status)
+            status = run(w, s, NULL, 0, &stopped);
+        double taken = (double)(nevh_stepper_counts(s).gradients - before);
+        double mean = (nevh_stepper_time(s) - p->run->t_start) * each / taken;
+        row_stepper_keep(p, r, false, s);
+        if (status || !(mean > limited * r->step))
+            return;
+    }
+}
+
 void row_run(const plan *p, row *r) {
     work w = work_new(p, r);
     r->step = r->dt;
+    space_ends(&w);
     r->observable = p->observable;
     r->observed_order = r->state_error = r->observable_error = r->stopped =
         r->seconds = NAN;

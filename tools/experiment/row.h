@@ -37,11 +37,13 @@ typedef struct {
     double work;            /* by its counts: the same on every machine */
     double watched;         /* seconds, with all that watches */
     double seconds, spread; /* median, and half of what the middle half spans */
-    double stopped;         /* where the scene's `stop` said; NAN: nowhere */
-    double t_end;           /* where it ended */
-    double observed_order;  /* NAN: unknown */
-    double state_error;     /* NAN: unknown or meaningless */
-    double observable_error; /* the same */
+    double passed;          /* when a pole had been passed; NAN */
+    const char *passed_effect; /* whose; NULL */
+    double stopped;            /* where the scene's `stop` said; NAN: nowhere */
+    double t_end;              /* where it ended */
+    double observed_order;     /* NAN: unknown */
+    double state_error;        /* NAN: unknown or meaningless */
+    double observable_error;   /* the same */
     char state_unknown[300]; /* why; "" where it is known, or no run's fault */
     double symplecticity_error, reversal_error;
     nevh_shadow_report shadow; /* without samples: its scheme has none */
@@ -96,6 +98,10 @@ void row_notes(const options *, const plan *, const row rows[], size_t count,
                list *notes);
 /* Of whose rows the steps are compiled. */
 void native_notes(const plan *, const row rows[], size_t count, list *notes);
+/* time_words.c: rows whose steps pass over what H does in time; and over a
+   pole. */
+void time_words(const plan *, const row rows[], size_t count, list *words);
+void passed_words(const plan *, const row rows[], size_t count, list *words);
 /* verdict.c: the table in words. */
 void verdict_words(const plan *, const row rows[], size_t count, list *words);
 

@@ -64,6 +64,7 @@ int plan_reference(plan *p, double end) {
     p->reference_end = end;
     p->reference = make_reference(p, scheme, end);
     p->no_reference = refusal(p, name);
+    p->ends = nevh_reference_ends(p->reference);
     if (!p->no_reference)
         return TOOL_OK;
     nevh_reference_free(p->reference);

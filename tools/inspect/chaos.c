@@ -75,10 +75,11 @@ static void put_exponents(job *j, const row *r, look *l) {
 }
 
 static int fail(job *j, const row *r) {
-    char *why = text_print("%s, dt = %g: %s", r->integrator, r->dt,
-                           nevh_chaos_message(r->chaos));
+    char *known = plan_why(j->plan, nevh_chaos_message(r->chaos));
+    char *why = text_print("%s, dt = %g: %s", r->integrator, r->dt, known);
     list_print(&j->result.before, "failed: %s", why);
     tool_refuse("%s: %s", j->plan->name, why);
+    free(known);
     free(why);
     return TOOL_FAILED;
 }

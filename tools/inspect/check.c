@@ -117,12 +117,13 @@ static char *prediction(const plan *p, const nevh_integrator *scheme,
     return verdict ? text_print("%s", verdict) : NULL;
 }
 
-/* dt times the fastest frequency, against what the scheme bears. */
+/* dt times the fastest frequency, of the motion or of a drive, against what the
+   scheme bears of the motion's. */
 static void add_trial_run(const plan *p, const nevh_integrator *scheme,
                           bool fits, bool why, const trial_run *ahead,
                           table *t) {
     double limit = fits ? nevh_stability_limit(scheme) : NAN;
-    double x = fits ? p->dt[0] * ahead->frequency : NAN;
+    double x = fits ? p->dt[0] * fmax(ahead->frequency, ahead->drive) : NAN;
     if (!why && limit == 0)
         table_text(t, "never");
     else if (isfinite(limit))

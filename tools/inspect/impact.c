@@ -82,6 +82,10 @@ static bool switch_effect(plan *p, const char *effect, bool on) {
     p->friction = nevh_system_friction(p->system, NULL);
     p->time = !(nevh_system_traits(p->system) & NEVH_AUTONOMOUS);
     p->balance = p->friction || p->time;
+    nevh_timing_free(p->timing);
+    nevh_timing_free(p->jumps);
+    p->timing = p->jumps = NULL;
+    plan_look_at_time(p);
     return true;
 }
 

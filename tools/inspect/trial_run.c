@@ -145,7 +145,7 @@ static void run(trial *f) {
     f->found->length = t - begin;
     f->ends = f->ends || status || !(f->found->length >= p->t_end - begin);
     if (status)
-        f->found->failure = text_print("%s", nevh_stepper_message(s));
+        f->found->failure = plan_why(p, nevh_stepper_message(s));
 }
 
 /* The indicators of nevh chaos, of H itself; where the run is too short for them,
@@ -232,6 +232,7 @@ trial_run trial_run_new(const plan *p, bool chaos) {
     found.frequency_at = f.fastest.turning_at;
     found.pace = f.fastest.frequency;
     found.pace_at = f.fastest.t;
+    found.drive = plan_drive(p, &found.driver);
     nevh_rates_free(f.fastest.rates);
     nevh_field_free(f.field);
     nevh_field_free(f.gradient);
@@ -321,15 +322,38 @@ static void tell_outlook(const plan *p, const trial_run *f, list *notes) {
     }
 }
 
+/* What H does with time faster than a step. */
+static void tell_changes(const plan *p, list *notes) {
+    const char *unit = nevh_scene_label(p->scene, "t"), *effect = "";
+    const char *space = *unit ? " " : "";
+    double at, time = nevh_timing_shortest(p->timing, &at, &effect);
+    if (time < p->dt[0])
+        list_print(notes,
+                   "%s changes within %.2g%s%s near t = %.6g%s%s: steps of dt "
+                   "= %.4g%s%s pass over it",
+                   effect, time, space, unit, at, space, unit, p->dt[0], space,
+                   unit);
+    time_notes(p, notes);
+}
+
 void trial_run_words(const plan *p, const trial_run *f, list *notes) {
     const char *unit = nevh_scene_label(p->scene, "t");
     const char *space = *unit ? " " : "", *per = *unit ? " rad/" : "";
+    if (f->drive > f->frequency)
+        list_print(notes,
+                   "Highest frequency: omega = %.3g%s%s, of %s with time; "
+                   "omega dt = %.3g at dt = %.4g%s%s",
+                   f->drive, per, unit, f->driver, p->dt[0] * f->drive,
+                   p->dt[0], space, unit);
     if (f->frequency > 0)
         list_print(notes,
-                   "Highest frequency: omega = %.3g%s%s (t = %.4g%s%s); "
+                   "%s: omega = %.3g%s%s (t = %.4g%s%s); "
                    "omega dt = %.3g at dt = %.4g%s%s",
+                   f->drive > f->frequency ? "Highest frequency of the motion"
+                                           : "Highest frequency",
                    f->frequency, per, unit, f->frequency_at, space, unit,
                    p->dt[0] * f->frequency, p->dt[0], space, unit);
+    tell_changes(p, notes);
     if (f->pace > f->frequency)
         list_print(notes,
                    "Fastest growth: small displacements grow at a rate of "
@@ -350,5 +374,5 @@ void trial_run_words(const plan *p, const trial_run *f, list *notes) {
 const char *trial_run_verdict(const trial_run *f, double limit, double dt) {
     if (f->frequency * dt > limit)
         return "unstable";
-    return f->pace * dt > 1 ? "not resolved" : NULL;
+    return fmax(f->pace, f->drive) * dt > 1 ? "not resolved" : NULL;
 }

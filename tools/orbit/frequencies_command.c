@@ -123,8 +123,8 @@ static int run(job *j, const char *integrator, size_t finer, char **why) {
         status = plan_run(p, s, p->dt[0] / (double)finer, q, m, &observer, 1,
                           &stopped);
         if (status)
-            *why = text_print("%s", j->failed ? nevh_scene_message(p->scene)
-                                              : nevh_stepper_message(s));
+            *why = plan_why(p, j->failed ? nevh_scene_message(p->scene)
+                                         : nevh_stepper_message(s));
     }
     free(q);
     nevh_stepper_free(s);

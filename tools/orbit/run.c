@@ -141,6 +141,7 @@ static void note(job *j) {
     list_print(&j->notes, "scene: %s", p->name);
     settings_notes(j->options, &j->notes);
     plan_note_first(p, j->integrator, &j->notes);
+    time_notes(p, &j->notes);
     list_print(&j->notes, "rows: %s", j->rows_text);
     if (j->data.points)
         measured_note(&j->data, &j->notes);

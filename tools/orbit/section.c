@@ -188,10 +188,13 @@ static int explain(job *j, int status, const nevh_stepper *s,
         return TOOL_FAILED;
     if (!*why)
         why = looking ? nevh_sections_message(x) : nevh_stepper_message(s);
+    char *known =
+        j->members.several ? text_print("%s", why) : plan_why(j->plan, why);
     free(j->ended);
     j->ended = j->members.several ? text_print("member %zu failed: %s",
-                                               j->members.number[j->at], why)
-                                  : text_print("failed: %s", why);
+                                               j->members.number[j->at], known)
+                                  : text_print("failed: %s", known);
+    free(known);
     tool_refuse("%s: %s %s", j->plan->name, j->integrator, j->ended);
     return TOOL_FAILED;
 }

@@ -31,6 +31,7 @@ struct trajectory {
     double *q, *p;                   /* at the end of a branch */
     double *observed, *more;
     size_t observables;
+    double energy, changed; /* of the first row; by how much others differ */
 };
 
 /* As nevh_run_until cuts the span. */
@@ -78,6 +79,7 @@ trajectory *trajectory_new(const plan *p, const char *integrator,
                       .rows = *rows,
                       .to = to,
                       .h = p->dt[0],
+                      .energy = NAN,
                       .now.at = {.t = p->run->t_start, .written = NAN}};
     reserve(r);
     choose_steps(r);
@@ -159,6 +161,8 @@ static int show(trajectory *r, double t, const double q[], const double p[]) {
         return fprintf(stderr, "%s\n", nevh_scene_message(scene)), TOOL_USAGE;
     if (nevh_field_value(nevh_stepper_field(r->branch), 1, &t, q, p, &energy))
         energy = NAN;
+    r->energy = isnan(r->energy) ? energy : r->energy;
+    r->changed = fmax(r->changed, fabs(energy - r->energy));
     add_numbers(r, &t, 1, ',');
     add_numbers(r, q, r->plan->n, ',');
     add_numbers(r, p, r->plan->n, ',');
@@ -186,12 +190,29 @@ remark(trajectory *r, const char *format, ...) {
         lines_print(r->to.lines, "# %s\n", text);
 }
 
-static int failed(trajectory *r, double t, const char *why) {
+static int failed(trajectory *r, double t, const char *message) {
+    char *why = plan_why(r->plan, message);
     remark(r, "failed after t = %.9g: %s", t, why);
     if (!r->to.mute)
         tool_refuse("%s: %s failed after t = %.9g: %s", r->plan->name,
                     r->integrator, t, why);
+    free(why);
     return TOOL_FAILED;
+}
+
+/* Of a whole run, whether its orbit is one of H. */
+static void doubt(trajectory *r) {
+    static const double large = 0.1; /* of the energy */
+    const plan *p = r->plan;
+    if (p->balance || r->to.mute || r->to.take ||
+        !(r->changed > large * plan_energy_scale(p)))
+        return;
+    char *why = plan_doubts(p, r->integrator);
+    if (why) {
+        remark(r, "warning: %s", why);
+        fprintf(stderr, "nevh: %s: warning: %s\n", p->name, why);
+    }
+    free(why);
 }
 
 /* When rows are due. */
@@ -406,5 +427,7 @@ int trajectory_follow(trajectory *r, const trajectory_watch *watch) {
     }
     if (c.shown)
         fputs("\r\033[K", stderr);
+    if (!status && r->finished)
+        doubt(r);
     return status;
 }

@@ -261,9 +261,12 @@ void advice_print(const advice *a, const options *o, FILE *f) {
     if (!is_table || !o->quiet) {
         plan_notes(searched, &p.before);
         native_notes(searched, rows, count, &p.before);
+        time_notes(searched, &p.before);
         state_notes(searched, &p.before);
         observable_notes(searched, &p.before);
         tell_answer(a, o, &p.after);
+        time_words(searched, rows, count, &p.after);
+        passed_words(searched, rows, count, &p.after);
     }
     page_print(&p, o, f);
     page_free(&p);

@@ -223,10 +223,12 @@ static page make_page(const options *o, costs *c) {
     if (!is_table || !o->quiet) {
         plan_notes(&c->search.plan, &result.before);
         row_notes(o, &c->search.plan, rows, count, &result.before);
+        time_notes(&c->search.plan, &result.before);
         state_notes(&c->search.plan, &result.before);
         observable_notes(&c->search.plan, &result.before);
         cost_notes(c, &result.before);
         cost_words(c, &result.after);
+        time_words(&c->search.plan, rows, count, &result.after);
     }
     free(rows);
     return result;

@@ -100,5 +100,8 @@ int plan_search(plan *p, const options *o) {
         list_free(&p->integrators);
         fitting_integrators(p, &p->integrators);
     }
-    return plan_fits(p, NULL) ? plan_goes_anywhere(p) : TOOL_USAGE;
+    if (!plan_fits(p, NULL))
+        return TOOL_USAGE;
+    int status = plan_goes_anywhere(p);
+    return status ? status : plan_refuse_end(p);
 }

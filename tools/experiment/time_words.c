@@ -1,0 +1,190 @@
+/* nevh: what is said of H that changes with time, and of solutions that end.
+   SPDX-License-Identifier: GPL-3.0-or-later */
+#include "row.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static size_t count_jumps(const nevh_timing *timing) {
+    size_t count = 0;
+    for (size_t i = 0; i < nevh_timing_breaks(timing); i++)
+        count += nevh_timing_break(timing, i).jump;
+    return count;
+}
+
+/* Jumps are booked as far as verdicts may follow a run. */
+void plan_look_at_time(plan *p) {
+    static const double followed = 33;
+    double start = p->run->t_start, end = p->t_end;
+    if (!p->time)
+        return;
+    p->timing = nevh_timing_new(p->system, start, end, p->q, p->p);
+    if (!p->timing)
+        tool_owned(NULL);
+    if (count_jumps(p->timing))
+        p->jumps = nevh_timing_new(
+            p->system, start, start + followed * (end - start), p->q, p->p);
+}
+
+double plan_drive(const plan *p, const char **effect) {
+    return nevh_timing_frequency(p->timing, effect);
+}
+
+/* "5", "0.1, 0.2, 0.3 and 187 more" */
+static char *jumps_text(const plan *p, size_t *count) {
+    enum { SHOWN = 3 };
+    char *text = text_print("%s", "");
+    *count = 0;
+    for (size_t i = 0; i < nevh_timing_breaks(p->timing); i++) {
+        nevh_time_break b = nevh_timing_break(p->timing, i);
+        bool inside = b.before > p->run->t_start && b.after < p->t_end;
+        if (!b.jump || !inside || (*count)++ >= SHOWN)
+            continue;
+        char *longer = text_print("%s%s%.6g", text, *text ? ", " : "",
+                                  (b.before + b.after) / 2);
+        free(text);
+        text = longer;
+    }
+    if (*count > SHOWN) {
+        char *longer = text_print("%s and %zu more", text, *count - SHOWN);
+        free(text);
+        text = longer;
+    }
+    return text;
+}
+
+/* The effects that jump. */
+static char *jumping(const plan *p) {
+    list names = {0};
+    for (size_t i = 0; i < nevh_timing_breaks(p->timing); i++) {
+        nevh_time_break b = nevh_timing_break(p->timing, i);
+        if (b.jump && !list_has(&names, b.effect))
+            list_add(&names, b.effect);
+    }
+    char *text = list_joined(&names);
+    list_free(&names);
+    return text;
+}
+
+void time_notes(const plan *p, list *notes) {
+    size_t count;
+    char *times = jumps_text(p, &count), *names = jumping(p);
+    if (count)
+        list_print(notes,
+                   "H jumps in time at t = %s (%s): a step that contains a "
+                   "jump has an error of low order%s",
+                   times, names,
+                   p->balance ? "; the balance counts the jump as energy from "
+                                "outside"
+                              : "");
+    for (size_t i = 0; i < nevh_timing_breaks(p->timing); i++) {
+        nevh_time_break b = nevh_timing_break(p->timing, i);
+        if (b.pole)
+            list_print(notes, "%s has a pole in time at t = %.6g", b.effect,
+                       (b.before + b.after) / 2);
+    }
+    if (p->time && !nevh_timing_whole(p->timing))
+        list_add(notes, "H may change with time between the times at which it "
+                        "was looked at: it reads t in a function in C, or "
+                        "jumps too often");
+    free(times);
+    free(names);
+}
+
+/* Rows whose steps are longer than the fastest change. */
+static list too_long(const row rows[], size_t count, double shortest,
+                     double *least) {
+    list names = {0};
+    *least = INFINITY;
+    for (size_t i = 0; i < count; i++) {
+        if (!rows[i].ran || !(rows[i].dt > shortest))
+            continue;
+        *least = fmin(*least, rows[i].dt);
+        if (!list_has(&names, rows[i].integrator))
+            list_add(&names, rows[i].integrator);
+    }
+    return names;
+}
+
+void time_words(const plan *p, const row rows[], size_t count, list *words) {
+    const char *effect = "", *unit = nevh_scene_label(p->scene, "t");
+    const char *space = *unit ? " " : "";
+    double at = 0, least,
+           shortest = nevh_timing_shortest(p->timing, &at, &effect);
+    list names = too_long(rows, count, 2 * shortest, &least);
+    char *joined = list_joined(&names);
+    if (names.count)
+        list_print(words,
+                   "%s changes within %.2g%s%s near t = %.6g%s%s: steps of "
+                   "%.4g%s%s or longer pass over it (%s).",
+                   effect, shortest, space, unit, at, space, unit, least, space,
+                   unit, joined);
+    free(joined);
+    list_free(&names);
+}
+
+double plan_ends(const plan *p) {
+    return nevh_solution_ends(p->system, p->run->t_start, p->t_end, p->q, p->p);
+}
+
+char *ends_text(const plan *p, double t) {
+    const char *unit = nevh_scene_label(p->scene, "t");
+    if (!isfinite(t))
+        return NULL;
+    return text_print("the solution itself ends at t = %.6g%s%s, where it "
+                      "changes without bound: no scheme goes on from there",
+                      t, *unit ? " " : "", unit);
+}
+
+int plan_refuse_end(const plan *p) {
+    char *ends = ends_text(p, plan_ends(p));
+    if (ends)
+        tool_refuse("%s: %s; --t-end takes an earlier time", p->name, ends);
+    int status = ends ? TOOL_FAILED : TOOL_OK;
+    free(ends);
+    return status;
+}
+
+char *plan_why(const plan *p, const char *message) {
+    char *ends = ends_text(p, plan_ends(p));
+    return ends ? ends : text_print("%s", message);
+}
+
+char *plan_doubts(const plan *p, const char *integrator) {
+    char *text = ends_text(p, plan_ends(p));
+    if (text)
+        return text;
+    nevh_options o = plan_options(p, p->gradients.item[0]);
+    nevh_stepper *s = plan_stepper(p, integrator);
+    nevh_energy *energy = nevh_energy_new(p->system, &o);
+    double stopped, *q = tool_allocate(2 * p->n, sizeof *q);
+    const char *effect;
+    memcpy(q, p->q, p->n * sizeof *q);
+    memcpy(q + p->n, p->p, p->n * sizeof *q);
+    if (!nevh_stepper_status(s))
+        plan_run(p, s, p->dt[0], q, q + p->n,
+                 &(nevh_observer){nevh_energy_observe, energy, 1}, 1, &stopped);
+    double passed = nevh_energy_passed(energy, &effect);
+    if (isfinite(passed))
+        text = text_print("a step before t = %.6g passes a pole of %s: what "
+                          "follows is not the orbit of H",
+                          passed, effect);
+    nevh_stepper_free(s);
+    nevh_energy_free(energy);
+    free(q);
+    return text;
+}
+
+void passed_words(const plan *p, const row rows[], size_t count, list *words) {
+    const char *unit = nevh_scene_label(p->scene, "t");
+    for (size_t i = 0; i < count; i++) {
+        const row *r = &rows[i];
+        if (r->passed_effect)
+            list_print(words,
+                       "%s at %s = %.4g: a step before t = %.6g%s%s passes a "
+                       "pole of %s: what follows is not the orbit of H.",
+                       r->integrator, r->tolerance > 0 ? "tolerance" : "dt",
+                       r->tolerance > 0 ? r->tolerance : r->dt, r->passed,
+                       *unit ? " " : "", unit, r->passed_effect);
+    }
+}
