@@ -178,13 +178,18 @@ static double apart(const nevh_certain *c, size_t k) {
     return fabs((double)(state(&c->fine, k) - state(&c->coarse, k)));
 }
 
-/* Then what digits a variable has in common is chance. */
-static bool have_parted(const nevh_certain *c) {
+static bool any_is_far(const nevh_certain *c, size_t from) {
     static const double far = 0.05; /* of what a variable was at most */
-    bool parted = false;
-    for (size_t k = 0; k < 2 * c->n; k++)
-        parted = parted || apart(c, k) > far * most(&c->fine, k);
-    return parted;
+    bool found = false;
+    for (size_t k = from; k < from + c->n; k++)
+        found = found || apart(c, k) > far * most(&c->fine, k);
+    return found;
+}
+
+/* Then what digits a variable has in common is chance.  Orbits part in coordinates and
+   in momenta; momenta alone differ where they are rounding, at an equilibrium. */
+static bool have_parted(const nevh_certain *c) {
+    return any_is_far(c, 0) && any_is_far(c, c->n);
 }
 
 static int go_both(nevh_certain *c, nevh__wide t) {
