@@ -144,7 +144,7 @@ static nevh_reference_end explain(nevh__pair *b, const nevh__pair_outcome *o,
     nevh_reference *r = b->reference;
     double growth;
     bool chaos = nevh__reference_is_chaotic(r, o->reached, &growth);
-    bool rounding = growth * DBL_EPSILON * 30 > hopeless;
+    bool rounding = growth * DBL_EPSILON * 3 > hopeless;
     if (!rounding && !(stalled && chaos && growth > many)) {
         r->growth = r->exponent = NAN;
         return NEVH_REFERENCE_COARSE;
