@@ -36,8 +36,8 @@ typedef struct nevh_finer nevh_finer;
 
 /* Chooses the first kind, in the order above, that the system allows (formulas
    that are analytic for Taylor series) and that costs no more per time than half
-   the step does; else the first that the system allows.  Costs are those of nevh_counts_seconds, measured over a
-   thirtieth of the run.  Gradients are exact where all terms bring them.
+   the step does; else the first that the system allows.  Costs are those of
+   nevh_counts_seconds, measured over a thirtieth of the run.  Gradients are exact where all terms bring them.
    returns  to be freed with nevh_finer_free; NULL only when memory is out.
             Carries NEVH_EINVAL (no start, step or count), or the refusal of the
             last kind that was tried

@@ -94,7 +94,8 @@ typedef enum {
 
 /* Errors are of H(t) - H(0), or of the balance, relative to `scale`: |H0|
    without the terms that read nothing; where that is below 1e-6 of the largest
-   |effect| at the start, that largest one. */
+   |effect| at the start, that largest one; where all effects are below 1 % of their
+   mean along the orbit, that mean. */
 typedef struct {
     size_t samples;
     double initial; /* H0, all terms */
