@@ -5,6 +5,7 @@
    alone.  Its functions that the library refers to end in an error here, which
    the library tells as it tells GSL's own.
    SPDX-License-Identifier: GPL-3.0-or-later */
+#include "diagnose/passage_private.h"
 #include "gradient/step_selection_private.h"
 #include "kernels/gsl_private.h"
 #include "kernels/tao_private.h"
@@ -169,4 +170,21 @@ locale_t uselocale(locale_t locale) {
 }
 void freelocale(locale_t locale) {
     (void)locale;
+}
+
+/* A page has no words for poles that a step passes. */
+bool nevh__passage_init(nevh__passage *s, const nevh_system *system) {
+    *s = (nevh__passage){.system = system};
+    return true;
+}
+void nevh__passage_clear(nevh__passage *s) {
+    (void)s;
+}
+void nevh__passage_keep(nevh__passage *s, double t, const double q[],
+                        const double p[]) {
+    (void)s, (void)t, (void)q, (void)p;
+}
+void nevh__passage_look(nevh__passage *s, double t, const double q[],
+                        const double p[]) {
+    (void)s, (void)t, (void)q, (void)p;
 }

@@ -183,8 +183,8 @@ typedef struct {
 } nevh_judged_run;
 
 /* Where the verdict on a run is UNDECIDED, that of a longer one: from the start
-   again, to 2, 4 ... 32 lengths, until the verdict is another one or the seconds
-   allowed are spent.  BOUNDED is confirmed in the same way: by as many lengths
+   again, to 2, 4 ... 32 lengths, or 512 that take a second, until the verdict is
+   another one or the seconds allowed are spent.  BOUNDED is confirmed in the same way: by as many lengths
    as take a tenth of a second, up to 128, and where neighbours may part by 4 that
    take a second.  What is then still open is judged by as much as was seen, as are runs
    that are too long to be followed to 4 lengths.  UNSTABLE of a longer run says

@@ -368,13 +368,16 @@ static double jump(nevh_energy *e, const nevh_time_break *b, double t,
     const double *from = e->passage.before;
     size_t n = e->n;
     double since = b->before - from[2 * n], h[2] = {NAN, NAN};
+    double start = from[2 * n], at[2] = {b->before, b->after};
+    if (e->trend->samples == 1 && b->before < start && start < b->after)
+        at[t > start ? 0 : 1] = start; /* the value at the start is H0's */
     for (size_t k = 0; k < 2 * n; k++) {
         double to = k < n ? q[k] : p[k - n];
         e->state[k] = from[k] + (to - from[k]) * since / (t - from[2 * n]);
     }
     const double *z = e->state;
-    if (nevh_field_value(e->field, 1, &b->before, z, z + n, &h[0]) ||
-        nevh_field_value(e->field, 1, &b->after, z, z + n, &h[1]))
+    if (nevh_field_value(e->field, 1, &at[0], z, z + n, &h[0]) ||
+        nevh_field_value(e->field, 1, &at[1], z, z + n, &h[1]))
         return 0;
     return h[1] - h[0];
 }

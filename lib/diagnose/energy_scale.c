@@ -5,9 +5,12 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* The last energy over the mean: of growth that has no end, no energy is typical. */
+static const double growing = 8;
+
 typedef struct {
     nevh_field *values;
-    double *effects, sum, time;
+    double *effects, sum, time, last;
 } mean;
 
 /* The largest effect, over the time of the step. */
@@ -21,6 +24,7 @@ static void add_largest(void *context, double t, double h, const double y[]) {
         most = fmax(most, fabs(m->effects[i]));
     m->sum += h * most;
     m->time += h;
+    m->last = most;
 }
 
 double nevh__orbit_energy(nevh_field *values, double t, const double q[],
@@ -45,5 +49,6 @@ double nevh__orbit_energy(nevh_field *values, double t, const double q[],
     free(m.effects);
     free(sizes);
     values->report = (nevh__report){0}; /* where values are not finite */
-    return m.time > 0 && isfinite(m.sum / m.time) ? m.sum / m.time : 0;
+    double energy = m.time > 0 ? m.sum / m.time : 0;
+    return isfinite(energy) && m.last <= growing * energy ? energy : 0;
 }

@@ -13,6 +13,8 @@ bool nevh__passage_init(nevh__passage *s, const nevh_system *system) {
     *s = (nevh__passage){.system = system};
     s->before = nevh__array(4 * system->n + 2, sizeof *s->before);
     s->now = s->before ? s->before + 2 * system->n + 1 : NULL;
+    if (s->before)
+        nevh__time_parts_init_between(&s->parts, system, s->before, s->now);
     return s->before;
 }
 
@@ -61,9 +63,6 @@ void nevh__passage_look(nevh__passage *s, double t, const double q[],
     if (s->found || s->looks++ >= MOST_LOOKS)
         return;
     put(s, s->now, t, q, p);
-    if (!s->planned)
-        nevh__time_parts_init_between(&s->parts, s->system, s->before, s->now);
-    s->planned = true;
     if (!s->parts.failed && has_pole(s, 0, 1, &left)) {
         s->found = true;
         s->at = t;

@@ -11,7 +11,7 @@ typedef struct {
     double *before, *now; /* 2n + 1 each: q, p, t of the last state */
     nevh__time_parts parts;
     size_t looks; /* so far: they are limited */
-    bool planned, found;
+    bool found;
     double at; /* the time after the step */
     size_t effect;
 } nevh__passage;

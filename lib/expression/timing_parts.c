@@ -232,9 +232,10 @@ static nevh__range sampled_range(const parts *m,
     nevh__range r = {INFINITY, -INFINITY, 0, 0, 0};
     double before = NAN, last = NAN;
     for (int i = 0; i <= SAMPLES; i++) {
-        double off = i == 0 || i == SAMPLES
-                         ? 0
-                         : 0.8 * (fmod(i * golden + low, 1) - 0.5);
+        double off =
+            i == 0 || i == SAMPLES
+                ? 0
+                : 0.8 * (i * golden + low - floor(i * golden + low) - 0.5);
         double t = low + (high - low) * (i + off) / SAMPLES;
         double h = sample(m, s, t), by = (h - last) / (t - before);
         r.low = fmin(r.low, h);

@@ -210,30 +210,46 @@ static bool lacks_digits(const nevh_certain *c) {
     return lacks;
 }
 
-/* What H does with time up to there; orbits begin again where that was not
-   known. */
+/* NULL: memory is out. */
+static nevh_timing *timing_until(const nevh_certain *c, double t) {
+    size_t n = c->n;
+    double *state = nevh__array(2 * n, sizeof *state);
+    for (size_t k = 0; state && k < 2 * n; k++)
+        state[k] = (double)c->start[k];
+    nevh_timing *timing =
+        state ? nevh_timing_new(c->system, (double)c->t0, t, state, state + n)
+              : NULL;
+    free(state);
+    return timing;
+}
+
+/* What H does with time up to there, and as far again, so that a way in many parts
+   begins seldom; orbits begin again where that was not known. */
 static int look_ahead(nevh_certain *c, double t) {
     double t0 = (double)c->t0;
     bool known =
         fabs(t - t0) <= fabs(c->seen - t0) && (t - t0) * (c->seen - t0) >= 0;
     if (known || nevh_system_traits(c->system) & NEVH_AUTONOMOUS)
         return NEVH_OK;
-    size_t n = c->n;
-    double *state = nevh__array(2 * n, sizeof *state);
-    for (size_t k = 0; state && k < 2 * n; k++)
-        state[k] = (double)c->start[k];
-    nevh_timing_free(c->timing);
-    c->timing =
-        state ? nevh_timing_new(c->system, t0, t, state, state + n) : NULL;
-    free(state);
-    c->seen = t;
-    if (!c->timing)
+    double seen = t0 + 2 * (t - t0);
+    nevh_timing *timing = timing_until(c, seen);
+    if (timing && !nevh_timing_whole(timing)) {
+        nevh_timing_free(timing);
+        timing = timing_until(c, seen = t);
+    }
+    if (!timing)
         return nevh__fail(&c->report, NEVH_ENOMEM, "out of memory");
-    if (!nevh_timing_whole(c->timing))
+    if (!nevh_timing_whole(timing)) {
+        nevh_timing_free(timing);
         return nevh__fail(&c->report, NEVH_EFAILED,
                           "H changes too often between t = %.9g and %.9g to "
                           "be certain that no change is missed",
                           t0, t);
+    }
+    clear(&c->fine), clear(&c->coarse); /* they borrow the former one */
+    nevh_timing_free(c->timing);
+    c->timing = timing;
+    c->seen = seen;
     return start_both(c, c->fine.pairs);
 }
 

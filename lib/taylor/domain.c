@@ -119,6 +119,10 @@ size_t nevh__domain_edge(const nevh__recurrence *r, const double rows[],
     return which;
 }
 
+bool nevh__domain_is_closed(const nevh__recurrence *r, size_t edge) {
+    return edge != SIZE_MAX && r->edges[edge].function == NEVH__CBRT;
+}
+
 void nevh__domain_words(const nevh__recurrence *r, size_t edge, char text[],
                         size_t room) {
     const nevh__edge *e = &r->edges[edge];

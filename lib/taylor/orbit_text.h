@@ -87,12 +87,17 @@ static bool expand(orbit *o, real t, const real state[]) {
     return false;
 }
 
+/* The edge of a domain that a series comes to; SIZE_MAX: there is none. */
+static size_t edge_of(const orbit *o) {
+    return nevh__domain_edge(o->recurrence,
+                             NAMED(nevh__series_watched)(o->series), o->order,
+                             (double)(o->reach / o->unit));
+}
+
 /* Why there is no series at t that holds for long, where a domain has an edge. */
 static int fail_at_edge(const orbit *o, double t, nevh__report *report) {
     char why[200];
-    size_t edge =
-        nevh__domain_edge(o->recurrence, NAMED(nevh__series_watched)(o->series),
-                          o->order, (double)(o->reach / o->unit));
+    size_t edge = edge_of(o);
     if (edge == SIZE_MAX)
         return NEVH_OK;
     nevh__domain_words(o->recurrence, edge, why, sizeof why);
@@ -200,7 +205,8 @@ int NAMED(nevh__orbit_next)(orbit *o, real t, nevh__report *report) {
     real next = t > o->t ? o->t + o->reach : o->t - o->reach;
     next = o->stops ? o->stop : next;
     if (!(o->reach > o->shortest * FUNCTION(fabs)(t - o->t)) || next == o->t) {
-        o->ended = ends(o);
+        o->ended =
+            ends(o) && !nevh__domain_is_closed(o->recurrence, edge_of(o));
         int status = o->ended ? NEVH_OK : fail_at_edge(o, (double)o->t, report);
         return status ? status
                       : nevh__fail(report, NEVH_EFAILED,

@@ -74,6 +74,9 @@ double nevh__domain_reach(const nevh__recurrence *, const double rows[],
    orders that are finite.  SIZE_MAX: none. */
 size_t nevh__domain_edge(const nevh__recurrence *, const double rows[],
                          size_t orders, double reach);
+/* Whether an orbit goes on behind an edge: its function is finite there for all
+   arguments, and so is the momentum. */
+bool nevh__domain_is_closed(const nevh__recurrence *, size_t edge);
 /* "sqrt(...) of effect "V" is not analytic ..." */
 void nevh__domain_words(const nevh__recurrence *, size_t edge, char text[],
                         size_t room);

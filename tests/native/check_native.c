@@ -386,6 +386,7 @@ TEST(chain_rule) {
    range, beyond the first reduction of arguments, too. */
 TEST(lanes_alike) {
     static const char text[] =
+        "int nevh_native_steps;\n"
         "int compare(double from, double step, size count) {\n"
         "    for (size i = 0; i < count; i++) {\n"
         "        double x = from + (double)i * step;\n"

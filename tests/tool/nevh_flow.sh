@@ -167,7 +167,7 @@ has '^shape: cat\(phi = 2, p_phi = 0, 0\.4, 1\.0[0-9]\)'
 printf '%s\n' '[coordinates]' 'x = 2' '[effects]' 'kinetic = p_x^2/2' \
     'hill = x^2/2 - x^4/4' '[run]' 'dt = 0.1' 't_end = 50' >$work/hill.nevh
 exits 1 run $work/hill.nevh --integrators verlet
-says 'is not finite at p_x = [0-9.]*e\+[0-9]*: its step of .* take a smaller step'
+says 'the solution itself ends at t = 1\.00'
 # Of the orbit that failed, of 256 side by side.
 sed 's/^hill.*/V = -x^4\/4/' $work/hill.nevh >$work/away.nevh
 exits 1 flow $work/away.nevh --integrators verlet --shape 'disc(x = 0, p_x = 0, 0.9)'

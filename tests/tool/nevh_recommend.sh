@@ -214,7 +214,7 @@ printf '[coordinates]\nx = 1\n[effects]\nK = p_x^2/2\nV = atan2(x, p_x)\n%s' \
 t_end = 2
 ' >$work/kink.nevh
 exits 1 cost $work/kink.nevh --integrators rk4,gauss4 --dt 0.1,0.05
-says 'kink.nevh: .* with exact at dt = 0\.(05|1) failed'
+says 'kink.nevh: the solution itself ends at t = 0\.5'
 
 # A run that is to stop where it starts.
 scene still.nevh 'x^2/2' 't_end = 10\ndt = 0.1\nstop = x > 0'

@@ -197,6 +197,11 @@ static int lock_former(output *o, const char *name, const char *who) {
         o->made = text_print("%s", name);
     o->former = open(name, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     o->locks = o->former >= 0;
+    char *real = o->made && o->locks ? realpath(name, NULL) : NULL;
+    if (real) { /* the file, not a link that stands for it */
+        free(o->made);
+        o->made = real;
+    }
     if (!o->locks) {
         free(o->made);
         o->made = NULL;

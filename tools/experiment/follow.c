@@ -14,6 +14,11 @@ void row_follow(const plan *p, row *r) {
     if (!r->ran || (own != NEVH_UNDECIDED && own != NEVH_BOUNDED) ||
         isfinite(r->stopped))
         return;
+    if (p->jumps && !nevh_timing_whole(p->jumps)) { /* known no further */
+        if (!nevh_timing_whole(p->timing))
+            r->energy.verdict = NEVH_UNDECIDED;
+        return;
+    }
     nevh_stepper *s = row_stepper(p, r, p->balance);
     nevh_energy *energy = row_energy(p, r, s);
     stop reached = {.scene = p->scene};

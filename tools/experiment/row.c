@@ -48,7 +48,8 @@ nevh_energy *row_energy(const plan *p, const row *r, const nevh_stepper *s) {
     if (p->balance)
         nevh_energy_follow(energy, s);
     if (p->balance && p->jumps)
-        nevh_energy_book(energy, p->jumps);
+        nevh_energy_book(energy,
+                         nevh_timing_whole(p->jumps) ? p->jumps : p->timing);
     plan_set_scale(p, energy);
     return energy;
 }

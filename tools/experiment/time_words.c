@@ -14,7 +14,7 @@ static size_t count_jumps(const nevh_timing *timing) {
 
 /* Jumps are booked as far as verdicts may follow a run. */
 void plan_look_at_time(plan *p) {
-    static const double followed = 33;
+    static const double followed = 513; /* nevh_verdict_settle goes to 512 */
     double start = p->run->t_start, end = p->t_end;
     if (!p->time)
         return;

@@ -9,9 +9,10 @@
 static void tell_finding(const nevh_probe *probe, nevh_question question,
                          list *notes) {
     nevh_finding f = nevh_probe_finding(probe, question);
+    bool told = f.term && (!f.holds || question == NEVH_IS_REVERSIBLE);
     list_print(notes, "  %-24s %-3s  %.1e  %.1e%s%s",
                nevh_question_name(question), f.holds ? "yes" : "no", f.evidence,
-               f.limit, f.term ? "  " : "", f.term ? f.term : "");
+               f.limit, told ? "  " : "", told ? f.term : "");
 }
 
 /* On the orbit a Taylor series knows better than differences beside it. */

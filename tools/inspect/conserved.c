@@ -79,8 +79,11 @@ void conserved_words(const plan *p, list *notes) {
                        nevh_scene_shown_name(p->scene, NEVH_INVARIANTS, i),
                        one[i], t_end, *unit ? " " : "", unit, two[i]);
     if (!known)
-        list_add(notes, "[invariants] were not checked: dop853 does not follow "
-                        "this orbit.");
+        list_add(notes, one && two
+                            ? "[invariants] were not checked: their sizes "
+                              "near the start are not known."
+                            : "[invariants] were not checked: dop853 "
+                              "does not follow this orbit.");
     free(size);
     free(one);
     free(two);

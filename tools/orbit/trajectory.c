@@ -191,7 +191,8 @@ remark(trajectory *r, const char *format, ...) {
 }
 
 static int failed(trajectory *r, double t, const char *message) {
-    char *why = plan_why(r->plan, message);
+    char *why =
+        r->to.mute ? text_print("%s", message) : plan_why(r->plan, message);
     remark(r, "failed after t = %.9g: %s", t, why);
     if (!r->to.mute)
         tool_refuse("%s: %s failed after t = %.9g: %s", r->plan->name,
@@ -204,7 +205,9 @@ static int failed(trajectory *r, double t, const char *message) {
 static void doubt(trajectory *r) {
     static const double large = 0.1; /* of the energy */
     const plan *p = r->plan;
+    static const double most_steps = 3e5; /* of a second run */
     if (p->balance || r->to.mute || r->to.take ||
+        fabs(p->t_end - p->run->t_start) > most_steps * p->dt[0] ||
         !(r->changed > large * plan_energy_scale(p)))
         return;
     char *why = plan_doubts(p, r->integrator);
