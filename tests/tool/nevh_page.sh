@@ -69,8 +69,6 @@ cp $page $work/first.html
 exits 0 page pendulum -o $page
 cmp -s $page $work/first.html || fails "differs from run to run"
 size=$(wc -c <$page)
-limit=256000
-command -v zopfli >/dev/null 2>&1 || limit=268800 # 5 % more, as web/kit.sh says
-test $size -le $limit || fails "is of $size bytes"
+test $size -le 256000 || fails "is of $size bytes"
 
 exit $status
