@@ -28,6 +28,7 @@ for one in $commands; do
     cmp -s $work/out $work/one || fails "differs from nevh help $one"
 done
 # The examples of a command, each as a person would type it.  A page needs a kit.
+scenes=$(cd "$NEVH_SCENES" && pwd -P)
 absolute=$(cd "$(dirname "$nevh")" && pwd -P)/$(basename "$nevh")
 for one in $commands; do
     exits 0 help $one
@@ -38,7 +39,7 @@ for one in $commands; do
     page | hard) continue ;; # a kit, half a minute
     esac
     while read -r example; do
-        (cd $work && eval "\"$absolute\" $example") >$work/out 2>$work/err </dev/null
+        (cd $work && eval "NEVH_SCENES='$scenes' \"$absolute\" $example") >$work/out 2>$work/err </dev/null
         code=$?
         test $code = 0 || fails "exit status $code of the example $example"
     done <$work/examples
