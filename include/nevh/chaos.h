@@ -32,7 +32,7 @@ typedef struct {
                                     the orbit starts; width is ignored.
                                     Derivatives are exact where terms bring
                                     them; else `gradient` */
-    double t_start, dt;
+    double t_start, dt; /* dt < 0: backward in time */
     size_t starts;     /* the orbit and such as start near by, at the same
                           energy; 0: 8 */
     size_t exponents;  /* the largest ones, up to 2n; 0: 1 */
@@ -137,7 +137,8 @@ typedef struct {
    seconds  that it may cost, as nevh_counts_seconds has them; 0: 2
    found    out: zeros, and EARLY, where nothing could be followed
    returns  NEVH_OK; what nevh_chaos_new or nevh_chaos_run returned, and then what
-            was found until there is in `found`; NEVH_EINVAL unless t1 > t0
+            was found until there is in `found`; NEVH_EINVAL where
+            t1 is t0 or is none
    Thread-safe. */
 NEVH_API int nevh_chaos_find(const nevh_system *, const nevh_options *options,
                              double t0, double t1, double seconds,

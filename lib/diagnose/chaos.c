@@ -30,7 +30,7 @@ static int check(nevh_chaos *c, const nevh_chaos_options *o) {
                           "the integrator is NULL: is its name spelt right?");
     if (!(c->dt > 0) || !isfinite(c->dt) || !isfinite(c->t_start))
         return nevh__fail(&c->report, NEVH_EINVAL,
-                          "chaos: a step of %g from t = %g is none", c->dt,
+                          "chaos: a step of %g from t = %g is none", o->dt,
                           c->t_start);
     if (c->exponents > most)
         return nevh__fail(&c->report, NEVH_EINVAL,
@@ -291,7 +291,8 @@ nevh_chaos *nevh_chaos_new(const nevh_system *system,
     c->deviations = o->deviations ? o->deviations : 2;
     c->frame = c->exponents > 1 ? c->exponents : 0;
     c->t_start = o->t_start;
-    c->dt = o->dt;
+    c->dt = fabs(o->dt);
+    c->way = o->dt < 0 ? -1 : 1;
     c->seed = o->seed;
     int status = nevh_system_status(system);
     if (status)

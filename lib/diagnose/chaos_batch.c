@@ -102,7 +102,7 @@ static void forget(nevh_chaos *c, size_t start) {
 /* Steps. */
 
 static double time_now(const nevh_chaos *c) {
-    return c->t_start + c->batch->taken * c->dt;
+    return c->t_start + c->batch->taken * c->way * c->dt;
 }
 
 /* The lanes belong to the memory as it is. */
@@ -112,8 +112,8 @@ static void settle(nevh_chaos *c) {
 }
 
 static int take_steps(nevh_chaos *c, double steps) {
-    return nevh_run(c->stepper, time_now(c), c->dt, (size_t)steps, c->q, c->p,
-                    NULL, 0);
+    return nevh_run(c->stepper, time_now(c), c->way * c->dt, (size_t)steps,
+                    c->q, c->p, NULL, 0);
 }
 
 static void step_apart(nevh_chaos *c, double steps) {
@@ -140,7 +140,7 @@ static void step_apart(nevh_chaos *c, double steps) {
 /* Lanes that were changed since the last step lose their memory first. */
 static void step_together(nevh_chaos *c, double steps) {
     nevh__chaos_batch *x = c->batch;
-    if (!nevh__begin(c->stepper, time_now(c), c->dt, c->q, c->p))
+    if (!nevh__begin(c->stepper, time_now(c), c->way * c->dt, c->q, c->p))
         settle(c);
     copy_all(c, own_columns(c), x->kept);
     if (take_steps(c, steps))
@@ -229,7 +229,7 @@ static bool look(nevh_chaos *c, size_t start) {
         nevh__fail(&at->report, NEVH_EDOM,
                    "a displacement has grown beyond all numbers, or vanished, "
                    "at t = %.9g",
-                   c->t_start + clock->done * c->dt);
+                   c->t_start + clock->done * c->way * c->dt);
         return true;
     }
     if (!c->tangent)

@@ -43,7 +43,7 @@ static int follow(nevh_chaos *c, double until, double seconds, bool sought,
 int nevh_chaos_find(const nevh_system *system, const nevh_options *options,
                     double t0, double t1, double seconds,
                     nevh_chaos_finding *found) {
-    if (!system || !options || !found || !(t1 > t0))
+    if (!system || !options || !found || !(t1 > t0 || t1 < t0))
         return NEVH_EINVAL;
     *found = (nevh_chaos_finding){.error = INFINITY};
     if (system->n > LARGEST)
@@ -131,7 +131,7 @@ int nevh_chaos_confirm(const nevh_chaos *c, double budget,
         &(nevh_finer_question){.integrator = c->integrator,
                                .options = &c->options,
                                .t0 = c->t_start,
-                               .dt = c->dt,
+                               .dt = c->way * c->dt,
                                .steps = (size_t)c->start[0].clock.done,
                                .kinds = NEVH_FINER_ADAPTIVE | NEVH_FINER_STEPS,
                                .budget = part});

@@ -66,7 +66,8 @@ struct nevh_chaos {
     size_t lanes;                                   /* of a start */
     size_t width;
     nevh_options options; /* q, p and scale are its own */
-    double t_start, dt, period;
+    double t_start, dt, period; /* dt > 0, and */
+    double way;                 /* 1, or -1: backward in time */
     uint64_t seed;
     nevh__variational *variational;
     nevh_stepper *stepper;

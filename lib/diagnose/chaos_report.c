@@ -213,7 +213,7 @@ nevh_chaos_report nevh_chaos_result(const nevh_chaos *c) {
     nevh_chaos_report r = {0};
     if (!c || !c->planned)
         return r;
-    r.t = c->t_start + elapsed(c, 0);
+    r.t = c->t_start + c->way * elapsed(c, 0);
     r.verdict = verdict_among_starts(c);
     r.sali = c->start[0].sali;
     r.megno = nevh__chaos_megno(c, 0);

@@ -253,10 +253,11 @@ static int look(nevh_chaos *c, double steps) {
         double growth = nevh__chaos_look(c, i);
         if (!isfinite(growth)) {
             clock->done -= steps;
-            return nevh__fail(&c->report, NEVH_EDOM,
-                              "a displacement of start %zu has grown beyond "
-                              "all numbers, or vanished, at t = %.9g",
-                              i, c->t_start + (clock->done + steps) * c->dt);
+            return nevh__fail(
+                &c->report, NEVH_EDOM,
+                "a displacement of start %zu has grown beyond "
+                "all numbers, or vanished, at t = %.9g",
+                i, c->t_start + (clock->done + steps) * c->way * c->dt);
         }
         most = fmax(most, growth);
     }
@@ -267,7 +268,7 @@ static int look(nevh_chaos *c, double steps) {
 }
 
 double nevh__chaos_steps(const nevh_chaos *c, double until) {
-    return rint((until - c->t_start) / c->dt);
+    return rint(c->way * (until - c->t_start) / c->dt);
 }
 
 int nevh_chaos_run(nevh_chaos *c, double until) {
@@ -278,8 +279,9 @@ int nevh_chaos_run(nevh_chaos *c, double until) {
         /* Looks come at multiples of the stride, however a run is cut. */
         double done = c->start[0].clock.done, stride = (double)c->stride;
         double steps = fmin(last - done, stride - fmod(done, stride));
-        int status = nevh_run(c->stepper, c->t_start + done * c->dt, c->dt,
-                              (size_t)steps, c->q, c->p, NULL, 0);
+        int status =
+            nevh_run(c->stepper, c->t_start + done * c->way * c->dt,
+                     c->way * c->dt, (size_t)steps, c->q, c->p, NULL, 0);
         if (status)
             return nevh__fail(&c->report, status, "%s",
                               nevh_stepper_message(c->stepper));

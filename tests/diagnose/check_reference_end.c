@@ -3,6 +3,7 @@
    SPDX-License-Identifier: GPL-3.0-or-later */
 #include "support.h"
 #include <math.h>
+#include <nevh/chaos.h>
 #include <nevh/scene.h>
 #include <string.h>
 
@@ -79,6 +80,40 @@ TEST_EACH(ends_have_reasons, ENDS) {
     if (whole)
         ck_assert_double_lt(nevh_reference_error(s.reference), 1e-9);
     tear_down(&s);
+}
+
+/* Momenta turned round are the same orbit backward in time. */
+TEST(chaos_is_found_backward) {
+    setup chaotic = refer("a = 3\nb = 3", RODS, -200, NULL);
+    ck_assert_int_eq(nevh_reference_why(chaotic.reference),
+                     NEVH_REFERENCE_CHAOS);
+    ck_assert_double_gt(nevh_reference_growth(chaotic.reference), 1e4);
+    ck_assert_double_gt(nevh_reference_exponent(chaotic.reference), 0.6);
+    tear_down(&chaotic);
+    setup regular = refer("a = 1.1\nb = 0\np_b = 2.7746", RODS, -100, NULL);
+    ck_assert_int_eq(nevh_reference_why(regular.reference),
+                     NEVH_REFERENCE_WHOLE);
+    tear_down(&regular);
+}
+
+static nevh_chaos_finding find_towards(double t1, double p) {
+    nevh_scene *scene = scene_with("x = 0\ny = -0.25", HEILES);
+    double q[2] = {0, -0.25}, start[2] = {p, 0};
+    nevh_options o = {.q = q, .p = start};
+    nevh_chaos_finding f;
+    ck_assert_int_eq(
+        nevh_chaos_find(nevh_scene_system(scene), &o, 0, t1, 0, &f), NEVH_OK);
+    nevh_scene_free(scene);
+    return f;
+}
+
+TEST(growth_is_that_of_the_reversed_orbit) {
+    nevh_chaos_finding back = find_towards(-400, 0.42);
+    nevh_chaos_finding there = find_towards(400, -0.42);
+    ck_assert_double_gt(back.growth, 2);
+    ck_assert_double_eq_tol(back.growth, there.growth, 0.1);
+    ck_assert_double_eq_tol(back.report.t, -there.report.t, 1);
+    ck_assert_int_eq(back.report.verdict, there.report.verdict);
 }
 
 /* A run that does not see what rows see: with their step it does. */
